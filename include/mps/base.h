@@ -1,0 +1,96 @@
+/* mps/base.h - what every other header of libmps needs: version, status codes, the
+ * description of an array (mps_view) and the macros of the ABI.
+ *
+ * Units: SI throughout (m, kg, s, N, Pa, rad) unless a docstring says otherwise.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPS_BASE_H
+#define MPS_BASE_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#define MPS_VERSION_MAJOR 0
+#define MPS_VERSION_MINOR 1
+#define MPS_VERSION_PATCH 0
+
+#if defined(__GNUC__) || defined(__clang__)
+#define MPS_API __attribute__((visibility("default")))
+#define MPS_NODISCARD __attribute__((warn_unused_result))
+#else
+#define MPS_API
+#define MPS_NODISCARD
+#endif
+
+#ifdef __cplusplus
+#define MPS_EXTERN_C_BEGIN extern "C" {
+#define MPS_EXTERN_C_END }
+#else
+#define MPS_EXTERN_C_BEGIN
+#define MPS_EXTERN_C_END
+#endif
+
+MPS_EXTERN_C_BEGIN
+
+/* The one table of status codes: X(name, value, text). */
+#define MPS_STATUS_TABLE(X)                                                                        \
+  X(OK, 0, "success")                                                                              \
+  X(ERROR_ARGUMENT, 1, "an argument is outside its allowed range")                                 \
+  X(ERROR_STATE, 2, "the call is not allowed in the object's present state")                       \
+  X(ERROR_MEMORY, 3, "memory could not be allocated")                                              \
+  X(ERROR_FIELD, 4, "unknown or wrongly shaped particle field")                                    \
+  X(ERROR_IO, 5, "a file could not be opened, read or written")                                    \
+  X(ERROR_FORMAT, 6, "a file's content is malformed")                                              \
+  X(ERROR_DIVERGED, 7, "the computation diverged")                                                 \
+  X(ERROR_CANCELLED, 8, "the caller's cancel hook asked to stop")                                  \
+  X(ERROR_UNSUPPORTED, 9, "not available in this build or for this input")                         \
+  X(ERROR_NUMERIC, 10, "a numerical method failed to converge or met a singular system")           \
+  X(ERROR_INTERNAL, 11, "an internal invariant is broken: please report it")
+
+/** Outcome of every fallible call. MPS_OK is zero. Values are never renumbered. */
+typedef enum mps_status {
+#define MPS_STATUS_ENTRY(name, value, text) MPS_##name = value,
+  MPS_STATUS_TABLE(MPS_STATUS_ENTRY)
+#undef MPS_STATUS_ENTRY
+      MPS_STATUS_FORCE_32BIT = 0x7fffffff
+} mps_status;
+
+/** One-line English text of a status code; never NULL. Thread safe. */
+MPS_API const char *mps_status_text(mps_status status);
+
+/** Version of the library that is linked, "MAJOR.MINOR.PATCH". Thread safe. */
+MPS_API const char *mps_version(void);
+
+/** Element type of a view, laid out as DLPack's DLDataType. */
+typedef struct mps_dtype {
+  uint8_t code;   /* 0 signed integer, 1 unsigned integer, 2 IEEE float */
+  uint8_t bits;   /* 32 or 64 */
+  uint16_t lanes; /* 1 */
+} mps_dtype;
+
+#define MPS_VIEW_READONLY 1u /* flag: the caller may read but not write */
+
+/** A borrowed array: nothing is copied. Element (i, c) lies at
+ *  data + (i * stride[0] + c * stride[1]) elements. Valid until the owner is destroyed or its
+ *  epoch differs from `epoch` (particles inserted or sorted). Frozen layout. */
+typedef struct mps_view {
+  void *data;
+  int64_t shape[3];  /* shape[0] particles, shape[1] components, shape[2] = 1 */
+  int64_t stride[3]; /* in elements, not bytes */
+  mps_dtype dtype;
+  uint32_t flags; /* MPS_VIEW_... */
+  uint64_t epoch;
+} mps_view;
+
+/** Address of element (i, c) of a float64 view; no range check. */
+static inline double *mps_view_f64(const mps_view *view, int64_t i, int64_t c) {
+  return (double *)view->data + i * view->stride[0] + c * view->stride[1];
+}
+
+/** Address of element (i, c) of an int64 view; no range check. */
+static inline int64_t *mps_view_i64(const mps_view *view, int64_t i, int64_t c) {
+  return (int64_t *)view->data + i * view->stride[0] + c * view->stride[1];
+}
+
+MPS_EXTERN_C_END
+#endif

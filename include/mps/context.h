@@ -1,0 +1,115 @@
+/* mps/context.h - the context: error record, memory, threads, log, progress, cancel.
+ *
+ * Every object is created from a context and reports its errors there. There is no process-wide
+ * state: distinct contexts are independent and may be used from distinct threads at once. One
+ * context, and the objects made from it, are used by one thread at a time.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPS_CONTEXT_H
+#define MPS_CONTEXT_H
+
+#include <mps/base.h>
+
+MPS_EXTERN_C_BEGIN
+
+typedef struct mps_context mps_context;
+
+/** The last error of a context. Texts are always terminated. */
+typedef struct mps_error {
+  mps_status status;
+  int32_t reserved;
+  int64_t step;      /* time step at which it happened, -1 outside a run */
+  int64_t particle;  /* id of the particle concerned, -1 if none */
+  char message[512]; /* the offending value and what is allowed */
+  char function[64]; /* public function that failed */
+} mps_error;
+
+/** Allocates `size` bytes aligned to `alignment` (a power of two, at least 64), or NULL. */
+typedef void *(*mps_alloc_fn)(void *user, size_t size, size_t alignment);
+/** Releases what mps_alloc_fn returned; never called with NULL. */
+typedef void (*mps_free_fn)(void *user, void *memory);
+
+/** One unit of work. `worker` is in [0, workers) and unique among the units running at once. */
+typedef void (*mps_task_fn)(void *task, int64_t index, int32_t worker);
+/** A caller's own executor: runs task(task_data, i, worker) once for each i in [0, count), in any
+ *  order and concurrently, and returns when all are done. */
+typedef void (*mps_parallel_for_fn)(void *user, int64_t count, mps_task_fn task, void *task_data);
+
+typedef enum mps_executor_kind {
+  MPS_EXECUTOR_SERIAL = 0, /* the calling thread only */
+  MPS_EXECUTOR_OPENMP = 1, /* `threads` OpenMP threads */
+  MPS_EXECUTOR_CALLER = 2  /* parallel_for below */
+} mps_executor_kind;
+
+typedef enum mps_log_level {
+  MPS_LOG_WARNING = 0,
+  MPS_LOG_INFO = 1,
+  MPS_LOG_DEBUG = 2
+} mps_log_level;
+
+typedef void (*mps_log_fn)(void *user, mps_log_level level, const char *message);
+
+/** What a progress hook is told. */
+typedef struct mps_progress {
+  const char *task; /* short name of what is running */
+  int64_t step;
+  double time, time_end; /* s */
+  double fraction;       /* 0..1 */
+} mps_progress;
+typedef void (*mps_progress_fn)(void *user, const mps_progress *progress);
+/** Return non-zero to stop the running call with MPS_ERROR_CANCELLED. */
+typedef int32_t (*mps_cancel_fn)(void *user);
+
+/** Definition of a context; always start from mps_context_def_init or mps_context_defaults. */
+typedef struct mps_context_def {
+  uint32_t struct_size;
+  int32_t executor; /* mps_executor_kind; default OPENMP where built in, else SERIAL */
+  int32_t threads;  /* 1..1024; 0 (default): all processors the process may use */
+  int32_t reserved;
+  mps_parallel_for_fn parallel_for; /* for MPS_EXECUTOR_CALLER, with `threads` workers */
+  void *parallel_user;
+  mps_alloc_fn alloc; /* both or neither of alloc and free */
+  mps_free_fn free;
+  void *memory_user;
+  mps_log_fn log; /* default NULL: the library never prints */
+  void *log_user;
+  mps_progress_fn progress;
+  void *progress_user;
+  mps_cancel_fn cancel;
+  void *cancel_user;
+} mps_context_def;
+
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT for NULL or a size that
+ *  this library does not know. */
+MPS_API mps_status mps_context_def_init(mps_context_def *def, size_t size);
+
+static inline mps_context_def mps_context_defaults(void) {
+  mps_context_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_context_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+
+/** Creates a context. `def` NULL: the defaults. `error_text` (may be NULL, of `error_size` bytes)
+ *  receives the reason of a failure, since no context exists to hold it. */
+MPS_API MPS_NODISCARD mps_status mps_context_create(const mps_context_def *def, mps_context **out,
+                                                    char *error_text, size_t error_size);
+
+/** Destroys and nulls; accepts NULL. Objects made from the context stay usable: its memory goes
+ *  with the last of them. */
+MPS_API void mps_context_destroy(mps_context **context);
+
+/** The record of the last failed call; never NULL for a valid context. Owned by the context,
+ *  overwritten by the next failure. */
+MPS_API const mps_error *mps_context_error(const mps_context *context);
+MPS_API void mps_context_clear_error(mps_context *context);
+
+/** Number of workers of the executor. */
+MPS_API int32_t mps_context_threads(const mps_context *context);
+
+/** Runs task(data, i, worker) for i in [0, count) on the context's executor and waits. The task
+ *  must not use this context or its objects except to read them. */
+MPS_API MPS_NODISCARD mps_status mps_context_parallel_for(mps_context *context, int64_t count,
+                                                          mps_task_fn task, void *data);
+
+MPS_EXTERN_C_END
+#endif

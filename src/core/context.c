@@ -1,0 +1,272 @@
+/* context.c - the context object: error record, memory hooks, log, progress and cancel.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "context_private.h"
+
+#include <mps/context.h>
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void *system_alloc(void *user, size_t size, size_t alignment) {
+  (void)user;
+  return aligned_alloc(alignment, size); /* size is a multiple of alignment: see mpsi_alloc */
+}
+
+static void system_free(void *user, void *memory) {
+  (void)user;
+  free(memory);
+}
+
+/* ---- status and version --------------------------------------------------------------------- */
+
+const char *mps_status_text(mps_status status) {
+  switch (status) {
+#define STATUS_CASE(name, value, text)                                                             \
+  case MPS_##name:                                                                                 \
+    return text;
+    MPS_STATUS_TABLE(STATUS_CASE)
+#undef STATUS_CASE
+  default:
+    return "unknown status code";
+  }
+}
+
+#define STRINGIFY_(x) #x
+#define STRINGIFY(x) STRINGIFY_(x)
+
+const char *mps_version(void) {
+  return STRINGIFY(MPS_VERSION_MAJOR) "." STRINGIFY(MPS_VERSION_MINOR) "." STRINGIFY(
+      MPS_VERSION_PATCH);
+}
+
+/* ---- definition structs ---------------------------------------------------------------------- */
+
+mps_status mpsi_def_init(void *def, size_t size, size_t minimum, const void *defaults,
+                         size_t defaults_size) {
+  if (!def || size < minimum || size > UINT32_MAX) return MPS_ERROR_ARGUMENT;
+  memset(def, 0, size);
+  memcpy(def, defaults, size < defaults_size ? size : defaults_size);
+  const uint32_t stored = (uint32_t)size;
+  memcpy(def, &stored, sizeof stored); /* struct_size is the first member of every definition */
+  return MPS_OK;
+}
+
+mps_status mpsi_def_read(mps_context *context, const char *function, const void *def,
+                         size_t minimum, void *known, size_t known_size) {
+  if (!def) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "def is NULL");
+  uint32_t size;
+  memcpy(&size, def, sizeof size);
+  if (size < minimum)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "def.struct_size is %u, at least %zu is required: start from the _defaults() "
+                     "or _def_init function",
+                     size, minimum);
+  for (size_t i = known_size; i < size; i++)
+    if (((const unsigned char *)def)[i] != 0)
+      return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
+                       "def has a non-zero member at byte %zu that this library (version %s) does "
+                       "not know",
+                       i, mps_version());
+  memcpy(known, def, size < known_size ? size : known_size);
+  return MPS_OK;
+}
+
+static const mps_context_def context_defaults = {
+    .struct_size = sizeof(mps_context_def),
+#ifdef MPSI_OPENMP
+    .executor = MPS_EXECUTOR_OPENMP,
+#endif
+};
+/* Size of the structure in the first release: it may only grow. */
+#define CONTEXT_DEF_MINIMUM offsetof(mps_context_def, reserved)
+
+mps_status mps_context_def_init(mps_context_def *def, size_t size) {
+  return mpsi_def_init(def, size, CONTEXT_DEF_MINIMUM, &context_defaults, sizeof context_defaults);
+}
+
+/* ---- life ------------------------------------------------------------------------------------ */
+
+static mps_status refuse(char *text, size_t size, mps_status status, const char *message) {
+  if (text && size) snprintf(text, size, "mps_context_create: %s", message);
+  return status;
+}
+
+static mps_status check_def(const mps_context_def *def, char *text, size_t size) {
+  char why[160];
+  if (def->executor < MPS_EXECUTOR_SERIAL || def->executor > MPS_EXECUTOR_CALLER) {
+    snprintf(why, sizeof why, "executor is %d, allowed are 0 (serial), 1 (OpenMP), 2 (caller)",
+             def->executor);
+    return refuse(text, size, MPS_ERROR_ARGUMENT, why);
+  }
+#ifndef MPSI_OPENMP
+  if (def->executor == MPS_EXECUTOR_OPENMP)
+    return refuse(text, size, MPS_ERROR_UNSUPPORTED,
+                  "this libmps was built without OpenMP: use the serial or the caller's executor");
+#endif
+  if (def->threads < 0 || def->threads > MPSI_MAX_THREADS) {
+    snprintf(why, sizeof why, "threads is %d, allowed are 0 (all processors) to %d", def->threads,
+             MPSI_MAX_THREADS);
+    return refuse(text, size, MPS_ERROR_ARGUMENT, why);
+  }
+  if (def->executor == MPS_EXECUTOR_CALLER && (!def->parallel_for || def->threads < 1))
+    return refuse(text, size, MPS_ERROR_ARGUMENT,
+                  "the caller's executor needs parallel_for and threads >= 1");
+  if (!def->alloc != !def->free)
+    return refuse(text, size, MPS_ERROR_ARGUMENT, "alloc and free must be given together");
+  return MPS_OK;
+}
+
+mps_status mps_context_create(const mps_context_def *user_def, mps_context **out, char *error_text,
+                              size_t error_size) {
+  if (error_text && error_size) error_text[0] = '\0';
+  if (!out) return refuse(error_text, error_size, MPS_ERROR_ARGUMENT, "out is NULL");
+  *out = NULL;
+  mps_context_def def = context_defaults;
+  mps_status status = MPS_OK;
+  if (user_def)
+    status =
+        mpsi_def_read(NULL, "mps_context_create", user_def, CONTEXT_DEF_MINIMUM, &def, sizeof def);
+  if (status != MPS_OK)
+    return refuse(error_text, error_size, status,
+                  "def.struct_size is not one this library knows: start from "
+                  "mps_context_defaults()");
+  if ((status = check_def(&def, error_text, error_size)) != MPS_OK) return status;
+  if (!def.alloc) {
+    def.alloc = system_alloc;
+    def.free = system_free;
+  }
+  const size_t bytes = (sizeof(mps_context) + MPSI_ALIGNMENT - 1) / MPSI_ALIGNMENT * MPSI_ALIGNMENT;
+  mps_context *context = def.alloc(def.memory_user, bytes, MPSI_ALIGNMENT);
+  if (!context) return refuse(error_text, error_size, MPS_ERROR_MEMORY, "out of memory");
+  memset(context, 0, bytes);
+  context->def = def;
+  context->threads = mpsi_executor_threads(&def);
+  context->error.step = context->error.particle = -1;
+  atomic_init(&context->references, 1);
+  *out = context;
+  return MPS_OK;
+}
+
+mps_context *mpsi_context_retain(mps_context *context) {
+  atomic_fetch_add(&context->references, 1);
+  return context;
+}
+
+void mpsi_context_release(mps_context *context) {
+  if (atomic_fetch_sub(&context->references, 1) == 1)
+    context->def.free(context->def.memory_user, context);
+}
+
+void mps_context_destroy(mps_context **context) {
+  if (!context || !*context) return;
+  mpsi_context_release(*context);
+  *context = NULL;
+}
+
+/* ---- errors and log -------------------------------------------------------------------------- */
+
+mps_status mpsi_fail(mps_context *context, const char *function, mps_status status,
+                     const char *format, ...) {
+  if (!context) return status;
+  mps_error *error = &context->error;
+  error->status = status;
+  error->step = error->particle = -1;
+  snprintf(error->function, sizeof error->function, "%s", function);
+  va_list args;
+  va_start(args, format);
+  vsnprintf(error->message, sizeof error->message, format, args);
+  va_end(args);
+  return status;
+}
+
+void mpsi_fail_where(mps_context *context, int64_t step, int64_t particle) {
+  context->error.step = step;
+  context->error.particle = particle;
+}
+
+mps_status mpsi_fail_memory(mps_context *context, const char *function, size_t bytes) {
+  return mpsi_fail(context, function, MPS_ERROR_MEMORY, "could not allocate %zu bytes", bytes);
+}
+
+const mps_error *mps_context_error(const mps_context *context) {
+  return context ? &context->error : NULL;
+}
+
+void mps_context_clear_error(mps_context *context) {
+  if (!context) return;
+  memset(&context->error, 0, sizeof context->error);
+  context->error.step = context->error.particle = -1;
+}
+
+void mpsi_log(mps_context *context, mps_log_level level, const char *format, ...) {
+  if (!context->def.log) return;
+  char message[512];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(message, sizeof message, format, args);
+  va_end(args);
+  context->def.log(context->def.log_user, level, message);
+}
+
+/* ---- memory ---------------------------------------------------------------------------------- */
+
+void *mpsi_alloc(mps_context *context, int64_t count, size_t size) {
+  size_t bytes;
+  if (count < 0 || __builtin_mul_overflow((size_t)count, size, &bytes) ||
+      bytes > (size_t)PTRDIFF_MAX - MPSI_ALIGNMENT)
+    return NULL;
+  bytes = (bytes + MPSI_ALIGNMENT - 1) / MPSI_ALIGNMENT * MPSI_ALIGNMENT;
+  if (bytes == 0) bytes = MPSI_ALIGNMENT;
+  void *memory = context->def.alloc(context->def.memory_user, bytes, MPSI_ALIGNMENT);
+  if (memory) memset(memory, 0, bytes);
+  return memory;
+}
+
+void mpsi_free(mps_context *context, void *memory) {
+  if (memory) context->def.free(context->def.memory_user, memory);
+}
+
+bool mpsi_grow(mps_context *context, void **array, int64_t old_count, int64_t new_count,
+               size_t size) {
+  void *grown = mpsi_alloc(context, new_count, size);
+  if (!grown) return false;
+  if (old_count > 0) memcpy(grown, *array, (size_t)old_count * size);
+  mpsi_free(context, *array);
+  *array = grown;
+  return true;
+}
+
+/* ---- hooks ----------------------------------------------------------------------------------- */
+
+void mpsi_progress(mps_context *context, const char *task, int64_t step, double time,
+                   double time_end) {
+  if (!context->def.progress) return;
+  const double fraction = time_end > 0.0 ? time / time_end : 1.0;
+  const mps_progress progress = {.task = task,
+                                 .step = step,
+                                 .time = time,
+                                 .time_end = time_end,
+                                 .fraction = fraction < 0.0   ? 0.0
+                                             : fraction > 1.0 ? 1.0
+                                                              : fraction};
+  context->def.progress(context->def.progress_user, &progress);
+}
+
+bool mpsi_cancelled(mps_context *context) {
+  return context->def.cancel && context->def.cancel(context->def.cancel_user) != 0;
+}
+
+int32_t mps_context_threads(const mps_context *context) { return context ? context->threads : 0; }
+
+mps_status mps_context_parallel_for(mps_context *context, int64_t count, mps_task_fn task,
+                                    void *data) {
+  if (!context) return MPS_ERROR_ARGUMENT;
+  if (count < 0)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
+                     (long long)count);
+  if (!task) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "task is NULL");
+  mpsi_parallel_for(context, count, task, data);
+  return MPS_OK;
+}

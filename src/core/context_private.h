@@ -1,0 +1,20 @@
+/* context_private.h - the members of a context, for context.c and executor.c only.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_CONTEXT_PRIVATE_H
+#define MPSI_CONTEXT_PRIVATE_H
+
+#include "internal.h"
+
+#define MPSI_MAX_THREADS 1024
+
+struct mps_context {
+  mps_context_def def;
+  mps_error error;
+  int32_t threads;
+  atomic_int references; /* the caller's one, and one for each living object */
+};
+
+/* Number of workers that the definition asks for (0 resolved to the processors available). */
+int32_t mpsi_executor_threads(const mps_context_def *def);
+
+#endif

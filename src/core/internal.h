@@ -1,0 +1,73 @@
+/* internal.h - what every source file of the library may use of the core: errors, memory,
+ * definition structs, reference counts, parallel loops. Internal names begin with mpsi_.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_INTERNAL_H
+#define MPSI_INTERNAL_H
+
+#include <mps/context.h>
+
+#include <math.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define MPSI_ALIGNMENT 64 /* bytes: a cache line, a 512-bit vector */
+
+#if defined(__GNUC__) || defined(__clang__)
+#define MPSI_PRINTF(fmt, args) __attribute__((format(printf, fmt, args)))
+#define MPSI_INLINE static inline __attribute__((always_inline))
+#else
+#define MPSI_PRINTF(fmt, args)
+#define MPSI_INLINE static inline
+#endif
+
+/* ---- errors -------------------------------------------------------------------------------- */
+
+/* Records an error on the context (NULL allowed: nothing is recorded) and returns `status`, so
+ * that `return mpsi_fail(ctx, "mps_x_create", MPS_ERROR_ARGUMENT, "...", ...)` reads as one. The
+ * message names the offending value and what is allowed. */
+mps_status mpsi_fail(mps_context *context, const char *function, mps_status status,
+                     const char *format, ...) MPSI_PRINTF(4, 5);
+/* Adds the step and the particle id to the record just written. */
+void mpsi_fail_where(mps_context *context, int64_t step, int64_t particle);
+mps_status mpsi_fail_memory(mps_context *context, const char *function, size_t bytes);
+void mpsi_log(mps_context *context, mps_log_level level, const char *format, ...) MPSI_PRINTF(3, 4);
+
+/* ---- memory: zero filled, aligned to MPSI_ALIGNMENT ----------------------------------------- */
+
+/* NULL when count * size overflows, is refused, or (never NULL) count is 0: then one line. */
+void *mpsi_alloc(mps_context *context, int64_t count, size_t size);
+void mpsi_free(mps_context *context, void *memory); /* accepts NULL */
+/* Grows *array from `old_count` to `new_count` items, keeping and zero filling; false and
+ * unchanged when out of memory. */
+bool mpsi_grow(mps_context *context, void **array, int64_t old_count, int64_t new_count,
+               size_t size);
+
+/* ---- life of contexts: objects keep their context alive ------------------------------------- */
+
+mps_context *mpsi_context_retain(mps_context *context);
+void mpsi_context_release(mps_context *context);
+
+/* ---- hooks ---------------------------------------------------------------------------------- */
+
+void mpsi_progress(mps_context *context, const char *task, int64_t step, double time,
+                   double time_end);
+bool mpsi_cancelled(mps_context *context);
+
+/* ---- definition structs ----------------------------------------------------------------------
+ * Copies the caller's definition (any size that has at least `minimum` bytes) over `known`, which
+ * holds the defaults. A tail that this library does not know must be zero. */
+mps_status mpsi_def_read(mps_context *context, const char *function, const void *def,
+                         size_t minimum, void *known, size_t known_size);
+/* The body of every mps_x_def_init: copies `defaults` to `def`, as much as `size` has room for,
+ * zero fills the rest and writes struct_size = size. */
+mps_status mpsi_def_init(void *def, size_t size, size_t minimum, const void *defaults,
+                         size_t defaults_size);
+
+/* ---- threads --------------------------------------------------------------------------------- */
+
+/* As mps_context_parallel_for, without argument checks. Never fails. */
+void mpsi_parallel_for(mps_context *context, int64_t count, mps_task_fn task, void *data);
+
+#endif

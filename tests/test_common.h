@@ -1,0 +1,57 @@
+/* test_common.h - what every test program shares: cmocka, assertions on doubles, a context.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPS_TEST_COMMON_H
+#define MPS_TEST_COMMON_H
+
+#include <mps/context.h>
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/* cmocka's float assertion casts to float; this one compares doubles and prints them. */
+#define mps_assert_near(actual, expected, tolerance)                                               \
+  do {                                                                                             \
+    const double near_a = (actual), near_e = (expected), near_t = (tolerance);                     \
+    if (!(fabs(near_a - near_e) <= near_t))                                                        \
+      fail_msg("%s = %.17g, expected %.17g +- %g", #actual, near_a, near_e, near_t);               \
+  } while (0)
+
+/* Succeeds, or fails the test with the library's own message. */
+#define mps_assert_ok(context, call)                                                               \
+  do {                                                                                             \
+    const mps_status ok_status = (call);                                                           \
+    if (ok_status != MPS_OK)                                                                       \
+      fail_msg("%s: status %d: %s", #call, (int)ok_status,                                         \
+               (context) ? mps_context_error(context)->message : "");                              \
+  } while (0)
+
+/* Fails with `status` and a message that contains `text`. */
+#define mps_assert_fails(context, call, expected_status, text)                                     \
+  do {                                                                                             \
+    const mps_status fail_status = (call);                                                         \
+    if (fail_status != (expected_status))                                                          \
+      fail_msg("%s: status %d, expected %d", #call, (int)fail_status, (int)(expected_status));     \
+    if (!strstr(mps_context_error(context)->message, (text)))                                      \
+      fail_msg("%s: message \"%s\" does not contain \"%s\"", #call,                                \
+               mps_context_error(context)->message, (text));                                       \
+  } while (0)
+
+static inline mps_context *test_context(int32_t executor, int32_t threads) {
+  mps_context_def def = mps_context_defaults();
+  mps_context *context = NULL;
+  char text[256];
+  def.executor = executor;
+  def.threads = threads;
+  if (mps_context_create(&def, &context, text, sizeof text) != MPS_OK) fail_msg("%s", text);
+  return context;
+}
+
+#endif

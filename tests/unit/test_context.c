@@ -1,0 +1,179 @@
+/* test_context.c - status table, definition structs, error record, executors, hooks.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "test_common.h"
+
+#include <mps/kernel.h>
+
+static void status_texts_are_distinct(void **state) {
+  (void)state;
+  assert_string_equal(mps_status_text(MPS_OK), "success");
+  for (int a = 0; a <= MPS_ERROR_INTERNAL; a++)
+    for (int b = 0; b < a; b++)
+      assert_string_not_equal(mps_status_text((mps_status)a), mps_status_text((mps_status)b));
+  assert_string_equal(mps_status_text((mps_status)99), "unknown status code");
+}
+
+static void a_larger_definition_of_a_newer_program_is_accepted_when_its_tail_is_zero(void **state) {
+  (void)state;
+  struct {
+    mps_context_def def;
+    uint64_t newer_member;
+  } newer;
+  mps_context *context = NULL;
+  char text[256];
+  assert_int_equal(mps_context_def_init(&newer.def, sizeof newer), MPS_OK);
+  assert_int_equal(newer.def.struct_size, sizeof newer);
+  assert_int_equal(newer.newer_member, 0);
+  assert_int_equal(mps_context_create(&newer.def, &context, text, sizeof text), MPS_OK);
+  mps_context_destroy(&context);
+  newer.newer_member = 1;
+  assert_int_equal(mps_context_create(&newer.def, &context, text, sizeof text),
+                   MPS_ERROR_UNSUPPORTED);
+  assert_null(context);
+}
+
+static void bad_definitions_are_refused_with_the_reason(void **state) {
+  (void)state;
+  mps_context *context = NULL;
+  char text[256];
+  mps_context_def def = mps_context_defaults();
+  def.threads = -3;
+  assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_ERROR_ARGUMENT);
+  assert_non_null(strstr(text, "threads is -3"));
+  def = mps_context_defaults();
+  def.executor = 7;
+  assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_ERROR_ARGUMENT);
+  assert_non_null(strstr(text, "executor is 7"));
+  def = mps_context_defaults();
+  def.executor = MPS_EXECUTOR_CALLER;
+  assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_ERROR_ARGUMENT);
+  def = mps_context_defaults();
+  def.struct_size = 0;
+  assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_context_create(NULL, NULL, NULL, 0), MPS_ERROR_ARGUMENT);
+}
+
+static void errors_are_recorded_and_cleared(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_kernel *kernel = (mps_kernel *)&kernel;
+  mps_assert_fails(context, mps_kernel_create(context, MPS_KERNEL_MPS, -2.0, &kernel),
+                   MPS_ERROR_ARGUMENT, "-2 m");
+  assert_null(kernel);
+  assert_string_equal(mps_context_error(context)->function, "mps_kernel_create");
+  assert_int_equal(mps_context_error(context)->step, -1);
+  mps_assert_fails(context, mps_kernel_create(context, MPS_KERNEL_MPS, NAN, &kernel),
+                   MPS_ERROR_ARGUMENT, "nan");
+  mps_context_clear_error(context);
+  assert_int_equal(mps_context_error(context)->status, MPS_OK);
+  mps_context_destroy(&context);
+  mps_context_destroy(&context);
+}
+
+static void add_index(void *data, int64_t index, int32_t worker) {
+  if (worker < 0) abort();
+  ((int64_t *)data)[index] += index + 1;
+}
+
+/* A caller's executor that runs backwards, on the calling thread. */
+static void backwards(void *user, int64_t count, mps_task_fn task, void *data) {
+  ++*(int *)user;
+  for (int64_t i = count - 1; i >= 0; i--) task(data, i, 0);
+}
+
+static void every_executor_runs_every_unit_once(void **state) {
+  (void)state;
+  int calls = 0;
+  for (int kind = 0; kind < 3; kind++) {
+    mps_context_def def = mps_context_defaults();
+    if (kind == 1) def.threads = 3; /* the build's default executor */
+    if (kind == 0) def.executor = MPS_EXECUTOR_SERIAL;
+    if (kind == 2) {
+      def.executor = MPS_EXECUTOR_CALLER;
+      def.threads = 2;
+      def.parallel_for = backwards;
+      def.parallel_user = &calls;
+    }
+    mps_context *context = NULL;
+    char text[256];
+    assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_OK);
+    int64_t values[1000] = {0};
+    mps_assert_ok(context, mps_context_parallel_for(context, 1000, add_index, values));
+    for (int i = 0; i < 1000; i++) assert_int_equal(values[i], i + 1);
+    mps_assert_fails(context, mps_context_parallel_for(context, -1, add_index, values),
+                     MPS_ERROR_ARGUMENT, "count is -1");
+    mps_context_destroy(&context);
+  }
+  assert_int_equal(calls, 1);
+}
+
+/* An allocator that counts and can refuse. */
+typedef struct counting {
+  int64_t live, calls, refuse_at;
+} counting;
+
+static void *counting_alloc(void *user, size_t size, size_t alignment) {
+  counting *c = user;
+  if (++c->calls == c->refuse_at) return NULL;
+  c->live++;
+  return aligned_alloc(alignment, size);
+}
+
+static void counting_free(void *user, void *memory) {
+  ((counting *)user)->live--;
+  free(memory);
+}
+
+static void the_callers_allocator_is_used_and_everything_returned(void **state) {
+  (void)state;
+  for (int64_t refuse = 0; refuse < 3; refuse++) {
+    counting counts = {.refuse_at = refuse};
+    mps_context_def def = mps_context_defaults();
+    def.alloc = counting_alloc;
+    def.free = counting_free;
+    def.memory_user = &counts;
+    mps_context *context = NULL;
+    mps_kernel *kernel = NULL;
+    char text[256];
+    const mps_status made = mps_context_create(&def, &context, text, sizeof text);
+    assert_int_equal(made, refuse == 1 ? MPS_ERROR_MEMORY : MPS_OK);
+    if (made == MPS_OK)
+      assert_int_equal(mps_kernel_create(context, MPS_KERNEL_MPS, 1.5, &kernel),
+                       refuse == 2 ? MPS_ERROR_MEMORY : MPS_OK);
+    mps_context_destroy(&context); /* the kernel keeps the memory hooks alive */
+    mps_kernel_destroy(&kernel);
+    assert_int_equal(counts.live, 0);
+  }
+}
+
+static void lattice_density_is_the_sheet_value(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_kernel *kernel = NULL;
+  double n0 = 0.0;
+  mps_assert_ok(context, mps_kernel_create(context, MPS_KERNEL_MPS, 1.5 * 0.7, &kernel));
+  mps_assert_ok(context, mps_kernel_density(context, kernel, 2, 0.7, &n0));
+  mps_assert_near(n0, 4 * 0.5 + 4 * (1.5 / sqrt(2.0) - 1.0), 1e-14); /* 2.2426 */
+  mps_assert_ok(context, mps_kernel_density(context, kernel, 3, 0.7, &n0));
+  mps_assert_near(n0, 6 * 0.5 + 12 * (1.5 / sqrt(2.0) - 1.0), 1e-14);
+  mps_assert_near(mps_kernel_weight(kernel, 0.7), 0.5, 1e-15);
+  assert_true(mps_kernel_weight(kernel, 0.0) == 0.0);
+  assert_true(mps_kernel_weight(kernel, 1.05) == 0.0);
+  mps_assert_fails(context, mps_kernel_density(context, kernel, 4, 0.7, &n0), MPS_ERROR_ARGUMENT,
+                   "dim is 4");
+  mps_kernel_destroy(&kernel);
+  mps_context_destroy(&context);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(status_texts_are_distinct),
+      cmocka_unit_test(a_larger_definition_of_a_newer_program_is_accepted_when_its_tail_is_zero),
+      cmocka_unit_test(bad_definitions_are_refused_with_the_reason),
+      cmocka_unit_test(errors_are_recorded_and_cleared),
+      cmocka_unit_test(every_executor_runs_every_unit_once),
+      cmocka_unit_test(the_callers_allocator_is_used_and_everything_returned),
+      cmocka_unit_test(lattice_density_is_the_sheet_value),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
