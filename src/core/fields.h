@@ -42,6 +42,20 @@
     "the caller (initial state); solvers", "after a step or a run")                                \
   X(spin, F64, MPSI_PER_ROTATION, "rad/s", "angular velocity, anticlockwise",                      \
     "the caller (initial state); solvers", "after a step or a run")                                \
+  X(young, F64, 1, "Pa", "Young's modulus",                                                        \
+    "the caller", "as written")                                                                    \
+  X(poisson, F64, 1, "-", "Poisson's ratio",                                                       \
+    "the caller", "as written")                                                                    \
+  X(reaction, F64, MPSI_PER_DIM, "N", "force of the supports on the particle",                     \
+    "implicit elasticity", "after a solution or a step")                                           \
+  X(strain, F64, 6, "-", "strain xx, yy, zz, yz, zx, xy (shear: tensor components)",               \
+    "implicit elasticity", "after mps_elastic_stress")                                             \
+  X(stress, F64, 6, "Pa", "stress xx, yy, zz, yz, zx, xy, tension positive",                       \
+    "implicit elasticity", "after mps_elastic_stress")                                             \
+  X(principal, F64, 3, "Pa", "principal stresses, largest first",                                  \
+    "implicit elasticity", "after mps_elastic_stress")                                             \
+  X(von_mises, F64, 1, "Pa", "von Mises stress",                                                   \
+    "implicit elasticity", "after mps_elastic_stress")                                             \
   X(acceleration, F64, MPSI_PER_DIM, "m/s2", "acceleration",                                       \
     "solvers", "after a step or a run")                                                            \
   X(pressure, F64, 1, "Pa", "pressure",                                                            \
