@@ -69,8 +69,9 @@ static bool check_text(const char *data, size_t size, uint32_t options) {
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-  if (size < 2) return 0;
-  check_text((const char *)data + 2, size - 2, (uint32_t)data[0] | (uint32_t)data[1] << 8);
+  if (size < 2) return 0; /* the last two bytes are the options: files begin the text */
+  check_text((const char *)data, size - 2,
+             (uint32_t)data[size - 1] | (uint32_t)data[size - 2] << 8);
   return 0;
 }
 
