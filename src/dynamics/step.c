@@ -187,6 +187,8 @@ mps_status mps_dynamics_set_dt(mps_dynamics *dynamics, double dt) {
 /* ---- steps ------------------------------------------------------------------------------------
  */
 
+#define SMALL_BODY 40 /* blocks, about 20 000 particles */
+
 typedef struct work {
   mps_dynamics *dynamics;
   mpsi_step step;
