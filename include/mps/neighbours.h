@@ -11,10 +11,11 @@ typedef struct mps_neighbours mps_neighbours;
 
 typedef struct mps_neighbours_def {
   uint32_t struct_size;
-  int32_t dim; /* 2 (default) or 3 */
-  double radius; /* m, > 0: j is a neighbour of i when |x_j - x_i| < radius, j != i */
-  int32_t half; /* 1: each pair once, at the smaller index; 0 (default): at both */
-  int32_t reserved;
+  int32_t dim;   /* 2 (default) or 3 */
+  double radius; /* m, 1e-150 to 1e150, no default: j is a neighbour of i when |x_j - x_i| < radius,
+                    j != i */
+  int32_t half;  /* 1: each pair once, at the smaller index; 0 (default): at both */
+  int32_t reserved; /* 0 */
 } mps_neighbours_def;
 
 MPS_API mps_status mps_neighbours_def_init(mps_neighbours_def *def, size_t size);
@@ -32,15 +33,16 @@ MPS_API MPS_NODISCARD mps_status mps_neighbours_create(mps_context *context,
 MPS_API void mps_neighbours_destroy(mps_neighbours **neighbours);
 
 /** Builds the lists of all pairs closer than the radius. `position` is a float64 view of shape
- *  (n, dim), finite, any extent: memory is O(n + pairs), not that of the bounding box. Uses the
- *  context's threads; the result does not depend on their number. On error the former list
- *  stays. */
+ *  (n, dim), 0 <= n < 2^32, finite, any extent and order: memory is O(n + pairs), not that of the
+ *  bounding box. Uses the context's threads; the result does not depend on their number. On error
+ *  the former list stays. Building again with about as many particles and pairs allocates
+ *  nothing. */
 MPS_API MPS_NODISCARD mps_status mps_neighbours_build(mps_neighbours *neighbours,
                                                       const mps_view *position);
 
 /** The lists in compressed rows: neighbours of i are indices[offsets[i]] .. indices[offsets[i + 1]
- *  - 1], ascending. Borrowed until the next build or the destruction. `offsets` has n + 1
- *  entries. NULL where the caller does not want one. */
+ *  - 1], ascending. `offsets` has n + 1 entries. Borrowed until the next build or the destruction.
+ *  NULL where the caller does not want one. Before the first build `count` is 0. */
 MPS_API MPS_NODISCARD mps_status mps_neighbours_lists(const mps_neighbours *neighbours,
                                                       int64_t *count, const int64_t **offsets,
                                                       const int64_t **indices);

@@ -65,13 +65,8 @@ typedef struct build {
   bool fill; /* second pass: write indices; first: count */
 } build;
 
-static int64_t block_begin(const build *b, int64_t block) {
-  return (int64_t)((double)b->n / (double)b->blocks * (double)block);
-}
-
-static int64_t block_end(const build *b, int64_t block) {
-  return block + 1 == b->blocks ? b->n : block_begin(b, block + 1);
-}
+static int64_t block_begin(const build *b, int64_t block) { return b->n * block / b->blocks; }
+static int64_t block_end(const build *b, int64_t block) { return block_begin(b, block + 1); }
 
 /* ---- cells ----------------------------------------------------------------------------------- */
 
@@ -329,17 +324,17 @@ static mps_status check_def(mps_context *context, const char *function,
   return MPS_OK;
 }
 
-/* Room for `count` items whose old content is not wanted any more, with an eighth to spare, so
- * that lists which change a little from step to step do not allocate at each. */
-static bool make_room(mps_context *context, void *array, int64_t *capacity, int64_t count,
-                      size_t size) {
-  void **memory = array;
-  if (*memory && count <= *capacity) return true;
-  mpsi_free(context, *memory);
+/* Room for `count` items whose old content is not wanted any more, in place of `memory`, or NULL;
+ * with an eighth to spare, so that lists which change a little from step to step do not allocate
+ * at each. */
+static void *make_room(mps_context *context, void *memory, int64_t *capacity, int64_t count,
+                       size_t size) {
+  if (memory && count <= *capacity) return memory;
+  mpsi_free(context, memory);
   *capacity = count + count / 8;
-  *memory = mpsi_alloc(context, *capacity, size);
-  if (!*memory) *capacity = 0;
-  return *memory != NULL;
+  void *room = mpsi_alloc(context, *capacity, size);
+  if (!room) *capacity = 0;
+  return room;
 }
 
 mps_status mps_neighbours_create(mps_context *context, const mps_neighbours_def *def,
@@ -405,13 +400,15 @@ static mps_status check_view(const mps_neighbours *nb, const char *function,
 /* Memory for the sort and for the rows' offsets. */
 static bool make_scratch(mps_neighbours *nb, int64_t n, int64_t blocks) {
   mps_context *context = nb->context;
-  return make_room(context, &nb->items, &nb->items_capacity, n, sizeof *nb->items) &&
-         make_room(context, &nb->sorted, &nb->sorted_capacity, n, sizeof *nb->sorted) &&
-         make_room(context, &nb->x, &nb->x_capacity, n * nb->def.dim, sizeof *nb->x) &&
-         make_room(context, &nb->histogram, &nb->histogram_capacity, blocks * DIGITS,
-                   sizeof *nb->histogram) &&
-         make_room(context, &nb->spare.offsets, &nb->spare.offsets_capacity, n + 1,
-                   sizeof *nb->spare.offsets);
+  csr *out = &nb->spare;
+  nb->items = make_room(context, nb->items, &nb->items_capacity, n, sizeof *nb->items);
+  nb->sorted = make_room(context, nb->sorted, &nb->sorted_capacity, n, sizeof *nb->sorted);
+  nb->x = make_room(context, nb->x, &nb->x_capacity, n * nb->def.dim, sizeof *nb->x);
+  nb->histogram = make_room(context, nb->histogram, &nb->histogram_capacity, blocks * DIGITS,
+                            sizeof *nb->histogram);
+  out->offsets =
+      make_room(context, out->offsets, &out->offsets_capacity, n + 1, sizeof *out->offsets);
+  return nb->items && nb->sorted && nb->x && nb->histogram && out->offsets;
 }
 
 mps_status mps_neighbours_build(mps_neighbours *neighbours, const mps_view *position) {
@@ -440,8 +437,9 @@ mps_status mps_neighbours_build(mps_neighbours *neighbours, const mps_view *posi
     mpsi_parallel_for(nb->context, blocks, find_pairs, &b);
     for (int64_t i = 0; i < n; i++) out->offsets[i + 1] += out->offsets[i];
   }
-  if (!make_room(nb->context, &out->indices, &out->indices_capacity, out->offsets[n],
-                 sizeof *out->indices))
+  out->indices = make_room(nb->context, out->indices, &out->indices_capacity, out->offsets[n],
+                           sizeof *out->indices);
+  if (!out->indices)
     return mpsi_fail(nb->context, __func__, MPS_ERROR_MEMORY, "could not allocate %lld neighbours",
                      (long long)out->offsets[n]);
   b.fill = true;
