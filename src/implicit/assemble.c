@@ -288,19 +288,17 @@ static mps_status make_pattern(mps_elastic *e, const char *function, assembly *t
   drop_matrix(e);
   mpsi_elastic_number(e);
   const int64_t n = e->unknowns;
-  e->column = mpsi_alloc(e->context, n + 1, sizeof *e->column);
-  e->rhs = mpsi_alloc(e->context, n, sizeof *e->rhs);
-  e->solution = mpsi_alloc(e->context, n, sizeof *e->solution);
-  if (!e->column || !e->rhs || !e->solution)
+  if (!(e->column = mpsi_alloc(e->context, n + 1, sizeof *e->column)) ||
+      !(e->rhs = mpsi_alloc(e->context, n, sizeof *e->rhs)) ||
+      !(e->solution = mpsi_alloc(e->context, n, sizeof *e->solution)))
     return mpsi_fail_memory(e->context, function, (size_t)n * sizeof *e->rhs);
   t->length = e->column + 1;
   t->fill = false;
   mpsi_parallel_for(e->context, mpsi_elastic_chunks(e), assemble_chunk, t);
   for (int64_t c = 0; c < n; c++) e->column[c + 1] += e->column[c];
   const int64_t nonzeros = e->column[n];
-  e->row = mpsi_alloc(e->context, nonzeros, sizeof *e->row);
-  e->value = mpsi_alloc(e->context, nonzeros, sizeof *e->value);
-  if (!e->row || !e->value)
+  if (!(e->row = mpsi_alloc(e->context, nonzeros, sizeof *e->row)) ||
+      !(e->value = mpsi_alloc(e->context, nonzeros, sizeof *e->value)))
     return mpsi_fail_memory(e->context, function, (size_t)nonzeros * sizeof *e->value);
   return MPS_OK;
 }
@@ -309,10 +307,10 @@ mps_status mpsi_elastic_assemble(mps_elastic *e, const char *function) {
   if (e->pattern_valid && e->values_valid) return MPS_OK;
   const int32_t workers = mps_context_threads(e->context);
   assembly t = {.e = e, .fill = true};
-  t.gathers = mpsi_alloc(e->context, workers, sizeof *t.gathers);
-  int32_t *slots = mpsi_alloc(e->context, workers * e->n, sizeof *slots);
+  int32_t *slots = NULL;
   mps_status status = MPS_OK;
-  if (!t.gathers || !slots)
+  if (!(t.gathers = mpsi_alloc(e->context, workers, sizeof *t.gathers)) ||
+      !(slots = mpsi_alloc(e->context, workers * e->n, sizeof *slots)))
     status = mpsi_fail_memory(e->context, function, (size_t)(workers * e->n) * sizeof *slots);
   else {
     for (int64_t k = 0; k < workers * e->n; k++) slots[k] = -1;

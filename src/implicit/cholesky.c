@@ -150,6 +150,15 @@ mps_status mpsi_cholesky_factor(mpsi_cholesky *c, const char *function, const mp
   return MPS_OK;
 }
 
+/* The work of a supernodal solution. CHOLMOD would make it itself, but 3.0.14 goes on when the
+ * first of the two fails and the second does not. */
+static bool ensure_work(mpsi_cholesky *c, int64_t count) {
+  if (!c->factor->is_super) return true;
+  const size_t n = c->factor->n, k = (size_t)count;
+  return cholmod_l_ensure_dense(&c->y, n, k, n, CHOLMOD_REAL, &c->common) &&
+         cholmod_l_ensure_dense(&c->e, k, c->factor->maxesize, k, CHOLMOD_REAL, &c->common);
+}
+
 mps_status mpsi_cholesky_solve(mpsi_cholesky *c, const char *function, int64_t count,
                                const double *b, double *x) {
   const int64_t n = (int64_t)c->factor->n;
@@ -162,8 +171,8 @@ mps_status mpsi_cholesky_solve(mpsi_cholesky *c, const char *function, int64_t c
   right.xtype = CHOLMOD_REAL;
   right.dtype = CHOLMOD_DOUBLE;
   /* The three work arrays stay for the next call, which then allocates nothing. */
-  if (!cholmod_l_solve2(CHOLMOD_A, c->factor, &right, NULL, &c->result, NULL, &c->y, &c->e,
-                        &c->common))
+  if (!ensure_work(c, count) || !cholmod_l_solve2(CHOLMOD_A, c->factor, &right, NULL, &c->result,
+                                                  NULL, &c->y, &c->e, &c->common))
     return failure(c, function, "the triangular solution");
   memcpy(x, c->result->x, (size_t)(n * count) * sizeof *x);
   return MPS_OK;

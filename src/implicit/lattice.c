@@ -158,11 +158,10 @@ static mps_status check_thickness(const mps_elastic *e, const char *function) {
 static mps_status allocate_links(mps_elastic *e, const char *function) {
   mpsi_links *l = &e->links;
   list_offsets(e, l);
-  l->step = mpsi_alloc(e->context, l->count, sizeof *l->step);
-  l->weight = mpsi_alloc(e->context, l->count, sizeof(double));
-  l->r2 = mpsi_alloc(e->context, l->count, sizeof(double));
-  l->to = mpsi_alloc(e->context, e->n * l->count, sizeof(int64_t));
-  if (!l->step || !l->weight || !l->r2 || !l->to)
+  if (!(l->step = mpsi_alloc(e->context, l->count, sizeof *l->step)) ||
+      !(l->weight = mpsi_alloc(e->context, l->count, sizeof(double))) ||
+      !(l->r2 = mpsi_alloc(e->context, l->count, sizeof(double))) ||
+      !(l->to = mpsi_alloc(e->context, e->n * l->count, sizeof(int64_t))))
     return mpsi_fail_memory(e->context, function, (size_t)(e->n * l->count) * sizeof(int64_t));
   list_offsets(e, l);
   e->density0 = 0.0;
@@ -184,10 +183,10 @@ mps_status mpsi_elastic_connect(mps_elastic *e, const char *function) {
   int64_t slots = 64;
   while (slots < 2 * e->n) slots *= 2;
   site_table table = {.mask = (uint64_t)slots - 1};
-  table.key = mpsi_alloc(context, slots, sizeof *table.key);
-  table.particle = mpsi_alloc(context, slots, sizeof *table.particle);
-  int32_t(*sites)[3] = mpsi_alloc(context, e->n, sizeof *sites);
-  if (!table.key || !table.particle || !sites)
+  int32_t(*sites)[3] = NULL;
+  if (!(table.key = mpsi_alloc(context, slots, sizeof *table.key)) ||
+      !(table.particle = mpsi_alloc(context, slots, sizeof *table.particle)) ||
+      !(sites = mpsi_alloc(context, e->n, sizeof *sites)))
     status = mpsi_fail_memory(context, function, (size_t)slots * sizeof *table.key);
   else
     status = read_sites(e, function, sites, &table);

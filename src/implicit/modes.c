@@ -21,14 +21,13 @@ typedef struct lanczos {
 
 static bool allocate(mps_context *context, lanczos *s) {
   const int64_t n = s->n, b = s->basis;
-  s->residual = mpsi_alloc(context, n, sizeof(double));
-  s->vectors = mpsi_alloc(context, n * b, sizeof(double));
-  s->work = mpsi_alloc(context, 3 * n, sizeof(double));
-  s->worku = mpsi_alloc(context, b * (b + 8), sizeof(double));
-  s->values = mpsi_alloc(context, b, sizeof(double));
-  s->select = mpsi_alloc(context, b, sizeof(a_int));
-  s->root = mpsi_alloc(context, n, sizeof(double));
-  return s->residual && s->vectors && s->work && s->worku && s->values && s->select && s->root;
+  return (s->residual = mpsi_alloc(context, n, sizeof(double))) &&
+         (s->vectors = mpsi_alloc(context, n * b, sizeof(double))) &&
+         (s->work = mpsi_alloc(context, 3 * n, sizeof(double))) &&
+         (s->worku = mpsi_alloc(context, b * (b + 8), sizeof(double))) &&
+         (s->values = mpsi_alloc(context, b, sizeof(double))) &&
+         (s->select = mpsi_alloc(context, b, sizeof(a_int))) &&
+         (s->root = mpsi_alloc(context, n, sizeof(double)));
 }
 
 static void release(mps_context *context, lanczos *s) {

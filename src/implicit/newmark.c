@@ -96,9 +96,8 @@ mps_status mps_elastic_start(mps_elastic *e, const mps_newmark_def *user_def) {
   if (!m) return mpsi_fail_memory(e->context, __func__, sizeof *m);
   e->motion = m;
   m->def = def;
-  m->velocity = mpsi_alloc(e->context, all, sizeof(double));
-  m->acceleration = mpsi_alloc(e->context, all, sizeof(double));
-  if (!m->velocity || !m->acceleration) {
+  if (!(m->velocity = mpsi_alloc(e->context, all, sizeof(double))) ||
+      !(m->acceleration = mpsi_alloc(e->context, all, sizeof(double)))) {
     mpsi_elastic_end_motion(e);
     return mpsi_fail_memory(e->context, __func__, (size_t)all * sizeof(double));
   }

@@ -170,7 +170,7 @@ static void bad_supports_and_loads_are_refused(void **state) {
   REFUSE(mps_elastic_roller(e, NULL, 2, good, NULL), "normal is NULL");
   REFUSE(mps_elastic_cut(e, 2, 1, 2, good), "axis is 2");
   REFUSE(mps_elastic_cut(e, 0, 0, 2, good), "side 0");
-  REFUSE(mps_elastic_cut(e, 0, 1, 2, bad), "ids[1] is 9");
+  REFUSE(mps_elastic_cut(e, 0, -1, 2, bad), "ids[1] is 9");
   mps_assert_fails(context, mps_elastic_cut(e, 0, 1, 2, good), MPS_ERROR_STATE,
                    "particle 0 has a neighbour");
   REFUSE(mps_elastic_add_forces(e, 2, bad, one), "ids[1] is 9");

@@ -1,4 +1,4 @@
-/* test_cantilever.c - the seed's cantilever: tip errors of both methods at four sizes against the
+/* test_elastic_cantilever.c - the seed's cantilever: tip errors of both methods at four sizes against the
  * reference values of an independent prototype, stress error, nearly incompressible material.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_common.h"
