@@ -1,23 +1,9 @@
 /* test_fill.c - fills of lattices: exact counts, positions and order, edges, one particle a site,
  * every refusal.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "test_common.h"
+#include "test_fixture.h"
 
 #include <mps/particles.h>
-
-static mps_context *context;
-
-static int make_context(void **state) {
-  (void)state;
-  context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  return 0;
-}
-
-static int drop_context(void **state) {
-  (void)state;
-  mps_context_destroy(&context);
-  return 0;
-}
 
 static mps_particles *make_set(int32_t dim, double spacing, double x0, double y0) {
   const mps_particles_def def = {
