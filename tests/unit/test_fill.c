@@ -54,6 +54,18 @@ static void a_box_of_whole_spacings_has_exactly_its_columns(void **state) {
   mps_particles_destroy(&one);
 }
 
+static void a_centre_within_a_billionth_of_a_bound_lies_on_it(void **state) {
+  (void)state;
+  for (int o = 0; o < 3; o++) {
+    const double d = (const double[]){1.0, 1e-3, 640.0}[o], on = 0.5e-9 * d, off = 2e-9 * d;
+    mps_particles *set = make_set(2, d, 0, 0);
+    assert_int_equal(box(set, 0.5 * d + off, 0, 1.5 * d - off, d), 0);
+    assert_int_equal(box(set, 0.5 * d + on, 0, 1.5 * d + on, d), 1); /* in at lo, out at hi */
+    assert_int_equal(box(set, 0.5 * d - on, 0, 1.5 * d + off, d), 1);
+    mps_particles_destroy(&set);
+  }
+}
+
 static void sites_come_x_first_at_exact_positions(void **state) {
   (void)state;
   const mps_particles_def def = {
@@ -277,6 +289,7 @@ static void balls_are_symmetric_and_open(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_box_of_whole_spacings_has_exactly_its_columns),
+      cmocka_unit_test(a_centre_within_a_billionth_of_a_bound_lies_on_it),
       cmocka_unit_test(sites_come_x_first_at_exact_positions),
       cmocka_unit_test(a_site_is_filled_once_even_when_its_particle_has_moved),
       cmocka_unit_test(concave_polygons_have_exact_counts_in_either_sense),
