@@ -59,9 +59,10 @@ static void a_centre_within_a_billionth_of_a_bound_lies_on_it(void **state) {
   for (int o = 0; o < 3; o++) {
     const double d = (const double[]){1.0, 1e-3, 640.0}[o], on = 0.5e-9 * d, off = 2e-9 * d;
     mps_particles *set = make_set(2, d, 0, 0);
-    assert_int_equal(box(set, 0.5 * d + off, 0, 1.5 * d - off, d), 0);
-    assert_int_equal(box(set, 0.5 * d + on, 0, 1.5 * d + on, d), 1); /* in at lo, out at hi */
-    assert_int_equal(box(set, 0.5 * d - on, 0, 1.5 * d + off, d), 1);
+    assert_int_equal(box(set, 0.5 * d + off, 0, d, d), 0);
+    assert_int_equal(box(set, 0.5 * d + on, 0, d, d), 1); /* in at lo */
+    assert_int_equal(box(set, d, 0, 1.5 * d + on, d), 0); /* out at hi */
+    assert_int_equal(box(set, d, 0, 1.5 * d + off, d), 1);
     mps_particles_destroy(&set);
   }
 }
