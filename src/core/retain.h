@@ -5,7 +5,9 @@
 #define MPSI_RETAIN_H
 
 #include <mps/kernel.h>
+#include <mps/signal.h>
 
 mps_kernel *mpsi_kernel_retain(mps_kernel *kernel);
+mps_signal *mpsi_signal_retain(mps_signal *signal);
 
 #endif

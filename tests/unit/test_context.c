@@ -1,6 +1,7 @@
 /* test_context.c - status table, definition structs, error record, executors, hooks.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_common.h"
+#include "test_memory.h"
 
 #include <mps/kernel.h>
 
@@ -107,31 +108,12 @@ static void every_executor_runs_every_unit_once(void **state) {
   assert_int_equal(calls, 1);
 }
 
-/* An allocator that counts and can refuse. */
-typedef struct counting {
-  int64_t live, calls, refuse_at;
-} counting;
-
-static void *counting_alloc(void *user, size_t size, size_t alignment) {
-  counting *c = user;
-  if (++c->calls == c->refuse_at) return NULL;
-  c->live++;
-  return aligned_alloc(alignment, size);
-}
-
-static void counting_free(void *user, void *memory) {
-  ((counting *)user)->live--;
-  free(memory);
-}
-
 static void the_callers_allocator_is_used_and_everything_returned(void **state) {
   (void)state;
   for (int64_t refuse = 0; refuse < 3; refuse++) {
-    counting counts = {.refuse_at = refuse};
+    test_memory counts = {.refuse_at = refuse};
     mps_context_def def = mps_context_defaults();
-    def.alloc = counting_alloc;
-    def.free = counting_free;
-    def.memory_user = &counts;
+    test_memory_use(&def, &counts);
     mps_context *context = NULL;
     mps_kernel *kernel = NULL;
     char text[256];

@@ -1,0 +1,125 @@
+/* mps/particles.h - a set of particles: positions on or off a lattice, and named fields.
+ *
+ * Storage is a structure of arrays: each component of a field is one contiguous array, aligned to
+ * 64 bytes. Fields are looked at through zero-copy views. Each particle keeps a stable `id`;
+ * appending or sorting particles changes the order and the epoch, and invalidates views.
+ * Thread rule: one thread at a time per set (and per context).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPS_PARTICLES_H
+#define MPS_PARTICLES_H
+
+#include <mps/context.h>
+
+MPS_EXTERN_C_BEGIN
+
+typedef struct mps_particles mps_particles;
+
+typedef struct mps_particles_def {
+  uint32_t struct_size;
+  int32_t dim;      /* 2 (default) or 3 */
+  double spacing;   /* D, m, > 0; no default */
+  double origin[3]; /* m; the fills put particles at origin + (i + 1/2) D (cell centred) */
+} mps_particles_def;
+
+MPS_API mps_status mps_particles_def_init(mps_particles_def *def, size_t size);
+static inline mps_particles_def mps_particles_defaults(void) {
+  mps_particles_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_particles_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+
+/** Creates an empty set. It has the fields `id` and `position`; others are added by name. */
+MPS_API MPS_NODISCARD mps_status mps_particles_create(mps_context *context,
+                                                      const mps_particles_def *def,
+                                                      mps_particles **out);
+/** Gives up the caller's share and nulls; accepts NULL. While a solver uses the set it lives on,
+ *  and goes with the last such solver. */
+MPS_API void mps_particles_destroy(mps_particles **particles);
+
+MPS_API int64_t mps_particles_count(const mps_particles *particles);
+MPS_API int32_t mps_particles_dim(const mps_particles *particles);
+MPS_API double mps_particles_spacing(const mps_particles *particles);
+/** Changes whenever the order or number of particles does. */
+MPS_API uint64_t mps_particles_epoch(const mps_particles *particles);
+
+/* ---- filling -------------------------------------------------------------------------------
+ * Every fill appends and may be repeated; `added` (may be NULL) receives the number of particles
+ * appended, other fields of the new particles are zero. On any error nothing is appended. While a
+ * solver uses the set, filling is MPS_ERROR_STATE. Lattice fills never put a second particle on a
+ * lattice site that an earlier lattice fill occupied. They go through a shape x fastest, then y,
+ * then z, and may look at up to 2^31 sites. A site's centre within 1e-9 spacings of a bound counts
+ * as on it: in at `lo` and at the left and lower edges of a polygon, out at `hi`, at the right and
+ * upper edges and on the surface of a ball. So shapes that share an edge share no site. */
+
+/** Appends `count` particles at given positions: positions[i * dim + c] in m, finite. */
+MPS_API MPS_NODISCARD mps_status mps_particles_append(mps_particles *particles, int64_t count,
+                                                      const double *positions);
+/** Lattice sites whose centre lies in the box [lo, hi) (dim values each, m). */
+MPS_API MPS_NODISCARD mps_status mps_particles_fill_box(mps_particles *particles, const double *lo,
+                                                        const double *hi, int64_t *added);
+/** 2D: lattice sites inside the simple polygon of `vertices` corners xy[2 * k], xy[2 * k + 1]
+ *  (m, either sense, not closed, convex or not). At least 3 corners; no two edges may cross or
+ *  touch, but for neighbours at their corner. */
+MPS_API MPS_NODISCARD mps_status mps_particles_fill_polygon(mps_particles *particles,
+                                                            int64_t vertices, const double *xy,
+                                                            int64_t *added);
+/** Lattice sites inside the disc (2D) or ball (3D) of `radius` (m, > 0) about `centre`. */
+MPS_API MPS_NODISCARD mps_status mps_particles_fill_ball(mps_particles *particles,
+                                                         const double *centre, double radius,
+                                                         int64_t *added);
+/** Non-zero: a particle is wanted at position x (m, dim values). Must not use the set. */
+typedef int32_t (*mps_predicate_fn)(void *user, const double *x);
+/** Lattice sites in the box [lo, hi) for which inside(user, x) is non-zero. */
+MPS_API MPS_NODISCARD mps_status mps_particles_fill_where(mps_particles *particles,
+                                                          const double *lo, const double *hi,
+                                                          mps_predicate_fn inside, void *user,
+                                                          int64_t *added);
+
+/* ---- fields -------------------------------------------------------------------------------- */
+
+/** Description of a field. Strings live as long as the particle set. */
+typedef struct mps_field_info {
+  const char *name;
+  const char *unit;
+  const char *meaning;
+  mps_dtype dtype;
+  int32_t components;
+  uint32_t flags; /* MPS_VIEW_READONLY where only the library writes */
+} mps_field_info;
+
+/** Adds a field, zero filled. A name of the library's field table (docs/fields.md) gets its
+ *  documented type; there `components` must be 0 or the table's. Any other name
+ *  ([A-Za-z_][A-Za-z0-9_]*, at most 47 characters) makes a user field of `components` float64
+ *  (1..16). Adding a field that exists with the same shape does nothing. Keeps the epoch. */
+MPS_API MPS_NODISCARD mps_status mps_particles_add_field(mps_particles *particles, const char *name,
+                                                         int32_t components);
+/** Borrows a field. MPS_ERROR_FIELD when the set has none of that name (the message lists the
+ *  names it has). */
+MPS_API MPS_NODISCARD mps_status mps_particles_view(mps_particles *particles, const char *name,
+                                                    mps_view *out);
+/** Sets component `component` of a float64 field to `value` (finite) for every particle there is,
+ *  adding the field if the table knows it and the set lacks it. */
+MPS_API MPS_NODISCARD mps_status mps_particles_set(mps_particles *particles, const char *name,
+                                                   int32_t component, double value);
+MPS_API int32_t mps_particles_field_count(const mps_particles *particles);
+MPS_API MPS_NODISCARD mps_status mps_particles_field(const mps_particles *particles, int32_t index,
+                                                     mps_field_info *out);
+
+/* ---- selection ----------------------------------------------------------------------------- */
+
+/** Ids of the particles with position in the box [lo, hi] (dim values, infinities allowed), in
+ *  ascending order. Writes at most `capacity` of them to `ids` (may be NULL when capacity is 0);
+ *  `count` receives how many there are. */
+MPS_API MPS_NODISCARD mps_status mps_particles_select_box(mps_particles *particles,
+                                                          const double *lo, const double *hi,
+                                                          int64_t capacity, int64_t *ids,
+                                                          int64_t *count);
+/** Present index of the particle `id` in every view, or -1. */
+MPS_API int64_t mps_particles_index(const mps_particles *particles, int64_t id);
+/** Id of the particle nearest to x (dim values, m), the lowest of equally near ones; -1 for an
+ *  empty set. Looks at every particle. */
+MPS_API int64_t mps_particles_nearest(const mps_particles *particles, const double *x);
+
+MPS_EXTERN_C_END
+#endif

@@ -1,0 +1,127 @@
+/* mps/signal.h - functions of time: displacement u(t), velocity v(t) and acceleration a(t).
+ *
+ * A signal is immutable after creation: it may be shared by objects, contexts and threads. Before
+ * its first instant a signal is at rest: v = a = 0, and u = 0 except for a table of displacements,
+ * which rests at its first sample. Formats, units and the baseline correction of recorded motions
+ * are explained in docs/signals.md.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPS_SIGNAL_H
+#define MPS_SIGNAL_H
+
+#include <mps/context.h>
+
+MPS_EXTERN_C_BEGIN
+
+typedef struct mps_signal mps_signal;
+
+/** What the samples of a table or record are. */
+typedef enum mps_signal_quantity {
+  MPS_SIGNAL_DISPLACEMENT = 0, /* m */
+  MPS_SIGNAL_VELOCITY = 1,     /* m/s */
+  MPS_SIGNAL_ACCELERATION = 2  /* m/s2 */
+} mps_signal_quantity;
+
+/** Baseline correction of an accelerogram, made before it is integrated. T is its length, and v its
+ *  integral from v(0) = 0. LINEAR, QUADRATIC and CUBIC find the trend of the *velocity*,
+ *  p(t) = c1 t + c2 t^2 + c3 t^3 up to the degree named, by least squares over the record (no
+ *  constant term: the motion starts from rest), and subtract its derivative p'(t) from the
+ *  acceleration. An offset of the instrument is a velocity trend of degree 1, a linear drift one of
+ *  degree 2, a parabolic drift one of degree 3. */
+typedef enum mps_signal_baseline {
+  MPS_BASELINE_NONE = 0,      /* integrate as it is */
+  MPS_BASELINE_MEAN = 1,      /* a - v(T)/T: the mean over time, so that v(T) = 0 */
+  MPS_BASELINE_LINEAR = 2,    /* a - c1 */
+  MPS_BASELINE_QUADRATIC = 3, /* a - c1 - 2 c2 t */
+  MPS_BASELINE_CUBIC = 4      /* a - c1 - 2 c2 t - 3 c3 t^2 */
+} mps_signal_baseline;
+
+/** Ricker wavelet, acceleration seed A (9): a(t) = amplitude (2 c (t-tp)^2 - 1) exp(-c (t-tp)^2)
+ *  with c = (pi fc)^2, its exact velocity -amplitude (t-tp) exp(-c (t-tp)^2), and its exact
+ *  displacement amplitude (exp(-c (t-tp)^2) - exp(-c tp^2)) / (2 c), which starts from zero. The
+ *  first instant is t = 0: there the wavelet already moves a little, by exp(-c tp^2) relative to
+ *  its peak (fc = 4 Hz, tp = 0.25 s: 5.2e-5), so choose tp of one period 1/fc or more.
+ *  `frequency` fc (Hz, 1e-9 to 1e9), `peak_time` tp (s, >= 0), `amplitude` (m/s2, finite). */
+MPS_API MPS_NODISCARD mps_status mps_signal_ricker(mps_context *context, double frequency,
+                                                   double peak_time, double amplitude,
+                                                   mps_signal **out);
+/** u(t) = amplitude sin(2 pi f t + phase) for t >= 0 (and its derivatives), all 0 before: u, v or
+ *  a jumps at t = 0, by what the phase says. f (Hz, 1e-9 to 1e9), amplitude (m, finite), phase
+ *  (rad, finite). */
+MPS_API MPS_NODISCARD mps_status mps_signal_sine(mps_context *context, double frequency,
+                                                 double amplitude, double phase, mps_signal **out);
+/** u(t) rises from 0 at t = start (s, finite) to `amplitude` (m, finite) at t = start + duration
+ *  (s, > 0) along the quintic with zero end velocity and acceleration, amplitude
+ *  (10 x^3 - 15 x^4 + 6 x^5) with x = (t - start)/duration, and stays there. */
+MPS_API MPS_NODISCARD mps_status mps_signal_ramp(mps_context *context, double start,
+                                                 double duration, double amplitude,
+                                                 mps_signal **out);
+/** Table of `count` (2 to 2147483646) finite samples of `quantity` at strictly increasing `times`
+ *  (s); both arrays have `count` elements and are copied. Accelerations are linear between samples
+ *  and integrated exactly from u = v = 0 at the first instant; velocities are linear between
+ *  samples and integrated exactly from u = 0 (their acceleration is a step function, continuous
+ *  from the right); displacements are a natural cubic spline. Before the table: at rest at the
+ *  first displacement. After it: acceleration 0, and velocity 0 for a table of displacements, the
+ *  last velocity otherwise. MPS_ERROR_NUMERIC when the motion overflows. */
+MPS_API MPS_NODISCARD mps_status mps_signal_table(mps_context *context,
+                                                  mps_signal_quantity quantity, int64_t count,
+                                                  const double *times, const double *values,
+                                                  mps_signal **out);
+
+/** Format of a recorded motion. */
+typedef enum mps_record_format {
+  MPS_RECORD_AUTO = 0, /* recognised by the content */
+  MPS_RECORD_AT2 = 1,  /* PEER NGA .AT2: acceleration in g */
+  MPS_RECORD_KNET = 2, /* K-NET / KiK-net ASCII: counts with a scale factor, gal */
+  MPS_RECORD_CSV = 3   /* two columns: time (s), value; separated by comma, semicolon or blanks;
+                          '#' comments; one optional header line; uneven steps allowed */
+} mps_record_format;
+
+/** How to read a record; always start from mps_record_def_init or mps_record_defaults. */
+typedef struct mps_record_def {
+  uint32_t struct_size;
+  int32_t format;   /* mps_record_format, default AUTO */
+  int32_t quantity; /* mps_signal_quantity of a CSV, default ACCELERATION; the others are always
+                       accelerations */
+  int32_t baseline; /* mps_signal_baseline, default LINEAR; not used for other than accelerations */
+  double scale;     /* factor on the values in SI units (a CSV in g: 9.80665; an AT2 at half
+                       strength: 0.5), finite, not 0; default 1 */
+  double taper;     /* s of cosine taper at both ends, made before the baseline correction, 0 to
+                       half the record; accelerations only; default 0 */
+} mps_record_def;
+
+/** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT for NULL or a size that
+ *  this library does not know. */
+MPS_API mps_status mps_record_def_init(mps_record_def *def, size_t size);
+
+static inline mps_record_def mps_record_defaults(void) {
+  mps_record_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_record_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+
+/** Reads a recorded motion from `path` and makes a table of it; its first sample is put at t = 0.
+ *  `def` NULL: the defaults. MPS_ERROR_IO when the file cannot be read, MPS_ERROR_FORMAT with
+ *  "path:line: reason" when it is malformed (bad number, non-finite value, fewer or more samples
+ *  than announced, time not increasing). The host's locale does not matter. */
+MPS_API MPS_NODISCARD mps_status mps_signal_record(mps_context *context, const char *path,
+                                                   const mps_record_def *def, mps_signal **out);
+
+/** Releases and nulls; accepts NULL. Objects that use the signal keep their own reference. */
+MPS_API void mps_signal_destroy(mps_signal **signal);
+
+/** Displacement (m), velocity (m/s) and acceleration (m/s2) at time t (s). NaN when t is not
+ *  finite, 0 when signal is NULL. Thread safe. */
+MPS_API double mps_signal_displacement(const mps_signal *signal, double t);
+MPS_API double mps_signal_velocity(const mps_signal *signal, double t);
+MPS_API double mps_signal_acceleration(const mps_signal *signal, double t);
+
+/** First and last instant (s) of the motion; start or end may be NULL. A sine ends at infinity, a
+ *  Ricker wavelet where its exponential has fallen to exp(-40), 4e-18 of the peak. A table ends
+ *  with its last sample, even when it leaves a constant velocity behind. */
+MPS_API void mps_signal_span(const mps_signal *signal, double *start, double *end);
+/** Largest |acceleration| (m/s2) over the span: exact for every kind. */
+MPS_API double mps_signal_peak_acceleration(const mps_signal *signal);
+
+MPS_EXTERN_C_END
+#endif

@@ -1,0 +1,251 @@
+/* fields.c - named fields of a particle set: the table, the storage of a field, and views of it.
+ *
+ * Storage: a loop over particles reads many columns side by side. Columns that start at the same
+ * offset in a 4 KiB page would compete for the same few lines of the first-level cache, and a load
+ * would wait for the store to another column at the same offset. Large blocks are page aligned,
+ * so each column is pushed STAGGER lines further into its page than the one before.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "particles_private.h"
+
+#include "fields.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define LINE_ITEMS (MPSI_ALIGNMENT / 8) /* items of 8 bytes in a cache line */
+#define PAGE_LINES 64
+#define PAGE_ITEMS (PAGE_LINES * LINE_ITEMS)
+#define STAGGER 5 /* lines; odd, so that all 64 places of a page are used before one repeats */
+#define MAX_COMPONENTS 16
+
+/* ---- the table ------------------------------------------------------------------------------- */
+
+typedef struct table_row {
+  const char *name, *unit, *meaning;
+  mps_dtype dtype;
+  int32_t components; /* or a code */
+} table_row;
+
+#define I64                                                                                        \
+  { 0, 64, 1 }
+#define F64                                                                                        \
+  { 2, 64, 1 }
+#define ROW(name, type, components, unit, meaning, writer, valid)                                  \
+  {#name, unit, meaning, type, components},
+static const table_row table[] = {MPSI_FIELD_TABLE(ROW)};
+#undef ROW
+
+static const table_row *table_find(const char *name) {
+  for (size_t i = 0; i < sizeof table / sizeof *table; i++)
+    if (strcmp(table[i].name, name) == 0) return &table[i];
+  return NULL;
+}
+
+static bool is_f64(mps_dtype dtype) { return dtype.code == 2; }
+
+/* ---- storage --------------------------------------------------------------------------------- */
+
+static int64_t column_stride(int64_t capacity) {
+  const int64_t least = capacity + MPSI_PARTICLES_PADDING, offset = STAGGER * LINE_ITEMS;
+  return (least - offset + PAGE_ITEMS - 1) / PAGE_ITEMS * PAGE_ITEMS + offset;
+}
+
+void *mpsi_field_allocate(mps_context *context, const mpsi_field *field, int64_t capacity) {
+  return mpsi_alloc(context, field->components * column_stride(capacity) + PAGE_ITEMS, 8);
+}
+
+void mpsi_field_move(mps_context *context, mpsi_field *field, void *block, int64_t count,
+                     int64_t capacity) {
+  mpsi_field moved = *field;
+  const uint64_t have = (uintptr_t)block / MPSI_ALIGNMENT;
+  const uint64_t want = (uint64_t)field->first_column * STAGGER;
+  moved.block = block;
+  moved.data = (char *)block + (want - have) % PAGE_LINES * MPSI_ALIGNMENT;
+  moved.stride = column_stride(capacity);
+  for (int32_t c = 0; c < field->components && count > 0; c++)
+    memcpy(mpsi_field_column(&moved, c), mpsi_field_column(field, c), (size_t)count * 8);
+  mpsi_free(context, field->block);
+  *field = moved;
+}
+
+mpsi_field *mpsi_field_find(const mps_particles *particles, const char *name) {
+  for (int32_t f = 0; f < particles->field_count; f++)
+    if (strcmp(particles->fields[f]->name, name) == 0) return particles->fields[f];
+  return NULL;
+}
+
+double *mpsi_particles_column(mps_particles *particles, const char *name, int32_t component) {
+  const mpsi_field *field = mpsi_field_find(particles, name);
+  if (!field || !is_f64(field->dtype) || component < 0 || component >= field->components)
+    return NULL;
+  return mpsi_field_column(field, component);
+}
+
+/* ---- adding ---------------------------------------------------------------------------------- */
+
+static mps_status insert_field(mps_particles *p, const char *function, const mpsi_field *like) {
+  mpsi_field *field = mpsi_alloc(p->context, 1, sizeof *field);
+  if (!field) return mpsi_fail_memory(p->context, function, sizeof *field);
+  *field = *like;
+  field->first_column = p->columns;
+  void *block = mpsi_field_allocate(p->context, field, p->capacity);
+  void *list = p->fields;
+  if (!block || !mpsi_grow(p->context, &list, p->field_count, p->field_count + 1, sizeof field)) {
+    mpsi_free(p->context, block);
+    mpsi_free(p->context, field);
+    return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
+                     "could not allocate field '%s' of %lld particles", like->name,
+                     (long long)p->capacity);
+  }
+  mpsi_field_move(p->context, field, block, 0, p->capacity);
+  p->fields = list;
+  p->fields[p->field_count++] = field;
+  p->columns += field->components;
+  return MPS_OK;
+}
+
+/* The rule for a caller's own name: an identifier of at most 47 characters. */
+static bool good_name(const char *name) {
+  size_t length = 0;
+  for (; name[length]; length++) {
+    const char c = name[length];
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    if (length >= MPSI_FIELD_NAME - 1 || !(letter || (length > 0 && c >= '0' && c <= '9')))
+      return false;
+  }
+  return length > 0;
+}
+
+static mps_status describe_user_field(mps_particles *p, const char *function, const char *name,
+                                      int32_t components, mpsi_field *out) {
+  if (!good_name(name))
+    return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
+                     "name is '%.60s', must be letters, digits and _, not begin with a digit, and "
+                     "have 1 to %d characters",
+                     name, MPSI_FIELD_NAME - 1);
+  if (components < 1 || components > MAX_COMPONENTS)
+    return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
+                     "components of the caller's field '%s' is %d, allowed are 1 to %d", name,
+                     components, MAX_COMPONENTS);
+  *out = (mpsi_field){
+      .unit = "", .meaning = "field of the caller", .dtype = F64, .components = components};
+  return MPS_OK;
+}
+
+/* What a field of this name and number of components (0: the table's) is. */
+static mps_status describe_field(mps_particles *p, const char *function, const char *name,
+                                 int32_t components, mpsi_field *out) {
+  const table_row *row = table_find(name);
+  if (row) {
+    const int32_t expected = mpsi_field_components(row->components, p->def.dim);
+    if (components != 0 && components != expected)
+      return mpsi_fail(
+          p->context, function, MPS_ERROR_FIELD,
+          "components of field '%s' is %d, allowed in %dD are 0 (as documented) and %d", name,
+          components, p->def.dim, expected);
+    *out = (mpsi_field){
+        .unit = row->unit, .meaning = row->meaning, .dtype = row->dtype, .components = expected};
+    if (strcmp(name, "id") == 0) out->flags = MPS_VIEW_READONLY;
+  } else {
+    const mps_status status = describe_user_field(p, function, name, components, out);
+    if (status != MPS_OK) return status;
+  }
+  snprintf(out->name, sizeof out->name, "%s", name);
+  return MPS_OK;
+}
+
+mps_status mps_particles_add_field(mps_particles *particles, const char *name, int32_t components) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!name) return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT, "name is NULL");
+  mpsi_field field;
+  const mps_status status = describe_field(particles, __func__, name, components, &field);
+  if (status != MPS_OK) return status;
+  const mpsi_field *present = mpsi_field_find(particles, name);
+  if (!present) return insert_field(particles, __func__, &field);
+  if (present->components != field.components)
+    return mpsi_fail(particles->context, __func__, MPS_ERROR_FIELD,
+                     "components is %d, but field '%s' exists with %d", components, name,
+                     present->components);
+  return MPS_OK;
+}
+
+/* ---- looking --------------------------------------------------------------------------------- */
+
+static mps_status fail_unknown(const mps_particles *p, const char *function, const char *name) {
+  char names[360] = "";
+  size_t used = 0;
+  for (int32_t f = 0; f < p->field_count && used < sizeof names; f++)
+    used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", f ? ", " : "",
+                             p->fields[f]->name);
+  return mpsi_fail(p->context, function, MPS_ERROR_FIELD, "no field '%.60s'; the set has: %s", name,
+                   names);
+}
+
+mps_status mps_particles_view(mps_particles *particles, const char *name, mps_view *out) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!name || !out)
+    return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL",
+                     name ? "out" : "name");
+  memset(out, 0, sizeof *out);
+  const mpsi_field *field = mpsi_field_find(particles, name);
+  if (!field) return fail_unknown(particles, __func__, name);
+  *out = (mps_view){.data = field->data,
+                    .shape = {particles->count, field->components, 1},
+                    .stride = {1, field->stride, 1},
+                    .dtype = field->dtype,
+                    .flags = field->flags,
+                    .epoch = particles->epoch};
+  return MPS_OK;
+}
+
+mps_status mps_particles_set(mps_particles *particles, const char *name, int32_t component,
+                             double value) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!name) return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT, "name is NULL");
+  mpsi_field *field = mpsi_field_find(particles, name), shape;
+  if (field)
+    shape = *field;
+  else if (!table_find(name))
+    return fail_unknown(particles, __func__, name);
+  else
+    (void)describe_field(particles, __func__, name, 0, &shape); /* a name of the table: no error */
+  if (!is_f64(shape.dtype))
+    return mpsi_fail(particles->context, __func__, MPS_ERROR_FIELD,
+                     "field '%s' is of int64, only float64 fields can be set: write to its view",
+                     name);
+  if (component < 0 || component >= shape.components)
+    return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT,
+                     "component of field '%s' is %d, allowed are 0 to %d", name, component,
+                     shape.components - 1);
+  if (!isfinite(value))
+    return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT,
+                     "value of field '%s' is %g, must be finite", name, value);
+  if (!field) {
+    const mps_status status = insert_field(particles, __func__, &shape);
+    if (status != MPS_OK) return status;
+  }
+  double *column = mpsi_particles_column(particles, name, component);
+  for (int64_t i = 0; i < particles->count; i++) column[i] = value;
+  return MPS_OK;
+}
+
+int32_t mps_particles_field_count(const mps_particles *particles) {
+  return particles ? particles->field_count : 0;
+}
+
+mps_status mps_particles_field(const mps_particles *particles, int32_t index, mps_field_info *out) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!out) return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
+  memset(out, 0, sizeof *out);
+  if (index < 0 || index >= particles->field_count)
+    return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT,
+                     "index is %d, allowed are 0 to %d", index, particles->field_count - 1);
+  const mpsi_field *field = particles->fields[index];
+  *out = (mps_field_info){.name = field->name,
+                          .unit = field->unit,
+                          .meaning = field->meaning,
+                          .dtype = field->dtype,
+                          .components = field->components,
+                          .flags = field->flags};
+  return MPS_OK;
+}

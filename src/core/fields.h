@@ -1,0 +1,67 @@
+/* fields.h - the one table of particle fields. It drives allocation, views, docs/fields.md (a test
+ * compares them), and whatever else has to know what a field is.
+ *
+ * X(name, type, components, unit, meaning, written by, valid)
+ * type: F64 or I64. components: a number, or one of the codes below for what depends on the
+ * dimension of the set.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_FIELDS_H
+#define MPSI_FIELDS_H
+
+#include <stdint.h>
+
+#define MPSI_PER_DIM 0       /* 2 in 2D, 3 in 3D */
+#define MPSI_PER_ROTATION -1 /* 1 in 2D, 3 in 3D */
+#define MPSI_PER_FREEDOM -2  /* displacements and rotations: 3 in 2D, 6 in 3D */
+
+/* clang-format off */
+#define MPSI_FIELD_TABLE(X)                                                                        \
+  X(id, I64, 1, "-", "number of the particle: 0, 1, 2, ... in order of insertion, never changes",  \
+    "the library (the caller only reads)", "always")                                               \
+  X(position, F64, MPSI_PER_DIM, "m", "present position",                                          \
+    "fills and append; solvers", "always")                                                         \
+  X(reference, F64, MPSI_PER_DIM, "m", "position in the unstrained lattice",                       \
+    "solvers", "after creation of a solver")                                                       \
+  X(group, I64, 1, "-", "the caller's number of the material or layer",                            \
+    "the caller", "as written")                                                                    \
+  X(free_field, I64, 1, "-", "0 ordinary, 1 left, 2 right free-field column",                      \
+    "the library, with a free-field column", "after adding a free-field column")                   \
+  X(density, F64, 1, "kg/m3", "mass density",                                                      \
+    "the caller", "as written")                                                                    \
+  X(shear_velocity, F64, 1, "m/s", "S wave velocity Vs",                                           \
+    "the caller", "as written")                                                                    \
+  X(pressure_velocity, F64, 1, "m/s", "P wave velocity Vp",                                        \
+    "the caller", "as written")                                                                    \
+  X(damping, F64, 1, "-", "damping ratio h",                                                       \
+    "the caller", "as written")                                                                    \
+  X(displacement, F64, MPSI_PER_DIM, "m", "displacement from the reference position",              \
+    "the caller (initial state); solvers", "after a step or a run")                                \
+  X(rotation, F64, MPSI_PER_ROTATION, "rad", "rotation, anticlockwise",                            \
+    "the caller (initial state); solvers", "after a step or a run")                                \
+  X(velocity, F64, MPSI_PER_DIM, "m/s", "velocity",                                                \
+    "the caller (initial state); solvers", "after a step or a run")                                \
+  X(spin, F64, MPSI_PER_ROTATION, "rad/s", "angular velocity, anticlockwise",                      \
+    "the caller (initial state); solvers", "after a step or a run")                                \
+  X(acceleration, F64, MPSI_PER_DIM, "m/s2", "acceleration",                                       \
+    "solvers", "after a step or a run")                                                            \
+  X(pressure, F64, 1, "Pa", "pressure",                                                            \
+    "solvers", "after a step or a run")                                                            \
+  X(displacement_old, F64, MPSI_PER_DIM, "m", "displacement of the previous step",                 \
+    "explicit dynamics", "after a step or a run; part of a checkpoint")                            \
+  X(rotation_old, F64, MPSI_PER_ROTATION, "rad", "rotation of the previous step",                  \
+    "explicit dynamics", "after a step or a run; part of a checkpoint")                            \
+  X(restoring_old, F64, MPSI_PER_FREEDOM, "m/s2, rad/s2",                                          \
+    "M^-1 times the restoring force of the previous step: displacements, then rotations",          \
+    "explicit dynamics", "after a step or a run; part of a checkpoint")
+/* clang-format on */
+
+/* Number of components in a set of dimension `dim`, from the table's number or code. */
+static inline int32_t mpsi_field_components(int32_t code, int32_t dim) {
+  const int32_t rotations = dim == 2 ? 1 : 3;
+  if (code == MPSI_PER_DIM) return dim;
+  if (code == MPSI_PER_ROTATION) return rotations;
+  if (code == MPSI_PER_FREEDOM) return dim + rotations;
+  return code;
+}
+
+#endif

@@ -1,0 +1,273 @@
+/* particles.c - the particle set: life, growth, order, selection.
+ *
+ * A set only grows. Ids are 0, 1, 2, ... in order of insertion, so the map from id to index is one
+ * array, the identity until somebody sorts.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "particles_private.h"
+
+#include <string.h>
+
+static const mps_particles_def particles_defaults = {.struct_size = sizeof(mps_particles_def),
+                                                     .dim = 2};
+/* Size of the structure in the first release: it may only grow. */
+#define PARTICLES_DEF_MINIMUM (offsetof(mps_particles_def, origin) + sizeof(double[3]))
+
+mps_status mps_particles_def_init(mps_particles_def *def, size_t size) {
+  return mpsi_def_init(def, size, PARTICLES_DEF_MINIMUM, &particles_defaults,
+                       sizeof particles_defaults);
+}
+
+/* ---- life ------------------------------------------------------------------------------------ */
+
+static mps_status check_def(mps_context *context, const char *function,
+                            const mps_particles_def *def) {
+  if (def->dim != 2 && def->dim != 3)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "dim is %d, must be 2 or 3", def->dim);
+  if (!isfinite(def->spacing) || def->spacing <= 0.0)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "spacing is %g m, must be finite and > 0", def->spacing);
+  for (int c = 0; c < 3; c++)
+    if (!isfinite(def->origin[c]))
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "origin[%d] is %g m, must be finite",
+                       c, def->origin[c]);
+  return MPS_OK;
+}
+
+static void free_set(mps_particles *p) {
+  mps_context *context = p->context;
+  for (int32_t f = 0; f < p->field_count; f++) {
+    mpsi_free(context, p->fields[f]->block);
+    mpsi_free(context, p->fields[f]);
+  }
+  mpsi_free(context, p->fields);
+  mpsi_free(context, p->index_of);
+  mpsi_free(context, p->sites.item);
+  mpsi_free(context, p);
+  mpsi_context_release(context);
+}
+
+mps_status mps_particles_create(mps_context *context, const mps_particles_def *def,
+                                mps_particles **out) {
+  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
+  *out = NULL;
+  mps_particles_def known = particles_defaults;
+  mps_status status =
+      mpsi_def_read(context, __func__, def, PARTICLES_DEF_MINIMUM, &known, sizeof known);
+  if (status == MPS_OK) status = check_def(context, __func__, &known);
+  if (status != MPS_OK) return status;
+  mps_particles *p = mpsi_alloc(context, 1, sizeof *p);
+  if (!p) return mpsi_fail_memory(context, __func__, sizeof *p);
+  p->context = mpsi_context_retain(context);
+  p->def = known;
+  p->epoch = 1;
+  p->owned = true;
+  status = mps_particles_add_field(p, "id", 0);
+  if (status == MPS_OK) status = mps_particles_add_field(p, "position", 0);
+  if (status != MPS_OK) {
+    mpsi_fail_memory(context, __func__, sizeof *p); /* the only reason there can be */
+    free_set(p);
+    return status;
+  }
+  *out = p;
+  return MPS_OK;
+}
+
+void mps_particles_destroy(mps_particles **particles) {
+  if (!particles || !*particles) return;
+  mps_particles *p = *particles;
+  *particles = NULL;
+  p->owned = false;
+  if (p->pins == 0) free_set(p);
+}
+
+mps_particles *mpsi_particles_pin(mps_particles *particles) {
+  particles->pins++;
+  return particles;
+}
+
+void mpsi_particles_unpin(mps_particles *particles) {
+  if (particles && --particles->pins == 0 && !particles->owned) free_set(particles);
+}
+
+mps_context *mpsi_particles_context(const mps_particles *particles) { return particles->context; }
+
+int64_t mps_particles_count(const mps_particles *particles) {
+  return particles ? particles->count : 0;
+}
+int32_t mps_particles_dim(const mps_particles *particles) {
+  return particles ? particles->def.dim : 0;
+}
+double mps_particles_spacing(const mps_particles *particles) {
+  return particles ? particles->def.spacing : 0.0;
+}
+uint64_t mps_particles_epoch(const mps_particles *particles) {
+  return particles ? particles->epoch : 0;
+}
+
+/* ---- growth ---------------------------------------------------------------------------------- */
+
+mps_status mpsi_particles_check_free(const mps_particles *p, const char *function) {
+  if (p->pins == 0) return MPS_OK;
+  return mpsi_fail(p->context, function, MPS_ERROR_STATE,
+                   "the set is in use by %d solver%s: destroy %s before adding particles", p->pins,
+                   p->pins > 1 ? "s" : "", p->pins > 1 ? "them" : "it");
+}
+
+/* Makes room for `capacity` particles: first all the memory, then the moves, so that a failure
+ * leaves every borrowed view valid. */
+static bool reserve(mps_particles *p, int64_t capacity) {
+  mps_context *context = p->context;
+  void **blocks = mpsi_alloc(context, p->field_count, sizeof *blocks);
+  bool good = blocks != NULL;
+  for (int32_t f = 0; good && f < p->field_count; f++)
+    good = (blocks[f] = mpsi_field_allocate(context, p->fields[f], capacity)) != NULL;
+  void *index_of = p->index_of;
+  good = good && mpsi_grow(context, &index_of, p->count, capacity, sizeof *p->index_of);
+  if (good) {
+    p->index_of = index_of;
+    p->capacity = capacity;
+  }
+  for (int32_t f = 0; blocks && f < p->field_count; f++) {
+    if (good)
+      mpsi_field_move(context, p->fields[f], blocks[f], p->count, capacity);
+    else
+      mpsi_free(context, blocks[f]);
+  }
+  mpsi_free(context, blocks);
+  return good;
+}
+
+mps_status mpsi_particles_extend(mps_particles *p, const char *function, int64_t count) {
+  if (count > MPSI_MAX_PARTICLES - p->count)
+    return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
+                     "%lld particles to add to %lld, a set holds at most 2^40", (long long)count,
+                     (long long)p->count);
+  const int64_t needed = p->count + count;
+  if (needed > p->capacity) {
+    /* The first fill gets exactly its size; later growth is by half at least. */
+    const int64_t half_more = p->capacity + p->capacity / 2;
+    if (!reserve(p, needed > half_more ? needed : half_more))
+      return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
+                       "could not allocate %d fields of %lld particles", p->field_count,
+                       (long long)needed);
+  }
+  if (count == 0) return MPS_OK;
+  int64_t *id = p->fields[MPSI_FIELD_ID]->data;
+  for (int64_t i = p->count; i < needed; i++) id[i] = p->index_of[i] = i;
+  p->count = needed;
+  p->epoch++;
+  return MPS_OK;
+}
+
+mps_status mps_particles_append(mps_particles *particles, int64_t count, const double *positions) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  mps_context *context = particles->context;
+  const int32_t dim = particles->def.dim;
+  mps_status status = mpsi_particles_check_free(particles, __func__);
+  if (status != MPS_OK) return status;
+  if (count < 0 || count > MPSI_MAX_PARTICLES)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, allowed are 0 to 2^40",
+                     (long long)count);
+  if (count > 0 && !positions)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "positions is NULL");
+  for (int64_t i = 0; i < count; i++)
+    for (int32_t c = 0; c < dim; c++)
+      if (!isfinite(positions[i * dim + c]))
+        return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+                         "position %lld has %c = %g m, must be finite", (long long)i, "xyz"[c],
+                         positions[i * dim + c]);
+  const int64_t first = particles->count;
+  if ((status = mpsi_particles_extend(particles, __func__, count)) != MPS_OK) return status;
+  for (int32_t c = 0; c < dim; c++) {
+    double *x = mpsi_field_column(particles->fields[MPSI_FIELD_POSITION], c);
+    for (int64_t i = 0; i < count; i++) x[first + i] = positions[i * dim + c];
+  }
+  return MPS_OK;
+}
+
+/* ---- order ----------------------------------------------------------------------------------- */
+
+mps_status mpsi_particles_permute(mps_particles *p, const char *function, const int64_t *order) {
+  if (p->pins > 1)
+    return mpsi_fail(p->context, function, MPS_ERROR_STATE,
+                     "the set cannot be sorted: it is in use by %d solvers", p->pins);
+  char *sorted = mpsi_alloc(p->context, p->count, 8);
+  if (!sorted) return mpsi_fail_memory(p->context, function, (size_t)p->count * 8);
+  for (int32_t f = 0; f < p->field_count; f++)
+    for (int32_t c = 0; c < p->fields[f]->components; c++) {
+      char *column = mpsi_field_column(p->fields[f], c);
+      for (int64_t k = 0; k < p->count; k++) memcpy(sorted + 8 * k, column + 8 * order[k], 8);
+      memcpy(column, sorted, (size_t)p->count * 8);
+    }
+  mpsi_free(p->context, sorted);
+  const int64_t *id = p->fields[MPSI_FIELD_ID]->data;
+  for (int64_t k = 0; k < p->count; k++) p->index_of[id[k]] = k;
+  p->epoch++;
+  return MPS_OK;
+}
+
+/* ---- selection ------------------------------------------------------------------------------- */
+
+static mps_status check_select(const mps_particles *p, const char *function, const double *lo,
+                               const double *hi, int64_t capacity, const int64_t *ids,
+                               const int64_t *count) {
+  if (!lo || !hi || !count)
+    return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT, "%s is NULL",
+                     !lo   ? "lo"
+                     : !hi ? "hi"
+                           : "count");
+  if (capacity < 0 || (capacity > 0 && !ids))
+    return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
+                     "capacity is %lld with ids %s, must be >= 0, and 0 where ids is NULL",
+                     (long long)capacity, ids ? "given" : "NULL");
+  for (int32_t c = 0; c < p->def.dim; c++)
+    if (!(lo[c] <= hi[c]))
+      return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
+                       "the box in %c is [%g, %g] m, must have lo <= hi", "xyz"[c], lo[c], hi[c]);
+  return MPS_OK;
+}
+
+mps_status mps_particles_select_box(mps_particles *particles, const double *lo, const double *hi,
+                                    int64_t capacity, int64_t *ids, int64_t *count) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  const mps_status status = check_select(particles, __func__, lo, hi, capacity, ids, count);
+  if (status != MPS_OK) return status;
+  int64_t found = 0;
+  for (int64_t id = 0; id < particles->count; id++) {
+    bool inside = true;
+    for (int32_t c = 0; c < particles->def.dim; c++) {
+      const double *x = mpsi_field_column(particles->fields[MPSI_FIELD_POSITION], c);
+      const double value = x[particles->index_of[id]];
+      inside = inside && value >= lo[c] && value <= hi[c];
+    }
+    if (!inside) continue;
+    if (found < capacity) ids[found] = id;
+    found++;
+  }
+  *count = found;
+  return MPS_OK;
+}
+
+int64_t mps_particles_index(const mps_particles *particles, int64_t id) {
+  return particles && id >= 0 && id < particles->count ? particles->index_of[id] : -1;
+}
+
+int64_t mps_particles_nearest(const mps_particles *particles, const double *x) {
+  if (!particles || !x) return -1;
+  int64_t best = -1;
+  double best_square = INFINITY;
+  for (int64_t id = 0; id < particles->count; id++) {
+    double square = 0.0;
+    for (int32_t c = 0; c < particles->def.dim; c++) {
+      const double *column = mpsi_field_column(particles->fields[MPSI_FIELD_POSITION], c);
+      const double distance = column[particles->index_of[id]] - x[c];
+      square += distance * distance;
+    }
+    if (square < best_square) {
+      best_square = square;
+      best = id;
+    }
+  }
+  return best;
+}

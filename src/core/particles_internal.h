@@ -1,0 +1,31 @@
+/* particles_internal.h - what the solvers use of a particle set besides the public functions.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_PARTICLES_INTERNAL_H
+#define MPSI_PARTICLES_INTERNAL_H
+
+#include "internal.h"
+
+#include <mps/particles.h>
+
+/* One component of a float64 field as a contiguous array, or NULL when the set has no such field
+ * or component. Aligned to MPSI_ALIGNMENT, and readable at least MPSI_PARTICLES_PADDING values
+ * past the end, where zeros stand: vector loops may load there, and store there only zeros.
+ * Valid until particles are added. */
+#define MPSI_PARTICLES_PADDING 8
+double *mpsi_particles_column(mps_particles *particles, const char *name, int32_t component);
+
+/* Reorders all fields: new index k holds what index order[k] held. `order` is a permutation of
+ * [0, count). Columns stay where they are; the epoch changes. A solver that sorts holds its own
+ * pin; when another one holds a pin too, this is MPS_ERROR_STATE. Errors (that one, or memory)
+ * are recorded for `function` on the set's context, and nothing has changed. */
+mps_status mpsi_particles_permute(mps_particles *particles, const char *function,
+                                  const int64_t *order);
+
+/* While pinned, no particle can be added and the caller's destroy only gives up the caller's
+ * share: the set goes with the last unpin. Each pin needs its unpin. */
+mps_particles *mpsi_particles_pin(mps_particles *particles); /* returns `particles` */
+void mpsi_particles_unpin(mps_particles *particles);         /* accepts NULL */
+
+mps_context *mpsi_particles_context(const mps_particles *particles);
+
+#endif

@@ -1,0 +1,72 @@
+/* particles_private.h - the members of a particle set, for particles.c, fields.c and fill.c only.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_PARTICLES_PRIVATE_H
+#define MPSI_PARTICLES_PRIVATE_H
+
+#include "particles_internal.h"
+
+#define MPSI_MAX_PARTICLES (INT64_C(1) << 40)
+#define MPSI_FIELD_NAME 48 /* bytes, with the terminating zero */
+
+/* A field: its columns lie one behind the other in one block, `stride` items apart. */
+typedef struct mpsi_field {
+  char name[MPSI_FIELD_NAME];
+  const char *unit, *meaning;
+  mps_dtype dtype;
+  uint32_t flags;
+  int32_t components;
+  int64_t first_column; /* number of columns of the fields before it: staggers the addresses */
+  void *block;          /* as allocated */
+  void *data;           /* column 0 */
+  int64_t stride;       /* items from one column to the next */
+} mpsi_field;
+
+/* Occupied lattice sites begin <= i < end of the row (j, k). */
+typedef struct mpsi_run {
+  int64_t begin, end, j, k;
+} mpsi_run;
+
+/* Rows ascend in k, then j; runs of a row ascend and neither overlap nor touch. */
+typedef struct mpsi_runs {
+  mpsi_run *item;
+  int64_t count, capacity;
+} mpsi_runs;
+
+struct mps_particles {
+  mps_context *context;
+  mps_particles_def def;
+  int64_t count, capacity;
+  uint64_t epoch;
+  int32_t pins;
+  bool owned; /* the caller has not destroyed it */
+  int32_t field_count;
+  mpsi_field **fields; /* 0: id, 1: position */
+  int64_t columns;
+  int64_t *index_of; /* id -> index */
+  mpsi_runs sites;   /* what the lattice fills have put */
+};
+
+/* ---- fields.c -------------------------------------------------------------------------------- */
+
+#define MPSI_FIELD_ID 0
+#define MPSI_FIELD_POSITION 1
+
+mpsi_field *mpsi_field_find(const mps_particles *particles, const char *name); /* or NULL */
+/* Address of a column of 8-byte items. */
+static inline void *mpsi_field_column(const mpsi_field *field, int32_t component) {
+  return (char *)field->data + (size_t)component * (size_t)field->stride * 8;
+}
+/* Memory for a field of `capacity` particles, or NULL. */
+void *mpsi_field_allocate(mps_context *context, const mpsi_field *field, int64_t capacity);
+/* Moves a field of `count` particles into a block of mpsi_field_allocate. */
+void mpsi_field_move(mps_context *context, mpsi_field *field, void *block, int64_t count,
+                     int64_t capacity);
+
+/* ---- particles.c ----------------------------------------------------------------------------- */
+
+/* MPS_ERROR_STATE when a solver uses the set. */
+mps_status mpsi_particles_check_free(const mps_particles *particles, const char *function);
+/* Adds `count` particles with their ids; all else is zero. Nothing has changed on an error. */
+mps_status mpsi_particles_extend(mps_particles *particles, const char *function, int64_t count);
+
+#endif

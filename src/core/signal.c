@@ -1,0 +1,196 @@
+/* signal.c - functions of time: the object, its evaluation, and the analytic kinds (the Ricker
+ * wavelet of seed A (9) with its integrals, sine, quintic ramp).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "signal_private.h"
+
+#include "retain.h"
+
+#define PI 3.14159265358979323846
+#define FREQUENCY_MIN 1e-9 /* Hz: squares and their reciprocals stay far from overflow */
+#define FREQUENCY_MAX 1e9
+
+/* ---- life ------------------------------------------------------------------------------------ */
+
+mps_signal *mpsi_signal_new(mps_context *context, const char *function) {
+  mps_signal *signal = mpsi_alloc(context, 1, sizeof *signal);
+  if (!signal) {
+    (void)mpsi_fail_memory(context, function, sizeof *signal);
+    return NULL;
+  }
+  signal->context = mpsi_context_retain(context);
+  atomic_init(&signal->references, 1);
+  return signal;
+}
+
+mps_signal *mpsi_signal_retain(mps_signal *signal) {
+  atomic_fetch_add(&signal->references, 1);
+  return signal;
+}
+
+void mps_signal_destroy(mps_signal **signal) {
+  if (!signal || !*signal) return;
+  mps_signal *s = *signal;
+  *signal = NULL;
+  if (atomic_fetch_sub(&s->references, 1) != 1) return;
+  mps_context *context = s->context;
+  mpsi_free(context, s->knots);
+  mpsi_free(context, s);
+  mpsi_context_release(context);
+}
+
+/* ---- evaluation ------------------------------------------------------------------------------ */
+
+static mpsi_motion motion(const mps_signal *signal, double t) {
+  if (!signal) return (mpsi_motion){0};
+  if (!isfinite(t)) return (mpsi_motion){NAN, NAN, NAN};
+  return signal->at(signal, t);
+}
+
+double mps_signal_displacement(const mps_signal *signal, double t) { return motion(signal, t).u; }
+
+double mps_signal_velocity(const mps_signal *signal, double t) { return motion(signal, t).v; }
+
+double mps_signal_acceleration(const mps_signal *signal, double t) { return motion(signal, t).a; }
+
+void mps_signal_span(const mps_signal *signal, double *start, double *end) {
+  if (start) *start = signal ? signal->start : 0.0;
+  if (end) *end = signal ? signal->end : 0.0;
+}
+
+double mps_signal_peak_acceleration(const mps_signal *signal) {
+  return signal ? signal->peak : 0.0;
+}
+
+static mpsi_motion ricker_at(const mps_signal *signal, double t) {
+  if (t < 0.0) return (mpsi_motion){0};
+  const double amplitude = signal->amplitude, c = signal->rate, tp = signal->shift;
+  const double tau = t - tp, first = exp(-c * tp * tp);
+  const double x = c * tau * tau;
+  if (x > 700.0) /* the exponential is 0, and 0 times an overflowed x would be NaN */
+    return (mpsi_motion){.u = amplitude * -first / (2.0 * c)};
+  const double e = exp(-x);
+  return (mpsi_motion){.u = amplitude * (e - first) / (2.0 * c),
+                       .v = -amplitude * tau * e,
+                       .a = amplitude * (2.0 * x - 1.0) * e};
+}
+
+static mpsi_motion sine_at(const mps_signal *signal, double t) {
+  if (t < 0.0) return (mpsi_motion){0};
+  const double w = signal->rate, angle = w * t + signal->shift;
+  const double s = signal->amplitude * sin(angle);
+  return (mpsi_motion){.u = s, .v = signal->amplitude * w * cos(angle), .a = -w * w * s};
+}
+
+static mpsi_motion ramp_at(const mps_signal *signal, double t) {
+  if (t <= signal->start) return (mpsi_motion){0};
+  if (t >= signal->end) return (mpsi_motion){.u = signal->amplitude};
+  const double amplitude = signal->amplitude, duration = signal->rate;
+  const double x = (t - signal->start) / duration, y = 1.0 - x;
+  return (mpsi_motion){.u = amplitude * x * x * x * (10.0 + x * (6.0 * x - 15.0)),
+                       .v = amplitude * 30.0 * x * x * y * y / duration,
+                       .a = amplitude * 60.0 * x * y * (y - x) / (duration * duration)};
+}
+
+/* ---- the analytic kinds ---------------------------------------------------------------------- */
+
+/* Checks shared by the analytic kinds; `peaks` are the largest |u|, |v|, |a| of the motion. */
+static mps_status check_motion(mps_context *context, const char *function, double amplitude,
+                               mpsi_motion peaks) {
+  if (!isfinite(amplitude))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "amplitude is %g, must be finite",
+                     amplitude);
+  if (!isfinite(peaks.u) || !isfinite(peaks.v) || !isfinite(peaks.a))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "amplitude %g is too large: the motion overflows (peaks %g m, %g m/s, "
+                     "%g m/s2)",
+                     amplitude, peaks.u, peaks.v, peaks.a);
+  return MPS_OK;
+}
+
+static mps_status check_frequency(mps_context *context, const char *function, double frequency) {
+  if (frequency >= FREQUENCY_MIN && frequency <= FREQUENCY_MAX) return MPS_OK; /* not NaN */
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "frequency is %g Hz, must be in %g..%g",
+                   frequency, FREQUENCY_MIN, FREQUENCY_MAX);
+}
+
+mps_status mps_signal_ricker(mps_context *context, double frequency, double peak_time,
+                             double amplitude, mps_signal **out) {
+  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
+  *out = NULL;
+  mps_status status = check_frequency(context, __func__, frequency);
+  if (status != MPS_OK) return status;
+  if (!isfinite(peak_time) || peak_time < 0.0)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+                     "peak time is %g s, must be finite and >= 0", peak_time);
+  const double c = PI * frequency * PI * frequency, peak = fabs(amplitude);
+  const mpsi_motion peaks = {.u = peak / (2.0 * c), .v = peak / sqrt(c), .a = peak};
+  if ((status = check_motion(context, __func__, amplitude, peaks)) != MPS_OK) return status;
+  mps_signal *signal = mpsi_signal_new(context, __func__);
+  if (!signal) return MPS_ERROR_MEMORY;
+  signal->at = ricker_at;
+  signal->amplitude = amplitude;
+  signal->rate = c;
+  signal->shift = peak_time;
+  signal->end = peak_time + sqrt(40.0 / c);
+  signal->peak = peak;
+  *out = signal;
+  return MPS_OK;
+}
+
+mps_status mps_signal_sine(mps_context *context, double frequency, double amplitude, double phase,
+                           mps_signal **out) {
+  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
+  *out = NULL;
+  mps_status status = check_frequency(context, __func__, frequency);
+  if (status != MPS_OK) return status;
+  if (!isfinite(phase))
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "phase is %g rad, must be finite",
+                     phase);
+  const double w = 2.0 * PI * frequency, peak = fabs(amplitude);
+  const mpsi_motion peaks = {.u = peak, .v = peak * w, .a = peak * (w * w)};
+  if ((status = check_motion(context, __func__, amplitude, peaks)) != MPS_OK) return status;
+  mps_signal *signal = mpsi_signal_new(context, __func__);
+  if (!signal) return MPS_ERROR_MEMORY;
+  signal->at = sine_at;
+  signal->amplitude = amplitude;
+  signal->rate = w;
+  signal->shift = phase;
+  signal->end = INFINITY;
+  signal->peak = peaks.a;
+  *out = signal;
+  return MPS_OK;
+}
+
+mps_status mps_signal_ramp(mps_context *context, double start, double duration, double amplitude,
+                           mps_signal **out) {
+  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
+  *out = NULL;
+  if (!isfinite(start))
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "start is %g s, must be finite", start);
+  if (!isfinite(duration) || duration <= 0.0 || !isfinite(start + duration) ||
+      start + duration <= start)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+                     "duration is %g s, must be finite, > 0 and not lost in rounding beside the "
+                     "start %g s",
+                     duration, start);
+  /* y = 1 - x: v has its largest value at x = 1/2, a at x y = 1/6 */
+  const double peak = fabs(amplitude);
+  const mpsi_motion peaks = {.u = peak,
+                             .v = peak * 1.875 / duration,
+                             .a = peak * (10.0 / sqrt(3.0)) / duration / duration};
+  const mps_status status = check_motion(context, __func__, amplitude, peaks);
+  if (status != MPS_OK) return status;
+  mps_signal *signal = mpsi_signal_new(context, __func__);
+  if (!signal) return MPS_ERROR_MEMORY;
+  signal->at = ramp_at;
+  signal->amplitude = amplitude;
+  signal->rate = duration;
+  signal->start = start;
+  signal->end = start + duration;
+  signal->peak = peaks.a;
+  *out = signal;
+  return MPS_OK;
+}

@@ -1,0 +1,202 @@
+/* signal_table.c - tables of samples. Whatever was sampled, the displacement between two samples
+ * is one cubic, u(t + s) = u + v s + a s^2/2 + j s^3/6:
+ *   accelerations, linear between samples:  j = (a1 - a0)/h, and v, u by exact integration;
+ *   velocities, linear between samples:     a = (v1 - v0)/h, j = 0, and u by exact integration;
+ *   displacements, natural cubic spline:    a at the samples solves a tridiagonal system.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "signal_private.h"
+
+#include <lapacke.h>
+
+/* ---- evaluation ------------------------------------------------------------------------------ */
+
+/* The knot that begins the piece with t in it; start <= t < end. Equal steps are found at once,
+ * others by bisection. */
+static int64_t find_knot(const mps_signal *signal, double t) {
+  const mpsi_knot *knots = signal->knots;
+  const double guess = (t - signal->start) * signal->knots_per_second;
+  int64_t low = 0, high = signal->count - 1;
+  if (guess >= 0.0 && guess < (double)high) {
+    const int64_t i = (int64_t)guess;
+    if (knots[i].t <= t && t < knots[i + 1].t) return i;
+  }
+  while (high - low > 1) {
+    const int64_t middle = low + (high - low) / 2;
+    if (knots[middle].t <= t)
+      low = middle;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+static mpsi_motion table_at(const mps_signal *signal, double t) {
+  if (t < signal->start) return (mpsi_motion){.u = signal->knots[0].u};
+  const mpsi_knot *k = &signal->knots[signal->count - 1];
+  if (t == signal->end) return (mpsi_motion){.u = k->u, .v = k->v, .a = k->a};
+  if (t > signal->end)
+    return (mpsi_motion){.u = k->u + signal->coast * (t - k->t), .v = signal->coast};
+  k = &signal->knots[find_knot(signal, t)];
+  const double s = t - k->t;
+  return (mpsi_motion){.u = k->u + s * (k->v + s * (0.5 * k->a + s * k->j / 6.0)),
+                       .v = k->v + s * (k->a + s * 0.5 * k->j),
+                       .a = k->a + s * k->j};
+}
+
+/* ---- the three quantities -------------------------------------------------------------------- */
+
+static void integrate_accelerations(mpsi_knot *knots, int64_t count, const double *values) {
+  knots[0].a = values[0];
+  for (int64_t i = 0; i + 1 < count; i++) {
+    mpsi_knot *k = &knots[i], *next = k + 1;
+    const double h = next->t - k->t;
+    next->a = values[i + 1];
+    k->j = (next->a - k->a) / h;
+    next->v = k->v + 0.5 * h * (k->a + next->a);
+    next->u = k->u + h * (k->v + h * (2.0 * k->a + next->a) / 6.0);
+  }
+}
+
+static void integrate_velocities(mpsi_knot *knots, int64_t count, const double *values) {
+  knots[0].v = values[0];
+  for (int64_t i = 0; i + 1 < count; i++) {
+    mpsi_knot *k = &knots[i], *next = k + 1;
+    const double h = next->t - k->t;
+    next->v = values[i + 1];
+    k->a = (next->v - k->v) / h;
+    next->u = k->u + 0.5 * h * (k->v + next->v);
+  }
+  knots[count - 1].a = knots[count - 2].a;
+}
+
+/* Second derivatives a of the natural cubic spline: a = 0 at both ends and, at the samples
+ * between, h0/6 a[i-1] + (h0 + h1)/3 a[i] + h1/6 a[i+1] = (u[i+1] - u[i])/h1 - (u[i] - u[i-1])/h0
+ * with h0, h1 the steps before and after: symmetric positive definite. */
+static mps_status solve_spline(mps_context *context, const char *function, mpsi_knot *knots,
+                               int64_t count) {
+  const int64_t n = count - 2;
+  if (n == 0) return MPS_OK;
+  double *diagonal = mpsi_alloc(context, n, 3 * sizeof *diagonal);
+  if (!diagonal) return mpsi_fail_memory(context, function, (size_t)n * 3 * sizeof *diagonal);
+  double *above = diagonal + n, *right = above + n;
+  for (int64_t i = 0; i < n; i++) {
+    const mpsi_knot *k = &knots[i + 1];
+    const double h0 = k->t - k[-1].t, h1 = k[1].t - k->t;
+    diagonal[i] = (h0 + h1) / 3.0;
+    above[i] = h1 / 6.0;
+    right[i] = (k[1].u - k->u) / h1 - (k->u - k[-1].u) / h0;
+  }
+  const lapack_int info =
+      LAPACKE_dptsv_work(LAPACK_COL_MAJOR, (lapack_int)n, 1, diagonal, above, right, (lapack_int)n);
+  for (int64_t i = 0; i < n; i++) knots[i + 1].a = right[i];
+  mpsi_free(context, diagonal);
+  if (info == 0) return MPS_OK;
+  return mpsi_fail(context, function, MPS_ERROR_NUMERIC,
+                   "the spline's system is singular at sample %lld: are the times distinct?",
+                   (long long)info);
+}
+
+static mps_status fit_displacements(mps_context *context, const char *function, mpsi_knot *knots,
+                                    int64_t count, const double *values) {
+  for (int64_t i = 0; i < count; i++) knots[i].u = values[i];
+  const mps_status status = solve_spline(context, function, knots, count);
+  if (status != MPS_OK) return status;
+  for (int64_t i = 0; i + 1 < count; i++) {
+    mpsi_knot *k = &knots[i], *next = k + 1;
+    const double h = next->t - k->t, slope = (next->u - k->u) / h;
+    k->v = slope - h * (2.0 * k->a + next->a) / 6.0;
+    k->j = (next->a - k->a) / h;
+    next->v = slope + h * (k->a + 2.0 * next->a) / 6.0;
+  }
+  return MPS_OK;
+}
+
+/* ---- creation -------------------------------------------------------------------------------- */
+
+static mps_status check_table(mps_context *context, const char *function,
+                              mps_signal_quantity quantity, int64_t count, const double *times,
+                              const double *values) {
+  if ((int)quantity < MPS_SIGNAL_DISPLACEMENT || (int)quantity > MPS_SIGNAL_ACCELERATION)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "quantity is %d, allowed are 0 (displacement), 1 (velocity), 2 (acceleration)",
+                     (int)quantity);
+  if (count < 2 || count >= INT32_MAX)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "count is %lld, must be in 2..%d",
+                     (long long)count, INT32_MAX - 1);
+  if (!times || !values)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is NULL",
+                     times ? "values" : "times");
+  for (int64_t i = 0; i < count; i++) {
+    if (!isfinite(times[i]) || !isfinite(values[i]))
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s[%lld] is %g, must be finite",
+                       isfinite(times[i]) ? "values" : "times", (long long)i,
+                       isfinite(times[i]) ? values[i] : times[i]);
+    if (i > 0 && times[i] <= times[i - 1])
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                       "times[%lld] is %.17g s, must be after times[%lld] = %.17g s", (long long)i,
+                       times[i], (long long)i - 1, times[i - 1]);
+  }
+  return MPS_OK;
+}
+
+static mps_status check_finite(mps_context *context, const char *function, const mpsi_knot *knots,
+                               int64_t count) {
+  for (const mpsi_knot *k = knots; k < knots + count; k++)
+    if (!isfinite(k->u) || !isfinite(k->v) || !isfinite(k->a) || !isfinite(k->j))
+      return mpsi_fail(context, function, MPS_ERROR_NUMERIC,
+                       "the motion overflows at t = %g s: u = %g m, v = %g m/s, a = %g m/s2", k->t,
+                       k->u, k->v, k->a);
+  return MPS_OK;
+}
+
+/* Fills the knots, whose times are set. */
+static mps_status fill_knots(mps_context *context, const char *function,
+                             mps_signal_quantity quantity, mpsi_knot *knots, int64_t count,
+                             const double *values) {
+  mps_status status = MPS_OK;
+  if (quantity == MPS_SIGNAL_ACCELERATION)
+    integrate_accelerations(knots, count, values);
+  else if (quantity == MPS_SIGNAL_VELOCITY)
+    integrate_velocities(knots, count, values);
+  else
+    status = fit_displacements(context, function, knots, count, values);
+  return status == MPS_OK ? check_finite(context, function, knots, count) : status;
+}
+
+mps_status mpsi_signal_from_table(mps_context *context, const char *function,
+                                  mps_signal_quantity quantity, int64_t count, const double *times,
+                                  const double *values, mps_signal **out) {
+  mps_status status = check_table(context, function, quantity, count, times, values);
+  if (status != MPS_OK) return status;
+  mps_signal *signal = mpsi_signal_new(context, function);
+  if (!signal) return MPS_ERROR_MEMORY;
+  signal->knots = mpsi_alloc(context, count, sizeof *signal->knots);
+  if (!signal->knots) {
+    mps_signal_destroy(&signal);
+    return mpsi_fail_memory(context, function, (size_t)count * sizeof(mpsi_knot));
+  }
+  for (int64_t i = 0; i < count; i++) signal->knots[i].t = times[i];
+  status = fill_knots(context, function, quantity, signal->knots, count, values);
+  if (status != MPS_OK) {
+    mps_signal_destroy(&signal);
+    return status;
+  }
+  signal->at = table_at;
+  signal->start = times[0];
+  signal->end = times[count - 1];
+  signal->coast = quantity == MPS_SIGNAL_DISPLACEMENT ? 0.0 : signal->knots[count - 1].v;
+  signal->count = count;
+  signal->knots_per_second = (double)(count - 1) / (signal->end - signal->start);
+  /* |a| is linear between samples, so it is largest at one of them */
+  for (int64_t i = 0; i < count; i++) signal->peak = fmax(signal->peak, fabs(signal->knots[i].a));
+  *out = signal;
+  return MPS_OK;
+}
+
+mps_status mps_signal_table(mps_context *context, mps_signal_quantity quantity, int64_t count,
+                            const double *times, const double *values, mps_signal **out) {
+  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
+  *out = NULL;
+  return mpsi_signal_from_table(context, __func__, quantity, count, times, values, out);
+}
