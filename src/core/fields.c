@@ -81,6 +81,11 @@ double *mpsi_particles_column(mps_particles *particles, const char *name, int32_
   return mpsi_field_column(field, component);
 }
 
+int64_t *mpsi_particles_integers(mps_particles *particles, const char *name) {
+  const mpsi_field *field = mpsi_field_find(particles, name);
+  return field && field->dtype.code == 0 ? mpsi_field_column(field, 0) : NULL;
+}
+
 /* ---- adding ---------------------------------------------------------------------------------- */
 
 static mps_status insert_field(mps_particles *p, const char *function, const mpsi_field *like) {

@@ -14,6 +14,9 @@
 #define MPSI_PARTICLES_PADDING 8
 double *mpsi_particles_column(mps_particles *particles, const char *name, int32_t component);
 
+/* The same for a field of one int64, or NULL. */
+int64_t *mpsi_particles_integers(mps_particles *particles, const char *name);
+
 /* Reorders all fields: new index k holds what index order[k] held. `order` is a permutation of
  * [0, count). Columns stay where they are; the epoch changes. A solver that sorts holds its own
  * pin; when another one holds a pin too, this is MPS_ERROR_STATE. Errors (that one, or memory)

@@ -45,9 +45,12 @@ static mps_status read_scale(const mpsi_text *text, mpsi_slice value, double *sc
   double gal = 0.0, counts = 0.0;
   mps_status status = positive(text, "Scale Factor", &value, &gal);
   if (status != MPS_OK) return status;
-  if (!mpsi_slice_starts(value, "(gal)", &value) || !mpsi_slice_starts(value, "/", &value))
-    return mpsi_text_fail(text, "Scale Factor goes on with \"%s\", (gal)/counts is expected",
-                          mpsi_slice_quote(value).text);
+  const mpsi_slice unit = mpsi_slice_word(&value, "/");
+  mpsi_slice_trim(&value);
+  if (mpsi_slice_size(unit) != 5 || !mpsi_slice_starts(unit, "(gal)", NULL) ||
+      !mpsi_slice_starts(value, "/", &value))
+    return mpsi_text_fail(text, "the unit of Scale Factor is \"%s\", (gal)/counts is expected",
+                          mpsi_slice_quote(unit).text);
   if ((status = positive(text, "the divisor of Scale Factor", &value, &counts)) != MPS_OK)
     return status;
   *scale = gal / counts * GAL;

@@ -184,7 +184,7 @@ mpsi_quote mpsi_slice_quote(mpsi_slice slice) {
     const char c = *slice.begin++;
     quote.text[length++] = c >= ' ' && c <= '~' ? c : '?';
   }
-  strcpy(quote.text + length, slice.begin < slice.end ? "..." : "");
+  memcpy(quote.text + length, slice.begin < slice.end ? "..." : "\0\0\0", 4);
   return quote;
 }
 

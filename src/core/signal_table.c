@@ -144,8 +144,9 @@ static mps_status check_finite(mps_context *context, const char *function, const
   for (const mpsi_knot *k = knots; k < knots + count; k++)
     if (!isfinite(k->u) || !isfinite(k->v) || !isfinite(k->a) || !isfinite(k->j))
       return mpsi_fail(context, function, MPS_ERROR_NUMERIC,
-                       "the motion overflows at t = %g s: u = %g m, v = %g m/s, a = %g m/s2", k->t,
-                       k->u, k->v, k->a);
+                       "the motion overflows at or after t = %g s: u = %g m, v = %g m/s, "
+                       "a = %g m/s2, da/dt = %g m/s3",
+                       k->t, k->u, k->v, k->a, k->j);
   return MPS_OK;
 }
 

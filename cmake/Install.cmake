@@ -1,0 +1,65 @@
+# What `cmake --install` puts where. Debian has another libmps (MPSolve: <mps/mps.h>), so the headers
+# live under include/libmps-<major>/mps/, the pkg-config module is `libmps`, the CMake package `mps`.
+include(CMakePackageConfigHelpers)
+set(cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/mps)
+
+install(DIRECTORY include/mps DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/libmps-${PROJECT_VERSION_MAJOR}
+        FILES_MATCHING PATTERN "*.h")
+
+# Two export sets: who links libmps.so is not asked to have what only libmps.a needs.
+install(TARGETS mps EXPORT mps-shared)
+install(TARGETS mps_static EXPORT mps-static)
+install(EXPORT mps-shared NAMESPACE mps:: DESTINATION ${cmake_dir})
+install(EXPORT mps-static NAMESPACE mps:: DESTINATION ${cmake_dir})
+
+get_property(packages GLOBAL PROPERTY MPS_STATIC_PACKAGES)
+list(TRANSFORM packages REPLACE "(.+)" "  find_dependency(\\1)")
+list(JOIN packages "\n" MPS_STATIC_DEPENDENCIES)
+configure_package_config_file(cmake/mpsConfig.cmake.in ${PROJECT_BINARY_DIR}/mpsConfig.cmake
+                              INSTALL_DESTINATION ${cmake_dir})
+# Until 1.0 every minor version may break the ABI.
+set(compatibility SameMajorVersion)
+if(PROJECT_VERSION_MAJOR EQUAL 0)
+  set(compatibility SameMinorVersion)
+endif()
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/mpsConfigVersion.cmake
+                                 COMPATIBILITY ${compatibility})
+file(GLOB find_modules ${PROJECT_SOURCE_DIR}/cmake/Find*.cmake)
+install(FILES ${PROJECT_BINARY_DIR}/mpsConfig.cmake ${PROJECT_BINARY_DIR}/mpsConfigVersion.cmake
+              ${find_modules} DESTINATION ${cmake_dir})
+
+# libmps.pc: libraries found as files become -L and -l flags. The prefix is relative to the file's
+# own place, so that an installed tree may be moved.
+get_property(libraries GLOBAL PROPERTY MPS_STATIC_LIBRARIES)
+set(flags "")
+foreach(library ${libraries})
+  if(IS_ABSOLUTE "${library}")
+    get_filename_component(dir ${library} DIRECTORY)
+    get_filename_component(name ${library} NAME)
+    if(NOT dir IN_LIST CMAKE_C_IMPLICIT_LINK_DIRECTORIES)
+      list(APPEND flags -L${dir})
+    endif()
+    string(REGEX REPLACE "^lib(.+)\\.(a|so[.0-9]*)$" "-l\\1" name ${name})
+    list(APPEND flags ${name})
+  elseif(library MATCHES "^-")
+    list(APPEND flags ${library})
+  else()
+    list(APPEND flags -l${library})
+  endif()
+endforeach()
+list(REMOVE_DUPLICATES flags)
+list(JOIN flags " " MPS_PC_LIBS_PRIVATE)
+set(MPS_PC_PREFIX ${CMAKE_INSTALL_PREFIX})
+if(NOT IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}")
+  file(RELATIVE_PATH up /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)
+  string(REGEX REPLACE "/$" "" up ${up})
+  set(MPS_PC_PREFIX "\${pcfiledir}/${up}")
+endif()
+foreach(kind LIB INCLUDE)
+  set(MPS_PC_${kind}DIR ${CMAKE_INSTALL_${kind}DIR})
+  if(NOT IS_ABSOLUTE "${CMAKE_INSTALL_${kind}DIR}")
+    set(MPS_PC_${kind}DIR "\${prefix}/${CMAKE_INSTALL_${kind}DIR}")
+  endif()
+endforeach()
+configure_file(pkgconfig/libmps.pc.in ${PROJECT_BINARY_DIR}/libmps.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/libmps.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -1,0 +1,107 @@
+/* free_field.c - free-field columns: level ground beside the body, as particles of the same set.
+ *
+ * A column is one lattice column wide and repeats itself in x with period D, so it moves as
+ * horizontally endless ground. pairs.c makes the forces that the missing ground would give the
+ * edge; boundary.c adds dashpots between edge and column.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/internal.h"
+#include "core/particles_internal.h"
+
+#include <mps/dynamics.h>
+
+#include <string.h>
+
+typedef struct edge {
+  double x; /* m, of the outermost particles */
+  int64_t count;
+  int64_t *index; /* their indices, bottom up after sorting by y is left to the solver */
+} edge;
+
+static mps_status find_edge(mps_context *context, mps_particles *particles, mps_side side,
+                            edge *out) {
+  const int64_t n = mps_particles_count(particles);
+  const double *x = mpsi_particles_column(particles, "position", 0);
+  const int64_t *mark = mpsi_particles_integers(particles, "free_field");
+  const double D = mps_particles_spacing(particles);
+  out->x = side == MPS_SIDE_LEFT ? INFINITY : -INFINITY;
+  for (int64_t k = 0; k < n; k++) {
+    if (mark && mark[k] == (int64_t)side)
+      return mpsi_fail(context, "mps_dynamics_add_free_field", MPS_ERROR_STATE,
+                       "the set already has a %s free-field column",
+                       side == MPS_SIDE_LEFT ? "left" : "right");
+    if (mark && mark[k]) continue;
+    out->x = side == MPS_SIDE_LEFT ? fmin(out->x, x[k]) : fmax(out->x, x[k]);
+  }
+  out->index = mpsi_alloc(context, n, sizeof *out->index);
+  if (!out->index) return mpsi_fail_memory(context, "mps_dynamics_add_free_field", (size_t)n * 8);
+  for (int64_t k = 0; k < n; k++)
+    if (!(mark && mark[k]) && fabs(x[k] - out->x) < 1e-6 * D) out->index[out->count++] = k;
+  return MPS_OK;
+}
+
+/* Copies every field but id, position and the mark from the edge to the new particles. */
+static mps_status copy_fields(mps_context *context, mps_particles *particles, const edge *e,
+                              int64_t first, mps_side side, double shift) {
+  mps_status status = MPS_OK;
+  for (int32_t f = 0; status == MPS_OK && f < mps_particles_field_count(particles); f++) {
+    mps_field_info info;
+    mps_view view;
+    status = mps_particles_field(particles, f, &info);
+    if (status == MPS_OK) status = mps_particles_view(particles, info.name, &view);
+    if (status != MPS_OK || strcmp(info.name, "id") == 0 || strcmp(info.name, "position") == 0)
+      continue;
+    for (int64_t k = 0; k < e->count; k++)
+      for (int64_t c = 0; c < view.shape[1]; c++) {
+        if (view.dtype.code == 2)
+          *mps_view_f64(&view, first + k, c) =
+              *mps_view_f64(&view, e->index[k], c) +
+              (strcmp(info.name, "reference") == 0 && c == 0 ? shift : 0.0);
+        else if (strcmp(info.name, "free_field") == 0)
+          *mps_view_i64(&view, first + k, c) = (int64_t)side;
+        else
+          *mps_view_i64(&view, first + k, c) = *mps_view_i64(&view, e->index[k], c);
+      }
+  }
+  (void)context;
+  return status;
+}
+
+static mps_status append_column(mps_context *context, mps_particles *particles, mps_side side,
+                                int32_t gap, const edge *e) {
+  const double *x = mpsi_particles_column(particles, "position", 0);
+  const double *y = mpsi_particles_column(particles, "position", 1);
+  const double D = mps_particles_spacing(particles);
+  const double shift = (side == MPS_SIDE_LEFT ? -D : D) * gap;
+  double *at = mpsi_alloc(context, 2 * e->count, sizeof *at);
+  if (!at) return mpsi_fail_memory(context, "mps_dynamics_add_free_field", (size_t)e->count * 16);
+  for (int64_t k = 0; k < e->count; k++) {
+    at[2 * k] = x[e->index[k]] + shift;
+    at[2 * k + 1] = y[e->index[k]];
+  }
+  const int64_t first = mps_particles_count(particles);
+  mps_status status = mps_particles_add_field(particles, "free_field", 0);
+  if (status == MPS_OK) status = mps_particles_append(particles, e->count, at);
+  if (status == MPS_OK) status = copy_fields(context, particles, e, first, side, shift);
+  mpsi_free(context, at);
+  return status;
+}
+
+mps_status mps_dynamics_add_free_field(mps_particles *particles, mps_side side, int32_t gap) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  mps_context *context = mpsi_particles_context(particles);
+  if (side != MPS_SIDE_LEFT && side != MPS_SIDE_RIGHT)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+                     "side is %d, allowed are 1 (left) and 2 (right)", (int)side);
+  if (gap < 2 || gap > 1000000)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+                     "gap is %d spacings, must be 2 to 1000000", gap);
+  if (mps_particles_dim(particles) != 2 || mps_particles_count(particles) < 1)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+                     "the set has dim %d and %lld particles: a 2D body is needed",
+                     mps_particles_dim(particles), (long long)mps_particles_count(particles));
+  edge e = {0};
+  mps_status status = find_edge(context, particles, side, &e);
+  if (status == MPS_OK) status = append_column(context, particles, side, gap, &e);
+  mpsi_free(context, e.index);
+  return status;
+}

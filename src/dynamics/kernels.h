@@ -1,0 +1,62 @@
+/* kernels.h - the inner loops of a time step, compiled for several instruction sets.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_DYNAMICS_KERNELS_H
+#define MPSI_DYNAMICS_KERNELS_H
+
+#include "mesh.h"
+
+#include <mps/dynamics.h>
+
+/* The arrays of a body, one value a particle, in sorted order. Names follow the seed. */
+typedef struct mpsi_state {
+  double *dx, *dy, *th;  /* displacement (m), rotation (rad): r = r0 + d */
+  double *ox, *oy, *oth; /* the same one step earlier (Verlet) */
+  double *vx, *vy, *vth; /* velocity at mid-step (leapfrog) or at the step (Euler) */
+  double *gx, *gy, *gth; /* M^-1 times the restoring force: m/s2, rad/s2 */
+  double *hx, *hy, *hth; /* the same one step earlier (damping) */
+  double *ax, *ay;       /* acceleration, written on demand */
+  double *p;             /* pressure, Pa */
+  double *c, *s;         /* removal (12): cos th - 1, sin th; (11): cos th/2 - 1, sin th/2 */
+  double *mu, *lambda;   /* Pa */
+  double *ix, *iy, *ith; /* 1/rho for x and y, 3/(rho D^2) for the torque; 0 where held */
+  double *alpha, *beta;  /* Rayleigh coefficients, 1/s and s */
+  double *ex, *ey;       /* a slot a pair: kc e, from the first pass to the second */
+} mpsi_state;
+
+/* What one step is told. */
+typedef struct mpsi_step {
+  double dt;
+  double limit2;  /* square of the divergence criterion, (m/s2)^2 */
+  int32_t first;  /* no history yet: G_{k-1} = G_k */
+  int32_t output; /* 1: write acceleration */
+} mpsi_step;
+
+/* Doubles of scratch memory a worker needs. */
+#define MPSI_DYN_SCRATCH (4 * MPSI_DYN_BLOCK + 32 * MPSI_DYN_CHUNK)
+
+/* First pass over one block: shear and normal forces, torques, divergence, pressure. */
+typedef void (*mpsi_pass1_fn)(const mpsi_state *state, const mpsi_mesh *mesh, int64_t block,
+                              double *scratch);
+/* Second pass: pressure forces, damping, integration. Returns non-zero when an acceleration is
+ * beyond the limit or not finite. */
+typedef int (*mpsi_pass2_fn)(const mpsi_state *state, const mpsi_mesh *mesh, int64_t block,
+                             const mpsi_step *step, double *scratch);
+/* c and s of particles [begin, end) from th. */
+typedef void (*mpsi_trig_fn)(const mpsi_state *state, int64_t begin, int64_t end);
+
+typedef struct mpsi_kernels {
+  mpsi_pass1_fn pass1[2];       /* removal (11), (12) */
+  mpsi_pass2_fn pass2[2][3][2]; /* removal, integrator, damping */
+  mpsi_trig_fn trig[2];
+} mpsi_kernels;
+
+/* x86-64 level: 0 the best that processor and build have, 1 the plain build; NULL if missing. */
+const mpsi_kernels *mpsi_kernels_select(int32_t isa);
+
+extern const mpsi_kernels mpsi_kernels_v1;
+#ifdef MPSI_X86_LEVELS
+extern const mpsi_kernels mpsi_kernels_v3;
+extern const mpsi_kernels mpsi_kernels_v4;
+#endif
+
+#endif

@@ -1,0 +1,268 @@
+/* limit.c - the largest stable time step by linear theory, without time stepping.
+ *
+ * Seed A's scheme with Rayleigh damping (A24) first becomes unstable at z = -1. There
+ *   4 = lambda_max [ 2 dt A + (dt^2 + 2 dt B) M^-1 K ],  A = diag(alpha_i), B = diag(beta_i),
+ * which for one damping ratio is dt = -(beta + alpha/w^2) + sqrt((beta + alpha/w^2)^2 + 4/w^2).
+ * The highest eigenvalue comes from Lanczos iteration on the symmetric tangent.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/particles_internal.h"
+#include "dynamics_private.h"
+
+#include <lapacke.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LANCZOS_MOST 400
+#define LANCZOS_ENOUGH 1e-9 /* relative bound on the error of the eigenvalue */
+
+double mpsi_damped_limit(double omega2, double alpha, double beta) {
+  const double b = beta + alpha / omega2;
+  return 4.0 / omega2 / (b + sqrt(b * b + 4.0 / omega2)); /* without cancellation */
+}
+
+/* ---- Lanczos -----------------------------------------------------------------------------------
+ */
+
+/* The operator 2 dt A + D^1/2 S D^1/2, D = dt^2 + 2 dt B; dt = 0 stands for S itself. */
+typedef struct operator_data {
+  mps_dynamics *dynamics;
+  double dt;
+  double *scaled, *work; /* 3 n, 4 n */
+} operator_data;
+
+static void apply(operator_data *op, const double *x, double *y) {
+  const int64_t n = op->dynamics->count;
+  const double dt = op->dt;
+  if (dt == 0.0) {
+    mpsi_tangent_apply(op->dynamics, x, y, op->work);
+    return;
+  }
+  const double *alpha = op->dynamics->state.alpha, *beta = op->dynamics->state.beta;
+  for (int64_t k = 0; k < 3 * n; k++) op->scaled[k] = sqrt(dt * dt + 2.0 * dt * beta[k % n]) * x[k];
+  mpsi_tangent_apply(op->dynamics, op->scaled, y, op->work);
+  for (int64_t k = 0; k < 3 * n; k++)
+    y[k] = sqrt(dt * dt + 2.0 * dt * beta[k % n]) * y[k] + 2.0 * dt * alpha[k % n] * x[k];
+}
+
+static double dot(const double *a, const double *b, int64_t n) {
+  double sum = 0.0;
+  for (int64_t k0 = 0; k0 < n; k0 += 1024) { /* short partial sums: little round-off */
+    double part = 0.0;
+    for (int64_t k = k0; k < n && k < k0 + 1024; k++) part += a[k] * b[k];
+    sum += part;
+  }
+  return sum;
+}
+
+/* Start near the usual highest mode, where all particles spin alike, with a part in every other.
+ * A function of the id alone: the order of the particles does not matter. */
+static void start_vector(const mps_dynamics *dynamics, double *v) {
+  const int64_t n = dynamics->count;
+  const int64_t *id = mpsi_particles_integers(dynamics->particles, "id");
+  for (int c = 0; c < 3; c++)
+    for (int64_t k = 0; k < n; k++) {
+      uint64_t h = (uint64_t)id[k] * 3u + (uint64_t)c + 1u;
+      h *= 0x9e3779b97f4a7c15u;
+      h = (h ^ (h >> 31)) * 0xbf58476d1ce4e5b9u;
+      h ^= h >> 29;
+      v[c * n + k] = (c == 2 ? 1.0 : 0.0) + 0.2 * ((double)(h >> 11) * 0x1p-53 - 0.5);
+    }
+  const mpsi_state *s = &dynamics->state; /* held unknowns are not part of the problem */
+  const double *inverse[3] = {s->ix, s->iy, s->ith};
+  for (int c = 0; c < 3; c++)
+    for (int64_t k = 0; k < n; k++)
+      if (inverse[c][k] == 0.0) v[c * n + k] = 0.0;
+}
+
+typedef struct ritz {
+  double value, error; /* highest eigenvalue and a bound on its error */
+  int64_t iterations;
+} ritz;
+
+/* Highest eigenvalue of the tridiagonal matrix, and the last component of its vector. */
+static bool highest(int m, const double *diagonal, const double *off, double *value, double *last) {
+  double d[LANCZOS_MOST], e[LANCZOS_MOST], w[LANCZOS_MOST];
+  double *z = malloc((size_t)m * sizeof *z);
+  lapack_int found = 0, support[2];
+  if (!z) return false;
+  memcpy(d, diagonal, (size_t)m * sizeof *d);
+  memcpy(e, off, (size_t)m * sizeof *e);
+  const lapack_int info = LAPACKE_dstevr(LAPACK_COL_MAJOR, 'V', 'I', m, d, e, 0.0, 0.0, m, m, 0.0,
+                                         &found, w, z, m, support);
+  if (info == 0 && found == 1) {
+    *value = w[0];
+    *last = z[m - 1];
+  }
+  free(z);
+  return info == 0 && found == 1;
+}
+
+static bool lanczos(operator_data *op, double *basis, ritz *out) {
+  const int64_t n = 3 * op->dynamics->count;
+  double *v = basis, *before = basis + n, *next = basis + 2 * n;
+  double diagonal[LANCZOS_MOST], off[LANCZOS_MOST], value = 0.0, last = 0.0;
+  start_vector(op->dynamics, v);
+  double norm = sqrt(dot(v, v, n));
+  *out = (ritz){0.0, 0.0, 0};
+  if (norm == 0.0) return true; /* everything is held */
+  for (int64_t k = 0; k < n; k++) v[k] /= norm, before[k] = 0.0;
+  norm = 0.0;
+  for (int m = 1; m <= LANCZOS_MOST; m++) {
+    apply(op, v, next);
+    const double a = dot(v, next, n);
+    for (int64_t k = 0; k < n; k++) next[k] -= a * v[k] + norm * before[k];
+    diagonal[m - 1] = a;
+    norm = off[m - 1] = sqrt(dot(next, next, n));
+    const bool stuck = !(norm > 1e-14 * fabs(a));
+    if (m % 10 == 0 || stuck || m == LANCZOS_MOST) {
+      if (!highest(m, diagonal, off, &value, &last)) return false;
+      *out = (ritz){value, fabs(norm * last), m};
+      if (stuck || out->error <= LANCZOS_ENOUGH * value) return true;
+    }
+    double *spare = before;
+    before = v;
+    v = next;
+    next = spare;
+    for (int64_t k = 0; k < n; k++) v[k] /= norm;
+  }
+  return true;
+}
+
+/* ---- limits ------------------------------------------------------------------------------------
+ */
+
+typedef struct range {
+  double alpha[2], beta[2]; /* least and most */
+} range;
+
+static range damping_range(const mps_dynamics *dynamics) {
+  const mpsi_state *s = &dynamics->state;
+  range r = {{INFINITY, 0.0}, {INFINITY, 0.0}};
+  for (int64_t k = 0; k < dynamics->count; k++) {
+    r.alpha[0] = fmin(r.alpha[0], s->alpha[k]), r.alpha[1] = fmax(r.alpha[1], s->alpha[k]);
+    r.beta[0] = fmin(r.beta[0], s->beta[k]), r.beta[1] = fmax(r.beta[1], s->beta[k]);
+  }
+  return r;
+}
+
+/* dt at which lambda_max of the damped operator is 4. lambda grows with dt at least like dt and at
+ * most like dt^2, which brackets the root after each round; a secant in logarithms finds it. */
+static bool uneven_limit(operator_data *op, double *basis, const range *r, double omega2,
+                         double *dt, int64_t *iterations) {
+  double low = mpsi_damped_limit(omega2, r->alpha[1], r->beta[1]);
+  double high = mpsi_damped_limit(omega2, r->alpha[0], r->beta[0]);
+  double power = 0.75, last_dt = 0.0, last_value = 0.0;
+  op->dt = low;
+  for (int round = 0; round < 20; round++) {
+    ritz top;
+    if (!lanczos(op, basis, &top)) return false;
+    *iterations += top.iterations;
+    const double ratio = 4.0 / top.value;
+    if (round > 0 && top.value != last_value)
+      power = fmin(1.0, fmax(0.5, log(op->dt / last_dt) / log(top.value / last_value)));
+    last_dt = op->dt;
+    last_value = top.value;
+    low = fmax(low, op->dt * (ratio > 1.0 ? sqrt(ratio) : ratio));
+    high = fmin(high, op->dt * (ratio > 1.0 ? ratio : sqrt(ratio)));
+    if (high - low <= 1e-8 * high) break;
+    op->dt = fmin(high, fmax(low, op->dt * pow(ratio, power)));
+  }
+  *dt = low; /* never above the limit */
+  op->dt = 0.0;
+  return true;
+}
+
+/* Are all roots of z^3 + a2 z^2 + a1 z + a0 inside the unit circle (Jury)? */
+static bool inside_unit_circle(double a2, double a1, double a0) {
+  return fabs(a0) < 1.0 && 1.0 + a2 + a1 + a0 > 0.0 && 1.0 - a2 + a1 - a0 > 0.0 &&
+         fabs(a0 * a0 - 1.0) > fabs(a0 * a2 - a1);
+}
+
+/* Euler's amplification of a mode stays below `growth` a step. With r_k = z^k its scheme reads
+ * z (z-1)^2 + alpha dt z (z-1) + w^2 dt^2 z + beta dt w^2 (z-1) = 0. */
+static bool euler_stable(double dt, double omega2, double alpha, double beta, double growth) {
+  const double a2 = -2.0 + alpha * dt, a0 = -beta * dt * omega2;
+  const double a1 = 1.0 - alpha * dt + omega2 * dt * dt + beta * dt * omega2;
+  return inside_unit_circle(a2 / growth, a1 / (growth * growth), a0 / (growth * growth * growth));
+}
+
+/* All frequencies up to the highest, for the least and the most damped particle. */
+static bool euler_all_stable(double dt, double omega2, const range *r, double duration) {
+  const double growth = duration > 0.0 ? exp(log(1e15) * fmin(dt / duration, 1.0)) : 1.0;
+  for (int which = 0; which < 2; which++)
+    for (int k = 0; k <= 400; k++)
+      if (!euler_stable(dt, omega2 * pow(10.0, -k / 40.0), r->alpha[which], r->beta[which], growth))
+        return false;
+  return true;
+}
+
+static double euler_limit(double omega2, const range *r, double duration) {
+  double unstable = 4.0 / sqrt(omega2), stable = unstable;
+  while (!euler_all_stable(stable, omega2, r, duration)) {
+    unstable = stable;
+    stable *= 0.8;
+    if (stable * sqrt(omega2) < 1e-9) return 0.0;
+  }
+  if (stable == unstable) return stable;
+  while (unstable - stable > 1e-9 * stable) {
+    const double middle = 0.5 * (stable + unstable);
+    if (euler_all_stable(middle, omega2, r, duration))
+      stable = middle;
+    else
+      unstable = middle;
+  }
+  return stable;
+}
+
+static mps_status find_limit(mps_dynamics *dynamics, double duration, double *memory,
+                             mps_linear_limit *out) {
+  static const char *const function = "mps_dynamics_limit_linear";
+  const int64_t n = 3 * dynamics->count;
+  operator_data op = {.dynamics = dynamics, .scaled = memory + 3 * n, .work = memory + 4 * n};
+  ritz top;
+  if (!lanczos(&op, memory, &top))
+    return mpsi_fail(dynamics->context, function, MPS_ERROR_NUMERIC,
+                     "LAPACK could not solve the tridiagonal eigenproblem");
+  const range r = damping_range(dynamics);
+  *out = (mps_linear_limit){.dt = INFINITY, .iterations = top.iterations};
+  if (!(top.value > 0.0)) return MPS_OK; /* nothing can move against anything else */
+  out->omega = sqrt(top.value);
+  out->residual = top.error / top.value;
+  if (dynamics->def.integrator == MPS_INTEGRATOR_EULER)
+    out->dt = euler_limit(top.value, &r, duration);
+  else if (r.beta[0] == r.beta[1])
+    out->dt = mpsi_damped_limit(top.value, r.alpha[0], r.beta[0]);
+  else if (!uneven_limit(&op, memory, &r, top.value, &out->dt, &out->iterations))
+    return mpsi_fail(dynamics->context, function, MPS_ERROR_NUMERIC,
+                     "LAPACK could not solve the tridiagonal eigenproblem");
+  return MPS_OK;
+}
+
+mps_status mps_dynamics_limit_linear(mps_dynamics *dynamics, double duration,
+                                     mps_linear_limit *out) {
+  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  mps_context *context = dynamics->context;
+  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
+  if (!isfinite(duration) || duration < 0.0)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+                     "duration is %g s, must be finite and >= 0", duration);
+  const bool plain = duration == 0.0 || dynamics->def.integrator != MPS_INTEGRATOR_EULER;
+  if (plain && dynamics->have_limit) {
+    *out = dynamics->limit;
+    return MPS_OK;
+  }
+  /* three Lanczos vectors, one scaled vector, and 4 n of work for the tangent */
+  double *memory = mpsi_alloc(context, 16 * dynamics->count, sizeof *memory);
+  if (!memory)
+    return mpsi_fail_memory(context, __func__, (size_t)dynamics->count * 16 * sizeof *memory);
+  mps_linear_limit limit;
+  const mps_status status = find_limit(dynamics, duration, memory, &limit);
+  mpsi_free(context, memory);
+  if (status != MPS_OK) return status;
+  *out = limit;
+  if (plain) {
+    dynamics->limit = limit;
+    dynamics->have_limit = true;
+  }
+  return MPS_OK;
+}

@@ -1,0 +1,233 @@
+/* pairs.c - the pairs of the reference lattice closer than re, seed A (A8): those of the body,
+ * with its period; those of a free-field column, which stands for horizontally endless ground; and
+ * the forces of that ground on the edge of the body.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "layout.h"
+
+#include <mps/neighbours.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A growing list of pairs. */
+typedef struct pair_list {
+  mps_context *context;
+  mpsi_pair *pair;
+  int64_t count, capacity;
+} pair_list;
+
+static bool push(pair_list *list, mpsi_pair pair) {
+  if (list->count == list->capacity) {
+    const int64_t capacity = list->capacity ? 2 * list->capacity : 1024;
+    if (!mpsi_grow(list->context, (void **)&list->pair, list->count, capacity, sizeof pair))
+      return false;
+    list->capacity = capacity;
+  }
+  list->pair[list->count++] = pair;
+  return true;
+}
+
+/* Offsets of lattice neighbours are made exact multiples of D: their round-off would split runs,
+ * and leave forces in the unstrained body. */
+static double snap(double offset, double spacing) {
+  const double whole = nearbyint(offset / spacing) * spacing;
+  return fabs(offset - whole) < 1e-9 * spacing ? whole : offset;
+}
+
+/* Position arrays of the body, with the copies that a period puts right of it. */
+typedef struct cloud {
+  double *x;     /* x then y, `count` each */
+  int64_t *from; /* particle of each point */
+  int64_t count, own;
+} cloud;
+
+static bool make_cloud(mps_context *context, const mpsi_geometry *g, cloud *out) {
+  int64_t own = 0, copies = 0;
+  double left = INFINITY;
+  for (int64_t k = 0; k < g->count; k++)
+    if (!g->side || !g->side[k]) left = fmin(left, g->x[k]), own++;
+  const double reach = g->period_x > 0.0 ? left + g->radius : -INFINITY;
+  for (int64_t k = 0; k < own; k++) copies += g->x[k] < reach;
+  const int64_t n = own + copies;
+  *out = (cloud){.x = mpsi_alloc(context, 2 * n, sizeof(double)),
+                 .from = mpsi_alloc(context, n, sizeof(int64_t)),
+                 .count = n,
+                 .own = own};
+  if (!out->x || !out->from) return false;
+  /* the body comes first in the sorted order, so its particles are 0 .. own - 1 */
+  for (int64_t k = 0, c = own; k < own; k++) {
+    out->x[k] = g->x[k];
+    out->x[n + k] = g->y[k];
+    out->from[k] = k;
+    if (g->x[k] >= reach) continue;
+    out->x[c] = g->x[k] + g->period_x;
+    out->x[n + c] = g->y[k];
+    out->from[c++] = k;
+  }
+  return true;
+}
+
+static mps_status body_pairs(const mpsi_geometry *g, const cloud *points, const int64_t *offset,
+                             const int64_t *index, pair_list *list, const char *function) {
+  for (int64_t a = 0; a < points->own; a++)
+    for (int64_t k = offset[a]; k < offset[a + 1]; k++) {
+      const int64_t b = index[k];
+      if (b < points->own && b < a) continue; /* each pair once; copies only as the far end */
+      const double dx = points->x[b] - points->x[a];
+      const double dy = points->x[points->count + b] - points->x[points->count + a];
+      if (!(dx * dx + dy * dy > 1e-12 * g->spacing * g->spacing))
+        return mpsi_fail(list->context, function, MPS_ERROR_ARGUMENT,
+                         "two particles lie at the same point (%g, %g) m", points->x[a],
+                         points->x[points->count + a]);
+      const int32_t i = (int32_t)a, j = (int32_t)points->from[b];
+      if (!push(list, (mpsi_pair){i, j, i, j, snap(dx, g->spacing), snap(dy, g->spacing)}))
+        return mpsi_fail_memory(list->context, function, sizeof(mpsi_pair));
+    }
+  return MPS_OK;
+}
+
+static mps_status find_body_pairs(const mpsi_geometry *g, pair_list *list, const char *function) {
+  mps_context *context = list->context;
+  cloud points = {0};
+  mps_neighbours *lists = NULL;
+  mps_neighbours_def def = mps_neighbours_defaults();
+  def.dim = 2;
+  /* lattice distances are round numbers: r0 = re must be out whatever the round-off */
+  def.radius = g->radius * (1.0 - 1e-9);
+  mps_status status = MPS_OK;
+  if (!make_cloud(context, g, &points))
+    status = mpsi_fail_memory(context, function, (size_t)g->count * 24);
+  if (status == MPS_OK) status = mps_neighbours_create(context, &def, &lists);
+  if (status == MPS_OK) {
+    const mps_view view = {.data = points.x,
+                           .shape = {points.count, 2, 1},
+                           .stride = {1, points.count, 1},
+                           .dtype = {2, 64, 1}};
+    status = mps_neighbours_build(lists, &view);
+  }
+  if (status == MPS_OK) {
+    const int64_t *offset, *index;
+    status = mps_neighbours_lists(lists, NULL, &offset, &index);
+    if (status == MPS_OK) status = body_pairs(g, &points, offset, index, list, function);
+  }
+  mps_neighbours_destroy(&lists);
+  mpsi_free(context, points.x);
+  mpsi_free(context, points.from);
+  return status;
+}
+
+/* ---- free-field columns ---------------------------------------------------------------------- */
+
+/* A column as sorted: particles first .. first + rows - 1, bottom up, rows D apart. */
+typedef struct column {
+  int64_t first, rows;
+  double bottom;
+  int side;
+} column;
+
+static column find_column(const mpsi_geometry *g, int side) {
+  column c = {.side = side};
+  for (int64_t k = g->count - 1; g->side && k >= 0; k--)
+    if (g->side[k] == side) {
+      c.first = k;
+      c.bottom = g->y[k];
+      c.rows++;
+    }
+  return c;
+}
+
+/* at[depth * rows + row] = body particle `depth` columns in from the edge, in the column's row. */
+static bool map_edge(mps_context *context, const mpsi_geometry *g, const column *c, int depths,
+                     int64_t **at) {
+  double edge = c->side == 1 ? INFINITY : -INFINITY;
+  for (int64_t k = 0; k < g->count && !g->side[k]; k++)
+    edge = c->side == 1 ? fmin(edge, g->x[k]) : fmax(edge, g->x[k]);
+  *at = mpsi_alloc(context, c->rows * depths, sizeof(int64_t));
+  if (!*at) return false;
+  for (int64_t k = 0; k < c->rows * depths; k++) (*at)[k] = -1;
+  for (int64_t k = 0; k < g->count && !g->side[k]; k++) {
+    const double in = fabs(g->x[k] - edge) / g->spacing, up = (g->y[k] - c->bottom) / g->spacing;
+    const int64_t depth = (int64_t)nearbyint(in), row = (int64_t)nearbyint(up);
+    if (depth < depths && row >= 0 && row < c->rows && fabs(in - (double)depth) < 1e-6 &&
+        fabs(up - (double)row) < 1e-6)
+      (*at)[depth * c->rows + row] = k;
+  }
+  return true;
+}
+
+/* One pair type of endless ground: offset (kx, ky) lattice spacings, kx >= 0. */
+static bool column_offset(const mpsi_geometry *g, const column *c, const int64_t *at, int kx,
+                          int ky, pair_list *list) {
+  const double r0x = kx * g->spacing, r0y = ky * g->spacing;
+  for (int64_t row = 0; row < c->rows; row++) {
+    const int64_t other = row + ky;
+    if (other < 0 || other >= c->rows) continue;
+    const int32_t i = (int32_t)(c->first + row), j = (int32_t)(c->first + other);
+    if (!push(list, (mpsi_pair){i, j, i, j, r0x, r0y})) return false;
+    /* The body's particles up to kx - 1 columns in from the edge miss this pair's far end. On the
+     * left they are its j, on the right its i. */
+    for (int depth = 0; depth < kx; depth++) {
+      mpsi_pair ghost = {i, j, -1, -1, r0x, r0y};
+      if (c->side == 1)
+        ghost.tj = (int32_t)at[depth * c->rows + other];
+      else
+        ghost.ti = (int32_t)at[depth * c->rows + row];
+      if ((ghost.ti >= 0 || ghost.tj >= 0) && !push(list, ghost)) return false;
+    }
+  }
+  return true;
+}
+
+static mps_status find_column_pairs(const mpsi_geometry *g, int side, pair_list *list,
+                                    const char *function) {
+  const column c = find_column(g, side);
+  if (c.rows == 0) return MPS_OK;
+  for (int64_t row = 0; row < c.rows; row++)
+    if (g->side[c.first + row] != side ||
+        fabs(g->y[c.first + row] - c.bottom - (double)row * g->spacing) > 1e-6 * g->spacing)
+      return mpsi_fail(list->context, function, MPS_ERROR_ARGUMENT,
+                       "the %s free-field column is not a straight stack of particles one spacing "
+                       "apart (row %lld)",
+                       side == 1 ? "left" : "right", (long long)row);
+  const int reach = (int)ceil(g->radius / g->spacing);
+  int64_t *at = NULL;
+  bool ok = map_edge(list->context, g, &c, reach, &at);
+  for (int kx = 0; ok && kx <= reach; kx++)
+    for (int ky = -reach; ok && ky <= reach; ky++)
+      if ((kx > 0 || ky > 0) &&
+          sqrt((double)(kx * kx + ky * ky)) * g->spacing < g->radius * (1.0 - 1e-9))
+        ok = column_offset(g, &c, at, kx, ky, list);
+  mpsi_free(list->context, at);
+  return ok ? MPS_OK : mpsi_fail_memory(list->context, function, sizeof(mpsi_pair));
+}
+
+mps_status mpsi_layout_edges(mps_context *context, const char *function, const mpsi_geometry *g,
+                             int64_t *edge) {
+  for (int64_t k = 0; k < g->count; k++) edge[k] = -1;
+  for (int side = 1; side <= 2; side++) {
+    const column c = find_column(g, side);
+    int64_t *at = NULL;
+    if (c.rows == 0) continue;
+    if (!map_edge(context, g, &c, 1, &at))
+      return mpsi_fail_memory(context, function, (size_t)c.rows * sizeof *at);
+    for (int64_t row = 0; row < c.rows; row++) edge[c.first + row] = at[row];
+    mpsi_free(context, at);
+  }
+  return MPS_OK;
+}
+
+mps_status mpsi_layout_pairs(mps_context *context, const char *function, const mpsi_geometry *g,
+                             int64_t *count, mpsi_pair **pairs, int64_t *distinct) {
+  pair_list list = {.context = context};
+  mps_status status = find_body_pairs(g, &list, function);
+  *distinct = list.count;
+  for (int side = 1; status == MPS_OK && side <= 2; side++)
+    status = find_column_pairs(g, side, &list, function);
+  if (status != MPS_OK) {
+    mpsi_free(context, list.pair);
+    list.pair = NULL;
+  }
+  *count = list.count;
+  *pairs = list.pair;
+  return status;
+}

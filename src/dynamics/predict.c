@@ -1,0 +1,148 @@
+/* predict.c - the stable time step of uniform ground without any particles: own linear theory on
+ * the endless lattice beside the printed regression of seed A (14)-(16).
+ *
+ * On the endless square lattice the tangent has plane waves exp(i k.x): a Hermitian 3 x 3 problem
+ * for each wave vector. Its highest eigenvalue over all wave vectors bounds the scheme. For
+ * Vp/Vs below about 3.7 it is the spin mode k = 0: w^2 = 24 Vs^2/D^2.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "dynamics_private.h"
+
+#define WAVES 96 /* wave vectors a direction in [0, pi/D] */
+
+static const mps_predict_def predict_defaults = {.struct_size = sizeof(mps_predict_def),
+                                                 .integrator = MPS_INTEGRATOR_VERLET,
+                                                 .f1 = 1.0,
+                                                 .f2 = 14.0,
+                                                 .radius_ratio = 1.5};
+
+mps_status mps_predict_def_init(mps_predict_def *def, size_t size) {
+  return mpsi_def_init(def, size, sizeof predict_defaults, &predict_defaults,
+                       sizeof predict_defaults);
+}
+
+/* Symbol of the tangent at wave numbers (a, b)/D, with lengths in D and velocities in Vs: real
+ * after the displacements are turned by i. m is symmetric: x, y, spin. */
+typedef struct symbol {
+  double xx, yy, xy, xs, ys, ss;
+} symbol;
+
+static symbol lattice_symbol(double ratio, double density, double lambda, double inertia, double a,
+                             double b) {
+  const double d = 2.0;
+  const int reach = (int)ceil(ratio);
+  symbol m = {0};
+  double gx = 0.0, gy = 0.0; /* divergence operator: (d/n0) sum w/r0 e sin(k.r0) */
+  for (int i = -reach; i <= reach; i++)
+    for (int j = -reach; j <= reach; j++) {
+      const double r2 = i * i + j * j, r = sqrt(r2);
+      if (r2 == 0.0 || r >= ratio * (1.0 - 1e-9)) continue;
+      const double w = ratio / r - 1.0, phase = a * i + b * j;
+      const double stiff = 4.0 * d / density * w / r2;
+      /* u = (U_j - U_i) - 1/2 (th_i + th_j) (-r0y, r0x) */
+      m.xx += stiff * (1.0 - cos(phase));
+      m.yy += stiff * (1.0 - cos(phase));
+      m.xs += stiff * 0.5 * sin(phase) * j;
+      m.ys -= stiff * 0.5 * sin(phase) * i;
+      m.ss += stiff * 0.25 * (1.0 + cos(phase)) * r2;
+      gx += d / density * w / r2 * i * sin(phase);
+      gy += d / density * w / r2 * j * sin(phase);
+    }
+  m.xx += lambda * gx * gx;
+  m.yy += lambda * gy * gy;
+  m.xy += lambda * gx * gy;
+  m.xs /= sqrt(inertia);
+  m.ys /= sqrt(inertia);
+  m.ss /= inertia;
+  return m;
+}
+
+/* Highest eigenvalue of a symmetric 3 x 3 matrix (trigonometric solution of its cubic). */
+static double highest(symbol m) {
+  const double mean = (m.xx + m.yy + m.ss) / 3.0;
+  const double x = m.xx - mean, y = m.yy - mean, s = m.ss - mean;
+  const double q = (x * x + y * y + s * s + 2.0 * (m.xy * m.xy + m.xs * m.xs + m.ys * m.ys)) / 6.0;
+  if (q <= 0.0) return mean;
+  const double det =
+      x * (y * s - m.ys * m.ys) - m.xy * (m.xy * s - m.ys * m.xs) + m.xs * (m.xy * m.ys - y * m.xs);
+  const double c = fmax(-1.0, fmin(1.0, 0.5 * det / (q * sqrt(q))));
+  return mean + 2.0 * sqrt(q) * cos(acos(c) / 3.0);
+}
+
+double mpsi_lattice_omega2(double spacing, double radius_ratio, double density, double vs,
+                           double vp, int32_t torque) {
+  (void)density; /* velocities carry it */
+  const double pi = 3.14159265358979323846;
+  const double lambda = fmax(0.0, vp * vp / (vs * vs) - 2.0);
+  const double inertia = torque == MPS_TORQUE_PRINTED ? 1.0 / 12.0 : 1.0 / 6.0;
+  const int reach = (int)ceil(radius_ratio);
+  double n0 = 0.0, most = 0.0;
+  for (int i = -reach; i <= reach; i++)
+    for (int j = -reach; j <= reach; j++) {
+      const double r = sqrt((double)(i * i + j * j));
+      if (r > 0.0 && r < radius_ratio * (1.0 - 1e-9)) n0 += radius_ratio / r - 1.0;
+    }
+  for (int i = 0; i <= WAVES; i++) /* the lattice is symmetric in x, y and x <-> y */
+    for (int j = 0; j <= i; j++)
+      most = fmax(most, highest(lattice_symbol(radius_ratio, n0, lambda, inertia, pi * i / WAVES,
+                                               pi * j / WAVES)));
+  return most * vs * vs / (spacing * spacing);
+}
+
+static mps_status check(mps_context *context, const mps_predict_def *def) {
+  static const char *const function = "mps_dynamics_predict_dt";
+  const struct {
+    const char *name, *allowed;
+    double value;
+    bool good;
+  } checks[] = {
+      {"spacing", "> 0 m", def->spacing, def->spacing > 0.0},
+      {"shear_velocity", "> 0 m/s", def->shear_velocity, def->shear_velocity > 0.0},
+      {"pressure_velocity", "at least sqrt(2) times shear_velocity (m/s)", def->pressure_velocity,
+       def->pressure_velocity >= sqrt(2.0) * def->shear_velocity * (1.0 - 1e-12)},
+      {"damping", ">= 0", def->damping, def->damping >= 0.0},
+      {"f1", "> 0 Hz", def->f1, def->f1 > 0.0},
+      {"f2", "> 0 Hz", def->f2, def->f2 > 0.0},
+      {"radius_ratio", "in (1, 4]", def->radius_ratio,
+       def->radius_ratio > 1.0 && def->radius_ratio <= 4.0},
+  };
+  for (size_t k = 0; k < sizeof checks / sizeof *checks; k++)
+    if (!checks[k].good || !isfinite(checks[k].value))
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %g, must be finite and %s",
+                       checks[k].name, checks[k].value, checks[k].allowed);
+  if (def->integrator != MPS_INTEGRATOR_VERLET && def->integrator != MPS_INTEGRATOR_LEAPFROG)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "integrator is %d, allowed are 1 (leapfrog) and 2 (Verlet)", def->integrator);
+  return MPS_OK;
+}
+
+mps_status mps_dynamics_predict_dt(mps_context *context, const mps_predict_def *user_def,
+                                   mps_prediction *out) {
+  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
+  mps_predict_def def = predict_defaults;
+  mps_status status = mpsi_def_read(context, __func__, user_def, sizeof def, &def, sizeof def);
+  if (status == MPS_OK) status = check(context, &def);
+  if (status != MPS_OK) return status;
+  const double pi = 3.14159265358979323846, h = def.damping;
+  const double omega2 = mpsi_lattice_omega2(def.spacing, def.radius_ratio, 1.0, def.shear_velocity,
+                                            def.pressure_velocity, MPS_TORQUE_CONSERVING);
+  const double R = 0.5 * def.spacing, vs = def.shear_velocity, vp = def.pressure_velocity;
+  mps_prediction p = {.omega = sqrt(omega2), .printed_s = NAN, .printed_p = NAN, .printed = NAN};
+  p.linear = mpsi_damped_limit(omega2, h * 4.0 * pi * def.f1 * def.f2 / (def.f1 + def.f2),
+                               h / (pi * (def.f1 + def.f2)));
+  /* the seed fitted h <= 0.22; its undamped case is its h = 0.001 */
+  const double seed_h = h == 0.0 ? 0.001 : h;
+  if (seed_h >= 0.001 && seed_h <= 0.22) {
+    mps_limit_fit fit_s, fit_p;
+    status = mps_limit_fit_printed(context, 'S', &fit_s);
+    if (status == MPS_OK) status = mps_limit_fit_printed(context, 'P', &fit_p);
+    if (status != MPS_OK) return status;
+    p.printed_s = mps_limit_fit_dt(&fit_s, R, vs, seed_h);
+    p.printed_p = mps_limit_fit_dt(&fit_p, R, vp, seed_h);
+    p.printed = fmin(p.printed_s, p.printed_p);
+    p.printed_in_range = R >= 0.25 && R <= 1.6 && vs >= 100.0 && vp <= 1600.0;
+    p.printed_is_safe = p.printed <= p.linear;
+  }
+  *out = p;
+  return MPS_OK;
+}
