@@ -2,9 +2,8 @@
  *
  * A program lists its options with variables that hold the defaults:
  *   option table[] = {
- *     {.help = "Ground"},                                              a heading
- *     {.name = "radius", .unit = "m", .range = OPTION_POSITIVE, .number = &radius,
- *      .help = "particle radius R"},
+ *     OPTION_HEADING("Ground"),
+ *     OPTION_NUMBER("radius", "m", OPTION_POSITIVE, &radius, "particle radius R"),
  *     {0}};
  * --name VALUE and --name=VALUE both work. Numbers are read strictly, and always with a point.
  * SPDX-License-Identifier: BSD-3-Clause */
@@ -19,10 +18,16 @@ typedef struct option_range {
   bool open;           /* `lower` itself is not allowed */
 } option_range;
 
+#define OPTION_ANY                                                                                 \
+  { 0.0, 0.0, false }
 #define OPTION_POSITIVE                                                                            \
   { 0.0, 1e300, true }
 #define OPTION_NOT_NEGATIVE                                                                        \
   { 0.0, 1e300, false }
+#define OPTION_FROM_TO(lower, upper)                                                               \
+  { (lower), (upper), false }
+#define OPTION_ABOVE_TO(lower, upper)                                                              \
+  { (lower), (upper), true }
 
 /* One row; exactly one of the pointers is set, none for a heading. */
 typedef struct option {
@@ -38,6 +43,24 @@ typedef struct option {
   int *choice; /* index into `unit` */
   bool given;  /* written by options_parse */
 } option;
+
+/* Rows of the table. */
+#define OPTION_HEADING(help_)                                                                      \
+  { .help = (help_) }
+#define OPTION_FLAG(name_, value, help_)                                                           \
+  { .name = (name_), .flag = (value), .help = (help_) }
+#define OPTION_NUMBER(name_, unit_, range_, value, help_)                                          \
+  { .name = (name_), .unit = (unit_), .range = range_, .number = (value), .help = (help_) }
+#define OPTION_INTEGER(name_, unit_, range_, value, help_)                                         \
+  { .name = (name_), .unit = (unit_), .range = range_, .integer = (value), .help = (help_) }
+#define OPTION_TEXT(name_, unit_, value, help_)                                                    \
+  { .name = (name_), .unit = (unit_), .text = (value), .help = (help_) }
+#define OPTION_CHOICE(name_, choices, value, help_)                                                \
+  { .name = (name_), .unit = (choices), .choice = (value), .help = (help_) }
+/* Rows that every program has. */
+#define OPTION_THREADS(value)                                                                      \
+  OPTION_INTEGER("threads", "N", OPTION_FROM_TO(0.0, 1024.0), value, "threads; 0: all processors")
+#define OPTION_OUT(value) OPTION_TEXT("out", "DIR", value, "directory of the results")
 
 typedef struct options_program {
   const char *name;    /* "mps-wave" */
