@@ -1,6 +1,6 @@
-/* test_elastic_cantilever.c - the seed's cantilever: tip errors of both methods at four sizes against the
- * reference values of an independent prototype, stress error, nearly incompressible material.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* test_elastic_cantilever.c - the seed's cantilever: tip errors of both methods at four sizes
+ * against the reference values of an independent prototype, stress error, nearly incompressible
+ * material. SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_common.h"
 
 static const int size_nx[4] = {17, 33, 65, 129}, size_ny[4] = {9, 17, 33, 65};
