@@ -128,5 +128,6 @@ static bool draw_map(const plate *p, const char *directory) {
 
 bool plate_write(const plate *p, const mps_elastic_def *elastic, const char *directory) {
   return write_particles(p, directory) && write_line(p, directory) &&
-         write_summary(p, elastic, directory) && draw_line(p, directory) && draw_map(p, directory);
+         write_summary(p, elastic, directory) && draw_line(p, directory) &&
+         (!p->def->hole || draw_map(p, directory));
 }
