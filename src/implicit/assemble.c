@@ -9,17 +9,27 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_private.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #define ROW_MAX 2048 /* sites that share an energy with one particle: (2 * 4 + 3)^3 and more */
 #define PAIR_MAX 16  /* sites of a pair's relative displacement: 2 + 2 * 7 at most */
+#define FORMS 256    /* of pairs that a worker remembers */
 
 typedef struct block {
   int64_t site;
+  uint32_t used; /* bit 3 * c + f */
   double value[3][3];
-  bool used[3][3];
 } block;
+
+/* e_ij = sum_a c[a] u[site a] of a conservative pair. It depends on the pair's offset and on which
+ * face neighbours its ends have, so that few forms occur; site a is end[a] (0: i, 1: j) or its
+ * neighbour across face[a] = 2 * axis + up. */
+typedef struct pair_form {
+  uint32_t key; /* 0: none */
+  int32_t count;
+  int8_t end[PAIR_MAX], face[PAIR_MAX]; /* face -1: the end itself */
+  double c[PAIR_MAX];
+} pair_form;
 
 /* One worker's sparse accumulator. */
 typedef struct gather {
@@ -27,7 +37,7 @@ typedef struct gather {
   int32_t count;
   int64_t particle;
   block blocks[ROW_MAX];
-  int32_t order[ROW_MAX];
+  pair_form forms[FORMS];
 } gather;
 
 typedef struct assembly {
@@ -49,7 +59,7 @@ static block *block_of(gather *g, int64_t site) {
 
 static void add(block *b, int c, int f, double value) {
   b->value[c][f] += value;
-  b->used[c][f] = true;
+  b->used |= 1u << (3 * c + f);
 }
 
 /* ---- parts of the energy
@@ -85,6 +95,7 @@ static void couple_published(const mps_elastic *e, int64_t i, const double *a, c
         add(out, c, f, v * (e->lambda[i] * a[c] * b[f] - e->mu[i] * ra[c] * rb[f]));
 }
 
+/* Only sites from the particle on are gathered: K is symmetric. */
 static void gather_gradient(const mps_elastic *e, int64_t i, gather *g) {
   int64_t sites[MPSI_STENCIL_MAX];
   double coefficient[MPSI_STENCIL_MAX][3];
@@ -92,6 +103,7 @@ static void gather_gradient(const mps_elastic *e, int64_t i, gather *g) {
   int32_t mine = 0;
   while (sites[mine] != g->particle) mine++;
   for (int32_t b = 0; b < m; b++) {
+    if (sites[b] < g->particle) continue;
     block *out = block_of(g, sites[b]);
     if (e->def.method == MPS_ELASTIC_CONSERVATIVE)
       couple_conservative(e, i, coefficient[mine], coefficient[b], out);
@@ -100,52 +112,75 @@ static void gather_gradient(const mps_elastic *e, int64_t i, gather *g) {
   }
 }
 
-static int32_t merge(int64_t *sites, double *c, int32_t m, int64_t site, double value) {
-  for (int32_t a = 0; a < m; a++)
-    if (sites[a] == site) {
-      c[a] += value;
-      return m;
+/* ---- conservative pairs
+ * --------------------------------------------------------------------------- */
+
+/* A form under construction, with the offset of each site from i. */
+typedef struct form_sites {
+  pair_form *form;
+  int32_t offset[PAIR_MAX][3];
+} form_sites;
+
+static void add_site(form_sites *s, const int32_t *from, int end, int face, double c) {
+  pair_form *f = s->form;
+  int32_t offset[3] = {from[0], from[1], from[2]};
+  if (face >= 0) offset[face / 2] += face % 2 ? 1 : -1;
+  for (int32_t a = 0; a < f->count; a++)
+    if (memcmp(s->offset[a], offset, sizeof offset) == 0) {
+      f->c[a] += c;
+      return;
     }
-  sites[m] = site;
-  c[m] = value;
-  return m + 1;
+  memcpy(s->offset[f->count], offset, sizeof offset);
+  f->end[f->count] = (int8_t)end;
+  f->face[f->count] = (int8_t)face;
+  f->c[f->count++] = c;
 }
 
-/* e_ij = sum_a c[a] u[site a] for the pair of i and its neighbour at offset k. */
-static int32_t pair_sites(const mps_elastic *e, int64_t i, int32_t k, int64_t *sites, double *c) {
-  const mpsi_links *l = &e->links;
-  const int64_t j = l->to[i * l->count + k];
-  sites[0] = i;
-  sites[1] = j;
-  c[0] = -1.0;
-  c[1] = 1.0;
-  int32_t m = 2;
-  for (int end = 0; end < 2; end++) {
-    int64_t own[MPSI_STENCIL_MAX];
-    double g[MPSI_STENCIL_MAX][3];
-    const int32_t count = mpsi_elastic_stencil(e, end ? j : i, own, g);
-    for (int32_t a = 0; a < count; a++) {
-      double part = 0.0;
-      for (int b = 0; b < e->dim; b++) part += g[a][b] * e->spacing * l->step[k][b];
-      if (part != 0.0) m = merge(sites, c, m, own[a], -0.5 * part);
-    }
+/* -1/2 G (x_j - x_i) of one end, whose face neighbours are `faces`. */
+static void add_gradient(form_sites *s, const int32_t *step, const int32_t *from, int end,
+                         uint32_t faces, int dim) {
+  for (int axis = 0; axis < dim; axis++) {
+    const bool down = faces >> 2 * axis & 1, up = faces >> 2 * axis & 2;
+    const double c = 0.5 * (down && up ? 0.5 : 1.0) * step[axis];
+    if (step[axis] == 0) continue;
+    if (up) add_site(s, from, end, 2 * axis + 1, -c);
+    if (down) add_site(s, from, end, 2 * axis, c);
+    if (up != down) add_site(s, from, end, -1, up ? c : -c);
   }
-  return m;
 }
 
-static void gather_pair(const mps_elastic *e, int64_t i, int32_t k, gather *g) {
-  const int64_t j = e->links.to[i * e->links.count + k];
+static const pair_form *form_of(const mps_elastic *e, gather *g, int64_t i, int64_t j, int32_t k) {
+  static const int32_t origin[3] = {0, 0, 0};
+  const uint32_t key = ((uint32_t)k << 12 | (uint32_t)e->faces[i] << 6 | e->faces[j]) + 1;
+  pair_form *f = &g->forms[key * 2654435761u >> 24];
+  if (f->key == key) return f;
+  form_sites s = {.form = f};
+  f->key = key;
+  f->count = 0;
+  add_site(&s, origin, 0, -1, -1.0);
+  add_site(&s, e->links.step[k], 1, -1, 1.0);
+  add_gradient(&s, e->links.step[k], origin, 0, e->faces[i], e->dim);
+  add_gradient(&s, e->links.step[k], e->links.step[k], 1, e->faces[j], e->dim);
+  return f;
+}
+
+static void gather_pair(const mps_elastic *e, int64_t i, int64_t j, int32_t k, gather *g) {
+  const pair_form *f = form_of(e, g, i, j, k);
+  const mpsi_links *l = &e->links;
   int64_t sites[PAIR_MAX];
-  double c[PAIR_MAX];
-  const int32_t m = pair_sites(e, i, k, sites, c);
-  int32_t mine = 0;
-  while (mine < m && sites[mine] != g->particle) mine++;
-  if (mine == m || c[mine] == 0.0) return;
-  const double s = mpsi_elastic_bond(e, i, j, k) * c[mine];
-  for (int32_t b = 0; b < m; b++) {
-    if (c[b] == 0.0) continue;
+  int32_t mine = -1;
+  for (int32_t a = 0; a < f->count; a++) {
+    const int64_t end = f->end[a] ? j : i;
+    sites[a] =
+        f->face[a] < 0 ? end : l->to[end * l->count + l->face[f->face[a] / 2][f->face[a] % 2]];
+    if (sites[a] == g->particle) mine = a;
+  }
+  if (mine < 0 || f->c[mine] == 0.0) return;
+  const double s = mpsi_elastic_bond(e, i, j, k) * f->c[mine];
+  for (int32_t b = 0; b < f->count; b++) {
+    if (f->c[b] == 0.0 || sites[b] < g->particle) continue;
     block *out = block_of(g, sites[b]);
-    for (int x = 0; x < e->dim; x++) add(out, x, x, s * c[b]);
+    for (int x = 0; x < e->dim; x++) add(out, x, x, s * f->c[b]);
   }
 }
 
@@ -168,7 +203,7 @@ static void gather_conservative(const mps_elastic *e, const int64_t *list, int32
       if (j < 0) continue;
       bool twice = false; /* both ends are in the list: taken once, from the smaller */
       for (int32_t b = 0; b < count && !twice; b++) twice = list[b] == j;
-      if (!twice || i < j) gather_pair(e, i, k, g);
+      if (!twice || i < j) gather_pair(e, i, j, k, g);
     }
   }
 }
@@ -188,11 +223,8 @@ static void gather_row(const mps_elastic *e, int64_t p, gather *g) {
     const int64_t j = l->to[p * l->count + k];
     if (j < 0) continue;
     const double s = mpsi_elastic_bond(e, p, j, k);
-    block *own = block_of(g, p), *other = block_of(g, j);
-    for (int c = 0; c < 2; c++) {
-      add(own, c, c, s);
-      add(other, c, c, -s);
-    }
+    for (int c = 0; c < 2; c++) add(block_of(g, p), c, c, s);
+    for (int c = 0; c < 2 && j > p; c++) add(block_of(g, j), c, c, -s);
   }
 }
 
@@ -213,46 +245,38 @@ static void turn(const mps_elastic *e, int64_t p, block *b) {
   for (int r = 0; r < d; r++)
     for (int s = 0; s < d; s++) {
       b->value[r][s] = 0.0;
-      b->used[r][s] = true;
+      b->used |= 1u << (3 * r + s);
       for (int f = 0; f < d; f++) b->value[r][s] += half[r][f] * cols[s][f];
     }
 }
 
-static int by_site(const void *a, const void *b) {
-  const int64_t x = ((const int64_t *)a)[0], y = ((const int64_t *)b)[0];
-  return (x > y) - (x < y);
-}
-
-/* Column block p: the blocks of sites >= p in ascending order. K is symmetric: row = column. */
+/* Column block p: the gathered blocks by ascending site. K is symmetric: row = column. */
 static void emit(assembly *t, gather *g) {
   const mps_elastic *e = t->e;
   const int d = e->dim;
   const int64_t p = g->particle;
-  int64_t order[ROW_MAX][2];
-  int32_t count = 0;
-  for (int32_t a = 0; a < g->count; a++)
-    if (g->blocks[a].site >= p) {
-      order[count][0] = g->blocks[a].site;
-      order[count++][1] = a;
-      turn(e, p, &g->blocks[a]);
-    }
-  qsort(order, (size_t)count, sizeof *order, by_site);
+  const block *order[ROW_MAX];
+  for (int32_t a = 0; a < g->count; a++) {
+    turn(e, p, &g->blocks[a]);
+    int32_t place = a;
+    for (; place > 0 && order[place - 1]->site > g->blocks[a].site; place--)
+      order[place] = order[place - 1];
+    order[place] = &g->blocks[a];
+  }
   for (int c = 0; c < d; c++) {
     const int64_t column = e->dof[p * d + c];
     if (column < 0) continue;
     int64_t at = t->fill ? e->column[column] : 0;
-    for (int32_t a = 0; a < count; a++) {
-      const block *b = &g->blocks[order[a][1]];
+    for (int32_t a = 0; a < g->count; a++)
       for (int f = 0; f < d; f++) {
-        const int64_t row = e->dof[b->site * d + f];
-        if (row < column || !b->used[c][f]) continue;
+        const int64_t row = e->dof[order[a]->site * d + f];
+        if (row < column || !(order[a]->used >> (3 * c + f) & 1)) continue;
         if (t->fill) {
           e->row[at] = row;
-          e->value[at] = b->value[c][f];
+          e->value[at] = order[a]->value[c][f];
         }
         at++;
       }
-    }
     if (!t->fill) t->length[column] = at;
   }
 }

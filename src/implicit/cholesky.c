@@ -107,15 +107,70 @@ static void choose_orderings(mpsi_cholesky *c) {
   common->postorder = 1;
 }
 
-mps_status mpsi_cholesky_analyse(mpsi_cholesky *c, const char *function, const mpsi_matrix *a,
-                                 mpsi_cholesky_symbolic *out) {
-  cholmod_l_free_factor(&c->factor, &c->common);
-  c->factored = false;
+/* The graph of groups, in column (groups + 1) and row (as many as `a` has entries at most); `mark`
+ * is scratch of `groups`. */
+static void compress(const mpsi_matrix *a, const int64_t *group, int64_t groups, int64_t *column,
+                     int64_t *row, int64_t *mark) {
+  int64_t count = 0, unknown = 0;
+  for (int64_t g = 0; g < groups; g++) mark[g] = -1;
+  for (int64_t g = 0; g < groups; g++) {
+    column[g] = count;
+    for (; unknown < a->n && group[unknown] == g; unknown++)
+      for (int64_t k = a->column[unknown]; k < a->column[unknown + 1]; k++) {
+        const int64_t r = group[a->row[k]];
+        if (mark[r] == g) continue;
+        mark[r] = g;
+        row[count++] = r;
+      }
+  }
+  column[groups] = count;
+}
+
+/* Orders the groups; *order[k] becomes the k-th unknown to be eliminated. */
+static mps_status order_groups(mpsi_cholesky *c, const char *function, const mpsi_matrix *a,
+                               const int64_t *group, int64_t groups, int64_t *scratch,
+                               int64_t *order, mpsi_ordering *chosen) {
+  int64_t *column = scratch, *mark = scratch + groups + 1, *row = scratch + 2 * groups + 1;
+  compress(a, group, groups, column, row, mark);
+  const mpsi_matrix graph = {.n = groups, .column = column, .row = row};
+  cholmod_sparse s = wrap(&graph);
+  s.sorted = 0;
   choose_orderings(c);
+  /* Only the ordering is wanted: not the supernodes of this small factor. */
+  c->common.supernodal = CHOLMOD_SIMPLICIAL;
+  cholmod_factor *small = cholmod_l_analyze(&s, &c->common);
+  c->common.supernodal = c->ldlt ? CHOLMOD_SIMPLICIAL : CHOLMOD_SUPERNODAL;
+  if (!small || c->common.status < CHOLMOD_OK) {
+    const mps_status status = failure(c, function, "the ordering");
+    cholmod_l_free_factor(&small, &c->common);
+    return status;
+  }
+  *chosen = c->common.method[c->common.selected].ordering == CHOLMOD_METIS ? MPSI_ORDER_METIS
+                                                                           : MPSI_ORDER_AMD;
+  for (int64_t g = 0, unknown = 0; g < groups; g++) { /* column becomes: first unknown of g */
+    column[g] = unknown;
+    while (unknown < a->n && group[unknown] == g) unknown++;
+    column[g + 1] = unknown;
+  }
+  const int64_t *permutation = small->Perm;
+  int64_t count = 0;
+  for (int64_t k = 0; k < groups; k++) {
+    const int64_t g = permutation[k];
+    for (int64_t unknown = column[g]; unknown < column[g + 1]; unknown++) order[count++] = unknown;
+  }
+  cholmod_l_free_factor(&small, &c->common);
+  return MPS_OK;
+}
+
+/* The analysis of the whole matrix in the given order. */
+static mps_status analyse_ordered(mpsi_cholesky *c, const char *function, const mpsi_matrix *a,
+                                  int64_t *order, mpsi_cholesky_symbolic *out) {
   cholmod_sparse s = wrap(a);
   s.x = NULL;
   s.xtype = CHOLMOD_PATTERN;
-  c->factor = cholmod_l_analyze(&s, &c->common);
+  c->common.nmethods = 1;
+  c->common.method[0].ordering = CHOLMOD_GIVEN;
+  c->factor = cholmod_l_analyze_p(&s, order, NULL, 0, &c->common);
   if (!c->factor || c->common.status < CHOLMOD_OK) {
     const mps_status status = failure(c, function, "the analysis");
     cholmod_l_free_factor(&c->factor, &c->common);
@@ -126,9 +181,22 @@ mps_status mpsi_cholesky_analyse(mpsi_cholesky *c, const char *function, const m
   /* Supernodal: dense blocks with their padding and the row lists; simplicial: value and row. */
   out->bytes = c->factor->is_super ? 8.0 * (double)c->factor->xsize + 8.0 * (double)c->factor->ssize
                                    : 16.0 * c->common.lnz;
-  out->ordering = c->common.method[c->common.selected].ordering == CHOLMOD_METIS ? MPSI_ORDER_METIS
-                                                                                 : MPSI_ORDER_AMD;
   return MPS_OK;
+}
+
+mps_status mpsi_cholesky_analyse(mpsi_cholesky *c, const char *function, const mpsi_matrix *a,
+                                 const int64_t *group, int64_t groups,
+                                 mpsi_cholesky_symbolic *out) {
+  cholmod_l_free_factor(&c->factor, &c->common);
+  c->factored = false;
+  const int64_t words = 2 * groups + 1 + a->column[a->n] + a->n;
+  int64_t *scratch = mpsi_alloc(c->context, words, sizeof *scratch);
+  if (!scratch) return mpsi_fail_memory(c->context, function, (size_t)words * sizeof *scratch);
+  int64_t *order = scratch + (words - a->n);
+  mps_status status = order_groups(c, function, a, group, groups, scratch, order, &out->ordering);
+  if (status == MPS_OK) status = analyse_ordered(c, function, a, order, out);
+  mpsi_free(c->context, scratch);
+  return status;
 }
 
 mps_status mpsi_cholesky_factor(mpsi_cholesky *c, const char *function, const mpsi_matrix *a,

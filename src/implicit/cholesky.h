@@ -28,8 +28,11 @@ typedef struct mpsi_cholesky_symbolic {
 mps_status mpsi_cholesky_create(mps_context *context, const char *function, mpsi_ordering ordering,
                                 bool ldlt, mpsi_cholesky **out);
 void mpsi_cholesky_destroy(mpsi_cholesky **cholesky);
-/* Orders and analyses the pattern; drops a former factor. */
+/* Orders and analyses the pattern; drops a former factor. group[c], ascending from 0, is the node
+ * (particle) that unknown c belongs to: the ordering is found on the graph of the `groups` nodes,
+ * which is several times smaller, and their unknowns stay together. */
 mps_status mpsi_cholesky_analyse(mpsi_cholesky *c, const char *function, const mpsi_matrix *a,
+                                 const int64_t *group, int64_t groups,
                                  mpsi_cholesky_symbolic *out);
 /* Factorises values on the analysed pattern.
  * Not positive definite: MPS_ERROR_NUMERIC with *bad the row of the first pivot <= 0 (else -1). */

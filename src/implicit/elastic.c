@@ -239,6 +239,7 @@ static mps_status allocate(mps_elastic *e, const char *function) {
   } arrays[] = {
       {(void **)&e->x, all, sizeof(double)},
       {(void **)&e->density, n, sizeof(double)},
+      {(void **)&e->faces, n, sizeof(uint8_t)},
       {(void **)&e->cut, n, sizeof(uint8_t)},
       {(void **)&e->volume, n, sizeof(double)},
       {(void **)&e->lambda, n, sizeof(double)},
@@ -275,7 +276,7 @@ void mps_elastic_destroy(mps_elastic **elastic) {
                     e->mu,          e->poisson, e->kappa,        e->supports, e->support_of,
                     e->facets,      e->load,    e->displacement, e->reaction, e->gradient,
                     e->stress_work, e->work,    e->dof,          e->column,   e->row,
-                    e->value,       e->rhs,     e->solution,     e->mass};
+                    e->value,       e->faces,   e->rhs,          e->solution, e->mass};
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) mpsi_free(context, arrays[k]);
   mpsi_particles_unpin(e->particles);
   mpsi_free(context, e);

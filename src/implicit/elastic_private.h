@@ -57,6 +57,7 @@ struct mps_elastic {
   mpsi_links links;
   double *density; /* n_i */
   double density0; /* n0 */
+  uint8_t *faces;  /* which face neighbours exist: bit 2 * axis + up */
   uint8_t *cut;    /* bit 2 * axis + (side > 0) */
   double *volume;  /* V_i, cuts and thickness included, m3 */
   double *lambda, *mu, *poisson;

@@ -126,20 +126,19 @@ static void link_chunk(void *data, int64_t chunk, int32_t worker) {
           !reachable(t->table, t->sites[i], l->step[k]))
         j = -1;
       l->to[i * l->count + k] = j;
-      if (j >= 0) e->density[i] += l->weight[k];
+      if (j < 0) continue;
+      e->density[i] += l->weight[k];
+      for (int face = 0; face < 2 * e->dim; face++)
+        if (l->face[face / 2][face % 2] == k) e->faces[i] |= (uint8_t)(1 << face);
     }
 }
 
 /* A cell without a neighbour along some axis has no strain along it. */
 static mps_status check_thickness(const mps_elastic *e, const char *function) {
-  const mpsi_links *l = &e->links;
   for (int64_t i = 0; i < e->n; i++) {
-    bool any = false;
-    for (int32_t k = 0; k < l->count; k++) any |= l->to[i * l->count + k] >= 0;
+    const bool any = e->density[i] > 0.0;
     for (int axis = 0; axis < e->dim; axis++) {
-      if (l->to[i * l->count + l->face[axis][0]] >= 0 ||
-          l->to[i * l->count + l->face[axis][1]] >= 0)
-        continue;
+      if (e->faces[i] >> 2 * axis & 3) continue;
       const mps_status status =
           any ? mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
                           "the body is one particle thick along %c at particle %lld: at least two "

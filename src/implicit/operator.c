@@ -26,8 +26,7 @@ static void conservative_coefficient(const mps_elastic *e, int64_t i, int32_t k,
   for (int axis = 0; axis < e->dim; axis++) {
     g[axis] = 0.0;
     if (k != l->face[axis][0] && k != l->face[axis][1]) continue;
-    const int64_t *to = l->to + i * l->count;
-    const bool both = to[l->face[axis][0]] >= 0 && to[l->face[axis][1]] >= 0;
+    const bool both = (e->faces[i] >> 2 * axis & 3) == 3;
     g[axis] = (double)l->step[k][axis] * (both ? 0.5 : 1.0) / e->spacing;
   }
 }
@@ -42,15 +41,32 @@ void mpsi_elastic_coefficient(const mps_elastic *e, int64_t i, int32_t k, double
   for (int c = 0; c < e->dim; c++) g[c] = scale * l->step[k][c];
 }
 
+/* The conservative stencil, without a search: two face neighbours an axis. */
+static int32_t conservative_stencil(const mps_elastic *e, int64_t i, int64_t *sites,
+                                    double (*g)[3]) {
+  const mpsi_links *l = &e->links;
+  int32_t m = 1;
+  for (int axis = 0; axis < e->dim; axis++) {
+    const uint32_t faces = e->faces[i] >> 2 * axis & 3;
+    const double c = (faces == 3 ? 0.5 : 1.0) / e->spacing;
+    for (int up = 0; up < 2; up++) {
+      if (!(faces >> up & 1)) continue;
+      sites[m] = l->to[i * l->count + l->face[axis][up]];
+      g[m][0] = g[m][1] = g[m][2] = 0.0;
+      g[m++][axis] = up ? c : -c;
+    }
+    if (faces != 3) g[0][axis] = faces == 2 ? -c : c;
+  }
+  return m;
+}
+
 int32_t mpsi_elastic_stencil(const mps_elastic *e, int64_t i, int64_t *sites, double (*g)[3]) {
   const mpsi_links *l = &e->links;
-  const bool conservative = e->def.method == MPS_ELASTIC_CONSERVATIVE;
-  const int32_t candidates = conservative ? 2 * e->dim : l->count;
-  int32_t m = 1;
   sites[0] = i;
   g[0][0] = g[0][1] = g[0][2] = 0.0;
-  for (int32_t a = 0; a < candidates; a++) {
-    const int32_t k = conservative ? l->face[a / 2][a % 2] : a;
+  if (e->def.method == MPS_ELASTIC_CONSERVATIVE) return conservative_stencil(e, i, sites, g);
+  int32_t m = 1;
+  for (int32_t k = 0; k < l->count; k++) {
     const int64_t j = l->to[i * l->count + k];
     if (j < 0) continue;
     sites[m] = j;

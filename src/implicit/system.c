@@ -25,6 +25,26 @@ static mpsi_matrix matrix(const mps_elastic *e) {
 /* ---- preparation
  * ------------------------------------------------------------------------------------ */
 
+/* The symbolic factor, ordered by particles. */
+static mps_status order(mps_elastic *e, const char *function) {
+  int64_t *group = mpsi_alloc(e->context, e->unknowns, sizeof *group), groups = 0;
+  if (!group) return mpsi_fail_memory(e->context, function, (size_t)e->unknowns * sizeof *group);
+  for (int64_t i = 0; i < e->n; i++) {
+    bool any = false;
+    for (int32_t c = 0; c < e->dim; c++) {
+      if (e->dof[i * e->dim + c] < 0) continue;
+      group[e->dof[i * e->dim + c]] = groups;
+      any = true;
+    }
+    if (any) groups++;
+  }
+  const mpsi_matrix a = matrix(e);
+  const mps_status status =
+      mpsi_cholesky_analyse(e->cholesky, function, &a, group, groups, &e->symbolic);
+  mpsi_free(e->context, group);
+  return status;
+}
+
 static mps_status analyse(mps_elastic *e, const char *function) {
   static const mpsi_ordering orderings[] = {MPSI_ORDER_BEST, MPSI_ORDER_AMD, MPSI_ORDER_METIS};
   e->use_cg = e->def.solver == MPS_ELASTIC_CG;
@@ -37,8 +57,7 @@ static mps_status analyse(mps_elastic *e, const char *function) {
   if (!e->cholesky)
     status = mpsi_cholesky_create(e->context, function, orderings[e->def.ordering],
                                   e->def.solver == MPS_ELASTIC_LDLT, &e->cholesky);
-  const mpsi_matrix a = matrix(e);
-  if (status == MPS_OK) status = mpsi_cholesky_analyse(e->cholesky, function, &a, &e->symbolic);
+  if (status == MPS_OK) status = order(e, function);
   if (status != MPS_OK) return status;
   e->report.analyses++;
   if (e->def.memory_limit > 0.0 && e->symbolic.bytes > e->def.memory_limit) {
