@@ -256,7 +256,7 @@ static inline mps_predict_def mps_predict_defaults(void) {
 }
 
 typedef struct mps_prediction {
-  double linear;               /* s: own linear theory on the endless lattice; use this one */
+  double linear;               /* s: own linear theory, edges of a body allowed for; use this one */
   double omega;                /* rad/s, highest eigenfrequency of the endless lattice */
   double printed_s, printed_p; /* s: seed A (14)-(16) with Table 2; NaN outside its range of h */
   double printed;              /* the smaller of the two */
