@@ -1,8 +1,9 @@
 /* limit.c - the largest stable time step by linear theory, without time stepping.
  *
  * Seed A's scheme with Rayleigh damping (A24) first becomes unstable at z = -1. There
- *   4 = lambda_max [ 2 dt A + (dt^2 + 2 dt B) M^-1 K ],  A = diag(alpha_i), B = diag(beta_i),
- * which for one damping ratio is dt = -(beta + alpha/w^2) + sqrt((beta + alpha/w^2)^2 + 4/w^2).
+ *   4 = lambda_max [ 2 dt A + dt^2 M^-1 K + 2 dt M^-1 K_beta ],  A = diag(alpha_i), K_beta the
+ * stiffness with each part times its beta (by pairs), or diag(beta_i) K (by particles);
+ * for one damping ratio that is dt = -(beta + alpha/w^2) + sqrt((beta + alpha/w^2)^2 + 4/w^2).
  * The highest eigenvalue comes from Lanczos iteration on the symmetric tangent.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles_internal.h"
@@ -23,25 +24,30 @@ double mpsi_damped_limit(double omega2, double alpha, double beta) {
 /* ---- Lanczos -----------------------------------------------------------------------------------
  */
 
-/* The operator 2 dt A + D^1/2 S D^1/2, D = dt^2 + 2 dt B; dt = 0 stands for S itself. */
+/* The operator 2 dt A + dt^2 S + 2 dt S_beta in symmetric form; dt = 0 stands for S itself. */
 typedef struct operator_data {
   mps_dynamics *dynamics;
   double dt;
-  double *scaled, *work; /* 3 n, 4 n */
+  double *weight, *scaled, *work; /* n, 3 n, 4 n */
 } operator_data;
 
 static void apply(operator_data *op, const double *x, double *y) {
   const int64_t n = op->dynamics->count;
   const double dt = op->dt;
+  const double *alpha = op->dynamics->state.alpha, *beta = op->dynamics->state.beta;
   if (dt == 0.0) {
-    mpsi_tangent_apply(op->dynamics, x, y, op->work);
+    mpsi_tangent_apply(op->dynamics, NULL, x, y, op->work);
     return;
   }
-  const double *alpha = op->dynamics->state.alpha, *beta = op->dynamics->state.beta;
-  for (int64_t k = 0; k < 3 * n; k++) op->scaled[k] = sqrt(dt * dt + 2.0 * dt * beta[k % n]) * x[k];
-  mpsi_tangent_apply(op->dynamics, op->scaled, y, op->work);
-  for (int64_t k = 0; k < 3 * n; k++)
-    y[k] = sqrt(dt * dt + 2.0 * dt * beta[k % n]) * y[k] + 2.0 * dt * alpha[k % n] * x[k];
+  for (int64_t k = 0; k < n; k++) op->weight[k] = dt * dt + 2.0 * dt * beta[k];
+  if (op->dynamics->damping == MPSI_BY_PAIRS) {
+    mpsi_tangent_apply(op->dynamics, op->weight, x, y, op->work);
+  } else { /* diag(w) S is similar to diag(sqrt w) S diag(sqrt w) */
+    for (int64_t k = 0; k < 3 * n; k++) op->scaled[k] = sqrt(op->weight[k % n]) * x[k];
+    mpsi_tangent_apply(op->dynamics, NULL, op->scaled, y, op->work);
+    for (int64_t k = 0; k < 3 * n; k++) y[k] *= sqrt(op->weight[k % n]);
+  }
+  for (int64_t k = 0; k < 3 * n; k++) y[k] += 2.0 * dt * alpha[k % n] * x[k];
 }
 
 static double dot(const double *a, const double *b, int64_t n) {
@@ -218,7 +224,10 @@ static mps_status find_limit(mps_dynamics *dynamics, double duration, double *me
                              mps_linear_limit *out) {
   static const char *const function = "mps_dynamics_limit_linear";
   const int64_t n = 3 * dynamics->count;
-  operator_data op = {.dynamics = dynamics, .scaled = memory + 3 * n, .work = memory + 4 * n};
+  operator_data op = {.dynamics = dynamics,
+                      .scaled = memory + 3 * n,
+                      .work = memory + 4 * n,
+                      .weight = memory + 16 * dynamics->count};
   ritz top;
   if (!lanczos(&op, memory, &top))
     return mpsi_fail(dynamics->context, function, MPS_ERROR_NUMERIC,
@@ -251,10 +260,10 @@ mps_status mps_dynamics_limit_linear(mps_dynamics *dynamics, double duration,
     *out = dynamics->limit;
     return MPS_OK;
   }
-  /* three Lanczos vectors, one scaled vector, and 4 n of work for the tangent */
-  double *memory = mpsi_alloc(context, 16 * dynamics->count, sizeof *memory);
+  /* three Lanczos vectors and a scaled one of 3 n each, 4 n of work for the tangent, weights */
+  double *memory = mpsi_alloc(context, 17 * dynamics->count, sizeof *memory);
   if (!memory)
-    return mpsi_fail_memory(context, __func__, (size_t)dynamics->count * 16 * sizeof *memory);
+    return mpsi_fail_memory(context, __func__, (size_t)dynamics->count * 17 * sizeof *memory);
   mps_linear_limit limit;
   const mps_status status = find_limit(dynamics, duration, memory, &limit);
   mpsi_free(context, memory);

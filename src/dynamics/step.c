@@ -274,8 +274,8 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
   const int64_t units = blocks < SMALL_BODY ? 1 : 8 * mps_context_threads(dynamics->context);
   work w = {.dynamics = dynamics,
             .step = {.dt = dynamics->dt, .limit2 = limit * limit},
-            .pass1 = dynamics->kernels->pass1[removal],
-            .pass2 = dynamics->kernels->pass2[removal][dynamics->def.integrator][dynamics->damped],
+            .pass1 = dynamics->kernels->pass1[removal][dynamics->damping == MPSI_BY_PAIRS],
+            .pass2 = dynamics->kernels->pass2[removal][dynamics->damping][dynamics->def.integrator],
             .grain = (blocks + units - 1) / units};
   for (int64_t k = 0; k < count; k++) {
     const double now = mps_dynamics_time(dynamics);
