@@ -146,7 +146,8 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_step(mps_dynamics *dynamics, int64
 typedef mps_status (*mps_dynamics_fn)(void *user, mps_dynamics *dynamics);
 
 /** Steps to the first instant >= t_end (s), calling `callback` (may be NULL) every `every` (>= 1)
- *  steps, the context's progress hook about 100 times, and its cancel hook at the same time. */
+ *  steps, the context's progress hook at least about 100 times, and its cancel hook with it: some
+ *  ten times a second. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_run(mps_dynamics *dynamics, double t_end,
                                                   int64_t every, mps_dynamics_fn callback,
                                                   void *user);
