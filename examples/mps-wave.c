@@ -77,29 +77,16 @@ static void watch_energy(const settings *s, simulation *sim) {
   mps_signal_span(sim->signal, NULL, &sim->record.energy_from);
 }
 
-/* Says where and why it diverged, and what to do. */
-static void explain_divergence(app *a, simulation *sim, const results *x) {
-  const mps_error error = *mps_context_error(a->context);
-  mps_view position;
-  double x0 = NAN, y0 = NAN;
-  const int64_t i = mps_particles_index(sim->ground.particles, error.particle);
-  if (i >= 0 && mps_particles_view(sim->ground.particles, "position", &position) == MPS_OK) {
-    x0 = *mps_view_f64(&position, i, 0);
-    y0 = *mps_view_f64(&position, i, 1);
-  }
-  app_error(a, "diverged at step %lld, t = %.6g s, particle %lld (x = %.4g m, y = %.4g m): %s",
-            (long long)error.step, mps_dynamics_time(sim->dynamics), (long long)error.particle, x0,
-            y0, error.message);
+/* The library says where and why it diverged; this adds what to do. */
+static void explain_divergence(app *a, const results *x) {
+  app_check(a, MPS_ERROR_DIVERGED);
   if (x->dt > x->dt_limit)
-    app_error(a,
-              "the time step %.4g s is above the stability limit %.4g s: try --dt %.2g or "
-              "--courant 0.9",
-              x->dt, x->dt_limit, 0.9 * x->dt_limit);
+    app_error(a, "try --dt %.2g or --courant 0.9", 0.9 * x->dt_limit);
   else
     app_error(a,
-              "the time step %.4g s is below the linear limit %.4g s: look for very strong "
-              "motion in the input, or try --courant 0.5",
-              x->dt, x->dt_limit);
+              "dt is below the linear limit %.4g s: look for very strong motion in the input, or "
+              "try --courant 0.5",
+              x->dt_limit);
 }
 
 /* Exit code; the results are filled as far as the run came. */
@@ -119,6 +106,7 @@ static int march(app *a, const settings *s, simulation *sim, results *x) {
   printf("%s wave, %lld particles, dt %.4g s (linear limit %.4g s), %.0f steps\n",
          s->wave == WAVE_S ? "S" : "P", (long long)x->particles, x->dt, x->dt_limit,
          ceil(sim->duration / x->dt));
+  fflush(stdout);
   watch_energy(s, sim);
   const mps_status status =
       mps_dynamics_run(sim->dynamics, sim->duration, every, receivers_record, &sim->record);
@@ -126,7 +114,7 @@ static int march(app *a, const settings *s, simulation *sim, results *x) {
   x->end = OUTCOME_COMPLETE;
   if (status == MPS_ERROR_DIVERGED) {
     x->end = OUTCOME_DIVERGED;
-    explain_divergence(a, sim, x);
+    explain_divergence(a, x);
     return APP_FAILED;
   }
   if (status == MPS_ERROR_CANCELLED) {
@@ -138,6 +126,17 @@ static int march(app *a, const settings *s, simulation *sim, results *x) {
   return app_check(a, status) ? APP_OK : APP_FAILED;
 }
 
+/* Writes what was recorded, also of a run that ended early. */
+static bool finish(app *a, const settings *s, simulation *sim, results *x) {
+  if (!results_find(a, s, &sim->ground, &sim->record, sim->signal, x) ||
+      !receivers_write(a, &sim->record, s->out) || !results_write(a, s, x))
+    return false;
+  if (x->end != OUTCOME_DIVERGED && !results_draw(a, s, &sim->ground, &sim->record, x))
+    return false;
+  results_print(s, x);
+  return true;
+}
+
 static int run(app *a, settings *s) {
   simulation sim = {0};
   results x = {0};
@@ -145,13 +144,7 @@ static int run(app *a, settings *s) {
   if (settings_ground(a, s) && output_directory(a, s->out) && build(a, s, &sim)) {
     sim.duration = find_duration(s, &sim);
     code = march(a, s, &sim, &x);
-    const bool worth_writing = sim.record.rows > 1;
-    if (worth_writing && (!results_find(a, s, &sim.ground, &sim.record, sim.signal, &x) ||
-                          !receivers_write(a, &sim.record, s->out) || !results_write(a, s, &x) ||
-                          !results_draw(a, s, &sim.ground, &sim.record, &x)))
-      code = code == APP_OK ? APP_FAILED : code;
-    else if (worth_writing)
-      results_print(s, &x);
+    if (sim.record.rows > 1 && !finish(a, s, &sim, &x) && code == APP_OK) code = APP_FAILED;
   }
   destroy(&sim);
   return code;

@@ -157,7 +157,7 @@ static int refuse_unknown(const options_program *program, const char *name) {
 
 static int refuse_value(const options_program *program, const option *o, const char *value,
                         const char *allowed) {
-  const bool unit = (o->number || o->integer) && o->unit;
+  const bool unit = (o->number || o->integer) && o->unit && strcmp(o->unit, "1") != 0;
   fprintf(stderr, "%s: --%s is %s%s%s, must be %s\n", program->name, o->name,
           *value ? value : "empty", unit ? " " : "", unit ? o->unit : "", allowed);
   return USAGE;

@@ -25,11 +25,13 @@ static void write_title(output *f, const settings *s, const results *x) {
   const layer *l = &s->ground.layer[0];
   const char wave = settings_wave(s);
   output_text(f, "set title \"%s wave through ", wave == 'S' ? "Shear" : "Pressure");
+  output_text(f, "%s", s->sloped ? "a slope of " : "");
   if (s->ground.count > 1)
     output_text(f, "%d layers", (int)s->ground.count);
   else
-    output_text(f, "uniform ground, V_{%c} = %g m/s, damping ratio %g", wave,
-                wave == 'S' ? l->vs : l->vp, l->damping);
+    output_text(f, "uniform ground, V_%c = %g m/s, ", wave, wave == 'S' ? l->vs : l->vp);
+  if (s->ground.count == 1 && l->damping == 0.0) output_text(f, "undamped");
+  if (s->ground.count == 1 && l->damping > 0.0) output_text(f, "damping ratio %g", l->damping);
   output_text(f,
               "\\n{/*0.85 %lld particles, R = %g m, %s, {/Symbol D}t = %.4g s, %s base}\" "
               "offset 0,0.3\n",
@@ -86,7 +88,7 @@ bool results_draw(app *a, const settings *s, const column *c, const receivers *r
                   "set ylabel 'depth of the receiver' offset 1,0\n"
                   "set y2label 'peak acceleration (m/s^2)' offset 0,0\n"
                   "set key at graph 0.98,0.03 right bottom opaque box linecolor rgb '#bbbbbb'\n"
-                  "set lmargin 14\nset rmargin 11\nset tmargin 4.5\n");
+                  "set lmargin 16\nset rmargin 11\nset tmargin 4.5\n");
   output_text(&f, "set xrange [0:%.9g]\nset yrange [%.9g:%.9g]\nset y2range [%.9g:%.9g]\n", right,
               lower, upper, lower, upper);
   write_tics(&f, r);

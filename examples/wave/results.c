@@ -116,8 +116,10 @@ bool results_write(app *a, const settings *s, const results *x) {
 }
 
 void results_print(const settings *s, const results *x) {
-  printf("Results: %s/ (receivers.csv, summary.json, wave.png)\n", s->out);
-  if (x->end == OUTCOME_DIVERGED) return;
+  const bool diverged = x->end == OUTCOME_DIVERGED;
+  printf("Results: %s/ (receivers.csv, %ssummary.json%s)\n", s->out, s->sloped ? "slope.csv, " : "",
+         diverged ? "" : ", wave.png");
+  if (diverged) return;
   printf("surface peak %.3f m/s2", x->surface_peak);
   if (isnan(x->travel_time)) {
     printf(", the wave has not reached the surface (that takes %.3f s)\n", x->travel_exact);

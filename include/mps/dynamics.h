@@ -146,7 +146,8 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_step(mps_dynamics *dynamics, int64
 typedef mps_status (*mps_dynamics_fn)(void *user, mps_dynamics *dynamics);
 
 /** Steps to the first instant >= t_end (s), calling `callback` (may be NULL) every `every` (>= 1)
- *  steps, the context's progress hook about 100 times, and its cancel hook at the same time. */
+ *  steps, the context's progress hook at least about 100 times, and its cancel hook with it: some
+ *  ten times a second. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_run(mps_dynamics *dynamics, double t_end,
                                                   int64_t every, mps_dynamics_fn callback,
                                                   void *user);
@@ -256,7 +257,7 @@ static inline mps_predict_def mps_predict_defaults(void) {
 }
 
 typedef struct mps_prediction {
-  double linear;               /* s: own linear theory on the endless lattice; use this one */
+  double linear;               /* s: own linear theory, edges of a body allowed for; use this one */
   double omega;                /* rad/s, highest eigenfrequency of the endless lattice */
   double printed_s, printed_p; /* s: seed A (14)-(16) with Table 2; NaN outside its range of h */
   double printed;              /* the smaller of the two */

@@ -284,6 +284,8 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
   return MPS_OK;
 }
 
+#define PROMPT_WORK 5000000 /* particle-steps between looks at the cancel hook: some 0.1 s */
+
 static mps_status ready(mps_dynamics *dynamics, const char *function) {
   if (dynamics->diverged)
     return mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
@@ -320,7 +322,9 @@ mps_status mps_dynamics_run(mps_dynamics *dynamics, double t_end, int64_t every,
                      "a run to %g s takes %g steps of dt = %g s: too many", t_end, exact,
                      dynamics->dt);
   const int64_t total = exact > 0.0 ? (int64_t)ceil(exact - 1e-9) : 0;
-  const int64_t report = total / 100 > 0 ? total / 100 : 1;
+  int64_t report = total / 100 > 0 ? total / 100 : 1;
+  const int64_t prompt = PROMPT_WORK / dynamics->count + 1;
+  if (report > prompt) report = prompt;
   if (callback) status = callback(user, dynamics);
   for (int64_t done = 0; status == MPS_OK && done < total;) {
     int64_t n = every - done % every, m = report - done % report;
