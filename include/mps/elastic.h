@@ -12,6 +12,9 @@
  * `density` (kg/m3, > 0), and writes `displacement`, `reaction` and, when asked, the stresses.
  * In 2D everything is for a slab of `thickness` (1 m), so that forces are in N.
  *
+ * A libmps built without CHOLMOD has these functions too; mps_elastic_create then returns
+ * MPS_ERROR_UNSUPPORTED.
+ *
  * The set may be sorted, but not added to, while a solver uses it. Thread rule: one thread at a
  * time per context; the work is shared among the context's threads and, inside the factorisation,
  * those of the BLAS library.

@@ -32,8 +32,7 @@ void mpsi_cholesky_destroy(mpsi_cholesky **cholesky);
  * (particle) that unknown c belongs to: the ordering is found on the graph of the `groups` nodes,
  * which is several times smaller, and their unknowns stay together. */
 mps_status mpsi_cholesky_analyse(mpsi_cholesky *c, const char *function, const mpsi_matrix *a,
-                                 const int64_t *group, int64_t groups,
-                                 mpsi_cholesky_symbolic *out);
+                                 const int64_t *group, int64_t groups, mpsi_cholesky_symbolic *out);
 /* Factorises values on the analysed pattern.
  * Not positive definite: MPS_ERROR_NUMERIC with *bad the row of the first pivot <= 0 (else -1). */
 mps_status mpsi_cholesky_factor(mpsi_cholesky *c, const char *function, const mpsi_matrix *a,

@@ -1,25 +1,11 @@
-/* elastic.c - the solver object: definition, creation, material, cuts, fields.
+/* elastic.c - the solver object: checks of the definition, creation, material, cuts, fields.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "defs.h"
 #include "elastic_private.h"
 
 #include "core/particles_internal.h"
 
 #include <string.h>
-
-static const mps_elastic_def elastic_defaults = {
-    .struct_size = sizeof(mps_elastic_def),
-    .alpha = 1.0,
-    .thickness = 1.0,
-    .tolerance = 1e-10,
-    .refinements = 1,
-    .first_moment = -1,
-};
-/* Size of the structure in the first release: it may only grow. */
-#define ELASTIC_DEF_MINIMUM (offsetof(mps_elastic_def, first_moment) + sizeof(int32_t))
-
-mps_status mps_elastic_def_init(mps_elastic_def *def, size_t size) {
-  return mpsi_def_init(def, size, ELASTIC_DEF_MINIMUM, &elastic_defaults, sizeof elastic_defaults);
-}
 
 /* ---- definition
  * ---------------------------------------------------------------------------------- */
@@ -63,9 +49,10 @@ static mps_status check_numbers(mps_context *context, const char *function,
 
 static mps_status read_def(mps_context *context, const char *function, const mps_elastic_def *user,
                            int32_t dim, mps_elastic_def *def) {
-  *def = elastic_defaults;
+  *def = mpsi_elastic_defaults;
   mps_status status = MPS_OK;
-  if (user) status = mpsi_def_read(context, function, user, ELASTIC_DEF_MINIMUM, def, sizeof *def);
+  if (user)
+    status = mpsi_def_read(context, function, user, MPSI_ELASTIC_DEF_MINIMUM, def, sizeof *def);
   const struct {
     const char *name;
     int32_t value, low, high;

@@ -8,6 +8,7 @@
  * Unknown is the correction w, so that a structure at rest stays exactly at rest and the static
  * solution is a fixed point. beta = 1/4, gamma = 1/2 conserves u.K u/2 + v.M v/2 without loads.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "defs.h"
 #include "elastic_private.h"
 
 #include <string.h>
@@ -17,14 +18,6 @@ typedef struct mpsi_motion {
   int64_t steps;
   double *velocity, *acceleration; /* n * dim */
 } mpsi_motion;
-
-static const mps_newmark_def newmark_defaults = {
-    .struct_size = sizeof(mps_newmark_def), .beta = 0.25, .gamma = 0.5};
-#define NEWMARK_DEF_MINIMUM (offsetof(mps_newmark_def, gamma) + sizeof(double))
-
-mps_status mps_newmark_def_init(mps_newmark_def *def, size_t size) {
-  return mpsi_def_init(def, size, NEWMARK_DEF_MINIMUM, &newmark_defaults, sizeof newmark_defaults);
-}
 
 void mpsi_elastic_end_motion(mps_elastic *e) {
   if (!e->motion) return;
@@ -79,9 +72,9 @@ static void impose(mps_elastic *e, bool prescribed, double *values) {
 
 mps_status mps_elastic_start(mps_elastic *e, const mps_newmark_def *user_def) {
   if (!e) return MPS_ERROR_ARGUMENT;
-  mps_newmark_def def = newmark_defaults;
+  mps_newmark_def def = mpsi_newmark_defaults;
   mps_status status =
-      mpsi_def_read(e->context, __func__, user_def, NEWMARK_DEF_MINIMUM, &def, sizeof def);
+      mpsi_def_read(e->context, __func__, user_def, MPSI_NEWMARK_DEF_MINIMUM, &def, sizeof def);
   if (status == MPS_OK) status = check_def(e->context, __func__, &def);
   if (status == MPS_OK) status = mpsi_elastic_read_mass(e, __func__);
   if (status == MPS_OK) status = mpsi_elastic_prepare(e, __func__);
