@@ -26,8 +26,7 @@ static bool make_particles(model *m) {
                                              (long long)added, (long long)m->nx, (long long)m->ny);
 }
 
-/* ---- supports and loads
- * --------------------------------------------------------------------------- */
+/* ---- supports and loads ---------------------------------------------------------------------- */
 
 static bool support_wall(model *m, const mps_elastic_def *def, int64_t *ids, double *values) {
   const double lo[2] = {m->problem->length - 0.25 * m->spacing, -INFINITY};
@@ -69,8 +68,7 @@ static bool support_and_load(model *m, const mps_elastic_def *def) {
   return done;
 }
 
-/* ---- results
- * --------------------------------------------------------------------------------------- */
+/* ---- results --------------------------------------------------------------------------------- */
 
 bool model_get(const model *m, int64_t i, int64_t j, model_point *out) {
   const double at[2] = {((double)i + 0.5) * m->spacing,

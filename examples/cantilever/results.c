@@ -2,12 +2,12 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "results.h"
 
+#include "common/frame.h"
 #include "common/plot.h"
 
 #include <math.h>
 
-/* ---- tables
- * ------------------------------------------------------------------------------------------ */
+/* ---- tables ---------------------------------------------------------------------------------- */
 
 static bool write_deflection(const model *m, const char *directory) {
   output f;
@@ -73,8 +73,7 @@ static bool write_summary(const model *m, const mps_elastic_def *def, const char
   return output_close(&f);
 }
 
-/* ---- pictures
- * ---------------------------------------------------------------------------------------- */
+/* ---- pictures -------------------------------------------------------------------------------- */
 
 static const char particles_style[] =
     "with points pointtype 7 pointsize 1.1 linecolor rgb '#c0392b'";
@@ -142,7 +141,9 @@ bool results_write(const model *m, const mps_elastic_def *def, const char *direc
          write_stress(m, directory, "stress.csv", 0, m->nx - 1, 0, m->ny - 1) &&
          write_stress(m, directory, "stress-axis.csv", 0, m->nx - 1, middle, middle) &&
          write_stress(m, directory, "stress-section.csv", section, section, 0, m->ny - 1) &&
-         write_summary(m, def, directory) && draw_deflection(m, directory) &&
+         write_summary(m, def, directory) &&
+         frame_write(m->a, m->particles, directory, "cantilever.vtkhdf") &&
+         draw_deflection(m, directory) &&
          draw_stress(m, directory, "stress-axis", axis, "x (m)", 1) &&
          draw_stress(m, directory, "stress-section", title, "y (m)", 2) && draw_shape(m, directory);
 }

@@ -5,8 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* ---- exact solutions
- * ---------------------------------------------------------------------------------- */
+/* ---- exact solutions ------------------------------------------------------------------------- */
 
 void plate_exact_stress(const plate_def *def, const double *x, double *stress) {
   stress[0] = def->tension;
@@ -27,8 +26,7 @@ void plate_exact_displacement(const plate *p, const double *x, double *u) {
   u[1] = -nu * strain * (d->plane_strain ? 1.0 + nu : 1.0) * x[1];
 }
 
-/* ---- particles
- * ------------------------------------------------------------------------------------------ */
+/* ---- particles ------------------------------------------------------------------------------- */
 
 static int32_t solid(void *user, const double *x) {
   const plate_def *d = user;
@@ -56,8 +54,7 @@ static bool make_particles(plate *p) {
          app_check(p->a, mps_particles_set(p->particles, "poisson", 0, d->poisson));
 }
 
-/* ---- supports and loads
- * ---------------------------------------------------------------------------------- */
+/* ---- supports and loads ---------------------------------------------------------------------- */
 
 /* The layer at `at` along `axis` slides in its own plane; conservative: its cells end there. */
 static bool slide(plate *p, const mps_elastic_def *def, int32_t axis, double at, int64_t *ids,
@@ -113,8 +110,7 @@ static bool support_and_load(plate *p, const mps_elastic_def *def) {
   return done;
 }
 
-/* ---- results
- * ---------------------------------------------------------------------------------------------- */
+/* ---- results --------------------------------------------------------------------------------- */
 
 bool plate_get(const plate *p, int64_t k, plate_point *out) {
   static const int32_t component[3] = {0, 1, 5};

@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "plate.h"
 
+#include "common/frame.h"
 #include "common/plot.h"
 
 #include <math.h>
@@ -128,6 +129,7 @@ static bool draw_map(const plate *p, const char *directory) {
 
 bool plate_write(const plate *p, const mps_elastic_def *elastic, const char *directory) {
   return write_particles(p, directory) && write_line(p, directory) &&
-         write_summary(p, elastic, directory) && draw_line(p, directory) &&
+         write_summary(p, elastic, directory) &&
+         frame_write(p->a, p->particles, directory, "plate.vtkhdf") && draw_line(p, directory) &&
          (!p->def->hole || draw_map(p, directory));
 }

@@ -62,8 +62,7 @@ static void add(block *b, int c, int f, double value) {
   b->used |= 1u << (3 * c + f);
 }
 
-/* ---- parts of the energy
- * -------------------------------------------------------------------------- */
+/* ---- parts of the energy --------------------------------------------------------------------- */
 
 /* Coupling of sites with gradient coefficients a and b in V W(G), conservative. */
 static void couple_conservative(const mps_elastic *e, int64_t i, const double *a, const double *b,
@@ -112,8 +111,7 @@ static void gather_gradient(const mps_elastic *e, int64_t i, gather *g) {
   }
 }
 
-/* ---- conservative pairs
- * --------------------------------------------------------------------------- */
+/* ---- conservative pairs ---------------------------------------------------------------------- */
 
 /* A form under construction, with the offset of each site from i. */
 typedef struct form_sites {
@@ -184,8 +182,7 @@ static void gather_pair(const mps_elastic *e, int64_t i, int64_t j, int32_t k, g
   }
 }
 
-/* ---- one row block
- * ------------------------------------------------------------------------------------ */
+/* ---- one row block --------------------------------------------------------------------------- */
 
 /* Particles whose gradients use p: p itself, then its stencil neighbours. */
 static int32_t users(const mps_elastic *e, int64_t p, int64_t *list) {
@@ -293,8 +290,7 @@ static void assemble_chunk(void *data, int64_t chunk, int32_t worker) {
   }
 }
 
-/* ---- the matrix
- * -------------------------------------------------------------------------------------- */
+/* ---- the matrix ------------------------------------------------------------------------------ */
 
 static void drop_matrix(mps_elastic *e) {
   mpsi_free(e->context, e->column);

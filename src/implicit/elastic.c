@@ -7,8 +7,7 @@
 
 #include <string.h>
 
-/* ---- definition
- * ---------------------------------------------------------------------------------- */
+/* ---- definition ------------------------------------------------------------------------------ */
 
 static mps_status check_choice(mps_context *context, const char *function, const char *name,
                                int32_t value, int32_t low, int32_t high) {
@@ -80,8 +79,7 @@ static mps_status read_def(mps_context *context, const char *function, const mps
   return check_numbers(context, function, def);
 }
 
-/* ---- fields
- * ----------------------------------------------------------------------------------------- */
+/* ---- fields ---------------------------------------------------------------------------------- */
 
 mps_status mpsi_elastic_read(mps_elastic *e, const char *function, const char *name, double *values,
                              int32_t components) {
@@ -137,8 +135,7 @@ mps_status mpsi_elastic_read_mass(mps_elastic *e, const char *function) {
   return MPS_OK;
 }
 
-/* ---- material and cuts
- * ------------------------------------------------------------------------------- */
+/* ---- material and cuts ----------------------------------------------------------------------- */
 
 void mpsi_elastic_measure(mps_elastic *e) {
   const int d = e->dim;
@@ -214,8 +211,7 @@ mps_status mps_elastic_cut(mps_elastic *e, int32_t axis, int32_t side, int64_t c
   return MPS_OK;
 }
 
-/* ---- life
- * ---------------------------------------------------------------------------------------------- */
+/* ---- life ------------------------------------------------------------------------------------ */
 
 static mps_status allocate(mps_elastic *e, const char *function) {
   const int64_t n = e->n, all = n * e->dim;

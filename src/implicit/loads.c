@@ -99,8 +99,7 @@ mps_status mps_elastic_select_facets(const mps_elastic *e, int32_t axis, int32_t
   return MPS_OK;
 }
 
-/* ---- loads
- * ---------------------------------------------------------------------------------------- */
+/* ---- loads ----------------------------------------------------------------------------------- */
 
 /* Adds the force and the first moment m[c][b] = int t_c (x - x_i)_b of a load on cell i. */
 static void add_load(mps_elastic *e, int64_t i, const double *force, const double (*moment)[3]) {
@@ -281,8 +280,7 @@ mps_status mps_elastic_add_traction_fn(mps_elastic *e, int64_t count, const int6
   return status;
 }
 
-/* ---- resultants
- * ------------------------------------------------------------------------------------ */
+/* ---- resultants ------------------------------------------------------------------------------ */
 
 void mpsi_elastic_resultant(const mps_elastic *e, const double *f, const double *about,
                             double *force, double *moment) {

@@ -14,8 +14,7 @@
 
 #include <string.h>
 
-/* ---- gradient
- * ------------------------------------------------------------------------------------ */
+/* ---- gradient -------------------------------------------------------------------------------- */
 
 static double divisor(const mps_elastic *e, int64_t i) {
   return e->def.divisor == MPS_ELASTIC_CONSTANT ? e->density0 : e->density[i];
@@ -110,8 +109,7 @@ void mpsi_elastic_gradients(mps_elastic *e, const double *u, double *gradient) {
   mpsi_parallel_for(e->context, mpsi_elastic_chunks(e), gradient_chunk, &task);
 }
 
-/* ---- pairs
- * --------------------------------------------------------------------------------------- */
+/* ---- pairs ----------------------------------------------------------------------------------- */
 
 static void stretch(const mps_elastic *e, const double *u, const double *gradient, int64_t i,
                     int32_t k, double *out) {
@@ -131,8 +129,7 @@ void mpsi_elastic_stretch(const mps_elastic *e, const double *u, int64_t i, int3
   stretch(e, u, e->gradient, i, k, out);
 }
 
-/* ---- forces
- * -------------------------------------------------------------------------------------- */
+/* ---- forces ---------------------------------------------------------------------------------- */
 
 /* dPi/dG_i of the first sum, times V_i. */
 static void local_stress(const mps_elastic *e, int64_t i, const double *G, double *P) {

@@ -12,8 +12,7 @@
 /* Order of components: xx, yy, zz, yz, zx, xy. */
 static const int ROW[6] = {0, 1, 2, 1, 2, 0}, COL[6] = {0, 1, 2, 2, 0, 1};
 
-/* ---- strain and stress
- * ------------------------------------------------------------------------------ */
+/* ---- strain and stress ----------------------------------------------------------------------- */
 
 static void symmetric_part(int d, const double *G, double (*out)[3]) {
   memset(out, 0, 9 * sizeof **out);
@@ -73,8 +72,7 @@ static void virial(const mps_elastic *e, int64_t i, double (*stress)[3]) {
   }
 }
 
-/* ---- principal values
- * -------------------------------------------------------------------------------- */
+/* ---- principal values ------------------------------------------------------------------------ */
 
 /* Eigenvalues of a symmetric 3 x 3 matrix, largest first, by Jacobi rotations. */
 static void principal(const double (*stress)[3], double *out) {
@@ -139,8 +137,7 @@ mps_status mps_elastic_stress(mps_elastic *e) {
   return status;
 }
 
-/* ---- sections and energy
- * ------------------------------------------------------------------------------ */
+/* ---- sections and energy --------------------------------------------------------------------- */
 
 mps_status mps_elastic_section(mps_elastic *e, int32_t axis, double position, const double *about,
                                double *force, double *moment) {

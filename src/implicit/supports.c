@@ -173,8 +173,7 @@ mps_status mps_elastic_clear_supports(mps_elastic *e) {
   return MPS_OK;
 }
 
-/* ---- free unknowns
- * -------------------------------------------------------------------------------- */
+/* ---- free unknowns --------------------------------------------------------------------------- */
 
 void mpsi_elastic_direction(const mps_elastic *e, int64_t i, int32_t c, double *out) {
   if (e->support_of[i] >= 0) {

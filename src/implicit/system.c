@@ -22,8 +22,7 @@ static mpsi_matrix matrix(const mps_elastic *e) {
   return (mpsi_matrix){.n = e->unknowns, .column = e->column, .row = e->row, .value = e->value};
 }
 
-/* ---- preparation
- * ------------------------------------------------------------------------------------ */
+/* ---- preparation ----------------------------------------------------------------------------- */
 
 /* The symbolic factor, ordered by particles. */
 static mps_status order(mps_elastic *e, const char *function) {
@@ -88,8 +87,7 @@ mps_status mpsi_elastic_prepare(mps_elastic *e, const char *function) {
   return status;
 }
 
-/* ---- factor
- * ------------------------------------------------------------------------------------------ */
+/* ---- factor ---------------------------------------------------------------------------------- */
 
 /* Which particle and direction does a free unknown belong to? */
 static void locate(const mps_elastic *e, int64_t unknown, int64_t *particle, int32_t *direction) {
@@ -163,8 +161,7 @@ mps_status mpsi_elastic_backsolve(mps_elastic *e, const char *function, int64_t 
   return status;
 }
 
-/* ---- solution
- * ------------------------------------------------------------------------------------------ */
+/* ---- solution -------------------------------------------------------------------------------- */
 
 static double norm(const double *v, int64_t n) {
   double sum = 0.0;

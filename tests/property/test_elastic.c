@@ -1,5 +1,5 @@
 /* test_elastic.c - properties of implicit elasticity that hold exactly: constant stress, rigid
- * motions and no other free ones, matrix = operator, equilibrium, rollers, threads, symmetry.
+ * motions and no other free ones, matrix = operator, equilibrium, rollers.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_common.h"
 
@@ -28,8 +28,7 @@ static test_body stepped(mps_context *context, double nu) {
   return b;
 }
 
-/* ---- constant stress
- * ------------------------------------------------------------------------------ */
+/* ---- constant stress ------------------------------------------------------------------------- */
 
 typedef struct affine {
   int dim;
@@ -133,8 +132,7 @@ static void constant_stress_is_exact_on_a_stepped_block(void **state) {
   mps_context_destroy(&context);
 }
 
-/* ---- free motions
- * ---------------------------------------------------------------------------------- */
+/* ---- free motions ---------------------------------------------------------------------------- */
 
 /* Dense K of all displacements, by the matrix-free operator. */
 static double *dense(mps_elastic *e) {
@@ -189,8 +187,7 @@ static void rigid_motions_and_no_others_are_free(void **state) {
   mps_context_destroy(&context);
 }
 
-/* ---- the matrix is the operator
- * --------------------------------------------------------------------- */
+/* ---- the matrix is the operator -------------------------------------------------------------- */
 
 /* The assembled matrix against the operator, column by column, with rollers at an angle. */
 static void check_matrix(test_body *b) {
@@ -256,8 +253,7 @@ static void the_assembled_matrix_is_the_operator(void **state) {
   mps_context_destroy(&context);
 }
 
-/* ---- equilibrium, rollers, orders
- * -------------------------------------------------------------------- */
+/* ---- equilibrium, rollers, orders ------------------------------------------------------------ */
 
 static void loads_and_reactions_are_in_equilibrium(void **state) {
   (void)state;
@@ -332,40 +328,6 @@ static void a_roller_lets_particles_slide_across_only(void **state) {
   mps_context_destroy(&context);
 }
 
-/* Displacement of the end of an L-shape under gravity, in a context of `threads` threads. */
-static double *gravity_displacement(int32_t executor, int32_t threads, int64_t *n) {
-  mps_context *context = test_context(executor, threads);
-  test_body b = test_body_begin(context, 2, 0.02);
-  test_body_box(&b, 0, 0, 0, 2, 0.5, 0);
-  test_body_box(&b, 0, 0, 0, 0.5, 2, 0);
-  test_body_finish(&b, 2.0, 0.25, NULL);
-  int64_t count, *ids = test_select(&b, 1, -1, 0.01, &count);
-  const double load[2] = {0.1, -1.0};
-  for (int c = 0; c < 2; c++)
-    mps_assert_ok(context, mps_elastic_prescribe(b.elastic, c, count, ids, NULL));
-  mps_assert_ok(context, mps_elastic_add_body_force(b.elastic, load));
-  mps_assert_ok(context, mps_elastic_solve(b.elastic));
-  double *u = malloc((size_t)b.n * 2 * sizeof *u);
-  for (int64_t i = 0; i < b.n; i++)
-    for (int c = 0; c < 2; c++) u[2 * i + c] = test_value(&b, "displacement", i, c);
-  *n = b.n;
-  free(ids);
-  test_body_end(&b);
-  mps_context_destroy(&context);
-  return u;
-}
-
-static void the_number_of_threads_changes_nothing(void **state) {
-  (void)state;
-  int64_t n, m;
-  double *one = gravity_displacement(MPS_EXECUTOR_SERIAL, 1, &n);
-  double *four = gravity_displacement(mps_context_defaults().executor, 4, &m);
-  assert_int_equal(n, m);
-  assert_memory_equal(one, four, (size_t)n * 2 * sizeof *one);
-  free(one);
-  free(four);
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(constant_stress_is_exact_on_an_l_shape),
@@ -374,7 +336,6 @@ int main(void) {
       cmocka_unit_test(the_assembled_matrix_is_the_operator),
       cmocka_unit_test(loads_and_reactions_are_in_equilibrium),
       cmocka_unit_test(a_roller_lets_particles_slide_across_only),
-      cmocka_unit_test(the_number_of_threads_changes_nothing),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,6 +4,8 @@
 #include "elastic_common.h"
 #include "test_allocator.h"
 
+#include "implicit/elastic_private.h"
+
 #include <SuiteSparse_config.h>
 
 static test_body square(mps_context *context, int cells, const mps_elastic_def *def) {
@@ -23,8 +25,7 @@ static void clamp(test_body *b) {
   free(ids);
 }
 
-/* ---- refused at creation
- * ---------------------------------------------------------------------------- */
+/* ---- refused at creation --------------------------------------------------------------------- */
 
 static void refuse_points(mps_context *context, int64_t count, const double *x, const char *why) {
   test_body b = test_body_begin(context, 2, 0.5);
@@ -149,8 +150,7 @@ static void bad_definitions_are_refused(void **state) {
   mps_context_destroy(&context);
 }
 
-/* ---- refused calls
- * ------------------------------------------------------------------------------------ */
+/* ---- refused calls --------------------------------------------------------------------------- */
 
 static void bad_supports_and_loads_are_refused(void **state) {
   (void)state;
@@ -246,8 +246,7 @@ static void free_rigid_motions_are_named(void **state) {
   mps_context_destroy(&context);
 }
 
-/* ---- solvers
- * -------------------------------------------------------------------------------------------- */
+/* ---- solvers --------------------------------------------------------------------------------- */
 
 static void solvers_and_orderings_agree(void **state) {
   (void)state;
@@ -297,6 +296,25 @@ static void solvers_and_orderings_agree(void **state) {
   b = square(context, 20, &def);
   clamp(&b);
   mps_assert_fails(context, mps_elastic_solve(b.elastic), MPS_ERROR_NUMERIC, "in 3 iterations");
+  test_body_end(&b);
+  mps_context_destroy(&context);
+}
+
+/* Negative shear moduli, which no field can give: set inside the solver. */
+static void a_matrix_that_is_not_positive_definite_is_diagnosed(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  test_body b = square(context, 8, NULL);
+  for (int64_t i = 40; i < b.n; i++) b.elastic->mu[i] = -1.0;
+  mpsi_elastic_measure(b.elastic);
+  clamp(&b);
+  for (int again = 0; again < 2; again++) {
+    mps_assert_fails(context, mps_elastic_solve(b.elastic), MPS_ERROR_NUMERIC,
+                     "not positive definite at direction");
+    assert_in_range(mps_context_error(context)->particle, 8, b.n - 1);
+  }
+  mps_assert_ok(context, mps_elastic_update_material(b.elastic)); /* as the fields say */
+  mps_assert_ok(context, mps_elastic_solve(b.elastic));
   test_body_end(&b);
   mps_context_destroy(&context);
 }
@@ -390,8 +408,7 @@ static void a_body_that_is_held_everywhere_has_no_unknowns(void **state) {
   mps_context_destroy(&context);
 }
 
-/* ---- memory
- * --------------------------------------------------------------------------------------------- */
+/* ---- memory ---------------------------------------------------------------------------------- */
 
 /* Everything once: create, support, solve, stresses, cases, a motion, modes. */
 static mps_status use(mps_context *context, mps_particles *particles, int32_t solver,
@@ -527,6 +544,7 @@ int main(void) {
       cmocka_unit_test(bad_supports_and_loads_are_refused),
       cmocka_unit_test(free_rigid_motions_are_named),
       cmocka_unit_test(solvers_and_orderings_agree),
+      cmocka_unit_test(a_matrix_that_is_not_positive_definite_is_diagnosed),
       cmocka_unit_test(what_can_be_kept_is_kept),
       cmocka_unit_test(many_load_cases_superpose),
       cmocka_unit_test(a_body_that_is_held_everywhere_has_no_unknowns),

@@ -54,8 +54,7 @@ static void a_nearly_incompressible_cantilever_does_not_lock(void **state) {
   assert_true(fabs(tip_error(&def, 0.4999, 0)) < 2.0);
 }
 
-/* ---- seed C (5): four unknowns a particle, without elimination, by LU
- * ----------------------------- */
+/* ---- seed C (5): four unknowns a particle, without elimination, by LU ------------------------ */
 
 /* Rows of particle i in the dense system a (order u, v, R, D), by brute force over all pairs. */
 static void four_unknown_rows(const test_body *b, const cantilever *c, double ratio, int local,
@@ -146,8 +145,7 @@ static void the_condensed_form_is_the_papers_four_unknown_form(void **state) {
   mps_context_destroy(&context);
 }
 
-/* ---- sections and stresses
- * -------------------------------------------------------------------------- */
+/* ---- sections and stresses ------------------------------------------------------------------- */
 
 static void sections_carry_shear_and_moment(void **state) {
   (void)state;
