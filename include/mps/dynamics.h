@@ -44,6 +44,14 @@ typedef enum mps_torque {
   MPS_TORQUE_PRINTED = 1     /* prefactor 2d as printed: not conserving, for comparison only */
 } mps_torque;
 
+/** Stiffness-proportional damping where the ratio h differs between particles. With one ratio for
+ * all the two are the same. */
+typedef enum mps_damping {
+  MPS_DAMPING_PAIR = 0,    /* as element damping, seed A (A15): keeps momentum, dissipates always */
+  MPS_DAMPING_PARTICLE = 1 /* seed A (A24): each particle's whole restoring force times its h; the
+                              stress at a layer boundary is then undamped */
+} mps_damping;
+
 typedef struct mps_dynamics_def {
   uint32_t struct_size;
   int32_t integrator; /* mps_integrator, default VERLET */
@@ -57,7 +65,7 @@ typedef struct mps_dynamics_def {
   double divergence; /* m/s2, > 0: |acceleration| beyond it stops the run; default 1e15 */
   int32_t isa;       /* x86-64 level of the inner loops: 0 (default) the best there is, or 1, 3, 4;
                         every level gives the same results bit for bit */
-  int32_t reserved;
+  int32_t damping;   /* mps_damping, default PAIR */
 } mps_dynamics_def;
 
 MPS_API mps_status mps_dynamics_def_init(mps_dynamics_def *def, size_t size);
@@ -138,7 +146,8 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_step(mps_dynamics *dynamics, int64
 typedef mps_status (*mps_dynamics_fn)(void *user, mps_dynamics *dynamics);
 
 /** Steps to the first instant >= t_end (s), calling `callback` (may be NULL) every `every` (>= 1)
- *  steps, the context's progress hook about 100 times, and its cancel hook at the same time. */
+ *  steps, the context's progress hook at least about 100 times, and its cancel hook with it: some
+ *  ten times a second. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_run(mps_dynamics *dynamics, double t_end,
                                                   int64_t every, mps_dynamics_fn callback,
                                                   void *user);
@@ -162,11 +171,14 @@ MPS_API double mps_dynamics_dt(mps_dynamics *dynamics);
 /** Number of interacting pairs (each once). */
 MPS_API int64_t mps_dynamics_pairs(const mps_dynamics *dynamics);
 
-/** Energies (J per metre of thickness) of the present state. Kinetic energy is that at t - dt/2
- *  averaged with t + dt/2 for Verlet and leapfrog, which keeps their sum bounded. Free-field
- *  columns are not counted. */
+/** Energies (J per metre of thickness) of the present state. Kinetic and spin energy are
+ *  v-.M.v+ / 2 with the velocities half a step before and after (Euler: v.M.v / 2): with the strain
+ *  energy that is the invariant of Verlet and leapfrog, exact for a linear body without damping.
+ *  Free-field columns are not counted. */
 typedef struct mps_dynamics_energy {
-  double kinetic, spin, shear, volumetric, total;
+  double kinetic, spin;     /* of translation, of rotation */
+  double shear, volumetric; /* of the pairs (mu), of the pressures (lambda) */
+  double total;
 } mps_dynamics_energy;
 MPS_API MPS_NODISCARD mps_status mps_dynamics_get_energy(mps_dynamics *dynamics,
                                                          mps_dynamics_energy *out);
@@ -245,7 +257,7 @@ static inline mps_predict_def mps_predict_defaults(void) {
 }
 
 typedef struct mps_prediction {
-  double linear;               /* s: own linear theory on the endless lattice; use this one */
+  double linear;               /* s: own linear theory, edges of a body allowed for; use this one */
   double omega;                /* rad/s, highest eigenfrequency of the endless lattice */
   double printed_s, printed_p; /* s: seed A (14)-(16) with Table 2; NaN outside its range of h */
   double printed;              /* the smaller of the two */

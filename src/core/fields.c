@@ -95,7 +95,8 @@ static mps_status insert_field(mps_particles *p, const char *function, const mps
   field->first_column = p->columns;
   void *block = mpsi_field_allocate(p->context, field, p->capacity);
   void *list = p->fields;
-  if (!block || !mpsi_grow(p->context, &list, p->field_count, p->field_count + 1, sizeof field)) {
+  if (!block ||
+      !mpsi_grow(p->context, &list, p->field_count, p->field_count + 1, sizeof *p->fields)) {
     mpsi_free(p->context, block);
     mpsi_free(p->context, field);
     return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
@@ -162,7 +163,7 @@ static mps_status describe_field(mps_particles *p, const char *function, const c
 mps_status mps_particles_add_field(mps_particles *particles, const char *name, int32_t components) {
   if (!particles) return MPS_ERROR_ARGUMENT;
   if (!name) return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT, "name is NULL");
-  mpsi_field field;
+  mpsi_field field = {0};
   const mps_status status = describe_field(particles, __func__, name, components, &field);
   if (status != MPS_OK) return status;
   const mpsi_field *present = mpsi_field_find(particles, name);

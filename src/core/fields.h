@@ -50,8 +50,8 @@
     "explicit dynamics", "after a step or a run; part of a checkpoint")                            \
   X(rotation_old, F64, MPSI_PER_ROTATION, "rad", "rotation of the previous step",                  \
     "explicit dynamics", "after a step or a run; part of a checkpoint")                            \
-  X(restoring_old, F64, MPSI_PER_FREEDOM, "m/s2, rad/s2",                                          \
-    "M^-1 times the restoring force of the previous step: displacements, then rotations",          \
+  X(restoring_old, F64, MPSI_PER_FREEDOM, "m/s, rad/s",                                          \
+    "M^-1 times beta times the restoring force of the previous step: displacements, then rotations",          \
     "explicit dynamics", "after a step or a run; part of a checkpoint")
 /* clang-format on */
 

@@ -289,29 +289,37 @@ static bool segments_meet(const double *a, const double *b, const double *c, con
          (ta == 0.0 && between(c, d, a)) || (tb == 0.0 && between(c, d, b));
 }
 
-/* Edge k runs from corner k to corner k + 1. */
-static mps_status check_simple(const mps_particles *p, const char *function, const polygon *s) {
+/* Corners that coincide, and edges that lie on each other at their common corner. Edge k runs from
+ * corner k to corner k + 1. */
+static mps_status check_corners(const mps_particles *p, const char *function, const polygon *s) {
   for (int64_t k = 0; k < s->n; k++) {
     const double *a = corner(s, k), *b = corner(s, k + 1), *c = corner(s, k + 2);
+    const long long next = (k + 1) % s->n;
     if (a[0] == b[0] && a[1] == b[1])
       return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
                        "corners %lld and %lld of the polygon coincide at (%g, %g) m (it is closed "
                        "without repeating the first)",
-                       (long long)k, (long long)((k + 1) % s->n), a[0], a[1]);
+                       (long long)k, next, a[0], a[1]);
     if (turn(a, b, c) == 0.0 && (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]) < 0.0)
       return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
                        "edges %lld and %lld of the polygon lie on each other at corner %lld: "
                        "(%g, %g) m",
-                       (long long)k, (long long)((k + 1) % s->n), (long long)((k + 1) % s->n), b[0],
-                       b[1]);
-    /* Edges that are not neighbours: the last one is a neighbour of the first. */
-    for (int64_t m = k + 2; m < s->n - (k == 0); m++)
-      if (segments_meet(a, b, corner(s, m), corner(s, m + 1)))
+                       (long long)k, next, next, b[0], b[1]);
+  }
+  return MPS_OK;
+}
+
+/* Edges that are not neighbours must not meet; the last is a neighbour of the first. */
+static mps_status check_edges(const mps_particles *p, const char *function, const polygon *s) {
+  for (int64_t k = 0; k < s->n; k++)
+    for (int64_t m = k + 2; m < s->n - (k == 0); m++) {
+      const double *a = corner(s, k), *c = corner(s, m);
+      if (segments_meet(a, corner(s, k + 1), c, corner(s, m + 1)))
         return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
                          "edges %lld and %lld of the polygon cross or touch: from corner (%g, %g) "
                          "and from corner (%g, %g) m",
-                         (long long)k, (long long)m, a[0], a[1], corner(s, m)[0], corner(s, m)[1]);
-  }
+                         (long long)k, (long long)m, a[0], a[1], c[0], c[1]);
+    }
   return MPS_OK;
 }
 
@@ -323,11 +331,11 @@ static mps_status check_polygon(const mps_particles *p, const char *function, co
   if (s->n < 3)
     return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT, "vertices is %lld, must be >= 3",
                      (long long)s->n);
-  for (int64_t k = 0; k < 2 * s->n; k++) {
-    const mps_status status = check_bound(p, function, "a corner", k % 2, s->xy[k]);
-    if (status != MPS_OK) return status;
-  }
-  return check_simple(p, function, s);
+  mps_status status = MPS_OK;
+  for (int64_t k = 0; k < 2 * s->n && status == MPS_OK; k++)
+    status = check_bound(p, function, "a corner", k % 2, s->xy[k]);
+  if (status == MPS_OK) status = check_corners(p, function, s);
+  return status == MPS_OK ? check_edges(p, function, s) : status;
 }
 
 /* Where row j crosses the edges, as sites, ascending; returns how many: an even number.

@@ -40,6 +40,9 @@ static mps_status check_choices(mps_context *context, const mps_dynamics_def *de
   if (def->torque != MPS_TORQUE_CONSERVING && def->torque != MPS_TORQUE_PRINTED)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "torque is %d, allowed are 0 (conserving) and 1 (as printed)", def->torque);
+  if (def->damping != MPS_DAMPING_PAIR && def->damping != MPS_DAMPING_PARTICLE)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "damping is %d, allowed are 0 (pair) and 1 (particle)", def->damping);
   if (def->isa != 0 && def->isa != 1 && def->isa != 3 && def->isa != 4)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "isa is %d, allowed are 0 (the best), 1, 3 and 4", def->isa);
@@ -169,8 +172,8 @@ static mps_status add_fields(mps_dynamics *dynamics) {
  * first-level cache. */
 static bool allocate(mps_dynamics *dynamics) {
   mpsi_state *s = &dynamics->state;
-  double **arrays[] = {&s->gx,     &s->gy, &s->gth, &s->c,   &s->s,     &s->mu,
-                       &s->lambda, &s->ix, &s->iy,  &s->ith, &s->alpha, &s->beta};
+  double **arrays[] = {&s->gx, &s->gy,  &s->gth, &s->c,  &s->s,   &s->mu,    &s->lambda, &s->sx,
+                       &s->sy, &s->sth, &s->ix,  &s->iy, &s->ith, &s->alpha, &s->beta};
   const int64_t number = sizeof arrays / sizeof *arrays;
   const int64_t n = (dynamics->count + 7) / 8 * 8, stride = n + 24;
   const int64_t slots = (dynamics->mesh.slots + 7) / 8 * 8 + 40;
@@ -222,6 +225,7 @@ static void set_coefficients(mps_dynamics *dynamics) {
   /* I = rho D^4/6 and one half of each pair's moment to either end: 3/(rho D^2); (A14) as printed
    * gives twice that */
   const double spin = dynamics->def.torque == MPS_TORQUE_PRINTED ? 6.0 : 3.0;
+  double least = INFINITY, most = 0.0;
   mpsi_state *s = &dynamics->state;
   for (int64_t k = 0; k < dynamics->count; k++) {
     const double lambda = rho[k] * (vp[k] * vp[k] - 2.0 * vs[k] * vs[k]);
@@ -232,8 +236,12 @@ static void set_coefficients(mps_dynamics *dynamics) {
     const double ratio = h ? h[k] : 0.0;
     s->alpha[k] = ratio * 4.0 * pi * f1 * f2 / (f1 + f2);
     s->beta[k] = ratio / (pi * (f1 + f2));
-    if (ratio > 0.0) dynamics->damped = true;
+    least = fmin(least, ratio), most = fmax(most, ratio);
   }
+  if (most > 0.0)
+    dynamics->damping = least == most || dynamics->def.damping == MPS_DAMPING_PARTICLE
+                            ? MPSI_BY_PARTICLES
+                            : MPSI_BY_PAIRS;
 }
 
 /* ---- creation -------------------------------------------------------------------------------- */

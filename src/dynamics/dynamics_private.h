@@ -44,7 +44,7 @@ struct mps_dynamics {
   mps_signal **signals; /* every signal kept alive */
   int64_t drives, drive_room, dashpots, dashpot_room, signal_count, signal_room;
   bool dashpots_sorted;
-  bool damped;
+  mpsi_damping damping;
   bool fresh;   /* no step since creation or restart: G_{-1} = G_0 */
   bool checked; /* dt has been compared with the linear limit */
   bool diverged;
@@ -82,8 +82,10 @@ void mpsi_dynamics_dashpots_after(mps_dynamics *dynamics, double now, bool outpu
 bool mpsi_dynamics_add_dashpot(mps_dynamics *dynamics, mpsi_dashpot dashpot);
 
 /* y = S x, the symmetric tangent at the reference state: S = M^-1/2 K M^-1/2 over the 3 count
- * unknowns (x, y, rotation each in a row); held ones give 0. `work` has 4 count doubles. */
-void mpsi_tangent_apply(mps_dynamics *dynamics, const double *x, double *y, double *work);
+ * unknowns (x, y, rotation each in a row); held ones give 0. `weight` (NULL: 1) multiplies each
+ * particle's pressure, its mean each pair's shear force. `work` has 4 count doubles. */
+void mpsi_tangent_apply(mps_dynamics *dynamics, const double *weight, const double *x, double *y,
+                        double *work);
 
 /* Square of the highest eigenfrequency (rad/s)^2 of the endless square lattice. */
 double mpsi_lattice_omega2(double spacing, double radius_ratio, double density, double vs,

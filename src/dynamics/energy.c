@@ -14,7 +14,7 @@ typedef struct work {
 
 static void first_pass(void *data, int64_t b, int32_t worker) {
   mps_dynamics *dynamics = ((work *)data)->dynamics;
-  dynamics->kernels->pass1[dynamics->def.rotation == MPS_ROTATION_MEAN_MATRIX](
+  dynamics->kernels->pass1[dynamics->def.rotation == MPS_ROTATION_MEAN_MATRIX][0](
       &dynamics->state, &dynamics->mesh, b, dynamics->scratch + worker * MPSI_DYN_SCRATCH);
 }
 

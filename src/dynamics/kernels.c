@@ -14,26 +14,42 @@
 
 enum { MEAN_ANGLE, MEAN_MATRIX };
 enum { EULER, LEAPFROG, VERLET };
+enum { UNDAMPED, BY_PARTICLES, BY_PAIRS };
 
 /* ---- pairs ----------------------------------------------------------------------------------- */
 
-/* Where the two ends of a chunk of pairs are read. */
+/* Where the two ends of a chunk of pairs are read: displacement, rotation, mu, beta. */
 typedef struct ends {
-  const double *dxi, *dyi, *ci, *si, *mi;
-  const double *dxj, *dyj, *cj, *sj, *mj;
+  const double *dxi, *dyi, *ci, *si, *mi, *bi;
+  const double *dxj, *dyj, *cj, *sj, *mj, *bj;
 } ends;
 
-/* What a pair contributes: force on i (minus on j), torque and divergence of both. */
+/* What a pair contributes: force on i (minus on j), torque and divergence of both; with damping by
+ * pairs also force and torque times the pair's beta. */
 typedef struct pair_terms {
   double *fx, *fy, *torque, *div;
+  double *sx, *sy, *st;
 } pair_terms;
 
+/* Seven rows of a length from `room`. */
+MPSI_INLINE pair_terms seven_rows(double *room, int64_t length) {
+  return (pair_terms){room,
+                      room + length,
+                      room + 2 * length,
+                      room + 3 * length,
+                      room + 4 * length,
+                      room + 5 * length,
+                      room + 6 * length};
+}
+
 /* Pair terms of a chunk. PER = 0: one offset for the chunk; 1: one a pair. */
-MPSI_INLINE void pair_chunk(const int removal, const int PER, int32_t n, ends e, const double *r0x,
-                            const double *r0y, const double *kf, const double *kc, pair_terms out,
-                            double *restrict ex, double *restrict ey) {
+MPSI_INLINE void pair_chunk(const int removal, const int by_pairs, const int PER, int32_t n, ends e,
+                            const double *r0x, const double *r0y, const double *kf,
+                            const double *kc, pair_terms out, double *restrict ex,
+                            double *restrict ey) {
   double *restrict fx = out.fx, *restrict fy = out.fy;
   double *restrict torque = out.torque, *restrict div = out.div;
+  double *restrict sx = out.sx, *restrict sy = out.sy, *restrict st = out.st;
   SIMD for (int32_t t = 0; t < n; t++) {
     const int32_t k = PER * t;
     double a, b;                  /* mean rotation minus one: its cosine and sine parts */
@@ -58,6 +74,12 @@ MPSI_INLINE void pair_chunk(const int removal, const int PER, int32_t n, ends e,
     div[t] = kex * ux + key * uy;
     ex[t] = kex;
     ey[t] = key;
+    if (by_pairs) {
+      const double beta = 0.5 * (e.bi[t] + e.bj[t]);
+      sx[t] = beta * px;
+      sy[t] = beta * py;
+      st[t] = beta * torque[t];
+    }
   }
 }
 
@@ -66,27 +88,31 @@ MPSI_INLINE void add(double *restrict target, const double *restrict term, doubl
   SIMD for (int32_t t = 0; t < n; t++) target[t] += sign * term[t];
 }
 
-MPSI_INLINE void pass1_run(const int removal, const mpsi_state *s, const mpsi_run *run,
-                           int32_t begin, pair_terms sums, pair_terms terms, double *ex,
-                           double *ey) {
+/* Adds the terms of a chunk to one side's sums, which begin at `at`. */
+MPSI_INLINE void add_terms(const int by_pairs, pair_terms sums, pair_terms terms, int64_t at,
+                           double sign, int32_t n) {
+  add(sums.fx + at, terms.fx, sign, n);
+  add(sums.fy + at, terms.fy, sign, n);
+  add(sums.torque + at, terms.torque, 1.0, n);
+  add(sums.div + at, terms.div, 1.0, n);
+  if (!by_pairs) return;
+  add(sums.sx + at, terms.sx, sign, n);
+  add(sums.sy + at, terms.sy, sign, n);
+  add(sums.st + at, terms.st, 1.0, n);
+}
+
+MPSI_INLINE void pass1_run(const int removal, const int by_pairs, const mpsi_state *s,
+                           const mpsi_run *run, int32_t begin, pair_terms sums, pair_terms terms,
+                           double *ex, double *ey) {
   for (int32_t t0 = 0; t0 < run->count; t0 += MPSI_DYN_CHUNK) {
     const int32_t left = run->count - t0, n = left < MPSI_DYN_CHUNK ? left : MPSI_DYN_CHUNK;
     const int64_t i = run->i0 + t0, j = run->j0 + t0;
-    const ends e = {s->dx + i, s->dy + i, s->c + i, s->s + i, s->mu + i,
-                    s->dx + j, s->dy + j, s->c + j, s->s + j, s->mu + j};
-    pair_chunk(removal, 0, n, e, &run->r0x, &run->r0y, &run->kf, &run->kc, terms, ex + t0, ey + t0);
-    if (run->own_i) {
-      add(sums.fx + (i - begin), terms.fx, 1.0, n);
-      add(sums.fy + (i - begin), terms.fy, 1.0, n);
-      add(sums.torque + (i - begin), terms.torque, 1.0, n);
-      add(sums.div + (i - begin), terms.div, 1.0, n);
-    }
-    if (run->own_j) {
-      add(sums.fx + (j - begin), terms.fx, -1.0, n);
-      add(sums.fy + (j - begin), terms.fy, -1.0, n);
-      add(sums.torque + (j - begin), terms.torque, 1.0, n);
-      add(sums.div + (j - begin), terms.div, 1.0, n);
-    }
+    const ends e = {s->dx + i, s->dy + i, s->c + i, s->s + i, s->mu + i, s->beta + i,
+                    s->dx + j, s->dy + j, s->c + j, s->s + j, s->mu + j, s->beta + j};
+    pair_chunk(removal, by_pairs, 0, n, e, &run->r0x, &run->r0y, &run->kf, &run->kc, terms, ex + t0,
+               ey + t0);
+    if (run->own_i) add_terms(by_pairs, sums, terms, i - begin, 1.0, n);
+    if (run->own_j) add_terms(by_pairs, sums, terms, j - begin, -1.0, n);
   }
 }
 
@@ -96,58 +122,57 @@ MPSI_INLINE void gather(double *restrict to, const double *restrict from,
   for (int32_t t = 0; t < n; t++) to[t] = from[index[t]];
 }
 
-MPSI_INLINE void pass1_scattered(const int removal, const mpsi_state *s, const mpsi_scattered *list,
-                                 int64_t k, int32_t n, int32_t begin, pair_terms sums,
-                                 pair_terms terms, double *room, double *ex, double *ey) {
-  const double *from[5] = {s->dx, s->dy, s->c, s->s, s->mu};
-  for (int f = 0; f < 5; f++) {
+MPSI_INLINE void pass1_scattered(const int removal, const int by_pairs, const mpsi_state *s,
+                                 const mpsi_scattered *list, int64_t k, int32_t n, int32_t begin,
+                                 pair_terms sums, pair_terms terms, double *room, double *ex,
+                                 double *ey) {
+  const double *from[6] = {s->dx, s->dy, s->c, s->s, s->mu, s->beta};
+  for (int f = 0; f < (by_pairs ? 6 : 5); f++) {
     gather(room + f * MPSI_DYN_CHUNK, from[f], list->i + k, n);
-    gather(room + (5 + f) * MPSI_DYN_CHUNK, from[f], list->j + k, n);
+    gather(room + (6 + f) * MPSI_DYN_CHUNK, from[f], list->j + k, n);
   }
 #define ROOM(f) (room + (f)*MPSI_DYN_CHUNK)
-  const ends e = {ROOM(0), ROOM(1), ROOM(2), ROOM(3), ROOM(4),
-                  ROOM(5), ROOM(6), ROOM(7), ROOM(8), ROOM(9)};
+  const ends e = {ROOM(0), ROOM(1), ROOM(2), ROOM(3), ROOM(4),  ROOM(5),
+                  ROOM(6), ROOM(7), ROOM(8), ROOM(9), ROOM(10), ROOM(11)};
 #undef ROOM
-  pair_chunk(removal, 1, n, e, list->r0x + k, list->r0y + k, list->kf + k, list->kc + k, terms, ex,
-             ey);
-  for (int32_t t = 0; t < n; t++) {
-    if (list->ti[k + t] >= 0) {
-      const int32_t i = list->ti[k + t] - begin;
-      sums.fx[i] += terms.fx[t];
-      sums.fy[i] += terms.fy[t];
-      sums.torque[i] += terms.torque[t];
-      sums.div[i] += terms.div[t];
-    }
-    if (list->tj[k + t] >= 0) {
-      const int32_t j = list->tj[k + t] - begin;
-      sums.fx[j] -= terms.fx[t];
-      sums.fy[j] -= terms.fy[t];
-      sums.torque[j] += terms.torque[t];
-      sums.div[j] += terms.div[t];
+  pair_chunk(removal, by_pairs, 1, n, e, list->r0x + k, list->r0y + k, list->kf + k, list->kc + k,
+             terms, ex, ey);
+  const int32_t *target[2] = {list->ti + k, list->tj + k};
+  for (int side = 0; side < 2; side++) {
+    const double sign = side == 0 ? 1.0 : -1.0;
+    for (int32_t t = 0; t < n; t++) {
+      const int32_t at = target[side][t] - begin;
+      if (target[side][t] < 0) continue;
+      sums.fx[at] += sign * terms.fx[t];
+      sums.fy[at] += sign * terms.fy[t];
+      sums.torque[at] += terms.torque[t];
+      sums.div[at] += terms.div[t];
+      if (!by_pairs) continue;
+      sums.sx[at] += sign * terms.sx[t];
+      sums.sy[at] += sign * terms.sy[t];
+      sums.st[at] += terms.st[t];
     }
   }
 }
 
-MPSI_INLINE void pass1(const int removal, const mpsi_state *s, const mpsi_mesh *mesh, int64_t b,
-                       double *scratch) {
+MPSI_INLINE void pass1(const int removal, const int by_pairs, const mpsi_state *s,
+                       const mpsi_mesh *mesh, int64_t b, double *scratch) {
   const mpsi_block *block = &mesh->block[b];
   const int32_t begin = block->begin, n = block->end - begin;
-  const pair_terms sums = {scratch, scratch + MPSI_DYN_BLOCK, scratch + 2 * MPSI_DYN_BLOCK,
-                           scratch + 3 * MPSI_DYN_BLOCK};
-  double *room = scratch + 4 * MPSI_DYN_BLOCK;
-  const pair_terms terms = {room, room + MPSI_DYN_CHUNK, room + 2 * MPSI_DYN_CHUNK,
-                            room + 3 * MPSI_DYN_CHUNK};
-  room += 4 * MPSI_DYN_CHUNK;
-  for (int64_t k = 0; k < 4 * MPSI_DYN_BLOCK; k++) scratch[k] = 0.0;
+  const int64_t rows = by_pairs ? 7 : 4;
+  const pair_terms sums = seven_rows(scratch, MPSI_DYN_BLOCK);
+  const pair_terms terms = seven_rows(scratch + 7 * MPSI_DYN_BLOCK, MPSI_DYN_CHUNK);
+  double *room = scratch + 7 * (MPSI_DYN_BLOCK + MPSI_DYN_CHUNK);
+  for (int64_t k = 0; k < rows * MPSI_DYN_BLOCK; k++) scratch[k] = 0.0;
 
   int64_t slot = block->slot;
   for (int64_t r = block->run_begin; r < block->run_end; slot += mesh->run[r++].count)
-    pass1_run(removal, s, &mesh->run[r], begin, sums, terms, s->ex + slot, s->ey + slot);
+    pass1_run(removal, by_pairs, s, &mesh->run[r], begin, sums, terms, s->ex + slot, s->ey + slot);
   for (int64_t k = block->scattered_begin; k < block->scattered_end; k += MPSI_DYN_CHUNK) {
     const int64_t left = block->scattered_end - k;
     const int32_t m = left < MPSI_DYN_CHUNK ? (int32_t)left : MPSI_DYN_CHUNK;
-    pass1_scattered(removal, s, &mesh->scattered, k, m, begin, sums, terms, room, s->ex + slot,
-                    s->ey + slot);
+    pass1_scattered(removal, by_pairs, s, &mesh->scattered, k, m, begin, sums, terms, room,
+                    s->ex + slot, s->ey + slot);
     slot += m;
   }
 
@@ -159,6 +184,13 @@ MPSI_INLINE void pass1(const int removal, const mpsi_state *s, const mpsi_mesh *
     gy[t] = sums.fy[t];
     gth[t] = sums.torque[t];
     p[t] = -lambda[t] * sums.div[t]; /* (A11) */
+  }
+  if (!by_pairs) return;
+  double *restrict sx = s->sx + begin, *restrict sy = s->sy + begin, *restrict sth = s->sth + begin;
+  SIMD for (int32_t t = 0; t < n; t++) {
+    sx[t] = sums.sx[t];
+    sy[t] = sums.sy[t];
+    sth[t] = sums.st[t];
   }
 }
 
@@ -210,59 +242,94 @@ MPSI_INLINE void trig(const int removal, const mpsi_state *s, int64_t begin, int
 
 /* ---- second pass ----------------------------------------------------------------------------- */
 
-/* Subtracts the pressure forces (p_i + p_j) kc e of a block from its sums (A10). */
-MPSI_INLINE void pressure_forces(const mpsi_state *s, const mpsi_mesh *mesh,
-                                 const mpsi_block *block, double *restrict fx, double *restrict fy,
-                                 double *restrict bx, double *restrict by) {
-  const double *p = s->p;
-  const int32_t begin = block->begin;
-  int64_t slot = block->slot;
-  for (int64_t r = block->run_begin; r < block->run_end; r++) {
-    const mpsi_run *run = &mesh->run[r];
-    for (int32_t t0 = 0; t0 < run->count; t0 += MPSI_DYN_CHUNK) {
-      const int32_t left = run->count - t0, n = left < MPSI_DYN_CHUNK ? left : MPSI_DYN_CHUNK;
-      const double *restrict pi = p + run->i0 + t0, *restrict pj = p + run->j0 + t0;
-      const double *restrict ex = s->ex + slot + t0, *restrict ey = s->ey + slot + t0;
-      SIMD for (int32_t t = 0; t < n; t++) {
-        const double sum = pi[t] + pj[t];
-        bx[t] = sum * ex[t];
-        by[t] = sum * ey[t];
-      }
-      if (run->own_i) {
-        add(fx + (run->i0 + t0 - begin), bx, -1.0, n);
-        add(fy + (run->i0 + t0 - begin), by, -1.0, n);
-      }
-      if (run->own_j) {
-        add(fx + (run->j0 + t0 - begin), bx, 1.0, n);
-        add(fy + (run->j0 + t0 - begin), by, 1.0, n);
+/* Rows of a block in the second pass: forces, and the same times beta (damping by pairs). */
+typedef struct forces {
+  double *fx, *fy, *ft, *sx, *sy, *st;
+} forces;
+
+/* Subtracts the pressure forces (p_i + p_j) kc e of a run from its ends (A10); with damping by
+ * pairs also (beta_i p_i + beta_j p_j) kc e. */
+MPSI_INLINE void pressure_run(const int by_pairs, const mpsi_state *s, const mpsi_run *run,
+                              int32_t begin, int64_t slot, forces f, double *restrict bx,
+                              double *restrict by, double *restrict cx, double *restrict cy) {
+  for (int32_t t0 = 0; t0 < run->count; t0 += MPSI_DYN_CHUNK) {
+    const int32_t left = run->count - t0, n = left < MPSI_DYN_CHUNK ? left : MPSI_DYN_CHUNK;
+    const int64_t i = run->i0 + t0, j = run->j0 + t0;
+    const double *restrict pi = s->p + i, *restrict pj = s->p + j;
+    const double *restrict bi = s->beta + i, *restrict bj = s->beta + j;
+    const double *restrict ex = s->ex + slot + t0, *restrict ey = s->ey + slot + t0;
+    SIMD for (int32_t t = 0; t < n; t++) {
+      const double sum = pi[t] + pj[t];
+      bx[t] = sum * ex[t];
+      by[t] = sum * ey[t];
+      if (by_pairs) {
+        const double damp = bi[t] * pi[t] + bj[t] * pj[t];
+        cx[t] = damp * ex[t];
+        cy[t] = damp * ey[t];
       }
     }
-    slot += run->count;
-  }
-  const mpsi_scattered *list = &mesh->scattered;
-  for (int64_t k = block->scattered_begin; k < block->scattered_end; k++, slot++) {
-    const double sum = p[list->i[k]] + p[list->j[k]];
-    const double x = sum * s->ex[slot], y = sum * s->ey[slot];
-    if (list->ti[k] >= 0) fx[list->ti[k] - begin] -= x, fy[list->ti[k] - begin] -= y;
-    if (list->tj[k] >= 0) fx[list->tj[k] - begin] += x, fy[list->tj[k] - begin] += y;
+    const int own[2] = {run->own_i, run->own_j};
+    for (int side = 0; side < 2; side++) {
+      const int64_t at = (side == 0 ? i : j) - begin;
+      const double sign = side == 0 ? -1.0 : 1.0;
+      if (!own[side]) continue;
+      add(f.fx + at, bx, sign, n);
+      add(f.fy + at, by, sign, n);
+      if (!by_pairs) continue;
+      add(f.sx + at, cx, sign, n);
+      add(f.sy + at, cy, sign, n);
+    }
   }
 }
 
-/* One degree of freedom of a block: damping (A24), then the integrator. `g` holds the block's
- * restoring accelerations, and receives the total ones. */
-MPSI_INLINE void advance(const int integrator, const int damped, const mpsi_step *step, int32_t n,
-                         double *restrict g, double *restrict d, double *restrict o,
-                         double *restrict v, double *restrict h, const double *restrict alpha,
-                         const double *restrict beta) {
+MPSI_INLINE void pressure_scattered(const int by_pairs, const mpsi_state *s,
+                                    const mpsi_scattered *list, int64_t k, int32_t begin,
+                                    int64_t slot, forces f) {
+  const int32_t i = list->i[k], j = list->j[k];
+  const double sum = s->p[i] + s->p[j], damp = s->beta[i] * s->p[i] + s->beta[j] * s->p[j];
+  const int32_t target[2] = {list->ti[k], list->tj[k]};
+  for (int side = 0; side < 2; side++) {
+    const int32_t at = target[side] - begin;
+    const double sign = side == 0 ? -1.0 : 1.0;
+    if (target[side] < 0) continue;
+    f.fx[at] += sign * (sum * s->ex[slot]);
+    f.fy[at] += sign * (sum * s->ey[slot]);
+    if (!by_pairs) continue;
+    f.sx[at] += sign * (damp * s->ex[slot]);
+    f.sy[at] += sign * (damp * s->ey[slot]);
+  }
+}
+
+MPSI_INLINE void pressure_forces(const int by_pairs, const mpsi_state *s, const mpsi_mesh *mesh,
+                                 const mpsi_block *block, forces f, double *room) {
+  int64_t slot = block->slot;
+  for (int64_t r = block->run_begin; r < block->run_end; slot += mesh->run[r++].count)
+    pressure_run(by_pairs, s, &mesh->run[r], block->begin, slot, f, room, room + MPSI_DYN_CHUNK,
+                 room + 2 * MPSI_DYN_CHUNK, room + 3 * MPSI_DYN_CHUNK);
+  for (int64_t k = block->scattered_begin; k < block->scattered_end; k++)
+    pressure_scattered(by_pairs, s, &mesh->scattered, k, block->begin, slot++, f);
+}
+
+/* One degree of freedom of a block. */
+typedef struct freedom {
+  double *d, *o, *v, *h;
+} freedom;
+
+/* Damping, then the integrator. `g` holds the restoring accelerations, and receives the total
+ * ones; `sk` the same times beta, of which the damping is the rate (A24). */
+MPSI_INLINE void advance(const int integrator, const int damping, const mpsi_step *step, int32_t n,
+                         double *restrict g, double *restrict sk, freedom f,
+                         const double *restrict alpha, const double *restrict beta) {
   const double dt = step->dt, rdt = 1.0 / dt;
-  if (damped && step->first) SIMD for (int32_t t = 0; t < n; t++) h[t] = g[t];
+  double *restrict d = f.d, *restrict o = f.o, *restrict v = f.v, *restrict h = f.h;
+  if (damping == BY_PARTICLES) SIMD for (int32_t t = 0; t < n; t++) sk[t] = beta[t] * g[t];
+  if (damping && step->first) SIMD for (int32_t t = 0; t < n; t++) h[t] = sk[t];
   SIMD for (int32_t t = 0; t < n; t++) {
     double a = g[t];
-    if (damped) {
+    if (damping) {
       const double speed = integrator == VERLET ? (d[t] - o[t]) * rdt : v[t];
-      const double b = beta[t] * rdt;
-      a = a + b * (a - h[t]) - alpha[t] * speed;
-      h[t] = g[t];
+      a = a + (sk[t] - h[t]) * rdt - alpha[t] * speed;
+      h[t] = sk[t];
       g[t] = a;
     }
     if (integrator == VERLET) {
@@ -280,36 +347,57 @@ MPSI_INLINE void advance(const int integrator, const int damped, const mpsi_step
   }
 }
 
-MPSI_INLINE int pass2(const int removal, const int integrator, const int damped,
-                      const mpsi_state *s, const mpsi_mesh *mesh, int64_t b, const mpsi_step *step,
-                      double *scratch) {
-  const mpsi_block *block = &mesh->block[b];
+/* Restoring accelerations of a block: what the first pass left, the pressure, inverse masses. */
+MPSI_INLINE void restoring(const int by_pairs, const mpsi_state *s, const mpsi_mesh *mesh,
+                           const mpsi_block *block, forces f, double *room) {
   const int32_t begin = block->begin, n = block->end - begin;
-  double *restrict fx = scratch, *restrict fy = scratch + MPSI_DYN_BLOCK;
-  double *restrict ft = scratch + 2 * MPSI_DYN_BLOCK;
-  const double *restrict gx = s->gx + begin, *restrict gy = s->gy + begin,
-                         *restrict gth = s->gth + begin;
+  const double *restrict gx = s->gx + begin, *restrict gy = s->gy + begin;
+  const double *restrict gth = s->gth + begin;
+  const double *restrict ix = s->ix + begin, *restrict iy = s->iy + begin;
+  const double *restrict ith = s->ith + begin;
+  double *restrict fx = f.fx, *restrict fy = f.fy, *restrict ft = f.ft;
+  double *restrict sx = f.sx, *restrict sy = f.sy, *restrict st = f.st;
+  const double *restrict px = s->sx + begin, *restrict py = s->sy + begin;
+  const double *restrict pth = s->sth + begin;
   SIMD for (int32_t t = 0; t < n; t++) fx[t] = gx[t], fy[t] = gy[t];
-  pressure_forces(s, mesh, block, fx, fy, scratch + 4 * MPSI_DYN_BLOCK,
-                  scratch + 4 * MPSI_DYN_BLOCK + MPSI_DYN_CHUNK);
-  const double *restrict ix = s->ix + begin, *restrict iy = s->iy + begin,
-                         *restrict ith = s->ith + begin;
+  if (by_pairs) SIMD for (int32_t t = 0; t < n; t++) sx[t] = px[t], sy[t] = py[t];
+  pressure_forces(by_pairs, s, mesh, block, f, room);
   SIMD for (int32_t t = 0; t < n; t++) {
     fx[t] *= ix[t];
     fy[t] *= iy[t];
     ft[t] = gth[t] * ith[t];
   }
+  if (by_pairs) SIMD for (int32_t t = 0; t < n; t++) {
+      sx[t] *= ix[t];
+      sy[t] *= iy[t];
+      st[t] = pth[t] * ith[t];
+    }
+}
+
+MPSI_INLINE int pass2(const int removal, const int integrator, const int damping,
+                      const mpsi_state *s, const mpsi_mesh *mesh, int64_t b, const mpsi_step *step,
+                      double *scratch) {
+  const mpsi_block *block = &mesh->block[b];
+  const int32_t begin = block->begin, n = block->end - begin;
+  const forces f = {scratch,
+                    scratch + MPSI_DYN_BLOCK,
+                    scratch + 2 * MPSI_DYN_BLOCK,
+                    scratch + 3 * MPSI_DYN_BLOCK,
+                    scratch + 4 * MPSI_DYN_BLOCK,
+                    scratch + 5 * MPSI_DYN_BLOCK};
+  restoring(damping == BY_PAIRS, s, mesh, block, f, scratch + 7 * MPSI_DYN_BLOCK);
   const double *alpha = s->alpha + begin, *beta = s->beta + begin;
-  advance(integrator, damped, step, n, fx, s->dx + begin, s->ox + begin, s->vx + begin,
-          s->hx + begin, alpha, beta);
-  advance(integrator, damped, step, n, fy, s->dy + begin, s->oy + begin, s->vy + begin,
-          s->hy + begin, alpha, beta);
-  advance(integrator, damped, step, n, ft, s->th + begin, s->oth + begin, s->vth + begin,
-          s->hth + begin, alpha, beta);
+  const freedom x = {s->dx + begin, s->ox + begin, s->vx + begin, s->hx + begin};
+  const freedom y = {s->dy + begin, s->oy + begin, s->vy + begin, s->hy + begin};
+  const freedom th = {s->th + begin, s->oth + begin, s->vth + begin, s->hth + begin};
+  advance(integrator, damping, step, n, f.fx, f.sx, x, alpha, beta);
+  advance(integrator, damping, step, n, f.fy, f.sy, y, alpha, beta);
+  advance(integrator, damping, step, n, f.ft, f.st, th, alpha, beta);
   trig(removal, s, begin, block->end);
 
-  double bad = 0.0;
+  const double *restrict fx = f.fx, *restrict fy = f.fy;
   const double limit2 = step->limit2;
+  double bad = 0.0;
 #pragma omp simd reduction(+ : bad)
   for (int32_t t = 0; t < n; t++) bad += fx[t] * fx[t] + fy[t] * fy[t] <= limit2 ? 0.0 : 1.0;
   if (step->output || bad != 0.0) {
@@ -321,42 +409,43 @@ MPSI_INLINE int pass2(const int removal, const int integrator, const int damped,
 
 /* ---- variants -------------------------------------------------------------------------------- */
 
-#define PASS1(removal)                                                                             \
-  static void pass1_##removal(const mpsi_state *s, const mpsi_mesh *mesh, int64_t b,               \
-                              double *scratch) {                                                   \
-    pass1(removal, s, mesh, b, scratch);                                                           \
-  }                                                                                                \
+#define PASS1(removal, by_pairs)                                                                   \
+  static void pass1_##removal##_##by_pairs(const mpsi_state *s, const mpsi_mesh *mesh, int64_t b,  \
+                                           double *scratch) {                                      \
+    pass1(removal, by_pairs, s, mesh, b, scratch);                                                 \
+  }
+#define TRIG(removal)                                                                              \
   static void trig_##removal(const mpsi_state *s, int64_t begin, int64_t end) {                    \
     trig(removal, s, begin, end);                                                                  \
   }
-#define PASS2(removal, integrator, damped)                                                         \
-  static int pass2_##removal##_##integrator##_##damped(const mpsi_state *s, const mpsi_mesh *mesh, \
-                                                       int64_t b, const mpsi_step *step,           \
-                                                       double *scratch) {                          \
-    return pass2(removal, integrator, damped, s, mesh, b, step, scratch);                          \
+#define PASS2(removal, integrator, damping)                                                        \
+  static int pass2_##removal##_##integrator##_##damping(const mpsi_state *s,                       \
+                                                        const mpsi_mesh *mesh, int64_t b,          \
+                                                        const mpsi_step *step, double *scratch) {  \
+    return pass2(removal, integrator, damping, s, mesh, b, step, scratch);                         \
   }
-#define PASS2_ALL(removal)                                                                         \
-  PASS2(removal, EULER, 0)                                                                         \
-  PASS2(removal, EULER, 1)                                                                         \
-  PASS2(removal, LEAPFROG, 0)                                                                      \
-  PASS2(removal, LEAPFROG, 1)                                                                      \
-  PASS2(removal, VERLET, 0)                                                                        \
-  PASS2(removal, VERLET, 1)
+#define INTEGRATORS(X, removal, damping)                                                           \
+  X(removal, EULER, damping) X(removal, LEAPFROG, damping) X(removal, VERLET, damping)
+#define NAME(removal, integrator, damping) pass2_##removal##_##integrator##_##damping,
 #define PASS2_TABLE(removal)                                                                       \
   {                                                                                                \
-    {pass2_##removal##_EULER_0, pass2_##removal##_EULER_1},                                        \
-        {pass2_##removal##_LEAPFROG_0, pass2_##removal##_LEAPFROG_1}, {                            \
-      pass2_##removal##_VERLET_0, pass2_##removal##_VERLET_1                                       \
+    {INTEGRATORS(NAME, removal, UNDAMPED)}, {INTEGRATORS(NAME, removal, BY_PARTICLES)}, {          \
+      INTEGRATORS(NAME, removal, BY_PAIRS)                                                         \
     }                                                                                              \
   }
+#define ALL(removal)                                                                               \
+  PASS1(removal, 0)                                                                                \
+  PASS1(removal, 1)                                                                                \
+  TRIG(removal)                                                                                    \
+  INTEGRATORS(PASS2, removal, UNDAMPED)                                                            \
+  INTEGRATORS(PASS2, removal, BY_PARTICLES)                                                        \
+  INTEGRATORS(PASS2, removal, BY_PAIRS)
 
-PASS1(MEAN_ANGLE)
-PASS1(MEAN_MATRIX)
-PASS2_ALL(MEAN_ANGLE)
-PASS2_ALL(MEAN_MATRIX)
+ALL(MEAN_ANGLE)
+ALL(MEAN_MATRIX)
 
 const mpsi_kernels CONCAT(mpsi_kernels_v, MPSI_LEVEL) = {
-    .pass1 = {pass1_MEAN_ANGLE, pass1_MEAN_MATRIX},
+    .pass1 = {{pass1_MEAN_ANGLE_0, pass1_MEAN_ANGLE_1}, {pass1_MEAN_MATRIX_0, pass1_MEAN_MATRIX_1}},
     .pass2 = {PASS2_TABLE(MEAN_ANGLE), PASS2_TABLE(MEAN_MATRIX)},
     .trig = {trig_MEAN_ANGLE, trig_MEAN_MATRIX},
 };

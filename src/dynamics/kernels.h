@@ -13,7 +13,8 @@ typedef struct mpsi_state {
   double *ox, *oy, *oth; /* the same one step earlier (Verlet) */
   double *vx, *vy, *vth; /* velocity at mid-step (leapfrog) or at the step (Euler) */
   double *gx, *gy, *gth; /* M^-1 times the restoring force: m/s2, rad/s2 */
-  double *hx, *hy, *hth; /* the same one step earlier (damping) */
+  double *sx, *sy, *sth; /* damping by pairs: each pair's force times its beta */
+  double *hx, *hy, *hth; /* M^-1 times beta times the restoring force, one step earlier */
   double *ax, *ay;       /* acceleration, written on demand */
   double *p;             /* pressure, Pa */
   double *c, *s;         /* removal (12): cos th - 1, sin th; (11): cos th/2 - 1, sin th/2 */
@@ -23,16 +24,25 @@ typedef struct mpsi_state {
   double *ex, *ey;       /* a slot a pair: kc e, from the first pass to the second */
 } mpsi_state;
 
+/* Which stiffness-proportional damping a body needs. One ratio for all: by particles is the same as
+ * by pairs, and cheaper. */
+typedef enum mpsi_damping {
+  MPSI_UNDAMPED = 0,
+  MPSI_BY_PARTICLES = 1, /* seed A (A24): beta_i times the particle's whole force */
+  MPSI_BY_PAIRS = 2 /* seed A (A15): each pair's shear force times the mean beta, each particle's
+                       pressure times its own, as element damping does */
+} mpsi_damping;
+
 /* What one step is told. */
 typedef struct mpsi_step {
   double dt;
   double limit2;  /* square of the divergence criterion, (m/s2)^2 */
-  int32_t first;  /* no history yet: G_{k-1} = G_k */
+  int32_t first;  /* no history yet: the damping force has no rate */
   int32_t output; /* 1: write acceleration */
 } mpsi_step;
 
 /* Doubles of scratch memory a worker needs. */
-#define MPSI_DYN_SCRATCH (4 * MPSI_DYN_BLOCK + 32 * MPSI_DYN_CHUNK)
+#define MPSI_DYN_SCRATCH (7 * MPSI_DYN_BLOCK + 32 * MPSI_DYN_CHUNK)
 
 /* First pass over one block: shear and normal forces, torques, divergence, pressure. */
 typedef void (*mpsi_pass1_fn)(const mpsi_state *state, const mpsi_mesh *mesh, int64_t block,
@@ -45,8 +55,8 @@ typedef int (*mpsi_pass2_fn)(const mpsi_state *state, const mpsi_mesh *mesh, int
 typedef void (*mpsi_trig_fn)(const mpsi_state *state, int64_t begin, int64_t end);
 
 typedef struct mpsi_kernels {
-  mpsi_pass1_fn pass1[2];       /* removal (11), (12) */
-  mpsi_pass2_fn pass2[2][3][2]; /* removal, integrator, damping */
+  mpsi_pass1_fn pass1[2][2];    /* removal (11), (12); damping by pairs */
+  mpsi_pass2_fn pass2[2][3][3]; /* removal, mpsi_damping, integrator */
   mpsi_trig_fn trig[2];
 } mpsi_kernels;
 

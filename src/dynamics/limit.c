@@ -1,8 +1,9 @@
 /* limit.c - the largest stable time step by linear theory, without time stepping.
  *
  * Seed A's scheme with Rayleigh damping (A24) first becomes unstable at z = -1. There
- *   4 = lambda_max [ 2 dt A + (dt^2 + 2 dt B) M^-1 K ],  A = diag(alpha_i), B = diag(beta_i),
- * which for one damping ratio is dt = -(beta + alpha/w^2) + sqrt((beta + alpha/w^2)^2 + 4/w^2).
+ *   4 = lambda_max [ 2 dt A + dt^2 M^-1 K + 2 dt M^-1 K_beta ],  A = diag(alpha_i), K_beta the
+ * stiffness with each part times its beta (by pairs), or diag(beta_i) K (by particles);
+ * for one damping ratio that is dt = -(beta + alpha/w^2) + sqrt((beta + alpha/w^2)^2 + 4/w^2).
  * The highest eigenvalue comes from Lanczos iteration on the symmetric tangent.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles_internal.h"
@@ -13,7 +14,11 @@
 #include <string.h>
 
 #define LANCZOS_MOST 400
-#define LANCZOS_ENOUGH 1e-9 /* relative bound on the error of the eigenvalue */
+#define LANCZOS_EVERY 10 /* iterations between looks at the result */
+/* Enough: a relative bound on the error of the eigenvalue, or, where eigenvalues cluster, a
+ * thousandth of that as relative change between two looks. */
+#define LANCZOS_BOUND 1e-7
+#define UNEVEN_BOUND 1e-5 /* for the rounds of uneven_limit */
 
 double mpsi_damped_limit(double omega2, double alpha, double beta) {
   const double b = beta + alpha / omega2;
@@ -23,25 +28,30 @@ double mpsi_damped_limit(double omega2, double alpha, double beta) {
 /* ---- Lanczos -----------------------------------------------------------------------------------
  */
 
-/* The operator 2 dt A + D^1/2 S D^1/2, D = dt^2 + 2 dt B; dt = 0 stands for S itself. */
+/* The operator 2 dt A + dt^2 S + 2 dt S_beta in symmetric form; dt = 0 stands for S itself. */
 typedef struct operator_data {
   mps_dynamics *dynamics;
   double dt;
-  double *scaled, *work; /* 3 n, 4 n */
+  double *weight, *scaled, *work; /* n, 3 n, 4 n */
 } operator_data;
 
 static void apply(operator_data *op, const double *x, double *y) {
   const int64_t n = op->dynamics->count;
   const double dt = op->dt;
+  const double *alpha = op->dynamics->state.alpha, *beta = op->dynamics->state.beta;
   if (dt == 0.0) {
-    mpsi_tangent_apply(op->dynamics, x, y, op->work);
+    mpsi_tangent_apply(op->dynamics, NULL, x, y, op->work);
     return;
   }
-  const double *alpha = op->dynamics->state.alpha, *beta = op->dynamics->state.beta;
-  for (int64_t k = 0; k < 3 * n; k++) op->scaled[k] = sqrt(dt * dt + 2.0 * dt * beta[k % n]) * x[k];
-  mpsi_tangent_apply(op->dynamics, op->scaled, y, op->work);
-  for (int64_t k = 0; k < 3 * n; k++)
-    y[k] = sqrt(dt * dt + 2.0 * dt * beta[k % n]) * y[k] + 2.0 * dt * alpha[k % n] * x[k];
+  for (int64_t k = 0; k < n; k++) op->weight[k] = dt * dt + 2.0 * dt * beta[k];
+  if (op->dynamics->damping == MPSI_BY_PAIRS) {
+    mpsi_tangent_apply(op->dynamics, op->weight, x, y, op->work);
+  } else { /* diag(w) S is similar to diag(sqrt w) S diag(sqrt w) */
+    for (int64_t k = 0; k < 3 * n; k++) op->scaled[k] = sqrt(op->weight[k % n]) * x[k];
+    mpsi_tangent_apply(op->dynamics, NULL, op->scaled, y, op->work);
+    for (int64_t k = 0; k < 3 * n; k++) y[k] *= sqrt(op->weight[k % n]);
+  }
+  for (int64_t k = 0; k < 3 * n; k++) y[k] += 2.0 * dt * alpha[k % n] * x[k];
 }
 
 static double dot(const double *a, const double *b, int64_t n) {
@@ -97,7 +107,7 @@ static bool highest(int m, const double *diagonal, const double *off, double *va
   return info == 0 && found == 1;
 }
 
-static bool lanczos(operator_data *op, double *basis, ritz *out) {
+static bool lanczos(operator_data *op, double bound, double *basis, ritz *out) {
   const int64_t n = 3 * op->dynamics->count;
   double *v = basis, *before = basis + n, *next = basis + 2 * n;
   double diagonal[LANCZOS_MOST], off[LANCZOS_MOST], value = 0.0, last = 0.0;
@@ -114,10 +124,12 @@ static bool lanczos(operator_data *op, double *basis, ritz *out) {
     diagonal[m - 1] = a;
     norm = off[m - 1] = sqrt(dot(next, next, n));
     const bool stuck = !(norm > 1e-14 * fabs(a));
-    if (m % 10 == 0 || stuck || m == LANCZOS_MOST) {
+    if (m % LANCZOS_EVERY == 0 || stuck || m == LANCZOS_MOST) {
+      const double former = value;
       if (!highest(m, diagonal, off, &value, &last)) return false;
       *out = (ritz){value, fabs(norm * last), m};
-      if (stuck || out->error <= LANCZOS_ENOUGH * value) return true;
+      if (stuck || out->error <= bound * value || value - former <= 1e-3 * bound * value)
+        return true;
     }
     double *spare = before;
     before = v;
@@ -155,7 +167,7 @@ static bool uneven_limit(operator_data *op, double *basis, const range *r, doubl
   op->dt = low;
   for (int round = 0; round < 20; round++) {
     ritz top;
-    if (!lanczos(op, basis, &top)) return false;
+    if (!lanczos(op, UNEVEN_BOUND, basis, &top)) return false;
     *iterations += top.iterations;
     const double ratio = 4.0 / top.value;
     if (round > 0 && top.value != last_value)
@@ -164,10 +176,10 @@ static bool uneven_limit(operator_data *op, double *basis, const range *r, doubl
     last_value = top.value;
     low = fmax(low, op->dt * (ratio > 1.0 ? sqrt(ratio) : ratio));
     high = fmin(high, op->dt * (ratio > 1.0 ? ratio : sqrt(ratio)));
-    if (high - low <= 1e-8 * high) break;
+    if (high - low <= UNEVEN_BOUND * high) break;
     op->dt = fmin(high, fmax(low, op->dt * pow(ratio, power)));
   }
-  *dt = low; /* never above the limit */
+  *dt = low * (1.0 - UNEVEN_BOUND); /* never above the limit */
   op->dt = 0.0;
   return true;
 }
@@ -218,9 +230,12 @@ static mps_status find_limit(mps_dynamics *dynamics, double duration, double *me
                              mps_linear_limit *out) {
   static const char *const function = "mps_dynamics_limit_linear";
   const int64_t n = 3 * dynamics->count;
-  operator_data op = {.dynamics = dynamics, .scaled = memory + 3 * n, .work = memory + 4 * n};
+  operator_data op = {.dynamics = dynamics,
+                      .scaled = memory + 3 * n,
+                      .work = memory + 4 * n,
+                      .weight = memory + 16 * dynamics->count};
   ritz top;
-  if (!lanczos(&op, memory, &top))
+  if (!lanczos(&op, LANCZOS_BOUND, memory, &top))
     return mpsi_fail(dynamics->context, function, MPS_ERROR_NUMERIC,
                      "LAPACK could not solve the tridiagonal eigenproblem");
   const range r = damping_range(dynamics);
@@ -251,10 +266,10 @@ mps_status mps_dynamics_limit_linear(mps_dynamics *dynamics, double duration,
     *out = dynamics->limit;
     return MPS_OK;
   }
-  /* three Lanczos vectors, one scaled vector, and 4 n of work for the tangent */
-  double *memory = mpsi_alloc(context, 16 * dynamics->count, sizeof *memory);
+  /* three Lanczos vectors and a scaled one of 3 n each, 4 n of work for the tangent, weights */
+  double *memory = mpsi_alloc(context, 17 * dynamics->count, sizeof *memory);
   if (!memory)
-    return mpsi_fail_memory(context, __func__, (size_t)dynamics->count * 16 * sizeof *memory);
+    return mpsi_fail_memory(context, __func__, (size_t)dynamics->count * 17 * sizeof *memory);
   mps_linear_limit limit;
   const mps_status status = find_limit(dynamics, duration, memory, &limit);
   mpsi_free(context, memory);

@@ -274,8 +274,8 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
   const int64_t units = blocks < SMALL_BODY ? 1 : 8 * mps_context_threads(dynamics->context);
   work w = {.dynamics = dynamics,
             .step = {.dt = dynamics->dt, .limit2 = limit * limit},
-            .pass1 = dynamics->kernels->pass1[removal],
-            .pass2 = dynamics->kernels->pass2[removal][dynamics->def.integrator][dynamics->damped],
+            .pass1 = dynamics->kernels->pass1[removal][dynamics->damping == MPSI_BY_PAIRS],
+            .pass2 = dynamics->kernels->pass2[removal][dynamics->damping][dynamics->def.integrator],
             .grain = (blocks + units - 1) / units};
   for (int64_t k = 0; k < count; k++) {
     const double now = mps_dynamics_time(dynamics);
@@ -283,6 +283,8 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
   }
   return MPS_OK;
 }
+
+#define PROMPT_WORK 5000000 /* particle-steps between looks at the cancel hook: some 0.1 s */
 
 static mps_status ready(mps_dynamics *dynamics, const char *function) {
   if (dynamics->diverged)
@@ -320,7 +322,9 @@ mps_status mps_dynamics_run(mps_dynamics *dynamics, double t_end, int64_t every,
                      "a run to %g s takes %g steps of dt = %g s: too many", t_end, exact,
                      dynamics->dt);
   const int64_t total = exact > 0.0 ? (int64_t)ceil(exact - 1e-9) : 0;
-  const int64_t report = total / 100 > 0 ? total / 100 : 1;
+  int64_t report = total / 100 > 0 ? total / 100 : 1;
+  const int64_t prompt = PROMPT_WORK / dynamics->count + 1;
+  if (report > prompt) report = prompt;
   if (callback) status = callback(user, dynamics);
   for (int64_t done = 0; status == MPS_OK && done < total;) {
     int64_t n = every - done % every, m = report - done % report;

@@ -12,6 +12,7 @@ typedef struct tangent {
   const mps_dynamics *dynamics;
   const double *x; /* displacements and rotations, 3 n */
   double *y, *p;
+  const double *weight; /* or NULL */
 } tangent;
 
 /* Sums of a block: force and moment of the shear part, divergence. */
@@ -26,7 +27,8 @@ static inline void shear_pair(const tangent *t, int64_t i, int64_t j, int64_t ti
   const double *x = t->x, *mu = t->dynamics->state.mu;
   const double dx = x[j] - x[i], dy = x[n + j] - x[n + i];
   const double mean = 0.5 * (x[2 * n + i] + x[2 * n + j]);
-  const double stiff = kf * (mu[i] + mu[j]);
+  const double weight = t->weight ? 0.5 * (t->weight[i] + t->weight[j]) : 1.0;
+  const double stiff = weight * kf * (mu[i] + mu[j]);
   const double fx = stiff * (dx + mean * r0y), fy = stiff * (dy - mean * r0x);
   const double moment = 0.5 * (r0x * fy - r0y * fx);
   const double div = kc * (r0x * dx + r0y * dy) / sqrt(r0x * r0x + r0y * r0y);
@@ -78,7 +80,7 @@ static void shear_block(void *data, int64_t b, int32_t worker) {
     t->y[k] = s.fx[k - begin];
     t->y[n + k] = s.fy[k - begin];
     t->y[2 * n + k] = s.moment[k - begin];
-    t->p[k] = -t->dynamics->state.lambda[k] * s.div[k - begin];
+    t->p[k] = -(t->weight ? t->weight[k] : 1.0) * t->dynamics->state.lambda[k] * s.div[k - begin];
   }
 }
 
@@ -97,7 +99,8 @@ static void pressure_block(void *data, int64_t b, int32_t worker) {
   }
 }
 
-void mpsi_tangent_apply(mps_dynamics *dynamics, const double *x, double *y, double *work) {
+void mpsi_tangent_apply(mps_dynamics *dynamics, const double *weight, const double *x, double *y,
+                        double *work) {
   const mpsi_state *state = &dynamics->state;
   const int64_t n = dynamics->count;
   for (int64_t k = 0; k < n; k++) {
@@ -105,7 +108,7 @@ void mpsi_tangent_apply(mps_dynamics *dynamics, const double *x, double *y, doub
     work[n + k] = sqrt(state->iy[k]) * x[n + k];
     work[2 * n + k] = sqrt(2.0 * state->ith[k]) * x[2 * n + k];
   }
-  tangent t = {.dynamics = dynamics, .x = work, .y = y, .p = work + 3 * n};
+  tangent t = {.dynamics = dynamics, .x = work, .y = y, .p = work + 3 * n, .weight = weight};
   mpsi_parallel_for(dynamics->context, dynamics->mesh.blocks, shear_block, &t);
   mpsi_parallel_for(dynamics->context, dynamics->mesh.blocks, pressure_block, &t);
 }

@@ -1,27 +1,13 @@
 /* test_particles.c - particle sets: life, growth, fields, views, order, selection, and the
  * agreement of the field table with docs/fields.md. Fills: test_fill.c.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "test_common.h"
+#include "test_fixture.h"
 #include "test_memory.h"
 
 #include <mps/particles.h>
 
 #include <core/fields.h>
 #include <core/particles_internal.h>
-
-static mps_context *context;
-
-static int make_context(void **state) {
-  (void)state;
-  context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  return 0;
-}
-
-static int drop_context(void **state) {
-  (void)state;
-  mps_context_destroy(&context);
-  return 0;
-}
 
 static mps_particles *make_set(int32_t dim) {
   mps_particles_def def = mps_particles_defaults();

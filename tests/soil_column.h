@@ -1,0 +1,96 @@
+/* soil_column.h - the column of soil that the dynamics tests share.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPS_TEST_SOIL_COLUMN_H
+#define MPS_TEST_SOIL_COLUMN_H
+
+#include "test_common.h"
+
+#include <mps/dynamics.h>
+
+typedef struct soil_layer {
+  double thickness, density, vs, vp, damping; /* m, kg/m3, m/s, m/s, - */
+} soil_layer;
+
+/* A set of width x height (m) filled with layers from the top down; the lowest goes to the end. */
+static inline mps_particles *soil_particles(mps_context *context, double spacing, double width,
+                                            double height, int layers, const soil_layer *layer) {
+  mps_particles_def def = mps_particles_defaults();
+  mps_particles *particles = NULL;
+  const double lo[2] = {0.0, 0.0}, hi[2] = {width, height};
+  def.spacing = spacing;
+  mps_assert_ok(context, mps_particles_create(context, &def, &particles));
+  mps_assert_ok(context, mps_particles_fill_box(particles, lo, hi, NULL));
+  const char *const names[4] = {"density", "shear_velocity", "pressure_velocity", "damping"};
+  mps_view x, field[4];
+  for (int f = 0; f < 4; f++) {
+    mps_assert_ok(context, mps_particles_set(particles, names[f], 0, 0.0));
+    mps_assert_ok(context, mps_particles_view(particles, names[f], &field[f]));
+  }
+  mps_assert_ok(context, mps_particles_view(particles, "position", &x));
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    double depth = height - *mps_view_f64(&x, k, 1);
+    int m = 0;
+    while (m < layers - 1 && depth > layer[m].thickness) depth -= layer[m++].thickness;
+    *mps_view_f64(&field[0], k, 0) = layer[m].density;
+    *mps_view_f64(&field[1], k, 0) = layer[m].vs;
+    *mps_view_f64(&field[2], k, 0) = layer[m].vp;
+    *mps_view_f64(&field[3], k, 0) = layer[m].damping;
+  }
+  return particles;
+}
+
+/* Ids of the particles in a box; the caller frees. */
+static inline int64_t *soil_select(mps_context *context, mps_particles *particles, double x0,
+                                   double y0, double x1, double y1, int64_t *count) {
+  const double lo[2] = {x0, y0}, hi[2] = {x1, y1};
+  const int64_t n = mps_particles_count(particles);
+  int64_t *ids = malloc((size_t)n * sizeof *ids);
+  if (!ids) abort();
+  mps_assert_ok(context, mps_particles_select_box(particles, lo, hi, n, ids, count));
+  return ids;
+}
+
+/* Holds degrees of freedom of the particles in a box. */
+static inline void soil_hold(mps_context *context, mps_particles *particles, mps_dynamics *dynamics,
+                             uint32_t dofs, double x0, double y0, double x1, double y1) {
+  int64_t count;
+  int64_t *ids = soil_select(context, particles, x0, y0, x1, y1, &count);
+  mps_assert_ok(context, mps_dynamics_hold(dynamics, dofs, count, ids));
+  free(ids);
+}
+
+/* The seed's column, 10 m x 100 m, density 1500 kg/m3, rollers on sides and base, Ricker base
+ * motion: wave 'S' or 'P'. `damping` for every particle. */
+static inline mps_dynamics *seed_column(mps_context *context, double radius, double vs, double vp,
+                                        double damping, char wave, const mps_dynamics_def *def,
+                                        mps_particles **particles) {
+  const double D = 2.0 * radius;
+  const double width = round(10.0 / D) * D, height = round(100.0 / D) * D;
+  const soil_layer soil = {height, 14.7 / 9.8 * 1000.0, vs, vp, damping};
+  *particles = soil_particles(context, D, width, height, 1, &soil);
+  mps_dynamics *dynamics = NULL;
+  mps_signal *ricker = NULL;
+  mps_assert_ok(context, mps_dynamics_create(context, *particles, def, &dynamics));
+  const uint32_t held = wave == 'S' ? MPS_DOF_Y : MPS_DOF_X;
+  soil_hold(context, *particles, dynamics, held, -1.0, -1.0, D, height);
+  soil_hold(context, *particles, dynamics, held, width - D, -1.0, width, height);
+  soil_hold(context, *particles, dynamics, held, -1.0, -1.0, width, D);
+  int64_t count;
+  int64_t *base = soil_select(context, *particles, -1.0, -1.0, width, D, &count);
+  mps_assert_ok(context, mps_signal_ricker(context, 4.0, 0.25, 1.0, &ricker));
+  mps_assert_ok(context,
+                mps_dynamics_drive(dynamics, wave == 'S' ? 0 : 1, ricker, 1.0, count, base));
+  mps_signal_destroy(&ricker);
+  free(base);
+  return dynamics;
+}
+
+/* Present value of a field of the particle `id`. */
+static inline double soil_value(mps_context *context, mps_particles *particles, const char *field,
+                                int64_t id, int component) {
+  mps_view view;
+  mps_assert_ok(context, mps_particles_view(particles, field, &view));
+  return *mps_view_f64(&view, mps_particles_index(particles, id), component);
+}
+
+#endif

@@ -1,0 +1,165 @@
+/* test_dynamics_transfer.c - surface response of layered ground against one-dimensional theory,
+ * with rigid and viscous base: amplitude and frequency of the first three peaks.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "soil_column.h"
+
+#include <complex.h>
+
+#define PI 3.14159265358979323846
+#define FREQUENCIES 1170
+#define EVERY 4 /* steps a sample */
+
+static const soil_layer layers[3] = {{10.0, 1700.0, 120.0, 240.0, 0.05},
+                                     {15.0, 1800.0, 200.0, 400.0, 0.04},
+                                     {15.0, 2000.0, 350.0, 700.0, 0.02}};
+static const double rock_density = 2200.0, rock_vs = 700.0;
+static const double f1 = 1.0, f2 = 8.0, height = 40.0;
+static const double f_first = 0.3, f_step = 11.7 / FREQUENCIES; /* Hz */
+
+/* Displacement and shear stress carried from the free surface down, layer by layer. Rayleigh
+ * damping makes density and modulus complex: rho (1 - i alpha/w), mu (1 + i w beta). Relative to
+ * the outcrop motion of the half space below (`rock`), or to the motion `y0` above the bottom. */
+static double complex transfer(double f, bool rock, double y0) {
+  const double w = 2.0 * PI * f;
+  double complex u = 1.0, stress = 0.0; /* stress mu du/dz, z down */
+  for (int m = 0; m < 3; m++) {
+    const double h = layers[m].damping;
+    const double alpha = 4.0 * PI * f1 * f2 * h / (f1 + f2), beta = h / (PI * (f1 + f2));
+    const double complex rho = layers[m].density * (1.0 - I * alpha / w);
+    const double complex mu =
+        layers[m].density * layers[m].vs * layers[m].vs * (1.0 + I * w * beta);
+    const double complex k = w * csqrt(rho / mu);
+    const double thickness = layers[m].thickness - (m == 2 ? y0 : 0.0);
+    const double complex c = ccos(k * thickness), s = csin(k * thickness);
+    const double complex below = u * c + stress / (k * mu) * s;
+    stress = stress * c - u * k * mu * s;
+    u = below;
+  }
+  if (!rock) return 1.0 / u;
+  /* in the rock u = A exp(ikz) + B exp(-ikz), A going up, and stress = i w Z (A - B): 2 A is */
+  return 1.0 / (u + stress / (I * w * rock_density * rock_vs));
+}
+
+typedef struct traces {
+  mps_context *context;
+  mps_particles *particles;
+  int64_t top, base, count;
+  double *surface, *bottom;
+} traces;
+
+static mps_status record(void *user, mps_dynamics *dynamics) {
+  traces *t = user;
+  (void)dynamics;
+  t->surface[t->count] = soil_value(t->context, t->particles, "acceleration", t->top, 0);
+  t->bottom[t->count++] = soil_value(t->context, t->particles, "acceleration", t->base, 0);
+  return MPS_OK;
+}
+
+static double complex fourier(const double *a, int64_t n, double dt, double f) {
+  const double complex turn = cexp(-2.0 * PI * I * f * dt);
+  double complex sum = 0.0, phase = 1.0;
+  for (int64_t k = 0; k < n; k++, phase *= turn) sum += a[k] * phase;
+  return sum * dt;
+}
+
+typedef struct peaks {
+  double f[3], amplitude[3];
+} peaks;
+
+static peaks find_peaks(const double *amplitude) {
+  peaks p = {{0}, {0}};
+  int found = 0;
+  for (int k = 1; k < FREQUENCIES - 1 && found < 3; k++)
+    if (amplitude[k] > amplitude[k - 1] && amplitude[k] >= amplitude[k + 1]) {
+      p.f[found] = f_first + k * f_step;
+      p.amplitude[found++] = amplitude[k];
+    }
+  assert_int_equal(found, 3);
+  return p;
+}
+
+/* The layered column with periodic sides, its base condition set. */
+static mps_dynamics *build(mps_context *context, bool viscous, double spacing, mps_signal *input,
+                           mps_particles **particles) {
+  mps_dynamics_def def = mps_dynamics_defaults();
+  def.f1 = f1, def.f2 = f2;
+  def.courant = 0.5; /* damping is one-sided in time: its error is of the order of dt */
+  def.period_x = 4.0 * spacing;
+  mps_dynamics *dynamics = NULL;
+  *particles = soil_particles(context, spacing, 4.0 * spacing, height, 3, layers);
+  mps_assert_ok(context, mps_dynamics_create(context, *particles, &def, &dynamics));
+  int64_t count;
+  int64_t *base = soil_select(context, *particles, -1.0, -1.0, 100.0, spacing, &count);
+  if (viscous) {
+    mps_viscous_def boundary = mps_viscous_defaults();
+    boundary.density = rock_density;
+    boundary.shear_velocity = rock_vs;
+    boundary.pressure_velocity = 2.0 * rock_vs;
+    boundary.incoming[0] = input;
+    mps_assert_ok(context, mps_dynamics_viscous(dynamics, &boundary, count, base));
+  } else {
+    mps_assert_ok(context, mps_dynamics_hold(dynamics, MPS_DOF_Y, count, base));
+    mps_assert_ok(context, mps_dynamics_drive(dynamics, 0, input, 1.0, count, base));
+  }
+  free(base);
+  return dynamics;
+}
+
+static void compare(bool viscous, double spacing, double duration) {
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_particles *particles = NULL;
+  mps_signal *input = NULL;
+  mps_assert_ok(context, mps_signal_ricker(context, 4.0, 0.5, 1.0, &input));
+  mps_dynamics *dynamics = build(context, viscous, spacing, input, &particles);
+  const double dt = EVERY * mps_dynamics_dt(dynamics); /* of the samples */
+  const int64_t steps = (int64_t)(duration / dt) + 4;
+  const double top[2] = {2.0 * spacing, height}, foot[2] = {2.0 * spacing, 0.0};
+  traces t = {.context = context, .particles = particles};
+  t.top = mps_particles_nearest(particles, top);
+  t.base = mps_particles_nearest(particles, foot);
+  t.surface = malloc((size_t)steps * sizeof(double));
+  t.bottom = malloc((size_t)steps * sizeof(double));
+  assert_true(t.surface && t.bottom);
+  mps_assert_ok(context, mps_dynamics_run(dynamics, duration, EVERY, record, &t));
+  if (viscous) /* relative to the outcrop, twice the incoming wave */
+    for (int64_t k = 0; k < t.count; k++)
+      t.bottom[k] = 2.0 * mps_signal_acceleration(input, (double)k * dt);
+
+  double measured[FREQUENCIES], theory[FREQUENCIES];
+  for (int k = 0; k < FREQUENCIES; k++) {
+    const double f = f_first + k * f_step;
+    measured[k] = cabs(fourier(t.surface, t.count, dt, f) / fourier(t.bottom, t.count, dt, f));
+    theory[k] = cabs(transfer(f, viscous, viscous ? 0.0 : 0.5 * spacing));
+  }
+  const peaks m = find_peaks(measured), e = find_peaks(theory);
+  for (int k = 0; k < 3; k++) {
+    print_message("%s base, D = %g m, peak %d: theory %.3f Hz x %.3f, measured %.3f Hz x %.3f "
+                  "(%+.2f %%, %+.2f %%)\n",
+                  viscous ? "viscous" : "rigid", spacing, k + 1, e.f[k], e.amplitude[k], m.f[k],
+                  m.amplitude[k], 100.0 * (m.f[k] / e.f[k] - 1.0),
+                  100.0 * (m.amplitude[k] / e.amplitude[k] - 1.0));
+    mps_assert_near(m.amplitude[k] / e.amplitude[k], 1.0, 0.03);
+    mps_assert_near(m.f[k] / e.f[k], 1.0, 0.02);
+  }
+  free(t.surface);
+  free(t.bottom);
+  mps_signal_destroy(&input);
+  mps_dynamics_destroy(&dynamics);
+  mps_particles_destroy(&particles);
+  mps_context_destroy(&context);
+}
+
+static void rigid_base(void **state) {
+  (void)state;
+  compare(false, 0.5, 40.0);
+}
+
+static void viscous_base(void **state) {
+  (void)state;
+  compare(true, 0.5, 12.0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(rigid_base), cmocka_unit_test(viscous_base)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
