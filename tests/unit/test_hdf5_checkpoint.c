@@ -2,6 +2,7 @@
  * refused allocation is an error that changes nothing. The restart of a solver:
  * test_hdf5_restart.c. SPDX-License-Identifier: BSD-3-Clause */
 #include "test_allocator.h"
+#include "test_fixture.h"
 #include "test_hdf5.h"
 
 #include <mps/io.h>
@@ -17,20 +18,6 @@
 
 static const char path[] = TEST_TMP "/checkpoint.h5", part[] = TEST_TMP "/checkpoint.h5.part";
 static const char bent[] = TEST_TMP "/checkpoint-bent.h5";
-static mps_context *context;
-
-static int make_context(void **state) {
-  (void)state;
-  context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  return 0;
-}
-
-static int drop_context(void **state) {
-  (void)state;
-  mps_context_destroy(&context);
-  return 0;
-}
-
 /* ---- sets of known bits ---------------------------------------------------------------------- */
 
 static mps_particles *make_set(mps_context *ctx, int32_t dim, double spacing, int64_t count) {

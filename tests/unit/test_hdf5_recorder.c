@@ -3,6 +3,7 @@
  * vtk-*.vtkhdf that it leaves are read by VTK itself: tests/vtk.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_allocator.h"
+#include "test_fixture.h"
 #include "test_hdf5.h"
 
 #include <mps/io.h>
@@ -12,20 +13,6 @@
 #include <pthread.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-static mps_context *context;
-
-static int make_context(void **state) {
-  (void)state;
-  context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  return 0;
-}
-
-static int drop_context(void **state) {
-  (void)state;
-  mps_context_destroy(&context);
-  return 0;
-}
 
 /* ---- sets whose every value is known from id and time ---------------------------------------- */
 
