@@ -87,8 +87,12 @@ mps_status mps_dynamics_resume(mps_dynamics *dynamics, double time, int64_t step
     return mpsi_fail(dynamics->context, __func__, MPS_ERROR_STATE,
                      "give the time step of the checkpoint in the definition or by "
                      "mps_dynamics_set_dt before resuming");
-  dynamics->base_time = time;
-  dynamics->steps = dynamics->base_step = step;
+  dynamics->steps = step;
+  /* Later times must be rounded as in the run that went before: counted from its start, where that
+   * gives the time of the checkpoint, which is so unless dt was changed on the way. */
+  const bool from_start = dynamics->initial_time + (double)step * dynamics->dt == time;
+  dynamics->base_time = from_start ? dynamics->initial_time : time;
+  dynamics->base_step = from_start ? 0 : step;
   dynamics->fresh = step == 0;
   dynamics->diverged = false;
   dynamics->kernels->trig[dynamics->def.rotation == MPS_ROTATION_MEAN_MATRIX](&dynamics->state, 0,
