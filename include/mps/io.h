@@ -90,12 +90,17 @@ static inline mps_checkpoint mps_checkpoint_defaults(void) {
 MPS_API MPS_NODISCARD mps_status mps_checkpoint_write(mps_particles *particles, const char *path,
                                                       const mps_checkpoint *info);
 
+/** Reads `info` only (start from mps_checkpoint_defaults()), such as the dt to make the solver
+ * with. A user_key given there that is not "" must equal that of the file. Statuses as below. */
+MPS_API MPS_NODISCARD mps_status mps_checkpoint_info(mps_context *context, const char *path,
+                                                     mps_checkpoint *info);
+
 /** Puts the fields of a checkpoint back, bit for bit, into a set that has the same particles
  *  (dimension, spacing, number, ids; their order may differ), adding fields that the set lacks;
- *  fields that the file lacks keep their values. `info` (start from mps_checkpoint_defaults())
- *  receives what was written; a user_key given there that is not "" must equal that of the file.
- *  Order and epoch of the set stay. Needs memory for a second copy of all fields. On an error
- *  nothing has changed:
+ *  fields that the file lacks keep their values. `info` is as for mps_checkpoint_info. Order and
+ *  epoch of the set stay. Needs memory for a second copy of all fields. On an error nothing has
+ *  changed.
+ *
  *  MPS_ERROR_IO: cannot be read. MPS_ERROR_FORMAT: not a checkpoint, cut short or damaged.
  *  MPS_ERROR_UNSUPPORTED: written by a newer libmps. MPS_ERROR_ARGUMENT: of another set of
  *  particles, or another user_key. MPS_ERROR_FIELD: a field of the set has another shape. */

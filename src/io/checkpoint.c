@@ -151,10 +151,11 @@ typedef struct staged_field {
   char *values; /* [component][particle], 8 bytes each */
 } staged_field;
 
-/* One call of mps_checkpoint_read. */
+/* One call of mps_checkpoint_read or mps_checkpoint_info. */
 typedef struct reading {
   mps_context *context;
-  mps_particles *particles;
+  const char *function;
+  mps_particles *particles; /* NULL: only the header is wanted */
   const char *path;
   mpsi_h5_stay stay;
   mpsi_h5_file file;
@@ -165,12 +166,10 @@ typedef struct reading {
   int64_t *source; /* source[i]: place in the file of the particle at index i of the set */
 } reading;
 
-static const char *const read_function = "mps_checkpoint_read";
-
 /* The file is sealed, so this is not one of ours, or not of this version. */
 static mps_status malformed(const reading *r, const char *what) {
-  if (r->file.error) return mpsi_fail_io(r->context, read_function, "read", r->path, r->file.error);
-  return mpsi_fail(r->context, read_function, MPS_ERROR_FORMAT,
+  if (r->file.error) return mpsi_fail_io(r->context, r->function, "read", r->path, r->file.error);
+  return mpsi_fail(r->context, r->function, MPS_ERROR_FORMAT,
                    "'%.200s' is not a checkpoint of libmps: %s%s%s", r->path, what,
                    r->stay.text[0] ? "; HDF5 says: " : "", r->stay.text);
 }
@@ -206,7 +205,7 @@ static mps_status read_header(reading *r) {
       return malformed(r, header_table[k].name);
     if (k == 0 && r->header.version != FORMAT_VERSION)
       return mpsi_fail(
-          r->context, read_function, MPS_ERROR_UNSUPPORTED,
+          r->context, r->function, MPS_ERROR_UNSUPPORTED,
           "'%.300s' is a checkpoint of version %lld; this libmps (%s) reads version %d", r->path,
           (long long)r->header.version, mps_version(), FORMAT_VERSION);
   }
@@ -218,24 +217,27 @@ static mps_status read_header(reading *r) {
   return MPS_OK;
 }
 
+static mps_status check_key(const reading *r, const char *wanted) {
+  if (!wanted[0] || strcmp(wanted, r->user_key) == 0) return MPS_OK;
+  return mpsi_fail(r->context, r->function, MPS_ERROR_ARGUMENT,
+                   "'%.200s' has user_key '%.63s', wanted is '%.63s'", r->path, r->user_key,
+                   wanted);
+}
+
 /* Is it of this set? */
-static mps_status check_header(const reading *r, const char *user_key) {
+static mps_status check_set(const reading *r) {
   const header *h = &r->header;
   const int64_t count = mps_particles_count(r->particles);
   const int32_t dim = mps_particles_dim(r->particles);
   const double spacing = mps_particles_spacing(r->particles);
   if (h->dim != dim || h->count != count)
-    return mpsi_fail(r->context, read_function, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(r->context, r->function, MPS_ERROR_ARGUMENT,
                      "'%.200s' has %lld particles in %lldD, the set has %lld in %dD", r->path,
                      (long long)h->count, (long long)h->dim, (long long)count, dim);
   if (h->spacing != spacing)
-    return mpsi_fail(r->context, read_function, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(r->context, r->function, MPS_ERROR_ARGUMENT,
                      "'%.200s' has spacing %.17g m, the set has %.17g m", r->path, h->spacing,
                      spacing);
-  if (user_key[0] && strcmp(user_key, r->user_key) != 0)
-    return mpsi_fail(r->context, read_function, MPS_ERROR_ARGUMENT,
-                     "'%.200s' has user_key '%.63s', wanted is '%.63s'", r->path, r->user_key,
-                     user_key);
   return MPS_OK;
 }
 
@@ -252,7 +254,7 @@ static mps_status stage_dataset(reading *r, hid_t dataset, hid_t type, hid_t spa
   field->integer = kind == H5T_INTEGER;
   const int64_t items = field->components * r->header.count;
   field->values = mpsi_alloc(r->context, items, 8);
-  if (!field->values) return mpsi_fail_memory(r->context, read_function, (size_t)items * 8);
+  if (!field->values) return mpsi_fail_memory(r->context, r->function, (size_t)items * 8);
   if (items > 0 && H5Dread(dataset, number_type(field->integer), H5S_ALL, H5S_ALL, H5P_DEFAULT,
                            field->values) < 0)
     return malformed(r, field->name);
@@ -288,23 +290,25 @@ static mps_status stage_fields(reading *r) {
   if (status == MPS_OK) {
     r->fields = mpsi_alloc(r->context, (int64_t)info.nlinks, sizeof *r->fields);
     if (!r->fields)
-      status = mpsi_fail_memory(r->context, read_function, info.nlinks * sizeof *r->fields);
+      status = mpsi_fail_memory(r->context, r->function, info.nlinks * sizeof *r->fields);
   }
   for (hsize_t k = 0; status == MPS_OK && k < info.nlinks; k++) status = stage_field(r, group, k);
   if (group >= 0) H5Gclose(group);
   return status;
 }
 
+/* Opens the file, and takes from it the header, and all else if it is for a set. */
 static mps_status stage(reading *r, const char *user_key) {
   const int fd = open(r->path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-  if (fd < 0) return mpsi_fail_io(r->context, read_function, "open", r->path, errno);
-  mps_status status = mpsi_seal_check(r->context, read_function, fd, r->path);
+  if (fd < 0) return mpsi_fail_io(r->context, r->function, "open", r->path, errno);
+  mps_status status = mpsi_seal_check(r->context, r->function, fd, r->path);
   if (status == MPS_OK) {
     mpsi_h5_enter(&r->stay);
     if (!mpsi_h5_open(&r->file, fd, r->path, false)) status = malformed(r, "it does not open");
     if (status == MPS_OK) status = read_header(r);
-    if (status == MPS_OK) status = check_header(r, user_key);
-    if (status == MPS_OK) status = stage_fields(r);
+    if (status == MPS_OK) status = check_key(r, user_key);
+    if (status == MPS_OK && r->particles) status = check_set(r);
+    if (status == MPS_OK && r->particles) status = stage_fields(r);
     (void)mpsi_h5_close(&r->file);
     mpsi_h5_leave(&r->stay);
   }
@@ -322,14 +326,14 @@ static mps_status match_ids(reading *r) {
   if (!id || !id->integer || id->components != 1) return malformed(r, "it has no ids");
   r->source = mpsi_alloc(r->context, count, sizeof *r->source);
   if (!r->source)
-    return mpsi_fail_memory(r->context, read_function, (size_t)count * sizeof *r->source);
+    return mpsi_fail_memory(r->context, r->function, (size_t)count * sizeof *r->source);
   for (int64_t i = 0; i < count; i++) r->source[i] = -1;
   for (int64_t k = 0; k < count; k++) {
     int64_t value;
     memcpy(&value, id->values + 8 * k, 8);
     const int64_t i = mps_particles_index(r->particles, value);
     if (i < 0 || r->source[i] >= 0)
-      return mpsi_fail(r->context, read_function, MPS_ERROR_ARGUMENT,
+      return mpsi_fail(r->context, r->function, MPS_ERROR_ARGUMENT,
                        "'%.200s' has a particle of id %lld, %s", r->path, (long long)value,
                        i < 0 ? "the set has none" : "more than once");
     r->source[i] = k;
@@ -352,13 +356,13 @@ static mps_status match_shapes(const reading *r, mps_particles *trial) {
     mps_field_info info;
     if (!find_info(r->particles, field->name, &info)) {
       const mps_status status = mps_particles_add_field(trial, field->name, field->components);
-      if (status == MPS_ERROR_MEMORY) return mpsi_fail_memory(r->context, read_function, 1);
+      if (status == MPS_ERROR_MEMORY) return mpsi_fail_memory(r->context, r->function, 1);
       info.components = 0;
       if (status == MPS_OK && !find_info(trial, field->name, &info)) return MPS_ERROR_INTERNAL;
     }
     if (info.components != field->components || (info.dtype.code == 0) != field->integer)
       return mpsi_fail(
-          r->context, read_function, MPS_ERROR_FIELD,
+          r->context, r->function, MPS_ERROR_FIELD,
           "'%.200s' has field '%s' with %d components of %s, which the set cannot take", r->path,
           field->name, field->components, field->integer ? "int64" : "float64");
   }
@@ -371,7 +375,7 @@ static mps_status check_shapes(const reading *r) {
   def.spacing = mps_particles_spacing(r->particles);
   mps_particles *trial = NULL;
   mps_status status = mps_particles_create(r->context, &def, &trial);
-  if (status != MPS_OK) return mpsi_fail_memory(r->context, read_function, 1);
+  if (status != MPS_OK) return mpsi_fail_memory(r->context, r->function, 1);
   status = match_shapes(r, trial);
   mps_particles_destroy(&trial);
   return status;
@@ -385,7 +389,7 @@ static mps_status add_missing(const reading *r) {
     if (mps_particles_add_field(r->particles, r->fields[k].name, r->fields[k].components) !=
         MPS_OK) {
       mpsi_particles_drop_fields(r->particles, before);
-      return mpsi_fail(r->context, read_function, MPS_ERROR_MEMORY,
+      return mpsi_fail(r->context, r->function, MPS_ERROR_MEMORY,
                        "could not allocate field '%s' of %lld particles", r->fields[k].name,
                        (long long)r->header.count);
     }
@@ -404,10 +408,32 @@ static void put_field(const reading *r, const staged_field *field) {
   }
 }
 
+static void tell(const reading *r, mps_checkpoint *info) {
+  info->time = r->header.time;
+  info->step = r->header.step;
+  info->dt = r->header.dt;
+  memcpy(info->user_key, r->user_key, sizeof info->user_key);
+}
+
+mps_status mps_checkpoint_info(mps_context *context, const char *path, mps_checkpoint *info) {
+  if (!context) return MPS_ERROR_ARGUMENT;
+  reading r = {.context = context, .function = __func__, .path = path, .file = {.id = -1}};
+  mps_checkpoint wanted;
+  mps_status status = check_path(context, __func__, path);
+  if (status == MPS_OK) status = read_info(context, __func__, info, &wanted);
+  if (status == MPS_OK) status = stage(&r, wanted.user_key);
+  if (status == MPS_OK) tell(&r, info);
+  return status;
+}
+
 mps_status mps_checkpoint_read(mps_particles *particles, const char *path, mps_checkpoint *info) {
   if (!particles) return MPS_ERROR_ARGUMENT;
   mps_context *context = mpsi_particles_context(particles);
-  reading r = {.context = context, .particles = particles, .path = path, .file = {.id = -1}};
+  reading r = {.context = context,
+               .function = __func__,
+               .particles = particles,
+               .path = path,
+               .file = {.id = -1}};
   mps_checkpoint wanted;
   mps_status status = check_path(context, __func__, path);
   if (status == MPS_OK) status = read_info(context, __func__, info, &wanted);
@@ -417,10 +443,7 @@ mps_status mps_checkpoint_read(mps_particles *particles, const char *path, mps_c
   if (status == MPS_OK) status = add_missing(&r);
   if (status == MPS_OK) {
     for (int64_t k = 0; k < r.field_count; k++) put_field(&r, &r.fields[k]);
-    info->time = r.header.time;
-    info->step = r.header.step;
-    info->dt = r.header.dt;
-    memcpy(info->user_key, r.user_key, sizeof info->user_key);
+    tell(&r, info);
   }
   for (int64_t k = 0; k < r.field_count; k++) mpsi_free(context, r.fields[k].values);
   mpsi_free(context, r.fields);

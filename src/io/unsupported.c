@@ -38,6 +38,11 @@ mps_status mps_checkpoint_write(mps_particles *particles, const char *path,
   return unsupported(particles ? mpsi_particles_context(particles) : NULL, __func__);
 }
 
+mps_status mps_checkpoint_info(mps_context *context, const char *path, mps_checkpoint *info) {
+  (void)path, (void)info;
+  return unsupported(context, __func__);
+}
+
 mps_status mps_checkpoint_read(mps_particles *particles, const char *path, mps_checkpoint *info) {
   (void)path, (void)info;
   return unsupported(particles ? mpsi_particles_context(particles) : NULL, __func__);

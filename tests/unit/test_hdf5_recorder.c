@@ -3,6 +3,7 @@
  * vtk-*.vtkhdf that it leaves are read by VTK itself: tests/vtk.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_allocator.h"
+#include "test_fixture.h"
 #include "test_hdf5.h"
 
 #include <mps/io.h>
@@ -12,20 +13,6 @@
 #include <pthread.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
-static mps_context *context;
-
-static int make_context(void **state) {
-  (void)state;
-  context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  return 0;
-}
-
-static int drop_context(void **state) {
-  (void)state;
-  mps_context_destroy(&context);
-  return 0;
-}
 
 /* ---- sets whose every value is known from id and time ---------------------------------------- */
 
@@ -267,6 +254,24 @@ static void a_single_frame_and_an_empty_one(void **state) {
   H5Fclose(file);
   mps_particles_destroy(&set);
   mps_particles_destroy(&empty);
+}
+
+/* Compressed frames begin with a chunk: there are rows between them that belong to none. */
+static void compressed_frames_are_apart(void **state) {
+  (void)state;
+  static const char path[] = TEST_TMP "/vtk-moving.vtkhdf";
+  mps_particles *set = make_set(10);
+  mps_recorder *recorder = record(set, path, 9);
+  add(context, set, 290);
+  for (int k = 0; k < 4; k++) frame(recorder, set, 0.5 * k);
+  mps_assert_ok(context, mps_recorder_close(&recorder));
+  const hid_t file = open_series(path, 4);
+  for (int k = 0; k < 4; k++) {
+    assert_int_equal(read_i64(file, "VTKHDF/Steps/PointOffsets", 1, k), 512 * k);
+    check_step(file, k, 0.5 * k, 300);
+  }
+  H5Fclose(file);
+  mps_particles_destroy(&set);
 }
 
 static void many_particles_go_in_blocks_and_compressed(void **state) {
@@ -603,6 +608,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_series_is_a_temporal_unstructured_grid),
       cmocka_unit_test(a_single_frame_and_an_empty_one),
+      cmocka_unit_test(compressed_frames_are_apart),
       cmocka_unit_test(many_particles_go_in_blocks_and_compressed),
       cmocka_unit_test(in_three_dimensions_nothing_is_padded),
       cmocka_unit_test(the_same_time_again_replaces_the_frame),
