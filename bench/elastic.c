@@ -4,25 +4,11 @@
  * bench-elastic [UNKNOWNS_2D [UNKNOWNS_3D [THREADS]]]: the largest sizes, default 1e6 and 1e5; a
  * size of 0 leaves the dimension out.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "measure.h"
+
 #include <mps/elastic.h>
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <time.h>
-
-static double seconds(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static void check(mps_context *context, mps_status status, const char *what) {
-  if (status == MPS_OK) return;
-  fprintf(stderr, "bench-elastic: %s: %s\n", what,
-          context ? mps_context_error(context)->message : mps_status_text(status));
-  exit(1);
-}
 
 /* The library's own memory: an allocator that keeps the size in front of each block. */
 typedef struct own_memory {

@@ -1,7 +1,6 @@
 /* mps-cantilever - rectangular cantilever of particles under an end load, seed C, Figures 4 to 8.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "cantilever/results.h"
-#include "common/options.h"
 #include "common/output.h"
 
 #include <math.h>
@@ -9,11 +8,10 @@
 
 typedef struct settings {
   beam problem;
-  mps_elastic_def elastic;
+  elastic_settings method;
   int64_t nx, ny, threads;
   double length;
-  int method, divisor, state, wall;
-  double alpha;
+  int wall;
   bool convergence;
   const char *out;
 } settings;
@@ -46,14 +44,12 @@ static int find_size(const options_program *program, settings *s) {
 }
 
 static int parse(settings *s, int argc, char **argv) {
-  *s = (settings){.problem = {.height = 2.0, .young = 1.0, .poisson = 0.3, .load = 1.0},
-                  .elastic = mps_elastic_defaults(),
+  *s = (settings){.problem = {.height = 2.0, .load = 1.0},
+                  .method = elastic_settings_defaults(),
                   .nx = 17,
                   .ny = 9,
                   .length = NAN,
                   .out = "out/cantilever"};
-  double *re = &s->elastic.radius_ratio;
-  *re = NAN;
   option table[] = {
       OPTION_HEADING("Beam"),
       OPTION_INTEGER("nx", "N", OPTION_FROM_TO(3, 20000), &s->nx, "particles along the beam"),
@@ -61,19 +57,10 @@ static int parse(settings *s, int argc, char **argv) {
       OPTION_NUMBER("length", "m", OPTION_POSITIVE, &s->length,
                     "loaded end to wall, rounded to whole particles (instead of --nx)"),
       OPTION_NUMBER("height", "m", OPTION_POSITIVE, &s->problem.height, "height of the section"),
-      OPTION_NUMBER("E", "Pa", OPTION_POSITIVE, &s->problem.young, "Young's modulus"),
-      OPTION_NUMBER("nu", "-", OPTION_FROM_TO(0.0, 0.49999), &s->problem.poisson,
-                    "Poisson's ratio"),
-      OPTION_CHOICE("state", "stress|strain", &s->state, "plane stress or plane strain"),
+      ELASTIC_MATERIAL(&s->method),
       OPTION_NUMBER("load", "N/m", OPTION_POSITIVE, &s->problem.load, "end load P, downwards"),
       OPTION_CHOICE("wall", "exact|clamp", &s->wall, "the wall moves as (11) says, or not at all"),
-      OPTION_HEADING("Method"),
-      OPTION_CHOICE("method", "conservative|published", &s->method, "discretisation"),
-      OPTION_NUMBER("re", "spacings", OPTION_ABOVE_TO(1.0, 4.0), re,
-                    "radius of influence; default 1.5 (conservative), 3 (published)"),
-      OPTION_NUMBER("alpha", "-", OPTION_FROM_TO(0.03, 100.0), &s->elastic.alpha,
-                    "stabilisation (conservative)"),
-      OPTION_CHOICE("n", "local|constant", &s->divisor, "number density in R and D (published)"),
+      ELASTIC_METHOD(&s->method),
       OPTION_HEADING("Running"),
       OPTION_FLAG("convergence", &s->convergence,
                   "also compare both methods and finite elements at four sizes"),
@@ -83,11 +70,9 @@ static int parse(settings *s, int argc, char **argv) {
   const options_program program = {"mps-cantilever", purpose, table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
-  if (isnan(*re)) *re = 0.0;
-  s->elastic.method = s->method == 1 ? MPS_ELASTIC_PUBLISHED : MPS_ELASTIC_CONSERVATIVE;
-  s->elastic.divisor = s->divisor == 1 ? MPS_ELASTIC_CONSTANT : MPS_ELASTIC_LOCAL;
-  s->elastic.state = s->state == 1 ? MPS_ELASTIC_PLANE_STRAIN : MPS_ELASTIC_PLANE_STRESS;
-  s->problem.plane_strain = s->state == 1;
+  s->problem.young = s->method.young;
+  s->problem.poisson = s->method.poisson;
+  s->problem.plane_strain = s->method.state == 1;
   s->problem.clamped = s->wall == 1;
   return find_size(&program, s);
 }
@@ -96,17 +81,18 @@ static int run(app *a, const settings *s) {
   model m = {0};
   q4 reference = {0};
   const beam *problem = &s->problem;
+  const mps_elastic_def def = elastic_settings_def(&s->method);
   int64_t elements = (int64_t)ceil(48.0 * problem->length / problem->height);
   if (elements > 1000) elements = 1000;
   bool done = output_directory(a, s->out);
   if (done && problem->clamped)
     done = q4_solve(problem, elements + 1, 49, &reference) || app_no_memory(a);
   printf("%s method, %lld x %lld particles, beam %.6g m x %.6g m\n",
-         s->method == 1 ? "published" : "conservative", (long long)s->nx, (long long)s->ny,
-         problem->length, problem->height);
-  done = done && model_solve(a, problem, problem->clamped ? &reference : NULL, s->nx, s->ny,
-                             &s->elastic, &m);
-  done = done && results_write(&m, &s->elastic, s->out);
+         elastic_method_name(&s->method), (long long)s->nx, (long long)s->ny, problem->length,
+         problem->height);
+  done =
+      done && model_solve(a, problem, problem->clamped ? &reference : NULL, s->nx, s->ny, &def, &m);
+  done = done && results_write(&m, &def, s->out);
   if (done) {
     printf("%lld unknowns, %lld entries in the factor, factorised in %.3f s; reactions balance "
            "the load to %.1e\n",

@@ -1,17 +1,15 @@
 /* mps-plate - square plate of particles in tension (seed C, Figures 2 and 3), or a plate with a
  * hole. SPDX-License-Identifier: BSD-3-Clause */
-#include "common/options.h"
 #include "common/output.h"
 #include "plate/plate.h"
 
-#include <math.h>
 #include <stdio.h>
 
 typedef struct settings {
   plate_def plate;
-  mps_elastic_def elastic;
+  elastic_settings method;
   int64_t threads;
-  int shape, method, divisor, state;
+  int shape;
   const char *out;
 } settings;
 
@@ -40,13 +38,9 @@ static int check_hole(const options_program *program, settings *s) {
 }
 
 static int parse(settings *s, int argc, char **argv) {
-  *s = (settings){
-      .plate =
-          {.cells = 17, .side = 1.0, .radius = 1.0, .young = 1.0, .poisson = 0.3, .tension = 1.0},
-      .elastic = mps_elastic_defaults(),
-      .out = "out/plate"};
-  double *re = &s->elastic.radius_ratio;
-  *re = NAN;
+  *s = (settings){.plate = {.cells = 17, .side = 1.0, .radius = 1.0, .tension = 1.0},
+                  .method = elastic_settings_defaults(),
+                  .out = "out/plate"};
   option table[] = {
       OPTION_HEADING("Plate"),
       OPTION_CHOICE("case", "tension|hole", &s->shape, "square, or quarter of a plate with a hole"),
@@ -56,16 +50,8 @@ static int parse(settings *s, int argc, char **argv) {
                     "side; hole: of the quarter (default 4 radii)"),
       OPTION_NUMBER("radius", "m", OPTION_POSITIVE, &s->plate.radius, "radius of the hole"),
       OPTION_NUMBER("tension", "Pa", OPTION_POSITIVE, &s->plate.tension, "stress at the far edge"),
-      OPTION_NUMBER("E", "Pa", OPTION_POSITIVE, &s->plate.young, "Young's modulus"),
-      OPTION_NUMBER("nu", "-", OPTION_FROM_TO(0.0, 0.49999), &s->plate.poisson, "Poisson's ratio"),
-      OPTION_CHOICE("state", "stress|strain", &s->state, "plane stress or plane strain"),
-      OPTION_HEADING("Method"),
-      OPTION_CHOICE("method", "conservative|published", &s->method, "discretisation"),
-      OPTION_NUMBER("re", "spacings", OPTION_ABOVE_TO(1.0, 4.0), re,
-                    "radius of influence; default 1.5 (conservative), 3 (published)"),
-      OPTION_NUMBER("alpha", "-", OPTION_FROM_TO(0.03, 100.0), &s->elastic.alpha,
-                    "stabilisation (conservative)"),
-      OPTION_CHOICE("n", "local|constant", &s->divisor, "number density in R and D (published)"),
+      ELASTIC_MATERIAL(&s->method),
+      ELASTIC_METHOD(&s->method),
       OPTION_HEADING("Running"),
       OPTION_THREADS(&s->threads),
       OPTION_OUT(&s->out),
@@ -73,23 +59,21 @@ static int parse(settings *s, int argc, char **argv) {
   const options_program program = {"mps-plate", purpose, table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
-  if (isnan(*re)) *re = 0.0;
-  s->elastic.method = s->method == 1 ? MPS_ELASTIC_PUBLISHED : MPS_ELASTIC_CONSERVATIVE;
-  s->elastic.divisor = s->divisor == 1 ? MPS_ELASTIC_CONSTANT : MPS_ELASTIC_LOCAL;
-  s->elastic.state = s->state == 1 ? MPS_ELASTIC_PLANE_STRAIN : MPS_ELASTIC_PLANE_STRESS;
-  s->plate.plane_strain = s->state == 1;
+  s->plate.young = s->method.young;
+  s->plate.poisson = s->method.poisson;
+  s->plate.plane_strain = s->method.state == 1;
   return check_hole(&program, s);
 }
 
 static int run(app *a, const settings *s) {
   plate p = {0};
-  const bool done = output_directory(a, s->out) && plate_solve(a, &s->plate, &s->elastic, &p) &&
-                    plate_write(&p, &s->elastic, s->out);
+  const mps_elastic_def def = elastic_settings_def(&s->method);
+  const bool done = output_directory(a, s->out) && plate_solve(a, &s->plate, &def, &p) &&
+                    plate_write(&p, &def, s->out);
   if (done) {
     printf("%s method, %lld particles, %lld entries in the factor, factorised in %.3f s\n",
-           s->method == 1 ? "published" : "conservative",
-           (long long)mps_particles_count(p.particles), (long long)p.report.factor_nonzeros,
-           p.report.seconds_factor);
+           elastic_method_name(&s->method), (long long)mps_particles_count(p.particles),
+           (long long)p.report.factor_nonzeros, p.report.seconds_factor);
     printf("Results in %s\n", s->out);
     if (s->plate.hole)
       printf("stress concentration %.3f, theory 3: error %+.2f %% (stress error over the plate "

@@ -70,28 +70,15 @@ static bool support_and_load(model *m, const mps_elastic_def *def) {
 
 /* ---- results --------------------------------------------------------------------------------- */
 
-bool model_get(const model *m, int64_t i, int64_t j, model_point *out) {
+bool model_get(const model *m, int64_t i, int64_t j, elastic_point *out) {
   const double at[2] = {((double)i + 0.5) * m->spacing,
                         ((double)j + 0.5) * m->spacing - 0.5 * m->problem->height};
-  static const int32_t component[3] = {0, 1, 5};
-  mps_view x, u, stress, mises;
-  if (!app_check(m->a, mps_particles_view(m->particles, "position", &x)) ||
-      !app_check(m->a, mps_particles_view(m->particles, "displacement", &u)) ||
-      !app_check(m->a, mps_particles_view(m->particles, "stress", &stress)) ||
-      !app_check(m->a, mps_particles_view(m->particles, "von_mises", &mises)))
-    return false;
-  /* Filled row by row along x. */
-  int64_t k = mps_particles_index(m->particles, j * m->nx + i);
-  if (fabs(*mps_view_f64(&x, k, 0) - at[0]) + fabs(*mps_view_f64(&x, k, 1) - at[1]) >
-      0.1 * m->spacing)
-    k = mps_particles_index(m->particles, mps_particles_nearest(m->particles, at));
-  for (int32_t c = 0; c < 2; c++) {
-    out->x[c] = *mps_view_f64(&x, k, c);
-    out->u[c] = *mps_view_f64(&u, k, c);
-  }
-  for (int c = 0; c < 3; c++) out->stress[c] = *mps_view_f64(&stress, k, component[c]);
-  out->mises = *mps_view_f64(&mises, k, 0);
-  return true;
+  /* The box was filled row by row along x. */
+  const int64_t row = mps_particles_index(m->particles, j * m->nx + i);
+  if (!elastic_point_get(m->a, m->particles, row, out)) return false;
+  if (fabs(out->x[0] - at[0]) + fabs(out->x[1] - at[1]) < 0.1 * m->spacing) return true;
+  const int64_t id = mps_particles_nearest(m->particles, at);
+  return elastic_point_get(m->a, m->particles, mps_particles_index(m->particles, id), out);
 }
 
 void model_reference(const model *m, const double *x, double *u) {
@@ -103,7 +90,7 @@ void model_reference(const model *m, const double *x, double *u) {
 
 static bool find_errors(model *m) {
   double wrong = 0.0, all = 0.0, u[2], exact[3];
-  model_point p;
+  elastic_point p;
   for (int64_t i = 0; i < m->nx; i++)
     for (int64_t j = 0; j < m->ny; j++) {
       if (!model_get(m, i, j, &p)) return false;

@@ -5,9 +5,7 @@
 
 #include "q4.h"
 
-#include "common/app.h"
-
-#include <mps/elastic.h>
+#include "elastic/elastic.h"
 
 typedef struct model {
   app *a;
@@ -32,12 +30,8 @@ bool model_solve(app *a, const beam *problem, const q4 *reference, int64_t nx, i
                  const mps_elastic_def *def, model *out);
 void model_free(model *m);
 
-/* Particle (i, j) from the loaded end and from below: position, displacement, stress xx, yy, xy and
- * von Mises. */
-typedef struct model_point {
-  double x[2], u[2], stress[3], mises;
-} model_point;
-bool model_get(const model *m, int64_t i, int64_t j, model_point *out);
+/* Results at particle (i, j) from the loaded end and from below. */
+bool model_get(const model *m, int64_t i, int64_t j, elastic_point *out);
 /* Reference displacement: seed C (11), or the fine finite elements of a clamped wall. */
 void model_reference(const model *m, const double *x, double *u);
 

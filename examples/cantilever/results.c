@@ -14,7 +14,7 @@ static bool write_deflection(const model *m, const char *directory) {
   if (!output_open(&f, m->a, directory, "deflection.csv")) return false;
   output_text(&f, "x_m,y_m,v_m,v_reference_m,error_percent\n");
   for (int64_t i = 0; i < m->nx; i++) {
-    model_point p;
+    elastic_point p;
     double u[2];
     if (!model_get(m, i, m->ny / 2, &p)) return output_close(&f) && false;
     model_reference(m, p.x, u);
@@ -33,7 +33,7 @@ static bool write_stress(const model *m, const char *directory, const char *name
                   "v_m\n");
   for (int64_t i = i0; i <= i1; i++)
     for (int64_t j = j0; j <= j1; j++) {
-      model_point p;
+      elastic_point p;
       double e[3];
       if (!model_get(m, i, j, &p)) return output_close(&f) && false;
       beam_stress(m->problem, p.x[0], p.x[1], e);
@@ -132,7 +132,7 @@ static bool draw_shape(const model *m, const char *directory) {
 bool results_write(const model *m, const mps_elastic_def *def, const char *directory) {
   /* The seed's section is at x = 2 of 4. */
   const int64_t middle = m->ny / 2, section = m->nx / 2;
-  model_point p;
+  elastic_point p;
   char title[120], axis[120];
   if (!model_get(m, section, middle, &p)) return false;
   snprintf(axis, sizeof axis, "Stresses along y = %.3g m", p.x[1]);

@@ -112,24 +112,11 @@ static bool support_and_load(plate *p, const mps_elastic_def *def) {
 
 /* ---- results --------------------------------------------------------------------------------- */
 
-bool plate_get(const plate *p, int64_t k, plate_point *out) {
-  static const int32_t component[3] = {0, 1, 5};
-  mps_view x, u, stress, mises;
-  if (!app_check(p->a, mps_particles_view(p->particles, "position", &x)) ||
-      !app_check(p->a, mps_particles_view(p->particles, "displacement", &u)) ||
-      !app_check(p->a, mps_particles_view(p->particles, "stress", &stress)) ||
-      !app_check(p->a, mps_particles_view(p->particles, "von_mises", &mises)))
-    return false;
-  for (int32_t c = 0; c < 2; c++) {
-    out->x[c] = *mps_view_f64(&x, k, c);
-    out->u[c] = *mps_view_f64(&u, k, c);
-  }
-  for (int c = 0; c < 3; c++) out->stress[c] = *mps_view_f64(&stress, k, component[c]);
-  out->mises = *mps_view_f64(&mises, k, 0);
-  return true;
+bool plate_get(const plate *p, int64_t k, elastic_point *out) {
+  return elastic_point_get(p->a, p->particles, k, out);
 }
 
-bool plate_on_ligament(const plate *p, const plate_point *at) {
+bool plate_on_ligament(const plate *p, const elastic_point *at) {
   return p->def->hole && fabs(at->x[0]) < 0.25 * p->spacing;
 }
 
@@ -146,7 +133,7 @@ static double determinant(const double a[3][3]) {
 static bool find_concentration(plate *p) {
   double a[3][3] = {{0}}, b[3] = {0}, edge = 0.0;
   for (int64_t k = 0; k < mps_particles_count(p->particles); k++) {
-    plate_point at;
+    elastic_point at;
     if (!plate_get(p, k, &at)) return false;
     if (!plate_on_ligament(p, &at) || at.x[1] < p->def->radius + 4.0 * p->spacing ||
         at.x[1] > 3.0 * p->def->radius)
@@ -173,7 +160,7 @@ static bool find_errors(plate *p) {
   mps_view principal;
   if (!app_check(p->a, mps_particles_view(p->particles, "principal", &principal))) return false;
   for (int64_t k = 0; k < mps_particles_count(p->particles); k++) {
-    plate_point at;
+    elastic_point at;
     double exact[3], u[2];
     if (!plate_get(p, k, &at)) return false;
     plate_exact_stress(p->def, at.x, exact);
@@ -189,7 +176,7 @@ static bool find_errors(plate *p) {
   p->stress_error = sqrt(wrong / all);
   if (p->def->hole) return find_concentration(p);
   const double end[2] = {p->def->side, 0.0};
-  plate_point at;
+  elastic_point at;
   double u[2];
   const int64_t id = mps_particles_nearest(p->particles, end);
   if (!plate_get(p, mps_particles_index(p->particles, id), &at)) return false;

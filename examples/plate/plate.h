@@ -4,9 +4,7 @@
 #ifndef EXAMPLES_PLATE_H
 #define EXAMPLES_PLATE_H
 
-#include "common/app.h"
-
-#include <mps/elastic.h>
+#include "elastic/elastic.h"
 
 typedef struct plate_def {
   bool hole;
@@ -37,16 +35,13 @@ typedef struct plate {
 bool plate_solve(app *a, const plate_def *def, const mps_elastic_def *elastic, plate *out);
 void plate_free(plate *p);
 
-/* Particle of index k in the views. */
-typedef struct plate_point {
-  double x[2], u[2], stress[3], mises; /* stress xx, yy, xy */
-} plate_point;
-bool plate_get(const plate *p, int64_t k, plate_point *out);
+/* Results at the particle of index k in the views. */
+bool plate_get(const plate *p, int64_t k, elastic_point *out);
 /* Exact stress xx, yy, xy at x; displacement of the plate in tension. */
 void plate_exact_stress(const plate_def *def, const double *x, double *stress);
 void plate_exact_displacement(const plate *p, const double *x, double *u);
 /* Is the particle one of the ligament: of those above the hole on x = 0? */
-bool plate_on_ligament(const plate *p, const plate_point *at);
+bool plate_on_ligament(const plate *p, const elastic_point *at);
 
 /* Tables, summary and pictures in DIR. */
 bool plate_write(const plate *p, const mps_elastic_def *elastic, const char *directory);

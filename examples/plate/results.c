@@ -17,7 +17,7 @@ static bool write_particles(const plate *p, const char *directory) {
   output_text(&f, "x_m,y_m,u_m,v_m,xx_Pa,xx_exact_Pa,yy_Pa,yy_exact_Pa,xy_Pa,xy_exact_Pa,"
                   "von_mises_Pa\n");
   for (int64_t k = 0; k < mps_particles_count(p->particles); k++) {
-    plate_point at;
+    elastic_point at;
     double e[3];
     if (!plate_get(p, k, &at)) return output_close(&f) && false;
     plate_exact_stress(p->def, at.x, e);
@@ -35,12 +35,12 @@ static bool write_line(const plate *p, const char *directory) {
     return false;
   output_text(&f, p->def->hole ? "y_m,xx_Pa,xx_exact_Pa\n" : "x_m,u_m,u_exact_m\n");
   const double centre[2] = {p->wall, 0.0};
-  plate_point middle = {{0}, {0}, {0}, 0};
+  elastic_point middle = {{0}, {0}, {0}, 0};
   const int64_t id = mps_particles_nearest(p->particles, centre);
   if (!p->def->hole && !plate_get(p, mps_particles_index(p->particles, id), &middle))
     return output_close(&f) && false;
   for (int64_t k = 0; k < mps_particles_count(p->particles); k++) {
-    plate_point at;
+    elastic_point at;
     double e[3], u[2];
     if (!plate_get(p, k, &at)) return output_close(&f) && false;
     plate_exact_stress(p->def, at.x, e);
