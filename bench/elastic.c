@@ -1,8 +1,8 @@
 /* elastic.c - benchmark of implicit elasticity: a square cantilever plate (2D) and a block (3D) of
  * growing size, time and memory of each stage, and the exponent of growth from row to row.
  *
- * bench-elastic [UNKNOWNS_2D [UNKNOWNS_3D [THREADS]]]: the largest sizes, default 1e6 and 1e5; a
- * size of 0 leaves the dimension out.
+ * bench-elastic [UNKNOWNS_2D [UNKNOWNS_3D [THREADS [SMALLEST]]]]: the largest sizes, default 1e6
+ * and 1e5 (0 leaves the dimension out), threads (0: all), and the smallest size, default 1e3.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "measure.h"
 
@@ -92,9 +92,9 @@ static result measure(int32_t dim, int64_t cells, int threads) {
                   .total = end - start};
 }
 
-static void series(int32_t dim, double largest, int threads) {
+static void series(int32_t dim, double smallest, double largest, int threads) {
   result former = {0};
-  for (double target = 1e3; target <= 1.01 * largest; target *= sqrt(10.0)) {
+  for (double target = smallest; target <= 1.01 * largest; target *= sqrt(10.0)) {
     const int64_t cells = (int64_t)llround(pow(target / dim, 1.0 / dim));
     const result r = measure(dim, cells, threads);
     printf("%2dD %9.0f %8.2e %8.2e %7.1f %7.1f %7.1f %8.3f %8.3f %8.3f %8.3f %8.3f %8.3f %6.1f",
@@ -115,10 +115,11 @@ static void series(int32_t dim, double largest, int threads) {
 int main(int argc, char **argv) {
   const double plane = argc > 1 ? atof(argv[1]) : 1e6, solid = argc > 2 ? atof(argv[2]) : 1e5;
   const int threads = argc > 3 ? atoi(argv[3]) : 0;
+  const double smallest = argc > 4 ? atof(argv[4]) : 1e3;
   printf("%3s %9s %8s %8s %7s %7s %7s %8s %8s %8s %8s %8s %8s %6s %6s %6s %6s\n", "", "unknowns",
          "nnz(L)", "flops", "L MB", "CHOLMOD", "own MB", "create", "assemble", "analyse", "factor",
          "solve", "total s", "asm %", "nnz~N^", "flop~", "time~");
-  series(2, plane, threads);
-  series(3, solid, threads);
+  series(2, smallest, plane, threads);
+  series(3, smallest, solid, threads);
   return 0;
 }

@@ -71,7 +71,9 @@ int32_t mpsi_elastic_stencil(const mps_elastic *e, int64_t i, int64_t *sites, do
     sites[m] = j;
     g[m][2] = 0.0;
     mpsi_elastic_coefficient(e, i, k, g[m]);
-    for (int c = 0; c < e->dim; c++) g[0][c] -= g[m][c];
+    /* Opposite neighbours cancel exactly: i itself has no coefficient inside the body. */
+    if (l->to[i * l->count + l->count - 1 - k] < 0)
+      for (int c = 0; c < e->dim; c++) g[0][c] -= g[m][c];
     m++;
   }
   return m;
