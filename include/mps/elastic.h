@@ -98,7 +98,8 @@ MPS_API MPS_NODISCARD mps_status mps_elastic_update_material(mps_elastic *elasti
 /* ---- shape and supports ---------------------------------------------------------------------- */
 
 /** The surface passes through these particles: the half of their cells on `side` (-1 or +1) of
- *  `axis` does not belong to the body. Refused where a particle has a neighbour on that side. */
+ *  `axis` does not belong to the body. Refused where a particle has a neighbour on that side. Ends a
+ *  motion under way. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_cut(mps_elastic *elastic, int32_t axis, int32_t side,
                                                  int64_t count, const int64_t *ids);
 
@@ -189,7 +190,7 @@ MPS_API MPS_NODISCARD mps_status mps_elastic_analyse(mps_elastic *elastic,
 
 /** Solves for the loads and supports as they are; writes the fields `displacement` and `reaction`
  *  (N, force of the support on the particle). The factor is kept: it is made again only when
- *  supports, cuts or material have changed. */
+ *  supports, cuts or material have changed. Ends a motion under way. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_solve(mps_elastic *elastic);
 
 /** Solves for `count` load cases at once with the present supports: loads[(k * n + i) * dim + c] is

@@ -107,8 +107,8 @@ static void choose_orderings(mpsi_cholesky *c) {
   common->postorder = 1;
 }
 
-/* The graph of groups, in column (groups + 1) and row (as many as `a` has entries at most); `mark`
- * is scratch of `groups`. */
+/* The graph of groups, in column (groups + 1) and row; `mark` is scratch of `groups`. With row NULL
+ * it only counts: column[groups] is the room that row needs. */
 static void compress(const mpsi_matrix *a, const int64_t *group, int64_t groups, int64_t *column,
                      int64_t *row, int64_t *mark) {
   int64_t count = 0, unknown = 0;
@@ -120,7 +120,8 @@ static void compress(const mpsi_matrix *a, const int64_t *group, int64_t groups,
         const int64_t r = group[a->row[k]];
         if (mark[r] == g) continue;
         mark[r] = g;
-        row[count++] = r;
+        if (row) row[count] = r;
+        count++;
       }
   }
   column[groups] = count;
@@ -130,7 +131,10 @@ static void compress(const mpsi_matrix *a, const int64_t *group, int64_t groups,
 static mps_status order_groups(mpsi_cholesky *c, const char *function, const mpsi_matrix *a,
                                const int64_t *group, int64_t groups, int64_t *scratch,
                                int64_t *order, mpsi_ordering *chosen) {
-  int64_t *column = scratch, *mark = scratch + groups + 1, *row = scratch + 2 * groups + 1;
+  int64_t *column = scratch, *mark = scratch + groups + 1;
+  compress(a, group, groups, column, NULL, mark);
+  int64_t *row = mpsi_alloc(c->context, column[groups], sizeof *row);
+  if (!row) return mpsi_fail_memory(c->context, function, (size_t)column[groups] * sizeof *row);
   compress(a, group, groups, column, row, mark);
   const mpsi_matrix graph = {.n = groups, .column = column, .row = row};
   cholmod_sparse s = wrap(&graph);
@@ -140,6 +144,7 @@ static mps_status order_groups(mpsi_cholesky *c, const char *function, const mps
   c->common.supernodal = CHOLMOD_SIMPLICIAL;
   cholmod_factor *small = cholmod_l_analyze(&s, &c->common);
   c->common.supernodal = c->ldlt ? CHOLMOD_SIMPLICIAL : CHOLMOD_SUPERNODAL;
+  mpsi_free(c->context, row);
   if (!small || c->common.status < CHOLMOD_OK) {
     const mps_status status = failure(c, function, "the ordering");
     cholmod_l_free_factor(&small, &c->common);
@@ -189,7 +194,7 @@ mps_status mpsi_cholesky_analyse(mpsi_cholesky *c, const char *function, const m
                                  mpsi_cholesky_symbolic *out) {
   cholmod_l_free_factor(&c->factor, &c->common);
   c->factored = false;
-  const int64_t words = 2 * groups + 1 + a->column[a->n] + a->n;
+  const int64_t words = 2 * groups + 1 + a->n;
   int64_t *scratch = mpsi_alloc(c->context, words, sizeof *scratch);
   if (!scratch) return mpsi_fail_memory(c->context, function, (size_t)words * sizeof *scratch);
   int64_t *order = scratch + (words - a->n);

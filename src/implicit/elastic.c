@@ -206,6 +206,7 @@ mps_status mps_elastic_cut(mps_elastic *e, int32_t axis, int32_t side, int64_t c
                        "through it there",
                        (long long)ids[i], side, "xyz"[axis]);
   }
+  mpsi_elastic_end_motion(e); /* its masses are no longer those of the cells */
   for (int64_t i = 0; i < count; i++) e->cut[ids[i]] |= (uint8_t)(1 << (2 * axis + (side > 0)));
   mpsi_elastic_measure(e);
   return MPS_OK;

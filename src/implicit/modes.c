@@ -6,7 +6,7 @@
 #include <string.h>
 
 #ifdef MPSI_ARPACK
-#include <arpack/arpack.h>
+#include <arpack.h>
 
 /* ARPACK keeps the state of an iteration in its own saved variables: one at a time in a process.
  * This flag guards somebody else's global state; it is none of ours. */

@@ -115,6 +115,7 @@ static mps_status step_once(mps_elastic *e, const char *function) {
     m->velocity[k] += (1.0 - gamma) * dt * m->acceleration[k];
   }
   impose(e, true, e->displacement);
+  impose(e, false, m->velocity); /* of supports added since the start */
   mpsi_elastic_apply(e, e->displacement, e->work);
   for (int64_t k = 0; k < all; k++) e->work[k] = e->load[k] - e->work[k];
   mpsi_elastic_reduce(e, e->work, e->rhs);

@@ -244,6 +244,7 @@ mps_status mps_elastic_solve(mps_elastic *e) {
   for (int64_t k = 0; k < all; k++) e->reaction[k] = -e->work[k];
   mpsi_elastic_keep_fixed(e, e->reaction);
   e->report.seconds_solve = now() - start;
+  mpsi_elastic_end_motion(e);
   status = mpsi_elastic_write(e, __func__, "displacement", e->displacement, e->dim);
   if (status == MPS_OK) status = mpsi_elastic_write(e, __func__, "reaction", e->reaction, e->dim);
   return status;

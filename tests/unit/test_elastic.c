@@ -456,6 +456,28 @@ static void every_refused_allocation_is_reported_and_leaks_nothing(void **state)
   test_allocator_sweep(make, MPS_ELASTIC_CG);
 }
 
+static void a_step_of_a_motion_allocates_nothing(void **state) {
+  (void)state;
+  test_allocator allocator = {0};
+  mps_context *context = test_allocator_context(&allocator);
+  test_body b = square(context, 8, NULL);
+  mps_newmark_def def = mps_newmark_defaults();
+  def.dt = 0.1;
+  mps_assert_ok(context, mps_particles_set(b.particles, "density", 0, 1.0));
+  clamp(&b);
+  mps_assert_ok(context, mps_elastic_start(b.elastic, &def));
+  mps_assert_ok(context, mps_elastic_step(b.elastic, 1));
+  const int64_t before = allocator.calls;
+  mps_assert_ok(context, mps_elastic_step(b.elastic, 10));
+  assert_int_equal(allocator.calls, before);
+  /* A static solution ends the motion. */
+  mps_assert_ok(context, mps_elastic_solve(b.elastic));
+  mps_assert_fails(context, mps_elastic_step(b.elastic, 1), MPS_ERROR_STATE, "mps_elastic_start");
+  test_body_end(&b);
+  mps_context_destroy(&context);
+  assert_int_equal(allocator.live, 0);
+}
+
 /* SuiteSparse's process-wide hooks belong to the host program: here, that is this test. */
 static int64_t suite_calls, suite_refuse, suite_live;
 
@@ -549,6 +571,7 @@ int main(void) {
       cmocka_unit_test(many_load_cases_superpose),
       cmocka_unit_test(a_body_that_is_held_everywhere_has_no_unknowns),
       cmocka_unit_test(every_refused_allocation_is_reported_and_leaks_nothing),
+      cmocka_unit_test(a_step_of_a_motion_allocates_nothing),
       cmocka_unit_test(failures_inside_cholmod_are_reported_and_leak_nothing),
       cmocka_unit_test(the_particles_outlive_their_owner_and_may_be_used_by_two_solvers),
   };

@@ -206,6 +206,57 @@ static void stress_errors_are_the_reference_values(void **state) {
   mps_context_destroy(&context);
 }
 
+/* ---- three dimensions ------------------------------------------------------------------------ */
+
+/* Tip deflection of a clamped bar of square section (1 m, cells x cells) and length about 6 m under
+ * an end load along `direction`, over that of Timoshenko's beam. */
+static double bar(mps_context *context, int cells, int direction) {
+  const double nu = 0.3, spacing = 1.0 / cells, length = (6 * cells - 0.5) * spacing;
+  test_body b = test_body_begin(context, 3, spacing);
+  test_body_box(&b, 0, 0, 0, 6, 1, 1);
+  test_body_finish(&b, 1.0, nu, NULL);
+  int64_t count, *wall = test_select(&b, 0, length - 0.1 * spacing, INFINITY, &count);
+  double traction[3] = {0, 0, 0};
+  traction[direction] = 1.0;
+  mps_assert_ok(context, mps_elastic_cut(b.elastic, 0, 1, count, wall));
+  for (int c = 0; c < 3; c++)
+    mps_assert_ok(context, mps_elastic_prescribe(b.elastic, c, count, wall, NULL));
+  int64_t *facets = test_facets(&b, 0, -1, &count);
+  mps_assert_ok(context, mps_elastic_add_traction(b.elastic, count, facets, traction));
+  mps_assert_ok(context, mps_elastic_solve(b.elastic));
+  double force[3], moment[3];
+  const double at[3] = {3.0, 0.5, 0.5};
+  mps_assert_ok(context,
+                mps_elastic_section(b.elastic, 0, 3.0 - 0.25 * spacing, at, force, moment));
+  mps_assert_near(force[direction], -1.0, 1e-9); /* the wall's side holds the load */
+  mps_assert_near(fabs(moment[direction == 1 ? 2 : 1]), 3.0, 1e-8);
+  mps_assert_near(moment[0], 0.0, 1e-9);
+  double tip = 0.0, layer = 0.0;
+  for (int64_t i = 0; i < b.n; i++)
+    if (test_value(&b, "position", i, 0) < spacing) {
+      tip += test_value(&b, "displacement", i, direction);
+      layer += 1.0;
+    }
+  /* At the first layer; shear coefficient of a square (Cowper): 10 (1 + nu) / (12 + 11 nu). */
+  const double x = 0.5 * spacing, l = length, kappa = 10 * (1 + nu) / (12 + 11 * nu);
+  const double theory =
+      12.0 / 6 * (2 * l * l * l - 3 * l * l * x + x * x * x) + 2 * (1 + nu) / kappa * (l - x);
+  free(wall);
+  free(facets);
+  test_body_end(&b);
+  return tip / layer / theory;
+}
+
+static void a_bar_bends_as_beam_theory_says(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  const double coarse = bar(context, 4, 1), fine = bar(context, 8, 1), across = bar(context, 4, 2);
+  print_message("3D bar, 4 and 8 cells across: deflection / theory %.4f, %.4f\n", coarse, fine);
+  mps_assert_near(across / coarse, 1.0, 1e-9);
+  mps_assert_near(fine, 1.0, 0.02);
+  mps_context_destroy(&context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(conservative_tip_errors_are_the_reference_values),
@@ -213,6 +264,7 @@ int main(void) {
       cmocka_unit_test(a_nearly_incompressible_cantilever_does_not_lock),
       cmocka_unit_test(the_condensed_form_is_the_papers_four_unknown_form),
       cmocka_unit_test(sections_carry_shear_and_moment),
+      cmocka_unit_test(a_bar_bends_as_beam_theory_says),
       cmocka_unit_test(stress_errors_are_the_reference_values),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
