@@ -13,6 +13,10 @@
  * mps_dynamics_restart; it writes these and `position`, `acceleration`, `pressure` and the history
  * fields `displacement_old`, `rotation_old`, `restoring_old`.
  *
+ * After a step to time t = mps_dynamics_time the positions, displacements and rotations are those
+ * of t; accelerations and pressures those that the step began with, of t - dt; velocity and spin
+ * those of t - dt/2 (Verlet, leapfrog) or of t (Euler).
+ *
  * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
  * its results are the same bit for bit for every number of threads.
  * SPDX-License-Identifier: BSD-3-Clause */
@@ -146,7 +150,8 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_step(mps_dynamics *dynamics, int64
 typedef mps_status (*mps_dynamics_fn)(void *user, mps_dynamics *dynamics);
 
 /** Steps to the first instant >= t_end (s), calling `callback` (may be NULL) every `every` (>= 1)
- *  steps, the context's progress hook about 100 times, and its cancel hook at the same time. */
+ *  steps, the context's progress hook at least about 100 times, and its cancel hook with it: some
+ *  ten times a second. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_run(mps_dynamics *dynamics, double t_end,
                                                   int64_t every, mps_dynamics_fn callback,
                                                   void *user);
@@ -155,8 +160,10 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_run(mps_dynamics *dynamics, double
  *  history (G_{-1} = G_0), time `time` (s), step 0. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_restart(mps_dynamics *dynamics, double time);
 /** Goes on bit for bit from a checkpoint whose fields (displacement, rotation, velocity, spin and
- *  the three history fields) the caller has put back: same definition and dt, `time` and `step` as
- *  they were. */
+ *  the three history fields) the caller has put back: same definition, boundaries and dt, `time`
+ * and `step` as they were. Input that depends on time (signals) is the same bit for bit if the time
+ * at the start (0, or that of mps_dynamics_restart) is the same too and dt never changed; else time
+ *  may differ in its last digit. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_resume(mps_dynamics *dynamics, double time,
                                                      int64_t step);
 /** Sets the time step (s, > 0, finite). A warning is logged when it is above the linear limit.
@@ -256,7 +263,7 @@ static inline mps_predict_def mps_predict_defaults(void) {
 }
 
 typedef struct mps_prediction {
-  double linear;               /* s: own linear theory on the endless lattice; use this one */
+  double linear;               /* s: own linear theory, edges of a body allowed for; use this one */
   double omega;                /* rad/s, highest eigenfrequency of the endless lattice */
   double printed_s, printed_p; /* s: seed A (14)-(16) with Table 2; NaN outside its range of h */
   double printed;              /* the smaller of the two */

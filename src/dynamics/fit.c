@@ -101,7 +101,7 @@ static mps_status fit_powers(mps_context *context, int64_t count, const double *
                              mps_limit_fit *fit) {
   for (int m = 0; m < fit->dampings; m++) {
     int64_t rows = 0;
-    double line[2];
+    double line[2] = {0.0, 0.0};
     for (int64_t k = 0; k < count; k++) {
       if (h[k] != fit->h[m]) continue;
       x[rows] = log10(R[k] / V[k]);

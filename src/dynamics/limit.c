@@ -13,7 +13,11 @@
 #include <string.h>
 
 #define LANCZOS_MOST 400
-#define LANCZOS_ENOUGH 1e-9 /* relative bound on the error of the eigenvalue */
+#define LANCZOS_EVERY 10 /* iterations between looks at the result */
+/* Enough: a relative bound on the error of the eigenvalue, or, where eigenvalues cluster, a
+ * thousandth of that as relative change between two looks. */
+#define LANCZOS_BOUND 1e-7
+#define UNEVEN_BOUND 1e-5 /* for the rounds of uneven_limit */
 
 double mpsi_damped_limit(double omega2, double alpha, double beta) {
   const double b = beta + alpha / omega2;
@@ -99,7 +103,7 @@ static bool highest(int m, const double *diagonal, const double *off, double *va
   return info == 0 && found == 1;
 }
 
-static bool lanczos(operator_data *op, double *basis, ritz *out) {
+static bool lanczos(operator_data *op, double bound, double *basis, ritz *out) {
   const int64_t n = 3 * op->dynamics->count;
   double *v = basis, *before = basis + n, *next = basis + 2 * n;
   double diagonal[LANCZOS_MOST], off[LANCZOS_MOST], value = 0.0, last = 0.0;
@@ -116,10 +120,12 @@ static bool lanczos(operator_data *op, double *basis, ritz *out) {
     diagonal[m - 1] = a;
     norm = off[m - 1] = sqrt(dot(next, next, n));
     const bool stuck = !(norm > 1e-14 * fabs(a));
-    if (m % 10 == 0 || stuck || m == LANCZOS_MOST) {
+    if (m % LANCZOS_EVERY == 0 || stuck || m == LANCZOS_MOST) {
+      const double former = value;
       if (!highest(m, diagonal, off, &value, &last)) return false;
       *out = (ritz){value, fabs(norm * last), m};
-      if (stuck || out->error <= LANCZOS_ENOUGH * value) return true;
+      if (stuck || out->error <= bound * value || value - former <= 1e-3 * bound * value)
+        return true;
     }
     double *spare = before;
     before = v;
@@ -157,7 +163,7 @@ static bool uneven_limit(operator_data *op, double *basis, const range *r, doubl
   op->dt = low;
   for (int round = 0; round < 20; round++) {
     ritz top;
-    if (!lanczos(op, basis, &top)) return false;
+    if (!lanczos(op, UNEVEN_BOUND, basis, &top)) return false;
     *iterations += top.iterations;
     const double ratio = 4.0 / top.value;
     if (round > 0 && top.value != last_value)
@@ -166,10 +172,10 @@ static bool uneven_limit(operator_data *op, double *basis, const range *r, doubl
     last_value = top.value;
     low = fmax(low, op->dt * (ratio > 1.0 ? sqrt(ratio) : ratio));
     high = fmin(high, op->dt * (ratio > 1.0 ? ratio : sqrt(ratio)));
-    if (high - low <= 1e-8 * high) break;
+    if (high - low <= UNEVEN_BOUND * high) break;
     op->dt = fmin(high, fmax(low, op->dt * pow(ratio, power)));
   }
-  *dt = low; /* never above the limit */
+  *dt = low * (1.0 - UNEVEN_BOUND); /* never above the limit */
   op->dt = 0.0;
   return true;
 }
@@ -225,7 +231,7 @@ static mps_status find_limit(mps_dynamics *dynamics, double duration, double *me
                       .work = memory + 4 * n,
                       .weight = memory + 16 * dynamics->count};
   ritz top;
-  if (!lanczos(&op, memory, &top))
+  if (!lanczos(&op, LANCZOS_BOUND, memory, &top))
     return mpsi_fail(dynamics->context, function, MPS_ERROR_NUMERIC,
                      "LAPACK could not solve the tridiagonal eigenproblem");
   const range r = damping_range(dynamics);

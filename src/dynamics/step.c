@@ -94,10 +94,12 @@ mps_status mps_dynamics_resume(mps_dynamics *dynamics, double time, int64_t step
                      "give the time step of the checkpoint in the definition or by "
                      "mps_dynamics_set_dt before resuming");
   if (step == 0) return mps_dynamics_restart(dynamics, time); /* no history yet */
-  /* Count from where the run began, as it did: the same times to the last bit when that was 0. */
-  dynamics->base_time = time - (double)step * dynamics->dt;
-  dynamics->base_step = 0;
   dynamics->steps = step;
+  /* Later times must be rounded as in the run that went before: counted from its start, where that
+   * gives the time of the checkpoint, which is so unless dt was changed on the way. */
+  const bool from_start = dynamics->initial_time + (double)step * dynamics->dt == time;
+  dynamics->base_time = from_start ? dynamics->initial_time : time;
+  dynamics->base_step = from_start ? 0 : step;
   dynamics->fresh = false;
   dynamics->history_dt = dynamics->dt;
   dynamics->diverged = false;
@@ -315,6 +317,8 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
   return MPS_OK;
 }
 
+#define PROMPT_WORK 5000000 /* particle-steps between looks at the cancel hook: some 0.1 s */
+
 static mps_status ready(mps_dynamics *dynamics, const char *function) {
   if (dynamics->diverged)
     return mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
@@ -362,7 +366,9 @@ mps_status mps_dynamics_run(mps_dynamics *dynamics, double t_end, int64_t every,
                      "a run to %g s takes %g steps of dt = %g s: too many", t_end, exact,
                      dynamics->dt);
   const int64_t total = exact > 0.0 ? (int64_t)ceil(exact - 1e-9) : 0;
-  const int64_t report = total / 100 > 0 ? total / 100 : 1;
+  int64_t report = total / 100 > 0 ? total / 100 : 1;
+  const int64_t prompt = PROMPT_WORK / dynamics->count + 1;
+  if (report > prompt) report = prompt;
   if (callback) status = ask(dynamics, __func__, callback, user);
   for (int64_t done = 0; status == MPS_OK && done < total;) {
     int64_t n = every - done % every, m = report - done % report;

@@ -1,0 +1,125 @@
+/* column.c - the seed's soil column on the public API.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "column.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* ---- particles ------------------------------------------------------------------------------- */
+
+static mps_status fill(const column *c) {
+  const double lo[2] = {0.0, 0.0}, hi[2] = {c->width, c->height};
+  if (!c->def.sloped) return mps_particles_fill_box(c->particles, lo, hi, NULL);
+  const double *s = c->def.slope;
+  const double corners[] = {0.0,  0.0,  c->width, 0.0,       c->width, s[2],
+                            s[1], s[2], s[0],     c->height, 0.0,      c->height};
+  return mps_particles_fill_polygon(c->particles, 6, corners, NULL);
+}
+
+static mps_status set_materials(const column *c) {
+  static const char *const names[] = {"density", "shear_velocity", "pressure_velocity", "damping"};
+  mps_view position, field[4];
+  for (int k = 0; k < 4; k++) {
+    const mps_status status = mps_particles_add_field(c->particles, names[k], 0);
+    if (status != MPS_OK) return status;
+  }
+  mps_status status = mps_particles_view(c->particles, "position", &position);
+  for (int k = 0; k < 4 && status == MPS_OK; k++)
+    status = mps_particles_view(c->particles, names[k], &field[k]);
+  for (int64_t i = 0; i < position.shape[0] && status == MPS_OK; i++) {
+    const layer *l = layers_at(c->def.ground, c->height - *mps_view_f64(&position, i, 1));
+    *mps_view_f64(&field[0], i, 0) = layers_density(l);
+    *mps_view_f64(&field[1], i, 0) = l->vs;
+    *mps_view_f64(&field[2], i, 0) = l->vp;
+    *mps_view_f64(&field[3], i, 0) = l->damping;
+  }
+  return status;
+}
+
+mps_status column_create(mps_context *context, const column_def *def, column *out) {
+  const double d = 2.0 * def->radius;
+  *out = (column){.def = *def, .context = context, .spacing = d};
+  out->nx = (int64_t)round(def->width / d);
+  out->ny = (int64_t)round(def->height / d);
+  out->width = (double)out->nx * d;
+  out->height = (double)out->ny * d;
+  mps_particles_def particles = mps_particles_defaults();
+  particles.spacing = d;
+  mps_status status = mps_particles_create(context, &particles, &out->particles);
+  if (status == MPS_OK) status = fill(out);
+  if (status == MPS_OK) status = set_materials(out);
+  if (status != MPS_OK) column_destroy(out);
+  return status;
+}
+
+void column_destroy(column *c) { mps_particles_destroy(&c->particles); }
+
+double column_surface(const column *c, double x) {
+  const double *s = c->def.slope;
+  if (!c->def.sloped || x <= s[0]) return c->height;
+  if (x >= s[1]) return s[2];
+  return c->height + (s[2] - c->height) * (x - s[0]) / (s[1] - s[0]);
+}
+
+/* ---- boundaries ------------------------------------------------------------------------------ */
+
+int32_t column_component(char wave) { return wave == 'S' ? 0 : 1; }
+
+/* The degree of freedom across the wave, which rollers hold. */
+static uint32_t across(char wave) { return wave == 'S' ? MPS_DOF_Y : MPS_DOF_X; }
+
+/* Ids of the particles between x0 and x1 and below y1, to be freed by the caller. */
+static mps_status select_ids(const column *c, double x0, double x1, double y1, int64_t **ids,
+                             int64_t *count) {
+  const double lo[2] = {x0, -INFINITY}, hi[2] = {x1, y1};
+  *ids = NULL;
+  mps_status status = mps_particles_select_box(c->particles, lo, hi, 0, NULL, count);
+  if (status != MPS_OK || *count == 0) return status;
+  *ids = malloc((size_t)*count * sizeof **ids);
+  if (!*ids) return MPS_ERROR_MEMORY;
+  return mps_particles_select_box(c->particles, lo, hi, *count, *ids, count);
+}
+
+/* The bottom row, with that of the free-field columns beside. */
+static mps_status select_base(const column *c, int64_t **ids, int64_t *count) {
+  return select_ids(c, -INFINITY, INFINITY, c->spacing, ids, count);
+}
+
+mps_status column_hold_sides(const column *c, mps_dynamics *dynamics, char wave) {
+  mps_status status = MPS_OK;
+  for (int side = 0; side < 2 && status == MPS_OK; side++) {
+    int64_t *ids, count;
+    const double from = side == 0 ? -INFINITY : c->width - c->spacing;
+    const double to = side == 0 ? c->spacing : INFINITY;
+    status = select_ids(c, from, to, INFINITY, &ids, &count);
+    if (status == MPS_OK) status = mps_dynamics_hold(dynamics, across(wave), count, ids);
+    free(ids);
+  }
+  return status;
+}
+
+mps_status column_drive_base(const column *c, mps_dynamics *dynamics, char wave,
+                             mps_signal *signal) {
+  int64_t *ids, count;
+  mps_status status = select_base(c, &ids, &count);
+  if (status == MPS_OK) status = mps_dynamics_hold(dynamics, across(wave), count, ids);
+  if (status == MPS_OK)
+    status = mps_dynamics_drive(dynamics, column_component(wave), signal, 1.0, count, ids);
+  free(ids);
+  return status;
+}
+
+mps_status column_viscous_base(const column *c, mps_dynamics *dynamics, char wave,
+                               mps_signal *signal, const layer *half_space) {
+  mps_viscous_def def = mps_viscous_defaults();
+  def.normal = 1;
+  def.density = layers_density(half_space);
+  def.shear_velocity = half_space->vs;
+  def.pressure_velocity = half_space->vp;
+  def.incoming[column_component(wave)] = signal;
+  int64_t *ids, count;
+  mps_status status = select_base(c, &ids, &count);
+  if (status == MPS_OK) status = mps_dynamics_viscous(dynamics, &def, count, ids);
+  free(ids);
+  return status;
+}

@@ -1,0 +1,37 @@
+/* layers.h - horizontal soil layers, from the ground surface down, and the file that lists them.
+ *
+ * One layer a line, separated by commas, semicolons or blanks, '#' begins a comment, and one header
+ * line may come first:
+ *   thickness_m, vs_m_s, vp_m_s, unit_weight_kN_m3, damping_ratio
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef EXAMPLES_LAYERS_H
+#define EXAMPLES_LAYERS_H
+
+#include "app.h"
+
+typedef struct layer {
+  double thickness;   /* m */
+  double vs, vp;      /* m/s */
+  double unit_weight; /* kN/m3 */
+  double damping;     /* ratio h */
+} layer;
+
+#define LAYERS_MAX 200
+/* Unit weight to density with the seed's g: 14.7 kN/m3 is 1500 kg/m3. */
+#define LAYERS_GRAVITY 9.8
+
+typedef struct layers {
+  int64_t count;
+  layer layer[LAYERS_MAX];
+} layers;
+
+/* Reads the file; errors are "path:line: reason". */
+bool layers_read(app *a, const char *path, layers *out);
+double layers_thickness(const layers *ground);
+/* The layer at `depth` (m) below the surface; the last one continues downwards. */
+const layer *layers_at(const layers *ground, double depth);
+double layers_density(const layer *l); /* kg/m3 */
+/* Time (s) that a wave 'S' or 'P' takes from depth `from` up to depth `to` (m). */
+double layers_travel_time(const layers *ground, char wave, double from, double to);
+
+#endif

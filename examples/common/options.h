@@ -1,0 +1,82 @@
+/* options.h - command line options from a table: parsing, checks and --help.
+ *
+ * A program lists its options with variables that hold the defaults:
+ *   option table[] = {
+ *     OPTION_HEADING("Ground"),
+ *     OPTION_NUMBER("radius", "m", OPTION_POSITIVE, &radius, "particle radius R"),
+ *     {0}};
+ * --name VALUE and --name=VALUE both work. Numbers are read strictly, and always with a point.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef EXAMPLES_OPTIONS_H
+#define EXAMPLES_OPTIONS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef struct option_range {
+  double lower, upper; /* both 0: any finite number */
+  bool open;           /* `lower` itself is not allowed */
+} option_range;
+
+#define OPTION_ANY                                                                                 \
+  { 0.0, 0.0, false }
+#define OPTION_POSITIVE                                                                            \
+  { 0.0, 1e300, true }
+#define OPTION_NOT_NEGATIVE                                                                        \
+  { 0.0, 1e300, false }
+#define OPTION_FROM_TO(lower, upper)                                                               \
+  { (lower), (upper), false }
+#define OPTION_ABOVE_TO(lower, upper)                                                              \
+  { (lower), (upper), true }
+
+/* One row; exactly one of the pointers is set, none for a heading. */
+typedef struct option {
+  const char *name; /* without the dashes */
+  const char *unit; /* unit, or what the value is: FILE; of a choice: "S|P" */
+  const char *help;
+  option_range range; /* of numbers and integers */
+  int count;          /* of numbers separated by commas; 0 and 1: one number */
+  bool *flag;
+  double *number; /* NaN: there is no default, or help tells it */
+  int64_t *integer;
+  const char **text;
+  int *choice; /* index into `unit` */
+  bool given;  /* written by options_parse */
+} option;
+
+/* Rows of the table. */
+#define OPTION_HEADING(help_)                                                                      \
+  { .help = (help_) }
+#define OPTION_FLAG(name_, value, help_)                                                           \
+  { .name = (name_), .flag = (value), .help = (help_) }
+#define OPTION_NUMBER(name_, unit_, range_, value, help_)                                          \
+  { .name = (name_), .unit = (unit_), .range = range_, .number = (value), .help = (help_) }
+#define OPTION_INTEGER(name_, unit_, range_, value, help_)                                         \
+  { .name = (name_), .unit = (unit_), .range = range_, .integer = (value), .help = (help_) }
+#define OPTION_TEXT(name_, unit_, value, help_)                                                    \
+  { .name = (name_), .unit = (unit_), .text = (value), .help = (help_) }
+#define OPTION_CHOICE(name_, choices, value, help_)                                                \
+  { .name = (name_), .unit = (choices), .choice = (value), .help = (help_) }
+/* Rows that every program has. */
+#define OPTION_THREADS(value)                                                                      \
+  OPTION_INTEGER("threads", "N", OPTION_FROM_TO(0.0, 1024.0), value, "threads; 0: all processors")
+#define OPTION_OUT(value) OPTION_TEXT("out", "DIR", value, "directory of the results")
+
+typedef struct options_program {
+  const char *name;    /* "mps-wave" */
+  const char *purpose; /* one or two sentences, for --help */
+  option *table;       /* ends with an empty row */
+} options_program;
+
+/* Parses the arguments. Returns -1 to go on, or the exit code: 0 after --help and --version, 2
+ * after one error line to stderr, 1 when help could not be written. */
+int options_parse(const options_program *program, int argc, char **argv);
+/* True when the option was on the command line. */
+bool options_given(const option *table, const char *name);
+/* One error line about a combination of options, as the parser's own. Returns 2. */
+int options_refuse(const options_program *program, const char *reason);
+
+/* Reads a finite decimal number that takes up the whole text. */
+bool options_number(const char *text, double *out);
+
+#endif

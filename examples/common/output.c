@@ -1,0 +1,149 @@
+/* output.c - result files: every write is checked, and only complete files get their name.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "output.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* ---- directory ------------------------------------------------------------------------------- */
+
+static bool make_one(app *a, const char *path) {
+  struct stat info;
+  if (mkdir(path, 0777) == 0) return true;
+  const int reason = errno;
+  if (stat(path, &info) == 0 && S_ISDIR(info.st_mode)) return true;
+  return app_error(a, "cannot make the directory %s: %s", path,
+                   strerror(reason == EEXIST ? ENOTDIR : reason));
+}
+
+bool output_directory(app *a, const char *path) {
+  char *copy = strdup(path);
+  if (!copy) return app_no_memory(a);
+  bool ok = true;
+  for (char *slash = strchr(copy + 1, '/'); ok && slash; slash = strchr(slash + 1, '/')) {
+    *slash = '\0';
+    ok = make_one(a, copy);
+    *slash = '/';
+  }
+  ok = ok && make_one(a, copy);
+  free(copy);
+  if (ok && access(path, W_OK | X_OK) != 0)
+    return app_error(a, "cannot write into the directory %s: %s", path, strerror(errno));
+  return ok;
+}
+
+/* ---- files ----------------------------------------------------------------------------------- */
+
+static char *join(const char *directory, const char *name, const char *suffix) {
+  const size_t size = strlen(directory) + strlen(name) + strlen(suffix) + 2;
+  char *path = malloc(size);
+  if (path) snprintf(path, size, "%s/%s%s", directory, name, suffix);
+  return path;
+}
+
+static void forget(output *file) {
+  free(file->path);
+  free(file->temporary);
+  *file = (output){0};
+}
+
+bool output_open(output *file, app *a, const char *directory, const char *name) {
+  *file = (output){.a = a};
+  file->path = join(directory, name, "");
+  file->temporary = join(directory, name, ".part");
+  if (!file->path || !file->temporary) {
+    forget(file);
+    return app_no_memory(a);
+  }
+  file->stream = fopen(file->temporary, "w");
+  if (!file->stream) {
+    app_error(a, "cannot write %s: %s", file->temporary, strerror(errno));
+    forget(file);
+    return false;
+  }
+  return true;
+}
+
+bool output_close(output *file) {
+  if (!file->stream) return false;
+  if (fflush(file->stream) != 0 && !file->error) file->error = errno;
+  if (fclose(file->stream) != 0 && !file->error) file->error = errno;
+  if (!file->error && rename(file->temporary, file->path) != 0) file->error = errno;
+  const bool ok = file->error == 0;
+  if (!ok) {
+    app_error(file->a, "cannot write %s: %s", file->path, strerror(file->error));
+    unlink(file->temporary);
+  }
+  forget(file);
+  return ok;
+}
+
+void output_text(output *file, const char *format, ...) {
+  if (!file->stream) return;
+  va_list args;
+  va_start(args, format);
+  if (vfprintf(file->stream, format, args) < 0 && !file->error) file->error = errno ? errno : EIO;
+  va_end(args);
+}
+
+/* ---- numbers --------------------------------------------------------------------------------- */
+
+const char *output_number(char text[32], double value) {
+  for (int digits = 6; digits <= 17; digits++) {
+    snprintf(text, 32, "%.*g", digits, value);
+    if (strtod(text, NULL) == value) break;
+  }
+  return text;
+}
+
+void csv_row(output *file, int64_t count, const double *values) {
+  for (int64_t i = 0; i < count; i++) {
+    if (i > 0) output_text(file, ",");
+    if (isfinite(values[i])) output_text(file, "%.9g", values[i]);
+  }
+  output_text(file, "\n");
+}
+
+/* ---- JSON ------------------------------------------------------------------------------------ */
+
+void json_begin(output *file) {
+  output_text(file, "{");
+  file->first = true;
+}
+
+static void json_key(output *file, const char *key) {
+  output_text(file, "%s\n  \"%s\": ", file->first ? "" : ",", key);
+  file->first = false;
+}
+
+void json_number(output *file, const char *key, double value) {
+  char text[32];
+  json_key(file, key);
+  output_text(file, "%s", isfinite(value) ? output_number(text, value) : "null");
+}
+
+void json_integer(output *file, const char *key, int64_t value) {
+  json_key(file, key);
+  output_text(file, "%lld", (long long)value);
+}
+
+void json_text(output *file, const char *key, const char *text) {
+  json_key(file, key);
+  output_text(file, "\"");
+  for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
+    if (*c == '"' || *c == '\\')
+      output_text(file, "\\%c", *c);
+    else if (*c < 0x20)
+      output_text(file, "\\u%04x", *c);
+    else
+      output_text(file, "%c", *c);
+  }
+  output_text(file, "\"");
+}
+
+void json_end(output *file) { output_text(file, "\n}\n"); }

@@ -1,0 +1,16 @@
+/* plot.h - pictures by gnuplot: the script is written next to the data and then run there.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef EXAMPLES_PLOT_H
+#define EXAMPLES_PLOT_H
+
+#include "output.h"
+
+/* Opens DIR/NAME.gp and writes what every picture shares: a PNG NAME.png of width x height pixels,
+ * fonts, comma separated data, grid. */
+bool plot_open(output *script, app *a, const char *directory, const char *name, int width,
+               int height);
+/* Ends the script and draws it. Without gnuplot on this machine one line on stdout tells how to
+ * draw it later, which is no error. */
+bool plot_close(output *script, const char *directory, const char *name);
+
+#endif

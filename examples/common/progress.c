@@ -1,0 +1,66 @@
+/* progress.c - progress bar and Ctrl-C.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "progress.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <time.h>
+#include <unistd.h>
+
+/* A signal handler can reach nothing but a static variable. The library has none and installs no
+ * handler: both are the program's. */
+static volatile sig_atomic_t interrupted;
+
+static void on_interrupt(int number) {
+  (void)number;
+  interrupted = 1;
+}
+
+static double now(void) {
+  struct timespec t;
+  if (clock_gettime(CLOCK_MONOTONIC, &t) != 0) return 0.0;
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+void progress_start(progress *bar) {
+  *bar = (progress){.terminal = isatty(STDERR_FILENO) == 1, .started = now()};
+  struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND};
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, NULL);
+}
+
+void progress_draw(progress *bar, double fraction, const char *text) {
+  enum { WIDTH = 30 };
+  if (!bar->terminal) return;
+  char cells[WIDTH + 1];
+  const int full = (int)(fraction * WIDTH + 0.5);
+  for (int i = 0; i < WIDTH; i++) cells[i] = i < full ? '#' : '.';
+  cells[WIDTH] = '\0';
+  const double spent = now() - bar->started;
+  fprintf(stderr, "\r[%s] %3.0f %%  %s", cells, 100.0 * fraction, text);
+  if (fraction > 0.02 && spent > 1.0)
+    fprintf(stderr, "  %.0f s left", spent * (1.0 - fraction) / fraction);
+  fputs("\x1b[K", stderr); /* erases the rest of a longer former line */
+  fflush(stderr);
+  bar->drawn = true;
+}
+
+void progress_clear(progress *bar) {
+  if (!bar->drawn) return;
+  fputs("\r\x1b[K", stderr);
+  fflush(stderr);
+  bar->drawn = false;
+}
+
+bool progress_interrupted(void) { return interrupted != 0; }
+
+void progress_hook(void *user, const mps_progress *p) {
+  char text[96];
+  snprintf(text, sizeof text, "t = %.3g of %.3g s", p->time, p->time_end);
+  progress_draw(user, p->fraction, text);
+}
+
+int32_t progress_cancel_hook(void *user) {
+  (void)user;
+  return interrupted;
+}

@@ -1,0 +1,215 @@
+/* mps-stability - the critical time step of a soil column, seed A: one case, or the whole study.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "common/options.h"
+#include "common/output.h"
+#include "stability/study.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef struct settings {
+  bool study;
+  int wave, integrator, rotation;
+  double radius, velocity, other, damping; /* as in stability_case */
+  method m;
+  int64_t threads;
+  const char *out;
+} settings;
+
+static const char purpose[] = "Critical time step of a 10 m x 100 m soil column by explicit MPS: "
+                              "by linear theory, and as in\n"
+                              "the seed by bisection over runs under a Ricker pulse. One case, or "
+                              "with --study all 320 cases\n"
+                              "of the seed's Table 1 with its regression and Figures 3 to 10.";
+
+/* The two velocities from those that were given (NaN: not given). */
+static void choose_velocities(settings *s, double vs, double vp) {
+  if (!isnan(s->velocity)) { /* as in the seed */
+    s->other = s->wave == 0 ? 2.0 * s->velocity : 0.5 * s->velocity;
+    return;
+  }
+  if (isnan(vs)) vs = isnan(vp) ? 100.0 : 0.5 * vp;
+  if (isnan(vp)) vp = 2.0 * vs;
+  s->velocity = s->wave == 0 ? vs : vp;
+  s->other = s->wave == 0 ? vp : vs;
+}
+
+static int parse(settings *s, int argc, char **argv) {
+  double vs = NAN, vp = NAN;
+  *s = (settings){.integrator = MPS_INTEGRATOR_VERLET,
+                  .rotation = 1,
+                  .radius = 0.5,
+                  .velocity = NAN,
+                  .m = {.kind = METHOD_BOTH,
+                        .f1 = 1.0,
+                        .f2 = NAN,
+                        .criterion = 2.2,
+                        .accuracy = 1.01,
+                        .duration = NAN},
+                  .out = "out/stability"};
+  method *m = &s->m;
+  option table[] = {
+      OPTION_HEADING("Study"),
+      OPTION_FLAG("study", &s->study,
+                  "all cases: V 100 to 800 m/s, h 0.001 to 1, R 0.25 to 1.6 m, S and P waves"),
+      OPTION_HEADING("One case"),
+      OPTION_CHOICE("wave", "S|P", &s->wave, "shear or pressure wave"),
+      OPTION_NUMBER("radius", "m", OPTION_ABOVE_TO(0.0, 5.0), &s->radius, "particle radius R"),
+      OPTION_NUMBER("vs", "m/s", OPTION_POSITIVE, &vs,
+                    "shear wave velocity Vs; default half of Vp, 100 if neither is given"),
+      OPTION_NUMBER("vp", "m/s", OPTION_POSITIVE, &vp,
+                    "pressure wave velocity Vp, at least sqrt(2) Vs; default twice Vs"),
+      OPTION_NUMBER("velocity", "m/s", OPTION_POSITIVE, &s->velocity,
+                    "instead: the velocity V of the wave as in the seed, S: Vs = V, P: Vp = V"),
+      OPTION_NUMBER("damping", "1", OPTION_FROM_TO(0.0, 10.0), &s->damping,
+                    "Rayleigh damping ratio h"),
+      OPTION_CHOICE("integrator", "euler|leapfrog|verlet", &s->integrator, "time integration"),
+      OPTION_HEADING("Method"),
+      OPTION_CHOICE("method", "linear|stepping|both", &m->kind,
+                    "linear theory (fast), bisection by time stepping, or both"),
+      OPTION_NUMBER("criterion", "m/s2", OPTION_POSITIVE, &m->criterion,
+                    "a run is unstable when any acceleration exceeds it; the seed uses 2.2 and "
+                    "1e15"),
+      OPTION_NUMBER("accuracy", "1", OPTION_ABOVE_TO(1.0, 100.0), &m->accuracy,
+                    "ratio of the bounds at which the bisection ends; the seed uses 1.01 with 2.2 "
+                    "and 1.2 with 1e15"),
+      OPTION_NUMBER("duration", "s", OPTION_POSITIVE, &m->duration,
+                    "length of each run; default 0.5 s and 1.1 travel times over 100 m"),
+      OPTION_NUMBER("f1", "Hz", OPTION_POSITIVE, &m->f1, "first frequency of the damping"),
+      OPTION_NUMBER("f2", "Hz", OPTION_POSITIVE, &m->f2,
+                    "second frequency of the damping; default 14, of the study 15: f1 + f2 = 16 "
+                    "gives the seed's Table 2"),
+      OPTION_CHOICE("rotation", "11|12", &s->rotation,
+                    "the seed's equation that removes the rigid rotation"),
+      OPTION_CHOICE("torque", "conserving|printed", &m->torque,
+                    "prefactor of (A14): d conserves angular momentum, 2d is as printed"),
+      OPTION_HEADING("Running and results"),
+      OPTION_THREADS(&s->threads),
+      OPTION_OUT(&s->out),
+      {0}};
+  const options_program program = {"mps-stability", purpose, table};
+  const int code = options_parse(&program, argc, argv);
+  if (code >= 0) return code;
+  static const char *const single[] = {"wave",     "radius",  "vs",        "vp",
+                                       "velocity", "damping", "integrator"};
+  char text[160];
+  for (int i = 0; s->study && i < 7; i++) {
+    if (!options_given(table, single[i])) continue;
+    snprintf(text, sizeof text, "--%s and --study exclude each other", single[i]);
+    return options_refuse(&program, text);
+  }
+  if (!isnan(s->velocity) && (!isnan(vs) || !isnan(vp)))
+    return options_refuse(&program, "--velocity and --vs or --vp exclude each other");
+  choose_velocities(s, vs, vp);
+  const double slow = s->wave == 0 ? s->velocity : s->other;
+  const double fast = s->wave == 0 ? s->other : s->velocity;
+  if (fast < sqrt(2.0) * slow * (1.0 - 1e-12)) {
+    snprintf(text, sizeof text, "--vp is %g m/s, must be >= sqrt(2) times --vs: %g m/s", fast,
+             sqrt(2.0) * slow);
+    return options_refuse(&program, text);
+  }
+  if (isnan(m->f2)) m->f2 = s->study ? 15.0 : 14.0;
+  m->rotation = s->rotation == 0 ? MPS_ROTATION_MEAN_ANGLE : MPS_ROTATION_MEAN_MATRIX;
+  return -1;
+}
+
+/* ---- one case -------------------------------------------------------------------------------- */
+
+static bool write_case(app *a, const settings *s, const stability_case *x) {
+  static const char *const integrators[] = {"euler", "leapfrog", "verlet"};
+  const char wave[2] = {x->wave, '\0'};
+  output f;
+  if (!output_open(&f, a, s->out, "summary.json")) return false;
+  json_begin(&f);
+  json_text(&f, "program", "mps-stability");
+  json_text(&f, "version", mps_version());
+  json_text(&f, "wave", wave);
+  json_text(&f, "integrator", integrators[x->integrator]);
+  json_number(&f, "radius", x->radius);
+  json_number(&f, "vs", case_vs(x));
+  json_number(&f, "vp", case_vp(x));
+  json_number(&f, "damping", x->damping);
+  json_integer(&f, "particles", x->particles);
+  json_number(&f, "f1", s->m.f1);
+  json_number(&f, "f2", s->m.f2);
+  json_number(&f, "criterion", s->m.criterion);
+  json_number(&f, "accuracy", s->m.accuracy);
+  json_number(&f, "duration", method_duration(&s->m, x->velocity));
+  json_number(&f, "dt_linear", x->linear);
+  json_number(&f, "dt_stepping", x->stepping);
+  json_number(&f, "dt_stepping_unstable", x->unstable);
+  json_number(&f, "dt_table2", x->table2);
+  json_integer(&f, "steps", x->steps);
+  json_end(&f);
+  return output_close(&f);
+}
+
+typedef struct bisection_bar {
+  progress *bar;
+  double runs; /* expected */
+} bisection_bar;
+
+static void draw_bisection(void *user, const mps_progress *p) {
+  const bisection_bar *b = user;
+  char text[32];
+  snprintf(text, sizeof text, "run %lld", (long long)p->step);
+  progress_draw(b->bar, fmin(1.0, (double)p->step / b->runs), text);
+}
+
+static int run_case(app *a, const settings *s) {
+  stability_case x = {.wave = s->wave == 0 ? 'S' : 'P',
+                      .integrator = s->integrator,
+                      .radius = s->radius,
+                      .velocity = s->velocity,
+                      .other = s->other,
+                      .damping = s->damping};
+  /* Two first bounds some 20 % apart, then each run halves the logarithm of their ratio. */
+  bisection_bar b = {&a->bar, 2.0 + ceil(fmax(0.0, log2(log(1.25) / log(s->m.accuracy))))};
+  case_find(&s->m, &x, draw_bisection, &b);
+  progress_clear(&a->bar);
+  if (x.status == MPS_ERROR_CANCELLED) {
+    app_error(a, "interrupted");
+    return APP_INTERRUPTED;
+  }
+  if (x.status != MPS_OK) {
+    app_error(a, "%s", x.why);
+    return APP_FAILED;
+  }
+  if (!write_case(a, s, &x)) return APP_FAILED;
+  printf("%c wave, R = %g m, Vs = %g m/s, Vp = %g m/s, h = %g, %lld particles\n", x.wave, x.radius,
+         case_vs(&x), case_vp(&x), x.damping, (long long)x.particles);
+  printf("critical dt:");
+  if (!isnan(x.linear)) printf(" %.4g s by linear theory", x.linear);
+  if (!isnan(x.stepping))
+    printf("%s %.4g s by time stepping (%.4g s exceeds %g m/s2)", isnan(x.linear) ? "" : ",",
+           x.stepping, x.unstable, s->m.criterion);
+  if (!isnan(x.table2)) printf(", %.4g s by the seed's Table 2", x.table2);
+  printf("\n");
+  return APP_OK;
+}
+
+/* ---- the study ------------------------------------------------------------------------------- */
+
+static int run_study(app *a, const settings *s) {
+  study *all = malloc(sizeof *all);
+  if (!all) {
+    app_no_memory(a);
+    return APP_FAILED;
+  }
+  const bool ok = study_run(a, &s->m, all) && study_fit(a, all) && study_write(a, all, s->out) &&
+                  study_draw(a, all, s->out) && study_summary(a, all, s->out);
+  free(all);
+  return ok ? APP_OK : progress_interrupted() ? APP_INTERRUPTED : APP_FAILED;
+}
+
+int main(int argc, char **argv) {
+  settings s;
+  app a;
+  int code = parse(&s, argc, argv);
+  if (code >= 0) return code;
+  code = APP_FAILED;
+  if (app_start(&a, "mps-stability", s.threads) && output_directory(&a, s.out))
+    code = s.study ? run_study(&a, &s) : run_case(&a, &s);
+  return app_finish(&a, code);
+}

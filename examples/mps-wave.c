@@ -1,0 +1,171 @@
+/* mps-wave - earthquake wave through a soil column or slope of particles, seed A, Figure 2.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "common/output.h"
+#include "wave/files.h"
+#include "wave/receivers.h"
+#include "wave/results.h"
+#include "wave/settings.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { MAX_ROWS = 5000 };
+
+typedef struct simulation {
+  column ground;
+  mps_signal *signal;
+  mps_dynamics *dynamics;
+  receivers record;
+  files files;
+  double duration; /* s */
+} simulation;
+
+/* ---- building -------------------------------------------------------------------------------- */
+
+static mps_status build_boundaries(const settings *s, simulation *sim) {
+  const char wave = settings_wave(s);
+  mps_status status = MPS_OK;
+  if (s->base == BASE_RIGID)
+    status = column_drive_base(&sim->ground, sim->dynamics, wave, sim->signal);
+  else
+    status = column_viscous_base(&sim->ground, sim->dynamics, wave, sim->signal, &s->half_space);
+  if (status == MPS_OK && s->sides == SIDES_ROLLER)
+    status = column_hold_sides(&sim->ground, sim->dynamics, wave);
+  return status;
+}
+
+static bool build(app *a, const settings *s, simulation *sim) {
+  const column_def def = {.width = s->width,
+                          .height = s->height,
+                          .radius = s->radius,
+                          .ground = &s->ground,
+                          .sloped = s->sloped,
+                          .slope = {s->slope[0], s->slope[1], s->slope[2]}};
+  if (!settings_signal(a, s, &sim->signal)) return false;
+  if (!app_check(a, column_create(a->context, &def, &sim->ground))) return false;
+  if (!receivers_create(a, &sim->ground, settings_wave(s), s->receivers, &sim->record))
+    return false;
+  mps_particles *particles = sim->ground.particles;
+  for (int side = MPS_SIDE_LEFT; side <= MPS_SIDE_RIGHT && s->sides == SIDES_FREEFIELD; side++)
+    if (!app_check(a, mps_dynamics_add_free_field(particles, side, 2))) return false;
+  const mps_dynamics_def dynamics = settings_dynamics(s, sim->ground.width);
+  return app_check(a, mps_dynamics_create(a->context, particles, &dynamics, &sim->dynamics)) &&
+         app_check(a, build_boundaries(s, sim)) &&
+         files_open(a, s, particles, sim->dynamics, &sim->files);
+}
+
+static void destroy(simulation *sim) {
+  mps_dynamics_destroy(&sim->dynamics);
+  receivers_destroy(&sim->record);
+  column_destroy(&sim->ground);
+  mps_signal_destroy(&sim->signal);
+}
+
+/* ---- running --------------------------------------------------------------------------------- */
+
+/* The seed's 2.5 s, or the record and the time for its wave to rise and come back. */
+static double find_duration(const settings *s, const simulation *sim) {
+  if (!isnan(s->duration)) return s->duration;
+  if (s->ricker) return 2.5;
+  double end;
+  mps_signal_span(sim->signal, NULL, &end);
+  return end + 2.0 * layers_travel_time(&s->ground, settings_wave(s), sim->ground.height, 0.0);
+}
+
+/* Energy is kept when nothing takes any and the input has ended. */
+static void watch_energy(const settings *s, simulation *sim) {
+  bool damped = s->base == BASE_VISCOUS || s->sides == SIDES_FREEFIELD;
+  for (int64_t i = 0; i < s->ground.count; i++) damped = damped || s->ground.layer[i].damping > 0.0;
+  sim->record.energy = !damped;
+  mps_signal_span(sim->signal, NULL, &sim->record.energy_from);
+}
+
+/* The library says where and why it diverged; this adds what to do. */
+static void explain_divergence(app *a, const results *x) {
+  app_check(a, MPS_ERROR_DIVERGED);
+  if (x->dt > x->dt_limit)
+    app_error(a, "try --dt %.2g or --courant 0.9", 0.9 * x->dt_limit);
+  else
+    app_error(a,
+              "dt is below the linear limit %.4g s: look for very strong motion in the input, or "
+              "try --courant 0.5",
+              x->dt_limit);
+}
+
+static mps_status record(void *user, mps_dynamics *dynamics) {
+  simulation *sim = user;
+  const mps_status status = receivers_record(&sim->record, dynamics);
+  return status == MPS_OK ? files_record(&sim->files, dynamics) : status;
+}
+
+/* Exit code; the results are filled as far as the run came. */
+static int march(app *a, const settings *s, simulation *sim, results *x) {
+  mps_linear_limit limit;
+  x->particles = mps_particles_count(sim->ground.particles);
+  x->dt_limit = NAN;
+  if (!app_check(a, mps_dynamics_limit_linear(sim->dynamics, sim->duration, &limit)))
+    return APP_FAILED;
+  x->dt_limit = limit.dt;
+  x->dt = mps_dynamics_dt(sim->dynamics);
+  if (!(x->dt > 0.0)) {
+    app_check(a, mps_context_error(a->context)->status);
+    return APP_FAILED;
+  }
+  const int64_t every = (int64_t)(sim->duration / x->dt / MAX_ROWS) + 1;
+  printf("%s wave, %lld particles, dt %.4g s (linear limit %.4g s), %.0f steps\n",
+         s->wave == WAVE_S ? "S" : "P", (long long)x->particles, x->dt, x->dt_limit,
+         fmax(0.0, ceil((sim->duration - mps_dynamics_time(sim->dynamics)) / x->dt)));
+  fflush(stdout);
+  watch_energy(s, sim);
+  const mps_status status = mps_dynamics_run(sim->dynamics, sim->duration, every, record, sim);
+  x->steps = mps_dynamics_steps(sim->dynamics);
+  x->end = OUTCOME_COMPLETE;
+  if (status == MPS_ERROR_DIVERGED) {
+    x->end = OUTCOME_DIVERGED;
+    explain_divergence(a, x);
+    return APP_FAILED;
+  }
+  if (status == MPS_ERROR_CANCELLED) {
+    x->end = OUTCOME_INTERRUPTED;
+    app_error(a, "interrupted at t = %.4g s: the results end there",
+              mps_dynamics_time(sim->dynamics));
+    return APP_INTERRUPTED;
+  }
+  return app_check(a, status) ? APP_OK : APP_FAILED;
+}
+
+/* Writes what was recorded, also of a run that ended early. */
+static bool finish(app *a, const settings *s, simulation *sim, results *x) {
+  if (!results_find(a, s, &sim->ground, &sim->record, sim->signal, x) ||
+      !receivers_write(a, &sim->record, s->out) || !results_write(a, s, x))
+    return false;
+  if (x->end != OUTCOME_DIVERGED && !results_draw(a, s, &sim->ground, &sim->record, x))
+    return false;
+  results_print(s, x);
+  return true;
+}
+
+static int run(app *a, settings *s) {
+  simulation sim = {0};
+  results x = {0};
+  int code = APP_FAILED;
+  if (settings_ground(a, s) && output_directory(a, s->out) && files_peek(a, s) &&
+      build(a, s, &sim)) {
+    sim.duration = find_duration(s, &sim);
+    code = march(a, s, &sim, &x);
+    if (!files_close(a, &sim.files, sim.dynamics, x.end == OUTCOME_DIVERGED)) code = APP_FAILED;
+    if (sim.record.rows > 1 && !finish(a, s, &sim, &x) && code == APP_OK) code = APP_FAILED;
+  }
+  files_close(a, &sim.files, NULL, false); /* of a run that was not built */
+  destroy(&sim);
+  return code;
+}
+
+int main(int argc, char **argv) {
+  settings s;
+  app a;
+  const int code = settings_parse(&s, argc, argv);
+  if (code >= 0) return code;
+  if (!app_start(&a, "mps-wave", s.threads)) return app_finish(&a, APP_FAILED);
+  return app_finish(&a, run(&a, &s));
+}

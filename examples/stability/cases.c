@@ -1,0 +1,112 @@
+/* cases.c - the critical time step of one soil column, seed A 3.3.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "cases.h"
+
+#include "common/column.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static const double WIDTH = 10.0, HEIGHT = 100.0;      /* m */
+static const double PEAK_TIME = 0.25, FREQUENCY = 4.0; /* s, Hz: the seed's Ricker pulse */
+
+double method_duration(const method *m, double velocity) {
+  if (!isnan(m->duration)) return m->duration;
+  return 2.0 * PEAK_TIME + 1.1 * HEIGHT / velocity;
+}
+
+int64_t case_particles(double radius) {
+  return (int64_t)(round(WIDTH / (2.0 * radius)) * round(HEIGHT / (2.0 * radius)));
+}
+
+double case_vs(const stability_case *x) {
+  if (x->wave == 'S') return x->velocity;
+  return x->other > 0.0 ? x->other : 0.5 * x->velocity;
+}
+
+double case_vp(const stability_case *x) {
+  if (x->wave == 'P') return x->velocity;
+  return x->other > 0.0 ? x->other : 2.0 * x->velocity;
+}
+
+static mps_status build(mps_context *context, const method *m, const stability_case *x, column *c,
+                        mps_dynamics **dynamics) {
+  layers ground = {.count = 1};
+  ground.layer[0] = (layer){.thickness = HEIGHT,
+                            .vs = case_vs(x),
+                            .vp = case_vp(x),
+                            .unit_weight = 14.7,
+                            .damping = x->damping};
+  const column_def def = {.width = WIDTH, .height = HEIGHT, .radius = x->radius, .ground = &ground};
+  mps_dynamics_def solver = mps_dynamics_defaults();
+  solver.integrator = x->integrator;
+  solver.rotation = m->rotation;
+  solver.torque = m->torque;
+  solver.f1 = m->f1;
+  solver.f2 = m->f2;
+  mps_signal *pulse = NULL;
+  mps_status status = column_create(context, &def, c);
+  if (status == MPS_OK) status = mps_signal_ricker(context, FREQUENCY, PEAK_TIME, 1.0, &pulse);
+  if (status == MPS_OK) status = mps_dynamics_create(context, c->particles, &solver, dynamics);
+  if (status == MPS_OK) status = column_hold_sides(c, *dynamics, x->wave);
+  if (status == MPS_OK) status = column_drive_base(c, *dynamics, x->wave, pulse);
+  mps_signal_destroy(&pulse);
+  return status;
+}
+
+static mps_status find_linear(const method *m, mps_dynamics *dynamics, stability_case *x) {
+  mps_linear_limit limit;
+  const mps_status status =
+      mps_dynamics_limit_linear(dynamics, method_duration(m, x->velocity), &limit);
+  if (status == MPS_OK) x->linear = limit.dt;
+  return status;
+}
+
+static mps_status find_stepping(const method *m, mps_dynamics *dynamics, stability_case *x) {
+  mps_bisection_def def = mps_bisection_defaults();
+  mps_bisection found;
+  def.criterion = m->criterion;
+  def.accuracy = m->accuracy;
+  def.duration = method_duration(m, x->velocity);
+  const mps_status status = mps_dynamics_limit_stepping(dynamics, &def, &found);
+  if (status != MPS_OK) return status;
+  x->stepping = found.stable;
+  x->unstable = found.unstable;
+  x->steps = found.steps;
+  return MPS_OK;
+}
+
+static mps_status find_printed(mps_context *context, stability_case *x) {
+  mps_limit_fit printed;
+  if (x->damping > 0.2201 || x->damping <= 0.0) return MPS_OK;
+  const mps_status status = mps_limit_fit_printed(context, x->wave, &printed);
+  if (status == MPS_OK) x->table2 = mps_limit_fit_dt(&printed, x->radius, x->velocity, x->damping);
+  return status;
+}
+
+void case_find(const method *m, stability_case *x, mps_progress_fn hook, void *user) {
+  mps_context_def def = mps_context_defaults();
+  mps_context *context = NULL;
+  mps_dynamics *dynamics = NULL;
+  column c = {0};
+  x->linear = x->stepping = x->unstable = x->table2 = NAN;
+  x->steps = 0;
+  def.executor = MPS_EXECUTOR_SERIAL;
+  def.threads = 1;
+  def.cancel = progress_cancel_hook;
+  def.progress = hook;
+  def.progress_user = user;
+  x->status = mps_context_create(&def, &context, x->why, sizeof x->why);
+  if (x->status != MPS_OK) return;
+  x->status = build(context, m, x, &c, &dynamics);
+  if (x->status == MPS_OK) x->particles = mps_particles_count(c.particles);
+  if (x->status == MPS_OK) x->status = find_printed(context, x);
+  if (x->status == MPS_OK && m->kind != METHOD_STEPPING) x->status = find_linear(m, dynamics, x);
+  if (x->status == MPS_OK && m->kind != METHOD_LINEAR) x->status = find_stepping(m, dynamics, x);
+  if (x->status != MPS_OK)
+    snprintf(x->why, sizeof x->why, "%c wave, R = %g m, V = %g m/s, h = %g: %.200s", x->wave,
+             x->radius, x->velocity, x->damping, mps_context_error(context)->message);
+  mps_dynamics_destroy(&dynamics);
+  column_destroy(&c);
+  mps_context_destroy(&context);
+}

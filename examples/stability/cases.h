@@ -1,0 +1,48 @@
+/* cases.h - the critical time step of one soil column, by linear theory and by time stepping.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef EXAMPLES_STABILITY_CASES_H
+#define EXAMPLES_STABILITY_CASES_H
+
+#include "common/app.h"
+
+#include <mps/dynamics.h>
+
+enum { METHOD_LINEAR = 0, METHOD_STEPPING = 1, METHOD_BOTH = 2 };
+
+/* What all cases of a study share. */
+typedef struct method {
+  int kind; /* METHOD_... */
+  int rotation, torque;
+  double f1, f2;              /* Hz */
+  double criterion, accuracy; /* of the bisection: m/s2, ratio of the bounds */
+  double duration;            /* s of each run; NaN: method_duration decides */
+} method;
+
+typedef struct stability_case {
+  char wave; /* 'S' or 'P' */
+  int integrator;
+  double radius, velocity, damping; /* R m, V m/s (of the wave), h */
+  double other; /* m/s: the other wave's velocity; 0: Vp = 2 Vs as in the seed */
+  /* found; NaN: not asked for or not defined */
+  double linear;            /* s */
+  double stepping;          /* s: the largest step that ran stably */
+  double unstable;          /* s: the smallest that did not, at most accuracy times above */
+  double table2;            /* s: the seed's printed regression, h up to 0.22 */
+  int64_t particles, steps; /* of the column, of all its runs */
+  mps_status status;
+  char why[320]; /* of a failure */
+} stability_case;
+
+/* Long enough for the pulse to leave the base, to rise and to be reflected at the surface: an
+ * unstable mode, which grows e-fold in few steps, has then been excited everywhere. The limit of
+ * the Euler method, which fails by slow growth, depends on it. */
+double method_duration(const method *m, double velocity);
+/* The seed's particles: 10 m x 100 m, rounded to whole particles (R = 1.6 m: 3 x 31). */
+int64_t case_particles(double radius);
+double case_vs(const stability_case *x);
+double case_vp(const stability_case *x);
+/* Finds what `m` asks for, on a serial context of its own: may run in parallel with others. `hook`
+ * (may be NULL) is told of each run of the bisection. */
+void case_find(const method *m, stability_case *out, mps_progress_fn hook, void *user);
+
+#endif

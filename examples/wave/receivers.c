@@ -1,0 +1,142 @@
+/* receivers.c - motion of chosen particles and energy during a run.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "receivers.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* ---- choice of the particles ----------------------------------------------------------------- */
+
+/* Adds component `component` of the particle nearest to (x, depth below the surface there). */
+static void add(receivers *r, const column *c, double x, double depth, int32_t component,
+                const char *where) {
+  const double target[2] = {x, column_surface(c, x) - depth};
+  receiver *q = &r->list[r->count++];
+  q->id = mps_particles_nearest(c->particles, target);
+  q->component = component;
+  q->depth = depth;
+  mps_view position;
+  const int64_t i = mps_particles_index(c->particles, q->id);
+  if (i >= 0 && mps_particles_view(c->particles, "position", &position) == MPS_OK)
+    q->depth = column_surface(c, *mps_view_f64(&position, i, 0)) - *mps_view_f64(&position, i, 1);
+  snprintf(q->label, sizeof q->label, "a%c_m_s2_GL-%.4gm%s", component == 0 ? 'x' : 'y', q->depth,
+           where);
+}
+
+bool receivers_create(app *a, const column *c, char wave, int64_t n, receivers *out) {
+  *out = (receivers){.particles = c->particles, .column = n};
+  out->list = calloc((size_t)n + 5, sizeof *out->list);
+  if (!out->list) return app_no_memory(a);
+  const double half = 0.5 * c->spacing;
+  const double middle = ((double)(c->nx / 2) + 0.5) * c->spacing;
+  const double deepest = column_surface(c, middle) - half;
+  const int32_t component = column_component(wave);
+  for (int64_t k = 0; k < n; k++) {
+    const double depth = half + (deepest - half) * (double)k / (double)(n - 1);
+    add(out, c, middle, depth, component, "");
+  }
+  add(out, c, half, half, component, "_edge");
+  for (int32_t xy = 0; xy < 2 && c->def.sloped; xy++) {
+    add(out, c, c->def.slope[0], half, xy, "_crest");
+    add(out, c, c->def.slope[1], half, xy, "_toe");
+  }
+  return true;
+}
+
+void receivers_destroy(receivers *r) {
+  free(r->list);
+  free(r->row);
+  *r = (receivers){0};
+}
+
+/* ---- recording ------------------------------------------------------------------------------- */
+
+static double *next_row(receivers *r) {
+  const int64_t width = r->count + 1;
+  if (r->rows == r->capacity) {
+    const int64_t capacity = r->capacity ? 2 * r->capacity : 1024;
+    double *grown = realloc(r->row, (size_t)(capacity * width) * sizeof *grown);
+    if (!grown) return NULL;
+    r->row = grown;
+    r->capacity = capacity;
+  }
+  return r->row + r->rows * width;
+}
+
+static mps_status record_energy(receivers *r, mps_dynamics *dynamics) {
+  mps_dynamics_energy energy;
+  const mps_status status = mps_dynamics_get_energy(dynamics, &energy);
+  if (status != MPS_OK) return status;
+  const double e = energy.total;
+  if (r->energies++ == 0) r->energy_least = r->energy_most = e;
+  r->energy_least = fmin(r->energy_least, e);
+  r->energy_most = fmax(r->energy_most, e);
+  r->energy_sum += e;
+  return MPS_OK;
+}
+
+mps_status receivers_record(void *user, mps_dynamics *dynamics) {
+  receivers *r = user;
+  mps_view acceleration;
+  /* The accelerations are those that the last step began with. */
+  if (mps_dynamics_steps(dynamics) == 0) return MPS_OK;
+  const double t = mps_dynamics_time(dynamics) - mps_dynamics_dt(dynamics);
+  if (r->rows > 0 && receivers_time(r, r->rows - 1) == t) return MPS_OK; /* the end of the run */
+  mps_status status = mps_particles_view(r->particles, "acceleration", &acceleration);
+  if (status != MPS_OK) return status;
+  double *row = next_row(r);
+  if (!row) return MPS_ERROR_MEMORY;
+  row[0] = t;
+  for (int64_t k = 0; k < r->count; k++) {
+    const receiver *q = &r->list[k];
+    const int64_t i = mps_particles_index(r->particles, q->id);
+    row[1 + k] = *mps_view_f64(&acceleration, i, q->component);
+  }
+  r->rows++;
+  /* The energy needs a pass over all particles: every tenth row is enough for its drift. */
+  if (r->energy && t > r->energy_from && r->rows % 10 == 0) status = record_energy(r, dynamics);
+  return status;
+}
+
+double receivers_time(const receivers *r, int64_t row) { return r->row[row * (r->count + 1)]; }
+
+double receivers_value(const receivers *r, int64_t row, int64_t k) {
+  return r->row[row * (r->count + 1) + 1 + k];
+}
+
+double receivers_peak(const receivers *r, int64_t k) {
+  double peak = 0.0;
+  for (int64_t i = 0; i < r->rows; i++) peak = fmax(peak, fabs(receivers_value(r, i, k)));
+  return peak;
+}
+
+double receivers_energy_drift(const receivers *r) {
+  if (r->energies < 2 || !(r->energy_sum > 0.0)) return NAN;
+  return (r->energy_most - r->energy_least) * (double)r->energies / r->energy_sum;
+}
+
+/* ---- files ----------------------------------------------------------------------------------- */
+
+/* Columns: time and the receivers first..last - 1. */
+static bool write_columns(app *a, const receivers *r, const char *directory, const char *name,
+                          int64_t first, int64_t last) {
+  output file;
+  if (!output_open(&file, a, directory, name)) return false;
+  output_text(&file, "t_s");
+  for (int64_t k = first; k < last; k++) output_text(&file, ",%s", r->list[k].label);
+  output_text(&file, "\n");
+  for (int64_t i = 0; i < r->rows; i++) {
+    const double t = receivers_time(r, i);
+    const double *row = r->row + i * (r->count + 1);
+    output_text(&file, "%.9g,", t);
+    csv_row(&file, last - first, row + 1 + first);
+  }
+  return output_close(&file);
+}
+
+bool receivers_write(app *a, const receivers *r, const char *directory) {
+  const int64_t edge = r->column + 1;
+  return write_columns(a, r, directory, "receivers.csv", 0, edge) &&
+         (r->count == edge || write_columns(a, r, directory, "slope.csv", edge, r->count));
+}

@@ -1,0 +1,45 @@
+/* receivers.h - records the motion of chosen particles, and the energy, during a run.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef EXAMPLES_WAVE_RECEIVERS_H
+#define EXAMPLES_WAVE_RECEIVERS_H
+
+#include "common/column.h"
+#include "common/output.h"
+
+/* One recorded component of the acceleration of one particle. */
+typedef struct receiver {
+  int64_t id;
+  int32_t component; /* 0 x, 1 y */
+  double depth;      /* of the particle below the surface at its x, m */
+  char label[48];    /* column of the CSV file */
+} receiver;
+
+typedef struct receivers {
+  mps_particles *particles; /* borrowed */
+  int64_t column;           /* the first ones: the middle column from the surface down */
+  int64_t count;            /* then the surface at the edge, and of a slope its crest and toe */
+  receiver *list;
+  bool energy;        /* record the total energy too */
+  double energy_from; /* s: after this time */
+  double energy_least, energy_most, energy_sum;
+  int64_t energies;
+  int64_t rows, capacity;
+  double *row; /* rows x (1 + count): time (s), accelerations (m/s2) */
+} receivers;
+
+/* Chooses `n` receivers along the middle column and those beside it. */
+bool receivers_create(app *a, const column *c, char wave, int64_t n, receivers *out);
+void receivers_destroy(receivers *r);
+/* Callback of mps_dynamics_run; `user` is the receivers. */
+mps_status receivers_record(void *user, mps_dynamics *dynamics);
+double receivers_time(const receivers *r, int64_t row);
+double receivers_value(const receivers *r, int64_t row, int64_t k);
+/* Largest |acceleration| (m/s2) of receiver k. */
+double receivers_peak(const receivers *r, int64_t k);
+/* (max - min) / mean of the total energy; NaN when it was not recorded. */
+double receivers_energy_drift(const receivers *r);
+
+/* receivers.csv: time, the middle column, the edge; slope.csv: time, crest and toe, if any. */
+bool receivers_write(app *a, const receivers *r, const char *directory);
+
+#endif

@@ -1,0 +1,258 @@
+/* settings.c - the options of mps-wave: table, defaults of the seed's Figure 2, checks.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "settings.h"
+
+#include "common/options.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { UNIT_FILE, UNIT_SI, UNIT_G, UNIT_GAL };
+static const double unit_factor[] = {1.0, 1.0, 9.80665, 0.01}; /* to m/s2 */
+
+static const settings seed = {
+    .radius = 0.5,
+    .width = 10.0,
+    .height = 100.0,
+    .vs = 100.0,
+    .vp = 200.0,
+    .unit_weight = 14.7,
+    .f1 = 1.0,
+    .f2 = 14.0,
+    .slope = {NAN, NAN, NAN},
+    .input = "ricker",
+    .frequency = 4.0,
+    .peak_time = 0.25,
+    .amplitude = 1.0,
+    .scale = 1.0,
+    .baseline = MPS_BASELINE_LINEAR,
+    .half_space = {.vs = NAN, .vp = NAN, .unit_weight = NAN},
+    .integrator = MPS_INTEGRATOR_VERLET,
+    .rotation = 1,
+    .dt = 1e-4,
+    .courant = 0.9,
+    .duration = NAN,
+    .receivers = 11,
+    .out = "out/wave",
+};
+
+static const char purpose[] =
+    "Seismic wave through a soil column of particles (explicit MPS). The defaults are the seed's\n"
+    "Figure 2: a Ricker pulse rises 100 m in about 1 s and doubles at the free surface.";
+
+/* ---- checks of combinations ------------------------------------------------------------------ */
+
+static int check_ground(const options_program *program, settings *s) {
+  char text[256];
+  static const char *const by_file[] = {"vs", "vp", "unit-weight", "damping"};
+  for (int i = 0; s->layers_file && i < 4; i++) {
+    if (!options_given(program->table, by_file[i])) continue;
+    snprintf(text, sizeof text, "--%s and --layers exclude each other", by_file[i]);
+    return options_refuse(program, text);
+  }
+  if (!s->layers_file && !(s->vp * s->vp >= 2.0 * s->vs * s->vs)) {
+    snprintf(text, sizeof text, "--vp is %g m/s, must be >= sqrt(2) times --vs: %.6g m/s", s->vp,
+             sqrt(2.0) * s->vs);
+    return options_refuse(program, text);
+  }
+  s->sloped = options_given(program->table, "slope");
+  const double *p = s->slope;
+  if (s->sloped && !(p[0] < p[1] && p[1] < s->width)) {
+    snprintf(text, sizeof text,
+             "--slope begins at %g m and ends at %g m, must be X1 < X2 < --width "
+             "%g m",
+             p[0], p[1], s->width);
+    return options_refuse(program, text);
+  }
+  return -1;
+}
+
+static int check_rest(const options_program *program, settings *s) {
+  const option *table = program->table;
+  char text[256];
+  static const char *const record[] = {"input-scale", "input-unit", "baseline"};
+  static const char *const pulse[] = {"ricker-frequency", "ricker-time", "amplitude"};
+  s->ricker = strcmp(s->input, "ricker") == 0;
+  for (int i = 0; i < 3; i++) {
+    const char *name = s->ricker ? record[i] : pulse[i];
+    if (!options_given(table, name)) continue;
+    snprintf(text, sizeof text, "--%s is for %s only", name,
+             s->ricker ? "--input FILE" : "--input ricker");
+    return options_refuse(program, text);
+  }
+  static const char *const viscous[] = {"base-vs", "base-vp", "base-unit-weight"};
+  for (int i = 0; s->base == BASE_RIGID && i < 3; i++) {
+    if (!options_given(table, viscous[i])) continue;
+    snprintf(text, sizeof text, "--%s is for --base viscous only", viscous[i]);
+    return options_refuse(program, text);
+  }
+  if (options_given(table, "dt") && options_given(table, "courant"))
+    return options_refuse(program, "--dt and --courant exclude each other");
+  if (options_given(table, "courant")) s->dt = 0.0;
+  if (s->sloped && s->sides == SIDES_PERIODIC)
+    return options_refuse(program, "--slope and --sides periodic exclude each other");
+  return -1;
+}
+
+/* ---- the table ------------------------------------------------------------------------------- */
+
+int settings_parse(settings *s, int argc, char **argv) {
+  *s = seed;
+  option table[] = {
+      OPTION_HEADING("Ground"),
+      OPTION_NUMBER("radius", "m", OPTION_POSITIVE, &s->radius,
+                    "particle radius R; the spacing is D = 2R"),
+      OPTION_NUMBER("width", "m", OPTION_POSITIVE, &s->width,
+                    "width of the model, rounded to whole particles"),
+      OPTION_NUMBER("height", "m", OPTION_POSITIVE, &s->height,
+                    "height of the model, rounded likewise; with --layers it may be left out"),
+      OPTION_NUMBER("vs", "m/s", OPTION_POSITIVE, &s->vs, "shear wave velocity Vs"),
+      OPTION_NUMBER("vp", "m/s", OPTION_POSITIVE, &s->vp,
+                    "pressure wave velocity Vp, at least sqrt(2) Vs"),
+      OPTION_NUMBER("unit-weight", "kN/m3", OPTION_POSITIVE, &s->unit_weight,
+                    "unit weight of the ground; its density follows with g = 9.8 m/s2"),
+      OPTION_NUMBER("damping", "1", OPTION_FROM_TO(0.0, 10.0), &s->damping,
+                    "Rayleigh damping ratio h at the frequencies f1 and f2"),
+      OPTION_NUMBER("f1", "Hz", OPTION_POSITIVE, &s->f1, "first frequency of the damping"),
+      OPTION_NUMBER("f2", "Hz", OPTION_POSITIVE, &s->f2, "second frequency of the damping"),
+      OPTION_TEXT("layers", "FILE", &s->layers_file,
+                  "horizontal layers from the surface down, CSV: thickness_m, vs_m_s, vp_m_s, "
+                  "unit_weight_kN_m3, damping_ratio"),
+      {.name = "slope",
+       .unit = "m: X1,X2,H2",
+       .range = OPTION_POSITIVE,
+       .count = 3,
+       .number = s->slope,
+       .help = "a slope: the surface falls from the height at x = X1 to the height H2 at x = X2; "
+               "--sides freefield suits it best"},
+      OPTION_HEADING("Input motion"),
+      OPTION_CHOICE("wave", "S|P", &s->wave, "shear wave (moves in x) or pressure wave (in y)"),
+      OPTION_TEXT("input", "ricker|FILE", &s->input,
+                  "Ricker pulse, or a recorded acceleration: .AT2, K-NET, or CSV of time (s) and "
+                  "value"),
+      OPTION_NUMBER("ricker-frequency", "Hz", OPTION_POSITIVE, &s->frequency,
+                    "central frequency fc of the pulse"),
+      OPTION_NUMBER("ricker-time", "s", OPTION_NOT_NEGATIVE, &s->peak_time, "time tp of its peak"),
+      OPTION_NUMBER("amplitude", "m/s2", OPTION_ANY, &s->amplitude, "its peak acceleration"),
+      OPTION_NUMBER("input-scale", "1", OPTION_ANY, &s->scale, "factor on a record"),
+      OPTION_CHOICE("input-unit", "file|m/s2|g|gal", &s->unit,
+                    "unit of a CSV record; file: m/s2 of a CSV, what they say of the others"),
+      OPTION_CHOICE("baseline", "none|mean|linear|quadratic|cubic", &s->baseline,
+                    "baseline correction of a record"),
+      OPTION_HEADING("Boundaries"),
+      OPTION_CHOICE("base", "rigid|viscous", &s->base,
+                    "rigid: the base moves as the input (E+F); viscous: there is a half space "
+                    "below, the input is the incoming wave (E)"),
+      OPTION_NUMBER("base-vs", "m/s", OPTION_POSITIVE, &s->half_space.vs,
+                    "Vs of the half space; default that of the lowest layer"),
+      OPTION_NUMBER("base-vp", "m/s", OPTION_POSITIVE, &s->half_space.vp,
+                    "Vp of the half space; default that of the lowest layer"),
+      OPTION_NUMBER("base-unit-weight", "kN/m3", OPTION_POSITIVE, &s->half_space.unit_weight,
+                    "unit weight of the half space; default that of the lowest layer"),
+      OPTION_CHOICE("sides", "roller|periodic|freefield", &s->sides,
+                    "rollers along the wave's motion, a model repeated sideways, or free-field "
+                    "columns with dashpots"),
+      OPTION_HEADING("Method"),
+      OPTION_CHOICE("integrator", "euler|leapfrog|verlet", &s->integrator, "time integration"),
+      OPTION_CHOICE("rotation", "11|12", &s->rotation,
+                    "the seed's equation that removes the rigid rotation"),
+      OPTION_CHOICE("torque", "conserving|printed", &s->torque,
+                    "prefactor of (A14): d conserves angular momentum, 2d is as printed"),
+      OPTION_NUMBER("dt", "s", OPTION_POSITIVE, &s->dt, "time step"),
+      OPTION_NUMBER("courant", "1", OPTION_ABOVE_TO(0.0, 1.0), &s->courant,
+                    "instead of --dt: time step as a fraction of the stability limit"),
+      OPTION_NUMBER("duration", "s", OPTION_POSITIVE, &s->duration,
+                    "simulated time; default 2.5 s, of a record its length and two travel times"),
+      OPTION_HEADING("Running and results"),
+      OPTION_INTEGER("receivers", "N", OPTION_FROM_TO(2.0, 1000.0), &s->receivers,
+                     "receivers along the middle column, surface and base included"),
+      OPTION_NUMBER("vtk", "s", OPTION_NOT_NEGATIVE, &s->vtk,
+                    "simulated time between frames in wave.vtkhdf, for ParaView; 0: none"),
+      OPTION_NUMBER("checkpoint", "s", OPTION_NOT_NEGATIVE, &s->checkpoint,
+                    "simulated time between checkpoints in checkpoint.h5, which the end of the run "
+                    "writes too; 0: none"),
+      OPTION_TEXT("restart", "FILE", &s->restart,
+                  "go on from a checkpoint of the same model, with its time step; the traces begin "
+                  "there"),
+      OPTION_THREADS(&s->threads),
+      OPTION_OUT(&s->out),
+      {0}};
+  const options_program program = {"mps-wave", purpose, table};
+  int code = options_parse(&program, argc, argv);
+  if (code < 0) code = check_ground(&program, s);
+  if (code < 0) code = check_rest(&program, s);
+  if (s->layers_file && !options_given(table, "height")) s->height = NAN; /* that of the layers */
+  return code;
+}
+
+/* ---- what follows from the options ----------------------------------------------------------- */
+
+/* The height is known now. */
+static bool check_size(app *a, const settings *s) {
+  const double rows = s->height / (2.0 * s->radius), columns = s->width / (2.0 * s->radius);
+  if (!(rows >= 1.5 && columns >= 0.5 && rows * columns < 1e8))
+    return app_error(a,
+                     "--radius is %g m, must give at least 1 column of 2 particles in %g m x %g "
+                     "m, and fewer than 1e8",
+                     s->radius, s->width, s->height);
+  if (s->sloped && !(s->slope[2] < s->height))
+    return app_error(a, "--slope falls to H2 = %g m, must be below the height %g m", s->slope[2],
+                     s->height);
+  return true;
+}
+
+bool settings_ground(app *a, settings *s) {
+  layers *g = &s->ground;
+  if (!s->layers_file) {
+    g->count = 1;
+    g->layer[0] = (layer){s->height, s->vs, s->vp, s->unit_weight, s->damping};
+  } else {
+    if (!layers_read(a, s->layers_file, g)) return false;
+    const double sum = layers_thickness(g);
+    if (isnan(s->height)) s->height = sum;
+    if (fabs(sum - s->height) > s->radius)
+      return app_error(a,
+                       "%s: the layers are %g m thick, the model is %g m high (--height): they "
+                       "must agree within %g m",
+                       s->layers_file, sum, s->height, s->radius);
+  }
+  const layer *lowest = &g->layer[g->count - 1];
+  if (isnan(s->half_space.vs)) s->half_space.vs = lowest->vs;
+  if (isnan(s->half_space.vp)) s->half_space.vp = lowest->vp;
+  if (isnan(s->half_space.unit_weight)) s->half_space.unit_weight = lowest->unit_weight;
+  return check_size(a, s);
+}
+
+bool settings_signal(app *a, const settings *s, mps_signal **out) {
+  if (s->ricker)
+    return app_check(a,
+                     mps_signal_ricker(a->context, s->frequency, s->peak_time, s->amplitude, out));
+  mps_record_def def = mps_record_defaults();
+  def.baseline = s->baseline;
+  def.scale = s->scale * unit_factor[s->unit];
+  def.format = s->unit == UNIT_FILE ? MPS_RECORD_AUTO : MPS_RECORD_CSV;
+  return app_check(a, mps_signal_record(a->context, s->input, &def, out));
+}
+
+mps_dynamics_def settings_dynamics(const settings *s, double width) {
+  mps_dynamics_def def = mps_dynamics_defaults();
+  def.integrator = s->integrator;
+  def.rotation = s->rotation == 0 ? MPS_ROTATION_MEAN_ANGLE : MPS_ROTATION_MEAN_MATRIX;
+  def.torque = s->torque;
+  def.dt = s->dt;
+  def.courant = s->courant;
+  def.f1 = s->f1;
+  def.f2 = s->f2;
+  def.period_x = s->sides == SIDES_PERIODIC ? width : 0.0;
+  return def;
+}
+
+char settings_wave(const settings *s) { return s->wave == WAVE_S ? 'S' : 'P'; }
+
+bool settings_doubles(const settings *s) {
+  const layer *l = &s->ground.layer[0];
+  if (!s->ricker || s->sloped || s->ground.count > 1 || l->damping > 0.0) return false;
+  return s->base == BASE_RIGID || (s->half_space.vs == l->vs && s->half_space.vp == l->vp &&
+                                   s->half_space.unit_weight == l->unit_weight);
+}

@@ -1,0 +1,141 @@
+/* test_dynamics_threads.c - the same bits for every number of threads, every executor and every
+ * instruction set.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "pthread_executor.h"
+#include "soil_column.h"
+
+/* FNV-1a over the bytes of the fields that carry the state. */
+static uint64_t digest(mps_context *context, mps_particles *particles) {
+  static const char *const names[] = {"id",   "displacement", "rotation", "velocity",
+                                      "spin", "acceleration", "pressure", "restoring_old"};
+  uint64_t hash = 14695981039346656037u;
+  for (size_t f = 0; f < sizeof names / sizeof *names; f++) {
+    mps_view view;
+    mps_assert_ok(context, mps_particles_view(particles, names[f], &view));
+    for (int64_t c = 0; c < view.shape[1]; c++)
+      for (int64_t k = 0; k < view.shape[0]; k++) {
+        uint64_t bits;
+        memcpy(&bits, (const char *)view.data + 8 * (k * view.stride[0] + c * view.stride[1]), 8);
+        hash = (hash ^ bits) * 1099511628211u;
+      }
+  }
+  return hash;
+}
+
+typedef struct setting {
+  int32_t executor, threads, isa;
+  bool damped;
+} setting;
+
+/* A 200 x 170 m slope with free-field columns and a viscous base, shaken: runs, scattered pairs
+ * and dashpots are all there, in enough blocks to be shared between threads. */
+static mps_status run(const setting *s, uint64_t *hash) {
+  mps_context_def def = mps_context_defaults();
+  mps_context *context = NULL;
+  int32_t threads = s->threads;
+  def.executor = s->executor;
+  def.threads = s->threads;
+  if (s->executor == MPS_EXECUTOR_CALLER) {
+    def.parallel_for = pthread_executor;
+    def.parallel_user = &threads;
+  }
+  if (mps_context_create(&def, &context, NULL, 0) != MPS_OK) return MPS_ERROR_UNSUPPORTED;
+  mps_particles_def set = mps_particles_defaults();
+  mps_particles *particles = NULL;
+  set.spacing = 1.0;
+  const double outline[] = {0.0,   0.0,  200.0, 0.0,   200.0, 80.0,
+                            130.0, 80.0, 70.0,  170.0, 0.0,   170.0};
+  mps_assert_ok(context, mps_particles_create(context, &set, &particles));
+  mps_assert_ok(context, mps_particles_fill_polygon(particles, 6, outline, NULL));
+  mps_assert_ok(context, mps_particles_set(particles, "density", 0, 1800.0));
+  mps_assert_ok(context, mps_particles_set(particles, "shear_velocity", 0, 150.0));
+  mps_assert_ok(context, mps_particles_set(particles, "pressure_velocity", 0, 330.0));
+  mps_view x, h;
+  mps_assert_ok(context, mps_particles_set(particles, "damping", 0, 0.0));
+  mps_assert_ok(context, mps_particles_view(particles, "position", &x));
+  mps_assert_ok(context, mps_particles_view(particles, "damping", &h));
+  for (int64_t k = 0; s->damped && k < x.shape[0]; k++)
+    *mps_view_f64(&h, k, 0) = *mps_view_f64(&x, k, 1) > 60.0 ? 0.05 : 0.02;
+  mps_assert_ok(context, mps_dynamics_add_free_field(particles, MPS_SIDE_LEFT, 2));
+  mps_assert_ok(context, mps_dynamics_add_free_field(particles, MPS_SIDE_RIGHT, 2));
+  mps_dynamics_def dynamics_def = mps_dynamics_defaults();
+  dynamics_def.dt = 1e-3;
+  dynamics_def.isa = s->isa;
+  mps_dynamics *dynamics = NULL;
+  mps_status status = mps_dynamics_create(context, particles, &dynamics_def, &dynamics);
+  if (status == MPS_OK) {
+    int64_t count;
+    int64_t *base = soil_select(context, particles, -10.0, -1.0, 1000.0, 1.0, &count);
+    mps_signal *ricker = NULL;
+    mps_assert_ok(context, mps_signal_ricker(context, 4.0, 0.05, 1.0, &ricker));
+    mps_viscous_def boundary = mps_viscous_defaults();
+    boundary.incoming[0] = ricker;
+    mps_assert_ok(context, mps_dynamics_viscous(dynamics, &boundary, count, base));
+    mps_signal_destroy(&ricker);
+    free(base);
+    mps_assert_ok(context, mps_dynamics_step(dynamics, 60));
+    mps_dynamics_energy energy;
+    mps_linear_limit limit;
+    mps_assert_ok(context, mps_dynamics_get_energy(dynamics, &energy));
+    *hash = digest(context, particles);
+    uint64_t bits;
+    memcpy(&bits, &energy.total, sizeof bits);
+    *hash = (*hash ^ bits) * 1099511628211u;
+    if (s->damped) { /* the limit of uneven damping is a longer search: once is enough */
+      limit.dt = 0.0;
+    } else {
+      mps_assert_ok(context, mps_dynamics_limit_linear(dynamics, 0.0, &limit));
+    }
+    memcpy(&bits, &limit.dt, sizeof bits);
+    *hash = (*hash ^ bits) * 1099511628211u;
+  }
+  mps_dynamics_destroy(&dynamics);
+  mps_particles_destroy(&particles);
+  mps_context_destroy(&context);
+  return status;
+}
+
+static void same_bits(const setting *settings, int count, bool damped) {
+  uint64_t first = 0;
+  setting reference = {MPS_EXECUTOR_SERIAL, 1, 0, damped};
+  assert_int_equal(run(&reference, &first), MPS_OK);
+  for (int k = 0; k < count; k++) {
+    setting s = settings[k];
+    uint64_t hash = 0;
+    s.damped = damped;
+    const mps_status status = run(&s, &hash);
+    if (status == MPS_ERROR_UNSUPPORTED) {
+      print_message("executor %d or level %d is missing here: not compared\n", s.executor, s.isa);
+      continue;
+    }
+    assert_int_equal(status, MPS_OK);
+    if (hash != first)
+      fail_msg("executor %d, %d threads, level %d: other bits than one thread", s.executor,
+               s.threads, s.isa);
+  }
+}
+
+static void every_number_of_threads(void **state) {
+  (void)state;
+  static const setting settings[] = {
+      {MPS_EXECUTOR_OPENMP, 1, 0, false}, {MPS_EXECUTOR_OPENMP, 2, 0, false},
+      {MPS_EXECUTOR_OPENMP, 3, 0, false}, {MPS_EXECUTOR_OPENMP, 8, 0, false},
+      {MPS_EXECUTOR_CALLER, 2, 0, false}, {MPS_EXECUTOR_CALLER, 3, 0, false}};
+  same_bits(settings, 6, false);
+  same_bits(settings, 6, true);
+}
+
+static void every_instruction_set(void **state) {
+  (void)state;
+  static const setting settings[] = {{MPS_EXECUTOR_SERIAL, 1, 1, false},
+                                     {MPS_EXECUTOR_SERIAL, 1, 3, false},
+                                     {MPS_EXECUTOR_SERIAL, 1, 4, false}};
+  same_bits(settings, 3, false);
+  same_bits(settings, 3, true);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(every_number_of_threads),
+                                     cmocka_unit_test(every_instruction_set)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,14 @@
+#!/bin/sh
+# help.sh DIRECTORY: --help of every example tells units, ranges and defaults.
+. "$(dirname "$0")/checks.sh"
+for program in mps-wave mps-stability; do
+  "$1/$program" --help >"$work/help" || fail "$program --help"
+  for text in "Usage: $program" "--radius [m]" "; default 0.5)" "[m/s]" "--wave S|P" \
+    "(default verlet)" "--out DIR" "--threads N"; do
+    has "$work/help" "$text"
+  done
+  [ "$(awk 'length > 100' "$work/help" | wc -l)" -eq 0 ] || fail "$program --help has long lines"
+  "$1/$program" --version >"$work/version"
+  has "$work/version" "libmps"
+done
+has "$work/help" "--study"

@@ -1,0 +1,96 @@
+/* test_common_parts.c - what the example programs share: options, numbers, layers.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "test_common.h"
+
+#include "common/layers.h"
+#include "common/options.h"
+#include "common/output.h"
+
+static void options_are_read_in_both_spellings(void **state) {
+  (void)state;
+  double radius = 0.5, three[3] = {0};
+  int64_t count = 3;
+  int wave = 0;
+  bool flag = false;
+  const char *out = "out";
+  option table[] = {OPTION_HEADING("Heading"),
+                    OPTION_NUMBER("radius", "m", OPTION_POSITIVE, &radius, ""),
+                    {.name = "three", .count = 3, .number = three, .help = ""},
+                    OPTION_INTEGER("count", "N", OPTION_FROM_TO(0.0, 9.0), &count, ""),
+                    OPTION_CHOICE("wave", "S|P", &wave, ""),
+                    OPTION_FLAG("flag", &flag, ""),
+                    OPTION_OUT(&out),
+                    {0}};
+  const options_program program = {"test", "", table};
+  char *argv[] = {(char[]){"test"},
+                  (char[]){"--radius"},
+                  (char[]){"-0"}, /* 0 is not > 0 */
+                  (char[]){"--count"},
+                  (char[]){"7"},
+                  (char[]){"--three=1,-2.5,3e2"},
+                  (char[]){"--wave=P"},
+                  (char[]){"--flag"},
+                  (char[]){"--out=a=b"},
+                  NULL};
+  assert_int_equal(options_parse(&program, 9, argv), 2);
+  argv[2] = (char[]){"1.25"};
+  assert_int_equal(options_parse(&program, 9, argv), -1);
+  mps_assert_near(radius, 1.25, 0.0);
+  mps_assert_near(three[0], 1.0, 0.0);
+  mps_assert_near(three[1], -2.5, 0.0);
+  mps_assert_near(three[2], 300.0, 0.0);
+  assert_int_equal(count, 7);
+  assert_int_equal(wave, 1);
+  assert_true(flag);
+  assert_string_equal(out, "a=b");
+  assert_true(options_given(table, "three"));
+  assert_false(options_given(table, "nothing"));
+}
+
+static void only_finite_decimal_numbers_are_numbers(void **state) {
+  (void)state;
+  static const char *const bad[] = {"",     " 1",  "1 ",  "nan", "inf", "1e999",
+                                    "0x10", "1,5", "--1", "1e",  ".",   "1.2.3"};
+  double value = 42.0;
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+    if (options_number(bad[i], &value)) fail_msg("\"%s\" was read as %g", bad[i], value);
+  mps_assert_near(value, 42.0, 0.0);
+  assert_true(options_number("-1.5e-3", &value));
+  mps_assert_near(value, -1.5e-3, 0.0);
+}
+
+static void numbers_are_written_so_that_they_read_back(void **state) {
+  (void)state;
+  static const double values[] = {0.1, 1.0 / 3.0, 1e-300, 1e22, 4.1047494306831e-3, -2.0};
+  char text[32];
+  for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
+    output_number(text, values[i]);
+    mps_assert_near(strtod(text, NULL), values[i], 0.0);
+  }
+  assert_string_equal(output_number(text, 0.1), "0.1");
+}
+
+static void travel_time_is_summed_over_layers(void **state) {
+  (void)state;
+  const layers ground = {
+      .count = 2, .layer = {{10.0, 100.0, 200.0, 14.7, 0.0}, {20.0, 400.0, 1000.0, 20.0, 0.0}}};
+  mps_assert_near(layers_travel_time(&ground, 'S', 30.0, 0.0), 0.15, 1e-15);
+  mps_assert_near(layers_travel_time(&ground, 'P', 30.0, 0.0), 0.07, 1e-15);
+  mps_assert_near(layers_travel_time(&ground, 'S', 15.0, 5.0), 0.0625, 1e-15);
+  mps_assert_near(layers_travel_time(&ground, 'S', 50.0, 30.0), 0.05, 1e-15);
+  mps_assert_near(layers_travel_time(&ground, 'S', 5.0, 5.0), 0.0, 0.0);
+  mps_assert_near(layers_density(&ground.layer[0]), 1500.0, 1e-9);
+  assert_ptr_equal(layers_at(&ground, 9.9), &ground.layer[0]);
+  assert_ptr_equal(layers_at(&ground, 10.0), &ground.layer[1]);
+  assert_ptr_equal(layers_at(&ground, 99.0), &ground.layer[1]);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(options_are_read_in_both_spellings),
+      cmocka_unit_test(only_finite_decimal_numbers_are_numbers),
+      cmocka_unit_test(numbers_are_written_so_that_they_read_back),
+      cmocka_unit_test(travel_time_is_summed_over_layers),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

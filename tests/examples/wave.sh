@@ -1,0 +1,60 @@
+#!/bin/sh
+# wave.sh DIRECTORY DATA: short runs of mps-wave and what they write, against theory.
+. "$(dirname "$0")/checks.sh"
+wave=$1/mps-wave
+
+# A pulse through 20 m of uniform ground between periodic sides: travel time and doubled peak.
+out="$work/a dir with 'quotes'"
+"$wave" --radius 0.5 --width 4 --height 20 --sides periodic --duration 0.7 --courant 0.5 \
+  --receivers 5 --out "$out" >"$work/log"
+tail -n 1 "$work/log" | grep -q "surface peak .*theory .*travel time .*exact" || fail "last line"
+in_range "$out/summary.json" travel_time_exact 0.19499 0.19501
+in_range "$out/summary.json" travel_time 0.193 0.197
+in_range "$out/summary.json" surface_peak 1.9 2.05
+in_range "$out/summary.json" surface_peak_edge 1.9 2.05
+in_range "$out/summary.json" particles 80 80
+in_range "$out/summary.json" steps 300 400
+has "$out/summary.json" '"wave": "S"'
+has "$out/summary.json" '"outcome": "complete"'
+head -n 1 "$out/receivers.csv" |
+  grep -q '^t_s,ax_m_s2_GL-0.5m,.*,ax_m_s2_GL-19.5m,ax_m_s2_GL-0.5m_edge$' || fail "header"
+awk -F, 'NF != 7 || /nan|inf/ { exit 1 }' "$out/receivers.csv" || fail "rows of receivers.csv"
+if command -v gnuplot >/dev/null; then
+  [ "$(head -c 4 "$out/wave.png" | tail -c 3)" = PNG ] || fail "wave.png"
+fi
+[ "$(find "$out" -name '*.part')" = "" ] || fail "temporary files are left"
+
+# Layers on a half space; the height follows from the file. 4/100 + 6/200 + 9.5/300 s.
+"$wave" --layers "$2/layers.csv" --base viscous --sides freefield --courant 0.5 --duration 0.6 \
+  --out "$work/layers" >/dev/null
+in_range "$work/layers/summary.json" travel_time_exact 0.10166 0.10167
+has "$work/layers/summary.json" '"energy_drift": null'
+
+# P wave under rollers, energy kept after the input has ended.
+"$wave" --radius 1 --height 20 --wave P --courant 0.2 --duration 1.5 --out "$work/p" >/dev/null
+in_range "$work/p/summary.json" energy_drift 0 0.01
+
+# A slope writes its crest and toe.
+"$wave" --radius 1 --width 40 --height 20 --slope 15,25,12 --sides freefield --courant 0.5 \
+  --duration 0.3 --out "$work/slope" >/dev/null
+head -n 1 "$work/slope/slope.csv" | grep -q 'crest.*toe' || fail "header of slope.csv"
+
+# A run that is cut in two at a checkpoint writes the same lines as one in one piece.
+whole="--radius 1 --height 20 --damping 0.02 --courant 0.5"
+if "$wave" $whole --duration 0.6 --vtk 0.1 --checkpoint 10 --out "$work/cut" >"$work/log" 2>&1; then
+  [ -s "$work/cut/wave.vtkhdf" ] || fail "wave.vtkhdf"
+  "$wave" $whole --duration 1 --out "$work/whole" >/dev/null
+  "$wave" $whole --duration 1 --restart "$work/cut/checkpoint.h5" --out "$work/rest" >/dev/null
+  sed 1d "$work/rest/receivers.csv" | while read -r line; do
+    grep -qFx -- "$line" "$work/whole/receivers.csv" || fail "restart: $line"
+  done
+  "$wave" $whole --height 40 --restart "$work/cut/checkpoint.h5" --out "$work/rest" 2>"$work/log" &&
+    fail "a checkpoint of another model was taken"
+  has "$work/log" "belongs to another run"
+else
+  has "$work/log" "HDF5" # built without
+fi
+
+# Without gnuplot: a note, and no error.
+PATH=/nonexistent "$wave" --radius 1 --duration 0.3 --courant 0.5 --out "$work/p" >"$work/log"
+has "$work/log" "gnuplot is not installed"
