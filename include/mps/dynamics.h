@@ -13,6 +13,10 @@
  * mps_dynamics_restart; it writes these and `position`, `acceleration`, `pressure` and the history
  * fields `displacement_old`, `rotation_old`, `restoring_old`.
  *
+ * After a step to time t = mps_dynamics_time the positions, displacements and rotations are those
+ * of t; accelerations and pressures those that the step began with, of t - dt; velocity and spin
+ * those of t - dt/2 (Verlet, leapfrog) or of t (Euler).
+ *
  * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
  * its results are the same bit for bit for every number of threads.
  * SPDX-License-Identifier: BSD-3-Clause */

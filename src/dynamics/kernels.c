@@ -320,7 +320,7 @@ typedef struct freedom {
 MPSI_INLINE void advance(const int integrator, const int damping, const mpsi_step *step, int32_t n,
                          double *restrict g, double *restrict sk, freedom f,
                          const double *restrict alpha, const double *restrict beta) {
-  const double dt = step->dt, rdt = 1.0 / dt;
+  const double dt = step->dt, rdt = 1.0 / dt, rate = step->rate;
   double *restrict d = f.d, *restrict o = f.o, *restrict v = f.v, *restrict h = f.h;
   if (damping == BY_PARTICLES) SIMD for (int32_t t = 0; t < n; t++) sk[t] = beta[t] * g[t];
   if (damping && step->first) SIMD for (int32_t t = 0; t < n; t++) h[t] = sk[t];
@@ -328,7 +328,7 @@ MPSI_INLINE void advance(const int integrator, const int damping, const mpsi_ste
     double a = g[t];
     if (damping) {
       const double speed = integrator == VERLET ? (d[t] - o[t]) * rdt : v[t];
-      a = a + (sk[t] - h[t]) * rdt - alpha[t] * speed;
+      a = a + (sk[t] - h[t]) * rate - alpha[t] * speed;
       h[t] = sk[t];
       g[t] = a;
     }

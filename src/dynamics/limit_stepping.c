@@ -103,6 +103,7 @@ static mps_status bisect(search *s, double lower, double upper) {
   while (status == MPS_OK && s->result->unstable > s->def->accuracy * s->result->stable) {
     const double middle = sqrt(s->result->stable * s->result->unstable);
     bool stable = false;
+    if (!(middle > s->result->stable && middle < s->result->unstable)) break; /* neighbours */
     status = try_dt(s, middle, &stable);
     if (stable)
       s->result->stable = middle;
