@@ -38,6 +38,8 @@ in_range "$work/p/summary.json" energy_drift 0 0.01
 "$wave" --radius 1 --width 40 --height 20 --slope 15,25,12 --sides freefield --courant 0.5 \
   --duration 0.3 --out "$work/slope" >/dev/null
 head -n 1 "$work/slope/slope.csv" | grep -q 'crest.*toe' || fail "header of slope.csv"
+[ "$(wc -l <"$work/slope/peaks.csv")" -eq "$(($(sed -n 's/.*"particles": \([0-9]*\).*/\1/p' \
+  "$work/slope/summary.json") - 10 - 6 + 1))" ] || fail "peaks.csv: all but the two columns"
 
 # A run that is cut in two at a checkpoint writes the same lines as one in one piece.
 whole="--radius 1 --height 20 --damping 0.02 --courant 0.5"
