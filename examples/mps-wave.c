@@ -1,6 +1,7 @@
 /* mps-wave - earthquake wave through a soil column or slope of particles, seed A, Figure 2.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "common/output.h"
+#include "wave/field.h"
 #include "wave/files.h"
 #include "wave/receivers.h"
 #include "wave/results.h"
@@ -17,6 +18,7 @@ typedef struct simulation {
   mps_dynamics *dynamics;
   receivers record;
   files files;
+  field peaks;
   double duration; /* s */
 } simulation;
 
@@ -51,12 +53,14 @@ static bool build(app *a, const settings *s, simulation *sim) {
   const mps_dynamics_def dynamics = settings_dynamics(s, sim->ground.width);
   return app_check(a, mps_dynamics_create(a->context, particles, &dynamics, &sim->dynamics)) &&
          app_check(a, build_boundaries(s, sim)) &&
-         files_open(a, s, particles, sim->dynamics, &sim->files);
+         files_open(a, s, particles, sim->dynamics, &sim->files) &&
+         field_create(a, s, particles, &sim->peaks);
 }
 
 static void destroy(simulation *sim) {
   mps_dynamics_destroy(&sim->dynamics);
   receivers_destroy(&sim->record);
+  field_destroy(&sim->peaks);
   column_destroy(&sim->ground);
   mps_signal_destroy(&sim->signal);
 }
@@ -94,7 +98,8 @@ static void explain_divergence(app *a, const results *x) {
 
 static mps_status record(void *user, mps_dynamics *dynamics) {
   simulation *sim = user;
-  const mps_status status = receivers_record(&sim->record, dynamics);
+  mps_status status = receivers_record(&sim->record, dynamics);
+  if (status == MPS_OK) status = field_record(&sim->peaks);
   return status == MPS_OK ? files_record(&sim->files, dynamics) : status;
 }
 
@@ -139,7 +144,8 @@ static bool finish(app *a, const settings *s, simulation *sim, results *x) {
   if (!results_find(a, s, &sim->ground, &sim->record, sim->signal, x) ||
       !receivers_write(a, &sim->record, s->out) || !results_write(a, s, x))
     return false;
-  if (x->end != OUTCOME_DIVERGED && !results_draw(a, s, &sim->ground, &sim->record, x))
+  if (x->end != OUTCOME_DIVERGED &&
+      (!results_draw(a, s, &sim->ground, &sim->record, x) || !field_write(a, s, &sim->peaks)))
     return false;
   results_print(s, x);
   return true;

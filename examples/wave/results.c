@@ -118,7 +118,10 @@ bool results_write(app *a, const settings *s, const results *x) {
 void results_print(const settings *s, const results *x) {
   const bool diverged = x->end == OUTCOME_DIVERGED;
   printf("Results: %s/ (receivers.csv, %ssummary.json%s%s%s)\n", s->out,
-         s->sloped ? "slope.csv, " : "", diverged ? "" : ", wave.png",
+         s->sloped ? "slope.csv, " : "",
+         diverged    ? ""
+         : s->sloped ? ", wave.png, peaks.png"
+                     : ", wave.png",
          s->vtk > 0.0 ? ", wave.vtkhdf" : "", s->checkpoint > 0.0 ? ", checkpoint.h5" : "");
   if (diverged) return;
   printf("surface peak %.3f m/s2", x->surface_peak);

@@ -3,7 +3,8 @@
  * damping, driven, viscous and free-field boundaries, and the stability limit of the time step.
  *
  * Three unknowns a particle: two displacements (m) and a rotation (rad). Neighbours and the
- * weight function come from the reference positions and never change. Restoring forces follow
+ * weight function come from the reference positions, at creation those without the displacement,
+ * and never change. Restoring forces follow
  * from displacement differences, so that small strains keep all their digits.
  *
  * The solver works in the fields of the particle set itself (zero copy) and sorts the set once,
@@ -146,7 +147,8 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_add_free_field(mps_particles *part
 MPS_API MPS_NODISCARD mps_status mps_dynamics_step(mps_dynamics *dynamics, int64_t count);
 
 /** Called at the start of a run, then every `every` steps and at the end, with fields up to date.
- *  Return MPS_OK to go on. */
+ *  It may read everything, but not step, restart or destroy the solver or change dt. Return MPS_OK
+ *  to go on; any other status ends the run, which returns it. */
 typedef mps_status (*mps_dynamics_fn)(void *user, mps_dynamics *dynamics);
 
 /** Steps to the first instant >= t_end (s), calling `callback` (may be NULL) every `every` (>= 1)
@@ -200,16 +202,17 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_get_momentum(mps_dynamics *dynamic
 
 /** Limit by linear theory: the highest eigenfrequency of the tangent at the reference state. */
 typedef struct mps_linear_limit {
-  double dt;    /* largest stable step, s; Euler without damping: 0 unless `duration` was given */
-  double omega; /* highest eigenfrequency of the undamped set, rad/s */
+  double dt;       /* largest stable step, s; Euler without damping: 0 unless `duration` was given;
+                      infinite where nothing can move against anything else */
+  double omega;    /* highest eigenfrequency of the undamped set, rad/s */
   double residual; /* relative bound on the error of omega^2 */
   int64_t iterations;
 } mps_linear_limit;
 
 /** No time stepping: Lanczos iteration on the tangent with the boundaries set so far; damping may
  *  differ from particle to particle. `duration` (s, >= 0): for Euler, which has no limit without
- *  damping but grows slowly, the largest step whose amplification over `duration` stays below
- *  1e15; 0: the asymptotic limit. Other integrators ignore it. */
+ *  damping but grows slowly, the largest step (up to 4/omega) whose amplification over `duration`
+ *  stays below 1e15; 0: the asymptotic limit. Other integrators ignore it. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_limit_linear(mps_dynamics *dynamics, double duration,
                                                            mps_linear_limit *out);
 
@@ -265,7 +268,8 @@ static inline mps_predict_def mps_predict_defaults(void) {
 typedef struct mps_prediction {
   double linear;               /* s: own linear theory, edges of a body allowed for; use this one */
   double omega;                /* rad/s, highest eigenfrequency of the endless lattice */
-  double printed_s, printed_p; /* s: seed A (14)-(16) with Table 2; NaN outside its range of h */
+  double printed_s, printed_p; /* s: seed A (14)-(16) with Table 2; NaN outside its range of h,
+                                  0.001 to 0.22; h = 0 is the seed's undamped case, its 0.001 */
   double printed;              /* the smaller of the two */
   int32_t printed_in_range;    /* 1: R, V and h within the range of the seed's study */
   int32_t printed_is_safe;     /* 1: printed <= linear. It can be 1.5 times above. */

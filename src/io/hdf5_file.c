@@ -123,7 +123,8 @@ static int reserve(mpsi_h5_file *file) {
   const int error = posix_fallocate(file->fd, 0, (off_t)file->end_of_allocation);
   file->reserved = file->end_of_allocation;
   if (error == 0 && file->end_of_file < file->reserved) file->end_of_file = file->reserved;
-  return error == EINVAL || error == EOPNOTSUPP ? 0 : error; /* this disk cannot promise */
+  const bool refused = error == ENOSPC || error == EFBIG || error == EDQUOT || error == EIO;
+  return refused ? error : 0; /* else: a device that cannot promise */
 }
 
 static herr_t driver_write(H5FD_t *driver, H5FD_mem_t type, hid_t transfer, haddr_t address,

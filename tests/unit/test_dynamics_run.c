@@ -410,6 +410,7 @@ static void a_step_above_the_limit_is_warned_of(void **state) {
     assert_int_equal(h.warnings, expected); /* once */
     if (expected) assert_non_null(strstr(h.text, "above the linear stability limit"));
     mps_dynamics_destroy(&d);
+    mps_particles_destroy(&set);
     h.warnings = 0;
     d = shaken(own, NULL, 0.0, &set);
     mps_assert_ok(own, mps_dynamics_set_dt(d, factor[k] * limit.dt));

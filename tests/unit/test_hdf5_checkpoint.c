@@ -372,6 +372,49 @@ static void a_sealed_file_cut_short_is_refused(void **state) {
   mps_particles_destroy(&set);
 }
 
+static int printed;
+static herr_t host_print(hid_t stack, void *data) {
+  (void)stack;
+  printed += *(int *)data;
+  return 0;
+}
+static herr_t host_print_old(void *data) {
+  printed += *(int *)data;
+  return 0;
+}
+
+/* A host of HDF5 may have either of its two ways of printing errors. */
+static void the_hosts_error_printing_is_left_alone(void **state) {
+  (void)state;
+  int weight = 3;
+  size_t size;
+  H5E_auto2_t before, now;
+  void *before_data, *now_data;
+  write_checkpoint();
+  mps_particles *set = make_set(context, 2, 0.5, COUNT);
+  unsigned char *data = load(path, &size);
+  store_sealed(bent, data, size / 2);
+  H5Eget_auto2(H5E_DEFAULT, &before, &before_data);
+  for (int old = 0; old < 2; old++) {
+    printed = 0;
+    if (old)
+      H5Eset_auto1(host_print_old, &weight);
+    else
+      H5Eset_auto2(H5E_DEFAULT, host_print, &weight);
+    refused(bent, set, MPS_ERROR_FORMAT, "it does not open; HDF5 says: truncated file");
+    assert_int_equal(printed, 0);
+    if (!old) {
+      H5Eget_auto2(H5E_DEFAULT, &now, &now_data);
+      assert_true(now == host_print && now_data == &weight);
+    }
+    assert_true(H5Fopen(TEST_TMP "/no such file", H5F_ACC_RDONLY, H5P_DEFAULT) < 0);
+    assert_int_equal(printed, 3);
+  }
+  H5Eset_auto2(H5E_DEFAULT, before, before_data);
+  free(data);
+  mps_particles_destroy(&set);
+}
+
 /* ---- checkpoints whose content is wrong ------------------------------------------------------ */
 
 static void put_attribute(hid_t file, const char *name, hid_t type, const void *value) {
@@ -482,7 +525,6 @@ static void wrong_content_is_refused(void **state) {
   mps_particles *set = make_set(context, 2, 0.5, COUNT);
   unsigned char *data = load(path, &size);
   const int64_t handles = test_hdf5_handles();
-  H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
   bend bent_way;
   for (int way = 0;; way++) {
     store(bent, data, size - 32); /* without the seal */
@@ -570,6 +612,7 @@ int main(void) {
       cmocka_unit_test(a_file_cut_short_anywhere_is_refused),
       cmocka_unit_test(a_changed_byte_is_noticed),
       cmocka_unit_test(a_sealed_file_cut_short_is_refused),
+      cmocka_unit_test(the_hosts_error_printing_is_left_alone),
       cmocka_unit_test(wrong_content_is_refused),
       cmocka_unit_test(a_full_disk_leaves_the_former_checkpoint),
       cmocka_unit_test(refused_allocations_leave_nothing_behind),
