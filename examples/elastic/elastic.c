@@ -23,7 +23,7 @@ const char *elastic_method_name(const elastic_settings *s) {
 }
 
 bool elastic_point_get(app *a, mps_particles *particles, int64_t index, elastic_point *out) {
-  static const int32_t component[3] = {0, 1, 5};
+  static const int32_t component[3] = {0, 1, 3};
   mps_view x, u, stress, mises;
   if (!app_check(a, mps_particles_view(particles, "position", &x)) ||
       !app_check(a, mps_particles_view(particles, "displacement", &u)) ||

@@ -98,8 +98,8 @@ MPS_API MPS_NODISCARD mps_status mps_elastic_update_material(mps_elastic *elasti
 /* ---- shape and supports ---------------------------------------------------------------------- */
 
 /** The surface passes through these particles: the half of their cells on `side` (-1 or +1) of
- *  `axis` does not belong to the body. Refused where a particle has a neighbour on that side. Ends a
- *  motion under way. */
+ *  `axis` does not belong to the body. Refused where a particle has a neighbour on that side. Ends
+ * a motion under way. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_cut(mps_elastic *elastic, int32_t axis, int32_t side,
                                                  int64_t count, const int64_t *ids);
 
@@ -226,8 +226,8 @@ MPS_API MPS_NODISCARD mps_status mps_elastic_reaction_resultant(const mps_elasti
  */
 
 /** Writes strain and stress of the present displacement to the fields `strain` and `stress`
- *  (components xx, yy, zz, yz, zx, xy; shear strain is tensorial), the principal stresses, largest
- *  first, to `principal`, and the von Mises stress to `von_mises`. Conservative: from the
+ *  (components xx, yy, zz, xy and in 3D zx, yz; shear strain is tensorial), the principal stresses,
+ * largest first, to `principal`, and the von Mises stress to `von_mises`. Conservative: from the
  *  gradient; published: the virial stress of the pairs. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_stress(mps_elastic *elastic);
 

@@ -9,8 +9,8 @@
 
 #include <string.h>
 
-/* Order of components: xx, yy, zz, yz, zx, xy. */
-static const int ROW[6] = {0, 1, 2, 1, 2, 0}, COL[6] = {0, 1, 2, 2, 0, 1};
+/* Order of components: xx, yy, zz, xy and, in 3D, zx, yz. */
+static const int ROW[6] = {0, 1, 2, 0, 2, 1}, COL[6] = {0, 1, 2, 1, 0, 2};
 
 /* ---- strain and stress ----------------------------------------------------------------------- */
 
@@ -113,6 +113,7 @@ mps_status mps_elastic_stress(mps_elastic *e) {
   if (!values) return mpsi_fail_memory(e->context, __func__, (size_t)(16 * e->n) * sizeof *values);
   double *strains = values, *stresses = values + 6 * e->n, *principals = values + 12 * e->n;
   double *mises = values + 15 * e->n;
+  const int32_t m = 2 * e->dim; /* components */
   mpsi_elastic_gradients(e, e->displacement, e->gradient);
   for (int64_t i = 0; i < e->n; i++) {
     double strain[3][3], stress[3][3];
@@ -122,15 +123,15 @@ mps_status mps_elastic_stress(mps_elastic *e) {
     else
       hooke(e, i, (const double(*)[3])strain, stress);
     complete_plane(e, i, strain, stress);
-    for (int k = 0; k < 6; k++) {
-      strains[i * 6 + k] = strain[ROW[k]][COL[k]];
-      stresses[i * 6 + k] = stress[ROW[k]][COL[k]];
+    for (int k = 0; k < m; k++) {
+      strains[i * m + k] = strain[ROW[k]][COL[k]];
+      stresses[i * m + k] = stress[ROW[k]][COL[k]];
     }
     principal((const double(*)[3])stress, principals + i * 3);
     mises[i] = von_mises(principals + i * 3);
   }
-  mps_status status = mpsi_elastic_write(e, __func__, "strain", strains, 6);
-  if (status == MPS_OK) status = mpsi_elastic_write(e, __func__, "stress", stresses, 6);
+  mps_status status = mpsi_elastic_write(e, __func__, "strain", strains, m);
+  if (status == MPS_OK) status = mpsi_elastic_write(e, __func__, "stress", stresses, m);
   if (status == MPS_OK) status = mpsi_elastic_write(e, __func__, "principal", principals, 3);
   if (status == MPS_OK) status = mpsi_elastic_write(e, __func__, "von_mises", mises, 1);
   mpsi_free(e->context, values);
