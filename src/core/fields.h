@@ -12,8 +12,8 @@
 
 #define MPSI_PER_DIM 0       /* 2 in 2D, 3 in 3D */
 #define MPSI_PER_ROTATION -1 /* 1 in 2D, 3 in 3D */
-#define MPSI_PER_STRESS -3   /* 4 in 2D (xx, yy, zz, xy), 6 in 3D (and zx, yz) */
 #define MPSI_PER_FREEDOM -2  /* displacements and rotations: 3 in 2D, 6 in 3D */
+#define MPSI_PER_STRESS -3   /* 4 in 2D (xx, yy, zz, xy), 6 in 3D (and zx, yz) */
 
 /* clang-format off */
 #define MPSI_FIELD_TABLE(X)                                                                        \
