@@ -13,6 +13,7 @@
 #define MPSI_PER_DIM 0       /* 2 in 2D, 3 in 3D */
 #define MPSI_PER_ROTATION -1 /* 1 in 2D, 3 in 3D */
 #define MPSI_PER_FREEDOM -2  /* displacements and rotations: 3 in 2D, 6 in 3D */
+#define MPSI_PER_STRESS -3   /* 4 in 2D (xx, yy, zz, xy), 6 in 3D (and zx, yz) */
 
 /* clang-format off */
 #define MPSI_FIELD_TABLE(X)                                                                        \
@@ -42,6 +43,22 @@
     "the caller (initial state); solvers", "after a step or a run")                                \
   X(spin, F64, MPSI_PER_ROTATION, "rad/s", "angular velocity, anticlockwise",                      \
     "the caller (initial state); solvers", "after a step or a run")                                \
+  X(young, F64, 1, "Pa", "Young's modulus",                                                        \
+    "the caller", "as written")                                                                    \
+  X(poisson, F64, 1, "-", "Poisson's ratio",                                                       \
+    "the caller", "as written")                                                                    \
+  X(reaction, F64, MPSI_PER_DIM, "N", "force of the supports on the particle",                     \
+    "implicit elasticity", "after a solution or a step")                                           \
+  X(strain, F64, MPSI_PER_STRESS, "-",                                                             \
+    "strain xx, yy, zz, xy; 3D: and zx, yz (shear: tensor components)",                            \
+    "implicit elasticity", "after mps_elastic_stress")                                             \
+  X(stress, F64, MPSI_PER_STRESS, "Pa",                                                            \
+    "stress xx, yy, zz, xy; 3D: and zx, yz; tension positive",                                     \
+    "implicit elasticity", "after mps_elastic_stress")                                             \
+  X(principal, F64, 3, "Pa", "principal stresses, largest first",                                  \
+    "implicit elasticity", "after mps_elastic_stress")                                             \
+  X(von_mises, F64, 1, "Pa", "von Mises stress",                                                   \
+    "implicit elasticity", "after mps_elastic_stress")                                             \
   X(acceleration, F64, MPSI_PER_DIM, "m/s2", "acceleration",                                       \
     "solvers", "after a step or a run")                                                            \
   X(pressure, F64, 1, "Pa", "pressure",                                                            \
@@ -61,6 +78,7 @@ static inline int32_t mpsi_field_components(int32_t code, int32_t dim) {
   if (code == MPSI_PER_DIM) return dim;
   if (code == MPSI_PER_ROTATION) return rotations;
   if (code == MPSI_PER_FREEDOM) return dim + rotations;
+  if (code == MPSI_PER_STRESS) return 2 * dim;
   return code;
 }
 

@@ -26,7 +26,7 @@ typedef struct known_field {
   int column;
 } known_field;
 static const known_field known[] = {
-    {"displacement", 2, 3, 1}, {"pressure", 1, 0, 3}, {"stress", 4, 4, 4}, {"pair", 2, 3, 8}};
+    {"displacement", 2, 3, 1}, {"pressure", 1, 0, 3}, {"four", 4, 4, 4}, {"pair", 2, 3, 8}};
 #define KNOWN ((int)(sizeof known / sizeof *known))
 
 static void fill(mps_particles *set, double time) {
