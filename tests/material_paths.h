@@ -19,15 +19,15 @@ static inline double random_number(uint64_t *seed) {
 
 static inline double mean_stress(const double *s) { return (s[0] + s[1] + s[2]) / 3.0; }
 
-/* sqrt(J2) of xx yy zz xy yz zx. */
+/* sqrt(J2) of xx yy zz xy zx yz. */
 static inline double root_j2(const double *s) {
   const double x = s[0] - s[1], y = s[1] - s[2], z = s[2] - s[0];
   return sqrt((x * x + y * y + z * z) / 6.0 + s[3] * s[3] + s[4] * s[4] + s[5] * s[5]);
 }
 
 static inline double determinant(const double *s) {
-  return s[0] * (s[1] * s[2] - s[4] * s[4]) - s[3] * (s[3] * s[2] - s[4] * s[5]) +
-         s[5] * (s[3] * s[4] - s[1] * s[5]);
+  return s[0] * (s[1] * s[2] - s[5] * s[5]) - s[3] * (s[3] * s[2] - s[5] * s[4]) +
+         s[4] * (s[3] * s[5] - s[1] * s[4]);
 }
 
 /* Principal stresses, largest first, by the angle of Lode: independent of the library's way. */

@@ -6,7 +6,7 @@
  *
  * Signs and components: tension is positive. Tensors of two indices are stored by 3 i + j with
  * x, y, z = 0, 1, 2; in 2D only xx, xy, yx, yy (0, 1, 3, 4) and zz (8) are used, zz being the
- * direction out of the plane or the hoop. Stress is stored as xx, yy, zz, xy, yz, zx; in 2D the
+ * direction out of the plane or the hoop. Stress is stored as xx, yy, zz, xy, zx, yz; in 2D the
  * first four. Angles are in radians.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPS_MATERIAL_H

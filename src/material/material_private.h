@@ -75,7 +75,7 @@ struct mps_material {
 mps_material *mpsi_material_new(mps_context *context, const char *function, mpsi_law_kind kind,
                                 const char *name, int32_t history_count);
 
-/* Maps a trial stress (xx yy zz xy [yz zx]) back to the pyramid of Mohr and Coulomb. Returns its
+/* Maps a trial stress (xx yy zz xy [zx yz]) back to the pyramid of Mohr and Coulomb. Returns its
  * flags; adds to *plastic_strain. */
 int64_t mpsi_mohr_coulomb_return(const mpsi_law *law, int32_t dim, double *stress,
                                  double *plastic_strain);

@@ -57,7 +57,7 @@ static void rotate(double a[3][3], double axis[3][3], int i, int j) {
 /* Jacobi: directions orthogonal to the last bits also where values coincide. It converges
  * quadratically; 12 sweeps are far more than it ever needs, and end it for a NaN. */
 static principal split_space(const double *s) {
-  double a[3][3] = {{s[0], s[3], s[5]}, {s[3], s[1], s[4]}, {s[5], s[4], s[2]}};
+  double a[3][3] = {{s[0], s[3], s[4]}, {s[3], s[1], s[5]}, {s[4], s[5], s[2]}};
   principal p = {.axis = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
   for (int sweep = 0; sweep < 12; sweep++) {
     const double off = fabs(a[0][1]) + fabs(a[1][2]) + fabs(a[2][0]);
@@ -72,7 +72,7 @@ static principal split_space(const double *s) {
 }
 
 static void join_space(const principal *trial, const double *value, double *s) {
-  static const int row[6] = {0, 1, 2, 0, 1, 2}, column[6] = {0, 1, 2, 1, 2, 0};
+  static const int row[6] = {0, 1, 2, 0, 2, 1}, column[6] = {0, 1, 2, 1, 0, 2};
   for (int c = 0; c < 6; c++) {
     s[c] = 0.0;
     for (int a = 0; a < 3; a++)

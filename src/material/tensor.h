@@ -54,8 +54,8 @@ MPSI_INLINE mpsi_spin mpsi_spin_of(const int geometry, const mpsi_columns *c, in
 MPSI_INLINE mpsi_sym mpsi_stress(const int geometry, const mpsi_columns *c, int64_t k) {
   mpsi_sym s = {.xx = c->s[0][k], .yy = c->s[1][k], .zz = c->s[2][k], .xy = c->s[3][k]};
   if (geometry == MPSI_SPACE) {
-    s.yz = c->s[4][k];
-    s.zx = c->s[5][k];
+    s.yz = c->s[5][k];
+    s.zx = c->s[4][k];
   }
   return s;
 }
@@ -66,8 +66,8 @@ MPSI_INLINE void mpsi_put_stress(const int geometry, const mpsi_columns *c, int6
   c->s[2][k] = s.zz;
   c->s[3][k] = s.xy;
   if (geometry == MPSI_SPACE) {
-    c->s[4][k] = s.yz;
-    c->s[5][k] = s.zx;
+    c->s[5][k] = s.yz;
+    c->s[4][k] = s.zx;
   }
 }
 
