@@ -1,0 +1,228 @@
+/* mps/material.h - constitutive laws, applied to blocks of particles.
+ *
+ * A material is immutable after creation: it may be shared by solvers, contexts and threads. The
+ * state of the particles (stress, volume, deformation gradient, history) lives in columns, one
+ * value a particle, that the solver or the caller owns. The equations are in docs/materials.md.
+ *
+ * Signs and components: tension is positive. Tensors of two indices are stored by 3 i + j with
+ * x, y, z = 0, 1, 2; in 2D only xx, xy, yx, yy (0, 1, 3, 4) and zz (8) are used, zz being the
+ * direction out of the plane or the hoop. Stress is stored as xx, yy, zz, xy, yz, zx; in 2D the
+ * first four. Angles are in radians.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPS_MATERIAL_H
+#define MPS_MATERIAL_H
+
+#include <mps/context.h>
+
+MPS_EXTERN_C_BEGIN
+
+typedef struct mps_material mps_material;
+
+#define MPS_MATERIAL_HISTORY_MAX 32 /* columns of history a law may have */
+
+/** What a law did to a particle in this step: bits of the column `flags`. */
+#define MPS_MATERIAL_PLASTIC 1 /* the trial stress was outside the yield surface */
+#define MPS_MATERIAL_APEX 2    /* ... and came back to the limit of tension: the volume is kept */
+
+/** A block of particles as a law sees it: columns of `count` doubles, each contiguous. */
+typedef struct mps_material_block {
+  uint32_t struct_size; /* sizeof(mps_material_block) */
+  int32_t dim;          /* 2 or 3 */
+  int64_t count;        /* >= 0 */
+  double dt;            /* s, > 0 */
+  /** In: velocity gradient of the step, dv_i/dx_j, 1/s. In 2D zz may be NULL: plane strain. */
+  const double *gradient[9];
+  /** In, out: deformation gradient, updated by seed B (44). All the components of `dim` (in 2D also
+   *  zz), or all NULL where the law does not need it (mps_material_needs_deformation). */
+  double *deformation[9];
+  /** In, out: V/V0, multiplied by 1 + dt tr(d), or det F with a deformation gradient; kept by
+   *  particles at the limit of tension. */
+  double *volume_ratio;
+  double *stress[6]; /* In, out: Cauchy stress, Pa. */
+  /** In, out: mps_material_history_count columns. */
+  double *history[MPS_MATERIAL_HISTORY_MAX];
+  int64_t *flags; /* Out: MPS_MATERIAL_... bits. */
+} mps_material_block;
+
+/* ---- laws ----------------------------------------------------------------------------------
+ * E is Young's modulus (Pa, finite, > 0), nu Poisson's ratio (-1 < nu < 0.5). Every law but the
+ * neo-Hookean solid and the fluid turns the stress of the step before by the step's spin, seed B
+ * (45)-(47) in a form that keeps its principal values to the last bits, adds C:d, and then maps the
+ * trial stress back to the yield surface. Errors: MPS_ERROR_ARGUMENT with the value and its range,
+ * MPS_ERROR_MEMORY. */
+
+/** Linear elastic, Jaumann rate. */
+MPS_API MPS_NODISCARD mps_status mps_material_linear_elastic(mps_context *context, double young,
+                                                             double poisson, mps_material **out);
+/** Compressible neo-Hookean solid, for large elastic strain; needs the deformation gradient.
+ *  sigma = G/J (F F^T - 1) + lambda/2 (J - 1/J) 1. */
+MPS_API MPS_NODISCARD mps_status mps_material_neo_hookean(mps_context *context, double young,
+                                                          double poisson, mps_material **out);
+
+/** von Mises: sqrt(3 J2) = yield_stress + hardening * plastic_strain, associated. */
+typedef struct mps_von_mises_def {
+  uint32_t struct_size;
+  uint32_t reserved;
+  double young;        /* Pa, > 0; no default */
+  double poisson;      /* default 0.3 */
+  double yield_stress; /* Pa, in uniaxial tension, > 0; no default. Plane strain with cohesion c:
+                          sqrt(3) c, seed B (54) */
+  double hardening;    /* Pa per plastic strain, >= 0; default 0 */
+} mps_von_mises_def;
+
+/** How the cone of Drucker and Prager meets the hexagonal pyramid of Mohr and Coulomb. All have its
+ *  apex; the flow potential is the same kind of cone for the angle of dilation. */
+typedef enum mps_cone {
+  MPS_CONE_PLANE_STRAIN = 0,  /* the same limit load in plane strain, whatever the dilation; where
+                                 that equals the friction: seed B (56) */
+  MPS_CONE_CIRCUMSCRIBED = 1, /* outer cone, through the edges of triaxial compression */
+  MPS_CONE_INSCRIBED = 2,     /* inner cone, the largest that stays inside: always seed B (56) */
+  MPS_CONE_EXTENSION = 3      /* through the edges of triaxial extension */
+} mps_cone;
+
+/** Drucker-Prager: sqrt(J2) + alpha I1 = kappa, seed B (55), perfectly plastic. */
+typedef struct mps_drucker_prager_def {
+  uint32_t struct_size;
+  int32_t cone;    /* mps_cone, default MPS_CONE_PLANE_STRAIN */
+  double young;    /* Pa, > 0; no default */
+  double poisson;  /* default 0.3 */
+  double friction; /* rad, angle phi, 0 <= phi < pi/2; no default */
+  double dilation; /* rad, angle psi, 0 <= psi <= phi; default 0. Associated: phi */
+  double cohesion; /* Pa, c >= 0, not 0 when phi is; default 0 */
+  double tension;  /* Pa, largest mean stress I1/3, >= 0; default infinity: up to the apex */
+} mps_drucker_prager_def;
+
+/** Mohr-Coulomb: (s1 - s3) + (s1 + s3) sin(phi) = 2 c cos(phi), perfectly plastic. */
+typedef struct mps_mohr_coulomb_def {
+  uint32_t struct_size;
+  uint32_t reserved;
+  double young;    /* Pa, > 0; no default */
+  double poisson;  /* default 0.3 */
+  double friction; /* rad, angle phi, 0 <= phi < pi/2; no default */
+  double dilation; /* rad, angle psi, 0 <= psi <= phi; default 0 */
+  double cohesion; /* Pa, c >= 0, not 0 when phi is; default 0 */
+} mps_mohr_coulomb_def;
+
+/** Pressure of a fluid from its density ratio r = rho/rho0 = V0/V. */
+typedef enum mps_state_equation {
+  MPS_STATE_LINEAR = 0, /* p = K (r - 1) */
+  MPS_STATE_TAIT = 1    /* p = K/7 (r^7 - 1) */
+} mps_state_equation;
+
+/** Weakly compressible Newtonian fluid: sigma = -p 1 + 2 viscosity dev(d). */
+typedef struct mps_newtonian_def {
+  uint32_t struct_size;
+  int32_t state;       /* mps_state_equation, default MPS_STATE_TAIT */
+  double bulk_modulus; /* Pa, K = rho0 c^2 > 0; no default */
+  double viscosity;    /* Pa s, >= 0; default 0 */
+  int32_t no_tension;  /* 1: p >= 0, and the volume does not grow beyond V0; default 0 */
+  int32_t reserved;
+} mps_newtonian_def;
+
+/** A law of the caller's own. Called once a block, by several threads at once; reads `gradient` and
+ *  writes `stress`, `history` and `flags` (zero on entry). `deformation` and `volume_ratio` are
+ *  those of the end of the step already; a law may set the volume ratio back. Returns 0, or
+ *  anything else to stop the solver with MPS_ERROR_NUMERIC. */
+typedef int32_t (*mps_material_fn)(void *user, const mps_material_block *block);
+
+typedef struct mps_user_law_def {
+  uint32_t struct_size;
+  int32_t history_count;         /* 0..MPS_MATERIAL_HISTORY_MAX; default 0 */
+  mps_material_fn update;        /* no default */
+  void *user;                    /* passed to `update`; must outlive the material */
+  const char *name;              /* copied, at most 47 characters; default "user" */
+  const char *const *history;    /* names [A-Za-z_][A-Za-z0-9_]*, at most 47 characters, copied */
+  const double *history_initial; /* values before the first step; NULL: zero */
+  double wave_modulus;           /* Pa, K + 4G/3 of the stiffest state, > 0; no default */
+  double viscosity;              /* Pa s, for the largest stable step, >= 0; default 0 */
+  int32_t needs_deformation;     /* 1: `deformation` is there; default 0 */
+  int32_t turns_stress;          /* 1 (default): `stress` comes turned by the step's spin */
+} mps_user_law_def;
+
+MPS_API mps_status mps_von_mises_def_init(mps_von_mises_def *def, size_t size);
+MPS_API mps_status mps_drucker_prager_def_init(mps_drucker_prager_def *def, size_t size);
+MPS_API mps_status mps_mohr_coulomb_def_init(mps_mohr_coulomb_def *def, size_t size);
+MPS_API mps_status mps_newtonian_def_init(mps_newtonian_def *def, size_t size);
+MPS_API mps_status mps_user_law_def_init(mps_user_law_def *def, size_t size);
+
+#define MPS_MATERIAL_DEFAULTS(law)                                                                 \
+  static inline mps_##law##_def mps_##law##_defaults(void) {                                       \
+    mps_##law##_def def;                                                                           \
+    memset(&def, 0, sizeof def);                                                                   \
+    if (mps_##law##_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;                     \
+    return def;                                                                                    \
+  }
+MPS_MATERIAL_DEFAULTS(von_mises)
+MPS_MATERIAL_DEFAULTS(drucker_prager)
+MPS_MATERIAL_DEFAULTS(mohr_coulomb)
+MPS_MATERIAL_DEFAULTS(newtonian)
+MPS_MATERIAL_DEFAULTS(user_law)
+
+MPS_API MPS_NODISCARD mps_status mps_material_von_mises(mps_context *context,
+                                                        const mps_von_mises_def *def,
+                                                        mps_material **out);
+MPS_API MPS_NODISCARD mps_status mps_material_drucker_prager(mps_context *context,
+                                                             const mps_drucker_prager_def *def,
+                                                             mps_material **out);
+MPS_API MPS_NODISCARD mps_status mps_material_mohr_coulomb(mps_context *context,
+                                                           const mps_mohr_coulomb_def *def,
+                                                           mps_material **out);
+MPS_API MPS_NODISCARD mps_status mps_material_newtonian(mps_context *context,
+                                                        const mps_newtonian_def *def,
+                                                        mps_material **out);
+MPS_API MPS_NODISCARD mps_status mps_material_user(mps_context *context,
+                                                   const mps_user_law_def *def, mps_material **out);
+
+/** Releases and nulls; accepts NULL. Solvers that use the material keep their own reference. */
+MPS_API void mps_material_destroy(mps_material **material);
+
+/* ---- questions: thread safe; a NULL material gives "", 0 or NULL ------------------------------
+ */
+
+/** "linear_elastic", "drucker_prager", ... or the user's name. Lives as long as the material. */
+MPS_API const char *mps_material_name(const mps_material *material);
+/** K + 4G/3 at zero strain (Pa): the P wave velocity is its square root over the density's. */
+MPS_API double mps_material_wave_modulus(const mps_material *material);
+/** Non-zero: the law works on the deformation gradient, not on the rate. */
+MPS_API int32_t mps_material_needs_deformation(const mps_material *material);
+MPS_API int32_t mps_material_history_count(const mps_material *material);
+/** Name of a history column, NULL outside 0..count-1: `plastic_strain` is the sum of
+ *  sqrt(2/3 de:de) over the plastic, deviatoric strain increments. */
+MPS_API const char *mps_material_history_name(const mps_material *material, int32_t index);
+/** Value of a history column before the first step. */
+MPS_API double mps_material_history_initial(const mps_material *material, int32_t index);
+
+/* ---- use without a solver -------------------------------------------------------------------- */
+
+/** Applies one step to a block. MPS_ERROR_ARGUMENT for a malformed block (nothing is changed),
+ *  MPS_ERROR_NUMERIC when a user's law refuses. Values are not looked at: a NaN stays in its
+ *  particle. Errors go to `context`, which need not be the material's: threads that update at once
+ *  use a context each. No allocation. */
+MPS_API MPS_NODISCARD mps_status mps_material_update(mps_context *context,
+                                                     const mps_material *material,
+                                                     const mps_material_block *block);
+
+/** One particle with all its state, to try a law along a path of strain. Frozen layout. */
+typedef struct mps_material_point {
+  double stress[6];      /* Pa; may be set before the first step */
+  double deformation[9]; /* starts as the unit tensor */
+  double volume_ratio;   /* starts as 1 */
+  double history[MPS_MATERIAL_HISTORY_MAX];
+  int64_t flags; /* of the last step */
+  double time;   /* s */
+} mps_material_point;
+
+/** The state before the first step. */
+MPS_API MPS_NODISCARD mps_status mps_material_point_init(mps_context *context,
+                                                         const mps_material *material,
+                                                         mps_material_point *point);
+/** `steps` (>= 1) steps of dt = duration/steps (s, > 0) with the constant velocity gradient[3 i +
+ * j] (1/s, finite), always in three dimensions. */
+MPS_API MPS_NODISCARD mps_status mps_material_point_drive(mps_context *context,
+                                                          const mps_material *material,
+                                                          mps_material_point *point,
+                                                          const double gradient[9], double duration,
+                                                          int64_t steps);
+
+MPS_EXTERN_C_END
+#endif

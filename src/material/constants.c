@@ -1,0 +1,112 @@
+/* constants.c - checks of parameters, elastic constants, and the cones of Drucker and Prager that
+ * match Mohr and Coulomb, seed B (55)-(56).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "constants.h"
+
+#define RIGHT_ANGLE 1.57079632679489662
+#define ROOT3 1.7320508075688772
+
+/* ---- checks -----------------------------------------------------------------------------------
+ */
+
+static mps_status out_of_range(mps_context *context, const char *function, const char *name,
+                               const char *unit, double value, double low, double high,
+                               const char *sign) {
+  if (isinf(high))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %g%s, must be finite and %s %g",
+                     name, value, unit, sign, low);
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %g%s, must be %s %g and < %g",
+                   name, value, unit, sign, low, high);
+}
+
+mps_status mpsi_check_within(mps_context *context, const char *function, const char *name,
+                             const char *unit, double value, double low, double high) {
+  if (value >= low && value < high) return MPS_OK; /* not NaN */
+  return out_of_range(context, function, name, unit, value, low, high, ">=");
+}
+
+mps_status mpsi_check_between(mps_context *context, const char *function, const char *name,
+                              const char *unit, double value, double low, double high) {
+  if (value > low && value < high) return MPS_OK;
+  return out_of_range(context, function, name, unit, value, low, high, ">");
+}
+
+mps_status mpsi_check_elastic(mps_context *context, const char *function, double young,
+                              double poisson) {
+  const mps_status status =
+      mpsi_check_between(context, function, "Young's modulus", " Pa", young, 0.0, INFINITY);
+  if (status != MPS_OK) return status;
+  return mpsi_check_between(context, function, "Poisson's ratio", "", poisson, -1.0, 0.5);
+}
+
+mps_status mpsi_check_friction(mps_context *context, const char *function, double friction,
+                               double dilation, double cohesion) {
+  mps_status status = mpsi_check_within(context, function, "the friction angle",
+                                        " rad (angles are in radians)", friction, 0.0, RIGHT_ANGLE);
+  if (status != MPS_OK) return status;
+  if (!(dilation >= 0.0 && dilation <= friction))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "the dilation angle is %g rad, must be >= 0 and at most the friction angle, "
+                     "%g rad",
+                     dilation, friction);
+  status = mpsi_check_within(context, function, "cohesion", " Pa", cohesion, 0.0, INFINITY);
+  if (status != MPS_OK) return status;
+  if (friction == 0.0 && cohesion == 0.0)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "friction angle and cohesion are both 0: the material has no strength; one "
+                     "must be > 0");
+  return MPS_OK;
+}
+
+/* ---- constants --------------------------------------------------------------------------------
+ */
+
+mpsi_law mpsi_law_elastic(double young, double poisson) {
+  const double shear = young / (2.0 * (1.0 + poisson));
+  const double bulk = young / (3.0 * (1.0 - 2.0 * poisson));
+  return (mpsi_law){.shear = shear, .bulk = bulk, .lambda = bulk - 2.0 / 3.0 * shear};
+}
+
+double mpsi_law_wave_modulus(const mpsi_law *law) { return law->bulk + 4.0 / 3.0 * law->shear; }
+
+/* Slope of the cone that matches an angle; for the plane strain cone's flow the inscribed one,
+ * which in plane strain flows with just that angle of dilation. */
+static double slope(mps_cone cone, double angle) {
+  const double sine = sin(angle);
+  switch (cone) {
+  case MPS_CONE_CIRCUMSCRIBED:
+    return 2.0 * sine / (ROOT3 * (3.0 - sine));
+  case MPS_CONE_EXTENSION:
+    return 2.0 * sine / (ROOT3 * (3.0 + sine));
+  default:
+    return sine / sqrt(9.0 + 3.0 * sine * sine); /* (56) */
+  }
+}
+
+/* Plane strain: at the limit load the flow out of the plane is zero, so that s_zz = -2 a q with a
+ * the flow's slope, and the radius of Mohr's circle is r = q sqrt(1 - 3 a^2). Put into (55) and
+ * compared with r + m sin(phi) = c cos(phi), m the mean stress in the plane. */
+static double plane_strain_slope(double sine, double flow) {
+  return sine / (3.0 * (sqrt(1.0 - 3.0 * flow * flow) + flow * sine));
+}
+
+void mpsi_law_add_cone(mpsi_law *law, mps_cone cone, double friction, double dilation,
+                       double cohesion, double tension) {
+  const double sine = sin(friction);
+  law->alpha_flow = slope(cone, dilation);
+  law->alpha = cone == MPS_CONE_PLANE_STRAIN ? plane_strain_slope(sine, law->alpha_flow)
+                                             : slope(cone, friction);
+  /* Every one of these cones has the pyramid's apex, p = c cot(phi); without friction all four have
+   * a slope of 0 and differ in radius only. */
+  double per_cohesion = 1.0; /* kappa / (c cos(phi)) */
+  if (friction > 0.0)
+    per_cohesion = 3.0 * law->alpha / sine;
+  else if (cone == MPS_CONE_CIRCUMSCRIBED || cone == MPS_CONE_EXTENSION)
+    per_cohesion = 2.0 / ROOT3;
+  law->kappa = per_cohesion * cohesion * cos(friction);
+  law->cone = 1.0 / (law->shear + 9.0 * law->bulk * law->alpha * law->alpha_flow);
+  const double apex = law->alpha > 0.0 ? law->kappa / (3.0 * law->alpha) : INFINITY;
+  law->tension = tension < apex ? tension : apex;
+  law->q_tension = tension < apex ? law->kappa - 3.0 * law->alpha * tension : 0.0;
+  if (isinf(law->tension)) law->q_tension = law->kappa;
+}

@@ -1,0 +1,26 @@
+/* constants.h - from the parameters of a definition to the constants of a law's loop.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_CONSTANTS_H
+#define MPSI_CONSTANTS_H
+
+#include "material_private.h"
+
+/* Checks one parameter: low <= value < high, or low < value < high. Infinite bounds are not
+ * allowed values. Records the error with the value and the range. */
+mps_status mpsi_check_within(mps_context *context, const char *function, const char *name,
+                             const char *unit, double value, double low, double high);
+mps_status mpsi_check_between(mps_context *context, const char *function, const char *name,
+                              const char *unit, double value, double low, double high);
+mps_status mpsi_check_elastic(mps_context *context, const char *function, double young,
+                              double poisson);
+/* Angles and cohesion of Drucker-Prager and Mohr-Coulomb. */
+mps_status mpsi_check_friction(mps_context *context, const char *function, double friction,
+                               double dilation, double cohesion);
+
+mpsi_law mpsi_law_elastic(double young, double poisson);
+/* Adds the cones of yield and flow, and the limit of tension. */
+void mpsi_law_add_cone(mpsi_law *law, mps_cone cone, double friction, double dilation,
+                       double cohesion, double tension);
+double mpsi_law_wave_modulus(const mpsi_law *law);
+
+#endif

@@ -1,0 +1,283 @@
+/* laws.c - the loops of the constitutive laws over a block: trial stress seed B (45)-(47), return
+ * maps of von Mises (53) and Drucker-Prager (55), neo-Hookean solid, Newtonian fluid, and what a
+ * user's law or Mohr-Coulomb needs around it. This file is compiled once for each instruction set,
+ * with MPSI_LEVEL set; fused multiply-add is off (build flags), so every level gives the same bits.
+ *
+ * A particle that yields and one that does not take the same instructions: results are selected, so
+ * that plasticity costs a square root and a division and never a branch.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "tensor.h"
+
+#define CONCAT_(a, b) a##b
+#define CONCAT(a, b) CONCAT_(a, b)
+#define SIMD _Pragma("omp simd")
+
+#define ROOT3 1.7320508075688772
+
+/* ---- return maps ------------------------------------------------------------------------------
+ * In the plane of mean stress p and q = sqrt(J2): the deviator keeps its direction. */
+
+typedef struct meridian {
+  double p, q;
+  double plastic; /* increment of plastic strain */
+  int64_t flags;
+} meridian;
+
+MPSI_INLINE meridian return_von_mises(const mpsi_law *law, double p, double q, double hardened) {
+  const double over = q - (law->yield + law->hardening * hardened) / ROOT3;
+  const double g = law->shear, drop = over * (g / (g + law->hardening / 3.0));
+  const bool yields = over > 0.0;
+  return (meridian){.p = p,
+                    .q = yields ? q - drop : q,
+                    .plastic = yields ? drop / (ROOT3 * g) : 0.0,
+                    .flags = yields ? MPS_MATERIAL_PLASTIC : 0};
+}
+
+/* The cone q + 3 alpha p = kappa up to the limit of tension p = tension, where its radius is
+ * q_tension: 0 at the apex. Beyond the limit, particles inside that radius go straight to it; those
+ * that the cone's return would carry past it go to the circle where both meet. */
+MPSI_INLINE meridian return_drucker_prager(const mpsi_law *law, double p, double q) {
+  const double f = q + 3.0 * law->alpha * p - law->kappa, multiplier = f * law->cone;
+  const double p_cone = p - 3.0 * law->bulk * law->alpha_flow * multiplier;
+  const double q_cone = q - law->shear * multiplier;
+  const bool torn = (p > law->tension) & (q <= law->q_tension);
+  const bool yields = f > 0.0, circle = yields & (p_cone > law->tension);
+  const double p_yield = circle ? law->tension : p_cone;
+  const double q_yield = circle ? law->q_tension : q_cone;
+  const double q_new = torn ? q : yields ? q_yield : q;
+  return (meridian){.p = torn     ? law->tension
+                         : yields ? p_yield
+                                  : p,
+                    .q = q_new,
+                    .plastic = (q - q_new) / (ROOT3 * law->shear),
+                    .flags = ((torn | yields) ? MPS_MATERIAL_PLASTIC : 0) +
+                             ((torn | circle) ? MPS_MATERIAL_APEX : 0)};
+}
+
+/* ---- laws of the Jaumann rate -----------------------------------------------------------------
+ */
+
+MPSI_INLINE void rate_loop(const int geometry, const int kind, const mpsi_law *constants,
+                           const mps_material_block *block) {
+  const mpsi_law law = *constants; /* a copy: nothing that the loop writes can alias it */
+  const mpsi_columns columns = mpsi_columns_of(block);
+  double *volume = block->volume_ratio, *strain = block->history[0];
+  int64_t *flags = block->flags;
+  const double dt = block->dt;
+  SIMD for (int64_t k = 0; k < block->count; k++) {
+    const mpsi_sym d = mpsi_strain(geometry, &columns, k, dt);
+    const mpsi_spin w = mpsi_spin_of(geometry, &columns, k, dt);
+    mpsi_sym s = mpsi_turn(geometry, mpsi_stress(geometry, &columns, k), w);
+    s = mpsi_hooke(&law, s, d);
+    int64_t flag = 0;
+    if (kind != MPSI_LAW_LINEAR_ELASTIC) {
+      const double p = (s.xx + s.yy + s.zz) / 3.0, dx = s.xx - p, dy = s.yy - p, dz = s.zz - p;
+      const double q =
+          sqrt(0.5 * (dx * dx + dy * dy + dz * dz) + (s.xy * s.xy + s.yz * s.yz + s.zx * s.zx));
+      if (kind == MPSI_LAW_MOHR_COULOMB) { /* beyond the inscribed cone: a candidate */
+        flag = q + 3.0 * law.alpha * p > law.kappa ? MPS_MATERIAL_PLASTIC : 0;
+      } else {
+        const meridian m = kind == MPSI_LAW_VON_MISES ? return_von_mises(&law, p, q, strain[k])
+                                                      : return_drucker_prager(&law, p, q);
+        const double scale = q > 0.0 ? m.q / q : 1.0;
+        flag = m.flags;
+        s.xx = flag != 0 ? m.p + scale * dx : s.xx; /* elastic ones keep their bits */
+        s.yy = flag != 0 ? m.p + scale * dy : s.yy;
+        s.zz = flag != 0 ? m.p + scale * dz : s.zz;
+        s.xy *= scale;
+        s.yz *= scale;
+        s.zx *= scale;
+        strain[k] += m.plastic;
+      }
+    }
+    mpsi_put_stress(geometry, &columns, k, s);
+    flags[k] = flag;
+    if (kind != MPSI_LAW_MOHR_COULOMB) {
+      const double growth = (flag & MPS_MATERIAL_APEX) != 0 ? 0.0 : d.xx + d.yy + d.zz;
+      volume[k] += volume[k] * growth;
+    }
+  }
+}
+
+/* V/V0 of a block whose flags are known. */
+MPSI_INLINE void volume_loop(const int geometry, const mps_material_block *block) {
+  const mpsi_columns columns = mpsi_columns_of(block);
+  double *volume = block->volume_ratio;
+  const int64_t *flags = block->flags;
+  const double dt = block->dt;
+  SIMD for (int64_t k = 0; k < block->count; k++) {
+    const mpsi_sym d = mpsi_strain(geometry, &columns, k, dt);
+    const double growth = (flags[k] & MPS_MATERIAL_APEX) != 0 ? 0.0 : d.xx + d.yy + d.zz;
+    volume[k] += volume[k] * growth;
+  }
+}
+
+/* The trial in vector form; then the few that may yield, one by one, in principal stresses. */
+MPSI_INLINE void mohr_coulomb_loop(const int geometry, const mpsi_law *law,
+                                   const mps_material_block *block) {
+  rate_loop(geometry, MPSI_LAW_MOHR_COULOMB, law, block);
+  const int32_t dim = geometry == MPSI_SPACE ? 3 : 2, components = dim == 3 ? 6 : 4;
+  for (int64_t k = 0; k < block->count; k++) {
+    if (block->flags[k] == 0) continue;
+    double s[6];
+    for (int32_t c = 0; c < components; c++) s[c] = block->stress[c][k];
+    block->flags[k] = mpsi_mohr_coulomb_return(law, dim, s, &block->history[0][k]);
+    if (block->flags[k] == 0) continue;
+    for (int32_t c = 0; c < components; c++) block->stress[c][k] = s[c];
+  }
+  volume_loop(geometry, block);
+}
+
+/* ---- laws of the deformation gradient ---------------------------------------------------------
+ */
+
+/* F = (1 + dt L) F, seed B (44), and V/V0 = det F. In 2D xz, yz, zx, zy are zero. */
+MPSI_INLINE void deform_loop(const int geometry, const mps_material_block *block) {
+  const mpsi_columns columns = mpsi_columns_of(block);
+  double *f[9], *volume = block->volume_ratio;
+  for (int c = 0; c < 9; c++) f[c] = block->deformation[c];
+  const double dt = block->dt;
+  SIMD for (int64_t k = 0; k < block->count; k++) {
+    double g[9] = {0}, old[9] = {0}, now[9] = {0};
+    for (int c = 0; c < 9; c++) {
+      const bool planar = c == 0 || c == 1 || c == 3 || c == 4 || c == 8;
+      if (geometry != MPSI_SPACE && !planar) continue;
+      old[c] = f[c][k];
+      if (geometry != MPSI_PLANE || c != 8) g[c] = dt * columns.l[c][k];
+    }
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++)
+        now[3 * i + j] = old[3 * i + j] + (g[3 * i] * old[j] + g[3 * i + 1] * old[3 + j] +
+                                           g[3 * i + 2] * old[6 + j]);
+    for (int c = 0; c < 9; c++) {
+      const bool planar = c == 0 || c == 1 || c == 3 || c == 4 || c == 8;
+      if (geometry == MPSI_SPACE || planar) f[c][k] = now[c];
+    }
+    volume[k] = now[0] * (now[4] * now[8] - now[5] * now[7]) +
+                now[1] * (now[5] * now[6] - now[3] * now[8]) +
+                now[2] * (now[3] * now[7] - now[4] * now[6]);
+  }
+}
+
+/* sigma = G/J (B - 1) + lambda/2 (J - 1/J) 1 with B = F F^T. */
+MPSI_INLINE void neo_hookean_loop(const int geometry, const mpsi_law *law,
+                                  const mps_material_block *block) {
+  deform_loop(geometry, block);
+  const mpsi_columns columns = mpsi_columns_of(block);
+  const double *f[9], *volume = block->volume_ratio;
+  for (int c = 0; c < 9; c++) f[c] = block->deformation[c];
+  const double shear = law->shear, half_lambda = 0.5 * law->lambda;
+  int64_t *flags = block->flags;
+  SIMD for (int64_t k = 0; k < block->count; k++) {
+    const double r = 1.0 / volume[k], g = shear * r, mean = half_lambda * (volume[k] - r);
+    const double xx = f[0][k], xy = f[1][k], yx = f[3][k], yy = f[4][k], zz = f[8][k];
+    double xz = 0.0, yz = 0.0, zx = 0.0, zy = 0.0;
+    if (geometry == MPSI_SPACE) {
+      xz = f[2][k];
+      yz = f[5][k];
+      zx = f[6][k];
+      zy = f[7][k];
+    }
+    const mpsi_sym s = {.xx = g * (xx * xx + xy * xy + xz * xz - 1.0) + mean,
+                        .yy = g * (yx * yx + yy * yy + yz * yz - 1.0) + mean,
+                        .zz = g * (zx * zx + zy * zy + zz * zz - 1.0) + mean,
+                        .xy = g * (xx * yx + xy * yy + xz * yz),
+                        .yz = g * (yx * zx + yy * zy + yz * zz),
+                        .zx = g * (zx * xx + zy * xy + zz * xz)};
+    mpsi_put_stress(geometry, &columns, k, s);
+    flags[k] = 0;
+  }
+}
+
+/* ---- fluid ------------------------------------------------------------------------------------
+ */
+
+/* sigma = -p 1 + 2 eta dev(d); p = K (r - 1), or K/7 (r^7 - 1), r = V0/V. */
+MPSI_INLINE void newtonian_loop(const int geometry, const bool tait, const mpsi_law *law,
+                                const mps_material_block *block) {
+  const mpsi_columns columns = mpsi_columns_of(block);
+  double *volume = block->volume_ratio;
+  int64_t *flags = block->flags;
+  const double dt = block->dt, bulk = law->bulk, drag = 2.0 * law->viscosity / dt;
+  const double limit = law->no_tension ? 1.0 : INFINITY; /* of V/V0 */
+  SIMD for (int64_t k = 0; k < block->count; k++) {
+    const mpsi_sym d = mpsi_strain(geometry, &columns, k, dt);
+    const double trace = d.xx + d.yy + d.zz, mean = trace / 3.0;
+    const double trial = volume[k] + volume[k] * trace;
+    const bool torn = trial > limit;
+    const double v = torn ? limit : trial, r = 1.0 / v, r2 = r * r;
+    const double p = tait ? bulk / 7.0 * (r2 * r2 * r2 * r - 1.0) : bulk * (r - 1.0);
+    const mpsi_sym s = {.xx = drag * (d.xx - mean) - p,
+                        .yy = drag * (d.yy - mean) - p,
+                        .zz = drag * (d.zz - mean) - p,
+                        .xy = drag * d.xy,
+                        .yz = drag * d.yz,
+                        .zx = drag * d.zx};
+    volume[k] = v;
+    mpsi_put_stress(geometry, &columns, k, s);
+    flags[k] = torn ? MPS_MATERIAL_APEX : 0;
+  }
+}
+
+/* ---- a user's law -----------------------------------------------------------------------------
+ */
+
+MPSI_INLINE void turn_loop(const int geometry, const mps_material_block *block) {
+  const mpsi_columns columns = mpsi_columns_of(block);
+  const double dt = block->dt;
+  SIMD for (int64_t k = 0; k < block->count; k++) {
+    const mpsi_spin w = mpsi_spin_of(geometry, &columns, k, dt);
+    mpsi_put_stress(geometry, &columns, k,
+                    mpsi_turn(geometry, mpsi_stress(geometry, &columns, k), w));
+  }
+}
+
+MPSI_INLINE int32_t user_law(const int geometry, const mpsi_law *law,
+                             const mps_material_block *block) {
+  if (block->count == 0) return 0;
+  for (int64_t k = 0; k < block->count; k++) block->flags[k] = 0;
+  if (law->needs_deformation)
+    deform_loop(geometry, block);
+  else
+    volume_loop(geometry, block);
+  if (law->turns_stress) turn_loop(geometry, block);
+  return law->update(law->user, block);
+}
+
+/* ---- one function for each law and geometry ----------------------------------------------------
+ */
+
+MPSI_INLINE int32_t apply(const int kind, const int geometry, const mpsi_law *law,
+                          const mps_material_block *block) {
+  if (kind == MPSI_LAW_USER) return user_law(geometry, law, block);
+  if (kind == MPSI_LAW_NEO_HOOKEAN)
+    neo_hookean_loop(geometry, law, block);
+  else if (kind == MPSI_LAW_MOHR_COULOMB)
+    mohr_coulomb_loop(geometry, law, block);
+  else if (kind != MPSI_LAW_NEWTONIAN)
+    rate_loop(geometry, kind, law, block);
+  else if (law->tait)
+    newtonian_loop(geometry, true, law, block);
+  else
+    newtonian_loop(geometry, false, law, block);
+  return 0;
+}
+
+#define GEOMETRIES(X, KIND) X(KIND, MPSI_PLANE) X(KIND, MPSI_AXIAL) X(KIND, MPSI_SPACE)
+#define VARIANTS(X)                                                                                \
+  GEOMETRIES(X, MPSI_LAW_LINEAR_ELASTIC)                                                           \
+  GEOMETRIES(X, MPSI_LAW_VON_MISES)                                                                \
+  GEOMETRIES(X, MPSI_LAW_DRUCKER_PRAGER)                                                           \
+  GEOMETRIES(X, MPSI_LAW_MOHR_COULOMB)                                                             \
+  GEOMETRIES(X, MPSI_LAW_NEO_HOOKEAN)                                                              \
+  GEOMETRIES(X, MPSI_LAW_NEWTONIAN)                                                                \
+  GEOMETRIES(X, MPSI_LAW_USER)
+
+#define DEFINE(KIND, GEOMETRY)                                                                     \
+  static int32_t KIND##_##GEOMETRY(const mpsi_law *law, const mps_material_block *block) {         \
+    return apply(KIND, GEOMETRY, law, block);                                                      \
+  }
+VARIANTS(DEFINE)
+
+#define ENTRY(KIND, GEOMETRY) .apply[KIND][GEOMETRY] = KIND##_##GEOMETRY,
+const mpsi_law_table CONCAT(mpsi_laws_v, MPSI_LEVEL) = {VARIANTS(ENTRY)};

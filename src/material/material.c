@@ -1,0 +1,167 @@
+/* material.c - life of a material, questions about it, and its application to a block.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "material_private.h"
+
+/* ---- life -------------------------------------------------------------------------------------
+ */
+
+static void release(mps_material *m) {
+  mps_context *context = m->context;
+  mpsi_free(context, m->history_names);
+  mpsi_free(context, m->history_initial);
+  mpsi_free(context, m);
+  mpsi_context_release(context);
+}
+
+mps_material *mpsi_material_new(mps_context *context, const char *function, mpsi_law_kind kind,
+                                const char *name, int32_t history_count) {
+  mps_material *m = mpsi_alloc(context, 1, sizeof *m);
+  if (!m) {
+    (void)mpsi_fail_memory(context, function, sizeof *m);
+    return NULL;
+  }
+  m->context = mpsi_context_retain(context);
+  atomic_init(&m->references, 1);
+  m->kind = kind;
+  m->table = mpsi_laws_select(0);
+  strncpy(m->name, name, sizeof m->name - 1);
+  m->history_count = history_count;
+  if (history_count == 0) return m;
+  m->history_names = mpsi_alloc(context, history_count, sizeof *m->history_names);
+  if (m->history_names)
+    m->history_initial = mpsi_alloc(context, history_count, sizeof *m->history_initial);
+  if (!m->history_initial) {
+    (void)mpsi_fail_memory(context, function, (size_t)history_count * sizeof *m->history_names);
+    release(m);
+    return NULL;
+  }
+  return m;
+}
+
+mps_material *mpsi_material_retain(mps_material *material) {
+  atomic_fetch_add(&material->references, 1);
+  return material;
+}
+
+void mps_material_destroy(mps_material **material) {
+  if (!material || !*material) return;
+  mps_material *m = *material;
+  *material = NULL;
+  if (atomic_fetch_sub(&m->references, 1) == 1) release(m);
+}
+
+/* ---- questions --------------------------------------------------------------------------------
+ */
+
+const char *mps_material_name(const mps_material *material) {
+  return material ? material->name : "";
+}
+
+double mps_material_wave_modulus(const mps_material *material) {
+  return material ? material->wave_modulus : 0.0;
+}
+
+int32_t mps_material_needs_deformation(const mps_material *material) {
+  return material && material->law.needs_deformation;
+}
+
+int32_t mps_material_history_count(const mps_material *material) {
+  return material ? material->history_count : 0;
+}
+
+const char *mps_material_history_name(const mps_material *material, int32_t index) {
+  if (!material || index < 0 || index >= material->history_count) return NULL;
+  return material->history_names[index];
+}
+
+double mps_material_history_initial(const mps_material *material, int32_t index) {
+  if (!material || index < 0 || index >= material->history_count) return 0.0;
+  return material->history_initial[index];
+}
+
+bool mpsi_material_reads_volume(const mps_material *material) {
+  return material->kind == MPSI_LAW_NEO_HOOKEAN || material->kind == MPSI_LAW_NEWTONIAN ||
+         material->kind == MPSI_LAW_USER;
+}
+
+double mpsi_material_viscosity(const mps_material *material) { return material->law.viscosity; }
+
+void mpsi_material_begin(const mps_material *material, double *const *history, int64_t begin,
+                         int64_t end) {
+  for (int32_t c = 0; c < material->history_count; c++)
+    for (int64_t k = begin; k < end; k++) history[c][k] = material->history_initial[c];
+}
+
+/* ---- one step of a block ----------------------------------------------------------------------
+ */
+
+static mpsi_geometry_kind geometry_of(const mps_material_block *block) {
+  if (block->dim == 3) return MPSI_SPACE;
+  return block->gradient[8] ? MPSI_AXIAL : MPSI_PLANE;
+}
+
+int32_t mpsi_material_apply(const mps_material *material, const mps_material_block *block) {
+  return material->table->apply[material->kind][geometry_of(block)](&material->law, block);
+}
+
+static const char *const tensor_names[9] = {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"};
+
+/* The tensors' columns: those of `dim`, and the deformation gradient where the law needs it. */
+static mps_status check_tensors(mps_context *context, const char *function,
+                                const mps_material *material, const mps_material_block *block) {
+  for (int c = 0; c < 9; c++) {
+    const bool there = block->dim == 3 || c == 0 || c == 1 || c == 3 || c == 4 || c == 8;
+    const bool free = block->dim == 2 && c == 8; /* plane strain */
+    if (there && !free && !block->gradient[c])
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                       "gradient[%d] (%s) is NULL, needed in %dD", c, tensor_names[c], block->dim);
+    if (there && material->law.needs_deformation && !block->deformation[c])
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                       "deformation[%d] (%s) is NULL, needed by the law %s in %dD", c,
+                       tensor_names[c], material->name, block->dim);
+  }
+  for (int c = 0; c < (block->dim == 3 ? 6 : 4); c++)
+    if (!block->stress[c])
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "stress[%d] is NULL, needed in %dD",
+                       c, block->dim);
+  return MPS_OK;
+}
+
+static mps_status check_block(mps_context *context, const char *function,
+                              const mps_material *material, const mps_material_block *block) {
+  if (!material || !block)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is NULL",
+                     material ? "block" : "material");
+  if (block->struct_size != sizeof *block)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "struct_size is %u, must be %zu",
+                     (unsigned)block->struct_size, sizeof *block);
+  if (block->dim != 2 && block->dim != 3)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "dim is %d, must be 2 or 3",
+                     block->dim);
+  if (block->count < 0)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
+                     (long long)block->count);
+  if (!isfinite(block->dt) || block->dt <= 0.0)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "dt is %g s, must be finite and > 0",
+                     block->dt);
+  if (!block->volume_ratio || !block->flags)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is NULL",
+                     block->volume_ratio ? "flags" : "volume_ratio");
+  for (int32_t c = 0; c < material->history_count; c++)
+    if (!block->history[c])
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                       "history[%d] (%s) is NULL, needed by the law %s", c,
+                       material->history_names[c], material->name);
+  return check_tensors(context, function, material, block);
+}
+
+mps_status mps_material_update(mps_context *context, const mps_material *material,
+                               const mps_material_block *block) {
+  if (!context) return MPS_ERROR_ARGUMENT;
+  const mps_status status = check_block(context, __func__, material, block);
+  if (status != MPS_OK) return status;
+  const int32_t refused = mpsi_material_apply(material, block);
+  if (refused == 0) return MPS_OK;
+  return mpsi_fail(context, __func__, MPS_ERROR_NUMERIC, "the law %s returned %d for its block",
+                   material->name, refused);
+}

@@ -1,0 +1,50 @@
+/* material_internal.h - what the solvers use of a material: the law on a block, without checks.
+ *
+ * How a solver calls it, block by block, after its G2P:
+ *   1. Columns of the particles of one material in the block: the velocity gradient of the step
+ *      (2D: gradient[0, 1, 3, 4]; gradient[8] = v_r/r if axisymmetric, NULL in plane strain; 3D:
+ * all nine), in/out stress, volume_ratio, flags, the history columns, and the deformation gradient
+ *      if mps_material_needs_deformation. They must not overlap; any alignment will do, 64 bytes is
+ *      fastest. They are contiguous: a particle is an index, not a stride. Particles of several
+ *      materials: one call for each run of equal ones.
+ *   2. mpsi_material_apply(). It does everything of seed B step 12 and 13: spin, trial stress,
+ *      return map, and the new volume ratio (J *= 1 + dt tr(d), or det F). The particles at the
+ *      limit of tension keep their volume (flag MPS_MATERIAL_APEX), else V drifts and dt shrinks.
+ *      Laws that do not say mpsi_material_reads_volume() only multiply the column: the volume
+ * itself may stand there instead of the ratio.
+ *   3. The stable step (49)-(50): M = mps_material_wave_modulus() for every particle, unless
+ *      mpsi_material_stiffens(): then mpsi_material_wave_moduli() writes the present M of each.
+ *      c = sqrt(M V/m). A viscous law also asks for dt <= rho h^2/(4 dim
+ * mpsi_material_viscosity()). A volumetric cure that changes tr(d) hands in the changed gradient,
+ * and keeps the volume by itself where that must follow the unchanged one.
+ *
+ * Any number of threads may apply one material at once. Results do not depend on how particles are
+ * cut into blocks, nor on the processor's instruction set, bit for bit.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MATERIAL_INTERNAL_H
+#define MPSI_MATERIAL_INTERNAL_H
+
+#include "core/internal.h"
+
+#include <mps/material.h>
+
+/* One more owner; mps_material_destroy releases. Thread safe. */
+mps_material *mpsi_material_retain(mps_material *material);
+
+/* Applies the law to block->count >= 0 particles. Non-zero: a user's law refused the block. */
+int32_t mpsi_material_apply(const mps_material *material, const mps_material_block *block);
+
+/* True: the value of volume_ratio decides the stress (fluids, neo-Hookean, users' laws). */
+bool mpsi_material_reads_volume(const mps_material *material);
+/* True: the wave modulus follows the state. */
+bool mpsi_material_stiffens(const mps_material *material);
+/* Writes an upper bound of K + 4G/3 (Pa) in the present state of each particle. */
+void mpsi_material_wave_moduli(const mps_material *material, const mps_material_block *block,
+                               double *moduli);
+/* Pa s; 0 for all but fluids and users' laws. */
+double mpsi_material_viscosity(const mps_material *material);
+/* Fills the history columns of new particles [begin, end). */
+void mpsi_material_begin(const mps_material *material, double *const *history, int64_t begin,
+                         int64_t end);
+
+#endif

@@ -1,0 +1,83 @@
+/* material_private.h - the members of a material, and the loops over a block that are compiled for
+ * several instruction sets, for src/material only.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MATERIAL_PRIVATE_H
+#define MPSI_MATERIAL_PRIVATE_H
+
+#include "material_internal.h"
+
+#define MPSI_MATERIAL_NAME 48 /* bytes of a name */
+
+typedef enum mpsi_law_kind {
+  MPSI_LAW_LINEAR_ELASTIC,
+  MPSI_LAW_VON_MISES,
+  MPSI_LAW_DRUCKER_PRAGER,
+  MPSI_LAW_MOHR_COULOMB,
+  MPSI_LAW_NEO_HOOKEAN,
+  MPSI_LAW_NEWTONIAN,
+  MPSI_LAW_USER,
+  MPSI_LAW_COUNT
+} mpsi_law_kind;
+
+/* Which components there are. Axisymmetric is 2D with a rate of zz. */
+typedef enum mpsi_geometry_kind {
+  MPSI_PLANE,
+  MPSI_AXIAL,
+  MPSI_SPACE,
+  MPSI_GEOMETRIES
+} mpsi_geometry_kind;
+
+/* The constants of a law, as its loop wants them. */
+typedef struct mpsi_law {
+  double shear, bulk, lambda; /* Pa */
+  double yield, hardening;    /* von Mises, Pa */
+  /* Drucker-Prager: the cone, the flow cone's slope, 1/(G + 9 K alpha alpha_flow), and the limit of
+   * tension: mean stress and sqrt(J2) of the cone there. Mohr-Coulomb uses the inscribed cone to
+   * find the particles that may yield. */
+  double alpha, kappa, alpha_flow, cone, tension, q_tension;
+  double sin_phi, sin_psi, c_cos_phi, apex; /* Mohr-Coulomb */
+  double viscosity;                         /* Pa s */
+  bool tait, no_tension;                    /* fluid */
+  bool turns_stress, needs_deformation;     /* user */
+  mps_material_fn update;
+  void *user;
+} mpsi_law;
+
+/* Applies a law to a block: non-zero when a user's law refuses. */
+typedef int32_t (*mpsi_law_fn)(const mpsi_law *law, const mps_material_block *block);
+typedef struct mpsi_law_table {
+  mpsi_law_fn apply[MPSI_LAW_COUNT][MPSI_GEOMETRIES];
+} mpsi_law_table;
+
+extern const mpsi_law_table mpsi_laws_v1;
+#ifdef MPSI_X86_LEVELS
+extern const mpsi_law_table mpsi_laws_v3;
+extern const mpsi_law_table mpsi_laws_v4;
+#endif
+/* x86-64 level: 0 the best that processor and build have, 1 the plain build; NULL if missing. */
+const mpsi_law_table *mpsi_laws_select(int32_t isa);
+
+struct mps_material {
+  mps_context *context;
+  atomic_int references;
+  mpsi_law_kind kind;
+  mpsi_law law;
+  const mpsi_law_table *table;
+  double wave_modulus; /* Pa */
+  char name[MPSI_MATERIAL_NAME];
+  int32_t history_count;
+  char (*history_names)[MPSI_MATERIAL_NAME];
+  double *history_initial;
+};
+
+/* A material of one owner with room for its history, or NULL after recording that memory is short.
+ */
+mps_material *mpsi_material_new(mps_context *context, const char *function, mpsi_law_kind kind,
+                                const char *name, int32_t history_count);
+
+/* Maps a trial stress (xx yy zz xy [yz zx]) back to the pyramid of Mohr and Coulomb. Returns its
+ * flags; adds to *plastic_strain. */
+int64_t mpsi_mohr_coulomb_return(const mpsi_law *law, int32_t dim, double *stress,
+                                 double *plastic_strain);
+
+#endif

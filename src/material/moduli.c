@@ -1,0 +1,49 @@
+/* moduli.c - the wave modulus K + 4G/3 of seed B (50) in the present state, for laws that stiffen.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "material_private.h"
+
+bool mpsi_material_stiffens(const mps_material *material) {
+  return material->kind == MPSI_LAW_NEO_HOOKEAN || material->kind == MPSI_LAW_NEWTONIAN;
+}
+
+/* -V dp/dV: K r, or K r^7, r = V0/V. */
+static void newtonian_moduli(const mpsi_law *law, const mps_material_block *block, double *moduli) {
+  for (int64_t k = 0; k < block->count; k++) {
+    const double r = 1.0 / block->volume_ratio[k], r2 = r * r;
+    moduli[k] = law->bulk * (law->tait ? r2 * r2 * r2 * r : r);
+  }
+}
+
+/* The acoustic tensor's largest eigenvalue along n: (lambda/2 + G + G b_n)/J + lambda J/2, where
+ * b_n = n.B.n is at most B's mean plus 2 sqrt(J2(B)/3). */
+static void neo_hookean_moduli(const mpsi_law *law, const mps_material_block *block,
+                               double *moduli) {
+  const bool space = block->dim == 3;
+  double *const *f = block->deformation;
+  for (int64_t k = 0; k < block->count; k++) {
+    double now[3][3] = {{0}}, b[3][3];
+    for (int c = 0; c < 9; c++)
+      if (space || c == 0 || c == 1 || c == 3 || c == 4 || c == 8) now[c / 3][c % 3] = f[c][k];
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++)
+        b[i][j] = now[i][0] * now[j][0] + now[i][1] * now[j][1] + now[i][2] * now[j][2];
+    const double mean = (b[0][0] + b[1][1] + b[2][2]) / 3.0;
+    double square = 0.0;
+    for (int i = 0; i < 3; i++) {
+      const int j = (i + 1) % 3;
+      square += 0.5 * (b[i][i] - mean) * (b[i][i] - mean) + b[i][j] * b[i][j];
+    }
+    const double largest = mean + 2.0 * sqrt(square / 3.0), j = block->volume_ratio[k];
+    moduli[k] = (0.5 * law->lambda + law->shear * (1.0 + largest)) / j + 0.5 * law->lambda * j;
+  }
+}
+
+void mpsi_material_wave_moduli(const mps_material *material, const mps_material_block *block,
+                               double *moduli) {
+  if (material->kind == MPSI_LAW_NEO_HOOKEAN)
+    neo_hookean_moduli(&material->law, block, moduli);
+  else if (material->kind == MPSI_LAW_NEWTONIAN)
+    newtonian_moduli(&material->law, block, moduli);
+  else
+    for (int64_t k = 0; k < block->count; k++) moduli[k] = material->wave_modulus;
+}

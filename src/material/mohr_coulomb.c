@@ -1,0 +1,176 @@
+/* mohr_coulomb.c - return map of Mohr-Coulomb in principal stresses: main plane, the two edges and
+ * the apex, with a flow potential of the same shape for the angle of dilation.
+ *
+ * The yield function is linear and the flow directions are constant, so each return is one step:
+ * solved exactly, without iteration.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "material_private.h"
+
+/* Principal stresses in any order, and how to go back. */
+typedef struct principal {
+  double value[3];
+  double axis[3][3]; /* 3D: axis[i][a] is component i of the direction of value[a] */
+} principal;
+
+/* ---- principal stresses ------------------------------------------------------------------------
+ */
+
+/* In 2D zz is principal: value[0] and value[1] lie in the plane, on either side of the mean. */
+static principal split_plane(const double *s) {
+  const double mean = 0.5 * (s[0] + s[1]), half = 0.5 * (s[0] - s[1]);
+  const double radius = sqrt(half * half + s[3] * s[3]);
+  return (principal){.value = {mean + radius, mean - radius, s[2]}};
+}
+
+/* Keeps the directions in the plane, puts the new values there. */
+static void join_plane(const principal *trial, const double *value, double *s) {
+  const double radius = 0.5 * (trial->value[0] - trial->value[1]);
+  const double scale = radius > 0.0 ? 0.5 * (value[0] - value[1]) / radius : 0.0;
+  const double mean = 0.5 * (value[0] + value[1]), half = 0.5 * (s[0] - s[1]) * scale;
+  s[0] = mean + half;
+  s[1] = mean - half;
+  s[2] = value[2];
+  s[3] *= scale;
+}
+
+/* One rotation of Jacobi's method in the plane (i, j): a[i][j] becomes zero. */
+static void rotate(double a[3][3], double axis[3][3], int i, int j) {
+  const int k = 3 - i - j;
+  if (a[i][j] == 0.0) return;
+  const double theta = 0.5 * (a[j][j] - a[i][i]) / a[i][j];
+  const double t = (theta < 0.0 ? -1.0 : 1.0) / (fabs(theta) + sqrt(1.0 + theta * theta));
+  const double c = 1.0 / sqrt(1.0 + t * t), s = t * c, move = t * a[i][j];
+  const double ki = a[k][i], kj = a[k][j];
+  a[i][i] -= move;
+  a[j][j] += move;
+  a[i][j] = a[j][i] = 0.0;
+  a[k][i] = a[i][k] = c * ki - s * kj;
+  a[k][j] = a[j][k] = s * ki + c * kj;
+  for (int r = 0; r < 3; r++) {
+    const double vi = axis[r][i], vj = axis[r][j];
+    axis[r][i] = c * vi - s * vj;
+    axis[r][j] = s * vi + c * vj;
+  }
+}
+
+/* Jacobi: directions orthogonal to the last bits also where values coincide. It converges
+ * quadratically; 12 sweeps are far more than it ever needs, and end it for a NaN. */
+static principal split_space(const double *s) {
+  double a[3][3] = {{s[0], s[3], s[5]}, {s[3], s[1], s[4]}, {s[5], s[4], s[2]}};
+  principal p = {.axis = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
+  for (int sweep = 0; sweep < 12; sweep++) {
+    const double off = fabs(a[0][1]) + fabs(a[1][2]) + fabs(a[2][0]);
+    const double size = fabs(a[0][0]) + fabs(a[1][1]) + fabs(a[2][2]);
+    if (off <= 1e-17 * size) break;
+    rotate(a, p.axis, 0, 1);
+    rotate(a, p.axis, 1, 2);
+    rotate(a, p.axis, 0, 2);
+  }
+  for (int i = 0; i < 3; i++) p.value[i] = a[i][i];
+  return p;
+}
+
+static void join_space(const principal *trial, const double *value, double *s) {
+  static const int row[6] = {0, 1, 2, 0, 1, 2}, column[6] = {0, 1, 2, 1, 2, 0};
+  for (int c = 0; c < 6; c++) {
+    s[c] = 0.0;
+    for (int a = 0; a < 3; a++)
+      s[c] += value[a] * trial->axis[row[c]][a] * trial->axis[column[c]][a];
+  }
+}
+
+/* ---- return map in ordered principal stresses s[0] >= s[1] >= s[2] ------------------------------
+ */
+
+/* Stress lost per unit of flow on the plane f(largest, smallest): by the stress of that role. */
+typedef struct drop {
+  double largest, middle, smallest;
+} drop;
+
+static drop flow_drop(const mpsi_law *law) {
+  const double g = law->shear, psi = law->sin_psi, volume = 2.0 * law->bulk * psi;
+  return (drop){.largest = volume + 2.0 * g * (1.0 + psi / 3.0),
+                .middle = volume - 4.0 / 3.0 * g * psi,
+                .smallest = volume - 2.0 * g * (1.0 - psi / 3.0)};
+}
+
+/* Yield function of the plane that s1 and s3 make. */
+static double yield(const mpsi_law *law, double s1, double s3) {
+  return (s1 - s3) + (s1 + s3) * law->sin_phi - 2.0 * law->c_cos_phi;
+}
+
+/* What f(s1, s3) loses when those change by -d1 and -d3. */
+static double yield_loss(const mpsi_law *law, double d1, double d3) {
+  return (d1 - d3) + (d1 + d3) * law->sin_phi;
+}
+
+/* An edge, where two planes meet; `i`, `j` the two equal stresses and `k` the third. By symmetry
+ * the equal ones may be replaced by their mean, with the mean of the two flows. */
+static void return_to_edge(const mpsi_law *law, double pair_drop, double third_drop, bool right,
+                           double *s, int i, int j, int k) {
+  const double pair = 0.5 * (s[i] + s[j]);
+  const double f = right ? yield(law, s[k], pair) : yield(law, pair, s[k]);
+  const double loss =
+      right ? yield_loss(law, third_drop, pair_drop) : yield_loss(law, pair_drop, third_drop);
+  const double flow = f / loss;
+  s[i] = s[j] = pair - flow * pair_drop;
+  s[k] -= flow * third_drop;
+}
+
+static int64_t return_principal(const mpsi_law *law, double *s) {
+  const double f = yield(law, s[0], s[2]);
+  if (!(f > 0.0)) return 0;
+  const drop d = flow_drop(law);
+  const double flow = f / yield_loss(law, d.largest, d.smallest);
+  const double plane[3] = {s[0] - flow * d.largest, s[1] - flow * d.middle,
+                           s[2] - flow * d.smallest};
+  if (plane[0] >= plane[1] && plane[1] >= plane[2]) {
+    for (int i = 0; i < 3; i++) s[i] = plane[i];
+    return MPS_MATERIAL_PLASTIC;
+  }
+  /* Past which edge did the plane's return go? Right: the two smaller stresses, compression. */
+  if (plane[1] < plane[2])
+    return_to_edge(law, 0.5 * (d.middle + d.smallest), d.largest, true, s, 1, 2, 0);
+  else
+    return_to_edge(law, 0.5 * (d.largest + d.middle), d.smallest, false, s, 0, 1, 2);
+  if (s[0] >= s[1] && s[1] >= s[2]) return MPS_MATERIAL_PLASTIC;
+  s[0] = s[1] = s[2] = law->apex;
+  return MPS_MATERIAL_PLASTIC | MPS_MATERIAL_APEX;
+}
+
+/* Increment of plastic strain: the deviator lost is 2 G de. */
+static double plastic_increment(const mpsi_law *law, const double *before, const double *after) {
+  const double x = before[0] - after[0], y = before[1] - after[1], z = before[2] - after[2];
+  const double square = (x - y) * (x - y) + (y - z) * (y - z) + (z - x) * (z - x);
+  return sqrt(square * (2.0 / 9.0)) / (2.0 * law->shear); /* sqrt(2/3 dev:dev) */
+}
+
+static void order(const double *value, int *rank) {
+  for (int i = 0; i < 3; i++) rank[i] = i;
+  for (int pass = 0; pass < 3; pass++) { /* 0-1, 1-2, 0-1 */
+    const int i = pass == 1 ? 1 : 0;
+    if (value[rank[i]] < value[rank[i + 1]]) {
+      const int kept = rank[i];
+      rank[i] = rank[i + 1];
+      rank[i + 1] = kept;
+    }
+  }
+}
+
+int64_t mpsi_mohr_coulomb_return(const mpsi_law *law, int32_t dim, double *stress,
+                                 double *plastic_strain) {
+  const principal trial = dim == 3 ? split_space(stress) : split_plane(stress);
+  int rank[3];
+  double s[3], before[3], value[3];
+  order(trial.value, rank);
+  for (int i = 0; i < 3; i++) before[i] = s[i] = trial.value[rank[i]];
+  const int64_t flags = return_principal(law, s);
+  if (flags == 0) return 0;
+  for (int i = 0; i < 3; i++) value[rank[i]] = s[i];
+  *plastic_strain += plastic_increment(law, before, s);
+  if (dim == 3)
+    join_space(&trial, value, stress);
+  else
+    join_plane(&trial, value, stress);
+  return flags;
+}

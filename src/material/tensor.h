@@ -1,0 +1,123 @@
+/* tensor.h - stress, strain increment and spin of one particle, for the vector loops: every
+ * function is inlined, without branches but on literal arguments. Seed B (44)-(47).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_TENSOR_H
+#define MPSI_TENSOR_H
+
+#include "material_private.h"
+
+/* A symmetric tensor, true components (not engineering shear). In 2D yz = zx = 0 fold away. */
+typedef struct mpsi_sym {
+  double xx, yy, zz, xy, yz, zx;
+} mpsi_sym;
+
+/* Spin increment, seed B (47): half of L - L^T times dt. */
+typedef struct mpsi_spin {
+  double xy, yz, zx;
+} mpsi_spin;
+
+/* Columns of a block, looked up once. */
+typedef struct mpsi_columns {
+  const double *l[9];
+  double *s[6];
+} mpsi_columns;
+
+MPSI_INLINE mpsi_columns mpsi_columns_of(const mps_material_block *block) {
+  mpsi_columns columns;
+  for (int c = 0; c < 9; c++) columns.l[c] = block->gradient[c];
+  for (int c = 0; c < 6; c++) columns.s[c] = block->stress[c];
+  return columns;
+}
+
+/* Strain increment (46). */
+MPSI_INLINE mpsi_sym mpsi_strain(const int geometry, const mpsi_columns *c, int64_t k, double dt) {
+  mpsi_sym d = {
+      .xx = dt * c->l[0][k], .yy = dt * c->l[4][k], .xy = 0.5 * dt * (c->l[1][k] + c->l[3][k])};
+  if (geometry != MPSI_PLANE) d.zz = dt * c->l[8][k];
+  if (geometry == MPSI_SPACE) {
+    d.yz = 0.5 * dt * (c->l[5][k] + c->l[7][k]);
+    d.zx = 0.5 * dt * (c->l[6][k] + c->l[2][k]);
+  }
+  return d;
+}
+
+MPSI_INLINE mpsi_spin mpsi_spin_of(const int geometry, const mpsi_columns *c, int64_t k,
+                                   double dt) {
+  mpsi_spin w = {.xy = 0.5 * dt * (c->l[1][k] - c->l[3][k])};
+  if (geometry == MPSI_SPACE) {
+    w.yz = 0.5 * dt * (c->l[5][k] - c->l[7][k]);
+    w.zx = 0.5 * dt * (c->l[6][k] - c->l[2][k]);
+  }
+  return w;
+}
+
+MPSI_INLINE mpsi_sym mpsi_stress(const int geometry, const mpsi_columns *c, int64_t k) {
+  mpsi_sym s = {.xx = c->s[0][k], .yy = c->s[1][k], .zz = c->s[2][k], .xy = c->s[3][k]};
+  if (geometry == MPSI_SPACE) {
+    s.yz = c->s[4][k];
+    s.zx = c->s[5][k];
+  }
+  return s;
+}
+
+MPSI_INLINE void mpsi_put_stress(const int geometry, const mpsi_columns *c, int64_t k, mpsi_sym s) {
+  c->s[0][k] = s.xx;
+  c->s[1][k] = s.yy;
+  c->s[2][k] = s.zz;
+  c->s[3][k] = s.xy;
+  if (geometry == MPSI_SPACE) {
+    c->s[4][k] = s.yz;
+    c->s[5][k] = s.zx;
+  }
+}
+
+/* Turns a stress by the spin: Q s Q^T with Q = (1 - w/2)^-1 (1 + w/2), a proper rotation that
+ * agrees with (45) to first order. The bare sum s + w.s - s.w lets the deviator of a body that
+ * turns once in n steps grow by the factor exp(8 pi^2/n). */
+MPSI_INLINE mpsi_sym mpsi_turn(const int geometry, mpsi_sym s, mpsi_spin w) {
+  if (geometry != MPSI_SPACE) {
+    const double q = 0.25 * w.xy * w.xy, r = 1.0 / (1.0 + q);
+    const double sine = r * w.xy, cosine = r * (1.0 - q), half = 0.5 * (s.xx - s.yy);
+    const double change = 2.0 * sine * (cosine * s.xy - sine * half);
+    s.xy -= 2.0 * sine * (cosine * half + sine * s.xy);
+    s.xx += change;
+    s.yy -= change;
+    return s;
+  }
+  /* Q - 1 = r (w + w.w/2), r = 1/(1 + |w|^2/4); w_xy = w.xy, w_yz = w.yz, w_zx = w.zx */
+  const double a = w.xy * w.xy, b = w.yz * w.yz, c = w.zx * w.zx;
+  const double r = 1.0 / (1.0 + 0.25 * (a + b + c)), h = 0.5 * r;
+  const double qxx = 1.0 - h * (a + c), qyy = 1.0 - h * (a + b), qzz = 1.0 - h * (b + c);
+  const double exy = h * w.yz * w.zx, eyz = h * w.zx * w.xy, ezx = h * w.xy * w.yz;
+  const double qxy = exy + r * w.xy, qyx = exy - r * w.xy;
+  const double qyz = eyz + r * w.yz, qzy = eyz - r * w.yz;
+  const double qzx = ezx + r * w.zx, qxz = ezx - r * w.zx;
+  const double axx = qxx * s.xx + qxy * s.xy + qxz * s.zx; /* Q s */
+  const double axy = qxx * s.xy + qxy * s.yy + qxz * s.yz;
+  const double axz = qxx * s.zx + qxy * s.yz + qxz * s.zz;
+  const double ayx = qyx * s.xx + qyy * s.xy + qyz * s.zx;
+  const double ayy = qyx * s.xy + qyy * s.yy + qyz * s.yz;
+  const double ayz = qyx * s.zx + qyy * s.yz + qyz * s.zz;
+  const double azx = qzx * s.xx + qzy * s.xy + qzz * s.zx;
+  const double azy = qzx * s.xy + qzy * s.yy + qzz * s.yz;
+  const double azz = qzx * s.zx + qzy * s.yz + qzz * s.zz;
+  return (mpsi_sym){.xx = axx * qxx + axy * qxy + axz * qxz,
+                    .yy = ayx * qyx + ayy * qyy + ayz * qyz,
+                    .zz = azx * qzx + azy * qzy + azz * qzz,
+                    .xy = axx * qyx + axy * qyy + axz * qyz,
+                    .yz = ayx * qzx + ayy * qzy + ayz * qzz,
+                    .zx = azx * qxx + azy * qxy + azz * qxz};
+}
+
+/* s + C:d. */
+MPSI_INLINE mpsi_sym mpsi_hooke(const mpsi_law *law, mpsi_sym s, mpsi_sym d) {
+  const double mean = law->lambda * (d.xx + d.yy + d.zz), g2 = 2.0 * law->shear;
+  return (mpsi_sym){.xx = s.xx + (mean + g2 * d.xx),
+                    .yy = s.yy + (mean + g2 * d.yy),
+                    .zz = s.zz + (mean + g2 * d.zz),
+                    .xy = s.xy + g2 * d.xy,
+                    .yz = s.yz + g2 * d.yz,
+                    .zx = s.zx + g2 * d.zx};
+}
+
+#endif
