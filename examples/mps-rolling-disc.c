@@ -3,10 +3,8 @@
  * --body slope: the disc is elastic and the slope a rigid body. --body disc: the disc is a free
  * rigid body on an elastic slope, drawn level with tilted gravity; both act on each other.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "common/options.h"
+#include "common/mpm_model.h"
 #include "common/plot.h"
-
-#include <mps/mpm.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -33,10 +31,8 @@ typedef struct motion {
 } motion;
 
 typedef struct simulation {
-  mps_particles *particles;
-  mps_material *material;
-  mps_mpm *mpm;
-  mps_body *rigid;
+  settings s;
+  mpm_model m;
   double along[2]; /* unit vector down the slope */
   double start[2]; /* m, of the disc's centre */
   motion row[SAMPLES + 1];
@@ -55,18 +51,18 @@ static double theory(const settings *s, double t) {
 /* Concentric rings, each of particles as far apart as the rings are, and of the ring's area. */
 static mps_status fill_rings(simulation *sim, double spacing) {
   const int rings = (int)nearbyint(RADIUS / spacing);
-  mps_status status = mps_particles_add_field(sim->particles, "volume", 0);
+  mps_status status = mps_particles_add_field(sim->m.particles, "volume", 0);
   for (int r = 0; r < rings && status == MPS_OK; r++) {
     const double radius = ((double)r + 0.5) * spacing;
     const int count = (int)nearbyint(2.0 * PI * ((double)r + 0.5));
-    const int64_t first = mps_particles_count(sim->particles);
+    const int64_t first = mps_particles_count(sim->m.particles);
     for (int k = 0; k < count && status == MPS_OK; k++) {
       const double a = 2.0 * PI * ((double)k + 0.5 * (r % 2)) / count;
       const double x[] = {sim->start[0] + radius * cos(a), sim->start[1] + radius * sin(a)};
-      status = mps_particles_append(sim->particles, 1, x);
+      status = mps_particles_append(sim->m.particles, 1, x);
     }
     mps_view volume;
-    if (status == MPS_OK) status = mps_particles_view(sim->particles, "volume", &volume);
+    if (status == MPS_OK) status = mps_particles_view(sim->m.particles, "volume", &volume);
     for (int64_t k = first; status == MPS_OK && k < first + count; k++)
       *mps_view_f64(&volume, k, 0) = 2.0 * PI * radius * spacing / count;
   }
@@ -80,17 +76,17 @@ static mps_status make_particles(mps_context *context, const settings *s, simula
     if (s->fill == FILL_RINGS) set.spacing = RADIUS / fmax(1.0, nearbyint(RADIUS / set.spacing));
     set.origin[0] = sim->start[0], set.origin[1] = sim->start[1];
   }
-  mps_status status = mps_particles_create(context, &set, &sim->particles);
+  mps_status status = mps_particles_create(context, &set, &sim->m.particles);
   if (status != MPS_OK) return status;
   if (s->body == BODY_DISC) {
     const double lo[] = {0.0, 0.0}, hi[] = {LENGTH, DEPTH};
-    status = mps_particles_fill_box(sim->particles, lo, hi, NULL);
+    status = mps_particles_fill_box(sim->m.particles, lo, hi, NULL);
   } else {
     status = s->fill == FILL_RINGS
                  ? fill_rings(sim, set.spacing)
-                 : mps_particles_fill_ball(sim->particles, sim->start, RADIUS, NULL);
+                 : mps_particles_fill_ball(sim->m.particles, sim->start, RADIUS, NULL);
   }
-  return status == MPS_OK ? mps_particles_set(sim->particles, "density", 0, DENSITY) : status;
+  return status == MPS_OK ? mps_particles_set(sim->m.particles, "density", 0, DENSITY) : status;
 }
 
 static mps_status make_rigid(mps_context *context, const settings *s, simulation *sim) {
@@ -100,7 +96,7 @@ static mps_status make_rigid(mps_context *context, const settings *s, simulation
   def.penalty = s->k * 1e3;
   if (s->body == BODY_SLOPE) {
     const double normal[] = {-sim->along[1], sim->along[0]};
-    status = mps_body_create_half_plane(context, &def, normal, &sim->rigid);
+    status = mps_body_create_half_plane(context, &def, normal, &sim->m.body[0]);
   } else {
     def.motion = MPS_MOTION_FREE;
     def.mass = DENSITY * PI * RADIUS * RADIUS;
@@ -108,12 +104,14 @@ static mps_status make_rigid(mps_context *context, const settings *s, simulation
     def.position[0] = sim->start[0], def.position[1] = sim->start[1];
     def.gravity[0] = G * sin(s->angle * PI / 180.0);
     def.gravity[1] = -G * cos(s->angle * PI / 180.0);
-    status = mps_body_create_disc(context, &def, RADIUS, &sim->rigid);
+    status = mps_body_create_disc(context, &def, RADIUS, &sim->m.body[0]);
   }
-  return status == MPS_OK ? mps_mpm_add_body(sim->mpm, sim->rigid) : status;
+  return status == MPS_OK ? mps_mpm_add_body(sim->m.mpm, sim->m.body[0]) : status;
 }
 
-static mps_status build(mps_context *context, const settings *s, simulation *sim) {
+static mps_status build(mps_context *context, void *user) {
+  simulation *sim = user;
+  const settings *s = &sim->s;
   const double a = s->angle * PI / 180.0;
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
@@ -131,17 +129,10 @@ static mps_status build(mps_context *context, const settings *s, simulation *sim
   }
   mps_status status = make_particles(context, s, sim);
   if (status == MPS_OK)
-    status = mps_material_linear_elastic(context, s->young * 1e3, s->poisson, &sim->material);
+    status = mps_material_linear_elastic(context, s->young * 1e3, s->poisson, &sim->m.material);
   if (status == MPS_OK)
-    status = mps_mpm_create(context, sim->particles, sim->material, &def, &sim->mpm);
+    status = mps_mpm_create(context, sim->m.particles, sim->m.material, &def, &sim->m.mpm);
   return status == MPS_OK ? make_rigid(context, s, sim) : status;
-}
-
-static void destroy(simulation *sim) {
-  mps_mpm_destroy(&sim->mpm);
-  mps_body_destroy(&sim->rigid);
-  mps_material_destroy(&sim->material);
-  mps_particles_destroy(&sim->particles);
 }
 
 /* ---- running --------------------------------------------------------------------------------- */
@@ -150,9 +141,9 @@ static void destroy(simulation *sim) {
 static mps_status look_at_particles(simulation *sim, double *x, double *v, double *omega) {
   mps_view px, pv, pm;
   double m = 0.0, inertia = 0.0, angular = 0.0;
-  mps_status status = mps_particles_view(sim->particles, "position", &px);
-  if (status == MPS_OK) status = mps_particles_view(sim->particles, "velocity", &pv);
-  if (status == MPS_OK) status = mps_particles_view(sim->particles, "mass", &pm);
+  mps_status status = mps_particles_view(sim->m.particles, "position", &px);
+  if (status == MPS_OK) status = mps_particles_view(sim->m.particles, "velocity", &pv);
+  if (status == MPS_OK) status = mps_particles_view(sim->m.particles, "mass", &pm);
   if (status != MPS_OK) return status;
   for (int64_t k = 0; k < px.shape[0]; k++) {
     const double mass = *mps_view_f64(&pm, k, 0);
@@ -175,7 +166,7 @@ static mps_status look_at_particles(simulation *sim, double *x, double *v, doubl
 
 static mps_status look_at_body(simulation *sim, double *x, double *v, double *omega) {
   mps_body_state b;
-  const mps_status status = mps_body_get_state(sim->rigid, &b);
+  const mps_status status = mps_body_get_state(sim->m.body[0], &b);
   if (status != MPS_OK) return status;
   for (int c = 0; c < 2; c++) x[c] = b.position[c], v[c] = b.velocity[c];
   *omega = -b.spin;
@@ -188,7 +179,7 @@ static mps_status sample(const settings *s, simulation *sim) {
                                                   : look_at_body(sim, x, v, &omega);
   if (status != MPS_OK) return status;
   motion *row = &sim->row[sim->rows++];
-  *row = (motion){.t = mps_mpm_time(sim->mpm), .omega = omega};
+  *row = (motion){.t = mps_mpm_time(sim->m.mpm), .omega = omega};
   for (int c = 0; c < 2; c++) {
     row->x += x[c] * sim->along[c];
     row->v += v[c] * sim->along[c];
@@ -196,10 +187,12 @@ static mps_status sample(const settings *s, simulation *sim) {
   return MPS_OK;
 }
 
-static mps_status march(const settings *s, simulation *sim) {
+static mps_status march(void *user) {
+  simulation *sim = user;
+  const settings *s = &sim->s;
   mps_status status = sample(s, sim);
   for (int k = 1; k <= SAMPLES && status == MPS_OK; k++) {
-    status = mps_mpm_run(sim->mpm, s->duration * k / SAMPLES, INT64_MAX, NULL, NULL);
+    status = mps_mpm_run(sim->m.mpm, s->duration * k / SAMPLES, INT64_MAX, NULL, NULL);
     if (status == MPS_OK) status = sample(s, sim);
   }
   return status;
@@ -223,7 +216,7 @@ static bool draw(app *a, const settings *s) {
   output f;
   if (!plot_open(&f, a, s->out, "motion", 1000, 640)) return false;
   output_text(&f,
-              "set title \"%s disc on a %s slope of %g degrees\\n{/*0.85 h = %g R, {/Symbol m} = "
+              "set title \"%s disc on %s slope of %g degrees\\n{/*0.85 h = %g R, {/Symbol m} = "
               "%g, %d particles a cell, %s}\"\n"
               "set xlabel 'time (s)'\nset ylabel \"path along the slope x'_c (m)\"\n"
               "set key left top opaque\n"
@@ -232,23 +225,20 @@ static bool draw(app *a, const settings *s) {
               "  '' every 4::1 using 1:2 with points pointtype 6 linecolor rgb '#1f4e8c' title "
               "'WLS-MPM'\n",
               s->body == BODY_SLOPE ? "An elastic" : "A rigid",
-              s->body == BODY_SLOPE ? "rigid" : "elastic", s->angle, s->h / RADIUS, s->mu,
+              s->body == BODY_SLOPE ? "a rigid" : "an elastic", s->angle, s->h / RADIUS, s->mu,
               (int)s->ppc, s->body == BODY_SLOPE && s->fill == FILL_RINGS ? "rings" : "lattice");
   return plot_close(&f, s->out, "motion");
 }
 
-static bool finish(app *a, const settings *s, const simulation *sim) {
+static bool finish(app *a, void *user) {
+  simulation *sim = user;
+  const settings *s = &sim->s;
   const motion *end = &sim->row[sim->rows - 1];
   const double x = end->x - sim->row[0].x, exact = theory(s, end->t);
   const double error = x / exact - 1.0, ratio = end->omega * RADIUS / end->v;
   output f;
-  if (!write_motion(a, s, sim) || !output_open(&f, a, s->out, "summary.json")) return false;
-  json_begin(&f);
-  json_text(&f, "program", "mps-rolling-disc");
-  json_text(&f, "version", mps_version());
+  if (!write_motion(a, s, sim) || !mpm_model_summary(a, &sim->m, s->out, &f)) return false;
   json_text(&f, "body", s->body == BODY_SLOPE ? "slope" : "disc");
-  json_integer(&f, "particles", mps_particles_count(sim->particles));
-  json_integer(&f, "steps", mps_mpm_steps(sim->mpm));
   json_number(&f, "h", s->h);
   json_number(&f, "mu", s->mu);
   json_number(&f, "x", x);
@@ -263,53 +253,37 @@ static bool finish(app *a, const settings *s, const simulation *sim) {
   return true;
 }
 
-static int run(app *a, const settings *s) {
-  static simulation sim;
-  int code = APP_FAILED;
-  if (output_directory(a, s->out) && app_check(a, build(a->context, s, &sim))) {
-    printf("%lld particles, dt %.4g s\n", (long long)mps_particles_count(sim.particles),
-           mps_mpm_dt(sim.mpm));
-    fflush(stdout);
-    const mps_status status = march(s, &sim);
-    if (status == MPS_ERROR_CANCELLED)
-      code = APP_INTERRUPTED;
-    else if (app_check(a, status) && finish(a, s, &sim))
-      code = APP_OK;
-  }
-  destroy(&sim);
-  return code;
-}
-
 int main(int argc, char **argv) {
-  settings s = {.h = 0.01,
-                .angle = 30.0,
-                .k = 2000.0,
-                .young = 1000.0,
-                .poisson = 0.3,
-                .duration = 0.5,
-                .ppc = 4,
-                .out = "out/rolling-disc"};
+  static simulation sim = {.s = {.h = 0.01,
+                                 .angle = 30.0,
+                                 .k = 2000.0,
+                                 .young = 1000.0,
+                                 .poisson = 0.3,
+                                 .duration = 0.5,
+                                 .ppc = 4,
+                                 .out = "out/rolling-disc"}};
+  settings *s = &sim.s;
   option table[] = {
       OPTION_HEADING("Disc and slope"),
-      OPTION_CHOICE("body", "slope|disc", &s.body,
+      OPTION_CHOICE("body", "slope|disc", &s->body,
                     "which of the two is rigid; disc: it is free, and the slope elastic"),
-      OPTION_NUMBER("angle", "degrees", OPTION_FROM_TO(1.0, 60.0), &s.angle, "of the slope"),
-      OPTION_NUMBER("mu", "1", OPTION_FROM_TO(0.0, 10.0), &s.mu,
+      OPTION_NUMBER("angle", "degrees", OPTION_FROM_TO(1.0, 60.0), &s->angle, "of the slope"),
+      OPTION_NUMBER("mu", "1", OPTION_FROM_TO(0.0, 10.0), &s->mu,
                     "friction; the disc rolls where tan(angle) <= 3 mu"),
-      OPTION_NUMBER("k", "kN/m", OPTION_POSITIVE, &s.k,
+      OPTION_NUMBER("k", "kN/m", OPTION_POSITIVE, &s->k,
                     "contact stiffness per unit thickness of each particle, seed B (28)"),
-      OPTION_NUMBER("young", "kPa", OPTION_POSITIVE, &s.young, "Young's modulus E"),
-      OPTION_NUMBER("poisson", "1", OPTION_FROM_TO(0.0, 0.49), &s.poisson, "Poisson's ratio"),
+      OPTION_NUMBER("young", "kPa", OPTION_POSITIVE, &s->young, "Young's modulus E"),
+      OPTION_NUMBER("poisson", "1", OPTION_FROM_TO(0.0, 0.49), &s->poisson, "Poisson's ratio"),
       OPTION_HEADING("Grid"),
-      OPTION_NUMBER("h", "m", OPTION_ABOVE_TO(0.0, 0.05), &s.h,
+      OPTION_NUMBER("h", "m", OPTION_ABOVE_TO(0.0, 0.05), &s->h,
                     "grid spacing; the radius R is 0.05 m"),
-      OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s.ppc, "particles a cell"),
-      OPTION_CHOICE("fill", "lattice|rings", &s.fill, "how particles fill an elastic disc"),
+      OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
+      OPTION_CHOICE("fill", "lattice|rings", &s->fill, "how particles fill an elastic disc"),
       OPTION_HEADING("Run"),
-      OPTION_NUMBER("duration", "s", OPTION_ABOVE_TO(0.0, 0.55), &s.duration,
+      OPTION_NUMBER("duration", "s", OPTION_ABOVE_TO(0.0, 0.55), &s->duration,
                     "length of the run; x_error_05 is that at its end"),
-      OPTION_OUT(&s.out),
-      OPTION_THREADS(&s.threads),
+      OPTION_OUT(&s->out),
+      OPTION_THREADS(&s->threads),
       {0}};
   const options_program program = {
       "mps-rolling-disc",
@@ -318,7 +292,6 @@ int main(int argc, char **argv) {
       table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
-  app a;
-  if (!app_start(&a, program.name, s.threads)) return app_finish(&a, APP_FAILED);
-  return app_finish(&a, run(&a, &s));
+  static const mpm_model_parts parts = {build, march, finish};
+  return mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
 }

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#define SMALL_GRID 12 /* blocks: below, sharing the work costs more than it gains */
+#define SMALL_GRID 24 /* blocks: below, sharing the work costs more than it gains */
 
 /* ---- work ------------------------------------------------------------------------------------ */
 
