@@ -3,6 +3,7 @@
  * equations. The three are timed in turn, in rounds, in one process; minima are compared, so that
  * the ratios hold when the machine's speed drifts.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "measure.h"
 #include "plain_dynamics.h"
 
 #include <mps/dynamics.h>
@@ -11,22 +12,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #define ROUNDS 5
-
-static double seconds(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static void check(mps_context *context, mps_status status, const char *what) {
-  if (status == MPS_OK) return;
-  fprintf(stderr, "bench-dynamics: %s: %s\n", what,
-          context ? mps_context_error(context)->message : mps_status_text(status));
-  exit(1);
-}
 
 /* One contender of the library: its own context, particles and solver. */
 typedef struct contender {

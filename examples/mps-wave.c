@@ -1,6 +1,8 @@
 /* mps-wave - earthquake wave through a soil column or slope of particles, seed A, Figure 2.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "common/output.h"
+#include "wave/field.h"
+#include "wave/files.h"
 #include "wave/receivers.h"
 #include "wave/results.h"
 #include "wave/settings.h"
@@ -15,6 +17,8 @@ typedef struct simulation {
   mps_signal *signal;
   mps_dynamics *dynamics;
   receivers record;
+  files files;
+  field peaks;
   double duration; /* s */
 } simulation;
 
@@ -48,12 +52,15 @@ static bool build(app *a, const settings *s, simulation *sim) {
     if (!app_check(a, mps_dynamics_add_free_field(particles, side, 2))) return false;
   const mps_dynamics_def dynamics = settings_dynamics(s, sim->ground.width);
   return app_check(a, mps_dynamics_create(a->context, particles, &dynamics, &sim->dynamics)) &&
-         app_check(a, build_boundaries(s, sim));
+         app_check(a, build_boundaries(s, sim)) &&
+         files_open(a, s, particles, sim->dynamics, &sim->files) &&
+         field_create(a, s, particles, &sim->peaks);
 }
 
 static void destroy(simulation *sim) {
   mps_dynamics_destroy(&sim->dynamics);
   receivers_destroy(&sim->record);
+  field_destroy(&sim->peaks);
   column_destroy(&sim->ground);
   mps_signal_destroy(&sim->signal);
 }
@@ -89,6 +96,13 @@ static void explain_divergence(app *a, const results *x) {
               x->dt_limit);
 }
 
+static mps_status record(void *user, mps_dynamics *dynamics) {
+  simulation *sim = user;
+  mps_status status = receivers_record(&sim->record, dynamics);
+  if (status == MPS_OK) status = field_record(&sim->peaks);
+  return status == MPS_OK ? files_record(&sim->files, dynamics) : status;
+}
+
 /* Exit code; the results are filled as far as the run came. */
 static int march(app *a, const settings *s, simulation *sim, results *x) {
   mps_linear_limit limit;
@@ -105,11 +119,10 @@ static int march(app *a, const settings *s, simulation *sim, results *x) {
   const int64_t every = (int64_t)(sim->duration / x->dt / MAX_ROWS) + 1;
   printf("%s wave, %lld particles, dt %.4g s (linear limit %.4g s), %.0f steps\n",
          s->wave == WAVE_S ? "S" : "P", (long long)x->particles, x->dt, x->dt_limit,
-         ceil(sim->duration / x->dt));
+         fmax(0.0, ceil((sim->duration - mps_dynamics_time(sim->dynamics)) / x->dt)));
   fflush(stdout);
   watch_energy(s, sim);
-  const mps_status status =
-      mps_dynamics_run(sim->dynamics, sim->duration, every, receivers_record, &sim->record);
+  const mps_status status = mps_dynamics_run(sim->dynamics, sim->duration, every, record, sim);
   x->steps = mps_dynamics_steps(sim->dynamics);
   x->end = OUTCOME_COMPLETE;
   if (status == MPS_ERROR_DIVERGED) {
@@ -131,7 +144,8 @@ static bool finish(app *a, const settings *s, simulation *sim, results *x) {
   if (!results_find(a, s, &sim->ground, &sim->record, sim->signal, x) ||
       !receivers_write(a, &sim->record, s->out) || !results_write(a, s, x))
     return false;
-  if (x->end != OUTCOME_DIVERGED && !results_draw(a, s, &sim->ground, &sim->record, x))
+  if (x->end != OUTCOME_DIVERGED &&
+      (!results_draw(a, s, &sim->ground, &sim->record, x) || !field_write(a, s, &sim->peaks)))
     return false;
   results_print(s, x);
   return true;
@@ -141,11 +155,14 @@ static int run(app *a, settings *s) {
   simulation sim = {0};
   results x = {0};
   int code = APP_FAILED;
-  if (settings_ground(a, s) && output_directory(a, s->out) && build(a, s, &sim)) {
+  if (settings_ground(a, s) && output_directory(a, s->out) && files_peek(a, s) &&
+      build(a, s, &sim)) {
     sim.duration = find_duration(s, &sim);
     code = march(a, s, &sim, &x);
+    if (!files_close(a, &sim.files, sim.dynamics, x.end == OUTCOME_DIVERGED)) code = APP_FAILED;
     if (sim.record.rows > 1 && !finish(a, s, &sim, &x) && code == APP_OK) code = APP_FAILED;
   }
+  files_close(a, &sim.files, NULL, false); /* of a run that was not built */
   destroy(&sim);
   return code;
 }

@@ -19,13 +19,22 @@ int64_t case_particles(double radius) {
   return (int64_t)(round(WIDTH / (2.0 * radius)) * round(HEIGHT / (2.0 * radius)));
 }
 
+double case_vs(const stability_case *x) {
+  if (x->wave == 'S') return x->velocity;
+  return x->other > 0.0 ? x->other : 0.5 * x->velocity;
+}
+
+double case_vp(const stability_case *x) {
+  if (x->wave == 'P') return x->velocity;
+  return x->other > 0.0 ? x->other : 2.0 * x->velocity;
+}
+
 static mps_status build(mps_context *context, const method *m, const stability_case *x, column *c,
                         mps_dynamics **dynamics) {
   layers ground = {.count = 1};
-  const double v = x->velocity;
   ground.layer[0] = (layer){.thickness = HEIGHT,
-                            .vs = x->wave == 'S' ? v : 0.5 * v,
-                            .vp = x->wave == 'S' ? 2.0 * v : v,
+                            .vs = case_vs(x),
+                            .vp = case_vp(x),
                             .unit_weight = 14.7,
                             .damping = x->damping};
   const column_def def = {.width = WIDTH, .height = HEIGHT, .radius = x->radius, .ground = &ground};

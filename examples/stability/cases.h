@@ -19,9 +19,10 @@ typedef struct method {
 } method;
 
 typedef struct stability_case {
-  char wave; /* 'S': Vs = V, Vp = 2V; 'P': Vp = V, Vs = V/2 */
+  char wave; /* 'S' or 'P' */
   int integrator;
-  double radius, velocity, damping; /* R m, V m/s, h */
+  double radius, velocity, damping; /* R m, V m/s (of the wave), h */
+  double other; /* m/s: the other wave's velocity; 0: Vp = 2 Vs as in the seed */
   /* found; NaN: not asked for or not defined */
   double linear;            /* s */
   double stepping;          /* s: the largest step that ran stably */
@@ -38,6 +39,8 @@ typedef struct stability_case {
 double method_duration(const method *m, double velocity);
 /* The seed's particles: 10 m x 100 m, rounded to whole particles (R = 1.6 m: 3 x 31). */
 int64_t case_particles(double radius);
+double case_vs(const stability_case *x);
+double case_vp(const stability_case *x);
 /* Finds what `m` asks for, on a serial context of its own: may run in parallel with others. `hook`
  * (may be NULL) is told of each run of the bisection. */
 void case_find(const method *m, stability_case *out, mps_progress_fn hook, void *user);

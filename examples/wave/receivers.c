@@ -79,7 +79,9 @@ static mps_status record_energy(receivers *r, mps_dynamics *dynamics) {
 mps_status receivers_record(void *user, mps_dynamics *dynamics) {
   receivers *r = user;
   mps_view acceleration;
-  const double t = mps_dynamics_time(dynamics);
+  /* The accelerations are those that the last step began with. */
+  if (mps_dynamics_steps(dynamics) == 0) return MPS_OK;
+  const double t = mps_dynamics_time(dynamics) - mps_dynamics_dt(dynamics);
   if (r->rows > 0 && receivers_time(r, r->rows - 1) == t) return MPS_OK; /* the end of the run */
   mps_status status = mps_particles_view(r->particles, "acceleration", &acceleration);
   if (status != MPS_OK) return status;

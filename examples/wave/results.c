@@ -117,10 +117,18 @@ bool results_write(app *a, const settings *s, const results *x) {
 
 void results_print(const settings *s, const results *x) {
   const bool diverged = x->end == OUTCOME_DIVERGED;
-  printf("Results: %s/ (receivers.csv, %ssummary.json%s)\n", s->out, s->sloped ? "slope.csv, " : "",
-         diverged ? "" : ", wave.png");
+  printf("Results: %s/ (receivers.csv, %ssummary.json%s%s%s)\n", s->out,
+         s->sloped ? "slope.csv, " : "",
+         diverged    ? ""
+         : s->sloped ? ", wave.png, peaks.png"
+                     : ", wave.png",
+         s->vtk > 0.0 ? ", wave.vtkhdf" : "", s->checkpoint > 0.0 ? ", checkpoint.h5" : "");
   if (diverged) return;
   printf("surface peak %.3f m/s2", x->surface_peak);
+  if (isnan(x->travel_time) && s->restart) {
+    printf(" since the restart (the travel time needs a run from the beginning)\n");
+    return;
+  }
   if (isnan(x->travel_time)) {
     printf(", the wave has not reached the surface (that takes %.3f s)\n", x->travel_exact);
     return;

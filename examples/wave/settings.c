@@ -167,6 +167,15 @@ int settings_parse(settings *s, int argc, char **argv) {
       OPTION_HEADING("Running and results"),
       OPTION_INTEGER("receivers", "N", OPTION_FROM_TO(2.0, 1000.0), &s->receivers,
                      "receivers along the middle column, surface and base included"),
+      OPTION_NUMBER("vtk", "s", OPTION_NOT_NEGATIVE, &s->vtk,
+                    "simulated time between frames in wave.vtkhdf, for ParaView; 0: none"),
+      OPTION_NUMBER("checkpoint", "s", OPTION_NOT_NEGATIVE, &s->checkpoint,
+                    "simulated time between checkpoints in checkpoint.h5, which the end of the run "
+                    "writes too; 0: none"),
+      OPTION_TEXT(
+          "restart", "FILE", &s->restart,
+          "go on from a checkpoint of the same model, with its time step; the results begin "
+          "there, so give another --out"),
       OPTION_THREADS(&s->threads),
       OPTION_OUT(&s->out),
       {0}};

@@ -26,7 +26,8 @@ typedef struct settings {
   int integrator, rotation, torque;
   double dt, courant, duration;
   int64_t receivers, threads;
-  const char *out;
+  double vtk, checkpoint; /* s between frames, between checkpoints; 0: none */
+  const char *restart, *out;
   /* made from the above */
   bool ricker, sloped;
   layers ground;

@@ -3,7 +3,8 @@
  * damping, driven, viscous and free-field boundaries, and the stability limit of the time step.
  *
  * Three unknowns a particle: two displacements (m) and a rotation (rad). Neighbours and the
- * weight function come from the reference positions and never change. Restoring forces follow
+ * weight function come from the reference positions, at creation those without the displacement,
+ * and never change. Restoring forces follow
  * from displacement differences, so that small strains keep all their digits.
  *
  * The solver works in the fields of the particle set itself (zero copy) and sorts the set once,
@@ -12,6 +13,10 @@
  * (ratio h, >= 0) at creation; `displacement`, `velocity`, `rotation`, `spin` at creation and at
  * mps_dynamics_restart; it writes these and `position`, `acceleration`, `pressure` and the history
  * fields `displacement_old`, `rotation_old`, `restoring_old`.
+ *
+ * After a step to time t = mps_dynamics_time the positions, displacements and rotations are those
+ * of t; accelerations and pressures those that the step began with, of t - dt; velocity and spin
+ * those of t - dt/2 (Verlet, leapfrog) or of t (Euler).
  *
  * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
  * its results are the same bit for bit for every number of threads.
@@ -142,11 +147,13 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_add_free_field(mps_particles *part
 MPS_API MPS_NODISCARD mps_status mps_dynamics_step(mps_dynamics *dynamics, int64_t count);
 
 /** Called at the start of a run, then every `every` steps and at the end, with fields up to date.
- *  Return MPS_OK to go on. */
+ *  It may read everything, but not step, restart or destroy the solver or change dt. Return MPS_OK
+ *  to go on; any other status ends the run, which returns it. */
 typedef mps_status (*mps_dynamics_fn)(void *user, mps_dynamics *dynamics);
 
 /** Steps to the first instant >= t_end (s), calling `callback` (may be NULL) every `every` (>= 1)
- *  steps, the context's progress hook about 100 times, and its cancel hook at the same time. */
+ *  steps, the context's progress hook at least about 100 times, and its cancel hook with it: some
+ *  ten times a second. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_run(mps_dynamics *dynamics, double t_end,
                                                   int64_t every, mps_dynamics_fn callback,
                                                   void *user);
@@ -155,8 +162,10 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_run(mps_dynamics *dynamics, double
  *  history (G_{-1} = G_0), time `time` (s), step 0. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_restart(mps_dynamics *dynamics, double time);
 /** Goes on bit for bit from a checkpoint whose fields (displacement, rotation, velocity, spin and
- *  the three history fields) the caller has put back: same definition and dt, `time` and `step` as
- *  they were. */
+ *  the three history fields) the caller has put back: same definition, boundaries and dt, `time`
+ * and `step` as they were. Input that depends on time (signals) is the same bit for bit if the time
+ * at the start (0, or that of mps_dynamics_restart) is the same too and dt never changed; else time
+ *  may differ in its last digit. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_resume(mps_dynamics *dynamics, double time,
                                                      int64_t step);
 /** Sets the time step (s, > 0, finite). A warning is logged when it is above the linear limit.
@@ -193,16 +202,17 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_get_momentum(mps_dynamics *dynamic
 
 /** Limit by linear theory: the highest eigenfrequency of the tangent at the reference state. */
 typedef struct mps_linear_limit {
-  double dt;    /* largest stable step, s; Euler without damping: 0 unless `duration` was given */
-  double omega; /* highest eigenfrequency of the undamped set, rad/s */
+  double dt;       /* largest stable step, s; Euler without damping: 0 unless `duration` was given;
+                      infinite where nothing can move against anything else */
+  double omega;    /* highest eigenfrequency of the undamped set, rad/s */
   double residual; /* relative bound on the error of omega^2 */
   int64_t iterations;
 } mps_linear_limit;
 
 /** No time stepping: Lanczos iteration on the tangent with the boundaries set so far; damping may
  *  differ from particle to particle. `duration` (s, >= 0): for Euler, which has no limit without
- *  damping but grows slowly, the largest step whose amplification over `duration` stays below
- *  1e15; 0: the asymptotic limit. Other integrators ignore it. */
+ *  damping but grows slowly, the largest step (up to 4/omega) whose amplification over `duration`
+ *  stays below 1e15; 0: the asymptotic limit. Other integrators ignore it. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_limit_linear(mps_dynamics *dynamics, double duration,
                                                            mps_linear_limit *out);
 
@@ -258,7 +268,8 @@ static inline mps_predict_def mps_predict_defaults(void) {
 typedef struct mps_prediction {
   double linear;               /* s: own linear theory, edges of a body allowed for; use this one */
   double omega;                /* rad/s, highest eigenfrequency of the endless lattice */
-  double printed_s, printed_p; /* s: seed A (14)-(16) with Table 2; NaN outside its range of h */
+  double printed_s, printed_p; /* s: seed A (14)-(16) with Table 2; NaN outside its range of h,
+                                  0.001 to 0.22; h = 0 is the seed's undamped case, its 0.001 */
   double printed;              /* the smaller of the two */
   int32_t printed_in_range;    /* 1: R, V and h within the range of the seed's study */
   int32_t printed_is_safe;     /* 1: printed <= linear. It can be 1.5 times above. */

@@ -175,6 +175,15 @@ mps_status mps_particles_add_field(mps_particles *particles, const char *name, i
   return MPS_OK;
 }
 
+void mpsi_particles_drop_fields(mps_particles *particles, int32_t keep) {
+  while (particles->field_count > keep) {
+    mpsi_field *field = particles->fields[--particles->field_count];
+    particles->columns -= field->components;
+    mpsi_free(particles->context, field->block);
+    mpsi_free(particles->context, field);
+  }
+}
+
 /* ---- looking --------------------------------------------------------------------------------- */
 
 static mps_status fail_unknown(const mps_particles *p, const char *function, const char *name) {

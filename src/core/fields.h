@@ -13,7 +13,7 @@
 #define MPSI_PER_DIM 0       /* 2 in 2D, 3 in 3D */
 #define MPSI_PER_ROTATION -1 /* 1 in 2D, 3 in 3D */
 #define MPSI_PER_FREEDOM -2  /* displacements and rotations: 3 in 2D, 6 in 3D */
-#define MPSI_PER_STRESS -3   /* symmetric tensor with zz: 4 in 2D, 6 in 3D */
+#define MPSI_PER_STRESS -3   /* 4 in 2D (xx, yy, zz, xy), 6 in 3D (and zx, yz) */
 #define MPSI_PER_GRADIENT -4 /* tensor, in 2D with the hoop component: 5 in 2D, 9 in 3D */
 
 /* clang-format off */
@@ -44,6 +44,22 @@
     "the caller (initial state); solvers", "after a step or a run")                                \
   X(spin, F64, MPSI_PER_ROTATION, "rad/s", "angular velocity, anticlockwise",                      \
     "the caller (initial state); solvers", "after a step or a run")                                \
+  X(young, F64, 1, "Pa", "Young's modulus",                                                        \
+    "the caller", "as written")                                                                    \
+  X(poisson, F64, 1, "-", "Poisson's ratio",                                                       \
+    "the caller", "as written")                                                                    \
+  X(reaction, F64, MPSI_PER_DIM, "N", "force of the supports on the particle",                     \
+    "implicit elasticity", "after a solution or a step")                                           \
+  X(strain, F64, MPSI_PER_STRESS, "-",                                                             \
+    "strain xx, yy, zz, xy; 3D: and zx, yz (shear: tensor components)",                            \
+    "implicit elasticity", "after mps_elastic_stress")                                             \
+  X(stress, F64, MPSI_PER_STRESS, "Pa",                                                            \
+    "stress xx, yy, zz, xy; 3D: and zx, yz; tension positive",                                     \
+    "the caller (initial state of WLS-MPM); solvers", "after a step or mps_elastic_stress")        \
+  X(principal, F64, 3, "Pa", "principal stresses, largest first",                                  \
+    "implicit elasticity", "after mps_elastic_stress")                                             \
+  X(von_mises, F64, 1, "Pa", "von Mises stress",                                                   \
+    "implicit elasticity", "after mps_elastic_stress")                                             \
   X(acceleration, F64, MPSI_PER_DIM, "m/s2", "acceleration",                                       \
     "solvers", "after a step or a run")                                                            \
   X(pressure, F64, 1, "Pa", "pressure",                                                            \
@@ -59,8 +75,6 @@
     "WLS-MPM", "after creation of the solver")                                                     \
   X(volume, F64, 1, "m3", "volume per unit thickness (plane strain) or per radian (axisymmetry)",  \
     "the caller (initial state; 0: from the spacing); WLS-MPM", "after a step or a run")           \
-  X(stress, F64, MPSI_PER_STRESS, "Pa", "Cauchy stress xx, yy, zz, xy, in 3D also yz, zx; tension positive", \
-    "the caller (initial state); solvers", "after a step or a run")                                \
   X(velocity_gradient, F64, MPSI_PER_GRADIENT, "1/s", "dv_i/dx_j row by row, in 2D then the hoop strain rate v_r/r", \
     "the caller (initial state); WLS-MPM", "after a step or a run")                                \
   X(volume_ratio, F64, 1, "-", "volume over the volume without stress, V/V0",                      \
@@ -75,7 +89,7 @@ static inline int32_t mpsi_field_components(int32_t code, int32_t dim) {
   if (code == MPSI_PER_DIM) return dim;
   if (code == MPSI_PER_ROTATION) return rotations;
   if (code == MPSI_PER_FREEDOM) return dim + rotations;
-  if (code == MPSI_PER_STRESS) return dim == 2 ? 4 : 6;
+  if (code == MPSI_PER_STRESS) return 2 * dim;
   if (code == MPSI_PER_GRADIENT) return dim == 2 ? 5 : 9;
   return code;
 }

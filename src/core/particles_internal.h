@@ -32,6 +32,12 @@ mps_status mpsi_particles_permute_in(mps_particles *particles, const char *funct
 mps_particles *mpsi_particles_pin(mps_particles *particles); /* returns `particles` */
 void mpsi_particles_unpin(mps_particles *particles);         /* accepts NULL */
 
+/* Takes back the fields added since there were `keep` of them; nobody may have borrowed them yet. */
+void mpsi_particles_drop_fields(mps_particles *particles, int32_t keep);
+
+/* MPS_ERROR_STATE when a solver uses the set. */
+mps_status mpsi_particles_check_free(const mps_particles *particles, const char *function);
+
 mps_context *mpsi_particles_context(const mps_particles *particles);
 
 #endif

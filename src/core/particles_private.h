@@ -64,8 +64,6 @@ void mpsi_field_move(mps_context *context, mpsi_field *field, void *block, int64
 
 /* ---- particles.c ----------------------------------------------------------------------------- */
 
-/* MPS_ERROR_STATE when a solver uses the set. */
-mps_status mpsi_particles_check_free(const mps_particles *particles, const char *function);
 /* Adds `count` particles with their ids; all else is zero. Nothing has changed on an error. */
 mps_status mpsi_particles_extend(mps_particles *particles, const char *function, int64_t count);
 

@@ -67,6 +67,7 @@ mps_status mps_dynamics_hold(mps_dynamics *dynamics, uint32_t dofs, int64_t coun
     if (dofs & MPS_DOF_ROTATION) dynamics->state.ith[i] = 0.0;
   }
   boundaries_changed(dynamics);
+  mpsi_dynamics_rewind(dynamics); /* the held particles start at rest */
   return MPS_OK;
 }
 
@@ -195,18 +196,21 @@ static double velocity(const mps_dynamics *dynamics, const motion *m, int32_t i)
 
 void mpsi_dynamics_apply_drives(mps_dynamics *dynamics, double t, double now, bool output) {
   const mps_signal *signal = NULL;
-  double u = 0.0, a = 0.0;
+  const int integrator = dynamics->def.integrator;
+  double u = 0.0, v = 0.0, a = 0.0;
   for (int64_t k = 0; k < dynamics->drives; k++) {
     const mpsi_drive *drive = &dynamics->drive[k];
     if (drive->signal != signal) { /* lists share one signal: evaluate it once */
       signal = drive->signal;
       u = mps_signal_displacement(signal, t);
+      v = integrator == MPS_INTEGRATOR_EULER ? mps_signal_velocity(signal, t) : 0.0;
       a = output ? mps_signal_acceleration(signal, now) : 0.0;
     }
     const motion m = component(dynamics, drive->component);
     const int32_t i = drive->particle;
-    const bool moving = dynamics->def.integrator != MPS_INTEGRATOR_VERLET && dynamics->dt > 0.0;
-    if (moving) m.v[i] = (drive->factor * u - m.d[i]) / dynamics->dt + m.v[i];
+    if (integrator == MPS_INTEGRATOR_EULER) m.v[i] = drive->factor * v;
+    if (integrator == MPS_INTEGRATOR_LEAPFROG) /* at mid-step */
+      m.v[i] = (drive->factor * u - m.d[i]) / dynamics->dt + m.v[i];
     m.d[i] = drive->factor * u;
     if (output) m.a[i] = drive->factor * a;
   }

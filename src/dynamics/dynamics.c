@@ -5,8 +5,7 @@
 #include "core/particles_internal.h"
 #include "layout.h"
 
-#include <stdlib.h>
-#include <string.h>
+#include <float.h>
 
 static const mps_dynamics_def dynamics_defaults = {
     .struct_size = sizeof(mps_dynamics_def),
@@ -24,6 +23,9 @@ mps_status mps_dynamics_def_init(mps_dynamics_def *def, size_t size) {
   return mpsi_def_init(def, size, DYNAMICS_DEF_MINIMUM, &dynamics_defaults,
                        sizeof dynamics_defaults);
 }
+
+/* Extent of a set in spacings: positions keep a millionth of one. */
+#define MOST_SPACINGS 1e9
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
@@ -108,6 +110,33 @@ static mps_status check_material(mps_context *context, mps_particles *particles)
   return MPS_OK;
 }
 
+/* What is there of position and of the initial state must be finite. */
+static mps_status check_state(mps_context *context, mps_particles *particles) {
+  static const char *const names[] = {"position", "displacement", "rotation", "velocity", "spin"};
+  const int64_t n = mps_particles_count(particles);
+  for (size_t f = 0; f < sizeof names / sizeof *names; f++)
+    for (int c = 0; c < 2; c++) {
+      const double *column = mpsi_particles_column(particles, names[f], c);
+      for (int64_t k = 0; column && k < n; k++)
+        if (!isfinite(column[k]))
+          return mpsi_fail(context, "mps_dynamics_create", MPS_ERROR_ARGUMENT,
+                           "%s of particle %lld is %g, must be finite", names[f],
+                           (long long)mpsi_particles_integers(particles, "id")[k], column[k]);
+    }
+  return MPS_OK;
+}
+
+/* Least and greatest position without the displacement that particles may have, m. */
+static void extent(mps_particles *particles, int32_t component, double *lo, double *hi) {
+  const double *x = mpsi_particles_column(particles, "position", component);
+  const double *d = mpsi_particles_column(particles, "displacement", component);
+  *lo = INFINITY, *hi = -INFINITY;
+  for (int64_t k = 0; k < mps_particles_count(particles); k++) {
+    const double at = x[k] - (d ? d[k] : 0.0);
+    *lo = fmin(*lo, at), *hi = fmax(*hi, at);
+  }
+}
+
 static mps_status check_geometry(mps_context *context, mps_particles *particles,
                                  const mps_dynamics_def *def) {
   static const char *const function = "mps_dynamics_create";
@@ -120,25 +149,35 @@ static mps_status check_geometry(mps_context *context, mps_particles *particles,
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "the particle set has %lld particles, allowed are 1 to %d", (long long)n,
                      INT32_MAX);
-  const double re = def->radius_ratio * mps_particles_spacing(particles);
-  if (def->period_x > 0.0) {
-    const double *x = mpsi_particles_column(particles, "position", 0);
-    double lo = INFINITY, hi = -INFINITY;
-    for (int64_t k = 0; k < n; k++) lo = fmin(lo, x[k]), hi = fmax(hi, x[k]);
-    if (def->period_x <= re || def->period_x <= hi - lo)
+  const int64_t *side = mpsi_particles_integers(particles, "free_field");
+  const double D = mps_particles_spacing(particles), re = def->radius_ratio * D;
+  double lo[2], hi[2];
+  int64_t body = 0;
+  for (int c = 0; c < 2; c++) extent(particles, c, &lo[c], &hi[c]);
+  for (int64_t k = 0; k < n; k++) {
+    if (side && (side[k] < 0 || side[k] > MPS_SIDE_RIGHT))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "period_x is %g m, must be above re = %g m and the body's width %g m "
-                       "between outer particle centres",
-                       def->period_x, re, hi - lo);
+                       "free_field of particle %lld is %lld, allowed are 0, 1 (left), 2 (right)",
+                       (long long)mpsi_particles_integers(particles, "id")[k], (long long)side[k]);
+    body += !(side && side[k]);
   }
-  const double *fields[2] = {mpsi_particles_column(particles, "position", 0),
-                             mpsi_particles_column(particles, "position", 1)};
-  for (int64_t k = 0; k < n; k++)
-    if (!isfinite(fields[0][k]) || !isfinite(fields[1][k]))
+  for (int c = 0; c < 2; c++)
+    if (!(hi[c] - lo[c] <= MOST_SPACINGS * D))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "position of particle %lld is (%g, %g), must be finite",
-                       (long long)mpsi_particles_integers(particles, "id")[k], fields[0][k],
-                       fields[1][k]);
+                       "the particles reach from %g m to %g m in %c, allowed are %g spacings",
+                       lo[c], hi[c], c == 0 ? 'x' : 'y', MOST_SPACINGS);
+  if (body == 0)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "all %lld particles belong to free-field columns, a body is needed",
+                     (long long)n);
+  if (def->period_x > 0.0 && body < n)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "period_x is %g m, must be 0 with free-field columns", def->period_x);
+  if (def->period_x > 0.0 && (def->period_x <= re || def->period_x <= hi[0] - lo[0]))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "period_x is %g m, must be above re = %g m and the body's width %g m "
+                     "between outer particle centres",
+                     def->period_x, re, hi[0] - lo[0]);
   return MPS_OK;
 }
 
@@ -148,23 +187,30 @@ double *mpsi_dynamics_column(const mps_dynamics *dynamics, const char *name, int
   return mpsi_particles_column(dynamics->particles, name, component);
 }
 
-/* Adds the fields that the solver writes. `reference` is new where it was missing. */
+/* Takes the reference position from position and displacement, but keeps one that differs from it
+ * by round-off alone: a second solver on a set finds the pairs of the first. */
+static void set_reference(mps_dynamics *dynamics) {
+  const double spacing = mps_particles_spacing(dynamics->particles);
+  for (int32_t c = 0; c < 2; c++) {
+    const double *x = mpsi_dynamics_column(dynamics, "position", c);
+    const double *d = mpsi_dynamics_column(dynamics, "displacement", c);
+    double *r = mpsi_dynamics_column(dynamics, "reference", c);
+    for (int64_t k = 0; k < dynamics->count; k++) {
+      const double round_off = 1e-9 * spacing + 4.0 * DBL_EPSILON * (fabs(x[k]) + fabs(d[k]));
+      if (!(fabs(x[k] - d[k] - r[k]) <= round_off)) r[k] = x[k] - d[k];
+    }
+  }
+}
+
+/* Adds the fields that the solver writes. */
 static mps_status add_fields(mps_dynamics *dynamics) {
   static const char *const names[] = {
-      "displacement", "rotation",         "velocity",     "spin",         "acceleration",
-      "pressure",     "displacement_old", "rotation_old", "restoring_old"};
-  mps_particles *p = dynamics->particles;
+      "displacement", "rotation",         "velocity",     "spin",          "acceleration",
+      "pressure",     "displacement_old", "rotation_old", "restoring_old", "reference"};
   mps_status status = MPS_OK;
   for (size_t k = 0; status == MPS_OK && k < sizeof names / sizeof *names; k++)
-    status = mps_particles_add_field(p, names[k], 0);
-  if (status != MPS_OK || mpsi_particles_column(p, "reference", 0)) return status;
-  status = mps_particles_add_field(p, "reference", 0);
-  for (int c = 0; status == MPS_OK && c < 2; c++) {
-    const double *x = mpsi_particles_column(p, "position", c);
-    const double *d = mpsi_particles_column(p, "displacement", c);
-    double *r = mpsi_particles_column(p, "reference", c);
-    for (int64_t k = 0; k < dynamics->count; k++) r[k] = x[k] - d[k];
-  }
+    status = mps_particles_add_field(dynamics->particles, names[k], 0);
+  if (status == MPS_OK) set_reference(dynamics);
   return status;
 }
 
@@ -246,6 +292,15 @@ static void set_coefficients(mps_dynamics *dynamics) {
 
 /* ---- creation -------------------------------------------------------------------------------- */
 
+/* Are all offsets whole spacings? Those of a lattice have been made exact. */
+static bool on_lattice(double spacing, int64_t count, const mpsi_pair *pair) {
+  for (int64_t k = 0; k < count; k++)
+    if (pair[k].r0x != nearbyint(pair[k].r0x / spacing) * spacing ||
+        pair[k].r0y != nearbyint(pair[k].r0y / spacing) * spacing)
+      return false;
+  return true;
+}
+
 /* Sorts the set and builds the pair structure. */
 static mps_status arrange(mps_dynamics *dynamics) {
   static const char *const function = "mps_dynamics_create";
@@ -275,6 +330,7 @@ static mps_status arrange(mps_dynamics *dynamics) {
   int64_t count = 0;
   status = mpsi_layout_pairs(context, function, &g, &count, &pair, &dynamics->pairs);
   if (status != MPS_OK) return status;
+  dynamics->lattice = on_lattice(g.spacing, count, pair);
   const mpsi_mesh_def def = {g.spacing, dynamics->radius, dynamics->density};
   const bool built = mpsi_mesh_build(context, &dynamics->mesh, &def, dynamics->count, count, pair);
   mpsi_free(context, pair);
@@ -346,6 +402,10 @@ mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
     status = mpsi_def_read(context, __func__, user_def, DYNAMICS_DEF_MINIMUM, &def, sizeof def);
   if (status == MPS_OK) status = check_choices(context, &def);
   if (status == MPS_OK) status = check_numbers(context, &def);
+  if (status == MPS_OK) status = check_state(context, particles);
+  if (status == MPS_OK && mpsi_particles_check_free(particles, __func__) != MPS_OK)
+    status = mpsi_fail(context, __func__, MPS_ERROR_STATE,
+                       "another solver uses the set: destroy it first");
   if (status == MPS_OK) status = check_geometry(context, particles, &def);
   if (status == MPS_OK) status = check_material(context, particles);
   if (status != MPS_OK) return status;

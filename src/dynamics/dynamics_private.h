@@ -33,6 +33,7 @@ struct mps_dynamics {
   int64_t count;          /* particles, free-field columns included */
   int64_t body;           /* particles of the body: 0 .. body - 1 */
   int64_t pairs;
+  bool lattice; /* all pairs' offsets are whole spacings */
   mpsi_mesh mesh;
   mpsi_state state;
   const mpsi_kernels *kernels;
@@ -51,6 +52,7 @@ struct mps_dynamics {
   bool have_limit;
   mps_linear_limit limit; /* valid when have_limit */
   double dt;              /* s, 0: not yet chosen */
+  double history_dt;      /* s, of the last step taken: restoring_old is that old */
   double base_time;       /* time = base_time + (steps - base_step) dt */
   int64_t base_step, steps;
   double *initial; /* copy of the initial displacement, rotation, velocity and spin */

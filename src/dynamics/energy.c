@@ -43,7 +43,7 @@ static double block_pairs(const mps_dynamics *dynamics, const mpsi_block *block,
   double shear = 0.0;
   int64_t slot = block->slot;
   for (int64_t r = block->run_begin; r < block->run_end; r++) {
-    const mpsi_run *run = &mesh->run[r];
+    const mpsi_pair_run *run = &mesh->run[r];
     for (int64_t k = 0; k < run->count; k++, slot++) {
       const int64_t i = run->i0 + k, j = run->j0 + k;
       const double sum = s->p[i] + s->p[j], x = sum * s->ex[slot], y = sum * s->ey[slot];

@@ -72,11 +72,14 @@ static mps_status collect_dampings(mps_context *context, int64_t count, const do
 }
 
 /* Least squares of the rows x^(columns-1) ... x 1 against y: `coefficients` has one a column.
- * False when the points do not determine them. */
-static bool fit_polynomial(mps_context *context, int64_t rows, int columns, const double *x,
-                           const double *y, double *coefficients) {
+ * MPS_ERROR_NUMERIC, for the caller to record, when the points do not determine them. */
+static mps_status fit_polynomial(mps_context *context, int64_t rows, int columns, const double *x,
+                                 const double *y, double *coefficients) {
+  if (rows < columns) return MPS_ERROR_NUMERIC;
   double *a = mpsi_alloc(context, rows * (columns + 1), sizeof *a);
-  if (!a) return false;
+  if (!a)
+    return mpsi_fail_memory(context, "mps_dynamics_fit_limits",
+                            (size_t)(rows * (columns + 1)) * sizeof *a);
   double *b = a + rows * columns, singular[3];
   lapack_int rank = 0;
   for (int64_t r = 0; r < rows; r++) {
@@ -84,13 +87,12 @@ static bool fit_polynomial(mps_context *context, int64_t rows, int columns, cons
     for (int c = columns - 1; c >= 0; c--, power *= x[r]) a[c * rows + r] = power;
     b[r] = y[r];
   }
-  const lapack_int info = rows < columns ? -1
-                                         : LAPACKE_dgelsd(LAPACK_COL_MAJOR, (lapack_int)rows,
-                                                          columns, 1, a, (lapack_int)rows, b,
-                                                          (lapack_int)rows, singular, 1e-10, &rank);
+  const lapack_int info =
+      LAPACKE_dgelsd(LAPACK_COL_MAJOR, (lapack_int)rows, columns, 1, a, (lapack_int)rows, b,
+                     (lapack_int)rows, singular, 1e-10, &rank);
   for (int c = 0; c < columns; c++) coefficients[c] = b[c];
   mpsi_free(context, a);
-  return info == 0 && rank == columns;
+  return info == 0 && rank == columns ? MPS_OK : MPS_ERROR_NUMERIC;
 }
 
 /* (14): log dt = log a1 + a2 log(R/V), for each h. */
@@ -99,16 +101,18 @@ static mps_status fit_powers(mps_context *context, int64_t count, const double *
                              mps_limit_fit *fit) {
   for (int m = 0; m < fit->dampings; m++) {
     int64_t rows = 0;
-    double line[2];
+    double line[2] = {0.0, 0.0};
     for (int64_t k = 0; k < count; k++) {
       if (h[k] != fit->h[m]) continue;
       x[rows] = log10(R[k] / V[k]);
       y[rows++] = log10(dt[k]);
     }
-    if (!fit_polynomial(context, rows, 2, x, y, line))
+    const mps_status status = fit_polynomial(context, rows, 2, x, y, line);
+    if (status == MPS_ERROR_NUMERIC)
       return mpsi_fail(context, "mps_dynamics_fit_limits", MPS_ERROR_NUMERIC,
                        "h = %g has %lld cases: at least 2 distinct R/V are needed", fit->h[m],
                        (long long)rows);
+    if (status != MPS_OK) return status;
     fit->a2[m] = line[0];
     fit->a1[m] = pow(10.0, line[1]);
   }
@@ -129,12 +133,13 @@ static mps_status fit_quadratics(mps_context *context, double h_max, double *x, 
     y[rows] = log10(fit->a1[m]);
     z[rows] = log10(fit->a2[m]);
   }
-  if (!fit_polynomial(context, rows, 3, x, y, fit->b1) ||
-      !fit_polynomial(context, rows, 3, x, z, fit->b2))
-    return mpsi_fail(context, "mps_dynamics_fit_limits", MPS_ERROR_NUMERIC,
+  mps_status status = fit_polynomial(context, rows, 3, x, y, fit->b1);
+  if (status == MPS_OK) status = fit_polynomial(context, rows, 3, x, z, fit->b2);
+  if (status == MPS_ERROR_NUMERIC)
+    return mpsi_fail(context, "mps_dynamics_fit_limits", status,
                      "%d damping ratios are at most h_max = %g: at least 3 are needed", rows,
                      h_max);
-  return MPS_OK;
+  return status;
 }
 
 mps_status mps_dynamics_fit_limits(mps_context *context, int64_t count, const double *R,

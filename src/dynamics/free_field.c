@@ -100,7 +100,8 @@ mps_status mps_dynamics_add_free_field(mps_particles *particles, mps_side side, 
                      "the set has dim %d and %lld particles: a 2D body is needed",
                      mps_particles_dim(particles), (long long)mps_particles_count(particles));
   edge e = {0};
-  mps_status status = find_edge(context, particles, side, &e);
+  mps_status status = mpsi_particles_check_free(particles, __func__);
+  if (status == MPS_OK) status = find_edge(context, particles, side, &e);
   if (status == MPS_OK) status = append_column(context, particles, side, gap, &e);
   mpsi_free(context, e.index);
   return status;

@@ -102,8 +102,8 @@ MPSI_INLINE void add_terms(const int by_pairs, pair_terms sums, pair_terms terms
 }
 
 MPSI_INLINE void pass1_run(const int removal, const int by_pairs, const mpsi_state *s,
-                           const mpsi_run *run, int32_t begin, pair_terms sums, pair_terms terms,
-                           double *ex, double *ey) {
+                           const mpsi_pair_run *run, int32_t begin, pair_terms sums,
+                           pair_terms terms, double *ex, double *ey) {
   for (int32_t t0 = 0; t0 < run->count; t0 += MPSI_DYN_CHUNK) {
     const int32_t left = run->count - t0, n = left < MPSI_DYN_CHUNK ? left : MPSI_DYN_CHUNK;
     const int64_t i = run->i0 + t0, j = run->j0 + t0;
@@ -249,7 +249,7 @@ typedef struct forces {
 
 /* Subtracts the pressure forces (p_i + p_j) kc e of a run from its ends (A10); with damping by
  * pairs also (beta_i p_i + beta_j p_j) kc e. */
-MPSI_INLINE void pressure_run(const int by_pairs, const mpsi_state *s, const mpsi_run *run,
+MPSI_INLINE void pressure_run(const int by_pairs, const mpsi_state *s, const mpsi_pair_run *run,
                               int32_t begin, int64_t slot, forces f, double *restrict bx,
                               double *restrict by, double *restrict cx, double *restrict cy) {
   for (int32_t t0 = 0; t0 < run->count; t0 += MPSI_DYN_CHUNK) {
@@ -320,7 +320,7 @@ typedef struct freedom {
 MPSI_INLINE void advance(const int integrator, const int damping, const mpsi_step *step, int32_t n,
                          double *restrict g, double *restrict sk, freedom f,
                          const double *restrict alpha, const double *restrict beta) {
-  const double dt = step->dt, rdt = 1.0 / dt;
+  const double dt = step->dt, rdt = 1.0 / dt, rate = step->rate;
   double *restrict d = f.d, *restrict o = f.o, *restrict v = f.v, *restrict h = f.h;
   if (damping == BY_PARTICLES) SIMD for (int32_t t = 0; t < n; t++) sk[t] = beta[t] * g[t];
   if (damping && step->first) SIMD for (int32_t t = 0; t < n; t++) h[t] = sk[t];
@@ -328,7 +328,7 @@ MPSI_INLINE void advance(const int integrator, const int damping, const mpsi_ste
     double a = g[t];
     if (damping) {
       const double speed = integrator == VERLET ? (d[t] - o[t]) * rdt : v[t];
-      a = a + (sk[t] - h[t]) * rdt - alpha[t] * speed;
+      a = a + (sk[t] - h[t]) * rate - alpha[t] * speed;
       h[t] = sk[t];
       g[t] = a;
     }

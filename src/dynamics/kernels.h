@@ -36,6 +36,7 @@ typedef enum mpsi_damping {
 /* What one step is told. */
 typedef struct mpsi_step {
   double dt;
+  double rate;    /* 1/s: of the step that led here, for the rate of the damping force */
   double limit2;  /* square of the divergence criterion, (m/s2)^2 */
   int32_t first;  /* no history yet: the damping force has no rate */
   int32_t output; /* 1: write acceleration */

@@ -10,7 +10,6 @@
 #include "dynamics_private.h"
 
 #include <lapacke.h>
-#include <stdlib.h>
 #include <string.h>
 
 #define LANCZOS_MOST 400
@@ -91,10 +90,8 @@ typedef struct ritz {
 
 /* Highest eigenvalue of the tridiagonal matrix, and the last component of its vector. */
 static bool highest(int m, const double *diagonal, const double *off, double *value, double *last) {
-  double d[LANCZOS_MOST], e[LANCZOS_MOST], w[LANCZOS_MOST];
-  double *z = malloc((size_t)m * sizeof *z);
+  double d[LANCZOS_MOST], e[LANCZOS_MOST], w[LANCZOS_MOST], z[LANCZOS_MOST];
   lapack_int found = 0, support[2];
-  if (!z) return false;
   memcpy(d, diagonal, (size_t)m * sizeof *d);
   memcpy(e, off, (size_t)m * sizeof *e);
   const lapack_int info = LAPACKE_dstevr(LAPACK_COL_MAJOR, 'V', 'I', m, d, e, 0.0, 0.0, m, m, 0.0,
@@ -103,7 +100,6 @@ static bool highest(int m, const double *diagonal, const double *off, double *va
     *value = w[0];
     *last = z[m - 1];
   }
-  free(z);
   return info == 0 && found == 1;
 }
 
@@ -240,7 +236,10 @@ static mps_status find_limit(mps_dynamics *dynamics, double duration, double *me
                      "LAPACK could not solve the tridiagonal eigenproblem");
   const range r = damping_range(dynamics);
   *out = (mps_linear_limit){.dt = INFINITY, .iterations = top.iterations};
-  if (!(top.value > 0.0)) return MPS_OK; /* nothing can move against anything else */
+  if (!(top.value > 0.0)) { /* no forces: only alpha is left */
+    if (r.alpha[1] > 0.0) out->dt = 2.0 / r.alpha[1];
+    return MPS_OK;
+  }
   out->omega = sqrt(top.value);
   out->residual = top.error / top.value;
   if (dynamics->def.integrator == MPS_INTEGRATOR_EULER)

@@ -84,7 +84,8 @@ static mps_status bracket(search *s, double lower, double upper) {
                      lower, s->def->criterion);
   s->result->stable = lower;
   status = try_dt(s, upper, &stable);
-  for (int k = 0; status == MPS_OK && stable && k < WIDENINGS; k++) {
+  /* beyond the duration a run is one step, which shows nothing */
+  for (int k = 0; status == MPS_OK && stable && upper < s->def->duration && k < WIDENINGS; k++) {
     s->result->stable = upper;
     upper *= 2.0;
     status = try_dt(s, upper, &stable);
@@ -103,6 +104,7 @@ static mps_status bisect(search *s, double lower, double upper) {
   while (status == MPS_OK && s->result->unstable > s->def->accuracy * s->result->stable) {
     const double middle = sqrt(s->result->stable * s->result->unstable);
     bool stable = false;
+    if (!(middle > s->result->stable && middle < s->result->unstable)) break; /* neighbours */
     status = try_dt(s, middle, &stable);
     if (stable)
       s->result->stable = middle;

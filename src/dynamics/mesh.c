@@ -83,15 +83,15 @@ static void write_block(void *data, int64_t b, int32_t worker) {
     if (e->run < 0) continue;
     coefficients(work->def, e->pair.r0x, e->pair.r0y, &kf, &kc);
     if (e->run > 0) {
-      mesh->run[r++] = (mpsi_run){.i0 = e->pair.i,
-                                  .j0 = e->pair.j,
-                                  .count = e->run,
-                                  .own_i = e->pair.ti >= 0,
-                                  .own_j = e->pair.tj >= 0,
-                                  .r0x = e->pair.r0x,
-                                  .r0y = e->pair.r0y,
-                                  .kf = kf,
-                                  .kc = kc};
+      mesh->run[r++] = (mpsi_pair_run){.i0 = e->pair.i,
+                                       .j0 = e->pair.j,
+                                       .count = e->run,
+                                       .own_i = e->pair.ti >= 0,
+                                       .own_j = e->pair.tj >= 0,
+                                       .r0x = e->pair.r0x,
+                                       .r0y = e->pair.r0y,
+                                       .kf = kf,
+                                       .kc = kc};
     } else {
       mpsi_scattered *list = &mesh->scattered;
       list->i[s] = e->pair.i;
@@ -180,7 +180,7 @@ bool mpsi_mesh_build(mps_context *context, mpsi_mesh *mesh, const mpsi_mesh_def 
     deal(&work, count, work.entry, next);
     mpsi_parallel_for(context, mesh->blocks, arrange_block, &work);
     number_blocks(mesh, work.first);
-    mesh->run = mpsi_alloc(context, mesh->runs, sizeof(mpsi_run));
+    mesh->run = mpsi_alloc(context, mesh->runs, sizeof(mpsi_pair_run));
     ok = mesh->run && alloc_scattered(context, &mesh->scattered, mesh->scattered.count);
   }
   if (ok) mpsi_parallel_for(context, mesh->blocks, write_block, &work);

@@ -17,14 +17,14 @@
 #define MPSI_DYN_STRIP 64  /* particles a row before a wide body is cut into strips */
 
 /* Pairs (i0 + t, j0 + t), t in [0, count), all with the offset r0 = r0_j - r0_i. */
-typedef struct mpsi_run {
+typedef struct mpsi_pair_run {
   int32_t i0, j0, count;
   int32_t own_i, own_j; /* 1: this block owns that side and adds to it */
   double r0x, r0y;      /* m */
   double
       kf; /* (4d/n0) w/r0^2 / 2, 1/m2: times (mu_i + mu_j) u is the force term, seed A (A6, A7) */
   double kc; /* (d/n0) w/r0, 1/m: times cn is the divergence term, seed A (A11) */
-} mpsi_run;
+} mpsi_pair_run;
 
 /* Scattered pairs: state of i and j, added to particles ti and tj (-1: not added). An ordinary
  * pair has ti = i and tj = j where the block owns them. */
@@ -47,7 +47,7 @@ typedef struct mpsi_mesh {
   int64_t slots; /* pair evaluations a step */
   int64_t blocks, runs;
   mpsi_block *block;
-  mpsi_run *run;
+  mpsi_pair_run *run;
   mpsi_scattered scattered;
 } mpsi_mesh;
 

@@ -6,6 +6,7 @@
 
 #include <mps/neighbours.h>
 
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,11 +28,12 @@ static bool push(pair_list *list, mpsi_pair pair) {
   return true;
 }
 
-/* Offsets of lattice neighbours are made exact multiples of D: their round-off would split runs,
- * and leave forces in the unstrained body. */
-static double snap(double offset, double spacing) {
-  const double whole = nearbyint(offset / spacing) * spacing;
-  return fabs(offset - whole) < 1e-9 * spacing ? whole : offset;
+/* The offset b - a. Those of lattice neighbours are made exact multiples of D: their round-off,
+ * large where the origin is far away, would split runs. */
+static double snapped(double a, double b, double spacing) {
+  const double offset = b - a, whole = nearbyint(offset / spacing) * spacing;
+  const double round_off = 1e-9 * spacing + 2.0 * DBL_EPSILON * (fabs(a) + fabs(b));
+  return fabs(offset - whole) <= round_off ? whole : offset;
 }
 
 /* Position arrays of the body, with the copies that a period puts right of it. */
@@ -73,14 +75,13 @@ static mps_status body_pairs(const mpsi_geometry *g, const cloud *points, const 
     for (int64_t k = offset[a]; k < offset[a + 1]; k++) {
       const int64_t b = index[k];
       if (b < points->own && b < a) continue; /* each pair once; copies only as the far end */
-      const double dx = points->x[b] - points->x[a];
-      const double dy = points->x[points->count + b] - points->x[points->count + a];
+      const double *x = points->x, *y = points->x + points->count;
+      const double dx = snapped(x[a], x[b], g->spacing), dy = snapped(y[a], y[b], g->spacing);
       if (!(dx * dx + dy * dy > 1e-12 * g->spacing * g->spacing))
         return mpsi_fail(list->context, function, MPS_ERROR_ARGUMENT,
-                         "two particles lie at the same point (%g, %g) m", points->x[a],
-                         points->x[points->count + a]);
+                         "two particles lie at the same point (%g, %g) m", x[a], y[a]);
       const int32_t i = (int32_t)a, j = (int32_t)points->from[b];
-      if (!push(list, (mpsi_pair){i, j, i, j, snap(dx, g->spacing), snap(dy, g->spacing)}))
+      if (!push(list, (mpsi_pair){i, j, i, j, dx, dy}))
         return mpsi_fail_memory(list->context, function, sizeof(mpsi_pair));
     }
   return MPS_OK;

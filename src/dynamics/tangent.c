@@ -48,7 +48,7 @@ static void block_pairs(const tangent *t, const mpsi_block *block, bool pressure
   const mpsi_mesh *mesh = &t->dynamics->mesh;
   const int64_t begin = block->begin;
   for (int64_t r = block->run_begin; r < block->run_end; r++) {
-    const mpsi_run *run = &mesh->run[r];
+    const mpsi_pair_run *run = &mesh->run[r];
     for (int64_t k = 0; k < run->count; k++) {
       const int64_t i = run->i0 + k, j = run->j0 + k;
       const int64_t ti = run->own_i ? i - begin : -1, tj = run->own_j ? j - begin : -1;

@@ -38,6 +38,24 @@ in_range "$work/p/summary.json" energy_drift 0 0.01
 "$wave" --radius 1 --width 40 --height 20 --slope 15,25,12 --sides freefield --courant 0.5 \
   --duration 0.3 --out "$work/slope" >/dev/null
 head -n 1 "$work/slope/slope.csv" | grep -q 'crest.*toe' || fail "header of slope.csv"
+[ "$(wc -l <"$work/slope/peaks.csv")" -eq "$(($(sed -n 's/.*"particles": \([0-9]*\).*/\1/p' \
+  "$work/slope/summary.json") - 10 - 6 + 1))" ] || fail "peaks.csv: all but the two columns"
+
+# A run that is cut in two at a checkpoint writes the same lines as one in one piece.
+whole="--radius 1 --height 20 --damping 0.02 --courant 0.5"
+if "$wave" $whole --duration 0.6 --vtk 0.1 --checkpoint 10 --out "$work/cut" >"$work/log" 2>&1; then
+  [ -s "$work/cut/wave.vtkhdf" ] || fail "wave.vtkhdf"
+  "$wave" $whole --duration 1 --out "$work/whole" >/dev/null
+  "$wave" $whole --duration 1 --restart "$work/cut/checkpoint.h5" --out "$work/rest" >/dev/null
+  sed 1d "$work/rest/receivers.csv" | while read -r line; do
+    grep -qFx -- "$line" "$work/whole/receivers.csv" || fail "restart: $line"
+  done
+  "$wave" $whole --height 40 --restart "$work/cut/checkpoint.h5" --out "$work/rest" 2>"$work/log" &&
+    fail "a checkpoint of another model was taken"
+  has "$work/log" "has user_key"
+else
+  has "$work/log" "HDF5" # built without
+fi
 
 # Without gnuplot: a note, and no error.
 PATH=/nonexistent "$wave" --radius 1 --duration 0.3 --courant 0.5 --out "$work/p" >"$work/log"

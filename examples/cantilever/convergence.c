@@ -1,0 +1,97 @@
+/* convergence.c - tip error against the number of particles, seed Figure 6.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "results.h"
+
+#include "common/plot.h"
+
+#include <math.h>
+#include <stdio.h>
+
+enum { SIZES = 4, METHODS = 4 };
+enum { FINE_X = 193, FINE_Y = 97 }; /* nodes of the reference of a clamped beam */
+
+static const char *const names[METHODS] = {"conservative", "published, re = 3.0",
+                                           "published, re = 2.1", "bilinear finite elements"};
+
+static bool particle_error(app *a, const beam *problem, const q4 *reference, int64_t nx, int64_t ny,
+                           int method, double *error) {
+  mps_elastic_def def = mps_elastic_defaults();
+  model m;
+  def.method = method == 0 ? MPS_ELASTIC_CONSERVATIVE : MPS_ELASTIC_PUBLISHED;
+  def.state = problem->plane_strain ? MPS_ELASTIC_PLANE_STRAIN : MPS_ELASTIC_PLANE_STRESS;
+  if (method == 2) def.radius_ratio = 2.1;
+  const bool done = model_solve(a, problem, reference, nx, ny, &def, &m);
+  *error = m.tip_error;
+  model_free(&m);
+  return done;
+}
+
+/* Finite elements have nodes on the surfaces: the same number of them makes a beam of its own
+ * length with square elements. */
+static bool fem_error(app *a, const beam *base, int64_t nx, int64_t ny, double *error) {
+  beam problem = *base;
+  q4 f, reference = {0};
+  double u[2], exact[2];
+  problem.length = problem.height * (double)(nx - 1) / (double)(ny - 1);
+  if (!q4_solve(&problem, nx, ny, &f)) return app_no_memory(a);
+  bool done = true;
+  q4_at(&f, 0.0, 0.0, u);
+  beam_displacement(&problem, 0.0, 0.0, exact);
+  if (problem.clamped && (done = q4_solve(&problem, FINE_X, FINE_Y, &reference)))
+    q4_at(&reference, 0.0, 0.0, exact);
+  *error = u[1] / exact[1] - 1.0;
+  q4_free(&reference);
+  q4_free(&f);
+  return done || app_no_memory(a);
+}
+
+static bool draw(app *a, const char *directory) {
+  output f;
+  if (!plot_open(&f, a, directory, "convergence", 900, 600)) return false;
+  output_text(&f, "set title 'Tip deflection against the number of particles or nodes'\n"
+                  "set xlabel 'particles or nodes'\nset ylabel 'tip error (%%)'\n"
+                  "set logscale x\nset key top right\nset xzeroaxis linewidth 1.2\n"
+                  "set offsets 0, 0, graph 0.05, graph 0.05\nplot ");
+  static const char *const colour[METHODS] = {"#c0392b", "#2980b9", "#16a085", "#7f8c8d"};
+  for (int k = 0; k < METHODS; k++)
+    output_text(&f,
+                "%s'convergence.csv' using 1:%d skip 1 with linespoints pointtype %d linewidth 1.6 "
+                "linecolor rgb '%s' title '%s'",
+                k ? ", \\\n     " : "", k + 4, 7 - 2 * (k % 3), colour[k], names[k]);
+  output_text(&f, "\n");
+  return plot_close(&f, directory, "convergence");
+}
+
+static bool run_size(app *a, const beam *base, int64_t nx, int64_t ny, output *table) {
+  beam problem = *base;
+  q4 reference = {0};
+  double error[METHODS];
+  problem.length = model_length(problem.height, nx, ny);
+  bool done =
+      !problem.clamped || q4_solve(&problem, FINE_X, FINE_Y, &reference) || app_no_memory(a);
+  const q4 *fine = problem.clamped ? &reference : NULL;
+  for (int k = 0; k < METHODS && done; k++)
+    done = k < 3 ? particle_error(a, &problem, fine, nx, ny, k, &error[k])
+                 : fem_error(a, &problem, nx, ny, &error[k]);
+  q4_free(&reference);
+  if (!done) return false;
+  const double row[] = {(double)(nx * ny), (double)nx,     (double)ny,    100 * error[0],
+                        100 * error[1],    100 * error[2], 100 * error[3]};
+  csv_row(table, 7, row);
+  printf("%9lld %14.3f %14.3f %14.3f %14.3f\n", (long long)(nx * ny), row[3], row[4], row[5],
+         row[6]);
+  return true;
+}
+
+bool convergence_run(app *a, const beam *problem, int64_t nx, int64_t ny, const char *directory) {
+  output table;
+  if (!output_open(&table, a, directory, "convergence.csv")) return false;
+  output_text(&table, "particles,nx,ny,conservative_percent,published_3_percent,"
+                      "published_2_1_percent,fem_percent\n");
+  printf("Tip error in %%\n%9s %14s %14s %14s %14s\n", "particles", "conservative", "publ. re=3.0",
+         "publ. re=2.1", "bilinear FEM");
+  bool done = true;
+  for (int k = 0; k < SIZES && done; k++)
+    done = run_size(a, problem, ((nx - 1) << k) + 1, ((ny - 1) << k) + 1, &table);
+  return output_close(&table) && done && draw(a, directory);
+}

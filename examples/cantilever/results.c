@@ -1,0 +1,149 @@
+/* results.c - tables, summary and the seed's Figures 5, 7 and 8 of mps-cantilever.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "results.h"
+
+#include "common/frame.h"
+#include "common/plot.h"
+
+#include <math.h>
+
+/* ---- tables ---------------------------------------------------------------------------------- */
+
+static bool write_deflection(const model *m, const char *directory) {
+  output f;
+  if (!output_open(&f, m->a, directory, "deflection.csv")) return false;
+  output_text(&f, "x_m,y_m,v_m,v_reference_m,error_percent\n");
+  for (int64_t i = 0; i < m->nx; i++) {
+    elastic_point p;
+    double u[2];
+    if (!model_get(m, i, m->ny / 2, &p)) return output_close(&f) && false;
+    model_reference(m, p.x, u);
+    const double row[] = {p.x[0], p.x[1], p.u[1], u[1], 100.0 * (p.u[1] / u[1] - 1.0)};
+    csv_row(&f, 5, row);
+  }
+  return output_close(&f);
+}
+
+/* Stresses of particles i0..i1, j0..j1. */
+static bool write_stress(const model *m, const char *directory, const char *name, int64_t i0,
+                         int64_t i1, int64_t j0, int64_t j1) {
+  output f;
+  if (!output_open(&f, m->a, directory, name)) return false;
+  output_text(&f, "x_m,y_m,xx_Pa,xx_exact_Pa,yy_Pa,yy_exact_Pa,xy_Pa,xy_exact_Pa,von_mises_Pa,u_m,"
+                  "v_m\n");
+  for (int64_t i = i0; i <= i1; i++)
+    for (int64_t j = j0; j <= j1; j++) {
+      elastic_point p;
+      double e[3];
+      if (!model_get(m, i, j, &p)) return output_close(&f) && false;
+      beam_stress(m->problem, p.x[0], p.x[1], e);
+      const double row[] = {p.x[0],      p.x[1], p.stress[0], e[0],   p.stress[1], e[1],
+                            p.stress[2], e[2],   p.mises,     p.u[0], p.u[1]};
+      csv_row(&f, 11, row);
+    }
+  return output_close(&f);
+}
+
+static bool write_summary(const model *m, const mps_elastic_def *def, const char *directory) {
+  output f;
+  if (!output_open(&f, m->a, directory, "summary.json")) return false;
+  json_begin(&f);
+  json_text(&f, "method", def->method == MPS_ELASTIC_PUBLISHED ? "published" : "conservative");
+  json_text(&f, "state", m->problem->plane_strain ? "strain" : "stress");
+  json_text(&f, "reference", m->reference ? "fine bilinear finite elements" : "seed C (11)");
+  json_integer(&f, "particles", m->nx * m->ny);
+  json_integer(&f, "unknowns", m->report.unknowns);
+  json_number(&f, "length", m->problem->length);
+  json_number(&f, "height", m->problem->height);
+  json_number(&f, "tip", m->tip);
+  json_number(&f, "tip_exact", m->tip_exact);
+  json_number(&f, "tip_error", m->tip_error);
+  json_number(&f, "stress_l2_error", m->stress_error);
+  json_number(&f, "strain_energy", m->energy);
+  json_number(&f, "equilibrium_error", m->equilibrium);
+  json_number(&f, "residual", m->report.residual);
+  json_integer(&f, "nnz_matrix", m->report.matrix_nonzeros);
+  json_integer(&f, "nnz_factor", m->report.factor_nonzeros);
+  json_number(&f, "flops_factor", m->report.factor_flops);
+  json_number(&f, "seconds_assemble", m->report.seconds_assemble);
+  json_number(&f, "seconds_analyse", m->report.seconds_analyse);
+  json_number(&f, "seconds_factor", m->report.seconds_factor);
+  json_number(&f, "seconds_solve", m->report.seconds_solve);
+  json_end(&f);
+  return output_close(&f);
+}
+
+/* ---- pictures -------------------------------------------------------------------------------- */
+
+static const char particles_style[] =
+    "with points pointtype 7 pointsize 1.1 linecolor rgb '#c0392b'";
+static const char exact_style[] = "with lines linewidth 1.6 linecolor rgb '#2c3e50'";
+
+static bool draw_deflection(const model *m, const char *directory) {
+  output f;
+  if (!plot_open(&f, m->a, directory, "deflection", 900, 600)) return false;
+  output_text(&f,
+              "set title \"Deflection of the axis\\n{/*0.85 %lld x %lld particles, tip error "
+              "%+.2f %%}\"\n"
+              "set xlabel 'x from the loaded end (m)'\nset ylabel 'v (m)'\nset key bottom right\n"
+              "plot 'deflection.csv' using 1:4 skip 1 %s title '%s', \\\n"
+              "     '' using 1:3 skip 1 %s title 'particles'\n",
+              (long long)m->nx, (long long)m->ny, 100.0 * m->tip_error, exact_style,
+              m->reference ? "fine finite elements" : "analytic, (11)", particles_style);
+  return plot_close(&f, directory, "deflection");
+}
+
+/* Figure 7 (along the axis) and Figure 8 (across a section). */
+static bool draw_stress(const model *m, const char *directory, const char *name, const char *title,
+                        const char *label, int column) {
+  output f;
+  char file[40];
+  snprintf(file, sizeof file, "%s.csv", name);
+  if (!plot_open(&f, m->a, directory, name, 900, 600)) return false;
+  output_text(&f,
+              "set title \"%s\"\nset xlabel '%s'\nset ylabel 'stress (Pa)'\n"
+              "set key outside bottom center horizontal\n"
+              "set offsets 0, 0, graph 0.08, graph 0.08\n"
+              "plot '%s' using %d:4 skip 1 %s dashtype 1 title '{/Symbol s}_x analytic', \\\n"
+              "     '' using %d:3 skip 1 %s title '{/Symbol s}_x particles', \\\n"
+              "     '' using %d:8 skip 1 with lines linewidth 1.6 linecolor rgb '#16a085' title "
+              "'{/Symbol t}_{xy} analytic', \\\n"
+              "     '' using %d:7 skip 1 with points pointtype 5 pointsize 1.0 linecolor rgb "
+              "'#2980b9' title '{/Symbol t}_{xy} particles'\n",
+              title, label, file, column, exact_style, column, particles_style, column, column);
+  return plot_close(&f, directory, name);
+}
+
+static bool draw_shape(const model *m, const char *directory) {
+  output f;
+  if (!plot_open(&f, m->a, directory, "shape", 1100, 520)) return false;
+  const double scale = 0.25 * m->problem->length / fabs(m->tip);
+  output_text(
+      &f,
+      "set title \"Displacements x %.3g, von Mises stress\"\nset size ratio -1\nunset grid\n"
+      "set xlabel 'x (m)'\nset ylabel 'y (m)'\nset cblabel 'Pa'\n"
+      "set palette defined (0 '#2c3e90', 0.5 '#e8e4d8', 1 '#b03020')\n"
+      "plot 'stress.csv' using ($1+%.9g*$10):($2+%.9g*$11):9 skip 1 with points pointtype "
+      "5 pointsize %.3g palette notitle\n",
+      scale, scale, scale, fmin(2.5, 55.0 / (double)m->nx));
+  return plot_close(&f, directory, "shape");
+}
+
+bool results_write(const model *m, const mps_elastic_def *def, const char *directory) {
+  /* The seed's section is at x = 2 of 4. */
+  const int64_t middle = m->ny / 2, section = m->nx / 2;
+  elastic_point p;
+  char title[120], axis[120];
+  if (!model_get(m, section, middle, &p)) return false;
+  snprintf(axis, sizeof axis, "Stresses along y = %.3g m", p.x[1]);
+  snprintf(title, sizeof title, "Stresses across the section x = %.4g m", p.x[0]);
+  return write_deflection(m, directory) &&
+         write_stress(m, directory, "stress.csv", 0, m->nx - 1, 0, m->ny - 1) &&
+         write_stress(m, directory, "stress-axis.csv", 0, m->nx - 1, middle, middle) &&
+         write_stress(m, directory, "stress-section.csv", section, section, 0, m->ny - 1) &&
+         write_summary(m, def, directory) &&
+         frame_write(m->a, m->particles, directory, "cantilever.vtkhdf") &&
+         draw_deflection(m, directory) &&
+         draw_stress(m, directory, "stress-axis", axis, "x (m)", 1) &&
+         draw_stress(m, directory, "stress-section", title, "y (m)", 2) && draw_shape(m, directory);
+}

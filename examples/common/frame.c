@@ -1,0 +1,21 @@
+/* frame.c - see frame.h.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "frame.h"
+
+#include <mps/io.h>
+
+#include <stdio.h>
+
+bool frame_write(app *a, mps_particles *particles, const char *directory, const char *name) {
+  mps_recorder_def def = mps_recorder_defaults();
+  mps_recorder *recorder = NULL;
+  char path[4096];
+  if (snprintf(path, sizeof path, "%s/%s", directory, name) >= (int)sizeof path)
+    return app_error(a, "the path of %s is too long", name);
+  def.path = path;
+  mps_status status = mps_recorder_create(a->context, particles, &def, &recorder);
+  if (status == MPS_ERROR_UNSUPPORTED) return true;
+  if (status == MPS_OK) status = mps_recorder_write(recorder, 0.0);
+  const mps_status closed = mps_recorder_close(&recorder);
+  return app_check(a, status == MPS_OK ? closed : status);
+}

@@ -1,0 +1,44 @@
+/* elastic.h - what the programs of implicit elasticity share: the options of the method, and the
+ * results at a particle.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef EXAMPLES_ELASTIC_H
+#define EXAMPLES_ELASTIC_H
+
+#include "common/app.h"
+#include "common/options.h"
+
+#include <mps/elastic.h>
+
+typedef struct elastic_settings {
+  double young, poisson;      /* Pa, - */
+  double radius_ratio, alpha; /* radius_ratio NaN: the method's own */
+  int method, divisor, state; /* as options */
+} elastic_settings;
+
+elastic_settings elastic_settings_defaults(void);
+/* The solver's definition. */
+mps_elastic_def elastic_settings_def(const elastic_settings *s);
+const char *elastic_method_name(const elastic_settings *s);
+
+/* Rows of an option table. */
+#define ELASTIC_MATERIAL(s)                                                                        \
+  OPTION_NUMBER("E", "Pa", OPTION_POSITIVE, &(s)->young, "Young's modulus"),                       \
+      OPTION_NUMBER("nu", "-", OPTION_FROM_TO(0.0, 0.49999), &(s)->poisson, "Poisson's ratio"),    \
+      OPTION_CHOICE("state", "stress|strain", &(s)->state, "plane stress or plane strain")
+#define ELASTIC_METHOD(s)                                                                          \
+  OPTION_HEADING("Method"),                                                                        \
+      OPTION_CHOICE("method", "conservative|published", &(s)->method, "discretisation"),           \
+      OPTION_NUMBER("re", "spacings", OPTION_ABOVE_TO(1.0, 4.0), &(s)->radius_ratio,               \
+                    "radius of influence; default 1.5 (conservative), 3 (published)"),             \
+      OPTION_NUMBER("alpha", "-", OPTION_FROM_TO(0.03, 100.0), &(s)->alpha,                        \
+                    "stabilisation (conservative)"),                                               \
+      OPTION_CHOICE("n", "local|constant", &(s)->divisor, "number density in R and D (published)")
+
+/* Results at a particle: position, displacement, stress xx, yy, xy, von Mises stress. */
+typedef struct elastic_point {
+  double x[2], u[2], stress[3], mises;
+} elastic_point;
+/* Of the particle at `index` of the views. False after an error line. */
+bool elastic_point_get(app *a, mps_particles *particles, int64_t index, elastic_point *out);
+
+#endif

@@ -1,0 +1,120 @@
+/* mps-cantilever - rectangular cantilever of particles under an end load, seed C, Figures 4 to 8.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "cantilever/results.h"
+#include "common/output.h"
+
+#include <math.h>
+#include <stdio.h>
+
+typedef struct settings {
+  beam problem;
+  elastic_settings method;
+  int64_t nx, ny, threads;
+  double length;
+  int wall;
+  bool convergence;
+  const char *out;
+} settings;
+
+static const char purpose[] =
+    "Deflection and stress of a cantilever of particles (implicit elasticity, CHOLMOD), against\n"
+    "the analytic solution. The defaults are the seed's case of 153 particles.";
+
+/* The length that was asked for, in whole particles: -1, or an exit code. */
+static int find_size(const options_program *program, settings *s) {
+  const double spacing = s->problem.height / (double)s->ny;
+  char text[200];
+  if (options_given(program->table, "length")) {
+    const int64_t nx = (int64_t)llround(s->length / spacing + 0.5);
+    if (options_given(program->table, "nx") && nx != s->nx) {
+      snprintf(text, sizeof text,
+               "--nx is %lld, but --length %g m with particles of %g m asks for %lld",
+               (long long)s->nx, s->length, spacing, (long long)nx);
+      return options_refuse(program, text);
+    }
+    if (nx < 3 || nx > 20000) {
+      snprintf(text, sizeof text, "--length %g m is %lld particles of %g m, allowed are 3 to 20000",
+               s->length, (long long)nx, spacing);
+      return options_refuse(program, text);
+    }
+    s->nx = nx;
+  }
+  s->problem.length = model_length(s->problem.height, s->nx, s->ny);
+  return -1;
+}
+
+static int parse(settings *s, int argc, char **argv) {
+  *s = (settings){.problem = {.height = 2.0, .load = 1.0},
+                  .method = elastic_settings_defaults(),
+                  .nx = 17,
+                  .ny = 9,
+                  .length = NAN,
+                  .out = "out/cantilever"};
+  option table[] = {
+      OPTION_HEADING("Beam"),
+      OPTION_INTEGER("nx", "N", OPTION_FROM_TO(3, 20000), &s->nx, "particles along the beam"),
+      OPTION_INTEGER("ny", "N", OPTION_FROM_TO(2, 5000), &s->ny, "particles across it"),
+      OPTION_NUMBER("length", "m", OPTION_POSITIVE, &s->length,
+                    "loaded end to wall, rounded to whole particles (instead of --nx)"),
+      OPTION_NUMBER("height", "m", OPTION_POSITIVE, &s->problem.height, "height of the section"),
+      ELASTIC_MATERIAL(&s->method),
+      OPTION_NUMBER("load", "N/m", OPTION_POSITIVE, &s->problem.load, "end load P, downwards"),
+      OPTION_CHOICE("wall", "exact|clamp", &s->wall, "the wall moves as (11) says, or not at all"),
+      ELASTIC_METHOD(&s->method),
+      OPTION_HEADING("Running"),
+      OPTION_FLAG("convergence", &s->convergence,
+                  "also compare both methods and finite elements at four sizes"),
+      OPTION_THREADS(&s->threads),
+      OPTION_OUT(&s->out),
+      {0}};
+  const options_program program = {"mps-cantilever", purpose, table};
+  const int code = options_parse(&program, argc, argv);
+  if (code >= 0) return code;
+  s->problem.young = s->method.young;
+  s->problem.poisson = s->method.poisson;
+  s->problem.plane_strain = s->method.state == 1;
+  s->problem.clamped = s->wall == 1;
+  return find_size(&program, s);
+}
+
+static int run(app *a, const settings *s) {
+  model m = {0};
+  q4 reference = {0};
+  const beam *problem = &s->problem;
+  const mps_elastic_def def = elastic_settings_def(&s->method);
+  int64_t elements = (int64_t)ceil(48.0 * problem->length / problem->height);
+  if (elements > 1000) elements = 1000;
+  bool done = output_directory(a, s->out);
+  if (done && problem->clamped)
+    done = q4_solve(problem, elements + 1, 49, &reference) || app_no_memory(a);
+  printf("%s method, %lld x %lld particles, beam %.6g m x %.6g m\n",
+         elastic_method_name(&s->method), (long long)s->nx, (long long)s->ny, problem->length,
+         problem->height);
+  done =
+      done && model_solve(a, problem, problem->clamped ? &reference : NULL, s->nx, s->ny, &def, &m);
+  done = done && results_write(&m, &def, s->out);
+  if (done) {
+    printf("%lld unknowns, %lld entries in the factor, factorised in %.3f s; reactions balance "
+           "the load to %.1e\n",
+           (long long)m.report.unknowns, (long long)m.report.factor_nonzeros,
+           m.report.seconds_factor, m.equilibrium);
+    if (s->convergence) done = convergence_run(a, problem, s->nx, s->ny, s->out);
+  }
+  if (done)
+    printf(
+        "Results in %s\ntip deflection %.6g m, %s %.6g m: error %+.2f %%; stress error %.2f %%\n",
+        s->out, m.tip, problem->clamped ? "fine finite elements" : "theory (11)", m.tip_exact,
+        100.0 * m.tip_error, 100.0 * m.stress_error);
+  model_free(&m);
+  q4_free(&reference);
+  return done ? APP_OK : APP_FAILED;
+}
+
+int main(int argc, char **argv) {
+  settings s;
+  app a;
+  const int code = parse(&s, argc, argv);
+  if (code >= 0) return code;
+  if (!app_start(&a, "mps-cantilever", s.threads)) return app_finish(&a, APP_FAILED);
+  return app_finish(&a, run(&a, &s));
+}

@@ -1,0 +1,97 @@
+/* mps-plate - square plate of particles in tension (seed C, Figures 2 and 3), or a plate with a
+ * hole. SPDX-License-Identifier: BSD-3-Clause */
+#include "common/output.h"
+#include "plate/plate.h"
+
+#include <stdio.h>
+
+typedef struct settings {
+  plate_def plate;
+  elastic_settings method;
+  int64_t threads;
+  int shape;
+  const char *out;
+} settings;
+
+static const char purpose[] =
+    "Plate of particles in tension (implicit elasticity, CHOLMOD), against the exact solution. "
+    "The\n"
+    "defaults are the seed's square of 289 particles; --case hole is a quarter of Kirsch's plate.";
+
+/* Defaults of the hole, where they differ; -1, or an exit code. */
+static int check_hole(const options_program *program, settings *s) {
+  s->plate.hole = s->shape == 1;
+  if (!s->plate.hole) {
+    if (options_given(program->table, "radius"))
+      return options_refuse(program, "--radius is for --case hole only");
+    return -1;
+  }
+  if (!options_given(program->table, "cells")) s->plate.cells = 40;
+  if (!options_given(program->table, "side")) s->plate.side = 4.0 * s->plate.radius;
+  const double across = s->plate.side / s->plate.radius * ((double)s->plate.cells + 0.5);
+  if (!(s->plate.side >= 3.0 * s->plate.radius))
+    return options_refuse(program, "--side must be at least 3 times --radius");
+  if (s->plate.cells < 5)
+    return options_refuse(program, "--cells must be at least 5 a radius of the hole");
+  if (across > 3000.0) return options_refuse(program, "more than 3000 particles a side");
+  return -1;
+}
+
+static int parse(settings *s, int argc, char **argv) {
+  *s = (settings){.plate = {.cells = 17, .side = 1.0, .radius = 1.0, .tension = 1.0},
+                  .method = elastic_settings_defaults(),
+                  .out = "out/plate"};
+  option table[] = {
+      OPTION_HEADING("Plate"),
+      OPTION_CHOICE("case", "tension|hole", &s->shape, "square, or quarter of a plate with a hole"),
+      OPTION_INTEGER("cells", "N", OPTION_FROM_TO(2, 3000), &s->plate.cells,
+                     "particles along a side; hole: along its radius (default 40)"),
+      OPTION_NUMBER("side", "m", OPTION_POSITIVE, &s->plate.side,
+                    "side; hole: of the quarter (default 4 radii)"),
+      OPTION_NUMBER("radius", "m", OPTION_POSITIVE, &s->plate.radius, "radius of the hole"),
+      OPTION_NUMBER("tension", "Pa", OPTION_POSITIVE, &s->plate.tension, "stress at the far edge"),
+      ELASTIC_MATERIAL(&s->method),
+      ELASTIC_METHOD(&s->method),
+      OPTION_HEADING("Running"),
+      OPTION_THREADS(&s->threads),
+      OPTION_OUT(&s->out),
+      {0}};
+  const options_program program = {"mps-plate", purpose, table};
+  const int code = options_parse(&program, argc, argv);
+  if (code >= 0) return code;
+  s->plate.young = s->method.young;
+  s->plate.poisson = s->method.poisson;
+  s->plate.plane_strain = s->method.state == 1;
+  return check_hole(&program, s);
+}
+
+static int run(app *a, const settings *s) {
+  plate p = {0};
+  const mps_elastic_def def = elastic_settings_def(&s->method);
+  const bool done = output_directory(a, s->out) && plate_solve(a, &s->plate, &def, &p) &&
+                    plate_write(&p, &def, s->out);
+  if (done) {
+    printf("%s method, %lld particles, %lld entries in the factor, factorised in %.3f s\n",
+           elastic_method_name(&s->method), (long long)mps_particles_count(p.particles),
+           (long long)p.report.factor_nonzeros, p.report.seconds_factor);
+    printf("Results in %s\n", s->out);
+    if (s->plate.hole)
+      printf("stress concentration %.3f, theory 3: error %+.2f %% (stress error over the plate "
+             "%.2f %%)\n",
+             p.concentration, 100.0 * (p.concentration / 3.0 - 1.0), 100.0 * p.stress_error);
+    else
+      printf("end displacement %.9g m, theory %.9g m: largest error %.1e, of the stress %.1e\n",
+             p.end, p.end_exact, p.displacement_error, p.stress_error);
+  }
+  plate_free(&p);
+  return done ? APP_OK : APP_FAILED;
+}
+
+int main(int argc, char **argv) {
+  settings s;
+  app a;
+  const int code = parse(&s, argc, argv);
+  if (code >= 0) return code;
+  if (!app_start(&a, "mps-plate", s.threads)) return app_finish(&a, APP_FAILED);
+  return app_finish(&a, run(&a, &s));
+}

@@ -1,0 +1,135 @@
+/* results.c - tables, summary and pictures of mps-plate.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "plate.h"
+
+#include "common/frame.h"
+#include "common/plot.h"
+
+#include <math.h>
+
+/* ---- tables
+ * ------------------------------------------------------------------------------------------------
+ */
+
+static bool write_particles(const plate *p, const char *directory) {
+  output f;
+  if (!output_open(&f, p->a, directory, "particles.csv")) return false;
+  output_text(&f, "x_m,y_m,u_m,v_m,xx_Pa,xx_exact_Pa,yy_Pa,yy_exact_Pa,xy_Pa,xy_exact_Pa,"
+                  "von_mises_Pa\n");
+  for (int64_t k = 0; k < mps_particles_count(p->particles); k++) {
+    elastic_point at;
+    double e[3];
+    if (!plate_get(p, k, &at)) return output_close(&f) && false;
+    plate_exact_stress(p->def, at.x, e);
+    const double row[] = {at.x[0],      at.x[1], at.u[0],      at.u[1], at.stress[0], e[0],
+                          at.stress[1], e[1],    at.stress[2], e[2],    at.mises};
+    csv_row(&f, 11, row);
+  }
+  return output_close(&f);
+}
+
+/* The line that is drawn: the middle row of the plate in tension (u), or the ligament (xx). */
+static bool write_line(const plate *p, const char *directory) {
+  output f;
+  if (!output_open(&f, p->a, directory, p->def->hole ? "ligament.csv" : "displacement.csv"))
+    return false;
+  output_text(&f, p->def->hole ? "y_m,xx_Pa,xx_exact_Pa\n" : "x_m,u_m,u_exact_m\n");
+  const double centre[2] = {p->wall, 0.0};
+  elastic_point middle = {{0}, {0}, {0}, 0};
+  const int64_t id = mps_particles_nearest(p->particles, centre);
+  if (!p->def->hole && !plate_get(p, mps_particles_index(p->particles, id), &middle))
+    return output_close(&f) && false;
+  for (int64_t k = 0; k < mps_particles_count(p->particles); k++) {
+    elastic_point at;
+    double e[3], u[2];
+    if (!plate_get(p, k, &at)) return output_close(&f) && false;
+    plate_exact_stress(p->def, at.x, e);
+    plate_exact_displacement(p, at.x, u);
+    const double across[3] = {at.x[1], at.stress[0], e[0]}, along[3] = {at.x[0], at.u[0], u[0]};
+    if (p->def->hole ? plate_on_ligament(p, &at) : fabs(at.x[1] - middle.x[1]) < 0.25 * p->spacing)
+      csv_row(&f, 3, p->def->hole ? across : along);
+  }
+  return output_close(&f);
+}
+
+static bool write_summary(const plate *p, const mps_elastic_def *elastic, const char *directory) {
+  output f;
+  if (!output_open(&f, p->a, directory, "summary.json")) return false;
+  json_begin(&f);
+  json_text(&f, "case", p->def->hole ? "hole" : "tension");
+  json_text(&f, "method", elastic->method == MPS_ELASTIC_PUBLISHED ? "published" : "conservative");
+  json_integer(&f, "particles", mps_particles_count(p->particles));
+  json_number(&f, "spacing", p->spacing);
+  if (p->def->hole) {
+    json_number(&f, "concentration", p->concentration);
+    json_number(&f, "concentration_exact", 3.0);
+    json_number(&f, "largest_principal_over_tension", p->largest);
+  } else {
+    json_number(&f, "end_displacement", p->end);
+    json_number(&f, "end_displacement_exact", p->end_exact);
+    json_number(&f, "displacement_error", p->displacement_error);
+  }
+  json_number(&f, "stress_l2_error", p->stress_error);
+  json_integer(&f, "unknowns", p->report.unknowns);
+  json_integer(&f, "nnz_factor", p->report.factor_nonzeros);
+  json_number(&f, "seconds_factor", p->report.seconds_factor);
+  json_number(&f, "residual", p->report.residual);
+  json_end(&f);
+  return output_close(&f);
+}
+
+/* ---- pictures
+ * ------------------------------------------------------------------------------------------------
+ */
+
+static bool draw_line(const plate *p, const char *directory) {
+  const bool hole = p->def->hole;
+  const char *name = hole ? "ligament" : "displacement";
+  output f;
+  if (!plot_open(&f, p->a, directory, name, 900, 600)) return false;
+  if (hole)
+    output_text(&f,
+                "set title \"Stress {/Symbol s}_x above the hole\\n{/*0.85 radius %.1f spacings, "
+                "concentration %.3f from the ligament, theory 3}\"\n"
+                "set xlabel 'y (m)'\nset ylabel '{/Symbol s}_x (Pa)'\nset xrange [%.9g:%.9g]\n"
+                "set key top right\n",
+                (double)p->def->cells + 0.5, p->concentration, p->def->radius,
+                fmin(3.0 * p->def->radius, p->def->side));
+  else
+    output_text(
+        &f,
+        "set title \"Displacement of the middle row\\n{/*0.85 %lld particles, largest error "
+        "%.1e}\"\n"
+        "set xlabel 'x (m)'\nset ylabel 'u (m)'\nset key top left\n",
+        (long long)mps_particles_count(p->particles), p->displacement_error);
+  output_text(&f,
+              "plot '%s.csv' using 1:3 skip 1 with lines linewidth 1.6 linecolor rgb '#2c3e50' "
+              "title '%s', \\\n"
+              "     '' using 1:2 skip 1 with points pointtype 7 pointsize %g linecolor rgb "
+              "'#c0392b' title 'particles'\n",
+              name, hole ? "Kirsch" : "analytic", hole ? 0.8 : 1.1);
+  return plot_close(&f, directory, name);
+}
+
+/* Around the hole; the plate in tension has one stress only. */
+static bool draw_map(const plate *p, const char *directory) {
+  const double edge = fmin(3.0 * p->def->radius, p->def->side);
+  output f;
+  if (!plot_open(&f, p->a, directory, "stress", 800, 680)) return false;
+  output_text(&f,
+              "set title 'Stress {/Symbol s}_x'\nset size ratio -1\nunset grid\n"
+              "set xlabel 'x (m)'\nset ylabel 'y (m)'\nset cblabel 'Pa'\n"
+              "set palette defined (0 '#2c3e90', 0.33 '#e8e4d8', 1 '#b03020')\n"
+              "set xrange [0:%.9g]\nset yrange [0:%.9g]\nset cbrange [0:%.9g]\n"
+              "plot 'particles.csv' using 1:2:5 skip 1 with points pointtype 5 pointsize %.3g "
+              "palette notitle\n",
+              edge, edge, 3.0 * p->def->tension, 75.0 * p->spacing / edge);
+  return plot_close(&f, directory, "stress");
+}
+
+bool plate_write(const plate *p, const mps_elastic_def *elastic, const char *directory) {
+  return write_particles(p, directory) && write_line(p, directory) &&
+         write_summary(p, elastic, directory) &&
+         frame_write(p->a, p->particles, directory, "plate.vtkhdf") && draw_line(p, directory) &&
+         (!p->def->hole || draw_map(p, directory));
+}

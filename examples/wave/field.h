@@ -1,0 +1,21 @@
+/* field.h - the map of peak accelerations of a slope.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef EXAMPLES_WAVE_FIELD_H
+#define EXAMPLES_WAVE_FIELD_H
+
+#include "settings.h"
+
+typedef struct field {
+  mps_particles *particles; /* borrowed */
+  int64_t count;            /* 0: no map wanted */
+  double *peak;             /* |acceleration|, m/s2, by particle id */
+} field;
+
+bool field_create(app *a, const settings *s, mps_particles *particles, field *out);
+void field_destroy(field *f);
+/* Raises the peaks to the present accelerations. */
+mps_status field_record(field *f);
+/* peaks.csv: x, y, peak of each particle of the slope; peaks.png. */
+bool field_write(app *a, const settings *s, const field *f);
+
+#endif

@@ -1,0 +1,96 @@
+/* files.c - frames for ParaView and checkpoints, written at the instants that the options ask for.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "files.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The options that make another run of it, in short. */
+static void make_key(const settings *s, int64_t particles, char key[64]) {
+  snprintf(key, 64, "mps-wave %c %lld R=%g base%d sides%d int%d rot%d", settings_wave(s),
+           (long long)particles, s->radius, s->base, s->sides, s->integrator, s->rotation);
+}
+
+static char *join(const char *directory, const char *name) {
+  const size_t size = strlen(directory) + strlen(name) + 2;
+  char *path = malloc(size);
+  if (path) snprintf(path, size, "%s/%s", directory, name);
+  return path;
+}
+
+bool files_peek(app *a, settings *s) {
+  if (!s->restart) return true;
+  mps_checkpoint info = mps_checkpoint_defaults();
+  if (!app_check(a, mps_checkpoint_info(a->context, s->restart, &info))) return false;
+  s->dt = info.dt; /* a run goes on with its own time step */
+  return true;
+}
+
+static bool put_back(app *a, const settings *s, mps_dynamics *dynamics, const files *f) {
+  mps_checkpoint info = mps_checkpoint_defaults();
+  memcpy(info.user_key, f->key, sizeof info.user_key); /* the library refuses another one */
+  return app_check(a, mps_checkpoint_read(f->particles, s->restart, &info)) &&
+         app_check(a, mps_dynamics_resume(dynamics, info.time, info.step));
+}
+
+static bool open_recorder(app *a, const settings *s, files *f) {
+  char *path = join(s->out, "wave.vtkhdf");
+  if (!path) return app_no_memory(a);
+  mps_recorder_def def = mps_recorder_defaults();
+  static const char *const fields[] = {"displacement", "rotation", "velocity",
+                                       "acceleration", "pressure", "shear_velocity"};
+  def.path = path;
+  def.fields = fields;
+  def.field_count = 6;
+  const bool ok = app_check(a, mps_recorder_create(a->context, f->particles, &def, &f->recorder));
+  free(path);
+  return ok;
+}
+
+bool files_open(app *a, const settings *s, mps_particles *particles, mps_dynamics *dynamics,
+                files *out) {
+  *out = (files){.particles = particles, .frame_every = s->vtk, .checkpoint_every = s->checkpoint};
+  make_key(s, mps_particles_count(particles), out->key);
+  if (s->restart && !put_back(a, s, dynamics, out)) return false;
+  const double now = mps_dynamics_time(dynamics);
+  out->next_frame = now;
+  out->next_checkpoint = now + s->checkpoint;
+  if (s->checkpoint > 0.0 && !(out->checkpoint = join(s->out, "checkpoint.h5")))
+    return app_no_memory(a);
+  return s->vtk > 0.0 ? open_recorder(a, s, out) : true;
+}
+
+static mps_status write_checkpoint(const files *f, mps_dynamics *dynamics) {
+  mps_checkpoint info = mps_checkpoint_defaults();
+  info.time = mps_dynamics_time(dynamics);
+  info.step = mps_dynamics_steps(dynamics);
+  info.dt = mps_dynamics_dt(dynamics);
+  memcpy(info.user_key, f->key, sizeof info.user_key);
+  return mps_checkpoint_write(f->particles, f->checkpoint, &info);
+}
+
+mps_status files_record(files *f, mps_dynamics *dynamics) {
+  const double now = mps_dynamics_time(dynamics);
+  mps_status status = MPS_OK;
+  if (f->recorder && now >= f->next_frame * (1.0 - 1e-12)) {
+    status = mps_recorder_write(f->recorder, now);
+    while (f->next_frame <= now) f->next_frame += f->frame_every;
+  }
+  if (status == MPS_OK && f->checkpoint && now >= f->next_checkpoint * (1.0 - 1e-12)) {
+    status = write_checkpoint(f, dynamics);
+    while (f->next_checkpoint <= now) f->next_checkpoint += f->checkpoint_every;
+  }
+  return status;
+}
+
+bool files_close(app *a, files *f, mps_dynamics *dynamics, bool diverged) {
+  bool ok = true;
+  /* an interrupted run can go on from where it stopped; a diverged one from the last good state */
+  if (f->checkpoint && dynamics && !diverged) ok = app_check(a, write_checkpoint(f, dynamics));
+  if (f->recorder) ok = app_check(a, mps_recorder_close(&f->recorder)) && ok;
+  free(f->checkpoint);
+  f->checkpoint = NULL;
+  return ok;
+}

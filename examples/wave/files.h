@@ -1,0 +1,29 @@
+/* files.h - the series of frames and the checkpoints of a run.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef EXAMPLES_WAVE_FILES_H
+#define EXAMPLES_WAVE_FILES_H
+
+#include "settings.h"
+
+#include <mps/io.h>
+
+typedef struct files {
+  mps_particles *particles;                 /* borrowed */
+  mps_recorder *recorder;                   /* NULL: no frames wanted */
+  double frame_every, next_frame;           /* s */
+  double checkpoint_every, next_checkpoint; /* s; 0: none wanted */
+  char *checkpoint;                         /* path */
+  char key[64];                             /* what a restart must agree in */
+} files;
+
+/* Reads the time step of the checkpoint that the options name, before the solver is made. */
+bool files_peek(app *a, settings *s);
+/* Puts the checkpoint back, if any, and opens what the options ask for. */
+bool files_open(app *a, const settings *s, mps_particles *particles, mps_dynamics *dynamics,
+                files *out);
+/* Writes what is due; call it with fields up to date. */
+mps_status files_record(files *f, mps_dynamics *dynamics);
+/* The last frame and checkpoint, wherever the run ended; false with an error line. */
+bool files_close(app *a, files *f, mps_dynamics *dynamics, bool diverged);
+
+#endif

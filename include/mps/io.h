@@ -1,0 +1,111 @@
+/* mps/io.h - results and restart: a series of frames that ParaView opens (VTKHDF), and checkpoints
+ * from which a run goes on bit for bit. Both are HDF5 files; docs/output.md shows their layout.
+ *
+ * A libmps built without HDF5 has these functions too: those that return a status then return
+ * MPS_ERROR_UNSUPPORTED.
+ *
+ * Thread rule: one thread at a time per context. Distinct contexts may write and read at once:
+ * libmps lets one of them at a time into HDF5, which is not thread safe as most systems build it.
+ * A program that calls HDF5 itself must not do so in another thread while a function of this header
+ * runs, unless its HDF5 is a thread-safe build. Its own settings of HDF5's error printing stay.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPS_IO_H
+#define MPS_IO_H
+
+#include <mps/particles.h>
+
+MPS_EXTERN_C_BEGIN
+
+/* ---- series of frames ------------------------------------------------------------------------ */
+
+typedef struct mps_recorder mps_recorder;
+
+typedef struct mps_recorder_def {
+  uint32_t struct_size;
+  int32_t compression;       /* zlib level 1..9, or 0 (default): none */
+  const char *path;          /* file to write, customarily *.vtkhdf; an existing one is replaced */
+  const char *const *fields; /* names of the fields to write; NULL (default): all of the set.
+                                Position and id are always written. */
+  int64_t field_count;       /* number of names */
+} mps_recorder_def;
+
+MPS_API mps_status mps_recorder_def_init(mps_recorder_def *def, size_t size);
+static inline mps_recorder_def mps_recorder_defaults(void) {
+  mps_recorder_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_recorder_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+
+/** Begins a series of the set `particles`, which the recorder borrows: it must live at each
+ *  mps_recorder_write. The fields are those the set has now, so create the solver first.
+ *  MPS_ERROR_FIELD: the set lacks a name of the list; MPS_ERROR_IO: the file cannot be written;
+ *  MPS_ERROR_UNSUPPORTED: no HDF5, or one without zlib where compression is asked for. The file is
+ *  touched only once all else is found right. */
+MPS_API MPS_NODISCARD mps_status mps_recorder_create(mps_context *context, mps_particles *particles,
+                                                     const mps_recorder_def *def,
+                                                     mps_recorder **out);
+
+/** Appends a frame at `time` (s, finite): the present positions, ids and fields. Order and number
+ *  of particles may differ from frame to frame. Time must not go back; the time of the last frame
+ *  again replaces that frame (so that runs may follow each other, each calling back at its start
+ *  and end). Everything is handed to the operating system before it returns.
+ *  MPS_ERROR_IO (a full disk): this frame is lost, those before stay readable, and the recorder
+ *  takes no more: MPS_ERROR_STATE. */
+MPS_API MPS_NODISCARD mps_status mps_recorder_write(mps_recorder *recorder, double time);
+
+/** Number of frames in the file. */
+MPS_API int64_t mps_recorder_frames(const mps_recorder *recorder);
+
+/** Closes the file, has the disk confirm it, destroys and nulls, even on error; accepts NULL.
+ *  MPS_ERROR_IO: something of the series did not reach the disk. */
+MPS_API MPS_NODISCARD mps_status mps_recorder_close(mps_recorder **recorder);
+/** The same for who does not want to know of errors. */
+MPS_API void mps_recorder_destroy(mps_recorder **recorder);
+
+/* ---- checkpoints ----------------------------------------------------------------------------- */
+
+/** What a checkpoint keeps besides the fields. */
+typedef struct mps_checkpoint {
+  uint32_t struct_size;
+  int32_t reserved;
+  double time;       /* s, finite */
+  int64_t step;      /* >= 0 */
+  double dt;         /* s, >= 0 */
+  char user_key[64]; /* terminated text: what the caller wants compared at restart, such as the
+                        options of the run; "" (default): nothing */
+} mps_checkpoint;
+
+MPS_API mps_status mps_checkpoint_init(mps_checkpoint *info, size_t size);
+static inline mps_checkpoint mps_checkpoint_defaults(void) {
+  mps_checkpoint info;
+  memset(&info, 0, sizeof info);
+  if (mps_checkpoint_init(&info, sizeof info) != MPS_OK) info.struct_size = 0;
+  return info;
+}
+
+/** Writes every field of the set, and `info`, to the file `path`. The file appears whole or not at
+ *  all: it is written as "<path>.part", confirmed by the disk and then renamed, so that a crash or
+ *  a full disk (MPS_ERROR_IO) never costs the former checkpoint. */
+MPS_API MPS_NODISCARD mps_status mps_checkpoint_write(mps_particles *particles, const char *path,
+                                                      const mps_checkpoint *info);
+
+/** Reads `info` only (start from mps_checkpoint_defaults()), such as the dt to make the solver
+ * with. A user_key given there that is not "" must equal that of the file. Statuses as below. */
+MPS_API MPS_NODISCARD mps_status mps_checkpoint_info(mps_context *context, const char *path,
+                                                     mps_checkpoint *info);
+
+/** Puts the fields of a checkpoint back, bit for bit, into a set that has the same particles
+ *  (dimension, spacing, number, ids; their order may differ), adding fields that the set lacks;
+ *  fields that the file lacks keep their values. `info` is as for mps_checkpoint_info. Order and
+ *  epoch of the set stay. Needs memory for a second copy of all fields. On an error nothing has
+ *  changed.
+ *
+ *  MPS_ERROR_IO: cannot be read. MPS_ERROR_FORMAT: not a checkpoint, cut short or damaged.
+ *  MPS_ERROR_UNSUPPORTED: written by a newer libmps. MPS_ERROR_ARGUMENT: of another set of
+ *  particles, or another user_key. MPS_ERROR_FIELD: a field of the set has another shape. */
+MPS_API MPS_NODISCARD mps_status mps_checkpoint_read(mps_particles *particles, const char *path,
+                                                     mps_checkpoint *info);
+
+MPS_EXTERN_C_END
+#endif

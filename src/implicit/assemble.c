@@ -1,0 +1,349 @@
+/* assemble.c - the sparse symmetric matrix of the free unknowns: lower triangle, compressed
+ * columns, rows ascending.
+ *
+ * Row block p of K is gathered from all parts of the energy (see operator.c) that p takes part in:
+ * gradients of p and of its stencil neighbours, and pairs of which a site is p. Rows are
+ * independent, so they are shared among threads and come out the same for every number of them.
+ * What is structurally zero (the offset stencils of a square lattice cancel in many places) is not
+ * stored: the pattern depends on shape and supports only, never on the material.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "elastic_private.h"
+
+#include <string.h>
+
+#define ROW_MAX 2048 /* sites that share an energy with one particle: (2 * 4 + 3)^3 and more */
+#define PAIR_MAX 16  /* sites of a pair's relative displacement: 2 + 2 * 7 at most */
+#define FORMS 256    /* of pairs that a worker remembers */
+
+typedef struct block {
+  int64_t site;
+  uint32_t used; /* bit 3 * c + f */
+  double value[3][3];
+} block;
+
+/* e_ij = sum_a c[a] u[site a] of a conservative pair. It depends on the pair's offset and on which
+ * face neighbours its ends have, so that few forms occur; site a is end[a] (0: i, 1: j) or its
+ * neighbour across face[a] = 2 * axis + up. */
+typedef struct pair_form {
+  uint32_t key; /* 0: none */
+  int32_t count;
+  int8_t end[PAIR_MAX], face[PAIR_MAX]; /* face -1: the end itself */
+  double c[PAIR_MAX];
+} pair_form;
+
+/* One worker's sparse accumulator. */
+typedef struct gather {
+  int32_t *slot; /* of site, or -1; n of them */
+  int32_t count;
+  int64_t particle;
+  block blocks[ROW_MAX];
+  pair_form forms[FORMS];
+} gather;
+
+typedef struct assembly {
+  mps_elastic *e;
+  gather *gathers; /* one a worker */
+  int64_t *length; /* of each column, in the counting pass */
+  bool fill;
+} assembly;
+
+static block *block_of(gather *g, int64_t site) {
+  if (g->slot[site] < 0) {
+    g->slot[site] = g->count;
+    block *b = &g->blocks[g->count++];
+    memset(b, 0, sizeof *b);
+    b->site = site;
+  }
+  return &g->blocks[g->slot[site]];
+}
+
+static void add(block *b, int c, int f, double value) {
+  b->value[c][f] += value;
+  b->used |= 1u << (3 * c + f);
+}
+
+/* ---- parts of the energy --------------------------------------------------------------------- */
+
+/* Coupling of sites with gradient coefficients a and b in V W(G), conservative. */
+static void couple_conservative(const mps_elastic *e, int64_t i, const double *a, const double *b,
+                                block *out) {
+  const double v = e->volume[i], lambda = v * e->lambda[i], mu = v * e->mu[i];
+  double product = 0.0;
+  bool any = false;
+  for (int c = 0; c < e->dim; c++) {
+    product += a[c] * b[c];
+    any |= a[c] != 0.0 && b[c] != 0.0;
+  }
+  for (int c = 0; c < e->dim; c++)
+    for (int f = 0; f < e->dim; f++) {
+      const bool one = a[c] != 0.0 && b[f] != 0.0, two = b[c] != 0.0 && a[f] != 0.0;
+      if (one || two || (c == f && any))
+        add(out, c, f, lambda * a[c] * b[f] + mu * b[c] * a[f] + (c == f ? mu * product : 0.0));
+    }
+}
+
+/* The same of (10) with R and D eliminated. */
+static void couple_published(const mps_elastic *e, int64_t i, const double *a, const double *b,
+                             block *out) {
+  const double n = e->def.divisor == MPS_ELASTIC_CONSTANT ? 1.0 : e->density[i] / e->density0;
+  const double v = e->volume[i] * n;
+  const double ra[2] = {-a[1], a[0]}, rb[2] = {-b[1], b[0]};
+  for (int c = 0; c < 2; c++)
+    for (int f = 0; f < 2; f++)
+      if ((a[c] != 0.0 && b[f] != 0.0) || (ra[c] != 0.0 && rb[f] != 0.0))
+        add(out, c, f, v * (e->lambda[i] * a[c] * b[f] - e->mu[i] * ra[c] * rb[f]));
+}
+
+/* Only sites from the particle on are gathered: K is symmetric. */
+static void gather_gradient(const mps_elastic *e, int64_t i, gather *g) {
+  int64_t sites[MPSI_STENCIL_MAX];
+  double coefficient[MPSI_STENCIL_MAX][3];
+  const int32_t m = mpsi_elastic_stencil(e, i, sites, coefficient);
+  int32_t mine = 0;
+  while (sites[mine] != g->particle) mine++;
+  for (int32_t b = 0; b < m; b++) {
+    if (sites[b] < g->particle) continue;
+    block *out = block_of(g, sites[b]);
+    if (e->def.method == MPS_ELASTIC_CONSERVATIVE)
+      couple_conservative(e, i, coefficient[mine], coefficient[b], out);
+    else
+      couple_published(e, i, coefficient[mine], coefficient[b], out);
+  }
+}
+
+/* ---- conservative pairs ---------------------------------------------------------------------- */
+
+/* A form under construction, with the offset of each site from i. */
+typedef struct form_sites {
+  pair_form *form;
+  int32_t offset[PAIR_MAX][3];
+} form_sites;
+
+static void add_site(form_sites *s, const int32_t *from, int end, int face, double c) {
+  pair_form *f = s->form;
+  int32_t offset[3] = {from[0], from[1], from[2]};
+  if (face >= 0) offset[face / 2] += face % 2 ? 1 : -1;
+  for (int32_t a = 0; a < f->count; a++)
+    if (memcmp(s->offset[a], offset, sizeof offset) == 0) {
+      f->c[a] += c;
+      return;
+    }
+  memcpy(s->offset[f->count], offset, sizeof offset);
+  f->end[f->count] = (int8_t)end;
+  f->face[f->count] = (int8_t)face;
+  f->c[f->count++] = c;
+}
+
+/* -1/2 G (x_j - x_i) of one end, whose face neighbours are `faces`. */
+static void add_gradient(form_sites *s, const int32_t *step, const int32_t *from, int end,
+                         uint32_t faces, int dim) {
+  for (int axis = 0; axis < dim; axis++) {
+    const bool down = faces >> 2 * axis & 1, up = faces >> 2 * axis & 2;
+    const double c = 0.5 * (down && up ? 0.5 : 1.0) * step[axis];
+    if (step[axis] == 0) continue;
+    if (up) add_site(s, from, end, 2 * axis + 1, -c);
+    if (down) add_site(s, from, end, 2 * axis, c);
+    if (up != down) add_site(s, from, end, -1, up ? c : -c);
+  }
+}
+
+static const pair_form *form_of(const mps_elastic *e, gather *g, int64_t i, int64_t j, int32_t k) {
+  static const int32_t origin[3] = {0, 0, 0};
+  const uint32_t key = ((uint32_t)k << 12 | (uint32_t)e->faces[i] << 6 | e->faces[j]) + 1;
+  pair_form *f = &g->forms[key * 2654435761u >> 24];
+  if (f->key == key) return f;
+  form_sites s = {.form = f};
+  f->key = key;
+  f->count = 0;
+  add_site(&s, origin, 0, -1, -1.0);
+  add_site(&s, e->links.step[k], 1, -1, 1.0);
+  add_gradient(&s, e->links.step[k], origin, 0, e->faces[i], e->dim);
+  add_gradient(&s, e->links.step[k], e->links.step[k], 1, e->faces[j], e->dim);
+  return f;
+}
+
+static void gather_pair(const mps_elastic *e, int64_t i, int64_t j, int32_t k, gather *g) {
+  const pair_form *f = form_of(e, g, i, j, k);
+  const mpsi_links *l = &e->links;
+  int64_t sites[PAIR_MAX];
+  int32_t mine = -1;
+  for (int32_t a = 0; a < f->count; a++) {
+    const int64_t end = f->end[a] ? j : i;
+    sites[a] =
+        f->face[a] < 0 ? end : l->to[end * l->count + l->face[f->face[a] / 2][f->face[a] % 2]];
+    if (sites[a] == g->particle) mine = a;
+  }
+  if (mine < 0 || f->c[mine] == 0.0) return;
+  const double s = mpsi_elastic_bond(e, i, j, k) * f->c[mine];
+  for (int32_t b = 0; b < f->count; b++) {
+    if (f->c[b] == 0.0 || sites[b] < g->particle) continue;
+    block *out = block_of(g, sites[b]);
+    for (int x = 0; x < e->dim; x++) add(out, x, x, s * f->c[b]);
+  }
+}
+
+/* ---- one row block --------------------------------------------------------------------------- */
+
+/* Particles whose gradients use p: p itself, then its stencil neighbours. */
+static int32_t users(const mps_elastic *e, int64_t p, int64_t *list) {
+  double unused[MPSI_STENCIL_MAX][3];
+  return mpsi_elastic_stencil(e, p, list, unused);
+}
+
+static void gather_conservative(const mps_elastic *e, const int64_t *list, int32_t count,
+                                gather *g) {
+  const mpsi_links *l = &e->links;
+  for (int32_t a = 0; a < count; a++) {
+    const int64_t i = list[a];
+    for (int32_t k = 0; k < l->count; k++) {
+      const int64_t j = l->to[i * l->count + k];
+      if (j < 0) continue;
+      bool twice = false; /* both ends are in the list: taken once, from the smaller */
+      for (int32_t b = 0; b < count && !twice; b++) twice = list[b] == j;
+      if (!twice || i < j) gather_pair(e, i, j, k, g);
+    }
+  }
+}
+
+static void gather_row(const mps_elastic *e, int64_t p, gather *g) {
+  const mpsi_links *l = &e->links;
+  int64_t list[MPSI_STENCIL_MAX];
+  const int32_t count = users(e, p, list);
+  g->count = 0;
+  g->particle = p;
+  for (int32_t a = 0; a < count; a++) gather_gradient(e, list[a], g);
+  if (e->def.method == MPS_ELASTIC_CONSERVATIVE) {
+    gather_conservative(e, list, count, g);
+    return;
+  }
+  for (int32_t k = 0; k < l->count; k++) {
+    const int64_t j = l->to[p * l->count + k];
+    if (j < 0) continue;
+    const double s = mpsi_elastic_bond(e, p, j, k);
+    for (int c = 0; c < 2; c++) add(block_of(g, p), c, c, s);
+    for (int c = 0; c < 2 && j > p; c++) add(block_of(g, j), c, c, -s);
+  }
+}
+
+/* Into the local directions of both particles, where supports have turned them. */
+static void turn(const mps_elastic *e, int64_t p, block *b) {
+  if (e->support_of[p] < 0 && e->support_of[b->site] < 0) return;
+  double rows[3][3], cols[3][3], half[3][3];
+  const int d = e->dim;
+  for (int c = 0; c < d; c++) {
+    mpsi_elastic_direction(e, p, c, rows[c]);
+    mpsi_elastic_direction(e, b->site, c, cols[c]);
+  }
+  for (int r = 0; r < d; r++)
+    for (int f = 0; f < d; f++) {
+      half[r][f] = 0.0;
+      for (int c = 0; c < d; c++) half[r][f] += rows[r][c] * b->value[c][f];
+    }
+  for (int r = 0; r < d; r++)
+    for (int s = 0; s < d; s++) {
+      b->value[r][s] = 0.0;
+      b->used |= 1u << (3 * r + s);
+      for (int f = 0; f < d; f++) b->value[r][s] += half[r][f] * cols[s][f];
+    }
+}
+
+/* Column block p: the gathered blocks by ascending site. K is symmetric: row = column. */
+static void emit(assembly *t, gather *g) {
+  const mps_elastic *e = t->e;
+  const int d = e->dim;
+  const int64_t p = g->particle;
+  const block *order[ROW_MAX];
+  for (int32_t a = 0; a < g->count; a++) {
+    turn(e, p, &g->blocks[a]);
+    int32_t place = a;
+    for (; place > 0 && order[place - 1]->site > g->blocks[a].site; place--)
+      order[place] = order[place - 1];
+    order[place] = &g->blocks[a];
+  }
+  for (int c = 0; c < d; c++) {
+    const int64_t column = e->dof[p * d + c];
+    if (column < 0) continue;
+    int64_t at = t->fill ? e->column[column] : 0;
+    for (int32_t a = 0; a < g->count; a++)
+      for (int f = 0; f < d; f++) {
+        const int64_t row = e->dof[order[a]->site * d + f];
+        if (row < column || !(order[a]->used >> (3 * c + f) & 1)) continue;
+        if (t->fill) {
+          e->row[at] = row;
+          e->value[at] = order[a]->value[c][f];
+        }
+        at++;
+      }
+    if (!t->fill) t->length[column] = at;
+  }
+}
+
+static void assemble_chunk(void *data, int64_t chunk, int32_t worker) {
+  assembly *t = data;
+  gather *g = &t->gathers[worker];
+  int64_t first, last;
+  mpsi_elastic_chunk(t->e, chunk, &first, &last);
+  for (int64_t p = first; p < last; p++) {
+    gather_row(t->e, p, g);
+    emit(t, g);
+    for (int32_t a = 0; a < g->count; a++) g->slot[g->blocks[a].site] = -1;
+  }
+}
+
+/* ---- the matrix ------------------------------------------------------------------------------ */
+
+static void drop_matrix(mps_elastic *e) {
+  mpsi_free(e->context, e->column);
+  mpsi_free(e->context, e->row);
+  mpsi_free(e->context, e->value);
+  mpsi_free(e->context, e->rhs);
+  mpsi_free(e->context, e->solution);
+  e->column = e->row = NULL;
+  e->value = e->rhs = e->solution = NULL;
+  e->pattern_valid = e->values_valid = e->analysed = e->factored = false;
+}
+
+/* Counts the entries of each column and allocates the matrix. */
+static mps_status make_pattern(mps_elastic *e, const char *function, assembly *t) {
+  drop_matrix(e);
+  mpsi_elastic_number(e);
+  const int64_t n = e->unknowns;
+  if (!(e->column = mpsi_alloc(e->context, n + 1, sizeof *e->column)) ||
+      !(e->rhs = mpsi_alloc(e->context, n, sizeof *e->rhs)) ||
+      !(e->solution = mpsi_alloc(e->context, n, sizeof *e->solution)))
+    return mpsi_fail_memory(e->context, function, (size_t)n * sizeof *e->rhs);
+  t->length = e->column + 1;
+  t->fill = false;
+  mpsi_parallel_for(e->context, mpsi_elastic_chunks(e), assemble_chunk, t);
+  for (int64_t c = 0; c < n; c++) e->column[c + 1] += e->column[c];
+  const int64_t nonzeros = e->column[n];
+  if (!(e->row = mpsi_alloc(e->context, nonzeros, sizeof *e->row)) ||
+      !(e->value = mpsi_alloc(e->context, nonzeros, sizeof *e->value)))
+    return mpsi_fail_memory(e->context, function, (size_t)nonzeros * sizeof *e->value);
+  return MPS_OK;
+}
+
+mps_status mpsi_elastic_assemble(mps_elastic *e, const char *function) {
+  if (e->pattern_valid && e->values_valid) return MPS_OK;
+  const int32_t workers = mps_context_threads(e->context);
+  assembly t = {.e = e, .fill = true};
+  int32_t *slots = NULL;
+  mps_status status = MPS_OK;
+  if (!(t.gathers = mpsi_alloc(e->context, workers, sizeof *t.gathers)) ||
+      !(slots = mpsi_alloc(e->context, workers * e->n, sizeof *slots)))
+    status = mpsi_fail_memory(e->context, function, (size_t)(workers * e->n) * sizeof *slots);
+  else {
+    for (int64_t k = 0; k < workers * e->n; k++) slots[k] = -1;
+    for (int32_t w = 0; w < workers; w++) t.gathers[w].slot = slots + w * e->n;
+    if (!e->pattern_valid) status = make_pattern(e, function, &t);
+  }
+  if (status == MPS_OK) {
+    t.fill = true;
+    mpsi_parallel_for(e->context, mpsi_elastic_chunks(e), assemble_chunk, &t);
+    e->pattern_valid = e->values_valid = true;
+    e->factored = false;
+  }
+  mpsi_free(e->context, t.gathers);
+  mpsi_free(e->context, slots);
+  return status;
+}

@@ -1,0 +1,312 @@
+/* elastic.c - the solver object: checks of the definition, creation, material, cuts, fields.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "defs.h"
+#include "elastic_private.h"
+
+#include "core/particles_internal.h"
+
+#include <string.h>
+
+/* ---- definition ------------------------------------------------------------------------------ */
+
+static mps_status check_choice(mps_context *context, const char *function, const char *name,
+                               int32_t value, int32_t low, int32_t high) {
+  if (value >= low && value <= high) return MPS_OK;
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %d, allowed are %d..%d", name,
+                   value, low, high);
+}
+
+/* Written so that NaN is refused. */
+static mps_status check_range(mps_context *context, const char *function, const char *name,
+                              double value, double low, double high) {
+  if (value >= low && value <= high) return MPS_OK;
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %g, allowed is %g to %g", name,
+                   value, low, high);
+}
+
+static mps_status check_numbers(mps_context *context, const char *function,
+                                const mps_elastic_def *def) {
+  mps_status status = MPS_OK;
+  if (!(def->radius_ratio > 1.0 && def->radius_ratio <= 4.0))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "radius_ratio is %g, must be above 1 and at most 4 (0: default)",
+                     def->radius_ratio);
+  if (!(def->thickness > 0.0 && isfinite(def->thickness)))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "thickness is %g m, must be finite and > 0", def->thickness);
+  if (!(def->memory_limit >= 0.0))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "memory_limit is %g bytes, must be >= 0 (0: none)", def->memory_limit);
+  if (def->iterations < 0)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "iterations is %lld, must be >= 0 (0: default)", (long long)def->iterations);
+  status = check_range(context, function, "alpha", def->alpha, 0.03, 100.0);
+  if (status == MPS_OK)
+    status = check_range(context, function, "tolerance", def->tolerance, 1e-14, 1e-2);
+  return status;
+}
+
+static mps_status read_def(mps_context *context, const char *function, const mps_elastic_def *user,
+                           int32_t dim, mps_elastic_def *def) {
+  *def = mpsi_elastic_defaults;
+  mps_status status = MPS_OK;
+  if (user)
+    status = mpsi_def_read(context, function, user, MPSI_ELASTIC_DEF_MINIMUM, def, sizeof *def);
+  const struct {
+    const char *name;
+    int32_t value, low, high;
+  } choices[] = {
+      {"method", def->method, MPS_ELASTIC_CONSERVATIVE, MPS_ELASTIC_PUBLISHED},
+      {"state", def->state, MPS_ELASTIC_PLANE_STRESS, MPS_ELASTIC_PLANE_STRAIN},
+      {"divisor", def->divisor, MPS_ELASTIC_LOCAL, MPS_ELASTIC_CONSTANT},
+      {"solver", def->solver, MPS_ELASTIC_AUTO, MPS_ELASTIC_CG},
+      {"ordering", def->ordering, MPS_ELASTIC_ORDER_BEST, MPS_ELASTIC_ORDER_METIS},
+      {"refinements", def->refinements, 0, 10},
+      {"first_moment", def->first_moment, -1, 1},
+  };
+  for (size_t k = 0; k < sizeof choices / sizeof *choices && status == MPS_OK; k++)
+    status = check_choice(context, function, choices[k].name, choices[k].value, choices[k].low,
+                          choices[k].high);
+  if (status != MPS_OK) return status;
+  const bool conservative = def->method == MPS_ELASTIC_CONSERVATIVE;
+  if (def->radius_ratio == 0.0) def->radius_ratio = conservative ? 1.5 : 3.0;
+  if (def->first_moment < 0) def->first_moment = conservative;
+  if (dim == 3) def->thickness = 1.0;
+  if (!conservative && dim == 3)
+    return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
+                     "the published method is two-dimensional: at surfaces in 3D a rigid rotation "
+                     "would cause stress; use the conservative method");
+  return check_numbers(context, function, def);
+}
+
+/* ---- fields ---------------------------------------------------------------------------------- */
+
+mps_status mpsi_elastic_read(mps_elastic *e, const char *function, const char *name, double *values,
+                             int32_t components) {
+  for (int32_t c = 0; c < components; c++) {
+    const double *column = mpsi_particles_column(e->particles, name, c);
+    if (!column)
+      return mpsi_fail(e->context, function, MPS_ERROR_FIELD,
+                       "the particles have no field '%s' (component %d of %d)", name, c,
+                       components);
+    for (int64_t i = 0; i < e->n; i++)
+      values[i * components + c] = column[mps_particles_index(e->particles, i)];
+  }
+  return MPS_OK;
+}
+
+mps_status mpsi_elastic_write(mps_elastic *e, const char *function, const char *name,
+                              const double *values, int32_t components) {
+  mps_status status = mps_particles_add_field(e->particles, name, 0);
+  if (status != MPS_OK)
+    return mpsi_fail(e->context, function, status, "field '%s' cannot be made", name);
+  for (int32_t c = 0; c < components; c++) {
+    double *column = mpsi_particles_column(e->particles, name, c);
+    for (int64_t i = 0; i < e->n; i++)
+      column[mps_particles_index(e->particles, i)] = values[i * components + c];
+  }
+  return MPS_OK;
+}
+
+static mps_status bad_value(mps_elastic *e, const char *function, const char *name, int64_t i,
+                            double value, const char *allowed) {
+  const mps_status status =
+      mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "%s of particle %lld is %g, %s", name,
+                (long long)i, value, allowed);
+  mpsi_fail_where(e->context, -1, i);
+  return status;
+}
+
+mps_status mpsi_elastic_read_mass(mps_elastic *e, const char *function) {
+  double *mass = mpsi_alloc(e->context, e->n, sizeof *mass);
+  if (!mass) return mpsi_fail_memory(e->context, function, (size_t)e->n * sizeof *mass);
+  mps_status status = mpsi_elastic_read(e, function, "density", mass, 1);
+  for (int64_t i = 0; i < e->n && status == MPS_OK; i++) {
+    if (!(mass[i] > 0.0 && isfinite(mass[i])))
+      status = bad_value(e, function, "density", i, mass[i], "must be finite and > 0 (kg/m3)");
+    mass[i] *= e->volume[i];
+  }
+  if (status != MPS_OK) {
+    mpsi_free(e->context, mass);
+    return status;
+  }
+  mpsi_free(e->context, e->mass);
+  e->mass = mass;
+  return MPS_OK;
+}
+
+/* ---- material and cuts ----------------------------------------------------------------------- */
+
+void mpsi_elastic_measure(mps_elastic *e) {
+  const int d = e->dim;
+  for (int64_t i = 0; i < e->n; i++) {
+    e->volume[i] =
+        d == 2 ? e->spacing * e->spacing * e->def.thickness : e->spacing * e->spacing * e->spacing;
+    for (int bit = 0; bit < 2 * d; bit++)
+      if (e->cut[i] & 1 << bit) e->volume[i] *= 0.5;
+    e->kappa[i] = e->def.method == MPS_ELASTIC_CONSERVATIVE
+                      ? 2.0 * e->def.alpha * e->mu[i] * d * e->volume[i] / e->density[i]
+                      : 2.0 * e->mu[i] * d * e->volume[i] / e->density0;
+  }
+  e->values_valid = false;
+}
+
+/* lambda and mu of every particle; nothing has changed on an error. */
+static mps_status read_material(mps_elastic *e, const char *function) {
+  double *young = mpsi_alloc(e->context, 2 * e->n, sizeof *young);
+  if (!young) return mpsi_fail_memory(e->context, function, (size_t)(2 * e->n) * sizeof *young);
+  double *poisson = young + e->n;
+  mps_status status = mpsi_elastic_read(e, function, "young", young, 1);
+  if (status == MPS_OK) status = mpsi_elastic_read(e, function, "poisson", poisson, 1);
+  const double least = e->def.method == MPS_ELASTIC_PUBLISHED ? 0.0 : -0.99;
+  for (int64_t i = 0; i < e->n && status == MPS_OK; i++)
+    if (!(young[i] > 0.0 && isfinite(young[i])))
+      status = bad_value(e, function, "young", i, young[i], "must be finite and > 0 (Pa)");
+    else if (!(poisson[i] >= least && poisson[i] < 0.5))
+      status = bad_value(e, function, "poisson", i, poisson[i],
+                         least < 0.0 ? "must be at least -0.99 and below 0.5"
+                                     : "must be at least 0 and below 0.5 (published method)");
+  for (int64_t i = 0; i < e->n && status == MPS_OK; i++) {
+    const double nu = poisson[i], two_mu = young[i] / (1.0 + nu);
+    const bool plane_stress = e->dim == 2 && e->def.state == MPS_ELASTIC_PLANE_STRESS;
+    e->mu[i] = 0.5 * two_mu;
+    e->lambda[i] = two_mu * nu / (plane_stress ? 1.0 - nu : 1.0 - 2.0 * nu);
+    e->poisson[i] = nu;
+  }
+  mpsi_free(e->context, young);
+  return status;
+}
+
+mps_status mps_elastic_update_material(mps_elastic *e) {
+  if (!e) return MPS_ERROR_ARGUMENT;
+  const mps_status status = read_material(e, __func__);
+  if (status == MPS_OK) mpsi_elastic_measure(e);
+  return status;
+}
+
+mps_status mps_elastic_cut(mps_elastic *e, int32_t axis, int32_t side, int64_t count,
+                           const int64_t *ids) {
+  if (!e) return MPS_ERROR_ARGUMENT;
+  if (axis < 0 || axis >= e->dim || (side != -1 && side != 1))
+    return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
+                     "axis is %d and side %d, allowed are 0..%d and -1 or 1", axis, side,
+                     e->dim - 1);
+  if (count < 0 || (count > 0 && !ids))
+    return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
+                     "count is %lld (must be >= 0) or ids is NULL", (long long)count);
+  const int32_t k = e->links.face[axis][side > 0];
+  for (int64_t i = 0; i < count; i++) {
+    if (ids[i] < 0 || ids[i] >= e->n)
+      return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
+                       "ids[%lld] is %lld, allowed are 0..%lld", (long long)i, (long long)ids[i],
+                       (long long)e->n - 1);
+    if (e->links.to[ids[i] * e->links.count + k] >= 0)
+      return mpsi_fail(e->context, __func__, MPS_ERROR_STATE,
+                       "particle %lld has a neighbour on side %d of %c: no surface can pass "
+                       "through it there",
+                       (long long)ids[i], side, "xyz"[axis]);
+  }
+  mpsi_elastic_end_motion(e); /* its masses are no longer those of the cells */
+  for (int64_t i = 0; i < count; i++) e->cut[ids[i]] |= (uint8_t)(1 << (2 * axis + (side > 0)));
+  mpsi_elastic_measure(e);
+  return MPS_OK;
+}
+
+/* ---- life ------------------------------------------------------------------------------------ */
+
+static mps_status allocate(mps_elastic *e, const char *function) {
+  const int64_t n = e->n, all = n * e->dim;
+  const struct {
+    void **array;
+    int64_t count;
+    size_t size;
+  } arrays[] = {
+      {(void **)&e->x, all, sizeof(double)},
+      {(void **)&e->density, n, sizeof(double)},
+      {(void **)&e->faces, n, sizeof(uint8_t)},
+      {(void **)&e->cut, n, sizeof(uint8_t)},
+      {(void **)&e->volume, n, sizeof(double)},
+      {(void **)&e->lambda, n, sizeof(double)},
+      {(void **)&e->mu, n, sizeof(double)},
+      {(void **)&e->poisson, n, sizeof(double)},
+      {(void **)&e->kappa, n, sizeof(double)},
+      {(void **)&e->support_of, n, sizeof(int64_t)},
+      {(void **)&e->load, all, sizeof(double)},
+      {(void **)&e->displacement, all, sizeof(double)},
+      {(void **)&e->reaction, all, sizeof(double)},
+      {(void **)&e->gradient, all * e->dim, sizeof(double)},
+      {(void **)&e->stress_work, all * e->dim, sizeof(double)},
+      {(void **)&e->work, all, sizeof(double)},
+      {(void **)&e->dof, all, sizeof(int64_t)},
+  };
+  for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) {
+    *arrays[k].array = mpsi_alloc(e->context, arrays[k].count, arrays[k].size);
+    if (!*arrays[k].array)
+      return mpsi_fail_memory(e->context, function, (size_t)arrays[k].count * arrays[k].size);
+  }
+  for (int64_t i = 0; i < n; i++) e->support_of[i] = -1;
+  return MPS_OK;
+}
+
+void mps_elastic_destroy(mps_elastic **elastic) {
+  if (!elastic || !*elastic) return;
+  mps_elastic *e = *elastic;
+  mps_context *context = e->context;
+  *elastic = NULL;
+  mpsi_elastic_end_motion(e);
+  mpsi_cholesky_destroy(&e->cholesky);
+  mpsi_elastic_disconnect(e);
+  void *arrays[] = {e->x,           e->density, e->cut,          e->volume,   e->lambda,
+                    e->mu,          e->poisson, e->kappa,        e->supports, e->support_of,
+                    e->facets,      e->load,    e->displacement, e->reaction, e->gradient,
+                    e->stress_work, e->work,    e->dof,          e->column,   e->row,
+                    e->value,       e->faces,   e->rhs,          e->solution, e->mass};
+  for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) mpsi_free(context, arrays[k]);
+  mpsi_particles_unpin(e->particles);
+  mpsi_free(context, e);
+  mpsi_context_release(context);
+}
+
+static mps_status build(mps_elastic *e, const char *function) {
+  mps_status status = allocate(e, function);
+  if (status == MPS_OK) status = mpsi_elastic_read(e, function, "position", e->x, e->dim);
+  for (int64_t i = 0; i < e->n * e->dim && status == MPS_OK; i++)
+    if (!isfinite(e->x[i]))
+      status = bad_value(e, function, "position", i / e->dim, e->x[i], "must be finite");
+  if (status == MPS_OK) status = mpsi_elastic_connect(e, function);
+  if (status == MPS_OK) status = read_material(e, function);
+  if (status == MPS_OK) status = mpsi_elastic_find_facets(e, function);
+  if (status == MPS_OK) mpsi_elastic_measure(e);
+  if (status == MPS_OK) status = mps_particles_add_field(e->particles, "displacement", 0);
+  if (status == MPS_OK) status = mps_particles_add_field(e->particles, "reaction", 0);
+  return status;
+}
+
+mps_status mps_elastic_create(mps_context *context, mps_particles *particles,
+                              const mps_elastic_def *user_def, mps_elastic **out) {
+  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
+  *out = NULL;
+  if (!particles || mps_particles_count(particles) == 0)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "particles is %s",
+                     particles ? "empty" : "NULL");
+  mps_elastic_def def;
+  mps_status status = read_def(context, __func__, user_def, mps_particles_dim(particles), &def);
+  if (status != MPS_OK) return status;
+  mps_elastic *e = mpsi_alloc(context, 1, sizeof *e);
+  if (!e) return mpsi_fail_memory(context, __func__, sizeof *e);
+  e->context = mpsi_context_retain(context);
+  e->particles = mpsi_particles_pin(particles);
+  e->def = def;
+  e->dim = mps_particles_dim(particles);
+  e->modes = e->dim == 2 ? 3 : 6;
+  e->n = mps_particles_count(particles);
+  e->spacing = mps_particles_spacing(particles);
+  status = build(e, __func__);
+  if (status != MPS_OK) {
+    mps_elastic_destroy(&e);
+    return status;
+  }
+  *out = e;
+  return MPS_OK;
+}

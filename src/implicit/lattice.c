@@ -1,0 +1,201 @@
+/* lattice.c - from reference positions to integer lattice sites, neighbours within the radius of
+ * influence, and the particle number densities n_i and n0 (seed C (6), (7)).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "elastic_private.h"
+
+#include <string.h>
+
+#define SITE_LIMIT (1 << 20) /* lattice units between any two particles, per axis */
+#define OFF_LATTICE 1e-5     /* tolerated distance from a site, in spacings */
+
+/* Open-addressing table from packed site to particle. */
+typedef struct site_table {
+  uint64_t *key; /* 0: empty */
+  int64_t *particle;
+  uint64_t mask;
+} site_table;
+
+static uint64_t pack(const int32_t *site) {
+  uint64_t key = 0;
+  for (int c = 0; c < 3; c++) key = key << 21 | (uint64_t)(site[c] + SITE_LIMIT);
+  return key + 1;
+}
+
+static uint64_t slot_of(const site_table *t, uint64_t key) {
+  uint64_t slot = (key * 0x9E3779B97F4A7C15u) >> 20 & t->mask;
+  while (t->key[slot] && t->key[slot] != key) slot = (slot + 1) & t->mask;
+  return slot;
+}
+
+static int64_t find(const site_table *t, const int32_t *site) {
+  const uint64_t slot = slot_of(t, pack(site));
+  return t->key[slot] ? t->particle[slot] : -1;
+}
+
+/* Integer sites relative to particle 0, entered in the table. */
+static mps_status read_sites(const mps_elastic *e, const char *function, int32_t (*sites)[3],
+                             site_table *t) {
+  for (int64_t i = 0; i < e->n; i++) {
+    for (int c = 0; c < e->dim; c++) {
+      const double away = (e->x[i * e->dim + c] - e->x[c]) / e->spacing, near = rint(away);
+      if (!(fabs(near) < SITE_LIMIT))
+        return mpsi_fail(e->context, function, MPS_ERROR_UNSUPPORTED,
+                         "particle %lld lies %g spacings from particle %lld along %c, at most %d "
+                         "are possible",
+                         (long long)i, away, 0LL, "xyz"[c], SITE_LIMIT - 1);
+      if (fabs(away - near) > OFF_LATTICE)
+        return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
+                         "particle %lld is off the lattice: it lies %.9g spacings (%g m) from "
+                         "particle %lld along %c, which must be a whole number",
+                         (long long)i, away, e->spacing, 0LL, "xyz"[c]);
+      sites[i][c] = (int32_t)near;
+    }
+    const uint64_t key = pack(sites[i]), slot = slot_of(t, key);
+    if (t->key[slot])
+      return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
+                       "particles %lld and %lld are on the same lattice site",
+                       (long long)t->particle[slot], (long long)i);
+    t->key[slot] = key;
+    t->particle[slot] = i;
+  }
+  return MPS_OK;
+}
+
+/* ---- offsets ------------------------------------------------------------------------------------
+ */
+
+/* All offsets shorter than re in lexicographic order, so that k and count - 1 - k are opposite.
+ * With l->step NULL it only counts. */
+static void list_offsets(const mps_elastic *e, mpsi_links *l) {
+  const double ratio = e->def.radius_ratio;
+  const int m = (int)ratio, mz = e->dim == 3 ? m : 0;
+  l->count = 0;
+  for (int a = -m; a <= m; a++)
+    for (int b = -m; b <= m; b++)
+      for (int c = -mz; c <= mz; c++) {
+        const int square = a * a + b * b + c * c;
+        /* At r = re the weight is zero: rounding must not make it a neighbour. */
+        if (square == 0 || square >= ratio * ratio * (1.0 - 1e-12)) continue;
+        const int32_t k = l->count++;
+        if (!l->step) continue;
+        l->step[k][0] = a;
+        l->step[k][1] = b;
+        l->step[k][2] = c;
+        l->r2[k] = square * e->spacing * e->spacing;
+        l->weight[k] = ratio / sqrt((double)square) - 1.0;
+        for (int axis = 0; axis < e->dim; axis++)
+          if (square == 1 && l->step[k][axis] != 0) l->face[axis][l->step[k][axis] > 0] = k;
+      }
+}
+
+/* Is site + step reached from site through faces of cells that exist, stepping towards it? Cells
+ * that touch at a corner only, or face one another across a slot, are not connected. */
+static bool reachable(const site_table *t, const int32_t *site, const int32_t *step) {
+  if (!step[0] && !step[1] && !step[2]) return true;
+  for (int axis = 0; axis < 3; axis++) {
+    if (!step[axis]) continue;
+    int32_t next[3], rest[3];
+    memcpy(next, site, sizeof next);
+    memcpy(rest, step, sizeof rest);
+    next[axis] += step[axis] > 0 ? 1 : -1;
+    rest[axis] -= step[axis] > 0 ? 1 : -1;
+    if (find(t, next) >= 0 && reachable(t, next, rest)) return true;
+  }
+  return false;
+}
+
+typedef struct link_task {
+  mps_elastic *e;
+  const site_table *table;
+  const int32_t (*sites)[3];
+} link_task;
+
+static void link_chunk(void *data, int64_t chunk, int32_t worker) {
+  (void)worker;
+  const link_task *t = data;
+  mps_elastic *e = t->e;
+  const mpsi_links *l = &e->links;
+  int64_t first, last;
+  mpsi_elastic_chunk(e, chunk, &first, &last);
+  for (int64_t i = first; i < last; i++)
+    for (int32_t k = 0; k < l->count; k++) {
+      int32_t site[3];
+      for (int c = 0; c < 3; c++) site[c] = t->sites[i][c] + l->step[k][c];
+      int64_t j = find(t->table, site);
+      if (j >= 0 && e->def.method == MPS_ELASTIC_CONSERVATIVE &&
+          !reachable(t->table, t->sites[i], l->step[k]))
+        j = -1;
+      l->to[i * l->count + k] = j;
+      if (j < 0) continue;
+      e->density[i] += l->weight[k];
+      for (int face = 0; face < 2 * e->dim; face++)
+        if (l->face[face / 2][face % 2] == k) e->faces[i] |= (uint8_t)(1 << face);
+    }
+}
+
+/* A cell without a neighbour along some axis has no strain along it. */
+static mps_status check_thickness(const mps_elastic *e, const char *function) {
+  for (int64_t i = 0; i < e->n; i++) {
+    const bool any = e->density[i] > 0.0;
+    for (int axis = 0; axis < e->dim; axis++) {
+      if (e->faces[i] >> 2 * axis & 3) continue;
+      const mps_status status =
+          any ? mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
+                          "the body is one particle thick along %c at particle %lld: at least two "
+                          "are needed",
+                          "xyz"[axis], (long long)i)
+              : mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
+                          "particle %lld is isolated: it has no neighbour within %g spacings",
+                          (long long)i, e->def.radius_ratio);
+      mpsi_fail_where(e->context, -1, i);
+      return status;
+    }
+  }
+  return MPS_OK;
+}
+
+static mps_status allocate_links(mps_elastic *e, const char *function) {
+  mpsi_links *l = &e->links;
+  list_offsets(e, l);
+  if (!(l->step = mpsi_alloc(e->context, l->count, sizeof *l->step)) ||
+      !(l->weight = mpsi_alloc(e->context, l->count, sizeof(double))) ||
+      !(l->r2 = mpsi_alloc(e->context, l->count, sizeof(double))) ||
+      !(l->to = mpsi_alloc(e->context, e->n * l->count, sizeof(int64_t))))
+    return mpsi_fail_memory(e->context, function, (size_t)(e->n * l->count) * sizeof(int64_t));
+  list_offsets(e, l);
+  e->density0 = 0.0;
+  for (int32_t k = 0; k < l->count; k++) e->density0 += l->weight[k];
+  return MPS_OK;
+}
+
+void mpsi_elastic_disconnect(mps_elastic *e) {
+  mpsi_free(e->context, e->links.step);
+  mpsi_free(e->context, e->links.weight);
+  mpsi_free(e->context, e->links.r2);
+  mpsi_free(e->context, e->links.to);
+}
+
+mps_status mpsi_elastic_connect(mps_elastic *e, const char *function) {
+  mps_context *context = e->context;
+  mps_status status = allocate_links(e, function);
+  if (status != MPS_OK) return status;
+  int64_t slots = 64;
+  while (slots < 2 * e->n) slots *= 2;
+  site_table table = {.mask = (uint64_t)slots - 1};
+  int32_t(*sites)[3] = NULL;
+  if (!(table.key = mpsi_alloc(context, slots, sizeof *table.key)) ||
+      !(table.particle = mpsi_alloc(context, slots, sizeof *table.particle)) ||
+      !(sites = mpsi_alloc(context, e->n, sizeof *sites)))
+    status = mpsi_fail_memory(context, function, (size_t)slots * sizeof *table.key);
+  else
+    status = read_sites(e, function, sites, &table);
+  if (status == MPS_OK) {
+    link_task task = {.e = e, .table = &table, .sites = (const int32_t(*)[3])sites};
+    mpsi_parallel_for(context, mpsi_elastic_chunks(e), link_chunk, &task);
+    status = check_thickness(e, function);
+  }
+  mpsi_free(context, table.key);
+  mpsi_free(context, table.particle);
+  mpsi_free(context, sites);
+  return status;
+}

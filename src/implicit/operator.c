@@ -1,0 +1,221 @@
+/* operator.c - the displacement gradient at particles and the stiffness operator f = K u, without
+ * a matrix. Both discretisations are one energy,
+ *
+ *   Pi = sum_i V_i W(G_i) + 1/2 sum_{i<j} (kappa_i + kappa_j) w/r^2 |e_ij|^2
+ *
+ * conservative: G_i from shared cell faces (central where both face neighbours exist, one sided at
+ *   surfaces), W = mu eps:eps + lambda/2 (tr eps)^2, e_ij = u_j - u_i - (G_i + G_j)/2 (x_j - x_i),
+ *   kappa = 2 alpha mu d V / n_i;
+ * published: G_i = (d/n*) sum_j (u_j - u_i) (x) t w/r, so that (7) R = curl and (8) D = trace,
+ *   W = n*_i/n0 (lambda/2 D^2 - mu/2 R^2), e_ij = u_j - u_i, kappa = 2 mu d V / n0: seed C (10)
+ *   with R and D eliminated, corrected as docs/verification/implicit-elastic.md says.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "elastic_private.h"
+
+#include <string.h>
+
+/* ---- gradient -------------------------------------------------------------------------------- */
+
+static double divisor(const mps_elastic *e, int64_t i) {
+  return e->def.divisor == MPS_ELASTIC_CONSTANT ? e->density0 : e->density[i];
+}
+
+static void conservative_coefficient(const mps_elastic *e, int64_t i, int32_t k, double *g) {
+  const mpsi_links *l = &e->links;
+  for (int axis = 0; axis < e->dim; axis++) {
+    g[axis] = 0.0;
+    if (k != l->face[axis][0] && k != l->face[axis][1]) continue;
+    const bool both = (e->faces[i] >> 2 * axis & 3) == 3;
+    g[axis] = (double)l->step[k][axis] * (both ? 0.5 : 1.0) / e->spacing;
+  }
+}
+
+void mpsi_elastic_coefficient(const mps_elastic *e, int64_t i, int32_t k, double *g) {
+  if (e->def.method == MPS_ELASTIC_CONSERVATIVE) {
+    conservative_coefficient(e, i, k, g);
+    return;
+  }
+  const mpsi_links *l = &e->links;
+  const double scale = e->dim / divisor(e, i) * l->weight[k] / l->r2[k] * e->spacing;
+  for (int c = 0; c < e->dim; c++) g[c] = scale * l->step[k][c];
+}
+
+/* The conservative stencil, without a search: two face neighbours an axis. */
+static int32_t conservative_stencil(const mps_elastic *e, int64_t i, int64_t *sites,
+                                    double (*g)[3]) {
+  const mpsi_links *l = &e->links;
+  int32_t m = 1;
+  for (int axis = 0; axis < e->dim; axis++) {
+    const uint32_t faces = e->faces[i] >> 2 * axis & 3;
+    const double c = (faces == 3 ? 0.5 : 1.0) / e->spacing;
+    for (int up = 0; up < 2; up++) {
+      if (!(faces >> up & 1)) continue;
+      sites[m] = l->to[i * l->count + l->face[axis][up]];
+      g[m][0] = g[m][1] = g[m][2] = 0.0;
+      g[m++][axis] = up ? c : -c;
+    }
+    if (faces != 3) g[0][axis] = faces == 2 ? -c : c;
+  }
+  return m;
+}
+
+int32_t mpsi_elastic_stencil(const mps_elastic *e, int64_t i, int64_t *sites, double (*g)[3]) {
+  const mpsi_links *l = &e->links;
+  sites[0] = i;
+  g[0][0] = g[0][1] = g[0][2] = 0.0;
+  if (e->def.method == MPS_ELASTIC_CONSERVATIVE) return conservative_stencil(e, i, sites, g);
+  int32_t m = 1;
+  for (int32_t k = 0; k < l->count; k++) {
+    const int64_t j = l->to[i * l->count + k];
+    if (j < 0) continue;
+    sites[m] = j;
+    g[m][2] = 0.0;
+    mpsi_elastic_coefficient(e, i, k, g[m]);
+    /* Opposite neighbours cancel exactly: i itself has no coefficient inside the body. */
+    if (l->to[i * l->count + l->count - 1 - k] < 0)
+      for (int c = 0; c < e->dim; c++) g[0][c] -= g[m][c];
+    m++;
+  }
+  return m;
+}
+
+typedef struct operator_task {
+  mps_elastic *e;
+  const double *u;
+  double *gradient, *stress, *f;
+} operator_task;
+
+static void gradient_chunk(void *data, int64_t chunk, int32_t worker) {
+  (void)worker;
+  const operator_task *t = data;
+  const mps_elastic *e = t->e;
+  const int d = e->dim;
+  int64_t first, last, sites[MPSI_STENCIL_MAX];
+  double g[MPSI_STENCIL_MAX][3];
+  mpsi_elastic_chunk(e, chunk, &first, &last);
+  for (int64_t i = first; i < last; i++) {
+    const int32_t m = mpsi_elastic_stencil(e, i, sites, g);
+    double *G = t->gradient + i * d * d;
+    memset(G, 0, (size_t)(d * d) * sizeof *G);
+    /* Differences, so that a rigid translation gives exactly zero. */
+    for (int32_t a = 1; a < m; a++)
+      for (int c = 0; c < d; c++) {
+        const double du = t->u[sites[a] * d + c] - t->u[i * d + c];
+        for (int b = 0; b < d; b++) G[c * d + b] += du * g[a][b];
+      }
+  }
+}
+
+void mpsi_elastic_gradients(mps_elastic *e, const double *u, double *gradient) {
+  operator_task task = {.e = e, .u = u, .gradient = gradient};
+  mpsi_parallel_for(e->context, mpsi_elastic_chunks(e), gradient_chunk, &task);
+}
+
+/* ---- pairs ----------------------------------------------------------------------------------- */
+
+static void stretch(const mps_elastic *e, const double *u, const double *gradient, int64_t i,
+                    int32_t k, double *out) {
+  const mpsi_links *l = &e->links;
+  const int d = e->dim;
+  const int64_t j = l->to[i * l->count + k];
+  for (int c = 0; c < d; c++) out[c] = u[j * d + c] - u[i * d + c];
+  if (e->def.method != MPS_ELASTIC_CONSERVATIVE) return;
+  const double *gi = gradient + i * d * d, *gj = gradient + j * d * d;
+  for (int c = 0; c < d; c++)
+    for (int b = 0; b < d; b++)
+      out[c] -= 0.5 * (gi[c * d + b] + gj[c * d + b]) * e->spacing * l->step[k][b];
+}
+
+void mpsi_elastic_stretch(const mps_elastic *e, const double *u, int64_t i, int32_t k,
+                          double *out) {
+  stretch(e, u, e->gradient, i, k, out);
+}
+
+/* ---- forces ---------------------------------------------------------------------------------- */
+
+/* dPi/dG_i of the first sum, times V_i. */
+static void local_stress(const mps_elastic *e, int64_t i, const double *G, double *P) {
+  const int d = e->dim;
+  double trace = 0.0;
+  for (int c = 0; c < d; c++) trace += G[c * d + c];
+  if (e->def.method == MPS_ELASTIC_PUBLISHED) {
+    const double v = e->volume[i] * divisor(e, i) / e->density0;
+    const double rotation = G[2] - G[1];
+    P[0] = P[3] = v * e->lambda[i] * trace;
+    P[2] = -v * e->mu[i] * rotation;
+    P[1] = -P[2];
+    return;
+  }
+  for (int c = 0; c < d; c++)
+    for (int b = 0; b < d; b++)
+      P[c * d + b] = e->volume[i] * (e->mu[i] * (G[c * d + b] + G[b * d + c]) +
+                                     (b == c ? e->lambda[i] * trace : 0.0));
+}
+
+/* P_i = dPi/dG_i, pairs included, and the part of f_i that comes from u_i in pairs. */
+static void stress_chunk(void *data, int64_t chunk, int32_t worker) {
+  (void)worker;
+  const operator_task *t = data;
+  const mps_elastic *e = t->e;
+  const mpsi_links *l = &e->links;
+  const int d = e->dim;
+  const bool moment = e->def.method == MPS_ELASTIC_CONSERVATIVE;
+  int64_t first, last;
+  mpsi_elastic_chunk(e, chunk, &first, &last);
+  for (int64_t i = first; i < last; i++) {
+    double *P = t->stress + i * d * d, *f = t->f + i * d;
+    local_stress(e, i, t->gradient + i * d * d, P);
+    for (int c = 0; c < d; c++) f[c] = 0.0;
+    for (int32_t k = 0; k < l->count; k++) {
+      const int64_t j = l->to[i * l->count + k];
+      if (j < 0) continue;
+      double pull[3];
+      const double s = mpsi_elastic_bond(e, i, j, k);
+      stretch(e, t->u, t->gradient, i, k, pull);
+      for (int c = 0; c < d; c++) {
+        pull[c] *= s;
+        f[c] -= pull[c];
+        for (int b = 0; moment && b < d; b++)
+          P[c * d + b] -= 0.5 * pull[c] * e->spacing * l->step[k][b];
+      }
+    }
+  }
+}
+
+/* f_p += sum over gradients that p is a site of: gathered, so that the order is fixed. */
+static void force_chunk(void *data, int64_t chunk, int32_t worker) {
+  (void)worker;
+  const operator_task *t = data;
+  const mps_elastic *e = t->e;
+  const int d = e->dim;
+  int64_t first, last, sites[MPSI_STENCIL_MAX];
+  double g[MPSI_STENCIL_MAX][3];
+  mpsi_elastic_chunk(e, chunk, &first, &last);
+  for (int64_t p = first; p < last; p++) {
+    double *f = t->f + p * d;
+    /* The neighbours whose gradients use p are the sites of p's own; p sits opposite there. */
+    const int32_t m = mpsi_elastic_stencil(e, p, sites, g);
+    for (int c = 0; c < d; c++)
+      for (int b = 0; b < d; b++) f[c] += t->stress[(p * d + c) * d + b] * g[0][b];
+    const mpsi_links *l = &e->links;
+    const bool conservative = e->def.method == MPS_ELASTIC_CONSERVATIVE;
+    for (int32_t a = 0, used = 1; used < m; a++) {
+      const int32_t k = conservative ? l->face[a / 2][a % 2] : a;
+      const int64_t j = l->to[p * l->count + k];
+      if (j < 0) continue;
+      double back[3];
+      used++;
+      mpsi_elastic_coefficient(e, j, l->count - 1 - k, back);
+      for (int c = 0; c < d; c++)
+        for (int b = 0; b < d; b++) f[c] += t->stress[(j * d + c) * d + b] * back[b];
+    }
+  }
+}
+
+void mpsi_elastic_apply(mps_elastic *e, const double *u, double *f) {
+  operator_task task = {.e = e, .u = u, .gradient = e->gradient, .stress = e->stress_work, .f = f};
+  const int64_t chunks = mpsi_elastic_chunks(e);
+  mpsi_parallel_for(e->context, chunks, gradient_chunk, &task);
+  mpsi_parallel_for(e->context, chunks, stress_chunk, &task);
+  mpsi_parallel_for(e->context, chunks, force_chunk, &task);
+}

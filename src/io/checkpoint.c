@@ -1,0 +1,452 @@
+/* checkpoint.c - all fields of a set in a file, and back, bit for bit.
+ *
+ * Layout: attributes `format`, `version` and those of header_table at the root; the group `fields`
+ * with a dataset [component][particle] of float64 or int64 for each field. Particles are told by
+ * `fields/id`. Reading first brings all of the file into memory and looks at it; only then does it
+ * change the set.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "hdf5_file.h"
+#include "replace.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#define FORMAT_NAME "libmps checkpoint"
+#define FORMAT_VERSION 1
+#define MAX_FIELDS 4096
+#define MAX_COMPONENTS 64
+#define NAME_SIZE 48
+
+/* The numbers at the root of the file. */
+typedef struct header {
+  int64_t version, dim, count, step;
+  double spacing, time, dt;
+} header;
+
+static const struct {
+  const char *name;
+  bool integer;
+  size_t offset;
+} header_table[] = {
+    {"version", true, offsetof(header, version)}, {"dim", true, offsetof(header, dim)},
+    {"particles", true, offsetof(header, count)}, {"spacing", false, offsetof(header, spacing)},
+    {"time", false, offsetof(header, time)},      {"step", true, offsetof(header, step)},
+    {"dt", false, offsetof(header, dt)}};
+#define HEADER_ROWS ((int)(sizeof header_table / sizeof *header_table))
+
+static hid_t number_type(bool integer) { return integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE; }
+
+static mps_status check_path(mps_context *context, const char *function, const char *path) {
+  if (path && path[0]) return MPS_OK;
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "path is %s, must name a file",
+                   path ? "empty" : "NULL");
+}
+
+static mps_status read_info(mps_context *context, const char *function, const mps_checkpoint *info,
+                            mps_checkpoint *out) {
+  if (!info) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "info is NULL");
+  (void)mps_checkpoint_init(out, sizeof *out);
+  const mps_status status =
+      mpsi_def_read(context, function, info, MPSI_CHECKPOINT_MINIMUM, out, sizeof *out);
+  if (status == MPS_OK && !memchr(out->user_key, '\0', sizeof out->user_key))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "user_key is '%.64s...', must be terminated: at most 63 characters",
+                     out->user_key);
+  return status;
+}
+
+/* ---- writing --------------------------------------------------------------------------------- */
+
+static bool write_field(hid_t group, const mps_field_info *info, const mps_view *view) {
+  const hsize_t size[2] = {(hsize_t)view->shape[1], (hsize_t)view->shape[0]};
+  const hid_t type = number_type(info->dtype.code == 0);
+  const hid_t target = H5Screate_simple(2, size, NULL),
+              source = H5Screate_simple(1, size + 1, NULL);
+  hid_t dataset = -1;
+  if (target >= 0)
+    dataset = H5Dcreate2(group, info->name, type, target, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  bool good = source >= 0 && dataset >= 0;
+  for (int64_t c = 0; good && c < view->shape[1] && view->shape[0] > 0; c++) {
+    const hsize_t start[2] = {(hsize_t)c, 0}, count[2] = {1, size[1]};
+    const char *column = (const char *)view->data + 8 * c * view->stride[1];
+    good = H5Sselect_hyperslab(target, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
+           H5Dwrite(dataset, type, source, target, H5P_DEFAULT, column) >= 0;
+  }
+  if (dataset >= 0) good = H5Dclose(dataset) >= 0 && good;
+  if (source >= 0) H5Sclose(source);
+  if (target >= 0) H5Sclose(target);
+  return good;
+}
+
+static bool write_fields(hid_t root, mps_particles *particles) {
+  const hid_t group = H5Gcreate2(root, "fields", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  bool good = group >= 0;
+  for (int32_t k = 0; good && k < mps_particles_field_count(particles); k++) {
+    mps_field_info info;
+    mps_view view;
+    good = mps_particles_field(particles, k, &info) == MPS_OK &&
+           mps_particles_view(particles, info.name, &view) == MPS_OK &&
+           write_field(group, &info, &view);
+  }
+  if (group >= 0) H5Gclose(group);
+  return good;
+}
+
+static bool write_file(hid_t root, mps_particles *particles, const mps_checkpoint *info) {
+  const header h = {.version = FORMAT_VERSION,
+                    .dim = mps_particles_dim(particles),
+                    .count = mps_particles_count(particles),
+                    .step = info->step,
+                    .spacing = mps_particles_spacing(particles),
+                    .time = info->time,
+                    .dt = info->dt};
+  bool good = mpsi_h5_attribute_text(root, "format", FORMAT_NAME) &&
+              mpsi_h5_attribute_text(root, "library", mps_version()) &&
+              mpsi_h5_attribute_text(root, "user_key", info->user_key);
+  for (int k = 0; good && k < HEADER_ROWS; k++)
+    good = mpsi_h5_attribute(root, header_table[k].name, number_type(header_table[k].integer), 0,
+                             (const char *)&h + header_table[k].offset);
+  return good && write_fields(root, particles);
+}
+
+mps_status mps_checkpoint_write(mps_particles *particles, const char *path,
+                                const mps_checkpoint *user_info) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  mps_context *context = mpsi_particles_context(particles);
+  mps_checkpoint info;
+  mps_status status = check_path(context, __func__, path);
+  if (status == MPS_OK) status = read_info(context, __func__, user_info, &info);
+  if (status != MPS_OK) return status;
+  if (!isfinite(info.time) || info.step < 0 || !(info.dt >= 0.0 && isfinite(info.dt)))
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+                     "time is %g s, step %lld, dt %g s: must be finite, and step and dt >= 0",
+                     info.time, (long long)info.step, info.dt);
+  mpsi_replacement replacement;
+  status = mpsi_replace_begin(context, __func__, path, &replacement);
+  if (status != MPS_OK) return status;
+  mpsi_h5_file file;
+  mpsi_h5_stay stay;
+  mpsi_h5_enter(&stay);
+  bool good = mpsi_h5_open(&file, replacement.fd, replacement.part, true) &&
+              write_file(file.id, particles, &info);
+  good = mpsi_h5_close(&file) && good;
+  if (!good || file.error)
+    status = mpsi_h5_fail(context, __func__, MPS_ERROR_IO, &stay, &file, "write", replacement.part);
+  mpsi_h5_leave(&stay);
+  if (status == MPS_OK) return mpsi_replace_commit(context, __func__, &replacement);
+  mpsi_replace_abandon(context, &replacement);
+  return status;
+}
+
+/* ---- reading: the file into memory ----------------------------------------------------------- */
+
+/* A field of the file. */
+typedef struct staged_field {
+  char name[NAME_SIZE];
+  int32_t components;
+  bool integer;
+  char *values; /* [component][particle], 8 bytes each */
+} staged_field;
+
+/* One call of mps_checkpoint_read or mps_checkpoint_info. */
+typedef struct reading {
+  mps_context *context;
+  const char *function;
+  mps_particles *particles; /* NULL: only the header is wanted */
+  const char *path;
+  mpsi_h5_stay stay;
+  mpsi_h5_file file;
+  header header;
+  char user_key[64];
+  staged_field *fields;
+  int64_t field_count;
+  int64_t *source; /* source[i]: place in the file of the particle at index i of the set */
+} reading;
+
+/* The file is sealed, so this is not one of ours, or not of this version. */
+static mps_status malformed(const reading *r, const char *what) {
+  if (r->file.error) return mpsi_fail_io(r->context, r->function, "read", r->path, r->file.error);
+  return mpsi_fail(r->context, r->function, MPS_ERROR_FORMAT,
+                   "'%.200s' is not a checkpoint of libmps: %s%s%s", r->path, what,
+                   r->stay.text[0] ? "; HDF5 says: " : "", r->stay.text);
+}
+
+/* Reads a scalar attribute of a class and at most `size` bytes. */
+static bool read_attribute(hid_t root, const char *name, H5T_class_t kind, hid_t type, size_t size,
+                           void *out) {
+  if (H5Aexists(root, name) <= 0) return false;
+  const hid_t attribute = H5Aopen(root, name, H5P_DEFAULT);
+  const hid_t stored = attribute < 0 ? -1 : H5Aget_type(attribute);
+  const hid_t space = attribute < 0 ? -1 : H5Aget_space(attribute);
+  const bool text = kind == H5T_STRING;
+  bool good = stored >= 0 && space >= 0 && H5Tget_class(stored) == kind &&
+              H5Sget_simple_extent_npoints(space) == 1 && H5Tis_variable_str(stored) <= 0 &&
+              H5Tget_size(stored) <= size;
+  good = good && H5Aread(attribute, text ? stored : type, out) >= 0;
+  if (space >= 0) H5Sclose(space);
+  if (stored >= 0) H5Tclose(stored);
+  if (attribute >= 0) H5Aclose(attribute);
+  return good;
+}
+
+static mps_status read_header(reading *r) {
+  char format[sizeof FORMAT_NAME] = "";
+  const hid_t root = r->file.id;
+  if (!read_attribute(root, "format", H5T_STRING, -1, sizeof format - 1, format) ||
+      strcmp(format, FORMAT_NAME) != 0)
+    return malformed(r, "its attribute 'format' is not '" FORMAT_NAME "'");
+  for (int k = 0; k < HEADER_ROWS; k++) {
+    const bool integer = header_table[k].integer;
+    if (!read_attribute(root, header_table[k].name, integer ? H5T_INTEGER : H5T_FLOAT,
+                        number_type(integer), 8, (char *)&r->header + header_table[k].offset))
+      return malformed(r, header_table[k].name);
+    if (k == 0 && r->header.version != FORMAT_VERSION)
+      return mpsi_fail(
+          r->context, r->function, MPS_ERROR_UNSUPPORTED,
+          "'%.300s' is a checkpoint of version %lld; this libmps (%s) reads version %d", r->path,
+          (long long)r->header.version, mps_version(), FORMAT_VERSION);
+  }
+  if (!read_attribute(root, "user_key", H5T_STRING, -1, sizeof r->user_key - 1, r->user_key))
+    return malformed(r, "user_key");
+  const header *h = &r->header;
+  if (!isfinite(h->time) || h->step < 0 || !(h->dt >= 0.0 && isfinite(h->dt)))
+    return malformed(r, "its time, step or dt is out of range");
+  return MPS_OK;
+}
+
+static mps_status check_key(const reading *r, const char *wanted) {
+  if (!wanted[0] || strcmp(wanted, r->user_key) == 0) return MPS_OK;
+  return mpsi_fail(r->context, r->function, MPS_ERROR_ARGUMENT,
+                   "'%.200s' has user_key '%.63s', wanted is '%.63s'", r->path, r->user_key,
+                   wanted);
+}
+
+/* Is it of this set? */
+static mps_status check_set(const reading *r) {
+  const header *h = &r->header;
+  const int64_t count = mps_particles_count(r->particles);
+  const int32_t dim = mps_particles_dim(r->particles);
+  const double spacing = mps_particles_spacing(r->particles);
+  if (h->dim != dim || h->count != count)
+    return mpsi_fail(r->context, r->function, MPS_ERROR_ARGUMENT,
+                     "'%.200s' has %lld particles in %lldD, the set has %lld in %dD", r->path,
+                     (long long)h->count, (long long)h->dim, (long long)count, dim);
+  if (h->spacing != spacing)
+    return mpsi_fail(r->context, r->function, MPS_ERROR_ARGUMENT,
+                     "'%.200s' has spacing %.17g m, the set has %.17g m", r->path, h->spacing,
+                     spacing);
+  return MPS_OK;
+}
+
+/* Reads an open dataset. */
+static mps_status stage_dataset(reading *r, hid_t dataset, hid_t type, hid_t space,
+                                staged_field *field) {
+  hsize_t size[2] = {0, 0};
+  const H5T_class_t kind = H5Tget_class(type);
+  if (H5Sget_simple_extent_ndims(space) != 2 || H5Sget_simple_extent_dims(space, size, NULL) < 0 ||
+      size[0] < 1 || size[0] > MAX_COMPONENTS || size[1] != (hsize_t)r->header.count ||
+      H5Tget_size(type) != 8 || (kind != H5T_FLOAT && kind != H5T_INTEGER))
+    return malformed(r, field->name);
+  field->components = (int32_t)size[0];
+  field->integer = kind == H5T_INTEGER;
+  const int64_t items = field->components * r->header.count;
+  field->values = mpsi_alloc(r->context, items, 8);
+  if (!field->values) return mpsi_fail_memory(r->context, r->function, (size_t)items * 8);
+  if (items > 0 && H5Dread(dataset, number_type(field->integer), H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                           field->values) < 0)
+    return malformed(r, field->name);
+  return MPS_OK;
+}
+
+static mps_status stage_field(reading *r, hid_t group, hsize_t index) {
+  staged_field *field = &r->fields[r->field_count];
+  H5L_info_t link;
+  const ssize_t length = H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, index,
+                                            field->name, NAME_SIZE, H5P_DEFAULT);
+  if (length < 1 || length >= NAME_SIZE ||
+      H5Lget_info(group, field->name, &link, H5P_DEFAULT) < 0 || link.type != H5L_TYPE_HARD)
+    return malformed(r, "the name of a field");
+  r->field_count++;
+  const hid_t dataset = H5Dopen2(group, field->name, H5P_DEFAULT);
+  const hid_t type = dataset < 0 ? -1 : H5Dget_type(dataset);
+  const hid_t space = dataset < 0 ? -1 : H5Dget_space(dataset);
+  const mps_status status = type >= 0 && space >= 0 ? stage_dataset(r, dataset, type, space, field)
+                                                    : malformed(r, field->name);
+  if (space >= 0) H5Sclose(space);
+  if (type >= 0) H5Tclose(type);
+  if (dataset >= 0) H5Dclose(dataset);
+  return status;
+}
+
+static mps_status stage_fields(reading *r) {
+  H5G_info_t info;
+  const hid_t group = H5Gopen2(r->file.id, "fields", H5P_DEFAULT);
+  mps_status status = MPS_OK;
+  if (group < 0 || H5Gget_info(group, &info) < 0 || info.nlinks > MAX_FIELDS)
+    status = malformed(r, "group 'fields'");
+  if (status == MPS_OK) {
+    r->fields = mpsi_alloc(r->context, (int64_t)info.nlinks, sizeof *r->fields);
+    if (!r->fields)
+      status = mpsi_fail_memory(r->context, r->function, info.nlinks * sizeof *r->fields);
+  }
+  for (hsize_t k = 0; status == MPS_OK && k < info.nlinks; k++) status = stage_field(r, group, k);
+  if (group >= 0) H5Gclose(group);
+  return status;
+}
+
+/* Opens the file, and takes from it the header, and all else if it is for a set. */
+static mps_status stage(reading *r, const char *user_key) {
+  const int fd = open(r->path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (fd < 0) return mpsi_fail_io(r->context, r->function, "open", r->path, errno);
+  mps_status status = mpsi_seal_check(r->context, r->function, fd, r->path);
+  if (status == MPS_OK) {
+    mpsi_h5_enter(&r->stay);
+    if (!mpsi_h5_open(&r->file, fd, r->path, false)) status = malformed(r, "it does not open");
+    if (status == MPS_OK) status = read_header(r);
+    if (status == MPS_OK) status = check_key(r, user_key);
+    if (status == MPS_OK && r->particles) status = check_set(r);
+    if (status == MPS_OK && r->particles) status = stage_fields(r);
+    (void)mpsi_h5_close(&r->file);
+    mpsi_h5_leave(&r->stay);
+  }
+  close(fd);
+  return status;
+}
+
+/* ---- reading: looking at it ------------------------------------------------------------------ */
+
+static mps_status match_ids(reading *r) {
+  const int64_t count = r->header.count;
+  const staged_field *id = NULL;
+  for (int64_t k = 0; k < r->field_count; k++)
+    if (strcmp(r->fields[k].name, "id") == 0) id = &r->fields[k];
+  if (!id || !id->integer || id->components != 1) return malformed(r, "it has no ids");
+  r->source = mpsi_alloc(r->context, count, sizeof *r->source);
+  if (!r->source)
+    return mpsi_fail_memory(r->context, r->function, (size_t)count * sizeof *r->source);
+  for (int64_t i = 0; i < count; i++) r->source[i] = -1;
+  for (int64_t k = 0; k < count; k++) {
+    int64_t value;
+    memcpy(&value, id->values + 8 * k, 8);
+    const int64_t i = mps_particles_index(r->particles, value);
+    if (i < 0 || r->source[i] >= 0)
+      return mpsi_fail(r->context, r->function, MPS_ERROR_ARGUMENT,
+                       "'%.200s' has a particle of id %lld, %s", r->path, (long long)value,
+                       i < 0 ? "the set has none" : "more than once");
+    r->source[i] = k;
+  }
+  return MPS_OK;
+}
+
+static bool find_info(const mps_particles *particles, const char *name, mps_field_info *out) {
+  for (int32_t k = 0; k < mps_particles_field_count(particles); k++)
+    if (mps_particles_field(particles, k, out) == MPS_OK && strcmp(out->name, name) == 0)
+      return true;
+  return false;
+}
+
+/* Has each field the shape that the set has for it, or would give it? The latter is tried on
+ * `trial`, an empty set. */
+static mps_status match_shapes(const reading *r, mps_particles *trial) {
+  for (int64_t k = 0; k < r->field_count; k++) {
+    const staged_field *field = &r->fields[k];
+    mps_field_info info;
+    if (!find_info(r->particles, field->name, &info)) {
+      const mps_status status = mps_particles_add_field(trial, field->name, field->components);
+      if (status == MPS_ERROR_MEMORY) return mpsi_fail_memory(r->context, r->function, 1);
+      info.components = 0;
+      if (status == MPS_OK && !find_info(trial, field->name, &info)) return MPS_ERROR_INTERNAL;
+    }
+    if (info.components != field->components || (info.dtype.code == 0) != field->integer)
+      return mpsi_fail(
+          r->context, r->function, MPS_ERROR_FIELD,
+          "'%.200s' has field '%s' with %d components of %s, which the set cannot take", r->path,
+          field->name, field->components, field->integer ? "int64" : "float64");
+  }
+  return MPS_OK;
+}
+
+static mps_status check_shapes(const reading *r) {
+  mps_particles_def def = mps_particles_defaults();
+  def.dim = mps_particles_dim(r->particles);
+  def.spacing = mps_particles_spacing(r->particles);
+  mps_particles *trial = NULL;
+  mps_status status = mps_particles_create(r->context, &def, &trial);
+  if (status != MPS_OK) return mpsi_fail_memory(r->context, r->function, 1);
+  status = match_shapes(r, trial);
+  mps_particles_destroy(&trial);
+  return status;
+}
+
+/* ---- reading: into the set ------------------------------------------------------------------- */
+
+static mps_status add_missing(const reading *r) {
+  const int32_t before = mps_particles_field_count(r->particles);
+  for (int64_t k = 0; k < r->field_count; k++)
+    if (mps_particles_add_field(r->particles, r->fields[k].name, r->fields[k].components) !=
+        MPS_OK) {
+      mpsi_particles_drop_fields(r->particles, before);
+      return mpsi_fail(r->context, r->function, MPS_ERROR_MEMORY,
+                       "could not allocate field '%s' of %lld particles", r->fields[k].name,
+                       (long long)r->header.count);
+    }
+  return MPS_OK;
+}
+
+static void put_field(const reading *r, const staged_field *field) {
+  mps_view view;
+  if (strcmp(field->name, "id") == 0 || /* the order of the set stays */
+      mps_particles_view(r->particles, field->name, &view) != MPS_OK)
+    return;
+  for (int64_t c = 0; c < view.shape[1]; c++) {
+    char *to = (char *)view.data + 8 * c * view.stride[1];
+    const char *from = field->values + 8 * c * view.shape[0];
+    for (int64_t i = 0; i < view.shape[0]; i++) memcpy(to + 8 * i, from + 8 * r->source[i], 8);
+  }
+}
+
+static void tell(const reading *r, mps_checkpoint *info) {
+  info->time = r->header.time;
+  info->step = r->header.step;
+  info->dt = r->header.dt;
+  memcpy(info->user_key, r->user_key, sizeof info->user_key);
+}
+
+mps_status mps_checkpoint_info(mps_context *context, const char *path, mps_checkpoint *info) {
+  if (!context) return MPS_ERROR_ARGUMENT;
+  reading r = {.context = context, .function = __func__, .path = path, .file = {.id = -1}};
+  mps_checkpoint wanted;
+  mps_status status = check_path(context, __func__, path);
+  if (status == MPS_OK) status = read_info(context, __func__, info, &wanted);
+  if (status == MPS_OK) status = stage(&r, wanted.user_key);
+  if (status == MPS_OK) tell(&r, info);
+  return status;
+}
+
+mps_status mps_checkpoint_read(mps_particles *particles, const char *path, mps_checkpoint *info) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  mps_context *context = mpsi_particles_context(particles);
+  reading r = {.context = context,
+               .function = __func__,
+               .particles = particles,
+               .path = path,
+               .file = {.id = -1}};
+  mps_checkpoint wanted;
+  mps_status status = check_path(context, __func__, path);
+  if (status == MPS_OK) status = read_info(context, __func__, info, &wanted);
+  if (status == MPS_OK) status = stage(&r, wanted.user_key);
+  if (status == MPS_OK) status = match_ids(&r);
+  if (status == MPS_OK) status = check_shapes(&r);
+  if (status == MPS_OK) status = add_missing(&r);
+  if (status == MPS_OK) {
+    for (int64_t k = 0; k < r.field_count; k++) put_field(&r, &r.fields[k]);
+    tell(&r, info);
+  }
+  for (int64_t k = 0; k < r.field_count; k++) mpsi_free(context, r.fields[k].values);
+  mpsi_free(context, r.fields);
+  mpsi_free(context, r.source);
+  return status;
+}

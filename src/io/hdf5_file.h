@@ -1,0 +1,62 @@
+/* hdf5_file.h - how libmps goes into HDF5: one caller at a time, silently, and with file access of
+ * its own that survives a full disk.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_IO_HDF5_FILE_H
+#define MPSI_IO_HDF5_FILE_H
+
+#include "io_private.h"
+
+#define H5_USE_110_API /* newer HDF5 keeps these forms of the functions */
+#include <hdf5.h>
+#if H5_VERSION_GE(1, 14, 0)
+#include <H5FDdevelop.h>
+#endif
+
+/* ---- a stay in HDF5 -------------------------------------------------------------------------- */
+
+typedef struct mpsi_h5_stay {
+  H5E_auto2_t print; /* the host's error printing, if it is of the present form */
+  void *print_data;
+#ifndef H5_NO_DEPRECATED_SYMBOLS
+  H5E_auto1_t old_print; /* else of the old form */
+#endif
+  unsigned is_new_form;
+  char text[200]; /* innermost text of the first HDF5 error since enter; "" none */
+} mpsi_h5_stay;
+
+/* Every call of HDF5 lies between these two. The lock holds off other contexts; errors go to
+ * `text` instead of the host's standard error. */
+void mpsi_h5_enter(mpsi_h5_stay *stay);
+void mpsi_h5_leave(mpsi_h5_stay *stay);
+
+/* ---- a file ---------------------------------------------------------------------------------- */
+
+typedef struct mpsi_h5_file {
+  H5FD_t driver; /* first: what HDF5 keeps of an open file */
+  int fd;
+  int error; /* errno of the first system call that failed; 0: none */
+  haddr_t end_of_allocation, end_of_file, reserved;
+  hid_t id; /* < 0: not open */
+} mpsi_h5_file;
+
+/* Opens what `fd` refers to as an HDF5 file: a new one (an empty file, open for reading and
+ * writing), or one to read. `name` serves HDF5's messages. *file must not move while open. False
+ * on an error. The caller keeps fd, and closes it after mpsi_h5_close. */
+bool mpsi_h5_open(mpsi_h5_file *file, int fd, const char *name, bool create);
+/* Closes everything in the file too. False on an error; file->error, too, has to be looked at. */
+bool mpsi_h5_close(mpsi_h5_file *file);
+
+/* Records what went wrong: the system's error if the disk refused, else `status` and HDF5's own
+ * words. */
+mps_status mpsi_h5_fail(mps_context *context, const char *function, mps_status status,
+                        const mpsi_h5_stay *stay, const mpsi_h5_file *file, const char *verb,
+                        const char *path);
+
+/* ---- attributes ------------------------------------------------------------------------------ */
+
+/* `count` values, or a scalar for count 0. */
+bool mpsi_h5_attribute(hid_t object, const char *name, hid_t type, hsize_t count,
+                       const void *values);
+bool mpsi_h5_attribute_text(hid_t object, const char *name, const char *text);
+
+#endif

@@ -1,0 +1,165 @@
+/* replace.c - files that appear whole or not at all: written beside their place, confirmed by the
+ * disk (fsync), then renamed. A seal at the end, which HDF5 takes no notice of, tells a whole file
+ * from one that was cut short or changed since: 16 bytes of name, then length and checksum of what
+ * is before it, little endian.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "replace.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define SEAL_SIZE 32
+static const unsigned char seal_name[16] = "libmps seal 1\r\n";
+
+/* ---- the seal -------------------------------------------------------------------------------- */
+
+static uint64_t little_endian(const unsigned char *bytes) {
+  uint64_t word = 0;
+  for (int k = 7; k >= 0; k--) word = word << 8 | bytes[k];
+  return word;
+}
+
+static void put_little_endian(unsigned char *bytes, uint64_t word) {
+  for (int k = 0; k < 8; k++) bytes[k] = (unsigned char)(word >> 8 * k);
+}
+
+/* Bytes at an offset; fewer at the end of the file; -1 and errno on an error. */
+static int64_t read_at(int fd, void *buffer, size_t size, int64_t offset) {
+  size_t done = 0;
+  while (done < size) {
+    const ssize_t got = pread(fd, (char *)buffer + done, size - done, (off_t)offset + (off_t)done);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return -1;
+    if (got == 0) break;
+    done += (size_t)got;
+  }
+  return (int64_t)done;
+}
+
+/* Checksum of the first `size` bytes. Each step is one to one in the sum and in the word, so that a
+ * change of any one word always shows. False: errno. */
+static bool checksum(int fd, int64_t size, uint64_t *out) {
+  unsigned char buffer[16384];
+  uint64_t sum = (uint64_t)size;
+  for (int64_t done = 0; done < size;) {
+    const size_t want =
+        size - done < (int64_t)sizeof buffer ? (size_t)(size - done) : sizeof buffer;
+    const int64_t got = read_at(fd, buffer, want, done);
+    if (got < 0) return false;
+    if (got == 0) break; /* grew shorter meanwhile */
+    for (int64_t k = got; k % 8 != 0; k++) buffer[k] = 0;
+    for (int64_t k = 0; k < got; k += 8) {
+      sum = (sum ^ little_endian(buffer + k)) * 0x9e3779b97f4a7c15u;
+      sum ^= sum >> 32;
+    }
+    done += got;
+  }
+  *out = sum;
+  return true;
+}
+
+/* Appends the seal. False: errno. */
+static bool seal(int fd) {
+  unsigned char text[SEAL_SIZE];
+  uint64_t sum;
+  struct stat status;
+  if (fstat(fd, &status) != 0 || !checksum(fd, status.st_size, &sum)) return false;
+  memcpy(text, seal_name, sizeof seal_name);
+  put_little_endian(text + 16, (uint64_t)status.st_size);
+  put_little_endian(text + 24, sum);
+  for (size_t done = 0; done < sizeof text;) {
+    const ssize_t put = pwrite(fd, text + done, sizeof text - done, status.st_size + (off_t)done);
+    if (put < 0 && errno == EINTR) continue;
+    if (put == 0) errno = ENOSPC;
+    if (put <= 0) return false;
+    done += (size_t)put;
+  }
+  return true;
+}
+
+mps_status mpsi_seal_check(mps_context *context, const char *function, int fd, const char *path) {
+  static const unsigned char hdf5[8] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
+  unsigned char head[8], tail[SEAL_SIZE];
+  struct stat status;
+  if (fstat(fd, &status) != 0) return mpsi_fail_io(context, function, "read", path, errno);
+  if (!S_ISREG(status.st_mode))
+    return mpsi_fail(context, function, MPS_ERROR_IO, "cannot read '%.300s': not a file", path);
+  const int64_t body = (int64_t)status.st_size - SEAL_SIZE;
+  const int64_t first = read_at(fd, head, sizeof head, 0);
+  const int64_t last = body < 0 ? 0 : read_at(fd, tail, sizeof tail, body);
+  if (first < 0 || last < 0) return mpsi_fail_io(context, function, "read", path, errno);
+  if (first < (int64_t)sizeof head || memcmp(head, hdf5, sizeof head) != 0)
+    return mpsi_fail(context, function, MPS_ERROR_FORMAT,
+                     "'%.300s' is not a checkpoint: it does not begin as an HDF5 file", path);
+  if (last < SEAL_SIZE || memcmp(tail, seal_name, sizeof seal_name) != 0)
+    return mpsi_fail(context, function, MPS_ERROR_FORMAT,
+                     "'%.300s' is not a checkpoint, or cut short: it does not end with a seal",
+                     path);
+  uint64_t sum;
+  if (!checksum(fd, body, &sum)) return mpsi_fail_io(context, function, "read", path, errno);
+  if (little_endian(tail + 16) != (uint64_t)body || little_endian(tail + 24) != sum)
+    return mpsi_fail(context, function, MPS_ERROR_FORMAT,
+                     "'%.300s' is damaged: it is not what was sealed", path);
+  return MPS_OK;
+}
+
+/* ---- replacing ------------------------------------------------------------------------------- */
+
+mps_status mpsi_replace_begin(mps_context *context, const char *function, const char *path,
+                              mpsi_replacement *out) {
+  const size_t size = strlen(path) + sizeof ".part";
+  *out = (mpsi_replacement){.path = path, .fd = -1};
+  out->part = mpsi_alloc(context, (int64_t)size, 1);
+  if (!out->part) return mpsi_fail_memory(context, function, size);
+  snprintf(out->part, size, "%s.part", path);
+  out->fd = open(out->part, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (out->fd >= 0) return MPS_OK;
+  const mps_status status = mpsi_fail_io(context, function, "open", out->part, errno);
+  mpsi_free(context, out->part);
+  out->part = NULL;
+  return status;
+}
+
+/* Has the disk confirm the new name. Some file systems refuse; then there is no more to be done,
+ * and after a crash either the former or the new file is there. */
+static void confirm_name(char *part) {
+  char *slash = strrchr(part, '/');
+  if (slash) slash[slash == part] = '\0'; /* "/" stays */
+  const int fd = open(slash ? part : ".", O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return;
+  (void)fsync(fd);
+  close(fd);
+}
+
+mps_status mpsi_replace_commit(mps_context *context, const char *function,
+                               mpsi_replacement *replacement) {
+  mps_status status = MPS_OK;
+  if (!seal(replacement->fd) || fsync(replacement->fd) != 0)
+    status = mpsi_fail_io(context, function, "write", replacement->part, errno);
+  const int fd = replacement->fd;
+  replacement->fd = -1;
+  if (close(fd) != 0 && status == MPS_OK)
+    status = mpsi_fail_io(context, function, "close", replacement->part, errno);
+  if (status == MPS_OK && rename(replacement->part, replacement->path) != 0)
+    status =
+        mpsi_fail_io(context, function, "put a new file in the place of", replacement->path, errno);
+  if (status == MPS_OK) {
+    confirm_name(replacement->part);
+    mpsi_free(context, replacement->part);
+    replacement->part = NULL;
+  }
+  mpsi_replace_abandon(context, replacement);
+  return status;
+}
+
+void mpsi_replace_abandon(mps_context *context, mpsi_replacement *replacement) {
+  if (!replacement->part) return;
+  if (replacement->fd >= 0) close(replacement->fd);
+  (void)unlink(replacement->part);
+  mpsi_free(context, replacement->part);
+  *replacement = (mpsi_replacement){.fd = -1};
+}

@@ -1,0 +1,27 @@
+/* replace.h - files that appear whole or not at all, with a seal that shows damage.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_IO_REPLACE_H
+#define MPSI_IO_REPLACE_H
+
+#include "io_private.h"
+
+typedef struct mpsi_replacement {
+  const char *path; /* the caller's */
+  char *part;       /* "<path>.part", where it is written */
+  int fd;
+} mpsi_replacement;
+
+/* Opens an empty "<path>.part", for reading and writing through `fd`. */
+mps_status mpsi_replace_begin(mps_context *context, const char *function, const char *path,
+                              mpsi_replacement *out);
+/* Seals what was written, has the disk confirm it, and puts it in the place of `path`. Ends the
+ * replacement; on an error `path` is what it was. */
+mps_status mpsi_replace_commit(mps_context *context, const char *function,
+                               mpsi_replacement *replacement);
+/* Ends the replacement; `path` is what it was. */
+void mpsi_replace_abandon(mps_context *context, mpsi_replacement *replacement);
+
+/* MPS_ERROR_FORMAT if the open file has no seal or is not what was sealed. */
+mps_status mpsi_seal_check(mps_context *context, const char *function, int fd, const char *path);
+
+#endif

@@ -1,0 +1,48 @@
+#!/bin/sh
+# elastic.sh DIRECTORY: mps-cantilever and mps-plate against the reference values.
+. "$(dirname "$0")/checks.sh"
+
+for program in mps-cantilever mps-plate; do
+  "$1/$program" --help >"$work/help" || fail "$program --help"
+  for text in "Usage: $program" "--E [Pa]" "; default 0.3)" "--method conservative|published" \
+    "--n local|constant" "--state stress|strain" "--out DIR" "--threads N"; do
+    has "$work/help" "$text"
+  done
+  [ "$(awk 'length > 100' "$work/help" | wc -l)" -eq 0 ] || fail "$program --help has long lines"
+done
+
+# The seed's 153 particles, and the comparison of its Figure 6.
+"$1/mps-cantilever" --convergence --out "$work/beam" >"$work/log"
+in_range "$work/beam/summary.json" tip_error 0.0074 0.0084
+in_range "$work/beam/summary.json" stress_l2_error 0.0427 0.0437
+in_range "$work/beam/summary.json" equilibrium_error 0 1e-10
+in_range "$work/beam/summary.json" nnz_factor 1e4 3e4
+tail -n 1 "$work/log" | grep -q "theory (11) .*: error +0.80 %" || fail "last line"
+has "$work/beam/deflection.csv" "x_m,y_m,v_m,v_reference_m,error_percent"
+[ "$(wc -l <"$work/beam/stress.csv")" -eq 154 ] || fail "stress.csv"
+# Columns: conservative, published re = 3 and 2.1, bilinear finite elements; in %.
+awk -F, 'NR == 2 { a = $4 - 0.79; b = $5 - 3.6; c = $6 + 1.26; d = $7 + 0.657 }
+  NR == 5 { e = $4 - 0.03; f = $5 - 1.05; g = $6 - 0.13; h = $7 + 0.010 }
+  END { exit !(NR == 5 && a^2 < 2.5e-3 && b^2 < 2.5e-3 && c^2 < 2.5e-3 && d^2 < 1e-6 &&
+               e^2 < 2.5e-3 && f^2 < 2.5e-3 && g^2 < 2.5e-3 && h^2 < 1e-6) }' \
+  "$work/beam/convergence.csv" || fail "convergence.csv: $(cat "$work/beam/convergence.csv")"
+
+# A clamped wall is stiffer than (11): its reference is finite elements.
+"$1/mps-cantilever" --wall clamp --length 8 --method published --re 2.1 --out "$work/clamp" >/dev/null
+in_range "$work/clamp/summary.json" tip_error -0.02 0.02
+"$1/mps-cantilever" --nu 0.4999 --state strain --out "$work/wet" >/dev/null
+in_range "$work/wet/summary.json" tip_error -0.02 0.02
+
+"$1/mps-plate" --out "$work/plate" >/dev/null
+in_range "$work/plate/summary.json" particles 289 289
+in_range "$work/plate/summary.json" displacement_error 0 1e-10
+in_range "$work/plate/summary.json" stress_l2_error 0 1e-10
+"$1/mps-plate" --case hole --out "$work/hole" >/dev/null
+in_range "$work/hole/summary.json" concentration 2.91 3.09
+
+if command -v gnuplot >/dev/null; then
+  for figure in beam/deflection beam/stress-axis beam/stress-section beam/shape beam/convergence \
+    plate/displacement hole/ligament hole/stress; do
+    [ "$(head -c 4 "$work/$figure.png" | tail -c 3)" = PNG ] || fail "$figure.png"
+  done
+fi

@@ -1,0 +1,341 @@
+/* test_elastic.c - properties of implicit elasticity that hold exactly: constant stress, rigid
+ * motions and no other free ones, matrix = operator, equilibrium, rollers.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "elastic_common.h"
+
+#include "implicit/elastic_private.h"
+
+#include <lapacke.h>
+
+/* ---- bodies -------------------------------------------------------------------------------------
+ */
+
+static test_body l_shape(mps_context *context, const mps_elastic_def *def, double nu) {
+  test_body b = test_body_begin(context, 2, 0.25);
+  test_body_box(&b, 0, 0, 0, 2.0, 0.75, 0);
+  test_body_box(&b, 0, 0, 0, 1.0, 2.0, 0);
+  test_body_finish(&b, 3.0, nu, def);
+  return b;
+}
+
+/* A block with a step on top of it and a slot of one cell through it. */
+static test_body stepped(mps_context *context, double nu) {
+  test_body b = test_body_begin(context, 3, 0.5);
+  test_body_box(&b, 0, 0, 0, 3, 2, 1);
+  test_body_box(&b, 0, 0, 0, 1.5, 2, 2);
+  test_body_box(&b, 2, 0, 0, 3, 1, 2);
+  test_body_finish(&b, 3.0, nu, NULL);
+  return b;
+}
+
+/* ---- constant stress ------------------------------------------------------------------------- */
+
+typedef struct affine {
+  int dim;
+  double gradient[3][3], stress[3][3];
+} affine;
+
+static affine affine_field(const test_body *b, double lambda, double mu) {
+  affine a = {.dim = b->dim, .gradient = {{0.3, -0.2, 0.15}, {0.5, -0.4, 0.35}, {-0.1, 0.25, 0.6}}};
+  double trace = 0.0;
+  for (int c = 0; c < a.dim; c++) trace += a.gradient[c][c];
+  for (int c = 0; c < a.dim; c++)
+    for (int d = 0; d < a.dim; d++)
+      a.stress[c][d] = mu * (a.gradient[c][d] + a.gradient[d][c]) + (c == d ? lambda * trace : 0.0);
+  return a;
+}
+
+static void affine_traction(void *user, const double *x, const double *normal, double *traction) {
+  const affine *a = user;
+  (void)x;
+  for (int c = 0; c < a->dim; c++)
+    for (int d = 0; d < a->dim; d++) traction[c] += a->stress[c][d] * normal[d];
+}
+
+static double affine_at(const test_body *b, const affine *a, int64_t i, int c) {
+  double u = 0.0;
+  for (int d = 0; d < a->dim; d++) u += a->gradient[c][d] * test_value(b, "position", i, d);
+  return u;
+}
+
+static void hold(test_body *b, int component, int64_t id, double value) {
+  mps_assert_ok(b->context, mps_elastic_prescribe(b->elastic, component, 1, &id, &value));
+}
+
+/* As many supports as there are rigid motions, so that the loads must balance. */
+static void hold_statically(test_body *b, const affine *a) {
+  const double corner[3] = {-9, -9, -9}, far_x[3] = {9, -9, -9}, far_y[3] = {-9, 9, -9};
+  const int64_t p = mps_particles_nearest(b->particles, corner);
+  const int64_t q = mps_particles_nearest(b->particles, far_x);
+  const int64_t r = mps_particles_nearest(b->particles, far_y);
+  for (int c = 0; c < b->dim; c++) hold(b, c, p, affine_at(b, a, p, c));
+  hold(b, 1, q, affine_at(b, a, q, 1));
+  if (b->dim == 3) {
+    hold(b, 2, q, affine_at(b, a, q, 2));
+    hold(b, 2, r, affine_at(b, a, r, 2));
+  }
+}
+
+static void check_patch(test_body *b, double young, double nu, int plane_stress) {
+  const double mu = young / 2 / (1 + nu);
+  const double lambda = nu * young / (1 + nu) / (plane_stress ? 1 - nu : 1 - 2 * nu);
+  affine a = affine_field(b, lambda, mu);
+  int64_t count;
+  const int64_t all = mps_elastic_facet_count(b->elastic);
+  int64_t *facets = malloc((size_t)all * sizeof *facets);
+  mps_assert_ok(b->context,
+                mps_elastic_select_facets(b->elastic, 0, 0, NULL, NULL, all, facets, &count));
+  assert_int_equal(count, all);
+  mps_assert_ok(b->context,
+                mps_elastic_add_traction_fn(b->elastic, count, facets, affine_traction, &a));
+  free(facets);
+  hold_statically(b, &a);
+  mps_assert_ok(b->context, mps_elastic_solve(b->elastic));
+  mps_assert_ok(b->context, mps_elastic_stress(b->elastic));
+  static const int row[6] = {0, 1, 2, 0, 2, 1}, col[6] = {0, 1, 2, 1, 0, 2};
+  double worst_u = 0, worst_s = 0, worst_r = 0;
+  for (int64_t i = 0; i < b->n; i++) {
+    for (int c = 0; c < b->dim; c++) {
+      worst_u = fmax(worst_u, fabs(test_value(b, "displacement", i, c) - affine_at(b, &a, i, c)));
+      worst_r = fmax(worst_r, fabs(test_value(b, "reaction", i, c)));
+    }
+    for (int k = 0; k < 2 * b->dim; k++)
+      if (row[k] < b->dim && col[k] < b->dim)
+        worst_s = fmax(worst_s, fabs(test_value(b, "stress", i, k) - a.stress[row[k]][col[k]]));
+  }
+  print_message("patch test %dD: displacement %.1e, stress %.1e, reactions %.1e\n", b->dim, worst_u,
+                worst_s, worst_r);
+  mps_assert_near(worst_u, 0.0, 1e-12);
+  mps_assert_near(worst_s, 0.0, 1e-12);
+  mps_assert_near(worst_r, 0.0, 1e-12);
+}
+
+static void constant_stress_is_exact_on_an_l_shape(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  for (int plane_stress = 0; plane_stress < 2; plane_stress++) {
+    mps_elastic_def def = mps_elastic_defaults();
+    def.state = plane_stress ? MPS_ELASTIC_PLANE_STRESS : MPS_ELASTIC_PLANE_STRAIN;
+    test_body b = l_shape(context, &def, 0.3);
+    check_patch(&b, 3.0, 0.3, plane_stress);
+    test_body_end(&b);
+  }
+  mps_context_destroy(&context);
+}
+
+static void constant_stress_is_exact_on_a_stepped_block(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  test_body b = stepped(context, 0.3);
+  check_patch(&b, 3.0, 0.3, 0);
+  test_body_end(&b);
+  mps_context_destroy(&context);
+}
+
+/* ---- free motions ---------------------------------------------------------------------------- */
+
+/* Dense K of all displacements, by the matrix-free operator. */
+static double *dense(mps_elastic *e) {
+  const int64_t all = e->n * e->dim;
+  double *k = malloc((size_t)(all * all) * sizeof *k), *u = calloc((size_t)all, sizeof *u);
+  for (int64_t c = 0; c < all; c++) {
+    u[c] = 1.0;
+    mpsi_elastic_apply(e, u, k + c * all);
+    u[c] = 0.0;
+  }
+  free(u);
+  return k;
+}
+
+static void check_modes(test_body *b, int rigid, double gap) {
+  mps_elastic *e = b->elastic;
+  const int64_t all = e->n * e->dim;
+  double *k = dense(e), *w = malloc((size_t)all * sizeof *w), worst = 0.0;
+  for (int64_t r = 0; r < all; r++)
+    for (int64_t c = 0; c < r; c++) worst = fmax(worst, fabs(k[r * all + c] - k[c * all + r]));
+  assert_int_equal(LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'N', 'U', (int)all, k, (int)all, w), 0);
+  print_message("%dD method %d divisor %d: eigenvalues %.1e ... %.1e | %.3e ... %.3e, asymmetry "
+                "%.1e\n",
+                e->dim, e->def.method, e->def.divisor, w[0], w[rigid - 1], w[rigid], w[all - 1],
+                worst);
+  assert_true(worst < 1e-13 * w[all - 1]);
+  assert_true(fabs(w[0]) < 1e-13 * w[all - 1] && fabs(w[rigid - 1]) < 1e-13 * w[all - 1]);
+  assert_true(w[rigid] > gap * w[all - 1]);
+  free(k);
+  free(w);
+}
+
+static void rigid_motions_and_no_others_are_free(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_elastic_def def = mps_elastic_defaults();
+  test_body b = l_shape(context, &def, 0.3);
+  check_modes(&b, 3, 1e-3);
+  test_body_end(&b);
+  def.method = MPS_ELASTIC_PUBLISHED;
+  b = l_shape(context, &def, 0.3);
+  check_modes(&b, 3, 1e-3);
+  test_body_end(&b);
+  b = stepped(context, 0.3);
+  check_modes(&b, 6, 1e-3);
+  test_body_end(&b);
+  def = mps_elastic_defaults(); /* the weakest stabilisation that is allowed */
+  def.alpha = 0.03;
+  b = l_shape(context, &def, 0.0);
+  check_modes(&b, 3, 1e-4);
+  test_body_end(&b);
+  mps_context_destroy(&context);
+}
+
+/* ---- the matrix is the operator -------------------------------------------------------------- */
+
+/* The assembled matrix against the operator, column by column, with rollers at an angle. */
+static void check_matrix(test_body *b) {
+  mps_elastic *e = b->elastic;
+  const double slope[3] = {0.6, 0.8, 0.0}, other[3] = {0.5, -0.3, 0.7};
+  const int64_t some[3] = {0, 5, b->n - 1};
+  mps_assert_ok(b->context, mps_elastic_roller(e, slope, 3, some, NULL));
+  mps_assert_ok(b->context, mps_elastic_roller(e, other, 2, some, NULL));
+  mps_assert_ok(b->context, mps_elastic_prescribe(e, 1, 1, &(int64_t){9}, NULL));
+  mpsi_elastic_number(e);
+  mps_assert_ok(b->context, mpsi_elastic_assemble(e, "test"));
+  const int64_t n = e->unknowns, all = e->n * e->dim;
+  double *u = malloc((size_t)all * sizeof *u), *f = malloc((size_t)all * sizeof *f);
+  double *one = calloc((size_t)n, sizeof *one), *column = malloc((size_t)n * sizeof *column);
+  double worst = 0.0, largest = 0.0;
+  for (int64_t c = 0; c < n; c++) {
+    memset(u, 0, (size_t)all * sizeof *u);
+    one[c] = 1.0;
+    mpsi_elastic_expand(e, one, false, u);
+    one[c] = 0.0;
+    mpsi_elastic_apply(e, u, f);
+    mpsi_elastic_reduce(e, f, column);
+    assert_int_equal(e->row[e->column[c]], c);
+    for (int64_t k = e->column[c]; k < e->column[c + 1]; k++) {
+      assert_true(k == e->column[c] || e->row[k] > e->row[k - 1]);
+      column[e->row[k]] -= e->value[k];
+      largest = fmax(largest, fabs(e->value[k]));
+    }
+    for (int64_t r = c; r < n; r++) worst = fmax(worst, fabs(column[r]));
+  }
+  print_message("matrix - operator, %dD method %d: %.1e of %.3g\n", e->dim, e->def.method, worst,
+                largest);
+  mps_assert_near(worst, 0.0, 1e-14 * largest);
+  free(u);
+  free(f);
+  free(one);
+  free(column);
+}
+
+static void the_assembled_matrix_is_the_operator(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_elastic_def def = mps_elastic_defaults();
+  test_body b = stepped(context, 0.2);
+  check_matrix(&b);
+  test_body_end(&b);
+  const double ratio[] = {1.5, 2.1, 3.0};
+  for (int k = 0; k < 6; k++) {
+    def.method = k % 2 ? MPS_ELASTIC_PUBLISHED : MPS_ELASTIC_CONSERVATIVE;
+    def.radius_ratio = ratio[k / 2];
+    b = l_shape(context, &def, 0.3);
+    /* A material that varies, and cells cut in half. */
+    mps_view young;
+    mps_assert_ok(context, mps_particles_view(b.particles, "young", &young));
+    for (int64_t i = 0; i < b.n; i++) *mps_view_f64(&young, i, 0) = 1.0 + 0.1 * (double)(i % 7);
+    mps_assert_ok(context, mps_elastic_update_material(b.elastic));
+    int64_t count, *ids = test_select(&b, 0, -1, 0.2, &count);
+    mps_assert_ok(context, mps_elastic_cut(b.elastic, 0, -1, count, ids));
+    free(ids);
+    check_matrix(&b);
+    test_body_end(&b);
+  }
+  mps_context_destroy(&context);
+}
+
+/* ---- equilibrium, rollers, orders ------------------------------------------------------------ */
+
+static void loads_and_reactions_are_in_equilibrium(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  for (int dim = 2; dim <= 3; dim++) {
+    test_body b = dim == 2 ? l_shape(context, NULL, 0.3) : stepped(context, 0.3);
+    int64_t count, *ids = test_select(&b, 1, -1, 0.3, &count);
+    for (int c = 0; c < dim; c++)
+      mps_assert_ok(context, mps_elastic_prescribe(b.elastic, c, count, ids, NULL));
+    mps_assert_ok(context, mps_elastic_cut(b.elastic, 1, -1, count, ids));
+    free(ids);
+    const double gravity[3] = {0.3, -9.81, 0.7}, point[3] = {0.4, -0.7, 1.1};
+    mps_assert_ok(context, mps_elastic_add_body_force(b.elastic, gravity));
+    int64_t *facets = test_facets(&b, 0, 1, &count);
+    double *pressure = malloc((size_t)count * sizeof *pressure);
+    for (int64_t k = 0; k < count; k++) pressure[k] = 2.0 + (double)k;
+    mps_assert_ok(context, mps_elastic_add_pressure(b.elastic, count, facets, pressure));
+    free(facets);
+    free(pressure);
+    mps_assert_ok(context, mps_elastic_solve(b.elastic));
+    double f[3], m[3], rf[3], rm[3];
+    mps_assert_ok(context, mps_elastic_load_resultant(b.elastic, point, f, m));
+    mps_assert_ok(context, mps_elastic_reaction_resultant(b.elastic, point, rf, rm));
+    for (int c = 0; c < dim; c++) mps_assert_near((f[c] + rf[c]) / fabs(f[1]), 0.0, 1e-10);
+    for (int c = 0; c < (dim == 2 ? 1 : 3); c++)
+      mps_assert_near((m[c] + rm[c]) / fabs(f[1]), 0.0, 1e-10);
+    /* The section just above the support carries the reactions of the cut's near side. */
+    double sf[3], sm[3], energy, work = 0.0;
+    mps_assert_ok(context, mps_elastic_section(b.elastic, 1, 100.0, point, sf, sm));
+    for (int c = 0; c < dim; c++) mps_assert_near(sf[c] / fabs(f[1]), 0.0, 1e-10);
+    /* Clapeyron: the strain energy is half the work of the loads. */
+    mps_assert_ok(context, mps_elastic_energy(b.elastic, &energy, NULL));
+    for (int64_t i = 0; i < b.n * dim; i++)
+      work += 0.5 * b.elastic->load[i] * b.elastic->displacement[i];
+    mps_assert_near(energy / work, 1.0, 1e-10);
+    test_body_end(&b);
+  }
+  mps_context_destroy(&context);
+}
+
+/* A square on a 45 degree roller below and a parallel pressure above: compression t along the
+ * roller's normal gives the same displacement along it as turned supports say. */
+static void a_roller_lets_particles_slide_across_only(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  test_body b = test_body_begin(context, 2, 0.1);
+  test_body_box(&b, 0, 0, 0, 1, 1, 0);
+  test_body_finish(&b, 2.0, 0.25, NULL);
+  const double normal[2] = {1.0, 1.0}, across[2] = {1.0, -1.0}, load[2] = {-0.3, -0.8};
+  int64_t count, *ids = test_select(&b, 1, -1, 0.06, &count);
+  double *values = malloc((size_t)count * sizeof *values);
+  for (int64_t k = 0; k < count; k++) values[k] = 0.01 * (double)k;
+  mps_assert_ok(context, mps_elastic_roller(b.elastic, normal, count, ids, values));
+  mps_assert_ok(context, mps_elastic_roller(b.elastic, across, 1, ids, NULL));
+  mps_assert_ok(context, mps_elastic_add_body_force(b.elastic, load));
+  mps_assert_ok(context, mps_elastic_solve(b.elastic));
+  for (int64_t k = 0; k < count; k++) {
+    const double u = test_value(&b, "displacement", ids[k], 0);
+    const double v = test_value(&b, "displacement", ids[k], 1);
+    mps_assert_near((u + v) / sqrt(2.0), values[k], 1e-14);
+    const double fx = test_value(&b, "reaction", ids[k], 0);
+    const double fy = test_value(&b, "reaction", ids[k], 1);
+    if (k > 0) mps_assert_near(fx - fy, 0.0, 1e-12);
+  }
+  double f[2];
+  mps_assert_ok(context, mps_elastic_reaction_resultant(b.elastic, NULL, f, NULL));
+  mps_assert_near(f[0], 0.3, 1e-10);
+  mps_assert_near(f[1], 0.8, 1e-10);
+  free(ids);
+  free(values);
+  test_body_end(&b);
+  mps_context_destroy(&context);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(constant_stress_is_exact_on_an_l_shape),
+      cmocka_unit_test(constant_stress_is_exact_on_a_stepped_block),
+      cmocka_unit_test(rigid_motions_and_no_others_are_free),
+      cmocka_unit_test(the_assembled_matrix_is_the_operator),
+      cmocka_unit_test(loads_and_reactions_are_in_equilibrium),
+      cmocka_unit_test(a_roller_lets_particles_slide_across_only),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,349 @@
+/* test_dynamics_arguments.c - the explicit MPS solver refuses bad input by name, value and allowed
+ * range, and nothing changes.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "soil_column.h"
+#include "test_fixture.h"
+
+static const soil_layer soil = {1e9, 1500.0, 100.0, 200.0, 0.05};
+
+static mps_particles *block(double width, double height) {
+  return soil_particles(context, 1.0, width, height, 1, &soil);
+}
+
+static mps_dynamics *solver(mps_particles *particles) {
+  mps_dynamics_def def = mps_dynamics_defaults();
+  mps_dynamics *dynamics = NULL;
+  def.dt = 1e-3;
+  mps_assert_ok(context, mps_dynamics_create(context, particles, &def, &dynamics));
+  return dynamics;
+}
+
+/* ---- definitions ----------------------------------------------------------------------------- */
+
+static void definitions_carry_their_size_and_defaults(void **state) {
+  (void)state;
+  const mps_dynamics_def d = mps_dynamics_defaults();
+  assert_int_equal(d.struct_size, sizeof d);
+  assert_int_equal(d.integrator, MPS_INTEGRATOR_VERLET);
+  assert_int_equal(d.rotation, MPS_ROTATION_MEAN_MATRIX);
+  assert_int_equal(d.torque, MPS_TORQUE_CONSERVING);
+  assert_int_equal(d.damping, MPS_DAMPING_PAIR);
+  assert_int_equal(d.isa, 0);
+  const double values[] = {d.dt, d.courant, d.radius_ratio, d.f1, d.f2, d.period_x, d.divergence};
+  const double expected[] = {0.0, 0.9, 1.5, 1.0, 14.0, 0.0, 1e15};
+  for (int k = 0; k < 7; k++) mps_assert_near(values[k], expected[k], 0.0);
+  const mps_viscous_def v = mps_viscous_defaults();
+  assert_int_equal(v.struct_size, sizeof v);
+  assert_int_equal(v.normal, 1);
+  mps_assert_near(v.factor, 1.0, 0.0);
+  mps_assert_near(v.density + v.shear_velocity + v.pressure_velocity, 0.0, 0.0);
+  assert_true(!v.incoming[0] && !v.incoming[1]);
+  const mps_bisection_def b = mps_bisection_defaults();
+  assert_int_equal(b.struct_size, sizeof b);
+  mps_assert_near(b.criterion, 1e15, 0.0);
+  mps_assert_near(b.accuracy, 1.2, 0.0);
+  mps_assert_near(b.duration, 2.5, 0.0);
+  const mps_predict_def p = mps_predict_defaults();
+  assert_int_equal(p.struct_size, sizeof p);
+  mps_assert_near(p.radius_ratio, 1.5, 0.0);
+  assert_int_equal(mps_dynamics_def_init(NULL, sizeof d), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_def_init((mps_dynamics_def *)&d, 8), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_viscous_def_init(NULL, sizeof v), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_bisection_def_init(NULL, sizeof b), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_predict_def_init(NULL, sizeof p), MPS_ERROR_ARGUMENT);
+}
+
+static void definitions_of_another_size(void **state) {
+  (void)state;
+  mps_particles *set = block(3, 3);
+  mps_dynamics *dynamics = (mps_dynamics *)set; /* must become NULL */
+  struct {
+    mps_dynamics_def known;
+    double tail;
+  } newer = {.tail = 0.0};
+  assert_int_equal(mps_dynamics_def_init(&newer.known, sizeof newer), MPS_OK);
+  assert_int_equal(newer.known.struct_size, sizeof newer);
+  newer.tail = 1.0;
+  mps_assert_fails(context, mps_dynamics_create(context, set, &newer.known, &dynamics),
+                   MPS_ERROR_UNSUPPORTED, "does not know");
+  assert_null(dynamics);
+  newer.tail = 0.0;
+  mps_assert_ok(context, mps_dynamics_create(context, set, &newer.known, &dynamics));
+  mps_dynamics_destroy(&dynamics);
+  newer.known.struct_size = 8;
+  mps_assert_fails(context, mps_dynamics_create(context, set, &newer.known, &dynamics),
+                   MPS_ERROR_ARGUMENT, "struct_size is 8");
+  mps_particles_destroy(&set);
+}
+
+/* ---- creation -------------------------------------------------------------------------------- */
+
+/* Sets one member of a good definition and expects its refusal. */
+static void refuse(mps_particles *set, size_t offset, bool real, double value, const char *text) {
+  mps_dynamics_def def = mps_dynamics_defaults();
+  mps_dynamics *dynamics = NULL;
+  const int32_t whole = (int32_t)(real ? 0.0 : value);
+  if (real)
+    memcpy((char *)&def + offset, &value, sizeof value);
+  else
+    memcpy((char *)&def + offset, &whole, sizeof whole);
+  mps_assert_fails(context, mps_dynamics_create(context, set, &def, &dynamics), MPS_ERROR_ARGUMENT,
+                   text);
+  assert_string_equal(mps_context_error(context)->function, "mps_dynamics_create");
+  assert_null(dynamics);
+}
+
+static void bad_definitions_are_refused(void **state) {
+  (void)state;
+  mps_particles *set = block(3, 3);
+  const uint64_t epoch = mps_particles_epoch(set);
+  const int32_t fields = mps_particles_field_count(set);
+#define WHOLE(member, value, text)                                                                 \
+  refuse(set, offsetof(mps_dynamics_def, member), false, value, text)
+#define REAL(member, value, text) refuse(set, offsetof(mps_dynamics_def, member), true, value, text)
+  WHOLE(integrator, -1, "integrator is -1, allowed are 0");
+  WHOLE(integrator, 3, "integrator is 3, allowed are 0");
+  WHOLE(rotation, 10, "rotation is 10, allowed are 11");
+  WHOLE(torque, 2, "torque is 2, allowed are 0");
+  WHOLE(damping, 2, "damping is 2, allowed are 0");
+  WHOLE(isa, 2, "isa is 2, allowed are 0");
+  REAL(dt, -1e-3, "dt is -0.001, must be finite and 0");
+  REAL(dt, NAN, "dt is nan");
+  REAL(dt, INFINITY, "dt is inf");
+  REAL(courant, 0.0, "courant is 0, must be finite and in (0, 1]");
+  REAL(courant, 1.01, "courant is 1.01");
+  REAL(courant, NAN, "courant is nan");
+  REAL(radius_ratio, 1.0, "radius_ratio is 1, must be finite and in (1, 4]");
+  REAL(radius_ratio, 4.1, "radius_ratio is 4.1");
+  REAL(radius_ratio, NAN, "radius_ratio is nan");
+  REAL(f1, 0.0, "f1 is 0, must be finite and > 0 Hz");
+  REAL(f2, -2.0, "f2 is -2");
+  REAL(f2, INFINITY, "f2 is inf");
+  REAL(period_x, -1.0, "period_x is -1");
+  REAL(period_x, NAN, "period_x is nan");
+  REAL(period_x, 2.0, "period_x is 2 m, must be above re = 1.5 m and the body's width 2 m");
+  REAL(divergence, 0.0, "divergence is 0, must be finite and > 0 m/s2");
+  REAL(divergence, INFINITY, "divergence is inf");
+#undef WHOLE
+#undef REAL
+  assert_int_equal(mps_particles_epoch(set), epoch);
+  assert_int_equal(mps_particles_field_count(set), fields);
+  mps_dynamics *dynamics = NULL;
+  assert_int_equal(mps_dynamics_create(NULL, set, NULL, &dynamics), MPS_ERROR_ARGUMENT);
+  mps_assert_fails(context, mps_dynamics_create(context, set, NULL, NULL), MPS_ERROR_ARGUMENT,
+                   "out is NULL");
+  mps_assert_fails(context, mps_dynamics_create(context, NULL, NULL, &dynamics), MPS_ERROR_ARGUMENT,
+                   "particles is NULL");
+  mps_context *other = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_assert_fails(other, mps_dynamics_create(other, set, NULL, &dynamics), MPS_ERROR_ARGUMENT,
+                   "another context");
+  mps_context_destroy(&other);
+  mps_particles_destroy(&set);
+}
+
+/* Puts a value into a field of particle 4 and expects a refusal that leaves no trace. */
+static void refuse_value(const char *field, int component, double value, const char *text) {
+  mps_particles *set = block(3, 3);
+  mps_view view;
+  mps_dynamics *dynamics = NULL;
+  mps_assert_ok(context, mps_particles_add_field(set, field, 0));
+  mps_assert_ok(context, mps_particles_view(set, field, &view));
+  const double former = *mps_view_f64(&view, 4, component);
+  const uint64_t epoch = mps_particles_epoch(set);
+  *mps_view_f64(&view, 4, component) = value;
+  mps_assert_fails(context, mps_dynamics_create(context, set, NULL, &dynamics), MPS_ERROR_ARGUMENT,
+                   text);
+  assert_null(dynamics);
+  assert_int_equal(mps_particles_epoch(set), epoch);
+  *mps_view_f64(&view, 4, component) = former; /* mended: as if nothing had been */
+  mps_assert_ok(context, mps_dynamics_create(context, set, NULL, &dynamics));
+  mps_dynamics_destroy(&dynamics);
+  mps_particles_destroy(&set);
+}
+
+static void bad_fields_are_refused_and_can_be_mended(void **state) {
+  (void)state;
+  const double bad[] = {0.0, -1.0, NAN, INFINITY};
+  for (int k = 0; k < 4; k++) {
+    refuse_value("density", 0, bad[k], "density of particle 4 is");
+    refuse_value("shear_velocity", 0, bad[k], "shear_velocity of particle 4 is");
+    refuse_value("pressure_velocity", 0, bad[k], "pressure_velocity of particle 4 is");
+  }
+  refuse_value("pressure_velocity", 0, 141.0, "is 141 m/s, must be at least sqrt(2) times");
+  refuse_value("damping", 0, -0.1, "damping of particle 4 is -0.1, must be finite and >= 0");
+  refuse_value("damping", 0, NAN, "damping of particle 4 is nan");
+  refuse_value("position", 0, NAN, "position of particle 4 is nan, must be finite");
+  refuse_value("position", 1, 1e12, "to 1e+12 m in y, allowed are 1e+09 spacings");
+  refuse_value("displacement", 1, INFINITY, "displacement of particle 4 is inf");
+  refuse_value("velocity", 0, NAN, "velocity of particle 4 is nan");
+  refuse_value("rotation", 0, NAN, "rotation of particle 4 is nan");
+  refuse_value("spin", 0, NAN, "spin of particle 4 is nan");
+}
+
+static void particles_at_one_point_are_refused(void **state) {
+  (void)state;
+  mps_particles *set = block(3, 3);
+  mps_dynamics *dynamics = NULL;
+  mps_view x;
+  mps_assert_ok(context, mps_particles_view(set, "position", &x));
+  *mps_view_f64(&x, 4, 0) = 0.5;
+  mps_assert_fails(context, mps_dynamics_create(context, set, NULL, &dynamics), MPS_ERROR_ARGUMENT,
+                   "two particles lie at the same point (0.5, 1.5)");
+  *mps_view_f64(&x, mps_particles_index(set, 4), 0) = 1.5; /* the set may have been sorted */
+  mps_assert_ok(context, mps_dynamics_create(context, set, NULL, &dynamics));
+  assert_int_equal(mps_dynamics_pairs(dynamics), 6 + 6 + 8);
+  mps_dynamics_destroy(&dynamics);
+  mps_particles_destroy(&set);
+}
+
+static void a_set_needs_material_a_plane_and_particles(void **state) {
+  (void)state;
+  mps_particles_def def = mps_particles_defaults();
+  mps_particles *set = NULL;
+  mps_dynamics *dynamics = NULL;
+  def.spacing = 1.0;
+  mps_assert_ok(context, mps_particles_create(context, &def, &set));
+  mps_assert_fails(context, mps_dynamics_create(context, set, NULL, &dynamics), MPS_ERROR_ARGUMENT,
+                   "has 0 particles, allowed are 1 to");
+  const double x[2] = {0.0, 0.0};
+  mps_assert_ok(context, mps_particles_append(set, 1, x));
+  mps_assert_fails(context, mps_dynamics_create(context, set, NULL, &dynamics), MPS_ERROR_FIELD,
+                   "no field 'density'");
+  mps_particles_destroy(&set);
+  def.dim = 3;
+  mps_assert_ok(context, mps_particles_create(context, &def, &set));
+  mps_assert_fails(context, mps_dynamics_create(context, set, NULL, &dynamics),
+                   MPS_ERROR_UNSUPPORTED, "dim 3");
+  mps_particles_destroy(&set);
+}
+
+static void marks_of_columns_must_make_sense(void **state) {
+  (void)state;
+  mps_particles *set = block(3, 3);
+  mps_view mark;
+  mps_dynamics *dynamics = NULL;
+  mps_assert_ok(context, mps_particles_add_field(set, "free_field", 0));
+  mps_assert_ok(context, mps_particles_view(set, "free_field", &mark));
+  *mps_view_i64(&mark, 2, 0) = 3;
+  mps_assert_fails(context, mps_dynamics_create(context, set, NULL, &dynamics), MPS_ERROR_ARGUMENT,
+                   "free_field of particle 2 is 3, allowed are 0, 1 (left), 2 (right)");
+  *mps_view_i64(&mark, 2, 0) = -1;
+  mps_assert_fails(context, mps_dynamics_create(context, set, NULL, &dynamics), MPS_ERROR_ARGUMENT,
+                   "free_field of particle 2 is -1");
+  for (int64_t k = 0; k < 9; k++) *mps_view_i64(&mark, k, 0) = 1;
+  mps_assert_fails(context, mps_dynamics_create(context, set, NULL, &dynamics), MPS_ERROR_ARGUMENT,
+                   "all 9 particles belong to free-field columns");
+  for (int64_t k = 0; k < 9; k++) *mps_view_i64(&mark, k, 0) = k % 3 == 2 ? 2 : 0;
+  mps_view x;
+  mps_assert_ok(context, mps_particles_view(set, "position", &x));
+  *mps_view_f64(&x, 5, 1) += 0.1;
+  mps_assert_fails(context, mps_dynamics_create(context, set, NULL, &dynamics), MPS_ERROR_ARGUMENT,
+                   "the right free-field column is not a straight stack");
+  *mps_view_f64(&x, mps_particles_index(set, 5), 1) -= 0.1; /* the set may have been sorted */
+  mps_dynamics_def def = mps_dynamics_defaults();
+  def.period_x = 10.0;
+  mps_assert_fails(context, mps_dynamics_create(context, set, &def, &dynamics), MPS_ERROR_ARGUMENT,
+                   "period_x is 10 m, must be 0 with free-field columns");
+  mps_assert_ok(context, mps_dynamics_create(context, set, NULL, &dynamics));
+  mps_dynamics_destroy(&dynamics);
+  mps_particles_destroy(&set);
+}
+
+/* ---- calls ----------------------------------------------------------------------------------- */
+
+static void calls_without_a_solver_are_refused(void **state) {
+  (void)state;
+  mps_dynamics *none = NULL;
+  assert_int_equal(mps_dynamics_hold(none, 1, 0, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_drive(none, 0, NULL, 1.0, 0, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_viscous(none, NULL, 0, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_add_free_field(NULL, MPS_SIDE_LEFT, 2), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_step(none, 1), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_run(none, 1.0, 1, NULL, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_restart(none, 0.0), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_resume(none, 0.0, 0), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_set_dt(none, 1.0), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_get_energy(none, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_get_momentum(none, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_limit_linear(none, 0.0, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_limit_stepping(none, NULL, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_predict_dt(NULL, NULL, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_fit_limits(NULL, 0, NULL, NULL, NULL, NULL, 1.0, NULL),
+                   MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_limit_fit_printed(NULL, 'S', NULL), MPS_ERROR_ARGUMENT);
+  assert_true(mps_dynamics_time(none) == 0.0 && mps_dynamics_dt(none) == 0.0);
+  assert_int_equal(mps_dynamics_steps(none), 0);
+  assert_int_equal(mps_dynamics_pairs(none), 0);
+  mps_dynamics_destroy(&none);
+  mps_dynamics_destroy(NULL);
+}
+
+static void bad_calls_are_refused(void **state) {
+  (void)state;
+  mps_particles *set = block(3, 3);
+  mps_dynamics *d = solver(set);
+  mps_linear_limit limit = {.dt = -7.0};
+  mps_bisection found = {.stable = -7.0};
+  mps_assert_fails(context, mps_dynamics_step(d, -1), MPS_ERROR_ARGUMENT, "count is -1");
+  mps_assert_fails(context, mps_dynamics_run(d, NAN, 1, NULL, NULL), MPS_ERROR_ARGUMENT, "nan");
+  mps_assert_fails(context, mps_dynamics_run(d, 1.0, 0, NULL, NULL), MPS_ERROR_ARGUMENT, "every 0");
+  mps_assert_fails(context, mps_dynamics_run(d, 1e300, 1, NULL, NULL), MPS_ERROR_ARGUMENT,
+                   "1e+300");
+  mps_assert_fails(context, mps_dynamics_restart(d, NAN), MPS_ERROR_ARGUMENT, "time is nan");
+  mps_assert_fails(context, mps_dynamics_resume(d, INFINITY, 1), MPS_ERROR_ARGUMENT, "inf");
+  mps_assert_fails(context, mps_dynamics_resume(d, 0.0, -1), MPS_ERROR_ARGUMENT, "step -1");
+  const double bad[] = {0.0, -1.0, NAN, INFINITY};
+  for (int k = 0; k < 4; k++)
+    mps_assert_fails(context, mps_dynamics_set_dt(d, bad[k]), MPS_ERROR_ARGUMENT,
+                     "must be finite and > 0");
+  mps_assert_fails(context, mps_dynamics_get_energy(d, NULL), MPS_ERROR_ARGUMENT, "out is NULL");
+  mps_assert_fails(context, mps_dynamics_get_momentum(d, NULL), MPS_ERROR_ARGUMENT, "out is NULL");
+  mps_assert_fails(context, mps_dynamics_limit_linear(d, 0.0, NULL), MPS_ERROR_ARGUMENT, "out");
+  mps_assert_fails(context, mps_dynamics_limit_linear(d, -1.0, &limit), MPS_ERROR_ARGUMENT,
+                   "duration is -1 s, must be finite and >= 0");
+  mps_assert_fails(context, mps_dynamics_limit_linear(d, NAN, &limit), MPS_ERROR_ARGUMENT, "nan");
+  mps_assert_near(limit.dt, -7.0, 0.0);
+  mps_assert_fails(context, mps_dynamics_limit_stepping(d, NULL, NULL), MPS_ERROR_ARGUMENT, "out");
+  const struct {
+    double criterion, accuracy, duration, lower, upper;
+    const char *text;
+  } cases[] = {{0.0, 1.2, 1.0, 0.0, 0.0, "criterion is 0 m/s2, must be finite and > 0"},
+               {NAN, 1.2, 1.0, 0.0, 0.0, "criterion is nan"},
+               {1.0, 1.0, 1.0, 0.0, 0.0, "accuracy is 1, must be a ratio in (1, 100]"},
+               {1.0, NAN, 1.0, 0.0, 0.0, "accuracy is nan"},
+               {1.0, 1.2, 0.0, 0.0, 0.0, "duration is 0 s, must be finite and > 0"},
+               {1.0, 1.2, INFINITY, 0.0, 0.0, "duration is inf"},
+               {1.0, 1.2, 1.0, 2.0, 1.0, "lower is 2 s and upper 1 s"},
+               {1.0, 1.2, 1.0, -1.0, 0.0, "lower is -1 s"},
+               {1.0, 1.2, 1.0, 0.0, NAN, "upper nan"}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    mps_bisection_def def = mps_bisection_defaults();
+    def.criterion = cases[k].criterion;
+    def.accuracy = cases[k].accuracy;
+    def.duration = cases[k].duration;
+    def.lower = cases[k].lower;
+    def.upper = cases[k].upper;
+    mps_assert_fails(context, mps_dynamics_limit_stepping(d, &def, &found), MPS_ERROR_ARGUMENT,
+                     cases[k].text);
+  }
+  mps_assert_near(found.stable, -7.0, 0.0);
+  mps_assert_near(mps_dynamics_dt(d), 1e-3, 0.0);
+  assert_int_equal(mps_dynamics_steps(d), 0);
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(definitions_carry_their_size_and_defaults),
+      cmocka_unit_test(definitions_of_another_size),
+      cmocka_unit_test(bad_definitions_are_refused),
+      cmocka_unit_test(bad_fields_are_refused_and_can_be_mended),
+      cmocka_unit_test(particles_at_one_point_are_refused),
+      cmocka_unit_test(a_set_needs_material_a_plane_and_particles),
+      cmocka_unit_test(marks_of_columns_must_make_sense),
+      cmocka_unit_test(calls_without_a_solver_are_refused),
+      cmocka_unit_test(bad_calls_are_refused),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}

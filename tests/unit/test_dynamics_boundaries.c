@@ -1,0 +1,449 @@
+/* test_dynamics_boundaries.c - held, driven, viscous, periodic and free-field boundaries of the
+ * explicit MPS solver.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "soil_column.h"
+#include "test_fixture.h"
+
+static const soil_layer soil = {1e9, 1500.0, 100.0, 200.0, 0.0};
+static const soil_layer damped = {1e9, 1500.0, 100.0, 200.0, 0.1};
+
+static mps_dynamics *solver(mps_particles *set, int integrator, double dt) {
+  mps_dynamics_def def = mps_dynamics_defaults();
+  mps_dynamics *dynamics = NULL;
+  def.integrator = integrator;
+  def.dt = dt;
+  mps_assert_ok(context, mps_dynamics_create(context, set, &def, &dynamics));
+  return dynamics;
+}
+
+static double value(mps_particles *set, const char *field, int64_t id, int component) {
+  return soil_value(context, set, field, id, component);
+}
+
+static mps_signal *sine(double phase) {
+  mps_signal *signal = NULL;
+  mps_assert_ok(context, mps_signal_sine(context, 3.0, 0.01, phase, &signal));
+  return signal;
+}
+
+/* ---- arguments ------------------------------------------------------------------------------- */
+
+static void bad_boundaries_are_refused(void **state) {
+  (void)state;
+  mps_particles *set = soil_particles(context, 1.0, 3.0, 3.0, 1, &soil);
+  mps_dynamics *d = solver(set, MPS_INTEGRATOR_VERLET, 1e-3);
+  mps_signal *signal = sine(0.0);
+  const int64_t ids[2] = {0, 9};
+  mps_assert_fails(context, mps_dynamics_hold(d, 0, 1, ids), MPS_ERROR_ARGUMENT, "dofs is 0");
+  mps_assert_fails(context, mps_dynamics_hold(d, 8, 1, ids), MPS_ERROR_ARGUMENT, "dofs is 8");
+  mps_assert_fails(context, mps_dynamics_hold(d, 1, 0, ids), MPS_ERROR_ARGUMENT, "count is 0");
+  mps_assert_fails(context, mps_dynamics_hold(d, 1, -1, ids), MPS_ERROR_ARGUMENT, "count is -1");
+  mps_assert_fails(context, mps_dynamics_hold(d, 1, 1, NULL), MPS_ERROR_ARGUMENT, "ids is NULL");
+  mps_assert_fails(context, mps_dynamics_hold(d, 1, 2, ids), MPS_ERROR_ARGUMENT,
+                   "ids[1] is 9: the set has no such particle");
+  mps_assert_fails(context, mps_dynamics_drive(d, 2, signal, 1.0, 1, ids), MPS_ERROR_ARGUMENT,
+                   "component is 2, allowed are 0 (x) and 1 (y)");
+  mps_assert_fails(context, mps_dynamics_drive(d, 0, NULL, 1.0, 1, ids), MPS_ERROR_ARGUMENT,
+                   "signal is NULL");
+  mps_assert_fails(context, mps_dynamics_drive(d, 0, signal, NAN, 1, ids), MPS_ERROR_ARGUMENT,
+                   "factor is nan");
+  mps_assert_fails(context, mps_dynamics_drive(d, 0, signal, 1.0, 2, ids), MPS_ERROR_ARGUMENT,
+                   "ids[1] is 9");
+  const struct {
+    int32_t normal;
+    double density, vs, vp, factor;
+    const char *text;
+  } cases[] = {{2, 0.0, 0.0, 0.0, 1.0, "normal is 2, allowed are 0 (x) and 1 (y)"},
+               {1, -1.0, 0.0, 0.0, 1.0, "density is -1, must be finite and > 0, or 0"},
+               {1, 0.0, NAN, 0.0, 1.0, "shear_velocity is nan"},
+               {1, 0.0, 0.0, INFINITY, 1.0, "pressure_velocity is inf"},
+               {1, 0.0, 0.0, 0.0, NAN, "factor is nan"}};
+  for (int k = 0; k < 5; k++) {
+    mps_viscous_def def = mps_viscous_defaults();
+    def.normal = cases[k].normal;
+    def.density = cases[k].density;
+    def.shear_velocity = cases[k].vs;
+    def.pressure_velocity = cases[k].vp;
+    def.factor = cases[k].factor;
+    mps_assert_fails(context, mps_dynamics_viscous(d, &def, 1, ids), MPS_ERROR_ARGUMENT,
+                     cases[k].text);
+  }
+  mps_assert_fails(context, mps_dynamics_viscous(d, NULL, 2, ids), MPS_ERROR_ARGUMENT, "ids[1]");
+  /* none of it has left a boundary: the block still moves freely as a whole */
+  mps_assert_ok(context, mps_particles_set(set, "velocity", 0, 0.5));
+  mps_assert_ok(context, mps_dynamics_restart(d, 0.0));
+  mps_assert_ok(context, mps_dynamics_step(d, 10));
+  for (int64_t id = 0; id < 9; id++) mps_assert_near(value(set, "velocity", id, 0), 0.5, 1e-12);
+  mps_assert_fails(context, mps_dynamics_hold(d, 1, 1, ids), MPS_ERROR_STATE, "before the first");
+  mps_assert_fails(context, mps_dynamics_drive(d, 0, signal, 1.0, 1, ids), MPS_ERROR_STATE,
+                   "first");
+  mps_assert_fails(context, mps_dynamics_viscous(d, NULL, 1, ids), MPS_ERROR_STATE, "first");
+  mps_assert_ok(context, mps_dynamics_restart(d, 0.0));
+  mps_assert_ok(context, mps_dynamics_hold(d, 1, 1, ids));
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+  mps_signal_destroy(&signal);
+}
+
+static void bad_columns_are_refused(void **state) {
+  (void)state;
+  mps_particles_def def = mps_particles_defaults();
+  mps_particles *set = NULL;
+  def.spacing = 1.0;
+  mps_assert_ok(context, mps_particles_create(context, &def, &set));
+  mps_assert_fails(context, mps_dynamics_add_free_field(set, MPS_SIDE_LEFT, 2), MPS_ERROR_ARGUMENT,
+                   "0 particles");
+  mps_particles_destroy(&set);
+  def.dim = 3;
+  mps_assert_ok(context, mps_particles_create(context, &def, &set));
+  mps_assert_fails(context, mps_dynamics_add_free_field(set, MPS_SIDE_LEFT, 2), MPS_ERROR_ARGUMENT,
+                   "dim 3");
+  mps_particles_destroy(&set);
+  set = soil_particles(context, 1.0, 3.0, 4.0, 1, &soil);
+  mps_assert_fails(context, mps_dynamics_add_free_field(set, (mps_side)3, 2), MPS_ERROR_ARGUMENT,
+                   "side is 3, allowed are 1 (left) and 2 (right)");
+  mps_assert_fails(context, mps_dynamics_add_free_field(set, MPS_SIDE_LEFT, 1), MPS_ERROR_ARGUMENT,
+                   "gap is 1 spacings, must be 2 to");
+  assert_int_equal(mps_particles_count(set), 12);
+  mps_assert_ok(context, mps_dynamics_add_free_field(set, MPS_SIDE_LEFT, 3));
+  assert_int_equal(mps_particles_count(set), 16);
+  mps_assert_fails(context, mps_dynamics_add_free_field(set, MPS_SIDE_LEFT, 3), MPS_ERROR_STATE,
+                   "already has a left");
+  assert_int_equal(mps_particles_count(set), 16);
+  for (int64_t id = 12; id < 16; id++) {
+    mps_assert_near(value(set, "position", id, 0), 0.5 - 3.0, 1e-15);
+    mps_assert_near(value(set, "density", id, 0), 1500.0, 0.0);
+  }
+  mps_particles_destroy(&set);
+}
+
+/* ---- held and driven ------------------------------------------------------------------------- */
+
+static void a_held_freedom_stays_where_it_is(void **state) {
+  (void)state;
+  for (int integrator = 0; integrator < 3; integrator++) {
+    mps_particles *set = soil_particles(context, 1.0, 4.0, 4.0, 1, &damped);
+    const int64_t ids[3] = {3, 6, 9};
+    mps_assert_ok(context, mps_particles_set(set, "velocity", 0, 0.2));
+    mps_assert_ok(context, mps_particles_set(set, "velocity", 1, -0.1));
+    mps_assert_ok(context, mps_particles_set(set, "spin", 0, 0.3));
+    mps_assert_ok(context, mps_particles_set(set, "displacement", 0, 0.05));
+    mps_dynamics *d = solver(set, integrator, 1e-3);
+    mps_assert_ok(context, mps_dynamics_hold(d, MPS_DOF_X, 1, &ids[0]));
+    mps_assert_ok(context, mps_dynamics_hold(d, MPS_DOF_Y, 1, &ids[1]));
+    mps_assert_ok(context, mps_dynamics_hold(d, MPS_DOF_ROTATION, 1, &ids[2]));
+    mps_assert_ok(context, mps_dynamics_step(d, 25));
+    const char *const field[3] = {"displacement", "displacement", "rotation"};
+    const char *const rate[3] = {"velocity", "velocity", "spin"};
+    for (int held = 0; held < 3; held++)
+      for (int c = 0; c < 3; c++) {
+        const double moved = value(set, field[c], ids[held], c == 1) - (c == 0 ? 0.05 : 0.0);
+        if (c == held) {
+          mps_assert_near(moved, 0.0, 0.0);
+          mps_assert_near(value(set, rate[c], ids[held], c == 1), 0.0, 0.0);
+        } else {
+          assert_true(fabs(moved) > 1e-6);
+        }
+      }
+    mps_dynamics_destroy(&d);
+    mps_particles_destroy(&set);
+  }
+}
+
+static void a_driven_particle_follows_its_signal(void **state) {
+  (void)state;
+  mps_signal *x = sine(0.4), *y = sine(1.1);
+  const double dt = 1e-3, start = 0.25;
+  for (int integrator = 0; integrator < 3; integrator++) {
+    mps_particles *set = soil_particles(context, 1.0, 4.0, 4.0, 1, &damped);
+    mps_dynamics *d = solver(set, integrator, dt);
+    const int64_t id = 5;
+    mps_assert_ok(context, mps_dynamics_drive(d, 0, y, 7.0, 1, &id));
+    mps_assert_ok(context, mps_dynamics_drive(d, 0, x, 2.0, 1, &id)); /* the last one counts */
+    mps_assert_ok(context, mps_dynamics_drive(d, 1, y, -3.0, 1, &id));
+    mps_assert_near(value(set, "displacement", id, 0), 2.0 * mps_signal_displacement(x, 0.0), 0.0);
+    mps_assert_ok(context, mps_dynamics_restart(d, start));
+    for (int k = 0; k <= 30; k++) {
+      const double t = mps_dynamics_time(d);
+      const mps_signal *signal[2] = {x, y};
+      const double factor[2] = {2.0, -3.0};
+      for (int c = 0; c < 2; c++) {
+        const double u = factor[c] * mps_signal_displacement(signal[c], t);
+        const double before = factor[c] * mps_signal_displacement(signal[c], t - dt);
+        const double v = factor[c] * mps_signal_velocity(signal[c], t);
+        mps_assert_near(value(set, "displacement", id, c), u, 0.0);
+        mps_assert_near(value(set, "position", id, c), value(set, "reference", id, c) + u, 0.0);
+        mps_assert_near(value(set, "velocity", id, c),
+                        k == 0 || integrator == MPS_INTEGRATOR_EULER ? v : (u - before) / dt, 1e-9);
+        if (k > 0) /* that of the instant before, as everybody's */
+          mps_assert_near(value(set, "acceleration", id, c),
+                          factor[c] * mps_signal_acceleration(signal[c], t - dt), 1e-9);
+      }
+      mps_assert_ok(context, mps_dynamics_step(d, 1));
+    }
+    mps_dynamics_destroy(&d);
+    mps_particles_destroy(&set);
+  }
+  mps_signal_destroy(&x);
+  mps_signal_destroy(&y);
+}
+
+/* ---- viscous --------------------------------------------------------------------------------- */
+
+/* One free particle: only dashpots act. (1 + c dt/2) v+ = (1 - c dt/2) v- + 2 c dt v_in, and
+ * explicitly for Euler; a corner has two faces. */
+static void dashpots_on_one_particle(void **state) {
+  (void)state;
+  const double dt = 2e-3, D = 0.5, area = D * D;
+  mps_signal *wave = sine(0.7);
+  for (int integrator = 0; integrator < 3; integrator++)
+    for (int corner = 0; corner < 2; corner++) {
+      mps_particles *set = soil_particles(context, D, D, D, 1, &soil);
+      const int64_t id = 0;
+      assert_int_equal(mps_particles_count(set), 1);
+      mps_assert_ok(context, mps_particles_set(set, "velocity", 0, 0.3));
+      mps_assert_ok(context, mps_particles_set(set, "velocity", 1, -0.2));
+      mps_dynamics *d = solver(set, integrator, dt);
+      mps_viscous_def def = mps_viscous_defaults();
+      def.density = 2000.0;
+      def.shear_velocity = 80.0;
+      def.incoming[0] = wave;
+      def.factor = 1.5;
+      mps_assert_ok(context, mps_dynamics_viscous(d, &def, 1, &id)); /* face across y */
+      if (corner) {
+        def = mps_viscous_defaults();
+        def.normal = 0;
+        mps_assert_ok(context, mps_dynamics_viscous(d, &def, 1, &id));
+      }
+      const double c1[2] = {2000.0 * 80.0 * D / (1500.0 * area),   /* Vs across */
+                            2000.0 * 200.0 * D / (1500.0 * area)}; /* Vp, the particle's own */
+      const double c2[2] = {corner ? 200.0 / D : 0.0, corner ? 100.0 / D : 0.0};
+      double v[2] = {0.3, -0.2};
+      for (int k = 0; k < 20; k++) {
+        for (int m = 0; m < 2; m++) {
+          const double c = c1[m] + c2[m];
+          const double in = m == 0 ? 1.5 * mps_signal_velocity(wave, mps_dynamics_time(d)) : 0.0;
+          const double pull = dt * 2.0 * c1[m] * in;
+          v[m] = integrator == MPS_INTEGRATOR_EULER
+                     ? v[m] * (1.0 - c * dt) + pull
+                     : (v[m] * (1.0 - 0.5 * c * dt) + pull) / (1.0 + 0.5 * c * dt);
+        }
+        mps_assert_ok(context, mps_dynamics_step(d, 1));
+        for (int m = 0; m < 2; m++)
+          mps_assert_near(value(set, "velocity", id, m), v[m], 1e-11 * (1.0 + fabs(v[m])));
+      }
+      mps_dynamics_destroy(&d);
+      mps_particles_destroy(&set);
+    }
+  mps_signal_destroy(&wave);
+}
+
+/* Sends a pulse of half width `width` (m) from the middle of an endlessly wide column through its
+ * two viscous ends; which part of the energy comes back? */
+static double reflected(int wave, int integrator, double width) {
+  const double height = 100.0;
+  mps_particles *set = soil_particles(context, 1.0, 3.0, height, 1, &soil);
+  mps_dynamics_def def = mps_dynamics_defaults();
+  mps_dynamics *d = NULL;
+  mps_dynamics_energy first, last;
+  mps_view x, v;
+  mps_assert_ok(context, mps_particles_add_field(set, "velocity", 0));
+  mps_assert_ok(context, mps_particles_view(set, "position", &x));
+  mps_assert_ok(context, mps_particles_view(set, "velocity", &v));
+  for (int64_t k = 0; k < x.shape[0]; k++)
+    *mps_view_f64(&v, k, wave) =
+        1e-3 * exp(-pow((*mps_view_f64(&x, k, 1) - 0.5 * height) / width, 2));
+  def.integrator = integrator;
+  def.period_x = 3.0;
+  mps_assert_ok(context, mps_dynamics_create(context, set, &def, &d));
+  for (int end = 0; end < 2; end++) {
+    int64_t count;
+    int64_t *ids =
+        soil_select(context, set, -1.0, end ? height - 1.0 : 0.0, 9.0, end ? height : 1.0, &count);
+    assert_int_equal(count, 3);
+    mps_assert_ok(context, mps_dynamics_viscous(d, NULL, count, ids));
+    free(ids);
+  }
+  mps_assert_ok(context, mps_dynamics_get_energy(d, &first));
+  mps_assert_ok(context, mps_dynamics_run(d, 1.2, 1000, NULL, NULL));
+  mps_assert_ok(context, mps_dynamics_get_energy(d, &last));
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+  return last.total / first.total;
+}
+
+/* The ends sit half a spacing off, so the reflected amplitude is of the order D over the length of
+ * the wave: a quarter of the energy for twice the length. */
+static void waves_leave_through_viscous_ends(void **state) {
+  (void)state;
+  for (int wave = 0; wave < 2; wave++)
+    for (int integrator = 1; integrator < 3; integrator++) {
+      const double shorter = reflected(wave, integrator, 8.0);
+      const double longer = reflected(wave, integrator, 16.0);
+      print_message("%s wave, integrator %d: %.2e and %.2e of the energy come back\n",
+                    wave ? "P" : "S", integrator, shorter, longer);
+      assert_true(shorter < 4e-3 && longer < 0.3 * shorter);
+    }
+}
+
+/* ---- periodic and free field ----------------------------------------------------------------- */
+
+static void a_period_closes_the_body(void **state) {
+  (void)state;
+  for (int w = 2; w <= 5; w++) { /* 2: each neighbour from both sides */
+    const int h = 7;
+    mps_particles *set = soil_particles(context, 1.0, w, h, 1, &soil);
+    mps_dynamics_def def = mps_dynamics_defaults();
+    mps_dynamics *d = NULL;
+    mps_signal *signal = sine(0.0);
+    def.period_x = w;
+    def.dt = 1e-3;
+    mps_assert_ok(context, mps_dynamics_create(context, set, &def, &d));
+    assert_int_equal(mps_dynamics_pairs(d), w * h + 3 * w * (h - 1));
+    int64_t count;
+    int64_t *ids = soil_select(context, set, 0.0, 0.0, w, 1.0, &count);
+    mps_assert_ok(context, mps_dynamics_drive(d, 0, signal, 1.0, count, ids));
+    free(ids);
+    mps_assert_ok(context, mps_dynamics_step(d, 200));
+    for (int64_t id = 0; id < w * h; id++) { /* every column moves as the first */
+      mps_assert_near(value(set, "displacement", id, 0), value(set, "displacement", id / w * w, 0),
+                      1e-14);
+      mps_assert_near(value(set, "rotation", id, 0), value(set, "rotation", id / w * w, 0), 1e-14);
+    }
+    assert_true(fabs(value(set, "displacement", w * h - 1, 0)) > 1e-4);
+    mps_dynamics_destroy(&d);
+    mps_particles_destroy(&set);
+    mps_signal_destroy(&signal);
+  }
+}
+
+/* Level ground of two layers between two columns moves as they do, and as periodic ground does. */
+static void level_ground_moves_as_its_columns(void **state) {
+  (void)state;
+  const soil_layer layers[2] = {{6.0, 1600.0, 90.0, 180.0, 0.02},
+                                {1e9, 1900.0, 150.0, 400.0, 0.05}};
+  mps_signal *signal = sine(0.0);
+  for (int integrator = 0; integrator < 3; integrator++)
+    for (int wide = 0; wide < 2; wide++) {
+      double periodic[12][3];
+      for (int run = 0; run < 2; run++) { /* 0: periodic, 1: columns */
+        mps_particles *set = soil_particles(context, 1.0, 5.0, 12.0, 2, layers);
+        mps_dynamics_def def = mps_dynamics_defaults();
+        mps_dynamics *d = NULL;
+        def.integrator = integrator;
+        def.dt = 5e-4;
+        def.radius_ratio = wide ? 2.3 : 1.5;
+        if (run == 0) def.period_x = 5.0;
+        if (run == 1) mps_assert_ok(context, mps_dynamics_add_free_field(set, MPS_SIDE_LEFT, 3));
+        if (run == 1) mps_assert_ok(context, mps_dynamics_add_free_field(set, MPS_SIDE_RIGHT, 2));
+        mps_assert_ok(context, mps_dynamics_create(context, set, &def, &d));
+        int64_t count;
+        int64_t *ids = soil_select(context, set, -9.0, 0.0, 20.0, 1.0, &count);
+        mps_assert_ok(context, mps_dynamics_drive(d, 0, signal, 1.0, count, ids));
+        mps_assert_ok(context, mps_dynamics_drive(d, 1, signal, 0.3, count, ids));
+        free(ids);
+        mps_assert_ok(context, mps_dynamics_step(d, 300));
+        for (int64_t id = 0; id < mps_particles_count(set); id++) {
+          const int row = (int)floor(value(set, "reference", id, 1));
+          const double now[3] = {value(set, "displacement", id, 0),
+                                 value(set, "displacement", id, 1), value(set, "rotation", id, 0)};
+          if (run == 0 && id % 5 == 0) memcpy(periodic[row], now, sizeof now);
+          for (int c = 0; c < 3; c++) mps_assert_near(now[c], periodic[row][c], 1e-12);
+        }
+        assert_true(fabs(periodic[11][0]) > 1e-4);
+        mps_dynamics_destroy(&d);
+        mps_particles_destroy(&set);
+      }
+    }
+  mps_signal_destroy(&signal);
+}
+
+/* ---- shapes ---------------------------------------------------------------------------------- */
+
+static int32_t l_shape(void *user, const double *x) {
+  (void)user;
+  return x[0] < 5.0 || x[1] < 3.0;
+}
+
+/* Shape `which`, its axes exchanged if `turned`; smooth initial velocities. */
+static mps_particles *shape(int which, bool turned) {
+  const double size[][2] = {{1, 40}, {40, 1}, {300, 3}, {14, 60}, {1, 1}, {2, 1}};
+  mps_particles_def def = mps_particles_defaults();
+  mps_particles *set = NULL, *upright = NULL;
+  def.spacing = 1.0;
+  mps_assert_ok(context, mps_particles_create(context, &def, &upright));
+  mps_assert_ok(context, mps_particles_create(context, &def, &set));
+  const double lo[2] = {0.0, 0.0}, l[2] = {30.0, 40.0};
+  if (which < 6)
+    mps_assert_ok(context, mps_particles_fill_box(upright, lo, size[which], NULL));
+  else if (which == 6)
+    mps_assert_ok(context, mps_particles_fill_where(upright, lo, l, l_shape, NULL, NULL));
+  else /* a loose heap off any lattice */
+    for (int k = 0; k < 400; k++) {
+      const double x[2] = {fmod(k * 7.31, 23.0) + 0.31 * sin(k), floor(k / 20.0) + 0.3 * cos(k)};
+      mps_assert_ok(context, mps_particles_append(upright, 1, x));
+    }
+  mps_view x, v, w;
+  mps_assert_ok(context, mps_particles_view(upright, "position", &x));
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    const double at[2] = {*mps_view_f64(&x, k, turned), *mps_view_f64(&x, k, !turned)};
+    mps_assert_ok(context, mps_particles_append(set, 1, at));
+  }
+  mps_assert_ok(context, mps_particles_set(set, "density", 0, 1500.0));
+  mps_assert_ok(context, mps_particles_set(set, "shear_velocity", 0, 100.0));
+  mps_assert_ok(context, mps_particles_set(set, "pressure_velocity", 0, 200.0));
+  mps_assert_ok(context, mps_particles_set(set, "spin", 0, 0.0));
+  mps_assert_ok(context, mps_particles_add_field(set, "velocity", 0));
+  mps_assert_ok(context, mps_particles_view(set, "velocity", &v));
+  mps_assert_ok(context, mps_particles_view(set, "spin", &w));
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    *mps_view_f64(&v, k, turned) = sin(0.3 * *mps_view_f64(&x, k, 1));
+    *mps_view_f64(&v, k, !turned) = cos(0.2 * *mps_view_f64(&x, k, 0));
+    *mps_view_f64(&w, k, 0) = (turned ? -1.0 : 1.0) * sin((double)k);
+  }
+  mps_particles_destroy(&upright);
+  return set;
+}
+
+/* Exchanging the axes turns rows into columns and so changes the whole arrangement in memory, but
+ * not the motion. */
+static void odd_shapes_move_the_same_with_axes_exchanged(void **state) {
+  (void)state;
+  const int64_t pairs[] = {39, 39, 299 * 3 + 300 * 2 + 2 * 299 * 2, 13 * 60 + 14 * 59 + 2 * 13 * 59,
+                           0, 1,
+                           /* L: 5 x 40 and 25 x 3 beside it, 3 + 5 across the joint */
+                           (4 * 40 + 5 * 39 + 2 * 4 * 39) + (24 * 3 + 25 * 2 + 2 * 24 * 2) + 3 + 5};
+  for (int which = 0; which < 8; which++) {
+    mps_particles *set[2] = {shape(which, false), shape(which, true)};
+    mps_dynamics *d[2] = {solver(set[0], MPS_INTEGRATOR_VERLET, 2e-4),
+                          solver(set[1], MPS_INTEGRATOR_VERLET, 2e-4)};
+    if (which < 7) assert_int_equal(mps_dynamics_pairs(d[0]), pairs[which]);
+    assert_int_equal(mps_dynamics_pairs(d[0]), mps_dynamics_pairs(d[1]));
+    for (int t = 0; t < 2; t++) mps_assert_ok(context, mps_dynamics_step(d[t], 50));
+    for (int64_t id = 0; id < mps_particles_count(set[0]); id++) {
+      for (int c = 0; c < 2; c++)
+        mps_assert_near(value(set[0], "displacement", id, c), value(set[1], "displacement", id, !c),
+                        1e-13);
+      mps_assert_near(value(set[0], "rotation", id, 0), -value(set[1], "rotation", id, 0), 1e-13);
+    }
+    for (int t = 0; t < 2; t++) {
+      mps_dynamics_destroy(&d[t]);
+      mps_particles_destroy(&set[t]);
+    }
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(bad_boundaries_are_refused),
+      cmocka_unit_test(bad_columns_are_refused),
+      cmocka_unit_test(a_held_freedom_stays_where_it_is),
+      cmocka_unit_test(a_driven_particle_follows_its_signal),
+      cmocka_unit_test(dashpots_on_one_particle),
+      cmocka_unit_test(waves_leave_through_viscous_ends),
+      cmocka_unit_test(a_period_closes_the_body),
+      cmocka_unit_test(level_ground_moves_as_its_columns),
+      cmocka_unit_test(odd_shapes_move_the_same_with_axes_exchanged),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}

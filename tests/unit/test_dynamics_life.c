@@ -1,0 +1,192 @@
+/* test_dynamics_life.c - the explicit MPS solver and the particle set that it uses; order of
+ * destruction, refused allocations, steps that allocate nothing.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "soil_column.h"
+#include "test_allocator.h"
+#include "test_fixture.h"
+
+static const soil_layer soil = {1e9, 1500.0, 100.0, 200.0, 0.05};
+
+static mps_dynamics *solver(mps_particles *particles) {
+  mps_dynamics_def def = mps_dynamics_defaults();
+  mps_dynamics *dynamics = NULL;
+  def.dt = 1e-3;
+  mps_assert_ok(context, mps_dynamics_create(context, particles, &def, &dynamics));
+  return dynamics;
+}
+
+/* ---- life ------------------------------------------------------------------------------------ */
+
+static void a_set_is_pinned_while_a_solver_lives(void **state) {
+  (void)state;
+  mps_particles *set = soil_particles(context, 1.0, 3.0, 3.0, 1, &soil);
+  mps_dynamics *d = solver(set), *second = NULL;
+  const double x[2] = {9.5, 0.5};
+  const int32_t fields = mps_particles_field_count(set);
+  mps_assert_fails(context, mps_particles_append(set, 1, x), MPS_ERROR_STATE, "in use");
+  mps_assert_fails(context, mps_dynamics_create(context, set, NULL, &second), MPS_ERROR_STATE,
+                   "another solver uses the set");
+  mps_assert_fails(context, mps_dynamics_add_free_field(set, MPS_SIDE_LEFT, 2), MPS_ERROR_STATE,
+                   "in use");
+  assert_int_equal(mps_particles_field_count(set), fields);
+  mps_dynamics_destroy(&d);
+  assert_null(d);
+  mps_assert_ok(context, mps_particles_append(set, 1, x));
+  mps_particles_destroy(&set);
+}
+
+static void added_and_moved_particles_get_new_references(void **state) {
+  (void)state;
+  mps_particles *set = soil_particles(context, 1.0, 3.0, 3.0, 1, &soil);
+  mps_dynamics *d = solver(set);
+  mps_dynamics_destroy(&d);
+  const double x[2] = {3.5, 0.5};
+  mps_assert_ok(context, mps_particles_append(set, 1, x)); /* its reference is (0, 0) */
+  mps_assert_ok(context, mps_particles_set(set, "density", 0, 1500.0));
+  mps_assert_ok(context, mps_particles_set(set, "shear_velocity", 0, 100.0));
+  mps_assert_ok(context, mps_particles_set(set, "pressure_velocity", 0, 200.0));
+  mps_view at;
+  mps_assert_ok(context, mps_particles_view(set, "position", &at));
+  *mps_view_f64(&at, mps_particles_index(set, 8), 1) = 3.0; /* moved by hand */
+  d = solver(set);
+  mps_assert_near(soil_value(context, set, "position", 9, 0), 3.5, 0.0);
+  mps_assert_near(soil_value(context, set, "position", 9, 1), 0.5, 0.0);
+  mps_assert_near(soil_value(context, set, "reference", 8, 1), 3.0, 0.0);
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+}
+
+/* Parts given up in each of the 24 orders; the address sanitizer looks for leaks. */
+static void parts_may_go_in_any_order(void **state) {
+  (void)state;
+  for (int order = 0; order < 24; order++) {
+    mps_context *own = test_context(MPS_EXECUTOR_SERIAL, 1);
+    mps_particles *set = soil_particles(own, 1.0, 3.0, 3.0, 1, &soil);
+    mps_dynamics *d = NULL;
+    mps_signal *signal = NULL;
+    const int64_t id = 0;
+    mps_assert_ok(own, mps_dynamics_create(own, set, NULL, &d));
+    mps_assert_ok(own, mps_signal_ricker(own, 4.0, 0.25, 1.0, &signal));
+    mps_assert_ok(own, mps_dynamics_drive(d, 0, signal, 1.0, 1, &id));
+    int left[4] = {0, 1, 2, 3};
+    for (int k = 0, rest = order; k < 4; k++) {
+      const int pick = rest % (4 - k);
+      rest /= 4 - k;
+      if (left[pick] == 0) mps_context_destroy(&own);
+      if (left[pick] == 1) mps_particles_destroy(&set);
+      if (left[pick] == 2) mps_dynamics_destroy(&d);
+      if (left[pick] == 3) mps_signal_destroy(&signal);
+      left[pick] = left[3 - k];
+      if (d) assert_int_equal(mps_dynamics_step(d, 2), MPS_OK);
+    }
+  }
+}
+
+/* ---- memory ---------------------------------------------------------------------------------- */
+
+/* Everything that allocates: set, columns, solver, boundaries, limits, energy, a run. */
+static mps_status everything(mps_context *own, int integrator) {
+  mps_particles_def set_def = mps_particles_defaults();
+  mps_particles *set = NULL;
+  mps_dynamics *d = NULL;
+  mps_signal *signal = NULL;
+  const double lo[2] = {0.0, 0.0}, hi[2] = {4.0, 4.0};
+  const int64_t ids[3] = {0, 1, 2};
+  set_def.spacing = 1.0;
+  mps_status status = mps_particles_create(own, &set_def, &set);
+  if (status == MPS_OK) status = mps_particles_fill_box(set, lo, hi, NULL);
+  if (status == MPS_OK) status = mps_particles_set(set, "density", 0, 1500.0);
+  if (status == MPS_OK) status = mps_particles_set(set, "shear_velocity", 0, 100.0);
+  if (status == MPS_OK) status = mps_particles_set(set, "pressure_velocity", 0, 200.0);
+  if (status == MPS_OK) status = mps_particles_set(set, "damping", 0, 0.05);
+  if (status == MPS_OK) {
+    mps_view h;
+    status = mps_particles_view(set, "damping", &h);
+    if (status == MPS_OK) *mps_view_f64(&h, 5, 0) = 0.2; /* uneven */
+  }
+  if (status == MPS_OK) status = mps_dynamics_add_free_field(set, MPS_SIDE_LEFT, 2);
+  mps_dynamics_def def = mps_dynamics_defaults();
+  def.integrator = integrator;
+  if (status == MPS_OK) status = mps_dynamics_create(own, set, &def, &d);
+  if (status == MPS_OK) status = mps_signal_ricker(own, 4.0, 0.25, 1.0, &signal);
+  if (status == MPS_OK) status = mps_dynamics_hold(d, MPS_DOF_Y, 3, ids);
+  if (status == MPS_OK) status = mps_dynamics_drive(d, 0, signal, 1.0, 3, ids);
+  mps_viscous_def viscous = mps_viscous_defaults();
+  viscous.incoming[0] = viscous.incoming[1] = signal;
+  if (status == MPS_OK) status = mps_dynamics_viscous(d, &viscous, 3, ids);
+  mps_linear_limit limit;
+  if (status == MPS_OK) status = mps_dynamics_limit_linear(d, 1.0, &limit);
+  mps_bisection_def bisection = mps_bisection_defaults();
+  mps_bisection found;
+  bisection.duration = 0.6;
+  bisection.accuracy = 2.0;
+  if (status == MPS_OK) status = mps_dynamics_limit_stepping(d, &bisection, &found);
+  if (status == MPS_OK) status = mps_dynamics_run(d, 0.01, 1, NULL, NULL);
+  if (status == MPS_OK) status = mps_dynamics_set_dt(d, 1e-3);
+  mps_dynamics_energy energy;
+  if (status == MPS_OK) status = mps_dynamics_get_energy(d, &energy);
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+  mps_signal_destroy(&signal);
+  return status;
+}
+
+/* Refuses one allocation after the other. Arrays that belong together are asked for together, so
+ * unlike test_allocator_sweep this does not mind if some follow the refused one. */
+static void a_refused_allocation_leaks_nothing(void **state) {
+  (void)state;
+  for (int integrator = 0; integrator < 3; integrator++) {
+    mps_status status = MPS_ERROR_MEMORY;
+    int64_t refuse = 2;
+    for (; status != MPS_OK; refuse++) {
+      test_allocator allocator = {.refuse_at = refuse};
+      mps_context *own = test_allocator_context(&allocator);
+      assert_non_null(own);
+      status = everything(own, integrator);
+      if (status != MPS_OK) {
+        assert_int_equal(status, MPS_ERROR_MEMORY);
+        assert_int_equal(mps_context_error(own)->status, MPS_ERROR_MEMORY);
+      }
+      mps_context_destroy(&own);
+      assert_int_equal(allocator.live, 0);
+    }
+    assert_true(refuse > 80); /* it met them all */
+  }
+}
+
+static void steps_allocate_nothing(void **state) {
+  (void)state;
+  test_allocator allocator = {0};
+  mps_context *own = test_allocator_context(&allocator);
+  mps_particles *set = soil_particles(own, 1.0, 10.0, 20.0, 1, &soil);
+  mps_dynamics *d = NULL;
+  mps_signal *signal = NULL;
+  const int64_t ids[2] = {0, 199};
+  mps_assert_ok(own, mps_dynamics_create(own, set, NULL, &d));
+  mps_assert_ok(own, mps_signal_ricker(own, 4.0, 0.25, 1.0, &signal));
+  mps_assert_ok(own, mps_dynamics_drive(d, 0, signal, 1.0, 1, &ids[0]));
+  mps_assert_ok(own, mps_dynamics_viscous(d, NULL, 1, &ids[1]));
+  mps_assert_ok(own, mps_dynamics_step(d, 1)); /* finds dt */
+  const int64_t calls = allocator.calls;
+  mps_assert_ok(own, mps_dynamics_step(d, 20));
+  mps_assert_ok(own, mps_dynamics_run(d, mps_dynamics_time(d) + 0.1, 3, NULL, NULL));
+  mps_assert_ok(own, mps_dynamics_restart(d, 0.0));
+  mps_assert_ok(own, mps_dynamics_step(d, 20));
+  assert_int_equal(allocator.calls, calls);
+  mps_dynamics_destroy(&d);
+  mps_signal_destroy(&signal);
+  mps_particles_destroy(&set);
+  mps_context_destroy(&own);
+  assert_int_equal(allocator.live, 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_set_is_pinned_while_a_solver_lives),
+      cmocka_unit_test(added_and_moved_particles_get_new_references),
+      cmocka_unit_test(parts_may_go_in_any_order),
+      cmocka_unit_test(a_refused_allocation_leaks_nothing),
+      cmocka_unit_test(steps_allocate_nothing),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}

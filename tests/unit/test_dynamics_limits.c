@@ -1,0 +1,369 @@
+/* test_dynamics_limits.c - the stability limit by linear theory and by stepping, against closed
+ * forms, against runs just below and above it, and against the reference values of seed A.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "soil_column.h"
+#include "test_fixture.h"
+
+static const double pi = 3.14159265358979323846;
+
+static mps_dynamics *solver(mps_particles *set, const mps_dynamics_def *def) {
+  mps_dynamics *dynamics = NULL;
+  mps_assert_ok(context, mps_dynamics_create(context, set, def, &dynamics));
+  return dynamics;
+}
+
+static mps_linear_limit linear(mps_dynamics *dynamics, double duration) {
+  mps_linear_limit limit;
+  mps_assert_ok(context, mps_dynamics_limit_linear(dynamics, duration, &limit));
+  return limit;
+}
+
+/* Limit of a box of `width` x `height` particles, Vs = 120 m/s, D = 0.5 m. */
+static mps_linear_limit limit_of(const mps_dynamics_def *def, int width, int height, double ratio,
+                                 double damping) {
+  const soil_layer soil = {1e9, 1700.0, 120.0, 120.0 * ratio, damping};
+  mps_particles *set = soil_particles(context, 0.5, 0.5 * width, 0.5 * height, 1, &soil);
+  mps_dynamics *d = solver(set, def);
+  const mps_linear_limit limit = linear(d, 0.0);
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+  return limit;
+}
+
+/* ---- linear theory against closed forms ------------------------------------------------------ */
+
+static void a_large_lattice_spins_at_root_24(void **state) {
+  (void)state;
+  mps_dynamics_def def = mps_dynamics_defaults();
+  def.period_x = 4.0;
+  for (int torque = 0; torque < 2; torque++) {
+    def.torque = torque;
+    const double omega = sqrt(torque ? 48.0 : 24.0) * 120.0 / 0.5;
+    const mps_linear_limit undamped = limit_of(&def, 8, 300, 2.0, 0.0);
+    assert_true(undamped.omega <= omega * (1.0 + 1e-12)); /* its ends are softer */
+    mps_assert_near(undamped.omega / omega, 1.0, 1e-4);
+    mps_assert_near(undamped.dt, 2.0 / undamped.omega, 1e-15);
+    assert_true(undamped.residual < 1e-6 && undamped.iterations > 0);
+    const double h = 0.1, w = undamped.omega, alpha = 4.0 * pi * 14.0 / 15.0 * h;
+    const double b = h / (pi * 15.0) + alpha / (w * w);
+    const mps_linear_limit damped = limit_of(&def, 8, 300, 2.0, h);
+    mps_assert_near(damped.dt / (-b + sqrt(b * b + 4.0 / (w * w))), 1.0, 1e-9);
+    mps_assert_near(damped.omega / w, 1.0, 1e-9);
+  }
+}
+
+/* Two particles: w^2 = 5 k Vs^2/D^2 of the shear and spin mode, 2 k Vs^2/D^2 + 4 (l kc)^2 of the
+ * stretching, with k = (4d/n0) w and kc = (d/n0) w; l^2 = Vp^2 - 2 Vs^2. */
+static void two_particles_have_two_modes(void **state) {
+  (void)state;
+  const double w = 0.5, n0 = 4.0 * w + 4.0 * (1.5 / sqrt(2.0) - 1.0), k = 8.0 / n0 * w;
+  const double kc = 2.0 / n0 * w, V2 = 120.0 * 120.0 / (0.5 * 0.5);
+  for (int turned = 0; turned < 2; turned++)
+    for (double ratio = 1.5; ratio < 20.0; ratio *= 1.5) {
+      const double shear = 5.0 * k * V2;
+      const double stretch = (2.0 * k + 4.0 * (ratio * ratio - 2.0) * kc * kc) * V2;
+      const mps_linear_limit limit = limit_of(NULL, turned ? 1 : 2, turned ? 2 : 1, ratio, 0.0);
+      mps_assert_near(limit.omega / sqrt(fmax(shear, stretch)), 1.0, 1e-9);
+    }
+}
+
+/* What is predicted without particles holds for bodies with edges, and does not waste all. */
+static void the_predicted_step_suits_thin_strips(void **state) {
+  (void)state;
+  const double reach[] = {1.2, 1.5, 2.0, 2.6, 3.3}, ratio[] = {1.5, 3.2, 3.7, 5.0, 20.0};
+  for (int r = 0; r < 5; r++)
+    for (int v = 0; v < 5; v++)
+      for (int thick = 1; thick <= 4; thick++) {
+        mps_dynamics_def def = mps_dynamics_defaults();
+        mps_predict_def question = mps_predict_defaults();
+        mps_prediction predicted;
+        question.radius_ratio = def.radius_ratio = reach[r];
+        question.spacing = 0.5;
+        question.shear_velocity = 120.0;
+        question.pressure_velocity = 120.0 * ratio[v];
+        mps_assert_ok(context, mps_dynamics_predict_dt(context, &question, &predicted));
+        const double limit = limit_of(&def, thick, 20, ratio[v], 0.0).dt;
+        if (!(predicted.linear <= limit * (1.0 + 1e-6) && predicted.linear > 0.3 * limit))
+          fail_msg("re = %g D, Vp = %g Vs, %d particles thick: predicted %g s, limit %g s",
+                   reach[r], ratio[v], thick, predicted.linear, limit);
+      }
+}
+
+static void without_forces_only_alpha_limits(void **state) {
+  (void)state;
+  for (int integrator = 0; integrator < 3; integrator++) {
+    mps_dynamics_def def = mps_dynamics_defaults();
+    def.integrator = integrator;
+    const mps_linear_limit free_one = limit_of(&def, 1, 1, 2.0, 0.0);
+    assert_true(isinf(free_one.dt) && free_one.dt > 0.0);
+    mps_assert_near(free_one.omega, 0.0, 0.0);
+    const double alpha = 4.0 * pi * 14.0 / 15.0 * 0.3;
+    mps_assert_near(limit_of(&def, 1, 1, 2.0, 0.3).dt, 2.0 / alpha, 1e-14);
+    const soil_layer soil = {1e9, 1700.0, 120.0, 240.0, 0.0};
+    mps_particles *set = soil_particles(context, 0.5, 2.0, 2.0, 1, &soil);
+    mps_dynamics *d = solver(set, &def);
+    soil_hold(context, set, d, 7, -1.0, -1.0, 9.0, 9.0);
+    assert_true(isinf(linear(d, 0.0).dt));
+    mps_dynamics_destroy(&d);
+    mps_particles_destroy(&set);
+  }
+}
+
+static void boundaries_change_the_limit(void **state) {
+  (void)state;
+  const soil_layer soil = {1e9, 1700.0, 120.0, 240.0, 0.0};
+  mps_particles *set = soil_particles(context, 0.5, 4.0, 4.0, 1, &soil);
+  mps_dynamics *d = solver(set, NULL);
+  const double spinning = linear(d, 0.0).dt;
+  soil_hold(context, set, d, MPS_DOF_ROTATION, -1.0, -1.0, 9.0, 9.0);
+  const double still = linear(d, 0.0).dt;
+  assert_true(still > 1.05 * spinning);
+  mps_assert_near(mps_dynamics_dt(d), 0.9 * still, 1e-12);
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+}
+
+/* ---- linear theory against runs -------------------------------------------------------------- */
+
+static double random_part(uint64_t *seed) { /* in [-1, 1) */
+  *seed = *seed * 6364136223846793005u + 1442695040888963407u;
+  return (double)(*seed >> 11) * 0x1p-52 - 1.0;
+}
+
+/* 8 x 8 particles of two materials in random places, some moved off the lattice, each with its own
+ * damping if `uneven`; at rest but for displacements of 1e-20 m and rotations of 1e-20. */
+static mps_particles *two_materials(uint64_t seed, double damping, bool uneven) {
+  const soil_layer soil = {1e9, 1500.0, 100.0, 200.0, damping};
+  mps_particles *set = soil_particles(context, 1.0, 8.0, 8.0, 1, &soil);
+  mps_view x, u, th, rho, vs, vp, h;
+  mps_assert_ok(context, mps_particles_add_field(set, "displacement", 0));
+  mps_assert_ok(context, mps_particles_add_field(set, "rotation", 0));
+  mps_assert_ok(context, mps_particles_view(set, "displacement", &u));
+  mps_assert_ok(context, mps_particles_view(set, "rotation", &th));
+  mps_assert_ok(context, mps_particles_view(set, "position", &x));
+  mps_assert_ok(context, mps_particles_view(set, "density", &rho));
+  mps_assert_ok(context, mps_particles_view(set, "shear_velocity", &vs));
+  mps_assert_ok(context, mps_particles_view(set, "pressure_velocity", &vp));
+  mps_assert_ok(context, mps_particles_view(set, "damping", &h));
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    if (random_part(&seed) > 0.3) {
+      *mps_view_f64(&rho, k, 0) = 2000.0;
+      *mps_view_f64(&vs, k, 0) = 170.0;
+      *mps_view_f64(&vp, k, 0) = 600.0;
+    }
+    if (uneven) *mps_view_f64(&h, k, 0) *= 1.0 + random_part(&seed);
+    *mps_view_f64(&th, k, 0) = 1e-20 * random_part(&seed);
+    for (int c = 0; c < 2; c++) {
+      if (random_part(&seed) > 0.5) *mps_view_f64(&x, k, c) += 0.2 * random_part(&seed);
+      *mps_view_f64(&u, k, c) = 1e-20 * random_part(&seed);
+      *mps_view_f64(&x, k, c) += *mps_view_f64(&u, k, c);
+    }
+  }
+  return set;
+}
+
+/* Takes `steps` steps of factor * limit; by how much has the largest motion grown? */
+static double growth(const mps_dynamics_def *user_def, uint64_t seed, double damping, bool uneven,
+                     double duration, double factor, double *dt, int64_t steps) {
+  mps_dynamics_def def = *user_def;
+  mps_particles *set = two_materials(seed, damping, uneven);
+  def.dt = 1.0;
+  def.divergence = 1e6;
+  mps_dynamics *d = solver(set, &def);
+  *dt = linear(d, duration).dt;
+  mps_assert_ok(context, mps_dynamics_set_dt(d, factor * *dt));
+  if (duration > 0.0) steps = (int64_t)(duration / (factor * *dt) + 0.5);
+  mps_view u, th;
+  double most = 0.0;
+  const mps_status status = mps_dynamics_step(d, steps);
+  assert_true(status == MPS_OK || status == MPS_ERROR_DIVERGED);
+  mps_assert_ok(context, mps_particles_view(set, "displacement", &u));
+  mps_assert_ok(context, mps_particles_view(set, "rotation", &th));
+  for (int64_t k = 0; k < u.shape[0]; k++) {
+    most = fmax(most, fabs(*mps_view_f64(&th, k, 0)));
+    for (int c = 0; c < 2; c++) most = fmax(most, fabs(*mps_view_f64(&u, k, c)));
+  }
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+  return status == MPS_OK ? most / 1e-20 : INFINITY;
+}
+
+static void runs_hold_below_the_limit_and_not_above(void **state) {
+  (void)state;
+  const double damping[4] = {0.0, 0.02, 0.2, 1.0};
+  for (int integrator = 1; integrator < 3; integrator++)
+    for (int form = 0; form < 2; form++)
+      for (int k = 0; k < 4; k++)
+        for (int uneven = 0; uneven < 2; uneven++) {
+          mps_dynamics_def def = mps_dynamics_defaults();
+          double dt;
+          def.integrator = integrator;
+          def.damping = form;
+          const uint64_t seed = 17u + (uint64_t)k;
+          const double below = growth(&def, seed, damping[k], uneven, 0.0, 0.995, &dt, 1500);
+          const double above = growth(&def, seed, damping[k], uneven, 0.0, 1.02, &dt, 1500);
+          if (!(below < 100.0 && above > 1e6))
+            fail_msg("integrator %d, damping %g, form %d, uneven %d, limit %g s: grows %g times "
+                     "below, %g times above",
+                     integrator, damping[k], form, uneven, dt, below, above);
+        }
+}
+
+static void euler_holds_below_its_limit_and_not_above(void **state) {
+  (void)state;
+  mps_dynamics_def def = mps_dynamics_defaults();
+  def.integrator = MPS_INTEGRATOR_EULER;
+  const double damping[4] = {0.01, 0.05, 0.3, 1.0};
+  for (int k = 0; k < 4; k++) {
+    double dt;
+    const double below = growth(&def, 5, damping[k], false, 0.0, 0.99, &dt, 20000);
+    const double above = growth(&def, 5, damping[k], false, 0.0, 1.03, &dt, 20000);
+    if (!(dt > 0.0 && below < 100.0 && above > 1e6))
+      fail_msg("h = %g, limit %g s: %g times below, %g times above", damping[k], dt, below, above);
+  }
+  assert_true(limit_of(&def, 6, 6, 2.0, 0.0).dt == 0.0);
+}
+
+/* Undamped Euler grows, over the duration asked for, by at most 1e15; at the limit by nearly that:
+ * the part of the highest mode in the initial state is a few per cent. */
+static void eulers_limit_for_a_duration(void **state) {
+  (void)state;
+  mps_dynamics_def def = mps_dynamics_defaults();
+  def.integrator = MPS_INTEGRATOR_EULER;
+  const double durations[2] = {0.4, 2.0};
+  for (int k = 0; k < 2; k++) {
+    double dt;
+    const double grown = growth(&def, 5, 0.0, false, durations[k], 1.0, &dt, 0);
+    print_message("Euler over %g s: limit %.4g s, grows %.2g times\n", durations[k], dt, grown);
+    assert_true(dt > 0.0 && dt < durations[k]);
+    assert_true(grown > 1e12 && grown < 1e15);
+    assert_true(growth(&def, 5, 0.0, false, durations[k], 0.5, &dt, 0) < 1e9);
+  }
+}
+
+/* ---- seed A's column ------------------------------------------------------------------------- */
+
+/* The seed's column with the limits of the reference values; stepping with accuracy 1.02. */
+static void the_seeds_column(void **state) {
+  (void)state;
+  const struct {
+    char wave;
+    double h, linear, stepping; /* ms */
+  } cases[] = {{'S', 0.0, 4.1047, 0.0},   {'S', 0.001, 4.084, 4.120}, {'S', 0.048, 3.209, 3.346},
+               {'S', 0.22, 1.546, 2.093}, {'P', 0.001, 8.184, 8.256}, {'P', 0.048, 7.242, 7.305},
+               {'P', 0.22, 4.750, 5.290}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    mps_particles *set;
+    const bool P = cases[k].wave == 'P';
+    mps_dynamics *d = seed_column(context, 0.5, P ? 50.0 : 100.0, P ? 100.0 : 200.0, cases[k].h,
+                                  cases[k].wave, NULL, &set);
+    mps_assert_near(1e3 * linear(d, 0.0).dt / cases[k].linear, 1.0, 1e-3);
+    if (cases[k].stepping > 0.0) {
+      mps_bisection_def def = mps_bisection_defaults();
+      mps_bisection found;
+      def.accuracy = 1.02;
+      def.lower = 0.98e-3 * cases[k].stepping;
+      def.upper = 1.03e-3 * cases[k].stepping;
+      mps_assert_ok(context, mps_dynamics_limit_stepping(d, &def, &found));
+      assert_true(found.unstable <= 1.02 * found.stable);
+      print_message("%c wave, h = %g: %.4g ms, reference %.4g ms\n", cases[k].wave, cases[k].h,
+                    1e3 * found.stable, cases[k].stepping);
+      /* where the spin saturates, which dt passes the criterion is a matter of chance */
+      mps_assert_near(1e3 * found.stable / cases[k].stepping, 1.0, 0.03);
+    }
+    mps_dynamics_destroy(&d);
+    mps_particles_destroy(&set);
+  }
+}
+
+static void the_seeds_undamped_limits(void **state) {
+  (void)state;
+  for (int integrator = 1; integrator < 3; integrator++) {
+    mps_particles *set;
+    mps_dynamics_def dynamics_def = mps_dynamics_defaults();
+    mps_bisection_def def = mps_bisection_defaults();
+    mps_bisection found;
+    dynamics_def.integrator = integrator;
+    mps_dynamics *d = seed_column(context, 0.5, 100.0, 200.0, 0.0, 'S', &dynamics_def, &set);
+    def.lower = 4.10e-3;
+    def.upper = 4.11e-3;
+    mps_assert_ok(context, mps_dynamics_limit_stepping(d, &def, &found));
+    mps_assert_near(found.stable, def.lower, 0.0);
+    mps_assert_near(found.unstable, def.upper, 0.0);
+    assert_int_equal(found.runs, 2);
+    assert_true(found.steps > 2.5 / def.lower && found.steps <= 5.0 / def.lower + 2.0);
+    mps_dynamics_destroy(&d);
+    mps_particles_destroy(&set);
+  }
+  mps_particles *set;
+  mps_dynamics_def def = mps_dynamics_defaults();
+  def.torque = MPS_TORQUE_PRINTED;
+  mps_dynamics *d = seed_column(context, 0.5, 100.0, 200.0, 0.0, 'S', &def, &set);
+  mps_assert_near(linear(d, 0.0).dt, 2.9048e-3, 1e-7);
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+}
+
+static void bisection_finds_its_own_bounds_and_leaves_the_state(void **state) {
+  (void)state;
+  mps_particles *set;
+  mps_dynamics_def dynamics_def = mps_dynamics_defaults();
+  dynamics_def.dt = 7e-3;
+  mps_dynamics *d = seed_column(context, 1.6, 100.0, 200.0, 0.0, 'S', &dynamics_def, &set);
+  mps_assert_ok(context, mps_particles_set(set, "rotation", 0, 1e-6));
+  mps_assert_ok(context, mps_dynamics_restart(d, 0.1));
+  mps_bisection_def def = mps_bisection_defaults();
+  mps_bisection found[4];
+  const double bounds[4][2] = {{0.0, 0.0}, {1e-3, 0.0}, {0.0, 0.1}, {5e-2, 6e-2}};
+  const double limit = linear(d, 0.0).dt;
+  def.accuracy = 1.01;
+  for (int k = 0; k < 4; k++) { /* also from bounds that are both stable or both not */
+    def.lower = bounds[k][0];
+    def.upper = bounds[k][1];
+    mps_assert_ok(context, mps_dynamics_limit_stepping(d, &def, &found[k]));
+    assert_true(found[k].stable < found[k].unstable);
+    assert_true(found[k].unstable <= 1.01 * found[k].stable);
+    /* 190 steps: a little above the limit the criterion is not reached */
+    assert_true(found[k].stable > 0.99 * limit && found[k].unstable < 1.03 * limit);
+    mps_assert_near(mps_dynamics_dt(d), 7e-3, 0.0);
+    assert_int_equal(mps_dynamics_steps(d), 0);
+    mps_assert_near(mps_dynamics_time(d), 0.1, 0.0);
+    mps_assert_near(soil_value(context, set, "rotation", 40, 0), 1e-6, 0.0);
+  }
+  def.accuracy = 1.0 + 1e-15; /* down to neighbouring numbers, not for ever */
+  mps_assert_ok(context, mps_dynamics_limit_stepping(d, &def, &found[0]));
+  assert_true(found[0].unstable < found[0].stable * (1.0 + 1e-14));
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+}
+
+static void bisection_says_when_there_is_no_limit(void **state) {
+  (void)state;
+  const soil_layer soil = {1e9, 1500.0, 100.0, 200.0, 0.0};
+  mps_particles *set = soil_particles(context, 1.0, 1.0, 1.0, 1, &soil); /* nothing can diverge */
+  mps_dynamics *d = solver(set, NULL);
+  mps_bisection found = {0};
+  mps_assert_fails(context, mps_dynamics_limit_stepping(d, NULL, &found), MPS_ERROR_NUMERIC,
+                   "stays below the criterion within 2.5 s: no limit was found");
+  mps_assert_near(found.stable, 0.0, 0.0);
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_large_lattice_spins_at_root_24),
+      cmocka_unit_test(two_particles_have_two_modes),
+      cmocka_unit_test(the_predicted_step_suits_thin_strips),
+      cmocka_unit_test(without_forces_only_alpha_limits),
+      cmocka_unit_test(boundaries_change_the_limit),
+      cmocka_unit_test(runs_hold_below_the_limit_and_not_above),
+      cmocka_unit_test(euler_holds_below_its_limit_and_not_above),
+      cmocka_unit_test(eulers_limit_for_a_duration),
+      cmocka_unit_test(the_seeds_column),
+      cmocka_unit_test(the_seeds_undamped_limits),
+      cmocka_unit_test(bisection_finds_its_own_bounds_and_leaves_the_state),
+      cmocka_unit_test(bisection_says_when_there_is_no_limit),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}

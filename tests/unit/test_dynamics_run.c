@@ -1,0 +1,534 @@
+/* test_dynamics_run.c - running the explicit MPS solver: hooks, restart, resume, change of the time
+ * step, divergence, warnings.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "soil_column.h"
+#include "test_fixture.h"
+
+#define DT 2e-3 /* s, about half the limit */
+
+static const soil_layer soil = {1e9, 1500.0, 100.0, 200.0, 0.0};
+
+/* What the hooks of a context saw, and what they are to answer. */
+typedef struct hooks {
+  int warnings, progress, callbacks;
+  int cancel_after; /* cancel at that call, 0 never */
+  int cancels;
+  double fraction, last_time;
+  bool rising;
+  char text[256];
+  mps_status answer; /* of the callback */
+} hooks;
+
+static void on_log(void *user, mps_log_level level, const char *message) {
+  hooks *h = user;
+  h->warnings += level == MPS_LOG_WARNING;
+  snprintf(h->text, sizeof h->text, "%s", message);
+}
+
+static void on_progress(void *user, const mps_progress *progress) {
+  hooks *h = user;
+  h->rising = h->rising && progress->fraction >= h->fraction;
+  h->fraction = progress->fraction;
+  h->progress++;
+}
+
+static int32_t on_cancel(void *user) {
+  hooks *h = user;
+  return ++h->cancels == h->cancel_after;
+}
+
+static mps_context *hooked(hooks *h) {
+  mps_context_def def = mps_context_defaults();
+  mps_context *own = NULL;
+  *h = (hooks){.rising = true};
+  def.executor = MPS_EXECUTOR_SERIAL;
+  def.log = on_log;
+  def.progress = on_progress;
+  def.cancel = on_cancel;
+  def.log_user = def.progress_user = def.cancel_user = h;
+  mps_assert_ok(NULL, mps_context_create(&def, &own, NULL, 0));
+  return own;
+}
+
+/* A block of 6 x 6 particles, D = 1 m, shaken by smooth initial velocities; damping ratios
+ * about h. */
+static mps_dynamics *shaken(mps_context *own, const mps_dynamics_def *def, double h,
+                            mps_particles **set) {
+  soil_layer damped = soil;
+  damped.damping = h;
+  *set = soil_particles(own, 1.0, 6.0, 6.0, 1, &damped);
+  mps_view v, x, w, ratio;
+  mps_assert_ok(own, mps_particles_set(*set, "velocity", 0, 0.0));
+  mps_assert_ok(own, mps_particles_set(*set, "spin", 0, 0.0));
+  mps_assert_ok(own, mps_particles_view(*set, "velocity", &v));
+  mps_assert_ok(own, mps_particles_view(*set, "position", &x));
+  mps_assert_ok(own, mps_particles_view(*set, "spin", &w));
+  mps_assert_ok(own, mps_particles_view(*set, "damping", &ratio));
+  for (int64_t k = 0; k < v.shape[0]; k++) {
+    *mps_view_f64(&v, k, 0) = 1e-3 * sin(1.0 + *mps_view_f64(&x, k, 1));
+    *mps_view_f64(&v, k, 1) = 1e-3 * cos(2.0 * *mps_view_f64(&x, k, 0));
+    *mps_view_f64(&w, k, 0) = 1e-3 * sin(3.0 * *mps_view_f64(&x, k, 0));
+    *mps_view_f64(&ratio, k, 0) *= 1.0 + 0.5 * sin((double)k);
+  }
+  mps_dynamics *dynamics = NULL;
+  mps_assert_ok(own, mps_dynamics_create(own, *set, def, &dynamics));
+  return dynamics;
+}
+
+static mps_dynamics_def def_of(int integrator, double dt) {
+  mps_dynamics_def def = mps_dynamics_defaults();
+  def.integrator = integrator;
+  def.dt = dt;
+  return def;
+}
+
+/* Copies a field of every particle, by id, into `out` (component 0). */
+static void copy(mps_context *own, mps_particles *set, const char *field, int component,
+                 double *out) {
+  for (int64_t id = 0; id < mps_particles_count(set); id++)
+    out[id] = soil_value(own, set, field, id, component);
+}
+
+static double largest_difference(const double *a, const double *b, int64_t n) {
+  double most = 0.0;
+  for (int64_t k = 0; k < n; k++) most = fmax(most, fabs(a[k] - b[k]));
+  return most;
+}
+
+/* ---- the loop -------------------------------------------------------------------------------- */
+
+static mps_status on_call(void *user, mps_dynamics *dynamics) {
+  hooks *h = user;
+  h->last_time = mps_dynamics_time(dynamics);
+  return ++h->callbacks == 3 ? h->answer : MPS_OK;
+}
+
+static void a_run_calls_its_callback_at_start_every_and_end(void **state) {
+  (void)state;
+  hooks h;
+  mps_context *own = hooked(&h);
+  mps_particles *set;
+  const mps_dynamics_def def = def_of(MPS_INTEGRATOR_VERLET, DT);
+  mps_dynamics *d = shaken(own, &def, 0.0, &set);
+  mps_assert_ok(own, mps_dynamics_run(d, 10.0 * DT, 3, on_call, &h));
+  assert_int_equal(h.callbacks, 5); /* 0, 3, 6, 9, 10 */
+  assert_int_equal(mps_dynamics_steps(d), 10);
+  mps_assert_near(h.last_time, 10.0 * DT, 1e-15);
+  mps_assert_ok(own, mps_dynamics_run(d, 10.0 * DT, 3, on_call, &h)); /* already there */
+  assert_int_equal(h.callbacks, 6);
+  assert_int_equal(mps_dynamics_steps(d), 10);
+  mps_assert_ok(own, mps_dynamics_run(d, 12.5 * DT, 100, NULL, NULL)); /* first instant past it */
+  assert_int_equal(mps_dynamics_steps(d), 13);
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+  mps_context_destroy(&own);
+}
+
+static void progress_rises_to_one_in_a_hundred_reports(void **state) {
+  (void)state;
+  hooks h;
+  mps_context *own = hooked(&h);
+  mps_particles *set;
+  const mps_dynamics_def def = def_of(MPS_INTEGRATOR_VERLET, DT);
+  mps_dynamics *d = shaken(own, &def, 0.0, &set);
+  mps_assert_ok(own, mps_dynamics_run(d, 1234.0 * DT, 1000, NULL, NULL));
+  assert_true(h.rising);
+  mps_assert_near(h.fraction, 1.0, 1e-12);
+  assert_true(h.progress >= 95 && h.progress <= 110);
+  assert_true(h.cancels >= 95 && h.cancels <= 110);
+  h = (hooks){.rising = true}; /* a second run starts again from 0 */
+  mps_assert_ok(own, mps_dynamics_run(d, 1284.0 * DT, 1000, NULL, NULL));
+  assert_int_equal(h.progress, 50);
+  assert_true(h.rising);
+  mps_assert_near(h.fraction, 1.0, 1e-12);
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+  mps_context_destroy(&own);
+}
+
+static void the_cancel_hook_stops_a_run_which_can_go_on(void **state) {
+  (void)state;
+  hooks h;
+  mps_context *own = hooked(&h);
+  mps_particles *set;
+  const mps_dynamics_def def = def_of(MPS_INTEGRATOR_VERLET, DT);
+  mps_dynamics *d = shaken(own, &def, 0.0, &set);
+  h.cancel_after = 7;
+  mps_assert_fails(own, mps_dynamics_run(d, 50.0 * DT, 1000, NULL, NULL), MPS_ERROR_CANCELLED,
+                   "at step 7, t = 0.014 s");
+  assert_int_equal(mps_dynamics_steps(d), 7);
+  double x[36], again[36];
+  copy(own, set, "velocity", 0, x); /* published */
+  mps_assert_ok(own, mps_dynamics_step(d, 0));
+  copy(own, set, "velocity", 0, again);
+  assert_memory_equal(x, again, sizeof x);
+  mps_assert_ok(own, mps_dynamics_run(d, 50.0 * DT, 1000, NULL, NULL));
+  assert_int_equal(mps_dynamics_steps(d), 50);
+  /* and a search for the limit */
+  mps_bisection found = {0};
+  h.cancel_after = h.cancels + 3;
+  mps_assert_fails(own, mps_dynamics_limit_stepping(d, NULL, &found), MPS_ERROR_CANCELLED,
+                   "cancel hook");
+  mps_assert_near(found.stable, 0.0, 0.0);
+  mps_assert_near(mps_dynamics_dt(d), DT, 0.0);
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+  mps_context_destroy(&own);
+}
+
+static void the_callback_stops_a_run_with_its_own_status(void **state) {
+  (void)state;
+  hooks h;
+  mps_context *own = hooked(&h);
+  mps_particles *set;
+  const mps_dynamics_def def = def_of(MPS_INTEGRATOR_VERLET, DT);
+  mps_dynamics *d = shaken(own, &def, 0.0, &set);
+  h.answer = MPS_ERROR_IO;
+  mps_assert_fails(own, mps_dynamics_run(d, 50.0 * DT, 4, on_call, &h), MPS_ERROR_IO,
+                   "stopped by the callback with status 5 at step 8");
+  assert_int_equal(mps_dynamics_steps(d), 8);
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+  mps_context_destroy(&own);
+}
+
+/* ---- restart, resume, dt --------------------------------------------------------------------- */
+
+static void a_restart_repeats_the_run_at_another_time(void **state) {
+  (void)state;
+  for (int integrator = 0; integrator < 3; integrator++) {
+    mps_particles *set;
+    const mps_dynamics_def def = def_of(integrator, DT);
+    mps_dynamics *d = shaken(context, &def, 0.1, &set);
+    double start[5][36], first[36], second[36];
+    const char *const fields[5] = {"displacement", "displacement", "rotation", "velocity",
+                                   "velocity"};
+    const int component[5] = {0, 1, 0, 0, 1};
+    for (int f = 0; f < 5; f++) copy(context, set, fields[f], component[f], start[f]);
+    double spin[36];
+    copy(context, set, "spin", 0, spin);
+    mps_assert_ok(context, mps_dynamics_step(d, 40));
+    copy(context, set, "displacement", 1, first);
+    for (int64_t id = 0; id < 36; id++) {
+      mps_view view;
+      const int64_t k = mps_particles_index(set, id);
+      for (int f = 0; f < 5; f++) {
+        mps_assert_ok(context, mps_particles_view(set, fields[f], &view));
+        *mps_view_f64(&view, k, component[f]) = start[f][id];
+      }
+      mps_assert_ok(context, mps_particles_view(set, "spin", &view));
+      *mps_view_f64(&view, k, 0) = spin[id];
+    }
+    mps_assert_ok(context, mps_dynamics_restart(d, 7.0));
+    assert_int_equal(mps_dynamics_steps(d), 0);
+    mps_assert_near(mps_dynamics_time(d), 7.0, 0.0);
+    mps_assert_ok(context, mps_dynamics_step(d, 40));
+    copy(context, set, "displacement", 1, second);
+    assert_memory_equal(first, second, sizeof first);
+    mps_assert_near(mps_dynamics_time(d), 7.0 + 40.0 * DT, 1e-14);
+    mps_dynamics_destroy(&d);
+    mps_particles_destroy(&set);
+  }
+}
+
+static void a_bad_state_cannot_be_restarted_from(void **state) {
+  (void)state;
+  mps_particles *set;
+  const mps_dynamics_def def = def_of(MPS_INTEGRATOR_VERLET, DT);
+  mps_dynamics *d = shaken(context, &def, 0.0, &set);
+  mps_view spin;
+  mps_assert_ok(context, mps_dynamics_step(d, 4));
+  mps_assert_ok(context, mps_particles_view(set, "spin", &spin));
+  *mps_view_f64(&spin, mps_particles_index(set, 11), 0) = NAN;
+  mps_assert_fails(context, mps_dynamics_restart(d, 0.0), MPS_ERROR_ARGUMENT, "particle 11");
+  assert_int_equal(mps_dynamics_steps(d), 4);
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+}
+
+/* A driven, damped body, all of whose checkpoint is carried to a new solver of a new set. */
+static void a_resumed_run_goes_on_bit_for_bit(void **state) {
+  (void)state;
+  static const char *const fields[] = {"displacement", "rotation",     "velocity",
+                                       "spin",         "position",     "displacement_old",
+                                       "rotation_old", "restoring_old"};
+  for (int integrator = 0; integrator < 3; integrator++)
+    for (int64_t at = 0; at <= 100; at += 100) {
+      const mps_dynamics_def def = def_of(integrator, 1e-3 / 3.0);
+      const int64_t base[2] = {0, 35};
+      mps_signal *sine = NULL;
+      mps_particles *set[2];
+      mps_dynamics *d[2];
+      mps_assert_ok(context, mps_signal_sine(context, 3.0, 0.01, 0.3, &sine));
+      for (int run = 0; run < 2; run++) {
+        d[run] = shaken(context, &def, 0.1, &set[run]);
+        mps_assert_ok(context, mps_dynamics_drive(d[run], 0, sine, 1.0, 1, &base[0]));
+        mps_assert_ok(context, mps_dynamics_viscous(d[run], NULL, 1, &base[1]));
+      }
+      mps_assert_ok(context, mps_dynamics_step(d[0], at));
+      for (size_t f = 0; f < sizeof fields / sizeof *fields; f++) {
+        mps_view from, to;
+        mps_assert_ok(context, mps_particles_view(set[0], fields[f], &from));
+        mps_assert_ok(context, mps_particles_view(set[1], fields[f], &to));
+        for (int64_t c = 0; c < from.shape[1]; c++)
+          memcpy(mps_view_f64(&to, 0, c), mps_view_f64(&from, 0, c), 36 * sizeof(double));
+      }
+      mps_assert_ok(context, mps_dynamics_resume(d[1], mps_dynamics_time(d[0]), at));
+      assert_int_equal(mps_dynamics_steps(d[1]), at);
+      for (int k = 0; k < 60; k++) {
+        double one[36], two[36];
+        assert_true(mps_dynamics_time(d[0]) == mps_dynamics_time(d[1]));
+        mps_assert_ok(context, mps_dynamics_step(d[0], 1));
+        mps_assert_ok(context, mps_dynamics_step(d[1], 1));
+        copy(context, set[0], "displacement", k % 2, one);
+        copy(context, set[1], "displacement", k % 2, two);
+        assert_memory_equal(one, two, sizeof one);
+      }
+      for (int run = 0; run < 2; run++) {
+        mps_dynamics_destroy(&d[run]);
+        mps_particles_destroy(&set[run]);
+      }
+      mps_signal_destroy(&sine);
+    }
+}
+
+static void resuming_needs_a_time_step(void **state) {
+  (void)state;
+  mps_particles *set;
+  mps_dynamics *d = shaken(context, NULL, 0.0, &set);
+  mps_assert_fails(context, mps_dynamics_resume(d, 1.0, 10), MPS_ERROR_STATE, "time step");
+  mps_assert_ok(context, mps_dynamics_set_dt(d, DT));
+  mps_assert_ok(context, mps_dynamics_resume(d, 1.0, 10));
+  assert_int_equal(mps_dynamics_steps(d), 10);
+  mps_assert_near(mps_dynamics_time(d), 1.0, 1e-15);
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+}
+
+/* A change of dt keeps velocity, time and what acts on the particles: the damping force is a rate
+ * over the step that was, not the one to come. */
+static void a_new_dt_keeps_velocity_time_and_forces(void **state) {
+  (void)state;
+  for (int integrator = 0; integrator < 3; integrator++)
+    for (int damping = 0; damping < 2; damping++) {
+      double velocity[2][36], acceleration[2][36], largest = 0.0;
+      for (int run = 0; run < 2; run++) {
+        mps_particles *set;
+        mps_dynamics_def def = def_of(integrator, 5e-4);
+        def.damping = damping;
+        mps_dynamics *d = shaken(context, &def, 0.3, &set);
+        mps_assert_ok(context, mps_dynamics_step(d, 20));
+        if (run == 1) mps_assert_ok(context, mps_dynamics_set_dt(d, 1e-4));
+        mps_assert_near(mps_dynamics_time(d), 0.01, 1e-15);
+        assert_int_equal(mps_dynamics_steps(d), 20);
+        mps_assert_ok(context, mps_dynamics_step(d, 0));
+        copy(context, set, "velocity", 0, velocity[run]);
+        mps_assert_ok(context, mps_dynamics_step(d, 1));
+        copy(context, set, "acceleration", 0, acceleration[run]);
+        mps_assert_near(mps_dynamics_time(d), run == 0 ? 0.0105 : 0.0101, 1e-15);
+        mps_dynamics_destroy(&d);
+        mps_particles_destroy(&set);
+      }
+      for (int k = 0; k < 36; k++) largest = fmax(largest, fabs(acceleration[0][k]));
+      assert_true(largest > 1e-4);
+      assert_true(largest_difference(velocity[0], velocity[1], 36) < 1e-14);
+      assert_true(largest_difference(acceleration[0], acceleration[1], 36) < 1e-9 * largest);
+    }
+}
+
+static void a_dt_given_later_survives_new_boundaries(void **state) {
+  (void)state;
+  mps_particles *set;
+  mps_dynamics *d = shaken(context, NULL, 0.0, &set);
+  const int64_t id = 3;
+  mps_assert_ok(context, mps_dynamics_set_dt(d, DT));
+  mps_assert_ok(context, mps_dynamics_hold(d, MPS_DOF_X, 1, &id));
+  mps_assert_near(mps_dynamics_dt(d), DT, 0.0);
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+}
+
+static void the_library_chooses_courant_times_the_limit(void **state) {
+  (void)state;
+  const double courant[2] = {0.9, 0.25};
+  for (int k = 0; k < 2; k++) {
+    mps_particles *set;
+    mps_dynamics_def def = mps_dynamics_defaults();
+    def.courant = courant[k];
+    mps_dynamics *d = shaken(context, &def, 0.05, &set);
+    mps_linear_limit limit;
+    mps_assert_ok(context, mps_dynamics_step(d, 1));
+    mps_assert_ok(context, mps_dynamics_limit_linear(d, 0.0, &limit));
+    mps_assert_near(mps_dynamics_dt(d) / limit.dt, courant[k], 1e-15);
+    mps_assert_near(mps_dynamics_time(d), mps_dynamics_dt(d), 0.0);
+    mps_dynamics_destroy(&d);
+    mps_particles_destroy(&set);
+  }
+}
+
+static void where_nothing_limits_dt_it_must_be_given(void **state) {
+  (void)state;
+  const int64_t ids[36] = {0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17,
+                           18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31, 32, 33, 34, 35};
+  mps_particles *set;
+  mps_dynamics *d = shaken(context, NULL, 0.0, &set);
+  mps_assert_ok(context, mps_dynamics_hold(d, 7, 36, ids));
+  mps_assert_fails(context, mps_dynamics_step(d, 1), MPS_ERROR_ARGUMENT, "give dt");
+  assert_true(mps_dynamics_dt(d) == 0.0);
+  mps_assert_ok(context, mps_dynamics_set_dt(d, 1.0));
+  mps_assert_ok(context, mps_dynamics_step(d, 3));
+  mps_assert_near(soil_value(context, set, "displacement", 7, 0), 0.0, 0.0);
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+  const mps_dynamics_def euler = def_of(MPS_INTEGRATOR_EULER, 0.0);
+  d = shaken(context, &euler, 0.0, &set);
+  mps_assert_fails(context, mps_dynamics_step(d, 1), MPS_ERROR_ARGUMENT, "Euler without damping");
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+}
+
+/* ---- warnings and divergence ----------------------------------------------------------------- */
+
+static void a_step_above_the_limit_is_warned_of(void **state) {
+  (void)state;
+  hooks h;
+  mps_context *own = hooked(&h);
+  mps_particles *set;
+  mps_linear_limit limit;
+  mps_dynamics *d = shaken(own, NULL, 0.0, &set);
+  mps_assert_ok(own, mps_dynamics_limit_linear(d, 0.0, &limit));
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+  const double factor[4] = {0.5, 0.999, 1.001, 1.5};
+  for (int k = 0; k < 4; k++) {
+    const mps_dynamics_def def = def_of(MPS_INTEGRATOR_VERLET, factor[k] * limit.dt);
+    const int expected = factor[k] > 1.0 ? 1 : 0;
+    h.warnings = 0;
+    d = shaken(own, &def, 0.0, &set);
+    mps_assert_ok(own, mps_dynamics_step(d, 2));
+    mps_assert_ok(own, mps_dynamics_step(d, 2));
+    assert_int_equal(h.warnings, expected); /* once */
+    if (expected) assert_non_null(strstr(h.text, "above the linear stability limit"));
+    mps_dynamics_destroy(&d);
+    mps_particles_destroy(&set);
+    h.warnings = 0;
+    d = shaken(own, NULL, 0.0, &set);
+    mps_assert_ok(own, mps_dynamics_set_dt(d, factor[k] * limit.dt));
+    assert_int_equal(h.warnings, expected);
+    mps_assert_ok(own, mps_dynamics_step(d, 1));
+    assert_int_equal(h.warnings, expected);
+    mps_dynamics_destroy(&d);
+    mps_particles_destroy(&set);
+  }
+  h.warnings = 0;
+  const mps_dynamics_def euler = def_of(MPS_INTEGRATOR_EULER, 1e-6);
+  d = shaken(own, &euler, 0.0, &set);
+  mps_assert_ok(own, mps_dynamics_step(d, 1));
+  assert_int_equal(h.warnings, 1);
+  assert_non_null(strstr(h.text, "Euler without damping"));
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+  mps_context_destroy(&own);
+}
+
+/* Particles closer than the spacing are stiffer than any lattice. */
+static void the_warning_is_right_off_a_lattice(void **state) {
+  (void)state;
+  hooks h;
+  mps_context *own = hooked(&h);
+  mps_particles_def set_def = mps_particles_defaults();
+  mps_particles *set = NULL;
+  mps_dynamics *d = NULL;
+  mps_linear_limit limit;
+  const double x[8] = {0.0, 0.0, 0.2, 0.0, 0.0, 0.2, 1.0, 1.0};
+  set_def.spacing = 1.0;
+  mps_assert_ok(own, mps_particles_create(own, &set_def, &set));
+  mps_assert_ok(own, mps_particles_append(set, 4, x));
+  mps_assert_ok(own, mps_particles_set(set, "density", 0, 1500.0));
+  mps_assert_ok(own, mps_particles_set(set, "shear_velocity", 0, 100.0));
+  mps_assert_ok(own, mps_particles_set(set, "pressure_velocity", 0, 200.0));
+  const mps_dynamics_def def = def_of(MPS_INTEGRATOR_VERLET, DT);
+  mps_assert_ok(own, mps_dynamics_create(own, set, &def, &d));
+  mps_assert_ok(own, mps_dynamics_limit_linear(d, 0.0, &limit));
+  assert_true(limit.dt < 0.1 * DT);
+  mps_assert_ok(own, mps_dynamics_step(d, 1));
+  assert_int_equal(h.warnings, 1);
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+  mps_context_destroy(&own);
+}
+
+static void divergence_names_step_time_and_particle(void **state) {
+  (void)state;
+  for (int integrator = 0; integrator < 3; integrator++) {
+    mps_particles *set;
+    mps_dynamics_def def = def_of(integrator, 2e-2); /* five times the limit */
+    def.divergence = 1e6;
+    mps_dynamics *d = shaken(context, &def, 0.0, &set);
+    assert_int_equal(mps_dynamics_run(d, 20.0, 1000, NULL, NULL), MPS_ERROR_DIVERGED);
+    const mps_error *error = mps_context_error(context);
+    const int64_t steps = mps_dynamics_steps(d);
+    char text[128];
+    snprintf(text, sizeof text,
+             "diverged at step %lld, t = %.6g s: |acceleration| of particle %lld at",
+             (long long)steps, (double)(steps - 1) * 2e-2, (long long)error->particle);
+    if (!strstr(error->message, text)) fail_msg("%s", error->message);
+    assert_non_null(strstr(error->message, "beyond 1e+06; dt is 0.02 s, above the linear"));
+    assert_string_equal(error->function, "mps_dynamics_run");
+    assert_int_equal(error->step, steps);
+    assert_true(error->particle >= 0 && error->particle < 36);
+    const double ax = soil_value(context, set, "acceleration", error->particle, 0);
+    const double ay = soil_value(context, set, "acceleration", error->particle, 1);
+    assert_true(hypot(ax, ay) > 1e6);
+    mps_assert_fails(context, mps_dynamics_step(d, 1), MPS_ERROR_STATE, "mps_dynamics_restart");
+    mps_assert_fails(context, mps_dynamics_run(d, 30.0, 1, NULL, NULL), MPS_ERROR_STATE,
+                     "diverged");
+    assert_int_equal(mps_dynamics_steps(d), steps);
+    const char *const fields[] = {"displacement", "rotation", "velocity", "spin"};
+    for (int f = 0; f < 4; f++) mps_assert_ok(context, mps_particles_set(set, fields[f], 0, 0.0));
+    mps_assert_ok(context, mps_particles_set(set, "displacement", 1, 0.0));
+    mps_assert_ok(context, mps_particles_set(set, "velocity", 1, 0.0));
+    mps_assert_ok(context, mps_dynamics_restart(d, 0.0));
+    mps_assert_ok(context, mps_dynamics_step(d, 10)); /* at rest nothing grows */
+    mps_assert_near(soil_value(context, set, "displacement", 5, 0), 0.0, 0.0);
+    mps_dynamics_destroy(&d);
+    mps_particles_destroy(&set);
+  }
+}
+
+static void an_infinite_acceleration_passes_no_limit(void **state) {
+  (void)state;
+  mps_particles *set;
+  mps_dynamics_def def = def_of(MPS_INTEGRATOR_VERLET, 1e-3);
+  def.divergence = 1e300; /* its square is not finite */
+  mps_dynamics *d = shaken(context, &def, 0.0, &set);
+  mps_view x;
+  mps_assert_ok(context, mps_particles_view(set, "displacement", &x));
+  *mps_view_f64(&x, 14, 0) = 1e200; /* a = 1e205 or so: its square is not finite either */
+  mps_assert_ok(context, mps_dynamics_restart(d, 0.0));
+  assert_int_equal(mps_dynamics_step(d, 1), MPS_ERROR_DIVERGED);
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_run_calls_its_callback_at_start_every_and_end),
+      cmocka_unit_test(progress_rises_to_one_in_a_hundred_reports),
+      cmocka_unit_test(the_cancel_hook_stops_a_run_which_can_go_on),
+      cmocka_unit_test(the_callback_stops_a_run_with_its_own_status),
+      cmocka_unit_test(a_restart_repeats_the_run_at_another_time),
+      cmocka_unit_test(a_bad_state_cannot_be_restarted_from),
+      cmocka_unit_test(a_resumed_run_goes_on_bit_for_bit),
+      cmocka_unit_test(resuming_needs_a_time_step),
+      cmocka_unit_test(a_new_dt_keeps_velocity_time_and_forces),
+      cmocka_unit_test(a_dt_given_later_survives_new_boundaries),
+      cmocka_unit_test(the_library_chooses_courant_times_the_limit),
+      cmocka_unit_test(where_nothing_limits_dt_it_must_be_given),
+      cmocka_unit_test(a_step_above_the_limit_is_warned_of),
+      cmocka_unit_test(the_warning_is_right_off_a_lattice),
+      cmocka_unit_test(divergence_names_step_time_and_particle),
+      cmocka_unit_test(an_infinite_acceleration_passes_no_limit),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}

@@ -1,0 +1,579 @@
+/* test_elastic.c - implicit elasticity: what is refused and why, solvers and orderings agree, the
+ * symbolic factor is kept, memory limits, failures inside CHOLMOD.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "elastic_common.h"
+#include "test_allocator.h"
+
+#include "implicit/elastic_private.h"
+
+#include <SuiteSparse_config.h>
+
+static test_body square(mps_context *context, int cells, const mps_elastic_def *def) {
+  test_body b = test_body_begin(context, 2, 0.5);
+  test_body_box(&b, 0, 0, 0, 0.5 * cells, 0.5 * cells, 0);
+  test_body_finish(&b, 2.0, 0.3, def);
+  return b;
+}
+
+/* Clamped below, pulled down by gravity. */
+static void clamp(test_body *b) {
+  int64_t count, *ids = test_select(b, b->dim - 1, -1, 0.3, &count);
+  const double gravity[3] = {0.2, -1.0, -0.5};
+  for (int c = 0; c < b->dim; c++)
+    mps_assert_ok(b->context, mps_elastic_prescribe(b->elastic, c, count, ids, NULL));
+  mps_assert_ok(b->context, mps_elastic_add_body_force(b->elastic, gravity));
+  free(ids);
+}
+
+/* ---- refused at creation --------------------------------------------------------------------- */
+
+static void refuse_points(mps_context *context, int64_t count, const double *x, const char *why) {
+  test_body b = test_body_begin(context, 2, 0.5);
+  mps_assert_ok(context, mps_particles_append(b.particles, count, x));
+  mps_assert_ok(context, mps_particles_set(b.particles, "young", 0, 1.0));
+  mps_assert_ok(context, mps_particles_set(b.particles, "poisson", 0, 0.3));
+  mps_assert_fails(context, mps_elastic_create(context, b.particles, NULL, &b.elastic),
+                   MPS_ERROR_ARGUMENT, why);
+  assert_null(b.elastic);
+  test_body_end(&b);
+}
+
+static void bodies_that_cannot_be_solved_are_refused(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  const double off[] = {0, 0, 0.5, 0, 0, 0.5, 0.5, 0.51};
+  refuse_points(context, 4, off, "particle 3 is off the lattice");
+  const double twice[] = {0, 0, 0.5, 0, 0, 0.5, 0.5, 0.5, 0.5, 0};
+  refuse_points(context, 5, twice, "particles 1 and 4 are on the same lattice site");
+  const double lonely[] = {0, 0, 0.5, 0, 0, 0.5, 0.5, 0.5, 5, 5};
+  refuse_points(context, 5, lonely, "particle 4 is isolated");
+  const double thin[] = {0, 0, 0.5, 0, 1, 0};
+  refuse_points(context, 3, thin, "one particle thick along y at particle 0");
+  const double far_away[] = {0, 0, 0.5, 0, 0, 0.5, 0.5, 0.5, 1e9, 0};
+  test_body b = test_body_begin(context, 2, 0.5);
+  mps_assert_ok(context, mps_particles_append(b.particles, 5, far_away));
+  mps_assert_fails(context, mps_elastic_create(context, b.particles, NULL, &b.elastic),
+                   MPS_ERROR_UNSUPPORTED, "spacings from particle 0");
+  test_body_end(&b);
+  b = test_body_begin(context, 2, 0.5);
+  mps_assert_fails(context, mps_elastic_create(context, b.particles, NULL, &b.elastic),
+                   MPS_ERROR_ARGUMENT, "empty");
+  test_body_box(&b, 0, 0, 0, 1, 1, 0);
+  mps_assert_fails(context, mps_elastic_create(context, b.particles, NULL, &b.elastic),
+                   MPS_ERROR_FIELD, "no field 'young'");
+  test_body_end(&b);
+  mps_context_destroy(&context);
+}
+
+static void impossible_materials_are_refused(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  test_body b = square(context, 3, NULL);
+  mps_view young, poisson;
+  mps_assert_ok(context, mps_particles_view(b.particles, "young", &young));
+  mps_assert_ok(context, mps_particles_view(b.particles, "poisson", &poisson));
+  const struct {
+    mps_view *view;
+    double value;
+    const char *why;
+  } bad[] = {{&young, 0.0, "young of particle 4 is 0"},
+             {&young, -2.0, "young of particle 4 is -2"},
+             {&young, NAN, "young of particle 4 is nan"},
+             {&young, INFINITY, "young of particle 4 is inf"},
+             {&poisson, 0.5, "poisson of particle 4 is 0.5"},
+             {&poisson, -1.0, "poisson of particle 4 is -1"},
+             {&poisson, NAN, "poisson of particle 4 is nan"}};
+  for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+    const double good = *mps_view_f64(bad[k].view, 4, 0);
+    *mps_view_f64(bad[k].view, 4, 0) = bad[k].value;
+    mps_elastic *other = NULL;
+    mps_assert_fails(context, mps_elastic_create(context, b.particles, NULL, &other),
+                     MPS_ERROR_ARGUMENT, bad[k].why);
+    assert_null(other);
+    mps_assert_fails(context, mps_elastic_update_material(b.elastic), MPS_ERROR_ARGUMENT,
+                     bad[k].why);
+    assert_int_equal(mps_context_error(context)->particle, 4);
+    *mps_view_f64(bad[k].view, 4, 0) = good;
+  }
+  /* The refused values have changed nothing. */
+  clamp(&b);
+  mps_assert_ok(context, mps_elastic_solve(b.elastic));
+  test_body_end(&b);
+  mps_context_destroy(&context);
+}
+
+static void bad_definitions_are_refused(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  test_body b = square(context, 3, NULL);
+  mps_elastic *e = NULL;
+#define REFUSE(member, bad, why)                                                                   \
+  do {                                                                                             \
+    mps_elastic_def def = mps_elastic_defaults();                                                  \
+    def.member = bad;                                                                              \
+    mps_assert_fails(context, mps_elastic_create(context, b.particles, &def, &e),                  \
+                     MPS_ERROR_ARGUMENT, why);                                                     \
+    assert_null(e);                                                                                \
+  } while (0)
+  REFUSE(method, 2, "method is 2");
+  REFUSE(state, -1, "state is -1");
+  REFUSE(divisor, 7, "divisor is 7");
+  REFUSE(solver, 4, "solver is 4");
+  REFUSE(ordering, 3, "ordering is 3");
+  REFUSE(refinements, 11, "refinements is 11");
+  REFUSE(first_moment, 2, "first_moment is 2");
+  REFUSE(radius_ratio, 1.0, "radius_ratio is 1");
+  REFUSE(radius_ratio, NAN, "radius_ratio is nan");
+  REFUSE(radius_ratio, 4.5, "radius_ratio is 4.5");
+  REFUSE(alpha, 0.0, "alpha is 0");
+  REFUSE(alpha, NAN, "alpha is nan");
+  REFUSE(thickness, -1.0, "thickness is -1");
+  REFUSE(memory_limit, -1.0, "memory_limit is -1");
+  REFUSE(tolerance, 1.0, "tolerance is 1");
+  REFUSE(iterations, -5, "iterations is -5");
+#undef REFUSE
+  assert_int_equal(mps_elastic_create(NULL, b.particles, NULL, &e), MPS_ERROR_ARGUMENT);
+  mps_assert_fails(context, mps_elastic_create(context, NULL, NULL, &e), MPS_ERROR_ARGUMENT,
+                   "particles is NULL");
+  mps_assert_fails(context, mps_elastic_create(context, b.particles, NULL, NULL),
+                   MPS_ERROR_ARGUMENT, "out is NULL");
+  mps_elastic_destroy(NULL);
+  mps_elastic_destroy(&e);
+  test_body_end(&b);
+  b = test_body_begin(context, 3, 0.5);
+  test_body_box(&b, 0, 0, 0, 1, 1, 1);
+  mps_elastic_def def = mps_elastic_defaults();
+  def.method = MPS_ELASTIC_PUBLISHED;
+  mps_assert_fails(context, mps_elastic_create(context, b.particles, &def, &e),
+                   MPS_ERROR_UNSUPPORTED, "two-dimensional");
+  test_body_end(&b);
+  mps_context_destroy(&context);
+}
+
+/* ---- refused calls --------------------------------------------------------------------------- */
+
+static void bad_supports_and_loads_are_refused(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  test_body b = square(context, 3, NULL);
+  mps_elastic *e = b.elastic;
+  const int64_t good[2] = {0, 1}, bad[2] = {0, 9}, facet_bad[1] = {12};
+  const double nan_values[2] = {0.0, NAN}, zero[2] = {0, 0}, one[4] = {1, 1, 1, 1};
+#define REFUSE(call, why) mps_assert_fails(context, call, MPS_ERROR_ARGUMENT, why)
+  REFUSE(mps_elastic_prescribe(e, 2, 2, good, NULL), "component is 2");
+  REFUSE(mps_elastic_prescribe(e, 0, 2, bad, NULL), "ids[1] is 9");
+  REFUSE(mps_elastic_prescribe(e, 0, -2, good, NULL), "count is -2");
+  REFUSE(mps_elastic_prescribe(e, 0, 2, NULL, NULL), "ids is NULL");
+  REFUSE(mps_elastic_prescribe(e, 0, 2, good, nan_values), "values[1] is nan");
+  REFUSE(mps_elastic_roller(e, zero, 2, good, NULL), "length of normal is 0");
+  REFUSE(mps_elastic_roller(e, nan_values, 2, good, NULL), "length of normal is nan");
+  REFUSE(mps_elastic_roller(e, NULL, 2, good, NULL), "normal is NULL");
+  REFUSE(mps_elastic_cut(e, 2, 1, 2, good), "axis is 2");
+  REFUSE(mps_elastic_cut(e, 0, 0, 2, good), "side 0");
+  REFUSE(mps_elastic_cut(e, 0, -1, 2, bad), "ids[1] is 9");
+  mps_assert_fails(context, mps_elastic_cut(e, 0, 1, 2, good), MPS_ERROR_STATE,
+                   "particle 0 has a neighbour");
+  REFUSE(mps_elastic_add_forces(e, 2, bad, one), "ids[1] is 9");
+  REFUSE(mps_elastic_add_forces(e, 1, good, nan_values), "force y on particle 0 is nan");
+  REFUSE(mps_elastic_add_body_force(e, nan_values), "force[1] is nan");
+  REFUSE(mps_elastic_add_traction(e, 1, facet_bad, one), "facets[0] is 12");
+  REFUSE(mps_elastic_add_traction(e, 1, good, nan_values), "traction[1] is nan");
+  REFUSE(mps_elastic_add_pressure(e, 2, good, nan_values), "pressures[1] is nan");
+  REFUSE(mps_elastic_add_traction_fn(e, 2, good, NULL, NULL), "traction is NULL");
+  REFUSE(mps_elastic_solve_cases(e, 1, NULL, NULL), "an array is NULL");
+  REFUSE(mps_elastic_section(e, 0, NAN, NULL, NULL, NULL), "position is nan");
+  assert_int_equal(mps_elastic_solve(NULL), MPS_ERROR_ARGUMENT);
+  /* x + y and x - y fix a particle: a third direction is one too many. */
+  const double up[2] = {1, 1}, down[2] = {1, -1};
+  mps_assert_ok(context, mps_elastic_roller(e, up, 1, good, NULL));
+  mps_assert_ok(context, mps_elastic_roller(e, down, 1, good, NULL));
+  mps_assert_fails(context, mps_elastic_prescribe(e, 0, 1, good, NULL), MPS_ERROR_STATE,
+                   "already fixed");
+  double force[2];
+  mps_assert_ok(context, mps_elastic_load_resultant(e, NULL, force, NULL));
+  assert_true(force[0] == 0.0 && force[1] == 0.0); /* nothing of the refused loads is left */
+#undef REFUSE
+  test_body_end(&b);
+  mps_context_destroy(&context);
+}
+
+static void free_rigid_motions_are_named(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  test_body b = square(context, 4, NULL);
+  mps_elastic *e = b.elastic;
+#define REFUSE(why) mps_assert_fails(context, mps_elastic_solve(e), MPS_ERROR_STATE, why)
+  REFUSE("leave 3 of the 3 rigid motions");
+  const int64_t corner = 0, other = 15;
+  int64_t count, *ids = test_select(&b, 1, -1, 0.3, &count);
+  mps_assert_ok(context, mps_elastic_prescribe(e, 1, count, ids, NULL));
+  REFUSE("leave 1 of the 3");
+  REFUSE("translation along x");
+  free(ids);
+  mps_assert_ok(context, mps_elastic_clear_supports(e));
+  for (int c = 0; c < 2; c++) mps_assert_ok(context, mps_elastic_prescribe(e, c, 1, &corner, NULL));
+  REFUSE("rotation about (0.25, 0.25)");
+  /* A roller whose line passes through the pin does not hold the rotation either. */
+  const double line[2] = {1, 1}, square_to_it[2] = {1, -1};
+  mps_assert_ok(context, mps_elastic_roller(e, line, 1, &other, NULL));
+  REFUSE("rotation about (0.25, 0.25)");
+  mps_assert_ok(context, mps_elastic_clear_supports(e));
+  for (int c = 0; c < 2; c++) mps_assert_ok(context, mps_elastic_prescribe(e, c, 1, &corner, NULL));
+  mps_assert_ok(context, mps_elastic_roller(e, square_to_it, 1, &other, NULL));
+  mps_assert_ok(context, mps_elastic_solve(e));
+  test_body_end(&b);
+  /* Two bodies, one of them unsupported: its part is named. Touching at a corner is no support. */
+  b = test_body_begin(context, 2, 0.5);
+  test_body_box(&b, 0, 0, 0, 1, 1, 0);
+  test_body_box(&b, 1, 1, 0, 2, 2, 0);
+  test_body_finish(&b, 1.0, 0.3, NULL);
+  e = b.elastic;
+  clamp(&b);
+  REFUSE("part of 4 particles with particle 4");
+  test_body_end(&b);
+  b = test_body_begin(context, 3, 0.5);
+  test_body_box(&b, 0, 0, 0, 1, 1, 1);
+  test_body_finish(&b, 1.0, 0.3, NULL);
+  e = b.elastic;
+  REFUSE("leave 6 of the 6");
+  ids = test_select(&b, 2, -1, 0.3, &count);
+  for (int c = 0; c < 3; c++)
+    mps_assert_ok(context, mps_elastic_prescribe(e, c, c == 2 ? count : 1, ids, NULL));
+  REFUSE("rotation about the direction (0, 0, 1)");
+  free(ids);
+#undef REFUSE
+  test_body_end(&b);
+  mps_context_destroy(&context);
+}
+
+/* ---- solvers --------------------------------------------------------------------------------- */
+
+static void solvers_and_orderings_agree(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  const struct {
+    int32_t solver, ordering;
+    double limit;
+  } ways[] = {{MPS_ELASTIC_AUTO, MPS_ELASTIC_ORDER_BEST, 0.0},
+              {MPS_ELASTIC_LLT, MPS_ELASTIC_ORDER_AMD, 0.0},
+              {MPS_ELASTIC_LLT, MPS_ELASTIC_ORDER_METIS, 0.0},
+              {MPS_ELASTIC_LDLT, MPS_ELASTIC_ORDER_AMD, 0.0},
+              {MPS_ELASTIC_CG, MPS_ELASTIC_ORDER_AMD, 0.0},
+              {MPS_ELASTIC_AUTO, MPS_ELASTIC_ORDER_AMD, 1000.0}};
+  double reference = 0.0;
+  for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
+    mps_elastic_def def = mps_elastic_defaults();
+    def.solver = ways[k].solver;
+    def.ordering = ways[k].ordering;
+    def.memory_limit = ways[k].limit;
+    def.tolerance = 1e-12;
+    test_body b = square(context, 20, &def);
+    clamp(&b);
+    mps_assert_ok(context, mps_elastic_solve(b.elastic));
+    const double u = test_value(&b, "displacement", b.n - 1, 0);
+    if (k == 0) reference = u;
+    mps_assert_near(u / reference, 1.0, 1e-9);
+    mps_elastic_report report;
+    mps_assert_ok(context, mps_elastic_get_report(b.elastic, &report));
+    const int cg = k >= 4;
+    assert_int_equal(report.solver, cg       ? MPS_ELASTIC_CG
+                                    : k == 3 ? MPS_ELASTIC_LDLT
+                                             : MPS_ELASTIC_LLT);
+    assert_true(cg ? report.iterations > 10 : report.condition > 10.0);
+    assert_true(report.residual < 1e-11);
+    test_body_end(&b);
+  }
+  mps_elastic_def def = mps_elastic_defaults();
+  def.solver = MPS_ELASTIC_LLT;
+  def.memory_limit = 1000.0;
+  test_body b = square(context, 20, &def);
+  clamp(&b);
+  mps_assert_fails(context, mps_elastic_solve(b.elastic), MPS_ERROR_MEMORY, "memory_limit is 1000");
+  test_body_end(&b);
+  def = mps_elastic_defaults();
+  def.solver = MPS_ELASTIC_CG;
+  def.iterations = 3;
+  b = square(context, 20, &def);
+  clamp(&b);
+  mps_assert_fails(context, mps_elastic_solve(b.elastic), MPS_ERROR_NUMERIC, "in 3 iterations");
+  test_body_end(&b);
+  mps_context_destroy(&context);
+}
+
+/* Negative shear moduli, which no field can give: set inside the solver. */
+static void a_matrix_that_is_not_positive_definite_is_diagnosed(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  test_body b = square(context, 8, NULL);
+  for (int64_t i = 40; i < b.n; i++) b.elastic->mu[i] = -1.0;
+  mpsi_elastic_measure(b.elastic);
+  clamp(&b);
+  for (int again = 0; again < 2; again++) {
+    mps_assert_fails(context, mps_elastic_solve(b.elastic), MPS_ERROR_NUMERIC,
+                     "not positive definite at direction");
+    assert_in_range(mps_context_error(context)->particle, 8, b.n - 1);
+  }
+  mps_assert_ok(context, mps_elastic_update_material(b.elastic)); /* as the fields say */
+  mps_assert_ok(context, mps_elastic_solve(b.elastic));
+  test_body_end(&b);
+  mps_context_destroy(&context);
+}
+
+static void what_can_be_kept_is_kept(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  test_body b = square(context, 12, NULL);
+  mps_elastic_report report;
+  mps_elastic_estimate estimate;
+  clamp(&b);
+  mps_assert_ok(context, mps_elastic_analyse(b.elastic, &estimate));
+  assert_int_equal(estimate.unknowns, 2 * 12 * 11);
+  assert_true(estimate.factor_nonzeros > estimate.matrix_nonzeros && estimate.factor_flops > 1e4);
+  mps_assert_ok(context, mps_elastic_solve(b.elastic));
+  const double u = test_value(&b, "displacement", 20, 1);
+  const double load[2] = {0.2, -1.0};
+  mps_assert_ok(context, mps_elastic_add_body_force(b.elastic, load)); /* twice the load */
+  mps_assert_ok(context, mps_elastic_solve(b.elastic));
+  mps_assert_near(test_value(&b, "displacement", 20, 1) / u, 2.0, 1e-12);
+  mps_assert_ok(context, mps_elastic_get_report(b.elastic, &report));
+  assert_int_equal(report.factorisations, 1);
+  /* Half the stiffness: a new factor on the old analysis. */
+  mps_assert_ok(context, mps_particles_set(b.particles, "young", 0, 1.0));
+  mps_assert_ok(context, mps_elastic_update_material(b.elastic));
+  mps_assert_ok(context, mps_elastic_solve(b.elastic));
+  mps_assert_near(test_value(&b, "displacement", 20, 1) / u, 4.0, 1e-12);
+  mps_assert_ok(context, mps_elastic_get_report(b.elastic, &report));
+  assert_int_equal(report.factorisations, 2);
+  assert_int_equal(report.analyses, 1);
+  assert_int_equal(report.factor_nonzeros, estimate.factor_nonzeros);
+  /* A prescribed value that changes needs nothing new; a new support does. */
+  const int64_t id = 0;
+  const double lift = 0.1;
+  mps_assert_ok(context, mps_elastic_prescribe(b.elastic, 1, 1, &id, &lift));
+  mps_assert_ok(context, mps_elastic_solve(b.elastic));
+  mps_assert_near(test_value(&b, "displacement", 0, 1), 0.1, 0.0);
+  mps_assert_ok(context, mps_elastic_get_report(b.elastic, &report));
+  assert_int_equal(report.factorisations, 2);
+  mps_assert_ok(context, mps_elastic_prescribe(b.elastic, 0, 1, &(int64_t){100}, NULL));
+  mps_assert_ok(context, mps_elastic_solve(b.elastic));
+  mps_assert_ok(context, mps_elastic_get_report(b.elastic, &report));
+  assert_int_equal(report.analyses, 2);
+  test_body_end(&b);
+  mps_context_destroy(&context);
+}
+
+static void many_load_cases_superpose(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  test_body b = square(context, 6, NULL);
+  clamp(&b);
+  const int64_t cases = 37, all = b.n * 2;
+  double *loads = calloc((size_t)(cases * all), sizeof *loads);
+  double *u = calloc((size_t)(cases * all), sizeof *u);
+  for (int64_t k = 0; k < cases; k++) {
+    loads[k * all + 60 + k % 3] = 1.0 + (double)k;
+    loads[k * all + 71] = 0.5;
+  }
+  mps_assert_ok(context, mps_elastic_solve_cases(b.elastic, cases, loads, u));
+  for (int64_t k = 0; k < cases; k += 6) {
+    mps_assert_ok(context, mps_elastic_clear_loads(b.elastic));
+    for (int64_t i = 0; i < b.n; i++)
+      mps_assert_ok(context, mps_elastic_add_forces(b.elastic, 1, &i, loads + k * all + 2 * i));
+    mps_assert_ok(context, mps_elastic_solve(b.elastic));
+    for (int64_t i = 0; i < all; i++)
+      mps_assert_near(u[k * all + i], test_value(&b, "displacement", i / 2, (int32_t)(i % 2)),
+                      1e-10);
+  }
+  free(loads);
+  free(u);
+  test_body_end(&b);
+  mps_context_destroy(&context);
+}
+
+static void a_body_that_is_held_everywhere_has_no_unknowns(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  test_body b = square(context, 2, NULL);
+  const int64_t ids[4] = {0, 1, 2, 3};
+  const double load[2] = {1.0, -2.0};
+  for (int c = 0; c < 2; c++)
+    mps_assert_ok(context, mps_elastic_prescribe(b.elastic, c, 4, ids, NULL));
+  mps_assert_ok(context, mps_elastic_add_body_force(b.elastic, load));
+  mps_assert_ok(context, mps_elastic_solve(b.elastic));
+  double force[2];
+  mps_assert_ok(context, mps_elastic_reaction_resultant(b.elastic, NULL, force, NULL));
+  mps_assert_near(force[0], -1.0, 1e-14);
+  mps_assert_near(force[1], 2.0, 1e-14);
+  test_body_end(&b);
+  mps_context_destroy(&context);
+}
+
+/* ---- memory ---------------------------------------------------------------------------------- */
+
+/* Everything once: create, support, solve, stresses, cases, a motion, modes. */
+static mps_status use(mps_context *context, mps_particles *particles, int32_t solver,
+                      mps_elastic **out) {
+  mps_elastic_def def = mps_elastic_defaults();
+  mps_newmark_def motion = mps_newmark_defaults();
+  const int64_t ids[4] = {0, 1, 2, 3};
+  const double gravity[2] = {0.0, -1.0};
+  double loads[32] = {0.0}, u[32], omega[2];
+  def.solver = solver;
+  motion.dt = 0.1;
+  mps_status status = mps_elastic_create(context, particles, &def, out);
+  for (int c = 0; c < 2 && status == MPS_OK; c++)
+    status = mps_elastic_prescribe(*out, c, 4, ids, NULL);
+  if (status == MPS_OK) status = mps_elastic_add_body_force(*out, gravity);
+  if (status == MPS_OK) status = mps_elastic_solve(*out);
+  if (status == MPS_OK) status = mps_elastic_stress(*out);
+  if (status == MPS_OK) status = mps_elastic_solve_cases(*out, 1, loads, u);
+  if (status == MPS_OK) status = mps_elastic_start(*out, &motion);
+  if (status == MPS_OK) status = mps_elastic_step(*out, 2);
+  if (status == MPS_OK) status = mps_elastic_modes(*out, 2, omega, NULL);
+  return status == MPS_ERROR_UNSUPPORTED ? MPS_OK : status; /* built without ARPACK */
+}
+
+static mps_status make(mps_context *context, int solver) {
+  mps_particles_def def = mps_particles_defaults();
+  mps_particles *particles = NULL;
+  mps_elastic *elastic = NULL;
+  const double lo[2] = {0, 0}, hi[2] = {4, 4};
+  def.spacing = 1.0;
+  mps_status status = mps_particles_create(context, &def, &particles);
+  if (status == MPS_OK) status = mps_particles_fill_box(particles, lo, hi, NULL);
+  if (status == MPS_OK) status = mps_particles_set(particles, "young", 0, 1.0);
+  if (status == MPS_OK) status = mps_particles_set(particles, "poisson", 0, 0.3);
+  if (status == MPS_OK) status = mps_particles_set(particles, "density", 0, 1.0);
+  if (status == MPS_OK) status = use(context, particles, solver, &elastic);
+  mps_elastic_destroy(&elastic);
+  mps_particles_destroy(&particles);
+  return status;
+}
+
+static void every_refused_allocation_is_reported_and_leaks_nothing(void **state) {
+  (void)state;
+  test_allocator_sweep(make, MPS_ELASTIC_AUTO);
+  test_allocator_sweep(make, MPS_ELASTIC_CG);
+}
+
+static void a_step_of_a_motion_allocates_nothing(void **state) {
+  (void)state;
+  test_allocator allocator = {0};
+  mps_context *context = test_allocator_context(&allocator);
+  test_body b = square(context, 8, NULL);
+  mps_newmark_def def = mps_newmark_defaults();
+  def.dt = 0.1;
+  mps_assert_ok(context, mps_particles_set(b.particles, "density", 0, 1.0));
+  clamp(&b);
+  mps_assert_ok(context, mps_elastic_start(b.elastic, &def));
+  mps_assert_ok(context, mps_elastic_step(b.elastic, 1));
+  const int64_t before = allocator.calls;
+  mps_assert_ok(context, mps_elastic_step(b.elastic, 10));
+  assert_int_equal(allocator.calls, before);
+  /* A static solution ends the motion. */
+  mps_assert_ok(context, mps_elastic_solve(b.elastic));
+  mps_assert_fails(context, mps_elastic_step(b.elastic, 1), MPS_ERROR_STATE, "mps_elastic_start");
+  test_body_end(&b);
+  mps_context_destroy(&context);
+  assert_int_equal(allocator.live, 0);
+}
+
+/* SuiteSparse's process-wide hooks belong to the host program: here, that is this test. */
+static int64_t suite_calls, suite_refuse, suite_live;
+
+static void *suite_malloc(size_t size) {
+  if (++suite_calls == suite_refuse) return NULL;
+  suite_live++;
+  return malloc(size);
+}
+static void *suite_calloc(size_t count, size_t size) {
+  if (++suite_calls == suite_refuse) return NULL;
+  suite_live++;
+  return calloc(count, size);
+}
+static void *suite_realloc(void *old, size_t size) {
+  if (++suite_calls == suite_refuse) return NULL;
+  if (!old) suite_live++;
+  return realloc(old, size);
+}
+static void suite_free(void *memory) {
+  if (memory) suite_live--;
+  free(memory);
+}
+
+/* What refusing call after call inside CHOLMOD does; METIS has a memory of its own, so AMD. */
+static void failures_inside_cholmod_are_reported_and_leak_nothing(void **state) {
+  (void)state;
+  SuiteSparse_config.malloc_func = suite_malloc;
+  SuiteSparse_config.calloc_func = suite_calloc;
+  SuiteSparse_config.realloc_func = suite_realloc;
+  SuiteSparse_config.free_func = suite_free;
+  int64_t failed = 0;
+  for (int32_t solver = MPS_ELASTIC_LLT; solver <= MPS_ELASTIC_LDLT; solver++) {
+    mps_status status = MPS_ERROR_MEMORY;
+    for (suite_refuse = 1; suite_refuse < 2000; suite_refuse++) {
+      mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+      mps_elastic_def def = mps_elastic_defaults();
+      def.solver = solver;
+      def.ordering = MPS_ELASTIC_ORDER_AMD;
+      suite_calls = 0;
+      test_body b = square(context, 5, &def);
+      clamp(&b);
+      status = mps_elastic_solve(b.elastic);
+      if (status != MPS_OK) {
+        assert_int_equal(status, MPS_ERROR_MEMORY);
+        assert_non_null(strstr(mps_context_error(context)->message, "CHOLMOD"));
+        failed++;
+        /* The solver is as usable as before. */
+        suite_calls = suite_refuse;
+        mps_assert_ok(context, mps_elastic_solve(b.elastic));
+      }
+      test_body_end(&b);
+      mps_context_destroy(&context);
+      assert_int_equal(suite_live, 0);
+      if (status == MPS_OK && suite_calls < suite_refuse) break; /* nothing left to refuse */
+    }
+    assert_int_equal(status, MPS_OK);
+  }
+  print_message("%d calls refused inside CHOLMOD were reported\n", (int)failed);
+  assert_true(failed > 10);
+  suite_refuse = 0;
+  SuiteSparse_config.malloc_func = malloc;
+  SuiteSparse_config.calloc_func = calloc;
+  SuiteSparse_config.realloc_func = realloc;
+  SuiteSparse_config.free_func = free;
+}
+
+static void the_particles_outlive_their_owner_and_may_be_used_by_two_solvers(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  test_body b = square(context, 4, NULL);
+  mps_elastic *second = NULL;
+  mps_elastic_def def = mps_elastic_defaults();
+  def.method = MPS_ELASTIC_PUBLISHED;
+  mps_assert_ok(context, mps_elastic_create(context, b.particles, &def, &second));
+  mps_particles_destroy(&b.particles);
+  mps_elastic_destroy(&b.elastic);
+  mps_elastic_destroy(&second);
+  mps_context_destroy(&context);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(bodies_that_cannot_be_solved_are_refused),
+      cmocka_unit_test(impossible_materials_are_refused),
+      cmocka_unit_test(bad_definitions_are_refused),
+      cmocka_unit_test(bad_supports_and_loads_are_refused),
+      cmocka_unit_test(free_rigid_motions_are_named),
+      cmocka_unit_test(solvers_and_orderings_agree),
+      cmocka_unit_test(a_matrix_that_is_not_positive_definite_is_diagnosed),
+      cmocka_unit_test(what_can_be_kept_is_kept),
+      cmocka_unit_test(many_load_cases_superpose),
+      cmocka_unit_test(a_body_that_is_held_everywhere_has_no_unknowns),
+      cmocka_unit_test(every_refused_allocation_is_reported_and_leaks_nothing),
+      cmocka_unit_test(a_step_of_a_motion_allocates_nothing),
+      cmocka_unit_test(failures_inside_cholmod_are_reported_and_leak_nothing),
+      cmocka_unit_test(the_particles_outlive_their_owner_and_may_be_used_by_two_solvers),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

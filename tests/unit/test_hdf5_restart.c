@@ -1,0 +1,176 @@
+/* test_hdf5_restart.c - a run that stops at a checkpoint and goes on in a new solver is, bit for
+ * bit, the run that never stopped: every integrator, with and without damping, driven, with a
+ * viscous base and free-field columns.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "test_fixture.h"
+
+#include <mps/dynamics.h>
+#include <mps/io.h>
+
+#include <stdbool.h>
+
+#define STEPS_BEFORE 37
+#define STEPS_AFTER 53
+
+static const char path[] = TEST_TMP "/restart.h5";
+typedef struct run {
+  int integrator, rotation;
+  double damping;
+  bool driven;  /* else a viscous base with an incoming wave, and free-field columns */
+  double start; /* s: time of the first step */
+} run;
+
+typedef struct body {
+  mps_particles *set;
+  mps_dynamics *solver;
+} body;
+
+static void set_field(mps_particles *set, const char *name, double value) {
+  mps_assert_ok(context, mps_particles_set(set, name, 0, value));
+}
+
+/* A block of 8 x 6 particles in slow motion, on its base. The time step is no dyadic number, so
+ * that times are rounded. `dt` 0: the library's own choice. */
+static body build(const run *r, double dt) {
+  body b = {NULL, NULL};
+  mps_particles_def set_def = mps_particles_defaults();
+  const double lo[2] = {0.0, 0.0}, hi[2] = {8.0, 6.0};
+  set_def.spacing = 1.0;
+  mps_assert_ok(context, mps_particles_create(context, &set_def, &b.set));
+  mps_assert_ok(context, mps_particles_fill_box(b.set, lo, hi, NULL));
+  set_field(b.set, "density", 1500.0);
+  set_field(b.set, "shear_velocity", 100.0);
+  set_field(b.set, "pressure_velocity", 200.0);
+  set_field(b.set, "damping", r->damping);
+  set_field(b.set, "velocity", 0.0);
+  mps_view x, v;
+  mps_assert_ok(context, mps_particles_view(b.set, "position", &x));
+  mps_assert_ok(context, mps_particles_view(b.set, "velocity", &v));
+  for (int64_t k = 0; k < x.shape[0]; k++)
+    *mps_view_f64(&v, k, 0) = 0.01 * sin(*mps_view_f64(&x, k, 1)) * cos(*mps_view_f64(&x, k, 0));
+  if (!r->driven) mps_assert_ok(context, mps_dynamics_add_free_field(b.set, MPS_SIDE_LEFT, 3));
+  mps_dynamics_def def = mps_dynamics_defaults();
+  def.integrator = r->integrator;
+  def.rotation = r->rotation;
+  def.dt = dt;
+  mps_assert_ok(context, mps_dynamics_create(context, b.set, &def, &b.solver));
+  const double base_lo[2] = {-20.0, 0.0}, base_hi[2] = {20.0, 1.0};
+  int64_t ids[64], count;
+  mps_signal *wave = NULL;
+  mps_assert_ok(context, mps_particles_select_box(b.set, base_lo, base_hi, 64, ids, &count));
+  mps_assert_ok(context, mps_signal_ricker(context, 9.0, 0.05, 0.01, &wave));
+  if (r->driven) {
+    mps_assert_ok(context, mps_dynamics_hold(b.solver, MPS_DOF_Y, count, ids));
+    mps_assert_ok(context, mps_dynamics_drive(b.solver, 0, wave, 1.0, count, ids));
+  } else {
+    mps_viscous_def viscous = mps_viscous_defaults();
+    viscous.incoming[0] = wave;
+    mps_assert_ok(context, mps_dynamics_viscous(b.solver, &viscous, count, ids));
+  }
+  mps_signal_destroy(&wave);
+  if (r->start != 0.0) mps_assert_ok(context, mps_dynamics_restart(b.solver, r->start));
+  return b;
+}
+
+static void drop(body *b) {
+  mps_dynamics_destroy(&b->solver);
+  mps_particles_destroy(&b->set);
+}
+
+static void same_bits(const body *a, const body *b, const char *what) {
+  mps_view va, vb;
+  mps_field_info info;
+  assert_int_equal(mps_particles_field_count(a->set), mps_particles_field_count(b->set));
+  for (int32_t f = 0; f < mps_particles_field_count(a->set); f++) {
+    mps_assert_ok(context, mps_particles_field(a->set, f, &info));
+    mps_assert_ok(context, mps_particles_view(a->set, info.name, &va));
+    mps_assert_ok(context, mps_particles_view(b->set, info.name, &vb));
+    for (int64_t c = 0; c < va.shape[1]; c++)
+      for (int64_t i = 0; i < va.shape[0]; i++)
+        if (memcmp(mps_view_f64(&va, i, c), mps_view_f64(&vb, i, c), 8) != 0)
+          fail_msg("%s: %s[%d] of particle %d: %.17g and %.17g", what, info.name, (int)c, (int)i,
+                   *mps_view_f64(&va, i, c), *mps_view_f64(&vb, i, c));
+  }
+  assert_int_equal(mps_dynamics_steps(a->solver), mps_dynamics_steps(b->solver));
+  const double time[2] = {mps_dynamics_time(a->solver), mps_dynamics_time(b->solver)};
+  if (time[0] != time[1]) fail_msg("%s: time %.17g and %.17g s", what, time[0], time[1]);
+}
+
+static void checkpoint(const body *b) {
+  mps_checkpoint info = mps_checkpoint_defaults();
+  info.time = mps_dynamics_time(b->solver);
+  info.step = mps_dynamics_steps(b->solver);
+  info.dt = mps_dynamics_dt(b->solver);
+  mps_assert_ok(context, mps_checkpoint_write(b->set, path, &info));
+}
+
+/* The program that goes on. */
+static body resume(const run *r) {
+  mps_checkpoint info = mps_checkpoint_defaults();
+  mps_assert_ok(context, mps_checkpoint_info(context, path, &info));
+  body b = build(r, info.dt);
+  mps_assert_ok(context, mps_checkpoint_read(b.set, path, &info));
+  mps_assert_ok(context, mps_dynamics_resume(b.solver, info.time, info.step));
+  return b;
+}
+
+static void stop_and_go_on(const run *r, double dt, int64_t before) {
+  char what[128];
+  snprintf(what, sizeof what, "integrator %d rotation %d damping %g driven %d start %g",
+           r->integrator, r->rotation, r->damping, r->driven, r->start);
+  body whole = build(r, dt);
+  mps_assert_ok(context, mps_dynamics_step(whole.solver, before));
+  checkpoint(&whole);
+  body other = resume(r);
+  same_bits(&whole, &other, what);
+  for (int k = 0; k < 2; k++) {
+    mps_assert_ok(context, mps_dynamics_step(whole.solver, STEPS_AFTER));
+    mps_assert_ok(context, mps_dynamics_step(other.solver, STEPS_AFTER));
+    same_bits(&whole, &other, what);
+    /* a checkpoint of the resumed run serves as well */
+    drop(&other);
+    checkpoint(&whole);
+    other = resume(r);
+  }
+  mps_dynamics_energy energy;
+  mps_assert_ok(context, mps_dynamics_get_energy(whole.solver, &energy));
+  assert_true(energy.total > 0.0); /* something moved */
+  drop(&whole);
+  drop(&other);
+}
+
+static void every_integrator_goes_on_bit_for_bit(void **state) {
+  (void)state;
+  static const double start[] = {0.0, 0.3};
+  for (int integrator = 0; integrator < 3; integrator++)
+    for (int damped = 0; damped < 2; damped++)
+      for (int driven = 0; driven < 2; driven++)
+        for (int k = 0; k < 2; k++) {
+          const run r = {integrator, driven ? MPS_ROTATION_MEAN_MATRIX : MPS_ROTATION_MEAN_ANGLE,
+                         0.05 * damped, driven == 1, start[k]};
+          stop_and_go_on(&r, 7e-4, STEPS_BEFORE);
+        }
+}
+
+static void so_does_a_run_with_the_librarys_time_step(void **state) {
+  (void)state;
+  const run r = {MPS_INTEGRATOR_VERLET, MPS_ROTATION_MEAN_MATRIX, 0.02, true, 0.0};
+  stop_and_go_on(&r, 0.0, STEPS_BEFORE);
+}
+
+static void so_does_one_that_has_not_begun(void **state) {
+  (void)state;
+  for (int integrator = 0; integrator < 3; integrator++) {
+    const run r = {integrator, MPS_ROTATION_MEAN_MATRIX, 0.02, true, 0.0};
+    stop_and_go_on(&r, 7e-4, 0);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_integrator_goes_on_bit_for_bit),
+      cmocka_unit_test(so_does_a_run_with_the_librarys_time_step),
+      cmocka_unit_test(so_does_one_that_has_not_begun),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
