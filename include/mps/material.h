@@ -22,7 +22,7 @@ typedef struct mps_material mps_material;
 
 /** What a law did to a particle in this step: bits of the column `flags`. */
 #define MPS_MATERIAL_PLASTIC 1 /* the trial stress was outside the yield surface */
-#define MPS_MATERIAL_APEX 2    /* ... and came back to the limit of tension: the volume is kept */
+#define MPS_MATERIAL_APEX 2    /* at the limit of tension: the volume is kept */
 
 /** A block of particles as a law sees it: columns of `count` doubles, each contiguous. */
 typedef struct mps_material_block {

@@ -4,7 +4,8 @@
  * with MPSI_LEVEL set; fused multiply-add is off (build flags), so every level gives the same bits.
  *
  * A particle that yields and one that does not take the same instructions: results are selected, so
- * that plasticity costs a square root and a division and never a branch.
+ * that plasticity costs a square root and a division and never a branch. Divisions by constants are
+ * products with their reciprocals: in a vector a division is as dear as ten products.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "tensor.h"
 
@@ -12,10 +13,13 @@
 #define CONCAT(a, b) CONCAT_(a, b)
 #define SIMD _Pragma("omp simd")
 
-#define ROOT3 1.7320508075688772
+#define THIRD (1.0 / 3.0)
+#define NOTHING 1e-300 /* Pa: keeps 0/0 away */
+#define PER_ROOT3 0.57735026918962576
 
 /* ---- return maps ------------------------------------------------------------------------------
- * In the plane of mean stress p and q = sqrt(J2): the deviator keeps its direction. */
+ * In the plane of mean stress p and q = sqrt(J2): the deviator keeps its direction. All selections
+ * are minima and maxima, which a compiler cannot turn back into branches; a NaN passes through. */
 
 typedef struct meridian {
   double p, q;
@@ -23,35 +27,36 @@ typedef struct meridian {
   int64_t flags;
 } meridian;
 
+MPSI_INLINE double at_least(double x, double low) { return x < low ? low : x; }
+MPSI_INLINE double at_most(double x, double high) { return x > high ? high : x; }
+
 MPSI_INLINE meridian return_von_mises(const mpsi_law *law, double p, double q, double hardened) {
-  const double over = q - (law->yield + law->hardening * hardened) / ROOT3;
-  const double g = law->shear, drop = over * (g / (g + law->hardening / 3.0));
-  const bool yields = over > 0.0;
+  const double f = q - (law->yield + law->hardening * hardened) * PER_ROOT3;
+  const double share = law->shear / (law->shear + law->hardening / 3.0);
+  const double drop = at_least(f, 0.0) * share;
   return (meridian){.p = p,
-                    .q = yields ? q - drop : q,
-                    .plastic = yields ? drop / (ROOT3 * g) : 0.0,
-                    .flags = yields ? MPS_MATERIAL_PLASTIC : 0};
+                    .q = q - drop,
+                    .plastic = drop * (PER_ROOT3 / law->shear),
+                    .flags = f > 0.0 ? MPS_MATERIAL_PLASTIC : 0};
 }
 
 /* The cone q + 3 alpha p = kappa up to the limit of tension p = tension, where its radius is
- * q_tension: 0 at the apex. Beyond the limit, particles inside that radius go straight to it; those
- * that the cone's return would carry past it go to the circle where both meet. */
+ * q_tension: 0 at the apex. A trial that the cone's return (which is itself, if elastic) leaves
+ * beyond the limit goes to the limit: with its own q if that is smaller than the radius there, else
+ * to the circle where cone and limit meet. On the cone before the limit q is never below q_tension,
+ * so that one line says it for all. */
 MPSI_INLINE meridian return_drucker_prager(const mpsi_law *law, double p, double q) {
-  const double f = q + 3.0 * law->alpha * p - law->kappa, multiplier = f * law->cone;
+  const double f = q + 3.0 * law->alpha * p - law->kappa;
+  const double multiplier = at_least(f, 0.0) * law->cone;
   const double p_cone = p - 3.0 * law->bulk * law->alpha_flow * multiplier;
   const double q_cone = q - law->shear * multiplier;
-  const bool torn = (p > law->tension) & (q <= law->q_tension);
-  const bool yields = f > 0.0, circle = yields & (p_cone > law->tension);
-  const double p_yield = circle ? law->tension : p_cone;
-  const double q_yield = circle ? law->q_tension : q_cone;
-  const double q_new = torn ? q : yields ? q_yield : q;
-  return (meridian){.p = torn     ? law->tension
-                         : yields ? p_yield
-                                  : p,
+  const double q_new = at_most(q, at_least(q_cone, law->q_tension));
+  const int64_t yields = f > 0.0 ? MPS_MATERIAL_PLASTIC : 0;
+  return (meridian){.p = at_most(p_cone, law->tension),
                     .q = q_new,
-                    .plastic = (q - q_new) / (ROOT3 * law->shear),
-                    .flags = ((torn | yields) ? MPS_MATERIAL_PLASTIC : 0) +
-                             ((torn | circle) ? MPS_MATERIAL_APEX : 0)};
+                    .plastic = (q - q_new) * (PER_ROOT3 / law->shear),
+                    .flags =
+                        p_cone > law->tension ? MPS_MATERIAL_PLASTIC | MPS_MATERIAL_APEX : yields};
 }
 
 /* ---- laws of the Jaumann rate -----------------------------------------------------------------
@@ -71,7 +76,7 @@ MPSI_INLINE void rate_loop(const int geometry, const int kind, const mpsi_law *c
     s = mpsi_hooke(&law, s, d);
     int64_t flag = 0;
     if (kind != MPSI_LAW_LINEAR_ELASTIC) {
-      const double p = (s.xx + s.yy + s.zz) / 3.0, dx = s.xx - p, dy = s.yy - p, dz = s.zz - p;
+      const double p = (s.xx + s.yy + s.zz) * THIRD, dx = s.xx - p, dy = s.yy - p, dz = s.zz - p;
       const double q =
           sqrt(0.5 * (dx * dx + dy * dy + dz * dz) + (s.xy * s.xy + s.yz * s.yz + s.zx * s.zx));
       if (kind == MPSI_LAW_MOHR_COULOMB) { /* beyond the inscribed cone: a candidate */
@@ -79,11 +84,11 @@ MPSI_INLINE void rate_loop(const int geometry, const int kind, const mpsi_law *c
       } else {
         const meridian m = kind == MPSI_LAW_VON_MISES ? return_von_mises(&law, p, q, strain[k])
                                                       : return_drucker_prager(&law, p, q);
-        const double scale = q > 0.0 ? m.q / q : 1.0;
+        const double scale = m.q / (q + NOTHING); /* 1 if elastic */
         flag = m.flags;
-        s.xx = flag != 0 ? m.p + scale * dx : s.xx; /* elastic ones keep their bits */
-        s.yy = flag != 0 ? m.p + scale * dy : s.yy;
-        s.zz = flag != 0 ? m.p + scale * dz : s.zz;
+        s.xx = m.p + scale * dx;
+        s.yy = m.p + scale * dy;
+        s.zz = m.p + scale * dz;
         s.xy *= scale;
         s.yz *= scale;
         s.zx *= scale;
@@ -199,14 +204,15 @@ MPSI_INLINE void newtonian_loop(const int geometry, const bool tait, const mpsi_
   double *volume = block->volume_ratio;
   int64_t *flags = block->flags;
   const double dt = block->dt, bulk = law->bulk, drag = 2.0 * law->viscosity / dt;
+  const double stiff = bulk / 7.0;
   const double limit = law->no_tension ? 1.0 : INFINITY; /* of V/V0 */
   SIMD for (int64_t k = 0; k < block->count; k++) {
     const mpsi_sym d = mpsi_strain(geometry, &columns, k, dt);
-    const double trace = d.xx + d.yy + d.zz, mean = trace / 3.0;
+    const double trace = d.xx + d.yy + d.zz, mean = trace * THIRD;
     const double trial = volume[k] + volume[k] * trace;
     const bool torn = trial > limit;
     const double v = torn ? limit : trial, r = 1.0 / v, r2 = r * r;
-    const double p = tait ? bulk / 7.0 * (r2 * r2 * r2 * r - 1.0) : bulk * (r - 1.0);
+    const double p = tait ? stiff * (r2 * r2 * r2 * r - 1.0) : bulk * (r - 1.0);
     const mpsi_sym s = {.xx = drag * (d.xx - mean) - p,
                         .yy = drag * (d.yy - mean) - p,
                         .zz = drag * (d.zz - mean) - p,

@@ -36,9 +36,10 @@ static void join_plane(const principal *trial, const double *value, double *s) {
 /* One rotation of Jacobi's method in the plane (i, j): a[i][j] becomes zero. */
 static void rotate(double a[3][3], double axis[3][3], int i, int j) {
   const int k = 3 - i - j;
-  if (a[i][j] == 0.0) return;
-  const double theta = 0.5 * (a[j][j] - a[i][i]) / a[i][j];
-  const double t = (theta < 0.0 ? -1.0 : 1.0) / (fabs(theta) + sqrt(1.0 + theta * theta));
+  if (fabs(a[i][j]) < 1e-150) return; /* Pa: its square would vanish */
+  const double gap = a[j][j] - a[i][i], twice = 2.0 * a[i][j];
+  const double root = sqrt(gap * gap + twice * twice);
+  const double t = twice / (gap < 0.0 ? gap - root : gap + root);
   const double c = 1.0 / sqrt(1.0 + t * t), s = t * c, move = t * a[i][j];
   const double ki = a[k][i], kj = a[k][j];
   a[i][i] -= move;
@@ -61,7 +62,7 @@ static principal split_space(const double *s) {
   for (int sweep = 0; sweep < 12; sweep++) {
     const double off = fabs(a[0][1]) + fabs(a[1][2]) + fabs(a[2][0]);
     const double size = fabs(a[0][0]) + fabs(a[1][1]) + fabs(a[2][2]);
-    if (off <= 1e-17 * size) break;
+    if (off <= 1e-16 * size) break;
     rotate(a, p.axis, 0, 1);
     rotate(a, p.axis, 1, 2);
     rotate(a, p.axis, 0, 2);

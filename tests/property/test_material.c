@@ -1,0 +1,200 @@
+/* test_material.c - what holds for every law: plane strain and axisymmetry are the 3D law, the cut
+ * into blocks and the instruction set change no bit, threads may share a material.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "material_paths.h"
+#include "pthread_executor.h"
+
+#include "material/material_private.h"
+
+#define COUNT 157 /* not a multiple of a vector's length */
+#define LAWS 9
+
+static int32_t creep(void *user, const mps_material_block *block) {
+  (void)user;
+  for (int64_t k = 0; k < block->count; k++) {
+    const double rate = block->gradient[0][k] + block->gradient[4][k] +
+                        (block->gradient[8] ? block->gradient[8][k] : 0.0);
+    block->history[0][k] += block->dt * rate;
+    for (int c = 0; c < 3; c++) block->stress[c][k] += 1e6 * block->dt * rate;
+  }
+  return 0;
+}
+
+static mps_material *make_law(int which) {
+  static const char *const history[] = {"volume_strain"};
+  mps_material *material = NULL;
+  mps_von_mises_def mises = mps_von_mises_defaults();
+  mps_drucker_prager_def cone = mps_drucker_prager_defaults();
+  mps_mohr_coulomb_def coulomb = mps_mohr_coulomb_defaults();
+  mps_newtonian_def fluid = mps_newtonian_defaults();
+  mps_user_law_def user = mps_user_law_defaults();
+  mises.young = cone.young = coulomb.young = 1e7;
+  mises.yield_stress = 2e4, mises.hardening = 1e6;
+  cone.friction = coulomb.friction = 0.6, cone.dilation = 0.2;
+  cone.cohesion = coulomb.cohesion = 5e3, cone.tension = which == 3 ? 2e3 : INFINITY;
+  fluid.bulk_modulus = 2e6, fluid.viscosity = 3.0;
+  fluid.state = which == 6, fluid.no_tension = which == 6;
+  user.update = creep, user.wave_modulus = 1e6, user.history = history, user.history_count = 1;
+  mps_status status = MPS_OK;
+  if (which == 0) status = mps_material_linear_elastic(context, 1e7, 0.3, &material);
+  if (which == 1) status = mps_material_von_mises(context, &mises, &material);
+  if (which == 2 || which == 3) status = mps_material_drucker_prager(context, &cone, &material);
+  if (which == 4) status = mps_material_mohr_coulomb(context, &coulomb, &material);
+  if (which == 5) status = mps_material_neo_hookean(context, 1e7, 0.3, &material);
+  if (which == 6 || which == 7) status = mps_material_newtonian(context, &fluid, &material);
+  if (which == 8) status = mps_material_user(context, &user, &material);
+  mps_assert_ok(context, status);
+  return material;
+}
+
+/* A block with its columns. */
+typedef struct columns {
+  double gradient[9][COUNT], deformation[9][COUNT], stress[6][COUNT], history[COUNT];
+  double volume[COUNT];
+  int64_t flags[COUNT];
+} columns;
+
+/* Reproducible values; only in-plane ones, and with `hoop` a rate of zz, unless `space`. */
+static void fill(columns *c, bool hoop, bool space) {
+  uint64_t seed = 41;
+  memset(c, 0, sizeof *c);
+  for (int k = 0; k < COUNT; k++) {
+    for (int i = 0; i < 9; i++) {
+      const bool plane = i == 0 || i == 1 || i == 3 || i == 4 || (i == 8 && hoop);
+      const double x = random_number(&seed), y = random_number(&seed);
+      if (space || plane) c->gradient[i][k] = 4.0 * (x - 0.1);
+      c->deformation[i][k] = (i % 4 == 0) + (space || plane ? 0.1 * y : 0.0);
+    }
+    for (int i = 0; i < 6; i++) {
+      const double x = random_number(&seed);
+      if (space || i < 4) c->stress[i][k] = 1e4 * x - (i < 3 ? 1e4 : 0.0);
+    }
+    c->history[k] = 0.01 * (1.0 + random_number(&seed));
+    c->volume[k] = 1.0 + 0.02 * random_number(&seed);
+  }
+}
+
+/* The block of particles [begin, end). */
+static mps_material_block block_of(columns *c, int32_t dim, bool hoop, int begin, int end) {
+  mps_material_block block = {.struct_size = sizeof block,
+                              .dim = dim,
+                              .count = end - begin,
+                              .dt = 1e-3,
+                              .volume_ratio = c->volume + begin,
+                              .flags = c->flags + begin};
+  for (int i = 0; i < 9; i++) {
+    const bool plane = i == 0 || i == 1 || i == 3 || i == 4 || i == 8;
+    if (dim == 3 || (plane && (i != 8 || hoop))) block.gradient[i] = c->gradient[i] + begin;
+    if (dim == 3 || plane) block.deformation[i] = c->deformation[i] + begin;
+  }
+  for (int i = 0; i < (dim == 3 ? 6 : 4); i++) block.stress[i] = c->stress[i] + begin;
+  block.history[0] = c->history + begin;
+  return block;
+}
+
+static void plane_and_axisymmetric_are_three_dimensional(void **state) {
+  (void)state;
+  for (int which = 0; which < LAWS; which++)
+    for (int hoop = 0; hoop < 2; hoop++) {
+      mps_material *material = make_law(which);
+      columns flat, space;
+      fill(&flat, hoop, false);
+      fill(&space, hoop, false);
+      int plastic = 0;
+      for (int step = 0; step < 5; step++) {
+        const mps_material_block a = block_of(&flat, 2, hoop, 0, COUNT);
+        const mps_material_block b = block_of(&space, 3, hoop, 0, COUNT);
+        mps_assert_ok(context, mps_material_update(context, material, &a));
+        mps_assert_ok(context, mps_material_update(context, material, &b));
+      }
+      for (int k = 0; k < COUNT; k++) {
+        for (int i = 0; i < 6; i++) {
+          mps_assert_near(flat.stress[i][k], space.stress[i][k], 1e-12 * 1e6);
+          if (i > 3) mps_assert_near(space.stress[i][k], 0.0, 1e-12 * 1e6);
+        }
+        for (int i = 0; i < 9; i++)
+          mps_assert_near(flat.deformation[i][k], space.deformation[i][k], 0.0);
+        mps_assert_near(flat.volume[k], space.volume[k], 1e-14);
+        mps_assert_near(flat.history[k], space.history[k], 1e-13);
+        assert_int_equal(flat.flags[k], space.flags[k]);
+        plastic += flat.flags[k] != 0;
+      }
+      if (which >= 1 && which <= 4) assert_true(plastic > COUNT / 4);
+      mps_material_destroy(&material);
+    }
+}
+
+static void blocks_and_instruction_sets_change_no_bit(void **state) {
+  (void)state;
+  static const int32_t levels[] = {1, 3, 4};
+  for (int which = 0; which < LAWS; which++)
+    for (int kind = 0; kind < 3; kind++) {
+      mps_material *material = make_law(which);
+      const int32_t dim = kind == 2 ? 3 : 2;
+      columns whole, cut;
+      fill(&whole, kind > 0, kind == 2);
+      const mps_material_block block = block_of(&whole, dim, kind > 0, 0, COUNT);
+      mps_assert_ok(context, mps_material_update(context, material, &block));
+      for (int level = 0; level < 3; level++) {
+        const mpsi_law_table *table = mpsi_laws_select(levels[level]);
+        if (!table) continue;
+        fill(&cut, kind > 0, kind == 2);
+        for (int begin = 0, n = 1; begin < COUNT; begin += n, n = 2 * n + 1) {
+          const int end = begin + n < COUNT ? begin + n : COUNT;
+          const mps_material_block part = block_of(&cut, dim, kind > 0, begin, end);
+          assert_int_equal(table->apply[material->kind][kind](&material->law, &part), 0);
+        }
+        assert_memory_equal(&whole, &cut, sizeof cut);
+      }
+      mps_material_destroy(&material);
+    }
+}
+
+/* Sharing: as many owners and threads as there are. */
+typedef struct shared_use {
+  mps_material *materials[LAWS];
+  columns *columns;
+  int32_t failures[64];
+} shared_use;
+
+static void use_shared(void *data, int64_t index, int32_t worker) {
+  (void)worker;
+  shared_use *use = data;
+  mps_material *material = mpsi_material_retain(use->materials[index % LAWS]);
+  fill(&use->columns[index], true, true);
+  const mps_material_block block = block_of(&use->columns[index], 3, true, 0, COUNT);
+  use->failures[index] = mpsi_material_apply(material, &block);
+  mps_material_destroy(&material);
+}
+
+static void threads_share_a_material(void **state) {
+  (void)state;
+  int32_t threads = 4;
+  mps_context_def def = pthread_executor_def(&threads);
+  mps_context *parallel = NULL;
+  shared_use use = {.columns = calloc(4 * LAWS, sizeof(columns))};
+  columns alone;
+  assert_non_null(use.columns);
+  for (int which = 0; which < LAWS; which++) use.materials[which] = make_law(which);
+  assert_int_equal(mps_context_create(&def, &parallel, NULL, 0), MPS_OK);
+  mps_assert_ok(parallel, mps_context_parallel_for(parallel, 4 * LAWS, use_shared, &use));
+  for (int k = 0; k < 4 * LAWS; k++) {
+    assert_int_equal(use.failures[k], 0);
+    fill(&alone, true, true);
+    const mps_material_block block = block_of(&alone, 3, true, 0, COUNT);
+    mps_assert_ok(context, mps_material_update(context, use.materials[k % LAWS], &block));
+    assert_memory_equal(&alone, &use.columns[k], sizeof alone);
+  }
+  for (int which = 0; which < LAWS; which++) mps_material_destroy(&use.materials[which]);
+  mps_context_destroy(&parallel);
+  free(use.columns);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(plane_and_axisymmetric_are_three_dimensional),
+      cmocka_unit_test(blocks_and_instruction_sets_change_no_bit),
+      cmocka_unit_test(threads_share_a_material),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
