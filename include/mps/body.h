@@ -32,8 +32,8 @@ typedef struct mps_body_def {
   double spin;          /* rad/s at time 0; free bodies only */
   double friction;      /* Coulomb's mu on the surface, >= 0; default 0 */
   double penalty;       /* contact stiffness k of seed B (28), N/m per unit thickness, > 0; 0
-                           (default): the solver chooses 1.33 (K + 4G/3) of the particle's material,
-                           in axisymmetry times its radius */
+                           (default): the solver chooses 1.33 (K + 4G/3) of the particle's material.
+                           In axisymmetry either is multiplied by the particle's radius */
   double mass, inertia; /* kg and kg m2 about the reference point per unit thickness, > 0; free
                            bodies only */
   double gravity[2];    /* m/s2; free bodies only */

@@ -8,7 +8,7 @@
 
 #define MAX_CELLS 0x1p30 /* from the origin: nodes are counted exactly */
 #define ON_NODE 1e-6     /* cells: a wall this close to a node is on it */
-#define NO_WALL (INT64_C(1) << 40)
+#define NO_WALL (INT64_C(1) << 30)
 #define MAX_COUNT INT32_MAX
 
 static const mps_mpm_def mpm_defaults = {.struct_size = sizeof(mps_mpm_def),
@@ -145,14 +145,14 @@ static mps_status check_start(const mps_mpm *mpm) {
     for (int c = 0; c < 2; c++) {
       const double x = mpm->p.x[c][k], X = mpsi_grid_coordinate(mpm, c, x);
       const long long id = (long long)mpsi_particles_integers(mpm->particles, "id")[k];
-      if (!(X >= (double)mpm->low[c] && X <= (double)mpm->high[c]))
-        return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
-                         "particle %lld has %c = %g m, outside the domain [%g, %g] m", id, "xy"[c],
-                         x, mpm -> def.lower[c], mpm->def.upper[c]);
       if (!(fabs(X) < MAX_CELLS))
         return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
                          "particle %lld has %c = %g m, more than 2^30 cells from the origin", id,
                          "xy"[c], x);
+      if (!(X >= (double)mpm->low[c] && X <= (double)mpm->high[c]))
+        return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
+                         "particle %lld has %c = %g m, outside the domain [%g, %g] m", id, "xy"[c],
+                         x, mpm -> def.lower[c], mpm->def.upper[c]);
     }
   return MPS_OK;
 }

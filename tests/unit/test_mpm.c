@@ -60,6 +60,12 @@ static void refuses_bad_definitions(void **state) {
   def.geometry = MPS_AXISYMMETRIC;
   def.lower[0] = -0.02;
   refuses(&s, &def, "radius begins at 0");
+  mps_view x = mpm_scene_view(&s, "position");
+  *mps_view_f64(&x, 3, 1) = 1e12;
+  def = mps_mpm_defaults();
+  def.cell = 0.02;
+  refuses(&s, &def, "more than 2^30 cells");
+  *mps_view_f64(&x, 3, 1) = 0.005;
   mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 0.0));
   def = small_def();
   refuses(&s, &def, "density 0 kg/m3");
