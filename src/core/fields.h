@@ -14,6 +14,7 @@
 #define MPSI_PER_ROTATION -1 /* 1 in 2D, 3 in 3D */
 #define MPSI_PER_FREEDOM -2  /* displacements and rotations: 3 in 2D, 6 in 3D */
 #define MPSI_PER_STRESS -3   /* 4 in 2D (xx, yy, zz, xy), 6 in 3D (and zx, yz) */
+#define MPSI_PER_GRADIENT -4 /* tensor, in 2D with the hoop component: 5 in 2D, 9 in 3D */
 
 /* clang-format off */
 #define MPSI_FIELD_TABLE(X)                                                                        \
@@ -54,7 +55,7 @@
     "implicit elasticity", "after mps_elastic_stress")                                             \
   X(stress, F64, MPSI_PER_STRESS, "Pa",                                                            \
     "stress xx, yy, zz, xy; 3D: and zx, yz; tension positive",                                     \
-    "implicit elasticity", "after mps_elastic_stress")                                             \
+    "the caller (initial state of WLS-MPM); solvers", "after a step or mps_elastic_stress")        \
   X(principal, F64, 3, "Pa", "principal stresses, largest first",                                  \
     "implicit elasticity", "after mps_elastic_stress")                                             \
   X(von_mises, F64, 1, "Pa", "von Mises stress",                                                   \
@@ -69,7 +70,17 @@
     "explicit dynamics", "after a step or a run; part of a checkpoint")                            \
   X(restoring_old, F64, MPSI_PER_FREEDOM, "m/s, rad/s",                                          \
     "M^-1 times beta times the restoring force of the previous step: displacements, then rotations",          \
-    "explicit dynamics", "after a step or a run; part of a checkpoint")
+    "explicit dynamics", "after a step or a run; part of a checkpoint")                            \
+  X(mass, F64, 1, "kg", "mass per unit thickness (plane strain) or per radian (axisymmetry)",      \
+    "WLS-MPM", "after creation of the solver")                                                     \
+  X(volume, F64, 1, "m3", "volume per unit thickness (plane strain) or per radian (axisymmetry)",  \
+    "the caller (initial state; 0: from the spacing); WLS-MPM", "after a step or a run")           \
+  X(velocity_gradient, F64, MPSI_PER_GRADIENT, "1/s", "dv_i/dx_j row by row, in 2D then the hoop strain rate v_r/r", \
+    "the caller (initial state); WLS-MPM", "after a step or a run")                                \
+  X(volume_ratio, F64, 1, "-", "volume over the volume without stress, V/V0",                      \
+    "the caller (initial state; 0: 1); WLS-MPM with a law that reads it", "after a step or a run") \
+  X(deformation_gradient, F64, MPSI_PER_GRADIENT, "-", "F row by row, in 2D then the hoop or out-of-plane stretch", \
+    "the caller (initial state; all 0: no deformation); WLS-MPM with a law that reads it", "after a step or a run")
 /* clang-format on */
 
 /* Number of components in a set of dimension `dim`, from the table's number or code. */
@@ -79,6 +90,7 @@ static inline int32_t mpsi_field_components(int32_t code, int32_t dim) {
   if (code == MPSI_PER_ROTATION) return rotations;
   if (code == MPSI_PER_FREEDOM) return dim + rotations;
   if (code == MPSI_PER_STRESS) return 2 * dim;
+  if (code == MPSI_PER_GRADIENT) return dim == 2 ? 5 : 9;
   return code;
 }
 

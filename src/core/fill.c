@@ -10,6 +10,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "particles_private.h"
 
+#include "polygon.h"
+
 #include <string.h>
 
 #define ON_EDGE 1e-9      /* spacings: a centre this close to a bound lies on it */
@@ -265,64 +267,6 @@ typedef struct polygon {
 
 static const double *corner(const polygon *s, int64_t k) { return s->xy + 2 * (k % s->n); }
 
-/* Twice the signed area of the triangle a b c: > 0 when it runs anticlockwise. */
-static double turn(const double *a, const double *b, const double *c) {
-  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-}
-
-static bool between(const double *a, const double *b, const double *x) {
-  return x[0] >= fmin(a[0], b[0]) && x[0] <= fmax(a[0], b[0]) && x[1] >= fmin(a[1], b[1]) &&
-         x[1] <= fmax(a[1], b[1]);
-}
-
-/* Whether the closed segments ab and cd have a point in common. */
-static bool segments_meet(const double *a, const double *b, const double *c, const double *d) {
-  for (int axis = 0; axis < 2; axis++)
-    if (fmax(a[axis], b[axis]) < fmin(c[axis], d[axis]) ||
-        fmax(c[axis], d[axis]) < fmin(a[axis], b[axis]))
-      return false;
-  const double tc = turn(a, b, c), td = turn(a, b, d), ta = turn(c, d, a), tb = turn(c, d, b);
-  if (((tc > 0.0 && td < 0.0) || (tc < 0.0 && td > 0.0)) &&
-      ((ta > 0.0 && tb < 0.0) || (ta < 0.0 && tb > 0.0)))
-    return true;
-  return (tc == 0.0 && between(a, b, c)) || (td == 0.0 && between(a, b, d)) ||
-         (ta == 0.0 && between(c, d, a)) || (tb == 0.0 && between(c, d, b));
-}
-
-/* Corners that coincide, and edges that lie on each other at their common corner. Edge k runs from
- * corner k to corner k + 1. */
-static mps_status check_corners(const mps_particles *p, const char *function, const polygon *s) {
-  for (int64_t k = 0; k < s->n; k++) {
-    const double *a = corner(s, k), *b = corner(s, k + 1), *c = corner(s, k + 2);
-    const long long next = (k + 1) % s->n;
-    if (a[0] == b[0] && a[1] == b[1])
-      return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
-                       "corners %lld and %lld of the polygon coincide at (%g, %g) m (it is closed "
-                       "without repeating the first)",
-                       (long long)k, next, a[0], a[1]);
-    if (turn(a, b, c) == 0.0 && (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]) < 0.0)
-      return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
-                       "edges %lld and %lld of the polygon lie on each other at corner %lld: "
-                       "(%g, %g) m",
-                       (long long)k, next, next, b[0], b[1]);
-  }
-  return MPS_OK;
-}
-
-/* Edges that are not neighbours must not meet; the last is a neighbour of the first. */
-static mps_status check_edges(const mps_particles *p, const char *function, const polygon *s) {
-  for (int64_t k = 0; k < s->n; k++)
-    for (int64_t m = k + 2; m < s->n - (k == 0); m++) {
-      const double *a = corner(s, k), *c = corner(s, m);
-      if (segments_meet(a, corner(s, k + 1), c, corner(s, m + 1)))
-        return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
-                         "edges %lld and %lld of the polygon cross or touch: from corner (%g, %g) "
-                         "and from corner (%g, %g) m",
-                         (long long)k, (long long)m, a[0], a[1], c[0], c[1]);
-    }
-  return MPS_OK;
-}
-
 static mps_status check_polygon(const mps_particles *p, const char *function, const polygon *s) {
   if (p->def.dim != 2)
     return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
@@ -334,8 +278,7 @@ static mps_status check_polygon(const mps_particles *p, const char *function, co
   mps_status status = MPS_OK;
   for (int64_t k = 0; k < 2 * s->n && status == MPS_OK; k++)
     status = check_bound(p, function, "a corner", k % 2, s->xy[k]);
-  if (status == MPS_OK) status = check_corners(p, function, s);
-  return status == MPS_OK ? check_edges(p, function, s) : status;
+  return status == MPS_OK ? mpsi_polygon_check(p->context, function, s->n, s->xy) : status;
 }
 
 /* Where row j crosses the edges, as sites, ascending; returns how many: an even number.

@@ -188,23 +188,30 @@ mps_status mps_particles_append(mps_particles *particles, int64_t count, const d
 
 /* ---- order ----------------------------------------------------------------------------------- */
 
-mps_status mpsi_particles_permute(mps_particles *p, const char *function, const int64_t *order) {
+mps_status mpsi_particles_permute_in(mps_particles *p, const char *function, const int64_t *order,
+                                     void *scratch) {
   if (p->pins > 1)
     return mpsi_fail(p->context, function, MPS_ERROR_STATE,
                      "the set cannot be sorted: it is in use by %d solvers", p->pins);
-  char *sorted = mpsi_alloc(p->context, p->count, 8);
-  if (!sorted) return mpsi_fail_memory(p->context, function, (size_t)p->count * 8);
+  char *sorted = scratch;
   for (int32_t f = 0; f < p->field_count; f++)
     for (int32_t c = 0; c < p->fields[f]->components; c++) {
       char *column = mpsi_field_column(p->fields[f], c);
       for (int64_t k = 0; k < p->count; k++) memcpy(sorted + 8 * k, column + 8 * order[k], 8);
       memcpy(column, sorted, (size_t)p->count * 8);
     }
-  mpsi_free(p->context, sorted);
   const int64_t *id = p->fields[MPSI_FIELD_ID]->data;
   for (int64_t k = 0; k < p->count; k++) p->index_of[id[k]] = k;
   p->epoch++;
   return MPS_OK;
+}
+
+mps_status mpsi_particles_permute(mps_particles *p, const char *function, const int64_t *order) {
+  void *scratch = mpsi_alloc(p->context, p->count, 8);
+  if (!scratch) return mpsi_fail_memory(p->context, function, (size_t)p->count * 8);
+  const mps_status status = mpsi_particles_permute_in(p, function, order, scratch);
+  mpsi_free(p->context, scratch);
+  return status;
 }
 
 /* ---- selection ------------------------------------------------------------------------------- */

@@ -23,6 +23,9 @@ int64_t *mpsi_particles_integers(mps_particles *particles, const char *name);
  * are recorded for `function` on the set's context, and nothing has changed. */
 mps_status mpsi_particles_permute(mps_particles *particles, const char *function,
                                   const int64_t *order);
+/* The same without allocating: `scratch` has room for count items of 8 bytes. */
+mps_status mpsi_particles_permute_in(mps_particles *particles, const char *function,
+                                     const int64_t *order, void *scratch);
 
 /* While pinned, no particle can be added and the caller's destroy only gives up the caller's
  * share: the set goes with the last unpin. Each pin needs its unpin. */

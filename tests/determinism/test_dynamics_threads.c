@@ -1,26 +1,14 @@
 /* test_dynamics_threads.c - the same bits for every number of threads, every executor and every
  * instruction set.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "digest.h"
 #include "pthread_executor.h"
 #include "soil_column.h"
 
-/* FNV-1a over the bytes of the fields that carry the state. */
-static uint64_t digest(mps_context *context, mps_particles *particles) {
-  static const char *const names[] = {"id",   "displacement", "rotation", "velocity",
-                                      "spin", "acceleration", "pressure", "restoring_old"};
-  uint64_t hash = 14695981039346656037u;
-  for (size_t f = 0; f < sizeof names / sizeof *names; f++) {
-    mps_view view;
-    mps_assert_ok(context, mps_particles_view(particles, names[f], &view));
-    for (int64_t c = 0; c < view.shape[1]; c++)
-      for (int64_t k = 0; k < view.shape[0]; k++) {
-        uint64_t bits;
-        memcpy(&bits, (const char *)view.data + 8 * (k * view.stride[0] + c * view.stride[1]), 8);
-        hash = (hash ^ bits) * 1099511628211u;
-      }
-  }
-  return hash;
-}
+/* The fields that carry the state. */
+static const char *const names[] = {"id",       "displacement",  "rotation",
+                                    "velocity", "spin",          "acceleration",
+                                    "pressure", "restoring_old", NULL};
 
 typedef struct setting {
   int32_t executor, threads, isa;
@@ -77,17 +65,14 @@ static mps_status run(const setting *s, uint64_t *hash) {
     mps_dynamics_energy energy;
     mps_linear_limit limit;
     mps_assert_ok(context, mps_dynamics_get_energy(dynamics, &energy));
-    *hash = digest(context, particles);
-    uint64_t bits;
-    memcpy(&bits, &energy.total, sizeof bits);
-    *hash = (*hash ^ bits) * 1099511628211u;
+    *hash = digest_fields(context, particles, names);
+    *hash = digest_add(*hash, &energy.total);
     if (s->damped) { /* the limit of uneven damping is a longer search: once is enough */
       limit.dt = 0.0;
     } else {
       mps_assert_ok(context, mps_dynamics_limit_linear(dynamics, 0.0, &limit));
     }
-    memcpy(&bits, &limit.dt, sizeof bits);
-    *hash = (*hash ^ bits) * 1099511628211u;
+    *hash = digest_add(*hash, &limit.dt);
   }
   mps_dynamics_destroy(&dynamics);
   mps_particles_destroy(&particles);

@@ -12,3 +12,10 @@ for program in mps-wave mps-stability; do
   has "$work/version" "libmps"
 done
 has "$work/help" "--study"
+for program in mps-sliding-box mps-rolling-disc mps-footing; do
+  "$1/$program" --help >"$work/help" || fail "$program --help"
+  for text in "Usage: $program" "--h [m]" "[kN/m]" "(default" "--out DIR" "--threads N"; do
+    has "$work/help" "$text"
+  done
+  [ "$(awk 'length > 100' "$work/help" | wc -l)" -eq 0 ] || fail "$program --help has long lines"
+done

@@ -1,0 +1,36 @@
+/* mpm_model.h - what the programs on the WLS-MPM solver share: their objects, and the course of a
+ * run from the options to the exit code.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef EXAMPLES_MPM_MODEL_H
+#define EXAMPLES_MPM_MODEL_H
+
+#include "options.h"
+#include "output.h"
+
+#include <mps/mpm.h>
+
+enum { MPM_MODEL_BODIES = 8 };
+
+typedef struct mpm_model {
+  mps_particles *particles;
+  mps_material *material;
+  mps_mpm *mpm;
+  mps_body *body[MPM_MODEL_BODIES]; /* NULL where there is none */
+} mpm_model;
+
+/* The parts of a run; `user` is that of mpm_model_run. */
+typedef struct mpm_model_parts {
+  mps_status (*build)(mps_context *context, void *user);
+  mps_status (*march)(void *user);
+  bool (*finish)(app *a, void *user); /* results; false after an error line */
+} mpm_model_parts;
+
+/* Starts the library, makes the directory `out`, builds, marches, finishes, and destroys the model.
+ * Returns the exit code. */
+int mpm_model_run(const options_program *program, int64_t threads, const char *out,
+                  mpm_model *model, const mpm_model_parts *parts, void *user);
+
+/* Opens DIR/summary.json and writes what every summary begins with. */
+bool mpm_model_summary(app *a, const mpm_model *model, const char *directory, output *file);
+
+#endif

@@ -1,0 +1,297 @@
+/* mps-rolling-disc - a disc that slips or rolls down a slope: seed B 7.2, Figures 12-14, (51).
+ *
+ * --body slope: the disc is elastic and the slope a rigid body. --body disc: the disc is a free
+ * rigid body on an elastic slope, drawn level with tilted gravity; both act on each other.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "common/mpm_model.h"
+#include "common/plot.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#define PI 3.14159265358979323846
+#define G 9.81      /* m/s2 */
+#define RADIUS 0.05 /* m */
+#define DENSITY 1e3 /* kg/m3 */
+#define LENGTH 0.8  /* m, of the elastic slope */
+#define DEPTH 0.1   /* m */
+
+enum { BODY_SLOPE, BODY_DISC, FILL_LATTICE = 0, FILL_RINGS, SAMPLES = 100 };
+
+typedef struct settings {
+  double h, mu, angle, k, young, poisson, duration;
+  int64_t ppc, threads;
+  int fill, body;
+  const char *out;
+} settings;
+
+/* The disc's motion along the slope. */
+typedef struct motion {
+  double t, x, v, omega; /* s, m, m/s, rad/s (rolling down: > 0) */
+} motion;
+
+typedef struct simulation {
+  settings s;
+  mpm_model m;
+  double along[2]; /* unit vector down the slope */
+  double start[2]; /* m, of the disc's centre */
+  motion row[SAMPLES + 1];
+  int rows;
+} simulation;
+
+/* (51): position along the slope, from its start. */
+static double theory(const settings *s, double t) {
+  const double a = s->angle * PI / 180.0;
+  if (tan(a) > 3.0 * s->mu) return 0.5 * G * t * t * (sin(a) - s->mu * cos(a));
+  return G * t * t * sin(a) / 3.0;
+}
+
+/* ---- building -------------------------------------------------------------------------------- */
+
+/* Concentric rings, each of particles as far apart as the rings are, and of the ring's area. */
+static mps_status fill_rings(simulation *sim, double spacing) {
+  const int rings = (int)nearbyint(RADIUS / spacing);
+  mps_status status = mps_particles_add_field(sim->m.particles, "volume", 0);
+  for (int r = 0; r < rings && status == MPS_OK; r++) {
+    const double radius = ((double)r + 0.5) * spacing;
+    const int count = (int)nearbyint(2.0 * PI * ((double)r + 0.5));
+    const int64_t first = mps_particles_count(sim->m.particles);
+    for (int k = 0; k < count && status == MPS_OK; k++) {
+      const double a = 2.0 * PI * ((double)k + 0.5 * (r % 2)) / count;
+      const double x[] = {sim->start[0] + radius * cos(a), sim->start[1] + radius * sin(a)};
+      status = mps_particles_append(sim->m.particles, 1, x);
+    }
+    mps_view volume;
+    if (status == MPS_OK) status = mps_particles_view(sim->m.particles, "volume", &volume);
+    for (int64_t k = first; status == MPS_OK && k < first + count; k++)
+      *mps_view_f64(&volume, k, 0) = 2.0 * PI * radius * spacing / count;
+  }
+  return status;
+}
+
+static mps_status make_particles(mps_context *context, const settings *s, simulation *sim) {
+  mps_particles_def set = mps_particles_defaults();
+  set.spacing = s->h / sqrt((double)s->ppc);
+  if (s->body == BODY_SLOPE) {
+    if (s->fill == FILL_RINGS) set.spacing = RADIUS / fmax(1.0, nearbyint(RADIUS / set.spacing));
+    set.origin[0] = sim->start[0], set.origin[1] = sim->start[1];
+  }
+  mps_status status = mps_particles_create(context, &set, &sim->m.particles);
+  if (status != MPS_OK) return status;
+  if (s->body == BODY_DISC) {
+    const double lo[] = {0.0, 0.0}, hi[] = {LENGTH, DEPTH};
+    status = mps_particles_fill_box(sim->m.particles, lo, hi, NULL);
+  } else {
+    status = s->fill == FILL_RINGS
+                 ? fill_rings(sim, set.spacing)
+                 : mps_particles_fill_ball(sim->m.particles, sim->start, RADIUS, NULL);
+  }
+  return status == MPS_OK ? mps_particles_set(sim->m.particles, "density", 0, DENSITY) : status;
+}
+
+static mps_status make_rigid(mps_context *context, const settings *s, simulation *sim) {
+  mps_body_def def = mps_body_defaults();
+  mps_status status;
+  def.friction = s->mu;
+  def.penalty = s->k * 1e3;
+  if (s->body == BODY_SLOPE) {
+    const double normal[] = {-sim->along[1], sim->along[0]};
+    status = mps_body_create_half_plane(context, &def, normal, &sim->m.body[0]);
+  } else {
+    def.motion = MPS_MOTION_FREE;
+    def.mass = DENSITY * PI * RADIUS * RADIUS;
+    def.inertia = 0.5 * def.mass * RADIUS * RADIUS;
+    def.position[0] = sim->start[0], def.position[1] = sim->start[1];
+    def.gravity[0] = G * sin(s->angle * PI / 180.0);
+    def.gravity[1] = -G * cos(s->angle * PI / 180.0);
+    status = mps_body_create_disc(context, &def, RADIUS, &sim->m.body[0]);
+  }
+  return status == MPS_OK ? mps_mpm_add_body(sim->m.mpm, sim->m.body[0]) : status;
+}
+
+static mps_status build(mps_context *context, void *user) {
+  simulation *sim = user;
+  const settings *s = &sim->s;
+  const double a = s->angle * PI / 180.0;
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = s->h;
+  if (s->body == BODY_SLOPE) {
+    sim->along[0] = cos(a), sim->along[1] = -sin(a);
+    sim->start[0] = RADIUS * sin(a), sim->start[1] = RADIUS * cos(a);
+    def.gravity[1] = -G;
+  } else {
+    sim->along[0] = 1.0, sim->along[1] = 0.0;
+    sim->start[0] = 0.15, sim->start[1] = DEPTH + RADIUS;
+    def.origin[1] = 0.0;
+    def.lower[0] = 0.0, def.lower[1] = 0.0;
+    def.upper[0] = s->h * ceil(LENGTH / s->h - 1e-9);
+    def.wall_lower[1] = MPS_WALL_FIXED;
+  }
+  mps_status status = make_particles(context, s, sim);
+  if (status == MPS_OK)
+    status = mps_material_linear_elastic(context, s->young * 1e3, s->poisson, &sim->m.material);
+  if (status == MPS_OK)
+    status = mps_mpm_create(context, sim->m.particles, sim->m.material, &def, &sim->m.mpm);
+  return status == MPS_OK ? make_rigid(context, s, sim) : status;
+}
+
+/* ---- running --------------------------------------------------------------------------------- */
+
+/* Centre of mass, its velocity, and angular momentum over moment of inertia. */
+static mps_status look_at_particles(simulation *sim, double *x, double *v, double *omega) {
+  mps_view px, pv, pm;
+  double m = 0.0, inertia = 0.0, angular = 0.0;
+  mps_status status = mps_particles_view(sim->m.particles, "position", &px);
+  if (status == MPS_OK) status = mps_particles_view(sim->m.particles, "velocity", &pv);
+  if (status == MPS_OK) status = mps_particles_view(sim->m.particles, "mass", &pm);
+  if (status != MPS_OK) return status;
+  for (int64_t k = 0; k < px.shape[0]; k++) {
+    const double mass = *mps_view_f64(&pm, k, 0);
+    m += mass;
+    for (int c = 0; c < 2; c++) {
+      x[c] += mass * *mps_view_f64(&px, k, c);
+      v[c] += mass * *mps_view_f64(&pv, k, c);
+    }
+  }
+  for (int c = 0; c < 2; c++) x[c] /= m, v[c] /= m;
+  for (int64_t k = 0; k < px.shape[0]; k++) {
+    const double mass = *mps_view_f64(&pm, k, 0);
+    const double dx = *mps_view_f64(&px, k, 0) - x[0], dy = *mps_view_f64(&px, k, 1) - x[1];
+    inertia += mass * (dx * dx + dy * dy);
+    angular += mass * (dx * *mps_view_f64(&pv, k, 1) - dy * *mps_view_f64(&pv, k, 0));
+  }
+  *omega = -angular / inertia;
+  return MPS_OK;
+}
+
+static mps_status look_at_body(simulation *sim, double *x, double *v, double *omega) {
+  mps_body_state b;
+  const mps_status status = mps_body_get_state(sim->m.body[0], &b);
+  if (status != MPS_OK) return status;
+  for (int c = 0; c < 2; c++) x[c] = b.position[c], v[c] = b.velocity[c];
+  *omega = -b.spin;
+  return MPS_OK;
+}
+
+static mps_status sample(const settings *s, simulation *sim) {
+  double x[2] = {0}, v[2] = {0}, omega;
+  const mps_status status = s->body == BODY_SLOPE ? look_at_particles(sim, x, v, &omega)
+                                                  : look_at_body(sim, x, v, &omega);
+  if (status != MPS_OK) return status;
+  motion *row = &sim->row[sim->rows++];
+  *row = (motion){.t = mps_mpm_time(sim->m.mpm), .omega = omega};
+  for (int c = 0; c < 2; c++) {
+    row->x += x[c] * sim->along[c];
+    row->v += v[c] * sim->along[c];
+  }
+  return MPS_OK;
+}
+
+static mps_status march(void *user) {
+  simulation *sim = user;
+  const settings *s = &sim->s;
+  mps_status status = sample(s, sim);
+  for (int k = 1; k <= SAMPLES && status == MPS_OK; k++) {
+    status = mps_mpm_run(sim->m.mpm, s->duration * k / SAMPLES, INT64_MAX, NULL, NULL);
+    if (status == MPS_OK) status = sample(s, sim);
+  }
+  return status;
+}
+
+/* ---- results --------------------------------------------------------------------------------- */
+
+static bool write_motion(app *a, const settings *s, const simulation *sim) {
+  output f;
+  if (!output_open(&f, a, s->out, "motion.csv")) return false;
+  output_text(&f, "t_s,x_m,x_theory_m,v_m_s,omega_rad_s\n");
+  for (int k = 0; k < sim->rows; k++) {
+    const motion *m = &sim->row[k];
+    const double row[] = {m->t, m->x - sim->row[0].x, theory(s, m->t), m->v, m->omega};
+    csv_row(&f, 5, row);
+  }
+  return output_close(&f);
+}
+
+static bool draw(app *a, const settings *s) {
+  output f;
+  if (!plot_open(&f, a, s->out, "motion", 1000, 640)) return false;
+  output_text(&f,
+              "set title \"%s disc on %s slope of %g degrees\\n{/*0.85 h = %g R, {/Symbol m} = "
+              "%g, %d particles a cell, %s}\"\n"
+              "set xlabel 'time (s)'\nset ylabel \"path along the slope x'_c (m)\"\n"
+              "set key left top opaque\n"
+              "plot 'motion.csv' every ::1 using 1:3 with lines linecolor rgb '#c0392b' title "
+              "'theory (51)', \\\n"
+              "  '' every 4::1 using 1:2 with points pointtype 6 linecolor rgb '#1f4e8c' title "
+              "'WLS-MPM'\n",
+              s->body == BODY_SLOPE ? "An elastic" : "A rigid",
+              s->body == BODY_SLOPE ? "a rigid" : "an elastic", s->angle, s->h / RADIUS, s->mu,
+              (int)s->ppc, s->body == BODY_SLOPE && s->fill == FILL_RINGS ? "rings" : "lattice");
+  return plot_close(&f, s->out, "motion");
+}
+
+static bool finish(app *a, void *user) {
+  simulation *sim = user;
+  const settings *s = &sim->s;
+  const motion *end = &sim->row[sim->rows - 1];
+  const double x = end->x - sim->row[0].x, exact = theory(s, end->t);
+  const double error = x / exact - 1.0, ratio = end->omega * RADIUS / end->v;
+  output f;
+  if (!write_motion(a, s, sim) || !mpm_model_summary(a, &sim->m, s->out, &f)) return false;
+  json_text(&f, "body", s->body == BODY_SLOPE ? "slope" : "disc");
+  json_number(&f, "h", s->h);
+  json_number(&f, "mu", s->mu);
+  json_number(&f, "x", x);
+  json_number(&f, "x_theory", exact);
+  json_number(&f, "x_error_05", error);
+  json_number(&f, "omega_ratio", ratio);
+  json_end(&f);
+  if (!output_close(&f) || !draw(a, s)) return false;
+  printf("Results: %s/ (motion.csv, summary.json, motion.png)\n", s->out);
+  printf("path %.5f m after %g s (theory %.5f, %+.2f %%), omega R/v %.3f\n", x, end->t, exact,
+         100.0 * error, ratio);
+  return true;
+}
+
+int main(int argc, char **argv) {
+  static simulation sim = {.s = {.h = 0.01,
+                                 .angle = 30.0,
+                                 .k = 2000.0,
+                                 .young = 1000.0,
+                                 .poisson = 0.3,
+                                 .duration = 0.5,
+                                 .ppc = 4,
+                                 .out = "out/rolling-disc"}};
+  settings *s = &sim.s;
+  option table[] = {
+      OPTION_HEADING("Disc and slope"),
+      OPTION_CHOICE("body", "slope|disc", &s->body,
+                    "which of the two is rigid; disc: it is free, and the slope elastic"),
+      OPTION_NUMBER("angle", "degrees", OPTION_FROM_TO(1.0, 60.0), &s->angle, "of the slope"),
+      OPTION_NUMBER("mu", "1", OPTION_FROM_TO(0.0, 10.0), &s->mu,
+                    "friction; the disc rolls where tan(angle) <= 3 mu"),
+      OPTION_NUMBER("k", "kN/m", OPTION_POSITIVE, &s->k,
+                    "contact stiffness per unit thickness of each particle, seed B (28)"),
+      OPTION_NUMBER("young", "kPa", OPTION_POSITIVE, &s->young, "Young's modulus E"),
+      OPTION_NUMBER("poisson", "1", OPTION_FROM_TO(0.0, 0.49), &s->poisson, "Poisson's ratio"),
+      OPTION_HEADING("Grid"),
+      OPTION_NUMBER("h", "m", OPTION_ABOVE_TO(0.0, 0.05), &s->h,
+                    "grid spacing; the radius R is 0.05 m"),
+      OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
+      OPTION_CHOICE("fill", "lattice|rings", &s->fill, "how particles fill an elastic disc"),
+      OPTION_HEADING("Run"),
+      OPTION_NUMBER("duration", "s", OPTION_ABOVE_TO(0.0, 0.55), &s->duration,
+                    "length of the run; x_error_05 is that at its end"),
+      OPTION_OUT(&s->out),
+      OPTION_THREADS(&s->threads),
+      {0}};
+  const options_program program = {
+      "mps-rolling-disc",
+      "A disc of radius 0.05 m slips or rolls down a slope (WLS-MPM): seed B, Figures 12 to 14.\n"
+      "Its path is compared with that of a rigid disc, seed B (51).",
+      table};
+  const int code = options_parse(&program, argc, argv);
+  if (code >= 0) return code;
+  static const mpm_model_parts parts = {build, march, finish};
+  return mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
+}

@@ -1,0 +1,214 @@
+/* mps-sliding-box - an elastic block between plates, pressed and dragged: seed B 7.1, Figures 9-11.
+ *
+ * The upper plate comes down 0.45 mm, the rough lower one slides by as much; the sides are smooth.
+ * As one element of confined modulus M the block then has F_y = M * 0.45 mm, and F_x = mu F_y.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "common/mpm_model.h"
+#include "common/plot.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#define SIDE 0.1   /* m */
+#define SPEED 5e-4 /* m/s */
+#define STROKE 1.0 /* s: each plate's motion */
+#define RAMP 0.1   /* s: to full speed, and back */
+#define T_END 2.0  /* s */
+
+enum { BOTTOM, RIGHT, TOP, LEFT, PLATES, SAMPLES = 400 };
+
+typedef struct settings {
+  double h, k, offset, mu, young, poisson, density;
+  int64_t ppc, threads;
+  const char *out;
+} settings;
+
+typedef struct simulation {
+  settings s;
+  mpm_model m;
+  double t[SAMPLES + 2], fx[SAMPLES + 2], fy[SAMPLES + 2]; /* s, N/m on the lower plate */
+  int rows;
+} simulation;
+
+/* ---- building -------------------------------------------------------------------------------- */
+
+/* Velocity of the seed's Figure 10: up in 0.1 s, constant, down in 0.1 s. `start` in s. */
+static mps_status stroke(mps_context *context, double start, mps_signal **out) {
+  const double t[] = {start, start + RAMP, start + STROKE - RAMP, start + STROKE};
+  const double v[] = {0.0, SPEED, SPEED, 0.0};
+  return mps_signal_table(context, MPS_SIGNAL_VELOCITY, 4, t, v, out);
+}
+
+static mps_status make_plates(mps_context *context, const settings *s, simulation *sim) {
+  static const double normal[PLATES][2] = {{0.0, 1.0}, {-1.0, 0.0}, {0.0, -1.0}, {1.0, 0.0}};
+  static const double at[PLATES][2] = {{0.0, 0.0}, {SIDE, 0.0}, {0.0, SIDE}, {0.0, 0.0}};
+  mps_signal *down = NULL, *aside = NULL;
+  mps_status status = stroke(context, 0.0, &down);
+  if (status == MPS_OK) status = stroke(context, STROKE, &aside);
+  for (int p = 0; p < PLATES && status == MPS_OK; p++) {
+    mps_body_def def = mps_body_defaults();
+    def.position[0] = at[p][0], def.position[1] = at[p][1];
+    def.penalty = s->k * 1e3;
+    def.friction = p == BOTTOM ? s->mu : 0.0;
+    status = mps_body_create_half_plane(context, &def, normal[p], &sim->m.body[p]);
+    if (status == MPS_OK && p == TOP) status = mps_body_drive(sim->m.body[p], 1, down, -1.0);
+    if (status == MPS_OK && p == BOTTOM) status = mps_body_drive(sim->m.body[p], 0, aside, 1.0);
+    if (status == MPS_OK) status = mps_mpm_add_body(sim->m.mpm, sim->m.body[p]);
+  }
+  mps_signal_destroy(&down);
+  mps_signal_destroy(&aside);
+  return status;
+}
+
+static mps_status build(mps_context *context, void *user) {
+  simulation *sim = user;
+  const settings *s = &sim->s;
+  const double lo[2] = {0.0, 0.0}, hi[2] = {SIDE, SIDE};
+  mps_particles_def set = mps_particles_defaults();
+  /* whole particles a side: as near to h / sqrt(ppc) as can be */
+  set.spacing = SIDE / fmax(1.0, nearbyint(SIDE * sqrt((double)s->ppc) / s->h));
+  mps_status status = mps_particles_create(context, &set, &sim->m.particles);
+  if (status == MPS_OK) status = mps_particles_fill_box(sim->m.particles, lo, hi, NULL);
+  if (status == MPS_OK) status = mps_particles_set(sim->m.particles, "density", 0, s->density);
+  if (status == MPS_OK)
+    status = mps_material_linear_elastic(context, s->young * 1e3, s->poisson, &sim->m.material);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = s->h;
+  def.origin[0] = def.origin[1] = s->offset * s->h;
+  if (status == MPS_OK)
+    status = mps_mpm_create(context, sim->m.particles, sim->m.material, &def, &sim->m.mpm);
+  return status == MPS_OK ? make_plates(context, s, sim) : status;
+}
+
+/* ---- running --------------------------------------------------------------------------------- */
+
+/* Mean force on the block (x) and on the lower plate (y) since the last sample, from the impulse:
+ * the noise of single steps is no part of it. */
+static mps_status sample(simulation *sim, mps_reaction *last, double *last_time) {
+  mps_reaction now;
+  const mps_status status = mps_body_get_reaction(sim->m.body[BOTTOM], -1, &now);
+  if (status != MPS_OK) return status;
+  const double t = mps_mpm_time(sim->m.mpm), span = t - *last_time;
+  sim->t[sim->rows] = t;
+  sim->fx[sim->rows] = -(now.impulse[0] - last->impulse[0]) / span;
+  sim->fy[sim->rows] = -(now.impulse[1] - last->impulse[1]) / span;
+  sim->rows++;
+  *last = now;
+  *last_time = t;
+  return MPS_OK;
+}
+
+static mps_status march(void *user) {
+  simulation *sim = user;
+  mps_reaction last = {0};
+  double last_time = 0.0;
+  mps_status status = MPS_OK;
+  for (int k = 1; k <= SAMPLES && status == MPS_OK; k++) {
+    status = mps_mpm_run(sim->m.mpm, T_END * k / SAMPLES, INT64_MAX, NULL, NULL);
+    if (status == MPS_OK) status = sample(sim, &last, &last_time);
+  }
+  return status;
+}
+
+/* ---- results --------------------------------------------------------------------------------- */
+
+static bool write_forces(app *a, const settings *s, const simulation *sim) {
+  output f;
+  if (!output_open(&f, a, s->out, "forces.csv")) return false;
+  output_text(&f, "t_s,Fx_N_m,Fy_N_m\n");
+  for (int k = 0; k < sim->rows; k++) {
+    const double row[] = {sim->t[k], sim->fx[k], sim->fy[k]};
+    csv_row(&f, 3, row);
+  }
+  return output_close(&f);
+}
+
+static bool draw(app *a, const settings *s, double fy_exact) {
+  output f;
+  if (!plot_open(&f, a, s->out, "forces", 1000, 640)) return false;
+  output_text(
+      &f,
+      "set title \"Forces on the lower plate\\n{/*0.85 h = %g m, k = %g kN/m, {/Symbol m} "
+      "= %g}\"\n"
+      "set xlabel 'time (s)'\nset ylabel 'force (N/m)'\nset key at graph 0.97,0.6 right opaque\n"
+      "set yrange [-0.05*%.9g:1.15*%.9g]\n"
+      "exact = %.9g\nmu = %.9g\n"
+      "plot 'forces.csv' every ::1 using 1:3 with lines linecolor rgb '#1f4e8c' title "
+      "'normal force F_y', \\\n"
+      "  '' every ::1 using 1:2 with lines linecolor rgb '#c0392b' title 'friction F_x', "
+      "\\\n"
+      "  exact dashtype '--' linecolor rgb '#1f4e8c' title 'exact', \\\n"
+      "  mu*exact dashtype '--' linecolor rgb '#c0392b' notitle\n",
+      s->h, s->k, s->mu, fy_exact, fy_exact, fy_exact, s->mu);
+  return plot_close(&f, s->out, "forces");
+}
+
+/* Means while the lower plate slides at its full speed. */
+static bool finish(app *a, void *user) {
+  simulation *sim = user;
+  const settings *s = &sim->s;
+  const double E = s->young * 1e3, nu = s->poisson;
+  const double modulus = E * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
+  const double exact = modulus * SPEED * (STROKE - RAMP);
+  double fx = 0.0, fy = 0.0;
+  int count = 0;
+  for (int k = 0; k < sim->rows; k++) {
+    if (sim->t[k] < STROKE + 4.0 * RAMP || sim->t[k] > 2.0 * STROKE - RAMP) continue;
+    fx += sim->fx[k], fy += sim->fy[k], count++;
+  }
+  fx /= count, fy /= count;
+  output f;
+  if (!write_forces(a, s, sim) || !mpm_model_summary(a, &sim->m, s->out, &f)) return false;
+  json_number(&f, "h", s->h);
+  json_number(&f, "k", s->k);
+  json_number(&f, "Fy", fy);
+  json_number(&f, "Fy_exact", exact);
+  json_number(&f, "Fy_error", fy / exact - 1.0);
+  json_number(&f, "Fx_over_Fy", fx / fy);
+  json_end(&f);
+  if (!output_close(&f) || !draw(a, s, exact)) return false;
+  printf("Results: %s/ (forces.csv, summary.json, forces.png)\n", s->out);
+  printf("F_y %.2f N/m (exact %.2f, %+.2f %%), F_x/F_y %.5f (friction %g)\n", fy, exact,
+         100.0 * (fy / exact - 1.0), fx / fy, s->mu);
+  return true;
+}
+
+int main(int argc, char **argv) {
+  static simulation sim = {.s = {.h = 0.02,
+                                 .k = 2000.0,
+                                 .offset = 0.0,
+                                 .mu = 0.3,
+                                 .young = 1000.0,
+                                 .poisson = 0.3,
+                                 .density = 1000.0,
+                                 .ppc = 4,
+                                 .out = "out/sliding-box"}};
+  settings *s = &sim.s;
+  option table[] = {
+      OPTION_HEADING("Block"),
+      OPTION_NUMBER("young", "kPa", OPTION_POSITIVE, &s->young, "Young's modulus E"),
+      OPTION_NUMBER("poisson", "1", OPTION_FROM_TO(0.0, 0.49), &s->poisson, "Poisson's ratio"),
+      OPTION_NUMBER("density", "kg/m3", OPTION_POSITIVE, &s->density, "density"),
+      OPTION_HEADING("Contact"),
+      OPTION_NUMBER("k", "kN/m", OPTION_POSITIVE, &s->k,
+                    "contact stiffness per unit thickness of each particle, seed B (28)"),
+      OPTION_NUMBER("mu", "1", OPTION_FROM_TO(0.0, 10.0), &s->mu, "friction of the lower plate"),
+      OPTION_HEADING("Grid"),
+      OPTION_NUMBER("h", "m", OPTION_ABOVE_TO(0.0, 0.1), &s->h, "grid spacing"),
+      OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
+      OPTION_NUMBER("offset", "h", OPTION_FROM_TO(-1.0, 1.0), &s->offset,
+                    "where the grid lies: its shift along x and y, in cells"),
+      OPTION_HEADING("Run"),
+      OPTION_OUT(&s->out),
+      OPTION_THREADS(&s->threads),
+      {0}};
+  const options_program program = {
+      "mps-sliding-box",
+      "An elastic block of 0.1 m pressed between plates and dragged (WLS-MPM): seed B, Figures 9\n"
+      "to 11. The forces on the rough lower plate are compared with the exact ones.",
+      table};
+  const int code = options_parse(&program, argc, argv);
+  if (code >= 0) return code;
+  static const mpm_model_parts parts = {build, march, finish};
+  return mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
+}

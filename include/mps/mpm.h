@@ -1,0 +1,121 @@
+/* mps/mpm.h - the WLS-MPM grid solver (seed B): large deformation of particles that move through a
+ * grid of nodes, with frictional contact against rigid bodies. Plane strain or axisymmetry (x is
+ * the radius, y the axis).
+ *
+ * Shape functions come from a weighted least-squares fit of a linear function over the nodes that a
+ * particle may use: those of the domain, and not those inside a body or behind it. Nodes exist only
+ * in blocks of 8 x 8 cells around particles, so memory grows with the particles.
+ *
+ * The solver works in the fields of the particle set itself (zero copy), and sorts the set by
+ * blocks whenever a particle has left its block: views taken before are then stale (their epoch).
+ * It reads `density` (kg/m3, > 0) at creation, and `volume` (per unit thickness or per radian;
+ * where 0, the spacing squared, in axisymmetry times the radius), `velocity`, `velocity_gradient`
+ * and `stress` where the set has them; it writes these and `mass` and `position`. Laws that need
+ * them bring the fields `volume_ratio`, `deformation_gradient` and their history.
+ *
+ * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
+ * its results are the same bit for bit for every number of threads.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPS_MPM_H
+#define MPS_MPM_H
+
+#include <mps/body.h>
+#include <mps/material.h>
+#include <mps/particles.h>
+
+MPS_EXTERN_C_BEGIN
+
+typedef struct mps_mpm mps_mpm;
+
+typedef enum mps_geometry {
+  MPS_PLANE_STRAIN = 0, /* forces and masses per unit thickness */
+  MPS_AXISYMMETRIC = 1  /* x = r >= 0, y = z; forces and masses per radian */
+} mps_geometry;
+
+/** What weighs the particles' velocities on their way to the nodes. */
+typedef enum mps_transfer {
+  MPS_TRANSFER_SHAPE = 0, /* the shape functions: momentum is kept everywhere */
+  MPS_TRANSFER_WEIGHT = 1 /* the weights, seed B (12), (39): near bodies and edges the momentum
+                             drifts; for comparison */
+} mps_transfer;
+
+typedef enum mps_wall {
+  MPS_WALL_ROLLER = 0, /* no velocity across the wall */
+  MPS_WALL_FIXED = 1   /* no velocity at all */
+} mps_wall;
+
+typedef struct mps_mpm_def {
+  uint32_t struct_size;
+  int32_t geometry;          /* mps_geometry, default PLANE_STRAIN */
+  int32_t spline;            /* degree of the B-spline weights: 3 (default, seed B (36)) or 2 */
+  int32_t transfer;          /* mps_transfer, default SHAPE */
+  double cell;               /* h, m, > 0; no default. Usually 2 spacings */
+  double origin[2];          /* m: a node lies here; default 0 */
+  double lower[2], upper[2]; /* m: walls of the domain, on nodes; default: none (infinite). In
+                                axisymmetry lower[0] is at least 0, and 0 by default */
+  int32_t wall_lower[2], wall_upper[2]; /* mps_wall of each, default ROLLER */
+  double gravity[2];                    /* m/s2, default 0 */
+  double dt;      /* s, > 0, or 0 (default): each step the largest by seed B (49), (50) */
+  double courant; /* fraction of that limit, in (0, 1]; default 0.5 */
+} mps_mpm_def;
+
+MPS_API mps_status mps_mpm_def_init(mps_mpm_def *def, size_t size);
+static inline mps_mpm_def mps_mpm_defaults(void) {
+  mps_mpm_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_mpm_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+
+/** Creates a solver for the 2D set `particles` (at least one, inside the domain), sorting it and
+ *  pinning it: until the solver is destroyed no particle can be added. All particles are of the one
+ *  `material`, which is kept alive; its history columns become fields of the set, by their names.
+ */
+MPS_API MPS_NODISCARD mps_status mps_mpm_create(mps_context *context, mps_particles *particles,
+                                                mps_material *material, const mps_mpm_def *def,
+                                                mps_mpm **out);
+MPS_API void mps_mpm_destroy(mps_mpm **mpm);
+
+#define MPS_MPM_MAX_BODIES 32
+
+/** Lets the particles touch `body`, which the solver from now on moves and tells its reaction. The
+ *  body's own clock goes on from where it is. At most 32; a body belongs to one
+ *  solver. Where bodies touch the same nodes, friction is found in the order they were added, after
+ *  all normal forces. */
+MPS_API MPS_NODISCARD mps_status mps_mpm_add_body(mps_mpm *mpm, mps_body *body);
+
+/** Takes `count` (>= 0) steps. MPS_ERROR_DIVERGED: a particle has left the domain, or has a
+ * velocity or a volume that is not finite; the record names step and particle, the fields show the
+ * state. */
+MPS_API MPS_NODISCARD mps_status mps_mpm_step(mps_mpm *mpm, int64_t count);
+
+/** Called at the start of a run, then every `every` steps and at the end. Return MPS_OK to go on.
+ */
+typedef mps_status (*mps_mpm_fn)(void *user, mps_mpm *mpm);
+
+/** Steps to t_end (s), the last step shortened to end there; `callback` may be NULL, `every` >= 1.
+ *  The context's progress and cancel hooks are asked about 100 times. */
+MPS_API MPS_NODISCARD mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every,
+                                             mps_mpm_fn callback, void *user);
+
+MPS_API double mps_mpm_time(const mps_mpm *mpm); /* s */
+MPS_API int64_t mps_mpm_steps(const mps_mpm *mpm);
+/** The step (s) that would come next. */
+MPS_API double mps_mpm_dt(const mps_mpm *mpm);
+/** The limit (49) of the present state (s), the Courant fraction not applied. */
+MPS_API double mps_mpm_limit(const mps_mpm *mpm);
+
+/** Sums over the particles (bodies not counted), per unit thickness or per radian. */
+typedef struct mps_mpm_totals {
+  double mass, volume;   /* kg, m3 */
+  double linear[2];      /* kg m/s */
+  double angular;        /* kg m2/s about the origin of space, with the spin that the particles'
+                            velocity gradients carry: conserved with full supports */
+  double kinetic;        /* J, of the particles' velocities */
+  int64_t blocks, nodes; /* blocks of cells that hold particles; nodes that exist */
+  int64_t bytes;         /* memory of the grid, the particles' fields not counted */
+} mps_mpm_totals;
+MPS_API MPS_NODISCARD mps_status mps_mpm_get_totals(mps_mpm *mpm, mps_mpm_totals *out);
+
+MPS_EXTERN_C_END
+#endif

@@ -1,0 +1,132 @@
+/* distance.c - signed distance, outward normal and foot point on a rigid body's surface: the d_p
+ * and n_p of seed B (27), (28).
+ *
+ * The sign at a corner is that of (x - corner) . (n1 + n2), with the normals of its two edges: in
+ * 2D that side is right for convex and for concave corners, so no crossings need to be counted, and
+ * sign, normal and foot always belong to the same feature.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "body.h"
+
+/* What the polygon search knows of the nearest feature so far. */
+typedef struct nearest {
+  double square; /* of the distance, m2 */
+  int64_t edge;
+  int where; /* 0: inner point of the edge, -1: its start, 1: its end */
+} nearest;
+
+/* Unit normal of edge k of the anticlockwise corners: the direction turned right. */
+static void edge_normal(const mps_body *body, int64_t k, double *n) {
+  const double *a = body->xy + 2 * k, *b = a + 2;
+  const double dx = b[0] - a[0], dy = b[1] - a[1], length = hypot(dx, dy);
+  n[0] = dy / length;
+  n[1] = -dx / length;
+}
+
+static nearest search(const mps_body *body, const double *x) {
+  nearest best = {.square = INFINITY};
+  for (int64_t k = 0; k < body->edges; k++) {
+    const double *a = body->xy + 2 * k, *b = a + 2;
+    const double ex = b[0] - a[0], ey = b[1] - a[1], px = x[0] - a[0], py = x[1] - a[1];
+    const double t = px * ex + py * ey, length2 = ex * ex + ey * ey;
+    double square;
+    int where = 0;
+    if (t <= 0.0) {
+      where = -1;
+      square = px * px + py * py;
+    } else if (t >= length2) {
+      where = 1;
+      square = (x[0] - b[0]) * (x[0] - b[0]) + (x[1] - b[1]) * (x[1] - b[1]);
+    } else {
+      const double across = px * ey - py * ex;
+      square = across * across / length2;
+    }
+    /* An inner point wins over a corner that rounding makes as near. */
+    if (square < best.square || (square == best.square && where == 0 && best.where != 0))
+      best = (nearest){square, k, where};
+  }
+  return best;
+}
+
+static mpsi_foot polygon_foot(const mps_body *body, const double *x) {
+  const nearest best = search(body, x);
+  const int64_t n = body->edges, k = best.edge;
+  mpsi_foot f = {.edge = body->reversed ? n - 1 - k : k};
+  double one[2], two[2];
+  edge_normal(body, k, one);
+  if (best.where == 0) {
+    const double *a = body->xy + 2 * k;
+    f.distance = (x[0] - a[0]) * one[0] + (x[1] - a[1]) * one[1];
+    for (int c = 0; c < 2; c++) {
+      f.normal[c] = one[c];
+      f.at[c] = x[c] - f.distance * one[c];
+    }
+    return f;
+  }
+  const double *corner = body->xy + 2 * (best.where < 0 ? k : k + 1);
+  edge_normal(body, best.where < 0 ? (k + n - 1) % n : (k + 1) % n, two);
+  const double mx = one[0] + two[0], my = one[1] + two[1], mean = hypot(mx, my);
+  const double dx = x[0] - corner[0], dy = x[1] - corner[1], d = hypot(dx, dy);
+  const double sign = dx * mx + dy * my < 0.0 ? -1.0 : 1.0;
+  f.at[0] = corner[0], f.at[1] = corner[1];
+  f.distance = sign * d;
+  if (d > 0.0)
+    f.normal[0] = sign * dx / d, f.normal[1] = sign * dy / d;
+  else
+    f.normal[0] = mx / mean, f.normal[1] = my / mean;
+  return f;
+}
+
+static mpsi_foot disc_foot(const mps_body *body, const double *x) {
+  mpsi_foot f = {.normal = {1.0, 0.0}};
+  const double r = hypot(x[0], x[1]);
+  f.distance = r - body->radius;
+  if (r > 0.0) f.normal[0] = x[0] / r, f.normal[1] = x[1] / r;
+  for (int c = 0; c < 2; c++) f.at[c] = body->radius * f.normal[c];
+  return f;
+}
+
+static mpsi_foot plane_foot(const mps_body *body, const double *x) {
+  const double *n = body->normal;
+  mpsi_foot f = {.distance = x[0] * n[0] + x[1] * n[1], .normal = {n[0], n[1]}};
+  for (int c = 0; c < 2; c++) f.at[c] = x[c] - f.distance * n[c];
+  return f;
+}
+
+mpsi_foot mpsi_body_foot(const mps_body *body, const double *x) {
+  const mpsi_pose *p = &body->pose;
+  const double dx = x[0] - p->x[0], dy = x[1] - p->x[1];
+  const double local[2] = {p->cosine * dx + p->sine * dy, p->cosine * dy - p->sine * dx};
+  mpsi_foot f = body->shape == MPSI_POLYGON ? polygon_foot(body, local)
+                : body->shape == MPSI_DISC  ? disc_foot(body, local)
+                                            : plane_foot(body, local);
+  const double n[2] = {f.normal[0], f.normal[1]}, at[2] = {f.at[0], f.at[1]};
+  f.normal[0] = p->cosine * n[0] - p->sine * n[1];
+  f.normal[1] = p->sine * n[0] + p->cosine * n[1];
+  f.at[0] = p->x[0] + (p->cosine * at[0] - p->sine * at[1]);
+  f.at[1] = p->x[1] + (p->sine * at[0] + p->cosine * at[1]);
+  return f;
+}
+
+mps_status mps_body_distance(mps_body *body, int64_t count, const double *x, double *distance,
+                             double *normal, double *foot, int64_t *edge) {
+  if (!body) return MPS_ERROR_ARGUMENT;
+  if (count < 0 || (count > 0 && !x))
+    return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
+                     "count is %lld with x %s: must be >= 0, and 0 where x is NULL",
+                     (long long)count, x ? "given" : "NULL");
+  for (int64_t i = 0; i < 2 * count; i++)
+    if (!isfinite(x[i]))
+      return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
+                       "point %lld has %c = %g m, must be finite", (long long)(i / 2), "xy"[i % 2],
+                       x[i]);
+  for (int64_t i = 0; i < count; i++) {
+    const mpsi_foot f = mpsi_body_foot(body, x + 2 * i);
+    if (distance) distance[i] = f.distance;
+    if (edge) edge[i] = f.edge;
+    for (int c = 0; c < 2; c++) {
+      if (normal) normal[2 * i + c] = f.normal[c];
+      if (foot) foot[2 * i + c] = f.at[c];
+    }
+  }
+  return MPS_OK;
+}

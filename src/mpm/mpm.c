@@ -1,0 +1,324 @@
+/* mpm.c - life of the WLS-MPM solver: definition, checks, fields, bodies.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_private.h"
+
+#include "core/particles_internal.h"
+
+#include <string.h>
+
+#define MAX_CELLS 0x1p30 /* from the origin: nodes are counted exactly */
+#define ON_NODE 1e-6     /* cells: a wall this close to a node is on it */
+#define NO_WALL (INT64_C(1) << 30)
+#define MAX_COUNT INT32_MAX
+
+static const mps_mpm_def mpm_defaults = {.struct_size = sizeof(mps_mpm_def),
+                                         .spline = 3,
+                                         .lower = {-INFINITY, -INFINITY},
+                                         .upper = {INFINITY, INFINITY},
+                                         .courant = 0.5};
+/* Size of the structure in the first release: it may only grow. */
+#define MPM_DEF_MINIMUM (offsetof(mps_mpm_def, courant) + sizeof(double))
+
+mps_status mps_mpm_def_init(mps_mpm_def *def, size_t size) {
+  return mpsi_def_init(def, size, MPM_DEF_MINIMUM, &mpm_defaults, sizeof mpm_defaults);
+}
+
+/* ---- checks ---------------------------------------------------------------------------------- */
+
+static const char create[] = "mps_mpm_create";
+
+static mps_status check_choices(mps_context *context, const mps_mpm_def *d) {
+  if (d->geometry != MPS_PLANE_STRAIN && d->geometry != MPS_AXISYMMETRIC)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "geometry is %d, allowed are 0 (plane strain) and 1 (axisymmetric)",
+                     d->geometry);
+  if (d->spline != 2 && d->spline != 3)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "spline is %d, allowed are 2 and 3",
+                     d->spline);
+  if (d->transfer != MPS_TRANSFER_SHAPE && d->transfer != MPS_TRANSFER_WEIGHT)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "transfer is %d, allowed are 0 (shape) and 1 (weight)", d->transfer);
+  for (int c = 0; c < 2; c++)
+    for (int side = 0; side < 2; side++) {
+      const int32_t wall = side ? d->wall_upper[c] : d->wall_lower[c];
+      if (wall != MPS_WALL_ROLLER && wall != MPS_WALL_FIXED)
+        return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                         "wall_%s[%d] is %d, allowed are 0 (roller) and 1 (fixed)",
+                         side ? "upper" : "lower", c, wall);
+    }
+  return MPS_OK;
+}
+
+static mps_status check_numbers(mps_context *context, const mps_mpm_def *d) {
+  if (!isfinite(d->cell) || d->cell <= 0.0)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "cell is %g m, must be finite and > 0",
+                     d->cell);
+  if (!isfinite(d->dt) || d->dt < 0.0)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "dt is %g s, must be > 0, or 0 for the largest stable one", d->dt);
+  if (!(d->courant > 0.0 && d->courant <= 1.0))
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "courant is %g, must be in (0, 1]",
+                     d->courant);
+  for (int c = 0; c < 2; c++)
+    if (!isfinite(d->origin[c]) || !isfinite(d->gravity[c]))
+      return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                       "origin[%d] is %g m and gravity[%d] %g m/s2, must be finite", c,
+                       d->origin[c], c, d->gravity[c]);
+  return MPS_OK;
+}
+
+/* A wall's node, or a far one where there is no wall. */
+static mps_status read_wall(mps_context *context, const mps_mpm_def *d, int c, bool upper,
+                            int64_t *node) {
+  const double x = upper ? d->upper[c] : d->lower[c];
+  const char *name = upper ? "upper" : "lower";
+  *node = upper ? NO_WALL : -NO_WALL;
+  if (x == (upper ? INFINITY : -INFINITY)) return MPS_OK;
+  const double X = (x - d->origin[c]) / d->cell, nearest = nearbyint(X);
+  if (!(fabs(X) < MAX_CELLS))
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "%s[%d] is %g m, must be within 2^30 cells of the origin, or %sinfinite", name,
+                     c, x, upper ? "+" : "-");
+  if (fabs(X - nearest) > ON_NODE)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "%s[%d] is %g m, must lie on a node: origin %g m plus a multiple of the cell "
+                     "%g m",
+                     name, c, x, d->origin[c], d->cell);
+  *node = (int64_t)nearest;
+  return MPS_OK;
+}
+
+static mps_status read_domain(mps_context *context, mps_mpm_def *d, int64_t *low, int64_t *high) {
+  if (d->geometry == MPS_AXISYMMETRIC) {
+    if (d->lower[0] == -INFINITY) d->lower[0] = 0.0;
+    if (!(d->lower[0] >= 0.0))
+      return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                       "lower[0] is %g m, in axisymmetry the radius begins at 0 or more",
+                       d->lower[0]);
+  }
+  for (int c = 0; c < 2; c++) {
+    mps_status status = read_wall(context, d, c, false, &low[c]);
+    if (status == MPS_OK) status = read_wall(context, d, c, true, &high[c]);
+    if (status != MPS_OK) return status;
+    if (low[c] >= high[c])
+      return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                       "the domain in %c is [%g, %g] m, must be at least one cell", "xy"[c],
+                       d -> lower[c], d -> upper[c]);
+  }
+  return MPS_OK;
+}
+
+static mps_status check_set(mps_context *context, mps_particles *set) {
+  if (!set) return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "particles is NULL");
+  if (mpsi_particles_context(set) != context)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "the particle set was made from another context");
+  if (mps_particles_dim(set) != 2)
+    return mpsi_fail(context, create, MPS_ERROR_UNSUPPORTED,
+                     "the set has %d dimensions, only 2 are available", mps_particles_dim(set));
+  const int64_t count = mps_particles_count(set);
+  if (count < 1 || count > MAX_COUNT)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "the set has %lld particles, allowed are 1 to %d", (long long)count,
+                     MAX_COUNT);
+  if (!mpsi_particles_column(set, "density", 0))
+    return mpsi_fail(context, create, MPS_ERROR_FIELD,
+                     "the set has no field 'density': mps_particles_set adds it");
+  return MPS_OK;
+}
+
+/* A field's columns must be finite where the solver starts from them. */
+static mps_status check_start(const mps_mpm *mpm) {
+  static const char *const names[] = {
+      "position",     "velocity", "velocity_gradient", "stress",
+      "volume_ratio", "volume",   "density",           "deformation_gradient"};
+  for (size_t f = 0; f < sizeof names / sizeof *names; f++)
+    for (int32_t c = 0; c < 5; c++) {
+      const double *value = mpsi_particles_column(mpm->particles, names[f], c);
+      for (int64_t k = 0; value && k < mpm->count; k++)
+        if (!isfinite(value[k]))
+          return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
+                           "'%s' of particle %lld is %g, must be finite", names[f],
+                           (long long)mpsi_particles_integers(mpm->particles, "id")[k], value[k]);
+    }
+  for (int64_t k = 0; k < mpm->count; k++)
+    for (int c = 0; c < 2; c++) {
+      const double x = mpm->p.x[c][k], X = mpsi_grid_coordinate(mpm, c, x);
+      const long long id = (long long)mpsi_particles_integers(mpm->particles, "id")[k];
+      if (!(fabs(X) < MAX_CELLS))
+        return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
+                         "particle %lld has %c = %g m, more than 2^30 cells from the origin", id,
+                         "xy"[c], x);
+      if (!(X >= (double)mpm->low[c] && X <= (double)mpm->high[c]))
+        return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
+                         "particle %lld has %c = %g m, outside the domain [%g, %g] m", id, "xy"[c],
+                         x, mpm -> def.lower[c], mpm->def.upper[c]);
+    }
+  return MPS_OK;
+}
+
+/* ---- fields ---------------------------------------------------------------------------------- */
+
+static mps_status add_fields(mps_mpm *mpm) {
+  static const char *const names[] = {"velocity", "velocity_gradient", "stress", "volume", "mass"};
+  mps_status status = MPS_OK;
+  for (size_t k = 0; k < sizeof names / sizeof *names && status == MPS_OK; k++)
+    status = mps_particles_add_field(mpm->particles, names[k], 0);
+  if (status == MPS_OK && mpsi_material_reads_volume(mpm->material))
+    status = mps_particles_add_field(mpm->particles, "volume_ratio", 0);
+  if (status == MPS_OK && mps_material_needs_deformation(mpm->material))
+    status = mps_particles_add_field(mpm->particles, "deformation_gradient", 0);
+  for (int32_t h = 0; h < mpm->histories && status == MPS_OK; h++)
+    status =
+        mps_particles_add_field(mpm->particles, mps_material_history_name(mpm->material, h), 1);
+  return status;
+}
+
+static void bind_fields(mps_mpm *mpm) {
+  mps_particles *set = mpm->particles;
+  mpsi_columns *p = &mpm->p;
+  for (int c = 0; c < 2; c++) {
+    p->x[c] = mpsi_particles_column(set, "position", c);
+    p->v[c] = mpsi_particles_column(set, "velocity", c);
+  }
+  for (int c = 0; c < 4; c++) p->s[c] = mpsi_particles_column(set, "stress", c);
+  for (int c = 0; c < 5; c++) {
+    p->L[c] = mpsi_particles_column(set, "velocity_gradient", c);
+    p->F[c] = mps_material_needs_deformation(mpm->material)
+                  ? mpsi_particles_column(set, "deformation_gradient", c)
+                  : NULL;
+  }
+  p->V = mpsi_particles_column(set, "volume", 0);
+  p->m = mpsi_particles_column(set, "mass", 0);
+  p->J = mpsi_material_reads_volume(mpm->material) ? mpsi_particles_column(set, "volume_ratio", 0)
+                                                   : NULL;
+  for (int32_t h = 0; h < mpm->histories; h++)
+    p->history[h] = mpsi_particles_column(set, mps_material_history_name(mpm->material, h), 0);
+}
+
+/* Volumes and masses from density and spacing; unstrained states where the caller gave none. */
+static mps_status set_start(mps_mpm *mpm) {
+  mpsi_columns *p = &mpm->p;
+  const double spacing = mps_particles_spacing(mpm->particles);
+  const double *density = mpsi_particles_column(mpm->particles, "density", 0);
+  for (int64_t k = 0; k < mpm->count; k++) {
+    const double r = mpm->def.geometry == MPS_AXISYMMETRIC ? p->x[0][k] : 1.0;
+    const double volume = p->V[k] != 0.0 ? p->V[k] : spacing * spacing * r;
+    const double ratio = !p->J ? 1.0 : p->J[k] != 0.0 ? p->J[k] : 1.0;
+    if (!(density[k] > 0.0) || !(volume > 0.0) || !(ratio > 0.0))
+      return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
+                       "particle %lld has density %g kg/m3, volume %g m3 and volume ratio %g, must "
+                       "be > 0%s",
+                       (long long)mpsi_particles_integers(mpm->particles, "id")[k], density[k],
+                       volume, ratio, r > 0.0 ? "" : " (it lies on the axis, r = 0)");
+  }
+  bool deformed = false;
+  for (int c = 0; c < 5 && p->F[c]; c++)
+    for (int64_t k = 0; k < mpm->count; k++) deformed = deformed || p->F[c][k] != 0.0;
+  for (int64_t k = 0; k < mpm->count; k++) {
+    const double r = mpm->def.geometry == MPS_AXISYMMETRIC ? p->x[0][k] : 1.0;
+    if (p->V[k] == 0.0) p->V[k] = spacing * spacing * r;
+    p->m[k] = density[k] * p->V[k]; /* the density is that of the present volume */
+    if (p->J && p->J[k] == 0.0) p->J[k] = 1.0;
+    for (int c = 0; c < 5 && p->F[c] && !deformed; c++) p->F[c][k] = c == 0 || c >= 3 ? 1.0 : 0.0;
+  }
+  mpsi_material_begin(mpm->material, p->history, 0, mpm->count);
+  return MPS_OK;
+}
+
+/* ---- life ------------------------------------------------------------------------------------ */
+
+static mps_status build(mps_mpm *mpm) {
+  mps_context *context = mpm->context;
+  mps_status status = add_fields(mpm);
+  if (status != MPS_OK) return status;
+  bind_fields(mpm);
+  status = check_start(mpm);
+  if (status == MPS_OK) status = set_start(mpm);
+  if (status != MPS_OK) return status;
+  mpm->radix = mpsi_alloc(context, 2 * mpm->count, sizeof *mpm->radix);
+  if (mpm->radix) mpm->order = mpsi_alloc(context, mpm->count, sizeof *mpm->order);
+  if (mpm->order) mpm->flags = mpsi_alloc(context, mpm->count, sizeof *mpm->flags);
+  if (mpm->flags) mpm->scratch = mpsi_alloc(context, mpm->count, sizeof *mpm->scratch);
+  if (!mpm->scratch)
+    return mpsi_fail_memory(context, create, (size_t)mpm->count * sizeof *mpm->radix);
+  status = mpsi_mpm_sort(mpm, create);
+  return status == MPS_OK ? mpsi_mpm_take_stock(mpm, create) : status;
+}
+
+mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_material *material,
+                          const mps_mpm_def *user_def, mps_mpm **out) {
+  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
+  *out = NULL;
+  if (!material) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "material is NULL");
+  mps_mpm_def def = mpm_defaults;
+  int64_t low[2], high[2];
+  mps_status status = check_set(context, particles);
+  if (status == MPS_OK && user_def)
+    status = mpsi_def_read(context, __func__, user_def, MPM_DEF_MINIMUM, &def, sizeof def);
+  if (status == MPS_OK) status = check_choices(context, &def);
+  if (status == MPS_OK) status = check_numbers(context, &def);
+  if (status == MPS_OK) status = read_domain(context, &def, low, high);
+  if (status != MPS_OK) return status;
+  mps_mpm *mpm = mpsi_alloc(context, 1, sizeof *mpm);
+  if (!mpm) return mpsi_fail_memory(context, __func__, sizeof *mpm);
+  mpm->context = mpsi_context_retain(context);
+  mpm->particles = mpsi_particles_pin(particles);
+  mpm->material = mpsi_material_retain(material);
+  mpm->histories = mps_material_history_count(material);
+  mpm->modulus = mps_material_wave_modulus(material);
+  mpm->def = def;
+  mpm->count = mps_particles_count(particles);
+  mpm->inverse = 1.0 / def.cell;
+  mpm->gap = 0.5 * mps_particles_spacing(particles);
+  memcpy(mpm->low, low, sizeof low);
+  memcpy(mpm->high, high, sizeof high);
+  if ((status = build(mpm)) != MPS_OK) {
+    mps_mpm_destroy(&mpm);
+    return status;
+  }
+  *out = mpm;
+  return MPS_OK;
+}
+
+void mps_mpm_destroy(mps_mpm **pointer) {
+  if (!pointer || !*pointer) return;
+  mps_mpm *mpm = *pointer;
+  mps_context *context = mpm->context;
+  *pointer = NULL;
+  for (int32_t b = 0; b < mpm->bodies; b++) mpsi_body_give(mpm->body[b]);
+  void *parts[] = {mpm->cells_room.item,
+                   mpm->nodes_room.item,
+                   mpm->tile_room.item,
+                   mpm->node_room.item,
+                   mpm->near_room.item,
+                   mpm->meeting_room.item,
+                   mpm->touch_room.item,
+                   mpm->meeting_of_room.item,
+                   mpm->touch_first_room.item,
+                   mpm->radix,
+                   mpm->order,
+                   mpm->flags,
+                   mpm->scratch};
+  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  mps_material_destroy(&mpm->material);
+  mpsi_particles_unpin(mpm->particles);
+  mpsi_free(context, mpm);
+  mpsi_context_release(context);
+}
+
+mps_status mps_mpm_add_body(mps_mpm *mpm, mps_body *body) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  if (!body) return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "body is NULL");
+  if (body->context != mpm->context)
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                     "the body was made from another context");
+  if (mpm->bodies == MPS_MPM_MAX_BODIES)
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                     "the solver has %d bodies, the most there can be", MPS_MPM_MAX_BODIES);
+  if (!mpsi_body_take(body, mpm))
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_STATE, "a solver has the body already");
+  mpm->body[mpm->bodies++] = body;
+  return MPS_OK;
+}

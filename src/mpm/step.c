@@ -1,0 +1,207 @@
+/* step.c - running the WLS-MPM solver: the order of a step (seed B 6), its size, and what goes
+ * wrong. SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_private.h"
+
+#include "core/particles_internal.h"
+
+#include <string.h>
+
+#define SMALL_GRID 24 /* blocks: below, sharing the work costs more than it gains */
+
+/* ---- work ------------------------------------------------------------------------------------ */
+
+typedef struct work {
+  mps_mpm *mpm;
+  mpsi_mpm_task task;
+  int64_t count, grain;
+} work;
+
+static void unit_of_work(void *data, int64_t unit, int32_t worker) {
+  (void)worker;
+  const work *w = data;
+  const int64_t last = (unit + 1) * w->grain;
+  for (int64_t k = unit * w->grain; k < last && k < w->count; k++) w->task(w->mpm, k);
+}
+
+void mpsi_mpm_for(mps_mpm *mpm, int64_t count, mpsi_mpm_task task) {
+  const int64_t units = count < SMALL_GRID ? 1 : 8 * (int64_t)mps_context_threads(mpm->context);
+  work w = {mpm, task, count, (count + units - 1) / units};
+  mpsi_parallel_for(mpm->context, units, unit_of_work, &w);
+}
+
+/* ---- one step -------------------------------------------------------------------------------- */
+
+static mps_status report_bad(mps_mpm *mpm, const char *function, int64_t k) {
+  const mpsi_columns *p = &mpm->p;
+  const long long id = (long long)mpsi_particles_integers(mpm->particles, "id")[k];
+  const double x = p->x[0][k], y = p->x[1][k];
+  const bool number = isfinite(x) && isfinite(y) && isfinite(p->v[0][k]) && isfinite(p->v[1][k]) &&
+                      isfinite(p->V[k]);
+  mpm->broken = true;
+  const mps_status status = mpsi_fail(
+      mpm->context, function, MPS_ERROR_DIVERGED,
+      "step %lld, t = %.6g s: particle %lld at (%.6g, %.6g) m with velocity (%.4g, %.4g) m/s and "
+      "volume %.4g m3 %s; dt was %.4g s, %.3g of the limit (49): check dt, the contact stiffness "
+      "and the initial stress",
+      (long long)mpm->steps, mpm->time, id, x, y, p->v[0][k], p->v[1][k], p->V[k],
+      number ? "has left the domain or has no volume" : "is not finite", mpm->dt,
+      mpm->dt * mpm->speed * mpm->inverse);
+  mpsi_fail_where(mpm->context, mpm->steps, id);
+  return status;
+}
+
+mps_status mpsi_mpm_take_stock(mps_mpm *mpm, const char *function) {
+  double speed = 0.0;
+  int64_t bad = -1;
+  mpsi_mpm_for(mpm, mpm->cell_count, mpsi_mpm_find_speed);
+  for (int64_t b = 0; b < mpm->cell_count; b++) {
+    const mpsi_cells *cells = &mpm->cells[b];
+    if (cells->bad >= 0 && bad < 0) bad = cells->bad;
+    if (cells->left) mpm->stale = true;
+    if (cells->speed > speed) speed = cells->speed;
+    if (!cells->refused) continue;
+    mpm->broken = true;
+    return mpsi_fail(mpm->context, function, MPS_ERROR_NUMERIC,
+                     "the law '%s' has refused a block of particles at step %lld",
+                     mps_material_name(mpm->material), (long long)mpm->steps);
+  }
+  if (bad >= 0) return report_bad(mpm, function, bad);
+  mpm->speed = speed;
+  return MPS_OK;
+}
+
+/* Nodes to particles, the law, and the particles' new place. */
+static void carry_back(mps_mpm *mpm, int64_t b) {
+  mpm->cells[b].left = mpm->cells[b].refused = false;
+  mpm->cells[b].bad = -1;
+  mpsi_mpm_g2p(mpm, b);
+  mpsi_mpm_apply_law(mpm, &mpm->cells[b]);
+}
+
+static void find_contact_mass(mps_mpm *mpm) {
+  memset(mpm->contact_mass, 0, sizeof mpm->contact_mass);
+  for (int64_t t = 0; t < mpm->touch_count; t++)
+    mpm->contact_mass[mpm->touch[t].body] += mpm->touch[t].mass;
+}
+
+static mps_status take_step(mps_mpm *mpm, const char *function, double dt) {
+  mps_status status = MPS_OK;
+  if (mpm->stale) status = mpsi_mpm_sort(mpm, function);
+  if (status == MPS_OK && mpm->bodies > 0) status = mpsi_mpm_find_near(mpm, function);
+  if (status != MPS_OK) {
+    mpm->broken = true;
+    return status;
+  }
+  mpm->dt = dt;
+  mpsi_mpm_for(mpm, mpm->cell_count, mpsi_mpm_p2g);
+  mpsi_mpm_for(mpm, mpm->node_count, mpsi_mpm_update_nodes);
+  if (mpm->meeting_count > 0) find_contact_mass(mpm);
+  mpsi_mpm_for(mpm, mpm->node_count, mpsi_mpm_finish_nodes);
+  mpsi_mpm_for(mpm, mpm->cell_count, carry_back);
+  if (mpm->bodies > 0) mpsi_mpm_react(mpm);
+  mpm->time += dt;
+  mpm->steps++;
+  return mpsi_mpm_take_stock(mpm, function);
+}
+
+static mps_status ready(mps_mpm *mpm, const char *function) {
+  if (!mpm->broken) return MPS_OK;
+  return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+                   "an earlier step has failed: the state is kept for a look, make a new solver");
+}
+
+/* ---- running --------------------------------------------------------------------------------- */
+
+double mps_mpm_limit(const mps_mpm *mpm) { return mpm ? mpm->def.cell / mpm->speed : 0.0; }
+
+double mps_mpm_dt(const mps_mpm *mpm) {
+  if (!mpm) return 0.0;
+  return mpm->def.dt > 0.0 ? mpm->def.dt : mpm->def.courant * mps_mpm_limit(mpm);
+}
+
+double mps_mpm_time(const mps_mpm *mpm) { return mpm ? mpm->time : 0.0; }
+
+int64_t mps_mpm_steps(const mps_mpm *mpm) { return mpm ? mpm->steps : 0; }
+
+mps_status mps_mpm_step(mps_mpm *mpm, int64_t count) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  if (count < 0)
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
+                     (long long)count);
+  mps_status status = ready(mpm, __func__);
+  for (int64_t k = 0; k < count && status == MPS_OK; k++)
+    status = take_step(mpm, __func__, mps_mpm_dt(mpm));
+  return status;
+}
+
+mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every, mps_mpm_fn callback, void *user) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  if (!isfinite(t_end) || every < 1)
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                     "t_end is %g s and every %lld: must be finite and >= 1", t_end,
+                     (long long)every);
+  mps_status status = ready(mpm, __func__);
+  const double start = mpm->time, slice = 0.01 * (t_end - start);
+  int64_t done = 0, reported = 0;
+  if (status == MPS_OK && callback) status = callback(user, mpm);
+  while (status == MPS_OK && mpm->time < t_end) {
+    double dt = mps_mpm_dt(mpm);
+    const double rest = t_end - mpm->time;
+    const bool last = rest <= dt * (1.0 + 1e-9);
+    if (last) dt = rest;
+    status = take_step(mpm, __func__, dt);
+    if (last) mpm->time = t_end;
+    done++;
+    if (status == MPS_OK && callback && (done % every == 0 || last)) status = callback(user, mpm);
+    if (!last && mpm->time < start + slice * (double)(reported + 1)) continue;
+    reported = last ? 100 : (int64_t)((mpm->time - start) / slice);
+    mpsi_progress(mpm->context, "mpm", mpm->steps, mpm->time - start, t_end - start);
+    if (status == MPS_OK && mpsi_cancelled(mpm->context))
+      status = mpsi_fail(mpm->context, __func__, MPS_ERROR_CANCELLED,
+                         "stopped by the cancel hook at step %lld, t = %g s", (long long)mpm->steps,
+                         mpm->time);
+  }
+  return status;
+}
+
+/* ---- questions ------------------------------------------------------------------------------- */
+
+static int64_t grid_bytes(const mps_mpm *mpm) {
+  const struct {
+    int64_t capacity;
+    size_t size;
+  } list[] = {{mpm->cells_room.capacity, sizeof *mpm->cells},
+              {mpm->nodes_room.capacity, sizeof *mpm->nodes},
+              {mpm->tile_room.capacity, sizeof *mpm->tile},
+              {mpm->node_room.capacity, sizeof *mpm->node},
+              {mpm->near_room.capacity, sizeof *mpm->near},
+              {mpm->meeting_room.capacity, sizeof *mpm->meeting},
+              {mpm->touch_room.capacity, sizeof *mpm->touch},
+              {mpm->meeting_of_room.capacity, sizeof *mpm->meeting_of},
+              {mpm->touch_first_room.capacity, sizeof *mpm->touch_first},
+              {mpm->count, 2 * sizeof *mpm->radix + 3 * 8}};
+  int64_t bytes = 0;
+  for (size_t k = 0; k < sizeof list / sizeof *list; k++)
+    bytes += list[k].capacity * (int64_t)list[k].size;
+  return bytes;
+}
+
+mps_status mps_mpm_get_totals(mps_mpm *mpm, mps_mpm_totals *out) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  if (!out) return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
+  const mpsi_columns *p = &mpm->p;
+  const double h = mpm->def.cell, moment = h * h / (mpm->def.spline == 3 ? 3.0 : 4.0);
+  mps_mpm_totals t = {
+      .blocks = mpm->cell_count, .nodes = mpm->node_count * MPSI_OWN, .bytes = grid_bytes(mpm)};
+  for (int64_t k = 0; k < mpm->count; k++) {
+    const double m = p->m[k], vx = p->v[0][k], vy = p->v[1][k];
+    t.mass += m;
+    t.volume += p->V[k];
+    t.linear[0] += m * vx;
+    t.linear[1] += m * vy;
+    t.angular += m * (p->x[0][k] * vy - p->x[1][k] * vx + moment * (p->L[2][k] - p->L[1][k]));
+    t.kinetic += 0.5 * m * (vx * vx + vy * vy);
+  }
+  *out = t;
+  return MPS_OK;
+}

@@ -1,0 +1,43 @@
+#!/bin/sh
+# contact.sh DIRECTORY: mps-sliding-box, mps-rolling-disc and mps-footing against exact forces and
+# paths. Finer grids: docs/verification/wls-mpm.md.
+. "$(dirname "$0")/checks.sh"
+
+# The block: normal force and friction, wherever the grid lies.
+for offset in 0.1 0.75; do
+  "$1/mps-sliding-box" --k 1800 --offset $offset --threads 1 --out "$work/box" >"$work/log"
+  in_range "$work/box/summary.json" Fy_exact 605.76 605.78
+  in_range "$work/box/summary.json" Fy_error -0.006 0.006
+  in_range "$work/box/summary.json" Fx_over_Fy 0.2999 0.3001
+done
+head -n 1 "$work/box/forces.csv" | grep -q '^t_s,Fx_N_m,Fy_N_m$' || fail "header of forces.csv"
+tail -n 1 "$work/log" | grep -q "exact 605.77" || fail "last line"
+# An elastic disc that slips, and one that rolls.
+"$1/mps-rolling-disc" --h 0.02 --threads 1 --out "$work/disc" >"$work/log"
+in_range "$work/disc/summary.json" x_theory 0.61312 0.61313
+in_range "$work/disc/summary.json" x_error_05 -0.001 0.001
+tail -n 1 "$work/log" | grep -q "theory 0.6131" || fail "last line"
+"$1/mps-rolling-disc" --h 0.02 --mu 0.3 --fill rings --threads 1 --out "$work/disc" >/dev/null
+in_range "$work/disc/summary.json" x_error_05 -0.135 0.01
+in_range "$work/disc/summary.json" omega_ratio 0.95 1.05
+"$1/mps-rolling-disc" --mu 0.3 --fill rings --threads 1 --out "$work/disc" >/dev/null
+in_range "$work/disc/summary.json" x_error_05 -0.05 0.01
+in_range "$work/disc/summary.json" omega_ratio 0.97 1.02
+
+# A free rigid disc on an elastic slope rolls too.
+"$1/mps-rolling-disc" --body disc --mu 0.3 --h 0.02 --threads 1 --out "$work/two-way" >/dev/null
+in_range "$work/two-way/summary.json" x_error_05 -0.1 0.1
+in_range "$work/two-way/summary.json" omega_ratio 0.9 1.1
+head -n 1 "$work/two-way/motion.csv" | grep -q '^t_s,x_m,x_theory_m,v_m_s,omega_rad_s$' ||
+  fail "header of motion.csv"
+# A footing on a small domain at ten times the speed: above Prandtl's 5.14, by the coarse grid.
+"$1/mps-footing" --rate 5 --width 3 --depth 2 --threads 1 --out "$work/footing" >/dev/null
+in_range "$work/footing/summary.json" q_exact 5.1415 5.1416
+in_range "$work/footing/summary.json" q_over_c 5.14 6.1
+head -n 1 "$work/footing/pressure.csv" | grep -q '^settlement_mm,q_kPa,q_over_c$' ||
+  fail "header of pressure.csv"
+if command -v gnuplot >/dev/null; then
+  for picture in box/forces.png disc/motion.png footing/pressure.png footing/shear_bands.png; do
+    [ "$(head -c 4 "$work/$picture" | tail -c 3)" = PNG ] || fail "$picture"
+  done
+fi

@@ -1,0 +1,198 @@
+/* test_body.c - rigid bodies: arguments, motion by signals and by forces, parts, ownership.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "test_allocator.h"
+#include "test_fixture.h"
+
+#include <mps/body.h>
+
+static const double square[] = {0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0};
+
+static void refuses_bad_definitions(void **state) {
+  (void)state;
+  mps_body *body = (mps_body *)1;
+  mps_body_def def = mps_body_defaults();
+  const double nowhere[] = {0.0, NAN}, zero[] = {0.0, 0.0};
+  const double bow[] = {0.0, 0.0, 1.0, 1.0, 1.0, 0.0, 0.0, 1.0};
+  assert_int_equal(mps_body_create_disc(NULL, &def, 1.0, &body), MPS_ERROR_ARGUMENT);
+  mps_assert_fails(context, mps_body_create_disc(context, &def, 0.0, &body), MPS_ERROR_ARGUMENT,
+                   "radius is 0 m");
+  assert_null(body);
+  mps_assert_fails(context, mps_body_create_disc(context, &def, 1.0, NULL), MPS_ERROR_ARGUMENT,
+                   "out is NULL");
+  mps_assert_fails(context, mps_body_create_box(context, &def, 1.0, -2.0, &body),
+                   MPS_ERROR_ARGUMENT, "height -2 m");
+  mps_assert_fails(context, mps_body_create_half_plane(context, &def, zero, &body),
+                   MPS_ERROR_ARGUMENT, "normal is (0, 0)");
+  mps_assert_fails(context, mps_body_create_half_plane(context, &def, NULL, &body),
+                   MPS_ERROR_ARGUMENT, "normal is NULL");
+  mps_assert_fails(context, mps_body_create_half_plane(context, &def, nowhere, &body),
+                   MPS_ERROR_ARGUMENT, "must be finite");
+  mps_assert_fails(context, mps_body_create_polygon(context, &def, 4, NULL, &body),
+                   MPS_ERROR_ARGUMENT, "xy is NULL");
+  mps_assert_fails(context, mps_body_create_polygon(context, &def, 2, square, &body),
+                   MPS_ERROR_ARGUMENT, "vertices is 2");
+  mps_assert_fails(context, mps_body_create_polygon(context, &def, 4, bow, &body),
+                   MPS_ERROR_ARGUMENT, "cross or touch");
+  def.friction = -0.1;
+  mps_assert_fails(context, mps_body_create_box(context, &def, 1.0, 1.0, &body), MPS_ERROR_ARGUMENT,
+                   "friction is -0.1");
+  def = mps_body_defaults();
+  def.penalty = NAN;
+  mps_assert_fails(context, mps_body_create_box(context, &def, 1.0, 1.0, &body), MPS_ERROR_ARGUMENT,
+                   "penalty is nan");
+  def = mps_body_defaults();
+  def.mass = 1.0;
+  mps_assert_fails(context, mps_body_create_box(context, &def, 1.0, 1.0, &body), MPS_ERROR_ARGUMENT,
+                   "for free bodies");
+  def.motion = MPS_MOTION_FREE;
+  mps_assert_fails(context, mps_body_create_box(context, &def, 1.0, 1.0, &body), MPS_ERROR_ARGUMENT,
+                   "inertia 0 kg m2");
+  def.motion = 7;
+  mps_assert_fails(context, mps_body_create_box(context, &def, 1.0, 1.0, &body), MPS_ERROR_ARGUMENT,
+                   "motion is 7");
+  assert_null(body);
+}
+
+static void refuses_bad_calls(void **state) {
+  (void)state;
+  mps_body *body = NULL;
+  mps_assert_ok(context, mps_body_create_polygon(context, NULL, 4, square, &body));
+  mps_body_state s;
+  mps_reaction r;
+  const double force[] = {1.0, 2.0}, bad[] = {0.0, INFINITY};
+  double d;
+  mps_assert_fails(context, mps_body_advance(body, 0.0), MPS_ERROR_ARGUMENT, "dt is 0 s");
+  mps_assert_fails(context, mps_body_drive(body, 3, NULL, 1.0), MPS_ERROR_ARGUMENT,
+                   "component is 3");
+  mps_assert_fails(context, mps_body_drive(body, 0, NULL, NAN), MPS_ERROR_ARGUMENT,
+                   "factor is nan");
+  mps_assert_fails(context, mps_body_load(body, force, 0.0), MPS_ERROR_STATE, "takes no load");
+  mps_assert_fails(context, mps_body_distance(body, 1, bad, &d, NULL, NULL, NULL),
+                   MPS_ERROR_ARGUMENT, "point 0 has y = inf");
+  mps_assert_fails(context, mps_body_distance(body, -1, bad, &d, NULL, NULL, NULL),
+                   MPS_ERROR_ARGUMENT, "count is -1");
+  mps_assert_fails(context, mps_body_get_reaction(body, 1, &r), MPS_ERROR_ARGUMENT, "part is 1");
+  mps_assert_fails(context, mps_body_get_state(body, NULL), MPS_ERROR_ARGUMENT, "out is NULL");
+  mps_assert_fails(context, mps_body_name_part(body, "no blanks", 0, 1, NULL), MPS_ERROR_ARGUMENT,
+                   "no blanks");
+  mps_assert_fails(context, mps_body_name_part(body, "tip", 4, 1, NULL), MPS_ERROR_ARGUMENT,
+                   "first is 4");
+  assert_int_equal(mps_body_get_state(NULL, &s), MPS_ERROR_ARGUMENT);
+  mps_body_destroy(&body);
+  assert_null(body);
+  mps_body_destroy(&body);
+  mps_body_destroy(NULL);
+}
+
+static void names_parts(void **state) {
+  (void)state;
+  mps_body *body = NULL;
+  mps_assert_ok(context, mps_body_create_polygon(context, NULL, 4, square, &body));
+  int32_t tip, side;
+  mps_assert_ok(context, mps_body_name_part(body, "tip", 0, 1, &tip));
+  mps_assert_ok(context, mps_body_name_part(body, "side", 3, 2, &side)); /* 3 and 0 */
+  assert_int_equal(mps_body_part(body, "rest"), 0);
+  assert_int_equal(mps_body_part(body, "tip"), tip);
+  assert_int_equal(mps_body_part(body, "side"), side);
+  assert_int_equal(mps_body_part(body, "none"), -1);
+  assert_int_equal(mps_body_part_count(body), 3);
+  for (int k = 3; k < MPS_BODY_MAX_PARTS; k++) {
+    char name[8];
+    snprintf(name, sizeof name, "p%d", k);
+    mps_assert_ok(context, mps_body_name_part(body, name, 0, 1, NULL));
+  }
+  mps_assert_fails(context, mps_body_name_part(body, "more", 0, 1, NULL), MPS_ERROR_ARGUMENT,
+                   "the most there can be");
+  mps_assert_ok(context, mps_body_name_part(body, "tip", 2, 1, NULL)); /* an old name still can */
+  mps_body_destroy(&body);
+}
+
+/* A driven body is where its signals are, and its surface moves with it. */
+static void follows_signals(void **state) {
+  (void)state;
+  mps_signal *ramp = NULL, *sine = NULL;
+  mps_assert_ok(context, mps_signal_ramp(context, 0.0, 1.0, 2.0, &ramp));
+  mps_assert_ok(context, mps_signal_sine(context, 0.25, 0.5, 0.0, &sine));
+  mps_body_def def = mps_body_defaults();
+  def.position[0] = 1.0;
+  def.angle = 0.3;
+  mps_body *body = NULL;
+  mps_assert_ok(context, mps_body_create_box(context, &def, 4.0, 2.0, &body));
+  mps_assert_ok(context, mps_body_drive(body, 1, ramp, -1.0));
+  mps_assert_ok(context, mps_body_drive(body, 2, sine, 1.0));
+  mps_signal_destroy(&ramp);
+  mps_signal_destroy(&sine);
+  for (int k = 0; k < 100; k++) mps_assert_ok(context, mps_body_advance(body, 0.01));
+  mps_body_state s;
+  mps_assert_ok(context, mps_body_get_state(body, &s));
+  mps_assert_near(s.time, 1.0, 1e-12);
+  mps_assert_near(s.position[0], 1.0, 0.0);
+  mps_assert_near(s.position[1], -2.0, 1e-12);
+  mps_assert_near(s.angle, 0.8, 1e-12);
+  mps_assert_near(s.spin, 0.0, 1e-9);
+  /* the middle of the right side, 0.5 outside */
+  const double x[] = {1.0 + 2.5 * cos(0.8), -2.0 + 2.5 * sin(0.8)};
+  double d, n[2], foot[2];
+  int64_t edge;
+  mps_assert_ok(context, mps_body_distance(body, 1, x, &d, n, foot, &edge));
+  mps_assert_near(d, 0.5, 1e-12);
+  mps_assert_near(n[0], cos(0.8), 1e-12);
+  mps_assert_near(foot[1], -2.0 + 2.0 * sin(0.8), 1e-12);
+  assert_int_equal(edge, 1);
+  mps_body_destroy(&body);
+}
+
+/* Free fall with a load: the discrete sums of symplectic Euler, exactly. */
+static void falls_freely(void **state) {
+  (void)state;
+  mps_body_def def = mps_body_defaults();
+  def.motion = MPS_MOTION_FREE;
+  def.mass = 2.0;
+  def.inertia = 0.5;
+  def.velocity[0] = 3.0;
+  def.spin = 1.0;
+  def.gravity[1] = -10.0;
+  mps_body *body = NULL;
+  mps_assert_ok(context, mps_body_create_disc(context, &def, 1.0, &body));
+  const double force[] = {4.0, 0.0};
+  mps_assert_ok(context, mps_body_load(body, force, 0.25));
+  mps_assert_fails(context, mps_body_drive(body, 0, NULL, 1.0), MPS_ERROR_STATE, "follows no");
+  const int steps = 200;
+  const double dt = 0.01, t = steps * dt, late = 0.5 * dt * dt * steps * (steps + 1);
+  for (int k = 0; k < steps; k++) mps_assert_ok(context, mps_body_advance(body, dt));
+  mps_body_state s;
+  mps_assert_ok(context, mps_body_get_state(body, &s));
+  mps_assert_near(s.velocity[0], 3.0 + 2.0 * t, 1e-12);
+  mps_assert_near(s.position[0], 3.0 * t + 2.0 * late, 1e-11);
+  mps_assert_near(s.position[1], -10.0 * late, 1e-11);
+  mps_assert_near(s.spin, 1.0 + 0.5 * t, 1e-12);
+  mps_assert_near(s.angle, t + 0.5 * late, 1e-11);
+  mps_body_destroy(&body);
+}
+
+static mps_status make(mps_context *c, int what) {
+  mps_body *body = NULL;
+  const double normal[] = {0.0, 1.0};
+  const mps_status status = what == 0   ? mps_body_create_polygon(c, NULL, 4, square, &body)
+                            : what == 1 ? mps_body_create_box(c, NULL, 1.0, 1.0, &body)
+                            : what == 2 ? mps_body_create_disc(c, NULL, 1.0, &body)
+                                        : mps_body_create_half_plane(c, NULL, normal, &body);
+  if (status != MPS_OK) assert_null(body);
+  mps_body_destroy(&body);
+  return status;
+}
+
+static void survives_lack_of_memory(void **state) {
+  (void)state;
+  for (int what = 0; what < 4; what++) test_allocator_sweep(make, what);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(refuses_bad_definitions),
+                                     cmocka_unit_test(refuses_bad_calls),
+                                     cmocka_unit_test(names_parts),
+                                     cmocka_unit_test(follows_signals),
+                                     cmocka_unit_test(falls_freely),
+                                     cmocka_unit_test(survives_lack_of_memory)};
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}

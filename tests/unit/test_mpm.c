@@ -1,0 +1,239 @@
+/* test_mpm.c - the WLS-MPM solver: arguments, errors, memory, ownership.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_scene.h"
+#include "test_allocator.h"
+#include "test_fixture.h"
+
+static mps_mpm_def small_def(void) {
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.02;
+  def.lower[0] = def.lower[1] = 0.0;
+  return def;
+}
+
+static mpm_scene small_scene(mps_context *c) {
+  mpm_scene s = mpm_scene_begin(c, 0.01, 0.0, 0.0, 1e5);
+  mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
+  mps_assert_ok(c, mps_particles_set(s.particles, "density", 0, 1000.0));
+  return s;
+}
+
+static void refuses(mpm_scene *s, const mps_mpm_def *def, const char *text) {
+  mps_mpm *mpm = (mps_mpm *)1;
+  mps_assert_fails(context, mps_mpm_create(context, s->particles, s->material, def, &mpm),
+                   MPS_ERROR_ARGUMENT, text);
+  assert_null(mpm);
+}
+
+static void refuses_bad_definitions(void **state) {
+  (void)state;
+  mpm_scene s = small_scene(context);
+  mps_mpm *mpm = NULL;
+#define CASE(member, value, text)                                                                  \
+  do {                                                                                             \
+    mps_mpm_def def = small_def();                                                                 \
+    def.member = value;                                                                            \
+    refuses(&s, &def, text);                                                                       \
+  } while (0)
+  CASE(cell, 0.0, "cell is 0 m");
+  CASE(cell, NAN, "cell is nan m");
+  CASE(spline, 4, "spline is 4");
+  CASE(geometry, 2, "geometry is 2");
+  CASE(transfer, -1, "transfer is -1");
+  CASE(wall_upper[1], 9, "wall_upper[1] is 9");
+  CASE(courant, 1.5, "courant is 1.5");
+  CASE(dt, -1.0, "dt is -1 s");
+  CASE(gravity[1], INFINITY, "gravity[1] inf");
+  CASE(lower[0], 0.013, "must lie on a node");
+  CASE(lower[1], NAN, "lower[1] is nan");
+  CASE(upper[0], 0.0, "at least one cell");
+  CASE(upper[0], 0.08, "outside the domain [0, 0.08] m");
+#undef CASE
+  mps_mpm_def def = small_def();
+  assert_int_equal(mps_mpm_create(NULL, s.particles, s.material, &def, &mpm), MPS_ERROR_ARGUMENT);
+  mps_assert_fails(context, mps_mpm_create(context, NULL, s.material, &def, &mpm),
+                   MPS_ERROR_ARGUMENT, "particles is NULL");
+  mps_assert_fails(context, mps_mpm_create(context, s.particles, NULL, &def, &mpm),
+                   MPS_ERROR_ARGUMENT, "material is NULL");
+  mps_assert_fails(context, mps_mpm_create(context, s.particles, s.material, &def, NULL),
+                   MPS_ERROR_ARGUMENT, "out is NULL");
+  def.geometry = MPS_AXISYMMETRIC;
+  def.lower[0] = -0.02;
+  refuses(&s, &def, "radius begins at 0");
+  mps_view x = mpm_scene_view(&s, "position");
+  *mps_view_f64(&x, 3, 1) = 1e12;
+  def = mps_mpm_defaults();
+  def.cell = 0.02;
+  refuses(&s, &def, "more than 2^30 cells");
+  *mps_view_f64(&x, 3, 1) = 0.005;
+  mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 0.0));
+  def = small_def();
+  refuses(&s, &def, "density 0 kg/m3");
+  mpm_scene_end(&s);
+}
+
+static void refuses_bad_sets(void **state) {
+  (void)state;
+  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+  mps_mpm_def def = small_def();
+  mps_mpm *mpm = NULL;
+  refuses(&s, &def, "the set has 0 particles");
+  mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
+  mps_assert_fails(context, mps_mpm_create(context, s.particles, s.material, &def, &mpm),
+                   MPS_ERROR_FIELD, "no field 'density'");
+  mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 1000.0));
+  mps_assert_ok(context, mps_particles_set(s.particles, "stress", 2, 1.0));
+  mps_view stress = mpm_scene_view(&s, "stress");
+  *mps_view_f64(&stress, 5, 3) = NAN;
+  refuses(&s, &def, "'stress' of particle 5 is nan");
+  mpm_scene_end(&s);
+}
+
+static void owns_its_bodies(void **state) {
+  (void)state;
+  mpm_scene s = small_scene(context), other = small_scene(context);
+  mps_mpm_def def = small_def();
+  mpm_scene_solve(&s, &def);
+  mpm_scene_solve(&other, &def);
+  mps_body *body = NULL;
+  mps_assert_ok(context, mps_body_create_disc(context, NULL, 0.01, &body));
+  mps_assert_fails(context, mps_mpm_add_body(s.mpm, NULL), MPS_ERROR_ARGUMENT, "body is NULL");
+  mps_assert_ok(context, mps_mpm_add_body(s.mpm, body));
+  mps_assert_fails(context, mps_mpm_add_body(other.mpm, body), MPS_ERROR_STATE, "has the body");
+  mps_assert_fails(context, mps_body_advance(body, 0.1), MPS_ERROR_STATE, "a solver moves");
+  mps_mpm_destroy(&s.mpm);
+  mps_assert_ok(context, mps_mpm_add_body(other.mpm, body)); /* free again */
+  mps_body_destroy(&body);
+  mps_assert_fails(context, mps_mpm_step(other.mpm, -1), MPS_ERROR_ARGUMENT, "count is -1");
+  mps_assert_fails(context, mps_mpm_run(other.mpm, NAN, 1, NULL, NULL), MPS_ERROR_ARGUMENT,
+                   "t_end is nan");
+  mps_assert_fails(context, mps_mpm_run(other.mpm, 1.0, 0, NULL, NULL), MPS_ERROR_ARGUMENT,
+                   "every 0");
+  mps_assert_fails(context, mps_mpm_get_totals(other.mpm, NULL), MPS_ERROR_ARGUMENT, "out is NULL");
+  mpm_scene_end(&s);
+  mpm_scene_end(&other);
+  mps_mpm_destroy(NULL);
+  assert_true(mps_mpm_dt(NULL) == 0.0 && mps_mpm_time(NULL) == 0.0 && mps_mpm_steps(NULL) == 0);
+}
+
+/* A run ends exactly at its end, calls back as asked, and dt is that of (49). */
+static mps_status count_calls(void *user, mps_mpm *mpm) {
+  (void)mpm;
+  ++*(int *)user;
+  return MPS_OK;
+}
+
+static void runs_to_the_end(void **state) {
+  (void)state;
+  mpm_scene s = small_scene(context);
+  mps_mpm_def def = small_def();
+  mpm_scene_solve(&s, &def);
+  /* E = 1e5, nu = 0.3: K + 4G/3 = E (1 - nu)/((1 + nu)(1 - 2 nu)) */
+  const double c = sqrt(1e5 * 0.7 / (1.3 * 0.4) / 1000.0);
+  mps_assert_near(mps_mpm_limit(s.mpm), 0.02 / c, 1e-14);
+  mps_assert_near(mps_mpm_dt(s.mpm), 0.01 / c, 1e-14);
+  int calls = 0;
+  const double t_end = 10.5 * mps_mpm_dt(s.mpm);
+  mps_assert_ok(context, mps_mpm_run(s.mpm, t_end, 4, count_calls, &calls));
+  mps_assert_near(mps_mpm_time(s.mpm), t_end, 0.0);
+  assert_int_equal(mps_mpm_steps(s.mpm), 11);
+  assert_int_equal(calls, 4); /* 0, 4, 8, 11 */
+  mpm_scene_end(&s);
+}
+
+/* A lump that flies out of the domain is told with id and step, and the solver stops. */
+static void tells_what_left(void **state) {
+  (void)state;
+  mpm_scene s = small_scene(context);
+  const double v0[] = {-50.0, 0.0}, L[4] = {0};
+  mpm_scene_affine(&s, v0, L);
+  mps_mpm_def def = small_def();
+  def.upper[0] = 0.2;
+  def.dt = 4e-4;
+  mpm_scene_solve(&s, &def);
+  mps_assert_fails(context, mps_mpm_step(s.mpm, 200), MPS_ERROR_DIVERGED, "check dt");
+  assert_true(mps_context_error(context)->particle >= 0);
+  assert_true(mps_context_error(context)->step > 0);
+  mps_assert_fails(context, mps_mpm_step(s.mpm, 1), MPS_ERROR_STATE, "earlier step");
+  mpm_scene_end(&s);
+}
+
+static mps_status make(mps_context *c, int what) {
+  mps_particles_def set = mps_particles_defaults();
+  set.spacing = 0.01;
+  mps_particles *particles = NULL;
+  mps_material *material = NULL;
+  mps_mpm *mpm = NULL;
+  mps_body *body = NULL;
+  const double lo[] = {0.0, 0.0}, hi[] = {0.1, 0.1};
+  mps_status status = mps_particles_create(c, &set, &particles);
+  if (status == MPS_OK) status = mps_particles_fill_box(particles, lo, hi, NULL);
+  if (status == MPS_OK) status = mps_particles_set(particles, "density", 0, 1000.0);
+  if (status == MPS_OK) {
+    if (what == 0) {
+      status = mps_material_linear_elastic(c, 1e5, 0.3, &material);
+    } else if (what == 1) {
+      status = mps_material_neo_hookean(c, 1e5, 0.3, &material);
+    } else {
+      mps_von_mises_def law = mps_von_mises_defaults();
+      law.young = 1e5, law.yield_stress = 10.0;
+      status = mps_material_von_mises(c, &law, &material);
+    }
+  }
+  mps_mpm_def def = small_def();
+  if (status == MPS_OK) status = mps_mpm_create(c, particles, material, &def, &mpm);
+  if (status == MPS_OK) status = mps_body_create_disc(c, NULL, 0.02, &body);
+  if (status == MPS_OK) status = mps_mpm_add_body(mpm, body);
+  if (status == MPS_OK) status = mps_mpm_step(mpm, 2);
+  mps_body_destroy(&body);
+  mps_mpm_destroy(&mpm);
+  mps_particles_destroy(&particles);
+  mps_material_destroy(&material);
+  return status;
+}
+
+static void survives_lack_of_memory(void **state) {
+  (void)state;
+  for (int what = 0; what < 3; what++) test_allocator_sweep(make, what);
+}
+
+/* Steps that sort, touch a body and have room allocate nothing. */
+static void steady_steps_allocate_nothing(void **state) {
+  (void)state;
+  test_allocator allocator = {0};
+  mps_context *own = test_allocator_context(&allocator);
+  mpm_scene s = small_scene(own);
+  const double v0[] = {1.0, 0.5}, L[] = {0.0, -8.0, 8.0, 0.0};
+  mpm_scene_affine(&s, v0, L);
+  mps_mpm_def def = mps_mpm_defaults(); /* no walls: they hold what touches them */
+  def.cell = 0.02;
+  mpm_scene_solve(&s, &def);
+  mps_body *body = NULL;
+  mps_body_def plate = mps_body_defaults();
+  const double normal[] = {0.0, 1.0};
+  plate.position[1] = 0.002;
+  plate.friction = 0.2;
+  mps_assert_ok(own, mps_body_create_half_plane(own, &plate, normal, &body));
+  mps_assert_ok(own, mps_mpm_add_body(s.mpm, body));
+  mps_assert_ok(own, mps_mpm_step(s.mpm, 100));
+  const uint64_t epoch = mps_particles_epoch(s.particles);
+  const int64_t calls = allocator.calls;
+  mps_assert_ok(own, mps_mpm_step(s.mpm, 300));
+  assert_int_equal(allocator.calls, calls);
+  assert_true(mps_particles_epoch(s.particles) > epoch); /* it has sorted */
+  mps_body_destroy(&body);
+  mpm_scene_end(&s);
+  mps_context_destroy(&own);
+  assert_int_equal(allocator.live, 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(refuses_bad_definitions),
+                                     cmocka_unit_test(refuses_bad_sets),
+                                     cmocka_unit_test(owns_its_bodies),
+                                     cmocka_unit_test(runs_to_the_end),
+                                     cmocka_unit_test(tells_what_left),
+                                     cmocka_unit_test(survives_lack_of_memory),
+                                     cmocka_unit_test(steady_steps_allocate_nothing)};
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}

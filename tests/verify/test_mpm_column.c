@@ -1,0 +1,85 @@
+/* test_mpm_column.c - the WLS-MPM solver against exact answers: a column under its own weight, the
+ * period of a bar, an axisymmetric cylinder under its weight.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_scene.h"
+#include "test_fixture.h"
+
+#define PI 3.14159265358979323846
+
+/* A column between rollers, of height 1 m, starts with the stress of its weight and stays at rest:
+ * sigma_yy = -rho g depth, sigma_xx = K0 sigma_yy, exact for linear stress. */
+static void column_at_rest(int32_t geometry) {
+  const double rho = 1000.0, g = 10.0, K0 = 0.3 / 0.7;
+  mpm_scene s = mpm_scene_begin(context, 0.02, 0.0, 0.0, 1e7);
+  mpm_scene_box(&s, 0.0, 0.0, 0.2, 1.0);
+  mps_assert_ok(context, mps_particles_add_field(s.particles, "stress", 0));
+  mps_view x = mpm_scene_view(&s, "position"), stress = mpm_scene_view(&s, "stress");
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    const double yy = -rho * g * (1.0 - *mps_view_f64(&x, k, 1));
+    *mps_view_f64(&stress, k, 0) = *mps_view_f64(&stress, k, 2) = K0 * yy;
+    *mps_view_f64(&stress, k, 1) = yy;
+  }
+  mps_mpm_def def = mps_mpm_defaults();
+  def.geometry = geometry;
+  def.cell = 0.04;
+  def.lower[0] = def.lower[1] = 0.0;
+  def.upper[0] = 0.2;
+  def.gravity[1] = -g;
+  mpm_scene_solve(&s, &def);
+  mps_assert_ok(context, mps_mpm_run(s.mpm, 0.2, 1000000, NULL, NULL));
+  x = mpm_scene_view(&s, "position"), stress = mpm_scene_view(&s, "stress");
+  double worst = 0.0;
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    const double depth = 1.0 - *mps_view_f64(&x, k, 1);
+    if (depth < 0.15 || depth > 0.85) continue; /* the free surface has half-filled cells */
+    worst = fmax(worst, fabs(*mps_view_f64(&stress, k, 1) / (-rho * g * depth) - 1.0));
+  }
+  print_message("geometry %d: stress within %.2g\n", geometry, worst);
+  assert_true(worst < 0.03);
+  mpm_scene_end(&s);
+}
+
+static void own_weight(void **state) {
+  (void)state;
+  column_at_rest(MPS_PLANE_STRAIN);
+  column_at_rest(MPS_AXISYMMETRIC);
+}
+
+/* Axial vibration between rollers, fixed at the bottom, free at the top: period 4 L/c. */
+static void bar_period(void **state) {
+  (void)state;
+  const double E = 1e6, rho = 1000.0, length = 1.0;
+  const double c = sqrt(E * 0.7 / (1.3 * 0.4) / rho), period = 4.0 * length / c;
+  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, E);
+  mpm_scene_box(&s, 0.0, 0.0, 0.1, length);
+  mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity", 0));
+  mps_view x = mpm_scene_view(&s, "position"), v = mpm_scene_view(&s, "velocity");
+  for (int64_t k = 0; k < x.shape[0]; k++)
+    *mps_view_f64(&v, k, 1) = 0.01 * sin(0.5 * PI * *mps_view_f64(&x, k, 1) / length);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.02;
+  def.lower[0] = def.lower[1] = 0.0;
+  def.upper[0] = 0.1;
+  mpm_scene_solve(&s, &def);
+  /* zero crossings of the total momentum: at 1/4, 3/4, ... of a period */
+  double crossing[3], before = mpm_scene_totals(&s).linear[1], t_before = 0.0;
+  int found = 0;
+  while (found < 3) {
+    mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+    const double now = mpm_scene_totals(&s).linear[1], t = mps_mpm_time(s.mpm);
+    if (now * before < 0.0) crossing[found++] = t_before + (t - t_before) * before / (before - now);
+    before = now;
+    t_before = t;
+    assert_true(t < 3.0 * period);
+  }
+  const double measured = crossing[2] - crossing[0];
+  print_message("period %.6g s, exact %.6g s, %+.3f %%\n", measured, period,
+                100.0 * (measured / period - 1.0));
+  mps_assert_near(measured, period, 0.01 * period);
+  mpm_scene_end(&s);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(own_weight), cmocka_unit_test(bar_period)};
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
