@@ -24,20 +24,25 @@ static inline void test_allocator_return(void *user, void *memory) {
   free(memory);
 }
 
+/* Makes the contexts of `def` use `allocator`, which must outlive them. */
+static inline void test_allocator_use(mps_context_def *def, test_allocator *allocator) {
+  def->alloc = test_allocator_get;
+  def->free = test_allocator_return;
+  def->memory_user = allocator;
+}
+
 /* A serial context on `allocator`, which must outlive it; NULL when its own memory is refused. */
 static inline mps_context *test_allocator_context(test_allocator *allocator) {
   mps_context_def def = mps_context_defaults();
   def.executor = MPS_EXECUTOR_SERIAL;
-  def.alloc = test_allocator_get;
-  def.free = test_allocator_return;
-  def.memory_user = allocator;
-  mps_context *context = NULL;
-  const mps_status status = mps_context_create(&def, &context, NULL, 0);
-  return status == MPS_OK ? context : NULL;
+  test_allocator_use(&def, allocator);
+  mps_context *own = NULL;
+  const mps_status status = mps_context_create(&def, &own, NULL, 0);
+  return status == MPS_OK ? own : NULL;
 }
 
 /* Makes an object, and destroys it; `what` says which. */
-typedef mps_status (*test_make_fn)(mps_context *context, int what);
+typedef mps_status (*test_make_fn)(mps_context *own, int what);
 
 /* Refuses one allocation after the other until `make` succeeds. Each time it must report
  * MPS_ERROR_MEMORY and leave nothing behind. The first allocation is the context's. */
@@ -45,15 +50,15 @@ static inline void test_allocator_sweep(test_make_fn make, int what) {
   mps_status status = MPS_ERROR_MEMORY;
   for (int64_t refuse = 2; status != MPS_OK; refuse++) {
     test_allocator allocator = {.refuse_at = refuse};
-    mps_context *context = test_allocator_context(&allocator);
-    assert_non_null(context);
-    status = make(context, what);
+    mps_context *own = test_allocator_context(&allocator);
+    assert_non_null(own);
+    status = make(own, what);
     if (status != MPS_OK) {
       assert_int_equal(status, MPS_ERROR_MEMORY);
-      assert_int_equal(mps_context_error(context)->status, MPS_ERROR_MEMORY);
+      assert_int_equal(mps_context_error(own)->status, MPS_ERROR_MEMORY);
       assert_int_equal(allocator.calls, refuse); /* it does not go on after a failure */
     }
-    mps_context_destroy(&context);
+    mps_context_destroy(&own);
     assert_int_equal(allocator.live, 0);
     assert_true(refuse < 1000);
   }

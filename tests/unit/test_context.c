@@ -1,7 +1,7 @@
 /* test_context.c - status table, definition structs, error record, executors, hooks.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_common.h"
-#include "test_memory.h"
+#include "test_allocator.h"
 
 #include <mps/kernel.h>
 
@@ -111,9 +111,9 @@ static void every_executor_runs_every_unit_once(void **state) {
 static void the_callers_allocator_is_used_and_everything_returned(void **state) {
   (void)state;
   for (int64_t refuse = 0; refuse < 3; refuse++) {
-    test_memory counts = {.refuse_at = refuse};
+    test_allocator counts = {.refuse_at = refuse};
     mps_context_def def = mps_context_defaults();
-    test_memory_use(&def, &counts);
+    test_allocator_use(&def, &counts);
     mps_context *context = NULL;
     mps_kernel *kernel = NULL;
     char text[256];

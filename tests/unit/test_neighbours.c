@@ -2,7 +2,7 @@
  * memory, allocation failures. Against brute force: property/test_neighbours.c.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_common.h"
-#include "test_memory.h"
+#include "test_allocator.h"
 
 #include <mps/neighbours.h>
 #include <mps/particles.h>
@@ -155,14 +155,14 @@ static void allocation_failures_leave_the_former_list(void **state) {
   mps_status status = MPS_ERROR_MEMORY;
   int64_t refuse = 2;
   for (; status != MPS_OK; refuse++) {
-    test_memory memory = {.refuse_at = refuse};
+    test_allocator memory = {.refuse_at = refuse};
     mps_context_def def = mps_context_defaults();
     mps_context *context = NULL;
     mps_neighbours *nb = NULL;
     int64_t n = 0;
     const int64_t *offsets = NULL;
     char text[128];
-    test_memory_use(&def, &memory);
+    test_allocator_use(&def, &memory);
     assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_OK);
     status = build_twice(context, &nb, &small, &large);
     assert_true(status == MPS_OK || status == MPS_ERROR_MEMORY);
@@ -184,13 +184,13 @@ static void allocation_failures_leave_the_former_list(void **state) {
 
 static void building_again_allocates_nothing(void **state) {
   (void)state;
-  test_memory memory = {0};
+  test_allocator memory = {0};
   mps_context_def def = mps_context_defaults();
   mps_context *context = NULL;
   mps_neighbours *nb = NULL;
   char text[128];
   double x[2000];
-  test_memory_use(&def, &memory);
+  test_allocator_use(&def, &memory);
   assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_OK);
   for (int i = 0; i < 1000; i++) {
     x[i] = i; /* all x, then all y: as the fields of a particle set */

@@ -2,7 +2,7 @@
  * agreement of the field table with docs/fields.md. Fills: test_fill.c.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
-#include "test_memory.h"
+#include "test_allocator.h"
 
 #include <mps/particles.h>
 
@@ -387,12 +387,12 @@ static void every_allocation_failure_is_reported_and_changes_nothing(void **stat
   mps_status status = MPS_ERROR_MEMORY;
   int64_t refuse = 2; /* the first is the context's own */
   for (; status != MPS_OK; refuse++) {
-    test_memory memory = {.refuse_at = refuse};
+    test_allocator memory = {.refuse_at = refuse};
     mps_context_def def = mps_context_defaults();
     mps_context *c = NULL;
     mps_particles *set = NULL;
     char text[128];
-    test_memory_use(&def, &memory);
+    test_allocator_use(&def, &memory);
     assert_int_equal(mps_context_create(&def, &c, text, sizeof text), MPS_OK);
     status = build_all(c, &set);
     if (status != MPS_OK) {
