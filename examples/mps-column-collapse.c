@@ -31,6 +31,7 @@ typedef struct column_case {
   int rows;
   double t[SAMPLES + 1], front[SAMPLES + 1], height[SAMPLES + 1], kinetic[SAMPLES + 1];
   double time_at_rest; /* s; NaN: it still moved at the end */
+  double reach;        /* m, at the end */
   double volume_ratio, detached, mass, mass_start;
   mpm_snapshot shot[FRAMES];
 } column_case;
@@ -137,6 +138,7 @@ static mps_status sample(simulation *sim, column_case *c, double *peak) {
   c->height[k] = heap.height;
   c->kinetic[k] = heap.kinetic;
   c->volume_ratio = fmax(c->volume_ratio, heap.volume_ratio);
+  c->reach = heap.reach;
   c->detached = heap.detached;
   c->mass = heap.mass;
   if (k == 0) c->mass_start = sim->s.density * c->aspect * sim->s.width * sim->s.width;
@@ -190,7 +192,7 @@ static bool write_cases(app *a, const simulation *sim) {
   output f;
   if (!output_open(&f, a, s->out, "cases.csv")) return false;
   output_text(&f, "case,aspect,phi_deg,cohesion_Pa,runout,runout_law,height,height_law,"
-                  "time_at_rest_s,volume_ratio_max\n");
+                  "time_at_rest_s,volume_ratio_max,runout_98\n");
   for (int k = 0; k < sim->count; k++) {
     const column_case *c = &sim->column[k];
     const double row[] = {c->aspect,
@@ -201,9 +203,10 @@ static bool write_cases(app *a, const simulation *sim) {
                           final_height(s, c),
                           law_height(c->aspect),
                           c->time_at_rest,
-                          c->volume_ratio};
+                          c->volume_ratio,
+                          c->reach / s->width - 1.0};
     output_text(&f, "%s,", c->name);
-    csv_row(&f, 9, row);
+    csv_row(&f, 10, row);
   }
   return output_close(&f);
 }
@@ -234,7 +237,7 @@ static bool draw_columns(app *a, const simulation *sim) {
     height = fmax(height, 1.1 * c->aspect);
   }
   const int panel = 330, panel_height = (int)(panel * height / width), edge = 40;
-  const double x = FRAMES * (panel + edge) + 110.0, y = sim->count * (panel_height + 74.0);
+  const double x = FRAMES * (panel + edge) + 135.0, y = sim->count * (panel_height + 74.0);
   output f;
   if (!plot_open(&f, a, s->out, "columns", (int)x, (int)y)) return false;
   output_text(&f,
@@ -245,8 +248,8 @@ static bool draw_columns(app *a, const simulation *sim) {
               "set cbrange [0:2]\nset xtics 1\nset ytics %g\n"
               "set colorbox user origin screen %.4f,0.2 size screen 0.012,0.6\n"
               "set cblabel 'plastic strain'\n",
-              sim->count, FRAMES, edge / x, (x - 110.0) / x, 42.0 / y, 1.0 - 28.0 / y, edge / x,
-              74.0 / y, width, height, height > 1.2 ? 1.0 : 0.5, (x - 90.0) / x);
+              sim->count, FRAMES, edge / x, (x - 135.0) / x, 42.0 / y, 1.0 - 28.0 / y, edge / x,
+              74.0 / y, width, height, height > 1.2 ? 1.0 : 0.5, (x - 120.0) / x);
   for (int k = 0; k < sim->count; k++)
     for (int shot = 0; shot < FRAMES; shot++)
       output_text(&f,
@@ -302,6 +305,7 @@ static void summarise(output *f, const simulation *sim) {
   json_number(f, "runout_law", law_runout(c->aspect));
   json_number(f, "runout_error", runout(s, c) / law_runout(c->aspect) - 1.0);
   json_number(f, "runout_error_worst", worst);
+  json_number(f, "runout_98", c->reach / s->width - 1.0);
   json_number(f, "height", final_height(s, c));
   json_number(f, "height_law", law_height(c->aspect));
   json_number(f, "time_at_rest", c->time_at_rest);

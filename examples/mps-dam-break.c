@@ -267,7 +267,7 @@ static bool draw_water(app *a, const simulation *sim, double T) {
   const double width = s->rest ? 1.0 : s->tank, height = 1.2 * (double)s->n2;
   const int across = s->rest ? FRAMES : 2, down = FRAMES / across, panel = s->rest ? 180 : 600;
   const int panel_height = (int)(panel * height / width), edge = 45;
-  const double x = across * (panel + edge) + 110.0, y = down * (panel_height + 65.0);
+  const double x = across * (panel + edge) + 135.0, y = down * (panel_height + 74.0);
   output f;
   if (!plot_open(&f, a, s->out, "water", (int)x, (int)y)) return false;
   output_text(&f,
@@ -278,8 +278,8 @@ static bool draw_water(app *a, const simulation *sim, double T) {
               "set cbrange [0:%.4g]\nset xtics 1\nset ytics 1\n"
               "set colorbox user origin screen %.4f,0.2 size screen 0.012,0.6\n"
               "set cblabel 'pressure (kPa)'\n",
-              down, across, edge / x, (x - 110.0) / x, 35.0 / y, 1.0 - 30.0 / y, edge / x, 65.0 / y,
-              width, height, 0.9e-3 * DENSITY * G * column_height(s), (x - 90.0) / x);
+              down, across, edge / x, (x - 135.0) / x, 42.0 / y, 1.0 - 28.0 / y, edge / x, 74.0 / y,
+              width, height, 0.9e-3 * DENSITY * G * column_height(s), (x - 120.0) / x);
   for (int k = 0; k < FRAMES; k++)
     output_text(&f,
                 "%sset title 'T = %.2f' offset 0,-0.7\n"

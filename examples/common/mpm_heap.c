@@ -50,6 +50,7 @@ mps_status mpm_heap_measure(mps_particles *particles, double g, double band, mpm
   for (int64_t k = 0; k < count; k++) place[k] = *mps_view_f64(&x, k, 0);
   const double last = end_of_run(count, place, 2.0 * spacing);
   out->front = last + 0.5 * spacing;
+  out->reach = place[(int64_t)(0.98 * (double)(count - 1))];
   for (int64_t k = 0; k < count; k++)
     if (*mps_view_f64(&x, k, 0) > last) out->detached += *mps_view_f64(&m, k, 0) / out->mass;
   free(place);

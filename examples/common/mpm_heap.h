@@ -10,6 +10,7 @@
 
 typedef struct mpm_heap {
   double front;        /* m: farthest x of the heap, half a spacing beyond the last particle */
+  double reach;        /* m: 98 % of the particles are nearer to the wall */
   double top;          /* m: highest y of the heap beside the wall, likewise */
   double height;       /* m: volume beside the wall over the width of the band */
   double mass;         /* kg, of all particles; per unit thickness as what follows */
