@@ -11,13 +11,18 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* Sorts, and returns the last value before a gap wider than `gap`. */
-static double end_of_run(int64_t count, double *x, double gap) {
+/* Sorts, and returns the last value of the last run of at least 1 % of them, and 3; runs end at gaps
+ * wider than `gap`. */
+static double end_of_heap(int64_t count, double *x, double gap) {
   if (count == 0) return NAN;
   qsort(x, (size_t)count, sizeof *x, ascending);
-  int64_t k = 0;
-  while (k + 1 < count && x[k + 1] - x[k] < gap) k++;
-  return x[k];
+  const int64_t least = count / 100 > 3 ? count / 100 : 3;
+  int64_t last = count - 1, run = 1;
+  for (int64_t k = count - 1; k > 0 && run < least; k--) {
+    if (x[k] - x[k - 1] > gap) last = k - 1, run = 0;
+    run++;
+  }
+  return x[last];
 }
 
 mps_status mpm_heap_measure(mps_particles *particles, double g, double band, mpm_heap *out) {
@@ -46,9 +51,9 @@ mps_status mpm_heap_measure(mps_particles *particles, double g, double band, mpm
     out->height += V / band;
     place[beside++] = *mps_view_f64(&x, k, 1);
   }
-  out->top = end_of_run(beside, place, 2.0 * spacing) + 0.5 * spacing;
+  out->top = end_of_heap(beside, place, 2.0 * spacing) + 0.5 * spacing;
   for (int64_t k = 0; k < count; k++) place[k] = *mps_view_f64(&x, k, 0);
-  const double last = end_of_run(count, place, 2.0 * spacing);
+  const double last = end_of_heap(count, place, 2.0 * spacing);
   out->front = last + 0.5 * spacing;
   out->reach = place[(int64_t)(0.98 * (double)(count - 1))];
   for (int64_t k = 0; k < count; k++)

@@ -21,8 +21,8 @@ typedef struct mpm_heap {
   double detached;     /* share of the mass ahead of the front */
 } mpm_heap;
 
-/* A particle belongs to the heap if another is less than 2 spacings nearer to the wall (for `top`:
- * to the bed), and so on: drops that have left do not count. Beside the wall is x < `band` (m). */
+/* Drops do not count: particles ahead of a gap of 2 spacings (for `top`: above it) that are less
+ * than 1 % of all. Beside the wall is x < `band` (m). */
 mps_status mpm_heap_measure(mps_particles *particles, double g, double band, mpm_heap *out);
 
 /* Positions and one value of all particles at one time. */
