@@ -20,9 +20,9 @@ enum { SAMPLES = 300, FRAMES = 6, SLIP = 0, NO_SLIP };
 /* ---- Martin and Moyce -------------------------------------------------------------------------
  * "An experimental study of the collapse of liquid columns on a rigid horizontal plane", Phil.
  * Trans. R. Soc. A 244 (1952) 312-324: columns of rectangular section, a = 2.25 in. Front Z = x/a
- * against T = t sqrt(n^2 g/a); height at the wall H = y/(n^2 a) against tau = t sqrt(g/a). Tables 2
- * and 6 for n^2 = 2; n^2 = 1 as printed by later authors. The first motion could not be timed:
- * their clocks are set at Z = 1.44. */
+ * against T = t sqrt(n^2 g/a); height at the wall H = y/(n^2 a) against tau = t sqrt(g/a). The
+ * numbers are those that later authors print, for n^2 = 2 as tables 2 and 6. When the gate let go
+ * could not be timed well: it is usual to set the clocks at Z = 1.44. */
 
 typedef struct series {
   int count;
@@ -48,7 +48,7 @@ static const double tau_of_1[] = {0.80, 1.29, 1.74, 2.15, 2.57, 3.08, 4.27, 6.29
   { sizeof(t_) / sizeof *(t_), t_, value_ }
 static const series fronts[2] = {SERIES(t_of_1, z_of_1), SERIES(t_of_2, z_of_2)};
 static const series heights[2] = {SERIES(tau_of_1, h_of_1), SERIES(tau_of_2, h_of_2)};
-#define CLOCK_AT 2 /* the point of each front series where the clocks were set */
+#define CLOCK_AT 2 /* the point of each front series where the clocks are set */
 
 /* Linear between the points; NaN outside them. */
 static double interpolate(int count, const double *t, const double *value, double at) {

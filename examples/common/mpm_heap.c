@@ -11,8 +11,8 @@ static int ascending(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* Sorts, and returns the last value of the last run of at least 1 % of them, and 3; runs end at gaps
- * wider than `gap`. */
+/* Sorts, and returns the last value of the last run of at least 1 % of them, and 3; runs end at
+ * gaps wider than `gap`. */
 static double end_of_heap(int64_t count, double *x, double gap) {
   if (count == 0) return NAN;
   qsort(x, (size_t)count, sizeof *x, ascending);
