@@ -24,7 +24,7 @@ static void edge_normal(const mps_body *body, int64_t k, double *n) {
 
 static nearest search(const mps_body *body, const double *x) {
   nearest best = {.square = INFINITY};
-  for (int64_t k = 0; k < body->edges; k++) {
+  for (int64_t k = 0; k < body->faces; k++) {
     const double *a = body->xy + 2 * k, *b = a + 2;
     const double ex = b[0] - a[0], ey = b[1] - a[1], px = x[0] - a[0], py = x[1] - a[1];
     const double t = px * ex + py * ey, length2 = ex * ex + ey * ey;
@@ -49,8 +49,8 @@ static nearest search(const mps_body *body, const double *x) {
 
 static mpsi_foot polygon_foot(const mps_body *body, const double *x) {
   const nearest best = search(body, x);
-  const int64_t n = body->edges, k = best.edge;
-  mpsi_foot f = {.edge = body->reversed ? n - 1 - k : k};
+  const int64_t n = body->faces, k = best.edge;
+  mpsi_foot f = {.face = body->reversed ? n - 1 - k : k};
   double one[2], two[2];
   edge_normal(body, k, one);
   if (best.where == 0) {
@@ -94,38 +94,40 @@ static mpsi_foot plane_foot(const mps_body *body, const double *x) {
 
 mpsi_foot mpsi_body_foot(const mps_body *body, const double *x) {
   const mpsi_pose *p = &body->pose;
+  const double cosine = p->R[0], sine = p->R[3];
   const double dx = x[0] - p->x[0], dy = x[1] - p->x[1];
-  const double local[2] = {p->cosine * dx + p->sine * dy, p->cosine * dy - p->sine * dx};
+  const double local[2] = {cosine * dx + sine * dy, cosine * dy - sine * dx};
   mpsi_foot f = body->shape == MPSI_POLYGON ? polygon_foot(body, local)
                 : body->shape == MPSI_DISC  ? disc_foot(body, local)
                                             : plane_foot(body, local);
   const double n[2] = {f.normal[0], f.normal[1]}, at[2] = {f.at[0], f.at[1]};
-  f.normal[0] = p->cosine * n[0] - p->sine * n[1];
-  f.normal[1] = p->sine * n[0] + p->cosine * n[1];
-  f.at[0] = p->x[0] + (p->cosine * at[0] - p->sine * at[1]);
-  f.at[1] = p->x[1] + (p->sine * at[0] + p->cosine * at[1]);
+  f.normal[0] = cosine * n[0] - sine * n[1];
+  f.normal[1] = sine * n[0] + cosine * n[1];
+  f.at[0] = p->x[0] + (cosine * at[0] - sine * at[1]);
+  f.at[1] = p->x[1] + (sine * at[0] + cosine * at[1]);
   return f;
 }
 
 mps_status mps_body_distance(mps_body *body, int64_t count, const double *x, double *distance,
-                             double *normal, double *foot, int64_t *edge) {
+                             double *normal, double *foot, int64_t *face) {
   if (!body) return MPS_ERROR_ARGUMENT;
   if (count < 0 || (count > 0 && !x))
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
                      "count is %lld with x %s: must be >= 0, and 0 where x is NULL",
                      (long long)count, x ? "given" : "NULL");
-  for (int64_t i = 0; i < 2 * count; i++)
+  const int32_t dim = body->dim;
+  for (int64_t i = 0; i < dim * count; i++)
     if (!isfinite(x[i]))
       return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
-                       "point %lld has %c = %g m, must be finite", (long long)(i / 2), "xy"[i % 2],
-                       x[i]);
+                       "point %lld has %c = %g m, must be finite", (long long)(i / dim),
+                       "xyz"[i % dim], x[i]);
   for (int64_t i = 0; i < count; i++) {
-    const mpsi_foot f = mpsi_body_foot(body, x + 2 * i);
+    const mpsi_foot f = mpsi_body_foot(body, x + dim * i);
     if (distance) distance[i] = f.distance;
-    if (edge) edge[i] = f.edge;
-    for (int c = 0; c < 2; c++) {
-      if (normal) normal[2 * i + c] = f.normal[c];
-      if (foot) foot[2 * i + c] = f.at[c];
+    if (face) face[i] = f.face;
+    for (int32_t c = 0; c < dim; c++) {
+      if (normal) normal[dim * i + c] = f.normal[c];
+      if (foot) foot[dim * i + c] = f.at[c];
     }
   }
   return MPS_OK;
