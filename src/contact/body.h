@@ -85,6 +85,16 @@ static inline void mpsi_body_velocity(const mpsi_pose *pose, const double *x, do
 double mpsi_body_penalty(const mps_body *body, double modulus, double spacing, double cell,
                          double courant);
 
+/* Whether two bodies of one dimension overlap by more than `depth` (m, > 0): bodies that touch do
+ * not. Two solids without a half space or sphere between them cost up to (size / depth)^2 distances
+ * where faces lie on each other; the round surface of a solid of revolution then counts 0.2 % of
+ * its radius too small. */
+bool mpsi_body_overlap(const mps_body *a, const mps_body *b, double depth);
+/* Smallest wall (m): way through the body from samples of its surface, straight inwards, to where
+ * the surface faces the other way within 45 degrees; so corners and tips blunter than that do not
+ * count. INFINITY of a half space. */
+double mpsi_body_thickness(const mps_body *body);
+
 /* A new body of `faces` faces without its shape, at its first position; checks `def`, NULL means
  * the defaults. */
 mps_status mpsi_body_new(mps_context *context, const char *function, const mps_body_def *def,

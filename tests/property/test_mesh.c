@@ -1,10 +1,9 @@
 /* test_mesh.c - distance to meshes against a walk over all triangles, the sign against the solid
  * angle, and a fine mesh of a sphere against the sphere.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "contact/body.h"
 #include "mesh_shapes.h"
 #include "test_fixture.h"
-
-#include <mps/body.h>
 
 static uint64_t seed = 1;
 
@@ -202,9 +201,38 @@ static void moves_with_its_frame(void **state) {
   mps_body_destroy(&moved);
 }
 
+/* The block beside, on and in itself; its wall; a sphere in the hole of the torus. */
+static void overlap_and_walls(void **state) {
+  (void)state;
+  const double shifts[] = {1.0, 0.99, 0.3, -0.29, 0.45};
+  const int axes[] = {0, 0, 2, 2, 1};
+  const bool expected[] = {false, true, false, true, true};
+  mps_body *still = make_body(BLOCK, NULL);
+  mps_assert_near(mpsi_body_thickness(still), 0.3, 1e-12);
+  for (int k = 0; k < 5; k++) {
+    mps_body_def def = mps_body_defaults();
+    def.position[axes[k]] = shifts[k];
+    mps_body *moved = make_body(BLOCK, &def);
+    assert_int_equal(mpsi_body_overlap(still, moved, 5e-3), expected[k]);
+    assert_int_equal(mpsi_body_overlap(moved, still, 5e-3), expected[k]);
+    mps_body_destroy(&moved);
+  }
+  mps_body_destroy(&still);
+  mps_body *torus = make_body(TORUS, NULL);
+  assert_true(mpsi_body_thickness(torus) > 0.6 && mpsi_body_thickness(torus) < 0.7);
+  for (int k = 0; k < 2; k++) {
+    mps_body *ball = NULL;
+    mps_assert_ok(context, mps_body_create_sphere(context, NULL, k ? 0.57 : 0.54, &ball));
+    assert_int_equal(mpsi_body_overlap(torus, ball, 5e-3), k);
+    mps_body_destroy(&ball);
+  }
+  mps_body_destroy(&torus);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(distance_is_the_least), cmocka_unit_test(order_and_place_do_not_matter),
-      cmocka_unit_test(fine_mesh_is_the_sphere), cmocka_unit_test(moves_with_its_frame)};
+      cmocka_unit_test(fine_mesh_is_the_sphere), cmocka_unit_test(moves_with_its_frame),
+                                     cmocka_unit_test(overlap_and_walls)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -114,6 +114,94 @@ static void tip_of_a_cone(void **state) {
   mps_body_destroy(&body);
 }
 
+/* ---- overlap and walls ----------------------------------------------------------------------- */
+
+/* Two bodies that touch at x = 0, the second moved to overlap by `by`, turned together. */
+static bool overlap(int one, int two, double by, double turn) {
+  static const double square[] = {0.0, -1.0, 2.0, -1.0, 2.0, 1.0, 0.0, 1.0};
+  static const double tooth[] = {0.0, 0.0, -1.0, 0.4, -1.0, -0.4};
+  const double left[3] = {1.0, 0.0, 0.0};
+  mps_body *body[2] = {NULL};
+  for (int k = 0; k < 2; k++) {
+    const int what = k ? two : one;
+    mps_body_def def = mps_body_defaults();
+    const double shift = (k ? -1.0 : 1.0) * (what == 1 ? 0.5 : 0.0) + (k ? by : 0.0);
+    const double angle = turn + (what == 0 && k ? 4.0 * atan(1.0) : 0.0);
+    def.position[0] = shift * cos(turn), def.position[1] = shift * sin(turn);
+    def.rotation[2] = angle;
+    if (what == 0)
+      mps_assert_ok(context, mps_body_create_polygon(context, &def, 4, square, &body[k]));
+    if (what == 1) mps_assert_ok(context, mps_body_create_disc(context, &def, 0.5, &body[k]));
+    if (what == 2)
+      mps_assert_ok(context, mps_body_create_half_plane(context, &def, left, &body[k]));
+    if (what == 3)
+      mps_assert_ok(context, mps_body_create_polygon(context, &def, 3, tooth, &body[k]));
+  }
+  const bool is = mpsi_body_overlap(body[0], body[1], 1e-3);
+  assert_int_equal(is, mpsi_body_overlap(body[1], body[0], 1e-3));
+  for (int k = 0; k < 2; k++) mps_body_destroy(&body[k]);
+  return is;
+}
+
+static void overlap_in_a_plane(void **state) {
+  (void)state;
+  for (int one = 0; one < 2; one++)
+    for (int two = 0; two < 4; two++)
+      for (int t = 0; t < 3; t++) {
+        assert_false(overlap(one, two, -0.01, 0.7 * t));
+        assert_false(overlap(one, two, 0.0, 0.7 * t));
+        assert_true(overlap(one, two, 0.01, 0.7 * t));
+      }
+}
+
+/* A pile in a pipe, a sphere in the pipe's bore, and all of them over ground. */
+static void overlap_in_space(void **state) {
+  (void)state;
+  const double up[3] = {0.0, 0.0, 1.0};
+  const double rod[] = {0.0, -0.5, 0.29, 0.0, 0.29, 0.8, 0.0, 0.8};
+  for (int moved = 0; moved < 2; moved++) {
+    mps_body_def def = mps_body_defaults();
+    mps_body *outer = NULL, *inner = NULL, *ball = NULL, *ground = NULL;
+    mps_assert_ok(context, mps_body_create_revolution(context, &def, 6, pipe, &outer));
+    def.position[2] = -0.601 + 0.1 * moved;
+    mps_assert_ok(context, mps_body_create_half_space(context, &def, up, &ground));
+    def.position[2] = 0.1;
+    def.position[0] = 0.02 * moved;
+    mps_assert_ok(context, mps_body_create_revolution(context, &def, 4, rod, &inner));
+    def.position[2] = -0.2;
+    mps_assert_ok(context, mps_body_create_sphere(context, &def, 0.299, &ball));
+    assert_int_equal(mpsi_body_overlap(outer, inner, 1e-3), moved);
+    assert_int_equal(mpsi_body_overlap(outer, ball, 1e-3), moved);
+    assert_int_equal(mpsi_body_overlap(ground, outer, 1e-3), moved);
+    assert_true(mpsi_body_overlap(inner, ball, 1e-3));
+    mps_body_destroy(&outer);
+    mps_body_destroy(&inner);
+    mps_body_destroy(&ball);
+    mps_body_destroy(&ground);
+  }
+}
+
+static void thickness_of_walls(void **state) {
+  (void)state;
+  mps_body *body = NULL;
+  mps_assert_ok(context, mps_body_create_box(context, NULL, 2.0, 0.1, &body));
+  mps_assert_near(mpsi_body_thickness(body), 0.1, 1e-12);
+  mps_body_destroy(&body);
+  const double wedge[] = {0.0, 0.0, 1.0, 0.0, 0.5, 0.8}; /* corners of 58, 58 and 64 degrees */
+  mps_assert_ok(context, mps_body_create_polygon(context, NULL, 3, wedge, &body));
+  assert_true(isinf(mpsi_body_thickness(body)));
+  mps_body_destroy(&body);
+  mps_assert_ok(context, mps_body_create_revolution(context, NULL, 6, pipe, &body));
+  mps_assert_near(mpsi_body_thickness(body), 0.2, 1e-12);
+  mps_body_destroy(&body);
+  mps_assert_ok(context, mps_body_create_cylinder(context, NULL, 0.1, 0.5, &body));
+  mps_assert_near(mpsi_body_thickness(body), 0.2, 1e-12);
+  mps_body_destroy(&body);
+  mps_assert_ok(context, mps_body_create_sphere(context, NULL, 0.1, &body));
+  mps_assert_near(mpsi_body_thickness(body), 0.2, 0.0);
+  mps_body_destroy(&body);
+}
+
 /* ---- driven rotation ------------------------------------------------------------------------- */
 
 /* Rows of R against exp of the rotation vector by its power series, spin against the change of R,
@@ -307,6 +395,9 @@ int main(void) {
       cmocka_unit_test(closed_forms),
       cmocka_unit_test(solids_of_revolution),
       cmocka_unit_test(tip_of_a_cone),
+      cmocka_unit_test(overlap_in_a_plane),
+      cmocka_unit_test(overlap_in_space),
+      cmocka_unit_test(thickness_of_walls),
       cmocka_unit_test(turns_as_driven),
       cmocka_unit_test(tumbling_keeps_momentum_and_energy),
       cmocka_unit_test(top_precesses_exactly),
