@@ -92,7 +92,8 @@ typedef struct mps_drucker_prager_def {
   double tension;  /* Pa, largest mean stress I1/3, >= 0; default infinity: up to the apex */
 } mps_drucker_prager_def;
 
-/** Mohr-Coulomb: (s1 - s3) + (s1 + s3) sin(phi) = 2 c cos(phi), perfectly plastic. */
+/** Mohr-Coulomb: (s1 - s3) + (s1 + s3) sin(phi) = 2 c cos(phi), perfectly plastic, with a cut-off
+ *  s1 <= T (Rankine) whose flow is normal to it. */
 typedef struct mps_mohr_coulomb_def {
   uint32_t struct_size;
   uint32_t reserved;
@@ -101,6 +102,7 @@ typedef struct mps_mohr_coulomb_def {
   double friction; /* rad, angle phi, 0 <= phi < pi/2; no default */
   double dilation; /* rad, angle psi, 0 <= psi <= phi; default 0 */
   double cohesion; /* Pa, c >= 0, not 0 when phi is; default 0 */
+  double tension;  /* Pa, T, largest principal stress, >= 0; default infinity: up to the apex */
 } mps_mohr_coulomb_def;
 
 /** Pressure of a fluid from its density ratio r = rho/rho0 = V0/V. */

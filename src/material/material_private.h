@@ -35,7 +35,8 @@ typedef struct mpsi_law {
    * tension: mean stress and sqrt(J2) of the cone there. Mohr-Coulomb uses the inscribed cone to
    * find the particles that may yield. */
   double alpha, kappa, alpha_flow, cone, tension, q_tension;
-  double sin_phi, sin_psi, c_cos_phi, apex; /* Mohr-Coulomb */
+  /* Mohr-Coulomb; cut: largest principal stress, infinite where the apex comes first. */
+  double sin_phi, sin_psi, c_cos_phi, apex, cut;
   double viscosity;                         /* Pa s */
   bool tait, no_tension;                    /* fluid */
   bool turns_stress, needs_deformation;     /* user */
