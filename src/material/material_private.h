@@ -69,12 +69,17 @@ struct mps_material {
   int32_t history_count;
   char (*history_names)[MPSI_MATERIAL_NAME];
   double *history_initial;
+  void *owned; /* what law.user is where the library made it, freed with the material; or NULL */
 };
 
 /* A material of one owner with room for its history, or NULL after recording that memory is short.
  */
 mps_material *mpsi_material_new(mps_context *context, const char *function, mpsi_law_kind kind,
                                 const char *name, int32_t history_count);
+
+/* mps_material_user of a definition that is complete. */
+mps_status mpsi_material_make_user(mps_context *context, const char *function,
+                                   const mps_user_law_def *def, mps_material **out);
 
 /* Maps a trial stress (xx yy zz xy [zx yz]) back to the pyramid of Mohr and Coulomb. Returns its
  * flags; adds to *plastic_strain. */
