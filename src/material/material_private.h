@@ -37,9 +37,9 @@ typedef struct mpsi_law {
   double alpha, kappa, alpha_flow, cone, tension, q_tension;
   /* Mohr-Coulomb; cut: largest principal stress, infinite where the apex comes first. */
   double sin_phi, sin_psi, c_cos_phi, apex, cut;
-  double viscosity;                         /* Pa s */
-  bool tait, no_tension;                    /* fluid */
-  bool turns_stress, needs_deformation;     /* user */
+  double viscosity;                     /* Pa s */
+  bool tait, no_tension;                /* fluid */
+  bool turns_stress, needs_deformation; /* user */
   mps_material_fn update;
   void *user;
 } mpsi_law;
