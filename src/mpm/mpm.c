@@ -267,10 +267,8 @@ static mps_status build(mps_mpm *mpm) {
   if (status == MPS_OK) status = set_start(mpm);
   if (status != MPS_OK) return status;
   mpm->radix = mpsi_alloc(context, 2 * mpm->count, sizeof *mpm->radix);
-  if (mpm->radix) mpm->order = mpsi_alloc(context, mpm->count, sizeof *mpm->order);
-  if (mpm->order) mpm->flags = mpsi_alloc(context, mpm->count, sizeof *mpm->flags);
-  if (mpm->flags) mpm->scratch = mpsi_alloc(context, mpm->count, sizeof *mpm->scratch);
-  if (!mpm->scratch)
+  if (mpm->radix) mpm->flags = mpsi_alloc(context, mpm->count, sizeof *mpm->flags);
+  if (!mpm->flags)
     return mpsi_fail_memory(context, create, (size_t)mpm->count * sizeof *mpm->radix);
   status = hire_workers(mpm);
   if (status == MPS_OK) status = mpsi_mpm_sort(mpm, create);
@@ -345,9 +343,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
                    mpm->inside_room.item,
                    mpm->reached_room.item,
                    mpm->radix,
-                   mpm->order,
-                   mpm->flags,
-                   mpm->scratch};
+                   mpm->flags};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
   mps_material_destroy(&mpm->material);
   mpsi_particles_unpin(mpm->particles);
