@@ -194,15 +194,33 @@ MPSI_INLINE source source_of(const mps_mpm *mpm, int dim, int64_t p) {
   return out;
 }
 
+/* The blocks of nodes under a tile. */
+typedef struct under {
+  mpsi_node *node[MPSI_CORNERS], *side[MPSI_CORNERS];
+  double dt[MPSI_CORNERS]; /* of the force that goes with the momentum: 0 in split blocks */
+} under;
+
+MPSI_INLINE under nodes_under(const mps_mpm *mpm, const mpsi_cells *cells, int dim) {
+  under out;
+  for (int q = 0; q < 1 << dim; q++) {
+    const mpsi_nodes *nodes = &mpm->nodes[cells->to[q]];
+    out.node[q] = mpm->node + mpsi_first_node(mpm, cells->to[q]);
+    out.side[q] = mpm->side + mpsi_first_node(mpm, nodes->side);
+    out.dt[q] = nodes->split ? 0.0 : mpm->dt;
+  }
+  return out;
+}
+
 MPSI_INLINE void scatter(mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline, int64_t p,
                          const support *at, const mpsi_shape_values *f) {
   const bool by_weight = mpm->def.transfer == MPS_TRANSFER_WEIGHT;
   const double m = mpm->p.m[p];
   const source s = source_of(mpm, dim, p);
+  const under to = nodes_under(mpm, cells, dim);
   FOR_NODES(dim, spline) {
     const double w = f->w[n], phi = f->phi[n];
     if (w == 0.0) continue;
-    const int32_t g = block_under(cells, at, i, j, k);
+    const int q = at->corner[0][i] | at->corner[1][j] | at->corner[2][k];
     const int local = local_of(at, i, j, k);
     mpsi_quad v = s.v + s.L[0] * at->at.s[0][i] + s.L[1] * at->at.s[1][j];
     mpsi_quad force =
@@ -213,13 +231,10 @@ MPSI_INLINE void scatter(mps_mpm *mpm, const mpsi_cells *cells, int dim, int spl
     }
     mpsi_quad sum = v * (m * (by_weight ? w : phi));
     if (by_weight) sum[MPSI_MASS] = m * phi;
-    double *side = mpm->side[mpsi_first_node(mpm, mpm->nodes[g].side) + local];
-    if (mpm->nodes[g].split)
-      mpsi_put(side, mpsi_get(side) + force);
-    else
-      sum += mpm->dt * force;
+    sum += to.dt[q] * force;
+    double *side = to.side[q][local], *node = to.node[q][local];
+    if (to.dt[q] == 0.0) mpsi_put(side, mpsi_get(side) + force);
     side[MPSI_EXCESS] += m * (w - phi);
-    double *node = mpm->node[mpsi_first_node(mpm, g) + local];
     mpsi_put(node, mpsi_get(node) + sum);
   }
 }
