@@ -14,16 +14,22 @@ typedef struct mpm_scene {
   mps_mpm *mpm;
 } mpm_scene;
 
-/* An empty set of spacing `spacing` from the origin (x, y), and elastic material. */
-static inline mpm_scene mpm_scene_begin(mps_context *context, double spacing, double x, double y,
-                                        double young) {
+/* An empty set of spacing `spacing` from the origin (x, y, 0), and elastic material. */
+static inline mpm_scene mpm_scene_begin_in(mps_context *context, int32_t dim, double spacing,
+                                           double x, double y, double young) {
   mpm_scene s = {.context = context};
   mps_particles_def def = mps_particles_defaults();
+  def.dim = dim;
   def.spacing = spacing;
   def.origin[0] = x, def.origin[1] = y;
   mps_assert_ok(context, mps_particles_create(context, &def, &s.particles));
   mps_assert_ok(context, mps_material_linear_elastic(context, young, 0.3, &s.material));
   return s;
+}
+
+static inline mpm_scene mpm_scene_begin(mps_context *context, double spacing, double x, double y,
+                                        double young) {
+  return mpm_scene_begin_in(context, 2, spacing, x, y, young);
 }
 
 static inline void mpm_scene_box(mpm_scene *s, double x0, double y0, double x1, double y1) {
@@ -54,19 +60,22 @@ static inline mps_view mpm_scene_view(mpm_scene *s, const char *name) {
   return view;
 }
 
-/* Gives all particles the velocity v0 + L x with its gradient. `L` by rows. */
+/* Gives all particles the velocity v0 + L x with its gradient. `L` by rows of dim values. */
 static inline void mpm_scene_affine(mpm_scene *s, const double *v0, const double *L) {
   mps_assert_ok(s->context, mps_particles_add_field(s->particles, "velocity", 0));
   mps_assert_ok(s->context, mps_particles_add_field(s->particles, "velocity_gradient", 0));
   mps_view x = mpm_scene_view(s, "position"), v = mpm_scene_view(s, "velocity");
   mps_view g = mpm_scene_view(s, "velocity_gradient");
-  for (int64_t k = 0; k < x.shape[0]; k++) {
-    const double X = *mps_view_f64(&x, k, 0), Y = *mps_view_f64(&x, k, 1);
-    for (int c = 0; c < 2; c++) {
-      *mps_view_f64(&v, k, c) = v0[c] + L[2 * c] * X + L[2 * c + 1] * Y;
-      for (int d = 0; d < 2; d++) *mps_view_f64(&g, k, 2 * c + d) = L[2 * c + d];
+  const int dim = mps_particles_dim(s->particles);
+  for (int64_t k = 0; k < x.shape[0]; k++)
+    for (int c = 0; c < dim; c++) {
+      double value = v0[c];
+      for (int d = 0; d < dim; d++) {
+        value += L[dim * c + d] * *mps_view_f64(&x, k, d);
+        *mps_view_f64(&g, k, dim * c + d) = L[dim * c + d];
+      }
+      *mps_view_f64(&v, k, c) = value;
     }
-  }
 }
 
 static inline mps_mpm_totals mpm_scene_totals(mpm_scene *s) {

@@ -1,17 +1,20 @@
 /* mps/mpm.h - the WLS-MPM grid solver (seed B): large deformation of particles that move through a
- * grid of nodes, with frictional contact against rigid bodies. Plane strain or axisymmetry (x is
- * the radius, y the axis).
+ * grid of nodes, with frictional contact against rigid bodies. Plane strain, axisymmetry (x is the
+ * radius, y the axis) or space.
  *
  * Shape functions come from a weighted least-squares fit of a linear function over the nodes that a
  * particle may use: those of the domain, and not those inside a body or behind it. Nodes exist only
- * in blocks of 8 x 8 cells around particles, so memory grows with the particles.
+ * in blocks of 8 x 8 (x 8) around particles, so memory grows with the particles: 32 bytes a node,
+ * 64 near bodies and walls.
  *
  * The solver works in the fields of the particle set itself (zero copy), and sorts the set by
- * blocks whenever a particle has left its block: views taken before are then stale (their epoch).
+ * blocks whenever a particle has gone a cell beyond its block: views taken before are then stale
+ * (their epoch).
  * It reads `density` (kg/m3, > 0) at creation, and `volume` (per unit thickness or per radian;
- * where 0, the spacing squared, in axisymmetry times the radius), `velocity`, `velocity_gradient`
- * and `stress` where the set has them; it writes these and `mass` and `position`. Laws that need
- * them bring the fields `volume_ratio`, `deformation_gradient` and their history.
+ * where 0, the spacing to the power of the dimension, in axisymmetry times the radius), `velocity`,
+ * `velocity_gradient` and `stress` where the set has them; it writes these and `mass` and
+ * `position`. Laws that need them bring the fields `volume_ratio`, `deformation_gradient` and their
+ * history.
  *
  * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
  * its results are the same bit for bit for every number of threads.
@@ -29,7 +32,8 @@ typedef struct mps_mpm mps_mpm;
 
 typedef enum mps_geometry {
   MPS_PLANE_STRAIN = 0, /* forces and masses per unit thickness */
-  MPS_AXISYMMETRIC = 1  /* x = r >= 0, y = z; forces and masses per radian */
+  MPS_AXISYMMETRIC = 1, /* x = r >= 0, y = z; forces and masses per radian */
+  MPS_SPACE = 2         /* three dimensions */
 } mps_geometry;
 
 /** What weighs the particles' velocities on their way to the nodes. */
@@ -46,15 +50,16 @@ typedef enum mps_wall {
 
 typedef struct mps_mpm_def {
   uint32_t struct_size;
-  int32_t geometry;          /* mps_geometry, default PLANE_STRAIN */
-  int32_t spline;            /* degree of the B-spline weights: 3 (default, seed B (36)) or 2 */
-  int32_t transfer;          /* mps_transfer, default SHAPE */
-  double cell;               /* h, m, > 0; no default. Usually 2 spacings */
-  double origin[2];          /* m: a node lies here; default 0 */
-  double lower[2], upper[2]; /* m: walls of the domain, on nodes; default: none (infinite). In
+  int32_t geometry; /* mps_geometry, default PLANE_STRAIN; of as many dimensions as the set.
+                       In 2D the third value of each array below is not read */
+  int32_t spline;   /* degree of the B-spline weights: 3 (default, seed B (36)) or 2 */
+  int32_t transfer; /* mps_transfer, default SHAPE */
+  double cell;      /* h, m, > 0; no default. Usually 2 spacings */
+  double origin[3]; /* m: a node lies here; default 0 */
+  double lower[3], upper[3]; /* m: walls of the domain, on nodes; default: none (infinite). In
                                 axisymmetry lower[0] is at least 0, and 0 by default */
-  int32_t wall_lower[2], wall_upper[2]; /* mps_wall of each, default ROLLER */
-  double gravity[2];                    /* m/s2, default 0 */
+  int32_t wall_lower[3], wall_upper[3]; /* mps_wall of each, default ROLLER */
+  double gravity[3];                    /* m/s2, default 0 */
   double dt;      /* s, > 0, or 0 (default): each step the largest by seed B (49), (50) */
   double courant; /* fraction of that limit, in (0, 1]; default 0.5 */
 } mps_mpm_def;
@@ -67,7 +72,7 @@ static inline mps_mpm_def mps_mpm_defaults(void) {
   return def;
 }
 
-/** Creates a solver for the 2D set `particles` (at least one, inside the domain), sorting it and
+/** Creates a solver for the set `particles` (at least one, inside the domain), sorting it and
  *  pinning it: until the solver is destroyed no particle can be added. All particles are of the one
  *  `material`, which is kept alive; its history columns become fields of the set, by their names.
  */
@@ -105,12 +110,12 @@ MPS_API double mps_mpm_dt(const mps_mpm *mpm);
 /** The limit (49) of the present state (s), the Courant fraction not applied. */
 MPS_API double mps_mpm_limit(const mps_mpm *mpm);
 
-/** Sums over the particles (bodies not counted), per unit thickness or per radian. */
+/** Sums over the particles (bodies not counted), in 2D per unit thickness or per radian. */
 typedef struct mps_mpm_totals {
   double mass, volume;   /* kg, m3 */
-  double linear[2];      /* kg m/s */
-  double angular;        /* kg m2/s about the origin of space, with the spin that the particles'
-                            velocity gradients carry: conserved with full supports */
+  double linear[3];      /* kg m/s; in 2D [2] is 0 */
+  double angular[3];     /* kg m2/s about the origin of space, with the spin that the particles'
+                            velocity gradients carry: conserved with full supports. In 2D [2] */
   double kinetic;        /* J, of the particles' velocities */
   int64_t blocks, nodes; /* blocks of cells that hold particles; nodes that exist */
   int64_t bytes;         /* memory of the grid, the particles' fields not counted */

@@ -3,32 +3,35 @@
 #ifndef MPSI_MPM_CONTACT_H
 #define MPSI_MPM_CONTACT_H
 
-#include "shape.h"
+#include "mpm_private.h"
 
 typedef struct mpsi_contact {
-  double force[2]; /* normal force on the particle, N */
-  double slip[2];  /* velocity of the surface less that of the particle's material there, m/s */
+  double x[3];     /* of the particle, m */
+  double force[3]; /* normal force on the particle, N */
+  double slip[3];  /* velocity of the surface less that of the particle's material there, m/s */
   int32_t part;    /* of the surface */
 } mpsi_contact;
 
 /* False where the particle does not touch the body. The state of the particle is that at the
  * beginning of the step. */
-MPSI_INLINE bool mpsi_touches(const mps_mpm *mpm, const mps_body *body, int64_t particle,
+MPSI_INLINE bool mpsi_touches(const mps_mpm *mpm, const mps_body *body, int dim, int64_t particle,
                               mpsi_contact *out) {
   const mpsi_columns *p = &mpm->p;
-  const double x[2] = {p->x[0][particle], p->x[1][particle]};
-  const mpsi_foot foot = mpsi_body_foot(body, x);
+  *out = (mpsi_contact){.part = 0};
+  for (int c = 0; c < dim; c++) out->x[c] = p->x[c][particle];
+  const mpsi_foot foot = mpsi_body_foot(body, out->x);
   const double d = foot.distance - mpm->gap;
   if (!(d < 0.0)) return false;
   double k = mpsi_body_penalty(body, mpm->modulus, 2.0 * mpm->gap, mpm->def.cell, mpm->def.courant);
-  if (mpm->def.geometry == MPS_AXISYMMETRIC) k *= x[0];
-  const double dx = foot.at[0] - x[0], dy = foot.at[1] - x[1];
+  if (mpm->def.geometry == MPS_AXISYMMETRIC) k *= out->x[0];
   double v[3];
   mpsi_body_velocity(&body->pose, foot.at, v);
-  for (int c = 0; c < 2; c++) {
+  for (int c = 0; c < dim; c++) {
+    double material = p->v[c][particle];
+    for (int a = 0; a < dim; a++)
+      material += p->L[dim * c + a][particle] * (foot.at[a] - out->x[a]);
     out->force[c] = -k * d * foot.normal[c];
-    out->slip[c] =
-        v[c] - (p->v[c][particle] + p->L[2 * c][particle] * dx + p->L[2 * c + 1][particle] * dy);
+    out->slip[c] = v[c] - material;
   }
   out->part = body->part_of[foot.face];
   return true;

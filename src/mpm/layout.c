@@ -1,5 +1,6 @@
 /* layout.c - the grid that follows the particles: particles sorted by blocks of cells, and the list
- * of blocks of nodes that their tiles need. Both lists ascend in y, then x.
+ * of blocks of nodes that their tiles need. Both lists ascend in z, then y,
+ * then x.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_private.h"
 
@@ -9,11 +10,13 @@
 
 #define DIGIT_BITS 11
 #define DIGITS (1 << DIGIT_BITS)
-#define LEAST_ROOM 16 /* items: a small body that moves about needs no more */
+#define LEAST_ROOM 16 /* items */
 
 bool mpsi_room_ensure(mps_context *context, mpsi_room *room, int64_t count, size_t size) {
   if (count <= room->capacity) return true;
-  const int64_t capacity = count < LEAST_ROOM ? LEAST_ROOM : count + count / 2;
+  /* exact at first, then a little more than asked for: a body that moves needs no more */
+  int64_t capacity = room->capacity > 0 ? count + count / 4 : count;
+  if (capacity < LEAST_ROOM) capacity = LEAST_ROOM;
   void *item = mpsi_alloc(context, capacity, size);
   if (!item) return false;
   mpsi_free(context, room->item);
@@ -30,31 +33,42 @@ static int bits_of(uint64_t range) {
   return bits;
 }
 
-/* Lowest nodes of all stencils: the first and last block of each axis. */
-static void find_range(const mps_mpm *mpm, int64_t low[2], int64_t high[2]) {
-  for (int c = 0; c < 2; c++) {
-    low[c] = INT64_MAX, high[c] = INT64_MIN;
-    for (int64_t k = 0; k < mpm->count; k++) {
-      const int64_t block =
-          mpsi_block_of(mpsi_base(mpm->def.spline, mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k])));
-      if (block < low[c]) low[c] = block;
-      if (block > high[c]) high[c] = block;
-    }
-  }
+/* First and last block of each axis. */
+typedef struct range {
+  int64_t low[3];
+  int bits[3]; /* of the blocks along each axis */
+} range;
+
+static int64_t base_of(const mps_mpm *mpm, int c, int64_t particle) {
+  const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][particle]);
+  return (int64_t)mpsi_base(mpm->def.spline, X);
 }
 
-/* Key: block row, block column, then the node within the block, row by row. */
-static void make_keys(mps_mpm *mpm, const int64_t low[2], int bits_x) {
-  for (int64_t k = 0; k < mpm->count; k++) {
-    uint64_t block[2], node[2];
-    for (int c = 0; c < 2; c++) {
-      const int64_t base = mpsi_base(mpm->def.spline, mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k]));
-      const int64_t b = mpsi_block_of(base);
-      block[c] = (uint64_t)(b - low[c]);
-      node[c] = (uint64_t)(base - b * MPSI_SIDE);
+static range find_range(const mps_mpm *mpm) {
+  range out = {{0}, {0}};
+  for (int c = 0; c < mpm->dim; c++) {
+    int64_t low = INT64_MAX, high = INT64_MIN;
+    for (int64_t k = 0; k < mpm->count; k++) {
+      const int64_t block = mpsi_block_of(base_of(mpm, c, k));
+      if (block < low) low = block;
+      if (block > high) high = block;
     }
-    const uint64_t whole = block[1] << bits_x | block[0];
-    mpm->radix[k] = (mpsi_radix){whole * MPSI_OWN + node[1] * MPSI_SIDE + node[0], k};
+    out.low[c] = low;
+    out.bits[c] = bits_of((uint64_t)(high - low));
+  }
+  return out;
+}
+
+/* Key: block (z, y, x from the top), then the stencil's place within the block, row by row. */
+static void make_keys(mps_mpm *mpm, const range *r) {
+  for (int64_t k = 0; k < mpm->count; k++) {
+    uint64_t whole = 0, within = 0;
+    for (int c = mpm->dim - 1; c >= 0; c--) {
+      const int64_t base = base_of(mpm, c, k), block = mpsi_block_of(base);
+      whole = whole << r->bits[c] | (uint64_t)(block - r->low[c]);
+      within = within * MPSI_SIDE + (uint64_t)(base - 1 - block * MPSI_SIDE);
+    }
+    mpm->radix[k] = (mpsi_radix){whole * (uint64_t)mpm->own + within, k};
   }
 }
 
@@ -80,27 +94,27 @@ static const mpsi_radix *sort_keys(mps_mpm *mpm, int bits) {
 
 /* ---- blocks ---------------------------------------------------------------------------------- */
 
+static void place_block(const mps_mpm *mpm, const range *r, uint64_t block, mpsi_cells *cells) {
+  for (int c = 0; c < mpm->dim; c++) {
+    cells->at[c] = (int32_t)((int64_t)(block & ((UINT64_C(1) << r->bits[c]) - 1)) + r->low[c]);
+    block >>= r->bits[c];
+    const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
+    if (first < mpm->low[c] || first + MPSI_TILE_SIDE - 1 > mpm->high[c]) cells->edge = true;
+  }
+}
+
 /* Blocks of the sorted keys; the count alone where `cells` is NULL. */
-static int64_t make_cells(const mps_mpm *mpm, const mpsi_radix *key, const int64_t low[2],
-                          int bits_x, mpsi_cells *cells) {
+static int64_t make_cells(const mps_mpm *mpm, const mpsi_radix *key, const range *r,
+                          mpsi_cells *cells) {
+  const uint64_t own = (uint64_t)mpm->own;
   int64_t count = 0;
   for (int64_t k = 0; k < mpm->count; k++) {
-    const uint64_t block = key[k].key / MPSI_OWN;
-    if (k > 0 && block == key[k - 1].key / MPSI_OWN) continue;
+    const uint64_t block = key[k].key / own;
+    if (k > 0 && block == key[k - 1].key / own) continue;
     if (cells) {
       if (count > 0) cells[count - 1].end = k;
-      const uint64_t column = block & ((UINT64_C(1) << bits_x) - 1);
-      cells[count] = (mpsi_cells){.begin = k,
-                                  .end = mpm->count,
-                                  .at = {(int32_t)((int64_t)column + low[0]),
-                                         (int32_t)((int64_t)(block >> bits_x) + low[1])},
-                                  .near = -1,
-                                  .bad = -1};
-      for (int c = 0; c < 2; c++) {
-        const int64_t first = (int64_t)cells[count].at[c] * MPSI_SIDE;
-        if (first < mpm->low[c] || first + MPSI_TILE_SIDE - 1 > mpm->high[c])
-          cells[count].edge = true;
-      }
+      cells[count] = (mpsi_cells){.begin = k, .end = mpm->count, .bad = -1};
+      place_block(mpm, r, block, &cells[count]);
     }
     count++;
   }
@@ -108,77 +122,95 @@ static int64_t make_cells(const mps_mpm *mpm, const mpsi_radix *key, const int64
 }
 
 static bool before(const int32_t *a, const int32_t *b) {
-  return a[1] != b[1] ? a[1] < b[1] : a[0] < b[0];
+  for (int c = 2; c > 0; c--)
+    if (a[c] != b[c]) return a[c] < b[c];
+  return a[0] < b[0];
 }
 
-/* The sorted list of blocks shifted by (0,0), (1,0), (0,1), (1,1) gives four sorted lists; merging
- * them gives the blocks of nodes, and tells which tiles cover which. The count alone where `nodes`
- * is NULL. */
-static int64_t make_nodes(mpsi_cells *cells, int64_t cell_count, mpsi_nodes *nodes) {
-  int64_t head[4] = {0}, count = 0;
+/* The sorted list of blocks shifted to each corner of a tile gives sorted lists; merging them gives
+ * the blocks of nodes, and tells which tiles cover which. The count alone where `nodes` is NULL. */
+static int64_t make_nodes(mps_mpm *mpm, mpsi_nodes *nodes) {
+  mpsi_cells *cells = mpm->cells;
+  const int corners = 1 << mpm->dim;
+  int64_t head[MPSI_CORNERS] = {0}, count = 0;
   for (;;) {
-    int32_t at[4][2], least[2];
+    int32_t at[MPSI_CORNERS][3], least[3];
     bool any = false;
-    for (int q = 0; q < 4; q++) {
-      if (head[q] == cell_count) continue;
-      at[q][0] = cells[head[q]].at[0] + (q & 1);
-      at[q][1] = cells[head[q]].at[1] + (q >> 1);
+    for (int q = 0; q < corners; q++) {
+      if (head[q] == mpm->cell_count) continue;
+      for (int c = 0; c < 3; c++) at[q][c] = cells[head[q]].at[c] + (q >> c & 1);
       if (!any || before(at[q], least)) memcpy(least, at[q], sizeof least);
       any = true;
     }
     if (!any) return count;
-    if (nodes) nodes[count] = (mpsi_nodes){{least[0], least[1]}, {-1, -1, -1, -1}};
-    for (int q = 0; q < 4; q++) {
-      if (head[q] == cell_count || before(least, at[q])) continue;
-      if (nodes) {
-        nodes[count].from[q] = (int32_t)head[q];
-        cells[head[q]].to[q] = (int32_t)count;
-      }
+    if (nodes) {
+      nodes[count] = (mpsi_nodes){.side = -1, .near = -1};
+      memcpy(nodes[count].at, least, sizeof least);
+    }
+    for (int q = 0; q < corners; q++) {
+      if (head[q] == mpm->cell_count || before(least, at[q])) continue;
+      cells[head[q]].to[q] = (int32_t)count;
       head[q]++;
     }
     count++;
   }
 }
 
+/* Same colour: the same parities of the block coordinates. */
+static void sort_colours(mps_mpm *mpm) {
+  int64_t count = 0;
+  for (int colour = 0; colour < MPSI_CORNERS; colour++) {
+    mpm->colour[colour] = count;
+    for (int64_t b = 0; b < mpm->cell_count; b++) {
+      const int32_t *at = mpm->cells[b].at;
+      if (((at[0] & 1) | (at[1] & 1) << 1 | (at[2] & 1) << 2) == colour)
+        mpm->coloured[count++] = (int32_t)b;
+    }
+  }
+  mpm->colour[MPSI_CORNERS] = count;
+}
+
 static mps_status build_blocks(mps_mpm *mpm, const char *function, const mpsi_radix *key,
-                               const int64_t low[2], int bits_x) {
+                               const range *r) {
   mps_context *context = mpm->context;
-  const int64_t cells = make_cells(mpm, key, low, bits_x, NULL);
+  const int64_t cells = make_cells(mpm, key, r, NULL);
   bool good = mpsi_room_ensure(context, &mpm->cells_room, cells, sizeof *mpm->cells) &&
-              mpsi_room_ensure(context, &mpm->tile_room, cells, sizeof *mpm->tile);
+              mpsi_room_ensure(context, &mpm->coloured_room, cells, sizeof *mpm->coloured);
   if (good) {
     mpm->cells = mpm->cells_room.item;
-    mpm->tile = mpm->tile_room.item;
-    mpm->cell_count = make_cells(mpm, key, low, bits_x, mpm->cells);
-    mpm->node_count = make_nodes(mpm->cells, cells, NULL);
-    good = mpsi_room_ensure(context, &mpm->nodes_room, mpm->node_count, sizeof *mpm->nodes) &&
-           mpsi_room_ensure(context, &mpm->node_room, mpm->node_count, sizeof *mpm->node);
+    mpm->coloured = mpm->coloured_room.item;
+    mpm->cell_count = make_cells(mpm, key, r, mpm->cells);
+    sort_colours(mpm);
+    mpm->node_count = make_nodes(mpm, NULL);
+    good =
+        mpsi_room_ensure(context, &mpm->nodes_room, mpm->node_count, sizeof *mpm->nodes) &&
+        mpsi_room_ensure(context, &mpm->node_room, mpm->node_count * mpm->own, sizeof *mpm->node);
   }
   if (!good) {
     mpm->cell_count = mpm->node_count = 0;
-    return mpsi_fail_memory(context, function, (size_t)cells * sizeof *mpm->tile);
+    return mpsi_fail_memory(context, function, (size_t)(cells * mpm->own) * sizeof *mpm->node);
   }
   mpm->nodes = mpm->nodes_room.item;
   mpm->node = mpm->node_room.item;
-  make_nodes(mpm->cells, cells, mpm->nodes);
+  make_nodes(mpm, mpm->nodes);
   return MPS_OK;
 }
 
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
-  int64_t low[2], high[2];
-  find_range(mpm, low, high);
-  const int bits_x = bits_of((uint64_t)(high[0] - low[0]));
-  const int bits = bits_x + bits_of((uint64_t)(high[1] - low[1])) + bits_of(MPSI_OWN - 1);
-  make_keys(mpm, low, bits_x);
-  const mpsi_radix *key = sort_keys(mpm, bits);
-  const mps_status status = build_blocks(mpm, function, key, low, bits_x);
+  const range r = find_range(mpm);
+  make_keys(mpm, &r);
+  const mpsi_radix *key =
+      sort_keys(mpm, r.bits[0] + r.bits[1] + r.bits[2] + bits_of((uint64_t)mpm->own - 1));
+  const mps_status status = build_blocks(mpm, function, key, &r);
   if (status != MPS_OK) return status;
+  /* The other half of `radix` is free now: for the order, and room to permute. */
+  int64_t *order = (int64_t *)(key == mpm->radix ? mpm->radix + mpm->count : mpm->radix);
   bool sorted = true;
   for (int64_t k = 0; k < mpm->count; k++) {
-    mpm->order[k] = key[k].index;
+    order[k] = key[k].index;
     sorted = sorted && key[k].index == k;
   }
   mpm->stale = false;
   return sorted ? MPS_OK
-                : mpsi_particles_permute_in(mpm->particles, function, mpm->order, mpm->scratch);
+                : mpsi_particles_permute_in(mpm->particles, function, order, order + mpm->count);
 }

@@ -1,6 +1,6 @@
 /* mpm.c - life of the WLS-MPM solver: definition, checks, fields, bodies.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm_private.h"
+#include "kernels.h"
 
 #include "core/particles_internal.h"
 
@@ -13,8 +13,8 @@
 
 static const mps_mpm_def mpm_defaults = {.struct_size = sizeof(mps_mpm_def),
                                          .spline = 3,
-                                         .lower = {-INFINITY, -INFINITY},
-                                         .upper = {INFINITY, INFINITY},
+                                         .lower = {-INFINITY, -INFINITY, -INFINITY},
+                                         .upper = {INFINITY, INFINITY, INFINITY},
                                          .courant = 0.5};
 /* Size of the structure in the first release: it may only grow. */
 #define MPM_DEF_MINIMUM (offsetof(mps_mpm_def, courant) + sizeof(double))
@@ -27,10 +27,12 @@ mps_status mps_mpm_def_init(mps_mpm_def *def, size_t size) {
 
 static const char create[] = "mps_mpm_create";
 
+static int dim_of(const mps_mpm_def *d) { return d->geometry == MPS_SPACE ? 3 : 2; }
+
 static mps_status check_choices(mps_context *context, const mps_mpm_def *d) {
-  if (d->geometry != MPS_PLANE_STRAIN && d->geometry != MPS_AXISYMMETRIC)
+  if (d->geometry < MPS_PLANE_STRAIN || d->geometry > MPS_SPACE)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                     "geometry is %d, allowed are 0 (plane strain) and 1 (axisymmetric)",
+                     "geometry is %d, allowed are 0 (plane strain), 1 (axisymmetric) and 2 (space)",
                      d->geometry);
   if (d->spline != 2 && d->spline != 3)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "spline is %d, allowed are 2 and 3",
@@ -38,7 +40,7 @@ static mps_status check_choices(mps_context *context, const mps_mpm_def *d) {
   if (d->transfer != MPS_TRANSFER_SHAPE && d->transfer != MPS_TRANSFER_WEIGHT)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "transfer is %d, allowed are 0 (shape) and 1 (weight)", d->transfer);
-  for (int c = 0; c < 2; c++)
+  for (int c = 0; c < dim_of(d); c++)
     for (int side = 0; side < 2; side++) {
       const int32_t wall = side ? d->wall_upper[c] : d->wall_lower[c];
       if (wall != MPS_WALL_ROLLER && wall != MPS_WALL_FIXED)
@@ -59,7 +61,7 @@ static mps_status check_numbers(mps_context *context, const mps_mpm_def *d) {
   if (!(d->courant > 0.0 && d->courant <= 1.0))
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "courant is %g, must be in (0, 1]",
                      d->courant);
-  for (int c = 0; c < 2; c++)
+  for (int c = 0; c < dim_of(d); c++)
     if (!isfinite(d->origin[c]) || !isfinite(d->gravity[c]))
       return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                        "origin[%d] is %g m and gravity[%d] %g m/s2, must be finite", c,
@@ -96,13 +98,14 @@ static mps_status read_domain(mps_context *context, mps_mpm_def *d, int64_t *low
                        "lower[0] is %g m, in axisymmetry the radius begins at 0 or more",
                        d->lower[0]);
   }
-  for (int c = 0; c < 2; c++) {
+  low[2] = high[2] = 0;
+  for (int c = 0; c < dim_of(d); c++) {
     mps_status status = read_wall(context, d, c, false, &low[c]);
     if (status == MPS_OK) status = read_wall(context, d, c, true, &high[c]);
     if (status != MPS_OK) return status;
     if (low[c] >= high[c])
       return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                       "the domain in %c is [%g, %g] m, must be at least one cell", "xy"[c],
+                       "the domain in %c is [%g, %g] m, must be at least one cell", "xyz"[c],
                        d -> lower[c], d -> upper[c]);
   }
   return MPS_OK;
@@ -113,9 +116,6 @@ static mps_status check_set(mps_context *context, mps_particles *set) {
   if (mpsi_particles_context(set) != context)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "the particle set was made from another context");
-  if (mps_particles_dim(set) != 2)
-    return mpsi_fail(context, create, MPS_ERROR_UNSUPPORTED,
-                     "the set has %d dimensions, only 2 are available", mps_particles_dim(set));
   const int64_t count = mps_particles_count(set);
   if (count < 1 || count > MAX_COUNT)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
@@ -133,7 +133,7 @@ static mps_status check_start(const mps_mpm *mpm) {
       "position",     "velocity", "velocity_gradient", "stress",
       "volume_ratio", "volume",   "density",           "deformation_gradient"};
   for (size_t f = 0; f < sizeof names / sizeof *names; f++)
-    for (int32_t c = 0; c < 5; c++) {
+    for (int32_t c = 0; c < 9; c++) {
       const double *value = mpsi_particles_column(mpm->particles, names[f], c);
       for (int64_t k = 0; value && k < mpm->count; k++)
         if (!isfinite(value[k]))
@@ -142,16 +142,16 @@ static mps_status check_start(const mps_mpm *mpm) {
                            (long long)mpsi_particles_integers(mpm->particles, "id")[k], value[k]);
     }
   for (int64_t k = 0; k < mpm->count; k++)
-    for (int c = 0; c < 2; c++) {
+    for (int c = 0; c < mpm->dim; c++) {
       const double x = mpm->p.x[c][k], X = mpsi_grid_coordinate(mpm, c, x);
       const long long id = (long long)mpsi_particles_integers(mpm->particles, "id")[k];
       if (!(fabs(X) < MAX_CELLS))
         return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
                          "particle %lld has %c = %g m, more than 2^30 cells from the origin", id,
-                         "xy"[c], x);
+                         "xyz"[c], x);
       if (!(X >= (double)mpm->low[c] && X <= (double)mpm->high[c]))
         return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
-                         "particle %lld has %c = %g m, outside the domain [%g, %g] m", id, "xy"[c],
+                         "particle %lld has %c = %g m, outside the domain [%g, %g] m", id, "xyz"[c],
                          x, mpm -> def.lower[c], mpm->def.upper[c]);
     }
   return MPS_OK;
@@ -177,12 +177,12 @@ static mps_status add_fields(mps_mpm *mpm) {
 static void bind_fields(mps_mpm *mpm) {
   mps_particles *set = mpm->particles;
   mpsi_columns *p = &mpm->p;
-  for (int c = 0; c < 2; c++) {
+  for (int c = 0; c < mpm->dim; c++) {
     p->x[c] = mpsi_particles_column(set, "position", c);
     p->v[c] = mpsi_particles_column(set, "velocity", c);
   }
-  for (int c = 0; c < 4; c++) p->s[c] = mpsi_particles_column(set, "stress", c);
-  for (int c = 0; c < 5; c++) {
+  for (int c = 0; c < 2 * mpm->dim; c++) p->s[c] = mpsi_particles_column(set, "stress", c);
+  for (int c = 0; c < 9; c++) { /* NULL where there is no such component */
     p->L[c] = mpsi_particles_column(set, "velocity_gradient", c);
     p->F[c] = mps_material_needs_deformation(mpm->material)
                   ? mpsi_particles_column(set, "deformation_gradient", c)
@@ -196,37 +196,67 @@ static void bind_fields(mps_mpm *mpm) {
     p->history[h] = mpsi_particles_column(set, mps_material_history_name(mpm->material, h), 0);
 }
 
-/* Volumes and masses from density and spacing; unstrained states where the caller gave none. */
-static mps_status set_start(mps_mpm *mpm) {
-  mpsi_columns *p = &mpm->p;
+/* The volume of a particle that the caller gave none. */
+static double lattice_volume(const mps_mpm *mpm, int64_t k) {
   const double spacing = mps_particles_spacing(mpm->particles);
-  const double *density = mpsi_particles_column(mpm->particles, "density", 0);
+  if (mpm->dim == 3) return spacing * spacing * spacing;
+  return spacing * spacing * (mpm->def.geometry == MPS_AXISYMMETRIC ? mpm->p.x[0][k] : 1.0);
+}
+
+static mps_status check_volumes(const mps_mpm *mpm, const double *density) {
+  const mpsi_columns *p = &mpm->p;
   for (int64_t k = 0; k < mpm->count; k++) {
-    const double r = mpm->def.geometry == MPS_AXISYMMETRIC ? p->x[0][k] : 1.0;
-    const double volume = p->V[k] != 0.0 ? p->V[k] : spacing * spacing * r;
+    const double volume = p->V[k] != 0.0 ? p->V[k] : lattice_volume(mpm, k);
     const double ratio = !p->J ? 1.0 : p->J[k] != 0.0 ? p->J[k] : 1.0;
     if (!(density[k] > 0.0) || !(volume > 0.0) || !(ratio > 0.0))
       return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
                        "particle %lld has density %g kg/m3, volume %g m3 and volume ratio %g, must "
                        "be > 0%s",
                        (long long)mpsi_particles_integers(mpm->particles, "id")[k], density[k],
-                       volume, ratio, r > 0.0 ? "" : " (it lies on the axis, r = 0)");
+                       volume, ratio, volume == 0.0 ? " (it lies on the axis, r = 0)" : "");
   }
+  return MPS_OK;
+}
+
+/* Volumes and masses from density and spacing; unstrained states where the caller gave none. */
+static mps_status set_start(mps_mpm *mpm) {
+  mpsi_columns *p = &mpm->p;
+  const double *density = mpsi_particles_column(mpm->particles, "density", 0);
+  const mps_status status = check_volumes(mpm, density);
+  if (status != MPS_OK) return status;
   bool deformed = false;
-  for (int c = 0; c < 5 && p->F[c]; c++)
+  for (int c = 0; c < 9 && p->F[c]; c++)
     for (int64_t k = 0; k < mpm->count; k++) deformed = deformed || p->F[c][k] != 0.0;
   for (int64_t k = 0; k < mpm->count; k++) {
-    const double r = mpm->def.geometry == MPS_AXISYMMETRIC ? p->x[0][k] : 1.0;
-    if (p->V[k] == 0.0) p->V[k] = spacing * spacing * r;
+    if (p->V[k] == 0.0) p->V[k] = lattice_volume(mpm, k);
     p->m[k] = density[k] * p->V[k]; /* the density is that of the present volume */
     if (p->J && p->J[k] == 0.0) p->J[k] = 1.0;
-    for (int c = 0; c < 5 && p->F[c] && !deformed; c++) p->F[c][k] = c == 0 || c >= 3 ? 1.0 : 0.0;
+    for (int c = 0; c < 9 && p->F[c] && !deformed; c++) {
+      const bool diagonal = mpm->dim == 3 ? c % 4 == 0 : c == 0 || c >= 3;
+      p->F[c][k] = diagonal ? 1.0 : 0.0;
+    }
   }
   mpsi_material_begin(mpm->material, p->history, 0, mpm->count);
   return MPS_OK;
 }
 
 /* ---- life ------------------------------------------------------------------------------------ */
+
+static mps_status hire_workers(mps_mpm *mpm) {
+  mpm->worker_count = mps_context_threads(mpm->context);
+  mpm->workers = mpsi_alloc(mpm->context, mpm->worker_count, sizeof *mpm->workers);
+  const size_t bytes = mpsi_worker_bytes(mpm), tile = (size_t)mpm->tile;
+  for (int32_t k = 0; mpm->workers && k < mpm->worker_count; k++) {
+    mpsi_worker *w = &mpm->workers[k];
+    char *memory = w->memory = mpsi_alloc(mpm->context, 1, bytes);
+    if (!memory) return mpsi_fail_memory(mpm->context, create, bytes);
+    w->tile = (mpsi_node *)memory;
+    w->force = w->tile + tile;
+    w->inside = (uint32_t *)(w->force + tile);
+    w->state = (uint8_t *)(w->inside + tile); /* and a little more: rows are read as four */
+  }
+  return mpm->workers ? MPS_OK : mpsi_fail_memory(mpm->context, create, sizeof *mpm->workers);
+}
 
 static mps_status build(mps_mpm *mpm) {
   mps_context *context = mpm->context;
@@ -237,13 +267,14 @@ static mps_status build(mps_mpm *mpm) {
   if (status == MPS_OK) status = set_start(mpm);
   if (status != MPS_OK) return status;
   mpm->radix = mpsi_alloc(context, 2 * mpm->count, sizeof *mpm->radix);
-  if (mpm->radix) mpm->order = mpsi_alloc(context, mpm->count, sizeof *mpm->order);
-  if (mpm->order) mpm->flags = mpsi_alloc(context, mpm->count, sizeof *mpm->flags);
-  if (mpm->flags) mpm->scratch = mpsi_alloc(context, mpm->count, sizeof *mpm->scratch);
-  if (!mpm->scratch)
+  if (mpm->radix) mpm->flags = mpsi_alloc(context, mpm->count, sizeof *mpm->flags);
+  if (!mpm->flags)
     return mpsi_fail_memory(context, create, (size_t)mpm->count * sizeof *mpm->radix);
-  status = mpsi_mpm_sort(mpm, create);
-  return status == MPS_OK ? mpsi_mpm_take_stock(mpm, create) : status;
+  status = hire_workers(mpm);
+  if (status == MPS_OK) status = mpsi_mpm_sort(mpm, create);
+  if (status != MPS_OK) return status;
+  mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
+  return mpsi_mpm_take_stock(mpm, create);
 }
 
 mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_material *material,
@@ -253,11 +284,16 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   *out = NULL;
   if (!material) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "material is NULL");
   mps_mpm_def def = mpm_defaults;
-  int64_t low[2], high[2];
+  int64_t low[3], high[3];
   mps_status status = check_set(context, particles);
   if (status == MPS_OK && user_def)
     status = mpsi_def_read(context, __func__, user_def, MPM_DEF_MINIMUM, &def, sizeof def);
   if (status == MPS_OK) status = check_choices(context, &def);
+  if (status == MPS_OK && mps_particles_dim(particles) != dim_of(&def))
+    status = mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+                       "geometry is %d, and the set has %d dimensions: it needs %s", def.geometry,
+                       mps_particles_dim(particles),
+                       dim_of(&def) == 3 ? "0 (plane strain) or 1 (axisymmetric)" : "2 (space)");
   if (status == MPS_OK) status = check_numbers(context, &def);
   if (status == MPS_OK) status = read_domain(context, &def, low, high);
   if (status != MPS_OK) return status;
@@ -269,6 +305,11 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   mpm->histories = mps_material_history_count(material);
   mpm->modulus = mps_material_wave_modulus(material);
   mpm->def = def;
+  mpm->dim = dim_of(&def);
+  mpm->own = mpm->dim == 3 ? MPSI_SIDE * MPSI_SIDE * MPSI_SIDE : MPSI_SIDE * MPSI_SIDE;
+  mpm->tile = mpm->dim == 3 ? MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE
+                            : MPSI_TILE_SIDE * MPSI_TILE_SIDE;
+  mpm->kernels = mpsi_mpm_kernels(0);
   mpm->count = mps_particles_count(particles);
   mpm->inverse = 1.0 / def.cell;
   mpm->gap = 0.5 * mps_particles_spacing(particles);
@@ -288,19 +329,21 @@ void mps_mpm_destroy(mps_mpm **pointer) {
   mps_context *context = mpm->context;
   *pointer = NULL;
   for (int32_t b = 0; b < mpm->bodies; b++) mpsi_body_give(mpm->body[b]);
-  void *parts[] = {mpm->cells_room.item,
+  for (int32_t k = 0; mpm->workers && k < mpm->worker_count; k++)
+    mpsi_free(context, mpm->workers[k].memory);
+  void *parts[] = {mpm->workers,
+                   mpm->cells_room.item,
+                   mpm->coloured_room.item,
                    mpm->nodes_room.item,
-                   mpm->tile_room.item,
                    mpm->node_room.item,
-                   mpm->near_room.item,
+                   mpm->side_room.item,
                    mpm->meeting_room.item,
                    mpm->touch_room.item,
-                   mpm->meeting_of_room.item,
-                   mpm->touch_first_room.item,
+                   mpm->touch_node_room.item,
+                   mpm->inside_room.item,
+                   mpm->reached_room.item,
                    mpm->radix,
-                   mpm->order,
-                   mpm->flags,
-                   mpm->scratch};
+                   mpm->flags};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
   mps_material_destroy(&mpm->material);
   mpsi_particles_unpin(mpm->particles);
@@ -314,9 +357,9 @@ mps_status mps_mpm_add_body(mps_mpm *mpm, mps_body *body) {
   if (body->context != mpm->context)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "the body was made from another context");
-  if (body->dim != 2)
-    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "the body is %dD, the solver 2D",
-                     body->dim);
+  if (body->dim != mpm->dim)
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "the body is %dD, the solver %dD",
+                     body->dim, mpm->dim);
   if (mpm->bodies == MPS_MPM_MAX_BODIES)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "the solver has %d bodies, the most there can be", MPS_MPM_MAX_BODIES);

@@ -1,10 +1,18 @@
 /* mpm_private.h - the members of the WLS-MPM solver.
  *
- * The grid is cut into blocks of 8 x 8 nodes. A particle belongs to the block of the lowest node of
- * its stencil, so that all its nodes lie in a tile of 11 x 11: the block and one row of its
- * neighbours at +x, +y and +x+y. Each block sums its particles into a tile of its own; then each
- * block of nodes adds the up to four tiles that cover it, in a fixed order. No two tasks write the
- * same memory, and no sum depends on the number of threads.
+ * The grid is cut into blocks of 8 nodes along each axis; only those that particles reach exist. A
+ * particle is sorted into a block of cells by the lowest node of its stencil, so that the stencils
+ * of a block lie in a tile of 13 nodes along each axis, which begins at the block's first node: 1
+ * node that only a particle which has left to the lower side uses, 8, 1 for one that has left to
+ * the upper side, and the other 3 of a cubic stencil. So the particles are sorted anew only when
+ * one has moved a whole cell beyond its block. The tile lies over the block's own nodes and its
+ * neighbours at +x, +y, +x+y (and so on at +z).
+ *
+ * Each task sums the particles of one block of cells into a tile of its own and adds that to the
+ * nodes. Blocks of one colour (2 along each axis) share no nodes: they work at once, colour after
+ * colour. No two tasks write the same memory, and no sum depends on the number of threads.
+ *
+ * Arrays of three hold x, y, z; in 2D the last is 0 (one node thick).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_PRIVATE_H
 #define MPSI_MPM_PRIVATE_H
@@ -16,85 +24,71 @@
 #include <mps/mpm.h>
 
 #define MPSI_SIDE 8
-#define MPSI_OWN (MPSI_SIDE * MPSI_SIDE)
-#define MPSI_TILE_SIDE (MPSI_SIDE + 3)
-#define MPSI_TILE (MPSI_TILE_SIDE * MPSI_TILE_SIDE)
+#define MPSI_TILE_SIDE (MPSI_SIDE + 5)
+#define MPSI_CORNERS 8 /* blocks of nodes under a tile: 4 in 2D */
 
-/* What a tile sums. EXCESS is sum (w - phi) m: mass by weights less mass by shape functions. */
-enum { MPSI_M, MPSI_PX, MPSI_PY, MPSI_FX, MPSI_FY, MPSI_EXCESS, MPSI_SUMS };
-/* What a node keeps: mass, velocity before (v_i^n) and after the forces. */
-enum { MPSI_NM, MPSI_NX, MPSI_NY, MPSI_VX, MPSI_VY, MPSI_NODE };
-/* Contact with one body: mass in contact W, slip sums S, normal force fn; at nodes also the
- * tangential force by mass in contact. */
-enum {
-  MPSI_W,
-  MPSI_SX,
-  MPSI_SY,
-  MPSI_CX,
-  MPSI_CY,
-  MPSI_TOUCH,
-  MPSI_TX = MPSI_TOUCH,
-  MPSI_TY,
-  MPSI_TOUCH_NODE
-};
-
-/* Bits of a tile's node state. */
-#define MPSI_OUTSIDE 1u /* not in the domain */
-#define MPSI_INSIDE 2u  /* in a body */
-#define MPSI_REACHED 4u /* corner of a cell that holds a particle */
-
-/* A block with particles. */
+/* A block of cells with particles. */
 typedef struct mpsi_cells {
   int64_t begin, end;              /* particles */
-  int32_t at[2];                   /* block coordinates: its first node is at * MPSI_SIDE */
-  int32_t to[4];                   /* blocks of nodes of the tile: own, +x, +y, +x+y */
-  int32_t near;                    /* slot of mpsi_near, or -1: no body near */
-  int32_t first_meeting, meetings; /* by body */
+  int32_t at[3];                   /* block coordinates: its first node is at * MPSI_SIDE */
+  int32_t to[MPSI_CORNERS];        /* blocks of nodes under the tile: own, +x, +y, +x+y, ... */
   bool edge;                       /* some node of the tile is outside the domain */
-  bool left;                       /* a particle has left the block */
+  bool cut;                        /* some node of the tile is outside, or inside a body */
+  bool split;                      /* forces are summed apart from momenta: see mpsi_nodes */
+  bool left;                       /* a particle is more than a cell outside the block */
   bool refused;                    /* the law has refused the block */
+  int32_t first_meeting, meetings; /* by body */
   int64_t bad;                     /* first particle not finite or outside the domain, or -1 */
   double speed;                    /* largest c + |v|, m/s */
 } mpsi_cells;
 
-/* A block of nodes. */
+/* A block of nodes. Its nodes are node[mpsi_first_node(g)] and on, x fastest. */
 typedef struct mpsi_nodes {
-  int32_t at[2];
-  int32_t from[4]; /* blocks with particles whose tile covers it: own, -x, -y, -x-y; or -1 */
+  int32_t at[3];
+  int32_t side;    /* slot of its side sums, or -1: only particles with full supports reach it */
+  int32_t near;    /* slot of its inside masks, or -1: no body near */
+  bool split;      /* side has the forces: the velocity before them is needed */
+  bool inside;     /* some node is in a body */
+  uint32_t bodies; /* bit b: a block of cells whose tile covers it may meet body b */
+  int32_t first_touch, touches;
 } mpsi_nodes;
 
-/* A block with particles meets a body that is near it. */
+/* A node, four doubles: particles to nodes sums mass and momentum; then lane 0 is the mass and the
+ * others the velocity. The momentum has dt times the force with it, but in split blocks.
+ * Its side, where the block has one: EXCESS is sum (w - phi) m, mass by weights less mass by shape
+ * functions, then in split blocks the force; later the velocity v_i^n before the forces. */
+typedef double mpsi_node[4];
+enum { MPSI_MASS = 0, MPSI_EXCESS = 0, MPSI_VECTOR = 1 };
+
+/* A block of cells may meet a body. */
 typedef struct mpsi_meeting {
   int32_t cells, body;
-  bool touched;                /* some particle is in contact */
-  double normal[2][MPSI_TILE]; /* outward normal at nodes inside the body, else 0 */
-  double sum[MPSI_TOUCH][MPSI_TILE];
+  bool touched; /* some particle is in contact */
   mpsi_load load[MPS_BODY_MAX_PARTS];
   int64_t contacts[MPS_BODY_MAX_PARTS];
 } mpsi_meeting;
 
-/* A block with particles near any body. */
-typedef struct mpsi_near {
-  uint8_t reached[MPSI_TILE]; /* by the block's own particles */
-  uint8_t state[MPSI_TILE];   /* MPSI_... bits */
-} mpsi_near;
-
-/* A block of nodes and a body that touches it. */
+/* A block of nodes and a body that may touch it; its nodes are touch_node[k * own]. */
 typedef struct mpsi_touch {
   int32_t nodes, body;
-  int32_t from[4]; /* pairs, as mpsi_nodes.from; or -1 */
-  double sum[MPSI_TOUCH_NODE][MPSI_OWN];
   double mass; /* of the nodes in contact */
 } mpsi_touch;
 
-/* Arrays over the particles, in sorted order. */
+typedef struct mpsi_touch_node {
+  double normal[3]; /* of the surface at a node inside the body, else 0 */
+  double mass;      /* W: sum phi m of the particles in contact, seed B (30) */
+  double slip[3];   /* S: sum phi m slip; then the tangential force over W */
+  double force[3];  /* normal force fn, (29) */
+} mpsi_touch_node;
+
+/* Arrays over the particles, in sorted order. Tensors by rows. */
 typedef struct mpsi_columns {
-  double *x[2], *v[2];
-  double *L[5]; /* xx, xy, yx, yy, hoop */
-  double *s[4]; /* xx, yy, zz, xy */
+  double *x[3], *v[3];
+  double *L[9]; /* 2D: xx, xy, yx, yy, hoop */
+  double *s[6]; /* xx, yy, zz, xy, zx, yz; 2D: the first four */
   double *V, *m;
   double *J;    /* V/V0 where the law reads it, else NULL */
-  double *F[5]; /* as L; NULL where the law does without */
+  double *F[9]; /* as L; NULL where the law does without */
   double *history[MPS_MATERIAL_HISTORY_MAX];
 } mpsi_columns;
 
@@ -109,14 +103,30 @@ typedef struct mpsi_room {
   int64_t capacity;
 } mpsi_room;
 
+/* What a worker needs for the block it works on: tiles of MPSI_TILE_SIDE^dim. */
+typedef struct mpsi_worker {
+  void *memory;
+  mpsi_node *tile, *force; /* force: of split blocks */
+  uint32_t *inside;        /* bit b: in body b */
+  uint8_t *state;          /* MPSI_... bits, 0: free */
+} mpsi_worker;
+
+/* Bits of a state. */
+#define MPSI_OUTSIDE 1u /* not in the domain */
+#define MPSI_INSIDE 2u  /* in a body */
+#define MPSI_REACHED 4u /* in a body, and corner of a cell that holds a particle */
+
+struct mpsi_kernels;
+
 struct mps_mpm {
   mps_context *context;
   mps_particles *particles;
   mps_mpm_def def;
+  int32_t dim, own, tile; /* nodes of a block, of a tile */
   int64_t count;
   mpsi_columns p;
   double inverse;          /* 1/h */
-  int64_t low[2], high[2]; /* first and last node of the domain */
+  int64_t low[3], high[3]; /* first and last node of the domain */
   double gap;              /* l_p = d0, m */
   mps_material *material;
   double modulus; /* K + 4G/3 at zero strain, Pa */
@@ -124,24 +134,26 @@ struct mps_mpm {
   int64_t *flags; /* of the law, by sorted index */
   mps_body *body[MPS_MPM_MAX_BODIES];
   int32_t bodies;
+  const struct mpsi_kernels *kernels;
+  mpsi_worker *workers;
+  int32_t worker_count;
   /* the grid: see layout.c */
   mpsi_cells *cells;
   mpsi_nodes *nodes;
-  double (*tile)[MPSI_SUMS][MPSI_TILE];
-  double (*node)[MPSI_NODE][MPSI_OWN];
-  int64_t cell_count, node_count;
-  mpsi_room cells_room, nodes_room, tile_room, node_room;
+  mpsi_node *node, *side;
+  int64_t cell_count, node_count, side_count;
+  int32_t *coloured;                /* numbers of blocks of cells, colour by colour */
+  int64_t colour[MPSI_CORNERS + 1]; /* first of each in `coloured` */
+  mpsi_room cells_room, nodes_room, node_room, side_room, coloured_room;
   mpsi_radix *radix; /* 2 count */
-  int64_t *order;
-  double *scratch; /* count */
   /* contact: see near.c */
-  mpsi_near *near;
   mpsi_meeting *meeting;
   mpsi_touch *touch;
-  int32_t *meeting_of;  /* cells * bodies + body: meeting or -1 */
-  int32_t *touch_first; /* first touch of a block of nodes; node_count + 1 */
+  mpsi_touch_node *touch_node;
+  uint32_t *inside; /* bit b: in body b; near_count * own */
+  uint8_t *reached; /* corner of a cell that holds a particle */
   int64_t near_count, meeting_count, touch_count;
-  mpsi_room near_room, meeting_room, touch_room, meeting_of_room, touch_first_room;
+  mpsi_room meeting_room, touch_room, touch_node_room, inside_room, reached_room;
   bool stale; /* particles must be sorted before the next step */
   bool broken;
   double time, dt, speed; /* s; s, of the step being made; largest c + |v| of the particles, m/s */
@@ -155,8 +167,8 @@ static inline double mpsi_grid_coordinate(const mps_mpm *mpm, int c, double x) {
 }
 
 /* Lowest node of the stencil of a particle at grid coordinate X. */
-static inline int64_t mpsi_base(int32_t spline, double X) {
-  return spline == 3 ? (int64_t)floor(X) - 1 : (int64_t)floor(X - 0.5);
+static inline double mpsi_base(int32_t spline, double X) {
+  return spline == 3 ? floor(X) - 1.0 : floor(X - 0.5);
 }
 
 /* Cell of a particle at grid coordinate X; on the upper wall, the last cell. */
@@ -165,38 +177,59 @@ static inline int64_t mpsi_own_cell(const mps_mpm *mpm, int c, double X) {
   return cell < mpm->high[c] ? cell : mpm->high[c] - 1;
 }
 
-/* Node index n belongs to block floor(n / MPSI_SIDE). */
-static inline int64_t mpsi_block_of(int64_t n) {
+/* The block that a particle is sorted to, by the lowest node of its stencil. */
+static inline int64_t mpsi_block_of(int64_t base) {
+  const int64_t n = base - 1;
   return n >= 0 ? n / MPSI_SIDE : -((MPSI_SIDE - 1 - n) / MPSI_SIDE);
 }
 
-/* Runs task(mpm, index) for [0, count) on the executor, in units of several where that pays. */
-typedef void (*mpsi_mpm_task)(mps_mpm *mpm, int64_t index);
-void mpsi_mpm_for(mps_mpm *mpm, int64_t count, mpsi_mpm_task task);
+/* Memory of one worker. */
+static inline size_t mpsi_worker_bytes(const mps_mpm *mpm) {
+  return (size_t)mpm->tile * (2 * sizeof(mpsi_node) + sizeof(uint32_t) + 1) + sizeof(uint64_t);
+}
+
+static inline int64_t mpsi_first_node(const mps_mpm *mpm, int64_t g) { return g * mpm->own; }
+
+/* Coordinates within a block or tile of `side` nodes an axis. */
+static inline void mpsi_unravel(int k, int side, int *at) {
+  at[0] = k % side, at[1] = k / side % side, at[2] = k / side / side;
+}
+
+/* Position x[3] of the node `local` of the block at `at`. */
+static inline void mpsi_node_position(const mps_mpm *mpm, const int32_t *at, const double *local,
+                                      double *x) {
+  for (int c = 0; c < 3; c++)
+    x[c] = c < mpm->dim
+               ? mpm->def.origin[c] + mpm->def.cell * ((double)at[c] * MPSI_SIDE + local[c])
+               : 0.0;
+}
+
+/* Runs task(mpm, index, worker) for all blocks on the executor, in units of several where that
+ * pays: blocks of nodes; of cells; of cells, those of one colour at once. */
+typedef void (*mpsi_mpm_task)(mps_mpm *mpm, int64_t index, int32_t worker);
+void mpsi_mpm_for_nodes(mps_mpm *mpm, mpsi_mpm_task task);
+void mpsi_mpm_for_cells(mps_mpm *mpm, mpsi_mpm_task task);
+void mpsi_mpm_for_colours(mps_mpm *mpm, mpsi_mpm_task task);
 
 /* Ensures room for `count` items, keeping none of the contents; false when out of memory. */
 bool mpsi_room_ensure(mps_context *context, mpsi_room *room, int64_t count, size_t size);
 
 /* layout.c: sorts the particles by blocks and builds the lists of blocks. */
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function);
-/* near.c: finds which blocks are near which bodies, and the state of their nodes. */
+/* near.c: finds which blocks are near which bodies, and which blocks are cut and split. */
 mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function);
-/* shape.c, transfer.c: one block of particles to its tile, and back from the nodes. */
-void mpsi_mpm_p2g(mps_mpm *mpm, int64_t block);
-void mpsi_mpm_g2p(mps_mpm *mpm, int64_t block);
-/* grid.c: one block of nodes: sums, forces, normal contact forces; friction and walls. */
-void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t block);
-void mpsi_mpm_finish_nodes(mps_mpm *mpm, int64_t block);
+/* grid.c: one block of nodes: emptied; velocities, normal contact forces; friction and walls. */
+void mpsi_mpm_clear_nodes(mps_mpm *mpm, int64_t g, int32_t worker);
+void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker);
+void mpsi_mpm_finish_nodes(mps_mpm *mpm, int64_t g, int32_t worker);
 /* friction.c: normal forces of all bodies on a block of nodes; friction; what the bodies are told.
  */
-void mpsi_mpm_touch(mps_mpm *mpm, int64_t block);
-void mpsi_mpm_rub(mps_mpm *mpm, int64_t block);
+void mpsi_mpm_touch(mps_mpm *mpm, int64_t g);
+void mpsi_mpm_rub(mps_mpm *mpm, int64_t g);
 void mpsi_mpm_react(mps_mpm *mpm);
-/* law.c: the law on the particles of a block; the block's largest speed. */
-void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cells *cells);
-void mpsi_mpm_find_speed(mps_mpm *mpm, int64_t block);
-/* step.c: stress and motion of one state: the largest speed of all blocks, or the error of a bad
- * particle. */
+/* law.c: the law on particles [begin, end) of a block. */
+void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cells *cells, int64_t begin, int64_t end);
+/* step.c: what the blocks have told: the largest speed, or the error of a bad particle. */
 mps_status mpsi_mpm_take_stock(mps_mpm *mpm, const char *function);
 
 #endif

@@ -1,32 +1,50 @@
 /* step.c - running the WLS-MPM solver: the order of a step (seed B 6), its size, and what goes
  * wrong. SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm_private.h"
+#include "kernels.h"
 
 #include "core/particles_internal.h"
 
 #include <string.h>
 
-#define SMALL_GRID 24 /* blocks: below, sharing the work costs more than it gains */
+#define SMALL_SET 2048  /* particles: below, sharing the work costs more than it gains */
+#define UNIT_NODES 4096 /* at least in a unit of work on nodes, which take a few ns each */
 
 /* ---- work ------------------------------------------------------------------------------------ */
 
 typedef struct work {
   mps_mpm *mpm;
   mpsi_mpm_task task;
+  const int32_t *list; /* of what to work on, NULL: 0, 1, ... */
   int64_t count, grain;
 } work;
 
 static void unit_of_work(void *data, int64_t unit, int32_t worker) {
-  (void)worker;
   const work *w = data;
   const int64_t last = (unit + 1) * w->grain;
-  for (int64_t k = unit * w->grain; k < last && k < w->count; k++) w->task(w->mpm, k);
+  for (int64_t k = unit * w->grain; k < last && k < w->count; k++)
+    w->task(w->mpm, w->list ? w->list[k] : k, worker);
 }
 
-void mpsi_mpm_for(mps_mpm *mpm, int64_t count, mpsi_mpm_task task) {
-  const int64_t units = count < SMALL_GRID ? 1 : 8 * (int64_t)mps_context_threads(mpm->context);
-  work w = {mpm, task, count, (count + units - 1) / units};
+static void share(mps_mpm *mpm, const int32_t *list, int64_t count, int64_t least,
+                  mpsi_mpm_task task) {
+  const int64_t most = mpm->count < SMALL_SET ? 1 : 8 * (int64_t)mpm->worker_count;
+  const int64_t wanted = (count + least - 1) / least, units = wanted < most ? wanted : most;
+  if (units == 0) return;
+  work w = {mpm, task, list, count, (count + units - 1) / units};
   mpsi_parallel_for(mpm->context, units, unit_of_work, &w);
+}
+
+void mpsi_mpm_for_nodes(mps_mpm *mpm, mpsi_mpm_task task) {
+  share(mpm, NULL, mpm->node_count, UNIT_NODES / mpm->own, task);
+}
+
+void mpsi_mpm_for_cells(mps_mpm *mpm, mpsi_mpm_task task) {
+  share(mpm, NULL, mpm->cell_count, 1, task);
+}
+
+void mpsi_mpm_for_colours(mps_mpm *mpm, mpsi_mpm_task task) {
+  for (int c = 0; c < 1 << mpm->dim; c++)
+    share(mpm, mpm->coloured + mpm->colour[c], mpm->colour[c + 1] - mpm->colour[c], 1, task);
 }
 
 /* ---- one step -------------------------------------------------------------------------------- */
@@ -34,17 +52,19 @@ void mpsi_mpm_for(mps_mpm *mpm, int64_t count, mpsi_mpm_task task) {
 static mps_status report_bad(mps_mpm *mpm, const char *function, int64_t k) {
   const mpsi_columns *p = &mpm->p;
   const long long id = (long long)mpsi_particles_integers(mpm->particles, "id")[k];
-  const double x = p->x[0][k], y = p->x[1][k];
-  const bool number = isfinite(x) && isfinite(y) && isfinite(p->v[0][k]) && isfinite(p->v[1][k]) &&
-                      isfinite(p->V[k]);
+  const bool space = mpm->dim == 3;
+  const double z = space ? p->x[2][k] : 0.0, vz = space ? p->v[2][k] : 0.0;
+  bool number = isfinite(p->V[k]);
+  for (int c = 0; c < mpm->dim; c++)
+    number = number && isfinite(p->x[c][k]) && isfinite(p->v[c][k]);
   mpm->broken = true;
   const mps_status status = mpsi_fail(
       mpm->context, function, MPS_ERROR_DIVERGED,
-      "step %lld, t = %.6g s: particle %lld at (%.6g, %.6g) m with velocity (%.4g, %.4g) m/s and "
-      "volume %.4g m3 %s; dt was %.4g s, %.3g of the limit (49): check dt, the contact stiffness "
-      "and the initial stress",
-      (long long)mpm->steps, mpm->time, id, x, y, p->v[0][k], p->v[1][k], p->V[k],
-      number ? "has left the domain or has no volume" : "is not finite", mpm->dt,
+      "step %lld, t = %.6g s: particle %lld at (%.6g, %.6g, %.6g) m with velocity (%.4g, %.4g, "
+      "%.4g) m/s and volume %.4g m3 %s; dt was %.4g s, %.3g of the limit (49): check dt, the "
+      "contact stiffness and the initial stress",
+      (long long)mpm->steps, mpm->time, id, p->x[0][k], p->x[1][k], z, p->v[0][k], p->v[1][k], vz,
+      p->V[k], number ? "has left the domain or has no volume" : "is not finite", mpm->dt,
       mpm->dt * mpm->speed * mpm->inverse);
   mpsi_fail_where(mpm->context, mpm->steps, id);
   return status;
@@ -53,7 +73,6 @@ static mps_status report_bad(mps_mpm *mpm, const char *function, int64_t k) {
 mps_status mpsi_mpm_take_stock(mps_mpm *mpm, const char *function) {
   double speed = 0.0;
   int64_t bad = -1;
-  mpsi_mpm_for(mpm, mpm->cell_count, mpsi_mpm_find_speed);
   for (int64_t b = 0; b < mpm->cell_count; b++) {
     const mpsi_cells *cells = &mpm->cells[b];
     if (cells->bad >= 0 && bad < 0) bad = cells->bad;
@@ -70,14 +89,6 @@ mps_status mpsi_mpm_take_stock(mps_mpm *mpm, const char *function) {
   return MPS_OK;
 }
 
-/* Nodes to particles, the law, and the particles' new place. */
-static void carry_back(mps_mpm *mpm, int64_t b) {
-  mpm->cells[b].left = mpm->cells[b].refused = false;
-  mpm->cells[b].bad = -1;
-  mpsi_mpm_g2p(mpm, b);
-  mpsi_mpm_apply_law(mpm, &mpm->cells[b]);
-}
-
 static void find_contact_mass(mps_mpm *mpm) {
   memset(mpm->contact_mass, 0, sizeof mpm->contact_mass);
   for (int64_t t = 0; t < mpm->touch_count; t++)
@@ -85,19 +96,21 @@ static void find_contact_mass(mps_mpm *mpm) {
 }
 
 static mps_status take_step(mps_mpm *mpm, const char *function, double dt) {
+  const int32_t geometry = mpm->def.geometry, spline = mpm->def.spline - 2;
   mps_status status = MPS_OK;
   if (mpm->stale) status = mpsi_mpm_sort(mpm, function);
-  if (status == MPS_OK && mpm->bodies > 0) status = mpsi_mpm_find_near(mpm, function);
+  if (status == MPS_OK) status = mpsi_mpm_find_near(mpm, function);
   if (status != MPS_OK) {
     mpm->broken = true;
     return status;
   }
   mpm->dt = dt;
-  mpsi_mpm_for(mpm, mpm->cell_count, mpsi_mpm_p2g);
-  mpsi_mpm_for(mpm, mpm->node_count, mpsi_mpm_update_nodes);
+  mpsi_mpm_for_nodes(mpm, mpsi_mpm_clear_nodes);
+  mpsi_mpm_for_colours(mpm, mpm->kernels->p2g[geometry][spline]);
+  mpsi_mpm_for_nodes(mpm, mpsi_mpm_update_nodes);
   if (mpm->meeting_count > 0) find_contact_mass(mpm);
-  mpsi_mpm_for(mpm, mpm->node_count, mpsi_mpm_finish_nodes);
-  mpsi_mpm_for(mpm, mpm->cell_count, carry_back);
+  mpsi_mpm_for_nodes(mpm, mpsi_mpm_finish_nodes);
+  mpsi_mpm_for_cells(mpm, mpm->kernels->g2p[geometry][spline]);
   if (mpm->bodies > 0) mpsi_mpm_react(mpm);
   mpm->time += dt;
   mpm->steps++;
@@ -171,15 +184,17 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
     int64_t capacity;
     size_t size;
   } list[] = {{mpm->cells_room.capacity, sizeof *mpm->cells},
+              {mpm->coloured_room.capacity, sizeof *mpm->coloured},
               {mpm->nodes_room.capacity, sizeof *mpm->nodes},
-              {mpm->tile_room.capacity, sizeof *mpm->tile},
               {mpm->node_room.capacity, sizeof *mpm->node},
-              {mpm->near_room.capacity, sizeof *mpm->near},
+              {mpm->side_room.capacity, sizeof *mpm->side},
               {mpm->meeting_room.capacity, sizeof *mpm->meeting},
               {mpm->touch_room.capacity, sizeof *mpm->touch},
-              {mpm->meeting_of_room.capacity, sizeof *mpm->meeting_of},
-              {mpm->touch_first_room.capacity, sizeof *mpm->touch_first},
-              {mpm->count, 2 * sizeof *mpm->radix + 3 * 8}};
+              {mpm->touch_node_room.capacity, sizeof *mpm->touch_node},
+              {mpm->inside_room.capacity, sizeof *mpm->inside},
+              {mpm->reached_room.capacity, sizeof *mpm->reached},
+              {mpm->worker_count, mpsi_worker_bytes(mpm)},
+              {mpm->count, 2 * sizeof *mpm->radix + sizeof *mpm->flags}};
   int64_t bytes = 0;
   for (size_t k = 0; k < sizeof list / sizeof *list; k++)
     bytes += list[k].capacity * (int64_t)list[k].size;
@@ -190,17 +205,25 @@ mps_status mps_mpm_get_totals(mps_mpm *mpm, mps_mpm_totals *out) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   const mpsi_columns *p = &mpm->p;
+  const int dim = mpm->dim;
   const double h = mpm->def.cell, moment = h * h / (mpm->def.spline == 3 ? 3.0 : 4.0);
   mps_mpm_totals t = {
-      .blocks = mpm->cell_count, .nodes = mpm->node_count * MPSI_OWN, .bytes = grid_bytes(mpm)};
+      .blocks = mpm->cell_count, .nodes = mpm->node_count * mpm->own, .bytes = grid_bytes(mpm)};
   for (int64_t k = 0; k < mpm->count; k++) {
-    const double m = p->m[k], vx = p->v[0][k], vy = p->v[1][k];
+    const double m = p->m[k];
+    double x[3] = {0}, v[3] = {0}, L[3][3] = {{0}};
+    for (int c = 0; c < dim; c++) {
+      x[c] = p->x[c][k], v[c] = p->v[c][k];
+      for (int d = 0; d < dim; d++) L[c][d] = p->L[dim * c + d][k];
+      t.linear[c] += m * v[c];
+      t.kinetic += 0.5 * m * v[c] * v[c];
+    }
+    for (int c = 0; c < 3; c++) {
+      const int a = (c + 1) % 3, b = (c + 2) % 3;
+      t.angular[c] += m * (x[a] * v[b] - x[b] * v[a] + moment * (L[b][a] - L[a][b]));
+    }
     t.mass += m;
     t.volume += p->V[k];
-    t.linear[0] += m * vx;
-    t.linear[1] += m * vy;
-    t.angular += m * (p->x[0][k] * vy - p->x[1][k] * vx + moment * (p->L[2][k] - p->L[1][k]));
-    t.kinetic += 0.5 * m * (vx * vx + vy * vy);
   }
   *out = t;
   return MPS_OK;

@@ -38,7 +38,8 @@ static void refuses_bad_definitions(void **state) {
   CASE(cell, 0.0, "cell is 0 m");
   CASE(cell, NAN, "cell is nan m");
   CASE(spline, 4, "spline is 4");
-  CASE(geometry, 2, "geometry is 2");
+  CASE(geometry, 3, "geometry is 3");
+  CASE(geometry, MPS_SPACE, "geometry is 2, and the set has 2 dimensions");
   CASE(transfer, -1, "transfer is -1");
   CASE(wall_upper[1], 9, "wall_upper[1] is 9");
   CASE(courant, 1.5, "courant is 1.5");

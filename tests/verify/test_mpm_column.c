@@ -1,5 +1,6 @@
 /* test_mpm_column.c - the WLS-MPM solver against exact answers: a column under its own weight, the
- * period of a bar, an axisymmetric cylinder under its weight.
+ * period of a bar, an axisymmetric cylinder and a column in space under
+ * their weight, and a slab in space that does what plane strain does.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_scene.h"
 #include "test_fixture.h"
@@ -9,9 +10,11 @@
 /* A column between rollers, of height 1 m, starts with the stress of its weight and stays at rest:
  * sigma_yy = -rho g depth, sigma_xx = K0 sigma_yy, exact for linear stress. */
 static void column_at_rest(int32_t geometry) {
+  const int dim = geometry == MPS_SPACE ? 3 : 2;
   const double rho = 1000.0, g = 10.0, K0 = 0.3 / 0.7;
-  mpm_scene s = mpm_scene_begin(context, 0.02, 0.0, 0.0, 1e7);
-  mpm_scene_box(&s, 0.0, 0.0, 0.2, 1.0);
+  const double lo[] = {0.0, 0.0, 0.0}, hi[] = {dim == 3 ? 0.12 : 0.2, 1.0, 0.08};
+  mpm_scene s = mpm_scene_begin_in(context, dim, 0.02, 0.0, 0.0, 1e7);
+  mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
   mps_assert_ok(context, mps_particles_add_field(s.particles, "stress", 0));
   mps_view x = mpm_scene_view(&s, "position"), stress = mpm_scene_view(&s, "stress");
   for (int64_t k = 0; k < x.shape[0]; k++) {
@@ -22,8 +25,10 @@ static void column_at_rest(int32_t geometry) {
   mps_mpm_def def = mps_mpm_defaults();
   def.geometry = geometry;
   def.cell = 0.04;
-  def.lower[0] = def.lower[1] = 0.0;
-  def.upper[0] = 0.2;
+  for (int c = 0; c < dim; c++) {
+    def.lower[c] = 0.0;
+    if (c != 1) def.upper[c] = hi[c];
+  }
   def.gravity[1] = -g;
   mpm_scene_solve(&s, &def);
   mps_assert_ok(context, mps_mpm_run(s.mpm, 0.2, 1000000, NULL, NULL));
@@ -43,6 +48,52 @@ static void own_weight(void **state) {
   (void)state;
   column_at_rest(MPS_PLANE_STRAIN);
   column_at_rest(MPS_AXISYMMETRIC);
+  column_at_rest(MPS_SPACE);
+}
+
+/* A block that is thrown against the walls, in plane strain or as a slab of one cell in space. */
+static mpm_scene thrown(int dim) {
+  const double lo[] = {0.1, 0.05, 0.0}, hi[] = {0.3, 0.15, 0.02};
+  const double v0[] = {-2.0, -1.0, 0.0};
+  const double plane[] = {1.0, -9.0, 7.0, -3.0};
+  const double space[] = {1.0, -9.0, 0.0, 7.0, -3.0, 0.0, 0.0, 0.0, 0.0};
+  mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.003, 0.0, 1e5);
+  mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
+  mpm_scene_affine(&s, v0, dim == 3 ? space : plane);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.geometry = dim == 3 ? MPS_SPACE : MPS_PLANE_STRAIN;
+  def.cell = 0.02;
+  for (int c = 0; c < dim; c++) def.lower[c] = 0.0;
+  def.upper[2] = 0.02;
+  def.wall_lower[1] = MPS_WALL_FIXED;
+  def.gravity[1] = -9.81;
+  mpm_scene_solve(&s, &def);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 300));
+  return s;
+}
+
+static void slab_is_plane_strain(void **state) {
+  (void)state;
+  mpm_scene plane = thrown(2), slab = thrown(3);
+  mps_view x = mpm_scene_view(&plane, "position"), X = mpm_scene_view(&slab, "position");
+  mps_view stress = mpm_scene_view(&plane, "stress"), S = mpm_scene_view(&slab, "stress");
+  const int64_t count = x.shape[0];
+  assert_int_equal(X.shape[0], 2 * count);
+  double moved = 0.0, strained = 0.0;
+  for (int64_t id = 0; id < 2 * count; id++) { /* the lattice is filled layer by layer */
+    const int64_t k = mps_particles_index(plane.particles, id % count);
+    const int64_t K = mps_particles_index(slab.particles, id);
+    for (int c = 0; c < 2; c++)
+      moved = fmax(moved, fabs(*mps_view_f64(&X, K, c) - *mps_view_f64(&x, k, c)));
+    for (int c = 0; c < 4; c++)
+      strained = fmax(strained, fabs(*mps_view_f64(&S, K, c) - *mps_view_f64(&stress, k, c)));
+    mps_assert_near(*mps_view_f64(&X, K, 2), id < count ? 0.005 : 0.015, 1e-14);
+  }
+  print_message("slab against plane strain: %.2g m, %.2g Pa\n", moved, strained);
+  assert_true(moved < 1e-12);
+  assert_true(strained < 1e-6);
+  mpm_scene_end(&plane);
+  mpm_scene_end(&slab);
 }
 
 /* Axial vibration between rollers, fixed at the bottom, free at the top: period 4 L/c. */
@@ -80,6 +131,8 @@ static void bar_period(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(own_weight), cmocka_unit_test(bar_period)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(own_weight),
+                                     cmocka_unit_test(slab_is_plane_strain),
+                                     cmocka_unit_test(bar_period)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

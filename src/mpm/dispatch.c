@@ -1,0 +1,32 @@
+/* dispatch.c - chooses the solver's inner loops for the processor at run time.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "kernels.h"
+
+#include "core/levels.h"
+
+#define DECLARE(level)                                                                             \
+  extern const mpsi_mpm_task mpsi_p2g_v##level[3][2], mpsi_g2p_v##level[3][2];                     \
+  void mpsi_speed_v##level(mps_mpm *mpm, int64_t b, int32_t worker);                               \
+  void mpsi_fit_v##level(const mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,   \
+                         int64_t particle, mpsi_stencil *stencil, mpsi_shape_values *out);
+#define KERNELS(level)                                                                             \
+  { mpsi_p2g_v##level, mpsi_g2p_v##level, mpsi_speed_v##level, mpsi_fit_v##level }
+
+DECLARE(1)
+static const mpsi_kernels plain = KERNELS(1);
+#ifdef MPSI_X86_LEVELS
+DECLARE(3)
+DECLARE(4)
+static const mpsi_kernels avx2 = KERNELS(3), avx512 = KERNELS(4);
+#endif
+
+const mpsi_kernels *mpsi_mpm_kernels(int32_t isa) {
+#ifdef MPSI_X86_LEVELS
+  const int32_t level = mpsi_level(isa);
+  if (level == 4) return &avx512;
+  if (level == 3) return &avx2;
+#else
+  (void)isa;
+#endif
+  return &plain;
+}

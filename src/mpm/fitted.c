@@ -1,0 +1,385 @@
+/* fitted.c - particles whose support bodies or edges cut: the least-squares fit over the active
+ * nodes, transfers with it, and contact, seed B (5), (6), (28)-(30). Compiled once for each
+ * instruction set.
+ *
+ * Active are, of the stencil's nodes in the domain: those in no body; the corners of the particle's
+ * own cell; and corners of other cells that hold particles, if they lie on the particle's side of
+ * the surface, n . (x_p - x_i) > 0. Without the corners M can be singular; without the test of the
+ * side momentum passes through thin walls.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "contact.h"
+#include "loops.h"
+
+/* ---- active nodes -----------------------------------------------------------------------------
+ */
+
+/* A stencil, and where in the blocks of nodes its nodes are. */
+typedef struct support {
+  mpsi_stencil at;
+  int corner[3][4], local[3][4]; /* which block under the tile, and the node's number in it: sums */
+} support;
+
+MPSI_INLINE void make_support(const mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
+                              int64_t particle, support *out) {
+  mpsi_make_stencil(mpm, cells, dim, spline, particle, &out->at);
+  for (int c = 0, stride = 1; c < 3; c++, stride *= MPSI_SIDE)
+    for (int i = 0; i < 4; i++) {
+      const int t = out->at.at[c] + i;
+      out->corner[c][i] = c < dim && t >= MPSI_SIDE ? 1 << c : 0;
+      out->local[c][i] = c < dim ? (t & (MPSI_SIDE - 1)) * stride : 0;
+    }
+}
+
+/* Block of nodes of a node of the stencil, and the node in it. */
+MPSI_INLINE int32_t block_under(const mpsi_cells *cells, const support *s, int i, int j, int k) {
+  return cells->to[s->corner[0][i] | s->corner[1][j] | s->corner[2][k]];
+}
+
+MPSI_INLINE int local_of(const support *s, int i, int j, int k) {
+  return s->local[0][i] + s->local[1][j] + s->local[2][k];
+}
+
+/* Outside every body that holds the node, seen from the node along the surface's normal. */
+static bool same_side(const mps_mpm *mpm, int32_t g, int local, const double *s) {
+  const mpsi_nodes *nodes = &mpm->nodes[g];
+  for (int32_t t = nodes->first_touch; t < nodes->first_touch + nodes->touches; t++) {
+    const double *n = mpm->touch_node[(int64_t)t * mpm->own + local].normal;
+    if (n[0] == 0.0 && n[1] == 0.0 && n[2] == 0.0) continue;
+    if (!(n[0] * s[0] + n[1] * s[1] + n[2] * s[2] < 0.0)) return false;
+  }
+  return true;
+}
+
+/* Of a node of the domain inside a body. */
+static bool active(const mps_mpm *mpm, const mpsi_cells *cells, uint8_t state, const support *s,
+                   int i, int j, int k) {
+  const mpsi_stencil *at = &s->at;
+  const unsigned di = (unsigned)(i - at->own[0]), dj = (unsigned)(j - at->own[1]);
+  const unsigned dk = (unsigned)(k - at->own[2]);
+  if (di <= 1 && dj <= 1 && dk <= 1) return true;
+  if (!(state & MPSI_REACHED)) return false;
+  const double from[3] = {at->s[0][i], at->s[1][j], at->s[2][k]};
+  return same_side(mpm, block_under(cells, s, i, j, k), local_of(s, i, j, k), from);
+}
+
+/* Weights of the active nodes; returns the bodies that hold any of the stencil's, bit by bit. */
+MPSI_INLINE uint32_t active_weights(const mps_mpm *mpm, const mpsi_cells *cells,
+                                    const mpsi_worker *worker, int dim, int spline,
+                                    const support *s, double *w) {
+  const mpsi_stencil *at = &s->at;
+  uint32_t bodies = 0;
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++) {
+      const double across = at->w[1][j] * at->w[2][k];
+      const int t = mpsi_tile_index(at->at[0], at->at[1] + j, at->at[2] + k);
+      const uint8_t *state = worker->state + t;
+      mpsi_quad row = across * mpsi_get(at->w[0]);
+      uint32_t any;
+      memcpy(&any, state, sizeof any);
+      if (any != 0) {
+        mpsi_mask there = {-1, -1, -1, -1}; /* in a register: the row is read as a vector soon */
+        MPSI_UNROLL for (int i = 0; i <= spline; i++) {
+          if (state[i] == 0) continue;
+          bodies |= worker->inside[t + i];
+          if (state[i] & MPSI_OUTSIDE || !active(mpm, cells, state[i], s, i, j, k)) there[i] = 0;
+        }
+        row = (mpsi_quad)((mpsi_mask)row & there);
+      }
+      mpsi_put(w + 16 * k + 4 * j, row);
+    }
+  return bodies;
+}
+
+/* ---- the fit ----------------------------------------------------------------------------------
+ */
+
+MPSI_INLINE double sum_of(mpsi_quad a) { return (a[0] + a[2]) + (a[1] + a[3]); }
+
+/* M = sum w P P^T: rows along x are summed as vectors. */
+MPSI_INLINE void moments(int dim, int spline, const mpsi_stencil *at, const double *w,
+                         double m[4][4]) {
+  mpsi_quad one = {0.0}, y = {0.0}, z = {0.0}, yy = {0.0}, yz = {0.0}, zz = {0.0};
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++) {
+      const mpsi_quad row = mpsi_get(w + 16 * k + 4 * j);
+      const mpsi_quad row_y = row * at->s[1][j];
+      one += row, y += row_y, yy += row_y * at->s[1][j];
+      if (dim == 3)
+        z += row * at->s[2][k], yz += row_y * at->s[2][k], zz += row * at->s[2][k] * at->s[2][k];
+    }
+  const mpsi_quad x = mpsi_get(at->s[0]);
+  m[0][0] = sum_of(one), m[0][1] = sum_of(one * x), m[1][1] = sum_of(one * x * x);
+  m[0][2] = sum_of(y), m[1][2] = sum_of(y * x), m[2][2] = sum_of(yy);
+  if (dim == 3) {
+    m[0][3] = sum_of(z), m[1][3] = sum_of(z * x), m[2][3] = sum_of(yz), m[3][3] = sum_of(zz);
+  }
+}
+
+/* Inverse of a symmetric positive definite matrix by Gauss and Jordan; returns its determinant.
+ * Rows are vectors: what is written by parts and read whole would wait for the memory. */
+MPSI_INLINE double invert(int n, double m[4][4]) {
+  double determinant = 1.0;
+  mpsi_quad row[4];
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < 4; j++) row[i][j] = j >= n ? 0.0 : j < i ? m[j][i] : m[i][j];
+  MPSI_UNROLL for (int p = 0; p < n; p++) {
+    const double pivot = row[p][p];
+    determinant *= pivot;
+    row[p][p] = 1.0;
+    row[p] *= 1.0 / pivot;
+    MPSI_UNROLL for (int i = 0; i < n; i++) {
+      if (i == p) continue;
+      const double factor = row[i][p];
+      row[i][p] = 0.0;
+      row[i] -= factor * row[p];
+    }
+  }
+  for (int i = 0; i < n; i++) mpsi_put(m[i], row[i]);
+  return determinant;
+}
+
+/* Returns the bodies that hold any of the stencil's nodes. */
+MPSI_INLINE uint32_t fit(const mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
+                         int dim, int spline, const support *s, mpsi_shape_values *out) {
+  const mpsi_stencil *at = &s->at;
+  double q[4][4];
+  const uint32_t bodies = active_weights(mpm, cells, worker, dim, spline, s, out->w);
+  moments(dim, spline, at, out->w, q);
+  const double mass = q[0][0];
+  out->determinant =
+      invert(dim + 1, q) / (dim == 3 ? mass * mass * mass * mass : mass * mass * mass);
+  const mpsi_quad x = mpsi_get(at->s[0]);
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++) {
+      const int n = 16 * k + 4 * j;
+      const mpsi_quad w = mpsi_get(out->w + n);
+      for (int r = 0; r <= dim; r++) {
+        double across = q[r][0] + q[r][2] * at->s[1][j];
+        if (dim == 3) across += q[r][3] * at->s[2][k];
+        const mpsi_quad value = w * (across + q[r][1] * x);
+        if (r == 0)
+          mpsi_put(out->phi + n, value);
+        else
+          mpsi_put(out->gradient[r - 1] + n, value * mpm->inverse);
+      }
+    }
+  return bodies;
+}
+
+/* ---- transfers --------------------------------------------------------------------------------
+ */
+
+/* All nodes n of a stencil, with their indices i, j, k. */
+#define FOR_NODES(dim, spline)                                                                     \
+  for (int k = 0; k <= ((dim) == 3 ? (spline) : 0); k++)                                           \
+    for (int j = 0; j <= (spline); j++)                                                            \
+      for (int i = 0, n = 16 * k + 4 * j; i <= (spline); i++, n++)
+
+/* What a particle gives besides mass: momentum m (v + L dx), force by phi and by its gradient. */
+typedef struct source {
+  mpsi_quad v, L[3];   /* 1, v; 0, h dv/ds */
+  mpsi_quad body;      /* 0, force by phi */
+  mpsi_quad stress[3]; /* 0, -V sigma by the derivative along each axis */
+} source;
+
+MPSI_INLINE source source_of(const mps_mpm *mpm, int dim, int64_t p) {
+  static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+  const mpsi_columns *c = &mpm->p;
+  source out = {.v = {1.0}};
+  for (int a = 0; a < dim; a++) {
+    out.v[1 + a] = c->v[a][p];
+    out.body[1 + a] = c->m[p] * mpm->def.gravity[a];
+    for (int d = 0; d < dim; d++) {
+      out.L[d][1 + a] = mpm->def.cell * c->L[dim * a + d][p];
+      out.stress[d][1 + a] = -c->V[p] * c->s[symmetric[a][d]][p];
+    }
+  }
+  if (mpm->def.geometry == MPS_AXISYMMETRIC) out.body[1] -= c->V[p] * c->s[2][p] / c->x[0][p];
+  return out;
+}
+
+/* The blocks of nodes under a tile. */
+typedef struct under {
+  mpsi_node *node[MPSI_CORNERS], *side[MPSI_CORNERS];
+  double dt[MPSI_CORNERS]; /* of the force that goes with the momentum: 0 in split blocks */
+} under;
+
+MPSI_INLINE under nodes_under(const mps_mpm *mpm, const mpsi_cells *cells, int dim) {
+  under out;
+  for (int q = 0; q < 1 << dim; q++) {
+    const mpsi_nodes *nodes = &mpm->nodes[cells->to[q]];
+    out.node[q] = mpm->node + mpsi_first_node(mpm, cells->to[q]);
+    out.side[q] = mpm->side + mpsi_first_node(mpm, nodes->side);
+    out.dt[q] = nodes->split ? 0.0 : mpm->dt;
+  }
+  return out;
+}
+
+MPSI_INLINE void scatter(mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline, int64_t p,
+                         const support *at, const mpsi_shape_values *f) {
+  const bool by_weight = mpm->def.transfer == MPS_TRANSFER_WEIGHT;
+  const double m = mpm->p.m[p];
+  const source s = source_of(mpm, dim, p);
+  const under to = nodes_under(mpm, cells, dim);
+  FOR_NODES(dim, spline) {
+    const double w = f->w[n], phi = f->phi[n];
+    if (w == 0.0) continue;
+    const int q = at->corner[0][i] | at->corner[1][j] | at->corner[2][k];
+    const int local = local_of(at, i, j, k);
+    mpsi_quad v = s.v + s.L[0] * at->at.s[0][i] + s.L[1] * at->at.s[1][j];
+    mpsi_quad force =
+        s.body * phi + s.stress[0] * f->gradient[0][n] + s.stress[1] * f->gradient[1][n];
+    if (dim == 3) {
+      v += s.L[2] * at->at.s[2][k];
+      force += s.stress[2] * f->gradient[2][n];
+    }
+    mpsi_quad sum = v * (m * (by_weight ? w : phi));
+    if (by_weight) sum[MPSI_MASS] = m * phi;
+    sum += to.dt[q] * force;
+    double *side = to.side[q][local], *node = to.node[q][local];
+    if (to.dt[q] == 0.0) mpsi_put(side, mpsi_get(side) + force);
+    side[MPSI_EXCESS] += m * (w - phi);
+    mpsi_put(node, mpsi_get(node) + sum);
+  }
+}
+
+/* ---- contact ----------------------------------------------------------------------------------
+ */
+
+/* The node `local` of the block g, as body b touches it. */
+static mpsi_touch_node *touch_of(const mps_mpm *mpm, int32_t g, int local, int32_t b) {
+  int32_t t = mpm->nodes[g].first_touch;
+  while (mpm->touch[t].body != b) t++;
+  return &mpm->touch_node[(int64_t)t * mpm->own + local];
+}
+
+/* Adds force f at `arm` from the body's reference point to a load. */
+static void add_load(mpsi_load *load, const double *arm, const double *f) {
+  for (int c = 0; c < 3; c++) load->force[c] += f[c];
+  load->moment[0] += arm[1] * f[2] - arm[2] * f[1];
+  load->moment[1] += arm[2] * f[0] - arm[0] * f[2];
+  load->moment[2] += arm[0] * f[1] - arm[1] * f[0];
+}
+
+/* Normal force and slip of a particle against one body, seed B (28)-(30). */
+MPSI_INLINE void scatter_contact(mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
+                                 int64_t p, const support *at, const mpsi_shape_values *f,
+                                 mpsi_meeting *meeting) {
+  const mps_body *body = mpm->body[meeting->body];
+  mpsi_contact c;
+  if (!mpsi_touches(mpm, body, dim, p, &c)) return;
+  meeting->touched = true;
+  meeting->contacts[c.part]++;
+  double arm[3], reaction[3];
+  for (int a = 0; a < 3; a++) arm[a] = c.x[a] - body->pose.x[a], reaction[a] = -c.force[a];
+  add_load(&meeting->load[c.part], arm, reaction);
+  FOR_NODES(dim, spline) {
+    if (f->w[n] == 0.0) continue;
+    mpsi_touch_node *to =
+        touch_of(mpm, block_under(cells, at, i, j, k), local_of(at, i, j, k), meeting->body);
+    const double mass = mpm->p.m[p] * f->phi[n];
+    to->mass += mass;
+    for (int a = 0; a < dim; a++) {
+      to->slip[a] += mass * c.slip[a];
+      to->force[a] += f->phi[n] * c.force[a];
+    }
+  }
+}
+
+/* The friction that the nodes have given, back to the part of the surface that the particle
+ * touches: at a node by the share of its mass in contact. */
+MPSI_INLINE void share_friction(mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
+                                int64_t p, const support *at, const mpsi_shape_values *f,
+                                mpsi_meeting *meeting) {
+  const mps_body *body = mpm->body[meeting->body];
+  mpsi_contact c;
+  if (!meeting->touched || body->def.friction == 0.0 || !mpsi_touches(mpm, body, dim, p, &c))
+    return;
+  FOR_NODES(dim, spline) {
+    if (f->w[n] == 0.0) continue;
+    const mpsi_touch_node *from =
+        touch_of(mpm, block_under(cells, at, i, j, k), local_of(at, i, j, k), meeting->body);
+    const double local[3] = {at->at.at[0] + i, at->at.at[1] + j, at->at.at[2] + k};
+    const double mass = mpm->p.m[p] * f->phi[n];
+    double arm[3], reaction[3];
+    mpsi_node_position(mpm, cells->at, local, arm);
+    for (int a = 0; a < 3; a++) arm[a] -= body->pose.x[a], reaction[a] = -mass * from->slip[a];
+    add_load(&meeting->load[c.part], arm, reaction);
+  }
+}
+
+/* ---- one particle -----------------------------------------------------------------------------
+ */
+
+MPSI_INLINE void scatter_body(mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
+                              int dim, int spline, int64_t particle) {
+  support at;
+  mpsi_shape_values f;
+  make_support(mpm, cells, dim, spline, particle, &at);
+  const uint32_t bodies = fit(mpm, cells, worker, dim, spline, &at, &f);
+  scatter(mpm, cells, dim, spline, particle, &at, &f);
+  for (int32_t q = 0; bodies && q < cells->meetings; q++) {
+    mpsi_meeting *meeting = &mpm->meeting[cells->first_meeting + q];
+    if (bodies >> meeting->body & 1)
+      scatter_contact(mpm, cells, dim, spline, particle, &at, &f, meeting);
+  }
+}
+
+MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
+                             int dim, int spline, int64_t particle, double (*motion)[4]) {
+  support at;
+  mpsi_shape_values f;
+  make_support(mpm, cells, dim, spline, particle, &at);
+  const uint32_t bodies = fit(mpm, cells, worker, dim, spline, &at, &f);
+  mpsi_quad v = {0.0}, by[3] = {v, v, v};
+  FOR_NODES(dim, spline) {
+    const double *from =
+        worker->tile[mpsi_tile_index(at.at.at[0] + i, at.at.at[1] + j, at.at.at[2] + k)];
+    const mpsi_quad node = mpsi_get(from);
+    v += f.phi[n] * node;
+    for (int d = 0; d < dim; d++) by[d] += f.gradient[d][n] * node;
+  }
+  mpsi_put(motion[0], v);
+  for (int d = 0; d < dim; d++) mpsi_put(motion[1 + d], by[d]);
+  for (int32_t q = 0; bodies && q < cells->meetings; q++) {
+    mpsi_meeting *meeting = &mpm->meeting[cells->first_meeting + q];
+    if (bodies >> meeting->body & 1)
+      share_friction(mpm, cells, dim, spline, particle, &at, &f, meeting);
+  }
+}
+
+/* ---- variants ---------------------------------------------------------------------------------
+ */
+
+/* The body with dimension and spline as literal arguments. */
+#define CHOOSE(dim, spline, body, ...)                                                             \
+  do {                                                                                             \
+    if ((dim) == 2 && (spline) == 2)                                                               \
+      body(mpm, cells, worker, 2, 2, __VA_ARGS__);                                                 \
+    else if ((dim) == 2)                                                                           \
+      body(mpm, cells, worker, 2, 3, __VA_ARGS__);                                                 \
+    else if ((spline) == 2)                                                                        \
+      body(mpm, cells, worker, 3, 2, __VA_ARGS__);                                                 \
+    else                                                                                           \
+      body(mpm, cells, worker, 3, 3, __VA_ARGS__);                                                 \
+  } while (0)
+
+void MPSI_LEVELLED(mpsi_scatter_fitted)(mps_mpm *mpm, const mpsi_cells *cells,
+                                        const mpsi_worker *worker, int64_t particle) {
+  CHOOSE(mpm->dim, mpm->def.spline, scatter_body, particle);
+}
+
+void MPSI_LEVELLED(mpsi_gather_fitted)(mps_mpm *mpm, const mpsi_cells *cells,
+                                       const mpsi_worker *worker, int64_t particle,
+                                       double (*motion)[4]) {
+  CHOOSE(mpm->dim, mpm->def.spline, gather_body, particle, motion);
+}
+
+void MPSI_LEVELLED(mpsi_fit)(const mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
+                             int64_t particle, mpsi_stencil *at, mpsi_shape_values *out) {
+  support s;
+  memset(out, 0, sizeof *out);
+  make_support(mpm, cells, mpm->dim, mpm->def.spline, particle, &s);
+  CHOOSE(mpm->dim, mpm->def.spline, fit, &s, out);
+  *at = s.at;
+}

@@ -1,0 +1,209 @@
+/* g2p.c - nodes to particles, seed B (41)-(43), (48), one block of cells at a time, and then, while
+ * its particles are in the cache, their law and the speeds that bound the time step, (49), (50).
+ * Particles with a cut support: fitted.c. Compiled once for each instruction set.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "loops.h"
+
+/* Copies the nodes under a tile. */
+MPSI_INLINE void gather_tile(const mps_mpm *mpm, const mpsi_cells *cells, int dim,
+                             mpsi_node *tile) {
+  for (int k = 0; k < (dim == 3 ? MPSI_TILE_SIDE : 1); k++)
+    for (int j = 0; j < MPSI_TILE_SIDE; j++) {
+      mpsi_node *to = tile + mpsi_tile_index(0, j, k);
+      memcpy(to, mpm->node + mpsi_node_under(mpm, cells, 0, j, k), MPSI_SIDE * sizeof *to);
+      memcpy(to + MPSI_SIDE, mpm->node + mpsi_node_under(mpm, cells, MPSI_SIDE, j, k),
+             (MPSI_TILE_SIDE - MPSI_SIDE) * sizeof *to);
+    }
+}
+
+/* Velocity (motion[0], lanes 1 to 3) and its derivatives by x, y, z, by factors: along each row the
+ * sums of w v and w s_x v, then across the rows. */
+MPSI_INLINE void gather_full(int dim, int spline, double scale, const mpsi_places *places, int k,
+                             const mpsi_node *tile, double (*motion)[4]) {
+  mpsi_vec w[MPSI_ROW], ws[MPSI_ROW], zero = {0.0};
+  mpsi_vec all = zero, by_x = zero, by_y = zero, by_z = zero;
+  mpsi_row_weights(spline, places->t[k], w, ws);
+  tile += places->first[k];
+  for (int plane = 0; plane <= (dim == 3 ? spline : 0); plane++) {
+    mpsi_vec p = zero, px = zero, py = zero;
+    MPSI_UNROLL for (int j = 0; j <= spline; j++) {
+      const double *row = tile[mpsi_tile_index(0, j, plane)];
+      mpsi_vec sum = zero, slope = zero;
+      MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
+        const mpsi_vec node = mpsi_get_row(row + 4 * MPSI_WIDE * v);
+        sum += w[v] * node;
+        slope += ws[v] * node;
+      }
+      const double wy = places->w[0][j][k], wys = places->ws[0][j][k];
+      p += wy * sum;
+      px += wy * slope;
+      py += wys * sum;
+    }
+    if (dim == 2) {
+      all = p, by_x = px, by_y = py;
+      continue;
+    }
+    const double wz = places->w[1][plane][k], wzs = places->ws[1][plane][k];
+    all += wz * p;
+    by_x += wz * px;
+    by_y += wz * py;
+    by_z += wzs * p;
+  }
+  mpsi_put(motion[0], mpsi_fold(all));
+  mpsi_put(motion[1], scale * mpsi_fold(by_x));
+  mpsi_put(motion[2], scale * mpsi_fold(by_y));
+  if (dim == 3) mpsi_put(motion[3], scale * mpsi_fold(by_z));
+}
+
+/* The first `n` (at most 4) values of a vector. */
+MPSI_INLINE void store_some(double *to, mpsi_quad v, int n) {
+  if (n >= 4) {
+    mpsi_put(to, v);
+    return;
+  }
+  for (int i = 0; i < n; i++) to[i] = v[i];
+}
+
+/* Velocities and gradients to the particles' columns; the particles move. Tells whether one is then
+ * `outside` the domain (or nowhere), or has `left` the block and its slack: their stencils would
+ * leave the tile. */
+typedef struct moved {
+  bool outside, left;
+} moved;
+
+MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cells *cells, int geometry, int spline,
+                       int64_t begin, int n, const double (*motion)[4][4]) {
+  const int dim = mpsi_dim_of(geometry);
+  const double first = spline == 3 ? 1.0 : 0.5; /* of the block: see mpsi_find_places */
+  const mpsi_columns *p = &mpm->p;
+  mpsi_mask outside = {0}, left = {0};
+  for (int k = 0; k < n; k += 4) {
+    const int64_t at = begin + k;
+    const mpsi_mask there = (mpsi_mask){k, k + 1, k + 2, k + 3} < n;
+    for (int d = 0; d <= dim; d++) {
+      mpsi_quad a[4];
+      for (int i = 0; i < 4; i++) a[i] = mpsi_get(motion[k + i][d]);
+      mpsi_transpose(a);
+      for (int c = 0; c < dim && d > 0; c++)
+        store_some(p->L[dim * c + d - 1] + at, a[1 + c], n - k);
+      for (int c = 0; c < dim && d == 0; c++) {
+        const mpsi_quad x = mpsi_get_some(p->x[c] + at, n - k), to = x + mpm->dt * a[1 + c];
+        const mpsi_quad X = mpsi_from_block(mpm, cells, c, to);
+        const double corner = (double)cells->at[c] * MPSI_SIDE;
+        const mpsi_mask good =
+            (X >= (double)mpm->low[c] - corner) & (X <= (double)mpm->high[c] - corner);
+        const mpsi_mask here = (X >= first) & (X < first + (MPSI_SIDE + 2));
+        outside |= there & ~good;
+        left |= there & ~here;
+        store_some(p->v[c] + at, a[1 + c], n - k);
+        if (geometry == MPS_AXISYMMETRIC && c == 0) store_some(p->L[4] + at, a[1] / x, n - k);
+        store_some(p->x[c] + at, to, n - k);
+      }
+    }
+  }
+  return (moved){(outside[0] | outside[1] | outside[2] | outside[3]) != 0,
+                 (left[0] | left[1] | left[2] | left[3]) != 0};
+}
+
+/* The first of particles [begin, end) outside the domain. */
+static int64_t first_outside(const mps_mpm *mpm, int64_t begin, int64_t end) {
+  for (int64_t k = begin; k < end; k++)
+    for (int c = 0; c < mpm->dim; c++) {
+      const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k]);
+      if (!(X >= (double)mpm->low[c] && X <= (double)mpm->high[c])) return k;
+    }
+  return begin;
+}
+
+/* c + |v| of particles [begin, begin + n), at most a chunk. A NaN or infinity is a bad particle. */
+MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cells *cells, int dim, int64_t begin, int n,
+                            const double *moduli) {
+  const mpsi_columns *p = &mpm->p;
+  const double *v0 = p->v[0] + begin, *v1 = p->v[1] + begin, *v2 = dim == 3 ? p->v[2] + begin : v1;
+  const double *V = p->V + begin, *m = p->m + begin;
+  double speed[MPSI_CHUNK];
+  MPSI_SIMD for (int k = 0; k < n; k++) {
+    double square = v0[k] * v0[k] + v1[k] * v1[k];
+    if (dim == 3) square += v2[k] * v2[k];
+    speed[k] = sqrt((moduli ? moduli[k] : mpm->modulus) * V[k] / m[k]) + sqrt(square);
+  }
+  double largest[4] = {0.0};
+  int64_t good = 1;
+  for (int k = 0; k < n; k++) {
+    largest[k % 4] = speed[k] > largest[k % 4] ? speed[k] : largest[k % 4];
+    good &= speed[k] <= 1.7e308; /* not of a NaN */
+  }
+  for (int k = 0; k < 4; k++)
+    if (largest[k] > cells->speed) cells->speed = largest[k];
+  for (int k = 0; k < n && !good && cells->bad < 0; k++)
+    if (!isfinite(speed[k])) cells->bad = begin + k;
+}
+
+MPSI_INLINE void speed_chunk(const mps_mpm *mpm, mpsi_cells *cells, int dim, int64_t begin, int n) {
+  if (!mpsi_material_stiffens(mpm->material)) {
+    find_speed(mpm, cells, dim, begin, n, NULL);
+    return;
+  }
+  double moduli[MPSI_CHUNK];
+  mpsi_mpm_find_moduli(mpm, begin, begin + n, moduli);
+  find_speed(mpm, cells, dim, begin, n, moduli);
+}
+
+MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cells *cells, const mpsi_worker *worker, int geometry,
+                           int spline, int64_t begin, int n) {
+  const int dim = mpsi_dim_of(geometry);
+  const double scale = mpsi_inverse_moment(spline) * mpm->inverse;
+  mpsi_places places;
+  double motion[MPSI_CHUNK][4][4] __attribute__((aligned(64)));
+  mpsi_find_places(mpm, cells, dim, spline, begin, n, &places);
+  bool full = true;
+  for (int k = 0; k < n; k++) {
+    if (cells->cut && (k == 0 || places.first[k] != places.first[k - 1]))
+      full = mpsi_full_support(worker, dim, spline, places.first[k]);
+    if (full)
+      gather_full(dim, spline, scale, &places, k, (const mpsi_node *)worker->tile, motion[k]);
+    else
+      MPSI_LEVELLED(mpsi_gather_fitted)(mpm, cells, worker, begin + k, motion[k]);
+  }
+  const moved m = move(mpm, cells, geometry, spline, begin, n, (const double(*)[4][4])motion);
+  if (m.left) cells->left = true;
+  if (m.outside && cells->bad < 0) cells->bad = first_outside(mpm, begin, begin + n);
+}
+
+MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {
+  mpsi_cells *cells = &mpm->cells[b];
+  mpsi_worker *worker = &mpm->workers[number];
+  cells->left = cells->refused = false;
+  cells->bad = -1;
+  cells->speed = 0.0;
+  gather_tile(mpm, cells, mpsi_dim_of(geometry), worker->tile);
+  if (cells->cut) mpsi_mpm_find_states(mpm, cells, worker);
+  for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
+    const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
+    g2p_chunk(mpm, cells, worker, geometry, spline, k, n);
+    mpsi_mpm_apply_law(mpm, cells, k, k + n);
+    speed_chunk(mpm, cells, mpsi_dim_of(geometry), k, n);
+  }
+}
+
+/* ---- variants -------------------------------------------------------------------------------- */
+
+#define DEFINE(g, s, geometry, spline)                                                             \
+  static void g2p_##g##_##s(mps_mpm *mpm, int64_t b, int32_t worker) {                             \
+    g2p_body(mpm, b, worker, geometry, spline);                                                    \
+  }
+MPSI_VARIANTS(DEFINE)
+
+#define ENTRY(g, s, geometry, spline) [geometry][spline - 2] = g2p_##g##_##s,
+const mpsi_mpm_task MPSI_LEVELLED(mpsi_g2p)[3][2] = {MPSI_VARIANTS(ENTRY)};
+
+void MPSI_LEVELLED(mpsi_speed)(mps_mpm *mpm, int64_t b, int32_t worker) {
+  (void)worker;
+  mpsi_cells *cells = &mpm->cells[b];
+  cells->bad = -1;
+  cells->speed = 0.0;
+  for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
+    const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
+    speed_chunk(mpm, cells, mpm->dim, k, n);
+  }
+}

@@ -1,0 +1,29 @@
+/* kernels.h - the inner loops of the solver, compiled once for each instruction set: p2g.c, g2p.c,
+ * fitted.c, and loops.h for what they share.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_KERNELS_H
+#define MPSI_MPM_KERNELS_H
+
+#include "shape.h"
+
+/* The stencil and the fitted shape functions of a particle of a block whose states are known. */
+typedef void (*mpsi_fit_fn)(const mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
+                            int64_t particle, mpsi_stencil *stencil, mpsi_shape_values *out);
+
+typedef struct mpsi_kernels {
+  /* By geometry (mps_geometry) and degree of the spline less 2. */
+  const mpsi_mpm_task (*p2g)[2]; /* a block of cells, of the colour in work, to its nodes */
+  const mpsi_mpm_task (*g2p)[2]; /* from the nodes: velocities, places; then law and speed */
+  mpsi_mpm_task speed;           /* largest speed of a block, by itself */
+  mpsi_fit_fn fit;
+} mpsi_kernels;
+
+/* dispatch.c: the kernels of an x86-64 level; 0: the best that processor and build have. */
+const mpsi_kernels *mpsi_mpm_kernels(int32_t isa);
+
+/* near.c: states of the nodes under a cut block's tile, to worker->state and worker->inside. */
+void mpsi_mpm_find_states(const mps_mpm *mpm, const mpsi_cells *cells, mpsi_worker *worker);
+/* law.c: the present wave moduli of particles [begin, end). */
+void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli);
+
+#endif

@@ -1,0 +1,222 @@
+/* loops.h - what the inner loops share: vectors of nodes, tiles, and chunks of particles. For the
+ * files that are compiled once for each instruction set, with MPSI_LEVEL set.
+ *
+ * A node is four doubles {m, x, y, z}. A row of a stencil, its four nodes along x, is one array of
+ * vectors of MPSI_WIDE nodes each. A particle gives its nodes a linear function of s, which along a
+ * row is w_j w_k w_i (B + s_i D) with B and D common to the row: two multiply-adds a node and all
+ * four quantities at once (they are fused where the processor can: these files, unlike the others,
+ * allow it).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_LOOPS_H
+#define MPSI_MPM_LOOPS_H
+
+#include "kernels.h"
+
+#include <string.h>
+
+#define MPSI_JOIN_(a, b) a##b
+#define MPSI_JOIN(a, b) MPSI_JOIN_(a, b)
+#define MPSI_LEVELLED(name) MPSI_JOIN(name##_v, MPSI_LEVEL)
+#define MPSI_SIMD _Pragma("omp simd")
+#define MPSI_UNROLL _Pragma("GCC unroll 4")
+
+#define MPSI_VARIANTS(X)                                                                           \
+  X(plane_strain, cubic, MPS_PLANE_STRAIN, 3)                                                      \
+  X(plane_strain, quadratic, MPS_PLANE_STRAIN, 2)                                                  \
+  X(axisymmetric, cubic, MPS_AXISYMMETRIC, 3)                                                      \
+  X(axisymmetric, quadratic, MPS_AXISYMMETRIC, 2)                                                  \
+  X(space, cubic, MPS_SPACE, 3)                                                                    \
+  X(space, quadratic, MPS_SPACE, 2)
+
+MPSI_INLINE int mpsi_dim_of(int geometry) { return geometry == MPS_SPACE ? 3 : 2; }
+
+/* ---- vectors --------------------------------------------------------------------------------- */
+
+typedef double mpsi_quad __attribute__((vector_size(32)));
+typedef double mpsi_quad_any __attribute__((vector_size(32), aligned(8), may_alias));
+typedef int32_t mpsi_index __attribute__((vector_size(16)));
+#if MPSI_LEVEL == 4
+#define MPSI_WIDE 2
+typedef double mpsi_vec __attribute__((vector_size(64)));
+typedef double mpsi_vec_any __attribute__((vector_size(64), aligned(8), may_alias));
+#else
+#define MPSI_WIDE 1
+typedef mpsi_quad mpsi_vec;
+typedef mpsi_quad_any mpsi_vec_any;
+#endif
+#define MPSI_ROW (4 / MPSI_WIDE) /* vectors in a row */
+
+MPSI_INLINE mpsi_quad mpsi_get(const double *from) { return *(const mpsi_quad_any *)from; }
+MPSI_INLINE void mpsi_put(double *to, mpsi_quad v) { *(mpsi_quad_any *)to = v; }
+MPSI_INLINE mpsi_vec mpsi_get_row(const double *from) { return *(const mpsi_vec_any *)from; }
+MPSI_INLINE void mpsi_put_row(double *to, mpsi_vec v) { *(mpsi_vec_any *)to = v; }
+
+typedef int64_t mpsi_mask __attribute__((vector_size(32))); /* of comparisons: 0 or -1 */
+#ifdef __clang__
+#define MPSI_SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
+#else
+#define MPSI_SHUFFLE(a, b, ...) __builtin_shuffle(a, b, (mpsi_mask){__VA_ARGS__})
+#endif
+
+/* Rows to columns. */
+MPSI_INLINE void mpsi_transpose(mpsi_quad *a) {
+  const mpsi_quad p = MPSI_SHUFFLE(a[0], a[1], 0, 4, 2, 6),
+                  q = MPSI_SHUFFLE(a[0], a[1], 1, 5, 3, 7);
+  const mpsi_quad r = MPSI_SHUFFLE(a[2], a[3], 0, 4, 2, 6),
+                  s = MPSI_SHUFFLE(a[2], a[3], 1, 5, 3, 7);
+  a[0] = MPSI_SHUFFLE(p, r, 0, 1, 4, 5);
+  a[1] = MPSI_SHUFFLE(q, s, 0, 1, 4, 5);
+  a[2] = MPSI_SHUFFLE(p, r, 2, 3, 6, 7);
+  a[3] = MPSI_SHUFFLE(q, s, 2, 3, 6, 7);
+}
+
+/* The same node values for every node of a vector; the sum over its nodes. */
+MPSI_INLINE mpsi_vec mpsi_spread(mpsi_quad a) {
+#if MPSI_WIDE == 2
+  return (mpsi_vec){a[0], a[1], a[2], a[3], a[0], a[1], a[2], a[3]};
+#else
+  return a;
+#endif
+}
+
+MPSI_INLINE mpsi_quad mpsi_fold(mpsi_vec a) {
+#if MPSI_WIDE == 2
+  return (mpsi_quad){a[0], a[1], a[2], a[3]} + (mpsi_quad){a[4], a[5], a[6], a[7]};
+#else
+  return a;
+#endif
+}
+
+/* c[i], and c[i + 1], ..., for all values of the nodes from i in a vector. */
+MPSI_INLINE mpsi_vec mpsi_by_node(const double *c, int i) {
+#if MPSI_WIDE == 2
+  return (mpsi_vec){c[i], c[i], c[i], c[i], c[i + 1], c[i + 1], c[i + 1], c[i + 1]};
+#else
+  return (mpsi_vec){c[i], c[i], c[i], c[i]};
+#endif
+}
+
+/* Weights w and w s along a row, t as of mpsi_weights: the same polynomials, in factors that are
+ * never negative. */
+MPSI_INLINE void mpsi_row_weights(int spline, double t, mpsi_vec *w, mpsi_vec *ws) {
+  static const double at[4] = {0.0, 1.0, 2.0, 3.0};
+  const double f = t - 1.0;
+  for (int v = 0; v < MPSI_ROW; v++) {
+    const int i = v * MPSI_WIDE;
+    if (spline == 3) { /* u = 1 - f, f, 1 - f, f */
+      static const double u0[4] = {1.0, 0.0, 1.0, 0.0}, u1[4] = {-1.0, 1.0, -1.0, 1.0};
+      static const double c0[4] = {0.0, 2.0 / 3.0, 2.0 / 3.0, 0.0}, c2[4] = {0.0, -1.0, -1.0, 0.0};
+      static const double c3[4] = {1.0 / 6.0, 0.5, 0.5, 1.0 / 6.0};
+      const mpsi_vec u = mpsi_by_node(u0, i) + mpsi_by_node(u1, i) * f;
+      w[v] = mpsi_by_node(c0, i) + u * u * (mpsi_by_node(c2, i) + mpsi_by_node(c3, i) * u);
+    } else {
+      static const double u0[4] = {0.5, 0.0, -0.5, 0.0};
+      static const double c0[4] = {0.0, 0.75, 0.0, 0.0}, c2[4] = {0.5, -1.0, 0.5, 0.0};
+      const mpsi_vec u = mpsi_by_node(u0, i) - f;
+      w[v] = mpsi_by_node(c0, i) + mpsi_by_node(c2, i) * (u * u);
+    }
+    ws[v] = w[v] * (mpsi_by_node(at, i) - t);
+  }
+}
+
+/* ---- chunks of particles --------------------------------------------------------------------- */
+
+#define MPSI_CHUNK 64 /* particles: what is prepared for them stays in the first-level cache */
+
+/* Where the particles of a chunk are in the tile. */
+typedef struct mpsi_places {
+  double t[MPSI_CHUNK];                             /* along x, from the lowest node */
+  double w[2][4][MPSI_CHUNK], ws[2][4][MPSI_CHUNK]; /* along y, z: w, w s */
+  int32_t first[MPSI_CHUNK];                        /* lowest node */
+} mpsi_places;
+
+/* The first `n` values, if fewer than four with zeros: what comes after may be at work elsewhere.
+ */
+MPSI_INLINE mpsi_quad mpsi_get_some(const double *from, int n) {
+  if (n >= 4) return mpsi_get(from);
+  mpsi_quad out = {0.0};
+  for (int i = 0; i < n; i++) out[i] = from[i];
+  return out;
+}
+
+/* Cells from the block's first node to four particles at x, along axis c. */
+MPSI_INLINE mpsi_quad mpsi_from_block(const mps_mpm *mpm, const mpsi_cells *cells, int c,
+                                      mpsi_quad x) {
+  return (x - mpm->def.origin[c]) * mpm->inverse - (double)cells->at[c] * MPSI_SIDE;
+}
+
+/* Weights of four particles along one axis, each times s too. */
+MPSI_INLINE void mpsi_axis_weights(int spline, mpsi_quad t, double (*w)[MPSI_CHUNK],
+                                   double (*ws)[MPSI_CHUNK]) {
+  const mpsi_quad f = t - 1.0, g = 2.0 - t;
+  mpsi_quad a[4];
+  if (spline == 3) {
+    a[0] = g * g * g * (1.0 / 6.0);
+    a[1] = 2.0 / 3.0 + f * f * (0.5 * f - 1.0);
+    a[2] = 2.0 / 3.0 + g * g * (0.5 * g - 1.0);
+    a[3] = f * f * f * (1.0 / 6.0);
+  } else {
+    a[0] = 0.5 * (0.5 - f) * (0.5 - f);
+    a[1] = 0.75 - f * f;
+    a[2] = 0.5 * (0.5 + f) * (0.5 + f);
+  }
+  for (int i = 0; i <= spline; i++) {
+    mpsi_put(w[i], a[i]);
+    mpsi_put(ws[i], a[i] * ((double)i - t));
+  }
+}
+
+MPSI_INLINE void mpsi_find_places(const mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
+                                  int64_t begin, int n, mpsi_places *out) {
+  for (int k = 0; k < n; k += 4) {
+    mpsi_index first = {0};
+    int stride = 1;
+    for (int c = 0; c < dim; c++, stride *= MPSI_TILE_SIDE) {
+      /* counted from the block: not negative, so that truncation is floor */
+      const mpsi_quad X =
+          mpsi_from_block(mpm, cells, c, mpsi_get_some(mpm->p.x[c] + begin + k, n - k));
+      const mpsi_index base = spline == 3 ? __builtin_convertvector(X, mpsi_index) - 1
+                                          : __builtin_convertvector(X - 0.5, mpsi_index);
+      const mpsi_quad t = X - __builtin_convertvector(base, mpsi_quad);
+      first += base * stride;
+      if (c == 0)
+        mpsi_put(out->t + k, t);
+      else
+        mpsi_axis_weights(spline, t, (double(*)[MPSI_CHUNK])(out->w[c - 1][0] + k),
+                          (double(*)[MPSI_CHUNK])(out->ws[c - 1][0] + k));
+    }
+    memcpy(out->first + k, &first, sizeof first);
+  }
+}
+
+/* Whether no node of the stencil from tile node `first` is outside the domain or in a body. */
+MPSI_INLINE bool mpsi_full_support(const mpsi_worker *worker, int dim, int spline, int32_t first) {
+  const uint32_t mask = spline == 3 ? UINT32_MAX : 0;
+  uint32_t any = 0;
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++) {
+      const uint8_t *state = worker->state + first + mpsi_tile_index(0, j, k);
+      uint32_t row;
+      memcpy(&row, state, sizeof row);
+      any |= mask ? row : (uint32_t)(state[0] | state[1] | state[2]);
+    }
+  return any == 0;
+}
+
+/* ---- fitted.c: particles whose support is cut -------------------------------------------------
+ */
+
+/* Gives a particle to its nodes, straight. */
+void MPSI_LEVELLED(mpsi_scatter_fitted)(mps_mpm *mpm, const mpsi_cells *cells,
+                                        const mpsi_worker *worker, int64_t particle);
+/* Velocity (lanes 1 to 3 of motion[0]) and its derivatives by x, y, z (motion[1] to [3]). */
+void MPSI_LEVELLED(mpsi_gather_fitted)(mps_mpm *mpm, const mpsi_cells *cells,
+                                       const mpsi_worker *worker, int64_t particle,
+                                       double (*motion)[4]);
+
+/* The fit by itself; the largest speed of a block: see mpsi_kernels. */
+void MPSI_LEVELLED(mpsi_fit)(const mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
+                             int64_t particle, mpsi_stencil *stencil, mpsi_shape_values *out);
+void MPSI_LEVELLED(mpsi_speed)(mps_mpm *mpm, int64_t b, int32_t worker);
+
+#endif

@@ -1,0 +1,173 @@
+/* p2g.c - particles to nodes, seed B (23)-(25), (39), one block of cells at a time, for particles
+ * with a full support; the others go to fitted.c. Compiled once for each instruction set.
+ *
+ * Consecutive particles with the same stencil, a segment, are summed in registers before they are
+ * added to the tile: particles are sorted by their stencils, and nearly sorted ones do as well.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "loops.h"
+
+#define SEGMENT 16 /* particles at most */
+
+/* What a particle gives to its nodes: w (part[0] + part[1] s_x + part[2] s_y + part[3] s_z). */
+typedef struct parts {
+  double sum[MPSI_CHUNK][4][4] __attribute__((aligned(64)));   /* mass, momentum */
+  double force[MPSI_CHUNK][4][4] __attribute__((aligned(64))); /* 0, force: of split blocks */
+} parts;
+
+/* Rows of four columns to part `d` of particles k to k + 3. */
+MPSI_INLINE void put(double (*part)[4][4], int k, int d, mpsi_quad m, mpsi_quad x, mpsi_quad y,
+                     mpsi_quad z) {
+  mpsi_quad a[4] = {m, x, y, z};
+  mpsi_transpose(a);
+  for (int i = 0; i < 4; i++) mpsi_put(part[k + i][d], a[i]);
+}
+
+/* With dt > 0 `sum` has dt times the force with the momentum; else (split) they are apart. */
+MPSI_INLINE void find_parts(const mps_mpm *mpm, int geometry, int spline, bool split, int64_t begin,
+                            int n, parts *out) {
+  static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+  const int dim = mpsi_dim_of(geometry);
+  const mpsi_columns *p = &mpm->p;
+  const double h = mpm->def.cell, stiff = -mpsi_inverse_moment(spline) * mpm->inverse;
+  const double dt = split ? 1.0 : mpm->dt;
+  const mpsi_quad zero = {0.0};
+  for (int k = 0; k < n; k += 4) {
+    const int64_t at = begin + k;
+    const mpsi_quad m = mpsi_get(p->m + at), V = dt * mpsi_get(p->V + at);
+    mpsi_quad momentum[3] = {zero, zero, zero}, force[3] = {zero, zero, zero};
+    for (int c = 0; c < dim; c++) {
+      momentum[c] = m * mpsi_get(p->v[c] + at);
+      force[c] = m * (dt * mpm->def.gravity[c]);
+    }
+    if (geometry == MPS_AXISYMMETRIC)
+      force[0] -= V * mpsi_get(p->s[2] + at) / mpsi_get(p->x[0] + at);
+    for (int c = 0; c < dim && !split; c++) momentum[c] += force[c];
+    put(out->sum, k, 0, m, momentum[0], momentum[1], momentum[2]);
+    if (split) put(out->force, k, 0, zero, force[0], force[1], force[2]);
+    const mpsi_quad mh = m * h, Vs = V * stiff;
+    for (int d = 0; d < dim; d++) {
+      for (int c = 0; c < dim; c++) {
+        momentum[c] = mh * mpsi_get(p->L[dim * c + d] + at);
+        force[c] = Vs * mpsi_get(p->s[symmetric[c][d]] + at);
+        if (!split) momentum[c] += force[c];
+      }
+      put(out->sum, k, 1 + d, zero, momentum[0], momentum[1], momentum[2]);
+      if (split) put(out->force, k, 1 + d, zero, force[0], force[1], force[2]);
+    }
+  }
+}
+
+/* Adds particles [begin, end) of a chunk, all of one stencil, to a tile. */
+MPSI_INLINE void add_segment(int dim, int spline, const mpsi_places *places, int begin, int end,
+                             double (*part)[4][4], mpsi_node *tile) {
+  mpsi_vec w[SEGMENT][MPSI_ROW], ws[SEGMENT][MPSI_ROW];
+  for (int k = begin; k < end; k++)
+    mpsi_row_weights(spline, places->t[k], w[k - begin], ws[k - begin]);
+  tile += places->first[begin];
+  for (int plane = 0; plane <= (dim == 3 ? spline : 0); plane++) {
+    mpsi_vec sum[4][MPSI_ROW] = {{{0.0}}};
+    for (int k = begin; k < end; k++) {
+      mpsi_vec a = mpsi_spread(mpsi_get(part[k][0])), d = mpsi_spread(mpsi_get(part[k][1]));
+      mpsi_vec e = mpsi_spread(mpsi_get(part[k][2]));
+      if (dim == 3) {
+        const double wz = places->w[1][plane][k], wzs = places->ws[1][plane][k];
+        a = wz * a + wzs * mpsi_spread(mpsi_get(part[k][3]));
+        d *= wz;
+        e *= wz;
+      }
+      MPSI_UNROLL for (int j = 0; j <= spline; j++) {
+        const double wy = places->w[0][j][k], wys = places->ws[0][j][k];
+        const mpsi_vec value = wy * a + wys * e, slope = wy * d;
+        MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) sum[j][v] +=
+            w[k - begin][v] * value + ws[k - begin][v] * slope;
+      }
+    }
+    MPSI_UNROLL for (int j = 0; j <= spline; j++) {
+      double *to = tile[mpsi_tile_index(0, j, plane)];
+      MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
+        double *at = to + 4 * MPSI_WIDE * v;
+        mpsi_put_row(at, mpsi_get_row(at) + sum[j][v]);
+      }
+    }
+  }
+}
+
+/* Adds the tile to one of the blocks of nodes under it. */
+MPSI_INLINE void flush(const mps_mpm *mpm, const mpsi_cells *cells, int dim, int q,
+                       const mpsi_worker *from) {
+  const mpsi_nodes *nodes = &mpm->nodes[cells->to[q]];
+  mpsi_node *node = mpm->node + mpsi_first_node(mpm, cells->to[q]);
+  mpsi_node *side = nodes->split ? mpm->side + mpsi_first_node(mpm, nodes->side) : NULL;
+  int low[3], size[3];
+  for (int c = 0; c < 3; c++) {
+    low[c] = MPSI_SIDE * (q >> c & 1);
+    size[c] = low[c] ? MPSI_TILE_SIDE - MPSI_SIDE : MPSI_SIDE;
+  }
+  for (int k = 0; k < (dim == 3 ? size[2] : 1); k++)
+    for (int j = 0; j < size[1]; j++) {
+      const int t = mpsi_tile_index(low[0], j + low[1], k + low[2]);
+      const int to = (k * MPSI_SIDE + j) * MPSI_SIDE;
+      for (int i = 0; i < size[0]; i++) {
+        mpsi_quad sum = mpsi_get(from->tile[t + i]);
+        if (cells->split) {
+          const mpsi_quad force = mpsi_get(from->force[t + i]);
+          if (side)
+            mpsi_put(side[to + i], mpsi_get(side[to + i]) + force);
+          else
+            sum += mpm->dt * force;
+        }
+        mpsi_put(node[to + i], mpsi_get(node[to + i]) + sum);
+      }
+    }
+}
+
+MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
+                           int geometry, int spline, int64_t begin, int n) {
+  const int dim = mpsi_dim_of(geometry);
+  mpsi_places places;
+  parts part;
+  mpsi_find_places(mpm, cells, dim, spline, begin, n, &places);
+  if (cells->split)
+    find_parts(mpm, geometry, spline, true, begin, n, &part);
+  else
+    find_parts(mpm, geometry, spline, false, begin, n, &part);
+  for (int k = 0, end; k < n; k = end) {
+    for (end = k + 1; end < n && end < k + SEGMENT && places.first[end] == places.first[k];) end++;
+    if (cells->cut && !mpsi_full_support(worker, dim, spline, places.first[k])) {
+      for (int f = k; f < end; f++)
+        MPSI_LEVELLED(mpsi_scatter_fitted)(mpm, cells, worker, begin + f);
+      continue;
+    }
+    add_segment(dim, spline, &places, k, end, part.sum, worker->tile);
+    if (cells->split) add_segment(dim, spline, &places, k, end, part.force, worker->force);
+  }
+}
+
+MPSI_INLINE void p2g_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {
+  const mpsi_cells *cells = &mpm->cells[b];
+  mpsi_worker *worker = &mpm->workers[number];
+  const int dim = mpsi_dim_of(geometry);
+  for (int32_t q = 0; q < cells->meetings; q++) {
+    mpsi_meeting *meeting = &mpm->meeting[cells->first_meeting + q];
+    meeting->touched = false;
+    memset(meeting->load, 0, sizeof meeting->load);
+    memset(meeting->contacts, 0, sizeof meeting->contacts);
+  }
+  if (cells->cut) mpsi_mpm_find_states(mpm, cells, worker);
+  memset(worker->tile, 0, (size_t)mpm->tile * sizeof *worker->tile);
+  if (cells->split) memset(worker->force, 0, (size_t)mpm->tile * sizeof *worker->force);
+  for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
+    const int64_t rest = cells->end - k;
+    p2g_chunk(mpm, cells, worker, geometry, spline, k, rest < MPSI_CHUNK ? (int)rest : MPSI_CHUNK);
+  }
+  for (int q = 0; q < 1 << dim; q++) flush(mpm, cells, dim, q, worker);
+}
+
+#define DEFINE(g, s, geometry, spline)                                                             \
+  static void p2g_##g##_##s(mps_mpm *mpm, int64_t b, int32_t worker) {                             \
+    p2g_body(mpm, b, worker, geometry, spline);                                                    \
+  }
+MPSI_VARIANTS(DEFINE)
+
+#define ENTRY(g, s, geometry, spline) [geometry][spline - 2] = p2g_##g##_##s,
+const mpsi_mpm_task MPSI_LEVELLED(mpsi_p2g)[3][2] = {MPSI_VARIANTS(ENTRY)};
