@@ -100,7 +100,7 @@ static mps_status make_rigid(mps_context *context, const settings *s, simulation
   } else {
     def.motion = MPS_MOTION_FREE;
     def.mass = DENSITY * PI * RADIUS * RADIUS;
-    def.inertia = 0.5 * def.mass * RADIUS * RADIUS;
+    def.inertia[2] = 0.5 * def.mass * RADIUS * RADIUS;
     def.position[0] = sim->start[0], def.position[1] = sim->start[1];
     def.gravity[0] = G * sin(s->angle * PI / 180.0);
     def.gravity[1] = -G * cos(s->angle * PI / 180.0);
@@ -169,7 +169,7 @@ static mps_status look_at_body(simulation *sim, double *x, double *v, double *om
   const mps_status status = mps_body_get_state(sim->m.body[0], &b);
   if (status != MPS_OK) return status;
   for (int c = 0; c < 2; c++) x[c] = b.position[c], v[c] = b.velocity[c];
-  *omega = -b.spin;
+  *omega = -b.spin[2];
   return MPS_OK;
 }
 

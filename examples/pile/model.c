@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "pile.h"
 
+#include <mps/geostatic.h>
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -57,21 +59,16 @@ const char *pile_check(pile_settings *s) {
 
 /* ---- soil ------------------------------------------------------------------------------------ */
 
-/* Vertical stress of the weight above, K0 of it sideways; tension is positive. */
+/* The weight above, and K0 of it sideways. */
 static mps_status set_stress(pile *p) {
   const pile_settings *s = &p->s;
-  mps_view x, stress;
-  mps_status status = mps_particles_add_field(p->m.particles, "stress", 0);
-  if (status == MPS_OK) status = mps_particles_view(p->m.particles, "position", &x);
-  if (status == MPS_OK) status = mps_particles_view(p->m.particles, "stress", &stress);
-  if (status != MPS_OK) return status;
   p->k0 = isnan(s->k0) ? s->poisson / (1.0 - s->poisson) : s->k0;
-  for (int64_t k = 0; k < x.shape[0]; k++) {
-    const double vertical = -s->density * PILE_GRAVITY * (s->height - *mps_view_f64(&x, k, 1));
-    *mps_view_f64(&stress, k, 0) = *mps_view_f64(&stress, k, 2) = p->k0 * vertical;
-    *mps_view_f64(&stress, k, 1) = vertical;
-  }
-  return MPS_OK;
+  const mps_soil_layer layer = {.thickness = INFINITY, .k0 = p->k0};
+  mps_geostatic_def def = mps_geostatic_defaults();
+  def.layers = &layer, def.layer_count = 1;
+  def.gravity = PILE_GRAVITY;
+  def.surface = s->height;
+  return mps_particles_set_geostatic(p->m.particles, &def);
 }
 
 static mps_status make_soil(mps_context *context, pile *p) {

@@ -1,9 +1,9 @@
-/* mps/body.h - rigid bodies in 2D: shape, motion, friction, and the reaction they feel (seed B 5).
+/* mps/body.h - rigid bodies: shape, motion, friction, and the reaction they feel (seed B 5).
  *
  * A body's shape is given in its own frame, whose origin is the body's reference point: the
  * rotation turns about it, moments refer to it, and a free body has its centre of mass there. In
- * space the reference point is `position` and the frame is turned by `angle`. All forces are per
- * unit thickness in plane strain, per radian in axisymmetry.
+ * space the reference point is `position` and the frame is turned by `rotation`. In 2D all forces
+ * are per unit thickness in plane strain, per radian in axisymmetry.
  *
  * A prescribed body follows signals; a free body moves by the forces on it. A solver that uses the
  * body moves it and writes the reaction; without one, mps_body_advance does. One solver at a time
@@ -23,22 +23,30 @@ typedef enum mps_motion {
   MPS_MOTION_FREE = 1        /* by forces, with mass and inertia */
 } mps_motion;
 
+/* Vectors have three components in 2D too: what turns or leaves the plane (position[2], rotation[0]
+ * and [1], velocity[2], spin[0] and [1], gravity[2], inertia[0] and [1]) must then be 0. */
 typedef struct mps_body_def {
   uint32_t struct_size;
-  int32_t motion;       /* mps_motion, default PRESCRIBED */
-  double position[2];   /* m: of the reference point at time 0 */
-  double angle;         /* rad, anticlockwise, at time 0 */
-  double velocity[2];   /* m/s at time 0; free bodies only */
-  double spin;          /* rad/s at time 0; free bodies only */
-  double friction;      /* Coulomb's mu on the surface, >= 0; default 0 */
-  double penalty;       /* contact stiffness k of seed B (28), N/m per unit thickness, > 0; 0
-                           (default): the solver chooses 1.33 (K + 4G/3) of the particle's material.
-                           In axisymmetry either is multiplied by the particle's radius */
-  double mass, inertia; /* kg and kg m2 about the reference point per unit thickness, > 0; free
-                           bodies only */
-  double gravity[2];    /* m/s2; free bodies only */
-  double damping[2];    /* 1/s, >= 0, of velocity and of spin: dv/dt = ... - damping v; free bodies
-                           only */
+  int32_t motion;     /* mps_motion, default PRESCRIBED */
+  double position[3]; /* m: of the reference point at time 0 */
+  double rotation[3]; /* rad, rotation vector (axis times angle) from the body's frame to space at
+                         time 0; 2D: [2] is the angle, anticlockwise */
+  double velocity[3]; /* m/s at time 0; free bodies only */
+  double spin[3];     /* rad/s, in space, at time 0; free bodies only */
+  double friction;    /* Coulomb's mu on the surface, >= 0; default 0 */
+  double penalty;     /* contact stiffness k of seed B (28), N/m (2D: per unit thickness), > 0; 0
+                         (default): from xi, or where that is 0 too, 1.33 (K + 4G/3) of the
+                         particle's material, in 3D times the particles' spacing. In axisymmetry
+                         each is multiplied by the particle's radius */
+  double xi;          /* in (0, 1): k from seed B (58), 2 (1 - xi) (K + 4G/3)/(n CFL^2) with n
+                         particles a cell, in 3D times the cell's size; n and CFL are those of the
+                         solver's definition. 0 (default): not so. Exclusive with penalty */
+  double mass;        /* kg, 2D: per unit thickness, > 0; free bodies only */
+  double inertia[3];  /* kg m2 about the reference point, > 0, principal: the body's axes are the
+                         principal axes. 2D: [2], per unit thickness. Free bodies only */
+  double gravity[3];  /* m/s2; free bodies only */
+  double damping[2];  /* 1/s, >= 0, of velocity and of spin: dv/dt = ... - damping v; free bodies
+                         only */
 } mps_body_def;
 
 MPS_API mps_status mps_body_def_init(mps_body_def *def, size_t size);
@@ -49,7 +57,7 @@ static inline mps_body_def mps_body_defaults(void) {
   return def;
 }
 
-/* ---- shapes: `def` NULL means the defaults ----------------------------------------------------
+/* ---- shapes in 2D: `def` NULL means the defaults ----------------------------------------------
  */
 
 /** Simple polygon, convex or not, of `vertices` (3 to 10000) corners xy[2 * k], xy[2 * k + 1] (m,
@@ -70,18 +78,71 @@ MPS_API MPS_NODISCARD mps_status mps_body_create_disc(mps_context *context, cons
 MPS_API MPS_NODISCARD mps_status mps_body_create_half_plane(mps_context *context,
                                                             const mps_body_def *def,
                                                             const double *normal, mps_body **out);
+/* ---- shapes in 3D -----------------------------------------------------------------------------
+ */
+
+/** Sphere of `radius` (m, > 0) about the reference point. One face, number 0. */
+MPS_API MPS_NODISCARD mps_status mps_body_create_sphere(mps_context *context,
+                                                        const mps_body_def *def, double radius,
+                                                        mps_body **out);
+/** Half space: all points x with normal . x < 0, the surface going through the reference point. The
+ *  outward `normal` (3 values, in the body's frame) need not be a unit vector. One face, number 0.
+ */
+MPS_API MPS_NODISCARD mps_status mps_body_create_half_space(mps_context *context,
+                                                            const mps_body_def *def,
+                                                            const double *normal, mps_body **out);
+/** Solid cylinder of `radius` and `length` (m, > 0) about the body's z axis, the reference point in
+ *  its middle. Faces: 0 bottom (z = -length/2), 1 top, 2 side. */
+MPS_API MPS_NODISCARD mps_status mps_body_create_cylinder(mps_context *context,
+                                                          const mps_body_def *def, double radius,
+                                                          double length, mps_body **out);
+/** Solid of revolution about the body's z axis: cone, pile, pipe, ring. The profile is a simple
+ *  polygon of `vertices` (3 to 10000) corners rz[2 * k] = r >= 0, rz[2 * k + 1] = z (m, either
+ * sense, not closed); where the solid reaches the axis, the profile has one edge (or several apart)
+ * on it. Face k is the surface that edge k makes; an edge on the axis makes none but keeps its
+ * number. */
+MPS_API MPS_NODISCARD mps_status mps_body_create_revolution(mps_context *context,
+                                                            const mps_body_def *def,
+                                                            int64_t vertices, const double *rz,
+                                                            mps_body **out);
+/** Closed mesh of `triangles` (4 to 20 million) triangles over `vertices` points xyz[3 * i], ...
+ * (m, in the body's frame): triangle k has the corners corner[3 * k], ..., anticlockwise seen from
+ * outside (if all are the other way round they are turned). Each edge must belong to two triangles,
+ * in opposite directions; coinciding points are one. Triangles with no area, holes, edges of three
+ * or more triangles and volumes that are zero are errors that name the triangle; that surfaces do
+ * not cross one another is not checked. Face k is triangle k. The data are copied. Needs Embree:
+ *  MPS_ERROR_UNSUPPORTED in a libmps without (CMake option MPS_EMBREE); Embree's own memory, about
+ *  150 B a triangle, does not come from the context. */
+MPS_API MPS_NODISCARD mps_status mps_body_create_mesh(mps_context *context, const mps_body_def *def,
+                                                      int64_t vertices, const double *xyz,
+                                                      int64_t triangles, const int32_t *corner,
+                                                      mps_body **out);
+/** The same from an STL file, binary or ASCII, one solid; its coordinates times `scale` (> 0; 0.001
+ *  for a file in mm) are m. Corners are joined where they are the same numbers; the normals in the
+ *  file are not used. MPS_ERROR_IO when it cannot be read, MPS_ERROR_FORMAT when it is not a whole
+ * STL file: the message has path and line (ASCII) or byte (binary, as `path:@byte`). */
+MPS_API MPS_NODISCARD mps_status mps_body_create_stl(mps_context *context, const mps_body_def *def,
+                                                     const char *path, double scale,
+                                                     mps_body **out);
+
 /** Gives up the caller's share and nulls; accepts NULL. A solver keeps the body alive. */
 MPS_API void mps_body_destroy(mps_body **body);
+/** Dimension of the shape, 2 or 3; 0 for NULL. */
+MPS_API int32_t mps_body_dim(const mps_body *body);
 
 /* ---- motion ---------------------------------------------------------------------------------- */
 
-/** Drives component `component` (0 x, 1 y in m; 2 rotation in rad) of a prescribed body: it is the
- *  definition's value plus factor * displacement of `signal`. Replaces an earlier signal; NULL
- *  holds the component. The signal is kept alive. */
+/** Drives component `component` of a prescribed body: 0 x, 1 y, 2 z in m, 3 to 5 the components of
+ *  the rotation vector in rad (2D: 0, 1 and 5). It is the definition's value plus factor *
+ *  displacement of `signal`; the orientation is the exponential of the whole rotation vector, the
+ *  spin its rate. Replaces an earlier signal; NULL holds the component. The signal is kept alive.
+ */
 MPS_API MPS_NODISCARD mps_status mps_body_drive(mps_body *body, int32_t component,
                                                 mps_signal *signal, double factor);
-/** A load on a free body from now on: force[2] (N) at the reference point, moment (N m). */
-MPS_API MPS_NODISCARD mps_status mps_body_load(mps_body *body, const double *force, double moment);
+/** A load on a free body from now on: force[3] (N) at the reference point, moment[3] (N m), both in
+ *  space; NULL is zero. In 2D force[2], moment[0] and moment[1] must be 0. */
+MPS_API MPS_NODISCARD mps_status mps_body_load(mps_body *body, const double *force,
+                                               const double *moment);
 /** Moves the body on by dt (s, > 0): a prescribed one to where its signals are, a free one under
  *  gravity, load, damping and the reaction of the last step (velocity first, then position). A body
  *  that a solver uses is MPS_ERROR_STATE. */
@@ -89,30 +150,32 @@ MPS_API MPS_NODISCARD mps_status mps_body_advance(mps_body *body, double dt);
 
 typedef struct mps_body_state {
   double time;        /* s */
-  double position[2]; /* m */
-  double angle;       /* rad, not wrapped */
-  double velocity[2]; /* m/s */
-  double spin;        /* rad/s */
+  double position[3]; /* m */
+  double rotation[3]; /* rad, rotation vector: of a prescribed body and in 2D not wrapped, of a free
+                         body in 3D the shortest. 2D: [2] is the angle */
+  double orientation[9]; /* matrix R, rows: a point X of the body's frame is at position + R X */
+  double velocity[3];    /* m/s, of the reference point */
+  double spin[3];        /* rad/s, in space */
 } mps_body_state;
 MPS_API MPS_NODISCARD mps_status mps_body_get_state(mps_body *body, mps_body_state *out);
 
 /* ---- surface --------------------------------------------------------------------------------- */
 
-/** For `count` points x[2 * i], x[2 * i + 1] (m, finite): signed `distance` (m, negative inside),
- *  outward unit `normal` (2 a point), `foot`, the nearest point of the surface (2 a point, m), and
- *  the `edge` it lies on. Each result may be NULL. The normal is the gradient of the distance; on a
- *  corner it is the mean of the two edges', and where two feet are equally near, that of the lower
- *  edge. */
+/** For `count` points x of dim values each (m, finite): signed `distance` (m, negative inside),
+ *  outward unit `normal` (dim values a point), `foot`, the nearest point of the surface (dim values
+ * a point, m), and the `face` it lies on (2D: the edge). Each result may be NULL. The normal is the
+ *  gradient of the distance; on a corner it is the mean of the two edges' (mesh: of the triangles',
+ *  weighted with their angles), and where two feet are equally near, that of the lower face. */
 MPS_API MPS_NODISCARD mps_status mps_body_distance(mps_body *body, int64_t count, const double *x,
                                                    double *distance, double *normal, double *foot,
-                                                   int64_t *edge);
+                                                   int64_t *face);
 
 #define MPS_BODY_MAX_PARTS 16
 
-/** Names the edges first, ..., first + count - 1 (around the end of the list if need be) a part of
- *  the surface, so that reactions are told apart: tip, inside, outside. `part` (may be NULL)
- *  receives its number: 1, 2, ... Part 0, "rest", has the edges in no part; an edge belongs to the
- *  part that named it last. At most 15 parts; names are as of fields. */
+/** Names the faces (2D: edges) first, ..., first + count - 1 (around the end of the list if need
+ * be) a part of the surface, so that reactions are told apart: tip, inside, outside. `part` (may be
+ * NULL) receives its number: 1, 2, ... Part 0, "rest", has the faces in no part; a face belongs to
+ * the part that named it last. At most 15 parts; names are as of fields. */
 MPS_API MPS_NODISCARD mps_status mps_body_name_part(mps_body *body, const char *name, int64_t first,
                                                     int64_t count, int32_t *part);
 MPS_API int32_t mps_body_part_count(const mps_body *body); /* "rest" included */
@@ -121,11 +184,11 @@ MPS_API int32_t mps_body_part(const mps_body *body, const char *name);
 
 /** What particles do to the body. The last step's force is its mean over the step. */
 typedef struct mps_reaction {
-  double force[2];       /* N, of the last step */
-  double moment;         /* N m about the reference point, of the last step */
-  double impulse[2];     /* N s since creation */
-  double moment_impulse; /* N m s since creation, about the reference point as it moved */
-  int64_t contacts;      /* particles in contact in the last step */
+  double force[3];          /* N, of the last step */
+  double moment[3];         /* N m about the reference point, of the last step; 2D: [2] */
+  double impulse[3];        /* N s since creation */
+  double moment_impulse[3]; /* N m s since creation, about the reference point as it moved */
+  int64_t contacts;         /* particles in contact in the last step */
 } mps_reaction;
 /** Reaction on one part, or on the whole body (`part` -1). */
 MPS_API MPS_NODISCARD mps_status mps_body_get_reaction(mps_body *body, int32_t part,

@@ -7,59 +7,100 @@
 
 #include <mps/body.h>
 
-typedef enum mpsi_shape { MPSI_POLYGON = 0, MPSI_DISC = 1, MPSI_HALF_PLANE = 2 } mpsi_shape;
+typedef enum mpsi_shape {
+  MPSI_POLYGON = 0,    /* 2D */
+  MPSI_BALL = 1,       /* disc or sphere */
+  MPSI_HALF = 2,       /* half plane or half space */
+  MPSI_REVOLUTION = 3, /* 3D: a polygon (r, z) turned about the z axis */
+  MPSI_MESH = 4        /* 3D: closed triangles */
+} mpsi_shape;
 
+typedef struct mpsi_mesh mpsi_mesh;
+
+enum { MPSI_MOTIONS = 6 };
 #define MPSI_PART_NAME 48 /* bytes, with the terminating zero */
+
+/* Vectors of space have three components in 2D too, z being 0 there: in 2D x may be read as two. */
 
 /* The nearest point of a surface. */
 typedef struct mpsi_foot {
   double distance;  /* m, negative inside */
-  double normal[2]; /* outward unit vector */
-  double at[2];     /* m */
-  int64_t edge;
+  double normal[3]; /* outward unit vector */
+  double at[3];     /* m */
+  int64_t face;     /* in the caller's order; 2D: the edge */
 } mpsi_foot;
 
 /* A force on a part of the surface. */
 typedef struct mpsi_load {
-  double force[2], moment; /* N, N m about the reference point */
+  double force[3], moment[3]; /* N, N m about the reference point; 2D: force[0], [1], moment[2] */
 } mpsi_load;
 
 typedef struct mpsi_pose {
-  double x[2], cosine, sine; /* reference point (m), rotation */
-  double v[2], spin;         /* m/s, rad/s */
+  double x[3], R[9];    /* reference point (m); rotation from the body's frame to space, rows */
+  double v[3], spin[3]; /* m/s, rad/s in space */
 } mpsi_pose;
 
 struct mps_body {
   mps_context *context;
   int32_t references; /* one thread at a time: no atomics */
   mps_body_def def;
+  int32_t dim; /* 2 or 3 */
   mpsi_shape shape;
-  double radius;    /* disc, m */
-  double normal[2]; /* half plane, body's frame */
-  int64_t edges;
-  double *xy; /* polygon: anticlockwise corners, the first repeated at the end */
-  bool reversed;
-  int32_t *part_of; /* one an edge, in the caller's order */
+  double radius;    /* ball, m */
+  double normal[3]; /* half plane or space, body's frame */
+  int64_t faces;    /* as the caller counts them */
+  int64_t edges;    /* of the polygon */
+  double *xy;       /* polygon: anticlockwise corners, the first repeated at the end */
+  int64_t *face_of; /* face of each edge */
+  mpsi_mesh *mesh;
+  int32_t *part_of; /* one a face, in the caller's order */
   char (*names)[MPSI_PART_NAME];
   int32_t parts;
-  mps_signal *signal[3];
-  double factor[3];
-  double load[3];
-  double time;  /* s */
-  double angle; /* rad */
+  mps_signal *signal[MPSI_MOTIONS]; /* of x and of the rotation vector */
+  double factor[MPSI_MOTIONS];
+  mpsi_load load;
+  double time;        /* s */
+  double rotation[3]; /* rad: as of mps_body_state, but of a free body in 3D unused */
+  double angular[3];  /* kg m2/s, angular momentum in space: free bodies in 3D */
   mpsi_pose pose;
   mps_reaction reaction[MPS_BODY_MAX_PARTS];
   void *user; /* the solver that moves it, or NULL */
 };
 
-/* Nearest surface point to x; x is finite. Reads only: any number of threads. */
+/* Nearest surface point to x (dim values, finite). Reads only: any number of threads. */
 mpsi_foot mpsi_body_foot(const mps_body *body, const double *x);
 
-/* Velocity (m/s) of the body's material at x. */
+/* Velocity v[3] (m/s) of the body's material at x[3]. */
 static inline void mpsi_body_velocity(const mpsi_pose *pose, const double *x, double *v) {
-  v[0] = pose->v[0] - pose->spin * (x[1] - pose->x[1]);
-  v[1] = pose->v[1] + pose->spin * (x[0] - pose->x[0]);
+  const double *w = pose->spin;
+  const double r[3] = {x[0] - pose->x[0], x[1] - pose->x[1], x[2] - pose->x[2]};
+  v[0] = pose->v[0] + w[1] * r[2] - w[2] * r[1];
+  v[1] = pose->v[1] + w[2] * r[0] - w[0] * r[2];
+  v[2] = pose->v[2] + w[0] * r[1] - w[1] * r[0];
 }
+
+/* Contact stiffness k (N/m, 2D per unit thickness) of seed B (28) or (58) against particles of
+ * `modulus` K + 4G/3 (Pa) and `spacing` (m) in cells of size `cell` (m). In axisymmetry the caller
+ * multiplies by the radius. */
+double mpsi_body_penalty(const mps_body *body, double modulus, double spacing, double cell,
+                         double courant);
+
+/* Whether two bodies of one dimension overlap by more than `depth` (m, > 0): bodies that touch do
+ * not. Two solids without a half space or sphere between them cost up to (size / depth)^2 distances
+ * where faces lie on each other; the round surface of a solid of revolution then counts 0.2 % of
+ * its radius too small. */
+bool mpsi_body_overlap(const mps_body *a, const mps_body *b, double depth);
+/* Smallest wall (m): way through the body from samples of its surface, straight inwards, to where
+ * the surface faces the other way within 45 degrees; so corners and tips blunter than that do not
+ * count. INFINITY of a half space. */
+double mpsi_body_thickness(const mps_body *body);
+
+/* A new body of `faces` faces without its shape, at its first position; checks `def`, NULL means
+ * the defaults. */
+mps_status mpsi_body_new(mps_context *context, const char *function, const mps_body_def *def,
+                         int32_t dim, mpsi_shape shape, int64_t faces, mps_body **out);
+/* Gives up one share; the last frees. */
+void mpsi_body_release(mps_body *body);
 
 /* Puts a new body where its definition says. */
 void mpsi_body_begin(mps_body *body);

@@ -3,28 +3,39 @@
 #include "body.h"
 
 #include "core/retain.h"
+#include "rotation.h"
 
 #include <string.h>
 
 /* ---- motion ---------------------------------------------------------------------------------- */
 
+/* 2D: the plane turned by `angle`. */
 static void set_angle(mps_body *body, double angle) {
-  body->angle = angle;
-  body->pose.cosine = cos(angle);
-  body->pose.sine = sin(angle);
+  const double cosine = cos(angle), sine = sin(angle);
+  const double R[9] = {cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0};
+  body->rotation[2] = angle;
+  memcpy(body->pose.R, R, sizeof R);
 }
 
 /* Where the signals are at the body's time. */
 static void follow(mps_body *body) {
-  double at[3] = {body->def.position[0], body->def.position[1], body->def.angle}, rate[3] = {0};
-  for (int c = 0; c < 3; c++) {
+  double at[MPSI_MOTIONS], rate[MPSI_MOTIONS] = {0};
+  for (int c = 0; c < 3; c++) at[c] = body->def.position[c], at[3 + c] = body->def.rotation[c];
+  for (int c = 0; c < MPSI_MOTIONS; c++) {
     if (!body->signal[c]) continue;
     at[c] += body->factor[c] * mps_signal_displacement(body->signal[c], body->time);
     rate[c] = body->factor[c] * mps_signal_velocity(body->signal[c], body->time);
   }
-  for (int c = 0; c < 2; c++) body->pose.x[c] = at[c], body->pose.v[c] = rate[c];
-  body->pose.spin = rate[2];
-  set_angle(body, at[2]);
+  mpsi_pose *pose = &body->pose;
+  for (int c = 0; c < 3; c++) pose->x[c] = at[c], pose->v[c] = rate[c];
+  if (body->dim == 2) {
+    pose->spin[2] = rate[5];
+    set_angle(body, at[5]);
+    return;
+  }
+  memcpy(body->rotation, at + 3, sizeof body->rotation);
+  mpsi_rotation_exp(at + 3, pose->R);
+  mpsi_rotation_spin(at + 3, rate + 3, pose->spin);
 }
 
 void mpsi_body_begin(mps_body *body) {
@@ -33,31 +44,74 @@ void mpsi_body_begin(mps_body *body) {
     follow(body);
     return;
   }
-  for (int c = 0; c < 2; c++)
-    body->pose.x[c] = def->position[c], body->pose.v[c] = def->velocity[c];
-  body->pose.spin = def->spin;
-  set_angle(body, def->angle);
+  mpsi_pose *pose = &body->pose;
+  for (int c = 0; c < 3; c++)
+    pose->x[c] = def->position[c], pose->v[c] = def->velocity[c], pose->spin[c] = def->spin[c];
+  if (body->dim == 2) {
+    set_angle(body, def->rotation[2]);
+    return;
+  }
+  mpsi_rotation_exp(def->rotation, pose->R);
+  double own[3]; /* the body's axes */
+  mpsi_rotate_back(pose->R, def->spin, own);
+  for (int c = 0; c < 3; c++) own[c] *= def->inertia[c];
+  mpsi_rotate(pose->R, own, body->angular);
+}
+
+/* Turns a free body in 3D for dt under its angular momentum L, which stays: the energy of rotation,
+ * sum (L . e_i)^2/(2 I_i) over the body's axes e_i, is split into L^2/(2 I_m), whose motion is a
+ * rotation about L, and two rests (L . e_i)^2 (1/I_i - 1/I_m)/2, whose motions are rotations about
+ * e_i, in a symmetric order. Each is exact, so that the step is symplectic, explicit and of second
+ * order; with I_m the middle one, a body with two equal inertias moves exactly. */
+static void turn(mps_body *body, double dt) {
+  const double *I = body->def.inertia, *L = body->angular;
+  double *R = body->pose.R;
+  int m = 0;
+  for (int k = 1; k < 3; k++)
+    if ((I[k] - I[m]) * (I[k] - I[(3 - m - k)]) <= 0.0) m = k;
+  const double by = dt / I[m], about[3] = {by * L[0], by * L[1], by * L[2]};
+  mpsi_rotation_turn(about, R);
+  const int axis[3] = {(m + 1) % 3, (m + 2) % 3, (m + 1) % 3};
+  for (int k = 0; k < 3; k++) {
+    const int i = axis[k];
+    const double along = R[i] * L[0] + R[3 + i] * L[1] + R[6 + i] * L[2];
+    const double rate = along * (1.0 / I[i] - 1.0 / I[m]);
+    mpsi_rotation_turn_own(i, (k == 1 ? 1.0 : 0.5) * dt * rate, R);
+  }
+  mpsi_rotation_clean(R);
+  double own[3];
+  mpsi_rotate_back(R, L, own);
+  for (int c = 0; c < 3; c++) own[c] /= I[c];
+  mpsi_rotate(R, own, body->pose.spin);
 }
 
 void mpsi_body_advance(mps_body *body, double dt) {
   const mps_body_def *def = &body->def;
+  mpsi_pose *pose = &body->pose;
   body->time += dt;
   if (def->motion == MPS_MOTION_PRESCRIBED) {
     follow(body);
     return;
   }
-  double force[2] = {body->load[0], body->load[1]}, moment = body->load[2];
-  for (int32_t part = 0; part < body->parts; part++) {
-    for (int c = 0; c < 2; c++) force[c] += body->reaction[part].force[c];
-    moment += body->reaction[part].moment;
+  mpsi_load sum = body->load;
+  for (int32_t part = 0; part < body->parts; part++)
+    for (int c = 0; c < 3; c++) {
+      sum.force[c] += body->reaction[part].force[c];
+      sum.moment[c] += body->reaction[part].moment[c];
+    }
+  for (int c = 0; c < 3; c++) { /* damping at the end of the step: stable for every dt */
+    const double v = pose->v[c] + dt * (sum.force[c] / def->mass + def->gravity[c]);
+    pose->v[c] = v / (1.0 + dt * def->damping[0]);
+    pose->x[c] += dt * pose->v[c];
   }
-  for (int c = 0; c < 2; c++) { /* damping at the end of the step: stable for every dt */
-    const double v = body->pose.v[c] + dt * (force[c] / def->mass + def->gravity[c]);
-    body->pose.v[c] = v / (1.0 + dt * def->damping[0]);
-    body->pose.x[c] += dt * body->pose.v[c];
+  const double left = 1.0 + dt * def->damping[1];
+  if (body->dim == 2) {
+    pose->spin[2] = (pose->spin[2] + dt * (sum.moment[2] / def->inertia[2])) / left;
+    set_angle(body, body->rotation[2] + dt * pose->spin[2]);
+    return;
   }
-  body->pose.spin = (body->pose.spin + dt * (moment / def->inertia)) / (1.0 + dt * def->damping[1]);
-  set_angle(body, body->angle + dt * body->pose.spin);
+  for (int c = 0; c < 3; c++) body->angular[c] = (body->angular[c] + dt * sum.moment[c]) / left;
+  turn(body, dt);
 }
 
 mps_status mps_body_advance(mps_body *body, double dt) {
@@ -74,9 +128,12 @@ mps_status mps_body_advance(mps_body *body, double dt) {
 
 mps_status mps_body_drive(mps_body *body, int32_t component, mps_signal *signal, double factor) {
   if (!body) return MPS_ERROR_ARGUMENT;
-  if (component < 0 || component > 2)
-    return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
-                     "component is %d, allowed are 0 (x), 1 (y) and 2 (rotation)", component);
+  if (body->dim == 2 ? component != 0 && component != 1 && component != 5
+                     : component < 0 || component >= MPSI_MOTIONS)
+    return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT, "component is %d, allowed are %s",
+                     component,
+                     body->dim == 2 ? "0 (x), 1 (y) and 5 (rotation)"
+                                    : "0 to 2 (x, y, z) and 3 to 5 (rotation about x, y, z)");
   if (!isfinite(factor))
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT, "factor is %g, must be finite",
                      factor);
@@ -91,17 +148,24 @@ mps_status mps_body_drive(mps_body *body, int32_t component, mps_signal *signal,
   return MPS_OK;
 }
 
-mps_status mps_body_load(mps_body *body, const double *force, double moment) {
+mps_status mps_body_load(mps_body *body, const double *force, const double *moment) {
   if (!body) return MPS_ERROR_ARGUMENT;
-  if (!force) return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT, "force is NULL");
-  if (!isfinite(force[0]) || !isfinite(force[1]) || !isfinite(moment))
-    return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
-                     "force is (%g, %g) N and moment %g N m, must be finite", force[0], force[1],
-                     moment);
+  mpsi_load load = {{0}, {0}};
+  if (force) memcpy(load.force, force, sizeof load.force);
+  if (moment) memcpy(load.moment, moment, sizeof load.moment);
+  for (int c = 0; c < 3; c++)
+    if (!isfinite(load.force[c]) || !isfinite(load.moment[c]))
+      return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
+                       "force[%d] is %g N and moment[%d] %g N m, must be finite", c, load.force[c],
+                       c, load.moment[c]);
   if (body->def.motion != MPS_MOTION_FREE)
     return mpsi_fail(body->context, __func__, MPS_ERROR_STATE,
                      "a prescribed body takes no load: its motion is given");
-  body->load[0] = force[0], body->load[1] = force[1], body->load[2] = moment;
+  if (body->dim == 2 && (load.force[2] != 0.0 || load.moment[0] != 0.0 || load.moment[1] != 0.0))
+    return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
+                     "force[2] is %g, moment[0] %g and moment[1] %g, must be 0 in 2D",
+                     load.force[2], load.moment[0], load.moment[1]);
+  body->load = load;
   return MPS_OK;
 }
 
@@ -109,11 +173,15 @@ mps_status mps_body_get_state(mps_body *body, mps_body_state *out) {
   if (!body) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   const mpsi_pose *p = &body->pose;
-  *out = (mps_body_state){.time = body->time,
-                          .position = {p->x[0], p->x[1]},
-                          .angle = body->angle,
-                          .velocity = {p->v[0], p->v[1]},
-                          .spin = p->spin};
+  mps_body_state state = {.time = body->time};
+  memcpy(state.position, p->x, sizeof p->x);
+  memcpy(state.orientation, p->R, sizeof p->R);
+  memcpy(state.velocity, p->v, sizeof p->v);
+  memcpy(state.spin, p->spin, sizeof p->spin);
+  memcpy(state.rotation, body->rotation, sizeof body->rotation);
+  if (body->dim == 3 && body->def.motion == MPS_MOTION_FREE)
+    mpsi_rotation_log(p->R, state.rotation);
+  *out = state;
   return MPS_OK;
 }
 
@@ -122,12 +190,12 @@ mps_status mps_body_get_state(mps_body *body, mps_body_state *out) {
 void mpsi_body_react(mps_body *body, double dt, const mpsi_load *load, const int64_t *contacts) {
   for (int32_t part = 0; part < body->parts; part++) {
     mps_reaction *r = &body->reaction[part];
-    for (int c = 0; c < 2; c++) {
+    for (int c = 0; c < 3; c++) {
       r->force[c] = load[part].force[c];
+      r->moment[c] = load[part].moment[c];
       r->impulse[c] += dt * load[part].force[c];
+      r->moment_impulse[c] += dt * load[part].moment[c];
     }
-    r->moment = load[part].moment;
-    r->moment_impulse += dt * load[part].moment;
     r->contacts = contacts[part];
   }
 }
@@ -141,12 +209,12 @@ mps_status mps_body_get_reaction(mps_body *body, int32_t part, mps_reaction *out
   mps_reaction sum = {0};
   for (int32_t p = part < 0 ? 0 : part; p < (part < 0 ? body->parts : part + 1); p++) {
     const mps_reaction *r = &body->reaction[p];
-    for (int c = 0; c < 2; c++) {
+    for (int c = 0; c < 3; c++) {
       sum.force[c] += r->force[c];
+      sum.moment[c] += r->moment[c];
       sum.impulse[c] += r->impulse[c];
+      sum.moment_impulse[c] += r->moment_impulse[c];
     }
-    sum.moment += r->moment;
-    sum.moment_impulse += r->moment_impulse;
     sum.contacts += r->contacts;
   }
   *out = sum;
@@ -173,11 +241,11 @@ mps_status mps_body_name_part(mps_body *body, const char *name, int64_t first, i
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
                      "name is \"%.60s\", must be [A-Za-z_][A-Za-z0-9_]* of at most 47 characters",
                      name ? name : "(NULL)");
-  if (first < 0 || first >= body->edges || count < 1 || count > body->edges)
+  if (first < 0 || first >= body->faces || count < 1 || count > body->faces)
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
                      "first is %lld and count %lld, allowed are 0 to %lld and 1 to %lld",
-                     (long long)first, (long long)count, (long long)body->edges - 1,
-                     (long long)body->edges);
+                     (long long)first, (long long)count, (long long)body->faces - 1,
+                     (long long)body->faces);
   int32_t number = mps_body_part(body, name);
   if (number < 0) {
     if (body->parts == MPS_BODY_MAX_PARTS)
@@ -187,7 +255,7 @@ mps_status mps_body_name_part(mps_body *body, const char *name, int64_t first, i
     number = body->parts++;
     strcpy(body->names[number], name);
   }
-  for (int64_t k = 0; k < count; k++) body->part_of[(first + k) % body->edges] = number;
+  for (int64_t k = 0; k < count; k++) body->part_of[(first + k) % body->faces] = number;
   if (part) *part = number;
   return MPS_OK;
 }

@@ -20,17 +20,17 @@ MPSI_INLINE bool mpsi_touches(const mps_mpm *mpm, const mps_body *body, int64_t 
   const mpsi_foot foot = mpsi_body_foot(body, x);
   const double d = foot.distance - mpm->gap;
   if (!(d < 0.0)) return false;
-  double k = body->def.penalty > 0.0 ? body->def.penalty : 1.33 * mpm->modulus;
+  double k = mpsi_body_penalty(body, mpm->modulus, 2.0 * mpm->gap, mpm->def.cell, mpm->def.courant);
   if (mpm->def.geometry == MPS_AXISYMMETRIC) k *= x[0];
   const double dx = foot.at[0] - x[0], dy = foot.at[1] - x[1];
-  double v[2];
+  double v[3];
   mpsi_body_velocity(&body->pose, foot.at, v);
   for (int c = 0; c < 2; c++) {
     out->force[c] = -k * d * foot.normal[c];
     out->slip[c] =
         v[c] - (p->v[c][particle] + p->L[2 * c][particle] * dx + p->L[2 * c + 1][particle] * dy);
   }
-  out->part = body->part_of[foot.edge];
+  out->part = body->part_of[foot.face];
   return true;
 }
 

@@ -42,7 +42,7 @@ static double stick_share(const mps_mpm *mpm, int32_t b, const double *x, double
   const mps_body *body = mpm->body[b];
   if (body->def.motion == MPS_MOTION_PRESCRIBED) return 1.0;
   const double arm = (x[0] - body->pose.x[0]) * ty - (x[1] - body->pose.x[1]) * tx;
-  const double inverse = 1.0 / body->def.mass + arm * arm / body->def.inertia;
+  const double inverse = 1.0 / body->def.mass + arm * arm / body->def.inertia[2];
   return 1.0 / (1.0 + mpm->contact_mass[b] * inverse);
 }
 
@@ -92,14 +92,14 @@ void mpsi_mpm_rub(mps_mpm *mpm, int64_t g) {
 /* Reactions of all blocks, in their order, to the bodies; then the bodies move. */
 void mpsi_mpm_react(mps_mpm *mpm) {
   for (int32_t b = 0; b < mpm->bodies; b++) {
-    mpsi_load load[MPS_BODY_MAX_PARTS] = {{{0}, 0.0}};
+    mpsi_load load[MPS_BODY_MAX_PARTS] = {{{0}, {0}}};
     int64_t contacts[MPS_BODY_MAX_PARTS] = {0};
     for (int64_t k = 0; k < mpm->meeting_count; k++) {
       const mpsi_meeting *meeting = &mpm->meeting[k];
       if (meeting->body != b || !meeting->touched) continue;
       for (int32_t part = 0; part < mpm->body[b]->parts; part++) {
         for (int c = 0; c < 2; c++) load[part].force[c] += meeting->load[part].force[c];
-        load[part].moment += meeting->load[part].moment;
+        load[part].moment[2] += meeting->load[part].moment[2];
         contacts[part] += meeting->contacts[part];
       }
     }

@@ -314,6 +314,9 @@ mps_status mps_mpm_add_body(mps_mpm *mpm, mps_body *body) {
   if (body->context != mpm->context)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "the body was made from another context");
+  if (body->dim != 2)
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "the body is %dD, the solver 2D",
+                     body->dim);
   if (mpm->bodies == MPS_MPM_MAX_BODIES)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "the solver has %d bodies, the most there can be", MPS_MPM_MAX_BODIES);

@@ -86,7 +86,7 @@ static void scatter_contact(const mps_mpm *mpm, int spline, int64_t k, const mps
   mpsi_load *load = &meeting->load[c.part];
   load->force[0] -= c.force[0];
   load->force[1] -= c.force[1];
-  load->moment -= x * c.force[1] - y * c.force[0];
+  load->moment[2] -= x * c.force[1] - y * c.force[0];
   meeting->contacts[c.part]++;
   for (int j = 0; j <= spline; j++)
     for (int i = 0; i <= spline; i++) {
@@ -202,7 +202,7 @@ static void share_friction(const mps_mpm *mpm, const mpsi_cells *cells, int spli
                        mpm->def.cell * ((double)cells->at[1] * MPSI_SIDE + t / MPSI_TILE_SIDE);
       load->force[0] -= fx;
       load->force[1] -= fy;
-      load->moment -= x * fy - y * fx;
+      load->moment[2] -= x * fy - y * fx;
     }
 }
 

@@ -111,7 +111,7 @@ static void check_gradient(mps_body *body, const double *x) {
 static void normal_is_the_gradient(void **state) {
   (void)state;
   mps_body_def def = mps_body_defaults();
-  def.position[0] = 0.3, def.position[1] = -0.2, def.angle = 0.7;
+  def.position[0] = 0.3, def.position[1] = -0.2, def.rotation[2] = 0.7;
   mps_body *list[SHAPES + 2];
   for (int k = 0; k < SHAPES; k++) list[k] = make_body(k, k == 1, &def);
   const double normal[] = {1.0, 2.0};

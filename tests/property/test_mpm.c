@@ -165,7 +165,7 @@ static void body_momentum(mps_body *body, double mass, double inertia, double *o
   out[0] += mass * b.velocity[0];
   out[1] += mass * b.velocity[1];
   out[2] +=
-      inertia * b.spin + mass * (b.position[0] * b.velocity[1] - b.position[1] * b.velocity[0]);
+      inertia * b.spin[2] + mass * (b.position[0] * b.velocity[1] - b.position[1] * b.velocity[0]);
 }
 
 /* A lump thrown at two free bodies: what the particles lose the bodies get, to the last bits of
@@ -182,8 +182,8 @@ static void contact_keeps_momentum(void **state) {
   mps_body *bodies[2] = {NULL};
   mps_body_def body = mps_body_defaults();
   body.motion = MPS_MOTION_FREE;
-  body.mass = 20.0, body.inertia = 0.2;
-  body.position[0] = 0.2, body.position[1] = -0.05, body.angle = 0.4;
+  body.mass = 20.0, body.inertia[2] = 0.2;
+  body.position[0] = 0.2, body.position[1] = -0.05, body.rotation[2] = 0.4;
   body.friction = 0.4;
   mps_assert_ok(context, mps_body_create_box(context, &body, 0.1, 0.3, &bodies[0]));
   body.position[0] = 0.1, body.position[1] = -0.2;
