@@ -1,0 +1,169 @@
+/* results.c - exact capacity, tables and pictures of mps-footing.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "common/plot.h"
+#include "footing.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#define PI 3.14159265358979323846
+
+enum { LINES = 40 };
+
+/* What the run is compared with, q/c. */
+typedef struct capacity {
+  double computed, drift;      /* drift: of the last fifth from the one before, in parts of it */
+  double smooth, rough, exact; /* NaN where the base is neither */
+} capacity;
+
+/* Mean of the pressures of the part-th fifth of the path over c: in the last the footing goes down
+ * at constant pressure. */
+static double fifth(const simulation *sim, int part) {
+  const int first = sim->rows * (part - 1) / 5, end = sim->rows * part / 5;
+  double q = 0.0;
+  for (int k = first; k < end; k++) q += sim->q[k];
+  return q / (end - first) / (sim->s.cohesion * 1e3);
+}
+
+/* The limit by characteristics, which supposes associated flow; its error falls with the square of
+ * the lines and is extrapolated. */
+static double limit(const settings *s, bool rough) {
+  const strip_footing f = {.half_width = s->half_width,
+                           .friction = s->phi * PI / 180.0,
+                           .cohesion = s->cohesion * 1e3,
+                           .weight = s->density * s->gravity,
+                           .rough = rough};
+  const double coarse = characteristics_capacity(&f, LINES / 2);
+  const double fine = characteristics_capacity(&f, LINES);
+  return (4.0 * fine - coarse) / 3.0 / f.cohesion;
+}
+
+static capacity measure(const simulation *sim) {
+  const settings *s = &sim->s;
+  capacity c = {
+      .computed = fifth(sim, 5), .smooth = 2.0 + PI, .rough = 2.0 + PI, .exact = 2.0 + PI};
+  c.drift = 1.0 - fifth(sim, 4) / c.computed;
+  if (s->model == VON_MISES) return c; /* Prandtl (52), whatever the weight and the base */
+  c.smooth = limit(s, false);
+  c.rough = limit(s, true);
+  c.exact = s->mu == 0.0 ? c.smooth : s->mu >= tan(s->phi * PI / 180.0) ? c.rough : NAN;
+  return c;
+}
+
+/* ---- tables ---------------------------------------------------------------------------------- */
+
+static bool write_pressure(app *a, const settings *s, const simulation *sim) {
+  output f;
+  if (!output_open(&f, a, s->out, "pressure.csv")) return false;
+  output_text(&f, "settlement_mm,q_kPa,q_over_c\n");
+  for (int k = 0; k < sim->rows; k++) {
+    const double q = sim->q[k] * 1e-3, row[] = {sim->path[k] * 1e3, q, q / s->cohesion};
+    csv_row(&f, 3, row);
+  }
+  return output_close(&f);
+}
+
+static bool write_particles(app *a, const settings *s, simulation *sim) {
+  mps_view x, strain;
+  output f;
+  if (!app_check(a, mps_particles_view(sim->m.particles, "position", &x)) ||
+      !app_check(a, mps_particles_view(sim->m.particles, "plastic_strain", &strain)) ||
+      !output_open(&f, a, s->out, "particles.csv"))
+    return false;
+  output_text(&f, "x_m,y_m,plastic_strain\n");
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    const double row[] = {*mps_view_f64(&x, k, 0), *mps_view_f64(&x, k, 1),
+                          *mps_view_f64(&strain, k, 0)};
+    sim->strain = fmax(sim->strain, row[2]);
+    csv_row(&f, 3, row);
+  }
+  return output_close(&f);
+}
+
+static bool write_summary(app *a, const simulation *sim, const capacity *c) {
+  const settings *s = &sim->s;
+  output f;
+  if (!mpm_model_summary(a, &sim->m, s->out, &f)) return false;
+  json_text(&f, "model", s->model == VON_MISES ? "vonmises" : "druckerprager");
+  json_number(&f, "h", s->h);
+  json_number(&f, "mu", s->mu);
+  json_number(&f, "rate", s->rate);
+  json_number(&f, "q_over_c", c->computed);
+  json_number(&f, "q_drift", c->drift);
+  json_number(&f, "q_exact", c->exact);
+  json_number(&f, "q_exact_smooth", c->smooth);
+  json_number(&f, "q_exact_rough", c->rough);
+  json_end(&f);
+  return output_close(&f);
+}
+
+/* ---- pictures -------------------------------------------------------------------------------- */
+
+static bool draw_pressure(app *a, const settings *s, const capacity *c) {
+  output f;
+  if (!plot_open(&f, a, s->out, "pressure", 1000, 640)) return false;
+  output_text(&f,
+              "set title \"Strip footing on %s ground\\n{/*0.85 h = %g m, half width %g m, "
+              "%g mm/s, friction of the base %g}\"\nset xlabel 'settlement (mm)'\n"
+              "set ylabel 'pressure over cohesion, q/c'\nset key right bottom opaque\n"
+              "set yrange [0:*]\nplot 'pressure.csv' every ::1 using 1:3 with lines "
+              "linecolor rgb '#1f4e8c' title 'WLS-MPM'",
+              s->model == VON_MISES ? "cohesive" : "frictional", s->h, s->half_width, s->rate,
+              s->mu);
+  const char *line = ", \\\n  %.9g dashtype '%s' linecolor rgb '#c0392b' title '%s'";
+  if (s->model == VON_MISES) output_text(&f, line, c->exact, "--", "Prandtl");
+  if (s->model == DRUCKER_PRAGER && !(c->exact == c->rough))
+    output_text(&f, line, c->smooth, "--", "smooth base, characteristics");
+  if (s->model == DRUCKER_PRAGER && !(c->exact == c->smooth))
+    output_text(&f, line, c->rough, "-.", "rough base, characteristics");
+  output_text(&f, "\n");
+  return plot_close(&f, s->out, "pressure");
+}
+
+/* The mechanism reaches farther in frictional ground. */
+static bool draw_bands(app *a, const settings *s, const simulation *sim) {
+  const double wide = s->model == VON_MISES ? 5.0 : 9.0, top = s->depth + 0.3 * s->half_width;
+  output f;
+  if (!plot_open(&f, a, s->out, "shear_bands", 1100, s->model == VON_MISES ? 660 : 440))
+    return false;
+  output_text(&f,
+              "set title 'Plastic strain'\nset xlabel 'x (m)'\nset ylabel 'y (m)'\n"
+              "set size ratio -1\nset palette defined (0 '#f7fbff', 0.3 '#6baed6', 1 '#08306b')\n"
+              "set xrange [0:%.9g]\nset yrange [%.9g:%.9g]\n"
+              "set object 1 rectangle from 0,%.9g to %.9g,%.9g fillcolor rgb '#888888' front\n"
+              "set cbrange [0:%.9g]\n"
+              "plot 'particles.csv' every ::1 using 1:2:3 with points pointtype 7 pointsize %.3g "
+              "linecolor palette notitle\n",
+              fmin(s->width, wide * s->half_width), fmax(0.0, s->depth - 3.0 * s->half_width), top,
+              s->depth - sim->path[sim->rows - 1], s->half_width, top, 0.5 * sim->strain + 1e-12,
+              60.0 / wide * s->h / s->half_width);
+  return plot_close(&f, s->out, "shear_bands");
+}
+
+/* ---- the end --------------------------------------------------------------------------------- */
+
+static void print(const settings *s, const capacity *c) {
+  printf("Results: %s/ (pressure.csv, particles.csv, summary.json, pressure.png, "
+         "shear_bands.png)\n",
+         s->out);
+  if (s->model == VON_MISES)
+    printf("bearing capacity q/c %.3f (Prandtl %.3f, %+.1f %%)\n", c->computed, c->exact,
+           100.0 * (c->computed / c->exact - 1.0));
+  else if (isnan(c->exact))
+    printf("bearing capacity q/c %.2f (characteristics: smooth base %.2f, rough %.2f)\n",
+           c->computed, c->smooth, c->rough);
+  else
+    printf("bearing capacity q/c %.2f (characteristics, %s base: %.2f, %+.1f %%)\n", c->computed,
+           s->mu > 0.0 ? "rough" : "smooth", c->exact, 100.0 * (c->computed / c->exact - 1.0));
+}
+
+bool footing_finish(app *a, void *user) {
+  simulation *sim = user;
+  const settings *s = &sim->s;
+  const capacity c = measure(sim);
+  if (!write_pressure(a, s, sim) || !write_particles(a, s, sim) || !write_summary(a, sim, &c) ||
+      !draw_pressure(a, s, &c) || !draw_bands(a, s, sim))
+    return false;
+  print(s, &c);
+  return true;
+}
