@@ -10,19 +10,29 @@
 
 enum { LINES = 40 };
 
-/* What the run is compared with, q/c. */
+/* q/c of the run, and what it is compared with. */
 typedef struct capacity {
-  double computed, drift;      /* drift: of the last fifth from the one before, in parts of it */
-  double smooth, rough, exact; /* NaN where the base is neither */
+  double last;                 /* mean over the last fifth of the path */
+  double undeformed, slope;    /* of the line through the path's second half: at no settlement, and
+                                  per mm: limit analysis knows the ground's first shape only */
+  double smooth, rough, exact; /* limits; NaN where the base is neither */
 } capacity;
 
-/* Mean of the pressures of the part-th fifth of the path over c: in the last the footing goes down
- * at constant pressure. */
-static double fifth(const simulation *sim, int part) {
-  const int first = sim->rows * (part - 1) / 5, end = sim->rows * part / 5;
-  double q = 0.0;
-  for (int k = first; k < end; k++) q += sim->q[k];
-  return q / (end - first) / (sim->s.cohesion * 1e3);
+static void fit_path(const simulation *sim, capacity *c) {
+  const int first = sim->rows / 2, n = sim->rows - first;
+  const double unit = sim->s.cohesion * 1e3;
+  double x = 0.0, q = 0.0, xx = 0.0, xq = 0.0;
+  c->last = 0.0;
+  for (int k = first; k < sim->rows; k++) x += sim->path[k] * 1e3 / n, q += sim->q[k] / unit / n;
+  for (int k = first; k < sim->rows; k++) {
+    const double dx = sim->path[k] * 1e3 - x;
+    xx += dx * dx;
+    xq += dx * (sim->q[k] / unit - q);
+  }
+  c->slope = xq / xx;
+  c->undeformed = q - c->slope * x;
+  const int fifth = sim->rows / 5;
+  for (int k = sim->rows - fifth; k < sim->rows; k++) c->last += sim->q[k] / unit / fifth;
 }
 
 /* The limit by characteristics, which supposes associated flow; its error falls with the square of
@@ -40,9 +50,8 @@ static double limit(const settings *s, bool rough) {
 
 static capacity measure(const simulation *sim) {
   const settings *s = &sim->s;
-  capacity c = {
-      .computed = fifth(sim, 5), .smooth = 2.0 + PI, .rough = 2.0 + PI, .exact = 2.0 + PI};
-  c.drift = 1.0 - fifth(sim, 4) / c.computed;
+  capacity c = {.smooth = 2.0 + PI, .rough = 2.0 + PI, .exact = 2.0 + PI};
+  fit_path(sim, &c);
   if (s->model == VON_MISES) return c; /* Prandtl (52), whatever the weight and the base */
   c.smooth = limit(s, false);
   c.rough = limit(s, true);
@@ -88,8 +97,9 @@ static bool write_summary(app *a, const simulation *sim, const capacity *c) {
   json_number(&f, "h", s->h);
   json_number(&f, "mu", s->mu);
   json_number(&f, "rate", s->rate);
-  json_number(&f, "q_over_c", c->computed);
-  json_number(&f, "q_drift", c->drift);
+  json_number(&f, "q_over_c", c->last);
+  json_number(&f, "q_over_c_undeformed", c->undeformed);
+  json_number(&f, "q_over_c_per_mm", c->slope);
   json_number(&f, "q_exact", c->exact);
   json_number(&f, "q_exact_smooth", c->smooth);
   json_number(&f, "q_exact_rough", c->rough);
@@ -146,15 +156,18 @@ static void print(const settings *s, const capacity *c) {
   printf("Results: %s/ (pressure.csv, particles.csv, summary.json, pressure.png, "
          "shear_bands.png)\n",
          s->out);
-  if (s->model == VON_MISES)
-    printf("bearing capacity q/c %.3f (Prandtl %.3f, %+.1f %%)\n", c->computed, c->exact,
-           100.0 * (c->computed / c->exact - 1.0));
-  else if (isnan(c->exact))
-    printf("bearing capacity q/c %.2f (characteristics: smooth base %.2f, rough %.2f)\n",
-           c->computed, c->smooth, c->rough);
+  if (s->model == VON_MISES) {
+    printf("bearing capacity q/c %.3f (Prandtl %.3f, %+.1f %%)\n", c->last, c->exact,
+           100.0 * (c->last / c->exact - 1.0));
+    return;
+  }
+  printf("bearing capacity q/c %.2f, taken back to no settlement %.2f; exact: ", c->last,
+         c->undeformed);
+  if (isnan(c->exact))
+    printf("smooth base %.2f, rough %.2f\n", c->smooth, c->rough);
   else
-    printf("bearing capacity q/c %.2f (characteristics, %s base: %.2f, %+.1f %%)\n", c->computed,
-           s->mu > 0.0 ? "rough" : "smooth", c->exact, 100.0 * (c->computed / c->exact - 1.0));
+    printf("%.2f (%s base), %+.1f %%\n", c->exact, s->mu > 0.0 ? "rough" : "smooth",
+           100.0 * (c->undeformed / c->exact - 1.0));
 }
 
 bool footing_finish(app *a, void *user) {
