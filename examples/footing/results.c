@@ -109,6 +109,13 @@ static bool write_summary(app *a, const simulation *sim, const capacity *c) {
 
 /* ---- pictures -------------------------------------------------------------------------------- */
 
+/* A level line; none where there is no solution. */
+static void draw_limit(output *f, double value, const char *dash, const char *title) {
+  if (!isnan(value))
+    output_text(f, ", \\\n  %.9g dashtype '%s' linecolor rgb '#c0392b' title '%s'", value, dash,
+                title);
+}
+
 static bool draw_pressure(app *a, const settings *s, const capacity *c) {
   output f;
   if (!plot_open(&f, a, s->out, "pressure", 1000, 640)) return false;
@@ -120,12 +127,10 @@ static bool draw_pressure(app *a, const settings *s, const capacity *c) {
               "linecolor rgb '#1f4e8c' title 'WLS-MPM'",
               s->model == VON_MISES ? "cohesive" : "frictional", s->h, s->half_width, s->rate,
               s->mu);
-  const char *line = ", \\\n  %.9g dashtype '%s' linecolor rgb '#c0392b' title '%s'";
-  if (s->model == VON_MISES) output_text(&f, line, c->exact, "--", "Prandtl");
-  if (s->model == DRUCKER_PRAGER && !(c->exact == c->rough))
-    output_text(&f, line, c->smooth, "--", "smooth base, characteristics");
-  if (s->model == DRUCKER_PRAGER && !(c->exact == c->smooth))
-    output_text(&f, line, c->rough, "-.", "rough base, characteristics");
+  const bool cone = s->model == DRUCKER_PRAGER;
+  if (!cone) draw_limit(&f, c->exact, "--", "Prandtl");
+  if (cone && c->exact != c->rough) draw_limit(&f, c->smooth, "--", "smooth base, characteristics");
+  if (cone && c->exact != c->smooth) draw_limit(&f, c->rough, "-.", "rough base, characteristics");
   output_text(&f, "\n");
   return plot_close(&f, s->out, "pressure");
 }
