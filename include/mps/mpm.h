@@ -74,12 +74,25 @@ static inline mps_mpm_def mps_mpm_defaults(void) {
 
 /** Creates a solver for the set `particles` (at least one, inside the domain), sorting it and
  *  pinning it: until the solver is destroyed no particle can be added. All particles are of the one
- *  `material`, which is kept alive; its history columns become fields of the set, by their names.
+ *  `material`, which is kept alive, until mps_mpm_set_material; its history columns become fields
+ * of the set, by their names.
  */
 MPS_API MPS_NODISCARD mps_status mps_mpm_create(mps_context *context, mps_particles *particles,
                                                 mps_material *material, const mps_mpm_def *def,
                                                 mps_mpm **out);
 MPS_API void mps_mpm_destroy(mps_mpm **mpm);
+
+#define MPS_MPM_MAX_MATERIALS 16
+
+/** Gives the `count` (>= 0) particles of `ids` another law, before the first step or between steps;
+ *  at most 16 different materials in a solver, that of creation with them. The material is kept
+ *  alive. Its history begins anew in these particles, by the law's initial values; stress, volume,
+ *  `volume_ratio` and `deformation_gradient` stay as they are (0: 1, and all 0: no deformation).
+ *  Fields that only this law needs are added, so the set's number of fields grows; `material`
+ *  tells each particle's law. The limit (49) follows at once; bodies without a penalty of their own
+ *  press each particle by the modulus of its law. */
+MPS_API MPS_NODISCARD mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material,
+                                                      int64_t count, const int64_t *ids);
 
 #define MPS_MPM_MAX_BODIES 32
 

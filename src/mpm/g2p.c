@@ -124,7 +124,7 @@ MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cells *cells, int dim, int6
   MPSI_SIMD for (int k = 0; k < n; k++) {
     double square = v0[k] * v0[k] + v1[k] * v1[k];
     if (dim == 3) square += v2[k] * v2[k];
-    speed[k] = sqrt((moduli ? moduli[k] : mpm->modulus) * V[k] / m[k]) + sqrt(square);
+    speed[k] = sqrt((moduli ? moduli[k] : mpm->law[0].modulus) * V[k] / m[k]) + sqrt(square);
   }
   double largest[4] = {0.0};
   int64_t good = 1;
@@ -139,7 +139,7 @@ MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cells *cells, int dim, int6
 }
 
 MPSI_INLINE void speed_chunk(const mps_mpm *mpm, mpsi_cells *cells, int dim, int64_t begin, int n) {
-  if (!mpsi_material_stiffens(mpm->material)) {
+  if (mpm->one_modulus) {
     find_speed(mpm, cells, dim, begin, n, NULL);
     return;
   }
@@ -171,7 +171,8 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cells *cells, const mpsi_worker *w
 MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {
   mpsi_cells *cells = &mpm->cells[b];
   mpsi_worker *worker = &mpm->workers[number];
-  cells->left = cells->refused = false;
+  cells->left = false;
+  cells->refused = NULL;
   cells->bad = -1;
   cells->speed = 0.0;
   gather_tile(mpm, cells, mpsi_dim_of(geometry), worker->tile);

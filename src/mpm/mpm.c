@@ -164,13 +164,6 @@ static mps_status add_fields(mps_mpm *mpm) {
   mps_status status = MPS_OK;
   for (size_t k = 0; k < sizeof names / sizeof *names && status == MPS_OK; k++)
     status = mps_particles_add_field(mpm->particles, names[k], 0);
-  if (status == MPS_OK && mpsi_material_reads_volume(mpm->material))
-    status = mps_particles_add_field(mpm->particles, "volume_ratio", 0);
-  if (status == MPS_OK && mps_material_needs_deformation(mpm->material))
-    status = mps_particles_add_field(mpm->particles, "deformation_gradient", 0);
-  for (int32_t h = 0; h < mpm->histories && status == MPS_OK; h++)
-    status =
-        mps_particles_add_field(mpm->particles, mps_material_history_name(mpm->material, h), 1);
   return status;
 }
 
@@ -182,18 +175,10 @@ static void bind_fields(mps_mpm *mpm) {
     p->v[c] = mpsi_particles_column(set, "velocity", c);
   }
   for (int c = 0; c < 2 * mpm->dim; c++) p->s[c] = mpsi_particles_column(set, "stress", c);
-  for (int c = 0; c < 9; c++) { /* NULL where there is no such component */
+  for (int c = 0; c < 9; c++) /* NULL where there is no such component */
     p->L[c] = mpsi_particles_column(set, "velocity_gradient", c);
-    p->F[c] = mps_material_needs_deformation(mpm->material)
-                  ? mpsi_particles_column(set, "deformation_gradient", c)
-                  : NULL;
-  }
   p->V = mpsi_particles_column(set, "volume", 0);
   p->m = mpsi_particles_column(set, "mass", 0);
-  p->J = mpsi_material_reads_volume(mpm->material) ? mpsi_particles_column(set, "volume_ratio", 0)
-                                                   : NULL;
-  for (int32_t h = 0; h < mpm->histories; h++)
-    p->history[h] = mpsi_particles_column(set, mps_material_history_name(mpm->material, h), 0);
 }
 
 /* The volume of a particle that the caller gave none. */
@@ -224,19 +209,11 @@ static mps_status set_start(mps_mpm *mpm) {
   const double *density = mpsi_particles_column(mpm->particles, "density", 0);
   const mps_status status = check_volumes(mpm, density);
   if (status != MPS_OK) return status;
-  bool deformed = false;
-  for (int c = 0; c < 9 && p->F[c]; c++)
-    for (int64_t k = 0; k < mpm->count; k++) deformed = deformed || p->F[c][k] != 0.0;
   for (int64_t k = 0; k < mpm->count; k++) {
     if (p->V[k] == 0.0) p->V[k] = lattice_volume(mpm, k);
     p->m[k] = density[k] * p->V[k]; /* the density is that of the present volume */
-    if (p->J && p->J[k] == 0.0) p->J[k] = 1.0;
-    for (int c = 0; c < 9 && p->F[c] && !deformed; c++) {
-      const bool diagonal = mpm->dim == 3 ? c % 4 == 0 : c == 0 || c >= 3;
-      p->F[c][k] = diagonal ? 1.0 : 0.0;
-    }
+    mpsi_mpm_begin_law(mpm, &mpm->law[0], k);
   }
-  mpsi_material_begin(mpm->material, p->history, 0, mpm->count);
   return MPS_OK;
 }
 
@@ -258,9 +235,10 @@ static mps_status hire_workers(mps_mpm *mpm) {
   return mpm->workers ? MPS_OK : mpsi_fail_memory(mpm->context, create, sizeof *mpm->workers);
 }
 
-static mps_status build(mps_mpm *mpm) {
+static mps_status build(mps_mpm *mpm, mps_material *material) {
   mps_context *context = mpm->context;
   mps_status status = add_fields(mpm);
+  if (status == MPS_OK) status = mpsi_mpm_add_law(mpm, create, material);
   if (status != MPS_OK) return status;
   bind_fields(mpm);
   status = check_start(mpm);
@@ -303,9 +281,6 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   if (!mpm) return mpsi_fail_memory(context, __func__, sizeof *mpm);
   mpm->context = mpsi_context_retain(context);
   mpm->particles = mpsi_particles_pin(particles);
-  mpm->material = mpsi_material_retain(material);
-  mpm->histories = mps_material_history_count(material);
-  mpm->modulus = mps_material_wave_modulus(material);
   mpm->def = def;
   mpm->dim = dim_of(&def);
   mpm->own = mpm->dim == 3 ? MPSI_SIDE * MPSI_SIDE * MPSI_SIDE : MPSI_SIDE * MPSI_SIDE;
@@ -317,7 +292,7 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   mpm->gap = 0.5 * mps_particles_spacing(particles);
   memcpy(mpm->low, low, sizeof low);
   memcpy(mpm->high, high, sizeof high);
-  if ((status = build(mpm)) != MPS_OK) {
+  if ((status = build(mpm, material)) != MPS_OK) {
     mps_mpm_destroy(&mpm);
     return status;
   }
@@ -349,7 +324,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
                    mpm->flags,
                    mpm->scratch};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
-  mps_material_destroy(&mpm->material);
+  for (int32_t k = 0; k < mpm->laws; k++) mps_material_destroy(&mpm->law[k].material);
   mpsi_particles_unpin(mpm->particles);
   mpsi_free(context, mpm);
   mpsi_context_release(context);

@@ -82,7 +82,7 @@ mps_status mpsi_mpm_take_stock(mps_mpm *mpm, const char *function) {
     mpm->broken = true;
     return mpsi_fail(mpm->context, function, MPS_ERROR_NUMERIC,
                      "the law '%s' has refused a block of particles at step %lld",
-                     mps_material_name(mpm->material), (long long)mpm->steps);
+                     mps_material_name(cells->refused), (long long)mpm->steps);
   }
   if (bad >= 0) return report_bad(mpm, function, bad);
   mpm->speed = speed;
@@ -117,7 +117,7 @@ static mps_status take_step(mps_mpm *mpm, const char *function, double dt) {
   return mpsi_mpm_take_stock(mpm, function);
 }
 
-static mps_status ready(mps_mpm *mpm, const char *function) {
+mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function) {
   if (!mpm->broken) return MPS_OK;
   return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                    "an earlier step has failed: the state is kept for a look, make a new solver");
@@ -141,7 +141,7 @@ mps_status mps_mpm_step(mps_mpm *mpm, int64_t count) {
   if (count < 0)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
                      (long long)count);
-  mps_status status = ready(mpm, __func__);
+  mps_status status = mpsi_mpm_ready(mpm, __func__);
   for (int64_t k = 0; k < count && status == MPS_OK; k++)
     status = take_step(mpm, __func__, mps_mpm_dt(mpm));
   return status;
@@ -153,7 +153,7 @@ mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every, mps_mpm_fn cal
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "t_end is %g s and every %lld: must be finite and >= 1", t_end,
                      (long long)every);
-  mps_status status = ready(mpm, __func__);
+  mps_status status = mpsi_mpm_ready(mpm, __func__);
   const double start = mpm->time, slice = 0.01 * (t_end - start);
   int64_t done = 0, reported = 0;
   if (status == MPS_OK && callback) status = callback(user, mpm);
