@@ -48,6 +48,16 @@ typedef enum mps_wall {
   MPS_WALL_FIXED = 1   /* no velocity at all */
 } mps_wall;
 
+/** What the laws take for the change of volume: a cure for volumetric locking and for pressures
+ * that oscillate in nearly incompressible material. */
+typedef enum mps_volumetric {
+  MPS_VOLUMETRIC_POINT = 0, /* each particle's own tr(d), in axisymmetry with the hoop */
+  MPS_VOLUMETRIC_CELL = 1   /* F-bar: the mean of tr(d), weighted by volumes, over the particles of
+                               the cell (quadratic: of the cell-sized box about a node); the part of
+                               d without trace, the spin and `velocity_gradient` stay. Volumes,
+                               `volume_ratio` and `deformation_gradient` follow the mean */
+} mps_volumetric;
+
 typedef struct mps_mpm_def {
   uint32_t struct_size;
   int32_t geometry; /* mps_geometry, default PLANE_STRAIN; of as many dimensions as the set.
@@ -60,8 +70,10 @@ typedef struct mps_mpm_def {
                                 axisymmetry lower[0] is at least 0, and 0 by default */
   int32_t wall_lower[3], wall_upper[3]; /* mps_wall of each, default ROLLER */
   double gravity[3];                    /* m/s2, default 0 */
-  double dt;      /* s, > 0, or 0 (default): each step the largest by seed B (49), (50) */
-  double courant; /* fraction of that limit, in (0, 1]; default 0.5 */
+  double dt;          /* s, > 0, or 0 (default): each step the largest by seed B (49), (50) */
+  double courant;     /* fraction of that limit, in (0, 1]; default 0.5 */
+  int32_t volumetric; /* mps_volumetric, default POINT */
+  int32_t reserved;
 } mps_mpm_def;
 
 MPS_API mps_status mps_mpm_def_init(mps_mpm_def *def, size_t size);

@@ -101,8 +101,8 @@ MPSI_INLINE void look_after(const mps_mpm *mpm, mpsi_cells *cells, int dim, int 
     const double first = (double)cells->at[c] * MPSI_SIDE, last = first + MPSI_SIDE + 1;
     MPSI_SIMD for (int64_t k = begin; k < end; k++) {
       const double X = (x[k] - origin) * inverse, base = mpsi_base(spline, X);
-      bad |= (int64_t)!((X >= low) & (X <= high));
-      left |= (int64_t)!((base >= first) & (base <= last));
+      bad |= (int64_t) !((X >= low) & (X <= high));
+      left |= (int64_t) !((base >= first) & (base <= last));
     }
   }
   if (left) cells->left = true;
@@ -155,6 +155,7 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cells *cells, const mpsi_worker *w
   mpsi_places places;
   double motion[MPSI_CHUNK][4][4] __attribute__((aligned(64)));
   mpsi_find_places(mpm, cells, dim, spline, begin, n, &places);
+  if (mpm->stencil) memcpy(mpm->stencil + begin, places.first, (size_t)n * sizeof *mpm->stencil);
   bool full = true;
   for (int k = 0; k < n; k++) {
     if (cells->cut && (k == 0 || places.first[k] != places.first[k - 1]))
@@ -180,6 +181,7 @@ MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry,
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
     g2p_chunk(mpm, cells, worker, geometry, spline, k, n);
+    if (mpm->stencil) continue; /* the laws wait for the cells' means */
     mpsi_mpm_apply_law(mpm, cells, k, k + n);
     speed_chunk(mpm, cells, mpsi_dim_of(geometry), k, n);
   }

@@ -37,7 +37,12 @@ static int64_t end_of_run(const int64_t *law, int64_t begin, int64_t end) {
 static void apply_run(mps_mpm *mpm, mpsi_cells *cells, int64_t begin, int64_t end) {
   mpsi_columns *p = &mpm->p;
   const mpsi_law_use *law = mpsi_law_of(mpm, begin);
-  const mps_material_block block = columns_of(mpm, law, begin, end);
+  mps_material_block block = columns_of(mpm, law, begin, end);
+  double diagonal[3][MPSI_CHUNK];
+  if (mpm->stencil) {
+    mpsi_mpm_mean_diagonals(mpm, cells, begin, end, diagonal);
+    for (int c = 0; c < 3; c++) block.gradient[4 * c] = diagonal[c];
+  }
   /* Where the law works on J, V stands for V0 meanwhile. */
   for (int64_t k = begin; law->reads_volume && k < end; k++) p->V[k] /= p->J[k];
   if (mpsi_material_apply(law->material, &block) != 0) cells->refused = law->material;

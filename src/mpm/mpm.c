@@ -40,6 +40,9 @@ static mps_status check_choices(mps_context *context, const mps_mpm_def *d) {
   if (d->transfer != MPS_TRANSFER_SHAPE && d->transfer != MPS_TRANSFER_WEIGHT)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "transfer is %d, allowed are 0 (shape) and 1 (weight)", d->transfer);
+  if (d->volumetric != MPS_VOLUMETRIC_POINT && d->volumetric != MPS_VOLUMETRIC_CELL)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "volumetric is %d, allowed are 0 (point) and 1 (cell)", d->volumetric);
   for (int c = 0; c < dim_of(d); c++)
     for (int side = 0; side < 2; side++) {
       const int32_t wall = side ? d->wall_upper[c] : d->wall_lower[c];
@@ -248,7 +251,9 @@ static mps_status build(mps_mpm *mpm, mps_material *material) {
   if (mpm->radix) mpm->order = mpsi_alloc(context, mpm->count, sizeof *mpm->order);
   if (mpm->order) mpm->flags = mpsi_alloc(context, mpm->count, sizeof *mpm->flags);
   if (mpm->flags) mpm->scratch = mpsi_alloc(context, mpm->count, sizeof *mpm->scratch);
-  if (!mpm->scratch)
+  const bool by_cell = mpm->def.volumetric == MPS_VOLUMETRIC_CELL;
+  if (mpm->scratch && by_cell) mpm->stencil = mpsi_alloc(context, mpm->count, sizeof *mpm->stencil);
+  if (!mpm->scratch || (by_cell && !mpm->stencil))
     return mpsi_fail_memory(context, create, (size_t)mpm->count * sizeof *mpm->radix);
   status = hire_workers(mpm);
   if (status == MPS_OK) status = mpsi_mpm_sort(mpm, create);
@@ -322,7 +327,8 @@ void mps_mpm_destroy(mps_mpm **pointer) {
                    mpm->radix,
                    mpm->order,
                    mpm->flags,
-                   mpm->scratch};
+                   mpm->scratch,
+                   mpm->stencil};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
   for (int32_t k = 0; k < mpm->laws; k++) mps_material_destroy(&mpm->law[k].material);
   mpsi_particles_unpin(mpm->particles);

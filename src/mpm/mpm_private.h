@@ -140,6 +140,8 @@ struct mps_mpm {
   int32_t laws;
   bool one_modulus; /* law[0].modulus holds for all particles, whatever their state */
   int64_t *flags;   /* of the laws, by sorted index */
+  int32_t *stencil; /* lowest node in its block's tile, of each particle in the step being made;
+                       NULL but with VOLUMETRIC_CELL */
   mps_body *body[MPS_MPM_MAX_BODIES];
   int32_t bodies;
   const struct mpsi_kernels *kernels;
@@ -245,6 +247,8 @@ void mpsi_mpm_react(mps_mpm *mpm);
  * changed on an error. Gives the particle (an index) the state in which the law begins. */
 mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *material);
 void mpsi_mpm_begin_law(mps_mpm *mpm, const mpsi_law_use *law, int64_t particle);
+/* volumetric.c: the laws after the step's G2P, where they wait for the means of the cells. */
+void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm);
 /* law.c: their laws on particles [begin, end) of a block. */
 void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cells *cells, int64_t begin, int64_t end);
 /* step.c: MPS_ERROR_STATE after a step that has failed. */

@@ -111,6 +111,7 @@ static mps_status take_step(mps_mpm *mpm, const char *function, double dt) {
   if (mpm->meeting_count > 0) find_contact_mass(mpm);
   mpsi_mpm_for_nodes(mpm, mpsi_mpm_finish_nodes);
   mpsi_mpm_for_cells(mpm, mpm->kernels->g2p[geometry][spline]);
+  if (mpm->stencil) mpsi_mpm_apply_laws_by_cell(mpm);
   if (mpm->bodies > 0) mpsi_mpm_react(mpm);
   mpm->time += dt;
   mpm->steps++;
@@ -194,6 +195,7 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
               {mpm->inside_room.capacity, sizeof *mpm->inside},
               {mpm->reached_room.capacity, sizeof *mpm->reached},
               {mpm->worker_count, mpsi_worker_bytes(mpm)},
+              {mpm->stencil ? mpm->count : 0, sizeof *mpm->stencil},
               {mpm->count, 2 * sizeof *mpm->radix + sizeof *mpm->order + sizeof *mpm->flags +
                                sizeof *mpm->scratch}};
   int64_t bytes = 0;

@@ -43,6 +43,7 @@ static void refuses_bad_definitions(void **state) {
   CASE(transfer, -1, "transfer is -1");
   CASE(wall_upper[1], 9, "wall_upper[1] is 9");
   CASE(courant, 1.5, "courant is 1.5");
+  CASE(volumetric, 2, "volumetric is 2");
   CASE(dt, -1.0, "dt is -1 s");
   CASE(gravity[1], INFINITY, "gravity[1] inf");
   CASE(lower[0], 0.013, "must lie on a node");
