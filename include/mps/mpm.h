@@ -48,6 +48,15 @@ typedef enum mps_wall {
   MPS_WALL_FIXED = 1   /* no velocity at all */
 } mps_wall;
 
+/** How particles and nodes exchange what they hold: seed B Table 1. */
+typedef enum mps_scheme {
+  MPS_SCHEME_WLS = 0,     /* the seed's: fitted shape functions; particles carry L to the nodes */
+  MPS_SCHEME_STANDARD = 1 /* the original material point method, for comparison: the B-splines and
+                             their own derivatives are the shape functions, also at bodies and
+                             walls, and particles carry no L. Nodes beyond a wall are held as those
+                             on it. Slower: its loops are not tuned */
+} mps_scheme;
+
 /** What the laws take for the change of volume: a cure for volumetric locking and for pressures
  * that oscillate in nearly incompressible material. */
 typedef enum mps_volumetric {
@@ -73,7 +82,11 @@ typedef struct mps_mpm_def {
   double dt;          /* s, > 0, or 0 (default): each step the largest by seed B (49), (50) */
   double courant;     /* fraction of that limit, in (0, 1]; default 0.5 */
   int32_t volumetric; /* mps_volumetric, default POINT */
-  int32_t reserved;
+  int32_t scheme;     /* mps_scheme, default WLS */
+  double flip; /* with STANDARD, in [0, 1]: the particle's velocity becomes flip (v_p + dt a) + (1 -
+                  flip) v, with the nodes' acceleration a and velocity v at its place; it moves with
+                  v. 1 (default): FLIP, Table 1; 0: PIC. WLS, which always takes v, allows only the
+                  default */
 } mps_mpm_def;
 
 MPS_API mps_status mps_mpm_def_init(mps_mpm_def *def, size_t size);

@@ -1,5 +1,6 @@
 /* fitted.c - particles whose support bodies or edges cut: the least-squares fit over the active
- * nodes, transfers with it, and contact, seed B (5), (6), (28)-(30). Compiled once for each
+ * nodes, transfers with it, and contact, seed B (5), (6), (28)-(30). With the standard scheme all
+ * particles, and the splines in place of the fit, seed B Table 1. Compiled once for each
  * instruction set.
  *
  * Active are, of the stencil's nodes in the domain: those in no body; the corners of the particle's
@@ -104,8 +105,29 @@ MPSI_INLINE double invert(int n, double m[4][4]) {
   return determinant;
 }
 
+/* The standard scheme's: the spline and its derivatives, whatever lies in the support. */
+MPSI_INLINE void take_splines(const mps_mpm *mpm, int dim, int spline, const mpsi_stencil *at,
+                              mpsi_shape_values *out) {
+  double slope[3][4] = {{0.0}};
+  for (int c = 0; c < dim; c++) mpsi_slopes(spline, -at->s[c][0], slope[c]);
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++)
+      for (int i = 0, n = 16 * k + 4 * j; i < 4; i++, n++) {
+        const double x = at->w[0][i], y = at->w[1][j], z = at->w[2][k];
+        out->w[n] = out->phi[n] = x * y * z;
+        out->gradient[0][n] = slope[0][i] * y * z * mpm->inverse;
+        out->gradient[1][n] = x * slope[1][j] * z * mpm->inverse;
+        if (dim == 3) out->gradient[2][n] = x * y * slope[2][k] * mpm->inverse;
+      }
+  out->determinant = 1.0;
+}
+
 MPSI_INLINE void fit(const mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
                      int dim, int spline, const mpsi_stencil *at, mpsi_shape_values *out) {
+  if (mpm->standard) {
+    take_splines(mpm, dim, spline, at, out);
+    return;
+  }
   double q[4][4];
   active_weights(mpm, cells, worker, dim, spline, at, out->w);
   moments(dim, spline, at, out->w, q);
@@ -153,7 +175,7 @@ MPSI_INLINE source source_of(const mps_mpm *mpm, int dim, int64_t p) {
     out.v[1 + a] = c->v[a][p];
     out.body[1 + a] = c->m[p] * mpm->def.gravity[a];
     for (int d = 0; d < dim; d++) {
-      out.L[d][1 + a] = mpm->def.cell * c->L[dim * a + d][p];
+      if (!mpm->standard) out.L[d][1 + a] = mpm->def.cell * c->L[dim * a + d][p];
       out.stress[d][1 + a] = -c->V[p] * c->s[symmetric[a][d]][p];
     }
   }
@@ -281,6 +303,21 @@ MPSI_INLINE void scatter_body(mps_mpm *mpm, const mpsi_cells *cells, const mpsi_
   }
 }
 
+/* FLIP: what the particle keeps of its own, flip times its velocity less that of the nodes before
+ * the forces, in the lanes of the mass; move() in g2p.c adds it. */
+MPSI_INLINE void keep_own(const mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
+                          int64_t p, const mpsi_stencil *at, const mpsi_shape_values *f,
+                          double (*motion)[4]) {
+  mpsi_quad before = {0.0};
+  FOR_NODES(dim, spline) {
+    const int64_t from = node_of(mpm, cells, at, i, j, k);
+    const mpsi_nodes *nodes = &mpm->nodes[from / mpm->own];
+    before += f->phi[n] * mpsi_get(mpm->side[mpsi_first_node(mpm, nodes->side) + from % mpm->own]);
+  }
+  for (int c = 0; c < dim; c++)
+    motion[1 + c][MPSI_MASS] = mpm->flip * (mpm->p.v[c][p] - before[MPSI_VECTOR + c]);
+}
+
 MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
                              int dim, int spline, int64_t particle, double (*motion)[4]) {
   mpsi_stencil at;
@@ -296,6 +333,7 @@ MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cells *cells, const mpsi_w
   }
   mpsi_put(motion[0], v);
   for (int d = 0; d < dim; d++) mpsi_put(motion[1 + d], by[d]);
+  if (mpm->flip > 0.0) keep_own(mpm, cells, dim, spline, particle, &at, &f, motion);
   const uint32_t bodies = cells->meetings > 0 ? seen(worker, dim, spline, &at) : 0;
   for (int32_t q = 0; bodies && q < cells->meetings; q++) {
     mpsi_meeting *meeting = &mpm->meeting[cells->first_meeting + q];

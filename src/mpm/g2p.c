@@ -85,6 +85,8 @@ MPSI_INLINE void move(mps_mpm *mpm, int geometry, int64_t begin, int n,
         if (geometry == MPS_AXISYMMETRIC && c == 0) store_some(p->L[4] + at, a[1] / x, n - k);
         store_some(p->x[c] + at, x + mpm->dt * a[1 + c], n - k);
       }
+      if (d > 0 && mpm->flip > 0.0) /* fitted.c has put it there */
+        store_some(p->v[d - 1] + at, mpsi_get(p->v[d - 1] + at) + a[MPSI_MASS], n - k);
     }
   }
 }

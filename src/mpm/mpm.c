@@ -15,7 +15,8 @@ static const mps_mpm_def mpm_defaults = {.struct_size = sizeof(mps_mpm_def),
                                          .spline = 3,
                                          .lower = {-INFINITY, -INFINITY, -INFINITY},
                                          .upper = {INFINITY, INFINITY, INFINITY},
-                                         .courant = 0.5};
+                                         .courant = 0.5,
+                                         .flip = 1.0};
 /* Size of the structure in the first release: it may only grow. */
 #define MPM_DEF_MINIMUM (offsetof(mps_mpm_def, courant) + sizeof(double))
 
@@ -43,6 +44,9 @@ static mps_status check_choices(mps_context *context, const mps_mpm_def *d) {
   if (d->volumetric != MPS_VOLUMETRIC_POINT && d->volumetric != MPS_VOLUMETRIC_CELL)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "volumetric is %d, allowed are 0 (point) and 1 (cell)", d->volumetric);
+  if (d->scheme != MPS_SCHEME_WLS && d->scheme != MPS_SCHEME_STANDARD)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "scheme is %d, allowed are 0 (WLS) and 1 (standard)", d->scheme);
   for (int c = 0; c < dim_of(d); c++)
     for (int side = 0; side < 2; side++) {
       const int32_t wall = side ? d->wall_upper[c] : d->wall_lower[c];
@@ -64,6 +68,12 @@ static mps_status check_numbers(mps_context *context, const mps_mpm_def *d) {
   if (!(d->courant > 0.0 && d->courant <= 1.0))
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "courant is %g, must be in (0, 1]",
                      d->courant);
+  if (!(d->flip >= 0.0 && d->flip <= 1.0) || (d->scheme == MPS_SCHEME_WLS && d->flip != 1.0))
+    return mpsi_fail(
+        context, create, MPS_ERROR_ARGUMENT,
+        "flip is %g, must be in [0, 1] with scheme 1 (standard); with 0 (WLS) it is 1, "
+        "the default",
+        d->flip);
   for (int c = 0; c < dim_of(d); c++)
     if (!isfinite(d->origin[c]) || !isfinite(d->gravity[c]))
       return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
@@ -287,6 +297,8 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   mpm->context = mpsi_context_retain(context);
   mpm->particles = mpsi_particles_pin(particles);
   mpm->def = def;
+  mpm->standard = def.scheme == MPS_SCHEME_STANDARD;
+  mpm->flip = mpm->standard ? def.flip : 0.0;
   mpm->dim = dim_of(&def);
   mpm->own = mpm->dim == 3 ? MPSI_SIDE * MPSI_SIDE * MPSI_SIDE : MPSI_SIDE * MPSI_SIDE;
   mpm->tile = mpm->dim == 3 ? MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE

@@ -123,6 +123,7 @@ typedef struct mpsi_worker {
 #define MPSI_OUTSIDE 1u /* not in the domain */
 #define MPSI_INSIDE 2u  /* in a body */
 #define MPSI_REACHED 4u /* in a body, and corner of a cell that holds a particle */
+#define MPSI_PLAIN 8u   /* any node with MPS_SCHEME_STANDARD: no particle takes the closed form */
 
 struct mpsi_kernels;
 
@@ -133,7 +134,9 @@ struct mps_mpm {
   int32_t dim, own, tile; /* nodes of a block, of a tile */
   int64_t count;
   mpsi_columns p;
-  double inverse;                          /* 1/h */
+  double inverse; /* 1/h */
+  bool standard;  /* MPS_SCHEME_STANDARD; then `flip` is that of the definition, else 0 */
+  double flip;
   int64_t low[3], high[3];                 /* first and last node of the domain */
   double gap;                              /* l_p = d0, m */
   mpsi_law_use law[MPS_MPM_MAX_MATERIALS]; /* 0: of creation */

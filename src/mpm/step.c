@@ -209,7 +209,8 @@ mps_status mps_mpm_get_totals(mps_mpm *mpm, mps_mpm_totals *out) {
   if (!out) return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   const mpsi_columns *p = &mpm->p;
   const int dim = mpm->dim;
-  const double h = mpm->def.cell, moment = h * h / (mpm->def.spline == 3 ? 3.0 : 4.0);
+  const double h = mpm->def.cell, full = h * h / (mpm->def.spline == 3 ? 3.0 : 4.0);
+  const double moment = mpm->standard ? 0.0 : full; /* particles without L carry no spin */
   mps_mpm_totals t = {
       .blocks = mpm->cell_count, .nodes = mpm->node_count * mpm->own, .bytes = grid_bytes(mpm)};
   for (int64_t k = 0; k < mpm->count; k++) {

@@ -8,10 +8,13 @@
 static const char *const names[] = {"id",     "position", "velocity", "velocity_gradient",
                                     "stress", "volume",   NULL};
 
-enum { BY_CELL = 1 };
+enum { BY_CELL = 1, STANDARD = 2 };
 
 static void choose(mps_mpm_def *def, int options) {
   if (options & BY_CELL) def->volumetric = MPS_VOLUMETRIC_CELL;
+  if (!(options & STANDARD)) return;
+  def->scheme = MPS_SCHEME_STANDARD;
+  def->flip = 0.9;
 }
 
 /* A block that falls on a rough floor while a free rough disc hits its side: many blocks of cells,
@@ -124,7 +127,8 @@ static void options_too(void **state) {
   (void)state;
   static const int32_t threads[] = {3};
   same_bits(MPS_AXISYMMETRIC, BY_CELL, 1, threads);
-  same_bits(MPS_SPACE, BY_CELL, 1, threads);
+  same_bits(MPS_PLANE_STRAIN, STANDARD, 1, threads);
+  same_bits(MPS_SPACE, STANDARD | BY_CELL, 1, threads);
 }
 
 static void any_order_of_particles(void **state) {

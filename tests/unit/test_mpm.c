@@ -44,6 +44,9 @@ static void refuses_bad_definitions(void **state) {
   CASE(wall_upper[1], 9, "wall_upper[1] is 9");
   CASE(courant, 1.5, "courant is 1.5");
   CASE(volumetric, 2, "volumetric is 2");
+  CASE(scheme, 2, "scheme is 2");
+  CASE(flip, 0.5, "flip is 0.5");
+  CASE(flip, NAN, "flip is nan");
   CASE(dt, -1.0, "dt is -1 s");
   CASE(gravity[1], INFINITY, "gravity[1] inf");
   CASE(lower[0], 0.013, "must lie on a node");
