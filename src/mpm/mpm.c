@@ -258,12 +258,10 @@ static mps_status build(mps_mpm *mpm, mps_material *material) {
   if (status == MPS_OK) status = set_start(mpm);
   if (status != MPS_OK) return status;
   mpm->radix = mpsi_alloc(context, 2 * mpm->count, sizeof *mpm->radix);
-  if (mpm->radix) mpm->order = mpsi_alloc(context, mpm->count, sizeof *mpm->order);
-  if (mpm->order) mpm->flags = mpsi_alloc(context, mpm->count, sizeof *mpm->flags);
-  if (mpm->flags) mpm->scratch = mpsi_alloc(context, mpm->count, sizeof *mpm->scratch);
+  if (mpm->radix) mpm->flags = mpsi_alloc(context, mpm->count, sizeof *mpm->flags);
   const bool by_cell = mpm->def.volumetric == MPS_VOLUMETRIC_CELL;
-  if (mpm->scratch && by_cell) mpm->stencil = mpsi_alloc(context, mpm->count, sizeof *mpm->stencil);
-  if (!mpm->scratch || (by_cell && !mpm->stencil))
+  if (mpm->flags && by_cell) mpm->stencil = mpsi_alloc(context, mpm->count, sizeof *mpm->stencil);
+  if (!mpm->flags || (by_cell && !mpm->stencil))
     return mpsi_fail_memory(context, create, (size_t)mpm->count * sizeof *mpm->radix);
   status = hire_workers(mpm);
   if (status == MPS_OK) status = mpsi_mpm_sort(mpm, create);
@@ -337,9 +335,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
                    mpm->inside_room.item,
                    mpm->reached_room.item,
                    mpm->radix,
-                   mpm->order,
                    mpm->flags,
-                   mpm->scratch,
                    mpm->stencil};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
   for (int32_t k = 0; k < mpm->laws; k++) mps_material_destroy(&mpm->law[k].material);
