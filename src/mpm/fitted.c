@@ -139,33 +139,37 @@ MPSI_INLINE double invert(int n, double m[4][4]) {
   return determinant;
 }
 
-/* The standard scheme's: the spline and its derivatives, whatever lies in the support. */
-MPSI_INLINE void take_splines(const mps_mpm *mpm, int dim, int spline, const mpsi_stencil *at,
-                              mpsi_shape_values *out) {
+/* The standard scheme's fit: the spline and its derivatives, whatever lies in the support. */
+MPSI_INLINE uint32_t take_splines(const mps_mpm *mpm, const mpsi_cells *cells,
+                                  const mpsi_worker *worker, int dim, int spline,
+                                  const mpsi_stencil *at, mpsi_shape_values *out) {
   double slope[3][4] = {{0.0}};
+  uint32_t bodies = 0;
   for (int c = 0; c < dim; c++) mpsi_slopes(spline, -at->s[c][0], slope[c]);
+  const mpsi_quad x = mpsi_get(at->w[0]), by_x = mpm->inverse * mpsi_get(slope[0]);
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
-    for (int j = 0; j <= spline; j++)
-      for (int i = 0, n = 16 * k + 4 * j; i < 4; i++, n++) {
-        const double x = at->w[0][i], y = at->w[1][j], z = at->w[2][k];
-        out->w[n] = out->phi[n] = x * y * z;
-        out->gradient[0][n] = slope[0][i] * y * z * mpm->inverse;
-        out->gradient[1][n] = x * slope[1][j] * z * mpm->inverse;
-        if (dim == 3) out->gradient[2][n] = x * y * slope[2][k] * mpm->inverse;
-      }
+    for (int j = 0; j <= spline; j++) {
+      const double y = at->w[1][j], z = at->w[2][k];
+      const int n = 16 * k + 4 * j;
+      mpsi_put(out->w + n, x * (y * z));
+      mpsi_put(out->phi + n, x * (y * z));
+      mpsi_put(out->gradient[0] + n, by_x * (y * z));
+      mpsi_put(out->gradient[1] + n, x * (mpm->inverse * slope[1][j] * z));
+      if (dim == 3) mpsi_put(out->gradient[2] + n, x * (mpm->inverse * y * slope[2][k]));
+      const int t = mpsi_tile_index(at->at[0], at->at[1] + j, at->at[2] + k);
+      for (int i = 0; i <= spline && cells->meetings > 0; i++) bodies |= worker->inside[t + i];
+    }
   out->determinant = 1.0;
+  return bodies;
 }
 
 /* Returns the bodies that hold any of the stencil's nodes. */
 MPSI_INLINE uint32_t fit(const mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
                          int dim, int spline, const support *s, mpsi_shape_values *out) {
   const mpsi_stencil *at = &s->at;
+  if (mpm->standard) return take_splines(mpm, cells, worker, dim, spline, at, out);
   double q[4][4];
   const uint32_t bodies = active_weights(mpm, cells, worker, dim, spline, s, out->w);
-  if (mpm->standard) {
-    take_splines(mpm, dim, spline, at, out);
-    return bodies;
-  }
   moments(dim, spline, at, out->w, q);
   const double mass = q[0][0];
   out->determinant =
