@@ -352,7 +352,7 @@ MPSI_INLINE void scatter_body(mps_mpm *mpm, const mpsi_cells *cells, const mpsi_
 }
 
 /* FLIP: what the particle keeps of its own, flip times its velocity less that of the nodes before
- * the forces, in the lanes of the mass; move() in g2p.c adds it. */
+ * the forces, in the lanes of the mass; add_own() in g2p.c adds it. */
 MPSI_INLINE void keep_own(const mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
                           int64_t p, const support *at, const mpsi_shape_values *f,
                           double (*motion)[4]) {

@@ -99,12 +99,16 @@ MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cells *cells, int geometry, int 
         if (geometry == MPS_AXISYMMETRIC && c == 0) store_some(p->L[4] + at, a[1] / x, n - k);
         store_some(p->x[c] + at, to, n - k);
       }
-      if (d > 0 && mpm->flip > 0.0) /* fitted.c has put it there */
-        store_some(p->v[d - 1] + at, mpsi_get_some(p->v[d - 1] + at, n - k) + a[MPSI_MASS], n - k);
     }
   }
   return (moved){(outside[0] | outside[1] | outside[2] | outside[3]) != 0,
                  (left[0] | left[1] | left[2] | left[3]) != 0};
+}
+
+/* FLIP: what the particles keep of their own velocities, where fitted.c has put it. */
+static void add_own(mps_mpm *mpm, int64_t begin, int n, const double (*motion)[4][4]) {
+  for (int c = 0; c < mpm->dim; c++)
+    for (int k = 0; k < n; k++) mpm->p.v[c][begin + k] += motion[k][1 + c][MPSI_MASS];
 }
 
 /* The first of particles [begin, end) outside the domain. */
@@ -169,6 +173,7 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cells *cells, const mpsi_worker *w
       MPSI_LEVELLED(mpsi_gather_fitted)(mpm, cells, worker, begin + k, motion[k]);
   }
   const moved m = move(mpm, cells, geometry, spline, begin, n, (const double(*)[4][4])motion);
+  if (mpm->flip > 0.0) add_own(mpm, begin, n, (const double(*)[4][4])motion);
   if (m.left) cells->left = true;
   if (m.outside && cells->bad < 0) cells->bad = first_outside(mpm, begin, begin + n);
 }
