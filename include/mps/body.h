@@ -1,9 +1,9 @@
-/* mps/body.h - rigid bodies in 2D: shape, motion, friction, and the reaction they feel (seed B 5).
+/* mps/body.h - rigid bodies: shape, motion, friction, and the reaction they feel (seed B 5).
  *
  * A body's shape is given in its own frame, whose origin is the body's reference point: the
  * rotation turns about it, moments refer to it, and a free body has its centre of mass there. In
- * space the reference point is `position` and the frame is turned by `angle`. All forces are per
- * unit thickness in plane strain, per radian in axisymmetry.
+ * space the reference point is `position` and the frame is turned by `rotation`. In 2D all forces
+ * are per unit thickness in plane strain, per radian in axisymmetry.
  *
  * A prescribed body follows signals; a free body moves by the forces on it. A solver that uses the
  * body moves it and writes the reaction; without one, mps_body_advance does. One solver at a time
@@ -57,7 +57,7 @@ static inline mps_body_def mps_body_defaults(void) {
   return def;
 }
 
-/* ---- shapes: `def` NULL means the defaults ----------------------------------------------------
+/* ---- shapes in 2D: `def` NULL means the defaults ----------------------------------------------
  */
 
 /** Simple polygon, convex or not, of `vertices` (3 to 10000) corners xy[2 * k], xy[2 * k + 1] (m,
@@ -78,6 +78,53 @@ MPS_API MPS_NODISCARD mps_status mps_body_create_disc(mps_context *context, cons
 MPS_API MPS_NODISCARD mps_status mps_body_create_half_plane(mps_context *context,
                                                             const mps_body_def *def,
                                                             const double *normal, mps_body **out);
+/* ---- shapes in 3D -----------------------------------------------------------------------------
+ */
+
+/** Sphere of `radius` (m, > 0) about the reference point. One face, number 0. */
+MPS_API MPS_NODISCARD mps_status mps_body_create_sphere(mps_context *context,
+                                                        const mps_body_def *def, double radius,
+                                                        mps_body **out);
+/** Half space: all points x with normal . x < 0, the surface going through the reference point. The
+ *  outward `normal` (3 values, in the body's frame) need not be a unit vector. One face, number 0.
+ */
+MPS_API MPS_NODISCARD mps_status mps_body_create_half_space(mps_context *context,
+                                                            const mps_body_def *def,
+                                                            const double *normal, mps_body **out);
+/** Solid cylinder of `radius` and `length` (m, > 0) about the body's z axis, the reference point in
+ *  its middle. Faces: 0 bottom (z = -length/2), 1 top, 2 side. */
+MPS_API MPS_NODISCARD mps_status mps_body_create_cylinder(mps_context *context,
+                                                          const mps_body_def *def, double radius,
+                                                          double length, mps_body **out);
+/** Solid of revolution about the body's z axis: cone, pile, pipe, ring. The profile is a simple
+ *  polygon of `vertices` (3 to 10000) corners rz[2 * k] = r >= 0, rz[2 * k + 1] = z (m, either
+ * sense, not closed); where the solid reaches the axis, the profile has one edge (or several apart)
+ * on it. Face k is the surface that edge k makes; an edge on the axis makes none but keeps its
+ * number. */
+MPS_API MPS_NODISCARD mps_status mps_body_create_revolution(mps_context *context,
+                                                            const mps_body_def *def,
+                                                            int64_t vertices, const double *rz,
+                                                            mps_body **out);
+/** Closed mesh of `triangles` (4 to 20 million) triangles over `vertices` points xyz[3 * i], ...
+ * (m, in the body's frame): triangle k has the corners corner[3 * k], ..., anticlockwise seen from
+ * outside (if all are the other way round they are turned). Each edge must belong to two triangles,
+ * in opposite directions; coinciding points are one. Triangles with no area, holes, edges of three
+ * or more triangles and volumes that are zero are errors that name the triangle; that surfaces do
+ * not cross one another is not checked. Face k is triangle k. The data are copied. Needs Embree:
+ *  MPS_ERROR_UNSUPPORTED in a libmps without (CMake option MPS_EMBREE); Embree's own memory, about
+ *  150 B a triangle, does not come from the context. */
+MPS_API MPS_NODISCARD mps_status mps_body_create_mesh(mps_context *context, const mps_body_def *def,
+                                                      int64_t vertices, const double *xyz,
+                                                      int64_t triangles, const int32_t *corner,
+                                                      mps_body **out);
+/** The same from an STL file, binary or ASCII, one solid; its coordinates times `scale` (> 0; 0.001
+ *  for a file in mm) are m. Corners are joined where they are the same numbers; the normals in the
+ *  file are not used. MPS_ERROR_IO when it cannot be read, MPS_ERROR_FORMAT when it is not a whole
+ * STL file: the message has path and line (ASCII) or byte (binary, as `path:@byte`). */
+MPS_API MPS_NODISCARD mps_status mps_body_create_stl(mps_context *context, const mps_body_def *def,
+                                                     const char *path, double scale,
+                                                     mps_body **out);
+
 /** Gives up the caller's share and nulls; accepts NULL. A solver keeps the body alive. */
 MPS_API void mps_body_destroy(mps_body **body);
 /** Dimension of the shape, 2 or 3; 0 for NULL. */
@@ -117,8 +164,8 @@ MPS_API MPS_NODISCARD mps_status mps_body_get_state(mps_body *body, mps_body_sta
 /** For `count` points x of dim values each (m, finite): signed `distance` (m, negative inside),
  *  outward unit `normal` (dim values a point), `foot`, the nearest point of the surface (dim values
  * a point, m), and the `face` it lies on (2D: the edge). Each result may be NULL. The normal is the
- *  gradient of the distance; on a corner it is the mean of the two edges', and where two feet are
- *  equally near, that of the lower edge. */
+ *  gradient of the distance; on a corner it is the mean of the two edges' (mesh: of the triangles',
+ *  weighted with their angles), and where two feet are equally near, that of the lower face. */
 MPS_API MPS_NODISCARD mps_status mps_body_distance(mps_body *body, int64_t count, const double *x,
                                                    double *distance, double *normal, double *foot,
                                                    int64_t *face);

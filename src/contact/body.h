@@ -7,7 +7,15 @@
 
 #include <mps/body.h>
 
-typedef enum mpsi_shape { MPSI_POLYGON = 0, MPSI_DISC = 1, MPSI_HALF_PLANE = 2 } mpsi_shape;
+typedef enum mpsi_shape {
+  MPSI_POLYGON = 0,    /* 2D */
+  MPSI_BALL = 1,       /* disc or sphere */
+  MPSI_HALF = 2,       /* half plane or half space */
+  MPSI_REVOLUTION = 3, /* 3D: a polygon (r, z) turned about the z axis */
+  MPSI_MESH = 4        /* 3D: closed triangles */
+} mpsi_shape;
+
+typedef struct mpsi_mesh mpsi_mesh;
 
 enum { MPSI_MOTIONS = 6 };
 #define MPSI_PART_NAME 48 /* bytes, with the terminating zero */
@@ -38,11 +46,13 @@ struct mps_body {
   mps_body_def def;
   int32_t dim; /* 2 or 3 */
   mpsi_shape shape;
-  double radius;    /* disc, m */
-  double normal[3]; /* half plane, body's frame */
-  int64_t faces;
-  double *xy; /* polygon: anticlockwise corners, the first repeated at the end */
-  bool reversed;
+  double radius;    /* ball, m */
+  double normal[3]; /* half plane or space, body's frame */
+  int64_t faces;    /* as the caller counts them */
+  int64_t edges;    /* of the polygon */
+  double *xy;       /* polygon: anticlockwise corners, the first repeated at the end */
+  int64_t *face_of; /* face of each edge */
+  mpsi_mesh *mesh;
   int32_t *part_of; /* one a face, in the caller's order */
   char (*names)[MPSI_PART_NAME];
   int32_t parts;
@@ -74,6 +84,23 @@ static inline void mpsi_body_velocity(const mpsi_pose *pose, const double *x, do
  * multiplies by the radius. */
 double mpsi_body_penalty(const mps_body *body, double modulus, double spacing, double cell,
                          double courant);
+
+/* Whether two bodies of one dimension overlap by more than `depth` (m, > 0): bodies that touch do
+ * not. Two solids without a half space or sphere between them cost up to (size / depth)^2 distances
+ * where faces lie on each other; the round surface of a solid of revolution then counts 0.2 % of
+ * its radius too small. */
+bool mpsi_body_overlap(const mps_body *a, const mps_body *b, double depth);
+/* Smallest wall (m): way through the body from samples of its surface, straight inwards, to where
+ * the surface faces the other way within 45 degrees; so corners and tips blunter than that do not
+ * count. INFINITY of a half space. */
+double mpsi_body_thickness(const mps_body *body);
+
+/* A new body of `faces` faces without its shape, at its first position; checks `def`, NULL means
+ * the defaults. */
+mps_status mpsi_body_new(mps_context *context, const char *function, const mps_body_def *def,
+                         int32_t dim, mpsi_shape shape, int64_t faces, mps_body **out);
+/* Gives up one share; the last frees. */
+void mpsi_body_release(mps_body *body);
 
 /* Puts a new body where its definition says. */
 void mpsi_body_begin(mps_body *body);

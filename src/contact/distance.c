@@ -1,13 +1,17 @@
 /* distance.c - signed distance, outward normal and foot point on a rigid body's surface: the d_p
- * and n_p of seed B (27), (28).
+ * and n_p of seed B (27), (28). Meshes are in mesh_foot.c.
  *
  * The sign at a corner is that of (x - corner) . (n1 + n2), with the normals of its two edges: in
  * 2D that side is right for convex and for concave corners, so no crossings need to be counted, and
- * sign, normal and foot always belong to the same feature.
+ * sign, normal and foot always belong to the same feature. A solid of revolution is its profile, a
+ * polygon in the half plane r >= 0, seen in the plane through the axis and the point.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body.h"
 
-/* What the polygon search knows of the nearest feature so far. */
+#include "mesh.h"
+#include "rotation.h"
+
+/* What the search knows of the nearest feature so far. */
 typedef struct nearest {
   double square; /* of the distance, m2 */
   int64_t edge;
@@ -22,10 +26,14 @@ static void edge_normal(const mps_body *body, int64_t k, double *n) {
   n[1] = -dx / length;
 }
 
-static nearest search(const mps_body *body, const double *x) {
+/* An edge of a profile that lies on the axis is no surface. */
+MPSI_INLINE bool on_axis(const double *edge) { return edge[0] == 0.0 && edge[2] == 0.0; }
+
+MPSI_INLINE nearest search(const mps_body *body, const double *x, bool revolved) {
   nearest best = {.square = INFINITY};
-  for (int64_t k = 0; k < body->faces; k++) {
+  for (int64_t k = 0; k < body->edges; k++) {
     const double *a = body->xy + 2 * k, *b = a + 2;
+    if (revolved && on_axis(a)) continue;
     const double ex = b[0] - a[0], ey = b[1] - a[1], px = x[0] - a[0], py = x[1] - a[1];
     const double t = px * ex + py * ey, length2 = ex * ex + ey * ey;
     double square;
@@ -47,10 +55,21 @@ static nearest search(const mps_body *body, const double *x) {
   return best;
 }
 
-static mpsi_foot polygon_foot(const mps_body *body, const double *x) {
-  const nearest best = search(body, x);
-  const int64_t n = body->faces, k = best.edge;
-  mpsi_foot f = {.face = body->reversed ? n - 1 - k : k};
+/* The normal of the other edge at a corner of edge k. On the axis of a solid of revolution that is
+ * the mirror image of edge k itself. */
+MPSI_INLINE void neighbour_normal(const mps_body *body, int64_t k, int where, bool revolved,
+                                  const double *own, double *out) {
+  const int64_t n = body->edges, other = where < 0 ? (k + n - 1) % n : (k + 1) % n;
+  if (revolved && on_axis(body->xy + 2 * other))
+    out[0] = -own[0], out[1] = own[1];
+  else
+    edge_normal(body, other, out);
+}
+
+MPSI_INLINE mpsi_foot polygon_foot(const mps_body *body, const double *x, bool revolved) {
+  const nearest best = search(body, x, revolved);
+  const int64_t k = best.edge;
+  mpsi_foot f = {.face = body->face_of[k]};
   double one[2], two[2];
   edge_normal(body, k, one);
   if (best.where == 0) {
@@ -63,7 +82,7 @@ static mpsi_foot polygon_foot(const mps_body *body, const double *x) {
     return f;
   }
   const double *corner = body->xy + 2 * (best.where < 0 ? k : k + 1);
-  edge_normal(body, best.where < 0 ? (k + n - 1) % n : (k + 1) % n, two);
+  neighbour_normal(body, k, best.where, revolved, one, two);
   const double mx = one[0] + two[0], my = one[1] + two[1], mean = hypot(mx, my);
   const double dx = x[0] - corner[0], dy = x[1] - corner[1], d = hypot(dx, dy);
   const double sign = dx * mx + dy * my < 0.0 ? -1.0 : 1.0;
@@ -76,30 +95,61 @@ static mpsi_foot polygon_foot(const mps_body *body, const double *x) {
   return f;
 }
 
-static mpsi_foot disc_foot(const mps_body *body, const double *x) {
-  mpsi_foot f = {.normal = {1.0, 0.0}};
-  const double r = hypot(x[0], x[1]);
+/* Disc and sphere: z = 0 in 2D. */
+static mpsi_foot ball_foot(const mps_body *body, const double *x) {
+  mpsi_foot f = {.normal = {1.0, 0.0, 0.0}};
+  const double r = sqrt(mpsi_dot3(x, x));
   f.distance = r - body->radius;
-  if (r > 0.0) f.normal[0] = x[0] / r, f.normal[1] = x[1] / r;
-  for (int c = 0; c < 2; c++) f.at[c] = body->radius * f.normal[c];
+  for (int c = 0; c < 3; c++) {
+    if (r > 0.0) f.normal[c] = x[c] / r;
+    f.at[c] = body->radius * f.normal[c];
+  }
   return f;
 }
 
-static mpsi_foot plane_foot(const mps_body *body, const double *x) {
+/* Half plane and half space. */
+static mpsi_foot half_foot(const mps_body *body, const double *x) {
   const double *n = body->normal;
-  mpsi_foot f = {.distance = x[0] * n[0] + x[1] * n[1], .normal = {n[0], n[1]}};
-  for (int c = 0; c < 2; c++) f.at[c] = x[c] - f.distance * n[c];
+  mpsi_foot f = {.distance = mpsi_dot3(x, n), .normal = {n[0], n[1], n[2]}};
+  for (int c = 0; c < 3; c++) f.at[c] = x[c] - f.distance * n[c];
+  return f;
+}
+
+static mpsi_foot revolution_foot(const mps_body *body, const double *x) {
+  const double r = sqrt(x[0] * x[0] + x[1] * x[1]), rz[2] = {r, x[2]};
+  mpsi_foot f = polygon_foot(body, rz, true);
+  const double ex = r > 0.0 ? x[0] / r : 1.0, ey = r > 0.0 ? x[1] / r : 0.0;
+  const double n[2] = {f.normal[0], f.normal[1]}, at[2] = {f.at[0], f.at[1]};
+  f.normal[0] = n[0] * ex, f.normal[1] = n[0] * ey, f.normal[2] = n[1];
+  f.at[0] = at[0] * ex, f.at[1] = at[0] * ey, f.at[2] = at[1];
+  return f;
+}
+
+static mpsi_foot solid_foot(const mps_body *body, const double *x) {
+  const mpsi_pose *p = &body->pose;
+  const double from[3] = {x[0] - p->x[0], x[1] - p->x[1], x[2] - p->x[2]};
+  double local[3];
+  mpsi_rotate_back(p->R, from, local);
+  const mpsi_foot own = body->shape == MPSI_BALL         ? ball_foot(body, local)
+                        : body->shape == MPSI_HALF       ? half_foot(body, local)
+                        : body->shape == MPSI_REVOLUTION ? revolution_foot(body, local)
+                                                         : mpsi_mesh_foot(body->mesh, local);
+  mpsi_foot f = own;
+  mpsi_rotate(p->R, own.normal, f.normal);
+  mpsi_rotate(p->R, own.at, f.at);
+  for (int c = 0; c < 3; c++) f.at[c] += p->x[c];
   return f;
 }
 
 mpsi_foot mpsi_body_foot(const mps_body *body, const double *x) {
+  if (body->dim == 3) return solid_foot(body, x);
   const mpsi_pose *p = &body->pose;
   const double cosine = p->R[0], sine = p->R[3];
   const double dx = x[0] - p->x[0], dy = x[1] - p->x[1];
-  const double local[2] = {cosine * dx + sine * dy, cosine * dy - sine * dx};
-  mpsi_foot f = body->shape == MPSI_POLYGON ? polygon_foot(body, local)
-                : body->shape == MPSI_DISC  ? disc_foot(body, local)
-                                            : plane_foot(body, local);
+  const double local[3] = {cosine * dx + sine * dy, cosine * dy - sine * dx, 0.0};
+  mpsi_foot f = body->shape == MPSI_POLYGON ? polygon_foot(body, local, false)
+                : body->shape == MPSI_BALL  ? ball_foot(body, local)
+                                            : half_foot(body, local);
   const double n[2] = {f.normal[0], f.normal[1]}, at[2] = {f.at[0], f.at[1]};
   f.normal[0] = cosine * n[0] - sine * n[1];
   f.normal[1] = sine * n[0] + cosine * n[1];

@@ -1,9 +1,8 @@
 /* test_body.c - rigid bodies: arguments, motion by signals and by forces, parts, ownership.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "contact/body.h"
 #include "test_allocator.h"
 #include "test_fixture.h"
-
-#include <mps/body.h>
 
 static const double square[] = {0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0};
 
@@ -51,6 +50,75 @@ static void refuses_bad_definitions(void **state) {
   mps_assert_fails(context, mps_body_create_box(context, &def, 1.0, 1.0, &body), MPS_ERROR_ARGUMENT,
                    "motion is 7");
   assert_null(body);
+}
+
+static void refuses_what_a_plane_has_not(void **state) {
+  (void)state;
+  mps_body *body = NULL;
+  mps_body_def def = mps_body_defaults();
+  def.position[2] = 0.5;
+  mps_assert_fails(context, mps_body_create_disc(context, &def, 1.0, &body), MPS_ERROR_ARGUMENT,
+                   "position[2] is 0.5 m, must be 0 for a 2D shape");
+  def = mps_body_defaults();
+  def.rotation[0] = 0.1;
+  mps_assert_fails(context, mps_body_create_box(context, &def, 1.0, 1.0, &body), MPS_ERROR_ARGUMENT,
+                   "rotation[0] is 0.1 rad");
+  def = mps_body_defaults();
+  def.motion = MPS_MOTION_FREE;
+  def.mass = def.inertia[2] = 1.0;
+  mps_assert_fails(context, mps_body_create_sphere(context, &def, 1.0, &body), MPS_ERROR_ARGUMENT,
+                   "inertia[0] is 0 kg m2");
+  mps_assert_ok(context, mps_body_create_disc(context, &def, 1.0, &body));
+  const double out[] = {0.0, 0.0, 1.0}, bad[] = {0.0, NAN, 0.0};
+  mps_assert_fails(context, mps_body_load(body, out, NULL), MPS_ERROR_ARGUMENT, "must be 0 in 2D");
+  mps_assert_fails(context, mps_body_load(body, NULL, bad), MPS_ERROR_ARGUMENT,
+                   "moment[1] nan N m");
+  mps_assert_ok(context, mps_body_load(body, NULL, out));
+  mps_body_destroy(&body);
+}
+
+static void refuses_bad_solids(void **state) {
+  (void)state;
+  mps_body *body = NULL;
+  const double zero[3] = {0.0, 0.0, 0.0};
+  const double crossing[] = {-0.1, 0.0, 1.0, 0.0, 1.0, 1.0};
+  const double pinched[] = {0.0, 0.0, 1.0, -1.0, 1.0, 1.0};
+  mps_assert_fails(context, mps_body_create_half_space(context, NULL, zero, &body),
+                   MPS_ERROR_ARGUMENT, "normal is (0, 0, 0)");
+  mps_assert_fails(context, mps_body_create_cylinder(context, NULL, 1.0, NAN, &body),
+                   MPS_ERROR_ARGUMENT, "length nan m");
+  mps_assert_fails(context, mps_body_create_revolution(context, NULL, 3, NULL, &body),
+                   MPS_ERROR_ARGUMENT, "rz is NULL");
+  mps_assert_fails(context, mps_body_create_revolution(context, NULL, 3, crossing, &body),
+                   MPS_ERROR_ARGUMENT, "corner 0 has r = -0.1 m");
+  mps_assert_fails(context, mps_body_create_revolution(context, NULL, 3, pinched, &body),
+                   MPS_ERROR_ARGUMENT, "corner 0 is on the axis with neither of its edges");
+  assert_null(body);
+}
+
+/* Seed B (28) and (58): by hand, for 2 x 2 (x 2) particles a cell of 0.2 m. */
+static void chooses_the_penalty(void **state) {
+  (void)state;
+  mps_body_def def = mps_body_defaults();
+  mps_body *body = NULL;
+  def.xi = 1.0;
+  mps_assert_fails(context, mps_body_create_disc(context, &def, 1.0, &body), MPS_ERROR_ARGUMENT,
+                   "xi is 1, must be in (0, 1), or 0");
+  def.xi = 0.6, def.penalty = 1e6;
+  mps_assert_fails(context, mps_body_create_disc(context, &def, 1.0, &body), MPS_ERROR_ARGUMENT,
+                   "xi is 0.6 and penalty 1e+06 N/m");
+  for (int dim = 2; dim <= 3; dim++)
+    for (int how = 0; how < 3; how++) {
+      def.xi = how == 1 ? 0.6 : 0.0, def.penalty = how == 2 ? 7e4 : 0.0;
+      if (dim == 2) mps_assert_ok(context, mps_body_create_disc(context, &def, 1.0, &body));
+      if (dim == 3) mps_assert_ok(context, mps_body_create_sphere(context, &def, 1.0, &body));
+      const double k = mpsi_body_penalty(body, 1e6, 0.1, 0.2, 0.5);
+      /* m/dt^2 with m = density spacing^dim and dt = 0.5 0.2 m/sqrt(1e6 Pa/density) */
+      const double mass_over_dt2 = (dim == 2 ? 0.01 : 0.001) * 1e6 / (0.1 * 0.1);
+      const double expected[] = {dim == 2 ? 1.33e6 : 1.33e5, 2.0 * 0.4 * mass_over_dt2, 7e4};
+      mps_assert_near(k, expected[how], 1e-9 * k);
+      mps_body_destroy(&body);
+    }
 }
 
 static void refuses_bad_calls(void **state) {
@@ -176,7 +244,8 @@ static mps_status make(mps_context *c, int what) {
   const mps_status status = what == 0   ? mps_body_create_polygon(c, NULL, 4, square, &body)
                             : what == 1 ? mps_body_create_box(c, NULL, 1.0, 1.0, &body)
                             : what == 2 ? mps_body_create_disc(c, NULL, 1.0, &body)
-                                        : mps_body_create_half_plane(c, NULL, normal, &body);
+                            : what == 3 ? mps_body_create_half_plane(c, NULL, normal, &body)
+                                        : mps_body_create_cylinder(c, NULL, 1.0, 1.0, &body);
   if (status != MPS_OK) assert_null(body);
   mps_body_destroy(&body);
   return status;
@@ -184,15 +253,15 @@ static mps_status make(mps_context *c, int what) {
 
 static void survives_lack_of_memory(void **state) {
   (void)state;
-  for (int what = 0; what < 4; what++) test_allocator_sweep(make, what);
+  for (int what = 0; what < 5; what++) test_allocator_sweep(make, what);
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(refuses_bad_definitions),
-                                     cmocka_unit_test(refuses_bad_calls),
-                                     cmocka_unit_test(names_parts),
-                                     cmocka_unit_test(follows_signals),
-                                     cmocka_unit_test(falls_freely),
-                                     cmocka_unit_test(survives_lack_of_memory)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(refuses_bad_definitions), cmocka_unit_test(refuses_what_a_plane_has_not),
+      cmocka_unit_test(refuses_bad_solids),      cmocka_unit_test(chooses_the_penalty),
+      cmocka_unit_test(refuses_bad_calls),       cmocka_unit_test(names_parts),
+      cmocka_unit_test(follows_signals),         cmocka_unit_test(falls_freely),
+      cmocka_unit_test(survives_lack_of_memory)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

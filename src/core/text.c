@@ -1,11 +1,11 @@
-/* record_text.c - text files for the record parsers: loading, lines, words, numbers, errors.
+/* text.c - text files: loading, lines, words, numbers, errors.
  *
  * Numbers. strtod reads with the decimal point of the host's locale, and knows "nan" and hex. So
  * the notation is checked here, character by character, and only what is plain decimal goes to
  * strtod (correctly rounded in the C libraries of our platforms), under the "C" locale set for this
  * thread alone (uselocale, POSIX.1-2008), for just that call.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "record_private.h"
+#include "text.h"
 
 #include <errno.h>
 #include <stdarg.h>
@@ -14,14 +14,12 @@
 #include <string.h>
 
 #define FIRST_CAPACITY 65536 /* bytes of a file's first buffer */
-#define FIRST_SAMPLES 4096
-#define NUMBER_SIZE 128 /* characters of the longest number, with its end */
-#define PATH_SHOWN 200  /* characters of a path in a message: leaves room for the reason */
+#define NUMBER_SIZE 128      /* characters of the longest number, with its end */
+#define PATH_SHOWN 200       /* characters of a path in a message: leaves room for the reason */
 
 /* ---- errors ---------------------------------------------------------------------------------- */
 
-/* The end of a long path. */
-static const char *path_tail(const char *path) {
+const char *mpsi_path_tail(const char *path) {
   const size_t length = strlen(path);
   return length > PATH_SHOWN ? path + length - PATH_SHOWN : path;
 }
@@ -32,7 +30,7 @@ mps_status mpsi_text_fail(const mpsi_text *text, const char *format, ...) {
   va_start(args, format);
   vsnprintf(reason, sizeof reason, format, args);
   va_end(args);
-  const char *tail = path_tail(text->path);
+  const char *tail = mpsi_path_tail(text->path);
   return mpsi_fail(text->context, text->function, MPS_ERROR_FORMAT, "%s%s:%lld: %s",
                    tail == text->path ? "" : "...", tail, (long long)text->line, reason);
 }
@@ -41,7 +39,7 @@ static mps_status fail_io(mps_context *context, const char *function, const char
                           const char *verb, int error) {
   char reason[128] = "unknown error";
   if (error != 0) (void)strerror_r(error, reason, sizeof reason);
-  const char *tail = path_tail(path);
+  const char *tail = mpsi_path_tail(path);
   return mpsi_fail(context, function, MPS_ERROR_IO, "%s%s: cannot %s: %s",
                    tail == path ? "" : "...", tail, verb, reason);
 }
@@ -86,9 +84,9 @@ static mps_status read_all(mps_context *context, const char *function, const cha
     const size_t got = fread(*data + *size, 1, (size_t)(capacity - *size), file);
     *size += (int64_t)got;
     if (*size > limit) {
-      const char *tail = path_tail(path);
+      const char *tail = mpsi_path_tail(path);
       return mpsi_fail(context, function, MPS_ERROR_FORMAT,
-                       "%s%s: larger than %lld bytes, the most that is read as a record",
+                       "%s%s: larger than %lld bytes, the most that is read",
                        tail == path ? "" : "...", tail, (long long)limit);
     }
     if (ferror(file)) return fail_io(context, function, path, "read", errno);
@@ -96,16 +94,28 @@ static mps_status read_all(mps_context *context, const char *function, const cha
   }
 }
 
-mps_status mpsi_text_load(mps_context *context, const char *function, const char *path,
-                          int64_t limit, mpsi_text *out) {
+mps_status mpsi_file_read(mps_context *context, const char *function, const char *path,
+                          int64_t limit, char **data, int64_t *size) {
+  *data = NULL;
+  *size = 0;
   errno = 0;
   FILE *file = fopen(path, "rb");
   if (!file) return fail_io(context, function, path, "open", errno);
-  char *data = NULL;
-  int64_t size = 0;
-  mps_status status = read_all(context, function, path, limit, file, &data, &size);
+  const mps_status status = read_all(context, function, path, limit, file, data, size);
   (void)fclose(file); /* only read: nothing can be lost */
-  if (status == MPS_OK) status = mpsi_text_wrap(context, function, path, data, (size_t)size, out);
+  if (status == MPS_OK) return MPS_OK;
+  mpsi_free(context, *data);
+  *data = NULL;
+  return status;
+}
+
+mps_status mpsi_text_load(mps_context *context, const char *function, const char *path,
+                          int64_t limit, mpsi_text *out) {
+  char *data;
+  int64_t size;
+  mps_status status = mpsi_file_read(context, function, path, limit, &data, &size);
+  if (status != MPS_OK) return status;
+  status = mpsi_text_wrap(context, function, path, data, (size_t)size, out);
   if (status == MPS_OK)
     out->owned = data;
   else
@@ -242,31 +252,4 @@ mps_status mpsi_text_number(const mpsi_text *text, mpsi_slice word, const char *
                           mpsi_slice_quote(word).text);
   *out = value;
   return MPS_OK;
-}
-
-/* ---- samples ----------------------------------------------------------------------------------
- */
-
-mps_status mpsi_samples_add(const mpsi_text *text, mpsi_samples *samples, double time,
-                            double value) {
-  if (samples->count == samples->capacity) {
-    const int64_t wanted = samples->capacity > 0 ? 2 * samples->capacity : FIRST_SAMPLES;
-    void *times = samples->times, *values = samples->values;
-    bool grown = mpsi_grow(text->context, &times, samples->count, wanted, sizeof(double));
-    samples->times = times;
-    grown = grown && mpsi_grow(text->context, &values, samples->count, wanted, sizeof(double));
-    samples->values = values;
-    if (!grown)
-      return mpsi_fail_memory(text->context, text->function, (size_t)wanted * sizeof(double));
-    samples->capacity = wanted;
-  }
-  samples->times[samples->count] = time;
-  samples->values[samples->count++] = value;
-  return MPS_OK;
-}
-
-void mpsi_samples_free(mps_context *context, mpsi_samples *samples) {
-  mpsi_free(context, samples->times);
-  mpsi_free(context, samples->values);
-  *samples = (mpsi_samples){0};
 }
