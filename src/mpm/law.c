@@ -32,6 +32,12 @@ void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cells *cells, int64_t begin, int64_t 
   for (int64_t k = begin; p->J && k < end; k++) p->V[k] *= p->J[k];
 }
 
+void mpsi_mpm_elastic(const mps_mpm *mpm, int64_t particle, double *wave, double *shear) {
+  (void)particle;
+  *wave = mpm->modulus;
+  *shear = mpsi_material_shear(mpm->material);
+}
+
 void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli) {
   const mps_material_block block = columns_of(mpm, begin, end);
   mpsi_material_wave_moduli(mpm->material, &block, moduli);
