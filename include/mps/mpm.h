@@ -54,11 +54,10 @@ typedef enum mps_wall {
                               but never pulls, so that material may leave */
   MPS_WALL_ABSORBING = 3   /* dashpots (Lysmer): traction R - rho c_p v across and R - rho c_s v
                               along the wall, with rho, c_p and c_s of the particles in the cells at
-                              the wall (elastic; under a user's law c_s = c_p/sqrt(3)). R holds the
-                              wall at rest in the first step, so that what was in equilibrium with a
-                              fixed wall stays so; later it is constant. Material that comes to new
-                              nodes finds no R. Stable for every dt. Particles at the wall move with
-                              the waves: one that passes the wall has left the domain */
+                              the wall (elastic; under a user's law c_s = c_p/sqrt(3)). The constant
+                              R carries the stress at rest: see settle below. Material that comes to
+                              new nodes finds no R. Stable for every dt. Particles at the wall move
+                              with the waves: one that passes the wall has left the domain */
 } mps_wall;
 
 typedef struct mps_mpm_def {
@@ -79,6 +78,11 @@ typedef struct mps_mpm_def {
   double courant; /* fraction of that limit, in (0, 1]; default 0.5 */
   double wall_friction_lower[3], wall_friction_upper[3]; /* Coulomb's mu of frictional walls, >= 0,
                                                             default 0 */
+  double settle; /* s, >= 0: so long an absorbing wall begins as a fixed one, and R is the mean of
+                    the traction then. 0 (default): R balances the other forces at the wall's nodes
+                    in the first step. A stress that balances gravity on paper does so on the grid
+                    within a percent or so: without settling the wall yields to the rest, as a
+                    dashpot does */
 } mps_mpm_def;
 
 MPS_API mps_status mps_mpm_def_init(mps_mpm_def *def, size_t size);
@@ -117,8 +121,7 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_add_body(mps_mpm *mpm, mps_body *body);
  */
 
 /** Makes the wall across `axis` one of kind `wall` (mps_wall) with `friction` (>= 0; 0 for other
- *  than frictional ones). An absorbing wall finds its R anew in the next step: after a phase at
- *  rest on a fixed wall, that wall's force. */
+ *  than frictional ones). An absorbing wall finds its R anew, from the next step on. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_set_wall(mps_mpm *mpm, int32_t axis, int32_t upper,
                                                   int32_t wall, double friction);
 /** Moves the wall in `component`: of a roller the one across it, else any. An absorbing wall's

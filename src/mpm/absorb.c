@@ -7,19 +7,27 @@
  * (seed B (5), (6) with one axis less). So a wall covered in part has the right force in sum, and
  * its nodes the right ratio of damping to mass.
  *
- * R carries the stress at rest: in the first step it is what holds the node where it is.
+ * R carries the stress at rest. It is the mean of the force that holds the node while the wall
+ * settles, or what balances the first step's forces.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "shape.h"
 
 #include <string.h>
 
-/* Implicit in the velocity: stable for every dt. */
 void mpsi_mpm_dash(const mps_mpm *mpm, const mpsi_hold *hold, mpsi_dash *dash, const double *node,
                    const double *before, double *velocity) {
   const double per_mass = mpm->dt / node[MPSI_MASS];
+  const bool settles = hold->finds && mpm->def.settle > 0.0;
   for (int c = 0; c < mpm->dim; c++) {
     const double v = node[MPSI_VECTOR + c], damping = c == hold->axis ? dash->across : dash->along;
+    if (settles) {
+      const double force = (hold->v[c] - v) / per_mass;
+      dash->rest[c] += (force - dash->rest[c]) * (mpm->dt / hold->found);
+      velocity[c] = hold->v[c];
+      continue;
+    }
     if (hold->finds) dash->rest[c] = before ? (before[c] - v) / per_mass : 0.0;
+    /* implicit: stable for every dt */
     velocity[c] =
         (v + per_mass * (dash->rest[c] + damping * hold->v[c])) / (1.0 + per_mass * damping);
   }

@@ -64,6 +64,9 @@ static mps_status check_numbers(mps_context *context, const mps_mpm_def *d) {
   if (!(d->courant > 0.0 && d->courant <= 1.0))
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "courant is %g, must be in (0, 1]",
                      d->courant);
+  if (!isfinite(d->settle) || d->settle < 0.0)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "settle is %g s, must be finite and >= 0", d->settle);
   for (int c = 0; c < dim_of(d); c++)
     if (!isfinite(d->origin[c]) || !isfinite(d->gravity[c]))
       return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,

@@ -99,7 +99,8 @@ typedef struct mpsi_hold {
   double factor[3];
   double v[3];     /* m/s, of the step being made */
   double force[3]; /* N, on the particles, mean over the last step */
-  bool finds;      /* absorbing: the next step finds the forces at rest */
+  bool finds;      /* absorbing: still looks for the forces at rest */
+  double found;    /* s, how long it has looked, with the step being made */
 } mpsi_hold;
 
 /* The nodes of a block that a hold holds. */

@@ -157,8 +157,9 @@ static void mark_reached(mps_mpm *mpm, int64_t b, int32_t worker) {
  * so does the transfer by weights, which divides momentum and force by different masses. */
 static mps_status find_cut(mps_mpm *mpm, const char *function) {
   const bool by_weight = mpm->def.transfer == MPS_TRANSFER_WEIGHT;
-  bool finds = false; /* an absorbing wall asks for the forces at rest */
-  for (int32_t k = 0; k < MPSI_WALLS; k++) finds = finds || mpm->hold[k].finds;
+  bool finds = false; /* an absorbing wall asks for the forces of its first step */
+  for (int32_t k = 0; k < MPSI_WALLS && !(mpm->def.settle > 0.0); k++)
+    finds = finds || mpm->hold[k].finds;
   const int corners = 1 << mpm->dim;
   for (int64_t g = 0; g < mpm->node_count; g++)
     mpm->nodes[g].side = -1, mpm->nodes[g].split = false;

@@ -201,6 +201,7 @@ void mpsi_mpm_hold_nodes(mps_mpm *mpm, int64_t g) {
 void mpsi_mpm_begin_holds(mps_mpm *mpm, double dt) {
   for (int32_t k = 0; k < MPSI_HOLDS; k++) {
     mpsi_hold *hold = &mpm->hold[k];
+    if (hold->finds) hold->found += dt;
     for (int c = 0; c < mpm->dim; c++)
       hold->v[c] = hold->signal[c] ? hold->factor[c] *
                                          mps_signal_velocity(hold->signal[c], mpm->time + 0.5 * dt)
@@ -211,7 +212,7 @@ void mpsi_mpm_begin_holds(mps_mpm *mpm, double dt) {
 void mpsi_mpm_sum_holds(mps_mpm *mpm) {
   for (int32_t k = 0; k < MPSI_HOLDS; k++) {
     memset(mpm->hold[k].force, 0, sizeof mpm->hold[k].force);
-    mpm->hold[k].finds = false;
+    if (mpm->hold[k].found >= mpm->def.settle) mpm->hold[k].finds = false;
   }
   for (int64_t t = 0; t < mpm->held_count; t++)
     for (int c = 0; c < mpm->dim; c++)
@@ -247,6 +248,7 @@ void mpsi_mpm_place_wall(mps_mpm *mpm, int32_t number, int32_t kind, double fric
   hold->axis = axis;
   hold->friction = friction;
   hold->finds = kind == MPS_WALL_ABSORBING;
+  hold->found = 0.0;
   for (int c = 0; c < 3; c++) hold->first[c] = mpm->low[c], hold->last[c] = mpm->high[c];
   hold->first[axis] = hold->last[axis] = at;
   hold->kind = axis < mpm->dim && at > -NO_WALL && at < NO_WALL ? kind : MPSI_HOLD_NONE;

@@ -2,7 +2,7 @@
  * result up to round-off for every order of the particles.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "digest.h"
-#include "mpm_scene.h"
+#include "mpm_held.h"
 #include "pthread_executor.h"
 
 static const char *const names[] = {"id",     "position", "velocity", "velocity_gradient",
@@ -61,7 +61,25 @@ static mpm_scene fall_in_space(mps_context *context) {
   return s;
 }
 
-static uint64_t hash_of(int32_t executor, int32_t threads, int32_t geometry) {
+/* The scene with everything that holds and loads, in the plane and in space; the forces that act.
+ */
+static mpm_scene hold(mps_context *context, int32_t geometry, uint64_t *hash) {
+  int32_t box = -1, loads[2];
+  mpm_scene s = held_begin(context, geometry, &box, loads);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 10));
+  double force[3];
+  for (int32_t k = -1; k < 4; k++) {
+    mps_assert_ok(context, k < 0 ? mps_mpm_get_nodes_force(s.mpm, box, force)
+                                 : mps_mpm_get_wall_force(s.mpm, k / 2, k % 2, force));
+    for (int c = 0; c < 3; c++) *hash = digest_add(*hash, &force[c]);
+  }
+  return s;
+}
+
+/* Scenes: by geometry; then those that are held, in the plane and in space. */
+enum { HELD = MPS_SPACE + 1, SCENES = HELD + 2 };
+
+static uint64_t hash_of(int32_t executor, int32_t threads, int32_t scene) {
   mps_context_def def =
       executor == MPS_EXECUTOR_CALLER ? pthread_executor_def(&threads) : mps_context_defaults();
   def.executor = executor;
@@ -70,11 +88,14 @@ static uint64_t hash_of(int32_t executor, int32_t threads, int32_t geometry) {
   if (mps_context_create(&def, &context, NULL, 0) != MPS_OK) return 0;
   mps_body *disc = NULL;
   mps_body_state b = {0};
-  mpm_scene s =
-      geometry == MPS_SPACE ? fall_in_space(context) : fall(context, geometry, false, &disc);
+  uint64_t forces = 0;
+  mpm_scene s = scene >= HELD        ? hold(context, scene > HELD ? MPS_SPACE : 0, &forces)
+                : scene == MPS_SPACE ? fall_in_space(context)
+                                     : fall(context, scene, false, &disc);
   if (disc) mps_assert_ok(context, mps_body_get_state(disc, &b));
   assert_true(!disc || b.velocity[0] > -2.9); /* it has hit */
-  const uint64_t hash = digest_add(digest_fields(context, s.particles, names), &b.spin[2]);
+  uint64_t hash = digest_add(digest_fields(context, s.particles, names), &b.spin[2]);
+  hash = digest_add(hash, &forces);
   mps_body_destroy(&disc);
   mpm_scene_end(&s);
   mps_context_destroy(&context);
@@ -84,11 +105,11 @@ static uint64_t hash_of(int32_t executor, int32_t threads, int32_t geometry) {
 static void every_number_of_threads(void **state) {
   (void)state;
   static const int32_t threads[] = {1, 2, 3, 8};
-  for (int32_t geometry = 0; geometry <= MPS_SPACE; geometry++) {
-    const uint64_t first = hash_of(MPS_EXECUTOR_SERIAL, 1, geometry);
+  for (int32_t scene = 0; scene < SCENES; scene++) {
+    const uint64_t first = hash_of(MPS_EXECUTOR_SERIAL, 1, scene);
     for (int k = 0; k < 4; k++)
       for (int32_t executor = MPS_EXECUTOR_OPENMP; executor <= MPS_EXECUTOR_CALLER; executor++) {
-        const uint64_t hash = hash_of(executor, threads[k], geometry);
+        const uint64_t hash = hash_of(executor, threads[k], scene);
         if (hash == 0)
           print_message("executor %d is missing here: not compared\n", executor);
         else if (hash != first)
