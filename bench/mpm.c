@@ -158,6 +158,7 @@ static contender contender_create(int dim, int spline, kind k, int64_t side) {
   fill(&c, dim, k, side);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 1.0;
+  def.geometry = dim == 3 ? MPS_SPACE : MPS_PLANE_STRAIN;
   def.spline = spline;
   if (k == MIXED) /* 2D: four walls and the body; 3D: a floor. Either way about 5 % at 1e5 */
     for (size_t d = 0; d < sizeof def.lower / sizeof *def.lower && (int)d < dim; d++) {

@@ -95,12 +95,12 @@ MPSI_INLINE mpsi_foot polygon_foot(const mps_body *body, const double *x, bool r
   return f;
 }
 
-/* Disc and sphere: z = 0 in 2D. */
-static mpsi_foot ball_foot(const mps_body *body, const double *x) {
+/* Disc and sphere. */
+MPSI_INLINE mpsi_foot ball_foot(const mps_body *body, const double *x, int dim) {
   mpsi_foot f = {.normal = {1.0, 0.0, 0.0}};
-  const double r = sqrt(mpsi_dot3(x, x));
+  const double r = sqrt(x[0] * x[0] + x[1] * x[1] + (dim == 3 ? x[2] * x[2] : 0.0));
   f.distance = r - body->radius;
-  for (int c = 0; c < 3; c++) {
+  for (int c = 0; c < dim; c++) {
     if (r > 0.0) f.normal[c] = x[c] / r;
     f.at[c] = body->radius * f.normal[c];
   }
@@ -130,7 +130,7 @@ static mpsi_foot solid_foot(const mps_body *body, const double *x) {
   const double from[3] = {x[0] - p->x[0], x[1] - p->x[1], x[2] - p->x[2]};
   double local[3];
   mpsi_rotate_back(p->R, from, local);
-  const mpsi_foot own = body->shape == MPSI_BALL         ? ball_foot(body, local)
+  const mpsi_foot own = body->shape == MPSI_BALL         ? ball_foot(body, local, 3)
                         : body->shape == MPSI_HALF       ? half_foot(body, local)
                         : body->shape == MPSI_REVOLUTION ? revolution_foot(body, local)
                                                          : mpsi_mesh_foot(body->mesh, local);
@@ -148,7 +148,7 @@ mpsi_foot mpsi_body_foot(const mps_body *body, const double *x) {
   const double dx = x[0] - p->x[0], dy = x[1] - p->x[1];
   const double local[3] = {cosine * dx + sine * dy, cosine * dy - sine * dx, 0.0};
   mpsi_foot f = body->shape == MPSI_POLYGON ? polygon_foot(body, local, false)
-                : body->shape == MPSI_BALL  ? ball_foot(body, local)
+                : body->shape == MPSI_BALL  ? ball_foot(body, local, 2)
                                             : half_foot(body, local);
   const double n[2] = {f.normal[0], f.normal[1]}, at[2] = {f.at[0], f.at[1]};
   f.normal[0] = cosine * n[0] - sine * n[1];

@@ -101,8 +101,8 @@ MPSI_INLINE void look_after(const mps_mpm *mpm, mpsi_cells *cells, int dim, int 
     const double first = (double)cells->at[c] * MPSI_SIDE, last = first + MPSI_SIDE + 1;
     MPSI_SIMD for (int64_t k = begin; k < end; k++) {
       const double X = (x[k] - origin) * inverse, base = mpsi_base(spline, X);
-      bad |= (X >= low) & (X <= high) ? 0 : 1;
-      left |= (base >= first) & (base <= last) ? 0 : 1;
+      bad |= (int64_t)!((X >= low) & (X <= high));
+      left |= (int64_t)!((base >= first) & (base <= last));
     }
   }
   if (left) cells->left = true;

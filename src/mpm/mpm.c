@@ -424,8 +424,8 @@ mps_status mps_mpm_add_body(mps_mpm *mpm, mps_body *body) {
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "the body was made from another context");
   if (body->dim != mpm->dim)
-    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                     "the body has %d dimensions, the particles have %d", body->dim, mpm->dim);
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "the body is %dD, the solver %dD",
+                     body->dim, mpm->dim);
   if (mpm->bodies == MPS_MPM_MAX_BODIES)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "the solver has %d bodies, the most there can be", MPS_MPM_MAX_BODIES);

@@ -44,7 +44,7 @@ static mpm_scene fall(mps_context *context, int32_t geometry, bool backwards, mp
   return s;
 }
 
-/* A block in space that falls into the corner of the walls. */
+/* A block in space that falls on a rough ball in the corner of the walls. */
 static mpm_scene fall_in_space(mps_context *context) {
   const double lo[] = {0.05, 0.02, 0.0}, hi[] = {0.53, 0.18, 0.16};
   const double v0[] = {-1.0, -2.0, 0.5}, L[] = {0.0, -3.0, 1.0, 3.0, 0.0, 0.0, -1.0, 0.0, 0.0};
@@ -57,7 +57,17 @@ static mpm_scene fall_in_space(mps_context *context) {
   for (int c = 0; c < 3; c++) def.lower[c] = 0.0;
   def.gravity[1] = -9.81;
   mpm_scene_solve(&s, &def);
+  mps_body *ball = NULL;
+  mps_body_def body = mps_body_defaults();
+  body.position[0] = 0.3, body.position[2] = 0.08;
+  body.friction = 0.4;
+  mps_assert_ok(context, mps_body_create_sphere(context, &body, 0.03, &ball));
+  mps_assert_ok(context, mps_mpm_add_body(s.mpm, ball));
   mps_assert_ok(context, mps_mpm_step(s.mpm, 25));
+  mps_reaction reaction;
+  mps_assert_ok(context, mps_body_get_reaction(ball, -1, &reaction));
+  assert_true(reaction.contacts > 0);
+  mps_body_destroy(&ball);
   return s;
 }
 

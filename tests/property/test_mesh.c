@@ -233,6 +233,6 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(distance_is_the_least), cmocka_unit_test(order_and_place_do_not_matter),
       cmocka_unit_test(fine_mesh_is_the_sphere), cmocka_unit_test(moves_with_its_frame),
-                                     cmocka_unit_test(overlap_and_walls)};
+      cmocka_unit_test(overlap_and_walls)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -20,10 +20,16 @@ static const double tooth[] = {0.30, 0.20, 0.90, 0.20, 0.90, 0.35, 0.62,
 
 enum { COUNT = 4000 };
 
-/* Bodies of that scene; in 3D none. */
+/* Bodies of that scene; in space a thin pin with its end, and a ball. */
 static int crowd_bodies(int32_t geometry, mps_body **bodies) {
-  if (geometry == MPS_SPACE) return 0;
   mps_body_def body = mps_body_defaults();
+  if (geometry == MPS_SPACE) {
+    for (int c = 0; c < 3; c++) body.position[c] = 0.05;
+    mps_assert_ok(context, mps_body_create_sphere(context, &body, 0.04, &bodies[0]));
+    body.position[0] = 0.13, body.position[1] = 0.11, body.rotation[0] = 0.4;
+    mps_assert_ok(context, mps_body_create_cylinder(context, &body, 0.015, 0.13, &bodies[1]));
+    return 2;
+  }
   mps_assert_ok(context, mps_body_create_polygon(context, &body, 7, tooth, &bodies[0]));
   body.position[0] = 0.25, body.position[1] = 0.8;
   mps_assert_ok(context, mps_body_create_disc(context, &body, 0.15, &bodies[1]));
@@ -250,6 +256,50 @@ static void contact_keeps_momentum(void **state) {
   mpm_scene_end(&s);
 }
 
+/* The same in space: a ball of particles against a free rough sphere and a free rough plane. */
+static void contact_in_space_keeps_momentum(void **state) {
+  (void)state;
+  mpm_scene s = mpm_scene_begin_in(context, 3, 0.01, 0.0, 0.0, 1e5);
+  const double v0[] = {2.0, -0.5, 0.3}, L[] = {0.0, -3.0, 2.0, 3.0, 0.0, 1.0, -2.0, -1.0, 0.0};
+  const double centre[3] = {0.0, 0.0, 0.0}, normal[] = {0.2, 1.0, 0.1};
+  mps_assert_ok(context, mps_particles_fill_ball(s.particles, centre, 0.05, NULL));
+  mpm_scene_affine(&s, v0, L);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.geometry = MPS_SPACE;
+  def.cell = 0.02;
+  mpm_scene_solve(&s, &def);
+  mps_body *bodies[2] = {NULL};
+  mps_body_def body = mps_body_defaults();
+  body.motion = MPS_MOTION_FREE;
+  body.mass = 2.0;
+  for (int c = 0; c < 3; c++) body.inertia[c] = 0.002 + 0.001 * c;
+  body.position[0] = 0.12, body.position[1] = -0.01;
+  body.friction = 0.4;
+  mps_assert_ok(context, mps_body_create_sphere(context, &body, 0.06, &bodies[0]));
+  body.position[0] = 0.0, body.position[1] = -0.06;
+  mps_assert_ok(context, mps_body_create_half_space(context, &body, normal, &bodies[1]));
+  for (int b = 0; b < 2; b++) mps_assert_ok(context, mps_mpm_add_body(s.mpm, bodies[b]));
+  const mps_mpm_totals start = mpm_scene_totals(&s);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 200));
+  const mps_mpm_totals end = mpm_scene_totals(&s);
+  double lost[3], spin = 0.0;
+  for (int c = 0; c < 3; c++) lost[c] = start.linear[c] - end.linear[c];
+  for (int b = 0; b < 2; b++) {
+    mps_body_state now;
+    mps_reaction all;
+    mps_assert_ok(context, mps_body_get_state(bodies[b], &now));
+    mps_assert_ok(context, mps_body_get_reaction(bodies[b], -1, &all));
+    assert_true(length(all.impulse) > 0.05); /* it has hit */
+    for (int c = 0; c < 3; c++) lost[c] -= 2.0 * now.velocity[c];
+    spin += length(now.spin);
+    mps_body_destroy(&bodies[b]);
+  }
+  print_message("in space: linear %.2g of %.2g\n", length(lost), length(start.linear));
+  assert_true(length(lost) <= 1e-12 * length(start.linear));
+  assert_true(spin > 0.1); /* friction */
+  mpm_scene_end(&s);
+}
+
 /* Two lumps on the two sides of a wall two cells thick: one strikes it, the other must not move at
  * all, however the wall lies in the grid. */
 static void thin_wall_lets_nothing_pass(void **state) {
@@ -287,9 +337,11 @@ static void thin_wall_lets_nothing_pass(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(shapes_are_a_partition), cmocka_unit_test(affine_round_trip),
-      cmocka_unit_test(free_body_keeps_momentum), cmocka_unit_test(contact_keeps_momentum),
-      cmocka_unit_test(thin_wall_lets_nothing_pass)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(shapes_are_a_partition),
+                                     cmocka_unit_test(affine_round_trip),
+                                     cmocka_unit_test(free_body_keeps_momentum),
+                                     cmocka_unit_test(contact_keeps_momentum),
+                                     cmocka_unit_test(contact_in_space_keeps_momentum),
+                                     cmocka_unit_test(thin_wall_lets_nothing_pass)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
