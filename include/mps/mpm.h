@@ -70,8 +70,8 @@ typedef struct mps_mpm_def {
   double origin[3]; /* m: a node lies here; default 0 */
   double lower[3], upper[3]; /* m: walls of the domain, on nodes; default: none (infinite). In
                                 axisymmetry lower[0] is at least 0, and 0 by default */
-  int32_t wall_lower[3], wall_upper[3]; /* mps_wall of each, default ROLLER; the axis r = 0
-                                           stays a roller */
+  int32_t wall_lower[3], wall_upper[3]; /* mps_wall of each, default ROLLER; on the axis
+                                           r = 0 ROLLER or FIXED */
   double gravity[3];                    /* m/s2, default 0 */
   double dt; /* s, > 0, or 0 (default): each step the largest by seed B (49), (50). At most that
                 limit at creation; a warning tells when it gets above the fraction below */
@@ -129,6 +129,7 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_set_wall(mps_mpm *mpm, int32_t axis, in
 MPS_API MPS_NODISCARD mps_status mps_mpm_drive_wall(mps_mpm *mpm, int32_t axis, int32_t upper,
                                                     int32_t component, mps_signal *signal,
                                                     double factor);
+/** Force[3] of a wall; 0 before the first step. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_get_wall_force(mps_mpm *mpm, int32_t axis, int32_t upper,
                                                         double *force);
 
@@ -142,6 +143,7 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_drive_nodes(mps_mpm *mpm, const double 
                                                      int32_t *box);
 /** Lets the nodes of a box go. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_free_nodes(mps_mpm *mpm, int32_t box);
+/** Force[3] of what moves the nodes of a box. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_get_nodes_force(mps_mpm *mpm, int32_t box, double *force);
 
 /* ---- loads ----------------------------------------------------------------------------------- */
