@@ -13,49 +13,79 @@
 /* ---- active nodes -----------------------------------------------------------------------------
  */
 
-static int64_t node_of(const mps_mpm *mpm, const mpsi_cells *cells, const mpsi_stencil *at, int i,
-                       int j, int k) {
-  return mpsi_node_under(mpm, cells, at->at[0] + i, at->at[1] + j, at->at[2] + k);
+/* A stencil, and where in the blocks of nodes its nodes are. */
+typedef struct support {
+  mpsi_stencil at;
+  int corner[3][4], local[3][4]; /* which block under the tile, and the node's number in it: sums */
+} support;
+
+MPSI_INLINE void make_support(const mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
+                              int64_t particle, support *out) {
+  mpsi_make_stencil(mpm, cells, dim, spline, particle, &out->at);
+  for (int c = 0, stride = 1; c < 3; c++, stride *= MPSI_SIDE)
+    for (int i = 0; i < 4; i++) {
+      const int t = out->at.at[c] + i;
+      out->corner[c][i] = c < dim && t >= MPSI_SIDE ? 1 << c : 0;
+      out->local[c][i] = c < dim ? (t & (MPSI_SIDE - 1)) * stride : 0;
+    }
+}
+
+/* Block of nodes of a node of the stencil, and the node in it. */
+MPSI_INLINE int32_t block_under(const mpsi_cells *cells, const support *s, int i, int j, int k) {
+  return cells->to[s->corner[0][i] | s->corner[1][j] | s->corner[2][k]];
+}
+
+MPSI_INLINE int local_of(const support *s, int i, int j, int k) {
+  return s->local[0][i] + s->local[1][j] + s->local[2][k];
 }
 
 /* Outside every body that holds the node, seen from the node along the surface's normal. */
-static bool same_side(const mps_mpm *mpm, int64_t node, const double *s) {
-  const int64_t g = node / mpm->own;
+static bool same_side(const mps_mpm *mpm, int32_t g, int local, const double *s) {
   const mpsi_nodes *nodes = &mpm->nodes[g];
   for (int32_t t = nodes->first_touch; t < nodes->first_touch + nodes->touches; t++) {
-    const double *n = mpm->touch_node[t * mpm->own + node % mpm->own].normal;
+    const double *n = mpm->touch_node[(int64_t)t * mpm->own + local].normal;
     if (n[0] == 0.0 && n[1] == 0.0 && n[2] == 0.0) continue;
     if (!(n[0] * s[0] + n[1] * s[1] + n[2] * s[2] < 0.0)) return false;
   }
   return true;
 }
 
-static bool active(const mps_mpm *mpm, const mpsi_cells *cells, uint8_t state,
-                   const mpsi_stencil *at, int i, int j, int k) {
-  if (state == 0) return true;
+/* Of a node inside a body. */
+static bool active(const mps_mpm *mpm, const mpsi_cells *cells, uint8_t state, const support *s,
+                   int i, int j, int k) {
+  const mpsi_stencil *at = &s->at;
   if (state & MPSI_OUTSIDE) return false;
   const unsigned di = (unsigned)(i - at->own[0]), dj = (unsigned)(j - at->own[1]);
   const unsigned dk = (unsigned)(k - at->own[2]);
   if (di <= 1 && dj <= 1 && dk <= 1) return true;
   if (!(state & MPSI_REACHED)) return false;
-  const double s[3] = {at->s[0][i], at->s[1][j], at->s[2][k]};
-  return same_side(mpm, node_of(mpm, cells, at, i, j, k), s);
+  const double from[3] = {at->s[0][i], at->s[1][j], at->s[2][k]};
+  return same_side(mpm, block_under(cells, s, i, j, k), local_of(s, i, j, k), from);
 }
 
-/* Weights of the active nodes. */
-MPSI_INLINE void active_weights(const mps_mpm *mpm, const mpsi_cells *cells,
-                                const mpsi_worker *worker, int dim, int spline,
-                                const mpsi_stencil *at, double *w) {
+/* Weights of the active nodes; returns the bodies that hold any of the stencil's, bit by bit. */
+MPSI_INLINE uint32_t active_weights(const mps_mpm *mpm, const mpsi_cells *cells,
+                                    const mpsi_worker *worker, int dim, int spline,
+                                    const support *s, double *w) {
+  const mpsi_stencil *at = &s->at;
+  uint32_t bodies = 0;
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
     for (int j = 0; j <= spline; j++) {
       const double across = at->w[1][j] * at->w[2][k];
-      const uint8_t *state =
-          worker->state + mpsi_tile_index(at->at[0], at->at[1] + j, at->at[2] + k);
+      const int t = mpsi_tile_index(at->at[0], at->at[1] + j, at->at[2] + k);
+      const uint8_t *state = worker->state + t;
       double *row = w + 16 * k + 4 * j;
-      for (int i = 0; i < 4; i++)
-        row[i] =
-            i <= spline && active(mpm, cells, state[i], at, i, j, k) ? across * at->w[0][i] : 0.0;
+      uint32_t any;
+      memcpy(&any, state, sizeof any);
+      for (int i = 0; i < 4; i++) row[i] = across * at->w[0][i];
+      if (any == 0) continue;
+      for (int i = 0; i <= spline; i++) {
+        if (state[i] == 0) continue;
+        bodies |= worker->inside[t + i];
+        if (!active(mpm, cells, state[i], s, i, j, k)) row[i] = 0.0;
+      }
     }
+  return bodies;
 }
 
 /* ---- the fit ----------------------------------------------------------------------------------
@@ -104,10 +134,12 @@ MPSI_INLINE double invert(int n, double m[4][4]) {
   return determinant;
 }
 
-MPSI_INLINE void fit(const mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
-                     int dim, int spline, const mpsi_stencil *at, mpsi_shape_values *out) {
+/* Returns the bodies that hold any of the stencil's nodes. */
+MPSI_INLINE uint32_t fit(const mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
+                         int dim, int spline, const support *s, mpsi_shape_values *out) {
+  const mpsi_stencil *at = &s->at;
   double q[4][4];
-  active_weights(mpm, cells, worker, dim, spline, at, out->w);
+  const uint32_t bodies = active_weights(mpm, cells, worker, dim, spline, s, out->w);
   moments(dim, spline, at, out->w, q);
   const double mass = q[0][0];
   out->determinant =
@@ -127,6 +159,7 @@ MPSI_INLINE void fit(const mps_mpm *mpm, const mpsi_cells *cells, const mpsi_wor
           mpsi_put(out->gradient[r - 1] + n, value * mpm->inverse);
       }
     }
+  return bodies;
 }
 
 /* ---- transfers --------------------------------------------------------------------------------
@@ -162,53 +195,59 @@ MPSI_INLINE source source_of(const mps_mpm *mpm, int dim, int64_t p) {
   return out;
 }
 
+/* The blocks of nodes under a tile. */
+typedef struct under {
+  mpsi_node *node[MPSI_CORNERS], *side[MPSI_CORNERS];
+  double dt[MPSI_CORNERS]; /* of the force that goes with the momentum: 0 in split blocks */
+} under;
+
+MPSI_INLINE under nodes_under(const mps_mpm *mpm, const mpsi_cells *cells, int dim) {
+  under out;
+  for (int q = 0; q < 1 << dim; q++) {
+    const mpsi_nodes *nodes = &mpm->nodes[cells->to[q]];
+    out.node[q] = mpm->node + mpsi_first_node(mpm, cells->to[q]);
+    out.side[q] = mpm->side + mpsi_first_node(mpm, nodes->side);
+    out.dt[q] = nodes->split ? 0.0 : mpm->dt;
+  }
+  return out;
+}
+
 MPSI_INLINE void scatter(mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline, int64_t p,
-                         const mpsi_stencil *at, const mpsi_shape_values *f) {
+                         const support *at, const mpsi_shape_values *f) {
   const bool by_weight = mpm->def.transfer == MPS_TRANSFER_WEIGHT;
   const double m = mpm->p.m[p];
   const source s = source_of(mpm, dim, p);
+  const under to = nodes_under(mpm, cells, dim);
   FOR_NODES(dim, spline) {
-    if (f->w[n] == 0.0) continue;
-    const int64_t to = node_of(mpm, cells, at, i, j, k);
-    const mpsi_nodes *nodes = &mpm->nodes[to / mpm->own];
-    mpsi_quad v = s.v + s.L[0] * at->s[0][i] + s.L[1] * at->s[1][j];
+    const double w = f->w[n], phi = f->phi[n];
+    if (w == 0.0) continue;
+    const int q = at->corner[0][i] | at->corner[1][j] | at->corner[2][k];
+    const int local = local_of(at, i, j, k);
+    mpsi_quad v = s.v + s.L[0] * at->at.s[0][i] + s.L[1] * at->at.s[1][j];
     mpsi_quad force =
-        s.body * f->phi[n] + s.stress[0] * f->gradient[0][n] + s.stress[1] * f->gradient[1][n];
+        s.body * phi + s.stress[0] * f->gradient[0][n] + s.stress[1] * f->gradient[1][n];
     if (dim == 3) {
-      v += s.L[2] * at->s[2][k];
+      v += s.L[2] * at->at.s[2][k];
       force += s.stress[2] * f->gradient[2][n];
     }
-    mpsi_quad sum = v * (m * (by_weight ? f->w[n] : f->phi[n]));
-    sum[MPSI_MASS] = m * f->phi[n];
-    double *side = mpm->side[mpsi_first_node(mpm, nodes->side) + to % mpm->own];
-    if (nodes->split)
-      mpsi_put(side, mpsi_get(side) + force);
-    else
-      sum += mpm->dt * force;
-    side[MPSI_EXCESS] += m * (f->w[n] - f->phi[n]);
-    mpsi_put(mpm->node[to], mpsi_get(mpm->node[to]) + sum);
+    mpsi_quad sum = v * (m * (by_weight ? w : phi));
+    if (by_weight) sum[MPSI_MASS] = m * phi;
+    sum += to.dt[q] * force;
+    double *side = to.side[q][local], *node = to.node[q][local];
+    if (to.dt[q] == 0.0) mpsi_put(side, mpsi_get(side) + force);
+    side[MPSI_EXCESS] += m * (w - phi);
+    mpsi_put(node, mpsi_get(node) + sum);
   }
 }
 
 /* ---- contact ----------------------------------------------------------------------------------
  */
 
-/* Bodies that a node of the stencil is inside of, bit by bit. */
-MPSI_INLINE uint32_t seen(const mpsi_worker *worker, int dim, int spline, const mpsi_stencil *at) {
-  uint32_t bodies = 0;
-  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
-    for (int j = 0; j <= spline; j++)
-      for (int i = 0; i <= spline; i++)
-        bodies |= worker->inside[mpsi_tile_index(at->at[0] + i, at->at[1] + j, at->at[2] + k)];
-  return bodies;
-}
-
-/* The node `to` of the grid, as body b touches it. */
-static mpsi_touch_node *touch_of(const mps_mpm *mpm, int64_t to, int32_t b) {
-  const mpsi_nodes *nodes = &mpm->nodes[to / mpm->own];
-  int32_t t = nodes->first_touch;
+/* The node `local` of the block g, as body b touches it. */
+static mpsi_touch_node *touch_of(const mps_mpm *mpm, int32_t g, int local, int32_t b) {
+  int32_t t = mpm->nodes[g].first_touch;
   while (mpm->touch[t].body != b) t++;
-  return &mpm->touch_node[(int64_t)t * mpm->own + to % mpm->own];
+  return &mpm->touch_node[(int64_t)t * mpm->own + local];
 }
 
 /* Adds force f at `arm` from the body's reference point to a load. */
@@ -221,7 +260,7 @@ static void add_load(mpsi_load *load, const double *arm, const double *f) {
 
 /* Normal force and slip of a particle against one body, seed B (28)-(30). */
 MPSI_INLINE void scatter_contact(mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
-                                 int64_t p, const mpsi_stencil *at, const mpsi_shape_values *f,
+                                 int64_t p, const support *at, const mpsi_shape_values *f,
                                  mpsi_meeting *meeting) {
   const mps_body *body = mpm->body[meeting->body];
   mpsi_contact c;
@@ -233,7 +272,8 @@ MPSI_INLINE void scatter_contact(mps_mpm *mpm, const mpsi_cells *cells, int dim,
   add_load(&meeting->load[c.part], arm, reaction);
   FOR_NODES(dim, spline) {
     if (f->w[n] == 0.0) continue;
-    mpsi_touch_node *to = touch_of(mpm, node_of(mpm, cells, at, i, j, k), meeting->body);
+    mpsi_touch_node *to =
+        touch_of(mpm, block_under(cells, at, i, j, k), local_of(at, i, j, k), meeting->body);
     const double mass = mpm->p.m[p] * f->phi[n];
     to->mass += mass;
     for (int a = 0; a < dim; a++) {
@@ -246,7 +286,7 @@ MPSI_INLINE void scatter_contact(mps_mpm *mpm, const mpsi_cells *cells, int dim,
 /* The friction that the nodes have given, back to the part of the surface that the particle
  * touches: at a node by the share of its mass in contact. */
 MPSI_INLINE void share_friction(mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
-                                int64_t p, const mpsi_stencil *at, const mpsi_shape_values *f,
+                                int64_t p, const support *at, const mpsi_shape_values *f,
                                 mpsi_meeting *meeting) {
   const mps_body *body = mpm->body[meeting->body];
   mpsi_contact c;
@@ -254,8 +294,9 @@ MPSI_INLINE void share_friction(mps_mpm *mpm, const mpsi_cells *cells, int dim, 
     return;
   FOR_NODES(dim, spline) {
     if (f->w[n] == 0.0) continue;
-    const mpsi_touch_node *from = touch_of(mpm, node_of(mpm, cells, at, i, j, k), meeting->body);
-    const double local[3] = {at->at[0] + i, at->at[1] + j, at->at[2] + k};
+    const mpsi_touch_node *from =
+        touch_of(mpm, block_under(cells, at, i, j, k), local_of(at, i, j, k), meeting->body);
+    const double local[3] = {at->at.at[0] + i, at->at.at[1] + j, at->at.at[2] + k};
     const double mass = mpm->p.m[p] * f->phi[n];
     double arm[3], reaction[3];
     mpsi_node_position(mpm, cells->at, local, arm);
@@ -269,12 +310,11 @@ MPSI_INLINE void share_friction(mps_mpm *mpm, const mpsi_cells *cells, int dim, 
 
 MPSI_INLINE void scatter_body(mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
                               int dim, int spline, int64_t particle) {
-  mpsi_stencil at;
+  support at;
   mpsi_shape_values f;
-  mpsi_make_stencil(mpm, cells, dim, spline, particle, &at);
-  fit(mpm, cells, worker, dim, spline, &at, &f);
+  make_support(mpm, cells, dim, spline, particle, &at);
+  const uint32_t bodies = fit(mpm, cells, worker, dim, spline, &at, &f);
   scatter(mpm, cells, dim, spline, particle, &at, &f);
-  const uint32_t bodies = cells->meetings > 0 ? seen(worker, dim, spline, &at) : 0;
   for (int32_t q = 0; bodies && q < cells->meetings; q++) {
     mpsi_meeting *meeting = &mpm->meeting[cells->first_meeting + q];
     if (bodies >> meeting->body & 1)
@@ -284,20 +324,20 @@ MPSI_INLINE void scatter_body(mps_mpm *mpm, const mpsi_cells *cells, const mpsi_
 
 MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
                              int dim, int spline, int64_t particle, double (*motion)[4]) {
-  mpsi_stencil at;
+  support at;
   mpsi_shape_values f;
-  mpsi_make_stencil(mpm, cells, dim, spline, particle, &at);
-  fit(mpm, cells, worker, dim, spline, &at, &f);
+  make_support(mpm, cells, dim, spline, particle, &at);
+  const uint32_t bodies = fit(mpm, cells, worker, dim, spline, &at, &f);
   mpsi_quad v = {0.0}, by[3] = {v, v, v};
   FOR_NODES(dim, spline) {
-    const double *from = worker->tile[mpsi_tile_index(at.at[0] + i, at.at[1] + j, at.at[2] + k)];
+    const double *from =
+        worker->tile[mpsi_tile_index(at.at.at[0] + i, at.at.at[1] + j, at.at.at[2] + k)];
     const mpsi_quad node = mpsi_get(from);
     v += f.phi[n] * node;
     for (int d = 0; d < dim; d++) by[d] += f.gradient[d][n] * node;
   }
   mpsi_put(motion[0], v);
   for (int d = 0; d < dim; d++) mpsi_put(motion[1 + d], by[d]);
-  const uint32_t bodies = cells->meetings > 0 ? seen(worker, dim, spline, &at) : 0;
   for (int32_t q = 0; bodies && q < cells->meetings; q++) {
     mpsi_meeting *meeting = &mpm->meeting[cells->first_meeting + q];
     if (bodies >> meeting->body & 1)
@@ -334,7 +374,9 @@ void MPSI_LEVELLED(mpsi_gather_fitted)(mps_mpm *mpm, const mpsi_cells *cells,
 
 void MPSI_LEVELLED(mpsi_fit)(const mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
                              int64_t particle, mpsi_stencil *at, mpsi_shape_values *out) {
+  support s;
   memset(out, 0, sizeof *out);
-  mpsi_make_stencil(mpm, cells, mpm->dim, mpm->def.spline, particle, at);
-  CHOOSE(mpm->dim, mpm->def.spline, fit, at, out);
+  make_support(mpm, cells, mpm->dim, mpm->def.spline, particle, &s);
+  CHOOSE(mpm->dim, mpm->def.spline, fit, &s, out);
+  *at = s.at;
 }

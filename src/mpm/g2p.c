@@ -64,54 +64,55 @@ MPSI_INLINE void store_some(double *to, mpsi_quad v, int n) {
   for (int i = 0; i < n; i++) to[i] = v[i];
 }
 
-/* Velocities and gradients to the particles' columns; the particles move. */
-MPSI_INLINE void move(mps_mpm *mpm, int geometry, int64_t begin, int n,
-                      const double (*motion)[4][4]) {
+/* Velocities and gradients to the particles' columns; the particles move. Tells whether one is then
+ * `outside` the domain (or nowhere), or has `left` the block and its slack: their stencils would
+ * leave the tile. */
+typedef struct moved {
+  bool outside, left;
+} moved;
+
+MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cells *cells, int geometry, int spline,
+                       int64_t begin, int n, const double (*motion)[4][4]) {
   const int dim = mpsi_dim_of(geometry);
+  const double first = spline == 3 ? 1.0 : 0.5; /* of the block: see mpsi_find_places */
   const mpsi_columns *p = &mpm->p;
+  mpsi_mask outside = {0}, left = {0};
   for (int k = 0; k < n; k += 4) {
     const int64_t at = begin + k;
+    const mpsi_mask there = (mpsi_mask){k, k + 1, k + 2, k + 3} < n;
     for (int d = 0; d <= dim; d++) {
       mpsi_quad a[4];
       for (int i = 0; i < 4; i++) a[i] = mpsi_get(motion[k + i][d]);
       mpsi_transpose(a);
-      for (int c = 0; c < dim; c++) {
-        if (d > 0) {
-          store_some(p->L[dim * c + d - 1] + at, a[1 + c], n - k);
-          continue;
-        }
-        const mpsi_quad x = mpsi_get(p->x[c] + at);
+      for (int c = 0; c < dim && d > 0; c++)
+        store_some(p->L[dim * c + d - 1] + at, a[1 + c], n - k);
+      for (int c = 0; c < dim && d == 0; c++) {
+        const mpsi_quad x = mpsi_get_some(p->x[c] + at, n - k), to = x + mpm->dt * a[1 + c];
+        const mpsi_quad X = mpsi_from_block(mpm, cells, c, to);
+        const double corner = (double)cells->at[c] * MPSI_SIDE;
+        const mpsi_mask good =
+            (X >= (double)mpm->low[c] - corner) & (X <= (double)mpm->high[c] - corner);
+        const mpsi_mask here = (X >= first) & (X < first + (MPSI_SIDE + 2));
+        outside |= there & ~good;
+        left |= there & ~here;
         store_some(p->v[c] + at, a[1 + c], n - k);
         if (geometry == MPS_AXISYMMETRIC && c == 0) store_some(p->L[4] + at, a[1] / x, n - k);
-        store_some(p->x[c] + at, x + mpm->dt * a[1 + c], n - k);
+        store_some(p->x[c] + at, to, n - k);
       }
     }
   }
+  return (moved){(outside[0] | outside[1] | outside[2] | outside[3]) != 0,
+                 (left[0] | left[1] | left[2] | left[3]) != 0};
 }
 
-/* Looks after the places of particles [begin, end): bad ones, and those far from their block. */
-MPSI_INLINE void look_after(const mps_mpm *mpm, mpsi_cells *cells, int dim, int spline,
-                            int64_t begin, int64_t end) {
-  int64_t bad = 0, left = 0;
-  for (int c = 0; c < dim; c++) {
-    const double *x = mpm->p.x[c];
-    const double origin = mpm->def.origin[c], inverse = mpm->inverse;
-    const double low = (double)mpm->low[c], high = (double)mpm->high[c];
-    /* of the lowest node; the stencil stays in the tile */
-    const double first = (double)cells->at[c] * MPSI_SIDE, last = first + MPSI_SIDE + 1;
-    MPSI_SIMD for (int64_t k = begin; k < end; k++) {
-      const double X = (x[k] - origin) * inverse, base = mpsi_base(spline, X);
-      bad |= (int64_t)!((X >= low) & (X <= high));
-      left |= (int64_t)!((base >= first) & (base <= last));
-    }
-  }
-  if (left) cells->left = true;
-  if (!bad || cells->bad >= 0) return;
-  for (int64_t k = begin; k < end && cells->bad < 0; k++)
-    for (int c = 0; c < dim; c++) {
+/* The first of particles [begin, end) outside the domain. */
+static int64_t first_outside(const mps_mpm *mpm, int64_t begin, int64_t end) {
+  for (int64_t k = begin; k < end; k++)
+    for (int c = 0; c < mpm->dim; c++) {
       const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k]);
-      if (!(X >= (double)mpm->low[c] && X <= (double)mpm->high[c])) cells->bad = k;
+      if (!(X >= (double)mpm->low[c] && X <= (double)mpm->high[c])) return k;
     }
+  return begin;
 }
 
 /* c + |v| of particles [begin, begin + n), at most a chunk. A NaN or infinity is a bad particle. */
@@ -164,8 +165,9 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cells *cells, const mpsi_worker *w
     else
       MPSI_LEVELLED(mpsi_gather_fitted)(mpm, cells, worker, begin + k, motion[k]);
   }
-  move(mpm, geometry, begin, n, (const double(*)[4][4])motion);
-  look_after(mpm, cells, dim, spline, begin, begin + n);
+  const moved m = move(mpm, cells, geometry, spline, begin, n, (const double(*)[4][4])motion);
+  if (m.left) cells->left = true;
+  if (m.outside && cells->bad < 0) cells->bad = first_outside(mpm, begin, begin + n);
 }
 
 MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {

@@ -10,11 +10,13 @@
 
 #define DIGIT_BITS 11
 #define DIGITS (1 << DIGIT_BITS)
-#define LEAST_ROOM 16 /* items: a small body that moves about needs no more */
+#define LEAST_ROOM 16 /* items */
 
 bool mpsi_room_ensure(mps_context *context, mpsi_room *room, int64_t count, size_t size) {
   if (count <= room->capacity) return true;
-  const int64_t capacity = count < LEAST_ROOM ? LEAST_ROOM : count + count / 2;
+  /* exact at first, then a little more than asked for: a body that moves needs no more */
+  int64_t capacity = room->capacity > 0 ? count + count / 4 : count;
+  if (capacity < LEAST_ROOM) capacity = LEAST_ROOM;
   void *item = mpsi_alloc(context, capacity, size);
   if (!item) return false;
   mpsi_free(context, room->item);
@@ -201,12 +203,14 @@ mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
       sort_keys(mpm, r.bits[0] + r.bits[1] + r.bits[2] + bits_of((uint64_t)mpm->own - 1));
   const mps_status status = build_blocks(mpm, function, key, &r);
   if (status != MPS_OK) return status;
+  /* The other half of `radix` is free now: for the order, and room to permute. */
+  int64_t *order = (int64_t *)(key == mpm->radix ? mpm->radix + mpm->count : mpm->radix);
   bool sorted = true;
   for (int64_t k = 0; k < mpm->count; k++) {
-    mpm->order[k] = key[k].index;
+    order[k] = key[k].index;
     sorted = sorted && key[k].index == k;
   }
   mpm->stale = false;
   return sorted ? MPS_OK
-                : mpsi_particles_permute_in(mpm->particles, function, mpm->order, mpm->scratch);
+                : mpsi_particles_permute_in(mpm->particles, function, order, order + mpm->count);
 }

@@ -34,6 +34,7 @@ MPSI_INLINE int mpsi_dim_of(int geometry) { return geometry == MPS_SPACE ? 3 : 2
 
 typedef double mpsi_quad __attribute__((vector_size(32)));
 typedef double mpsi_quad_any __attribute__((vector_size(32), aligned(8), may_alias));
+typedef int32_t mpsi_index __attribute__((vector_size(16)));
 #if MPSI_LEVEL == 4
 #define MPSI_WIDE 2
 typedef double mpsi_vec __attribute__((vector_size(64)));
@@ -50,11 +51,11 @@ MPSI_INLINE void mpsi_put(double *to, mpsi_quad v) { *(mpsi_quad_any *)to = v; }
 MPSI_INLINE mpsi_vec mpsi_get_row(const double *from) { return *(const mpsi_vec_any *)from; }
 MPSI_INLINE void mpsi_put_row(double *to, mpsi_vec v) { *(mpsi_vec_any *)to = v; }
 
+typedef int64_t mpsi_mask __attribute__((vector_size(32))); /* of comparisons: 0 or -1 */
 #ifdef __clang__
 #define MPSI_SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
 #else
-typedef int64_t mpsi_i4 __attribute__((vector_size(32)));
-#define MPSI_SHUFFLE(a, b, ...) __builtin_shuffle(a, b, (mpsi_i4){__VA_ARGS__})
+#define MPSI_SHUFFLE(a, b, ...) __builtin_shuffle(a, b, (mpsi_mask){__VA_ARGS__})
 #endif
 
 /* Rows to columns. */
@@ -129,32 +130,62 @@ typedef struct mpsi_places {
   int32_t first[MPSI_CHUNK];                        /* lowest node */
 } mpsi_places;
 
+/* The first `n` values, if fewer than four with zeros: what comes after may be at work elsewhere.
+ */
+MPSI_INLINE mpsi_quad mpsi_get_some(const double *from, int n) {
+  if (n >= 4) return mpsi_get(from);
+  mpsi_quad out = {0.0};
+  for (int i = 0; i < n; i++) out[i] = from[i];
+  return out;
+}
+
+/* Cells from the block's first node to four particles at x, along axis c. */
+MPSI_INLINE mpsi_quad mpsi_from_block(const mps_mpm *mpm, const mpsi_cells *cells, int c,
+                                      mpsi_quad x) {
+  return (x - mpm->def.origin[c]) * mpm->inverse - (double)cells->at[c] * MPSI_SIDE;
+}
+
+/* Weights of four particles along one axis, each times s too. */
+MPSI_INLINE void mpsi_axis_weights(int spline, mpsi_quad t, double (*w)[MPSI_CHUNK],
+                                   double (*ws)[MPSI_CHUNK]) {
+  const mpsi_quad f = t - 1.0, g = 2.0 - t;
+  mpsi_quad a[4];
+  if (spline == 3) {
+    a[0] = g * g * g * (1.0 / 6.0);
+    a[1] = 2.0 / 3.0 + f * f * (0.5 * f - 1.0);
+    a[2] = 2.0 / 3.0 + g * g * (0.5 * g - 1.0);
+    a[3] = f * f * f * (1.0 / 6.0);
+  } else {
+    a[0] = 0.5 * (0.5 - f) * (0.5 - f);
+    a[1] = 0.75 - f * f;
+    a[2] = 0.5 * (0.5 + f) * (0.5 + f);
+  }
+  for (int i = 0; i <= spline; i++) {
+    mpsi_put(w[i], a[i]);
+    mpsi_put(ws[i], a[i] * ((double)i - t));
+  }
+}
+
 MPSI_INLINE void mpsi_find_places(const mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
                                   int64_t begin, int n, mpsi_places *out) {
-  const double inverse = mpm->inverse;
-  for (int k = 0; k < n; k++) out->first[k] = 0;
-  int stride = 1;
-  for (int c = 0; c < dim; c++, stride *= MPSI_TILE_SIDE) {
-    const double *x = mpm->p.x[c] + begin;
-    const double origin = mpm->def.origin[c], corner = (double)cells->at[c] * MPSI_SIDE;
-    double *restrict t = out->t;
-    double(*restrict w)[MPSI_CHUNK] = out->w[c == 2], (*restrict ws)[MPSI_CHUNK] = out->ws[c == 2];
-    int32_t *restrict first = out->first;
-    MPSI_SIMD for (int k = 0; k < n; k++) {
-      const double X = (x[k] - origin) * inverse;
-      const double base = mpsi_base(spline, X), from = X - base;
-      first[k] += (int32_t)(base - corner) * stride;
-      if (c == 0) {
-        t[k] = from;
-        continue;
-      }
-      double weight[4];
-      mpsi_weights(spline, from, weight);
-      for (int i = 0; i <= spline; i++) {
-        w[i][k] = weight[i];
-        ws[i][k] = weight[i] * ((double)i - from);
-      }
+  for (int k = 0; k < n; k += 4) {
+    mpsi_index first = {0};
+    int stride = 1;
+    for (int c = 0; c < dim; c++, stride *= MPSI_TILE_SIDE) {
+      /* counted from the block: not negative, so that truncation is floor */
+      const mpsi_quad X =
+          mpsi_from_block(mpm, cells, c, mpsi_get_some(mpm->p.x[c] + begin + k, n - k));
+      const mpsi_index base = spline == 3 ? __builtin_convertvector(X, mpsi_index) - 1
+                                          : __builtin_convertvector(X - 0.5, mpsi_index);
+      const mpsi_quad t = X - __builtin_convertvector(base, mpsi_quad);
+      first += base * stride;
+      if (c == 0)
+        mpsi_put(out->t + k, t);
+      else
+        mpsi_axis_weights(spline, t, (double(*)[MPSI_CHUNK])(out->w[c - 1][0] + k),
+                          (double(*)[MPSI_CHUNK])(out->ws[c - 1][0] + k));
     }
+    memcpy(out->first + k, &first, sizeof first);
   }
 }
 

@@ -294,10 +294,8 @@ static mps_status build(mps_mpm *mpm) {
   if (status == MPS_OK) status = set_start(mpm);
   if (status != MPS_OK) return status;
   mpm->radix = mpsi_alloc(context, 2 * mpm->count, sizeof *mpm->radix);
-  if (mpm->radix) mpm->order = mpsi_alloc(context, mpm->count, sizeof *mpm->order);
-  if (mpm->order) mpm->flags = mpsi_alloc(context, mpm->count, sizeof *mpm->flags);
-  if (mpm->flags) mpm->scratch = mpsi_alloc(context, mpm->count, sizeof *mpm->scratch);
-  if (!mpm->scratch)
+  if (mpm->radix) mpm->flags = mpsi_alloc(context, mpm->count, sizeof *mpm->flags);
+  if (!mpm->flags)
     return mpsi_fail_memory(context, create, (size_t)mpm->count * sizeof *mpm->radix);
   status = hire_workers(mpm);
   if (status == MPS_OK && mpm->body_acceleration[0]) status = mpsi_mpm_make_forces(mpm, create);
@@ -381,9 +379,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
                    mpm->old_dash_room.item,
                    mpm->force_memory,
                    mpm->radix,
-                   mpm->order,
-                   mpm->flags,
-                   mpm->scratch};
+                   mpm->flags};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
   mpsi_mpm_drop_loads(mpm);
   for (int32_t k = 0; k < MPSI_HOLDS; k++)

@@ -191,8 +191,6 @@ struct mps_mpm {
   int64_t colour[MPSI_CORNERS + 1]; /* first of each in `coloured` */
   mpsi_room cells_room, nodes_room, node_room, side_room, coloured_room;
   mpsi_radix *radix; /* 2 count */
-  int64_t *order;
-  double *scratch; /* count */
   /* contact: see near.c */
   mpsi_meeting *meeting;
   mpsi_touch *touch;
