@@ -227,6 +227,7 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
               {mpm->held_room.capacity + mpm->old_held_room.capacity, sizeof *mpm->held},
               {mpm->dash_room.capacity + mpm->old_dash_room.capacity, sizeof *mpm->dash},
               {mpm->worker_count, mpsi_worker_bytes(mpm)},
+              {mpm->force_memory ? mpm->count : 0, (size_t)mpm->dim * sizeof(double)},
               {mpm->count, 2 * sizeof *mpm->radix + sizeof *mpm->flags}};
   int64_t bytes = 0;
   for (size_t k = 0; k < sizeof list / sizeof *list; k++)
