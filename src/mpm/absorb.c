@@ -50,15 +50,12 @@ static void fit_along(const mps_mpm *mpm, int c, double X, int64_t *base, double
   for (int i = 0; i < 4; i++) phi[i] = w[i] * (m2 - m1 * s[i]) / (m0 * m2 - m1 * m1);
 }
 
-static mpsi_dash *dash_of(const mps_mpm *mpm, int32_t number, int64_t g, const int *place) {
-  const mpsi_nodes *nodes = &mpm->nodes[g];
+static mpsi_dash *dash_of(const mps_mpm *mpm, int32_t number, int64_t node) {
+  const mpsi_nodes *nodes = &mpm->nodes[node / mpm->own];
   int32_t t = nodes->first_held;
   while (mpm->held[t].hold != number) t++;
-  const int axis = mpm->hold[number].axis;
-  const int plane = axis == 0   ? place[2] * MPSI_SIDE + place[1]
-                    : axis == 1 ? place[2] * MPSI_SIDE + place[0]
-                                : place[1] * MPSI_SIDE + place[0];
-  return &mpm->dash[mpm->held[t].dash + plane];
+  return &mpm->dash[mpm->held[t].dash +
+                    mpsi_plane_index(mpm->hold[number].axis, (int)(node % mpm->own))];
 }
 
 /* A particle in a cell at the wall. */
@@ -80,13 +77,9 @@ static void add_particle(mps_mpm *mpm, const mpsi_cells *cells, int32_t number, 
     const int i[3] = {n % 4, n / 4 % 4, n / 16};
     const double share = phi[0][i[0]] * phi[1][i[1]] * phi[2][i[2]];
     if (share == 0.0) continue;
-    int at[3], place[3];
-    for (int c = 0; c < 3; c++) {
-      at[c] = (int)(base[c] + i[c] - (int64_t)cells->at[c] * MPSI_SIDE);
-      place[c] = at[c] % MPSI_SIDE;
-    }
-    const int64_t node = mpsi_node_under(mpm, cells, at[0], at[1], at[2]);
-    mpsi_dash *dash = dash_of(mpm, number, node / mpm->own, place);
+    int at[3];
+    for (int c = 0; c < 3; c++) at[c] = (int)(base[c] + i[c] - (int64_t)cells->at[c] * MPSI_SIDE);
+    mpsi_dash *dash = dash_of(mpm, number, mpsi_node_under(mpm, cells, at[0], at[1], at[2]));
     dash->across += share * across;
     dash->along += share * along;
   }

@@ -253,6 +253,12 @@ static inline void mpsi_unravel(int k, int side, int *at) {
   at[0] = k % side, at[1] = k / side % side, at[2] = k / side / side;
 }
 
+/* Node k of a block within the plane of nodes across `axis`. */
+static inline int mpsi_plane_index(int axis, int k) {
+  const int plane = MPSI_SIDE * MPSI_SIDE;
+  return axis == 0 ? k / MPSI_SIDE : axis == 1 ? k / plane * MPSI_SIDE + k % MPSI_SIDE : k % plane;
+}
+
 /* Position x[3] of the node `local` of the block at `at`. */
 static inline void mpsi_node_position(const mps_mpm *mpm, const int32_t *at, const double *local,
                                       double *x) {

@@ -91,15 +91,17 @@ mps_status mpsi_mpm_list_holds(mps_mpm *mpm, const char *function) {
 
 /* ---- a node ---------------------------------------------------------------------------------- */
 
+#define BLOCK (MPSI_SIDE * MPSI_SIDE * MPSI_SIDE) /* nodes at most */
+
 /* A block at work. */
 typedef struct block {
   mps_mpm *mpm;
-  mpsi_node *node, *side;                          /* side: NULL where the block has none */
-  uint8_t held[MPSI_SIDE * MPSI_SIDE * MPSI_SIDE]; /* bit c: nothing else moves component c */
-  double push[MPSI_WALLS][MPSI_SIDE * MPSI_SIDE];  /* N s, of frictional walls */
+  mpsi_node *node, *side;         /* side: NULL where the block has none */
+  uint8_t held[BLOCK];            /* bit c: nothing else moves component c */
+  double push[MPSI_WALLS][BLOCK]; /* N s, of frictional walls at their nodes */
 } block;
 
-typedef void (*hold_fn)(block *b, const mpsi_hold *hold, mpsi_held *held, int k, int plane);
+typedef void (*hold_fn)(block *b, const mpsi_hold *hold, mpsi_held *held, int k);
 
 static void set(block *b, mpsi_held *held, int k, int c, double v) {
   double *at = &b->node[k][MPSI_VECTOR + c];
@@ -107,33 +109,33 @@ static void set(block *b, mpsi_held *held, int k, int c, double v) {
   *at = v;
 }
 
-static void roll(block *b, const mpsi_hold *hold, mpsi_held *held, int k, int plane) {
-  (void)plane;
+static void roll(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
   set(b, held, k, hold->axis, hold->v[hold->axis]);
   b->held[k] |= (uint8_t)(1u << hold->axis);
 }
 
-static void absorb(block *b, const mpsi_hold *hold, mpsi_held *held, int k, int plane) {
+static void absorb(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
   if (!(b->node[k][MPSI_MASS] > 0.0)) return;
   double v[3];
   const double *before = b->side ? b->side[k] + MPSI_VECTOR : NULL;
-  mpsi_mpm_dash(b->mpm, hold, &b->mpm->dash[held->dash + plane], b->node[k], before, v);
+  mpsi_dash *dash = &b->mpm->dash[held->dash + mpsi_plane_index(hold->axis, k)];
+  mpsi_mpm_dash(b->mpm, hold, dash, b->node[k], before, v);
   for (int c = 0; c < b->mpm->dim; c++)
     if (!(b->held[k] >> c & 1)) set(b, held, k, c, v[c]);
 }
 
 /* Takes away the velocity into a frictional wall. */
-static void push(block *b, const mpsi_hold *hold, mpsi_held *held, int k, int plane) {
+static void push(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
   const int c = hold->axis, number = held->hold;
   const double into = (b->node[k][MPSI_VECTOR + c] - hold->v[c]) * (number % 2 ? 1.0 : -1.0);
-  b->push[number][plane] = into > 0.0 ? b->node[k][MPSI_MASS] * into : 0.0;
+  b->push[number][k] = into > 0.0 ? b->node[k][MPSI_MASS] * into : 0.0;
   if (!(into > 0.0)) return;
   set(b, held, k, c, hold->v[c]);
   b->held[k] |= (uint8_t)(1u << c);
 }
 
-static void rub(block *b, const mpsi_hold *hold, mpsi_held *held, int k, int plane) {
-  const double most = hold->friction * b->push[held->hold][plane], m = b->node[k][MPSI_MASS];
+static void rub(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
+  const double most = hold->friction * b->push[held->hold][k], m = b->node[k][MPSI_MASS];
   double slip[3] = {0.0}, square = 0.0;
   if (!(most > 0.0) || !(m > 0.0)) return;
   for (int c = 0; c < b->mpm->dim; c++) {
@@ -148,13 +150,11 @@ static void rub(block *b, const mpsi_hold *hold, mpsi_held *held, int k, int pla
     if (slip[c] != 0.0) set(b, held, k, c, hold->v[c] + left * slip[c]);
 }
 
-static void fix(block *b, const mpsi_hold *hold, mpsi_held *held, int k, int plane) {
-  (void)plane;
+static void fix(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
   for (int c = 0; c < b->mpm->dim; c++) set(b, held, k, c, hold->v[c]);
 }
 
-static void lead(block *b, const mpsi_hold *hold, mpsi_held *held, int k, int plane) {
-  (void)plane;
+static void lead(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
   set(b, held, k, hold->axis, hold->v[hold->axis]);
 }
 
@@ -163,15 +163,10 @@ static void lead(block *b, const mpsi_hold *hold, mpsi_held *held, int k, int pl
 static void for_range(block *b, const mpsi_hold *hold, mpsi_held *held, hold_fn work) {
   range r;
   if (!find_range(b->mpm, held->at, hold, &r)) return;
-  const int across = hold->axis;
   for (int z = r.low[2]; z <= r.high[2]; z++)
     for (int y = r.low[1]; y <= r.high[1]; y++)
-      for (int x = r.low[0]; x <= r.high[0]; x++) {
-        const int plane = across == 0   ? z * MPSI_SIDE + y
-                          : across == 1 ? z * MPSI_SIDE + x
-                                        : y * MPSI_SIDE + x;
-        work(b, hold, held, (z * MPSI_SIDE + y) * MPSI_SIDE + x, plane);
-      }
+      for (int x = r.low[0]; x <= r.high[0]; x++)
+        work(b, hold, held, (z * MPSI_SIDE + y) * MPSI_SIDE + x);
 }
 
 /* What acts across walls comes before friction: where walls meet, that of one must not move a node
@@ -186,8 +181,11 @@ void mpsi_mpm_hold_nodes(mps_mpm *mpm, int64_t g) {
   const mpsi_nodes *nodes = &mpm->nodes[g];
   if (nodes->holds == 0) return;
   mpsi_held *first = mpm->held + nodes->first_held;
-  block b = {.mpm = mpm, .node = mpm->node + mpsi_first_node(mpm, g)};
-  if (nodes->side >= 0) b.side = mpm->side + mpsi_first_node(mpm, nodes->side);
+  block b; /* push is written before it is read */
+  b.mpm = mpm;
+  b.node = mpm->node + mpsi_first_node(mpm, g);
+  b.side = nodes->side >= 0 ? mpm->side + mpsi_first_node(mpm, nodes->side) : NULL;
+  memset(b.held, 0, sizeof b.held);
   for (int32_t t = 0; t < nodes->holds; t++) memset(first[t].impulse, 0, sizeof first[t].impulse);
   for (size_t pass = 0; pass < sizeof order / sizeof *order; pass++)
     for (int32_t t = 0; t < nodes->holds; t++) {
