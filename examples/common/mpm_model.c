@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_model.h"
 
-static void destroy(mpm_model *model) {
+void mpm_model_destroy(mpm_model *model) {
   mps_mpm_destroy(&model->mpm);
   for (int b = 0; b < MPM_MODEL_BODIES; b++) mps_body_destroy(&model->body[b]);
   mps_material_destroy(&model->material);
@@ -28,7 +28,7 @@ int mpm_model_run(const options_program *program, int64_t threads, const char *o
   app a;
   if (!app_start(&a, program->name, threads)) return app_finish(&a, APP_FAILED);
   const int code = build_and_march(&a, out, model, parts, user);
-  destroy(model);
+  mpm_model_destroy(model);
   return app_finish(&a, code);
 }
 

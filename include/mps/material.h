@@ -92,7 +92,8 @@ typedef struct mps_drucker_prager_def {
   double tension;  /* Pa, largest mean stress I1/3, >= 0; default infinity: up to the apex */
 } mps_drucker_prager_def;
 
-/** Mohr-Coulomb: (s1 - s3) + (s1 + s3) sin(phi) = 2 c cos(phi), perfectly plastic. */
+/** Mohr-Coulomb: (s1 - s3) + (s1 + s3) sin(phi) = 2 c cos(phi), perfectly plastic, with a cut-off
+ *  s1 <= T (Rankine) whose flow is normal to it. */
 typedef struct mps_mohr_coulomb_def {
   uint32_t struct_size;
   uint32_t reserved;
@@ -101,6 +102,7 @@ typedef struct mps_mohr_coulomb_def {
   double friction; /* rad, angle phi, 0 <= phi < pi/2; no default */
   double dilation; /* rad, angle psi, 0 <= psi <= phi; default 0 */
   double cohesion; /* Pa, c >= 0, not 0 when phi is; default 0 */
+  double tension;  /* Pa, T, largest principal stress, >= 0; default infinity: up to the apex */
 } mps_mohr_coulomb_def;
 
 /** Pressure of a fluid from its density ratio r = rho/rho0 = V0/V. */
@@ -139,11 +141,49 @@ typedef struct mps_user_law_def {
   int32_t turns_stress;          /* 1 (default): `stress` comes turned by the step's spin */
 } mps_user_law_def;
 
+/** An Abaqus UMAT, as a C function or as a Fortran subroutine (`umat_` of gfortran): for each
+ *  particle one call with Abaqus' arguments, in Abaqus' order and conventions. NDI = 3; NSHR and
+ *  NTENS are 1 and 4 in plane strain and axisymmetry (11, 22, 33, 12), 3 and 6 in 3D (11, 22, 33,
+ *  12, 13, 23); shear strains are engineering ones; matrices are stored by columns, as Fortran has
+ *  them. Integers are of 32 bits (not -fdefault-integer-8), reals of 64. docs/materials.md says
+ * what each argument holds. `cmname_length` is the hidden length of CMNAME, 80. */
+typedef void (*mps_umat_fn)(double *stress, double *statev, double *ddsdde, double *sse,
+                            double *spd, double *scd, double *rpl, double *ddsddt, double *drplde,
+                            double *drpldt, const double *stran, const double *dstran,
+                            const double *time, const double *dtime, const double *temp,
+                            const double *dtemp, const double *predef, const double *dpred,
+                            const char *cmname, const int32_t *ndi, const int32_t *nshr,
+                            const int32_t *ntens, const int32_t *nstatv, const double *props,
+                            const int32_t *nprops, const double *coords, const double *drot,
+                            double *pnewdt, const double *celent, const double *dfgrd0,
+                            const double *dfgrd1, const int32_t *noel, const int32_t *npt,
+                            const int32_t *layer, const int32_t *kspt, const int32_t *kstep,
+                            const int32_t *kinc, size_t cmname_length);
+
+typedef struct mps_umat_def {
+  uint32_t struct_size;
+  int32_t statev_count;            /* NSTATV: 0 (default) to 24, or 30 without keeps_strain */
+  mps_umat_fn umat;                /* no default */
+  const char *name;                /* CMNAME, as of a user's law; default "umat" */
+  const double *props;             /* PROPS, copied, finite */
+  int32_t props_count;             /* NPROPS, >= 0; default 0 */
+  int32_t needs_deformation;       /* 1: DFGRD0 and DFGRD1, else unit tensors; default 0 */
+  const char *const *statev_names; /* of the history columns; NULL: statev_1, statev_2, ... */
+  const double *statev_initial;    /* STATEV before the first step; NULL: zero */
+  double wave_modulus;             /* Pa, K + 4G/3 of the stiffest state, > 0; no default */
+  double length;                   /* m, CELENT, > 0; default 1 */
+  double temperature;              /* TEMP; default 0 */
+  int32_t keeps_strain;            /* 1 (default): STRAN is the strain so far, in six more columns
+                                      of history; 0: zero */
+  int32_t reserved;
+} mps_umat_def;
+
 MPS_API mps_status mps_von_mises_def_init(mps_von_mises_def *def, size_t size);
 MPS_API mps_status mps_drucker_prager_def_init(mps_drucker_prager_def *def, size_t size);
 MPS_API mps_status mps_mohr_coulomb_def_init(mps_mohr_coulomb_def *def, size_t size);
 MPS_API mps_status mps_newtonian_def_init(mps_newtonian_def *def, size_t size);
 MPS_API mps_status mps_user_law_def_init(mps_user_law_def *def, size_t size);
+MPS_API mps_status mps_umat_def_init(mps_umat_def *def, size_t size);
 
 #define MPS_MATERIAL_DEFAULTS(law)                                                                 \
   static inline mps_##law##_def mps_##law##_defaults(void) {                                       \
@@ -157,6 +197,7 @@ MPS_MATERIAL_DEFAULTS(drucker_prager)
 MPS_MATERIAL_DEFAULTS(mohr_coulomb)
 MPS_MATERIAL_DEFAULTS(newtonian)
 MPS_MATERIAL_DEFAULTS(user_law)
+MPS_MATERIAL_DEFAULTS(umat)
 
 MPS_API MPS_NODISCARD mps_status mps_material_von_mises(mps_context *context,
                                                         const mps_von_mises_def *def,
@@ -172,6 +213,14 @@ MPS_API MPS_NODISCARD mps_status mps_material_newtonian(mps_context *context,
                                                         mps_material **out);
 MPS_API MPS_NODISCARD mps_status mps_material_user(mps_context *context,
                                                    const mps_user_law_def *def, mps_material **out);
+
+/** A law by a UMAT. It is a user's law: threads call the UMAT at once, for different particles, so
+ * it must not write to anything but its arguments (in Fortran no SAVE, COMMON or DATA that changes,
+ * and gfortran -frecursive); for one that does, make the context with MPS_EXECUTOR_SERIAL. It
+ * refuses a block, MPS_ERROR_NUMERIC, with 1 when the UMAT sets PNEWDT below 1 and with 2 when a
+ * stress or a state variable is not finite. Errors as of mps_material_user. */
+MPS_API MPS_NODISCARD mps_status mps_material_umat(mps_context *context, const mps_umat_def *def,
+                                                   mps_material **out);
 
 /** Releases and nulls; accepts NULL. Solvers that use the material keep their own reference. */
 MPS_API void mps_material_destroy(mps_material **material);

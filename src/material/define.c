@@ -5,7 +5,8 @@
 static const mps_von_mises_def von_mises_defaults = {.poisson = 0.3};
 static const mps_drucker_prager_def drucker_prager_defaults = {
     .cone = MPS_CONE_PLANE_STRAIN, .poisson = 0.3, .friction = NAN, .tension = INFINITY};
-static const mps_mohr_coulomb_def mohr_coulomb_defaults = {.poisson = 0.3, .friction = NAN};
+static const mps_mohr_coulomb_def mohr_coulomb_defaults = {
+    .poisson = 0.3, .friction = NAN, .tension = INFINITY};
 static const mps_newtonian_def newtonian_defaults = {.state = MPS_STATE_TAIT};
 
 #define DEF_INIT(name)                                                                             \
@@ -75,6 +76,12 @@ mps_status mps_material_von_mises(mps_context *context, const mps_von_mises_def 
   return finish(context, __func__, MPSI_LAW_VON_MISES, "von_mises", &law, true, out);
 }
 
+static mps_status check_tension(mps_context *context, const char *function, double tension) {
+  if (tension >= 0.0) return MPS_OK; /* infinity: up to the apex */
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                   "tension is %g Pa, must be >= 0 (or infinite: up to the apex)", tension);
+}
+
 static mps_status check_drucker_prager(mps_context *context, const char *function,
                                        const mps_drucker_prager_def *def) {
   if (def->cone < MPS_CONE_PLANE_STRAIN || def->cone > MPS_CONE_EXTENSION)
@@ -85,10 +92,7 @@ static mps_status check_drucker_prager(mps_context *context, const char *functio
   mps_status status = mpsi_check_elastic(context, function, def->young, def->poisson);
   if (status == MPS_OK)
     status = mpsi_check_friction(context, function, def->friction, def->dilation, def->cohesion);
-  if (status != MPS_OK) return status;
-  if (def->tension >= 0.0) return MPS_OK; /* infinity: up to the apex */
-  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                   "tension is %g Pa, must be >= 0 (or infinite: up to the apex)", def->tension);
+  return status == MPS_OK ? check_tension(context, function, def->tension) : status;
 }
 
 mps_status mps_material_drucker_prager(mps_context *context, const mps_drucker_prager_def *user_def,
@@ -114,6 +118,7 @@ mps_status mps_material_mohr_coulomb(mps_context *context, const mps_mohr_coulom
   if (status == MPS_OK) status = mpsi_check_elastic(context, __func__, def.young, def.poisson);
   if (status == MPS_OK)
     status = mpsi_check_friction(context, __func__, def.friction, def.dilation, def.cohesion);
+  if (status == MPS_OK) status = check_tension(context, __func__, def.tension);
   if (status != MPS_OK) return status;
   mpsi_law law = mpsi_law_elastic(def.young, def.poisson);
   mpsi_law_add_cone(&law, MPS_CONE_INSCRIBED, def.friction, def.dilation, def.cohesion, INFINITY);
@@ -121,6 +126,7 @@ mps_status mps_material_mohr_coulomb(mps_context *context, const mps_mohr_coulom
   law.sin_psi = sin(def.dilation);
   law.c_cos_phi = def.cohesion * cos(def.friction);
   law.apex = def.friction > 0.0 ? law.c_cos_phi / law.sin_phi : INFINITY;
+  law.cut = def.tension < law.apex ? def.tension : INFINITY;
   return finish(context, __func__, MPSI_LAW_MOHR_COULOMB, "mohr_coulomb", &law, true, out);
 }
 

@@ -79,8 +79,11 @@ MPSI_INLINE void rate_loop(const int geometry, const int kind, const mpsi_law *c
       const double p = (s.xx + s.yy + s.zz) * THIRD, dx = s.xx - p, dy = s.yy - p, dz = s.zz - p;
       const double q =
           sqrt(0.5 * (dx * dx + dy * dy + dz * dz) + (s.xy * s.xy + s.yz * s.yz + s.zx * s.zx));
-      if (kind == MPSI_LAW_MOHR_COULOMB) { /* beyond the inscribed cone: a candidate */
-        flag = q + 3.0 * law.alpha * p > law.kappa ? MPS_MATERIAL_PLASTIC : 0;
+      if (kind == MPSI_LAW_MOHR_COULOMB) { /* beyond the inscribed cone or one around the cut-off:
+                                              a candidate. No stress exceeds p + 2 q/sqrt(3). */
+        const double over =
+            at_least(q + 3.0 * law.alpha * p - law.kappa, p + (2.0 * PER_ROOT3) * q - law.cut);
+        flag = over > 0.0 ? MPS_MATERIAL_PLASTIC : 0;
       } else {
         const meridian m = kind == MPSI_LAW_VON_MISES ? return_von_mises(&law, p, q, strain[k])
                                                       : return_drucker_prager(&law, p, q);

@@ -9,6 +9,7 @@ static void release(mps_material *m) {
   mps_context *context = m->context;
   mpsi_free(context, m->history_names);
   mpsi_free(context, m->history_initial);
+  mpsi_free(context, m->owned);
   mpsi_free(context, m);
   mpsi_context_release(context);
 }

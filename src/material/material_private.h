@@ -35,10 +35,11 @@ typedef struct mpsi_law {
    * tension: mean stress and sqrt(J2) of the cone there. Mohr-Coulomb uses the inscribed cone to
    * find the particles that may yield. */
   double alpha, kappa, alpha_flow, cone, tension, q_tension;
-  double sin_phi, sin_psi, c_cos_phi, apex; /* Mohr-Coulomb */
-  double viscosity;                         /* Pa s */
-  bool tait, no_tension;                    /* fluid */
-  bool turns_stress, needs_deformation;     /* user */
+  /* Mohr-Coulomb; cut: largest principal stress, infinite where the apex comes first. */
+  double sin_phi, sin_psi, c_cos_phi, apex, cut;
+  double viscosity;                     /* Pa s */
+  bool tait, no_tension;                /* fluid */
+  bool turns_stress, needs_deformation; /* user */
   mps_material_fn update;
   void *user;
 } mpsi_law;
@@ -68,12 +69,17 @@ struct mps_material {
   int32_t history_count;
   char (*history_names)[MPSI_MATERIAL_NAME];
   double *history_initial;
+  void *owned; /* what law.user is where the library made it, freed with the material; or NULL */
 };
 
 /* A material of one owner with room for its history, or NULL after recording that memory is short.
  */
 mps_material *mpsi_material_new(mps_context *context, const char *function, mpsi_law_kind kind,
                                 const char *name, int32_t history_count);
+
+/* mps_material_user of a definition that is complete. */
+mps_status mpsi_material_make_user(mps_context *context, const char *function,
+                                   const mps_user_law_def *def, mps_material **out);
 
 /* Maps a trial stress (xx yy zz xy [zx yz]) back to the pyramid of Mohr and Coulomb. Returns its
  * flags; adds to *plastic_strain. */

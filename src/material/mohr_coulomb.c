@@ -1,7 +1,8 @@
 /* mohr_coulomb.c - return map of Mohr-Coulomb in principal stresses: main plane, the two edges and
- * the apex, with a flow potential of the same shape for the angle of dilation.
+ * the apex, with a flow potential of the same shape for the angle of dilation; and the cut-off of
+ * tension, that no principal stress exceeds T, with its own normal flow.
  *
- * The yield function is linear and the flow directions are constant, so each return is one step:
+ * The yield functions are linear and the flow directions are constant, so each return is one step:
  * solved exactly, without iteration.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "material_private.h"
@@ -118,7 +119,8 @@ static void return_to_edge(const mpsi_law *law, double pair_drop, double third_d
   s[k] -= flow * third_drop;
 }
 
-static int64_t return_principal(const mpsi_law *law, double *s) {
+/* To the pyramid: its plane, one of its edges, or its apex. */
+static int64_t return_to_pyramid(const mpsi_law *law, double *s) {
   const double f = yield(law, s[0], s[2]);
   if (!(f > 0.0)) return 0;
   const drop d = flow_drop(law);
@@ -136,6 +138,55 @@ static int64_t return_principal(const mpsi_law *law, double *s) {
     return_to_edge(law, 0.5 * (d.largest + d.middle), d.smallest, false, s, 0, 1, 2);
   if (s[0] >= s[1] && s[1] >= s[2]) return MPS_MATERIAL_PLASTIC;
   s[0] = s[1] = s[2] = law->apex;
+  return MPS_MATERIAL_PLASTIC | MPS_MATERIAL_APEX;
+}
+
+/* To the cut-off alone: s1 = T, or s1 = s2 = T, or all three. A unit of its flow along a stress
+ * takes `along` from that one and `across` from the other two. */
+static void return_to_cut(const mpsi_law *law, double *s) {
+  const double T = law->cut, across = law->lambda, along = across + 2.0 * law->shear;
+  const double middle = s[1] - across / along * (s[0] - T);
+  if (middle <= T) {
+    const double smallest = s[2] - across / along * (s[0] - T);
+    s[0] = T, s[1] = middle, s[2] = smallest;
+    return;
+  }
+  const double smallest = s[2] - across / (along + across) * (s[0] + s[1] - 2.0 * T);
+  s[0] = s[1] = T;
+  s[2] = smallest <= T ? smallest : T;
+}
+
+/* To the line where the pyramid's plane meets the cut-off, s1 = T and s3 = low, or to its ends on
+ * the edges s2 = s3 and s1 = s2. */
+static void return_to_brim(const mpsi_law *law, double *s) {
+  const double T = law->cut, across = law->lambda, along = across + 2.0 * law->shear;
+  const double low =
+      (T * (1.0 + law->sin_phi) - 2.0 * law->c_cos_phi) / (1.0 - law->sin_phi); /* < T */
+  const drop d = flow_drop(law);
+  const double det = d.largest * across - d.smallest * along; /* > 0, as psi < 90 degrees */
+  const double flow = (across * (s[0] - T) - along * (s[2] - low)) / det;
+  const double open = (d.largest * (s[2] - low) - d.smallest * (s[0] - T)) / det;
+  const double middle = s[1] - flow * d.middle - open * across;
+  s[0] = T;
+  s[1] = middle > T ? T : middle < low ? low : middle;
+  s[2] = low;
+}
+
+/* A return to one of the two surfaces alone that the other one allows is the answer; else both are
+ * active. With normal flow that is the closest point. */
+static int64_t return_principal(const mpsi_law *law, double *s) {
+  double pyramid[3] = {s[0], s[1], s[2]};
+  const int64_t flags = return_to_pyramid(law, pyramid);
+  if (!(pyramid[0] > law->cut)) {
+    for (int i = 0; i < 3; i++) s[i] = pyramid[i];
+    return flags;
+  }
+  double cut[3] = {s[0], s[1], s[2]};
+  return_to_cut(law, cut);
+  if (s[0] > law->cut && yield(law, cut[0], cut[2]) <= 0.0)
+    for (int i = 0; i < 3; i++) s[i] = cut[i];
+  else
+    return_to_brim(law, s);
   return MPS_MATERIAL_PLASTIC | MPS_MATERIAL_APEX;
 }
 

@@ -70,28 +70,34 @@ static mps_status check_user_law(mps_context *context, const char *function,
   return status == MPS_OK ? check_history(context, function, def) : status;
 }
 
+mps_status mpsi_material_make_user(mps_context *context, const char *function,
+                                   const mps_user_law_def *def, mps_material **out) {
+  const mps_status status = check_user_law(context, function, def);
+  if (status != MPS_OK) return status;
+  mps_material *material =
+      mpsi_material_new(context, function, MPSI_LAW_USER, def->name, def->history_count);
+  if (!material) return MPS_ERROR_MEMORY;
+  material->law = (mpsi_law){.update = def->update,
+                             .user = def->user,
+                             .viscosity = def->viscosity,
+                             .needs_deformation = def->needs_deformation == 1,
+                             .turns_stress = def->turns_stress == 1};
+  material->wave_modulus = def->wave_modulus;
+  for (int32_t c = 0; c < def->history_count; c++) {
+    strcpy(material->history_names[c], def->history[c]);
+    if (def->history_initial) material->history_initial[c] = def->history_initial[c];
+  }
+  *out = material;
+  return MPS_OK;
+}
+
 mps_status mps_material_user(mps_context *context, const mps_user_law_def *user_def,
                              mps_material **out) {
   if (!context) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   mps_user_law_def def = user_law_defaults;
-  mps_status status = mpsi_def_read(context, __func__, user_def, sizeof def, &def, sizeof def);
-  if (status == MPS_OK) status = check_user_law(context, __func__, &def);
-  if (status != MPS_OK) return status;
-  mps_material *material =
-      mpsi_material_new(context, __func__, MPSI_LAW_USER, def.name, def.history_count);
-  if (!material) return MPS_ERROR_MEMORY;
-  material->law = (mpsi_law){.update = def.update,
-                             .user = def.user,
-                             .viscosity = def.viscosity,
-                             .needs_deformation = def.needs_deformation == 1,
-                             .turns_stress = def.turns_stress == 1};
-  material->wave_modulus = def.wave_modulus;
-  for (int32_t c = 0; c < def.history_count; c++) {
-    strcpy(material->history_names[c], def.history[c]);
-    if (def.history_initial) material->history_initial[c] = def.history_initial[c];
-  }
-  *out = material;
-  return MPS_OK;
+  const mps_status status =
+      mpsi_def_read(context, __func__, user_def, sizeof def, &def, sizeof def);
+  return status == MPS_OK ? mpsi_material_make_user(context, __func__, &def, out) : status;
 }

@@ -19,3 +19,10 @@ for program in mps-sliding-box mps-rolling-disc mps-footing; do
   done
   [ "$(awk 'length > 100' "$work/help" | wc -l)" -eq 0 ] || fail "$program --help has long lines"
 done
+for program in mps-dam-break mps-column-collapse; do
+  "$1/$program" --help >"$work/help" || fail "$program --help"
+  for text in "Usage: $program" "--h [m]" "(default" "--out DIR" "--threads N"; do
+    has "$work/help" "$text"
+  done
+  [ "$(awk 'length > 100' "$work/help" | wc -l)" -eq 0 ] || fail "$program --help has long lines"
+done

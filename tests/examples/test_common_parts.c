@@ -1,8 +1,9 @@
-/* test_common_parts.c - what the example programs share: options, numbers, layers.
+/* test_common_parts.c - what the example programs share: options, numbers, layers, heaps.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_common.h"
 
 #include "common/layers.h"
+#include "common/mpm_heap.h"
 #include "common/options.h"
 #include "common/output.h"
 
@@ -85,12 +86,46 @@ static void travel_time_is_summed_over_layers(void **state) {
   assert_ptr_equal(layers_at(&ground, 99.0), &ground.layer[1]);
 }
 
+/* A block 20 x 10 particles; a drop ahead of it does not move the front, a lump of 5 % does. */
+static void the_front_leaves_drops_behind(void **state) {
+  (void)state;
+  static const double block[] = {2.0, 1.0}, from[] = {0.0, 0.0}, drop[] = {3.05, 0.05, 0.05, 4.0};
+  static const double lump[2][2] = {{5.0, 0.0}, {6.0, 0.1}};
+  mps_context *context = NULL;
+  mps_particles *set = NULL;
+  mps_particles_def def = mps_particles_defaults();
+  mpm_heap heap;
+  def.spacing = 0.1;
+  assert_int_equal(mps_context_create(NULL, &context, NULL, 0), MPS_OK);
+  assert_int_equal(mps_particles_create(context, &def, &set), MPS_OK);
+  assert_int_equal(mps_particles_fill_box(set, from, block, NULL), MPS_OK);
+  assert_int_equal(mps_particles_append(set, 2, drop), MPS_OK);
+  assert_int_equal(mps_particles_set(set, "mass", 0, 3.0), MPS_OK);
+  assert_int_equal(mps_particles_set(set, "volume", 0, 0.02), MPS_OK);
+  assert_int_equal(mps_particles_set(set, "velocity", 1, -2.0), MPS_OK);
+  assert_int_equal(mpm_heap_measure(set, 10.0, 0.2, &heap), MPS_OK);
+  mps_assert_near(heap.front, 2.0, 1e-12);
+  mps_assert_near(heap.top, 1.0, 1e-12);
+  mps_assert_near(heap.height, 21 * 0.02 / 0.2, 1e-12);
+  mps_assert_near(heap.detached, 1.0 / 202.0, 1e-12);
+  mps_assert_near(heap.mass, 606.0, 1e-9);
+  mps_assert_near(heap.kinetic, 0.5 * 606.0 * 4.0, 1e-9);
+  mps_assert_near(heap.potential, 3.0 * 10.0 * (200 * 0.5 + 0.05 + 4.0), 1e-9);
+  mps_assert_near(heap.volume_ratio, 2.0, 1e-12);
+  assert_int_equal(mps_particles_fill_box(set, lump[0], lump[1], NULL), MPS_OK);
+  assert_int_equal(mpm_heap_measure(set, 10.0, 0.2, &heap), MPS_OK);
+  mps_assert_near(heap.front, 6.0, 1e-12);
+  mps_particles_destroy(&set);
+  mps_context_destroy(&context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(options_are_read_in_both_spellings),
       cmocka_unit_test(only_finite_decimal_numbers_are_numbers),
       cmocka_unit_test(numbers_are_written_so_that_they_read_back),
       cmocka_unit_test(travel_time_is_summed_over_layers),
+      cmocka_unit_test(the_front_leaves_drops_behind),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

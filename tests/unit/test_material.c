@@ -101,6 +101,8 @@ static void bad_definitions_are_refused_with_the_reason(void **state) {
   PYRAMID(friction, NAN, "the friction angle is nan");
   PYRAMID(dilation, 0.51, "0.51 rad");
   PYRAMID(friction, 0.0, "no strength");
+  PYRAMID(tension, -1.0, "tension is -1 Pa");
+  PYRAMID(tension, NAN, "tension is nan");
   WATER(bulk_modulus, 0.0, "bulk modulus is 0 Pa");
   WATER(viscosity, -1.0, "viscosity is -1 Pa s");
   WATER(viscosity, INFINITY, "viscosity is inf");

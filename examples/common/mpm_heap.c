@@ -1,0 +1,104 @@
+/* mpm_heap.c - see mpm_heap.h.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_heap.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int ascending(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* Sorts, and returns the last value of the last run of at least 1 % of them, and 3; runs end at
+ * gaps wider than `gap`. */
+static double end_of_heap(int64_t count, double *x, double gap) {
+  if (count == 0) return NAN;
+  qsort(x, (size_t)count, sizeof *x, ascending);
+  const int64_t least = count / 100 > 3 ? count / 100 : 3;
+  int64_t last = count - 1, run = 1;
+  for (int64_t k = count - 1; k > 0 && run < least; k--) {
+    if (x[k] - x[k - 1] > gap) last = k - 1, run = 0;
+    run++;
+  }
+  return x[last];
+}
+
+mps_status mpm_heap_measure(mps_particles *particles, double g, double band, mpm_heap *out) {
+  mps_view x, v, m, volume;
+  mps_status status = mps_particles_view(particles, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(particles, "velocity", &v);
+  if (status == MPS_OK) status = mps_particles_view(particles, "mass", &m);
+  if (status == MPS_OK) status = mps_particles_view(particles, "volume", &volume);
+  if (status != MPS_OK) return status;
+  const int64_t count = x.shape[0];
+  const double spacing = mps_particles_spacing(particles);
+  double *place = malloc((size_t)count * sizeof *place);
+  if (!place) return MPS_ERROR_MEMORY;
+
+  *out = (mpm_heap){0};
+  int64_t beside = 0;
+  for (int64_t k = 0; k < count; k++) {
+    const double mass = *mps_view_f64(&m, k, 0), vx = *mps_view_f64(&v, k, 0);
+    const double vy = *mps_view_f64(&v, k, 1), V = *mps_view_f64(&volume, k, 0);
+    out->mass += mass;
+    out->potential += mass * g * *mps_view_f64(&x, k, 1);
+    out->kinetic += 0.5 * mass * (vx * vx + vy * vy);
+    out->volume += V;
+    out->volume_ratio = fmax(out->volume_ratio, V / (spacing * spacing));
+    if (*mps_view_f64(&x, k, 0) >= band) continue;
+    out->height += V / band;
+    place[beside++] = *mps_view_f64(&x, k, 1);
+  }
+  out->top = end_of_heap(beside, place, 2.0 * spacing) + 0.5 * spacing;
+  for (int64_t k = 0; k < count; k++) place[k] = *mps_view_f64(&x, k, 0);
+  const double last = end_of_heap(count, place, 2.0 * spacing);
+  out->front = last + 0.5 * spacing;
+  out->reach = place[(int64_t)(0.98 * (double)(count - 1))];
+  for (int64_t k = 0; k < count; k++)
+    if (*mps_view_f64(&x, k, 0) > last) out->detached += *mps_view_f64(&m, k, 0) / out->mass;
+  free(place);
+  return MPS_OK;
+}
+
+mps_status mpm_snapshot_take(mps_particles *particles, double time, const char *field,
+                             mpm_snapshot *shot) {
+  mps_view x, value;
+  mps_status status = mps_particles_view(particles, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(particles, field, &value);
+  if (status != MPS_OK) return status;
+  mpm_snapshot_free(shot);
+  shot->row = malloc((size_t)x.shape[0] * 3 * sizeof *shot->row);
+  if (!shot->row) return MPS_ERROR_MEMORY;
+  shot->time = time;
+  shot->count = x.shape[0];
+  const bool pressure = strcmp(field, "stress") == 0;
+  for (int64_t k = 0; k < shot->count; k++) {
+    double *row = shot->row + 3 * k;
+    row[0] = *mps_view_f64(&x, k, 0);
+    row[1] = *mps_view_f64(&x, k, 1);
+    row[2] = *mps_view_f64(&value, k, 0);
+    if (pressure)
+      row[2] = -(row[2] + *mps_view_f64(&value, k, 1) + *mps_view_f64(&value, k, 2)) / 3.0;
+  }
+  return MPS_OK;
+}
+
+void mpm_snapshot_free(mpm_snapshot *shot) {
+  free(shot->row);
+  *shot = (mpm_snapshot){0};
+}
+
+bool mpm_snapshots_write(app *a, const char *directory, const char *name, const char *value,
+                         int count, const mpm_snapshot *shots) {
+  output f;
+  if (!output_open(&f, a, directory, name)) return false;
+  output_text(&f, "frame,t_s,x_m,y_m,%s\n", value);
+  for (int s = 0; s < count; s++)
+    for (int64_t k = 0; k < shots[s].count; k++) {
+      const double *r = shots[s].row + 3 * k, row[] = {s, shots[s].time, r[0], r[1], r[2]};
+      csv_row(&f, 5, row);
+    }
+  return output_close(&f);
+}

@@ -1,0 +1,44 @@
+/* mpm_heap.h - what collapsing heaps on a bed y = 0 beside a wall x = 0 are measured by: the front,
+ * the height at the wall, how fast they still move, and pictures of their particles.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef EXAMPLES_MPM_HEAP_H
+#define EXAMPLES_MPM_HEAP_H
+
+#include "output.h"
+
+#include <mps/particles.h>
+
+typedef struct mpm_heap {
+  double front;        /* m: farthest x of the heap, half a spacing beyond the last particle */
+  double reach;        /* m: 98 % of the particles are nearer to the wall */
+  double top;          /* m: highest y of the heap beside the wall, likewise */
+  double height;       /* m: volume beside the wall over the width of the band */
+  double mass;         /* kg, of all particles; per unit thickness as what follows */
+  double potential;    /* J above the bed, gravity g given */
+  double kinetic;      /* J */
+  double volume;       /* m3 */
+  double volume_ratio; /* largest volume of a particle over spacing squared */
+  double detached;     /* share of the mass ahead of the front */
+} mpm_heap;
+
+/* Drops do not count: particles ahead of a gap of 2 spacings (for `top`: above it) that are less
+ * than 1 % of all. Beside the wall is x < `band` (m). */
+mps_status mpm_heap_measure(mps_particles *particles, double g, double band, mpm_heap *out);
+
+/* Positions and one value of all particles at one time. */
+typedef struct mpm_snapshot {
+  double time; /* s */
+  int64_t count;
+  double *row; /* x, y (m), value of each particle */
+} mpm_snapshot;
+
+/* The value is the pressure (Pa) for `field` "stress", else the first component of the field.
+ * Replaces what `shot` had; free with mpm_snapshot_free. */
+mps_status mpm_snapshot_take(mps_particles *particles, double time, const char *field,
+                             mpm_snapshot *shot);
+void mpm_snapshot_free(mpm_snapshot *shot);
+/* DIR/NAME: a line frame,t_s,x_m,y_m,VALUE for each particle of each shot. */
+bool mpm_snapshots_write(app *a, const char *directory, const char *name, const char *value,
+                         int count, const mpm_snapshot *shots);
+
+#endif

@@ -1,0 +1,439 @@
+/* mps-column-collapse - a column of sand or clay collapses on a bed: seed B, Figure 3, against the
+ * run-out that Lube, Huppert, Sparks and Freundt measured.
+ *
+ * The column stands on the bed y = 0, L0 wide from the wall x = 0 (a line of symmetry), a L0 high,
+ * and is let go at once. Drucker-Prager in plane strain.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "common/mpm_heap.h"
+#include "common/mpm_model.h"
+#include "common/plot.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#define PI 3.14159265358979323846
+#define G 9.81 /* m/s2 */
+
+enum { CASES_MAX = 6, SAMPLES = 400, FRAMES = 4 };
+
+typedef struct settings {
+  double aspect, width, h, phi, psi, cohesion, bed_friction, young, poisson, density, duration;
+  int64_t ppc, threads;
+  int cone;
+  bool sweep, compare;
+  const char *out;
+} settings;
+
+/* One column and what became of it. */
+typedef struct column_case {
+  const char *name;
+  double aspect, phi, cohesion; /* -, degrees, Pa */
+  int rows;
+  double t[SAMPLES + 1], front[SAMPLES + 1], height[SAMPLES + 1], kinetic[SAMPLES + 1];
+  double time_at_rest; /* s; NaN: it still moved at the end */
+  double reach;        /* m, at the end */
+  double volume_ratio, detached, mass, mass_start;
+  mpm_snapshot shot[FRAMES];
+} column_case;
+
+typedef struct simulation {
+  settings s;
+  mpm_model m;
+  mps_context *context;
+  int count;
+  column_case column[CASES_MAX];
+} simulation;
+
+/* ---- Lube et al. -------------------------------------------------------------------------------
+ * G. Lube, H. E. Huppert, R. S. J. Sparks, A. Freundt, "Collapses of two-dimensional granular
+ * columns", Phys. Rev. E 72 (2005) 041301: in a channel, for several sands, rice, sugar, whatever
+ * the bed: (L - L0)/L0 = 1.2 a for a < 1.8 and 1.9 a^(2/3) for a > 2.8; between them here a
+ * straight line. Height H/L0 = a where the top stays, a^(2/5) above; ours is the mean over 0.1 L0,
+ * at least 2 h, at the wall. Glass beads run further, 1.8 a for a < 3 and 2.3 a^(2/3) above (E.
+ * Lajeunesse, J. B. Monnier, G. M. Homsy, Phys. Fluids 17 (2005) 103302): only drawn. */
+
+static double law_runout(double a) {
+  const double low = 1.2 * 1.8, high = 1.9 * pow(2.8, 2.0 / 3.0);
+  if (a <= 1.8) return 1.2 * a;
+  return a < 2.8 ? low + (high - low) * (a - 1.8) : 1.9 * pow(a, 2.0 / 3.0);
+}
+
+static double law_height(double a) { return a <= 1.0 ? a : pow(a, 0.4); }
+
+static double runout(const settings *s, const column_case *c) {
+  return c->front[c->rows - 1] / s->width - 1.0;
+}
+
+static double final_height(const settings *s, const column_case *c) {
+  return c->height[c->rows - 1] / s->width;
+}
+
+/* ---- building -------------------------------------------------------------------------------- */
+
+/* At rest under its own weight, without motion sideways. */
+static mps_status fill(mps_context *context, const settings *s, const column_case *c,
+                       mpm_model *m) {
+  const double lo[2] = {0.0, 0.0}, hi[2] = {s->width, c->aspect * s->width};
+  mps_particles_def set = mps_particles_defaults();
+  set.spacing = s->h / sqrt((double)s->ppc);
+  mps_status status = mps_particles_create(context, &set, &m->particles);
+  if (status == MPS_OK) status = mps_particles_fill_box(m->particles, lo, hi, NULL);
+  if (status == MPS_OK) status = mps_particles_set(m->particles, "density", 0, s->density);
+  if (status == MPS_OK) status = mps_particles_set(m->particles, "stress", 0, 0.0);
+  mps_view x, stress;
+  if (status == MPS_OK) status = mps_particles_view(m->particles, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(m->particles, "stress", &stress);
+  const double k0 = s->poisson / (1.0 - s->poisson);
+  for (int64_t k = 0; status == MPS_OK && k < x.shape[0]; k++) {
+    const double vertical = -s->density * G * (hi[1] - *mps_view_f64(&x, k, 1));
+    *mps_view_f64(&stress, k, 0) = *mps_view_f64(&stress, k, 2) = k0 * vertical;
+    *mps_view_f64(&stress, k, 1) = vertical;
+  }
+  return status;
+}
+
+static mps_status build_case(simulation *sim, const column_case *c) {
+  const settings *s = &sim->s;
+  mpm_model *m = &sim->m;
+  mps_drucker_prager_def law = mps_drucker_prager_defaults();
+  law.cone = s->cone;
+  law.young = s->young * 1e3, law.poisson = s->poisson;
+  law.friction = c->phi * PI / 180.0;
+  law.dilation = fmin(s->psi, c->phi) * PI / 180.0;
+  law.cohesion = c->cohesion;
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = s->h;
+  def.lower[0] = def.lower[1] = 0.0;
+  def.wall_lower[1] = isnan(s->bed_friction) ? MPS_WALL_FIXED : MPS_WALL_ROLLER;
+  if (!isnan(s->bed_friction)) def.lower[1] = -4.0 * s->h; /* room below the rigid bed */
+  def.gravity[1] = -G;
+  mps_status status = fill(sim->context, s, c, m);
+  if (status == MPS_OK) status = mps_material_drucker_prager(sim->context, &law, &m->material);
+  if (status == MPS_OK)
+    status = mps_mpm_create(sim->context, m->particles, m->material, &def, &m->mpm);
+  if (status != MPS_OK || isnan(s->bed_friction)) return status;
+  const double up[2] = {0.0, 1.0};
+  mps_body_def bed = mps_body_defaults();
+  bed.friction = s->bed_friction;
+  status = mps_body_create_half_plane(sim->context, &bed, up, &m->body[0]);
+  return status == MPS_OK ? mps_mpm_add_body(m->mpm, m->body[0]) : status;
+}
+
+static mps_status build(mps_context *context, void *user) {
+  simulation *sim = user;
+  sim->context = context;
+  return build_case(sim, &sim->column[0]);
+}
+
+/* ---- running --------------------------------------------------------------------------------- */
+
+#define AT_REST 1e-3 /* of the largest kinetic energy */
+
+static mps_status sample(simulation *sim, column_case *c, double *peak) {
+  mpm_heap heap;
+  const int k = c->rows;
+  mps_status status =
+      mpm_heap_measure(sim->m.particles, G, fmax(0.1 * sim->s.width, 2.0 * sim->s.h), &heap);
+  if (status != MPS_OK) return status;
+  c->t[k] = mps_mpm_time(sim->m.mpm);
+  c->front[k] = heap.front;
+  c->height[k] = heap.height;
+  c->kinetic[k] = heap.kinetic;
+  c->volume_ratio = fmax(c->volume_ratio, heap.volume_ratio);
+  c->reach = heap.reach;
+  c->detached = heap.detached;
+  c->mass = heap.mass;
+  if (k == 0) c->mass_start = sim->s.density * c->aspect * sim->s.width * sim->s.width;
+  *peak = fmax(*peak, heap.kinetic);
+  c->rows++;
+  return MPS_OK;
+}
+
+/* Until it rests, or for `duration` falls from its height. */
+static mps_status march_case(simulation *sim, column_case *c) {
+  const double fall = sqrt(c->aspect * sim->s.width / G), end = sim->s.duration * fall;
+  static const double frames[FRAMES - 1] = {0.0, 1.0, 2.0}; /* falls; and at rest */
+  double peak = 0.0;
+  int shots = 0;
+  mps_status status = sample(sim, c, &peak);
+  c->time_at_rest = NAN;
+  for (int k = 1; k <= SAMPLES && status == MPS_OK; k++) {
+    if (shots < FRAMES - 1 && c->t[c->rows - 1] >= frames[shots] * fall - 1e-12) {
+      status =
+          mpm_snapshot_take(sim->m.particles, c->t[c->rows - 1], "plastic_strain", &c->shot[shots]);
+      shots++;
+    }
+    if (status == MPS_OK)
+      status = mps_mpm_run(sim->m.mpm, end * k / SAMPLES, INT64_MAX, NULL, NULL);
+    if (status == MPS_OK) status = sample(sim, c, &peak);
+    if (c->kinetic[c->rows - 1] > AT_REST * peak) continue;
+    c->time_at_rest = c->t[c->rows - 1];
+    break;
+  }
+  if (status == MPS_OK)
+    status = mpm_snapshot_take(sim->m.particles, c->t[c->rows - 1], "plastic_strain",
+                               &c->shot[FRAMES - 1]);
+  return status;
+}
+
+static mps_status march(void *user) {
+  simulation *sim = user;
+  mps_status status = march_case(sim, &sim->column[0]);
+  for (int k = 1; k < sim->count && status == MPS_OK; k++) {
+    mpm_model_destroy(&sim->m);
+    status = build_case(sim, &sim->column[k]);
+    if (status == MPS_OK) status = march_case(sim, &sim->column[k]);
+  }
+  return status;
+}
+
+/* ---- results --------------------------------------------------------------------------------- */
+
+static bool write_cases(app *a, const simulation *sim) {
+  const settings *s = &sim->s;
+  output f;
+  if (!output_open(&f, a, s->out, "cases.csv")) return false;
+  output_text(&f, "case,aspect,phi_deg,cohesion_Pa,runout,runout_law,height,height_law,"
+                  "time_at_rest_s,volume_ratio_max,runout_98\n");
+  for (int k = 0; k < sim->count; k++) {
+    const column_case *c = &sim->column[k];
+    const double row[] = {c->aspect,
+                          c->phi,
+                          c->cohesion,
+                          runout(s, c),
+                          law_runout(c->aspect),
+                          final_height(s, c),
+                          law_height(c->aspect),
+                          c->time_at_rest,
+                          c->volume_ratio,
+                          c->reach / s->width - 1.0};
+    output_text(&f, "%s,", c->name);
+    csv_row(&f, 10, row);
+  }
+  return output_close(&f);
+}
+
+static bool write_case(app *a, const settings *s, const column_case *c) {
+  output f;
+  char name[64];
+  snprintf(name, sizeof name, "front_%s.csv", c->name);
+  if (!output_open(&f, a, s->out, name)) return false;
+  output_text(&f, "t_s,runout,height,kinetic_J_m\n");
+  for (int k = 0; k < c->rows; k++) {
+    const double row[] = {c->t[k], c->front[k] / s->width - 1.0, c->height[k] / s->width,
+                          c->kinetic[k]};
+    csv_row(&f, 4, row);
+  }
+  snprintf(name, sizeof name, "particles_%s.csv", c->name);
+  return output_close(&f) &&
+         mpm_snapshots_write(a, s->out, name, "plastic_strain", FRAMES, c->shot);
+}
+
+/* A row of pictures for each column, lengths in L0: the start, one and two falls later, at rest. */
+static bool draw_columns(app *a, const simulation *sim) {
+  const settings *s = &sim->s;
+  double width = 1.0, height = 0.0;
+  for (int k = 0; k < sim->count; k++) {
+    const column_case *c = &sim->column[k];
+    width = fmax(width, 1.05 * c->front[c->rows - 1] / s->width);
+    height = fmax(height, 1.1 * c->aspect);
+  }
+  const int panel = 330, panel_height = (int)(panel * height / width), edge = 40;
+  const double x = FRAMES * (panel + edge) + 135.0, y = sim->count * (panel_height + 74.0);
+  output f;
+  if (!plot_open(&f, a, s->out, "columns", (int)x, (int)y)) return false;
+  output_text(&f,
+              "set multiplot layout %d,%d margins screen %.4f, screen %.4f, screen %.4f, screen "
+              "%.4f spacing screen %.4f, screen %.4f\n"
+              "set xrange [0:%.6g]\nset yrange [0:%.6g]\nset size ratio -1\nunset grid\n"
+              "set palette defined (0 '#f3e3bd', 0.4 '#c98f4a', 1 '#5b2c12')\n"
+              "set cbrange [0:2]\nset xtics 1\nset ytics %g\n"
+              "set colorbox user origin screen %.4f,0.2 size screen 0.012,0.6\n"
+              "set cblabel 'plastic strain'\n",
+              sim->count, FRAMES, edge / x, (x - 135.0) / x, 42.0 / y, 1.0 - 28.0 / y, edge / x,
+              74.0 / y, width, height, height > 1.2 ? 1.0 : 0.5, (x - 120.0) / x);
+  const double dot = 0.24 * panel * s->h / sqrt((double)s->ppc) / (width * s->width);
+  for (int k = 0; k < sim->count; k++)
+    for (int shot = 0; shot < FRAMES; shot++) {
+      const column_case *c = &sim->column[k];
+      if (k + shot == 1) output_text(&f, "unset colorbox\n");
+      if (c->shot[shot].count == 0) { /* the run ended before */
+        output_text(&f, "set multiplot next\n");
+        continue;
+      }
+      output_text(&f,
+                  "set title '%s%st = %.2f s' offset 0,-0.7\n"
+                  "plot 'particles_%s.csv' every ::1 using ($1==%d ? $3/%.9g : NaN):($4/%.9g):5 "
+                  "with points pointtype 7 pointsize %.3g linecolor palette notitle\n",
+                  sim->count > 1 ? c->name : "", sim->count > 1 ? ", " : "", c->shot[shot].time,
+                  c->name, shot, s->width, s->width, fmax(0.2, dot));
+    }
+  output_text(&f, "unset multiplot\n");
+  return plot_close(&f, s->out, "columns");
+}
+
+static bool draw_law(app *a, const simulation *sim) {
+  const settings *s = &sim->s;
+  output f;
+  if (!plot_open(&f, a, s->out, "runout", 1200, 560)) return false;
+  output_text(
+      &f,
+      "set multiplot layout 1,2 title \"Collapse of a column on a bed\\n{/*0.8 {/Symbol f} = %g°, "
+      "h = L_0/%.3g}\"\n"
+      "low(x) = x < 1.8 ? 1.2*x : NaN\nhigh(x) = x > 2.8 ? 1.9*x**(2.0/3) : NaN\n"
+      "beads(x) = x < 3 ? 1.8*x : 2.3*x**(2.0/3)\ntop(x) = x < 1 ? x : x**0.4\n"
+      "set logscale xy\nset xrange [0.3:10]\nset samples 400\nset key left top reverse Left\n"
+      "set xlabel 'a = H_0/L_0'\nset ylabel 'run-out (L - L_0)/L_0'\nset yrange [0.2:20]\n"
+      "law = \"linecolor rgb '#c0392b'\"\n"
+      "dots = \"with points pointtype 7 pointsize 1.4 linecolor rgb '#1f4e8c' title 'WLS-MPM'\"\n"
+      "plot beads(x) with lines dashtype '--' linecolor rgb '#888888' title "
+      "'glass beads, Lajeunesse et al. 2005', \\\n"
+      "  low(x) with lines @law title 'sand, Lube et al. 2005', high(x) with lines @law notitle, "
+      "\\\n  'cases.csv' every ::1 using 2:5 @dots\n"
+      "set ylabel 'final height H/L_0'\nset yrange [0.2:5]\n"
+      "plot top(x) with lines @law title 'sand, Lube et al. 2005', 'cases.csv' every ::1 using 2:7 "
+      "@dots\nunset multiplot\n",
+      s->phi, s->width / s->h);
+  return plot_close(&f, s->out, "runout");
+}
+
+/* Keys of the column asked for; of a sweep, the last one and the worst misfit of all. */
+static void summarise(output *f, const simulation *sim) {
+  const settings *s = &sim->s;
+  const column_case *c = &sim->column[sim->count - 1];
+  double worst = 0.0;
+  for (int k = 0; k < sim->count; k++) {
+    const double d = runout(s, &sim->column[k]) / law_runout(sim->column[k].aspect) - 1.0;
+    if (fabs(d) > fabs(worst)) worst = d;
+  }
+  json_integer(f, "columns", sim->count);
+  json_number(f, "h", s->h);
+  json_number(f, "aspect", c->aspect);
+  json_number(f, "phi", c->phi);
+  json_number(f, "cohesion", c->cohesion);
+  json_number(f, "runout", runout(s, c));
+  json_number(f, "runout_law", law_runout(c->aspect));
+  json_number(f, "runout_error", runout(s, c) / law_runout(c->aspect) - 1.0);
+  json_number(f, "runout_error_worst", worst);
+  json_number(f, "runout_98", c->reach / s->width - 1.0);
+  json_number(f, "height", final_height(s, c));
+  json_number(f, "height_law", law_height(c->aspect));
+  json_number(f, "time_at_rest", c->time_at_rest);
+  json_number(f, "volume_ratio_max", c->volume_ratio);
+  json_number(f, "detached", c->detached);
+  json_number(f, "mass_error", c->mass / c->mass_start - 1.0);
+}
+
+static bool finish(app *a, void *user) {
+  simulation *sim = user;
+  const settings *s = &sim->s;
+  output f;
+  if (!write_cases(a, sim)) return false;
+  for (int k = 0; k < sim->count; k++)
+    if (!write_case(a, s, &sim->column[k])) return false;
+  if (!mpm_model_summary(a, &sim->m, s->out, &f)) return false;
+  summarise(&f, sim);
+  json_end(&f);
+  if (!output_close(&f)) return false;
+  if (!(s->sweep ? draw_law(a, sim) : draw_columns(a, sim))) return false;
+  printf("Results: %s/ (cases.csv, front_*.csv, particles_*.csv, summary.json, %s.png)\n", s->out,
+         s->sweep ? "runout" : "columns");
+  for (int k = 0; k < sim->count; k++) {
+    const column_case *c = &sim->column[k];
+    printf("%-12s a = %-4g run-out %.3f (law %.3f)  height %.3f (law %.3f)  %s %.3g s\n", c->name,
+           c->aspect, runout(s, c), law_runout(c->aspect), final_height(s, c),
+           law_height(c->aspect), isnan(c->time_at_rest) ? "still moves at" : "at rest after",
+           c->t[c->rows - 1]);
+  }
+  return true;
+}
+
+/* ---- options --------------------------------------------------------------------------------- */
+
+/* Which columns there are, and lengths that must be whole cells. Returns -1 or a code. */
+static int complete(const options_program *program, simulation *sim) {
+  settings *s = &sim->s;
+  static const double aspects[] = {0.5, 1.0, 2.0, 3.0, 4.0, 6.0};
+  static const char *const names[] = {"a0.5", "a1", "a2", "a3", "a4", "a6"};
+  if (isnan(s->h)) s->h = s->width / 20.0;
+  if (s->sweep && s->compare)
+    return options_refuse(program, "--sweep and --compare exclude each other");
+  if (s->sweep && options_given(program->table, "aspect"))
+    return options_refuse(program, "--sweep and --aspect exclude each other");
+  if (s->phi == 0.0 && s->cohesion == 0.0)
+    return options_refuse(program, "--phi and --cohesion must not both be 0");
+  if (fabs(s->width / s->h - nearbyint(s->width / s->h)) > 1e-6 || s->width < 3.5 * s->h)
+    return options_refuse(program, "--width must be a whole number of cells --h, at least 4");
+  const double weight = s->density * G * s->aspect * s->width;
+  sim->count = s->sweep ? 6 : s->compare ? 3 : 1;
+  for (int k = 0; k < sim->count; k++)
+    sim->column[k] = (column_case){.name = "column",
+                                   .aspect = s->sweep ? aspects[k] : s->aspect,
+                                   .phi = s->phi,
+                                   .cohesion = s->cohesion};
+  for (int k = 0; k < sim->count && s->sweep; k++) sim->column[k].name = names[k];
+  if (s->compare) { /* the strength of clay as a share of the weight of the column */
+    sim->column[0].name = "sand";
+    sim->column[1].name = "loam";
+    sim->column[1].phi = 0.5 * s->phi, sim->column[1].cohesion = 0.05 * weight;
+    sim->column[2].name = "clay";
+    sim->column[2].phi = 0.0, sim->column[2].cohesion = 0.15 * weight;
+  }
+  return -1;
+}
+
+int main(int argc, char **argv) {
+  static simulation sim = {.s = {.aspect = 2.0,
+                                 .width = 0.1,
+                                 .h = NAN,
+                                 .phi = 35.0,
+                                 .bed_friction = NAN,
+                                 .young = 1000.0,
+                                 .poisson = 0.3,
+                                 .density = 1600.0,
+                                 .duration = 8.0,
+                                 .ppc = 9,
+                                 .out = "out/column-collapse"}};
+  settings *s = &sim.s;
+  option table[] = {
+      OPTION_HEADING("Column"),
+      OPTION_NUMBER("aspect", "1", OPTION_FROM_TO(0.1, 20.0), &s->aspect, "a = H0/L0"),
+      OPTION_NUMBER("width", "m", OPTION_POSITIVE, &s->width, "L0 from the wall, whole cells"),
+      OPTION_FLAG("sweep", &s->sweep, "columns of a = 0.5, 1, 2, 3, 4, 6 against the law"),
+      OPTION_FLAG("compare", &s->compare,
+                  "three columns: sand; phi/2 and c = 0.05 rho g H; clay of c = 0.15 rho g H"),
+      OPTION_HEADING("Soil (Drucker-Prager)"),
+      OPTION_NUMBER("phi", "degrees", OPTION_FROM_TO(0.0, 60.0), &s->phi, "angle of friction"),
+      OPTION_NUMBER("psi", "degrees", OPTION_FROM_TO(0.0, 60.0), &s->psi, "angle of dilation"),
+      OPTION_NUMBER("cohesion", "Pa", OPTION_NOT_NEGATIVE, &s->cohesion, "c"),
+      OPTION_CHOICE("cone", "planestrain|circumscribed|inscribed|extension", &s->cone,
+                    "how it meets Mohr-Coulomb"),
+      OPTION_NUMBER("young", "kPa", OPTION_POSITIVE, &s->young, "Young's modulus E"),
+      OPTION_NUMBER("poisson", "1", OPTION_FROM_TO(0.0, 0.49), &s->poisson, "Poisson's ratio"),
+      OPTION_NUMBER("density", "kg/m3", OPTION_POSITIVE, &s->density, "in bulk"),
+      OPTION_HEADING("Bed"),
+      OPTION_NUMBER("bed-friction", "1", OPTION_FROM_TO(0.0, 10.0), &s->bed_friction,
+                    "Coulomb's mu of a rigid bed (default: soil sticks to it)"),
+      OPTION_HEADING("Grid"),
+      OPTION_NUMBER("h", "m", OPTION_POSITIVE, &s->h, "grid spacing (default width/20)"),
+      OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
+      OPTION_HEADING("Run"),
+      OPTION_NUMBER("duration", "(H/g)^1/2", OPTION_POSITIVE, &s->duration,
+                    "at most, if it does not come to rest before"),
+      OPTION_OUT(&s->out),
+      OPTION_THREADS(&s->threads),
+      {0}};
+  const options_program program = {
+      "mps-column-collapse",
+      "A column of sand or clay collapses on a bed (WLS-MPM, Drucker-Prager): seed B, Figure 3,\n"
+      "against the run-out measured by Lube, Huppert, Sparks and Freundt (2005).",
+      table};
+  int code = options_parse(&program, argc, argv);
+  if (code < 0) code = complete(&program, &sim);
+  if (code >= 0) return code;
+  static const mpm_model_parts parts = {build, march, finish};
+  code = mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
+  for (int k = 0; k < sim.count; k++)
+    for (int shot = 0; shot < FRAMES; shot++) mpm_snapshot_free(&sim.column[k].shot[shot]);
+  return code;
+}

@@ -1,0 +1,430 @@
+/* mps-dam-break - a column of water collapses on a dry bed: seed B, Figure 2, against the
+ * experiments of Martin and Moyce (1952).
+ *
+ * The water stands between the wall x = 0 and a gate at x = a that vanishes at once; it is n^2 a
+ * high. --rest keeps the gate: then nothing should move, and p = rho g depth.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "common/mpm_heap.h"
+#include "common/mpm_model.h"
+#include "common/plot.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#define PI 3.14159265358979323846
+#define G 9.81         /* m/s2 */
+#define DENSITY 1000.0 /* kg/m3 */
+
+enum { SAMPLES = 300, FRAMES = 6, SLIP = 0, NO_SLIP };
+
+/* ---- Martin and Moyce -------------------------------------------------------------------------
+ * "An experimental study of the collapse of liquid columns on a rigid horizontal plane", Phil.
+ * Trans. R. Soc. A 244 (1952) 312-324: columns of rectangular section, a = 2.25 in. Front Z = x/a
+ * against T = t sqrt(n^2 g/a); height at the wall H = y/(n^2 a) against tau = t sqrt(g/a). The
+ * numbers are those that later authors print, for n^2 = 2 as tables 2 and 6. When the gate let go
+ * could not be timed well: it is usual to set the clocks at Z = 1.44. */
+
+typedef struct series {
+  int count;
+  const double *t, *value;
+} series;
+
+static const double z_of_2[] = {1.11, 1.22, 1.44, 1.67, 1.89, 2.11, 2.33, 2.56,
+                                2.78, 3.00, 3.22, 3.44, 3.67, 3.89, 4.11};
+static const double t_of_2[] = {0.41, 0.84, 1.19, 1.43, 1.63, 1.83, 1.98, 2.20,
+                                2.32, 2.51, 2.65, 2.83, 2.98, 3.11, 3.33};
+static const double h_of_2[] = {0.94, 0.89, 0.83, 0.78, 0.72, 0.67, 0.61, 0.56, 0.50,
+                                0.44, 0.39, 0.33, 0.28, 0.22, 0.17, 0.11, 0.06};
+static const double tau_of_2[] = {0.56, 0.77, 0.93, 1.08, 1.28, 1.46, 1.66, 1.84, 2.00,
+                                  2.21, 2.45, 2.70, 3.06, 3.44, 4.20, 5.25, 7.40};
+static const double z_of_1[] = {1.11, 1.22, 1.44, 1.67, 1.89, 2.11, 2.33, 2.56, 2.78, 3.00,
+                                3.22, 3.44, 3.67, 3.89, 4.11, 4.33, 4.56, 4.78, 4.89, 5.00};
+static const double t_of_1[] = {0.43, 0.62, 0.80, 0.97, 1.14, 1.29, 1.45, 1.62, 1.76, 1.93,
+                                2.07, 2.24, 2.40, 2.54, 2.71, 2.87, 3.04, 3.21, 3.29, 3.32};
+static const double h_of_1[] = {0.89, 0.78, 0.67, 0.56, 0.44, 0.33, 0.22, 0.11};
+static const double tau_of_1[] = {0.80, 1.29, 1.74, 2.15, 2.57, 3.08, 4.27, 6.29};
+
+#define SERIES(t_, value_)                                                                         \
+  { sizeof(t_) / sizeof *(t_), t_, value_ }
+static const series fronts[2] = {SERIES(t_of_1, z_of_1), SERIES(t_of_2, z_of_2)};
+static const series heights[2] = {SERIES(tau_of_1, h_of_1), SERIES(tau_of_2, h_of_2)};
+#define CLOCK_AT 2 /* the point of each front series where the clocks are set */
+
+/* Linear between the points; NaN outside them. */
+static double interpolate(int count, const double *t, const double *value, double at) {
+  for (int k = 1; k < count; k++)
+    if (at >= t[k - 1] && at <= t[k])
+      return value[k - 1] +
+             (value[k] - value[k - 1]) * (at - t[k - 1]) / fmax(t[k] - t[k - 1], 1e-300);
+  return NAN;
+}
+
+/* ---- the run --------------------------------------------------------------------------------- */
+
+typedef struct settings {
+  double h, base, viscosity, sound, duration, tank, friction;
+  int64_t n2, ppc, threads;
+  int state, tension, spline, transfer, bed;
+  bool rest;
+  const char *out;
+} settings;
+
+typedef struct simulation {
+  settings s;
+  mpm_model m;
+  int rows;
+  double t[SAMPLES + 1], Z[SAMPLES + 1], H[SAMPLES + 1]; /* s, -, - */
+  mpm_heap heap[SAMPLES + 1];
+  mpm_snapshot shot[FRAMES];
+} simulation;
+
+static double column_height(const settings *s) { return s->base * (double)s->n2; }
+static double speed_of_sound(const settings *s) {
+  return isnan(s->sound) ? 10.0 * sqrt(2.0 * G * column_height(s)) : s->sound;
+}
+
+/* Pressure at the start: rho g depth behind the gate; once it is gone, that of the first moment of
+ * an incompressible column, whose free sides have none. It is harmonic plus rho g depth, a series
+ * in cos(b y) cosh(b x). From rho g depth instead, sound would run to and fro all the while. */
+static double pressure_at(const settings *s, double x, double y) {
+  const double H = column_height(s);
+  double p = H - y;
+  for (int k = 1; k < 400 && !s->rest; k += 2) {
+    const double b = 0.5 * PI * k / H;
+    const double growth = exp(b * (x - s->base)) * (1.0 + exp(-2.0 * b * x)) /
+                          (1.0 + exp(-2.0 * b * s->base)); /* cosh(b x)/cosh(b a) */
+    p -= 8.0 * H / (PI * PI * k * k) * cos(b * y) * growth;
+  }
+  return DENSITY * G * p;
+}
+
+static mps_status fill(mps_context *context, const settings *s, simulation *sim) {
+  const double lo[2] = {0.0, 0.0}, hi[2] = {s->base, column_height(s)};
+  const double K = DENSITY * speed_of_sound(s) * speed_of_sound(s);
+  mps_particles_def set = mps_particles_defaults();
+  set.spacing = s->h / sqrt((double)s->ppc);
+  mps_status status = mps_particles_create(context, &set, &sim->m.particles);
+  mps_particles *water = sim->m.particles;
+  if (status == MPS_OK) status = mps_particles_fill_box(water, lo, hi, NULL);
+  if (status == MPS_OK) status = mps_particles_set(water, "density", 0, DENSITY);
+  if (status == MPS_OK) status = mps_particles_set(water, "stress", 0, 0.0);
+  if (status == MPS_OK) status = mps_particles_set(water, "volume_ratio", 0, 1.0);
+  mps_view x, stress, ratio;
+  if (status == MPS_OK) status = mps_particles_view(water, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(water, "stress", &stress);
+  if (status == MPS_OK) status = mps_particles_view(water, "volume_ratio", &ratio);
+  for (int64_t k = 0; status == MPS_OK && k < x.shape[0]; k++) {
+    const double p = pressure_at(s, *mps_view_f64(&x, k, 0), *mps_view_f64(&x, k, 1));
+    for (int c = 0; c < 3; c++) *mps_view_f64(&stress, k, c) = -p;
+    *mps_view_f64(&ratio, k, 0) =
+        s->state == MPS_STATE_TAIT ? pow(1.0 + 7.0 * p / K, -1.0 / 7.0) : 1.0 / (1.0 + p / K);
+  }
+  return status;
+}
+
+static mps_status build(mps_context *context, void *user) {
+  simulation *sim = user;
+  const settings *s = &sim->s;
+  mps_newtonian_def law = mps_newtonian_defaults();
+  law.state = s->state;
+  law.bulk_modulus = DENSITY * speed_of_sound(s) * speed_of_sound(s);
+  law.viscosity = s->viscosity;
+  law.no_tension = s->tension == 0;
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = s->h;
+  def.spline = s->spline + 2;
+  def.transfer = s->transfer;
+  def.lower[0] = def.lower[1] = 0.0;
+  def.upper[0] = s->rest ? s->base : s->tank * s->base;
+  def.wall_lower[1] = s->bed == NO_SLIP ? MPS_WALL_FIXED : MPS_WALL_ROLLER;
+  def.gravity[1] = -G;
+  mps_status status = fill(context, s, sim);
+  if (status == MPS_OK) status = mps_material_newtonian(context, &law, &sim->m.material);
+  if (status == MPS_OK)
+    status = mps_mpm_create(context, sim->m.particles, sim->m.material, &def, &sim->m.mpm);
+  return status;
+}
+
+static mps_status march(void *user) {
+  simulation *sim = user;
+  const settings *s = &sim->s;
+  mps_status status = MPS_OK;
+  for (int k = 0; k <= SAMPLES && status == MPS_OK; k++) {
+    if (k > 0) status = mps_mpm_run(sim->m.mpm, s->duration * k / SAMPLES, INT64_MAX, NULL, NULL);
+    mpm_heap *heap = &sim->heap[k];
+    if (status == MPS_OK) status = mpm_heap_measure(sim->m.particles, G, 2.0 * s->h, heap);
+    if (status == MPS_OK && k % (SAMPLES / (FRAMES - 1)) == 0)
+      status = mpm_snapshot_take(sim->m.particles, mps_mpm_time(sim->m.mpm), "stress",
+                                 &sim->shot[k / (SAMPLES / (FRAMES - 1))]);
+    sim->t[k] = mps_mpm_time(sim->m.mpm);
+    sim->Z[k] = heap->front / s->base;
+    sim->H[k] = heap->top / column_height(s);
+    sim->rows = k + 1;
+  }
+  return status;
+}
+
+/* ---- comparison ------------------------------------------------------------------------------ */
+
+typedef struct misfit {
+  double rms, worst;
+  int points;
+} misfit;
+
+/* Computed `value` over `t` (scaled by `scale`, later by `shift`) less the experiment. */
+static misfit compare(const simulation *sim, const series *data, const double *value, double scale,
+                      double shift) {
+  double t[SAMPLES + 1];
+  misfit m = {0};
+  for (int k = 0; k < sim->rows; k++) t[k] = sim->t[k] * scale + shift;
+  for (int k = 0; k < data->count; k++) {
+    const double d = interpolate(sim->rows, t, value, data->t[k]) - data->value[k];
+    if (!isfinite(d)) continue;
+    m.rms += d * d;
+    if (fabs(d) > fabs(m.worst)) m.worst = d;
+    m.points++;
+  }
+  m.rms = sqrt(m.rms / m.points);
+  return m;
+}
+
+/* What must be added to T so that the front is where the experiment set its clock. */
+static double clock_shift(const simulation *sim, const series *data, double scale) {
+  for (int k = 1; k < sim->rows; k++)
+    if (sim->Z[k] >= data->value[CLOCK_AT] && sim->Z[k - 1] < data->value[CLOCK_AT])
+      return data->t[CLOCK_AT] -
+             scale * interpolate(2, &sim->Z[k - 1], &sim->t[k - 1], data->value[CLOCK_AT]);
+  return NAN;
+}
+
+/* ---- results --------------------------------------------------------------------------------- */
+
+static bool write_front(app *a, const simulation *sim, double T, double tau) {
+  const settings *s = &sim->s;
+  const series *z = &fronts[s->n2 - 1], *h = &heights[s->n2 - 1];
+  output f;
+  if (!output_open(&f, a, s->out, "front.csv")) return false;
+  output_text(&f, "t_s,T,Z,Z_experiment,tau,H,H_experiment,mass_kg_m,volume_m2,kinetic_J_m,"
+                  "potential_J_m,detached\n");
+  for (int k = 0; k < sim->rows; k++) {
+    const mpm_heap *p = &sim->heap[k];
+    const double t = sim->t[k];
+    const double row[] = {t,
+                          t * T,
+                          sim->Z[k],
+                          interpolate(z->count, z->t, z->value, t * T),
+                          t * tau,
+                          sim->H[k],
+                          interpolate(h->count, h->t, h->value, t * tau),
+                          p->mass,
+                          p->volume,
+                          p->kinetic,
+                          p->potential,
+                          p->detached};
+    csv_row(&f, 12, row);
+  }
+  if (!output_close(&f) || !output_open(&f, a, s->out, "experiment.csv")) return false;
+  output_text(&f, "T,Z,tau,H\n");
+  for (int k = 0; k < z->count || k < h->count; k++) {
+    const double row[] = {k < z->count ? z->t[k] : NAN, k < z->count ? z->value[k] : NAN,
+                          k < h->count ? h->t[k] : NAN, k < h->count ? h->value[k] : NAN};
+    csv_row(&f, 4, row);
+  }
+  return output_close(&f);
+}
+
+static bool draw_front(app *a, const settings *s, double shift) {
+  output f;
+  if (!plot_open(&f, a, s->out, "front", 1200, 560)) return false;
+  output_text(&f,
+              "set multiplot layout 1,2 title \"Collapse of a water column, n^2 = %d\\n{/*0.8 base "
+              "%.4g m, h = %.4g m, c = %.3g m/s}\"\n"
+              "set key left top reverse Left\nset xrange [0:4.2]\nset yrange [1:5.2]\n"
+              "set xlabel 'T = t (n^2 g/a)^{1/2}'\nset ylabel 'front Z = x/a'\n"
+              "plot 'experiment.csv' every ::1 using 1:2 with points pointtype 6 pointsize 1.2 "
+              "linecolor rgb '#c0392b' title 'Martin and Moyce 1952', \\\n"
+              "  'front.csv' every ::1 using 2:3 with lines linecolor rgb '#1f4e8c' title "
+              "'WLS-MPM'",
+              (int)s->n2, s->base, s->h, speed_of_sound(s));
+  if (isfinite(shift))
+    output_text(&f,
+                ", \\\n  'front.csv' every ::1 using ($2%+.4f):3 with lines dashtype '--' "
+                "linecolor rgb '#1f4e8c' title 'clock set at Z = 1.44'",
+                shift);
+  output_text(&f, "\nset key right top reverse Left\nset xrange [0:6]\nset yrange [0:1.05]\n"
+                  "set xlabel '{/Symbol t} = t (g/a)^{1/2}'\nset ylabel 'height at the wall H = "
+                  "y/(n^2 a)'\n"
+                  "plot 'experiment.csv' every ::1 using 3:4 with points pointtype 6 pointsize 1.2 "
+                  "linecolor rgb '#c0392b' title 'Martin and Moyce 1952', \\\n"
+                  "  'front.csv' every ::1 using 5:6 with lines linecolor rgb '#1f4e8c' title "
+                  "'WLS-MPM'\nunset multiplot\n");
+  return plot_close(&f, s->out, "front");
+}
+
+/* Frames in one scale, lengths in bases: flat ones in two columns, a tank at rest in a row. */
+static bool draw_water(app *a, const simulation *sim, double T) {
+  const settings *s = &sim->s;
+  const double width = s->rest ? 1.0 : s->tank, height = 1.2 * (double)s->n2;
+  const int across = s->rest ? FRAMES : 2, down = FRAMES / across, panel = s->rest ? 180 : 600;
+  const int panel_height = (int)(panel * height / width), edge = 45;
+  const double x = across * (panel + edge) + 135.0, y = down * (panel_height + 74.0);
+  output f;
+  if (!plot_open(&f, a, s->out, "water", (int)x, (int)y)) return false;
+  output_text(&f,
+              "set multiplot layout %d,%d columnsfirst margins screen %.4f, screen %.4f, screen "
+              "%.4f, screen %.4f spacing screen %.4f, screen %.4f\n"
+              "set xrange [0:%.6g]\nset yrange [0:%.6g]\nset size ratio -1\nunset grid\n"
+              "set palette defined (0 '#2c3e8f', 0.35 '#4aa3c7', 0.7 '#b7e0a5', 1 '#f4d03f')\n"
+              "set cbrange [0:%.4g]\nset xtics 1\nset ytics 1\n"
+              "set colorbox user origin screen %.4f,0.2 size screen 0.012,0.6\n"
+              "set cblabel 'pressure (kPa)'\n",
+              down, across, edge / x, (x - 135.0) / x, 42.0 / y, 1.0 - 28.0 / y, edge / x, 74.0 / y,
+              width, height, 0.9e-3 * DENSITY * G * column_height(s), (x - 120.0) / x);
+  for (int k = 0; k < FRAMES; k++)
+    output_text(&f,
+                "%sset title 'T = %.2f' offset 0,-0.7\n"
+                "plot 'particles.csv' every ::1 using ($1==%d ? $3/%.9g : NaN):($4/%.9g):($5*1e-3) "
+                "with points pointtype 7 pointsize %.3g linecolor palette notitle\n",
+                k == 1 ? "unset colorbox\n" : "", sim->shot[k].time * T, k, s->base, s->base,
+                0.24 * panel * s->h / sqrt((double)s->ppc) / (width * s->base));
+  output_text(&f, "unset multiplot\n");
+  return plot_close(&f, s->out, "water");
+}
+
+/* Pressure against rho g depth at the end, over that at the bed: RMS. */
+static double rest_error(const simulation *sim) {
+  const mpm_snapshot *shot = &sim->shot[FRAMES - 1];
+  const double H = column_height(&sim->s);
+  double sum = 0.0;
+  for (int64_t k = 0; k < shot->count; k++) {
+    const double d = shot->row[3 * k + 2] / (DENSITY * G * H) - (1.0 - shot->row[3 * k + 1] / H);
+    sum += d * d;
+  }
+  return sqrt(sum / (double)shot->count);
+}
+
+static void summarise(output *f, const simulation *sim, double T, double tau, double shift) {
+  const settings *s = &sim->s;
+  const series *z = &fronts[s->n2 - 1], *h = &heights[s->n2 - 1];
+  const mpm_heap *first = &sim->heap[0], *last = &sim->heap[sim->rows - 1];
+  const double scale = first->potential;
+  double volume = 0.0, detached = 0.0, energy = -INFINITY, kinetic = 0.0;
+  for (int k = 0; k < sim->rows; k++) {
+    volume = fmax(volume, fabs(sim->heap[k].volume / first->volume - 1.0));
+    detached = fmax(detached, sim->heap[k].detached);
+    energy = fmax(energy, (sim->heap[k].kinetic + sim->heap[k].potential) / scale);
+    kinetic = fmax(kinetic, sim->heap[k].kinetic / scale);
+  }
+  json_number(f, "h", s->h);
+  json_integer(f, "n2", s->n2);
+  json_number(f, "sound_speed", speed_of_sound(s));
+  json_number(f, "mass", last->mass);
+  json_number(f, "mass_error", last->mass / (DENSITY * s->base * column_height(s)) - 1.0);
+  json_number(f, "volume_drift", volume);
+  json_number(f, "energy_max", energy);
+  json_number(f, "energy_end", (last->kinetic + last->potential) / scale);
+  json_number(f, "kinetic_max", kinetic);
+  if (s->rest) {
+    json_number(f, "pressure_error", rest_error(sim));
+    json_number(f, "height_end", sim->H[sim->rows - 1]);
+    return;
+  }
+  const misfit front = compare(sim, z, sim->Z, T, 0.0), wall = compare(sim, h, sim->H, tau, 0.0);
+  const misfit set = compare(sim, z, sim->Z, T, shift);
+  json_number(f, "front_error_rms", front.rms);
+  json_number(f, "front_error_max", front.worst);
+  json_number(f, "front_clock_shift", shift);
+  json_number(f, "front_error_rms_clock", set.rms);
+  json_number(f, "front_error_max_clock", set.worst);
+  json_number(f, "height_error_rms", wall.rms);
+  json_number(f, "height_error_max", wall.worst);
+  json_number(f, "detached_max", detached);
+  printf("front against the experiment: RMS %.3f, at most %+.3f (a); clock set at Z = 1.44: RMS "
+         "%.3f\n",
+         front.rms, front.worst, set.rms);
+}
+
+static bool finish(app *a, void *user) {
+  simulation *sim = user;
+  const settings *s = &sim->s;
+  const double tau = sqrt(G / s->base), T = tau * sqrt((double)s->n2);
+  const double shift = s->rest ? NAN : clock_shift(sim, &fronts[s->n2 - 1], T);
+  output f;
+  if (!write_front(a, sim, T, tau) ||
+      !mpm_snapshots_write(a, s->out, "particles.csv", "pressure_Pa", FRAMES, sim->shot) ||
+      !mpm_model_summary(a, &sim->m, s->out, &f))
+    return false;
+  summarise(&f, sim, T, tau, shift);
+  json_end(&f);
+  if (!output_close(&f) || (!s->rest && !draw_front(a, s, shift)) || !draw_water(a, sim, T))
+    return false;
+  printf("Results: %s/ (front.csv, experiment.csv, particles.csv, summary.json, pictures)\n",
+         s->out);
+  if (s->rest)
+    printf("pressure against rho g depth: RMS %.2f %% of that at the bed\n",
+           100.0 * rest_error(sim));
+  return true;
+}
+
+/* ---- options --------------------------------------------------------------------------------- */
+
+/* Defaults that depend on others, and lengths that must be whole cells. Returns -1 or a code. */
+static int complete(const options_program *program, settings *s) {
+  if (isnan(s->h)) s->h = s->base / 40.0;
+  const double cells = s->base / s->h, tank = s->tank * cells;
+  if (cells < 4.0 || fabs(cells - nearbyint(cells)) > 1e-6)
+    return options_refuse(program, "--base must be a whole number of cells --h, at least 4");
+  if (!s->rest && fabs(tank - nearbyint(tank)) > 1e-6)
+    return options_refuse(program, "--tank times --base must be a whole number of cells --h");
+  if (isnan(s->duration)) s->duration = 6.0 * sqrt(s->base / (G * (double)s->n2));
+  return -1;
+}
+
+int main(int argc, char **argv) {
+  static simulation sim = {.s = {.h = NAN,
+                                 .base = 0.05715,
+                                 .viscosity = 1e-3,
+                                 .sound = NAN,
+                                 .duration = NAN,
+                                 .tank = 6.0,
+                                 .n2 = 2,
+                                 .ppc = 4,
+                                 .state = MPS_STATE_TAIT,
+                                 .spline = 1,
+                                 .out = "out/dam-break"}};
+  settings *s = &sim.s;
+  option table[] = {
+      OPTION_HEADING("Water"),
+      OPTION_NUMBER("base", "m", OPTION_POSITIVE, &s->base, "width a of the column, whole cells"),
+      OPTION_INTEGER("n2", "1", OPTION_FROM_TO(1.0, 2.0), &s->n2, "n^2: the height over a"),
+      OPTION_NUMBER("tank", "bases", OPTION_FROM_TO(1.5, 1000.0), &s->tank, "to the far wall"),
+      OPTION_NUMBER("viscosity", "Pa s", OPTION_NOT_NEGATIVE, &s->viscosity, "of the water"),
+      OPTION_NUMBER("sound-speed", "m/s", OPTION_POSITIVE, &s->sound,
+                    "c, K = rho c^2 (default 10 sqrt(2 g n^2 a))"),
+      OPTION_CHOICE("state", "linear|tait", &s->state, "pressure from density"),
+      OPTION_CHOICE("tension", "none|full", &s->tension, "negative pressure"),
+      OPTION_CHOICE("bed", "slip|fixed", &s->bed, "bed of the tank"),
+      OPTION_FLAG("rest", &s->rest, "keep the gate: water at rest"),
+      OPTION_HEADING("Grid"),
+      OPTION_NUMBER("h", "m", OPTION_POSITIVE, &s->h, "grid spacing (default base/40)"),
+      OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
+      OPTION_CHOICE("spline", "2|3", &s->spline, "degree of the weights"),
+      OPTION_CHOICE("transfer", "shape|weight", &s->transfer, "particles to nodes"),
+      OPTION_HEADING("Run"),
+      OPTION_NUMBER("duration", "s", OPTION_POSITIVE, &s->duration, "of the run (default T = 6)"),
+      OPTION_OUT(&s->out),
+      OPTION_THREADS(&s->threads),
+      {0}};
+  const options_program program = {
+      "mps-dam-break",
+      "A column of water collapses on a dry bed (WLS-MPM, weakly compressible): seed B, Figure 2,\n"
+      "against the experiments of Martin and Moyce (1952).",
+      table};
+  int code = options_parse(&program, argc, argv);
+  if (code < 0) code = complete(&program, s);
+  if (code >= 0) return code;
+  static const mpm_model_parts parts = {build, march, finish};
+  code = mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
+  for (int k = 0; k < FRAMES; k++) mpm_snapshot_free(&sim.shot[k]);
+  return code;
+}

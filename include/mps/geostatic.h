@@ -1,0 +1,77 @@
+/* mps/geostatic.h - the stress of ground before anything happens: at rest under its own weight.
+ *
+ * Writes the field `stress` of a particle set, for solvers that start from it (WLS-MPM with a law
+ * of the rate; laws of the deformation gradient or of the volume do not read it). Tension is
+ * positive, so that these stresses are negative.
+ *
+ * Thread rule: one thread at a time per set and context; callbacks run on the calling thread.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPS_GEOSTATIC_H
+#define MPS_GEOSTATIC_H
+
+#include <mps/particles.h>
+
+MPS_EXTERN_C_BEGIN
+
+/** A layer of ground. Layers follow the surface: depths are vertical ones below it. Frozen layout.
+ */
+typedef struct mps_soil_layer {
+  double thickness; /* m, > 0; infinite allowed for the lowest */
+  double k0;        /* horizontal over vertical stress, >= 0; elastic ground held at its sides:
+                       nu/(1 - nu) */
+  double density;   /* kg/m3, > 0; 0: that of the field `density` of the particles whose centres lie
+                       in the layer, which must be one value */
+} mps_soil_layer;
+
+/** Level (m) of the surface above or below the position x (m, as many values as the set has
+ *  dimensions; the vertical one is that of the particle). */
+typedef double (*mps_level_fn)(void *user, const double *x);
+
+typedef struct mps_geostatic_def {
+  uint32_t struct_size;
+  int32_t layer_count;          /* >= 1; no default */
+  const mps_soil_layer *layers; /* from the surface downwards; no default */
+  double gravity;               /* m/s2, > 0, downwards; default 9.81 */
+  double surcharge;             /* Pa, >= 0, load on the surface; default 0 */
+  int32_t vertical;             /* axis that points up: 0, 1, 2, or -1 (default) for the last of the
+                                   set: y in 2D, z in 3D */
+  int32_t surface_points;       /* >= 2 with `surface_line`, else 0 (default) */
+  /** The surface, by one of three: */
+  double surface;             /* m, level of a flat one; NaN (default): half a spacing above the
+                                 highest particle */
+  const double *surface_line; /* 2D: x0, y0, x1, y1, ..., x ascending; beyond the ends level. Not
+                                 where x is the vertical */
+  mps_level_fn surface_level;
+  void *user; /* passed to `surface_level` */
+} mps_geostatic_def;
+
+MPS_API mps_status mps_geostatic_def_init(mps_geostatic_def *def, size_t size);
+static inline mps_geostatic_def mps_geostatic_defaults(void) {
+  mps_geostatic_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_geostatic_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+
+/** Sets the stress at rest of every particle, adding the field where the set lacks it: vertically
+ *  the weight of what lies above the particle's centre, summed layer by layer without an error of
+ *  integration, horizontally K0 times that, no shear. In 2D the direction out of the plane, or the
+ *  hoop, is horizontal. Under a level surface this is in balance; under a slope it is a start.
+ *  MPS_ERROR_ARGUMENT: a value out of range, a particle above the surface or below the lowest
+ * layer, different densities in a layer that takes its density from them. MPS_ERROR_FIELD: no
+ * `density` to take it from. Nothing is changed on an error. */
+MPS_API MPS_NODISCARD mps_status mps_particles_set_geostatic(mps_particles *particles,
+                                                             const mps_geostatic_def *def);
+
+/** Writes the stress (Pa) at the position x (m): xx, yy, zz, xy in 2D, and zx, yz in 3D, which are
+ *  zero on entry. Returns 0, or anything else to give up. */
+typedef int32_t (*mps_stress_fn)(void *user, const double *x, double *stress);
+
+/** Sets the stress of every particle by the caller's function, adding the field where the set lacks
+ *  it. MPS_ERROR_ARGUMENT for a stress that is not finite, MPS_ERROR_CANCELLED when the function
+ *  gives up; then nothing is changed. */
+MPS_API MPS_NODISCARD mps_status mps_particles_set_stress(mps_particles *particles,
+                                                          mps_stress_fn stress, void *user);
+
+MPS_EXTERN_C_END
+#endif

@@ -1,0 +1,290 @@
+/* geostatic.c - the stress of ground at rest: weight of the layers above, K0 sideways; or what a
+ * caller's function says.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/particles_internal.h"
+
+#include <mps/geostatic.h>
+
+#define ON_SURFACE 1e-9 /* spacings: a centre this little above the surface lies on it */
+
+static const mps_geostatic_def geostatic_defaults = {
+    .struct_size = sizeof(mps_geostatic_def), .gravity = 9.81, .vertical = -1, .surface = NAN};
+
+mps_status mps_geostatic_def_init(mps_geostatic_def *def, size_t size) {
+  return mpsi_def_init(def, size, sizeof geostatic_defaults, &geostatic_defaults,
+                       sizeof geostatic_defaults);
+}
+
+static const char set_geostatic[] = "mps_particles_set_geostatic";
+
+/* What one call works with. */
+typedef struct geostatic {
+  mps_particles *set;
+  mps_context *context;
+  mps_geostatic_def def;
+  int64_t count;
+  int32_t dim, up; /* the vertical axis */
+  const double *x[3];
+  const double *density_field; /* or NULL */
+  const int64_t *id;
+  double *depth; /* of each particle, m */
+  double *top, *burden,
+      *weight; /* of each layer: depth m, stress Pa at its top; unit weight N/m3 */
+} geostatic;
+
+/* ---- checks ---------------------------------------------------------------------------------- */
+
+static mps_status check_layers(const geostatic *g) {
+  const mps_geostatic_def *d = &g->def;
+  if (d->layer_count < 1 || !d->layers)
+    return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+                     "layer_count is %d%s, must be >= 1", (int)d->layer_count,
+                     d->layers ? "" : " and layers is NULL");
+  for (int32_t k = 0; k < d->layer_count; k++) {
+    const mps_soil_layer *layer = &d->layers[k];
+    const bool lowest = k == d->layer_count - 1;
+    if (!(layer->thickness > 0.0) || (isinf(layer->thickness) && !lowest))
+      return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+                       "layer %d has thickness %g m, must be > 0%s", (int)k, layer->thickness,
+                       lowest ? "" : " and finite (only the lowest may be infinite)");
+    if (!(layer->k0 >= 0.0) || isinf(layer->k0))
+      return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+                       "layer %d has k0 %g, must be finite and >= 0", (int)k, layer->k0);
+    if (!(layer->density >= 0.0) || isinf(layer->density))
+      return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+                       "layer %d has density %g kg/m3, must be finite and > 0, or 0 for the "
+                       "particles'",
+                       (int)k, layer->density);
+    if (layer->density == 0.0 && !g->density_field)
+      return mpsi_fail(g->context, set_geostatic, MPS_ERROR_FIELD,
+                       "layer %d has density 0, but the set has no field 'density' to take it "
+                       "from",
+                       (int)k);
+  }
+  return MPS_OK;
+}
+
+static mps_status check_line(const geostatic *g) {
+  const mps_geostatic_def *d = &g->def;
+  const int32_t n = d->surface_points;
+  if (!d->surface_line && n == 0) return MPS_OK;
+  if (!d->surface_line || n < 2)
+    return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+                     "surface_points is %d%s, must be >= 2 with a line", (int)n,
+                     d->surface_line ? "" : " and surface_line is NULL");
+  if (g->dim != 2 || g->up != 1)
+    return mpsi_fail(g->context, set_geostatic, MPS_ERROR_UNSUPPORTED,
+                     "a surface_line is for 2D with y upwards: use surface_level");
+  for (int32_t k = 0; k < n; k++) {
+    const double x = d->surface_line[2 * k], y = d->surface_line[2 * k + 1];
+    if (!isfinite(x) || !isfinite(y) || (k > 0 && x <= d->surface_line[2 * k - 2]))
+      return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+                       "point %d of surface_line is (%g, %g) m: must be finite, and x larger than "
+                       "that of the point before",
+                       (int)k, x, y);
+  }
+  return MPS_OK;
+}
+
+static mps_status check_numbers(const geostatic *g) {
+  const mps_geostatic_def *d = &g->def;
+  if (!isfinite(d->gravity) || d->gravity <= 0.0)
+    return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+                     "gravity is %g m/s2, must be finite and > 0", d->gravity);
+  if (!isfinite(d->surcharge) || d->surcharge < 0.0)
+    return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+                     "surcharge is %g Pa, must be finite and >= 0", d->surcharge);
+  if (g->up < 0 || g->up >= g->dim)
+    return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+                     "vertical is %d, must be 0..%d, or -1 for the last axis", (int)d->vertical,
+                     (int)g->dim - 1);
+  if (isinf(d->surface))
+    return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+                     "surface is %g m, must be finite, or NaN for that of the highest particle",
+                     d->surface);
+  const int given = !isnan(d->surface) + (d->surface_line != NULL) + (d->surface_level != NULL);
+  if (given > 1)
+    return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+                     "%d of surface, surface_line and surface_level are given, only one may be",
+                     given);
+  return MPS_OK;
+}
+
+/* ---- depths ---------------------------------------------------------------------------------- */
+
+static double level_of_line(const mps_geostatic_def *d, double x) {
+  const double *p = d->surface_line;
+  const int32_t n = d->surface_points;
+  if (x <= p[0]) return p[1];
+  for (int32_t k = 1; k < n; k++) {
+    if (x > p[2 * k]) continue;
+    const double share = (x - p[2 * k - 2]) / (p[2 * k] - p[2 * k - 2]);
+    return p[2 * k - 1] + share * (p[2 * k + 1] - p[2 * k - 1]);
+  }
+  return p[2 * n - 1];
+}
+
+/* Depth of every particle below the surface. */
+static mps_status find_depths(geostatic *g) {
+  const mps_geostatic_def *d = &g->def;
+  const double spacing = mps_particles_spacing(g->set);
+  double flat = d->surface;
+  if (isnan(flat)) {
+    flat = -INFINITY;
+    for (int64_t k = 0; k < g->count; k++) flat = fmax(flat, g->x[g->up][k]);
+    flat += 0.5 * spacing;
+  }
+  for (int64_t k = 0; k < g->count; k++) {
+    double x[3] = {0.0};
+    for (int32_t c = 0; c < g->dim; c++) x[c] = g->x[c][k];
+    const double level = d->surface_level  ? d->surface_level(d->user, x)
+                         : d->surface_line ? level_of_line(d, x[0])
+                                           : flat;
+    const double depth = level - x[g->up];
+    if (!isfinite(depth) || depth < -ON_SURFACE * spacing)
+      return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+                       "particle %lld lies at the level %g m, above the surface at %g m there",
+                       (long long)g->id[k], x[g->up], level);
+    g->depth[k] = fmax(depth, 0.0);
+  }
+  return MPS_OK;
+}
+
+/* The layer with the depth in [top, bottom); the lowest one with its bottom, and count below. */
+static int32_t layer_at(const geostatic *g, double depth) {
+  const int32_t n = g->def.layer_count;
+  int32_t k = 0;
+  while (k < n && depth >= g->top[k] + g->def.layers[k].thickness) k++;
+  if (k == n && depth <= g->top[n - 1] + g->def.layers[n - 1].thickness) k--;
+  return k;
+}
+
+/* ---- weights --------------------------------------------------------------------------------- */
+
+/* Density of the layers that leave it to their particles: one value, or an error. */
+static mps_status take_densities(geostatic *g, double *density) {
+  const int32_t n = g->def.layer_count;
+  for (int32_t k = 0; k < n; k++) density[k] = g->def.layers[k].density;
+  for (int64_t k = 0; k < g->count; k++) {
+    const int32_t layer = layer_at(g, g->depth[k]);
+    if (layer == n)
+      return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+                       "particle %lld is %g m deep, the layers reach down to %g m (the lowest may "
+                       "be infinite)",
+                       (long long)g->id[k], g->depth[k],
+                       g->top[n - 1] + g->def.layers[n - 1].thickness);
+    if (g->def.layers[layer].density > 0.0) continue;
+    const double rho = g->density_field[k];
+    if (!(rho > 0.0) || isinf(rho))
+      return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+                       "particle %lld has density %g kg/m3, must be finite and > 0",
+                       (long long)g->id[k], rho);
+    if (density[layer] == 0.0) density[layer] = rho;
+    if (rho != density[layer])
+      return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+                       "layer %d has particles of %g and of %g kg/m3 (particle %lld), must be one "
+                       "value, or give the layer's density",
+                       (int)layer, density[layer], rho, (long long)g->id[k]);
+  }
+  for (int32_t k = 0; k < n; k++)
+    if (density[k] == 0.0 && k < n - 1)
+      return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
+                       "layer %d has density 0 and no particle to take it from", (int)k);
+  return MPS_OK;
+}
+
+static mps_status weigh(geostatic *g) {
+  const int32_t n = g->def.layer_count;
+  for (int32_t k = 1; k < n; k++) g->top[k] = g->top[k - 1] + g->def.layers[k - 1].thickness;
+  mps_status status = find_depths(g);
+  if (status == MPS_OK) status = take_densities(g, g->weight);
+  if (status != MPS_OK) return status;
+  g->burden[0] = g->def.surcharge;
+  for (int32_t k = 0; k < n; k++) {
+    g->weight[k] *= g->def.gravity;
+    if (k + 1 < n) g->burden[k + 1] = g->burden[k] + g->weight[k] * g->def.layers[k].thickness;
+  }
+  return MPS_OK;
+}
+
+/* ---- the public functions -------------------------------------------------------------------- */
+
+static void write_stress(const geostatic *g) {
+  double *s[6];
+  for (int32_t c = 0; c < 2 * g->dim; c++) s[c] = mpsi_particles_column(g->set, "stress", c);
+  for (int64_t k = 0; k < g->count; k++) {
+    const int32_t layer = layer_at(g, g->depth[k]);
+    const double vertical = -(g->burden[layer] + g->weight[layer] * (g->depth[k] - g->top[layer]));
+    for (int32_t c = 0; c < 2 * g->dim; c++)
+      s[c][k] = c == g->up ? vertical : c < 3 ? g->def.layers[layer].k0 * vertical : 0.0;
+  }
+}
+
+static void look_at_set(geostatic *g) {
+  g->count = mps_particles_count(g->set);
+  g->dim = mps_particles_dim(g->set);
+  for (int32_t c = 0; c < g->dim; c++) g->x[c] = mpsi_particles_column(g->set, "position", c);
+  g->density_field = mpsi_particles_column(g->set, "density", 0);
+  g->id = mpsi_particles_integers(g->set, "id");
+}
+
+mps_status mps_particles_set_geostatic(mps_particles *particles, const mps_geostatic_def *def) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  geostatic g = {
+      .set = particles, .context = mpsi_particles_context(particles), .def = geostatic_defaults};
+  mps_status status =
+      mpsi_def_read(g.context, set_geostatic, def, sizeof g.def, &g.def, sizeof g.def);
+  if (status != MPS_OK) return status;
+  look_at_set(&g);
+  g.up = g.def.vertical == -1 ? g.dim - 1 : g.def.vertical;
+  status = check_numbers(&g);
+  if (status == MPS_OK) status = check_line(&g);
+  if (status == MPS_OK) status = check_layers(&g);
+  if (status != MPS_OK) return status;
+  const int64_t n = g.def.layer_count, room = g.count + 3 * n;
+  g.depth = mpsi_alloc(g.context, room, sizeof *g.depth);
+  if (!g.depth) return mpsi_fail_memory(g.context, set_geostatic, (size_t)room * sizeof *g.depth);
+  g.top = g.depth + g.count, g.burden = g.top + n, g.weight = g.burden + n;
+  status = weigh(&g);
+  if (status == MPS_OK) status = mps_particles_add_field(particles, "stress", 0);
+  if (status == MPS_OK) write_stress(&g);
+  mpsi_free(g.context, g.depth);
+  return status;
+}
+
+/* Asks the caller's function, of one particle after the other: s[6 k + c]. */
+static mps_status ask_stress(const geostatic *g, mps_stress_fn fn, void *user, double *s) {
+  static const char function[] = "mps_particles_set_stress";
+  for (int64_t k = 0; k < g->count; k++) {
+    double x[3] = {0.0};
+    for (int32_t c = 0; c < g->dim; c++) x[c] = g->x[c][k];
+    const int32_t refused = fn(user, x, &s[6 * k]);
+    if (refused != 0)
+      return mpsi_fail(g->context, function, MPS_ERROR_CANCELLED,
+                       "the function returned %d at particle %lld", (int)refused,
+                       (long long)g->id[k]);
+    for (int32_t c = 0; c < 2 * g->dim; c++)
+      if (!isfinite(s[6 * k + c]))
+        return mpsi_fail(g->context, function, MPS_ERROR_ARGUMENT,
+                         "stress[%d] at particle %lld is %g Pa, must be finite", (int)c,
+                         (long long)g->id[k], s[6 * k + c]);
+  }
+  return MPS_OK;
+}
+
+mps_status mps_particles_set_stress(mps_particles *particles, mps_stress_fn fn, void *user) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  geostatic g = {.set = particles, .context = mpsi_particles_context(particles)};
+  if (!fn) return mpsi_fail(g.context, __func__, MPS_ERROR_ARGUMENT, "stress is NULL");
+  look_at_set(&g);
+  double *s = mpsi_alloc(g.context, 6 * g.count, sizeof *s);
+  if (!s) return mpsi_fail_memory(g.context, __func__, (size_t)g.count * 6 * sizeof *s);
+  mps_status status = ask_stress(&g, fn, user, s);
+  if (status == MPS_OK) status = mps_particles_add_field(particles, "stress", 0);
+  for (int32_t c = 0; c < 2 * g.dim && status == MPS_OK; c++) {
+    double *column = mpsi_particles_column(particles, "stress", c);
+    for (int64_t k = 0; k < g.count; k++) column[k] = s[6 * k + c];
+  }
+  mpsi_free(g.context, s);
+  return status;
+}

@@ -1,0 +1,248 @@
+/* umat.c - a law written as an Abaqus UMAT: its arguments particle by particle from a block's
+ * columns, and what is kept of them between steps. It is a user's law (user.c) that owns itself.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "constants.h"
+#include "tensor.h"
+
+#include <stdio.h>
+
+/* Columns of history after those of STATEV. */
+enum { TIME, STEPS, STRAIN, KEPT = STRAIN + 6 };
+static const char *const kept_names[KEPT] = {"umat_time",      "umat_steps",     "umat_strain_11",
+                                             "umat_strain_22", "umat_strain_33", "umat_strain_12",
+                                             "umat_strain_13", "umat_strain_23"};
+
+/* Refusals, as mps/material.h says. */
+#define WANTS_SMALLER_STEP 1
+#define NOT_FINITE 2
+
+#define CMNAME_LENGTH 80
+
+typedef struct umat_law {
+  mps_umat_fn call;
+  char name[CMNAME_LENGTH]; /* padded with blanks */
+  double temperature, length;
+  int32_t statev_count, props_count;
+  bool keeps_strain, needs_deformation;
+  double props[]; /* props_count */
+} umat_law;
+
+static const mps_umat_def umat_defaults = {.name = "umat", .length = 1.0, .keeps_strain = 1};
+
+mps_status mps_umat_def_init(mps_umat_def *def, size_t size) {
+  return mpsi_def_init(def, size, sizeof umat_defaults, &umat_defaults, sizeof umat_defaults);
+}
+
+/* ---- arguments --------------------------------------------------------------------------------
+ * Matrices are Fortran's: element (i, j) at i + 3 j. Symmetric tensors are 11, 22, 33, 12, 13, 23,
+ * which is the order of our columns; strains have engineering shear. */
+
+/* What differs from particle to particle. */
+typedef struct umat_point {
+  double stress[6], statev[MPS_MATERIAL_HISTORY_MAX], strain[6], increment[6];
+  double rotation[9], before[9], after[9]; /* DROT, DFGRD0, DFGRD1 */
+  double time;
+  int32_t step;
+} umat_point;
+
+static void unit_matrix(double *m) {
+  for (int c = 0; c < 9; c++) m[c] = c % 4 == 0 ? 1.0 : 0.0;
+}
+
+/* Q = (1 - w/2)^-1 (1 + w/2), as mpsi_turn has it. */
+static void rotation_of(mpsi_spin w, double *q) {
+  const double x[3][3] = {{0.0, w.xy, -w.zx}, {-w.xy, 0.0, w.yz}, {w.zx, -w.yz, 0.0}};
+  const double r = 1.0 / (1.0 + 0.25 * (w.xy * w.xy + w.yz * w.yz + w.zx * w.zx));
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      const double square = x[i][0] * x[0][j] + x[i][1] * x[1][j] + x[i][2] * x[2][j];
+      q[i + 3 * j] = (i == j ? 1.0 : 0.0) + r * (x[i][j] + 0.5 * square);
+    }
+}
+
+/* The deformation gradient after the step, and before it: (1 + dt L)^-1 F. */
+static void deformations(const mps_material_block *block, int64_t k, umat_point *point) {
+  double g[9], f[9], inverse[9];
+  unit_matrix(g);
+  unit_matrix(f);
+  for (int c = 0; c < 9; c++) {
+    if (block->gradient[c]) g[c] += block->dt * block->gradient[c][k];
+    if (block->deformation[c]) f[c] = block->deformation[c][k];
+  }
+  for (int c = 0; c < 9; c++) { /* adjugate, by cyclic indices */
+    const int i = c / 3, j = c % 3, i1 = (j + 1) % 3, i2 = (j + 2) % 3, j1 = (i + 1) % 3,
+              j2 = (i + 2) % 3;
+    inverse[c] = g[3 * i1 + j1] * g[3 * i2 + j2] - g[3 * i1 + j2] * g[3 * i2 + j1];
+  }
+  const double det = g[0] * inverse[0] + g[1] * inverse[3] + g[2] * inverse[6];
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      point->after[i + 3 * j] = f[3 * i + j];
+      point->before[i + 3 * j] =
+          (inverse[3 * i] * f[j] + inverse[3 * i + 1] * f[3 + j] + inverse[3 * i + 2] * f[6 + j]) /
+          det;
+    }
+}
+
+/* STRAN: the sum of the steps before, turned with the particle. */
+static void turned_strain(int geometry, double *const *column, int64_t k, mpsi_spin w,
+                          double *strain) {
+  mpsi_sym e = {.xx = column[0][k], .yy = column[1][k], .zz = column[2][k]};
+  e.xy = 0.5 * column[3][k], e.zx = 0.5 * column[4][k], e.yz = 0.5 * column[5][k];
+  e = mpsi_turn(geometry, e, w);
+  const double turned[6] = {e.xx, e.yy, e.zz, 2.0 * e.xy, 2.0 * e.zx, 2.0 * e.yz};
+  for (int c = 0; c < 6; c++) strain[c] = turned[c];
+}
+
+static void gather(const umat_law *law, const mps_material_block *block,
+                   const mpsi_columns *columns, int64_t k, umat_point *point) {
+  const int geometry = block->dim == 3 ? MPSI_SPACE : block->gradient[8] ? MPSI_AXIAL : MPSI_PLANE;
+  const mpsi_sym d = mpsi_strain(geometry, columns, k, block->dt);
+  const mpsi_spin w = mpsi_spin_of(geometry, columns, k, block->dt);
+  const double increment[6] = {d.xx, d.yy, d.zz, 2.0 * d.xy, 2.0 * d.zx, 2.0 * d.yz};
+  double *const *kept = block->history + law->statev_count;
+  for (int c = 0; c < 2 * block->dim; c++) point->stress[c] = block->stress[c][k];
+  for (int c = 0; c < 6; c++) point->increment[c] = increment[c];
+  for (int c = 0; c < law->statev_count; c++) point->statev[c] = block->history[c][k];
+  if (law->keeps_strain) turned_strain(geometry, kept + STRAIN, k, w, point->strain);
+  rotation_of(w, point->rotation);
+  if (law->needs_deformation) deformations(block, k, point);
+  point->time = kept[TIME][k];
+  point->step = (int32_t)fmin(kept[STEPS][k] + 1.0, (double)INT32_MAX);
+}
+
+static void scatter(const umat_law *law, const mps_material_block *block, int64_t k,
+                    const umat_point *point) {
+  double *const *kept = block->history + law->statev_count;
+  for (int c = 0; c < 2 * block->dim; c++) block->stress[c][k] = point->stress[c];
+  for (int c = 0; c < law->statev_count; c++) block->history[c][k] = point->statev[c];
+  for (int c = 0; c < 6 && law->keeps_strain; c++)
+    kept[STRAIN + c][k] = point->strain[c] + point->increment[c];
+  kept[TIME][k] = point->time + block->dt;
+  kept[STEPS][k] += 1.0;
+}
+
+/* ---- the call ---------------------------------------------------------------------------------
+ */
+
+/* One particle. The arguments that a mechanical step does not have are zero. */
+static int32_t call_umat(const umat_law *law, const mps_material_block *block, umat_point *point) {
+  const int32_t ndi = 3, nshr = block->dim == 3 ? 3 : 1, ntens = ndi + nshr, one = 1;
+  const int32_t step[4] = {1, 0, 1, 0}; /* JSTEP: the first step, large deformation */
+  const double zero[3] = {0.0}, time[2] = {point->time, point->time};
+  double energy[3] = {0.0}, thermal[14] = {0.0}, tangent[36] = {0.0}, factor = 1e36;
+  law->call(point->stress, point->statev, tangent, &energy[0], &energy[1], &energy[2], &thermal[0],
+            &thermal[1], &thermal[7], &thermal[13], point->strain, point->increment, time,
+            &block->dt, &law->temperature, zero, zero, zero, law->name, &ndi, &nshr, &ntens,
+            &law->statev_count, law->props, &law->props_count, zero, point->rotation, &factor,
+            &law->length, point->before, point->after, &one, &one, &one, &one, step, &point->step,
+            sizeof law->name);
+  if (factor < 1.0) return WANTS_SMALLER_STEP;
+  double sum = 0.0;
+  for (int c = 0; c < ntens; c++) sum += fabs(point->stress[c]);
+  for (int c = 0; c < law->statev_count; c++) sum += fabs(point->statev[c]);
+  return isfinite(sum) ? 0 : NOT_FINITE;
+}
+
+static int32_t update(void *user, const mps_material_block *block) {
+  const umat_law *law = user;
+  const mpsi_columns columns = mpsi_columns_of(block);
+  umat_point point = {.time = 0.0};
+  unit_matrix(point.before);
+  unit_matrix(point.after);
+  for (int64_t k = 0; k < block->count; k++) {
+    gather(law, block, &columns, k, &point);
+    const int32_t refused = call_umat(law, block, &point);
+    if (refused != 0) return refused;
+    scatter(law, block, k, &point);
+  }
+  return 0;
+}
+
+/* ---- creation ---------------------------------------------------------------------------------
+ */
+
+static mps_status check_umat(mps_context *context, const char *function, const mps_umat_def *def) {
+  const int32_t most = MPS_MATERIAL_HISTORY_MAX - (def->keeps_strain ? KEPT : STRAIN);
+  if (!def->umat) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "umat is NULL");
+  if (def->keeps_strain != 0 && def->keeps_strain != 1)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "keeps_strain is %d, must be 0 or 1",
+                     (int)def->keeps_strain);
+  if (def->statev_count < 0 || def->statev_count > most)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "statev_count is %d, must be 0..%d with keeps_strain %d",
+                     (int)def->statev_count, (int)most, (int)def->keeps_strain);
+  if (def->props_count < 0 || (def->props_count > 0 && !def->props))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "props_count is %d, must be >= 0%s",
+                     (int)def->props_count, def->props ? "" : ", and 0 where props is NULL");
+  for (int32_t c = 0; c < def->props_count; c++)
+    if (!isfinite(def->props[c]))
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "props[%d] is %g, must be finite",
+                       (int)c, def->props[c]);
+  if (!isfinite(def->temperature))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "temperature is %g, must be finite",
+                     def->temperature);
+  return mpsi_check_between(context, function, "length", " m", def->length, 0.0, INFINITY);
+}
+
+static void fill_law(const mps_umat_def *def, umat_law *law) {
+  law->call = def->umat;
+  memset(law->name, ' ', sizeof law->name);
+  memcpy(law->name, def->name, strlen(def->name)); /* a name has at most 47 characters */
+  law->temperature = def->temperature;
+  law->length = def->length;
+  law->statev_count = def->statev_count;
+  law->props_count = def->props_count;
+  law->keeps_strain = def->keeps_strain == 1;
+  law->needs_deformation = def->needs_deformation == 1;
+  for (int32_t c = 0; c < def->props_count; c++) law->props[c] = def->props[c];
+}
+
+/* The user's law that `update` is, with its columns of history: checks what is common to both. */
+static mps_status make_law(mps_context *context, const char *function, const mps_umat_def *def,
+                           mps_material **out) {
+  const char *names[MPS_MATERIAL_HISTORY_MAX];
+  char numbered[MPS_MATERIAL_HISTORY_MAX][24];
+  double initial[MPS_MATERIAL_HISTORY_MAX] = {0.0};
+  mps_user_law_def law = mps_user_law_defaults();
+  law.history_count = def->statev_count + (def->keeps_strain ? KEPT : STRAIN);
+  law.update = update;
+  law.name = def->name;
+  law.history = names;
+  law.history_initial = initial;
+  law.wave_modulus = def->wave_modulus;
+  law.needs_deformation = def->needs_deformation;
+  for (int32_t c = 0; c < law.history_count; c++) {
+    if (c >= def->statev_count) {
+      names[c] = kept_names[c - def->statev_count];
+      continue;
+    }
+    (void)snprintf(numbered[c], sizeof numbered[c], "statev_%d", (int)c + 1);
+    names[c] = def->statev_names ? def->statev_names[c] : numbered[c];
+    if (def->statev_initial) initial[c] = def->statev_initial[c];
+  }
+  return mpsi_material_make_user(context, function, &law, out);
+}
+
+mps_status mps_material_umat(mps_context *context, const mps_umat_def *user_def,
+                             mps_material **out) {
+  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
+  *out = NULL;
+  mps_umat_def def = umat_defaults;
+  mps_material *material = NULL;
+  mps_status status = mpsi_def_read(context, __func__, user_def, sizeof def, &def, sizeof def);
+  if (status == MPS_OK) status = check_umat(context, __func__, &def);
+  if (status == MPS_OK) status = make_law(context, __func__, &def, &material);
+  if (status != MPS_OK) return status;
+  const size_t size = sizeof(umat_law) + (size_t)def.props_count * sizeof(double);
+  umat_law *law = mpsi_alloc(context, 1, size);
+  if (!law) {
+    mps_material_destroy(&material);
+    return mpsi_fail_memory(context, __func__, size);
+  }
+  fill_law(&def, law);
+  material->law.user = material->owned = law;
+  *out = material;
+  return MPS_OK;
+}

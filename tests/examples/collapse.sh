@@ -1,0 +1,50 @@
+#!/bin/sh
+# collapse.sh DIRECTORY: mps-dam-break against the experiment and at rest; mps-column-collapse
+# against what sand and clay must do. On coarse grids: docs/verification/wls-mpm.md has finer ones.
+. "$(dirname "$0")/checks.sh"
+
+dam="$1/mps-dam-break --h 0.003571875 --threads 1"
+$dam --duration 0.19 --out "$work/dam" >"$work/log"
+in_range "$work/dam/summary.json" front_error_rms_clock 0.01 0.08
+in_range "$work/dam/summary.json" front_clock_shift 0.1 0.4
+in_range "$work/dam/summary.json" height_error_rms 0.001 0.025
+in_range "$work/dam/summary.json" mass_error -1e-12 1e-12
+in_range "$work/dam/summary.json" mass 6.53224 6.53225
+in_range "$work/dam/summary.json" volume_drift 0 0.003
+in_range "$work/dam/summary.json" energy_max 0.99 1.0001
+in_range "$work/dam/summary.json" energy_end 0.97 1
+in_range "$work/dam/summary.json" detached_max 0 0.001
+head -n 1 "$work/dam/front.csv" | grep -q '^t_s,T,Z,Z_experiment,tau,H,H_experiment,' ||
+  fail "header of front.csv"
+# Water at rest stays so, and its pressure is that of its depth.
+$dam --rest --spline 2 --out "$work/rest" >"$work/log"
+in_range "$work/rest/summary.json" pressure_error 0 0.03
+in_range "$work/rest/summary.json" kinetic_max 0 1e-5
+in_range "$work/rest/summary.json" height_end 0.998 1.002
+grep -q '^pressure against rho g depth: RMS' "$work/log" || fail "last line of --rest"
+
+# Sand: run-out near the law, the top of the slope lower than the column, no dilation.
+column="$1/mps-column-collapse --h 0.01 --ppc 4 --threads 1"
+$column --aspect 3 --out "$work/sand" >"$work/log"
+in_range "$work/sand/summary.json" runout_law 3.9521 3.9522
+in_range "$work/sand/summary.json" runout_error -0.3 0.1
+in_range "$work/sand/summary.json" height 1 1.6
+in_range "$work/sand/summary.json" time_at_rest 0.3 0.9
+in_range "$work/sand/summary.json" mass_error -1e-12 1e-12
+in_range "$work/sand/summary.json" volume_ratio_max 0.99 1.01
+# A slippery bed lets it run further; clay of twice the strength that it needs stands.
+$column --aspect 1 --bed-friction 0.2 --out "$work/slip" >/dev/null
+in_range "$work/slip/summary.json" runout 1.4 2.4
+$column --aspect 1 --phi 0 --cohesion 800 --out "$work/clay" >/dev/null
+in_range "$work/clay/summary.json" runout 0 0.05
+in_range "$work/clay/summary.json" height 0.97 1.001
+# Sand, loam, clay: each a line, and each a picture.
+$column --aspect 1 --compare --out "$work/three" >/dev/null
+[ "$(wc -l <"$work/three/cases.csv")" -eq 4 ] || fail "cases.csv: $(cat "$work/three/cases.csv")"
+awk -F, 'NR == 2 { sand = $5 } NR == 4 && !($5 > 0.2 && $5 < 0.8 * sand) { exit 1 }' \
+  "$work/three/cases.csv" || fail "clay against sand: $(cat "$work/three/cases.csv")"
+if command -v gnuplot >/dev/null; then
+  for picture in dam/front.png dam/water.png rest/water.png sand/columns.png three/columns.png; do
+    [ "$(head -c 4 "$work/$picture" | tail -c 3)" = PNG ] || fail "$picture"
+  done
+fi

@@ -1,0 +1,240 @@
+/* test_geostatic.c - the stress of ground at rest: layers, surfaces, a caller's function, errors.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "test_allocator.h"
+#include "test_fixture.h"
+
+#include <mps/geostatic.h>
+
+#define G 9.81
+
+/* A block of the given height on the unit square (2D: unit length), spacing 0.25 m. */
+static mps_particles *ground(mps_context *own, int32_t dim, double height) {
+  const double lo[3] = {0.0}, hi[3] = {1.0, dim == 2 ? height : 1.0, height};
+  mps_particles_def def = mps_particles_defaults();
+  mps_particles *set = NULL;
+  def.dim = dim;
+  def.spacing = 0.25;
+  mps_assert_ok(own, mps_particles_create(own, &def, &set));
+  mps_assert_ok(own, mps_particles_fill_box(set, lo, hi, NULL));
+  return set;
+}
+
+static mps_view view_of(mps_particles *set, const char *name) {
+  mps_view view;
+  mps_assert_ok(context, mps_particles_view(set, name, &view));
+  return view;
+}
+
+/* Two layers, 1 m of 1500 with K0 = 0.4 and deeper ground of 2000 with K0 = 0.6, under 3 kPa. */
+static const mps_soil_layer two[] = {{1.0, 0.4, 1500.0}, {INFINITY, 0.6, 2000.0}};
+
+static double weight_above(double depth) {
+  return 3e3 + G * (1500.0 * fmin(depth, 1.0) + 2000.0 * fmax(depth - 1.0, 0.0));
+}
+
+static mps_geostatic_def two_layers(void) {
+  mps_geostatic_def def = mps_geostatic_defaults();
+  def.layers = two;
+  def.layer_count = 2;
+  def.surcharge = 3e3;
+  return def;
+}
+
+/* Every particle carries the weight above the level `surface(x)`. */
+static void expect_two_layers(mps_particles *set, int up, double (*surface)(double x)) {
+  const int dim = mps_particles_dim(set);
+  mps_view x = view_of(set, "position"), s = view_of(set, "stress");
+  assert_int_equal(s.shape[1], 2 * dim);
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    const double depth = surface(*mps_view_f64(&x, k, 0)) - *mps_view_f64(&x, k, up);
+    const double vertical = -weight_above(depth), k0 = depth < 1.0 ? 0.4 : 0.6;
+    for (int c = 0; c < 2 * dim; c++)
+      mps_assert_near(*mps_view_f64(&s, k, c),
+                      c == up ? vertical
+                      : c < 3 ? k0 * vertical
+                              : 0.0,
+                      1e-12 * 1e5);
+  }
+}
+
+static double at_three(double x) { return 0.0 * x + 3.0; }
+static double at_four(double x) { return 0.0 * x + 4.0; }
+/* 3 m at the left, 5 m from x = 0.5 m on. */
+static double slope(double x) { return x < 0.5 ? 3.0 + 4.0 * x : 5.0; }
+static double level(void *user, const double *x) {
+  *(int *)user += 1;
+  return slope(x[0]);
+}
+
+static void layers_carry_what_lies_above(void **state) {
+  (void)state;
+  for (int32_t dim = 2; dim <= 3; dim++) {
+    const double line[] = {0.0, 3.0, 0.5, 5.0};
+    int asked = 0;
+    mps_particles *set = ground(context, dim, 3.0);
+    mps_geostatic_def def = two_layers();
+    mps_assert_ok(context, mps_particles_set_geostatic(set, &def));
+    expect_two_layers(set, dim - 1, at_three); /* found by the highest particle */
+    def.surface = 4.0;
+    mps_assert_ok(context, mps_particles_set_geostatic(set, &def));
+    expect_two_layers(set, dim - 1, at_four);
+    def.surface = NAN;
+    def.surface_level = level, def.user = &asked;
+    mps_assert_ok(context, mps_particles_set_geostatic(set, &def));
+    expect_two_layers(set, dim - 1, slope);
+    assert_int_equal(asked, mps_particles_count(set));
+    def.surface_level = NULL;
+    def.surface_line = line, def.surface_points = 2;
+    if (dim == 2) {
+      mps_assert_ok(context, mps_particles_set_geostatic(set, &def));
+      expect_two_layers(set, 1, slope);
+    } else {
+      mps_assert_fails(context, mps_particles_set_geostatic(set, &def), MPS_ERROR_UNSUPPORTED,
+                       "surface_line is for 2D");
+    }
+    mps_particles_destroy(&set);
+  }
+  mps_particles *set = ground(context, 3, 1.0); /* y upwards */
+  mps_geostatic_def def = two_layers();
+  def.vertical = 1;
+  def.surface = 3.0;
+  mps_assert_ok(context, mps_particles_set_geostatic(set, &def));
+  expect_two_layers(set, 1, at_three);
+  mps_particles_destroy(&set);
+}
+
+static void layers_take_their_particles_density(void **state) {
+  (void)state;
+  static const mps_soil_layer from_field[] = {{1.0, 0.4, 0.0}, {4.0, 0.6, 0.0}};
+  mps_particles *set = ground(context, 2, 3.0);
+  mps_geostatic_def def = two_layers();
+  def.layers = from_field;
+  mps_assert_fails(context, mps_particles_set_geostatic(set, &def), MPS_ERROR_FIELD,
+                   "layer 0 has density 0, but the set has no field 'density'");
+  mps_assert_ok(context, mps_particles_set(set, "density", 0, 2000.0));
+  mps_view x = view_of(set, "position"), rho = view_of(set, "density");
+  for (int64_t k = 0; k < x.shape[0]; k++)
+    if (*mps_view_f64(&x, k, 1) > 2.0) *mps_view_f64(&rho, k, 0) = 1500.0;
+  mps_assert_ok(context, mps_particles_set_geostatic(set, &def));
+  expect_two_layers(set, 1, at_three);
+  def.surface = 3.5; /* now some of the lower layer's particles lie in the upper one */
+  mps_assert_fails(context, mps_particles_set_geostatic(set, &def), MPS_ERROR_ARGUMENT,
+                   "layer 1 has particles of 2000 and of 1500 kg/m3 (particle 32)");
+  expect_two_layers(set, 1, at_three);
+  def.surface = 8.0;
+  mps_assert_fails(context, mps_particles_set_geostatic(set, &def), MPS_ERROR_ARGUMENT,
+                   "particle 0 is 7.875 m deep, the layers reach down to 5 m");
+  *mps_view_f64(&rho, 7, 0) = NAN;
+  def.surface = NAN;
+  mps_assert_fails(context, mps_particles_set_geostatic(set, &def), MPS_ERROR_ARGUMENT,
+                   "particle 7 has density nan");
+  mps_particles_destroy(&set);
+}
+
+static void bad_layers_are_refused_and_nothing_is_changed(void **state) {
+  (void)state;
+  mps_particles *set = ground(context, 2, 3.0);
+  mps_soil_layer layers[2];
+  const double backwards[] = {1.0, 0.0, 0.5, 0.0};
+#define REFUSED(change, text)                                                                      \
+  do {                                                                                             \
+    mps_geostatic_def def = two_layers();                                                          \
+    mps_view view;                                                                                 \
+    memcpy(layers, two, sizeof two);                                                               \
+    def.layers = layers;                                                                           \
+    change;                                                                                        \
+    mps_assert_fails(context, mps_particles_set_geostatic(set, &def), MPS_ERROR_ARGUMENT, text);   \
+    assert_int_equal(mps_particles_view(set, "stress", &view), MPS_ERROR_FIELD);                   \
+  } while (0)
+  REFUSED(def.layer_count = 0, "layer_count is 0, must be >= 1");
+  REFUSED(def.layers = NULL, "layers is NULL");
+  REFUSED(layers[0].thickness = 0.0, "layer 0 has thickness 0 m, must be > 0");
+  REFUSED(layers[0].thickness = INFINITY, "only the lowest may be infinite");
+  REFUSED(layers[1].thickness = NAN, "layer 1 has thickness nan");
+  REFUSED(layers[1].thickness = 1.0, "the layers reach down to 2 m");
+  REFUSED(layers[1].k0 = -0.1, "layer 1 has k0 -0.1");
+  REFUSED(layers[0].density = -1.0, "layer 0 has density -1 kg/m3");
+  REFUSED(def.gravity = -9.81, "gravity is -9.81 m/s2");
+  REFUSED(def.surcharge = NAN, "surcharge is nan Pa");
+  REFUSED(def.vertical = 2, "vertical is 2, must be 0..1");
+  REFUSED(def.surface = INFINITY, "surface is inf m");
+  REFUSED(def.surface = 2.5, "above the surface at 2.5 m there");
+  REFUSED(def.surface_points = 3, "surface_points is 3 and surface_line is NULL");
+  REFUSED((def.surface_line = backwards, def.surface_points = 2), "point 1 of surface_line");
+  REFUSED((def.surface = 3.0, def.surface_level = level), "only one may be");
+  REFUSED(def.struct_size = 8, "struct_size is 8");
+  assert_int_equal(mps_particles_set_geostatic(NULL, NULL), MPS_ERROR_ARGUMENT);
+  mps_particles_destroy(&set);
+}
+
+/* ---- a caller's function ----------------------------------------------------------------------
+ */
+
+static int32_t radial(void *user, const double *x, double *stress) {
+  const double limit = *(const double *)user;
+  for (int c = 0; c < 3; c++) stress[c] = -100.0 * (c + 1) * x[1];
+  stress[3] = 7.0 * x[0];
+  if (x[1] > limit) stress[2] = NAN;
+  return x[0] > limit ? 5 : 0;
+}
+
+static void a_function_sets_the_stress(void **state) {
+  (void)state;
+  double limit = 0.8;
+  mps_view s;
+  mps_particles *set = ground(context, 2, 1.0);
+  mps_assert_fails(context, mps_particles_set_stress(set, radial, &limit), MPS_ERROR_CANCELLED,
+                   "returned 5 at particle 3");
+  mps_view x = view_of(set, "position");
+  for (int64_t k = 0; k < x.shape[0]; k++) *mps_view_f64(&x, k, 0) *= 0.5;
+  mps_assert_fails(context, mps_particles_set_stress(set, radial, &limit), MPS_ERROR_ARGUMENT,
+                   "stress[2] at particle 12 is nan Pa");
+  mps_assert_fails(context, mps_particles_set_stress(set, NULL, NULL), MPS_ERROR_ARGUMENT,
+                   "stress is NULL");
+  assert_int_equal(mps_particles_view(set, "stress", &s), MPS_ERROR_FIELD);
+  limit = 10.0;
+  mps_assert_ok(context, mps_particles_set_stress(set, radial, &limit));
+  s = view_of(set, "stress");
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    for (int c = 0; c < 3; c++)
+      mps_assert_near(*mps_view_f64(&s, k, c), -100.0 * (c + 1) * *mps_view_f64(&x, k, 1), 1e-12);
+    mps_assert_near(*mps_view_f64(&s, k, 3), 7.0 * *mps_view_f64(&x, k, 0), 1e-12);
+  }
+  mps_particles_destroy(&set);
+}
+
+/* ---- memory -----------------------------------------------------------------------------------
+ */
+
+static mps_status set_and_destroy(mps_context *own, int what) {
+  double limit = 10.0;
+  mps_particles_def def = mps_particles_defaults();
+  const double lo[2] = {0.0, 0.0}, hi[2] = {1.0, 1.0};
+  const mps_geostatic_def layers = two_layers();
+  mps_particles *set = NULL;
+  def.spacing = 0.25;
+  mps_status status = mps_particles_create(own, &def, &set);
+  if (status == MPS_OK) status = mps_particles_fill_box(set, lo, hi, NULL);
+  if (status == MPS_OK)
+    status = what == 0 ? mps_particles_set_geostatic(set, &layers)
+                       : mps_particles_set_stress(set, radial, &limit);
+  mps_particles_destroy(&set);
+  return status;
+}
+
+static void refused_memory_leaves_nothing_behind(void **state) {
+  (void)state;
+  test_allocator_sweep(set_and_destroy, 0);
+  test_allocator_sweep(set_and_destroy, 1);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(layers_carry_what_lies_above),
+      cmocka_unit_test(layers_take_their_particles_density),
+      cmocka_unit_test(bad_layers_are_refused_and_nothing_is_changed),
+      cmocka_unit_test(a_function_sets_the_stress),
+      cmocka_unit_test(refused_memory_leaves_nothing_behind),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
