@@ -60,6 +60,25 @@ typedef enum mps_wall {
                               with the waves: one that passes the wall has left the domain */
 } mps_wall;
 
+/** How particles and nodes exchange what they hold: seed B Table 1. */
+typedef enum mps_scheme {
+  MPS_SCHEME_WLS = 0,     /* the seed's: fitted shape functions; particles carry L to the nodes */
+  MPS_SCHEME_STANDARD = 1 /* the original material point method, for comparison: the B-splines and
+                             their own derivatives are the shape functions, also at bodies and
+                             walls, and particles carry no L. Nodes beyond a wall are held as those
+                             on it. Slower: its loops are not tuned */
+} mps_scheme;
+
+/** What the laws take for the change of volume: a cure for volumetric locking and for pressures
+ * that oscillate in nearly incompressible material. */
+typedef enum mps_volumetric {
+  MPS_VOLUMETRIC_POINT = 0, /* each particle's own tr(d), in axisymmetry with the hoop */
+  MPS_VOLUMETRIC_CELL = 1   /* F-bar: the mean of tr(d), weighted by volumes, over the particles of
+                               the cell (quadratic: of the cell-sized box about a node); the part of
+                               d without trace, the spin and `velocity_gradient` stay. Volumes,
+                               `volume_ratio` and `deformation_gradient` follow the mean */
+} mps_volumetric;
+
 typedef struct mps_mpm_def {
   uint32_t struct_size;
   int32_t geometry; /* mps_geometry, default PLANE_STRAIN; of as many dimensions as the set.
@@ -75,7 +94,13 @@ typedef struct mps_mpm_def {
   double gravity[3];                    /* m/s2, default 0 */
   double dt; /* s, > 0, or 0 (default): each step the largest by seed B (49), (50). At most that
                 limit at creation; a warning tells when it gets above the fraction below */
-  double courant; /* fraction of that limit, in (0, 1]; default 0.5 */
+  double courant;     /* fraction of that limit, in (0, 1]; default 0.5 */
+  int32_t volumetric; /* mps_volumetric, default POINT */
+  int32_t scheme;     /* mps_scheme, default WLS */
+  double flip; /* with STANDARD, in [0, 1]: the particle's velocity becomes flip (v_p + dt a) + (1 -
+                  flip) v, with the nodes' acceleration a and velocity v at its place; it moves with
+                  v. 1 (default): FLIP, Table 1; 0: PIC. WLS, which always takes v, allows only the
+                  default */
   double wall_friction_lower[3], wall_friction_upper[3]; /* Coulomb's mu of frictional walls, >= 0,
                                                             default 0 */
   double settle; /* s, >= 0: so long an absorbing wall begins as a fixed one, and R is the mean of
@@ -95,12 +120,25 @@ static inline mps_mpm_def mps_mpm_defaults(void) {
 
 /** Creates a solver for the set `particles` (at least one, inside the domain), sorting it and
  *  pinning it: until the solver is destroyed no particle can be added. All particles are of the one
- *  `material`, which is kept alive; its history columns become fields of the set, by their names.
+ *  `material`, which is kept alive, until mps_mpm_set_material; its history columns become fields
+ * of the set, by their names.
  */
 MPS_API MPS_NODISCARD mps_status mps_mpm_create(mps_context *context, mps_particles *particles,
                                                 mps_material *material, const mps_mpm_def *def,
                                                 mps_mpm **out);
 MPS_API void mps_mpm_destroy(mps_mpm **mpm);
+
+#define MPS_MPM_MAX_MATERIALS 16
+
+/** Gives the `count` (>= 0) particles of `ids` another law, before the first step or between steps;
+ *  at most 16 different materials in a solver, that of creation with them. The material is kept
+ *  alive. Its history begins anew in these particles, by the law's initial values; stress, volume,
+ *  `volume_ratio` and `deformation_gradient` stay as they are (0: 1, and all 0: no deformation).
+ *  Fields that only this law needs are added, so the set's number of fields grows; `material`
+ *  tells each particle's law. The limit (49) follows at once; bodies without a penalty of their own
+ *  press each particle by the modulus of its law. */
+MPS_API MPS_NODISCARD mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material,
+                                                      int64_t count, const int64_t *ids);
 
 #define MPS_MPM_MAX_BODIES 32
 

@@ -99,6 +99,8 @@ MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cells *cells, int geometry, int 
         if (geometry == MPS_AXISYMMETRIC && c == 0) store_some(p->L[4] + at, a[1] / x, n - k);
         store_some(p->x[c] + at, to, n - k);
       }
+      if (d > 0 && mpm->flip > 0.0) /* fitted.c has put it there */
+        store_some(p->v[d - 1] + at, mpsi_get_some(p->v[d - 1] + at, n - k) + a[MPSI_MASS], n - k);
     }
   }
   return (moved){(outside[0] | outside[1] | outside[2] | outside[3]) != 0,
@@ -125,7 +127,7 @@ MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cells *cells, int dim, int6
   MPSI_SIMD for (int k = 0; k < n; k++) {
     double square = v0[k] * v0[k] + v1[k] * v1[k];
     if (dim == 3) square += v2[k] * v2[k];
-    speed[k] = sqrt((moduli ? moduli[k] : mpm->modulus) * V[k] / m[k]) + sqrt(square);
+    speed[k] = sqrt((moduli ? moduli[k] : mpm->law[0].modulus) * V[k] / m[k]) + sqrt(square);
   }
   double largest[4] = {0.0};
   int64_t good = 1;
@@ -140,7 +142,7 @@ MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cells *cells, int dim, int6
 }
 
 MPSI_INLINE void speed_chunk(const mps_mpm *mpm, mpsi_cells *cells, int dim, int64_t begin, int n) {
-  if (!mpsi_material_stiffens(mpm->material)) {
+  if (mpm->one_modulus) {
     find_speed(mpm, cells, dim, begin, n, NULL);
     return;
   }
@@ -156,6 +158,7 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cells *cells, const mpsi_worker *w
   mpsi_places places;
   double motion[MPSI_CHUNK][4][4] __attribute__((aligned(64)));
   mpsi_find_places(mpm, cells, dim, spline, begin, n, &places);
+  if (mpm->stencil) memcpy(mpm->stencil + begin, places.first, (size_t)n * sizeof *mpm->stencil);
   bool full = true;
   for (int k = 0; k < n; k++) {
     if (cells->cut && (k == 0 || places.first[k] != places.first[k - 1]))
@@ -173,7 +176,8 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cells *cells, const mpsi_worker *w
 MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {
   mpsi_cells *cells = &mpm->cells[b];
   mpsi_worker *worker = &mpm->workers[number];
-  cells->left = cells->refused = false;
+  cells->left = false;
+  cells->refused = NULL;
   cells->bad = -1;
   cells->speed = 0.0;
   gather_tile(mpm, cells, mpsi_dim_of(geometry), worker->tile);
@@ -181,6 +185,7 @@ MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry,
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
     g2p_chunk(mpm, cells, worker, geometry, spline, k, n);
+    if (mpm->stencil) continue; /* the laws wait for the cells' means */
     mpsi_mpm_apply_law(mpm, cells, k, k + n);
     speed_chunk(mpm, cells, mpsi_dim_of(geometry), k, n);
   }

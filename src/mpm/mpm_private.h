@@ -36,8 +36,8 @@ typedef struct mpsi_cells {
   bool cut;                        /* some node of the tile is outside, or inside a body */
   bool split;                      /* forces are summed apart from momenta: see mpsi_nodes */
   bool left;                       /* a particle is more than a cell outside the block */
-  bool refused;                    /* the law has refused the block */
   int32_t first_meeting, meetings; /* by body */
+  const mps_material *refused;     /* a law that has refused particles of the block, or NULL */
   int64_t bad;                     /* first particle not finite or outside the domain, or -1 */
   double speed;                    /* largest c + |v|, m/s */
 } mpsi_cells;
@@ -125,16 +125,24 @@ typedef struct mpsi_traction {
   mps_signal *signal;
 } mpsi_traction;
 
+/* A law that particles obey. */
+typedef struct mpsi_law_use {
+  mps_material *material;
+  double modulus; /* K + 4G/3 at zero strain, Pa */
+  bool reads_volume, needs_deformation;
+  double *history[MPS_MATERIAL_HISTORY_MAX]; /* columns over all particles */
+} mpsi_law_use;
+
 /* Arrays over the particles, in sorted order. Tensors by rows. */
 typedef struct mpsi_columns {
   double *x[3], *v[3];
   double *L[9]; /* 2D: xx, xy, yx, yy, hoop */
   double *s[6]; /* xx, yy, zz, xy, zx, yz; 2D: the first four */
   double *V, *m;
-  double *J;    /* V/V0 where the law reads it, else NULL */
-  double *F[9]; /* as L; NULL where the law does without */
+  double *J;    /* V/V0 where some law reads it, else NULL */
+  double *F[9]; /* as L; NULL where all laws do without */
   double *f[3]; /* N, body accelerations and loads of the step; NULL where there are none */
-  double *history[MPS_MATERIAL_HISTORY_MAX];
+  int64_t *law; /* number of each particle's law; NULL: one law */
 } mpsi_columns;
 
 typedef struct mpsi_radix {
@@ -160,6 +168,7 @@ typedef struct mpsi_worker {
 #define MPSI_OUTSIDE 1u /* not in the domain */
 #define MPSI_INSIDE 2u  /* in a body */
 #define MPSI_REACHED 4u /* in a body, and corner of a cell that holds a particle */
+#define MPSI_PLAIN 8u   /* any node with MPS_SCHEME_STANDARD: no particle takes the closed form */
 
 struct mpsi_kernels;
 
@@ -170,13 +179,17 @@ struct mps_mpm {
   int32_t dim, own, tile; /* nodes of a block, of a tile */
   int64_t count;
   mpsi_columns p;
-  double inverse;          /* 1/h */
-  int64_t low[3], high[3]; /* first and last node of the domain */
-  double gap;              /* l_p = d0, m */
-  mps_material *material;
-  double modulus; /* K + 4G/3 at zero strain, Pa */
-  int32_t histories;
-  int64_t *flags; /* of the law, by sorted index */
+  double inverse; /* 1/h */
+  bool standard;  /* MPS_SCHEME_STANDARD; then `flip` is that of the definition, else 0 */
+  double flip;
+  int64_t low[3], high[3];                 /* first and last node of the domain */
+  double gap;                              /* l_p = d0, m */
+  mpsi_law_use law[MPS_MPM_MAX_MATERIALS]; /* 0: of creation */
+  int32_t laws;
+  bool one_modulus; /* law[0].modulus holds for all particles, whatever their state */
+  int64_t *flags;   /* of the laws, by sorted index */
+  int32_t *stencil; /* lowest node in its block's tile, of each particle in the step being made;
+                       NULL but with VOLUMETRIC_CELL */
   mps_body *body[MPS_MPM_MAX_BODIES];
   int32_t bodies;
   const struct mpsi_kernels *kernels;
@@ -218,6 +231,10 @@ struct mps_mpm {
   double contact_mass[MPS_MPM_MAX_BODIES]; /* kg, of the nodes in contact with each body */
   int64_t steps;
 };
+
+static inline const mpsi_law_use *mpsi_law_of(const mps_mpm *mpm, int64_t particle) {
+  return &mpm->law[mpm->p.law ? mpm->p.law[particle] : 0];
+}
 
 /* Coordinate of x in cells from the origin along axis c. */
 static inline double mpsi_grid_coordinate(const mps_mpm *mpm, int c, double x) {
@@ -300,7 +317,7 @@ void mpsi_mpm_sum_holds(mps_mpm *mpm);
 /* Puts a wall of a definition that has been checked in its place. */
 void mpsi_mpm_place_wall(mps_mpm *mpm, int32_t number, int32_t kind, double friction);
 mps_status mpsi_mpm_check_wall(mps_context *context, const char *function, int32_t axis, bool upper,
-                               int32_t kind, double friction, bool on_axis);
+                               int32_t kind, double friction, bool on_axis, bool standard);
 /* absorb.c: dashpots of the absorbing walls, after a sort, taking over the forces at rest from the
  * list before; one of them at work: the velocity of its node across and along. */
 void mpsi_mpm_place_dashes(mps_mpm *mpm, const mpsi_held *old, int64_t old_count,
@@ -313,8 +330,16 @@ void mpsi_mpm_find_forces(mps_mpm *mpm);
 void mpsi_mpm_drop_loads(mps_mpm *mpm);
 /* law.c: K + 4G/3 and G (Pa) of a particle's material at zero strain. */
 void mpsi_mpm_elastic(const mps_mpm *mpm, int64_t particle, double *wave, double *shear);
-/* law.c: the law on particles [begin, end) of a block. */
+/* materials.c: puts the law at the end of the list, with the fields it works on; nothing has
+ * changed on an error. Gives the particle (an index) the state in which the law begins. */
+mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *material);
+void mpsi_mpm_begin_law(mps_mpm *mpm, const mpsi_law_use *law, int64_t particle);
+/* volumetric.c: the laws after the step's G2P, where they wait for the means of the cells. */
+void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm);
+/* law.c: their laws on particles [begin, end) of a block. */
 void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cells *cells, int64_t begin, int64_t end);
+/* step.c: MPS_ERROR_STATE after a step that has failed. */
+mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function);
 /* step.c: what the blocks have told: the largest speed, or the error of a bad particle. */
 mps_status mpsi_mpm_take_stock(mps_mpm *mpm, const char *function);
 

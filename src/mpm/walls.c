@@ -220,7 +220,7 @@ void mpsi_mpm_sum_holds(mps_mpm *mpm) {
 /* ---- walls ----------------------------------------------------------------------------------- */
 
 mps_status mpsi_mpm_check_wall(mps_context *context, const char *function, int32_t axis, bool upper,
-                               int32_t kind, double friction, bool on_axis) {
+                               int32_t kind, double friction, bool on_axis, bool standard) {
   const char *side = upper ? "upper" : "lower";
   if (kind < MPS_WALL_ROLLER || kind > MPS_WALL_ABSORBING)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
@@ -232,6 +232,11 @@ mps_status mpsi_mpm_check_wall(mps_context *context, const char *function, int32
                      "wall_friction_%s[%d] is %g with a wall of kind %d, must be finite and >= 0, "
                      "and 0 for other than frictional walls (2)",
                      side, axis, friction, kind);
+  if (standard && kind == MPS_WALL_ABSORBING)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "wall_%s[%d] is 3 (absorbing) with scheme 1 (standard), whose splines reach "
+                     "over the wall: allowed with 0 (WLS)",
+                     side, axis);
   if (on_axis && (kind == MPS_WALL_FRICTIONAL || kind == MPS_WALL_ABSORBING))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "wall_%s[%d] is %d on the axis r = 0, allowed are 0 (roller) and 1 (fixed)",
@@ -247,8 +252,14 @@ void mpsi_mpm_place_wall(mps_mpm *mpm, int32_t number, int32_t kind, double fric
   hold->friction = friction;
   hold->finds = kind == MPS_WALL_ABSORBING;
   hold->found = 0.0;
-  for (int c = 0; c < 3; c++) hold->first[c] = mpm->low[c], hold->last[c] = mpm->high[c];
-  hold->first[axis] = hold->last[axis] = at;
+  /* the standard scheme has nodes beyond the wall too */
+  const int64_t beyond = mpm->standard ? MPSI_SIDE : 0;
+  for (int c = 0; c < mpm->dim; c++)
+    hold->first[c] = mpm->low[c] - beyond, hold->last[c] = mpm->high[c] + beyond;
+  if (number % 2)
+    hold->first[axis] = at;
+  else
+    hold->last[axis] = at;
   hold->kind = axis < mpm->dim && at > -NO_WALL && at < NO_WALL ? kind : MPSI_HOLD_NONE;
 }
 
@@ -275,7 +286,7 @@ mps_status mps_mpm_set_wall(mps_mpm *mpm, int32_t axis, int32_t upper, int32_t w
   mps_status status = find_wall(mpm, __func__, axis, upper, &number);
   if (status == MPS_OK)
     status = mpsi_mpm_check_wall(mpm->context, __func__, axis, upper == 1, wall, friction,
-                                 on_axis(mpm, number));
+                                 on_axis(mpm, number), mpm->standard);
   if (status != MPS_OK) return status;
   mpsi_mpm_place_wall(mpm, number, wall, friction);
   mpm->stale = true;

@@ -45,8 +45,11 @@ static void refuses_bad_walls(void **state) {
   REFUSES("wall_friction_upper[1] is 0.3",
           mps_mpm_create(context, s.particles, s.material, &def, &other));
   def.wall_friction_upper[1] = 0.0;
-  def.geometry = MPS_AXISYMMETRIC;
   def.wall_lower[0] = MPS_WALL_ABSORBING;
+  def.scheme = MPS_SCHEME_STANDARD;
+  REFUSES("allowed with 0 (WLS)", mps_mpm_create(context, s.particles, s.material, &def, &other));
+  def.scheme = MPS_SCHEME_WLS;
+  def.geometry = MPS_AXISYMMETRIC;
   REFUSES("on the axis r = 0", mps_mpm_create(context, s.particles, s.material, &def, &other));
   def.wall_lower[0] = MPS_WALL_ROLLER;
   mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
