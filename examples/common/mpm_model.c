@@ -17,8 +17,9 @@ static int build_and_march(app *a, const char *out, mpm_model *model, const mpm_
   fflush(stdout);
   const mps_status status = parts->march(user);
   if (status == MPS_ERROR_CANCELLED) {
-    app_error(a, "interrupted at t = %.4g s: nothing is written", mps_mpm_time(model->mpm));
-    return APP_INTERRUPTED;
+    app_error(a, "interrupted at t = %.4g s: %s", mps_mpm_time(model->mpm),
+              model->keeps ? "what there is gets written" : "nothing is written");
+    return !model->keeps || parts->finish(a, user) ? APP_INTERRUPTED : APP_FAILED;
   }
   return app_check(a, status) && parts->finish(a, user) ? APP_OK : APP_FAILED;
 }

@@ -16,6 +16,7 @@ typedef struct mpm_model {
   mps_material *material;
   mps_mpm *mpm;
   mps_body *body[MPM_MODEL_BODIES]; /* NULL where there is none */
+  bool keeps; /* `build` sets it where an interrupted run is worth finishing as far as it came */
 } mpm_model;
 
 /* The parts of a run; `user` is that of mpm_model_run. */

@@ -73,7 +73,7 @@ typedef struct mps_von_mises_def {
 /** How the cone of Drucker and Prager meets the hexagonal pyramid of Mohr and Coulomb. All have its
  *  apex; the flow potential is the same kind of cone for the angle of dilation. */
 typedef enum mps_cone {
-  MPS_CONE_PLANE_STRAIN = 0,  /* the same limit load in plane strain, whatever the dilation; where
+  MPS_CONE_PLANE_STRAIN = 0,  /* the same strength in plane strain, whatever the dilation; where
                                  that equals the friction: seed B (56) */
   MPS_CONE_CIRCUMSCRIBED = 1, /* outer cone, through the edges of triaxial compression */
   MPS_CONE_INSCRIBED = 2,     /* inner cone, the largest that stays inside: always seed B (56) */

@@ -212,7 +212,7 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_step(mps_mpm *mpm, int64_t count);
 typedef mps_status (*mps_mpm_fn)(void *user, mps_mpm *mpm);
 
 /** Steps to t_end (s), the last step shortened to end there; `callback` may be NULL, `every` >= 1.
- *  The context's progress and cancel hooks are asked about 100 times. */
+ *  The context's progress hook is told about 100 times, the cancel hook asked after each step. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every,
                                              mps_mpm_fn callback, void *user);
 

@@ -69,6 +69,8 @@ struct mps_body {
 
 /* Nearest surface point to x (dim values, finite). Reads only: any number of threads. */
 mpsi_foot mpsi_body_foot(const mps_body *body, const double *x);
+/* Whether the body or its inside is within `reach` (m, >= 0) of x; cheap far from a mesh. */
+bool mpsi_body_reaches(const mps_body *body, const double *x, double reach);
 
 /* Velocity v[3] (m/s) of the body's material at x[3]. */
 static inline void mpsi_body_velocity(const mpsi_pose *pose, const double *x, double *v) {

@@ -158,6 +158,24 @@ mpsi_foot mpsi_body_foot(const mps_body *body, const double *x) {
   return f;
 }
 
+/* Whether x is further than `reach` from the cube around a mesh. */
+static bool beyond_cube(const mps_body *body, const double *x, double reach) {
+  const mpsi_pose *p = &body->pose;
+  const double from[3] = {x[0] - p->x[0], x[1] - p->x[1], x[2] - p->x[2]};
+  double local[3], square = 0.0;
+  mpsi_rotate_back(p->R, from, local);
+  for (int c = 0; c < 3; c++) {
+    const double out = fmax(fabs(local[c] - body->mesh->middle[c]) - body->mesh->size, 0.0);
+    square += out * out;
+  }
+  return square > reach * reach * (1.0 + 1e-12);
+}
+
+bool mpsi_body_reaches(const mps_body *body, const double *x, double reach) {
+  if (body->shape == MPSI_MESH && beyond_cube(body, x, reach)) return false;
+  return mpsi_body_foot(body, x).distance <= reach;
+}
+
 mps_status mps_body_distance(mps_body *body, int64_t count, const double *x, double *distance,
                              double *normal, double *foot, int64_t *face) {
   if (!body) return MPS_ERROR_ARGUMENT;

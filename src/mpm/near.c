@@ -13,11 +13,12 @@ static double half_diagonal(const mps_mpm *mpm, int side) {
   return 0.5 * (side - 1) * sqrt((double)mpm->dim) * (1.0 + 1e-9);
 }
 
-static double distance_from(const mps_mpm *mpm, int32_t body, const int32_t *at, int side) {
+/* Whether the body may have a node of the tile or block of `side` nodes an axis inside. */
+static bool reaches(const mps_mpm *mpm, int32_t body, const int32_t *at, int side) {
   const double middle = 0.5 * (side - 1), local[3] = {middle, middle, middle};
   double x[3];
   mpsi_node_position(mpm, at, local, x);
-  return mpsi_body_foot(mpm->body[body], x).distance / mpm->def.cell;
+  return mpsi_body_reaches(mpm->body[body], x, half_diagonal(mpm, side) * mpm->def.cell);
 }
 
 /* ---- lists ------------------------------------------------------------------------------------
@@ -26,14 +27,13 @@ static double distance_from(const mps_mpm *mpm, int32_t body, const int32_t *at,
 /* Numbers the meetings; false where there is no room for them all, `count` says how many there are.
  */
 static bool list_meetings(mps_mpm *mpm, int64_t *count) {
-  const double reach = half_diagonal(mpm, MPSI_TILE_SIDE);
   *count = 0;
   for (int64_t g = 0; g < mpm->node_count; g++) mpm->nodes[g].bodies = 0;
   for (int64_t b = 0; b < mpm->cell_count; b++) {
     mpsi_cells *cells = &mpm->cells[b];
     cells->first_meeting = (int32_t)*count;
     for (int32_t k = 0; k < mpm->bodies; k++) {
-      if (distance_from(mpm, k, cells->at, MPSI_TILE_SIDE) > reach) continue;
+      if (!reaches(mpm, k, cells->at, MPSI_TILE_SIDE)) continue;
       for (int q = 0; q < 1 << mpm->dim; q++) mpm->nodes[cells->to[q]].bodies |= UINT32_C(1) << k;
       if (*count < mpm->meeting_room.capacity) {
         mpsi_meeting *meeting = (mpsi_meeting *)mpm->meeting_room.item + *count;
@@ -112,7 +112,7 @@ static void find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
     mpsi_touch_node *touch = mpm->touch_node + (int64_t)t * mpm->own;
     const int32_t b = mpm->touch[t].body;
     memset(touch, 0, (size_t)mpm->own * sizeof *touch);
-    if (distance_from(mpm, b, nodes->at, MPSI_SIDE) > half_diagonal(mpm, MPSI_SIDE)) continue;
+    if (!reaches(mpm, b, nodes->at, MPSI_SIDE)) continue;
     for (int k = 0; k < mpm->own; k++) {
       int place[3];
       double x[3];

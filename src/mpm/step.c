@@ -200,10 +200,11 @@ mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every, mps_mpm_fn cal
     if (last) mpm->time = t_end;
     done++;
     if (status == MPS_OK && callback && (done % every == 0 || last)) status = callback(user, mpm);
-    if (!last && mpm->time < start + slice * (double)(reported + 1)) continue;
-    reported = last ? 100 : (int64_t)((mpm->time - start) / slice);
-    mpsi_progress(mpm->context, "mpm", mpm->steps, mpm->time - start, t_end - start);
-    if (status == MPS_OK && mpsi_cancelled(mpm->context))
+    if (last || mpm->time >= start + slice * (double)(reported + 1)) {
+      reported = last ? 100 : (int64_t)((mpm->time - start) / slice);
+      mpsi_progress(mpm->context, "mpm", mpm->steps, mpm->time - start, t_end - start);
+    }
+    if (status == MPS_OK && !last && mpsi_cancelled(mpm->context))
       status = mpsi_fail(mpm->context, __func__, MPS_ERROR_CANCELLED,
                          "stopped by the cancel hook at step %lld, t = %g s", (long long)mpm->steps,
                          mpm->time);

@@ -31,11 +31,19 @@ in_range "$work/two-way/summary.json" omega_ratio 0.9 1.1
 head -n 1 "$work/two-way/motion.csv" | grep -q '^t_s,x_m,x_theory_m,v_m_s,omega_rad_s$' ||
   fail "header of motion.csv"
 # A footing on a small domain at ten times the speed: above Prandtl's 5.14, by the coarse grid.
-"$1/mps-footing" --rate 5 --width 3 --depth 2 --threads 1 --out "$work/footing" >/dev/null
+"$1/mps-footing" --rate 5 --domain 3x2 --threads 1 --out "$work/footing" >/dev/null
 in_range "$work/footing/summary.json" q_exact 5.1415 5.1416
 in_range "$work/footing/summary.json" q_over_c 5.14 6.1
 head -n 1 "$work/footing/pressure.csv" | grep -q '^settlement_mm,q_kPa,q_over_c$' ||
   fail "header of pressure.csv"
+# The same on frictional ground with weight: above the exact capacity, by the coarse
+# grid.
+"$1/mps-footing" --model druckerprager --rate 5 --domain 3x1.5 --settlement 2 --threads 1 \
+  --out "$work/friction" >"$work/log"
+in_range "$work/friction/summary.json" q_exact 36.80 36.82
+in_range "$work/friction/summary.json" q_exact_rough 42.63 42.66
+in_range "$work/friction/summary.json" q_over_c_undeformed 36.8 45
+tail -n 1 "$work/log" | grep -q "exact: 36.81 (smooth base)" || fail "last line"
 if command -v gnuplot >/dev/null; then
   for picture in box/forces.png disc/motion.png footing/pressure.png footing/shear_bands.png; do
     [ "$(head -c 4 "$work/$picture" | tail -c 3)" = PNG ] || fail "$picture"

@@ -1,10 +1,28 @@
 #!/bin/sh
-# footing_long.sh DIRECTORY: bearing capacity of the von Mises footing at two spacings (minutes);
-# the error is of first order in h, so the extrapolation is close to 2 + pi.
+# footing_long.sh DIRECTORY: bearing capacity of the footing on cohesive and on frictional ground at
+# two spacings (minutes); the error is of first order in h, so the extrapolation is close to the
+# exact value.
 . "$(dirname "$0")/checks.sh"
 
 for h in 0.1 0.05; do
-  "$1/mps-footing" --h $h --width 3 --depth 2 --rate 5 --out "$work/$h" >/dev/null
+  "$1/mps-footing" --h $h --domain 3x2 --rate 5 --out "$work/$h" >/dev/null
 done
 in_range "$work/0.1/summary.json" q_over_c 5.14 6.15
 in_range "$work/0.05/summary.json" q_over_c 5.14 5.75
+
+# extrapolated DIRECTORY KEY: from h = 0.1 and 0.05 in DIRECTORY, within 3 % of q_exact.
+extrapolated() {
+  sed -n "s/^ *\"\($2\|q_exact\)\": \([^,]*\),*$/\1 \2/p" "$1/0.1/summary.json" "$1/0.05/summary.json" |
+    awk '$1 == "q_exact" { exact = $2; next } { coarse = fine; fine = $2 }
+         END { q = 2 * fine - coarse; print "extrapolated " q ", exact " exact
+               exit !(exact > 0 && q > 0.97 * exact && q < 1.03 * exact) }' || fail "$1"
+}
+extrapolated "$work" q_over_c
+
+for mu in 0 0.6; do
+  for h in 0.1 0.05; do
+    "$1/mps-footing" --model druckerprager --mu $mu --h $h --domain 5x2 --rate 5 \
+      --out "$work/$mu/$h" >/dev/null
+  done
+  extrapolated "$work/$mu" q_over_c_undeformed
+done

@@ -12,7 +12,7 @@ for program in mps-wave mps-stability; do
   has "$work/version" "libmps"
 done
 has "$work/help" "--study"
-for program in mps-sliding-box mps-rolling-disc mps-footing; do
+for program in mps-sliding-box mps-rolling-disc mps-footing mps-pile; do
   "$1/$program" --help >"$work/help" || fail "$program --help"
   for text in "Usage: $program" "--h [m]" "[kN/m]" "(default" "--out DIR" "--threads N"; do
     has "$work/help" "$text"

@@ -90,7 +90,7 @@ static bool try_planes(const plane *planes, int n, const int *set, const double 
 
 /* The return with non-negative multipliers: for normal flow, the closest point. */
 static bool search(const plane *planes, const double *trial, double *s) {
-  int set[3];
+  int set[3] = {0};
   if (try_planes(planes, 0, set, trial, s)) return true;
   for (set[0] = 0; set[0] < PLANES; set[0]++)
     if (try_planes(planes, 1, set, trial, s)) return true;

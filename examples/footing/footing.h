@@ -1,0 +1,38 @@
+/* footing.h - the parts of mps-footing: model and run (model.c), results (results.c), the exact
+ * capacity (characteristics.c).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef EXAMPLES_FOOTING_H
+#define EXAMPLES_FOOTING_H
+
+#include "characteristics.h"
+#include "common/mpm_model.h"
+
+enum { FOOTING_SAMPLES = 120, VON_MISES = 0, DRUCKER_PRAGER = 1 };
+
+typedef struct settings {
+  int model, cone;        /* VON_MISES or DRUCKER_PRAGER; mps_cone */
+  double width, depth;    /* m, of the half model */
+  double phi, psi;        /* degrees */
+  double cohesion, young; /* kPa */
+  double poisson, density, gravity;
+  double h, mu, rate, half_width, k, settlement; /* m, 1, mm/s, m, kN/m, mm */
+  int64_t ppc, threads;
+  const char *domain, *out;
+} settings;
+
+typedef struct simulation {
+  settings s;
+  mpm_model m;
+  double ramp, t_end;                                       /* s */
+  double path[FOOTING_SAMPLES + 1], q[FOOTING_SAMPLES + 1]; /* m, Pa */
+  int rows;
+  double strain; /* largest plastic strain */
+} simulation;
+
+/* Fills in what depends on the model. A text tells why settings do not go together; NULL: good. */
+const char *footing_settle(settings *s, const option *table);
+mps_status footing_build(mps_context *context, void *user);
+mps_status footing_march(void *user);
+bool footing_finish(app *a, void *user);
+
+#endif

@@ -1,0 +1,139 @@
+/* model.c - ground and footing of mps-footing, and the run.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "footing.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define DEGREE (3.14159265358979323846 / 180.0)
+#define RAMP 0.1 /* s to full speed at the seed's rate; as much path at others */
+
+/* ---- settings -------------------------------------------------------------------------------- */
+
+/* "5x2" */
+static bool read_domain(settings *s) {
+  char first[32];
+  const size_t length = strcspn(s->domain, "x");
+  if (s->domain[length] == '\0' || length >= sizeof first) return false;
+  memcpy(first, s->domain, length);
+  first[length] = '\0';
+  return options_number(first, &s->width) && options_number(s->domain + length + 1, &s->depth) &&
+         s->width > 0.0 && s->depth > 0.0;
+}
+
+const char *footing_settle(settings *s, const option *table) {
+  const bool cone = s->model == DRUCKER_PRAGER;
+  if (!read_domain(s)) return "--domain must be two lengths in m, WxH, such as 5x2";
+  if (!cone &&
+      (options_given(table, "phi") || options_given(table, "psi") || options_given(table, "cone")))
+    return "--phi, --psi and --cone are for --model druckerprager";
+  if (isnan(s->psi)) s->psi = s->phi;
+  if (s->psi > s->phi) return "--psi must be at most --phi";
+  if (isnan(s->settlement)) s->settlement = cone ? 4.0 : 0.6;
+  if (isnan(s->gravity)) s->gravity = cone ? 9.81 : 0.0;
+  return NULL;
+}
+
+/* ---- building -------------------------------------------------------------------------------- */
+
+/* Speed up over the ramp, then constant until the settlement is reached. */
+static mps_status make_footing(mps_context *context, const settings *s, simulation *sim) {
+  const double speed = s->rate * 1e-3;
+  sim->ramp = RAMP * fmin(1.0, 0.5 / s->rate);
+  sim->t_end = s->settlement * 1e-3 / speed + 0.5 * sim->ramp;
+  const double t[] = {0.0, sim->ramp, sim->t_end + 1.0}, v[] = {0.0, speed, speed};
+  mps_signal *down = NULL;
+  mps_status status = mps_signal_table(context, MPS_SIGNAL_VELOCITY, 3, t, v, &down);
+  mps_body_def def = mps_body_defaults();
+  const double height = s->half_width;
+  def.position[1] = s->depth + 0.5 * height;
+  def.friction = s->mu;
+  def.penalty = s->k * 1e3;
+  if (status == MPS_OK)
+    status = mps_body_create_box(context, &def, 2.0 * s->half_width, height, &sim->m.body[0]);
+  if (status == MPS_OK) status = mps_body_drive(sim->m.body[0], 1, down, -1.0);
+  mps_signal_destroy(&down);
+  return status == MPS_OK ? mps_mpm_add_body(sim->m.mpm, sim->m.body[0]) : status;
+}
+
+/* Ground at rest under its own weight, (57). */
+static mps_status set_stress(mps_particles *set, const settings *s) {
+  mps_view x, stress;
+  mps_status status = mps_particles_add_field(set, "stress", 0);
+  if (status == MPS_OK) status = mps_particles_view(set, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(set, "stress", &stress);
+  if (status != MPS_OK) return status;
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    const double vertical = -s->density * s->gravity * (s->depth - *mps_view_f64(&x, k, 1));
+    const double across = vertical * s->poisson / (1.0 - s->poisson);
+    *mps_view_f64(&stress, k, 0) = *mps_view_f64(&stress, k, 2) = across;
+    *mps_view_f64(&stress, k, 1) = vertical;
+  }
+  return MPS_OK;
+}
+
+static mps_status make_ground(mps_context *context, const settings *s, mps_particles **set) {
+  const double lo[2] = {0.0, 0.0}, hi[2] = {s->width, s->depth};
+  mps_particles_def def = mps_particles_defaults();
+  def.spacing = s->h / sqrt((double)s->ppc);
+  mps_status status = mps_particles_create(context, &def, set);
+  if (status == MPS_OK) status = mps_particles_fill_box(*set, lo, hi, NULL);
+  if (status == MPS_OK) status = mps_particles_set(*set, "density", 0, s->density);
+  return status == MPS_OK && s->gravity > 0.0 ? set_stress(*set, s) : status;
+}
+
+static mps_status make_material(mps_context *context, const settings *s, mps_material **out) {
+  if (s->model == VON_MISES) {
+    mps_von_mises_def law = mps_von_mises_defaults();
+    law.young = s->young * 1e3, law.poisson = s->poisson;
+    law.yield_stress = sqrt(3.0) * s->cohesion * 1e3; /* (54) */
+    return mps_material_von_mises(context, &law, out);
+  }
+  mps_drucker_prager_def law = mps_drucker_prager_defaults();
+  law.cone = s->cone;
+  law.young = s->young * 1e3, law.poisson = s->poisson, law.cohesion = s->cohesion * 1e3;
+  law.friction = s->phi * DEGREE, law.dilation = s->psi * DEGREE;
+  return mps_material_drucker_prager(context, &law, out);
+}
+
+mps_status footing_build(mps_context *context, void *user) {
+  simulation *sim = user;
+  const settings *s = &sim->s;
+  mps_status status = make_ground(context, s, &sim->m.particles);
+  if (status == MPS_OK) status = make_material(context, s, &sim->m.material);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = s->h;
+  def.lower[0] = def.lower[1] = 0.0;
+  def.upper[0] = s->width;
+  def.wall_lower[1] = MPS_WALL_FIXED;
+  def.gravity[1] = -s->gravity;
+  if (status == MPS_OK)
+    status = mps_mpm_create(context, sim->m.particles, sim->m.material, &def, &sim->m.mpm);
+  return status == MPS_OK ? make_footing(context, s, sim) : status;
+}
+
+/* ---- running --------------------------------------------------------------------------------- */
+
+/* Pressure from the impulse since the last sample. */
+mps_status footing_march(void *user) {
+  simulation *sim = user;
+  const settings *s = &sim->s;
+  double last_impulse = 0.0, last_time = 0.0;
+  mps_status status = MPS_OK;
+  for (int k = 1; k <= FOOTING_SAMPLES && status == MPS_OK; k++) {
+    mps_reaction reaction;
+    mps_body_state body;
+    status = mps_mpm_run(sim->m.mpm, sim->t_end * k / FOOTING_SAMPLES, INT64_MAX, NULL, NULL);
+    if (status == MPS_OK) status = mps_body_get_reaction(sim->m.body[0], -1, &reaction);
+    if (status == MPS_OK) status = mps_body_get_state(sim->m.body[0], &body);
+    if (status != MPS_OK) break;
+    const double t = mps_mpm_time(sim->m.mpm);
+    sim->path[sim->rows] = s->depth + 0.5 * s->half_width - body.position[1];
+    sim->q[sim->rows] = (reaction.impulse[1] - last_impulse) / (t - last_time) / s->half_width;
+    sim->rows++;
+    last_impulse = reaction.impulse[1];
+    last_time = t;
+  }
+  return status;
+}

@@ -1,0 +1,187 @@
+/* results.c - exact capacity, tables and pictures of mps-footing.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "common/plot.h"
+#include "footing.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#define PI 3.14159265358979323846
+
+enum { LINES = 40 };
+
+/* q/c of the run, and what it is compared with. */
+typedef struct capacity {
+  double last;                 /* mean over the last fifth of the path */
+  double undeformed, slope;    /* of the line through the path's second half: at no settlement, and
+                                  per mm: limit analysis knows the ground's first shape only */
+  double smooth, rough, exact; /* limits; NaN where the base is neither */
+} capacity;
+
+static void fit_path(const simulation *sim, capacity *c) {
+  const int first = sim->rows / 2, n = sim->rows - first;
+  const double unit = sim->s.cohesion * 1e3;
+  double x = 0.0, q = 0.0, xx = 0.0, xq = 0.0;
+  c->last = 0.0;
+  for (int k = first; k < sim->rows; k++) x += sim->path[k] * 1e3 / n, q += sim->q[k] / unit / n;
+  for (int k = first; k < sim->rows; k++) {
+    const double dx = sim->path[k] * 1e3 - x;
+    xx += dx * dx;
+    xq += dx * (sim->q[k] / unit - q);
+  }
+  c->slope = xq / xx;
+  c->undeformed = q - c->slope * x;
+  const int fifth = sim->rows / 5;
+  for (int k = sim->rows - fifth; k < sim->rows; k++) c->last += sim->q[k] / unit / fifth;
+}
+
+/* The limit by characteristics, which supposes associated flow; its error falls with the square of
+ * the lines and is extrapolated. */
+static double limit(const settings *s, bool rough) {
+  const strip_footing f = {.half_width = s->half_width,
+                           .friction = s->phi * PI / 180.0,
+                           .cohesion = s->cohesion * 1e3,
+                           .weight = s->density * s->gravity,
+                           .rough = rough};
+  const double coarse = characteristics_capacity(&f, LINES / 2);
+  const double fine = characteristics_capacity(&f, LINES);
+  return (4.0 * fine - coarse) / 3.0 / f.cohesion;
+}
+
+static capacity measure(const simulation *sim) {
+  const settings *s = &sim->s;
+  capacity c = {.smooth = 2.0 + PI, .rough = 2.0 + PI, .exact = 2.0 + PI};
+  fit_path(sim, &c);
+  if (s->model == VON_MISES) return c; /* Prandtl (52), whatever the weight and the base */
+  c.smooth = limit(s, false);
+  c.rough = limit(s, true);
+  c.exact = s->mu == 0.0 ? c.smooth : s->mu >= tan(s->phi * PI / 180.0) ? c.rough : NAN;
+  return c;
+}
+
+/* ---- tables ---------------------------------------------------------------------------------- */
+
+static bool write_pressure(app *a, const settings *s, const simulation *sim) {
+  output f;
+  if (!output_open(&f, a, s->out, "pressure.csv")) return false;
+  output_text(&f, "settlement_mm,q_kPa,q_over_c\n");
+  for (int k = 0; k < sim->rows; k++) {
+    const double q = sim->q[k] * 1e-3, row[] = {sim->path[k] * 1e3, q, q / s->cohesion};
+    csv_row(&f, 3, row);
+  }
+  return output_close(&f);
+}
+
+static bool write_particles(app *a, const settings *s, simulation *sim) {
+  mps_view x, strain;
+  output f;
+  if (!app_check(a, mps_particles_view(sim->m.particles, "position", &x)) ||
+      !app_check(a, mps_particles_view(sim->m.particles, "plastic_strain", &strain)) ||
+      !output_open(&f, a, s->out, "particles.csv"))
+    return false;
+  output_text(&f, "x_m,y_m,plastic_strain\n");
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    const double row[] = {*mps_view_f64(&x, k, 0), *mps_view_f64(&x, k, 1),
+                          *mps_view_f64(&strain, k, 0)};
+    sim->strain = fmax(sim->strain, row[2]);
+    csv_row(&f, 3, row);
+  }
+  return output_close(&f);
+}
+
+static bool write_summary(app *a, const simulation *sim, const capacity *c) {
+  const settings *s = &sim->s;
+  output f;
+  if (!mpm_model_summary(a, &sim->m, s->out, &f)) return false;
+  json_text(&f, "model", s->model == VON_MISES ? "vonmises" : "druckerprager");
+  json_number(&f, "h", s->h);
+  json_number(&f, "mu", s->mu);
+  json_number(&f, "rate", s->rate);
+  json_number(&f, "q_over_c", c->last);
+  json_number(&f, "q_over_c_undeformed", c->undeformed);
+  json_number(&f, "q_over_c_per_mm", c->slope);
+  json_number(&f, "q_exact", c->exact);
+  json_number(&f, "q_exact_smooth", c->smooth);
+  json_number(&f, "q_exact_rough", c->rough);
+  json_end(&f);
+  return output_close(&f);
+}
+
+/* ---- pictures -------------------------------------------------------------------------------- */
+
+/* A level line; none where there is no solution. */
+static void draw_limit(output *f, double value, const char *dash, const char *title) {
+  if (!isnan(value))
+    output_text(f, ", \\\n  %.9g dashtype '%s' linecolor rgb '#c0392b' title '%s'", value, dash,
+                title);
+}
+
+static bool draw_pressure(app *a, const settings *s, const capacity *c) {
+  output f;
+  if (!plot_open(&f, a, s->out, "pressure", 1000, 640)) return false;
+  output_text(&f,
+              "set title \"Strip footing on %s ground\\n{/*0.85 h = %g m, half width %g m, "
+              "%g mm/s, friction of the base %g}\"\nset xlabel 'settlement (mm)'\n"
+              "set ylabel 'pressure over cohesion, q/c'\nset key right bottom opaque\n"
+              "set yrange [0:*]\nplot 'pressure.csv' every ::1 using 1:3 with lines "
+              "linecolor rgb '#1f4e8c' title 'WLS-MPM'",
+              s->model == VON_MISES ? "cohesive" : "frictional", s->h, s->half_width, s->rate,
+              s->mu);
+  const bool cone = s->model == DRUCKER_PRAGER;
+  if (!cone) draw_limit(&f, c->exact, "--", "Prandtl");
+  if (cone && c->exact != c->rough) draw_limit(&f, c->smooth, "--", "smooth base, characteristics");
+  if (cone && c->exact != c->smooth) draw_limit(&f, c->rough, "-.", "rough base, characteristics");
+  output_text(&f, "\n");
+  return plot_close(&f, s->out, "pressure");
+}
+
+/* The mechanism reaches farther in frictional ground. */
+static bool draw_bands(app *a, const settings *s, const simulation *sim) {
+  const double wide = s->model == VON_MISES ? 5.0 : 9.0, top = s->depth + 0.3 * s->half_width;
+  output f;
+  if (!plot_open(&f, a, s->out, "shear_bands", 1100, s->model == VON_MISES ? 660 : 440))
+    return false;
+  output_text(&f,
+              "set title 'Plastic strain'\nset xlabel 'x (m)'\nset ylabel 'y (m)'\n"
+              "set size ratio -1\nset palette defined (0 '#f7fbff', 0.3 '#6baed6', 1 '#08306b')\n"
+              "set xrange [0:%.9g]\nset yrange [%.9g:%.9g]\n"
+              "set object 1 rectangle from 0,%.9g to %.9g,%.9g fillcolor rgb '#888888' front\n"
+              "set cbrange [0:%.9g]\n"
+              "plot 'particles.csv' every ::1 using 1:2:3 with points pointtype 7 pointsize %.3g "
+              "linecolor palette notitle\n",
+              fmin(s->width, wide * s->half_width), fmax(0.0, s->depth - 3.0 * s->half_width), top,
+              s->depth - sim->path[sim->rows - 1], s->half_width, top, 0.5 * sim->strain + 1e-12,
+              60.0 / wide * s->h / s->half_width);
+  return plot_close(&f, s->out, "shear_bands");
+}
+
+/* ---- the end --------------------------------------------------------------------------------- */
+
+static void print(const settings *s, const capacity *c) {
+  printf("Results: %s/ (pressure.csv, particles.csv, summary.json, pressure.png, "
+         "shear_bands.png)\n",
+         s->out);
+  if (s->model == VON_MISES) {
+    printf("bearing capacity q/c %.3f (Prandtl %.3f, %+.1f %%)\n", c->last, c->exact,
+           100.0 * (c->last / c->exact - 1.0));
+    return;
+  }
+  printf("bearing capacity q/c %.2f, taken back to no settlement %.2f; exact: ", c->last,
+         c->undeformed);
+  if (isnan(c->exact))
+    printf("smooth base %.2f, rough %.2f\n", c->smooth, c->rough);
+  else
+    printf("%.2f (%s base), %+.1f %%\n", c->exact, s->mu > 0.0 ? "rough" : "smooth",
+           100.0 * (c->undeformed / c->exact - 1.0));
+}
+
+bool footing_finish(app *a, void *user) {
+  simulation *sim = user;
+  const settings *s = &sim->s;
+  const capacity c = measure(sim);
+  if (!write_pressure(a, s, sim) || !write_particles(a, s, sim) || !write_summary(a, sim, &c) ||
+      !draw_pressure(a, s, &c) || !draw_bands(a, s, sim))
+    return false;
+  print(s, &c);
+  return true;
+}

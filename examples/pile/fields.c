@@ -1,0 +1,84 @@
+/* fields.c - the soil at some depths of the pile: kept for the pictures (seed B, Figures 24 and
+ * 25), and as a VTKHDF series where the library has HDF5. SPDX-License-Identifier: BSD-3-Clause */
+#include "pile.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+mps_status pile_open_frames(mps_context *context, pile *p) {
+  static const char *const fields[] = {"velocity", "stress", "volume", "plastic_strain"};
+  mps_recorder_def def = mps_recorder_defaults();
+  char path[4096];
+  if (snprintf(path, sizeof path, "%s/pile.vtkhdf", p->s.out) >= (int)sizeof path)
+    return MPS_OK; /* the CSV files will tell */
+  def.path = path;
+  def.fields = fields;
+  def.field_count = sizeof fields / sizeof *fields;
+  const mps_status status = mps_recorder_create(context, p->m.particles, &def, &p->recorder);
+  p->vtk = status == MPS_OK;
+  return status == MPS_ERROR_UNSUPPORTED ? MPS_OK : status;
+}
+
+/* True for the frames that pictures show: evenly among all, the last one always. */
+static bool in_pictures(const pile *p) {
+  const int64_t all = p->s.frames, shown = all < PILE_PICTURES ? all : PILE_PICTURES;
+  return (p->frames + 1) * shown / all > p->frames * shown / all;
+}
+
+static mps_status keep(pile *p) {
+  mps_view x, stress, strain;
+  mps_status status = mps_particles_view(p->m.particles, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(p->m.particles, "stress", &stress);
+  if (status == MPS_OK) status = mps_particles_view(p->m.particles, "plastic_strain", &strain);
+  if (status != MPS_OK) return status;
+  float *value = malloc((size_t)x.shape[0] * FIELDS * sizeof *value);
+  if (!value) return MPS_ERROR_MEMORY;
+  p->frame[p->frames_kept++] = (pile_frame){pile_depth(p), value};
+  for (int64_t k = 0; k < x.shape[0]; k++, value += FIELDS) {
+    double s[4];
+    for (int c = 0; c < 4; c++) s[c] = *mps_view_f64(&stress, k, c);
+    const double mean = (s[0] + s[1] + s[2]) / 3.0;
+    double j2 = s[3] * s[3];
+    for (int c = 0; c < 3; c++) j2 += 0.5 * (s[c] - mean) * (s[c] - mean);
+    value[FIELD_R] = (float)*mps_view_f64(&x, k, 0);
+    value[FIELD_Z] = (float)(*mps_view_f64(&x, k, 1) - p->s.height);
+    value[FIELD_MEAN] = (float)mean;
+    value[FIELD_DEVIATOR] = (float)sqrt(3.0 * j2);
+    value[FIELD_STRAIN] = (float)*mps_view_f64(&strain, k, 0);
+  }
+  return MPS_OK;
+}
+
+mps_status pile_take_frame(pile *p) {
+  mps_status status = in_pictures(p) ? keep(p) : MPS_OK;
+  if (status == MPS_OK && p->recorder)
+    status = mps_recorder_write(p->recorder, mps_mpm_time(p->m.mpm));
+  p->frames++;
+  return status;
+}
+
+bool pile_write_frames(app *a, pile *p) {
+  if (!app_check(a, mps_recorder_close(&p->recorder))) return false;
+  for (int64_t f = 0; f < p->frames_kept; f++) {
+    char name[32];
+    output file;
+    snprintf(name, sizeof name, "fields-%d.csv", (int)f + 1);
+    if (!output_open(&file, a, p->s.out, name)) return false;
+    output_text(&file, "r_m,z_m,mean_stress_kPa,deviatoric_stress_kPa,plastic_strain\n");
+    for (int64_t k = 0; k < mps_particles_count(p->m.particles); k++) {
+      const float *v = p->frame[f].value + k * FIELDS;
+      output_text(&file, "%.5g,%.5g,%.4g,%.4g,%.4g\n", (double)v[FIELD_R], (double)v[FIELD_Z],
+                  1e-3 * (double)v[FIELD_MEAN], 1e-3 * (double)v[FIELD_DEVIATOR],
+                  (double)v[FIELD_STRAIN]);
+    }
+    if (!output_close(&file)) return false;
+  }
+  return true;
+}
+
+void pile_free_frames(pile *p) {
+  mps_recorder_destroy(&p->recorder);
+  for (int64_t f = 0; f < p->frames_kept; f++) free(p->frame[f].value);
+  p->frames_kept = 0;
+}

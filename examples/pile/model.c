@@ -1,0 +1,158 @@
+/* model.c - soil at rest under its own weight, and the pile above it (seed B, Figure 22).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "pile.h"
+
+#include <mps/geostatic.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define STIFFNESS 4.0 /* of the contact, over K + 4G/3 and at most over m/dt^2 */
+#define CHATTER 6.0   /* over m/dt^2: a stiffer contact throws particles back and forth */
+
+/* ---- settings -------------------------------------------------------------------------------- */
+
+static const struct {
+  mps_cone cone;
+  const char *name;
+} cones[] = {{MPS_CONE_INSCRIBED, "inscribed"},
+             {MPS_CONE_CIRCUMSCRIBED, "circumscribed"},
+             {MPS_CONE_PLANE_STRAIN, "planestrain"}};
+
+mps_cone pile_cone(const pile_settings *s) { return cones[s->cone].cone; }
+const char *pile_cone_name(const pile_settings *s) { return cones[s->cone].name; }
+
+static bool read_soil(pile_settings *s) {
+  char width[32];
+  const size_t length = strcspn(s->soil, "x");
+  if (s->soil[length] != 'x' || length >= sizeof width) return false;
+  memcpy(width, s->soil, length);
+  width[length] = '\0';
+  return options_number(width, &s->width) && options_number(s->soil + length + 1, &s->height) &&
+         s->width > 0.0 && s->height > 0.0;
+}
+
+static bool whole_cells(double length, double h) {
+  const double cells = length / h;
+  return fabs(cells - nearbyint(cells)) < 1e-6 * fmax(1.0, cells);
+}
+
+const char *pile_check(pile_settings *s) {
+  if (!read_soil(s)) return "--soil must be two lengths in m, WxH, such as 0.4x3";
+  if (!whole_cells(s->width, s->h) || !whole_cells(s->height, s->h))
+    return "--soil must be whole cells of --h wide and high";
+  if (s->wall < s->h * (2.0 - 1e-9))
+    return "--wall must be at least 2 cells of --h: particles on both its sides would share nodes";
+  if (s->inner_diameter < 4.0 * s->h) return "--inner-diameter must be at least 4 cells of --h";
+  if (0.5 * s->inner_diameter + s->wall > s->width - 4.0 * s->h)
+    return "--soil must be at least 4 cells of --h wider than the pile's radius";
+  if (s->depth > s->height - 4.0 * s->h)
+    return "--depth must end 4 cells of --h above the bottom of the soil";
+  const double modulus =
+      s->young * (1.0 - s->poisson) / ((1.0 + s->poisson) * (1.0 - 2.0 * s->poisson));
+  if (s->k > CHATTER * modulus / ((double)s->ppc * s->courant * s->courant))
+    return "--k must be at most 6 (K + 4G/3)/(ppc courant^2), 6 m/dt^2: stiffer contact chatters";
+  if (s->psi > s->phi) return "--psi must be at most --phi";
+  return NULL;
+}
+
+/* ---- soil ------------------------------------------------------------------------------------ */
+
+/* The weight above, and K0 of it sideways. */
+static mps_status set_stress(pile *p) {
+  const pile_settings *s = &p->s;
+  p->k0 = isnan(s->k0) ? s->poisson / (1.0 - s->poisson) : s->k0;
+  const mps_soil_layer layer = {.thickness = INFINITY, .k0 = p->k0};
+  mps_geostatic_def def = mps_geostatic_defaults();
+  def.layers = &layer, def.layer_count = 1;
+  def.gravity = PILE_GRAVITY;
+  def.surface = s->height;
+  return mps_particles_set_geostatic(p->m.particles, &def);
+}
+
+static mps_status make_soil(mps_context *context, pile *p) {
+  const pile_settings *s = &p->s;
+  const double lo[2] = {0.0, 0.0}, hi[2] = {s->width, s->height};
+  mps_particles_def set = mps_particles_defaults();
+  set.spacing = s->h / sqrt((double)s->ppc);
+  mps_status status = mps_particles_create(context, &set, &p->m.particles);
+  if (status == MPS_OK) status = mps_particles_fill_box(p->m.particles, lo, hi, NULL);
+  if (status == MPS_OK) status = mps_particles_set(p->m.particles, "density", 0, s->density);
+  if (status == MPS_OK) status = set_stress(p);
+  mps_drucker_prager_def law = mps_drucker_prager_defaults();
+  law.cone = pile_cone(s);
+  law.young = s->young * 1e3, law.poisson = s->poisson;
+  law.friction = s->phi * PILE_PI / 180.0, law.dilation = s->psi * PILE_PI / 180.0;
+  law.cohesion = s->cohesion * 1e3;
+  if (status == MPS_OK) status = mps_material_drucker_prager(context, &law, &p->m.material);
+  return status;
+}
+
+/* ---- pile ------------------------------------------------------------------------------------ */
+
+/* The section of the wall, its tip at the body's own z = 0; driven at constant speed. Corners
+ * belong to the tip: its edge comes first. */
+static mps_status make_pile(mps_context *context, pile *p) {
+  const pile_settings *s = &p->s;
+  const double length = 2.0 * s->depth + 2.0 * p->outer; /* beyond all soil that it may lift */
+  const double corner[8] = {p->inner, 0.0, p->outer, 0.0, p->outer, length, p->inner, length};
+  static const struct {
+    const char *name;
+    int64_t edge;
+  } part[PILE_PARTS] = {{"tip", 0}, {"inside", 3}, {"outside", 1}};
+  const double t[] = {p->t_start, p->t_end + 1.0}, v[] = {s->speed, s->speed};
+  mps_signal *down = NULL;
+  mps_body_def def = mps_body_defaults();
+  def.position[1] = s->height + s->h;
+  def.friction = s->friction;
+  def.penalty = p->penalty;
+  mps_status status = mps_signal_table(context, MPS_SIGNAL_VELOCITY, 2, t, v, &down);
+  if (status == MPS_OK) status = mps_body_create_polygon(context, &def, 4, corner, &p->m.body[0]);
+  for (int k = 0; k < PILE_PARTS && status == MPS_OK; k++)
+    status = mps_body_name_part(p->m.body[0], part[k].name, part[k].edge, 1, NULL);
+  if (status == MPS_OK) status = mps_body_drive(p->m.body[0], 1, down, -1.0);
+  mps_signal_destroy(&down);
+  return status == MPS_OK ? mps_mpm_add_body(p->m.mpm, p->m.body[0]) : status;
+}
+
+/* Contact stiffness (N/m per unit thickness). Seed B (58) with the particle's mass and the step as
+ * they are at the start gives k = (1 - xi) 2 m/dt^2, 0.8 of K + 4G/3 with the seed's xi: the offset
+ * d0 is used up, and sand enters the wall, where the pressure below the tip is half of k. */
+static double penalty_of(const pile *p) {
+  const pile_settings *s = &p->s;
+  const double spacing = mps_particles_spacing(p->m.particles);
+  const double limit = s->density * spacing * spacing / (p->dt * p->dt);
+  if (!isnan(s->k)) return s->k * 1e3;
+  if (!isnan(s->xi)) return 2.0 * (1.0 - s->xi) * limit;
+  return STIFFNESS * fmin(mps_material_wave_modulus(p->m.material), limit);
+}
+
+mps_status pile_build(mps_context *context, void *user) {
+  pile *p = user;
+  const pile_settings *s = &p->s;
+  p->m.keeps = true;
+  p->inner = 0.5 * s->inner_diameter, p->outer = p->inner + s->wall;
+  p->t_start = s->rest, p->t_end = s->rest + (s->h + s->depth) / s->speed;
+  mps_status status = make_soil(context, p);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.geometry = MPS_AXISYMMETRIC;
+  def.cell = s->h;
+  def.courant = s->courant;
+  def.lower[0] = def.lower[1] = 0.0;
+  def.upper[0] = s->width;
+  def.gravity[1] = -PILE_GRAVITY;
+  if (status == MPS_OK)
+    status = mps_mpm_create(context, p->m.particles, p->m.material, &def, &p->m.mpm);
+  if (status != MPS_OK) return status;
+  p->dt = mps_mpm_dt(p->m.mpm);
+  p->penalty = penalty_of(p);
+  status = make_pile(context, p);
+  return status == MPS_OK ? pile_open_frames(context, p) : status;
+}
+
+void pile_free(pile *p) {
+  pile_free_frames(p);
+  free(p->row);
+  p->row = NULL;
+}

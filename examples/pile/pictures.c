@@ -1,0 +1,192 @@
+/* pictures.c - pile.png: load and plug along the path (seed B, Figure 23) and the soil at the end;
+ * and the soil around the pile at some depths, one picture a quantity (Figures 24 and 25).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "pile.h"
+
+#include "common/plot.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* A value that all but a few of the soil's particles stay below: colours for the rest, not for the
+ * one particle under a corner. */
+static int ascending(const void *a, const void *b) {
+  const float x = *(const float *)a, y = *(const float *)b;
+  return (x > y) - (x < y);
+}
+
+static double most_of(const pile *p, const pile_frame *frame, int field, double share) {
+  const int64_t count = mps_particles_count(p->m.particles);
+  float *value = malloc((size_t)count * sizeof *value);
+  if (!value) return NAN;
+  for (int64_t k = 0; k < count; k++) value[k] = fabsf(frame->value[k * FIELDS + field]);
+  qsort(value, (size_t)count, sizeof *value, ascending);
+  const double most = (double)value[(int64_t)(share * (double)(count - 1))];
+  free(value);
+  return most;
+}
+
+/* ---- along the path -------------------------------------------------------------------------- */
+
+/* Places the next plot: fractions of the picture's width. */
+static void place(output *f, double left, double right) {
+  output_text(f,
+              "set lmargin at screen %.4g\nset rmargin at screen %.4g\nset tmargin at screen 0.83\n"
+              "set bmargin at screen 0.2\n",
+              left, right);
+}
+
+/* Columns of load.csv, and the line that each is. */
+static const struct line {
+  const char *title, *colour, *dash;
+  int column;
+} lines[] = {{"total", "#222222", "solid", 6},
+             {"tip", "#c0392b", "solid", 7},
+             {"inside", "#1f4e8c", "solid", 8},
+             {"outside", "#2e8b57", "solid", 9},
+             {"- - outside, K_0 {/Symbol s}_v {/Symbol m}", "#2e8b57", "'--'", 13}};
+
+static void plot_load(output *f, const pile *p, int width) {
+  const size_t count = sizeof lines / sizeof *lines;
+  double left = 90.0;
+  for (size_t k = 0; k < count; k++, left += 95.0)
+    output_text(f, "set label %d '%s' at screen %.4g,0.05 textcolor rgb '%s'\n", (int)k + 1,
+                lines[k].title, left / width, lines[k].colour);
+  output_text(f,
+              "set title 'Load'\nset xlabel 'force (kN)'\nset ylabel 'depth of the tip (m)'\n"
+              "set xrange [0:*]\nset yrange [%.9g:0]\nunset key\n"
+              "plot 'load.csv' every ::1 using ($2/1e3):1 with lines linecolor rgb '#999999' "
+              "linewidth 0.7",
+              p->s.depth);
+  for (size_t k = 0; k < count; k++)
+    output_text(f,
+                ", \\\n  '' every ::1 using ($%d/1e3):1 with lines dashtype %s linecolor rgb '%s'",
+                lines[k].column, lines[k].dash, lines[k].colour);
+  output_text(f, "\nunset label\n");
+}
+
+static void plot_plug(output *f) {
+  output_text(f,
+              "set title 'Soil inside'\nset xlabel 'its top above the tip (m)'\nset ylabel ''\n"
+              "set key right top opaque\n"
+              "plot 'load.csv' every ::1 using 11:1 with lines linecolor rgb '#1f4e8c' "
+              "linewidth 1.6 title 'plug', \\\n"
+              "  '' every ::1 using 1:1 with lines dashtype '--' linecolor rgb '#888888' title 'no "
+              "plugging'\n");
+}
+
+/* ---- soil ------------------------------------------------------------------------------------ */
+
+typedef struct quantity {
+  const char *name, *title;
+  int field;
+  double factor; /* of fields-N.csv over the frame's value: Pa to kPa, pressure positive */
+  double share;  /* of the particles that the colours reach */
+} quantity;
+
+static const quantity mean_stress = {"mean_stress", "Mean pressure (kPa)", FIELD_MEAN, -1e-3,
+                                     0.995};
+static const quantity deviatoric_stress = {"deviatoric_stress", "Deviatoric stress (kPa)",
+                                           FIELD_DEVIATOR, 1e-3, 0.995};
+static const quantity shear_strain = {"shear_strain", "Plastic shear strain", FIELD_STRAIN, 1.0,
+                                      0.97};
+
+/* The part of the section that is shown, m. */
+static double section_top(const pile *p) { return 0.08 * p->s.depth + 4.0 * p->s.h; }
+static double section_bottom(const pile *p) {
+  return -fmin(p->s.height, p->s.depth + 3.0 * p->s.inner_diameter);
+}
+
+/* `panel`: pixels across. */
+static void begin_sections(output *f, const pile *p, const quantity *q, int panel) {
+  const pile_frame *last = &p->frame[p->frames_kept - 1];
+  output_text(f,
+              "set palette defined (0 '#e6ebf1', 0.15 '#c6dbef', 0.4 '#6baed6', 0.7 '#2171b5', 1 "
+              "'#08306b')\nset cbrange [0:%.4g]\nset size ratio -1\nset xtics %.9g\n"
+              "set xlabel 'r (m)'\nset ylabel 'z (m)' offset 1.5\nset xrange [0:%.9g]\nset yrange "
+              "[%.9g:%.9g]\n",
+              fabs(q->factor) * most_of(p, last, q->field, q->share),
+              p->s.width / (panel < 200 ? 2.0 : 4.0), p->s.width, section_bottom(p),
+              section_top(p));
+}
+
+/* Half a section with the wall, r to the right; squares a little larger than a spacing, on a panel
+ * `pixels` high. */
+static void plot_section(output *f, const pile *p, const quantity *q, int64_t frame,
+                         double pixels) {
+  const double scale = pixels / (section_top(p) - section_bottom(p));
+  output_text(
+      f,
+      "set object 1 rectangle from %.9g,%.9g to %.9g,%.9g fillcolor rgb '#555555' fillstyle "
+      "solid noborder front\n"
+      "plot 'fields-%d.csv' every ::1 using 1:2:(%g*$%d) with points pointtype 5 pointsize "
+      "%.3g linecolor palette notitle\n",
+      p->inner, -p->frame[frame].depth, p->outer, section_top(p), (int)frame + 1,
+      q->factor < 0.0 ? -1.0 : 1.0, q->field + 1,
+      fmax(0.1, 0.24 * scale * mps_particles_spacing(p->m.particles)));
+}
+
+static bool draw_sections(app *a, const pile *p, const quantity *q) {
+  output f;
+  const double high = section_top(p) - section_bottom(p), pixels = 700.0;
+  const int count = (int)p->frames_kept, panel = (int)(pixels * p->s.width / high);
+  const int width = count * (panel + 70) + 170;
+  if (!plot_open(&f, a, p->s.out, q->name, width, 850)) return false;
+  output_text(&f,
+              "set multiplot layout 1,%d title '%s' font ',18' margins screen %.4g, screen %.4g, "
+              "screen 0.09, screen 0.87 spacing screen %.4g, screen 0\nunset colorbox\n",
+              count, q->title, 100.0 / width, 1.0 - 130.0 / width, 70.0 / width);
+  begin_sections(&f, p, q, panel);
+  for (int k = 0; k < count; k++) {
+    if (k == count - 1)
+      output_text(
+          &f, "set colorbox user origin screen %.4g, screen 0.15 size screen %.4g, screen 0.6\n",
+          1.0 - 100.0 / width, 22.0 / width);
+    if (k == 1) output_text(&f, "set ylabel ''\n");
+    output_text(&f, "set title 'tip at %.3f m'\n", p->frame[k].depth);
+    plot_section(&f, p, q, k, pixels);
+  }
+  output_text(&f, "unset multiplot\n");
+  return plot_close(&f, p->s.out, q->name);
+}
+
+/* ---- all in one ------------------------------------------------------------------------------ */
+
+static bool draw_overview(app *a, const pile *p) {
+  output f;
+  const double high = section_top(p) - section_bottom(p), pixels = 0.63 * 760.0;
+  const int panel = (int)(pixels * p->s.width / high), width = 1080 + 2 * (panel + 190);
+  if (!plot_open(&f, a, p->s.out, "pile", width, 760)) return false;
+  output_text(
+      &f,
+      "set multiplot title \"Open-ended pile, inner diameter %g m, wall %g mm, to %g m at %g "
+      "m/s\\n{/*0.8 h = %g mm, %lld particles, {/Symbol f} = %g degrees (%s cone), "
+      "{/Symbol m} = %g}\" font ',18'\n",
+      p->s.inner_diameter, 1e3 * p->s.wall, p->s.depth, p->s.speed, 1e3 * p->s.h,
+      (long long)mps_particles_count(p->m.particles), p->s.phi, pile_cone_name(&p->s),
+      p->s.friction);
+  place(&f, 90.0 / width, 520.0 / width);
+  plot_load(&f, p, width);
+  place(&f, 600.0 / width, 1000.0 / width);
+  plot_plug(&f);
+  static const quantity *const shown[2] = {&mean_stress, &shear_strain};
+  for (int k = 0; k < 2; k++) {
+    const double left = 1110.0 + k * (panel + 190.0);
+    place(&f, left / width, (left + panel) / width);
+    output_text(
+        &f,
+        "set title '%s'\nset colorbox user origin screen %.4g, screen 0.3 size screen %.4g, "
+        "screen 0.4\n",
+        shown[k]->title, (left + panel + 18.0) / width, 16.0 / width);
+    begin_sections(&f, p, shown[k], panel);
+    plot_section(&f, p, shown[k], p->frames_kept - 1, pixels);
+  }
+  output_text(&f, "unset multiplot\n");
+  return plot_close(&f, p->s.out, "pile");
+}
+
+bool pile_draw(app *a, const pile *p) {
+  if (p->frames_kept == 0 || p->rows == 0) return true;
+  return draw_overview(a, p) && draw_sections(a, p, &mean_stress) &&
+         draw_sections(a, p, &deviatoric_stress) && draw_sections(a, p, &shear_strain);
+}

@@ -1,0 +1,106 @@
+/* pile.h - an open-ended pile pushed into sand (seed B 8): settings, the run, and its parts.
+ *
+ * Axisymmetric: x is the radius r, y the height above the bottom of the soil. The library's forces
+ * are per radian; here and in the results they are those of the whole pile, 2 pi times as much.
+ * Depths count from the ground as it was, downwards.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef EXAMPLES_PILE_H
+#define EXAMPLES_PILE_H
+
+#include "common/mpm_model.h"
+
+#include <mps/io.h>
+
+#define PILE_GRAVITY 9.81 /* m/s2 */
+#define PILE_PI 3.14159265358979323846
+
+typedef struct pile_settings {
+  double inner_diameter, wall;         /* m */
+  double friction, speed, depth, rest; /* mu; m/s; m; s of waiting before the pile moves */
+  double xi, k;                   /* contact stiffness by seed B (58), or in kN/m; NaN: not so */
+  const char *soil;               /* "WxH" */
+  double width, height;           /* m, what `soil` says */
+  double density, young, poisson; /* kg/m3, kPa, 1 */
+  double phi, psi, cohesion, k0;  /* degrees, degrees, kPa; k0 NaN: nu/(1 - nu) */
+  int cone;                       /* see pile_cone */
+  double h, courant;
+  int64_t ppc, frames, threads;
+  const char *out;
+} pile_settings;
+
+enum { PILE_TIP, PILE_INSIDE, PILE_OUTSIDE, PILE_PARTS, PILE_TOTAL = PILE_PARTS, PILE_FORCES };
+
+/* One row of load.csv. */
+typedef struct pile_row {
+  double depth;               /* m, of the tip */
+  double force[PILE_FORCES];  /* N, upwards on the pile: mean over the path since the row before */
+  double smooth[PILE_FORCES]; /* N, mean over a window of the path about the row */
+  double jitter;              /* N, rms of the single steps' total about their mean */
+  double plug;                /* m, top of the soil inside above the tip; NaN: none yet */
+} pile_row;
+
+/* The soil at one depth of the pile: r, height, mean stress, deviatoric stress, plastic strain. */
+enum { FIELD_R, FIELD_Z, FIELD_MEAN, FIELD_DEVIATOR, FIELD_STRAIN, FIELDS };
+typedef struct pile_frame {
+  double depth;
+  float *value; /* FIELDS a particle */
+} pile_frame;
+enum { PILE_PICTURES = 4 }; /* frames shown in a picture */
+
+/* What the run has seen after every step. */
+typedef struct pile_seen {
+  double ratio_max, ratio_min; /* of V/V0 */
+  int64_t inside;              /* most particles inside the wall at once */
+  double deepest;              /* m, the furthest that one was below its surface */
+  double rest_speed; /* m/s, fastest particle in the second half of the time before contact */
+} pile_seen;
+
+typedef struct pile {
+  pile_settings s;
+  mpm_model m;
+  double k0, inner, outer;   /* 1; m: radii of the wall */
+  double penalty;            /* N/m per unit thickness */
+  double dt, t_start, t_end; /* s: first step, start and end of the pile's motion */
+  pile_row *row;
+  int64_t rows, capacity;
+  double stride;                                                   /* m of path between rows */
+  double last_time, last_impulse[PILE_FORCES], last_step, squares; /* since the last row */
+  pile_seen seen;
+  pile_frame frame[PILE_PICTURES];
+  int64_t frames, frames_kept;
+  mps_recorder *recorder; /* NULL in a libmps without HDF5 */
+  bool vtk;               /* there has been one */
+} pile;
+
+/* ---- model.c --------------------------------------------------------------------------------- */
+
+mps_cone pile_cone(const pile_settings *s);
+const char *pile_cone_name(const pile_settings *s);
+/* Reads `soil`, and tells why the settings cannot be run; NULL where they can. */
+const char *pile_check(pile_settings *s);
+mps_status pile_build(mps_context *context, void *user);
+void pile_free(pile *p); /* what the model does not own */
+
+/* ---- drive.c --------------------------------------------------------------------------------- */
+
+mps_status pile_drive(void *user);
+/* Depth of the tip (m). */
+double pile_depth(const pile *p);
+
+/* ---- fields.c -------------------------------------------------------------------------------- */
+
+mps_status pile_open_frames(mps_context *context, pile *p);
+mps_status pile_take_frame(pile *p);
+bool pile_write_frames(app *a, pile *p);
+void pile_free_frames(pile *p);
+
+/* ---- results.c, pictures.c ------------------------------------------------------------------- */
+
+bool pile_finish(app *a, void *user);
+/* What an engineer would reckon (N; 1): friction of the outer shaft at K0 stress at `depth`, and
+ * the bearing capacity factor of the tip after Prandtl and Reissner. */
+double pile_beta_shaft(const pile *p, double depth);
+double pile_nq(const pile *p);
+bool pile_draw(app *a, const pile *p);
+
+#endif

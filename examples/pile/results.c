@@ -1,0 +1,132 @@
+/* results.c - load.csv and summary.json, and what is told of them on the terminal.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "pile.h"
+
+#include "common/plot.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* ---- what an engineer would reckon ----------------------------------------------------------- */
+
+double pile_beta_shaft(const pile *p, double depth) {
+  return PILE_PI * p->outer * p->k0 * p->s.friction * p->s.density * PILE_GRAVITY * depth * depth;
+}
+
+double pile_nq(const pile *p) {
+  const double phi = p->s.phi * PILE_PI / 180.0;
+  return exp(PILE_PI * tan(phi)) * pow(tan(0.25 * PILE_PI + 0.5 * phi), 2.0);
+}
+
+static double tip_nq(const pile *p, const pile_row *row) {
+  const double area = PILE_PI * (p->outer * p->outer - p->inner * p->inner);
+  return row->smooth[PILE_TIP] / area / (p->s.density * PILE_GRAVITY * row->depth);
+}
+
+/* ---- roughness ------------------------------------------------------------------------------- */
+
+/* Over the second half of the path: rms of the rows about their smooth curve, and rms of the single
+ * steps about their rows, each over the mean total force. */
+static void find_roughness(const pile *p, double *rows, double *steps) {
+  double off = 0.0, jitter = 0.0, sum = 0.0;
+  int64_t count = 0;
+  for (int64_t i = 0; i < p->rows; i++) {
+    const pile_row *r = &p->row[i];
+    if (r->depth < 0.5 * p->s.depth) continue;
+    const double d = r->force[PILE_TOTAL] - r->smooth[PILE_TOTAL];
+    off += d * d;
+    jitter += r->jitter * r->jitter;
+    sum += r->smooth[PILE_TOTAL];
+    count++;
+  }
+  *rows = count ? sqrt(off * (double)count) / sum : NAN;
+  *steps = count ? sqrt(jitter * (double)count) / sum : NAN;
+}
+
+/* ---- files ----------------------------------------------------------------------------------- */
+
+static bool write_load(app *a, const pile *p) {
+  output f;
+  if (!output_open(&f, a, p->s.out, "load.csv")) return false;
+  output_text(&f, "depth_m,total_N,tip_N,inside_N,outside_N,total_smooth_N,tip_smooth_N,"
+                  "inside_smooth_N,outside_smooth_N,step_rms_N,plug_height_m,plug_level_m,"
+                  "outside_beta_N\n");
+  static const int order[PILE_FORCES] = {PILE_TOTAL, PILE_TIP, PILE_INSIDE, PILE_OUTSIDE};
+  for (int64_t i = 0; i < p->rows; i++) {
+    const pile_row *r = &p->row[i];
+    double row[13] = {r->depth};
+    for (int k = 0; k < PILE_FORCES; k++) {
+      row[1 + k] = r->force[order[k]];
+      row[5 + k] = r->smooth[order[k]];
+    }
+    row[9] = r->jitter;
+    row[10] = r->plug;
+    row[11] = r->plug - r->depth;
+    row[12] = r->depth > 0.0 ? pile_beta_shaft(p, r->depth) : 0.0;
+    csv_row(&f, 13, row);
+  }
+  return output_close(&f);
+}
+
+static void write_settings(output *f, const pile *p) {
+  const pile_settings *s = &p->s;
+  json_number(f, "h", s->h);
+  json_number(f, "speed", s->speed);
+  json_number(f, "friction", s->friction);
+  json_number(f, "phi", s->phi);
+  json_text(f, "cone", pile_cone_name(s));
+  json_number(f, "inner_diameter", s->inner_diameter);
+  json_number(f, "wall", s->wall);
+  json_number(f, "penalty", p->penalty);
+  json_number(f, "dt", p->dt);
+}
+
+static bool write_summary(app *a, const pile *p, const pile_row *end) {
+  double rows, steps;
+  output f;
+  find_roughness(p, &rows, &steps);
+  if (!mpm_model_summary(a, &p->m, p->s.out, &f)) return false;
+  write_settings(&f, p);
+  json_number(&f, "depth", end->depth);
+  json_number(&f, "force_total", end->smooth[PILE_TOTAL]);
+  json_number(&f, "force_tip", end->smooth[PILE_TIP]);
+  json_number(&f, "force_inside", end->smooth[PILE_INSIDE]);
+  json_number(&f, "force_outside", end->smooth[PILE_OUTSIDE]);
+  json_number(&f, "roughness", rows);
+  json_number(&f, "roughness_steps", steps);
+  json_number(&f, "plug_height", end->plug);
+  json_number(&f, "plug_level", end->plug - end->depth);
+  json_integer(&f, "particles_inside_pile", p->seen.inside);
+  json_number(&f, "deepest_inside_pile", p->seen.deepest);
+  json_number(&f, "volume_ratio_max", p->seen.ratio_max);
+  json_number(&f, "volume_ratio_min", p->seen.ratio_min);
+  json_number(&f, "rest_speed", p->seen.rest_speed);
+  json_number(&f, "outside_beta", pile_beta_shaft(p, end->depth));
+  json_number(&f, "tip_nq", tip_nq(p, end));
+  json_number(&f, "nq_prandtl", pile_nq(p));
+  json_end(&f);
+  return output_close(&f);
+}
+
+static void tell(const pile *p, const pile_row *end) {
+  printf("Results: %s/ (load.csv, fields-*.csv, summary.json, *.png%s)\n", p->s.out,
+         p->vtk ? ", pile.vtkhdf" : "");
+  printf(
+      "depth %.4g m: %.5g N = tip %.5g + inside %.5g + outside %.5g N; plug %.4g m high, %+.3g m "
+      "against the ground\n",
+      end->depth, end->smooth[PILE_TOTAL], end->smooth[PILE_TIP], end->smooth[PILE_INSIDE],
+      end->smooth[PILE_OUTSIDE], end->plug, end->plug - end->depth);
+  printf("V/V0 %.4g to %.4g, particles inside the wall: %lld\n", p->seen.ratio_min,
+         p->seen.ratio_max, (long long)p->seen.inside);
+}
+
+bool pile_finish(app *a, void *user) {
+  pile *p = user;
+  static const pile_row none = {.plug = NAN};
+  const pile_row *end = p->rows > 0 ? &p->row[p->rows - 1] : &none;
+  const bool good =
+      pile_write_frames(a, p) && write_load(a, p) && write_summary(a, p, end) && pile_draw(a, p);
+  if (good) tell(p, end);
+  return good;
+}

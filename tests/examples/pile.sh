@@ -1,0 +1,49 @@
+#!/bin/sh
+# pile.sh DIRECTORY: mps-pile on a coarse grid: what must hold on any, and what it writes. The seed's
+# size: docs/verification/wls-mpm.md.
+. "$(dirname "$0")/checks.sh"
+coarse="--h 0.02 --wall 0.04 --inner-diameter 0.16 --soil 0.4x0.5 --depth 0.2 --speed 0.5"
+
+"$1/mps-pile" $coarse --rest 0.3 --threads 1 --out "$work/a" >"$work/log"
+has "$work/log" "particles inside the wall: 0"
+s=$work/a/summary.json
+in_range "$s" particles_inside_pile 0 0
+in_range "$s" deepest_inside_pile 0 0
+in_range "$s" volume_ratio_max 1 1.02
+in_range "$s" volume_ratio_min 0.3 1
+in_range "$s" rest_speed 0 1e-3 # m/s: the soil rests before the pile comes
+in_range "$s" depth 0.19999 0.20001
+in_range "$s" plug_height 0.08 0.2 # the plug sinks with the pile
+in_range "$s" tip_nq 25 200         # Prandtl's 48.9 is for a long footing at the surface
+in_range "$s" force_inside 1 1000
+in_range "$s" force_outside 1 1000
+in_range "$s" roughness 0 0.1
+in_range "$s" steps 2000 3000
+awk -F'[:,]' '/"force_total"/ { total = $2 } /"force_tip"|"force_inside"|"force_outside"/ { sum += $2 }
+  END { exit !(total > 0 && (total - sum) ^ 2 < 1e-18 * total ^ 2) }' "$s" || fail "the parts' sum"
+has "$work/a/load.csv" "depth_m,total_N,tip_N,inside_N,outside_N,total_smooth_N,"
+has "$work/a/fields-4.csv" "r_m,z_m,mean_stress_kPa,deviatoric_stress_kPa,plastic_strain"
+if command -v gnuplot >/dev/null; then
+  for picture in pile mean_stress deviatoric_stress shear_strain; do
+    [ "$(head -c 4 "$work/a/$picture.png" | tail -c 3)" = PNG ] || fail "$picture.png"
+  done
+fi
+
+# The same for every number of threads; friction is all that the shafts bear.
+"$1/mps-pile" $coarse --rest 0.3 --threads 3 --out "$work/b" >/dev/null
+cmp "$work/a/load.csv" "$work/b/load.csv" || fail "three threads give another load.csv"
+"$1/mps-pile" $coarse --friction 0 --frames 1 --threads 1 --out "$work/smooth" >/dev/null
+in_range "$work/smooth/summary.json" force_inside -1e-9 1e-9
+in_range "$work/smooth/summary.json" force_outside -1e-9 1e-9
+in_range "$work/smooth/summary.json" force_tip 100 1e5
+
+# Ctrl-C: what there is gets written.
+"$1/mps-pile" --soil 0.4x2 --threads 1 --out "$work/c" >"$work/out" 2>"$work/log" &
+pid=$!
+until grep -q "particles, dt" "$work/out"; do sleep 0.1; done
+kill -INT "$pid"
+status=0
+wait "$pid" || status=$?
+[ "$status" -eq 130 ] || fail "Ctrl-C: exit code $status"
+has "$work/log" "what there is gets written"
+has "$work/c/summary.json" '"force_total"'
