@@ -215,6 +215,7 @@ MPSI_INLINE source source_of(const mps_mpm *mpm, int dim, int64_t p) {
   for (int a = 0; a < dim; a++) {
     out.v[1 + a] = c->v[a][p];
     out.body[1 + a] = c->m[p] * mpm->def.gravity[a];
+    if (c->f[a]) out.body[1 + a] += c->f[a][p];
     for (int d = 0; d < dim; d++) {
       if (!mpm->standard) out.L[d][1 + a] = mpm->def.cell * c->L[dim * a + d][p];
       out.stress[d][1 + a] = -c->V[p] * c->s[symmetric[a][d]][p];

@@ -56,6 +56,12 @@ void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cells *cells, int64_t begin, int64_t 
   }
 }
 
+void mpsi_mpm_elastic(const mps_mpm *mpm, int64_t particle, double *wave, double *shear) {
+  const mpsi_law_use *law = mpsi_law_of(mpm, particle);
+  *wave = law->modulus;
+  *shear = mpsi_material_shear(law->material);
+}
+
 void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli) {
   for (int64_t k = begin, next; k < end; k = next) {
     next = end_of_run(mpm->p.law, k, end);

@@ -121,6 +121,7 @@ mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material, int64_t co
     if (mpm->p.law) mpm->p.law[k] = number; /* else there is but the one */
     mpsi_mpm_begin_law(mpm, &mpm->law[number], k);
   }
+  mpm->stale = true; /* the dashpots of absorbing walls follow the laws */
   mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
   return mpsi_mpm_take_stock(mpm, __func__);
 }

@@ -51,6 +51,7 @@ typedef struct mpsi_nodes {
   bool inside;     /* some node is in a body */
   uint32_t bodies; /* bit b: a block of cells whose tile covers it may meet body b */
   int32_t first_touch, touches;
+  int32_t first_held, holds; /* of the list of mpsi_held */
 } mpsi_nodes;
 
 /* A node, four doubles: particles to nodes sums mass and momentum; then lane 0 is the mass and the
@@ -81,6 +82,49 @@ typedef struct mpsi_touch_node {
   double force[3];  /* normal force fn, (29) */
 } mpsi_touch_node;
 
+/* ---- walls, moving nodes, loads ---------------------------------------------------------------
+ */
+
+#define MPSI_WALLS 6 /* 2 axis + upper */
+#define MPSI_HOLDS (MPSI_WALLS + MPS_MPM_MAX_BOXES)
+enum { MPSI_HOLD_NONE = -1, MPSI_HOLD_BOX = -2 }; /* besides mps_wall */
+
+/* Nodes that are not free: those of a wall, or in a box. */
+typedef struct mpsi_hold {
+  int32_t kind;              /* mps_wall, or MPSI_HOLD_... */
+  int32_t axis;              /* across the wall; component that a box holds */
+  int64_t first[3], last[3]; /* nodes */
+  double friction;
+  mps_signal *signal[3];
+  double factor[3];
+  double v[3];     /* m/s, of the step being made */
+  double force[3]; /* N, on the particles, mean over the last step */
+  bool finds;      /* absorbing: still looks for the forces at rest */
+  double found;    /* s, how long it has looked, with the step being made */
+} mpsi_hold;
+
+/* The nodes of a block that a hold holds. */
+typedef struct mpsi_held {
+  int32_t hold, at[3]; /* at: of the block */
+  int64_t dash;        /* absorbing: first of own/MPSI_SIDE dashpots, else -1 */
+  double impulse[3];   /* N s, of the step being made */
+} mpsi_held;
+
+/* At a node of an absorbing wall. */
+typedef struct mpsi_dash {
+  double across, along; /* rho c A, kg/s */
+  double rest[3];       /* N, force of the wall at rest */
+} mpsi_dash;
+
+/* A load: force area * traction on each particle. */
+typedef struct mpsi_traction {
+  int64_t count; /* 0: none */
+  int64_t *id;
+  double *area; /* NULL: by the spacing */
+  double traction[3];
+  mps_signal *signal;
+} mpsi_traction;
+
 /* A law that particles obey. */
 typedef struct mpsi_law_use {
   mps_material *material;
@@ -97,6 +141,7 @@ typedef struct mpsi_columns {
   double *V, *m;
   double *J;    /* V/V0 where some law reads it, else NULL */
   double *F[9]; /* as L; NULL where all laws do without */
+  double *f[3]; /* N, body accelerations and loads of the step; NULL where there are none */
   int64_t *law; /* number of each particle's law; NULL: one law */
 } mpsi_columns;
 
@@ -167,7 +212,20 @@ struct mps_mpm {
   uint8_t *reached; /* corner of a cell that holds a particle */
   int64_t near_count, meeting_count, touch_count;
   mpsi_room meeting_room, touch_room, touch_node_room, inside_room, reached_room;
-  bool stale; /* particles must be sorted before the next step */
+  /* walls, moving nodes: see walls.c, absorb.c; loads: see loads.c */
+  mpsi_hold hold[MPSI_HOLDS];
+  mpsi_held *held;
+  mpsi_dash *dash;
+  int64_t held_count;
+  mpsi_room held_room, dash_room, old_held_room, old_dash_room;
+  mpsi_traction *traction;
+  int32_t tractions;
+  double *body_acceleration[3]; /* NULL where the set has no such field */
+  double *force_memory;         /* of p.f */
+  double least_mass;            /* kg, of a particle; in axisymmetry over its radius, kg/m */
+  uint32_t told_of_chatter;     /* bit b: the log knows that body b's contact is too stiff */
+  bool told_of_dt;              /* ... that dt is above the limit */
+  bool stale;                   /* particles must be sorted before the next step */
   bool broken;
   double time, dt, speed; /* s; s, of the step being made; largest c + |v| of the particles, m/s */
   double contact_mass[MPS_MPM_MAX_BODIES]; /* kg, of the nodes in contact with each body */
@@ -212,6 +270,12 @@ static inline void mpsi_unravel(int k, int side, int *at) {
   at[0] = k % side, at[1] = k / side % side, at[2] = k / side / side;
 }
 
+/* Node k of a block within the plane of nodes across `axis`. */
+static inline int mpsi_plane_index(int axis, int k) {
+  const int plane = MPSI_SIDE * MPSI_SIDE;
+  return axis == 0 ? k / MPSI_SIDE : axis == 1 ? k / plane * MPSI_SIDE + k % MPSI_SIDE : k % plane;
+}
+
 /* Position x[3] of the node `local` of the block at `at`. */
 static inline void mpsi_node_position(const mps_mpm *mpm, const int32_t *at, const double *local,
                                       double *x) {
@@ -244,6 +308,28 @@ void mpsi_mpm_finish_nodes(mps_mpm *mpm, int64_t g, int32_t worker);
 void mpsi_mpm_touch(mps_mpm *mpm, int64_t g);
 void mpsi_mpm_rub(mps_mpm *mpm, int64_t g);
 void mpsi_mpm_react(mps_mpm *mpm);
+/* walls.c: which blocks of nodes are held, after a sort; what holds them in a step of dt; the held
+ * nodes of a block; the forces of the step. */
+mps_status mpsi_mpm_list_holds(mps_mpm *mpm, const char *function);
+void mpsi_mpm_begin_holds(mps_mpm *mpm, double dt);
+void mpsi_mpm_hold_nodes(mps_mpm *mpm, int64_t g);
+void mpsi_mpm_sum_holds(mps_mpm *mpm);
+/* Puts a wall of a definition that has been checked in its place. */
+void mpsi_mpm_place_wall(mps_mpm *mpm, int32_t number, int32_t kind, double friction);
+mps_status mpsi_mpm_check_wall(mps_context *context, const char *function, int32_t axis, bool upper,
+                               int32_t kind, double friction, bool on_axis, bool standard);
+/* absorb.c: dashpots of the absorbing walls, after a sort, taking over the forces at rest from the
+ * list before; one of them at work: the velocity of its node across and along. */
+void mpsi_mpm_place_dashes(mps_mpm *mpm, const mpsi_held *old, int64_t old_count,
+                           const mpsi_dash *old_dash);
+void mpsi_mpm_dash(const mps_mpm *mpm, const mpsi_hold *hold, mpsi_dash *dash, const double *node,
+                   const double *before, double *velocity);
+/* loads.c: body accelerations and loads of the step to p.f. */
+mps_status mpsi_mpm_make_forces(mps_mpm *mpm, const char *function);
+void mpsi_mpm_find_forces(mps_mpm *mpm);
+void mpsi_mpm_drop_loads(mps_mpm *mpm);
+/* law.c: K + 4G/3 and G (Pa) of a particle's material at zero strain. */
+void mpsi_mpm_elastic(const mps_mpm *mpm, int64_t particle, double *wave, double *shear);
 /* materials.c: puts the law at the end of the list, with the fields it works on; nothing has
  * changed on an error. Gives the particle (an index) the state in which the law begins. */
 mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *material);

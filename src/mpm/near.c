@@ -158,6 +158,9 @@ static void mark_reached(mps_mpm *mpm, int64_t b, int32_t worker) {
  * which divides momentum and force by different masses. */
 static mps_status find_cut(mps_mpm *mpm, const char *function) {
   const bool by_weight = mpm->def.transfer == MPS_TRANSFER_WEIGHT;
+  bool finds = false; /* an absorbing wall asks for the forces of its first step */
+  for (int32_t k = 0; k < MPSI_WALLS && !(mpm->def.settle > 0.0); k++)
+    finds = finds || mpm->hold[k].finds;
   const int corners = 1 << mpm->dim;
   for (int64_t g = 0; g < mpm->node_count; g++)
     mpm->nodes[g].side = -1, mpm->nodes[g].split = false;
@@ -166,7 +169,7 @@ static mps_status find_cut(mps_mpm *mpm, const char *function) {
     mpsi_cells *cells = &mpm->cells[b];
     bool inside = false;
     for (int q = 0; q < corners; q++) inside = inside || mpm->nodes[cells->to[q]].inside;
-    bool rough = by_weight || mpm->flip > 0.0;
+    bool rough = by_weight || mpm->flip > 0.0 || (finds && cells->edge);
     for (int32_t k = 0; inside && k < cells->meetings; k++)
       rough = rough || mpm->body[mpm->meeting[cells->first_meeting + k].body]->def.friction > 0.0;
     cells->cut = cells->edge || inside || mpm->standard;

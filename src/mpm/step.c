@@ -8,6 +8,7 @@
 
 #define SMALL_SET 2048  /* particles: below, sharing the work costs more than it gains */
 #define UNIT_NODES 4096 /* at least in a unit of work on nodes, which take a few ns each */
+#define CHATTER 6.0     /* k dt^2/m above which a contact does not settle */
 
 /* ---- work ------------------------------------------------------------------------------------ */
 
@@ -95,22 +96,54 @@ static void find_contact_mass(mps_mpm *mpm) {
     mpm->contact_mass[mpm->touch[t].body] += mpm->touch[t].mass;
 }
 
+/* Tells the log, once each, of a step too large for the present state. */
+static void warn_of_step(mps_mpm *mpm, double dt) {
+  const double limit = mps_mpm_limit(mpm), courant = mpm->def.courant;
+  if (!mpm->told_of_dt && dt > courant * limit * (1.0 + 1e-9)) {
+    mpm->told_of_dt = true;
+    mpsi_log(mpm->context, MPS_LOG_WARNING,
+             "step %lld: dt is %.4g s, %.3g of the limit (49), above the fraction courant = %g: "
+             "choose a smaller dt, or 0 for a step that follows the limit",
+             (long long)mpm->steps, dt, dt / limit, courant);
+  }
+  double stiffest = 0.0;
+  for (int32_t k = 0; k < mpm->laws; k++) stiffest = fmax(stiffest, mpm->law[k].modulus);
+  for (int32_t b = 0; b < mpm->bodies; b++) {
+    const double k =
+        mpsi_body_penalty(mpm->body[b], stiffest, 2.0 * mpm->gap, mpm->def.cell, mpm->def.courant);
+    const double ratio = k * dt * dt / mpm->least_mass;
+    if (!(ratio > CHATTER) || (mpm->told_of_chatter >> b & 1)) continue;
+    mpm->told_of_chatter |= UINT32_C(1) << b;
+    mpsi_log(mpm->context, MPS_LOG_WARNING,
+             "contact with body %d will chatter: k dt^2/m = %.3g, above %g; use a penalty k of at "
+             "most %.4g or a dt of at most %.4g s",
+             b, ratio, CHATTER, k * CHATTER / ratio, dt * sqrt(CHATTER / ratio));
+  }
+}
+
 static mps_status take_step(mps_mpm *mpm, const char *function, double dt) {
   const int32_t geometry = mpm->def.geometry, spline = mpm->def.spline - 2;
   mps_status status = MPS_OK;
-  if (mpm->stale) status = mpsi_mpm_sort(mpm, function);
+  if (mpm->stale) {
+    status = mpsi_mpm_sort(mpm, function);
+    if (status == MPS_OK) status = mpsi_mpm_list_holds(mpm, function);
+  }
   if (status == MPS_OK) status = mpsi_mpm_find_near(mpm, function);
   if (status != MPS_OK) {
     mpm->broken = true;
     return status;
   }
   mpm->dt = dt;
+  warn_of_step(mpm, dt);
+  mpsi_mpm_begin_holds(mpm, dt);
+  mpsi_mpm_find_forces(mpm);
   mpsi_mpm_for_nodes(mpm, mpsi_mpm_clear_nodes);
   mpsi_mpm_for_colours(mpm, mpm->kernels->p2g[geometry][spline]);
   mpsi_mpm_for_nodes(mpm, mpsi_mpm_update_nodes);
   if (mpm->meeting_count > 0) find_contact_mass(mpm);
   mpsi_mpm_for_nodes(mpm, mpsi_mpm_finish_nodes);
   mpsi_mpm_for_cells(mpm, mpm->kernels->g2p[geometry][spline]);
+  mpsi_mpm_sum_holds(mpm);
   if (mpm->stencil) mpsi_mpm_apply_laws_by_cell(mpm);
   if (mpm->bodies > 0) mpsi_mpm_react(mpm);
   mpm->time += dt;
@@ -195,7 +228,10 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
               {mpm->touch_node_room.capacity, sizeof *mpm->touch_node},
               {mpm->inside_room.capacity, sizeof *mpm->inside},
               {mpm->reached_room.capacity, sizeof *mpm->reached},
+              {mpm->held_room.capacity + mpm->old_held_room.capacity, sizeof *mpm->held},
+              {mpm->dash_room.capacity + mpm->old_dash_room.capacity, sizeof *mpm->dash},
               {mpm->worker_count, mpsi_worker_bytes(mpm)},
+              {mpm->force_memory ? mpm->count : 0, (size_t)mpm->dim * sizeof(double)},
               {mpm->stencil ? mpm->count : 0, sizeof *mpm->stencil},
               {mpm->count, 2 * sizeof *mpm->radix + sizeof *mpm->flags}};
   int64_t bytes = 0;

@@ -2,7 +2,7 @@
  * result up to round-off for every order of the particles.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "digest.h"
-#include "mpm_scene.h"
+#include "mpm_held.h"
 #include "pthread_executor.h"
 
 static const char *const names[] = {"id",     "position", "velocity", "velocity_gradient",
@@ -84,6 +84,24 @@ static mpm_scene fall_in_space(mps_context *context, int options) {
   return s;
 }
 
+/* The scene with everything that holds and loads, in the plane and in space; the forces that act.
+ */
+static mpm_scene hold(mps_context *context, int32_t geometry, uint64_t *hash) {
+  int32_t box = -1, loads[2];
+  mpm_scene s = held_begin(context, geometry, &box, loads);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 10));
+  double force[3];
+  for (int32_t k = -1; k < 4; k++) {
+    mps_assert_ok(context, k < 0 ? mps_mpm_get_nodes_force(s.mpm, box, force)
+                                 : mps_mpm_get_wall_force(s.mpm, k / 2, k % 2, force));
+    for (int c = 0; c < 3; c++) *hash = digest_add(*hash, &force[c]);
+  }
+  return s;
+}
+
+/* Besides the options of `fall`: the scene with everything that holds. */
+enum { HELD = 1024 };
+
 static uint64_t hash_of(int32_t executor, int32_t threads, int32_t geometry, int options) {
   mps_context_def def =
       executor == MPS_EXECUTOR_CALLER ? pthread_executor_def(&threads) : mps_context_defaults();
@@ -93,11 +111,14 @@ static uint64_t hash_of(int32_t executor, int32_t threads, int32_t geometry, int
   if (mps_context_create(&def, &context, NULL, 0) != MPS_OK) return 0;
   mps_body *disc = NULL;
   mps_body_state b = {0};
-  mpm_scene s = geometry == MPS_SPACE ? fall_in_space(context, options)
-                                      : fall(context, geometry, options, false, &disc);
+  uint64_t forces = 0;
+  mpm_scene s = options & HELD          ? hold(context, geometry, &forces)
+                : geometry == MPS_SPACE ? fall_in_space(context, options)
+                                        : fall(context, geometry, options, false, &disc);
   if (disc) mps_assert_ok(context, mps_body_get_state(disc, &b));
   assert_true(!disc || b.velocity[0] > -2.9); /* it has hit */
-  const uint64_t hash = digest_add(digest_fields(context, s.particles, names), &b.spin[2]);
+  uint64_t hash = digest_add(digest_fields(context, s.particles, names), &b.spin[2]);
+  hash = digest_add(hash, &forces);
   mps_body_destroy(&disc);
   mpm_scene_end(&s);
   mps_context_destroy(&context);
@@ -129,6 +150,8 @@ static void options_too(void **state) {
   same_bits(MPS_AXISYMMETRIC, BY_CELL, 1, threads);
   same_bits(MPS_PLANE_STRAIN, STANDARD, 1, threads);
   same_bits(MPS_SPACE, STANDARD | BY_CELL, 1, threads);
+  same_bits(MPS_PLANE_STRAIN, HELD, 4, (int32_t[]){1, 2, 3, 8});
+  same_bits(MPS_SPACE, HELD, 4, (int32_t[]){1, 2, 3, 8});
 }
 
 static void any_order_of_particles(void **state) {

@@ -225,7 +225,7 @@ static void tells_what_left(void **state) {
   mpm_scene_affine(&s, v0, L);
   mps_mpm_def def = small_def();
   def.upper[0] = 0.2;
-  def.dt = 4e-4;
+  def.dt = 3e-4;
   mpm_scene_solve(&s, &def);
   mps_assert_fails(context, mps_mpm_step(s.mpm, 200), MPS_ERROR_DIVERGED, "check dt");
   assert_true(mps_context_error(context)->particle >= 0);
