@@ -2,7 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_model.h"
 
-static void destroy(mpm_model *model) {
+void mpm_model_destroy(mpm_model *model) {
   mps_mpm_destroy(&model->mpm);
   for (int b = 0; b < MPM_MODEL_BODIES; b++) mps_body_destroy(&model->body[b]);
   mps_material_destroy(&model->material);
@@ -17,8 +17,9 @@ static int build_and_march(app *a, const char *out, mpm_model *model, const mpm_
   fflush(stdout);
   const mps_status status = parts->march(user);
   if (status == MPS_ERROR_CANCELLED) {
-    app_error(a, "interrupted at t = %.4g s: nothing is written", mps_mpm_time(model->mpm));
-    return APP_INTERRUPTED;
+    app_error(a, "interrupted at t = %.4g s: %s", mps_mpm_time(model->mpm),
+              model->keeps ? "what there is gets written" : "nothing is written");
+    return !model->keeps || parts->finish(a, user) ? APP_INTERRUPTED : APP_FAILED;
   }
   return app_check(a, status) && parts->finish(a, user) ? APP_OK : APP_FAILED;
 }
@@ -28,7 +29,7 @@ int mpm_model_run(const options_program *program, int64_t threads, const char *o
   app a;
   if (!app_start(&a, program->name, threads)) return app_finish(&a, APP_FAILED);
   const int code = build_and_march(&a, out, model, parts, user);
-  destroy(model);
+  mpm_model_destroy(model);
   return app_finish(&a, code);
 }
 

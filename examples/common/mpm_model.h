@@ -16,6 +16,7 @@ typedef struct mpm_model {
   mps_material *material;
   mps_mpm *mpm;
   mps_body *body[MPM_MODEL_BODIES]; /* NULL where there is none */
+  bool keeps; /* `build` sets it where an interrupted run is worth finishing as far as it came */
 } mpm_model;
 
 /* The parts of a run; `user` is that of mpm_model_run. */
@@ -29,6 +30,9 @@ typedef struct mpm_model_parts {
  * Returns the exit code. */
 int mpm_model_run(const options_program *program, int64_t threads, const char *out,
                   mpm_model *model, const mpm_model_parts *parts, void *user);
+
+/* Gives all objects back and nulls them: before `march` builds the next of several models. */
+void mpm_model_destroy(mpm_model *model);
 
 /* Opens DIR/summary.json and writes what every summary begins with. */
 bool mpm_model_summary(app *a, const mpm_model *model, const char *directory, output *file);
