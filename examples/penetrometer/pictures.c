@@ -31,7 +31,7 @@ static bool draw_force(app *a, const penetrometer *p) {
   output_text(&f,
               "set title \"%s\\n{/*0.85 diameter %g m, h = %g m, %g m/s, {/Symbol m} = %g}\"\n"
               "set xlabel 'depth of the lowest point (mm)'\nset ylabel '%s'\n"
-              "set key left top Left reverse opaque\nset yrange [0:*]\nplot ",
+              "set key left top Left reverse opaque\nset xrange [0:*]\nset yrange [0:*]\nplot ",
               title_of(p), p->s.diameter, p->s.h, p->s.speed, p->s.friction,
               clay ? "force over c {/Symbol p}D^2/4" : "force (kN)");
   plot_curve(&f, "force.csv", 2, unit, "linecolor rgb '#bbbbbb' linewidth 0.7", "every row");
@@ -40,7 +40,7 @@ static bool draw_force(app *a, const penetrometer *p) {
                "total, axisymmetric");
   plot_curve(&f, "force.csv", 5, unit, "linecolor rgb '#1f4e8c' linewidth 1.6",
              space ? "total, in space" : "total, axisymmetric");
-  if (p->s.tip == PEN_CONE) {
+  if (p->s.tip == PEN_CONE && p->s.friction > 0.0) {
     plot_curve(&f, "force.csv", 6, unit, "dashtype 2 linecolor rgb '#1f4e8c'", "its tip");
     plot_curve(&f, "force.csv", 7, unit, "dashtype 3 linecolor rgb '#2e8b57'", "its shaft");
   }
@@ -85,16 +85,22 @@ static double most_of(const pen_run *r, bool strain) {
   return most > 0.0 ? most : 1.0;
 }
 
+/* A round distance of tics: two or three on `length`. */
+static double tics_of(double length) {
+  const double ten = pow(10.0, floor(log10(0.5 * length))), lead = 0.5 * length / ten;
+  return ten * (lead < 2.0 ? 1.0 : lead < 5.0 ? 2.0 : 5.0);
+}
+
 static bool draw_section(app *a, const penetrometer *p) {
   const double R = pen_radius(p);
   const double side = fmin(p->run[0].size[0], fmax(3.0 * R, p->s.depth));
-  const double top = 0.3 * fmin(R, p->s.depth) + 2.0 * p->s.h;
+  const double top = 0.6 * fmin(R, p->s.depth) + 2.0 * p->s.h;
   const double bottom =
       -fmin(p->run[0].size[p->run[0].geometry == MPS_SPACE ? 2 : 1], p->s.depth + 3.0 * R);
   const bool both = p->runs == 2 || (p->run[0].geometry == MPS_SPACE && p->s.model == PEN_WHOLE);
   const bool axial = p->run[0].geometry != MPS_SPACE;
   const double left = both || axial ? -side : 0.0, right = axial ? 0.0 : side;
-  const double pixels = 620.0, scale = pixels / (top - bottom);
+  const double pixels = 600.0, scale = pixels / (top - bottom);
   const int panel = (int)(scale * (right - left)), width = 2 * (panel + 210), height = 800;
   const bool plastic = p->s.law != PEN_ELASTIC;
   output f;
@@ -107,7 +113,7 @@ static bool draw_section(app *a, const penetrometer *p) {
       "'#08306b')\nset xlabel '%s'\nset ylabel 'z (m)'\nset xrange [%.9g:%.9g]\nset yrange "
       "[%.9g:%.9g]\nset xtics %.9g\nset tmargin at screen %.4g\nset bmargin at screen %.4g\n",
       title_of(p), p->runs == 2 ? "axisymmetric |  x (m)  | in space" : "x (m)", left, right,
-      bottom, top, (right - left) / 4.0, 0.87, 0.87 - pixels / height);
+      bottom, top, tics_of(side), 0.87, 0.87 - pixels / height);
   draw_outline(&f, p, top);
   for (int k = 0; k < (plastic ? 2 : 1); k++) {
     const double from = 90.0 + k * (panel + 210.0);
@@ -116,7 +122,7 @@ static bool draw_section(app *a, const penetrometer *p) {
                 "set colorbox user origin screen %.4g, screen 0.3 size screen %.4g, screen 0.4\n"
                 "set cbrange [0:%.4g]\n"
                 "plot 'section.csv' every ::1 using 1:2:%d with points pointtype 5 pointsize %.3g "
-                "linecolor palette notitle\n",
+                "linecolor palette notitle\nset ylabel ''\n",
                 from / wide, (from + panel) / wide, k ? "Plastic strain" : "Displacement (m)",
                 (from + panel + 18.0) / wide, 16.0 / wide, most_of(&p->run[0], k), k + 3,
                 fmax(0.15, 0.085 * scale * p->s.h / 0.5 / cbrt((double)p->s.ppc)));

@@ -100,18 +100,28 @@ static void smooth(const penetrometer *p, pen_run *r) {
   for (int64_t i = 0; i < r->rows; i++) {
     int64_t reach = half < i ? half : i; /* as far to either side: no lag on a slope */
     if (reach > r->rows - 1 - i) reach = r->rows - 1 - i;
+    if (reach < half / 4) reach = half / 4; /* but at the ends */
+    const int64_t first = i < reach ? 0 : i - reach;
+    const int64_t last = i + reach < r->rows ? i + reach : r->rows - 1;
     for (int k = 0; k < PEN_FORCES; k++) {
       double sum = 0.0;
-      for (int64_t j = i - reach; j <= i + reach; j++) sum += r->row[j].force[k];
-      r->row[i].smooth[k] = sum / (double)(2 * reach + 1);
+      for (int64_t j = first; j <= last; j++) sum += r->row[j].force[k];
+      r->row[i].smooth[k] = sum / (double)(last - first + 1);
     }
   }
 }
 
 /* ---- the end --------------------------------------------------------------------------------- */
 
-/* Displacements, and the particles within a spacing of the section y = 0. */
-static mps_status take_section(pen_run *r) {
+/* What lies in the section: within a spacing of y = 0. Where all is the same around the axis also a
+ * wedge of 20 degrees, drawn by its distance from the axis: next to the tip soil is stretched
+ * around it, and few particles are left in the thin slice. */
+static bool in_section(const penetrometer *p, double thick, double x, double y) {
+  return fabs(y) < thick || (p->s.tip != PEN_STL && fabs(y) < 0.364 * fabs(x));
+}
+
+/* Displacements, and the particles in the section. */
+static mps_status take_section(const penetrometer *p, pen_run *r) {
   mps_view x, start, moved, strain;
   const int up = up_of(r);
   mps_status status = mps_particles_add_field(r->m.particles, "displacement", 0);
@@ -128,10 +138,12 @@ static mps_status take_section(pen_run *r) {
       *mps_view_f64(&moved, k, c) = d;
       square += d * d;
     }
-    if (up == 2 && fabs(*mps_view_f64(&x, k, 1)) > thick) continue;
-    r->point[r->points++] = (pen_point){(up == 2 ? 1.0 : -1.0) * *mps_view_f64(&x, k, 0),
-                                        *mps_view_f64(&x, k, up) - r->size[up], sqrt(square),
-                                        plastic ? *mps_view_f64(&strain, k, 0) : 0.0};
+    const double X = *mps_view_f64(&x, k, 0), Y = up == 2 ? *mps_view_f64(&x, k, 1) : 0.0;
+    if (!in_section(p, thick, X, Y)) continue;
+    const double from_axis = p->s.tip == PEN_STL ? X : copysign(hypot(X, Y), X);
+    r->point[r->points++] =
+        (pen_point){up == 2 ? from_axis : -X, *mps_view_f64(&x, k, up) - r->size[up], sqrt(square),
+                    plastic ? *mps_view_f64(&strain, k, 0) : 0.0};
   }
   return MPS_OK;
 }
@@ -163,7 +175,7 @@ static mps_status march(penetrometer *p, pen_run *r) {
   r->steps = mps_mpm_steps(r->m.mpm);
   smooth(p, r);
   const bool ended = status == MPS_OK || status == MPS_ERROR_CANCELLED;
-  const mps_status taken = ended ? take_section(r) : MPS_OK;
+  const mps_status taken = ended ? take_section(p, r) : MPS_OK;
   return status == MPS_OK ? taken : status;
 }
 

@@ -118,8 +118,8 @@ static void ring_breathes(void **state) {
   }
   for (int n = 0; n < STEPS; n++) apart = fmax(apart, fabs(v[1][n] - v[0][n]));
   print_message("velocities apart: %.3g of the first one\n", apart / 0.01);
-  mps_assert_near(period[0], exact, 0.01 * exact);
-  mps_assert_near(period[1], exact, 0.01 * exact);
+  mps_assert_near(period[0], exact, 0.003 * exact);
+  mps_assert_near(period[1], exact, 0.003 * exact);
   assert_true(apart < 0.03 * 0.01);
 }
 
