@@ -50,11 +50,10 @@ static bool same_side(const mps_mpm *mpm, int32_t g, int local, const double *s)
   return true;
 }
 
-/* Of a node inside a body. */
+/* Of a node of the domain inside a body. */
 static bool active(const mps_mpm *mpm, const mpsi_cells *cells, uint8_t state, const support *s,
                    int i, int j, int k) {
   const mpsi_stencil *at = &s->at;
-  if (state & MPSI_OUTSIDE) return false;
   const unsigned di = (unsigned)(i - at->own[0]), dj = (unsigned)(j - at->own[1]);
   const unsigned dk = (unsigned)(k - at->own[2]);
   if (di <= 1 && dj <= 1 && dk <= 1) return true;
@@ -74,16 +73,19 @@ MPSI_INLINE uint32_t active_weights(const mps_mpm *mpm, const mpsi_cells *cells,
       const double across = at->w[1][j] * at->w[2][k];
       const int t = mpsi_tile_index(at->at[0], at->at[1] + j, at->at[2] + k);
       const uint8_t *state = worker->state + t;
-      double *row = w + 16 * k + 4 * j;
+      mpsi_quad row = across * mpsi_get(at->w[0]);
       uint32_t any;
       memcpy(&any, state, sizeof any);
-      for (int i = 0; i < 4; i++) row[i] = across * at->w[0][i];
-      if (any == 0) continue;
-      for (int i = 0; i <= spline; i++) {
-        if (state[i] == 0) continue;
-        bodies |= worker->inside[t + i];
-        if (!active(mpm, cells, state[i], s, i, j, k)) row[i] = 0.0;
+      if (any != 0) {
+        mpsi_mask there = {-1, -1, -1, -1}; /* in a register: the row is read as a vector soon */
+        MPSI_UNROLL for (int i = 0; i <= spline; i++) {
+          if (state[i] == 0) continue;
+          bodies |= worker->inside[t + i];
+          if (state[i] & MPSI_OUTSIDE || !active(mpm, cells, state[i], s, i, j, k)) there[i] = 0;
+        }
+        row = (mpsi_quad)((mpsi_mask)row & there);
       }
+      mpsi_put(w + 16 * k + 4 * j, row);
     }
   return bodies;
 }
@@ -113,24 +115,26 @@ MPSI_INLINE void moments(int dim, int spline, const mpsi_stencil *at, const doub
   }
 }
 
-/* Inverse of a symmetric positive definite matrix of which the upper half is given, by Gauss and
- * Jordan; returns its determinant. */
+/* Inverse of a symmetric positive definite matrix by Gauss and Jordan; returns its determinant.
+ * Rows are vectors: what is written by parts and read whole would wait for the memory. */
 MPSI_INLINE double invert(int n, double m[4][4]) {
   double determinant = 1.0;
+  mpsi_quad row[4];
   for (int i = 0; i < n; i++)
-    for (int j = 0; j < i; j++) m[i][j] = m[j][i];
-  for (int p = 0; p < n; p++) {
-    const double pivot = m[p][p], one = 1.0 / pivot;
+    for (int j = 0; j < 4; j++) row[i][j] = j >= n ? 0.0 : j < i ? m[j][i] : m[i][j];
+  MPSI_UNROLL for (int p = 0; p < n; p++) {
+    const double pivot = row[p][p];
     determinant *= pivot;
-    m[p][p] = 1.0;
-    for (int j = 0; j < n; j++) m[p][j] *= one;
-    for (int i = 0; i < n; i++) {
+    row[p][p] = 1.0;
+    row[p] *= 1.0 / pivot;
+    MPSI_UNROLL for (int i = 0; i < n; i++) {
       if (i == p) continue;
-      const double factor = m[i][p];
-      m[i][p] = 0.0;
-      for (int j = 0; j < n; j++) m[i][j] -= factor * m[p][j];
+      const double factor = row[i][p];
+      row[i][p] = 0.0;
+      row[i] -= factor * row[p];
     }
   }
+  for (int i = 0; i < n; i++) mpsi_put(m[i], row[i]);
   return determinant;
 }
 
