@@ -80,7 +80,7 @@ static double most_of(const pen_run *r, bool strain) {
   for (int64_t i = 0; i < r->points; i++)
     value[i] = strain ? r->point[i].strain : r->point[i].moved;
   qsort(value, (size_t)r->points, sizeof *value, ascending);
-  if (r->points > 0) most = value[(r->points - 1) * 99 / 100];
+  if (r->points > 0) most = value[(r->points - 1) * 997 / 1000];
   free(value);
   return most > 0.0 ? most : 1.0;
 }
