@@ -89,6 +89,7 @@ double pen_gap(const penetrometer *p);      /* m: between tip and ground at the 
 
 mps_status pen_push(void *user);
 double pen_depth(const penetrometer *p, const pen_run *r);
+double pen_reached(const pen_run *r); /* m: depth of the last row */
 
 /* ---- results.c, pictures.c ------------------------------------------------------------------- */
 

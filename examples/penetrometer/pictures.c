@@ -56,7 +56,7 @@ static bool draw_force(app *a, const penetrometer *p) {
 
 /* The outline of cone or sphere in front of the soil; of a mesh none. */
 static void draw_outline(output *f, const penetrometer *p, double top) {
-  const double R = pen_radius(p), tip = -p->s.depth, shoulder = tip + pen_shoulder(p);
+  const double R = pen_radius(p), tip = -pen_reached(&p->run[0]), shoulder = tip + pen_shoulder(p);
   static const char *const look = "fillcolor rgb '#555555' fillstyle solid noborder front";
   if (p->s.tip == PEN_SPHERE)
     output_text(f, "set object 1 circle at 0,%.9g size first %.9g %s\n", tip + R, R, look);

@@ -20,6 +20,8 @@ double pen_depth(const penetrometer *p, const pen_run *r) {
   return r->size[up_of(r)] + above - state.position[up_of(r)];
 }
 
+double pen_reached(const pen_run *r) { return r->rows > 0 ? r->row[r->rows - 1].depth : 0.0; }
+
 /* ---- looks ----------------------------------------------------------------------------------- */
 
 static mps_status look_at_volumes(const penetrometer *p, pen_run *r) {

@@ -16,7 +16,7 @@ double pen_hertz(const penetrometer *p, double depth) {
 
 static double area(const penetrometer *p) { return PEN_PI * pen_radius(p) * pen_radius(p); }
 
-/* Means over the last part of the path that was asked for (N); of Hertz' force too. */
+/* Means over the last part of the path (N); of Hertz' force too. */
 typedef struct mean {
   double force[PEN_FORCES], hertz;
 } mean;
@@ -25,7 +25,7 @@ static mean mean_of(const penetrometer *p, const pen_run *r) {
   mean m = {{0.0}, 0.0};
   int64_t count = 0;
   for (int64_t i = 0; i < r->rows; i++) {
-    if (r->row[i].depth < (1.0 - LAST) * p->s.depth) continue;
+    if (r->row[i].depth < (1.0 - LAST) * pen_reached(r)) continue;
     for (int k = 0; k < PEN_FORCES; k++) m.force[k] += r->row[i].force[k];
     m.hertz += pen_hertz(p, r->row[i].depth);
     count++;
@@ -95,7 +95,7 @@ static bool write_summary(app *a, const penetrometer *p, const mean *m) {
   output f;
   if (!mpm_model_summary(a, &r->m, p->s.out, &f)) return false;
   write_settings(&f, p);
-  json_number(&f, "depth", r->rows > 0 ? r->row[r->rows - 1].depth : NAN);
+  json_number(&f, "depth", pen_reached(r));
   json_number(&f, "force_total", m[0].force[PEN_TOTAL]);
   json_number(&f, "force_tip", m[0].force[PEN_TIP]);
   json_number(&f, "force_shaft", m[0].force[PEN_SHAFT]);
@@ -125,7 +125,7 @@ static bool write_summary(app *a, const penetrometer *p, const mean *m) {
 static void tell_run(const penetrometer *p, const pen_run *r, const mean *m) {
   const double q = 1e-3 * m->force[PEN_TIP] / area(p);
   printf("%s: mean of the last fifth of %.4g m: %.5g N = tip %.5g + shaft %.5g N, q = %.4g kPa",
-         r->geometry == MPS_SPACE ? "space" : "axisymmetric", p->s.depth, m->force[PEN_TOTAL],
+         r->geometry == MPS_SPACE ? "space" : "axisymmetric", pen_reached(r), m->force[PEN_TOTAL],
          m->force[PEN_TIP], m->force[PEN_SHAFT], q);
   if (p->s.law == PEN_CLAY) printf(" = %.4g c", q / p->s.cohesion);
   if (p->s.law == PEN_ELASTIC && p->s.tip == PEN_SPHERE)

@@ -26,6 +26,10 @@ if command -v gnuplot >/dev/null; then
   done
 fi
 
+# The same for every number of threads.
+"$1/mps-penetrometer" $coarse --threads 3 --depth 0.1 --friction 0.2 --out "$work/b" >/dev/null
+cmp "$work/a/force.csv" "$work/b/force.csv" || fail "three threads give another force.csv"
+
 # A sphere presses elastic ground as Hertz says, and more in so small a box. The whole model differs
 # a little from four quarters: shape functions cut off by a wall are not those of mirrored nodes.
 sphere="--tip sphere --law elastic --poisson 0.3 --diameter 1 --h 0.1 --soil 1.6x1.6x1 --depth 0.05"
