@@ -20,12 +20,15 @@
 #include "contact/body.h"
 #include "core/internal.h"
 #include "material/material_internal.h"
+#include "restart.h"
 
 #include <mps/mpm.h>
 
 #define MPSI_SIDE 8
 #define MPSI_TILE_SIDE (MPSI_SIDE + 5)
-#define MPSI_CORNERS 8 /* blocks of nodes under a tile: 4 in 2D */
+#define MPSI_CORNERS 8        /* blocks of nodes under a tile: 4 in 2D */
+#define MPSI_MAX_CELLS 0x1p30 /* from the origin: nodes are counted exactly */
+#define MPSI_NO_WALL (INT64_C(1) << 30)
 
 /* A block of cells with particles. */
 typedef struct mpsi_cells {
@@ -216,6 +219,9 @@ bool mpsi_room_ensure(mps_context *context, mpsi_room *room, int64_t count, size
 
 /* layout.c: sorts the particles by blocks and builds the lists of blocks. */
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function);
+/* layout.c: builds the lists of blocks for particles that are in order, as at an earlier sort. */
+mps_status mpsi_mpm_place_blocks(mps_mpm *mpm, const char *function, int64_t count,
+                                 mpsi_block *block);
 /* near.c: finds which blocks are near which bodies, and which blocks are cut and split. */
 mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function);
 /* grid.c: one block of nodes: emptied; velocities, normal contact forces; friction and walls. */

@@ -1,0 +1,148 @@
+/* restart.c - see restart.h. Sums over particles go block by block in the set's order: a run that
+ * goes on bit for bit needs both as they were at the last sort.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "restart.h"
+
+#include "mpm_private.h"
+
+#include <stdio.h>
+#include <string.h>
+
+mps_context *mpsi_mpm_context(const mps_mpm *mpm) { return mpm->context; }
+mps_particles *mpsi_mpm_particles(const mps_mpm *mpm) { return mpm->particles; }
+
+mps_status mpsi_mpm_get_record(const mps_mpm *mpm, const char *function, mpsi_mpm_record *out) {
+  if (mpm->broken)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+                     "step %lld has failed: there is no state to go on from",
+                     (long long)mpm->steps);
+  snprintf(out->material, sizeof out->material, "%s", mps_material_name(mpm->material));
+  out->geometry = mpm->def.geometry, out->spline = mpm->def.spline;
+  out->bodies = mpm->bodies;
+  out->cell = mpm->def.cell;
+  for (int c = 0; c < mpm->dim; c++) {
+    out->origin[c] = mpm->def.origin[c];
+    out->low[c] = mpm->low[c], out->high[c] = mpm->high[c];
+  }
+  out->stale = mpm->stale;
+  out->speed = mpm->speed;
+  for (int32_t b = 0; b < mpm->bodies; b++) mpsi_body_get_record(mpm->body[b], &out->body[b]);
+  out->blocks = mpm->cell_count;
+  out->block = mpsi_alloc(mpm->context, out->blocks, sizeof *out->block);
+  if (!out->block)
+    return mpsi_fail_memory(mpm->context, function, (size_t)out->blocks * sizeof *out->block);
+  for (int64_t k = 0; k < out->blocks; k++) {
+    const mpsi_cells *cells = &mpm->cells[k];
+    out->block[k][0] = cells->begin;
+    for (int c = 0; c < 3; c++) out->block[k][1 + c] = cells->at[c];
+  }
+  return MPS_OK;
+}
+
+/* ---- is it of this solver? ------------------------------------------------------------------- */
+
+static mps_status check_grid(const mps_mpm *mpm, const char *function, const char *path,
+                             const mpsi_mpm_record *r) {
+  const mps_mpm_def *d = &mpm->def;
+  if (r->geometry != d->geometry || r->spline != d->spline)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "'%.200s' has geometry %lld and spline %lld, the solver %d and %d", path,
+                     (long long)r->geometry, (long long)r->spline, d->geometry, d->spline);
+  if (r->cell != d->cell)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "'%.200s' has cell %.17g m, the solver %.17g m", path, r->cell, d->cell);
+  for (int c = 0; c < mpm->dim; c++) {
+    if (r->origin[c] != d->origin[c])
+      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "'%.200s' has origin[%d] %.17g m, the solver %.17g m", path, c, r->origin[c],
+                       d->origin[c]);
+    if (r->low[c] != mpm->low[c] || r->high[c] != mpm->high[c])
+      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "'%.200s' has walls in %c at nodes %lld and %lld, the solver at %lld and "
+                       "%lld (2^30: none)",
+                       path, "xyz"[c], (long long)r -> low[c], (long long)r -> high[c],
+                       (long long)mpm -> low[c], (long long)mpm -> high[c]);
+  }
+  return MPS_OK;
+}
+
+static mps_status check_body(const mps_mpm *mpm, const char *function, const char *path, int32_t b,
+                             const mpsi_body_record *r) {
+  mpsi_body_record own;
+  mpsi_body_get_record(mpm->body[b], &own);
+  if (r->shape == own.shape && r->faces == own.faces && r->motion == own.motion &&
+      r->parts == own.parts)
+    return MPS_OK;
+  return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                   "body %d of '%.200s' has shape %lld, %lld faces, motion %lld and %lld parts, "
+                   "that of the solver %lld, %lld, %lld and %lld",
+                   b, path, (long long)r->shape, (long long)r->faces, (long long)r->motion,
+                   (long long)r->parts, (long long)own.shape, (long long)own.faces,
+                   (long long)own.motion, (long long)own.parts);
+}
+
+mps_status mpsi_mpm_check_record(const mps_mpm *mpm, const char *function, const char *path,
+                                 const mpsi_mpm_record *record) {
+  mps_status status = check_grid(mpm, function, path, record);
+  if (status != MPS_OK) return status;
+  char material[MPSI_MATERIAL_NAME];
+  snprintf(material, sizeof material, "%s", mps_material_name(mpm->material));
+  if (strcmp(record->material, material) != 0)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "'%.200s' has the material '%s', the solver '%s'", path, record->material,
+                     material);
+  if (record->bodies != mpm->bodies)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "'%.200s' has %lld bodies, the solver %d: add them before", path,
+                     (long long)record->bodies, mpm->bodies);
+  for (int32_t b = 0; b < mpm->bodies && status == MPS_OK; b++)
+    status = check_body(mpm, function, path, b, &record->body[b]);
+  return status;
+}
+
+/* ---- is it whole? ---------------------------------------------------------------------------- */
+
+static bool orderly(const mps_mpm *mpm, const mpsi_mpm_record *r) {
+  if (r->blocks < 1 || r->blocks > mpm->count || r->block[0][0] != 0) return false;
+  for (int64_t k = 0; k < r->blocks; k++) {
+    const int64_t *b = r->block[k], *next = r->block[k + 1 < r->blocks ? k + 1 : k];
+    for (int c = 0; c < 3; c++) /* far from where 32 bits end, also of the nodes */
+      if (b[1 + c] < -MPSI_NO_WALL || b[1 + c] > MPSI_NO_WALL || (c >= mpm->dim && b[1 + c] != 0))
+        return false;
+    if (next == b) break;
+    int c = 3;
+    while (c > 1 && b[c] == next[c]) c--;
+    if (b[0] >= next[0] || b[c] >= next[c]) return false;
+  }
+  return r->block[r->blocks - 1][0] < mpm->count;
+}
+
+bool mpsi_mpm_fits_record(const mps_mpm *mpm, const mpsi_mpm_record *r, const double *x) {
+  if (!(r->speed > 0.0 && isfinite(r->speed)) || !orderly(mpm, r)) return false;
+  for (int64_t k = 0, b = 0; k < mpm->count; k++) {
+    if (b + 1 < r->blocks && k == r->block[b + 1][0]) b++;
+    for (int c = 0; c < mpm->dim; c++) {
+      const double X = mpsi_grid_coordinate(mpm, c, x[c * mpm->count + k]);
+      if (!(fabs(X) < MPSI_MAX_CELLS && X >= (double)mpm->low[c] && X <= (double)mpm->high[c]))
+        return false;
+      const double local =
+          mpsi_base(mpm->def.spline, X) - 1.0 - (double)(r->block[b][1 + c] * MPSI_SIDE);
+      if (!r->stale && (local < -1.0 || local > MPSI_SIDE)) return false;
+    }
+  }
+  return true;
+}
+
+mps_status mpsi_mpm_set_record(mps_mpm *mpm, const char *function, const mpsi_mpm_record *record,
+                               double time, int64_t steps) {
+  mpm->broken = true;
+  const mps_status status = mpsi_mpm_place_blocks(mpm, function, record->blocks, record->block);
+  if (status != MPS_OK) return status;
+  for (int32_t b = 0; b < mpm->bodies; b++) mpsi_body_set_record(mpm->body[b], &record->body[b]);
+  mpm->stale = record->stale != 0;
+  mpm->speed = record->speed;
+  mpm->time = time;
+  mpm->steps = steps;
+  mpm->broken = false;
+  return MPS_OK;
+}
