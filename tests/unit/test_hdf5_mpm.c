@@ -64,7 +64,7 @@ static mps_status make_driven_body(mps_context *context, int32_t dim, const chan
   mps_signal *rise = NULL;
   mps_body_def def = mps_body_defaults();
   def.friction = 0.4;
-  def.position[1] = 0.05;
+  def.position[1] = dim == 3 ? 0.075 : 0.05;
   mps_status status = mps_signal_table(context, MPS_SIGNAL_VELOCITY, 2, t, v, &rise);
   if (status != MPS_OK) return status;
   status = dim == 3        ? mps_body_create_half_space(context, &def, up, out)
@@ -195,7 +195,7 @@ static void stop_and_go_on(int32_t geometry, int64_t steps, int stops) {
   for (int b = 0; b < BODIES; b++) { /* all this has been of contact, and of sorting */
     mps_reaction r;
     mps_assert_ok(context, mps_body_get_reaction(whole.body[b], -1, &r));
-    assert_true(r.contacts > 0);
+    assert_true(r.impulse[1] != 0.0);
   }
   assert_true(mps_particles_epoch(whole.s.particles) > epoch);
   drop(&whole);
