@@ -113,20 +113,22 @@ MPS_API MPS_NODISCARD mps_status mps_checkpoint_read(mps_particles *particles, c
                                                      mps_checkpoint *info);
 
 /** Writes a checkpoint of the solver's set (see mps_checkpoint_write, also for errors) with all
- * that the solver needs to go on: time, steps, order and blocks of the particles; of its bodies
- * motion, load, reactions and impulses. Of `info` (NULL: the defaults) only user_key and the
- * user_data are read. The run is not touched: it goes on as if it had not been saved. Between steps
- * only, such as in the callback of mps_mpm_run. MPS_ERROR_STATE: a step has failed. */
+ *  that the solver needs to go on: time, steps, order and blocks of the particles, forces of the
+ *  walls; of its bodies motion, load, reactions and impulses. Of `info` (NULL: the defaults) only
+ *  user_key and the user_data are read. The run is not touched: it goes on as if it had not been
+ *  saved. Between steps only, such as in the callback of mps_mpm_run. MPS_ERROR_STATE: a step has
+ *  failed. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_save(mps_mpm *mpm, const char *path,
                                               const mps_checkpoint *info);
 
-/** Puts the state of mps_mpm_save into a solver that was built in the same way: the same particles,
- *  spacing, geometry, spline, cell, origin and places of walls, a material of the same name, bodies
- *  of the same shapes, motions and numbers of parts in the same order; where the solver is now does
- *  not matter, a step that failed is forgotten. From there it goes on bit for bit as the run that
- *  never stopped, for every number of threads. What else the caller has set up is not in the file:
- *  constants of materials, gravity, dt, courant, signals, friction and masses are those of the
- *  solver at hand.
+/** Puts the state of mps_mpm_save into a solver that was built in the same way. What must agree:
+ *  the particles, spacing, geometry, scheme, spline, cell, origin, places and kinds of walls and
+ *  boxes, number of loads, whether there are body accelerations, names and order of materials, and
+ *  the shapes, motions and numbers of parts of the bodies in their order. Where the solver is now
+ *  does not matter; a step that failed is forgotten. From there it goes on bit for bit as the run
+ *  that never stopped, for every number of threads. All else is the caller's to set up again,
+ * before or after, and may be other than it was: constants of materials, gravity, dt, courant,
+ * signals, loads, friction, masses of bodies.
  *
  *  The set takes the order of the file: views taken before are stale. On an error nothing has
  *  changed, except that MPS_ERROR_MEMORY may leave a solver that takes no step (MPS_ERROR_STATE)

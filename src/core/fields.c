@@ -151,7 +151,7 @@ static mps_status describe_field(mps_particles *p, const char *function, const c
           components, p->def.dim, expected);
     *out = (mpsi_field){
         .unit = row->unit, .meaning = row->meaning, .dtype = row->dtype, .components = expected};
-    if (strcmp(name, "id") == 0) out->flags = MPS_VIEW_READONLY;
+    if (strcmp(name, "id") == 0 || strcmp(name, "material") == 0) out->flags = MPS_VIEW_READONLY;
   } else {
     const mps_status status = describe_user_field(p, function, name, components, out);
     if (status != MPS_OK) return status;

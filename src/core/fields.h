@@ -80,7 +80,11 @@
   X(volume_ratio, F64, 1, "-", "volume over the volume without stress, V/V0",                      \
     "the caller (initial state; 0: 1); WLS-MPM with a law that reads it", "after a step or a run") \
   X(deformation_gradient, F64, MPSI_PER_GRADIENT, "-", "F row by row, in 2D then the hoop or out-of-plane stretch", \
-    "the caller (initial state; all 0: no deformation); WLS-MPM with a law that reads it", "after a step or a run")
+    "the caller (initial state; all 0: no deformation); WLS-MPM with a law that reads it", "after a step or a run") \
+  X(body_acceleration, F64, MPSI_PER_DIM, "m/s2", "acceleration by forces on the particle's mass, besides gravity", \
+    "the caller", "as written; WLS-MPM reads it in each step if it is there at creation") \
+  X(material, I64, 1, "-", "number of the law: 0 that of creation, then as mps_mpm_set_material met them", \
+    "WLS-MPM (the caller only reads)", "after mps_mpm_set_material")
 /* clang-format on */
 
 /* Number of components in a set of dimension `dim`, from the table's number or code. */

@@ -1,6 +1,6 @@
 /* mpm_checkpoint.c - the state of the WLS-MPM solver in a checkpoint: the group `solver`, its
- * attributes, the dataset `blocks` and a group `body<n>` of attributes for each body.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * attributes, the datasets `blocks` and `dashpots`, and a group `body<n>` of attributes for each
+ * body. SPDX-License-Identifier: BSD-3-Clause */
 #include "checkpoint.h"
 
 #include "mpm/restart.h"
@@ -16,10 +16,14 @@
   { #member, false, (count), offsetof(type, member) }
 
 static const mpsi_h5_row solver_rows[] = {
-    INTEGERS(mpsi_mpm_record, geometry, 1), INTEGERS(mpsi_mpm_record, spline, 1),
-    INTEGERS(mpsi_mpm_record, bodies, 1),   INTEGERS(mpsi_mpm_record, low, 3),
-    INTEGERS(mpsi_mpm_record, high, 3),     INTEGERS(mpsi_mpm_record, stale, 1),
-    NUMBERS(mpsi_mpm_record, cell, 1),      NUMBERS(mpsi_mpm_record, origin, 3),
+    INTEGERS(mpsi_mpm_record, geometry, 1),      INTEGERS(mpsi_mpm_record, spline, 1),
+    INTEGERS(mpsi_mpm_record, scheme, 1),        INTEGERS(mpsi_mpm_record, materials, 1),
+    INTEGERS(mpsi_mpm_record, loads, 1),         INTEGERS(mpsi_mpm_record, accelerated, 1),
+    INTEGERS(mpsi_mpm_record, kind, MPSI_HOLDS), INTEGERS(mpsi_mpm_record, finds, MPSI_HOLDS),
+    NUMBERS(mpsi_mpm_record, found, MPSI_HOLDS), NUMBERS(mpsi_mpm_record, force, MPSI_HOLDS * 3),
+    INTEGERS(mpsi_mpm_record, bodies, 1),        INTEGERS(mpsi_mpm_record, low, 3),
+    INTEGERS(mpsi_mpm_record, high, 3),          INTEGERS(mpsi_mpm_record, stale, 1),
+    NUMBERS(mpsi_mpm_record, cell, 1),           NUMBERS(mpsi_mpm_record, origin, 3),
     NUMBERS(mpsi_mpm_record, speed, 1)};
 #define SOLVER_ROWS (sizeof solver_rows / sizeof *solver_rows)
 
@@ -47,17 +51,20 @@ typedef struct passage {
 } passage;
 
 static void body_name(int64_t b, char name[16]) { snprintf(name, 16, "body%d", (int)b); }
+static void material_name(int64_t k, char name[16]) { snprintf(name, 16, "material%d", (int)k); }
 
 /* ---- writing --------------------------------------------------------------------------------- */
 
-static bool write_blocks(hid_t group, const mpsi_mpm_record *record) {
-  const hsize_t size[2] = {(hsize_t)record->blocks, 4};
+/* A table of integers or numbers; none where it has no rows. */
+static bool write_table(hid_t group, const char *name, bool integer, int64_t rows, int columns,
+                        const void *from) {
+  const hsize_t size[2] = {(hsize_t)rows, (hsize_t)columns};
+  const hid_t type = integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE;
+  if (rows == 0) return true;
   const hid_t space = H5Screate_simple(2, size, NULL);
-  const hid_t dataset = space < 0 ? -1
-                                  : H5Dcreate2(group, "blocks", H5T_NATIVE_INT64, space,
-                                               H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  bool good = dataset >= 0 && H5Dwrite(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                                       record->block) >= 0;
+  const hid_t dataset =
+      space < 0 ? -1 : H5Dcreate2(group, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  bool good = dataset >= 0 && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, from) >= 0;
   if (dataset >= 0) good = H5Dclose(dataset) >= 0 && good;
   if (space >= 0) H5Sclose(space);
   return good;
@@ -76,9 +83,14 @@ static bool write_solver(hid_t root, void *user) {
   const mpsi_mpm_record *record = ((const passage *)user)->record;
   const hid_t group = H5Gcreate2(root, "solver", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   bool good = group >= 0 && mpsi_h5_attribute_text(group, "name", SOLVER_NAME) &&
-              mpsi_h5_attribute_text(group, "material", record->material) &&
               mpsi_h5_write_rows(group, solver_rows, SOLVER_ROWS, record) &&
-              write_blocks(group, record);
+              write_table(group, "blocks", true, record->blocks, 4, record->block) &&
+              write_table(group, "dashpots", false, record->dashes, MPSI_DASH, record->dash);
+  for (int64_t k = 0; good && k < record->materials; k++) {
+    char name[16];
+    material_name(k, name);
+    good = mpsi_h5_attribute_text(group, name, record->material[k]);
+  }
   for (int64_t b = 0; good && b < record->bodies; b++)
     good = write_body(group, b, &record->body[b]);
   if (group >= 0) H5Gclose(group);
@@ -94,6 +106,7 @@ static mpsi_mpm_record *new_record(mps_context *context, const char *function) {
 
 static void drop_record(mps_context *context, mpsi_mpm_record *record) {
   mpsi_free(context, record->block);
+  mpsi_free(context, record->dash);
   mpsi_free(context, record);
 }
 
@@ -122,29 +135,54 @@ mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *us
 
 /* ---- reading --------------------------------------------------------------------------------- */
 
-static mps_status stage_blocks(mpsi_reading *r, hid_t group, mpsi_mpm_record *record) {
-  const hid_t dataset = H5Dopen2(group, "blocks", H5P_DEFAULT);
+/* A table into memory of its own. */
+static mps_status stage_table(mpsi_reading *r, hid_t group, const char *name, bool integer,
+                              int columns, int64_t *rows, void **to) {
+  if (H5Lexists(group, name, H5P_DEFAULT) <= 0) return MPS_OK; /* without rows */
+  const hid_t dataset = H5Dopen2(group, name, H5P_DEFAULT);
   const hid_t type = dataset < 0 ? -1 : H5Dget_type(dataset);
   const hid_t space = dataset < 0 ? -1 : H5Dget_space(dataset);
   hsize_t size[2] = {0, 0};
   mps_status status = MPS_OK;
-  if (type < 0 || space < 0 || H5Tget_class(type) != H5T_INTEGER ||
+  if (type < 0 || space < 0 || H5Tget_class(type) != (integer ? H5T_INTEGER : H5T_FLOAT) ||
       H5Sget_simple_extent_ndims(space) != 2 || H5Sget_simple_extent_dims(space, size, NULL) < 0 ||
-      size[0] < 1 || size[0] > (hsize_t)r->header.count || size[1] != 4)
-    status = mpsi_checkpoint_malformed(r, "solver/blocks");
+      size[0] < 1 || size[0] > INT32_MAX || size[1] != (hsize_t)columns)
+    status = mpsi_checkpoint_malformed(r, name);
   if (status == MPS_OK) {
-    record->blocks = (int64_t)size[0];
-    record->block = mpsi_alloc(r->context, record->blocks, sizeof *record->block);
-    if (!record->block)
-      status =
-          mpsi_fail_memory(r->context, r->function, (size_t)record->blocks * sizeof *record->block);
-    else if (H5Dread(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, record->block) < 0)
-      status = mpsi_checkpoint_malformed(r, "solver/blocks");
+    *rows = (int64_t)size[0];
+    *to = mpsi_alloc(r->context, *rows * columns, 8);
+    if (!*to)
+      status = mpsi_fail_memory(r->context, r->function, (size_t)(*rows * columns) * 8);
+    else if (H5Dread(dataset, integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL,
+                     H5P_DEFAULT, *to) < 0)
+      status = mpsi_checkpoint_malformed(r, name);
   }
   if (space >= 0) H5Sclose(space);
   if (type >= 0) H5Tclose(type);
   if (dataset >= 0) H5Dclose(dataset);
   return status;
+}
+
+static mps_status stage_tables(mpsi_reading *r, hid_t group, mpsi_mpm_record *record) {
+  void *block = NULL, *dash = NULL;
+  mps_status status = stage_table(r, group, "blocks", true, 4, &record->blocks, &block);
+  if (status == MPS_OK)
+    status = stage_table(r, group, "dashpots", false, MPSI_DASH, &record->dashes, &dash);
+  record->block = block;
+  record->dash = dash;
+  return status;
+}
+
+static mps_status stage_materials(mpsi_reading *r, hid_t group, mpsi_mpm_record *record) {
+  if (record->materials < 1 || record->materials > MPS_MPM_MAX_MATERIALS)
+    return mpsi_checkpoint_malformed(r, "solver/materials");
+  for (int64_t k = 0; k < record->materials; k++) {
+    char name[16];
+    material_name(k, name);
+    if (!mpsi_h5_read_text(group, name, sizeof record->material[k], record->material[k]))
+      return mpsi_checkpoint_malformed(r, name);
+  }
+  return MPS_OK;
 }
 
 static mps_status stage_body(mpsi_reading *r, hid_t solver, int64_t b, mpsi_body_record *body) {
@@ -168,13 +206,13 @@ static mps_status stage_solver(mpsi_reading *r, void *user) {
   const hid_t group = H5Gopen2(r->file.id, "solver", H5P_DEFAULT);
   mps_status status = MPS_OK;
   if (group < 0 || !mpsi_h5_read_text(group, "name", sizeof name, name) ||
-      strcmp(name, SOLVER_NAME) != 0 ||
-      !mpsi_h5_read_text(group, "material", sizeof record->material, record->material))
+      strcmp(name, SOLVER_NAME) != 0)
     status = mpsi_checkpoint_malformed(r, "its solver is not " SOLVER_NAME);
   if (status == MPS_OK) status = mpsi_h5_read_rows(r, group, solver_rows, SOLVER_ROWS, record);
   if (status == MPS_OK && (record->bodies < 0 || record->bodies > MPS_MPM_MAX_BODIES))
     status = mpsi_checkpoint_malformed(r, "solver/bodies");
-  if (status == MPS_OK) status = stage_blocks(r, group, record);
+  if (status == MPS_OK) status = stage_materials(r, group, record);
+  if (status == MPS_OK) status = stage_tables(r, group, record);
   for (int64_t b = 0; status == MPS_OK && b < record->bodies; b++)
     status = stage_body(r, group, b, &record->body[b]);
   if (group >= 0) H5Gclose(group);
@@ -186,8 +224,11 @@ static mps_status check_solver(mpsi_reading *r, void *user) {
   const mps_status status = mpsi_mpm_check_record(p->mpm, r->function, r->path, p->record);
   if (status != MPS_OK) return status;
   const mpsi_staged_field *x = mpsi_checkpoint_field(r, "position");
+  const mpsi_staged_field *law = mpsi_checkpoint_field(r, "material");
   if (!x || x->integer ||
-      !mpsi_mpm_fits_record(p->mpm, p->record, (const double *)(const void *)x->values))
+      !mpsi_mpm_fits_record(p->mpm, p->record, (const double *)(const void *)x->values,
+                            law && law->integer ? (const int64_t *)(const void *)law->values
+                                                : NULL))
     return mpsi_checkpoint_malformed(r, "its blocks do not hold its particles");
   return MPS_OK;
 }

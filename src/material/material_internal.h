@@ -41,6 +41,9 @@ bool mpsi_material_stiffens(const mps_material *material);
 /* Writes an upper bound of K + 4G/3 (Pa) in the present state of each particle. */
 void mpsi_material_wave_moduli(const mps_material *material, const mps_material_block *block,
                                double *moduli);
+/* G (Pa) at zero strain; of a user's law, which does not tell, a third of the wave modulus (nu =
+ * 1/4). */
+double mpsi_material_shear(const mps_material *material);
 /* Pa s; 0 for all but fluids and users' laws. */
 double mpsi_material_viscosity(const mps_material *material);
 /* Fills the history columns of new particles [begin, end). */

@@ -47,3 +47,7 @@ void mpsi_material_wave_moduli(const mps_material *material, const mps_material_
   else
     for (int64_t k = 0; k < block->count; k++) moduli[k] = material->wave_modulus;
 }
+
+double mpsi_material_shear(const mps_material *material) {
+  return material->kind == MPSI_LAW_USER ? material->wave_modulus / 3.0 : material->law.shear;
+}

@@ -22,7 +22,8 @@ MPSI_INLINE bool mpsi_touches(const mps_mpm *mpm, const mps_body *body, int dim,
   const mpsi_foot foot = mpsi_body_foot(body, out->x);
   const double d = foot.distance - mpm->gap;
   if (!(d < 0.0)) return false;
-  double k = mpsi_body_penalty(body, mpm->modulus, 2.0 * mpm->gap, mpm->def.cell, mpm->def.courant);
+  double k = mpsi_body_penalty(body, mpsi_law_of(mpm, particle)->modulus, 2.0 * mpm->gap,
+                               mpm->def.cell, mpm->def.courant);
   if (mpm->def.geometry == MPS_AXISYMMETRIC) k *= out->x[0];
   double v[3];
   mpsi_body_velocity(&body->pose, foot.at, v);

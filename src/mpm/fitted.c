@@ -1,5 +1,6 @@
 /* fitted.c - particles whose support bodies or edges cut: the least-squares fit over the active
- * nodes, transfers with it, and contact, seed B (5), (6), (28)-(30). Compiled once for each
+ * nodes, transfers with it, and contact, seed B (5), (6), (28)-(30). With the standard scheme all
+ * particles, and the splines in place of the fit, seed B Table 1. Compiled once for each
  * instruction set.
  *
  * Active are, of the stencil's nodes in the domain: those in no body; the corners of the particle's
@@ -138,10 +139,35 @@ MPSI_INLINE double invert(int n, double m[4][4]) {
   return determinant;
 }
 
+/* The standard scheme's fit: the spline and its derivatives, whatever lies in the support. */
+MPSI_INLINE uint32_t take_splines(const mps_mpm *mpm, const mpsi_cells *cells,
+                                  const mpsi_worker *worker, int dim, int spline,
+                                  const mpsi_stencil *at, mpsi_shape_values *out) {
+  double slope[3][4] = {{0.0}};
+  uint32_t bodies = 0;
+  for (int c = 0; c < dim; c++) mpsi_slopes(spline, -at->s[c][0], slope[c]);
+  const mpsi_quad x = mpsi_get(at->w[0]), by_x = mpm->inverse * mpsi_get(slope[0]);
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++) {
+      const double y = at->w[1][j], z = at->w[2][k];
+      const int n = 16 * k + 4 * j;
+      mpsi_put(out->w + n, x * (y * z));
+      mpsi_put(out->phi + n, x * (y * z));
+      mpsi_put(out->gradient[0] + n, by_x * (y * z));
+      mpsi_put(out->gradient[1] + n, x * (mpm->inverse * slope[1][j] * z));
+      if (dim == 3) mpsi_put(out->gradient[2] + n, x * (mpm->inverse * y * slope[2][k]));
+      const int t = mpsi_tile_index(at->at[0], at->at[1] + j, at->at[2] + k);
+      for (int i = 0; i <= spline && cells->meetings > 0; i++) bodies |= worker->inside[t + i];
+    }
+  out->determinant = 1.0;
+  return bodies;
+}
+
 /* Returns the bodies that hold any of the stencil's nodes. */
 MPSI_INLINE uint32_t fit(const mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
                          int dim, int spline, const support *s, mpsi_shape_values *out) {
   const mpsi_stencil *at = &s->at;
+  if (mpm->standard) return take_splines(mpm, cells, worker, dim, spline, at, out);
   double q[4][4];
   const uint32_t bodies = active_weights(mpm, cells, worker, dim, spline, s, out->w);
   moments(dim, spline, at, out->w, q);
@@ -189,8 +215,9 @@ MPSI_INLINE source source_of(const mps_mpm *mpm, int dim, int64_t p) {
   for (int a = 0; a < dim; a++) {
     out.v[1 + a] = c->v[a][p];
     out.body[1 + a] = c->m[p] * mpm->def.gravity[a];
+    if (c->f[a]) out.body[1 + a] += c->f[a][p];
     for (int d = 0; d < dim; d++) {
-      out.L[d][1 + a] = mpm->def.cell * c->L[dim * a + d][p];
+      if (!mpm->standard) out.L[d][1 + a] = mpm->def.cell * c->L[dim * a + d][p];
       out.stress[d][1 + a] = -c->V[p] * c->s[symmetric[a][d]][p];
     }
   }
@@ -325,6 +352,21 @@ MPSI_INLINE void scatter_body(mps_mpm *mpm, const mpsi_cells *cells, const mpsi_
   }
 }
 
+/* FLIP: what the particle keeps of its own, flip times its velocity less that of the nodes before
+ * the forces, in the lanes of the mass; add_own() in g2p.c adds it. */
+MPSI_INLINE void keep_own(const mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
+                          int64_t p, const support *at, const mpsi_shape_values *f,
+                          double (*motion)[4]) {
+  const under from = nodes_under(mpm, cells, dim);
+  mpsi_quad before = {0.0};
+  FOR_NODES(dim, spline) {
+    const int q = at->corner[0][i] | at->corner[1][j] | at->corner[2][k];
+    before += f->phi[n] * mpsi_get(from.side[q][local_of(at, i, j, k)]);
+  }
+  for (int c = 0; c < dim; c++)
+    motion[1 + c][MPSI_MASS] = mpm->flip * (mpm->p.v[c][p] - before[MPSI_VECTOR + c]);
+}
+
 MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
                              int dim, int spline, int64_t particle, double (*motion)[4]) {
   support at;
@@ -341,6 +383,7 @@ MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cells *cells, const mpsi_w
   }
   mpsi_put(motion[0], v);
   for (int d = 0; d < dim; d++) mpsi_put(motion[1 + d], by[d]);
+  if (mpm->flip > 0.0) keep_own(mpm, cells, dim, spline, particle, &at, &f, motion);
   for (int32_t q = 0; bodies && q < cells->meetings; q++) {
     mpsi_meeting *meeting = &mpm->meeting[cells->first_meeting + q];
     if (bodies >> meeting->body & 1)

@@ -105,6 +105,12 @@ MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cells *cells, int geometry, int 
                  (left[0] | left[1] | left[2] | left[3]) != 0};
 }
 
+/* FLIP: what the particles keep of their own velocities, where fitted.c has put it. */
+static void add_own(mps_mpm *mpm, int64_t begin, int n, const double (*motion)[4][4]) {
+  for (int c = 0; c < mpm->dim; c++)
+    for (int k = 0; k < n; k++) mpm->p.v[c][begin + k] += motion[k][1 + c][MPSI_MASS];
+}
+
 /* The first of particles [begin, end) outside the domain. */
 static int64_t first_outside(const mps_mpm *mpm, int64_t begin, int64_t end) {
   for (int64_t k = begin; k < end; k++)
@@ -125,7 +131,7 @@ MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cells *cells, int dim, int6
   MPSI_SIMD for (int k = 0; k < n; k++) {
     double square = v0[k] * v0[k] + v1[k] * v1[k];
     if (dim == 3) square += v2[k] * v2[k];
-    speed[k] = sqrt((moduli ? moduli[k] : mpm->modulus) * V[k] / m[k]) + sqrt(square);
+    speed[k] = sqrt((moduli ? moduli[k] : mpm->law[0].modulus) * V[k] / m[k]) + sqrt(square);
   }
   double largest[4] = {0.0};
   int64_t good = 1;
@@ -140,7 +146,7 @@ MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cells *cells, int dim, int6
 }
 
 MPSI_INLINE void speed_chunk(const mps_mpm *mpm, mpsi_cells *cells, int dim, int64_t begin, int n) {
-  if (!mpsi_material_stiffens(mpm->material)) {
+  if (mpm->one_modulus) {
     find_speed(mpm, cells, dim, begin, n, NULL);
     return;
   }
@@ -156,6 +162,7 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cells *cells, const mpsi_worker *w
   mpsi_places places;
   double motion[MPSI_CHUNK][4][4] __attribute__((aligned(64)));
   mpsi_find_places(mpm, cells, dim, spline, begin, n, &places);
+  if (mpm->stencil) memcpy(mpm->stencil + begin, places.first, (size_t)n * sizeof *mpm->stencil);
   bool full = true;
   for (int k = 0; k < n; k++) {
     if (cells->cut && (k == 0 || places.first[k] != places.first[k - 1]))
@@ -166,6 +173,7 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cells *cells, const mpsi_worker *w
       MPSI_LEVELLED(mpsi_gather_fitted)(mpm, cells, worker, begin + k, motion[k]);
   }
   const moved m = move(mpm, cells, geometry, spline, begin, n, (const double(*)[4][4])motion);
+  if (mpm->flip > 0.0) add_own(mpm, begin, n, (const double(*)[4][4])motion);
   if (m.left) cells->left = true;
   if (m.outside && cells->bad < 0) cells->bad = first_outside(mpm, begin, begin + n);
 }
@@ -173,7 +181,8 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cells *cells, const mpsi_worker *w
 MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {
   mpsi_cells *cells = &mpm->cells[b];
   mpsi_worker *worker = &mpm->workers[number];
-  cells->left = cells->refused = false;
+  cells->left = false;
+  cells->refused = NULL;
   cells->bad = -1;
   cells->speed = 0.0;
   gather_tile(mpm, cells, mpsi_dim_of(geometry), worker->tile);
@@ -181,6 +190,7 @@ MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry,
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
     g2p_chunk(mpm, cells, worker, geometry, spline, k, n);
+    if (mpm->stencil) continue; /* the laws wait for the cells' means */
     mpsi_mpm_apply_law(mpm, cells, k, k + n);
     speed_chunk(mpm, cells, mpsi_dim_of(geometry), k, n);
   }

@@ -1,5 +1,5 @@
 /* grid.c - one block of nodes: emptied before the particles' sums; then velocities before and after
- * the forces, seed B (25), (26), (39), and the walls of the domain.
+ * the forces, seed B (25), (26), (39).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_private.h"
 
@@ -56,25 +56,8 @@ void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
   if (nodes->touches > 0) mpsi_mpm_touch(mpm, g);
 }
 
-/* Nodes of the wall across axis c at node index `at`. */
-static void hold_wall(mps_mpm *mpm, int64_t g, int c, int64_t at, int32_t wall) {
-  const int64_t local = at - (int64_t)mpm->nodes[g].at[c] * MPSI_SIDE;
-  if (local < 0 || local >= MPSI_SIDE) return;
-  mpsi_node *node = mpm->node + mpsi_first_node(mpm, g);
-  for (int k = 0; k < mpm->own; k++) {
-    int place[3];
-    mpsi_unravel(k, MPSI_SIDE, place);
-    if (place[c] != local) continue;
-    for (int other = 0; other < 3; other++)
-      if (other == c || wall == MPS_WALL_FIXED) node[k][MPSI_VECTOR + other] = 0.0;
-  }
-}
-
 void mpsi_mpm_finish_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
   (void)worker;
   if (mpm->nodes[g].touches > 0) mpsi_mpm_rub(mpm, g);
-  for (int c = 0; c < mpm->dim; c++) {
-    hold_wall(mpm, g, c, mpm->low[c], mpm->def.wall_lower[c]);
-    hold_wall(mpm, g, c, mpm->high[c], mpm->def.wall_upper[c]);
-  }
+  mpsi_mpm_hold_nodes(mpm, g);
 }

@@ -6,6 +6,8 @@
 
 #include "shape.h"
 
+#define MPSI_CHUNK 64 /* particles: what is prepared for them stays in the first-level cache */
+
 /* The stencil and the fitted shape functions of a particle of a block whose states are known. */
 typedef void (*mpsi_fit_fn)(const mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
                             int64_t particle, mpsi_stencil *stencil, mpsi_shape_values *out);
@@ -23,6 +25,10 @@ const mpsi_kernels *mpsi_mpm_kernels(int32_t isa);
 
 /* near.c: states of the nodes under a cut block's tile, to worker->state and worker->inside. */
 void mpsi_mpm_find_states(const mps_mpm *mpm, const mpsi_cells *cells, mpsi_worker *worker);
+/* volumetric.c: the diagonals of the velocity gradients of particles [begin, end), at most a chunk,
+ * with the mean trace of their cells. */
+void mpsi_mpm_mean_diagonals(const mps_mpm *mpm, const mpsi_cells *cells, int64_t begin,
+                             int64_t end, double (*diagonal)[MPSI_CHUNK]);
 /* law.c: the present wave moduli of particles [begin, end). */
 void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli);
 

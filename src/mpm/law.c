@@ -1,38 +1,76 @@
-/* law.c - the material's law on the particles of a block, seed B (45)-(48).
+/* law.c - the materials' laws on the particles of a block, seed B (45)-(48): a law sees runs of
+ * particles that obey it.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
 
 /* Columns of particles [begin, end) as the law sees them. */
-static mps_material_block columns_of(const mps_mpm *mpm, int64_t begin, int64_t end) {
+static mps_material_block columns_of(const mps_mpm *mpm, const mpsi_law_use *law, int64_t begin,
+                                     int64_t end) {
   static const int planar[5] = {0, 1, 3, 4, 8};
   const mpsi_columns *p = &mpm->p;
   mps_material_block block = {.struct_size = sizeof block,
                               .dim = mpm->dim,
                               .count = end - begin,
                               .dt = mpm->dt,
-                              .volume_ratio = (p->J ? p->J : p->V) + begin,
+                              .volume_ratio = (law->reads_volume ? p->J : p->V) + begin,
                               .flags = mpm->flags + begin};
   const int tensors = mpm->dim == 3 ? 9 : 5;
   for (int c = 0; c < tensors; c++) {
     const int to = mpm->dim == 3 ? c : planar[c];
     if (mpm->def.geometry != MPS_PLANE_STRAIN || c < 4) block.gradient[to] = p->L[c] + begin;
-    if (p->F[c]) block.deformation[to] = p->F[c] + begin;
+    if (law->needs_deformation) block.deformation[to] = p->F[c] + begin;
   }
   for (int c = 0; c < 2 * mpm->dim; c++) block.stress[c] = p->s[c] + begin;
-  for (int32_t h = 0; h < mpm->histories; h++) block.history[h] = p->history[h] + begin;
+  const int32_t histories = mps_material_history_count(law->material);
+  for (int32_t h = 0; h < histories; h++) block.history[h] = law->history[h] + begin;
   return block;
 }
 
-void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cells *cells, int64_t begin, int64_t end) {
+/* The end of the particles from `begin` that obey its law, at most `end`. */
+static int64_t end_of_run(const int64_t *law, int64_t begin, int64_t end) {
+  if (!law) return end;
+  int64_t k = begin + 1;
+  while (k < end && law[k] == law[begin]) k++;
+  return k;
+}
+
+static void apply_run(mps_mpm *mpm, mpsi_cells *cells, int64_t begin, int64_t end) {
   mpsi_columns *p = &mpm->p;
-  const mps_material_block block = columns_of(mpm, begin, end);
+  const mpsi_law_use *law = mpsi_law_of(mpm, begin);
+  mps_material_block block = columns_of(mpm, law, begin, end);
+  double diagonal[3][MPSI_CHUNK];
+  if (mpm->stencil) {
+    mpsi_mpm_mean_diagonals(mpm, cells, begin, end, diagonal);
+    for (int c = 0; c < 3; c++) block.gradient[4 * c] = diagonal[c];
+  }
   /* Where the law works on J, V stands for V0 meanwhile. */
-  for (int64_t k = begin; p->J && k < end; k++) p->V[k] /= p->J[k];
-  if (mpsi_material_apply(mpm->material, &block) != 0) cells->refused = true;
-  for (int64_t k = begin; p->J && k < end; k++) p->V[k] *= p->J[k];
+  for (int64_t k = begin; law->reads_volume && k < end; k++) p->V[k] /= p->J[k];
+  if (mpsi_material_apply(law->material, &block) != 0) cells->refused = law->material;
+  for (int64_t k = begin; law->reads_volume && k < end; k++) p->V[k] *= p->J[k];
+}
+
+void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cells *cells, int64_t begin, int64_t end) {
+  for (int64_t k = begin, next; k < end; k = next) {
+    next = end_of_run(mpm->p.law, k, end);
+    apply_run(mpm, cells, k, next);
+  }
+}
+
+void mpsi_mpm_elastic(const mps_mpm *mpm, int64_t particle, double *wave, double *shear) {
+  const mpsi_law_use *law = mpsi_law_of(mpm, particle);
+  *wave = law->modulus;
+  *shear = mpsi_material_shear(law->material);
 }
 
 void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli) {
-  const mps_material_block block = columns_of(mpm, begin, end);
-  mpsi_material_wave_moduli(mpm->material, &block, moduli);
+  for (int64_t k = begin, next; k < end; k = next) {
+    next = end_of_run(mpm->p.law, k, end);
+    const mpsi_law_use *law = mpsi_law_of(mpm, k);
+    if (mpsi_material_stiffens(law->material)) {
+      const mps_material_block block = columns_of(mpm, law, k, next);
+      mpsi_material_wave_moduli(law->material, &block, moduli + (k - begin));
+    } else {
+      for (int64_t q = k; q < next; q++) moduli[q - begin] = law->modulus;
+    }
+  }
 }

@@ -121,8 +121,6 @@ MPSI_INLINE void mpsi_row_weights(int spline, double t, mpsi_vec *w, mpsi_vec *w
 
 /* ---- chunks of particles --------------------------------------------------------------------- */
 
-#define MPSI_CHUNK 64 /* particles: what is prepared for them stays in the first-level cache */
-
 /* Where the particles of a chunk are in the tile. */
 typedef struct mpsi_places {
   double t[MPSI_CHUNK];                             /* along x, from the lowest node */

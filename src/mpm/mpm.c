@@ -8,12 +8,15 @@
 
 #define ON_NODE 1e-6 /* cells: a wall this close to a node is on it */
 #define MAX_COUNT INT32_MAX
+#define OVERLAP 0.1 /* cells: bodies may by so much */
+#define THIN 2.0    /* cells: walls below let momentum through */
 
 static const mps_mpm_def mpm_defaults = {.struct_size = sizeof(mps_mpm_def),
                                          .spline = 3,
                                          .lower = {-INFINITY, -INFINITY, -INFINITY},
                                          .upper = {INFINITY, INFINITY, INFINITY},
-                                         .courant = 0.5};
+                                         .courant = 0.5,
+                                         .flip = 1.0};
 /* Size of the structure in the first release: it may only grow. */
 #define MPM_DEF_MINIMUM (offsetof(mps_mpm_def, courant) + sizeof(double))
 
@@ -38,13 +41,21 @@ static mps_status check_choices(mps_context *context, const mps_mpm_def *d) {
   if (d->transfer != MPS_TRANSFER_SHAPE && d->transfer != MPS_TRANSFER_WEIGHT)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "transfer is %d, allowed are 0 (shape) and 1 (weight)", d->transfer);
+  if (d->volumetric != MPS_VOLUMETRIC_POINT && d->volumetric != MPS_VOLUMETRIC_CELL)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "volumetric is %d, allowed are 0 (point) and 1 (cell)", d->volumetric);
+  if (d->scheme != MPS_SCHEME_WLS && d->scheme != MPS_SCHEME_STANDARD)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "scheme is %d, allowed are 0 (WLS) and 1 (standard)", d->scheme);
   for (int c = 0; c < dim_of(d); c++)
     for (int side = 0; side < 2; side++) {
-      const int32_t wall = side ? d->wall_upper[c] : d->wall_lower[c];
-      if (wall != MPS_WALL_ROLLER && wall != MPS_WALL_FIXED)
-        return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                         "wall_%s[%d] is %d, allowed are 0 (roller) and 1 (fixed)",
-                         side ? "upper" : "lower", c, wall);
+      const bool on_axis =
+          d->geometry == MPS_AXISYMMETRIC && c == 0 && side == 0 && !(d->lower[0] > 0.0);
+      const mps_status status = mpsi_mpm_check_wall(
+          context, create, c, side == 1, side ? d->wall_upper[c] : d->wall_lower[c],
+          side ? d->wall_friction_upper[c] : d->wall_friction_lower[c], on_axis,
+          d->scheme == MPS_SCHEME_STANDARD);
+      if (status != MPS_OK) return status;
     }
   return MPS_OK;
 }
@@ -59,6 +70,15 @@ static mps_status check_numbers(mps_context *context, const mps_mpm_def *d) {
   if (!(d->courant > 0.0 && d->courant <= 1.0))
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "courant is %g, must be in (0, 1]",
                      d->courant);
+  if (!isfinite(d->settle) || d->settle < 0.0)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "settle is %g s, must be finite and >= 0",
+                     d->settle);
+  if (!(d->flip >= 0.0 && d->flip <= 1.0) || (d->scheme == MPS_SCHEME_WLS && d->flip != 1.0))
+    return mpsi_fail(
+        context, create, MPS_ERROR_ARGUMENT,
+        "flip is %g, must be in [0, 1] with scheme 1 (standard); with 0 (WLS) it is 1, "
+        "the default",
+        d->flip);
   for (int c = 0; c < dim_of(d); c++)
     if (!isfinite(d->origin[c]) || !isfinite(d->gravity[c]))
       return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
@@ -128,8 +148,8 @@ static mps_status check_set(mps_context *context, mps_particles *set) {
 /* A field's columns must be finite where the solver starts from them. */
 static mps_status check_start(const mps_mpm *mpm) {
   static const char *const names[] = {
-      "position",     "velocity", "velocity_gradient", "stress",
-      "volume_ratio", "volume",   "density",           "deformation_gradient"};
+      "position", "velocity", "velocity_gradient",    "stress",           "volume_ratio",
+      "volume",   "density",  "deformation_gradient", "body_acceleration"};
   for (size_t f = 0; f < sizeof names / sizeof *names; f++)
     for (int32_t c = 0; c < 9; c++) {
       const double *value = mpsi_particles_column(mpm->particles, names[f], c);
@@ -162,13 +182,6 @@ static mps_status add_fields(mps_mpm *mpm) {
   mps_status status = MPS_OK;
   for (size_t k = 0; k < sizeof names / sizeof *names && status == MPS_OK; k++)
     status = mps_particles_add_field(mpm->particles, names[k], 0);
-  if (status == MPS_OK && mpsi_material_reads_volume(mpm->material))
-    status = mps_particles_add_field(mpm->particles, "volume_ratio", 0);
-  if (status == MPS_OK && mps_material_needs_deformation(mpm->material))
-    status = mps_particles_add_field(mpm->particles, "deformation_gradient", 0);
-  for (int32_t h = 0; h < mpm->histories && status == MPS_OK; h++)
-    status =
-        mps_particles_add_field(mpm->particles, mps_material_history_name(mpm->material, h), 1);
   return status;
 }
 
@@ -178,20 +191,13 @@ static void bind_fields(mps_mpm *mpm) {
   for (int c = 0; c < mpm->dim; c++) {
     p->x[c] = mpsi_particles_column(set, "position", c);
     p->v[c] = mpsi_particles_column(set, "velocity", c);
+    mpm->body_acceleration[c] = mpsi_particles_column(set, "body_acceleration", c);
   }
   for (int c = 0; c < 2 * mpm->dim; c++) p->s[c] = mpsi_particles_column(set, "stress", c);
-  for (int c = 0; c < 9; c++) { /* NULL where there is no such component */
+  for (int c = 0; c < 9; c++) /* NULL where there is no such component */
     p->L[c] = mpsi_particles_column(set, "velocity_gradient", c);
-    p->F[c] = mps_material_needs_deformation(mpm->material)
-                  ? mpsi_particles_column(set, "deformation_gradient", c)
-                  : NULL;
-  }
   p->V = mpsi_particles_column(set, "volume", 0);
   p->m = mpsi_particles_column(set, "mass", 0);
-  p->J = mpsi_material_reads_volume(mpm->material) ? mpsi_particles_column(set, "volume_ratio", 0)
-                                                   : NULL;
-  for (int32_t h = 0; h < mpm->histories; h++)
-    p->history[h] = mpsi_particles_column(set, mps_material_history_name(mpm->material, h), 0);
 }
 
 /* The volume of a particle that the caller gave none. */
@@ -222,19 +228,13 @@ static mps_status set_start(mps_mpm *mpm) {
   const double *density = mpsi_particles_column(mpm->particles, "density", 0);
   const mps_status status = check_volumes(mpm, density);
   if (status != MPS_OK) return status;
-  bool deformed = false;
-  for (int c = 0; c < 9 && p->F[c]; c++)
-    for (int64_t k = 0; k < mpm->count; k++) deformed = deformed || p->F[c][k] != 0.0;
   for (int64_t k = 0; k < mpm->count; k++) {
     if (p->V[k] == 0.0) p->V[k] = lattice_volume(mpm, k);
     p->m[k] = density[k] * p->V[k]; /* the density is that of the present volume */
-    if (p->J && p->J[k] == 0.0) p->J[k] = 1.0;
-    for (int c = 0; c < 9 && p->F[c] && !deformed; c++) {
-      const bool diagonal = mpm->dim == 3 ? c % 4 == 0 : c == 0 || c >= 3;
-      p->F[c][k] = diagonal ? 1.0 : 0.0;
-    }
+    const double mass = mpm->def.geometry == MPS_AXISYMMETRIC ? p->m[k] / p->x[0][k] : p->m[k];
+    if (k == 0 || mass < mpm->least_mass) mpm->least_mass = mass;
+    mpsi_mpm_begin_law(mpm, &mpm->law[0], k);
   }
-  mpsi_material_begin(mpm->material, p->history, 0, mpm->count);
   return MPS_OK;
 }
 
@@ -256,9 +256,28 @@ static mps_status hire_workers(mps_mpm *mpm) {
   return mpm->workers ? MPS_OK : mpsi_fail_memory(mpm->context, create, sizeof *mpm->workers);
 }
 
-static mps_status build(mps_mpm *mpm) {
+static void place_walls(mps_mpm *mpm) {
+  const mps_mpm_def *d = &mpm->def;
+  for (int32_t k = 0; k < MPSI_HOLDS; k++) mpm->hold[k].kind = MPSI_HOLD_NONE;
+  for (int32_t k = 0; k < 2 * mpm->dim; k++)
+    mpsi_mpm_place_wall(mpm, k, k % 2 ? d->wall_upper[k / 2] : d->wall_lower[k / 2],
+                        k % 2 ? d->wall_friction_upper[k / 2] : d->wall_friction_lower[k / 2]);
+}
+
+/* The first step's size against what the first state allows. */
+static mps_status check_step(mps_mpm *mpm) {
+  const double dt = mpm->def.dt, limit = mps_mpm_limit(mpm);
+  if (dt <= limit) return MPS_OK;
+  return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
+                   "dt is %g s, above the limit (49) of the first state, %g s: choose at most half "
+                   "of that, or 0 for a step that follows the limit",
+                   dt, limit);
+}
+
+static mps_status build(mps_mpm *mpm, mps_material *material) {
   mps_context *context = mpm->context;
   mps_status status = add_fields(mpm);
+  if (status == MPS_OK) status = mpsi_mpm_add_law(mpm, create, material);
   if (status != MPS_OK) return status;
   bind_fields(mpm);
   status = check_start(mpm);
@@ -266,13 +285,18 @@ static mps_status build(mps_mpm *mpm) {
   if (status != MPS_OK) return status;
   mpm->radix = mpsi_alloc(context, 2 * mpm->count, sizeof *mpm->radix);
   if (mpm->radix) mpm->flags = mpsi_alloc(context, mpm->count, sizeof *mpm->flags);
-  if (!mpm->flags)
+  const bool by_cell = mpm->def.volumetric == MPS_VOLUMETRIC_CELL;
+  if (mpm->flags && by_cell) mpm->stencil = mpsi_alloc(context, mpm->count, sizeof *mpm->stencil);
+  if (!mpm->flags || (by_cell && !mpm->stencil))
     return mpsi_fail_memory(context, create, (size_t)mpm->count * sizeof *mpm->radix);
   status = hire_workers(mpm);
+  if (status == MPS_OK && mpm->body_acceleration[0]) status = mpsi_mpm_make_forces(mpm, create);
   if (status == MPS_OK) status = mpsi_mpm_sort(mpm, create);
+  if (status == MPS_OK) status = mpsi_mpm_list_holds(mpm, create);
   if (status != MPS_OK) return status;
   mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
-  return mpsi_mpm_take_stock(mpm, create);
+  status = mpsi_mpm_take_stock(mpm, create);
+  return status == MPS_OK ? check_step(mpm) : status;
 }
 
 mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_material *material,
@@ -299,10 +323,9 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   if (!mpm) return mpsi_fail_memory(context, __func__, sizeof *mpm);
   mpm->context = mpsi_context_retain(context);
   mpm->particles = mpsi_particles_pin(particles);
-  mpm->material = mpsi_material_retain(material);
-  mpm->histories = mps_material_history_count(material);
-  mpm->modulus = mps_material_wave_modulus(material);
   mpm->def = def;
+  mpm->standard = def.scheme == MPS_SCHEME_STANDARD;
+  mpm->flip = mpm->standard ? def.flip : 0.0;
   mpm->dim = dim_of(&def);
   mpm->own = mpm->dim == 3 ? MPSI_SIDE * MPSI_SIDE * MPSI_SIDE : MPSI_SIDE * MPSI_SIDE;
   mpm->tile = mpm->dim == 3 ? MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE
@@ -313,7 +336,8 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   mpm->gap = 0.5 * mps_particles_spacing(particles);
   memcpy(mpm->low, low, sizeof low);
   memcpy(mpm->high, high, sizeof high);
-  if ((status = build(mpm)) != MPS_OK) {
+  place_walls(mpm);
+  if ((status = build(mpm, material)) != MPS_OK) {
     mps_mpm_destroy(&mpm);
     return status;
   }
@@ -340,13 +364,45 @@ void mps_mpm_destroy(mps_mpm **pointer) {
                    mpm->touch_node_room.item,
                    mpm->inside_room.item,
                    mpm->reached_room.item,
+                   mpm->held_room.item,
+                   mpm->dash_room.item,
+                   mpm->old_held_room.item,
+                   mpm->old_dash_room.item,
+                   mpm->force_memory,
                    mpm->radix,
-                   mpm->flags};
+                   mpm->flags,
+                   mpm->stencil};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
-  mps_material_destroy(&mpm->material);
+  mpsi_mpm_drop_loads(mpm);
+  for (int32_t k = 0; k < MPSI_HOLDS; k++)
+    for (int c = 0; c < 3; c++) mps_signal_destroy(&mpm->hold[k].signal[c]);
+  for (int32_t k = 0; k < mpm->laws; k++) mps_material_destroy(&mpm->law[k].material);
   mpsi_particles_unpin(mpm->particles);
   mpsi_free(context, mpm);
   mpsi_context_release(context);
+}
+
+/* Half spaces are there to be laid one over the other, as floor and wall. */
+static mps_status check_overlap(mps_mpm *mpm, const char *function, const mps_body *body) {
+  const double depth = OVERLAP * mpm->def.cell;
+  for (int32_t b = 0; b < mpm->bodies; b++) {
+    const bool halves = body->shape == MPSI_HALF && mpm->body[b]->shape == MPSI_HALF;
+    if (mpm->body[b] == body || halves || !mpsi_body_overlap(mpm->body[b], body, depth)) continue;
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "the body overlaps body %d of the solver by more than %g m (%g cells)", b,
+                     depth, OVERLAP);
+  }
+  return MPS_OK;
+}
+
+static void warn_of_thickness(mps_mpm *mpm, const mps_body *body) {
+  const double wall = mpsi_body_thickness(body), cells = wall * mpm->inverse;
+  if (cells < THIN * (1.0 - 1e-9))
+    mpsi_log(
+        mpm->context, MPS_LOG_WARNING,
+        "body %d has a wall %.4g m thin, %.3g cells: below %g cells momentum leaks through it; "
+        "use a cell of at most %.4g m or a thicker wall",
+        mpm->bodies, wall, cells, THIN, wall / THIN);
 }
 
 mps_status mps_mpm_add_body(mps_mpm *mpm, mps_body *body) {
@@ -361,8 +417,11 @@ mps_status mps_mpm_add_body(mps_mpm *mpm, mps_body *body) {
   if (mpm->bodies == MPS_MPM_MAX_BODIES)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "the solver has %d bodies, the most there can be", MPS_MPM_MAX_BODIES);
+  const mps_status status = check_overlap(mpm, __func__, body);
+  if (status != MPS_OK) return status;
   if (!mpsi_body_take(body, mpm))
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_STATE, "a solver has the body already");
+  warn_of_thickness(mpm, body);
   mpm->body[mpm->bodies++] = body;
   return MPS_OK;
 }

@@ -39,8 +39,8 @@ typedef struct mpsi_cells {
   bool cut;                        /* some node of the tile is outside, or inside a body */
   bool split;                      /* forces are summed apart from momenta: see mpsi_nodes */
   bool left;                       /* a particle is more than a cell outside the block */
-  bool refused;                    /* the law has refused the block */
   int32_t first_meeting, meetings; /* by body */
+  const mps_material *refused;     /* a law that has refused particles of the block, or NULL */
   int64_t bad;                     /* first particle not finite or outside the domain, or -1 */
   double speed;                    /* largest c + |v|, m/s */
 } mpsi_cells;
@@ -54,6 +54,7 @@ typedef struct mpsi_nodes {
   bool inside;     /* some node is in a body */
   uint32_t bodies; /* bit b: a block of cells whose tile covers it may meet body b */
   int32_t first_touch, touches;
+  int32_t first_held, holds; /* of the list of mpsi_held */
 } mpsi_nodes;
 
 /* A node, four doubles: particles to nodes sums mass and momentum; then lane 0 is the mass and the
@@ -84,15 +85,59 @@ typedef struct mpsi_touch_node {
   double force[3];  /* normal force fn, (29) */
 } mpsi_touch_node;
 
+/* ---- walls, moving nodes, loads ---------------------------------------------------------------
+ */
+
+enum { MPSI_HOLD_NONE = -1, MPSI_HOLD_BOX = -2 }; /* besides mps_wall */
+
+/* Nodes that are not free: those of a wall, or in a box. */
+typedef struct mpsi_hold {
+  int32_t kind;              /* mps_wall, or MPSI_HOLD_... */
+  int32_t axis;              /* across the wall; component that a box holds */
+  int64_t first[3], last[3]; /* nodes */
+  double friction;
+  mps_signal *signal[3];
+  double factor[3];
+  double v[3];     /* m/s, of the step being made */
+  double force[3]; /* N, on the particles, mean over the last step */
+  bool finds;      /* absorbing: still looks for the forces at rest */
+  double found;    /* s, how long it has looked, with the step being made */
+} mpsi_hold;
+
+/* The nodes of a block that a hold holds. */
+typedef struct mpsi_held {
+  int32_t hold, at[3]; /* at: of the block */
+  int64_t dash;        /* absorbing: first of own/MPSI_SIDE dashpots, else -1 */
+  double impulse[3];   /* N s, of the step being made */
+} mpsi_held;
+
+/* A load: force area * traction on each particle. */
+typedef struct mpsi_traction {
+  int64_t count; /* 0: none */
+  int64_t *id;
+  double *area; /* NULL: by the spacing */
+  double traction[3];
+  mps_signal *signal;
+} mpsi_traction;
+
+/* A law that particles obey. */
+typedef struct mpsi_law_use {
+  mps_material *material;
+  double modulus; /* K + 4G/3 at zero strain, Pa */
+  bool reads_volume, needs_deformation;
+  double *history[MPS_MATERIAL_HISTORY_MAX]; /* columns over all particles */
+} mpsi_law_use;
+
 /* Arrays over the particles, in sorted order. Tensors by rows. */
 typedef struct mpsi_columns {
   double *x[3], *v[3];
   double *L[9]; /* 2D: xx, xy, yx, yy, hoop */
   double *s[6]; /* xx, yy, zz, xy, zx, yz; 2D: the first four */
   double *V, *m;
-  double *J;    /* V/V0 where the law reads it, else NULL */
-  double *F[9]; /* as L; NULL where the law does without */
-  double *history[MPS_MATERIAL_HISTORY_MAX];
+  double *J;    /* V/V0 where some law reads it, else NULL */
+  double *F[9]; /* as L; NULL where all laws do without */
+  double *f[3]; /* N, body accelerations and loads of the step; NULL where there are none */
+  int64_t *law; /* number of each particle's law; NULL: one law */
 } mpsi_columns;
 
 typedef struct mpsi_radix {
@@ -118,6 +163,7 @@ typedef struct mpsi_worker {
 #define MPSI_OUTSIDE 1u /* not in the domain */
 #define MPSI_INSIDE 2u  /* in a body */
 #define MPSI_REACHED 4u /* in a body, and corner of a cell that holds a particle */
+#define MPSI_PLAIN 8u   /* any node with MPS_SCHEME_STANDARD: no particle takes the closed form */
 
 struct mpsi_kernels;
 
@@ -128,13 +174,17 @@ struct mps_mpm {
   int32_t dim, own, tile; /* nodes of a block, of a tile */
   int64_t count;
   mpsi_columns p;
-  double inverse;          /* 1/h */
-  int64_t low[3], high[3]; /* first and last node of the domain */
-  double gap;              /* l_p = d0, m */
-  mps_material *material;
-  double modulus; /* K + 4G/3 at zero strain, Pa */
-  int32_t histories;
-  int64_t *flags; /* of the law, by sorted index */
+  double inverse; /* 1/h */
+  bool standard;  /* MPS_SCHEME_STANDARD; then `flip` is that of the definition, else 0 */
+  double flip;
+  int64_t low[3], high[3];                 /* first and last node of the domain */
+  double gap;                              /* l_p = d0, m */
+  mpsi_law_use law[MPS_MPM_MAX_MATERIALS]; /* 0: of creation */
+  int32_t laws;
+  bool one_modulus; /* law[0].modulus holds for all particles, whatever their state */
+  int64_t *flags;   /* of the laws, by sorted index */
+  int32_t *stencil; /* lowest node in its block's tile, of each particle in the step being made;
+                       NULL but with VOLUMETRIC_CELL */
   mps_body *body[MPS_MPM_MAX_BODIES];
   int32_t bodies;
   const struct mpsi_kernels *kernels;
@@ -157,12 +207,29 @@ struct mps_mpm {
   uint8_t *reached; /* corner of a cell that holds a particle */
   int64_t near_count, meeting_count, touch_count;
   mpsi_room meeting_room, touch_room, touch_node_room, inside_room, reached_room;
-  bool stale; /* particles must be sorted before the next step */
+  /* walls, moving nodes: see walls.c, absorb.c; loads: see loads.c */
+  mpsi_hold hold[MPSI_HOLDS];
+  mpsi_held *held;
+  mpsi_dash *dash;
+  int64_t held_count, dash_count;
+  mpsi_room held_room, dash_room, old_held_room, old_dash_room;
+  mpsi_traction *traction;
+  int32_t tractions;
+  double *body_acceleration[3]; /* NULL where the set has no such field */
+  double *force_memory;         /* of p.f */
+  double least_mass;            /* kg, of a particle; in axisymmetry over its radius, kg/m */
+  uint32_t told_of_chatter;     /* bit b: the log knows that body b's contact is too stiff */
+  bool told_of_dt;              /* ... that dt is above the limit */
+  bool stale;                   /* particles must be sorted before the next step */
   bool broken;
   double time, dt, speed; /* s; s, of the step being made; largest c + |v| of the particles, m/s */
   double contact_mass[MPS_MPM_MAX_BODIES]; /* kg, of the nodes in contact with each body */
   int64_t steps;
 };
+
+static inline const mpsi_law_use *mpsi_law_of(const mps_mpm *mpm, int64_t particle) {
+  return &mpm->law[mpm->p.law ? mpm->p.law[particle] : 0];
+}
 
 /* Coordinate of x in cells from the origin along axis c. */
 static inline double mpsi_grid_coordinate(const mps_mpm *mpm, int c, double x) {
@@ -196,6 +263,12 @@ static inline int64_t mpsi_first_node(const mps_mpm *mpm, int64_t g) { return g 
 /* Coordinates within a block or tile of `side` nodes an axis. */
 static inline void mpsi_unravel(int k, int side, int *at) {
   at[0] = k % side, at[1] = k / side % side, at[2] = k / side / side;
+}
+
+/* Node k of a block within the plane of nodes across `axis`. */
+static inline int mpsi_plane_index(int axis, int k) {
+  const int plane = MPSI_SIDE * MPSI_SIDE;
+  return axis == 0 ? k / MPSI_SIDE : axis == 1 ? k / plane * MPSI_SIDE + k % MPSI_SIDE : k % plane;
 }
 
 /* Position x[3] of the node `local` of the block at `at`. */
@@ -233,8 +306,41 @@ void mpsi_mpm_finish_nodes(mps_mpm *mpm, int64_t g, int32_t worker);
 void mpsi_mpm_touch(mps_mpm *mpm, int64_t g);
 void mpsi_mpm_rub(mps_mpm *mpm, int64_t g);
 void mpsi_mpm_react(mps_mpm *mpm);
-/* law.c: the law on particles [begin, end) of a block. */
+/* walls.c: which blocks of nodes are held, after a sort; what holds them in a step of dt; the held
+ * nodes of a block; the forces of the step. */
+mps_status mpsi_mpm_list_holds(mps_mpm *mpm, const char *function);
+/* walls.c: the same with dashpots as they were at an earlier sort. */
+mps_status mpsi_mpm_put_dashes(mps_mpm *mpm, const char *function, int64_t count,
+                               const mpsi_dash *dash);
+void mpsi_mpm_begin_holds(mps_mpm *mpm, double dt);
+void mpsi_mpm_hold_nodes(mps_mpm *mpm, int64_t g);
+void mpsi_mpm_sum_holds(mps_mpm *mpm);
+/* Puts a wall of a definition that has been checked in its place. */
+void mpsi_mpm_place_wall(mps_mpm *mpm, int32_t number, int32_t kind, double friction);
+mps_status mpsi_mpm_check_wall(mps_context *context, const char *function, int32_t axis, bool upper,
+                               int32_t kind, double friction, bool on_axis, bool standard);
+/* absorb.c: dashpots of the absorbing walls, after a sort, taking over the forces at rest from the
+ * list before; one of them at work: the velocity of its node across and along. */
+void mpsi_mpm_place_dashes(mps_mpm *mpm, const mpsi_held *old, int64_t old_count,
+                           const mpsi_dash *old_dash);
+void mpsi_mpm_dash(const mps_mpm *mpm, const mpsi_hold *hold, mpsi_dash *dash, const double *node,
+                   const double *before, double *velocity);
+/* loads.c: body accelerations and loads of the step to p.f. */
+mps_status mpsi_mpm_make_forces(mps_mpm *mpm, const char *function);
+void mpsi_mpm_find_forces(mps_mpm *mpm);
+void mpsi_mpm_drop_loads(mps_mpm *mpm);
+/* law.c: K + 4G/3 and G (Pa) of a particle's material at zero strain. */
+void mpsi_mpm_elastic(const mps_mpm *mpm, int64_t particle, double *wave, double *shear);
+/* materials.c: puts the law at the end of the list, with the fields it works on; nothing has
+ * changed on an error. Gives the particle (an index) the state in which the law begins. */
+mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *material);
+void mpsi_mpm_begin_law(mps_mpm *mpm, const mpsi_law_use *law, int64_t particle);
+/* volumetric.c: the laws after the step's G2P, where they wait for the means of the cells. */
+void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm);
+/* law.c: their laws on particles [begin, end) of a block. */
 void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cells *cells, int64_t begin, int64_t end);
+/* step.c: MPS_ERROR_STATE after a step that has failed. */
+mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function);
 /* step.c: what the blocks have told: the largest speed, or the error of a bad particle. */
 mps_status mpsi_mpm_take_stock(mps_mpm *mpm, const char *function);
 

@@ -153,10 +153,14 @@ static void mark_reached(mps_mpm *mpm, int64_t b, int32_t worker) {
 /* ---- cut and split blocks ---------------------------------------------------------------------
  */
 
-/* Cut: some particle may have a cut support. Split: friction needs the velocity before the forces;
- * so does the transfer by weights, which divides momentum and force by different masses. */
+/* Cut: some particle may have a cut support, or, with the standard scheme, one without a fit.
+ * Split: friction needs the velocity before the forces; so does FLIP, and the transfer by weights,
+ * which divides momentum and force by different masses. */
 static mps_status find_cut(mps_mpm *mpm, const char *function) {
   const bool by_weight = mpm->def.transfer == MPS_TRANSFER_WEIGHT;
+  bool finds = false; /* an absorbing wall asks for the forces of its first step */
+  for (int32_t k = 0; k < MPSI_WALLS && !(mpm->def.settle > 0.0); k++)
+    finds = finds || mpm->hold[k].finds;
   const int corners = 1 << mpm->dim;
   for (int64_t g = 0; g < mpm->node_count; g++)
     mpm->nodes[g].side = -1, mpm->nodes[g].split = false;
@@ -165,10 +169,10 @@ static mps_status find_cut(mps_mpm *mpm, const char *function) {
     mpsi_cells *cells = &mpm->cells[b];
     bool inside = false;
     for (int q = 0; q < corners; q++) inside = inside || mpm->nodes[cells->to[q]].inside;
-    bool rough = by_weight;
+    bool rough = by_weight || mpm->flip > 0.0 || (finds && cells->edge);
     for (int32_t k = 0; inside && k < cells->meetings; k++)
       rough = rough || mpm->body[mpm->meeting[cells->first_meeting + k].body]->def.friction > 0.0;
-    cells->cut = cells->edge || inside;
+    cells->cut = cells->edge || inside || mpm->standard;
     for (int q = 0; q < corners && cells->cut; q++) {
       mpsi_nodes *nodes = &mpm->nodes[cells->to[q]];
       if (nodes->side < 0) nodes->side = (int32_t)mpm->side_count++;
@@ -212,7 +216,7 @@ void mpsi_mpm_find_states(const mps_mpm *mpm, const mpsi_cells *cells, mpsi_work
       outside = outside || n < mpm->low[c] || n > mpm->high[c];
     }
     worker->inside[t] = 0;
-    worker->state[t] = outside ? MPSI_OUTSIDE : 0;
+    worker->state[t] = outside ? MPSI_OUTSIDE : mpm->standard ? MPSI_PLAIN : 0;
     const int64_t node = mpsi_node_under(mpm, cells, place[0], place[1], place[2]);
     const mpsi_nodes *nodes = &mpm->nodes[node / mpm->own];
     if (!nodes->inside) continue;

@@ -39,6 +39,8 @@ MPSI_INLINE void find_parts(const mps_mpm *mpm, int geometry, int spline, bool s
       momentum[c] = m * mpsi_get(p->v[c] + at);
       force[c] = m * (dt * mpm->def.gravity[c]);
     }
+    if (p->f[0])
+      for (int c = 0; c < dim; c++) force[c] += dt * mpsi_get(p->f[c] + at);
     if (geometry == MPS_AXISYMMETRIC)
       force[0] -= V * mpsi_get(p->s[2] + at) / mpsi_get(p->x[0] + at);
     for (int c = 0; c < dim && !split; c++) momentum[c] += force[c];

@@ -8,17 +8,30 @@
 #include <stdio.h>
 #include <string.h>
 
+_Static_assert(sizeof(mpsi_dash) == MPSI_DASH * sizeof(double), "kept as numbers");
+
 mps_context *mpsi_mpm_context(const mps_mpm *mpm) { return mpm->context; }
 mps_particles *mpsi_mpm_particles(const mps_mpm *mpm) { return mpm->particles; }
+
+/* How the caller has built the solver, as far as the state depends on it. */
+static void get_setting(const mps_mpm *mpm, mpsi_mpm_record *out) {
+  out->geometry = mpm->def.geometry, out->scheme = mpm->def.scheme;
+  out->spline = mpm->def.spline;
+  out->bodies = mpm->bodies, out->materials = mpm->laws;
+  for (int32_t k = 0; k < mpm->laws; k++)
+    snprintf(out->material[k], sizeof out->material[k], "%s",
+             mps_material_name(mpm->law[k].material));
+  for (int32_t k = 0; k < mpm->tractions; k++) out->loads += mpm->traction[k].count > 0;
+  out->accelerated = mpm->body_acceleration[0] != NULL;
+  for (int k = 0; k < MPSI_HOLDS; k++) out->kind[k] = mpm->hold[k].kind;
+}
 
 mps_status mpsi_mpm_get_record(const mps_mpm *mpm, const char *function, mpsi_mpm_record *out) {
   if (mpm->broken)
     return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                      "step %lld has failed: there is no state to go on from",
                      (long long)mpm->steps);
-  snprintf(out->material, sizeof out->material, "%s", mps_material_name(mpm->material));
-  out->geometry = mpm->def.geometry, out->spline = mpm->def.spline;
-  out->bodies = mpm->bodies;
+  get_setting(mpm, out);
   out->cell = mpm->def.cell;
   for (int c = 0; c < mpm->dim; c++) {
     out->origin[c] = mpm->def.origin[c];
@@ -27,6 +40,15 @@ mps_status mpsi_mpm_get_record(const mps_mpm *mpm, const char *function, mpsi_mp
   out->stale = mpm->stale;
   out->speed = mpm->speed;
   for (int32_t b = 0; b < mpm->bodies; b++) mpsi_body_get_record(mpm->body[b], &out->body[b]);
+  for (int k = 0; k < MPSI_HOLDS; k++) {
+    out->finds[k] = mpm->hold[k].finds, out->found[k] = mpm->hold[k].found;
+    memcpy(&out->force[3 * k], mpm->hold[k].force, sizeof mpm->hold[k].force);
+  }
+  out->dashes = mpm->dash_count;
+  out->dash = mpsi_alloc(mpm->context, out->dashes, sizeof *out->dash);
+  if (!out->dash)
+    return mpsi_fail_memory(mpm->context, function, (size_t)out->dashes * sizeof *out->dash);
+  if (out->dashes > 0) memcpy(out->dash, mpm->dash, (size_t)out->dashes * sizeof *out->dash);
   out->blocks = mpm->cell_count;
   out->block = mpsi_alloc(mpm->context, out->blocks, sizeof *out->block);
   if (!out->block)
@@ -44,10 +66,12 @@ mps_status mpsi_mpm_get_record(const mps_mpm *mpm, const char *function, mpsi_mp
 static mps_status check_grid(const mps_mpm *mpm, const char *function, const char *path,
                              const mpsi_mpm_record *r) {
   const mps_mpm_def *d = &mpm->def;
-  if (r->geometry != d->geometry || r->spline != d->spline)
+  if (r->geometry != d->geometry || r->scheme != d->scheme || r->spline != d->spline)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "'%.200s' has geometry %lld and spline %lld, the solver %d and %d", path,
-                     (long long)r->geometry, (long long)r->spline, d->geometry, d->spline);
+                     "'%.200s' has geometry %lld, scheme %lld and spline %lld, the solver %d, %d "
+                     "and %d",
+                     path, (long long)r->geometry, (long long)r->scheme, (long long)r->spline,
+                     d->geometry, d->scheme, d->spline);
   if (r->cell != d->cell)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "'%.200s' has cell %.17g m, the solver %.17g m", path, r->cell, d->cell);
@@ -81,16 +105,51 @@ static mps_status check_body(const mps_mpm *mpm, const char *function, const cha
                    (long long)own.motion, (long long)own.parts);
 }
 
+static mps_status check_materials(const mps_mpm *mpm, const char *function, const char *path,
+                                  const mpsi_mpm_record *r) {
+  if (r->materials != mpm->laws)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "'%.200s' has %lld materials, the solver %d", path, (long long)r->materials,
+                     mpm->laws);
+  for (int32_t k = 0; k < mpm->laws; k++) {
+    char name[MPSI_MATERIAL_NAME];
+    snprintf(name, sizeof name, "%s", mps_material_name(mpm->law[k].material));
+    if (strcmp(r->material[k], name) != 0)
+      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "material %d of '%.200s' is '%s', of the solver '%s'", k, path,
+                       r->material[k], name);
+  }
+  return MPS_OK;
+}
+
+static mps_status check_forces(const mps_mpm *mpm, const char *function, const char *path,
+                               const mpsi_mpm_record *r) {
+  mpsi_mpm_record *own = mpsi_alloc(mpm->context, 1, sizeof *own);
+  if (!own) return mpsi_fail_memory(mpm->context, function, sizeof *own);
+  get_setting(mpm, own);
+  mps_status status = MPS_OK;
+  if (r->loads != own->loads || r->accelerated != own->accelerated)
+    status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "'%.200s' has %lld loads and %s body accelerations, the solver %lld and %s",
+                       path, (long long)r->loads, r->accelerated ? "its" : "no",
+                       (long long)own->loads, own->accelerated ? "has them" : "none");
+  for (int k = 0; k < MPSI_HOLDS && status == MPS_OK; k++)
+    if (r->kind[k] != own->kind[k])
+      status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                         "%s %d of '%.200s' is of kind %lld, of the solver %lld (%d: none)",
+                         k < MPSI_WALLS ? "wall" : "box", k < MPSI_WALLS ? k : k - MPSI_WALLS, path,
+                         (long long)r->kind[k], (long long)own->kind[k], MPSI_HOLD_NONE);
+  mpsi_free(mpm->context, own);
+  return status;
+}
+
 mps_status mpsi_mpm_check_record(const mps_mpm *mpm, const char *function, const char *path,
                                  const mpsi_mpm_record *record) {
   mps_status status = check_grid(mpm, function, path, record);
   if (status != MPS_OK) return status;
-  char material[MPSI_MATERIAL_NAME];
-  snprintf(material, sizeof material, "%s", mps_material_name(mpm->material));
-  if (strcmp(record->material, material) != 0)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "'%.200s' has the material '%s', the solver '%s'", path, record->material,
-                     material);
+  status = check_forces(mpm, function, path, record);
+  if (status == MPS_OK) status = check_materials(mpm, function, path, record);
+  if (status != MPS_OK) return status;
   if (record->bodies != mpm->bodies)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "'%.200s' has %lld bodies, the solver %d: add them before", path,
@@ -117,9 +176,13 @@ static bool orderly(const mps_mpm *mpm, const mpsi_mpm_record *r) {
   return r->block[r->blocks - 1][0] < mpm->count;
 }
 
-bool mpsi_mpm_fits_record(const mps_mpm *mpm, const mpsi_mpm_record *r, const double *x) {
+bool mpsi_mpm_fits_record(const mps_mpm *mpm, const mpsi_mpm_record *r, const double *x,
+                          const int64_t *law) {
   if (!(r->speed > 0.0 && isfinite(r->speed)) || !orderly(mpm, r)) return false;
+  for (int k = 0; k < MPSI_HOLDS; k++)
+    if (!isfinite(r->found[k])) return false;
   for (int64_t k = 0, b = 0; k < mpm->count; k++) {
+    if (mpm->p.law && !(law && law[k] >= 0 && law[k] < mpm->laws)) return false;
     if (b + 1 < r->blocks && k == r->block[b + 1][0]) b++;
     for (int c = 0; c < mpm->dim; c++) {
       const double X = mpsi_grid_coordinate(mpm, c, x[c * mpm->count + k]);
@@ -136,9 +199,14 @@ bool mpsi_mpm_fits_record(const mps_mpm *mpm, const mpsi_mpm_record *r, const do
 mps_status mpsi_mpm_set_record(mps_mpm *mpm, const char *function, const mpsi_mpm_record *record,
                                double time, int64_t steps) {
   mpm->broken = true;
-  const mps_status status = mpsi_mpm_place_blocks(mpm, function, record->blocks, record->block);
+  mps_status status = mpsi_mpm_place_blocks(mpm, function, record->blocks, record->block);
+  if (status == MPS_OK) status = mpsi_mpm_put_dashes(mpm, function, record->dashes, record->dash);
   if (status != MPS_OK) return status;
   for (int32_t b = 0; b < mpm->bodies; b++) mpsi_body_set_record(mpm->body[b], &record->body[b]);
+  for (int k = 0; k < MPSI_HOLDS; k++) {
+    mpm->hold[k].finds = record->finds[k] != 0, mpm->hold[k].found = record->found[k];
+    memcpy(mpm->hold[k].force, &record->force[3 * k], sizeof mpm->hold[k].force);
+  }
   mpm->stale = record->stale != 0;
   mpm->speed = record->speed;
   mpm->time = time;

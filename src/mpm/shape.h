@@ -48,6 +48,23 @@ MPSI_INLINE void mpsi_weights(int spline, double t, double *w) {
   }
 }
 
+/* Derivatives of the weights by t: by the particle's place in cells. */
+MPSI_INLINE void mpsi_slopes(int spline, double t, double *slope) {
+  const double f = t - 1.0;
+  if (spline == 3) {
+    const double g = 2.0 - t;
+    slope[0] = -0.5 * g * g;
+    slope[1] = (1.5 * f - 2.0) * f;
+    slope[2] = (2.0 - 1.5 * g) * g;
+    slope[3] = 0.5 * f * f;
+  } else {
+    slope[0] = f - 0.5;
+    slope[1] = -2.0 * f;
+    slope[2] = f + 0.5;
+    slope[3] = 0.0;
+  }
+}
+
 MPSI_INLINE void mpsi_make_stencil(const mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
                                    int64_t particle, mpsi_stencil *out) {
   *out = (mpsi_stencil){.w[2][0] = 1.0};

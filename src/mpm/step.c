@@ -8,6 +8,7 @@
 
 #define SMALL_SET 2048  /* particles: below, sharing the work costs more than it gains */
 #define UNIT_NODES 4096 /* at least in a unit of work on nodes, which take a few ns each */
+#define CHATTER 6.0     /* k dt^2/m above which a contact does not settle */
 
 /* ---- work ------------------------------------------------------------------------------------ */
 
@@ -82,7 +83,7 @@ mps_status mpsi_mpm_take_stock(mps_mpm *mpm, const char *function) {
     mpm->broken = true;
     return mpsi_fail(mpm->context, function, MPS_ERROR_NUMERIC,
                      "the law '%s' has refused a block of particles at step %lld",
-                     mps_material_name(mpm->material), (long long)mpm->steps);
+                     mps_material_name(cells->refused), (long long)mpm->steps);
   }
   if (bad >= 0) return report_bad(mpm, function, bad);
   mpm->speed = speed;
@@ -95,29 +96,62 @@ static void find_contact_mass(mps_mpm *mpm) {
     mpm->contact_mass[mpm->touch[t].body] += mpm->touch[t].mass;
 }
 
+/* Tells the log, once each, of a step too large for the present state. */
+static void warn_of_step(mps_mpm *mpm, double dt) {
+  const double limit = mps_mpm_limit(mpm), courant = mpm->def.courant;
+  if (!mpm->told_of_dt && dt > courant * limit * (1.0 + 1e-9)) {
+    mpm->told_of_dt = true;
+    mpsi_log(mpm->context, MPS_LOG_WARNING,
+             "step %lld: dt is %.4g s, %.3g of the limit (49), above the fraction courant = %g: "
+             "choose a smaller dt, or 0 for a step that follows the limit",
+             (long long)mpm->steps, dt, dt / limit, courant);
+  }
+  double stiffest = 0.0;
+  for (int32_t k = 0; k < mpm->laws; k++) stiffest = fmax(stiffest, mpm->law[k].modulus);
+  for (int32_t b = 0; b < mpm->bodies; b++) {
+    const double k =
+        mpsi_body_penalty(mpm->body[b], stiffest, 2.0 * mpm->gap, mpm->def.cell, mpm->def.courant);
+    const double ratio = k * dt * dt / mpm->least_mass;
+    if (!(ratio > CHATTER) || (mpm->told_of_chatter >> b & 1)) continue;
+    mpm->told_of_chatter |= UINT32_C(1) << b;
+    mpsi_log(mpm->context, MPS_LOG_WARNING,
+             "contact with body %d will chatter: k dt^2/m = %.3g, above %g; use a penalty k of at "
+             "most %.4g or a dt of at most %.4g s",
+             b, ratio, CHATTER, k * CHATTER / ratio, dt * sqrt(CHATTER / ratio));
+  }
+}
+
 static mps_status take_step(mps_mpm *mpm, const char *function, double dt) {
   const int32_t geometry = mpm->def.geometry, spline = mpm->def.spline - 2;
   mps_status status = MPS_OK;
-  if (mpm->stale) status = mpsi_mpm_sort(mpm, function);
+  if (mpm->stale) {
+    status = mpsi_mpm_sort(mpm, function);
+    if (status == MPS_OK) status = mpsi_mpm_list_holds(mpm, function);
+  }
   if (status == MPS_OK) status = mpsi_mpm_find_near(mpm, function);
   if (status != MPS_OK) {
     mpm->broken = true;
     return status;
   }
   mpm->dt = dt;
+  warn_of_step(mpm, dt);
+  mpsi_mpm_begin_holds(mpm, dt);
+  mpsi_mpm_find_forces(mpm);
   mpsi_mpm_for_nodes(mpm, mpsi_mpm_clear_nodes);
   mpsi_mpm_for_colours(mpm, mpm->kernels->p2g[geometry][spline]);
   mpsi_mpm_for_nodes(mpm, mpsi_mpm_update_nodes);
   if (mpm->meeting_count > 0) find_contact_mass(mpm);
   mpsi_mpm_for_nodes(mpm, mpsi_mpm_finish_nodes);
   mpsi_mpm_for_cells(mpm, mpm->kernels->g2p[geometry][spline]);
+  mpsi_mpm_sum_holds(mpm);
+  if (mpm->stencil) mpsi_mpm_apply_laws_by_cell(mpm);
   if (mpm->bodies > 0) mpsi_mpm_react(mpm);
   mpm->time += dt;
   mpm->steps++;
   return mpsi_mpm_take_stock(mpm, function);
 }
 
-static mps_status ready(mps_mpm *mpm, const char *function) {
+mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function) {
   if (!mpm->broken) return MPS_OK;
   return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                    "an earlier step has failed: the state is kept for a look, make a new solver");
@@ -141,7 +175,7 @@ mps_status mps_mpm_step(mps_mpm *mpm, int64_t count) {
   if (count < 0)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
                      (long long)count);
-  mps_status status = ready(mpm, __func__);
+  mps_status status = mpsi_mpm_ready(mpm, __func__);
   for (int64_t k = 0; k < count && status == MPS_OK; k++)
     status = take_step(mpm, __func__, mps_mpm_dt(mpm));
   return status;
@@ -153,7 +187,7 @@ mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every, mps_mpm_fn cal
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "t_end is %g s and every %lld: must be finite and >= 1", t_end,
                      (long long)every);
-  mps_status status = ready(mpm, __func__);
+  mps_status status = mpsi_mpm_ready(mpm, __func__);
   const double start = mpm->time, slice = 0.01 * (t_end - start);
   int64_t done = 0, reported = 0;
   if (status == MPS_OK && callback) status = callback(user, mpm);
@@ -194,7 +228,11 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
               {mpm->touch_node_room.capacity, sizeof *mpm->touch_node},
               {mpm->inside_room.capacity, sizeof *mpm->inside},
               {mpm->reached_room.capacity, sizeof *mpm->reached},
+              {mpm->held_room.capacity + mpm->old_held_room.capacity, sizeof *mpm->held},
+              {mpm->dash_room.capacity + mpm->old_dash_room.capacity, sizeof *mpm->dash},
               {mpm->worker_count, mpsi_worker_bytes(mpm)},
+              {mpm->force_memory ? mpm->count : 0, (size_t)mpm->dim * sizeof(double)},
+              {mpm->stencil ? mpm->count : 0, sizeof *mpm->stencil},
               {mpm->count, 2 * sizeof *mpm->radix + sizeof *mpm->flags}};
   int64_t bytes = 0;
   for (size_t k = 0; k < sizeof list / sizeof *list; k++)
@@ -207,7 +245,8 @@ mps_status mps_mpm_get_totals(mps_mpm *mpm, mps_mpm_totals *out) {
   if (!out) return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   const mpsi_columns *p = &mpm->p;
   const int dim = mpm->dim;
-  const double h = mpm->def.cell, moment = h * h / (mpm->def.spline == 3 ? 3.0 : 4.0);
+  const double h = mpm->def.cell, full = h * h / (mpm->def.spline == 3 ? 3.0 : 4.0);
+  const double moment = mpm->standard ? 0.0 : full; /* particles without L carry no spin */
   mps_mpm_totals t = {
       .blocks = mpm->cell_count, .nodes = mpm->node_count * mpm->own, .bytes = grid_bytes(mpm)};
   for (int64_t k = 0; k < mpm->count; k++) {

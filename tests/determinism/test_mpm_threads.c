@@ -2,15 +2,26 @@
  * result up to round-off for every order of the particles.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "digest.h"
-#include "mpm_scene.h"
+#include "mpm_held.h"
 #include "pthread_executor.h"
 
 static const char *const names[] = {"id",     "position", "velocity", "velocity_gradient",
                                     "stress", "volume",   NULL};
 
+enum { BY_CELL = 1, STANDARD = 2 };
+
+static void choose(mps_mpm_def *def, int options) {
+  if (options & BY_CELL) def->volumetric = MPS_VOLUMETRIC_CELL;
+  if (!(options & STANDARD)) return;
+  def->scheme = MPS_SCHEME_STANDARD;
+  def->flip = 0.9;
+}
+
 /* A block that falls on a rough floor while a free rough disc hits its side: many blocks of cells,
- * sorting, contact, friction, walls. `backwards` puts the particles in the opposite order. */
-static mpm_scene fall(mps_context *context, int32_t geometry, bool backwards, mps_body **disc) {
+ * sorting, contact, friction, walls. `options` choose what is not default, `backwards` puts the
+ * particles in the opposite order. */
+static mpm_scene fall(mps_context *context, int32_t geometry, int options, bool backwards,
+                      mps_body **disc) {
   mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e6);
   enum { NX = 60, NY = 40 };
   for (int k = 0; k < NX * NY; k++) {
@@ -22,6 +33,7 @@ static mpm_scene fall(mps_context *context, int32_t geometry, bool backwards, mp
   mpm_scene_affine(&s, v0, L);
   mps_mpm_def def = mps_mpm_defaults();
   def.geometry = geometry;
+  choose(&def, options);
   def.cell = 0.02;
   def.lower[0] = 0.0, def.upper[0] = 1.0;
   def.gravity[1] = -9.81;
@@ -45,7 +57,7 @@ static mpm_scene fall(mps_context *context, int32_t geometry, bool backwards, mp
 }
 
 /* A block in space that falls on a rough ball in the corner of the walls. */
-static mpm_scene fall_in_space(mps_context *context) {
+static mpm_scene fall_in_space(mps_context *context, int options) {
   const double lo[] = {0.05, 0.02, 0.0}, hi[] = {0.53, 0.18, 0.16};
   const double v0[] = {-1.0, -2.0, 0.5}, L[] = {0.0, -3.0, 1.0, 3.0, 0.0, 0.0, -1.0, 0.0, 0.0};
   mpm_scene s = mpm_scene_begin_in(context, 3, 0.01, 0.0, 0.0, 1e5);
@@ -53,6 +65,7 @@ static mpm_scene fall_in_space(mps_context *context) {
   mpm_scene_affine(&s, v0, L);
   mps_mpm_def def = mps_mpm_defaults();
   def.geometry = MPS_SPACE;
+  choose(&def, options);
   def.cell = 0.02;
   for (int c = 0; c < 3; c++) def.lower[c] = 0.0;
   def.gravity[1] = -9.81;
@@ -71,7 +84,25 @@ static mpm_scene fall_in_space(mps_context *context) {
   return s;
 }
 
-static uint64_t hash_of(int32_t executor, int32_t threads, int32_t geometry) {
+/* The scene with everything that holds and loads, in the plane and in space; the forces that act.
+ */
+static mpm_scene hold(mps_context *context, int32_t geometry, uint64_t *hash) {
+  int32_t box = -1, loads[2];
+  mpm_scene s = held_begin(context, geometry, &box, loads);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 10));
+  double force[3];
+  for (int32_t k = -1; k < 4; k++) {
+    mps_assert_ok(context, k < 0 ? mps_mpm_get_nodes_force(s.mpm, box, force)
+                                 : mps_mpm_get_wall_force(s.mpm, k / 2, k % 2, force));
+    for (int c = 0; c < 3; c++) *hash = digest_add(*hash, &force[c]);
+  }
+  return s;
+}
+
+/* Besides the options of `fall`: the scene with everything that holds. */
+enum { HELD = 1024 };
+
+static uint64_t hash_of(int32_t executor, int32_t threads, int32_t geometry, int options) {
   mps_context_def def =
       executor == MPS_EXECUTOR_CALLER ? pthread_executor_def(&threads) : mps_context_defaults();
   def.executor = executor;
@@ -80,39 +111,55 @@ static uint64_t hash_of(int32_t executor, int32_t threads, int32_t geometry) {
   if (mps_context_create(&def, &context, NULL, 0) != MPS_OK) return 0;
   mps_body *disc = NULL;
   mps_body_state b = {0};
-  mpm_scene s =
-      geometry == MPS_SPACE ? fall_in_space(context) : fall(context, geometry, false, &disc);
+  uint64_t forces = 0;
+  mpm_scene s = options & HELD          ? hold(context, geometry, &forces)
+                : geometry == MPS_SPACE ? fall_in_space(context, options)
+                                        : fall(context, geometry, options, false, &disc);
   if (disc) mps_assert_ok(context, mps_body_get_state(disc, &b));
   assert_true(!disc || b.velocity[0] > -2.9); /* it has hit */
-  const uint64_t hash = digest_add(digest_fields(context, s.particles, names), &b.spin[2]);
+  uint64_t hash = digest_add(digest_fields(context, s.particles, names), &b.spin[2]);
+  hash = digest_add(hash, &forces);
   mps_body_destroy(&disc);
   mpm_scene_end(&s);
   mps_context_destroy(&context);
   return hash;
 }
 
+/* One serial thread against `count` other numbers on all executors. */
+static void same_bits(int32_t geometry, int options, int count, const int32_t *threads) {
+  const uint64_t first = hash_of(MPS_EXECUTOR_SERIAL, 1, geometry, options);
+  for (int k = 0; k < count; k++)
+    for (int32_t executor = MPS_EXECUTOR_OPENMP; executor <= MPS_EXECUTOR_CALLER; executor++) {
+      const uint64_t hash = hash_of(executor, threads[k], geometry, options);
+      if (hash == 0)
+        print_message("executor %d is missing here: not compared\n", executor);
+      else if (hash != first)
+        fail_msg("executor %d, %d threads: other bits than one thread", executor, threads[k]);
+    }
+}
+
 static void every_number_of_threads(void **state) {
   (void)state;
   static const int32_t threads[] = {1, 2, 3, 8};
-  for (int32_t geometry = 0; geometry <= MPS_SPACE; geometry++) {
-    const uint64_t first = hash_of(MPS_EXECUTOR_SERIAL, 1, geometry);
-    for (int k = 0; k < 4; k++)
-      for (int32_t executor = MPS_EXECUTOR_OPENMP; executor <= MPS_EXECUTOR_CALLER; executor++) {
-        const uint64_t hash = hash_of(executor, threads[k], geometry);
-        if (hash == 0)
-          print_message("executor %d is missing here: not compared\n", executor);
-        else if (hash != first)
-          fail_msg("executor %d, %d threads: other bits than one thread", executor, threads[k]);
-      }
-  }
+  for (int32_t geometry = 0; geometry <= MPS_SPACE; geometry++) same_bits(geometry, 0, 4, threads);
+}
+
+static void options_too(void **state) {
+  (void)state;
+  static const int32_t threads[] = {3};
+  same_bits(MPS_AXISYMMETRIC, BY_CELL, 1, threads);
+  same_bits(MPS_PLANE_STRAIN, STANDARD, 1, threads);
+  same_bits(MPS_SPACE, STANDARD | BY_CELL, 1, threads);
+  same_bits(MPS_PLANE_STRAIN, HELD, 4, (int32_t[]){1, 2, 3, 8});
+  same_bits(MPS_SPACE, HELD, 4, (int32_t[]){1, 2, 3, 8});
 }
 
 static void any_order_of_particles(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
   mps_body *disc[2] = {NULL};
-  mpm_scene a = fall(context, MPS_PLANE_STRAIN, false, &disc[0]);
-  mpm_scene b = fall(context, MPS_PLANE_STRAIN, true, &disc[1]);
+  mpm_scene a = fall(context, MPS_PLANE_STRAIN, 0, false, &disc[0]);
+  mpm_scene b = fall(context, MPS_PLANE_STRAIN, 0, true, &disc[1]);
   const int64_t count = mps_particles_count(a.particles);
   mps_view xa = mpm_scene_view(&a, "position"), xb = mpm_scene_view(&b, "position");
   for (int64_t id = 0; id < count; id++) {
@@ -129,6 +176,7 @@ static void any_order_of_particles(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(every_number_of_threads),
+                                     cmocka_unit_test(options_too),
                                      cmocka_unit_test(any_order_of_particles)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

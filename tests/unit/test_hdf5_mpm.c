@@ -1,7 +1,7 @@
 /* test_hdf5_mpm.c - a WLS-MPM run that goes on from a checkpoint in a new solver is, bit for bit,
  * the run that never stopped, on any number of threads; a solver built otherwise is refused by
  * name. SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm_scene.h"
+#include "mpm_held.h"
 #include "test_allocator.h"
 #include "test_hdf5.h"
 
@@ -241,6 +241,75 @@ static void goes_on_from_every_step(void **state) {
   mps_context_destroy(&context);
 }
 
+/* ---- walls, moving nodes, loads, several materials ------------------------------------------- */
+
+static scene build_held(mps_context *context, int32_t geometry) {
+  int32_t box, loads[2];
+  const double hi[] = {0.2, INFINITY, INFINITY}, lo[] = {-INFINITY, -INFINITY, -INFINITY};
+  int64_t ids[4000];
+  scene x = {.s = held_begin(context, geometry, &box, loads)};
+  const int64_t count = held_select(&x.s, lo, hi, ids, 4000);
+  mps_material *soil = NULL;
+  mps_assert_ok(context, make_material(context, &none, &soil));
+  mps_assert_ok(context, mps_mpm_set_material(x.s.mpm, soil, count, ids));
+  mps_material_destroy(&soil);
+  return x;
+}
+
+static void same_forces(scene *a, scene *b) {
+  double force[2][3] = {{0.0}};
+  for (int32_t k = 0; k < 4; k++) {
+    mps_assert_ok(a->s.context, mps_mpm_get_wall_force(a->s.mpm, k / 2, k % 2, force[0]));
+    mps_assert_ok(b->s.context, mps_mpm_get_wall_force(b->s.mpm, k / 2, k % 2, force[1]));
+    assert_memory_equal(force[0], force[1], sizeof force[0]);
+  }
+}
+
+static void with_walls_loads_and_materials(void **state) {
+  (void)state;
+  for (int32_t geometry = 0; geometry <= MPS_SPACE; geometry++) {
+    mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+    scene whole = build_held(context, geometry);
+    for (int k = 0; k < 4; k++) { /* at first before the walls have found their forces at rest */
+      mps_context *other = test_context(MPS_EXECUTOR_OPENMP, 3);
+      mps_assert_ok(context, mps_mpm_save(whole.s.mpm, path, NULL));
+      scene next = build_held(other, geometry);
+      if (k == 2) mps_assert_ok(other, mps_mpm_step(next.s.mpm, 30));
+      mps_assert_ok(other, mps_mpm_restore(next.s.mpm, path, NULL));
+      same_fields(&whole, &next);
+      same_forces(&whole, &next);
+      mps_assert_ok(context, mps_mpm_step(whole.s.mpm, 20));
+      mps_assert_ok(other, mps_mpm_step(next.s.mpm, 20));
+      same_fields(&whole, &next);
+      same_forces(&whole, &next);
+      drop(&next);
+      mps_context_destroy(&other);
+    }
+    drop(&whole);
+    mps_context_destroy(&context);
+  }
+}
+
+static void other_walls_loads_and_materials_are_refused(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  scene saved = build_held(context, MPS_PLANE_STRAIN);
+  mps_assert_ok(context, mps_mpm_save(saved.s.mpm, path, NULL));
+  drop(&saved);
+  for (int k = 0; k < 4; k++) {
+    int32_t box, loads[2];
+    scene x = {.s = held_begin(context, MPS_PLANE_STRAIN, &box, loads)};
+    if (k == 0) mps_assert_ok(context, mps_mpm_set_wall(x.s.mpm, 0, 1, MPS_WALL_FIXED, 0.0));
+    if (k == 1) mps_assert_ok(context, mps_mpm_remove_load(x.s.mpm, loads[1]));
+    if (k == 2) mps_assert_ok(context, mps_mpm_free_nodes(x.s.mpm, box));
+    static const char *const text[] = {"wall 1 of '", "has 2 loads and its body", "box 0 of '",
+                                       "has 2 materials, the solver 1"};
+    mps_assert_fails(context, mps_mpm_restore(x.s.mpm, path, NULL), MPS_ERROR_ARGUMENT, text[k]);
+    drop(&x);
+  }
+  mps_context_destroy(&context);
+}
+
 /* ---- errors ---------------------------------------------------------------------------------- */
 
 static void another_solver_is_refused(void **state) {
@@ -255,7 +324,7 @@ static void another_solver_is_refused(void **state) {
     change c;
     const char *text;
   } list[] = {
-      {MPS_AXISYMMETRIC, none, "has geometry 0 and spline 3, the solver 1 and 3"},
+      {MPS_AXISYMMETRIC, none, "has geometry 0, scheme 0 and spline 3, the solver 1, 0 and 3"},
       {MPS_SPACE, none, "particles in 2D, the set has"},
       {0, {.spacing = 0.02, .cell = 0.02, .bodies = 2}, "particles in 2D, the set has"},
       {0, {.spacing = 0.01, .cell = 0.02, .bodies = 2, .particles = 1}, "the set has 801 in 2D"},
@@ -264,7 +333,7 @@ static void another_solver_is_refused(void **state) {
       {0,
        {.spacing = 0.01, .cell = 0.02, .bodies = 2, .wall = 0.2},
        "has walls in x at nodes 0 and 50"},
-      {0, {.spacing = 0.01, .cell = 0.02, .bodies = 2, .elastic = true}, "has the material '"},
+      {0, {.spacing = 0.01, .cell = 0.02, .bodies = 2, .elastic = true}, "material 0 of '"},
       {0, {.spacing = 0.01, .cell = 0.02, .bodies = 1}, "has 2 bodies, the solver 1: add them"},
       {0, {.spacing = 0.01, .cell = 0.02, .bodies = 2, .half_plane = true}, "body 1 of '"},
   };
@@ -426,6 +495,8 @@ int main(void) {
       cmocka_unit_test(goes_on_in_axisymmetry),
       cmocka_unit_test(goes_on_in_space),
       cmocka_unit_test(goes_on_from_every_step),
+      cmocka_unit_test(with_walls_loads_and_materials),
+      cmocka_unit_test(other_walls_loads_and_materials_are_refused),
       cmocka_unit_test(another_solver_is_refused),
       cmocka_unit_test(other_files_and_bad_arguments),
       cmocka_unit_test(a_broken_run_goes_back),

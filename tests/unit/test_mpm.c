@@ -43,6 +43,10 @@ static void refuses_bad_definitions(void **state) {
   CASE(transfer, -1, "transfer is -1");
   CASE(wall_upper[1], 9, "wall_upper[1] is 9");
   CASE(courant, 1.5, "courant is 1.5");
+  CASE(volumetric, 2, "volumetric is 2");
+  CASE(scheme, 2, "scheme is 2");
+  CASE(flip, 0.5, "flip is 0.5");
+  CASE(flip, NAN, "flip is nan");
   CASE(dt, -1.0, "dt is -1 s");
   CASE(gravity[1], INFINITY, "gravity[1] inf");
   CASE(lower[0], 0.013, "must lie on a node");
@@ -142,6 +146,77 @@ static void runs_to_the_end(void **state) {
   mpm_scene_end(&s);
 }
 
+/* A law of the caller's that refuses when told so. */
+static int32_t refusing(void *user, const mps_material_block *block) {
+  (void)block;
+  return *(const int32_t *)user;
+}
+
+static mps_material *refusing_material(mps_context *c, const int32_t *refuses_now) {
+  static const char *const names[] = {"plastic_strain", "damage"};
+  static const double initial[] = {0.5, 1.0};
+  mps_material *out = NULL;
+  mps_user_law_def law = mps_user_law_defaults();
+  law.update = refusing, law.user = (void *)refuses_now;
+  law.name = "touchy", law.wave_modulus = 1e5;
+  law.history_count = 2, law.history = names, law.history_initial = initial;
+  law.needs_deformation = 1;
+  mps_assert_ok(c, mps_material_user(c, &law, &out));
+  return out;
+}
+
+/* Another law for some: its fields are added, its history begins; an error names it. */
+static void sets_materials(void **state) {
+  (void)state;
+  int32_t refuses_now = 0;
+  mpm_scene s = small_scene(context);
+  mps_mpm_def def = small_def();
+  mpm_scene_solve(&s, &def);
+  mps_material *law = refusing_material(context, &refuses_now);
+  const int64_t ids[] = {7, 3}, bad[] = {7, 100};
+  const int32_t fields = mps_particles_field_count(s.particles);
+  mps_assert_fails(context, mps_mpm_set_material(s.mpm, NULL, 2, ids), MPS_ERROR_ARGUMENT,
+                   "material is NULL");
+  mps_assert_fails(context, mps_mpm_set_material(s.mpm, law, -1, ids), MPS_ERROR_ARGUMENT,
+                   "count is -1");
+  mps_assert_fails(context, mps_mpm_set_material(s.mpm, law, 1, NULL), MPS_ERROR_ARGUMENT,
+                   "ids NULL");
+  mps_assert_fails(context, mps_mpm_set_material(s.mpm, law, 2, bad), MPS_ERROR_ARGUMENT,
+                   "ids[1] is 100, allowed are 0 to 99");
+  assert_int_equal(mps_particles_field_count(s.particles), fields);
+  mps_assert_ok(context, mps_mpm_set_material(s.mpm, law, 2, ids));
+  mps_view of = mpm_scene_view(&s, "material"), damage = mpm_scene_view(&s, "damage");
+  mps_view F = mpm_scene_view(&s, "deformation_gradient"), J = mpm_scene_view(&s, "volume_ratio");
+  for (int64_t id = 0; id < 100; id++) {
+    const int64_t k = mps_particles_index(s.particles, id);
+    const bool set = id == 7 || id == 3;
+    assert_int_equal(*mps_view_i64(&of, k, 0), set);
+    mps_assert_near(*mps_view_f64(&damage, k, 0), set ? 1.0 : 0.0, 0.0);
+    mps_assert_near(*mps_view_f64(&F, k, 0), set ? 1.0 : 0.0, 0.0);
+    mps_assert_near(*mps_view_f64(&F, k, 1), 0.0, 0.0);
+    mps_assert_near(*mps_view_f64(&J, k, 0), set ? 1.0 : 0.0, 0.0);
+  }
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 5));
+  for (int k = 2; k < MPS_MPM_MAX_MATERIALS; k++) { /* two there are */
+    mps_material *more = NULL;
+    mps_assert_ok(context, mps_material_linear_elastic(context, 1e5, 0.3, &more));
+    mps_assert_ok(context, mps_mpm_set_material(s.mpm, more, 1, ids));
+    mps_material_destroy(&more);
+  }
+  mps_material *last = NULL;
+  mps_assert_ok(context, mps_material_linear_elastic(context, 1e5, 0.3, &last));
+  mps_assert_fails(context, mps_mpm_set_material(s.mpm, last, 1, ids), MPS_ERROR_ARGUMENT,
+                   "has 16 materials");
+  mps_assert_ok(context, mps_mpm_set_material(s.mpm, law, 1, ids)); /* known: no new one */
+  refuses_now = 1;
+  mps_assert_fails(context, mps_mpm_step(s.mpm, 1), MPS_ERROR_NUMERIC,
+                   "the law 'touchy' has refused");
+  mps_assert_fails(context, mps_mpm_set_material(s.mpm, law, 1, ids), MPS_ERROR_STATE, "failed");
+  mps_material_destroy(&last);
+  mps_material_destroy(&law);
+  mpm_scene_end(&s);
+}
+
 /* A lump that flies out of the domain is told with id and step, and the solver stops. */
 static void tells_what_left(void **state) {
   (void)state;
@@ -150,7 +225,7 @@ static void tells_what_left(void **state) {
   mpm_scene_affine(&s, v0, L);
   mps_mpm_def def = small_def();
   def.upper[0] = 0.2;
-  def.dt = 4e-4;
+  def.dt = 3e-4;
   mpm_scene_solve(&s, &def);
   mps_assert_fails(context, mps_mpm_step(s.mpm, 200), MPS_ERROR_DIVERGED, "check dt");
   assert_true(mps_context_error(context)->particle >= 0);
@@ -163,9 +238,10 @@ static mps_status make(mps_context *c, int what) {
   mps_particles_def set = mps_particles_defaults();
   set.spacing = 0.01;
   mps_particles *particles = NULL;
-  mps_material *material = NULL;
+  mps_material *material = NULL, *other = NULL;
   mps_mpm *mpm = NULL;
   mps_body *body = NULL;
+  const int64_t fifth = 5;
   const double lo[] = {0.0, 0.0}, hi[] = {0.1, 0.1};
   mps_status status = mps_particles_create(c, &set, &particles);
   if (status == MPS_OK) status = mps_particles_fill_box(particles, lo, hi, NULL);
@@ -183,6 +259,8 @@ static mps_status make(mps_context *c, int what) {
   }
   mps_mpm_def def = small_def();
   if (status == MPS_OK) status = mps_mpm_create(c, particles, material, &def, &mpm);
+  if (status == MPS_OK && what == 2) status = mps_material_neo_hookean(c, 1e5, 0.3, &other);
+  if (status == MPS_OK && other) status = mps_mpm_set_material(mpm, other, 1, &fifth);
   if (status == MPS_OK) status = mps_body_create_disc(c, NULL, 0.02, &body);
   if (status == MPS_OK) status = mps_mpm_add_body(mpm, body);
   if (status == MPS_OK) status = mps_mpm_step(mpm, 2);
@@ -190,6 +268,7 @@ static mps_status make(mps_context *c, int what) {
   mps_mpm_destroy(&mpm);
   mps_particles_destroy(&particles);
   mps_material_destroy(&material);
+  mps_material_destroy(&other);
   return status;
 }
 
@@ -229,12 +308,10 @@ static void steady_steps_allocate_nothing(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(refuses_bad_definitions),
-                                     cmocka_unit_test(refuses_bad_sets),
-                                     cmocka_unit_test(owns_its_bodies),
-                                     cmocka_unit_test(runs_to_the_end),
-                                     cmocka_unit_test(tells_what_left),
-                                     cmocka_unit_test(survives_lack_of_memory),
-                                     cmocka_unit_test(steady_steps_allocate_nothing)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(refuses_bad_definitions), cmocka_unit_test(refuses_bad_sets),
+      cmocka_unit_test(owns_its_bodies),         cmocka_unit_test(sets_materials),
+      cmocka_unit_test(runs_to_the_end),         cmocka_unit_test(tells_what_left),
+      cmocka_unit_test(survives_lack_of_memory), cmocka_unit_test(steady_steps_allocate_nothing)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -52,7 +52,7 @@ static void own_weight(void **state) {
 }
 
 /* A block that is thrown against the walls, in plane strain or as a slab of one cell in space. */
-static mpm_scene thrown(int dim) {
+static mpm_scene thrown(int dim, int32_t volumetric) {
   const double lo[] = {0.1, 0.05, 0.0}, hi[] = {0.3, 0.15, 0.02};
   const double v0[] = {-2.0, -1.0, 0.0};
   const double plane[] = {1.0, -9.0, 7.0, -3.0};
@@ -62,6 +62,7 @@ static mpm_scene thrown(int dim) {
   mpm_scene_affine(&s, v0, dim == 3 ? space : plane);
   mps_mpm_def def = mps_mpm_defaults();
   def.geometry = dim == 3 ? MPS_SPACE : MPS_PLANE_STRAIN;
+  def.volumetric = volumetric;
   def.cell = 0.02;
   for (int c = 0; c < dim; c++) def.lower[c] = 0.0;
   def.upper[2] = 0.02;
@@ -72,9 +73,8 @@ static mpm_scene thrown(int dim) {
   return s;
 }
 
-static void slab_is_plane_strain(void **state) {
-  (void)state;
-  mpm_scene plane = thrown(2), slab = thrown(3);
+static void compare_slab(int32_t volumetric) {
+  mpm_scene plane = thrown(2, volumetric), slab = thrown(3, volumetric);
   mps_view x = mpm_scene_view(&plane, "position"), X = mpm_scene_view(&slab, "position");
   mps_view stress = mpm_scene_view(&plane, "stress"), S = mpm_scene_view(&slab, "stress");
   const int64_t count = x.shape[0];
@@ -94,6 +94,12 @@ static void slab_is_plane_strain(void **state) {
   assert_true(strained < 1e-6);
   mpm_scene_end(&plane);
   mpm_scene_end(&slab);
+}
+
+static void slab_is_plane_strain(void **state) {
+  (void)state;
+  compare_slab(MPS_VOLUMETRIC_POINT);
+  compare_slab(MPS_VOLUMETRIC_CELL);
 }
 
 /* Axial vibration between rollers, fixed at the bottom, free at the top: period 4 L/c. */

@@ -1,0 +1,127 @@
+/* materials.c - which laws there are and which particles obey them: the fields that a law works on,
+ * the state in which it begins, and several materials in one solver.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "kernels.h"
+
+#include "core/particles_internal.h"
+
+/* ---- one law --------------------------------------------------------------------------------- */
+
+static mps_status add_fields(mps_particles *set, const mpsi_law_use *law) {
+  mps_status status = MPS_OK;
+  if (law->reads_volume) status = mps_particles_add_field(set, "volume_ratio", 0);
+  if (status == MPS_OK && law->needs_deformation)
+    status = mps_particles_add_field(set, "deformation_gradient", 0);
+  const int32_t histories = mps_material_history_count(law->material);
+  for (int32_t h = 0; h < histories && status == MPS_OK; h++)
+    status = mps_particles_add_field(set, mps_material_history_name(law->material, h), 1);
+  return status;
+}
+
+mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *material) {
+  if (mpm->laws == MPS_MPM_MAX_MATERIALS)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "the solver has %d materials, the most there can be", MPS_MPM_MAX_MATERIALS);
+  mps_particles *set = mpm->particles;
+  mpsi_law_use law = {.material = material,
+                      .modulus = mps_material_wave_modulus(material),
+                      .reads_volume = mpsi_material_reads_volume(material),
+                      .needs_deformation = mps_material_needs_deformation(material) != 0};
+  const int32_t fields = mps_particles_field_count(set);
+  const mps_status status = add_fields(set, &law);
+  if (status != MPS_OK) {
+    mpsi_particles_drop_fields(set, fields);
+    return status;
+  }
+  if (law.reads_volume) mpm->p.J = mpsi_particles_column(set, "volume_ratio", 0);
+  for (int c = 0; c < 9 && law.needs_deformation; c++)
+    mpm->p.F[c] = mpsi_particles_column(set, "deformation_gradient", c);
+  const int32_t histories = mps_material_history_count(material);
+  for (int32_t h = 0; h < histories; h++)
+    law.history[h] = mpsi_particles_column(set, mps_material_history_name(material, h), 0);
+  mpsi_material_retain(material);
+  mpm->one_modulus = mpm->laws == 0 && !mpsi_material_stiffens(material);
+  mpm->law[mpm->laws++] = law;
+  return MPS_OK;
+}
+
+void mpsi_mpm_begin_law(mps_mpm *mpm, const mpsi_law_use *law, int64_t k) {
+  const mpsi_columns *p = &mpm->p;
+  if (law->reads_volume && p->J[k] == 0.0) p->J[k] = 1.0;
+  bool deformed = !law->needs_deformation;
+  for (int c = 0; c < 9 && !deformed && p->F[c]; c++) deformed = p->F[c][k] != 0.0;
+  for (int c = 0; c < 9 && !deformed && p->F[c]; c++) {
+    const bool diagonal = mpm->dim == 3 ? c % 4 == 0 : c == 0 || c >= 3;
+    p->F[c][k] = diagonal ? 1.0 : 0.0;
+  }
+  mpsi_material_begin(law->material, law->history, k, k + 1);
+}
+
+/* ---- several laws ---------------------------------------------------------------------------- */
+
+static mps_status check(const mps_mpm *mpm, const char *function, const mps_material *material,
+                        int64_t count, const int64_t *ids) {
+  if (!material) return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "material is NULL");
+  if (count < 0 || (count > 0 && !ids))
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "count is %lld with ids %s, must be >= 0, and 0 where ids is NULL",
+                     (long long)count, ids ? "given" : "NULL");
+  const double *J = mpsi_material_reads_volume(material)
+                        ? mpsi_particles_column(mpm->particles, "volume_ratio", 0)
+                        : NULL;
+  for (int64_t i = 0; i < count; i++) {
+    const int64_t k = mps_particles_index(mpm->particles, ids[i]);
+    if (k < 0)
+      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "ids[%lld] is %lld, allowed are 0 to %lld", (long long)i, (long long)ids[i],
+                       (long long)mpm->count - 1);
+    if (J && !(J[k] >= 0.0 && J[k] < INFINITY))
+      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "particle %lld has volume ratio %g, must be > 0, or 0 for 1",
+                       (long long)ids[i], J[k]);
+  }
+  return MPS_OK;
+}
+
+/* The column of the laws' numbers, which a set of one law does without. */
+static mps_status number_particles(mps_mpm *mpm) {
+  if (mpm->p.law) return MPS_OK;
+  const mps_status status = mps_particles_add_field(mpm->particles, "material", 0);
+  if (status != MPS_OK) return status;
+  mpm->p.law = mpsi_particles_integers(mpm->particles, "material");
+  for (int64_t k = 0; k < mpm->count; k++) mpm->p.law[k] = 0;
+  return MPS_OK;
+}
+
+/* Number of the law in the list, where it is put if it is new. */
+static mps_status list_law(mps_mpm *mpm, const char *function, mps_material *material,
+                           int32_t *number) {
+  for (*number = 0; *number < mpm->laws; ++*number)
+    if (mpm->law[*number].material == material) return MPS_OK;
+  const bool numbered = mpm->p.law != NULL;
+  const int32_t fields = mps_particles_field_count(mpm->particles);
+  mps_status status = number_particles(mpm);
+  if (status == MPS_OK) status = mpsi_mpm_add_law(mpm, function, material);
+  if (status == MPS_OK || numbered) return status;
+  mpsi_particles_drop_fields(mpm->particles, fields);
+  mpm->p.law = NULL;
+  return status;
+}
+
+mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material, int64_t count,
+                                const int64_t *ids) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  int32_t number = 0;
+  mps_status status = mpsi_mpm_ready(mpm, __func__);
+  if (status == MPS_OK) status = check(mpm, __func__, material, count, ids);
+  if (status == MPS_OK) status = list_law(mpm, __func__, material, &number);
+  if (status != MPS_OK) return status;
+  for (int64_t i = 0; i < count; i++) {
+    const int64_t k = mps_particles_index(mpm->particles, ids[i]);
+    if (mpm->p.law) mpm->p.law[k] = number; /* else there is but the one */
+    mpsi_mpm_begin_law(mpm, &mpm->law[number], k);
+  }
+  mpm->stale = true; /* the dashpots of absorbing walls follow the laws */
+  mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
+  return mpsi_mpm_take_stock(mpm, __func__);
+}

@@ -1,0 +1,72 @@
+/* mpm_held.h - a scene of the WLS-MPM solver with every kind of wall, a moving wall, moving nodes,
+ * gravity, body accelerations and loads.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPS_TEST_MPM_HELD_H
+#define MPS_TEST_MPM_HELD_H
+
+#include "mpm_scene.h"
+
+/* Ids of the particles in a box. */
+static inline int64_t held_select(mpm_scene *s, const double *lo, const double *hi, int64_t *ids,
+                                  int64_t capacity) {
+  int64_t count = 0;
+  mps_assert_ok(s->context, mps_particles_select_box(s->particles, lo, hi, capacity, ids, &count));
+  assert_true(count > 0 && count <= capacity);
+  return count;
+}
+
+/* Two loads: by the spacing with a signal, by areas without. */
+static inline void held_load(mpm_scene *s, mps_signal *signal, int32_t *loads) {
+  enum { MOST = 2000 };
+  static int64_t ids[MOST];
+  static double area[MOST];
+  const double lo[] = {0.2, 0.1, 0.0}, hi[] = {0.3, 0.15, 0.1};
+  const double pull[] = {300.0, -200.0, 50.0}, push[] = {-40.0, 30.0, -20.0};
+  const double own = mps_particles_dim(s->particles) == 3 ? 1e-4 : 1e-2;
+  int64_t count = held_select(s, lo, hi, ids, MOST);
+  mps_assert_ok(s->context, mps_mpm_add_load(s->mpm, count, ids, NULL, pull, signal, &loads[0]));
+  const double all[] = {INFINITY, 0.05, INFINITY}, none[] = {-INFINITY, 0.04, -INFINITY};
+  count = held_select(s, none, all, ids, MOST);
+  for (int64_t k = 0; k < count; k++) area[k] = own * (1.0 + 0.01 * (double)(ids[k] % 7));
+  mps_assert_ok(s->context, mps_mpm_add_load(s->mpm, count, ids, area, push, NULL, &loads[1]));
+}
+
+/* A domain full of particles that move: x frictional and absorbing; y fixed and sliding, and a
+ * roller; z frictional and absorbing. `box` receives the moving nodes' number. */
+static inline mpm_scene held_begin(mps_context *context, int32_t geometry, int32_t *box,
+                                   int32_t *loads) {
+  const int dim = geometry == MPS_SPACE ? 3 : 2;
+  const double lo[] = {0.1, 0.0, 0.0}, hi[] = {dim == 3 ? 0.42 : 0.9, dim == 3 ? 0.16 : 0.4, 0.08};
+  const double v0[] = {0.02, -0.03, 0.01};
+  const double plane[] = {0.05, -0.3, 0.2, -0.05};
+  const double space[] = {0.05, -0.3, 0.1, 0.2, -0.05, 0.1, -0.1, 0.04, 0.03};
+  mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.0, 0.0, 1e5);
+  mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
+  mpm_scene_affine(&s, v0, dim == 3 ? space : plane);
+  mps_assert_ok(context, mps_particles_add_field(s.particles, "body_acceleration", 0));
+  mps_view x = mpm_scene_view(&s, "position"), a = mpm_scene_view(&s, "body_acceleration");
+  for (int64_t k = 0; k < x.shape[0]; k++)
+    for (int c = 0; c < dim; c++) *mps_view_f64(&a, k, c) = 5.0 * *mps_view_f64(&x, k, 1 - c % 2);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.geometry = geometry;
+  def.cell = 0.02;
+  for (int c = 0; c < dim; c++) {
+    def.lower[c] = lo[c], def.upper[c] = hi[c];
+    def.wall_lower[c] = c == 1 ? MPS_WALL_FIXED : MPS_WALL_FRICTIONAL;
+    def.wall_upper[c] = c == 1 ? MPS_WALL_ROLLER : MPS_WALL_ABSORBING;
+    def.wall_friction_lower[c] = c == 1 ? 0.0 : 0.3;
+  }
+  def.gravity[0] = 1.0, def.gravity[1] = -9.81;
+  mpm_scene_solve(&s, &def);
+  mps_signal *signal = NULL;
+  mps_assert_ok(context, mps_signal_sine(context, 20.0, 0.0005, 0.3, &signal));
+  mps_assert_ok(context, mps_mpm_drive_wall(s.mpm, 1, 0, 0, signal, 1.0));
+  mps_assert_ok(context, mps_mpm_drive_wall(s.mpm, 0, 1, 0, signal, -0.1));
+  const double low[] = {0.3, 0.1, 0.02}, high[] = {0.36, 0.16, 0.05};
+  mps_assert_ok(context, mps_mpm_drive_nodes(s.mpm, low, high, 1, signal, 2.0, box));
+  held_load(&s, signal, loads);
+  mps_signal_destroy(&signal);
+  return s;
+}
+
+#endif

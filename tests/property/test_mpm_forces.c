@@ -1,0 +1,117 @@
+/* test_mpm_forces.c - what walls, moving nodes, loads and body accelerations give is what the
+ * particles' momentum gets; loads stay with their particles.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_held.h"
+#include "test_fixture.h"
+
+#include "mpm/mpm_private.h"
+
+/* Sum of all forces of the last step but gravity; counts the walls that act. */
+static void held_force(mpm_scene *s, int32_t box, double *sum, int *acts) {
+  double force[3];
+  mps_assert_ok(context, mps_mpm_get_nodes_force(s->mpm, box, sum));
+  for (int32_t k = 0; k < 2 * s->mpm->dim; k++) {
+    mps_assert_ok(context, mps_mpm_get_wall_force(s->mpm, k / 2, k % 2, force));
+    acts[k] += force[0] != 0.0 || force[1] != 0.0 || force[2] != 0.0;
+    for (int c = 0; c < 3; c++) sum[c] += force[c];
+  }
+  for (int c = 0; c < s->mpm->dim; c++)
+    for (int64_t k = 0; k < s->mpm->count; k++) sum[c] += s->mpm->p.f[c][k];
+}
+
+/* In every step the momentum changes by dt times the sum of the forces. In axisymmetry there is the
+ * hoop stress besides, along x. */
+static void momentum_is_balanced(void **state) {
+  (void)state;
+  for (int32_t geometry = MPS_PLANE_STRAIN; geometry <= MPS_SPACE; geometry++) {
+    int32_t box = -1, loads[2];
+    mpm_scene s = held_begin(context, geometry, &box, loads);
+    mps_mpm_totals before = mpm_scene_totals(&s);
+    double worst = 0.0, total = 0.0;
+    int acts[6] = {0};
+    for (int step = 0; step < 60; step++) {
+      if (step == 20) mps_assert_ok(context, mps_mpm_remove_load(s.mpm, loads[0]));
+      if (step == 30)
+        mps_assert_ok(context, mps_mpm_set_wall(s.mpm, 0, 0, MPS_WALL_ABSORBING, 0.0));
+      if (step == 40)
+        mps_assert_ok(context,
+                      mps_mpm_set_load(s.mpm, loads[1], (double[]){100.0, 50.0, 10.0}, NULL));
+      const double t = mps_mpm_time(s.mpm);
+      mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+      const mps_mpm_totals after = mpm_scene_totals(&s);
+      const double dt = mps_mpm_time(s.mpm) - t;
+      double force[3];
+      held_force(&s, box, force, acts);
+      for (int c = geometry == MPS_AXISYMMETRIC ? 1 : 0; c < s.mpm->dim; c++) {
+        const double all = force[c] + after.mass * s.mpm->def.gravity[c];
+        worst = fmax(worst, fabs(after.linear[c] - before.linear[c] - s.mpm->dt * all));
+        total = fmax(total, fabs(after.linear[c]) + fabs(dt * all));
+      }
+      before = after;
+    }
+    print_message("geometry %d: momentum balanced within %.2g of it\n", geometry, worst / total);
+    assert_true(worst < 1e-12 * total);
+    for (int32_t k = 0; k < 2 * s.mpm->dim; k++) assert_true(acts[k] > 5);
+    mpm_scene_end(&s);
+  }
+}
+
+/* Loads act on the particles that have the ids however the set is sorted. */
+static void loads_follow_particles(void **state) {
+  (void)state;
+  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+  mpm_scene_ball(&s, 0.0, 0.0, 0.1);
+  const double v0[] = {3.0, 0.0}, L[] = {0.0, -20.0, 20.0, 0.0};
+  mpm_scene_affine(&s, v0, L);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.02;
+  mpm_scene_solve(&s, &def);
+  const int64_t ids[] = {3, 100, 7};
+  const double area[] = {0.1, -0.2, 0.3}, pull[] = {10.0, -20.0};
+  int32_t load = -1;
+  mps_assert_ok(context, mps_mpm_add_load(s.mpm, 3, ids, area, pull, NULL, &load));
+  const uint64_t epoch = mps_particles_epoch(s.particles);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 200));
+  assert_true(mps_particles_epoch(s.particles) > epoch);
+  for (int64_t id = 0; id < s.mpm->count; id++) {
+    const int64_t k = mps_particles_index(s.particles, id);
+    double by = 0.0;
+    for (int n = 0; n < 3; n++)
+      if (ids[n] == id) by = area[n];
+    for (int c = 0; c < 2; c++) mps_assert_near(s.mpm->p.f[c][k], by * pull[c], 0.0);
+  }
+  mpm_scene_end(&s);
+}
+
+/* A body acceleration does what gravity does. */
+static void body_acceleration_is_gravity(void **state) {
+  (void)state;
+  double y[2][400];
+  for (int field = 0; field < 2; field++) {
+    mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+    mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.2);
+    mps_mpm_def def = mps_mpm_defaults();
+    def.cell = 0.02;
+    def.lower[1] = 0.0;
+    if (field)
+      mps_assert_ok(context, mps_particles_set(s.particles, "body_acceleration", 1, -9.81));
+    else
+      def.gravity[1] = -9.81;
+    mpm_scene_solve(&s, &def);
+    mps_assert_ok(context, mps_mpm_step(s.mpm, 100));
+    mps_view x = mpm_scene_view(&s, "position");
+    assert_int_equal(x.shape[0], 400);
+    for (int64_t k = 0; k < 400; k++)
+      y[field][k] = *mps_view_f64(&x, mps_particles_index(s.particles, k), 1);
+    mpm_scene_end(&s);
+  }
+  for (int k = 0; k < 400; k++) mps_assert_near(y[1][k], y[0][k], 1e-14);
+  assert_true(y[0][399] < 0.1949); /* it has sunk */
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(momentum_is_balanced),
+                                     cmocka_unit_test(loads_follow_particles),
+                                     cmocka_unit_test(body_acceleration_is_gravity)};
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}

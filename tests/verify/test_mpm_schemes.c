@@ -1,0 +1,231 @@
+/* test_mpm_schemes.c - the original material point method (seed B Table 1) with FLIP and PIC beside
+ * WLS: what each keeps, on a rotating disc, a vibrating bar and a column under its weight.
+ * docs/verification/wls-mpm.md has the table.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_scene.h"
+#include "test_fixture.h"
+
+#include "mpm/kernels.h"
+
+#define PI 3.14159265358979323846
+
+enum { WLS, FLIP, BLEND, PIC, SCHEMES };
+static const char *const name[SCHEMES] = {"WLS", "FLIP", "FLIP 0.95", "PIC"};
+
+static void choose(mps_mpm_def *def, int scheme) {
+  static const double flip[SCHEMES] = {1.0, 1.0, 0.95, 0.0};
+  def->scheme = scheme == WLS ? MPS_SCHEME_WLS : MPS_SCHEME_STANDARD;
+  def->flip = flip[scheme];
+}
+
+/* ---- shape functions and transfer ------------------------------------------------------------ */
+
+/* A block of 6 x 6 cells in which the velocity is linear, after one step without forces. */
+static mpm_scene linear_velocity(int scheme, int32_t spline) {
+  const double v0[] = {0.3, -0.2}, L[] = {1.1, -0.7, 0.4, 0.9};
+  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+  mpm_scene_box(&s, 0.0, 0.0, 0.12, 0.12);
+  mpm_scene_affine(&s, v0, L);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.02, def.spline = spline, def.dt = 1e-12;
+  choose(&def, scheme);
+  mpm_scene_solve(&s, &def);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+  return s;
+}
+
+/* The derivatives of the splines give sum s^n = 0, 1, 0, 3 sum w s^2 for n = 0 to 3 (cubic), and
+ * the first three if quadratic: as many conditions as there are values. */
+static void splines_are_differentiated(void **state) {
+  (void)state;
+  for (int32_t spline = 2; spline <= 3; spline++)
+    for (double t = spline == 3 ? 1.0 : 0.5; t < (spline == 3 ? 2.0 : 1.5); t += 0.07) {
+      double w[4], slope[4], sum[4] = {0.0}, second = 0.0;
+      mpsi_weights(spline, t, w);
+      mpsi_slopes(spline, t, slope);
+      for (int i = 0; i <= spline; i++) {
+        const double s = (double)i - t;
+        second += w[i] * s * s;
+        for (int n = 0; n < 4; n++) sum[n] += slope[i] * pow(s, n);
+      }
+      for (int n = 0; n < 3; n++) mps_assert_near(sum[n], n == 1, 1e-14);
+      if (spline == 3) mps_assert_near(sum[3], 3.0 * second, 1e-14);
+    }
+}
+
+/* WLS gives a linear velocity back, at the block's edge too. PIC does not; FLIP, which changes
+ * velocities only, does; but the edge's velocity gradient is wrong with both. */
+static void linear_velocity_returns(void **state) {
+  (void)state;
+  for (int32_t spline = 2; spline <= 3; spline++)
+    for (int scheme = 0; scheme < SCHEMES; scheme++) {
+      mpm_scene s = linear_velocity(scheme, spline);
+      mps_view x = mpm_scene_view(&s, "position"), v = mpm_scene_view(&s, "velocity");
+      mps_view L = mpm_scene_view(&s, "velocity_gradient");
+      double off = 0.0, gradient = 0.0;
+      for (int64_t k = 0; k < x.shape[0]; k++) {
+        const double X = *mps_view_f64(&x, k, 0), Y = *mps_view_f64(&x, k, 1);
+        off = fmax(off, fabs(*mps_view_f64(&v, k, 0) - (0.3 + 1.1 * X - 0.7 * Y)));
+        gradient = fmax(gradient, fabs(*mps_view_f64(&L, k, 1) + 0.7));
+      }
+      print_message("linear velocity, spline %d, %s: off by %.1e m/s, gradient by %.1e 1/s\n",
+                    spline, name[scheme], off, gradient);
+      if (scheme == WLS || scheme == FLIP) assert_true(off < 1e-11);
+      if (scheme == PIC) assert_true(off > 1e-3);
+      assert_true(scheme == WLS ? gradient < 1e-10 : gradient > 0.01);
+      mpm_scene_end(&s);
+    }
+}
+
+/* ---- rotating disc --------------------------------------------------------------------------- */
+
+typedef struct kept {
+  double linear, angular, energy; /* linear: relative error; the others: share that is left */
+} kept;
+
+/* A free disc, ten cells across, turns `turns` times and flies on. */
+static kept rotating_disc(int scheme, int32_t spline, double turns) {
+  const double w = 5.0, v0[] = {0.4, -0.3}, L[] = {0.0, -w, w, 0.0};
+  mpm_scene s = mpm_scene_begin(context, 0.01, 0.003, -0.001, 1e5);
+  mpm_scene_ball(&s, 0.0, 0.0, 0.1);
+  mpm_scene_affine(&s, v0, L);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.02, def.spline = spline;
+  choose(&def, scheme);
+  mpm_scene_solve(&s, &def);
+  const mps_mpm_totals a = mpm_scene_totals(&s);
+  mps_assert_ok(context, mps_mpm_run(s.mpm, turns * 2.0 * PI / w, 1000000, NULL, NULL));
+  const mps_mpm_totals b = mpm_scene_totals(&s);
+  const double away = 0.5 * (v0[0] * v0[0] + v0[1] * v0[1]); /* J/kg of the flight */
+  mpm_scene_end(&s);
+  return (kept){
+      hypot(b.linear[0] - a.linear[0], b.linear[1] - a.linear[1]) / hypot(a.linear[0], a.linear[1]),
+      b.angular[2] / a.angular[2], (b.kinetic - away * b.mass) / (a.kinetic - away * a.mass)};
+}
+
+static void disc_keeps(void **state) {
+  (void)state;
+  for (int32_t spline = 2; spline <= 3; spline++)
+    for (int scheme = 0; scheme < SCHEMES; scheme++) {
+      const kept k = rotating_disc(scheme, spline, 1.0);
+      print_message(
+          "disc, one turn, spline %d, %s: linear %.1e, angular left %.9f, energy left %.4f\n",
+          spline, name[scheme], k.linear, k.angular, k.energy);
+      assert_true(k.linear < 1e-12);
+      if (scheme == WLS) mps_assert_near(k.angular, 1.0, 1e-11);
+      if (scheme == FLIP) assert_true(k.angular > 0.85 && k.angular < 0.99);
+      if (scheme >= BLEND) assert_true(k.angular < 0.05);
+    }
+}
+
+/* ---- vibrating bar --------------------------------------------------------------------------- */
+
+static double bar_energy(mpm_scene *s, double modulus) {
+  mps_view v = mpm_scene_view(s, "velocity"), stress = mpm_scene_view(s, "stress");
+  mps_view m = mpm_scene_view(s, "mass"), V = mpm_scene_view(s, "volume");
+  double sum = 0.0;
+  for (int64_t k = 0; k < v.shape[0]; k++) {
+    const double speed = *mps_view_f64(&v, k, 1), yy = *mps_view_f64(&stress, k, 1);
+    sum += 0.5 * *mps_view_f64(&m, k, 0) * speed * speed;
+    sum += 0.5 * *mps_view_f64(&V, k, 0) * yy * yy / modulus;
+  }
+  return sum;
+}
+
+/* A bar of 25 cells between rollers, fixed at the bottom, swings `periods` times: the mean period
+ * over the exact 4 L/c, and what is left of the energy. */
+static void vibrating_bar(int scheme, int periods, double *period, double *energy) {
+  const double E = 1e6, rho = 1000.0, length = 1.0, modulus = E * 0.7 / (1.3 * 0.4);
+  const double exact = 4.0 * length / sqrt(modulus / rho);
+  mpm_scene s = mpm_scene_begin(context, 0.02, 0.0, 0.0, E);
+  mpm_scene_box(&s, 0.0, 0.0, 0.08, length);
+  mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity", 0));
+  mps_view x = mpm_scene_view(&s, "position"), v = mpm_scene_view(&s, "velocity");
+  for (int64_t k = 0; k < x.shape[0]; k++)
+    *mps_view_f64(&v, k, 1) = 0.01 * sin(0.5 * PI * *mps_view_f64(&x, k, 1) / length);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.04;
+  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.08;
+  choose(&def, scheme);
+  mpm_scene_solve(&s, &def);
+  const double start = bar_energy(&s, modulus);
+  double first = 0.0, last = 0.0, before = mpm_scene_totals(&s).linear[1], t_before = 0.0;
+  for (int found = 0; found < 2 * periods + 1;) {
+    mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+    const double now = mpm_scene_totals(&s).linear[1], t = mps_mpm_time(s.mpm);
+    if (now * before < 0.0) {
+      last = t_before + (t - t_before) * before / (before - now);
+      if (found++ == 0) first = last;
+    }
+    before = now;
+    t_before = t;
+    assert_true(t < (periods + 2) * exact);
+  }
+  *period = (last - first) / periods / exact;
+  *energy = bar_energy(&s, modulus) / start;
+  mpm_scene_end(&s);
+}
+
+static void bar_swings(void **state) {
+  (void)state;
+  for (int scheme = 0; scheme < SCHEMES; scheme++) {
+    double period, energy;
+    vibrating_bar(scheme, 5, &period, &energy);
+    print_message("bar, %s: period over exact %.5f, energy left after 5 periods %.4f\n",
+                  name[scheme], period, energy);
+    mps_assert_near(period, 1.0, scheme == WLS ? 0.002 : 0.03);
+    if (scheme == WLS) assert_true(energy > 0.99 && energy < 1.0);
+    if (scheme == FLIP) assert_true(energy > 0.95 && energy < 1.0);
+    if (scheme == BLEND) assert_true(energy > 0.8 && energy < 0.95);
+    if (scheme == PIC) assert_true(energy < 0.4);
+  }
+}
+
+/* ---- column ---------------------------------------------------------------------------------- */
+
+static double column(int scheme, int32_t spline) {
+  const double rho = 1000.0, g = 10.0, K0 = 0.3 / 0.7;
+  mpm_scene s = mpm_scene_begin(context, 0.02, 0.0, 0.0, 1e7);
+  mpm_scene_box(&s, 0.0, 0.0, 0.2, 1.0);
+  mps_assert_ok(context, mps_particles_add_field(s.particles, "stress", 0));
+  mps_view x = mpm_scene_view(&s, "position"), stress = mpm_scene_view(&s, "stress");
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    const double yy = -rho * g * (1.0 - *mps_view_f64(&x, k, 1));
+    *mps_view_f64(&stress, k, 0) = *mps_view_f64(&stress, k, 2) = K0 * yy;
+    *mps_view_f64(&stress, k, 1) = yy;
+  }
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.04, def.spline = spline;
+  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.2;
+  def.gravity[1] = -g;
+  choose(&def, scheme);
+  mpm_scene_solve(&s, &def);
+  mps_assert_ok(context, mps_mpm_run(s.mpm, 0.2, 1000000, NULL, NULL));
+  x = mpm_scene_view(&s, "position"), stress = mpm_scene_view(&s, "stress");
+  double worst = 0.0;
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    const double depth = 1.0 - *mps_view_f64(&x, k, 1);
+    if (depth < 0.15 || depth > 0.85) continue;
+    worst = fmax(worst, fabs(*mps_view_f64(&stress, k, 1) / (-rho * g * depth) - 1.0));
+  }
+  mpm_scene_end(&s);
+  return worst;
+}
+
+static void column_rests(void **state) {
+  (void)state;
+  for (int scheme = 0; scheme < SCHEMES; scheme++) {
+    const double cubic = column(scheme, 3), quadratic = column(scheme, 2);
+    print_message("column, %s: stress within %.4f, quadratic %.4f\n", name[scheme], cubic,
+                  quadratic);
+    assert_true(scheme == WLS ? cubic < 0.005 : cubic < 0.15);
+    assert_true(quadratic <= cubic);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(splines_are_differentiated), cmocka_unit_test(linear_velocity_returns),
+      cmocka_unit_test(disc_keeps), cmocka_unit_test(bar_swings), cmocka_unit_test(column_rests)};
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
