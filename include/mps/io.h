@@ -126,9 +126,9 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_save(mps_mpm *mpm, const char *path,
  *  boxes, number of loads, whether there are body accelerations, names and order of materials, and
  *  the shapes, motions and numbers of parts of the bodies in their order. Where the solver is now
  *  does not matter; a step that failed is forgotten. From there it goes on bit for bit as the run
- *  that never stopped, for every number of threads. All else is the caller's to set up again,
- * before or after, and may be other than it was: constants of materials, gravity, dt, courant,
- * signals, loads, friction, masses of bodies.
+ *  that never stopped, for every number of threads. All else is the caller's to set up
+ *  again, and may be other than it was: constants of materials, gravity, dt, courant, signals,
+ *  loads on particles, friction, masses of bodies.
  *
  *  The set takes the order of the file: views taken before are stale. On an error nothing has
  *  changed, except that MPS_ERROR_MEMORY may leave a solver that takes no step (MPS_ERROR_STATE)
