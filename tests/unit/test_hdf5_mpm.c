@@ -2,6 +2,7 @@
  * the run that never stopped, on any number of threads; a solver built otherwise is refused by
  * name. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_held.h"
+#include "pthread_executor.h"
 #include "test_allocator.h"
 #include "test_hdf5.h"
 
@@ -168,6 +169,14 @@ static void same(scene *a, scene *b) {
   assert_int_equal(ta.nodes, tb.nodes);
 }
 
+/* Own threads: not every build has OpenMP. `threads` must outlive the context. */
+static mps_context *on_threads(int32_t *threads) {
+  mps_context_def def = pthread_executor_def(threads);
+  mps_context *context = NULL;
+  assert_int_equal(mps_context_create(&def, &context, NULL, 0), MPS_OK);
+  return context;
+}
+
 /* ---- the same bits --------------------------------------------------------------------------- */
 
 /* One run goes on all the while; at each stop it is saved, and another solver, on other threads,
@@ -177,7 +186,8 @@ static void stop_and_go_on(int32_t geometry, int64_t steps, int stops) {
   scene whole = build(context, geometry, &none);
   const uint64_t epoch = mps_particles_epoch(whole.s.particles);
   for (int k = 0; k < stops; k++) {
-    mps_context *other = test_context(MPS_EXECUTOR_OPENMP, 1 + k % 3);
+    int32_t threads = 1 + k % 3;
+    mps_context *other = on_threads(&threads);
     mps_assert_ok(context, mps_mpm_save(whole.s.mpm, path, NULL));
     scene next = build(other, geometry, &none);
     if (k % 2) mps_assert_ok(other, mps_mpm_step(next.s.mpm, 5)); /* where it is does not matter */
@@ -271,7 +281,8 @@ static void with_walls_loads_and_materials(void **state) {
     mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
     scene whole = build_held(context, geometry);
     for (int k = 0; k < 4; k++) { /* at first before the walls have found their forces at rest */
-      mps_context *other = test_context(MPS_EXECUTOR_OPENMP, 3);
+      int32_t threads = 3;
+      mps_context *other = on_threads(&threads);
       mps_assert_ok(context, mps_mpm_save(whole.s.mpm, path, NULL));
       scene next = build_held(other, geometry);
       if (k == 2) mps_assert_ok(other, mps_mpm_step(next.s.mpm, 30));
