@@ -64,7 +64,7 @@ static double interpolate(int count, const double *t, const double *value, doubl
 typedef struct settings {
   double h, base, viscosity, sound, duration, tank, friction;
   int64_t n2, ppc, threads;
-  int state, tension, spline, transfer, bed;
+  int state, tension, spline, transfer, volumetric, bed;
   bool rest;
   const char *out;
 } settings;
@@ -134,6 +134,7 @@ static mps_status build(mps_context *context, void *user) {
   def.cell = s->h;
   def.spline = s->spline + 2;
   def.transfer = s->transfer;
+  def.volumetric = s->volumetric;
   def.lower[0] = def.lower[1] = 0.0;
   def.upper[0] = s->rest ? s->base : s->tank * s->base;
   def.wall_lower[1] = s->bed == NO_SLIP ? MPS_WALL_FIXED : MPS_WALL_ROLLER;
@@ -410,6 +411,7 @@ int main(int argc, char **argv) {
       OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
       OPTION_CHOICE("spline", "2|3", &s->spline, "degree of the weights"),
       OPTION_CHOICE("transfer", "shape|weight", &s->transfer, "particles to nodes"),
+      OPTION_CHOICE("volumetric", "point|cell", &s->volumetric, "change of volume: F-bar by cell"),
       OPTION_HEADING("Run"),
       OPTION_NUMBER("duration", "s", OPTION_POSITIVE, &s->duration, "of the run (default T = 6)"),
       OPTION_OUT(&s->out),

@@ -202,9 +202,9 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_remove_load(mps_mpm *mpm, int32_t load)
 
 /* ---- running --------------------------------------------------------------------------------- */
 
-/** Takes `count` (>= 0) steps. MPS_ERROR_DIVERGED: a particle has left the domain, or has a
- * velocity or a volume that is not finite; the record names step and particle, the fields show the
- * state. */
+/** Takes `count` (>= 0) steps. A particle that passes a wall by less than 0.1 cells is put back on
+ * it. MPS_ERROR_DIVERGED: one has left the domain, or has a velocity or a volume that is not
+ * finite; the record names step and particle, the fields show the state. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_step(mps_mpm *mpm, int64_t count);
 
 /** Called at the start of a run, then every `every` steps and at the end. Return MPS_OK to go on.

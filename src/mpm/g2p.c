@@ -111,14 +111,27 @@ static void add_own(mps_mpm *mpm, int64_t begin, int n, const double (*motion)[4
     for (int k = 0; k < n; k++) mpm->p.v[c][begin + k] += motion[k][1 + c][MPSI_MASS];
 }
 
-/* The first of particles [begin, end) outside the domain. */
-static int64_t first_outside(const mps_mpm *mpm, int64_t begin, int64_t end) {
+/* The nodes of a wall stand still, but a velocity fitted over them need not at the wall itself: a
+ * particle that is pressed on it passes it by a little in time. */
+#define BEYOND 0.1 /* cells: a particle so far behind a wall is put back on it */
+
+/* Looks after particles [begin, end), one of which is outside the domain: the first that is too far
+ * beyond a wall, or not a number; -1 where there is none. Nothing is put back on the axis: there
+ * the hoop strain has no end. */
+static int64_t keep_inside(mps_mpm *mpm, int64_t begin, int64_t end) {
   for (int64_t k = begin; k < end; k++)
     for (int c = 0; c < mpm->dim; c++) {
-      const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k]);
-      if (!(X >= (double)mpm->low[c] && X <= (double)mpm->high[c])) return k;
+      double *x = &mpm->p.x[c][k];
+      const double X = mpsi_grid_coordinate(mpm, c, *x);
+      const double low = (double)mpm->low[c], high = (double)mpm->high[c];
+      if (X >= low && X <= high) continue;
+      const bool axis = mpm->def.geometry == MPS_AXISYMMETRIC && c == 0 && !(*x > 0.0);
+      if (axis || !(X >= low - BEYOND && X <= high + BEYOND)) return k;
+      const double wall = X < low ? low : high, inwards = X < low ? INFINITY : -INFINITY;
+      *x = mpm->def.origin[c] + mpm->def.cell * wall;
+      while ((mpsi_grid_coordinate(mpm, c, *x) - wall) * inwards < 0.0) *x = nextafter(*x, inwards);
     }
-  return begin;
+  return -1;
 }
 
 /* c + |v| of particles [begin, begin + n), at most a chunk. A NaN or infinity is a bad particle. */
@@ -175,7 +188,7 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cells *cells, const mpsi_worker *w
   const moved m = move(mpm, cells, geometry, spline, begin, n, (const double(*)[4][4])motion);
   if (mpm->flip > 0.0) add_own(mpm, begin, n, (const double(*)[4][4])motion);
   if (m.left) cells->left = true;
-  if (m.outside && cells->bad < 0) cells->bad = first_outside(mpm, begin, begin + n);
+  if (m.outside && cells->bad < 0) cells->bad = keep_inside(mpm, begin, begin + n);
 }
 
 MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {

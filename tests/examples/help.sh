@@ -26,3 +26,8 @@ for program in mps-dam-break mps-column-collapse; do
   done
   [ "$(awk 'length > 100' "$work/help" | wc -l)" -eq 0 ] || fail "$program --help has long lines"
 done
+"$1/mps-penetrometer" --help >"$work/help" || fail "mps-penetrometer --help"
+for text in "Usage: mps-penetrometer" "--tip cone|sphere|stl" "--h [m]" "(default" "--out DIR"; do
+  has "$work/help" "$text"
+done
+[ "$(awk 'length > 100' "$work/help" | wc -l)" -eq 0 ] || fail "mps-penetrometer: long lines"

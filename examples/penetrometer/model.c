@@ -1,0 +1,255 @@
+/* model.c - a box of soil, and the tip above it.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "penetrometer.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define STIFFNESS 4.0 /* of the contact, over K + 4G/3 and at most over m/dt^2 */
+
+/* ---- settings -------------------------------------------------------------------------------- */
+
+double pen_radius(const penetrometer *p) { return 0.5 * p->s.diameter; }
+
+double pen_shoulder(const penetrometer *p) {
+  return pen_radius(p) / tan(0.5 * p->s.angle * PEN_PI / 180.0);
+}
+
+double pen_gap(const penetrometer *p) { return fmin(0.5 * p->s.h, 0.2 * p->s.depth); }
+
+/* m: radius of what is in the ground at the end. */
+static double radius_below(const pen_settings *s) {
+  const double R = 0.5 * s->diameter, d = fmin(s->depth, R);
+  return s->tip == PEN_SPHERE ? sqrt(d * (2.0 * R - d)) : R;
+}
+
+static bool read_soil(pen_settings *s) {
+  double *const value[3] = {&s->width, &s->breadth, &s->height};
+  const char *text = s->soil;
+  for (int k = 0; k < 3; k++) {
+    char number[32];
+    const size_t length = strcspn(text, "x");
+    if (length >= sizeof number || (text[length] == 'x') != (k < 2)) return false;
+    memcpy(number, text, length);
+    number[length] = '\0';
+    if (!options_number(number, value[k]) || *value[k] <= 0.0) return false;
+    text += length + 1;
+  }
+  return true;
+}
+
+static const char *check_tip(const pen_settings *s) {
+  if ((s->tip == PEN_STL) != (s->mesh != NULL)) return "--tip stl and --mesh belong together";
+  if (s->tip == PEN_STL && s->axisymmetric) return "--axisymmetric is for --tip cone and sphere";
+  if (s->no_space && !s->axisymmetric) return "--no-space is for --axisymmetric";
+  if (s->diameter < s->h * (4.0 - 1e-9)) return "--diameter must be at least 4 cells of --h";
+  return NULL;
+}
+
+const char *pen_check(penetrometer *p) {
+  pen_settings *s = &p->s;
+  const char *reason = check_tip(s);
+  if (reason) return reason;
+  if (!read_soil(s)) return "--soil must be three lengths in diameters, WxWxD, such as 6x6x5";
+  if (fmin(s->width, s->breadth) * s->diameter < 2.0 * radius_below(s) + 8.0 * s->h)
+    return "--soil must be at least 8 cells of --h wider than what is pushed in";
+  if (s->depth > s->height * s->diameter - 4.0 * s->h)
+    return "--depth must end 4 cells of --h above the bottom of the soil";
+  const double edge = nearbyint(cbrt((double)s->ppc));
+  if (edge * edge * edge != (double)s->ppc) return "--ppc must be a cube: 1, 8, 27 or 64";
+  if (s->psi > s->phi) return "--psi must be at most --phi";
+  if (s->law == PEN_CLAY && s->cohesion == 0.0) return "--cohesion must be > 0 with --law clay";
+  if (isnan(s->gravity)) s->gravity = s->law == PEN_SAND ? 9.81 : 0.0;
+  p->stride = fmin(0.2 * s->h, s->depth / 200.0);
+  p->t_end = (pen_gap(p) + s->depth) / s->speed;
+  p->runs = s->axisymmetric && !s->no_space ? 2 : 1;
+  p->run[0].geometry = s->no_space ? MPS_AXISYMMETRIC : MPS_SPACE;
+  p->run[1].geometry = MPS_AXISYMMETRIC;
+  return NULL;
+}
+
+/* ---- soil ------------------------------------------------------------------------------------ */
+
+/* Whole cells; in axisymmetry a cylinder with the section of the box. */
+static void find_size(const penetrometer *p, pen_run *r) {
+  const pen_settings *s = &p->s;
+  const double in_diameters[3] = {0.5 * s->width, 0.5 * s->breadth, s->height};
+  for (int c = 0; c < 3; c++) r->size[c] = s->h * ceil(in_diameters[c] * s->diameter / s->h - 1e-6);
+  r->factor = s->model == PEN_QUARTER ? 4.0 : 1.0;
+  if (r->geometry == MPS_SPACE) return;
+  r->size[0] = s->h * nearbyint(sqrt(4.0 * r->size[0] * r->size[1] / PEN_PI) / s->h);
+  r->size[1] = r->size[2];
+  r->factor = 2.0 * PEN_PI;
+}
+
+static int dim_of(const pen_run *r) { return r->geometry == MPS_SPACE ? 3 : 2; }
+
+/* Lower end of the box across axis c: on the axis where the model is cut there. */
+static double lower_of(const penetrometer *p, const pen_run *r, int c) {
+  const bool whole = r->geometry == MPS_SPACE && p->s.model == PEN_WHOLE;
+  return whole && c < 2 ? -r->size[c] : 0.0;
+}
+
+/* The weight above, and nu/(1 - nu) of it sideways. */
+static mps_status set_stress(const penetrometer *p, pen_run *r) {
+  const pen_settings *s = &p->s;
+  const int up = dim_of(r) - 1;
+  mps_view x, stress;
+  mps_status status = mps_particles_add_field(r->m.particles, "stress", 0);
+  if (status == MPS_OK) status = mps_particles_view(r->m.particles, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(r->m.particles, "stress", &stress);
+  if (status != MPS_OK || s->gravity == 0.0) return status;
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    const double weight = s->density * s->gravity * (*mps_view_f64(&x, k, up) - r->size[up]);
+    for (int c = 0; c < 3; c++)
+      *mps_view_f64(&stress, k, c) = c == up ? weight : s->poisson / (1.0 - s->poisson) * weight;
+  }
+  return MPS_OK;
+}
+
+/* The places at the start, for the displacements at the end. */
+static mps_status keep_places(pen_run *r) {
+  mps_view x, start;
+  mps_status status = mps_particles_add_field(r->m.particles, "start", dim_of(r));
+  if (status == MPS_OK) status = mps_particles_view(r->m.particles, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(r->m.particles, "start", &start);
+  for (int64_t k = 0; status == MPS_OK && k < x.shape[0]; k++)
+    for (int c = 0; c < dim_of(r); c++) *mps_view_f64(&start, k, c) = *mps_view_f64(&x, k, c);
+  return status;
+}
+
+static mps_status make_law(mps_context *context, const pen_settings *s, mps_material **out) {
+  const double young = s->young * 1e3, radian = PEN_PI / 180.0;
+  if (s->law == PEN_ELASTIC) return mps_material_linear_elastic(context, young, s->poisson, out);
+  if (s->law == PEN_CLAY) {
+    mps_von_mises_def clay = mps_von_mises_defaults();
+    clay.young = young, clay.poisson = s->poisson;
+    clay.yield_stress = sqrt(3.0) * s->cohesion * 1e3; /* seed B (54) */
+    return mps_material_von_mises(context, &clay, out);
+  }
+  mps_drucker_prager_def sand = mps_drucker_prager_defaults();
+  sand.cone = MPS_CONE_INSCRIBED;
+  sand.young = young, sand.poisson = s->poisson;
+  sand.friction = s->phi * radian, sand.dilation = s->psi * radian;
+  sand.cohesion = s->cohesion * 1e3;
+  return mps_material_drucker_prager(context, &sand, out);
+}
+
+static mps_status make_soil(penetrometer *p, pen_run *r) {
+  const pen_settings *s = &p->s;
+  double lo[3];
+  for (int c = 0; c < 3; c++) lo[c] = lower_of(p, r, c);
+  mps_particles_def set = mps_particles_defaults();
+  set.dim = dim_of(r);
+  set.spacing = s->h / nearbyint(cbrt((double)s->ppc));
+  mps_status status = mps_particles_create(p->context, &set, &r->m.particles);
+  if (status == MPS_OK) status = mps_particles_fill_box(r->m.particles, lo, r->size, NULL);
+  if (status == MPS_OK) status = mps_particles_set(r->m.particles, "density", 0, s->density);
+  if (status == MPS_OK) status = set_stress(p, r);
+  if (status == MPS_OK) status = keep_places(r);
+  return status == MPS_OK ? make_law(p->context, s, &r->m.material) : status;
+}
+
+static mps_status make_solver(penetrometer *p, pen_run *r) {
+  const pen_settings *s = &p->s;
+  const int up = dim_of(r) - 1;
+  mps_mpm_def def = mps_mpm_defaults();
+  def.geometry = r->geometry;
+  def.cell = s->h;
+  def.courant = s->courant;
+  for (int c = 0; c <= up; c++) {
+    def.lower[c] = lower_of(p, r, c);
+    if (c < up) def.upper[c] = r->size[c];
+  }
+  def.wall_lower[up] = MPS_WALL_FIXED;
+  def.gravity[up] = -s->gravity;
+  return mps_mpm_create(p->context, r->m.particles, r->m.material, &def, &r->m.mpm);
+}
+
+/* ---- tip ------------------------------------------------------------------------------------- */
+
+/* The cone's apex is the reference point. Corners belong to the tip: its face comes first. In the
+ * plane of axisymmetry the section is whole, so that no edge lies on the axis. */
+static mps_status make_cone(penetrometer *p, const pen_run *r, const mps_body_def *def,
+                            mps_body **out) {
+  const double R = pen_radius(p), z = pen_shoulder(p), L = 2.0 * (p->s.depth + p->s.diameter) + z;
+  const double half[8] = {0.0, 0.0, R, z, R, L, 0.0, L};
+  const double whole[10] = {0.0, 0.0, R, z, R, L, -R, L, -R, z};
+  mps_status status = r->geometry == MPS_SPACE
+                          ? mps_body_create_revolution(p->context, def, 4, half, out)
+                          : mps_body_create_polygon(p->context, def, 5, whole, out);
+  if (status == MPS_OK) status = mps_body_name_part(*out, "tip", 0, 1, NULL);
+  return status == MPS_OK ? mps_body_name_part(*out, "shaft", 1, 1, NULL) : status;
+}
+
+static mps_status make_sphere(penetrometer *p, const pen_run *r, mps_body_def *def,
+                              mps_body **out) {
+  def->position[dim_of(r) - 1] += pen_radius(p);
+  const mps_status status = r->geometry == MPS_SPACE
+                                ? mps_body_create_sphere(p->context, def, pen_radius(p), out)
+                                : mps_body_create_disc(p->context, def, pen_radius(p), out);
+  return status == MPS_OK ? mps_body_name_part(*out, "tip", 0, 1, NULL) : status;
+}
+
+/* Contact stiffness as in mps-pile: the pressure below a tip must not use up the offset. */
+static double penalty_of(const penetrometer *p, const pen_run *r) {
+  const double spacing = mps_particles_spacing(r->m.particles), dt = mps_mpm_dt(r->m.mpm);
+  const double limit = p->s.density * spacing * spacing / (dt * dt);
+  const double k = STIFFNESS * fmin(mps_material_wave_modulus(r->m.material), limit);
+  return r->geometry == MPS_SPACE ? k * spacing : k;
+}
+
+static mps_status make_tip(penetrometer *p, pen_run *r) {
+  const int up = dim_of(r) - 1;
+  const double t[] = {0.0, p->t_end + 1.0}, v[] = {p->s.speed, p->s.speed};
+  mps_signal *down = NULL;
+  mps_body **body = &r->m.body[0];
+  mps_body_def def = mps_body_defaults();
+  def.position[up] = r->size[up] + pen_gap(p);
+  def.friction = p->s.friction;
+  def.penalty = r->penalty = penalty_of(p, r);
+  mps_status status = mps_signal_table(p->context, MPS_SIGNAL_VELOCITY, 2, t, v, &down);
+  if (status == MPS_OK && p->s.tip == PEN_CONE) status = make_cone(p, r, &def, body);
+  if (status == MPS_OK && p->s.tip == PEN_SPHERE) status = make_sphere(p, r, &def, body);
+  if (status == MPS_OK && p->s.tip == PEN_STL)
+    status = mps_body_create_stl(p->context, &def, p->s.mesh, p->s.scale, body);
+  if (status == MPS_OK) status = mps_body_drive(*body, up, down, -1.0);
+  mps_signal_destroy(&down);
+  return status == MPS_OK ? mps_mpm_add_body(r->m.mpm, *body) : status;
+}
+
+/* ---- all ------------------------------------------------------------------------------------- */
+
+mps_status pen_build_run(penetrometer *p, pen_run *r) {
+  find_size(p, r);
+  mps_status status = make_soil(p, r);
+  if (status == MPS_OK) status = make_solver(p, r);
+  if (status == MPS_OK) status = make_tip(p, r);
+  if (status != MPS_OK) return status;
+  r->particles = mps_particles_count(r->m.particles);
+  r->dt = mps_mpm_dt(r->m.mpm);
+  r->capacity = (int64_t)((p->s.depth + pen_gap(p)) / p->stride) + 2;
+  r->row = calloc((size_t)r->capacity, sizeof *r->row);
+  r->near = calloc((size_t)r->particles * 3, sizeof *r->near);
+  r->distance = calloc((size_t)r->particles, sizeof *r->distance);
+  r->point = calloc((size_t)r->particles, sizeof *r->point);
+  r->ratio_min = INFINITY;
+  return r->row && r->near && r->distance && r->point ? MPS_OK : MPS_ERROR_MEMORY;
+}
+
+mps_status pen_build(mps_context *context, void *user) {
+  penetrometer *p = user;
+  p->context = context;
+  p->run[0].m.keeps = true;
+  return pen_build_run(p, &p->run[0]);
+}
+
+void pen_free(penetrometer *p) {
+  for (int k = 0; k < 2; k++) {
+    free(p->run[k].row);
+    free(p->run[k].near);
+    free(p->run[k].distance);
+    free(p->run[k].point);
+  }
+}

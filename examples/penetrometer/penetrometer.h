@@ -1,0 +1,101 @@
+/* penetrometer.h - a rigid tip pushed into a box of soil: settings, the runs, and their parts.
+ *
+ * In space z is upwards and the axis is x = y = 0; in axisymmetry x is the radius and y upwards.
+ * The floor is at height 0. Forces are those of the whole tip: 4 times what a quarter feels, 2 pi
+ * times what a radian does. Depths count from the ground as it was, downwards, to the lowest point.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef EXAMPLES_PENETROMETER_H
+#define EXAMPLES_PENETROMETER_H
+
+#include "common/mpm_model.h"
+
+#define PEN_PI 3.14159265358979323846
+
+enum { PEN_CONE, PEN_SPHERE, PEN_STL };   /* --tip */
+enum { PEN_CLAY, PEN_SAND, PEN_ELASTIC }; /* --law */
+enum { PEN_QUARTER, PEN_WHOLE };          /* --model */
+enum { PEN_TIP, PEN_SHAFT, PEN_TOTAL, PEN_FORCES };
+
+typedef struct pen_settings {
+  int tip, law, model;
+  const char *mesh;
+  double scale;                            /* m per unit of the mesh */
+  double diameter, angle;                  /* m, degrees */
+  double depth, speed, friction;           /* m, m/s, 1 */
+  const char *soil;                        /* "WxWxD" in diameters */
+  double width, breadth, height;           /* what `soil` says */
+  double cohesion, phi, psi;               /* kPa, degrees */
+  double young, poisson, density, gravity; /* kPa, 1, kg/m3, m/s2; NaN: by the law */
+  double h, courant;
+  bool axisymmetric, no_space;
+  int64_t ppc, threads;
+  const char *out;
+} pen_settings;
+
+/* One row of force.csv. */
+typedef struct pen_row {
+  double depth;              /* m */
+  double force[PEN_FORCES];  /* N, upwards: mean over the path since the row before */
+  double smooth[PEN_FORCES]; /* N, mean over a window of the path about the row */
+} pen_row;
+
+/* A particle of the vertical section through the axis, at the end. */
+typedef struct pen_point {
+  double x, z; /* m: distance from the axis (to the left in axisymmetry), height over the ground */
+  double moved, strain; /* m, plastic strain (0: the law has none) */
+} pen_point;
+
+typedef struct pen_run {
+  mps_geometry geometry;
+  mpm_model m;
+  double size[3]; /* m: half width, half breadth, height; in axisymmetry radius and height */
+  double factor;  /* of the forces: 1, 4 or 2 pi */
+  double penalty, dt;
+  pen_row *row;
+  int64_t rows, capacity;
+  double last_time, last_impulse[PEN_FORCES]; /* since the last row */
+  int64_t inside;                             /* most particles inside the tip at once */
+  double deepest;                             /* m, the furthest that one was below its surface */
+  double ratio_max, ratio_min;                /* of V/V0 */
+  int64_t particles, steps;
+  pen_point *point;
+  int64_t points;
+  double *near;     /* positions of the particles that may be inside the tip, room for all, */
+  double *distance; /* and their distances */
+} pen_run;
+
+typedef struct penetrometer {
+  pen_settings s;
+  pen_run run[2]; /* the second one, if there are two, is the axisymmetric one */
+  int runs;
+  double stride; /* m of path between rows */
+  double t_end;  /* s */
+  mps_context *context;
+} penetrometer;
+
+/* ---- model.c --------------------------------------------------------------------------------- */
+
+/* Reads `soil`, fills in what depends on others, and tells why the settings cannot be run; NULL
+ * where they can. */
+const char *pen_check(penetrometer *p);
+mps_status pen_build(mps_context *context, void *user);
+mps_status pen_build_run(penetrometer *p, pen_run *r);
+void pen_free(penetrometer *p);             /* what the model does not own */
+double pen_radius(const penetrometer *p);   /* m */
+double pen_shoulder(const penetrometer *p); /* m: height of the cone */
+double pen_gap(const penetrometer *p);      /* m: between tip and ground at the start */
+
+/* ---- push.c ---------------------------------------------------------------------------------- */
+
+mps_status pen_push(void *user);
+double pen_depth(const penetrometer *p, const pen_run *r);
+double pen_reached(const pen_run *r); /* m: depth of the last row */
+
+/* ---- results.c, pictures.c ------------------------------------------------------------------- */
+
+bool pen_finish(app *a, void *user);
+/* Hertz: force (N) on a smooth rigid sphere in an elastic half space. */
+double pen_hertz(const penetrometer *p, double depth);
+bool pen_draw(app *a, const penetrometer *p);
+
+#endif

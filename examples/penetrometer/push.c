@@ -1,0 +1,197 @@
+/* push.c - pushes the tip: forces by part along the path, after every step a look whether a
+ * particle is inside the tip, and at the end the section through the axis. SPDX-License-Identifier:
+ * BSD-3-Clause */
+#include "penetrometer.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#define INSIDE 1e-6     /* cells: deeper below the surface counts as inside the tip */
+#define VOLUME_EVERY 10 /* steps */
+
+static int up_of(const pen_run *r) { return r->geometry == MPS_SPACE ? 2 : 1; }
+
+/* The reference point moves as the lowest point does. */
+double pen_depth(const penetrometer *p, const pen_run *r) {
+  mps_body_state state;
+  const double above = p->s.tip == PEN_SPHERE ? pen_radius(p) : 0.0;
+  if (mps_body_get_state(r->m.body[0], &state) != MPS_OK) return NAN;
+  return r->size[up_of(r)] + above - state.position[up_of(r)];
+}
+
+double pen_reached(const pen_run *r) { return r->rows > 0 ? r->row[r->rows - 1].depth : 0.0; }
+
+/* ---- looks ----------------------------------------------------------------------------------- */
+
+static mps_status look_at_volumes(const penetrometer *p, pen_run *r) {
+  mps_view volume, mass;
+  mps_status status = mps_particles_view(r->m.particles, "volume", &volume);
+  if (status == MPS_OK) status = mps_particles_view(r->m.particles, "mass", &mass);
+  for (int64_t k = 0; status == MPS_OK && k < volume.shape[0]; k++) {
+    const double ratio = p->s.density * *mps_view_f64(&volume, k, 0) / *mps_view_f64(&mass, k, 0);
+    r->ratio_max = fmax(r->ratio_max, ratio);
+    r->ratio_min = fmin(r->ratio_min, ratio);
+  }
+  return status;
+}
+
+/* The body is asked about those only that are above its lowest point, and within the radius of a
+ * cone or sphere. */
+static mps_status look_for_intruders(const penetrometer *p, pen_run *r) {
+  mps_view x;
+  mps_status status = mps_particles_view(r->m.particles, "position", &x);
+  if (status != MPS_OK) return status;
+  const int up = up_of(r);
+  const double tip = r->size[up] - pen_depth(p, r);
+  const double reach = p->s.tip == PEN_STL ? INFINITY : pen_radius(p);
+  int64_t count = 0, inside = 0;
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    const double at[3] = {*mps_view_f64(&x, k, 0), *mps_view_f64(&x, k, 1),
+                          up == 2 ? *mps_view_f64(&x, k, 2) : 0.0};
+    if (at[up] < tip || at[0] * at[0] + (up == 2 ? at[1] * at[1] : 0.0) > reach * reach) continue;
+    for (int c = 0; c <= up; c++) r->near[(up + 1) * count + c] = at[c];
+    count++;
+  }
+  if (count > 0)
+    status = mps_body_distance(r->m.body[0], count, r->near, r->distance, NULL, NULL, NULL);
+  for (int64_t k = 0; status == MPS_OK && k < count; k++) {
+    r->deepest = fmax(r->deepest, -r->distance[k]);
+    if (r->distance[k] < -INSIDE * p->s.h) inside++;
+  }
+  if (inside > r->inside) r->inside = inside;
+  return status;
+}
+
+/* ---- rows ------------------------------------------------------------------------------------ */
+
+/* Upward impulses on the tip so far (N s). A mesh is all tip. */
+static mps_status read_impulses(const pen_run *r, double *up) {
+  static const char *const names[] = {"tip", "shaft"};
+  mps_reaction reaction;
+  mps_status status = mps_body_get_reaction(r->m.body[0], -1, &reaction);
+  up[PEN_TOTAL] = up[PEN_TIP] = r->factor * reaction.impulse[up_of(r)];
+  up[PEN_SHAFT] = 0.0;
+  for (int k = 0; k < 2 && status == MPS_OK; k++) {
+    const int32_t part = mps_body_part(r->m.body[0], names[k]);
+    if (part < 0) continue;
+    status = mps_body_get_reaction(r->m.body[0], part, &reaction);
+    up[k] = r->factor * reaction.impulse[up_of(r)];
+  }
+  return status;
+}
+
+static mps_status end_row(const penetrometer *p, pen_run *r, double t) {
+  double up[PEN_FORCES];
+  const double span = t - r->last_time;
+  const mps_status status = read_impulses(r, up);
+  if (status != MPS_OK || !(span > 0.0) || r->rows == r->capacity) return status;
+  pen_row *row = &r->row[r->rows++];
+  row->depth = pen_depth(p, r);
+  for (int k = 0; k < PEN_FORCES; k++) {
+    row->force[k] = (up[k] - r->last_impulse[k]) / span;
+    r->last_impulse[k] = up[k];
+  }
+  r->last_time = t;
+  return MPS_OK;
+}
+
+/* Means over 4 cells of path or a tenth of it, less where the path begins and ends. */
+static void smooth(const penetrometer *p, pen_run *r) {
+  const int64_t half = (int64_t)(fmin(2.0 * p->s.h, 0.05 * p->s.depth) / p->stride);
+  for (int64_t i = 0; i < r->rows; i++) {
+    int64_t reach = half < i ? half : i; /* as far to either side: no lag on a slope */
+    if (reach > r->rows - 1 - i) reach = r->rows - 1 - i;
+    if (reach < half / 4) reach = half / 4; /* but at the ends */
+    const int64_t first = i < reach ? 0 : i - reach;
+    const int64_t last = i + reach < r->rows ? i + reach : r->rows - 1;
+    for (int k = 0; k < PEN_FORCES; k++) {
+      double sum = 0.0;
+      for (int64_t j = first; j <= last; j++) sum += r->row[j].force[k];
+      r->row[i].smooth[k] = sum / (double)(last - first + 1);
+    }
+  }
+}
+
+/* ---- the end --------------------------------------------------------------------------------- */
+
+/* What lies in the section: within a spacing of y = 0. Where all is the same around the axis also a
+ * wedge of 20 degrees, drawn by its distance from the axis: next to the tip soil is stretched
+ * around it, and few particles are left in the thin slice. */
+static bool in_section(const penetrometer *p, double thick, double x, double y) {
+  return fabs(y) < thick || (p->s.tip != PEN_STL && fabs(y) < 0.364 * fabs(x));
+}
+
+/* Displacements, and the particles in the section. */
+static mps_status take_section(const penetrometer *p, pen_run *r) {
+  mps_view x, start, moved, strain;
+  const int up = up_of(r);
+  mps_status status = mps_particles_add_field(r->m.particles, "displacement", 0);
+  if (status == MPS_OK) status = mps_particles_view(r->m.particles, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(r->m.particles, "start", &start);
+  if (status == MPS_OK) status = mps_particles_view(r->m.particles, "displacement", &moved);
+  if (status != MPS_OK) return status;
+  const bool plastic = mps_particles_view(r->m.particles, "plastic_strain", &strain) == MPS_OK;
+  const double thick = mps_particles_spacing(r->m.particles);
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    double square = 0.0;
+    for (int c = 0; c <= up; c++) {
+      const double d = *mps_view_f64(&x, k, c) - *mps_view_f64(&start, k, c);
+      *mps_view_f64(&moved, k, c) = d;
+      square += d * d;
+    }
+    const double X = *mps_view_f64(&x, k, 0), Y = up == 2 ? *mps_view_f64(&x, k, 1) : 0.0;
+    if (!in_section(p, thick, X, Y)) continue;
+    const double from_axis = p->s.tip == PEN_STL ? X : copysign(hypot(X, Y), X);
+    r->point[r->points++] =
+        (pen_point){up == 2 ? from_axis : -X, *mps_view_f64(&x, k, up) - r->size[up], sqrt(square),
+                    plastic ? *mps_view_f64(&strain, k, 0) : 0.0};
+  }
+  return MPS_OK;
+}
+
+/* ---- the run --------------------------------------------------------------------------------- */
+
+typedef struct push {
+  penetrometer *p;
+  pen_run *r;
+} push;
+
+static mps_status after_step(void *user, mps_mpm *mpm) {
+  const push *now = user;
+  penetrometer *p = now->p;
+  pen_run *r = now->r;
+  if (progress_interrupted()) return MPS_ERROR_CANCELLED; /* the run's own hook: each hundredth */
+  const double t = mps_mpm_time(mpm), depth = pen_depth(p, r);
+  mps_status status = look_for_intruders(p, r);
+  if (status == MPS_OK && (mps_mpm_steps(mpm) % VOLUME_EVERY == 0 || t >= p->t_end))
+    status = look_at_volumes(p, r);
+  const double next = p->stride * (double)(r->rows + 1) - pen_gap(p);
+  if (status == MPS_OK && (depth >= next || t >= p->t_end)) status = end_row(p, r, t);
+  return status;
+}
+
+static mps_status march(penetrometer *p, pen_run *r) {
+  push now = {p, r};
+  mps_status status = mps_mpm_run(r->m.mpm, p->t_end, 1, after_step, &now);
+  r->steps = mps_mpm_steps(r->m.mpm);
+  smooth(p, r);
+  const bool ended = status == MPS_OK || status == MPS_ERROR_CANCELLED;
+  const mps_status taken = ended ? take_section(p, r) : MPS_OK;
+  return status == MPS_OK ? taken : status;
+}
+
+mps_status pen_push(void *user) {
+  penetrometer *p = user;
+  mps_status status = march(p, &p->run[0]);
+  if (status != MPS_OK || p->runs < 2) return status;
+  pen_run *r = &p->run[1];
+  status = pen_build_run(p, r);
+  if (status == MPS_OK) {
+    printf("axisymmetric: %lld particles, dt %.4g s\n", (long long)r->particles, r->dt);
+    fflush(stdout);
+    status = march(p, r);
+  }
+  mpm_model_destroy(&r->m); /* its results are in rows and points */
+  return status;
+}

@@ -1,0 +1,149 @@
+/* results.c - force.csv, section.csv, summary.json, and what is told of them on the terminal.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "penetrometer.h"
+
+#include "common/frame.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#define LAST 0.2 /* of the path: means for the summary */
+
+double pen_hertz(const penetrometer *p, double depth) {
+  const double stiffness = p->s.young * 1e3 / (1.0 - p->s.poisson * p->s.poisson);
+  return depth > 0.0 ? 4.0 / 3.0 * stiffness * sqrt(pen_radius(p)) * pow(depth, 1.5) : 0.0;
+}
+
+static double area(const penetrometer *p) { return PEN_PI * pen_radius(p) * pen_radius(p); }
+
+/* Means over the last part of the path (N); of Hertz' force too. */
+typedef struct mean {
+  double force[PEN_FORCES], hertz;
+} mean;
+
+static mean mean_of(const penetrometer *p, const pen_run *r) {
+  mean m = {{0.0}, 0.0};
+  int64_t count = 0;
+  for (int64_t i = 0; i < r->rows; i++) {
+    if (r->row[i].depth < (1.0 - LAST) * pen_reached(r)) continue;
+    for (int k = 0; k < PEN_FORCES; k++) m.force[k] += r->row[i].force[k];
+    m.hertz += pen_hertz(p, r->row[i].depth);
+    count++;
+  }
+  for (int k = 0; k < PEN_FORCES; k++) m.force[k] = count ? m.force[k] / (double)count : NAN;
+  m.hertz = count ? m.hertz / (double)count : NAN;
+  return m;
+}
+
+/* ---- files ----------------------------------------------------------------------------------- */
+
+static bool write_force(app *a, const penetrometer *p, const pen_run *r, const char *name) {
+  output f;
+  if (!output_open(&f, a, p->s.out, name)) return false;
+  output_text(&f, "depth_m,total_N,tip_N,shaft_N,total_smooth_N,tip_smooth_N,shaft_smooth_N,"
+                  "q_kPa,q_over_c\n");
+  for (int64_t i = 0; i < r->rows; i++) {
+    const pen_row *row = &r->row[i];
+    const double q = 1e-3 * row->smooth[PEN_TIP] / area(p);
+    const double ratio = p->s.cohesion > 0.0 ? q / p->s.cohesion : NAN;
+    const double line[] = {row->depth,
+                           row->force[PEN_TOTAL],
+                           row->force[PEN_TIP],
+                           row->force[PEN_SHAFT],
+                           row->smooth[PEN_TOTAL],
+                           row->smooth[PEN_TIP],
+                           row->smooth[PEN_SHAFT],
+                           q,
+                           ratio};
+    csv_row(&f, 9, line);
+  }
+  return output_close(&f);
+}
+
+static bool write_section(app *a, const penetrometer *p) {
+  output f;
+  if (!output_open(&f, a, p->s.out, "section.csv")) return false;
+  output_text(&f, "x_m,z_m,displacement_m,plastic_strain\n");
+  for (int k = 0; k < p->runs; k++)
+    for (int64_t i = 0; i < p->run[k].points; i++) {
+      const pen_point *point = &p->run[k].point[i];
+      output_text(&f, "%.5g,%.5g,%.4g,%.4g\n", point->x, point->z, point->moved, point->strain);
+    }
+  return output_close(&f);
+}
+
+static void write_settings(output *f, const penetrometer *p) {
+  static const char *const tips[] = {"cone", "sphere", "stl"};
+  static const char *const laws[] = {"clay", "sand", "elastic"};
+  const pen_settings *s = &p->s;
+  json_text(f, "tip", tips[s->tip]);
+  json_text(f, "law", laws[s->law]);
+  json_text(f, "geometry", p->run[0].geometry == MPS_SPACE ? "space" : "axisymmetric");
+  json_number(f, "h", s->h);
+  json_number(f, "diameter", s->diameter);
+  json_number(f, "speed", s->speed);
+  json_number(f, "friction", s->friction);
+  json_number(f, "half_width", p->run[0].size[0]);
+  json_number(f, "soil_height", p->run[0].size[p->run[0].geometry == MPS_SPACE ? 2 : 1]);
+  json_number(f, "penalty", p->run[0].penalty);
+  json_number(f, "dt", p->run[0].dt);
+}
+
+/* Of the first run; of both where it is about what must never happen. */
+static bool write_summary(app *a, const penetrometer *p, const mean *m) {
+  const pen_run *r = &p->run[0], *other = &p->run[p->runs - 1];
+  output f;
+  if (!mpm_model_summary(a, &r->m, p->s.out, &f)) return false;
+  write_settings(&f, p);
+  json_number(&f, "depth", pen_reached(r));
+  json_number(&f, "force_total", m[0].force[PEN_TOTAL]);
+  json_number(&f, "force_tip", m[0].force[PEN_TIP]);
+  json_number(&f, "force_shaft", m[0].force[PEN_SHAFT]);
+  json_number(&f, "q", m[0].force[PEN_TIP] / area(p));
+  if (p->s.law == PEN_CLAY)
+    json_number(&f, "n_factor", m[0].force[PEN_TIP] / area(p) / (p->s.cohesion * 1e3));
+  if (p->s.law == PEN_ELASTIC && p->s.tip == PEN_SPHERE) {
+    json_number(&f, "force_hertz", m[0].hertz);
+    json_number(&f, "hertz_error", m[0].force[PEN_TOTAL] / m[0].hertz - 1.0);
+  }
+  if (p->runs == 2) {
+    json_integer(&f, "axisymmetric_particles", other->particles);
+    json_number(&f, "axisymmetric_radius", other->size[0]);
+    json_number(&f, "axisymmetric_force_total", m[1].force[PEN_TOTAL]);
+    json_number(&f, "space_over_axisymmetric", m[0].force[PEN_TOTAL] / m[1].force[PEN_TOTAL]);
+  }
+  json_integer(&f, "particles_inside", r->inside > other->inside ? r->inside : other->inside);
+  json_number(&f, "deepest_inside", fmax(r->deepest, other->deepest));
+  json_number(&f, "volume_ratio_max", fmax(r->ratio_max, other->ratio_max));
+  json_number(&f, "volume_ratio_min", fmin(r->ratio_min, other->ratio_min));
+  json_end(&f);
+  return output_close(&f);
+}
+
+/* ---- terminal -------------------------------------------------------------------------------- */
+
+static void tell_run(const penetrometer *p, const pen_run *r, const mean *m) {
+  const double q = 1e-3 * m->force[PEN_TIP] / area(p);
+  printf("%s: mean of the last fifth of %.4g m: %.5g N = tip %.5g + shaft %.5g N, q = %.4g kPa",
+         r->geometry == MPS_SPACE ? "space" : "axisymmetric", pen_reached(r), m->force[PEN_TOTAL],
+         m->force[PEN_TIP], m->force[PEN_SHAFT], q);
+  if (p->s.law == PEN_CLAY) printf(" = %.4g c", q / p->s.cohesion);
+  if (p->s.law == PEN_ELASTIC && p->s.tip == PEN_SPHERE)
+    printf("; Hertz %.5g N, %+.2f %%", m->hertz, 100.0 * (m->force[PEN_TOTAL] / m->hertz - 1.0));
+  printf("\nV/V0 %.4g to %.4g, particles inside the tip: %lld\n", r->ratio_min, r->ratio_max,
+         (long long)r->inside);
+}
+
+bool pen_finish(app *a, void *user) {
+  penetrometer *p = user;
+  const mean m[2] = {mean_of(p, &p->run[0]), mean_of(p, &p->run[1])};
+  if (p->runs == 2 && p->run[1].rows == 0) p->runs = 1; /* interrupted before */
+  if (!write_force(a, p, &p->run[0], "force.csv") || !write_section(a, p) ||
+      (p->runs == 2 && !write_force(a, p, &p->run[1], "force-axisymmetric.csv")) ||
+      !write_summary(a, p, m) || !frame_write(a, p->run[0].m.particles, p->s.out, "soil.vtkhdf") ||
+      !pen_draw(a, p))
+    return false;
+  printf("Results: %s/ (force*.csv, section.csv, summary.json, *.png)\n", p->s.out);
+  for (int k = 0; k < p->runs; k++) tell_run(p, &p->run[k], &m[k]);
+  return true;
+}

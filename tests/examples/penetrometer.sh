@@ -1,0 +1,56 @@
+#!/bin/sh
+# penetrometer.sh DIRECTORY: mps-penetrometer on coarse grids: space against axisymmetry, the parts'
+# sum, a mesh, a whole model. Finer: docs/verification/wls-mpm.md.
+. "$(dirname "$0")/checks.sh"
+coarse="--h 0.025 --soil 3x3x2.5 --speed 1 --threads 1"
+
+"$1/mps-penetrometer" $coarse --depth 0.1 --friction 0.2 --axisymmetric --out "$work/a" >"$work/log"
+has "$work/log" "particles inside the tip: 0"
+s=$work/a/summary.json
+in_range "$s" particles_inside 0 0
+in_range "$s" deepest_inside 0 0
+in_range "$s" volume_ratio_max 1 1.1
+in_range "$s" volume_ratio_min 0.8 1
+in_range "$s" depth 0.09999 0.10001
+in_range "$s" n_factor 3 15
+in_range "$s" space_over_axisymmetric 0.9 1.1
+awk -F'[:,]' '/"force_total"/ { total = $2 } /"force_tip"|"force_shaft"/ { sum += $2 }
+  END { exit !(total > 0 && (total - sum) ^ 2 < 1e-18 * total ^ 2) }' "$s" || fail "the parts' sum"
+for file in force force-axisymmetric; do
+  has "$work/a/$file.csv" "depth_m,total_N,tip_N,shaft_N,total_smooth_N,"
+done
+has "$work/a/section.csv" "x_m,z_m,displacement_m,plastic_strain"
+if command -v gnuplot >/dev/null; then
+  for picture in force section; do
+    [ "$(head -c 4 "$work/a/$picture.png" | tail -c 3)" = PNG ] || fail "$picture.png"
+  done
+fi
+
+# The same for every number of threads.
+"$1/mps-penetrometer" $coarse --threads 3 --depth 0.1 --friction 0.2 --out "$work/b" >/dev/null
+cmp "$work/a/force.csv" "$work/b/force.csv" || fail "three threads give another force.csv"
+
+# A sphere presses elastic ground as Hertz says, and more in so small a box. The whole model differs
+# a little from four quarters: shape functions cut off by a wall are not those of mirrored nodes.
+sphere="--tip sphere --law elastic --poisson 0.3 --diameter 1 --h 0.1 --soil 1.6x1.6x1 --depth 0.05"
+"$1/mps-penetrometer" $sphere --speed 0.5 --threads 1 --out "$work/q" >/dev/null
+"$1/mps-penetrometer" $sphere --speed 0.5 --threads 3 --model whole --out "$work/w" >/dev/null
+in_range "$work/q/summary.json" hertz_error 0 0.4
+force=$(sed -n 's/^ *"force_total": \([^,]*\),*$/\1/p' "$work/q/summary.json")
+in_range "$work/w/summary.json" force_total \
+  "$(awk "BEGIN { print $force * 0.97 }")" "$(awk "BEGIN { print $force * 1.03 }")"
+
+# A mesh: an octahedron, tip down, by its STL file.
+awk -v a=50 -v b=-50 'function facet(p, q, r) { printf "facet normal 0 0 0\nouter loop\nvertex %s\nvertex %s\nvertex %s\nendloop\nendfacet\n", p, q, r }
+  BEGIN { v[0] = a " 0 " a; v[1] = "0 " a " " a; v[2] = b " 0 " a; v[3] = "0 " b " " a
+    print "solid o"
+    for (i = 0; i < 4; i++) { facet("0 0 0", v[(i + 1) % 4], v[i]); facet("0 0 " 2 * a, v[i], v[(i + 1) % 4]) }
+    print "endsolid o" }' >"$work/mesh.stl"
+status=0
+"$1/mps-penetrometer" $coarse --tip stl --mesh "$work/mesh.stl" --scale 0.001 --depth 0.08 \
+  --out "$work/m" >"$work/log" 2>&1 || status=$?
+if ! grep -q "MPS_EMBREE" "$work/log"; then
+  [ "$status" -eq 0 ] || fail "mesh: $(cat "$work/log")"
+  in_range "$work/m/summary.json" particles_inside 0 0
+  in_range "$work/m/summary.json" n_factor 2 15
+fi
