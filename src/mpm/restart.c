@@ -161,6 +161,8 @@ mps_status mpsi_mpm_check_record(const mps_mpm *mpm, const char *function, const
 
 /* ---- is it whole? ---------------------------------------------------------------------------- */
 
+#define ROUNDED 1e-6 /* cells */
+
 static bool orderly(const mps_mpm *mpm, const mpsi_mpm_record *r) {
   if (r->blocks < 1 || r->blocks > mpm->count || r->block[0][0] != 0) return false;
   for (int64_t k = 0; k < r->blocks; k++) {
@@ -176,7 +178,26 @@ static bool orderly(const mps_mpm *mpm, const mpsi_mpm_record *r) {
   return r->block[r->blocks - 1][0] < mpm->count;
 }
 
-bool mpsi_mpm_fits_record(const mps_mpm *mpm, const mpsi_mpm_record *r, const double *x,
+/* Where the particle k of the file is: 1 in its tile, -1 in no place that a run leads to unless it
+ * sorts next, and 0 in between: outside by what the steps' own arithmetic, which has fused
+ * products, may round away. */
+static int place_of(const mps_mpm *mpm, const int64_t *block, bool stale, const double *x,
+                    int64_t k) {
+  const double first = mpm->def.spline == 3 ? 1.0 : 0.5; /* see move in g2p.c */
+  int place = 1;
+  for (int c = 0; c < mpm->dim; c++) {
+    const double X = mpsi_grid_coordinate(mpm, c, x[c * mpm->count + k]);
+    const double low = (double)mpm->low[c], high = (double)mpm->high[c];
+    if (!(fabs(X) < MPSI_MAX_CELLS && X >= low - ROUNDED && X <= high + ROUNDED)) return -1;
+    if (stale) continue;
+    const double local = X - (double)(block[1 + c] * MPSI_SIDE) - first;
+    if (local < -ROUNDED || local > MPSI_SIDE + 2 + ROUNDED) return -1;
+    if (!(local >= 0.0 && local < MPSI_SIDE + 2)) place = 0;
+  }
+  return place;
+}
+
+bool mpsi_mpm_fits_record(const mps_mpm *mpm, mpsi_mpm_record *r, const double *x,
                           const int64_t *law) {
   if (!(r->speed > 0.0 && isfinite(r->speed)) || !orderly(mpm, r)) return false;
   for (int k = 0; k < MPSI_HOLDS; k++)
@@ -184,14 +205,9 @@ bool mpsi_mpm_fits_record(const mps_mpm *mpm, const mpsi_mpm_record *r, const do
   for (int64_t k = 0, b = 0; k < mpm->count; k++) {
     if (mpm->p.law && !(law && law[k] >= 0 && law[k] < mpm->laws)) return false;
     if (b + 1 < r->blocks && k == r->block[b + 1][0]) b++;
-    for (int c = 0; c < mpm->dim; c++) {
-      const double X = mpsi_grid_coordinate(mpm, c, x[c * mpm->count + k]);
-      if (!(fabs(X) < MPSI_MAX_CELLS && X >= (double)mpm->low[c] && X <= (double)mpm->high[c]))
-        return false;
-      const double local =
-          mpsi_base(mpm->def.spline, X) - 1.0 - (double)(r->block[b][1 + c] * MPSI_SIDE);
-      if (!r->stale && (local < -1.0 || local > MPSI_SIDE)) return false;
-    }
+    const int place = place_of(mpm, r->block[b], r->stale != 0, x, k);
+    if (place < 0) return false;
+    if (place == 0) r->stale = 1; /* it needs no block then */
   }
   return true;
 }

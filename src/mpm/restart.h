@@ -54,7 +54,7 @@ mps_status mpsi_mpm_check_record(const mps_mpm *mpm, const char *function, const
 /* Whether the record's blocks are in order and hold the particles at x, dim columns one behind the
  * other in the file's order, and these are of laws that there are (`law` NULL: of the first). A
  * step relies on it: a stencil outside its tile is memory outside. */
-bool mpsi_mpm_fits_record(const mps_mpm *mpm, const mpsi_mpm_record *record, const double *x,
+bool mpsi_mpm_fits_record(const mps_mpm *mpm, mpsi_mpm_record *record, const double *x,
                           const int64_t *law);
 /* Puts back a record that fits, the fields being in place. MPS_ERROR_MEMORY: the solver is broken
  * until another record is put. */
