@@ -58,6 +58,7 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("h", "m", OPTION_POSITIVE, &s->h, "grid spacing"),
       OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 64.0), &s->ppc,
                      "particles a cell in space, a cube: 1, 8, 27 or 64"),
+      OPTION_CHOICE("volumetric", "point|cell", &s->volumetric, "change of volume: F-bar by cell"),
       OPTION_NUMBER("courant", "1", OPTION_ABOVE_TO(0.0, 1.0), &s->courant,
                     "step over its limit, seed B (49)"),
       OPTION_HEADING("Run"),

@@ -17,7 +17,7 @@ enum { PEN_QUARTER, PEN_WHOLE };          /* --model */
 enum { PEN_TIP, PEN_SHAFT, PEN_TOTAL, PEN_FORCES };
 
 typedef struct pen_settings {
-  int tip, law, model;
+  int tip, law, model, volumetric;
   const char *mesh;
   double scale;                            /* m per unit of the mesh */
   double diameter, angle;                  /* m, degrees */
