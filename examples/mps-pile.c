@@ -26,6 +26,7 @@ int main(int argc, char **argv) {
                          .courant = 0.5,
                          .ppc = 4,
                          .frames = 4,
+                         .every_checkpoint = 0.05,
                          .out = "out/pile"}};
   pile_settings *s = &p.s;
   option table[] = {
@@ -65,6 +66,15 @@ int main(int argc, char **argv) {
                     "time before the pile moves, to see whether the soil rests"),
       OPTION_INTEGER("frames", "N", OPTION_FROM_TO(1.0, 1000.0), &s->frames,
                      "depths at which the soil is written; pictures show up to 4 of them"),
+      OPTION_TEXT("checkpoint", "FILE", &s->checkpoint,
+                  "written on the way and at Ctrl-C, to go on from"),
+      OPTION_NUMBER("every-checkpoint", "m", OPTION_POSITIVE, &s->every_checkpoint,
+                    "path of the pile between checkpoints"),
+      OPTION_TEXT(
+          "restart", "FILE", &s->restart,
+          "go on from a checkpoint made with the same options (--out, --threads and those of "
+          "checkpoints may differ); the results are those of the whole run, the frames for "
+          "ParaView those from here on, in pile-from-N.vtkhdf"),
       OPTION_OUT(&s->out),
       OPTION_THREADS(&s->threads),
       {0}};
@@ -78,6 +88,8 @@ int main(int argc, char **argv) {
   if (code >= 0) return code;
   if (options_given(table, "xi") && options_given(table, "k"))
     return options_refuse(&program, "--xi and --k exclude each other");
+  if (options_given(table, "every-checkpoint") && !s->checkpoint)
+    return options_refuse(&program, "--every-checkpoint needs --checkpoint FILE");
   const char *reason = pile_check(s);
   if (reason) return options_refuse(&program, reason);
   static const mpm_model_parts parts = {pile_build, pile_drive, pile_finish};

@@ -148,10 +148,17 @@ static mps_status watch(pile *p, double t, double depth) {
   return status;
 }
 
+/* Last of what follows a step: what the file holds is then all of that step. */
+static mps_status save_when_due(pile *p, double depth) {
+  const int64_t due = (int64_t)floor((depth + p->s.h) / p->s.every_checkpoint);
+  if (!p->s.checkpoint || due <= p->checkpoints) return MPS_OK;
+  p->checkpoints = due;
+  return pile_save(p);
+}
+
 static mps_status after_step(void *user, mps_mpm *mpm) {
   pile *p = user;
   mps_reaction r;
-  if (progress_interrupted()) return MPS_ERROR_CANCELLED; /* the run's own hook: each hundredth */
   const double t = mps_mpm_time(mpm), depth = pile_depth(p);
   mps_status status = watch(p, t, depth);
   if (status == MPS_OK) status = mps_body_get_reaction(p->m.body[0], -1, &r);
@@ -165,17 +172,25 @@ static mps_status after_step(void *user, mps_mpm *mpm) {
   if (status == MPS_OK && p->frames < p->s.frames &&
       depth >= step * (double)(p->frames + 1) * (1.0 - 1e-9))
     status = pile_take_frame(p);
-  return status;
+  return status == MPS_OK ? save_when_due(p, depth) : status;
 }
 
-mps_status pile_drive(void *user) {
-  pile *p = user;
+mps_status pile_begin(pile *p) {
   p->stride = p->s.h / ROWS_PER_CELL;
   p->capacity = (int64_t)((p->s.depth + p->s.h) / p->stride) + 2;
   p->seen = (pile_seen){.ratio_min = INFINITY};
   p->row = calloc((size_t)p->capacity, sizeof *p->row);
-  if (!p->row) return MPS_ERROR_MEMORY;
-  const mps_status status = mps_mpm_run(p->m.mpm, p->t_end, 1, after_step, p);
+  return p->row ? MPS_OK : MPS_ERROR_MEMORY;
+}
+
+/* Ctrl-C stops the run between two steps, by the context's hook. */
+mps_status pile_drive(void *user) {
+  pile *p = user;
+  mps_status status = mps_mpm_run(p->m.mpm, p->t_end, 1, after_step, p);
+  if (status == MPS_ERROR_CANCELLED && p->s.checkpoint) {
+    const mps_status saved = pile_save(p);
+    if (saved != MPS_OK) status = saved;
+  }
   smooth(p);
   return status;
 }

@@ -5,25 +5,28 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 mps_status pile_open_frames(mps_context *context, pile *p) {
   static const char *const fields[] = {"velocity", "stress", "volume", "plastic_strain"};
   mps_recorder_def def = mps_recorder_defaults();
   char path[4096];
-  if (snprintf(path, sizeof path, "%s/pile.vtkhdf", p->s.out) >= (int)sizeof path)
+  char name[sizeof p->vtk] = "pile.vtkhdf"; /* after a restart the former one stays */
+  if (p->frames > 0) snprintf(name, sizeof name, "pile-from-%d.vtkhdf", (int)p->frames + 1);
+  if (snprintf(path, sizeof path, "%s/%s", p->s.out, name) >= (int)sizeof path)
     return MPS_OK; /* the CSV files will tell */
   def.path = path;
   def.fields = fields;
   def.field_count = sizeof fields / sizeof *fields;
   const mps_status status = mps_recorder_create(context, p->m.particles, &def, &p->recorder);
-  p->vtk = status == MPS_OK;
+  if (status == MPS_OK) memcpy(p->vtk, name, sizeof name);
   return status == MPS_ERROR_UNSUPPORTED ? MPS_OK : status;
 }
 
-/* True for the frames that pictures show: evenly among all, the last one always. */
-static bool in_pictures(const pile *p) {
+/* Pictures show frames evenly among all, the last one always. */
+int64_t pile_pictures(const pile *p, int64_t frames) {
   const int64_t all = p->s.frames, shown = all < PILE_PICTURES ? all : PILE_PICTURES;
-  return (p->frames + 1) * shown / all > p->frames * shown / all;
+  return frames * shown / all;
 }
 
 static mps_status keep(pile *p) {
@@ -51,7 +54,8 @@ static mps_status keep(pile *p) {
 }
 
 mps_status pile_take_frame(pile *p) {
-  mps_status status = in_pictures(p) ? keep(p) : MPS_OK;
+  mps_status status = MPS_OK;
+  if (pile_pictures(p, p->frames + 1) > p->frames_kept) status = keep(p);
   if (status == MPS_OK && p->recorder)
     status = mps_recorder_write(p->recorder, mps_mpm_time(p->m.mpm));
   p->frames++;

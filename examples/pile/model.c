@@ -148,6 +148,8 @@ mps_status pile_build(mps_context *context, void *user) {
   p->dt = mps_mpm_dt(p->m.mpm);
   p->penalty = penalty_of(p);
   status = make_pile(context, p);
+  if (status == MPS_OK) status = pile_begin(p);
+  if (status == MPS_OK && s->restart) status = pile_restore(context, p);
   return status == MPS_OK ? pile_open_frames(context, p) : status;
 }
 

@@ -25,6 +25,8 @@ typedef struct pile_settings {
   int cone;                       /* see pile_cone */
   double h, courant;
   int64_t ppc, frames, threads;
+  const char *checkpoint, *restart; /* files, NULL: none */
+  double every_checkpoint;          /* m of path */
   const char *out;
 } pile_settings;
 
@@ -69,7 +71,8 @@ typedef struct pile {
   pile_frame frame[PILE_PICTURES];
   int64_t frames, frames_kept;
   mps_recorder *recorder; /* NULL in a libmps without HDF5 */
-  bool vtk;               /* there has been one */
+  char vtk[40];           /* its file, "": there has been none */
+  int64_t checkpoints;    /* times `every_checkpoint` that the pile has gone */
 } pile;
 
 /* ---- model.c --------------------------------------------------------------------------------- */
@@ -83,6 +86,8 @@ void pile_free(pile *p); /* what the model does not own */
 
 /* ---- drive.c --------------------------------------------------------------------------------- */
 
+/* Makes room for what a run from the beginning has seen: nothing. */
+mps_status pile_begin(pile *p);
 mps_status pile_drive(void *user);
 /* Depth of the tip (m). */
 double pile_depth(const pile *p);
@@ -93,6 +98,16 @@ mps_status pile_open_frames(mps_context *context, pile *p);
 mps_status pile_take_frame(pile *p);
 bool pile_write_frames(app *a, pile *p);
 void pile_free_frames(pile *p);
+
+/* How many of the first `frames` frames are kept for the pictures. */
+int64_t pile_pictures(const pile *p, int64_t frames);
+
+/* ---- restart.c ------------------------------------------------------------------------------- */
+
+/* Writes `checkpoint`: the solver, and all that the run has seen. */
+mps_status pile_save(pile *p);
+/* Goes back to where the file `restart` was written. */
+mps_status pile_restore(mps_context *context, pile *p);
 
 /* ---- results.c, pictures.c ------------------------------------------------------------------- */
 

@@ -110,8 +110,8 @@ static bool write_summary(app *a, const pile *p, const pile_row *end) {
 }
 
 static void tell(const pile *p, const pile_row *end) {
-  printf("Results: %s/ (load.csv, fields-*.csv, summary.json, *.png%s)\n", p->s.out,
-         p->vtk ? ", pile.vtkhdf" : "");
+  printf("Results: %s/ (load.csv, fields-*.csv, summary.json, *.png%s%s)\n", p->s.out,
+         p->vtk[0] ? ", " : "", p->vtk);
   printf(
       "depth %.4g m: %.5g N = tip %.5g + inside %.5g + outside %.5g N; plug %.4g m high, %+.3g m "
       "against the ground\n",

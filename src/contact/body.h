@@ -67,6 +67,18 @@ struct mps_body {
   void *user; /* the solver that moves it, or NULL */
 };
 
+/* What a checkpoint keeps of a body. */
+typedef struct mpsi_body_record {
+  int64_t shape, faces, motion, parts; /* must agree */
+  double time, rotation[3], angular[3], load[6];
+  double position[3], orientation[9], velocity[3], spin[3];
+  double reaction[MPS_BODY_MAX_PARTS * 12]; /* of each part the first 12 numbers of mps_reaction */
+  int64_t contacts[MPS_BODY_MAX_PARTS];
+} mpsi_body_record;
+void mpsi_body_get_record(const mps_body *body, mpsi_body_record *out);
+/* Puts the body where the record says, what must agree not being looked at. */
+void mpsi_body_set_record(mps_body *body, const mpsi_body_record *record);
+
 /* Nearest surface point to x (dim values, finite). Reads only: any number of threads. */
 mpsi_foot mpsi_body_foot(const mps_body *body, const double *x);
 /* Whether the body or its inside is within `reach` (m, >= 0) of x; cheap far from a mesh. */

@@ -221,6 +221,48 @@ mps_status mps_body_get_reaction(mps_body *body, int32_t part, mps_reaction *out
   return MPS_OK;
 }
 
+/* ---- records --------------------------------------------------------------------------------- */
+
+enum { REACTION = 12 * sizeof(double) };
+_Static_assert(offsetof(mps_reaction, contacts) == REACTION, "12 numbers, then the contacts");
+_Static_assert(sizeof(mpsi_load) == 6 * sizeof(double), "force, then moment");
+
+void mpsi_body_get_record(const mps_body *body, mpsi_body_record *out) {
+  const mpsi_pose *p = &body->pose;
+  *out = (mpsi_body_record){.shape = body->shape,
+                            .faces = body->faces,
+                            .motion = body->def.motion,
+                            .parts = body->parts,
+                            .time = body->time};
+  memcpy(out->rotation, body->rotation, sizeof out->rotation);
+  memcpy(out->angular, body->angular, sizeof out->angular);
+  memcpy(out->load, &body->load, sizeof out->load);
+  memcpy(out->position, p->x, sizeof out->position);
+  memcpy(out->orientation, p->R, sizeof out->orientation);
+  memcpy(out->velocity, p->v, sizeof out->velocity);
+  memcpy(out->spin, p->spin, sizeof out->spin);
+  for (int32_t part = 0; part < body->parts; part++) {
+    memcpy(&out->reaction[12 * part], &body->reaction[part], REACTION);
+    out->contacts[part] = body->reaction[part].contacts;
+  }
+}
+
+void mpsi_body_set_record(mps_body *body, const mpsi_body_record *record) {
+  mpsi_pose *p = &body->pose;
+  body->time = record->time;
+  memcpy(body->rotation, record->rotation, sizeof body->rotation);
+  memcpy(body->angular, record->angular, sizeof body->angular);
+  memcpy(&body->load, record->load, sizeof body->load);
+  memcpy(p->x, record->position, sizeof p->x);
+  memcpy(p->R, record->orientation, sizeof p->R);
+  memcpy(p->v, record->velocity, sizeof p->v);
+  memcpy(p->spin, record->spin, sizeof p->spin);
+  for (int32_t part = 0; part < body->parts; part++) {
+    memcpy(&body->reaction[part], &record->reaction[12 * part], REACTION);
+    body->reaction[part].contacts = record->contacts[part];
+  }
+}
+
 /* ---- parts ----------------------------------------------------------------------------------- */
 
 static bool good_name(const char *name) {

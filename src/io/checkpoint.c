@@ -2,10 +2,10 @@
  *
  * Layout: attributes `format`, `version` and those of header_table at the root; the group `fields`
  * with a dataset [component][particle] of float64 or int64 for each field. Particles are told by
- * `fields/id`. Reading first brings all of the file into memory and looks at it; only then does it
- * change the set.
- * SPDX-License-Identifier: BSD-3-Clause */
-#include "hdf5_file.h"
+ * `fields/id`. The caller's own bytes are the dataset `user_data`. Reading first brings all of the
+ * file into memory and looks at it; only then does it change the set. SPDX-License-Identifier:
+ * BSD-3-Clause */
+#include "checkpoint.h"
 #include "replace.h"
 
 #include <errno.h>
@@ -18,24 +18,20 @@
 #define FORMAT_VERSION 1
 #define MAX_FIELDS 4096
 #define MAX_COMPONENTS 64
-#define NAME_SIZE 48
+#define NAME_SIZE MPSI_CHECKPOINT_NAME
 
-/* The numbers at the root of the file. */
-typedef struct header {
-  int64_t version, dim, count, step;
-  double spacing, time, dt;
-} header;
+typedef mpsi_checkpoint_header header;
+typedef mpsi_staged_field staged_field;
+typedef mpsi_reading reading;
 
-static const struct {
-  const char *name;
-  bool integer;
-  size_t offset;
-} header_table[] = {
-    {"version", true, offsetof(header, version)}, {"dim", true, offsetof(header, dim)},
-    {"particles", true, offsetof(header, count)}, {"spacing", false, offsetof(header, spacing)},
-    {"time", false, offsetof(header, time)},      {"step", true, offsetof(header, step)},
-    {"dt", false, offsetof(header, dt)}};
-#define HEADER_ROWS ((int)(sizeof header_table / sizeof *header_table))
+static const mpsi_h5_row header_table[] = {{"version", true, 1, offsetof(header, version)},
+                                           {"dim", true, 1, offsetof(header, dim)},
+                                           {"particles", true, 1, offsetof(header, count)},
+                                           {"spacing", false, 1, offsetof(header, spacing)},
+                                           {"time", false, 1, offsetof(header, time)},
+                                           {"step", true, 1, offsetof(header, step)},
+                                           {"dt", false, 1, offsetof(header, dt)}};
+#define HEADER_ROWS (sizeof header_table / sizeof *header_table)
 
 static hid_t number_type(bool integer) { return integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE; }
 
@@ -55,7 +51,53 @@ static mps_status read_info(mps_context *context, const char *function, const mp
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "user_key is '%.64s...', must be terminated: at most 63 characters",
                      out->user_key);
+  if (status == MPS_OK && out->user_bytes < 0)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "user_bytes is %lld, must be >= 0",
+                     (long long)out->user_bytes);
   return status;
+}
+
+/* ---- attributes ------------------------------------------------------------------------------ */
+
+bool mpsi_h5_write_rows(hid_t object, const mpsi_h5_row *row, size_t rows, const void *from) {
+  bool good = true;
+  for (const mpsi_h5_row *end = row + rows; good && row < end; row++)
+    good = mpsi_h5_attribute(object, row->name, number_type(row->integer),
+                             row->count > 1 ? (hsize_t)row->count : 0,
+                             (const char *)from + row->offset);
+  return good;
+}
+
+/* Reads an attribute of a class, `count` values of at most `size` bytes. */
+static bool read_attribute(hid_t object, const char *name, H5T_class_t kind, hid_t type,
+                           int32_t count, size_t size, void *out) {
+  if (H5Aexists(object, name) <= 0) return false;
+  const hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
+  const hid_t stored = attribute < 0 ? -1 : H5Aget_type(attribute);
+  const hid_t space = attribute < 0 ? -1 : H5Aget_space(attribute);
+  const bool text = kind == H5T_STRING;
+  bool good = stored >= 0 && space >= 0 && H5Tget_class(stored) == kind &&
+              H5Sget_simple_extent_npoints(space) == count && H5Tis_variable_str(stored) <= 0 &&
+              H5Tget_size(stored) <= size;
+  good = good && H5Aread(attribute, text ? stored : type, out) >= 0;
+  if (space >= 0) H5Sclose(space);
+  if (stored >= 0) H5Tclose(stored);
+  if (attribute >= 0) H5Aclose(attribute);
+  return good;
+}
+
+mps_status mpsi_h5_read_rows(const mpsi_reading *r, hid_t object, const mpsi_h5_row *row,
+                             size_t rows, void *to) {
+  for (const mpsi_h5_row *end = row + rows; row < end; row++)
+    if (!read_attribute(object, row->name, row->integer ? H5T_INTEGER : H5T_FLOAT,
+                        number_type(row->integer), row->count, 8, (char *)to + row->offset))
+      return mpsi_checkpoint_malformed(r, row->name);
+  return MPS_OK;
+}
+
+bool mpsi_h5_read_text(hid_t object, const char *name, size_t size, char *out) {
+  memset(out, 0, size);
+  return read_attribute(object, name, H5T_STRING, -1, 1, size - 1, out);
 }
 
 /* ---- writing --------------------------------------------------------------------------------- */
@@ -95,7 +137,22 @@ static bool write_fields(hid_t root, mps_particles *particles) {
   return good;
 }
 
-static bool write_file(hid_t root, mps_particles *particles, const mps_checkpoint *info) {
+static bool write_user_data(hid_t root, const mps_checkpoint *info) {
+  const hsize_t size = (hsize_t)info->user_bytes;
+  if (size == 0) return true;
+  const hid_t space = H5Screate_simple(1, &size, NULL);
+  const hid_t dataset = space < 0 ? -1
+                                  : H5Dcreate2(root, "user_data", H5T_NATIVE_UINT8, space,
+                                               H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  bool good = dataset >= 0 && H5Dwrite(dataset, H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT,
+                                       info->user_data) >= 0;
+  if (dataset >= 0) good = H5Dclose(dataset) >= 0 && good;
+  if (space >= 0) H5Sclose(space);
+  return good;
+}
+
+static bool write_file(hid_t root, mps_particles *particles, const mps_checkpoint *info,
+                       const mpsi_passenger *passenger) {
   const header h = {.version = FORMAT_VERSION,
                     .dim = mps_particles_dim(particles),
                     .count = mps_particles_count(particles),
@@ -103,118 +160,114 @@ static bool write_file(hid_t root, mps_particles *particles, const mps_checkpoin
                     .spacing = mps_particles_spacing(particles),
                     .time = info->time,
                     .dt = info->dt};
-  bool good = mpsi_h5_attribute_text(root, "format", FORMAT_NAME) &&
-              mpsi_h5_attribute_text(root, "library", mps_version()) &&
-              mpsi_h5_attribute_text(root, "user_key", info->user_key);
-  for (int k = 0; good && k < HEADER_ROWS; k++)
-    good = mpsi_h5_attribute(root, header_table[k].name, number_type(header_table[k].integer), 0,
-                             (const char *)&h + header_table[k].offset);
-  return good && write_fields(root, particles);
+  return mpsi_h5_attribute_text(root, "format", FORMAT_NAME) &&
+         mpsi_h5_attribute_text(root, "library", mps_version()) &&
+         mpsi_h5_attribute_text(root, "user_key", info->user_key) &&
+         mpsi_h5_write_rows(root, header_table, HEADER_ROWS, &h) && write_user_data(root, info) &&
+         write_fields(root, particles) && (!passenger || passenger->write(root, passenger->user));
 }
 
-mps_status mps_checkpoint_write(mps_particles *particles, const char *path,
-                                const mps_checkpoint *user_info) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
+mps_status mpsi_checkpoint_write(mps_particles *particles, const char *function, const char *path,
+                                 const mps_checkpoint *user_info, const mpsi_passenger *passenger) {
   mps_context *context = mpsi_particles_context(particles);
   mps_checkpoint info;
-  mps_status status = check_path(context, __func__, path);
-  if (status == MPS_OK) status = read_info(context, __func__, user_info, &info);
+  mps_status status = check_path(context, function, path);
+  if (status == MPS_OK) status = read_info(context, function, user_info, &info);
   if (status != MPS_OK) return status;
+  if (info.user_bytes > 0 && !info.user_data)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "user_bytes is %lld and user_data NULL",
+                     (long long)info.user_bytes);
   if (!isfinite(info.time) || info.step < 0 || !(info.dt >= 0.0 && isfinite(info.dt)))
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "time is %g s, step %lld, dt %g s: must be finite, and step and dt >= 0",
                      info.time, (long long)info.step, info.dt);
   mpsi_replacement replacement;
-  status = mpsi_replace_begin(context, __func__, path, &replacement);
+  status = mpsi_replace_begin(context, function, path, &replacement);
   if (status != MPS_OK) return status;
   mpsi_h5_file file;
   mpsi_h5_stay stay;
   mpsi_h5_enter(&stay);
   bool good = mpsi_h5_open(&file, replacement.fd, replacement.part, true) &&
-              write_file(file.id, particles, &info);
+              write_file(file.id, particles, &info, passenger);
   good = mpsi_h5_close(&file) && good;
   if (!good || file.error)
-    status = mpsi_h5_fail(context, __func__, MPS_ERROR_IO, &stay, &file, "write", replacement.part);
+    status = mpsi_h5_fail(context, function, MPS_ERROR_IO, &stay, &file, "write", replacement.part);
   mpsi_h5_leave(&stay);
-  if (status == MPS_OK) return mpsi_replace_commit(context, __func__, &replacement);
+  if (status == MPS_OK) return mpsi_replace_commit(context, function, &replacement);
   mpsi_replace_abandon(context, &replacement);
   return status;
 }
 
+mps_status mps_checkpoint_write(mps_particles *particles, const char *path,
+                                const mps_checkpoint *info) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  return mpsi_checkpoint_write(particles, __func__, path, info, NULL);
+}
+
 /* ---- reading: the file into memory ----------------------------------------------------------- */
 
-/* A field of the file. */
-typedef struct staged_field {
-  char name[NAME_SIZE];
-  int32_t components;
-  bool integer;
-  char *values; /* [component][particle], 8 bytes each */
-} staged_field;
-
-/* One call of mps_checkpoint_read or mps_checkpoint_info. */
-typedef struct reading {
-  mps_context *context;
-  const char *function;
-  mps_particles *particles; /* NULL: only the header is wanted */
-  const char *path;
-  mpsi_h5_stay stay;
-  mpsi_h5_file file;
-  header header;
-  char user_key[64];
-  staged_field *fields;
-  int64_t field_count;
-  int64_t *source; /* source[i]: place in the file of the particle at index i of the set */
-} reading;
-
-/* The file is sealed, so this is not one of ours, or not of this version. */
-static mps_status malformed(const reading *r, const char *what) {
+mps_status mpsi_checkpoint_malformed(const mpsi_reading *r, const char *what) {
   if (r->file.error) return mpsi_fail_io(r->context, r->function, "read", r->path, r->file.error);
   return mpsi_fail(r->context, r->function, MPS_ERROR_FORMAT,
                    "'%.200s' is not a checkpoint of libmps: %s%s%s", r->path, what,
                    r->stay.text[0] ? "; HDF5 says: " : "", r->stay.text);
 }
 
-/* Reads a scalar attribute of a class and at most `size` bytes. */
-static bool read_attribute(hid_t root, const char *name, H5T_class_t kind, hid_t type, size_t size,
-                           void *out) {
-  if (H5Aexists(root, name) <= 0) return false;
-  const hid_t attribute = H5Aopen(root, name, H5P_DEFAULT);
-  const hid_t stored = attribute < 0 ? -1 : H5Aget_type(attribute);
-  const hid_t space = attribute < 0 ? -1 : H5Aget_space(attribute);
-  const bool text = kind == H5T_STRING;
-  bool good = stored >= 0 && space >= 0 && H5Tget_class(stored) == kind &&
-              H5Sget_simple_extent_npoints(space) == 1 && H5Tis_variable_str(stored) <= 0 &&
-              H5Tget_size(stored) <= size;
-  good = good && H5Aread(attribute, text ? stored : type, out) >= 0;
-  if (space >= 0) H5Sclose(space);
-  if (stored >= 0) H5Tclose(stored);
-  if (attribute >= 0) H5Aclose(attribute);
-  return good;
+const mpsi_staged_field *mpsi_checkpoint_field(const mpsi_reading *r, const char *name) {
+  for (int64_t k = 0; k < r->field_count; k++)
+    if (strcmp(r->fields[k].name, name) == 0) return &r->fields[k];
+  return NULL;
 }
 
 static mps_status read_header(reading *r) {
-  char format[sizeof FORMAT_NAME] = "";
+  char format[sizeof FORMAT_NAME];
   const hid_t root = r->file.id;
-  if (!read_attribute(root, "format", H5T_STRING, -1, sizeof format - 1, format) ||
-      strcmp(format, FORMAT_NAME) != 0)
-    return malformed(r, "its attribute 'format' is not '" FORMAT_NAME "'");
-  for (int k = 0; k < HEADER_ROWS; k++) {
-    const bool integer = header_table[k].integer;
-    if (!read_attribute(root, header_table[k].name, integer ? H5T_INTEGER : H5T_FLOAT,
-                        number_type(integer), 8, (char *)&r->header + header_table[k].offset))
-      return malformed(r, header_table[k].name);
-    if (k == 0 && r->header.version != FORMAT_VERSION)
-      return mpsi_fail(
-          r->context, r->function, MPS_ERROR_UNSUPPORTED,
-          "'%.300s' is a checkpoint of version %lld; this libmps (%s) reads version %d", r->path,
-          (long long)r->header.version, mps_version(), FORMAT_VERSION);
-  }
-  if (!read_attribute(root, "user_key", H5T_STRING, -1, sizeof r->user_key - 1, r->user_key))
-    return malformed(r, "user_key");
+  if (!mpsi_h5_read_text(root, "format", sizeof format, format) || strcmp(format, FORMAT_NAME) != 0)
+    return mpsi_checkpoint_malformed(r, "its attribute 'format' is not '" FORMAT_NAME "'");
+  mps_status status = mpsi_h5_read_rows(r, root, header_table, 1, &r->header);
+  if (status == MPS_OK && r->header.version != FORMAT_VERSION)
+    return mpsi_fail(r->context, r->function, MPS_ERROR_UNSUPPORTED,
+                     "'%.300s' is a checkpoint of version %lld; this libmps (%s) reads version %d",
+                     r->path, (long long)r->header.version, mps_version(), FORMAT_VERSION);
+  if (status == MPS_OK)
+    status = mpsi_h5_read_rows(r, root, header_table + 1, HEADER_ROWS - 1, &r->header);
+  if (status != MPS_OK) return status;
+  if (!mpsi_h5_read_text(root, "user_key", sizeof r->user_key, r->user_key))
+    return mpsi_checkpoint_malformed(r, "user_key");
   const header *h = &r->header;
   if (!isfinite(h->time) || h->step < 0 || !(h->dt >= 0.0 && isfinite(h->dt)))
-    return malformed(r, "its time, step or dt is out of range");
+    return mpsi_checkpoint_malformed(r, "its time, step or dt is out of range");
   return MPS_OK;
+}
+
+/* The length of the caller's bytes, and they themselves if there is `room` for them. */
+static mps_status stage_user_data(reading *r, const mps_checkpoint *wanted) {
+  if (H5Lexists(r->file.id, "user_data", H5P_DEFAULT) <= 0) return MPS_OK;
+  const hid_t dataset = H5Dopen2(r->file.id, "user_data", H5P_DEFAULT);
+  const hid_t type = dataset < 0 ? -1 : H5Dget_type(dataset);
+  const hid_t space = dataset < 0 ? -1 : H5Dget_space(dataset);
+  mps_status status = MPS_OK;
+  hsize_t size = 0;
+  if (type < 0 || space < 0 || H5Sget_simple_extent_ndims(space) != 1 ||
+      H5Sget_simple_extent_dims(space, &size, NULL) < 0 || size < 1 || size > INT64_MAX ||
+      H5Tget_class(type) != H5T_INTEGER || H5Tget_size(type) != 1)
+    status = mpsi_checkpoint_malformed(r, "user_data");
+  r->user_bytes = (int64_t)size;
+  if (status == MPS_OK && wanted->user_data && wanted->user_bytes < r->user_bytes)
+    status = mpsi_fail(r->context, r->function, MPS_ERROR_ARGUMENT,
+                       "user_bytes is %lld, '%.200s' has %lld", (long long)wanted->user_bytes,
+                       r->path, (long long)r->user_bytes);
+  if (status == MPS_OK && wanted->user_data) {
+    r->user_data = mpsi_alloc(r->context, r->user_bytes, 1);
+    if (!r->user_data)
+      status = mpsi_fail_memory(r->context, r->function, size);
+    else if (H5Dread(dataset, H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT, r->user_data) < 0)
+      status = mpsi_checkpoint_malformed(r, "user_data");
+  }
+  if (space >= 0) H5Sclose(space);
+  if (type >= 0) H5Tclose(type);
+  if (dataset >= 0) H5Dclose(dataset);
+  return status;
 }
 
 static mps_status check_key(const reading *r, const char *wanted) {
@@ -249,7 +302,7 @@ static mps_status stage_dataset(reading *r, hid_t dataset, hid_t type, hid_t spa
   if (H5Sget_simple_extent_ndims(space) != 2 || H5Sget_simple_extent_dims(space, size, NULL) < 0 ||
       size[0] < 1 || size[0] > MAX_COMPONENTS || size[1] != (hsize_t)r->header.count ||
       H5Tget_size(type) != 8 || (kind != H5T_FLOAT && kind != H5T_INTEGER))
-    return malformed(r, field->name);
+    return mpsi_checkpoint_malformed(r, field->name);
   field->components = (int32_t)size[0];
   field->integer = kind == H5T_INTEGER;
   const int64_t items = field->components * r->header.count;
@@ -257,7 +310,7 @@ static mps_status stage_dataset(reading *r, hid_t dataset, hid_t type, hid_t spa
   if (!field->values) return mpsi_fail_memory(r->context, r->function, (size_t)items * 8);
   if (items > 0 && H5Dread(dataset, number_type(field->integer), H5S_ALL, H5S_ALL, H5P_DEFAULT,
                            field->values) < 0)
-    return malformed(r, field->name);
+    return mpsi_checkpoint_malformed(r, field->name);
   return MPS_OK;
 }
 
@@ -268,13 +321,13 @@ static mps_status stage_field(reading *r, hid_t group, hsize_t index) {
                                             field->name, NAME_SIZE, H5P_DEFAULT);
   if (length < 1 || length >= NAME_SIZE ||
       H5Lget_info(group, field->name, &link, H5P_DEFAULT) < 0 || link.type != H5L_TYPE_HARD)
-    return malformed(r, "the name of a field");
+    return mpsi_checkpoint_malformed(r, "the name of a field");
   r->field_count++;
   const hid_t dataset = H5Dopen2(group, field->name, H5P_DEFAULT);
   const hid_t type = dataset < 0 ? -1 : H5Dget_type(dataset);
   const hid_t space = dataset < 0 ? -1 : H5Dget_space(dataset);
   const mps_status status = type >= 0 && space >= 0 ? stage_dataset(r, dataset, type, space, field)
-                                                    : malformed(r, field->name);
+                                                    : mpsi_checkpoint_malformed(r, field->name);
   if (space >= 0) H5Sclose(space);
   if (type >= 0) H5Tclose(type);
   if (dataset >= 0) H5Dclose(dataset);
@@ -286,7 +339,7 @@ static mps_status stage_fields(reading *r) {
   const hid_t group = H5Gopen2(r->file.id, "fields", H5P_DEFAULT);
   mps_status status = MPS_OK;
   if (group < 0 || H5Gget_info(group, &info) < 0 || info.nlinks > MAX_FIELDS)
-    status = malformed(r, "group 'fields'");
+    status = mpsi_checkpoint_malformed(r, "group 'fields'");
   if (status == MPS_OK) {
     r->fields = mpsi_alloc(r->context, (int64_t)info.nlinks, sizeof *r->fields);
     if (!r->fields)
@@ -298,17 +351,20 @@ static mps_status stage_fields(reading *r) {
 }
 
 /* Opens the file, and takes from it the header, and all else if it is for a set. */
-static mps_status stage(reading *r, const char *user_key) {
+static mps_status stage(reading *r, const mps_checkpoint *wanted, const mpsi_passenger *passenger) {
   const int fd = open(r->path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (fd < 0) return mpsi_fail_io(r->context, r->function, "open", r->path, errno);
   mps_status status = mpsi_seal_check(r->context, r->function, fd, r->path);
   if (status == MPS_OK) {
     mpsi_h5_enter(&r->stay);
-    if (!mpsi_h5_open(&r->file, fd, r->path, false)) status = malformed(r, "it does not open");
+    if (!mpsi_h5_open(&r->file, fd, r->path, false))
+      status = mpsi_checkpoint_malformed(r, "it does not open");
     if (status == MPS_OK) status = read_header(r);
-    if (status == MPS_OK) status = check_key(r, user_key);
+    if (status == MPS_OK) status = check_key(r, wanted->user_key);
+    if (status == MPS_OK) status = stage_user_data(r, wanted);
     if (status == MPS_OK && r->particles) status = check_set(r);
     if (status == MPS_OK && r->particles) status = stage_fields(r);
+    if (status == MPS_OK && passenger) status = passenger->stage(r, passenger->user);
     (void)mpsi_h5_close(&r->file);
     mpsi_h5_leave(&r->stay);
   }
@@ -320,10 +376,9 @@ static mps_status stage(reading *r, const char *user_key) {
 
 static mps_status match_ids(reading *r) {
   const int64_t count = r->header.count;
-  const staged_field *id = NULL;
-  for (int64_t k = 0; k < r->field_count; k++)
-    if (strcmp(r->fields[k].name, "id") == 0) id = &r->fields[k];
-  if (!id || !id->integer || id->components != 1) return malformed(r, "it has no ids");
+  const staged_field *id = mpsi_checkpoint_field(r, "id");
+  if (!id || !id->integer || id->components != 1)
+    return mpsi_checkpoint_malformed(r, "it has no ids");
   r->source = mpsi_alloc(r->context, count, sizeof *r->source);
   if (!r->source)
     return mpsi_fail_memory(r->context, r->function, (size_t)count * sizeof *r->source);
@@ -396,6 +451,18 @@ static mps_status add_missing(const reading *r) {
   return MPS_OK;
 }
 
+/* Puts the set into the order of the file. */
+static mps_status take_order(const reading *r) {
+  const int64_t count = r->header.count;
+  int64_t *order = mpsi_alloc(r->context, count, sizeof *order);
+  if (!order) return mpsi_fail_memory(r->context, r->function, (size_t)count * sizeof *order);
+  for (int64_t i = 0; i < count; i++) order[r->source[i]] = i;
+  const mps_status status = mpsi_particles_permute(r->particles, r->function, order);
+  for (int64_t k = 0; status == MPS_OK && k < count; k++) r->source[k] = k;
+  mpsi_free(r->context, order);
+  return status;
+}
+
 static void put_field(const reading *r, const staged_field *field) {
   mps_view view;
   if (strcmp(field->name, "id") == 0 || /* the order of the set stays */
@@ -413,6 +480,15 @@ static void tell(const reading *r, mps_checkpoint *info) {
   info->step = r->header.step;
   info->dt = r->header.dt;
   memcpy(info->user_key, r->user_key, sizeof info->user_key);
+  if (r->user_data) memcpy(info->user_data, r->user_data, (size_t)r->user_bytes);
+  info->user_bytes = r->user_bytes;
+}
+
+static void drop_reading(reading *r) {
+  for (int64_t k = 0; k < r->field_count; k++) mpsi_free(r->context, r->fields[k].values);
+  mpsi_free(r->context, r->fields);
+  mpsi_free(r->context, r->source);
+  mpsi_free(r->context, r->user_data);
 }
 
 mps_status mps_checkpoint_info(mps_context *context, const char *path, mps_checkpoint *info) {
@@ -421,32 +497,46 @@ mps_status mps_checkpoint_info(mps_context *context, const char *path, mps_check
   mps_checkpoint wanted;
   mps_status status = check_path(context, __func__, path);
   if (status == MPS_OK) status = read_info(context, __func__, info, &wanted);
-  if (status == MPS_OK) status = stage(&r, wanted.user_key);
+  if (status == MPS_OK) status = stage(&r, &wanted, NULL);
   if (status == MPS_OK) tell(&r, info);
+  drop_reading(&r);
+  return status;
+}
+
+/* Nothing has changed yet. */
+static mps_status look(reading *r, const mps_checkpoint *info, const mpsi_passenger *passenger) {
+  mps_checkpoint wanted;
+  mps_status status = check_path(r->context, r->function, r->path);
+  if (status == MPS_OK) status = read_info(r->context, r->function, info, &wanted);
+  if (status == MPS_OK) status = stage(r, &wanted, passenger);
+  if (status == MPS_OK) status = match_ids(r);
+  if (status == MPS_OK) status = check_shapes(r);
+  if (status == MPS_OK && passenger) status = passenger->check(r, passenger->user);
+  return status;
+}
+
+mps_status mpsi_checkpoint_read(mps_particles *particles, const char *function, const char *path,
+                                mps_checkpoint *info, const mpsi_passenger *passenger) {
+  reading r = {.context = mpsi_particles_context(particles),
+               .function = function,
+               .particles = particles,
+               .path = path,
+               .file = {.id = -1}};
+  const int32_t before = mps_particles_field_count(particles);
+  mps_status status = look(&r, info, passenger);
+  if (status == MPS_OK) status = add_missing(&r);
+  if (status == MPS_OK && passenger && (status = take_order(&r)) != MPS_OK)
+    mpsi_particles_drop_fields(particles, before);
+  if (status == MPS_OK) {
+    for (int64_t k = 0; k < r.field_count; k++) put_field(&r, &r.fields[k]);
+    if (passenger) status = passenger->apply(&r, passenger->user);
+    if (status == MPS_OK) tell(&r, info);
+  }
+  drop_reading(&r);
   return status;
 }
 
 mps_status mps_checkpoint_read(mps_particles *particles, const char *path, mps_checkpoint *info) {
   if (!particles) return MPS_ERROR_ARGUMENT;
-  mps_context *context = mpsi_particles_context(particles);
-  reading r = {.context = context,
-               .function = __func__,
-               .particles = particles,
-               .path = path,
-               .file = {.id = -1}};
-  mps_checkpoint wanted;
-  mps_status status = check_path(context, __func__, path);
-  if (status == MPS_OK) status = read_info(context, __func__, info, &wanted);
-  if (status == MPS_OK) status = stage(&r, wanted.user_key);
-  if (status == MPS_OK) status = match_ids(&r);
-  if (status == MPS_OK) status = check_shapes(&r);
-  if (status == MPS_OK) status = add_missing(&r);
-  if (status == MPS_OK) {
-    for (int64_t k = 0; k < r.field_count; k++) put_field(&r, &r.fields[k]);
-    tell(&r, info);
-  }
-  for (int64_t k = 0; k < r.field_count; k++) mpsi_free(context, r.fields[k].values);
-  mpsi_free(context, r.fields);
-  mpsi_free(context, r.source);
-  return status;
+  return mpsi_checkpoint_read(particles, __func__, path, info, NULL);
 }

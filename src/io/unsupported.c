@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "io_private.h"
 
+#include "mpm/restart.h"
+
 static mps_status unsupported(mps_context *context, const char *function) {
   return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
                    "this libmps was built without HDF5 (CMake option MPS_HDF5)");
@@ -46,4 +48,14 @@ mps_status mps_checkpoint_info(mps_context *context, const char *path, mps_check
 mps_status mps_checkpoint_read(mps_particles *particles, const char *path, mps_checkpoint *info) {
   (void)path, (void)info;
   return unsupported(particles ? mpsi_particles_context(particles) : NULL, __func__);
+}
+
+mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *info) {
+  (void)path, (void)info;
+  return unsupported(mpm ? mpsi_mpm_context(mpm) : NULL, __func__);
+}
+
+mps_status mps_mpm_restore(mps_mpm *mpm, const char *path, mps_checkpoint *info) {
+  (void)path, (void)info;
+  return unsupported(mpm ? mpsi_mpm_context(mpm) : NULL, __func__);
 }

@@ -94,13 +94,19 @@ static const mpsi_radix *sort_keys(mps_mpm *mpm, int bits) {
 
 /* ---- blocks ---------------------------------------------------------------------------------- */
 
+static void find_edge(const mps_mpm *mpm, mpsi_cells *cells) {
+  for (int c = 0; c < mpm->dim; c++) {
+    const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
+    if (first < mpm->low[c] || first + MPSI_TILE_SIDE - 1 > mpm->high[c]) cells->edge = true;
+  }
+}
+
 static void place_block(const mps_mpm *mpm, const range *r, uint64_t block, mpsi_cells *cells) {
   for (int c = 0; c < mpm->dim; c++) {
     cells->at[c] = (int32_t)((int64_t)(block & ((UINT64_C(1) << r->bits[c]) - 1)) + r->low[c]);
     block >>= r->bits[c];
-    const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
-    if (first < mpm->low[c] || first + MPSI_TILE_SIDE - 1 > mpm->high[c]) cells->edge = true;
   }
+  find_edge(mpm, cells);
 }
 
 /* Blocks of the sorted keys; the count alone where `cells` is NULL. */
@@ -170,30 +176,55 @@ static void sort_colours(mps_mpm *mpm) {
   mpm->colour[MPSI_CORNERS] = count;
 }
 
-static mps_status build_blocks(mps_mpm *mpm, const char *function, const mpsi_radix *key,
-                               const range *r) {
-  mps_context *context = mpm->context;
-  const int64_t cells = make_cells(mpm, key, r, NULL);
-  bool good = mpsi_room_ensure(context, &mpm->cells_room, cells, sizeof *mpm->cells) &&
-              mpsi_room_ensure(context, &mpm->coloured_room, cells, sizeof *mpm->coloured);
-  if (good) {
-    mpm->cells = mpm->cells_room.item;
-    mpm->coloured = mpm->coloured_room.item;
-    mpm->cell_count = make_cells(mpm, key, r, mpm->cells);
-    sort_colours(mpm);
-    mpm->node_count = make_nodes(mpm, NULL);
-    good =
-        mpsi_room_ensure(context, &mpm->nodes_room, mpm->node_count, sizeof *mpm->nodes) &&
-        mpsi_room_ensure(context, &mpm->node_room, mpm->node_count * mpm->own, sizeof *mpm->node);
+static bool ensure_cells(mps_mpm *mpm, int64_t cells) {
+  const bool good =
+      mpsi_room_ensure(mpm->context, &mpm->cells_room, cells, sizeof *mpm->cells) &&
+      mpsi_room_ensure(mpm->context, &mpm->coloured_room, cells, sizeof *mpm->coloured);
+  mpm->cell_count = mpm->node_count = 0;
+  mpm->cells = mpm->cells_room.item;
+  mpm->coloured = mpm->coloured_room.item;
+  return good;
+}
+
+/* What follows from the blocks of cells. */
+static bool build_nodes(mps_mpm *mpm, int64_t cells) {
+  mpm->cell_count = cells;
+  sort_colours(mpm);
+  const int64_t nodes = make_nodes(mpm, NULL);
+  if (!mpsi_room_ensure(mpm->context, &mpm->nodes_room, nodes, sizeof *mpm->nodes) ||
+      !mpsi_room_ensure(mpm->context, &mpm->node_room, nodes * mpm->own, sizeof *mpm->node)) {
+    mpm->cell_count = 0;
+    return false;
   }
-  if (!good) {
-    mpm->cell_count = mpm->node_count = 0;
-    return mpsi_fail_memory(context, function, (size_t)(cells * mpm->own) * sizeof *mpm->node);
-  }
+  mpm->node_count = nodes;
   mpm->nodes = mpm->nodes_room.item;
   mpm->node = mpm->node_room.item;
   make_nodes(mpm, mpm->nodes);
-  return MPS_OK;
+  return true;
+}
+
+static mps_status no_room(mps_mpm *mpm, const char *function, int64_t cells) {
+  return mpsi_fail_memory(mpm->context, function, (size_t)(cells * mpm->own) * sizeof *mpm->node);
+}
+
+static mps_status build_blocks(mps_mpm *mpm, const char *function, const mpsi_radix *key,
+                               const range *r) {
+  const int64_t cells = make_cells(mpm, key, r, NULL);
+  if (!ensure_cells(mpm, cells)) return no_room(mpm, function, cells);
+  make_cells(mpm, key, r, mpm->cells);
+  return build_nodes(mpm, cells) ? MPS_OK : no_room(mpm, function, cells);
+}
+
+mps_status mpsi_mpm_place_blocks(mps_mpm *mpm, const char *function, int64_t count,
+                                 mpsi_block *block) {
+  if (!ensure_cells(mpm, count)) return no_room(mpm, function, count);
+  for (int64_t k = 0; k < count; k++) {
+    const int64_t end = k + 1 < count ? block[k + 1][0] : mpm->count;
+    mpm->cells[k] = (mpsi_cells){.begin = block[k][0], .end = end, .bad = -1};
+    for (int c = 0; c < 3; c++) mpm->cells[k].at[c] = (int32_t)block[k][1 + c];
+    find_edge(mpm, &mpm->cells[k]);
+  }
+  return build_nodes(mpm, count) ? MPS_OK : no_room(mpm, function, count);
 }
 
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {

@@ -6,9 +6,7 @@
 
 #include <string.h>
 
-#define MAX_CELLS 0x1p30 /* from the origin: nodes are counted exactly */
-#define ON_NODE 1e-6     /* cells: a wall this close to a node is on it */
-#define NO_WALL (INT64_C(1) << 30)
+#define ON_NODE 1e-6 /* cells: a wall this close to a node is on it */
 #define MAX_COUNT INT32_MAX
 #define OVERLAP 0.1 /* cells: bodies may by so much */
 #define THIN 2.0    /* cells: walls below let momentum through */
@@ -94,10 +92,10 @@ static mps_status read_wall(mps_context *context, const mps_mpm_def *d, int c, b
                             int64_t *node) {
   const double x = upper ? d->upper[c] : d->lower[c];
   const char *name = upper ? "upper" : "lower";
-  *node = upper ? NO_WALL : -NO_WALL;
+  *node = upper ? MPSI_NO_WALL : -MPSI_NO_WALL;
   if (x == (upper ? INFINITY : -INFINITY)) return MPS_OK;
   const double X = (x - d->origin[c]) / d->cell, nearest = nearbyint(X);
-  if (!(fabs(X) < MAX_CELLS))
+  if (!(fabs(X) < MPSI_MAX_CELLS))
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "%s[%d] is %g m, must be within 2^30 cells of the origin, or %sinfinite", name,
                      c, x, upper ? "+" : "-");
@@ -165,7 +163,7 @@ static mps_status check_start(const mps_mpm *mpm) {
     for (int c = 0; c < mpm->dim; c++) {
       const double x = mpm->p.x[c][k], X = mpsi_grid_coordinate(mpm, c, x);
       const long long id = (long long)mpsi_particles_integers(mpm->particles, "id")[k];
-      if (!(fabs(X) < MAX_CELLS))
+      if (!(fabs(X) < MPSI_MAX_CELLS))
         return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
                          "particle %lld has %c = %g m, more than 2^30 cells from the origin", id,
                          "xyz"[c], x);

@@ -20,12 +20,15 @@
 #include "contact/body.h"
 #include "core/internal.h"
 #include "material/material_internal.h"
+#include "restart.h"
 
 #include <mps/mpm.h>
 
 #define MPSI_SIDE 8
 #define MPSI_TILE_SIDE (MPSI_SIDE + 5)
-#define MPSI_CORNERS 8 /* blocks of nodes under a tile: 4 in 2D */
+#define MPSI_CORNERS 8        /* blocks of nodes under a tile: 4 in 2D */
+#define MPSI_MAX_CELLS 0x1p30 /* from the origin: nodes are counted exactly */
+#define MPSI_NO_WALL (INT64_C(1) << 30)
 
 /* A block of cells with particles. */
 typedef struct mpsi_cells {
@@ -85,8 +88,6 @@ typedef struct mpsi_touch_node {
 /* ---- walls, moving nodes, loads ---------------------------------------------------------------
  */
 
-#define MPSI_WALLS 6 /* 2 axis + upper */
-#define MPSI_HOLDS (MPSI_WALLS + MPS_MPM_MAX_BOXES)
 enum { MPSI_HOLD_NONE = -1, MPSI_HOLD_BOX = -2 }; /* besides mps_wall */
 
 /* Nodes that are not free: those of a wall, or in a box. */
@@ -109,12 +110,6 @@ typedef struct mpsi_held {
   int64_t dash;        /* absorbing: first of own/MPSI_SIDE dashpots, else -1 */
   double impulse[3];   /* N s, of the step being made */
 } mpsi_held;
-
-/* At a node of an absorbing wall. */
-typedef struct mpsi_dash {
-  double across, along; /* rho c A, kg/s */
-  double rest[3];       /* N, force of the wall at rest */
-} mpsi_dash;
 
 /* A load: force area * traction on each particle. */
 typedef struct mpsi_traction {
@@ -216,7 +211,7 @@ struct mps_mpm {
   mpsi_hold hold[MPSI_HOLDS];
   mpsi_held *held;
   mpsi_dash *dash;
-  int64_t held_count;
+  int64_t held_count, dash_count;
   mpsi_room held_room, dash_room, old_held_room, old_dash_room;
   mpsi_traction *traction;
   int32_t tractions;
@@ -297,6 +292,9 @@ bool mpsi_room_ensure(mps_context *context, mpsi_room *room, int64_t count, size
 
 /* layout.c: sorts the particles by blocks and builds the lists of blocks. */
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function);
+/* layout.c: builds the lists of blocks for particles that are in order, as at an earlier sort. */
+mps_status mpsi_mpm_place_blocks(mps_mpm *mpm, const char *function, int64_t count,
+                                 mpsi_block *block);
 /* near.c: finds which blocks are near which bodies, and which blocks are cut and split. */
 mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function);
 /* grid.c: one block of nodes: emptied; velocities, normal contact forces; friction and walls. */
@@ -311,6 +309,9 @@ void mpsi_mpm_react(mps_mpm *mpm);
 /* walls.c: which blocks of nodes are held, after a sort; what holds them in a step of dt; the held
  * nodes of a block; the forces of the step. */
 mps_status mpsi_mpm_list_holds(mps_mpm *mpm, const char *function);
+/* walls.c: the same with dashpots as they were at an earlier sort. */
+mps_status mpsi_mpm_put_dashes(mps_mpm *mpm, const char *function, int64_t count,
+                               const mpsi_dash *dash);
 void mpsi_mpm_begin_holds(mps_mpm *mpm, double dt);
 void mpsi_mpm_hold_nodes(mps_mpm *mpm, int64_t g);
 void mpsi_mpm_sum_holds(mps_mpm *mpm);

@@ -12,7 +12,6 @@
 
 #include <string.h>
 
-#define NO_WALL (INT64_C(1) << 30)
 #define ON_NODE 1e-6 /* cells: the edge of a box this close to a node holds it */
 
 /* ---- which nodes ----------------------------------------------------------------------------- */
@@ -63,11 +62,9 @@ static void swap_rooms(mpsi_room *a, mpsi_room *b) {
   *b = old;
 }
 
-mps_status mpsi_mpm_list_holds(mps_mpm *mpm, const char *function) {
+/* A new list, in other memory than the old one. */
+static mps_status make_list(mps_mpm *mpm, const char *function) {
   int64_t count, dashes;
-  const mpsi_held *old = mpm->held;
-  const mpsi_dash *old_dash = mpm->dash;
-  const int64_t old_count = mpm->held_count;
   swap_rooms(&mpm->held_room, &mpm->old_held_room);
   swap_rooms(&mpm->dash_room, &mpm->old_dash_room);
   bool good = list(mpm, &count, &dashes);
@@ -79,13 +76,32 @@ mps_status mpsi_mpm_list_holds(mps_mpm *mpm, const char *function) {
   mpm->held = mpm->held_room.item;
   mpm->dash = mpm->dash_room.item;
   mpm->held_count = good ? count : 0;
+  mpm->dash_count = good ? dashes : 0;
   if (!good)
     return mpsi_fail_memory(mpm->context, function,
                             (size_t)count * sizeof *mpm->held + (size_t)dashes * sizeof(mpsi_dash));
-  if (dashes > 0) {
-    memset(mpm->dash, 0, (size_t)dashes * sizeof *mpm->dash);
-    mpsi_mpm_place_dashes(mpm, old, old_count, old_dash);
-  }
+  if (dashes > 0) memset(mpm->dash, 0, (size_t)dashes * sizeof *mpm->dash);
+  return MPS_OK;
+}
+
+mps_status mpsi_mpm_list_holds(mps_mpm *mpm, const char *function) {
+  const mpsi_held *old = mpm->held;
+  const mpsi_dash *old_dash = mpm->dash;
+  const int64_t old_count = mpm->held_count;
+  const mps_status status = make_list(mpm, function);
+  if (status == MPS_OK && mpm->dash_count > 0) mpsi_mpm_place_dashes(mpm, old, old_count, old_dash);
+  return status;
+}
+
+mps_status mpsi_mpm_put_dashes(mps_mpm *mpm, const char *function, int64_t count,
+                               const mpsi_dash *dash) {
+  const mps_status status = make_list(mpm, function);
+  if (status != MPS_OK) return status;
+  if (count != mpm->dash_count)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_FORMAT,
+                     "there are %lld dashpots of absorbing walls, must be %lld", (long long)count,
+                     (long long)mpm->dash_count);
+  if (count > 0) memcpy(mpm->dash, dash, (size_t)count * sizeof *dash);
   return MPS_OK;
 }
 
@@ -260,7 +276,7 @@ void mpsi_mpm_place_wall(mps_mpm *mpm, int32_t number, int32_t kind, double fric
     hold->first[axis] = at;
   else
     hold->last[axis] = at;
-  hold->kind = axis < mpm->dim && at > -NO_WALL && at < NO_WALL ? kind : MPSI_HOLD_NONE;
+  hold->kind = axis < mpm->dim && at > -MPSI_NO_WALL && at < MPSI_NO_WALL ? kind : MPSI_HOLD_NONE;
 }
 
 static bool on_axis(const mps_mpm *mpm, int32_t number) {
@@ -344,8 +360,8 @@ mps_status mps_mpm_get_wall_force(mps_mpm *mpm, int32_t axis, int32_t upper, dou
 /* First or last node of a box that begins or ends at x. */
 static int64_t box_node(const mps_mpm *mpm, int c, double x, bool last) {
   const double X = mpsi_grid_coordinate(mpm, c, x);
-  if (!(X > -(double)NO_WALL)) return -NO_WALL;
-  if (!(X < (double)NO_WALL)) return NO_WALL;
+  if (!(X > -(double)MPSI_NO_WALL)) return -MPSI_NO_WALL;
+  if (!(X < (double)MPSI_NO_WALL)) return MPSI_NO_WALL;
   return (int64_t)(last ? floor(X + ON_NODE) : ceil(X - ON_NODE));
 }
 

@@ -37,6 +37,27 @@ in_range "$work/smooth/summary.json" force_inside -1e-9 1e-9
 in_range "$work/smooth/summary.json" force_outside -1e-9 1e-9
 in_range "$work/smooth/summary.json" force_tip 100 1e5
 
+# Stopped by Ctrl-C on the way (or a little late), and gone on on other threads: the results of the
+# run that never stopped.
+"$1/mps-pile" $coarse --rest 0.3 --checkpoint "$work/pile.h5" --every-checkpoint 0.01 \
+  --threads 1 --out "$work/d" >/dev/null 2>"$work/log" &
+pid=$!
+until [ -f "$work/pile.h5" ] || ! kill -0 "$pid" 2>/dev/null; do sleep 0.02; done
+kill -INT "$pid" 2>/dev/null || :
+wait "$pid" || :
+if [ -f "$work/pile.h5" ]; then
+  "$1/mps-pile" $coarse --rest 0.3 --restart "$work/pile.h5" --threads 2 --out "$work/e" >/dev/null
+  for file in load.csv summary.json fields-1.csv fields-4.csv; do
+    cmp "$work/a/$file" "$work/e/$file" || fail "another $file after a restart"
+  done
+  if "$1/mps-pile" $coarse --rest 0.2 --restart "$work/pile.h5" --out "$work/f" 2>"$work/log"; then
+    fail "a restart with another --rest"
+  fi
+  has "$work/log" "has user_key 'mps-pile h=0.02 depth=0.2"
+else
+  has "$work/log" "HDF5" # built without
+fi
+
 # Ctrl-C: what there is gets written.
 "$1/mps-pile" --soil 0.4x2 --threads 1 --out "$work/c" >"$work/out" 2>"$work/log" &
 pid=$!

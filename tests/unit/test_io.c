@@ -45,6 +45,8 @@ static void without_hdf5_every_function_says_so(void **state) {
   UNSUPPORTED(mps_checkpoint_write(set, TEST_TMP "/io.h5", &info));
   UNSUPPORTED(mps_checkpoint_read(set, TEST_TMP "/io.h5", &info));
   UNSUPPORTED(mps_checkpoint_info(context, TEST_TMP "/io.h5", &info));
+  assert_int_equal(mps_mpm_save(NULL, TEST_TMP "/io.h5", &info), MPS_ERROR_UNSUPPORTED);
+  assert_int_equal(mps_mpm_restore(NULL, TEST_TMP "/io.h5", &info), MPS_ERROR_UNSUPPORTED);
 #undef UNSUPPORTED
   assert_int_equal(mps_recorder_write(NULL, 0.0), MPS_ERROR_UNSUPPORTED);
   assert_int_equal(mps_recorder_frames(NULL), 0);

@@ -1,0 +1,519 @@
+/* test_hdf5_mpm.c - a WLS-MPM run that goes on from a checkpoint in a new solver is, bit for bit,
+ * the run that never stopped, on any number of threads; a solver built otherwise is refused by
+ * name. SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_held.h"
+#include "pthread_executor.h"
+#include "test_allocator.h"
+#include "test_hdf5.h"
+
+#include <mps/io.h>
+
+#include <core/internal.h>
+#include <io/replace.h>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+static const char path[] = TEST_TMP "/mpm.h5", part[] = TEST_TMP "/mpm.h5.part";
+
+/* ---- scenes: contact with a driven and a free body, plastic soil, many blocks, sorting --------
+ */
+
+enum { FREE = 0, DRIVEN = 1, BODIES = 2 };
+
+typedef struct scene {
+  mpm_scene s;
+  mps_body *body[BODIES];
+} scene;
+
+/* What a scene may differ in from the one that was saved. */
+typedef struct change {
+  double spacing, cell, origin, wall;
+  int64_t particles;
+  bool elastic, half_plane;
+  int bodies;
+} change;
+static const change none = {.spacing = 0.01, .cell = 0.02, .bodies = BODIES};
+
+static mps_status make_material(mps_context *context, const change *c, mps_material **out) {
+  mps_drucker_prager_def law = mps_drucker_prager_defaults();
+  law.young = 1e6, law.poisson = 0.3;
+  law.friction = 0.5, law.cohesion = 200.0;
+  if (c->elastic) return mps_material_linear_elastic(context, 1e6, 0.3, out);
+  return mps_material_drucker_prager(context, &law, out);
+}
+
+static mps_status make_free_body(mps_context *context, int32_t dim, mps_body **out) {
+  mps_body_def def = mps_body_defaults();
+  def.motion = MPS_MOTION_FREE;
+  def.friction = 0.3;
+  def.mass = dim == 3 ? 1.0 : 20.0;
+  for (int c = 0; c < 3; c++) def.inertia[c] = dim == 3 ? 1e-3 * (1 + c) : c == 2 ? 0.1 : 0.0;
+  def.gravity[1] = -9.81;
+  def.position[0] = 0.25, def.position[1] = dim == 3 ? 0.28 : 0.33;
+  def.position[2] = dim == 3 ? 0.1 : 0.0;
+  def.velocity[0] = 0.5, def.velocity[1] = -3.0;
+  def.spin[0] = dim == 3 ? 20.0 : 0.0, def.spin[2] = 10.0;
+  return dim == 3 ? mps_body_create_cylinder(context, &def, 0.04, 0.1, out)
+                  : mps_body_create_box(context, &def, 0.1, 0.06, out);
+}
+
+/* A slope that rises and turns. */
+static mps_status make_driven_body(mps_context *context, int32_t dim, const change *c,
+                                   mps_body **out) {
+  const double up[] = {0.1, 1.0, 0.0}, t[] = {0.0, 1.0}, v[] = {0.3, 0.3};
+  mps_signal *rise = NULL;
+  mps_body_def def = mps_body_defaults();
+  def.friction = 0.4;
+  def.position[1] = dim == 3 ? 0.075 : 0.05;
+  mps_status status = mps_signal_table(context, MPS_SIGNAL_VELOCITY, 2, t, v, &rise);
+  if (status != MPS_OK) return status;
+  status = dim == 3        ? mps_body_create_half_space(context, &def, up, out)
+           : c->half_plane ? mps_body_create_disc(context, &def, 0.05, out)
+                           : mps_body_create_half_plane(context, &def, up, out);
+  if (status == MPS_OK) status = mps_body_name_part(*out, "base", 0, 1, NULL);
+  if (status == MPS_OK) status = mps_body_drive(*out, 1, rise, 1.0);
+  if (status == MPS_OK) status = mps_body_drive(*out, 5, rise, 0.2);
+  mps_signal_destroy(&rise);
+  return status;
+}
+
+static mps_status make_set(mps_context *context, int32_t dim, const change *c,
+                           mps_particles **out) {
+  const double lo[] = {0.04, 0.08, 0.02}, hi[] = {0.44, dim == 3 ? 0.22 : 0.28, 0.18};
+  const double beside[] = {0.5, 0.3, 0.1};
+  mps_particles_def def = mps_particles_defaults();
+  def.dim = dim;
+  def.spacing = c->spacing;
+  mps_status status = mps_particles_create(context, &def, out);
+  if (status == MPS_OK) status = mps_particles_fill_box(*out, lo, hi, NULL);
+  for (int64_t k = 0; k < c->particles && status == MPS_OK; k++)
+    status = mps_particles_append(*out, 1, beside);
+  if (status == MPS_OK) status = mps_particles_set(*out, "density", 0, 1500.0);
+  return status == MPS_OK ? mps_particles_set(*out, "velocity", 0, 0.8) : status;
+}
+
+static mps_status try_build(mps_context *context, int32_t geometry, const change *c, scene *out) {
+  const int32_t dim = geometry == MPS_SPACE ? 3 : 2;
+  *out = (scene){.s = {.context = context}};
+  mpm_scene *s = &out->s;
+  mps_mpm_def def = mps_mpm_defaults();
+  def.geometry = geometry;
+  def.cell = c->cell;
+  for (int k = 0; k < dim; k++) def.lower[k] = def.origin[k] = c->origin;
+  def.upper[0] = 1.0 + c->wall;
+  def.gravity[1] = -9.81;
+  mps_status status = make_set(context, dim, c, &s->particles);
+  if (status == MPS_OK) status = make_material(context, c, &s->material);
+  if (status == MPS_OK) status = mps_mpm_create(context, s->particles, s->material, &def, &s->mpm);
+  if (status == MPS_OK) status = make_free_body(context, dim, &out->body[FREE]);
+  if (status == MPS_OK) status = make_driven_body(context, dim, c, &out->body[DRIVEN]);
+  for (int b = 0; b < c->bodies && status == MPS_OK; b++)
+    status = mps_mpm_add_body(s->mpm, out->body[b]);
+  return status;
+}
+
+static void drop(scene *x) {
+  mpm_scene_end(&x->s);
+  for (int b = 0; b < BODIES; b++) mps_body_destroy(&x->body[b]);
+}
+
+static scene build(mps_context *context, int32_t geometry, const change *c) {
+  scene x;
+  mps_assert_ok(context, try_build(context, geometry, c, &x));
+  return x;
+}
+
+/* ---- comparing ------------------------------------------------------------------------------- */
+
+static void same_fields(scene *a, scene *b) {
+  mps_field_info info;
+  assert_int_equal(mps_particles_field_count(a->s.particles),
+                   mps_particles_field_count(b->s.particles));
+  for (int32_t f = 0; f < mps_particles_field_count(a->s.particles); f++) {
+    mps_assert_ok(a->s.context, mps_particles_field(a->s.particles, f, &info));
+    mps_view va = mpm_scene_view(&a->s, info.name), vb = mpm_scene_view(&b->s, info.name);
+    for (int64_t c = 0; c < va.shape[1]; c++)
+      for (int64_t k = 0; k < va.shape[0]; k++)
+        if (memcmp(mps_view_f64(&va, k, c), mps_view_f64(&vb, k, c), 8) != 0)
+          fail_msg("step %d: %s[%d] at index %d", (int)mps_mpm_steps(a->s.mpm), info.name, (int)c,
+                   (int)k);
+  }
+}
+
+static void same_bodies(scene *a, scene *b) {
+  for (int k = 0; k < BODIES; k++) {
+    mps_body_state state[2];
+    memset(state, 0, sizeof state);
+    mps_assert_ok(a->s.context, mps_body_get_state(a->body[k], &state[0]));
+    mps_assert_ok(b->s.context, mps_body_get_state(b->body[k], &state[1]));
+    assert_memory_equal(&state[0], &state[1], sizeof state[0]);
+    for (int32_t p = 0; p < mps_body_part_count(a->body[k]); p++) {
+      mps_reaction r[2];
+      memset(r, 0, sizeof r);
+      mps_assert_ok(a->s.context, mps_body_get_reaction(a->body[k], p, &r[0]));
+      mps_assert_ok(b->s.context, mps_body_get_reaction(b->body[k], p, &r[1]));
+      assert_memory_equal(&r[0], &r[1], sizeof r[0]);
+    }
+  }
+}
+
+static void same(scene *a, scene *b) {
+  same_fields(a, b);
+  same_bodies(a, b);
+  assert_int_equal(mps_mpm_steps(a->s.mpm), mps_mpm_steps(b->s.mpm));
+  assert_true(mps_mpm_time(a->s.mpm) == mps_mpm_time(b->s.mpm));
+  assert_true(mps_mpm_dt(a->s.mpm) == mps_mpm_dt(b->s.mpm));
+  const mps_mpm_totals ta = mpm_scene_totals(&a->s), tb = mpm_scene_totals(&b->s);
+  assert_int_equal(ta.blocks, tb.blocks);
+  assert_int_equal(ta.nodes, tb.nodes);
+}
+
+/* Own threads: not every build has OpenMP. `threads` must outlive the context. */
+static mps_context *on_threads(int32_t *threads) {
+  mps_context_def def = pthread_executor_def(threads);
+  mps_context *context = NULL;
+  assert_int_equal(mps_context_create(&def, &context, NULL, 0), MPS_OK);
+  return context;
+}
+
+/* ---- the same bits --------------------------------------------------------------------------- */
+
+/* One run goes on all the while; at each stop it is saved, and another solver, on other threads,
+ * takes over and follows it to the next stop. */
+static void stop_and_go_on(int32_t geometry, int64_t steps, int stops) {
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  scene whole = build(context, geometry, &none);
+  const uint64_t epoch = mps_particles_epoch(whole.s.particles);
+  for (int k = 0; k < stops; k++) {
+    int32_t threads = 1 + k % 3;
+    mps_context *other = on_threads(&threads);
+    mps_assert_ok(context, mps_mpm_save(whole.s.mpm, path, NULL));
+    scene next = build(other, geometry, &none);
+    if (k % 2) mps_assert_ok(other, mps_mpm_step(next.s.mpm, 5)); /* where it is does not matter */
+    mps_checkpoint info = mps_checkpoint_defaults();
+    mps_assert_ok(other, mps_mpm_restore(next.s.mpm, path, &info));
+    assert_int_equal(info.step, mps_mpm_steps(whole.s.mpm));
+    assert_true(info.time == mps_mpm_time(whole.s.mpm) && info.dt == mps_mpm_dt(whole.s.mpm));
+    same(&whole, &next);
+    mps_assert_ok(context, mps_mpm_step(whole.s.mpm, steps));
+    mps_assert_ok(other, mps_mpm_step(next.s.mpm, steps));
+    same(&whole, &next);
+    drop(&next);
+    mps_context_destroy(&other);
+  }
+  for (int b = 0; b < BODIES; b++) { /* all this has been of contact, and of sorting */
+    mps_reaction r;
+    mps_assert_ok(context, mps_body_get_reaction(whole.body[b], -1, &r));
+    assert_true(r.impulse[1] != 0.0);
+  }
+  assert_true(mps_particles_epoch(whole.s.particles) > epoch);
+  drop(&whole);
+  mps_context_destroy(&context);
+}
+
+static void goes_on_in_plane_strain(void **state) {
+  (void)state;
+  stop_and_go_on(MPS_PLANE_STRAIN, 61, 8);
+}
+
+static void goes_on_in_axisymmetry(void **state) {
+  (void)state;
+  stop_and_go_on(MPS_AXISYMMETRIC, 83, 4);
+}
+
+static void goes_on_in_space(void **state) {
+  (void)state;
+  stop_and_go_on(MPS_SPACE, 29, 4);
+}
+
+/* Stops at every step, some of which leave the particles to be sorted by the next. */
+static void goes_on_from_every_step(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  scene whole = build(context, MPS_PLANE_STRAIN, &none),
+        next = build(context, MPS_PLANE_STRAIN, &none);
+  mps_assert_ok(context, mps_mpm_step(whole.s.mpm, 100));
+  uint64_t epoch = mps_particles_epoch(whole.s.particles);
+  int sorted = 0;
+  for (int k = 0; k < 100; k++) {
+    mps_assert_ok(context, mps_mpm_save(whole.s.mpm, path, NULL));
+    mps_assert_ok(context, mps_mpm_restore(next.s.mpm, path, NULL));
+    mps_assert_ok(context, mps_mpm_step(whole.s.mpm, 1));
+    mps_assert_ok(context, mps_mpm_step(next.s.mpm, 1));
+    same(&whole, &next);
+    sorted += mps_particles_epoch(whole.s.particles) != epoch;
+    epoch = mps_particles_epoch(whole.s.particles);
+  }
+  assert_true(sorted > 0);
+  drop(&next);
+  drop(&whole);
+  mps_context_destroy(&context);
+}
+
+/* ---- walls, moving nodes, loads, several materials ------------------------------------------- */
+
+static scene build_held(mps_context *context, int32_t geometry) {
+  int32_t box, loads[2];
+  const double hi[] = {0.2, INFINITY, INFINITY}, lo[] = {-INFINITY, -INFINITY, -INFINITY};
+  int64_t ids[4000];
+  scene x = {.s = held_begin(context, geometry, &box, loads)};
+  const int64_t count = held_select(&x.s, lo, hi, ids, 4000);
+  mps_material *soil = NULL;
+  mps_assert_ok(context, make_material(context, &none, &soil));
+  mps_assert_ok(context, mps_mpm_set_material(x.s.mpm, soil, count, ids));
+  mps_material_destroy(&soil);
+  return x;
+}
+
+static void same_forces(scene *a, scene *b) {
+  double force[2][3] = {{0.0}};
+  for (int32_t k = 0; k < 4; k++) {
+    mps_assert_ok(a->s.context, mps_mpm_get_wall_force(a->s.mpm, k / 2, k % 2, force[0]));
+    mps_assert_ok(b->s.context, mps_mpm_get_wall_force(b->s.mpm, k / 2, k % 2, force[1]));
+    assert_memory_equal(force[0], force[1], sizeof force[0]);
+  }
+}
+
+static void with_walls_loads_and_materials(void **state) {
+  (void)state;
+  for (int32_t geometry = 0; geometry <= MPS_SPACE; geometry++) {
+    mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+    scene whole = build_held(context, geometry);
+    for (int k = 0; k < 4; k++) { /* at first before the walls have found their forces at rest */
+      int32_t threads = 3;
+      mps_context *other = on_threads(&threads);
+      mps_assert_ok(context, mps_mpm_save(whole.s.mpm, path, NULL));
+      scene next = build_held(other, geometry);
+      if (k == 2) mps_assert_ok(other, mps_mpm_step(next.s.mpm, 30));
+      mps_assert_ok(other, mps_mpm_restore(next.s.mpm, path, NULL));
+      same_fields(&whole, &next);
+      same_forces(&whole, &next);
+      mps_assert_ok(context, mps_mpm_step(whole.s.mpm, 20));
+      mps_assert_ok(other, mps_mpm_step(next.s.mpm, 20));
+      same_fields(&whole, &next);
+      same_forces(&whole, &next);
+      drop(&next);
+      mps_context_destroy(&other);
+    }
+    drop(&whole);
+    mps_context_destroy(&context);
+  }
+}
+
+static void other_walls_loads_and_materials_are_refused(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  scene saved = build_held(context, MPS_PLANE_STRAIN);
+  mps_assert_ok(context, mps_mpm_save(saved.s.mpm, path, NULL));
+  drop(&saved);
+  for (int k = 0; k < 4; k++) {
+    int32_t box, loads[2];
+    scene x = {.s = held_begin(context, MPS_PLANE_STRAIN, &box, loads)};
+    if (k == 0) mps_assert_ok(context, mps_mpm_set_wall(x.s.mpm, 0, 1, MPS_WALL_FIXED, 0.0));
+    if (k == 1) mps_assert_ok(context, mps_mpm_remove_load(x.s.mpm, loads[1]));
+    if (k == 2) mps_assert_ok(context, mps_mpm_free_nodes(x.s.mpm, box));
+    static const char *const text[] = {"wall 1 of '", "has 2 loads and its body", "box 0 of '",
+                                       "has 2 materials, the solver 1"};
+    mps_assert_fails(context, mps_mpm_restore(x.s.mpm, path, NULL), MPS_ERROR_ARGUMENT, text[k]);
+    drop(&x);
+  }
+  mps_context_destroy(&context);
+}
+
+/* ---- errors ---------------------------------------------------------------------------------- */
+
+static void another_solver_is_refused(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  scene x = build(context, MPS_PLANE_STRAIN, &none);
+  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 20));
+  mps_assert_ok(context, mps_mpm_save(x.s.mpm, path, NULL));
+  drop(&x);
+  const struct {
+    int32_t geometry;
+    change c;
+    const char *text;
+  } list[] = {
+      {MPS_AXISYMMETRIC, none, "has geometry 0, scheme 0 and spline 3, the solver 1, 0 and 3"},
+      {MPS_SPACE, none, "particles in 2D, the set has"},
+      {0, {.spacing = 0.02, .cell = 0.02, .bodies = 2}, "particles in 2D, the set has"},
+      {0, {.spacing = 0.01, .cell = 0.02, .bodies = 2, .particles = 1}, "the set has 801 in 2D"},
+      {0, {.spacing = 0.01, .cell = 0.04, .bodies = 2}, "the solver 0.0400"},
+      {0, {.spacing = 0.01, .cell = 0.02, .bodies = 2, .origin = -0.1}, "has origin[0] 0 m, the"},
+      {0,
+       {.spacing = 0.01, .cell = 0.02, .bodies = 2, .wall = 0.2},
+       "has walls in x at nodes 0 and 50"},
+      {0, {.spacing = 0.01, .cell = 0.02, .bodies = 2, .elastic = true}, "material 0 of '"},
+      {0, {.spacing = 0.01, .cell = 0.02, .bodies = 1}, "has 2 bodies, the solver 1: add them"},
+      {0, {.spacing = 0.01, .cell = 0.02, .bodies = 2, .half_plane = true}, "body 1 of '"},
+  };
+  for (size_t k = 0; k < sizeof list / sizeof *list; k++) {
+    scene a = build(context, list[k].geometry, &list[k].c);
+    scene b = build(context, list[k].geometry, &list[k].c);
+    mps_assert_fails(context, mps_mpm_restore(a.s.mpm, path, NULL), MPS_ERROR_ARGUMENT,
+                     list[k].text);
+    same(&a, &b); /* nothing has changed, and it runs */
+    mps_assert_ok(context, mps_mpm_step(a.s.mpm, 3));
+    mps_assert_ok(context, mps_mpm_step(b.s.mpm, 3));
+    same(&a, &b);
+    drop(&a);
+    drop(&b);
+  }
+  mps_context_destroy(&context);
+}
+
+static void other_files_and_bad_arguments(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  scene x = build(context, MPS_PLANE_STRAIN, &none);
+  mps_checkpoint info = mps_checkpoint_defaults();
+  assert_int_equal(mps_mpm_save(NULL, path, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_mpm_restore(NULL, path, NULL), MPS_ERROR_ARGUMENT);
+#define FAILS(call, status, text) mps_assert_fails(context, call, status, text)
+  FAILS(mps_mpm_save(x.s.mpm, "", NULL), MPS_ERROR_ARGUMENT, "path is empty");
+  FAILS(mps_mpm_restore(x.s.mpm, NULL, NULL), MPS_ERROR_ARGUMENT, "path is NULL");
+  FAILS(mps_mpm_restore(x.s.mpm, TEST_TMP "/no.h5", NULL), MPS_ERROR_IO, "no.h5");
+  info.user_bytes = -1;
+  FAILS(mps_mpm_save(x.s.mpm, path, &info), MPS_ERROR_ARGUMENT, "user_bytes is -1");
+  info.user_bytes = 3;
+  FAILS(mps_mpm_save(x.s.mpm, path, &info), MPS_ERROR_ARGUMENT, "user_data NULL");
+  info.user_bytes = 0;
+  mps_assert_ok(context, mps_checkpoint_write(x.s.particles, path, &info));
+  FAILS(mps_mpm_restore(x.s.mpm, path, NULL), MPS_ERROR_FORMAT, "no solver");
+  mps_assert_ok(context, mps_mpm_save(x.s.mpm, path, NULL));
+  assert_int_equal(truncate(path, 5000), 0);
+  FAILS(mps_mpm_restore(x.s.mpm, path, NULL), MPS_ERROR_FORMAT, "mpm.h5");
+  mps_assert_ok(context, mps_mpm_save(x.s.mpm, path, NULL));
+  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 1));
+  test_disk_limit(20000);
+  const mps_status status = mps_mpm_save(x.s.mpm, path, NULL);
+  test_disk_limit(0);
+  assert_int_equal(status, MPS_ERROR_IO);
+  assert_int_equal(access(part, F_OK), -1);
+  mps_assert_ok(context, mps_mpm_restore(x.s.mpm, path, NULL)); /* the former one */
+  assert_int_equal(mps_mpm_steps(x.s.mpm), 0);
+  drop(&x);
+  mps_context_destroy(&context);
+}
+
+/* A run that has diverged cannot be saved, but goes on from an earlier checkpoint. */
+static void a_broken_run_goes_back(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  scene x = build(context, MPS_PLANE_STRAIN, &none), y = build(context, MPS_PLANE_STRAIN, &none);
+  mps_assert_ok(context, mps_mpm_save(x.s.mpm, path, NULL));
+  mps_view v = mpm_scene_view(&x.s, "velocity");
+  *mps_view_f64(&v, 7, 0) = NAN;
+  FAILS(mps_mpm_step(x.s.mpm, 1), MPS_ERROR_DIVERGED, "not finite");
+  FAILS(mps_mpm_save(x.s.mpm, path, NULL), MPS_ERROR_STATE, "has failed");
+  mps_assert_ok(context, mps_mpm_restore(x.s.mpm, path, NULL));
+  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 10));
+  mps_assert_ok(context, mps_mpm_step(y.s.mpm, 10));
+  same(&x, &y);
+  drop(&x);
+  drop(&y);
+  mps_context_destroy(&context);
+}
+
+/* What the caller gives along comes back, from both kinds of checkpoint. */
+static void the_callers_bytes_come_back(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  scene x = build(context, MPS_PLANE_STRAIN, &none);
+  char text[] = "rows so far", room[64];
+  for (int k = 0; k < 2; k++) {
+    mps_checkpoint info = mps_checkpoint_defaults(), back = mps_checkpoint_defaults();
+    info.user_data = text, info.user_bytes = sizeof text;
+    strcpy(info.user_key, "a run");
+    mps_assert_ok(context, k ? mps_mpm_save(x.s.mpm, path, &info)
+                             : mps_checkpoint_write(x.s.particles, path, &info));
+    mps_assert_ok(context, mps_checkpoint_info(context, path, &back));
+    assert_int_equal(back.user_bytes, sizeof text);
+    assert_string_equal(back.user_key, "a run");
+    memset(room, 'x', sizeof room);
+    back.user_data = room;
+    back.user_bytes = sizeof text - 1;
+    FAILS(mps_checkpoint_info(context, path, &back), MPS_ERROR_ARGUMENT, "user_bytes is 11, '");
+    assert_int_equal(room[0], 'x');
+    back.user_bytes = sizeof room;
+    mps_assert_ok(context, k ? mps_mpm_restore(x.s.mpm, path, &back)
+                             : mps_checkpoint_read(x.s.particles, path, &back));
+    assert_int_equal(back.user_bytes, sizeof text);
+    assert_string_equal(room, text);
+    strcpy(back.user_key, "another");
+    if (k) FAILS(mps_mpm_restore(x.s.mpm, path, &back), MPS_ERROR_ARGUMENT, "wanted is 'another'");
+  }
+  drop(&x);
+  mps_context_destroy(&context);
+}
+
+/* A sealed file with contents that no run writes: a block moved by `by` along x. */
+static void blocks_elsewhere_are_refused(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  scene x = build(context, MPS_PLANE_STRAIN, &none);
+  static const int64_t bad[][2] = {{0, 1}, {1, 1000}, {1, INT64_MAX}, {3, 1}};
+  for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+    mps_assert_ok(context, mps_mpm_save(x.s.mpm, path, NULL));
+    const hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+    const hid_t dataset = H5Dopen2(file, "solver/blocks", H5P_DEFAULT);
+    int64_t block[4 * 64];
+    assert_true(H5Dget_storage_size(dataset) <= sizeof block);
+    assert_true(H5Dread(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, block) >= 0);
+    block[4 + bad[k][0]] = bad[k][1]; /* of the second block: first particle, x, z */
+    assert_true(H5Dwrite(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, block) >= 0);
+    H5Dclose(dataset);
+    H5Fclose(file);
+    mpsi_replacement again;
+    mps_assert_ok(context, mpsi_replace_begin(context, "test", path, &again));
+    char data[1 << 20];
+    const int fd = open(path, O_RDONLY);
+    const ssize_t size = read(fd, data, sizeof data);
+    assert_true(size > 0 && size < (ssize_t)sizeof data);
+    assert_int_equal(write(again.fd, data, (size_t)size), size);
+    close(fd);
+    mps_assert_ok(context, mpsi_replace_commit(context, "test", &again));
+    FAILS(mps_mpm_restore(x.s.mpm, path, NULL), MPS_ERROR_FORMAT, "blocks do not hold");
+    mps_assert_ok(context, mps_mpm_step(x.s.mpm, 1));
+  }
+  drop(&x);
+  mps_context_destroy(&context);
+}
+#undef FAILS
+
+static mps_status restore_once(mps_context *own, int what) {
+  (void)what;
+  scene x;
+  mps_status status = try_build(own, MPS_PLANE_STRAIN, &none, &x);
+  if (status == MPS_OK) status = mps_mpm_save(x.s.mpm, path, NULL);
+  if (status == MPS_OK) status = mps_mpm_restore(x.s.mpm, path, NULL);
+  drop(&x);
+  return status;
+}
+
+static void refused_allocations_leave_nothing_behind(void **state) {
+  (void)state;
+  const int64_t handles = test_hdf5_handles();
+  test_allocator_sweep(restore_once, 0);
+  assert_int_equal(test_hdf5_handles(), handles);
+  assert_int_equal(access(part, F_OK), -1);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(goes_on_in_plane_strain),
+      cmocka_unit_test(goes_on_in_axisymmetry),
+      cmocka_unit_test(goes_on_in_space),
+      cmocka_unit_test(goes_on_from_every_step),
+      cmocka_unit_test(with_walls_loads_and_materials),
+      cmocka_unit_test(other_walls_loads_and_materials_are_refused),
+      cmocka_unit_test(another_solver_is_refused),
+      cmocka_unit_test(other_files_and_bad_arguments),
+      cmocka_unit_test(a_broken_run_goes_back),
+      cmocka_unit_test(the_callers_bytes_come_back),
+      cmocka_unit_test(blocks_elsewhere_are_refused),
+      cmocka_unit_test(refused_allocations_leave_nothing_behind),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
