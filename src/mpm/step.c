@@ -154,7 +154,8 @@ static mps_status take_step(mps_mpm *mpm, const char *function, double dt) {
 mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function) {
   if (!mpm->broken) return MPS_OK;
   return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
-                   "an earlier step has failed: the state is kept for a look, make a new solver");
+                   "an earlier step has failed: the state is kept for a look; make a new solver or "
+                   "restore a checkpoint");
 }
 
 /* ---- running --------------------------------------------------------------------------------- */
