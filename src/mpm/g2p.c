@@ -16,43 +16,39 @@ MPSI_INLINE void gather_tile(const mps_mpm *mpm, const mpsi_cells *cells, int di
     }
 }
 
-/* Velocity (motion[0], lanes 1 to 3) and its derivatives by x, y, z, by factors: along each row the
- * sums of w v and w s_x v, then across the rows. */
+/* Velocity (motion[0], lanes 1 to 3) and its derivatives by x, y, z, by factors: sums of the rows
+ * by their weights across, w and w s, node by node, and at last along x. */
 MPSI_INLINE void gather_full(int dim, int spline, double scale, const mpsi_places *places, int k,
                              const mpsi_node *tile, double (*motion)[4]) {
-  mpsi_vec w[MPSI_ROW], ws[MPSI_ROW], zero = {0.0};
-  mpsi_vec all = zero, by_x = zero, by_y = zero, by_z = zero;
-  mpsi_row_weights(spline, places->t[k], w, ws);
+  mpsi_vec sum[3][MPSI_ROW] = {{{0.0}}}; /* by w of y and z, by w s of y, by w s of z */
   tile += places->first[k];
   for (int plane = 0; plane <= (dim == 3 ? spline : 0); plane++) {
-    mpsi_vec p = zero, px = zero, py = zero;
-    MPSI_UNROLL for (int j = 0; j <= spline; j++) {
-      const double *row = tile[mpsi_tile_index(0, j, plane)];
-      mpsi_vec sum = zero, slope = zero;
-      MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
-        const mpsi_vec node = mpsi_get_row(row + 4 * MPSI_WIDE * v);
-        sum += w[v] * node;
-        slope += ws[v] * node;
+    MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
+      mpsi_vec value = {0.0}, slope = {0.0};
+      MPSI_UNROLL for (int j = 0; j <= spline; j++) {
+        const mpsi_vec node = mpsi_get_row(tile[mpsi_tile_index(0, j, plane)] + 4 * MPSI_WIDE * v);
+        value += places->w[0][j][k] * node;
+        slope += places->ws[0][j][k] * node;
       }
-      const double wy = places->w[0][j][k], wys = places->ws[0][j][k];
-      p += wy * sum;
-      px += wy * slope;
-      py += wys * sum;
+      if (dim == 2) {
+        sum[0][v] = value, sum[1][v] = slope;
+        continue;
+      }
+      const double wz = places->w[1][plane][k], wzs = places->ws[1][plane][k];
+      sum[0][v] += wz * value;
+      sum[1][v] += wz * slope;
+      sum[2][v] += wzs * value;
     }
-    if (dim == 2) {
-      all = p, by_x = px, by_y = py;
-      continue;
-    }
-    const double wz = places->w[1][plane][k], wzs = places->ws[1][plane][k];
-    all += wz * p;
-    by_x += wz * px;
-    by_y += wz * py;
-    by_z += wzs * p;
   }
-  mpsi_put(motion[0], mpsi_fold(all));
-  mpsi_put(motion[1], scale * mpsi_fold(by_x));
-  mpsi_put(motion[2], scale * mpsi_fold(by_y));
-  if (dim == 3) mpsi_put(motion[3], scale * mpsi_fold(by_z));
+  mpsi_vec w[MPSI_ROW], ws[MPSI_ROW], all[4] = {{0.0}};
+  mpsi_row_weights(spline, places->t[k], w, ws);
+  MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
+    all[0] += w[v] * sum[0][v];
+    all[1] += ws[v] * sum[0][v];
+    for (int d = 2; d <= dim; d++) all[d] += w[v] * sum[d - 1][v];
+  }
+  mpsi_put(motion[0], mpsi_fold(all[0]));
+  for (int d = 1; d <= dim; d++) mpsi_put(motion[d], scale * mpsi_fold(all[d]));
 }
 
 /* The first `n` (at most 4) values of a vector. */

@@ -57,29 +57,33 @@ MPSI_INLINE void find_parts(const mps_mpm *mpm, int geometry, int spline, bool s
   }
 }
 
-/* Adds particles [begin, end) of a chunk, all of one stencil, to a tile. */
+/* Adds particles [begin, end) of a chunk, all of one stencil, to a tile. What they give is spread
+ * along x once, and from there to each row by that row's weights alone. */
 MPSI_INLINE void add_segment(int dim, int spline, const mpsi_places *places, int begin, int end,
                              double (*part)[4][4], mpsi_node *tile) {
-  mpsi_vec w[SEGMENT][MPSI_ROW], ws[SEGMENT][MPSI_ROW];
-  for (int k = begin; k < end; k++)
-    mpsi_row_weights(spline, places->t[k], w[k - begin], ws[k - begin]);
+  mpsi_vec along[SEGMENT][3][MPSI_ROW]; /* by w of y and z, by w s of y, by w s of z */
+  for (int k = begin; k < end; k++) {
+    mpsi_vec w[MPSI_ROW], ws[MPSI_ROW], a[4];
+    mpsi_row_weights(spline, places->t[k], w, ws);
+    for (int d = 0; d <= dim; d++) a[d] = mpsi_spread(mpsi_get(part[k][d]));
+    MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
+      along[k - begin][0][v] = w[v] * a[0] + ws[v] * a[1];
+      for (int d = 2; d <= dim; d++) along[k - begin][d - 1][v] = w[v] * a[d];
+    }
+  }
   tile += places->first[begin];
   for (int plane = 0; plane <= (dim == 3 ? spline : 0); plane++) {
     mpsi_vec sum[4][MPSI_ROW] = {{{0.0}}};
     for (int k = begin; k < end; k++) {
-      mpsi_vec a = mpsi_spread(mpsi_get(part[k][0])), d = mpsi_spread(mpsi_get(part[k][1]));
-      mpsi_vec e = mpsi_spread(mpsi_get(part[k][2]));
-      if (dim == 3) {
-        const double wz = places->w[1][plane][k], wzs = places->ws[1][plane][k];
-        a = wz * a + wzs * mpsi_spread(mpsi_get(part[k][3]));
-        d *= wz;
-        e *= wz;
-      }
-      MPSI_UNROLL for (int j = 0; j <= spline; j++) {
-        const double wy = places->w[0][j][k], wys = places->ws[0][j][k];
-        const mpsi_vec value = wy * a + wys * e, slope = wy * d;
-        MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) sum[j][v] +=
-            w[k - begin][v] * value + ws[k - begin][v] * slope;
+      MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
+        mpsi_vec value = along[k - begin][0][v], slope = along[k - begin][1][v];
+        if (dim == 3) {
+          const double wz = places->w[1][plane][k], wzs = places->ws[1][plane][k];
+          value = wz * value + wzs * along[k - begin][2][v];
+          slope *= wz;
+        }
+        MPSI_UNROLL for (int j = 0; j <= spline; j++) sum[j][v] +=
+            places->w[0][j][k] * value + places->ws[0][j][k] * slope;
       }
     }
     MPSI_UNROLL for (int j = 0; j <= spline; j++) {
