@@ -2,7 +2,7 @@
  * its particles are in the cache, their law and the speeds that bound the time step, (49), (50).
  * Particles with a cut support: fitted.c. Compiled once for each instruction set.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "loops.h"
+#include "wall.h"
 
 /* Copies the nodes under a tile. */
 MPSI_INLINE void gather_tile(const mps_mpm *mpm, const mpsi_cells *cells, int dim,
@@ -18,8 +18,9 @@ MPSI_INLINE void gather_tile(const mps_mpm *mpm, const mpsi_cells *cells, int di
 
 /* Velocity (motion[0], lanes 1 to 3) and its derivatives by x, y, z, by factors: sums of the rows
  * by their weights across, w and w s, node by node, and at last along x. */
-MPSI_INLINE void gather_full(int dim, int spline, double scale, const mpsi_places *places, int k,
-                             const mpsi_node *tile, double (*motion)[4]) {
+MPSI_INLINE void gather_full(int dim, int spline, double scale, const mpsi_places *places,
+                             const mpsi_rows *rows, int k, const mpsi_node *tile,
+                             double (*motion)[4]) {
   mpsi_vec sum[3][MPSI_ROW] = {{{0.0}}}; /* by w of y and z, by w s of y, by w s of z */
   tile += places->first[k];
   for (int plane = 0; plane <= (dim == 3 ? spline : 0); plane++) {
@@ -41,7 +42,7 @@ MPSI_INLINE void gather_full(int dim, int spline, double scale, const mpsi_place
     }
   }
   mpsi_vec w[MPSI_ROW], ws[MPSI_ROW], all[4] = {{0.0}};
-  mpsi_row_weights(spline, places->t[k], w, ws);
+  mpsi_weights_along(spline, places, rows, k, w, ws);
   MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
     all[0] += w[v] * sum[0][v];
     all[1] += ws[v] * sum[0][v];
@@ -49,6 +50,20 @@ MPSI_INLINE void gather_full(int dim, int spline, double scale, const mpsi_place
   }
   mpsi_put(motion[0], mpsi_fold(all[0]));
   for (int d = 1; d <= dim; d++) mpsi_put(motion[d], scale * mpsi_fold(all[d]));
+}
+
+/* The same at the wall across `axis`. */
+MPSI_INLINE void gather_at_wall(const mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
+                                double scale, const mpsi_places *places, int axis, int k,
+                                const mpsi_node *tile, double (*motion)[4]) {
+  mpsi_wall wall;
+  double across[4][4];
+  mpsi_wall_places(mpm, cells, dim, spline, places, k, k + 1, axis, MPSI_WALL_SLOPE, &wall);
+  gather_full(dim, spline, scale, &wall.places, &wall.rows, 0, tile, across);
+  mpsi_wall_places(mpm, cells, dim, spline, places, k, k + 1, axis, MPSI_WALL_ALONG, &wall);
+  gather_full(dim, spline, scale, &wall.places, &wall.rows, 0, tile, motion);
+  memcpy(motion[0], across[0], sizeof across[0]);
+  memcpy(motion[1 + axis], across[1 + axis], sizeof across[0]);
 }
 
 /* The first `n` (at most 4) values of a vector. */
@@ -152,12 +167,17 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cells *cells, const mpsi_worker *w
   mpsi_places places;
   double motion[MPSI_CHUNK][4][4] __attribute__((aligned(64)));
   mpsi_find_places(mpm, cells, dim, spline, begin, n, &places);
-  bool full = true;
+  const mpsi_node *tile = (const mpsi_node *)worker->tile;
+  uint32_t state = 0;
   for (int k = 0; k < n; k++) {
-    if (cells->cut && (k == 0 || places.first[k] != places.first[k - 1]))
-      full = mpsi_full_support(worker, dim, spline, places.first[k]);
-    if (full)
-      gather_full(dim, spline, scale, &places, k, (const mpsi_node *)worker->tile, motion[k]);
+    const int32_t first = places.first[k];
+    if (cells->cut && (k == 0 || first != places.first[k - 1]))
+      state = mpsi_support_state(worker, dim, spline, first);
+    const int axis = state ? mpsi_wall_axis(mpm, cells, dim, spline, state, first) : -1;
+    if (!state)
+      gather_full(dim, spline, scale, &places, NULL, k, tile, motion[k]);
+    else if (axis >= 0)
+      gather_at_wall(mpm, cells, dim, spline, scale, &places, axis, k, tile, motion[k]);
     else
       MPSI_LEVELLED(mpsi_gather_fitted)(mpm, cells, worker, begin + k, motion[k]);
   }

@@ -33,8 +33,10 @@ typedef struct mpsi_cells {
   int32_t at[3];                   /* block coordinates: its first node is at * MPSI_SIDE */
   int32_t to[MPSI_CORNERS];        /* blocks of nodes under the tile: own, +x, +y, +x+y, ... */
   bool edge;                       /* some node of the tile is outside the domain */
-  bool cut;                        /* some node of the tile is outside, or inside a body */
+  bool inside;                     /* some node of the blocks under the tile is in a body */
+  bool cut;                        /* one of both: some particle may have a cut support */
   bool split;                      /* forces are summed apart from momenta: see mpsi_nodes */
+  bool apart;                      /* the tile of forces is in use: split, or at an edge */
   bool left;                       /* a particle is more than a cell outside the block */
   bool refused;                    /* the law has refused the block */
   int32_t first_meeting, meetings; /* by body */
@@ -106,7 +108,7 @@ typedef struct mpsi_room {
 /* What a worker needs for the block it works on: tiles of MPSI_TILE_SIDE^dim. */
 typedef struct mpsi_worker {
   void *memory;
-  mpsi_node *tile, *force; /* force: of split blocks */
+  mpsi_node *tile, *force; /* force, and excess mass: where they are apart */
   uint32_t *inside;        /* bit b: in body b */
   uint8_t *state;          /* MPSI_... bits, 0: free */
 } mpsi_worker;

@@ -1,12 +1,11 @@
 /* p2g.c - particles to nodes, seed B (23)-(25), (39), one block of cells at a time, for particles
- * with a full support; the others go to fitted.c. Compiled once for each instruction set.
+ * with a full support or at one wall; the others go to fitted.c. Compiled once for each
+ * instruction set.
  *
  * Consecutive particles with the same stencil, a segment, are summed in registers before they are
  * added to the tile: particles are sorted by their stencils, and nearly sorted ones do as well.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "loops.h"
-
-#define SEGMENT 16 /* particles at most */
+#include "wall.h"
 
 /* What a particle gives to its nodes: w (part[0] + part[1] s_x + part[2] s_y + part[3] s_z). */
 typedef struct parts {
@@ -59,12 +58,12 @@ MPSI_INLINE void find_parts(const mps_mpm *mpm, int geometry, int spline, bool s
 
 /* Adds particles [begin, end) of a chunk, all of one stencil, to a tile. What they give is spread
  * along x once, and from there to each row by that row's weights alone. */
-MPSI_INLINE void add_segment(int dim, int spline, const mpsi_places *places, int begin, int end,
-                             double (*part)[4][4], mpsi_node *tile) {
-  mpsi_vec along[SEGMENT][3][MPSI_ROW]; /* by w of y and z, by w s of y, by w s of z */
+MPSI_INLINE void add_segment(int dim, int spline, const mpsi_places *places, const mpsi_rows *rows,
+                             int begin, int end, double (*part)[4][4], mpsi_node *tile) {
+  mpsi_vec along[MPSI_SEGMENT][3][MPSI_ROW]; /* by w of y and z, by w s of y, by w s of z */
   for (int k = begin; k < end; k++) {
     mpsi_vec w[MPSI_ROW], ws[MPSI_ROW], a[4];
-    mpsi_row_weights(spline, places->t[k], w, ws);
+    mpsi_weights_along(spline, places, rows, k, w, ws);
     for (int d = 0; d <= dim; d++) a[d] = mpsi_spread(mpsi_get(part[k][d]));
     MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
       along[k - begin][0][v] = w[v] * a[0] + ws[v] * a[1];
@@ -82,8 +81,10 @@ MPSI_INLINE void add_segment(int dim, int spline, const mpsi_places *places, int
           value = wz * value + wzs * along[k - begin][2][v];
           slope *= wz;
         }
-        MPSI_UNROLL for (int j = 0; j <= spline; j++) sum[j][v] +=
-            places->w[0][j][k] * value + places->ws[0][j][k] * slope;
+        MPSI_UNROLL for (int j = 0; j <= spline; j++) {
+          sum[j][v] += places->w[0][j][k] * value; /* apart: each is one fused operation */
+          sum[j][v] += places->ws[0][j][k] * slope;
+        }
       }
     }
     MPSI_UNROLL for (int j = 0; j <= spline; j++) {
@@ -96,12 +97,39 @@ MPSI_INLINE void add_segment(int dim, int spline, const mpsi_places *places, int
   }
 }
 
+/* The same where a wall across `axis` cuts the stencil: momentum to the tile, force and excess mass
+ * (see mpsi_node) to the tile of forces. Weights of the derivatives differ across and along it. */
+MPSI_INLINE void add_at_wall(const mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
+                             int geometry, int spline, const mpsi_places *places, int axis,
+                             int64_t chunk, int begin, int end) {
+  const int dim = mpsi_dim_of(geometry), n = end - begin;
+  mpsi_wall wall;
+  parts part, other;
+  find_parts(mpm, geometry, spline, true, chunk + begin, n, &part);
+  mpsi_wall_places(mpm, cells, dim, spline, places, begin, end, axis, MPSI_WALL_VALUE, &wall);
+  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, part.sum, worker->tile);
+  memset(&other, 0, sizeof other);
+  for (int k = 0; k < n; k++) {
+    const double m = mpm->p.m[chunk + begin + k];
+    other.force[k][0][MPSI_EXCESS] = m * wall.mass[k];
+    for (int d = 0; d < dim; d++)
+      if (d != axis) memcpy(other.force[k][1 + d], part.force[k][1 + d], sizeof(mpsi_node));
+    for (int d = 0; d < dim; d++)
+      if (d != axis) memset(part.force[k][1 + d], 0, sizeof(mpsi_node));
+    part.force[k][0][MPSI_EXCESS] = -m;
+  }
+  mpsi_wall_places(mpm, cells, dim, spline, places, begin, end, axis, MPSI_WALL_SLOPE, &wall);
+  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, part.force, worker->force);
+  mpsi_wall_places(mpm, cells, dim, spline, places, begin, end, axis, MPSI_WALL_ALONG, &wall);
+  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, other.force, worker->force);
+}
+
 /* Adds the tile to one of the blocks of nodes under it. */
 MPSI_INLINE void flush(const mps_mpm *mpm, const mpsi_cells *cells, int dim, int q,
                        const mpsi_worker *from) {
   const mpsi_nodes *nodes = &mpm->nodes[cells->to[q]];
   mpsi_node *node = mpm->node + mpsi_first_node(mpm, cells->to[q]);
-  mpsi_node *side = nodes->split ? mpm->side + mpsi_first_node(mpm, nodes->side) : NULL;
+  mpsi_node *side = nodes->side >= 0 ? mpm->side + mpsi_first_node(mpm, nodes->side) : NULL;
   int low[3], size[3];
   for (int c = 0; c < 3; c++) {
     low[c] = MPSI_SIDE * (q >> c & 1);
@@ -113,12 +141,15 @@ MPSI_INLINE void flush(const mps_mpm *mpm, const mpsi_cells *cells, int dim, int
       const int to = (k * MPSI_SIDE + j) * MPSI_SIDE;
       for (int i = 0; i < size[0]; i++) {
         mpsi_quad sum = mpsi_get(from->tile[t + i]);
-        if (cells->split) {
-          const mpsi_quad force = mpsi_get(from->force[t + i]);
-          if (side)
+        if (cells->apart) {
+          mpsi_quad force = mpsi_get(from->force[t + i]);
+          if (nodes->split) {
             mpsi_put(side[to + i], mpsi_get(side[to + i]) + force);
-          else
+          } else {
+            if (side) side[to + i][MPSI_EXCESS] += force[MPSI_EXCESS];
+            force[MPSI_EXCESS] = 0.0;
             sum += mpm->dt * force;
+          }
         }
         mpsi_put(node[to + i], mpsi_get(node[to + i]) + sum);
       }
@@ -136,14 +167,19 @@ MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cells *cells, const mpsi_wor
   else
     find_parts(mpm, geometry, spline, false, begin, n, &part);
   for (int k = 0, end; k < n; k = end) {
-    for (end = k + 1; end < n && end < k + SEGMENT && places.first[end] == places.first[k];) end++;
-    if (cells->cut && !mpsi_full_support(worker, dim, spline, places.first[k])) {
-      for (int f = k; f < end; f++)
+    for (end = k + 1; end < n && end < k + MPSI_SEGMENT && places.first[end] == places.first[k];) end++;
+    const uint32_t state =
+        cells->cut ? mpsi_support_state(worker, dim, spline, places.first[k]) : 0;
+    if (state != 0) {
+      const int axis = mpsi_wall_axis(mpm, cells, dim, spline, state, places.first[k]);
+      if (axis >= 0)
+        add_at_wall(mpm, cells, worker, geometry, spline, &places, axis, begin, k, end);
+      for (int f = k; f < end && axis < 0; f++)
         MPSI_LEVELLED(mpsi_scatter_fitted)(mpm, cells, worker, begin + f);
       continue;
     }
-    add_segment(dim, spline, &places, k, end, part.sum, worker->tile);
-    if (cells->split) add_segment(dim, spline, &places, k, end, part.force, worker->force);
+    add_segment(dim, spline, &places, NULL, k, end, part.sum, worker->tile);
+    if (cells->split) add_segment(dim, spline, &places, NULL, k, end, part.force, worker->force);
   }
 }
 
@@ -159,7 +195,7 @@ MPSI_INLINE void p2g_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry,
   }
   if (cells->cut) mpsi_mpm_find_states(mpm, cells, worker);
   memset(worker->tile, 0, (size_t)mpm->tile * sizeof *worker->tile);
-  if (cells->split) memset(worker->force, 0, (size_t)mpm->tile * sizeof *worker->force);
+  if (cells->apart) memset(worker->force, 0, (size_t)mpm->tile * sizeof *worker->force);
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int64_t rest = cells->end - k;
     p2g_chunk(mpm, cells, worker, geometry, spline, k, rest < MPSI_CHUNK ? (int)rest : MPSI_CHUNK);
