@@ -5,14 +5,16 @@
 #include "wall.h"
 
 /* Copies the nodes under a tile. */
-MPSI_INLINE void gather_tile(const mps_mpm *mpm, const mpsi_cells *cells, int dim,
-                             mpsi_node *tile) {
-  for (int k = 0; k < (dim == 3 ? MPSI_TILE_SIDE : 1); k++)
-    for (int j = 0; j < MPSI_TILE_SIDE; j++) {
+MPSI_INLINE void gather_tile(const mps_mpm *mpm, const mpsi_cells *cells, mpsi_node *tile) {
+  const int low = cells->low[0], high = cells->high[0];
+  const int middle = high < MPSI_SIDE ? high : low > MPSI_SIDE ? low : MPSI_SIDE;
+  for (int k = cells->low[2]; k < cells->high[2]; k++)
+    for (int j = cells->low[1]; j < cells->high[1]; j++) {
+      mpsi_node *own = mpm->node + mpsi_node_under(mpm, cells, 0, j, k);
+      mpsi_node *next = mpm->node + mpsi_node_under(mpm, cells, MPSI_SIDE, j, k);
       mpsi_node *to = tile + mpsi_tile_index(0, j, k);
-      memcpy(to, mpm->node + mpsi_node_under(mpm, cells, 0, j, k), MPSI_SIDE * sizeof *to);
-      memcpy(to + MPSI_SIDE, mpm->node + mpsi_node_under(mpm, cells, MPSI_SIDE, j, k),
-             (MPSI_TILE_SIDE - MPSI_SIDE) * sizeof *to);
+      for (int i = low; i < middle; i++) mpsi_put(to[i], mpsi_get(own[i]));
+      for (int i = middle; i < high; i++) mpsi_put(to[i], mpsi_get(next[i - MPSI_SIDE]));
     }
 }
 
@@ -98,12 +100,13 @@ MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cells *cells, int geometry, int 
       for (int c = 0; c < dim && d > 0; c++)
         store_some(p->L[dim * c + d - 1] + at, a[1 + c], n - k);
       for (int c = 0; c < dim && d == 0; c++) {
+        const int reach = c == 0 ? 3 : spline; /* see widen_use in layout.c */
         const mpsi_quad x = mpsi_get_some(p->x[c] + at, n - k), to = x + mpm->dt * a[1 + c];
         const mpsi_quad X = mpsi_from_block(mpm, cells, c, to);
         const double corner = (double)cells->at[c] * MPSI_SIDE;
         const mpsi_mask good =
             (X >= (double)mpm->low[c] - corner) & (X <= (double)mpm->high[c] - corner);
-        const mpsi_mask here = (X >= first) & (X < first + (MPSI_SIDE + 2));
+        const mpsi_mask here = (X >= first + cells->low[c]) & (X < first + (cells->high[c] - reach));
         outside |= there & ~good;
         left |= there & ~here;
         store_some(p->v[c] + at, a[1 + c], n - k);
@@ -192,7 +195,7 @@ MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry,
   cells->left = cells->refused = false;
   cells->bad = -1;
   cells->speed = 0.0;
-  gather_tile(mpm, cells, mpsi_dim_of(geometry), worker->tile);
+  gather_tile(mpm, cells, worker->tile);
   if (cells->cut) mpsi_mpm_find_states(mpm, cells, worker);
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;

@@ -103,6 +103,17 @@ static void place_block(const mps_mpm *mpm, const range *r, uint64_t block, mpsi
   }
 }
 
+/* Widens the part of the tile in use by a stencil, and by a cell to either side. Rows are read and
+ * written four nodes at a time whatever the spline. */
+static void widen_use(const mps_mpm *mpm, uint64_t within, mpsi_cells *cells) {
+  for (int c = 0; c < mpm->dim; c++, within /= MPSI_SIDE) {
+    const int32_t low = (int32_t)(within % MPSI_SIDE);
+    const int32_t high = low + 3 + (c == 0 ? 3 : mpm->def.spline);
+    if (low < cells->low[c]) cells->low[c] = low;
+    if (high > cells->high[c]) cells->high[c] = high;
+  }
+}
+
 /* Blocks of the sorted keys; the count alone where `cells` is NULL. */
 static int64_t make_cells(const mps_mpm *mpm, const mpsi_radix *key, const range *r,
                           mpsi_cells *cells) {
@@ -110,13 +121,17 @@ static int64_t make_cells(const mps_mpm *mpm, const mpsi_radix *key, const range
   int64_t count = 0;
   for (int64_t k = 0; k < mpm->count; k++) {
     const uint64_t block = key[k].key / own;
-    if (k > 0 && block == key[k - 1].key / own) continue;
-    if (cells) {
-      if (count > 0) cells[count - 1].end = k;
-      cells[count] = (mpsi_cells){.begin = k, .end = mpm->count, .bad = -1};
-      place_block(mpm, r, block, &cells[count]);
+    if (k == 0 || block != key[k - 1].key / own) {
+      if (cells) {
+        if (count > 0) cells[count - 1].end = k;
+        cells[count] = (mpsi_cells){.begin = k, .end = mpm->count, .bad = -1};
+        for (int c = 0; c < 3; c++)
+          cells[count].low[c] = c < mpm->dim ? MPSI_TILE_SIDE : 0, cells[count].high[c] = 1;
+        place_block(mpm, r, block, &cells[count]);
+      }
+      count++;
     }
-    count++;
+    if (cells) widen_use(mpm, key[k].key % own, &cells[count - 1]);
   }
   return count;
 }

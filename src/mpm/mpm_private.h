@@ -5,7 +5,8 @@
  * of a block lie in a tile of 13 nodes along each axis, which begins at the block's first node: 1
  * node that only a particle which has left to the lower side uses, 8, 1 for one that has left to
  * the upper side, and the other 3 of a cubic stencil. So the particles are sorted anew only when
- * one has moved a whole cell beyond its block. The tile lies over the block's own nodes and its
+ * one has moved a whole cell beyond its block, or beyond the cells of it that had particles: the
+ * rest of the tile is not worked on. The tile lies over the block's own nodes and its
  * neighbours at +x, +y, +x+y (and so on at +z).
  *
  * Each task sums the particles of one block of cells into a tile of its own and adds that to the
@@ -31,6 +32,7 @@
 typedef struct mpsi_cells {
   int64_t begin, end;              /* particles */
   int32_t at[3];                   /* block coordinates: its first node is at * MPSI_SIDE */
+  int32_t low[3], high[3];         /* its stencils use tile nodes low to high - 1 of each axis */
   int32_t to[MPSI_CORNERS];        /* blocks of nodes under the tile: own, +x, +y, +x+y, ... */
   bool edge;                       /* some node of the tile is outside the domain */
   bool inside;                     /* some node of the blocks under the tile is in a body */

@@ -124,22 +124,30 @@ MPSI_INLINE void add_at_wall(const mps_mpm *mpm, const mpsi_cells *cells, const 
   add_segment(dim, spline, &wall.places, &wall.rows, 0, n, other.force, worker->force);
 }
 
+MPSI_INLINE void clear(const mpsi_cells *cells, mpsi_node *tile) {
+  for (int k = cells->low[2]; k < cells->high[2]; k++)
+    for (int j = cells->low[1]; j < cells->high[1]; j++)
+      for (int i = cells->low[0]; i < cells->high[0]; i++)
+        mpsi_put(tile[mpsi_tile_index(i, j, k)], (mpsi_quad){0.0});
+}
+
 /* Adds the tile to one of the blocks of nodes under it. */
-MPSI_INLINE void flush(const mps_mpm *mpm, const mpsi_cells *cells, int dim, int q,
+MPSI_INLINE void flush(const mps_mpm *mpm, const mpsi_cells *cells, int q,
                        const mpsi_worker *from) {
   const mpsi_nodes *nodes = &mpm->nodes[cells->to[q]];
   mpsi_node *node = mpm->node + mpsi_first_node(mpm, cells->to[q]);
   mpsi_node *side = nodes->side >= 0 ? mpm->side + mpsi_first_node(mpm, nodes->side) : NULL;
-  int low[3], size[3];
-  for (int c = 0; c < 3; c++) {
-    low[c] = MPSI_SIDE * (q >> c & 1);
-    size[c] = low[c] ? MPSI_TILE_SIDE - MPSI_SIDE : MPSI_SIDE;
+  int low[3], high[3];
+  for (int c = 0; c < 3; c++) { /* of the tile */
+    const int first = q >> c & 1 ? MPSI_SIDE : 0;
+    low[c] = cells->low[c] > first ? cells->low[c] : first;
+    high[c] = first || cells->high[c] < MPSI_SIDE ? cells->high[c] : MPSI_SIDE;
   }
-  for (int k = 0; k < (dim == 3 ? size[2] : 1); k++)
-    for (int j = 0; j < size[1]; j++) {
-      const int t = mpsi_tile_index(low[0], j + low[1], k + low[2]);
-      const int to = (k * MPSI_SIDE + j) * MPSI_SIDE;
-      for (int i = 0; i < size[0]; i++) {
+  for (int k = low[2]; k < high[2]; k++)
+    for (int j = low[1]; j < high[1]; j++) {
+      const int t = mpsi_tile_index(0, j, k);
+      const int to = ((k % MPSI_SIDE) * MPSI_SIDE + j % MPSI_SIDE) * MPSI_SIDE - (q & 1) * MPSI_SIDE;
+      for (int i = low[0]; i < high[0]; i++) {
         mpsi_quad sum = mpsi_get(from->tile[t + i]);
         if (cells->apart) {
           mpsi_quad force = mpsi_get(from->force[t + i]);
@@ -194,13 +202,13 @@ MPSI_INLINE void p2g_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry,
     memset(meeting->contacts, 0, sizeof meeting->contacts);
   }
   if (cells->cut) mpsi_mpm_find_states(mpm, cells, worker);
-  memset(worker->tile, 0, (size_t)mpm->tile * sizeof *worker->tile);
-  if (cells->apart) memset(worker->force, 0, (size_t)mpm->tile * sizeof *worker->force);
+  clear(cells, worker->tile);
+  if (cells->apart) clear(cells, worker->force);
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int64_t rest = cells->end - k;
     p2g_chunk(mpm, cells, worker, geometry, spline, k, rest < MPSI_CHUNK ? (int)rest : MPSI_CHUNK);
   }
-  for (int q = 0; q < 1 << dim; q++) flush(mpm, cells, dim, q, worker);
+  for (int q = 0; q < 1 << dim; q++) flush(mpm, cells, q, worker);
 }
 
 #define DEFINE(g, s, geometry, spline)                                                             \
