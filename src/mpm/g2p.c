@@ -106,7 +106,8 @@ MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cells *cells, int geometry, int 
         const double corner = (double)cells->at[c] * MPSI_SIDE;
         const mpsi_mask good =
             (X >= (double)mpm->low[c] - corner) & (X <= (double)mpm->high[c] - corner);
-        const mpsi_mask here = (X >= first + cells->low[c]) & (X < first + (cells->high[c] - reach));
+        const mpsi_mask here =
+            (X >= first + cells->low[c]) & (X < first + (cells->high[c] - reach));
         outside |= there & ~good;
         left |= there & ~here;
         store_some(p->v[c] + at, a[1 + c], n - k);

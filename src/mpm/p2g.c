@@ -146,7 +146,8 @@ MPSI_INLINE void flush(const mps_mpm *mpm, const mpsi_cells *cells, int q,
   for (int k = low[2]; k < high[2]; k++)
     for (int j = low[1]; j < high[1]; j++) {
       const int t = mpsi_tile_index(0, j, k);
-      const int to = ((k % MPSI_SIDE) * MPSI_SIDE + j % MPSI_SIDE) * MPSI_SIDE - (q & 1) * MPSI_SIDE;
+      const int to =
+          ((k % MPSI_SIDE) * MPSI_SIDE + j % MPSI_SIDE) * MPSI_SIDE - (q & 1) * MPSI_SIDE;
       for (int i = low[0]; i < high[0]; i++) {
         mpsi_quad sum = mpsi_get(from->tile[t + i]);
         if (cells->apart) {
@@ -175,7 +176,8 @@ MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cells *cells, const mpsi_wor
   else
     find_parts(mpm, geometry, spline, false, begin, n, &part);
   for (int k = 0, end; k < n; k = end) {
-    for (end = k + 1; end < n && end < k + MPSI_SEGMENT && places.first[end] == places.first[k];) end++;
+    for (end = k + 1; end < n && end < k + MPSI_SEGMENT && places.first[end] == places.first[k];)
+      end++;
     const uint32_t state =
         cells->cut ? mpsi_support_state(worker, dim, spline, places.first[k]) : 0;
     if (state != 0) {

@@ -66,10 +66,10 @@ MPSI_INLINE double mpsi_wall_weights(const mps_mpm *mpm, const mpsi_cells *cells
   for (int i = 0; i < 4; i++) {
     const double s = (double)i - t, phi = w[i] * (M2 - M1 * s) * inverse;
     value[i] = part == MPSI_WALL_ALONG ? w[i] / M0 : phi;
-    slope[i] = part == MPSI_WALL_ALONG   ? 0.0
-               : part == MPSI_WALL_VALUE ? phi * s
-                                         : w[i] * (M0 * s - M1) * inverse /
-                                               mpsi_inverse_moment(spline);
+    slope[i] = part == MPSI_WALL_ALONG ? 0.0
+               : part == MPSI_WALL_VALUE
+                   ? phi * s
+                   : w[i] * (M0 * s - M1) * inverse / mpsi_inverse_moment(spline);
   }
   return M0;
 }
