@@ -35,7 +35,7 @@ typedef struct mpsi_cells {
   int32_t low[3], high[3];         /* its stencils use tile nodes low to high - 1 of each axis */
   int32_t to[MPSI_CORNERS];        /* blocks of nodes under the tile: own, +x, +y, +x+y, ... */
   bool edge;                       /* some node of the tile is outside the domain */
-  bool inside;                     /* some node of the blocks under the tile is in a body */
+  bool inside;                     /* some node that its stencils may use is in a body */
   bool cut;                        /* one of both: some particle may have a cut support */
   bool split;                      /* forces are summed apart from momenta: see mpsi_nodes */
   bool apart;                      /* the tile of forces is in use: split, or at an edge */
@@ -49,11 +49,12 @@ typedef struct mpsi_cells {
 /* A block of nodes. Its nodes are node[mpsi_first_node(g)] and on, x fastest. */
 typedef struct mpsi_nodes {
   int32_t at[3];
-  int32_t side;    /* slot of its side sums, or -1: only particles with full supports reach it */
-  int32_t near;    /* slot of its inside masks, or -1: no body near */
-  bool split;      /* side has the forces: the velocity before them is needed */
-  bool inside;     /* some node is in a body */
-  uint32_t bodies; /* bit b: a block of cells whose tile covers it may meet body b */
+  int32_t side; /* slot of its side sums, or -1: only particles with full supports reach it */
+  int32_t near; /* slot of its inside masks, or -1: no body near */
+  bool split;   /* side has the forces: the velocity before them is needed */
+  bool inside;  /* some node is in a body: */
+  int32_t low[3], high[3]; /* they are within low to high - 1 */
+  uint32_t bodies;         /* bit b: a block of cells whose tile covers it may meet body b */
   int32_t first_touch, touches;
 } mpsi_nodes;
 

@@ -104,6 +104,7 @@ static void find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
   (void)worker;
   mpsi_nodes *nodes = &mpm->nodes[g];
   nodes->inside = false;
+  for (int c = 0; c < 3; c++) nodes->low[c] = MPSI_SIDE, nodes->high[c] = 0;
   if (nodes->near < 0) return;
   uint32_t *inside = mpm->inside + mpsi_first_node(mpm, nodes->near);
   memset(inside, 0, (size_t)mpm->own * sizeof *inside);
@@ -124,6 +125,10 @@ static void find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
       for (int c = 0; c < mpm->dim; c++) touch[k].normal[c] = foot.normal[c];
       inside[k] |= UINT32_C(1) << b;
       nodes->inside = true;
+      for (int c = 0; c < 3; c++) {
+        if (place[c] < nodes->low[c]) nodes->low[c] = place[c];
+        if (place[c] >= nodes->high[c]) nodes->high[c] = place[c] + 1;
+      }
     }
   }
 }
@@ -158,34 +163,88 @@ static void mark_reached(mps_mpm *mpm, int64_t b, int32_t worker) {
 /* ---- cut and split blocks ---------------------------------------------------------------------
  */
 
+/* Nodes low to high - 1 of a tile. */
+typedef struct box {
+  int low[3], high[3];
+} box;
+
+static bool is_empty(const box *a) {
+  return a->low[0] >= a->high[0] || a->low[1] >= a->high[1] || a->low[2] >= a->high[2];
+}
+
+static box common(const box *a, const box *b) {
+  box out;
+  for (int c = 0; c < 3; c++) {
+    out.low[c] = a->low[c] > b->low[c] ? a->low[c] : b->low[c];
+    out.high[c] = a->high[c] < b->high[c] ? a->high[c] : b->high[c];
+  }
+  return out;
+}
+
+/* Of the nodes that the block's stencils may use, those of the node block at corner q of the tile
+ * from its `low` to its `high`. */
+static box box_under(const mpsi_cells *cells, int q, const int32_t *low, const int32_t *high) {
+  box used, out;
+  for (int c = 0; c < 3; c++) {
+    const int first = q >> c & 1 ? MPSI_SIDE : 0;
+    used.low[c] = cells->low[c], used.high[c] = cells->high[c];
+    out.low[c] = first + low[c], out.high[c] = first + high[c];
+  }
+  return common(&used, &out);
+}
+
+/* Where the stencils that have a node in a body may have nodes; empty where none has. */
+static box near_bodies(const mps_mpm *mpm, const mpsi_cells *cells) {
+  const int reach = mpm->def.spline;
+  box out = {{MPSI_TILE_SIDE, MPSI_TILE_SIDE, MPSI_TILE_SIDE}, {0}};
+  for (int q = 0; q < 1 << mpm->dim; q++) {
+    const mpsi_nodes *nodes = &mpm->nodes[cells->to[q]];
+    const box in = box_under(cells, q, nodes->low, nodes->high);
+    for (int c = 0; c < 3 && nodes->inside && !is_empty(&in); c++) {
+      if (in.low[c] - reach < out.low[c]) out.low[c] = in.low[c] - reach;
+      if (in.high[c] + reach > out.high[c]) out.high[c] = in.high[c] + reach;
+    }
+  }
+  return out;
+}
+
+/* Slots of sides, and what is split, of the blocks of nodes under a cut block of cells. */
+static void mark_cut(mps_mpm *mpm, const mpsi_cells *cells, const box *near) {
+  static const int32_t low[3] = {0}, high[3] = {MPSI_SIDE, MPSI_SIDE, MPSI_SIDE};
+  const bool by_weight = mpm->def.transfer == MPS_TRANSFER_WEIGHT;
+  bool rough = false;
+  for (int32_t k = 0; cells->inside && k < cells->meetings; k++)
+    rough = rough || mpm->body[mpm->meeting[cells->first_meeting + k].body]->def.friction > 0.0;
+  for (int q = 0; q < 1 << mpm->dim; q++) {
+    mpsi_nodes *nodes = &mpm->nodes[cells->to[q]];
+    box under = box_under(cells, q, low, high);
+    under = common(&under, near);
+    const bool touched = !is_empty(&under);
+    if (!touched && !cells->edge) continue;
+    if (nodes->side < 0) nodes->side = (int32_t)mpm->side_count++;
+    nodes->split = nodes->split || by_weight || (touched && rough);
+  }
+}
+
 /* Cut: some particle may have a cut support. Split: friction needs the velocity before the forces;
  * so does the transfer by weights, which divides momentum and force by different masses. */
 static mps_status find_cut(mps_mpm *mpm, const char *function) {
-  const bool by_weight = mpm->def.transfer == MPS_TRANSFER_WEIGHT;
-  const int corners = 1 << mpm->dim;
   for (int64_t g = 0; g < mpm->node_count; g++)
     mpm->nodes[g].side = -1, mpm->nodes[g].split = false;
   mpm->side_count = 0;
   for (int64_t b = 0; b < mpm->cell_count; b++) {
     mpsi_cells *cells = &mpm->cells[b];
-    cells->inside = false;
-    for (int q = 0; q < corners; q++)
-      cells->inside = cells->inside || mpm->nodes[cells->to[q]].inside;
-    bool rough = by_weight;
-    for (int32_t k = 0; cells->inside && k < cells->meetings; k++)
-      rough = rough || mpm->body[mpm->meeting[cells->first_meeting + k].body]->def.friction > 0.0;
+    const box near = near_bodies(mpm, cells);
+    cells->inside = !is_empty(&near);
     cells->cut = cells->edge || cells->inside;
-    for (int q = 0; q < corners && cells->cut; q++) {
-      mpsi_nodes *nodes = &mpm->nodes[cells->to[q]];
-      if (nodes->side < 0) nodes->side = (int32_t)mpm->side_count++;
-      nodes->split = nodes->split || rough;
-    }
+    if (cells->cut) mark_cut(mpm, cells, &near);
   }
   for (int64_t b = 0; b < mpm->cell_count; b++) {
-    mpm->cells[b].split = false;
-    for (int q = 0; q < corners; q++)
-      mpm->cells[b].split = mpm->cells[b].split || mpm->nodes[mpm->cells[b].to[q]].split;
-    mpm->cells[b].apart = mpm->cells[b].split || mpm->cells[b].edge;
+    mpsi_cells *cells = &mpm->cells[b];
+    cells->split = false;
+    for (int q = 0; q < 1 << mpm->dim; q++)
+      cells->split = cells->split || mpm->nodes[cells->to[q]].split;
+    cells->apart = cells->split || cells->edge;
   }
   if (!mpsi_room_ensure(mpm->context, &mpm->side_room, mpm->side_count * mpm->own,
                         sizeof *mpm->side))
