@@ -108,7 +108,7 @@ MPSI_INLINE void add_at_wall(const mps_mpm *mpm, const mpsi_cells *cells, const 
   find_parts(mpm, geometry, spline, true, chunk + begin, n, &part);
   mpsi_wall_places(mpm, cells, dim, spline, places, begin, end, axis, MPSI_WALL_VALUE, &wall);
   add_segment(dim, spline, &wall.places, &wall.rows, 0, n, part.sum, worker->tile);
-  memset(&other, 0, sizeof other);
+  memset(other.force, 0, (size_t)n * sizeof *other.force);
   for (int k = 0; k < n; k++) {
     const double m = mpm->p.m[chunk + begin + k];
     other.force[k][0][MPSI_EXCESS] = m * wall.mass[k];
