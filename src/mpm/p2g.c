@@ -193,6 +193,17 @@ MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cells *cells, const mpsi_wor
   }
 }
 
+/* Asks the memory for the columns of a chunk. In the plane the few particles of a block end before
+ * the processor has seen that it reads on, and the next block of the colour is elsewhere. */
+MPSI_INLINE void prefetch_chunk(const mpsi_columns *p, int64_t begin, int64_t end) {
+  for (int64_t k = begin; k < end && k < begin + MPSI_CHUNK; k += 8) {
+    for (int c = 0; c < 2; c++) __builtin_prefetch(p->x[c] + k), __builtin_prefetch(p->v[c] + k);
+    for (int c = 0; c < 4; c++) __builtin_prefetch(p->L[c] + k), __builtin_prefetch(p->s[c] + k);
+    __builtin_prefetch(p->V + k);
+    __builtin_prefetch(p->m + k);
+  }
+}
+
 MPSI_INLINE void p2g_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {
   const mpsi_cells *cells = &mpm->cells[b];
   mpsi_worker *worker = &mpm->workers[number];
@@ -206,8 +217,10 @@ MPSI_INLINE void p2g_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry,
   if (cells->cut) mpsi_mpm_find_states(mpm, cells, worker);
   clear(cells, worker->tile);
   if (cells->apart) clear(cells, worker->force);
+  const mpsi_cells *next = dim == 2 && b + 2 < mpm->cell_count ? cells + 2 : NULL;
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int64_t rest = cells->end - k;
+    if (next) prefetch_chunk(&mpm->p, next->begin + (k - cells->begin), next->end);
     p2g_chunk(mpm, cells, worker, geometry, spline, k, rest < MPSI_CHUNK ? (int)rest : MPSI_CHUNK);
   }
   for (int q = 0; q < 1 << dim; q++) flush(mpm, cells, q, worker);
