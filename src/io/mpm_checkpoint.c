@@ -84,7 +84,7 @@ static bool write_solver(hid_t root, void *user) {
   const hid_t group = H5Gcreate2(root, "solver", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
   bool good = group >= 0 && mpsi_h5_attribute_text(group, "name", SOLVER_NAME) &&
               mpsi_h5_write_rows(group, solver_rows, SOLVER_ROWS, record) &&
-              write_table(group, "blocks", true, record->blocks, 4, record->block) &&
+              write_table(group, "blocks", true, record->blocks, MPSI_BLOCK, record->block) &&
               write_table(group, "dashpots", false, record->dashes, MPSI_DASH, record->dash);
   for (int64_t k = 0; good && k < record->materials; k++) {
     char name[16];
@@ -165,7 +165,7 @@ static mps_status stage_table(mpsi_reading *r, hid_t group, const char *name, bo
 
 static mps_status stage_tables(mpsi_reading *r, hid_t group, mpsi_mpm_record *record) {
   void *block = NULL, *dash = NULL;
-  mps_status status = stage_table(r, group, "blocks", true, 4, &record->blocks, &block);
+  mps_status status = stage_table(r, group, "blocks", true, MPSI_BLOCK, &record->blocks, &block);
   if (status == MPS_OK)
     status = stage_table(r, group, "dashpots", false, MPSI_DASH, &record->dashes, &dash);
   record->block = block;

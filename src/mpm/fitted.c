@@ -236,7 +236,7 @@ MPSI_INLINE under nodes_under(const mps_mpm *mpm, const mpsi_cells *cells, int d
   for (int q = 0; q < 1 << dim; q++) {
     const mpsi_nodes *nodes = &mpm->nodes[cells->to[q]];
     out.node[q] = mpm->node + mpsi_first_node(mpm, cells->to[q]);
-    out.side[q] = mpm->side + mpsi_first_node(mpm, nodes->side);
+    out.side[q] = nodes->side < 0 ? NULL : mpm->side + mpsi_first_node(mpm, nodes->side);
     out.dt[q] = nodes->split ? 0.0 : mpm->dt;
   }
   return out;

@@ -2,57 +2,70 @@
  * its particles are in the cache, their law and the speeds that bound the time step, (49), (50).
  * Particles with a cut support: fitted.c. Compiled once for each instruction set.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "loops.h"
+#include "wall.h"
 
 /* Copies the nodes under a tile. */
-MPSI_INLINE void gather_tile(const mps_mpm *mpm, const mpsi_cells *cells, int dim,
-                             mpsi_node *tile) {
-  for (int k = 0; k < (dim == 3 ? MPSI_TILE_SIDE : 1); k++)
-    for (int j = 0; j < MPSI_TILE_SIDE; j++) {
+MPSI_INLINE void gather_tile(const mps_mpm *mpm, const mpsi_cells *cells, mpsi_node *tile) {
+  const int low = cells->low[0], high = cells->high[0];
+  const int middle = high < MPSI_SIDE ? high : low > MPSI_SIDE ? low : MPSI_SIDE;
+  for (int k = cells->low[2]; k < cells->high[2]; k++)
+    for (int j = cells->low[1]; j < cells->high[1]; j++) {
+      mpsi_node *own = mpm->node + mpsi_node_under(mpm, cells, 0, j, k);
+      mpsi_node *next = mpm->node + mpsi_node_under(mpm, cells, MPSI_SIDE, j, k);
       mpsi_node *to = tile + mpsi_tile_index(0, j, k);
-      memcpy(to, mpm->node + mpsi_node_under(mpm, cells, 0, j, k), MPSI_SIDE * sizeof *to);
-      memcpy(to + MPSI_SIDE, mpm->node + mpsi_node_under(mpm, cells, MPSI_SIDE, j, k),
-             (MPSI_TILE_SIDE - MPSI_SIDE) * sizeof *to);
+      for (int i = low; i < middle; i++) mpsi_put(to[i], mpsi_get(own[i]));
+      for (int i = middle; i < high; i++) mpsi_put(to[i], mpsi_get(next[i - MPSI_SIDE]));
     }
 }
 
-/* Velocity (motion[0], lanes 1 to 3) and its derivatives by x, y, z, by factors: along each row the
- * sums of w v and w s_x v, then across the rows. */
-MPSI_INLINE void gather_full(int dim, int spline, double scale, const mpsi_places *places, int k,
-                             const mpsi_node *tile, double (*motion)[4]) {
-  mpsi_vec w[MPSI_ROW], ws[MPSI_ROW], zero = {0.0};
-  mpsi_vec all = zero, by_x = zero, by_y = zero, by_z = zero;
-  mpsi_row_weights(spline, places->t[k], w, ws);
+/* Velocity (motion[0], lanes 1 to 3) and its derivatives by x, y, z, by factors: sums of the rows
+ * by their weights across, w and w s, node by node, and at last along x. */
+MPSI_INLINE void gather_full(int dim, int spline, double scale, const mpsi_places *places,
+                             const mpsi_rows *rows, int k, const mpsi_node *tile,
+                             double (*motion)[4]) {
+  mpsi_vec sum[3][MPSI_ROW] = {{{0.0}}}; /* by w of y and z, by w s of y, by w s of z */
   tile += places->first[k];
   for (int plane = 0; plane <= (dim == 3 ? spline : 0); plane++) {
-    mpsi_vec p = zero, px = zero, py = zero;
-    MPSI_UNROLL for (int j = 0; j <= spline; j++) {
-      const double *row = tile[mpsi_tile_index(0, j, plane)];
-      mpsi_vec sum = zero, slope = zero;
-      MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
-        const mpsi_vec node = mpsi_get_row(row + 4 * MPSI_WIDE * v);
-        sum += w[v] * node;
-        slope += ws[v] * node;
+    MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
+      mpsi_vec value = {0.0}, slope = {0.0};
+      MPSI_UNROLL for (int j = 0; j <= spline; j++) {
+        const mpsi_vec node = mpsi_get_row(tile[mpsi_tile_index(0, j, plane)] + 4 * MPSI_WIDE * v);
+        value += places->w[0][j][k] * node;
+        slope += places->ws[0][j][k] * node;
       }
-      const double wy = places->w[0][j][k], wys = places->ws[0][j][k];
-      p += wy * sum;
-      px += wy * slope;
-      py += wys * sum;
+      if (dim == 2) {
+        sum[0][v] = value, sum[1][v] = slope;
+        continue;
+      }
+      const double wz = places->w[1][plane][k], wzs = places->ws[1][plane][k];
+      sum[0][v] += wz * value;
+      sum[1][v] += wz * slope;
+      sum[2][v] += wzs * value;
     }
-    if (dim == 2) {
-      all = p, by_x = px, by_y = py;
-      continue;
-    }
-    const double wz = places->w[1][plane][k], wzs = places->ws[1][plane][k];
-    all += wz * p;
-    by_x += wz * px;
-    by_y += wz * py;
-    by_z += wzs * p;
   }
-  mpsi_put(motion[0], mpsi_fold(all));
-  mpsi_put(motion[1], scale * mpsi_fold(by_x));
-  mpsi_put(motion[2], scale * mpsi_fold(by_y));
-  if (dim == 3) mpsi_put(motion[3], scale * mpsi_fold(by_z));
+  mpsi_vec w[MPSI_ROW], ws[MPSI_ROW], all[4] = {{0.0}};
+  mpsi_weights_along(spline, places, rows, k, w, ws);
+  MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
+    all[0] += w[v] * sum[0][v];
+    all[1] += ws[v] * sum[0][v];
+    for (int d = 2; d <= dim; d++) all[d] += w[v] * sum[d - 1][v];
+  }
+  mpsi_put(motion[0], mpsi_fold(all[0]));
+  for (int d = 1; d <= dim; d++) mpsi_put(motion[d], scale * mpsi_fold(all[d]));
+}
+
+/* The same at the wall across `axis`. */
+MPSI_INLINE void gather_at_wall(const mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
+                                double scale, const mpsi_places *places, int axis, int k,
+                                const mpsi_node *tile, double (*motion)[4]) {
+  mpsi_wall wall;
+  double across[4][4];
+  mpsi_wall_places(mpm, cells, dim, spline, places, k, k + 1, axis, MPSI_WALL_SLOPE, &wall);
+  gather_full(dim, spline, scale, &wall.places, &wall.rows, 0, tile, across);
+  mpsi_wall_places(mpm, cells, dim, spline, places, k, k + 1, axis, MPSI_WALL_ALONG, &wall);
+  gather_full(dim, spline, scale, &wall.places, &wall.rows, 0, tile, motion);
+  memcpy(motion[0], across[0], sizeof across[0]);
+  memcpy(motion[1 + axis], across[1 + axis], sizeof across[0]);
 }
 
 /* The first `n` (at most 4) values of a vector. */
@@ -87,12 +100,14 @@ MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cells *cells, int geometry, int 
       for (int c = 0; c < dim && d > 0; c++)
         store_some(p->L[dim * c + d - 1] + at, a[1 + c], n - k);
       for (int c = 0; c < dim && d == 0; c++) {
+        const int reach = c == 0 ? 3 : spline; /* see widen_use in layout.c */
         const mpsi_quad x = mpsi_get_some(p->x[c] + at, n - k), to = x + mpm->dt * a[1 + c];
         const mpsi_quad X = mpsi_from_block(mpm, cells, c, to);
         const double corner = (double)cells->at[c] * MPSI_SIDE;
         const mpsi_mask good =
             (X >= (double)mpm->low[c] - corner) & (X <= (double)mpm->high[c] - corner);
-        const mpsi_mask here = (X >= first) & (X < first + (MPSI_SIDE + 2));
+        const mpsi_mask here =
+            (X >= first + cells->low[c]) & (X < first + (cells->high[c] - reach));
         outside |= there & ~good;
         left |= there & ~here;
         store_some(p->v[c] + at, a[1 + c], n - k);
@@ -176,12 +191,17 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cells *cells, const mpsi_worker *w
   double motion[MPSI_CHUNK][4][4] __attribute__((aligned(64)));
   mpsi_find_places(mpm, cells, dim, spline, begin, n, &places);
   if (mpm->stencil) memcpy(mpm->stencil + begin, places.first, (size_t)n * sizeof *mpm->stencil);
-  bool full = true;
+  const mpsi_node *tile = (const mpsi_node *)worker->tile;
+  uint32_t state = 0;
   for (int k = 0; k < n; k++) {
-    if (cells->cut && (k == 0 || places.first[k] != places.first[k - 1]))
-      full = mpsi_full_support(worker, dim, spline, places.first[k]);
-    if (full)
-      gather_full(dim, spline, scale, &places, k, (const mpsi_node *)worker->tile, motion[k]);
+    const int32_t first = places.first[k];
+    if (cells->cut && (k == 0 || first != places.first[k - 1]))
+      state = mpsi_support_state(worker, dim, spline, first);
+    const int axis = state ? mpsi_wall_axis(mpm, cells, dim, spline, state, first) : -1;
+    if (!state)
+      gather_full(dim, spline, scale, &places, NULL, k, tile, motion[k]);
+    else if (axis >= 0)
+      gather_at_wall(mpm, cells, dim, spline, scale, &places, axis, k, tile, motion[k]);
     else
       MPSI_LEVELLED(mpsi_gather_fitted)(mpm, cells, worker, begin + k, motion[k]);
   }
@@ -198,7 +218,7 @@ MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry,
   cells->refused = NULL;
   cells->bad = -1;
   cells->speed = 0.0;
-  gather_tile(mpm, cells, mpsi_dim_of(geometry), worker->tile);
+  gather_tile(mpm, cells, worker->tile);
   if (cells->cut) mpsi_mpm_find_states(mpm, cells, worker);
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;

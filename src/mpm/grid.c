@@ -20,8 +20,9 @@ void mpsi_mpm_clear_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
 /* Nodes that only particles with full supports reach: the force is in the momentum. */
 static void update_free(mps_mpm *mpm, mpsi_node *node) {
   for (int k = 0; k < mpm->own; k++) {
-    const double m = node[k][MPSI_MASS];
-    for (int c = MPSI_VECTOR; c < 4; c++) node[k][c] = m > 0.0 ? node[k][c] / m : 0.0;
+    if (node[k][MPSI_MASS] == 0.0) continue; /* no particle near, as most nodes of an edge block */
+    const double inverse = 1.0 / node[k][MPSI_MASS];
+    for (int c = MPSI_VECTOR; c < 4; c++) node[k][c] *= inverse;
   }
 }
 

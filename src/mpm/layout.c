@@ -109,6 +109,16 @@ static void place_block(const mps_mpm *mpm, const range *r, uint64_t block, mpsi
   find_edge(mpm, cells);
 }
 
+/* Widens the part of the tile in use by a stencil, and by a cell to either side. */
+static void widen_use(const mps_mpm *mpm, uint64_t within, mpsi_cells *cells) {
+  for (int c = 0; c < mpm->dim; c++, within /= MPSI_SIDE) {
+    const int32_t low = (int32_t)(within % MPSI_SIDE);
+    const int32_t high = low + 3 + mpsi_reach(mpm, c);
+    if (low < cells->low[c]) cells->low[c] = low;
+    if (high > cells->high[c]) cells->high[c] = high;
+  }
+}
+
 /* Blocks of the sorted keys; the count alone where `cells` is NULL. */
 static int64_t make_cells(const mps_mpm *mpm, const mpsi_radix *key, const range *r,
                           mpsi_cells *cells) {
@@ -116,13 +126,17 @@ static int64_t make_cells(const mps_mpm *mpm, const mpsi_radix *key, const range
   int64_t count = 0;
   for (int64_t k = 0; k < mpm->count; k++) {
     const uint64_t block = key[k].key / own;
-    if (k > 0 && block == key[k - 1].key / own) continue;
-    if (cells) {
-      if (count > 0) cells[count - 1].end = k;
-      cells[count] = (mpsi_cells){.begin = k, .end = mpm->count, .bad = -1};
-      place_block(mpm, r, block, &cells[count]);
+    if (k == 0 || block != key[k - 1].key / own) {
+      if (cells) {
+        if (count > 0) cells[count - 1].end = k;
+        cells[count] = (mpsi_cells){.begin = k, .end = mpm->count, .bad = -1};
+        for (int c = 0; c < 3; c++)
+          cells[count].low[c] = c < mpm->dim ? MPSI_TILE_SIDE : 0, cells[count].high[c] = 1;
+        place_block(mpm, r, block, &cells[count]);
+      }
+      count++;
     }
-    count++;
+    if (cells) widen_use(mpm, key[k].key % own, &cells[count - 1]);
   }
   return count;
 }
@@ -221,7 +235,11 @@ mps_status mpsi_mpm_place_blocks(mps_mpm *mpm, const char *function, int64_t cou
   for (int64_t k = 0; k < count; k++) {
     const int64_t end = k + 1 < count ? block[k + 1][0] : mpm->count;
     mpm->cells[k] = (mpsi_cells){.begin = block[k][0], .end = end, .bad = -1};
-    for (int c = 0; c < 3; c++) mpm->cells[k].at[c] = (int32_t)block[k][1 + c];
+    for (int c = 0; c < 3; c++) {
+      mpm->cells[k].at[c] = (int32_t)block[k][MPSI_BLOCK_AT + c];
+      mpm->cells[k].low[c] = (int32_t)block[k][MPSI_BLOCK_LOW + c];
+      mpm->cells[k].high[c] = (int32_t)block[k][MPSI_BLOCK_HIGH + c];
+    }
     find_edge(mpm, &mpm->cells[k]);
   }
   return build_nodes(mpm, count) ? MPS_OK : no_room(mpm, function, count);

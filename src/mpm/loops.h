@@ -121,12 +121,32 @@ MPSI_INLINE void mpsi_row_weights(int spline, double t, mpsi_vec *w, mpsi_vec *w
 
 /* ---- chunks of particles --------------------------------------------------------------------- */
 
+#define MPSI_SEGMENT 16 /* particles of one stencil at most that are summed at once */
+
 /* Where the particles of a chunk are in the tile. */
 typedef struct mpsi_places {
-  double t[MPSI_CHUNK];                             /* along x, from the lowest node */
+  double t[3][MPSI_CHUNK];                          /* from the lowest node */
   double w[2][4][MPSI_CHUNK], ws[2][4][MPSI_CHUNK]; /* along y, z: w, w s */
   int32_t first[MPSI_CHUNK];                        /* lowest node */
 } mpsi_places;
+
+/* Weights w and w s along x, where they are not those of t. */
+typedef struct mpsi_rows {
+  double w[MPSI_SEGMENT][4], ws[MPSI_SEGMENT][4];
+} mpsi_rows;
+
+/* The weights of particle k along x. */
+MPSI_INLINE void mpsi_weights_along(int spline, const mpsi_places *places, const mpsi_rows *rows,
+                                    int k, mpsi_vec *w, mpsi_vec *ws) {
+  if (!rows) {
+    mpsi_row_weights(spline, places->t[0][k], w, ws);
+    return;
+  }
+  for (int v = 0; v < MPSI_ROW; v++) {
+    w[v] = mpsi_by_node(rows->w[k], v * MPSI_WIDE);
+    ws[v] = mpsi_by_node(rows->ws[k], v * MPSI_WIDE);
+  }
+}
 
 /* The first `n` values, if fewer than four with zeros: what comes after may be at work elsewhere.
  */
@@ -177,9 +197,8 @@ MPSI_INLINE void mpsi_find_places(const mps_mpm *mpm, const mpsi_cells *cells, i
                                           : __builtin_convertvector(X - 0.5, mpsi_index);
       const mpsi_quad t = X - __builtin_convertvector(base, mpsi_quad);
       first += base * stride;
-      if (c == 0)
-        mpsi_put(out->t + k, t);
-      else
+      mpsi_put(out->t[c] + k, t);
+      if (c > 0)
         mpsi_axis_weights(spline, t, (double(*)[MPSI_CHUNK])(out->w[c - 1][0] + k),
                           (double(*)[MPSI_CHUNK])(out->ws[c - 1][0] + k));
     }
@@ -187,18 +206,18 @@ MPSI_INLINE void mpsi_find_places(const mps_mpm *mpm, const mpsi_cells *cells, i
   }
 }
 
-/* Whether no node of the stencil from tile node `first` is outside the domain or in a body. */
-MPSI_INLINE bool mpsi_full_support(const mpsi_worker *worker, int dim, int spline, int32_t first) {
-  const uint32_t mask = spline == 3 ? UINT32_MAX : 0;
+/* The states of the nodes of the stencil from tile node `first`, all bits together: 0 where none is
+ * outside the domain or in a body. */
+MPSI_INLINE uint32_t mpsi_support_state(const mpsi_worker *worker, int dim, int spline,
+                                        int32_t first) {
   uint32_t any = 0;
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
     for (int j = 0; j <= spline; j++) {
-      const uint8_t *state = worker->state + first + mpsi_tile_index(0, j, k);
       uint32_t row;
-      memcpy(&row, state, sizeof row);
-      any |= mask ? row : (uint32_t)(state[0] | state[1] | state[2]);
+      memcpy(&row, worker->state + first + mpsi_tile_index(0, j, k), sizeof row);
+      any |= row;
     }
-  return any == 0;
+  return (any | any >> 8 | any >> 16 | (spline == 3 ? any >> 24 : 0)) & 0xff;
 }
 
 /* ---- fitted.c: particles whose support is cut -------------------------------------------------

@@ -5,7 +5,8 @@
  * of a block lie in a tile of 13 nodes along each axis, which begins at the block's first node: 1
  * node that only a particle which has left to the lower side uses, 8, 1 for one that has left to
  * the upper side, and the other 3 of a cubic stencil. So the particles are sorted anew only when
- * one has moved a whole cell beyond its block. The tile lies over the block's own nodes and its
+ * one has moved a whole cell beyond its block, or beyond the cells of it that had particles: the
+ * rest of the tile is not worked on. The tile lies over the block's own nodes and its
  * neighbours at +x, +y, +x+y (and so on at +z).
  *
  * Each task sums the particles of one block of cells into a tile of its own and adds that to the
@@ -34,10 +35,13 @@
 typedef struct mpsi_cells {
   int64_t begin, end;              /* particles */
   int32_t at[3];                   /* block coordinates: its first node is at * MPSI_SIDE */
+  int32_t low[3], high[3];         /* its stencils use tile nodes low to high - 1 of each axis */
   int32_t to[MPSI_CORNERS];        /* blocks of nodes under the tile: own, +x, +y, +x+y, ... */
   bool edge;                       /* some node of the tile is outside the domain */
-  bool cut;                        /* some node of the tile is outside, or inside a body */
+  bool inside;                     /* some node that its stencils may use is in a body */
+  bool cut;                        /* one of both: some particle may have a cut support */
   bool split;                      /* forces are summed apart from momenta: see mpsi_nodes */
+  bool apart;                      /* the tile of forces is in use: split, or at an edge */
   bool left;                       /* a particle is more than a cell outside the block */
   int32_t first_meeting, meetings; /* by body */
   const mps_material *refused;     /* a law that has refused particles of the block, or NULL */
@@ -48,11 +52,12 @@ typedef struct mpsi_cells {
 /* A block of nodes. Its nodes are node[mpsi_first_node(g)] and on, x fastest. */
 typedef struct mpsi_nodes {
   int32_t at[3];
-  int32_t side;    /* slot of its side sums, or -1: only particles with full supports reach it */
-  int32_t near;    /* slot of its inside masks, or -1: no body near */
-  bool split;      /* side has the forces: the velocity before them is needed */
-  bool inside;     /* some node is in a body */
-  uint32_t bodies; /* bit b: a block of cells whose tile covers it may meet body b */
+  int32_t side; /* slot of its side sums, or -1: only particles with full supports reach it */
+  int32_t near; /* slot of its inside masks, or -1: no body near */
+  bool split;   /* side has the forces: the velocity before them is needed */
+  bool inside;  /* some node is in a body: */
+  int32_t low[3], high[3]; /* they are within low to high - 1 */
+  uint32_t bodies;         /* bit b: a block of cells whose tile covers it may meet body b */
   int32_t first_touch, touches;
   int32_t first_held, holds; /* of the list of mpsi_held */
 } mpsi_nodes;
@@ -154,7 +159,7 @@ typedef struct mpsi_room {
 /* What a worker needs for the block it works on: tiles of MPSI_TILE_SIDE^dim. */
 typedef struct mpsi_worker {
   void *memory;
-  mpsi_node *tile, *force; /* force: of split blocks */
+  mpsi_node *tile, *force; /* force, and excess mass: where they are apart */
   uint32_t *inside;        /* bit b: in body b */
   uint8_t *state;          /* MPSI_... bits, 0: free */
 } mpsi_worker;
@@ -246,6 +251,10 @@ static inline int64_t mpsi_own_cell(const mps_mpm *mpm, int c, double X) {
   const int64_t cell = (int64_t)floor(X);
   return cell < mpm->high[c] ? cell : mpm->high[c] - 1;
 }
+
+/* Nodes of a stencil beyond its lowest, as the loops take them: rows along x are read and written
+ * four nodes at a time whatever the spline. */
+static inline int32_t mpsi_reach(const mps_mpm *mpm, int c) { return c == 0 ? 3 : mpm->def.spline; }
 
 /* The block that a particle is sorted to, by the lowest node of its stencil. */
 static inline int64_t mpsi_block_of(int64_t base) {

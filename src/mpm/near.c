@@ -104,6 +104,7 @@ static void find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
   (void)worker;
   mpsi_nodes *nodes = &mpm->nodes[g];
   nodes->inside = false;
+  for (int c = 0; c < 3; c++) nodes->low[c] = MPSI_SIDE, nodes->high[c] = 0;
   if (nodes->near < 0) return;
   uint32_t *inside = mpm->inside + mpsi_first_node(mpm, nodes->near);
   memset(inside, 0, (size_t)mpm->own * sizeof *inside);
@@ -124,6 +125,10 @@ static void find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
       for (int c = 0; c < mpm->dim; c++) touch[k].normal[c] = foot.normal[c];
       inside[k] |= UINT32_C(1) << b;
       nodes->inside = true;
+      for (int c = 0; c < 3; c++) {
+        if (place[c] < nodes->low[c]) nodes->low[c] = place[c];
+        if (place[c] >= nodes->high[c]) nodes->high[c] = place[c] + 1;
+      }
     }
   }
 }
@@ -132,15 +137,20 @@ static void find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
 static void mark_reached(mps_mpm *mpm, int64_t b, int32_t worker) {
   (void)worker;
   const mpsi_cells *cells = &mpm->cells[b];
-  if (!cells->cut || cells->meetings == 0) return;
-  int last[3] = {-1, -1, -1};
+  if (!cells->inside || cells->meetings == 0) return;
+  bool seen[MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE];
+  memset(seen, 0, (size_t)mpm->tile * sizeof *seen);
   for (int64_t k = cells->begin; k < cells->end; k++) {
     int at[3] = {0};
-    for (int c = 0; c < mpm->dim; c++)
-      at[c] = (int)(mpsi_own_cell(mpm, c, mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k])) -
-                    (int64_t)cells->at[c] * MPSI_SIDE);
-    if (memcmp(at, last, sizeof at) == 0) continue;
-    memcpy(last, at, sizeof at);
+    for (int c = 0; c < mpm->dim; c++) {
+      /* counted from the block: not negative, so that truncation is floor */
+      const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE, last = mpm->high[c] - 1 - first;
+      const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k]) - (double)first;
+      at[c] = X < (double)last ? (int)X : (int)last;
+    }
+    bool *here = &seen[mpsi_tile_index(at[0], at[1], at[2])];
+    if (*here) continue;
+    *here = true;
     for (int q = 0; q < 1 << mpm->dim; q++) {
       const int64_t node =
           mpsi_node_under(mpm, cells, at[0] + (q & 1), at[1] + (q >> 1 & 1), at[2] + (q >> 2));
@@ -153,36 +163,93 @@ static void mark_reached(mps_mpm *mpm, int64_t b, int32_t worker) {
 /* ---- cut and split blocks ---------------------------------------------------------------------
  */
 
+/* Nodes low to high - 1 of a tile. */
+typedef struct box {
+  int low[3], high[3];
+} box;
+
+static bool is_empty(const box *a) {
+  return a->low[0] >= a->high[0] || a->low[1] >= a->high[1] || a->low[2] >= a->high[2];
+}
+
+static box common(const box *a, const box *b) {
+  box out;
+  for (int c = 0; c < 3; c++) {
+    out.low[c] = a->low[c] > b->low[c] ? a->low[c] : b->low[c];
+    out.high[c] = a->high[c] < b->high[c] ? a->high[c] : b->high[c];
+  }
+  return out;
+}
+
+/* Of the nodes that the block's stencils may use, those of the node block at corner q of the tile
+ * from its `low` to its `high`. */
+static box box_under(const mpsi_cells *cells, int q, const int32_t *low, const int32_t *high) {
+  box used, out;
+  for (int c = 0; c < 3; c++) {
+    const int first = q >> c & 1 ? MPSI_SIDE : 0;
+    used.low[c] = cells->low[c], used.high[c] = cells->high[c];
+    out.low[c] = first + low[c], out.high[c] = first + high[c];
+  }
+  return common(&used, &out);
+}
+
+/* Where the stencils that have a node in a body may have nodes; empty where none has. */
+static box near_bodies(const mps_mpm *mpm, const mpsi_cells *cells) {
+  const int reach = mpm->def.spline;
+  box out = {{MPSI_TILE_SIDE, MPSI_TILE_SIDE, MPSI_TILE_SIDE}, {0}};
+  for (int q = 0; q < 1 << mpm->dim; q++) {
+    const mpsi_nodes *nodes = &mpm->nodes[cells->to[q]];
+    const box in = box_under(cells, q, nodes->low, nodes->high);
+    for (int c = 0; c < 3 && nodes->inside && !is_empty(&in); c++) {
+      if (in.low[c] - reach < out.low[c]) out.low[c] = in.low[c] - reach;
+      if (in.high[c] + reach > out.high[c]) out.high[c] = in.high[c] + reach;
+    }
+  }
+  return out;
+}
+
+/* Slots of sides, and what is split, of the blocks of nodes under a cut block of cells. */
+static void mark_cut(mps_mpm *mpm, const mpsi_cells *cells, const box *near, bool finds) {
+  static const int32_t low[3] = {0}, high[3] = {MPSI_SIDE, MPSI_SIDE, MPSI_SIDE};
+  const bool all =
+      mpm->def.transfer == MPS_TRANSFER_WEIGHT || mpm->flip > 0.0 || (finds && cells->edge);
+  bool rough = false;
+  for (int32_t k = 0; cells->inside && k < cells->meetings; k++)
+    rough = rough || mpm->body[mpm->meeting[cells->first_meeting + k].body]->def.friction > 0.0;
+  for (int q = 0; q < 1 << mpm->dim; q++) {
+    mpsi_nodes *nodes = &mpm->nodes[cells->to[q]];
+    box under = box_under(cells, q, low, high);
+    under = common(&under, near);
+    const bool touched = !is_empty(&under);
+    if (!touched && !cells->edge && !mpm->standard) continue;
+    if (nodes->side < 0) nodes->side = (int32_t)mpm->side_count++;
+    nodes->split = nodes->split || all || (touched && rough);
+  }
+}
+
 /* Cut: some particle may have a cut support, or, with the standard scheme, one without a fit.
  * Split: friction needs the velocity before the forces; so does FLIP, and the transfer by weights,
  * which divides momentum and force by different masses. */
 static mps_status find_cut(mps_mpm *mpm, const char *function) {
-  const bool by_weight = mpm->def.transfer == MPS_TRANSFER_WEIGHT;
   bool finds = false; /* an absorbing wall asks for the forces of its first step */
   for (int32_t k = 0; k < MPSI_WALLS && !(mpm->def.settle > 0.0); k++)
     finds = finds || mpm->hold[k].finds;
-  const int corners = 1 << mpm->dim;
   for (int64_t g = 0; g < mpm->node_count; g++)
     mpm->nodes[g].side = -1, mpm->nodes[g].split = false;
   mpm->side_count = 0;
   for (int64_t b = 0; b < mpm->cell_count; b++) {
     mpsi_cells *cells = &mpm->cells[b];
-    bool inside = false;
-    for (int q = 0; q < corners; q++) inside = inside || mpm->nodes[cells->to[q]].inside;
-    bool rough = by_weight || mpm->flip > 0.0 || (finds && cells->edge);
-    for (int32_t k = 0; inside && k < cells->meetings; k++)
-      rough = rough || mpm->body[mpm->meeting[cells->first_meeting + k].body]->def.friction > 0.0;
-    cells->cut = cells->edge || inside || mpm->standard;
-    for (int q = 0; q < corners && cells->cut; q++) {
-      mpsi_nodes *nodes = &mpm->nodes[cells->to[q]];
-      if (nodes->side < 0) nodes->side = (int32_t)mpm->side_count++;
-      nodes->split = nodes->split || rough;
-    }
+    const box near = near_bodies(mpm, cells);
+    cells->inside = !is_empty(&near);
+    cells->cut = cells->edge || cells->inside || mpm->standard;
+    if (cells->cut) mark_cut(mpm, cells, &near, finds);
   }
   for (int64_t b = 0; b < mpm->cell_count; b++) {
-    mpm->cells[b].split = false;
-    for (int q = 0; q < corners; q++)
-      mpm->cells[b].split = mpm->cells[b].split || mpm->nodes[mpm->cells[b].to[q]].split;
+    mpsi_cells *cells = &mpm->cells[b];
+    cells->split = false;
+    for (int q = 0; q < 1 << mpm->dim; q++)
+      cells->split = cells->split || mpm->nodes[cells->to[q]].split;
+    cells->apart = cells->split || cells->edge;
   }
   if (!mpsi_room_ensure(mpm->context, &mpm->side_room, mpm->side_count * mpm->own,
                         sizeof *mpm->side))
@@ -206,23 +273,47 @@ mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function) {
 /* ---- states under a tile ----------------------------------------------------------------------
  */
 
+/* Nodes low to high - 1 of the tile along axis c are in the domain. */
+static void domain_under(const mps_mpm *mpm, const mpsi_cells *cells, int c, int *low, int *high) {
+  const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
+  *low = mpm->low[c] > first ? (int)(mpm->low[c] - first) : 0;
+  *high = mpm->high[c] < first + MPSI_TILE_SIDE ? (int)(mpm->high[c] - first) + 1 : MPSI_TILE_SIDE;
+}
+
+static void mark_outside(const mps_mpm *mpm, const mpsi_cells *cells, uint8_t *state) {
+  int low[3] = {0}, high[3] = {1, 1, 1};
+  for (int c = 0; c < mpm->dim; c++) domain_under(mpm, cells, c, &low[c], &high[c]);
+  memset(state, MPSI_OUTSIDE, (size_t)mpm->tile);
+  for (int k = low[2]; k < high[2]; k++)
+    for (int j = low[1]; j < high[1] && low[0] < high[0]; j++)
+      memset(state + mpsi_tile_index(low[0], j, k), mpm->standard ? MPSI_PLAIN : 0,
+             (size_t)(high[0] - low[0]));
+}
+
+/* Of the nodes of a block under the corner q of the tile. */
+static void mark_inside(const mps_mpm *mpm, const mpsi_nodes *nodes, int q, mpsi_worker *worker) {
+  int low[3] = {0}, size[3] = {1, 1, 1};
+  for (int c = 0; c < mpm->dim; c++) {
+    low[c] = q >> c & 1 ? MPSI_SIDE : 0;
+    size[c] = low[c] ? MPSI_TILE_SIDE - MPSI_SIDE : MPSI_SIDE;
+  }
+  const int64_t first = mpsi_first_node(mpm, nodes->near);
+  for (int k = 0; k < size[2]; k++)
+    for (int j = 0; j < size[1]; j++)
+      for (int i = 0; i < size[0]; i++) {
+        const int64_t at = first + (k * MPSI_SIDE + j) * MPSI_SIDE + i;
+        const int t = mpsi_tile_index(low[0] + i, low[1] + j, low[2] + k);
+        if (!mpm->inside[at]) continue;
+        worker->inside[t] = mpm->inside[at];
+        worker->state[t] |= mpm->reached[at] ? MPSI_INSIDE | MPSI_REACHED : MPSI_INSIDE;
+      }
+}
+
 void mpsi_mpm_find_states(const mps_mpm *mpm, const mpsi_cells *cells, mpsi_worker *worker) {
-  for (int t = 0; t < mpm->tile; t++) {
-    int place[3];
-    bool outside = false;
-    mpsi_unravel(t, MPSI_TILE_SIDE, place);
-    for (int c = 0; c < mpm->dim; c++) {
-      const int64_t n = (int64_t)cells->at[c] * MPSI_SIDE + place[c];
-      outside = outside || n < mpm->low[c] || n > mpm->high[c];
-    }
-    worker->inside[t] = 0;
-    worker->state[t] = outside ? MPSI_OUTSIDE : mpm->standard ? MPSI_PLAIN : 0;
-    const int64_t node = mpsi_node_under(mpm, cells, place[0], place[1], place[2]);
-    const mpsi_nodes *nodes = &mpm->nodes[node / mpm->own];
-    if (!nodes->inside) continue;
-    const int64_t at = mpsi_first_node(mpm, nodes->near) + node % mpm->own;
-    worker->inside[t] = mpm->inside[at];
-    if (mpm->inside[at])
-      worker->state[t] |= mpm->reached[at] ? MPSI_INSIDE | MPSI_REACHED : MPSI_INSIDE;
+  mark_outside(mpm, cells, worker->state);
+  memset(worker->inside, 0, (size_t)mpm->tile * sizeof *worker->inside);
+  for (int q = 0; q < 1 << mpm->dim; q++) {
+    const mpsi_nodes *nodes = &mpm->nodes[cells->to[q]];
+    if (nodes->inside) mark_inside(mpm, nodes, q, worker);
   }
 }

@@ -1,12 +1,11 @@
 /* p2g.c - particles to nodes, seed B (23)-(25), (39), one block of cells at a time, for particles
- * with a full support; the others go to fitted.c. Compiled once for each instruction set.
+ * with a full support or at one wall; the others go to fitted.c. Compiled once for each
+ * instruction set.
  *
  * Consecutive particles with the same stencil, a segment, are summed in registers before they are
  * added to the tile: particles are sorted by their stencils, and nearly sorted ones do as well.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "loops.h"
-
-#define SEGMENT 16 /* particles at most */
+#include "wall.h"
 
 /* What a particle gives to its nodes: w (part[0] + part[1] s_x + part[2] s_y + part[3] s_z). */
 typedef struct parts {
@@ -59,29 +58,35 @@ MPSI_INLINE void find_parts(const mps_mpm *mpm, int geometry, int spline, bool s
   }
 }
 
-/* Adds particles [begin, end) of a chunk, all of one stencil, to a tile. */
-MPSI_INLINE void add_segment(int dim, int spline, const mpsi_places *places, int begin, int end,
-                             double (*part)[4][4], mpsi_node *tile) {
-  mpsi_vec w[SEGMENT][MPSI_ROW], ws[SEGMENT][MPSI_ROW];
-  for (int k = begin; k < end; k++)
-    mpsi_row_weights(spline, places->t[k], w[k - begin], ws[k - begin]);
+/* Adds particles [begin, end) of a chunk, all of one stencil, to a tile. What they give is spread
+ * along x once, and from there to each row by that row's weights alone. */
+MPSI_INLINE void add_segment(int dim, int spline, const mpsi_places *places, const mpsi_rows *rows,
+                             int begin, int end, double (*part)[4][4], mpsi_node *tile) {
+  mpsi_vec along[MPSI_SEGMENT][3][MPSI_ROW]; /* by w of y and z, by w s of y, by w s of z */
+  for (int k = begin; k < end; k++) {
+    mpsi_vec w[MPSI_ROW], ws[MPSI_ROW], a[4];
+    mpsi_weights_along(spline, places, rows, k, w, ws);
+    for (int d = 0; d <= dim; d++) a[d] = mpsi_spread(mpsi_get(part[k][d]));
+    MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
+      along[k - begin][0][v] = w[v] * a[0] + ws[v] * a[1];
+      for (int d = 2; d <= dim; d++) along[k - begin][d - 1][v] = w[v] * a[d];
+    }
+  }
   tile += places->first[begin];
   for (int plane = 0; plane <= (dim == 3 ? spline : 0); plane++) {
     mpsi_vec sum[4][MPSI_ROW] = {{{0.0}}};
     for (int k = begin; k < end; k++) {
-      mpsi_vec a = mpsi_spread(mpsi_get(part[k][0])), d = mpsi_spread(mpsi_get(part[k][1]));
-      mpsi_vec e = mpsi_spread(mpsi_get(part[k][2]));
-      if (dim == 3) {
-        const double wz = places->w[1][plane][k], wzs = places->ws[1][plane][k];
-        a = wz * a + wzs * mpsi_spread(mpsi_get(part[k][3]));
-        d *= wz;
-        e *= wz;
-      }
-      MPSI_UNROLL for (int j = 0; j <= spline; j++) {
-        const double wy = places->w[0][j][k], wys = places->ws[0][j][k];
-        const mpsi_vec value = wy * a + wys * e, slope = wy * d;
-        MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) sum[j][v] +=
-            w[k - begin][v] * value + ws[k - begin][v] * slope;
+      MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
+        mpsi_vec value = along[k - begin][0][v], slope = along[k - begin][1][v];
+        if (dim == 3) {
+          const double wz = places->w[1][plane][k], wzs = places->ws[1][plane][k];
+          value = wz * value + wzs * along[k - begin][2][v];
+          slope *= wz;
+        }
+        MPSI_UNROLL for (int j = 0; j <= spline; j++) {
+          sum[j][v] += places->w[0][j][k] * value; /* apart: each is one fused operation */
+          sum[j][v] += places->ws[0][j][k] * slope;
+        }
       }
     }
     MPSI_UNROLL for (int j = 0; j <= spline; j++) {
@@ -94,29 +99,68 @@ MPSI_INLINE void add_segment(int dim, int spline, const mpsi_places *places, int
   }
 }
 
+/* The same where a wall across `axis` cuts the stencil: momentum to the tile, force and excess mass
+ * (see mpsi_node) to the tile of forces. Weights of the derivatives differ across and along it. */
+MPSI_INLINE void add_at_wall(const mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
+                             int geometry, int spline, const mpsi_places *places, int axis,
+                             int64_t chunk, int begin, int end) {
+  const int dim = mpsi_dim_of(geometry), n = end - begin;
+  mpsi_wall wall;
+  parts part, other;
+  find_parts(mpm, geometry, spline, true, chunk + begin, n, &part);
+  mpsi_wall_places(mpm, cells, dim, spline, places, begin, end, axis, MPSI_WALL_VALUE, &wall);
+  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, part.sum, worker->tile);
+  memset(other.force, 0, (size_t)n * sizeof *other.force);
+  for (int k = 0; k < n; k++) {
+    const double m = mpm->p.m[chunk + begin + k];
+    other.force[k][0][MPSI_EXCESS] = m * wall.mass[k];
+    for (int d = 0; d < dim; d++)
+      if (d != axis) memcpy(other.force[k][1 + d], part.force[k][1 + d], sizeof(mpsi_node));
+    for (int d = 0; d < dim; d++)
+      if (d != axis) memset(part.force[k][1 + d], 0, sizeof(mpsi_node));
+    part.force[k][0][MPSI_EXCESS] = -m;
+  }
+  mpsi_wall_places(mpm, cells, dim, spline, places, begin, end, axis, MPSI_WALL_SLOPE, &wall);
+  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, part.force, worker->force);
+  mpsi_wall_places(mpm, cells, dim, spline, places, begin, end, axis, MPSI_WALL_ALONG, &wall);
+  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, other.force, worker->force);
+}
+
+MPSI_INLINE void clear(const mpsi_cells *cells, mpsi_node *tile) {
+  for (int k = cells->low[2]; k < cells->high[2]; k++)
+    for (int j = cells->low[1]; j < cells->high[1]; j++)
+      for (int i = cells->low[0]; i < cells->high[0]; i++)
+        mpsi_put(tile[mpsi_tile_index(i, j, k)], (mpsi_quad){0.0});
+}
+
 /* Adds the tile to one of the blocks of nodes under it. */
-MPSI_INLINE void flush(const mps_mpm *mpm, const mpsi_cells *cells, int dim, int q,
+MPSI_INLINE void flush(const mps_mpm *mpm, const mpsi_cells *cells, int q,
                        const mpsi_worker *from) {
   const mpsi_nodes *nodes = &mpm->nodes[cells->to[q]];
   mpsi_node *node = mpm->node + mpsi_first_node(mpm, cells->to[q]);
-  mpsi_node *side = nodes->split ? mpm->side + mpsi_first_node(mpm, nodes->side) : NULL;
-  int low[3], size[3];
-  for (int c = 0; c < 3; c++) {
-    low[c] = MPSI_SIDE * (q >> c & 1);
-    size[c] = low[c] ? MPSI_TILE_SIDE - MPSI_SIDE : MPSI_SIDE;
+  mpsi_node *side = nodes->side >= 0 ? mpm->side + mpsi_first_node(mpm, nodes->side) : NULL;
+  int low[3], high[3];
+  for (int c = 0; c < 3; c++) { /* of the tile */
+    const int first = q >> c & 1 ? MPSI_SIDE : 0;
+    low[c] = cells->low[c] > first ? cells->low[c] : first;
+    high[c] = first || cells->high[c] < MPSI_SIDE ? cells->high[c] : MPSI_SIDE;
   }
-  for (int k = 0; k < (dim == 3 ? size[2] : 1); k++)
-    for (int j = 0; j < size[1]; j++) {
-      const int t = mpsi_tile_index(low[0], j + low[1], k + low[2]);
-      const int to = (k * MPSI_SIDE + j) * MPSI_SIDE;
-      for (int i = 0; i < size[0]; i++) {
+  for (int k = low[2]; k < high[2]; k++)
+    for (int j = low[1]; j < high[1]; j++) {
+      const int t = mpsi_tile_index(0, j, k);
+      const int to =
+          ((k % MPSI_SIDE) * MPSI_SIDE + j % MPSI_SIDE) * MPSI_SIDE - (q & 1) * MPSI_SIDE;
+      for (int i = low[0]; i < high[0]; i++) {
         mpsi_quad sum = mpsi_get(from->tile[t + i]);
-        if (cells->split) {
-          const mpsi_quad force = mpsi_get(from->force[t + i]);
-          if (side)
+        if (cells->apart) {
+          mpsi_quad force = mpsi_get(from->force[t + i]);
+          if (nodes->split) {
             mpsi_put(side[to + i], mpsi_get(side[to + i]) + force);
-          else
+          } else {
+            if (side) side[to + i][MPSI_EXCESS] += force[MPSI_EXCESS];
+            force[MPSI_EXCESS] = 0.0;
             sum += mpm->dt * force;
+          }
         }
         mpsi_put(node[to + i], mpsi_get(node[to + i]) + sum);
       }
@@ -134,14 +178,31 @@ MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cells *cells, const mpsi_wor
   else
     find_parts(mpm, geometry, spline, false, begin, n, &part);
   for (int k = 0, end; k < n; k = end) {
-    for (end = k + 1; end < n && end < k + SEGMENT && places.first[end] == places.first[k];) end++;
-    if (cells->cut && !mpsi_full_support(worker, dim, spline, places.first[k])) {
-      for (int f = k; f < end; f++)
+    for (end = k + 1; end < n && end < k + MPSI_SEGMENT && places.first[end] == places.first[k];)
+      end++;
+    const uint32_t state =
+        cells->cut ? mpsi_support_state(worker, dim, spline, places.first[k]) : 0;
+    if (state != 0) {
+      const int axis = mpsi_wall_axis(mpm, cells, dim, spline, state, places.first[k]);
+      if (axis >= 0)
+        add_at_wall(mpm, cells, worker, geometry, spline, &places, axis, begin, k, end);
+      for (int f = k; f < end && axis < 0; f++)
         MPSI_LEVELLED(mpsi_scatter_fitted)(mpm, cells, worker, begin + f);
       continue;
     }
-    add_segment(dim, spline, &places, k, end, part.sum, worker->tile);
-    if (cells->split) add_segment(dim, spline, &places, k, end, part.force, worker->force);
+    add_segment(dim, spline, &places, NULL, k, end, part.sum, worker->tile);
+    if (cells->split) add_segment(dim, spline, &places, NULL, k, end, part.force, worker->force);
+  }
+}
+
+/* Asks the memory for the columns of a chunk. In the plane the few particles of a block end before
+ * the processor has seen that it reads on, and the next block of the colour is elsewhere. */
+MPSI_INLINE void prefetch_chunk(const mpsi_columns *p, int64_t begin, int64_t end) {
+  for (int64_t k = begin; k < end && k < begin + MPSI_CHUNK; k += 8) {
+    for (int c = 0; c < 2; c++) __builtin_prefetch(p->x[c] + k), __builtin_prefetch(p->v[c] + k);
+    for (int c = 0; c < 4; c++) __builtin_prefetch(p->L[c] + k), __builtin_prefetch(p->s[c] + k);
+    __builtin_prefetch(p->V + k);
+    __builtin_prefetch(p->m + k);
   }
 }
 
@@ -156,13 +217,15 @@ MPSI_INLINE void p2g_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry,
     memset(meeting->contacts, 0, sizeof meeting->contacts);
   }
   if (cells->cut) mpsi_mpm_find_states(mpm, cells, worker);
-  memset(worker->tile, 0, (size_t)mpm->tile * sizeof *worker->tile);
-  if (cells->split) memset(worker->force, 0, (size_t)mpm->tile * sizeof *worker->force);
+  clear(cells, worker->tile);
+  if (cells->apart) clear(cells, worker->force);
+  const mpsi_cells *next = dim == 2 && b + 2 < mpm->cell_count ? cells + 2 : NULL;
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int64_t rest = cells->end - k;
+    if (next) prefetch_chunk(&mpm->p, next->begin + (k - cells->begin), next->end);
     p2g_chunk(mpm, cells, worker, geometry, spline, k, rest < MPSI_CHUNK ? (int)rest : MPSI_CHUNK);
   }
-  for (int q = 0; q < 1 << dim; q++) flush(mpm, cells, dim, q, worker);
+  for (int q = 0; q < 1 << dim; q++) flush(mpm, cells, q, worker);
 }
 
 #define DEFINE(g, s, geometry, spline)                                                             \

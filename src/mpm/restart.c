@@ -56,7 +56,11 @@ mps_status mpsi_mpm_get_record(const mps_mpm *mpm, const char *function, mpsi_mp
   for (int64_t k = 0; k < out->blocks; k++) {
     const mpsi_cells *cells = &mpm->cells[k];
     out->block[k][0] = cells->begin;
-    for (int c = 0; c < 3; c++) out->block[k][1 + c] = cells->at[c];
+    for (int c = 0; c < 3; c++) {
+      out->block[k][MPSI_BLOCK_AT + c] = cells->at[c];
+      out->block[k][MPSI_BLOCK_LOW + c] = cells->low[c];
+      out->block[k][MPSI_BLOCK_HIGH + c] = cells->high[c];
+    }
   }
   return MPS_OK;
 }
@@ -163,6 +167,18 @@ mps_status mpsi_mpm_check_record(const mps_mpm *mpm, const char *function, const
 
 #define ROUNDED 1e-6 /* cells */
 
+/* The part of the tile in use: within the tile, and wide enough for a stencil. */
+static bool within_tile(const mps_mpm *mpm, const int64_t *b) {
+  for (int c = 0; c < 3; c++) {
+    const int64_t low = b[MPSI_BLOCK_LOW + c], high = b[MPSI_BLOCK_HIGH + c];
+    const int64_t reach = mpsi_reach(mpm, c);
+    if (c >= mpm->dim ? low != 0 || high != 1
+                      : low < 0 || high > MPSI_SIDE + 2 + reach || high - low <= reach)
+      return false;
+  }
+  return true;
+}
+
 static bool orderly(const mps_mpm *mpm, const mpsi_mpm_record *r) {
   if (r->blocks < 1 || r->blocks > mpm->count || r->block[0][0] != 0) return false;
   for (int64_t k = 0; k < r->blocks; k++) {
@@ -170,6 +186,7 @@ static bool orderly(const mps_mpm *mpm, const mpsi_mpm_record *r) {
     for (int c = 0; c < 3; c++) /* far from where 32 bits end, also of the nodes */
       if (b[1 + c] < -MPSI_NO_WALL || b[1 + c] > MPSI_NO_WALL || (c >= mpm->dim && b[1 + c] != 0))
         return false;
+    if (!within_tile(mpm, b)) return false;
     if (next == b) break;
     int c = 3;
     while (c > 1 && b[c] == next[c]) c--;
@@ -190,9 +207,11 @@ static int place_of(const mps_mpm *mpm, const int64_t *block, bool stale, const 
     const double low = (double)mpm->low[c], high = (double)mpm->high[c];
     if (!(fabs(X) < MPSI_MAX_CELLS && X >= low - ROUNDED && X <= high + ROUNDED)) return -1;
     if (stale) continue;
-    const double local = X - (double)(block[1 + c] * MPSI_SIDE) - first;
-    if (local < -ROUNDED || local > MPSI_SIDE + 2 + ROUNDED) return -1;
-    if (!(local >= 0.0 && local < MPSI_SIDE + 2)) place = 0;
+    const double local = X - (double)(block[MPSI_BLOCK_AT + c] * MPSI_SIDE) - first;
+    const double begin = (double)block[MPSI_BLOCK_LOW + c];
+    const double end = (double)(block[MPSI_BLOCK_HIGH + c] - mpsi_reach(mpm, c));
+    if (local < begin - ROUNDED || local > end + ROUNDED) return -1;
+    if (!(local >= begin && local < end)) place = 0;
   }
   return place;
 }

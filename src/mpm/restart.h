@@ -9,9 +9,10 @@
 
 #define MPSI_MATERIAL_NAME 64 /* bytes, with the terminating zero */
 
-/* A block of cells: its first particle, and where it is. The particles' present places do not tell
- * their blocks: these are those of the last sort. */
-typedef int64_t mpsi_block[4];
+/* A block of cells: its first particle, where it is (3), and the part of its tile in use (low 3,
+ * high 3). The particles' present places do not tell: these are those of the last sort. */
+enum { MPSI_BLOCK_AT = 1, MPSI_BLOCK_LOW = 4, MPSI_BLOCK_HIGH = 7, MPSI_BLOCK = 10 };
+typedef int64_t mpsi_block[MPSI_BLOCK];
 
 /* At a node of an absorbing wall. */
 typedef struct mpsi_dash {

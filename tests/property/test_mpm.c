@@ -160,6 +160,124 @@ static void affine_round_trip(void **state) {
   }
 }
 
+/* What a node should get of the particles by the general fit: mass, momentum; excess mass, force.
+ */
+typedef double node_sums[8];
+
+static void add_by_fit(mps_mpm *mpm, const mpsi_cells *cells, int64_t k, node_sums *sums) {
+  static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+  const mpsi_columns *p = &mpm->p;
+  const int dim = mpm->dim;
+  const double m = p->m[k], h = mpm->def.cell;
+  mpsi_stencil at;
+  mpsi_shape_values f;
+  mpm->kernels->fit(mpm, cells, &mpm->workers[0], k, &at, &f);
+  for (int n = 0; n < MPSI_STENCIL; n++) {
+    if (f.w[n] == 0.0) continue;
+    const int i = n % 4, j = n / 4 % 4, l = n / 16;
+    const double s[3] = {at.s[0][i], at.s[1][j], at.s[2][l]};
+    double *to = sums[mpsi_node_under(mpm, cells, at.at[0] + i, at.at[1] + j, at.at[2] + l)];
+    to[0] += m * f.phi[n];
+    to[4] += m * (f.w[n] - f.phi[n]);
+    for (int c = 0; c < dim; c++) {
+      double v = p->v[c][k], force = f.phi[n] * m * mpm->def.gravity[c];
+      for (int d = 0; d < dim; d++) {
+        v += p->L[dim * c + d][k] * h * s[d];
+        force -= p->V[k] * p->s[symmetric[c][d]][k] * f.gradient[d][n];
+      }
+      if (mpm->def.geometry == MPS_AXISYMMETRIC && c == 0)
+        force -= f.phi[n] * p->V[k] * p->s[2][k] / p->x[0][k];
+      to[1 + c] += m * f.phi[n] * v;
+      to[5 + c] += force;
+    }
+  }
+}
+
+/* The nodes have those sums, apart in split blocks and without excess where all supports are full.
+ */
+static void check_nodes(const mps_mpm *mpm, node_sums *sums) {
+  double largest[8] = {0.0};
+  for (int64_t n = 0; n < mpm->node_count * mpm->own; n++)
+    for (int c = 0; c < 8; c++) largest[c] = fmax(largest[c], fabs(sums[n][c]));
+  const double mass = 1e-13 * largest[0], force = 1e-13 * fmax(largest[5], largest[6]);
+  for (int64_t n = 0; n < mpm->node_count * mpm->own; n++) {
+    const mpsi_nodes *nodes = &mpm->nodes[n / mpm->own];
+    const double *side =
+        nodes->side < 0 ? NULL : mpm->side[mpsi_first_node(mpm, nodes->side) + n % mpm->own];
+    mps_assert_near(mpm->node[n][0], sums[n][0], mass);
+    mps_assert_near(side ? side[0] : 0.0, sums[n][4], mass);
+    for (int c = 1; c <= mpm->dim; c++) {
+      const double with = nodes->split ? 0.0 : mpm->dt * sums[n][4 + c];
+      mps_assert_near(mpm->node[n][c], sums[n][c] + with, 10.0 * mass + mpm->dt * force);
+      if (nodes->split) mps_assert_near(side[c], sums[n][4 + c], force);
+    }
+  }
+}
+
+/* Velocity and gradient that a particle should get by the general fit. */
+static void gather_by_fit(const mps_mpm *mpm, const mpsi_cells *cells, int64_t k, double *out) {
+  const int dim = mpm->dim;
+  mpsi_stencil at;
+  mpsi_shape_values f;
+  mpm->kernels->fit(mpm, cells, &mpm->workers[0], k, &at, &f);
+  memset(out, 0, 12 * sizeof *out);
+  for (int n = 0; n < MPSI_STENCIL; n++) {
+    if (f.w[n] == 0.0) continue;
+    const double *v = mpm->node[mpsi_node_under(mpm, cells, at.at[0] + n % 4, at.at[1] + n / 4 % 4,
+                                                at.at[2] + n / 16)];
+    for (int c = 0; c < dim; c++) {
+      out[c] += f.phi[n] * v[1 + c];
+      for (int d = 0; d < dim; d++) out[3 + dim * c + d] += f.gradient[d][n] * v[1 + c];
+    }
+  }
+}
+
+/* Full supports and those at one wall have loops of their own: they do what the fit over all active
+ * nodes would. Any velocities and stresses; bodies and walls, with and without friction. */
+static void transfers_agree_with_the_fit(void **state) {
+  (void)state;
+  static double got[COUNT][12];
+  for (int variant = 0; variant < 12; variant++) {
+    const int geometry = variant / 4, spline = variant % 2;
+    mpm_scene s = crowded(geometry, 2 + spline, true);
+    mps_mpm *mpm = s.mpm;
+    const int dim = mpm->dim;
+    for (int b = 0; b < mpm->bodies; b++) mpm->body[b]->def.friction = variant % 4 < 2 ? 0.0 : 0.3;
+    for (int64_t k = 0; k < COUNT; k++) {
+      for (int c = 0; c < dim; c++) mpm->p.v[c][k] = uniform(-1.0, 1.0);
+      for (int c = 0; c < dim * dim; c++) mpm->p.L[c][k] = uniform(-9.0, 9.0);
+      for (int c = 0; c < 2 * dim; c++) mpm->p.s[c][k] = uniform(-1e3, 1e3);
+    }
+    mpm->def.gravity[1] = -9.81;
+    mps_assert_ok(context, mpsi_mpm_find_near(mpm, "test"));
+    mpm->dt = 1e-4;
+    node_sums *sums = test_calloc((size_t)(mpm->node_count * mpm->own), sizeof *sums);
+    for (int64_t b = 0; b < mpm->cell_count; b++) {
+      mpsi_mpm_find_states(mpm, &mpm->cells[b], &mpm->workers[0]);
+      for (int64_t k = mpm->cells[b].begin; k < mpm->cells[b].end; k++)
+        add_by_fit(mpm, &mpm->cells[b], k, sums);
+    }
+    for (int64_t g = 0; g < mpm->node_count; g++) mpsi_mpm_clear_nodes(mpm, g, 0);
+    for (int64_t b = 0; b < mpm->cell_count; b++) mpm->kernels->p2g[geometry][spline](mpm, b, 0);
+    check_nodes(mpm, sums);
+    test_free(sums);
+    for (int64_t g = 0; g < mpm->node_count; g++) mpsi_mpm_update_nodes(mpm, g, 0);
+    for (int64_t b = 0; b < mpm->cell_count; b++) {
+      mpsi_mpm_find_states(mpm, &mpm->cells[b], &mpm->workers[0]);
+      for (int64_t k = mpm->cells[b].begin; k < mpm->cells[b].end; k++)
+        gather_by_fit(mpm, &mpm->cells[b], k, got[k]);
+    }
+    for (int64_t b = 0; b < mpm->cell_count; b++) mpm->kernels->g2p[geometry][spline](mpm, b, 0);
+    for (int64_t k = 0; k < COUNT; k++)
+      for (int c = 0; c < dim; c++) {
+        mps_assert_near(mpm->p.v[c][k], got[k][c], 1e-13);
+        for (int d = 0; d < dim; d++)
+          mps_assert_near(mpm->p.L[dim * c + d][k], got[k][3 + dim * c + d], 1e-10);
+      }
+    mpm_scene_end(&s);
+  }
+}
+
 static double length(const double *a) { return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]); }
 
 /* A soft disc or ball that rotates and shakes in empty space keeps both momenta. */
@@ -339,6 +457,7 @@ static void thin_wall_lets_nothing_pass(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(shapes_are_a_partition),
                                      cmocka_unit_test(affine_round_trip),
+                                     cmocka_unit_test(transfers_agree_with_the_fit),
                                      cmocka_unit_test(free_body_keeps_momentum),
                                      cmocka_unit_test(contact_keeps_momentum),
                                      cmocka_unit_test(contact_in_space_keeps_momentum),

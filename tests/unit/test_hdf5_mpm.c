@@ -448,20 +448,23 @@ static void the_callers_bytes_come_back(void **state) {
   mps_context_destroy(&context);
 }
 
-/* A sealed file with contents that no run writes: a block moved by `by` along x. */
+/* A sealed file with contents that no run writes: a block elsewhere, or with a tile that its
+ * particles' stencils would leave. */
 static void blocks_elsewhere_are_refused(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
   scene x = build(context, MPS_PLANE_STRAIN, &none);
-  static const int64_t bad[][2] = {{0, 1}, {1, 1000}, {1, INT64_MAX}, {3, 1}};
+  enum { ROW = 10 };
+  static const int64_t bad[][2] = {{0, 1},  {1, 1000}, {1, INT64_MAX}, {3, 1},
+                                   {4, -1}, {4, 12},   {8, 99},        {9, 2}};
   for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
     mps_assert_ok(context, mps_mpm_save(x.s.mpm, path, NULL));
     const hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
     const hid_t dataset = H5Dopen2(file, "solver/blocks", H5P_DEFAULT);
-    int64_t block[4 * 64];
+    int64_t block[ROW * 64];
     assert_true(H5Dget_storage_size(dataset) <= sizeof block);
     assert_true(H5Dread(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, block) >= 0);
-    block[4 + bad[k][0]] = bad[k][1]; /* of the second block: first particle, x, z */
+    block[ROW + bad[k][0]] = bad[k][1]; /* of the second block */
     assert_true(H5Dwrite(dataset, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, block) >= 0);
     H5Dclose(dataset);
     H5Fclose(file);
