@@ -21,6 +21,19 @@ bool options_number(const char *text, double *out) {
   return true;
 }
 
+bool options_lengths(const char *text, int count, double *const *out) {
+  for (int k = 0; k < count; k++) {
+    char number[32];
+    const size_t length = strcspn(text, "x");
+    if (length >= sizeof number || (text[length] == 'x') != (k < count - 1)) return false;
+    memcpy(number, text, length);
+    number[length] = '\0';
+    if (!options_number(number, out[k]) || *out[k] <= 0.0) return false;
+    text += length + 1;
+  }
+  return true;
+}
+
 /* ---- help ------------------------------------------------------------------------------------ */
 
 /* Prints words in the columns HELP_COLUMN..HELP_END, the cursor being at `at`. */

@@ -78,5 +78,7 @@ int options_refuse(const options_program *program, const char *reason);
 
 /* Reads a finite decimal number that takes up the whole text. */
 bool options_number(const char *text, double *out);
+/* Reads `count` lengths > 0 with an x between them, such as 5x2; false when `text` is not that. */
+bool options_lengths(const char *text, int count, double *const *out);
 
 #endif

@@ -2,29 +2,21 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "footing.h"
 
+#include <mps/geostatic.h>
+
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define DEGREE (3.14159265358979323846 / 180.0)
 #define RAMP 0.1 /* s to full speed at the seed's rate; as much path at others */
 
 /* ---- settings -------------------------------------------------------------------------------- */
 
-/* "5x2" */
-static bool read_domain(settings *s) {
-  char first[32];
-  const size_t length = strcspn(s->domain, "x");
-  if (s->domain[length] == '\0' || length >= sizeof first) return false;
-  memcpy(first, s->domain, length);
-  first[length] = '\0';
-  return options_number(first, &s->width) && options_number(s->domain + length + 1, &s->depth) &&
-         s->width > 0.0 && s->depth > 0.0;
-}
-
 const char *footing_settle(settings *s, const option *table) {
   const bool cone = s->model == DRUCKER_PRAGER;
-  if (!read_domain(s)) return "--domain must be two lengths in m, WxH, such as 5x2";
+  double *const sides[] = {&s->width, &s->depth};
+  if (!options_lengths(s->domain, 2, sides))
+    return "--domain must be two lengths in m, WxH, such as 5x2";
   if (!cone &&
       (options_given(table, "phi") || options_given(table, "psi") || options_given(table, "cone")))
     return "--phi, --psi and --cone are for --model druckerprager";
@@ -59,18 +51,12 @@ static mps_status make_footing(mps_context *context, const settings *s, simulati
 
 /* Ground at rest under its own weight, (57). */
 static mps_status set_stress(mps_particles *set, const settings *s) {
-  mps_view x, stress;
-  mps_status status = mps_particles_add_field(set, "stress", 0);
-  if (status == MPS_OK) status = mps_particles_view(set, "position", &x);
-  if (status == MPS_OK) status = mps_particles_view(set, "stress", &stress);
-  if (status != MPS_OK) return status;
-  for (int64_t k = 0; k < x.shape[0]; k++) {
-    const double vertical = -s->density * s->gravity * (s->depth - *mps_view_f64(&x, k, 1));
-    const double across = vertical * s->poisson / (1.0 - s->poisson);
-    *mps_view_f64(&stress, k, 0) = *mps_view_f64(&stress, k, 2) = across;
-    *mps_view_f64(&stress, k, 1) = vertical;
-  }
-  return MPS_OK;
+  const mps_soil_layer layer = {.thickness = INFINITY, .k0 = s->poisson / (1.0 - s->poisson)};
+  mps_geostatic_def def = mps_geostatic_defaults();
+  def.layers = &layer, def.layer_count = 1;
+  def.gravity = s->gravity;
+  def.surface = s->depth;
+  return mps_particles_set_geostatic(set, &def);
 }
 
 static mps_status make_ground(mps_context *context, const settings *s, mps_particles **set) {

@@ -2,9 +2,10 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "penetrometer.h"
 
+#include <mps/geostatic.h>
+
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define STIFFNESS 4.0 /* of the contact, over K + 4G/3 and at most over m/dt^2 */
 
@@ -24,21 +25,6 @@ static double radius_below(const pen_settings *s) {
   return s->tip == PEN_SPHERE ? sqrt(d * (2.0 * R - d)) : R;
 }
 
-static bool read_soil(pen_settings *s) {
-  double *const value[3] = {&s->width, &s->breadth, &s->height};
-  const char *text = s->soil;
-  for (int k = 0; k < 3; k++) {
-    char number[32];
-    const size_t length = strcspn(text, "x");
-    if (length >= sizeof number || (text[length] == 'x') != (k < 2)) return false;
-    memcpy(number, text, length);
-    number[length] = '\0';
-    if (!options_number(number, value[k]) || *value[k] <= 0.0) return false;
-    text += length + 1;
-  }
-  return true;
-}
-
 static const char *check_tip(const pen_settings *s) {
   if ((s->tip == PEN_STL) != (s->mesh != NULL)) return "--tip stl and --mesh belong together";
   if (s->tip == PEN_STL && s->axisymmetric) return "--axisymmetric is for --tip cone and sphere";
@@ -51,7 +37,9 @@ const char *pen_check(penetrometer *p) {
   pen_settings *s = &p->s;
   const char *reason = check_tip(s);
   if (reason) return reason;
-  if (!read_soil(s)) return "--soil must be three lengths in diameters, WxWxD, such as 6x6x5";
+  double *const sides[] = {&s->width, &s->breadth, &s->height};
+  if (!options_lengths(s->soil, 3, sides))
+    return "--soil must be three lengths in diameters, WxWxD, such as 6x6x5";
   if (fmin(s->width, s->breadth) * s->diameter < 2.0 * radius_below(s) + 8.0 * s->h)
     return "--soil must be at least 8 cells of --h wider than what is pushed in";
   if (s->depth > s->height * s->diameter - 4.0 * s->h)
@@ -94,18 +82,13 @@ static double lower_of(const penetrometer *p, const pen_run *r, int c) {
 /* The weight above, and nu/(1 - nu) of it sideways. */
 static mps_status set_stress(const penetrometer *p, pen_run *r) {
   const pen_settings *s = &p->s;
-  const int up = dim_of(r) - 1;
-  mps_view x, stress;
-  mps_status status = mps_particles_add_field(r->m.particles, "stress", 0);
-  if (status == MPS_OK) status = mps_particles_view(r->m.particles, "position", &x);
-  if (status == MPS_OK) status = mps_particles_view(r->m.particles, "stress", &stress);
-  if (status != MPS_OK || s->gravity == 0.0) return status;
-  for (int64_t k = 0; k < x.shape[0]; k++) {
-    const double weight = s->density * s->gravity * (*mps_view_f64(&x, k, up) - r->size[up]);
-    for (int c = 0; c < 3; c++)
-      *mps_view_f64(&stress, k, c) = c == up ? weight : s->poisson / (1.0 - s->poisson) * weight;
-  }
-  return MPS_OK;
+  const mps_soil_layer layer = {.thickness = INFINITY, .k0 = s->poisson / (1.0 - s->poisson)};
+  mps_geostatic_def def = mps_geostatic_defaults();
+  if (s->gravity == 0.0) return MPS_OK;
+  def.layers = &layer, def.layer_count = 1;
+  def.gravity = s->gravity;
+  def.surface = r->size[dim_of(r) - 1];
+  return mps_particles_set_geostatic(r->m.particles, &def);
 }
 
 /* The places at the start, for the displacements at the end. */

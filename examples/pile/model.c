@@ -6,7 +6,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define STIFFNESS 4.0 /* of the contact, over K + 4G/3 and at most over m/dt^2 */
 #define CHATTER 6.0   /* over m/dt^2: a stiffer contact throws particles back and forth */
@@ -23,23 +22,15 @@ static const struct {
 mps_cone pile_cone(const pile_settings *s) { return cones[s->cone].cone; }
 const char *pile_cone_name(const pile_settings *s) { return cones[s->cone].name; }
 
-static bool read_soil(pile_settings *s) {
-  char width[32];
-  const size_t length = strcspn(s->soil, "x");
-  if (s->soil[length] != 'x' || length >= sizeof width) return false;
-  memcpy(width, s->soil, length);
-  width[length] = '\0';
-  return options_number(width, &s->width) && options_number(s->soil + length + 1, &s->height) &&
-         s->width > 0.0 && s->height > 0.0;
-}
-
 static bool whole_cells(double length, double h) {
   const double cells = length / h;
   return fabs(cells - nearbyint(cells)) < 1e-6 * fmax(1.0, cells);
 }
 
 const char *pile_check(pile_settings *s) {
-  if (!read_soil(s)) return "--soil must be two lengths in m, WxH, such as 0.4x3";
+  double *const sides[] = {&s->width, &s->height};
+  if (!options_lengths(s->soil, 2, sides))
+    return "--soil must be two lengths in m, WxH, such as 0.4x3";
   if (!whole_cells(s->width, s->h) || !whole_cells(s->height, s->h))
     return "--soil must be whole cells of --h wide and high";
   if (s->wall < s->h * (2.0 - 1e-9))

@@ -77,27 +77,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
 
 #else
 
-/* xorshift: the same sequence on every machine. */
-static uint32_t random_state;
-static uint32_t random_below(uint32_t n) {
-  random_state ^= random_state << 13;
-  random_state ^= random_state >> 17;
-  random_state ^= random_state << 5;
-  return random_state % n;
-}
-
-enum { ROOM = 16384 };
-
-static size_t replace(char *data, size_t size, size_t at, size_t cut, const char *by,
-                      size_t length) {
-  if (cut > size - at) cut = size - at;
-  if (size - cut + length > ROOM) return size;
-  char copy[64];
-  memcpy(copy, by, length);
-  memmove(data + at + length, data + at + cut, size - at - cut);
-  memcpy(data + at, copy, length);
-  return size - cut + length;
-}
+#include "mutation.h"
 
 /* One small damage of the kinds that files meet, or that a parser fears. */
 static size_t mutate(char *data, size_t size) {

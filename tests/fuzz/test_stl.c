@@ -73,16 +73,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
 
 #else
 
-/* xorshift: the same sequence on every machine. */
-static uint32_t random_state;
-static uint32_t random_below(uint32_t n) {
-  random_state ^= random_state << 13;
-  random_state ^= random_state >> 17;
-  random_state ^= random_state << 5;
-  return random_state % n;
-}
-
-enum { ROOM = 16384 };
+#include "mutation.h"
 
 static mesh_shape block;
 
@@ -110,17 +101,6 @@ static size_t binary_sample(char *data) {
       for (int b = 0; b < 4; b++) data[84 + 50 * t + 12 + 4 * k + b] = (char)(bits >> (8 * b));
     }
   return 84 + 50 * (size_t)block.triangles;
-}
-
-static size_t replace(char *data, size_t size, size_t at, size_t cut, const char *by,
-                      size_t length) {
-  char copy[64];
-  if (cut > size - at) cut = size - at;
-  if (length > sizeof copy || size - cut + length > ROOM) return size;
-  memcpy(copy, by, length);
-  memmove(data + at + length, data + at + cut, size - at - cut);
-  memcpy(data + at, copy, length);
-  return size - cut + length;
 }
 
 /* One small damage of the kinds that files meet, or that a parser fears. */
