@@ -92,8 +92,9 @@ typedef struct mps_mpm_def {
   int32_t wall_lower[3], wall_upper[3]; /* mps_wall of each, default ROLLER; on the axis
                                            r = 0 ROLLER or FIXED */
   double gravity[3];                    /* m/s2, default 0 */
-  double dt; /* s, > 0, or 0 (default): each step the largest by seed B (49), (50). At most that
-                limit at creation; a warning tells when it gets above the fraction below */
+  double dt;          /* s, > 0, or 0 (default): each step the largest by seed B (49), (50), and by
+                         rho h^2/(4 dim viscosity) of viscous laws. At most that
+                         limit at creation; a warning tells when it gets above the fraction below */
   double courant;     /* fraction of that limit, in (0, 1]; default 0.5 */
   int32_t volumetric; /* mps_volumetric, default POINT */
   int32_t scheme;     /* mps_scheme, default WLS */
@@ -220,7 +221,9 @@ MPS_API double mps_mpm_time(const mps_mpm *mpm); /* s */
 MPS_API int64_t mps_mpm_steps(const mps_mpm *mpm);
 /** The step (s) that would come next. */
 MPS_API double mps_mpm_dt(const mps_mpm *mpm);
-/** The limit (49) of the present state (s), the Courant fraction not applied. */
+/** The limit (49), or that of viscosity, of the present state (s), the Courant fraction not
+ * applied.
+ */
 MPS_API double mps_mpm_limit(const mps_mpm *mpm);
 
 /** Sums over the particles (bodies not counted), in 2D per unit thickness or per radian. */

@@ -29,7 +29,7 @@ void mpsi_mpm_find_states(const mps_mpm *mpm, const mpsi_cells *cells, mpsi_work
  * with the mean trace of their cells. */
 void mpsi_mpm_mean_diagonals(const mps_mpm *mpm, const mpsi_cells *cells, int64_t begin,
                              int64_t end, double (*diagonal)[MPSI_CHUNK]);
-/* law.c: the present wave moduli of particles [begin, end). */
+/* law.c: the present wave moduli of particles [begin, end), raised where viscosity limits dt. */
 void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli);
 
 #endif

@@ -62,6 +62,14 @@ void mpsi_mpm_elastic(const mps_mpm *mpm, int64_t particle, double *wave, double
   *shear = mpsi_material_shear(law->material);
 }
 
+/* A viscous law asks for dt <= rho h^2/(4 dim viscosity) too: the modulus whose wave gives that. */
+static void raise_to_viscous(const mps_mpm *mpm, const mpsi_law_use *law, int64_t begin,
+                             int64_t end, double *moduli) {
+  const double v = 4.0 * mpm->dim * mpsi_material_viscosity(law->material) * mpm->inverse;
+  for (int64_t k = begin; v > 0.0 && k < end; k++)
+    moduli[k - begin] = fmax(moduli[k - begin], v * v * mpm->p.V[k] / mpm->p.m[k]);
+}
+
 void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli) {
   for (int64_t k = begin, next; k < end; k = next) {
     next = end_of_run(mpm->p.law, k, end);
@@ -72,5 +80,6 @@ void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double
     } else {
       for (int64_t q = k; q < next; q++) moduli[q - begin] = law->modulus;
     }
+    raise_to_viscous(mpm, law, k, next, moduli + (k - begin));
   }
 }

@@ -40,7 +40,8 @@ mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *ma
   for (int32_t h = 0; h < histories; h++)
     law.history[h] = mpsi_particles_column(set, mps_material_history_name(material, h), 0);
   mpsi_material_retain(material);
-  mpm->one_modulus = mpm->laws == 0 && !mpsi_material_stiffens(material);
+  mpm->one_modulus = mpm->laws == 0 && !mpsi_material_stiffens(material) &&
+                     mpsi_material_viscosity(material) == 0.0;
   mpm->law[mpm->laws++] = law;
   return MPS_OK;
 }

@@ -232,6 +232,44 @@ static void tells_what_left(void **state) {
   mpm_scene_end(&s);
 }
 
+/* Syrup: viscosity, not sound, limits the step, and then shear dies out. */
+static void viscosity_limits_the_step(void **state) {
+  (void)state;
+  mps_particles_def set = mps_particles_defaults();
+  set.spacing = 0.01;
+  mps_particles *particles = NULL;
+  mps_material *material = NULL;
+  mps_mpm *mpm = NULL;
+  mps_view x, v;
+  mps_mpm_totals before, after;
+  const double lo[] = {0.0, 0.0}, hi[] = {0.2, 0.2}, viscosity = 2000.0;
+  mps_newtonian_def law = mps_newtonian_defaults();
+  law.bulk_modulus = 1e5, law.viscosity = viscosity;
+  mps_assert_ok(context, mps_particles_create(context, &set, &particles));
+  mps_assert_ok(context, mps_particles_fill_box(particles, lo, hi, NULL));
+  mps_assert_ok(context, mps_particles_set(particles, "density", 0, 1000.0));
+  mps_assert_ok(context, mps_particles_add_field(particles, "velocity", 0));
+  mps_assert_ok(context, mps_particles_view(particles, "position", &x));
+  mps_assert_ok(context, mps_particles_view(particles, "velocity", &v));
+  for (int64_t k = 0; k < x.shape[0]; k++)
+    *mps_view_f64(&v, k, 0) = sin(100.0 * *mps_view_f64(&x, k, 1));
+  mps_assert_ok(context, mps_material_newtonian(context, &law, &material));
+  mps_mpm_def def = small_def();
+  mps_assert_ok(context, mps_mpm_create(context, particles, material, &def, &mpm));
+  const double limit = 1000.0 * def.cell * def.cell / (4.0 * 2.0 * viscosity);
+  assert_true(mps_mpm_limit(mpm) <= limit && mps_mpm_limit(mpm) > 0.9 * limit);
+  mps_assert_ok(context, mps_mpm_get_totals(mpm, &before));
+  for (int k = 0; k < 20; k++) {
+    mps_assert_ok(context, mps_mpm_step(mpm, 10));
+    mps_assert_ok(context, mps_mpm_get_totals(mpm, &after));
+    assert_true(after.kinetic < before.kinetic);
+    before = after;
+  }
+  mps_mpm_destroy(&mpm);
+  mps_material_destroy(&material);
+  mps_particles_destroy(&particles);
+}
+
 /* The velocity that a particle on a wall finds between its nodes is not quite that of the wall: it
  * does not pass it. */
 static void keeps_on_the_wall(void **state) {
@@ -337,14 +375,11 @@ static void steady_steps_allocate_nothing(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(refuses_bad_definitions),
-                                     cmocka_unit_test(refuses_bad_sets),
-                                     cmocka_unit_test(owns_its_bodies),
-                                     cmocka_unit_test(sets_materials),
-                                     cmocka_unit_test(runs_to_the_end),
-                                     cmocka_unit_test(tells_what_left),
-                                     cmocka_unit_test(keeps_on_the_wall),
-                                     cmocka_unit_test(survives_lack_of_memory),
-                                     cmocka_unit_test(steady_steps_allocate_nothing)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(refuses_bad_definitions), cmocka_unit_test(refuses_bad_sets),
+      cmocka_unit_test(owns_its_bodies),         cmocka_unit_test(sets_materials),
+      cmocka_unit_test(runs_to_the_end),         cmocka_unit_test(tells_what_left),
+      cmocka_unit_test(keeps_on_the_wall),       cmocka_unit_test(viscosity_limits_the_step),
+      cmocka_unit_test(survives_lack_of_memory), cmocka_unit_test(steady_steps_allocate_nothing)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
