@@ -1,4 +1,4 @@
-/* mps-cantilever - rectangular cantilever of particles under an end load, seed C, Figures 4 to 8.
+/* mps-cantilever - rectangular cantilever of particles under an end load, Chikazawa, Figures 4 to 8.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "cantilever/results.h"
 #include "common/output.h"
@@ -18,7 +18,7 @@ typedef struct settings {
 
 static const char purpose[] =
     "Deflection and stress of a cantilever of particles (implicit elasticity, CHOLMOD), against\n"
-    "the analytic solution. The defaults are the seed's case of 153 particles.";
+    "the analytic solution. The defaults are the paper's case of 153 particles.";
 
 /* The length that was asked for, in whole particles: -1, or an exit code. */
 static int find_size(const options_program *program, settings *s) {

@@ -1,4 +1,4 @@
-/* mps-column-collapse - a column of sand or clay collapses on a bed: seed B, Figure 3, against the
+/* mps-column-collapse - a column of sand or clay collapses on a bed: Nakamura, Figure 3, against the
  * run-out that Lube, Huppert, Sparks and Freundt measured.
  *
  * The column stands on the bed y = 0, L0 wide from the wall x = 0 (a line of symmetry), a L0 high,
@@ -425,7 +425,7 @@ int main(int argc, char **argv) {
       {0}};
   const options_program program = {
       "mps-column-collapse",
-      "A column of sand or clay collapses on a bed (WLS-MPM, Drucker-Prager): seed B, Figure 3,\n"
+      "A column of sand or clay collapses on a bed (WLS-MPM, Drucker-Prager): Nakamura, Figure 3,\n"
       "against the run-out measured by Lube, Huppert, Sparks and Freundt (2005).",
       table};
   int code = options_parse(&program, argc, argv);

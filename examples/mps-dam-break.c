@@ -1,4 +1,4 @@
-/* mps-dam-break - a column of water collapses on a dry bed: seed B, Figure 2, against the
+/* mps-dam-break - a column of water collapses on a dry bed: Nakamura, Figure 2, against the
  * experiments of Martin and Moyce (1952).
  *
  * The water stands between the wall x = 0 and a gate at x = a that vanishes at once; it is n^2 a
@@ -419,7 +419,7 @@ int main(int argc, char **argv) {
       {0}};
   const options_program program = {
       "mps-dam-break",
-      "A column of water collapses on a dry bed (WLS-MPM, weakly compressible): seed B, Figure 2,\n"
+      "A column of water collapses on a dry bed (WLS-MPM, weakly compressible): Nakamura, Figure 2,\n"
       "against the experiments of Martin and Moyce (1952).",
       table};
   int code = options_parse(&program, argc, argv);

@@ -1,4 +1,4 @@
-/* mps-footing - a strip footing pressed into the ground: seed B 7.3, Figures 15 to 21. Cohesive
+/* mps-footing - a strip footing pressed into the ground: Nakamura 7.3, Figures 15 to 21. Cohesive
  * ground without weight (von Mises) against Prandtl's bearing capacity (52), q = (2 + pi) c; ground
  * with friction and weight (Drucker-Prager) against the method of characteristics.
  *
@@ -49,7 +49,7 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("settlement", "mm", OPTION_POSITIVE, &s->settlement,
                     "where the run ends; default 0.6, Drucker-Prager 4"),
       OPTION_NUMBER("k", "kN/m", OPTION_POSITIVE, &s->k,
-                    "contact stiffness per unit thickness of each particle, seed B (28)"),
+                    "contact stiffness per unit thickness of each particle, Nakamura (28)"),
       OPTION_HEADING("Grid"),
       OPTION_NUMBER("h", "m", OPTION_POSITIVE, &s->h, "grid spacing"),
       OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
@@ -60,7 +60,7 @@ int main(int argc, char **argv) {
   const options_program program = {
       "mps-footing",
       "A strip footing on cohesive ground without weight (WLS-MPM, von Mises) or on ground with\n"
-      "friction and weight (Drucker-Prager): seed B, Figures 15 to 21. Its bearing capacity is\n"
+      "friction and weight (Drucker-Prager): Nakamura, Figures 15 to 21. Its bearing capacity is\n"
       "compared with Prandtl's, or with the exact one by the method of characteristics.",
       table};
   const int code = options_parse(&program, argc, argv);

@@ -60,7 +60,7 @@ int main(int argc, char **argv) {
                      "particles a cell in space, a cube: 1, 8, 27 or 64"),
       OPTION_CHOICE("volumetric", "point|cell", &s->volumetric, "change of volume: F-bar by cell"),
       OPTION_NUMBER("courant", "1", OPTION_ABOVE_TO(0.0, 1.0), &s->courant,
-                    "step over its limit, seed B (49)"),
+                    "step over its limit, Nakamura (49)"),
       OPTION_HEADING("Run"),
       OPTION_FLAG("axisymmetric", &s->axisymmetric,
                   "then the same by the axisymmetric solver, in a cylinder with the box's section"),

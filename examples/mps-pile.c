@@ -1,4 +1,4 @@
-/* mps-pile - an open-ended pile pushed into sand, axisymmetric: seed B 8, Figures 22 to 25.
+/* mps-pile - an open-ended pile pushed into sand, axisymmetric: Nakamura 8, Figures 22 to 25.
  *
  * The pile is rigid and goes down at constant speed; its resistance is told apart by tip, inner and
  * outer shaft, and the soil inside is watched for plugging.
@@ -39,10 +39,10 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("depth", "m", OPTION_POSITIVE, &s->depth, "of the tip, where the run ends"),
       OPTION_NUMBER("speed", "m/s", OPTION_ABOVE_TO(0.0, 10.0), &s->speed, "of the pile"),
       OPTION_NUMBER("k", "kN/m", OPTION_POSITIVE, &s->k,
-                    "contact stiffness of each particle per unit thickness, seed B (28); "
+                    "contact stiffness of each particle per unit thickness, Nakamura (28); "
                     "4 (K + 4G/3) if not given"),
       OPTION_NUMBER("xi", "1", OPTION_FROM_TO(0.0, 0.99), &s->xi,
-                    "instead of --k: k = 2 (1 - xi) m/dt^2 of the first step, seed B (58), "
+                    "instead of --k: k = 2 (1 - xi) m/dt^2 of the first step, Nakamura (58), "
                     "there 0.6"),
       OPTION_HEADING("Soil"),
       OPTION_TEXT("soil", "WxH", &s->soil, "radius and height of the soil in m, whole cells"),
@@ -53,14 +53,14 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("psi", "degrees", OPTION_FROM_TO(0.0, 60.0), &s->psi, "angle of dilation"),
       OPTION_NUMBER("cohesion", "kPa", OPTION_NOT_NEGATIVE, &s->cohesion, "c"),
       OPTION_CHOICE("cone", "inscribed|circumscribed|planestrain", &s->cone,
-                    "how the cone of Drucker and Prager meets phi; inscribed: seed B (56)"),
+                    "how the cone of Drucker and Prager meets phi; inscribed: Nakamura (56)"),
       OPTION_NUMBER("k0", "1", OPTION_ABOVE_TO(0.0, 5.0), &s->k0,
                     "horizontal over vertical stress at the start; nu/(1 - nu) if not given"),
       OPTION_HEADING("Grid"),
       OPTION_NUMBER("h", "m", OPTION_POSITIVE, &s->h, "grid spacing"),
       OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
       OPTION_NUMBER("courant", "1", OPTION_ABOVE_TO(0.0, 1.0), &s->courant,
-                    "step over its limit, seed B (49)"),
+                    "step over its limit, Nakamura (49)"),
       OPTION_HEADING("Run"),
       OPTION_NUMBER("rest", "s", OPTION_NOT_NEGATIVE, &s->rest,
                     "time before the pile moves, to see whether the soil rests"),
@@ -80,7 +80,7 @@ int main(int argc, char **argv) {
       {0}};
   const options_program program = {
       "mps-pile",
-      "An open-ended pile pushed into sand (WLS-MPM, Drucker-Prager, axisymmetric): seed B, "
+      "An open-ended pile pushed into sand (WLS-MPM, Drucker-Prager, axisymmetric): Nakamura, "
       "Figures\n"
       "22 to 25. Its resistance by tip, inner and outer shaft, the plug, the stress in the soil.",
       table};

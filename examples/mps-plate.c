@@ -1,4 +1,4 @@
-/* mps-plate - square plate of particles in tension (seed C, Figures 2 and 3), or a plate with a
+/* mps-plate - square plate of particles in tension (Chikazawa, Figures 2 and 3), or a plate with a
  * hole. SPDX-License-Identifier: BSD-3-Clause */
 #include "common/output.h"
 #include "plate/plate.h"
@@ -16,7 +16,7 @@ typedef struct settings {
 static const char purpose[] =
     "Plate of particles in tension (implicit elasticity, CHOLMOD), against the exact solution. "
     "The\n"
-    "defaults are the seed's square of 289 particles; --case hole is a quarter of Kirsch's plate.";
+    "defaults are the paper's square of 289 particles; --case hole is a quarter of Kirsch's plate.";
 
 /* Defaults of the hole, where they differ; -1, or an exit code. */
 static int check_hole(const options_program *program, settings *s) {

@@ -1,4 +1,4 @@
-/* mps-rolling-disc - a disc that slips or rolls down a slope: seed B 7.2, Figures 12-14, (51).
+/* mps-rolling-disc - a disc that slips or rolls down a slope: Nakamura 7.2, Figures 12-14, (51).
  *
  * --body slope: the disc is elastic and the slope a rigid body. --body disc: the disc is a free
  * rigid body on an elastic slope, drawn level with tilted gravity; both act on each other.
@@ -271,7 +271,7 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("mu", "1", OPTION_FROM_TO(0.0, 10.0), &s->mu,
                     "friction; the disc rolls where tan(angle) <= 3 mu"),
       OPTION_NUMBER("k", "kN/m", OPTION_POSITIVE, &s->k,
-                    "contact stiffness per unit thickness of each particle, seed B (28)"),
+                    "contact stiffness per unit thickness of each particle, Nakamura (28)"),
       OPTION_NUMBER("young", "kPa", OPTION_POSITIVE, &s->young, "Young's modulus E"),
       OPTION_NUMBER("poisson", "1", OPTION_FROM_TO(0.0, 0.49), &s->poisson, "Poisson's ratio"),
       OPTION_HEADING("Grid"),
@@ -287,8 +287,8 @@ int main(int argc, char **argv) {
       {0}};
   const options_program program = {
       "mps-rolling-disc",
-      "A disc of radius 0.05 m slips or rolls down a slope (WLS-MPM): seed B, Figures 12 to 14.\n"
-      "Its path is compared with that of a rigid disc, seed B (51).",
+      "A disc of radius 0.05 m slips or rolls down a slope (WLS-MPM): Nakamura, Figures 12 to 14.\n"
+      "Its path is compared with that of a rigid disc, Nakamura (51).",
       table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;

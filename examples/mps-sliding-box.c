@@ -1,4 +1,4 @@
-/* mps-sliding-box - an elastic block between plates, pressed and dragged: seed B 7.1, Figures 9-11.
+/* mps-sliding-box - an elastic block between plates, pressed and dragged: Nakamura 7.1, Figures 9-11.
  *
  * The upper plate comes down 0.45 mm, the rough lower one slides by as much; the sides are smooth.
  * As one element of confined modulus M the block then has F_y = M * 0.45 mm, and F_x = mu F_y.
@@ -32,7 +32,7 @@ typedef struct simulation {
 
 /* ---- building -------------------------------------------------------------------------------- */
 
-/* Velocity of the seed's Figure 10: up in 0.1 s, constant, down in 0.1 s. `start` in s. */
+/* Velocity of the paper's Figure 10: up in 0.1 s, constant, down in 0.1 s. `start` in s. */
 static mps_status stroke(mps_context *context, double start, mps_signal **out) {
   const double t[] = {start, start + RAMP, start + STROKE - RAMP, start + STROKE};
   const double v[] = {0.0, SPEED, SPEED, 0.0};
@@ -191,7 +191,7 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("density", "kg/m3", OPTION_POSITIVE, &s->density, "density"),
       OPTION_HEADING("Contact"),
       OPTION_NUMBER("k", "kN/m", OPTION_POSITIVE, &s->k,
-                    "contact stiffness per unit thickness of each particle, seed B (28)"),
+                    "contact stiffness per unit thickness of each particle, Nakamura (28)"),
       OPTION_NUMBER("mu", "1", OPTION_FROM_TO(0.0, 10.0), &s->mu, "friction of the lower plate"),
       OPTION_HEADING("Grid"),
       OPTION_NUMBER("h", "m", OPTION_ABOVE_TO(0.0, 0.1), &s->h, "grid spacing"),
@@ -204,7 +204,7 @@ int main(int argc, char **argv) {
       {0}};
   const options_program program = {
       "mps-sliding-box",
-      "An elastic block of 0.1 m pressed between plates and dragged (WLS-MPM): seed B, Figures 9\n"
+      "An elastic block of 0.1 m pressed between plates and dragged (WLS-MPM): Nakamura, Figures 9\n"
       "to 11. The forces on the rough lower plate are compared with the exact ones.",
       table};
   const int code = options_parse(&program, argc, argv);

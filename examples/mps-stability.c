@@ -1,4 +1,4 @@
-/* mps-stability - the critical time step of a soil column, seed A: one case, or the whole study.
+/* mps-stability - the critical time step of a soil column, Yoshida: one case, or the whole study.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "common/options.h"
 #include "common/output.h"
@@ -19,13 +19,13 @@ typedef struct settings {
 
 static const char purpose[] = "Critical time step of a 10 m x 100 m soil column by explicit MPS: "
                               "by linear theory, and as in\n"
-                              "the seed by bisection over runs under a Ricker pulse. One case, or "
+                              "the paper by bisection over runs under a Ricker pulse. One case, or "
                               "with --study all 320 cases\n"
-                              "of the seed's Table 1 with its regression and Figures 3 to 10.";
+                              "of the paper's Table 1 with its regression and Figures 3 to 10.";
 
 /* The two velocities from those that were given (NaN: not given). */
 static void choose_velocities(settings *s, double vs, double vp) {
-  if (!isnan(s->velocity)) { /* as in the seed */
+  if (!isnan(s->velocity)) { /* as in the paper */
     s->other = s->wave == 0 ? 2.0 * s->velocity : 0.5 * s->velocity;
     return;
   }
@@ -61,7 +61,7 @@ static int parse(settings *s, int argc, char **argv) {
       OPTION_NUMBER("vp", "m/s", OPTION_POSITIVE, &vp,
                     "pressure wave velocity Vp, at least sqrt(2) Vs; default twice Vs"),
       OPTION_NUMBER("velocity", "m/s", OPTION_POSITIVE, &s->velocity,
-                    "instead: the velocity V of the wave as in the seed, S: Vs = V, P: Vp = V"),
+                    "instead: the velocity V of the wave as in the paper, S: Vs = V, P: Vp = V"),
       OPTION_NUMBER("damping", "1", OPTION_FROM_TO(0.0, 10.0), &s->damping,
                     "Rayleigh damping ratio h"),
       OPTION_CHOICE("integrator", "euler|leapfrog|verlet", &s->integrator, "time integration"),
@@ -69,19 +69,19 @@ static int parse(settings *s, int argc, char **argv) {
       OPTION_CHOICE("method", "linear|stepping|both", &m->kind,
                     "linear theory (fast), bisection by time stepping, or both"),
       OPTION_NUMBER("criterion", "m/s2", OPTION_POSITIVE, &m->criterion,
-                    "a run is unstable when any acceleration exceeds it; the seed uses 2.2 and "
+                    "a run is unstable when any acceleration exceeds it; the paper uses 2.2 and "
                     "1e15"),
       OPTION_NUMBER("accuracy", "1", OPTION_ABOVE_TO(1.0, 100.0), &m->accuracy,
-                    "ratio of the bounds at which the bisection ends; the seed uses 1.01 with 2.2 "
+                    "ratio of the bounds at which the bisection ends; the paper uses 1.01 with 2.2 "
                     "and 1.2 with 1e15"),
       OPTION_NUMBER("duration", "s", OPTION_POSITIVE, &m->duration,
                     "length of each run; default 0.5 s and 1.1 travel times over 100 m"),
       OPTION_NUMBER("f1", "Hz", OPTION_POSITIVE, &m->f1, "first frequency of the damping"),
       OPTION_NUMBER("f2", "Hz", OPTION_POSITIVE, &m->f2,
                     "second frequency of the damping; default 14, of the study 15: f1 + f2 = 16 "
-                    "gives the seed's Table 2"),
+                    "gives the paper's Table 2"),
       OPTION_CHOICE("rotation", "11|12", &s->rotation,
-                    "the seed's equation that removes the rigid rotation"),
+                    "the paper's equation that removes the rigid rotation"),
       OPTION_CHOICE("torque", "conserving|printed", &m->torque,
                     "prefactor of (A14): d conserves angular momentum, 2d is as printed"),
       OPTION_HEADING("Running and results"),
@@ -184,7 +184,7 @@ static int run_case(app *a, const settings *s) {
   if (!isnan(x.stepping))
     printf("%s %.4g s by time stepping (%.4g s exceeds %g m/s2)", isnan(x.linear) ? "" : ",",
            x.stepping, x.unstable, s->m.criterion);
-  if (!isnan(x.table2)) printf(", %.4g s by the seed's Table 2", x.table2);
+  if (!isnan(x.table2)) printf(", %.4g s by the paper's Table 2", x.table2);
   printf("\n");
   return APP_OK;
 }

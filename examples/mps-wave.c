@@ -1,4 +1,4 @@
-/* mps-wave - earthquake wave through a soil column or slope of particles, seed A, Figure 2.
+/* mps-wave - earthquake wave through a soil column or slope of particles, Yoshida, Figure 2.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "common/output.h"
 #include "wave/field.h"
@@ -67,7 +67,7 @@ static void destroy(simulation *sim) {
 
 /* ---- running --------------------------------------------------------------------------------- */
 
-/* The seed's 2.5 s, or the record and the time for its wave to rise and come back. */
+/* The paper's 2.5 s, or the record and the time for its wave to rise and come back. */
 static double find_duration(const settings *s, const simulation *sim) {
   if (!isnan(s->duration)) return s->duration;
   if (s->ricker) return 2.5;

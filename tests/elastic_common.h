@@ -1,5 +1,5 @@
 /* elastic_common.h - bodies for the tests of implicit elasticity: a set of particles with uniform
- * material, the seed's cantilever with its exact solution (11), selections.
+ * material, the paper's cantilever with its exact solution (11), selections.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPS_ELASTIC_COMMON_H
 #define MPS_ELASTIC_COMMON_H
@@ -72,7 +72,7 @@ static inline double test_value(const test_body *b, const char *field, int64_t i
   return *mps_view_f64(&view, i, c);
 }
 
-/* ---- the seed's cantilever --------------------------------------------------------------------
+/* ---- the paper's cantilever --------------------------------------------------------------------
  */
 
 /* E = 1, P = 1, h = 2; load end x = 0, wall x = length, axis y = 0. */

@@ -59,9 +59,9 @@ static inline void soil_hold(mps_context *context, mps_particles *particles, mps
   free(ids);
 }
 
-/* The seed's column, 10 m x 100 m, density 1500 kg/m3, rollers on sides and base, Ricker base
+/* The paper's column, 10 m x 100 m, density 1500 kg/m3, rollers on sides and base, Ricker base
  * motion: wave 'S' or 'P'. `damping` for every particle. */
-static inline mps_dynamics *seed_column(mps_context *context, double radius, double vs, double vp,
+static inline mps_dynamics *paper_column(mps_context *context, double radius, double vs, double vp,
                                         double damping, char wave, const mps_dynamics_def *def,
                                         mps_particles **particles) {
   const double D = 2.0 * radius;

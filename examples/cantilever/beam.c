@@ -1,4 +1,4 @@
-/* beam.c - the exact solution of the cantilever, seed C (11) (Timoshenko and Goodier, article 21).
+/* beam.c - the exact solution of the cantilever, Chikazawa (11) (Timoshenko and Goodier, article 21).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "beam.h"
 

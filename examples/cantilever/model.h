@@ -17,7 +17,7 @@ typedef struct model {
   int64_t nx, ny;
   mps_elastic_report report;
   double tip, tip_exact, tip_error; /* m, m, relative: first particle of the axis */
-  double stress_error;              /* relative L2 error over the body, against seed C */
+  double stress_error;              /* relative L2 error over the body, against Chikazawa */
   double energy;                    /* J/m */
   double equilibrium;               /* |load + reactions| / load */
 } model;
@@ -32,7 +32,7 @@ void model_free(model *m);
 
 /* Results at particle (i, j) from the loaded end and from below. */
 bool model_get(const model *m, int64_t i, int64_t j, elastic_point *out);
-/* Reference displacement: seed C (11), or the fine finite elements of a clamped wall. */
+/* Reference displacement: Chikazawa (11), or the fine finite elements of a clamped wall. */
 void model_reference(const model *m, const double *x, double *u);
 
 #endif

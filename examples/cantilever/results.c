@@ -1,4 +1,4 @@
-/* results.c - tables, summary and the seed's Figures 5, 7 and 8 of mps-cantilever.
+/* results.c - tables, summary and the paper's Figures 5, 7 and 8 of mps-cantilever.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "results.h"
 
@@ -50,7 +50,7 @@ static bool write_summary(const model *m, const mps_elastic_def *def, const char
   json_begin(&f);
   json_text(&f, "method", def->method == MPS_ELASTIC_PUBLISHED ? "published" : "conservative");
   json_text(&f, "state", m->problem->plane_strain ? "strain" : "stress");
-  json_text(&f, "reference", m->reference ? "fine bilinear finite elements" : "seed C (11)");
+  json_text(&f, "reference", m->reference ? "fine bilinear finite elements" : "Chikazawa (11)");
   json_integer(&f, "particles", m->nx * m->ny);
   json_integer(&f, "unknowns", m->report.unknowns);
   json_number(&f, "length", m->problem->length);
@@ -130,7 +130,7 @@ static bool draw_shape(const model *m, const char *directory) {
 }
 
 bool results_write(const model *m, const mps_elastic_def *def, const char *directory) {
-  /* The seed's section is at x = 2 of 4. */
+  /* The paper's section is at x = 2 of 4. */
   const int64_t middle = m->ny / 2, section = m->nx / 2;
   elastic_point p;
   char title[120], axis[120];

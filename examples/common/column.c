@@ -1,4 +1,4 @@
-/* column.c - the seed's soil column on the public API.
+/* column.c - the paper's soil column on the public API.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "column.h"
 

@@ -1,4 +1,4 @@
-/* column.h - the seed's soil column (seed A, Figure 1): a lattice of particles between two vertical
+/* column.h - the paper's soil column (Yoshida, Figure 1): a lattice of particles between two vertical
  * sides on a shaken base, in layers, level or with a slope. x to the right from the left side,
  * y upwards from the base.
  * SPDX-License-Identifier: BSD-3-Clause */

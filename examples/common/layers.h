@@ -17,7 +17,7 @@ typedef struct layer {
 } layer;
 
 #define LAYERS_MAX 200
-/* Unit weight to density with the seed's g: 14.7 kN/m3 is 1500 kg/m3. */
+/* Unit weight to density with the paper's g: 14.7 kN/m3 is 1500 kg/m3. */
 #define LAYERS_GRAVITY 9.8
 
 typedef struct layers {

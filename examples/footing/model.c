@@ -8,7 +8,7 @@
 #include <stdlib.h>
 
 #define DEGREE (3.14159265358979323846 / 180.0)
-#define RAMP 0.1 /* s to full speed at the seed's rate; as much path at others */
+#define RAMP 0.1 /* s to full speed at the paper's rate; as much path at others */
 
 /* ---- settings -------------------------------------------------------------------------------- */
 

@@ -108,7 +108,7 @@ static mps_status make_law(mps_context *context, const pen_settings *s, mps_mate
   if (s->law == PEN_CLAY) {
     mps_von_mises_def clay = mps_von_mises_defaults();
     clay.young = young, clay.poisson = s->poisson;
-    clay.yield_stress = sqrt(3.0) * s->cohesion * 1e3; /* seed B (54) */
+    clay.yield_stress = sqrt(3.0) * s->cohesion * 1e3; /* Nakamura (54) */
     return mps_material_von_mises(context, &clay, out);
   }
   mps_drucker_prager_def sand = mps_drucker_prager_defaults();

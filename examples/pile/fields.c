@@ -1,4 +1,4 @@
-/* fields.c - the soil at some depths of the pile: kept for the pictures (seed B, Figures 24 and
+/* fields.c - the soil at some depths of the pile: kept for the pictures (Nakamura, Figures 24 and
  * 25), and as a VTKHDF series where the library has HDF5. SPDX-License-Identifier: BSD-3-Clause */
 #include "pile.h"
 

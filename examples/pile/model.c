@@ -1,4 +1,4 @@
-/* model.c - soil at rest under its own weight, and the pile above it (seed B, Figure 22).
+/* model.c - soil at rest under its own weight, and the pile above it (Nakamura, Figure 22).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "pile.h"
 
@@ -107,8 +107,8 @@ static mps_status make_pile(mps_context *context, pile *p) {
   return status == MPS_OK ? mps_mpm_add_body(p->m.mpm, p->m.body[0]) : status;
 }
 
-/* Contact stiffness (N/m per unit thickness). Seed B (58) with the particle's mass and the step as
- * they are at the start gives k = (1 - xi) 2 m/dt^2, 0.8 of K + 4G/3 with the seed's xi: the offset
+/* Contact stiffness (N/m per unit thickness). Nakamura (58) with the particle's mass and the step as
+ * they are at the start gives k = (1 - xi) 2 m/dt^2, 0.8 of K + 4G/3 with the paper's xi: the offset
  * d0 is used up, and sand enters the wall, where the pressure below the tip is half of k. */
 static double penalty_of(const pile *p) {
   const pile_settings *s = &p->s;

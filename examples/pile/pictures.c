@@ -1,4 +1,4 @@
-/* pictures.c - pile.png: load and plug along the path (seed B, Figure 23) and the soil at the end;
+/* pictures.c - pile.png: load and plug along the path (Nakamura, Figure 23) and the soil at the end;
  * and the soil around the pile at some depths, one picture a quantity (Figures 24 and 25).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "pile.h"

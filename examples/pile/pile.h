@@ -1,4 +1,4 @@
-/* pile.h - an open-ended pile pushed into sand (seed B 8): settings, the run, and its parts.
+/* pile.h - an open-ended pile pushed into sand (Nakamura 8): settings, the run, and its parts.
  *
  * Axisymmetric: x is the radius r, y the height above the bottom of the soil. The library's forces
  * are per radian; here and in the results they are those of the whole pile, 2 pi times as much.
@@ -17,7 +17,7 @@
 typedef struct pile_settings {
   double inner_diameter, wall;         /* m */
   double friction, speed, depth, rest; /* mu; m/s; m; s of waiting before the pile moves */
-  double xi, k;                   /* contact stiffness by seed B (58), or in kN/m; NaN: not so */
+  double xi, k;                   /* contact stiffness by Nakamura (58), or in kN/m; NaN: not so */
   const char *soil;               /* "WxH" */
   double width, height;           /* m, what `soil` says */
   double density, young, poisson; /* kg/m3, kPa, 1 */

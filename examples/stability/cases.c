@@ -1,4 +1,4 @@
-/* cases.c - the critical time step of one soil column, seed A 3.3.
+/* cases.c - the critical time step of one soil column, Yoshida 3.3.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "cases.h"
 
@@ -8,7 +8,7 @@
 #include <stdio.h>
 
 static const double WIDTH = 10.0, HEIGHT = 100.0;      /* m */
-static const double PEAK_TIME = 0.25, FREQUENCY = 4.0; /* s, Hz: the seed's Ricker pulse */
+static const double PEAK_TIME = 0.25, FREQUENCY = 4.0; /* s, Hz: the paper's Ricker pulse */
 
 double method_duration(const method *m, double velocity) {
   if (!isnan(m->duration)) return m->duration;

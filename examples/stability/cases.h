@@ -22,12 +22,12 @@ typedef struct stability_case {
   char wave; /* 'S' or 'P' */
   int integrator;
   double radius, velocity, damping; /* R m, V m/s (of the wave), h */
-  double other; /* m/s: the other wave's velocity; 0: Vp = 2 Vs as in the seed */
+  double other; /* m/s: the other wave's velocity; 0: Vp = 2 Vs as in the paper */
   /* found; NaN: not asked for or not defined */
   double linear;            /* s */
   double stepping;          /* s: the largest step that ran stably */
   double unstable;          /* s: the smallest that did not, at most accuracy times above */
-  double table2;            /* s: the seed's printed regression, h up to 0.22 */
+  double table2;            /* s: the paper's printed regression, h up to 0.22 */
   int64_t particles, steps; /* of the column, of all its runs */
   mps_status status;
   char why[320]; /* of a failure */
@@ -37,7 +37,7 @@ typedef struct stability_case {
  * unstable mode, which grows e-fold in few steps, has then been excited everywhere. The limit of
  * the Euler method, which fails by slow growth, depends on it. */
 double method_duration(const method *m, double velocity);
-/* The seed's particles: 10 m x 100 m, rounded to whole particles (R = 1.6 m: 3 x 31). */
+/* The paper's particles: 10 m x 100 m, rounded to whole particles (R = 1.6 m: 3 x 31). */
 int64_t case_particles(double radius);
 double case_vs(const stability_case *x);
 double case_vp(const stability_case *x);

@@ -1,4 +1,4 @@
-/* figures.c - Figures 3 to 10 of seed A from the tables of the study. Lines are linear theory,
+/* figures.c - Figures 3 to 10 of Yoshida from the tables of the study. Lines are linear theory,
  * marks are bisection by time stepping. SPDX-License-Identifier: BSD-3-Clause */
 #include "study.h"
 
@@ -186,7 +186,7 @@ static bool figure7(app *a, const study *s, const char *directory) {
 /* ---- Figures 8 to 10: the regression -----------------------------------------------------------
  */
 
-/* The regression shown: of the stepping limits, as in the seed, where there are any. */
+/* The regression shown: of the stepping limits, as in the paper, where there are any. */
 static const regression *shown(const study *s, int wave) {
   return has_stepping(s) ? &s->stepping[wave] : &s->linear[wave];
 }

@@ -1,4 +1,4 @@
-/* study.c - runs the seed's parameter study in parallel and fits its regression.
+/* study.c - runs the paper's parameter study in parallel and fits its regression.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "study.h"
 
@@ -11,7 +11,7 @@ const double study_radius[STUDY_RADII] = {0.25, 0.5, 1.0, 1.6};
 const double study_velocity[STUDY_VELOCITIES] = {100.0, 200.0, 400.0, 800.0};
 const double study_damping[STUDY_DAMPINGS] = {0.001, 0.0022, 0.0048, 0.01, 0.022,
                                               0.048, 0.1,    0.22,   0.48, 1.0};
-static const double FIT_LIMIT = 0.2201; /* the seed fits h up to 0.22 */
+static const double FIT_LIMIT = 0.2201; /* the paper fits h up to 0.22 */
 
 /* ---- the cases ------------------------------------------------------------------------------- */
 

@@ -1,4 +1,4 @@
-/* study.h - the seed's parameter study (Table 1): 320 cases; and its Figure 3: 60
+/* study.h - the paper's parameter study (Table 1): 320 cases; and its Figure 3: 60
  * cases that compare the integrators (R 0.5 and 1.6 m, V 100 m/s, S wave).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_STABILITY_STUDY_H
@@ -28,7 +28,7 @@ typedef struct regression {
 } regression;
 
 /* The Euler method fails by slow growth: a criterion near the response itself would measure
- * something else than instability, so the integrators are compared at the seed's 1e15. */
+ * something else than instability, so the integrators are compared at the paper's 1e15. */
 #define STUDY_INTEGRATOR_CRITERION 1e15
 
 typedef struct study {
@@ -46,7 +46,7 @@ bool study_fit(app *a, study *s);
 bool study_write(app *a, const study *s, const char *directory);
 /* Members of summary.json, and the last lines on stdout. */
 bool study_summary(app *a, const study *s, const char *directory);
-/* fig03.png to fig10.png, as the seed's figures. */
+/* fig03.png to fig10.png, as the paper's figures. */
 bool study_draw(app *a, const study *s, const char *directory);
 
 #endif

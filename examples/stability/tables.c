@@ -144,7 +144,7 @@ bool study_summary(app *a, const study *s, const char *directory) {
   printf("Results: %s/ (limits.csv, regression.csv, summary.json, fig03.png to fig10.png)\n",
          directory);
   const regression *r = s->linear[0].known ? s->linear : s->stepping;
-  printf("%d cases, h up to 0.22: regression against the seed's Table 2 rms %.1f %% (S), %.1f %% "
+  printf("%d cases, h up to 0.22: regression against the paper's Table 2 rms %.1f %% (S), %.1f %% "
          "(P); the cases themselves against it %.1f %%, %.1f %%\n",
          STUDY_GRID, 100.0 * r[0].rms_fits, 100.0 * r[1].rms_fits, 100.0 * r[0].rms_table2,
          100.0 * r[1].rms_table2);

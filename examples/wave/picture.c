@@ -1,4 +1,4 @@
-/* picture.c - wave.png: acceleration against time and depth, as the seed's Figure 2.
+/* picture.c - wave.png: acceleration against time and depth, as the paper's Figure 2.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "results.h"
 

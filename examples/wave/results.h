@@ -22,7 +22,7 @@ typedef struct results {
 bool results_find(app *a, const settings *s, const column *c, const receivers *r,
                   const mps_signal *signal, results *out);
 bool results_write(app *a, const settings *s, const results *x);
-/* wave.png, as the seed's Figure 2. */
+/* wave.png, as the paper's Figure 2. */
 bool results_draw(app *a, const settings *s, const column *c, const receivers *r, const results *x);
 void results_print(const settings *s, const results *x);
 

@@ -1,4 +1,4 @@
-/* settings.c - the options of mps-wave: table, defaults of the seed's Figure 2, checks.
+/* settings.c - the options of mps-wave: table, defaults of the paper's Figure 2, checks.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "settings.h"
 
@@ -11,7 +11,7 @@
 enum { UNIT_FILE, UNIT_SI, UNIT_G, UNIT_GAL };
 static const double unit_factor[] = {1.0, 1.0, 9.80665, 0.01}; /* to m/s2 */
 
-static const settings seed = {
+static const settings defaults = {
     .radius = 0.5,
     .width = 10.0,
     .height = 100.0,
@@ -38,7 +38,7 @@ static const settings seed = {
 };
 
 static const char purpose[] =
-    "Seismic wave through a soil column of particles (explicit MPS). The defaults are the seed's\n"
+    "Seismic wave through a soil column of particles (explicit MPS). The defaults are the paper's\n"
     "Figure 2: a Ricker pulse rises 100 m in about 1 s and doubles at the free surface.";
 
 /* ---- checks of combinations ------------------------------------------------------------------ */
@@ -98,7 +98,7 @@ static int check_rest(const options_program *program, settings *s) {
 /* ---- the table ------------------------------------------------------------------------------- */
 
 int settings_parse(settings *s, int argc, char **argv) {
-  *s = seed;
+  *s = defaults;
   option table[] = {
       OPTION_HEADING("Ground"),
       OPTION_NUMBER("radius", "m", OPTION_POSITIVE, &s->radius,
@@ -156,7 +156,7 @@ int settings_parse(settings *s, int argc, char **argv) {
       OPTION_HEADING("Method"),
       OPTION_CHOICE("integrator", "euler|leapfrog|verlet", &s->integrator, "time integration"),
       OPTION_CHOICE("rotation", "11|12", &s->rotation,
-                    "the seed's equation that removes the rigid rotation"),
+                    "the paper's equation that removes the rigid rotation"),
       OPTION_CHOICE("torque", "conserving|printed", &s->torque,
                     "prefactor of (A14): d conserves angular momentum, 2d is as printed"),
       OPTION_NUMBER("dt", "s", OPTION_POSITIVE, &s->dt, "time step"),

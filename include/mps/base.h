@@ -3,15 +3,15 @@
  *
  * Units: SI throughout (m, kg, s, N, Pa, rad) unless a docstring says otherwise.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPS_BASE_H
-#define MPS_BASE_H
+#ifndef LIBMPS_BASE_H
+#define LIBMPS_BASE_H
 
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
 #define MPS_VERSION_MAJOR 0
-#define MPS_VERSION_MINOR 1
+#define MPS_VERSION_MINOR 2
 #define MPS_VERSION_PATCH 0
 
 #if defined(__GNUC__) || defined(__clang__)

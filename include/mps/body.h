@@ -1,4 +1,4 @@
-/* mps/body.h - rigid bodies: shape, motion, friction, and the reaction they feel (seed B 5).
+/* mps/body.h - rigid bodies: shape, motion, friction, and the reaction they feel (Nakamura 5).
  *
  * A body's shape is given in its own frame, whose origin is the body's reference point: the
  * rotation turns about it, moments refer to it, and a free body has its centre of mass there. In
@@ -9,10 +9,11 @@
  * body moves it and writes the reaction; without one, mps_body_advance does. One solver at a time
  * may use a body. Thread rule: one thread at a time per body (and context).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPS_BODY_H
-#define MPS_BODY_H
+#ifndef LIBMPS_BODY_H
+#define LIBMPS_BODY_H
 
 #include <mps/signal.h>
+#include <mps/solver.h>
 
 MPS_EXTERN_C_BEGIN
 
@@ -34,11 +35,11 @@ typedef struct mps_body_def {
   double velocity[3]; /* m/s at time 0; free bodies only */
   double spin[3];     /* rad/s, in space, at time 0; free bodies only */
   double friction;    /* Coulomb's mu on the surface, >= 0; default 0 */
-  double penalty;     /* contact stiffness k of seed B (28), N/m (2D: per unit thickness), > 0; 0
+  double penalty;     /* contact stiffness k of Nakamura (28), N/m (2D: per unit thickness), > 0; 0
                          (default): from xi, or where that is 0 too, 1.33 (K + 4G/3) of the
                          particle's material, in 3D times the particles' spacing. In axisymmetry
                          each is multiplied by the particle's radius */
-  double xi;          /* in (0, 1): k from seed B (58), 2 (1 - xi) (K + 4G/3)/(n CFL^2) with n
+  double xi;          /* in (0, 1): k from Nakamura (58), 2 (1 - xi) (K + 4G/3)/(n CFL^2) with n
                          particles a cell, in 3D times the cell's size; n and CFL are those of the
                          solver's definition. 0 (default): not so. Exclusive with penalty */
   double mass;        /* kg, 2D: per unit thickness, > 0; free bodies only */
@@ -182,15 +183,8 @@ MPS_API int32_t mps_body_part_count(const mps_body *body); /* "rest" included */
 /** Number of the part `name`, or -1. */
 MPS_API int32_t mps_body_part(const mps_body *body, const char *name);
 
-/** What particles do to the body. The last step's force is its mean over the step. */
-typedef struct mps_reaction {
-  double force[3];          /* N, of the last step */
-  double moment[3];         /* N m about the reference point, of the last step; 2D: [2] */
-  double impulse[3];        /* N s since creation */
-  double moment_impulse[3]; /* N m s since creation, about the reference point as it moved */
-  int64_t contacts;         /* particles in contact in the last step */
-} mps_reaction;
-/** Reaction on one part, or on the whole body (`part` -1). */
+/** What particles do to one part of the body, or to the whole body (`part` -1); `count` is the number
+ *  of particles in contact. */
 MPS_API MPS_NODISCARD mps_status mps_body_get_reaction(mps_body *body, int32_t part,
                                                        mps_reaction *out);
 

@@ -4,8 +4,8 @@
  * state: distinct contexts are independent and may be used from distinct threads at once. One
  * context, and the objects made from it, are used by one thread at a time.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPS_CONTEXT_H
-#define MPS_CONTEXT_H
+#ifndef LIBMPS_CONTEXT_H
+#define LIBMPS_CONTEXT_H
 
 #include <mps/base.h>
 

@@ -1,4 +1,4 @@
-/* mps/dynamics.h - explicit MPS elastodynamics (seed A): earthquake response of an elastic body
+/* mps/dynamics.h - explicit MPS elastodynamics (Yoshida): earthquake response of an elastic body
  * of particles in plane strain, with Euler, leapfrog and Verlet time integration, Rayleigh
  * damping, driven, viscous and free-field boundaries, and the stability limit of the time step.
  *
@@ -21,39 +21,40 @@
  * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
  * its results are the same bit for bit for every number of threads.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPS_DYNAMICS_H
-#define MPS_DYNAMICS_H
+#ifndef LIBMPS_DYNAMICS_H
+#define LIBMPS_DYNAMICS_H
 
 #include <mps/kernel.h>
 #include <mps/particles.h>
 #include <mps/signal.h>
+#include <mps/solver.h>
 
 MPS_EXTERN_C_BEGIN
 
 typedef struct mps_dynamics mps_dynamics;
 
 typedef enum mps_integrator {
-  MPS_INTEGRATOR_EULER = 0,    /* seed A (2), (3) corrected */
-  MPS_INTEGRATOR_LEAPFROG = 1, /* seed A (4), (5) */
-  MPS_INTEGRATOR_VERLET = 2    /* seed A (8) */
+  MPS_INTEGRATOR_EULER = 0,    /* Yoshida (2), (3) corrected */
+  MPS_INTEGRATOR_LEAPFROG = 1, /* Yoshida (4), (5) */
+  MPS_INTEGRATOR_VERLET = 2    /* Yoshida (8) */
 } mps_integrator;
 
 /** How the rigid rotation is taken out of a pair's relative position. */
 typedef enum mps_rotation {
-  MPS_ROTATION_MEAN_ANGLE = 11, /* seed A (11): u = r - R((th_i + th_j)/2) r0 */
-  MPS_ROTATION_MEAN_MATRIX = 12 /* seed A (12): u = r - (R_i + R_j)/2 r0 */
+  MPS_ROTATION_MEAN_ANGLE = 11, /* Yoshida (11): u = r - R((th_i + th_j)/2) r0 */
+  MPS_ROTATION_MEAN_MATRIX = 12 /* Yoshida (12): u = r - (R_i + R_j)/2 r0 */
 } mps_rotation;
 
 typedef enum mps_torque {
-  MPS_TORQUE_CONSERVING = 0, /* seed A (A14) with prefactor d: angular momentum is conserved */
+  MPS_TORQUE_CONSERVING = 0, /* Yoshida (A14) with prefactor d: angular momentum is conserved */
   MPS_TORQUE_PRINTED = 1     /* prefactor 2d as printed: not conserving, for comparison only */
 } mps_torque;
 
 /** Stiffness-proportional damping where the ratio h differs between particles. With one ratio for
  * all the two are the same. */
 typedef enum mps_damping {
-  MPS_DAMPING_PAIR = 0,    /* as element damping, seed A (A15): keeps momentum, dissipates always */
-  MPS_DAMPING_PARTICLE = 1 /* seed A (A24): each particle's whole restoring force times its h; the
+  MPS_DAMPING_PAIR = 0,    /* as element damping, Yoshida (A15): keeps momentum, dissipates always */
+  MPS_DAMPING_PARTICLE = 1 /* Yoshida (A24): each particle's whole restoring force times its h; the
                               stress at a layer boundary is then undamped */
 } mps_damping;
 
@@ -89,10 +90,6 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_create(mps_context *context, mps_p
 MPS_API void mps_dynamics_destroy(mps_dynamics **dynamics);
 
 /* ---- boundaries: before the first step ------------------------------------------------------- */
-
-#define MPS_DOF_X 1u
-#define MPS_DOF_Y 2u
-#define MPS_DOF_ROTATION 4u
 
 /** Holds the degrees of freedom `dofs` (MPS_DOF_... or-ed) of `count` particles at their present
  *  value: MPS_DOF_Y is a horizontal roller (S wave), MPS_DOF_X a vertical one (P wave). */
@@ -220,7 +217,7 @@ typedef struct mps_bisection_def {
   uint32_t struct_size;
   int32_t reserved;
   double criterion;    /* m/s2, > 0: a run is unstable when any |acceleration| exceeds it; 1e15 */
-  double accuracy;     /* ratio of the bounds at which to stop, > 1; default 1.2 (seed A, 3.3) */
+  double accuracy;     /* ratio of the bounds at which to stop, > 1; default 1.2 (Yoshida, 3.3) */
   double duration;     /* s of each run, > 0; default 2.5 */
   double lower, upper; /* s: first bounds, lower < upper; 0 (default): from the linear limit. They
                           are tried and moved apart until one is stable and the other not. */
@@ -239,7 +236,7 @@ typedef struct mps_bisection {
   int64_t runs, steps;     /* what it took */
 } mps_bisection;
 
-/** Limit by time stepping, seed A 3.3: runs from the initial state (the fields at creation or at
+/** Limit by time stepping, Yoshida 3.3: runs from the initial state (the fields at creation or at
  *  the last restart) with the geometric mean of the bounds until their ratio is below the
  *  accuracy; ends in the initial state with the former dt. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_limit_stepping(mps_dynamics *dynamics,
@@ -268,10 +265,10 @@ static inline mps_predict_def mps_predict_defaults(void) {
 typedef struct mps_prediction {
   double linear;               /* s: own linear theory, edges of a body allowed for; use this one */
   double omega;                /* rad/s, highest eigenfrequency of the endless lattice */
-  double printed_s, printed_p; /* s: seed A (14)-(16) with Table 2; NaN outside its range of h,
-                                  0.001 to 0.22; h = 0 is the seed's undamped case, its 0.001 */
+  double printed_s, printed_p; /* s: Yoshida (14)-(16) with Table 2; NaN outside its range of h,
+                                  0.001 to 0.22; h = 0 is the paper's undamped case, its 0.001 */
   double printed;              /* the smaller of the two */
-  int32_t printed_in_range;    /* 1: R, V and h within the range of the seed's study */
+  int32_t printed_in_range;    /* 1: R, V and h within the range of the paper's study */
   int32_t printed_is_safe;     /* 1: printed <= linear. It can be 1.5 times above. */
 } mps_prediction;
 
@@ -281,7 +278,7 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_predict_dt(mps_context *context,
 
 #define MPS_FIT_MAX_DAMPINGS 32
 
-/** Regression seed A (14)-(16): dt = a1 (R/V)^a2 for each damping ratio; log10 a1 and log10 a2
+/** Regression Yoshida (14)-(16): dt = a1 (R/V)^a2 for each damping ratio; log10 a1 and log10 a2
  *  are quadratics of log10 h over h <= h_max. */
 typedef struct mps_limit_fit {
   int32_t dampings; /* number of distinct h */

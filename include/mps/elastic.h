@@ -1,4 +1,4 @@
-/* mps/elastic.h - implicit particle elasticity for thick structures (seed C, sections 2 and 3):
+/* mps/elastic.h - implicit particle elasticity for thick structures (Chikazawa, sections 2 and 3):
  * plates, walls and cantilevers of any lattice shape in 2D (plane stress or strain) and 3D, loaded
  * by forces, tractions, pressures and prescribed displacements. Small displacements; the sparse
  * symmetric system is solved by CHOLMOD, or by conjugate gradients in a limited memory.
@@ -19,8 +19,8 @@
  * time per context; the work is shared among the context's threads and, inside the factorisation,
  * those of the BLAS library.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPS_ELASTIC_H
-#define MPS_ELASTIC_H
+#ifndef LIBMPS_ELASTIC_H
+#define LIBMPS_ELASTIC_H
 
 #include <mps/particles.h>
 
@@ -30,7 +30,7 @@ typedef struct mps_elastic mps_elastic;
 
 typedef enum mps_elastic_method {
   MPS_ELASTIC_CONSERVATIVE = 0, /* gradient from shared cell faces, stabilised; 2D and 3D */
-  MPS_ELASTIC_PUBLISHED = 1     /* seed C (10), corrected, R and D eliminated; 2D */
+  MPS_ELASTIC_PUBLISHED = 1     /* Chikazawa (10), corrected, R and D eliminated; 2D */
 } mps_elastic_method;
 
 typedef enum mps_elastic_state {

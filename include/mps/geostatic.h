@@ -6,8 +6,8 @@
  *
  * Thread rule: one thread at a time per set and context; callbacks run on the calling thread.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPS_GEOSTATIC_H
-#define MPS_GEOSTATIC_H
+#ifndef LIBMPS_GEOSTATIC_H
+#define LIBMPS_GEOSTATIC_H
 
 #include <mps/particles.h>
 

@@ -9,8 +9,8 @@
  * A program that calls HDF5 itself must not do so in another thread while a function of this header
  * runs, unless its HDF5 is a thread-safe build. Its own settings of HDF5's error printing stay.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPS_IO_H
-#define MPS_IO_H
+#ifndef LIBMPS_IO_H
+#define LIBMPS_IO_H
 
 #include <mps/mpm.h>
 #include <mps/particles.h>

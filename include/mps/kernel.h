@@ -2,8 +2,8 @@
  *
  * A kernel is immutable after creation: it may be shared by objects, contexts and threads.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPS_KERNEL_H
-#define MPS_KERNEL_H
+#ifndef LIBMPS_KERNEL_H
+#define LIBMPS_KERNEL_H
 
 #include <mps/context.h>
 
@@ -12,7 +12,7 @@ MPS_EXTERN_C_BEGIN
 typedef struct mps_kernel mps_kernel;
 
 typedef enum mps_kernel_kind {
-  MPS_KERNEL_MPS = 0 /* w(r) = re/r - 1 for 0 < r < re, else 0: seed A (A8), seed C (6) */
+  MPS_KERNEL_MPS = 0 /* w(r) = re/r - 1 for 0 < r < re, else 0: Yoshida (A8), Chikazawa (6) */
 } mps_kernel_kind;
 
 /** Creates a kernel with radius of influence `radius` (re, m, finite, > 0). */
@@ -26,7 +26,7 @@ MPS_API double mps_kernel_radius(const mps_kernel *kernel);
 /** w(r), r in m. Zero at r <= 0 and r >= re. */
 MPS_API double mps_kernel_weight(const mps_kernel *kernel, double r);
 /** Interior particle number density n0 = sum_j w(r0_ij) of the infinite square (dim 2) or cubic
- *  (dim 3) lattice of spacing `spacing` (m, > 0): seed A (A9) with the sum over j. */
+ *  (dim 3) lattice of spacing `spacing` (m, > 0): Yoshida (A9) with the sum over j. */
 MPS_API MPS_NODISCARD mps_status mps_kernel_density(mps_context *context, const mps_kernel *kernel,
                                                     int32_t dim, double spacing, double *out);
 

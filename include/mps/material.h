@@ -9,8 +9,8 @@
  * direction out of the plane or the hoop. Stress is stored as xx, yy, zz, xy, zx, yz; in 2D the
  * first four. Angles are in radians.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPS_MATERIAL_H
-#define MPS_MATERIAL_H
+#ifndef LIBMPS_MATERIAL_H
+#define LIBMPS_MATERIAL_H
 
 #include <mps/context.h>
 
@@ -32,7 +32,7 @@ typedef struct mps_material_block {
   double dt;            /* s, > 0 */
   /** In: velocity gradient of the step, dv_i/dx_j, 1/s. In 2D zz may be NULL: plane strain. */
   const double *gradient[9];
-  /** In, out: deformation gradient, updated by seed B (44). All the components of `dim` (in 2D also
+  /** In, out: deformation gradient, updated by Nakamura (44). All the components of `dim` (in 2D also
    *  zz), or all NULL where the law does not need it (mps_material_needs_deformation). */
   double *deformation[9];
   /** In, out: V/V0, multiplied by 1 + dt tr(d), or det F with a deformation gradient; kept by
@@ -46,7 +46,7 @@ typedef struct mps_material_block {
 
 /* ---- laws ----------------------------------------------------------------------------------
  * E is Young's modulus (Pa, finite, > 0), nu Poisson's ratio (-1 < nu < 0.5). Every law but the
- * neo-Hookean solid and the fluid turns the stress of the step before by the step's spin, seed B
+ * neo-Hookean solid and the fluid turns the stress of the step before by the step's spin, Nakamura
  * (45)-(47) in a form that keeps its principal values to the last bits, adds C:d, and then maps the
  * trial stress back to the yield surface. Errors: MPS_ERROR_ARGUMENT with the value and its range,
  * MPS_ERROR_MEMORY. */
@@ -66,7 +66,7 @@ typedef struct mps_von_mises_def {
   double young;        /* Pa, > 0; no default */
   double poisson;      /* default 0.3 */
   double yield_stress; /* Pa, in uniaxial tension, > 0; no default. Plane strain with cohesion c:
-                          sqrt(3) c, seed B (54) */
+                          sqrt(3) c, Nakamura (54) */
   double hardening;    /* Pa per plastic strain, >= 0; default 0 */
 } mps_von_mises_def;
 
@@ -74,13 +74,13 @@ typedef struct mps_von_mises_def {
  *  apex; the flow potential is the same kind of cone for the angle of dilation. */
 typedef enum mps_cone {
   MPS_CONE_PLANE_STRAIN = 0,  /* the same strength in plane strain, whatever the dilation; where
-                                 that equals the friction: seed B (56) */
+                                 that equals the friction: Nakamura (56) */
   MPS_CONE_CIRCUMSCRIBED = 1, /* outer cone, through the edges of triaxial compression */
-  MPS_CONE_INSCRIBED = 2,     /* inner cone, the largest that stays inside: always seed B (56) */
+  MPS_CONE_INSCRIBED = 2,     /* inner cone, the largest that stays inside: always Nakamura (56) */
   MPS_CONE_EXTENSION = 3      /* through the edges of triaxial extension */
 } mps_cone;
 
-/** Drucker-Prager: sqrt(J2) + alpha I1 = kappa, seed B (55), perfectly plastic. */
+/** Drucker-Prager: sqrt(J2) + alpha I1 = kappa, Nakamura (55), perfectly plastic. */
 typedef struct mps_drucker_prager_def {
   uint32_t struct_size;
   int32_t cone;    /* mps_cone, default MPS_CONE_PLANE_STRAIN */

@@ -1,4 +1,4 @@
-/* mps/mpm.h - the WLS-MPM grid solver (seed B): large deformation of particles that move through a
+/* mps/mpm.h - the WLS-MPM grid solver (Nakamura): large deformation of particles that move through a
  * grid of nodes, with frictional contact against rigid bodies. Plane strain, axisymmetry (x is the
  * radius, y the axis) or space.
  *
@@ -20,8 +20,8 @@
  * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
  * its results are the same bit for bit for every number of threads.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPS_MPM_H
-#define MPS_MPM_H
+#ifndef LIBMPS_MPM_H
+#define LIBMPS_MPM_H
 
 #include <mps/body.h>
 #include <mps/material.h>
@@ -41,7 +41,7 @@ typedef enum mps_geometry {
 /** What weighs the particles' velocities on their way to the nodes. */
 typedef enum mps_transfer {
   MPS_TRANSFER_SHAPE = 0, /* the shape functions: momentum is kept everywhere */
-  MPS_TRANSFER_WEIGHT = 1 /* the weights, seed B (12), (39): near bodies and edges the momentum
+  MPS_TRANSFER_WEIGHT = 1 /* the weights, Nakamura (12), (39): near bodies and edges the momentum
                              drifts; for comparison */
 } mps_transfer;
 
@@ -60,9 +60,9 @@ typedef enum mps_wall {
                               with the waves: one that passes the wall has left the domain */
 } mps_wall;
 
-/** How particles and nodes exchange what they hold: seed B Table 1. */
+/** How particles and nodes exchange what they hold: Nakamura Table 1. */
 typedef enum mps_scheme {
-  MPS_SCHEME_WLS = 0,     /* the seed's: fitted shape functions; particles carry L to the nodes */
+  MPS_SCHEME_WLS = 0,     /* the paper's: fitted shape functions; particles carry L to the nodes */
   MPS_SCHEME_STANDARD = 1 /* the original material point method, for comparison: the B-splines and
                              their own derivatives are the shape functions, also at bodies and
                              walls, and particles carry no L. Nodes beyond a wall are held as those
@@ -83,7 +83,7 @@ typedef struct mps_mpm_def {
   uint32_t struct_size;
   int32_t geometry; /* mps_geometry, default PLANE_STRAIN; of as many dimensions as the set.
                        In 2D the third value of each array below is not read */
-  int32_t spline;   /* degree of the B-spline weights: 3 (default, seed B (36)) or 2 */
+  int32_t spline;   /* degree of the B-spline weights: 3 (default, Nakamura (36)) or 2 */
   int32_t transfer; /* mps_transfer, default SHAPE */
   double cell;      /* h, m, > 0; no default. Usually 2 spacings */
   double origin[3]; /* m: a node lies here; default 0 */
@@ -92,7 +92,7 @@ typedef struct mps_mpm_def {
   int32_t wall_lower[3], wall_upper[3]; /* mps_wall of each, default ROLLER; on the axis
                                            r = 0 ROLLER or FIXED */
   double gravity[3];                    /* m/s2, default 0 */
-  double dt;          /* s, > 0, or 0 (default): each step the largest by seed B (49), (50), and by
+  double dt;          /* s, > 0, or 0 (default): each step the largest by Nakamura (49), (50), and by
                          rho h^2/(4 dim viscosity) of viscous laws. At most that
                          limit at creation; a warning tells when it gets above the fraction below */
   double courant;     /* fraction of that limit, in (0, 1]; default 0.5 */

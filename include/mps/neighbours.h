@@ -1,7 +1,7 @@
 /* mps/neighbours.h - fixed-radius neighbour lists by a cell list, for arbitrary positions.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPS_NEIGHBOURS_H
-#define MPS_NEIGHBOURS_H
+#ifndef LIBMPS_NEIGHBOURS_H
+#define LIBMPS_NEIGHBOURS_H
 
 #include <mps/context.h>
 

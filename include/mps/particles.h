@@ -5,8 +5,8 @@
  * appending or sorting particles changes the order and the epoch, and invalidates views.
  * Thread rule: one thread at a time per set (and per context).
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPS_PARTICLES_H
-#define MPS_PARTICLES_H
+#ifndef LIBMPS_PARTICLES_H
+#define LIBMPS_PARTICLES_H
 
 #include <mps/context.h>
 

@@ -5,8 +5,8 @@
  * which rests at its first sample. Formats, units and the baseline correction of recorded motions
  * are explained in docs/signals.md.
  * SPDX-License-Identifier: BSD-3-Clause */
-#ifndef MPS_SIGNAL_H
-#define MPS_SIGNAL_H
+#ifndef LIBMPS_SIGNAL_H
+#define LIBMPS_SIGNAL_H
 
 #include <mps/context.h>
 
@@ -35,7 +35,7 @@ typedef enum mps_signal_baseline {
   MPS_BASELINE_CUBIC = 4      /* a - c1 - 2 c2 t - 3 c3 t^2 */
 } mps_signal_baseline;
 
-/** Ricker wavelet, acceleration seed A (9): a(t) = amplitude (2 c (t-tp)^2 - 1) exp(-c (t-tp)^2)
+/** Ricker wavelet, acceleration Yoshida (9): a(t) = amplitude (2 c (t-tp)^2 - 1) exp(-c (t-tp)^2)
  *  with c = (pi fc)^2, its exact velocity -amplitude (t-tp) exp(-c (t-tp)^2), and its exact
  *  displacement amplitude (exp(-c (t-tp)^2) - exp(-c tp^2)) / (2 c), which starts from zero. The
  *  first instant is t = 0: there the wavelet already moves a little, by exp(-c tp^2) relative to

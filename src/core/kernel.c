@@ -1,4 +1,4 @@
-/* kernel.c - weight functions: w = re/r - 1, seed A (A8), and its lattice density, seed A (A9).
+/* kernel.c - weight functions: w = re/r - 1, Yoshida (A8), and its lattice density, Yoshida (A9).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "internal.h"
 

@@ -55,9 +55,9 @@ static bool keep_signal(mps_dynamics *dynamics, mps_signal *signal) {
 mps_status mps_dynamics_hold(mps_dynamics *dynamics, uint32_t dofs, int64_t count,
                              const int64_t *ids) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
-  if (dofs == 0 || dofs > (MPS_DOF_X | MPS_DOF_Y | MPS_DOF_ROTATION))
+  if (dofs == 0 || dofs & ~(MPS_DOF_X | MPS_DOF_Y | MPS_DOF_ROTATION))
     return mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT,
-                     "dofs is %u, allowed is a combination of 1 (x), 2 (y) and 4 (rotation)", dofs);
+                     "dofs is %u, allowed is a combination of 1 (x), 2 (y) and 8 (rotation)", dofs);
   const mps_status status = check_list(dynamics, __func__, count, ids);
   if (status != MPS_OK) return status;
   for (int64_t k = 0; k < count; k++) {

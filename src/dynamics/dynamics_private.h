@@ -92,7 +92,7 @@ void mpsi_tangent_apply(mps_dynamics *dynamics, const double *weight, const doub
 /* Square of the highest eigenfrequency (rad/s)^2 of the endless square lattice. */
 double mpsi_lattice_omega2(double spacing, double radius_ratio, double density, double vs,
                            double vp, int32_t torque);
-/* Seed A's scheme at the limit z = -1: largest dt for a mode of frequency^2 omega2. */
+/* Yoshida's scheme at the limit z = -1: largest dt for a mode of frequency^2 omega2. */
 double mpsi_damped_limit(double omega2, double alpha, double beta);
 
 #endif

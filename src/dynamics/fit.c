@@ -1,4 +1,4 @@
-/* fit.c - the regression of stability limits, seed A (14)-(16), by LAPACK least squares, and the
+/* fit.c - the regression of stability limits, Yoshida (14)-(16), by LAPACK least squares, and the
  * printed coefficients of its Table 2.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/internal.h"
@@ -7,7 +7,7 @@
 
 #include <lapacke.h>
 
-/* Seed A, Table 2: b11 b12 b13, b21 b22 b23. */
+/* Yoshida, Table 2: b11 b12 b13, b21 b22 b23. */
 static const double printed_s[2][3] = {{0.264375, 1.621563, 2.540176},
                                        {0.04089, 0.262491, 0.438239}};
 static const double printed_p[2][3] = {{0.304301, 1.666102, 2.614558},

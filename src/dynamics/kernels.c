@@ -1,4 +1,4 @@
-/* kernels.c - the time step's inner loops: pair forces seed A (A1)-(A14), Rayleigh damping (A24)
+/* kernels.c - the time step's inner loops: pair forces Yoshida (A1)-(A14), Rayleigh damping (A24)
  * and the three integrators (2)-(8). This file is compiled once for each instruction set, with
  * MPSI_LEVEL set; fused multiply-add is off (build flags), so every level gives the same bits.
  *

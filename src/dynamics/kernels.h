@@ -7,7 +7,7 @@
 
 #include <mps/dynamics.h>
 
-/* The arrays of a body, one value a particle, in sorted order. Names follow the seed. */
+/* The arrays of a body, one value a particle, in sorted order. Names follow the paper. */
 typedef struct mpsi_state {
   double *dx, *dy, *th;  /* displacement (m), rotation (rad): r = r0 + d */
   double *ox, *oy, *oth; /* the same one step earlier (Verlet) */
@@ -28,8 +28,8 @@ typedef struct mpsi_state {
  * by pairs, and cheaper. */
 typedef enum mpsi_damping {
   MPSI_UNDAMPED = 0,
-  MPSI_BY_PARTICLES = 1, /* seed A (A24): beta_i times the particle's whole force */
-  MPSI_BY_PAIRS = 2 /* seed A (A15): each pair's shear force times the mean beta, each particle's
+  MPSI_BY_PARTICLES = 1, /* Yoshida (A24): beta_i times the particle's whole force */
+  MPSI_BY_PAIRS = 2 /* Yoshida (A15): each pair's shear force times the mean beta, each particle's
                        pressure times its own, as element damping does */
 } mpsi_damping;
 

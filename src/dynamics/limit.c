@@ -1,6 +1,6 @@
 /* limit.c - the largest stable time step by linear theory, without time stepping.
  *
- * Seed A's scheme with Rayleigh damping (A24) first becomes unstable at z = -1. There
+ * Yoshida's scheme with Rayleigh damping (A24) first becomes unstable at z = -1. There
  *   4 = lambda_max [ 2 dt A + dt^2 M^-1 K + 2 dt M^-1 K_beta ],  A = diag(alpha_i), K_beta the
  * stiffness with each part times its beta (by pairs), or diag(beta_i) K (by particles);
  * for one damping ratio that is dt = -(beta + alpha/w^2) + sqrt((beta + alpha/w^2)^2 + 4/w^2).

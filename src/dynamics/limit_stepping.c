@@ -1,4 +1,4 @@
-/* limit_stepping.c - the stability limit by bisection over whole runs, seed A 3.3.
+/* limit_stepping.c - the stability limit by bisection over whole runs, Yoshida 3.3.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "dynamics_private.h"
 
@@ -98,7 +98,7 @@ static mps_status bracket(search *s, double lower, double upper) {
   return status;
 }
 
-/* Steps 2 to 4 of the seed's algorithm: the geometric mean replaces one of the bounds. */
+/* Steps 2 to 4 of the paper's algorithm: the geometric mean replaces one of the bounds. */
 static mps_status bisect(search *s, double lower, double upper) {
   mps_status status = bracket(s, lower, upper);
   while (status == MPS_OK && s->result->unstable > s->def->accuracy * s->result->stable) {

@@ -22,8 +22,8 @@ typedef struct mpsi_pair_run {
   int32_t own_i, own_j; /* 1: this block owns that side and adds to it */
   double r0x, r0y;      /* m */
   double
-      kf; /* (4d/n0) w/r0^2 / 2, 1/m2: times (mu_i + mu_j) u is the force term, seed A (A6, A7) */
-  double kc; /* (d/n0) w/r0, 1/m: times cn is the divergence term, seed A (A11) */
+      kf; /* (4d/n0) w/r0^2 / 2, 1/m2: times (mu_i + mu_j) u is the force term, Yoshida (A6, A7) */
+  double kc; /* (d/n0) w/r0, 1/m: times cn is the divergence term, Yoshida (A11) */
 } mpsi_pair_run;
 
 /* Scattered pairs: state of i and j, added to particles ti and tj (-1: not added). An ordinary

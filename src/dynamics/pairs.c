@@ -1,4 +1,4 @@
-/* pairs.c - the pairs of the reference lattice closer than re, seed A (A8): those of the body,
+/* pairs.c - the pairs of the reference lattice closer than re, Yoshida (A8): those of the body,
  * with its period; those of a free-field column, which stands for horizontally endless ground; and
  * the forces of that ground on the edge of the body.
  * SPDX-License-Identifier: BSD-3-Clause */

@@ -1,5 +1,5 @@
 /* predict.c - the stable time step of uniform ground without any particles: own linear theory on
- * the endless lattice beside the printed regression of seed A (14)-(16).
+ * the endless lattice beside the printed regression of Yoshida (14)-(16).
  *
  * On the endless square lattice the tangent has plane waves exp(i k.x): a Hermitian 3 x 3 problem
  * for each wave vector. Its highest eigenvalue over all wave vectors bounds the scheme. For
@@ -139,7 +139,7 @@ mps_status mps_dynamics_predict_dt(mps_context *context, const mps_predict_def *
   const double edge = edge_factor(&def) * p.omega;
   p.linear = mpsi_damped_limit(edge * edge, h * 4.0 * pi * def.f1 * def.f2 / (def.f1 + def.f2),
                                h / (pi * (def.f1 + def.f2)));
-  /* the seed fitted h <= 0.22; its undamped case is its h = 0.001 */
+  /* the paper fitted h <= 0.22; its undamped case is its h = 0.001 */
   const double seed_h = h == 0.0 ? 0.001 : h;
   if (seed_h >= 0.001 && seed_h <= 0.22) {
     mps_limit_fit fit_s, fit_p;

@@ -1,4 +1,4 @@
-/* tangent.c - the tangent of the restoring forces at the reference state, seed A (A6), (A7), (A10),
+/* tangent.c - the tangent of the restoring forces at the reference state, Yoshida (A6), (A7), (A10),
  * (A11) and (A14) for small u and theta, in its symmetric form M^-1/2 K M^-1/2.
  *
  * Every pair term is the gradient of an energy in (x, y, theta) with half of a pair's moment to

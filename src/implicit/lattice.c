@@ -1,5 +1,5 @@
 /* lattice.c - from reference positions to integer lattice sites, neighbours within the radius of
- * influence, and the particle number densities n_i and n0 (seed C (6), (7)).
+ * influence, and the particle number densities n_i and n0 (Chikazawa (6), (7)).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_private.h"
 

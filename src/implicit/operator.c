@@ -7,7 +7,7 @@
  *   surfaces), W = mu eps:eps + lambda/2 (tr eps)^2, e_ij = u_j - u_i - (G_i + G_j)/2 (x_j - x_i),
  *   kappa = 2 alpha mu d V / n_i;
  * published: G_i = (d/n*) sum_j (u_j - u_i) (x) t w/r, so that (7) R = curl and (8) D = trace,
- *   W = n*_i/n0 (lambda/2 D^2 - mu/2 R^2), e_ij = u_j - u_i, kappa = 2 mu d V / n0: seed C (10)
+ *   W = n*_i/n0 (lambda/2 D^2 - mu/2 R^2), e_ij = u_j - u_i, kappa = 2 mu d V / n0: Chikazawa (10)
  *   with R and D eliminated, corrected as docs/verification/implicit-elastic.md says.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_private.h"

@@ -3,7 +3,7 @@
  *
  * conservative: eps = sym G, sigma = lambda tr(eps) + 2 mu eps.
  * published: the virial stress of the pairs, sigma_i = (d/n_i) sum_j w p_ij (x) t_ij with the pair
- *   vector p_ij of seed C (10), symmetric part.
+ *   vector p_ij of Chikazawa (10), symmetric part.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_private.h"
 

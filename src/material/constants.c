@@ -1,5 +1,5 @@
 /* constants.c - checks of parameters, elastic constants, and the cones of Drucker and Prager that
- * match Mohr and Coulomb, seed B (55)-(56).
+ * match Mohr and Coulomb, Nakamura (55)-(56).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "constants.h"
 

@@ -1,4 +1,4 @@
-/* laws.c - the loops of the constitutive laws over a block: trial stress seed B (45)-(47), return
+/* laws.c - the loops of the constitutive laws over a block: trial stress Nakamura (45)-(47), return
  * maps of von Mises (53) and Drucker-Prager (55), neo-Hookean solid, Newtonian fluid, and what a
  * user's law or Mohr-Coulomb needs around it. This file is compiled once for each instruction set,
  * with MPSI_LEVEL set; fused multiply-add is off (build flags), so every level gives the same bits.
@@ -139,7 +139,7 @@ MPSI_INLINE void mohr_coulomb_loop(const int geometry, const mpsi_law *law,
 /* ---- laws of the deformation gradient ---------------------------------------------------------
  */
 
-/* F = (1 + dt L) F, seed B (44), and V/V0 = det F. In 2D xz, yz, zx, zy are zero. */
+/* F = (1 + dt L) F, Nakamura (44), and V/V0 = det F. In 2D xz, yz, zx, zy are zero. */
 MPSI_INLINE void deform_loop(const int geometry, const mps_material_block *block) {
   const mpsi_columns columns = mpsi_columns_of(block);
   double *f[9], *volume = block->volume_ratio;

@@ -7,7 +7,7 @@
  *      if mps_material_needs_deformation. They must not overlap; any alignment will do, 64 bytes is
  *      fastest. They are contiguous: a particle is an index, not a stride. Particles of several
  *      materials: one call for each run of equal ones.
- *   2. mpsi_material_apply(). It does everything of seed B step 12 and 13: spin, trial stress,
+ *   2. mpsi_material_apply(). It does everything of Nakamura step 12 and 13: spin, trial stress,
  *      return map, and the new volume ratio (J *= 1 + dt tr(d), or det F). The particles at the
  *      limit of tension keep their volume (flag MPS_MATERIAL_APEX), else V drifts and dt shrinks.
  *      Laws that do not say mpsi_material_reads_volume() only multiply the column: the volume

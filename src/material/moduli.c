@@ -1,4 +1,4 @@
-/* moduli.c - the wave modulus K + 4G/3 of seed B (50) in the present state, for laws that stiffen.
+/* moduli.c - the wave modulus K + 4G/3 of Nakamura (50) in the present state, for laws that stiffen.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "material_private.h"
 

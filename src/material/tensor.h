@@ -1,5 +1,5 @@
 /* tensor.h - stress, strain increment and spin of one particle, for the vector loops: every
- * function is inlined, without branches but on literal arguments. Seed B (44)-(47).
+ * function is inlined, without branches but on literal arguments. Nakamura (44)-(47).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_TENSOR_H
 #define MPSI_TENSOR_H
@@ -11,7 +11,7 @@ typedef struct mpsi_sym {
   double xx, yy, zz, xy, yz, zx;
 } mpsi_sym;
 
-/* Spin increment, seed B (47): half of L - L^T times dt. */
+/* Spin increment, Nakamura (47): half of L - L^T times dt. */
 typedef struct mpsi_spin {
   double xy, yz, zx;
 } mpsi_spin;

@@ -4,7 +4,7 @@
  * A dashpot acts on each node of the wall. Its coefficient rho c A is shared out by the particles
  * in the cells at the wall: each stands for the area V/h and gives rho c V/h = c m/h to the wall's
  * nodes by the least-squares shape functions of that plane, which are those of the masses there
- * (seed B (5), (6) with one axis less). So a wall covered in part has the right force in sum, and
+ * (Nakamura (5), (6) with one axis less). So a wall covered in part has the right force in sum, and
  * its nodes the right ratio of damping to mass.
  *
  * R carries the stress at rest. It is the mean of the force that holds the node while the wall

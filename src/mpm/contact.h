@@ -1,4 +1,4 @@
-/* contact.h - one particle against one body: seed B (27), (28).
+/* contact.h - one particle against one body: Nakamura (27), (28).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_CONTACT_H
 #define MPSI_MPM_CONTACT_H

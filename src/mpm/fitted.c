@@ -1,6 +1,6 @@
 /* fitted.c - particles whose support bodies or edges cut: the least-squares fit over the active
- * nodes, transfers with it, and contact, seed B (5), (6), (28)-(30). With the standard scheme all
- * particles, and the splines in place of the fit, seed B Table 1. Compiled once for each
+ * nodes, transfers with it, and contact, Nakamura (5), (6), (28)-(30). With the standard scheme all
+ * particles, and the splines in place of the fit, Nakamura Table 1. Compiled once for each
  * instruction set.
  *
  * Active are, of the stencil's nodes in the domain: those in no body; the corners of the particle's
@@ -288,7 +288,7 @@ static void add_load(mpsi_load *load, const double *arm, const double *f) {
   load->moment[2] += arm[0] * f[1] - arm[1] * f[0];
 }
 
-/* Normal force and slip of a particle against one body, seed B (28)-(30). */
+/* Normal force and slip of a particle against one body, Nakamura (28)-(30). */
 MPSI_INLINE void scatter_contact(mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
                                  int64_t p, const support *at, const mpsi_shape_values *f,
                                  mpsi_meeting *meeting) {

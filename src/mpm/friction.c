@@ -1,5 +1,5 @@
 /* friction.c - contact at the nodes: the normal forces of all bodies first, then Coulomb friction
- * body by body, seed B (31)-(34), and what the bodies feel.
+ * body by body, Nakamura (31)-(34), and what the bodies feel.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_private.h"
 

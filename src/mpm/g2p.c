@@ -1,4 +1,4 @@
-/* g2p.c - nodes to particles, seed B (41)-(43), (48), one block of cells at a time, and then, while
+/* g2p.c - nodes to particles, Nakamura (41)-(43), (48), one block of cells at a time, and then, while
  * its particles are in the cache, their law and the speeds that bound the time step, (49), (50).
  * Particles with a cut support: fitted.c. Compiled once for each instruction set.
  * SPDX-License-Identifier: BSD-3-Clause */

@@ -1,5 +1,5 @@
 /* grid.c - one block of nodes: emptied before the particles' sums; then velocities before and after
- * the forces, seed B (25), (26), (39).
+ * the forces, Nakamura (25), (26), (39).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_private.h"
 

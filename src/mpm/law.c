@@ -1,4 +1,4 @@
-/* law.c - the materials' laws on the particles of a block, seed B (45)-(48): a law sees runs of
+/* law.c - the materials' laws on the particles of a block, Nakamura (45)-(48): a law sees runs of
  * particles that obey it.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"

@@ -18,7 +18,7 @@
 #ifndef MPSI_MPM_PRIVATE_H
 #define MPSI_MPM_PRIVATE_H
 
-#include "contact/body.h"
+#include "body/body.h"
 #include "core/internal.h"
 #include "material/material_internal.h"
 #include "restart.h"
@@ -85,7 +85,7 @@ typedef struct mpsi_touch {
 
 typedef struct mpsi_touch_node {
   double normal[3]; /* of the surface at a node inside the body, else 0 */
-  double mass;      /* W: sum phi m of the particles in contact, seed B (30) */
+  double mass;      /* W: sum phi m of the particles in contact, Nakamura (30) */
   double slip[3];   /* S: sum phi m slip; then the tangential force over W */
   double force[3];  /* normal force fn, (29) */
 } mpsi_touch_node;

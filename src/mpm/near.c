@@ -1,6 +1,6 @@
 /* near.c - before each step: which blocks meet which bodies, which of their nodes lie inside a body
  * or outside the domain, and which are corners of cells that hold particles. These decide which
- * nodes a particle near a body may use (seed B 5.1, with the same-side test), and which blocks have
+ * nodes a particle near a body may use (Nakamura 5.1, with the same-side test), and which blocks have
  * particles with cut supports or need the velocity before the forces.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"

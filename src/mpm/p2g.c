@@ -1,4 +1,4 @@
-/* p2g.c - particles to nodes, seed B (23)-(25), (39), one block of cells at a time, for particles
+/* p2g.c - particles to nodes, Nakamura (23)-(25), (39), one block of cells at a time, for particles
  * with a full support or at one wall; the others go to fitted.c. Compiled once for each
  * instruction set.
  *

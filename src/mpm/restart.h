@@ -3,7 +3,7 @@
 #ifndef MPSI_MPM_RESTART_H
 #define MPSI_MPM_RESTART_H
 
-#include "contact/body.h"
+#include "body/body.h"
 
 #include <mps/mpm.h>
 

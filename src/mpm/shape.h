@@ -1,4 +1,4 @@
-/* shape.h - shape functions of one particle: B-spline weights, seed B (35), (36), and the weighted
+/* shape.h - shape functions of one particle: B-spline weights, Nakamura (35), (36), and the weighted
  * least-squares fit of a linear function over the active nodes, (5), (6), (37), (38).
  *
  * Lengths are in cells here: s = (x_i - x_p)/h, so that the moment matrix M = sum w P P^T with

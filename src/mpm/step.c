@@ -1,4 +1,4 @@
-/* step.c - running the WLS-MPM solver: the order of a step (seed B 6), its size, and what goes
+/* step.c - running the WLS-MPM solver: the order of a step (Nakamura 6), its size, and what goes
  * wrong. SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
 

@@ -1,5 +1,5 @@
 /* wall.h - particles whose support nothing but one wall of the domain cuts, across one axis. Their
- * fit, seed B (5), (6), falls apart into one along each axis: along the others the stencil is full,
+ * fit, Nakamura (5), (6), falls apart into one along each axis: along the others the stencil is full,
  * and across the wall, with the moments M0, M1, M2 of w over its active nodes,
  *   phi = w (M2 - M1 s)/D,  dphi/ds = w (M0 s - M1)/D,  D = M0 M2 - M1^2.
  * The shape function is phi times the w of the other axes, and its derivative along the wall's axis

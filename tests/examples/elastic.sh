@@ -11,7 +11,7 @@ for program in mps-cantilever mps-plate; do
   [ "$(awk 'length > 100' "$work/help" | wc -l)" -eq 0 ] || fail "$program --help has long lines"
 done
 
-# The seed's 153 particles, and the comparison of its Figure 6.
+# The paper's 153 particles, and the comparison of its Figure 6.
 "$1/mps-cantilever" --convergence --out "$work/beam" >"$work/log"
 in_range "$work/beam/summary.json" tip_error 0.0074 0.0084
 in_range "$work/beam/summary.json" stress_l2_error 0.0427 0.0437

@@ -1,5 +1,5 @@
 #!/bin/sh
-# pile.sh DIRECTORY: mps-pile on a coarse grid: what must hold on any, and what it writes. The seed's
+# pile.sh DIRECTORY: mps-pile on a coarse grid: what must hold on any, and what it writes. The paper's
 # size: docs/verification/wls-mpm.md.
 . "$(dirname "$0")/checks.sh"
 coarse="--h 0.02 --wall 0.04 --inner-diameter 0.16 --soil 0.4x0.5 --depth 0.2 --speed 0.5"

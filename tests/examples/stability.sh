@@ -4,7 +4,7 @@
 stability=$1/mps-stability
 
 # The spin mode: omega = sqrt(24) Vs / D, so dt = 2 / omega = 4.082e-3 s on an endless lattice; the
-# seed's column ran with 4.1e-3 s and diverged with 4.2e-3 s.
+# paper's column ran with 4.1e-3 s and diverged with 4.2e-3 s.
 "$stability" --radius 0.5 --vs 100 --vp 200 --out "$work/one" >"$work/log"
 in_range "$work/one/summary.json" dt_linear 4.08e-3 4.13e-3
 in_range "$work/one/summary.json" dt_stepping 4.05e-3 4.15e-3
@@ -17,7 +17,7 @@ has "$work/two/summary.json" '"dt_stepping": null'
 
 "$stability" --study --method linear --out "$work/study" >/dev/null
 [ "$(wc -l <"$work/study/limits.csv")" -eq 321 ] || fail "limits.csv"
-# Through the regression, as the seed's table is one; with f1 + f2 = 16 Hz, the default.
+# Through the regression, as the paper's table is one; with f1 + f2 = 16 Hz, the default.
 in_range "$work/study/summary.json" rms_table2_S 0 0.035
 in_range "$work/study/summary.json" rms_table2_P 0 0.035
 in_range "$work/study/summary.json" rms_table2_cases_S 0 0.15

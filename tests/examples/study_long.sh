@@ -1,5 +1,5 @@
 #!/bin/sh
-# study_long.sh DIRECTORY: the seed's 320 cases by time stepping and by linear theory (minutes).
+# study_long.sh DIRECTORY: the paper's 320 cases by time stepping and by linear theory (minutes).
 . "$(dirname "$0")/checks.sh"
 
 # f1 + f2 = 15 Hz suits the criterion 2.2 m/s2: regression against Table 2 within 6 %.

@@ -4,11 +4,11 @@
  * As a test: some thousand mutations of a block in both notations, from a fixed seed (run it under
  * the asan preset too). With libFuzzer:
  *   clang -g -O1 -fsanitize=fuzzer,address,undefined -DMPS_LIBFUZZER -D_POSIX_C_SOURCE=200809L \
- *     -Iinclude -Isrc -Itests tests/fuzz/test_stl.c src/contact/[bdmrs]*.c src/core/[a-z]*.c \
+ *     -Iinclude -Isrc -Itests tests/fuzz/test_stl.c src/body/[bdmrs]*.c src/core/[a-z]*.c \
  *     -llapacke -lembree3 -lm -o fuzz
  *   ./fuzz -max_len=4096 corpus
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "contact/mesh.h"
+#include "body/mesh.h"
 #include "mesh_shapes.h"
 #include "test_allocator.h"
 

@@ -1,6 +1,6 @@
 /* test_body.c - rigid bodies: arguments, motion by signals and by forces, parts, ownership.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "contact/body.h"
+#include "body/body.h"
 #include "test_allocator.h"
 #include "test_fixture.h"
 
@@ -96,7 +96,7 @@ static void refuses_bad_solids(void **state) {
   assert_null(body);
 }
 
-/* Seed B (28) and (58): by hand, for 2 x 2 (x 2) particles a cell of 0.2 m. */
+/* Nakamura (28) and (58): by hand, for 2 x 2 (x 2) particles a cell of 0.2 m. */
 static void chooses_the_penalty(void **state) {
   (void)state;
   mps_body_def def = mps_body_defaults();

@@ -1,5 +1,5 @@
 /* test_dynamics_limits.c - the stability limit by linear theory and by stepping, against closed
- * forms, against runs just below and above it, and against the reference values of seed A.
+ * forms, against runs just below and above it, and against the reference values of Yoshida.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "soil_column.h"
 #include "test_fixture.h"
@@ -102,7 +102,7 @@ static void without_forces_only_alpha_limits(void **state) {
     const soil_layer soil = {1e9, 1700.0, 120.0, 240.0, 0.0};
     mps_particles *set = soil_particles(context, 0.5, 2.0, 2.0, 1, &soil);
     mps_dynamics *d = solver(set, &def);
-    soil_hold(context, set, d, 7, -1.0, -1.0, 9.0, 9.0);
+    soil_hold(context, set, d, MPS_DOF_X | MPS_DOF_Y | MPS_DOF_ROTATION, -1.0, -1.0, 9.0, 9.0);
     assert_true(isinf(linear(d, 0.0).dt));
     mps_dynamics_destroy(&d);
     mps_particles_destroy(&set);
@@ -241,10 +241,10 @@ static void eulers_limit_for_a_duration(void **state) {
   }
 }
 
-/* ---- seed A's column ------------------------------------------------------------------------- */
+/* ---- Yoshida's column ------------------------------------------------------------------------- */
 
-/* The seed's column with the limits of the reference values; stepping with accuracy 1.02. */
-static void the_seeds_column(void **state) {
+/* The paper's column with the limits of the reference values; stepping with accuracy 1.02. */
+static void the_papers_column(void **state) {
   (void)state;
   const struct {
     char wave;
@@ -255,7 +255,7 @@ static void the_seeds_column(void **state) {
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     mps_particles *set;
     const bool P = cases[k].wave == 'P';
-    mps_dynamics *d = seed_column(context, 0.5, P ? 50.0 : 100.0, P ? 100.0 : 200.0, cases[k].h,
+    mps_dynamics *d = paper_column(context, 0.5, P ? 50.0 : 100.0, P ? 100.0 : 200.0, cases[k].h,
                                   cases[k].wave, NULL, &set);
     mps_assert_near(1e3 * linear(d, 0.0).dt / cases[k].linear, 1.0, 1e-3);
     if (cases[k].stepping > 0.0) {
@@ -276,7 +276,7 @@ static void the_seeds_column(void **state) {
   }
 }
 
-static void the_seeds_undamped_limits(void **state) {
+static void the_papers_undamped_limits(void **state) {
   (void)state;
   for (int integrator = 1; integrator < 3; integrator++) {
     mps_particles *set;
@@ -284,7 +284,7 @@ static void the_seeds_undamped_limits(void **state) {
     mps_bisection_def def = mps_bisection_defaults();
     mps_bisection found;
     dynamics_def.integrator = integrator;
-    mps_dynamics *d = seed_column(context, 0.5, 100.0, 200.0, 0.0, 'S', &dynamics_def, &set);
+    mps_dynamics *d = paper_column(context, 0.5, 100.0, 200.0, 0.0, 'S', &dynamics_def, &set);
     def.lower = 4.10e-3;
     def.upper = 4.11e-3;
     mps_assert_ok(context, mps_dynamics_limit_stepping(d, &def, &found));
@@ -298,7 +298,7 @@ static void the_seeds_undamped_limits(void **state) {
   mps_particles *set;
   mps_dynamics_def def = mps_dynamics_defaults();
   def.torque = MPS_TORQUE_PRINTED;
-  mps_dynamics *d = seed_column(context, 0.5, 100.0, 200.0, 0.0, 'S', &def, &set);
+  mps_dynamics *d = paper_column(context, 0.5, 100.0, 200.0, 0.0, 'S', &def, &set);
   mps_assert_near(linear(d, 0.0).dt, 2.9048e-3, 1e-7);
   mps_dynamics_destroy(&d);
   mps_particles_destroy(&set);
@@ -309,7 +309,7 @@ static void bisection_finds_its_own_bounds_and_leaves_the_state(void **state) {
   mps_particles *set;
   mps_dynamics_def dynamics_def = mps_dynamics_defaults();
   dynamics_def.dt = 7e-3;
-  mps_dynamics *d = seed_column(context, 1.6, 100.0, 200.0, 0.0, 'S', &dynamics_def, &set);
+  mps_dynamics *d = paper_column(context, 1.6, 100.0, 200.0, 0.0, 'S', &dynamics_def, &set);
   mps_assert_ok(context, mps_particles_set(set, "rotation", 0, 1e-6));
   mps_assert_ok(context, mps_dynamics_restart(d, 0.1));
   mps_bisection_def def = mps_bisection_defaults();
@@ -360,8 +360,8 @@ int main(void) {
       cmocka_unit_test(runs_hold_below_the_limit_and_not_above),
       cmocka_unit_test(euler_holds_below_its_limit_and_not_above),
       cmocka_unit_test(eulers_limit_for_a_duration),
-      cmocka_unit_test(the_seeds_column),
-      cmocka_unit_test(the_seeds_undamped_limits),
+      cmocka_unit_test(the_papers_column),
+      cmocka_unit_test(the_papers_undamped_limits),
       cmocka_unit_test(bisection_finds_its_own_bounds_and_leaves_the_state),
       cmocka_unit_test(bisection_says_when_there_is_no_limit),
   };

@@ -1,4 +1,4 @@
-/* test_dynamics_predict.c - the regression of seed A (14)-(16) and the prediction of a time step
+/* test_dynamics_predict.c - the regression of Yoshida (14)-(16) and the prediction of a time step
  * without particles.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_allocator.h"
@@ -8,7 +8,7 @@
 
 #define MOST 256
 
-/* Seed A, Table 2. */
+/* Yoshida, Table 2. */
 static const double table_s[2][3] = {{0.264375, 1.621563, 2.540176}, {0.04089, 0.262491, 0.438239}};
 static const double table_p[2][3] = {{0.304301, 1.666102, 2.614558},
                                      {0.046261, 0.263985, 0.392512}};
@@ -208,7 +208,7 @@ static void prediction_by_the_printed_table_and_its_range(void **state) {
   mps_assert_near(predict(&s).printed_s, 3.243e-3, 5e-7);
   const mps_predict_def p = ground(0.5, 50.0, 100.0, 0.22);
   mps_assert_near(predict(&p).printed_p, 4.589e-3, 5e-7);
-  /* outside the range of h there is nothing printed; undamped is the seed's 0.001 */
+  /* outside the range of h there is nothing printed; undamped is the paper's 0.001 */
   const double outside[] = {0.0005, 0.23, 1.0};
   for (int k = 0; k < 3; k++) {
     const mps_predict_def def = ground(0.5, 100.0, 200.0, outside[k]);

@@ -372,7 +372,7 @@ static void where_nothing_limits_dt_it_must_be_given(void **state) {
                            18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31, 32, 33, 34, 35};
   mps_particles *set;
   mps_dynamics *d = shaken(context, NULL, 0.0, &set);
-  mps_assert_ok(context, mps_dynamics_hold(d, 7, 36, ids));
+  mps_assert_ok(context, mps_dynamics_hold(d, MPS_DOF_X | MPS_DOF_Y | MPS_DOF_ROTATION, 36, ids));
   mps_assert_fails(context, mps_dynamics_step(d, 1), MPS_ERROR_ARGUMENT, "give dt");
   assert_true(mps_dynamics_dt(d) == 0.0);
   mps_assert_ok(context, mps_dynamics_set_dt(d, 1.0));

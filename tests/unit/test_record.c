@@ -3,7 +3,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_allocator.h"
 
-#include "core/record_private.h"
+#include "signal/record_private.h"
 
 #include <mps/signal.h>
 

@@ -45,12 +45,12 @@ static void check_derivatives(const mps_signal *signal, double start, double end
   }
 }
 
-static void a_ricker_wavelet_is_the_seeds_acceleration_and_its_integrals(void **state) {
+static void a_ricker_wavelet_is_the_papers_acceleration_and_its_integrals(void **state) {
   (void)state;
   const double fc = 4.0, tp = 0.25, amplitude = -3.0, c = PI * fc * PI * fc;
   mps_signal *signal = NULL;
   mps_assert_ok(context, mps_signal_ricker(context, fc, tp, amplitude, &signal));
-  for (int i = 0; i <= 100; i++) { /* seed A (9) */
+  for (int i = 0; i <= 100; i++) { /* Yoshida (9) */
     const double t = 0.006 * i, x = c * (t - tp) * (t - tp);
     mps_assert_near(mps_signal_acceleration(signal, t), amplitude * (2.0 * x - 1.0) * exp(-x),
                     1e-14);
@@ -368,7 +368,7 @@ static void a_signal_outlives_its_context(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(a_ricker_wavelet_is_the_seeds_acceleration_and_its_integrals),
+      cmocka_unit_test(a_ricker_wavelet_is_the_papers_acceleration_and_its_integrals),
       cmocka_unit_test(a_sine_starts_at_zero_time_with_its_phase),
       cmocka_unit_test(a_ramp_begins_and_ends_at_rest),
       cmocka_unit_test(a_table_of_accelerations_is_integrated_exactly),

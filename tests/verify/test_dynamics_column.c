@@ -1,4 +1,4 @@
-/* test_dynamics_column.c - the seed's column against the reference values of docs/verification:
+/* test_dynamics_column.c - the paper's column against the reference values of docs/verification:
  * stability limits, travel time, surface peaks, leapfrog against Verlet.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "soil_column.h"
@@ -23,7 +23,7 @@ static double linear_limit(char wave, double vs, double damping, int torque) {
   mps_particles *particles = NULL;
   mps_dynamics_def def = column_def(MPS_INTEGRATOR_VERLET, 0.0);
   def.torque = torque;
-  mps_dynamics *dynamics = seed_column(context, 0.5, vs, 2.0 * vs, damping, wave, &def, &particles);
+  mps_dynamics *dynamics = paper_column(context, 0.5, vs, 2.0 * vs, damping, wave, &def, &particles);
   mps_linear_limit limit;
   mps_assert_ok(context, mps_dynamics_limit_linear(dynamics, 0.0, &limit));
   close_column(&context, &particles, &dynamics);
@@ -51,7 +51,7 @@ static void stepping_is_stable_at_4_10_ms_and_not_at_4_11_ms(void **state) {
     mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
     mps_particles *particles = NULL;
     const mps_dynamics_def def = column_def(MPS_INTEGRATOR_VERLET, k == 0 ? 4.10e-3 : 4.11e-3);
-    mps_dynamics *dynamics = seed_column(context, 0.5, 100.0, 200.0, 0.0, 'S', &def, &particles);
+    mps_dynamics *dynamics = paper_column(context, 0.5, 100.0, 200.0, 0.0, 'S', &def, &particles);
     const mps_status status = mps_dynamics_run(dynamics, 10.0, 1000, NULL, NULL);
     assert_int_equal(status, k == 0 ? MPS_OK : MPS_ERROR_DIVERGED);
     close_column(&context, &particles, &dynamics);
@@ -63,7 +63,7 @@ static void bisection_brackets_the_linear_limit(void **state) {
   mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
   mps_particles *particles = NULL;
   const mps_dynamics_def def = column_def(MPS_INTEGRATOR_VERLET, 1e-3);
-  mps_dynamics *dynamics = seed_column(context, 0.5, 100.0, 200.0, 0.0, 'S', &def, &particles);
+  mps_dynamics *dynamics = paper_column(context, 0.5, 100.0, 200.0, 0.0, 'S', &def, &particles);
   mps_bisection_def bisection = mps_bisection_defaults();
   mps_bisection result;
   bisection.criterion = 2.2;
@@ -104,7 +104,7 @@ static mps_status watch(void *user, mps_dynamics *dynamics) {
 static response run_column(int integrator, double dt, double duration, double *trace) {
   response r = {.context = test_context(MPS_EXECUTOR_SERIAL, 1), .trace = trace};
   const mps_dynamics_def def = column_def(integrator, dt);
-  mps_dynamics *dynamics = seed_column(r.context, 0.5, 100.0, 200.0, 0.0, 'S', &def, &r.particles);
+  mps_dynamics *dynamics = paper_column(r.context, 0.5, 100.0, 200.0, 0.0, 'S', &def, &r.particles);
   const double middle[2] = {4.5, 99.5}, edge[2] = {0.5, 99.5};
   r.id[0] = mps_particles_nearest(r.particles, middle);
   r.id[1] = mps_particles_nearest(r.particles, edge);

@@ -1,4 +1,4 @@
-/* test_elastic_cantilever.c - the seed's cantilever: tip errors of both methods at four sizes
+/* test_elastic_cantilever.c - the paper's cantilever: tip errors of both methods at four sizes
  * against the reference values of an independent prototype, stress error, nearly incompressible
  * material. SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_common.h"
@@ -54,7 +54,7 @@ static void a_nearly_incompressible_cantilever_does_not_lock(void **state) {
   assert_true(fabs(tip_error(&def, 0.4999, 0)) < 2.0);
 }
 
-/* ---- seed C (5): four unknowns a particle, without elimination, by LU ------------------------ */
+/* ---- Chikazawa (5): four unknowns a particle, without elimination, by LU ------------------------ */
 
 /* Rows of particle i in the dense system a (order u, v, R, D), by brute force over all pairs. */
 static void four_unknown_rows(const test_body *b, const cantilever *c, double ratio, int local,

@@ -1,4 +1,4 @@
-/* test_elastic_plate.c - the seed's square plate in tension, a bar of two materials, and Kirsch's
+/* test_elastic_plate.c - the paper's square plate in tension, a bar of two materials, and Kirsch's
  * plate with a hole.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_common.h"
@@ -65,7 +65,7 @@ static void a_plate_in_tension_is_exact(void **state) {
   mps_context_destroy(&context);
 }
 
-/* The published method with the seed's particles on the boundary: nodal forces at the end. */
+/* The published method with the paper's particles on the boundary: nodal forces at the end. */
 static void the_published_plate_is_the_reference_value(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);

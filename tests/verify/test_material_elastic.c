@@ -57,7 +57,7 @@ static void linear_elastic_shear_follows_jaumann(void **state) {
     for (int c = 0; c < 6; c++) error[i] = fmax(error[i], fabs(point.stress[c] - exact[c]) / shear);
   }
   assert_true(error[0] < 1.5 * gamma / 1000.0 && error[0] > 1e-5);
-  mps_assert_near(error[0] / error[1], 2.0, 0.01); /* first order, as the seed's update */
+  mps_assert_near(error[0] / error[1], 2.0, 0.01); /* first order, as the paper's update */
   mps_material_destroy(&material);
 }
 

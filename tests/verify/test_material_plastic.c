@@ -58,7 +58,7 @@ static void von_mises_returns_to_the_surface(void **state) {
   }
 }
 
-/* Seed B (54): with sigma_Y = sqrt(3) c the limit in plane strain is that of the cohesion c. */
+/* Nakamura (54): with sigma_Y = sqrt(3) c the limit in plane strain is that of the cohesion c. */
 static void von_mises_has_the_cohesion_in_plane_strain(void **state) {
   (void)state;
   mps_material *material = von_mises(ROOT3 * C, 0.0);
@@ -129,7 +129,7 @@ static double limit_radius(const mps_material *material, double p, double theta)
 }
 
 /* The inscribed cone touches the pyramid and never leaves it; plane strain and associated is the
- * same cone, seed B (56). */
+ * same cone, Nakamura (56). */
 static void the_inscribed_cone_touches_the_pyramid_from_inside(void **state) {
   (void)state;
   const double p = -8e4, phi = 30.0 * PI / 180.0;

@@ -1,4 +1,4 @@
-/* test_mpm_schemes.c - the original material point method (seed B Table 1) with FLIP and PIC beside
+/* test_mpm_schemes.c - the original material point method (Nakamura Table 1) with FLIP and PIC beside
  * WLS: what each keeps, on a rotating disc, a vibrating bar and a column under its weight.
  * docs/verification/wls-mpm.md has the table.
  * SPDX-License-Identifier: BSD-3-Clause */

@@ -1,5 +1,5 @@
 /* distance.c - signed distance, outward normal and foot point on a rigid body's surface: the d_p
- * and n_p of seed B (27), (28). Meshes are in mesh_foot.c.
+ * and n_p of Nakamura (27), (28). Meshes are in mesh_foot.c.
  *
  * The sign at a corner is that of (x - corner) . (n1 + n2), with the normals of its two edges: in
  * 2D that side is right for convex and for concave corners, so no crossings need to be counted, and

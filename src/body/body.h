@@ -93,7 +93,7 @@ static inline void mpsi_body_velocity(const mpsi_pose *pose, const double *x, do
   v[2] = pose->v[2] + w[0] * r[1] - w[1] * r[0];
 }
 
-/* Contact stiffness k (N/m, 2D per unit thickness) of seed B (28) or (58) against particles of
+/* Contact stiffness k (N/m, 2D per unit thickness) of Nakamura (28) or (58) against particles of
  * `modulus` K + 4G/3 (Pa) and `spacing` (m) in cells of size `cell` (m). In axisymmetry the caller
  * multiplies by the radius. */
 double mpsi_body_penalty(const mps_body *body, double modulus, double spacing, double cell,

@@ -4,7 +4,7 @@
 #ifndef MPSI_SIGNAL_PRIVATE_H
 #define MPSI_SIGNAL_PRIVATE_H
 
-#include "internal.h"
+#include "core/internal.h"
 
 #include <mps/signal.h>
 

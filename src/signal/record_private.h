@@ -3,7 +3,7 @@
 #ifndef MPSI_RECORD_PRIVATE_H
 #define MPSI_RECORD_PRIVATE_H
 
-#include "text.h"
+#include "core/text.h"
 
 #include <mps/signal.h>
 

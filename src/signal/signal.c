@@ -1,9 +1,9 @@
 /* signal.c - functions of time: the object, its evaluation, and the analytic kinds (the Ricker
- * wavelet of seed A (9) with its integrals, sine, quintic ramp).
+ * wavelet of Yoshida (9) with its integrals, sine, quintic ramp).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "signal_private.h"
 
-#include "retain.h"
+#include "core/retain.h"
 
 #define PI 3.14159265358979323846
 #define FREQUENCY_MIN 1e-9 /* Hz: squares and their reciprocals stay far from overflow */

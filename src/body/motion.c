@@ -196,7 +196,7 @@ void mpsi_body_react(mps_body *body, double dt, const mpsi_load *load, const int
       r->impulse[c] += dt * load[part].force[c];
       r->moment_impulse[c] += dt * load[part].moment[c];
     }
-    r->contacts = contacts[part];
+    r->count = contacts[part];
   }
 }
 
@@ -215,7 +215,7 @@ mps_status mps_body_get_reaction(mps_body *body, int32_t part, mps_reaction *out
       sum.impulse[c] += r->impulse[c];
       sum.moment_impulse[c] += r->moment_impulse[c];
     }
-    sum.contacts += r->contacts;
+    sum.count += r->count;
   }
   *out = sum;
   return MPS_OK;
@@ -224,7 +224,7 @@ mps_status mps_body_get_reaction(mps_body *body, int32_t part, mps_reaction *out
 /* ---- records --------------------------------------------------------------------------------- */
 
 enum { REACTION = 12 * sizeof(double) };
-_Static_assert(offsetof(mps_reaction, contacts) == REACTION, "12 numbers, then the contacts");
+_Static_assert(offsetof(mps_reaction, count) == REACTION, "12 numbers, then the contacts");
 _Static_assert(sizeof(mpsi_load) == 6 * sizeof(double), "force, then moment");
 
 void mpsi_body_get_record(const mps_body *body, mpsi_body_record *out) {
@@ -243,7 +243,7 @@ void mpsi_body_get_record(const mps_body *body, mpsi_body_record *out) {
   memcpy(out->spin, p->spin, sizeof out->spin);
   for (int32_t part = 0; part < body->parts; part++) {
     memcpy(&out->reaction[12 * part], &body->reaction[part], REACTION);
-    out->contacts[part] = body->reaction[part].contacts;
+    out->contacts[part] = body->reaction[part].count;
   }
 }
 
@@ -259,7 +259,7 @@ void mpsi_body_set_record(mps_body *body, const mpsi_body_record *record) {
   memcpy(p->spin, record->spin, sizeof p->spin);
   for (int32_t part = 0; part < body->parts; part++) {
     memcpy(&body->reaction[part], &record->reaction[12 * part], REACTION);
-    body->reaction[part].contacts = record->contacts[part];
+    body->reaction[part].count = record->contacts[part];
   }
 }
 

@@ -1,0 +1,70 @@
+/* mps/solver.h - the words that all solvers share: degrees of freedom, reactions, totals, snapshots.
+ *
+ * Every solver mps_S (mpm, dynamics, elastic) answers to the same verbs:
+ *
+ *   mps_S_create, mps_S_destroy, mps_S_get_def, mps_S_particles, mps_S_context
+ *   mps_S_add_boundary, mps_S_set_boundary, mps_S_remove_boundary, mps_S_get_reaction
+ *   mps_S_add_load, mps_S_set_load, mps_S_remove_load, and the field `external_force`
+ *   mps_S_step, mps_S_run, mps_S_time, mps_S_steps, mps_S_dt, mps_S_limit, mps_S_set_dt
+ *   mps_S_get_totals
+ *   mps_S_save, mps_S_restore (files); mps_S_snapshot, mps_S_rollback (memory)
+ *
+ * Vectors have three components in 2D too; those that leave the plane are then 0. All forces that a
+ * 2D solver takes and reports are those of its `measure`: the thickness (m, default 1) in the
+ * plane, the angle (rad, default 2 pi: the whole ring) in axisymmetry. So they are in N.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef LIBMPS_SOLVER_H
+#define LIBMPS_SOLVER_H
+
+#include <mps/base.h>
+
+MPS_EXTERN_C_BEGIN
+
+/** Degrees of freedom of a particle or node, or-ed. */
+#define MPS_DOF_X 1u
+#define MPS_DOF_Y 2u
+#define MPS_DOF_Z 4u
+#define MPS_DOF_ROTATION 8u /* about z, where particles have a rotation of their own */
+
+/** What something exerts over time. Of a boundary: on the particles that it holds or drives. Of a
+ *  contact or a body: on the body, by the particles. Forces and moments are means over the last
+ *  step; before the first step all is 0. */
+typedef struct mps_reaction {
+  double force[3];          /* N */
+  double moment[3];         /* N m, about the origin; of a body, about its reference point */
+  double impulse[3];        /* N s, since the boundary, contact or body was made */
+  double moment_impulse[3]; /* N m s, likewise; of a body about its reference point as it moved */
+  int64_t count;            /* particles (or nodes) held, driven or touched in the last step */
+  double work;              /* J, likewise: done on the particles by what holds, drives or touches
+                               them; of a body, by the body on the particles */
+} mps_reaction;
+
+/** Sums over the particles of a solver. Bodies are not counted: their energy is their own.
+ *  Energies are changes of state or work since the solver was made, so that
+ *
+ *    kinetic + strain + dissipated - work_loads - work_boundaries - work_bodies
+ *
+ *  keeps the value that it had at the start, to the error that the solver's header states. */
+typedef struct mps_totals {
+  double mass, volume;    /* kg, m3 */
+  double linear[3];       /* kg m/s */
+  double angular[3];      /* kg m2/s, about the origin, with the particles' own spin */
+  double kinetic;         /* J, of the present state, with the particles' own spin */
+  double strain;          /* J, recoverable. Explicit and implicit elasticity: of the present state;
+                             WLS-MPM: work of the stresses that the laws keep, since creation */
+  double dissipated;      /* J, since creation: plasticity, viscosity, damping, friction, and what
+                             the scheme itself takes (`scheme`) */
+  double scheme;          /* J, since creation: the part of `dissipated` that the time integration
+                             and the transfers take; negative where they feed energy in */
+  double work_loads;      /* J, since creation: gravity, tractions, forces on particles */
+  double work_boundaries; /* J, since creation */
+  double work_bodies;     /* J, since creation: by the bodies in contact */
+} mps_totals;
+
+/** The state of a solver, in memory: what mps_S_snapshot fills and mps_S_rollback goes back to, bit
+ *  for bit, so that a step can be repeated with other loads (implicit coupling). It belongs to the
+ *  solver that filled it; filling it again reuses its memory. */
+typedef struct mps_snapshot mps_snapshot;
+
+MPS_EXTERN_C_END
+#endif
