@@ -26,7 +26,7 @@ static const settings defaults = {
     .peak_time = 0.25,
     .amplitude = 1.0,
     .scale = 1.0,
-    .baseline = MPS_BASELINE_LINEAR,
+    .baseline = MPS_SIGNAL_BASELINE_LINEAR,
     .half_space = {.vs = NAN, .vp = NAN, .unit_weight = NAN},
     .integrator = MPS_INTEGRATOR_VERLET,
     .rotation = 1,
@@ -229,10 +229,10 @@ bool settings_signal(app *a, const settings *s, mps_signal **out) {
   if (s->ricker)
     return app_check(a,
                      mps_signal_ricker(a->context, s->frequency, s->peak_time, s->amplitude, out));
-  mps_record_def def = mps_record_defaults();
+  mps_signal_record_def def = mps_signal_record_defaults();
   def.baseline = s->baseline;
   def.scale = s->scale * unit_factor[s->unit];
-  def.format = s->unit == UNIT_FILE ? MPS_RECORD_AUTO : MPS_RECORD_CSV;
+  def.format = s->unit == UNIT_FILE ? MPS_SIGNAL_RECORD_AUTO : MPS_SIGNAL_RECORD_CSV;
   return app_check(a, mps_signal_record(a->context, s->input, &def, out));
 }
 

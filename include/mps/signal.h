@@ -1,9 +1,13 @@
 /* mps/signal.h - functions of time: displacement u(t), velocity v(t) and acceleration a(t).
  *
- * A signal is immutable after creation: it may be shared by objects, contexts and threads. Before
- * its first instant a signal is at rest: v = a = 0, and u = 0 except for a table of displacements,
- * which rests at its first sample. Formats, units and the baseline correction of recorded motions
- * are explained in docs/signals.md.
+ * A signal is immutable after creation: it may be shared by objects, contexts and threads (one of
+ * the caller's own, mps_signal_user, as far as its function may). Before its first instant a signal
+ * is at rest: v = a = 0, and u is 0, or what a table begins with.
+ *
+ * What lies before t = 0 displaces nothing at the start: tables of velocities and accelerations are
+ * integrated so that u(0) = 0 when they begin before t = 0, and u = 0 at their first sample
+ * otherwise. Formats, units and the baseline correction of recorded motions are explained in
+ * docs/signals.md.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_SIGNAL_H
 #define LIBMPS_SIGNAL_H
@@ -28,11 +32,11 @@ typedef enum mps_signal_quantity {
  *  acceleration. An offset of the instrument is a velocity trend of degree 1, a linear drift one of
  *  degree 2, a parabolic drift one of degree 3. */
 typedef enum mps_signal_baseline {
-  MPS_BASELINE_NONE = 0,      /* integrate as it is */
-  MPS_BASELINE_MEAN = 1,      /* a - v(T)/T: the mean over time, so that v(T) = 0 */
-  MPS_BASELINE_LINEAR = 2,    /* a - c1 */
-  MPS_BASELINE_QUADRATIC = 3, /* a - c1 - 2 c2 t */
-  MPS_BASELINE_CUBIC = 4      /* a - c1 - 2 c2 t - 3 c3 t^2 */
+  MPS_SIGNAL_BASELINE_NONE = 0,      /* integrate as it is */
+  MPS_SIGNAL_BASELINE_MEAN = 1,      /* a - v(T)/T: the mean over time, so that v(T) = 0 */
+  MPS_SIGNAL_BASELINE_LINEAR = 2,    /* a - c1 */
+  MPS_SIGNAL_BASELINE_QUADRATIC = 3, /* a - c1 - 2 c2 t */
+  MPS_SIGNAL_BASELINE_CUBIC = 4      /* a - c1 - 2 c2 t - 3 c3 t^2 */
 } mps_signal_baseline;
 
 /** Ricker wavelet, acceleration Yoshida (9): a(t) = amplitude (2 c (t-tp)^2 - 1) exp(-c (t-tp)^2)
@@ -55,31 +59,45 @@ MPS_API MPS_NODISCARD mps_status mps_signal_sine(mps_context *context, double fr
 MPS_API MPS_NODISCARD mps_status mps_signal_ramp(mps_context *context, double start,
                                                  double duration, double amplitude,
                                                  mps_signal **out);
-/** Table of `count` (2 to 2147483646) finite samples of `quantity` at strictly increasing `times`
- *  (s); both arrays have `count` elements and are copied. Accelerations are linear between samples
- *  and integrated exactly from u = v = 0 at the first instant; velocities are linear between
- *  samples and integrated exactly from u = 0 (their acceleration is a step function, continuous
- *  from the right); displacements are a natural cubic spline. Before the table: at rest at the
- *  first displacement. After it: acceleration 0, and velocity 0 for a table of displacements, the
+/** Table of `count` (2 to 2147483646) finite samples of `quantity` (MPS_SIGNAL_...) at strictly
+ *  increasing `times` (s); both arrays have `count` elements and are copied. Accelerations are
+ *  linear between samples and integrated exactly from v = 0 at the first sample; velocities are
+ *  linear between samples (their acceleration is a step function, continuous from the right), and
+ *  both are integrated exactly to u, which is 0 at the first sample or at t = 0, whichever is
+ *  later; displacements are a natural cubic spline. Before the table: at rest at the first
+ *  displacement. After it: acceleration 0, and velocity 0 for a table of displacements, the
  *  last velocity otherwise. MPS_ERROR_NUMERIC when the motion overflows. */
-MPS_API MPS_NODISCARD mps_status mps_signal_table(mps_context *context,
-                                                  mps_signal_quantity quantity, int64_t count,
-                                                  const double *times, const double *values,
-                                                  mps_signal **out);
+MPS_API MPS_NODISCARD mps_status mps_signal_table(mps_context *context, int32_t quantity,
+                                                  int64_t count, const double *times,
+                                                  const double *values, mps_signal **out);
+
+/** The motion at time t (s, finite), by the caller: motion[0] displacement (m), motion[1] velocity
+ *  (m/s), motion[2] acceleration (m/s2), all finite. Whatever uses the signal calls it on the
+ *  thread that steps, never on a worker, a few times a step, at times that may go back by a step. A
+ *  status other than MPS_OK ends the call of the library that asked, which returns it; that step
+ *  has then not happened. It must not call into a solver that is stepping. */
+typedef mps_status (*mps_signal_fn)(void *user, double t, double motion[3]);
+/** A motion computed by the caller's function: a servo, another code, a formula. `user` is handed
+ *  to `fn` and must live as long as the signal and all that use it. It spans all times, and its
+ *  peak acceleration is not known (NaN). */
+MPS_API MPS_NODISCARD mps_status mps_signal_user(mps_context *context, mps_signal_fn fn, void *user,
+                                                 mps_signal **out);
 
 /** Format of a recorded motion. */
-typedef enum mps_record_format {
-  MPS_RECORD_AUTO = 0, /* recognised by the content */
-  MPS_RECORD_AT2 = 1,  /* PEER NGA .AT2: acceleration in g */
-  MPS_RECORD_KNET = 2, /* K-NET / KiK-net ASCII: counts with a scale factor, gal */
-  MPS_RECORD_CSV = 3   /* two columns: time (s), value; separated by comma, semicolon or blanks;
-                          '#' comments; one optional header line; uneven steps allowed */
-} mps_record_format;
+typedef enum mps_signal_record_format {
+  MPS_SIGNAL_RECORD_AUTO = 0, /* recognised by the content */
+  MPS_SIGNAL_RECORD_AT2 = 1,  /* PEER NGA .AT2: acceleration in g */
+  MPS_SIGNAL_RECORD_KNET = 2, /* K-NET / KiK-net ASCII: counts with a scale factor, gal */
+  MPS_SIGNAL_RECORD_CSV =
+      3 /* two columns: time (s), value; separated by comma, semicolon or blanks;
+    '#' comments; one optional header line; uneven steps allowed */
+} mps_signal_record_format;
 
-/** How to read a record; always start from mps_record_def_init or mps_record_defaults. */
-typedef struct mps_record_def {
+/** How to read a record; always start from mps_signal_record_def_init or
+ * mps_signal_record_defaults. */
+typedef struct mps_signal_record_def {
   uint32_t struct_size;
-  int32_t format;   /* mps_record_format, default AUTO */
+  int32_t format;   /* mps_signal_record_format, default AUTO */
   int32_t quantity; /* mps_signal_quantity of a CSV, default ACCELERATION; the others are always
                        accelerations */
   int32_t baseline; /* mps_signal_baseline, default LINEAR; not used for other than accelerations */
@@ -87,16 +105,16 @@ typedef struct mps_record_def {
                        strength: 0.5), finite, not 0; default 1 */
   double taper;     /* s of cosine taper at both ends, made before the baseline correction, 0 to
                        half the record; accelerations only; default 0 */
-} mps_record_def;
+} mps_signal_record_def;
 
 /** Fills `def` (of `size` bytes) with the defaults. MPS_ERROR_ARGUMENT for NULL or a size that
  *  this library does not know. */
-MPS_API mps_status mps_record_def_init(mps_record_def *def, size_t size);
+MPS_API mps_status mps_signal_record_def_init(mps_signal_record_def *def, size_t size);
 
-static inline mps_record_def mps_record_defaults(void) {
-  mps_record_def def;
+static inline mps_signal_record_def mps_signal_record_defaults(void) {
+  mps_signal_record_def def;
   memset(&def, 0, sizeof def);
-  if (mps_record_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  if (mps_signal_record_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
   return def;
 }
 
@@ -105,13 +123,15 @@ static inline mps_record_def mps_record_defaults(void) {
  *  "path:line: reason" when it is malformed (bad number, non-finite value, fewer or more samples
  *  than announced, time not increasing). The host's locale does not matter. */
 MPS_API MPS_NODISCARD mps_status mps_signal_record(mps_context *context, const char *path,
-                                                   const mps_record_def *def, mps_signal **out);
+                                                   const mps_signal_record_def *def,
+                                                   mps_signal **out);
 
 /** Releases and nulls; accepts NULL. Objects that use the signal keep their own reference. */
 MPS_API void mps_signal_destroy(mps_signal **signal);
 
 /** Displacement (m), velocity (m/s) and acceleration (m/s2) at time t (s). NaN when t is not
- *  finite, 0 when signal is NULL. Thread safe. */
+ *  finite or the caller's function refuses, 0 when signal is NULL. Thread safe, but for
+ *  mps_signal_user. */
 MPS_API double mps_signal_displacement(const mps_signal *signal, double t);
 MPS_API double mps_signal_velocity(const mps_signal *signal, double t);
 MPS_API double mps_signal_acceleration(const mps_signal *signal, double t);
@@ -120,7 +140,7 @@ MPS_API double mps_signal_acceleration(const mps_signal *signal, double t);
  *  Ricker wavelet where its exponential has fallen to exp(-40), 4e-18 of the peak. A table ends
  *  with its last sample, even when it leaves a constant velocity behind. */
 MPS_API void mps_signal_span(const mps_signal *signal, double *start, double *end);
-/** Largest |acceleration| (m/s2) over the span: exact for every kind. */
+/** Largest |acceleration| (m/s2) over the span: exact; NaN of a caller's function. */
 MPS_API double mps_signal_peak_acceleration(const mps_signal *signal);
 
 MPS_EXTERN_C_END

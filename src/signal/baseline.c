@@ -72,7 +72,7 @@ static mps_status remove_trend(mps_context *context, const char *function, int d
                      "the velocity overflows when the record is integrated");
   if (largest == 0.0) return MPS_OK;
   double c[DEGREE_MAX] = {0};
-  if (degree == 0) { /* MPS_BASELINE_MEAN */
+  if (degree == 0) { /* MPS_SIGNAL_BASELINE_MEAN */
     c[0] = velocities[count - 1] / largest;
   } else {
     for (int64_t i = 0; i < count; i++) velocities[i] /= largest;
@@ -89,11 +89,10 @@ static mps_status remove_trend(mps_context *context, const char *function, int d
   return MPS_OK;
 }
 
-mps_status mpsi_baseline_correct(mps_context *context, const char *function,
-                                 mps_signal_baseline baseline, int64_t count, const double *times,
-                                 double *accelerations) {
-  if (baseline == MPS_BASELINE_NONE) return MPS_OK;
-  const int degree = (int)baseline - MPS_BASELINE_MEAN; /* 0: no fit */
+mps_status mpsi_baseline_correct(mps_context *context, const char *function, int32_t baseline,
+                                 int64_t count, const double *times, double *accelerations) {
+  if (baseline == MPS_SIGNAL_BASELINE_NONE) return MPS_OK;
+  const int degree = (int)baseline - MPS_SIGNAL_BASELINE_MEAN; /* 0: no fit */
   if (count < degree + 1)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "baseline %d needs at least %d samples, the record has %lld", (int)baseline,

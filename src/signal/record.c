@@ -4,35 +4,35 @@
 #include "record_private.h"
 #include "signal_private.h"
 
-static const mps_record_def record_defaults = {
-    .struct_size = sizeof(mps_record_def),
-    .format = MPS_RECORD_AUTO,
+static const mps_signal_record_def record_defaults = {
+    .struct_size = sizeof(mps_signal_record_def),
+    .format = MPS_SIGNAL_RECORD_AUTO,
     .quantity = MPS_SIGNAL_ACCELERATION,
-    .baseline = MPS_BASELINE_LINEAR,
+    .baseline = MPS_SIGNAL_BASELINE_LINEAR,
     .scale = 1.0,
 };
 /* Size of the structure in the first release: it may only grow. */
-#define RECORD_DEF_MINIMUM (offsetof(mps_record_def, taper) + sizeof(double))
+#define RECORD_DEF_MINIMUM (offsetof(mps_signal_record_def, taper) + sizeof(double))
 
-mps_status mps_record_def_init(mps_record_def *def, size_t size) {
+mps_status mps_signal_record_def_init(mps_signal_record_def *def, size_t size) {
   return mpsi_def_init(def, size, RECORD_DEF_MINIMUM, &record_defaults, sizeof record_defaults);
 }
 
 /* ---- formats --------------------------------------------------------------------------------- */
 
-/* In the order of mps_record_format; CSV, the least particular, is tried last. */
+/* In the order of mps_signal_record_format; CSV, the least particular, is tried last. */
 static const struct {
   bool (*matches)(mpsi_text text);
   mps_status (*read)(mpsi_text *text, mpsi_samples *samples);
 } formats[] = {
-    [MPS_RECORD_AT2] = {mpsi_at2_matches, mpsi_at2_read},
-    [MPS_RECORD_KNET] = {mpsi_knet_matches, mpsi_knet_read},
-    [MPS_RECORD_CSV] = {mpsi_csv_matches, mpsi_csv_read},
+    [MPS_SIGNAL_RECORD_AT2] = {mpsi_at2_matches, mpsi_at2_read},
+    [MPS_SIGNAL_RECORD_KNET] = {mpsi_knet_matches, mpsi_knet_read},
+    [MPS_SIGNAL_RECORD_CSV] = {mpsi_csv_matches, mpsi_csv_read},
 };
 
 static mps_status recognise(const mpsi_text *text, int32_t *format) {
-  if (*format != MPS_RECORD_AUTO) return MPS_OK;
-  for (int32_t i = MPS_RECORD_AT2; i <= MPS_RECORD_CSV; i++)
+  if (*format != MPS_SIGNAL_RECORD_AUTO) return MPS_OK;
+  for (int32_t i = MPS_SIGNAL_RECORD_AT2; i <= MPS_SIGNAL_RECORD_CSV; i++)
     if (formats[i].matches(*text)) {
       *format = i;
       return MPS_OK;
@@ -85,18 +85,18 @@ static mps_status scale_samples(const mpsi_text *text, mpsi_samples *samples, do
 }
 
 static mps_status condition(const mpsi_text *text, mpsi_samples *samples,
-                            const mps_record_def *def) {
+                            const mps_signal_record_def *def) {
   const double length = samples->times[samples->count - 1];
   if (def->taper > 0.5 * length)
     return mpsi_fail(text->context, text->function, MPS_ERROR_ARGUMENT,
                      "taper is %g s, must be at most half the record (%g s)", def->taper,
                      0.5 * length);
   mpsi_taper(samples->count, samples->times, samples->values, def->taper);
-  return mpsi_baseline_correct(text->context, text->function, (mps_signal_baseline)def->baseline,
-                               samples->count, samples->times, samples->values);
+  return mpsi_baseline_correct(text->context, text->function, def->baseline, samples->count,
+                               samples->times, samples->values);
 }
 
-static mps_status make_signal(mpsi_text *text, const mps_record_def *def, int32_t format,
+static mps_status make_signal(mpsi_text *text, const mps_signal_record_def *def, int32_t format,
                               mpsi_samples *samples, mps_signal **out) {
   mps_status status = formats[format].read(text, samples);
   if (status != MPS_OK) return status;
@@ -104,7 +104,7 @@ static mps_status make_signal(mpsi_text *text, const mps_record_def *def, int32_
     return mpsi_text_fail(text, "the file has %s, at least 2 are needed",
                           samples->count == 1 ? "1 sample" : "no samples");
   if ((status = scale_samples(text, samples, def->scale)) != MPS_OK) return status;
-  const bool csv = format == MPS_RECORD_CSV;
+  const bool csv = format == MPS_SIGNAL_RECORD_CSV;
   const int32_t quantity = csv ? def->quantity : (int32_t)MPS_SIGNAL_ACCELERATION;
   if (quantity == MPS_SIGNAL_ACCELERATION)
     status = condition(text, samples, def);
@@ -113,11 +113,11 @@ static mps_status make_signal(mpsi_text *text, const mps_record_def *def, int32_
                        "taper is %g s, must be 0 for a record of %s", def->taper,
                        quantity == MPS_SIGNAL_VELOCITY ? "velocities" : "displacements");
   if (status != MPS_OK) return status;
-  return mpsi_signal_from_table(text->context, text->function, (mps_signal_quantity)quantity,
-                                samples->count, samples->times, samples->values, out);
+  return mpsi_signal_from_table(text->context, text->function, quantity, samples->count,
+                                samples->times, samples->values, out);
 }
 
-mps_status mpsi_record_signal(mpsi_text *text, const mps_record_def *def, mps_signal **out) {
+mps_status mpsi_record_signal(mpsi_text *text, const mps_signal_record_def *def, mps_signal **out) {
   int32_t format = def->format;
   mps_status status = recognise(text, &format);
   if (status != MPS_OK) return status;
@@ -129,8 +129,9 @@ mps_status mpsi_record_signal(mpsi_text *text, const mps_record_def *def, mps_si
 
 /* ---- the public function --------------------------------------------------------------------- */
 
-static mps_status check_def(mps_context *context, const char *function, const mps_record_def *def) {
-  if (def->format < MPS_RECORD_AUTO || def->format > MPS_RECORD_CSV)
+static mps_status check_def(mps_context *context, const char *function,
+                            const mps_signal_record_def *def) {
+  if (def->format < MPS_SIGNAL_RECORD_AUTO || def->format > MPS_SIGNAL_RECORD_CSV)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "format is %d, allowed are 0 (recognised), 1 (AT2), 2 (K-NET), 3 (CSV)",
                      def->format);
@@ -138,7 +139,7 @@ static mps_status check_def(mps_context *context, const char *function, const mp
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "quantity is %d, allowed are 0 (displacement), 1 (velocity), 2 (acceleration)",
                      def->quantity);
-  if (def->baseline < MPS_BASELINE_NONE || def->baseline > MPS_BASELINE_CUBIC)
+  if (def->baseline < MPS_SIGNAL_BASELINE_NONE || def->baseline > MPS_SIGNAL_BASELINE_CUBIC)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "baseline is %d, allowed are 0 (none), 1 (mean), 2 (linear), 3 (quadratic), "
                      "4 (cubic)",
@@ -152,13 +153,13 @@ static mps_status check_def(mps_context *context, const char *function, const mp
   return MPS_OK;
 }
 
-mps_status mps_signal_record(mps_context *context, const char *path, const mps_record_def *def,
-                             mps_signal **out) {
+mps_status mps_signal_record(mps_context *context, const char *path,
+                             const mps_signal_record_def *def, mps_signal **out) {
   if (!context) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   if (!path) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "path is NULL");
-  mps_record_def known = record_defaults;
+  mps_signal_record_def known = record_defaults;
   mps_status status = MPS_OK;
   if (def) status = mpsi_def_read(context, __func__, def, RECORD_DEF_MINIMUM, &known, sizeof known);
   if (status == MPS_OK) status = check_def(context, __func__, &known);

@@ -28,6 +28,6 @@ bool mpsi_csv_matches(mpsi_text text);
 mps_status mpsi_csv_read(mpsi_text *text, mpsi_samples *samples);
 
 /* The signal of a text: mps_signal_record without the file. `def` is checked; NULL *out before. */
-mps_status mpsi_record_signal(mpsi_text *text, const mps_record_def *def, mps_signal **out);
+mps_status mpsi_record_signal(mpsi_text *text, const mps_signal_record_def *def, mps_signal **out);
 
 #endif

@@ -40,10 +40,36 @@ void mps_signal_destroy(mps_signal **signal) {
 
 /* ---- evaluation ------------------------------------------------------------------------------ */
 
-static mpsi_motion motion(const mps_signal *signal, double t) {
-  if (!signal) return (mpsi_motion){0};
-  if (!isfinite(t)) return (mpsi_motion){NAN, NAN, NAN};
-  return signal->at(signal, t);
+static mps_status ask_user(const mps_signal *signal, mps_context *context, const char *function,
+                           double t, mpsi_signal_motion *out) {
+  double motion[3] = {NAN, NAN, NAN};
+  const mps_status status = signal->fn(signal->user, t, motion);
+  if (status != MPS_OK)
+    return mpsi_fail(context, function, status,
+                     "the function of a signal (mps_signal_user) refused the motion at t = %g s "
+                     "with status %d",
+                     t, (int)status);
+  if (!isfinite(motion[0]) || !isfinite(motion[1]) || !isfinite(motion[2]))
+    return mpsi_fail(context, function, MPS_ERROR_NUMERIC,
+                     "the function of a signal (mps_signal_user) gave u = %g m, v = %g m/s, "
+                     "a = %g m/s2 at t = %g s: must be finite",
+                     motion[0], motion[1], motion[2], t);
+  *out = (mpsi_signal_motion){motion[0], motion[1], motion[2]};
+  return MPS_OK;
+}
+
+mps_status mpsi_signal_at(const mps_signal *signal, mps_context *context, const char *function,
+                          double t, mpsi_signal_motion *out) {
+  if (signal && signal->fn) return ask_user(signal, context, function, t, out);
+  *out = signal ? signal->at(signal, t) : (mpsi_signal_motion){0};
+  return MPS_OK;
+}
+
+static mpsi_signal_motion motion(const mps_signal *signal, double t) {
+  mpsi_signal_motion at = {NAN, NAN, NAN};
+  if (!signal) return (mpsi_signal_motion){0};
+  if (isfinite(t)) (void)mpsi_signal_at(signal, NULL, NULL, t, &at);
+  return at;
 }
 
 double mps_signal_displacement(const mps_signal *signal, double t) { return motion(signal, t).u; }
@@ -61,41 +87,41 @@ double mps_signal_peak_acceleration(const mps_signal *signal) {
   return signal ? signal->peak : 0.0;
 }
 
-static mpsi_motion ricker_at(const mps_signal *signal, double t) {
-  if (t < 0.0) return (mpsi_motion){0};
+static mpsi_signal_motion ricker_at(const mps_signal *signal, double t) {
+  if (t < 0.0) return (mpsi_signal_motion){0};
   const double amplitude = signal->amplitude, c = signal->rate, tp = signal->shift;
   const double tau = t - tp, first = exp(-c * tp * tp);
   const double x = c * tau * tau;
   if (x > 700.0) /* the exponential is 0, and 0 times an overflowed x would be NaN */
-    return (mpsi_motion){.u = amplitude * -first / (2.0 * c)};
+    return (mpsi_signal_motion){.u = amplitude * -first / (2.0 * c)};
   const double e = exp(-x);
-  return (mpsi_motion){.u = amplitude * (e - first) / (2.0 * c),
-                       .v = -amplitude * tau * e,
-                       .a = amplitude * (2.0 * x - 1.0) * e};
+  return (mpsi_signal_motion){.u = amplitude * (e - first) / (2.0 * c),
+                              .v = -amplitude * tau * e,
+                              .a = amplitude * (2.0 * x - 1.0) * e};
 }
 
-static mpsi_motion sine_at(const mps_signal *signal, double t) {
-  if (t < 0.0) return (mpsi_motion){0};
+static mpsi_signal_motion sine_at(const mps_signal *signal, double t) {
+  if (t < 0.0) return (mpsi_signal_motion){0};
   const double w = signal->rate, angle = w * t + signal->shift;
   const double s = signal->amplitude * sin(angle);
-  return (mpsi_motion){.u = s, .v = signal->amplitude * w * cos(angle), .a = -w * w * s};
+  return (mpsi_signal_motion){.u = s, .v = signal->amplitude * w * cos(angle), .a = -w * w * s};
 }
 
-static mpsi_motion ramp_at(const mps_signal *signal, double t) {
-  if (t <= signal->start) return (mpsi_motion){0};
-  if (t >= signal->end) return (mpsi_motion){.u = signal->amplitude};
+static mpsi_signal_motion ramp_at(const mps_signal *signal, double t) {
+  if (t <= signal->start) return (mpsi_signal_motion){0};
+  if (t >= signal->end) return (mpsi_signal_motion){.u = signal->amplitude};
   const double amplitude = signal->amplitude, duration = signal->rate;
   const double x = (t - signal->start) / duration, y = 1.0 - x;
-  return (mpsi_motion){.u = amplitude * x * x * x * (10.0 + x * (6.0 * x - 15.0)),
-                       .v = amplitude * 30.0 * x * x * y * y / duration,
-                       .a = amplitude * 60.0 * x * y * (y - x) / (duration * duration)};
+  return (mpsi_signal_motion){.u = amplitude * x * x * x * (10.0 + x * (6.0 * x - 15.0)),
+                              .v = amplitude * 30.0 * x * x * y * y / duration,
+                              .a = amplitude * 60.0 * x * y * (y - x) / (duration * duration)};
 }
 
 /* ---- the analytic kinds ---------------------------------------------------------------------- */
 
 /* Checks shared by the analytic kinds; `peaks` are the largest |u|, |v|, |a| of the motion. */
 static mps_status check_motion(mps_context *context, const char *function, double amplitude,
-                               mpsi_motion peaks) {
+                               mpsi_signal_motion peaks) {
   if (!isfinite(amplitude))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "amplitude is %g, must be finite",
                      amplitude);
@@ -124,7 +150,7 @@ mps_status mps_signal_ricker(mps_context *context, double frequency, double peak
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
                      "peak time is %g s, must be finite and >= 0", peak_time);
   const double c = PI * frequency * PI * frequency, peak = fabs(amplitude);
-  const mpsi_motion peaks = {.u = peak / (2.0 * c), .v = peak / sqrt(c), .a = peak};
+  const mpsi_signal_motion peaks = {.u = peak / (2.0 * c), .v = peak / sqrt(c), .a = peak};
   if ((status = check_motion(context, __func__, amplitude, peaks)) != MPS_OK) return status;
   mps_signal *signal = mpsi_signal_new(context, __func__);
   if (!signal) return MPS_ERROR_MEMORY;
@@ -149,7 +175,7 @@ mps_status mps_signal_sine(mps_context *context, double frequency, double amplit
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "phase is %g rad, must be finite",
                      phase);
   const double w = 2.0 * PI * frequency, peak = fabs(amplitude);
-  const mpsi_motion peaks = {.u = peak, .v = peak * w, .a = peak * (w * w)};
+  const mpsi_signal_motion peaks = {.u = peak, .v = peak * w, .a = peak * (w * w)};
   if ((status = check_motion(context, __func__, amplitude, peaks)) != MPS_OK) return status;
   mps_signal *signal = mpsi_signal_new(context, __func__);
   if (!signal) return MPS_ERROR_MEMORY;
@@ -178,9 +204,9 @@ mps_status mps_signal_ramp(mps_context *context, double start, double duration, 
                      duration, start);
   /* y = 1 - x: v has its largest value at x = 1/2, a at x y = 1/6 */
   const double peak = fabs(amplitude);
-  const mpsi_motion peaks = {.u = peak,
-                             .v = peak * 1.875 / duration,
-                             .a = peak * (10.0 / sqrt(3.0)) / duration / duration};
+  const mpsi_signal_motion peaks = {.u = peak,
+                                    .v = peak * 1.875 / duration,
+                                    .a = peak * (10.0 / sqrt(3.0)) / duration / duration};
   const mps_status status = check_motion(context, __func__, amplitude, peaks);
   if (status != MPS_OK) return status;
   mps_signal *signal = mpsi_signal_new(context, __func__);
@@ -191,6 +217,24 @@ mps_status mps_signal_ramp(mps_context *context, double start, double duration, 
   signal->start = start;
   signal->end = start + duration;
   signal->peak = peaks.a;
+  *out = signal;
+  return MPS_OK;
+}
+
+/* ---- the caller's own ------------------------------------------------------------------------ */
+
+mps_status mps_signal_user(mps_context *context, mps_signal_fn fn, void *user, mps_signal **out) {
+  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
+  *out = NULL;
+  if (!fn) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "fn is NULL");
+  mps_signal *signal = mpsi_signal_new(context, __func__);
+  if (!signal) return MPS_ERROR_MEMORY;
+  signal->fn = fn;
+  signal->user = user;
+  signal->start = -INFINITY;
+  signal->end = INFINITY;
+  signal->peak = NAN;
   *out = signal;
   return MPS_OK;
 }

@@ -5,12 +5,9 @@
 #define MPSI_SIGNAL_PRIVATE_H
 
 #include "core/internal.h"
+#include "signal_internal.h"
 
 #include <mps/signal.h>
-
-typedef struct mpsi_motion {
-  double u, v, a; /* m, m/s, m/s2 */
-} mpsi_motion;
 
 /* Start of a cubic piece: u(t + s) = u + v s + a s^2/2 + j s^3/6 up to the next knot. */
 typedef struct mpsi_knot {
@@ -20,9 +17,12 @@ typedef struct mpsi_knot {
 struct mps_signal {
   mps_context *context;
   atomic_int references;
-  mpsi_motion (*at)(const mps_signal *signal, double t); /* any finite t */
-  double start, end;                                     /* s */
-  double peak;                                           /* m/s2 */
+  mpsi_signal_motion (*at)(const mps_signal *signal, double t); /* any finite t */
+  double start, end;                                            /* s */
+  double peak;                                                  /* m/s2 */
+  /* The caller's own function; NULL: `at` is the motion. */
+  mps_signal_fn fn;
+  void *user;
   /* The analytic kinds: amplitude, and c (1/s2) and tp (s) of a Ricker wavelet, the angular
    * frequency (rad/s) and the phase of a sine, or the duration (s) of a ramp. */
   double amplitude, rate, shift;
@@ -37,15 +37,14 @@ struct mps_signal {
 mps_signal *mpsi_signal_new(mps_context *context, const char *function);
 
 /* As mps_signal_table, on behalf of the public `function`; context and out are valid. */
-mps_status mpsi_signal_from_table(mps_context *context, const char *function,
-                                  mps_signal_quantity quantity, int64_t count, const double *times,
-                                  const double *values, mps_signal **out);
+mps_status mpsi_signal_from_table(mps_context *context, const char *function, int32_t quantity,
+                                  int64_t count, const double *times, const double *values,
+                                  mps_signal **out);
 
 /* Multiplies both ends, `length` seconds each, with half a cosine wave that starts from 0. */
 void mpsi_taper(int64_t count, const double *times, double *accelerations, double length);
 /* Corrects the accelerations in place: see mps_signal_baseline. times[0] is 0. */
-mps_status mpsi_baseline_correct(mps_context *context, const char *function,
-                                 mps_signal_baseline baseline, int64_t count, const double *times,
-                                 double *accelerations);
+mps_status mpsi_baseline_correct(mps_context *context, const char *function, int32_t baseline,
+                                 int64_t count, const double *times, double *accelerations);
 
 #endif

@@ -30,17 +30,17 @@ static int64_t find_knot(const mps_signal *signal, double t) {
   return low;
 }
 
-static mpsi_motion table_at(const mps_signal *signal, double t) {
-  if (t < signal->start) return (mpsi_motion){.u = signal->knots[0].u};
+static mpsi_signal_motion table_at(const mps_signal *signal, double t) {
+  if (t < signal->start) return (mpsi_signal_motion){.u = signal->knots[0].u};
   const mpsi_knot *k = &signal->knots[signal->count - 1];
-  if (t == signal->end) return (mpsi_motion){.u = k->u, .v = k->v, .a = k->a};
+  if (t == signal->end) return (mpsi_signal_motion){.u = k->u, .v = k->v, .a = k->a};
   if (t > signal->end)
-    return (mpsi_motion){.u = k->u + signal->coast * (t - k->t), .v = signal->coast};
+    return (mpsi_signal_motion){.u = k->u + signal->coast * (t - k->t), .v = signal->coast};
   k = &signal->knots[find_knot(signal, t)];
   const double s = t - k->t;
-  return (mpsi_motion){.u = k->u + s * (k->v + s * (0.5 * k->a + s * k->j / 6.0)),
-                       .v = k->v + s * (k->a + s * 0.5 * k->j),
-                       .a = k->a + s * k->j};
+  return (mpsi_signal_motion){.u = k->u + s * (k->v + s * (0.5 * k->a + s * k->j / 6.0)),
+                              .v = k->v + s * (k->a + s * 0.5 * k->j),
+                              .a = k->a + s * k->j};
 }
 
 /* ---- the three quantities -------------------------------------------------------------------- */
@@ -113,13 +113,12 @@ static mps_status fit_displacements(mps_context *context, const char *function, 
 
 /* ---- creation -------------------------------------------------------------------------------- */
 
-static mps_status check_table(mps_context *context, const char *function,
-                              mps_signal_quantity quantity, int64_t count, const double *times,
-                              const double *values) {
-  if ((int)quantity < MPS_SIGNAL_DISPLACEMENT || (int)quantity > MPS_SIGNAL_ACCELERATION)
+static mps_status check_table(mps_context *context, const char *function, int32_t quantity,
+                              int64_t count, const double *times, const double *values) {
+  if (quantity < MPS_SIGNAL_DISPLACEMENT || quantity > MPS_SIGNAL_ACCELERATION)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "quantity is %d, allowed are 0 (displacement), 1 (velocity), 2 (acceleration)",
-                     (int)quantity);
+                     quantity);
   if (count < 2 || count >= INT32_MAX)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "count is %lld, must be in 2..%d",
                      (long long)count, INT32_MAX - 1);
@@ -151,9 +150,8 @@ static mps_status check_finite(mps_context *context, const char *function, const
 }
 
 /* Fills the knots, whose times are set. */
-static mps_status fill_knots(mps_context *context, const char *function,
-                             mps_signal_quantity quantity, mpsi_knot *knots, int64_t count,
-                             const double *values) {
+static mps_status fill_knots(mps_context *context, const char *function, int32_t quantity,
+                             mpsi_knot *knots, int64_t count, const double *values) {
   mps_status status = MPS_OK;
   if (quantity == MPS_SIGNAL_ACCELERATION)
     integrate_accelerations(knots, count, values);
@@ -164,9 +162,9 @@ static mps_status fill_knots(mps_context *context, const char *function,
   return status == MPS_OK ? check_finite(context, function, knots, count) : status;
 }
 
-mps_status mpsi_signal_from_table(mps_context *context, const char *function,
-                                  mps_signal_quantity quantity, int64_t count, const double *times,
-                                  const double *values, mps_signal **out) {
+mps_status mpsi_signal_from_table(mps_context *context, const char *function, int32_t quantity,
+                                  int64_t count, const double *times, const double *values,
+                                  mps_signal **out) {
   mps_status status = check_table(context, function, quantity, count, times, values);
   if (status != MPS_OK) return status;
   mps_signal *signal = mpsi_signal_new(context, function);
@@ -188,13 +186,17 @@ mps_status mpsi_signal_from_table(mps_context *context, const char *function,
   signal->coast = quantity == MPS_SIGNAL_DISPLACEMENT ? 0.0 : signal->knots[count - 1].v;
   signal->count = count;
   signal->knots_per_second = (double)(count - 1) / (signal->end - signal->start);
+  if (quantity != MPS_SIGNAL_DISPLACEMENT && signal->start < 0.0) {
+    const double before = table_at(signal, 0.0).u; /* displaces nothing at t = 0 */
+    for (int64_t i = 0; i < count; i++) signal->knots[i].u -= before;
+  }
   /* |a| is linear between samples, so it is largest at one of them */
   for (int64_t i = 0; i < count; i++) signal->peak = fmax(signal->peak, fabs(signal->knots[i].a));
   *out = signal;
   return MPS_OK;
 }
 
-mps_status mps_signal_table(mps_context *context, mps_signal_quantity quantity, int64_t count,
+mps_status mps_signal_table(mps_context *context, int32_t quantity, int64_t count,
                             const double *times, const double *values, mps_signal **out) {
   if (!context) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");

@@ -39,7 +39,7 @@ static bool check_text(const char *data, size_t size, uint32_t options) {
   test_allocator allocator = {0};
   mps_context *context = test_allocator_context(&allocator);
   if (!context) BROKEN("no context");
-  mps_record_def def = mps_record_defaults();
+  mps_signal_record_def def = mps_signal_record_defaults();
   def.format = (int32_t)(options % 4 == 0 ? options / 4 % 4 : 0); /* mostly recognised */
   def.quantity = options / 16 % 4 == 0 ? (int32_t)(options / 64 % 3) : MPS_SIGNAL_ACCELERATION;
   def.baseline = (int32_t)(options / 256 % 5);

@@ -79,14 +79,14 @@ static void the_samples_in_three_formats_are_the_known_motion(void **state) {
     int32_t format;
     double last, extra;
   } files[] = {
-      {TEST_DATA "/sample.AT2", MPS_RECORD_AT2, 4.0, 1e-7},
-      {TEST_DATA "/sample.NS", MPS_RECORD_KNET, 3.99, 2e-5}, /* counts of 6.3e-6 m/s2 */
-      {TEST_DATA "/sample.csv", MPS_RECORD_CSV, 4.0, 1e-7},
+      {TEST_DATA "/sample.AT2", MPS_SIGNAL_RECORD_AT2, 4.0, 1e-7},
+      {TEST_DATA "/sample.NS", MPS_SIGNAL_RECORD_KNET, 3.99, 2e-5}, /* counts of 6.3e-6 m/s2 */
+      {TEST_DATA "/sample.csv", MPS_SIGNAL_RECORD_CSV, 4.0, 1e-7},
   };
   for (size_t i = 0; i < sizeof files / sizeof *files; i++)
     for (int automatic = 0; automatic < 2; automatic++) {
-      mps_record_def def = mps_record_defaults();
-      def.format = automatic ? MPS_RECORD_AUTO : files[i].format;
+      mps_signal_record_def def = mps_signal_record_defaults();
+      def.format = automatic ? MPS_SIGNAL_RECORD_AUTO : files[i].format;
       mps_signal *signal = NULL;
       mps_assert_ok(context, mps_signal_record(context, files[i].path, &def, &signal));
       check_known(signal, 0.01, files[i].last, files[i].extra);
@@ -100,7 +100,7 @@ static void the_samples_in_three_formats_are_the_known_motion(void **state) {
 /* Reads `content`, which must succeed, without baseline correction unless asked. */
 static mps_signal *read_text(const char *content, int32_t baseline) {
   write_file(content, strlen(content));
-  mps_record_def def = mps_record_defaults();
+  mps_signal_record_def def = mps_signal_record_defaults();
   def.baseline = baseline;
   mps_signal *signal = NULL;
   mps_assert_ok(context, mps_signal_record(context, FILE_TMP, &def, &signal));
@@ -108,7 +108,7 @@ static mps_signal *read_text(const char *content, int32_t baseline) {
 }
 
 static void check_samples(const char *content, double step, const double *values, int count) {
-  mps_signal *signal = read_text(content, MPS_BASELINE_NONE);
+  mps_signal *signal = read_text(content, MPS_SIGNAL_BASELINE_NONE);
   for (int i = 0; i < count; i++)
     mps_assert_near(mps_signal_acceleration(signal, step * i), values[i],
                     1e-15 * fabs(values[i]) + 1e-300);
@@ -156,7 +156,7 @@ static void csv_columns_are_separated_in_many_ways(void **state) {
       "-1 1.5\n -0.5   -2D-3  \n0\t,\t0.25\n#",
   };
   for (size_t i = 0; i < sizeof files / sizeof *files; i++) check_samples(files[i], 0.5, values, 3);
-  mps_signal *signal = read_text("0 0\n1 1\n4 4\n", MPS_BASELINE_NONE); /* uneven: a = t */
+  mps_signal *signal = read_text("0 0\n1 1\n4 4\n", MPS_SIGNAL_BASELINE_NONE); /* uneven: a = t */
   mps_assert_near(mps_signal_displacement(signal, 3.0), 4.5, 1e-14);
   mps_signal_destroy(&signal);
 }
@@ -164,7 +164,7 @@ static void csv_columns_are_separated_in_many_ways(void **state) {
 static void quantity_scale_and_taper_act_as_they_say(void **state) {
   (void)state;
   write_file("0 1\n1 1\n2 1\n3 1\n4 1\n", 20);
-  mps_record_def def = mps_record_defaults();
+  mps_signal_record_def def = mps_signal_record_defaults();
   mps_signal *signal = NULL;
   def.quantity = MPS_SIGNAL_VELOCITY; /* the default baseline is for accelerations only */
   def.scale = 0.5;
@@ -179,7 +179,7 @@ static void quantity_scale_and_taper_act_as_they_say(void **state) {
   mps_assert_fails(context, mps_signal_record(context, FILE_TMP, &def, &signal), MPS_ERROR_ARGUMENT,
                    "taper is 1 s, must be 0 for a record of displacements");
   def.quantity = MPS_SIGNAL_ACCELERATION;
-  def.baseline = MPS_BASELINE_NONE;
+  def.baseline = MPS_SIGNAL_BASELINE_NONE;
   def.scale = -3.0;
   def.taper = 2.0; /* 0, 1/2, 1, 1/2, 0 */
   mps_assert_ok(context, mps_signal_record(context, FILE_TMP, &def, &signal));
@@ -201,7 +201,7 @@ static mps_signal *drifting(const double drift[3], bool uneven, int32_t baseline
             known(t, 2) + drift[0] + 2.0 * drift[1] * t + 3.0 * drift[2] * t * t);
   }
   assert_int_equal(fclose(file), 0);
-  mps_record_def def = mps_record_defaults();
+  mps_signal_record_def def = mps_signal_record_defaults();
   def.baseline = baseline;
   mps_signal *signal = NULL;
   mps_assert_ok(context, mps_signal_record(context, FILE_TMP, &def, &signal));
@@ -218,8 +218,8 @@ static void the_trend_of_its_degree_is_removed(void **state) {
     for (int uneven = 0; uneven < 2; uneven++) {
       double drift[3] = {0.3, -0.2, 0.05};
       for (int k = degree; k < 3; k++) drift[k] = 0.0;
-      mps_signal *clean = drifting(none, uneven, MPS_BASELINE_MEAN + degree);
-      mps_signal *drifted = drifting(drift, uneven, MPS_BASELINE_MEAN + degree);
+      mps_signal *clean = drifting(none, uneven, MPS_SIGNAL_BASELINE_MEAN + degree);
+      mps_signal *drifted = drifting(drift, uneven, MPS_SIGNAL_BASELINE_MEAN + degree);
       /* steps of at most 1.3 T/800: the parabola's integral differs by h^2/12 6 c3 T at most */
       const double h = 1.3 * T / 800.0, same = degree == 3 ? h * h / 2.0 * 0.05 * T : 1e-13;
       for (int i = 0; i <= 100; i++) {
@@ -239,13 +239,13 @@ static void the_trend_of_its_degree_is_removed(void **state) {
 static void the_mean_is_the_one_over_time_and_none_leaves_all(void **state) {
   (void)state;
   const double drift[3] = {0.3, -0.2, 0.0};
-  mps_signal *signal = drifting(drift, true, MPS_BASELINE_MEAN);
+  mps_signal *signal = drifting(drift, true, MPS_SIGNAL_BASELINE_MEAN);
   mps_assert_near(mps_signal_velocity(signal, T), 0.0, 1e-14);
   mps_signal_destroy(&signal);
-  signal = drifting(drift, false, MPS_BASELINE_NONE);
+  signal = drifting(drift, false, MPS_SIGNAL_BASELINE_NONE);
   mps_assert_near(mps_signal_velocity(signal, T), 0.3 * T - 0.2 * T * T, 1e-13);
   mps_signal_destroy(&signal);
-  signal = drifting(drift, false, MPS_BASELINE_LINEAR); /* of too low a degree */
+  signal = drifting(drift, false, MPS_SIGNAL_BASELINE_LINEAR); /* of too low a degree */
   assert_true(fabs(mps_signal_velocity(signal, T)) > 0.1);
   mps_signal_destroy(&signal);
 }
@@ -253,16 +253,17 @@ static void the_mean_is_the_one_over_time_and_none_leaves_all(void **state) {
 static void a_correction_needs_enough_samples(void **state) {
   (void)state;
   write_file("0 1\n1 2\n2 5\n", 12);
-  mps_record_def def = mps_record_defaults();
+  mps_signal_record_def def = mps_signal_record_defaults();
   mps_signal *signal = NULL;
-  def.baseline = MPS_BASELINE_CUBIC;
+  def.baseline = MPS_SIGNAL_BASELINE_CUBIC;
   mps_assert_fails(context, mps_signal_record(context, FILE_TMP, &def, &signal), MPS_ERROR_ARGUMENT,
                    "baseline 4 needs at least 4 samples, the record has 3");
-  def.baseline = MPS_BASELINE_QUADRATIC; /* two unknowns, v(1) and v(2): nothing is left of v */
+  def.baseline =
+      MPS_SIGNAL_BASELINE_QUADRATIC; /* two unknowns, v(1) and v(2): nothing is left of v */
   mps_assert_ok(context, mps_signal_record(context, FILE_TMP, &def, &signal));
   mps_assert_near(mps_signal_velocity(signal, 2.0), 0.0, 1e-14);
   mps_signal_destroy(&signal);
-  signal = read_text("0 0\n1 0\n2 0\n3 0\n", MPS_BASELINE_CUBIC);
+  signal = read_text("0 0\n1 0\n2 0\n3 0\n", MPS_SIGNAL_BASELINE_CUBIC);
   assert_true(mps_signal_displacement(signal, 3.0) == 0.0);
   mps_signal_destroy(&signal);
 }
@@ -335,82 +336,91 @@ typedef struct bad_file {
 #define DIGITS_32 "11111111111111111111111111111111"
 
 static const bad_file bad_files[] = {
-    {"", MPS_RECORD_AUTO, ":1: not recognised as AT2"},
-    {"\n\n \n", MPS_RECORD_AUTO, ":1: not recognised as AT2"},
-    {"hello\nworld\n", MPS_RECORD_AUTO, ":1: not recognised as AT2"},
+    {"", MPS_SIGNAL_RECORD_AUTO, ":1: not recognised as AT2"},
+    {"\n\n \n", MPS_SIGNAL_RECORD_AUTO, ":1: not recognised as AT2"},
+    {"hello\nworld\n", MPS_SIGNAL_RECORD_AUTO, ":1: not recognised as AT2"},
     /* AT2 */
-    {"A\nB\n", MPS_RECORD_AT2, ":2: the file ends within the 4 header lines"},
-    {"A\nB\nVELOCITY TIME SERIES\nNPTS= 2, DT= 1\n1 2\n", MPS_RECORD_AUTO,
+    {"A\nB\n", MPS_SIGNAL_RECORD_AT2, ":2: the file ends within the 4 header lines"},
+    {"A\nB\nVELOCITY TIME SERIES\nNPTS= 2, DT= 1\n1 2\n", MPS_SIGNAL_RECORD_AUTO,
      ":3: \"VELOCITY TIME SERIES\": an AT2 file of accelerations"},
-    {"A\nB\nIN UNITS OF CM/S2\nNPTS= 2, DT= 1\n1 2\n", MPS_RECORD_AUTO,
+    {"A\nB\nIN UNITS OF CM/S2\nNPTS= 2, DT= 1\n1 2\n", MPS_SIGNAL_RECORD_AUTO,
      ":3: the unit is \"CM/S2\", only g"},
-    {AT2("no numbers", ""), MPS_RECORD_AT2, ":4: \"no numbers\": NPTS= and DT="},
-    {AT2("NPTS= 4000, STEP= .005", ""), MPS_RECORD_AT2, ":4: \"NPTS= 4000, STEP= .005\": NPTS="},
-    {AT2("NPTS= 1, DT= 1", "1"), MPS_RECORD_AUTO, ":4: NPTS is 1, must be a whole number in 2.."},
-    {AT2("NPTS= 2.5, DT= 1", "1"), MPS_RECORD_AUTO, ":4: NPTS is 2.5"},
-    {AT2("NPTS= 1e99, DT= 1", "1"), MPS_RECORD_AUTO, ":4: NPTS is 1e+99"},
-    {AT2("NPTS= 1e999, DT= 1", "1"), MPS_RECORD_AUTO, ":4: NPTS is inf"},
-    {AT2("NPTS= 2, DT= 0 SEC", "1 2"), MPS_RECORD_AUTO, ":4: DT is 0 s"},
-    {AT2("NPTS= 2, DT= -.5 SEC", "1 2"), MPS_RECORD_AUTO, ":4: DT is -0.5 s"},
-    {AT2("NPTS= 5, DT= 1", "1 2\n3 4\n"), MPS_RECORD_AUTO,
+    {AT2("no numbers", ""), MPS_SIGNAL_RECORD_AT2, ":4: \"no numbers\": NPTS= and DT="},
+    {AT2("NPTS= 4000, STEP= .005", ""), MPS_SIGNAL_RECORD_AT2,
+     ":4: \"NPTS= 4000, STEP= .005\": NPTS="},
+    {AT2("NPTS= 1, DT= 1", "1"), MPS_SIGNAL_RECORD_AUTO,
+     ":4: NPTS is 1, must be a whole number in 2.."},
+    {AT2("NPTS= 2.5, DT= 1", "1"), MPS_SIGNAL_RECORD_AUTO, ":4: NPTS is 2.5"},
+    {AT2("NPTS= 1e99, DT= 1", "1"), MPS_SIGNAL_RECORD_AUTO, ":4: NPTS is 1e+99"},
+    {AT2("NPTS= 1e999, DT= 1", "1"), MPS_SIGNAL_RECORD_AUTO, ":4: NPTS is inf"},
+    {AT2("NPTS= 2, DT= 0 SEC", "1 2"), MPS_SIGNAL_RECORD_AUTO, ":4: DT is 0 s"},
+    {AT2("NPTS= 2, DT= -.5 SEC", "1 2"), MPS_SIGNAL_RECORD_AUTO, ":4: DT is -0.5 s"},
+    {AT2("NPTS= 5, DT= 1", "1 2\n3 4\n"), MPS_SIGNAL_RECORD_AUTO,
      ":6: the file ends after 4 values, NPTS announces 5"},
-    {AT2("NPTS= 3, DT= 1", "1 2\n3 4\n"), MPS_RECORD_AUTO, ":6: more values than the 3 that NPTS"},
-    {AT2("NPTS= 3, DT= 1", "1 2\n.1234E-\n"), MPS_RECORD_AUTO,
+    {AT2("NPTS= 3, DT= 1", "1 2\n3 4\n"), MPS_SIGNAL_RECORD_AUTO,
+     ":6: more values than the 3 that NPTS"},
+    {AT2("NPTS= 3, DT= 1", "1 2\n.1234E-\n"), MPS_SIGNAL_RECORD_AUTO,
      ":6: the acceleration is \".1234E-\", which is not a number"},
-    {AT2("NPTS= 3, DT= 1", "1 nan 3\n"), MPS_RECORD_AUTO, ":5: the acceleration is \"nan\""},
-    {AT2("NPTS= 3, DT= 1", "1 2\n-inf"), MPS_RECORD_AUTO, ":6: the acceleration is \"-inf\""},
-    {AT2("NPTS= 3, DT= 1", "1 0x10 3"), MPS_RECORD_AUTO, ":5: the acceleration is \"0x10\""},
-    {AT2("NPTS= 3, DT= 1", "1 1e999 3"), MPS_RECORD_AUTO, ":5: the acceleration is 1e999, which"},
-    {AT2("NPTS= 3, DT= 1", "1 . 3"), MPS_RECORD_AUTO, ":5: the acceleration is \".\", which"},
-    {AT2("NPTS= 3, DT= 1", "1 \x01\xff 3"), MPS_RECORD_AUTO, ":5: the acceleration is \"??\""},
-    {AT2("NPTS= 2, DT= 1", "1 " DIGITS_32 DIGITS_32 DIGITS_32 DIGITS_32), MPS_RECORD_AUTO,
+    {AT2("NPTS= 3, DT= 1", "1 nan 3\n"), MPS_SIGNAL_RECORD_AUTO, ":5: the acceleration is \"nan\""},
+    {AT2("NPTS= 3, DT= 1", "1 2\n-inf"), MPS_SIGNAL_RECORD_AUTO,
+     ":6: the acceleration is \"-inf\""},
+    {AT2("NPTS= 3, DT= 1", "1 0x10 3"), MPS_SIGNAL_RECORD_AUTO, ":5: the acceleration is \"0x10\""},
+    {AT2("NPTS= 3, DT= 1", "1 1e999 3"), MPS_SIGNAL_RECORD_AUTO,
+     ":5: the acceleration is 1e999, which"},
+    {AT2("NPTS= 3, DT= 1", "1 . 3"), MPS_SIGNAL_RECORD_AUTO,
+     ":5: the acceleration is \".\", which"},
+    {AT2("NPTS= 3, DT= 1", "1 \x01\xff 3"), MPS_SIGNAL_RECORD_AUTO,
+     ":5: the acceleration is \"??\""},
+    {AT2("NPTS= 2, DT= 1", "1 " DIGITS_32 DIGITS_32 DIGITS_32 DIGITS_32), MPS_SIGNAL_RECORD_AUTO,
      ":5: the acceleration is \"" DIGITS_32 "1111...\", which"},
     /* K-NET */
-    {"Origin Time\nScale Factor 1(gal)/1\n1 2 3", MPS_RECORD_AUTO, ":3: no \"Memo.\" line"},
-    {"Origin Time\nScale Factor 1(gal)/1\nMemo.\n1 2", MPS_RECORD_AUTO,
+    {"Origin Time\nScale Factor 1(gal)/1\n1 2 3", MPS_SIGNAL_RECORD_AUTO, ":3: no \"Memo.\" line"},
+    {"Origin Time\nScale Factor 1(gal)/1\nMemo.\n1 2", MPS_SIGNAL_RECORD_AUTO,
      ":3: the header ends without \"Sampling Freq\""},
-    {"Origin Time\nSampling Freq(Hz) 100Hz\nMemo.\n1 2", MPS_RECORD_AUTO,
+    {"Origin Time\nSampling Freq(Hz) 100Hz\nMemo.\n1 2", MPS_SIGNAL_RECORD_AUTO,
      ":3: the header ends without \"Scale Factor\""},
-    {KNET("fast", "2", "1(gal)/1", "1 2"), MPS_RECORD_AUTO,
+    {KNET("fast", "2", "1(gal)/1", "1 2"), MPS_SIGNAL_RECORD_AUTO,
      ":3: Sampling Freq is \"fast\", a number > 0"},
-    {KNET("0Hz", "2", "1(gal)/1", "1 2"), MPS_RECORD_AUTO, ":3: Sampling Freq is \"0Hz\""},
-    {KNET("1e-320Hz", "2", "1(gal)/1", "1 2"), MPS_RECORD_AUTO, "too small"},
-    {KNET("1Hz", "-2", "1(gal)/1", "1 2"), MPS_RECORD_AUTO, ":4: Duration Time is \"-2\""},
-    {KNET("1Hz", "2", "(gal)/1", "1 2"), MPS_RECORD_AUTO, ":5: Scale Factor is \"(gal)/1\""},
-    {KNET("1Hz", "2", "1(cm)/1", "1 2"), MPS_RECORD_AUTO,
+    {KNET("0Hz", "2", "1(gal)/1", "1 2"), MPS_SIGNAL_RECORD_AUTO, ":3: Sampling Freq is \"0Hz\""},
+    {KNET("1e-320Hz", "2", "1(gal)/1", "1 2"), MPS_SIGNAL_RECORD_AUTO, "too small"},
+    {KNET("1Hz", "-2", "1(gal)/1", "1 2"), MPS_SIGNAL_RECORD_AUTO, ":4: Duration Time is \"-2\""},
+    {KNET("1Hz", "2", "(gal)/1", "1 2"), MPS_SIGNAL_RECORD_AUTO, ":5: Scale Factor is \"(gal)/1\""},
+    {KNET("1Hz", "2", "1(cm)/1", "1 2"), MPS_SIGNAL_RECORD_AUTO,
      ":5: the unit of Scale Factor is \"(cm)\", (gal)/counts is expected"},
-    {KNET("1Hz", "2", "1(gal)/x", "1 2"), MPS_RECORD_AUTO, ":5: the divisor of Scale Factor is"},
-    {KNET("1Hz", "2", "1e300(gal)/1e-300", "1 2"), MPS_RECORD_AUTO,
+    {KNET("1Hz", "2", "1(gal)/x", "1 2"), MPS_SIGNAL_RECORD_AUTO,
+     ":5: the divisor of Scale Factor is"},
+    {KNET("1Hz", "2", "1e300(gal)/1e-300", "1 2"), MPS_SIGNAL_RECORD_AUTO,
      ":5: Scale Factor is 1e+300/1e-300, outside"},
-    {KNET("1Hz", "4", "1(gal)/1", "1 2\n3\n"), MPS_RECORD_AUTO,
+    {KNET("1Hz", "4", "1(gal)/1", "1 2\n3\n"), MPS_SIGNAL_RECORD_AUTO,
      ":8: the file has 3 values, 4 s at 1 Hz announce 4"},
-    {KNET("2Hz", "1", "1(gal)/1", "1 2 3 4\n"), MPS_RECORD_AUTO,
+    {KNET("2Hz", "1", "1(gal)/1", "1 2 3 4\n"), MPS_SIGNAL_RECORD_AUTO,
      ":7: the file has 4 values, 1 s at 2 Hz announce 2"},
-    {KNET("1Hz", "2", "1(gal)/1", "1\n2.5\n"), MPS_RECORD_AUTO,
+    {KNET("1Hz", "2", "1(gal)/1", "1\n2.5\n"), MPS_SIGNAL_RECORD_AUTO,
      ":8: the count is \"2.5\", a whole number"},
-    {KNET("1Hz", "2", "1(gal)/1", "1\n2147483649\n"), MPS_RECORD_AUTO,
+    {KNET("1Hz", "2", "1(gal)/1", "1\n2147483649\n"), MPS_SIGNAL_RECORD_AUTO,
      ":8: the count is \"2147483649\""},
-    {KNET("1Hz", "2", "1(gal)/1", "1 x\n"), MPS_RECORD_AUTO, ":7: the count is \"x\""},
+    {KNET("1Hz", "2", "1(gal)/1", "1 x\n"), MPS_SIGNAL_RECORD_AUTO, ":7: the count is \"x\""},
     /* CSV */
-    {"", MPS_RECORD_CSV, ":0: the file has no samples, at least 2 are needed"},
-    {"t,a\n0,1\n", MPS_RECORD_AUTO, ":2: the file has 1 sample, at least 2 are needed"},
-    {"t,a\nu,b\n0,1\n", MPS_RECORD_CSV, ":2: the time is \"u\", which is not a number"},
-    {"0,1\n1,x\n", MPS_RECORD_AUTO, ":2: the value is \"x\", which is not a number"},
-    {"0,1\n1\n", MPS_RECORD_AUTO, ":2: the value is missing"},
-    {"0,1\n1,\n", MPS_RECORD_AUTO, ":2: the value is missing"},
-    {"0,1\n1,,2\n", MPS_RECORD_AUTO, ":2: the value is missing"},
-    {"0,1\n,2\n", MPS_RECORD_AUTO, ":2: the time is missing"},
-    {"0 1 2\n1 2 3\n", MPS_RECORD_AUTO,
+    {"", MPS_SIGNAL_RECORD_CSV, ":0: the file has no samples, at least 2 are needed"},
+    {"t,a\n0,1\n", MPS_SIGNAL_RECORD_AUTO, ":2: the file has 1 sample, at least 2 are needed"},
+    {"t,a\nu,b\n0,1\n", MPS_SIGNAL_RECORD_CSV, ":2: the time is \"u\", which is not a number"},
+    {"0,1\n1,x\n", MPS_SIGNAL_RECORD_AUTO, ":2: the value is \"x\", which is not a number"},
+    {"0,1\n1\n", MPS_SIGNAL_RECORD_AUTO, ":2: the value is missing"},
+    {"0,1\n1,\n", MPS_SIGNAL_RECORD_AUTO, ":2: the value is missing"},
+    {"0,1\n1,,2\n", MPS_SIGNAL_RECORD_AUTO, ":2: the value is missing"},
+    {"0,1\n,2\n", MPS_SIGNAL_RECORD_AUTO, ":2: the time is missing"},
+    {"0 1 2\n1 2 3\n", MPS_SIGNAL_RECORD_AUTO,
      ":1: two columns are expected (and a decimal point), \"2\""},
-    {"0,01;1,5\n", MPS_RECORD_AUTO, ":1: two columns are expected (and a decimal point), \";1,5\""},
-    {"0,1\n1,1\n#\n1,2\n", MPS_RECORD_AUTO, ":4: time 1 s does not come after 1 s"},
-    {"0,1\n1,1\n0.5,2\n", MPS_RECORD_AUTO, ":3: time 0.5 s does not come after 1 s"},
-    {"-1e16,1\n0,1\n0.25,2\n", MPS_RECORD_AUTO, ":3: time 0.25 s does not come after 0 s"},
-    {"-1e308,1\n1e308,1\n", MPS_RECORD_AUTO, ":2: time 1e+308 s is too far from the first"},
-    {"nan,1\n1,1\n", MPS_RECORD_CSV, ":1: the time is \"nan\""},
-    {"0,1\n1,-Infinity\n", MPS_RECORD_AUTO, ":2: the value is \"-Infinity\""},
-    {"0.1.2,1\n1,1\n", MPS_RECORD_AUTO, ":1: the time is \"0.1.2\""},
-    {"0,1\r1,1\r", MPS_RECORD_AUTO, ":1: two columns are expected"},
+    {"0,01;1,5\n", MPS_SIGNAL_RECORD_AUTO,
+     ":1: two columns are expected (and a decimal point), \";1,5\""},
+    {"0,1\n1,1\n#\n1,2\n", MPS_SIGNAL_RECORD_AUTO, ":4: time 1 s does not come after 1 s"},
+    {"0,1\n1,1\n0.5,2\n", MPS_SIGNAL_RECORD_AUTO, ":3: time 0.5 s does not come after 1 s"},
+    {"-1e16,1\n0,1\n0.25,2\n", MPS_SIGNAL_RECORD_AUTO, ":3: time 0.25 s does not come after 0 s"},
+    {"-1e308,1\n1e308,1\n", MPS_SIGNAL_RECORD_AUTO, ":2: time 1e+308 s is too far from the first"},
+    {"nan,1\n1,1\n", MPS_SIGNAL_RECORD_CSV, ":1: the time is \"nan\""},
+    {"0,1\n1,-Infinity\n", MPS_SIGNAL_RECORD_AUTO, ":2: the value is \"-Infinity\""},
+    {"0.1.2,1\n1,1\n", MPS_SIGNAL_RECORD_AUTO, ":1: the time is \"0.1.2\""},
+    {"0,1\r1,1\r", MPS_SIGNAL_RECORD_AUTO, ":1: two columns are expected"},
 };
 
 static void every_malformed_file_is_refused_with_its_line(void **state) {
@@ -418,7 +428,7 @@ static void every_malformed_file_is_refused_with_its_line(void **state) {
   for (size_t i = 0; i < sizeof bad_files / sizeof *bad_files; i++) {
     const bad_file *bad = &bad_files[i];
     write_file(bad->content, strlen(bad->content));
-    mps_record_def def = mps_record_defaults();
+    mps_signal_record_def def = mps_signal_record_defaults();
     def.format = bad->format;
     mps_signal *signal = (mps_signal *)&def;
     char expected[512];
@@ -439,19 +449,20 @@ static void numbers_that_overflow_later_are_refused(void **state) {
     int32_t baseline;
     double scale;
   } files[] = {
-      {"0 1e308\n1 1\n", "sample 1 overflows: t = 0 s", MPS_BASELINE_NONE, 10.0},
-      {AT2("NPTS= 3, DT= 1e308", "1 2 3"), "sample 3 overflows: t = inf s", MPS_BASELINE_NONE, 1.0},
-      {"0 1e300\n1e300 1\n", "the motion overflows at or after t = 1e+300 s", MPS_BASELINE_NONE,
-       1.0},
-      {"0 1e300\n1e300 1\n", "the velocity overflows when", MPS_BASELINE_LINEAR, 1.0},
+      {"0 1e308\n1 1\n", "sample 1 overflows: t = 0 s", MPS_SIGNAL_BASELINE_NONE, 10.0},
+      {AT2("NPTS= 3, DT= 1e308", "1 2 3"), "sample 3 overflows: t = inf s",
+       MPS_SIGNAL_BASELINE_NONE, 1.0},
+      {"0 1e300\n1e300 1\n", "the motion overflows at or after t = 1e+300 s",
+       MPS_SIGNAL_BASELINE_NONE, 1.0},
+      {"0 1e300\n1e300 1\n", "the velocity overflows when", MPS_SIGNAL_BASELINE_LINEAR, 1.0},
       {"0 1\n1e-310 1\n2e-310 0\n", "the motion overflows at or after t = 0 s",
-       MPS_BASELINE_QUADRATIC, 1.0},
+       MPS_SIGNAL_BASELINE_QUADRATIC, 1.0},
       {"0 1\n1e-250 1\n2e-250 1\n1 0\n", "the baseline of degree 3 cannot be fitted",
-       MPS_BASELINE_CUBIC, 1.0},
+       MPS_SIGNAL_BASELINE_CUBIC, 1.0},
   };
   for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
     write_file(files[i].content, strlen(files[i].content));
-    mps_record_def def = mps_record_defaults();
+    mps_signal_record_def def = mps_signal_record_defaults();
     def.baseline = files[i].baseline;
     def.scale = files[i].scale;
     mps_signal *signal = NULL;
@@ -495,8 +506,8 @@ static void gigantic_lines_are_read_and_gigantic_words_refused(void **state) {
     snprintf(content + header + i * WIDTH, WIDTH + 1, "%9.6f ", i % 100 * 0.01);
   const size_t size = (size_t)header + COUNT * WIDTH;
   write_file(content, size);
-  mps_record_def def = mps_record_defaults();
-  def.baseline = MPS_BASELINE_NONE;
+  mps_signal_record_def def = mps_signal_record_defaults();
+  def.baseline = MPS_SIGNAL_BASELINE_NONE;
   mps_signal *signal = NULL;
   mps_assert_ok(context, mps_signal_record(context, FILE_TMP, &def, &signal));
   mps_assert_near(mps_signal_acceleration(signal, 0.01 * (COUNT - 1)), 0.99 * G, 1e-9);
@@ -512,9 +523,9 @@ static void bad_definitions_are_refused(void **state) {
   (void)state;
   mps_signal *signal = NULL;
   const char *path = TEST_DATA "/sample.csv";
-  mps_record_def def;
+  mps_signal_record_def def;
 #define REFUSED(member, value, text)                                                               \
-  def = mps_record_defaults();                                                                     \
+  def = mps_signal_record_defaults();                                                              \
   def.member = value;                                                                              \
   mps_assert_fails(context, mps_signal_record(context, path, &def, &signal), MPS_ERROR_ARGUMENT,   \
                    text)
@@ -534,15 +545,15 @@ static void bad_definitions_are_refused(void **state) {
   mps_assert_fails(context, mps_signal_record(context, path, NULL, NULL), MPS_ERROR_ARGUMENT,
                    "out is NULL");
   assert_int_equal(mps_signal_record(NULL, path, NULL, &signal), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_record_def_init(NULL, sizeof def), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_record_def_init(&def, 8), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_signal_record_def_init(NULL, sizeof def), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_signal_record_def_init(&def, 8), MPS_ERROR_ARGUMENT);
 }
 
 static mps_status read_sample(mps_context *owner, int format) {
   static const char *const paths[] = {TEST_DATA "/sample.AT2", TEST_DATA "/sample.NS",
                                       TEST_DATA "/sample.csv"};
-  mps_record_def def = mps_record_defaults();
-  def.baseline = MPS_BASELINE_CUBIC;
+  mps_signal_record_def def = mps_signal_record_defaults();
+  def.baseline = MPS_SIGNAL_BASELINE_CUBIC;
   mps_signal *signal = NULL;
   const mps_status status = mps_signal_record(owner, paths[format], &def, &signal);
   assert_int_equal(status == MPS_OK, signal != NULL);

@@ -366,6 +366,75 @@ static void a_signal_outlives_its_context(void **state) {
   assert_int_equal(allocator.live, 0);
 }
 
+/* ---- before t = 0, and the caller's own ------------------------------------------------------ */
+
+static void what_lies_before_zero_displaces_nothing_at_the_start(void **state) {
+  (void)state;
+  const double times[] = {-2.0, -1.0, 1.0, 3.0}, values[] = {1.0, 1.0, 1.0, -0.5};
+  mps_signal *signal = NULL;
+  mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_VELOCITY, 4, times, values, &signal));
+  mps_assert_near(mps_signal_displacement(signal, 0.0), 0.0, 1e-15);
+  mps_assert_near(mps_signal_displacement(signal, 1.0), 1.0, 1e-15);
+  mps_assert_near(mps_signal_displacement(signal, -2.0), -2.0, 1e-15);
+  mps_assert_near(mps_signal_displacement(signal, -9.0), -2.0, 1e-15);
+  mps_assert_near(mps_signal_velocity(signal, 0.5), 1.0, 1e-15);
+  mps_signal_destroy(&signal);
+  /* a from t = -2: v = t + 2 from rest there, u = (t + 2)^2/2 - 2 */
+  const double ones[] = {1.0, 1.0, 1.0, 1.0};
+  mps_assert_ok(context,
+                mps_signal_table(context, MPS_SIGNAL_ACCELERATION, 4, times, ones, &signal));
+  for (double t = -2.0; t < 3.0; t += 0.25) {
+    mps_assert_near(mps_signal_displacement(signal, t), 0.5 * (t + 2.0) * (t + 2.0) - 2.0, 1e-14);
+    mps_assert_near(mps_signal_velocity(signal, t), t + 2.0, 1e-14);
+  }
+  mps_signal_destroy(&signal);
+  /* entirely in the past: what goes on is the last velocity, from 0 at t = 0 */
+  const double past[] = {-5.0, -4.0};
+  mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_VELOCITY, 2, past, ones, &signal));
+  mps_assert_near(mps_signal_displacement(signal, 0.0), 0.0, 1e-15);
+  mps_assert_near(mps_signal_displacement(signal, 2.0), 2.0, 1e-15);
+  mps_signal_destroy(&signal);
+}
+
+typedef struct parabola {
+  double rate;
+  int refuse_after;
+} parabola;
+
+static mps_status parabola_at(void *user, double t, double motion[3]) {
+  const parabola *p = user;
+  if (p->refuse_after > 0 && t > p->refuse_after) return MPS_ERROR_IO;
+  motion[0] = 0.5 * p->rate * t * t;
+  motion[1] = p->rate * t;
+  motion[2] = p->refuse_after < 0 ? NAN : p->rate;
+  return MPS_OK;
+}
+
+static void the_callers_function_is_a_signal(void **state) {
+  (void)state;
+  parabola p = {3.0, 0};
+  mps_signal *signal = NULL;
+  mps_assert_ok(context, mps_signal_user(context, parabola_at, &p, &signal));
+  mps_assert_near(mps_signal_displacement(signal, -2.0), 6.0, 0.0);
+  mps_assert_near(mps_signal_velocity(signal, 2.0), 6.0, 0.0);
+  mps_assert_near(mps_signal_acceleration(signal, 2.0), 3.0, 0.0);
+  assert_true(isnan(mps_signal_peak_acceleration(signal)));
+  assert_true(isnan(mps_signal_displacement(signal, NAN)));
+  double start, end;
+  mps_signal_span(signal, &start, &end);
+  assert_true(isinf(start) && isinf(end) && start < end);
+  p.refuse_after = 1;
+  assert_true(isnan(mps_signal_velocity(signal, 2.0)));
+  mps_assert_near(mps_signal_velocity(signal, 0.5), 1.5, 0.0);
+  p.refuse_after = -1;
+  assert_true(isnan(mps_signal_displacement(signal, 2.0)));
+  mps_signal_destroy(&signal);
+  assert_int_equal(mps_signal_user(context, NULL, NULL, &signal), MPS_ERROR_ARGUMENT);
+  assert_null(signal);
+  assert_int_equal(mps_signal_user(NULL, parabola_at, NULL, &signal), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_signal_user(context, parabola_at, NULL, NULL), MPS_ERROR_ARGUMENT);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_ricker_wavelet_is_the_papers_acceleration_and_its_integrals),
@@ -381,6 +450,8 @@ int main(void) {
       cmocka_unit_test(bad_tables_are_refused),
       cmocka_unit_test(a_refused_allocation_leaks_nothing),
       cmocka_unit_test(a_signal_outlives_its_context),
+      cmocka_unit_test(what_lies_before_zero_displaces_nothing_at_the_start),
+      cmocka_unit_test(the_callers_function_is_a_signal),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }
