@@ -16,13 +16,13 @@
 
 void mpsi_mpm_dash(const mps_mpm *mpm, const mpsi_hold *hold, mpsi_dash *dash, const double *node,
                    const double *before, double *velocity) {
-  const double per_mass = mpm->dt / node[MPSI_MASS];
+  const double per_mass = mpm->run.dt / node[MPSI_MASS];
   const bool settles = hold->finds && mpm->def.settle > 0.0;
   for (int c = 0; c < mpm->dim; c++) {
     const double v = node[MPSI_VECTOR + c], damping = c == hold->axis ? dash->across : dash->along;
     if (settles) {
       const double force = (hold->v[c] - v) / per_mass;
-      dash->rest[c] += (force - dash->rest[c]) * (mpm->dt / hold->found);
+      dash->rest[c] += (force - dash->rest[c]) * (mpm->run.dt / hold->found);
       velocity[c] = hold->v[c];
       continue;
     }
@@ -44,25 +44,26 @@ static void fit_along(const mps_mpm *mpm, int c, double X, int64_t *base, double
   for (int i = 0; i < 4; i++) {
     const int64_t n = *base + i;
     s[i] = (double)i - (X - lowest);
-    if (n < mpm->low[c] || n > mpm->high[c]) w[i] = 0.0;
+    if (n < mpm->grid.low[c] || n > mpm->grid.high[c]) w[i] = 0.0;
     m0 += w[i], m1 += w[i] * s[i], m2 += w[i] * s[i] * s[i];
   }
   for (int i = 0; i < 4; i++) phi[i] = w[i] * (m2 - m1 * s[i]) / (m0 * m2 - m1 * m1);
 }
 
 static mpsi_dash *dash_of(const mps_mpm *mpm, int32_t number, int64_t node) {
-  const mpsi_nodes *nodes = &mpm->nodes[node / mpm->own];
+  const mpsi_node_block *nodes = &mpm->grid.nodes[node / mpm->grid.block_nodes];
   int32_t t = nodes->first_held;
-  while (mpm->held[t].hold != number) t++;
-  return &mpm->dash[mpm->held[t].dash +
-                    mpsi_plane_index(mpm->hold[number].axis, (int)(node % mpm->own))];
+  while (mpm->boundaries.held[t].hold != number) t++;
+  return &mpm->boundaries.dash[mpm->boundaries.held[t].dash +
+                               mpsi_plane_index(mpm->boundaries.hold[number].axis,
+                                                (int)(node % mpm->grid.block_nodes))];
 }
 
 /* A particle in a cell at the wall. */
-static void add_particle(mps_mpm *mpm, const mpsi_cells *cells, int32_t number, int64_t k) {
+static void add_particle(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t number, int64_t k) {
   const mpsi_columns *p = &mpm->p;
-  const int axis = mpm->hold[number].axis;
-  const double per_area = p->m[k] * mpm->inverse, density = p->m[k] / p->V[k];
+  const int axis = mpm->boundaries.hold[number].axis;
+  const double per_area = p->m[k] * mpm->grid.inverse, density = p->m[k] / p->V[k];
   double wave, shear;
   mpsi_mpm_elastic(mpm, k, &wave, &shear);
   const double across = per_area * sqrt(wave / density), along = per_area * sqrt(shear / density);
@@ -70,7 +71,7 @@ static void add_particle(mps_mpm *mpm, const mpsi_cells *cells, int32_t number, 
   double phi[3][4] = {{1.0}, {1.0}, {1.0}};
   for (int c = 0; c < mpm->dim; c++)
     if (c == axis)
-      base[c] = mpm->hold[number].first[c];
+      base[c] = mpm->boundaries.hold[number].first[c];
     else
       fit_along(mpm, c, mpsi_grid_coordinate(mpm, c, p->x[c][k]), &base[c], phi[c]);
   for (int n = 0; n < MPSI_STENCIL; n++) {
@@ -86,10 +87,10 @@ static void add_particle(mps_mpm *mpm, const mpsi_cells *cells, int32_t number, 
 }
 
 static void add_wall(mps_mpm *mpm, int32_t number) {
-  const int c = mpm->hold[number].axis;
-  const int64_t layer = mpm->hold[number].first[c] - number % 2; /* of cells */
-  for (int64_t b = 0; b < mpm->cell_count; b++) {
-    const mpsi_cells *cells = &mpm->cells[b];
+  const int c = mpm->boundaries.hold[number].axis;
+  const int64_t layer = mpm->boundaries.hold[number].first[c] - number % 2; /* of cells */
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+    const mpsi_cell_block *cells = &mpm->grid.cells[b];
     const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
     if (layer < first || layer >= first + MPSI_TILE_SIDE) continue;
     for (int64_t k = cells->begin; k < cells->end; k++)
@@ -109,14 +110,14 @@ static int compare(const mpsi_held *a, const mpsi_held *b) {
 
 void mpsi_mpm_place_dashes(mps_mpm *mpm, const mpsi_held *old, int64_t old_count,
                            const mpsi_dash *old_dash) {
-  const int plane = mpm->own / MPSI_SIDE;
+  const int plane = mpm->grid.block_nodes / MPSI_SIDE;
   for (int32_t k = 0; k < MPSI_WALLS; k++)
-    if (mpm->hold[k].kind == MPS_WALL_ABSORBING) add_wall(mpm, k);
+    if (mpm->boundaries.hold[k].kind == MPS_WALL_ABSORBING) add_wall(mpm, k);
   int64_t from = 0;
-  for (int64_t t = 0; t < mpm->held_count; t++) {
-    const mpsi_held *held = &mpm->held[t];
+  for (int64_t t = 0; t < mpm->boundaries.held_count; t++) {
+    const mpsi_held *held = &mpm->boundaries.held[t];
     if (held->dash < 0) continue;
-    mpsi_dash *dash = mpm->dash + held->dash;
+    mpsi_dash *dash = mpm->boundaries.dash + held->dash;
     for (int k = 0; k < plane; k++) { /* a fit can give a node less than nothing */
       dash[k].across = fmax(dash[k].across, 0.0);
       dash[k].along = fmax(dash[k].along, 0.0);

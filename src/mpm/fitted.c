@@ -8,7 +8,7 @@
  * the surface, n . (x_p - x_i) > 0. Without the corners M can be singular; without the test of the
  * side momentum passes through thin walls.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "contact.h"
+#include "contact_particle.h"
 #include "loops.h"
 
 /* ---- active nodes -----------------------------------------------------------------------------
@@ -20,7 +20,7 @@ typedef struct support {
   int corner[3][4], local[3][4]; /* which block under the tile, and the node's number in it: sums */
 } support;
 
-MPSI_INLINE void make_support(const mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
+MPSI_INLINE void make_support(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
                               int64_t particle, support *out) {
   mpsi_make_stencil(mpm, cells, dim, spline, particle, &out->at);
   for (int c = 0, stride = 1; c < 3; c++, stride *= MPSI_SIDE)
@@ -32,7 +32,8 @@ MPSI_INLINE void make_support(const mps_mpm *mpm, const mpsi_cells *cells, int d
 }
 
 /* Block of nodes of a node of the stencil, and the node in it. */
-MPSI_INLINE int32_t block_under(const mpsi_cells *cells, const support *s, int i, int j, int k) {
+MPSI_INLINE int32_t block_under(const mpsi_cell_block *cells, const support *s, int i, int j,
+                                int k) {
   return cells->to[s->corner[0][i] | s->corner[1][j] | s->corner[2][k]];
 }
 
@@ -42,9 +43,9 @@ MPSI_INLINE int local_of(const support *s, int i, int j, int k) {
 
 /* Outside every body that holds the node, seen from the node along the surface's normal. */
 static bool same_side(const mps_mpm *mpm, int32_t g, int local, const double *s) {
-  const mpsi_nodes *nodes = &mpm->nodes[g];
-  for (int32_t t = nodes->first_touch; t < nodes->first_touch + nodes->touches; t++) {
-    const double *n = mpm->touch_node[(int64_t)t * mpm->own + local].normal;
+  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
+    const double *n = mpm->contact.node[(int64_t)t * mpm->grid.block_nodes + local].normal;
     if (n[0] == 0.0 && n[1] == 0.0 && n[2] == 0.0) continue;
     if (!(n[0] * s[0] + n[1] * s[1] + n[2] * s[2] < 0.0)) return false;
   }
@@ -52,8 +53,8 @@ static bool same_side(const mps_mpm *mpm, int32_t g, int local, const double *s)
 }
 
 /* Of a node of the domain inside a body. */
-static bool active(const mps_mpm *mpm, const mpsi_cells *cells, uint8_t state, const support *s,
-                   int i, int j, int k) {
+static bool active(const mps_mpm *mpm, const mpsi_cell_block *cells, uint8_t state,
+                   const support *s, int i, int j, int k) {
   const mpsi_stencil *at = &s->at;
   const unsigned di = (unsigned)(i - at->own[0]), dj = (unsigned)(j - at->own[1]);
   const unsigned dk = (unsigned)(k - at->own[2]);
@@ -64,7 +65,7 @@ static bool active(const mps_mpm *mpm, const mpsi_cells *cells, uint8_t state, c
 }
 
 /* Weights of the active nodes; returns the bodies that hold any of the stencil's, bit by bit. */
-MPSI_INLINE uint32_t active_weights(const mps_mpm *mpm, const mpsi_cells *cells,
+MPSI_INLINE uint32_t active_weights(const mps_mpm *mpm, const mpsi_cell_block *cells,
                                     const mpsi_worker *worker, int dim, int spline,
                                     const support *s, double *w) {
   const mpsi_stencil *at = &s->at;
@@ -140,13 +141,13 @@ MPSI_INLINE double invert(int n, double m[4][4]) {
 }
 
 /* The standard scheme's fit: the spline and its derivatives, whatever lies in the support. */
-MPSI_INLINE uint32_t take_splines(const mps_mpm *mpm, const mpsi_cells *cells,
+MPSI_INLINE uint32_t take_splines(const mps_mpm *mpm, const mpsi_cell_block *cells,
                                   const mpsi_worker *worker, int dim, int spline,
                                   const mpsi_stencil *at, mpsi_shape_values *out) {
   double slope[3][4] = {{0.0}};
   uint32_t bodies = 0;
   for (int c = 0; c < dim; c++) mpsi_slopes(spline, -at->s[c][0], slope[c]);
-  const mpsi_quad x = mpsi_get(at->w[0]), by_x = mpm->inverse * mpsi_get(slope[0]);
+  const mpsi_quad x = mpsi_get(at->w[0]), by_x = mpm->grid.inverse * mpsi_get(slope[0]);
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
     for (int j = 0; j <= spline; j++) {
       const double y = at->w[1][j], z = at->w[2][k];
@@ -154,18 +155,19 @@ MPSI_INLINE uint32_t take_splines(const mps_mpm *mpm, const mpsi_cells *cells,
       mpsi_put(out->w + n, x * (y * z));
       mpsi_put(out->phi + n, x * (y * z));
       mpsi_put(out->gradient[0] + n, by_x * (y * z));
-      mpsi_put(out->gradient[1] + n, x * (mpm->inverse * slope[1][j] * z));
-      if (dim == 3) mpsi_put(out->gradient[2] + n, x * (mpm->inverse * y * slope[2][k]));
+      mpsi_put(out->gradient[1] + n, x * (mpm->grid.inverse * slope[1][j] * z));
+      if (dim == 3) mpsi_put(out->gradient[2] + n, x * (mpm->grid.inverse * y * slope[2][k]));
       const int t = mpsi_tile_index(at->at[0], at->at[1] + j, at->at[2] + k);
-      for (int i = 0; i <= spline && cells->meetings > 0; i++) bodies |= worker->inside[t + i];
+      for (int i = 0; i <= spline && cells->pairs > 0; i++) bodies |= worker->inside[t + i];
     }
   out->determinant = 1.0;
   return bodies;
 }
 
 /* Returns the bodies that hold any of the stencil's nodes. */
-MPSI_INLINE uint32_t fit(const mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
-                         int dim, int spline, const support *s, mpsi_shape_values *out) {
+MPSI_INLINE uint32_t fit(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                         const mpsi_worker *worker, int dim, int spline, const support *s,
+                         mpsi_shape_values *out) {
   const mpsi_stencil *at = &s->at;
   if (mpm->standard) return take_splines(mpm, cells, worker, dim, spline, at, out);
   double q[4][4];
@@ -186,7 +188,7 @@ MPSI_INLINE uint32_t fit(const mps_mpm *mpm, const mpsi_cells *cells, const mpsi
         if (r == 0)
           mpsi_put(out->phi + n, value);
         else
-          mpsi_put(out->gradient[r - 1] + n, value * mpm->inverse);
+          mpsi_put(out->gradient[r - 1] + n, value * mpm->grid.inverse);
       }
     }
   return bodies;
@@ -231,18 +233,18 @@ typedef struct under {
   double dt[MPSI_CORNERS]; /* of the force that goes with the momentum: 0 in split blocks */
 } under;
 
-MPSI_INLINE under nodes_under(const mps_mpm *mpm, const mpsi_cells *cells, int dim) {
+MPSI_INLINE under nodes_under(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim) {
   under out;
   for (int q = 0; q < 1 << dim; q++) {
-    const mpsi_nodes *nodes = &mpm->nodes[cells->to[q]];
-    out.node[q] = mpm->node + mpsi_first_node(mpm, cells->to[q]);
-    out.side[q] = nodes->side < 0 ? NULL : mpm->side + mpsi_first_node(mpm, nodes->side);
-    out.dt[q] = nodes->split ? 0.0 : mpm->dt;
+    const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
+    out.node[q] = mpm->grid.node + mpsi_first_node(mpm, cells->to[q]);
+    out.side[q] = nodes->side < 0 ? NULL : mpm->grid.side + mpsi_first_node(mpm, nodes->side);
+    out.dt[q] = nodes->split ? 0.0 : mpm->run.dt;
   }
   return out;
 }
 
-MPSI_INLINE void scatter(mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline, int64_t p,
+MPSI_INLINE void scatter(mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline, int64_t p,
                          const support *at, const mpsi_shape_values *f) {
   const bool by_weight = mpm->def.transfer == MPS_TRANSFER_WEIGHT;
   const double m = mpm->p.m[p];
@@ -274,10 +276,10 @@ MPSI_INLINE void scatter(mps_mpm *mpm, const mpsi_cells *cells, int dim, int spl
  */
 
 /* The node `local` of the block g, as body b touches it. */
-static mpsi_touch_node *touch_of(const mps_mpm *mpm, int32_t g, int local, int32_t b) {
-  int32_t t = mpm->nodes[g].first_touch;
-  while (mpm->touch[t].body != b) t++;
-  return &mpm->touch_node[(int64_t)t * mpm->own + local];
+static mpsi_contact_node *contact_node_of(const mps_mpm *mpm, int32_t g, int local, int32_t b) {
+  int32_t t = mpm->grid.nodes[g].first_pair;
+  while (mpm->contact.node_pair[t].body != b) t++;
+  return &mpm->contact.node[(int64_t)t * mpm->grid.block_nodes + local];
 }
 
 /* Adds force f at `arm` from the body's reference point to a load. */
@@ -289,21 +291,21 @@ static void add_load(mpsi_load *load, const double *arm, const double *f) {
 }
 
 /* Normal force and slip of a particle against one body, Nakamura (28)-(30). */
-MPSI_INLINE void scatter_contact(mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
+MPSI_INLINE void scatter_contact(mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
                                  int64_t p, const support *at, const mpsi_shape_values *f,
-                                 mpsi_meeting *meeting) {
-  const mps_body *body = mpm->body[meeting->body];
-  mpsi_contact c;
-  if (!mpsi_touches(mpm, body, dim, p, &c)) return;
-  meeting->touched = true;
-  meeting->contacts[c.part]++;
+                                 mpsi_cell_pair *pair) {
+  const mps_body *body = mpm->contact.body[pair->body];
+  mpsi_contact_particle c;
+  if (!mpsi_find_contact(mpm, body, dim, p, &c)) return;
+  pair->touched = true;
+  pair->contacts[c.part]++;
   double arm[3], reaction[3];
   for (int a = 0; a < 3; a++) arm[a] = c.x[a] - body->pose.x[a], reaction[a] = -c.force[a];
-  add_load(&meeting->load[c.part], arm, reaction);
+  add_load(&pair->load[c.part], arm, reaction);
   FOR_NODES(dim, spline) {
     if (f->w[n] == 0.0) continue;
-    mpsi_touch_node *to =
-        touch_of(mpm, block_under(cells, at, i, j, k), local_of(at, i, j, k), meeting->body);
+    mpsi_contact_node *to =
+        contact_node_of(mpm, block_under(cells, at, i, j, k), local_of(at, i, j, k), pair->body);
     const double mass = mpm->p.m[p] * f->phi[n];
     to->mass += mass;
     for (int a = 0; a < dim; a++) {
@@ -315,46 +317,45 @@ MPSI_INLINE void scatter_contact(mps_mpm *mpm, const mpsi_cells *cells, int dim,
 
 /* The friction that the nodes have given, back to the part of the surface that the particle
  * touches: at a node by the share of its mass in contact. */
-MPSI_INLINE void share_friction(mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
+MPSI_INLINE void share_friction(mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
                                 int64_t p, const support *at, const mpsi_shape_values *f,
-                                mpsi_meeting *meeting) {
-  const mps_body *body = mpm->body[meeting->body];
-  mpsi_contact c;
-  if (!meeting->touched || body->def.friction == 0.0 || !mpsi_touches(mpm, body, dim, p, &c))
+                                mpsi_cell_pair *pair) {
+  const mps_body *body = mpm->contact.body[pair->body];
+  mpsi_contact_particle c;
+  if (!pair->touched || body->def.friction == 0.0 || !mpsi_find_contact(mpm, body, dim, p, &c))
     return;
   FOR_NODES(dim, spline) {
     if (f->w[n] == 0.0) continue;
-    const mpsi_touch_node *from =
-        touch_of(mpm, block_under(cells, at, i, j, k), local_of(at, i, j, k), meeting->body);
+    const mpsi_contact_node *from =
+        contact_node_of(mpm, block_under(cells, at, i, j, k), local_of(at, i, j, k), pair->body);
     const double local[3] = {at->at.at[0] + i, at->at.at[1] + j, at->at.at[2] + k};
     const double mass = mpm->p.m[p] * f->phi[n];
     double arm[3], reaction[3];
     mpsi_node_position(mpm, cells->at, local, arm);
     for (int a = 0; a < 3; a++) arm[a] -= body->pose.x[a], reaction[a] = -mass * from->slip[a];
-    add_load(&meeting->load[c.part], arm, reaction);
+    add_load(&pair->load[c.part], arm, reaction);
   }
 }
 
 /* ---- one particle -----------------------------------------------------------------------------
  */
 
-MPSI_INLINE void scatter_body(mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
+MPSI_INLINE void scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                               int dim, int spline, int64_t particle) {
   support at;
   mpsi_shape_values f;
   make_support(mpm, cells, dim, spline, particle, &at);
   const uint32_t bodies = fit(mpm, cells, worker, dim, spline, &at, &f);
   scatter(mpm, cells, dim, spline, particle, &at, &f);
-  for (int32_t q = 0; bodies && q < cells->meetings; q++) {
-    mpsi_meeting *meeting = &mpm->meeting[cells->first_meeting + q];
-    if (bodies >> meeting->body & 1)
-      scatter_contact(mpm, cells, dim, spline, particle, &at, &f, meeting);
+  for (int32_t q = 0; bodies && q < cells->pairs; q++) {
+    mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
+    if (bodies >> pair->body & 1) scatter_contact(mpm, cells, dim, spline, particle, &at, &f, pair);
   }
 }
 
 /* FLIP: what the particle keeps of its own, flip times its velocity less that of the nodes before
  * the forces, in the lanes of the mass; add_own() in g2p.c adds it. */
-MPSI_INLINE void keep_own(const mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
+MPSI_INLINE void keep_own(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
                           int64_t p, const support *at, const mpsi_shape_values *f,
                           double (*motion)[4]) {
   const under from = nodes_under(mpm, cells, dim);
@@ -367,7 +368,7 @@ MPSI_INLINE void keep_own(const mps_mpm *mpm, const mpsi_cells *cells, int dim, 
     motion[1 + c][MPSI_MASS] = mpm->flip * (mpm->p.v[c][p] - before[MPSI_VECTOR + c]);
 }
 
-MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
+MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                              int dim, int spline, int64_t particle, double (*motion)[4]) {
   support at;
   mpsi_shape_values f;
@@ -384,10 +385,9 @@ MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cells *cells, const mpsi_w
   mpsi_put(motion[0], v);
   for (int d = 0; d < dim; d++) mpsi_put(motion[1 + d], by[d]);
   if (mpm->flip > 0.0) keep_own(mpm, cells, dim, spline, particle, &at, &f, motion);
-  for (int32_t q = 0; bodies && q < cells->meetings; q++) {
-    mpsi_meeting *meeting = &mpm->meeting[cells->first_meeting + q];
-    if (bodies >> meeting->body & 1)
-      share_friction(mpm, cells, dim, spline, particle, &at, &f, meeting);
+  for (int32_t q = 0; bodies && q < cells->pairs; q++) {
+    mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
+    if (bodies >> pair->body & 1) share_friction(mpm, cells, dim, spline, particle, &at, &f, pair);
   }
 }
 
@@ -407,19 +407,20 @@ MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cells *cells, const mpsi_w
       body(mpm, cells, worker, 3, 3, __VA_ARGS__);                                                 \
   } while (0)
 
-void MPSI_LEVELLED(mpsi_scatter_fitted)(mps_mpm *mpm, const mpsi_cells *cells,
+void MPSI_LEVELLED(mpsi_scatter_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
                                         const mpsi_worker *worker, int64_t particle) {
   CHOOSE(mpm->dim, mpm->def.spline, scatter_body, particle);
 }
 
-void MPSI_LEVELLED(mpsi_gather_fitted)(mps_mpm *mpm, const mpsi_cells *cells,
+void MPSI_LEVELLED(mpsi_gather_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
                                        const mpsi_worker *worker, int64_t particle,
                                        double (*motion)[4]) {
   CHOOSE(mpm->dim, mpm->def.spline, gather_body, particle, motion);
 }
 
-void MPSI_LEVELLED(mpsi_fit)(const mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
-                             int64_t particle, mpsi_stencil *at, mpsi_shape_values *out) {
+void MPSI_LEVELLED(mpsi_fit)(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                             const mpsi_worker *worker, int64_t particle, mpsi_stencil *at,
+                             mpsi_shape_values *out) {
   support s;
   memset(out, 0, sizeof *out);
   make_support(mpm, cells, mpm->dim, mpm->def.spline, particle, &s);

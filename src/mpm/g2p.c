@@ -1,17 +1,17 @@
-/* g2p.c - nodes to particles, Nakamura (41)-(43), (48), one block of cells at a time, and then, while
- * its particles are in the cache, their law and the speeds that bound the time step, (49), (50).
- * Particles with a cut support: fitted.c. Compiled once for each instruction set.
+/* g2p.c - nodes to particles, Nakamura (41)-(43), (48), one block of cells at a time, and then,
+ * while its particles are in the cache, their law and the speeds that bound the time step, (49),
+ * (50). Particles with a cut support: fitted.c. Compiled once for each instruction set.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "wall.h"
 
 /* Copies the nodes under a tile. */
-MPSI_INLINE void gather_tile(const mps_mpm *mpm, const mpsi_cells *cells, mpsi_node *tile) {
+MPSI_INLINE void gather_tile(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_node *tile) {
   const int low = cells->low[0], high = cells->high[0];
   const int middle = high < MPSI_SIDE ? high : low > MPSI_SIDE ? low : MPSI_SIDE;
   for (int k = cells->low[2]; k < cells->high[2]; k++)
     for (int j = cells->low[1]; j < cells->high[1]; j++) {
-      mpsi_node *own = mpm->node + mpsi_node_under(mpm, cells, 0, j, k);
-      mpsi_node *next = mpm->node + mpsi_node_under(mpm, cells, MPSI_SIDE, j, k);
+      mpsi_node *own = mpm->grid.node + mpsi_node_under(mpm, cells, 0, j, k);
+      mpsi_node *next = mpm->grid.node + mpsi_node_under(mpm, cells, MPSI_SIDE, j, k);
       mpsi_node *to = tile + mpsi_tile_index(0, j, k);
       for (int i = low; i < middle; i++) mpsi_put(to[i], mpsi_get(own[i]));
       for (int i = middle; i < high; i++) mpsi_put(to[i], mpsi_get(next[i - MPSI_SIDE]));
@@ -55,9 +55,9 @@ MPSI_INLINE void gather_full(int dim, int spline, double scale, const mpsi_place
 }
 
 /* The same at the wall across `axis`. */
-MPSI_INLINE void gather_at_wall(const mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
-                                double scale, const mpsi_places *places, int axis, int k,
-                                const mpsi_node *tile, double (*motion)[4]) {
+MPSI_INLINE void gather_at_wall(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
+                                int spline, double scale, const mpsi_places *places, int axis,
+                                int k, const mpsi_node *tile, double (*motion)[4]) {
   mpsi_wall wall;
   double across[4][4];
   mpsi_wall_places(mpm, cells, dim, spline, places, k, k + 1, axis, MPSI_WALL_SLOPE, &wall);
@@ -84,7 +84,7 @@ typedef struct moved {
   bool outside, left;
 } moved;
 
-MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cells *cells, int geometry, int spline,
+MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cell_block *cells, int geometry, int spline,
                        int64_t begin, int n, const double (*motion)[4][4]) {
   const int dim = mpsi_dim_of(geometry);
   const double first = spline == 3 ? 1.0 : 0.5; /* of the block: see mpsi_find_places */
@@ -101,11 +101,11 @@ MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cells *cells, int geometry, int 
         store_some(p->L[dim * c + d - 1] + at, a[1 + c], n - k);
       for (int c = 0; c < dim && d == 0; c++) {
         const int reach = c == 0 ? 3 : spline; /* see widen_use in layout.c */
-        const mpsi_quad x = mpsi_get_some(p->x[c] + at, n - k), to = x + mpm->dt * a[1 + c];
+        const mpsi_quad x = mpsi_get_some(p->x[c] + at, n - k), to = x + mpm->run.dt * a[1 + c];
         const mpsi_quad X = mpsi_from_block(mpm, cells, c, to);
         const double corner = (double)cells->at[c] * MPSI_SIDE;
         const mpsi_mask good =
-            (X >= (double)mpm->low[c] - corner) & (X <= (double)mpm->high[c] - corner);
+            (X >= (double)mpm->grid.low[c] - corner) & (X <= (double)mpm->grid.high[c] - corner);
         const mpsi_mask here =
             (X >= first + cells->low[c]) & (X < first + (cells->high[c] - reach));
         outside |= there & ~good;
@@ -138,7 +138,7 @@ static int64_t keep_inside(mps_mpm *mpm, int64_t begin, int64_t end) {
     for (int c = 0; c < mpm->dim; c++) {
       double *x = &mpm->p.x[c][k];
       const double X = mpsi_grid_coordinate(mpm, c, *x);
-      const double low = (double)mpm->low[c], high = (double)mpm->high[c];
+      const double low = (double)mpm->grid.low[c], high = (double)mpm->grid.high[c];
       if (X >= low && X <= high) continue;
       const bool axis = mpm->def.geometry == MPS_AXISYMMETRIC && c == 0 && !(*x > 0.0);
       if (axis || !(X >= low - BEYOND && X <= high + BEYOND)) return k;
@@ -150,8 +150,8 @@ static int64_t keep_inside(mps_mpm *mpm, int64_t begin, int64_t end) {
 }
 
 /* c + |v| of particles [begin, begin + n), at most a chunk. A NaN or infinity is a bad particle. */
-MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cells *cells, int dim, int64_t begin, int n,
-                            const double *moduli) {
+MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cell_block *cells, int dim, int64_t begin,
+                            int n, const double *moduli) {
   const mpsi_columns *p = &mpm->p;
   const double *v0 = p->v[0] + begin, *v1 = p->v[1] + begin, *v2 = dim == 3 ? p->v[2] + begin : v1;
   const double *V = p->V + begin, *m = p->m + begin;
@@ -159,7 +159,7 @@ MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cells *cells, int dim, int6
   MPSI_SIMD for (int k = 0; k < n; k++) {
     double square = v0[k] * v0[k] + v1[k] * v1[k];
     if (dim == 3) square += v2[k] * v2[k];
-    speed[k] = sqrt((moduli ? moduli[k] : mpm->law[0].modulus) * V[k] / m[k]) + sqrt(square);
+    speed[k] = sqrt((moduli ? moduli[k] : mpm->laws.law[0].modulus) * V[k] / m[k]) + sqrt(square);
   }
   double largest[4] = {0.0};
   int64_t good = 1;
@@ -173,8 +173,9 @@ MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cells *cells, int dim, int6
     if (!isfinite(speed[k])) cells->bad = begin + k;
 }
 
-MPSI_INLINE void speed_chunk(const mps_mpm *mpm, mpsi_cells *cells, int dim, int64_t begin, int n) {
-  if (mpm->one_modulus) {
+MPSI_INLINE void speed_chunk(const mps_mpm *mpm, mpsi_cell_block *cells, int dim, int64_t begin,
+                             int n) {
+  if (mpm->laws.one_modulus) {
     find_speed(mpm, cells, dim, begin, n, NULL);
     return;
   }
@@ -183,14 +184,15 @@ MPSI_INLINE void speed_chunk(const mps_mpm *mpm, mpsi_cells *cells, int dim, int
   find_speed(mpm, cells, dim, begin, n, moduli);
 }
 
-MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cells *cells, const mpsi_worker *worker, int geometry,
-                           int spline, int64_t begin, int n) {
+MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cell_block *cells, const mpsi_worker *worker,
+                           int geometry, int spline, int64_t begin, int n) {
   const int dim = mpsi_dim_of(geometry);
-  const double scale = mpsi_inverse_moment(spline) * mpm->inverse;
+  const double scale = mpsi_inverse_moment(spline) * mpm->grid.inverse;
   mpsi_places places;
   double motion[MPSI_CHUNK][4][4] __attribute__((aligned(64)));
   mpsi_find_places(mpm, cells, dim, spline, begin, n, &places);
-  if (mpm->stencil) memcpy(mpm->stencil + begin, places.first, (size_t)n * sizeof *mpm->stencil);
+  if (mpm->p.stencil)
+    memcpy(mpm->p.stencil + begin, places.first, (size_t)n * sizeof *mpm->p.stencil);
   const mpsi_node *tile = (const mpsi_node *)worker->tile;
   uint32_t state = 0;
   for (int k = 0; k < n; k++) {
@@ -212,8 +214,8 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cells *cells, const mpsi_worker *w
 }
 
 MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {
-  mpsi_cells *cells = &mpm->cells[b];
-  mpsi_worker *worker = &mpm->workers[number];
+  mpsi_cell_block *cells = &mpm->grid.cells[b];
+  mpsi_worker *worker = &mpm->grid.workers[number];
   cells->left = false;
   cells->refused = NULL;
   cells->bad = -1;
@@ -223,7 +225,7 @@ MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry,
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
     g2p_chunk(mpm, cells, worker, geometry, spline, k, n);
-    if (mpm->stencil) continue; /* the laws wait for the cells' means */
+    if (mpm->p.stencil) continue; /* the laws wait for the cells' means */
     mpsi_mpm_apply_law(mpm, cells, k, k + n);
     speed_chunk(mpm, cells, mpsi_dim_of(geometry), k, n);
   }
@@ -242,7 +244,7 @@ const mpsi_mpm_task MPSI_LEVELLED(mpsi_g2p)[3][2] = {MPSI_VARIANTS(ENTRY)};
 
 void MPSI_LEVELLED(mpsi_speed)(mps_mpm *mpm, int64_t b, int32_t worker) {
   (void)worker;
-  mpsi_cells *cells = &mpm->cells[b];
+  mpsi_cell_block *cells = &mpm->grid.cells[b];
   cells->bad = -1;
   cells->speed = 0.0;
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {

@@ -11,15 +11,15 @@
 
 void mpsi_mpm_clear_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
   (void)worker;
-  const mpsi_nodes *nodes = &mpm->nodes[g];
-  const size_t bytes = (size_t)mpm->own * sizeof *mpm->node;
-  memset(mpm->node + mpsi_first_node(mpm, g), 0, bytes);
-  if (nodes->side >= 0) memset(mpm->side + mpsi_first_node(mpm, nodes->side), 0, bytes);
+  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  const size_t bytes = (size_t)mpm->grid.block_nodes * sizeof *mpm->grid.node;
+  memset(mpm->grid.node + mpsi_first_node(mpm, g), 0, bytes);
+  if (nodes->side >= 0) memset(mpm->grid.side + mpsi_first_node(mpm, nodes->side), 0, bytes);
 }
 
 /* Nodes that only particles with full supports reach: the force is in the momentum. */
 static void update_free(mps_mpm *mpm, mpsi_node *node) {
-  for (int k = 0; k < mpm->own; k++) {
+  for (int k = 0; k < mpm->grid.block_nodes; k++) {
     if (node[k][MPSI_MASS] == 0.0) continue; /* no particle near, as most nodes of an edge block */
     const double inverse = 1.0 / node[k][MPSI_MASS];
     for (int c = MPSI_VECTOR; c < 4; c++) node[k][c] *= inverse;
@@ -27,7 +27,7 @@ static void update_free(mps_mpm *mpm, mpsi_node *node) {
 }
 
 static void update_cut(mps_mpm *mpm, bool split, mpsi_node *node, mpsi_node *side) {
-  for (int k = 0; k < mpm->own; k++) {
+  for (int k = 0; k < mpm->grid.block_nodes; k++) {
     const double weight = node[k][MPSI_MASS] + side[k][MPSI_EXCESS];
     if (!(weight > 0.0)) {
       memset(node[k], 0, sizeof node[k]);
@@ -40,7 +40,7 @@ static void update_cut(mps_mpm *mpm, bool split, mpsi_node *node, mpsi_node *sid
     for (int c = MPSI_VECTOR; c < 4; c++) {
       const double before = node[k][c] / carried;
       node[k][c] = before;
-      if (split) node[k][c] += mpm->dt * (side[k][c] / m);
+      if (split) node[k][c] += mpm->run.dt * (side[k][c] / m);
       side[k][c] = before;
     }
   }
@@ -48,17 +48,17 @@ static void update_cut(mps_mpm *mpm, bool split, mpsi_node *node, mpsi_node *sid
 
 void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
   (void)worker;
-  const mpsi_nodes *nodes = &mpm->nodes[g];
-  mpsi_node *node = mpm->node + mpsi_first_node(mpm, g);
+  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  mpsi_node *node = mpm->grid.node + mpsi_first_node(mpm, g);
   if (nodes->side < 0)
     update_free(mpm, node);
   else
-    update_cut(mpm, nodes->split, node, mpm->side + mpsi_first_node(mpm, nodes->side));
-  if (nodes->touches > 0) mpsi_mpm_touch(mpm, g);
+    update_cut(mpm, nodes->split, node, mpm->grid.side + mpsi_first_node(mpm, nodes->side));
+  if (nodes->pairs > 0) mpsi_mpm_apply_contact(mpm, g);
 }
 
 void mpsi_mpm_finish_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
   (void)worker;
-  if (mpm->nodes[g].touches > 0) mpsi_mpm_rub(mpm, g);
+  if (mpm->grid.nodes[g].pairs > 0) mpsi_mpm_apply_friction(mpm, g);
   mpsi_mpm_hold_nodes(mpm, g);
 }

@@ -9,8 +9,9 @@
 #define MPSI_CHUNK 64 /* particles: what is prepared for them stays in the first-level cache */
 
 /* The stencil and the fitted shape functions of a particle of a block whose states are known. */
-typedef void (*mpsi_fit_fn)(const mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
-                            int64_t particle, mpsi_stencil *stencil, mpsi_shape_values *out);
+typedef void (*mpsi_fit_fn)(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                            const mpsi_worker *worker, int64_t particle, mpsi_stencil *stencil,
+                            mpsi_shape_values *out);
 
 typedef struct mpsi_kernels {
   /* By geometry (mps_geometry) and degree of the spline less 2. */
@@ -24,12 +25,10 @@ typedef struct mpsi_kernels {
 const mpsi_kernels *mpsi_mpm_kernels(int32_t isa);
 
 /* near.c: states of the nodes under a cut block's tile, to worker->state and worker->inside. */
-void mpsi_mpm_find_states(const mps_mpm *mpm, const mpsi_cells *cells, mpsi_worker *worker);
+void mpsi_mpm_find_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker);
 /* volumetric.c: the diagonals of the velocity gradients of particles [begin, end), at most a chunk,
  * with the mean trace of their cells. */
-void mpsi_mpm_mean_diagonals(const mps_mpm *mpm, const mpsi_cells *cells, int64_t begin,
+void mpsi_mpm_mean_diagonals(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin,
                              int64_t end, double (*diagonal)[MPSI_CHUNK]);
-/* law.c: the present wave moduli of particles [begin, end), raised where viscosity limits dt. */
-void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli);
 
 #endif

@@ -11,9 +11,9 @@ static mps_material_block columns_of(const mps_mpm *mpm, const mpsi_law_use *law
   mps_material_block block = {.struct_size = sizeof block,
                               .dim = mpm->dim,
                               .count = end - begin,
-                              .dt = mpm->dt,
+                              .dt = mpm->run.dt,
                               .volume_ratio = (law->reads_volume ? p->J : p->V) + begin,
-                              .flags = mpm->flags + begin};
+                              .flags = mpm->laws.flags + begin};
   const int tensors = mpm->dim == 3 ? 9 : 5;
   for (int c = 0; c < tensors; c++) {
     const int to = mpm->dim == 3 ? c : planar[c];
@@ -34,12 +34,12 @@ static int64_t end_of_run(const int64_t *law, int64_t begin, int64_t end) {
   return k;
 }
 
-static void apply_run(mps_mpm *mpm, mpsi_cells *cells, int64_t begin, int64_t end) {
+static void apply_run(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end) {
   mpsi_columns *p = &mpm->p;
   const mpsi_law_use *law = mpsi_law_of(mpm, begin);
   mps_material_block block = columns_of(mpm, law, begin, end);
   double diagonal[3][MPSI_CHUNK];
-  if (mpm->stencil) {
+  if (mpm->p.stencil) {
     mpsi_mpm_mean_diagonals(mpm, cells, begin, end, diagonal);
     for (int c = 0; c < 3; c++) block.gradient[4 * c] = diagonal[c];
   }
@@ -49,7 +49,7 @@ static void apply_run(mps_mpm *mpm, mpsi_cells *cells, int64_t begin, int64_t en
   for (int64_t k = begin; law->reads_volume && k < end; k++) p->V[k] *= p->J[k];
 }
 
-void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cells *cells, int64_t begin, int64_t end) {
+void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end) {
   for (int64_t k = begin, next; k < end; k = next) {
     next = end_of_run(mpm->p.law, k, end);
     apply_run(mpm, cells, k, next);
@@ -65,7 +65,7 @@ void mpsi_mpm_elastic(const mps_mpm *mpm, int64_t particle, double *wave, double
 /* A viscous law asks for dt <= rho h^2/(4 dim viscosity) too: the modulus whose wave gives that. */
 static void raise_to_viscous(const mps_mpm *mpm, const mpsi_law_use *law, int64_t begin,
                              int64_t end, double *moduli) {
-  const double v = 4.0 * mpm->dim * mpsi_material_viscosity(law->material) * mpm->inverse;
+  const double v = 4.0 * mpm->dim * mpsi_material_viscosity(law->material) * mpm->grid.inverse;
   for (int64_t k = begin; v > 0.0 && k < end; k++)
     moduli[k - begin] = fmax(moduli[k - begin], v * v * mpm->p.V[k] / mpm->p.m[k]);
 }

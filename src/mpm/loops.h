@@ -158,9 +158,9 @@ MPSI_INLINE mpsi_quad mpsi_get_some(const double *from, int n) {
 }
 
 /* Cells from the block's first node to four particles at x, along axis c. */
-MPSI_INLINE mpsi_quad mpsi_from_block(const mps_mpm *mpm, const mpsi_cells *cells, int c,
+MPSI_INLINE mpsi_quad mpsi_from_block(const mps_mpm *mpm, const mpsi_cell_block *cells, int c,
                                       mpsi_quad x) {
-  return (x - mpm->def.origin[c]) * mpm->inverse - (double)cells->at[c] * MPSI_SIDE;
+  return (x - mpm->def.origin[c]) * mpm->grid.inverse - (double)cells->at[c] * MPSI_SIDE;
 }
 
 /* Weights of four particles along one axis, each times s too. */
@@ -184,8 +184,8 @@ MPSI_INLINE void mpsi_axis_weights(int spline, mpsi_quad t, double (*w)[MPSI_CHU
   }
 }
 
-MPSI_INLINE void mpsi_find_places(const mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
-                                  int64_t begin, int n, mpsi_places *out) {
+MPSI_INLINE void mpsi_find_places(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
+                                  int spline, int64_t begin, int n, mpsi_places *out) {
   for (int k = 0; k < n; k += 4) {
     mpsi_index first = {0};
     int stride = 1;
@@ -224,16 +224,17 @@ MPSI_INLINE uint32_t mpsi_support_state(const mpsi_worker *worker, int dim, int 
  */
 
 /* Gives a particle to its nodes, straight. */
-void MPSI_LEVELLED(mpsi_scatter_fitted)(mps_mpm *mpm, const mpsi_cells *cells,
+void MPSI_LEVELLED(mpsi_scatter_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
                                         const mpsi_worker *worker, int64_t particle);
 /* Velocity (lanes 1 to 3 of motion[0]) and its derivatives by x, y, z (motion[1] to [3]). */
-void MPSI_LEVELLED(mpsi_gather_fitted)(mps_mpm *mpm, const mpsi_cells *cells,
+void MPSI_LEVELLED(mpsi_gather_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
                                        const mpsi_worker *worker, int64_t particle,
                                        double (*motion)[4]);
 
 /* The fit by itself; the largest speed of a block: see mpsi_kernels. */
-void MPSI_LEVELLED(mpsi_fit)(const mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
-                             int64_t particle, mpsi_stencil *stencil, mpsi_shape_values *out);
+void MPSI_LEVELLED(mpsi_fit)(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                             const mpsi_worker *worker, int64_t particle, mpsi_stencil *stencil,
+                             mpsi_shape_values *out);
 void MPSI_LEVELLED(mpsi_speed)(mps_mpm *mpm, int64_t b, int32_t worker);
 
 #endif

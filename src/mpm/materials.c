@@ -19,7 +19,7 @@ static mps_status add_fields(mps_particles *set, const mpsi_law_use *law) {
 }
 
 mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *material) {
-  if (mpm->laws == MPS_MPM_MAX_MATERIALS)
+  if (mpm->laws.count == MPS_MPM_MAX_MATERIALS)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "the solver has %d materials, the most there can be", MPS_MPM_MAX_MATERIALS);
   mps_particles *set = mpm->particles;
@@ -40,9 +40,9 @@ mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *ma
   for (int32_t h = 0; h < histories; h++)
     law.history[h] = mpsi_particles_column(set, mps_material_history_name(material, h), 0);
   mpsi_material_retain(material);
-  mpm->one_modulus = mpm->laws == 0 && !mpsi_material_stiffens(material) &&
-                     mpsi_material_viscosity(material) == 0.0;
-  mpm->law[mpm->laws++] = law;
+  mpm->laws.one_modulus = mpm->laws.count == 0 && !mpsi_material_stiffens(material) &&
+                          mpsi_material_viscosity(material) == 0.0;
+  mpm->laws.law[mpm->laws.count++] = law;
   return MPS_OK;
 }
 
@@ -75,7 +75,7 @@ static mps_status check(const mps_mpm *mpm, const char *function, const mps_mate
     if (k < 0)
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "ids[%lld] is %lld, allowed are 0 to %lld", (long long)i, (long long)ids[i],
-                       (long long)mpm->count - 1);
+                       (long long)mpm->p.count - 1);
     if (J && !(J[k] >= 0.0 && J[k] < INFINITY))
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "particle %lld has volume ratio %g, must be > 0, or 0 for 1",
@@ -90,15 +90,15 @@ static mps_status number_particles(mps_mpm *mpm) {
   const mps_status status = mps_particles_add_field(mpm->particles, "material", 0);
   if (status != MPS_OK) return status;
   mpm->p.law = mpsi_particles_integers(mpm->particles, "material");
-  for (int64_t k = 0; k < mpm->count; k++) mpm->p.law[k] = 0;
+  for (int64_t k = 0; k < mpm->p.count; k++) mpm->p.law[k] = 0;
   return MPS_OK;
 }
 
 /* Number of the law in the list, where it is put if it is new. */
 static mps_status list_law(mps_mpm *mpm, const char *function, mps_material *material,
                            int32_t *number) {
-  for (*number = 0; *number < mpm->laws; ++*number)
-    if (mpm->law[*number].material == material) return MPS_OK;
+  for (*number = 0; *number < mpm->laws.count; ++*number)
+    if (mpm->laws.law[*number].material == material) return MPS_OK;
   const bool numbered = mpm->p.law != NULL;
   const int32_t fields = mps_particles_field_count(mpm->particles);
   mps_status status = number_particles(mpm);
@@ -120,9 +120,9 @@ mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material, int64_t co
   for (int64_t i = 0; i < count; i++) {
     const int64_t k = mps_particles_index(mpm->particles, ids[i]);
     if (mpm->p.law) mpm->p.law[k] = number; /* else there is but the one */
-    mpsi_mpm_begin_law(mpm, &mpm->law[number], k);
+    mpsi_mpm_begin_law(mpm, &mpm->laws.law[number], k);
   }
-  mpm->stale = true; /* the dashpots of absorbing walls follow the laws */
+  mpm->run.stale = true; /* the dashpots of absorbing walls follow the laws */
   mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
-  return mpsi_mpm_take_stock(mpm, __func__);
+  return mpsi_mpm_collect_block_results(mpm, __func__);
 }

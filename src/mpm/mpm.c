@@ -153,13 +153,13 @@ static mps_status check_start(const mps_mpm *mpm) {
   for (size_t f = 0; f < sizeof names / sizeof *names; f++)
     for (int32_t c = 0; c < 9; c++) {
       const double *value = mpsi_particles_column(mpm->particles, names[f], c);
-      for (int64_t k = 0; value && k < mpm->count; k++)
+      for (int64_t k = 0; value && k < mpm->p.count; k++)
         if (!isfinite(value[k]))
           return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
                            "'%s' of particle %lld is %g, must be finite", names[f],
                            (long long)mpsi_particles_integers(mpm->particles, "id")[k], value[k]);
     }
-  for (int64_t k = 0; k < mpm->count; k++)
+  for (int64_t k = 0; k < mpm->p.count; k++)
     for (int c = 0; c < mpm->dim; c++) {
       const double x = mpm->p.x[c][k], X = mpsi_grid_coordinate(mpm, c, x);
       const long long id = (long long)mpsi_particles_integers(mpm->particles, "id")[k];
@@ -167,7 +167,7 @@ static mps_status check_start(const mps_mpm *mpm) {
         return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
                          "particle %lld has %c = %g m, more than 2^30 cells from the origin", id,
                          "xyz"[c], x);
-      if (!(X >= (double)mpm->low[c] && X <= (double)mpm->high[c]))
+      if (!(X >= (double)mpm->grid.low[c] && X <= (double)mpm->grid.high[c]))
         return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
                          "particle %lld has %c = %g m, outside the domain [%g, %g] m", id, "xyz"[c],
                          x, mpm -> def.lower[c], mpm->def.upper[c]);
@@ -191,7 +191,7 @@ static void bind_fields(mps_mpm *mpm) {
   for (int c = 0; c < mpm->dim; c++) {
     p->x[c] = mpsi_particles_column(set, "position", c);
     p->v[c] = mpsi_particles_column(set, "velocity", c);
-    mpm->body_acceleration[c] = mpsi_particles_column(set, "body_acceleration", c);
+    mpm->loads.body_acceleration[c] = mpsi_particles_column(set, "body_acceleration", c);
   }
   for (int c = 0; c < 2 * mpm->dim; c++) p->s[c] = mpsi_particles_column(set, "stress", c);
   for (int c = 0; c < 9; c++) /* NULL where there is no such component */
@@ -209,7 +209,7 @@ static double lattice_volume(const mps_mpm *mpm, int64_t k) {
 
 static mps_status check_volumes(const mps_mpm *mpm, const double *density) {
   const mpsi_columns *p = &mpm->p;
-  for (int64_t k = 0; k < mpm->count; k++) {
+  for (int64_t k = 0; k < mpm->p.count; k++) {
     const double volume = p->V[k] != 0.0 ? p->V[k] : lattice_volume(mpm, k);
     const double ratio = !p->J ? 1.0 : p->J[k] != 0.0 ? p->J[k] : 1.0;
     if (!(density[k] > 0.0) || !(volume > 0.0) || !(ratio > 0.0))
@@ -228,24 +228,24 @@ static mps_status set_start(mps_mpm *mpm) {
   const double *density = mpsi_particles_column(mpm->particles, "density", 0);
   const mps_status status = check_volumes(mpm, density);
   if (status != MPS_OK) return status;
-  for (int64_t k = 0; k < mpm->count; k++) {
+  for (int64_t k = 0; k < mpm->p.count; k++) {
     if (p->V[k] == 0.0) p->V[k] = lattice_volume(mpm, k);
     p->m[k] = density[k] * p->V[k]; /* the density is that of the present volume */
     const double mass = mpm->def.geometry == MPS_AXISYMMETRIC ? p->m[k] / p->x[0][k] : p->m[k];
-    if (k == 0 || mass < mpm->least_mass) mpm->least_mass = mass;
-    mpsi_mpm_begin_law(mpm, &mpm->law[0], k);
+    if (k == 0 || mass < mpm->contact.least_mass) mpm->contact.least_mass = mass;
+    mpsi_mpm_begin_law(mpm, &mpm->laws.law[0], k);
   }
   return MPS_OK;
 }
 
 /* ---- life ------------------------------------------------------------------------------------ */
 
-static mps_status hire_workers(mps_mpm *mpm) {
-  mpm->worker_count = mps_context_threads(mpm->context);
-  mpm->workers = mpsi_alloc(mpm->context, mpm->worker_count, sizeof *mpm->workers);
-  const size_t bytes = mpsi_worker_bytes(mpm), tile = (size_t)mpm->tile;
-  for (int32_t k = 0; mpm->workers && k < mpm->worker_count; k++) {
-    mpsi_worker *w = &mpm->workers[k];
+static mps_status make_workers(mps_mpm *mpm) {
+  mpm->grid.worker_count = mps_context_threads(mpm->context);
+  mpm->grid.workers = mpsi_alloc(mpm->context, mpm->grid.worker_count, sizeof *mpm->grid.workers);
+  const size_t bytes = mpsi_worker_bytes(mpm), tile = (size_t)mpm->grid.tile_nodes;
+  for (int32_t k = 0; mpm->grid.workers && k < mpm->grid.worker_count; k++) {
+    mpsi_worker *w = &mpm->grid.workers[k];
     char *memory = w->memory = mpsi_alloc(mpm->context, 1, bytes);
     if (!memory) return mpsi_fail_memory(mpm->context, create, bytes);
     w->tile = (mpsi_node *)memory;
@@ -253,12 +253,13 @@ static mps_status hire_workers(mps_mpm *mpm) {
     w->inside = (uint32_t *)(w->force + tile);
     w->state = (uint8_t *)(w->inside + tile); /* and a little more: rows are read as four */
   }
-  return mpm->workers ? MPS_OK : mpsi_fail_memory(mpm->context, create, sizeof *mpm->workers);
+  return mpm->grid.workers ? MPS_OK
+                           : mpsi_fail_memory(mpm->context, create, sizeof *mpm->grid.workers);
 }
 
 static void place_walls(mps_mpm *mpm) {
   const mps_mpm_def *d = &mpm->def;
-  for (int32_t k = 0; k < MPSI_HOLDS; k++) mpm->hold[k].kind = MPSI_HOLD_NONE;
+  for (int32_t k = 0; k < MPSI_HOLDS; k++) mpm->boundaries.hold[k].kind = MPSI_HOLD_NONE;
   for (int32_t k = 0; k < 2 * mpm->dim; k++)
     mpsi_mpm_place_wall(mpm, k, k % 2 ? d->wall_upper[k / 2] : d->wall_lower[k / 2],
                         k % 2 ? d->wall_friction_upper[k / 2] : d->wall_friction_lower[k / 2]);
@@ -283,19 +284,21 @@ static mps_status build(mps_mpm *mpm, mps_material *material) {
   status = check_start(mpm);
   if (status == MPS_OK) status = set_start(mpm);
   if (status != MPS_OK) return status;
-  mpm->radix = mpsi_alloc(context, 2 * mpm->count, sizeof *mpm->radix);
-  if (mpm->radix) mpm->flags = mpsi_alloc(context, mpm->count, sizeof *mpm->flags);
+  mpm->grid.radix = mpsi_alloc(context, 2 * mpm->p.count, sizeof *mpm->grid.radix);
+  if (mpm->grid.radix) mpm->laws.flags = mpsi_alloc(context, mpm->p.count, sizeof *mpm->laws.flags);
   const bool by_cell = mpm->def.volumetric == MPS_VOLUMETRIC_CELL;
-  if (mpm->flags && by_cell) mpm->stencil = mpsi_alloc(context, mpm->count, sizeof *mpm->stencil);
-  if (!mpm->flags || (by_cell && !mpm->stencil))
-    return mpsi_fail_memory(context, create, (size_t)mpm->count * sizeof *mpm->radix);
-  status = hire_workers(mpm);
-  if (status == MPS_OK && mpm->body_acceleration[0]) status = mpsi_mpm_make_forces(mpm, create);
+  if (mpm->laws.flags && by_cell)
+    mpm->p.stencil = mpsi_alloc(context, mpm->p.count, sizeof *mpm->p.stencil);
+  if (!mpm->laws.flags || (by_cell && !mpm->p.stencil))
+    return mpsi_fail_memory(context, create, (size_t)mpm->p.count * sizeof *mpm->grid.radix);
+  status = make_workers(mpm);
+  if (status == MPS_OK && mpm->loads.body_acceleration[0])
+    status = mpsi_mpm_make_forces(mpm, create);
   if (status == MPS_OK) status = mpsi_mpm_sort(mpm, create);
   if (status == MPS_OK) status = mpsi_mpm_list_holds(mpm, create);
   if (status != MPS_OK) return status;
   mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
-  status = mpsi_mpm_take_stock(mpm, create);
+  status = mpsi_mpm_collect_block_results(mpm, create);
   return status == MPS_OK ? check_step(mpm) : status;
 }
 
@@ -327,15 +330,15 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   mpm->standard = def.scheme == MPS_SCHEME_STANDARD;
   mpm->flip = mpm->standard ? def.flip : 0.0;
   mpm->dim = dim_of(&def);
-  mpm->own = mpm->dim == 3 ? MPSI_SIDE * MPSI_SIDE * MPSI_SIDE : MPSI_SIDE * MPSI_SIDE;
-  mpm->tile = mpm->dim == 3 ? MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE
-                            : MPSI_TILE_SIDE * MPSI_TILE_SIDE;
+  mpm->grid.block_nodes = mpm->dim == 3 ? MPSI_SIDE * MPSI_SIDE * MPSI_SIDE : MPSI_SIDE * MPSI_SIDE;
+  mpm->grid.tile_nodes = mpm->dim == 3 ? MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE
+                                       : MPSI_TILE_SIDE * MPSI_TILE_SIDE;
   mpm->kernels = mpsi_mpm_kernels(0);
-  mpm->count = mps_particles_count(particles);
-  mpm->inverse = 1.0 / def.cell;
-  mpm->gap = 0.5 * mps_particles_spacing(particles);
-  memcpy(mpm->low, low, sizeof low);
-  memcpy(mpm->high, high, sizeof high);
+  mpm->p.count = mps_particles_count(particles);
+  mpm->grid.inverse = 1.0 / def.cell;
+  mpm->contact.gap = 0.5 * mps_particles_spacing(particles);
+  memcpy(mpm->grid.low, low, sizeof low);
+  memcpy(mpm->grid.high, high, sizeof high);
   place_walls(mpm);
   if ((status = build(mpm, material)) != MPS_OK) {
     mps_mpm_destroy(&mpm);
@@ -350,33 +353,33 @@ void mps_mpm_destroy(mps_mpm **pointer) {
   mps_mpm *mpm = *pointer;
   mps_context *context = mpm->context;
   *pointer = NULL;
-  for (int32_t b = 0; b < mpm->bodies; b++) mpsi_body_give(mpm->body[b]);
-  for (int32_t k = 0; mpm->workers && k < mpm->worker_count; k++)
-    mpsi_free(context, mpm->workers[k].memory);
-  void *parts[] = {mpm->workers,
-                   mpm->cells_room.item,
-                   mpm->coloured_room.item,
-                   mpm->nodes_room.item,
-                   mpm->node_room.item,
-                   mpm->side_room.item,
-                   mpm->meeting_room.item,
-                   mpm->touch_room.item,
-                   mpm->touch_node_room.item,
-                   mpm->inside_room.item,
-                   mpm->reached_room.item,
-                   mpm->held_room.item,
-                   mpm->dash_room.item,
-                   mpm->old_held_room.item,
-                   mpm->old_dash_room.item,
-                   mpm->force_memory,
-                   mpm->radix,
-                   mpm->flags,
-                   mpm->stencil};
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) mpsi_body_give(mpm->contact.body[b]);
+  for (int32_t k = 0; mpm->grid.workers && k < mpm->grid.worker_count; k++)
+    mpsi_free(context, mpm->grid.workers[k].memory);
+  void *parts[] = {mpm->grid.workers,
+                   mpm->grid.cells_room.item,
+                   mpm->grid.coloured_room.item,
+                   mpm->grid.nodes_room.item,
+                   mpm->grid.node_room.item,
+                   mpm->grid.side_room.item,
+                   mpm->contact.cell_pair_room.item,
+                   mpm->contact.node_pair_room.item,
+                   mpm->contact.node_room.item,
+                   mpm->contact.inside_room.item,
+                   mpm->contact.reached_room.item,
+                   mpm->boundaries.held_room.item,
+                   mpm->boundaries.dash_room.item,
+                   mpm->boundaries.old_held_room.item,
+                   mpm->boundaries.old_dash_room.item,
+                   mpm->loads.force_memory,
+                   mpm->grid.radix,
+                   mpm->laws.flags,
+                   mpm->p.stencil};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
   mpsi_mpm_drop_loads(mpm);
   for (int32_t k = 0; k < MPSI_HOLDS; k++)
-    for (int c = 0; c < 3; c++) mps_signal_destroy(&mpm->hold[k].signal[c]);
-  for (int32_t k = 0; k < mpm->laws; k++) mps_material_destroy(&mpm->law[k].material);
+    for (int c = 0; c < 3; c++) mps_signal_destroy(&mpm->boundaries.hold[k].signal[c]);
+  for (int32_t k = 0; k < mpm->laws.count; k++) mps_material_destroy(&mpm->laws.law[k].material);
   mpsi_particles_unpin(mpm->particles);
   mpsi_free(context, mpm);
   mpsi_context_release(context);
@@ -385,9 +388,11 @@ void mps_mpm_destroy(mps_mpm **pointer) {
 /* Half spaces are there to be laid one over the other, as floor and wall. */
 static mps_status check_overlap(mps_mpm *mpm, const char *function, const mps_body *body) {
   const double depth = OVERLAP * mpm->def.cell;
-  for (int32_t b = 0; b < mpm->bodies; b++) {
-    const bool halves = body->shape == MPSI_HALF && mpm->body[b]->shape == MPSI_HALF;
-    if (mpm->body[b] == body || halves || !mpsi_body_overlap(mpm->body[b], body, depth)) continue;
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
+    const bool halves = body->shape == MPSI_HALF && mpm->contact.body[b]->shape == MPSI_HALF;
+    if (mpm->contact.body[b] == body || halves ||
+        !mpsi_body_overlap(mpm->contact.body[b], body, depth))
+      continue;
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "the body overlaps body %d of the solver by more than %g m (%g cells)", b,
                      depth, OVERLAP);
@@ -395,14 +400,14 @@ static mps_status check_overlap(mps_mpm *mpm, const char *function, const mps_bo
   return MPS_OK;
 }
 
-static void warn_of_thickness(mps_mpm *mpm, const mps_body *body) {
-  const double wall = mpsi_body_thickness(body), cells = wall * mpm->inverse;
+static void warn_about_thickness(mps_mpm *mpm, const mps_body *body) {
+  const double wall = mpsi_body_thickness(body), cells = wall * mpm->grid.inverse;
   if (cells < THIN * (1.0 - 1e-9))
     mpsi_log(
         mpm->context, MPS_LOG_WARNING,
         "body %d has a wall %.4g m thin, %.3g cells: below %g cells momentum leaks through it; "
         "use a cell of at most %.4g m or a thicker wall",
-        mpm->bodies, wall, cells, THIN, wall / THIN);
+        mpm->contact.bodies, wall, cells, THIN, wall / THIN);
 }
 
 mps_status mps_mpm_add_body(mps_mpm *mpm, mps_body *body) {
@@ -414,14 +419,14 @@ mps_status mps_mpm_add_body(mps_mpm *mpm, mps_body *body) {
   if (body->dim != mpm->dim)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "the body is %dD, the solver %dD",
                      body->dim, mpm->dim);
-  if (mpm->bodies == MPS_MPM_MAX_BODIES)
+  if (mpm->contact.bodies == MPS_MPM_MAX_BODIES)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "the solver has %d bodies, the most there can be", MPS_MPM_MAX_BODIES);
   const mps_status status = check_overlap(mpm, __func__, body);
   if (status != MPS_OK) return status;
   if (!mpsi_body_take(body, mpm))
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_STATE, "a solver has the body already");
-  warn_of_thickness(mpm, body);
-  mpm->body[mpm->bodies++] = body;
+  warn_about_thickness(mpm, body);
+  mpm->contact.body[mpm->contact.bodies++] = body;
   return MPS_OK;
 }

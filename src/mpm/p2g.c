@@ -27,8 +27,8 @@ MPSI_INLINE void find_parts(const mps_mpm *mpm, int geometry, int spline, bool s
   static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   const int dim = mpsi_dim_of(geometry);
   const mpsi_columns *p = &mpm->p;
-  const double h = mpm->def.cell, stiff = -mpsi_inverse_moment(spline) * mpm->inverse;
-  const double dt = split ? 1.0 : mpm->dt;
+  const double h = mpm->def.cell, stiff = -mpsi_inverse_moment(spline) * mpm->grid.inverse;
+  const double dt = split ? 1.0 : mpm->run.dt;
   const mpsi_quad zero = {0.0};
   for (int k = 0; k < n; k += 4) {
     const int64_t at = begin + k;
@@ -101,9 +101,10 @@ MPSI_INLINE void add_segment(int dim, int spline, const mpsi_places *places, con
 
 /* The same where a wall across `axis` cuts the stencil: momentum to the tile, force and excess mass
  * (see mpsi_node) to the tile of forces. Weights of the derivatives differ across and along it. */
-MPSI_INLINE void add_at_wall(const mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
-                             int geometry, int spline, const mpsi_places *places, int axis,
-                             int64_t chunk, int begin, int end) {
+MPSI_INLINE void add_at_wall(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                             const mpsi_worker *worker, int geometry, int spline,
+                             const mpsi_places *places, int axis, int64_t chunk, int begin,
+                             int end) {
   const int dim = mpsi_dim_of(geometry), n = end - begin;
   mpsi_wall wall;
   parts part, other;
@@ -126,7 +127,7 @@ MPSI_INLINE void add_at_wall(const mps_mpm *mpm, const mpsi_cells *cells, const 
   add_segment(dim, spline, &wall.places, &wall.rows, 0, n, other.force, worker->force);
 }
 
-MPSI_INLINE void clear(const mpsi_cells *cells, mpsi_node *tile) {
+MPSI_INLINE void clear(const mpsi_cell_block *cells, mpsi_node *tile) {
   for (int k = cells->low[2]; k < cells->high[2]; k++)
     for (int j = cells->low[1]; j < cells->high[1]; j++)
       for (int i = cells->low[0]; i < cells->high[0]; i++)
@@ -134,11 +135,11 @@ MPSI_INLINE void clear(const mpsi_cells *cells, mpsi_node *tile) {
 }
 
 /* Adds the tile to one of the blocks of nodes under it. */
-MPSI_INLINE void flush(const mps_mpm *mpm, const mpsi_cells *cells, int q,
+MPSI_INLINE void flush(const mps_mpm *mpm, const mpsi_cell_block *cells, int q,
                        const mpsi_worker *from) {
-  const mpsi_nodes *nodes = &mpm->nodes[cells->to[q]];
-  mpsi_node *node = mpm->node + mpsi_first_node(mpm, cells->to[q]);
-  mpsi_node *side = nodes->side >= 0 ? mpm->side + mpsi_first_node(mpm, nodes->side) : NULL;
+  const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
+  mpsi_node *node = mpm->grid.node + mpsi_first_node(mpm, cells->to[q]);
+  mpsi_node *side = nodes->side >= 0 ? mpm->grid.side + mpsi_first_node(mpm, nodes->side) : NULL;
   int low[3], high[3];
   for (int c = 0; c < 3; c++) { /* of the tile */
     const int first = q >> c & 1 ? MPSI_SIDE : 0;
@@ -159,7 +160,7 @@ MPSI_INLINE void flush(const mps_mpm *mpm, const mpsi_cells *cells, int q,
           } else {
             if (side) side[to + i][MPSI_EXCESS] += force[MPSI_EXCESS];
             force[MPSI_EXCESS] = 0.0;
-            sum += mpm->dt * force;
+            sum += mpm->run.dt * force;
           }
         }
         mpsi_put(node[to + i], mpsi_get(node[to + i]) + sum);
@@ -167,7 +168,7 @@ MPSI_INLINE void flush(const mps_mpm *mpm, const mpsi_cells *cells, int q,
     }
 }
 
-MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cells *cells, const mpsi_worker *worker,
+MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                            int geometry, int spline, int64_t begin, int n) {
   const int dim = mpsi_dim_of(geometry);
   mpsi_places places;
@@ -207,19 +208,19 @@ MPSI_INLINE void prefetch_chunk(const mpsi_columns *p, int64_t begin, int64_t en
 }
 
 MPSI_INLINE void p2g_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {
-  const mpsi_cells *cells = &mpm->cells[b];
-  mpsi_worker *worker = &mpm->workers[number];
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  mpsi_worker *worker = &mpm->grid.workers[number];
   const int dim = mpsi_dim_of(geometry);
-  for (int32_t q = 0; q < cells->meetings; q++) {
-    mpsi_meeting *meeting = &mpm->meeting[cells->first_meeting + q];
-    meeting->touched = false;
-    memset(meeting->load, 0, sizeof meeting->load);
-    memset(meeting->contacts, 0, sizeof meeting->contacts);
+  for (int32_t q = 0; q < cells->pairs; q++) {
+    mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
+    pair->touched = false;
+    memset(pair->load, 0, sizeof pair->load);
+    memset(pair->contacts, 0, sizeof pair->contacts);
   }
   if (cells->cut) mpsi_mpm_find_states(mpm, cells, worker);
   clear(cells, worker->tile);
   if (cells->apart) clear(cells, worker->force);
-  const mpsi_cells *next = dim == 2 && b + 2 < mpm->cell_count ? cells + 2 : NULL;
+  const mpsi_cell_block *next = dim == 2 && b + 2 < mpm->grid.cell_count ? cells + 2 : NULL;
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int64_t rest = cells->end - k;
     if (next) prefetch_chunk(&mpm->p, next->begin + (k - cells->begin), next->end);

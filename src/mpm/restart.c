@@ -17,44 +17,46 @@ mps_particles *mpsi_mpm_particles(const mps_mpm *mpm) { return mpm->particles; }
 static void get_setting(const mps_mpm *mpm, mpsi_mpm_record *out) {
   out->geometry = mpm->def.geometry, out->scheme = mpm->def.scheme;
   out->spline = mpm->def.spline;
-  out->bodies = mpm->bodies, out->materials = mpm->laws;
-  for (int32_t k = 0; k < mpm->laws; k++)
+  out->bodies = mpm->contact.bodies, out->materials = mpm->laws.count;
+  for (int32_t k = 0; k < mpm->laws.count; k++)
     snprintf(out->material[k], sizeof out->material[k], "%s",
-             mps_material_name(mpm->law[k].material));
-  for (int32_t k = 0; k < mpm->tractions; k++) out->loads += mpm->traction[k].count > 0;
-  out->accelerated = mpm->body_acceleration[0] != NULL;
-  for (int k = 0; k < MPSI_HOLDS; k++) out->kind[k] = mpm->hold[k].kind;
+             mps_material_name(mpm->laws.law[k].material));
+  for (int32_t k = 0; k < mpm->loads.count; k++) out->loads += mpm->loads.traction[k].count > 0;
+  out->accelerated = mpm->loads.body_acceleration[0] != NULL;
+  for (int k = 0; k < MPSI_HOLDS; k++) out->kind[k] = mpm->boundaries.hold[k].kind;
 }
 
 mps_status mpsi_mpm_get_record(const mps_mpm *mpm, const char *function, mpsi_mpm_record *out) {
-  if (mpm->broken)
+  if (mpm->run.broken)
     return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                      "step %lld has failed: there is no state to go on from",
-                     (long long)mpm->steps);
+                     (long long)mpm->run.steps);
   get_setting(mpm, out);
   out->cell = mpm->def.cell;
   for (int c = 0; c < mpm->dim; c++) {
     out->origin[c] = mpm->def.origin[c];
-    out->low[c] = mpm->low[c], out->high[c] = mpm->high[c];
+    out->low[c] = mpm->grid.low[c], out->high[c] = mpm->grid.high[c];
   }
-  out->stale = mpm->stale;
-  out->speed = mpm->speed;
-  for (int32_t b = 0; b < mpm->bodies; b++) mpsi_body_get_record(mpm->body[b], &out->body[b]);
+  out->stale = mpm->run.stale;
+  out->speed = mpm->run.speed;
+  for (int32_t b = 0; b < mpm->contact.bodies; b++)
+    mpsi_body_get_record(mpm->contact.body[b], &out->body[b]);
   for (int k = 0; k < MPSI_HOLDS; k++) {
-    out->finds[k] = mpm->hold[k].finds, out->found[k] = mpm->hold[k].found;
-    memcpy(&out->force[3 * k], mpm->hold[k].force, sizeof mpm->hold[k].force);
+    out->finds[k] = mpm->boundaries.hold[k].finds, out->found[k] = mpm->boundaries.hold[k].found;
+    memcpy(&out->force[3 * k], mpm->boundaries.hold[k].force, sizeof mpm->boundaries.hold[k].force);
   }
-  out->dashes = mpm->dash_count;
+  out->dashes = mpm->boundaries.dash_count;
   out->dash = mpsi_alloc(mpm->context, out->dashes, sizeof *out->dash);
   if (!out->dash)
     return mpsi_fail_memory(mpm->context, function, (size_t)out->dashes * sizeof *out->dash);
-  if (out->dashes > 0) memcpy(out->dash, mpm->dash, (size_t)out->dashes * sizeof *out->dash);
-  out->blocks = mpm->cell_count;
+  if (out->dashes > 0)
+    memcpy(out->dash, mpm->boundaries.dash, (size_t)out->dashes * sizeof *out->dash);
+  out->blocks = mpm->grid.cell_count;
   out->block = mpsi_alloc(mpm->context, out->blocks, sizeof *out->block);
   if (!out->block)
     return mpsi_fail_memory(mpm->context, function, (size_t)out->blocks * sizeof *out->block);
   for (int64_t k = 0; k < out->blocks; k++) {
-    const mpsi_cells *cells = &mpm->cells[k];
+    const mpsi_cell_block *cells = &mpm->grid.cells[k];
     out->block[k][0] = cells->begin;
     for (int c = 0; c < 3; c++) {
       out->block[k][MPSI_BLOCK_AT + c] = cells->at[c];
@@ -84,12 +86,12 @@ static mps_status check_grid(const mps_mpm *mpm, const char *function, const cha
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "'%.200s' has origin[%d] %.17g m, the solver %.17g m", path, c, r->origin[c],
                        d->origin[c]);
-    if (r->low[c] != mpm->low[c] || r->high[c] != mpm->high[c])
+    if (r->low[c] != mpm->grid.low[c] || r->high[c] != mpm->grid.high[c])
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "'%.200s' has walls in %c at nodes %lld and %lld, the solver at %lld and "
                        "%lld (2^30: none)",
                        path, "xyz"[c], (long long)r -> low[c], (long long)r -> high[c],
-                       (long long)mpm -> low[c], (long long)mpm -> high[c]);
+                       (long long)mpm -> grid.low[c], (long long)mpm->grid.high[c]);
   }
   return MPS_OK;
 }
@@ -97,7 +99,7 @@ static mps_status check_grid(const mps_mpm *mpm, const char *function, const cha
 static mps_status check_body(const mps_mpm *mpm, const char *function, const char *path, int32_t b,
                              const mpsi_body_record *r) {
   mpsi_body_record own;
-  mpsi_body_get_record(mpm->body[b], &own);
+  mpsi_body_get_record(mpm->contact.body[b], &own);
   if (r->shape == own.shape && r->faces == own.faces && r->motion == own.motion &&
       r->parts == own.parts)
     return MPS_OK;
@@ -111,13 +113,13 @@ static mps_status check_body(const mps_mpm *mpm, const char *function, const cha
 
 static mps_status check_materials(const mps_mpm *mpm, const char *function, const char *path,
                                   const mpsi_mpm_record *r) {
-  if (r->materials != mpm->laws)
+  if (r->materials != mpm->laws.count)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "'%.200s' has %lld materials, the solver %d", path, (long long)r->materials,
-                     mpm->laws);
-  for (int32_t k = 0; k < mpm->laws; k++) {
+                     mpm->laws.count);
+  for (int32_t k = 0; k < mpm->laws.count; k++) {
     char name[MPSI_MATERIAL_NAME];
-    snprintf(name, sizeof name, "%s", mps_material_name(mpm->law[k].material));
+    snprintf(name, sizeof name, "%s", mps_material_name(mpm->laws.law[k].material));
     if (strcmp(r->material[k], name) != 0)
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "material %d of '%.200s' is '%s', of the solver '%s'", k, path,
@@ -154,11 +156,11 @@ mps_status mpsi_mpm_check_record(const mps_mpm *mpm, const char *function, const
   status = check_forces(mpm, function, path, record);
   if (status == MPS_OK) status = check_materials(mpm, function, path, record);
   if (status != MPS_OK) return status;
-  if (record->bodies != mpm->bodies)
+  if (record->bodies != mpm->contact.bodies)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "'%.200s' has %lld bodies, the solver %d: add them before", path,
-                     (long long)record->bodies, mpm->bodies);
-  for (int32_t b = 0; b < mpm->bodies && status == MPS_OK; b++)
+                     (long long)record->bodies, mpm->contact.bodies);
+  for (int32_t b = 0; b < mpm->contact.bodies && status == MPS_OK; b++)
     status = check_body(mpm, function, path, b, &record->body[b]);
   return status;
 }
@@ -180,7 +182,7 @@ static bool within_tile(const mps_mpm *mpm, const int64_t *b) {
 }
 
 static bool orderly(const mps_mpm *mpm, const mpsi_mpm_record *r) {
-  if (r->blocks < 1 || r->blocks > mpm->count || r->block[0][0] != 0) return false;
+  if (r->blocks < 1 || r->blocks > mpm->p.count || r->block[0][0] != 0) return false;
   for (int64_t k = 0; k < r->blocks; k++) {
     const int64_t *b = r->block[k], *next = r->block[k + 1 < r->blocks ? k + 1 : k];
     for (int c = 0; c < 3; c++) /* far from where 32 bits end, also of the nodes */
@@ -192,7 +194,7 @@ static bool orderly(const mps_mpm *mpm, const mpsi_mpm_record *r) {
     while (c > 1 && b[c] == next[c]) c--;
     if (b[0] >= next[0] || b[c] >= next[c]) return false;
   }
-  return r->block[r->blocks - 1][0] < mpm->count;
+  return r->block[r->blocks - 1][0] < mpm->p.count;
 }
 
 /* Where the particle k of the file is: 1 in its tile, -1 in no place that a run leads to unless it
@@ -203,8 +205,8 @@ static int place_of(const mps_mpm *mpm, const int64_t *block, bool stale, const 
   const double first = mpm->def.spline == 3 ? 1.0 : 0.5; /* see move in g2p.c */
   int place = 1;
   for (int c = 0; c < mpm->dim; c++) {
-    const double X = mpsi_grid_coordinate(mpm, c, x[c * mpm->count + k]);
-    const double low = (double)mpm->low[c], high = (double)mpm->high[c];
+    const double X = mpsi_grid_coordinate(mpm, c, x[c * mpm->p.count + k]);
+    const double low = (double)mpm->grid.low[c], high = (double)mpm->grid.high[c];
     if (!(fabs(X) < MPSI_MAX_CELLS && X >= low - ROUNDED && X <= high + ROUNDED)) return -1;
     if (stale) continue;
     const double local = X - (double)(block[MPSI_BLOCK_AT + c] * MPSI_SIDE) - first;
@@ -221,8 +223,8 @@ bool mpsi_mpm_fits_record(const mps_mpm *mpm, mpsi_mpm_record *r, const double *
   if (!(r->speed > 0.0 && isfinite(r->speed)) || !orderly(mpm, r)) return false;
   for (int k = 0; k < MPSI_HOLDS; k++)
     if (!isfinite(r->found[k])) return false;
-  for (int64_t k = 0, b = 0; k < mpm->count; k++) {
-    if (mpm->p.law && !(law && law[k] >= 0 && law[k] < mpm->laws)) return false;
+  for (int64_t k = 0, b = 0; k < mpm->p.count; k++) {
+    if (mpm->p.law && !(law && law[k] >= 0 && law[k] < mpm->laws.count)) return false;
     if (b + 1 < r->blocks && k == r->block[b + 1][0]) b++;
     const int place = place_of(mpm, r->block[b], r->stale != 0, x, k);
     if (place < 0) return false;
@@ -233,19 +235,22 @@ bool mpsi_mpm_fits_record(const mps_mpm *mpm, mpsi_mpm_record *r, const double *
 
 mps_status mpsi_mpm_set_record(mps_mpm *mpm, const char *function, const mpsi_mpm_record *record,
                                double time, int64_t steps) {
-  mpm->broken = true;
+  mpm->run.broken = true;
   mps_status status = mpsi_mpm_place_blocks(mpm, function, record->blocks, record->block);
   if (status == MPS_OK) status = mpsi_mpm_put_dashes(mpm, function, record->dashes, record->dash);
   if (status != MPS_OK) return status;
-  for (int32_t b = 0; b < mpm->bodies; b++) mpsi_body_set_record(mpm->body[b], &record->body[b]);
+  for (int32_t b = 0; b < mpm->contact.bodies; b++)
+    mpsi_body_set_record(mpm->contact.body[b], &record->body[b]);
   for (int k = 0; k < MPSI_HOLDS; k++) {
-    mpm->hold[k].finds = record->finds[k] != 0, mpm->hold[k].found = record->found[k];
-    memcpy(mpm->hold[k].force, &record->force[3 * k], sizeof mpm->hold[k].force);
+    mpm->boundaries.hold[k].finds = record->finds[k] != 0,
+    mpm->boundaries.hold[k].found = record->found[k];
+    memcpy(mpm->boundaries.hold[k].force, &record->force[3 * k],
+           sizeof mpm->boundaries.hold[k].force);
   }
-  mpm->stale = record->stale != 0;
-  mpm->speed = record->speed;
-  mpm->time = time;
-  mpm->steps = steps;
-  mpm->broken = false;
+  mpm->run.stale = record->stale != 0;
+  mpm->run.speed = record->speed;
+  mpm->run.time = time;
+  mpm->run.steps = steps;
+  mpm->run.broken = false;
   return MPS_OK;
 }

@@ -1,5 +1,5 @@
-/* shape.h - shape functions of one particle: B-spline weights, Nakamura (35), (36), and the weighted
- * least-squares fit of a linear function over the active nodes, (5), (6), (37), (38).
+/* shape.h - shape functions of one particle: B-spline weights, Nakamura (35), (36), and the
+ * weighted least-squares fit of a linear function over the active nodes, (5), (6), (37), (38).
  *
  * Lengths are in cells here: s = (x_i - x_p)/h, so that the moment matrix M = sum w P P^T with
  * P = [1, s] is well scaled. Where all nodes of the stencil take part M is diagonal, diag(1, m2,
@@ -65,8 +65,8 @@ MPSI_INLINE void mpsi_slopes(int spline, double t, double *slope) {
   }
 }
 
-MPSI_INLINE void mpsi_make_stencil(const mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
-                                   int64_t particle, mpsi_stencil *out) {
+MPSI_INLINE void mpsi_make_stencil(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
+                                   int spline, int64_t particle, mpsi_stencil *out) {
   *out = (mpsi_stencil){.w[2][0] = 1.0};
   for (int c = 0; c < dim; c++) {
     const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][particle]);
@@ -76,18 +76,6 @@ MPSI_INLINE void mpsi_make_stencil(const mps_mpm *mpm, const mpsi_cells *cells, 
     out->at[c] = (int)((int64_t)base - (int64_t)cells->at[c] * MPSI_SIDE);
     out->own[c] = (int)(mpsi_own_cell(mpm, c, X) - (int64_t)base);
   }
-}
-
-MPSI_INLINE int mpsi_tile_index(int i, int j, int k) {
-  return (k * MPSI_TILE_SIDE + j) * MPSI_TILE_SIDE + i;
-}
-
-/* Node of the grid under the node (i, j, k) of a tile. */
-MPSI_INLINE int64_t mpsi_node_under(const mps_mpm *mpm, const mpsi_cells *cells, int i, int j,
-                                    int k) {
-  const int q = (i >= MPSI_SIDE) + 2 * (j >= MPSI_SIDE) + 4 * (k >= MPSI_SIDE);
-  return mpsi_first_node(mpm, cells->to[q]) +
-         ((k % MPSI_SIDE) * MPSI_SIDE + j % MPSI_SIDE) * MPSI_SIDE + i % MPSI_SIDE;
 }
 
 #endif

@@ -20,16 +20,16 @@ static void find_diagonal(const mps_mpm *mpm, const double **diagonal) {
   diagonal[2] = space ? p->L[8] : mpm->def.geometry == MPS_AXISYMMETRIC ? p->L[4] : NULL;
 }
 
-static double *sums_of(const mps_mpm *mpm, const mpsi_cells *cells, int64_t particle) {
+static double *sums_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t particle) {
   int at[3];
-  mpsi_unravel(mpm->stencil[particle], MPSI_TILE_SIDE, at);
-  return mpm->node[mpsi_node_under(mpm, cells, at[0], at[1], at[2])];
+  mpsi_unravel(mpm->p.stencil[particle], MPSI_TILE_SIDE, at);
+  return mpm->grid.node[mpsi_node_under(mpm, cells, at[0], at[1], at[2])];
 }
 
 /* Blocks of one colour have no node in common. */
 static void add_cells(mps_mpm *mpm, int64_t b, int32_t worker) {
   (void)worker;
-  const mpsi_cells *cells = &mpm->cells[b];
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const double *L[3], *V = mpm->p.V;
   find_diagonal(mpm, L);
   for (int64_t k = cells->begin; k < cells->end; k++) {
@@ -39,7 +39,7 @@ static void add_cells(mps_mpm *mpm, int64_t b, int32_t worker) {
   }
 }
 
-void mpsi_mpm_mean_diagonals(const mps_mpm *mpm, const mpsi_cells *cells, int64_t begin,
+void mpsi_mpm_mean_diagonals(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin,
                              int64_t end, double (*diagonal)[MPSI_CHUNK]) {
   const double *L[3];
   find_diagonal(mpm, L);
@@ -52,15 +52,15 @@ void mpsi_mpm_mean_diagonals(const mps_mpm *mpm, const mpsi_cells *cells, int64_
 }
 
 static void apply_laws(mps_mpm *mpm, int64_t b, int32_t worker) {
-  mpsi_cells *cells = &mpm->cells[b];
+  mpsi_cell_block *cells = &mpm->grid.cells[b];
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK)
     mpsi_mpm_apply_law(mpm, cells, k, k + MPSI_CHUNK < cells->end ? k + MPSI_CHUNK : cells->end);
   mpm->kernels->speed(mpm, b, worker);
 }
 
 void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm) {
-  for (int64_t b = 0; b < mpm->cell_count; b++)
-    if (mpm->cells[b].bad >= 0) return; /* the step has failed; its places may be no places */
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++)
+    if (mpm->grid.cells[b].bad >= 0) return; /* the step has failed; its places may be no places */
   mpsi_mpm_for_nodes(mpm, mpsi_mpm_clear_nodes);
   mpsi_mpm_for_colours(mpm, add_cells);
   mpsi_mpm_for_cells(mpm, apply_laws);

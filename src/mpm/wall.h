@@ -1,11 +1,10 @@
 /* wall.h - particles whose support nothing but one wall of the domain cuts, across one axis. Their
- * fit, Nakamura (5), (6), falls apart into one along each axis: along the others the stencil is full,
- * and across the wall, with the moments M0, M1, M2 of w over its active nodes,
- *   phi = w (M2 - M1 s)/D,  dphi/ds = w (M0 s - M1)/D,  D = M0 M2 - M1^2.
- * The shape function is phi times the w of the other axes, and its derivative along the wall's axis
- * likewise; derivatives along the others are w s/m2 there times w/M0 here. So the loops for full
- * supports serve, with other weights, where fitted.c would take a fit of all nodes.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * fit, Nakamura (5), (6), falls apart into one along each axis: along the others the stencil is
+ * full, and across the wall, with the moments M0, M1, M2 of w over its active nodes, phi = w (M2 -
+ * M1 s)/D,  dphi/ds = w (M0 s - M1)/D,  D = M0 M2 - M1^2. The shape function is phi times the w of
+ * the other axes, and its derivative along the wall's axis likewise; derivatives along the others
+ * are w s/m2 there times w/M0 here. So the loops for full supports serve, with other weights, where
+ * fitted.c would take a fit of all nodes. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_WALL_H
 #define MPSI_MPM_WALL_H
 
@@ -28,14 +27,14 @@ typedef struct mpsi_wall {
 
 /* The axis of the wall, where the stencil from tile node `first`, whose nodes have the states
  * `state` together, is cut by nothing but one; else -1. Momentum by weights goes with fitted.c. */
-MPSI_INLINE int mpsi_wall_axis(const mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
-                               uint32_t state, int32_t first) {
+MPSI_INLINE int mpsi_wall_axis(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
+                               int spline, uint32_t state, int32_t first) {
   int place[3], axis = -1;
   if (state != MPSI_OUTSIDE || mpm->def.transfer == MPS_TRANSFER_WEIGHT) return -1;
   mpsi_unravel(first, MPSI_TILE_SIDE, place);
   for (int c = 0; c < dim; c++) {
     const int64_t node = (int64_t)cells->at[c] * MPSI_SIDE + place[c];
-    if (node >= mpm->low[c] && node + spline <= mpm->high[c]) continue;
+    if (node >= mpm->grid.low[c] && node + spline <= mpm->grid.high[c]) continue;
     if (axis >= 0) return -1;
     axis = c;
   }
@@ -43,14 +42,14 @@ MPSI_INLINE int mpsi_wall_axis(const mps_mpm *mpm, const mpsi_cells *cells, int 
 }
 
 /* Whether this particle's node i across the wall is in the domain. */
-MPSI_INLINE bool mpsi_wall_active(const mps_mpm *mpm, const mpsi_cells *cells, int c, int place,
-                                  int i) {
+MPSI_INLINE bool mpsi_wall_active(const mps_mpm *mpm, const mpsi_cell_block *cells, int c,
+                                  int place, int i) {
   const int64_t node = (int64_t)cells->at[c] * MPSI_SIDE + place + i;
-  return node >= mpm->low[c] && node <= mpm->high[c];
+  return node >= mpm->grid.low[c] && node <= mpm->grid.high[c];
 }
 
 /* The weights of particle k of the chunk across the wall; returns M0. */
-MPSI_INLINE double mpsi_wall_weights(const mps_mpm *mpm, const mpsi_cells *cells, int spline,
+MPSI_INLINE double mpsi_wall_weights(const mps_mpm *mpm, const mpsi_cell_block *cells, int spline,
                                      int axis, int32_t first, double t, mpsi_wall_part part,
                                      double *value, double *slope) {
   int place[3];
@@ -75,8 +74,8 @@ MPSI_INLINE double mpsi_wall_weights(const mps_mpm *mpm, const mpsi_cells *cells
 }
 
 /* Particles [begin, end) of a chunk, all of one stencil that the wall across `axis` cuts. */
-MPSI_INLINE void mpsi_wall_places(const mps_mpm *mpm, const mpsi_cells *cells, int dim, int spline,
-                                  const mpsi_places *from, int begin, int end, int axis,
+MPSI_INLINE void mpsi_wall_places(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
+                                  int spline, const mpsi_places *from, int begin, int end, int axis,
                                   mpsi_wall_part part, mpsi_wall *out) {
   out->axis = axis;
   for (int k = begin; k < end; k++) {

@@ -34,26 +34,27 @@ static bool find_range(const mps_mpm *mpm, const int32_t *at, const mpsi_hold *h
 
 /* Lists what holds which block; false where there is no room, `count` says how much is needed. */
 static bool list(mps_mpm *mpm, int64_t *count, int64_t *dashes) {
-  mpsi_held *held = mpm->held_room.item;
+  mpsi_held *held = mpm->boundaries.held_room.item;
   *count = *dashes = 0;
-  for (int64_t g = 0; g < mpm->node_count; g++) {
-    mpsi_nodes *nodes = &mpm->nodes[g];
+  for (int64_t g = 0; g < mpm->grid.node_count; g++) {
+    mpsi_node_block *nodes = &mpm->grid.nodes[g];
     nodes->first_held = (int32_t)*count;
     for (int32_t k = 0; k < MPSI_HOLDS; k++) {
       range r;
-      const int32_t kind = mpm->hold[k].kind;
-      if (kind == MPSI_HOLD_NONE || !find_range(mpm, nodes->at, &mpm->hold[k], &r)) continue;
+      const int32_t kind = mpm->boundaries.hold[k].kind;
+      if (kind == MPSI_HOLD_NONE || !find_range(mpm, nodes->at, &mpm->boundaries.hold[k], &r))
+        continue;
       const bool absorbs = kind == MPS_WALL_ABSORBING;
-      if (*count < mpm->held_room.capacity) {
+      if (*count < mpm->boundaries.held_room.capacity) {
         held[*count] = (mpsi_held){.hold = k, .dash = absorbs ? *dashes : -1};
         memcpy(held[*count].at, nodes->at, sizeof nodes->at);
       }
-      if (absorbs) *dashes += mpm->own / MPSI_SIDE;
+      if (absorbs) *dashes += mpm->grid.block_nodes / MPSI_SIDE;
       (*count)++;
     }
     nodes->holds = (int32_t)*count - nodes->first_held;
   }
-  return *count <= mpm->held_room.capacity;
+  return *count <= mpm->boundaries.held_room.capacity;
 }
 
 static void swap_rooms(mpsi_room *a, mpsi_room *b) {
@@ -65,31 +66,35 @@ static void swap_rooms(mpsi_room *a, mpsi_room *b) {
 /* A new list, in other memory than the old one. */
 static mps_status make_list(mps_mpm *mpm, const char *function) {
   int64_t count, dashes;
-  swap_rooms(&mpm->held_room, &mpm->old_held_room);
-  swap_rooms(&mpm->dash_room, &mpm->old_dash_room);
+  swap_rooms(&mpm->boundaries.held_room, &mpm->boundaries.old_held_room);
+  swap_rooms(&mpm->boundaries.dash_room, &mpm->boundaries.old_dash_room);
   bool good = list(mpm, &count, &dashes);
   if (!good) {
-    good = mpsi_room_ensure(mpm->context, &mpm->held_room, count, sizeof *mpm->held);
+    good = mpsi_room_ensure(mpm->context, &mpm->boundaries.held_room, count,
+                            sizeof *mpm->boundaries.held);
     if (good) list(mpm, &count, &dashes);
   }
-  good = good && mpsi_room_ensure(mpm->context, &mpm->dash_room, dashes, sizeof *mpm->dash);
-  mpm->held = mpm->held_room.item;
-  mpm->dash = mpm->dash_room.item;
-  mpm->held_count = good ? count : 0;
-  mpm->dash_count = good ? dashes : 0;
+  good = good && mpsi_room_ensure(mpm->context, &mpm->boundaries.dash_room, dashes,
+                                  sizeof *mpm->boundaries.dash);
+  mpm->boundaries.held = mpm->boundaries.held_room.item;
+  mpm->boundaries.dash = mpm->boundaries.dash_room.item;
+  mpm->boundaries.held_count = good ? count : 0;
+  mpm->boundaries.dash_count = good ? dashes : 0;
   if (!good)
     return mpsi_fail_memory(mpm->context, function,
-                            (size_t)count * sizeof *mpm->held + (size_t)dashes * sizeof(mpsi_dash));
-  if (dashes > 0) memset(mpm->dash, 0, (size_t)dashes * sizeof *mpm->dash);
+                            (size_t)count * sizeof *mpm->boundaries.held +
+                                (size_t)dashes * sizeof(mpsi_dash));
+  if (dashes > 0) memset(mpm->boundaries.dash, 0, (size_t)dashes * sizeof *mpm->boundaries.dash);
   return MPS_OK;
 }
 
 mps_status mpsi_mpm_list_holds(mps_mpm *mpm, const char *function) {
-  const mpsi_held *old = mpm->held;
-  const mpsi_dash *old_dash = mpm->dash;
-  const int64_t old_count = mpm->held_count;
+  const mpsi_held *old = mpm->boundaries.held;
+  const mpsi_dash *old_dash = mpm->boundaries.dash;
+  const int64_t old_count = mpm->boundaries.held_count;
   const mps_status status = make_list(mpm, function);
-  if (status == MPS_OK && mpm->dash_count > 0) mpsi_mpm_place_dashes(mpm, old, old_count, old_dash);
+  if (status == MPS_OK && mpm->boundaries.dash_count > 0)
+    mpsi_mpm_place_dashes(mpm, old, old_count, old_dash);
   return status;
 }
 
@@ -97,11 +102,11 @@ mps_status mpsi_mpm_put_dashes(mps_mpm *mpm, const char *function, int64_t count
                                const mpsi_dash *dash) {
   const mps_status status = make_list(mpm, function);
   if (status != MPS_OK) return status;
-  if (count != mpm->dash_count)
+  if (count != mpm->boundaries.dash_count)
     return mpsi_fail(mpm->context, function, MPS_ERROR_FORMAT,
                      "there are %lld dashpots of absorbing walls, must be %lld", (long long)count,
-                     (long long)mpm->dash_count);
-  if (count > 0) memcpy(mpm->dash, dash, (size_t)count * sizeof *dash);
+                     (long long)mpm->boundaries.dash_count);
+  if (count > 0) memcpy(mpm->boundaries.dash, dash, (size_t)count * sizeof *dash);
   return MPS_OK;
 }
 
@@ -125,23 +130,23 @@ static void set(block *b, mpsi_held *held, int k, int c, double v) {
   *at = v;
 }
 
-static void roll(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
+static void apply_roller(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
   set(b, held, k, hold->axis, hold->v[hold->axis]);
   b->held[k] |= (uint8_t)(1u << hold->axis);
 }
 
-static void absorb(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
+static void apply_dashpot(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
   if (!(b->node[k][MPSI_MASS] > 0.0)) return;
   double v[3];
   const double *before = b->side ? b->side[k] + MPSI_VECTOR : NULL;
-  mpsi_dash *dash = &b->mpm->dash[held->dash + mpsi_plane_index(hold->axis, k)];
+  mpsi_dash *dash = &b->mpm->boundaries.dash[held->dash + mpsi_plane_index(hold->axis, k)];
   mpsi_mpm_dash(b->mpm, hold, dash, b->node[k], before, v);
   for (int c = 0; c < b->mpm->dim; c++)
     if (!(b->held[k] >> c & 1)) set(b, held, k, c, v[c]);
 }
 
 /* Takes away the velocity into a frictional wall. */
-static void push(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
+static void stop_normal(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
   const int c = hold->axis, number = held->hold;
   const double into = (b->node[k][MPSI_VECTOR + c] - hold->v[c]) * (number % 2 ? 1.0 : -1.0);
   b->push[number][k] = into > 0.0 ? b->node[k][MPSI_MASS] * into : 0.0;
@@ -150,7 +155,7 @@ static void push(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
   b->held[k] |= (uint8_t)(1u << c);
 }
 
-static void rub(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
+static void apply_wall_friction(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
   const double most = hold->friction * b->push[held->hold][k], m = b->node[k][MPSI_MASS];
   double slip[3] = {0.0}, square = 0.0;
   if (!(most > 0.0) || !(m > 0.0)) return;
@@ -166,11 +171,11 @@ static void rub(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
     if (slip[c] != 0.0) set(b, held, k, c, hold->v[c] + left * slip[c]);
 }
 
-static void fix(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
+static void apply_fixed(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
   for (int c = 0; c < b->mpm->dim; c++) set(b, held, k, c, hold->v[c]);
 }
 
-static void lead(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
+static void apply_prescribed(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
   set(b, held, k, hold->axis, hold->v[hold->axis]);
 }
 
@@ -191,21 +196,21 @@ void mpsi_mpm_hold_nodes(mps_mpm *mpm, int64_t g) {
   static const struct {
     int32_t kind;
     hold_fn work;
-  } order[] = {{MPS_WALL_ROLLER, roll},     {MPS_WALL_ABSORBING, absorb},
-               {MPS_WALL_FRICTIONAL, push}, {MPS_WALL_FRICTIONAL, rub},
-               {MPS_WALL_FIXED, fix},       {MPSI_HOLD_BOX, lead}};
-  const mpsi_nodes *nodes = &mpm->nodes[g];
+  } order[] = {{MPS_WALL_ROLLER, apply_roller},    {MPS_WALL_ABSORBING, apply_dashpot},
+               {MPS_WALL_FRICTIONAL, stop_normal}, {MPS_WALL_FRICTIONAL, apply_wall_friction},
+               {MPS_WALL_FIXED, apply_fixed},      {MPSI_HOLD_BOX, apply_prescribed}};
+  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
   if (nodes->holds == 0) return;
-  mpsi_held *first = mpm->held + nodes->first_held;
+  mpsi_held *first = mpm->boundaries.held + nodes->first_held;
   block b; /* push is written before it is read */
   b.mpm = mpm;
-  b.node = mpm->node + mpsi_first_node(mpm, g);
-  b.side = nodes->side >= 0 ? mpm->side + mpsi_first_node(mpm, nodes->side) : NULL;
+  b.node = mpm->grid.node + mpsi_first_node(mpm, g);
+  b.side = nodes->side >= 0 ? mpm->grid.side + mpsi_first_node(mpm, nodes->side) : NULL;
   memset(b.held, 0, sizeof b.held);
   for (int32_t t = 0; t < nodes->holds; t++) memset(first[t].impulse, 0, sizeof first[t].impulse);
   for (size_t pass = 0; pass < sizeof order / sizeof *order; pass++)
     for (int32_t t = 0; t < nodes->holds; t++) {
-      const mpsi_hold *hold = &mpm->hold[first[t].hold];
+      const mpsi_hold *hold = &mpm->boundaries.hold[first[t].hold];
       if (hold->kind == order[pass].kind) for_range(&b, hold, &first[t], order[pass].work);
     }
 }
@@ -214,23 +219,24 @@ void mpsi_mpm_hold_nodes(mps_mpm *mpm, int64_t g) {
 
 void mpsi_mpm_begin_holds(mps_mpm *mpm, double dt) {
   for (int32_t k = 0; k < MPSI_HOLDS; k++) {
-    mpsi_hold *hold = &mpm->hold[k];
+    mpsi_hold *hold = &mpm->boundaries.hold[k];
     if (hold->finds) hold->found += dt;
     for (int c = 0; c < mpm->dim; c++)
-      hold->v[c] = hold->signal[c] ? hold->factor[c] *
-                                         mps_signal_velocity(hold->signal[c], mpm->time + 0.5 * dt)
+      hold->v[c] = hold->signal[c] ? hold->factor[c] * mps_signal_velocity(hold->signal[c],
+                                                                           mpm->run.time + 0.5 * dt)
                                    : 0.0;
   }
 }
 
 void mpsi_mpm_sum_holds(mps_mpm *mpm) {
   for (int32_t k = 0; k < MPSI_HOLDS; k++) {
-    memset(mpm->hold[k].force, 0, sizeof mpm->hold[k].force);
-    if (mpm->hold[k].found >= mpm->def.settle) mpm->hold[k].finds = false;
+    memset(mpm->boundaries.hold[k].force, 0, sizeof mpm->boundaries.hold[k].force);
+    if (mpm->boundaries.hold[k].found >= mpm->def.settle) mpm->boundaries.hold[k].finds = false;
   }
-  for (int64_t t = 0; t < mpm->held_count; t++)
+  for (int64_t t = 0; t < mpm->boundaries.held_count; t++)
     for (int c = 0; c < mpm->dim; c++)
-      mpm->hold[mpm->held[t].hold].force[c] += mpm->held[t].impulse[c] / mpm->dt;
+      mpm->boundaries.hold[mpm->boundaries.held[t].hold].force[c] +=
+          mpm->boundaries.held[t].impulse[c] / mpm->run.dt;
 }
 
 /* ---- walls ----------------------------------------------------------------------------------- */
@@ -261,9 +267,9 @@ mps_status mpsi_mpm_check_wall(mps_context *context, const char *function, int32
 }
 
 void mpsi_mpm_place_wall(mps_mpm *mpm, int32_t number, int32_t kind, double friction) {
-  mpsi_hold *hold = &mpm->hold[number];
+  mpsi_hold *hold = &mpm->boundaries.hold[number];
   const int axis = number / 2;
-  const int64_t at = number % 2 ? mpm->high[axis] : mpm->low[axis];
+  const int64_t at = number % 2 ? mpm->grid.high[axis] : mpm->grid.low[axis];
   hold->axis = axis;
   hold->friction = friction;
   hold->finds = kind == MPS_WALL_ABSORBING;
@@ -271,7 +277,7 @@ void mpsi_mpm_place_wall(mps_mpm *mpm, int32_t number, int32_t kind, double fric
   /* the standard scheme has nodes beyond the wall too */
   const int64_t beyond = mpm->standard ? MPSI_SIDE : 0;
   for (int c = 0; c < mpm->dim; c++)
-    hold->first[c] = mpm->low[c] - beyond, hold->last[c] = mpm->high[c] + beyond;
+    hold->first[c] = mpm->grid.low[c] - beyond, hold->last[c] = mpm->grid.high[c] + beyond;
   if (number % 2)
     hold->first[axis] = at;
   else
@@ -290,7 +296,7 @@ static mps_status find_wall(mps_mpm *mpm, const char *function, int32_t axis, in
                      "axis is %d and upper %d, allowed are 0 to %d and 0 or 1", axis, upper,
                      mpm->dim - 1);
   *number = 2 * axis + upper;
-  if (mpm->hold[*number].kind != MPSI_HOLD_NONE) return MPS_OK;
+  if (mpm->boundaries.hold[*number].kind != MPSI_HOLD_NONE) return MPS_OK;
   return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                    "the domain has no %s wall across %c", upper ? "upper" : "lower", "xyz"[axis]);
 }
@@ -305,7 +311,7 @@ mps_status mps_mpm_set_wall(mps_mpm *mpm, int32_t axis, int32_t upper, int32_t w
                                  on_axis(mpm, number), mpm->standard);
   if (status != MPS_OK) return status;
   mpsi_mpm_place_wall(mpm, number, wall, friction);
-  mpm->stale = true;
+  mpm->run.stale = true;
   return MPS_OK;
 }
 
@@ -314,7 +320,8 @@ static mps_status check_drive(mps_mpm *mpm, const char *function, int32_t compon
   if (component < 0 || component >= mpm->dim)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "component is %d, allowed are 0 to %d", component, mpm->dim - 1);
-  if (!isfinite(factor) || (signal && !isfinite(factor * mps_signal_velocity(signal, mpm->time))))
+  if (!isfinite(factor) ||
+      (signal && !isfinite(factor * mps_signal_velocity(signal, mpm->run.time))))
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "factor is %g, it and the velocity that it makes must be finite", factor);
   return MPS_OK;
@@ -334,7 +341,7 @@ mps_status mps_mpm_drive_wall(mps_mpm *mpm, int32_t axis, int32_t upper, int32_t
   mps_status status = find_wall(mpm, __func__, axis, upper, &number);
   if (status == MPS_OK) status = check_drive(mpm, __func__, component, signal, factor);
   if (status != MPS_OK) return status;
-  mpsi_hold *hold = &mpm->hold[number];
+  mpsi_hold *hold = &mpm->boundaries.hold[number];
   if (hold->kind == MPS_WALL_ROLLER && component != axis)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "component is %d, of a roller across axis %d only %d is held", component, axis,
@@ -351,7 +358,7 @@ mps_status mps_mpm_get_wall_force(mps_mpm *mpm, int32_t axis, int32_t upper, dou
   if (!force) return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "force is NULL");
   int32_t number = 0;
   const mps_status status = find_wall(mpm, __func__, axis, upper, &number);
-  if (status == MPS_OK) memcpy(force, mpm->hold[number].force, 3 * sizeof *force);
+  if (status == MPS_OK) memcpy(force, mpm->boundaries.hold[number].force, 3 * sizeof *force);
   return status;
 }
 
@@ -386,19 +393,20 @@ mps_status mps_mpm_drive_nodes(mps_mpm *mpm, const double *lower, const double *
                        lower[c], upper[c], "xyz"[c], mpm -> def.origin[c], mpm->def.cell);
   }
   int32_t number = MPSI_WALLS;
-  while (number < MPSI_HOLDS && mpm->hold[number].kind != MPSI_HOLD_NONE) number++;
+  while (number < MPSI_HOLDS && mpm->boundaries.hold[number].kind != MPSI_HOLD_NONE) number++;
   if (number == MPSI_HOLDS)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "the solver has %d boxes of nodes, the most there can be", MPS_MPM_MAX_BOXES);
-  mpm->hold[number] = made;
-  take_signal(&mpm->hold[number], component, signal, factor);
-  mpm->stale = true;
+  mpm->boundaries.hold[number] = made;
+  take_signal(&mpm->boundaries.hold[number], component, signal, factor);
+  mpm->run.stale = true;
   *box = number - MPSI_WALLS;
   return MPS_OK;
 }
 
 static mps_status find_box(mps_mpm *mpm, const char *function, int32_t box) {
-  if (box >= 0 && box < MPS_MPM_MAX_BOXES && mpm->hold[MPSI_WALLS + box].kind == MPSI_HOLD_BOX)
+  if (box >= 0 && box < MPS_MPM_MAX_BOXES &&
+      mpm->boundaries.hold[MPSI_WALLS + box].kind == MPSI_HOLD_BOX)
     return MPS_OK;
   return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                    "box is %d, must be a number that mps_mpm_drive_nodes gave", box);
@@ -408,10 +416,10 @@ mps_status mps_mpm_free_nodes(mps_mpm *mpm, int32_t box) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   const mps_status status = find_box(mpm, __func__, box);
   if (status != MPS_OK) return status;
-  mpsi_hold *hold = &mpm->hold[MPSI_WALLS + box];
+  mpsi_hold *hold = &mpm->boundaries.hold[MPSI_WALLS + box];
   take_signal(hold, hold->axis, NULL, 0.0);
   hold->kind = MPSI_HOLD_NONE;
-  mpm->stale = true;
+  mpm->run.stale = true;
   return MPS_OK;
 }
 
@@ -419,6 +427,7 @@ mps_status mps_mpm_get_nodes_force(mps_mpm *mpm, int32_t box, double *force) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   if (!force) return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "force is NULL");
   const mps_status status = find_box(mpm, __func__, box);
-  if (status == MPS_OK) memcpy(force, mpm->hold[MPSI_WALLS + box].force, 3 * sizeof *force);
+  if (status == MPS_OK)
+    memcpy(force, mpm->boundaries.hold[MPSI_WALLS + box].force, 3 * sizeof *force);
   return status;
 }

@@ -90,13 +90,13 @@ static void check_sums(int dim, double h, const mpsi_stencil *at, const mpsi_sha
 /* M is far from singular and phi hardly negative whatever the bodies cut off. */
 static void check_shapes(mps_mpm *mpm, int64_t *fitted) {
   double least_phi = 1.0, least_determinant = 1.0;
-  for (int64_t b = 0; b < mpm->cell_count; b++) {
-    const mpsi_cells *cells = &mpm->cells[b];
-    mpsi_mpm_find_states(mpm, cells, &mpm->workers[0]);
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+    const mpsi_cell_block *cells = &mpm->grid.cells[b];
+    mpsi_mpm_find_states(mpm, cells, &mpm->grid.workers[0]);
     for (int64_t k = cells->begin; k < cells->end; k++) {
       mpsi_stencil at;
       mpsi_shape_values f;
-      mpm->kernels->fit(mpm, cells, &mpm->workers[0], k, &at, &f);
+      mpm->kernels->fit(mpm, cells, &mpm->grid.workers[0], k, &at, &f);
       check_sums(mpm->dim, mpm->def.cell, &at, &f);
       double weight = 0.0;
       for (int n = 0; n < MPSI_STENCIL; n++) {
@@ -140,11 +140,13 @@ static void affine_round_trip(void **state) {
     mps_mpm *mpm = s.mpm;
     mpm_scene_affine(&s, v0, L);
     mps_assert_ok(context, mpsi_mpm_find_near(mpm, "test"));
-    mpm->dt = 1e-30;
-    for (int64_t g = 0; g < mpm->node_count; g++) mpsi_mpm_clear_nodes(mpm, g, 0);
-    for (int64_t b = 0; b < mpm->cell_count; b++) mpm->kernels->p2g[geometry][spline](mpm, b, 0);
-    for (int64_t g = 0; g < mpm->node_count; g++) mpsi_mpm_update_nodes(mpm, g, 0);
-    for (int64_t b = 0; b < mpm->cell_count; b++) mpm->kernels->g2p[geometry][spline](mpm, b, 0);
+    mpm->run.dt = 1e-30;
+    for (int64_t g = 0; g < mpm->grid.node_count; g++) mpsi_mpm_clear_nodes(mpm, g, 0);
+    for (int64_t b = 0; b < mpm->grid.cell_count; b++)
+      mpm->kernels->p2g[geometry][spline](mpm, b, 0);
+    for (int64_t g = 0; g < mpm->grid.node_count; g++) mpsi_mpm_update_nodes(mpm, g, 0);
+    for (int64_t b = 0; b < mpm->grid.cell_count; b++)
+      mpm->kernels->g2p[geometry][spline](mpm, b, 0);
     mps_view x = mpm_scene_view(&s, "position"), v = mpm_scene_view(&s, "velocity");
     mps_view g = mpm_scene_view(&s, "velocity_gradient");
     for (int64_t k = 0; k < COUNT; k++)
@@ -164,14 +166,14 @@ static void affine_round_trip(void **state) {
  */
 typedef double node_sums[8];
 
-static void add_by_fit(mps_mpm *mpm, const mpsi_cells *cells, int64_t k, node_sums *sums) {
+static void add_by_fit(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t k, node_sums *sums) {
   static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   const mpsi_columns *p = &mpm->p;
   const int dim = mpm->dim;
   const double m = p->m[k], h = mpm->def.cell;
   mpsi_stencil at;
   mpsi_shape_values f;
-  mpm->kernels->fit(mpm, cells, &mpm->workers[0], k, &at, &f);
+  mpm->kernels->fit(mpm, cells, &mpm->grid.workers[0], k, &at, &f);
   for (int n = 0; n < MPSI_STENCIL; n++) {
     if (f.w[n] == 0.0) continue;
     const int i = n % 4, j = n / 4 % 4, l = n / 16;
@@ -197,34 +199,37 @@ static void add_by_fit(mps_mpm *mpm, const mpsi_cells *cells, int64_t k, node_su
  */
 static void check_nodes(const mps_mpm *mpm, node_sums *sums) {
   double largest[8] = {0.0};
-  for (int64_t n = 0; n < mpm->node_count * mpm->own; n++)
+  for (int64_t n = 0; n < mpm->grid.node_count * mpm->grid.block_nodes; n++)
     for (int c = 0; c < 8; c++) largest[c] = fmax(largest[c], fabs(sums[n][c]));
   const double mass = 1e-13 * largest[0], force = 1e-13 * fmax(largest[5], largest[6]);
-  for (int64_t n = 0; n < mpm->node_count * mpm->own; n++) {
-    const mpsi_nodes *nodes = &mpm->nodes[n / mpm->own];
+  for (int64_t n = 0; n < mpm->grid.node_count * mpm->grid.block_nodes; n++) {
+    const mpsi_node_block *nodes = &mpm->grid.nodes[n / mpm->grid.block_nodes];
     const double *side =
-        nodes->side < 0 ? NULL : mpm->side[mpsi_first_node(mpm, nodes->side) + n % mpm->own];
-    mps_assert_near(mpm->node[n][0], sums[n][0], mass);
+        nodes->side < 0
+            ? NULL
+            : mpm->grid.side[mpsi_first_node(mpm, nodes->side) + n % mpm->grid.block_nodes];
+    mps_assert_near(mpm->grid.node[n][0], sums[n][0], mass);
     mps_assert_near(side ? side[0] : 0.0, sums[n][4], mass);
     for (int c = 1; c <= mpm->dim; c++) {
-      const double with = nodes->split ? 0.0 : mpm->dt * sums[n][4 + c];
-      mps_assert_near(mpm->node[n][c], sums[n][c] + with, 10.0 * mass + mpm->dt * force);
+      const double with = nodes->split ? 0.0 : mpm->run.dt * sums[n][4 + c];
+      mps_assert_near(mpm->grid.node[n][c], sums[n][c] + with, 10.0 * mass + mpm->run.dt * force);
       if (nodes->split) mps_assert_near(side[c], sums[n][4 + c], force);
     }
   }
 }
 
 /* Velocity and gradient that a particle should get by the general fit. */
-static void gather_by_fit(const mps_mpm *mpm, const mpsi_cells *cells, int64_t k, double *out) {
+static void gather_by_fit(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t k,
+                          double *out) {
   const int dim = mpm->dim;
   mpsi_stencil at;
   mpsi_shape_values f;
-  mpm->kernels->fit(mpm, cells, &mpm->workers[0], k, &at, &f);
+  mpm->kernels->fit(mpm, cells, &mpm->grid.workers[0], k, &at, &f);
   memset(out, 0, 12 * sizeof *out);
   for (int n = 0; n < MPSI_STENCIL; n++) {
     if (f.w[n] == 0.0) continue;
-    const double *v = mpm->node[mpsi_node_under(mpm, cells, at.at[0] + n % 4, at.at[1] + n / 4 % 4,
-                                                at.at[2] + n / 16)];
+    const double *v = mpm->grid.node[mpsi_node_under(mpm, cells, at.at[0] + n % 4,
+                                                     at.at[1] + n / 4 % 4, at.at[2] + n / 16)];
     for (int c = 0; c < dim; c++) {
       out[c] += f.phi[n] * v[1 + c];
       for (int d = 0; d < dim; d++) out[3 + dim * c + d] += f.gradient[d][n] * v[1 + c];
@@ -242,7 +247,8 @@ static void transfers_agree_with_the_fit(void **state) {
     mpm_scene s = crowded(geometry, 2 + spline, true);
     mps_mpm *mpm = s.mpm;
     const int dim = mpm->dim;
-    for (int b = 0; b < mpm->bodies; b++) mpm->body[b]->def.friction = variant % 4 < 2 ? 0.0 : 0.3;
+    for (int b = 0; b < mpm->contact.bodies; b++)
+      mpm->contact.body[b]->def.friction = variant % 4 < 2 ? 0.0 : 0.3;
     for (int64_t k = 0; k < COUNT; k++) {
       for (int c = 0; c < dim; c++) mpm->p.v[c][k] = uniform(-1.0, 1.0);
       for (int c = 0; c < dim * dim; c++) mpm->p.L[c][k] = uniform(-9.0, 9.0);
@@ -250,24 +256,27 @@ static void transfers_agree_with_the_fit(void **state) {
     }
     mpm->def.gravity[1] = -9.81;
     mps_assert_ok(context, mpsi_mpm_find_near(mpm, "test"));
-    mpm->dt = 1e-4;
-    node_sums *sums = test_calloc((size_t)(mpm->node_count * mpm->own), sizeof *sums);
-    for (int64_t b = 0; b < mpm->cell_count; b++) {
-      mpsi_mpm_find_states(mpm, &mpm->cells[b], &mpm->workers[0]);
-      for (int64_t k = mpm->cells[b].begin; k < mpm->cells[b].end; k++)
-        add_by_fit(mpm, &mpm->cells[b], k, sums);
+    mpm->run.dt = 1e-4;
+    node_sums *sums =
+        test_calloc((size_t)(mpm->grid.node_count * mpm->grid.block_nodes), sizeof *sums);
+    for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+      mpsi_mpm_find_states(mpm, &mpm->grid.cells[b], &mpm->grid.workers[0]);
+      for (int64_t k = mpm->grid.cells[b].begin; k < mpm->grid.cells[b].end; k++)
+        add_by_fit(mpm, &mpm->grid.cells[b], k, sums);
     }
-    for (int64_t g = 0; g < mpm->node_count; g++) mpsi_mpm_clear_nodes(mpm, g, 0);
-    for (int64_t b = 0; b < mpm->cell_count; b++) mpm->kernels->p2g[geometry][spline](mpm, b, 0);
+    for (int64_t g = 0; g < mpm->grid.node_count; g++) mpsi_mpm_clear_nodes(mpm, g, 0);
+    for (int64_t b = 0; b < mpm->grid.cell_count; b++)
+      mpm->kernels->p2g[geometry][spline](mpm, b, 0);
     check_nodes(mpm, sums);
     test_free(sums);
-    for (int64_t g = 0; g < mpm->node_count; g++) mpsi_mpm_update_nodes(mpm, g, 0);
-    for (int64_t b = 0; b < mpm->cell_count; b++) {
-      mpsi_mpm_find_states(mpm, &mpm->cells[b], &mpm->workers[0]);
-      for (int64_t k = mpm->cells[b].begin; k < mpm->cells[b].end; k++)
-        gather_by_fit(mpm, &mpm->cells[b], k, got[k]);
+    for (int64_t g = 0; g < mpm->grid.node_count; g++) mpsi_mpm_update_nodes(mpm, g, 0);
+    for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+      mpsi_mpm_find_states(mpm, &mpm->grid.cells[b], &mpm->grid.workers[0]);
+      for (int64_t k = mpm->grid.cells[b].begin; k < mpm->grid.cells[b].end; k++)
+        gather_by_fit(mpm, &mpm->grid.cells[b], k, got[k]);
     }
-    for (int64_t b = 0; b < mpm->cell_count; b++) mpm->kernels->g2p[geometry][spline](mpm, b, 0);
+    for (int64_t b = 0; b < mpm->grid.cell_count; b++)
+      mpm->kernels->g2p[geometry][spline](mpm, b, 0);
     for (int64_t k = 0; k < COUNT; k++)
       for (int c = 0; c < dim; c++) {
         mps_assert_near(mpm->p.v[c][k], got[k][c], 1e-13);

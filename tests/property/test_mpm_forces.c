@@ -16,7 +16,7 @@ static void held_force(mpm_scene *s, int32_t box, double *sum, int *acts) {
     for (int c = 0; c < 3; c++) sum[c] += force[c];
   }
   for (int c = 0; c < s->mpm->dim; c++)
-    for (int64_t k = 0; k < s->mpm->count; k++) sum[c] += s->mpm->p.f[c][k];
+    for (int64_t k = 0; k < s->mpm->p.count; k++) sum[c] += s->mpm->p.f[c][k];
 }
 
 /* In every step the momentum changes by dt times the sum of the forces. In axisymmetry there is the
@@ -44,7 +44,7 @@ static void momentum_is_balanced(void **state) {
       held_force(&s, box, force, acts);
       for (int c = geometry == MPS_AXISYMMETRIC ? 1 : 0; c < s.mpm->dim; c++) {
         const double all = force[c] + after.mass * s.mpm->def.gravity[c];
-        worst = fmax(worst, fabs(after.linear[c] - before.linear[c] - s.mpm->dt * all));
+        worst = fmax(worst, fabs(after.linear[c] - before.linear[c] - s.mpm->run.dt * all));
         total = fmax(total, fabs(after.linear[c]) + fabs(dt * all));
       }
       before = after;
@@ -73,7 +73,7 @@ static void loads_follow_particles(void **state) {
   const uint64_t epoch = mps_particles_epoch(s.particles);
   mps_assert_ok(context, mps_mpm_step(s.mpm, 200));
   assert_true(mps_particles_epoch(s.particles) > epoch);
-  for (int64_t id = 0; id < s.mpm->count; id++) {
+  for (int64_t id = 0; id < s.mpm->p.count; id++) {
     const int64_t k = mps_particles_index(s.particles, id);
     double by = 0.0;
     for (int n = 0; n < 3; n++)

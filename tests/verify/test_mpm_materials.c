@@ -4,7 +4,7 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#include "mpm/contact.h"
+#include "mpm/contact_particle.h"
 
 #define PI 3.14159265358979323846
 
@@ -191,9 +191,9 @@ static void contact_by_own_modulus(void **state) {
   const double up[] = {0.0, 1.0};
   body.position[1] = 0.002;
   mps_assert_ok(context, mps_body_create_half_plane(context, &body, up, &floor));
-  mpsi_contact a, b;
-  assert_true(mpsi_touches(s.mpm, floor, 2, mps_particles_index(s.particles, 0), &a));
-  assert_true(mpsi_touches(s.mpm, floor, 2, mps_particles_index(s.particles, 1), &b));
+  mpsi_contact_particle a, b;
+  assert_true(mpsi_find_contact(s.mpm, floor, 2, mps_particles_index(s.particles, 0), &a));
+  assert_true(mpsi_find_contact(s.mpm, floor, 2, mps_particles_index(s.particles, 1), &b));
   mps_assert_near(a.force[1], 1.33 * confined(1e5, 0.3) * 0.002, 1e-9);
   mps_assert_near(b.force[1] / a.force[1], 7.0, 1e-9);
   mps_body_destroy(&floor);

@@ -1,0 +1,139 @@
+/* blocks.h - the grid that follows the particles, in blocks.
+ *
+ * The grid is cut into blocks of 8 nodes along each axis; only those that particles reach exist. A
+ * particle is sorted into a block of cells by the lowest node of its stencil, so that the stencils
+ * of a block lie in a tile of 13 nodes along each axis, which begins at the block's first node: 1
+ * node that only a particle which has left to the lower side uses, 8, 1 for one that has left to
+ * the upper side, and the other 3 of a cubic stencil. So the particles are sorted anew only when
+ * one has moved a whole cell beyond its block, or beyond the cells of it that had particles: the
+ * rest of the tile is not worked on. The tile lies over the block's own nodes and its
+ * neighbours at +x, +y, +x+y (and so on at +z).
+ *
+ * Each task sums the particles of one block of cells into a tile of its own and adds that to the
+ * nodes. Blocks of one colour (2 along each axis) share no nodes: they work at once, colour after
+ * colour. No two tasks write the same memory, and no sum depends on the number of threads.
+ *
+ * Arrays of three hold x, y, z; in 2D the last is 0 (one node thick).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_BLOCKS_H
+#define MPSI_MPM_BLOCKS_H
+
+#include "restart.h"
+#include "room.h"
+
+#define MPSI_SIDE 8
+#define MPSI_TILE_SIDE (MPSI_SIDE + 5)
+#define MPSI_CORNERS 8        /* blocks of nodes under a tile: 4 in 2D */
+#define MPSI_MAX_CELLS 0x1p30 /* from the origin: nodes are counted exactly */
+#define MPSI_NO_WALL (INT64_C(1) << 30)
+
+/* A block of cells with particles. */
+typedef struct mpsi_cell_block {
+  int64_t begin, end;          /* particles */
+  int32_t at[3];               /* block coordinates: its first node is at * MPSI_SIDE */
+  int32_t low[3], high[3];     /* its stencils use tile nodes low to high - 1 of each axis */
+  int32_t to[MPSI_CORNERS];    /* blocks of nodes under the tile: own, +x, +y, +x+y, ... */
+  bool edge;                   /* some node of the tile is outside the domain */
+  bool inside;                 /* some node that its stencils may use is in a body */
+  bool cut;                    /* one of both: some particle may have a cut support */
+  bool split;                  /* forces are summed apart from momenta: see mpsi_node_block */
+  bool apart;                  /* the tile of forces is in use: split, or at an edge */
+  bool left;                   /* a particle is more than a cell outside the block */
+  int32_t first_pair, pairs;   /* bodies that it may meet: of the list of mpsi_cell_pair */
+  const mps_material *refused; /* a law that has refused particles of the block, or NULL */
+  int64_t bad;                 /* first particle not finite or outside the domain, or -1 */
+  double speed;                /* largest c + |v|, m/s */
+} mpsi_cell_block;
+
+/* A block of nodes. Its nodes are node[mpsi_first_node(g)] and on, x fastest. */
+typedef struct mpsi_node_block {
+  int32_t at[3];
+  int32_t side; /* slot of its side sums, or -1: only particles with full supports reach it */
+  int32_t near; /* slot of its inside masks, or -1: no body near */
+  bool split;   /* side has the forces: the velocity before them is needed */
+  bool inside;  /* some node is in a body: */
+  int32_t low[3], high[3];   /* they are within low to high - 1 */
+  uint32_t bodies;           /* bit b: a block of cells whose tile covers it may meet body b */
+  int32_t first_pair, pairs; /* bodies that may touch it: of the list of mpsi_node_pair */
+  int32_t first_held, holds; /* of the list of mpsi_held */
+} mpsi_node_block;
+
+/* A node, four doubles: particles to nodes sums mass and momentum; then lane 0 is the mass and the
+ * others the velocity. The momentum has dt times the force with it, but in split blocks.
+ * Its side, where the block has one: EXCESS is sum (w - phi) m, mass by weights less mass by shape
+ * functions, then in split blocks the force; later the velocity v_i^n before the forces. */
+typedef double mpsi_node[4];
+enum { MPSI_MASS = 0, MPSI_EXCESS = 0, MPSI_VECTOR = 1 };
+
+/* What a worker needs for the block it works on: tiles of MPSI_TILE_SIDE^dim. */
+typedef struct mpsi_worker {
+  void *memory;
+  mpsi_node *tile, *force; /* force, and excess mass: where they are apart */
+  uint32_t *inside;        /* bit b: in body b */
+  uint8_t *state;          /* MPSI_... bits, 0: free */
+} mpsi_worker;
+
+/* Bits of a state. */
+#define MPSI_OUTSIDE 1u /* not in the domain */
+#define MPSI_INSIDE 2u  /* in a body */
+#define MPSI_REACHED 4u /* in a body, and corner of a cell that holds a particle */
+#define MPSI_PLAIN 8u   /* any node with MPS_SCHEME_STANDARD: no particle takes the closed form */
+
+typedef struct mpsi_radix {
+  uint64_t key;
+  int64_t index;
+} mpsi_radix;
+
+typedef struct mpsi_grid {
+  int32_t block_nodes, tile_nodes; /* nodes of a block, of a tile */
+  double inverse;                  /* 1/m, 1/h */
+  int64_t low[3], high[3];         /* first and last node of the domain */
+  mpsi_cell_block *cells;
+  mpsi_node_block *nodes;
+  mpsi_node *node, *side;
+  int64_t cell_count, node_count, side_count; /* of blocks; of slots of `side` */
+  int32_t *coloured;                          /* numbers of blocks of cells, colour by colour */
+  int64_t colour[MPSI_CORNERS + 1];           /* first of each in `coloured` */
+  mpsi_room cells_room, nodes_room, node_room, side_room, coloured_room;
+  mpsi_radix *radix; /* 2 items a particle */
+  mpsi_worker *workers;
+  int32_t worker_count;
+} mpsi_grid;
+
+/* Coordinates within a block or tile of `side` nodes an axis. */
+static inline void mpsi_unravel(int k, int side, int *at) {
+  at[0] = k % side, at[1] = k / side % side, at[2] = k / side / side;
+}
+
+static inline int mpsi_tile_index(int i, int j, int k) {
+  return (k * MPSI_TILE_SIDE + j) * MPSI_TILE_SIDE + i;
+}
+
+/* Node k of a block within the plane of nodes across `axis`. */
+static inline int mpsi_plane_index(int axis, int k) {
+  const int plane = MPSI_SIDE * MPSI_SIDE;
+  return axis == 0 ? k / MPSI_SIDE : axis == 1 ? k / plane * MPSI_SIDE + k % MPSI_SIDE : k % plane;
+}
+
+/* Lowest node of the stencil of a particle at grid coordinate X. */
+static inline double mpsi_base(int32_t spline, double X) {
+  return spline == 3 ? floor(X) - 1.0 : floor(X - 0.5);
+}
+
+/* The block that a particle is sorted to, by the lowest node of its stencil. */
+static inline int64_t mpsi_block_of(int64_t base) {
+  const int64_t n = base - 1;
+  return n >= 0 ? n / MPSI_SIDE : -((MPSI_SIDE - 1 - n) / MPSI_SIDE);
+}
+
+/* layout.c: sorts the particles by blocks and builds the lists of blocks. */
+mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function);
+/* layout.c: builds the lists of blocks for particles that are in order, as at an earlier sort. */
+mps_status mpsi_mpm_place_blocks(mps_mpm *mpm, const char *function, int64_t count,
+                                 mpsi_block *block);
+/* grid.c: one block of nodes: emptied; velocities, normal contact forces; friction and walls. */
+void mpsi_mpm_clear_nodes(mps_mpm *mpm, int64_t g, int32_t worker);
+void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker);
+void mpsi_mpm_finish_nodes(mps_mpm *mpm, int64_t g, int32_t worker);
+
+#endif

@@ -1,0 +1,23 @@
+/* columns.h - the particles as the solver works on them: structure of arrays, in sorted order, over
+ * the memory of the fields of the particle set. Tensors by rows.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_COLUMNS_H
+#define MPSI_MPM_COLUMNS_H
+
+#include <stdint.h>
+
+typedef struct mpsi_columns {
+  int64_t count;
+  double *x[3], *v[3]; /* m, m/s */
+  double *L[9];        /* 1/s, velocity gradient; 2D: xx, xy, yx, yy, hoop */
+  double *s[6];        /* Pa: xx, yy, zz, xy, zx, yz; 2D: the first four */
+  double *V, *m;       /* m3, kg */
+  double *J;           /* V/V0 where some law reads it, else NULL */
+  double *F[9];        /* as L; NULL where all laws do without */
+  double *f[3];        /* N, body accelerations and loads of the step; NULL where there are none */
+  int64_t *law;        /* number of each particle's law; NULL: one law */
+  int32_t *stencil;    /* lowest node of the particle's stencil, in its block's tile, of the step
+                          being made; NULL but with VOLUMETRIC_CELL */
+} mpsi_columns;
+
+#endif

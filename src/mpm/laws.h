@@ -1,0 +1,38 @@
+/* laws.h - the materials' laws that the particles obey.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_LAWS_H
+#define MPSI_MPM_LAWS_H
+
+#include "blocks.h"
+#include "material/material_internal.h"
+
+#include <mps/mpm.h>
+
+typedef struct mpsi_law_use {
+  mps_material *material;
+  double modulus; /* K + 4G/3 at zero strain, Pa */
+  bool reads_volume, needs_deformation;
+  double *history[MPS_MATERIAL_HISTORY_MAX]; /* columns over all particles */
+} mpsi_law_use;
+
+typedef struct mpsi_laws {
+  mpsi_law_use law[MPS_MPM_MAX_MATERIALS]; /* 0: of creation */
+  int32_t count;
+  bool one_modulus; /* law[0].modulus holds for all particles, whatever their state */
+  int64_t *flags;   /* of the laws, by sorted index */
+} mpsi_laws;
+
+/* law.c: their laws on particles [begin, end) of a block. */
+void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end);
+/* law.c: the present wave moduli of particles [begin, end), raised where viscosity limits dt. */
+void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli);
+/* law.c: K + 4G/3 and G (Pa) of a particle's material at zero strain. */
+void mpsi_mpm_elastic(const mps_mpm *mpm, int64_t particle, double *wave, double *shear);
+/* volumetric.c: the laws after the step's G2P, where they wait for the means of the cells. */
+void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm);
+/* materials.c: puts the law at the end of the list, with the fields it works on; nothing has
+ * changed on an error. Gives the particle (an index) the state in which the law begins. */
+mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *material);
+void mpsi_mpm_begin_law(mps_mpm *mpm, const mpsi_law_use *law, int64_t particle);
+
+#endif

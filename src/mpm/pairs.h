@@ -1,0 +1,57 @@
+/* pairs.h - contact on the grid. A block and a body that may touch are a pair: the lists of pairs
+ * are found anew before each step, so that only the blocks near a body look at it.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_PAIRS_H
+#define MPSI_MPM_PAIRS_H
+
+#include "body/body.h"
+#include "room.h"
+
+#include <mps/mpm.h>
+
+/* A block of cells and a body that its particles may touch. */
+typedef struct mpsi_cell_pair {
+  int32_t cells, body;
+  bool touched; /* some particle is in contact */
+  mpsi_load load[MPS_BODY_MAX_PARTS];
+  int64_t contacts[MPS_BODY_MAX_PARTS];
+} mpsi_cell_pair;
+
+/* A block of nodes and a body that may act on it; its nodes are contact.node[k * block_nodes]. */
+typedef struct mpsi_node_pair {
+  int32_t nodes, body;
+  double mass; /* kg, of the nodes in contact */
+} mpsi_node_pair;
+
+/* A node and a body. */
+typedef struct mpsi_contact_node {
+  double normal[3]; /* of the surface at a node inside the body, else 0 */
+  double mass;      /* W: sum phi m of the particles in contact, Nakamura (30) */
+  double slip[3];   /* S: sum phi m slip; then the tangential force over W */
+  double force[3];  /* N, normal force fn, Nakamura (29) */
+} mpsi_contact_node;
+
+typedef struct mpsi_contacts {
+  mps_body *body[MPS_MPM_MAX_BODIES];
+  int32_t bodies;
+  double gap;                      /* m, l_p = d0 */
+  double least_mass;               /* kg, of a particle; in axisymmetry over its radius, kg/m */
+  double mass[MPS_MPM_MAX_BODIES]; /* kg, of the nodes in contact with each body */
+  mpsi_cell_pair *cell_pair;
+  mpsi_node_pair *node_pair;
+  mpsi_contact_node *node;
+  uint32_t *inside; /* bit b: in body b; mask_count * block_nodes */
+  uint8_t *reached; /* corner of a cell that holds a particle; likewise */
+  int64_t cell_pair_count, node_pair_count, mask_count;
+  mpsi_room cell_pair_room, node_pair_room, node_room, inside_room, reached_room;
+} mpsi_contacts;
+
+/* near.c: finds which blocks are near which bodies, and which blocks are cut and split. */
+mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function);
+/* friction.c: normal forces of all bodies on a block of nodes; friction; what the bodies feel, and
+ * their motion. */
+void mpsi_mpm_apply_contact(mps_mpm *mpm, int64_t g);
+void mpsi_mpm_apply_friction(mps_mpm *mpm, int64_t g);
+void mpsi_mpm_update_bodies(mps_mpm *mpm);
+
+#endif

@@ -1,0 +1,33 @@
+/* run.h - where the run is, and how the work of a step is shared out.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_RUN_H
+#define MPSI_MPM_RUN_H
+
+#include <mps/mpm.h>
+
+typedef struct mpsi_run {
+  double time;  /* s */
+  double dt;    /* s, of the step being made */
+  double speed; /* largest c + |v| of the particles, m/s */
+  int64_t steps;
+  bool stale;                    /* particles must be sorted before the next step */
+  bool broken;                   /* a step has failed half way */
+  bool warned_about_dt;          /* the log knows that dt is above the Courant limit */
+  uint32_t warned_about_chatter; /* bit b: ... that body b's contact is too stiff for dt */
+} mpsi_run;
+
+/* work.c: runs task(mpm, index, worker) for all blocks on the executor, in units of several where
+ * that pays: blocks of nodes; of cells; of cells, those of one colour at once. */
+typedef void (*mpsi_mpm_task)(mps_mpm *mpm, int64_t index, int32_t worker);
+void mpsi_mpm_for_nodes(mps_mpm *mpm, mpsi_mpm_task task);
+void mpsi_mpm_for_cells(mps_mpm *mpm, mpsi_mpm_task task);
+void mpsi_mpm_for_colours(mps_mpm *mpm, mpsi_mpm_task task);
+
+/* step.c: one step of dt; on an error the solver is broken. */
+mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt);
+/* run.c: MPS_ERROR_STATE after a step that has failed. */
+mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function);
+/* step.c: what the blocks have found: the largest speed, or the error of a bad particle. */
+mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function);
+
+#endif
