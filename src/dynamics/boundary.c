@@ -90,7 +90,7 @@ mps_status mps_dynamics_drive(mps_dynamics *dynamics, int32_t component, mps_sig
   for (int64_t k = 0; k < count; k++) {
     const int64_t i = mps_particles_index(dynamics->particles, ids[k]);
     (component == 0 ? dynamics->state.ix : dynamics->state.iy)[i] = 0.0;
-    dynamics->drive[dynamics->drives++] = (mpsi_drive){
+    dynamics->drive[dynamics->drives++] = (mpsi_dynamics_drive){
         .particle = (int32_t)i, .component = component, .signal = signal, .factor = factor};
   }
   boundaries_changed(dynamics);
@@ -126,7 +126,7 @@ static mps_status check_viscous(mps_context *context, const mps_viscous_def *def
   return MPS_OK;
 }
 
-bool mpsi_dynamics_add_dashpot(mps_dynamics *dynamics, mpsi_dashpot dashpot) {
+bool mpsi_dynamics_add_dashpot(mps_dynamics *dynamics, mpsi_dynamics_dashpot dashpot) {
   if (!reserve(dynamics, (void **)&dynamics->dashpot, dynamics->dashpots, 1,
                &dynamics->dashpot_room, sizeof dashpot))
     return false;
@@ -161,12 +161,13 @@ mps_status mps_dynamics_viscous(mps_dynamics *dynamics, const mps_viscous_def *u
       const double outside = c == def.normal ? def.pressure_velocity : def.shear_velocity;
       const double impedance = (def.density > 0.0 ? def.density : rho[i]) *
                                (outside > 0.0 ? outside : own); /* kg/(m2 s) */
-      const mpsi_dashpot dashpot = {.particle = (int32_t)i,
-                                    .component = c,
-                                    .partner = -1,
-                                    .c = impedance / (rho[i] * D), /* face D, mass rho D^2 */
-                                    .signal = def.incoming[c],
-                                    .factor = def.factor};
+      const mpsi_dynamics_dashpot dashpot = {.particle = (int32_t)i,
+                                             .component = c,
+                                             .partner = -1,
+                                             .c = impedance /
+                                                  (rho[i] * D), /* face D, mass rho D^2 */
+                                             .signal = def.incoming[c],
+                                             .factor = def.factor};
       dynamics->dashpot[dynamics->dashpots++] = dashpot;
     }
   }
@@ -184,7 +185,7 @@ typedef struct motion {
 } motion;
 
 static motion component(const mps_dynamics *dynamics, int32_t c) {
-  const mpsi_state *s = &dynamics->state;
+  const mpsi_dynamics_state *s = &dynamics->state;
   return c == 0 ? (motion){s->dx, s->ox, s->vx, s->ax, s->ix}
                 : (motion){s->dy, s->oy, s->vy, s->ay, s->iy};
 }
@@ -199,7 +200,7 @@ void mpsi_dynamics_apply_drives(mps_dynamics *dynamics, double t, double now, bo
   const int integrator = dynamics->def.integrator;
   double u = 0.0, v = 0.0, a = 0.0;
   for (int64_t k = 0; k < dynamics->drives; k++) {
-    const mpsi_drive *drive = &dynamics->drive[k];
+    const mpsi_dynamics_drive *drive = &dynamics->drive[k];
     if (drive->signal != signal) { /* lists share one signal: evaluate it once */
       signal = drive->signal;
       u = mps_signal_displacement(signal, t);
@@ -217,7 +218,7 @@ void mpsi_dynamics_apply_drives(mps_dynamics *dynamics, double t, double now, bo
 }
 
 static int compare(const void *left, const void *right) {
-  const mpsi_dashpot *a = left, *b = right;
+  const mpsi_dynamics_dashpot *a = left, *b = right;
   if (a->particle != b->particle) return a->particle > b->particle ? -1 : 1;
   if (a->component != b->component) return a->component < b->component ? -1 : 1;
   return a->partner < b->partner ? -1 : a->partner > b->partner;
@@ -228,7 +229,7 @@ void mpsi_dynamics_dashpots_before(mps_dynamics *dynamics) {
     qsort(dynamics->dashpot, (size_t)dynamics->dashpots, sizeof *dynamics->dashpot, compare);
   dynamics->dashpots_sorted = true;
   for (int64_t k = 0; k < dynamics->dashpots; k++) {
-    mpsi_dashpot *dashpot = &dynamics->dashpot[k];
+    mpsi_dynamics_dashpot *dashpot = &dynamics->dashpot[k];
     const motion m = component(dynamics, dashpot->component);
     dashpot->before = velocity(dynamics, &m, dashpot->particle);
     if (dashpot->partner >= 0) dashpot->partner_before = velocity(dynamics, &m, dashpot->partner);
@@ -236,8 +237,8 @@ void mpsi_dynamics_dashpots_before(mps_dynamics *dynamics) {
 }
 
 /* Velocity that a dashpot pulls towards, m/s. */
-static double target(const mps_dynamics *dynamics, const mpsi_dashpot *dashpot, const motion *m,
-                     double now) {
+static double target(const mps_dynamics *dynamics, const mpsi_dynamics_dashpot *dashpot,
+                     const motion *m, double now) {
   if (dashpot->partner >= 0) {
     const double after = dynamics->def.integrator == MPS_INTEGRATOR_EULER
                              ? dashpot->partner_before
@@ -251,7 +252,7 @@ void mpsi_dynamics_dashpots_after(mps_dynamics *dynamics, double now, bool outpu
   const double dt = dynamics->dt;
   const int integrator = dynamics->def.integrator;
   for (int64_t k = 0, next; k < dynamics->dashpots; k = next) {
-    const mpsi_dashpot *first = &dynamics->dashpot[k];
+    const mpsi_dynamics_dashpot *first = &dynamics->dashpot[k];
     const motion m = component(dynamics, first->component);
     const int32_t i = first->particle;
     double c = 0.0, pull = 0.0; /* all dashpots of this component together */

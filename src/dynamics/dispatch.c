@@ -4,11 +4,11 @@
 
 #include "core/levels.h"
 
-const mpsi_kernels *mpsi_kernels_select(int32_t isa) {
+const mpsi_dynamics_kernels *mpsi_dynamics_kernels_select(int32_t isa) {
   const int32_t level = mpsi_level(isa);
 #ifdef MPSI_X86_LEVELS
-  if (level == 4) return &mpsi_kernels_v4;
-  if (level == 3) return &mpsi_kernels_v3;
+  if (level == 4) return &mpsi_dynamics_kernels_v4;
+  if (level == 3) return &mpsi_dynamics_kernels_v3;
 #endif
-  return level == 1 ? &mpsi_kernels_v1 : NULL;
+  return level == 1 ? &mpsi_dynamics_kernels_v1 : NULL;
 }

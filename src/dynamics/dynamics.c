@@ -48,7 +48,7 @@ static mps_status check_choices(mps_context *context, const mps_dynamics_def *de
   if (def->isa != 0 && def->isa != 1 && def->isa != 3 && def->isa != 4)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "isa is %d, allowed are 0 (the best), 1, 3 and 4", def->isa);
-  if (!mpsi_kernels_select(def->isa))
+  if (!mpsi_dynamics_kernels_select(def->isa))
     return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
                      "this processor or build lacks x86-64-v%d", def->isa);
   return MPS_OK;
@@ -217,7 +217,7 @@ static mps_status add_fields(mps_dynamics *dynamics) {
 /* The arrays that are not fields, from one slab; starts staggered so that they do not alias in the
  * first-level cache. */
 static bool allocate(mps_dynamics *dynamics) {
-  mpsi_state *s = &dynamics->state;
+  mpsi_dynamics_state *s = &dynamics->state;
   double **arrays[] = {&s->gx, &s->gy,  &s->gth, &s->c,  &s->s,   &s->mu,    &s->lambda, &s->sx,
                        &s->sy, &s->sth, &s->ix,  &s->iy, &s->ith, &s->alpha, &s->beta};
   const int64_t number = sizeof arrays / sizeof *arrays;
@@ -236,7 +236,7 @@ static bool allocate(mps_dynamics *dynamics) {
 }
 
 static void bind_fields(mps_dynamics *dynamics) {
-  mpsi_state *s = &dynamics->state;
+  mpsi_dynamics_state *s = &dynamics->state;
   const struct {
     double **to;
     const char *name;
@@ -272,7 +272,7 @@ static void set_coefficients(mps_dynamics *dynamics) {
    * gives twice that */
   const double spin = dynamics->def.torque == MPS_TORQUE_PRINTED ? 6.0 : 3.0;
   double least = INFINITY, most = 0.0;
-  mpsi_state *s = &dynamics->state;
+  mpsi_dynamics_state *s = &dynamics->state;
   for (int64_t k = 0; k < dynamics->count; k++) {
     const double lambda = rho[k] * (vp[k] * vp[k] - 2.0 * vs[k] * vs[k]);
     s->mu[k] = rho[k] * vs[k] * vs[k];
@@ -286,14 +286,14 @@ static void set_coefficients(mps_dynamics *dynamics) {
   }
   if (most > 0.0)
     dynamics->damping = least == most || dynamics->def.damping == MPS_DAMPING_PARTICLE
-                            ? MPSI_BY_PARTICLES
-                            : MPSI_BY_PAIRS;
+                            ? MPSI_DYN_BY_PARTICLES
+                            : MPSI_DYN_BY_PAIRS;
 }
 
 /* ---- creation -------------------------------------------------------------------------------- */
 
 /* Are all offsets whole spacings? Those of a lattice have been made exact. */
-static bool on_lattice(double spacing, int64_t count, const mpsi_pair *pair) {
+static bool on_lattice(double spacing, int64_t count, const mpsi_dynamics_pair *pair) {
   for (int64_t k = 0; k < count; k++)
     if (pair[k].r0x != nearbyint(pair[k].r0x / spacing) * spacing ||
         pair[k].r0y != nearbyint(pair[k].r0y / spacing) * spacing)
@@ -307,15 +307,15 @@ static mps_status arrange(mps_dynamics *dynamics) {
   mps_context *context = dynamics->context;
   mps_particles *p = dynamics->particles;
   int64_t *order = mpsi_alloc(context, dynamics->count, sizeof *order);
-  mpsi_geometry g = {.count = dynamics->count,
-                     .x = mpsi_particles_column(p, "reference", 0),
-                     .y = mpsi_particles_column(p, "reference", 1),
-                     .side = mpsi_particles_integers(p, "free_field"),
-                     .spacing = mps_particles_spacing(p),
-                     .radius = dynamics->radius,
-                     .period_x = dynamics->def.period_x};
+  mpsi_dynamics_geometry g = {.count = dynamics->count,
+                              .x = mpsi_particles_column(p, "reference", 0),
+                              .y = mpsi_particles_column(p, "reference", 1),
+                              .side = mpsi_particles_integers(p, "free_field"),
+                              .spacing = mps_particles_spacing(p),
+                              .radius = dynamics->radius,
+                              .period_x = dynamics->def.period_x};
   mps_status status = MPS_OK;
-  if (!order || !mpsi_layout_order(context, &g, order))
+  if (!order || !mpsi_dynamics_layout_order(context, &g, order))
     status = mpsi_fail_memory(context, function, (size_t)dynamics->count * sizeof *order);
   if (status == MPS_OK) status = mpsi_particles_permute(p, function, order);
   mpsi_free(context, order);
@@ -326,13 +326,14 @@ static mps_status arrange(mps_dynamics *dynamics) {
   dynamics->body = 0;
   while (dynamics->body < dynamics->count && !(g.side && g.side[dynamics->body])) dynamics->body++;
 
-  mpsi_pair *pair = NULL;
+  mpsi_dynamics_pair *pair = NULL;
   int64_t count = 0;
-  status = mpsi_layout_pairs(context, function, &g, &count, &pair, &dynamics->pairs);
+  status = mpsi_dynamics_layout_pairs(context, function, &g, &count, &pair, &dynamics->pairs);
   if (status != MPS_OK) return status;
   dynamics->lattice = on_lattice(g.spacing, count, pair);
-  const mpsi_mesh_def def = {g.spacing, dynamics->radius, dynamics->density};
-  const bool built = mpsi_mesh_build(context, &dynamics->mesh, &def, dynamics->count, count, pair);
+  const mpsi_dynamics_mesh_def def = {g.spacing, dynamics->radius, dynamics->density};
+  const bool built =
+      mpsi_dynamics_mesh_build(context, &dynamics->mesh, &def, dynamics->count, count, pair);
   mpsi_free(context, pair);
   return built ? MPS_OK : mpsi_fail_memory(context, function, (size_t)count * sizeof *pair);
 }
@@ -341,26 +342,29 @@ static mps_status arrange(mps_dynamics *dynamics) {
 static mps_status couple_columns(mps_dynamics *dynamics) {
   if (dynamics->body == dynamics->count) return MPS_OK;
   mps_particles *p = dynamics->particles;
-  const mpsi_geometry g = {.count = dynamics->count,
-                           .x = mpsi_particles_column(p, "reference", 0),
-                           .y = mpsi_particles_column(p, "reference", 1),
-                           .side = mpsi_particles_integers(p, "free_field"),
-                           .spacing = mps_particles_spacing(p),
-                           .radius = dynamics->radius};
+  const mpsi_dynamics_geometry g = {.count = dynamics->count,
+                                    .x = mpsi_particles_column(p, "reference", 0),
+                                    .y = mpsi_particles_column(p, "reference", 1),
+                                    .side = mpsi_particles_integers(p, "free_field"),
+                                    .spacing = mps_particles_spacing(p),
+                                    .radius = dynamics->radius};
   int64_t *edge = mpsi_alloc(dynamics->context, dynamics->count, sizeof *edge);
   if (!edge)
     return mpsi_fail_memory(dynamics->context, "mps_dynamics_create",
                             (size_t)dynamics->count * sizeof *edge);
-  mps_status status = mpsi_layout_edges(dynamics->context, "mps_dynamics_create", &g, edge);
+  mps_status status =
+      mpsi_dynamics_layout_edges(dynamics->context, "mps_dynamics_create", &g, edge);
   const double *velocity[2] = {mpsi_particles_column(p, "pressure_velocity", 0),
                                mpsi_particles_column(p, "shear_velocity", 0)};
   for (int64_t k = dynamics->body; status == MPS_OK && k < dynamics->count; k++)
     for (int c = 0; c < 2 && edge[k] >= 0; c++)
-      if (!mpsi_dynamics_add_dashpot(dynamics, (mpsi_dashpot){.particle = (int32_t)edge[k],
-                                                              .component = c,
-                                                              .partner = (int32_t)k,
-                                                              .c = velocity[c][k] / g.spacing}))
-        status = mpsi_fail_memory(dynamics->context, "mps_dynamics_create", sizeof(mpsi_dashpot));
+      if (!mpsi_dynamics_add_dashpot(dynamics,
+                                     (mpsi_dynamics_dashpot){.particle = (int32_t)edge[k],
+                                                             .component = c,
+                                                             .partner = (int32_t)k,
+                                                             .c = velocity[c][k] / g.spacing}))
+        status = mpsi_fail_memory(dynamics->context, "mps_dynamics_create",
+                                  sizeof(mpsi_dynamics_dashpot));
   mpsi_free(dynamics->context, edge);
   return status;
 }
@@ -415,7 +419,7 @@ mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
   dynamics->particles = mpsi_particles_pin(particles);
   dynamics->def = def;
   dynamics->count = mps_particles_count(particles);
-  dynamics->kernels = mpsi_kernels_select(def.isa);
+  dynamics->kernels = mpsi_dynamics_kernels_select(def.isa);
   dynamics->dt = def.dt;
   if ((status = build(dynamics)) != MPS_OK) {
     mps_dynamics_destroy(&dynamics);
@@ -430,7 +434,7 @@ void mps_dynamics_destroy(mps_dynamics **pointer) {
   mps_dynamics *dynamics = *pointer;
   mps_context *context = dynamics->context;
   *pointer = NULL;
-  mpsi_mesh_free(context, &dynamics->mesh);
+  mpsi_dynamics_mesh_free(context, &dynamics->mesh);
   for (int64_t k = 0; k < dynamics->signal_count; k++) mps_signal_destroy(&dynamics->signals[k]);
   void *parts[] = {dynamics->slab,    dynamics->scratch, dynamics->bad,    dynamics->drive,
                    dynamics->dashpot, dynamics->signals, dynamics->initial};

@@ -9,21 +9,21 @@
 #include <mps/dynamics.h>
 
 /* A component driven by a signal. */
-typedef struct mpsi_drive {
+typedef struct mpsi_dynamics_drive {
   int32_t particle, component;
   mps_signal *signal; /* owned through mps_dynamics.signals */
   double factor;
-} mpsi_drive;
+} mpsi_dynamics_drive;
 
 /* A dashpot on one component of one particle: acceleration c (target - v). */
-typedef struct mpsi_dashpot {
+typedef struct mpsi_dynamics_dashpot {
   int32_t particle, component;
   int32_t partner;    /* free-field particle whose velocity is the target, or -1 */
   double c;           /* 1/s */
   mps_signal *signal; /* incoming wave: the target is 2 factor v_in; NULL: 0 */
   double factor;
   double before, partner_before; /* velocities before the step, m/s */
-} mpsi_dashpot;
+} mpsi_dynamics_dashpot;
 
 struct mps_dynamics {
   mps_context *context;
@@ -34,18 +34,18 @@ struct mps_dynamics {
   int64_t body;           /* particles of the body: 0 .. body - 1 */
   int64_t pairs;
   bool lattice; /* all pairs' offsets are whole spacings */
-  mpsi_mesh mesh;
-  mpsi_state state;
-  const mpsi_kernels *kernels;
+  mpsi_dynamics_mesh mesh;
+  mpsi_dynamics_state state;
+  const mpsi_dynamics_kernels *kernels;
   double *slab;    /* the arrays of state that are not particle fields */
   double *scratch; /* MPSI_DYN_SCRATCH a worker */
   int32_t *bad;    /* one a block */
-  mpsi_drive *drive;
-  mpsi_dashpot *dashpot;
+  mpsi_dynamics_drive *drive;
+  mpsi_dynamics_dashpot *dashpot;
   mps_signal **signals; /* every signal kept alive */
   int64_t drives, drive_room, dashpots, dashpot_room, signal_count, signal_room;
   bool dashpots_sorted;
-  mpsi_damping damping;
+  mpsi_dynamics_damping damping;
   bool fresh;   /* no step since creation or restart: G_{-1} = G_0 */
   bool checked; /* dt has been compared with the linear limit */
   bool diverged;
@@ -81,18 +81,18 @@ void mpsi_dynamics_apply_drives(mps_dynamics *dynamics, double t, double now, bo
 /* Dashpots around a step: remember the velocities before, correct those after. */
 void mpsi_dynamics_dashpots_before(mps_dynamics *dynamics);
 void mpsi_dynamics_dashpots_after(mps_dynamics *dynamics, double now, bool output);
-bool mpsi_dynamics_add_dashpot(mps_dynamics *dynamics, mpsi_dashpot dashpot);
+bool mpsi_dynamics_add_dashpot(mps_dynamics *dynamics, mpsi_dynamics_dashpot dashpot);
 
 /* y = S x, the symmetric tangent at the reference state: S = M^-1/2 K M^-1/2 over the 3 count
  * unknowns (x, y, rotation each in a row); held ones give 0. `weight` (NULL: 1) multiplies each
  * particle's pressure, its mean each pair's shear force. `work` has 4 count doubles. */
-void mpsi_tangent_apply(mps_dynamics *dynamics, const double *weight, const double *x, double *y,
-                        double *work);
+void mpsi_dynamics_tangent_apply(mps_dynamics *dynamics, const double *weight, const double *x,
+                                 double *y, double *work);
 
 /* Square of the highest eigenfrequency (rad/s)^2 of the endless square lattice. */
-double mpsi_lattice_omega2(double spacing, double radius_ratio, double density, double vs,
-                           double vp, int32_t torque);
+double mpsi_dynamics_lattice_omega2(double spacing, double radius_ratio, double density, double vs,
+                                    double vp, int32_t torque);
 /* Yoshida's scheme at the limit z = -1: largest dt for a mode of frequency^2 omega2. */
-double mpsi_damped_limit(double omega2, double alpha, double beta);
+double mpsi_dynamics_damped_limit(double omega2, double alpha, double beta);
 
 #endif

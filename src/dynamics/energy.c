@@ -21,7 +21,7 @@ static void first_pass(void *data, int64_t b, int32_t worker) {
 /* |u|^2 of a pair, by the removal in use. */
 static double deformation2(const mps_dynamics *dynamics, int64_t i, int64_t j, double r0x,
                            double r0y) {
-  const mpsi_state *s = &dynamics->state;
+  const mpsi_dynamics_state *s = &dynamics->state;
   double a = 0.5 * (s->c[i] + s->c[j]), b = 0.5 * (s->s[i] + s->s[j]);
   if (dynamics->def.rotation == MPS_ROTATION_MEAN_ANGLE) {
     a = s->c[i] + s->c[j] + s->c[i] * s->c[j] - s->s[i] * s->s[j];
@@ -34,16 +34,16 @@ static double deformation2(const mps_dynamics *dynamics, int64_t i, int64_t j, d
 
 /* Shear energy of the pairs whose first end the block owns, and the pressure forces on its
  * particles (into fx, fy: twice MPSI_DYN_BLOCK doubles). */
-static double block_pairs(const mps_dynamics *dynamics, const mpsi_block *block, double *fx,
-                          double *fy) {
-  const mpsi_mesh *mesh = &dynamics->mesh;
-  const mpsi_state *s = &dynamics->state;
-  const mpsi_scattered *list = &mesh->scattered;
+static double block_pairs(const mps_dynamics *dynamics, const mpsi_dynamics_block *block,
+                          double *fx, double *fy) {
+  const mpsi_dynamics_mesh *mesh = &dynamics->mesh;
+  const mpsi_dynamics_state *s = &dynamics->state;
+  const mpsi_dynamics_scattered *list = &mesh->scattered;
   const int64_t begin = block->begin;
   double shear = 0.0;
   int64_t slot = block->slot;
   for (int64_t r = block->run_begin; r < block->run_end; r++) {
-    const mpsi_pair_run *run = &mesh->run[r];
+    const mpsi_dynamics_pair_run *run = &mesh->run[r];
     for (int64_t k = 0; k < run->count; k++, slot++) {
       const int64_t i = run->i0 + k, j = run->j0 + k;
       const double sum = s->p[i] + s->p[j], x = sum * s->ex[slot], y = sum * s->ey[slot];
@@ -80,8 +80,8 @@ static void energy_block(void *data, int64_t b, int32_t worker) {
   (void)worker;
   const work *w = data;
   const mps_dynamics *dynamics = w->dynamics;
-  const mpsi_state *s = &dynamics->state;
-  const mpsi_block *block = &dynamics->mesh.block[b];
+  const mpsi_dynamics_state *s = &dynamics->state;
+  const mpsi_dynamics_block *block = &dynamics->mesh.block[b];
   const double *rho = mpsi_dynamics_column(dynamics, "density", 0);
   const double D = mps_particles_spacing(dynamics->particles), area = D * D;
   double fx[MPSI_DYN_BLOCK] = {0}, fy[MPSI_DYN_BLOCK] = {0};
@@ -128,7 +128,7 @@ mps_status mps_dynamics_get_momentum(mps_dynamics *dynamics, mps_dynamics_moment
   if (!dynamics) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   mpsi_dynamics_publish(dynamics);
-  const mpsi_state *s = &dynamics->state;
+  const mpsi_dynamics_state *s = &dynamics->state;
   const double *rho = mpsi_dynamics_column(dynamics, "density", 0);
   const double *x = mpsi_dynamics_column(dynamics, "position", 0);
   const double *y = mpsi_dynamics_column(dynamics, "position", 1);

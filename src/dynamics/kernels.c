@@ -101,8 +101,8 @@ MPSI_INLINE void add_terms(const int by_pairs, pair_terms sums, pair_terms terms
   add(sums.st + at, terms.st, 1.0, n);
 }
 
-MPSI_INLINE void pass1_run(const int removal, const int by_pairs, const mpsi_state *s,
-                           const mpsi_pair_run *run, int32_t begin, pair_terms sums,
+MPSI_INLINE void pass1_run(const int removal, const int by_pairs, const mpsi_dynamics_state *s,
+                           const mpsi_dynamics_pair_run *run, int32_t begin, pair_terms sums,
                            pair_terms terms, double *ex, double *ey) {
   for (int32_t t0 = 0; t0 < run->count; t0 += MPSI_DYN_CHUNK) {
     const int32_t left = run->count - t0, n = left < MPSI_DYN_CHUNK ? left : MPSI_DYN_CHUNK;
@@ -122,10 +122,10 @@ MPSI_INLINE void gather(double *restrict to, const double *restrict from,
   for (int32_t t = 0; t < n; t++) to[t] = from[index[t]];
 }
 
-MPSI_INLINE void pass1_scattered(const int removal, const int by_pairs, const mpsi_state *s,
-                                 const mpsi_scattered *list, int64_t k, int32_t n, int32_t begin,
-                                 pair_terms sums, pair_terms terms, double *room, double *ex,
-                                 double *ey) {
+MPSI_INLINE void pass1_scattered(const int removal, const int by_pairs,
+                                 const mpsi_dynamics_state *s, const mpsi_dynamics_scattered *list,
+                                 int64_t k, int32_t n, int32_t begin, pair_terms sums,
+                                 pair_terms terms, double *room, double *ex, double *ey) {
   const double *from[6] = {s->dx, s->dy, s->c, s->s, s->mu, s->beta};
   for (int f = 0; f < (by_pairs ? 6 : 5); f++) {
     gather(room + f * MPSI_DYN_CHUNK, from[f], list->i + k, n);
@@ -155,9 +155,9 @@ MPSI_INLINE void pass1_scattered(const int removal, const int by_pairs, const mp
   }
 }
 
-MPSI_INLINE void pass1(const int removal, const int by_pairs, const mpsi_state *s,
-                       const mpsi_mesh *mesh, int64_t b, double *scratch) {
-  const mpsi_block *block = &mesh->block[b];
+MPSI_INLINE void pass1(const int removal, const int by_pairs, const mpsi_dynamics_state *s,
+                       const mpsi_dynamics_mesh *mesh, int64_t b, double *scratch) {
+  const mpsi_dynamics_block *block = &mesh->block[b];
   const int32_t begin = block->begin, n = block->end - begin;
   const int64_t rows = by_pairs ? 7 : 4;
   const pair_terms sums = seven_rows(scratch, MPSI_DYN_BLOCK);
@@ -228,7 +228,7 @@ MPSI_INLINE void cosm1_sin(double x, double *cosm1, double *sine) {
   *cosm1 = odd != 0.0 ? -quarter * sn - 1.0 : (half > 0.0 ? cm : -2.0 - cm);
 }
 
-MPSI_INLINE void trig(const int removal, const mpsi_state *s, int64_t begin, int64_t end) {
+MPSI_INLINE void trig(const int removal, const mpsi_dynamics_state *s, int64_t begin, int64_t end) {
   const double *restrict th = s->th;
   double *restrict c = s->c, *restrict sn = s->s;
   const double part = removal == MEAN_MATRIX ? 1.0 : 0.5;
@@ -249,9 +249,10 @@ typedef struct forces {
 
 /* Subtracts the pressure forces (p_i + p_j) kc e of a run from its ends (A10); with damping by
  * pairs also (beta_i p_i + beta_j p_j) kc e. */
-MPSI_INLINE void pressure_run(const int by_pairs, const mpsi_state *s, const mpsi_pair_run *run,
-                              int32_t begin, int64_t slot, forces f, double *restrict bx,
-                              double *restrict by, double *restrict cx, double *restrict cy) {
+MPSI_INLINE void pressure_run(const int by_pairs, const mpsi_dynamics_state *s,
+                              const mpsi_dynamics_pair_run *run, int32_t begin, int64_t slot,
+                              forces f, double *restrict bx, double *restrict by,
+                              double *restrict cx, double *restrict cy) {
   for (int32_t t0 = 0; t0 < run->count; t0 += MPSI_DYN_CHUNK) {
     const int32_t left = run->count - t0, n = left < MPSI_DYN_CHUNK ? left : MPSI_DYN_CHUNK;
     const int64_t i = run->i0 + t0, j = run->j0 + t0;
@@ -282,8 +283,8 @@ MPSI_INLINE void pressure_run(const int by_pairs, const mpsi_state *s, const mps
   }
 }
 
-MPSI_INLINE void pressure_scattered(const int by_pairs, const mpsi_state *s,
-                                    const mpsi_scattered *list, int64_t k, int32_t begin,
+MPSI_INLINE void pressure_scattered(const int by_pairs, const mpsi_dynamics_state *s,
+                                    const mpsi_dynamics_scattered *list, int64_t k, int32_t begin,
                                     int64_t slot, forces f) {
   const int32_t i = list->i[k], j = list->j[k];
   const double sum = s->p[i] + s->p[j], damp = s->beta[i] * s->p[i] + s->beta[j] * s->p[j];
@@ -300,8 +301,9 @@ MPSI_INLINE void pressure_scattered(const int by_pairs, const mpsi_state *s,
   }
 }
 
-MPSI_INLINE void pressure_forces(const int by_pairs, const mpsi_state *s, const mpsi_mesh *mesh,
-                                 const mpsi_block *block, forces f, double *room) {
+MPSI_INLINE void pressure_forces(const int by_pairs, const mpsi_dynamics_state *s,
+                                 const mpsi_dynamics_mesh *mesh, const mpsi_dynamics_block *block,
+                                 forces f, double *room) {
   int64_t slot = block->slot;
   for (int64_t r = block->run_begin; r < block->run_end; slot += mesh->run[r++].count)
     pressure_run(by_pairs, s, &mesh->run[r], block->begin, slot, f, room, room + MPSI_DYN_CHUNK,
@@ -317,8 +319,8 @@ typedef struct freedom {
 
 /* Damping, then the integrator. `g` holds the restoring accelerations, and receives the total
  * ones; `sk` the same times beta, of which the damping is the rate (A24). */
-MPSI_INLINE void advance(const int integrator, const int damping, const mpsi_step *step, int32_t n,
-                         double *restrict g, double *restrict sk, freedom f,
+MPSI_INLINE void advance(const int integrator, const int damping, const mpsi_dynamics_step *step,
+                         int32_t n, double *restrict g, double *restrict sk, freedom f,
                          const double *restrict alpha, const double *restrict beta) {
   const double dt = step->dt, rdt = 1.0 / dt, rate = step->rate;
   double *restrict d = f.d, *restrict o = f.o, *restrict v = f.v, *restrict h = f.h;
@@ -348,8 +350,9 @@ MPSI_INLINE void advance(const int integrator, const int damping, const mpsi_ste
 }
 
 /* Restoring accelerations of a block: what the first pass left, the pressure, inverse masses. */
-MPSI_INLINE void restoring(const int by_pairs, const mpsi_state *s, const mpsi_mesh *mesh,
-                           const mpsi_block *block, forces f, double *room) {
+MPSI_INLINE void restoring(const int by_pairs, const mpsi_dynamics_state *s,
+                           const mpsi_dynamics_mesh *mesh, const mpsi_dynamics_block *block,
+                           forces f, double *room) {
   const int32_t begin = block->begin, n = block->end - begin;
   const double *restrict gx = s->gx + begin, *restrict gy = s->gy + begin;
   const double *restrict gth = s->gth + begin;
@@ -375,9 +378,9 @@ MPSI_INLINE void restoring(const int by_pairs, const mpsi_state *s, const mpsi_m
 }
 
 MPSI_INLINE int pass2(const int removal, const int integrator, const int damping,
-                      const mpsi_state *s, const mpsi_mesh *mesh, int64_t b, const mpsi_step *step,
-                      double *scratch) {
-  const mpsi_block *block = &mesh->block[b];
+                      const mpsi_dynamics_state *s, const mpsi_dynamics_mesh *mesh, int64_t b,
+                      const mpsi_dynamics_step *step, double *scratch) {
+  const mpsi_dynamics_block *block = &mesh->block[b];
   const int32_t begin = block->begin, n = block->end - begin;
   const forces f = {scratch,
                     scratch + MPSI_DYN_BLOCK,
@@ -410,18 +413,18 @@ MPSI_INLINE int pass2(const int removal, const int integrator, const int damping
 /* ---- variants -------------------------------------------------------------------------------- */
 
 #define PASS1(removal, by_pairs)                                                                   \
-  static void pass1_##removal##_##by_pairs(const mpsi_state *s, const mpsi_mesh *mesh, int64_t b,  \
-                                           double *scratch) {                                      \
+  static void pass1_##removal##_##by_pairs(                                                        \
+      const mpsi_dynamics_state *s, const mpsi_dynamics_mesh *mesh, int64_t b, double *scratch) {  \
     pass1(removal, by_pairs, s, mesh, b, scratch);                                                 \
   }
 #define TRIG(removal)                                                                              \
-  static void trig_##removal(const mpsi_state *s, int64_t begin, int64_t end) {                    \
+  static void trig_##removal(const mpsi_dynamics_state *s, int64_t begin, int64_t end) {           \
     trig(removal, s, begin, end);                                                                  \
   }
 #define PASS2(removal, integrator, damping)                                                        \
-  static int pass2_##removal##_##integrator##_##damping(const mpsi_state *s,                       \
-                                                        const mpsi_mesh *mesh, int64_t b,          \
-                                                        const mpsi_step *step, double *scratch) {  \
+  static int pass2_##removal##_##integrator##_##damping(                                           \
+      const mpsi_dynamics_state *s, const mpsi_dynamics_mesh *mesh, int64_t b,                     \
+      const mpsi_dynamics_step *step, double *scratch) {                                           \
     return pass2(removal, integrator, damping, s, mesh, b, step, scratch);                         \
   }
 #define INTEGRATORS(X, removal, damping)                                                           \
@@ -444,7 +447,7 @@ MPSI_INLINE int pass2(const int removal, const int integrator, const int damping
 ALL(MEAN_ANGLE)
 ALL(MEAN_MATRIX)
 
-const mpsi_kernels CONCAT(mpsi_kernels_v, MPSI_LEVEL) = {
+const mpsi_dynamics_kernels CONCAT(mpsi_dynamics_kernels_v, MPSI_LEVEL) = {
     .pass1 = {{pass1_MEAN_ANGLE_0, pass1_MEAN_ANGLE_1}, {pass1_MEAN_MATRIX_0, pass1_MEAN_MATRIX_1}},
     .pass2 = {PASS2_TABLE(MEAN_ANGLE), PASS2_TABLE(MEAN_MATRIX)},
     .trig = {trig_MEAN_ANGLE, trig_MEAN_MATRIX},

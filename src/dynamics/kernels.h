@@ -8,7 +8,7 @@
 #include <mps/dynamics.h>
 
 /* The arrays of a body, one value a particle, in sorted order. Names follow the paper. */
-typedef struct mpsi_state {
+typedef struct mpsi_dynamics_state {
   double *dx, *dy, *th;  /* displacement (m), rotation (rad): r = r0 + d */
   double *ox, *oy, *oth; /* the same one step earlier (Verlet) */
   double *vx, *vy, *vth; /* velocity at mid-step (leapfrog) or at the step (Euler) */
@@ -22,52 +22,54 @@ typedef struct mpsi_state {
   double *ix, *iy, *ith; /* 1/rho for x and y, 3/(rho D^2) for the torque; 0 where held */
   double *alpha, *beta;  /* Rayleigh coefficients, 1/s and s */
   double *ex, *ey;       /* a slot a pair: kc e, from the first pass to the second */
-} mpsi_state;
+} mpsi_dynamics_state;
 
 /* Which stiffness-proportional damping a body needs. One ratio for all: by particles is the same as
  * by pairs, and cheaper. */
-typedef enum mpsi_damping {
-  MPSI_UNDAMPED = 0,
-  MPSI_BY_PARTICLES = 1, /* Yoshida (A24): beta_i times the particle's whole force */
-  MPSI_BY_PAIRS = 2 /* Yoshida (A15): each pair's shear force times the mean beta, each particle's
-                       pressure times its own, as element damping does */
-} mpsi_damping;
+typedef enum mpsi_dynamics_damping {
+  MPSI_DYN_UNDAMPED = 0,
+  MPSI_DYN_BY_PARTICLES = 1, /* Yoshida (A24): beta_i times the particle's whole force */
+  MPSI_DYN_BY_PAIRS = 2      /* Yoshida (A15): each pair's shear force times the mean beta, each
+                            particle's      pressure times its own, as element damping does */
+} mpsi_dynamics_damping;
 
 /* What one step is told. */
-typedef struct mpsi_step {
+typedef struct mpsi_dynamics_step {
   double dt;
   double rate;    /* 1/s: of the step that led here, for the rate of the damping force */
   double limit2;  /* square of the divergence criterion, (m/s2)^2 */
   int32_t first;  /* no history yet: the damping force has no rate */
   int32_t output; /* 1: write acceleration */
-} mpsi_step;
+} mpsi_dynamics_step;
 
 /* Doubles of scratch memory a worker needs. */
 #define MPSI_DYN_SCRATCH (7 * MPSI_DYN_BLOCK + 32 * MPSI_DYN_CHUNK)
 
 /* First pass over one block: shear and normal forces, torques, divergence, pressure. */
-typedef void (*mpsi_pass1_fn)(const mpsi_state *state, const mpsi_mesh *mesh, int64_t block,
-                              double *scratch);
+typedef void (*mpsi_dynamics_pass1_fn)(const mpsi_dynamics_state *state,
+                                       const mpsi_dynamics_mesh *mesh, int64_t block,
+                                       double *scratch);
 /* Second pass: pressure forces, damping, integration. Returns non-zero when an acceleration is
  * beyond the limit or not finite. */
-typedef int (*mpsi_pass2_fn)(const mpsi_state *state, const mpsi_mesh *mesh, int64_t block,
-                             const mpsi_step *step, double *scratch);
+typedef int (*mpsi_dynamics_pass2_fn)(const mpsi_dynamics_state *state,
+                                      const mpsi_dynamics_mesh *mesh, int64_t block,
+                                      const mpsi_dynamics_step *step, double *scratch);
 /* c and s of particles [begin, end) from th. */
-typedef void (*mpsi_trig_fn)(const mpsi_state *state, int64_t begin, int64_t end);
+typedef void (*mpsi_dynamics_trig_fn)(const mpsi_dynamics_state *state, int64_t begin, int64_t end);
 
-typedef struct mpsi_kernels {
-  mpsi_pass1_fn pass1[2][2];    /* removal (11), (12); damping by pairs */
-  mpsi_pass2_fn pass2[2][3][3]; /* removal, mpsi_damping, integrator */
-  mpsi_trig_fn trig[2];
-} mpsi_kernels;
+typedef struct mpsi_dynamics_kernels {
+  mpsi_dynamics_pass1_fn pass1[2][2];    /* removal (11), (12); damping by pairs */
+  mpsi_dynamics_pass2_fn pass2[2][3][3]; /* removal, mpsi_dynamics_damping, integrator */
+  mpsi_dynamics_trig_fn trig[2];
+} mpsi_dynamics_kernels;
 
 /* x86-64 level: 0 the best that processor and build have, 1 the plain build; NULL if missing. */
-const mpsi_kernels *mpsi_kernels_select(int32_t isa);
+const mpsi_dynamics_kernels *mpsi_dynamics_kernels_select(int32_t isa);
 
-extern const mpsi_kernels mpsi_kernels_v1;
+extern const mpsi_dynamics_kernels mpsi_dynamics_kernels_v1;
 #ifdef MPSI_X86_LEVELS
-extern const mpsi_kernels mpsi_kernels_v3;
-extern const mpsi_kernels mpsi_kernels_v4;
+extern const mpsi_dynamics_kernels mpsi_dynamics_kernels_v3;
+extern const mpsi_dynamics_kernels mpsi_dynamics_kernels_v4;
 #endif
 
 #endif

@@ -19,7 +19,8 @@ static int compare(const void *left, const void *right) {
   return a->old < b->old ? -1 : a->old > b->old;
 }
 
-bool mpsi_layout_order(mps_context *context, const mpsi_geometry *g, int64_t *order) {
+bool mpsi_dynamics_layout_order(mps_context *context, const mpsi_dynamics_geometry *g,
+                                int64_t *order) {
   place *places = mpsi_alloc(context, g->count, sizeof *places);
   if (!places) return false;
   double lo[2] = {INFINITY, INFINITY}, hi[2] = {-INFINITY, -INFINITY};

@@ -6,28 +6,29 @@
 #include "mesh.h"
 
 /* The geometry that pairs are made of. Arrays have one value a particle. */
-typedef struct mpsi_geometry {
+typedef struct mpsi_dynamics_geometry {
   int64_t count;
   const double *x, *y; /* reference positions, m */
   const int64_t *side; /* 0 the body, 1 or 2 a free-field column (mps_side); NULL: no column */
   double spacing;      /* D, m */
   double radius;       /* re, m */
   double period_x;     /* m, 0: none */
-} mpsi_geometry;
+} mpsi_dynamics_geometry;
 
 /* Writes to order[k] the old index of the particle that comes k-th: the body in strips of rows
  * along its longer direction, then the columns from the bottom up. False: out of memory. */
-bool mpsi_layout_order(mps_context *context, const mpsi_geometry *geometry, int64_t *order);
+bool mpsi_dynamics_layout_order(mps_context *context, const mpsi_dynamics_geometry *geometry,
+                                int64_t *order);
 
 /* Finds all pairs of sorted particles: of the body, of each column with its endless copies, and
  * the forces that the column gives to the edge beside it. `pairs` receives an array for
  * mpsi_free. Errors carry `function`. `distinct` receives the number of ordinary pairs. */
-mps_status mpsi_layout_pairs(mps_context *context, const char *function,
-                             const mpsi_geometry *geometry, int64_t *count, mpsi_pair **pairs,
-                             int64_t *distinct);
+mps_status mpsi_dynamics_layout_pairs(mps_context *context, const char *function,
+                                      const mpsi_dynamics_geometry *geometry, int64_t *count,
+                                      mpsi_dynamics_pair **pairs, int64_t *distinct);
 
 /* For each particle of a column (index as sorted) the edge particle of the same row, else -1. */
-mps_status mpsi_layout_edges(mps_context *context, const char *function,
-                             const mpsi_geometry *geometry, int64_t *edge);
+mps_status mpsi_dynamics_layout_edges(mps_context *context, const char *function,
+                                      const mpsi_dynamics_geometry *geometry, int64_t *edge);
 
 #endif

@@ -19,7 +19,7 @@
 #define LANCZOS_BOUND 1e-7
 #define UNEVEN_BOUND 1e-5 /* for the rounds of uneven_limit */
 
-double mpsi_damped_limit(double omega2, double alpha, double beta) {
+double mpsi_dynamics_damped_limit(double omega2, double alpha, double beta) {
   const double b = beta + alpha / omega2;
   return 4.0 / omega2 / (b + sqrt(b * b + 4.0 / omega2)); /* without cancellation */
 }
@@ -39,15 +39,15 @@ static void apply(operator_data *op, const double *x, double *y) {
   const double dt = op->dt;
   const double *alpha = op->dynamics->state.alpha, *beta = op->dynamics->state.beta;
   if (dt == 0.0) {
-    mpsi_tangent_apply(op->dynamics, NULL, x, y, op->work);
+    mpsi_dynamics_tangent_apply(op->dynamics, NULL, x, y, op->work);
     return;
   }
   for (int64_t k = 0; k < n; k++) op->weight[k] = dt * dt + 2.0 * dt * beta[k];
-  if (op->dynamics->damping == MPSI_BY_PAIRS) {
-    mpsi_tangent_apply(op->dynamics, op->weight, x, y, op->work);
+  if (op->dynamics->damping == MPSI_DYN_BY_PAIRS) {
+    mpsi_dynamics_tangent_apply(op->dynamics, op->weight, x, y, op->work);
   } else { /* diag(w) S is similar to diag(sqrt w) S diag(sqrt w) */
     for (int64_t k = 0; k < 3 * n; k++) op->scaled[k] = sqrt(op->weight[k % n]) * x[k];
-    mpsi_tangent_apply(op->dynamics, NULL, op->scaled, y, op->work);
+    mpsi_dynamics_tangent_apply(op->dynamics, NULL, op->scaled, y, op->work);
     for (int64_t k = 0; k < 3 * n; k++) y[k] *= sqrt(op->weight[k % n]);
   }
   for (int64_t k = 0; k < 3 * n; k++) y[k] += 2.0 * dt * alpha[k % n] * x[k];
@@ -76,7 +76,7 @@ static void start_vector(const mps_dynamics *dynamics, double *v) {
       h ^= h >> 29;
       v[c * n + k] = (c == 2 ? 1.0 : 0.0) + 0.2 * ((double)(h >> 11) * 0x1p-53 - 0.5);
     }
-  const mpsi_state *s = &dynamics->state; /* held unknowns are not part of the problem */
+  const mpsi_dynamics_state *s = &dynamics->state; /* held unknowns are not part of the problem */
   const double *inverse[3] = {s->ix, s->iy, s->ith};
   for (int c = 0; c < 3; c++)
     for (int64_t k = 0; k < n; k++)
@@ -144,7 +144,7 @@ typedef struct range {
 } range;
 
 static range damping_range(const mps_dynamics *dynamics) {
-  const mpsi_state *s = &dynamics->state;
+  const mpsi_dynamics_state *s = &dynamics->state;
   range r = {{INFINITY, 0.0}, {INFINITY, 0.0}};
   for (int64_t k = 0; k < dynamics->count; k++) {
     r.alpha[0] = fmin(r.alpha[0], s->alpha[k]), r.alpha[1] = fmax(r.alpha[1], s->alpha[k]);
@@ -157,8 +157,8 @@ static range damping_range(const mps_dynamics *dynamics) {
  * most like dt^2, which brackets the root after each round; a secant in logarithms finds it. */
 static bool uneven_limit(operator_data *op, double *basis, const range *r, double omega2,
                          double *dt, int64_t *iterations) {
-  double low = mpsi_damped_limit(omega2, r->alpha[1], r->beta[1]);
-  double high = mpsi_damped_limit(omega2, r->alpha[0], r->beta[0]);
+  double low = mpsi_dynamics_damped_limit(omega2, r->alpha[1], r->beta[1]);
+  double high = mpsi_dynamics_damped_limit(omega2, r->alpha[0], r->beta[0]);
   double power = 0.75, last_dt = 0.0, last_value = 0.0;
   op->dt = low;
   for (int round = 0; round < 20; round++) {
@@ -245,7 +245,7 @@ static mps_status find_limit(mps_dynamics *dynamics, double duration, double *me
   if (dynamics->def.integrator == MPS_INTEGRATOR_EULER)
     out->dt = euler_limit(top.value, &r, duration);
   else if (r.beta[0] == r.beta[1])
-    out->dt = mpsi_damped_limit(top.value, r.alpha[0], r.beta[0]);
+    out->dt = mpsi_dynamics_damped_limit(top.value, r.alpha[0], r.beta[0]);
   else if (!uneven_limit(&op, memory, &r, top.value, &out->dt, &out->iterations))
     return mpsi_fail(dynamics->context, function, MPS_ERROR_NUMERIC,
                      "LAPACK could not solve the tridiagonal eigenproblem");

@@ -9,14 +9,14 @@
 
 /* A pair as one block sees it. */
 typedef struct entry {
-  mpsi_pair pair; /* ti and tj are -1 where another block owns that side */
-  int32_t run;    /* length of the run that starts here; 0: scattered; -1: inside a run */
+  mpsi_dynamics_pair pair; /* ti and tj are -1 where another block owns that side */
+  int32_t run;             /* length of the run that starts here; 0: scattered; -1: inside a run */
 } entry;
 
 typedef struct arrange {
-  mpsi_mesh *mesh;
-  const mpsi_mesh_def *def;
-  const mpsi_pair *pair;
+  mpsi_dynamics_mesh *mesh;
+  const mpsi_dynamics_mesh_def *def;
+  const mpsi_dynamics_pair *pair;
   entry *entry;
   int64_t *first; /* first entry of each block, blocks + 1 */
 } arrange;
@@ -24,7 +24,7 @@ typedef struct arrange {
 static int32_t block_of(int32_t particle) { return particle / MPSI_DYN_BLOCK; }
 
 static int compare(const void *left, const void *right) {
-  const mpsi_pair *a = &((const entry *)left)->pair, *b = &((const entry *)right)->pair;
+  const mpsi_dynamics_pair *a = &((const entry *)left)->pair, *b = &((const entry *)right)->pair;
   if (a->r0y != b->r0y) return a->r0y < b->r0y ? -1 : 1;
   if (a->r0x != b->r0x) return a->r0x < b->r0x ? -1 : 1;
   if (a->i != b->i) return a->i < b->i ? -1 : 1;
@@ -34,11 +34,11 @@ static int compare(const void *left, const void *right) {
 }
 
 /* An ordinary pair acts on the particles whose state it reads. */
-static bool ordinary(const mpsi_pair *p) {
+static bool ordinary(const mpsi_dynamics_pair *p) {
   return (p->ti == p->i || p->ti < 0) && (p->tj == p->j || p->tj < 0);
 }
 
-static bool continues(const mpsi_pair *a, const mpsi_pair *b) {
+static bool continues(const mpsi_dynamics_pair *a, const mpsi_dynamics_pair *b) {
   return b->i == a->i + 1 && b->j == a->j + 1 && b->r0x == a->r0x && b->r0y == a->r0y &&
          (b->ti < 0) == (a->ti < 0) && (b->tj < 0) == (a->tj < 0) && ordinary(b);
 }
@@ -49,7 +49,7 @@ static void arrange_block(void *data, int64_t b, int32_t worker) {
   arrange *work = data;
   entry *e = work->entry + work->first[b];
   const int64_t n = work->first[b + 1] - work->first[b];
-  mpsi_block *block = &work->mesh->block[b];
+  mpsi_dynamics_block *block = &work->mesh->block[b];
   qsort(e, (size_t)n, sizeof *e, compare);
   for (int64_t k = 0, next; k < n; k = next) {
     for (next = k + 1;
@@ -65,7 +65,8 @@ static void arrange_block(void *data, int64_t b, int32_t worker) {
   }
 }
 
-static void coefficients(const mpsi_mesh_def *def, double r0x, double r0y, double *kf, double *kc) {
+static void coefficients(const mpsi_dynamics_mesh_def *def, double r0x, double r0y, double *kf,
+                         double *kc) {
   const double d = 2.0, r0 = sqrt(r0x * r0x + r0y * r0y), w = def->radius / r0 - 1.0;
   *kf = 0.5 * (4.0 * d / def->density) * w / (r0 * r0);
   *kc = (d / def->density) * w / r0;
@@ -75,7 +76,7 @@ static void coefficients(const mpsi_mesh_def *def, double r0x, double r0y, doubl
 static void write_block(void *data, int64_t b, int32_t worker) {
   (void)worker;
   arrange *work = data;
-  mpsi_mesh *mesh = work->mesh;
+  mpsi_dynamics_mesh *mesh = work->mesh;
   int64_t r = mesh->block[b].run_begin, s = mesh->block[b].scattered_begin;
   for (int64_t k = work->first[b]; k < work->first[b + 1]; k++) {
     const entry *e = &work->entry[k];
@@ -83,17 +84,17 @@ static void write_block(void *data, int64_t b, int32_t worker) {
     if (e->run < 0) continue;
     coefficients(work->def, e->pair.r0x, e->pair.r0y, &kf, &kc);
     if (e->run > 0) {
-      mesh->run[r++] = (mpsi_pair_run){.i0 = e->pair.i,
-                                       .j0 = e->pair.j,
-                                       .count = e->run,
-                                       .own_i = e->pair.ti >= 0,
-                                       .own_j = e->pair.tj >= 0,
-                                       .r0x = e->pair.r0x,
-                                       .r0y = e->pair.r0y,
-                                       .kf = kf,
-                                       .kc = kc};
+      mesh->run[r++] = (mpsi_dynamics_pair_run){.i0 = e->pair.i,
+                                                .j0 = e->pair.j,
+                                                .count = e->run,
+                                                .own_i = e->pair.ti >= 0,
+                                                .own_j = e->pair.tj >= 0,
+                                                .r0x = e->pair.r0x,
+                                                .r0y = e->pair.r0y,
+                                                .kf = kf,
+                                                .kc = kc};
     } else {
-      mpsi_scattered *list = &mesh->scattered;
+      mpsi_dynamics_scattered *list = &mesh->scattered;
       list->i[s] = e->pair.i;
       list->j[s] = e->pair.j;
       list->ti[s] = e->pair.ti;
@@ -109,7 +110,7 @@ static void write_block(void *data, int64_t b, int32_t worker) {
 /* Hands each pair to the one or two blocks that own its ends. With entry NULL only counts. */
 static void deal(const arrange *work, int64_t count, entry *entries, int64_t *next) {
   for (int64_t k = 0; k < count; k++) {
-    const mpsi_pair *p = &work->pair[k];
+    const mpsi_dynamics_pair *p = &work->pair[k];
     const int32_t bi = p->ti < 0 ? -1 : block_of(p->ti), bj = p->tj < 0 ? -1 : block_of(p->tj);
     if (bi >= 0) {
       const int64_t at = next[bi]++;
@@ -128,7 +129,7 @@ static void deal(const arrange *work, int64_t count, entry *entries, int64_t *ne
   }
 }
 
-static bool alloc_scattered(mps_context *context, mpsi_scattered *list, int64_t count) {
+static bool alloc_scattered(mps_context *context, mpsi_dynamics_scattered *list, int64_t count) {
   list->count = count;
   int32_t **index[4] = {&list->i, &list->j, &list->ti, &list->tj};
   double **value[4] = {&list->r0x, &list->r0y, &list->kf, &list->kc};
@@ -141,10 +142,10 @@ static bool alloc_scattered(mps_context *context, mpsi_scattered *list, int64_t 
 }
 
 /* Turns the counts left in run_end and scattered_end into ranges. */
-static void number_blocks(mpsi_mesh *mesh, const int64_t *first) {
+static void number_blocks(mpsi_dynamics_mesh *mesh, const int64_t *first) {
   int64_t runs = 0, scattered = 0;
   for (int64_t b = 0; b < mesh->blocks; b++) {
-    mpsi_block *block = &mesh->block[b];
+    mpsi_dynamics_block *block = &mesh->block[b];
     const int64_t end = (b + 1) * MPSI_DYN_BLOCK;
     block->begin = (int32_t)(b * MPSI_DYN_BLOCK);
     block->end = (int32_t)(end < mesh->particles ? end : mesh->particles);
@@ -158,14 +159,15 @@ static void number_blocks(mpsi_mesh *mesh, const int64_t *first) {
   mesh->scattered.count = scattered;
 }
 
-bool mpsi_mesh_build(mps_context *context, mpsi_mesh *mesh, const mpsi_mesh_def *def,
-                     int64_t particles, int64_t count, mpsi_pair *pair) {
-  *mesh = (mpsi_mesh){.particles = particles};
+bool mpsi_dynamics_mesh_build(mps_context *context, mpsi_dynamics_mesh *mesh,
+                              const mpsi_dynamics_mesh_def *def, int64_t particles, int64_t count,
+                              mpsi_dynamics_pair *pair) {
+  *mesh = (mpsi_dynamics_mesh){.particles = particles};
   mesh->blocks = (particles + MPSI_DYN_BLOCK - 1) / MPSI_DYN_BLOCK;
   arrange work = {.mesh = mesh, .def = def, .pair = pair};
   work.first = mpsi_alloc(context, mesh->blocks + 1, sizeof(int64_t));
   int64_t *next = mpsi_alloc(context, mesh->blocks + 1, sizeof(int64_t));
-  mesh->block = mpsi_alloc(context, mesh->blocks, sizeof(mpsi_block));
+  mesh->block = mpsi_alloc(context, mesh->blocks, sizeof(mpsi_dynamics_block));
   bool ok = work.first && next && mesh->block;
   if (ok) {
     deal(&work, count, NULL, next);
@@ -180,21 +182,21 @@ bool mpsi_mesh_build(mps_context *context, mpsi_mesh *mesh, const mpsi_mesh_def 
     deal(&work, count, work.entry, next);
     mpsi_parallel_for(context, mesh->blocks, arrange_block, &work);
     number_blocks(mesh, work.first);
-    mesh->run = mpsi_alloc(context, mesh->runs, sizeof(mpsi_pair_run));
+    mesh->run = mpsi_alloc(context, mesh->runs, sizeof(mpsi_dynamics_pair_run));
     ok = mesh->run && alloc_scattered(context, &mesh->scattered, mesh->scattered.count);
   }
   if (ok) mpsi_parallel_for(context, mesh->blocks, write_block, &work);
   mpsi_free(context, work.entry);
   mpsi_free(context, work.first);
   mpsi_free(context, next);
-  if (!ok) mpsi_mesh_free(context, mesh);
+  if (!ok) mpsi_dynamics_mesh_free(context, mesh);
   return ok;
 }
 
-void mpsi_mesh_free(mps_context *context, mpsi_mesh *mesh) {
-  mpsi_scattered *list = &mesh->scattered;
+void mpsi_dynamics_mesh_free(mps_context *context, mpsi_dynamics_mesh *mesh) {
+  mpsi_dynamics_scattered *list = &mesh->scattered;
   void *parts[] = {mesh->block, mesh->run, list->i,   list->j,  list->ti,
                    list->tj,    list->r0x, list->r0y, list->kf, list->kc};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
-  *mesh = (mpsi_mesh){0};
+  *mesh = (mpsi_dynamics_mesh){0};
 }

@@ -13,11 +13,11 @@
 /* A growing list of pairs. */
 typedef struct pair_list {
   mps_context *context;
-  mpsi_pair *pair;
+  mpsi_dynamics_pair *pair;
   int64_t count, capacity;
 } pair_list;
 
-static bool push(pair_list *list, mpsi_pair pair) {
+static bool push(pair_list *list, mpsi_dynamics_pair pair) {
   if (list->count == list->capacity) {
     const int64_t capacity = list->capacity ? 2 * list->capacity : 1024;
     if (!mpsi_grow(list->context, (void **)&list->pair, list->count, capacity, sizeof pair))
@@ -43,7 +43,7 @@ typedef struct cloud {
   int64_t count, own;
 } cloud;
 
-static bool make_cloud(mps_context *context, const mpsi_geometry *g, cloud *out) {
+static bool make_cloud(mps_context *context, const mpsi_dynamics_geometry *g, cloud *out) {
   int64_t own = 0, copies = 0;
   double left = INFINITY;
   for (int64_t k = 0; k < g->count; k++)
@@ -69,8 +69,9 @@ static bool make_cloud(mps_context *context, const mpsi_geometry *g, cloud *out)
   return true;
 }
 
-static mps_status body_pairs(const mpsi_geometry *g, const cloud *points, const int64_t *offset,
-                             const int64_t *index, pair_list *list, const char *function) {
+static mps_status body_pairs(const mpsi_dynamics_geometry *g, const cloud *points,
+                             const int64_t *offset, const int64_t *index, pair_list *list,
+                             const char *function) {
   for (int64_t a = 0; a < points->own; a++)
     for (int64_t k = offset[a]; k < offset[a + 1]; k++) {
       const int64_t b = index[k];
@@ -81,13 +82,14 @@ static mps_status body_pairs(const mpsi_geometry *g, const cloud *points, const 
         return mpsi_fail(list->context, function, MPS_ERROR_ARGUMENT,
                          "two particles lie at the same point (%g, %g) m", x[a], y[a]);
       const int32_t i = (int32_t)a, j = (int32_t)points->from[b];
-      if (!push(list, (mpsi_pair){i, j, i, j, dx, dy}))
-        return mpsi_fail_memory(list->context, function, sizeof(mpsi_pair));
+      if (!push(list, (mpsi_dynamics_pair){i, j, i, j, dx, dy}))
+        return mpsi_fail_memory(list->context, function, sizeof(mpsi_dynamics_pair));
     }
   return MPS_OK;
 }
 
-static mps_status find_body_pairs(const mpsi_geometry *g, pair_list *list, const char *function) {
+static mps_status find_body_pairs(const mpsi_dynamics_geometry *g, pair_list *list,
+                                  const char *function) {
   mps_context *context = list->context;
   cloud points = {0};
   mps_neighbours *lists = NULL;
@@ -126,7 +128,7 @@ typedef struct column {
   int side;
 } column;
 
-static column find_column(const mpsi_geometry *g, int side) {
+static column find_column(const mpsi_dynamics_geometry *g, int side) {
   column c = {.side = side};
   for (int64_t k = g->count - 1; g->side && k >= 0; k--)
     if (g->side[k] == side) {
@@ -138,8 +140,8 @@ static column find_column(const mpsi_geometry *g, int side) {
 }
 
 /* at[depth * rows + row] = body particle `depth` columns in from the edge, in the column's row. */
-static bool map_edge(mps_context *context, const mpsi_geometry *g, const column *c, int depths,
-                     int64_t **at) {
+static bool map_edge(mps_context *context, const mpsi_dynamics_geometry *g, const column *c,
+                     int depths, int64_t **at) {
   double edge = c->side == 1 ? INFINITY : -INFINITY;
   for (int64_t k = 0; k < g->count && !g->side[k]; k++)
     edge = c->side == 1 ? fmin(edge, g->x[k]) : fmax(edge, g->x[k]);
@@ -157,18 +159,18 @@ static bool map_edge(mps_context *context, const mpsi_geometry *g, const column 
 }
 
 /* One pair type of endless ground: offset (kx, ky) lattice spacings, kx >= 0. */
-static bool column_offset(const mpsi_geometry *g, const column *c, const int64_t *at, int kx,
-                          int ky, pair_list *list) {
+static bool column_offset(const mpsi_dynamics_geometry *g, const column *c, const int64_t *at,
+                          int kx, int ky, pair_list *list) {
   const double r0x = kx * g->spacing, r0y = ky * g->spacing;
   for (int64_t row = 0; row < c->rows; row++) {
     const int64_t other = row + ky;
     if (other < 0 || other >= c->rows) continue;
     const int32_t i = (int32_t)(c->first + row), j = (int32_t)(c->first + other);
-    if (!push(list, (mpsi_pair){i, j, i, j, r0x, r0y})) return false;
+    if (!push(list, (mpsi_dynamics_pair){i, j, i, j, r0x, r0y})) return false;
     /* The body's particles up to kx - 1 columns in from the edge miss this pair's far end. On the
      * left they are its j, on the right its i. */
     for (int depth = 0; depth < kx; depth++) {
-      mpsi_pair ghost = {i, j, -1, -1, r0x, r0y};
+      mpsi_dynamics_pair ghost = {i, j, -1, -1, r0x, r0y};
       if (c->side == 1)
         ghost.tj = (int32_t)at[depth * c->rows + other];
       else
@@ -179,7 +181,7 @@ static bool column_offset(const mpsi_geometry *g, const column *c, const int64_t
   return true;
 }
 
-static mps_status find_column_pairs(const mpsi_geometry *g, int side, pair_list *list,
+static mps_status find_column_pairs(const mpsi_dynamics_geometry *g, int side, pair_list *list,
                                     const char *function) {
   const column c = find_column(g, side);
   if (c.rows == 0) return MPS_OK;
@@ -199,11 +201,11 @@ static mps_status find_column_pairs(const mpsi_geometry *g, int side, pair_list 
           sqrt((double)(kx * kx + ky * ky)) * g->spacing < g->radius * (1.0 - 1e-9))
         ok = column_offset(g, &c, at, kx, ky, list);
   mpsi_free(list->context, at);
-  return ok ? MPS_OK : mpsi_fail_memory(list->context, function, sizeof(mpsi_pair));
+  return ok ? MPS_OK : mpsi_fail_memory(list->context, function, sizeof(mpsi_dynamics_pair));
 }
 
-mps_status mpsi_layout_edges(mps_context *context, const char *function, const mpsi_geometry *g,
-                             int64_t *edge) {
+mps_status mpsi_dynamics_layout_edges(mps_context *context, const char *function,
+                                      const mpsi_dynamics_geometry *g, int64_t *edge) {
   for (int64_t k = 0; k < g->count; k++) edge[k] = -1;
   for (int side = 1; side <= 2; side++) {
     const column c = find_column(g, side);
@@ -217,8 +219,9 @@ mps_status mpsi_layout_edges(mps_context *context, const char *function, const m
   return MPS_OK;
 }
 
-mps_status mpsi_layout_pairs(mps_context *context, const char *function, const mpsi_geometry *g,
-                             int64_t *count, mpsi_pair **pairs, int64_t *distinct) {
+mps_status mpsi_dynamics_layout_pairs(mps_context *context, const char *function,
+                                      const mpsi_dynamics_geometry *g, int64_t *count,
+                                      mpsi_dynamics_pair **pairs, int64_t *distinct) {
   pair_list list = {.context = context};
   mps_status status = find_body_pairs(g, &list, function);
   *distinct = list.count;

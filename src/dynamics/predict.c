@@ -76,8 +76,8 @@ static double highest(symbol m) {
   return mean + 2.0 * sqrt(q) * cos(acos(c) / 3.0);
 }
 
-double mpsi_lattice_omega2(double spacing, double radius_ratio, double density, double vs,
-                           double vp, int32_t torque) {
+double mpsi_dynamics_lattice_omega2(double spacing, double radius_ratio, double density, double vs,
+                                    double vp, int32_t torque) {
   (void)density; /* velocities carry it */
   const double pi = 3.14159265358979323846;
   const double lambda = fmax(0.0, vp * vp / (vs * vs) - 2.0);
@@ -132,13 +132,15 @@ mps_status mps_dynamics_predict_dt(mps_context *context, const mps_predict_def *
   if (status == MPS_OK) status = check(context, &def);
   if (status != MPS_OK) return status;
   const double pi = 3.14159265358979323846, h = def.damping;
-  const double omega2 = mpsi_lattice_omega2(def.spacing, def.radius_ratio, 1.0, def.shear_velocity,
-                                            def.pressure_velocity, MPS_TORQUE_CONSERVING);
+  const double omega2 =
+      mpsi_dynamics_lattice_omega2(def.spacing, def.radius_ratio, 1.0, def.shear_velocity,
+                                   def.pressure_velocity, MPS_TORQUE_CONSERVING);
   const double R = 0.5 * def.spacing, vs = def.shear_velocity, vp = def.pressure_velocity;
   mps_prediction p = {.omega = sqrt(omega2), .printed_s = NAN, .printed_p = NAN, .printed = NAN};
   const double edge = edge_factor(&def) * p.omega;
-  p.linear = mpsi_damped_limit(edge * edge, h * 4.0 * pi * def.f1 * def.f2 / (def.f1 + def.f2),
-                               h / (pi * (def.f1 + def.f2)));
+  p.linear =
+      mpsi_dynamics_damped_limit(edge * edge, h * 4.0 * pi * def.f1 * def.f2 / (def.f1 + def.f2),
+                                 h / (pi * (def.f1 + def.f2)));
   /* the paper fitted h <= 0.22; its undamped case is its h = 0.001 */
   const double seed_h = h == 0.0 ? 0.001 : h;
   if (seed_h >= 0.001 && seed_h <= 0.22) {

@@ -11,13 +11,13 @@
 
 /* The columns that make the initial state: displacement, rotation, velocity, spin. */
 static void state_columns(const mps_dynamics *dynamics, double *columns[6]) {
-  const mpsi_state *s = &dynamics->state;
+  const mpsi_dynamics_state *s = &dynamics->state;
   double *list[6] = {s->dx, s->dy, s->th, s->vx, s->vy, s->vth};
   memcpy(columns, list, sizeof list);
 }
 
 static void start_history(mps_dynamics *dynamics) {
-  mpsi_state *s = &dynamics->state;
+  mpsi_dynamics_state *s = &dynamics->state;
   double *d[3] = {s->dx, s->dy, s->th}, *o[3] = {s->ox, s->oy, s->oth};
   double *v[3] = {s->vx, s->vy, s->vth};
   for (int c = 0; c < 3; c++)
@@ -29,7 +29,7 @@ void mpsi_dynamics_begin(mps_dynamics *dynamics, double time) {
   dynamics->steps = dynamics->base_step = 0;
   dynamics->fresh = true;
   dynamics->diverged = false;
-  const mpsi_state *s = &dynamics->state;
+  const mpsi_dynamics_state *s = &dynamics->state;
   const double *inverse[3] = {s->ix, s->iy, s->ith};
   double *v[3] = {s->vx, s->vy, s->vth};
   for (int c = 0; c < 3; c++) /* held: at rest */
@@ -37,7 +37,7 @@ void mpsi_dynamics_begin(mps_dynamics *dynamics, double time) {
       if (inverse[c][k] == 0.0) v[c][k] = 0.0;
   /* driven particles: where the signal is, at the speed it has */
   for (int64_t k = 0; k < dynamics->drives; k++) {
-    const mpsi_drive *drive = &dynamics->drive[k];
+    const mpsi_dynamics_drive *drive = &dynamics->drive[k];
     (drive->component == 0 ? s->dx : s->dy)[drive->particle] =
         drive->factor * mps_signal_displacement(drive->signal, time);
     (drive->component == 0 ? s->vx : s->vy)[drive->particle] =
@@ -109,7 +109,7 @@ mps_status mps_dynamics_resume(mps_dynamics *dynamics, double time, int64_t step
 }
 
 void mpsi_dynamics_publish(mps_dynamics *dynamics) {
-  mpsi_state *s = &dynamics->state;
+  mpsi_dynamics_state *s = &dynamics->state;
   double *d[3] = {s->dx, s->dy, s->th}, *o[3] = {s->ox, s->oy, s->oth};
   double *v[3] = {s->vx, s->vy, s->vth};
   for (int c = 0; c < 2; c++) {
@@ -129,19 +129,19 @@ void mpsi_dynamics_publish(mps_dynamics *dynamics) {
  * material in the set. Below it no warning is due. Off a lattice there is none: 0. */
 static double cheap_limit(mps_dynamics *dynamics) {
   if (!dynamics->lattice) return 0.0;
-  const mpsi_state *s = &dynamics->state;
+  const mpsi_dynamics_state *s = &dynamics->state;
   const double *rho = mpsi_dynamics_column(dynamics, "density", 0);
   double mu = 0.0, lambda = 0.0, light = INFINITY, alpha = 0.0, beta = 0.0;
   for (int64_t k = 0; k < dynamics->count; k++) {
     mu = fmax(mu, s->mu[k]), lambda = fmax(lambda, s->lambda[k]), light = fmin(light, rho[k]);
     alpha = fmax(alpha, s->alpha[k]), beta = fmax(beta, s->beta[k]);
   }
-  const double omega2 = mpsi_lattice_omega2(
+  const double omega2 = mpsi_dynamics_lattice_omega2(
       mps_particles_spacing(dynamics->particles), dynamics->def.radius_ratio, light,
       sqrt(mu / light), sqrt((lambda + 2.0 * mu) / light), dynamics->def.torque);
   /* Shear is softer where neighbours are missing, pressure can be stiffer: up to 1.13 times omega
    * over all the shapes tried, and only where the highest mode is not the spin's. */
-  return (lambda <= 7.0 * mu ? 0.95 : 0.8) * mpsi_damped_limit(omega2, alpha, beta);
+  return (lambda <= 7.0 * mu ? 0.95 : 0.8) * mpsi_dynamics_damped_limit(omega2, alpha, beta);
 }
 
 /* Warns of a `dt` above the limit. */
@@ -200,7 +200,7 @@ mps_status mps_dynamics_set_dt(mps_dynamics *dynamics, double dt) {
   dynamics->base_time = mps_dynamics_time(dynamics);
   dynamics->base_step = dynamics->steps;
   const double ratio = dynamics->dt > 0.0 ? dt / dynamics->dt : 1.0;
-  mpsi_state *s = &dynamics->state;
+  mpsi_dynamics_state *s = &dynamics->state;
   double *d[3] = {s->dx, s->dy, s->th}, *o[3] = {s->ox, s->oy, s->oth};
   const bool start = dynamics->fresh;
   dynamics->dt = dynamics->def.dt = dt; /* as if the definition had given it */
@@ -220,9 +220,9 @@ mps_status mps_dynamics_set_dt(mps_dynamics *dynamics, double dt) {
 
 typedef struct work {
   mps_dynamics *dynamics;
-  mpsi_step step;
-  mpsi_pass1_fn pass1;
-  mpsi_pass2_fn pass2;
+  mpsi_dynamics_step step;
+  mpsi_dynamics_pass1_fn pass1;
+  mpsi_dynamics_pass2_fn pass2;
   int64_t grain; /* blocks a unit of work */
 } work;
 
@@ -245,7 +245,7 @@ static void second_pass(void *data, int64_t unit, int32_t worker) {
 
 /* The particle that broke the limit, its acceleration and where it is. */
 static mps_status report_divergence(mps_dynamics *dynamics, const char *function, double now) {
-  const mpsi_state *s = &dynamics->state;
+  const mpsi_dynamics_state *s = &dynamics->state;
   int64_t worst = -1;
   double most = 0.0;
   for (int64_t b = 0; b < dynamics->mesh.blocks; b++)
@@ -307,7 +307,7 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
             .step = {.dt = dynamics->dt,
                      .rate = 1.0 / (dynamics->fresh ? dynamics->dt : dynamics->history_dt),
                      .limit2 = fmin(limit * limit, DBL_MAX)}, /* never lets an infinite one pass */
-            .pass1 = dynamics->kernels->pass1[removal][dynamics->damping == MPSI_BY_PAIRS],
+            .pass1 = dynamics->kernels->pass1[removal][dynamics->damping == MPSI_DYN_BY_PAIRS],
             .pass2 = dynamics->kernels->pass2[removal][dynamics->damping][dynamics->def.integrator],
             .grain = (blocks + units - 1) / units};
   for (int64_t k = 0; k < count; k++) {

@@ -1,5 +1,5 @@
-/* tangent.c - the tangent of the restoring forces at the reference state, Yoshida (A6), (A7), (A10),
- * (A11) and (A14) for small u and theta, in its symmetric form M^-1/2 K M^-1/2.
+/* tangent.c - the tangent of the restoring forces at the reference state, Yoshida (A6), (A7),
+ * (A10), (A11) and (A14) for small u and theta, in its symmetric form M^-1/2 K M^-1/2.
  *
  * Every pair term is the gradient of an energy in (x, y, theta) with half of a pair's moment to
  * either end, so K is symmetric; the inertia that belongs to it is rho D^2/6 a unit of area (half
@@ -44,11 +44,12 @@ static inline void pressure_pair(const tangent *t, int64_t i, int64_t j, int64_t
 }
 
 /* All pairs of a block but free-field ghosts; pressure: which of the two passes. */
-static void block_pairs(const tangent *t, const mpsi_block *block, bool pressure, sums *s) {
-  const mpsi_mesh *mesh = &t->dynamics->mesh;
+static void block_pairs(const tangent *t, const mpsi_dynamics_block *block, bool pressure,
+                        sums *s) {
+  const mpsi_dynamics_mesh *mesh = &t->dynamics->mesh;
   const int64_t begin = block->begin;
   for (int64_t r = block->run_begin; r < block->run_end; r++) {
-    const mpsi_pair_run *run = &mesh->run[r];
+    const mpsi_dynamics_pair_run *run = &mesh->run[r];
     for (int64_t k = 0; k < run->count; k++) {
       const int64_t i = run->i0 + k, j = run->j0 + k;
       const int64_t ti = run->own_i ? i - begin : -1, tj = run->own_j ? j - begin : -1;
@@ -58,7 +59,7 @@ static void block_pairs(const tangent *t, const mpsi_block *block, bool pressure
         shear_pair(t, i, j, ti, tj, run->r0x, run->r0y, run->kf, run->kc, s);
     }
   }
-  const mpsi_scattered *list = &mesh->scattered;
+  const mpsi_dynamics_scattered *list = &mesh->scattered;
   for (int64_t k = block->scattered_begin; k < block->scattered_end; k++) {
     const int64_t i = list->i[k], j = list->j[k];
     const int64_t ti = list->ti[k] == i ? i - begin : -1, tj = list->tj[k] == j ? j - begin : -1;
@@ -72,7 +73,7 @@ static void block_pairs(const tangent *t, const mpsi_block *block, bool pressure
 static void shear_block(void *data, int64_t b, int32_t worker) {
   (void)worker;
   const tangent *t = data;
-  const mpsi_block *block = &t->dynamics->mesh.block[b];
+  const mpsi_dynamics_block *block = &t->dynamics->mesh.block[b];
   const int64_t n = t->dynamics->count, begin = block->begin;
   sums s = {0};
   block_pairs(t, block, false, &s);
@@ -87,8 +88,8 @@ static void shear_block(void *data, int64_t b, int32_t worker) {
 static void pressure_block(void *data, int64_t b, int32_t worker) {
   (void)worker;
   const tangent *t = data;
-  const mpsi_state *state = &t->dynamics->state;
-  const mpsi_block *block = &t->dynamics->mesh.block[b];
+  const mpsi_dynamics_state *state = &t->dynamics->state;
+  const mpsi_dynamics_block *block = &t->dynamics->mesh.block[b];
   const int64_t n = t->dynamics->count, begin = block->begin;
   sums s = {0};
   block_pairs(t, block, true, &s);
@@ -99,9 +100,9 @@ static void pressure_block(void *data, int64_t b, int32_t worker) {
   }
 }
 
-void mpsi_tangent_apply(mps_dynamics *dynamics, const double *weight, const double *x, double *y,
-                        double *work) {
-  const mpsi_state *state = &dynamics->state;
+void mpsi_dynamics_tangent_apply(mps_dynamics *dynamics, const double *weight, const double *x,
+                                 double *y, double *work) {
+  const mpsi_dynamics_state *state = &dynamics->state;
   const int64_t n = dynamics->count;
   for (int64_t k = 0; k < n; k++) {
     work[k] = sqrt(state->ix[k]) * x[k];
