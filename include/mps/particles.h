@@ -103,8 +103,14 @@ MPS_API MPS_NODISCARD mps_status mps_particles_view(mps_particles *particles, co
 MPS_API MPS_NODISCARD mps_status mps_particles_set(mps_particles *particles, const char *name,
                                                    int32_t component, double value);
 MPS_API int32_t mps_particles_field_count(const mps_particles *particles);
-MPS_API MPS_NODISCARD mps_status mps_particles_field(const mps_particles *particles, int32_t index,
-                                                     mps_field_info *out);
+/** Describes field `index` (0 to the count - 1, in order of addition). */
+MPS_API MPS_NODISCARD mps_status mps_particles_field_sized(const mps_particles *particles,
+                                                           int32_t index, mps_field_info *out,
+                                                           size_t size);
+MPS_NODISCARD static inline mps_status mps_particles_field(const mps_particles *particles,
+                                                           int32_t index, mps_field_info *out) {
+  return mps_particles_field_sized(particles, index, out, sizeof *out);
+}
 
 /* ---- selection ----------------------------------------------------------------------------- */
 

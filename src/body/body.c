@@ -7,11 +7,9 @@
 #include <string.h>
 
 static const mps_body_def body_defaults = {.struct_size = sizeof(mps_body_def)};
-/* Size of the structure in the first release: it may only grow. */
-#define BODY_DEF_MINIMUM (offsetof(mps_body_def, damping) + sizeof(double[2]))
 
 mps_status mps_body_def_init(mps_body_def *def, size_t size) {
-  return mpsi_def_init(def, size, BODY_DEF_MINIMUM, &body_defaults, sizeof body_defaults);
+  return MPSI_DEF_INIT(mps_body_def, def, size, &body_defaults);
 }
 
 /* ---- checks ---------------------------------------------------------------------------------- */
@@ -126,8 +124,7 @@ mps_status mpsi_body_new(mps_context *context, const char *function, const mps_b
                          int32_t dim, mpsi_shape shape, int64_t faces, mps_body **out) {
   mps_body_def def = body_defaults;
   mps_status status = MPS_OK;
-  if (user_def)
-    status = mpsi_def_read(context, function, user_def, BODY_DEF_MINIMUM, &def, sizeof def);
+  if (user_def) status = MPSI_DEF_READ(context, function, mps_body_def, user_def, &def);
   if (status == MPS_OK) status = check_numbers(context, function, &def);
   if (status == MPS_OK) status = check_vectors(context, function, &def, dim);
   if (status == MPS_OK) status = check_motion(context, function, &def, dim);

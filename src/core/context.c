@@ -73,17 +73,26 @@ mps_status mpsi_def_read(mps_context *context, const char *function, const void 
   return MPS_OK;
 }
 
+mps_status mpsi_out_write(mps_context *context, const char *function, void *out, size_t size,
+                          const void *known, size_t known_size) {
+  if (!out) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "out is NULL");
+  if (size == 0)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "size is 0 bytes: it must be sizeof of the struct that out points to");
+  memcpy(out, known, size < known_size ? size : known_size);
+  if (size > known_size) memset((char *)out + known_size, 0, size - known_size);
+  return MPS_OK;
+}
+
 static const mps_context_def context_defaults = {
     .struct_size = sizeof(mps_context_def),
 #ifdef MPSI_OPENMP
     .executor = MPS_EXECUTOR_OPENMP,
 #endif
 };
-/* Size of the structure in the first release: it may only grow. */
-#define CONTEXT_DEF_MINIMUM offsetof(mps_context_def, reserved)
 
 mps_status mps_context_def_init(mps_context_def *def, size_t size) {
-  return mpsi_def_init(def, size, CONTEXT_DEF_MINIMUM, &context_defaults, sizeof context_defaults);
+  return MPSI_DEF_INIT(mps_context_def, def, size, &context_defaults);
 }
 
 /* ---- life ------------------------------------------------------------------------------------ */
@@ -125,9 +134,7 @@ mps_status mps_context_create(const mps_context_def *user_def, mps_context **out
   *out = NULL;
   mps_context_def def = context_defaults;
   mps_status status = MPS_OK;
-  if (user_def)
-    status =
-        mpsi_def_read(NULL, "mps_context_create", user_def, CONTEXT_DEF_MINIMUM, &def, sizeof def);
+  if (user_def) status = MPSI_DEF_READ(NULL, __func__, mps_context_def, user_def, &def);
   if (status != MPS_OK)
     return refuse(error_text, error_size, status,
                   "def.struct_size is not one this library knows: start from "

@@ -248,19 +248,18 @@ int32_t mps_particles_field_count(const mps_particles *particles) {
   return particles ? particles->field_count : 0;
 }
 
-mps_status mps_particles_field(const mps_particles *particles, int32_t index, mps_field_info *out) {
+mps_status mps_particles_field_sized(const mps_particles *particles, int32_t index,
+                                     mps_field_info *out, size_t size) {
   if (!particles) return MPS_ERROR_ARGUMENT;
-  if (!out) return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
-  memset(out, 0, sizeof *out);
   if (index < 0 || index >= particles->field_count)
     return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT,
                      "index is %d, allowed are 0 to %d", index, particles->field_count - 1);
   const mpsi_field *field = particles->fields[index];
-  *out = (mps_field_info){.name = field->name,
-                          .unit = field->unit,
-                          .meaning = field->meaning,
-                          .dtype = field->dtype,
-                          .components = field->components,
-                          .flags = field->flags};
-  return MPS_OK;
+  const mps_field_info info = {.name = field->name,
+                               .unit = field->unit,
+                               .meaning = field->meaning,
+                               .dtype = field->dtype,
+                               .components = field->components,
+                               .flags = field->flags};
+  return mpsi_out_write(particles->context, __func__, out, size, &info, sizeof info);
 }

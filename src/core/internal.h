@@ -4,6 +4,8 @@
 #ifndef MPSI_INTERNAL_H
 #define MPSI_INTERNAL_H
 
+#include "released_sizes.h"
+
 #include <mps/context.h>
 
 #include <math.h>
@@ -55,15 +57,32 @@ void mpsi_progress(mps_context *context, const char *task, int64_t step, double 
                    double time_end);
 bool mpsi_cancelled(mps_context *context);
 
-/* ---- definition structs ----------------------------------------------------------------------
- * Copies the caller's definition (any size that has at least `minimum` bytes) over `known`, which
- * holds the defaults. A tail that this library does not know must be zero. */
+/* ---- growing structs -------------------------------------------------------------------------
+ * Definitions (in): the released size of each is in released_sizes.h, written by
+ * scripts/update-sizes. */
+
+/* Reads the caller's definition `def` (any size from the released one on) over *known, a `type`
+ * that holds the defaults. A tail that this library does not know must be zero. */
+#define MPSI_DEF_READ(context, function, type, def, known)                                         \
+  mpsi_def_read(context, function, def, MPSI_RELEASED(type), 1 ? (known) : (type *)0, sizeof(type))
+/* The body of every mps_x_def_init: copies *defaults to `def`, as much as `size` has room for,
+ * zero fills the rest and writes struct_size = size. */
+#define MPSI_DEF_INIT(type, def, size, defaults)                                                   \
+  mpsi_def_init(def, size, MPSI_RELEASED(type), 1 ? (defaults) : (const type *)0, sizeof(type))
+/* Where pointers are shorter than in the table, so are the structs. */
+#define MPSI_RELEASED(type)                                                                        \
+  ((size_t)MPSI_RELEASED_##type < sizeof(type) ? (size_t)MPSI_RELEASED_##type : sizeof(type))
+
 mps_status mpsi_def_read(mps_context *context, const char *function, const void *def,
                          size_t minimum, void *known, size_t known_size);
-/* The body of every mps_x_def_init: copies `defaults` to `def`, as much as `size` has room for,
- * zero fills the rest and writes struct_size = size. */
 mps_status mpsi_def_init(void *def, size_t size, size_t minimum, const void *defaults,
                          size_t defaults_size);
+
+/* Results (out): the body of every mps_x_get_y_sized. Writes the first `size` bytes of the result
+ * `known` to the caller's struct `out`, and zeros behind what this library knows.
+ * MPS_ERROR_ARGUMENT for NULL or a size of 0; then nothing is written. */
+mps_status mpsi_out_write(mps_context *context, const char *function, void *out, size_t size,
+                          const void *known, size_t known_size);
 
 /* ---- threads --------------------------------------------------------------------------------- */
 

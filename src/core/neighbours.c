@@ -299,12 +299,9 @@ static void find_pairs(void *data, int64_t block, int32_t worker) {
 
 static const mps_neighbours_def neighbours_defaults = {.struct_size = sizeof(mps_neighbours_def),
                                                        .dim = 2};
-/* Size of the structure in the first release: it may only grow. */
-#define NEIGHBOURS_DEF_MINIMUM (offsetof(mps_neighbours_def, reserved) + sizeof(int32_t))
 
 mps_status mps_neighbours_def_init(mps_neighbours_def *def, size_t size) {
-  return mpsi_def_init(def, size, NEIGHBOURS_DEF_MINIMUM, &neighbours_defaults,
-                       sizeof neighbours_defaults);
+  return MPSI_DEF_INIT(mps_neighbours_def, def, size, &neighbours_defaults);
 }
 
 static mps_status check_def(mps_context *context, const char *function,
@@ -343,8 +340,7 @@ mps_status mps_neighbours_create(mps_context *context, const mps_neighbours_def 
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   mps_neighbours_def known = neighbours_defaults;
-  mps_status status =
-      mpsi_def_read(context, __func__, def, NEIGHBOURS_DEF_MINIMUM, &known, sizeof known);
+  mps_status status = MPSI_DEF_READ(context, __func__, mps_neighbours_def, def, &known);
   if (status == MPS_OK) status = check_def(context, __func__, &known);
   if (status != MPS_OK) return status;
   mps_neighbours *nb = mpsi_alloc(context, 1, sizeof *nb);

@@ -9,12 +9,9 @@
 
 static const mps_particles_def particles_defaults = {.struct_size = sizeof(mps_particles_def),
                                                      .dim = 2};
-/* Size of the structure in the first release: it may only grow. */
-#define PARTICLES_DEF_MINIMUM (offsetof(mps_particles_def, origin) + sizeof(double[3]))
 
 mps_status mps_particles_def_init(mps_particles_def *def, size_t size) {
-  return mpsi_def_init(def, size, PARTICLES_DEF_MINIMUM, &particles_defaults,
-                       sizeof particles_defaults);
+  return MPSI_DEF_INIT(mps_particles_def, def, size, &particles_defaults);
 }
 
 /* ---- life ------------------------------------------------------------------------------------ */
@@ -52,8 +49,7 @@ mps_status mps_particles_create(mps_context *context, const mps_particles_def *d
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   mps_particles_def known = particles_defaults;
-  mps_status status =
-      mpsi_def_read(context, __func__, def, PARTICLES_DEF_MINIMUM, &known, sizeof known);
+  mps_status status = MPSI_DEF_READ(context, __func__, mps_particles_def, def, &known);
   if (status == MPS_OK) status = check_def(context, __func__, &known);
   if (status != MPS_OK) return status;
   mps_particles *p = mpsi_alloc(context, 1, sizeof *p);

@@ -104,8 +104,7 @@ static const mps_viscous_def viscous_defaults = {
     .struct_size = sizeof(mps_viscous_def), .normal = 1, .factor = 1.0};
 
 mps_status mps_viscous_def_init(mps_viscous_def *def, size_t size) {
-  return mpsi_def_init(def, size, sizeof viscous_defaults, &viscous_defaults,
-                       sizeof viscous_defaults);
+  return MPSI_DEF_INIT(mps_viscous_def, def, size, &viscous_defaults);
 }
 
 static mps_status check_viscous(mps_context *context, const mps_viscous_def *def) {
@@ -141,7 +140,7 @@ mps_status mps_dynamics_viscous(mps_dynamics *dynamics, const mps_viscous_def *u
   mps_viscous_def def = viscous_defaults;
   mps_status status = MPS_OK;
   if (user_def)
-    status = mpsi_def_read(dynamics->context, __func__, user_def, sizeof def, &def, sizeof def);
+    status = MPSI_DEF_READ(dynamics->context, __func__, mps_viscous_def, user_def, &def);
   if (status == MPS_OK) status = check_viscous(dynamics->context, &def);
   if (status == MPS_OK) status = check_list(dynamics, __func__, count, ids);
   if (status != MPS_OK) return status;

@@ -17,11 +17,9 @@ static const mps_dynamics_def dynamics_defaults = {
     .f2 = 14.0,
     .divergence = 1e15,
 };
-#define DYNAMICS_DEF_MINIMUM sizeof(mps_dynamics_def)
 
 mps_status mps_dynamics_def_init(mps_dynamics_def *def, size_t size) {
-  return mpsi_def_init(def, size, DYNAMICS_DEF_MINIMUM, &dynamics_defaults,
-                       sizeof dynamics_defaults);
+  return MPSI_DEF_INIT(mps_dynamics_def, def, size, &dynamics_defaults);
 }
 
 /* Extent of a set in spacings: positions keep a millionth of one. */
@@ -402,8 +400,7 @@ mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
                      "the particle set was made from another context");
   mps_dynamics_def def = dynamics_defaults;
   mps_status status = MPS_OK;
-  if (user_def)
-    status = mpsi_def_read(context, __func__, user_def, DYNAMICS_DEF_MINIMUM, &def, sizeof def);
+  if (user_def) status = MPSI_DEF_READ(context, __func__, mps_dynamics_def, user_def, &def);
   if (status == MPS_OK) status = check_choices(context, &def);
   if (status == MPS_OK) status = check_numbers(context, &def);
   if (status == MPS_OK) status = check_state(context, particles);

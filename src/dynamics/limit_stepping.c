@@ -8,8 +8,7 @@ static const mps_bisection_def bisection_defaults = {
     .struct_size = sizeof(mps_bisection_def), .criterion = 1e15, .accuracy = 1.2, .duration = 2.5};
 
 mps_status mps_bisection_def_init(mps_bisection_def *def, size_t size) {
-  return mpsi_def_init(def, size, sizeof bisection_defaults, &bisection_defaults,
-                       sizeof bisection_defaults);
+  return MPSI_DEF_INIT(mps_bisection_def, def, size, &bisection_defaults);
 }
 
 static mps_status check(mps_context *context, const mps_bisection_def *def) {
@@ -121,7 +120,7 @@ mps_status mps_dynamics_limit_stepping(mps_dynamics *dynamics, const mps_bisecti
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   mps_bisection_def def = bisection_defaults;
   mps_status status = MPS_OK;
-  if (user_def) status = mpsi_def_read(context, __func__, user_def, sizeof def, &def, sizeof def);
+  if (user_def) status = MPSI_DEF_READ(context, __func__, mps_bisection_def, user_def, &def);
   if (status == MPS_OK) status = check(context, &def);
   double lower = def.lower, upper = def.upper;
   if (status == MPS_OK && (lower == 0.0 || upper == 0.0)) {

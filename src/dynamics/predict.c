@@ -24,8 +24,7 @@ static const mps_predict_def predict_defaults = {.struct_size = sizeof(mps_predi
                                                  .radius_ratio = 1.5};
 
 mps_status mps_predict_def_init(mps_predict_def *def, size_t size) {
-  return mpsi_def_init(def, size, sizeof predict_defaults, &predict_defaults,
-                       sizeof predict_defaults);
+  return MPSI_DEF_INIT(mps_predict_def, def, size, &predict_defaults);
 }
 
 /* Symbol of the tangent at wave numbers (a, b)/D, with lengths in D and velocities in Vs: real
@@ -128,7 +127,7 @@ mps_status mps_dynamics_predict_dt(mps_context *context, const mps_predict_def *
   if (!context) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   mps_predict_def def = predict_defaults;
-  mps_status status = mpsi_def_read(context, __func__, user_def, sizeof def, &def, sizeof def);
+  mps_status status = MPSI_DEF_READ(context, __func__, mps_predict_def, user_def, &def);
   if (status == MPS_OK) status = check(context, &def);
   if (status != MPS_OK) return status;
   const double pi = 3.14159265358979323846, h = def.damping;

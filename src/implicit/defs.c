@@ -17,11 +17,9 @@ const mps_newmark_def mpsi_newmark_defaults = {
     .struct_size = sizeof(mps_newmark_def), .beta = 0.25, .gamma = 0.5};
 
 mps_status mps_elastic_def_init(mps_elastic_def *def, size_t size) {
-  return mpsi_def_init(def, size, MPSI_ELASTIC_DEF_MINIMUM, &mpsi_elastic_defaults,
-                       sizeof mpsi_elastic_defaults);
+  return MPSI_DEF_INIT(mps_elastic_def, def, size, &mpsi_elastic_defaults);
 }
 
 mps_status mps_newmark_def_init(mps_newmark_def *def, size_t size) {
-  return mpsi_def_init(def, size, MPSI_NEWMARK_DEF_MINIMUM, &mpsi_newmark_defaults,
-                       sizeof mpsi_newmark_defaults);
+  return MPSI_DEF_INIT(mps_newmark_def, def, size, &mpsi_newmark_defaults);
 }

@@ -50,8 +50,7 @@ static mps_status read_def(mps_context *context, const char *function, const mps
                            int32_t dim, mps_elastic_def *def) {
   *def = mpsi_elastic_defaults;
   mps_status status = MPS_OK;
-  if (user)
-    status = mpsi_def_read(context, function, user, MPSI_ELASTIC_DEF_MINIMUM, def, sizeof *def);
+  if (user) status = MPSI_DEF_READ(context, function, mps_elastic_def, user, def);
   const struct {
     const char *name;
     int32_t value, low, high;

@@ -73,8 +73,7 @@ static void impose(mps_elastic *e, bool prescribed, double *values) {
 mps_status mps_elastic_start(mps_elastic *e, const mps_newmark_def *user_def) {
   if (!e) return MPS_ERROR_ARGUMENT;
   mps_newmark_def def = mpsi_newmark_defaults;
-  mps_status status =
-      mpsi_def_read(e->context, __func__, user_def, MPSI_NEWMARK_DEF_MINIMUM, &def, sizeof def);
+  mps_status status = MPSI_DEF_READ(e->context, __func__, mps_newmark_def, user_def, &def);
   if (status == MPS_OK) status = check_def(e->context, __func__, &def);
   if (status == MPS_OK) status = mpsi_elastic_read_mass(e, __func__);
   if (status == MPS_OK) status = mpsi_elastic_prepare(e, __func__);

@@ -45,8 +45,7 @@ static mps_status read_info(mps_context *context, const char *function, const mp
                             mps_checkpoint *out) {
   if (!info) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "info is NULL");
   (void)mps_checkpoint_init(out, sizeof *out);
-  const mps_status status =
-      mpsi_def_read(context, function, info, MPSI_CHECKPOINT_MINIMUM, out, sizeof *out);
+  const mps_status status = MPSI_DEF_READ(context, function, mps_checkpoint, info, out);
   if (status == MPS_OK && !memchr(out->user_key, '\0', sizeof out->user_key))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "user_key is '%.64s...', must be terminated: at most 63 characters",

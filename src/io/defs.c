@@ -6,11 +6,9 @@ static const mps_recorder_def recorder_defaults = {.struct_size = sizeof(mps_rec
 static const mps_checkpoint checkpoint_defaults = {.struct_size = sizeof(mps_checkpoint)};
 
 mps_status mps_recorder_def_init(mps_recorder_def *def, size_t size) {
-  return mpsi_def_init(def, size, MPSI_RECORDER_DEF_MINIMUM, &recorder_defaults,
-                       sizeof recorder_defaults);
+  return MPSI_DEF_INIT(mps_recorder_def, def, size, &recorder_defaults);
 }
 
 mps_status mps_checkpoint_init(mps_checkpoint *info, size_t size) {
-  return mpsi_def_init(info, size, MPSI_CHECKPOINT_MINIMUM, &checkpoint_defaults,
-                       sizeof checkpoint_defaults);
+  return MPSI_DEF_INIT(mps_checkpoint, info, size, &checkpoint_defaults);
 }

@@ -115,9 +115,7 @@ mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *us
   mps_context *context = mpsi_mpm_context(mpm);
   mps_checkpoint info = mps_checkpoint_defaults();
   mps_status status = MPS_OK;
-  if (user_info)
-    status =
-        mpsi_def_read(context, __func__, user_info, MPSI_CHECKPOINT_MINIMUM, &info, sizeof info);
+  if (user_info) status = MPSI_DEF_READ(context, __func__, mps_checkpoint, user_info, &info);
   if (status != MPS_OK) return status;
   info.struct_size = sizeof info;
   info.time = mps_mpm_time(mpm);

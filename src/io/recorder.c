@@ -382,8 +382,7 @@ mps_status mps_recorder_create(mps_context *context, mps_particles *particles,
                      "the particle set was made from another context");
   mps_recorder_def def;
   (void)mps_recorder_def_init(&def, sizeof def);
-  mps_status status =
-      mpsi_def_read(context, __func__, user_def, MPSI_RECORDER_DEF_MINIMUM, &def, sizeof def);
+  mps_status status = MPSI_DEF_READ(context, __func__, mps_recorder_def, user_def, &def);
   if (status == MPS_OK) status = check_def(context, &def);
   if (status != MPS_OK) return status;
   mps_recorder *recorder = mpsi_alloc(context, 1, sizeof *recorder);

@@ -11,8 +11,7 @@ static const mps_newtonian_def newtonian_defaults = {.state = MPS_STATE_TAIT};
 
 #define DEF_INIT(name)                                                                             \
   mps_status mps_##name##_def_init(mps_##name##_def *def, size_t size) {                           \
-    return mpsi_def_init(def, size, sizeof name##_defaults, &name##_defaults,                      \
-                         sizeof name##_defaults);                                                  \
+    return MPSI_DEF_INIT(mps_##name##_def, def, size, &name##_defaults);                           \
   }
 DEF_INIT(von_mises)
 DEF_INIT(drucker_prager)
@@ -62,7 +61,7 @@ mps_status mps_material_von_mises(mps_context *context, const mps_von_mises_def 
   mps_von_mises_def def = von_mises_defaults;
   mps_status status = check_out(context, __func__, out);
   if (status == MPS_OK)
-    status = mpsi_def_read(context, __func__, user_def, sizeof def, &def, sizeof def);
+    status = MPSI_DEF_READ(context, __func__, mps_von_mises_def, user_def, &def);
   if (status == MPS_OK) status = mpsi_check_elastic(context, __func__, def.young, def.poisson);
   if (status == MPS_OK)
     status = mpsi_check_between(context, __func__, "yield stress", " Pa", def.yield_stress, 0.0,
@@ -100,7 +99,7 @@ mps_status mps_material_drucker_prager(mps_context *context, const mps_drucker_p
   mps_drucker_prager_def def = drucker_prager_defaults;
   mps_status status = check_out(context, __func__, out);
   if (status == MPS_OK)
-    status = mpsi_def_read(context, __func__, user_def, sizeof def, &def, sizeof def);
+    status = MPSI_DEF_READ(context, __func__, mps_drucker_prager_def, user_def, &def);
   if (status == MPS_OK) status = check_drucker_prager(context, __func__, &def);
   if (status != MPS_OK) return status;
   mpsi_law law = mpsi_law_elastic(def.young, def.poisson);
@@ -114,7 +113,7 @@ mps_status mps_material_mohr_coulomb(mps_context *context, const mps_mohr_coulom
   mps_mohr_coulomb_def def = mohr_coulomb_defaults;
   mps_status status = check_out(context, __func__, out);
   if (status == MPS_OK)
-    status = mpsi_def_read(context, __func__, user_def, sizeof def, &def, sizeof def);
+    status = MPSI_DEF_READ(context, __func__, mps_mohr_coulomb_def, user_def, &def);
   if (status == MPS_OK) status = mpsi_check_elastic(context, __func__, def.young, def.poisson);
   if (status == MPS_OK)
     status = mpsi_check_friction(context, __func__, def.friction, def.dilation, def.cohesion);
@@ -149,7 +148,7 @@ mps_status mps_material_newtonian(mps_context *context, const mps_newtonian_def 
   mps_newtonian_def def = newtonian_defaults;
   mps_status status = check_out(context, __func__, out);
   if (status == MPS_OK)
-    status = mpsi_def_read(context, __func__, user_def, sizeof def, &def, sizeof def);
+    status = MPSI_DEF_READ(context, __func__, mps_newtonian_def, user_def, &def);
   if (status == MPS_OK) status = check_newtonian(context, __func__, &def);
   if (status != MPS_OK) return status;
   const mpsi_law law = {.bulk = def.bulk_modulus,

@@ -11,8 +11,7 @@ static const mps_geostatic_def geostatic_defaults = {
     .struct_size = sizeof(mps_geostatic_def), .gravity = 9.81, .vertical = -1, .surface = NAN};
 
 mps_status mps_geostatic_def_init(mps_geostatic_def *def, size_t size) {
-  return mpsi_def_init(def, size, sizeof geostatic_defaults, &geostatic_defaults,
-                       sizeof geostatic_defaults);
+  return MPSI_DEF_INIT(mps_geostatic_def, def, size, &geostatic_defaults);
 }
 
 static const char set_geostatic[] = "mps_particles_set_geostatic";
@@ -232,8 +231,7 @@ mps_status mps_particles_set_geostatic(mps_particles *particles, const mps_geost
   if (!particles) return MPS_ERROR_ARGUMENT;
   geostatic g = {
       .set = particles, .context = mpsi_particles_context(particles), .def = geostatic_defaults};
-  mps_status status =
-      mpsi_def_read(g.context, set_geostatic, def, sizeof g.def, &g.def, sizeof g.def);
+  mps_status status = MPSI_DEF_READ(g.context, set_geostatic, mps_geostatic_def, def, &g.def);
   if (status != MPS_OK) return status;
   look_at_set(&g);
   g.up = g.def.vertical == -1 ? g.dim - 1 : g.def.vertical;

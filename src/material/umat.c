@@ -30,7 +30,7 @@ typedef struct umat_law {
 static const mps_umat_def umat_defaults = {.name = "umat", .length = 1.0, .keeps_strain = 1};
 
 mps_status mps_umat_def_init(mps_umat_def *def, size_t size) {
-  return mpsi_def_init(def, size, sizeof umat_defaults, &umat_defaults, sizeof umat_defaults);
+  return MPSI_DEF_INIT(mps_umat_def, def, size, &umat_defaults);
 }
 
 /* ---- arguments --------------------------------------------------------------------------------
@@ -231,7 +231,7 @@ mps_status mps_material_umat(mps_context *context, const mps_umat_def *user_def,
   *out = NULL;
   mps_umat_def def = umat_defaults;
   mps_material *material = NULL;
-  mps_status status = mpsi_def_read(context, __func__, user_def, sizeof def, &def, sizeof def);
+  mps_status status = MPSI_DEF_READ(context, __func__, mps_umat_def, user_def, &def);
   if (status == MPS_OK) status = check_umat(context, __func__, &def);
   if (status == MPS_OK) status = make_law(context, __func__, &def, &material);
   if (status != MPS_OK) return status;

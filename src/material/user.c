@@ -5,8 +5,7 @@
 static const mps_user_law_def user_law_defaults = {.name = "user", .turns_stress = 1};
 
 mps_status mps_user_law_def_init(mps_user_law_def *def, size_t size) {
-  return mpsi_def_init(def, size, sizeof user_law_defaults, &user_law_defaults,
-                       sizeof user_law_defaults);
+  return MPSI_DEF_INIT(mps_user_law_def, def, size, &user_law_defaults);
 }
 
 static bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
@@ -97,7 +96,6 @@ mps_status mps_material_user(mps_context *context, const mps_user_law_def *user_
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   mps_user_law_def def = user_law_defaults;
-  const mps_status status =
-      mpsi_def_read(context, __func__, user_def, sizeof def, &def, sizeof def);
+  const mps_status status = MPSI_DEF_READ(context, __func__, mps_user_law_def, user_def, &def);
   return status == MPS_OK ? mpsi_material_make_user(context, __func__, &def, out) : status;
 }

@@ -17,11 +17,9 @@ static const mps_mpm_def mpm_defaults = {.struct_size = sizeof(mps_mpm_def),
                                          .upper = {INFINITY, INFINITY, INFINITY},
                                          .courant = 0.5,
                                          .flip = 1.0};
-/* Size of the structure in the first release: it may only grow. */
-#define MPM_DEF_MINIMUM (offsetof(mps_mpm_def, courant) + sizeof(double))
 
 mps_status mps_mpm_def_init(mps_mpm_def *def, size_t size) {
-  return mpsi_def_init(def, size, MPM_DEF_MINIMUM, &mpm_defaults, sizeof mpm_defaults);
+  return MPSI_DEF_INIT(mps_mpm_def, def, size, &mpm_defaults);
 }
 
 /* ---- checks ---------------------------------------------------------------------------------- */
@@ -312,7 +310,7 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   int64_t low[3], high[3];
   mps_status status = check_set(context, particles);
   if (status == MPS_OK && user_def)
-    status = mpsi_def_read(context, __func__, user_def, MPM_DEF_MINIMUM, &def, sizeof def);
+    status = MPSI_DEF_READ(context, __func__, mps_mpm_def, user_def, &def);
   if (status == MPS_OK) status = check_choices(context, &def);
   if (status == MPS_OK && mps_particles_dim(particles) != dim_of(&def))
     status = mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,

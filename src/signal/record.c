@@ -11,11 +11,9 @@ static const mps_signal_record_def record_defaults = {
     .baseline = MPS_SIGNAL_BASELINE_LINEAR,
     .scale = 1.0,
 };
-/* Size of the structure in the first release: it may only grow. */
-#define RECORD_DEF_MINIMUM (offsetof(mps_signal_record_def, taper) + sizeof(double))
 
 mps_status mps_signal_record_def_init(mps_signal_record_def *def, size_t size) {
-  return mpsi_def_init(def, size, RECORD_DEF_MINIMUM, &record_defaults, sizeof record_defaults);
+  return MPSI_DEF_INIT(mps_signal_record_def, def, size, &record_defaults);
 }
 
 /* ---- formats --------------------------------------------------------------------------------- */
@@ -161,7 +159,7 @@ mps_status mps_signal_record(mps_context *context, const char *path,
   if (!path) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "path is NULL");
   mps_signal_record_def known = record_defaults;
   mps_status status = MPS_OK;
-  if (def) status = mpsi_def_read(context, __func__, def, RECORD_DEF_MINIMUM, &known, sizeof known);
+  if (def) status = MPSI_DEF_READ(context, __func__, mps_signal_record_def, def, &known);
   if (status == MPS_OK) status = check_def(context, __func__, &known);
   if (status != MPS_OK) return status;
   mpsi_text text;

@@ -1,0 +1,42 @@
+/* released_sizes.h - the size that each definition struct had at its first release. Create and init
+ * functions accept every size from that on; what a smaller struct lacks has its default.
+ * Written by scripts/update-sizes: a size changes no more once its version is released.
+ *
+ * X(struct, init function, version of the first release, bytes where pointers have 64 bits)
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_RELEASED_SIZES_H
+#define MPSI_RELEASED_SIZES_H
+
+/* clang-format off */
+#define MPSI_RELEASED_SIZES(X) \
+  X(mps_bisection_def, mps_bisection_def_init, "0.2", 48) \
+  X(mps_body_def, mps_body_def_init, "0.2", 200) \
+  X(mps_checkpoint, mps_checkpoint_init, "0.2", 112) \
+  X(mps_context_def, mps_context_def_init, "0.2", 104) \
+  X(mps_drucker_prager_def, mps_drucker_prager_def_init, "0.2", 56) \
+  X(mps_dynamics_def, mps_dynamics_def_init, "0.2", 80) \
+  X(mps_elastic_def, mps_elastic_def_init, "0.2", 80) \
+  X(mps_geostatic_def, mps_geostatic_def_init, "0.2", 72) \
+  X(mps_mohr_coulomb_def, mps_mohr_coulomb_def_init, "0.2", 56) \
+  X(mps_mpm_def, mps_mpm_def_init, "0.2", 232) \
+  X(mps_neighbours_def, mps_neighbours_def_init, "0.2", 24) \
+  X(mps_newmark_def, mps_newmark_def_init, "0.2", 32) \
+  X(mps_newtonian_def, mps_newtonian_def_init, "0.2", 32) \
+  X(mps_particles_def, mps_particles_def_init, "0.2", 40) \
+  X(mps_predict_def, mps_predict_def_init, "0.2", 64) \
+  X(mps_recorder_def, mps_recorder_def_init, "0.2", 32) \
+  X(mps_signal_record_def, mps_signal_record_def_init, "0.2", 32) \
+  X(mps_umat_def, mps_umat_def_init, "0.2", 88) \
+  X(mps_user_law_def, mps_user_law_def_init, "0.2", 72) \
+  X(mps_viscous_def, mps_viscous_def_init, "0.2", 56) \
+  X(mps_von_mises_def, mps_von_mises_def_init, "0.2", 40)
+/* clang-format on */
+
+/* MPSI_RELEASED_<struct>: its size. */
+enum {
+#define MPSI_RELEASED_ENTRY(type, init, version, size) MPSI_RELEASED_##type = (size),
+  MPSI_RELEASED_SIZES(MPSI_RELEASED_ENTRY)
+#undef MPSI_RELEASED_ENTRY
+};
+
+#endif

@@ -1,0 +1,317 @@
+/* test_growth.c - structs may grow: programs built against an older libmps pass smaller
+ * definitions, programs built against a newer one larger definitions; and no getter writes beyond
+ * the caller's struct. Each definition struct of core/released_sizes.h is tried with its released
+ * size. SPDX-License-Identifier: BSD-3-Clause */
+#include "test_fixture.h"
+
+#include "core/internal.h"
+
+#include <mps/body.h>
+#include <mps/dynamics.h>
+#include <mps/elastic.h>
+#include <mps/geostatic.h>
+#include <mps/io.h>
+#include <mps/material.h>
+#include <mps/mpm.h>
+#include <mps/neighbours.h>
+#include <mps/particles.h>
+#include <mps/signal.h>
+
+#define MORE 24 /* bytes of the members that a newer libmps would have */
+
+/* ---- one way to use each struct ---------------------------------------------------------------
+ */
+
+/* A square of 4 x 4 particles with every property that a solver may read. */
+static mps_particles *square(void) {
+  mps_particles_def def = mps_particles_defaults();
+  def.spacing = 0.5;
+  mps_particles *set = NULL;
+  mps_assert_ok(context, mps_particles_create(context, &def, &set));
+  const double lo[2] = {0.0, 0.0}, hi[2] = {2.0, 2.0};
+  mps_assert_ok(context, mps_particles_fill_box(set, lo, hi, NULL));
+  static const struct {
+    const char *name;
+    double value;
+  } fields[] = {{"density", 2000.0},          {"young", 1e7},   {"poisson", 0.3},
+                {"shear_velocity", 100.0},    {"damping", 0.0}, {"velocity", 0.0},
+                {"pressure_velocity", 200.0}, {"stress", 0.0}};
+  for (size_t k = 0; k < sizeof fields / sizeof *fields; k++)
+    mps_assert_ok(context, mps_particles_set(set, fields[k].name, 0, fields[k].value));
+  return set;
+}
+
+/* Each `need` writes what has no default; each `use` makes an object and destroys it. */
+static void need_nothing(void *def) { (void)def; }
+
+static mps_status use_context(const void *def) {
+  mps_context *made = NULL;
+  const mps_status status = mps_context_create(def, &made, NULL, 0);
+  mps_context_destroy(&made);
+  return status;
+}
+
+static void need_particles(void *def) { ((mps_particles_def *)def)->spacing = 0.1; }
+static mps_status use_particles(const void *def) {
+  mps_particles *made = NULL;
+  const mps_status status = mps_particles_create(context, def, &made);
+  mps_particles_destroy(&made);
+  return status;
+}
+
+static void need_neighbours(void *def) { ((mps_neighbours_def *)def)->radius = 0.1; }
+static mps_status use_neighbours(const void *def) {
+  mps_neighbours *made = NULL;
+  const mps_status status = mps_neighbours_create(context, def, &made);
+  mps_neighbours_destroy(&made);
+  return status;
+}
+
+static void need_von_mises(void *def) {
+  mps_von_mises_def *d = def;
+  d->young = 1e7;
+  d->yield_stress = 1e4;
+}
+static void need_drucker_prager(void *def) {
+  mps_drucker_prager_def *d = def;
+  d->young = 1e7;
+  d->friction = 0.5;
+}
+static void need_mohr_coulomb(void *def) {
+  mps_mohr_coulomb_def *d = def;
+  d->young = 1e7;
+  d->friction = 0.5;
+}
+static void need_newtonian(void *def) { ((mps_newtonian_def *)def)->bulk_modulus = 1e6; }
+
+#define USE_MATERIAL(name)                                                                         \
+  static mps_status use_##name(const void *def) {                                                  \
+    mps_material *made = NULL;                                                                     \
+    const mps_status status = mps_material_##name(context, def, &made);                            \
+    mps_material_destroy(&made);                                                                   \
+    return status;                                                                                 \
+  }
+USE_MATERIAL(von_mises)
+USE_MATERIAL(drucker_prager)
+USE_MATERIAL(mohr_coulomb)
+USE_MATERIAL(newtonian)
+
+static mps_status use_body(const void *def) {
+  mps_body *made = NULL;
+  const mps_status status = mps_body_create_disc(context, def, 1.0, &made);
+  mps_body_destroy(&made);
+  return status;
+}
+
+static void need_mpm(void *def) { ((mps_mpm_def *)def)->cell = 1.0; }
+static mps_status use_mpm(const void *def) {
+  mps_particles *set = square();
+  mps_material *material = NULL;
+  mps_mpm *made = NULL;
+  mps_assert_ok(context, mps_material_linear_elastic(context, 1e7, 0.3, &material));
+  const mps_status status = mps_mpm_create(context, set, material, def, &made);
+  mps_mpm_destroy(&made);
+  mps_material_destroy(&material);
+  mps_particles_destroy(&set);
+  return status;
+}
+
+static mps_status use_dynamics(const void *def) {
+  mps_particles *set = square();
+  mps_dynamics *made = NULL;
+  const mps_status status = mps_dynamics_create(context, set, def, &made);
+  mps_dynamics_destroy(&made);
+  mps_particles_destroy(&set);
+  return status;
+}
+
+static mps_status use_elastic(const void *def) {
+  mps_particles *set = square();
+  mps_elastic *made = NULL;
+  const mps_status status = mps_elastic_create(context, set, def, &made);
+  mps_elastic_destroy(&made);
+  mps_particles_destroy(&set);
+  return status;
+}
+
+static void need_geostatic(void *def) {
+  static const mps_soil_layer layer = {.thickness = 10.0, .k0 = 0.5, .density = 2000.0};
+  mps_geostatic_def *d = def;
+  d->layer_count = 1;
+  d->layers = &layer;
+}
+static mps_status use_geostatic(const void *def) {
+  mps_particles *set = square();
+  const mps_status status = mps_particles_set_geostatic(set, def);
+  mps_particles_destroy(&set);
+  return status;
+}
+
+static mps_status use_record(const void *def) {
+  mps_signal *made = NULL;
+  const mps_status status = mps_signal_record(context, TEST_DATA "/sample.AT2", def, &made);
+  mps_signal_destroy(&made);
+  return status;
+}
+
+typedef struct user {
+  const char *type;
+  void (*need)(void *def);
+  mps_status (*use)(const void *def);
+} user;
+
+static const user users[] = {
+    {"mps_body_def", need_nothing, use_body},
+    {"mps_context_def", need_nothing, use_context},
+    {"mps_drucker_prager_def", need_drucker_prager, use_drucker_prager},
+    {"mps_dynamics_def", need_nothing, use_dynamics},
+    {"mps_elastic_def", need_nothing, use_elastic},
+    {"mps_geostatic_def", need_geostatic, use_geostatic},
+    {"mps_mohr_coulomb_def", need_mohr_coulomb, use_mohr_coulomb},
+    {"mps_mpm_def", need_mpm, use_mpm},
+    {"mps_neighbours_def", need_neighbours, use_neighbours},
+    {"mps_newtonian_def", need_newtonian, use_newtonian},
+    {"mps_particles_def", need_particles, use_particles},
+    {"mps_signal_record_def", need_nothing, use_record},
+    {"mps_von_mises_def", need_von_mises, use_von_mises},
+};
+
+/* ---- every struct -----------------------------------------------------------------------------
+ */
+
+typedef mps_status (*init_fn)(void *def, size_t size);
+
+#define INIT(type, init, version, size)                                                            \
+  static mps_status type##_init_any(void *def, size_t bytes) { return init((type *)def, bytes); }
+MPSI_RELEASED_SIZES(INIT)
+
+typedef struct row {
+  const char *type;
+  size_t released, now;
+  init_fn init;
+} row;
+
+#define ROW(type, init, version, size) {#type, MPSI_RELEASED(type), sizeof(type), type##_init_any},
+static const row rows[] = {MPSI_RELEASED_SIZES(ROW)};
+#define ROWS (sizeof rows / sizeof *rows)
+
+static const user *user_of(const char *type) {
+  for (size_t k = 0; k < sizeof users / sizeof *users; k++)
+    if (strcmp(users[k].type, type) == 0) return &users[k];
+  return NULL;
+}
+
+/* Exactly `size` bytes, so that a read beyond them is seen by the address sanitizer. */
+static void *definition(const row *r, size_t size) {
+  unsigned char *def = malloc(size);
+  memset(def, 0xee, size);
+  assert_int_equal(r->init(def, size), MPS_OK);
+  uint32_t stored;
+  memcpy(&stored, def, sizeof stored);
+  assert_int_equal(stored, size);
+  return def;
+}
+
+static void init_takes_every_size(void **state) {
+  (void)state;
+  for (size_t k = 0; k < ROWS; k++) {
+    const row *r = &rows[k];
+    if (r->now < r->released) fail_msg("%s has shrunk since its release", r->type);
+    unsigned char *whole = definition(r, r->now), *old = definition(r, r->released);
+    unsigned char *newer = definition(r, r->now + MORE);
+    assert_memory_equal(whole + 4, old + 4, r->released - 4);
+    assert_memory_equal(whole + 4, newer + 4, r->now - 4);
+    for (size_t i = r->now; i < r->now + MORE; i++) assert_int_equal(newer[i], 0);
+    assert_int_equal(r->init(whole, r->released - 1), MPS_ERROR_ARGUMENT);
+    assert_int_equal(r->init(NULL, r->now), MPS_ERROR_ARGUMENT);
+    free(whole);
+    free(old);
+    free(newer);
+  }
+}
+
+/* The first `size` bytes of a good definition. */
+static void *good_definition(const row *r, const user *u, size_t size) {
+  unsigned char *whole = definition(r, r->now), *def = definition(r, size);
+  u->need(whole);
+  const size_t common = size < r->now ? size : r->now;
+  memcpy(def + 4, whole + 4, common - 4);
+  free(whole);
+  return def;
+}
+
+static void expect(const row *r, const user *u, void *def, mps_status expected, const char *what) {
+  const mps_status status = u->use(def);
+  if (status != expected)
+    fail_msg("%s, %s: status %d, expected %d: %s", r->type, what, (int)status, (int)expected,
+             status == MPS_OK ? "" : mps_context_error(context)->message);
+  free(def);
+}
+
+static void create_takes_every_size(void **state) {
+  (void)state;
+  for (size_t k = 0; k < ROWS; k++) {
+    const row *r = &rows[k];
+    const user *u = user_of(r->type);
+    if (!u) continue;
+    expect(r, u, good_definition(r, u, r->now), MPS_OK, "as it is");
+    expect(r, u, good_definition(r, u, r->released), MPS_OK, "as released");
+    expect(r, u, good_definition(r, u, r->now + MORE), MPS_OK, "larger, with zeros");
+    for (size_t at = r->now; at < r->now + MORE; at += MORE - 1) {
+      unsigned char *unknown = good_definition(r, u, r->now + MORE);
+      unknown[at] = 1;
+      expect(r, u, unknown, MPS_ERROR_UNSUPPORTED, "with an unknown member");
+    }
+    unsigned char *small = good_definition(r, u, r->released);
+    const uint32_t size = (uint32_t)r->released - 1;
+    memcpy(small, &size, sizeof size);
+    expect(r, u, small, MPS_ERROR_ARGUMENT, "smaller than released");
+  }
+}
+
+/* ---- results ----------------------------------------------------------------------------------
+ */
+
+static void results_stay_within_the_callers_struct(void **state) {
+  (void)state;
+  const double known[3] = {1.0, 2.0, 3.0};
+  double out[5] = {-1.0, -1.0, -1.0, -1.0, -1.0};
+  mps_assert_ok(context, mpsi_out_write(context, "f", out, 16, known, sizeof known));
+  const double older[5] = {1.0, 2.0, -1.0, -1.0, -1.0};
+  assert_memory_equal(out, older, sizeof out);
+  mps_assert_ok(context, mpsi_out_write(context, "f", out, 32, known, sizeof known));
+  const double newer[5] = {1.0, 2.0, 3.0, 0.0, -1.0};
+  assert_memory_equal(out, newer, sizeof out);
+  mps_assert_fails(context, mpsi_out_write(context, "f", NULL, 8, known, sizeof known),
+                   MPS_ERROR_ARGUMENT, "NULL");
+  mps_assert_fails(context, mpsi_out_write(context, "f", out, 0, known, sizeof known),
+                   MPS_ERROR_ARGUMENT, "size is 0");
+}
+
+/* Field by field: the struct of a caller who knows only its first members. */
+static void descriptions_of_fields_are_sized(void **state) {
+  (void)state;
+  mps_particles *set = square();
+  mps_field_info whole;
+  memset(&whole, 0xee, sizeof whole);
+  mps_assert_ok(context, mps_particles_field(set, 1, &whole));
+  assert_string_equal(whole.name, "position");
+  mps_field_info part;
+  memset(&part, 0xee, sizeof part);
+  mps_assert_ok(context,
+                mps_particles_field_sized(set, 1, &part, offsetof(mps_field_info, meaning)));
+  assert_string_equal(part.name, "position");
+  assert_string_equal(part.unit, "m");
+  assert_int_equal(part.flags, 0xeeeeeeee);
+  mps_particles_destroy(&set);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(init_takes_every_size),
+      cmocka_unit_test(create_takes_every_size),
+      cmocka_unit_test(results_stay_within_the_callers_struct),
+      cmocka_unit_test(descriptions_of_fields_are_sized),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
