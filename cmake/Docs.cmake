@@ -6,4 +6,8 @@ if(DOXYGEN)
             "MPS_DOCS_DIR=${PROJECT_BINARY_DIR}/docs" ${DOXYGEN} docs/Doxyfile
     WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} VERBATIM
     COMMENT "Documentation of the public headers: ${PROJECT_BINARY_DIR}/docs/html/index.html")
+else()
+  add_custom_target(docs
+    COMMAND ${CMAKE_COMMAND} -E echo "The target docs needs doxygen: install it, then configure again."
+    COMMAND ${CMAKE_COMMAND} -E false VERBATIM)
 endif()

@@ -3,6 +3,10 @@
 include(CMakePackageConfigHelpers)
 set(cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/mps)
 
+# As they lie here, so that the links between them hold.
+install(FILES LICENSE README.md CHANGELOG.md CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN Doxyfile EXCLUDE)
+
 install(DIRECTORY include/mps DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/libmps-${PROJECT_VERSION_MAJOR}
         FILES_MATCHING PATTERN "*.h")
 
@@ -12,9 +16,48 @@ install(TARGETS mps_static EXPORT mps-static)
 install(EXPORT mps-shared NAMESPACE mps:: DESTINATION ${cmake_dir})
 install(EXPORT mps-static NAMESPACE mps:: DESTINATION ${cmake_dir})
 
+# link_flags(<variable> <libraries>): libraries found as files become -L and -l flags.
+function(link_flags variable)
+  set(flags "")
+  foreach(library ${ARGN})
+    if(IS_ABSOLUTE "${library}")
+      get_filename_component(dir ${library} DIRECTORY)
+      get_filename_component(name ${library} NAME)
+      if(NOT dir IN_LIST CMAKE_C_IMPLICIT_LINK_DIRECTORIES)
+        list(APPEND flags -L${dir})
+      endif()
+      string(REGEX REPLACE "^lib(.+)\\.(a|so[.0-9]*)$" "-l\\1" name ${name})
+      list(APPEND flags ${name})
+    elseif(library MATCHES "^-")
+      list(APPEND flags ${library})
+    else()
+      list(APPEND flags -l${library})
+    endif()
+  endforeach()
+  list(REMOVE_DUPLICATES flags)
+  set(${variable} "${flags}" PARENT_SCOPE)
+endfunction()
+
+# What an archive needs. Some find modules of CMake ask for a C compiler; a project in C++ alone gets
+# the flags that pkg-config would give.
 get_property(packages GLOBAL PROPERTY MPS_STATIC_PACKAGES)
-list(TRANSFORM packages REPLACE "(.+)" "  find_dependency(\\1)")
-list(JOIN packages "\n" MPS_STATIC_DEPENDENCIES)
+set(MPS_STATIC_DEPENDENCIES "")
+foreach(package ${packages})
+  if(package MATCHES "COMPONENTS C$")
+    get_property(target GLOBAL PROPERTY "MPS_TARGET_OF_${package}")
+    get_property(libraries GLOBAL PROPERTY "MPS_LIBRARIES_OF_${package}")
+    link_flags(flags ${libraries})
+    string(APPEND MPS_STATIC_DEPENDENCIES
+      "  if(CMAKE_C_COMPILER_LOADED)\n"
+      "    find_dependency(${package})\n"
+      "  elseif(NOT TARGET ${target})\n"
+      "    add_library(${target} INTERFACE IMPORTED)\n"
+      "    set_target_properties(${target} PROPERTIES INTERFACE_LINK_LIBRARIES \"${flags}\")\n"
+      "  endif()\n")
+  else()
+    string(APPEND MPS_STATIC_DEPENDENCIES "  find_dependency(${package})\n")
+  endif()
+endforeach()
 configure_package_config_file(cmake/mpsConfig.cmake.in ${PROJECT_BINARY_DIR}/mpsConfig.cmake
                               INSTALL_DESTINATION ${cmake_dir})
 # Until 1.0 every minor version may break the ABI.
@@ -28,26 +71,10 @@ file(GLOB find_modules ${PROJECT_SOURCE_DIR}/cmake/Find*.cmake)
 install(FILES ${PROJECT_BINARY_DIR}/mpsConfig.cmake ${PROJECT_BINARY_DIR}/mpsConfigVersion.cmake
               ${find_modules} DESTINATION ${cmake_dir})
 
-# libmps.pc: libraries found as files become -L and -l flags. The prefix is relative to the file's
-# own place, so that an installed tree may be moved.
+# libmps.pc. The prefix is relative to the file's own place, so that an installed tree may be moved;
+# pkg-config wants a space escaped.
 get_property(libraries GLOBAL PROPERTY MPS_STATIC_LIBRARIES)
-set(flags "")
-foreach(library ${libraries})
-  if(IS_ABSOLUTE "${library}")
-    get_filename_component(dir ${library} DIRECTORY)
-    get_filename_component(name ${library} NAME)
-    if(NOT dir IN_LIST CMAKE_C_IMPLICIT_LINK_DIRECTORIES)
-      list(APPEND flags -L${dir})
-    endif()
-    string(REGEX REPLACE "^lib(.+)\\.(a|so[.0-9]*)$" "-l\\1" name ${name})
-    list(APPEND flags ${name})
-  elseif(library MATCHES "^-")
-    list(APPEND flags ${library})
-  else()
-    list(APPEND flags -l${library})
-  endif()
-endforeach()
-list(REMOVE_DUPLICATES flags)
+link_flags(flags ${libraries})
 list(JOIN flags " " MPS_PC_LIBS_PRIVATE)
 set(MPS_PC_PREFIX ${CMAKE_INSTALL_PREFIX})
 if(NOT IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}")
@@ -60,6 +87,9 @@ foreach(kind LIB INCLUDE)
   if(NOT IS_ABSOLUTE "${CMAKE_INSTALL_${kind}DIR}")
     set(MPS_PC_${kind}DIR "\${prefix}/${CMAKE_INSTALL_${kind}DIR}")
   endif()
+endforeach()
+foreach(variable PREFIX LIBDIR INCLUDEDIR)
+  string(REPLACE " " "\\ " MPS_PC_${variable} "${MPS_PC_${variable}}")
 endforeach()
 configure_file(pkgconfig/libmps.pc.in ${PROJECT_BINARY_DIR}/libmps.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/libmps.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -12,8 +12,8 @@
 #ifndef LIBMPS_BODY_H
 #define LIBMPS_BODY_H
 
-#include <mps/signal.h>
-#include <mps/solver.h>
+#include "signal.h"
+#include "solver.h"
 
 MPS_EXTERN_C_BEGIN
 

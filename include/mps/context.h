@@ -7,7 +7,7 @@
 #ifndef LIBMPS_CONTEXT_H
 #define LIBMPS_CONTEXT_H
 
-#include <mps/base.h>
+#include "base.h"
 
 MPS_EXTERN_C_BEGIN
 

@@ -24,10 +24,10 @@
 #ifndef LIBMPS_DYNAMICS_H
 #define LIBMPS_DYNAMICS_H
 
-#include <mps/kernel.h>
-#include <mps/particles.h>
-#include <mps/signal.h>
-#include <mps/solver.h>
+#include "kernel.h"
+#include "particles.h"
+#include "signal.h"
+#include "solver.h"
 
 MPS_EXTERN_C_BEGIN
 

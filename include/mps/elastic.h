@@ -22,7 +22,7 @@
 #ifndef LIBMPS_ELASTIC_H
 #define LIBMPS_ELASTIC_H
 
-#include <mps/particles.h>
+#include "particles.h"
 
 MPS_EXTERN_C_BEGIN
 

@@ -9,7 +9,7 @@
 #ifndef LIBMPS_GEOSTATIC_H
 #define LIBMPS_GEOSTATIC_H
 
-#include <mps/particles.h>
+#include "particles.h"
 
 MPS_EXTERN_C_BEGIN
 

@@ -12,8 +12,8 @@
 #ifndef LIBMPS_IO_H
 #define LIBMPS_IO_H
 
-#include <mps/mpm.h>
-#include <mps/particles.h>
+#include "mpm.h"
+#include "particles.h"
 
 MPS_EXTERN_C_BEGIN
 

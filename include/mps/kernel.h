@@ -5,7 +5,7 @@
 #ifndef LIBMPS_KERNEL_H
 #define LIBMPS_KERNEL_H
 
-#include <mps/context.h>
+#include "context.h"
 
 MPS_EXTERN_C_BEGIN
 

@@ -12,7 +12,7 @@
 #ifndef LIBMPS_MATERIAL_H
 #define LIBMPS_MATERIAL_H
 
-#include <mps/context.h>
+#include "context.h"
 
 MPS_EXTERN_C_BEGIN
 

@@ -23,10 +23,10 @@
 #ifndef LIBMPS_MPM_H
 #define LIBMPS_MPM_H
 
-#include <mps/body.h>
-#include <mps/material.h>
-#include <mps/particles.h>
-#include <mps/signal.h>
+#include "body.h"
+#include "material.h"
+#include "particles.h"
+#include "signal.h"
 
 MPS_EXTERN_C_BEGIN
 

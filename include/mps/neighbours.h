@@ -3,7 +3,7 @@
 #ifndef LIBMPS_NEIGHBOURS_H
 #define LIBMPS_NEIGHBOURS_H
 
-#include <mps/context.h>
+#include "context.h"
 
 MPS_EXTERN_C_BEGIN
 

@@ -8,7 +8,7 @@
 #ifndef LIBMPS_PARTICLES_H
 #define LIBMPS_PARTICLES_H
 
-#include <mps/context.h>
+#include "context.h"
 
 MPS_EXTERN_C_BEGIN
 

@@ -12,7 +12,7 @@
 #ifndef LIBMPS_SIGNAL_H
 #define LIBMPS_SIGNAL_H
 
-#include <mps/context.h>
+#include "context.h"
 
 MPS_EXTERN_C_BEGIN
 

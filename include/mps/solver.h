@@ -16,7 +16,7 @@
 #ifndef LIBMPS_SOLVER_H
 #define LIBMPS_SOLVER_H
 
-#include <mps/base.h>
+#include "base.h"
 
 MPS_EXTERN_C_BEGIN
 
