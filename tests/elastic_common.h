@@ -95,13 +95,14 @@ static inline double cantilever_u(const cantilever *c, double x, double y) {
          (c->young * inertia);
 }
 
-static inline void cantilever_traction(void *user, const double *x, const double *normal,
-                                       double *traction) {
+static inline mps_status cantilever_traction(void *user, const double *x, const double *normal,
+                                             double *traction) {
   const cantilever *c = user;
   const double h = c->height;
   (void)normal;
   traction[0] = 0.0;
   traction[1] = -6.0 / (h * h * h) * (h * h / 4 - x[1] * x[1]);
+  return MPS_OK;
 }
 
 /* nx x ny particles; `boundary`: they lie on the free and loaded surfaces too. */

@@ -49,9 +49,11 @@ static bool support_wall(model *m, const mps_elastic_def *def, int64_t *ids, dou
          app_check(m->a, mps_elastic_cut(m->elastic, 0, 1, count, ids));
 }
 
-static void end_traction(void *user, const double *x, const double *normal, double *traction) {
+static mps_status end_traction(void *user, const double *x, const double *normal,
+                               double *traction) {
   (void)normal;
   beam_traction(user, x[1], traction);
+  return MPS_OK;
 }
 
 static bool support_and_load(model *m, const mps_elastic_def *def) {

@@ -68,11 +68,13 @@ static bool slide(plate *p, const mps_elastic_def *def, int32_t axis, double at,
           app_check(p->a, mps_elastic_cut(p->elastic, axis, -1, count, ids)));
 }
 
-static void outer_traction(void *user, const double *x, const double *normal, double *traction) {
+static mps_status outer_traction(void *user, const double *x, const double *normal,
+                                 double *traction) {
   double stress[3];
   plate_exact_stress(user, x, stress);
   traction[0] = stress[0] * normal[0] + stress[2] * normal[1];
   traction[1] = stress[2] * normal[0] + stress[1] * normal[1];
+  return MPS_OK;
 }
 
 /* The outer edge on side +1 of `axis` carries the exact traction. */

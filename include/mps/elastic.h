@@ -92,7 +92,7 @@ MPS_API MPS_NODISCARD mps_status mps_elastic_create(mps_context *context, mps_pa
 MPS_API void mps_elastic_destroy(mps_elastic **elastic);
 
 /** Reads `young` and `poisson` again after the caller has changed them. The symbolic
- *  factorisation is kept. */
+ *  factorisation is kept where joints of different materials are still on the same faces. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_update_material(mps_elastic *elastic);
 
 /* ---- shape and supports ---------------------------------------------------------------------- */
@@ -156,9 +156,10 @@ MPS_API MPS_NODISCARD mps_status mps_elastic_add_traction(mps_elastic *elastic, 
 MPS_API MPS_NODISCARD mps_status mps_elastic_add_pressure(mps_elastic *elastic, int64_t count,
                                                           const int64_t *facets,
                                                           const double *pressures);
-/** Traction (dim values, Pa) at the surface point x (dim values, m) with outward normal. */
-typedef void (*mps_traction_fn)(void *user, const double *x, const double *normal,
-                                double *traction);
+/** Traction (dim values, Pa, 0 on entry) at the surface point x (dim values, m) with outward
+ * normal. A status other than MPS_OK ends the call, which returns it. */
+typedef mps_status (*mps_traction_fn)(void *user, const double *x, const double *normal,
+                                      double *traction);
 /** Traction that varies over the surface: integrated over each facet by 3 Gauss points an edge. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_add_traction_fn(mps_elastic *elastic, int64_t count,
                                                              const int64_t *facets,

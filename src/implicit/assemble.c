@@ -5,7 +5,8 @@
  * gradients of p and of its stencil neighbours, and pairs of which a site is p. Rows are
  * independent, so they are shared among threads and come out the same for every number of them.
  * What is structurally zero (the offset stencils of a square lattice cancel in many places) is not
- * stored: the pattern depends on shape and supports only, never on the material.
+ * stored: the pattern depends on shape, supports and where joints of materials are, not on the
+ * moduli.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_private.h"
 
@@ -94,8 +95,93 @@ static void couple_published(const mps_elastic *e, int64_t i, const double *a, c
         add(out, c, f, v * (e->lambda[i] * a[c] * b[f] - e->mu[i] * ra[c] * rb[f]));
 }
 
+/* ---- at joints of materials, where a site's components mix ---------------------------------- */
+
+static int32_t find_site(const int64_t *sites, int32_t count, int64_t site) {
+  int32_t s = 0;
+  while (s < count && sites[s] != site) s++;
+  return s < count ? s : -1;
+}
+
+static void gather_gradient_at_joint(const mps_elastic *e, int64_t i, gather *g) {
+  const int d = e->dim;
+  mpsi_wide w;
+  mpsi_elastic_wide_gradient(e, i, &w);
+  const int32_t mine = find_site(w.site, w.count, g->particle);
+  if (mine < 0) return;
+  for (int32_t s = 0; s < w.count; s++) {
+    if (w.site[s] < g->particle) continue;
+    block *out = block_of(g, w.site[s]);
+    for (int f = 0; f < d; f++) { /* stress of unit displacement f of the site */
+      double P[9], trace = 0.0;
+      for (int c = 0; c < d; c++) trace += w.c[s][c * d + c][f];
+      for (int c = 0; c < d; c++)
+        for (int b = 0; b < d; b++)
+          P[c * d + b] = e->volume[i] * (e->mu[i] * (w.c[s][c * d + b][f] + w.c[s][b * d + c][f]) +
+                                         (b == c ? e->lambda[i] * trace : 0.0));
+      for (int c = 0; c < d; c++) {
+        double sum = 0.0;
+        for (int r = 0; r < d * d; r++) sum += w.c[mine][r][c] * P[r];
+        add(out, c, f, sum);
+      }
+    }
+  }
+}
+
+/* e_ij = sum_s c[s] u[site s], coefficient matrices dim x dim. */
+typedef struct wide_pair {
+  int32_t count;
+  int64_t site[2 * MPSI_WIDE_MAX];
+  double c[2 * MPSI_WIDE_MAX][3][3];
+} wide_pair;
+
+static void add_end(const mps_elastic *e, int64_t i, int32_t k, double sign, wide_pair *q) {
+  const int d = e->dim;
+  mpsi_wide w;
+  mpsi_elastic_wide_gradient(e, i, &w);
+  for (int32_t s = 0; s < w.count; s++) {
+    int32_t at = find_site(q->site, q->count, w.site[s]);
+    if (at < 0) {
+      at = q->count++;
+      q->site[at] = w.site[s];
+      memset(q->c[at], 0, sizeof q->c[at]);
+    }
+    for (int c = 0; c < d; c++) {
+      if (w.site[s] == i) q->c[at][c][c] += sign;
+      for (int b = 0; b < d; b++)
+        for (int f = 0; f < d; f++)
+          q->c[at][c][f] -= 0.5 * e->spacing * e->links.step[k][b] * w.c[s][c * d + b][f];
+    }
+  }
+}
+
+static void gather_pair_at_joint(const mps_elastic *e, int64_t i, int64_t j, int32_t k, gather *g) {
+  const int d = e->dim;
+  const double stiffness = mpsi_elastic_bond(e, i, j, k);
+  wide_pair q = {.count = 0};
+  add_end(e, i, k, -1.0, &q);
+  add_end(e, j, k, 1.0, &q);
+  const int32_t mine = find_site(q.site, q.count, g->particle);
+  for (int32_t s = 0; mine >= 0 && s < q.count; s++) {
+    if (q.site[s] < g->particle) continue;
+    block *out = block_of(g, q.site[s]);
+    for (int c = 0; c < d; c++)
+      for (int f = 0; f < d; f++) {
+        double sum = 0.0;
+        for (int b = 0; b < d; b++) sum += q.c[mine][b][c] * q.c[s][b][f];
+        add(out, c, f, stiffness * sum);
+      }
+  }
+}
+
+/* ---- gradients ------------------------------------------------------------------------------- */
+
 /* Only sites from the particle on are gathered: K is symmetric. */
 static void gather_gradient(const mps_elastic *e, int64_t i, gather *g) {
+  if (mpsi_elastic_at_joint(e, i)) {
+    gather_gradient_at_joint(e, i, g);
+    return;
+  }
   int64_t sites[MPSI_STENCIL_MAX];
   double coefficient[MPSI_STENCIL_MAX][3];
   const int32_t m = mpsi_elastic_stencil(e, i, sites, coefficient);
@@ -163,6 +249,10 @@ static const pair_form *form_of(const mps_elastic *e, gather *g, int64_t i, int6
 }
 
 static void gather_pair(const mps_elastic *e, int64_t i, int64_t j, int32_t k, gather *g) {
+  if (mpsi_elastic_at_joint(e, i) || mpsi_elastic_at_joint(e, j)) {
+    gather_pair_at_joint(e, i, j, k, g);
+    return;
+  }
   const pair_form *f = form_of(e, g, i, j, k);
   const mpsi_links *l = &e->links;
   int64_t sites[PAIR_MAX];
@@ -184,10 +274,25 @@ static void gather_pair(const mps_elastic *e, int64_t i, int64_t j, int32_t k, g
 
 /* ---- one row block --------------------------------------------------------------------------- */
 
-/* Particles whose gradients use p: p itself, then its stencil neighbours. */
+/* Particles whose gradients use p: p itself, then its stencil neighbours, then those across a joint
+ * whose face value takes a tangential derivative from a face neighbour of p. */
 static int32_t users(const mps_elastic *e, int64_t p, int64_t *list) {
   double unused[MPSI_STENCIL_MAX][3];
-  return mpsi_elastic_stencil(e, p, list, unused);
+  const int32_t near = mpsi_elastic_stencil(e, p, list, unused);
+  const mpsi_links *l = &e->links;
+  const int d = e->dim;
+  int32_t count = near;
+  if (!e->joint_at) return count;
+  for (int side = 0; side < 2 * d; side++) {
+    const int64_t q = l->to[p * l->count + l->face[side / 2][side % 2]];
+    if (q < 0) continue;
+    for (int face = 0; face < 2 * d; face++) {
+      if (face / 2 == side / 2 || e->joint_at[q * 2 * d + face] < 0) continue;
+      const int64_t i = l->to[q * l->count + l->face[face / 2][face % 2]];
+      if (find_site(list, count, i) < 0) list[count++] = i;
+    }
+  }
+  return count;
 }
 
 static void gather_conservative(const mps_elastic *e, const int64_t *list, int32_t count,

@@ -178,7 +178,8 @@ static mps_status read_material(mps_elastic *e, const char *function) {
 
 mps_status mps_elastic_update_material(mps_elastic *e) {
   if (!e) return MPS_ERROR_ARGUMENT;
-  const mps_status status = read_material(e, __func__);
+  mps_status status = read_material(e, __func__);
+  if (status == MPS_OK) status = mpsi_elastic_find_joints(e, __func__);
   if (status == MPS_OK) mpsi_elastic_measure(e);
   return status;
 }
@@ -255,6 +256,7 @@ void mps_elastic_destroy(mps_elastic **elastic) {
   mpsi_elastic_end_motion(e);
   mpsi_cholesky_destroy(&e->cholesky);
   mpsi_elastic_disconnect(e);
+  mpsi_elastic_drop_joints(e);
   void *arrays[] = {e->x,           e->density, e->cut,          e->volume,   e->lambda,
                     e->mu,          e->poisson, e->kappa,        e->supports, e->support_of,
                     e->facets,      e->load,    e->displacement, e->reaction, e->gradient,
@@ -274,6 +276,7 @@ static mps_status build(mps_elastic *e, const char *function) {
       status = bad_value(e, function, "position", i / e->dim, e->x[i], "must be finite");
   if (status == MPS_OK) status = mpsi_elastic_connect(e, function);
   if (status == MPS_OK) status = read_material(e, function);
+  if (status == MPS_OK) status = mpsi_elastic_find_joints(e, function);
   if (status == MPS_OK) status = mpsi_elastic_find_facets(e, function);
   if (status == MPS_OK) mpsi_elastic_measure(e);
   if (status == MPS_OK) status = mps_particles_add_field(e->particles, "displacement", 0);
@@ -297,6 +300,7 @@ mps_status mps_elastic_create(mps_context *context, mps_particles *particles,
   e->context = mpsi_context_retain(context);
   e->particles = mpsi_particles_pin(particles);
   e->def = def;
+  e->conservative = def.method == MPS_ELASTIC_CONSERVATIVE;
   e->dim = mps_particles_dim(particles);
   e->modes = e->dim == 2 ? 3 : 6;
   e->n = mps_particles_count(particles);

@@ -1,6 +1,7 @@
 /* elastic_private.h - the members of mps_elastic and what its source files offer one another.
  *
  * lattice.c   sites, neighbours, n_i           operator.c  gradient and K u, matrix free
+ * joints.c    faces between two materials
  * supports.c  fixed directions, free unknowns  rigid.c     which rigid motions are left free
  * loads.c     facets and nodal forces          assemble.c  the sparse matrix of free unknowns
  * system.c    factor, solve, refine            cholesky.c  CHOLMOD;  cg.c  conjugate gradients
@@ -26,6 +27,7 @@ typedef struct mpsi_links {
   int32_t (*step)[3]; /* lattice units */
   double *weight;     /* w(r) */
   double *r2;         /* r^2, m2 */
+  bool *far;          /* more than one cell along some axis */
   int32_t face[3][2]; /* which offset is one step down (0) or up (1) along an axis */
   int64_t *to;        /* to[i * count + k]: the neighbour, or -1 */
 } mpsi_links;
@@ -40,6 +42,28 @@ typedef struct mpsi_support {
   double fixed[3];
 } mpsi_support;
 
+/* A face between cells of different material: `low` is below it along `axis`, `high` above. */
+typedef struct mpsi_joint {
+  int64_t low, high;
+  int64_t axis;
+} mpsi_joint;
+
+/* Coefficients (m) of the face value's correction at a joint, see joints.c. */
+typedef struct mpsi_joint_law {
+  double normal, lateral, shear;
+} mpsi_joint_law;
+
+#define MPSI_WIDE_MAX                                                                              \
+  20 /* sites of a gradient at joints: the particle, faces and edges of a cube */
+
+/* A gradient whose components mix: G[row] = sum_s sum_f c[s][row][f] u[site s][f], row = c * dim +
+ * b. */
+typedef struct mpsi_wide {
+  int32_t count;
+  int64_t site[MPSI_WIDE_MAX];
+  double c[MPSI_WIDE_MAX][9][3];
+} mpsi_wide;
+
 typedef struct mpsi_facet {
   int64_t particle;
   int8_t axis, side;
@@ -50,6 +74,7 @@ struct mps_elastic {
   mps_particles *particles;
   mps_elastic_def def;
   int32_t dim, modes; /* modes: rigid motions, 3 or 6 */
+  bool conservative;  /* method */
   int64_t n;
   double spacing;
 
@@ -62,6 +87,11 @@ struct mps_elastic {
   double *volume;  /* V_i, cuts and thickness included, m3 */
   double *lambda, *mu, *poisson;
   double *kappa; /* pair stiffness of particle i: a pair has (kappa_i + kappa_j) w / r^2 */
+
+  mpsi_joint *joints; /* ascending in `low`, then axis */
+  int64_t joint_count;
+  int64_t *joint_at;     /* [i * 2 dim + 2 axis + up], or -1; NULL without joints */
+  double *joint_scratch; /* joints * dim */
 
   mpsi_support *supports;
   int64_t support_count, support_capacity;
@@ -105,15 +135,48 @@ void mpsi_elastic_disconnect(mps_elastic *e);
  */
 /* Coefficient (a vector of dim values, 1/m) of neighbour k in the gradient at i. */
 void mpsi_elastic_coefficient(const mps_elastic *e, int64_t i, int32_t k, double *g);
-/* All sites of the gradient at i: G_i u = sum_a u[site a] (x) g[a]; site 0 is i itself. */
+/* All sites of the plain gradient at i: G_i u = sum_a u[site a] (x) g[a]; site 0 is i itself. Face
+ * values are means: joints come on top. */
 int32_t mpsi_elastic_stencil(const mps_elastic *e, int64_t i, int64_t *sites, double (*g)[3]);
+/* f += G_i^T moment, moment[c][b] (N m): a load's first moment about particle i. */
+void mpsi_elastic_spread(const mps_elastic *e, int64_t i, const double (*moment)[3], double *f);
 /* Displacement gradients G[(i * dim + c) * dim + b] = d u_c / d x_b. */
 void mpsi_elastic_gradients(mps_elastic *e, const double *u, double *gradient);
 /* f = K u. */
 void mpsi_elastic_apply(mps_elastic *e, const double *u, double *f);
-/* Stiffness of the pair of i and its neighbour j at offset k: energy 1/2 s |.|^2. */
+/* ---- joints.c ---------------------------------------------------------------------------------
+ */
+/* Finds the joints of the present material; the pattern of the matrix ends where they changed. */
+mps_status mpsi_elastic_find_joints(mps_elastic *e, const char *function);
+void mpsi_elastic_drop_joints(mps_elastic *e);
+mpsi_joint_law mpsi_elastic_joint_law(const mps_elastic *e, const mpsi_joint *q);
+double mpsi_elastic_face_weight(const mps_elastic *e, int64_t i, int axis, int up);
+/* From plain gradients to those with the face values of joints. */
+void mpsi_elastic_joint_gradients(mps_elastic *e, const double *u, double *gradient);
+/* Its transpose: P = dPi/dG to the stresses of plain gradients, and forces. */
+void mpsi_elastic_joint_forces(mps_elastic *e, double *stress, double *f);
+/* The gradient at i with all its coefficients. */
+void mpsi_elastic_wide_gradient(const mps_elastic *e, int64_t i, mpsi_wide *w);
+/* Has i a face that is a joint? */
+static inline bool mpsi_elastic_at_joint(const mps_elastic *e, int64_t i) {
+  if (!e->joint_at) return false;
+  for (int face = 0; face < 2 * e->dim; face++)
+    if (e->joint_at[i * 2 * e->dim + face] >= 0) return true;
+  return false;
+}
+/* Does the pair of i and its neighbour j at offset k, farther than one cell along some axis, reach
+ * across a joint? The mean of its ends' gradients is then not that of its path. */
+bool mpsi_elastic_pair_crosses(const mps_elastic *e, int64_t i, int64_t j, int32_t k);
+/* Stiffness of the pair of i and its neighbour j at offset k: energy 1/2 s |.|^2. Between two
+ * materials with the harmonic mean of their shear moduli. */
 static inline double mpsi_elastic_bond(const mps_elastic *e, int64_t i, int64_t j, int32_t k) {
-  return (e->kappa[i] + e->kappa[j]) * e->links.weight[k] / e->links.r2[k];
+  double kappa = e->kappa[i] + e->kappa[j];
+  if (e->joint_at) {
+    const double a = e->mu[i], b = e->mu[j];
+    if (a != b) kappa = 2.0 * (e->kappa[i] * b + e->kappa[j] * a) / (a + b);
+    if (e->links.far[k] && mpsi_elastic_pair_crosses(e, i, j, k)) return 0.0;
+  }
+  return kappa * e->links.weight[k] / e->links.r2[k];
 }
 /* Relative displacement of pair (i, k) that its stiffness works on, from u and the gradients. */
 void mpsi_elastic_stretch(const mps_elastic *e, const double *u, int64_t i, int32_t k, double *out);

@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_private.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #define SITE_LIMIT (1 << 20) /* lattice units between any two particles, per axis */
@@ -82,6 +83,7 @@ static void list_offsets(const mps_elastic *e, mpsi_links *l) {
         l->step[k][1] = b;
         l->step[k][2] = c;
         l->r2[k] = square * e->spacing * e->spacing;
+        l->far[k] = abs(a) > 1 || abs(b) > 1 || abs(c) > 1;
         l->weight[k] = ratio / sqrt((double)square) - 1.0;
         for (int axis = 0; axis < e->dim; axis++)
           if (square == 1 && l->step[k][axis] != 0) l->face[axis][l->step[k][axis] > 0] = k;
@@ -160,6 +162,7 @@ static mps_status allocate_links(mps_elastic *e, const char *function) {
   if (!(l->step = mpsi_alloc(e->context, l->count, sizeof *l->step)) ||
       !(l->weight = mpsi_alloc(e->context, l->count, sizeof(double))) ||
       !(l->r2 = mpsi_alloc(e->context, l->count, sizeof(double))) ||
+      !(l->far = mpsi_alloc(e->context, l->count, sizeof *l->far)) ||
       !(l->to = mpsi_alloc(e->context, e->n * l->count, sizeof(int64_t))))
     return mpsi_fail_memory(e->context, function, (size_t)(e->n * l->count) * sizeof(int64_t));
   list_offsets(e, l);
@@ -172,6 +175,7 @@ void mpsi_elastic_disconnect(mps_elastic *e) {
   mpsi_free(e->context, e->links.step);
   mpsi_free(e->context, e->links.weight);
   mpsi_free(e->context, e->links.r2);
+  mpsi_free(e->context, e->links.far);
   mpsi_free(e->context, e->links.to);
 }
 

@@ -106,12 +106,7 @@ static void add_load(mps_elastic *e, int64_t i, const double *force, const doubl
   const int d = e->dim;
   for (int c = 0; c < d; c++) e->load[i * d + c] += force[c];
   if (!e->def.first_moment) return;
-  int64_t sites[MPSI_STENCIL_MAX];
-  double g[MPSI_STENCIL_MAX][3];
-  const int32_t m = mpsi_elastic_stencil(e, i, sites, g);
-  for (int32_t a = 0; a < m; a++)
-    for (int c = 0; c < d; c++)
-      for (int b = 0; b < d; b++) e->load[sites[a] * d + c] += moment[c][b] * g[a][b];
+  mpsi_elastic_spread(e, i, moment, e->load);
 }
 
 mps_status mps_elastic_clear_loads(mps_elastic *e) {
@@ -251,8 +246,10 @@ static mps_status integrate(const mps_elastic *e, const char *function, int64_t 
       r[p] = 0.5 * (low[p] + high[p]) + 0.5 * at[a] * (high[p] - low[p]);
       if (e->dim == 3) r[q] = 0.5 * (low[q] + high[q]) + 0.5 * at[b] * (high[q] - low[q]);
       for (int c = 0; c < e->dim; c++) x[c] = e->x[f->particle * e->dim + c] + r[c];
-      traction(user, x, normal, t);
-      const mps_status status = check_vector(e, function, "traction", t);
+      mps_status status = traction(user, x, normal, t);
+      if (status != MPS_OK)
+        return mpsi_fail(e->context, function, status, "the traction callback stopped the call");
+      status = check_vector(e, function, "traction", t);
       if (status != MPS_OK) return status;
       for (int c = 0; c < e->dim; c++) {
         force[c] += t[c] * dA;

@@ -6,6 +6,7 @@
  * conservative: G_i from shared cell faces (central where both face neighbours exist, one sided at
  *   surfaces), W = mu eps:eps + lambda/2 (tr eps)^2, e_ij = u_j - u_i - (G_i + G_j)/2 (x_j - x_i),
  *   kappa = 2 alpha mu d V / n_i;
+ *   joints.c has the face values between two materials;
  * published: G_i = (d/n*) sum_j (u_j - u_i) (x) t w/r, so that (7) R = curl and (8) D = trace,
  *   W = n*_i/n0 (lambda/2 D^2 - mu/2 R^2), e_ij = u_j - u_i, kappa = 2 mu d V / n0: Chikazawa (10)
  *   with R and D eliminated, corrected as docs/verification/implicit-elastic.md says.
@@ -109,6 +110,26 @@ static void gradient_chunk(void *data, int64_t chunk, int32_t worker) {
 void mpsi_elastic_gradients(mps_elastic *e, const double *u, double *gradient) {
   operator_task task = {.e = e, .u = u, .gradient = gradient};
   mpsi_parallel_for(e->context, mpsi_elastic_chunks(e), gradient_chunk, &task);
+  mpsi_elastic_joint_gradients(e, u, gradient);
+}
+
+void mpsi_elastic_spread(const mps_elastic *e, int64_t i, const double (*moment)[3], double *f) {
+  const int d = e->dim;
+  int64_t sites[MPSI_STENCIL_MAX];
+  double g[MPSI_STENCIL_MAX][3];
+  if (mpsi_elastic_at_joint(e, i)) {
+    mpsi_wide w;
+    mpsi_elastic_wide_gradient(e, i, &w);
+    for (int32_t a = 0; a < w.count; a++)
+      for (int c = 0; c < d; c++)
+        for (int b = 0; b < d; b++)
+          for (int k = 0; k < d; k++) f[w.site[a] * d + k] += moment[c][b] * w.c[a][c * d + b][k];
+    return;
+  }
+  const int32_t m = mpsi_elastic_stencil(e, i, sites, g);
+  for (int32_t a = 0; a < m; a++)
+    for (int c = 0; c < d; c++)
+      for (int b = 0; b < d; b++) f[sites[a] * d + c] += moment[c][b] * g[a][b];
 }
 
 /* ---- pairs ----------------------------------------------------------------------------------- */
@@ -215,7 +236,8 @@ static void force_chunk(void *data, int64_t chunk, int32_t worker) {
 void mpsi_elastic_apply(mps_elastic *e, const double *u, double *f) {
   operator_task task = {.e = e, .u = u, .gradient = e->gradient, .stress = e->stress_work, .f = f};
   const int64_t chunks = mpsi_elastic_chunks(e);
-  mpsi_parallel_for(e->context, chunks, gradient_chunk, &task);
+  mpsi_elastic_gradients(e, u, e->gradient);
   mpsi_parallel_for(e->context, chunks, stress_chunk, &task);
+  mpsi_elastic_joint_forces(e, e->stress_work, f);
   mpsi_parallel_for(e->context, chunks, force_chunk, &task);
 }

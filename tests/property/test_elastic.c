@@ -45,11 +45,13 @@ static affine affine_field(const test_body *b, double lambda, double mu) {
   return a;
 }
 
-static void affine_traction(void *user, const double *x, const double *normal, double *traction) {
+static mps_status affine_traction(void *user, const double *x, const double *normal,
+                                  double *traction) {
   const affine *a = user;
   (void)x;
   for (int c = 0; c < a->dim; c++)
     for (int d = 0; d < a->dim; d++) traction[c] += a->stress[c][d] * normal[d];
+  return MPS_OK;
 }
 
 static double affine_at(const test_body *b, const affine *a, int64_t i, int c) {
