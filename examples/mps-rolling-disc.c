@@ -98,7 +98,7 @@ static mps_status make_rigid(mps_context *context, const settings *s, simulation
     const double normal[] = {-sim->along[1], sim->along[0]};
     status = mps_body_create_half_plane(context, &def, normal, &sim->m.body[0]);
   } else {
-    def.motion = MPS_MOTION_FREE;
+    def.motion = MPS_BODY_MOTION_FREE;
     def.mass = DENSITY * PI * RADIUS * RADIUS;
     def.inertia[2] = 0.5 * def.mass * RADIUS * RADIUS;
     def.position[0] = sim->start[0], def.position[1] = sim->start[1];

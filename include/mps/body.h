@@ -5,9 +5,10 @@
  * space the reference point is `position` and the frame is turned by `rotation`. In 2D all forces
  * are per unit thickness in plane strain, per radian in axisymmetry.
  *
- * A prescribed body follows signals; a free body moves by the forces on it. A solver that uses the
- * body moves it and writes the reaction; without one, mps_body_advance does. One solver at a time
- * may use a body. Thread rule: one thread at a time per body (and context).
+ * A prescribed body follows signals, or what mps_body_set_motion says; a free body moves by the
+ * forces on it. A solver that uses the body moves it and writes the reaction; without one,
+ * mps_body_advance does. One solver at a time may use a body. Thread rule: one thread at a time per
+ * body (and context).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_BODY_H
 #define LIBMPS_BODY_H
@@ -19,17 +20,17 @@ MPS_EXTERN_C_BEGIN
 
 typedef struct mps_body mps_body;
 
-typedef enum mps_motion {
-  MPS_MOTION_PRESCRIBED = 0, /* position and angle plus what the signals of mps_body_drive say */
-  MPS_MOTION_FREE = 1        /* by forces, with mass and inertia */
-} mps_motion;
+typedef enum mps_body_kind {
+  MPS_BODY_MOTION_PRESCRIBED = 0, /* by the signals of mps_body_drive, or mps_body_set_motion */
+  MPS_BODY_MOTION_FREE = 1        /* by forces, with mass and inertia */
+} mps_body_kind;
 
 /* Vectors have three components in 2D too: what turns or leaves the plane (position[2], rotation[0]
  * and [1], velocity[2], spin[0] and [1], gravity[2], inertia[0] and [1]) must then be 0. */
 typedef struct mps_body_def {
   uint32_t struct_size;
-  int32_t motion;     /* mps_motion, default PRESCRIBED */
-  double position[3]; /* m: of the reference point at time 0 */
+  int32_t motion;     /* mps_body_kind, default PRESCRIBED */
+  double position[3]; /* m, at most 1e9: of the reference point at time 0 */
   double rotation[3]; /* rad, rotation vector (axis times angle) from the body's frame to space at
                          time 0; 2D: [2] is the angle, anticlockwise */
   double velocity[3]; /* m/s at time 0; free bodies only */
@@ -42,9 +43,9 @@ typedef struct mps_body_def {
   double xi;          /* in (0, 1): k from Nakamura (58), 2 (1 - xi) (K + 4G/3)/(n CFL^2) with n
                          particles a cell, in 3D times the cell's size; n and CFL are those of the
                          solver's definition. 0 (default): not so. Exclusive with penalty */
-  double mass;        /* kg, 2D: per unit thickness, > 0; free bodies only */
-  double inertia[3];  /* kg m2 about the reference point, > 0, principal: the body's axes are the
-                         principal axes. 2D: [2], per unit thickness. Free bodies only */
+  double mass;        /* kg, 2D: per unit thickness, 1e-30 to 1e30; free bodies only */
+  double inertia[3];  /* kg m2 about the reference point, 1e-30 to 1e30, principal: the body's axes
+                         are the principal axes. 2D: [2], per unit thickness. Free bodies only */
   double gravity[3];  /* m/s2; free bodies only */
   double damping[2];  /* 1/s, >= 0, of velocity and of spin: dv/dt = ... - damping v; free bodies
                          only */
@@ -58,7 +59,8 @@ static inline mps_body_def mps_body_defaults(void) {
   return def;
 }
 
-/* ---- shapes in 2D: `def` NULL means the defaults ----------------------------------------------
+/* ---- shapes in 2D: `def` NULL means the defaults. Lengths: at most 1e9 m, radii, widths and
+ * heights at least 1e-9 m -----------------------------------------------------------------------
  */
 
 /** Simple polygon, convex or not, of `vertices` (3 to 10000) corners xy[2 * k], xy[2 * k + 1] (m,
@@ -137,9 +139,35 @@ MPS_API int32_t mps_body_dim(const mps_body *body);
  *  the rotation vector in rad (2D: 0, 1 and 5). It is the definition's value plus factor *
  *  displacement of `signal`; the orientation is the exponential of the whole rotation vector, the
  *  spin its rate. Replaces an earlier signal; NULL holds the component. The signal is kept alive.
+ *  From now on the body is where its signals are, also after mps_body_set_motion.
  */
 MPS_API MPS_NODISCARD mps_status mps_body_drive(mps_body *body, int32_t component,
                                                 mps_signal *signal, double factor);
+
+/** Where a body is now and how fast it moves from there; always start from mps_body_motion_init or
+ *  mps_body_motion_defaults. In 2D position[2], rotation[0] and [1] are NaN or 0, velocity[2],
+ *  spin[0] and [1] are 0. */
+typedef struct mps_body_motion {
+  uint32_t struct_size;
+  int32_t reserved;
+  double position[3]; /* m, of the reference point; NaN (default): this component stays as it is */
+  double rotation[3]; /* rad, rotation vector; in 3D all or none NaN (default: stays). 2D: [2] */
+  double velocity[3]; /* m/s, default 0 */
+  double spin[3];     /* rad/s, in space, default 0 */
+} mps_body_motion;
+MPS_API mps_status mps_body_motion_init(mps_body_motion *motion, size_t size);
+static inline mps_body_motion mps_body_motion_defaults(void) {
+  mps_body_motion motion;
+  memset(&motion, 0, sizeof motion);
+  if (mps_body_motion_init(&motion, sizeof motion) != MPS_OK) motion.struct_size = 0;
+  return motion;
+}
+/** Moves the body from outside, between steps: another code, or a servo that answers to the
+ *  reaction. A prescribed body is put there at once, and goes on with this velocity and spin,
+ * instead of its signals, until it is set again; NULL gives it back to its signals. A free body is
+ * put there too and then goes on by the forces; NULL is an error. */
+MPS_API MPS_NODISCARD mps_status mps_body_set_motion(mps_body *body, const mps_body_motion *motion);
+
 /** A load on a free body from now on: force[3] (N) at the reference point, moment[3] (N m), both in
  *  space; NULL is zero. In 2D force[2], moment[0] and moment[1] must be 0. */
 MPS_API MPS_NODISCARD mps_status mps_body_load(mps_body *body, const double *force,
@@ -152,21 +180,44 @@ MPS_API MPS_NODISCARD mps_status mps_body_advance(mps_body *body, double dt);
 typedef struct mps_body_state {
   double time;        /* s */
   double position[3]; /* m */
-  double rotation[3]; /* rad, rotation vector: of a prescribed body and in 2D not wrapped, of a free
-                         body in 3D the shortest. 2D: [2] is the angle */
+  double rotation[3]; /* rad, rotation vector: by signals and in 2D not wrapped, else the shortest.
+                         2D: [2] is the angle */
   double orientation[9]; /* matrix R, rows: a point X of the body's frame is at position + R X */
   double velocity[3];    /* m/s, of the reference point */
   double spin[3];        /* rad/s, in space */
 } mps_body_state;
-MPS_API MPS_NODISCARD mps_status mps_body_get_state(mps_body *body, mps_body_state *out);
+MPS_API MPS_NODISCARD mps_status mps_body_get_state_sized(mps_body *body, mps_body_state *out,
+                                                          size_t size);
+static inline mps_status mps_body_get_state(mps_body *body, mps_body_state *out) {
+  return mps_body_get_state_sized(body, out, sizeof *out);
+}
+
+/** Momenta and energies of a free body; of a prescribed one, which has no mass, all 0. The sum
+ *  kinetic + dissipated - work_contacts - work_loads keeps its value to rounding. */
+typedef struct mps_body_totals {
+  double mass;          /* kg */
+  double linear[3];     /* kg m/s */
+  double angular[3];    /* kg m2/s, about the origin of space, with the body's own spin */
+  double kinetic;       /* J */
+  double work_contacts; /* J, since creation, by the particles on the body */
+  double work_loads;    /* J, since creation: gravity and mps_body_load */
+  double dissipated;    /* J, since creation: damping, and in 3D the small error of the rotation's
+                           splitting, of either sign */
+} mps_body_totals;
+MPS_API MPS_NODISCARD mps_status mps_body_get_totals_sized(mps_body *body, mps_body_totals *out,
+                                                           size_t size);
+static inline mps_status mps_body_get_totals(mps_body *body, mps_body_totals *out) {
+  return mps_body_get_totals_sized(body, out, sizeof *out);
+}
 
 /* ---- surface --------------------------------------------------------------------------------- */
 
-/** For `count` points x of dim values each (m, finite): signed `distance` (m, negative inside),
- *  outward unit `normal` (dim values a point), `foot`, the nearest point of the surface (dim values
- * a point, m), and the `face` it lies on (2D: the edge). Each result may be NULL. The normal is the
- *  gradient of the distance; on a corner it is the mean of the two edges' (mesh: of the triangles',
- *  weighted with their angles), and where two feet are equally near, that of the lower face. */
+/** For `count` (at most 2^40) points x of dim values each (m, finite): signed `distance` (m,
+ * negative inside), outward unit `normal` (dim values a point), `foot`, the nearest point of the
+ * surface (dim values a point, m), and the `face` it lies on (2D: the edge). Each result may be
+ * NULL. The normal is the gradient of the distance; on a corner it is the mean of the two edges'
+ * (mesh: of the triangles', weighted with their angles), and where two feet are equally near, that
+ * of the lower face. */
 MPS_API MPS_NODISCARD mps_status mps_body_distance(mps_body *body, int64_t count, const double *x,
                                                    double *distance, double *normal, double *foot,
                                                    int64_t *face);
@@ -183,10 +234,13 @@ MPS_API int32_t mps_body_part_count(const mps_body *body); /* "rest" included */
 /** Number of the part `name`, or -1. */
 MPS_API int32_t mps_body_part(const mps_body *body, const char *name);
 
-/** What particles do to one part of the body, or to the whole body (`part` -1); `count` is the number
- *  of particles in contact. */
-MPS_API MPS_NODISCARD mps_status mps_body_get_reaction(mps_body *body, int32_t part,
-                                                       mps_reaction *out);
+/** What particles do to one part of the body, or to the whole body (`part` -1); `count` is the
+ * number of particles in contact. */
+MPS_API MPS_NODISCARD mps_status mps_body_get_reaction_sized(mps_body *body, int32_t part,
+                                                             mps_reaction *out, size_t size);
+static inline mps_status mps_body_get_reaction(mps_body *body, int32_t part, mps_reaction *out) {
+  return mps_body_get_reaction_sized(body, part, out, sizeof *out);
+}
 
 MPS_EXTERN_C_END
 #endif

@@ -20,15 +20,26 @@ typedef struct vector {
   size_t at;     /* in mps_body_def */
   bool plane[3]; /* a component that 2D has */
   bool free;     /* for free bodies only */
+  double most;
 } vector;
 
 static const vector vectors[] = {
-    {"position", "m", offsetof(mps_body_def, position), {true, true, false}, false},
-    {"rotation", "rad", offsetof(mps_body_def, rotation), {false, false, true}, false},
-    {"velocity", "m/s", offsetof(mps_body_def, velocity), {true, true, false}, true},
-    {"spin", "rad/s", offsetof(mps_body_def, spin), {false, false, true}, true},
-    {"inertia", "kg m2", offsetof(mps_body_def, inertia), {false, false, true}, true},
-    {"gravity", "m/s2", offsetof(mps_body_def, gravity), {true, true, false}, true},
+    {"position", "m", offsetof(mps_body_def, position), {true, true, false}, false, MPSI_BODY_FAR},
+    {"rotation",
+     "rad",
+     offsetof(mps_body_def, rotation),
+     {false, false, true},
+     false,
+     MPSI_BODY_FAR},
+    {"velocity", "m/s", offsetof(mps_body_def, velocity), {true, true, false}, true, MPSI_BODY_FAR},
+    {"spin", "rad/s", offsetof(mps_body_def, spin), {false, false, true}, true, MPSI_BODY_FAR},
+    {"inertia",
+     "kg m2",
+     offsetof(mps_body_def, inertia),
+     {false, false, true},
+     true,
+     MPSI_BODY_HEAVY},
+    {"gravity", "m/s2", offsetof(mps_body_def, gravity), {true, true, false}, true, MPSI_BODY_FAR},
 };
 enum { VECTORS = sizeof vectors / sizeof *vectors };
 
@@ -41,9 +52,10 @@ static mps_status check_vectors(mps_context *context, const char *function, cons
   for (const vector *v = vectors; v < vectors + VECTORS; v++)
     for (int c = 0; c < 3; c++) {
       const double value = component(d, v, c);
-      if (!isfinite(value))
-        return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s[%d] is %g %s, must be finite",
-                         v->name, c, value, v->unit);
+      if (!(fabs(value) <= v->most))
+        return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                         "%s[%d] is %g %s, must be finite and within +-%g", v->name, c, value,
+                         v->unit, v->most);
       if (dim == 2 && !v->plane[c] && value != 0.0)
         return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                          "%s[%d] is %g %s, must be 0 for a 2D shape", v->name, c, value, v->unit);
@@ -60,10 +72,9 @@ static mps_status check_numbers(mps_context *context, const char *function, cons
               {"damping[0]", "1/s", d->damping[0]},
               {"damping[1]", "1/s", d->damping[1]}};
   for (size_t k = 0; k < sizeof list / sizeof *list; k++)
-    if (!isfinite(list[k].value) || list[k].value < 0.0)
-      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "%s is %g %s, must be finite and >= 0", list[k].name, list[k].value,
-                       list[k].unit);
+    if (!(list[k].value >= 0.0 && list[k].value <= MPSI_BODY_HEAVY))
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %g %s, must be in 0 to %g",
+                       list[k].name, list[k].value, list[k].unit, MPSI_BODY_HEAVY);
   if (!(d->xi >= 0.0 && d->xi < 1.0))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "xi is %g, must be in (0, 1), or 0",
                      d->xi);
@@ -76,21 +87,23 @@ static mps_status check_numbers(mps_context *context, const char *function, cons
 
 static mps_status check_free(mps_context *context, const char *function, const mps_body_def *d,
                              int32_t dim) {
-  if (!isfinite(d->mass) || d->mass <= 0.0)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "mass is %g kg, a free body needs > 0",
-                     d->mass);
+  if (!(d->mass >= MPSI_BODY_LIGHT && d->mass <= MPSI_BODY_HEAVY))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "mass is %g kg, a free body needs %g to %g", d->mass, MPSI_BODY_LIGHT,
+                     MPSI_BODY_HEAVY);
   for (int c = dim == 2 ? 2 : 0; c < 3; c++)
-    if (!(d->inertia[c] > 0.0))
+    if (!(d->inertia[c] >= MPSI_BODY_LIGHT && d->inertia[c] <= MPSI_BODY_HEAVY))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "inertia[%d] is %g kg m2, a free body needs > 0", c, d->inertia[c]);
+                       "inertia[%d] is %g kg m2, a free body needs %g to %g", c, d->inertia[c],
+                       MPSI_BODY_LIGHT, MPSI_BODY_HEAVY);
   return MPS_OK;
 }
 
 /* A prescribed body has no use for what only a free one needs: most likely a slip. */
 static mps_status check_motion(mps_context *context, const char *function, const mps_body_def *d,
                                int32_t dim) {
-  if (d->motion == MPS_MOTION_FREE) return check_free(context, function, d, dim);
-  if (d->motion != MPS_MOTION_PRESCRIBED)
+  if (d->motion == MPS_BODY_MOTION_FREE) return check_free(context, function, d, dim);
+  if (d->motion != MPS_BODY_MOTION_PRESCRIBED)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "motion is %d, allowed are 0 (prescribed) and 1 (free)", d->motion);
   double unused = d->mass != 0.0 ? d->mass : d->damping[0] != 0.0 ? d->damping[0] : d->damping[1];

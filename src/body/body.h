@@ -18,6 +18,11 @@ typedef enum mpsi_shape {
 typedef struct mpsi_mesh mpsi_mesh;
 
 enum { MPSI_MOTIONS = 6 };
+/* Ranges of what a body may be: beyond them squares and quotients lose their digits. */
+#define MPSI_BODY_FAR 1e9     /* m, m/s, rad, rad/s, m/s2: places, lengths, rates */
+#define MPSI_BODY_SMALL 1e-9  /* m: radii and sides */
+#define MPSI_BODY_LIGHT 1e-30 /* kg, kg m2 */
+#define MPSI_BODY_HEAVY 1e30
 #define MPSI_PART_NAME 48 /* bytes, with the terminating zero */
 
 /* Vectors of space have three components in 2D too, z being 0 there: in 2D x may be read as two. */
@@ -62,7 +67,9 @@ struct mps_body {
   double time;        /* s */
   double rotation[3]; /* rad: as of mps_body_state, but of a free body in 3D unused */
   double angular[3];  /* kg m2/s, angular momentum in space: free bodies in 3D */
+  bool outside;       /* prescribed: moves as mps_body_set_motion said, not by the signals */
   mpsi_pose pose;
+  double work_contacts, work_loads, dissipated; /* J: see mps_body_totals */
   mps_reaction reaction[MPS_BODY_MAX_PARTS];
   void *user; /* the solver that moves it, or NULL */
 };
@@ -70,9 +77,11 @@ struct mps_body {
 /* What a checkpoint keeps of a body. */
 typedef struct mpsi_body_record {
   int64_t shape, faces, motion, parts; /* must agree */
+  int64_t outside;
+  double energy[3]; /* work_contacts, work_loads, dissipated */
   double time, rotation[3], angular[3], load[6];
   double position[3], orientation[9], velocity[3], spin[3];
-  double reaction[MPS_BODY_MAX_PARTS * 12]; /* of each part the first 12 numbers of mps_reaction */
+  double reaction[MPS_BODY_MAX_PARTS * 13]; /* of each part force, moment, impulses, work */
   int64_t contacts[MPS_BODY_MAX_PARTS];
 } mpsi_body_record;
 void mpsi_body_get_record(const mps_body *body, mpsi_body_record *out);
@@ -115,6 +124,11 @@ mps_status mpsi_body_new(mps_context *context, const char *function, const mps_b
                          int32_t dim, mpsi_shape shape, int64_t faces, mps_body **out);
 /* Gives up one share; the last frees. */
 void mpsi_body_release(mps_body *body);
+
+/* MPS_ERROR_ARGUMENT where the length `name` of a shape is not between MPSI_BODY_SMALL and
+ * MPSI_BODY_FAR. */
+mps_status mpsi_body_check_length(mps_context *context, const char *function, const char *name,
+                                  double value);
 
 /* Puts a new body where its definition says. */
 void mpsi_body_begin(mps_body *body);

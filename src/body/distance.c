@@ -176,13 +176,15 @@ bool mpsi_body_reaches(const mps_body *body, const double *x, double reach) {
   return mpsi_body_foot(body, x).distance <= reach;
 }
 
+#define MAX_POINTS (INT64_C(1) << 40)
+
 mps_status mps_body_distance(mps_body *body, int64_t count, const double *x, double *distance,
                              double *normal, double *foot, int64_t *face) {
   if (!body) return MPS_ERROR_ARGUMENT;
-  if (count < 0 || (count > 0 && !x))
+  if (count < 0 || count > MAX_POINTS || (count > 0 && !x))
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
-                     "count is %lld with x %s: must be >= 0, and 0 where x is NULL",
-                     (long long)count, x ? "given" : "NULL");
+                     "count is %lld with x %s: must be 0 to %lld, and 0 where x is NULL",
+                     (long long)count, x ? "given" : "NULL", (long long)MAX_POINTS);
   const int32_t dim = body->dim;
   for (int64_t i = 0; i < dim * count; i++)
     if (!isfinite(x[i]))

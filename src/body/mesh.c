@@ -275,7 +275,7 @@ static mps_status check_arrays(mps_context *context, const char *function, int64
                      "vertices is %lld, must be 4 to 3 times the triangles (%lld)",
                      (long long)vertices, (long long)triangles);
   for (int64_t i = 0; i < 3 * vertices; i++)
-    if (!isfinite(xyz[i]))
+    if (!(fabs(xyz[i]) <= MPSI_BODY_FAR))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "vertex %lld has %c = %g m, must be finite", (long long)(i / 3),
                        "xyz"[i % 3], xyz[i]);

@@ -1,4 +1,4 @@
-/* motion.c - how a rigid body moves, and the reactions it is told of.
+/* motion.c - how a rigid body moves: by signals, from outside, or by forces; its energies.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body.h"
 
@@ -27,6 +27,7 @@ static void follow(mps_body *body) {
     rate[c] = body->factor[c] * mps_signal_velocity(body->signal[c], body->time);
   }
   mpsi_pose *pose = &body->pose;
+  body->outside = false;
   for (int c = 0; c < 3; c++) pose->x[c] = at[c], pose->v[c] = rate[c];
   if (body->dim == 2) {
     pose->spin[2] = rate[5];
@@ -38,9 +39,25 @@ static void follow(mps_body *body) {
   mpsi_rotation_spin(at + 3, rate + 3, pose->spin);
 }
 
+/* Angular momentum in space of a free body in 3D that has its orientation and spin. */
+static void find_angular(mps_body *body) {
+  double own[3]; /* the body's axes */
+  mpsi_rotate_back(body->pose.R, body->pose.spin, own);
+  for (int c = 0; c < 3; c++) own[c] *= body->def.inertia[c];
+  mpsi_rotate(body->pose.R, own, body->angular);
+}
+
+/* And its spin, from the angular momentum. */
+static void find_spin(const mps_body *body, double *spin) {
+  double own[3];
+  mpsi_rotate_back(body->pose.R, body->angular, own);
+  for (int c = 0; c < 3; c++) own[c] /= body->def.inertia[c];
+  mpsi_rotate(body->pose.R, own, spin);
+}
+
 void mpsi_body_begin(mps_body *body) {
   const mps_body_def *def = &body->def;
-  if (def->motion == MPS_MOTION_PRESCRIBED) {
+  if (def->motion == MPS_BODY_MOTION_PRESCRIBED) {
     follow(body);
     return;
   }
@@ -52,10 +69,7 @@ void mpsi_body_begin(mps_body *body) {
     return;
   }
   mpsi_rotation_exp(def->rotation, pose->R);
-  double own[3]; /* the body's axes */
-  mpsi_rotate_back(pose->R, def->spin, own);
-  for (int c = 0; c < 3; c++) own[c] *= def->inertia[c];
-  mpsi_rotate(pose->R, own, body->angular);
+  find_angular(body);
 }
 
 /* Turns a free body in 3D for dt under its angular momentum L, which stays: the energy of rotation,
@@ -79,39 +93,87 @@ static void turn(mps_body *body, double dt) {
     mpsi_rotation_turn_own(i, (k == 1 ? 1.0 : 0.5) * dt * rate, R);
   }
   mpsi_rotation_clean(R);
-  double own[3];
-  mpsi_rotate_back(R, L, own);
-  for (int c = 0; c < 3; c++) own[c] /= I[c];
-  mpsi_rotate(R, own, body->pose.spin);
+  find_spin(body, body->pose.spin);
 }
 
-void mpsi_body_advance(mps_body *body, double dt) {
-  const mps_body_def *def = &body->def;
+/* A prescribed body that is moved from outside goes on with its velocity and spin. */
+static void coast(mps_body *body, double dt) {
   mpsi_pose *pose = &body->pose;
-  body->time += dt;
-  if (def->motion == MPS_MOTION_PRESCRIBED) {
-    follow(body);
-    return;
-  }
-  mpsi_load sum = body->load;
-  for (int32_t part = 0; part < body->parts; part++)
-    for (int c = 0; c < 3; c++) {
-      sum.force[c] += body->reaction[part].force[c];
-      sum.moment[c] += body->reaction[part].moment[c];
-    }
-  for (int c = 0; c < 3; c++) { /* damping at the end of the step: stable for every dt */
-    const double v = pose->v[c] + dt * (sum.force[c] / def->mass + def->gravity[c]);
-    pose->v[c] = v / (1.0 + dt * def->damping[0]);
-    pose->x[c] += dt * pose->v[c];
-  }
-  const double left = 1.0 + dt * def->damping[1];
+  for (int c = 0; c < 3; c++) pose->x[c] += dt * pose->v[c];
   if (body->dim == 2) {
-    pose->spin[2] = (pose->spin[2] + dt * (sum.moment[2] / def->inertia[2])) / left;
     set_angle(body, body->rotation[2] + dt * pose->spin[2]);
     return;
   }
-  for (int c = 0; c < 3; c++) body->angular[c] = (body->angular[c] + dt * sum.moment[c]) / left;
+  const double by[3] = {dt * pose->spin[0], dt * pose->spin[1], dt * pose->spin[2]};
+  mpsi_rotation_turn(by, pose->R);
+  mpsi_rotation_clean(pose->R);
+  mpsi_rotation_log(pose->R, body->rotation);
+}
+
+/* Velocity of a free body after dt of force, and the work done: of a force F that takes v to v',
+ * the work is dt F (v + v')/2. Damping at the end of the step: stable for every dt. */
+static void push(mps_body *body, const mpsi_load *contact, double dt) {
+  const mps_body_def *def = &body->def;
+  mpsi_pose *pose = &body->pose;
+  for (int c = 0; c < 3; c++) {
+    const double load = body->load.force[c], before = pose->v[c];
+    const double v = before + dt * ((load + contact->force[c]) / def->mass + def->gravity[c]);
+    const double middle = 0.5 * (before + v);
+    body->work_contacts += dt * contact->force[c] * middle;
+    body->work_loads += dt * (load + def->mass * def->gravity[c]) * middle;
+    pose->v[c] = v / (1.0 + dt * def->damping[0]);
+    body->dissipated += 0.5 * def->mass * (v * v - pose->v[c] * pose->v[c]);
+    pose->x[c] += dt * pose->v[c];
+  }
+}
+
+static void spin_in_plane(mps_body *body, const mpsi_load *contact, double dt) {
+  const double I = body->def.inertia[2], before = body->pose.spin[2], load = body->load.moment[2];
+  const double w = before + dt * ((load + contact->moment[2]) / I), middle = 0.5 * (before + w);
+  body->work_contacts += dt * contact->moment[2] * middle;
+  body->work_loads += dt * load * middle;
+  body->pose.spin[2] = w / (1.0 + dt * body->def.damping[1]);
+  body->dissipated += 0.5 * I * (w * w - body->pose.spin[2] * body->pose.spin[2]);
+  set_angle(body, body->rotation[2] + dt * body->pose.spin[2]);
+}
+
+static void spin_in_space(mps_body *body, const mpsi_load *contact, double dt) {
+  const double left = 1.0 + dt * body->def.damping[1];
+  double before[3], after[3];
+  memcpy(before, body->pose.spin, sizeof before);
+  for (int c = 0; c < 3; c++) body->angular[c] += dt * (body->load.moment[c] + contact->moment[c]);
+  find_spin(body, after);
+  const double energy = 0.5 * mpsi_dot3(body->angular, after);
+  for (int c = 0; c < 3; c++) {
+    const double middle = 0.5 * (before[c] + after[c]);
+    body->work_contacts += dt * contact->moment[c] * middle;
+    body->work_loads += dt * body->load.moment[c] * middle;
+    body->angular[c] /= left;
+  }
   turn(body, dt);
+  body->dissipated += energy - 0.5 * mpsi_dot3(body->angular, body->pose.spin);
+}
+
+void mpsi_body_advance(mps_body *body, double dt) {
+  body->time += dt;
+  if (body->def.motion == MPS_BODY_MOTION_PRESCRIBED) {
+    if (body->outside)
+      coast(body, dt);
+    else
+      follow(body);
+    return;
+  }
+  mpsi_load contact = {{0}, {0}};
+  for (int32_t part = 0; part < body->parts; part++)
+    for (int c = 0; c < 3; c++) {
+      contact.force[c] += body->reaction[part].force[c];
+      contact.moment[c] += body->reaction[part].moment[c];
+    }
+  push(body, &contact, dt);
+  if (body->dim == 2)
+    spin_in_plane(body, &contact, dt);
+  else
+    spin_in_space(body, &contact, dt);
 }
 
 mps_status mps_body_advance(mps_body *body, double dt) {
@@ -137,7 +199,7 @@ mps_status mps_body_drive(mps_body *body, int32_t component, mps_signal *signal,
   if (!isfinite(factor))
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT, "factor is %g, must be finite",
                      factor);
-  if (body->def.motion != MPS_MOTION_PRESCRIBED)
+  if (body->def.motion != MPS_BODY_MOTION_PRESCRIBED)
     return mpsi_fail(body->context, __func__, MPS_ERROR_STATE,
                      "a free body follows no signal: use mps_body_load");
   mps_signal *old = body->signal[component];
@@ -147,6 +209,79 @@ mps_status mps_body_drive(mps_body *body, int32_t component, mps_signal *signal,
   follow(body);
   return MPS_OK;
 }
+
+/* ---- motion from outside --------------------------------------------------------------------- */
+
+static const mps_body_motion motion_defaults = {.struct_size = sizeof(mps_body_motion),
+                                                .position = {NAN, NAN, NAN},
+                                                .rotation = {NAN, NAN, NAN}};
+
+mps_status mps_body_motion_init(mps_body_motion *motion, size_t size) {
+  return MPSI_DEF_INIT(mps_body_motion, motion, size, &motion_defaults);
+}
+
+static mps_status check_motion(mps_body *body, const char *function, const mps_body_motion *m) {
+  static const bool in_plane[3] = {true, true, false}, about_z[3] = {false, false, true};
+  const struct {
+    const char *name, *unit;
+    const double *value;
+    const bool *plane;
+    bool may_be_nan;
+  } list[] = {{"position", "m", m->position, in_plane, true},
+              {"rotation", "rad", m->rotation, about_z, true},
+              {"velocity", "m/s", m->velocity, in_plane, false},
+              {"spin", "rad/s", m->spin, about_z, false}};
+  for (size_t k = 0; k < sizeof list / sizeof *list; k++)
+    for (int c = 0; c < 3; c++) {
+      const double value = list[k].value[c];
+      const bool unset = list[k].may_be_nan && isnan(value);
+      if (!unset && !(fabs(value) <= MPSI_BODY_FAR))
+        return mpsi_fail(body->context, function, MPS_ERROR_ARGUMENT,
+                         "%s[%d] is %g %s, must be within +-%g%s", list[k].name, c, value,
+                         list[k].unit, MPSI_BODY_FAR, list[k].may_be_nan ? ", or NaN" : "");
+      if (body->dim == 2 && !list[k].plane[c] && !unset && value != 0.0)
+        return mpsi_fail(body->context, function, MPS_ERROR_ARGUMENT,
+                         "%s[%d] is %g %s, must be 0 for a 2D shape", list[k].name, c, value,
+                         list[k].unit);
+    }
+  const int unset = isnan(m->rotation[0]) + isnan(m->rotation[1]) + isnan(m->rotation[2]);
+  if (body->dim == 3 && unset % 3 != 0)
+    return mpsi_fail(body->context, function, MPS_ERROR_ARGUMENT,
+                     "rotation is (%g, %g, %g) rad: all components must be given, or all NaN",
+                     m->rotation[0], m->rotation[1], m->rotation[2]);
+  return MPS_OK;
+}
+
+mps_status mps_body_set_motion(mps_body *body, const mps_body_motion *user_motion) {
+  if (!body) return MPS_ERROR_ARGUMENT;
+  const bool free_body = body->def.motion == MPS_BODY_MOTION_FREE;
+  mps_body_motion motion = motion_defaults;
+  if (!user_motion && free_body)
+    return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
+                     "motion is NULL, and a free body has no signals to go back to");
+  if (!user_motion) {
+    follow(body);
+    return MPS_OK;
+  }
+  mps_status status = MPSI_DEF_READ(body->context, __func__, mps_body_motion, user_motion, &motion);
+  if (status == MPS_OK) status = check_motion(body, __func__, &motion);
+  if (status != MPS_OK) return status;
+  mpsi_pose *pose = &body->pose;
+  body->outside = !free_body;
+  for (int c = 0; c < 3; c++) {
+    if (!isnan(motion.position[c])) pose->x[c] = motion.position[c];
+    pose->v[c] = motion.velocity[c], pose->spin[c] = motion.spin[c];
+  }
+  if (body->dim == 2 && !isnan(motion.rotation[2])) set_angle(body, motion.rotation[2]);
+  if (body->dim == 3 && !isnan(motion.rotation[0])) {
+    mpsi_rotation_exp(motion.rotation, pose->R);
+    memcpy(body->rotation, motion.rotation, sizeof body->rotation);
+  }
+  if (body->dim == 3 && free_body) find_angular(body);
+  return MPS_OK;
+}
+
+/* ---- loads ----------------------------------------------------------------------------------- */
 
 mps_status mps_body_load(mps_body *body, const double *force, const double *moment) {
   if (!body) return MPS_ERROR_ARGUMENT;
@@ -158,7 +293,7 @@ mps_status mps_body_load(mps_body *body, const double *force, const double *mome
       return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
                        "force[%d] is %g N and moment[%d] %g N m, must be finite", c, load.force[c],
                        c, load.moment[c]);
-  if (body->def.motion != MPS_MOTION_FREE)
+  if (body->def.motion != MPS_BODY_MOTION_FREE)
     return mpsi_fail(body->context, __func__, MPS_ERROR_STATE,
                      "a prescribed body takes no load: its motion is given");
   if (body->dim == 2 && (load.force[2] != 0.0 || load.moment[0] != 0.0 || load.moment[1] != 0.0))
@@ -169,9 +304,8 @@ mps_status mps_body_load(mps_body *body, const double *force, const double *mome
   return MPS_OK;
 }
 
-mps_status mps_body_get_state(mps_body *body, mps_body_state *out) {
+mps_status mps_body_get_state_sized(mps_body *body, mps_body_state *out, size_t size) {
   if (!body) return MPS_ERROR_ARGUMENT;
-  if (!out) return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   const mpsi_pose *p = &body->pose;
   mps_body_state state = {.time = body->time};
   memcpy(state.position, p->x, sizeof p->x);
@@ -179,133 +313,23 @@ mps_status mps_body_get_state(mps_body *body, mps_body_state *out) {
   memcpy(state.velocity, p->v, sizeof p->v);
   memcpy(state.spin, p->spin, sizeof p->spin);
   memcpy(state.rotation, body->rotation, sizeof body->rotation);
-  if (body->dim == 3 && body->def.motion == MPS_MOTION_FREE)
+  if (body->dim == 3 && body->def.motion == MPS_BODY_MOTION_FREE)
     mpsi_rotation_log(p->R, state.rotation);
-  *out = state;
-  return MPS_OK;
+  return mpsi_out_write(body->context, "mps_body_get_state", out, size, &state, sizeof state);
 }
 
-/* ---- reactions ------------------------------------------------------------------------------- */
-
-void mpsi_body_react(mps_body *body, double dt, const mpsi_load *load, const int64_t *contacts) {
-  for (int32_t part = 0; part < body->parts; part++) {
-    mps_reaction *r = &body->reaction[part];
-    for (int c = 0; c < 3; c++) {
-      r->force[c] = load[part].force[c];
-      r->moment[c] = load[part].moment[c];
-      r->impulse[c] += dt * load[part].force[c];
-      r->moment_impulse[c] += dt * load[part].moment[c];
-    }
-    r->count = contacts[part];
-  }
-}
-
-mps_status mps_body_get_reaction(mps_body *body, int32_t part, mps_reaction *out) {
+mps_status mps_body_get_totals_sized(mps_body *body, mps_body_totals *out, size_t size) {
   if (!body) return MPS_ERROR_ARGUMENT;
-  if (!out) return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
-  if (part < -1 || part >= body->parts)
-    return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
-                     "part is %d, allowed are 0 to %d, and -1 for all", part, body->parts - 1);
-  mps_reaction sum = {0};
-  for (int32_t p = part < 0 ? 0 : part; p < (part < 0 ? body->parts : part + 1); p++) {
-    const mps_reaction *r = &body->reaction[p];
-    for (int c = 0; c < 3; c++) {
-      sum.force[c] += r->force[c];
-      sum.moment[c] += r->moment[c];
-      sum.impulse[c] += r->impulse[c];
-      sum.moment_impulse[c] += r->moment_impulse[c];
-    }
-    sum.count += r->count;
-  }
-  *out = sum;
-  return MPS_OK;
-}
-
-/* ---- records --------------------------------------------------------------------------------- */
-
-enum { REACTION = 12 * sizeof(double) };
-_Static_assert(offsetof(mps_reaction, count) == REACTION, "12 numbers, then the contacts");
-_Static_assert(sizeof(mpsi_load) == 6 * sizeof(double), "force, then moment");
-
-void mpsi_body_get_record(const mps_body *body, mpsi_body_record *out) {
   const mpsi_pose *p = &body->pose;
-  *out = (mpsi_body_record){.shape = body->shape,
-                            .faces = body->faces,
-                            .motion = body->def.motion,
-                            .parts = body->parts,
-                            .time = body->time};
-  memcpy(out->rotation, body->rotation, sizeof out->rotation);
-  memcpy(out->angular, body->angular, sizeof out->angular);
-  memcpy(out->load, &body->load, sizeof out->load);
-  memcpy(out->position, p->x, sizeof out->position);
-  memcpy(out->orientation, p->R, sizeof out->orientation);
-  memcpy(out->velocity, p->v, sizeof out->velocity);
-  memcpy(out->spin, p->spin, sizeof out->spin);
-  for (int32_t part = 0; part < body->parts; part++) {
-    memcpy(&out->reaction[12 * part], &body->reaction[part], REACTION);
-    out->contacts[part] = body->reaction[part].count;
-  }
-}
-
-void mpsi_body_set_record(mps_body *body, const mpsi_body_record *record) {
-  mpsi_pose *p = &body->pose;
-  body->time = record->time;
-  memcpy(body->rotation, record->rotation, sizeof body->rotation);
-  memcpy(body->angular, record->angular, sizeof body->angular);
-  memcpy(&body->load, record->load, sizeof body->load);
-  memcpy(p->x, record->position, sizeof p->x);
-  memcpy(p->R, record->orientation, sizeof p->R);
-  memcpy(p->v, record->velocity, sizeof p->v);
-  memcpy(p->spin, record->spin, sizeof p->spin);
-  for (int32_t part = 0; part < body->parts; part++) {
-    memcpy(&body->reaction[part], &record->reaction[12 * part], REACTION);
-    body->reaction[part].count = record->contacts[part];
-  }
-}
-
-/* ---- parts ----------------------------------------------------------------------------------- */
-
-static bool good_name(const char *name) {
-  const size_t length = strlen(name);
-  if (length < 1 || length >= MPSI_PART_NAME) return false;
-  for (size_t k = 0; k < length; k++) {
-    const char c = name[k];
-    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-    if (!letter && !(k > 0 && c >= '0' && c <= '9')) return false;
-  }
-  return true;
-}
-
-mps_status mps_body_name_part(mps_body *body, const char *name, int64_t first, int64_t count,
-                              int32_t *part) {
-  if (!body) return MPS_ERROR_ARGUMENT;
-  if (!name || !good_name(name))
-    return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
-                     "name is \"%.60s\", must be [A-Za-z_][A-Za-z0-9_]* of at most 47 characters",
-                     name ? name : "(NULL)");
-  if (first < 0 || first >= body->faces || count < 1 || count > body->faces)
-    return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
-                     "first is %lld and count %lld, allowed are 0 to %lld and 1 to %lld",
-                     (long long)first, (long long)count, (long long)body->faces - 1,
-                     (long long)body->faces);
-  int32_t number = mps_body_part(body, name);
-  if (number < 0) {
-    if (body->parts == MPS_BODY_MAX_PARTS)
-      return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
-                       "the body has %d named parts, the most there can be",
-                       MPS_BODY_MAX_PARTS - 1);
-    number = body->parts++;
-    strcpy(body->names[number], name);
-  }
-  for (int64_t k = 0; k < count; k++) body->part_of[(first + k) % body->faces] = number;
-  if (part) *part = number;
-  return MPS_OK;
-}
-
-int32_t mps_body_part_count(const mps_body *body) { return body ? body->parts : 0; }
-
-int32_t mps_body_part(const mps_body *body, const char *name) {
-  for (int32_t k = 0; body && name && k < body->parts; k++)
-    if (strcmp(body->names[k], name) == 0) return k;
-  return -1;
+  mps_body_totals t = {.mass = body->def.mass,
+                       .work_contacts = body->work_contacts,
+                       .work_loads = body->work_loads,
+                       .dissipated = body->dissipated};
+  double own[3] = {0.0, 0.0, body->def.inertia[2] * p->spin[2]};
+  if (body->dim == 3) memcpy(own, body->angular, sizeof own);
+  for (int c = 0; c < 3; c++) t.linear[c] = t.mass * p->v[c];
+  mpsi_cross3(p->x, t.linear, t.angular);
+  for (int c = 0; c < 3; c++) t.angular[c] += own[c];
+  t.kinetic = 0.5 * (mpsi_dot3(t.linear, p->v) + mpsi_dot3(own, p->spin));
+  return mpsi_out_write(body->context, "mps_body_get_totals", out, size, &t, sizeof t);
 }

@@ -8,6 +8,13 @@
 
 #define MAX_VERTICES 10000
 
+mps_status mpsi_body_check_length(mps_context *context, const char *function, const char *name,
+                                  double value) {
+  if (value >= MPSI_BODY_SMALL && value <= MPSI_BODY_FAR) return MPS_OK;
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %g m, must be in %g to %g m", name,
+                   value, MPSI_BODY_SMALL, MPSI_BODY_FAR);
+}
+
 /* Twice the area, positive when the corners run anticlockwise. */
 static double area2(int64_t n, const double *xy) {
   double sum = 0.0;
@@ -51,10 +58,10 @@ static mps_status check_corners(mps_context *context, const char *function, int6
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "vertices is %lld, must be 3 to %d",
                      (long long)vertices, MAX_VERTICES);
   for (int64_t k = 0; k < 2 * vertices; k++)
-    if (!isfinite(xy[k]))
+    if (!(fabs(xy[k]) <= MPSI_BODY_FAR))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "corner %lld has %c = %g m, must be finite", (long long)(k / 2),
-                       names[k % 2], xy[k]);
+                       "corner %lld has %c = %g m, must be finite and within +-%g m",
+                       (long long)(k / 2), names[k % 2], xy[k], MPSI_BODY_FAR);
   return mpsi_polygon_check(context, function, vertices, xy);
 }
 
@@ -75,9 +82,9 @@ mps_status mps_body_create_box(mps_context *context, const mps_body_def *def, do
   if (!context) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  if (!isfinite(width) || width <= 0.0 || !isfinite(height) || height <= 0.0)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                     "width is %g m and height %g m, must be finite and > 0", width, height);
+  mps_status status = mpsi_body_check_length(context, __func__, "width", width);
+  if (status == MPS_OK) status = mpsi_body_check_length(context, __func__, "height", height);
+  if (status != MPS_OK) return status;
   const double x = 0.5 * width, y = 0.5 * height;
   const double xy[8] = {-x, -y, x, -y, x, y, -x, y};
   return make_polygon(context, __func__, def, 2, 4, xy, out);
@@ -88,10 +95,8 @@ static mps_status make_ball(mps_context *context, const char *function, const mp
   if (!context) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  if (!isfinite(radius) || radius <= 0.0)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "radius is %g m, must be finite and > 0", radius);
-  const mps_status status = mpsi_body_new(context, function, def, dim, MPSI_BALL, 1, out);
+  mps_status status = mpsi_body_check_length(context, function, "radius", radius);
+  if (status == MPS_OK) status = mpsi_body_new(context, function, def, dim, MPSI_BALL, 1, out);
   if (status == MPS_OK) (*out)->radius = radius;
   return status;
 }
@@ -170,12 +175,12 @@ mps_status mps_body_create_cylinder(mps_context *context, const mps_body_def *de
   if (!context) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  if (!isfinite(radius) || radius <= 0.0 || !isfinite(length) || length <= 0.0)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                     "radius is %g m and length %g m, must be finite and > 0", radius, length);
+  mps_status status = mpsi_body_check_length(context, __func__, "radius", radius);
+  if (status == MPS_OK) status = mpsi_body_check_length(context, __func__, "length", length);
+  if (status != MPS_OK) return status;
   const double z = 0.5 * length;
   const double rz[8] = {0.0, -z, radius, -z, radius, z, 0.0, z};
-  const mps_status status = make_polygon(context, __func__, def, 3, 4, rz, out);
+  status = make_polygon(context, __func__, def, 3, 4, rz, out);
   if (status != MPS_OK) return status;
   (*out)->faces = 3; /* the edge on the axis is none, and the side comes last */
   (*out)->face_of[1] = 2, (*out)->face_of[2] = 1;

@@ -32,6 +32,8 @@ static const mpsi_h5_row body_rows[] = {
     INTEGERS(mpsi_body_record, faces, 1),
     INTEGERS(mpsi_body_record, motion, 1),
     INTEGERS(mpsi_body_record, parts, 1),
+    INTEGERS(mpsi_body_record, outside, 1),
+    NUMBERS(mpsi_body_record, energy, 3),
     NUMBERS(mpsi_body_record, time, 1),
     NUMBERS(mpsi_body_record, position, 3),
     NUMBERS(mpsi_body_record, rotation, 3),
@@ -40,7 +42,7 @@ static const mpsi_h5_row body_rows[] = {
     NUMBERS(mpsi_body_record, spin, 3),
     NUMBERS(mpsi_body_record, angular, 3),
     NUMBERS(mpsi_body_record, load, 6),
-    NUMBERS(mpsi_body_record, reaction, MPS_BODY_MAX_PARTS * 12),
+    NUMBERS(mpsi_body_record, reaction, MPS_BODY_MAX_PARTS * 13),
     INTEGERS(mpsi_body_record, contacts, MPS_BODY_MAX_PARTS)};
 #define BODY_ROWS (sizeof body_rows / sizeof *body_rows)
 

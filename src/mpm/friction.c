@@ -30,7 +30,7 @@ void mpsi_mpm_apply_contact(mps_mpm *mpm, int64_t g) {
  * `along`) lose their relative velocity by the reduced mass m M/(m + M). */
 static double stick_share(const mps_mpm *mpm, int32_t b, const double *x, const double *along) {
   const mps_body *body = mpm->contact.body[b];
-  if (body->def.motion == MPS_MOTION_PRESCRIBED) return 1.0;
+  if (body->def.motion == MPS_BODY_MOTION_PRESCRIBED) return 1.0;
   const double *R = body->pose.R;
   const double r[3] = {x[0] - body->pose.x[0], x[1] - body->pose.x[1], x[2] - body->pose.x[2]};
   const double arm[3] = {r[1] * along[2] - r[2] * along[1], r[2] * along[0] - r[0] * along[2],

@@ -45,7 +45,7 @@ static mpm_scene fall(mps_context *context, int32_t geometry, int options, bool 
   body.friction = 0.4;
   mps_assert_ok(context, mps_body_create_half_plane(context, &body, up, &floor));
   mps_assert_ok(context, mps_mpm_add_body(s.mpm, floor));
-  body.motion = MPS_MOTION_FREE;
+  body.motion = MPS_BODY_MOTION_FREE;
   body.mass = 30.0, body.inertia[2] = 0.15;
   body.position[0] = 0.93, body.position[1] = 0.3;
   body.velocity[0] = -3.0;

@@ -352,7 +352,7 @@ static void contact_keeps_momentum(void **state) {
   mpm_scene_solve(&s, &def);
   mps_body *bodies[2] = {NULL};
   mps_body_def body = mps_body_defaults();
-  body.motion = MPS_MOTION_FREE;
+  body.motion = MPS_BODY_MOTION_FREE;
   body.mass = 20.0, body.inertia[2] = 0.2;
   body.position[0] = 0.2, body.position[1] = -0.05, body.rotation[2] = 0.4;
   body.friction = 0.4;
@@ -397,7 +397,7 @@ static void contact_in_space_keeps_momentum(void **state) {
   mpm_scene_solve(&s, &def);
   mps_body *bodies[2] = {NULL};
   mps_body_def body = mps_body_defaults();
-  body.motion = MPS_MOTION_FREE;
+  body.motion = MPS_BODY_MOTION_FREE;
   body.mass = 2.0;
   for (int c = 0; c < 3; c++) body.inertia[c] = 0.002 + 0.001 * c;
   body.position[0] = 0.12, body.position[1] = -0.01;

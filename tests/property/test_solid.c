@@ -267,7 +267,7 @@ static void momentum_and_energy(const mps_body_state *s, const double *inertia, 
 
 static mps_body *free_body(const double *inertia, const double *spin) {
   mps_body_def def = mps_body_defaults();
-  def.motion = MPS_MOTION_FREE;
+  def.motion = MPS_BODY_MOTION_FREE;
   def.mass = 1.0;
   def.rotation[0] = 0.7, def.rotation[2] = -0.2;
   for (int c = 0; c < 3; c++) def.inertia[c] = inertia[c], def.spin[c] = spin[c];
@@ -333,7 +333,7 @@ static void top_precesses_exactly(void **state) {
 static void reactions_move_a_free_body(void **state) {
   (void)state;
   mps_body_def def = mps_body_defaults();
-  def.motion = MPS_MOTION_FREE;
+  def.motion = MPS_BODY_MOTION_FREE;
   def.mass = 2.0;
   def.inertia[0] = 0.5, def.inertia[1] = 0.8, def.inertia[2] = 1.1;
   def.gravity[2] = -9.81;
@@ -375,7 +375,7 @@ static void rotation_vector_round_trip(void **state) {
     const double angles[] = {1e-9, 1e-3, 0.1, 0.1001, 1.0, 3.0, pi - 1e-9, pi};
     const double angle = angles[p % 8], scale = angle / sqrt(dot(axis, axis));
     for (int c = 0; c < 3; c++) def.rotation[c] = scale * axis[c], def.inertia[c] = 1.0;
-    def.motion = MPS_MOTION_FREE, def.mass = 1.0;
+    def.motion = MPS_BODY_MOTION_FREE, def.mass = 1.0;
     mps_body *body = NULL, *again = NULL;
     mps_assert_ok(context, mps_body_create_sphere(context, &def, 1.0, &body));
     const mps_body_state s = get_state(body);

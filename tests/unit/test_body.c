@@ -19,7 +19,7 @@ static void refuses_bad_definitions(void **state) {
   mps_assert_fails(context, mps_body_create_disc(context, &def, 1.0, NULL), MPS_ERROR_ARGUMENT,
                    "out is NULL");
   mps_assert_fails(context, mps_body_create_box(context, &def, 1.0, -2.0, &body),
-                   MPS_ERROR_ARGUMENT, "height -2 m");
+                   MPS_ERROR_ARGUMENT, "height is -2 m");
   mps_assert_fails(context, mps_body_create_half_plane(context, &def, zero, &body),
                    MPS_ERROR_ARGUMENT, "normal is (0, 0)");
   mps_assert_fails(context, mps_body_create_half_plane(context, &def, NULL, &body),
@@ -43,7 +43,7 @@ static void refuses_bad_definitions(void **state) {
   def.mass = 1.0;
   mps_assert_fails(context, mps_body_create_box(context, &def, 1.0, 1.0, &body), MPS_ERROR_ARGUMENT,
                    "for free bodies");
-  def.motion = MPS_MOTION_FREE;
+  def.motion = MPS_BODY_MOTION_FREE;
   mps_assert_fails(context, mps_body_create_box(context, &def, 1.0, 1.0, &body), MPS_ERROR_ARGUMENT,
                    "inertia[2] is 0 kg m2");
   def.motion = 7;
@@ -64,7 +64,7 @@ static void refuses_what_a_plane_has_not(void **state) {
   mps_assert_fails(context, mps_body_create_box(context, &def, 1.0, 1.0, &body), MPS_ERROR_ARGUMENT,
                    "rotation[0] is 0.1 rad");
   def = mps_body_defaults();
-  def.motion = MPS_MOTION_FREE;
+  def.motion = MPS_BODY_MOTION_FREE;
   def.mass = def.inertia[2] = 1.0;
   mps_assert_fails(context, mps_body_create_sphere(context, &def, 1.0, &body), MPS_ERROR_ARGUMENT,
                    "inertia[0] is 0 kg m2");
@@ -86,7 +86,7 @@ static void refuses_bad_solids(void **state) {
   mps_assert_fails(context, mps_body_create_half_space(context, NULL, zero, &body),
                    MPS_ERROR_ARGUMENT, "normal is (0, 0, 0)");
   mps_assert_fails(context, mps_body_create_cylinder(context, NULL, 1.0, NAN, &body),
-                   MPS_ERROR_ARGUMENT, "length nan m");
+                   MPS_ERROR_ARGUMENT, "length is nan m");
   mps_assert_fails(context, mps_body_create_revolution(context, NULL, 3, NULL, &body),
                    MPS_ERROR_ARGUMENT, "rz is NULL");
   mps_assert_fails(context, mps_body_create_revolution(context, NULL, 3, crossing, &body),
@@ -214,7 +214,7 @@ static void follows_signals(void **state) {
 static void falls_freely(void **state) {
   (void)state;
   mps_body_def def = mps_body_defaults();
-  def.motion = MPS_MOTION_FREE;
+  def.motion = MPS_BODY_MOTION_FREE;
   def.mass = 2.0;
   def.inertia[2] = 0.5;
   def.velocity[0] = 3.0;
@@ -235,6 +235,156 @@ static void falls_freely(void **state) {
   mps_assert_near(s.position[1], -10.0 * late, 1e-11);
   mps_assert_near(s.spin[2], 1.0 + 0.5 * t, 1e-12);
   mps_assert_near(s.rotation[2], t + 0.5 * late, 1e-11);
+  mps_body_destroy(&body);
+}
+
+/* A servo: placed, then moved on by velocity and spin until it is set again. */
+static void moves_from_outside(void **state) {
+  (void)state;
+  mps_body *body = NULL;
+  mps_body_state s;
+  mps_signal *ramp = NULL;
+  mps_assert_ok(context, mps_signal_ramp(context, 0.0, 1.0, 2.0, &ramp));
+  mps_assert_ok(context, mps_body_create_box(context, NULL, 4.0, 2.0, &body));
+  mps_assert_ok(context, mps_body_drive(body, 0, ramp, 1.0));
+  mps_signal_destroy(&ramp);
+  mps_body_motion motion = mps_body_motion_defaults();
+  motion.position[0] = 3.0, motion.velocity[1] = -0.5, motion.spin[2] = 0.2;
+  mps_assert_ok(context, mps_body_set_motion(body, &motion));
+  for (int k = 0; k < 10; k++) mps_assert_ok(context, mps_body_advance(body, 0.05));
+  mps_assert_ok(context, mps_body_get_state(body, &s));
+  mps_assert_near(s.position[0], 3.0, 0.0);
+  mps_assert_near(s.position[1], -0.25, 1e-15);
+  mps_assert_near(s.rotation[2], 0.1, 1e-15);
+  mps_assert_near(s.velocity[1], -0.5, 0.0);
+  motion = mps_body_motion_defaults(); /* from where it is, with another velocity */
+  motion.velocity[1] = 1.0;
+  mps_assert_ok(context, mps_body_set_motion(body, &motion));
+  for (int k = 0; k < 10; k++) mps_assert_ok(context, mps_body_advance(body, 0.05));
+  mps_assert_ok(context, mps_body_get_state(body, &s));
+  mps_assert_near(s.position[1], 0.25, 1e-14);
+  mps_assert_near(s.rotation[2], 0.1, 1e-15);
+  mps_assert_ok(context, mps_body_set_motion(body, NULL)); /* back to the ramp, which has ended */
+  mps_assert_ok(context, mps_body_get_state(body, &s));
+  mps_assert_near(s.position[0], 2.0, 1e-12);
+  mps_assert_near(s.position[1], 0.0, 0.0);
+  motion.velocity[2] = 1.0;
+  mps_assert_fails(context, mps_body_set_motion(body, &motion), MPS_ERROR_ARGUMENT,
+                   "velocity[2] is 1 m/s, must be 0 for a 2D shape");
+  motion.velocity[2] = 0.0, motion.spin[2] = INFINITY;
+  mps_assert_fails(context, mps_body_set_motion(body, &motion), MPS_ERROR_ARGUMENT,
+                   "spin[2] is inf rad/s");
+  mps_body_destroy(&body);
+}
+
+/* In space a constant spin is a rotation about a fixed axis. */
+static void turns_from_outside(void **state) {
+  (void)state;
+  mps_body *body = NULL;
+  mps_body_state s;
+  mps_assert_ok(context, mps_body_create_sphere(context, NULL, 1.0, &body));
+  mps_body_motion motion = mps_body_motion_defaults();
+  motion.rotation[0] = 0.1;
+  mps_assert_fails(context, mps_body_set_motion(body, &motion), MPS_ERROR_ARGUMENT, "or all NaN");
+  motion.rotation[1] = motion.rotation[2] = 0.0;
+  motion.spin[0] = 0.3;
+  mps_assert_ok(context, mps_body_set_motion(body, &motion));
+  for (int k = 0; k < 100; k++) mps_assert_ok(context, mps_body_advance(body, 0.01));
+  mps_assert_ok(context, mps_body_get_state(body, &s));
+  mps_assert_near(s.rotation[0], 0.4, 1e-13);
+  mps_assert_near(s.orientation[4], cos(0.4), 1e-13);
+  mps_body_destroy(&body);
+}
+
+static mps_body *free_body(int dim, const mps_body_def *more) {
+  mps_body_def def = *more;
+  mps_body *body = NULL;
+  def.motion = MPS_BODY_MOTION_FREE;
+  def.mass = 2.0;
+  for (int c = dim == 2 ? 2 : 0; c < 3; c++) def.inertia[c] = 0.5 + 0.2 * c, def.spin[c] = 1.0 - c;
+  def.velocity[0] = 3.0;
+  if (dim == 2)
+    mps_assert_ok(context, mps_body_create_disc(context, &def, 1.0, &body));
+  else
+    mps_assert_ok(context, mps_body_create_sphere(context, &def, 1.0, &body));
+  return body;
+}
+
+/* The work of each force, added up step by step, is what the energy changes by. */
+static void keeps_its_books(void **state) {
+  (void)state;
+  for (int dim = 2; dim <= 3; dim++) {
+    mps_body_def def = mps_body_defaults();
+    def.gravity[1] = -10.0, def.damping[0] = 0.5, def.damping[1] = 0.3;
+    mps_body *body = free_body(dim, &def);
+    const double force[] = {4.0, 0.0, 0.0}, moment[] = {0.0, 0.0, 0.25};
+    const mpsi_load touch = {{-1.0, 6.0, 0.0}, {0.0, 0.0, -0.4}};
+    const int64_t one = 1;
+    mps_assert_ok(context, mps_body_load(body, force, moment));
+    mps_body_totals start, t;
+    mps_reaction r;
+    mps_assert_ok(context, mps_body_get_totals(body, &start));
+    mps_assert_near(start.linear[0], 6.0, 0.0);
+    for (int k = 0; k < 200; k++) {
+      mpsi_body_react(body, 0.01, &touch, &one);
+      mpsi_body_advance(body, 0.01);
+    }
+    mps_assert_ok(context, mps_body_get_totals(body, &t));
+    mps_assert_ok(context, mps_body_get_reaction(body, -1, &r));
+    assert_true(t.dissipated > 1.0 && fabs(t.work_contacts) > 1.0 && fabs(t.work_loads) > 1.0);
+    mps_assert_near(t.kinetic + t.dissipated - t.work_contacts - t.work_loads, start.kinetic,
+                    1e-11 * (fabs(t.work_loads) + t.dissipated));
+    /* gravity and the load at rest in time: impulse by hand, less what damping took */
+    mps_assert_near(r.impulse[1], 12.0, 1e-12);
+    mps_assert_near(-r.work, t.work_contacts, 0.02 * fabs(t.work_contacts)); /* at old velocities */
+    mps_body_destroy(&body);
+  }
+}
+
+/* A velocity table that begins before t = 0: u(t) is the integral from 0. */
+static void begins_where_it_is(void **state) {
+  (void)state;
+  const double t[] = {-1.0, 2.0}, v[] = {0.01, 0.01}, a[] = {1.0, 1.0};
+  for (int kind = 0; kind < 2; kind++) {
+    mps_signal *signal = NULL;
+    mps_body *body = NULL;
+    mps_body_state s;
+    mps_assert_ok(context,
+                  mps_signal_table(context, kind ? MPS_SIGNAL_ACCELERATION : MPS_SIGNAL_VELOCITY, 2,
+                                   t, kind ? a : v, &signal));
+    mps_assert_ok(context, mps_body_create_disc(context, NULL, 1.0, &body));
+    mps_assert_ok(context, mps_body_drive(body, 1, signal, -1.0));
+    mps_assert_ok(context, mps_body_get_state(body, &s));
+    mps_assert_near(s.position[1], 0.0, 1e-16);
+    mps_assert_ok(context, mps_body_advance(body, 1.0));
+    mps_assert_ok(context, mps_body_get_state(body, &s));
+    mps_assert_near(s.position[1], kind ? -1.5 : -0.01, 1e-15);
+    mps_signal_destroy(&signal);
+    mps_body_destroy(&body);
+  }
+}
+
+static void refuses_insane_numbers(void **state) {
+  (void)state;
+  mps_body *body = NULL;
+  mps_body_def def = mps_body_defaults();
+  const double x[2] = {0.0, 0.0};
+  double d;
+  mps_assert_fails(context, mps_body_create_disc(context, &def, 1e-320, &body), MPS_ERROR_ARGUMENT,
+                   "radius is 9.99989e-321 m, must be in 1e-09 to 1e+09 m");
+  mps_assert_fails(context, mps_body_create_box(context, &def, 1.0, 1e300, &body),
+                   MPS_ERROR_ARGUMENT, "height is 1e+300 m");
+  def.position[1] = 1e308;
+  mps_assert_fails(context, mps_body_create_disc(context, &def, 1.0, &body), MPS_ERROR_ARGUMENT,
+                   "position[1] is 1e+308 m");
+  def = mps_body_defaults();
+  def.motion = MPS_BODY_MOTION_FREE;
+  def.mass = 1e-308, def.inertia[2] = 1.0;
+  mps_assert_fails(context, mps_body_create_disc(context, &def, 1.0, &body), MPS_ERROR_ARGUMENT,
+                   "mass is 1e-308 kg");
+  mps_assert_ok(context, mps_body_create_disc(context, NULL, 1.0, &body));
+  mps_assert_fails(context, mps_body_distance(body, INT64_MAX, x, &d, NULL, NULL, NULL),
+                   MPS_ERROR_ARGUMENT, "count is 9223372036854775807");
   mps_body_destroy(&body);
 }
 
@@ -262,6 +412,8 @@ int main(void) {
       cmocka_unit_test(refuses_bad_solids),      cmocka_unit_test(chooses_the_penalty),
       cmocka_unit_test(refuses_bad_calls),       cmocka_unit_test(names_parts),
       cmocka_unit_test(follows_signals),         cmocka_unit_test(falls_freely),
-      cmocka_unit_test(survives_lack_of_memory)};
+      cmocka_unit_test(moves_from_outside),      cmocka_unit_test(turns_from_outside),
+      cmocka_unit_test(keeps_its_books),         cmocka_unit_test(begins_where_it_is),
+      cmocka_unit_test(refuses_insane_numbers),  cmocka_unit_test(survives_lack_of_memory)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

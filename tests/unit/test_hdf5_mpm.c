@@ -45,7 +45,7 @@ static mps_status make_material(mps_context *context, const change *c, mps_mater
 
 static mps_status make_free_body(mps_context *context, int32_t dim, mps_body **out) {
   mps_body_def def = mps_body_defaults();
-  def.motion = MPS_MOTION_FREE;
+  def.motion = MPS_BODY_MOTION_FREE;
   def.friction = 0.3;
   def.mass = dim == 3 ? 1.0 : 20.0;
   for (int c = 0; c < 3; c++) def.inertia[c] = dim == 3 ? 1e-3 * (1 + c) : c == 2 ? 0.1 : 0.0;

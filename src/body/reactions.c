@@ -1,0 +1,142 @@
+/* reactions.c - what particles do to a rigid body, by the parts of its surface; and the record that
+ * a checkpoint keeps of a body. SPDX-License-Identifier: BSD-3-Clause */
+#include "body.h"
+
+#include "rotation.h"
+
+#include <string.h>
+
+/* ---- reactions ------------------------------------------------------------------------------- */
+
+void mpsi_body_react(mps_body *body, double dt, const mpsi_load *load, const int64_t *contacts) {
+  for (int32_t part = 0; part < body->parts; part++) {
+    mps_reaction *r = &body->reaction[part];
+    r->work -= dt * (mpsi_dot3(load[part].force, body->pose.v) +
+                     mpsi_dot3(load[part].moment, body->pose.spin));
+    for (int c = 0; c < 3; c++) {
+      r->force[c] = load[part].force[c];
+      r->moment[c] = load[part].moment[c];
+      r->impulse[c] += dt * load[part].force[c];
+      r->moment_impulse[c] += dt * load[part].moment[c];
+    }
+    r->count = contacts[part];
+  }
+}
+
+mps_status mps_body_get_reaction_sized(mps_body *body, int32_t part, mps_reaction *out,
+                                       size_t size) {
+  static const char function[] = "mps_body_get_reaction";
+  if (!body) return MPS_ERROR_ARGUMENT;
+  if (part < -1 || part >= body->parts)
+    return mpsi_fail(body->context, function, MPS_ERROR_ARGUMENT,
+                     "part is %d, allowed are 0 to %d, and -1 for all", part, body->parts - 1);
+  mps_reaction sum = {0};
+  for (int32_t p = part < 0 ? 0 : part; p < (part < 0 ? body->parts : part + 1); p++) {
+    const mps_reaction *r = &body->reaction[p];
+    for (int c = 0; c < 3; c++) {
+      sum.force[c] += r->force[c];
+      sum.moment[c] += r->moment[c];
+      sum.impulse[c] += r->impulse[c];
+      sum.moment_impulse[c] += r->moment_impulse[c];
+    }
+    sum.count += r->count;
+    sum.work += r->work;
+  }
+  return mpsi_out_write(body->context, function, out, size, &sum, sizeof sum);
+}
+
+/* ---- records --------------------------------------------------------------------------------- */
+
+enum { REACTION = 12 * sizeof(double) };
+_Static_assert(offsetof(mps_reaction, count) == REACTION, "12 numbers, then the contacts");
+_Static_assert(sizeof(mpsi_load) == 6 * sizeof(double), "force, then moment");
+
+void mpsi_body_get_record(const mps_body *body, mpsi_body_record *out) {
+  const mpsi_pose *p = &body->pose;
+  *out = (mpsi_body_record){.shape = body->shape,
+                            .faces = body->faces,
+                            .motion = body->def.motion,
+                            .parts = body->parts,
+                            .outside = body->outside,
+                            .energy = {body->work_contacts, body->work_loads, body->dissipated},
+                            .time = body->time};
+  memcpy(out->rotation, body->rotation, sizeof out->rotation);
+  memcpy(out->angular, body->angular, sizeof out->angular);
+  memcpy(out->load, &body->load, sizeof out->load);
+  memcpy(out->position, p->x, sizeof out->position);
+  memcpy(out->orientation, p->R, sizeof out->orientation);
+  memcpy(out->velocity, p->v, sizeof out->velocity);
+  memcpy(out->spin, p->spin, sizeof out->spin);
+  for (int32_t part = 0; part < body->parts; part++) {
+    memcpy(&out->reaction[13 * part], &body->reaction[part], REACTION);
+    out->reaction[13 * part + 12] = body->reaction[part].work;
+    out->contacts[part] = body->reaction[part].count;
+  }
+}
+
+void mpsi_body_set_record(mps_body *body, const mpsi_body_record *record) {
+  mpsi_pose *p = &body->pose;
+  body->time = record->time;
+  body->outside = record->outside != 0;
+  body->work_contacts = record->energy[0], body->work_loads = record->energy[1];
+  body->dissipated = record->energy[2];
+  memcpy(body->rotation, record->rotation, sizeof body->rotation);
+  memcpy(body->angular, record->angular, sizeof body->angular);
+  memcpy(&body->load, record->load, sizeof body->load);
+  memcpy(p->x, record->position, sizeof p->x);
+  memcpy(p->R, record->orientation, sizeof p->R);
+  memcpy(p->v, record->velocity, sizeof p->v);
+  memcpy(p->spin, record->spin, sizeof p->spin);
+  for (int32_t part = 0; part < body->parts; part++) {
+    memcpy(&body->reaction[part], &record->reaction[13 * part], REACTION);
+    body->reaction[part].work = record->reaction[13 * part + 12];
+    body->reaction[part].count = record->contacts[part];
+  }
+}
+
+/* ---- parts ----------------------------------------------------------------------------------- */
+
+static bool good_name(const char *name) {
+  const size_t length = strlen(name);
+  if (length < 1 || length >= MPSI_PART_NAME) return false;
+  for (size_t k = 0; k < length; k++) {
+    const char c = name[k];
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    if (!letter && !(k > 0 && c >= '0' && c <= '9')) return false;
+  }
+  return true;
+}
+
+mps_status mps_body_name_part(mps_body *body, const char *name, int64_t first, int64_t count,
+                              int32_t *part) {
+  if (!body) return MPS_ERROR_ARGUMENT;
+  if (!name || !good_name(name))
+    return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
+                     "name is \"%.60s\", must be [A-Za-z_][A-Za-z0-9_]* of at most 47 characters",
+                     name ? name : "(NULL)");
+  if (first < 0 || first >= body->faces || count < 1 || count > body->faces)
+    return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
+                     "first is %lld and count %lld, allowed are 0 to %lld and 1 to %lld",
+                     (long long)first, (long long)count, (long long)body->faces - 1,
+                     (long long)body->faces);
+  int32_t number = mps_body_part(body, name);
+  if (number < 0) {
+    if (body->parts == MPS_BODY_MAX_PARTS)
+      return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
+                       "the body has %d named parts, the most there can be",
+                       MPS_BODY_MAX_PARTS - 1);
+    number = body->parts++;
+    strcpy(body->names[number], name);
+  }
+  for (int64_t k = 0; k < count; k++) body->part_of[(first + k) % body->faces] = number;
+  if (part) *part = number;
+  return MPS_OK;
+}
+
+int32_t mps_body_part_count(const mps_body *body) { return body ? body->parts : 0; }
+
+int32_t mps_body_part(const mps_body *body, const char *name) {
+  for (int32_t k = 0; body && name && k < body->parts; k++)
+    if (strcmp(body->names[k], name) == 0) return k;
+  return -1;
+}
