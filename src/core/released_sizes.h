@@ -11,6 +11,7 @@
 #define MPSI_RELEASED_SIZES(X) \
   X(mps_bisection_def, mps_bisection_def_init, "0.2", 48) \
   X(mps_body_def, mps_body_def_init, "0.2", 200) \
+  X(mps_body_motion, mps_body_motion_init, "0.2", 104) \
   X(mps_checkpoint, mps_checkpoint_init, "0.2", 112) \
   X(mps_context_def, mps_context_def_init, "0.2", 104) \
   X(mps_drucker_prager_def, mps_drucker_prager_def_init, "0.2", 56) \
