@@ -72,7 +72,7 @@ typedef struct mps_dtype {
 
 /** A borrowed array: nothing is copied. Element (i, c) lies at
  *  data + (i * stride[0] + c * stride[1]) elements. Valid until the owner is destroyed or its
- *  epoch differs from `epoch` (particles inserted or sorted). Frozen layout. */
+ *  epoch differs from `epoch` (particles inserted, removed or sorted). Frozen layout. */
 typedef struct mps_view {
   void *data;
   int64_t shape[3];  /* shape[0] particles, shape[1] components, shape[2] = 1 */
@@ -80,6 +80,9 @@ typedef struct mps_view {
   mps_dtype dtype;
   uint32_t flags; /* MPS_VIEW_... */
   uint64_t epoch;
+  int32_t device_type; /* where `data` lies: 0 the processor's memory, which is all that this
+                          library uses; any other value as DLPack's DLDeviceType */
+  int32_t device_id;   /* 0 */
 } mps_view;
 
 /** Address of element (i, c) of a float64 view; no range check. */

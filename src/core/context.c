@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "context_private.h"
 
+#include "levels.h"
+
 #include <mps/context.h>
 
 #include <stdarg.h>
@@ -119,6 +121,18 @@ static mps_status check_def(const mps_context_def *def, char *text, size_t size)
              MPSI_MAX_THREADS);
     return refuse(text, size, MPS_ERROR_ARGUMENT, why);
   }
+  const int32_t level = def->instruction_level;
+  if (level != 0 && level != 1 && level != 3 && level != 4) {
+    snprintf(why, sizeof why,
+             "instruction_level is %d, allowed are 0 (the highest there is), 1, 3 and 4", level);
+    return refuse(text, size, MPS_ERROR_ARGUMENT, why);
+  }
+  if (mpsi_level(level) == 0) {
+    snprintf(why, sizeof why,
+             "instruction_level is %d, but this processor or build has none above %d", level,
+             mpsi_level(0));
+    return refuse(text, size, MPS_ERROR_UNSUPPORTED, why);
+  }
   if (def->executor == MPS_EXECUTOR_CALLER && (!def->parallel_for || def->threads < 1))
     return refuse(text, size, MPS_ERROR_ARGUMENT,
                   "the caller's executor needs parallel_for and threads >= 1");
@@ -150,6 +164,7 @@ mps_status mps_context_create(const mps_context_def *user_def, mps_context **out
   memset(context, 0, bytes);
   context->def = def;
   context->threads = mpsi_executor_threads(&def);
+  context->level = mpsi_level(def.instruction_level);
   context->error.step = context->error.particle = -1;
   atomic_init(&context->references, 1);
   *out = context;
@@ -264,6 +279,8 @@ void mpsi_progress(mps_context *context, const char *task, int64_t step, double 
 bool mpsi_cancelled(mps_context *context) {
   return context->def.cancel && context->def.cancel(context->def.cancel_user) != 0;
 }
+
+int32_t mpsi_context_level(const mps_context *context) { return context->level; }
 
 int32_t mps_context_threads(const mps_context *context) { return context ? context->threads : 0; }
 

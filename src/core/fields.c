@@ -18,6 +18,15 @@
 #define STAGGER 5 /* lines; odd, so that all 64 places of a page are used before one repeats */
 #define MAX_COMPONENTS 16
 
+/* The layout of a view is frozen: bindings spell it out. */
+_Static_assert(sizeof(mps_dtype) == 4, "mps_dtype is DLPack's DLDataType");
+_Static_assert(offsetof(mps_view, data) == 0 && offsetof(mps_view, shape) == 8 &&
+                   offsetof(mps_view, stride) == 32 && offsetof(mps_view, dtype) == 56 &&
+                   offsetof(mps_view, flags) == 60 && offsetof(mps_view, epoch) == 64 &&
+                   offsetof(mps_view, device_type) == 72 && offsetof(mps_view, device_id) == 76 &&
+                   sizeof(mps_view) == 80,
+               "mps_view has a frozen layout");
+
 /* ---- the table ------------------------------------------------------------------------------- */
 
 typedef struct table_row {

@@ -84,8 +84,12 @@ mps_status mpsi_def_init(void *def, size_t size, size_t minimum, const void *def
 mps_status mpsi_out_write(mps_context *context, const char *function, void *out, size_t size,
                           const void *known, size_t known_size);
 
-/* ---- threads --------------------------------------------------------------------------------- */
+/* ---- threads and instruction level
+ * --------------------------------------------------------------------------------- */
 
+/* x86-64 level of the inner loops: 1 (plain), 3 or 4. What solvers and laws choose their loops by.
+ */
+int32_t mpsi_context_level(const mps_context *context);
 /* As mps_context_parallel_for, without argument checks. Never fails. */
 void mpsi_parallel_for(mps_context *context, int64_t count, mps_task_fn task, void *data);
 

@@ -24,7 +24,7 @@ mps_material *mpsi_material_new(mps_context *context, const char *function, mpsi
   m->context = mpsi_context_retain(context);
   atomic_init(&m->references, 1);
   m->kind = kind;
-  m->table = mpsi_laws_select(0);
+  m->table = mpsi_laws_select(mpsi_context_level(context));
   strncpy(m->name, name, sizeof m->name - 1);
   m->history_count = history_count;
   if (history_count == 0) return m;

@@ -331,7 +331,7 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   mpm->grid.block_nodes = mpm->dim == 3 ? MPSI_SIDE * MPSI_SIDE * MPSI_SIDE : MPSI_SIDE * MPSI_SIDE;
   mpm->grid.tile_nodes = mpm->dim == 3 ? MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE
                                        : MPSI_TILE_SIDE * MPSI_TILE_SIDE;
-  mpm->kernels = mpsi_mpm_kernels(0);
+  mpm->kernels = mpsi_mpm_kernels(mpsi_context_level(context));
   mpm->p.count = mps_particles_count(particles);
   mpm->grid.inverse = 1.0 / def.cell;
   mpm->contact.gap = 0.5 * mps_particles_spacing(particles);

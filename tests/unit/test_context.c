@@ -3,6 +3,8 @@
 #include "test_common.h"
 #include "test_allocator.h"
 
+#include "core/internal.h"
+
 #include <mps/kernel.h>
 
 static void status_texts_are_distinct(void **state) {
@@ -52,6 +54,29 @@ static void bad_definitions_are_refused_with_the_reason(void **state) {
   def.struct_size = 0;
   assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_context_create(NULL, NULL, NULL, 0), MPS_ERROR_ARGUMENT);
+}
+
+static void the_instruction_level_is_one_that_the_machine_has(void **state) {
+  (void)state;
+  char text[256];
+  mps_context_def def = mps_context_defaults();
+  assert_int_equal(def.instruction_level, 0);
+  mps_context *context = NULL;
+  assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_OK);
+  const int32_t best = mpsi_context_level(context);
+  assert_true(best == 1 || best == 3 || best == 4);
+  mps_context_destroy(&context);
+  static const int32_t levels[] = {1, 3, 4};
+  for (int k = 0; k < 3; k++) {
+    def.instruction_level = levels[k];
+    const mps_status expected = levels[k] <= best ? MPS_OK : MPS_ERROR_UNSUPPORTED;
+    assert_int_equal(mps_context_create(&def, &context, text, sizeof text), expected);
+    if (context) assert_int_equal(mpsi_context_level(context), levels[k]);
+    mps_context_destroy(&context);
+  }
+  def.instruction_level = 2;
+  assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_ERROR_ARGUMENT);
+  assert_non_null(strstr(text, "instruction_level is 2"));
 }
 
 static void errors_are_recorded_and_cleared(void **state) {
@@ -152,6 +177,7 @@ int main(void) {
       cmocka_unit_test(status_texts_are_distinct),
       cmocka_unit_test(a_larger_definition_of_a_newer_program_is_accepted_when_its_tail_is_zero),
       cmocka_unit_test(bad_definitions_are_refused_with_the_reason),
+      cmocka_unit_test(the_instruction_level_is_one_that_the_machine_has),
       cmocka_unit_test(errors_are_recorded_and_cleared),
       cmocka_unit_test(every_executor_runs_every_unit_once),
       cmocka_unit_test(the_callers_allocator_is_used_and_everything_returned),
