@@ -16,8 +16,14 @@
  * MPS_ERROR_UNSUPPORTED.
  *
  * The set may be sorted, but not added to, while a solver uses it. Thread rule: one thread at a
- * time per context; the work is shared among the context's threads and, inside the factorisation,
- * those of the BLAS library.
+ * time per context; the work is shared among the context's threads. During a factorisation or
+ * triangular solution OpenBLAS, whose number of threads is one for the process, is set to at most
+ * the context's and set back after it (calls of several contexts at once share the smallest); on a
+ * context of one thread CHOLMOD's OpenMP loops have one thread too, otherwise at most four. Other
+ * BLAS libraries keep the number that the process gave them. The cancel hook is asked before the
+ * ordering, the analysis and the factorisation, each of which runs to its end once begun, every 64
+ * iterations of CG and each step. METIS (ordering BEST and METIS) prints a line of its own on
+ * stderr when the process is out of memory; AMD does not.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_ELASTIC_H
 #define LIBMPS_ELASTIC_H

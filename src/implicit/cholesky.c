@@ -5,6 +5,7 @@
  * program and are left as they are; whatever fails inside, all that CHOLMOD holds is released.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "cholesky.h"
+#include "foreign.h"
 
 #include <cholmod.h>
 
@@ -167,6 +168,12 @@ static mps_status order_groups(mpsi_cholesky *c, const char *function, const mps
   return MPS_OK;
 }
 
+/* CHOLMOD has no way to end a stage before it is complete: the hook is asked between them. */
+static mps_status ask_cancel(mpsi_cholesky *c, const char *function, const char *what) {
+  if (!mpsi_cancelled(c->context)) return MPS_OK;
+  return mpsi_fail(c->context, function, MPS_ERROR_CANCELLED, "cancelled before %s", what);
+}
+
 /* The analysis of the whole matrix in the given order. */
 static mps_status analyse_ordered(mpsi_cholesky *c, const char *function, const mpsi_matrix *a,
                                   int64_t *order, mpsi_cholesky_symbolic *out) {
@@ -192,6 +199,8 @@ static mps_status analyse_ordered(mpsi_cholesky *c, const char *function, const 
 mps_status mpsi_cholesky_analyse(mpsi_cholesky *c, const char *function, const mpsi_matrix *a,
                                  const int64_t *group, int64_t groups,
                                  mpsi_cholesky_symbolic *out) {
+  const mps_status cancelled = ask_cancel(c, function, "the ordering");
+  if (cancelled != MPS_OK) return cancelled;
   cholmod_l_free_factor(&c->factor, &c->common);
   c->factored = false;
   const int64_t words = 2 * groups + 1 + a->n;
@@ -199,6 +208,7 @@ mps_status mpsi_cholesky_analyse(mpsi_cholesky *c, const char *function, const m
   if (!scratch) return mpsi_fail_memory(c->context, function, (size_t)words * sizeof *scratch);
   int64_t *order = scratch + (words - a->n);
   mps_status status = order_groups(c, function, a, group, groups, scratch, order, &out->ordering);
+  if (status == MPS_OK) status = ask_cancel(c, function, "the analysis");
   if (status == MPS_OK) status = analyse_ordered(c, function, a, order, out);
   mpsi_free(c->context, scratch);
   return status;
@@ -207,9 +217,13 @@ mps_status mpsi_cholesky_analyse(mpsi_cholesky *c, const char *function, const m
 mps_status mpsi_cholesky_factor(mpsi_cholesky *c, const char *function, const mpsi_matrix *a,
                                 int64_t *bad) {
   *bad = -1;
+  const mps_status cancelled = ask_cancel(c, function, "the factorisation");
+  if (cancelled != MPS_OK) return cancelled;
   c->factored = false;
   cholmod_sparse s = wrap(a);
+  mpsi_foreign_enter(mps_context_threads(c->context));
   cholmod_l_factorize(&s, c->factor, &c->common);
+  mpsi_foreign_leave();
   if (c->common.status < CHOLMOD_OK) return failure(c, function, "the factorisation");
   if (c->common.status == CHOLMOD_NOT_POSDEF || c->factor->minor < c->factor->n) {
     const int64_t *permutation = c->factor->Perm;
@@ -244,9 +258,12 @@ mps_status mpsi_cholesky_solve(mpsi_cholesky *c, const char *function, int64_t c
   right.xtype = CHOLMOD_REAL;
   right.dtype = CHOLMOD_DOUBLE;
   /* The three work arrays stay for the next call, which then allocates nothing. */
-  if (!ensure_work(c, count) || !cholmod_l_solve2(CHOLMOD_A, c->factor, &right, NULL, &c->result,
-                                                  NULL, &c->y, &c->e, &c->common))
-    return failure(c, function, "the triangular solution");
+  mpsi_foreign_enter(mps_context_threads(c->context));
+  const bool good =
+      ensure_work(c, count) && cholmod_l_solve2(CHOLMOD_A, c->factor, &right, NULL, &c->result,
+                                                NULL, &c->y, &c->e, &c->common);
+  mpsi_foreign_leave();
+  if (!good) return failure(c, function, "the triangular solution");
   memcpy(x, c->result->x, (size_t)(n * count) * sizeof *x);
   return MPS_OK;
 }

@@ -292,6 +292,9 @@ mps_status mps_elastic_create(mps_context *context, mps_particles *particles,
   if (!particles || mps_particles_count(particles) == 0)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "particles is %s",
                      particles ? "empty" : "NULL");
+  if (mpsi_particles_context(particles) != context)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+                     "the particle set was made from another context");
   mps_elastic_def def;
   mps_status status = read_def(context, __func__, user_def, mps_particles_dim(particles), &def);
   if (status != MPS_OK) return status;

@@ -2,15 +2,12 @@
  * symmetric operator M^1/2 K^-1 M^1/2 are 1 / omega^2.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_private.h"
+#include "foreign.h"
 
 #include <string.h>
 
 #ifdef MPSI_ARPACK
 #include <arpack.h>
-
-/* ARPACK keeps the state of an iteration in its own saved variables: one at a time in a process.
- * This flag guards somebody else's global state; it is none of ours. */
-static atomic_flag arpack_busy = ATOMIC_FLAG_INIT;
 
 typedef struct lanczos {
   int32_t n, count, basis; /* basis: Lanczos vectors kept */
@@ -96,10 +93,14 @@ static mps_status solve(mps_elastic *e, const char *function, int32_t count, dou
   }
   for (int64_t k = 0; k < e->n * e->dim; k++)
     if (e->dof[k] >= 0) s.root[e->dof[k]] = sqrt(e->mass[k / e->dim]);
-  while (atomic_flag_test_and_set(&arpack_busy)) { /* another thread's modes: wait */
+  /* ARPACK keeps the state of an iteration in variables of its own. */
+  if (mpsi_foreign_lock_arpack()) {
+    status = iterate(e, function, &s);
+    mpsi_foreign_unlock_arpack();
+  } else {
+    status = mpsi_fail(e->context, function, MPS_ERROR_STATE,
+                       "called from a hook within another calculation of modes on this thread");
   }
-  status = iterate(e, function, &s);
-  atomic_flag_clear(&arpack_busy);
   if (status == MPS_OK) deliver(e, &s, omega, shapes);
   release(e->context, &s);
   return status;

@@ -142,15 +142,15 @@ static void describe(const mps_elastic *e, const part *p, const double *null, ch
 
 static mps_status check_part(const mps_elastic *e, const char *function, const part *p) {
   const int32_t m = e->modes;
-  double vectors[36], values[6], null[36];
-  memcpy(vectors, p->gram, sizeof vectors);
-  if (LAPACKE_dsyev(LAPACK_ROW_MAJOR, 'V', 'U', m, vectors, m, values) != 0)
+  double vectors[36], values[6], null[36], work[64];
+  memcpy(vectors, p->gram, sizeof vectors); /* symmetric: by columns as by rows */
+  if (LAPACKE_dsyev_work(LAPACK_COL_MAJOR, 'V', 'U', m, vectors, m, values, work, 64) != 0)
     return mpsi_fail(e->context, function, MPS_ERROR_INTERNAL, "dsyev failed on a %d x %d matrix",
                      m, m);
   int32_t count = 0;
   for (int32_t a = 0; a < m; a++) /* ascending */
     if (values[a] <= FREE * values[m - 1] || values[m - 1] <= 0.0) {
-      for (int32_t b = 0; b < m; b++) null[count * m + b] = vectors[b * m + a];
+      for (int32_t b = 0; b < m; b++) null[count * m + b] = vectors[a * m + b];
       count++;
     }
   if (count == 0) return MPS_OK;
