@@ -12,7 +12,6 @@
 #ifndef LIBMPS_IO_H
 #define LIBMPS_IO_H
 
-#include "mpm.h"
 #include "particles.h"
 
 MPS_EXTERN_C_BEGIN
@@ -64,7 +63,9 @@ MPS_API MPS_NODISCARD mps_status mps_recorder_close(mps_recorder **recorder);
 /** The same for who does not want to know of errors. */
 MPS_API void mps_recorder_destroy(mps_recorder **recorder);
 
-/* ---- checkpoints ----------------------------------------------------------------------------- */
+/* ---- checkpoints -----------------------------------------------------------------------------
+ * Of a set alone. A solver has more to keep than the fields: it saves and restores itself and its set
+ * with mps_S_save and mps_S_restore of its own header, which take a mps_checkpoint too. */
 
 /** What a checkpoint keeps besides the fields. */
 typedef struct mps_checkpoint {
@@ -111,33 +112,6 @@ MPS_API MPS_NODISCARD mps_status mps_checkpoint_info(mps_context *context, const
  *  particles, or another user_key. MPS_ERROR_FIELD: a field of the set has another shape. */
 MPS_API MPS_NODISCARD mps_status mps_checkpoint_read(mps_particles *particles, const char *path,
                                                      mps_checkpoint *info);
-
-/** Writes a checkpoint of the solver's set (see mps_checkpoint_write, also for errors) with all
- *  that the solver needs to go on: time, steps, order and blocks of the particles, forces of the
- *  walls; of its bodies motion, load, reactions and impulses. Of `info` (NULL: the defaults) only
- *  user_key and the user_data are read. The run is not touched: it goes on as if it had not been
- *  saved. Between steps only, such as in the callback of mps_mpm_run. MPS_ERROR_STATE: a step has
- *  failed. */
-MPS_API MPS_NODISCARD mps_status mps_mpm_save(mps_mpm *mpm, const char *path,
-                                              const mps_checkpoint *info);
-
-/** Puts the state of mps_mpm_save into a solver that was built in the same way. What must agree:
- *  the particles, spacing, geometry, scheme, spline, cell, origin, places and kinds of walls and
- *  boxes, number of loads, whether there are body accelerations, names and order of materials, and
- *  the shapes, motions and numbers of parts of the bodies in their order. Where the solver is now
- *  does not matter; a step that failed is forgotten. From there it goes on bit for bit as the run
- *  that never stopped, for every number of threads. All else is the caller's to set up
- *  again, and may be other than it was: constants of materials, gravity, dt, courant, signals,
- *  loads on particles, friction, masses of bodies.
- *
- *  The set takes the order of the file: views taken before are stale. On an error nothing has
- *  changed, except that MPS_ERROR_MEMORY may leave a solver that takes no step (MPS_ERROR_STATE)
- *  until a restore succeeds. `info` (NULL: not wanted) is as for mps_checkpoint_info. Statuses are
- *  those of mps_checkpoint_read; MPS_ERROR_FORMAT: written without a solver; MPS_ERROR_ARGUMENT: by
- *  a solver that was built in another way, the message says in what; MPS_ERROR_STATE: another
- *  solver uses the set. */
-MPS_API MPS_NODISCARD mps_status mps_mpm_restore(mps_mpm *mpm, const char *path,
-                                                 mps_checkpoint *info);
 
 MPS_EXTERN_C_END
 #endif

@@ -65,6 +65,9 @@ typedef struct mps_totals {
  *  for bit, so that a step can be repeated with other loads (implicit coupling). It belongs to the
  *  solver that filled it; filling it again reuses its memory. */
 typedef struct mps_snapshot mps_snapshot;
+/** Frees and nulls; accepts NULL. A snapshot may outlive its solver, which then nobody can roll
+ *  back. */
+MPS_API void mps_snapshot_destroy(mps_snapshot **snapshot);
 
 MPS_EXTERN_C_END
 #endif

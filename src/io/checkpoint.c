@@ -5,7 +5,7 @@
  * `fields/id`. The caller's own bytes are the dataset `user_data`. Reading first brings all of the
  * file into memory and looks at it; only then does it change the set. SPDX-License-Identifier:
  * BSD-3-Clause */
-#include "checkpoint.h"
+#include "checkpoint_private.h"
 #include "replace.h"
 
 #include <errno.h>
@@ -15,13 +15,12 @@
 #include <unistd.h>
 
 #define FORMAT_NAME "libmps checkpoint"
-#define FORMAT_VERSION 1
+#define FORMAT_VERSION 2
 #define MAX_FIELDS 4096
 #define MAX_COMPONENTS 64
-#define NAME_SIZE MPSI_CHECKPOINT_NAME
+#define NAME_SIZE 48 /* bytes of a field's name, with the terminating zero */
 
 typedef mpsi_checkpoint_header header;
-typedef mpsi_staged_field staged_field;
 typedef mpsi_reading reading;
 
 static const mpsi_h5_row header_table[] = {{"version", true, 1, offsetof(header, version)},
@@ -67,9 +66,8 @@ bool mpsi_h5_write_rows(hid_t object, const mpsi_h5_row *row, size_t rows, const
   return good;
 }
 
-/* Reads an attribute of a class, `count` values of at most `size` bytes. */
-static bool read_attribute(hid_t object, const char *name, H5T_class_t kind, hid_t type,
-                           int32_t count, size_t size, void *out) {
+bool mpsi_h5_read_attribute(hid_t object, const char *name, H5T_class_t kind, hid_t type,
+                            int64_t count, size_t size, void *out) {
   if (H5Aexists(object, name) <= 0) return false;
   const hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
   const hid_t stored = attribute < 0 ? -1 : H5Aget_type(attribute);
@@ -88,7 +86,7 @@ static bool read_attribute(hid_t object, const char *name, H5T_class_t kind, hid
 mps_status mpsi_h5_read_rows(const mpsi_reading *r, hid_t object, const mpsi_h5_row *row,
                              size_t rows, void *to) {
   for (const mpsi_h5_row *end = row + rows; row < end; row++)
-    if (!read_attribute(object, row->name, row->integer ? H5T_INTEGER : H5T_FLOAT,
+    if (!mpsi_h5_read_attribute(object, row->name, row->integer ? H5T_INTEGER : H5T_FLOAT,
                         number_type(row->integer), row->count, 8, (char *)to + row->offset))
       return mpsi_checkpoint_malformed(r, row->name);
   return MPS_OK;
@@ -96,7 +94,7 @@ mps_status mpsi_h5_read_rows(const mpsi_reading *r, hid_t object, const mpsi_h5_
 
 bool mpsi_h5_read_text(hid_t object, const char *name, size_t size, char *out) {
   memset(out, 0, size);
-  return read_attribute(object, name, H5T_STRING, -1, 1, size - 1, out);
+  return mpsi_h5_read_attribute(object, name, H5T_STRING, -1, 1, size - 1, out);
 }
 
 /* ---- writing --------------------------------------------------------------------------------- */
@@ -150,8 +148,9 @@ static bool write_user_data(hid_t root, const mps_checkpoint *info) {
   return good;
 }
 
+/* The state of a solver of the kind `solver`, if that is not NULL, goes along. */
 static bool write_file(hid_t root, mps_particles *particles, const mps_checkpoint *info,
-                       const mpsi_passenger *passenger) {
+                       const char *solver, const mpsi_values *state) {
   const header h = {.version = FORMAT_VERSION,
                     .dim = mps_particles_dim(particles),
                     .count = mps_particles_count(particles),
@@ -163,11 +162,12 @@ static bool write_file(hid_t root, mps_particles *particles, const mps_checkpoin
          mpsi_h5_attribute_text(root, "library", mps_version()) &&
          mpsi_h5_attribute_text(root, "user_key", info->user_key) &&
          mpsi_h5_write_rows(root, header_table, HEADER_ROWS, &h) && write_user_data(root, info) &&
-         write_fields(root, particles) && (!passenger || passenger->write(root, passenger->user));
+         write_fields(root, particles) && (!solver || mpsi_h5_write_state(root, solver, state));
 }
 
-mps_status mpsi_checkpoint_write(mps_particles *particles, const char *function, const char *path,
-                                 const mps_checkpoint *user_info, const mpsi_passenger *passenger) {
+static mps_status write_checkpoint(mps_particles *particles, const char *function, const char *path,
+                                   const mps_checkpoint *user_info, const char *solver,
+                                   const mpsi_values *state) {
   mps_context *context = mpsi_particles_context(particles);
   mps_checkpoint info;
   mps_status status = check_path(context, function, path);
@@ -187,7 +187,7 @@ mps_status mpsi_checkpoint_write(mps_particles *particles, const char *function,
   mpsi_h5_stay stay;
   mpsi_h5_enter(&stay);
   bool good = mpsi_h5_open(&file, replacement.fd, replacement.part, true) &&
-              write_file(file.id, particles, &info, passenger);
+              write_file(file.id, particles, &info, solver, state);
   good = mpsi_h5_close(&file) && good;
   if (!good || file.error)
     status = mpsi_h5_fail(context, function, MPS_ERROR_IO, &stay, &file, "write", replacement.part);
@@ -200,7 +200,26 @@ mps_status mpsi_checkpoint_write(mps_particles *particles, const char *function,
 mps_status mps_checkpoint_write(mps_particles *particles, const char *path,
                                 const mps_checkpoint *info) {
   if (!particles) return MPS_ERROR_ARGUMENT;
-  return mpsi_checkpoint_write(particles, __func__, path, info, NULL);
+  return write_checkpoint(particles, __func__, path, info, NULL, NULL);
+}
+
+mps_status mpsi_checkpoint_save(const mpsi_state_of *of, const char *function, const char *path,
+                                const mps_checkpoint *user_info) {
+  mps_checkpoint info = mps_checkpoint_defaults();
+  mps_snapshot state = {.context = of->context};
+  mps_status status = MPS_OK;
+  if (user_info)
+    status = MPSI_DEF_READ(of->context, function, mps_checkpoint, user_info, &info);
+  if (status != MPS_OK) return status;
+  info.struct_size = sizeof info;
+  info.time = of->time;
+  info.step = of->steps;
+  info.dt = of->dt;
+  status = mpsi_state_get(of, function, &state);
+  if (status == MPS_OK)
+    status = write_checkpoint(of->particles, function, path, &info, of->name, &state.state);
+  mpsi_values_free(of->context, &state.state);
+  return status;
 }
 
 /* ---- reading: the file into memory ----------------------------------------------------------- */
@@ -210,12 +229,6 @@ mps_status mpsi_checkpoint_malformed(const mpsi_reading *r, const char *what) {
   return mpsi_fail(r->context, r->function, MPS_ERROR_FORMAT,
                    "'%.200s' is not a checkpoint of libmps: %s%s%s", r->path, what,
                    r->stay.text[0] ? "; HDF5 says: " : "", r->stay.text);
-}
-
-const mpsi_staged_field *mpsi_checkpoint_field(const mpsi_reading *r, const char *name) {
-  for (int64_t k = 0; k < r->field_count; k++)
-    if (strcmp(r->fields[k].name, name) == 0) return &r->fields[k];
-  return NULL;
 }
 
 static mps_status read_header(reading *r) {
@@ -295,33 +308,33 @@ static mps_status check_set(const reading *r) {
 
 /* Reads an open dataset. */
 static mps_status stage_dataset(reading *r, hid_t dataset, hid_t type, hid_t space,
-                                staged_field *field) {
+                                mpsi_value *field) {
   hsize_t size[2] = {0, 0};
   const H5T_class_t kind = H5Tget_class(type);
   if (H5Sget_simple_extent_ndims(space) != 2 || H5Sget_simple_extent_dims(space, size, NULL) < 0 ||
       size[0] < 1 || size[0] > MAX_COMPONENTS || size[1] != (hsize_t)r->header.count ||
       H5Tget_size(type) != 8 || (kind != H5T_FLOAT && kind != H5T_INTEGER))
     return mpsi_checkpoint_malformed(r, field->name);
-  field->components = (int32_t)size[0];
-  field->integer = kind == H5T_INTEGER;
-  const int64_t items = field->components * r->header.count;
-  field->values = mpsi_alloc(r->context, items, 8);
-  if (!field->values) return mpsi_fail_memory(r->context, r->function, (size_t)items * 8);
-  if (items > 0 && H5Dread(dataset, number_type(field->integer), H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                           field->values) < 0)
+  field->columns = (int32_t)size[0];
+  field->type = kind == H5T_INTEGER ? MPSI_STATE_I64 : MPSI_STATE_F64;
+  field->rows = r->header.count;
+  if (!mpsi_value_reserve(r->context, field, field->type, field->rows, field->columns))
+    return mpsi_fail_memory(r->context, r->function, (size_t)(field->columns * field->rows) * 8);
+  if (field->rows > 0 && H5Dread(dataset, number_type(kind == H5T_INTEGER), H5S_ALL, H5S_ALL,
+                                 H5P_DEFAULT, field->data) < 0)
     return mpsi_checkpoint_malformed(r, field->name);
   return MPS_OK;
 }
 
 static mps_status stage_field(reading *r, hid_t group, hsize_t index) {
-  staged_field *field = &r->fields[r->field_count];
+  mpsi_value *field = &r->values.fields.item[r->values.fields.count];
   H5L_info_t link;
   const ssize_t length = H5Lget_name_by_idx(group, ".", H5_INDEX_NAME, H5_ITER_INC, index,
                                             field->name, NAME_SIZE, H5P_DEFAULT);
   if (length < 1 || length >= NAME_SIZE ||
       H5Lget_info(group, field->name, &link, H5P_DEFAULT) < 0 || link.type != H5L_TYPE_HARD)
     return mpsi_checkpoint_malformed(r, "the name of a field");
-  r->field_count++;
+  r->values.fields.count++;
   const hid_t dataset = H5Dopen2(group, field->name, H5P_DEFAULT);
   const hid_t type = dataset < 0 ? -1 : H5Dget_type(dataset);
   const hid_t space = dataset < 0 ? -1 : H5Dget_space(dataset);
@@ -339,18 +352,16 @@ static mps_status stage_fields(reading *r) {
   mps_status status = MPS_OK;
   if (group < 0 || H5Gget_info(group, &info) < 0 || info.nlinks > MAX_FIELDS)
     status = mpsi_checkpoint_malformed(r, "group 'fields'");
-  if (status == MPS_OK) {
-    r->fields = mpsi_alloc(r->context, (int64_t)info.nlinks, sizeof *r->fields);
-    if (!r->fields)
-      status = mpsi_fail_memory(r->context, r->function, info.nlinks * sizeof *r->fields);
-  }
+  if (status == MPS_OK &&
+      !mpsi_values_reserve(r->context, &r->values.fields, (int32_t)info.nlinks))
+    status = mpsi_fail_memory(r->context, r->function, info.nlinks * sizeof(mpsi_value));
   for (hsize_t k = 0; status == MPS_OK && k < info.nlinks; k++) status = stage_field(r, group, k);
   if (group >= 0) H5Gclose(group);
   return status;
 }
 
 /* Opens the file, and takes from it the header, and all else if it is for a set. */
-static mps_status stage(reading *r, const mps_checkpoint *wanted, const mpsi_passenger *passenger) {
+static mps_status stage(reading *r, const mps_checkpoint *wanted, const mpsi_state_of *of) {
   const int fd = open(r->path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   if (fd < 0) return mpsi_fail_io(r->context, r->function, "open", r->path, errno);
   mps_status status = mpsi_seal_check(r->context, r->function, fd, r->path);
@@ -363,7 +374,7 @@ static mps_status stage(reading *r, const mps_checkpoint *wanted, const mpsi_pas
     if (status == MPS_OK) status = stage_user_data(r, wanted);
     if (status == MPS_OK && r->particles) status = check_set(r);
     if (status == MPS_OK && r->particles) status = stage_fields(r);
-    if (status == MPS_OK && passenger) status = passenger->stage(r, passenger->user);
+    if (status == MPS_OK && of) status = mpsi_h5_read_state(r, of);
     (void)mpsi_h5_close(&r->file);
     mpsi_h5_leave(&r->stay);
   }
@@ -375,16 +386,15 @@ static mps_status stage(reading *r, const mps_checkpoint *wanted, const mpsi_pas
 
 static mps_status match_ids(reading *r) {
   const int64_t count = r->header.count;
-  const staged_field *id = mpsi_checkpoint_field(r, "id");
-  if (!id || !id->integer || id->components != 1)
+  const mpsi_value *id = mpsi_values_find(&r->values.fields, "id");
+  if (!id || id->type != MPSI_STATE_I64 || id->columns != 1)
     return mpsi_checkpoint_malformed(r, "it has no ids");
   r->source = mpsi_alloc(r->context, count, sizeof *r->source);
   if (!r->source)
     return mpsi_fail_memory(r->context, r->function, (size_t)count * sizeof *r->source);
   for (int64_t i = 0; i < count; i++) r->source[i] = -1;
   for (int64_t k = 0; k < count; k++) {
-    int64_t value;
-    memcpy(&value, id->values + 8 * k, 8);
+    const int64_t value = ((const int64_t *)id->data)[k];
     const int64_t i = mps_particles_index(r->particles, value);
     if (i < 0 || r->source[i] >= 0)
       return mpsi_fail(r->context, r->function, MPS_ERROR_ARGUMENT,
@@ -405,20 +415,21 @@ static bool find_info(const mps_particles *particles, const char *name, mps_fiel
 /* Has each field the shape that the set has for it, or would give it? The latter is tried on
  * `trial`, an empty set. */
 static mps_status match_shapes(const reading *r, mps_particles *trial) {
-  for (int64_t k = 0; k < r->field_count; k++) {
-    const staged_field *field = &r->fields[k];
+  for (int32_t k = 0; k < r->values.fields.count; k++) {
+    const mpsi_value *field = &r->values.fields.item[k];
+    const bool integer = field->type == MPSI_STATE_I64;
     mps_field_info info;
     if (!find_info(r->particles, field->name, &info)) {
-      const mps_status status = mps_particles_add_field(trial, field->name, field->components);
+      const mps_status status = mps_particles_add_field(trial, field->name, field->columns);
       if (status == MPS_ERROR_MEMORY) return mpsi_fail_memory(r->context, r->function, 1);
       info.components = 0;
       if (status == MPS_OK && !find_info(trial, field->name, &info)) return MPS_ERROR_INTERNAL;
     }
-    if (info.components != field->components || (info.dtype.code == 0) != field->integer)
+    if (info.components != field->columns || (info.dtype.code == 0) != integer)
       return mpsi_fail(
           r->context, r->function, MPS_ERROR_FIELD,
           "'%.200s' has field '%s' with %d components of %s, which the set cannot take", r->path,
-          field->name, field->components, field->integer ? "int64" : "float64");
+          field->name, field->columns, integer ? "int64" : "float64");
   }
   return MPS_OK;
 }
@@ -439,37 +450,25 @@ static mps_status check_shapes(const reading *r) {
 
 static mps_status add_missing(const reading *r) {
   const int32_t before = mps_particles_field_count(r->particles);
-  for (int64_t k = 0; k < r->field_count; k++)
-    if (mps_particles_add_field(r->particles, r->fields[k].name, r->fields[k].components) !=
-        MPS_OK) {
-      mpsi_particles_drop_fields(r->particles, before);
-      return mpsi_fail(r->context, r->function, MPS_ERROR_MEMORY,
-                       "could not allocate field '%s' of %lld particles", r->fields[k].name,
-                       (long long)r->header.count);
-    }
+  for (int32_t k = 0; k < r->values.fields.count; k++) {
+    const mpsi_value *field = &r->values.fields.item[k];
+    if (mps_particles_add_field(r->particles, field->name, field->columns) == MPS_OK) continue;
+    mpsi_particles_drop_fields(r->particles, before);
+    return mpsi_fail(r->context, r->function, MPS_ERROR_MEMORY,
+                     "could not allocate field '%s' of %lld particles", field->name,
+                     (long long)r->header.count);
+  }
   return MPS_OK;
 }
 
-/* Puts the set into the order of the file. */
-static mps_status take_order(const reading *r) {
-  const int64_t count = r->header.count;
-  int64_t *order = mpsi_alloc(r->context, count, sizeof *order);
-  if (!order) return mpsi_fail_memory(r->context, r->function, (size_t)count * sizeof *order);
-  for (int64_t i = 0; i < count; i++) order[r->source[i]] = i;
-  const mps_status status = mpsi_particles_permute(r->particles, r->function, order);
-  for (int64_t k = 0; status == MPS_OK && k < count; k++) r->source[k] = k;
-  mpsi_free(r->context, order);
-  return status;
-}
-
-static void put_field(const reading *r, const staged_field *field) {
+static void put_field(const reading *r, const mpsi_value *field) {
   mps_view view;
   if (strcmp(field->name, "id") == 0 || /* the order of the set stays */
       mps_particles_view(r->particles, field->name, &view) != MPS_OK)
     return;
   for (int64_t c = 0; c < view.shape[1]; c++) {
     char *to = (char *)view.data + 8 * c * view.stride[1];
-    const char *from = field->values + 8 * c * view.shape[0];
+    const char *from = (const char *)field->data + 8 * c * view.shape[0];
     for (int64_t i = 0; i < view.shape[0]; i++) memcpy(to + 8 * i, from + 8 * r->source[i], 8);
   }
 }
@@ -484,8 +483,8 @@ static void tell(const reading *r, mps_checkpoint *info) {
 }
 
 static void drop_reading(reading *r) {
-  for (int64_t k = 0; k < r->field_count; k++) mpsi_free(r->context, r->fields[k].values);
-  mpsi_free(r->context, r->fields);
+  mpsi_values_free(r->context, &r->values.fields);
+  mpsi_values_free(r->context, &r->values.state);
   mpsi_free(r->context, r->source);
   mpsi_free(r->context, r->user_data);
 }
@@ -502,40 +501,55 @@ mps_status mps_checkpoint_info(mps_context *context, const char *path, mps_check
   return status;
 }
 
-/* Nothing has changed yet. */
-static mps_status look(reading *r, const mps_checkpoint *info, const mpsi_passenger *passenger) {
+/* Looks at everything; nothing has changed yet. */
+static mps_status look(reading *r, const mps_checkpoint *info, const mpsi_state_of *of) {
   mps_checkpoint wanted;
   mps_status status = check_path(r->context, r->function, r->path);
   if (status == MPS_OK) status = read_info(r->context, r->function, info, &wanted);
-  if (status == MPS_OK) status = stage(r, &wanted, passenger);
+  if (status == MPS_OK) status = stage(r, &wanted, of);
   if (status == MPS_OK) status = match_ids(r);
   if (status == MPS_OK) status = check_shapes(r);
-  if (status == MPS_OK && passenger) status = passenger->check(r, passenger->user);
   return status;
 }
 
-mps_status mpsi_checkpoint_read(mps_particles *particles, const char *function, const char *path,
-                                mps_checkpoint *info, const mpsi_passenger *passenger) {
-  reading r = {.context = mpsi_particles_context(particles),
-               .function = function,
-               .particles = particles,
-               .path = path,
-               .file = {.id = -1}};
-  const int32_t before = mps_particles_field_count(particles);
-  mps_status status = look(&r, info, passenger);
+static reading reading_of(mps_particles *particles, const char *function, const char *path) {
+  return (reading){.context = mpsi_particles_context(particles),
+                   .function = function,
+                   .particles = particles,
+                   .path = path,
+                   .file = {.id = -1}};
+}
+
+mps_status mps_checkpoint_read(mps_particles *particles, const char *path, mps_checkpoint *info) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  reading r = reading_of(particles, __func__, path);
+  mps_status status = look(&r, info, NULL);
   if (status == MPS_OK) status = add_missing(&r);
-  if (status == MPS_OK && passenger && (status = take_order(&r)) != MPS_OK)
-    mpsi_particles_drop_fields(particles, before);
   if (status == MPS_OK) {
-    for (int64_t k = 0; k < r.field_count; k++) put_field(&r, &r.fields[k]);
-    if (passenger) status = passenger->apply(&r, passenger->user);
-    if (status == MPS_OK) tell(&r, info);
+    for (int32_t k = 0; k < r.values.fields.count; k++) put_field(&r, &r.values.fields.item[k]);
+    tell(&r, info);
   }
   drop_reading(&r);
   return status;
 }
 
-mps_status mps_checkpoint_read(mps_particles *particles, const char *path, mps_checkpoint *info) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
-  return mpsi_checkpoint_read(particles, __func__, path, info, NULL);
+mps_status mpsi_checkpoint_restore(const mpsi_state_of *of, const char *function, const char *path,
+                                   mps_checkpoint *info) {
+  reading r = reading_of(of->particles, function, path);
+  mps_checkpoint unwanted = mps_checkpoint_defaults();
+  if (!info) info = &unwanted;
+  mps_status status = look(&r, info, of);
+  char source[208];
+  snprintf(source, sizeof source, "'%.200s'", path ? path : "");
+  r.values.particles = r.header.count;
+  if (status == MPS_OK)
+    status = mpsi_state_agree(of, function, &r.values, source, MPS_ERROR_ARGUMENT);
+  const char *what = "its values do not fit";
+  if (status == MPS_OK && of->fits && !of->fits(of->solver, &r.values, &what))
+    status = mpsi_checkpoint_malformed(&r, what);
+  if (status == MPS_OK)
+    status = mpsi_state_put(of, function, &r.values, source, MPS_ERROR_ARGUMENT);
+  if (status == MPS_OK) tell(&r, info);
+  drop_reading(&r);
+  return status;
 }

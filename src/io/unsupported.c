@@ -1,8 +1,7 @@
-/* unsupported.c - the functions of mps/io.h in a libmps built without HDF5.
+/* unsupported.c - the functions of mps/io.h and io/checkpoint.h in a libmps built without HDF5.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "checkpoint.h"
 #include "io_private.h"
-
-#include "mpm/restart.h"
 
 static mps_status unsupported(mps_context *context, const char *function) {
   return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
@@ -50,12 +49,14 @@ mps_status mps_checkpoint_read(mps_particles *particles, const char *path, mps_c
   return unsupported(particles ? mpsi_particles_context(particles) : NULL, __func__);
 }
 
-mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *info) {
+mps_status mpsi_checkpoint_save(const mpsi_state_of *of, const char *function, const char *path,
+                                const mps_checkpoint *info) {
   (void)path, (void)info;
-  return unsupported(mpm ? mpsi_mpm_context(mpm) : NULL, __func__);
+  return unsupported(of->context, function);
 }
 
-mps_status mps_mpm_restore(mps_mpm *mpm, const char *path, mps_checkpoint *info) {
+mps_status mpsi_checkpoint_restore(const mpsi_state_of *of, const char *function, const char *path,
+                                   mps_checkpoint *info) {
   (void)path, (void)info;
-  return unsupported(mpm ? mpsi_mpm_context(mpm) : NULL, __func__);
+  return unsupported(of->context, function);
 }

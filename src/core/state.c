@@ -1,0 +1,415 @@
+/* state.c - see state.h: the list of a solver's state, snapshots, and the way back.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "state.h"
+
+#include "particles_internal.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#define MAX_DEPTH 3
+
+/* Where a value is and how it is kept there. */
+typedef enum width { WIDE, INT32, BOOL } width; /* WIDE: as in mpsi_value */
+
+typedef struct item {
+  char name[MPSI_STATE_NAME];
+  mpsi_state_type type;
+  width width;
+  bool agrees, text;
+  int32_t columns;
+  int64_t rows;
+  void *data;                    /* NULL: in `own`, or behind `table` */
+  const mpsi_state_table *table; /* or NULL */
+  union {
+    int64_t integer;
+    double number;
+    char text[MPSI_STATE_NAME];
+  } own;
+} item;
+
+struct mpsi_state {
+  mps_context *context;
+  void *solver;
+  item *item;
+  int32_t count, capacity;
+  bool refused; /* memory */
+  char prefix[MPSI_STATE_NAME];
+  size_t cut[MAX_DEPTH]; /* length of the prefix outside */
+  int depth;
+};
+
+/* ---- listing ------------------------------------------------------------------------------- */
+
+/* A new item, or NULL when out of memory. */
+static item *add(mpsi_state *s, const char *name, mpsi_state_type type, int64_t rows) {
+  if (s->count == s->capacity) {
+    const int32_t capacity = s->capacity ? 2 * s->capacity : 64;
+    void *list = s->item;
+    if (s->refused || !mpsi_grow(s->context, &list, s->capacity, capacity, sizeof *s->item)) {
+      s->refused = true;
+      return NULL;
+    }
+    s->item = list;
+    s->capacity = capacity;
+  }
+  item *made = &s->item[s->count++];
+  *made = (item){.type = type, .columns = 1, .rows = rows};
+  snprintf(made->name, sizeof made->name, "%.40s%.23s", s->prefix, name);
+  return made;
+}
+
+static void add_at(mpsi_state *s, const char *name, mpsi_state_type type, width width, void *data,
+                   int64_t count) {
+  item *made = add(s, name, type, count);
+  if (!made) return;
+  made->width = width;
+  made->data = data;
+}
+
+void mpsi_state_f64(mpsi_state *state, const char *name, double *values, int64_t count) {
+  add_at(state, name, MPSI_STATE_F64, WIDE, values, count);
+}
+
+void mpsi_state_i64(mpsi_state *state, const char *name, int64_t *values, int64_t count) {
+  add_at(state, name, MPSI_STATE_I64, WIDE, values, count);
+}
+
+void mpsi_state_i32(mpsi_state *state, const char *name, int32_t *values, int64_t count) {
+  add_at(state, name, MPSI_STATE_I64, INT32, values, count);
+}
+
+void mpsi_state_bool(mpsi_state *state, const char *name, bool *value) {
+  add_at(state, name, MPSI_STATE_I64, BOOL, value, 1);
+}
+
+void mpsi_state_bytes(mpsi_state *state, const char *name, void *values, int64_t count) {
+  add_at(state, name, MPSI_STATE_BYTES, WIDE, values, count);
+}
+
+void mpsi_state_agree_integer(mpsi_state *state, const char *name, int64_t value) {
+  item *made = add(state, name, MPSI_STATE_I64, 1);
+  if (!made) return;
+  made->agrees = true;
+  made->own.integer = value;
+}
+
+void mpsi_state_agree_number(mpsi_state *state, const char *name, double value) {
+  item *made = add(state, name, MPSI_STATE_F64, 1);
+  if (!made) return;
+  made->agrees = true;
+  made->own.number = value;
+}
+
+void mpsi_state_agree_text(mpsi_state *state, const char *name, const char *value) {
+  item *made = add(state, name, MPSI_STATE_BYTES, MPSI_STATE_NAME);
+  if (!made) return;
+  made->agrees = made->text = true;
+  snprintf(made->own.text, sizeof made->own.text, "%s", value);
+}
+
+void mpsi_state_enter(mpsi_state *state, const char *format, ...) {
+  const size_t used = strlen(state->prefix);
+  if (state->depth < MAX_DEPTH) state->cut[state->depth] = used;
+  state->depth++;
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(state->prefix + used, sizeof state->prefix - used, format, arguments);
+  va_end(arguments);
+  const size_t now = strlen(state->prefix);
+  snprintf(state->prefix + now, sizeof state->prefix - now, "/");
+}
+
+void mpsi_state_leave(mpsi_state *state) {
+  if (state->depth > 0 && --state->depth < MAX_DEPTH)
+    state->prefix[state->cut[state->depth]] = '\0';
+}
+
+void mpsi_state_add_table(mpsi_state *state, const char *name, const mpsi_state_table *table) {
+  item *made = add(state, name, table->type, table->rows(state->solver));
+  if (!made) return;
+  made->columns = table->columns;
+  made->table = table;
+}
+
+static mps_status list(const mpsi_state_of *of, const char *function, mpsi_state *out) {
+  *out = (mpsi_state){.context = of->context, .solver = of->solver};
+  of->list(out, of->solver);
+  if (!out->refused) return MPS_OK;
+  mpsi_free(of->context, out->item);
+  return mpsi_fail_memory(of->context, function, (size_t)out->capacity * 2 * sizeof *out->item);
+}
+
+/* ---- values -------------------------------------------------------------------------------- */
+
+bool mpsi_values_reserve(mps_context *context, mpsi_values *values, int32_t count) {
+  if (count <= values->capacity) return true;
+  void *list = values->item;
+  if (!mpsi_grow(context, &list, values->capacity, count, sizeof *values->item)) return false;
+  values->item = list;
+  values->capacity = count;
+  return true;
+}
+
+bool mpsi_value_reserve(mps_context *context, mpsi_value *value, mpsi_state_type type, int64_t rows,
+                        int32_t columns) {
+  const int64_t size = mpsi_state_size(type);
+  if (rows < 0 || columns < 1 || rows > INT64_MAX / size / columns) return false;
+  const int64_t bytes = rows * columns * size;
+  if (value->data && bytes <= value->capacity) return true;
+  void *data = value->data;
+  if (!mpsi_grow(context, &data, value->data ? value->capacity : 0, bytes, 1)) return false;
+  value->data = data;
+  value->capacity = bytes;
+  return true;
+}
+
+const mpsi_value *mpsi_values_find(const mpsi_values *values, const char *name) {
+  for (int32_t k = 0; k < values->count; k++)
+    if (strcmp(values->item[k].name, name) == 0) return &values->item[k];
+  return NULL;
+}
+
+void mpsi_values_free(mps_context *context, mpsi_values *values) {
+  for (int32_t k = 0; k < values->capacity; k++) mpsi_free(context, values->item[k].data);
+  mpsi_free(context, values->item);
+  *values = (mpsi_values){0};
+}
+
+static void read_item(const mpsi_state *s, const item *from, void *to) {
+  const int64_t count = from->rows * from->columns;
+  int64_t *integer = to;
+  if (from->table) {
+    if (count > 0) from->table->get(s->solver, to);
+  } else if (from->agrees) {
+    memcpy(to, &from->own, (size_t)(count * mpsi_state_size(from->type)));
+  } else if (from->width == INT32) {
+    for (int64_t k = 0; k < count; k++) integer[k] = ((const int32_t *)from->data)[k];
+  } else if (from->width == BOOL) {
+    for (int64_t k = 0; k < count; k++) integer[k] = ((const bool *)from->data)[k];
+  } else if (count > 0) {
+    memcpy(to, from->data, (size_t)(count * mpsi_state_size(from->type)));
+  }
+}
+
+static void write_item(const mpsi_state *s, const item *to, const mpsi_value *from) {
+  const int64_t count = from->rows * from->columns;
+  const int64_t *integer = from->data;
+  if (to->agrees) return;
+  if (to->table) {
+    to->table->set(s->solver, from->rows, from->data);
+  } else if (to->width == INT32) {
+    for (int64_t k = 0; k < count; k++) ((int32_t *)to->data)[k] = (int32_t)integer[k];
+  } else if (to->width == BOOL) {
+    for (int64_t k = 0; k < count; k++) ((bool *)to->data)[k] = integer[k] != 0;
+  } else if (count > 0) {
+    memcpy(to->data, from->data, (size_t)(count * mpsi_state_size(from->type)));
+  }
+}
+
+mps_status mpsi_state_get(const mpsi_state_of *of, const char *function, mps_snapshot *out) {
+  mpsi_state s;
+  const mps_status status = list(of, function, &s);
+  if (status != MPS_OK) return status;
+  bool good = mpsi_values_reserve(of->context, &out->state, s.count);
+  for (int32_t k = 0; good && k < s.count; k++)
+    good = mpsi_value_reserve(of->context, &out->state.item[k], s.item[k].type, s.item[k].rows,
+                              s.item[k].columns);
+  for (int32_t k = 0; good && k < s.count; k++) {
+    const item *from = &s.item[k];
+    mpsi_value *to = &out->state.item[k];
+    memcpy(to->name, from->name, sizeof to->name);
+    to->type = from->type;
+    to->agrees = from->agrees, to->table = from->table != NULL, to->text = from->text;
+    to->columns = from->columns, to->rows = from->rows;
+    read_item(&s, from, to->data);
+  }
+  if (good) out->state.count = s.count;
+  mpsi_free(of->context, s.item);
+  return good ? MPS_OK
+              : mpsi_fail(of->context, function, MPS_ERROR_MEMORY,
+                          "could not allocate the state of the solver: %d items", s.count);
+}
+
+/* ---- snapshots ----------------------------------------------------------------------------- */
+
+struct mpsi_identity {
+  mps_context *context;
+  int32_t shares; /* one thread at a time: no atomics */
+};
+
+void mpsi_state_forget(mpsi_identity **identity) {
+  if (!*identity) return;
+  mps_context *context = (*identity)->context;
+  if (--(*identity)->shares == 0) {
+    mpsi_free(context, *identity);
+    mpsi_context_release(context);
+  }
+  *identity = NULL;
+}
+
+static mpsi_identity *identify(const mpsi_state_of *of) {
+  if (!*of->identity) {
+    mpsi_identity *made = mpsi_alloc(of->context, 1, sizeof *made);
+    if (!made) return NULL;
+    *made = (mpsi_identity){mpsi_context_retain(of->context), 1};
+    *of->identity = made;
+  }
+  return *of->identity;
+}
+
+static mps_snapshot *new_snapshot(const mpsi_state_of *of) {
+  mpsi_identity *identity = identify(of);
+  mps_snapshot *made = identity ? mpsi_alloc(of->context, 1, sizeof *made) : NULL;
+  if (!made) return NULL;
+  made->context = mpsi_context_retain(of->context);
+  made->identity = identity;
+  identity->shares++;
+  return made;
+}
+
+void mps_snapshot_destroy(mps_snapshot **snapshot) {
+  if (!snapshot || !*snapshot) return;
+  mps_snapshot *old = *snapshot;
+  mps_context *context = old->context;
+  *snapshot = NULL;
+  mpsi_values_free(context, &old->state);
+  mpsi_values_free(context, &old->fields);
+  mpsi_state_forget(&old->identity);
+  mpsi_free(context, old);
+  mpsi_context_release(context);
+}
+
+static mps_status check_owner(const mpsi_state_of *of, const char *function,
+                              const mps_snapshot *snapshot) {
+  if (*of->identity && snapshot->identity == *of->identity) return MPS_OK;
+  return mpsi_fail(of->context, function, MPS_ERROR_ARGUMENT,
+                   "the snapshot is of another solver than this %s: each solver needs its own",
+                   of->name);
+}
+
+/* What is allocated comes first, so that a snapshot that is filled again stays as it was when that
+ * is refused: values of the state are written after the fields' memory is there. */
+mps_status mpsi_state_snapshot(const mpsi_state_of *of, const char *function,
+                               mps_snapshot **snapshot) {
+  if (!snapshot)
+    return mpsi_fail(of->context, function, MPS_ERROR_ARGUMENT, "snapshot is NULL, must be the "
+                     "address of a pointer, which may be NULL at first");
+  mps_snapshot *made = *snapshot;
+  mps_status status = made ? check_owner(of, function, made) : MPS_OK;
+  if (status != MPS_OK) return status;
+  if (!made && !(made = new_snapshot(of)))
+    return mpsi_fail_memory(of->context, function, sizeof *made);
+  if (of->particles) status = mpsi_particles_reserve_state(of->particles, function, made);
+  if (status == MPS_OK) status = mpsi_state_get(of, function, made);
+  if (status == MPS_OK && of->particles) mpsi_particles_get_state(of->particles, made);
+  if (status != MPS_OK && !*snapshot) mps_snapshot_destroy(&made);
+  if (status == MPS_OK) *snapshot = made;
+  return status;
+}
+
+mps_status mpsi_state_rollback(const mpsi_state_of *of, const char *function,
+                               const mps_snapshot *snapshot) {
+  if (!snapshot)
+    return mpsi_fail(of->context, function, MPS_ERROR_ARGUMENT, "snapshot is NULL");
+  const mps_status status = check_owner(of, function, snapshot);
+  if (status != MPS_OK) return status;
+  return mpsi_state_put(of, function, snapshot, "the snapshot", MPS_ERROR_STATE);
+}
+
+/* ---- going back ---------------------------------------------------------------------------- */
+
+/* One call. */
+typedef struct way_back {
+  const mpsi_state_of *of;
+  const char *function, *source;
+  mps_status status; /* of a disagreement */
+} way_back;
+
+static mps_status compare(const way_back *w, const item *now, const mpsi_value *then) {
+  mps_context *context = w->of->context;
+  if (now->text) {
+    if (strcmp(now->own.text, then->data) == 0) return MPS_OK;
+    return mpsi_fail(context, w->function, w->status, "in %s %s is '%.60s', in this solver '%.60s'",
+                     w->source, now->name, (const char *)then->data, now->own.text);
+  }
+  if (now->type == MPSI_STATE_I64) {
+    const int64_t value = *(const int64_t *)then->data;
+    if (value == now->own.integer) return MPS_OK;
+    return mpsi_fail(context, w->function, w->status, "in %s %s is %lld, in this solver %lld",
+                     w->source, now->name, (long long)value, (long long)now->own.integer);
+  }
+  const double value = *(const double *)then->data;
+  if (value == now->own.number) return MPS_OK;
+  return mpsi_fail(context, w->function, w->status, "in %s %s is %.17g, in this solver %.17g",
+                   w->source, now->name, value, now->own.number);
+}
+
+/* The value that belongs to item k: nearly always number k. */
+static const mpsi_value *value_of(const mps_snapshot *from, const mpsi_state *s, int32_t k) {
+  if (k < from->state.count && strcmp(from->state.item[k].name, s->item[k].name) == 0)
+    return &from->state.item[k];
+  return mpsi_values_find(&from->state, s->item[k].name);
+}
+
+static mps_status match(const way_back *w, const mpsi_state *s, const mps_snapshot *from) {
+  for (int32_t k = 0; k < s->count; k++) {
+    const item *now = &s->item[k];
+    const mpsi_value *then = value_of(from, s, k);
+    const bool same = then && then->type == now->type && then->columns == now->columns &&
+                      (now->table || then->rows == now->rows);
+    if (!same)
+      return mpsi_fail(w->of->context, w->function, w->status,
+                       "%s has %s '%s', which this solver has", w->source,
+                       then ? "another number of" : "no", now->name);
+    const mps_status status = now->agrees ? compare(w, now, then) : MPS_OK;
+    if (status != MPS_OK) return status;
+  }
+  if (from->state.count == s->count) return MPS_OK;
+  return mpsi_fail(w->of->context, w->function, w->status, "%s has %d items, this solver %d",
+                   w->source, from->state.count, s->count);
+}
+
+mps_status mpsi_state_agree(const mpsi_state_of *of, const char *function, const mps_snapshot *from,
+                            const char *source, mps_status disagreement) {
+  const way_back w = {of, function, source, disagreement};
+  mpsi_state s;
+  mps_status status = list(of, function, &s);
+  if (status != MPS_OK) return status;
+  status = match(&w, &s, from);
+  mpsi_free(of->context, s.item);
+  return status;
+}
+
+static bool reserve(const mpsi_state *s, const mps_snapshot *from) {
+  for (int32_t k = 0; k < s->count; k++) {
+    const mpsi_state_table *table = s->item[k].table;
+    const mpsi_value *then = value_of(from, s, k);
+    if (table && table->reserve && !table->reserve(s->solver, then->rows, then->data)) return false;
+  }
+  return true;
+}
+
+mps_status mpsi_state_put(const mpsi_state_of *of, const char *function, const mps_snapshot *from,
+                          const char *source, mps_status disagreement) {
+  const way_back w = {of, function, source, disagreement};
+  void *scratch = NULL;
+  mpsi_state s;
+  mps_status status = list(of, function, &s);
+  if (status != MPS_OK) return status;
+  status = match(&w, &s, from);
+  if (status == MPS_OK && !reserve(&s, from))
+    status = mpsi_fail(of->context, function, MPS_ERROR_MEMORY,
+                       "could not allocate what going back to %s needs", source);
+  if (status == MPS_OK && of->particles)
+    status = mpsi_particles_prepare_state(of->particles, function, from, &scratch);
+  if (status == MPS_OK) { /* from here on nothing fails */
+    if (of->particles) mpsi_particles_put_state(of->particles, from, scratch);
+    if (of->bind) of->bind(of->solver);
+    for (int32_t k = 0; k < s.count; k++) write_item(&s, &s.item[k], value_of(from, &s, k));
+    if (of->after) of->after(of->solver);
+  }
+  mpsi_free(of->context, s.item);
+  return status;
+}
