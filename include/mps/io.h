@@ -64,8 +64,8 @@ MPS_API MPS_NODISCARD mps_status mps_recorder_close(mps_recorder **recorder);
 MPS_API void mps_recorder_destroy(mps_recorder **recorder);
 
 /* ---- checkpoints -----------------------------------------------------------------------------
- * Of a set alone. A solver has more to keep than the fields: it saves and restores itself and its set
- * with mps_S_save and mps_S_restore of its own header, which take a mps_checkpoint too. */
+ * Of a set alone. A solver has more to keep than the fields: it saves and restores itself and its
+ * set with mps_S_save and mps_S_restore of its own header, which take a mps_checkpoint too. */
 
 /** What a checkpoint keeps besides the fields. */
 typedef struct mps_checkpoint {

@@ -1,6 +1,6 @@
-/* mps/mpm.h - the WLS-MPM grid solver (Nakamura): large deformation of particles that move through a
- * grid of nodes, with frictional contact against rigid bodies. Plane strain, axisymmetry (x is the
- * radius, y the axis) or space.
+/* mps/mpm.h - the WLS-MPM grid solver (Nakamura): large deformation of particles that move through
+ * a grid of nodes, with frictional contact against rigid bodies. Plane strain, axisymmetry (x is
+ * the radius, y the axis) or space.
  *
  * Shape functions come from a weighted least-squares fit of a linear function over the nodes that a
  * particle may use: those of the domain, and not those inside a body or behind it. Nodes exist only
@@ -24,9 +24,11 @@
 #define LIBMPS_MPM_H
 
 #include "body.h"
+#include "io.h"
 #include "material.h"
 #include "particles.h"
 #include "signal.h"
+#include "solver.h"
 
 MPS_EXTERN_C_BEGIN
 
@@ -92,10 +94,10 @@ typedef struct mps_mpm_def {
   int32_t wall_lower[3], wall_upper[3]; /* mps_wall of each, default ROLLER; on the axis
                                            r = 0 ROLLER or FIXED */
   double gravity[3];                    /* m/s2, default 0 */
-  double dt;          /* s, > 0, or 0 (default): each step the largest by Nakamura (49), (50), and by
-                         rho h^2/(4 dim viscosity) of viscous laws. At most that
-                         limit at creation; a warning tells when it gets above the fraction below */
-  double courant;     /* fraction of that limit, in (0, 1]; default 0.5 */
+  double dt;      /* s, > 0, or 0 (default): each step the largest by Nakamura (49), (50), and by
+                     rho h^2/(4 dim viscosity) of viscous laws. At most that
+                     limit at creation; a warning tells when it gets above the fraction below */
+  double courant; /* fraction of that limit, in (0, 1]; default 0.5 */
   int32_t volumetric; /* mps_volumetric, default POINT */
   int32_t scheme;     /* mps_scheme, default WLS */
   double flip; /* with STANDARD, in [0, 1]: the particle's velocity becomes flip (v_p + dt a) + (1 -
@@ -237,6 +239,46 @@ typedef struct mps_mpm_totals {
   int64_t bytes;         /* memory of the grid, the particles' fields not counted */
 } mps_mpm_totals;
 MPS_API MPS_NODISCARD mps_status mps_mpm_get_totals(mps_mpm *mpm, mps_mpm_totals *out);
+
+/* ---- state ----------------------------------------------------------------------------------- */
+
+/** Keeps the state of the solver, its set (fields, order) and its bodies in memory. *snapshot is
+ * NULL at first and receives a new one, or one of this solver to be filled again, whose memory is
+ * then reused. Needs as much memory as the fields. Between steps only, as in the callback of
+ *  mps_mpm_run. On an error *snapshot is as before. MPS_ERROR_ARGUMENT: a snapshot of another
+ *  solver; MPS_ERROR_STATE: a step has failed. */
+MPS_API MPS_NODISCARD mps_status mps_mpm_snapshot(mps_mpm *mpm, mps_snapshot **snapshot);
+/** Goes back to a snapshot, bit for bit; a step that failed is forgotten. Not in the snapshot, and
+ *  so as they are now: gravity, dt, courant, constants of materials and bodies, signals, loads. On
+ * an error nothing has changed. MPS_ERROR_ARGUMENT: of another solver; MPS_ERROR_STATE: bodies,
+ *  boundaries, loads or materials are not those of the snapshot, the message says which. */
+MPS_API MPS_NODISCARD mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot);
+
+/** Writes a checkpoint of the solver's set (see mps_checkpoint_write, also for errors) with all
+ *  that the solver needs to go on: time, steps, order and blocks of the particles, forces of the
+ *  walls; of its bodies motion, load, reactions and impulses. Of `info` (NULL: the defaults) only
+ *  user_key and the user_data are read. The run is not touched: it goes on as if it had not been
+ *  saved. Between steps only, such as in the callback of mps_mpm_run. MPS_ERROR_STATE: a step has
+ *  failed. */
+MPS_API MPS_NODISCARD mps_status mps_mpm_save(mps_mpm *mpm, const char *path,
+                                              const mps_checkpoint *info);
+
+/** Puts the state of mps_mpm_save into a solver that was built in the same way. What must agree:
+ *  the particles, spacing, geometry, scheme, spline, cell, origin, places and kinds of walls and
+ *  boxes, number of loads, whether there are body accelerations, names and order of materials, and
+ *  the shapes, motions and numbers of parts of the bodies in their order. Where the solver is now
+ *  does not matter; a step that failed is forgotten. From there it goes on bit for bit as the run
+ *  that never stopped, for every number of threads. All else is the caller's to set up
+ *  again, and may be other than it was: constants of materials, gravity, dt, courant, signals,
+ *  loads on particles, friction, masses of bodies.
+ *
+ *  The set takes the order of the file: views taken before are stale. On an error nothing has
+ *  changed. `info` (NULL: not wanted) is as for mps_checkpoint_info. Statuses are
+ *  those of mps_checkpoint_read; MPS_ERROR_FORMAT: written without a solver; MPS_ERROR_ARGUMENT: by
+ *  a solver that was built in another way, the message says in what; MPS_ERROR_STATE: another
+ *  solver uses the set. */
+MPS_API MPS_NODISCARD mps_status mps_mpm_restore(mps_mpm *mpm, const char *path,
+                                                 mps_checkpoint *info);
 
 MPS_EXTERN_C_END
 #endif

@@ -1,4 +1,5 @@
-/* mps/solver.h - the words that all solvers share: degrees of freedom, reactions, totals, snapshots.
+/* mps/solver.h - the words that all solvers share: degrees of freedom, reactions, totals,
+ * snapshots.
  *
  * Every solver mps_S (mpm, dynamics, elastic) answers to the same verbs:
  *

@@ -3,7 +3,7 @@
 #ifndef MPSI_BODY_H
 #define MPSI_BODY_H
 
-#include "core/internal.h"
+#include "core/state.h"
 
 #include <mps/body.h>
 
@@ -74,19 +74,8 @@ struct mps_body {
   void *user; /* the solver that moves it, or NULL */
 };
 
-/* What a checkpoint keeps of a body. */
-typedef struct mpsi_body_record {
-  int64_t shape, faces, motion, parts; /* must agree */
-  int64_t outside;
-  double energy[3]; /* work_contacts, work_loads, dissipated */
-  double time, rotation[3], angular[3], load[6];
-  double position[3], orientation[9], velocity[3], spin[3];
-  double reaction[MPS_BODY_MAX_PARTS * 13]; /* of each part force, moment, impulses, work */
-  int64_t contacts[MPS_BODY_MAX_PARTS];
-} mpsi_body_record;
-void mpsi_body_get_record(const mps_body *body, mpsi_body_record *out);
-/* Puts the body where the record says, what must agree not being looked at. */
-void mpsi_body_set_record(mps_body *body, const mpsi_body_record *record);
+/* Lists what changes of the body as it moves, and what it is. */
+void mpsi_body_list_state(mpsi_state *state, mps_body *body);
 
 /* Nearest surface point to x (dim values, finite). Reads only: any number of threads. */
 mpsi_foot mpsi_body_foot(const mps_body *body, const double *x);

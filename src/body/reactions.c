@@ -1,5 +1,5 @@
-/* reactions.c - what particles do to a rigid body, by the parts of its surface; and the record that
- * a checkpoint keeps of a body. SPDX-License-Identifier: BSD-3-Clause */
+/* reactions.c - what particles do to a rigid body, by the parts of its surface.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "body.h"
 
 #include "rotation.h"
@@ -43,55 +43,6 @@ mps_status mps_body_get_reaction_sized(mps_body *body, int32_t part, mps_reactio
     sum.work += r->work;
   }
   return mpsi_out_write(body->context, function, out, size, &sum, sizeof sum);
-}
-
-/* ---- records --------------------------------------------------------------------------------- */
-
-enum { REACTION = 12 * sizeof(double) };
-_Static_assert(offsetof(mps_reaction, count) == REACTION, "12 numbers, then the contacts");
-_Static_assert(sizeof(mpsi_load) == 6 * sizeof(double), "force, then moment");
-
-void mpsi_body_get_record(const mps_body *body, mpsi_body_record *out) {
-  const mpsi_pose *p = &body->pose;
-  *out = (mpsi_body_record){.shape = body->shape,
-                            .faces = body->faces,
-                            .motion = body->def.motion,
-                            .parts = body->parts,
-                            .outside = body->outside,
-                            .energy = {body->work_contacts, body->work_loads, body->dissipated},
-                            .time = body->time};
-  memcpy(out->rotation, body->rotation, sizeof out->rotation);
-  memcpy(out->angular, body->angular, sizeof out->angular);
-  memcpy(out->load, &body->load, sizeof out->load);
-  memcpy(out->position, p->x, sizeof out->position);
-  memcpy(out->orientation, p->R, sizeof out->orientation);
-  memcpy(out->velocity, p->v, sizeof out->velocity);
-  memcpy(out->spin, p->spin, sizeof out->spin);
-  for (int32_t part = 0; part < body->parts; part++) {
-    memcpy(&out->reaction[13 * part], &body->reaction[part], REACTION);
-    out->reaction[13 * part + 12] = body->reaction[part].work;
-    out->contacts[part] = body->reaction[part].count;
-  }
-}
-
-void mpsi_body_set_record(mps_body *body, const mpsi_body_record *record) {
-  mpsi_pose *p = &body->pose;
-  body->time = record->time;
-  body->outside = record->outside != 0;
-  body->work_contacts = record->energy[0], body->work_loads = record->energy[1];
-  body->dissipated = record->energy[2];
-  memcpy(body->rotation, record->rotation, sizeof body->rotation);
-  memcpy(body->angular, record->angular, sizeof body->angular);
-  memcpy(&body->load, record->load, sizeof body->load);
-  memcpy(p->x, record->position, sizeof p->x);
-  memcpy(p->R, record->orientation, sizeof p->R);
-  memcpy(p->v, record->velocity, sizeof p->v);
-  memcpy(p->spin, record->spin, sizeof p->spin);
-  for (int32_t part = 0; part < body->parts; part++) {
-    memcpy(&body->reaction[part], &record->reaction[13 * part], REACTION);
-    body->reaction[part].work = record->reaction[13 * part + 12];
-    body->reaction[part].count = record->contacts[part];
-  }
 }
 
 /* ---- parts ----------------------------------------------------------------------------------- */

@@ -60,11 +60,11 @@ static item *add(mpsi_state *s, const char *name, mpsi_state_type type, int64_t 
   return made;
 }
 
-static void add_at(mpsi_state *s, const char *name, mpsi_state_type type, width width, void *data,
+static void add_at(mpsi_state *s, const char *name, mpsi_state_type type, width how, void *data,
                    int64_t count) {
   item *made = add(s, name, type, count);
   if (!made) return;
-  made->width = width;
+  made->width = how;
   made->data = data;
 }
 
@@ -86,6 +86,15 @@ void mpsi_state_bool(mpsi_state *state, const char *name, bool *value) {
 
 void mpsi_state_bytes(mpsi_state *state, const char *name, void *values, int64_t count) {
   add_at(state, name, MPSI_STATE_BYTES, WIDE, values, count);
+}
+
+void mpsi_state_reaction(mpsi_state *state, mps_reaction *reaction) {
+  mpsi_state_f64(state, "force", reaction->force, 3);
+  mpsi_state_f64(state, "moment", reaction->moment, 3);
+  mpsi_state_f64(state, "impulse", reaction->impulse, 3);
+  mpsi_state_f64(state, "moment_impulse", reaction->moment_impulse, 3);
+  mpsi_state_i64(state, "count", &reaction->count, 1);
+  mpsi_state_f64(state, "work", &reaction->work, 1);
 }
 
 void mpsi_state_agree_integer(mpsi_state *state, const char *name, int64_t value) {
@@ -294,7 +303,8 @@ static mps_status check_owner(const mpsi_state_of *of, const char *function,
 mps_status mpsi_state_snapshot(const mpsi_state_of *of, const char *function,
                                mps_snapshot **snapshot) {
   if (!snapshot)
-    return mpsi_fail(of->context, function, MPS_ERROR_ARGUMENT, "snapshot is NULL, must be the "
+    return mpsi_fail(of->context, function, MPS_ERROR_ARGUMENT,
+                     "snapshot is NULL, must be the "
                      "address of a pointer, which may be NULL at first");
   mps_snapshot *made = *snapshot;
   mps_status status = made ? check_owner(of, function, made) : MPS_OK;
@@ -311,8 +321,7 @@ mps_status mpsi_state_snapshot(const mpsi_state_of *of, const char *function,
 
 mps_status mpsi_state_rollback(const mpsi_state_of *of, const char *function,
                                const mps_snapshot *snapshot) {
-  if (!snapshot)
-    return mpsi_fail(of->context, function, MPS_ERROR_ARGUMENT, "snapshot is NULL");
+  if (!snapshot) return mpsi_fail(of->context, function, MPS_ERROR_ARGUMENT, "snapshot is NULL");
   const mps_status status = check_owner(of, function, snapshot);
   if (status != MPS_OK) return status;
   return mpsi_state_put(of, function, snapshot, "the snapshot", MPS_ERROR_STATE);

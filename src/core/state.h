@@ -58,6 +58,9 @@ void mpsi_state_bool(mpsi_state *state, const char *name, bool *value);
 /* Bytes of the caller's or the machine's own form; a file holds them as they are. */
 void mpsi_state_bytes(mpsi_state *state, const char *name, void *values, int64_t count);
 
+/* The members of a reaction. */
+void mpsi_state_reaction(mpsi_state *state, mps_reaction *reaction);
+
 /* How the solver was built or is set up: going back is an error where it differs now, which names
  * the item and both values. */
 void mpsi_state_agree_integer(mpsi_state *state, const char *name, int64_t value);
@@ -94,7 +97,7 @@ typedef struct mpsi_identity mpsi_identity; /* tells solvers apart, also those d
 
 typedef struct mpsi_state_of {
   void *solver;
-  const char *name;         /* of the kind of solver: "WLS-MPM" */
+  const char *name; /* of the kind of solver: "WLS-MPM" */
   mps_context *context;
   mps_particles *particles; /* NULL: none goes along */
   mpsi_identity **identity; /* a member of the solver, NULL at first */

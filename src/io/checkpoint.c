@@ -87,7 +87,7 @@ mps_status mpsi_h5_read_rows(const mpsi_reading *r, hid_t object, const mpsi_h5_
                              size_t rows, void *to) {
   for (const mpsi_h5_row *end = row + rows; row < end; row++)
     if (!mpsi_h5_read_attribute(object, row->name, row->integer ? H5T_INTEGER : H5T_FLOAT,
-                        number_type(row->integer), row->count, 8, (char *)to + row->offset))
+                                number_type(row->integer), row->count, 8, (char *)to + row->offset))
       return mpsi_checkpoint_malformed(r, row->name);
   return MPS_OK;
 }
@@ -352,8 +352,7 @@ static mps_status stage_fields(reading *r) {
   mps_status status = MPS_OK;
   if (group < 0 || H5Gget_info(group, &info) < 0 || info.nlinks > MAX_FIELDS)
     status = mpsi_checkpoint_malformed(r, "group 'fields'");
-  if (status == MPS_OK &&
-      !mpsi_values_reserve(r->context, &r->values.fields, (int32_t)info.nlinks))
+  if (status == MPS_OK && !mpsi_values_reserve(r->context, &r->values.fields, (int32_t)info.nlinks))
     status = mpsi_fail_memory(r->context, r->function, info.nlinks * sizeof(mpsi_value));
   for (hsize_t k = 0; status == MPS_OK && k < info.nlinks; k++) status = stage_field(r, group, k);
   if (group >= 0) H5Gclose(group);

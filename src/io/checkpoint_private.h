@@ -25,7 +25,7 @@ typedef struct mpsi_reading {
   char *user_data;
   int64_t user_bytes;
   mps_snapshot values; /* fields: of the file, by name; state: of its solver */
-  int64_t *source; /* source[i]: place in the file of the particle at index i of the set */
+  int64_t *source;     /* source[i]: place in the file of the particle at index i of the set */
 } mpsi_reading;
 
 /* MPS_ERROR_FORMAT. The file is sealed, so it is not one of ours, or not of this version. */

@@ -130,7 +130,7 @@ static inline int64_t mpsi_block_of(int64_t base) {
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function);
 /* layout.c: builds the lists of blocks for particles that are in order, as at an earlier sort. */
 mps_status mpsi_mpm_place_blocks(mps_mpm *mpm, const char *function, int64_t count,
-                                 mpsi_block *block);
+                                 const mpsi_block *block);
 /* grid.c: one block of nodes: emptied; velocities, normal contact forces; friction and walls. */
 void mpsi_mpm_clear_nodes(mps_mpm *mpm, int64_t g, int32_t worker);
 void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker);

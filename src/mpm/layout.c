@@ -234,7 +234,7 @@ static mps_status build_blocks(mps_mpm *mpm, const char *function, const mpsi_ra
 }
 
 mps_status mpsi_mpm_place_blocks(mps_mpm *mpm, const char *function, int64_t count,
-                                 mpsi_block *block) {
+                                 const mpsi_block *block) {
   if (!ensure_cells(mpm, count)) return no_room(mpm, function, count);
   for (int64_t k = 0; k < count; k++) {
     const int64_t end = k + 1 < count ? block[k + 1][0] : mpm->p.count;

@@ -378,6 +378,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
   for (int32_t k = 0; k < MPSI_HOLDS; k++)
     for (int c = 0; c < 3; c++) mps_signal_destroy(&mpm->boundaries.hold[k].signal[c]);
   for (int32_t k = 0; k < mpm->laws.count; k++) mps_material_destroy(&mpm->laws.law[k].material);
+  mpsi_state_forget(&mpm->identity);
   mpsi_particles_unpin(mpm->particles);
   mpsi_free(context, mpm);
   mpsi_context_release(context);

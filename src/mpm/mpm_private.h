@@ -28,6 +28,7 @@ struct mps_mpm {
   mpsi_loads loads;
   mpsi_laws laws;
   mpsi_run run;
+  mpsi_identity *identity; /* of its snapshots */
 };
 
 static inline const mpsi_law_use *mpsi_law_of(const mps_mpm *mpm, int64_t particle) {

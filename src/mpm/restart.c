@@ -1,8 +1,9 @@
-/* restart.c - see restart.h. Sums over particles go block by block in the set's order: a run that
- * goes on bit for bit needs both as they were at the last sort.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* restart.c - the state of the WLS-MPM solver (core/state.h): snapshots, rollback, checkpoints.
+ * Sums over particles go block by block in the set's order: a run that goes on bit for bit needs
+ * both as they were at the last sort. SPDX-License-Identifier: BSD-3-Clause */
 #include "restart.h"
 
+#include "io/checkpoint.h"
 #include "mpm_private.h"
 
 #include <stdio.h>
@@ -10,162 +11,171 @@
 
 _Static_assert(sizeof(mpsi_dash) == MPSI_DASH * sizeof(double), "kept as numbers");
 
-mps_context *mpsi_mpm_context(const mps_mpm *mpm) { return mpm->context; }
-mps_particles *mpsi_mpm_particles(const mps_mpm *mpm) { return mpm->particles; }
+/* ---- tables: blocks, their nodes, dashpots --------------------------------------------------- */
 
-/* How the caller has built the solver, as far as the state depends on it. */
-static void get_setting(const mps_mpm *mpm, mpsi_mpm_record *out) {
-  out->geometry = mpm->def.geometry, out->scheme = mpm->def.scheme;
-  out->spline = mpm->def.spline;
-  out->bodies = mpm->contact.bodies, out->materials = mpm->laws.count;
-  for (int32_t k = 0; k < mpm->laws.count; k++)
-    snprintf(out->material[k], sizeof out->material[k], "%s",
-             mps_material_name(mpm->laws.law[k].material));
-  for (int32_t k = 0; k < mpm->loads.count; k++) out->loads += mpm->loads.traction[k].count > 0;
-  out->accelerated = mpm->loads.body_acceleration[0] != NULL;
-  for (int k = 0; k < MPSI_HOLDS; k++) out->kind[k] = mpm->boundaries.hold[k].kind;
+/* As mpsi_room_ensure, keeping the contents. */
+static bool keep_room(mps_context *context, mpsi_room *room, int64_t count, size_t size) {
+  if (count <= room->capacity) return true;
+  if (!mpsi_grow(context, &room->item, room->capacity, count, size)) return false;
+  room->capacity = count;
+  return true;
 }
 
-mps_status mpsi_mpm_get_record(const mps_mpm *mpm, const char *function, mpsi_mpm_record *out) {
-  if (mpm->run.broken)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
-                     "step %lld has failed: there is no state to go on from",
-                     (long long)mpm->run.steps);
-  get_setting(mpm, out);
-  out->cell = mpm->def.cell;
-  for (int c = 0; c < mpm->dim; c++) {
-    out->origin[c] = mpm->def.origin[c];
-    out->low[c] = mpm->grid.low[c], out->high[c] = mpm->grid.high[c];
-  }
-  out->stale = mpm->run.stale;
-  out->speed = mpm->run.speed;
-  for (int32_t b = 0; b < mpm->contact.bodies; b++)
-    mpsi_body_get_record(mpm->contact.body[b], &out->body[b]);
-  for (int k = 0; k < MPSI_HOLDS; k++) {
-    out->finds[k] = mpm->boundaries.hold[k].finds, out->found[k] = mpm->boundaries.hold[k].found;
-    memcpy(&out->force[3 * k], mpm->boundaries.hold[k].force, sizeof mpm->boundaries.hold[k].force);
-  }
-  out->dashes = mpm->boundaries.dash_count;
-  out->dash = mpsi_alloc(mpm->context, out->dashes, sizeof *out->dash);
-  if (!out->dash)
-    return mpsi_fail_memory(mpm->context, function, (size_t)out->dashes * sizeof *out->dash);
-  if (out->dashes > 0)
-    memcpy(out->dash, mpm->boundaries.dash, (size_t)out->dashes * sizeof *out->dash);
-  out->blocks = mpm->grid.cell_count;
-  out->block = mpsi_alloc(mpm->context, out->blocks, sizeof *out->block);
-  if (!out->block)
-    return mpsi_fail_memory(mpm->context, function, (size_t)out->blocks * sizeof *out->block);
-  for (int64_t k = 0; k < out->blocks; k++) {
+static int64_t count_blocks(const void *solver) {
+  return ((const mps_mpm *)solver)->grid.cell_count;
+}
+
+static void get_blocks(const void *solver, void *values) {
+  const mps_mpm *mpm = solver;
+  mpsi_block *block = values;
+  for (int64_t k = 0; k < mpm->grid.cell_count; k++) {
     const mpsi_cell_block *cells = &mpm->grid.cells[k];
-    out->block[k][0] = cells->begin;
+    block[k][0] = cells->begin;
     for (int c = 0; c < 3; c++) {
-      out->block[k][MPSI_BLOCK_AT + c] = cells->at[c];
-      out->block[k][MPSI_BLOCK_LOW + c] = cells->low[c];
-      out->block[k][MPSI_BLOCK_HIGH + c] = cells->high[c];
+      block[k][MPSI_BLOCK_AT + c] = cells->at[c];
+      block[k][MPSI_BLOCK_LOW + c] = cells->low[c];
+      block[k][MPSI_BLOCK_HIGH + c] = cells->high[c];
     }
   }
-  return MPS_OK;
 }
 
-/* ---- is it of this solver? ------------------------------------------------------------------- */
+static bool reserve_blocks(void *solver, int64_t rows, const void *values) {
+  mps_mpm *mpm = solver;
+  mpsi_grid *grid = &mpm->grid;
+  (void)values;
+  const bool good = keep_room(mpm->context, &grid->cells_room, rows, sizeof *grid->cells) &&
+                    keep_room(mpm->context, &grid->coloured_room, rows, sizeof *grid->coloured);
+  grid->cells = grid->cells_room.item;
+  grid->coloured = grid->coloured_room.item;
+  return good;
+}
 
-static mps_status check_grid(const mps_mpm *mpm, const char *function, const char *path,
-                             const mpsi_mpm_record *r) {
-  const mps_mpm_def *d = &mpm->def;
-  if (r->geometry != d->geometry || r->scheme != d->scheme || r->spline != d->spline)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "'%.200s' has geometry %lld, scheme %lld and spline %lld, the solver %d, %d "
-                     "and %d",
-                     path, (long long)r->geometry, (long long)r->scheme, (long long)r->spline,
-                     d->geometry, d->scheme, d->spline);
-  if (r->cell != d->cell)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "'%.200s' has cell %.17g m, the solver %.17g m", path, r->cell, d->cell);
+/* The room is there: but where a file lies about it, the solver takes no step. */
+static void set_blocks(void *solver, int64_t rows, const void *values) {
+  mps_mpm *mpm = solver;
+  mpm->run.broken =
+      mpsi_mpm_place_blocks(mpm, "restore", rows, (const mpsi_block *)values) != MPS_OK;
+}
+
+/* How much room the lists that follow from the blocks take: blocks of nodes, held ones, dashpots.
+ */
+enum { SIZES = 3 };
+
+static int64_t one_row(const void *solver) {
+  (void)solver;
+  return 1;
+}
+
+static void get_sizes(const void *solver, void *values) {
+  const mps_mpm *mpm = solver;
+  int64_t *size = values;
+  size[0] = mpm->grid.node_count;
+  size[1] = mpm->boundaries.held_count;
+  size[2] = mpm->boundaries.dash_count;
+}
+
+static bool reserve_sizes(void *solver, int64_t rows, const void *values) {
+  mps_mpm *mpm = solver;
+  mpsi_grid *grid = &mpm->grid;
+  mpsi_boundaries *b = &mpm->boundaries;
+  const int64_t *size = values;
+  if (rows != 1) return false;
+  const bool good =
+      keep_room(mpm->context, &grid->nodes_room, size[0], sizeof *grid->nodes) &&
+      keep_room(mpm->context, &grid->node_room, size[0] * grid->block_nodes, sizeof *grid->node) &&
+      keep_room(mpm->context, &b->held_room, size[1], sizeof *b->held) &&
+      keep_room(mpm->context, &b->old_held_room, size[1], sizeof *b->held) &&
+      keep_room(mpm->context, &b->dash_room, size[2], sizeof *b->dash) &&
+      keep_room(mpm->context, &b->old_dash_room, size[2], sizeof *b->dash);
+  grid->nodes = grid->nodes_room.item;
+  grid->node = grid->node_room.item;
+  b->held = b->held_room.item;
+  b->dash = b->dash_room.item;
+  return good;
+}
+
+static void set_sizes(void *solver, int64_t rows, const void *values) {
+  (void)solver, (void)rows, (void)values;
+}
+
+static int64_t count_dashes(const void *solver) {
+  return ((const mps_mpm *)solver)->boundaries.dash_count;
+}
+
+static void get_dashes(const void *solver, void *values) {
+  const mpsi_boundaries *b = &((const mps_mpm *)solver)->boundaries;
+  memcpy(values, b->dash, (size_t)b->dash_count * sizeof *b->dash);
+}
+
+static void set_dashes(void *solver, int64_t rows, const void *values) {
+  mps_mpm *mpm = solver;
+  if (!mpm->run.broken)
+    mpm->run.broken = mpsi_mpm_put_dashes(mpm, "restore", rows, values) != MPS_OK;
+}
+
+/* ---- the list ------------------------------------------------------------------------------- */
+
+static const mpsi_state_table blocks_table = {MPSI_STATE_I64, MPSI_BLOCK,     count_blocks,
+                                              get_blocks,     reserve_blocks, set_blocks};
+static const mpsi_state_table sizes_table = {MPSI_STATE_I64, SIZES,         one_row,
+                                             get_sizes,      reserve_sizes, set_sizes};
+static const mpsi_state_table dashes_table = {MPSI_STATE_F64, MPSI_DASH, count_dashes,
+                                              get_dashes,     NULL,      set_dashes};
+
+static void list_setting(mpsi_state *s, const mps_mpm *mpm) {
+  int64_t loads = 0;
+  for (int32_t k = 0; k < mpm->loads.count; k++) loads += mpm->loads.traction[k].count > 0;
+  mpsi_state_agree_integer(s, "geometry", mpm->def.geometry);
+  mpsi_state_agree_integer(s, "scheme", mpm->def.scheme);
+  mpsi_state_agree_integer(s, "spline", mpm->def.spline);
+  mpsi_state_agree_number(s, "cell", mpm->def.cell);
   for (int c = 0; c < mpm->dim; c++) {
-    if (r->origin[c] != d->origin[c])
-      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                       "'%.200s' has origin[%d] %.17g m, the solver %.17g m", path, c, r->origin[c],
-                       d->origin[c]);
-    if (r->low[c] != mpm->grid.low[c] || r->high[c] != mpm->grid.high[c])
-      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                       "'%.200s' has walls in %c at nodes %lld and %lld, the solver at %lld and "
-                       "%lld (2^30: none)",
-                       path, "xyz"[c], (long long)r -> low[c], (long long)r -> high[c],
-                       (long long)mpm -> grid.low[c], (long long)mpm->grid.high[c]);
+    mpsi_state_enter(s, "axis%d", c);
+    mpsi_state_agree_number(s, "origin", mpm->def.origin[c]);
+    mpsi_state_agree_integer(s, "lowest_node", mpm->grid.low[c]);
+    mpsi_state_agree_integer(s, "highest_node", mpm->grid.high[c]);
+    mpsi_state_leave(s);
   }
-  return MPS_OK;
+  mpsi_state_agree_integer(s, "loads", loads);
+  mpsi_state_agree_integer(s, "accelerations", mpm->loads.body_acceleration[0] != NULL);
+  mpsi_state_agree_integer(s, "bodies", mpm->contact.bodies);
 }
 
-static mps_status check_body(const mps_mpm *mpm, const char *function, const char *path, int32_t b,
-                             const mpsi_body_record *r) {
-  mpsi_body_record own;
-  mpsi_body_get_record(mpm->contact.body[b], &own);
-  if (r->shape == own.shape && r->faces == own.faces && r->motion == own.motion &&
-      r->parts == own.parts)
-    return MPS_OK;
-  return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                   "body %d of '%.200s' has shape %lld, %lld faces, motion %lld and %lld parts, "
-                   "that of the solver %lld, %lld, %lld and %lld",
-                   b, path, (long long)r->shape, (long long)r->faces, (long long)r->motion,
-                   (long long)r->parts, (long long)own.shape, (long long)own.faces,
-                   (long long)own.motion, (long long)own.parts);
-}
-
-static mps_status check_materials(const mps_mpm *mpm, const char *function, const char *path,
-                                  const mpsi_mpm_record *r) {
-  if (r->materials != mpm->laws.count)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "'%.200s' has %lld materials, the solver %d", path, (long long)r->materials,
-                     mpm->laws.count);
+static void list_state(mpsi_state *s, void *solver) {
+  mps_mpm *mpm = solver;
+  list_setting(s, mpm);
+  for (int32_t k = 0; k < MPSI_HOLDS; k++) {
+    mpsi_hold *hold = &mpm->boundaries.hold[k];
+    mpsi_state_enter(s, k < MPSI_WALLS ? "wall%d" : "box%d", k < MPSI_WALLS ? k : k - MPSI_WALLS);
+    mpsi_state_agree_integer(s, "kind", hold->kind);
+    if (hold->kind != MPSI_HOLD_NONE) {
+      mpsi_state_f64(s, "force", hold->force, 3);
+      mpsi_state_bool(s, "finds", &hold->finds);
+      mpsi_state_f64(s, "found", &hold->found, 1);
+    }
+    mpsi_state_leave(s);
+  }
+  mpsi_state_agree_integer(s, "materials", mpm->laws.count);
   for (int32_t k = 0; k < mpm->laws.count; k++) {
-    char name[MPSI_MATERIAL_NAME];
-    snprintf(name, sizeof name, "%s", mps_material_name(mpm->laws.law[k].material));
-    if (strcmp(r->material[k], name) != 0)
-      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                       "material %d of '%.200s' is '%s', of the solver '%s'", k, path,
-                       r->material[k], name);
+    mpsi_state_enter(s, "material%d", k);
+    mpsi_state_agree_text(s, "name", mps_material_name(mpm->laws.law[k].material));
+    mpsi_state_leave(s);
   }
-  return MPS_OK;
+  mpsi_state_f64(s, "time", &mpm->run.time, 1);
+  mpsi_state_i64(s, "steps", &mpm->run.steps, 1);
+  mpsi_state_f64(s, "speed", &mpm->run.speed, 1);
+  mpsi_state_bool(s, "stale", &mpm->run.stale);
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
+    mpsi_state_enter(s, "body%d", b);
+    mpsi_body_list_state(s, mpm->contact.body[b]);
+    mpsi_state_leave(s);
+  }
+  mpsi_state_add_table(s, "sizes", &sizes_table);
+  mpsi_state_add_table(s, "blocks", &blocks_table);
+  mpsi_state_add_table(s, "dashpots", &dashes_table);
 }
 
-static mps_status check_forces(const mps_mpm *mpm, const char *function, const char *path,
-                               const mpsi_mpm_record *r) {
-  mpsi_mpm_record *own = mpsi_alloc(mpm->context, 1, sizeof *own);
-  if (!own) return mpsi_fail_memory(mpm->context, function, sizeof *own);
-  get_setting(mpm, own);
-  mps_status status = MPS_OK;
-  if (r->loads != own->loads || r->accelerated != own->accelerated)
-    status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                       "'%.200s' has %lld loads and %s body accelerations, the solver %lld and %s",
-                       path, (long long)r->loads, r->accelerated ? "its" : "no",
-                       (long long)own->loads, own->accelerated ? "has them" : "none");
-  for (int k = 0; k < MPSI_HOLDS && status == MPS_OK; k++)
-    if (r->kind[k] != own->kind[k])
-      status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                         "%s %d of '%.200s' is of kind %lld, of the solver %lld (%d: none)",
-                         k < MPSI_WALLS ? "wall" : "box", k < MPSI_WALLS ? k : k - MPSI_WALLS, path,
-                         (long long)r->kind[k], (long long)own->kind[k], MPSI_HOLD_NONE);
-  mpsi_free(mpm->context, own);
-  return status;
-}
-
-mps_status mpsi_mpm_check_record(const mps_mpm *mpm, const char *function, const char *path,
-                                 const mpsi_mpm_record *record) {
-  mps_status status = check_grid(mpm, function, path, record);
-  if (status != MPS_OK) return status;
-  status = check_forces(mpm, function, path, record);
-  if (status == MPS_OK) status = check_materials(mpm, function, path, record);
-  if (status != MPS_OK) return status;
-  if (record->bodies != mpm->contact.bodies)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "'%.200s' has %lld bodies, the solver %d: add them before", path,
-                     (long long)record->bodies, mpm->contact.bodies);
-  for (int32_t b = 0; b < mpm->contact.bodies && status == MPS_OK; b++)
-    status = check_body(mpm, function, path, b, &record->body[b]);
-  return status;
-}
-
-/* ---- is it whole? ---------------------------------------------------------------------------- */
+/* ---- is a file whole? ------------------------------------------------------------------------ */
 
 #define ROUNDED 1e-6 /* cells */
 
@@ -181,10 +191,10 @@ static bool within_tile(const mps_mpm *mpm, const int64_t *b) {
   return true;
 }
 
-static bool orderly(const mps_mpm *mpm, const mpsi_mpm_record *r) {
-  if (r->blocks < 1 || r->blocks > mpm->p.count || r->block[0][0] != 0) return false;
-  for (int64_t k = 0; k < r->blocks; k++) {
-    const int64_t *b = r->block[k], *next = r->block[k + 1 < r->blocks ? k + 1 : k];
+static bool orderly(const mps_mpm *mpm, int64_t rows, const mpsi_block *block, int64_t particles) {
+  if (rows < 1 || rows > particles || block[0][0] != 0) return false;
+  for (int64_t k = 0; k < rows; k++) {
+    const int64_t *b = block[k], *next = block[k + 1 < rows ? k + 1 : k];
     for (int c = 0; c < 3; c++) /* far from where 32 bits end, also of the nodes */
       if (b[1 + c] < -MPSI_NO_WALL || b[1 + c] > MPSI_NO_WALL || (c >= mpm->dim && b[1 + c] != 0))
         return false;
@@ -194,18 +204,18 @@ static bool orderly(const mps_mpm *mpm, const mpsi_mpm_record *r) {
     while (c > 1 && b[c] == next[c]) c--;
     if (b[0] >= next[0] || b[c] >= next[c]) return false;
   }
-  return r->block[r->blocks - 1][0] < mpm->p.count;
+  return block[rows - 1][0] < particles;
 }
 
-/* Where the particle k of the file is: 1 in its tile, -1 in no place that a run leads to unless it
- * sorts next, and 0 in between: outside by what the steps' own arithmetic, which has fused
- * products, may round away. */
+/* Where the particle at X[3], in m, of the file is: 1 in its tile, -1 in no place that a run leads
+ * to unless it sorts next, and 0 in between: outside by what the steps' own arithmetic, which has
+ * fused products, may round away. */
 static int place_of(const mps_mpm *mpm, const int64_t *block, bool stale, const double *x,
-                    int64_t k) {
+                    int64_t stride) {
   const double first = mpm->def.spline == 3 ? 1.0 : 0.5; /* see move in g2p.c */
   int place = 1;
   for (int c = 0; c < mpm->dim; c++) {
-    const double X = mpsi_grid_coordinate(mpm, c, x[c * mpm->p.count + k]);
+    const double X = mpsi_grid_coordinate(mpm, c, x[c * stride]);
     const double low = (double)mpm->grid.low[c], high = (double)mpm->grid.high[c];
     if (!(fabs(X) < MPSI_MAX_CELLS && X >= low - ROUNDED && X <= high + ROUNDED)) return -1;
     if (stale) continue;
@@ -218,39 +228,86 @@ static int place_of(const mps_mpm *mpm, const int64_t *block, bool stale, const 
   return place;
 }
 
-bool mpsi_mpm_fits_record(const mps_mpm *mpm, mpsi_mpm_record *r, const double *x,
-                          const int64_t *law) {
-  if (!(r->speed > 0.0 && isfinite(r->speed)) || !orderly(mpm, r)) return false;
-  for (int k = 0; k < MPSI_HOLDS; k++)
-    if (!isfinite(r->found[k])) return false;
-  for (int64_t k = 0, b = 0; k < mpm->p.count; k++) {
-    if (mpm->p.law && !(law && law[k] >= 0 && law[k] < mpm->laws.count)) return false;
-    if (b + 1 < r->blocks && k == r->block[b + 1][0]) b++;
-    const int place = place_of(mpm, r->block[b], r->stale != 0, x, k);
+/* A step relies on it that the blocks hold their particles, and these have laws that there are: a
+ * stencil outside its tile is memory outside. */
+static bool holds_particles(const mps_mpm *mpm, mps_snapshot *from) {
+  const mpsi_value *blocks = mpsi_values_find(&from->state, "blocks");
+  const mpsi_value *x = mpsi_values_find(&from->fields, "position");
+  const mpsi_value *law = mpsi_values_find(&from->fields, "material");
+  int64_t *stale = mpsi_values_find(&from->state, "stale")->data;
+  const mpsi_block *block = blocks->data;
+  const int64_t count = from->particles;
+  if (!x || x->type != MPSI_STATE_F64 || x->columns != mpm->dim) return false;
+  if (mpm->p.law && !(law && law->type == MPSI_STATE_I64)) return false;
+  if (!orderly(mpm, blocks->rows, block, count)) return false;
+  for (int64_t k = 0, b = 0; k < count; k++) {
+    const int64_t number = mpm->p.law ? ((const int64_t *)law->data)[k] : 0;
+    if (number < 0 || number >= mpm->laws.count) return false;
+    if (b + 1 < blocks->rows && k == block[b + 1][0]) b++;
+    const int place = place_of(mpm, block[b], *stale != 0, (const double *)x->data + k, count);
     if (place < 0) return false;
-    if (place == 0) r->stale = 1; /* it needs no block then */
+    if (place == 0) *stale = 1; /* it needs no block then */
   }
   return true;
 }
 
-mps_status mpsi_mpm_set_record(mps_mpm *mpm, const char *function, const mpsi_mpm_record *record,
-                               double time, int64_t steps) {
-  mpm->run.broken = true;
-  mps_status status = mpsi_mpm_place_blocks(mpm, function, record->blocks, record->block);
-  if (status == MPS_OK) status = mpsi_mpm_put_dashes(mpm, function, record->dashes, record->dash);
-  if (status != MPS_OK) return status;
-  for (int32_t b = 0; b < mpm->contact.bodies; b++)
-    mpsi_body_set_record(mpm->contact.body[b], &record->body[b]);
-  for (int k = 0; k < MPSI_HOLDS; k++) {
-    mpm->boundaries.hold[k].finds = record->finds[k] != 0,
-    mpm->boundaries.hold[k].found = record->found[k];
-    memcpy(mpm->boundaries.hold[k].force, &record->force[3 * k],
-           sizeof mpm->boundaries.hold[k].force);
+static bool fits(void *solver, mps_snapshot *from, const char **what) {
+  const mps_mpm *mpm = solver;
+  const mpsi_value *sizes = mpsi_values_find(&from->state, "sizes");
+  const double speed = *(const double *)mpsi_values_find(&from->state, "speed")->data;
+  *what = "its blocks do not hold its particles";
+  if (!(speed > 0.0 && isfinite(speed)) || sizes->rows != 1) return false;
+  for (int k = 0; k < SIZES; k++) {
+    const int64_t size = ((const int64_t *)sizes->data)[k];
+    if (size < 0 || size > MPSI_NO_WALL) return false;
   }
-  mpm->run.stale = record->stale != 0;
-  mpm->run.speed = record->speed;
-  mpm->run.time = time;
-  mpm->run.steps = steps;
-  mpm->run.broken = false;
-  return MPS_OK;
+  return holds_particles(mpm, from);
+}
+
+/* ---- public ---------------------------------------------------------------------------------- */
+
+static mpsi_state_of state_of(mps_mpm *mpm) {
+  return (mpsi_state_of){.solver = mpm,
+                         .name = "WLS-MPM",
+                         .context = mpm->context,
+                         .particles = mpm->particles,
+                         .identity = &mpm->identity,
+                         .list = list_state,
+                         .fits = fits,
+                         .time = mpm->run.time,
+                         .dt = mps_mpm_dt(mpm),
+                         .steps = mpm->run.steps};
+}
+
+static mps_status check_whole(const mps_mpm *mpm, const char *function) {
+  if (!mpm->run.broken) return MPS_OK;
+  return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+                   "step %lld has failed: there is no state to go on from",
+                   (long long)mpm->run.steps);
+}
+
+mps_status mps_mpm_snapshot(mps_mpm *mpm, mps_snapshot **snapshot) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  const mpsi_state_of of = state_of(mpm);
+  const mps_status status = check_whole(mpm, __func__);
+  return status == MPS_OK ? mpsi_state_snapshot(&of, __func__, snapshot) : status;
+}
+
+mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  const mpsi_state_of of = state_of(mpm);
+  return mpsi_state_rollback(&of, __func__, snapshot);
+}
+
+mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *info) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  const mpsi_state_of of = state_of(mpm);
+  const mps_status status = check_whole(mpm, __func__);
+  return status == MPS_OK ? mpsi_checkpoint_save(&of, __func__, path, info) : status;
+}
+
+mps_status mps_mpm_restore(mps_mpm *mpm, const char *path, mps_checkpoint *info) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  const mpsi_state_of of = state_of(mpm);
+  return mpsi_checkpoint_restore(&of, __func__, path, info);
 }

@@ -2,7 +2,7 @@
  * there and says so. What the files hold: test_hdf5_*.c. SPDX-License-Identifier: BSD-3-Clause */
 #include "test_fixture.h"
 
-#include <mps/io.h>
+#include <mps/mpm.h>
 
 static void definitions_start_from_their_defaults(void **state) {
   (void)state;
