@@ -1,5 +1,5 @@
-/* mps-column-collapse - a column of sand or clay collapses on a bed: Nakamura, Figure 3, against the
- * run-out that Lube, Huppert, Sparks and Freundt measured.
+/* mps-column-collapse - a column of sand or clay collapses on a bed: Nakamura, Figure 3, against
+ * the run-out that Lube, Huppert, Sparks and Freundt measured.
  *
  * The column stands on the bed y = 0, L0 wide from the wall x = 0 (a line of symmetry), a L0 high,
  * and is let go at once. Drucker-Prager in plane strain.
@@ -40,7 +40,7 @@ typedef struct simulation {
   settings s;
   mpm_model m;
   mps_context *context;
-  int count;
+  int count; /* of the columns asked for; in the results, of those that were begun */
   column_case column[CASES_MAX];
 } simulation;
 
@@ -146,6 +146,7 @@ static mps_status sample(simulation *sim, column_case *c, double *peak) {
   if (k == 0) c->mass_start = sim->s.density * c->aspect * sim->s.width * sim->s.width;
   *peak = fmax(*peak, heap.kinetic);
   c->rows++;
+  sim->m.samples++;
   return MPS_OK;
 }
 
@@ -166,14 +167,15 @@ static mps_status march_case(simulation *sim, column_case *c) {
     if (status == MPS_OK)
       status = mps_mpm_run(sim->m.mpm, end * k / SAMPLES, INT64_MAX, NULL, NULL);
     if (status == MPS_OK) status = sample(sim, c, &peak);
-    if (c->kinetic[c->rows - 1] > AT_REST * peak) continue;
+    if (status != MPS_OK || c->kinetic[c->rows - 1] > AT_REST * peak) continue;
     c->time_at_rest = c->t[c->rows - 1];
     break;
   }
-  if (status == MPS_OK)
-    status = mpm_snapshot_take(sim->m.particles, c->t[c->rows - 1], "plastic_strain",
-                               &c->shot[FRAMES - 1]);
-  return status;
+  /* the last one is also that of an interrupted run */
+  const mps_status taken = c->rows > 0 ? mpm_snapshot_take(sim->m.particles, c->t[c->rows - 1],
+                                                           "plastic_strain", &c->shot[FRAMES - 1])
+                                       : MPS_OK;
+  return status == MPS_OK ? taken : status;
 }
 
 static mps_status march(void *user) {
@@ -193,8 +195,8 @@ static bool write_cases(app *a, const simulation *sim) {
   const settings *s = &sim->s;
   output f;
   if (!output_open(&f, a, s->out, "cases.csv")) return false;
-  output_text(&f, "case,aspect,phi_deg,cohesion_Pa,runout,runout_law,height,height_law,"
-                  "time_at_rest_s,volume_ratio_max,runout_98\n");
+  csv_header(&f, "case,aspect,phi_deg,cohesion_Pa,runout,runout_law,height,height_law,"
+                 "time_at_rest_s?,volume_ratio_max,runout_98");
   for (int k = 0; k < sim->count; k++) {
     const column_case *c = &sim->column[k];
     const double row[] = {c->aspect,
@@ -207,8 +209,7 @@ static bool write_cases(app *a, const simulation *sim) {
                           c->time_at_rest,
                           c->volume_ratio,
                           c->reach / s->width - 1.0};
-    output_text(&f, "%s,", c->name);
-    csv_row(&f, 10, row);
+    csv_named_row(&f, c->name, 10, row);
   }
   return output_close(&f);
 }
@@ -218,7 +219,7 @@ static bool write_case(app *a, const settings *s, const column_case *c) {
   char name[64];
   snprintf(name, sizeof name, "front_%s.csv", c->name);
   if (!output_open(&f, a, s->out, name)) return false;
-  output_text(&f, "t_s,runout,height,kinetic_J_m\n");
+  csv_header(&f, "t_s,runout,height,kinetic_J_m");
   for (int k = 0; k < c->rows; k++) {
     const double row[] = {c->t[k], c->front[k] / s->width - 1.0, c->height[k] / s->width,
                           c->kinetic[k]};
@@ -318,7 +319,7 @@ static void summarise(output *f, const simulation *sim) {
   json_number(f, "runout_98", c->reach / s->width - 1.0);
   json_number(f, "height", final_height(s, c));
   json_number(f, "height_law", law_height(c->aspect));
-  json_number(f, "time_at_rest", c->time_at_rest);
+  json_optional(f, "time_at_rest", c->time_at_rest);
   json_number(f, "volume_ratio_max", c->volume_ratio);
   json_number(f, "detached", c->detached);
   json_number(f, "mass_error", c->mass / c->mass_start - 1.0);
@@ -328,6 +329,7 @@ static bool finish(app *a, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
   output f;
+  while (sim->count > 1 && sim->column[sim->count - 1].rows < MPM_MODEL_SAMPLES) sim->count--;
   if (!write_cases(a, sim)) return false;
   for (int k = 0; k < sim->count; k++)
     if (!write_case(a, s, &sim->column[k])) return false;
@@ -336,8 +338,7 @@ static bool finish(app *a, void *user) {
   json_end(&f);
   if (!output_close(&f)) return false;
   if (!(s->sweep ? draw_law(a, sim) : draw_columns(a, sim))) return false;
-  printf("Results: %s/ (cases.csv, front_*.csv, particles_*.csv, summary.json, %s.png)\n", s->out,
-         s->sweep ? "runout" : "columns");
+  app_tell_results(a, s->out);
   for (int k = 0; k < sim->count; k++) {
     const column_case *c = &sim->column[k];
     printf("%-12s a = %-4g run-out %.3f (law %.3f)  height %.3f (law %.3f)  %s %.3g s\n", c->name,
@@ -398,27 +399,27 @@ int main(int argc, char **argv) {
   option table[] = {
       OPTION_HEADING("Column"),
       OPTION_NUMBER("aspect", "1", OPTION_FROM_TO(0.1, 20.0), &s->aspect, "a = H0/L0"),
-      OPTION_NUMBER("width", "m", OPTION_POSITIVE, &s->width, "L0 from the wall, whole cells"),
+      OPTION_NUMBER("width", "m", OPTION_LENGTH, &s->width, "L0 from the wall, whole cells"),
       OPTION_FLAG("sweep", &s->sweep, "columns of a = 0.5, 1, 2, 3, 4, 6 against the law"),
       OPTION_FLAG("compare", &s->compare,
                   "three columns: sand; phi/2 and c = 0.05 rho g H; clay of c = 0.15 rho g H"),
       OPTION_HEADING("Soil (Drucker-Prager)"),
       OPTION_NUMBER("phi", "degrees", OPTION_FROM_TO(0.0, 60.0), &s->phi, "angle of friction"),
       OPTION_NUMBER("psi", "degrees", OPTION_FROM_TO(0.0, 60.0), &s->psi, "angle of dilation"),
-      OPTION_NUMBER("cohesion", "Pa", OPTION_NOT_NEGATIVE, &s->cohesion, "c"),
+      OPTION_NUMBER("cohesion", "Pa", OPTION_FROM_TO(0.0, 1e11), &s->cohesion, "c"),
       OPTION_CHOICE("cone", "planestrain|circumscribed|inscribed|extension", &s->cone,
                     "how it meets Mohr-Coulomb"),
-      OPTION_NUMBER("young", "kPa", OPTION_POSITIVE, &s->young, "Young's modulus E"),
+      OPTION_NUMBER("young", "kPa", OPTION_MODULUS, &s->young, "Young's modulus E"),
       OPTION_NUMBER("poisson", "1", OPTION_FROM_TO(0.0, 0.49), &s->poisson, "Poisson's ratio"),
-      OPTION_NUMBER("density", "kg/m3", OPTION_POSITIVE, &s->density, "in bulk"),
+      OPTION_NUMBER("density", "kg/m3", OPTION_DENSITY, &s->density, "in bulk"),
       OPTION_HEADING("Bed"),
       OPTION_NUMBER("bed-friction", "1", OPTION_FROM_TO(0.0, 10.0), &s->bed_friction,
                     "Coulomb's mu of a rigid bed (default: soil sticks to it)"),
       OPTION_HEADING("Grid"),
-      OPTION_NUMBER("h", "m", OPTION_POSITIVE, &s->h, "grid spacing (default width/20)"),
+      OPTION_NUMBER("h", "m", OPTION_LENGTH, &s->h, "grid spacing (default width/20)"),
       OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
       OPTION_HEADING("Run"),
-      OPTION_NUMBER("duration", "(H/g)^1/2", OPTION_POSITIVE, &s->duration,
+      OPTION_NUMBER("duration", "(H/g)^1/2", OPTION_FROM_TO(1e-3, 1e6), &s->duration,
                     "at most, if it does not come to rest before"),
       OPTION_OUT(&s->out),
       OPTION_THREADS(&s->threads),

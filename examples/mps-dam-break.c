@@ -160,7 +160,7 @@ static mps_status march(void *user) {
     sim->t[k] = mps_mpm_time(sim->m.mpm);
     sim->Z[k] = heap->front / s->base;
     sim->H[k] = heap->top / column_height(s);
-    sim->rows = k + 1;
+    if (status == MPS_OK) sim->m.samples = sim->rows = k + 1;
   }
   return status;
 }
@@ -185,7 +185,8 @@ static misfit compare(const simulation *sim, const series *data, const double *v
     if (fabs(d) > fabs(m.worst)) m.worst = d;
     m.points++;
   }
-  m.rms = sqrt(m.rms / m.points);
+  m.rms = m.points ? sqrt(m.rms / m.points) : NAN;
+  if (m.points == 0) m.worst = NAN;
   return m;
 }
 
@@ -205,8 +206,8 @@ static bool write_front(app *a, const simulation *sim, double T, double tau) {
   const series *z = &fronts[s->n2 - 1], *h = &heights[s->n2 - 1];
   output f;
   if (!output_open(&f, a, s->out, "front.csv")) return false;
-  output_text(&f, "t_s,T,Z,Z_experiment,tau,H,H_experiment,mass_kg_m,volume_m2,kinetic_J_m,"
-                  "potential_J_m,detached\n");
+  csv_header(&f, "t_s,T,Z,Z_experiment?,tau,H,H_experiment?,mass_kg_m,volume_m2,kinetic_J_m,"
+                 "potential_J_m,detached");
   for (int k = 0; k < sim->rows; k++) {
     const mpm_heap *p = &sim->heap[k];
     const double t = sim->t[k];
@@ -225,7 +226,7 @@ static bool write_front(app *a, const simulation *sim, double T, double tau) {
     csv_row(&f, 12, row);
   }
   if (!output_close(&f) || !output_open(&f, a, s->out, "experiment.csv")) return false;
-  output_text(&f, "T,Z,tau,H\n");
+  csv_header(&f, "T?,Z?,tau?,H?");
   for (int k = 0; k < z->count || k < h->count; k++) {
     const double row[] = {k < z->count ? z->t[k] : NAN, k < z->count ? z->value[k] : NAN,
                           k < h->count ? h->t[k] : NAN, k < h->count ? h->value[k] : NAN};
@@ -281,13 +282,15 @@ static bool draw_water(app *a, const simulation *sim, double T) {
               "set cblabel 'pressure (kPa)'\n",
               down, across, edge / x, (x - 135.0) / x, 42.0 / y, 1.0 - 28.0 / y, edge / x, 74.0 / y,
               width, height, 0.9e-3 * DENSITY * G * column_height(s), (x - 120.0) / x);
-  for (int k = 0; k < FRAMES; k++)
+  for (int k = 0; k < FRAMES; k++) {
+    if (sim->shot[k].count == 0) continue; /* the run ended before */
     output_text(&f,
                 "%sset title 'T = %.2f' offset 0,-0.7\n"
                 "plot 'particles.csv' every ::1 using ($1==%d ? $3/%.9g : NaN):($4/%.9g):($5*1e-3) "
                 "with points pointtype 7 pointsize %.3g linecolor palette notitle\n",
                 k == 1 ? "unset colorbox\n" : "", sim->shot[k].time * T, k, s->base, s->base,
                 0.24 * panel * s->h / sqrt((double)s->ppc) / (width * s->base));
+  }
   output_text(&f, "unset multiplot\n");
   return plot_close(&f, s->out, "water");
 }
@@ -297,6 +300,7 @@ static double rest_error(const simulation *sim) {
   const mpm_snapshot *shot = &sim->shot[FRAMES - 1];
   const double H = column_height(&sim->s);
   double sum = 0.0;
+  if (shot->count == 0) return NAN; /* the run ended before */
   for (int64_t k = 0; k < shot->count; k++) {
     const double d = shot->row[3 * k + 2] / (DENSITY * G * H) - (1.0 - shot->row[3 * k + 1] / H);
     sum += d * d;
@@ -326,23 +330,24 @@ static void summarise(output *f, const simulation *sim, double T, double tau, do
   json_number(f, "energy_end", (last->kinetic + last->potential) / scale);
   json_number(f, "kinetic_max", kinetic);
   if (s->rest) {
-    json_number(f, "pressure_error", rest_error(sim));
+    json_optional(f, "pressure_error", rest_error(sim));
     json_number(f, "height_end", sim->H[sim->rows - 1]);
     return;
   }
   const misfit front = compare(sim, z, sim->Z, T, 0.0), wall = compare(sim, h, sim->H, tau, 0.0);
   const misfit set = compare(sim, z, sim->Z, T, shift);
-  json_number(f, "front_error_rms", front.rms);
-  json_number(f, "front_error_max", front.worst);
-  json_number(f, "front_clock_shift", shift);
-  json_number(f, "front_error_rms_clock", set.rms);
-  json_number(f, "front_error_max_clock", set.worst);
-  json_number(f, "height_error_rms", wall.rms);
-  json_number(f, "height_error_max", wall.worst);
+  json_optional(f, "front_error_rms", front.rms);
+  json_optional(f, "front_error_max", front.worst);
+  json_optional(f, "front_clock_shift", shift);
+  json_optional(f, "front_error_rms_clock", set.rms);
+  json_optional(f, "front_error_max_clock", set.worst);
+  json_optional(f, "height_error_rms", wall.rms);
+  json_optional(f, "height_error_max", wall.worst);
   json_number(f, "detached_max", detached);
-  printf("front against the experiment: RMS %.3f, at most %+.3f (a); clock set at Z = 1.44: RMS "
-         "%.3f\n",
-         front.rms, front.worst, set.rms);
+  if (front.points > 0)
+    printf("front against the experiment: RMS %.3f, at most %+.3f (a)", front.rms, front.worst);
+  if (set.points > 0) printf("; clock set at Z = 1.44: RMS %.3f", set.rms);
+  if (front.points > 0) printf("\n");
 }
 
 static bool finish(app *a, void *user) {
@@ -359,9 +364,8 @@ static bool finish(app *a, void *user) {
   json_end(&f);
   if (!output_close(&f) || (!s->rest && !draw_front(a, s, shift)) || !draw_water(a, sim, T))
     return false;
-  printf("Results: %s/ (front.csv, experiment.csv, particles.csv, summary.json, pictures)\n",
-         s->out);
-  if (s->rest)
+  app_tell_results(a, s->out);
+  if (s->rest && sim->shot[FRAMES - 1].count > 0)
     printf("pressure against rho g depth: RMS %.2f %% of that at the bed\n",
            100.0 * rest_error(sim));
   return true;
@@ -396,32 +400,32 @@ int main(int argc, char **argv) {
   settings *s = &sim.s;
   option table[] = {
       OPTION_HEADING("Water"),
-      OPTION_NUMBER("base", "m", OPTION_POSITIVE, &s->base, "width a of the column, whole cells"),
+      OPTION_NUMBER("base", "m", OPTION_LENGTH, &s->base, "width a of the column, whole cells"),
       OPTION_INTEGER("n2", "1", OPTION_FROM_TO(1.0, 2.0), &s->n2, "n^2: the height over a"),
       OPTION_NUMBER("tank", "bases", OPTION_FROM_TO(1.5, 1000.0), &s->tank, "to the far wall"),
-      OPTION_NUMBER("viscosity", "Pa s", OPTION_NOT_NEGATIVE, &s->viscosity, "of the water"),
-      OPTION_NUMBER("sound-speed", "m/s", OPTION_POSITIVE, &s->sound,
+      OPTION_NUMBER("viscosity", "Pa s", OPTION_FROM_TO(0.0, 1e6), &s->viscosity, "of the water"),
+      OPTION_NUMBER("sound-speed", "m/s", OPTION_SPEED, &s->sound,
                     "c, K = rho c^2 (default 10 sqrt(2 g n^2 a))"),
       OPTION_CHOICE("state", "linear|tait", &s->state, "pressure from density"),
       OPTION_CHOICE("tension", "none|full", &s->tension, "negative pressure"),
       OPTION_CHOICE("bed", "slip|fixed", &s->bed, "bed of the tank"),
       OPTION_FLAG("rest", &s->rest, "keep the gate: water at rest"),
       OPTION_HEADING("Grid"),
-      OPTION_NUMBER("h", "m", OPTION_POSITIVE, &s->h, "grid spacing (default base/40)"),
+      OPTION_NUMBER("h", "m", OPTION_LENGTH, &s->h, "grid spacing (default base/40)"),
       OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
       OPTION_CHOICE("spline", "2|3", &s->spline, "degree of the weights"),
       OPTION_CHOICE("transfer", "shape|weight", &s->transfer, "particles to nodes"),
       OPTION_CHOICE("volumetric", "point|cell", &s->volumetric, "change of volume: F-bar by cell"),
       OPTION_HEADING("Run"),
-      OPTION_NUMBER("duration", "s", OPTION_POSITIVE, &s->duration, "of the run (default T = 6)"),
+      OPTION_NUMBER("duration", "s", OPTION_DURATION, &s->duration, "of the run (default T = 6)"),
       OPTION_OUT(&s->out),
       OPTION_THREADS(&s->threads),
       {0}};
-  const options_program program = {
-      "mps-dam-break",
-      "A column of water collapses on a dry bed (WLS-MPM, weakly compressible): Nakamura, Figure 2,\n"
-      "against the experiments of Martin and Moyce (1952).",
-      table};
+  const options_program program = {"mps-dam-break",
+                                   "A column of water collapses on a dry bed (WLS-MPM, weakly "
+                                   "compressible): Nakamura, Figure 2,\n"
+                                   "against the experiments of Martin and Moyce (1952).",
+                                   table};
   int code = options_parse(&program, argc, argv);
   if (code < 0) code = complete(&program, s);
   if (code >= 0) return code;

@@ -31,14 +31,14 @@ int main(int argc, char **argv) {
   pile_settings *s = &p.s;
   option table[] = {
       OPTION_HEADING("Pile"),
-      OPTION_NUMBER("inner-diameter", "m", OPTION_POSITIVE, &s->inner_diameter, "of the pile"),
-      OPTION_NUMBER("wall", "m", OPTION_POSITIVE, &s->wall,
+      OPTION_NUMBER("inner-diameter", "m", OPTION_LENGTH, &s->inner_diameter, "of the pile"),
+      OPTION_NUMBER("wall", "m", OPTION_LENGTH, &s->wall,
                     "thickness of the pile, at least 2 cells of --h"),
       OPTION_NUMBER("friction", "1", OPTION_FROM_TO(0.0, 10.0), &s->friction,
                     "mu of its surface, tan(delta)"),
-      OPTION_NUMBER("depth", "m", OPTION_POSITIVE, &s->depth, "of the tip, where the run ends"),
-      OPTION_NUMBER("speed", "m/s", OPTION_ABOVE_TO(0.0, 10.0), &s->speed, "of the pile"),
-      OPTION_NUMBER("k", "kN/m", OPTION_POSITIVE, &s->k,
+      OPTION_NUMBER("depth", "m", OPTION_LENGTH, &s->depth, "of the tip, where the run ends"),
+      OPTION_NUMBER("speed", "m/s", OPTION_FROM_TO(1e-6, 10.0), &s->speed, "of the pile"),
+      OPTION_NUMBER("k", "kN/m", OPTION_STIFFNESS, &s->k,
                     "contact stiffness of each particle per unit thickness, Nakamura (28); "
                     "4 (K + 4G/3) if not given"),
       OPTION_NUMBER("xi", "1", OPTION_FROM_TO(0.0, 0.99), &s->xi,
@@ -46,34 +46,34 @@ int main(int argc, char **argv) {
                     "there 0.6"),
       OPTION_HEADING("Soil"),
       OPTION_TEXT("soil", "WxH", &s->soil, "radius and height of the soil in m, whole cells"),
-      OPTION_NUMBER("density", "kg/m3", OPTION_POSITIVE, &s->density, "of the soil"),
-      OPTION_NUMBER("young", "kPa", OPTION_POSITIVE, &s->young, "Young's modulus E"),
+      OPTION_NUMBER("density", "kg/m3", OPTION_DENSITY, &s->density, "of the soil"),
+      OPTION_NUMBER("young", "kPa", OPTION_MODULUS, &s->young, "Young's modulus E"),
       OPTION_NUMBER("poisson", "1", OPTION_FROM_TO(0.0, 0.49), &s->poisson, "Poisson's ratio nu"),
-      OPTION_NUMBER("phi", "degrees", OPTION_ABOVE_TO(0.0, 60.0), &s->phi, "angle of friction"),
+      OPTION_NUMBER("phi", "degrees", OPTION_FROM_TO(0.1, 60.0), &s->phi, "angle of friction"),
       OPTION_NUMBER("psi", "degrees", OPTION_FROM_TO(0.0, 60.0), &s->psi, "angle of dilation"),
-      OPTION_NUMBER("cohesion", "kPa", OPTION_NOT_NEGATIVE, &s->cohesion, "c"),
+      OPTION_NUMBER("cohesion", "kPa", OPTION_STRENGTH, &s->cohesion, "c"),
       OPTION_CHOICE("cone", "inscribed|circumscribed|planestrain", &s->cone,
                     "how the cone of Drucker and Prager meets phi; inscribed: Nakamura (56)"),
-      OPTION_NUMBER("k0", "1", OPTION_ABOVE_TO(0.0, 5.0), &s->k0,
+      OPTION_NUMBER("k0", "1", OPTION_FROM_TO(1e-3, 5.0), &s->k0,
                     "horizontal over vertical stress at the start; nu/(1 - nu) if not given"),
       OPTION_HEADING("Grid"),
-      OPTION_NUMBER("h", "m", OPTION_POSITIVE, &s->h, "grid spacing"),
+      OPTION_NUMBER("h", "m", OPTION_LENGTH, &s->h, "grid spacing"),
       OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
-      OPTION_NUMBER("courant", "1", OPTION_ABOVE_TO(0.0, 1.0), &s->courant,
+      OPTION_NUMBER("courant", "1", OPTION_FROM_TO(1e-3, 1.0), &s->courant,
                     "step over its limit, Nakamura (49)"),
       OPTION_HEADING("Run"),
-      OPTION_NUMBER("rest", "s", OPTION_NOT_NEGATIVE, &s->rest,
+      OPTION_NUMBER("rest", "s", OPTION_FROM_TO(0.0, 1e6), &s->rest,
                     "time before the pile moves, to see whether the soil rests"),
       OPTION_INTEGER("frames", "N", OPTION_FROM_TO(1.0, 1000.0), &s->frames,
                      "depths at which the soil is written; pictures show up to 4 of them"),
       OPTION_TEXT("checkpoint", "FILE", &s->checkpoint,
-                  "written on the way and at Ctrl-C, to go on from"),
-      OPTION_NUMBER("every-checkpoint", "m", OPTION_POSITIVE, &s->every_checkpoint,
+                  "written at the start, on the way and at Ctrl-C, to go on from"),
+      OPTION_NUMBER("every-checkpoint", "m", OPTION_LENGTH, &s->every_checkpoint,
                     "path of the pile between checkpoints"),
       OPTION_TEXT(
           "restart", "FILE", &s->restart,
-          "go on from a checkpoint made with the same options (--out, --threads and those of "
-          "checkpoints may differ); the results are those of the whole run, the frames for "
+          "go on from a checkpoint made with the same options (but --out, --threads and those of "
+          "checkpoints); the results are those of the whole run, the frames for "
           "ParaView those from here on, in pile-from-N.vtkhdf"),
       OPTION_OUT(&s->out),
       OPTION_THREADS(&s->threads),
@@ -93,6 +93,7 @@ int main(int argc, char **argv) {
   const char *reason = pile_check(s);
   if (reason) return options_refuse(&program, reason);
   static const mpm_model_parts parts = {pile_build, pile_drive, pile_finish};
+  p.table = table;
   const int result = mpm_model_run(&program, s->threads, s->out, &p.m, &parts, &p);
   pile_free(&p);
   return result;

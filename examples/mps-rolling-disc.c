@@ -179,6 +179,7 @@ static mps_status sample(const settings *s, simulation *sim) {
                                                   : look_at_body(sim, x, v, &omega);
   if (status != MPS_OK) return status;
   motion *row = &sim->row[sim->rows++];
+  sim->m.samples = sim->rows;
   *row = (motion){.t = mps_mpm_time(sim->m.mpm), .omega = omega};
   for (int c = 0; c < 2; c++) {
     row->x += x[c] * sim->along[c];
@@ -203,7 +204,7 @@ static mps_status march(void *user) {
 static bool write_motion(app *a, const settings *s, const simulation *sim) {
   output f;
   if (!output_open(&f, a, s->out, "motion.csv")) return false;
-  output_text(&f, "t_s,x_m,x_theory_m,v_m_s,omega_rad_s\n");
+  csv_header(&f, "t_s,x_m,x_theory_m,v_m_s,omega_rad_s");
   for (int k = 0; k < sim->rows; k++) {
     const motion *m = &sim->row[k];
     const double row[] = {m->t, m->x - sim->row[0].x, theory(s, m->t), m->v, m->omega};
@@ -247,7 +248,7 @@ static bool finish(app *a, void *user) {
   json_number(&f, "omega_ratio", ratio);
   json_end(&f);
   if (!output_close(&f) || !draw(a, s)) return false;
-  printf("Results: %s/ (motion.csv, summary.json, motion.png)\n", s->out);
+  app_tell_results(a, s->out);
   printf("path %.5f m after %g s (theory %.5f, %+.2f %%), omega R/v %.3f\n", x, end->t, exact,
          100.0 * error, ratio);
   return true;
@@ -270,17 +271,17 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("angle", "degrees", OPTION_FROM_TO(1.0, 60.0), &s->angle, "of the slope"),
       OPTION_NUMBER("mu", "1", OPTION_FROM_TO(0.0, 10.0), &s->mu,
                     "friction; the disc rolls where tan(angle) <= 3 mu"),
-      OPTION_NUMBER("k", "kN/m", OPTION_POSITIVE, &s->k,
+      OPTION_NUMBER("k", "kN/m", OPTION_STIFFNESS, &s->k,
                     "contact stiffness per unit thickness of each particle, Nakamura (28)"),
-      OPTION_NUMBER("young", "kPa", OPTION_POSITIVE, &s->young, "Young's modulus E"),
+      OPTION_NUMBER("young", "kPa", OPTION_MODULUS, &s->young, "Young's modulus E"),
       OPTION_NUMBER("poisson", "1", OPTION_FROM_TO(0.0, 0.49), &s->poisson, "Poisson's ratio"),
       OPTION_HEADING("Grid"),
-      OPTION_NUMBER("h", "m", OPTION_ABOVE_TO(0.0, 0.05), &s->h,
+      OPTION_NUMBER("h", "m", OPTION_FROM_TO(1e-4, 0.05), &s->h,
                     "grid spacing; the radius R is 0.05 m"),
       OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
       OPTION_CHOICE("fill", "lattice|rings", &s->fill, "how particles fill an elastic disc"),
       OPTION_HEADING("Run"),
-      OPTION_NUMBER("duration", "s", OPTION_ABOVE_TO(0.0, 0.55), &s->duration,
+      OPTION_NUMBER("duration", "s", OPTION_FROM_TO(1e-3, 0.55), &s->duration,
                     "length of the run; x_error_05 is that at its end"),
       OPTION_OUT(&s->out),
       OPTION_THREADS(&s->threads),

@@ -55,12 +55,12 @@ static int parse(settings *s, int argc, char **argv) {
                   "all cases: V 100 to 800 m/s, h 0.001 to 1, R 0.25 to 1.6 m, S and P waves"),
       OPTION_HEADING("One case"),
       OPTION_CHOICE("wave", "S|P", &s->wave, "shear or pressure wave"),
-      OPTION_NUMBER("radius", "m", OPTION_ABOVE_TO(0.0, 5.0), &s->radius, "particle radius R"),
-      OPTION_NUMBER("vs", "m/s", OPTION_POSITIVE, &vs,
+      OPTION_NUMBER("radius", "m", OPTION_FROM_TO(1e-3, 5.0), &s->radius, "particle radius R"),
+      OPTION_NUMBER("vs", "m/s", OPTION_SPEED, &vs,
                     "shear wave velocity Vs; default half of Vp, 100 if neither is given"),
-      OPTION_NUMBER("vp", "m/s", OPTION_POSITIVE, &vp,
+      OPTION_NUMBER("vp", "m/s", OPTION_SPEED, &vp,
                     "pressure wave velocity Vp, at least sqrt(2) Vs; default twice Vs"),
-      OPTION_NUMBER("velocity", "m/s", OPTION_POSITIVE, &s->velocity,
+      OPTION_NUMBER("velocity", "m/s", OPTION_SPEED, &s->velocity,
                     "instead: the velocity V of the wave as in the paper, S: Vs = V, P: Vp = V"),
       OPTION_NUMBER("damping", "1", OPTION_FROM_TO(0.0, 10.0), &s->damping,
                     "Rayleigh damping ratio h"),
@@ -68,16 +68,16 @@ static int parse(settings *s, int argc, char **argv) {
       OPTION_HEADING("Method"),
       OPTION_CHOICE("method", "linear|stepping|both", &m->kind,
                     "linear theory (fast), bisection by time stepping, or both"),
-      OPTION_NUMBER("criterion", "m/s2", OPTION_POSITIVE, &m->criterion,
+      OPTION_NUMBER("criterion", "m/s2", OPTION_FROM_TO(1e-6, 1e30), &m->criterion,
                     "a run is unstable when any acceleration exceeds it; the paper uses 2.2 and "
                     "1e15"),
       OPTION_NUMBER("accuracy", "1", OPTION_ABOVE_TO(1.0, 100.0), &m->accuracy,
                     "ratio of the bounds at which the bisection ends; the paper uses 1.01 with 2.2 "
                     "and 1.2 with 1e15"),
-      OPTION_NUMBER("duration", "s", OPTION_POSITIVE, &m->duration,
+      OPTION_NUMBER("duration", "s", OPTION_DURATION, &m->duration,
                     "length of each run; default 0.5 s and 1.1 travel times over 100 m"),
-      OPTION_NUMBER("f1", "Hz", OPTION_POSITIVE, &m->f1, "first frequency of the damping"),
-      OPTION_NUMBER("f2", "Hz", OPTION_POSITIVE, &m->f2,
+      OPTION_NUMBER("f1", "Hz", OPTION_FREQUENCY, &m->f1, "first frequency of the damping"),
+      OPTION_NUMBER("f2", "Hz", OPTION_FREQUENCY, &m->f2,
                     "second frequency of the damping; default 14, of the study 15: f1 + f2 = 16 "
                     "gives the paper's Table 2"),
       OPTION_CHOICE("rotation", "11|12", &s->rotation,
@@ -136,10 +136,10 @@ static bool write_case(app *a, const settings *s, const stability_case *x) {
   json_number(&f, "criterion", s->m.criterion);
   json_number(&f, "accuracy", s->m.accuracy);
   json_number(&f, "duration", method_duration(&s->m, x->velocity));
-  json_number(&f, "dt_linear", x->linear);
-  json_number(&f, "dt_stepping", x->stepping);
-  json_number(&f, "dt_stepping_unstable", x->unstable);
-  json_number(&f, "dt_table2", x->table2);
+  json_optional(&f, "dt_linear", x->linear);
+  json_optional(&f, "dt_stepping", x->stepping);
+  json_optional(&f, "dt_stepping_unstable", x->unstable);
+  json_optional(&f, "dt_table2", x->table2);
   json_integer(&f, "steps", x->steps);
   json_end(&f);
   return output_close(&f);
@@ -169,7 +169,7 @@ static int run_case(app *a, const settings *s) {
   case_find(&s->m, &x, draw_bisection, &b);
   progress_clear(&a->bar);
   if (x.status == MPS_ERROR_CANCELLED) {
-    app_error(a, "interrupted");
+    app_error(a, "interrupted: a single case has no partial result, nothing is written");
     return APP_INTERRUPTED;
   }
   if (x.status != MPS_OK) {
@@ -177,6 +177,7 @@ static int run_case(app *a, const settings *s) {
     return APP_FAILED;
   }
   if (!write_case(a, s, &x)) return APP_FAILED;
+  app_tell_results(a, s->out);
   printf("%c wave, R = %g m, Vs = %g m/s, Vp = %g m/s, h = %g, %lld particles\n", x.wave, x.radius,
          case_vs(&x), case_vp(&x), x.damping, (long long)x.particles);
   printf("critical dt:");
@@ -197,10 +198,18 @@ static int run_study(app *a, const settings *s) {
     app_no_memory(a);
     return APP_FAILED;
   }
-  const bool ok = study_run(a, &s->m, all) && study_fit(a, all) && study_write(a, all, s->out) &&
-                  study_draw(a, all, s->out) && study_summary(a, all, s->out);
+  int code = study_run(a, &s->m, all) ? APP_OK : APP_FAILED;
+  if (code == APP_OK && all->done < STUDY_CASES) {
+    app_error(a, "interrupted: limits.csv and integrators.csv have %lld of %d cases",
+              (long long)all->done, STUDY_CASES);
+    code = study_write_limits(a, all, s->out) ? APP_INTERRUPTED : APP_FAILED;
+  } else if (code == APP_OK) {
+    const bool ok = study_fit(a, all) && study_write(a, all, s->out) &&
+                    study_draw(a, all, s->out) && study_summary(a, all, s->out);
+    code = ok ? APP_OK : APP_FAILED;
+  }
   free(all);
-  return ok ? APP_OK : progress_interrupted() ? APP_INTERRUPTED : APP_FAILED;
+  return code;
 }
 
 int main(int argc, char **argv) {

@@ -86,14 +86,15 @@ static void watch_energy(const settings *s, simulation *sim) {
 
 /* The library says where and why it diverged; this adds what to do. */
 static void explain_divergence(app *a, const results *x) {
-  app_check(a, MPS_ERROR_DIVERGED);
+  const char *why = mps_context_error(a->context)->message;
   if (x->dt > x->dt_limit)
-    app_error(a, "try --dt %.2g or --courant 0.9", 0.9 * x->dt_limit);
+    app_error(a, "%s: try --dt %.2g or --courant 0.9", why, 0.9 * x->dt_limit);
   else
-    app_error(a,
-              "dt is below the linear limit %.4g s: look for very strong motion in the input, or "
-              "try --courant 0.5",
-              x->dt_limit);
+    app_error(
+        a,
+        "%s: dt is below the linear limit %.4g s, look for very strong motion in the input, or "
+        "try --courant 0.5",
+        why, x->dt_limit);
 }
 
 static mps_status record(void *user, mps_dynamics *dynamics) {
@@ -132,9 +133,7 @@ static int march(app *a, const settings *s, simulation *sim, results *x) {
   }
   if (status == MPS_ERROR_CANCELLED) {
     x->end = OUTCOME_INTERRUPTED;
-    app_error(a, "interrupted at t = %.4g s: the results end there",
-              mps_dynamics_time(sim->dynamics));
-    return APP_INTERRUPTED;
+    return app_end_run(a, status, mps_dynamics_time(sim->dynamics), sim->record.rows > 1);
   }
   return app_check(a, status) ? APP_OK : APP_FAILED;
 }
@@ -147,7 +146,7 @@ static bool finish(app *a, const settings *s, simulation *sim, results *x) {
   if (x->end != OUTCOME_DIVERGED &&
       (!results_draw(a, s, &sim->ground, &sim->record, x) || !field_write(a, s, &sim->peaks)))
     return false;
-  results_print(s, x);
+  results_print(a, s, x);
   return true;
 }
 

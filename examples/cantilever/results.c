@@ -12,7 +12,7 @@
 static bool write_deflection(const model *m, const char *directory) {
   output f;
   if (!output_open(&f, m->a, directory, "deflection.csv")) return false;
-  output_text(&f, "x_m,y_m,v_m,v_reference_m,error_percent\n");
+  csv_header(&f, "x_m,y_m,v_m,v_reference_m,error_percent?");
   for (int64_t i = 0; i < m->nx; i++) {
     elastic_point p;
     double u[2];
@@ -29,8 +29,8 @@ static bool write_stress(const model *m, const char *directory, const char *name
                          int64_t i1, int64_t j0, int64_t j1) {
   output f;
   if (!output_open(&f, m->a, directory, name)) return false;
-  output_text(&f, "x_m,y_m,xx_Pa,xx_exact_Pa,yy_Pa,yy_exact_Pa,xy_Pa,xy_exact_Pa,von_mises_Pa,u_m,"
-                  "v_m\n");
+  csv_header(&f, "x_m,y_m,xx_Pa,xx_exact_Pa,yy_Pa,yy_exact_Pa,xy_Pa,xy_exact_Pa,von_mises_Pa,u_m,"
+                 "v_m");
   for (int64_t i = i0; i <= i1; i++)
     for (int64_t j = j0; j <= j1; j++) {
       elastic_point p;

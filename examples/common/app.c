@@ -15,7 +15,7 @@ static void print_warning(void *user, mps_log_level level, const char *message) 
 }
 
 bool app_start(app *a, const char *program, int64_t threads) {
-  *a = (app){.program = program};
+  *a = (app){.program = program, .outcome = "complete"};
   progress_start(&a->bar);
   mps_context_def def = mps_context_defaults();
   def.threads = (int32_t)threads;
@@ -33,6 +33,10 @@ bool app_start(app *a, const char *program, int64_t threads) {
 int app_finish(app *a, int code) {
   progress_clear(&a->bar);
   mps_context_destroy(&a->context);
+  if (code == APP_OK && progress_interrupted()) {
+    app_error(a, "interrupted: the results were complete");
+    code = APP_INTERRUPTED;
+  }
   const bool bad = ferror(stdout) != 0;
   if ((fclose(stdout) != 0 || bad) && code == APP_OK) {
     app_error(a, "standard output: %s", errno ? strerror(errno) : "write error");
@@ -59,4 +63,50 @@ bool app_check(app *a, mps_status status) {
   const mps_error *error = mps_context_error(a->context);
   if (!error || error->status != status) return app_error(a, "%s", mps_status_text(status));
   return app_error(a, "%s", error->message);
+}
+
+int app_end_run(app *a, mps_status status, double time, bool any) {
+  a->outcome = status == MPS_OK                ? "complete"
+               : status == MPS_ERROR_CANCELLED ? "interrupted"
+                                               : "failed";
+  if (status != MPS_ERROR_CANCELLED) return app_check(a, status) ? APP_OK : APP_FAILED;
+  app_error(a, "interrupted at t = %.4g s: %s", time,
+            any ? "the results end there" : "there are no results yet, nothing is written");
+  return APP_INTERRUPTED;
+}
+
+void app_leave_at_once(const app *a, bool on) {
+  char line[PROGRESS_LAST_LINE];
+  if (a->results[0])
+    snprintf(line, sizeof line, "%s: interrupted, written so far: %s", a->program, a->results);
+  else
+    snprintf(line, sizeof line, "%s: interrupted, nothing is written", a->program);
+  progress_leave_at_once(on ? line : NULL);
+}
+
+/* ---- what was written ------------------------------------------------------------------------ */
+
+static bool ends_with(const char *name, const char *end) {
+  const size_t n = strlen(name), m = strlen(end);
+  return n >= m && strcmp(name + n - m, end) == 0;
+}
+
+/* The name is a whole item of the list "a, b, c". */
+static bool is_listed(const char *list, const char *name) {
+  const size_t n = strlen(name);
+  for (const char *at = strstr(list, name); at; at = strstr(at + 1, name))
+    if ((at == list || at[-1] == ' ') && (at[n] == ',' || at[n] == '\0')) return true;
+  return false;
+}
+
+void app_wrote(app *a, const char *path) {
+  const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+  const size_t used = strlen(a->results);
+  if (ends_with(name, ".gp") || is_listed(a->results, name)) return;
+  if (used + strlen(name) + 3 > sizeof a->results) return;
+  snprintf(a->results + used, sizeof a->results - used, "%s%s", used ? ", " : "", name);
+}
+
+void app_tell_results(const app *a, const char *directory) {
+  printf("Results: %s/ (%s)\n", directory, a->results);
 }

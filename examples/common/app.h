@@ -24,14 +24,17 @@ typedef struct app {
   const char *program; /* "mps-wave" */
   mps_context *context;
   progress bar;
-  bool no_gnuplot; /* the note about it has been printed */
+  bool no_gnuplot;     /* the note about it has been printed */
+  const char *outcome; /* of the run: "complete", "interrupted" or "failed" */
+  char results[1024];  /* names of the files written, for app_tell_results */
 } app;
 
 /* Creates the context on `threads` threads (0: all processors), its warnings and progress going to
  * stderr and Ctrl-C to its cancel hook. False, with an error line, when that fails. */
 bool app_start(app *a, const char *program, int64_t threads);
-/* Destroys the context and closes stdout. Returns `code`, or APP_FAILED when it was APP_OK but
- * what was printed could not be written. */
+/* Destroys the context and closes stdout. Returns `code`; where it was APP_OK, APP_FAILED when what
+ * was printed could not be written, and APP_INTERRUPTED, with a line that says so, when Ctrl-C came
+ * too late to stop anything. */
 int app_finish(app *a, int code);
 
 /* One line "program: ..." to stderr. Returns false, for `return app_error(...)`. */
@@ -40,5 +43,20 @@ bool app_error(app *a, const char *format, ...) APP_PRINTF(2, 3);
 bool app_no_memory(app *a);
 /* True for MPS_OK; otherwise prints the record of the context. */
 bool app_check(app *a, mps_status status);
+
+/* Tells how a run ended that got to `time` (s), and sets `outcome`. Prints nothing for MPS_OK; else
+ * one line, which for Ctrl-C (MPS_ERROR_CANCELLED) says whether there are results to write (`any`).
+ * Returns the exit code. */
+int app_end_run(app *a, mps_status status, double time, bool any);
+
+/* Around a computation that nothing can stop, such as the factorisation of a matrix: while `on`,
+ * Ctrl-C ends the program at once, with a line that tells the files written so far and exit code
+ * 130. None may be open. */
+void app_leave_at_once(const app *a, bool on);
+
+/* Notes a result file that is complete. */
+void app_wrote(app *a, const char *path);
+/* "Results: DIR/ (files)" on stdout: those that were written. */
+void app_tell_results(const app *a, const char *directory);
 
 #endif

@@ -17,5 +17,7 @@ bool frame_write(app *a, mps_particles *particles, const char *directory, const 
   if (status == MPS_ERROR_UNSUPPORTED) return true;
   if (status == MPS_OK) status = mps_recorder_write(recorder, 0.0);
   const mps_status closed = mps_recorder_close(&recorder);
-  return app_check(a, status == MPS_OK ? closed : status);
+  if (!app_check(a, status == MPS_OK ? closed : status)) return false;
+  app_wrote(a, path);
+  return true;
 }

@@ -94,7 +94,9 @@ bool mpm_snapshots_write(app *a, const char *directory, const char *name, const 
                          int count, const mpm_snapshot *shots) {
   output f;
   if (!output_open(&f, a, directory, name)) return false;
-  output_text(&f, "frame,t_s,x_m,y_m,%s\n", value);
+  char columns[80];
+  snprintf(columns, sizeof columns, "frame,t_s,x_m,y_m,%s", value);
+  csv_header(&f, columns);
   for (int s = 0; s < count; s++)
     for (int64_t k = 0; k < shots[s].count; k++) {
       const double *r = shots[s].row + 3 * k, row[] = {s, shots[s].time, r[0], r[1], r[2]};

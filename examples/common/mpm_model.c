@@ -9,25 +9,38 @@ void mpm_model_destroy(mpm_model *model) {
   mps_particles_destroy(&model->particles);
 }
 
+/* Prints the one line on how the run ended; returns the exit code. */
+static int end_run(app *a, mps_status status, const mpm_model *model, bool any) {
+  if (status == MPS_OK || status == MPS_ERROR_CANCELLED || !model->why[0])
+    return app_end_run(a, status, model->mpm ? mps_mpm_time(model->mpm) : 0.0, any);
+  a->outcome = "failed";
+  app_error(a, "%s", model->why);
+  return APP_FAILED;
+}
+
+/* Results are written of every run that has some, also of one that Ctrl-C or an error ended: the
+ * samples are those of complete steps. */
 static int build_and_march(app *a, const char *out, mpm_model *model, const mpm_model_parts *parts,
                            void *user) {
-  if (!output_directory(a, out) || !app_check(a, parts->build(a->context, user))) return APP_FAILED;
+  if (!output_directory(a, out)) return APP_FAILED;
+  const mps_status built = parts->build(a->context, user);
+  if (built != MPS_OK) return end_run(a, built, model, false);
   printf("%lld particles, dt %.4g s\n", (long long)mps_particles_count(model->particles),
          mps_mpm_dt(model->mpm));
   fflush(stdout);
   const mps_status status = parts->march(user);
-  if (status == MPS_ERROR_CANCELLED) {
-    app_error(a, "interrupted at t = %.4g s: %s", mps_mpm_time(model->mpm),
-              model->keeps ? "what there is gets written" : "nothing is written");
-    return !model->keeps || parts->finish(a, user) ? APP_INTERRUPTED : APP_FAILED;
-  }
-  return app_check(a, status) && parts->finish(a, user) ? APP_OK : APP_FAILED;
+  const bool any = model->samples >= MPM_MODEL_SAMPLES;
+  const int code = end_run(a, status, model, any);
+  if (code != APP_OK && !any) return code;
+  if (!parts->finish(a, user)) return APP_FAILED;
+  return code == APP_OK && model->failed ? APP_FAILED : code;
 }
 
 int mpm_model_run(const options_program *program, int64_t threads, const char *out,
                   mpm_model *model, const mpm_model_parts *parts, void *user) {
   app a;
   if (!app_start(&a, program->name, threads)) return app_finish(&a, APP_FAILED);
+  model->a = &a;
   const int code = build_and_march(&a, out, model, parts, user);
   mpm_model_destroy(model);
   return app_finish(&a, code);
@@ -38,6 +51,7 @@ bool mpm_model_summary(app *a, const mpm_model *model, const char *directory, ou
   json_begin(file);
   json_text(file, "program", a->program);
   json_text(file, "version", mps_version());
+  json_text(file, "outcome", a->outcome);
   json_integer(file, "particles", mps_particles_count(model->particles));
   json_integer(file, "steps", mps_mpm_steps(model->mpm));
   return true;

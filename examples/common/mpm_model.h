@@ -9,14 +9,17 @@
 
 #include <mps/mpm.h>
 
-enum { MPM_MODEL_BODIES = 8 };
+enum { MPM_MODEL_BODIES = 8, MPM_MODEL_SAMPLES = 3 };
 
 typedef struct mpm_model {
   mps_particles *particles;
   mps_material *material;
   mps_mpm *mpm;
   mps_body *body[MPM_MODEL_BODIES]; /* NULL where there is none */
-  bool keeps; /* `build` sets it where an interrupted run is worth finishing as far as it came */
+  int64_t samples;                  /* rows of results so far, which `march` counts */
+  bool failed;   /* `march` sets it where something is missing that was asked for: exit code 1 */
+  char why[400]; /* reason of an error of `build` or `march` that the library does not know; "" */
+  app *a;        /* of the run */
 } mpm_model;
 
 /* The parts of a run; `user` is that of mpm_model_run. */
@@ -27,7 +30,8 @@ typedef struct mpm_model_parts {
 } mpm_model_parts;
 
 /* Starts the library, makes the directory `out`, builds, marches, finishes, and destroys the model.
- * Returns the exit code. */
+ * `finish` is also called for a run that ended early, by Ctrl-C or an error, with at least
+ * MPM_MODEL_SAMPLES samples. Returns the exit code. */
 int mpm_model_run(const options_program *program, int64_t threads, const char *out,
                   mpm_model *model, const mpm_model_parts *parts, void *user);
 

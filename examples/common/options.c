@@ -61,14 +61,22 @@ static void print_wrapped(const char *text, int at) {
   putchar('\n');
 }
 
-static void describe_range(const option *o, char *out, size_t size) {
-  const option_range r = o->range;
-  if (r.lower == 0.0 && r.upper == 0.0)
-    snprintf(out, size, "finite");
-  else if (r.upper >= 1e300)
-    snprintf(out, size, "%s %g", r.open ? ">" : ">=", r.lower);
+/* 1e6 instead of 1e+06. */
+static void describe_bound(double value, char out[24]) {
+  char text[24];
+  snprintf(text, sizeof text, "%g", value);
+  const int mantissa = (int)strcspn(text, "e");
+  if (text[mantissa])
+    snprintf(out, 24, "%.*se%d", mantissa, text, atoi(text + mantissa + 1));
   else
-    snprintf(out, size, "in %c%g, %g]", r.open ? '(' : '[', r.lower, r.upper);
+    snprintf(out, 24, "%s", text);
+}
+
+static void describe_range(const option *o, char *out, size_t size) {
+  char lower[24], upper[24];
+  describe_bound(o->range.lower, lower);
+  describe_bound(o->range.upper, upper);
+  snprintf(out, size, "in %c%s, %s]", o->range.open ? '(' : '[', lower, upper);
 }
 
 /* The index-th word of a choice "S|P". */
@@ -148,16 +156,19 @@ static int distance(const char *a, const char *b) {
   return row[n];
 }
 
+/* How far an option may be from what was typed to be worth a question: a third of its letters. */
+static int farthest(const char *name) { return (int)strlen(name) / 3; }
+
 static int refuse_unknown(const options_program *program, const char *name) {
   const char *nearest = NULL;
-  int least = 4; /* farther names are no help */
+  int least = MAX_NAME;
   for (const option *o = program->table; o->name || o->help; o++) {
     if (!o->name) continue;
-    const int d = distance(name, o->name);
-    if (d < least) {
-      least = d;
-      nearest = o->name;
-    }
+    const bool begins = strlen(name) > 1 && strncmp(name, o->name, strlen(name)) == 0;
+    const int d = begins ? 0 : distance(name, o->name);
+    if (d > farthest(o->name) || d >= least) continue;
+    least = d;
+    nearest = o->name;
   }
   if (nearest)
     fprintf(stderr, "%s: unknown option --%s, did you mean --%s?\n", program->name, name, nearest);
@@ -177,7 +188,6 @@ static int refuse_value(const options_program *program, const option *o, const c
 }
 
 static bool in_range(const option_range *r, double value) {
-  if (r->lower == 0.0 && r->upper == 0.0) return true;
   return (r->open ? value > r->lower : value >= r->lower) && value <= r->upper;
 }
 
@@ -188,9 +198,7 @@ static int read_numbers(const options_program *program, const option *o, const c
   if (count > 1)
     snprintf(allowed, sizeof allowed, "%d numbers separated by commas, each %s", count, range);
   else
-    snprintf(allowed, sizeof allowed, "%s%s",
-             strcmp(range, "finite") == 0 ? "a finite number" : range,
-             o->integer ? " and an integer" : "");
+    snprintf(allowed, sizeof allowed, "%s%s", range, o->integer ? " and an integer" : "");
   const char *rest = value;
   for (int i = 0; i < count; i++) {
     const size_t length = i + 1 < count ? strcspn(rest, ",") : strlen(rest);
@@ -296,4 +304,72 @@ bool options_given(const option *table, const char *name) {
 int options_refuse(const options_program *program, const char *reason) {
   fprintf(stderr, "%s: %s\n", program->name, reason);
   return USAGE;
+}
+
+/* ---- options kept with a checkpoint ---------------------------------------------------------- */
+
+static bool is_one_of(const char *name, const char *const *list) {
+  for (; list && *list; list++)
+    if (strcmp(name, *list) == 0) return true;
+  return false;
+}
+
+/* The value as it would be typed; "not given" where there is none. */
+static void describe_value(const option *o, char *out, size_t size) {
+  size_t used = 0;
+  out[0] = '\0';
+  if (o->flag) snprintf(out, size, "%s", *o->flag ? "given" : "not given");
+  if (o->integer) snprintf(out, size, "%lld", (long long)*o->integer);
+  if (o->text) snprintf(out, size, "%s", *o->text ? *o->text : "not given");
+  if (o->choice) {
+    int length;
+    const char *word = choice_word(o->unit, *o->choice, &length);
+    snprintf(out, size, "%.*s", length, word);
+  }
+  for (int i = 0; o->number && i < (o->count > 1 ? o->count : 1) && used < size; i++) {
+    char text[32] = "not given";
+    for (int digits = 6; digits <= 17 && !isnan(o->number[i]); digits++) {
+      snprintf(text, sizeof text, "%.*g", digits, o->number[i]);
+      if (strtod(text, NULL) == o->number[i]) break;
+    }
+    used += (size_t)snprintf(out + used, size - used, "%s%s", i ? "," : "", text);
+  }
+}
+
+bool options_record(const option *table, const char *const *except, char *text, size_t size) {
+  size_t used = 0;
+  for (const option *o = table; o->name || o->help; o++) {
+    char value[256];
+    if (!o->name || is_one_of(o->name, except)) continue;
+    describe_value(o, value, sizeof value);
+    used += (size_t)snprintf(text + used, size - used, "%s=%s\n", o->name, value);
+    if (used >= size) return false;
+  }
+  return true;
+}
+
+/* The value that a record has of an option; false where it has none. */
+static bool recorded(const char *record, const char *name, char *out, size_t size) {
+  const size_t length = strlen(name);
+  for (const char *line = record; *line;
+       line += strcspn(line, "\n") + (strchr(line, '\n') != NULL)) {
+    if (strncmp(line, name, length) != 0 || line[length] != '=') continue;
+    const char *value = line + length + 1;
+    snprintf(out, size, "%.*s", (int)strcspn(value, "\n"), value);
+    return true;
+  }
+  return false;
+}
+
+bool options_agree(const option *table, const char *const *except, const char *record, char *why,
+                   size_t size) {
+  for (const option *o = table; o->name || o->help; o++) {
+    char now[256], then[256] = "unknown";
+    if (!o->name || is_one_of(o->name, except)) continue;
+    describe_value(o, now, sizeof now);
+    if (recorded(record, o->name, then, sizeof then) && strcmp(now, then) == 0) continue;
+    snprintf(why, size, "--%s is %s, was %s", o->name, now, then);
+    return false;
+  }
+  return true;
 }

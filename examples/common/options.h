@@ -3,7 +3,7 @@
  * A program lists its options with variables that hold the defaults:
  *   option table[] = {
  *     OPTION_HEADING("Ground"),
- *     OPTION_NUMBER("radius", "m", OPTION_POSITIVE, &radius, "particle radius R"),
+ *     OPTION_NUMBER("radius", "m", OPTION_LENGTH, &radius, "particle radius R"),
  *     {0}};
  * --name VALUE and --name=VALUE both work. Numbers are read strictly, and always with a point.
  * SPDX-License-Identifier: BSD-3-Clause */
@@ -11,19 +11,36 @@
 #define EXAMPLES_OPTIONS_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 typedef struct option_range {
-  double lower, upper; /* both 0: any finite number */
-  bool open;           /* `lower` itself is not allowed */
+  double lower, upper;
+  bool open; /* `lower` itself is not allowed */
 } option_range;
 
-#define OPTION_ANY                                                                                 \
-  { 0.0, 0.0, false }
-#define OPTION_POSITIVE                                                                            \
-  { 0.0, 1e300, true }
-#define OPTION_NOT_NEGATIVE                                                                        \
-  { 0.0, 1e300, false }
+/* Of physical quantities: wide enough for any model of soil, structures or water, and narrow enough
+ * that no computation with them overflows. */
+#define OPTION_LENGTH                                                                              \
+  { 1e-6, 1e6, false } /* m */
+#define OPTION_DURATION                                                                            \
+  { 1e-9, 1e6, false } /* s */
+#define OPTION_SPEED                                                                               \
+  { 1e-6, 1e5, false } /* m/s */
+#define OPTION_FREQUENCY                                                                           \
+  { 1e-4, 1e6, false } /* Hz */
+#define OPTION_ACCELERATION                                                                        \
+  { -1e5, 1e5, false } /* m/s2 */
+#define OPTION_GRAVITY                                                                             \
+  { 0.0, 1e4, false } /* m/s2 */
+#define OPTION_DENSITY                                                                             \
+  { 1e-3, 1e5, false } /* kg/m3 */
+#define OPTION_MODULUS                                                                             \
+  { 1e-3, 1e10, false } /* kPa: 1 Pa to 10 TPa */
+#define OPTION_STRENGTH                                                                            \
+  { 0.0, 1e8, false } /* kPa */
+#define OPTION_STIFFNESS                                                                           \
+  { 1e-6, 1e13, false } /* kN/m */
 #define OPTION_FROM_TO(lower, upper)                                                               \
   { (lower), (upper), false }
 #define OPTION_ABOVE_TO(lower, upper)                                                              \
@@ -73,6 +90,14 @@ typedef struct options_program {
 int options_parse(const options_program *program, int argc, char **argv);
 /* True when the option was on the command line. */
 bool options_given(const option *table, const char *name);
+/* "name=value" lines of all options but those of `except` (ends with NULL; NULL: none), to be kept
+ * with a checkpoint. False when `size` is too small. */
+bool options_record(const option *table, const char *const *except, char *text, size_t size);
+/* Compares with such lines. False, and in `why` the first option that differs: "--rest is 0.2 s,
+ * was 0.3". */
+bool options_agree(const option *table, const char *const *except, const char *record, char *why,
+                   size_t size);
+
 /* One error line about a combination of options, as the parser's own. Returns 2. */
 int options_refuse(const options_program *program, const char *reason);
 

@@ -49,6 +49,7 @@ static char *join(const char *directory, const char *name, const char *suffix) {
 static void forget(output *file) {
   free(file->path);
   free(file->temporary);
+  free(file->columns);
   *file = (output){0};
 }
 
@@ -73,10 +74,18 @@ bool output_close(output *file) {
   if (!file->stream) return false;
   if (fflush(file->stream) != 0 && !file->error) file->error = errno;
   if (fclose(file->stream) != 0 && !file->error) file->error = errno;
-  if (!file->error && rename(file->temporary, file->path) != 0) file->error = errno;
-  const bool ok = file->error == 0;
-  if (!ok) {
-    app_error(file->a, "cannot write %s: %s", file->path, strerror(file->error));
+  bool ok = file->error == 0 && !file->bad[0];
+  if (ok && rename(file->temporary, file->path) != 0) {
+    file->error = errno;
+    ok = false;
+  }
+  if (ok) {
+    app_wrote(file->a, file->path);
+  } else {
+    if (file->error)
+      app_error(file->a, "cannot write %s: %s", file->path, strerror(file->error));
+    else
+      app_error(file->a, "%s is not written: %s, not a finite number", file->path, file->bad);
     unlink(file->temporary);
   }
   forget(file);
@@ -101,12 +110,54 @@ const char *output_number(char text[32], double value) {
   return text;
 }
 
-void csv_row(output *file, int64_t count, const double *values) {
+void csv_header(output *file, const char *columns) {
+  free(file->columns);
+  file->columns = strdup(columns);
+  if (!file->columns && !file->error) file->error = ENOMEM;
+  for (const char *c = columns; *c; c++)
+    if (*c != '?') output_text(file, "%c", *c);
+  output_text(file, "\n");
+}
+
+/* The name of column `k`, without its question mark; true where it may be NaN. */
+static bool find_column(const output *file, int64_t k, char name[64]) {
+  const char *at = file->columns ? file->columns : "";
+  for (int64_t i = 0; i < k && *at; i++) at += strcspn(at, ",") + (strchr(at, ',') != NULL);
+  size_t length = strcspn(at, ",");
+  const bool optional = length > 0 && at[length - 1] == '?';
+  if (optional) length--;
+  if (length > 0)
+    snprintf(name, 64, "%.*s", (int)(length < 63 ? length : 63), at);
+  else
+    snprintf(name, 64, "column %lld", (long long)k + 1);
+  return optional;
+}
+
+/* `first`: the column of values[0]. */
+static void write_row(output *file, int64_t first, int64_t count, const double *values) {
+  file->rows++;
   for (int64_t i = 0; i < count; i++) {
+    char name[64];
     if (i > 0) output_text(file, ",");
-    if (isfinite(values[i])) output_text(file, "%.9g", values[i]);
+    if (isfinite(values[i])) {
+      output_text(file, "%.9g", values[i]);
+    } else if (!(find_column(file, first + i, name) && isnan(values[i])) && !file->bad[0]) {
+      snprintf(file->bad, sizeof file->bad, "%s of row %lld is %g", name, (long long)file->rows,
+               values[i]);
+    }
   }
   output_text(file, "\n");
+}
+
+void csv_row(output *file, int64_t count, const double *values) {
+  write_row(file, 0, count, values);
+}
+
+void csv_named_row(output *file, const char *text, int64_t count, const double *values) {
+  int64_t first = 1;
+  for (const char *c = text; *c; c++) first += *c == ',';
+  output_text(file, "%s,", text);
+  write_row(file, first, count, values);
 }
 
 /* ---- JSON ------------------------------------------------------------------------------------ */
@@ -124,7 +175,18 @@ static void json_key(output *file, const char *key) {
 void json_number(output *file, const char *key, double value) {
   char text[32];
   json_key(file, key);
+  if (!isfinite(value) && !file->bad[0])
+    snprintf(file->bad, sizeof file->bad, "%.100s is %g", key, value);
   output_text(file, "%s", isfinite(value) ? output_number(text, value) : "null");
+}
+
+void json_optional(output *file, const char *key, double value) {
+  if (!isnan(value)) {
+    json_number(file, key, value);
+    return;
+  }
+  json_key(file, key);
+  output_text(file, "null");
 }
 
 void json_integer(output *file, const char *key, int64_t value) {

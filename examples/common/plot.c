@@ -1,8 +1,10 @@
-/* plot.c - runs gnuplot on a script in its directory, without a shell.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* plot.c - runs gnuplot on a script in its directory, without a shell, and keeps its picture only
+ * when it is complete. SPDX-License-Identifier: BSD-3-Clause */
 #include "plot.h"
 
 #include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,50 +16,118 @@ bool plot_open(output *script, app *a, const char *directory, const char *name, 
   if (!output_open(script, a, directory, file)) return false;
   output_text(script,
               "# Draws %s.png from the CSV files beside it: gnuplot %s.gp\n"
+              "reset\n"
+              "if (!exists(\"picture\")) picture = '%s.png'\n"
               "set terminal pngcairo size %d,%d enhanced font 'DejaVu Sans,15' linewidth 1.5\n"
-              "set output '%s.png'\n"
+              "set output picture\n"
               "set encoding utf8\n"
               "set datafile separator ','\n"
               "set datafile missing NaN\n"
               "set border linecolor rgb '#333333'\n"
               "set tics nomirror out\n"
               "set grid linecolor rgb '#dddddd' linetype 1 linewidth 0.6\n",
-              name, name, width, height, name);
+              name, name, name, width, height);
   return true;
 }
 
+/* ---- gnuplot --------------------------------------------------------------------------------- */
+
 enum { NOT_FOUND = 127, NO_DIRECTORY = 126 };
 
-/* The exit status of `gnuplot NAME.gp` in `directory`, or -1. The child only calls functions that
- * are safe after fork in a program with threads. */
-static int run(const char *directory, const char *file) {
+/* In the child, which only calls functions that are safe after fork in a program with threads. Its
+ * group of processes is its own: Ctrl-C on the terminal does not reach it, and the picture of an
+ * interrupted run is drawn. */
+static void become_gnuplot(const char *directory, const char *picture, const char *file,
+                           int report) {
+  setpgid(0, 0);
+  if (dup2(report, STDOUT_FILENO) < 0 || dup2(report, STDERR_FILENO) < 0 || chdir(directory) != 0)
+    _exit(NO_DIRECTORY);
+  execlp("gnuplot", "gnuplot", "-e", picture, file, (char *)NULL);
+  _exit(errno == ENOENT || errno == ENOTDIR ? NOT_FOUND : NO_DIRECTORY);
+}
+
+/* The exit status of gnuplot, or -1; `said` is the beginning of what it printed. */
+static int run(const char *directory, const char *picture, const char *file, char *said,
+               size_t size) {
+  int ends[2], status;
+  said[0] = '\0';
+  if (pipe(ends) != 0) return -1;
   const pid_t child = fork();
-  if (child < 0) return -1;
-  if (child == 0) {
-    if (chdir(directory) != 0) _exit(NO_DIRECTORY);
-    execlp("gnuplot", "gnuplot", file, (char *)NULL);
-    _exit(errno == ENOENT ? NOT_FOUND : NO_DIRECTORY);
+  if (child == 0) become_gnuplot(directory, picture, file, ends[1]);
+  close(ends[1]);
+  char chunk[512];
+  size_t used = 0;
+  for (ssize_t got; child > 0;) {
+    got = read(ends[0], chunk, sizeof chunk);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) break;
+    const size_t room = size - 1 - used, part = (size_t)got < room ? (size_t)got : room;
+    memcpy(said + used, chunk, part);
+    said[used += part] = '\0';
   }
-  int status;
+  close(ends[0]);
+  if (child < 0) return -1;
   while (waitpid(child, &status, 0) < 0)
     if (errno != EINTR) return -1;
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-bool plot_close(output *script, const char *directory, const char *name) {
-  app *a = script->a;
-  if (!output_close(script)) return false;
-  char file[80];
-  snprintf(file, sizeof file, "%s.gp", name);
-  progress_clear(&a->bar);
-  fflush(stdout);
-  const int status = run(directory, file);
-  if (status == 0) return true;
+/* The line of gnuplot's report that gives the reason: the one with "line N:", else the last one. */
+static const char *reason_of(char *said) {
+  const char *reason = NULL;
+  for (char *line = strtok(said, "\n"); line; line = strtok(NULL, "\n")) {
+    line += strspn(line, " \t");
+    if (!*line || *line == '^') continue;
+    const char *found = strstr(line, "line ");
+    if (found && strchr(found, ':')) return found;
+    reason = line;
+  }
+  return reason ? reason : "gnuplot gave no reason";
+}
+
+/* ---- the picture ----------------------------------------------------------------------------- */
+
+/* A PNG begins with its signature and ends with the chunk IEND. */
+static bool is_complete(const char *path) {
+  static const unsigned char begin[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+  static const unsigned char end[8] = {'I', 'E', 'N', 'D', 0xae, 0x42, 0x60, 0x82};
+  unsigned char first[8], last[8];
+  FILE *f = fopen(path, "rb");
+  if (!f) return false;
+  const bool read =
+      fread(first, 1, 8, f) == 8 && fseek(f, -8, SEEK_END) == 0 && fread(last, 1, 8, f) == 8;
+  fclose(f);
+  return read && memcmp(first, begin, 8) == 0 && memcmp(last, end, 8) == 0;
+}
+
+static bool draw(app *a, const char *directory, const char *name) {
+  char variable[120], script[80], said[2048], picture[4096], part[4096];
+  snprintf(script, sizeof script, "%s.gp", name);
+  snprintf(variable, sizeof variable, "picture='%s.png.part'", name);
+  if (snprintf(picture, sizeof picture, "%s/%s.png", directory, name) >= (int)sizeof picture ||
+      snprintf(part, sizeof part, "%s/%s.png.part", directory, name) >= (int)sizeof part)
+    return app_error(a, "the path of %s.png is too long", name);
+  const int status = run(directory, variable, script, said, sizeof said);
   if (status == NOT_FOUND) {
     if (!a->no_gnuplot)
       printf("No pictures: gnuplot is not installed. Later: cd '%s' && gnuplot *.gp\n", directory);
     a->no_gnuplot = true;
     return true;
   }
-  return app_error(a, "gnuplot could not draw %s/%s (status %d)", directory, file, status);
+  if (status == 0 && is_complete(part) && rename(part, picture) == 0) {
+    app_wrote(a, picture);
+    return true;
+  }
+  unlink(part);
+  return app_error(a, "cannot draw %s: %s", picture,
+                   status == 0 ? "the picture is cut off, as on a full disk" : reason_of(said));
+}
+
+bool plot_close(output *script, const char *directory, const char *name) {
+  app *a = script->a;
+  output_text(script, "unset output\nundefine picture\n");
+  if (!output_close(script)) return false;
+  progress_clear(&a->bar);
+  fflush(stdout);
+  return draw(a, directory, name);
 }

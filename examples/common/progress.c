@@ -4,16 +4,31 @@
 
 #include <signal.h>
 #include <stdio.h>
+#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
-/* A signal handler can reach nothing but a static variable. The library has none and installs no
+/* A signal handler can reach nothing but static variables. The library has none and installs no
  * handler: both are the program's. */
 static volatile sig_atomic_t interrupted;
+static char last_line[PROGRESS_LAST_LINE + 1];
+static volatile sig_atomic_t last_length; /* > 0: leave at once */
 
 static void on_interrupt(int number) {
   (void)number;
   interrupted = 1;
+  if (last_length == 0) return;
+  const ssize_t written = write(STDERR_FILENO, last_line, (size_t)last_length);
+  (void)written;
+  _exit(130);
+}
+
+void progress_leave_at_once(const char *line) {
+  last_length = 0;
+  if (!line) return;
+  snprintf(last_line, sizeof last_line, "%s\n", line);
+  last_length = (sig_atomic_t)strlen(last_line);
+  if (interrupted) on_interrupt(SIGINT); /* pressed before */
 }
 
 static double now(void) {
@@ -27,6 +42,8 @@ void progress_start(progress *bar) {
   struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND};
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, NULL);
+  action.sa_handler = SIG_IGN;
+  sigaction(SIGXFSZ, &action, NULL);
 }
 
 void progress_draw(progress *bar, double fraction, const char *text) {

@@ -13,8 +13,11 @@ typedef struct progress {
   double started; /* s, monotonic clock */
 } progress;
 
+enum { PROGRESS_LAST_LINE = 1400 };
+
 /* Starts the clock and, from now on, turns the first Ctrl-C into a request to stop; a second one
- * kills the program as usual. */
+ * kills the program as usual. A write beyond a limit on the size of files fails like one to a full
+ * disk, instead of killing the program. */
 void progress_start(progress *bar);
 /* Draws the bar: `fraction` in 0..1, `text` a few words. */
 void progress_draw(progress *bar, double fraction, const char *text);
@@ -22,6 +25,10 @@ void progress_draw(progress *bar, double fraction, const char *text);
 void progress_clear(progress *bar);
 /* Ctrl-C was pressed. */
 bool progress_interrupted(void);
+/* For a computation that nothing can stop, such as the factorisation of a matrix: until the next
+ * call with NULL, Ctrl-C prints `line` and ends the program at once with exit code 130. Meanwhile
+ * no file may be open. */
+void progress_leave_at_once(const char *line);
 
 /* Hooks of a context; `user` is the progress (cancel: not used). */
 void progress_hook(void *user, const mps_progress *p);

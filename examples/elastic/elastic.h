@@ -22,7 +22,7 @@ const char *elastic_method_name(const elastic_settings *s);
 
 /* Rows of an option table. */
 #define ELASTIC_MATERIAL(s)                                                                        \
-  OPTION_NUMBER("E", "Pa", OPTION_POSITIVE, &(s)->young, "Young's modulus"),                       \
+  OPTION_NUMBER("E", "Pa", OPTION_FROM_TO(1e-6, 1e16), &(s)->young, "Young's modulus"),            \
       OPTION_NUMBER("nu", "-", OPTION_FROM_TO(0.0, 0.49999), &(s)->poisson, "Poisson's ratio"),    \
       OPTION_CHOICE("state", "stress|strain", &(s)->state, "plane stress or plane strain")
 #define ELASTIC_METHOD(s)                                                                          \

@@ -118,6 +118,7 @@ mps_status footing_march(void *user) {
     sim->path[sim->rows] = s->depth + 0.5 * s->half_width - body.position[1];
     sim->q[sim->rows] = (reaction.impulse[1] - last_impulse) / (t - last_time) / s->half_width;
     sim->rows++;
+    sim->m.samples = sim->rows;
     last_impulse = reaction.impulse[1];
     last_time = t;
   }

@@ -31,7 +31,7 @@ static void fit_path(const simulation *sim, capacity *c) {
   }
   c->slope = xq / xx;
   c->undeformed = q - c->slope * x;
-  const int fifth = sim->rows / 5;
+  const int fifth = sim->rows < 5 ? 1 : sim->rows / 5;
   for (int k = sim->rows - fifth; k < sim->rows; k++) c->last += sim->q[k] / unit / fifth;
 }
 
@@ -64,7 +64,7 @@ static capacity measure(const simulation *sim) {
 static bool write_pressure(app *a, const settings *s, const simulation *sim) {
   output f;
   if (!output_open(&f, a, s->out, "pressure.csv")) return false;
-  output_text(&f, "settlement_mm,q_kPa,q_over_c\n");
+  csv_header(&f, "settlement_mm,q_kPa,q_over_c");
   for (int k = 0; k < sim->rows; k++) {
     const double q = sim->q[k] * 1e-3, row[] = {sim->path[k] * 1e3, q, q / s->cohesion};
     csv_row(&f, 3, row);
@@ -79,7 +79,7 @@ static bool write_particles(app *a, const settings *s, simulation *sim) {
       !app_check(a, mps_particles_view(sim->m.particles, "plastic_strain", &strain)) ||
       !output_open(&f, a, s->out, "particles.csv"))
     return false;
-  output_text(&f, "x_m,y_m,plastic_strain\n");
+  csv_header(&f, "x_m,y_m,plastic_strain");
   for (int64_t k = 0; k < x.shape[0]; k++) {
     const double row[] = {*mps_view_f64(&x, k, 0), *mps_view_f64(&x, k, 1),
                           *mps_view_f64(&strain, k, 0)};
@@ -100,7 +100,7 @@ static bool write_summary(app *a, const simulation *sim, const capacity *c) {
   json_number(&f, "q_over_c", c->last);
   json_number(&f, "q_over_c_undeformed", c->undeformed);
   json_number(&f, "q_over_c_per_mm", c->slope);
-  json_number(&f, "q_exact", c->exact);
+  json_optional(&f, "q_exact", c->exact);
   json_number(&f, "q_exact_smooth", c->smooth);
   json_number(&f, "q_exact_rough", c->rough);
   json_end(&f);
@@ -158,9 +158,6 @@ static bool draw_bands(app *a, const settings *s, const simulation *sim) {
 /* ---- the end --------------------------------------------------------------------------------- */
 
 static void print(const settings *s, const capacity *c) {
-  printf("Results: %s/ (pressure.csv, particles.csv, summary.json, pressure.png, "
-         "shear_bands.png)\n",
-         s->out);
   if (s->model == VON_MISES) {
     printf("bearing capacity q/c %.3f (Prandtl %.3f, %+.1f %%)\n", c->last, c->exact,
            100.0 * (c->last / c->exact - 1.0));
@@ -182,6 +179,7 @@ bool footing_finish(app *a, void *user) {
   if (!write_pressure(a, s, sim) || !write_particles(a, s, sim) || !write_summary(a, sim, &c) ||
       !draw_pressure(a, s, &c) || !draw_bands(a, s, sim))
     return false;
+  app_tell_results(a, s->out);
   print(s, &c);
   return true;
 }

@@ -225,7 +225,6 @@ mps_status pen_build_run(penetrometer *p, pen_run *r) {
 mps_status pen_build(mps_context *context, void *user) {
   penetrometer *p = user;
   p->context = context;
-  p->run[0].m.keeps = true;
   return pen_build_run(p, &p->run[0]);
 }
 

@@ -93,6 +93,7 @@ static mps_status end_row(const penetrometer *p, pen_run *r, double t) {
     r->last_impulse[k] = up[k];
   }
   r->last_time = t;
+  r->m.samples = r->rows;
   return MPS_OK;
 }
 
@@ -161,7 +162,7 @@ static mps_status after_step(void *user, mps_mpm *mpm) {
   const push *now = user;
   penetrometer *p = now->p;
   pen_run *r = now->r;
-  if (progress_interrupted()) return MPS_ERROR_CANCELLED; /* the run's own hook: each hundredth */
+  if (progress_interrupted()) return MPS_ERROR_CANCELLED; /* the solver's own question is rarer */
   const double t = mps_mpm_time(mpm), depth = pen_depth(p, r);
   mps_status status = look_for_intruders(p, r);
   if (status == MPS_OK && (mps_mpm_steps(mpm) % VOLUME_EVERY == 0 || t >= p->t_end))

@@ -40,8 +40,8 @@ static mean mean_of(const penetrometer *p, const pen_run *r) {
 static bool write_force(app *a, const penetrometer *p, const pen_run *r, const char *name) {
   output f;
   if (!output_open(&f, a, p->s.out, name)) return false;
-  output_text(&f, "depth_m,total_N,tip_N,shaft_N,total_smooth_N,tip_smooth_N,shaft_smooth_N,"
-                  "q_kPa,q_over_c\n");
+  csv_header(&f, "depth_m,total_N,tip_N,shaft_N,total_smooth_N,tip_smooth_N,shaft_smooth_N,"
+                 "q_kPa,q_over_c?");
   for (int64_t i = 0; i < r->rows; i++) {
     const pen_row *row = &r->row[i];
     const double q = 1e-3 * row->smooth[PEN_TIP] / area(p);
@@ -63,11 +63,12 @@ static bool write_force(app *a, const penetrometer *p, const pen_run *r, const c
 static bool write_section(app *a, const penetrometer *p) {
   output f;
   if (!output_open(&f, a, p->s.out, "section.csv")) return false;
-  output_text(&f, "x_m,z_m,displacement_m,plastic_strain\n");
+  csv_header(&f, "x_m,z_m,displacement_m,plastic_strain");
   for (int k = 0; k < p->runs; k++)
     for (int64_t i = 0; i < p->run[k].points; i++) {
       const pen_point *point = &p->run[k].point[i];
-      output_text(&f, "%.5g,%.5g,%.4g,%.4g\n", point->x, point->z, point->moved, point->strain);
+      const double row[] = {point->x, point->z, point->moved, point->strain};
+      csv_row(&f, 4, row);
     }
   return output_close(&f);
 }
@@ -137,13 +138,13 @@ static void tell_run(const penetrometer *p, const pen_run *r, const mean *m) {
 bool pen_finish(app *a, void *user) {
   penetrometer *p = user;
   const mean m[2] = {mean_of(p, &p->run[0]), mean_of(p, &p->run[1])};
-  if (p->runs == 2 && p->run[1].rows == 0) p->runs = 1; /* interrupted before */
+  if (p->runs == 2 && p->run[1].rows < MPM_MODEL_SAMPLES) p->runs = 1; /* interrupted before */
   if (!write_force(a, p, &p->run[0], "force.csv") || !write_section(a, p) ||
       (p->runs == 2 && !write_force(a, p, &p->run[1], "force-axisymmetric.csv")) ||
       !write_summary(a, p, m) || !frame_write(a, p->run[0].m.particles, p->s.out, "soil.vtkhdf") ||
       !pen_draw(a, p))
     return false;
-  printf("Results: %s/ (force*.csv, section.csv, summary.json, *.png)\n", p->s.out);
+  app_tell_results(a, p->s.out);
   for (int k = 0; k < p->runs; k++) tell_run(p, &p->run[k], &m[k]);
   return true;
 }

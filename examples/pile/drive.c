@@ -119,6 +119,7 @@ static mps_status end_row(pile *p, double t) {
   row->jitter = sqrt(fmax(0.0, p->squares / span - mean * mean));
   p->last_time = t;
   p->squares = 0.0;
+  p->m.samples = p->rows;
   return MPS_OK;
 }
 
@@ -149,11 +150,11 @@ static mps_status watch(pile *p, double t, double depth) {
 }
 
 /* Last of what follows a step: what the file holds is then all of that step. */
-static mps_status save_when_due(pile *p, double depth) {
+static void save_when_due(pile *p, double depth) {
   const int64_t due = (int64_t)floor((depth + p->s.h) / p->s.every_checkpoint);
-  if (!p->s.checkpoint || due <= p->checkpoints) return MPS_OK;
+  if (!p->s.checkpoint || due <= p->checkpoints) return;
   p->checkpoints = due;
-  return pile_save(p);
+  pile_try_save(p);
 }
 
 static mps_status after_step(void *user, mps_mpm *mpm) {
@@ -172,7 +173,8 @@ static mps_status after_step(void *user, mps_mpm *mpm) {
   if (status == MPS_OK && p->frames < p->s.frames &&
       depth >= step * (double)(p->frames + 1) * (1.0 - 1e-9))
     status = pile_take_frame(p);
-  return status == MPS_OK ? save_when_due(p, depth) : status;
+  if (status == MPS_OK) save_when_due(p, depth);
+  return status;
 }
 
 mps_status pile_begin(pile *p) {
@@ -183,14 +185,15 @@ mps_status pile_begin(pile *p) {
   return p->row ? MPS_OK : MPS_ERROR_MEMORY;
 }
 
-/* Ctrl-C stops the run between two steps, by the context's hook. */
+/* The first checkpoint shows that the file can be written. Ctrl-C stops the run between two steps,
+ * by the context's hook. */
 mps_status pile_drive(void *user) {
   pile *p = user;
-  mps_status status = mps_mpm_run(p->m.mpm, p->t_end, 1, after_step, p);
-  if (status == MPS_ERROR_CANCELLED && p->s.checkpoint) {
-    const mps_status saved = pile_save(p);
-    if (saved != MPS_OK) status = saved;
-  }
+  mps_status status = p->s.checkpoint ? pile_save(p) : MPS_OK;
+  if (status != MPS_OK) return status;
+  p->m.samples = p->rows; /* after a restart */
+  status = mps_mpm_run(p->m.mpm, p->t_end, 1, after_step, p);
+  if (status == MPS_ERROR_CANCELLED && p->s.checkpoint) pile_try_save(p);
   smooth(p);
   return status;
 }

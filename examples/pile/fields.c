@@ -53,17 +53,25 @@ static mps_status keep(pile *p) {
   return MPS_OK;
 }
 
+/* A series that cannot go on is told, and does not end the run. */
+static void write_frame(pile *p) {
+  if (app_check(p->m.a, mps_recorder_write(p->recorder, mps_mpm_time(p->m.mpm)))) return;
+  mps_recorder_destroy(&p->recorder);
+  p->m.failed = true;
+}
+
 mps_status pile_take_frame(pile *p) {
   mps_status status = MPS_OK;
   if (pile_pictures(p, p->frames + 1) > p->frames_kept) status = keep(p);
-  if (status == MPS_OK && p->recorder)
-    status = mps_recorder_write(p->recorder, mps_mpm_time(p->m.mpm));
+  if (status == MPS_OK && p->recorder) write_frame(p);
   p->frames++;
   return status;
 }
 
 bool pile_write_frames(app *a, pile *p) {
+  const bool series = p->recorder != NULL;
   if (!app_check(a, mps_recorder_close(&p->recorder))) return false;
+  if (series) app_wrote(a, p->vtk);
   for (int64_t f = 0; f < p->frames_kept; f++) {
     char name[32];
     output file;

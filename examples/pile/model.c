@@ -107,9 +107,9 @@ static mps_status make_pile(mps_context *context, pile *p) {
   return status == MPS_OK ? mps_mpm_add_body(p->m.mpm, p->m.body[0]) : status;
 }
 
-/* Contact stiffness (N/m per unit thickness). Nakamura (58) with the particle's mass and the step as
- * they are at the start gives k = (1 - xi) 2 m/dt^2, 0.8 of K + 4G/3 with the paper's xi: the offset
- * d0 is used up, and sand enters the wall, where the pressure below the tip is half of k. */
+/* Contact stiffness (N/m per unit thickness). Nakamura (58) with the particle's mass and the step
+ * as they are at the start gives k = (1 - xi) 2 m/dt^2, 0.8 of K + 4G/3 with the paper's xi: the
+ * offset d0 is used up, and sand enters the wall, where the pressure below the tip is half of k. */
 static double penalty_of(const pile *p) {
   const pile_settings *s = &p->s;
   const double spacing = mps_particles_spacing(p->m.particles);
@@ -122,10 +122,10 @@ static double penalty_of(const pile *p) {
 mps_status pile_build(mps_context *context, void *user) {
   pile *p = user;
   const pile_settings *s = &p->s;
-  p->m.keeps = true;
   p->inner = 0.5 * s->inner_diameter, p->outer = p->inner + s->wall;
   p->t_start = s->rest, p->t_end = s->rest + (s->h + s->depth) / s->speed;
-  mps_status status = make_soil(context, p);
+  mps_status status = s->restart ? pile_peek(context, p) : MPS_OK;
+  if (status == MPS_OK) status = make_soil(context, p);
   mps_mpm_def def = mps_mpm_defaults();
   def.geometry = MPS_AXISYMMETRIC;
   def.cell = s->h;

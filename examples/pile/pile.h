@@ -59,6 +59,7 @@ typedef struct pile_seen {
 
 typedef struct pile {
   pile_settings s;
+  const option *table; /* of the options */
   mpm_model m;
   double k0, inner, outer;   /* 1; m: radii of the wall */
   double penalty;            /* N/m per unit thickness */
@@ -73,6 +74,7 @@ typedef struct pile {
   mps_recorder *recorder; /* NULL in a libmps without HDF5 */
   char vtk[40];           /* its file, "": there has been none */
   int64_t checkpoints;    /* times `every_checkpoint` that the pile has gone */
+  bool checkpoint_lost;   /* the last one could not be written */
 } pile;
 
 /* ---- model.c --------------------------------------------------------------------------------- */
@@ -104,8 +106,12 @@ int64_t pile_pictures(const pile *p, int64_t frames);
 
 /* ---- restart.c ------------------------------------------------------------------------------- */
 
+/* Refuses a file `restart` that was made with other options, and says which. */
+mps_status pile_peek(mps_context *context, pile *p);
 /* Writes `checkpoint`: the solver, and all that the run has seen. */
 mps_status pile_save(pile *p);
+/* The same on the way: a failure is told, once, and does not end the run. */
+void pile_try_save(pile *p);
 /* Goes back to where the file `restart` was written. */
 mps_status pile_restore(mps_context *context, pile *p);
 

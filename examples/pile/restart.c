@@ -7,29 +7,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The options that make another run of it, by a sum over their bits. */
-static void make_key(const pile *p, char key[64]) {
-  const pile_settings *s = &p->s;
-  const double list[] = {s->h,          s->depth,    s->wall,    s->speed,
-                         s->rest,       p->penalty,  s->density, s->young,
-                         s->poisson,    s->phi,      s->psi,     s->cohesion,
-                         p->k0,         s->friction, s->courant, (double)s->frames,
-                         s->width,      s->height,   p->inner,   (double)s->cone,
-                         (double)s->ppc};
-  uint64_t sum = 14695981039346656037u; /* FNV-1a, of whole numbers */
-  for (size_t k = 0; k < sizeof list / sizeof *list; k++) {
-    uint64_t bits;
-    memcpy(&bits, &list[k], sizeof bits);
-    sum = (sum ^ bits) * 1099511628211u;
-    sum ^= sum >> 32;
-  }
-  snprintf(key, 64, "mps-pile h=%.4g depth=%.4g #%016llx", s->h, s->depth, (unsigned long long)sum);
-}
+#define KEY "mps-pile 2" /* of the layout of the bytes below */
+
+/* A run may go on with others of these. */
+static const char *const free_options[] = {"out",     "threads", "checkpoint", "every-checkpoint",
+                                           "restart", NULL};
 
 /* ---- the run's own bytes --------------------------------------------------------------------- */
 
 /* What comes first; then the rows, then of each frame its depth and values. */
 typedef struct notes {
+  char options[1536]; /* see options_record */
   int64_t rows, frames, frames_kept;
   double last_time, last_step, squares, last_impulse[PILE_FORCES];
   pile_seen seen;
@@ -71,6 +59,7 @@ static void pass_all(cursor *c, pile *p) {
   n.last_time = p->last_time, n.last_step = p->last_step, n.squares = p->squares;
   memcpy(n.last_impulse, p->last_impulse, sizeof n.last_impulse);
   n.seen = p->seen;
+  if (!options_record(p->table, free_options, n.options, sizeof n.options)) n.options[0] = '\0';
   pass(c, &n, sizeof n);
   pass_rows(c, p);
 }
@@ -92,7 +81,7 @@ mps_status pile_save(pile *p) {
   cursor c = {.writes = true};
   pass_all(&c, p); /* counts */
   mps_checkpoint info = mps_checkpoint_defaults();
-  make_key(p, info.user_key);
+  snprintf(info.user_key, sizeof info.user_key, KEY);
   info.user_bytes = c.bytes;
   info.user_data = c.at = malloc((size_t)c.bytes);
   if (!c.at) return MPS_ERROR_MEMORY;
@@ -102,8 +91,46 @@ mps_status pile_save(pile *p) {
   return status;
 }
 
-/* The library has compared the options and found the file undamaged: the lengths agree, unless
- * another version of this program wrote it. */
+void pile_try_save(pile *p) {
+  const mps_status status = pile_save(p);
+  if (status != MPS_OK && !p->checkpoint_lost) {
+    app_error(p->m.a, "no checkpoint at %.4g m, the run goes on: %s", pile_depth(p),
+              status == MPS_ERROR_MEMORY ? "out of memory"
+                                         : mps_context_error(p->m.a->context)->message);
+  }
+  p->checkpoint_lost = p->m.failed = status != MPS_OK;
+}
+
+/* The file's own bytes, for the caller to free. */
+static mps_status load(mps_context *context, const pile *p, mps_checkpoint *info) {
+  *info = mps_checkpoint_defaults();
+  snprintf(info->user_key, sizeof info->user_key, KEY); /* the library refuses another one */
+  mps_status status = mps_checkpoint_info(context, p->s.restart, info);
+  if (status != MPS_OK) return status;
+  info->user_data = calloc((size_t)info->user_bytes + sizeof(notes), 1);
+  if (!info->user_data) return MPS_ERROR_MEMORY;
+  return mps_checkpoint_info(context, p->s.restart, info);
+}
+
+mps_status pile_peek(mps_context *context, pile *p) {
+  mps_checkpoint info;
+  mps_status status = load(context, p, &info);
+  if (status == MPS_OK) {
+    const notes *n = info.user_data;
+    char differs[600] = "";
+    if (!memchr(n->options, '\0', sizeof n->options) ||
+        !options_agree(p->table, free_options, n->options, differs, sizeof differs)) {
+      snprintf(p->m.why, sizeof p->m.why, "%.150s was made with other options: %.200s",
+               p->s.restart, differs);
+      status = MPS_ERROR_ARGUMENT;
+    }
+  }
+  free(info.user_data);
+  return status;
+}
+
+/* The options have been compared, and the library found the file undamaged: the lengths agree,
+ * unless another version of this program wrote it. */
 static mps_status read_notes(pile *p, char *bytes, int64_t size) {
   notes n;
   cursor c = {.at = bytes};
@@ -121,13 +148,9 @@ static mps_status read_notes(pile *p, char *bytes, int64_t size) {
 }
 
 mps_status pile_restore(mps_context *context, pile *p) {
-  mps_checkpoint info = mps_checkpoint_defaults();
-  make_key(p, info.user_key); /* the library refuses another one */
-  mps_status status = mps_checkpoint_info(context, p->s.restart, &info);
-  if (status != MPS_OK) return status;
-  info.user_data = malloc((size_t)info.user_bytes + 1);
-  if (!info.user_data) return MPS_ERROR_MEMORY;
-  status = mps_mpm_restore(p->m.mpm, p->s.restart, &info);
+  mps_checkpoint info;
+  mps_status status = load(context, p, &info);
+  if (status == MPS_OK) status = mps_mpm_restore(p->m.mpm, p->s.restart, &info);
   if (status == MPS_OK) status = read_notes(p, info.user_data, info.user_bytes);
   free(info.user_data);
   if (status == MPS_OK)

@@ -49,9 +49,9 @@ static void find_roughness(const pile *p, double *rows, double *steps) {
 static bool write_load(app *a, const pile *p) {
   output f;
   if (!output_open(&f, a, p->s.out, "load.csv")) return false;
-  output_text(&f, "depth_m,total_N,tip_N,inside_N,outside_N,total_smooth_N,tip_smooth_N,"
-                  "inside_smooth_N,outside_smooth_N,step_rms_N,plug_height_m,plug_level_m,"
-                  "outside_beta_N\n");
+  csv_header(&f, "depth_m,total_N,tip_N,inside_N,outside_N,total_smooth_N,tip_smooth_N,"
+                 "inside_smooth_N,outside_smooth_N,step_rms_N,plug_height_m?,plug_level_m?,"
+                 "outside_beta_N");
   static const int order[PILE_FORCES] = {PILE_TOTAL, PILE_TIP, PILE_INSIDE, PILE_OUTSIDE};
   for (int64_t i = 0; i < p->rows; i++) {
     const pile_row *r = &p->row[i];
@@ -93,10 +93,10 @@ static bool write_summary(app *a, const pile *p, const pile_row *end) {
   json_number(&f, "force_tip", end->smooth[PILE_TIP]);
   json_number(&f, "force_inside", end->smooth[PILE_INSIDE]);
   json_number(&f, "force_outside", end->smooth[PILE_OUTSIDE]);
-  json_number(&f, "roughness", rows);
-  json_number(&f, "roughness_steps", steps);
-  json_number(&f, "plug_height", end->plug);
-  json_number(&f, "plug_level", end->plug - end->depth);
+  json_optional(&f, "roughness", rows);
+  json_optional(&f, "roughness_steps", steps);
+  json_optional(&f, "plug_height", end->plug);
+  json_optional(&f, "plug_level", end->plug - end->depth);
   json_integer(&f, "particles_inside_pile", p->seen.inside);
   json_number(&f, "deepest_inside_pile", p->seen.deepest);
   json_number(&f, "volume_ratio_max", p->seen.ratio_max);
@@ -110,23 +110,23 @@ static bool write_summary(app *a, const pile *p, const pile_row *end) {
 }
 
 static void tell(const pile *p, const pile_row *end) {
-  printf("Results: %s/ (load.csv, fields-*.csv, summary.json, *.png%s%s)\n", p->s.out,
-         p->vtk[0] ? ", " : "", p->vtk);
-  printf(
-      "depth %.4g m: %.5g N = tip %.5g + inside %.5g + outside %.5g N; plug %.4g m high, %+.3g m "
-      "against the ground\n",
-      end->depth, end->smooth[PILE_TOTAL], end->smooth[PILE_TIP], end->smooth[PILE_INSIDE],
-      end->smooth[PILE_OUTSIDE], end->plug, end->plug - end->depth);
+  printf("depth %.4g m: %.5g N = tip %.5g + inside %.5g + outside %.5g N", end->depth,
+         end->smooth[PILE_TOTAL], end->smooth[PILE_TIP], end->smooth[PILE_INSIDE],
+         end->smooth[PILE_OUTSIDE]);
+  if (isfinite(end->plug))
+    printf("; plug %.4g m high, %+.3g m against the ground", end->plug, end->plug - end->depth);
+  printf("\n");
   printf("V/V0 %.4g to %.4g, particles inside the wall: %lld\n", p->seen.ratio_min,
          p->seen.ratio_max, (long long)p->seen.inside);
 }
 
 bool pile_finish(app *a, void *user) {
   pile *p = user;
-  static const pile_row none = {.plug = NAN};
-  const pile_row *end = p->rows > 0 ? &p->row[p->rows - 1] : &none;
-  const bool good =
-      pile_write_frames(a, p) && write_load(a, p) && write_summary(a, p, end) && pile_draw(a, p);
-  if (good) tell(p, end);
-  return good;
+  const pile_row *end = &p->row[p->rows - 1];
+  if (!write_load(a, p) || !write_summary(a, p, end) || !pile_write_frames(a, p) ||
+      !pile_draw(a, p))
+    return false;
+  app_tell_results(a, p->s.out);
+  tell(p, end);
+  return true;
 }

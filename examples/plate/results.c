@@ -7,15 +7,13 @@
 
 #include <math.h>
 
-/* ---- tables
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- tables ---------------------------------------------------------------------------------- */
 
 static bool write_particles(const plate *p, const char *directory) {
   output f;
   if (!output_open(&f, p->a, directory, "particles.csv")) return false;
-  output_text(&f, "x_m,y_m,u_m,v_m,xx_Pa,xx_exact_Pa,yy_Pa,yy_exact_Pa,xy_Pa,xy_exact_Pa,"
-                  "von_mises_Pa\n");
+  csv_header(&f, "x_m,y_m,u_m,v_m,xx_Pa,xx_exact_Pa,yy_Pa,yy_exact_Pa,xy_Pa,xy_exact_Pa,"
+                 "von_mises_Pa");
   for (int64_t k = 0; k < mps_particles_count(p->particles); k++) {
     elastic_point at;
     double e[3];
@@ -33,7 +31,7 @@ static bool write_line(const plate *p, const char *directory) {
   output f;
   if (!output_open(&f, p->a, directory, p->def->hole ? "ligament.csv" : "displacement.csv"))
     return false;
-  output_text(&f, p->def->hole ? "y_m,xx_Pa,xx_exact_Pa\n" : "x_m,u_m,u_exact_m\n");
+  csv_header(&f, p->def->hole ? "y_m,xx_Pa,xx_exact_Pa" : "x_m,u_m,u_exact_m");
   const double centre[2] = {p->wall, 0.0};
   elastic_point middle = {{0}, {0}, {0}, 0};
   const int64_t id = mps_particles_nearest(p->particles, centre);
@@ -78,9 +76,7 @@ static bool write_summary(const plate *p, const mps_elastic_def *elastic, const 
   return output_close(&f);
 }
 
-/* ---- pictures
- * ------------------------------------------------------------------------------------------------
- */
+/* ---- pictures -------------------------------------------------------------------------------- */
 
 static bool draw_line(const plate *p, const char *directory) {
   const bool hole = p->def->hole;

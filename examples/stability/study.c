@@ -98,6 +98,11 @@ bool study_run(app *a, const method *m, study *s) {
   if (!w) return app_no_memory(a);
   *s = (study){.m = *m};
   list_cases(s);
+  for (int64_t i = 0; i < STUDY_CASES; i++) { /* until they have been run */
+    stability_case *x = &s->cases[i];
+    x->linear = x->stepping = x->unstable = x->table2 = NAN;
+    x->status = MPS_ERROR_CANCELLED;
+  }
   w->a = a;
   w->s = s;
   atomic_flag_clear(&w->drawing);
@@ -111,7 +116,8 @@ bool study_run(app *a, const method *m, study *s) {
   for (int64_t i = 0; ok && i < STUDY_CASES; i++)
     if (s->cases[i].status != MPS_OK && s->cases[i].status != MPS_ERROR_CANCELLED)
       ok = app_error(a, "%s", s->cases[i].why);
-  if (ok && progress_interrupted()) ok = app_error(a, "interrupted");
+  s->done = 0;
+  for (int64_t i = 0; i < STUDY_CASES; i++) s->done += s->cases[i].status == MPS_OK;
   free(w);
   return ok;
 }

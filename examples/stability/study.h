@@ -36,13 +36,17 @@ typedef struct study {
   stability_case cases[STUDY_CASES]; /* by wave, R, V, h; then by integrator, R, h */
   regression linear[2], stepping[2]; /* S, P */
   mps_limit_fit printed[2];
+  int64_t done; /* cases that have been run; fewer than all after Ctrl-C */
 } study;
 
-/* Finds all cases, in parallel. False with an error line at the first failure. */
+/* Finds all cases, in parallel, until Ctrl-C. False with an error line at the first failure. */
 bool study_run(app *a, const method *m, study *s);
 /* Regressions of what was found. */
 bool study_fit(app *a, study *s);
-/* limits.csv, integrators.csv, regression.csv, coefficients.csv. */
+/* limits.csv and integrators.csv; of an interrupted study the cells of the other cases are empty.
+ */
+bool study_write_limits(app *a, const study *s, const char *directory);
+/* Those two, regression.csv and coefficients.csv. */
 bool study_write(app *a, const study *s, const char *directory);
 /* Members of summary.json, and the last lines on stdout. */
 bool study_summary(app *a, const study *s, const char *directory);

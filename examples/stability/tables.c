@@ -12,12 +12,12 @@ static const char waves[] = "SP";
 static bool write_limits(app *a, const study *s, const char *directory) {
   output f;
   if (!output_open(&f, a, directory, "limits.csv")) return false;
-  output_text(&f, "wave,R,V,h,dt_linear,dt_stepping,dt_table2\n");
+  csv_header(&f, "wave,R,V,h,dt_linear?,dt_stepping?,dt_table2?");
   for (int64_t i = 0; i < STUDY_GRID; i++) {
     const stability_case *x = &s->cases[i];
     const double row[] = {x->radius, x->velocity, x->damping, x->linear, x->stepping, x->table2};
-    output_text(&f, "%c,", x->wave);
-    csv_row(&f, 6, row);
+    const char wave[2] = {x->wave, '\0'};
+    csv_named_row(&f, wave, 6, row);
   }
   return output_close(&f);
 }
@@ -26,12 +26,11 @@ static bool write_integrators(app *a, const study *s, const char *directory) {
   static const char *const names[] = {"euler", "leapfrog", "verlet"};
   output f;
   if (!output_open(&f, a, directory, "integrators.csv")) return false;
-  output_text(&f, "integrator,R_m,h,dt_linear_s,dt_stepping_s\n");
+  csv_header(&f, "integrator,R_m,h,dt_linear_s?,dt_stepping_s?");
   for (int64_t i = STUDY_GRID; i < STUDY_CASES; i++) {
     const stability_case *x = &s->cases[i];
     const double row[] = {x->radius, x->damping, x->linear, x->stepping};
-    output_text(&f, "%s,", names[x->integrator]);
-    csv_row(&f, 4, row);
+    csv_named_row(&f, names[x->integrator], 4, row);
   }
   return output_close(&f);
 }
@@ -46,7 +45,7 @@ static double quadratic(const double b[3], double h) {
 static bool write_regression(app *a, const study *s, const char *directory) {
   output f;
   if (!output_open(&f, a, directory, "regression.csv")) return false;
-  output_text(&f, "wave,method,h,a1,a2,a1_quadratic,a2_quadratic,a1_table2,a2_table2\n");
+  csv_header(&f, "wave,method,h,a1,a2,a1_quadratic?,a2_quadratic?,a1_table2?,a2_table2?");
   for (int k = 0; k < 4; k++) {
     const int wave = k % 2;
     const regression *r = k < 2 ? &s->linear[wave] : &s->stepping[wave];
@@ -62,8 +61,9 @@ static bool write_regression(app *a, const study *s, const char *directory) {
                             inside ? quadratic(fit->b2, h) : NAN,
                             inside ? quadratic(printed->b1, h) : NAN,
                             inside ? quadratic(printed->b2, h) : NAN};
-      output_text(&f, "%c,%s,", waves[wave], k < 2 ? "linear" : "stepping");
-      csv_row(&f, 7, row);
+      char name[32];
+      snprintf(name, sizeof name, "%c,%s", waves[wave], k < 2 ? "linear" : "stepping");
+      csv_named_row(&f, name, 7, row);
     }
   }
   return output_close(&f);
@@ -72,7 +72,7 @@ static bool write_regression(app *a, const study *s, const char *directory) {
 static bool write_coefficients(app *a, const study *s, const char *directory) {
   output f;
   if (!output_open(&f, a, directory, "coefficients.csv")) return false;
-  output_text(&f, "wave,method,b11,b12,b13,b21,b22,b23,rms_of_fit\n");
+  csv_header(&f, "wave,method,b11,b12,b13,b21,b22,b23,rms_of_fit?");
   for (int wave = 0; wave < 2; wave++)
     for (int k = 0; k < 3; k++) {
       const regression *r = k == 0 ? &s->linear[wave] : &s->stepping[wave];
@@ -86,15 +86,20 @@ static bool write_coefficients(app *a, const study *s, const char *directory) {
                             fit->b2[1],
                             fit->b2[2],
                             k < 2 ? fit->rms : NAN};
-      output_text(&f, "%c,%s,", waves[wave], names[k]);
-      csv_row(&f, 7, row);
+      char name[32];
+      snprintf(name, sizeof name, "%c,%s", waves[wave], names[k]);
+      csv_named_row(&f, name, 7, row);
     }
   return output_close(&f);
 }
 
+bool study_write_limits(app *a, const study *s, const char *directory) {
+  return write_limits(a, s, directory) && write_integrators(a, s, directory);
+}
+
 bool study_write(app *a, const study *s, const char *directory) {
-  return write_limits(a, s, directory) && write_integrators(a, s, directory) &&
-         write_regression(a, s, directory) && write_coefficients(a, s, directory);
+  return study_write_limits(a, s, directory) && write_regression(a, s, directory) &&
+         write_coefficients(a, s, directory);
 }
 
 /* ---- summary --------------------------------------------------------------------------------- */
@@ -133,16 +138,15 @@ bool study_summary(app *a, const study *s, const char *directory) {
       const regression *r = k == 0 ? &s->linear[wave] : &s->stepping[wave];
       char key[48];
       snprintf(key, sizeof key, "rms_table2%s_%c", methods[k], waves[wave]);
-      json_number(&f, key, r->known ? r->rms_fits : NAN);
+      json_optional(&f, key, r->known ? r->rms_fits : NAN);
       snprintf(key, sizeof key, "rms_table2%s_cases_%c", methods[k], waves[wave]);
-      json_number(&f, key, r->known ? r->rms_table2 : NAN);
+      json_optional(&f, key, r->known ? r->rms_table2 : NAN);
     }
-  json_number(&f, "stepping_over_linear_max", ratio);
+  json_optional(&f, "stepping_over_linear_max", ratio);
   json_number(&f, "verlet_over_euler", gain_of_verlet(s));
   json_end(&f);
   if (!output_close(&f)) return false;
-  printf("Results: %s/ (limits.csv, regression.csv, summary.json, fig03.png to fig10.png)\n",
-         directory);
+  app_tell_results(a, directory);
   const regression *r = s->linear[0].known ? s->linear : s->stepping;
   printf("%d cases, h up to 0.22: regression against the paper's Table 2 rms %.1f %% (S), %.1f %% "
          "(P); the cases themselves against it %.1f %%, %.1f %%\n",

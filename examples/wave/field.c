@@ -41,7 +41,7 @@ static bool write_table(app *a, const settings *s, const field *f) {
   const bool columns = s->sides == SIDES_FREEFIELD;
   if (columns && !app_check(a, mps_particles_view(f->particles, "free_field", &mark))) return false;
   if (!output_open(&file, a, s->out, "peaks.csv")) return false;
-  output_text(&file, "x_m,y_m,peak_m_s2\n");
+  csv_header(&file, "x_m,y_m,peak_m_s2");
   for (int64_t k = 0; k < f->count; k++) {
     if (columns && *mps_view_i64(&mark, k, 0) != 0) continue;
     const double row[] = {*mps_view_f64(&x, k, 0), *mps_view_f64(&x, k, 1),

@@ -71,7 +71,7 @@ static mps_status write_checkpoint(const files *f, mps_dynamics *dynamics) {
   return mps_checkpoint_write(f->particles, f->checkpoint, &info);
 }
 
-mps_status files_record(files *f, mps_dynamics *dynamics) {
+static mps_status record(files *f, mps_dynamics *dynamics) {
   const double now = mps_dynamics_time(dynamics);
   mps_status status = MPS_OK;
   if (f->recorder && now >= f->next_frame * (1.0 - 1e-12)) {
@@ -85,11 +85,23 @@ mps_status files_record(files *f, mps_dynamics *dynamics) {
   return status;
 }
 
+mps_status files_record(files *f, mps_dynamics *dynamics) {
+  const mps_status status = record(f, dynamics);
+  f->failed = status != MPS_OK;
+  return status;
+}
+
 bool files_close(app *a, files *f, mps_dynamics *dynamics, bool diverged) {
-  bool ok = true;
+  bool ok = !f->failed; /* the run ended by that, and has told it */
   /* an interrupted run can go on from where it stopped; a diverged one from the last good state */
-  if (f->checkpoint && dynamics && !diverged) ok = app_check(a, write_checkpoint(f, dynamics));
-  if (f->recorder) ok = app_check(a, mps_recorder_close(&f->recorder)) && ok;
+  if (f->checkpoint && dynamics && !diverged && ok)
+    ok = app_check(a, write_checkpoint(f, dynamics));
+  if (f->checkpoint && dynamics && ok) app_wrote(a, f->checkpoint);
+  if (f->recorder && ok) {
+    ok = app_check(a, mps_recorder_close(&f->recorder));
+    if (ok) app_wrote(a, "wave.vtkhdf");
+  }
+  mps_recorder_destroy(&f->recorder);
   free(f->checkpoint);
   f->checkpoint = NULL;
   return ok;

@@ -13,6 +13,7 @@ typedef struct files {
   double frame_every, next_frame;           /* s */
   double checkpoint_every, next_checkpoint; /* s; 0: none wanted */
   char *checkpoint;                         /* path */
+  bool failed;                              /* files_record, which ended the run */
   char key[64];                             /* what a restart must agree in */
 } files;
 

@@ -104,25 +104,20 @@ bool results_write(app *a, const settings *s, const results *x) {
   json_integer(&file, "particles", x->particles);
   json_integer(&file, "steps", x->steps);
   json_number(&file, "dt", x->dt);
-  json_number(&file, "dt_limit_linear", x->dt_limit);
-  json_number(&file, "surface_peak", x->surface_peak);
-  json_number(&file, "surface_peak_edge", x->surface_peak_edge);
-  json_number(&file, "surface_peak_theory", x->surface_theory);
-  json_number(&file, "travel_time", x->travel_time);
+  json_optional(&file, "dt_limit_linear", x->dt_limit);
+  json_optional(&file, "surface_peak", x->surface_peak);
+  json_optional(&file, "surface_peak_edge", x->surface_peak_edge);
+  json_optional(&file, "surface_peak_theory", x->surface_theory);
+  json_optional(&file, "travel_time", x->travel_time);
   json_number(&file, "travel_time_exact", x->travel_exact);
-  json_number(&file, "energy_drift", x->energy_drift);
+  json_optional(&file, "energy_drift", x->energy_drift);
   json_end(&file);
   return output_close(&file);
 }
 
-void results_print(const settings *s, const results *x) {
+void results_print(const app *a, const settings *s, const results *x) {
   const bool diverged = x->end == OUTCOME_DIVERGED;
-  printf("Results: %s/ (receivers.csv, %ssummary.json%s%s%s)\n", s->out,
-         s->sloped ? "slope.csv, " : "",
-         diverged    ? ""
-         : s->sloped ? ", wave.png, peaks.png"
-                     : ", wave.png",
-         s->vtk > 0.0 ? ", wave.vtkhdf" : "", s->checkpoint > 0.0 ? ", checkpoint.h5" : "");
+  app_tell_results(a, s->out);
   if (diverged) return;
   printf("surface peak %.3f m/s2", x->surface_peak);
   if (isnan(x->travel_time) && s->restart) {

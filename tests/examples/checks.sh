@@ -20,3 +20,27 @@ in_range() {
 
 # has FILE TEXT
 has() { grep -qF -- "$2" "$1" || fail "no \"$2\" in $1: $(cat "$1")"; }
+
+# picture FILE WIDTHxHEIGHT COLOUR...: the picture was drawn whole, in that size, with lines or points
+# of these colours; see check-png. Nothing is looked at without gnuplot, and without python3 only the
+# name.
+here=$(dirname "$0")
+picture() {
+  command -v gnuplot >/dev/null || return 0
+  [ -s "$1" ] || fail "no picture $1"
+  python3 -c '' 2>/dev/null || return 0
+  "$here/check-png" "$@" || fail "picture"
+}
+
+# is CSV COLUMN ROW VALUE TOLERANCE: the number in the named column of row ROW (1: the first one after
+# the header; -1: the last one).
+is() {
+  awk -F, -v name="$2" -v row="$3" -v want="$4" -v off="$5" '
+    NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) column = i }
+    NR == row + 1 { value = $column; found = column }
+    NR > 1 { last = $column }
+    END { if (row < 0) { value = last; found = column }
+      print name " of row " row " = " value
+      exit !(found && value ~ /^[-+0-9.eE]+$/ && (value - want) ^ 2 <= off ^ 2) }' "$1" ||
+    fail "$2 of row $3 of $1, expected $4 +- $5"
+}

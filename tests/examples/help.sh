@@ -3,7 +3,7 @@
 . "$(dirname "$0")/checks.sh"
 for program in mps-wave mps-stability; do
   "$1/$program" --help >"$work/help" || fail "$program --help"
-  for text in "Usage: $program" "--radius [m]" "; default 0.5)" "[m/s]" "--wave S|P" \
+  for text in "Usage: $program" "--radius [m]" "default 0.5)" "[m/s]" "--wave S|P" \
     "(default verlet)" "--out DIR" "--threads N"; do
     has "$work/help" "$text"
   done

@@ -37,34 +37,47 @@ in_range "$work/smooth/summary.json" force_inside -1e-9 1e-9
 in_range "$work/smooth/summary.json" force_outside -1e-9 1e-9
 in_range "$work/smooth/summary.json" force_tip 100 1e5
 
-# Stopped by Ctrl-C on the way (or a little late), and gone on on other threads: the results of the
-# run that never stopped.
+# A checkpoint that cannot be written is noticed at the start.
+status=0
+"$1/mps-pile" $coarse --checkpoint "$work/nowhere/pile.h5" --out "$work/d" >/dev/null 2>"$work/log" ||
+  status=$?
+[ "$status" -eq 1 ] || fail "wrong path of the checkpoint: exit code $status"
+[ "$(wc -l <"$work/log")" -eq 1 ] || fail "more than one line: $(cat "$work/log")"
+if grep -q "HDF5" "$work/log"; then exit 0; fi # built without
+has "$work/log" "nowhere/pile.h5"
+
+# Stopped by Ctrl-C after its second checkpoint (or a little late), and gone on on other threads: the
+# results of the run that never stopped.
+inode() { ls -i "$work/pile.h5" 2>/dev/null || echo none; }
 "$1/mps-pile" $coarse --rest 0.3 --checkpoint "$work/pile.h5" --every-checkpoint 0.01 \
   --threads 1 --out "$work/d" >/dev/null 2>"$work/log" &
 pid=$!
 until [ -f "$work/pile.h5" ] || ! kill -0 "$pid" 2>/dev/null; do sleep 0.02; done
+first=$(inode)
+until [ "$(inode)" != "$first" ] || ! kill -0 "$pid" 2>/dev/null; do sleep 0.02; done
 kill -INT "$pid" 2>/dev/null || :
 wait "$pid" || :
-if [ -f "$work/pile.h5" ]; then
-  "$1/mps-pile" $coarse --rest 0.3 --restart "$work/pile.h5" --threads 2 --out "$work/e" >/dev/null
-  for file in load.csv summary.json fields-1.csv fields-4.csv; do
-    cmp "$work/a/$file" "$work/e/$file" || fail "another $file after a restart"
-  done
-  if "$1/mps-pile" $coarse --rest 0.2 --restart "$work/pile.h5" --out "$work/f" 2>"$work/log"; then
-    fail "a restart with another --rest"
-  fi
-  has "$work/log" "has user_key 'mps-pile h=0.02 depth=0.2"
-else
-  has "$work/log" "HDF5" # built without
+"$1/mps-pile" $coarse --rest 0.3 --restart "$work/pile.h5" --threads 2 --out "$work/e" >/dev/null
+for file in load.csv summary.json fields-1.csv fields-4.csv; do
+  cmp "$work/a/$file" "$work/e/$file" || fail "another $file after a restart"
+done
+if "$1/mps-pile" $coarse --rest 0.2 --restart "$work/pile.h5" --out "$work/f" 2>"$work/log"; then
+  fail "a restart with another --rest"
 fi
+has "$work/log" "pile.h5 was made with other options: --rest is 0.2, was 0.3"
+[ "$(wc -l <"$work/log")" -eq 1 ] || fail "more than one line: $(cat "$work/log")"
 
-# Ctrl-C: what there is gets written.
-"$1/mps-pile" --soil 0.4x2 --threads 1 --out "$work/c" >"$work/out" 2>"$work/log" &
+# A checkpoint that fails on the way is told and does not end the run: all results are there.
+mkdir "$work/disk"
+"$1/mps-pile" $coarse --checkpoint "$work/disk/pile.h5" --every-checkpoint 0.02 --frames 1 \
+  --threads 1 --out "$work/g" >"$work/out" 2>"$work/log" &
 pid=$!
-until grep -q "particles, dt" "$work/out"; do sleep 0.1; done
-kill -INT "$pid"
+until [ -f "$work/disk/pile.h5" ] || ! kill -0 "$pid" 2>/dev/null; do sleep 0.02; done
+rm -r "$work/disk"
 status=0
 wait "$pid" || status=$?
-[ "$status" -eq 130 ] || fail "Ctrl-C: exit code $status"
-has "$work/log" "what there is gets written"
-has "$work/c/summary.json" '"force_total"'
+[ "$status" -eq 1 ] || fail "checkpoint lost on the way: exit code $status"
+[ "$(grep -c "no checkpoint at .* the run goes on: .*disk/pile.h5" "$work/log")" -eq 1 ] ||
+  fail "lost checkpoint: $(cat "$work/log")"
+in_range "$work/g/summary.json" depth 0.19999 0.20001
+[ -s "$work/g/load.csv" ] || fail "no load.csv"

@@ -7,6 +7,8 @@
 #include "common/options.h"
 #include "common/output.h"
 
+#include <unistd.h>
+
 static void options_are_read_in_both_spellings(void **state) {
   (void)state;
   double radius = 0.5, three[3] = {0};
@@ -15,8 +17,12 @@ static void options_are_read_in_both_spellings(void **state) {
   bool flag = false;
   const char *out = "out";
   option table[] = {OPTION_HEADING("Heading"),
-                    OPTION_NUMBER("radius", "m", OPTION_POSITIVE, &radius, ""),
-                    {.name = "three", .count = 3, .number = three, .help = ""},
+                    OPTION_NUMBER("radius", "m", OPTION_LENGTH, &radius, ""),
+                    {.name = "three",
+                     .count = 3,
+                     .range = OPTION_FROM_TO(-1e3, 1e3),
+                     .number = three,
+                     .help = ""},
                     OPTION_INTEGER("count", "N", OPTION_FROM_TO(0.0, 9.0), &count, ""),
                     OPTION_CHOICE("wave", "S|P", &wave, ""),
                     OPTION_FLAG("flag", &flag, ""),
@@ -25,7 +31,7 @@ static void options_are_read_in_both_spellings(void **state) {
   const options_program program = {"test", "", table};
   char *argv[] = {(char[]){"test"},
                   (char[]){"--radius"},
-                  (char[]){"-0"}, /* 0 is not > 0 */
+                  (char[]){"-0"}, /* less than the least length */
                   (char[]){"--count"},
                   (char[]){"7"},
                   (char[]){"--three=1,-2.5,3e2"},
@@ -69,6 +75,87 @@ static void numbers_are_written_so_that_they_read_back(void **state) {
     mps_assert_near(strtod(text, NULL), values[i], 0.0);
   }
   assert_string_equal(output_number(text, 0.1), "0.1");
+}
+
+/* A record of the options finds the one that differs, but for those that are free. */
+static void options_are_compared_one_by_one(void **state) {
+  (void)state;
+  static const char *const except[] = {"out", NULL};
+  double radius = 0.1, three[3] = {1.0, -2.5, NAN};
+  int64_t count = 3;
+  int wave = 1;
+  bool flag = false;
+  const char *out = "a", *file = NULL;
+  option table[] = {OPTION_HEADING("Heading"),
+                    OPTION_NUMBER("radius", "m", OPTION_LENGTH, &radius, ""),
+                    {.name = "three", .count = 3, .number = three, .help = ""},
+                    OPTION_INTEGER("count", "N", OPTION_FROM_TO(0.0, 9.0), &count, ""),
+                    OPTION_CHOICE("wave", "S|P", &wave, ""),
+                    OPTION_FLAG("flag", &flag, ""),
+                    OPTION_TEXT("file", "FILE", &file, ""),
+                    OPTION_OUT(&out),
+                    {0}};
+  char record[200], small[20], why[200];
+  assert_true(options_record(table, except, record, sizeof record));
+  assert_string_equal(record, "radius=0.1\nthree=1,-2.5,not given\ncount=3\nwave=P\n"
+                              "flag=not given\nfile=not given\n");
+  assert_false(options_record(table, except, small, sizeof small));
+  out = "b";
+  assert_true(options_agree(table, except, record, why, sizeof why));
+  radius = nextafter(0.1, 1.0); /* the last bit counts */
+  assert_false(options_agree(table, except, record, why, sizeof why));
+  assert_string_equal(why, "--radius is 0.10000000000000002, was 0.1");
+  radius = 0.1, wave = 0;
+  assert_false(options_agree(table, except, record, why, sizeof why));
+  assert_string_equal(why, "--wave is S, was P");
+  wave = 1, file = "x";
+  assert_false(options_agree(table, except, record, why, sizeof why));
+  assert_string_equal(why, "--file is x, was not given");
+  file = NULL;
+  assert_false(options_agree(table, NULL, record, why, sizeof why));
+  assert_string_equal(why, "--out is b, was unknown");
+}
+
+/* A file with a number that is none keeps what it was, and the error names the number. */
+static void results_hold_no_nan(void **state) {
+  (void)state;
+  char directory[] = "/tmp/mps-output-XXXXXX", path[64], line[80] = "";
+  app a = {.program = "test"};
+  output f;
+  assert_non_null(mkdtemp(directory));
+  snprintf(path, sizeof path, "%s/table.csv", directory);
+  const double row[] = {1.0, NAN, 2.0}, bad[] = {1.0, 2.0, NAN}, infinite[] = {1.0, INFINITY, 2.0};
+  assert_true(output_open(&f, &a, directory, "table.csv"));
+  csv_header(&f, "t_s,x_m?,v_m_s");
+  csv_row(&f, 3, row);
+  assert_true(output_close(&f));
+  assert_string_equal(a.results, "table.csv");
+  for (int k = 0; k < 3; k++) {
+    assert_true(output_open(&f, &a, directory, "table.csv"));
+    if (k < 2) csv_header(&f, "t_s,x_m?,v_m_s");
+    csv_row(&f, 3, k == 1 ? infinite : bad);
+    assert_string_equal(f.bad, k == 0   ? "v_m_s of row 1 is nan"
+                               : k == 1 ? "x_m of row 1 is inf"
+                                        : "column 3 of row 1 is nan");
+    assert_false(output_close(&f));
+  }
+  FILE *stream = fopen(path, "r");
+  assert_non_null(stream);
+  assert_non_null(fgets(line, sizeof line, stream));
+  assert_string_equal(line, "t_s,x_m,v_m_s\n");
+  assert_non_null(fgets(line, sizeof line, stream));
+  assert_string_equal(line, "1,,2\n");
+  fclose(stream);
+  remove(path);
+  assert_true(output_open(&f, &a, directory, "table.csv"));
+  json_begin(&f);
+  json_optional(&f, "none", NAN);
+  json_number(&f, "force", -INFINITY);
+  json_end(&f);
+  assert_string_equal(f.bad, "force is -inf");
+  assert_false(output_close(&f));
+  assert_null(fopen(path, "r"));
+  assert_int_equal(rmdir(directory), 0); /* nothing is left in it */
 }
 
 static void travel_time_is_summed_over_layers(void **state) {
@@ -124,6 +211,8 @@ int main(void) {
       cmocka_unit_test(options_are_read_in_both_spellings),
       cmocka_unit_test(only_finite_decimal_numbers_are_numbers),
       cmocka_unit_test(numbers_are_written_so_that_they_read_back),
+      cmocka_unit_test(options_are_compared_one_by_one),
+      cmocka_unit_test(results_hold_no_nan),
       cmocka_unit_test(travel_time_is_summed_over_layers),
       cmocka_unit_test(the_front_leaves_drops_behind),
   };

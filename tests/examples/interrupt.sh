@@ -1,0 +1,93 @@
+#!/bin/sh
+# interrupt.sh DIRECTORY: Ctrl-C in every program: one line that says so, the results so far in whole
+# files and pictures, exit code 130.
+. "$(dirname "$0")/checks.sh"
+ulimit -t 60 # s of processor time: what does not stop is stopped
+programs=$1
+
+# interrupt NAME SECONDS PROGRAM OPTION...: runs into $work/NAME and presses Ctrl-C so long after the
+# run has begun (twice as late where there was no result yet, up to four times).
+interrupt() {
+  name=$1
+  wait=$2
+  program=$3
+  shift 3
+  for try in 1 2 3 4; do
+    rm -rf "$work/$name"
+    "$programs/$program" "$@" --threads 1 --out "$work/$name" >"$work/out" 2>"$work/log" &
+    pid=$!
+    until [ -s "$work/out" ] || ! kill -0 "$pid" 2>/dev/null; do sleep 0.05; done
+    sleep "$wait"
+    kill -INT "$pid"
+    status=0
+    wait "$pid" || status=$?
+    [ "$status" -eq 130 ] || fail "$program: exit code $status: $(cat "$work/log")"
+    [ "$(wc -l <"$work/log")" -eq 1 ] || fail "$program: more than one line: $(cat "$work/log")"
+    has "$work/log" "$program: interrupted"
+    grep -q "nothing is written" "$work/log" || return 0
+    wait=$(awk "BEGIN { print 2 * $wait }")
+  done
+  fail "$program: no results after $wait s"
+}
+
+# wrote NAME FILE...: these are there and named on stdout; no temporary file is left, all pictures
+# are whole, and summary.json says how the run ended.
+wrote() {
+  directory=$work/$1
+  shift
+  for file; do
+    [ -s "$directory/$file" ] || fail "no $file in $(ls "$directory")"
+    has "$work/out" "$file"
+  done
+  has "$directory/summary.json" '"outcome": "interrupted"'
+  [ -z "$(find "$directory" -name '*.part')" ] || fail "temporary files are left"
+  for file in "$directory"/*.png; do
+    [ ! -e "$file" ] || picture "$file" 0x0
+  done
+}
+
+interrupt box 0.5 mps-sliding-box --h 0.0025
+wrote box forces.csv summary.json
+interrupt disc 0.5 mps-rolling-disc --h 0.002
+wrote disc motion.csv summary.json
+interrupt footing 1 mps-footing
+wrote footing pressure.csv particles.csv summary.json
+interrupt pile 1 mps-pile --soil 0.4x2
+wrote pile load.csv summary.json
+interrupt dam 1 mps-dam-break
+wrote dam front.csv particles.csv summary.json
+interrupt collapse 1 mps-column-collapse --compare
+wrote collapse cases.csv front_sand.csv particles_sand.csv summary.json
+interrupt cone 2 mps-penetrometer --soil 3x3x3
+wrote cone force.csv section.csv summary.json
+interrupt wave 0.5 mps-wave --radius 1 --duration 3000
+wrote wave receivers.csv summary.json
+
+# The study: the cells of the cases that were not run are empty.
+"$programs/mps-stability" --study --method stepping --threads 1 --out "$work/study" >"$work/out" \
+  2>"$work/log" &
+pid=$!
+sleep 2
+kill -INT "$pid"
+status=0
+wait "$pid" || status=$?
+[ "$status" -eq 130 ] || fail "mps-stability: exit code $status: $(cat "$work/log")"
+has "$work/log" "mps-stability: interrupted: limits.csv"
+[ "$(wc -l <"$work/study/limits.csv")" -eq 321 ] || fail "limits.csv"
+
+# No hook reaches into a factorisation: the program ends at once, and nothing is half written.
+[ -x "$programs/mps-cantilever" ] || exit 0
+for program in "mps-cantilever --nx 801 --ny 401" "mps-plate --cells 500"; do
+  "$programs/"$program --out "$work/elastic" >"$work/out" 2>"$work/log" &
+  pid=$!
+  sleep 1
+  kill -INT "$pid"
+  start=$(date +%s)
+  status=0
+  wait "$pid" || status=$?
+  [ "$status" -eq 130 ] || fail "$program: exit code $status: $(cat "$work/log")"
+  [ $(($(date +%s) - start)) -le 3 ] || fail "$program: stopped late"
+  has "$work/log" "interrupted, nothing is written"
+  [ "$(wc -l <"$work/log")" -eq 1 ] || fail "$program: more than one line: $(cat "$work/log")"
+  [ -z "$(ls "$work/elastic")" ] || fail "$program left $(ls "$work/elastic")"
+done
