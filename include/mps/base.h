@@ -58,8 +58,39 @@ typedef enum mps_status {
 /** One-line English text of a status code; never NULL. Thread safe. */
 MPS_API const char *mps_status_text(mps_status status);
 
+/** Version of the headers as one number: 10000 major + 100 minor + patch. */
+#define MPS_VERSION_NUMBER (MPS_VERSION_MAJOR * 10000 + MPS_VERSION_MINOR * 100 + MPS_VERSION_PATCH)
+
 /** Version of the library that is linked, "MAJOR.MINOR.PATCH". Thread safe. */
 MPS_API const char *mps_version(void);
+/** The same as a number, to compare with MPS_VERSION_NUMBER. Thread safe. */
+MPS_API int32_t mps_version_number(void);
+
+/* The one table of optional parts: X(name, value, text). */
+#define MPS_FEATURE_TABLE(X)                                                                       \
+  X(OPENMP, 1, "OpenMP: MPS_EXECUTOR_OPENMP")                                                      \
+  X(HDF5, 2, "HDF5: recorders, checkpoints, saving of solvers")                                    \
+  X(CHOLMOD, 3, "CHOLMOD: implicit elasticity")                                                    \
+  X(ARPACK, 4, "ARPACK: eigenmodes of implicit elasticity")                                        \
+  X(EMBREE, 5, "Embree: rigid bodies from meshes of triangles")                                    \
+  X(PETSC, 6, "PETSc: domains on several machines")
+
+/** Optional parts of the library. Values are never renumbered. */
+enum {
+#define MPS_FEATURE_ENTRY(name, value, text) MPS_FEATURE_##name = value,
+  MPS_FEATURE_TABLE(MPS_FEATURE_ENTRY)
+#undef MPS_FEATURE_ENTRY
+};
+
+/** 1: this build has the part (MPS_FEATURE_...); 0: not, or the library does not know the number.
+ *  Thread safe. */
+MPS_API int32_t mps_library_has(int32_t feature);
+/** One line on the part, NULL for a number that the library does not know: the parts are those from
+ *  1 to the first NULL. Thread safe. */
+MPS_API const char *mps_library_feature_name(int32_t feature);
+/** 1: processor and build have inner loops of this x86-64 level (1, 3 or 4; 1 is always there).
+ *  Thread safe. */
+MPS_API int32_t mps_library_has_level(int32_t level);
 
 /** Element type of a view, laid out as DLPack's DLDataType. */
 typedef struct mps_dtype {

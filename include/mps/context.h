@@ -21,6 +21,8 @@ typedef struct mps_error {
   int64_t particle;  /* id of the particle concerned, -1 if none */
   char message[512]; /* the offending value and what is allowed */
   char function[64]; /* public function that failed */
+  char object[64];   /* what the error is about: its kind ("mpm"), and where there are several its
+                        number or name ("body 2", "field 'density'") */
 } mps_error;
 
 /** Allocates `size` bytes aligned to `alignment` (a power of two, at least 64), or NULL. */
@@ -105,6 +107,15 @@ MPS_API void mps_context_destroy(mps_context **context);
  *  overwritten by the next failure. */
 MPS_API const mps_error *mps_context_error(const mps_context *context);
 MPS_API void mps_context_clear_error(mps_context *context);
+
+/** Replace a hook and its `user`; NULL: none. Not while a function of the context or of its objects
+ *  runs in another thread. */
+MPS_API void mps_context_set_log(mps_context *context, mps_log_fn log, void *user);
+MPS_API void mps_context_set_progress(mps_context *context, mps_progress_fn progress, void *user);
+MPS_API void mps_context_set_cancel(mps_context *context, mps_cancel_fn cancel, void *user);
+
+/** x86-64 level of the inner loops in use: 1, 3 or 4. */
+MPS_API int32_t mps_context_instruction_level(const mps_context *context);
 
 /** Number of workers of the executor. */
 MPS_API int32_t mps_context_threads(const mps_context *context);

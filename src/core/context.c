@@ -21,7 +21,7 @@ static void system_free(void *user, void *memory) {
   free(memory);
 }
 
-/* ---- status and version --------------------------------------------------------------------- */
+/* ---- status --------------------------------------------------------------------- */
 
 const char *mps_status_text(mps_status status) {
   switch (status) {
@@ -33,14 +33,6 @@ const char *mps_status_text(mps_status status) {
   default:
     return "unknown status code";
   }
-}
-
-#define STRINGIFY_(x) #x
-#define STRINGIFY(x) STRINGIFY_(x)
-
-const char *mps_version(void) {
-  return STRINGIFY(MPS_VERSION_MAJOR) "." STRINGIFY(MPS_VERSION_MINOR) "." STRINGIFY(
-      MPS_VERSION_PATCH);
 }
 
 /* ---- definition structs ---------------------------------------------------------------------- */
@@ -189,6 +181,12 @@ void mps_context_destroy(mps_context **context) {
 
 /* ---- errors and log -------------------------------------------------------------------------- */
 
+/* The kind of object that a function belongs to: "mpm" of mps_mpm_step. */
+static void name_kind(mps_error *error, const char *function) {
+  const char *kind = strncmp(function, "mps_", 4) == 0 ? function + 4 : function;
+  snprintf(error->object, sizeof error->object, "%.*s", (int)strcspn(kind, "_"), kind);
+}
+
 mps_status mpsi_fail(mps_context *context, const char *function, mps_status status,
                      const char *format, ...) {
   if (!context) return status;
@@ -196,16 +194,26 @@ mps_status mpsi_fail(mps_context *context, const char *function, mps_status stat
   error->status = status;
   error->step = error->particle = -1;
   snprintf(error->function, sizeof error->function, "%s", function);
+  name_kind(error, function);
   va_list args;
   va_start(args, format);
   vsnprintf(error->message, sizeof error->message, format, args);
   va_end(args);
+  context->failures++;
   return status;
 }
 
 void mpsi_fail_where(mps_context *context, int64_t step, int64_t particle) {
   context->error.step = step;
   context->error.particle = particle;
+}
+
+void mpsi_fail_object(mps_context *context, const char *format, ...) {
+  if (!context) return;
+  va_list args;
+  va_start(args, format);
+  vsnprintf(context->error.object, sizeof context->error.object, format, args);
+  va_end(args);
 }
 
 mps_status mpsi_fail_memory(mps_context *context, const char *function, size_t bytes) {
@@ -262,6 +270,24 @@ bool mpsi_grow(mps_context *context, void **array, int64_t old_count, int64_t ne
 
 /* ---- hooks ----------------------------------------------------------------------------------- */
 
+void mps_context_set_log(mps_context *context, mps_log_fn log, void *user) {
+  if (!context) return;
+  context->def.log = log;
+  context->def.log_user = user;
+}
+
+void mps_context_set_progress(mps_context *context, mps_progress_fn progress, void *user) {
+  if (!context) return;
+  context->def.progress = progress;
+  context->def.progress_user = user;
+}
+
+void mps_context_set_cancel(mps_context *context, mps_cancel_fn cancel, void *user) {
+  if (!context) return;
+  context->def.cancel = cancel;
+  context->def.cancel_user = user;
+}
+
 void mpsi_progress(mps_context *context, const char *task, int64_t step, double time,
                    double time_end) {
   if (!context->def.progress) return;
@@ -281,6 +307,10 @@ bool mpsi_cancelled(mps_context *context) {
 }
 
 int32_t mpsi_context_level(const mps_context *context) { return context->level; }
+
+int32_t mps_context_instruction_level(const mps_context *context) {
+  return context ? context->level : 0;
+}
 
 int32_t mps_context_threads(const mps_context *context) { return context ? context->threads : 0; }
 

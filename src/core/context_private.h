@@ -10,6 +10,7 @@
 struct mps_context {
   mps_context_def def;
   mps_error error;
+  int64_t failures; /* how often `error` was written */
   int32_t threads;
   int32_t level;         /* 1, 3 or 4: of the instruction set of inner loops */
   atomic_int references; /* the caller's one, and one for each living object */

@@ -50,6 +50,8 @@ static const table_row *table_find(const char *name) {
   return NULL;
 }
 
+bool mpsi_field_reserved(const char *name) { return table_find(name) != NULL; }
+
 static bool is_f64(mps_dtype dtype) { return dtype.code == 2; }
 
 /* ---- storage --------------------------------------------------------------------------------- */

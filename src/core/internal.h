@@ -33,6 +33,9 @@ mps_status mpsi_fail(mps_context *context, const char *function, mps_status stat
                      const char *format, ...) MPSI_PRINTF(4, 5);
 /* Adds the step and the particle id to the record just written. */
 void mpsi_fail_where(mps_context *context, int64_t step, int64_t particle);
+/* Names the object concerned in the record just written: "body 2", "field 'density'". Without it
+ * the object is the kind that the function's name begins with. */
+void mpsi_fail_object(mps_context *context, const char *format, ...) MPSI_PRINTF(2, 3);
 mps_status mpsi_fail_memory(mps_context *context, const char *function, size_t bytes);
 void mpsi_log(mps_context *context, mps_log_level level, const char *format, ...) MPSI_PRINTF(3, 4);
 

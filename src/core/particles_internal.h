@@ -7,6 +7,10 @@
 
 #include <mps/particles.h>
 
+/* Whether `name` is one of the field table, whose meaning nobody else may change: neither a caller's
+ * field of another shape nor a history column of a law. */
+bool mpsi_field_reserved(const char *name);
+
 /* One component of a float64 field as a contiguous array, or NULL when the set has no such field
  * or component. Aligned to MPSI_ALIGNMENT, and readable at least MPSI_PARTICLES_PADDING values
  * past the end, where zeros stand: vector loops may load there, and store there only zeros.

@@ -3,7 +3,7 @@
 #include "test_common.h"
 #include "test_allocator.h"
 
-#include "core/internal.h"
+#include "core/guard.h"
 
 #include <mps/kernel.h>
 
@@ -107,6 +107,122 @@ static void backwards(void *user, int64_t count, mps_task_fn task, void *data) {
   for (int64_t i = count - 1; i >= 0; i--) task(data, i, 0);
 }
 
+static void an_error_names_its_object(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  const mps_error *error = mps_context_error(context);
+  (void)mpsi_fail(context, "mps_body_create_disc", MPS_ERROR_ARGUMENT, "x");
+  assert_string_equal(error->object, "body");
+  mpsi_fail_object(context, "body %d", 3);
+  assert_string_equal(error->object, "body 3");
+  (void)mpsi_fail(context, "mps_mpm_step", MPS_ERROR_ARGUMENT, "x");
+  assert_string_equal(error->object, "mpm");
+  mps_context_clear_error(context);
+  assert_string_equal(error->object, "");
+  mps_context_destroy(&context);
+}
+
+static void count_log(void *user, mps_log_level level, const char *message) {
+  (void)level;
+  (void)message;
+  (*(int *)user)++;
+}
+static void count_progress(void *user, const mps_progress *progress) {
+  (void)progress;
+  (*(int *)user)++;
+}
+static int32_t say_stop(void *user) {
+  (*(int *)user)++;
+  return 1;
+}
+
+static void hooks_can_be_replaced(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  int first = 0, second = 0;
+  mps_context_set_log(context, count_log, &first);
+  mpsi_log(context, MPS_LOG_INFO, "a");
+  mps_context_set_log(context, count_log, &second);
+  mpsi_log(context, MPS_LOG_INFO, "b");
+  mps_context_set_log(context, NULL, NULL);
+  mpsi_log(context, MPS_LOG_INFO, "c");
+  assert_int_equal(first, 1);
+  assert_int_equal(second, 1);
+  mps_context_set_progress(context, count_progress, &first);
+  mpsi_progress(context, "task", 1, 0.0, 1.0);
+  assert_int_equal(first, 2);
+  assert_false(mpsi_cancelled(context));
+  mps_context_set_cancel(context, say_stop, &second);
+  assert_true(mpsi_cancelled(context));
+  assert_int_equal(second, 2);
+  mps_context_set_log(NULL, NULL, NULL);
+  mps_context_destroy(&context);
+}
+
+static void a_callback_is_guarded_and_its_status_explained(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  const mps_error *error = mps_context_error(context);
+  mpsi_guard guard = {0};
+  assert_int_equal(mpsi_guard_check(&guard, context, "mps_mpm_step"), MPS_OK);
+  mpsi_guard_enter(&guard, context, "the callback of mps_mpm_run");
+  mps_assert_fails(context, mpsi_guard_check(&guard, context, "mps_mpm_step"), MPS_ERROR_STATE,
+                   "from the callback of mps_mpm_run");
+  assert_int_equal(mpsi_guard_leave(&guard, context, "mps_mpm_run", MPS_OK), MPS_OK);
+  assert_int_equal(mpsi_guard_check(&guard, context, "mps_mpm_step"), MPS_OK);
+
+  /* A status of the callback's own: a former failure is not its reason. */
+  (void)mpsi_fail(context, "mps_before", MPS_ERROR_IO, "the disk is full");
+  mpsi_guard_enter(&guard, context, "the callback of mps_mpm_run");
+  mps_assert_fails(context, mpsi_guard_leave(&guard, context, "mps_mpm_run", MPS_ERROR_IO),
+                   MPS_ERROR_IO, "the callback of mps_mpm_run returned status 5");
+  assert_null(strstr(error->message, "disk"));
+  assert_string_equal(error->function, "mps_mpm_run");
+  /* One that it was given inside. */
+  mpsi_guard_enter(&guard, context, "the callback of mps_mpm_run");
+  (void)mpsi_fail(context, "mps_recorder_write", MPS_ERROR_IO, "the disk is full");
+  mps_assert_fails(context, mpsi_guard_leave(&guard, context, "mps_mpm_run", MPS_ERROR_IO),
+                   MPS_ERROR_IO, "mps_recorder_write: the disk is full");
+  /* No status at all. */
+  mpsi_guard_enter(&guard, context, "the callback of mps_mpm_run");
+  mps_assert_fails(context, mpsi_guard_leave(&guard, context, "mps_mpm_run", (mps_status)-7),
+                   MPS_ERROR_ARGUMENT, "status -7");
+  mps_context_destroy(&context);
+}
+
+static void the_library_tells_what_it_is(void **state) {
+  (void)state;
+  int major, minor, patch;
+  assert_int_equal(sscanf(mps_version(), "%d.%d.%d", &major, &minor, &patch), 3);
+  assert_int_equal(mps_version_number(), 10000 * major + 100 * minor + patch);
+  int32_t count = 1;
+  while (mps_library_feature_name(count)) {
+    const int32_t has = mps_library_has(count);
+    assert_true(has == 0 || has == 1);
+    count++;
+  }
+  assert_int_equal(count, MPS_FEATURE_PETSC + 1);
+  assert_int_equal(mps_library_has(0), 0);
+  assert_int_equal(mps_library_has(count), 0);
+  assert_int_equal(mps_library_has(MPS_FEATURE_PETSC), 0);
+  assert_null(mps_library_feature_name(0));
+  mps_context *context = NULL;
+  mps_context_def def = mps_context_defaults();
+  def.executor = MPS_EXECUTOR_OPENMP;
+  assert_int_equal(mps_context_create(&def, &context, NULL, 0) == MPS_OK,
+                   mps_library_has(MPS_FEATURE_OPENMP));
+  mps_context_destroy(&context);
+  assert_int_equal(mps_library_has_level(1), 1);
+  assert_int_equal(mps_library_has_level(0), 0);
+  assert_int_equal(mps_library_has_level(2), 0);
+  context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  const int32_t used = mps_context_instruction_level(context);
+  assert_int_equal(mps_library_has_level(used), 1);
+  for (int32_t level = used + 1; level < 6; level++)
+    assert_int_equal(mps_library_has_level(level), 0);
+  mps_context_destroy(&context);
+}
+
 static void every_executor_runs_every_unit_once(void **state) {
   (void)state;
   int calls = 0;
@@ -179,6 +295,10 @@ int main(void) {
       cmocka_unit_test(bad_definitions_are_refused_with_the_reason),
       cmocka_unit_test(the_instruction_level_is_one_that_the_machine_has),
       cmocka_unit_test(errors_are_recorded_and_cleared),
+      cmocka_unit_test(an_error_names_its_object),
+      cmocka_unit_test(hooks_can_be_replaced),
+      cmocka_unit_test(a_callback_is_guarded_and_its_status_explained),
+      cmocka_unit_test(the_library_tells_what_it_is),
       cmocka_unit_test(every_executor_runs_every_unit_once),
       cmocka_unit_test(the_callers_allocator_is_used_and_everything_returned),
       cmocka_unit_test(lattice_density_is_the_sheet_value),

@@ -1,0 +1,34 @@
+/* guard.c - re-entrancy of the objects that call back, and what is recorded of a callback's status.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "guard.h"
+
+#include "context_private.h"
+
+#include <stdio.h>
+
+mps_status mpsi_guard_check(const mpsi_guard *guard, mps_context *context, const char *function) {
+  if (!guard->callback) return MPS_OK;
+  return mpsi_fail(context, function, MPS_ERROR_STATE,
+                   "called from %s of the same object: a callback may only read it",
+                   guard->callback);
+}
+
+void mpsi_guard_enter(mpsi_guard *guard, mps_context *context, const char *callback) {
+  guard->callback = callback;
+  guard->failures = context->failures;
+}
+
+mps_status mpsi_guard_leave(mpsi_guard *guard, mps_context *context, const char *function,
+                            mps_status status) {
+  const char *callback = guard->callback;
+  guard->callback = NULL;
+  if (status == MPS_OK) return MPS_OK;
+  const mps_error *error = &context->error;
+  char reason[380] = "";
+  if (context->failures != guard->failures && error->status == status)
+    snprintf(reason, sizeof reason, ": %.63s: %.300s", error->function, error->message);
+  const bool known = status > MPS_OK && status <= MPS_ERROR_INTERNAL;
+  return mpsi_fail(context, function, known ? status : MPS_ERROR_ARGUMENT,
+                   "%s returned status %d (%s)%s", callback, (int)status,
+                   mps_status_text(status), reason);
+}
