@@ -1,0 +1,179 @@
+/* mps/fluid.h - incompressible free-surface flow by moving particles (MPS), in the plane: waves,
+ * wave makers, impact of water on walls.
+ *
+ * The pressure follows from a symmetric Poisson equation for the reduced pressure
+ * q = p + rho g (height - reference level): in water at rest q is 0 exactly, gravity drops out of
+ * the equations, and walls are plain Neumann boundaries, made of mirror images of the particles.
+ * The free surface is a line a short way outside the outer particles, at a distance that each of
+ * them finds from its neighbours (docs/fluid.md has the equations).
+ *
+ * The set's spacing l0 is the particles' distance: each stands for l0^2 times `measure` of water.
+ * The solver works in the fields of the set (zero copy) and sorts it now and then: views taken
+ * before are then stale (their epoch). It reads `velocity` at creation where the set has it, and
+ * writes `position`, `velocity`, `pressure`, `reduced_pressure` and `free_surface`.
+ *
+ * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
+ * its results are the same bit for bit for every number of threads.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef LIBMPS_FLUID_H
+#define LIBMPS_FLUID_H
+
+#include <mps/particles.h>
+#include <mps/signal.h>
+#include <mps/solver.h>
+
+MPS_EXTERN_C_BEGIN
+
+typedef struct mps_fluid mps_fluid;
+
+typedef struct mps_fluid_def {
+  uint32_t struct_size;
+  int32_t iterations;  /* most iterations of the pressure solution, >= 1; default 2000 */
+  double density;      /* rho, kg/m3, > 0; default 1000 */
+  double viscosity;    /* Pa s, dynamic, >= 0; default 0 */
+  double gravity[3];   /* m/s2; [2] must be 0; default 0, -9.81, 0 */
+  double level;        /* m, height (against gravity, from the origin) at which q = p: the level of
+                          the water at rest. NaN (default): half a spacing above the highest
+                          particle */
+  double measure;      /* m, thickness of the slab, > 0; default 1 */
+  double dt;           /* s, > 0: at most the limit at rest, .5 (l0/g)^1/2; NaN (default): each step
+                          the largest by mps_fluid_limit */
+  double radius_ratio; /* re/l0, in [2.6, 4]; default 3.1 */
+  double tolerance;    /* of the pressure solution, |residual|/|right side|, in [1e-14, 1e-2];
+                          default 1e-5 */
+} mps_fluid_def;
+
+MPS_API mps_status mps_fluid_def_init(mps_fluid_def *def, size_t size);
+static inline mps_fluid_def mps_fluid_defaults(void) {
+  mps_fluid_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_fluid_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+
+/** Creates a solver for the 2D set `particles` (at least one; all of them are fluid), which it
+ *  holds until it is destroyed. `def` NULL: the defaults. MPS_ERROR_ARGUMENT names the value that
+ *  is out of range; then nothing has changed. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
+                                                  const mps_fluid_def *def, mps_fluid **out);
+MPS_API void mps_fluid_destroy(mps_fluid **fluid);
+
+/* ---- boundaries ------------------------------------------------------------------------------ */
+
+typedef enum mps_fluid_boundary_kind {
+  MPS_FLUID_BOUNDARY_SLIP = 0,   /* no flow across, no shear */
+  MPS_FLUID_BOUNDARY_NO_SLIP = 1 /* no flow across, and the viscosity holds the fluid along it */
+} mps_fluid_boundary_kind;
+
+#define MPS_FLUID_MAX_BOUNDARIES 16
+
+/** A plane wall: the fluid is where (x - point) . normal > 0. It moves with a signal (piston), or
+ *  as a signal of the caller's own says. Walls meet at right angles, or so that their images do
+ *  not overlap (a slope of at most 45 degrees). */
+typedef struct mps_fluid_boundary_def {
+  uint32_t struct_size;
+  int32_t kind;         /* mps_fluid_boundary_kind, default SLIP */
+  double point[3];      /* m, of the wall at time 0; its pressures are sampled from here on, every
+                           l0: choose the corner */
+  double normal[3];     /* into the fluid, any length > 0; [2] must be 0; no default */
+  mps_signal *signal;   /* displacement along the normal: factor times that of the signal, from its
+                           value at the time when the boundary is added; NULL (default): at rest.
+                           Kept alive */
+  double factor;        /* default 1 */
+} mps_fluid_boundary_def;
+
+MPS_API mps_status mps_fluid_boundary_def_init(mps_fluid_boundary_def *def, size_t size);
+static inline mps_fluid_boundary_def mps_fluid_boundary_defaults(void) {
+  mps_fluid_boundary_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_fluid_boundary_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+
+/** Adds a wall, between steps; `number` (may be NULL) receives the lowest free number.
+ *  MPS_ERROR_ARGUMENT: a particle lies outside or closer than .3 l0 to it; two walls that enclose
+ *  less than 90 degrees. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_add_boundary(mps_fluid *fluid,
+                                                        const mps_fluid_boundary_def *def,
+                                                        int32_t *number);
+/** Takes a wall away: the fluid may flow out there. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_remove_boundary(mps_fluid *fluid, int32_t number);
+
+/** What a wall exerts on the fluid: its pressures summed over the points of mps_fluid_get_wall. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_get_reaction_sized(mps_fluid *fluid, int32_t number,
+                                                              mps_reaction *out, size_t size);
+static inline mps_status mps_fluid_get_reaction(mps_fluid *fluid, int32_t number,
+                                                mps_reaction *out) {
+  return mps_fluid_get_reaction_sized(fluid, number, out, sizeof *out);
+}
+
+/** Pressure along a wall after the last step, at its wetted points every l0. Writes at most
+ *  `capacity` points: `x` (3 values a point, m) and `pressure` (Pa), NULL where not wanted; `count`
+ *  receives how many there are. Each point stands for the area l0 times `measure`. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_get_wall(mps_fluid *fluid, int32_t number,
+                                                    int64_t capacity, double *x, double *pressure,
+                                                    int64_t *count);
+/** Pressure (Pa) at `count` points of a wall: x[3 * k], ... in m, on it to a hundredth of l0; 0
+ *  where there is no water. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_get_pressure(mps_fluid *fluid, int32_t number,
+                                                        int64_t count, const double *x,
+                                                        double *pressure);
+/** Level of the surface (m, height against gravity from the origin) at `count` stations: `station`
+ *  is the distance (m) from the origin along the horizontal (x where gravity is along -y). NaN where
+ *  there is no surface. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_get_levels(mps_fluid *fluid, int64_t count,
+                                                      const double *station, double *level);
+
+/* ---- running --------------------------------------------------------------------------------- */
+
+/** Takes `count` (>= 0) steps. A step that fails has not happened: MPS_ERROR_NUMERIC, the pressure
+ *  solution did not converge; MPS_ERROR_DIVERGED, a particle would pass a wall or its velocity is
+ *  not finite; MPS_ERROR_CANCELLED. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_step(mps_fluid *fluid, int64_t count);
+
+/** Called at the start of a run, then every `every` steps and at the end. Any status but MPS_OK ends
+ *  the run, which returns it. It may read, not step or destroy. */
+typedef mps_status (*mps_fluid_fn)(void *user, mps_fluid *fluid);
+
+/** Steps to t_end (s, not before the present time), the last step shortened to end there. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_run(mps_fluid *fluid, double t_end, int64_t every,
+                                               mps_fluid_fn callback, void *user);
+
+MPS_API double mps_fluid_time(const mps_fluid *fluid); /* s */
+MPS_API int64_t mps_fluid_steps(const mps_fluid *fluid);
+MPS_API double mps_fluid_dt(const mps_fluid *fluid); /* s, of the next step */
+/** Recommended largest step (s): min(.1 (l0/g)^1/2, .25 l0/|u|, .2 l0/|wall velocity|). */
+MPS_API double mps_fluid_limit(const mps_fluid *fluid);
+/** Changes the step: as `dt` of the definition. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_set_dt(mps_fluid *fluid, double dt);
+
+MPS_API mps_particles *mps_fluid_particles(const mps_fluid *fluid);
+MPS_API mps_context *mps_fluid_context(const mps_fluid *fluid);
+
+/** Sums over the fluid. `strain` is the potential energy in the field of gravity, above the level
+ *  of the definition; `dissipated` (all of it by the scheme and the viscosity) is what is missing. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_get_totals_sized(mps_fluid *fluid, mps_totals *out,
+                                                            size_t size);
+static inline mps_status mps_fluid_get_totals(mps_fluid *fluid, mps_totals *out) {
+  return mps_fluid_get_totals_sized(fluid, out, sizeof *out);
+}
+
+/** How the steps go; counts since creation. */
+typedef struct mps_fluid_report {
+  int64_t ghosts, pairs;   /* of the last step: wall images; neighbours, each from both sides */
+  int64_t surface, apart;  /* particles at the surface; isolated ones, in free fall */
+  int64_t iterations;      /* of the last pressure solution */
+  int64_t all_iterations;  /* of all */
+  int64_t collisions;      /* pairs that came closer than l0/2 and shared their momentum */
+  int64_t limited;         /* velocities cut to what the neighbours have */
+  int64_t pushed;          /* particles put back on a wall's inner side (within .1 l0) */
+  int64_t bytes;           /* memory besides the fields */
+} mps_fluid_report;
+MPS_API MPS_NODISCARD mps_status mps_fluid_get_report_sized(const mps_fluid *fluid,
+                                                            mps_fluid_report *out, size_t size);
+static inline mps_status mps_fluid_get_report(const mps_fluid *fluid, mps_fluid_report *out) {
+  return mps_fluid_get_report_sized(fluid, out, sizeof *out);
+}
+
+MPS_EXTERN_C_END
+#endif

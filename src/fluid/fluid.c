@@ -1,0 +1,374 @@
+/* fluid.c - the fluid solver as an object: definition, creation, boundaries, questions.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid_private.h"
+
+#include <string.h>
+
+#define LEAST_WALL 0.3 /* l0: distance of a particle from a wall */
+#define MOST_PARTICLES (INT32_MAX / 4)
+
+static const mps_fluid_def defaults = {
+    .struct_size = sizeof(mps_fluid_def),
+    .iterations = 2000,
+    .density = 1000.0,
+    .gravity = {0.0, -9.81, 0.0},
+    .level = NAN,
+    .measure = 1.0,
+    .dt = NAN,
+    .radius_ratio = 3.1,
+    .tolerance = 1e-5,
+};
+
+static const mps_fluid_boundary_def boundary_defaults = {
+    .struct_size = sizeof(mps_fluid_boundary_def), .factor = 1.0};
+
+mps_status mps_fluid_def_init(mps_fluid_def *def, size_t size) {
+  return mpsi_def_init(def, size, sizeof(mps_fluid_def), &defaults, sizeof defaults);
+}
+
+mps_status mps_fluid_boundary_def_init(mps_fluid_boundary_def *def, size_t size) {
+  return mpsi_def_init(def, size, sizeof(mps_fluid_boundary_def), &boundary_defaults,
+                       sizeof boundary_defaults);
+}
+
+/* ---- checks ---------------------------------------------------------------------------------- */
+
+static bool within(double value, double low, double high) { return value >= low && value <= high; }
+
+static mps_status check_def(mps_context *context, const mps_fluid_def *d, double l0) {
+  const double g = hypot(d->gravity[0], d->gravity[1]);
+  const double longest = g > 0.0 ? 0.5 * sqrt(l0 / g) : INFINITY;
+  const struct {
+    const char *name, *allowed;
+    double value;
+    bool good;
+  } checks[] = {
+      {"iterations", ">= 1", d->iterations, d->iterations >= 1},
+      {"density", "in [1e-3, 1e6] kg/m3", d->density, within(d->density, 1e-3, 1e6)},
+      {"viscosity", "in [0, 1e6] Pa s", d->viscosity, within(d->viscosity, 0.0, 1e6)},
+      {"|gravity|", "at most 1e6 m/s2", g, g <= 1e6},
+      {"gravity[2]", "0: the fluid is in the plane", d->gravity[2], d->gravity[2] == 0.0},
+      {"level", "finite or NaN", d->level, isnan(d->level) || isfinite(d->level)},
+      {"measure", "in [1e-9, 1e9] m", d->measure, within(d->measure, 1e-9, 1e9)},
+      {"dt", "NaN, or > 0 and at most half of (l0/g)^1/2", d->dt,
+       isnan(d->dt) || (d->dt > 0.0 && d->dt <= longest)},
+      {"radius_ratio", "in [2.6, 4]", d->radius_ratio, within(d->radius_ratio, 2.6, 4.0)},
+      {"tolerance", "in [1e-14, 1e-2]", d->tolerance, within(d->tolerance, 1e-14, 1e-2)},
+  };
+  for (size_t k = 0; k < sizeof checks / sizeof *checks; k++)
+    if (!checks[k].good)
+      return mpsi_fail(context, "mps_fluid_create", MPS_ERROR_ARGUMENT,
+                       "%s of the fluid is %g, allowed is %s", checks[k].name, checks[k].value,
+                       checks[k].allowed);
+  return MPS_OK;
+}
+
+static mps_status check_particles(mps_context *context, mps_particles *particles) {
+  static const char *const function = "mps_fluid_create";
+  const int64_t n = mps_particles_count(particles);
+  if (mpsi_particles_context(particles) != context)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "the particle set was made from another context");
+  if (mps_particles_dim(particles) != 2)
+    return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
+                     "the particle set has dim %d: the fluid is in the plane, dim 2",
+                     mps_particles_dim(particles));
+  if (n < 1 || n > MOST_PARTICLES)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "the particle set has %lld particles, allowed are 1 to %d", (long long)n,
+                     MOST_PARTICLES);
+  static const char *const names[] = {"position", "velocity"};
+  for (int f = 0; f < 2; f++)
+    for (int c = 0; c < 2; c++) {
+      const double *value = mpsi_particles_column(particles, names[f], c);
+      for (int64_t i = 0; value && i < n; i++)
+        if (!(fabs(value[i]) <= 1e12))
+          return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                           "%s of particle %lld is %g, must be finite and at most 1e12", names[f],
+                           (long long)mpsi_particles_integers(particles, "id")[i], value[i]);
+    }
+  return MPS_OK;
+}
+
+/* ---- creation -------------------------------------------------------------------------------- */
+
+static void set_gravity(mps_fluid *f) {
+  const double *gravity = f->def.gravity;
+  f->g = hypot(gravity[0], gravity[1]);
+  f->up[0] = f->g > 0.0 ? -gravity[0] / f->g : 0.0;
+  f->up[1] = f->g > 0.0 ? -gravity[1] / f->g : 1.0;
+  f->level = f->def.level;
+  if (!isnan(f->level)) return;
+  const double *x = mpsi_particles_column(f->particles, "position", 0);
+  const double *y = mpsi_particles_column(f->particles, "position", 1);
+  f->level = -INFINITY;
+  for (int64_t i = 0; i < f->count; i++)
+    f->level = fmax(f->level, f->up[0] * x[i] + f->up[1] * y[i] + 0.5 * f->l0);
+}
+
+/* The arrays over particles that never grow, from one block. */
+static bool allocate(mps_fluid *f) {
+  mpsi_fluid_system *s = &f->system;
+  const int64_t n = (f->count + 7) / 8 * 8 + 24, chunks = f->count / MPSI_FLUID_CHUNK + 2;
+  double **doubles[] = {&f->u_new[0],       &f->u_new[1],  &f->zone_normal[0], &f->zone_normal[1],
+                        &f->pressure,       &s->diagonal,  &s->right,          &s->r,
+                        &s->z,              &s->q,         &s->inverse};
+  enum { DOUBLES = sizeof doubles / sizeof *doubles };
+  double *block = mpsi_alloc(f->context, n * (DOUBLES + 1 + 2) + 2 * chunks, sizeof *block);
+  f->local = mpsi_alloc(f->context, f->count, sizeof *f->local);
+  f->state = mpsi_alloc(f->context, 2 * f->count, sizeof *f->state);
+  f->slab = block;
+  if (!block || !f->local || !f->state) return false;
+  for (int k = 0; k < DOUBLES; k++) *doubles[k] = block + k * n;
+  f->start = (int64_t *)(block + DOUBLES * n);
+  f->near = (int32_t *)(block + (DOUBLES + 1) * n);
+  s->lower_start = f->near + n;
+  s->lower_end = s->lower_start + n;
+  s->sums = block + (DOUBLES + 3) * n;
+  f->zone = f->state + f->count;
+  return true;
+}
+
+static mps_status add_fields(mps_particles *particles) {
+  static const char *const names[] = {"velocity", "pressure", "reduced_pressure", "free_surface"};
+  mps_status status = MPS_OK;
+  for (size_t k = 0; status == MPS_OK && k < sizeof names / sizeof *names; k++)
+    status = mps_particles_add_field(particles, names[k], 0);
+  return status;
+}
+
+static double energy_of(const mps_fluid *f, double *kinetic) {
+  const double *x = mpsi_particles_column(f->particles, "position", 0);
+  const double *y = mpsi_particles_column(f->particles, "position", 1);
+  const double *u = mpsi_particles_column(f->particles, "velocity", 0);
+  const double *v = mpsi_particles_column(f->particles, "velocity", 1);
+  const double volume = f->l0 * f->l0 * f->def.measure;
+  double square = 0.0, head = 0.0;
+  for (int64_t i = 0; i < f->count; i++) {
+    square += u[i] * u[i] + v[i] * v[i];
+    head += mpsi_fluid_head(f, x[i], y[i]);
+  }
+  *kinetic = 0.5 * f->def.density * volume * square;
+  return *kinetic + volume * head;
+}
+
+static void release(mps_fluid *f) {
+  mps_context *context = f->context;
+  void *const parts[] = {f->slab,           f->local,         f->state,
+                         f->cloud,
+                         f->index_room.item, f->w_room.item,  f->cell_room.item,
+                         f->fit_room.item,  f->lower_col_room.item, f->lower_room.item};
+  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) mps_signal_destroy(&f->wall[b].signal);
+  mpsi_free(context, f);
+}
+
+static mps_status start(mps_fluid *f, const char *function) {
+  f->count = mps_particles_count(f->particles);
+  f->l0 = mps_particles_spacing(f->particles);
+  f->weight = mpsi_fluid_make_weight(f->l0, f->def.radius_ratio * f->l0);
+  f->most_near = 44, f->most_lower = 22;
+  set_gravity(f);
+  if (!allocate(f) || !mpsi_fluid_grow_cloud(f, f->count + f->count / 4 + 256))
+    return mpsi_fail_memory(f->context, function, (size_t)f->count * sizeof *f->local);
+  const mps_status status = mpsi_fluid_look(f, function);
+  if (status != MPS_OK) return status;
+  double most = 0.0;
+  for (int64_t i = 0; i < f->count; i++)
+    most = fmax(most, f->u[0][i] * f->u[0][i] + f->u[1][i] * f->u[1][i]);
+  f->speed = sqrt(most);
+  double kinetic;
+  f->energy = energy_of(f, &kinetic);
+  return MPS_OK;
+}
+
+mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
+                            const mps_fluid_def *user_def, mps_fluid **out) {
+  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!particles || !out)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL",
+                     particles ? "out" : "particles");
+  *out = NULL;
+  mps_fluid_def def = defaults;
+  mps_status status = MPS_OK;
+  if (user_def)
+    status = mpsi_def_read(context, __func__, user_def, sizeof def, &def, sizeof def);
+  if (status == MPS_OK) status = check_particles(context, particles);
+  if (status == MPS_OK) status = check_def(context, &def, mps_particles_spacing(particles));
+  if (status == MPS_OK) status = mpsi_particles_check_free(particles, __func__);
+  if (status != MPS_OK) return status;
+  mps_fluid *f = mpsi_alloc(context, 1, sizeof *f);
+  if (!f) return mpsi_fail_memory(context, __func__, sizeof *f);
+  const int32_t fields = mps_particles_field_count(particles);
+  f->context = context;
+  f->particles = particles;
+  f->def = def;
+  status = add_fields(particles);
+  if (status == MPS_OK) status = start(f, __func__);
+  if (status != MPS_OK) {
+    mpsi_particles_drop_fields(particles, fields);
+    release(f);
+    return status;
+  }
+  mpsi_context_retain(context);
+  mpsi_particles_pin(particles);
+  *out = f;
+  return MPS_OK;
+}
+
+void mps_fluid_destroy(mps_fluid **fluid) {
+  if (!fluid || !*fluid) return;
+  mps_fluid *f = *fluid;
+  if (mpsi_fluid_ready(f, __func__) != MPS_OK) return;
+  mps_context *context = f->context;
+  mps_particles *particles = f->particles;
+  *fluid = NULL;
+  release(f);
+  mpsi_particles_unpin(particles);
+  mpsi_context_release(context);
+}
+
+/* ---- boundaries ------------------------------------------------------------------------------ */
+
+static mps_status check_boundary(mps_fluid *f, const mps_fluid_boundary_def *d) {
+  static const char *const function = "mps_fluid_add_boundary";
+  const double length = hypot(d->normal[0], d->normal[1]);
+  if (d->kind != MPS_FLUID_BOUNDARY_SLIP && d->kind != MPS_FLUID_BOUNDARY_NO_SLIP)
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "kind of the boundary is %d, allowed are 0 (slip) and 1 (no slip)", d->kind);
+  if (!(length > 1e-150 && length < 1e150) || d->normal[2] != 0.0)
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "normal of the boundary is (%g, %g, %g): it must lie in the plane and have a length",
+                     d->normal[0], d->normal[1], d->normal[2]);
+  if (!(fabs(d->point[0]) <= 1e12 && fabs(d->point[1]) <= 1e12) || !isfinite(d->factor))
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "point of the boundary is (%g, %g) m and factor %g: must be finite, the point "
+                     "within 1e12 m",
+                     d->point[0], d->point[1], d->factor);
+  return MPS_OK;
+}
+
+/* The wall against particles and other walls. */
+static mps_status check_place(mps_fluid *f, const mpsi_fluid_wall *w) {
+  static const char *const function = "mps_fluid_add_boundary";
+  const double *x = mpsi_particles_column(f->particles, "position", 0);
+  const double *y = mpsi_particles_column(f->particles, "position", 1);
+  for (int64_t i = 0; i < f->count; i++) {
+    const double d = mpsi_fluid_distance(w, 0.0, x[i], y[i]);
+    if (d < LEAST_WALL * f->l0)
+      return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                       "particle %lld at (%g, %g) m is %g m inside the boundary, must be at least "
+                       "%g l0 = %g m",
+                       (long long)mpsi_particles_integers(f->particles, "id")[i], x[i], y[i], d,
+                       LEAST_WALL, LEAST_WALL * f->l0);
+  }
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+    const double *N = f->wall[b].normal, cosine = N[0] * w->normal[0] + N[1] * w->normal[1];
+    if (!f->wall[b].used) continue;
+    /* opposite walls are parallel; otherwise the fluid's corner has pi - acos(cosine) */
+    if (cosine < -1e-6 && cosine > -1.0 + 1e-9)
+      return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                       "the boundary and boundary %d enclose %g degrees of fluid, allowed are 90 and "
+                       "more",
+                       b, 180.0 - acos(cosine) * 57.29577951308232);
+  }
+  return MPS_OK;
+}
+
+mps_status mps_fluid_add_boundary(mps_fluid *f, const mps_fluid_boundary_def *user_def,
+                                  int32_t *number) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  if (!user_def) return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "def is NULL");
+  mps_fluid_boundary_def def = boundary_defaults;
+  mps_status status = mpsi_fluid_ready(f, __func__);
+  if (status == MPS_OK)
+    status = mpsi_def_read(f->context, __func__, user_def, sizeof def, &def, sizeof def);
+  if (status == MPS_OK) status = check_boundary(f, &def);
+  if (status != MPS_OK) return status;
+  int32_t b = 0;
+  while (b < MPS_FLUID_MAX_BOUNDARIES && f->wall[b].used) b++;
+  if (b == MPS_FLUID_MAX_BOUNDARIES)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "the fluid has %d boundaries, the most there can be", b);
+  const double length = hypot(def.normal[0], def.normal[1]);
+  mpsi_fluid_wall w = {.used = true, .kind = def.kind, .factor = def.factor};
+  for (int c = 0; c < 2; c++) w.at[c] = def.point[c], w.normal[c] = def.normal[c] / length;
+  status = check_place(f, &w);
+  if (status != MPS_OK) return status;
+  if (def.signal) {
+    w.signal = mpsi_signal_retain(def.signal);
+    w.origin = mps_signal_displacement(def.signal, f->time);
+  }
+  f->wall[b] = w;
+  if (number) *number = b;
+  return mpsi_fluid_look(f, __func__);
+}
+
+mps_status mps_fluid_remove_boundary(mps_fluid *f, int32_t number) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_fluid_ready(f, __func__);
+  if (status != MPS_OK) return status;
+  if (number < 0 || number >= MPS_FLUID_MAX_BOUNDARIES || !f->wall[number].used)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "the fluid has no boundary of number %d", number);
+  mps_signal_destroy(&f->wall[number].signal);
+  f->wall[number] = (mpsi_fluid_wall){0};
+  return MPS_OK;
+}
+
+/* ---- questions ------------------------------------------------------------------------------- */
+
+mps_status mps_fluid_set_dt(mps_fluid *f, double dt) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_fluid_ready(f, __func__);
+  if (status != MPS_OK) return status;
+  const double longest = f->g > 0.0 ? 0.5 * sqrt(f->l0 / f->g) : INFINITY;
+  if (!isnan(dt) && !(dt > 0.0 && dt <= longest && isfinite(dt)))
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "dt is %g s, must be NaN or > 0 and at most half of (l0/g)^1/2, %g s", dt,
+                     longest);
+  f->def.dt = dt;
+  return MPS_OK;
+}
+
+mps_particles *mps_fluid_particles(const mps_fluid *f) { return f ? f->particles : NULL; }
+
+mps_context *mps_fluid_context(const mps_fluid *f) { return f ? f->context : NULL; }
+
+mps_status mps_fluid_get_totals_sized(mps_fluid *f, mps_totals *out, size_t size) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  const double volume = f->l0 * f->l0 * f->def.measure, mass = f->def.density * volume;
+  const double *x = mpsi_particles_column(f->particles, "position", 0);
+  const double *y = mpsi_particles_column(f->particles, "position", 1);
+  const double *u = mpsi_particles_column(f->particles, "velocity", 0);
+  const double *v = mpsi_particles_column(f->particles, "velocity", 1);
+  mps_totals t = {.volume = volume * (double)f->count, .mass = mass * (double)f->count};
+  for (int64_t i = 0; i < f->count; i++) {
+    t.linear[0] += mass * u[i], t.linear[1] += mass * v[i];
+    t.angular[2] += mass * (x[i] * v[i] - y[i] * u[i]);
+  }
+  const double energy = energy_of(f, &t.kinetic);
+  t.strain = energy - t.kinetic;
+  t.work_boundaries = f->work_boundaries;
+  t.dissipated = t.scheme = f->work_boundaries - (energy - f->energy);
+  return mpsi_out_write(f->context, "mps_fluid_get_totals", out, size, &t, sizeof t);
+}
+
+static int64_t bytes_of(const mps_fluid *f) {
+  const int64_t n = (f->count + 7) / 8 * 8 + 24, chunks = f->count / MPSI_FLUID_CHUNK + 2;
+  return 8 * (14 * n + 2 * chunks) + f->count * ((int64_t)sizeof *f->local + 2) +
+         f->cloud_capacity * (11 * 8 + 8) + f->index_room.capacity * 4 + f->w_room.capacity * 8 +
+         f->cell_room.capacity * 4 + f->lower_col_room.capacity * 4 + f->lower_room.capacity * 4;
+}
+
+mps_status mps_fluid_get_report_sized(const mps_fluid *f, mps_fluid_report *out, size_t size) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_fluid_report report = f->report;
+  for (int64_t i = 0; i < f->count; i++) {
+    report.surface += f->state[i] == MPSI_FLUID_SURFACE;
+    report.apart += f->state[i] == MPSI_FLUID_APART;
+    report.pairs += f->near[i];
+  }
+  report.bytes = bytes_of(f);
+  return mpsi_out_write(f->context, "mps_fluid_get_report", out, size, &report, sizeof report);
+}

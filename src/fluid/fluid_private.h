@@ -1,0 +1,174 @@
+/* fluid_private.h - the members of the incompressible fluid solver, by the stages of its step:
+ *
+ *   walls.c     where the walls are and go; mirror images (ghosts) of the particles beyond them
+ *   near.c      who is near whom, and the weights w
+ *   moments.c   sums over the neighbours: density, moments, velocity gradient, free surface
+ *   pressure.c  rows of the pressure equation; pcg.c solves it
+ *   move.c      pressure gradient, velocity, guards, positions
+ *   probe.c     pressure at walls, level of the surface
+ *   step.c      the order of all this
+ *
+ * Indices below `count` are particles, those from `count` on are ghosts. A step works on copies of
+ * positions and velocities and writes the particles' fields only when all has gone well.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_FLUID_PRIVATE_H
+#define MPSI_FLUID_PRIVATE_H
+
+#include "core/internal.h"
+#include "core/particles_internal.h"
+#include "core/retain.h"
+
+#include <mps/fluid.h>
+
+#define MPSI_FLUID_CHUNK 256 /* particles in a unit of work: sums are made in this order */
+
+/* A growing array. */
+typedef struct mpsi_fluid_room {
+  void *item;
+  int64_t capacity;
+} mpsi_fluid_room;
+
+/* A wall. Displacement and velocity are along the normal. */
+typedef struct mpsi_fluid_wall {
+  bool used;
+  int32_t kind;
+  double at[2], normal[2]; /* m, of the wall without displacement; unit, into the fluid */
+  mps_signal *signal;
+  double factor, origin;   /* origin: the signal's displacement that counts as 0, m */
+  double s, u;             /* m, m/s: at the beginning of the step; u the mean of the step before */
+  double s_new, u_new, a;  /* at its end; a = (u_new - u)/dt */
+  double force[2], moment; /* N, N m about the origin: on the fluid, of the last step */
+  double impulse[2], moment_impulse, work;
+  int64_t wetted; /* points with water */
+} mpsi_fluid_wall;
+
+/* The weight (1-z)^4 (1+4z), z = r/re, and its sums over the full lattice. */
+typedef struct mpsi_fluid_weight {
+  double re, inverse; /* m, 1/m */
+  double n0;          /* sum w over the lattice */
+  double half;        /* ... over the rows at and below a particle of a level surface */
+  double slope;       /* growth of sum w with a surface that rises by l0 */
+} mpsi_fluid_weight;
+
+/* What a particle knows of its surroundings; tensors xx, xy, yx, yy, symmetric ones xx, xy, yy. */
+typedef struct mpsi_fluid_local {
+  double n, m[2], S;     /* sum w, sum w dx, sum w r^2/4 */
+  double inverse[3];     /* of M = sum w dx dx^T/r^2 */
+  double with_surface[3]; /* of M + c e e^T */
+  double gradient[4];    /* of velocity, 1/s */
+  double rest[2];        /* sum w (du - G dx)/n: what a linear velocity field leaves, m/s */
+  double shift[2];       /* sum w dx/(r n0) */
+  double h, c;           /* distance of the surface (m) and its weight |m|/h; 0, 0 inside */
+  double qs;             /* reduced pressure of the surface there, Pa */
+} mpsi_fluid_local;
+
+enum { MPSI_FLUID_INSIDE = 0, MPSI_FLUID_SURFACE = 1, MPSI_FLUID_APART = 2 };
+
+/* Rows of the pressure equation and what its solution needs; see pcg.c. */
+typedef struct mpsi_fluid_system {
+  double *diagonal, *right; /* count */
+  double *x, *p;            /* count + ghosts */
+  double *r, *z, *q;        /* count */
+  int32_t *lower_start, *lower_end; /* of row i, in its block's stretch of lower_col and lower */
+  int32_t *lower_col;
+  float *lower;             /* of L */
+  double *inverse;          /* of D */
+  double *sums;             /* by chunk or block, two values each */
+} mpsi_fluid_system;
+
+struct mps_fluid {
+  mps_context *context;
+  mps_particles *particles;
+  mps_fluid_def def;
+  mpsi_fluid_weight weight;
+  double l0, g, up[2], level; /* m, m/s2, unit vector against gravity, m */
+  mpsi_fluid_wall wall[MPS_FLUID_MAX_BOUNDARIES];
+  int64_t count, ghosts;
+  /* positions, velocities: particles, then ghosts */
+  double *x[2], *u[2], *q, *offset;   /* offset: of a ghost's q from its parent's, Pa */
+  int32_t *parent;                    /* of a ghost, by index - count */
+  uint32_t *flips;                    /* walls that it is mirrored at, bits */
+  int64_t cloud_capacity;
+  double *u_new[2], *pressure;        /* count */
+  uint8_t *state;                     /* MPSI_FLUID_..., count */
+  uint8_t *zone;                      /* at the surface or within 1.6 l0 of it */
+  double *zone_normal[2];
+  mpsi_fluid_local *local;
+  /* neighbours */
+  int64_t *start;                     /* first pair of each particle */
+  int32_t *near;                      /* pairs of each particle */
+  int64_t most_near;                  /* room for pairs, a particle on average over a chunk */
+  mpsi_fluid_room index_room, w_room; /* int32_t, double: pairs */
+  int32_t *index;                     /* of the pairs' other ends, ghosts too */
+  double *w;                          /* of the pairs */
+  mpsi_fluid_room cell_room, fit_room; /* int32_t; sums of fits, see probe.c */
+  int32_t *slot;                      /* cloud sorted by cells */
+  double *slot_x[2];
+  mpsi_fluid_system system;
+  mpsi_fluid_room lower_col_room, lower_room;
+  int64_t most_lower; /* room for entries of L, a row on average */
+  void *slab;                         /* of all arrays of fixed size */
+  void *cloud;
+  double time, dt, speed;             /* s; s, of the step being made; largest |u|, m/s */
+  int64_t steps;
+  bool in_callback;
+  mps_fluid_report report;
+  double energy;                      /* J, kinetic and potential at creation */
+  double work_boundaries;             /* J, since creation */
+};
+
+bool mpsi_fluid_room_ensure(mps_context *context, mpsi_fluid_room *room, int64_t count,
+                            size_t size);
+
+/* Runs task(fluid, chunk) for the chunks of `items` items on the executor. */
+typedef void (*mpsi_fluid_task)(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
+void mpsi_fluid_for(mps_fluid *fluid, int64_t items, int64_t chunk, mpsi_fluid_task task);
+
+static inline double mpsi_fluid_w(const mpsi_fluid_weight *weight, double r) {
+  const double a = 1.0 - r * weight->inverse;
+  return a * a * a * a * (5.0 - 4.0 * a);
+}
+
+/* rho g (height - level), Pa: what the reduced pressure has more than the pressure. */
+static inline double mpsi_fluid_head(const mps_fluid *f, double x, double y) {
+  return f->def.density * f->g * (f->up[0] * x + f->up[1] * y - f->level);
+}
+
+mpsi_fluid_weight mpsi_fluid_make_weight(double l0, double re);
+
+#include <string.h>
+static inline mps_status mpsi_out_write(mps_context *c, const char *fn, void *out, size_t size, const void *known, size_t k) {
+  if (!out) return mpsi_fail(c, fn, MPS_ERROR_ARGUMENT, "out is NULL");
+  memcpy(out, known, size < k ? size : k); return MPS_OK; } /* TEMP */
+/* walls.c */
+void mpsi_fluid_begin_walls(mps_fluid *fluid, double dt);
+void mpsi_fluid_end_walls(mps_fluid *fluid);
+void mpsi_fluid_add_impulses(mps_fluid *fluid);
+bool mpsi_fluid_grow_cloud(mps_fluid *fluid, int64_t capacity); /* room for the ghosts; false: none */
+mps_status mpsi_fluid_make_ghosts(mps_fluid *fluid, const char *function);
+void mpsi_fluid_move_ghosts(mps_fluid *fluid); /* their velocities and pressure offsets */
+/* Distance (m) from a wall displaced by s, > 0 in the fluid. */
+static inline double mpsi_fluid_distance(const mpsi_fluid_wall *w, double s, double x, double y) {
+  return (x - w->at[0]) * w->normal[0] + (y - w->at[1]) * w->normal[1] - s;
+}
+
+/* near.c */
+mps_status mpsi_fluid_find_neighbours(mps_fluid *fluid, const char *function);
+/* moments.c */
+void mpsi_fluid_find_moments(mps_fluid *fluid);
+/* pressure.c */
+mps_status mpsi_fluid_solve_pressure(mps_fluid *fluid, const char *function);
+/* pcg.c: solves for system.x, starting from what it holds; the number of iterations, or -1. */
+mps_status mpsi_fluid_factor(mps_fluid *fluid, const char *function);
+int64_t mpsi_fluid_pcg(mps_fluid *fluid);
+/* move.c */
+void mpsi_fluid_find_velocities(mps_fluid *fluid);
+int64_t mpsi_fluid_advance(mps_fluid *fluid); /* first particle that went wrong, or -1 */
+/* probe.c */
+mps_status mpsi_fluid_load_walls(mps_fluid *fluid, const char *function);
+/* step.c: the surroundings of the particles where the fields have them. */
+mps_status mpsi_fluid_look(mps_fluid *fluid, const char *function);
+/* step.c: MPS_ERROR_STATE within a callback of the run. */
+mps_status mpsi_fluid_ready(mps_fluid *fluid, const char *function);
+
+#endif

@@ -1,0 +1,161 @@
+/* moments.c - what each particle's neighbours, ghosts included, say of its surroundings, with
+ * w = (1-z)^4 (1+4z), z = r/re:
+ *
+ *   n = sum w,  m = sum w dx,  S = sum w r^2/4,  M = sum w dx dx^T/r^2,
+ *   G = grad u = (sum w du dx^T/r^2) M^-1.
+ *
+ * A particle is at the free surface where |m| > .15 n0 l0 and nobody is within 2.1 l0 inside the cone
+ * of 45 degrees about e = -m/|m|, or where n < .72 n0 (Tsukamoto 2016, Marrone 2010). The surface
+ * then lies at x + h e, h = l0 (1/2 + (n - n_half)/n_slope): in an undisturbed lattice half a
+ * spacing outside. A particle with n < .12 n0 is apart from the rest and falls freely.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid_private.h"
+
+#define APART 0.12     /* n/n0 */
+#define FEW 0.72       /* n/n0 */
+#define ONE_SIDED 0.15 /* |m|/(n0 l0) */
+#define CONE_REACH 2.1 /* l0 */
+#define CONE 0.70710678118654752
+#define LEAST_RATIO 0.1 /* of the eigenvalues of M */
+#define ZONE 1.6        /* l0 */
+
+typedef struct sums {
+  double n, m[2], r2, M[3], du[2], G[4], shift[2];
+} sums;
+
+static sums add_up(const mps_fluid *f, int64_t i) {
+  sums s = {0};
+  const int32_t *index = f->index + f->start[i];
+  const double *weight = f->w + f->start[i], *x = f->x[0], *y = f->x[1], *u = f->u[0], *v = f->u[1];
+  const double least = 0.0025 * f->l0 * f->l0;
+  for (int32_t k = 0; k < f->near[i]; k++) {
+    const int32_t j = index[k];
+    const double w = weight[k], dx = x[j] - x[i], dy = y[j] - y[i], du = u[j] - u[i], dv = v[j] - v[i];
+    const double r2 = fmax(dx * dx + dy * dy, least), inverse = 1.0 / r2, by_r = w * sqrt(inverse);
+    const double wx = w * inverse * dx, wy = w * inverse * dy;
+    s.n += w, s.m[0] += w * dx, s.m[1] += w * dy, s.r2 += w * r2;
+    s.M[0] += wx * dx, s.M[1] += wx * dy, s.M[2] += wy * dy;
+    s.du[0] += w * du, s.du[1] += w * dv;
+    s.G[0] += du * wx, s.G[1] += du * wy, s.G[2] += dv * wx, s.G[3] += dv * wy;
+    s.shift[0] += by_r * dx, s.shift[1] += by_r * dy;
+  }
+  return s;
+}
+
+static double invert(const double *M, double *inverse) {
+  const double det = M[0] * M[2] - M[1] * M[1];
+  inverse[0] = M[2] / det, inverse[1] = -M[1] / det, inverse[2] = M[0] / det;
+  return det;
+}
+
+/* Adds to the diagonal of M where its smaller eigenvalue is below a tenth of the larger one. */
+static void regularise(double *M) {
+  const double mean = 0.5 * (M[0] + M[2]);
+  const double half = sqrt(0.25 * (M[0] - M[2]) * (M[0] - M[2]) + M[1] * M[1]);
+  const double largest = mean + half, smallest = mean - half;
+  const double add = LEAST_RATIO * largest - smallest;
+  if (add > 0.0) M[0] += add, M[2] += add;
+}
+
+/* True where nobody stands in the cone about e. */
+static bool sees_out(const mps_fluid *f, int64_t i, const double *e) {
+  const double reach2 = CONE_REACH * CONE_REACH * f->l0 * f->l0;
+  const int32_t *index = f->index + f->start[i];
+  for (int32_t k = 0; k < f->near[i]; k++) {
+    const double dx = f->x[0][index[k]] - f->x[0][i], dy = f->x[1][index[k]] - f->x[1][i];
+    const double r2 = dx * dx + dy * dy, along = dx * e[0] + dy * e[1];
+    if (r2 < reach2 && along > 0.0 && along * along > CONE * CONE * r2) return false;
+  }
+  return true;
+}
+
+static bool at_surface(const mps_fluid *f, int64_t i, double n, const double *m, double length) {
+  if (n < FEW * f->weight.n0 && length > 0.0) return true;
+  if (!(length > ONE_SIDED * f->weight.n0 * f->l0)) return false;
+  const double e[2] = {-m[0] / length, -m[1] / length};
+  return sees_out(f, i, e);
+}
+
+/* Where the surface lies, and M with it. */
+static void place_surface(const mps_fluid *f, int64_t i, const double *M, double length,
+                          mpsi_fluid_local *local) {
+  const double l0 = f->l0, e[2] = {-local->m[0] / length, -local->m[1] / length};
+  const double h = l0 * (0.5 + (local->n - f->weight.half) / f->weight.slope);
+  local->h = fmin(fmax(h, 0.1 * l0), 2.0 * l0);
+  local->c = length / local->h;
+  local->qs = mpsi_fluid_head(f, f->x[0][i] + local->h * e[0], f->x[1][i] + local->h * e[1]);
+  const double c = local->c;
+  const double with[3] = {M[0] + c * e[0] * e[0], M[1] + c * e[0] * e[1], M[2] + c * e[1] * e[1]};
+  invert(with, local->with_surface);
+}
+
+static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  (void)chunk;
+  const double n0 = f->weight.n0;
+  for (int64_t i = begin; i < end; i++) {
+    const sums s = add_up(f, i);
+    mpsi_fluid_local local = {.n = s.n, .m = {s.m[0], s.m[1]}, .S = 0.25 * s.r2};
+    f->state[i] = MPSI_FLUID_APART;
+    double M[3] = {s.M[0], s.M[1], s.M[2]};
+    if (f->near[i] >= 2 && s.n >= APART * n0) {
+      regularise(M);
+      const double *I = local.inverse;
+      invert(M, local.inverse);
+      for (int c = 0; c < 2; c++) {
+        local.gradient[2 * c] = s.G[2 * c] * I[0] + s.G[2 * c + 1] * I[1];
+        local.gradient[2 * c + 1] = s.G[2 * c] * I[1] + s.G[2 * c + 1] * I[2];
+        local.rest[c] = (s.du[c] - local.gradient[2 * c] * s.m[0] -
+                         local.gradient[2 * c + 1] * s.m[1]) / s.n;
+        local.shift[c] = s.shift[c] / n0;
+        local.with_surface[c] = I[c];
+      }
+      local.with_surface[2] = I[2];
+      const double length = sqrt(s.m[0] * s.m[0] + s.m[1] * s.m[1]);
+      f->state[i] = at_surface(f, i, s.n, s.m, length) ? MPSI_FLUID_SURFACE : MPSI_FLUID_INSIDE;
+      if (f->state[i] == MPSI_FLUID_SURFACE) place_surface(f, i, M, length, &local);
+    }
+    f->local[i] = local;
+  }
+}
+
+/* The vector m of a particle's image. */
+static void mirrored_moment(const mps_fluid *f, int64_t ghost, double *m) {
+  const mpsi_fluid_local *local = &f->local[f->parent[ghost]];
+  m[0] = local->m[0], m[1] = local->m[1];
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+    if (!(f->flips[ghost] >> b & 1)) continue;
+    const double *N = f->wall[b].normal, across = m[0] * N[0] + m[1] * N[1];
+    m[0] -= 2.0 * across * N[0], m[1] -= 2.0 * across * N[1];
+  }
+}
+
+/* Who is near the surface, and the surface's mean direction there. */
+static void find_zone(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  (void)chunk;
+  const double reach2 = ZONE * ZONE * f->l0 * f->l0;
+  for (int64_t i = begin; i < end; i++) {
+    const int32_t *index = f->index + f->start[i];
+    const double *w = f->w + f->start[i];
+    bool near = f->state[i] != MPSI_FLUID_INSIDE;
+    double sum[2] = {near ? f->local[i].m[0] : 0.0, near ? f->local[i].m[1] : 0.0};
+    for (int32_t k = 0; k < f->near[i]; k++) {
+      const int64_t j = index[k], ghost = j - f->count;
+      const int64_t own = ghost < 0 ? j : f->parent[ghost];
+      if (f->state[own] != MPSI_FLUID_SURFACE) continue;
+      const double dx = f->x[0][j] - f->x[0][i], dy = f->x[1][j] - f->x[1][i];
+      if (dx * dx + dy * dy >= reach2) continue;
+      double m[2] = {f->local[own].m[0], f->local[own].m[1]};
+      if (ghost >= 0) mirrored_moment(f, ghost, m);
+      sum[0] += w[k] * m[0], sum[1] += w[k] * m[1];
+      near = true;
+    }
+    const double length = sqrt(sum[0] * sum[0] + sum[1] * sum[1]) + 1e-300;
+    f->zone[i] = near;
+    for (int c = 0; c < 2; c++) f->zone_normal[c][i] = -sum[c] / length;
+  }
+}
+
+void mpsi_fluid_find_moments(mps_fluid *f) {
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, look_around);
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, find_zone);
+}

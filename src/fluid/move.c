@@ -1,0 +1,219 @@
+/* move.c - from the pressure to the new velocities and positions:
+ *
+ *   grad q = (M + c e e^T)^-1 (sum w (q_j - q_i) dx/r^2 + c (q_s - q_i) e/h),
+ *   u += -(dt/rho) grad q + a v + viscosity,  a = .6 dt s0 + 2 |v|^2/(l0^2 |G|^2 + 1e-4 g l0) <= .5,
+ *
+ * where v is what a linear velocity field leaves over (moments.c) and s0 = sqrt(g/l0). Guards: pairs
+ * that approach within l0/2 share their momentum, |u| <= 1.1 of the neighbours' largest plus a free
+ * fall's share, and nobody comes nearer than .1 l0 to a wall; the report counts them. Then
+ *
+ *   x += dt u + f,  u += G f,  f = -2.5 dt s0 l0 sum w dx/(r n0), |f| <= .05 l0,
+ *
+ * without its part across the surface near it, keeps the particles evenly apart (Lind 2012,
+ * Khayyer 2017).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid_private.h"
+
+#define SMOOTH 0.6
+#define MOST_SMOOTH 0.5
+#define SHIFT 2.5
+#define MOST_SHIFT 0.05 /* l0 */
+#define CLOSE 0.5       /* l0 */
+#define OFF_WALL 0.1    /* l0 */
+
+/* s0 of the sheet: 1/s. Without gravity by the largest velocity. */
+static double rate(const mps_fluid *f) {
+  return f->g > 0.0 ? sqrt(f->g / f->l0) : f->speed / f->l0;
+}
+
+static void pressure_gradient(const mps_fluid *f, int64_t i, double *gradient) {
+  const mpsi_fluid_local *local = &f->local[i];
+  const int32_t *index = f->index + f->start[i];
+  const double *weight = f->w + f->start[i], least = 0.0025 * f->l0 * f->l0;
+  double sum[2] = {0.0, 0.0};
+  for (int32_t k = 0; k < f->near[i]; k++) {
+    const int32_t j = index[k];
+    const double dx = f->x[0][j] - f->x[0][i], dy = f->x[1][j] - f->x[1][i];
+    const double s = weight[k] * (f->q[j] - f->q[i]) / fmax(dx * dx + dy * dy, least);
+    sum[0] += s * dx, sum[1] += s * dy;
+  }
+  if (local->c > 0.0) { /* c = |m|/h and e = -m/|m| */
+    const double s = (local->qs - f->q[i]) / (local->h * local->h);
+    sum[0] -= s * local->m[0], sum[1] -= s * local->m[1];
+  }
+  const double *I = local->with_surface;
+  gradient[0] = I[0] * sum[0] + I[1] * sum[1];
+  gradient[1] = I[1] * sum[0] + I[2] * sum[1];
+}
+
+/* Part of v that is taken over: of a rough velocity field more. */
+static double smoothing(const mps_fluid *f, const mpsi_fluid_local *local) {
+  double steep = 1e-4 * f->g * f->l0, v2 = 0.0;
+  for (int c = 0; c < 4; c++) steep += f->l0 * f->l0 * local->gradient[c] * local->gradient[c];
+  for (int c = 0; c < 2; c++) v2 += local->rest[c] * local->rest[c];
+  const double a = SMOOTH * f->dt * rate(f) + (steep > 0.0 ? 2.0 * v2 / steep : 0.0);
+  return fmin(a, MOST_SMOOTH);
+}
+
+static void accelerate(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  (void)chunk;
+  const double rho = f->def.density, dt = f->dt, nu = f->def.viscosity / rho;
+  for (int64_t i = begin; i < end; i++) {
+    const mpsi_fluid_local *local = &f->local[i];
+    double u[2] = {f->u[0][i], f->u[1][i]};
+    if (f->state[i] == MPSI_FLUID_APART) {
+      for (int c = 0; c < 2; c++) u[c] -= dt * f->g * f->up[c];
+    } else {
+      double gradient[2];
+      pressure_gradient(f, i, gradient);
+      /* the Laplacian of u is sum w (du - G dx)/S */
+      const double a = smoothing(f, local) + nu * dt * local->n / local->S;
+      for (int c = 0; c < 2; c++) u[c] += -dt / rho * gradient[c] + a * local->rest[c];
+    }
+    for (int c = 0; c < 2; c++) f->u_new[c][i] = u[c];
+  }
+}
+
+/* ---- guards ---------------------------------------------------------------------------------- */
+
+/* Cuts velocities that no neighbour explains. */
+static void limit_speed(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  int64_t cuts = 0;
+  for (int64_t i = begin; i < end; i++) {
+    const int32_t *index = f->index + f->start[i];
+    const double u2 = f->u_new[0][i] * f->u_new[0][i] + f->u_new[1][i] * f->u_new[1][i];
+    double most = f->u[0][i] * f->u[0][i] + f->u[1][i] * f->u[1][i];
+    for (int32_t k = 0; k < f->near[i]; k++) {
+      const int32_t j = index[k];
+      const int64_t own = j < f->count ? j : f->parent[j - f->count];
+      most = fmax(most, f->u[0][own] * f->u[0][own] + f->u[1][own] * f->u[1][own]);
+    }
+    const double limit = 1.1 * sqrt(most) + 0.5 * sqrt(f->g * f->l0) + 2.0 * f->g * f->dt;
+    if (f->g == 0.0 || !(u2 > limit * limit)) continue;
+    const double factor = limit / sqrt(u2);
+    for (int c = 0; c < 2; c++) f->u_new[c][i] *= factor;
+    cuts++;
+  }
+  f->system.sums[2 * chunk] = (double)cuts;
+}
+
+/* The velocity that image j has after the step. */
+static void image_velocity(const mps_fluid *f, int64_t ghost, double *v) {
+  const int64_t own = f->parent[ghost];
+  v[0] = f->u_new[0][own], v[1] = f->u_new[1][own];
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+    if (!(f->flips[ghost] >> b & 1)) continue;
+    const mpsi_fluid_wall *w = &f->wall[b];
+    const double across = v[0] * w->normal[0] + v[1] * w->normal[1] - w->u_new;
+    v[0] -= 2.0 * across * w->normal[0], v[1] -= 2.0 * across * w->normal[1];
+  }
+}
+
+/* Pairs that are too close and approach lose half their relative velocity each. The result goes to
+ * r and z of the system, free now. */
+static void collide(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  const double close2 = CLOSE * CLOSE * f->l0 * f->l0;
+  int64_t collisions = 0;
+  for (int64_t i = begin; i < end; i++) {
+    const int32_t *index = f->index + f->start[i];
+    double u[2] = {f->u_new[0][i], f->u_new[1][i]};
+    const double own[2] = {u[0], u[1]};
+    for (int32_t k = 0; k < f->near[i]; k++) {
+      const int32_t j = index[k];
+      const double dx = f->x[0][j] - f->x[0][i], dy = f->x[1][j] - f->x[1][i];
+      const double r2 = dx * dx + dy * dy;
+      if (!(r2 < close2) || !(r2 > 0.0)) continue;
+      double v[2];
+      if (j < f->count) v[0] = f->u_new[0][j], v[1] = f->u_new[1][j];
+      else image_velocity(f, j - f->count, v);
+      const double approach = (own[0] - v[0]) * dx + (own[1] - v[1]) * dy;
+      if (!(approach > 0.0)) continue;
+      u[0] -= 0.5 * approach * dx / r2, u[1] -= 0.5 * approach * dy / r2;
+      collisions++;
+    }
+    f->system.r[i] = u[0], f->system.z[i] = u[1];
+  }
+  f->system.sums[2 * chunk + 1] = (double)collisions;
+}
+
+static void take_velocities(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  (void)chunk;
+  for (int64_t i = begin; i < end; i++)
+    f->u_new[0][i] = f->system.r[i], f->u_new[1][i] = f->system.z[i];
+}
+
+void mpsi_fluid_find_velocities(mps_fluid *f) {
+  const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, accelerate);
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, limit_speed);
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, collide);
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, take_velocities);
+  for (int64_t k = 0; k < chunks; k++) {
+    f->report.limited += (int64_t)f->system.sums[2 * k];
+    f->report.collisions += (int64_t)f->system.sums[2 * k + 1];
+  }
+}
+
+/* ---- positions ------------------------------------------------------------------------------- */
+
+/* The shift that keeps the particles evenly apart. */
+static void find_shift(const mps_fluid *f, int64_t i, double *shift) {
+  shift[0] = shift[1] = 0.0;
+  if (f->state[i] == MPSI_FLUID_APART) return;
+  const double size = SHIFT * f->dt * rate(f) * f->l0;
+  for (int c = 0; c < 2; c++) shift[c] = -size * f->local[i].shift[c];
+  if (f->zone[i]) {
+    const double e[2] = {f->zone_normal[0][i], f->zone_normal[1][i]};
+    const double across = shift[0] * e[0] + shift[1] * e[1];
+    for (int c = 0; c < 2; c++) shift[c] -= across * e[c];
+  }
+  const double length = sqrt(shift[0] * shift[0] + shift[1] * shift[1]), most = MOST_SHIFT * f->l0;
+  if (length > most)
+    for (int c = 0; c < 2; c++) shift[c] *= most / length;
+}
+
+/* Puts what came too near back on each wall's inner side, and takes its velocity into the wall. */
+static int64_t keep_off_walls(const mps_fluid *f, double *x, double *u) {
+  int64_t pushed = 0;
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+    const mpsi_fluid_wall *w = &f->wall[b];
+    if (!w->used) continue;
+    const double d = mpsi_fluid_distance(w, w->s_new, x[0], x[1]), off = OFF_WALL * f->l0;
+    if (d >= off) continue;
+    const double into = u[0] * w->normal[0] + u[1] * w->normal[1] - w->u_new;
+    for (int c = 0; c < 2; c++) {
+      x[c] += (off - d) * w->normal[c];
+      if (into < 0.0) u[c] -= into * w->normal[c];
+    }
+    pushed++;
+  }
+  return pushed;
+}
+
+static void move_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  int64_t pushed = 0, bad = -1;
+  for (int64_t i = begin; i < end; i++) {
+    double shift[2], x[2], u[2];
+    find_shift(f, i, shift);
+    const double *G = f->local[i].gradient;
+    for (int c = 0; c < 2; c++) {
+      x[c] = f->x[c][i] + f->dt * f->u_new[c][i] + shift[c];
+      u[c] = f->u_new[c][i] + G[2 * c] * shift[0] + G[2 * c + 1] * shift[1];
+    }
+    pushed += keep_off_walls(f, x, u);
+    if (bad < 0 && !(isfinite(x[0]) && isfinite(x[1]) && isfinite(u[0]) && isfinite(u[1]))) bad = i;
+    for (int c = 0; c < 2; c++) f->x[c][i] = x[c], f->u[c][i] = u[c];
+  }
+  f->system.sums[2 * chunk] = (double)pushed;
+  f->system.sums[2 * chunk + 1] = (double)bad;
+}
+
+int64_t mpsi_fluid_advance(mps_fluid *f) {
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, move_chunk);
+  const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
+  for (int64_t k = 0; k < chunks; k++) {
+    f->report.pushed += (int64_t)f->system.sums[2 * k];
+    if (f->system.sums[2 * k + 1] >= 0.0) return (int64_t)f->system.sums[2 * k + 1];
+  }
+  return -1;
+}

@@ -1,0 +1,192 @@
+/* near.c - who is near whom: all particles and ghosts closer than re to each particle, found by
+ * cells of half that size, and the weights w of the pairs.
+ *
+ * Cells ascend in y first, so that the cells a search looks at lie side by side in each column of
+ * cells. Particles are sorted in the same order now and then (step.c), so that indices of
+ * neighbours are near each other too.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid_private.h"
+
+#include <string.h>
+
+#define REACH 2         /* cells that re spans */
+#define MOST_CELLS 0x1p26
+#define SEARCHED 512  /* candidates that a search may write before it sorts them out */
+#define MOST_NEAR 2000 /* neighbours a particle, on average over a chunk */
+
+bool mpsi_fluid_room_ensure(mps_context *context, mpsi_fluid_room *room, int64_t count,
+                            size_t size) {
+  if (count <= room->capacity) return true;
+  const int64_t capacity = count + count / 4 + 64;
+  void *item = mpsi_alloc(context, capacity, size);
+  if (!item) return false;
+  mpsi_free(context, room->item);
+  *room = (mpsi_fluid_room){item, capacity};
+  return true;
+}
+
+mpsi_fluid_weight mpsi_fluid_make_weight(double l0, double re) {
+  mpsi_fluid_weight w = {.re = re, .inverse = 1.0 / re};
+  const int reach = (int)(re / l0) + 1, samples = 2000;
+  for (int a = -reach; a <= reach; a++)
+    for (int b = -reach; b <= reach; b++) {
+      const double r = l0 * sqrt((double)(a * a + b * b));
+      if ((a == 0 && b == 0) || r >= re) continue;
+      w.n0 += mpsi_fluid_w(&w, r);
+      if (b <= 0) w.half += mpsi_fluid_w(&w, r);
+    }
+  /* integral of w over a row half a spacing above, by midpoints */
+  for (int k = 0; k < samples; k++) {
+    const double x = (k + 0.5) * re / samples, r = sqrt(x * x + 0.25 * l0 * l0);
+    if (r < re) w.slope += 2.0 * mpsi_fluid_w(&w, r) * re / samples / l0;
+  }
+  return w;
+}
+
+/* ---- cells ----------------------------------------------------------------------------------- */
+
+typedef struct cells {
+  double low[2], inverse;
+  int64_t n[2];
+  const int32_t *first; /* n[0] n[1] + 1: of the slots of each cell */
+} cells;
+
+static int64_t cell_along(const cells *c, int axis, double x) {
+  return (int64_t)((x - c->low[axis]) * c->inverse);
+}
+
+static mps_status make_cells(mps_fluid *f, const char *function, cells *c) {
+  const int64_t all = f->count + f->ghosts;
+  double high[2];
+  c->inverse = REACH * f->weight.inverse;
+  for (int k = 0; k < 2; k++) {
+    c->low[k] = INFINITY, high[k] = -INFINITY;
+    for (int64_t i = 0; i < all; i++) {
+      c->low[k] = fmin(c->low[k], f->x[k][i]);
+      high[k] = fmax(high[k], f->x[k][i]);
+    }
+    const double cells_along = (high[k] - c->low[k]) * c->inverse + 1.0;
+    if (!(cells_along < MOST_CELLS))
+      return mpsi_fail(f->context, function, MPS_ERROR_DIVERGED,
+                       "the fluid reaches from %g m to %g m along %c, more than %g radii re", c->low[k],
+                       high[k], k ? 'y' : 'x', MOST_CELLS / REACH);
+    c->n[k] = (int64_t)cells_along;
+  }
+  if (!((double)c->n[0] * (double)c->n[1] < 64.0 * (double)all + MOST_CELLS))
+    return mpsi_fail(f->context, function, MPS_ERROR_DIVERGED,
+                     "the fluid is strewn over %lld x %lld cells of %g m", (long long)c->n[0],
+                     (long long)c->n[1], 1.0 / c->inverse);
+  const int64_t number = c->n[0] * c->n[1];
+  if (!mpsi_fluid_room_ensure(f->context, &f->cell_room, number + 1 + all, sizeof(int32_t)))
+    return mpsi_fail_memory(f->context, function, (size_t)(number + all) * sizeof(int32_t));
+  return MPS_OK;
+}
+
+/* Sorts the cloud by cells: slot[] says which index stands at each place, slot_x where it is. */
+static void sort_cloud(mps_fluid *f, cells *c) {
+  const int64_t all = f->count + f->ghosts, number = c->n[0] * c->n[1];
+  int32_t *first = f->cell_room.item, *cell = first + number + 1;
+  memset(first, 0, (size_t)(number + 1) * sizeof *first);
+  for (int64_t i = 0; i < all; i++) {
+    cell[i] = (int32_t)(cell_along(c, 0, f->x[0][i]) * c->n[1] + cell_along(c, 1, f->x[1][i]));
+    first[cell[i]]++;
+  }
+  for (int64_t k = 0, sum = 0; k <= number; k++) {
+    const int32_t here = first[k];
+    first[k] = (int32_t)sum;
+    sum += here;
+  }
+  for (int64_t i = 0; i < all; i++) {
+    const int32_t at = first[cell[i]]++;
+    f->slot[at] = (int32_t)i;
+    f->slot_x[0][at] = f->x[0][i], f->slot_x[1][at] = f->x[1][i];
+  }
+  for (int64_t k = number; k > 0; k--) first[k] = first[k - 1];
+  first[0] = 0;
+  c->first = first;
+}
+
+/* ---- pairs ----------------------------------------------------------------------------------- */
+
+/* Slots [begin, end) of the cells that particle i searches in one column of cells. */
+static void column_range(const cells *c, int64_t column, double y, int64_t *begin, int64_t *end) {
+  const int64_t at = cell_along(c, 1, y), last = c->n[1] - 1;
+  const int64_t low = at > REACH ? at - REACH : 0, high = at + REACH < last ? at + REACH : last;
+  *begin = c->first[column * c->n[1] + low];
+  *end = c->first[column * c->n[1] + high + 1];
+}
+
+/* Neighbours of particle i and the squares of their distances; at most `room` - 1 are written, and
+ * one that does not count. Returns their number. */
+static int64_t search(const mps_fluid *f, const cells *c, int64_t i, int64_t room, int32_t *index,
+                      double *r2) {
+  const double x = f->x[0][i], y = f->x[1][i], re2 = f->weight.re * f->weight.re;
+  const int64_t at = cell_along(c, 0, x);
+  const int64_t low = at > REACH ? at - REACH : 0;
+  const int64_t high = at + REACH < c->n[0] - 1 ? at + REACH : c->n[0] - 1;
+  int64_t found = 0;
+  for (int64_t column = low; column <= high; column++) {
+    int64_t begin, end;
+    column_range(c, column, y, &begin, &end);
+    if (found + end - begin >= room) return room;
+    for (int64_t k = begin; k < end; k++) {
+      const double dx = f->slot_x[0][k] - x, dy = f->slot_x[1][k] - y, d = dx * dx + dy * dy;
+      index[found] = f->slot[k];
+      r2[found] = d;
+      found += d < re2 && f->slot[k] != i;
+    }
+  }
+  return found;
+}
+
+typedef struct pass {
+  mps_fluid *fluid;
+  const cells *cells;
+  int64_t per_chunk; /* room for pairs */
+  atomic_bool full;
+} pass;
+
+/* The pairs of a chunk of particles, one after the other in the chunk's stretch. */
+static void find_chunk(void *data, int64_t chunk, int32_t worker) {
+  (void)worker;
+  pass *p = data;
+  mps_fluid *f = p->fluid;
+  const double least = 0.05 * f->l0;
+  const int64_t last = (chunk + 1) * MPSI_FLUID_CHUNK, limit = (chunk + 1) * p->per_chunk;
+  int64_t at = chunk * p->per_chunk;
+  for (int64_t i = chunk * MPSI_FLUID_CHUNK; i < last && i < f->count; i++) {
+    const int64_t found = search(f, p->cells, i, limit - at, f->index + at, f->w + at);
+    if (found >= limit - at) {
+      atomic_store(&p->full, true);
+      return;
+    }
+    double *w = f->w + at;
+    for (int64_t k = 0; k < found; k++) w[k] = mpsi_fluid_w(&f->weight, fmax(sqrt(w[k]), least));
+    f->start[i] = at;
+    f->near[i] = (int32_t)found;
+    at += found;
+  }
+}
+
+mps_status mpsi_fluid_find_neighbours(mps_fluid *f, const char *function) {
+  cells c;
+  mps_status status = make_cells(f, function, &c);
+  if (status != MPS_OK) return status;
+  sort_cloud(f, &c);
+  const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
+  for (;;) {
+    const int64_t per_chunk = f->most_near * MPSI_FLUID_CHUNK + SEARCHED, pairs = chunks * per_chunk;
+    if (!mpsi_fluid_room_ensure(f->context, &f->index_room, pairs, sizeof *f->index) ||
+        !mpsi_fluid_room_ensure(f->context, &f->w_room, pairs, sizeof *f->w))
+      return mpsi_fail_memory(f->context, function, (size_t)pairs * (sizeof *f->index + sizeof *f->w));
+    f->index = f->index_room.item;
+    f->w = f->w_room.item;
+    pass p = {.fluid = f, .cells = &c, .per_chunk = per_chunk};
+    mpsi_parallel_for(f->context, chunks, find_chunk, &p);
+    if (!atomic_load(&p.full)) return MPS_OK;
+    if (f->most_near > MOST_NEAR)
+      return mpsi_fail(f->context, function, MPS_ERROR_DIVERGED,
+                       "more than %d neighbours a particle: the fluid has collapsed", MOST_NEAR);
+    f->most_near += f->most_near / 2;
+  }
+}

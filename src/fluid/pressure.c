@@ -1,0 +1,70 @@
+/* pressure.c - the equation of the reduced pressure q,
+ *
+ *   sum w (q_j - q_i) + c (q_s - q_i) = S (rho/dt) (D - k/dt),  D = div u,
+ *
+ * symmetric and positive definite, exact for a linear q (Chen 2014, Tsuruta 2015). k holds the
+ * density: .003 (n/n0 - 1), not below -.0003; near the surface only what is above 0 (Tanaka 2010,
+ * Khayyer and Gotoh 2011). Images of particles beyond a wall have their parent's q and an offset
+ * that the wall's acceleration a gives, -rho (a . N) times their distance, so they bring no
+ * unknowns; particles apart from the rest have no row and no column.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid_private.h"
+
+#define DENSITY 0.003        /* k over the excess of n/n0 */
+#define LEAST_DENSITY -3e-4  /* k */
+
+static double density_source(const mps_fluid *f, int64_t i) {
+  const double excess = f->local[i].n / f->weight.n0 - 1.0, k = DENSITY * excess;
+  return f->zone[i] ? fmax(k, 0.0) : fmax(k, LEAST_DENSITY);
+}
+
+static void make_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  (void)chunk;
+  mpsi_fluid_system *s = &f->system;
+  const double rho = f->def.density, dt = f->dt;
+  for (int64_t i = begin; i < end; i++) {
+    s->diagonal[i] = 1.0, s->right[i] = s->x[i] = 0.0;
+    if (f->state[i] == MPSI_FLUID_APART) continue;
+    const mpsi_fluid_local *local = &f->local[i];
+    const int32_t *index = f->index + f->start[i];
+    const double *w = f->w + f->start[i];
+    double sum = local->c, right = local->c * local->qs;
+    for (int32_t k = 0; k < f->near[i]; k++) {
+      const int64_t j = index[k], ghost = j - f->count;
+      if (f->state[ghost < 0 ? j : f->parent[ghost]] == MPSI_FLUID_APART) continue;
+      sum += w[k];
+      if (ghost >= 0) right += w[k] * f->offset[ghost];
+    }
+    const double divergence = local->gradient[0] + local->gradient[3];
+    s->diagonal[i] = sum * (1.0 + 1e-10) + 1e-12;
+    s->right[i] = right - local->S * rho / dt * (divergence - density_source(f, i) / dt);
+    s->x[i] = f->q[i];
+  }
+}
+
+/* No suction: where p would be below 0 it is 0. Particles apart have p = 0. */
+static void take_solution(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  (void)chunk;
+  for (int64_t i = begin; i < end; i++) {
+    const double none = mpsi_fluid_head(f, f->x[0][i], f->x[1][i]);
+    f->q[i] = f->state[i] == MPSI_FLUID_APART ? none : fmax(f->system.x[i], none);
+  }
+}
+
+mps_status mpsi_fluid_solve_pressure(mps_fluid *f, const char *function) {
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, make_rows);
+  const mps_status status = mpsi_fluid_factor(f, function);
+  if (status != MPS_OK) return status;
+  const int64_t iterations = mpsi_fluid_pcg(f);
+  if (iterations < 0)
+    return mpsi_fail(f->context, function, MPS_ERROR_NUMERIC,
+                     "step %lld, t = %g s: the pressure has not converged to %g in %d iterations; "
+                     "the step was not made",
+                     (long long)f->steps, f->time, f->def.tolerance, f->def.iterations);
+  f->report.iterations = iterations;
+  f->report.all_iterations += iterations;
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, take_solution);
+  for (int64_t g = 0; g < f->ghosts; g++)
+    f->q[f->count + g] = f->q[f->parent[g]] + f->offset[g];
+  return MPS_OK;
+}

@@ -1,0 +1,245 @@
+/* probe.c - what the fluid does at its edges: pressures along walls, the forces that they make, and
+ * the level of the surface.
+ *
+ * The pressure at a point of a wall is a weighted least-squares fit, linear ALONG the wall, with the
+ * weight (1 - r/(2.1 l0))^2, of q - rho (a . N)(distance from the wall), N out of the fluid; then
+ * p = q - rho g (height - level), and 0 where that is suction.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid_private.h"
+
+#define REACH 2.1       /* l0 */
+#define LEAST_SUM 0.05  /* of weights: below, there is no water */
+#define LEAST_SPREAD 0.02 /* l0^2: below, the mean is taken */
+
+/* Sums of a fit. */
+typedef struct fit {
+  double w, ws, wss, wq, wsq;
+} fit;
+
+static void fit_add(fit *sum, double w, double s, double q) {
+  sum->w += w, sum->ws += w * s, sum->wss += w * s * s, sum->wq += w * q, sum->wsq += w * s * q;
+}
+
+/* Reduced pressure at s = 0. */
+static double fit_value(const mps_fluid *f, const fit *sum) {
+  const double det = sum->w * sum->wss - sum->ws * sum->ws;
+  const bool line = det > LEAST_SPREAD * sum->w * sum->w * f->l0 * f->l0;
+  return line ? (sum->wss * sum->wq - sum->ws * sum->wsq) / det : sum->wq / sum->w;
+}
+
+static double weight_of(const mps_fluid *f, double d, double s) {
+  const double a = 1.0 - sqrt(d * d + s * s) / (REACH * f->l0);
+  return a > 0.0 ? a * a : 0.0;
+}
+
+/* Coordinate along a wall from its point, and the place of a coordinate in space. */
+static double along(const mpsi_fluid_wall *w, double x, double y) {
+  return -(x - w->at[0]) * w->normal[1] + (y - w->at[1]) * w->normal[0];
+}
+
+static void place(const mpsi_fluid_wall *w, double s, double *x) {
+  x[0] = w->at[0] + w->s * w->normal[0] - s * w->normal[1];
+  x[1] = w->at[1] + w->s * w->normal[1] + s * w->normal[0];
+}
+
+/* What a particle contributes: false where it is too far from the wall. */
+static bool near_wall(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t i, double *d, double *s,
+                      double *q) {
+  *d = mpsi_fluid_distance(w, w->s, f->x[0][i], f->x[1][i]);
+  if (fabs(*d) >= REACH * f->l0 || f->state[i] == MPSI_FLUID_APART) return false;
+  *s = along(w, f->x[0][i], f->x[1][i]);
+  *q = f->q[i] + f->def.density * w->a * *d; /* a is along the normal into the fluid, -N */
+  return true;
+}
+
+/* Whether a point of wall b lies on its wetted side of the other walls. */
+static bool among_walls(const mps_fluid *f, int32_t b, const double *x) {
+  for (int32_t k = 0; k < MPS_FLUID_MAX_BOUNDARIES; k++) {
+    const mpsi_fluid_wall *w = &f->wall[k];
+    if (k != b && w->used && mpsi_fluid_distance(w, w->s, x[0], x[1]) < 0.0) return false;
+  }
+  return true;
+}
+
+/* Places of the wall's points that have particles near: numbers low to high - 1. */
+static void wetted_range(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t *low, int64_t *high) {
+  double least = INFINITY, most = -INFINITY;
+  for (int64_t i = 0; i < f->count; i++) {
+    double d, s, q;
+    if (!near_wall(f, w, i, &d, &s, &q)) continue;
+    least = fmin(least, s), most = fmax(most, s);
+  }
+  *low = *high = 0;
+  if (!(least <= most)) return;
+  *low = (int64_t)floor(least / f->l0) - 3;
+  *high = (int64_t)ceil(most / f->l0) + 3;
+}
+
+/* Calls `point` for each wetted point of wall b with its place and pressure. */
+typedef void (*point_fn)(void *user, const double *x, double p);
+
+static mps_status for_points(mps_fluid *f, int32_t b, const char *function, point_fn point,
+                             void *user) {
+  const mpsi_fluid_wall *w = &f->wall[b];
+  int64_t low, high;
+  wetted_range(f, w, &low, &high);
+  fit *sum = NULL;
+  if (high > low) {
+    if (!mpsi_fluid_room_ensure(f->context, &f->fit_room, high - low, sizeof *sum))
+      return mpsi_fail_memory(f->context, function, (size_t)(high - low) * sizeof *sum);
+    sum = f->fit_room.item;
+    for (int64_t k = 0; k < high - low; k++) sum[k] = (fit){0};
+  }
+  for (int64_t i = 0; i < f->count && high > low; i++) {
+    double d, s, q;
+    if (!near_wall(f, w, i, &d, &s, &q)) continue;
+    const int64_t first = (int64_t)floor(s / f->l0 - REACH - 0.5), last = first + 6;
+    for (int64_t k = first > low ? first : low; k <= last && k < high; k++) {
+      const double to = s - ((double)k + 0.5) * f->l0, weight = weight_of(f, d, to);
+      if (weight > 0.0) fit_add(&sum[k - low], weight, to, q);
+    }
+  }
+  for (int64_t k = low; k < high; k++) {
+    double x[2];
+    place(w, ((double)k + 0.5) * f->l0, x);
+    if (sum[k - low].w <= LEAST_SUM || !among_walls(f, b, x)) continue;
+    const double p = fit_value(f, &sum[k - low]) - mpsi_fluid_head(f, x[0], x[1]);
+    if (p > 0.0) point(user, x, p);
+  }
+  return MPS_OK;
+}
+
+/* ---- forces ---------------------------------------------------------------------------------- */
+
+typedef struct resultant {
+  mpsi_fluid_wall *wall;
+  double area;
+} resultant;
+
+static void add_force(void *user, const double *x, double p) {
+  const resultant *r = user;
+  const double force[2] = {p * r->area * r->wall->normal[0], p * r->area * r->wall->normal[1]};
+  for (int c = 0; c < 2; c++) r->wall->force[c] += force[c];
+  r->wall->moment += x[0] * force[1] - x[1] * force[0];
+  r->wall->wetted++;
+}
+
+mps_status mpsi_fluid_load_walls(mps_fluid *f, const char *function) {
+  for (int32_t b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+    mpsi_fluid_wall *w = &f->wall[b];
+    if (!w->used) continue;
+    w->force[0] = w->force[1] = w->moment = 0.0;
+    w->wetted = 0;
+    resultant r = {w, f->l0 * f->def.measure};
+    const mps_status status = for_points(f, b, function, add_force, &r);
+    if (status != MPS_OK) return status;
+  }
+  return MPS_OK;
+}
+
+static mps_status check_wall(mps_fluid *f, const char *function, int32_t number) {
+  if (number < 0 || number >= MPS_FLUID_MAX_BOUNDARIES || !f->wall[number].used)
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "the fluid has no boundary of number %d", number);
+  return MPS_OK;
+}
+
+mps_status mps_fluid_get_reaction_sized(mps_fluid *f, int32_t number, mps_reaction *out,
+                                        size_t size) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  const mps_status status = check_wall(f, "mps_fluid_get_reaction", number);
+  if (status != MPS_OK) return status;
+  const mpsi_fluid_wall *w = &f->wall[number];
+  mps_reaction reaction = {.count = w->wetted, .work = w->work};
+  for (int c = 0; c < 2; c++)
+    reaction.force[c] = w->force[c], reaction.impulse[c] = w->impulse[c];
+  reaction.moment[2] = w->moment;
+  reaction.moment_impulse[2] = w->moment_impulse;
+  return mpsi_out_write(f->context, "mps_fluid_get_reaction", out, size, &reaction, sizeof reaction);
+}
+
+/* ---- pressures ------------------------------------------------------------------------------- */
+
+typedef struct listing {
+  int64_t capacity, count;
+  double *x, *pressure;
+} listing;
+
+static void list_point(void *user, const double *x, double p) {
+  listing *list = user;
+  const int64_t k = list->count++;
+  if (k >= list->capacity) return;
+  if (list->x) list->x[3 * k] = x[0], list->x[3 * k + 1] = x[1], list->x[3 * k + 2] = 0.0;
+  if (list->pressure) list->pressure[k] = p;
+}
+
+mps_status mps_fluid_get_wall(mps_fluid *f, int32_t number, int64_t capacity, double *x,
+                              double *pressure, int64_t *count) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_status status = check_wall(f, __func__, number);
+  if (status != MPS_OK) return status;
+  if (capacity < 0 || !count)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "capacity is %lld and count %s: must be >= 0 and given", (long long)capacity,
+                     count ? "given" : "NULL");
+  listing list = {.capacity = capacity, .x = x, .pressure = pressure};
+  status = for_points(f, number, __func__, list_point, &list);
+  if (status == MPS_OK) *count = list.count;
+  return status;
+}
+
+mps_status mps_fluid_get_pressure(mps_fluid *f, int32_t number, int64_t count, const double *x,
+                                  double *pressure) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  const mps_status status = check_wall(f, __func__, number);
+  if (status != MPS_OK) return status;
+  if (count < 0 || (count > 0 && (!x || !pressure)))
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "count is %lld, x and pressure must be given", (long long)count);
+  const mpsi_fluid_wall *w = &f->wall[number];
+  for (int64_t k = 0; k < count; k++) {
+    const double off = mpsi_fluid_distance(w, w->s, x[3 * k], x[3 * k + 1]);
+    if (!(fabs(off) <= 0.01 * f->l0))
+      return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                       "point %lld (%g, %g) m is %g m off the wall, allowed is l0/100 = %g m",
+                       (long long)k, x[3 * k], x[3 * k + 1], off, 0.01 * f->l0);
+  }
+  for (int64_t k = 0; k < count; k++) {
+    const double at = along(w, x[3 * k], x[3 * k + 1]);
+    fit sum = {0};
+    for (int64_t i = 0; i < f->count; i++) {
+      double d, s, q;
+      if (!near_wall(f, w, i, &d, &s, &q)) continue;
+      const double weight = weight_of(f, d, s - at);
+      if (weight > 0.0) fit_add(&sum, weight, s - at, q);
+    }
+    const double head = mpsi_fluid_head(f, x[3 * k], x[3 * k + 1]);
+    pressure[k] = sum.w > LEAST_SUM ? fmax(fit_value(f, &sum) - head, 0.0) : 0.0;
+  }
+  return MPS_OK;
+}
+
+/* ---- level ----------------------------------------------------------------------------------- */
+
+mps_status mps_fluid_get_levels(mps_fluid *f, int64_t count, const double *station, double *level) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  if (count < 0 || (count > 0 && (!station || !level)))
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "count is %lld, station and level must be given", (long long)count);
+  for (int64_t k = 0; k < count; k++) {
+    double sum = 0.0, height = 0.0;
+    for (int64_t i = 0; i < f->count; i++) {
+      const mpsi_fluid_local *local = &f->local[i];
+      if (f->state[i] != MPSI_FLUID_SURFACE || local->n < 0.35 * f->weight.n0) continue;
+      const double x = f->x[0][i], y = f->x[1][i], across = f->up[1] * x - f->up[0] * y;
+      const double weight = 1.0 - fabs(across - station[k]) / (2.0 * f->l0);
+      if (!(weight > 0.0)) continue;
+      const double length = sqrt(local->m[0] * local->m[0] + local->m[1] * local->m[1]);
+      const double rise = -(local->m[0] * f->up[0] + local->m[1] * f->up[1]) / length * local->h;
+      sum += weight;
+      height += weight * (f->up[0] * x + f->up[1] * y + rise);
+    }
+    level[k] = sum > 0.0 ? height / sum : (double)NAN;
+  }
+  return MPS_OK;
+}

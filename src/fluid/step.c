@@ -1,0 +1,256 @@
+/* step.c - the order of a step, its size, and what goes wrong.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid_private.h"
+
+#include <string.h>
+
+#define SORT_EVERY 32 /* steps */
+
+typedef struct work {
+  mps_fluid *fluid;
+  mpsi_fluid_task task;
+  int64_t items, chunk;
+} work;
+
+static void unit_of_work(void *data, int64_t unit, int32_t worker) {
+  (void)worker;
+  const work *w = data;
+  const int64_t begin = unit * w->chunk, end = begin + w->chunk;
+  w->task(w->fluid, begin, end < w->items ? end : w->items, unit);
+}
+
+void mpsi_fluid_for(mps_fluid *f, int64_t items, int64_t chunk, mpsi_fluid_task task) {
+  work w = {f, task, items, chunk};
+  mpsi_parallel_for(f->context, (items + chunk - 1) / chunk, unit_of_work, &w);
+}
+
+/* ---- fields and cloud ------------------------------------------------------------------------ */
+
+static double *column(const mps_fluid *f, const char *name, int32_t component) {
+  return mpsi_particles_column(f->particles, name, component);
+}
+
+/* Copies of positions, velocities and the last reduced pressure. */
+static void load_cloud(mps_fluid *f) {
+  const size_t bytes = (size_t)f->count * sizeof(double);
+  for (int c = 0; c < 2; c++) {
+    memcpy(f->x[c], column(f, "position", c), bytes);
+    memcpy(f->u[c], column(f, "velocity", c), bytes);
+  }
+  memcpy(f->q, column(f, "reduced_pressure", 0), bytes);
+}
+
+static void store_cloud(mps_fluid *f) {
+  const size_t bytes = (size_t)f->count * sizeof(double);
+  double *p = column(f, "pressure", 0);
+  int64_t *surface = mpsi_particles_integers(f->particles, "free_surface");
+  for (int c = 0; c < 2; c++) {
+    memcpy(column(f, "position", c), f->x[c], bytes);
+    memcpy(column(f, "velocity", c), f->u[c], bytes);
+  }
+  memcpy(column(f, "reduced_pressure", 0), f->q, bytes);
+  double most = 0.0;
+  for (int64_t i = 0; i < f->count; i++) {
+    p[i] = f->pressure[i];
+    surface[i] = f->state[i];
+    most = fmax(most, f->u[0][i] * f->u[0][i] + f->u[1][i] * f->u[1][i]);
+  }
+  f->speed = sqrt(most);
+}
+
+/* Sorts the set by columns of cells re wide, so that neighbours lie near each other in memory. */
+static mps_status sort_particles(mps_fluid *f, const char *function) {
+  const double *x = column(f, "position", 0), *y = column(f, "position", 1);
+  const int64_t n = f->count;
+  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+  for (int64_t i = 0; i < n; i++) {
+    low[0] = fmin(low[0], x[i]), high[0] = fmax(high[0], x[i]);
+    low[1] = fmin(low[1], y[i]), high[1] = fmax(high[1], y[i]);
+  }
+  const double inverse = 2.0 * f->weight.inverse;
+  const double columns = floor((high[0] - low[0]) * inverse) + 1.0;
+  const double rows = floor((high[1] - low[1]) * inverse) + 1.0, cells = columns * rows;
+  if (!(cells < 4.0 * (double)n + 4096.0)) return MPS_OK; /* strewn: leave the order as it is */
+  const int64_t number = (int64_t)cells;
+  int64_t *first = mpsi_alloc(f->context, number + 1 + 2 * n, sizeof *first);
+  if (!first) return mpsi_fail_memory(f->context, function, (size_t)(number + 2 * n) * sizeof *first);
+  int64_t *order = first + number + 1;
+  bool sorted = true;
+  for (int pass = 0; pass < 2; pass++)
+    for (int64_t i = 0; i < n; i++) {
+      const int64_t cell = (int64_t)((x[i] - low[0]) * inverse) * (int64_t)rows +
+                           (int64_t)((y[i] - low[1]) * inverse);
+      if (pass == 0) first[cell + 1]++;
+      else {
+        sorted = sorted && first[cell] == i;
+        order[first[cell]++] = i;
+      }
+      if (pass == 0 && i == n - 1)
+        for (int64_t k = 0; k < number; k++) first[k + 1] += first[k];
+    }
+  const mps_status status =
+      sorted ? MPS_OK : mpsi_particles_permute_in(f->particles, function, order, order + n);
+  mpsi_free(f->context, first);
+  return status;
+}
+
+/* ---- one step -------------------------------------------------------------------------------- */
+
+mps_status mpsi_fluid_look(mps_fluid *f, const char *function) {
+  load_cloud(f);
+  mps_status status = mpsi_fluid_make_ghosts(f, function);
+  if (status == MPS_OK) mpsi_fluid_move_ghosts(f);
+  if (status == MPS_OK) status = mpsi_fluid_find_neighbours(f, function);
+  if (status == MPS_OK) mpsi_fluid_find_moments(f);
+  return status;
+}
+
+static mps_status went_wrong(mps_fluid *f, const char *function, int64_t i) {
+  const long long id = (long long)mpsi_particles_integers(f->particles, "id")[i];
+  const mps_status status =
+      mpsi_fail(f->context, function, MPS_ERROR_DIVERGED,
+                "step %lld, t = %g s: particle %lld at (%g, %g) m moves with (%g, %g) m/s; dt was "
+                "%g s, %.3g of the recommended limit; the step was not made",
+                (long long)f->steps, f->time, id, column(f, "position", 0)[i],
+                column(f, "position", 1)[i], f->u[0][i], f->u[1][i], f->dt, f->dt / mps_fluid_limit(f));
+  mpsi_fail_where(f->context, f->steps, id);
+  return status;
+}
+
+/* Pressures where they belong: at the positions that the equation was solved for. */
+static void find_pressures(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  (void)chunk;
+  for (int64_t i = begin; i < end; i++)
+    f->pressure[i] = fmax(f->q[i] - mpsi_fluid_head(f, f->x[0][i], f->x[1][i]), 0.0);
+}
+
+/* The stages read and write the cloud; the fields change when all is done. */
+static mps_status take_step(mps_fluid *f, const char *function, double dt) {
+  const mps_fluid_report before = f->report;
+  mps_status status = f->steps % SORT_EVERY == 0 ? sort_particles(f, function) : MPS_OK;
+  f->dt = dt;
+  mpsi_fluid_begin_walls(f, dt);
+  if (status == MPS_OK) status = mpsi_fluid_look(f, function);
+  if (status == MPS_OK) status = mpsi_fluid_solve_pressure(f, function);
+  if (status == MPS_OK) {
+    mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, find_pressures);
+    mpsi_fluid_find_velocities(f);
+    const int64_t bad = mpsi_fluid_advance(f);
+    if (bad >= 0) status = went_wrong(f, function, bad);
+  }
+  if (status == MPS_OK) {
+    mpsi_fluid_end_walls(f);
+    status = mpsi_fluid_load_walls(f, function);
+  }
+  if (status != MPS_OK) {
+    f->report = before;
+    return status;
+  }
+  mpsi_fluid_add_impulses(f);
+  store_cloud(f);
+  f->time += dt;
+  f->steps++;
+  return MPS_OK;
+}
+
+/* ---- running --------------------------------------------------------------------------------- */
+
+double mps_fluid_limit(const mps_fluid *f) {
+  if (!f) return 0.0;
+  double limit = f->g > 0.0 ? 0.1 * sqrt(f->l0 / f->g) : INFINITY;
+  if (f->speed > 0.0) limit = fmin(limit, 0.25 * f->l0 / f->speed);
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+    const mpsi_fluid_wall *w = &f->wall[b];
+    if (!w->used || !w->signal) continue;
+    const double u = fmax(fabs(w->factor * mps_signal_velocity(w->signal, f->time)), fabs(w->u));
+    if (u > 0.0) limit = fmin(limit, 0.2 * f->l0 / u);
+  }
+  if (f->def.viscosity > 0.0)
+    limit = fmin(limit, 0.2 * f->l0 * f->l0 * f->def.density / f->def.viscosity);
+  return limit;
+}
+
+double mps_fluid_dt(const mps_fluid *f) {
+  if (!f) return 0.0;
+  return isnan(f->def.dt) ? mps_fluid_limit(f) : f->def.dt;
+}
+
+double mps_fluid_time(const mps_fluid *f) { return f ? f->time : 0.0; }
+
+int64_t mps_fluid_steps(const mps_fluid *f) { return f ? f->steps : 0; }
+
+mps_status mpsi_fluid_ready(mps_fluid *f, const char *function) {
+  if (!f->in_callback) return MPS_OK;
+  return mpsi_fail(f->context, function, MPS_ERROR_STATE,
+                   "the fluid's own callback may only read it");
+}
+
+static mps_status check_dt(mps_fluid *f, const char *function) {
+  if (isfinite(mps_fluid_dt(f))) return MPS_OK;
+  return mpsi_fail(f->context, function, MPS_ERROR_STATE,
+                   "nothing limits the step: without gravity and motion, give dt");
+}
+
+static mps_status cancelled(mps_fluid *f, const char *function) {
+  return mpsi_fail(f->context, function, MPS_ERROR_CANCELLED,
+                   "stopped by the cancel hook at step %lld, t = %g s", (long long)f->steps, f->time);
+}
+
+mps_status mps_fluid_step(mps_fluid *f, int64_t count) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  if (count < 0)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
+                     (long long)count);
+  mps_status status = mpsi_fluid_ready(f, __func__);
+  for (int64_t k = 0; k < count && status == MPS_OK; k++) {
+    if (k > 0 && mpsi_cancelled(f->context)) return cancelled(f, __func__);
+    status = check_dt(f, __func__);
+    if (status == MPS_OK) status = take_step(f, __func__, mps_fluid_dt(f));
+  }
+  return status;
+}
+
+static mps_status call_back(mps_fluid *f, mps_fluid_fn callback, void *user) {
+  if (!callback) return MPS_OK;
+  mps_context_clear_error(f->context);
+  f->in_callback = true;
+  const mps_status status = callback(user, f);
+  f->in_callback = false;
+  if (status != MPS_OK && mps_context_error(f->context)->status == MPS_OK)
+    return mpsi_fail(f->context, "mps_fluid_run", status,
+                     "the callback of mps_fluid_run returned %d at step %lld, t = %g s", (int)status,
+                     (long long)f->steps, f->time);
+  return status;
+}
+
+mps_status mps_fluid_run(mps_fluid *f, double t_end, int64_t every, mps_fluid_fn callback,
+                         void *user) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  if (!isfinite(t_end) || t_end < f->time || every < 1)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "t_end is %g s and every %lld: allowed are times from now, %g s, on, and >= 1",
+                     t_end, (long long)every, f->time);
+  mps_status status = mpsi_fluid_ready(f, __func__);
+  if (status == MPS_OK) status = call_back(f, callback, user);
+  const double start = f->time, slice = 0.01 * (t_end - start);
+  int64_t done = 0, reported = 0;
+  while (status == MPS_OK && f->time < t_end) {
+    status = check_dt(f, __func__);
+    if (status != MPS_OK) break;
+    const double rest = t_end - f->time, full = mps_fluid_dt(f);
+    const bool last = rest <= full * (1.0 + 1e-9);
+    /* two even steps rather than a whole one and a sliver */
+    const double dt = last ? rest : rest < 2.0 * full * (1.0 - 1e-9) ? 0.5 * rest : full;
+    status = take_step(f, __func__, dt);
+    if (status != MPS_OK) break;
+    if (last) f->time = t_end;
+    done++;
+    if (done % every == 0 || last) status = call_back(f, callback, user);
+    if (last || f->time >= start + slice * (double)(reported + 1)) {
+      reported = last ? 100 : (int64_t)((f->time - start) / slice);
+      mpsi_progress(f->context, "fluid", f->steps, f->time - start, t_end - start);
+    }
+    if (status == MPS_OK && !last && mpsi_cancelled(f->context)) status = cancelled(f, __func__);
+  }
+  return status;
+}
