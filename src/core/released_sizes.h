@@ -17,6 +17,8 @@
   X(mps_drucker_prager_def, mps_drucker_prager_def_init, "0.2", 56) \
   X(mps_dynamics_def, mps_dynamics_def_init, "0.2", 80) \
   X(mps_elastic_def, mps_elastic_def_init, "0.2", 80) \
+  X(mps_fluid_boundary_def, mps_fluid_boundary_def_init, "0.2", 72) \
+  X(mps_fluid_def, mps_fluid_def_init, "0.2", 88) \
   X(mps_geostatic_def, mps_geostatic_def_init, "0.2", 72) \
   X(mps_mohr_coulomb_def, mps_mohr_coulomb_def_init, "0.2", 56) \
   X(mps_mpm_def, mps_mpm_def_init, "0.2", 232) \

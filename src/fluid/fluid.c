@@ -23,12 +23,11 @@ static const mps_fluid_boundary_def boundary_defaults = {
     .struct_size = sizeof(mps_fluid_boundary_def), .factor = 1.0};
 
 mps_status mps_fluid_def_init(mps_fluid_def *def, size_t size) {
-  return mpsi_def_init(def, size, sizeof(mps_fluid_def), &defaults, sizeof defaults);
+  return MPSI_DEF_INIT(mps_fluid_def, def, size, &defaults);
 }
 
 mps_status mps_fluid_boundary_def_init(mps_fluid_boundary_def *def, size_t size) {
-  return mpsi_def_init(def, size, sizeof(mps_fluid_boundary_def), &boundary_defaults,
-                       sizeof boundary_defaults);
+  return MPSI_DEF_INIT(mps_fluid_boundary_def, def, size, &boundary_defaults);
 }
 
 /* ---- checks ---------------------------------------------------------------------------------- */
@@ -171,7 +170,9 @@ static mps_status start(mps_fluid *f, const char *function) {
   set_gravity(f);
   if (!allocate(f) || !mpsi_fluid_grow_cloud(f, f->count + f->count / 4 + 256))
     return mpsi_fail_memory(f->context, function, (size_t)f->count * sizeof *f->local);
-  const mps_status status = mpsi_fluid_look(f, function);
+  mps_status status = mpsi_fluid_look(f, function);
+  if (status == MPS_OK) status = mpsi_fluid_sort(f, function);
+  if (status == MPS_OK) status = mpsi_fluid_look(f, function);
   if (status != MPS_OK) return status;
   double most = 0.0;
   for (int64_t i = 0; i < f->count; i++)
@@ -191,8 +192,7 @@ mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
   *out = NULL;
   mps_fluid_def def = defaults;
   mps_status status = MPS_OK;
-  if (user_def)
-    status = mpsi_def_read(context, __func__, user_def, sizeof def, &def, sizeof def);
+  if (user_def) status = MPSI_DEF_READ(context, __func__, mps_fluid_def, user_def, &def);
   if (status == MPS_OK) status = check_particles(context, particles);
   if (status == MPS_OK) status = check_def(context, &def, mps_particles_spacing(particles));
   if (status == MPS_OK) status = mpsi_particles_check_free(particles, __func__);
@@ -282,7 +282,7 @@ mps_status mps_fluid_add_boundary(mps_fluid *f, const mps_fluid_boundary_def *us
   mps_fluid_boundary_def def = boundary_defaults;
   mps_status status = mpsi_fluid_ready(f, __func__);
   if (status == MPS_OK)
-    status = mpsi_def_read(f->context, __func__, user_def, sizeof def, &def, sizeof def);
+    status = MPSI_DEF_READ(f->context, __func__, mps_fluid_boundary_def, user_def, &def);
   if (status == MPS_OK) status = check_boundary(f, &def);
   if (status != MPS_OK) return status;
   int32_t b = 0;

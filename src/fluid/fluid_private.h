@@ -136,10 +136,6 @@ static inline double mpsi_fluid_head(const mps_fluid *f, double x, double y) {
 
 mpsi_fluid_weight mpsi_fluid_make_weight(double l0, double re);
 
-#include <string.h>
-static inline mps_status mpsi_out_write(mps_context *c, const char *fn, void *out, size_t size, const void *known, size_t k) {
-  if (!out) return mpsi_fail(c, fn, MPS_ERROR_ARGUMENT, "out is NULL");
-  memcpy(out, known, size < k ? size : k); return MPS_OK; } /* TEMP */
 /* walls.c */
 void mpsi_fluid_begin_walls(mps_fluid *fluid, double dt);
 void mpsi_fluid_end_walls(mps_fluid *fluid);
@@ -168,6 +164,8 @@ int64_t mpsi_fluid_advance(mps_fluid *fluid); /* first particle that went wrong,
 mps_status mpsi_fluid_load_walls(mps_fluid *fluid, const char *function);
 /* step.c: the surroundings of the particles where the fields have them. */
 mps_status mpsi_fluid_look(mps_fluid *fluid, const char *function);
+/* step.c: sorts the particles by place. */
+mps_status mpsi_fluid_sort(mps_fluid *fluid, const char *function);
 /* step.c: MPS_ERROR_STATE within a callback of the run. */
 mps_status mpsi_fluid_ready(mps_fluid *fluid, const char *function);
 

@@ -58,8 +58,9 @@ static void store_cloud(mps_fluid *f) {
   f->speed = sqrt(most);
 }
 
-/* Sorts the set by columns of cells re wide, so that neighbours lie near each other in memory. */
-static mps_status sort_particles(mps_fluid *f, const char *function) {
+/* Sorts the set by columns of cells half of re wide, so that neighbours lie near each other in
+ * memory. It only serves speed: where the fluid is strewn or memory is short the order stays. */
+mps_status mpsi_fluid_sort(mps_fluid *f, const char *function) {
   const double *x = column(f, "position", 0), *y = column(f, "position", 1);
   const int64_t n = f->count;
   double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
@@ -67,31 +68,28 @@ static mps_status sort_particles(mps_fluid *f, const char *function) {
     low[0] = fmin(low[0], x[i]), high[0] = fmax(high[0], x[i]);
     low[1] = fmin(low[1], y[i]), high[1] = fmax(high[1], y[i]);
   }
-  const double inverse = 2.0 * f->weight.inverse;
-  const double columns = floor((high[0] - low[0]) * inverse) + 1.0;
-  const double rows = floor((high[1] - low[1]) * inverse) + 1.0, cells = columns * rows;
-  if (!(cells < 4.0 * (double)n + 4096.0)) return MPS_OK; /* strewn: leave the order as it is */
+  const double inverse = 2.0 * f->weight.inverse, rows = floor((high[1] - low[1]) * inverse) + 1.0;
+  const double cells = (floor((high[0] - low[0]) * inverse) + 1.0) * rows;
+  if (!(cells < 4.0 * (double)n + 4096.0)) return MPS_OK;
   const int64_t number = (int64_t)cells;
-  int64_t *first = mpsi_alloc(f->context, number + 1 + 2 * n, sizeof *first);
-  if (!first) return mpsi_fail_memory(f->context, function, (size_t)(number + 2 * n) * sizeof *first);
-  int64_t *order = first + number + 1;
+  if (!mpsi_fluid_room_ensure(f->context, &f->cell_room, number + 1 + n, sizeof(int32_t)))
+    return MPS_OK;
+  int32_t *first = f->cell_room.item, *cell = first + number + 1;
+  int64_t *order = (int64_t *)f->system.r; /* free between steps, as z is */
+  memset(first, 0, (size_t)(number + 1) * sizeof *first);
+  for (int64_t i = 0; i < n; i++) {
+    cell[i] = (int32_t)((int64_t)((x[i] - low[0]) * inverse) * (int64_t)rows +
+                        (int64_t)((y[i] - low[1]) * inverse));
+    first[cell[i] + 1]++;
+  }
+  for (int64_t k = 0; k < number; k++) first[k + 1] += first[k];
   bool sorted = true;
-  for (int pass = 0; pass < 2; pass++)
-    for (int64_t i = 0; i < n; i++) {
-      const int64_t cell = (int64_t)((x[i] - low[0]) * inverse) * (int64_t)rows +
-                           (int64_t)((y[i] - low[1]) * inverse);
-      if (pass == 0) first[cell + 1]++;
-      else {
-        sorted = sorted && first[cell] == i;
-        order[first[cell]++] = i;
-      }
-      if (pass == 0 && i == n - 1)
-        for (int64_t k = 0; k < number; k++) first[k + 1] += first[k];
-    }
-  const mps_status status =
-      sorted ? MPS_OK : mpsi_particles_permute_in(f->particles, function, order, order + n);
-  mpsi_free(f->context, first);
-  return status;
+  for (int64_t i = 0; i < n; i++) {
+    sorted = sorted && first[cell[i]] == i;
+    order[first[cell[i]]++] = i;
+  }
+  return sorted ? MPS_OK
+                : mpsi_particles_permute_in(f->particles, function, order, f->system.z);
 }
 
 /* ---- one step -------------------------------------------------------------------------------- */
@@ -127,10 +125,9 @@ static void find_pressures(mps_fluid *f, int64_t begin, int64_t end, int64_t chu
 /* The stages read and write the cloud; the fields change when all is done. */
 static mps_status take_step(mps_fluid *f, const char *function, double dt) {
   const mps_fluid_report before = f->report;
-  mps_status status = f->steps % SORT_EVERY == 0 ? sort_particles(f, function) : MPS_OK;
   f->dt = dt;
   mpsi_fluid_begin_walls(f, dt);
-  if (status == MPS_OK) status = mpsi_fluid_look(f, function);
+  mps_status status = mpsi_fluid_look(f, function);
   if (status == MPS_OK) status = mpsi_fluid_solve_pressure(f, function);
   if (status == MPS_OK) {
     mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, find_pressures);
@@ -150,7 +147,9 @@ static mps_status take_step(mps_fluid *f, const char *function, double dt) {
   store_cloud(f);
   f->time += dt;
   f->steps++;
-  return MPS_OK;
+  if (f->steps % SORT_EVERY != 0) return MPS_OK;
+  status = mpsi_fluid_sort(f, function);
+  return status == MPS_OK ? mpsi_fluid_look(f, function) : status;
 }
 
 /* ---- running --------------------------------------------------------------------------------- */

@@ -9,6 +9,7 @@
 #include <mps/body.h>
 #include <mps/dynamics.h>
 #include <mps/elastic.h>
+#include <mps/fluid.h>
 #include <mps/geostatic.h>
 #include <mps/io.h>
 #include <mps/material.h>
@@ -134,6 +135,15 @@ static mps_status use_elastic(const void *def) {
   return status;
 }
 
+static mps_status use_fluid(const void *def) {
+  mps_particles *set = square();
+  mps_fluid *made = NULL;
+  const mps_status status = mps_fluid_create(context, set, def, &made);
+  mps_fluid_destroy(&made);
+  mps_particles_destroy(&set);
+  return status;
+}
+
 static void need_geostatic(void *def) {
   static const mps_soil_layer layer = {.thickness = 10.0, .k0 = 0.5, .density = 2000.0};
   mps_geostatic_def *d = def;
@@ -166,6 +176,7 @@ static const user users[] = {
     {"mps_drucker_prager_def", need_drucker_prager, use_drucker_prager},
     {"mps_dynamics_def", need_nothing, use_dynamics},
     {"mps_elastic_def", need_nothing, use_elastic},
+    {"mps_fluid_def", need_nothing, use_fluid},
     {"mps_geostatic_def", need_geostatic, use_geostatic},
     {"mps_mohr_coulomb_def", need_mohr_coulomb, use_mohr_coulomb},
     {"mps_mpm_def", need_mpm, use_mpm},

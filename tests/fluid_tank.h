@@ -1,0 +1,53 @@
+/* fluid_tank.h - a tank of water for tests: bed, a left wall that may move, a right wall.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPS_FLUID_TANK_H
+#define MPS_FLUID_TANK_H
+
+#include "test_common.h"
+
+#include <mps/fluid.h>
+
+#define TANK_G 9.81
+#define TANK_PI 3.14159265358979323846
+
+enum { TANK_BED = 0, TANK_LEFT = 1, TANK_RIGHT = 2 };
+
+typedef struct tank {
+  mps_particles *water;
+  mps_fluid *fluid;
+} tank;
+
+/* Adds a wall through (x, y) with the normal (nx, ny) into the water. */
+static inline int32_t tank_wall(mps_context *c, mps_fluid *fluid, double x, double y, double nx,
+                                double ny, mps_signal *signal) {
+  mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+  int32_t number = -1;
+  def.point[0] = x, def.point[1] = y, def.normal[0] = nx, def.normal[1] = ny;
+  def.signal = signal;
+  mps_assert_ok(c, mps_fluid_add_boundary(fluid, &def, &number));
+  return number;
+}
+
+static inline tank tank_make(mps_context *c, double length, double depth, double l0,
+                             mps_signal *piston, double dt) {
+  tank t = {NULL, NULL};
+  mps_particles_def set = mps_particles_defaults();
+  mps_fluid_def def = mps_fluid_defaults();
+  const double lo[2] = {0.0, 0.0}, hi[2] = {length, depth};
+  set.spacing = l0;
+  def.dt = dt;
+  mps_assert_ok(c, mps_particles_create(c, &set, &t.water));
+  mps_assert_ok(c, mps_particles_fill_box(t.water, lo, hi, NULL));
+  mps_assert_ok(c, mps_fluid_create(c, t.water, &def, &t.fluid));
+  assert_int_equal(tank_wall(c, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL), TANK_BED);
+  assert_int_equal(tank_wall(c, t.fluid, 0.0, 0.0, 1.0, 0.0, piston), TANK_LEFT);
+  assert_int_equal(tank_wall(c, t.fluid, length, 0.0, -1.0, 0.0, NULL), TANK_RIGHT);
+  return t;
+}
+
+static inline void tank_free(tank *t) {
+  mps_fluid_destroy(&t->fluid);
+  mps_particles_destroy(&t->water);
+}
+
+#endif

@@ -1,0 +1,219 @@
+/* test_fluid.c - the fluid solver as an object: what it refuses, how it lives, what a failed or
+ * cancelled call leaves behind.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "test_fixture.h"
+
+#include "fluid_tank.h"
+
+static mps_particles *block(double l0) {
+  mps_particles *p = NULL;
+  mps_particles_def set = mps_particles_defaults();
+  const double lo[2] = {0.0, 0.0}, hi[2] = {10.0 * l0, 5.0 * l0};
+  set.spacing = l0;
+  mps_assert_ok(context, mps_particles_create(context, &set, &p));
+  mps_assert_ok(context, mps_particles_fill_box(p, lo, hi, NULL));
+  return p;
+}
+
+static void bad_definitions_are_refused(void **state) {
+  (void)state;
+  mps_particles *p = block(0.1);
+  mps_fluid *f = NULL;
+  const struct {
+    size_t member;
+    double value;
+    const char *text;
+  } cases[] = {
+      {offsetof(mps_fluid_def, density), 0.0, "density of the fluid is 0"},
+      {offsetof(mps_fluid_def, density), NAN, "density of the fluid is nan"},
+      {offsetof(mps_fluid_def, viscosity), -1.0, "viscosity of the fluid is -1"},
+      {offsetof(mps_fluid_def, gravity), INFINITY, "|gravity| of the fluid is inf"},
+      {offsetof(mps_fluid_def, gravity) + 2 * sizeof(double), 1.0, "gravity[2]"},
+      {offsetof(mps_fluid_def, level), INFINITY, "level of the fluid is inf"},
+      {offsetof(mps_fluid_def, measure), 0.0, "measure of the fluid is 0"},
+      {offsetof(mps_fluid_def, dt), 0.0, "dt of the fluid is 0"},
+      {offsetof(mps_fluid_def, dt), 0.0506, "dt of the fluid is 0.0506"}, /* .5 (.1/9.81)^.5 = .0505 */
+      {offsetof(mps_fluid_def, radius_ratio), 2.5, "radius_ratio of the fluid is 2.5"},
+      {offsetof(mps_fluid_def, tolerance), 0.1, "tolerance of the fluid is 0.1"},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    mps_fluid_def def = mps_fluid_defaults();
+    memcpy((char *)&def + cases[k].member, &cases[k].value, sizeof(double));
+    const int32_t fields = mps_particles_field_count(p);
+    mps_assert_fails(context, mps_fluid_create(context, p, &def, &f), MPS_ERROR_ARGUMENT,
+                     cases[k].text);
+    assert_null(f);
+    assert_int_equal(mps_particles_field_count(p), fields);
+  }
+  mps_assert_fails(context, mps_fluid_create(context, NULL, NULL, &f), MPS_ERROR_ARGUMENT, "NULL");
+  mps_context *other = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_assert_fails(other, mps_fluid_create(other, p, NULL, &f), MPS_ERROR_ARGUMENT,
+                   "another context");
+  mps_context_destroy(&other);
+  mps_particles_destroy(&p);
+}
+
+static void bad_boundaries_are_refused(void **state) {
+  (void)state;
+  mps_particles *p = block(0.1);
+  mps_fluid *f = NULL;
+  mps_assert_ok(context, mps_fluid_create(context, p, NULL, &f));
+  mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+  mps_assert_fails(context, mps_fluid_add_boundary(f, &def, NULL), MPS_ERROR_ARGUMENT, "normal");
+  def.normal[1] = 1.0;
+  def.point[1] = 0.021; /* the lowest particles are at .05: .29 l0 */
+  mps_assert_fails(context, mps_fluid_add_boundary(f, &def, NULL), MPS_ERROR_ARGUMENT,
+                   "must be at least 0.3 l0");
+  def.point[1] = NAN;
+  mps_assert_fails(context, mps_fluid_add_boundary(f, &def, NULL), MPS_ERROR_ARGUMENT, "finite");
+  def.point[1] = 0.0, def.kind = 2;
+  mps_assert_fails(context, mps_fluid_add_boundary(f, &def, NULL), MPS_ERROR_ARGUMENT, "kind");
+  def.kind = MPS_FLUID_BOUNDARY_SLIP;
+  mps_assert_ok(context, mps_fluid_add_boundary(f, &def, NULL));
+  def.normal[0] = 1.0, def.normal[1] = -1.0, def.point[0] = -3.0, def.point[1] = 3.0;
+  mps_assert_fails(context, mps_fluid_add_boundary(f, &def, NULL), MPS_ERROR_ARGUMENT,
+                   "enclose 45 degrees");
+  mps_reaction r;
+  mps_assert_fails(context, mps_fluid_get_reaction(f, 1, &r), MPS_ERROR_ARGUMENT,
+                   "no boundary of number 1");
+  mps_assert_fails(context, mps_fluid_remove_boundary(f, 7), MPS_ERROR_ARGUMENT, "number 7");
+  const double off[3] = {0.5, 0.01, 0.0};
+  double pressure;
+  mps_assert_fails(context, mps_fluid_get_pressure(f, 0, 1, off, &pressure), MPS_ERROR_ARGUMENT,
+                   "off the wall");
+  mps_assert_ok(context, mps_fluid_remove_boundary(f, 0));
+  mps_assert_fails(context, mps_fluid_get_reaction(f, 0, &r), MPS_ERROR_ARGUMENT, "number 0");
+  mps_fluid_destroy(&f);
+  mps_particles_destroy(&p);
+}
+
+static mps_status steps_inside(void *user, mps_fluid *f) {
+  mps_fluid *same = f;
+  (void)user;
+  mps_assert_fails(context, mps_fluid_step(f, 1), MPS_ERROR_STATE, "may only read");
+  mps_assert_fails(context, mps_fluid_set_dt(f, 1e-3), MPS_ERROR_STATE, "may only read");
+  mps_fluid_destroy(&same);
+  assert_non_null(same);
+  return MPS_OK;
+}
+
+static mps_status stops(void *user, mps_fluid *f) {
+  (void)user;
+  return mps_fluid_steps(f) == 3 ? MPS_ERROR_IO : MPS_OK;
+}
+
+static void a_run_ends_on_time_and_its_callback_only_reads(void **state) {
+  (void)state;
+  tank t = tank_make(context, 0.6, 0.3, 0.05, NULL, NAN);
+  mps_assert_fails(context, mps_fluid_run(t.fluid, -1.0, 1, NULL, NULL), MPS_ERROR_ARGUMENT,
+                   "t_end is -1");
+  mps_assert_fails(context, mps_fluid_run(t.fluid, 1.0, 0, NULL, NULL), MPS_ERROR_ARGUMENT,
+                   "every 0");
+  mps_assert_ok(context, mps_fluid_run(t.fluid, 0.05, 2, steps_inside, NULL));
+  mps_assert_near(mps_fluid_time(t.fluid), 0.05, 0.0);
+  tank_free(&t);
+  t = tank_make(context, 0.6, 0.3, 0.05, NULL, 1e-3);
+  mps_assert_fails(context, mps_fluid_run(t.fluid, 1.0, 1, stops, NULL), MPS_ERROR_IO, "callback");
+  assert_int_equal(mps_fluid_steps(t.fluid), 3);
+  tank_free(&t);
+}
+
+/* Copies position, velocity and pressure of all particles. */
+static void copy_state(const tank *t, double *to) {
+  static const char *const names[] = {"position", "velocity"};
+  const int64_t n = mps_particles_count(t->water);
+  for (int f = 0; f < 2; f++) {
+    mps_view v;
+    mps_assert_ok(context, mps_particles_view(t->water, names[f], &v));
+    for (int64_t i = 0; i < n; i++)
+      for (int c = 0; c < 2; c++) *to++ = *mps_view_f64(&v, i, c);
+  }
+}
+
+static void a_solution_that_does_not_converge_keeps_the_state(void **state) {
+  (void)state;
+  mps_signal *piston = NULL;
+  mps_assert_ok(context, mps_signal_sine(context, 1.0, 0.02, 0.0, &piston));
+  mps_particles *p = block(0.05);
+  mps_fluid_def def = mps_fluid_defaults();
+  tank t = {p, NULL};
+  def.iterations = 1;
+  def.tolerance = 1e-12;
+  mps_assert_ok(context, mps_fluid_create(context, p, &def, &t.fluid));
+  tank_wall(context, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_wall(context, t.fluid, 0.0, 0.0, 1.0, 0.0, piston);
+  tank_wall(context, t.fluid, 0.5, 0.0, -1.0, 0.0, NULL);
+  const int64_t n = mps_particles_count(p);
+  double *before = malloc(8 * (size_t)n * sizeof *before), *after = before + 4 * n;
+  copy_state(&t, before);
+  mps_assert_fails(context, mps_fluid_step(t.fluid, 1), MPS_ERROR_NUMERIC, "has not converged");
+  copy_state(&t, after);
+  assert_memory_equal(before, after, 4 * (size_t)n * sizeof *before);
+  assert_int_equal(mps_fluid_steps(t.fluid), 0);
+  mps_assert_near(mps_fluid_time(t.fluid), 0.0, 0.0);
+  free(before);
+  tank_free(&t);
+  mps_signal_destroy(&piston);
+}
+
+static void a_drop_falls_freely_and_an_empty_tank_goes_on(void **state) {
+  (void)state;
+  mps_particles *p = NULL;
+  mps_particles_def set = mps_particles_defaults();
+  mps_fluid *f = NULL;
+  mps_fluid_def def = mps_fluid_defaults();
+  const double alone[2] = {0.0, 100.0};
+  set.spacing = 0.1;
+  def.dt = 0.01;
+  mps_assert_ok(context, mps_particles_create(context, &set, &p));
+  mps_assert_ok(context, mps_particles_append(p, 1, alone));
+  mps_assert_ok(context, mps_fluid_create(context, p, &def, &f));
+  mps_assert_ok(context, mps_fluid_step(f, 100)); /* symplectic Euler: g t (t + dt)/2 */
+  mps_view x;
+  mps_assert_ok(context, mps_particles_view(p, "position", &x));
+  mps_assert_near(*mps_view_f64(&x, 0, 1), 100.0 - 0.5 * TANK_G * 1.0 * 1.01, 1e-10);
+  mps_fluid_report report;
+  mps_assert_ok(context, mps_fluid_get_report(f, &report));
+  assert_int_equal(report.apart, 1);
+  mps_fluid_destroy(&f);
+  mps_particles_destroy(&p);
+}
+
+static void a_film_one_particle_thick_lies_still(void **state) {
+  (void)state;
+  tank t = tank_make(context, 0.5, 0.02, 0.02, NULL, 2e-3);
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 500));
+  mps_totals sum;
+  mps_assert_ok(context, mps_fluid_get_totals(t.fluid, &sum));
+  assert_true(sum.kinetic < 1e-9 * TANK_G * sum.mass * 0.02);
+  tank_free(&t);
+}
+
+/* The tank's floor opens: all water falls out, and the steps go on. */
+static void a_tank_runs_empty(void **state) {
+  (void)state;
+  tank t = tank_make(context, 0.5, 0.1, 0.02, NULL, 2e-3);
+  mps_assert_ok(context, mps_fluid_remove_boundary(t.fluid, TANK_BED));
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 250));
+  double level;
+  const double middle = 0.25;
+  mps_view x;
+  mps_assert_ok(context, mps_fluid_get_levels(t.fluid, 1, &middle, &level));
+  mps_assert_ok(context, mps_particles_view(t.water, "position", &x));
+  for (int64_t i = 0; i < mps_particles_count(t.water); i++)
+    mps_assert_near(*mps_view_f64(&x, i, 1), 0.05 - 0.5 * TANK_G * 0.25, 0.12);
+  tank_free(&t);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(bad_definitions_are_refused),
+      cmocka_unit_test(bad_boundaries_are_refused),
+      cmocka_unit_test(a_run_ends_on_time_and_its_callback_only_reads),
+      cmocka_unit_test(a_solution_that_does_not_converge_keeps_the_state),
+      cmocka_unit_test(a_drop_falls_freely_and_an_empty_tank_goes_on),
+      cmocka_unit_test(a_film_one_particle_thick_lies_still),
+      cmocka_unit_test(a_tank_runs_empty),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
