@@ -28,21 +28,45 @@ static inline int32_t tank_wall(mps_context *c, mps_fluid *fluid, double x, doub
   return number;
 }
 
-static inline tank tank_make(mps_context *c, double length, double depth, double l0,
-                             mps_signal *piston, double dt) {
+/* Changes the position and velocity that a particle of the lattice begins with. */
+typedef void (*tank_shape_fn)(void *user, double *x, double *u);
+
+static inline void tank_fill(mps_context *c, mps_particles *water, double length, double depth,
+                             tank_shape_fn shape, void *user) {
+  const double l0 = mps_particles_spacing(water);
+  const int columns = (int)lround(length / l0), rows = (int)lround(depth / l0);
+  double *x = malloc((size_t)columns * (size_t)rows * 2 * sizeof *x), u[2];
+  for (int j = 0; j < rows; j++)
+    for (int i = 0; i < columns; i++) {
+      double *at = x + 2 * (j * columns + i);
+      at[0] = (i + 0.5) * l0, at[1] = (j + 0.5) * l0;
+      if (shape) shape(user, at, u);
+    }
+  mps_assert_ok(c, mps_particles_append(water, (int64_t)columns * rows, x));
+  free(x);
+}
+
+/* A tank with the walls TANK_BED, TANK_LEFT, which follows `piston`, and TANK_RIGHT. */
+static inline tank tank_of(mps_context *c, double length, double depth, double l0, double dt,
+                           mps_signal *piston, tank_shape_fn shape, void *user) {
   tank t = {NULL, NULL};
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
-  const double lo[2] = {0.0, 0.0}, hi[2] = {length, depth};
   set.spacing = l0;
   def.dt = dt;
+  def.level = depth;
   mps_assert_ok(c, mps_particles_create(c, &set, &t.water));
-  mps_assert_ok(c, mps_particles_fill_box(t.water, lo, hi, NULL));
+  tank_fill(c, t.water, length, depth, shape, user);
   mps_assert_ok(c, mps_fluid_create(c, t.water, &def, &t.fluid));
   assert_int_equal(tank_wall(c, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL), TANK_BED);
   assert_int_equal(tank_wall(c, t.fluid, 0.0, 0.0, 1.0, 0.0, piston), TANK_LEFT);
   assert_int_equal(tank_wall(c, t.fluid, length, 0.0, -1.0, 0.0, NULL), TANK_RIGHT);
   return t;
+}
+
+static inline tank tank_make(mps_context *c, double length, double depth, double l0,
+                             mps_signal *piston, double dt) {
+  return tank_of(c, length, depth, l0, dt, piston, NULL, NULL);
 }
 
 static inline void tank_free(tank *t) {

@@ -72,14 +72,14 @@ typedef enum mps_fluid_boundary_kind {
  *  not overlap (a slope of at most 45 degrees). */
 typedef struct mps_fluid_boundary_def {
   uint32_t struct_size;
-  int32_t kind;         /* mps_fluid_boundary_kind, default SLIP */
-  double point[3];      /* m, of the wall at time 0; its pressures are sampled from here on, every
-                           l0: choose the corner */
-  double normal[3];     /* into the fluid, any length > 0; [2] must be 0; no default */
-  mps_signal *signal;   /* displacement along the normal: factor times that of the signal, from its
-                           value at the time when the boundary is added; NULL (default): at rest.
-                           Kept alive */
-  double factor;        /* default 1 */
+  int32_t kind;       /* mps_fluid_boundary_kind, default SLIP */
+  double point[3];    /* m, of the wall at time 0; its pressures are sampled from here on, every
+                         l0: choose the corner */
+  double normal[3];   /* into the fluid, any length > 0; [2] must be 0; no default */
+  mps_signal *signal; /* displacement along the normal: factor times that of the signal, from its
+                         value at the time when the boundary is added; NULL (default): at rest.
+                         Kept alive */
+  double factor;      /* default 1 */
 } mps_fluid_boundary_def;
 
 MPS_API mps_status mps_fluid_boundary_def_init(mps_fluid_boundary_def *def, size_t size);
@@ -119,8 +119,8 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_get_pressure(mps_fluid *fluid, int32_
                                                         int64_t count, const double *x,
                                                         double *pressure);
 /** Level of the surface (m, height against gravity from the origin) at `count` stations: `station`
- *  is the distance (m) from the origin along the horizontal (x where gravity is along -y). NaN where
- *  there is no surface. */
+ *  is the distance (m) from the origin along the horizontal (x where gravity is along -y). NaN
+ * where there is no surface. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_levels(mps_fluid *fluid, int64_t count,
                                                       const double *station, double *level);
 
@@ -131,8 +131,8 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_get_levels(mps_fluid *fluid, int64_t 
  *  not finite; MPS_ERROR_CANCELLED. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_step(mps_fluid *fluid, int64_t count);
 
-/** Called at the start of a run, then every `every` steps and at the end. Any status but MPS_OK ends
- *  the run, which returns it. It may read, not step or destroy. */
+/** Called at the start of a run, then every `every` steps and at the end. Any status but MPS_OK
+ * ends the run, which returns it. It may read, not step or destroy. */
 typedef mps_status (*mps_fluid_fn)(void *user, mps_fluid *fluid);
 
 /** Steps to t_end (s, not before the present time), the last step shortened to end there. */
@@ -151,7 +151,8 @@ MPS_API mps_particles *mps_fluid_particles(const mps_fluid *fluid);
 MPS_API mps_context *mps_fluid_context(const mps_fluid *fluid);
 
 /** Sums over the fluid. `strain` is the potential energy in the field of gravity, above the level
- *  of the definition; `dissipated` (all of it by the scheme and the viscosity) is what is missing. */
+ *  of the definition; `dissipated` (all of it by the scheme and the viscosity) is what is missing.
+ */
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_totals_sized(mps_fluid *fluid, mps_totals *out,
                                                             size_t size);
 static inline mps_status mps_fluid_get_totals(mps_fluid *fluid, mps_totals *out) {
@@ -160,14 +161,14 @@ static inline mps_status mps_fluid_get_totals(mps_fluid *fluid, mps_totals *out)
 
 /** How the steps go; counts since creation. */
 typedef struct mps_fluid_report {
-  int64_t ghosts, pairs;   /* of the last step: wall images; neighbours, each from both sides */
-  int64_t surface, apart;  /* particles at the surface; isolated ones, in free fall */
-  int64_t iterations;      /* of the last pressure solution */
-  int64_t all_iterations;  /* of all */
-  int64_t collisions;      /* pairs that came closer than l0/2 and shared their momentum */
-  int64_t limited;         /* velocities cut to what the neighbours have */
-  int64_t pushed;          /* particles put back on a wall's inner side (within .1 l0) */
-  int64_t bytes;           /* memory besides the fields */
+  int64_t ghosts, pairs;  /* of the last step: wall images; neighbours, each from both sides */
+  int64_t surface, apart; /* particles at the surface; isolated ones, in free fall */
+  int64_t iterations;     /* of the last pressure solution */
+  int64_t all_iterations; /* of all */
+  int64_t collisions;     /* pairs that came closer than l0/2 and shared their momentum */
+  int64_t limited;        /* velocities cut to what the neighbours have */
+  int64_t pushed;         /* particles put back on a wall's inner side (within .1 l0) */
+  int64_t bytes;          /* memory besides the fields */
 } mps_fluid_report;
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_report_sized(const mps_fluid *fluid,
                                                             mps_fluid_report *out, size_t size);

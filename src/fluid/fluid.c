@@ -109,9 +109,9 @@ static void set_gravity(mps_fluid *f) {
 static bool allocate(mps_fluid *f) {
   mpsi_fluid_system *s = &f->system;
   const int64_t n = (f->count + 7) / 8 * 8 + 24, chunks = f->count / MPSI_FLUID_CHUNK + 2;
-  double **doubles[] = {&f->u_new[0],       &f->u_new[1],  &f->zone_normal[0], &f->zone_normal[1],
-                        &f->pressure,       &s->diagonal,  &s->right,          &s->r,
-                        &s->z,              &s->q,         &s->inverse};
+  double **doubles[] = {&f->u_new[0], &f->u_new[1], &f->zone_normal[0], &f->zone_normal[1],
+                        &f->pressure, &s->diagonal, &s->right,          &s->r,
+                        &s->z,        &s->q,        &s->inverse};
   enum { DOUBLES = sizeof doubles / sizeof *doubles };
   double *block = mpsi_alloc(f->context, n * (DOUBLES + 1 + 2) + 2 * chunks, sizeof *block);
   f->local = mpsi_alloc(f->context, f->count, sizeof *f->local);
@@ -153,10 +153,10 @@ static double energy_of(const mps_fluid *f, double *kinetic) {
 
 static void release(mps_fluid *f) {
   mps_context *context = f->context;
-  void *const parts[] = {f->slab,           f->local,         f->state,
-                         f->cloud,
-                         f->index_room.item, f->w_room.item,  f->cell_room.item,
-                         f->fit_room.item,  f->lower_col_room.item, f->lower_room.item};
+  void *const parts[] = {f->slab,           f->local,           f->state,
+                         f->cloud,          f->index_room.item, f->w_room.item,
+                         f->cell_room.item, f->fit_room.item,   f->lower_col_room.item,
+                         f->lower_room.item};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
   for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) mps_signal_destroy(&f->wall[b].signal);
   mpsi_free(context, f);
@@ -237,9 +237,10 @@ static mps_status check_boundary(mps_fluid *f, const mps_fluid_boundary_def *d) 
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "kind of the boundary is %d, allowed are 0 (slip) and 1 (no slip)", d->kind);
   if (!(length > 1e-150 && length < 1e150) || d->normal[2] != 0.0)
-    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "normal of the boundary is (%g, %g, %g): it must lie in the plane and have a length",
-                     d->normal[0], d->normal[1], d->normal[2]);
+    return mpsi_fail(
+        f->context, function, MPS_ERROR_ARGUMENT,
+        "normal of the boundary is (%g, %g, %g): it must lie in the plane and have a length",
+        d->normal[0], d->normal[1], d->normal[2]);
   if (!(fabs(d->point[0]) <= 1e12 && fabs(d->point[1]) <= 1e12) || !isfinite(d->factor))
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "point of the boundary is (%g, %g) m and factor %g: must be finite, the point "
@@ -267,10 +268,11 @@ static mps_status check_place(mps_fluid *f, const mpsi_fluid_wall *w) {
     if (!f->wall[b].used) continue;
     /* opposite walls are parallel; otherwise the fluid's corner has pi - acos(cosine) */
     if (cosine < -1e-6 && cosine > -1.0 + 1e-9)
-      return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                       "the boundary and boundary %d enclose %g degrees of fluid, allowed are 90 and "
-                       "more",
-                       b, 180.0 - acos(cosine) * 57.29577951308232);
+      return mpsi_fail(
+          f->context, function, MPS_ERROR_ARGUMENT,
+          "the boundary and boundary %d enclose %g degrees of fluid, allowed are 90 and "
+          "more",
+          b, 180.0 - acos(cosine) * 57.29577951308232);
   }
   return MPS_OK;
 }

@@ -52,28 +52,28 @@ typedef struct mpsi_fluid_weight {
 
 /* What a particle knows of its surroundings; tensors xx, xy, yx, yy, symmetric ones xx, xy, yy. */
 typedef struct mpsi_fluid_local {
-  double n, m[2], S;     /* sum w, sum w dx, sum w r^2/4 */
-  double inverse[3];     /* of M = sum w dx dx^T/r^2 */
+  double n, m[2], S;      /* sum w, sum w dx, sum w r^2/4 */
+  double inverse[3];      /* of M = sum w dx dx^T/r^2 */
   double with_surface[3]; /* of M + c e e^T */
-  double gradient[4];    /* of velocity, 1/s */
-  double rest[2];        /* sum w (du - G dx)/n: what a linear velocity field leaves, m/s */
-  double shift[2];       /* sum w dx/(r n0) */
-  double h, c;           /* distance of the surface (m) and its weight |m|/h; 0, 0 inside */
-  double qs;             /* reduced pressure of the surface there, Pa */
+  double gradient[4];     /* of velocity, 1/s */
+  double rest[2];         /* sum w (du - G dx)/n: what a linear velocity field leaves, m/s */
+  double shift[2];        /* sum w dx/(r n0) */
+  double h, c;            /* distance of the surface (m) and its weight |m|/h; 0, 0 inside */
+  double qs;              /* reduced pressure of the surface there, Pa */
 } mpsi_fluid_local;
 
 enum { MPSI_FLUID_INSIDE = 0, MPSI_FLUID_SURFACE = 1, MPSI_FLUID_APART = 2 };
 
 /* Rows of the pressure equation and what its solution needs; see pcg.c. */
 typedef struct mpsi_fluid_system {
-  double *diagonal, *right; /* count */
-  double *x, *p;            /* count + ghosts */
-  double *r, *z, *q;        /* count */
+  double *diagonal, *right;         /* count */
+  double *x, *p;                    /* count + ghosts */
+  double *r, *z, *q;                /* count */
   int32_t *lower_start, *lower_end; /* of row i, in its block's stretch of lower_col and lower */
   int32_t *lower_col;
-  float *lower;             /* of L */
-  double *inverse;          /* of D */
-  double *sums;             /* by chunk or block, two values each */
+  float *lower;    /* of L */
+  double *inverse; /* of D */
+  double *sums;    /* by chunk or block, two values each */
 } mpsi_fluid_system;
 
 struct mps_fluid {
@@ -85,36 +85,36 @@ struct mps_fluid {
   mpsi_fluid_wall wall[MPS_FLUID_MAX_BOUNDARIES];
   int64_t count, ghosts;
   /* positions, velocities: particles, then ghosts */
-  double *x[2], *u[2], *q, *offset;   /* offset: of a ghost's q from its parent's, Pa */
-  int32_t *parent;                    /* of a ghost, by index - count */
-  uint32_t *flips;                    /* walls that it is mirrored at, bits */
+  double *x[2], *u[2], *q, *offset; /* offset: of a ghost's q from its parent's, Pa */
+  int32_t *parent;                  /* of a ghost, by index - count */
+  uint32_t *flips;                  /* walls that it is mirrored at, bits */
   int64_t cloud_capacity;
-  double *u_new[2], *pressure;        /* count */
-  uint8_t *state;                     /* MPSI_FLUID_..., count */
-  uint8_t *zone;                      /* at the surface or within 1.6 l0 of it */
+  double *u_new[2], *pressure; /* count */
+  uint8_t *state;              /* MPSI_FLUID_..., count */
+  uint8_t *zone;               /* at the surface or within 1.6 l0 of it */
   double *zone_normal[2];
   mpsi_fluid_local *local;
   /* neighbours */
-  int64_t *start;                     /* first pair of each particle */
-  int32_t *near;                      /* pairs of each particle */
-  int64_t most_near;                  /* room for pairs, a particle on average over a chunk */
-  mpsi_fluid_room index_room, w_room; /* int32_t, double: pairs */
-  int32_t *index;                     /* of the pairs' other ends, ghosts too */
-  double *w;                          /* of the pairs */
+  int64_t *start;                      /* first pair of each particle */
+  int32_t *near;                       /* pairs of each particle */
+  int64_t most_near;                   /* room for pairs, a particle on average over a chunk */
+  mpsi_fluid_room index_room, w_room;  /* int32_t, double: pairs */
+  int32_t *index;                      /* of the pairs' other ends, ghosts too */
+  double *w;                           /* of the pairs */
   mpsi_fluid_room cell_room, fit_room; /* int32_t; sums of fits, see probe.c */
-  int32_t *slot;                      /* cloud sorted by cells */
+  int32_t *slot;                       /* cloud sorted by cells */
   double *slot_x[2];
   mpsi_fluid_system system;
   mpsi_fluid_room lower_col_room, lower_room;
   int64_t most_lower; /* room for entries of L, a row on average */
-  void *slab;                         /* of all arrays of fixed size */
+  void *slab;         /* of all arrays of fixed size */
   void *cloud;
-  double time, dt, speed;             /* s; s, of the step being made; largest |u|, m/s */
+  double time, dt, speed; /* s; s, of the step being made; largest |u|, m/s */
   int64_t steps;
   bool in_callback;
   mps_fluid_report report;
-  double energy;                      /* J, kinetic and potential at creation */
-  double work_boundaries;             /* J, since creation */
+  double energy;          /* J, kinetic and potential at creation */
+  double work_boundaries; /* J, since creation */
 };
 
 bool mpsi_fluid_room_ensure(mps_context *context, mpsi_fluid_room *room, int64_t count,
@@ -140,7 +140,8 @@ mpsi_fluid_weight mpsi_fluid_make_weight(double l0, double re);
 void mpsi_fluid_begin_walls(mps_fluid *fluid, double dt);
 void mpsi_fluid_end_walls(mps_fluid *fluid);
 void mpsi_fluid_add_impulses(mps_fluid *fluid);
-bool mpsi_fluid_grow_cloud(mps_fluid *fluid, int64_t capacity); /* room for the ghosts; false: none */
+bool mpsi_fluid_grow_cloud(mps_fluid *fluid,
+                           int64_t capacity); /* room for the ghosts; false: none */
 mps_status mpsi_fluid_make_ghosts(mps_fluid *fluid, const char *function);
 void mpsi_fluid_move_ghosts(mps_fluid *fluid); /* their velocities and pressure offsets */
 /* Distance (m) from a wall displaced by s, > 0 in the fluid. */

@@ -4,10 +4,10 @@
  *   n = sum w,  m = sum w dx,  S = sum w r^2/4,  M = sum w dx dx^T/r^2,
  *   G = grad u = (sum w du dx^T/r^2) M^-1.
  *
- * A particle is at the free surface where |m| > .15 n0 l0 and nobody is within 2.1 l0 inside the cone
- * of 45 degrees about e = -m/|m|, or where n < .72 n0 (Tsukamoto 2016, Marrone 2010). The surface
- * then lies at x + h e, h = l0 (1/2 + (n - n_half)/n_slope): in an undisturbed lattice half a
- * spacing outside. A particle with n < .12 n0 is apart from the rest and falls freely.
+ * A particle is at the free surface where |m| > .15 n0 l0 and nobody is within 2.1 l0 inside the
+ * cone of 45 degrees about e = -m/|m|, or where n < .72 n0 (Tsukamoto 2016, Marrone 2010). The
+ * surface then lies at x + h e, h = l0 (1/2 + (n - n_half)/n_slope): in an undisturbed lattice half
+ * a spacing outside. A particle with n < .12 n0 is apart from the rest and falls freely.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid_private.h"
 
@@ -30,7 +30,8 @@ static sums add_up(const mps_fluid *f, int64_t i) {
   const double least = 0.0025 * f->l0 * f->l0;
   for (int32_t k = 0; k < f->near[i]; k++) {
     const int32_t j = index[k];
-    const double w = weight[k], dx = x[j] - x[i], dy = y[j] - y[i], du = u[j] - u[i], dv = v[j] - v[i];
+    const double w = weight[k], dx = x[j] - x[i], dy = y[j] - y[i], du = u[j] - u[i],
+                 dv = v[j] - v[i];
     const double r2 = fmax(dx * dx + dy * dy, least), inverse = 1.0 / r2, by_r = w * sqrt(inverse);
     const double wx = w * inverse * dx, wy = w * inverse * dy;
     s.n += w, s.m[0] += w * dx, s.m[1] += w * dy, s.r2 += w * r2;
@@ -104,8 +105,8 @@ static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
       for (int c = 0; c < 2; c++) {
         local.gradient[2 * c] = s.G[2 * c] * I[0] + s.G[2 * c + 1] * I[1];
         local.gradient[2 * c + 1] = s.G[2 * c] * I[1] + s.G[2 * c + 1] * I[2];
-        local.rest[c] = (s.du[c] - local.gradient[2 * c] * s.m[0] -
-                         local.gradient[2 * c + 1] * s.m[1]) / s.n;
+        local.rest[c] =
+            (s.du[c] - local.gradient[2 * c] * s.m[0] - local.gradient[2 * c + 1] * s.m[1]) / s.n;
         local.shift[c] = s.shift[c] / n0;
         local.with_surface[c] = I[c];
       }

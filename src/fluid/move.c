@@ -1,11 +1,12 @@
 /* move.c - from the pressure to the new velocities and positions:
  *
  *   grad q = (M + c e e^T)^-1 (sum w (q_j - q_i) dx/r^2 + c (q_s - q_i) e/h),
- *   u += -(dt/rho) grad q + a v + viscosity,  a = .6 dt s0 + 2 |v|^2/(l0^2 |G|^2 + 1e-4 g l0) <= .5,
+ *   u += -(dt/rho) grad q + a v + viscosity,  a = .6 dt s0 + 2 |v|^2/(l0^2 |G|^2 + 1e-4 g l0) <=
+ * .5,
  *
- * where v is what a linear velocity field leaves over (moments.c) and s0 = sqrt(g/l0). Guards: pairs
- * that approach within l0/2 share their momentum, |u| <= 1.1 of the neighbours' largest plus a free
- * fall's share, and nobody comes nearer than .1 l0 to a wall; the report counts them. Then
+ * where v is what a linear velocity field leaves over (moments.c) and s0 = sqrt(g/l0). Guards:
+ * pairs that approach within l0/2 share their momentum, |u| <= 1.1 of the neighbours' largest plus
+ * a free fall's share, and nobody comes nearer than .1 l0 to a wall; the report counts them. Then
  *
  *   x += dt u + f,  u += G f,  f = -2.5 dt s0 l0 sum w dx/(r n0), |f| <= .05 l0,
  *
@@ -124,8 +125,10 @@ static void collide(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
       const double r2 = dx * dx + dy * dy;
       if (!(r2 < close2) || !(r2 > 0.0)) continue;
       double v[2];
-      if (j < f->count) v[0] = f->u_new[0][j], v[1] = f->u_new[1][j];
-      else image_velocity(f, j - f->count, v);
+      if (j < f->count)
+        v[0] = f->u_new[0][j], v[1] = f->u_new[1][j];
+      else
+        image_velocity(f, j - f->count, v);
       const double approach = (own[0] - v[0]) * dx + (own[1] - v[1]) * dy;
       if (!(approach > 0.0)) continue;
       u[0] -= 0.5 * approach * dx / r2, u[1] -= 0.5 * approach * dy / r2;

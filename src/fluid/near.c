@@ -9,9 +9,9 @@
 
 #include <string.h>
 
-#define REACH 2         /* cells that re spans */
+#define REACH 2 /* cells that re spans */
 #define MOST_CELLS 0x1p26
-#define SEARCHED 512  /* candidates that a search may write before it sorts them out */
+#define SEARCHED 512   /* candidates that a search may write before it sorts them out */
 #define MOST_NEAR 2000 /* neighbours a particle, on average over a chunk */
 
 bool mpsi_fluid_room_ensure(mps_context *context, mpsi_fluid_room *room, int64_t count,
@@ -68,8 +68,8 @@ static mps_status make_cells(mps_fluid *f, const char *function, cells *c) {
     const double cells_along = (high[k] - c->low[k]) * c->inverse + 1.0;
     if (!(cells_along < MOST_CELLS))
       return mpsi_fail(f->context, function, MPS_ERROR_DIVERGED,
-                       "the fluid reaches from %g m to %g m along %c, more than %g radii re", c->low[k],
-                       high[k], k ? 'y' : 'x', MOST_CELLS / REACH);
+                       "the fluid reaches from %g m to %g m along %c, more than %g radii re",
+                       c->low[k], high[k], k ? 'y' : 'x', MOST_CELLS / REACH);
     c->n[k] = (int64_t)cells_along;
   }
   if (!((double)c->n[0] * (double)c->n[1] < 64.0 * (double)all + MOST_CELLS))
@@ -175,10 +175,12 @@ mps_status mpsi_fluid_find_neighbours(mps_fluid *f, const char *function) {
   sort_cloud(f, &c);
   const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
   for (;;) {
-    const int64_t per_chunk = f->most_near * MPSI_FLUID_CHUNK + SEARCHED, pairs = chunks * per_chunk;
+    const int64_t per_chunk = f->most_near * MPSI_FLUID_CHUNK + SEARCHED,
+                  pairs = chunks * per_chunk;
     if (!mpsi_fluid_room_ensure(f->context, &f->index_room, pairs, sizeof *f->index) ||
         !mpsi_fluid_room_ensure(f->context, &f->w_room, pairs, sizeof *f->w))
-      return mpsi_fail_memory(f->context, function, (size_t)pairs * (sizeof *f->index + sizeof *f->w));
+      return mpsi_fail_memory(f->context, function,
+                              (size_t)pairs * (sizeof *f->index + sizeof *f->w));
     f->index = f->index_room.item;
     f->w = f->w_room.item;
     pass p = {.fluid = f, .cells = &c, .per_chunk = per_chunk};

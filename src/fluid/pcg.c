@@ -9,9 +9,9 @@
 
 #include <string.h>
 
-#define BLOCK 2560      /* particles in a block of the preconditioner, about */
+#define BLOCK 2560       /* particles in a block of the preconditioner, about */
 #define LEAST_PIVOT 1e-3 /* of the diagonal */
-#define MOST_LOWER 256  /* entries of a row of L */
+#define MOST_LOWER 256   /* entries of a row of L */
 
 /* ---- preconditioner -------------------------------------------------------------------------- */
 
@@ -26,10 +26,10 @@ static blocks cut(const mps_fluid *f) {
   return (blocks){(chunks + each - 1) / each, each * MPSI_FLUID_CHUNK};
 }
 
-/* Row i of the block's matrix left of the diagonal, columns ascending; the diagonal without what the
- * particle's own images take back. */
-static int32_t lower_row(const mps_fluid *f, int64_t first, int64_t i, int32_t *column, double *value,
-                         double *diagonal) {
+/* Row i of the block's matrix left of the diagonal, columns ascending; the diagonal without what
+ * the particle's own images take back. */
+static int32_t lower_row(const mps_fluid *f, int64_t first, int64_t i, int32_t *column,
+                         double *value, double *diagonal) {
   const int32_t *index = f->index + f->start[i];
   const double *w = f->w + f->start[i];
   int32_t count = 0;
@@ -85,7 +85,8 @@ static void factor_block(void *data, int64_t b, int32_t worker) {
     for (int32_t k = 0; k < count; k++) {
       const int32_t j = found[k];
       double sum = value[k];
-      for (int32_t e = s->lower_start[j]; e < s->lower_end[j]; e++) sum -= row[column[e]] * lower[e];
+      for (int32_t e = s->lower_start[j]; e < s->lower_end[j]; e++)
+        sum -= row[column[e]] * lower[e];
       row[j] = sum;
     }
     for (int32_t k = 0; k < count; k++) {

@@ -10,8 +10,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid_private.h"
 
-#define DENSITY 0.003        /* k over the excess of n/n0 */
-#define LEAST_DENSITY -3e-4  /* k */
+#define DENSITY 0.003       /* k over the excess of n/n0 */
+#define LEAST_DENSITY -3e-4 /* k */
 
 static double density_source(const mps_fluid *f, int64_t i) {
   const double excess = f->local[i].n / f->weight.n0 - 1.0, k = DENSITY * excess;
@@ -64,7 +64,6 @@ mps_status mpsi_fluid_solve_pressure(mps_fluid *f, const char *function) {
   f->report.iterations = iterations;
   f->report.all_iterations += iterations;
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, take_solution);
-  for (int64_t g = 0; g < f->ghosts; g++)
-    f->q[f->count + g] = f->q[f->parent[g]] + f->offset[g];
+  for (int64_t g = 0; g < f->ghosts; g++) f->q[f->count + g] = f->q[f->parent[g]] + f->offset[g];
   return MPS_OK;
 }

@@ -1,14 +1,14 @@
 /* probe.c - what the fluid does at its edges: pressures along walls, the forces that they make, and
  * the level of the surface.
  *
- * The pressure at a point of a wall is a weighted least-squares fit, linear ALONG the wall, with the
- * weight (1 - r/(2.1 l0))^2, of q - rho (a . N)(distance from the wall), N out of the fluid; then
- * p = q - rho g (height - level), and 0 where that is suction.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * The pressure at a point of a wall is a weighted least-squares fit, linear ALONG the wall, with
+ * the weight (1 - r/(2.1 l0))^2, of q - rho (a . N)(distance from the wall), N out of the fluid;
+ * then p = q - rho g (height - level), and 0 where that is suction. SPDX-License-Identifier:
+ * BSD-3-Clause */
 #include "fluid_private.h"
 
-#define REACH 2.1       /* l0 */
-#define LEAST_SUM 0.05  /* of weights: below, there is no water */
+#define REACH 2.1         /* l0 */
+#define LEAST_SUM 0.05    /* of weights: below, there is no water */
 #define LEAST_SPREAD 0.02 /* l0^2: below, the mean is taken */
 
 /* Sums of a fit. */
@@ -62,7 +62,8 @@ static bool among_walls(const mps_fluid *f, int32_t b, const double *x) {
 }
 
 /* Places of the wall's points that have particles near: numbers low to high - 1. */
-static void wetted_range(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t *low, int64_t *high) {
+static void wetted_range(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t *low,
+                         int64_t *high) {
   double least = INFINITY, most = -INFINITY;
   for (int64_t i = 0; i < f->count; i++) {
     double d, s, q;
@@ -151,11 +152,11 @@ mps_status mps_fluid_get_reaction_sized(mps_fluid *f, int32_t number, mps_reacti
   if (status != MPS_OK) return status;
   const mpsi_fluid_wall *w = &f->wall[number];
   mps_reaction reaction = {.count = w->wetted, .work = w->work};
-  for (int c = 0; c < 2; c++)
-    reaction.force[c] = w->force[c], reaction.impulse[c] = w->impulse[c];
+  for (int c = 0; c < 2; c++) reaction.force[c] = w->force[c], reaction.impulse[c] = w->impulse[c];
   reaction.moment[2] = w->moment;
   reaction.moment_impulse[2] = w->moment_impulse;
-  return mpsi_out_write(f->context, "mps_fluid_get_reaction", out, size, &reaction, sizeof reaction);
+  return mpsi_out_write(f->context, "mps_fluid_get_reaction", out, size, &reaction,
+                        sizeof reaction);
 }
 
 /* ---- pressures ------------------------------------------------------------------------------- */

@@ -88,8 +88,7 @@ mps_status mpsi_fluid_sort(mps_fluid *f, const char *function) {
     sorted = sorted && first[cell[i]] == i;
     order[first[cell[i]]++] = i;
   }
-  return sorted ? MPS_OK
-                : mpsi_particles_permute_in(f->particles, function, order, f->system.z);
+  return sorted ? MPS_OK : mpsi_particles_permute_in(f->particles, function, order, f->system.z);
 }
 
 /* ---- one step -------------------------------------------------------------------------------- */
@@ -105,12 +104,12 @@ mps_status mpsi_fluid_look(mps_fluid *f, const char *function) {
 
 static mps_status went_wrong(mps_fluid *f, const char *function, int64_t i) {
   const long long id = (long long)mpsi_particles_integers(f->particles, "id")[i];
-  const mps_status status =
-      mpsi_fail(f->context, function, MPS_ERROR_DIVERGED,
-                "step %lld, t = %g s: particle %lld at (%g, %g) m moves with (%g, %g) m/s; dt was "
-                "%g s, %.3g of the recommended limit; the step was not made",
-                (long long)f->steps, f->time, id, column(f, "position", 0)[i],
-                column(f, "position", 1)[i], f->u[0][i], f->u[1][i], f->dt, f->dt / mps_fluid_limit(f));
+  const mps_status status = mpsi_fail(
+      f->context, function, MPS_ERROR_DIVERGED,
+      "step %lld, t = %g s: particle %lld at (%g, %g) m moves with (%g, %g) m/s; dt was "
+      "%g s, %.3g of the recommended limit; the step was not made",
+      (long long)f->steps, f->time, id, column(f, "position", 0)[i], column(f, "position", 1)[i],
+      f->u[0][i], f->u[1][i], f->dt, f->dt / mps_fluid_limit(f));
   mpsi_fail_where(f->context, f->steps, id);
   return status;
 }
@@ -192,7 +191,8 @@ static mps_status check_dt(mps_fluid *f, const char *function) {
 
 static mps_status cancelled(mps_fluid *f, const char *function) {
   return mpsi_fail(f->context, function, MPS_ERROR_CANCELLED,
-                   "stopped by the cancel hook at step %lld, t = %g s", (long long)f->steps, f->time);
+                   "stopped by the cancel hook at step %lld, t = %g s", (long long)f->steps,
+                   f->time);
 }
 
 mps_status mps_fluid_step(mps_fluid *f, int64_t count) {
@@ -217,8 +217,8 @@ static mps_status call_back(mps_fluid *f, mps_fluid_fn callback, void *user) {
   f->in_callback = false;
   if (status != MPS_OK && mps_context_error(f->context)->status == MPS_OK)
     return mpsi_fail(f->context, "mps_fluid_run", status,
-                     "the callback of mps_fluid_run returned %d at step %lld, t = %g s", (int)status,
-                     (long long)f->steps, f->time);
+                     "the callback of mps_fluid_run returned %d at step %lld, t = %g s",
+                     (int)status, (long long)f->steps, f->time);
   return status;
 }
 

@@ -126,8 +126,8 @@ mps_status mpsi_fluid_make_ghosts(mps_fluid *f, const char *function) {
 
 /* The velocity of an image at wall w of what moves with v. */
 static void reflect(const mpsi_fluid_wall *w, double *v) {
-  const double across = (v[0] - w->u * w->normal[0]) * w->normal[0] +
-                        (v[1] - w->u * w->normal[1]) * w->normal[1];
+  const double across =
+      (v[0] - w->u * w->normal[0]) * w->normal[0] + (v[1] - w->u * w->normal[1]) * w->normal[1];
   v[0] -= 2.0 * across * w->normal[0], v[1] -= 2.0 * across * w->normal[1];
 }
 

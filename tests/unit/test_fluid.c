@@ -32,7 +32,8 @@ static void bad_definitions_are_refused(void **state) {
       {offsetof(mps_fluid_def, level), INFINITY, "level of the fluid is inf"},
       {offsetof(mps_fluid_def, measure), 0.0, "measure of the fluid is 0"},
       {offsetof(mps_fluid_def, dt), 0.0, "dt of the fluid is 0"},
-      {offsetof(mps_fluid_def, dt), 0.0506, "dt of the fluid is 0.0506"}, /* .5 (.1/9.81)^.5 = .0505 */
+      {offsetof(mps_fluid_def, dt), 0.0506,
+       "dt of the fluid is 0.0506"}, /* .5 (.1/9.81)^.5 = .0505 */
       {offsetof(mps_fluid_def, radius_ratio), 2.5, "radius_ratio of the fluid is 2.5"},
       {offsetof(mps_fluid_def, tolerance), 0.1, "tolerance of the fluid is 0.1"},
   };
