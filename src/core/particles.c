@@ -184,20 +184,76 @@ mps_status mps_particles_append(mps_particles *particles, int64_t count, const d
 
 /* ---- order ----------------------------------------------------------------------------------- */
 
+#define PERMUTE_CHUNK 8192 /* particles in a unit of work */
+
+/* Some columns being permuted: first to `sorted`, then back. */
+typedef struct permutation {
+  const int64_t *order;
+  int64_t count, chunks;
+  char *column[MPSI_PERMUTE_COLUMNS], *sorted[MPSI_PERMUTE_COLUMNS];
+  int32_t columns;
+} permutation;
+
+static int64_t chunk_end(const permutation *m, int64_t begin) {
+  return begin + PERMUTE_CHUNK < m->count ? begin + PERMUTE_CHUNK : m->count;
+}
+
+static void permute_chunk(void *data, int64_t unit, int32_t worker) {
+  const permutation *m = data;
+  const int64_t begin = unit % m->chunks * PERMUTE_CHUNK, end = chunk_end(m, begin);
+  const double *from = (const double *)m->column[unit / m->chunks];
+  double *to = (double *)m->sorted[unit / m->chunks];
+  (void)worker;
+  for (int64_t k = begin; k < end; k++) memcpy(to + k, from + m->order[k], sizeof *to);
+}
+
+static void return_chunk(void *data, int64_t unit, int32_t worker) {
+  const permutation *m = data;
+  const int64_t begin = unit % m->chunks * PERMUTE_CHUNK, end = chunk_end(m, begin);
+  (void)worker;
+  memcpy(m->column[unit / m->chunks] + 8 * begin, m->sorted[unit / m->chunks] + 8 * begin,
+         (size_t)(end - begin) * 8);
+}
+
+static void permute_columns(mps_particles *p, permutation *m) {
+  if (m->chunks > 1) {
+    mpsi_parallel_for(p->context, m->chunks * m->columns, permute_chunk, m);
+    mpsi_parallel_for(p->context, m->chunks * m->columns, return_chunk, m);
+  } else { /* not worth waking others for */
+    for (int32_t k = 0; k < m->columns; k++) permute_chunk(m, k, 0), return_chunk(m, k, 0);
+  }
+  m->columns = 0;
+}
+
+/* Ids are unique: no two chunks write the same index. */
+typedef struct indexing {
+  const int64_t *id;
+  int64_t *index_of, count;
+} indexing;
+
+static void index_chunk(void *data, int64_t chunk, int32_t worker) {
+  const indexing *i = data;
+  const int64_t begin = chunk * PERMUTE_CHUNK;
+  (void)worker;
+  for (int64_t k = begin; k < i->count && k < begin + PERMUTE_CHUNK; k++) i->index_of[i->id[k]] = k;
+}
+
 mps_status mpsi_particles_permute_in(mps_particles *p, const char *function, const int64_t *order,
-                                     void *scratch) {
+                                     void *const *scratch, int32_t columns) {
   if (p->pins > 1)
     return mpsi_fail(p->context, function, MPS_ERROR_STATE,
                      "the set cannot be sorted: it is in use by %d solvers", p->pins);
-  char *sorted = scratch;
+  permutation m = {.order = order, .count = p->count};
+  m.chunks = (p->count + PERMUTE_CHUNK - 1) / PERMUTE_CHUNK;
+  for (int32_t k = 0; k < columns; k++) m.sorted[k] = scratch[k];
   for (int32_t f = 0; f < p->field_count; f++)
     for (int32_t c = 0; c < p->fields[f]->components; c++) {
-      char *column = mpsi_field_column(p->fields[f], c);
-      for (int64_t k = 0; k < p->count; k++) memcpy(sorted + 8 * k, column + 8 * order[k], 8);
-      memcpy(column, sorted, (size_t)p->count * 8);
+      m.column[m.columns++] = mpsi_field_column(p->fields[f], c);
+      if (m.columns == columns) permute_columns(p, &m);
     }
-  const int64_t *id = p->fields[MPSI_FIELD_ID]->data;
-  for (int64_t k = 0; k < p->count; k++) p->index_of[id[k]] = k;
+  if (m.columns > 0) permute_columns(p, &m);
+  indexing i = {p->fields[MPSI_FIELD_ID]->data, p->index_of, p->count};
+  mpsi_parallel_for(p->context, m.chunks, index_chunk, &i);
   p->epoch++;
   return MPS_OK;
 }
@@ -205,7 +261,7 @@ mps_status mpsi_particles_permute_in(mps_particles *p, const char *function, con
 mps_status mpsi_particles_permute(mps_particles *p, const char *function, const int64_t *order) {
   void *scratch = mpsi_alloc(p->context, p->count, 8);
   if (!scratch) return mpsi_fail_memory(p->context, function, (size_t)p->count * 8);
-  const mps_status status = mpsi_particles_permute_in(p, function, order, scratch);
+  const mps_status status = mpsi_particles_permute_in(p, function, order, &scratch, 1);
   mpsi_free(p->context, scratch);
   return status;
 }

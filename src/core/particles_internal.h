@@ -27,9 +27,11 @@ int64_t *mpsi_particles_integers(mps_particles *particles, const char *name);
  * are recorded for `function` on the set's context, and nothing has changed. */
 mps_status mpsi_particles_permute(mps_particles *particles, const char *function,
                                   const int64_t *order);
-/* The same without allocating: `scratch` has room for count items of 8 bytes. */
+/* The same without allocating, on the context's threads: `scratch` are 1 to MPSI_PERMUTE_COLUMNS
+ * places with room for count items of 8 bytes each. More are faster on more threads. */
+#define MPSI_PERMUTE_COLUMNS 3
 mps_status mpsi_particles_permute_in(mps_particles *particles, const char *function,
-                                     const int64_t *order, void *scratch);
+                                     const int64_t *order, void *const *scratch, int32_t columns);
 
 /* While pinned, no particle can be added and the caller's destroy only gives up the caller's
  * share: the set goes with the last unpin. Each pin needs its unpin. */

@@ -88,7 +88,8 @@ mps_status mpsi_fluid_sort(mps_fluid *f, const char *function) {
     sorted = sorted && first[cell[i]] == i;
     order[first[cell[i]]++] = i;
   }
-  return sorted ? MPS_OK : mpsi_particles_permute_in(f->particles, function, order, f->system.z);
+  void *const scratch = f->system.z;
+  return sorted ? MPS_OK : mpsi_particles_permute_in(f->particles, function, order, &scratch, 1);
 }
 
 /* ---- one step -------------------------------------------------------------------------------- */

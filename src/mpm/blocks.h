@@ -79,6 +79,7 @@ typedef struct mpsi_worker {
 #define MPSI_REACHED 4u /* in a body, and corner of a cell that holds a particle */
 #define MPSI_PLAIN 8u   /* any node with MPS_SCHEME_STANDARD: no particle takes the closed form */
 
+/* A particle by its key, as it is sorted. */
 typedef struct mpsi_radix {
   uint64_t key;
   int64_t index;
@@ -95,7 +96,10 @@ typedef struct mpsi_grid {
   int32_t *coloured;                          /* numbers of blocks of cells, colour by colour */
   int64_t colour[MPSI_CORNERS + 1];           /* first of each in `coloured` */
   mpsi_room cells_room, nodes_room, node_room, side_room, coloured_room;
-  mpsi_radix *radix; /* 2 items a particle */
+  mpsi_radix *radix;        /* 2 items a particle */
+  const mpsi_radix *sorted; /* the half of `radix` with the order, while the blocks are made */
+  int32_t own_bits;         /* lower bits of a sorted key: the stencil's place within its block */
+  mpsi_room digits_room;
   mpsi_worker *workers;
   int32_t worker_count;
 } mpsi_grid;
@@ -126,6 +130,9 @@ static inline int64_t mpsi_block_of(int64_t base) {
   return n >= 0 ? n / MPSI_SIDE : -((MPSI_SIDE - 1 - n) / MPSI_SIDE);
 }
 
+/* order.c: keys and indices of the particles in their order, the block above `own_bits` bits; NULL
+ * when out of memory. */
+const mpsi_radix *mpsi_mpm_find_order(mps_mpm *mpm, int32_t *own_bits);
 /* layout.c: sorts the particles by blocks and builds the lists of blocks. */
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function);
 /* layout.c: builds the lists of blocks for particles that are in order, as at an earlier sort. */

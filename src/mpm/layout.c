@@ -1,6 +1,5 @@
-/* layout.c - the grid that follows the particles: particles sorted by blocks of cells, and the list
- * of blocks of nodes that their tiles need. Both lists ascend in z, then y,
- * then x.
+/* layout.c - the grid that follows the particles: the blocks of cells that hold particles, and the
+ * blocks of nodes that their tiles need. Both lists ascend in z, then y, then x.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_private.h"
 
@@ -8,8 +7,6 @@
 
 #include <string.h>
 
-#define DIGIT_BITS 11
-#define DIGITS (1 << DIGIT_BITS)
 #define LEAST_ROOM 16 /* items */
 
 bool mpsi_room_ensure(mps_context *context, mpsi_room *room, int64_t count, size_t size) {
@@ -25,73 +22,6 @@ bool mpsi_room_ensure(mps_context *context, mpsi_room *room, int64_t count, size
   return true;
 }
 
-/* ---- order of the particles ------------------------------------------------------------------ */
-
-static int bits_of(uint64_t range) {
-  int bits = 0;
-  while (range >> bits) bits++;
-  return bits;
-}
-
-/* First and last block of each axis. */
-typedef struct range {
-  int64_t low[3];
-  int bits[3]; /* of the blocks along each axis */
-} range;
-
-static int64_t base_of(const mps_mpm *mpm, int c, int64_t particle) {
-  const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][particle]);
-  return (int64_t)mpsi_base(mpm->def.spline, X);
-}
-
-static range find_range(const mps_mpm *mpm) {
-  range out = {{0}, {0}};
-  for (int c = 0; c < mpm->dim; c++) {
-    int64_t low = INT64_MAX, high = INT64_MIN;
-    for (int64_t k = 0; k < mpm->p.count; k++) {
-      const int64_t block = mpsi_block_of(base_of(mpm, c, k));
-      if (block < low) low = block;
-      if (block > high) high = block;
-    }
-    out.low[c] = low;
-    out.bits[c] = bits_of((uint64_t)(high - low));
-  }
-  return out;
-}
-
-/* Key: block (z, y, x from the top), then the stencil's place within the block, row by row. */
-static void make_keys(mps_mpm *mpm, const range *r) {
-  for (int64_t k = 0; k < mpm->p.count; k++) {
-    uint64_t whole = 0, within = 0;
-    for (int c = mpm->dim - 1; c >= 0; c--) {
-      const int64_t base = base_of(mpm, c, k), block = mpsi_block_of(base);
-      whole = whole << r->bits[c] | (uint64_t)(block - r->low[c]);
-      within = within * MPSI_SIDE + (uint64_t)(base - 1 - block * MPSI_SIDE);
-    }
-    mpm->grid.radix[k] = (mpsi_radix){whole * (uint64_t)mpm->grid.block_nodes + within, k};
-  }
-}
-
-/* Stable, from the lowest digit up; returns the sorted half of `radix`. */
-static const mpsi_radix *sort_keys(mps_mpm *mpm, int bits) {
-  mpsi_radix *from = mpm->grid.radix, *to = mpm->grid.radix + mpm->p.count;
-  for (int shift = 0; shift < bits; shift += DIGIT_BITS) {
-    int64_t place[DIGITS] = {0};
-    for (int64_t k = 0; k < mpm->p.count; k++) place[from[k].key >> shift & (DIGITS - 1)]++;
-    for (int64_t digit = 0, sum = 0; digit < DIGITS; digit++) {
-      const int64_t here = place[digit];
-      place[digit] = sum;
-      sum += here;
-    }
-    for (int64_t k = 0; k < mpm->p.count; k++)
-      to[place[from[k].key >> shift & (DIGITS - 1)]++] = from[k];
-    mpsi_radix *swap = from;
-    from = to;
-    to = swap;
-  }
-  return from;
-}
-
 /* ---- blocks ---------------------------------------------------------------------------------- */
 
 static void find_edge(const mps_mpm *mpm, mpsi_cell_block *cells) {
@@ -100,15 +30,6 @@ static void find_edge(const mps_mpm *mpm, mpsi_cell_block *cells) {
     if (first < mpm->grid.low[c] || first + MPSI_TILE_SIDE - 1 > mpm->grid.high[c])
       cells->edge = true;
   }
-}
-
-static void place_block(const mps_mpm *mpm, const range *r, uint64_t block,
-                        mpsi_cell_block *cells) {
-  for (int c = 0; c < mpm->dim; c++) {
-    cells->at[c] = (int32_t)((int64_t)(block & ((UINT64_C(1) << r->bits[c]) - 1)) + r->low[c]);
-    block >>= r->bits[c];
-  }
-  find_edge(mpm, cells);
 }
 
 /* Widens the part of the tile in use by a stencil, and by a cell to either side. */
@@ -121,24 +42,35 @@ static void widen_use(const mps_mpm *mpm, uint64_t within, mpsi_cell_block *cell
   }
 }
 
-/* Blocks of the sorted keys; the count alone where `cells` is NULL. */
-static int64_t make_cells(const mps_mpm *mpm, const mpsi_radix *key, const range *r,
-                          mpsi_cell_block *cells) {
-  const uint64_t own = (uint64_t)mpm->grid.block_nodes;
+/* Where the block is whose particles are in their order: `begin` and `end` are known. */
+static void place_block(mps_mpm *mpm, int64_t b, int32_t worker) {
+  (void)worker;
+  mpsi_cell_block *cells = &mpm->grid.cells[b];
+  const mpsi_radix *key = mpm->grid.sorted;
+  const uint64_t own = (UINT64_C(1) << mpm->grid.own_bits) - 1;
+  for (int c = 0; c < 3; c++) {
+    const double x = c < mpm->dim ? mpm->p.x[c][key[cells->begin].index] : 0.0;
+    const double X = mpsi_grid_coordinate(mpm, c, x);
+    cells->at[c] =
+        c < mpm->dim ? (int32_t)mpsi_block_of((int64_t)mpsi_base(mpm->def.spline, X)) : 0;
+    cells->low[c] = c < mpm->dim ? MPSI_TILE_SIDE : 0, cells->high[c] = 1;
+  }
+  for (int64_t k = cells->begin; k < cells->end; k++)
+    if (k == cells->begin || key[k].key != key[k - 1].key) widen_use(mpm, key[k].key & own, cells);
+  find_edge(mpm, cells);
+}
+
+/* Runs of particles of the sorted keys; the count alone where `cells` is NULL. */
+static int64_t make_cells(const mps_mpm *mpm, mpsi_cell_block *cells) {
+  const mpsi_radix *key = mpm->grid.sorted;
   int64_t count = 0;
   for (int64_t k = 0; k < mpm->p.count; k++) {
-    const uint64_t block = key[k].key / own;
-    if (k == 0 || block != key[k - 1].key / own) {
-      if (cells) {
-        if (count > 0) cells[count - 1].end = k;
-        cells[count] = (mpsi_cell_block){.begin = k, .end = mpm->p.count, .bad = -1};
-        for (int c = 0; c < 3; c++)
-          cells[count].low[c] = c < mpm->dim ? MPSI_TILE_SIDE : 0, cells[count].high[c] = 1;
-        place_block(mpm, r, block, &cells[count]);
-      }
-      count++;
+    if (k > 0 && key[k].key >> mpm->grid.own_bits == key[k - 1].key >> mpm->grid.own_bits) continue;
+    if (cells) {
+      if (count > 0) cells[count - 1].end = k;
+      cells[count] = (mpsi_cell_block){.begin = k, .end = mpm->p.count, .bad = -1};
     }
-    if (cells) widen_use(mpm, key[k].key % own, &cells[count - 1]);
+    count++;
   }
   return count;
 }
@@ -225,11 +157,12 @@ static mps_status no_room(mps_mpm *mpm, const char *function, int64_t cells) {
                           (size_t)(cells * mpm->grid.block_nodes) * sizeof *mpm->grid.node);
 }
 
-static mps_status build_blocks(mps_mpm *mpm, const char *function, const mpsi_radix *key,
-                               const range *r) {
-  const int64_t cells = make_cells(mpm, key, r, NULL);
+static mps_status build_blocks(mps_mpm *mpm, const char *function) {
+  const int64_t cells = make_cells(mpm, NULL);
   if (!ensure_cells(mpm, cells)) return no_room(mpm, function, cells);
-  make_cells(mpm, key, r, mpm->grid.cells);
+  make_cells(mpm, mpm->grid.cells);
+  mpm->grid.cell_count = cells;
+  mpsi_mpm_for_cells(mpm, place_block);
   return build_nodes(mpm, cells) ? MPS_OK : no_room(mpm, function, cells);
 }
 
@@ -249,22 +182,28 @@ mps_status mpsi_mpm_place_blocks(mps_mpm *mpm, const char *function, int64_t cou
   return build_nodes(mpm, count) ? MPS_OK : no_room(mpm, function, count);
 }
 
-mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
-  const range r = find_range(mpm);
-  make_keys(mpm, &r);
-  const mpsi_radix *key = sort_keys(mpm, r.bits[0] + r.bits[1] + r.bits[2] +
-                                             bits_of((uint64_t)mpm->grid.block_nodes - 1));
-  const mps_status status = build_blocks(mpm, function, key, &r);
-  if (status != MPS_OK) return status;
-  /* The other half of `radix` is free now: for the order, and room to permute. */
-  int64_t *order =
-      (int64_t *)(key == mpm->grid.radix ? mpm->grid.radix + mpm->p.count : mpm->grid.radix);
+/* The order, for mpsi_particles_permute_in; whether the particles have it already. */
+static bool list_order(const mps_mpm *mpm, int64_t *order) {
   bool sorted = true;
   for (int64_t k = 0; k < mpm->p.count; k++) {
-    order[k] = key[k].index;
-    sorted = sorted && key[k].index == k;
+    order[k] = mpm->grid.sorted[k].index;
+    sorted = sorted && order[k] == k;
   }
+  return sorted;
+}
+
+mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
+  const int64_t count = mpm->p.count;
+  mpsi_radix *lower = mpm->grid.radix, *upper = lower + count;
+  mpm->grid.sorted = mpsi_mpm_find_order(mpm, &mpm->grid.own_bits);
+  if (!mpm->grid.sorted) return no_room(mpm, function, count / mpm->grid.block_nodes + 1);
+  const mps_status status = build_blocks(mpm, function);
+  if (status != MPS_OK) return status;
+  /* The half that is not sorted is free now for the order, and the other one after that. */
+  int64_t *other = (int64_t *)(mpm->grid.sorted == lower ? upper : lower), *order = other;
+  int64_t *own = (int64_t *)(mpm->grid.sorted == lower ? lower : upper);
   mpm->run.stale = false;
-  return sorted ? MPS_OK
-                : mpsi_particles_permute_in(mpm->particles, function, order, order + mpm->p.count);
+  if (list_order(mpm, order)) return MPS_OK;
+  void *const scratch[MPSI_PERMUTE_COLUMNS] = {other + count, own, own + count};
+  return mpsi_particles_permute_in(mpm->particles, function, order, scratch, MPSI_PERMUTE_COLUMNS);
 }

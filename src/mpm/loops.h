@@ -148,12 +148,12 @@ MPSI_INLINE void mpsi_weights_along(int spline, const mpsi_places *places, const
   }
 }
 
-/* The first `n` values, if fewer than four with zeros: what comes after may be at work elsewhere.
- */
+/* The first `n` values (at least 1), if fewer than four with the first again: what comes after may
+ * be at work elsewhere, and 0 may be far from the block. */
 MPSI_INLINE mpsi_quad mpsi_get_some(const double *from, int n) {
   if (n >= 4) return mpsi_get(from);
-  mpsi_quad out = {0.0};
-  for (int i = 0; i < n; i++) out[i] = from[i];
+  mpsi_quad out = {from[0], from[0], from[0], from[0]};
+  for (int i = 1; i < n; i++) out[i] = from[i];
   return out;
 }
 
