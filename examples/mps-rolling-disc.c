@@ -174,7 +174,7 @@ static mps_status look_at_body(simulation *sim, double *x, double *v, double *om
 }
 
 static mps_status sample(const settings *s, simulation *sim) {
-  double x[2] = {0}, v[2] = {0}, omega;
+  double x[2] = {0}, v[2] = {0}, omega = 0.0;
   const mps_status status = s->body == BODY_SLOPE ? look_at_particles(sim, x, v, &omega)
                                                   : look_at_body(sim, x, v, &omega);
   if (status != MPS_OK) return status;
