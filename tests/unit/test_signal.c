@@ -179,7 +179,7 @@ static void a_table_of_velocities_is_linear_between_samples(void **state) {
 /* Largest error of the spline through sin on [0, pi], whose ends are natural (sin'' = 0). */
 static double spline_error(int steps) {
   enum { MOST = 129 };
-  double times[MOST], values[MOST], worst = 0.0;
+  double times[MOST] = {0}, values[MOST] = {0}, worst = 0.0;
   for (int i = 0; i <= steps; i++) {
     times[i] = 1.0 + PI * i / steps;
     values[i] = 0.5 + sin(PI * i / steps);

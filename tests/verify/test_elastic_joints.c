@@ -106,7 +106,7 @@ static void compare(test_body *b, const laminate *l, double *eu, double *es) {
   static const int row[6] = {0, 1, 2, 0, 2, 1}, col[6] = {0, 1, 2, 1, 0, 2};
   double worst_u = 0, worst_s = 0, largest_u = 0, largest_s = 0;
   for (int64_t i = 0; i < b->n; i++) {
-    double x[3];
+    double x[3] = {0};
     for (int k = 0; k < b->dim; k++) x[k] = test_value(b, "position", i, k);
     const int kind = kind_at(l, x[l->axis]);
     for (int c = 0; c < b->dim; c++) {
