@@ -366,6 +366,11 @@ static int complete(const options_program *program, simulation *sim) {
   if (fabs(s->width / s->h - nearbyint(s->width / s->h)) > 1e-6 || s->width < 3.5 * s->h)
     return options_refuse(program, "--width must be a whole number of cells --h, at least 4");
   const double weight = s->density * G * s->aspect * s->width;
+  const char *large = mpm_model_too_large(s->aspect * pow(s->width / s->h, 2.0) * (double)s->ppc);
+  if (large) return options_refuse(program, large);
+  if (weight > 0.1 * s->young * 1e3)
+    return options_refuse(program, "--young must be at least 10 times the stress below the column, "
+                                   "density g aspect width");
   sim->count = s->sweep ? 6 : s->compare ? 3 : 1;
   for (int k = 0; k < sim->count; k++)
     sim->column[k] = (column_case){.name = "column",

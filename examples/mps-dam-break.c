@@ -381,6 +381,11 @@ static int complete(const options_program *program, settings *s) {
     return options_refuse(program, "--base must be a whole number of cells --h, at least 4");
   if (!s->rest && fabs(tank - nearbyint(tank)) > 1e-6)
     return options_refuse(program, "--tank times --base must be a whole number of cells --h");
+  const char *large = mpm_model_too_large(cells * cells * (double)(s->n2 * s->ppc));
+  if (large) return options_refuse(program, large);
+  if (speed_of_sound(s) < 2.0 * sqrt(2.0 * G * column_height(s)))
+    return options_refuse(program, "--sound-speed must be at least 2 (2 g n^2 a)^1/2, twice the "
+                                   "speed of the water: it is to be all but incompressible");
   if (isnan(s->duration)) s->duration = 6.0 * sqrt(s->base / (G * (double)s->n2));
   return -1;
 }

@@ -281,7 +281,7 @@ int main(int argc, char **argv) {
       OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
       OPTION_CHOICE("fill", "lattice|rings", &s->fill, "how particles fill an elastic disc"),
       OPTION_HEADING("Run"),
-      OPTION_NUMBER("duration", "s", OPTION_FROM_TO(1e-3, 0.55), &s->duration,
+      OPTION_NUMBER("duration", "s", OPTION_FROM_TO(0.01, 0.55), &s->duration,
                     "length of the run; x_error_05 is that at its end"),
       OPTION_OUT(&s->out),
       OPTION_THREADS(&s->threads),

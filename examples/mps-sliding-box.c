@@ -31,6 +31,12 @@ typedef struct simulation {
   int rows;
 } simulation;
 
+/* M = E (1 - nu)/((1 + nu)(1 - 2 nu)), Pa. */
+static double confined_modulus(const settings *s) {
+  const double E = s->young * 1e3, nu = s->poisson;
+  return E * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
+}
+
 /* ---- building -------------------------------------------------------------------------------- */
 
 /* Velocity of the paper's Figure 10: up in 0.1 s, constant, down in 0.1 s. `start` in s. */
@@ -149,9 +155,7 @@ static bool draw(app *a, const settings *s, double fy_exact) {
 static bool finish(app *a, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
-  const double E = s->young * 1e3, nu = s->poisson;
-  const double modulus = E * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
-  const double exact = modulus * SPEED * (STROKE - RAMP);
+  const double exact = confined_modulus(s) * SPEED * (STROKE - RAMP);
   double fx = 0.0, fy = 0.0;
   int count = 0;
   for (int k = 0; k < sim->rows; k++) {
@@ -215,6 +219,12 @@ int main(int argc, char **argv) {
       table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
+  const char *large = mpm_model_too_large(pow(SIDE / s->h, 2.0) * (double)s->ppc);
+  if (large) return options_refuse(&program, large);
+  if (RAMP * sqrt(confined_modulus(s) / s->density) < 5.0 * SIDE)
+    return options_refuse(&program,
+                          "--young over --density is too small for a block in equilibrium: "
+                          "sound must cross it 5 times in the 0.1 s of a start");
   static const mpm_model_parts parts = {build, march, finish};
   return mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
 }

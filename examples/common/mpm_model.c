@@ -9,6 +9,11 @@ void mpm_model_destroy(mpm_model *model) {
   mps_particles_destroy(&model->particles);
 }
 
+const char *mpm_model_too_large(double particles) {
+  return particles <= 1e8 ? NULL
+                          : "more than 1e8 particles: take a coarser --h, or a smaller model";
+}
+
 /* Prints the one line on how the run ended; returns the exit code. */
 static int end_run(app *a, mps_status status, const mpm_model *model, bool any) {
   if (status == MPS_OK || status == MPS_ERROR_CANCELLED || !model->why[0])

@@ -35,6 +35,9 @@ typedef struct mpm_model_parts {
 int mpm_model_run(const options_program *program, int64_t threads, const char *out,
                   mpm_model *model, const mpm_model_parts *parts, void *user);
 
+/* Why a model of so many particles is not begun; NULL where it is. */
+const char *mpm_model_too_large(double particles);
+
 /* Gives all objects back and nulls them: before `march` builds the next of several models. */
 void mpm_model_destroy(mpm_model *model);
 

@@ -20,9 +20,18 @@ const char *footing_settle(settings *s, const option *table) {
   if (!cone &&
       (options_given(table, "phi") || options_given(table, "psi") || options_given(table, "cone")))
     return "--phi, --psi and --cone are for --model druckerprager";
+  const char *large = mpm_model_too_large(s->width * s->depth / (s->h * s->h) * (double)s->ppc);
+  if (large) return large;
+  if (s->half_width < s->h * (2.0 - 1e-9)) return "--half-width must be at least 2 cells of --h";
+  if (s->width < 3.0 * s->half_width || s->depth < 1.5 * s->half_width)
+    return "--domain must be at least 3 half widths of the footing wide and 1.5 deep: as far as "
+           "the "
+           "ground moves when it fails";
   if (isnan(s->psi)) s->psi = s->phi;
   if (s->psi > s->phi) return "--psi must be at most --phi";
   if (isnan(s->settlement)) s->settlement = cone ? 4.0 : 0.6;
+  if (s->settlement * 1e-3 > 0.5 * s->half_width)
+    return "--settlement must be at most half of --half-width";
   if (isnan(s->gravity)) s->gravity = cone ? 9.81 : 0.0;
   return NULL;
 }

@@ -5,6 +5,7 @@
 #include <mps/geostatic.h>
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #define STIFFNESS 4.0 /* of the contact, over K + 4G/3 and at most over m/dt^2 */
@@ -44,11 +45,16 @@ const char *pen_check(penetrometer *p) {
     return "--soil must be at least 8 cells of --h wider than what is pushed in";
   if (s->depth > s->height * s->diameter - 4.0 * s->h)
     return "--depth must end 4 cells of --h above the bottom of the soil";
+  const double cells = s->width * s->breadth * s->height * pow(s->diameter / s->h, 3.0);
+  const char *large = mpm_model_too_large(cells * (double)s->ppc);
+  if (large && !s->no_space) return large;
   const double edge = nearbyint(cbrt((double)s->ppc));
   if (edge * edge * edge != (double)s->ppc) return "--ppc must be a cube: 1, 8, 27 or 64";
   if (s->psi > s->phi) return "--psi must be at most --phi";
   if (s->law == PEN_CLAY && s->cohesion == 0.0) return "--cohesion must be > 0 with --law clay";
   if (isnan(s->gravity)) s->gravity = s->law == PEN_SAND ? 9.81 : 0.0;
+  if (s->density * s->gravity * s->height * s->diameter > 0.5 * s->young * 1e3)
+    return "--young must be at least twice the stress at the bottom of the soil, density g depth";
   p->stride = fmin(0.2 * s->h, s->depth / 200.0);
   p->t_end = (pen_gap(p) + s->depth) / s->speed;
   p->runs = s->axisymmetric && !s->no_space ? 2 : 1;
@@ -176,6 +182,46 @@ static mps_status make_sphere(penetrometer *p, const pen_run *r, mps_body_def *d
   return status == MPS_OK ? mps_body_name_part(*out, "tip", 0, 1, NULL) : status;
 }
 
+/* How far the mesh goes from its origin along an axis (m): seen from afar, where the error is of
+ * (extent/L)^2. */
+static mps_status find_extent(const pen_run *r, int axis, double sign, double *extent) {
+  const double L = 1e3 * (r->size[0] + r->size[1] + r->size[2]);
+  mps_body_state state;
+  double distance = 0.0;
+  mps_status status = mps_body_get_state(r->m.body[0], &state);
+  double at[3] = {state.position[0], state.position[1], state.position[2]};
+  at[axis] += sign * L;
+  if (status == MPS_OK)
+    status = mps_body_distance(r->m.body[0], 1, at, &distance, NULL, NULL, NULL);
+  *extent = L - distance;
+  return status;
+}
+
+static mps_status check_mesh(const penetrometer *p, pen_run *r) {
+  double across = 0.0, wide = 0.0, below = 0.0;
+  mps_status status = find_extent(r, 2, -1.0, &below);
+  for (int k = 0; k < 4 && status == MPS_OK; k++) {
+    double extent = 0.0;
+    status = find_extent(r, k / 2, k % 2 ? 1.0 : -1.0, &extent);
+    across = fmax(across, 2.0 * extent);
+    wide = fmax(wide, extent - r->size[k / 2]);
+  }
+  if (status != MPS_OK) return status;
+  if (across < 3.9 * p->s.h)
+    snprintf(r->m.why, sizeof r->m.why,
+             "the mesh is %.3g m wide with --scale %g, must be at least 4 cells of --h: %g m",
+             across, p->s.scale, 4.0 * p->s.h);
+  else if (wide > -2.0 * p->s.h)
+    snprintf(r->m.why, sizeof r->m.why,
+             "the mesh is %.3g m wide with --scale %g, the soil of %g m x %g m must be at least 4 "
+             "cells of --h wider",
+             across, p->s.scale, 2.0 * r->size[0], 2.0 * r->size[1]);
+  else if (fabs(below) > p->s.h)
+    snprintf(r->m.why, sizeof r->m.why,
+             "the lowest point of the mesh is %.3g m below its origin, must be at it", below);
+  return r->m.why[0] ? MPS_ERROR_ARGUMENT : MPS_OK;
+}
+
 /* Contact stiffness as in mps-pile: the pressure below a tip must not use up the offset. */
 static double penalty_of(const penetrometer *p, const pen_run *r) {
   const double spacing = mps_particles_spacing(r->m.particles), dt = mps_mpm_dt(r->m.mpm);
@@ -198,6 +244,7 @@ static mps_status make_tip(penetrometer *p, pen_run *r) {
   if (status == MPS_OK && p->s.tip == PEN_SPHERE) status = make_sphere(p, r, &def, body);
   if (status == MPS_OK && p->s.tip == PEN_STL)
     status = mps_body_create_stl(p->context, &def, p->s.mesh, p->s.scale, body);
+  if (status == MPS_OK && p->s.tip == PEN_STL) status = check_mesh(p, r);
   if (status == MPS_OK) status = mps_body_drive(*body, up, down, -1.0);
   mps_signal_destroy(&down);
   return status == MPS_OK ? mps_mpm_add_body(r->m.mpm, *body) : status;

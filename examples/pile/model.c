@@ -40,11 +40,15 @@ const char *pile_check(pile_settings *s) {
     return "--soil must be at least 4 cells of --h wider than the pile's radius";
   if (s->depth > s->height - 4.0 * s->h)
     return "--depth must end 4 cells of --h above the bottom of the soil";
+  const char *large = mpm_model_too_large(s->width * s->height / (s->h * s->h) * (double)s->ppc);
+  if (large) return large;
   const double modulus =
       s->young * (1.0 - s->poisson) / ((1.0 + s->poisson) * (1.0 - 2.0 * s->poisson));
   if (s->k > CHATTER * modulus / ((double)s->ppc * s->courant * s->courant))
     return "--k must be at most 6 (K + 4G/3)/(ppc courant^2), 6 m/dt^2: stiffer contact chatters";
   if (s->psi > s->phi) return "--psi must be at most --phi";
+  if (s->density * PILE_GRAVITY * s->height > 0.5 * s->young * 1e3)
+    return "--young must be at least twice the stress at the bottom of the soil, density g height";
   return NULL;
 }
 

@@ -53,4 +53,12 @@ if ! grep -q "MPS_EMBREE" "$work/log"; then
   [ "$status" -eq 0 ] || fail "mesh: $(cat "$work/log")"
   in_range "$work/m/summary.json" particles_inside 0 0
   in_range "$work/m/summary.json" n_factor 2 15
+  # of other sizes: too small for the cells, larger than the soil
+  for try in "1e-6:at least 4 cells of --h" "0.01:the soil of 0.3 m x 0.3 m must be"; do
+    status=0
+    "$1/mps-penetrometer" $coarse --tip stl --mesh "$work/mesh.stl" --scale "${try%%:*}" \
+      --depth 0.08 --out "$work/m" >/dev/null 2>"$work/log" || status=$?
+    [ "$status" -eq 1 ] || fail "mesh of scale ${try%%:*}: exit code $status"
+    has "$work/log" "${try#*:}"
+  done
 fi
