@@ -198,7 +198,7 @@ static mps_status find_extent(const pen_run *r, int axis, double sign, double *e
 }
 
 static mps_status check_mesh(const penetrometer *p, pen_run *r) {
-  double across = 0.0, wide = 0.0, below = 0.0;
+  double across = 0.0, wide = -INFINITY, below = 0.0;
   mps_status status = find_extent(r, 2, -1.0, &below);
   for (int k = 0; k < 4 && status == MPS_OK; k++) {
     double extent = 0.0;
