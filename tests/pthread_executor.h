@@ -4,7 +4,7 @@
 #ifndef MPS_TEST_PTHREAD_EXECUTOR_H
 #define MPS_TEST_PTHREAD_EXECUTOR_H
 
-#include <mps/context.h>
+#include "test_common.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -45,7 +45,7 @@ static inline void pthread_executor(void *user, int64_t count, mps_task_fn task,
 
 /* A definition that uses it; *threads (1..16) must outlive the context. */
 static inline mps_context_def pthread_executor_def(int32_t *threads) {
-  mps_context_def def = mps_context_defaults();
+  mps_context_def def = test_context_defaults();
   def.executor = MPS_EXECUTOR_CALLER;
   def.threads = *threads;
   def.parallel_for = pthread_executor;

@@ -15,25 +15,25 @@
  *   elastic.h     implicit elasticity
  *   io.h          series of results, restart files
  *
- * Another library of this name, MPSolve (Debian's libmps), has a header mps/mps.h too. One program
- * may use both, one source file not: put the directory of the one that it includes first.
+ * Another library of this name, MPSolve (Debian's libmps), has a header mps/mps.h too. A source may use
+ * both: the compiler searches MPSolve's directory first, and the headers listed here are included.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_MPS_H
 #define LIBMPS_MPS_H
 
-#include <mps/base.h>
-#include <mps/body.h>
-#include <mps/context.h>
-#include <mps/dynamics.h>
-#include <mps/elastic.h>
-#include <mps/geostatic.h>
-#include <mps/io.h>
-#include <mps/kernel.h>
-#include <mps/material.h>
-#include <mps/mpm.h>
-#include <mps/neighbours.h>
-#include <mps/particles.h>
-#include <mps/signal.h>
-#include <mps/solver.h>
+#include "base.h"
+#include "body.h"
+#include "context.h"
+#include "dynamics.h"
+#include "elastic.h"
+#include "geostatic.h"
+#include "io.h"
+#include "kernel.h"
+#include "material.h"
+#include "mpm.h"
+#include "neighbours.h"
+#include "particles.h"
+#include "signal.h"
+#include "solver.h"
 
 #endif

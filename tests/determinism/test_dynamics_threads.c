@@ -18,7 +18,7 @@ typedef struct setting {
 /* A 200 x 170 m slope with free-field columns and a viscous base, shaken: runs, scattered pairs
  * and dashpots are all there, in enough blocks to be shared between threads. */
 static mps_status run(const setting *s, uint64_t *hash) {
-  mps_context_def def = mps_context_defaults();
+  mps_context_def def = test_context_defaults();
   mps_context *context = NULL;
   int32_t threads = s->threads;
   def.executor = s->executor;

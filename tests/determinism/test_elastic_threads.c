@@ -54,14 +54,14 @@ static double *solve(const mps_context_def *def, int reversed, int64_t *n) {
 static void threads_and_order_change_nothing(void **state) {
   (void)state;
   int64_t n, m;
-  mps_context_def serial = mps_context_defaults();
+  mps_context_def serial = test_context_defaults();
   serial.executor = MPS_EXECUTOR_SERIAL;
   double *expected = solve(&serial, 0, &n);
   for (int k = 0; k < 4; k++) {
     int32_t threads = k + 1;
     mps_context_def def = pthread_executor_def(&threads);
     if (k == 3) { /* the build's own executor, particles the other way round */
-      def = mps_context_defaults();
+      def = test_context_defaults();
       def.threads = 3;
     }
     double *got = solve(&def, k == 3, &m);

@@ -104,7 +104,7 @@ enum { HELD = 1024 };
 
 static uint64_t hash_of(int32_t executor, int32_t threads, int32_t geometry, int options) {
   mps_context_def def =
-      executor == MPS_EXECUTOR_CALLER ? pthread_executor_def(&threads) : mps_context_defaults();
+      executor == MPS_EXECUTOR_CALLER ? pthread_executor_def(&threads) : test_context_defaults();
   def.executor = executor;
   def.threads = threads;
   mps_context *context = NULL;

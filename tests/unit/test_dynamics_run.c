@@ -38,7 +38,7 @@ static int32_t on_cancel(void *user) {
 }
 
 static mps_context *hooked(hooks *h) {
-  mps_context_def def = mps_context_defaults();
+  mps_context_def def = test_context_defaults();
   mps_context *own = NULL;
   *h = (hooks){.rising = true};
   def.executor = MPS_EXECUTOR_SERIAL;

@@ -123,7 +123,7 @@ static void listen(void *user, mps_log_level level, const char *message) {
 }
 
 static mps_context *listening(heard *h) {
-  mps_context_def def = mps_context_defaults();
+  mps_context_def def = test_context_defaults();
   def.executor = MPS_EXECUTOR_SERIAL;
   def.log = listen;
   def.log_user = h;
