@@ -8,7 +8,7 @@
 #ifndef LIBMPS_EXPERIMENTAL_H
 #define LIBMPS_EXPERIMENTAL_H
 
-#include <mps/base.h>
+#include "base.h"
 
 /* Marks what is exported under that node. */
 #define MPS_EXPERIMENTAL_API MPS_API

@@ -18,9 +18,9 @@
 #ifndef LIBMPS_FLUID_H
 #define LIBMPS_FLUID_H
 
-#include <mps/particles.h>
-#include <mps/signal.h>
-#include <mps/solver.h>
+#include "particles.h"
+#include "signal.h"
+#include "solver.h"
 
 MPS_EXTERN_C_BEGIN
 
