@@ -18,6 +18,7 @@
 #ifndef LIBMPS_FLUID_H
 #define LIBMPS_FLUID_H
 
+#include "io.h"
 #include "particles.h"
 #include "signal.h"
 #include "solver.h"
@@ -175,6 +176,20 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_get_report_sized(const mps_fluid *flu
 static inline mps_status mps_fluid_get_report(const mps_fluid *fluid, mps_fluid_report *out) {
   return mps_fluid_get_report_sized(fluid, out, sizeof *out);
 }
+
+/* ---- state ----------------------------------------------------------------------------------- */
+
+/** Keeps the state of the solver and its set in memory, and goes back to it bit for bit, as
+ *  mps_mpm_snapshot and mps_mpm_rollback. Walls must be those of the snapshot; dt, viscosity and
+ *  signals are as they are now. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_snapshot(mps_fluid *fluid, mps_snapshot **snapshot);
+MPS_API MPS_NODISCARD mps_status mps_fluid_rollback(mps_fluid *fluid, const mps_snapshot *snapshot);
+/** The same with a file, as mps_mpm_save and mps_mpm_restore, also for errors: into a fluid with the
+ *  same particles, density, level and walls. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_save(mps_fluid *fluid, const char *path,
+                                                const mps_checkpoint *info);
+MPS_API MPS_NODISCARD mps_status mps_fluid_restore(mps_fluid *fluid, const char *path,
+                                                   mps_checkpoint *info);
 
 MPS_EXTERN_C_END
 #endif

@@ -159,6 +159,7 @@ static void release(mps_fluid *f) {
                          f->lower_room.item};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
   for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) mps_signal_destroy(&f->wall[b].signal);
+  mpsi_state_forget(&f->identity);
   mpsi_free(context, f);
 }
 

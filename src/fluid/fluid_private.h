@@ -17,6 +17,7 @@
 #include "core/internal.h"
 #include "core/particles_internal.h"
 #include "core/retain.h"
+#include "core/state.h"
 
 #include <mps/fluid.h>
 
@@ -112,6 +113,8 @@ struct mps_fluid {
   double time, dt, speed; /* s; s, of the step being made; largest |u|, m/s */
   int64_t steps;
   bool in_callback;
+  bool stale; /* what is known of the surroundings is not that of the fields */
+  mpsi_identity *identity;
   mps_fluid_report report;
   double energy;          /* J, kinetic and potential at creation */
   double work_boundaries; /* J, since creation */
@@ -165,6 +168,8 @@ int64_t mpsi_fluid_advance(mps_fluid *fluid); /* first particle that went wrong,
 mps_status mpsi_fluid_load_walls(mps_fluid *fluid, const char *function);
 /* step.c: the surroundings of the particles where the fields have them. */
 mps_status mpsi_fluid_look(mps_fluid *fluid, const char *function);
+/* step.c: the same, where a rollback has left it to be done. */
+mps_status mpsi_fluid_refresh(mps_fluid *fluid, const char *function);
 /* step.c: sorts the particles by place. */
 mps_status mpsi_fluid_sort(mps_fluid *fluid, const char *function);
 /* step.c: MPS_ERROR_STATE within a callback of the run. */

@@ -184,7 +184,8 @@ mps_status mps_fluid_get_wall(mps_fluid *f, int32_t number, int64_t capacity, do
                      "capacity is %lld and count %s: must be >= 0 and given", (long long)capacity,
                      count ? "given" : "NULL");
   listing list = {.capacity = capacity, .x = x, .pressure = pressure};
-  status = for_points(f, number, __func__, list_point, &list);
+  status = mpsi_fluid_refresh(f, __func__);
+  if (status == MPS_OK) status = for_points(f, number, __func__, list_point, &list);
   if (status == MPS_OK) *count = list.count;
   return status;
 }
@@ -192,7 +193,8 @@ mps_status mps_fluid_get_wall(mps_fluid *f, int32_t number, int64_t capacity, do
 mps_status mps_fluid_get_pressure(mps_fluid *f, int32_t number, int64_t count, const double *x,
                                   double *pressure) {
   if (!f) return MPS_ERROR_ARGUMENT;
-  const mps_status status = check_wall(f, __func__, number);
+  mps_status status = check_wall(f, __func__, number);
+  if (status == MPS_OK) status = mpsi_fluid_refresh(f, __func__);
   if (status != MPS_OK) return status;
   if (count < 0 || (count > 0 && (!x || !pressure)))
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
@@ -227,6 +229,8 @@ mps_status mps_fluid_get_levels(mps_fluid *f, int64_t count, const double *stati
   if (count < 0 || (count > 0 && (!station || !level)))
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                      "count is %lld, station and level must be given", (long long)count);
+  const mps_status status = mpsi_fluid_refresh(f, __func__);
+  if (status != MPS_OK) return status;
   for (int64_t k = 0; k < count; k++) {
     double sum = 0.0, height = 0.0;
     for (int64_t i = 0; i < f->count; i++) {

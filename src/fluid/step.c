@@ -100,7 +100,12 @@ mps_status mpsi_fluid_look(mps_fluid *f, const char *function) {
   if (status == MPS_OK) mpsi_fluid_move_ghosts(f);
   if (status == MPS_OK) status = mpsi_fluid_find_neighbours(f, function);
   if (status == MPS_OK) mpsi_fluid_find_moments(f);
+  f->stale = status != MPS_OK;
   return status;
+}
+
+mps_status mpsi_fluid_refresh(mps_fluid *f, const char *function) {
+  return f->stale ? mpsi_fluid_look(f, function) : MPS_OK;
 }
 
 static mps_status went_wrong(mps_fluid *f, const char *function, int64_t i) {
@@ -203,7 +208,7 @@ mps_status mps_fluid_step(mps_fluid *f, int64_t count) {
                      (long long)count);
   mps_status status = mpsi_fluid_ready(f, __func__);
   for (int64_t k = 0; k < count && status == MPS_OK; k++) {
-    if (k > 0 && mpsi_cancelled(f->context)) return cancelled(f, __func__);
+    if (mpsi_cancelled(f->context)) return cancelled(f, __func__);
     status = check_dt(f, __func__);
     if (status == MPS_OK) status = take_step(f, __func__, mps_fluid_dt(f));
   }

@@ -1,0 +1,145 @@
+/* mps-tank - water in a tank by moving particles against theory: at rest, sloshing, waves of a
+ * piston, and a drop without walls. SPDX-License-Identifier: BSD-3-Clause */
+#include "common/options.h"
+#include "tank/tank.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Defaults that depend on the case. Returns -1, or an exit code. */
+static int complete(const options_program *program, tank_settings *s) {
+  static const double length[] = {0.6, 0.7, 1.6, 0.0}, depth[] = {0.3, 0.3, 0.3, 1.0};
+  static const double amplitude[] = {0.0, 0.01, 0.02, 0.0}, duration[] = {4.0, 5.2, 6.0, 1.0};
+  if (isnan(s->length)) s->length = length[s->kind];
+  if (isnan(s->depth)) s->depth = depth[s->kind];
+  if (isnan(s->spacing)) s->spacing = s->kind == TANK_DROP ? s->depth / 20.0 : 0.02;
+  if (isnan(s->amplitude)) s->amplitude = amplitude[s->kind];
+  if (isnan(s->duration)) s->duration = duration[s->kind];
+  if (isnan(s->sample)) s->sample = fmin(0.01, s->duration / 50.0);
+  if (isnan(s->window[1])) s->window[1] = s->duration;
+  const double window[] = {0.5 * s->duration, s->duration, 4.0 * s->period, s->duration};
+  if (isnan(s->window[0])) s->window[0] = fmax(s->duration - window[s->kind], 0.0);
+  if (s->kind == TANK_DROP && isnan(s->dt)) s->dt = 0.05 * s->spacing / s->depth;
+  if (s->depth < 5.0 * s->spacing)
+    return options_refuse(program, "--depth must be at least 5 spacings");
+  if (s->kind != TANK_DROP && s->length < 5.0 * s->spacing)
+    return options_refuse(program, "--length must be at least 5 spacings");
+  if (s->kind != TANK_DROP && s->length / s->spacing * s->depth / s->spacing > 2e6)
+    return options_refuse(program, "--spacing gives more than 2 million particles");
+  if (s->kind != TANK_DROP && 4.0 * fabs(s->amplitude) > s->length)
+    return options_refuse(program, "--amplitude must be at most a quarter of the length");
+  if (s->sample > s->duration || s->duration / s->sample > 1e6)
+    return options_refuse(program,
+                          "--sample must be between a millionth of --duration and all of it");
+  if (!(s->window[0] < s->window[1]))
+    return options_refuse(program, "--window must be two times, the first before the second");
+  return -1;
+}
+
+static bool read_gauges(const char *text, double *gauge) {
+  for (int k = 0; text; k++) {
+    char number[64];
+    const size_t length = strcspn(text, ",");
+    if (k == TANK_GAUGES || length >= sizeof number) return false;
+    memcpy(number, text, length);
+    number[length] = '\0';
+    if (!options_number(number, &gauge[k])) return false;
+    text = text[length] ? text + length + 1 : NULL;
+  }
+  return true;
+}
+
+static int run(app *a, tank_model *m) {
+  mps_recorder_def def = mps_recorder_defaults();
+  char path[1200];
+  if (!output_directory(a, m->s.out)) return APP_FAILED;
+  mps_status status = tank_build(a->context, m);
+  if (status != MPS_OK) return app_end_run(a, status, 0.0, false);
+  printf("%lld particles, dt %.4g s\n", (long long)mps_particles_count(m->water),
+         mps_fluid_dt(m->fluid));
+  fflush(stdout);
+  snprintf(path, sizeof path, "%s/water.vtkhdf", m->s.out);
+  def.path = path;
+  if (m->s.frames > 0) status = mps_recorder_create(a->context, m->water, &def, &m->series);
+  if (status == MPS_ERROR_UNSUPPORTED) status = MPS_OK; /* a libmps without HDF5 */
+  if (status != MPS_OK) return app_end_run(a, status, 0.0, false);
+  const bool series = m->series != NULL;
+  status = tank_run(a, m);
+  const int code = app_end_run(a, status, mps_fluid_time(m->fluid), m->samples > 0);
+  if (m->samples == 0) return code;
+  if (!tank_write(a, m)) return APP_FAILED;
+  if (series) printf("ParaView: %s\n", path);
+  return code;
+}
+
+int main(int argc, char **argv) {
+  static tank_model m = {.s = {.kind = TANK_PISTON,
+                               .length = NAN,
+                               .depth = NAN,
+                               .spacing = NAN,
+                               .amplitude = NAN,
+                               .period = 1.0,
+                               .ramp = 1.0,
+                               .duration = NAN,
+                               .sample = NAN,
+                               .dt = NAN,
+                               .gauge = {NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN},
+                               .window = {NAN, NAN},
+                               .frames = 60,
+                               .out = "out/tank"}};
+  tank_settings *s = &m.s;
+  const char *gauges = NULL;
+  option table[] = {
+      OPTION_HEADING("Case"),
+      OPTION_CHOICE("case", "still|sloshing|piston|drop", &s->kind,
+                    "water at rest; first mode of sloshing; waves of a piston in a closed tank; an "
+                    "elliptic drop of radius --depth without gravity"),
+      OPTION_NUMBER("length", "m", OPTION_LENGTH, &s->length, "of the tank (default .6, .7, 1.6)"),
+      OPTION_NUMBER("depth", "m", OPTION_LENGTH, &s->depth,
+                    "of the water (default .3), or the drop's radius (default 1)"),
+      OPTION_NUMBER("amplitude", "m", OPTION_FROM_TO(0.0, 1e3), &s->amplitude,
+                    "of the sloshing at the walls (default .01), of the piston (default .02)"),
+      OPTION_NUMBER("period", "s", OPTION_DURATION, &s->period, "of the piston"),
+      OPTION_NUMBER("ramp", "s", OPTION_FROM_TO(0.0, 1e6), &s->ramp,
+                    "in which the piston's amplitude rises"),
+      OPTION_NUMBER("viscosity", "Pa s", OPTION_FROM_TO(0.0, 1e3), &s->viscosity, "of the water"),
+      OPTION_HEADING("Particles"),
+      OPTION_NUMBER("spacing", "m", OPTION_LENGTH, &s->spacing,
+                    "of the particles (default .02, of a drop a twentieth of its radius)"),
+      OPTION_NUMBER("disturb", "spacings", OPTION_FROM_TO(0.0, 0.2), &s->disturb,
+                    "random displacement of the particles at the start, at most"),
+      OPTION_HEADING("Run"),
+      OPTION_NUMBER("duration", "s", OPTION_DURATION, &s->duration,
+                    "of the run (default 4, 5.2, 6, 1)"),
+      OPTION_NUMBER("dt", "s", OPTION_DURATION, &s->dt, "step (default: the library's)"),
+      OPTION_NUMBER("sample", "s", OPTION_DURATION, &s->sample,
+                    "between rows of the tables (default .01)"),
+      OPTION_TEXT("gauge", "m,...", &gauges, "stations of level gauges, at most 8"),
+      {.name = "window",
+       .unit = "s,s",
+       .range = OPTION_FROM_TO(0.0, 1e6),
+       .count = 2,
+       .number = s->window,
+       .help = "of the means and harmonics (default: the last 4 periods of a piston, half the run "
+               "at rest, else all)"},
+      OPTION_INTEGER("frames", "N", OPTION_FROM_TO(0.0, 100000.0), &s->frames,
+                     "of the series for ParaView; 0: none"),
+      OPTION_OUT(&s->out),
+      OPTION_THREADS(&s->threads),
+      {0}};
+  const options_program program = {"mps-tank",
+                                   "Water in a tank by moving particles (MPS), against theory: "
+                                   "forces on the walls, levels, pressures.",
+                                   table};
+  int code = options_parse(&program, argc, argv);
+  if (code < 0 && !read_gauges(gauges, s->gauge))
+    code = options_refuse(&program, "--gauge must be at most 8 lengths in m separated by commas");
+  if (code < 0) code = complete(&program, s);
+  if (code >= 0) return code;
+  app a;
+  if (!app_start(&a, program.name, s->threads)) return app_finish(&a, APP_FAILED);
+  code = run(&a, &m);
+  tank_free(&m);
+  return app_finish(&a, code);
+}

@@ -1,0 +1,195 @@
+/* model.c - the water of mps-tank, its walls, and a run that samples forces and levels.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "tank.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* ---- water ----------------------------------------------------------------------------------- */
+
+/* First mode of sloshing: a particle of the lattice where linear theory has it. */
+static void displace(const tank_settings *s, double *x) {
+  const double k = TANK_PI / s->length, at = x[0], y = x[1], a = s->amplitude;
+  x[0] -= a * sin(k * at) * cosh(k * y) / sinh(k * s->depth);
+  x[1] += a * cos(k * at) * sinh(k * y) / sinh(k * s->depth);
+}
+
+static double noise(uint64_t *state) { /* in [-1, 1) */
+  *state = *state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+  return (double)(*state >> 11) * 0x1p-52 - 1.0;
+}
+
+static mps_status fill_tank(const tank_settings *s, mps_particles *water) {
+  const int64_t columns = llround(s->length / s->spacing), rows = llround(s->depth / s->spacing);
+  double *x = malloc((size_t)(columns * rows) * 2 * sizeof *x);
+  uint64_t state = 1;
+  if (!x) return MPS_ERROR_MEMORY;
+  for (int64_t j = 0; j < rows; j++)
+    for (int64_t i = 0; i < columns; i++) {
+      double *at = x + 2 * (j * columns + i);
+      at[0] = ((double)i + 0.5) * s->spacing, at[1] = ((double)j + 0.5) * s->spacing;
+      if (s->kind == TANK_SLOSHING) displace(s, at);
+      for (int c = 0; c < 2; c++) at[c] += s->disturb * s->spacing * noise(&state);
+    }
+  const mps_status status = mps_particles_append(water, columns * rows, x);
+  free(x);
+  return status;
+}
+
+/* A disc whose velocity is (-x, y)/s. */
+static mps_status fill_drop(const tank_settings *s, mps_particles *water) {
+  const double middle[2] = {0.0, 0.0};
+  mps_view x, u;
+  mps_status status = mps_particles_fill_ball(water, middle, s->depth, NULL);
+  if (status == MPS_OK) status = mps_particles_add_field(water, "velocity", 0);
+  if (status == MPS_OK) status = mps_particles_view(water, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(water, "velocity", &u);
+  for (int64_t i = 0; status == MPS_OK && i < x.shape[0]; i++) {
+    *mps_view_f64(&u, i, 0) = -*mps_view_f64(&x, i, 0);
+    *mps_view_f64(&u, i, 1) = *mps_view_f64(&x, i, 1);
+  }
+  return status;
+}
+
+/* ---- walls ----------------------------------------------------------------------------------- */
+
+/* amplitude sin(2 pi t/T), risen by 3 s^2 - 2 s^3 over the ramp. */
+static mps_status move_piston(void *user, double t, double motion[3]) {
+  const tank_settings *p = user;
+  const double w = 2.0 * TANK_PI / p->period, ramp = p->ramp;
+  const double s = t <= 0.0 ? 0.0 : ramp > 0.0 && t < ramp ? t / ramp : 1.0;
+  const bool rising = t > 0.0 && s < 1.0;
+  const double rise = s * s * (3.0 - 2.0 * s), rate = rising ? 6.0 * s * (1.0 - s) / ramp : 0.0;
+  const double bend = rising ? (6.0 - 12.0 * s) / (ramp * ramp) : 0.0;
+  motion[0] = p->amplitude * rise * sin(w * t);
+  motion[1] = p->amplitude * (rate * sin(w * t) + rise * w * cos(w * t));
+  motion[2] =
+      p->amplitude * (bend * sin(w * t) + 2.0 * rate * w * cos(w * t) - rise * w * w * sin(w * t));
+  return MPS_OK;
+}
+
+static mps_status add_wall(tank_model *m, double x, double nx, double ny, mps_signal *signal) {
+  mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+  def.point[0] = x;
+  def.normal[0] = nx, def.normal[1] = ny;
+  def.signal = signal;
+  return mps_fluid_add_boundary(m->fluid, &def, NULL);
+}
+
+static mps_status add_walls(mps_context *context, tank_model *m) {
+  mps_status status = MPS_OK;
+  if (m->s.kind == TANK_PISTON) status = mps_signal_user(context, move_piston, &m->s, &m->piston);
+  if (status == MPS_OK) status = add_wall(m, 0.0, 0.0, 1.0, NULL);
+  if (status == MPS_OK) status = add_wall(m, 0.0, 1.0, 0.0, m->piston);
+  if (status == MPS_OK) status = add_wall(m, m->s.length, -1.0, 0.0, NULL);
+  return status;
+}
+
+mps_status tank_build(mps_context *context, tank_model *m) {
+  const tank_settings *s = &m->s;
+  mps_particles_def set = mps_particles_defaults();
+  mps_fluid_def def = mps_fluid_defaults();
+  set.spacing = s->spacing;
+  def.dt = s->dt;
+  def.viscosity = s->viscosity;
+  def.density = TANK_DENSITY;
+  if (s->kind == TANK_DROP)
+    def.gravity[1] = 0.0;
+  else
+    def.level = s->depth;
+  mps_status status = mps_particles_create(context, &set, &m->water);
+  if (status == MPS_OK)
+    status = s->kind == TANK_DROP ? fill_drop(s, m->water) : fill_tank(s, m->water);
+  if (status == MPS_OK) status = mps_fluid_create(context, m->water, &def, &m->fluid);
+  if (status == MPS_OK && s->kind != TANK_DROP) status = add_walls(context, m);
+  return status;
+}
+
+/* ---- the run --------------------------------------------------------------------------------- */
+
+/* Semi-axes from the second moments, and the pressure of the particles in the middle. */
+static mps_status measure_drop(tank_model *m, tank_sample *sample) {
+  mps_view x, p;
+  mps_status status = mps_particles_view(m->water, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(m->water, "pressure", &p);
+  if (status != MPS_OK) return status;
+  double sum[2] = {0.0, 0.0}, pressure = 0.0;
+  int64_t middle = 0;
+  for (int64_t i = 0; i < x.shape[0]; i++) {
+    const double at[2] = {*mps_view_f64(&x, i, 0), *mps_view_f64(&x, i, 1)};
+    for (int c = 0; c < 2; c++) sum[c] += at[c] * at[c];
+    if (hypot(at[0], at[1]) > 3.0 * m->s.spacing) continue;
+    pressure += *mps_view_f64(&p, i, 0);
+    middle++;
+  }
+  const double n = (double)x.shape[0];
+  sample->a = 2.0 * sqrt(sum[0] / n), sample->b = 2.0 * sqrt(sum[1] / n);
+  sample->centre = middle ? pressure / (double)middle : 0.0;
+  return MPS_OK;
+}
+
+static mps_status measure_tank(tank_model *m, tank_sample *sample) {
+  const tank_settings *s = &m->s;
+  mps_reaction left, right;
+  double station[TANK_GAUGES + 1];
+  for (int k = 0; k < TANK_GAUGES; k++) station[k] = isnan(s->gauge[k]) ? 0.0 : s->gauge[k];
+  station[TANK_GAUGES] = s->length - s->spacing;
+  mps_status status = mps_fluid_get_reaction(m->fluid, TANK_LEFT, &left);
+  if (status == MPS_OK) status = mps_fluid_get_reaction(m->fluid, TANK_RIGHT, &right);
+  if (status == MPS_OK)
+    status = mps_fluid_get_levels(m->fluid, TANK_GAUGES + 1, station, sample->level);
+  if (status != MPS_OK) return status;
+  for (int k = 0; k <= TANK_GAUGES; k++) sample->level[k] -= s->depth;
+  sample->left = left.force[0]; /* the walls push inwards, the water outwards */
+  sample->right = -right.force[0];
+  return MPS_OK;
+}
+
+static mps_status take_sample(tank_model *m) {
+  tank_sample sample = {.t = mps_fluid_time(m->fluid)};
+  mps_totals sum;
+  mps_status status = m->s.kind == TANK_DROP ? measure_drop(m, &sample) : measure_tank(m, &sample);
+  if (status == MPS_OK) status = mps_fluid_get_totals(m->fluid, &sum);
+  if (status == MPS_OK) status = mps_fluid_get_report(m->fluid, &m->report);
+  if (status != MPS_OK) return status;
+  sample.kinetic = sum.kinetic, sample.potential = sum.strain;
+  m->sample[m->samples++] = sample;
+  return MPS_OK;
+}
+
+/* Frames are spread over the samples; the first is the start. */
+static mps_status write_frame(tank_model *m, int64_t k, int64_t count) {
+  if (!m->series) return MPS_OK;
+  const bool due = k == 0 || k * m->s.frames / count > (k - 1) * m->s.frames / count;
+  return due ? mps_recorder_write(m->series, mps_fluid_time(m->fluid)) : MPS_OK;
+}
+
+/* Samples are taken after the first step that reaches their time: no step is shortened for them. */
+mps_status tank_run(app *a, tank_model *m) {
+  const tank_settings *s = &m->s;
+  const int64_t count = (int64_t)ceil(s->duration / s->sample - 1e-9);
+  m->sample = calloc((size_t)count + 1, sizeof *m->sample);
+  if (!m->sample) return MPS_ERROR_MEMORY;
+  mps_status status = write_frame(m, 0, count);
+  for (int64_t k = 1; k <= count && status == MPS_OK; k++) {
+    const double t = fmin((double)k * s->sample, s->duration) * (1.0 - 1e-9);
+    while (status == MPS_OK && mps_fluid_time(m->fluid) < t) {
+      status = mps_fluid_step(m->fluid, 1);
+      char text[64];
+      snprintf(text, sizeof text, "t = %.3f s", mps_fluid_time(m->fluid));
+      progress_draw(&a->bar, mps_fluid_time(m->fluid) / s->duration, text);
+    }
+    if (status == MPS_OK) status = take_sample(m);
+    if (status == MPS_OK) status = write_frame(m, k, count);
+  }
+  return status;
+}
+
+void tank_free(tank_model *m) {
+  mps_recorder_destroy(&m->series);
+  mps_fluid_destroy(&m->fluid);
+  mps_signal_destroy(&m->piston);
+  mps_particles_destroy(&m->water);
+  free(m->sample);
+}

@@ -1,0 +1,297 @@
+/* results.c - tables, summary and pictures of mps-tank, and what theory says beside them.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "tank.h"
+
+#include "common/plot.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* ---- figures of the run ---------------------------------------------------------------------- */
+
+static bool in_window(const tank_model *m, int64_t k) {
+  return m->sample[k].t >= m->s.window[0] - 1e-9 && m->sample[k].t <= m->s.window[1] + 1e-9;
+}
+
+/* Amplitude of the first harmonic of the period in the window, by the trapezium rule over whole
+ * periods; NaN where the window has less than one. `gauge` -1: the force on the right wall. */
+static double harmonic(const tank_model *m, int gauge) {
+  const double T = m->s.period, whole = floor((m->s.window[1] - m->s.window[0]) / T + 1e-6) * T;
+  double c = 0.0, s = 0.0;
+  if (!(whole >= T)) return NAN;
+  for (int64_t k = 1; k < m->samples; k++) {
+    const tank_sample *p = &m->sample[k - 1], *q = &m->sample[k];
+    if (p->t < m->s.window[1] - whole - 1e-9 || q->t > m->s.window[1] + 1e-9) continue;
+    const tank_sample *end[2] = {p, q};
+    for (int e = 0; e < 2; e++) {
+      const double value = gauge < 0 ? end[e]->right : end[e]->level[gauge];
+      const double half = 0.5 * (q->t - p->t) * value, w = 2.0 * TANK_PI * end[e]->t / T;
+      c += half * cos(w), s += half * sin(w);
+    }
+  }
+  return 2.0 * hypot(c, s) / whole;
+}
+
+typedef struct figures {
+  double mean, deviation, least, most, period, decay;
+} figures;
+
+/* Mean period and decay (1/s) of the force's swing about its mean, from its rising zeros and from
+ * the largest value between them. */
+static void find_swing(const tank_model *m, figures *f) {
+  double first = NAN, last = NAN, peak = 0.0, early = NAN, early_at = 0.0, late = NAN,
+         late_at = 0.0;
+  double peak_at = 0.0;
+  int64_t zeros = 0;
+  for (int64_t k = 1; k < m->samples; k++) {
+    if (!in_window(m, k - 1) || !in_window(m, k)) continue;
+    const tank_sample *p = &m->sample[k - 1], *q = &m->sample[k];
+    const double a = p->right - f->mean, b = q->right - f->mean;
+    if (zeros > 0 && b > peak) peak = b, peak_at = q->t;
+    if (!(a < 0.0 && b >= 0.0)) continue;
+    last = p->t + (q->t - p->t) * a / (a - b);
+    if (zeros == 0) first = last;
+    if (zeros == 1) early = peak, early_at = peak_at;
+    if (zeros > 1) late = peak, late_at = peak_at;
+    zeros++;
+    peak = 0.0;
+  }
+  f->period = zeros > 1 ? (last - first) / (double)(zeros - 1) : NAN;
+  f->decay = late_at > early_at ? log(early / late) / (late_at - early_at) : NAN;
+}
+
+static figures find_figures(const tank_model *m) {
+  figures f = {.least = INFINITY, .most = -INFINITY};
+  double sum = 0.0, square = 0.0, n = 0.0;
+  for (int64_t k = 0; k < m->samples; k++) {
+    if (!in_window(m, k)) continue;
+    const double force = m->sample[k].right;
+    sum += force, square += force * force, n += 1.0;
+    f.least = fmin(f.least, force), f.most = fmax(f.most, force);
+  }
+  if (n == 0.0) return (figures){NAN, NAN, NAN, NAN, NAN, NAN};
+  f.mean = sum / n;
+  f.deviation = sqrt(fmax(square / n - f.mean * f.mean, 0.0));
+  find_swing(m, &f);
+  return f;
+}
+
+/* ---- tables ---------------------------------------------------------------------------------- */
+
+static int gauges_of(const tank_model *m) {
+  int count = 0;
+  while (count < TANK_GAUGES && !isnan(m->s.gauge[count])) count++;
+  return count;
+}
+
+static bool write_force(app *a, const tank_model *m) {
+  output f;
+  if (!output_open(&f, a, m->s.out, "force.csv")) return false;
+  csv_header(&f, "t_s,force_left_N,force_right_N,kinetic_J,potential_J");
+  for (int64_t k = 0; k < m->samples; k++) {
+    const tank_sample *p = &m->sample[k];
+    const double row[] = {p->t, p->left, p->right, p->kinetic, p->potential};
+    csv_row(&f, 5, row);
+  }
+  return output_close(&f);
+}
+
+static bool write_gauges(app *a, const tank_model *m) {
+  const int gauges = gauges_of(m);
+  char names[512] = "t_s";
+  output f;
+  for (int k = 0; k < gauges; k++) {
+    const size_t at = strlen(names);
+    snprintf(names + at, sizeof names - at, ",level_at_%g_m?", m->s.gauge[k]);
+  }
+  strncat(names, ",level_at_wall_m?", sizeof names - strlen(names) - 1);
+  if (!output_open(&f, a, m->s.out, "gauges.csv")) return false;
+  csv_header(&f, names);
+  for (int64_t k = 0; k < m->samples; k++) {
+    double row[TANK_GAUGES + 2] = {m->sample[k].t};
+    for (int g = 0; g < gauges; g++) row[1 + g] = m->sample[k].level[g];
+    row[1 + gauges] = m->sample[k].level[TANK_GAUGES];
+    csv_row(&f, gauges + 2, row);
+  }
+  return output_close(&f);
+}
+
+static bool write_drop(app *a, const tank_model *m) {
+  output f;
+  if (!output_open(&f, a, m->s.out, "drop.csv")) return false;
+  csv_header(&f, "t_s,a_m,a_theory_m,b_m,b_theory_m,centre_Pa,centre_theory_Pa,kinetic_J");
+  for (int64_t k = 0; k < m->samples; k++) {
+    const tank_sample *p = &m->sample[k];
+    double x, y, centre;
+    tank_drop(m->s.depth, p->t, &x, &y, &centre);
+    const double row[] = {p->t, p->a, x, p->b, y, p->centre, centre, p->kinetic};
+    csv_row(&f, 8, row);
+  }
+  return output_close(&f);
+}
+
+static bool write_particles(app *a, tank_model *m) {
+  mps_view x, u, p, surface;
+  output f;
+  if (!app_check(a, mps_particles_view(m->water, "position", &x)) ||
+      !app_check(a, mps_particles_view(m->water, "velocity", &u)) ||
+      !app_check(a, mps_particles_view(m->water, "pressure", &p)) ||
+      !app_check(a, mps_particles_view(m->water, "free_surface", &surface)) ||
+      !output_open(&f, a, m->s.out, "particles.csv"))
+    return false;
+  csv_header(&f, "x_m,y_m,vx_m_s,vy_m_s,pressure_Pa,surface");
+  for (int64_t i = 0; i < x.shape[0]; i++) {
+    const double row[] = {*mps_view_f64(&x, i, 0), *mps_view_f64(&x, i, 1),
+                          *mps_view_f64(&u, i, 0), *mps_view_f64(&u, i, 1),
+                          *mps_view_f64(&p, i, 0), (double)*mps_view_i64(&surface, i, 0)};
+    csv_row(&f, 6, row);
+  }
+  return output_close(&f);
+}
+
+/* ---- pictures -------------------------------------------------------------------------------- */
+
+static bool draw_water(app *a, const tank_model *m) {
+  const tank_settings *s = &m->s;
+  const bool drop = s->kind == TANK_DROP;
+  const double width = drop ? 5.0 * s->depth : s->length + 2.0 * fabs(s->amplitude);
+  const double height = drop ? 5.0 * s->depth : 1.6 * s->depth + 4.0 * fabs(s->amplitude);
+  const double least = drop ? -2.5 * s->depth : -fabs(s->amplitude) - s->spacing;
+  const int across = 1000, down = (int)fmin(fmax(820.0 * height / width, 160.0), 1000.0) + 130;
+  const double last = m->samples ? m->sample[m->samples - 1].t : 0.0;
+  output f;
+  if (!plot_open(&f, a, s->out, "water", across, down)) return false;
+  output_text(
+      &f,
+      "set title 'water at t = %.3f s, %lld particles'\nset size ratio -1\nunset grid\n"
+      "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\nset xlabel 'x (m)'\nset ylabel 'y (m)'\n"
+      "set cblabel 'pressure (kPa)'\n"
+      "set palette defined (0 '#2c3e8f', 0.35 '#4aa3c7', 0.7 '#b7e0a5', 1 '#f4d03f')\n"
+      "plot 'particles.csv' every ::1 using 1:2:($5*1e-3) with points pointtype 7 pointsize "
+      "%.3g linecolor palette notitle\n",
+      last, (long long)mps_particles_count(m->water), least, least + width,
+      drop ? least : -s->spacing, drop ? least + height : height,
+      fmin(fmax(120.0 * s->spacing / width, 0.15), 3.0));
+  return plot_close(&f, s->out, "water");
+}
+
+static bool draw_force(app *a, const tank_model *m) {
+  const tank_settings *s = &m->s;
+  const double still = 0.5 * TANK_DENSITY * TANK_G * s->depth * s->depth;
+  output f;
+  if (!plot_open(&f, a, s->out, "force", 1000, 700)) return false;
+  output_text(
+      &f,
+      "set multiplot layout 2,1\nset xrange [0:%.6g]\nset xlabel 't (s)'\nset ylabel 'force on the "
+      "wall (N)'\n"
+      "set key top left\n"
+      "plot 'force.csv' every ::1 using 1:3 with lines linewidth 1.5 linecolor rgb '#1f4e8c' "
+      "title 'right wall', %.9g with lines dashtype '--' linecolor rgb '#888888' title 'water "
+      "at rest'\n"
+      "set ylabel 'level (m)'\nplot ",
+      s->duration, still);
+  for (int k = 0; k <= gauges_of(m); k++) {
+    char where[48] = "at the right wall";
+    if (k < gauges_of(m)) snprintf(where, sizeof where, "x = %g m", s->gauge[k]);
+    output_text(&f, "%s'gauges.csv' every ::1 using 1:%d with lines title '%s'", k ? ", " : "",
+                k + 2, where);
+  }
+  output_text(&f, "\nunset multiplot\n");
+  return plot_close(&f, s->out, "force");
+}
+
+/* ---- summary --------------------------------------------------------------------------------- */
+
+static void summarise_waves(output *f, const tank_model *m, const figures *g) {
+  const tank_settings *s = &m->s;
+  const double k = tank_wave_number(s->period, s->depth);
+  const double havelock = 2.0 * s->amplitude * tank_havelock(k, s->depth);
+  const double H = harmonic(m, TANK_GAUGES);
+  const double gauge = gauges_of(m) ? 2.0 * harmonic(m, 0) : NAN;
+  json_number(f, "wave_number", k);
+  json_number(f, "havelock_height", havelock);
+  json_optional(f, "gauge_height", gauge);
+  json_optional(f, "wall_harmonic", H);
+  json_optional(f, "force_harmonic", harmonic(m, -1));
+  json_optional(f, "crest_force", g->most);
+  json_optional(f, "trough_force", g->least);
+  json_optional(f, "sainflou_crest", isnan(H) ? NAN : tank_sainflou(k, s->depth, H, 1));
+  json_optional(f, "sainflou_trough", isnan(H) ? NAN : tank_sainflou(k, s->depth, H, -1));
+  if (!isnan(gauge))
+    printf("wave height at the gauge %.4f m, Havelock for an endless flume %.4f m\n", gauge,
+           havelock);
+  if (!isnan(H))
+    printf("force on the wall: crest %.1f N, Sainflou %.1f N; trough %.1f N, Sainflou %.1f N\n",
+           g->most, tank_sainflou(k, s->depth, H, 1), g->least, tank_sainflou(k, s->depth, H, -1));
+}
+
+static void summarise_drop(output *f, const tank_model *m) {
+  const tank_sample *last = &m->sample[m->samples - 1];
+  double a, b, centre;
+  tank_drop(m->s.depth, last->t, &a, &b, &centre);
+  json_number(f, "a", last->a);
+  json_number(f, "a_exact", a);
+  json_number(f, "b", last->b);
+  json_number(f, "b_exact", b);
+  json_number(f, "p_c", last->centre);
+  json_number(f, "p_c_exact", centre);
+  printf("semi-axes %.4f and %.4f m, theory %.4f and %.4f m\n", last->a, last->b, a, b);
+}
+
+static void summarise_tank(output *f, const tank_model *m) {
+  const tank_settings *s = &m->s;
+  const figures g = find_figures(m);
+  const double still = 0.5 * TANK_DENSITY * TANK_G * s->depth * s->depth;
+  json_optional(f, "force_mean", g.mean);
+  json_optional(f, "force_std", g.deviation);
+  json_number(f, "force_still", still);
+  if (s->kind == TANK_STILL && !isnan(g.mean))
+    printf(
+        "force on the right wall: mean %.3f N, rho g d^2/2 is %.3f N; standard deviation %.3f N\n",
+        g.mean, still, g.deviation);
+  if (s->kind == TANK_SLOSHING) {
+    const double exact = tank_sloshing_period(s->length, s->depth);
+    json_optional(f, "period", g.period);
+    json_number(f, "period_exact", exact);
+    json_optional(f, "decay", g.decay);
+    if (!isnan(g.period))
+      printf("period %.5f s, theory %.5f s (%+.2f %%)\n", g.period, exact,
+             100.0 * (g.period / exact - 1.0));
+  }
+  if (s->kind == TANK_PISTON) summarise_waves(f, m, &g);
+}
+
+static bool write_summary(app *a, const tank_model *m) {
+  output f;
+  if (!output_open(&f, a, m->s.out, "summary.json")) return false;
+  json_begin(&f);
+  json_text(&f, "program", a->program);
+  json_text(&f, "version", mps_version());
+  json_text(&f, "outcome", a->outcome);
+  json_integer(&f, "particles", mps_particles_count(m->water));
+  json_integer(&f, "steps", mps_fluid_steps(m->fluid));
+  json_number(&f, "time", mps_fluid_time(m->fluid));
+  if (m->s.kind == TANK_DROP)
+    summarise_drop(&f, m);
+  else
+    summarise_tank(&f, m);
+  json_integer(&f, "collisions", m->report.collisions);
+  json_integer(&f, "limited", m->report.limited);
+  json_integer(&f, "pushed", m->report.pushed);
+  json_number(&f, "iterations_a_step",
+              (double)m->report.all_iterations / (double)mps_fluid_steps(m->fluid));
+  json_end(&f);
+  return output_close(&f);
+}
+
+bool tank_write(app *a, tank_model *m) {
+  const bool drop = m->s.kind == TANK_DROP;
+  if (drop ? !write_drop(a, m) : !write_force(a, m) || !write_gauges(a, m)) return false;
+  if (m->series && !app_check(a, mps_recorder_close(&m->series))) return false;
+  if (!write_particles(a, m) || !write_summary(a, m) || !draw_water(a, m) ||
+      (!drop && !draw_force(a, m)))
+    return false;
+  app_tell_results(a, m->s.out);
+  return true;
+}

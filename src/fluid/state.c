@@ -1,0 +1,104 @@
+/* state.c - the state of the fluid (core/state.h): snapshots, rollback, checkpoints. What follows
+ * from the particles' places, their neighbours and the surface, is found again when it is asked
+ * for. SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid_private.h"
+
+#include "core/state.h"
+#include "io/checkpoint.h"
+
+static void list_wall(mpsi_state *s, mpsi_fluid_wall *w) {
+  mpsi_state_agree_integer(s, "kind", w->used ? w->kind : -1);
+  if (!w->used) return;
+  for (int c = 0; c < 2; c++) {
+    mpsi_state_agree_number(s, c ? "point_y" : "point_x", w->at[c]);
+    mpsi_state_agree_number(s, c ? "normal_y" : "normal_x", w->normal[c]);
+  }
+  mpsi_state_f64(s, "origin", &w->origin, 1);
+  mpsi_state_f64(s, "displacement", &w->s, 1);
+  mpsi_state_f64(s, "velocity", &w->u, 1);
+  mpsi_state_f64(s, "acceleration", &w->a, 1);
+  mpsi_state_f64(s, "force", w->force, 2);
+  mpsi_state_f64(s, "moment", &w->moment, 1);
+  mpsi_state_f64(s, "impulse", w->impulse, 2);
+  mpsi_state_f64(s, "moment_impulse", &w->moment_impulse, 1);
+  mpsi_state_f64(s, "work", &w->work, 1);
+  mpsi_state_i64(s, "wetted", &w->wetted, 1);
+}
+
+static void list_state(mpsi_state *s, void *solver) {
+  mps_fluid *f = solver;
+  mpsi_state_agree_number(s, "density", f->def.density);
+  mpsi_state_agree_number(s, "radius_ratio", f->def.radius_ratio);
+  mpsi_state_agree_number(s, "level", f->level);
+  mpsi_state_f64(s, "time", &f->time, 1);
+  mpsi_state_i64(s, "steps", &f->steps, 1);
+  mpsi_state_f64(s, "speed", &f->speed, 1);
+  mpsi_state_f64(s, "energy", &f->energy, 1);
+  mpsi_state_f64(s, "work_boundaries", &f->work_boundaries, 1);
+  mpsi_state_i64(s, "iterations", &f->report.all_iterations, 1);
+  mpsi_state_i64(s, "collisions", &f->report.collisions, 1);
+  mpsi_state_i64(s, "limited", &f->report.limited, 1);
+  mpsi_state_i64(s, "pushed", &f->report.pushed, 1);
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+    mpsi_state_enter(s, "boundary%d", b);
+    list_wall(s, &f->wall[b]);
+    mpsi_state_leave(s);
+  }
+}
+
+/* Of a file: a step relies on places that are numbers. */
+static bool fits(void *solver, mps_snapshot *values, const char **what) {
+  (void)solver;
+  const char *const names[] = {"position", "velocity", "reduced_pressure"};
+  for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+    const mpsi_value *value = mpsi_values_find(&values->fields, names[k]);
+    *what = "a particle's position, velocity or pressure is missing or not finite";
+    if (!value || value->type != MPSI_STATE_F64) return false;
+    const double *x = value->data;
+    for (int64_t i = 0; i < value->rows * value->columns; i++)
+      if (!(fabs(x[i]) <= 1e150)) return false;
+  }
+  return true;
+}
+
+static void after(void *solver) { ((mps_fluid *)solver)->stale = true; }
+
+static mpsi_state_of state_of(mps_fluid *f) {
+  return (mpsi_state_of){.solver = f,
+                         .name = "fluid",
+                         .context = f->context,
+                         .particles = f->particles,
+                         .identity = &f->identity,
+                         .list = list_state,
+                         .fits = fits,
+                         .after = after,
+                         .time = f->time,
+                         .dt = f->dt,
+                         .steps = f->steps};
+}
+
+mps_status mps_fluid_snapshot(mps_fluid *f, mps_snapshot **snapshot) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  const mpsi_state_of of = state_of(f);
+  return mpsi_state_snapshot(&of, __func__, snapshot);
+}
+
+mps_status mps_fluid_rollback(mps_fluid *f, const mps_snapshot *snapshot) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  const mpsi_state_of of = state_of(f);
+  const mps_status status = mpsi_fluid_ready(f, __func__);
+  return status == MPS_OK ? mpsi_state_rollback(&of, __func__, snapshot) : status;
+}
+
+mps_status mps_fluid_save(mps_fluid *f, const char *path, const mps_checkpoint *info) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  const mpsi_state_of of = state_of(f);
+  return mpsi_checkpoint_save(&of, __func__, path, info);
+}
+
+mps_status mps_fluid_restore(mps_fluid *f, const char *path, mps_checkpoint *info) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  const mpsi_state_of of = state_of(f);
+  const mps_status status = mpsi_fluid_ready(f, __func__);
+  return status == MPS_OK ? mpsi_checkpoint_restore(&of, __func__, path, info) : status;
+}

@@ -1,0 +1,25 @@
+#!/bin/sh
+# tank.sh DIRECTORY: mps-tank against theory; docs/verification/fluid.md has the bars.
+# SPDX-License-Identifier: BSD-3-Clause
+. "$(dirname "$0")/checks.sh"
+
+tank() { "$1/mps-tank" --threads 1 --frames 2 --out "$work/$2" --case "$2" >"$work/log"; }
+tank "$1" still
+in_range "$work/still/summary.json" force_mean 441.44 441.46
+in_range "$work/still/summary.json" force_std 0 0.001
+tank "$1" sloshing
+in_range "$work/sloshing/summary.json" period_exact 1.01335 1.01337
+in_range "$work/sloshing/summary.json" period 1.0083 1.0184
+in_range "$work/sloshing/summary.json" decay -0.03 0.03
+tank "$1" drop
+in_range "$work/drop/summary.json" a 0.4329 0.4461
+in_range "$work/drop/summary.json" b 2.2641 2.2869
+# Waves of a piston: nonlinear potential flow has crests of 525.7, 548.4 and 531.0 N and a trough of 335.9.
+"$1/mps-tank" --threads 1 --frames 2 --gauge 0.3,0.5 --out "$work/piston" >"$work/log"
+in_range "$work/piston/summary.json" crest_force 544.5 552.3
+in_range "$work/piston/summary.json" trough_force 333.5 338.3
+in_range "$work/piston/summary.json" collisions 0 0
+head -n 1 "$work/piston/gauges.csv" | grep -q '^t_s,level_at_0.3_m,level_at_0.5_m,level_at_wall_m$' ||
+  fail "header of gauges.csv: $(head -n 1 "$work/piston/gauges.csv")"
+picture "$work/piston/force.png" 1000x700 1f4e8c
+picture "$work/piston/water.png" 1000x409 2c3e8f
