@@ -70,6 +70,7 @@ static void fill(columns *c) {
 static double run(mps_context *context, const mps_material *material, int32_t dim, columns *c,
                   double *plastic) {
   mps_material_block block[2];
+  double *const history[1] = {c->history};
   for (int turn = 0; turn < 2; turn++) {
     block[turn] = (mps_material_block){.struct_size = sizeof block[turn],
                                        .dim = dim,
@@ -83,7 +84,7 @@ static double run(mps_context *context, const mps_material *material, int32_t di
       block[turn].deformation[i] = c->deformation[i];
     }
     for (int i = 0; i < 6; i++) block[turn].stress[i] = c->stress[i];
-    block[turn].history[0] = c->history;
+    block[turn].history = history, block[turn].history_count = 1;
   }
   fill(c);
   const double start = seconds();

@@ -117,7 +117,7 @@ static mps_status fill(mps_context *context, const settings *s, simulation *sim)
     const double p = pressure_at(s, *mps_view_f64(&x, k, 0), *mps_view_f64(&x, k, 1));
     for (int c = 0; c < 3; c++) *mps_view_f64(&stress, k, c) = -p;
     *mps_view_f64(&ratio, k, 0) =
-        s->state == MPS_STATE_TAIT ? pow(1.0 + 7.0 * p / K, -1.0 / 7.0) : 1.0 / (1.0 + p / K);
+        s->state == MPS_MATERIAL_STATE_TAIT ? pow(1.0 + 7.0 * p / K, -1.0 / 7.0) : 1.0 / (1.0 + p / K);
   }
   return status;
 }
@@ -399,7 +399,7 @@ int main(int argc, char **argv) {
                                  .tank = 6.0,
                                  .n2 = 2,
                                  .ppc = 4,
-                                 .state = MPS_STATE_TAIT,
+                                 .state = MPS_MATERIAL_STATE_TAIT,
                                  .spline = 1,
                                  .out = "out/dam-break"}};
   settings *s = &sim.s;

@@ -118,7 +118,7 @@ static mps_status make_law(mps_context *context, const pen_settings *s, mps_mate
     return mps_material_von_mises(context, &clay, out);
   }
   mps_drucker_prager_def sand = mps_drucker_prager_defaults();
-  sand.cone = MPS_CONE_INSCRIBED;
+  sand.cone = MPS_MATERIAL_CONE_INSCRIBED;
   sand.young = young, sand.poisson = s->poisson;
   sand.friction = s->phi * radian, sand.dilation = s->psi * radian;
   sand.cohesion = s->cohesion * 1e3;

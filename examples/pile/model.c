@@ -15,9 +15,9 @@
 static const struct {
   mps_cone cone;
   const char *name;
-} cones[] = {{MPS_CONE_INSCRIBED, "inscribed"},
-             {MPS_CONE_CIRCUMSCRIBED, "circumscribed"},
-             {MPS_CONE_PLANE_STRAIN, "planestrain"}};
+} cones[] = {{MPS_MATERIAL_CONE_INSCRIBED, "inscribed"},
+             {MPS_MATERIAL_CONE_CIRCUMSCRIBED, "circumscribed"},
+             {MPS_MATERIAL_CONE_PLANE_STRAIN, "planestrain"}};
 
 mps_cone pile_cone(const pile_settings *s) { return cones[s->cone].cone; }
 const char *pile_cone_name(const pile_settings *s) { return cones[s->cone].name; }

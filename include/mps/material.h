@@ -18,31 +18,47 @@ MPS_EXTERN_C_BEGIN
 
 typedef struct mps_material mps_material;
 
-#define MPS_MATERIAL_HISTORY_MAX 32 /* columns of history a law may have */
-
 /** What a law did to a particle in this step: bits of the column `flags`. */
 #define MPS_MATERIAL_PLASTIC 1 /* the trial stress was outside the yield surface */
 #define MPS_MATERIAL_APEX 2    /* at the limit of tension: the volume is kept */
 
 /** A block of particles as a law sees it: columns of `count` doubles, each contiguous. */
 typedef struct mps_material_block {
-  uint32_t struct_size; /* sizeof(mps_material_block) */
-  int32_t dim;          /* 2 or 3 */
-  int64_t count;        /* >= 0 */
-  double dt;            /* s, > 0 */
+  uint32_t struct_size;
+  int32_t dim;   /* 2 or 3 */
+  int64_t count; /* >= 0 */
+  double dt;     /* s, > 0 */
+  double time;   /* s, at the end of the step */
   /** In: velocity gradient of the step, dv_i/dx_j, 1/s. In 2D zz may be NULL: plane strain. */
   const double *gradient[9];
-  /** In, out: deformation gradient, updated by Nakamura (44). All the components of `dim` (in 2D also
-   *  zz), or all NULL where the law does not need it (mps_material_needs_deformation). */
+  /** In, out: deformation gradient, updated by Nakamura (44). All the components of `dim` (in 2D
+   * also zz), or all NULL where the law does not need it (mps_material_needs_deformation). */
   double *deformation[9];
   /** In, out: V/V0, multiplied by 1 + dt tr(d), or det F with a deformation gradient; kept by
    *  particles at the limit of tension. */
   double *volume_ratio;
   double *stress[6]; /* In, out: Cauchy stress, Pa. */
-  /** In, out: mps_material_history_count columns. */
-  double *history[MPS_MATERIAL_HISTORY_MAX];
-  int64_t *flags; /* Out: MPS_MATERIAL_... bits. */
+  /** In, out: history_count columns, at least mps_material_history_count; NULL for none. */
+  double *const *history;
+  int32_t history_count;
+  int32_t message_size; /* bytes of `message` */
+  int64_t *flags;       /* Out: MPS_MATERIAL_... bits. */
+  /* In, each NULL where nobody knows it: */
+  const int64_t *ids;        /* of the particles */
+  const double *position[3]; /* m, at the end of the step */
+  const double *temperature; /* K: the set's field `temperature` */
+  /* Out, where a law of the caller's own refuses the block; each may be NULL. */
+  char *message;    /* why, terminated; "" on entry */
+  int64_t *refused; /* index within the block of the particle that is why; -1 on entry */
 } mps_material_block;
+
+MPS_API mps_status mps_material_block_init(mps_material_block *block, size_t size);
+static inline mps_material_block mps_material_block_defaults(void) {
+  mps_material_block block;
+  memset(&block, 0, sizeof block);
+  if (mps_material_block_init(&block, sizeof block) != MPS_OK) block.struct_size = 0;
+  return block;
+}
 
 /* ---- laws ----------------------------------------------------------------------------------
  * E is Young's modulus (Pa, finite, > 0), nu Poisson's ratio (-1 < nu < 0.5). Every law but the
@@ -73,17 +89,18 @@ typedef struct mps_von_mises_def {
 /** How the cone of Drucker and Prager meets the hexagonal pyramid of Mohr and Coulomb. All have its
  *  apex; the flow potential is the same kind of cone for the angle of dilation. */
 typedef enum mps_cone {
-  MPS_CONE_PLANE_STRAIN = 0,  /* the same strength in plane strain, whatever the dilation; where
-                                 that equals the friction: Nakamura (56) */
-  MPS_CONE_CIRCUMSCRIBED = 1, /* outer cone, through the edges of triaxial compression */
-  MPS_CONE_INSCRIBED = 2,     /* inner cone, the largest that stays inside: always Nakamura (56) */
-  MPS_CONE_EXTENSION = 3      /* through the edges of triaxial extension */
+  MPS_MATERIAL_CONE_PLANE_STRAIN = 0,  /* the same strength in plane strain, whatever the dilation;
+                                 where  that equals the friction: Nakamura (56) */
+  MPS_MATERIAL_CONE_CIRCUMSCRIBED = 1, /* outer cone, through the edges of triaxial compression */
+  MPS_MATERIAL_CONE_INSCRIBED =
+      2, /* inner cone, the largest that stays inside: always Nakamura (56) */
+  MPS_MATERIAL_CONE_EXTENSION = 3 /* through the edges of triaxial extension */
 } mps_cone;
 
 /** Drucker-Prager: sqrt(J2) + alpha I1 = kappa, Nakamura (55), perfectly plastic. */
 typedef struct mps_drucker_prager_def {
   uint32_t struct_size;
-  int32_t cone;    /* mps_cone, default MPS_CONE_PLANE_STRAIN */
+  int32_t cone;    /* mps_cone, default MPS_MATERIAL_CONE_PLANE_STRAIN */
   double young;    /* Pa, > 0; no default */
   double poisson;  /* default 0.3 */
   double friction; /* rad, angle phi, 0 <= phi < pi/2; no default */
@@ -107,14 +124,14 @@ typedef struct mps_mohr_coulomb_def {
 
 /** Pressure of a fluid from its density ratio r = rho/rho0 = V0/V. */
 typedef enum mps_state_equation {
-  MPS_STATE_LINEAR = 0, /* p = K (r - 1) */
-  MPS_STATE_TAIT = 1    /* p = K/7 (r^7 - 1) */
+  MPS_MATERIAL_STATE_LINEAR = 0, /* p = K (r - 1) */
+  MPS_MATERIAL_STATE_TAIT = 1    /* p = K/7 (r^7 - 1) */
 } mps_state_equation;
 
 /** Weakly compressible Newtonian fluid: sigma = -p 1 + 2 viscosity dev(d). */
 typedef struct mps_newtonian_def {
   uint32_t struct_size;
-  int32_t state;       /* mps_state_equation, default MPS_STATE_TAIT */
+  int32_t state;       /* mps_state_equation, default MPS_MATERIAL_STATE_TAIT */
   double bulk_modulus; /* Pa, K = rho0 c^2 > 0; no default */
   double viscosity;    /* Pa s, >= 0; default 0 */
   int32_t no_tension;  /* 1: p >= 0, and the volume does not grow beyond V0; default 0 */
@@ -123,17 +140,21 @@ typedef struct mps_newtonian_def {
 
 /** A law of the caller's own. Called once a block, by several threads at once; reads `gradient` and
  *  writes `stress`, `history` and `flags` (zero on entry). `deformation` and `volume_ratio` are
- *  those of the end of the step already; a law may set the volume ratio back. Returns 0, or
- *  anything else to stop the solver with MPS_ERROR_NUMERIC. */
-typedef int32_t (*mps_material_fn)(void *user, const mps_material_block *block);
+ *  those of the end of the step already; a law may set the volume ratio back. Returns MPS_OK. Any
+ *  other status ends the call that asked for the step, which returns it; the error record names the
+ *  law, the particle block->refused and what the law has written to block->message. Of several
+ *  blocks refused in a step the first tells. A step of a solver that a law has refused is not
+ * whole: the solver takes no other until a rollback or a restore. */
+typedef mps_status (*mps_material_fn)(void *user, const mps_material_block *block);
 
 typedef struct mps_user_law_def {
   uint32_t struct_size;
-  int32_t history_count;         /* 0..MPS_MATERIAL_HISTORY_MAX; default 0 */
-  mps_material_fn update;        /* no default */
-  void *user;                    /* passed to `update`; must outlive the material */
-  const char *name;              /* copied, at most 47 characters; default "user" */
-  const char *const *history;    /* names [A-Za-z_][A-Za-z0-9_]*, at most 47 characters, copied */
+  int32_t history_count;      /* 0..1024; default 0 */
+  mps_material_fn update;     /* no default */
+  void *user;                 /* passed to `update`; must outlive the material */
+  const char *name;           /* copied, at most 47 characters; default "user" */
+  const char *const *history; /* names [A-Za-z_][A-Za-z0-9_]*, at most 47 characters, copied; in a
+                                 set the column is the field "<name>.<history>" */
   const double *history_initial; /* values before the first step; NULL: zero */
   double wave_modulus;           /* Pa, K + 4G/3 of the stiffest state, > 0; no default */
   double viscosity;              /* Pa s, for the largest stable step, >= 0; default 0 */
@@ -162,7 +183,7 @@ typedef void (*mps_umat_fn)(double *stress, double *statev, double *ddsdde, doub
 
 typedef struct mps_umat_def {
   uint32_t struct_size;
-  int32_t statev_count;            /* NSTATV: 0 (default) to 24, or 30 without keeps_strain */
+  int32_t statev_count;            /* NSTATV: 0 (default) to 1000 */
   mps_umat_fn umat;                /* no default */
   const char *name;                /* CMNAME, as of a user's law; default "umat" */
   const double *props;             /* PROPS, copied, finite */
@@ -172,7 +193,7 @@ typedef struct mps_umat_def {
   const double *statev_initial;    /* STATEV before the first step; NULL: zero */
   double wave_modulus;             /* Pa, K + 4G/3 of the stiffest state, > 0; no default */
   double length;                   /* m, CELENT, > 0; default 1 */
-  double temperature;              /* TEMP; default 0 */
+  double temperature;              /* TEMP where the set has no field `temperature`; default 0 */
   int32_t keeps_strain;            /* 1 (default): STRAN is the strain so far, in six more columns
                                       of history; 0: zero */
   int32_t reserved;
@@ -217,8 +238,8 @@ MPS_API MPS_NODISCARD mps_status mps_material_user(mps_context *context,
 /** A law by a UMAT. It is a user's law: threads call the UMAT at once, for different particles, so
  * it must not write to anything but its arguments (in Fortran no SAVE, COMMON or DATA that changes,
  * and gfortran -frecursive); for one that does, make the context with MPS_EXECUTOR_SERIAL. It
- * refuses a block, MPS_ERROR_NUMERIC, with 1 when the UMAT sets PNEWDT below 1 and with 2 when a
- * stress or a state variable is not finite. Errors as of mps_material_user. */
+ * refuses a particle, MPS_ERROR_NUMERIC, when the UMAT sets PNEWDT below 1 or when a stress or a
+ * state variable is not finite. Errors as of mps_material_user. */
 MPS_API MPS_NODISCARD mps_status mps_material_umat(mps_context *context, const mps_umat_def *def,
                                                    mps_material **out);
 
@@ -238,25 +259,33 @@ MPS_API int32_t mps_material_history_count(const mps_material *material);
 /** Name of a history column, NULL outside 0..count-1: `plastic_strain` is the sum of
  *  sqrt(2/3 de:de) over the plastic, deviatoric strain increments. */
 MPS_API const char *mps_material_history_name(const mps_material *material, int32_t index);
+/** Name of the field of a particle set that holds the column: `plastic_strain` of the library's
+ * laws,
+ *  "<material>.<column>" of a user's law or UMAT, which no other field can be called. Laws of the
+ * same name share fields: a particle obeys one law. */
+MPS_API const char *mps_material_history_field(const mps_material *material, int32_t index);
 /** Value of a history column before the first step. */
 MPS_API double mps_material_history_initial(const mps_material *material, int32_t index);
 
 /* ---- use without a solver -------------------------------------------------------------------- */
 
-/** Applies one step to a block. MPS_ERROR_ARGUMENT for a malformed block (nothing is changed),
- *  MPS_ERROR_NUMERIC when a user's law refuses. Values are not looked at: a NaN stays in its
+/** Applies one step to a block. MPS_ERROR_ARGUMENT for a malformed block (nothing is changed), or
+ *  the status of a user's law that refuses. Values are not looked at: a NaN stays in its
  *  particle. Errors go to `context`, which need not be the material's: threads that update at once
  *  use a context each. No allocation. */
 MPS_API MPS_NODISCARD mps_status mps_material_update(mps_context *context,
                                                      const mps_material *material,
                                                      const mps_material_block *block);
 
-/** One particle with all its state, to try a law along a path of strain. Frozen layout. */
+#define MPS_MATERIAL_POINT_HISTORY 32
+
+/** One particle with all its state, to try a law of at most MPS_MATERIAL_POINT_HISTORY columns
+ * along a path of strain (laws with more: mps_material_update). Frozen layout. */
 typedef struct mps_material_point {
   double stress[6];      /* Pa; may be set before the first step */
   double deformation[9]; /* starts as the unit tensor */
   double volume_ratio;   /* starts as 1 */
-  double history[MPS_MATERIAL_HISTORY_MAX];
+  double history[MPS_MATERIAL_POINT_HISTORY];
   int64_t flags; /* of the last step */
   double time;   /* s */
 } mps_material_point;

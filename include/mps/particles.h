@@ -91,7 +91,7 @@ typedef struct mps_field_info {
 /** Adds a field, zero filled. A name of the library's field table (docs/fields.md) gets its
  *  documented type; there `components` must be 0 or the table's. Any other name
  *  ([A-Za-z_][A-Za-z0-9_]*, at most 47 characters) makes a user field of `components` float64
- *  (1..16). Adding a field that exists with the same shape does nothing. Keeps the epoch. */
+ *  (1..16). A name with a dot, "<material>.<column>", is the history of a material. Adding a field that exists with the same shape does nothing. Keeps the epoch. */
 MPS_API MPS_NODISCARD mps_status mps_particles_add_field(mps_particles *particles, const char *name,
                                                          int32_t components);
 /** Borrows a field. MPS_ERROR_FIELD when the set has none of that name (the message lists the

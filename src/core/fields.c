@@ -121,16 +121,26 @@ static mps_status insert_field(mps_particles *p, const char *function, const mps
   return MPS_OK;
 }
 
-/* The rule for a caller's own name: an identifier of at most 47 characters. */
-static bool good_name(const char *name) {
+/* An identifier of at most 47 characters; returns its length, else 0. */
+static size_t identifier(const char *name) {
   size_t length = 0;
-  for (; name[length]; length++) {
+  for (; name[length] && name[length] != '.'; length++) {
     const char c = name[length];
     const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-    if (length >= MPSI_FIELD_NAME - 1 || !(letter || (length > 0 && c >= '0' && c <= '9')))
-      return false;
+    if (length >= MPSI_FIELD_NAME_PART - 1 || !(letter || (length > 0 && c >= '0' && c <= '9')))
+      return 0;
   }
-  return length > 0;
+  return length;
+}
+
+/* The rule for other names than the table's: an identifier is the caller's, two with a dot between
+ * are the history of a material. */
+static bool good_name(const char *name) {
+  const size_t length = identifier(name);
+  if (length == 0 || name[length] == '\0') return length > 0;
+  const char *column = name + length + 1;
+  const size_t rest = identifier(column);
+  return rest > 0 && column[rest] == '\0';
 }
 
 static mps_status describe_user_field(mps_particles *p, const char *function, const char *name,
@@ -139,7 +149,7 @@ static mps_status describe_user_field(mps_particles *p, const char *function, co
     return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
                      "name is '%.60s', must be letters, digits and _, not begin with a digit, and "
                      "have 1 to %d characters",
-                     name, MPSI_FIELD_NAME - 1);
+                     name, MPSI_FIELD_NAME_PART - 1);
   if (components < 1 || components > MAX_COMPONENTS)
     return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
                      "components of the caller's field '%s' is %d, allowed are 1 to %d", name,

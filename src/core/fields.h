@@ -87,6 +87,10 @@
     "the caller (initial state; all 0: no deformation); WLS-MPM with a law that reads it", "after a step or a run") \
   X(body_acceleration, F64, MPSI_PER_DIM, "m/s2", "acceleration by forces on the particle's mass, besides gravity", \
     "the caller", "as written; WLS-MPM reads it in each step if it is there at creation") \
+  X(temperature, F64, 1, "K", "temperature", \
+    "the caller", "as written; the laws of WLS-MPM read it in each step if it is there at creation") \
+  X(plastic_strain, F64, 1, "-", "sum of sqrt(2/3 de:de) over the plastic deviatoric strain increments", \
+    "WLS-MPM with a plastic law of the library", "after a step or a run")                            \
   X(material, I64, 1, "-", "number of the law: 0 that of creation, then as mps_mpm_set_material met them", \
     "WLS-MPM (the caller only reads)", "after mps_mpm_set_material")
 /* clang-format on */

@@ -20,6 +20,7 @@
   X(mps_fluid_boundary_def, mps_fluid_boundary_def_init, "0.2", 72) \
   X(mps_fluid_def, mps_fluid_def_init, "0.2", 88) \
   X(mps_geostatic_def, mps_geostatic_def_init, "0.2", 72) \
+  X(mps_material_block, mps_material_block_init, "0.2", 312) \
   X(mps_mohr_coulomb_def, mps_mohr_coulomb_def_init, "0.2", 56) \
   X(mps_mpm_def, mps_mpm_def_init, "0.2", 232) \
   X(mps_neighbours_def, mps_neighbours_def_init, "0.2", 24) \

@@ -56,7 +56,7 @@ static item *add(mpsi_state *s, const char *name, mpsi_state_type type, int64_t 
   }
   item *made = &s->item[s->count++];
   *made = (item){.type = type, .columns = 1, .rows = rows};
-  snprintf(made->name, sizeof made->name, "%.40s%.23s", s->prefix, name);
+  snprintf(made->name, sizeof made->name, "%.47s%.47s", s->prefix, name);
   return made;
 }
 

@@ -43,7 +43,7 @@
 #include <mps/particles.h>
 #include <mps/solver.h>
 
-#define MPSI_STATE_NAME 64 /* bytes of an item's name, with the terminating zero */
+#define MPSI_STATE_NAME 96 /* bytes of an item's name, with the terminating zero */
 
 typedef struct mpsi_state mpsi_state; /* a list */
 

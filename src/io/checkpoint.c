@@ -18,7 +18,7 @@
 #define FORMAT_VERSION 2
 #define MAX_FIELDS 4096
 #define MAX_COMPONENTS 64
-#define NAME_SIZE 48 /* bytes of a field's name, with the terminating zero */
+#define NAME_SIZE MPSI_STATE_NAME /* bytes of a field's name, with the terminating zero */
 
 typedef mpsi_checkpoint_header header;
 typedef mpsi_reading reading;
@@ -208,8 +208,7 @@ mps_status mpsi_checkpoint_save(const mpsi_state_of *of, const char *function, c
   mps_checkpoint info = mps_checkpoint_defaults();
   mps_snapshot state = {.context = of->context};
   mps_status status = MPS_OK;
-  if (user_info)
-    status = MPSI_DEF_READ(of->context, function, mps_checkpoint, user_info, &info);
+  if (user_info) status = MPSI_DEF_READ(of->context, function, mps_checkpoint, user_info, &info);
   if (status != MPS_OK) return status;
   info.struct_size = sizeof info;
   info.time = of->time;

@@ -74,9 +74,9 @@ double mpsi_law_wave_modulus(const mpsi_law *law) { return law->bulk + 4.0 / 3.0
 static double slope(mps_cone cone, double angle) {
   const double sine = sin(angle);
   switch (cone) {
-  case MPS_CONE_CIRCUMSCRIBED:
+  case MPS_MATERIAL_CONE_CIRCUMSCRIBED:
     return 2.0 * sine / (ROOT3 * (3.0 - sine));
-  case MPS_CONE_EXTENSION:
+  case MPS_MATERIAL_CONE_EXTENSION:
     return 2.0 * sine / (ROOT3 * (3.0 + sine));
   default:
     return sine / sqrt(9.0 + 3.0 * sine * sine); /* (56) */
@@ -94,14 +94,14 @@ void mpsi_law_add_cone(mpsi_law *law, mps_cone cone, double friction, double dil
                        double cohesion, double tension) {
   const double sine = sin(friction);
   law->alpha_flow = slope(cone, dilation);
-  law->alpha = cone == MPS_CONE_PLANE_STRAIN ? plane_strain_slope(sine, law->alpha_flow)
-                                             : slope(cone, friction);
+  law->alpha = cone == MPS_MATERIAL_CONE_PLANE_STRAIN ? plane_strain_slope(sine, law->alpha_flow)
+                                                      : slope(cone, friction);
   /* Every one of these cones has the pyramid's apex, p = c cot(phi); without friction all four have
    * a slope of 0 and differ in radius only. */
   double per_cohesion = 1.0; /* kappa / (c cos(phi)) */
   if (friction > 0.0)
     per_cohesion = 3.0 * law->alpha / sine;
-  else if (cone == MPS_CONE_CIRCUMSCRIBED || cone == MPS_CONE_EXTENSION)
+  else if (cone == MPS_MATERIAL_CONE_CIRCUMSCRIBED || cone == MPS_MATERIAL_CONE_EXTENSION)
     per_cohesion = 2.0 / ROOT3;
   law->kappa = per_cohesion * cohesion * cos(friction);
   law->cone = 1.0 / (law->shear + 9.0 * law->bulk * law->alpha * law->alpha_flow);

@@ -4,10 +4,10 @@
 
 static const mps_von_mises_def von_mises_defaults = {.poisson = 0.3};
 static const mps_drucker_prager_def drucker_prager_defaults = {
-    .cone = MPS_CONE_PLANE_STRAIN, .poisson = 0.3, .friction = NAN, .tension = INFINITY};
+    .cone = MPS_MATERIAL_CONE_PLANE_STRAIN, .poisson = 0.3, .friction = NAN, .tension = INFINITY};
 static const mps_mohr_coulomb_def mohr_coulomb_defaults = {
     .poisson = 0.3, .friction = NAN, .tension = INFINITY};
-static const mps_newtonian_def newtonian_defaults = {.state = MPS_STATE_TAIT};
+static const mps_newtonian_def newtonian_defaults = {.state = MPS_MATERIAL_STATE_TAIT};
 
 #define DEF_INIT(name)                                                                             \
   mps_status mps_##name##_def_init(mps_##name##_def *def, size_t size) {                           \
@@ -25,7 +25,11 @@ static mps_status finish(mps_context *context, const char *function, mpsi_law_ki
   if (!material) return MPS_ERROR_MEMORY;
   material->law = *law;
   material->wave_modulus = mpsi_law_wave_modulus(law);
-  if (plastic) strcpy(material->history_names[0], "plastic_strain");
+  if (plastic) {
+    strcpy(material->history_names[0], "plastic_strain");
+    strcpy(material->history_fields[0],
+           "plastic_strain"); /* of the field table: one for all laws */
+  }
   *out = material;
   return MPS_OK;
 }
@@ -83,7 +87,7 @@ static mps_status check_tension(mps_context *context, const char *function, doub
 
 static mps_status check_drucker_prager(mps_context *context, const char *function,
                                        const mps_drucker_prager_def *def) {
-  if (def->cone < MPS_CONE_PLANE_STRAIN || def->cone > MPS_CONE_EXTENSION)
+  if (def->cone < MPS_MATERIAL_CONE_PLANE_STRAIN || def->cone > MPS_MATERIAL_CONE_EXTENSION)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "cone is %d, must be 0 (plane strain), 1 (circumscribed), 2 (inscribed) or 3 "
                      "(extension)",
@@ -120,7 +124,8 @@ mps_status mps_material_mohr_coulomb(mps_context *context, const mps_mohr_coulom
   if (status == MPS_OK) status = check_tension(context, __func__, def.tension);
   if (status != MPS_OK) return status;
   mpsi_law law = mpsi_law_elastic(def.young, def.poisson);
-  mpsi_law_add_cone(&law, MPS_CONE_INSCRIBED, def.friction, def.dilation, def.cohesion, INFINITY);
+  mpsi_law_add_cone(&law, MPS_MATERIAL_CONE_INSCRIBED, def.friction, def.dilation, def.cohesion,
+                    INFINITY);
   law.sin_phi = sin(def.friction);
   law.sin_psi = sin(def.dilation);
   law.c_cos_phi = def.cohesion * cos(def.friction);
@@ -131,7 +136,7 @@ mps_status mps_material_mohr_coulomb(mps_context *context, const mps_mohr_coulom
 
 static mps_status check_newtonian(mps_context *context, const char *function,
                                   const mps_newtonian_def *def) {
-  if (def->state != MPS_STATE_LINEAR && def->state != MPS_STATE_TAIT)
+  if (def->state != MPS_MATERIAL_STATE_LINEAR && def->state != MPS_MATERIAL_STATE_TAIT)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "state is %d, must be 0 (linear) or 1 (Tait)", (int)def->state);
   if (def->no_tension != 0 && def->no_tension != 1)
@@ -153,7 +158,7 @@ mps_status mps_material_newtonian(mps_context *context, const mps_newtonian_def 
   if (status != MPS_OK) return status;
   const mpsi_law law = {.bulk = def.bulk_modulus,
                         .viscosity = def.viscosity,
-                        .tait = def.state == MPS_STATE_TAIT,
+                        .tait = def.state == MPS_MATERIAL_STATE_TAIT,
                         .no_tension = def.no_tension == 1};
   return finish(context, __func__, MPSI_LAW_NEWTONIAN, "newtonian", &law, false, out);
 }

@@ -66,7 +66,8 @@ MPSI_INLINE void rate_loop(const int geometry, const int kind, const mpsi_law *c
                            const mps_material_block *block) {
   const mpsi_law law = *constants; /* a copy: nothing that the loop writes can alias it */
   const mpsi_columns columns = mpsi_columns_of(block);
-  double *volume = block->volume_ratio, *strain = block->history[0];
+  double *volume = block->volume_ratio,
+         *strain = kind == MPSI_LAW_LINEAR_ELASTIC ? NULL : block->history[0];
   int64_t *flags = block->flags;
   const double dt = block->dt;
   SIMD for (int64_t k = 0; k < block->count; k++) {
@@ -241,9 +242,9 @@ MPSI_INLINE void turn_loop(const int geometry, const mps_material_block *block) 
   }
 }
 
-MPSI_INLINE int32_t user_law(const int geometry, const mpsi_law *law,
-                             const mps_material_block *block) {
-  if (block->count == 0) return 0;
+MPSI_INLINE mps_status user_law(const int geometry, const mpsi_law *law,
+                                const mps_material_block *block) {
+  if (block->count == 0) return MPS_OK;
   for (int64_t k = 0; k < block->count; k++) block->flags[k] = 0;
   if (law->needs_deformation)
     deform_loop(geometry, block);
@@ -256,8 +257,8 @@ MPSI_INLINE int32_t user_law(const int geometry, const mpsi_law *law,
 /* ---- one function for each law and geometry ----------------------------------------------------
  */
 
-MPSI_INLINE int32_t apply(const int kind, const int geometry, const mpsi_law *law,
-                          const mps_material_block *block) {
+MPSI_INLINE mps_status apply(const int kind, const int geometry, const mpsi_law *law,
+                             const mps_material_block *block) {
   if (kind == MPSI_LAW_USER) return user_law(geometry, law, block);
   if (kind == MPSI_LAW_NEO_HOOKEAN)
     neo_hookean_loop(geometry, law, block);
@@ -269,7 +270,7 @@ MPSI_INLINE int32_t apply(const int kind, const int geometry, const mpsi_law *la
     newtonian_loop(geometry, true, law, block);
   else
     newtonian_loop(geometry, false, law, block);
-  return 0;
+  return MPS_OK;
 }
 
 #define GEOMETRIES(X, KIND) X(KIND, MPSI_PLANE) X(KIND, MPSI_AXIAL) X(KIND, MPSI_SPACE)
@@ -283,7 +284,7 @@ MPSI_INLINE int32_t apply(const int kind, const int geometry, const mpsi_law *la
   GEOMETRIES(X, MPSI_LAW_USER)
 
 #define DEFINE(KIND, GEOMETRY)                                                                     \
-  static int32_t KIND##_##GEOMETRY(const mpsi_law *law, const mps_material_block *block) {         \
+  static mps_status KIND##_##GEOMETRY(const mpsi_law *law, const mps_material_block *block) {      \
     return apply(KIND, GEOMETRY, law, block);                                                      \
   }
 VARIANTS(DEFINE)

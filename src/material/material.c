@@ -2,12 +2,15 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "material_private.h"
 
+#include <stdio.h>
+
 /* ---- life -------------------------------------------------------------------------------------
  */
 
 static void release(mps_material *m) {
   mps_context *context = m->context;
   mpsi_free(context, m->history_names);
+  mpsi_free(context, m->history_fields);
   mpsi_free(context, m->history_initial);
   mpsi_free(context, m->owned);
   mpsi_free(context, m);
@@ -30,6 +33,8 @@ mps_material *mpsi_material_new(mps_context *context, const char *function, mpsi
   if (history_count == 0) return m;
   m->history_names = mpsi_alloc(context, history_count, sizeof *m->history_names);
   if (m->history_names)
+    m->history_fields = mpsi_alloc(context, history_count, sizeof *m->history_fields);
+  if (m->history_fields)
     m->history_initial = mpsi_alloc(context, history_count, sizeof *m->history_initial);
   if (!m->history_initial) {
     (void)mpsi_fail_memory(context, function, (size_t)history_count * sizeof *m->history_names);
@@ -75,6 +80,11 @@ const char *mps_material_history_name(const mps_material *material, int32_t inde
   return material->history_names[index];
 }
 
+const char *mps_material_history_field(const mps_material *material, int32_t index) {
+  if (!material || index < 0 || index >= material->history_count) return NULL;
+  return material->history_fields[index];
+}
+
 double mps_material_history_initial(const mps_material *material, int32_t index) {
   if (!material || index < 0 || index >= material->history_count) return 0.0;
   return material->history_initial[index];
@@ -101,7 +111,7 @@ static mpsi_geometry_kind geometry_of(const mps_material_block *block) {
   return block->gradient[8] ? MPSI_AXIAL : MPSI_PLANE;
 }
 
-int32_t mpsi_material_apply(const mps_material *material, const mps_material_block *block) {
+mps_status mpsi_material_apply(const mps_material *material, const mps_material_block *block) {
   return material->table->apply[material->kind][geometry_of(block)](&material->law, block);
 }
 
@@ -130,12 +140,6 @@ static mps_status check_tensors(mps_context *context, const char *function,
 
 static mps_status check_block(mps_context *context, const char *function,
                               const mps_material *material, const mps_material_block *block) {
-  if (!material || !block)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is NULL",
-                     material ? "block" : "material");
-  if (block->struct_size != sizeof *block)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "struct_size is %u, must be %zu",
-                     (unsigned)block->struct_size, sizeof *block);
   if (block->dim != 2 && block->dim != 3)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "dim is %d, must be 2 or 3",
                      block->dim);
@@ -148,21 +152,64 @@ static mps_status check_block(mps_context *context, const char *function,
   if (!block->volume_ratio || !block->flags)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is NULL",
                      block->volume_ratio ? "flags" : "volume_ratio");
+  if (block->message_size < 0)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "message_size is %d, must be >= 0",
+                     block->message_size);
+  if (block->history_count < material->history_count)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "history_count is %d, the law %s has %d columns", block->history_count,
+                     material->name, material->history_count);
   for (int32_t c = 0; c < material->history_count; c++)
-    if (!block->history[c])
+    if (!block->history || !block->history[c])
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "history[%d] (%s) is NULL, needed by the law %s", c,
                        material->history_names[c], material->name);
   return check_tensors(context, function, material, block);
 }
 
+mps_status mps_material_block_init(mps_material_block *block, size_t size) {
+  static const mps_material_block defaults = {.dim = 2};
+  return MPSI_DEF_INIT(mps_material_block, block, size, &defaults);
+}
+
+mps_status mpsi_material_refused(mps_context *context, const char *function,
+                                 const mps_material *material, mps_status status,
+                                 const char *message, int64_t id, int64_t step) {
+  char particle[40] = "";
+  if (id >= 0) (void)snprintf(particle, sizeof particle, " particle %lld", (long long)id);
+  const bool known = status > MPS_OK && status <= MPS_ERROR_INTERNAL;
+  const mps_status told =
+      mpsi_fail(context, function, known ? status : MPS_ERROR_NUMERIC,
+                "the law '%s' has refused%s%s%s", material->name,
+                id >= 0 ? particle : " a block of particles", message[0] ? ": " : "", message);
+  mpsi_fail_where(context, step, id);
+  return told;
+}
+
 mps_status mps_material_update(mps_context *context, const mps_material *material,
-                               const mps_material_block *block) {
+                               const mps_material_block *user_block) {
   if (!context) return MPS_ERROR_ARGUMENT;
-  const mps_status status = check_block(context, __func__, material, block);
+  if (!material || !user_block)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL",
+                     material ? "block" : "material");
+  mps_material_block block = {.dim = 2};
+  mps_status status = MPSI_DEF_READ(context, __func__, mps_material_block, user_block, &block);
+  if (status == MPS_OK) status = check_block(context, __func__, material, &block);
   if (status != MPS_OK) return status;
-  const int32_t refused = mpsi_material_apply(material, block);
-  if (refused == 0) return MPS_OK;
-  return mpsi_fail(context, __func__, MPS_ERROR_NUMERIC, "the law %s returned %d for its block",
-                   material->name, refused);
+  char message[MPSI_MATERIAL_MESSAGE] = "";
+  int64_t refused = -1;
+  if (!block.message || block.message_size == 0)
+    block.message = message, block.message_size = sizeof message;
+  if (!block.refused) block.refused = &refused;
+  block.message[0] = '\0';
+  *block.refused = -1;
+  status = mpsi_material_apply(material, &block);
+  if (status == MPS_OK) return MPS_OK;
+  const int64_t k = *block.refused;
+  const bool there = k >= 0 && k < block.count;
+  return mpsi_material_refused(context, __func__, material, status, block.message,
+                               !there      ? -1
+                               : block.ids ? block.ids[k]
+                                           : k,
+                               -1);
 }

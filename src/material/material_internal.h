@@ -31,8 +31,16 @@
 /* One more owner; mps_material_destroy releases. Thread safe. */
 mps_material *mpsi_material_retain(mps_material *material);
 
-/* Applies the law to block->count >= 0 particles. Non-zero: a user's law refused the block. */
-int32_t mpsi_material_apply(const mps_material *material, const mps_material_block *block);
+/* Applies the law to block->count >= 0 particles. Not MPS_OK: a user's law refused the block; its
+ * reason is in block->message, its particle in block->refused, which the caller has set to "" and
+ * -1. */
+mps_status mpsi_material_apply(const mps_material *material, const mps_material_block *block);
+/* Records such a refusal: of the particle `id`, in step `step` (each -1: not known). */
+mps_status mpsi_material_refused(mps_context *context, const char *function,
+                                 const mps_material *material, mps_status status,
+                                 const char *message, int64_t id, int64_t step);
+#define MPSI_MATERIAL_MESSAGE 256  /* bytes of a law's reason */
+#define MPSI_MATERIAL_COLUMNS 1024 /* of history, at most */
 
 /* True: the value of volume_ratio decides the stress (fluids, neo-Hookean, users' laws). */
 bool mpsi_material_reads_volume(const mps_material *material);

@@ -6,7 +6,8 @@
 
 #include "material_internal.h"
 
-#define MPSI_MATERIAL_NAME 48 /* bytes of a name */
+#define MPSI_MATERIAL_NAME 48  /* bytes of a name */
+#define MPSI_MATERIAL_FIELD 96 /* bytes of a field's name: <material>.<column> */
 
 typedef enum mpsi_law_kind {
   MPSI_LAW_LINEAR_ELASTIC,
@@ -44,8 +45,8 @@ typedef struct mpsi_law {
   void *user;
 } mpsi_law;
 
-/* Applies a law to a block: non-zero when a user's law refuses. */
-typedef int32_t (*mpsi_law_fn)(const mpsi_law *law, const mps_material_block *block);
+/* Applies a law to a block: not MPS_OK when a user's law refuses. */
+typedef mps_status (*mpsi_law_fn)(const mpsi_law *law, const mps_material_block *block);
 typedef struct mpsi_law_table {
   mpsi_law_fn apply[MPSI_LAW_COUNT][MPSI_GEOMETRIES];
 } mpsi_law_table;
@@ -68,6 +69,7 @@ struct mps_material {
   char name[MPSI_MATERIAL_NAME];
   int32_t history_count;
   char (*history_names)[MPSI_MATERIAL_NAME];
+  char (*history_fields)[MPSI_MATERIAL_FIELD];
   double *history_initial;
   void *owned; /* what law.user is where the library made it, freed with the material; or NULL */
 };

@@ -8,6 +8,10 @@ mps_status mps_material_point_init(mps_context *context, const mps_material *mat
   if (!material || !point)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL",
                      material ? "point" : "material");
+  if (material->history_count > MPS_MATERIAL_POINT_HISTORY)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+                     "the law %s has %d columns of history, a point has room for %d",
+                     material->name, material->history_count, MPS_MATERIAL_POINT_HISTORY);
   *point = (mps_material_point){.deformation = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0},
                                 .volume_ratio = 1.0};
   for (int32_t c = 0; c < material->history_count; c++)
@@ -27,6 +31,10 @@ static mps_status check_drive(mps_context *context, const char *function,
     if (!isfinite(gradient[c]))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "gradient[%d] is %g, must be finite",
                        c, gradient[c]);
+  if (material->history_count > MPS_MATERIAL_POINT_HISTORY)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "the law %s has %d columns of history, a point has room for %d",
+                     material->name, material->history_count, MPS_MATERIAL_POINT_HISTORY);
   if (!isfinite(duration) || duration <= 0.0)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "duration is %g s, must be finite and > 0", duration);
@@ -44,10 +52,18 @@ mps_status mps_material_point_drive(mps_context *context, const mps_material *ma
       check_drive(context, __func__, material, point, gradient, duration, steps);
   if (status != MPS_OK) return status;
   mps_material_point now = *point; /* the caller's changes only when every step succeeds */
+  double *history[MPS_MATERIAL_POINT_HISTORY];
+  char message[MPSI_MATERIAL_MESSAGE] = "";
+  int64_t refused = -1;
   mps_material_block block = {.struct_size = sizeof block,
                               .dim = 3,
                               .count = 1,
                               .dt = duration / (double)steps,
+                              .history = history,
+                              .history_count = material->history_count,
+                              .message = message,
+                              .message_size = sizeof message,
+                              .refused = &refused,
                               .volume_ratio = &now.volume_ratio,
                               .flags = &now.flags};
   for (int c = 0; c < 9; c++) {
@@ -55,17 +71,12 @@ mps_status mps_material_point_drive(mps_context *context, const mps_material *ma
     block.deformation[c] = &now.deformation[c];
   }
   for (int c = 0; c < 6; c++) block.stress[c] = &now.stress[c];
-  for (int c = 0; c < MPS_MATERIAL_HISTORY_MAX; c++) block.history[c] = &now.history[c];
+  for (int c = 0; c < MPS_MATERIAL_POINT_HISTORY; c++) history[c] = &now.history[c];
   for (int64_t step = 0; step < steps; step++) {
-    const int32_t refused = mpsi_material_apply(material, &block);
-    if (refused != 0) {
-      const mps_status failed =
-          mpsi_fail(context, __func__, MPS_ERROR_NUMERIC,
-                    "the law %s returned %d for its block in step %lld of %lld", material->name,
-                    refused, (long long)step + 1, (long long)steps);
-      mpsi_fail_where(context, step, -1);
-      return failed;
-    }
+    block.time = point->time + duration * (double)(step + 1) / (double)steps;
+    const mps_status answer = mpsi_material_apply(material, &block);
+    if (answer != MPS_OK)
+      return mpsi_material_refused(context, __func__, material, answer, message, -1, step);
   }
   now.time = point->time + duration;
   *point = now;

@@ -12,9 +12,8 @@ static const char *const kept_names[KEPT] = {"umat_time",      "umat_steps",    
                                              "umat_strain_22", "umat_strain_33", "umat_strain_12",
                                              "umat_strain_13", "umat_strain_23"};
 
-/* Refusals, as mps/material.h says. */
-#define WANTS_SMALLER_STEP 1
-#define NOT_FINITE 2
+enum { STATEV_MOST = 1000 }; /* with what is kept, within the columns that a law may have */
+_Static_assert(STATEV_MOST + KEPT <= MPSI_MATERIAL_COLUMNS, "columns of a law");
 
 #define CMNAME_LENGTH 80
 
@@ -39,10 +38,10 @@ mps_status mps_umat_def_init(mps_umat_def *def, size_t size) {
 
 /* What differs from particle to particle. */
 typedef struct umat_point {
-  double stress[6], statev[MPS_MATERIAL_HISTORY_MAX], strain[6], increment[6];
+  double stress[6], statev[STATEV_MOST], strain[6], increment[6];
   double rotation[9], before[9], after[9]; /* DROT, DFGRD0, DFGRD1 */
-  double time;
-  int32_t step;
+  double time, temperature, at[3];         /* s, K, m */
+  int32_t step, number;                    /* KINC, NOEL */
 } umat_point;
 
 static void unit_matrix(double *m) {
@@ -108,6 +107,9 @@ static void gather(const umat_law *law, const mps_material_block *block,
   rotation_of(w, point->rotation);
   if (law->needs_deformation) deformations(block, k, point);
   point->time = kept[TIME][k];
+  point->temperature = block->temperature ? block->temperature[k] : law->temperature;
+  for (int c = 0; c < 3; c++) point->at[c] = block->position[c] ? block->position[c][k] : 0.0;
+  point->number = block->ids && block->ids[k] < INT32_MAX ? (int32_t)block->ids[k] + 1 : 1;
   point->step = (int32_t)fmin(kept[STEPS][k] + 1.0, (double)INT32_MAX);
 }
 
@@ -125,53 +127,58 @@ static void scatter(const umat_law *law, const mps_material_block *block, int64_
 /* ---- the call ---------------------------------------------------------------------------------
  */
 
-/* One particle. The arguments that a mechanical step does not have are zero. */
-static int32_t call_umat(const umat_law *law, const mps_material_block *block, umat_point *point) {
+/* One particle. The arguments that a mechanical step does not have are zero. Returns what is wrong,
+ * or NULL. */
+static const char *call_umat(const umat_law *law, const mps_material_block *block,
+                             umat_point *point) {
   const int32_t ndi = 3, nshr = block->dim == 3 ? 3 : 1, ntens = ndi + nshr, one = 1;
   const int32_t step[4] = {1, 0, 1, 0}; /* JSTEP: the first step, large deformation */
   const double zero[3] = {0.0}, time[2] = {point->time, point->time};
   double energy[3] = {0.0}, thermal[14] = {0.0}, tangent[36] = {0.0}, factor = 1e36;
   law->call(point->stress, point->statev, tangent, &energy[0], &energy[1], &energy[2], &thermal[0],
             &thermal[1], &thermal[7], &thermal[13], point->strain, point->increment, time,
-            &block->dt, &law->temperature, zero, zero, zero, law->name, &ndi, &nshr, &ntens,
-            &law->statev_count, law->props, &law->props_count, zero, point->rotation, &factor,
-            &law->length, point->before, point->after, &one, &one, &one, &one, step, &point->step,
-            sizeof law->name);
-  if (factor < 1.0) return WANTS_SMALLER_STEP;
+            &block->dt, &point->temperature, zero, zero, zero, law->name, &ndi, &nshr, &ntens,
+            &law->statev_count, law->props, &law->props_count, point->at, point->rotation, &factor,
+            &law->length, point->before, point->after, &point->number, &one, &one, &one, step,
+            &point->step, sizeof law->name);
+  if (factor < 1.0) return "the UMAT asks for a smaller step (PNEWDT)";
   double sum = 0.0;
   for (int c = 0; c < ntens; c++) sum += fabs(point->stress[c]);
   for (int c = 0; c < law->statev_count; c++) sum += fabs(point->statev[c]);
-  return isfinite(sum) ? 0 : NOT_FINITE;
+  return isfinite(sum) ? NULL : "STRESS or STATEV is not finite";
 }
 
-static int32_t update(void *user, const mps_material_block *block) {
+static mps_status update(void *user, const mps_material_block *block) {
   const umat_law *law = user;
   const mpsi_columns columns = mpsi_columns_of(block);
-  umat_point point = {.time = 0.0};
+  umat_point point;
+  memset(point.strain, 0, sizeof point.strain);
   unit_matrix(point.before);
   unit_matrix(point.after);
   for (int64_t k = 0; k < block->count; k++) {
     gather(law, block, &columns, k, &point);
-    const int32_t refused = call_umat(law, block, &point);
-    if (refused != 0) return refused;
+    const char *wrong = call_umat(law, block, &point);
+    if (wrong) {
+      (void)snprintf(block->message, (size_t)block->message_size, "%s", wrong);
+      *block->refused = k;
+      return MPS_ERROR_NUMERIC;
+    }
     scatter(law, block, k, &point);
   }
-  return 0;
+  return MPS_OK;
 }
 
 /* ---- creation ---------------------------------------------------------------------------------
  */
 
 static mps_status check_umat(mps_context *context, const char *function, const mps_umat_def *def) {
-  const int32_t most = MPS_MATERIAL_HISTORY_MAX - (def->keeps_strain ? KEPT : STRAIN);
   if (!def->umat) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "umat is NULL");
   if (def->keeps_strain != 0 && def->keeps_strain != 1)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "keeps_strain is %d, must be 0 or 1",
                      (int)def->keeps_strain);
-  if (def->statev_count < 0 || def->statev_count > most)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "statev_count is %d, must be 0..%d with keeps_strain %d",
-                     (int)def->statev_count, (int)most, (int)def->keeps_strain);
+  if (def->statev_count < 0 || def->statev_count > STATEV_MOST)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "statev_count is %d, must be 0..%d",
+                     (int)def->statev_count, STATEV_MOST);
   if (def->props_count < 0 || (def->props_count > 0 && !def->props))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "props_count is %d, must be >= 0%s",
                      (int)def->props_count, def->props ? "" : ", and 0 where props is NULL");
@@ -201,9 +208,9 @@ static void fill_law(const mps_umat_def *def, umat_law *law) {
 /* The user's law that `update` is, with its columns of history: checks what is common to both. */
 static mps_status make_law(mps_context *context, const char *function, const mps_umat_def *def,
                            mps_material **out) {
-  const char *names[MPS_MATERIAL_HISTORY_MAX];
-  char numbered[MPS_MATERIAL_HISTORY_MAX][24];
-  double initial[MPS_MATERIAL_HISTORY_MAX] = {0.0};
+  const char *names[STATEV_MOST + KEPT];
+  char numbered[STATEV_MOST][24];
+  double initial[STATEV_MOST + KEPT] = {0.0};
   mps_user_law_def law = mps_user_law_defaults();
   law.history_count = def->statev_count + (def->keeps_strain ? KEPT : STRAIN);
   law.update = update;

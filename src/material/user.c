@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "constants.h"
 
+#include <stdio.h>
+
 static const mps_user_law_def user_law_defaults = {.name = "user", .turns_stress = 1};
 
 mps_status mps_user_law_def_init(mps_user_law_def *def, size_t size) {
@@ -23,9 +25,9 @@ static bool is_name(const char *name) {
 
 static mps_status check_history(mps_context *context, const char *function,
                                 const mps_user_law_def *def) {
-  if (def->history_count < 0 || def->history_count > MPS_MATERIAL_HISTORY_MAX)
+  if (def->history_count < 0 || def->history_count > MPSI_MATERIAL_COLUMNS)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "history_count is %d, must be 0..%d",
-                     (int)def->history_count, MPS_MATERIAL_HISTORY_MAX);
+                     (int)def->history_count, MPSI_MATERIAL_COLUMNS);
   if (def->history_count > 0 && !def->history)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "history is NULL, must name %d columns",
                      (int)def->history_count);
@@ -84,6 +86,8 @@ mps_status mpsi_material_make_user(mps_context *context, const char *function,
   material->wave_modulus = def->wave_modulus;
   for (int32_t c = 0; c < def->history_count; c++) {
     strcpy(material->history_names[c], def->history[c]);
+    (void)snprintf(material->history_fields[c], sizeof material->history_fields[c], "%s.%s",
+                   def->name, def->history[c]);
     if (def->history_initial) material->history_initial[c] = def->history_initial[c];
   }
   *out = material;

@@ -40,7 +40,6 @@ typedef struct mpsi_cell_block {
   bool apart;                  /* the tile of forces is in use: split, or at an edge */
   bool left;                   /* a particle is more than a cell outside the block */
   int32_t first_pair, pairs;   /* bodies that it may meet: of the list of mpsi_cell_pair */
-  const mps_material *refused; /* a law that has refused particles of the block, or NULL */
   int64_t bad;                 /* first particle not finite or outside the domain, or -1 */
   double speed;                /* largest c + |v|, m/s */
 } mpsi_cell_block;

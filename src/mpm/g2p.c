@@ -217,7 +217,6 @@ MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry,
   mpsi_cell_block *cells = &mpm->grid.cells[b];
   mpsi_worker *worker = &mpm->grid.workers[number];
   cells->left = false;
-  cells->refused = NULL;
   cells->bad = -1;
   cells->speed = 0.0;
   gather_tile(mpm, cells, worker->tile);

@@ -3,6 +3,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
 
+#include <stdio.h>
+
 /* Columns of particles [begin, end) as the law sees them. */
 static mps_material_block columns_of(const mps_mpm *mpm, const mpsi_law_use *law, int64_t begin,
                                      int64_t end) {
@@ -12,6 +14,8 @@ static mps_material_block columns_of(const mps_mpm *mpm, const mpsi_law_use *law
                               .dim = mpm->dim,
                               .count = end - begin,
                               .dt = mpm->run.dt,
+                              .time = mpm->run.time + mpm->run.dt,
+                              .ids = mpm->laws.ids + begin,
                               .volume_ratio = (law->reads_volume ? p->J : p->V) + begin,
                               .flags = mpm->laws.flags + begin};
   const int tensors = mpm->dim == 3 ? 9 : 5;
@@ -21,8 +25,8 @@ static mps_material_block columns_of(const mps_mpm *mpm, const mpsi_law_use *law
     if (law->needs_deformation) block.deformation[to] = p->F[c] + begin;
   }
   for (int c = 0; c < 2 * mpm->dim; c++) block.stress[c] = p->s[c] + begin;
-  const int32_t histories = mps_material_history_count(law->material);
-  for (int32_t h = 0; h < histories; h++) block.history[h] = law->history[h] + begin;
+  for (int c = 0; c < mpm->dim; c++) block.position[c] = p->x[c] + begin;
+  if (mpm->laws.temperature) block.temperature = mpm->laws.temperature + begin;
   return block;
 }
 
@@ -32,6 +36,39 @@ static int64_t end_of_run(const int64_t *law, int64_t begin, int64_t end) {
   int64_t k = begin + 1;
   while (k < end && law[k] == law[begin]) k++;
   return k;
+}
+
+/* Refusals are rare: threads wait for one another. */
+static void note_refusal(mps_mpm *mpm, const mpsi_cell_block *cells, const mps_material *material,
+                         mps_status status, int64_t particle, const char *message) {
+  mpsi_refusal *r = &mpm->laws.refusal;
+  while (atomic_flag_test_and_set_explicit(&r->busy, memory_order_acquire)) continue;
+  if (!r->cells || cells < r->cells) {
+    r->cells = cells;
+    r->material = material;
+    r->status = status;
+    r->particle = particle;
+    (void)snprintf(r->message, sizeof r->message, "%s", message);
+  }
+  atomic_flag_clear_explicit(&r->busy, memory_order_release);
+}
+
+static void apply_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_law_use *law,
+                      mps_material_block *block, int64_t begin) {
+  double *history[MPSI_MATERIAL_COLUMNS];
+  char message[MPSI_MATERIAL_MESSAGE];
+  int64_t refused = -1;
+  message[0] = message[sizeof message - 1] = '\0';
+  for (int32_t h = 0; h < law->columns; h++) history[h] = law->history[h] + begin;
+  block->history = history;
+  block->history_count = law->columns;
+  block->message = message;
+  block->message_size = sizeof message - 1;
+  block->refused = &refused;
+  const mps_status status = mpsi_material_apply(law->material, block);
+  if (status == MPS_OK) return;
+  const bool there = refused >= 0 && refused < block->count;
+  note_refusal(mpm, cells, law->material, status, there ? begin + refused : -1, message);
 }
 
 static void apply_run(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end) {
@@ -45,7 +82,7 @@ static void apply_run(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64
   }
   /* Where the law works on J, V stands for V0 meanwhile. */
   for (int64_t k = begin; law->reads_volume && k < end; k++) p->V[k] /= p->J[k];
-  if (mpsi_material_apply(law->material, &block) != 0) cells->refused = law->material;
+  apply_law(mpm, cells, law, &block, begin);
   for (int64_t k = begin; law->reads_volume && k < end; k++) p->V[k] *= p->J[k];
 }
 

@@ -12,14 +12,28 @@ typedef struct mpsi_law_use {
   mps_material *material;
   double modulus; /* K + 4G/3 at zero strain, Pa */
   bool reads_volume, needs_deformation;
-  double *history[MPS_MATERIAL_HISTORY_MAX]; /* columns over all particles */
+  int32_t columns;
+  double **history; /* columns over all particles; NULL for none */
 } mpsi_law_use;
+
+/* Why a law has refused a block in the step being made: the first block that has one tells. */
+typedef struct mpsi_refusal {
+  atomic_flag busy;
+  const mpsi_cell_block *cells; /* NULL: none has refused */
+  const mps_material *material;
+  mps_status status;
+  int64_t particle; /* index, or -1 */
+  char message[MPSI_MATERIAL_MESSAGE];
+} mpsi_refusal;
 
 typedef struct mpsi_laws {
   mpsi_law_use law[MPS_MPM_MAX_MATERIALS]; /* 0: of creation */
   int32_t count;
   bool one_modulus; /* law[0].modulus holds for all particles, whatever their state */
   int64_t *flags;   /* of the laws, by sorted index */
+  const int64_t *ids;
+  const double *temperature; /* NULL where the set has no such field */
+  mpsi_refusal refusal;
 } mpsi_laws;
 
 /* law.c: their laws on particles [begin, end) of a block. */

@@ -12,9 +12,8 @@ static mps_status add_fields(mps_particles *set, const mpsi_law_use *law) {
   if (law->reads_volume) status = mps_particles_add_field(set, "volume_ratio", 0);
   if (status == MPS_OK && law->needs_deformation)
     status = mps_particles_add_field(set, "deformation_gradient", 0);
-  const int32_t histories = mps_material_history_count(law->material);
-  for (int32_t h = 0; h < histories && status == MPS_OK; h++)
-    status = mps_particles_add_field(set, mps_material_history_name(law->material, h), 1);
+  for (int32_t h = 0; h < law->columns && status == MPS_OK; h++)
+    status = mps_particles_add_field(set, mps_material_history_field(law->material, h), 1);
   return status;
 }
 
@@ -26,20 +25,27 @@ mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *ma
   mpsi_law_use law = {.material = material,
                       .modulus = mps_material_wave_modulus(material),
                       .reads_volume = mpsi_material_reads_volume(material),
-                      .needs_deformation = mps_material_needs_deformation(material) != 0};
+                      .needs_deformation = mps_material_needs_deformation(material) != 0,
+                      .columns = mps_material_history_count(material)};
+  law.history = mpsi_alloc(mpm->context, law.columns, sizeof *law.history);
+  if (!law.history)
+    return mpsi_fail_memory(mpm->context, function, (size_t)law.columns * sizeof *law.history);
   const int32_t fields = mps_particles_field_count(set);
   const mps_status status = add_fields(set, &law);
   if (status != MPS_OK) {
     mpsi_particles_drop_fields(set, fields);
+    mpsi_free(mpm->context, law.history);
     return status;
   }
   if (law.reads_volume) mpm->p.J = mpsi_particles_column(set, "volume_ratio", 0);
   for (int c = 0; c < 9 && law.needs_deformation; c++)
     mpm->p.F[c] = mpsi_particles_column(set, "deformation_gradient", c);
-  const int32_t histories = mps_material_history_count(material);
-  for (int32_t h = 0; h < histories; h++)
-    law.history[h] = mpsi_particles_column(set, mps_material_history_name(material, h), 0);
+  for (int32_t h = 0; h < law.columns; h++)
+    law.history[h] = mpsi_particles_column(set, mps_material_history_field(material, h), 0);
+  mpm->laws.ids = mpsi_particles_integers(set, "id");
+  mpm->laws.temperature = mpsi_particles_column(set, "temperature", 0);
   mpsi_material_retain(material);
+  if (mpm->laws.count == 0) atomic_flag_clear(&mpm->laws.refusal.busy);
   mpm->laws.one_modulus = mpm->laws.count == 0 && !mpsi_material_stiffens(material) &&
                           mpsi_material_viscosity(material) == 0.0;
   mpm->laws.law[mpm->laws.count++] = law;

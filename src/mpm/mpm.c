@@ -378,7 +378,10 @@ void mps_mpm_destroy(mps_mpm **pointer) {
   mpsi_mpm_drop_loads(mpm);
   for (int32_t k = 0; k < MPSI_HOLDS; k++)
     for (int c = 0; c < 3; c++) mps_signal_destroy(&mpm->boundaries.hold[k].signal[c]);
-  for (int32_t k = 0; k < mpm->laws.count; k++) mps_material_destroy(&mpm->laws.law[k].material);
+  for (int32_t k = 0; k < mpm->laws.count; k++) {
+    mps_material_destroy(&mpm->laws.law[k].material);
+    mpsi_free(context, mpm->laws.law[k].history);
+  }
   mpsi_state_forget(&mpm->identity);
   mpsi_particles_unpin(mpm->particles);
   mpsi_free(context, mpm);

@@ -29,6 +29,14 @@ static mps_status report_bad(mps_mpm *mpm, const char *function, int64_t k) {
   return status;
 }
 
+static mps_status report_refusal(mps_mpm *mpm, const char *function) {
+  mpsi_refusal *r = &mpm->laws.refusal;
+  mpm->run.broken = true;
+  r->cells = NULL;
+  return mpsi_material_refused(mpm->context, function, r->material, r->status, r->message,
+                               r->particle >= 0 ? mpm->laws.ids[r->particle] : -1, mpm->run.steps);
+}
+
 mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function) {
   double speed = 0.0;
   int64_t bad = -1;
@@ -37,12 +45,8 @@ mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function) {
     if (cells->bad >= 0 && bad < 0) bad = cells->bad;
     if (cells->left) mpm->run.stale = true;
     if (cells->speed > speed) speed = cells->speed;
-    if (!cells->refused) continue;
-    mpm->run.broken = true;
-    return mpsi_fail(mpm->context, function, MPS_ERROR_NUMERIC,
-                     "the law '%s' has refused a block of particles at step %lld",
-                     mps_material_name(cells->refused), (long long)mpm->run.steps);
   }
+  if (mpm->laws.refusal.cells) return report_refusal(mpm, function);
   if (bad >= 0) return report_bad(mpm, function, bad);
   mpm->run.speed = speed;
   return MPS_OK;

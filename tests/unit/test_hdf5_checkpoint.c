@@ -504,7 +504,7 @@ static bool bend_file(hid_t f, int way, bend *out) {
     *out = (bend){"'wide' with 17 components", MPS_ERROR_FIELD}; return true;
   case 29: put_dataset(f, "fields/whole", H5T_NATIVE_INT64, 2, 1, COUNT);
     *out = (bend){"'whole' with 1 components of int64", MPS_ERROR_FIELD}; return true;
-  case 30: put_dataset(f, "fields/a_name_of_more_than_47_characters_is_too_long_for_a_field",
+  case 30: put_dataset(f, "fields/a_name_of_more_than_95_characters_is_too_long_for_a_field_even_for_one_of_the_history_of_a_material",
                        H5T_NATIVE_DOUBLE, 2, 2, COUNT); out->text = "the name of a field"; return true;
   case 31: H5Gclose(H5Gcreate2(f, "fields/nested", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
     out->text = "nested"; return true;

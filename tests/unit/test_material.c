@@ -149,12 +149,12 @@ static void materials_answer_questions(void **state) {
 
 typedef struct calls {
   int64_t blocks, particles;
-  int32_t refuse; /* the value to return */
+  mps_status refuse; /* the status to return */
   double xx, volume, stretch;
 } calls;
 
 /* A dashpot that counts the particles' steps. */
-static int32_t dashpot(void *user, const mps_material_block *block) {
+static mps_status dashpot(void *user, const mps_material_block *block) {
   calls *seen = user;
   seen->blocks++;
   seen->particles += block->count;
@@ -164,8 +164,12 @@ static int32_t dashpot(void *user, const mps_material_block *block) {
   for (int64_t k = 0; k < block->count; k++) {
     block->history[1][k] += 1.0;
     block->stress[0][k] += 10.0 * block->gradient[0][k];
-    if (block->flags[k] != 0) return -1; /* they come as zero */
+    if (block->flags[k] != 0) return MPS_ERROR_INTERNAL; /* they come as zero */
     block->flags[k] = MPS_MATERIAL_PLASTIC;
+  }
+  if (seen->refuse != MPS_OK && block->message_size > 0) {
+    snprintf(block->message, (size_t)block->message_size, "too hot at %g s", block->time);
+    *block->refused = block->count - 1;
   }
   return seen->refuse;
 }
@@ -202,7 +206,7 @@ static void a_users_law_is_called_once_a_block(void **state) {
   block.gradient[0] = rate[0], block.gradient[1] = rate[1];
   block.gradient[3] = rate[2], block.gradient[4] = rate[3];
   for (int c = 0; c < 4; c++) block.stress[c] = stress[c];
-  block.history[0] = history[0], block.history[1] = history[1];
+  block.history = columns, block.history_count = 2, block.time = 3.5;
   block.volume_ratio = volume, block.flags = flags;
   for (int k = 0; k < 64; k++) rate[0][k] = 0.1 * k, volume[k] = 2.0, flags[k] = 3;
   mpsi_material_begin(m, columns, 0, 64);
@@ -220,9 +224,21 @@ static void a_users_law_is_called_once_a_block(void **state) {
   mps_assert_ok(context, mps_material_update(context, m, &block));
   assert_int_equal(seen.blocks, 3);
   block.count = 64;
-  seen.refuse = 42;
-  mps_assert_fails(context, mps_material_update(context, m, &block), MPS_ERROR_NUMERIC,
-                   "the law dashpot returned 42");
+  seen.refuse = MPS_ERROR_DIVERGED; /* its own status, its words, the particle */
+  mps_assert_fails(context, mps_material_update(context, m, &block), MPS_ERROR_DIVERGED,
+                   "the law 'dashpot' has refused particle 63: too hot at 3.5 s");
+  assert_int_equal(mps_context_error(context)->particle, 63);
+  int64_t ids[64], refused = 0;
+  char message[12];
+  for (int k = 0; k < 64; k++) ids[k] = 1000 + k;
+  block.ids = ids, block.refused = &refused;
+  block.message = message, block.message_size = sizeof message; /* cut to the caller's room */
+  mps_assert_fails(context, mps_material_update(context, m, &block), MPS_ERROR_DIVERGED,
+                   "the law 'dashpot' has refused particle 1063: too hot at");
+  assert_int_equal(refused, 63);
+  assert_string_equal(message, "too hot at ");
+  seen.refuse = (mps_status)4711; /* none of ours */
+  mps_assert_fails(context, mps_material_update(context, m, &block), MPS_ERROR_NUMERIC, "refused");
   mps_material_destroy(&m);
 }
 
@@ -246,9 +262,9 @@ static void a_users_law_gets_the_state_it_asks_for(void **state) {
       mps_assert_near(seen.volume, deforms ? 1.5 + 4.0 : 1.5, 1e-15);
       mps_assert_near(seen.stretch, deforms ? 1.5 : 1.0, 0.0); /* 1: untouched */
       const mps_material_point before = point;
-      seen.refuse = 7;
+      seen.refuse = MPS_ERROR_DIVERGED;
       mps_assert_fails(context, mps_material_point_drive(context, m, &point, spin, 1.0, 3),
-                       MPS_ERROR_NUMERIC, "returned 7 for its block in step 1 of 3");
+                       MPS_ERROR_DIVERGED, "too hot at");
       assert_memory_equal(&before, &point, sizeof point);
       mps_material_destroy(&m);
     }
@@ -268,8 +284,8 @@ static void bad_users_laws_are_refused(void **state) {
   LAW(name, "", "name is \"\"");
   LAW(name, "2fast", "name is \"2fast\"");
   LAW(name, "a_name_that_has_more_than_forty_seven_characters_in", "at most 47");
-  LAW(history_count, -1, "history_count is -1, must be 0..32");
-  LAW(history_count, 33, "history_count is 33");
+  LAW(history_count, -1, "history_count is -1, must be 0..1024");
+  LAW(history_count, 1025, "history_count is 1025");
   LAW(history, NULL, "must name 2 columns");
   LAW(history, twice, "history[0] and history[1] are both \"a\"");
   LAW(history, bad, "history[1] is \"b c\"");
@@ -301,7 +317,8 @@ static void malformed_blocks_are_refused(void **state) {
   mps_material_block good = {.struct_size = sizeof good, .dim = 3, .count = 1, .dt = 1.0};
   for (int c = 0; c < 9; c++) good.gradient[c] = good.deformation[c] = &x;
   for (int c = 0; c < 6; c++) good.stress[c] = &x;
-  good.history[0] = good.volume_ratio = &x;
+  double *const history[1] = {&x}, *const none[1] = {NULL};
+  good.volume_ratio = &x;
   good.flags = &flags;
 #define BLOCK(material, member, value, text)                                                       \
   do {                                                                                             \
@@ -321,7 +338,11 @@ static void malformed_blocks_are_refused(void **state) {
   BLOCK(neo, gradient[8], NULL, "gradient[8] (zz)");
   BLOCK(neo, deformation[2], NULL, "deformation[2] (xz) is NULL, needed by the law neo_hookean");
   BLOCK(neo, stress[5], NULL, "stress[5] is NULL");
-  BLOCK(plastic, history[0], NULL, "history[0] (plastic_strain) is NULL");
+  BLOCK(plastic, history, history, "history_count is 0, the law von_mises has 1 columns");
+  good.history_count = 1;
+  BLOCK(plastic, history, NULL, "history[0] (plastic_strain) is NULL");
+  BLOCK(plastic, history, none, "history[0] (plastic_strain) is NULL");
+  BLOCK(plastic, message_size, -1, "message_size is -1");
   mps_assert_fails(context, mps_material_update(context, NULL, &good), MPS_ERROR_ARGUMENT,
                    "material is NULL");
   mps_assert_fails(context, mps_material_update(context, neo, NULL), MPS_ERROR_ARGUMENT,

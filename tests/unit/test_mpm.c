@@ -147,9 +147,12 @@ static void runs_to_the_end(void **state) {
 }
 
 /* A law of the caller's that refuses when told so. */
-static int32_t refusing(void *user, const mps_material_block *block) {
-  (void)block;
-  return *(const int32_t *)user;
+static mps_status refusing(void *user, const mps_material_block *block) {
+  const int32_t now = *(const int32_t *)user;
+  if (now == 0) return MPS_OK;
+  snprintf(block->message, (size_t)block->message_size, "at %g s", block->time);
+  *block->refused = 0;
+  return MPS_ERROR_NUMERIC;
 }
 
 static mps_material *refusing_material(mps_context *c, const int32_t *refuses_now) {
@@ -185,7 +188,7 @@ static void sets_materials(void **state) {
                    "ids[1] is 100, allowed are 0 to 99");
   assert_int_equal(mps_particles_field_count(s.particles), fields);
   mps_assert_ok(context, mps_mpm_set_material(s.mpm, law, 2, ids));
-  mps_view of = mpm_scene_view(&s, "material"), damage = mpm_scene_view(&s, "damage");
+  mps_view of = mpm_scene_view(&s, "material"), damage = mpm_scene_view(&s, "touchy.damage");
   mps_view F = mpm_scene_view(&s, "deformation_gradient"), J = mpm_scene_view(&s, "volume_ratio");
   for (int64_t id = 0; id < 100; id++) {
     const int64_t k = mps_particles_index(s.particles, id);

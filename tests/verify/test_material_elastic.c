@@ -261,7 +261,7 @@ static void fluid_pressure_follows_its_state_equation(void **state) {
 
 static void fluid_shear_stress_is_viscosity_times_rate(void **state) {
   (void)state;
-  mps_material *material = fluid(MPS_STATE_LINEAR, 0.25, 0);
+  mps_material *material = fluid(MPS_MATERIAL_STATE_LINEAR, 0.25, 0);
   mps_material_point point = point_under(material, 0.0);
   const double rate[9] = {1.0, 4.0, 0, 2.0, -2.0, 0, 0, 1.0, 1.0}; /* tr = 0 */
   mps_assert_ok(context, mps_material_point_drive(context, material, &point, rate, 1e-3, 4));
@@ -273,7 +273,7 @@ static void fluid_shear_stress_is_viscosity_times_rate(void **state) {
 
 static void fluid_without_tension_opens_and_closes(void **state) {
   (void)state;
-  mps_material *material = fluid(MPS_STATE_TAIT, 0.0, 1);
+  mps_material *material = fluid(MPS_MATERIAL_STATE_TAIT, 0.0, 1);
   mps_material_point point = point_under(material, 0.0);
   const double open[9] = {0.5, 0, 0, 0, 0, 0, 0, 0, 0.2},
                close[9] = {-0.01, 0, 0, 0, 0, 0, 0, 0, 0};

@@ -102,15 +102,15 @@ static void cones_meet_mohr_coulomb_where_they_should(void **state) {
       const double lateral = -1e5, down = coulomb_limit(phi, C, lateral, -1);
       const double up = coulomb_limit(phi, C, lateral, 1);
       double ratio = 0.0;
-      mps_material *material = drucker_prager(MPS_CONE_CIRCUMSCRIBED, phi, psi, C, INFINITY);
+      mps_material *material = drucker_prager(MPS_MATERIAL_CONE_CIRCUMSCRIBED, phi, psi, C, INFINITY);
       mps_assert_near(limit_stress(material, lateral, -0.4, false, &ratio), down, 1e-7 * -down);
       mps_assert_near(1.0 + 2.0 * ratio, -2.0 * s / (1.0 - s), 1e-6); /* volume/axial strain */
       mps_material_destroy(&material);
-      material = drucker_prager(MPS_CONE_EXTENSION, phi, psi, C, INFINITY);
+      material = drucker_prager(MPS_MATERIAL_CONE_EXTENSION, phi, psi, C, INFINITY);
       mps_assert_near(limit_stress(material, lateral, 0.4, false, &ratio), up, 1e-7 * -lateral);
       mps_assert_near(1.0 + 2.0 * ratio, 2.0 * s / (1.0 + s), 1e-6);
       mps_material_destroy(&material);
-      material = drucker_prager(MPS_CONE_PLANE_STRAIN, phi, psi, C, INFINITY);
+      material = drucker_prager(MPS_MATERIAL_CONE_PLANE_STRAIN, phi, psi, C, INFINITY);
       mps_assert_near(limit_stress(material, lateral, -1.0, true, &ratio), down, 1e-7 * -down);
       mps_assert_near((1.0 + ratio) / (ratio - 1.0), s, 1e-6); /* sin(psi) = de_v / dgamma */
       mps_material_destroy(&material);
@@ -133,7 +133,7 @@ static double limit_radius(const mps_material *material, double p, double theta)
 static void the_inscribed_cone_touches_the_pyramid_from_inside(void **state) {
   (void)state;
   const double p = -8e4, phi = 30.0 * PI / 180.0;
-  mps_material *inside = drucker_prager(MPS_CONE_INSCRIBED, 30.0, 0.0, C, INFINITY);
+  mps_material *inside = drucker_prager(MPS_MATERIAL_CONE_INSCRIBED, 30.0, 0.0, C, INFINITY);
   const double t = tan(phi), radius = (3.0 * C - 3.0 * p * t) / sqrt(9.0 + 12.0 * t * t);
   double closest = INFINITY;
   for (int k = -3000; k <= 3000; k++) {
@@ -156,7 +156,7 @@ static void drucker_prager_returns_to_the_surface(void **state) {
   uint64_t seed = 17;
   for (int cut = 0; cut < 2; cut++) {
     mps_material *material =
-        drucker_prager(MPS_CONE_INSCRIBED, 30.0, 30.0, C, cut ? tension : INFINITY);
+        drucker_prager(MPS_MATERIAL_CONE_INSCRIBED, 30.0, 30.0, C, cut ? tension : INFINITY);
     const double limit = cut ? tension : kappa / (3.0 * alpha);
     int cone = 0, circle = 0, plane = 0, elastic = 0;
     for (int trial = 0; trial < 4000; trial++) {
@@ -219,7 +219,7 @@ static void sand_opens_without_drift_of_volume(void **state) {
 static void the_tension_cut_off_keeps_small_shear(void **state) {
   (void)state;
   const double tension = 2e3;
-  mps_material *material = drucker_prager(MPS_CONE_PLANE_STRAIN, 30.0, 0.0, C, tension);
+  mps_material *material = drucker_prager(MPS_MATERIAL_CONE_PLANE_STRAIN, 30.0, 0.0, C, tension);
   const double radius = C * cos(PI / 6.0) - sin(PI / 6.0) * tension; /* q = kappa - 3 alpha p */
   for (int large = 0; large < 2; large++) {
     const double gamma = large ? 5e-2 : 1e-4;
@@ -233,7 +233,7 @@ static void the_tension_cut_off_keeps_small_shear(void **state) {
   }
   mps_material_destroy(&material);
   material =
-      drucker_prager(MPS_CONE_INSCRIBED, 0.0, 0.0, C, tension); /* no friction: c to the cut */
+      drucker_prager(MPS_MATERIAL_CONE_INSCRIBED, 0.0, 0.0, C, tension); /* no friction: c to the cut */
   mps_assert_near(limit_radius(material, -1e4, 0.1), C, 1e-11 * C);
   mps_assert_near(limit_radius(material, 1e3, 0.1), C, 1e-11 * C);
   mps_material_destroy(&material);

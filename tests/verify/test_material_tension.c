@@ -231,7 +231,7 @@ static void drucker_prager_goes_to_the_closest_point(void **state) {
     mps_drucker_prager_def def = mps_drucker_prager_defaults();
     mps_material *material = NULL;
     def.young = E, def.poisson = NU, def.cohesion = C, def.tension = T;
-    def.friction = def.dilation = phi, def.cone = MPS_CONE_INSCRIBED;
+    def.friction = def.dilation = phi, def.cone = MPS_MATERIAL_CONE_INSCRIBED;
     mps_assert_ok(context, mps_material_drucker_prager(context, &def, &material));
     int cut = 0, corner = 0, cone = 0;
     for (int k = 0; k < 8000; k++) {

@@ -127,7 +127,7 @@ static void ring_breathes(void **state) {
 
 static void become_sand(mpm_scene *s) {
   mps_drucker_prager_def law = mps_drucker_prager_defaults();
-  law.cone = MPS_CONE_INSCRIBED;
+  law.cone = MPS_MATERIAL_CONE_INSCRIBED;
   law.young = E_, law.poisson = 0.3;
   law.friction = 35.0 / 180.0 * PI;
   mps_material_destroy(&s->material);

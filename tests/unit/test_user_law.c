@@ -1,0 +1,222 @@
+/* test_user_law.c - a law of the caller's own in the WLS-MPM solver: what its block tells, where
+ * its history lives, how it refuses. SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_scene.h"
+#include "pthread_executor.h"
+
+#define G 2e4
+#define K 5e4 /* Pa */
+
+/* ---- a law ----------------------------------------------------------------------------------- */
+
+enum { MOST = 40, PARTICLES = 400 };
+
+/* What it is told, by id; each particle is written by one thread. */
+typedef struct seen {
+  double x[PARTICLES][2], temperature[PARTICLES], time[PARTICLES];
+  int64_t bad; /* id that it refuses, or -1 */
+  double from; /* s, the time from which it does */
+} seen;
+
+/* Elastic of small strain; each column c of history counts steps by c + 1. */
+static mps_status elastic(void *user, const mps_material_block *b) {
+  seen *s = user;
+  for (int64_t k = 0; k < b->count; k++) {
+    const double xx = b->dt * b->gradient[0][k], yy = b->dt * b->gradient[4][k];
+    const double xy = 0.5 * b->dt * (b->gradient[1][k] + b->gradient[3][k]);
+    const double trace = (K - 2.0 / 3.0 * G) * (xx + yy);
+    b->stress[0][k] += trace + 2.0 * G * xx;
+    b->stress[1][k] += trace + 2.0 * G * yy;
+    b->stress[2][k] += trace;
+    b->stress[3][k] += 2.0 * G * xy;
+    for (int32_t c = 0; c < b->history_count; c++) b->history[c][k] += c + 1;
+    if (!s) continue;
+    const int64_t id = b->ids[k];
+    for (int c = 0; c < 2; c++) s->x[id][c] = b->position[c][k];
+    s->temperature[id] = b->temperature ? b->temperature[k] : -1.0;
+    s->time[id] = b->time;
+    if ((id == s->bad || id == s->bad + 150) && b->time > s->from) {
+      snprintf(b->message, (size_t)b->message_size, "stretch %g", 1.5);
+      *b->refused = k;
+      return MPS_ERROR_DIVERGED;
+    }
+  }
+  return MPS_OK;
+}
+
+static mps_material *make_law(mps_context *context, const char *name, int32_t columns,
+                              const char *const *names, seen *s) {
+  mps_user_law_def def = mps_user_law_defaults();
+  mps_material *out = NULL;
+  def.update = elastic, def.user = s;
+  def.name = name;
+  def.history_count = columns, def.history = names;
+  def.wave_modulus = K + 4.0 / 3.0 * G;
+  mps_assert_ok(context, mps_material_user(context, &def, &out));
+  return out;
+}
+
+/* A block of 20 x 20 particles that falls apart slowly; takes the law over. */
+static mpm_scene begin(mps_context *context, mps_material *law, bool warm) {
+  mpm_scene s = mpm_scene_begin_in(context, 2, 0.01, 0.0, 0.0, 1e5);
+  mps_material_destroy(&s.material);
+  s.material = law;
+  mpm_scene_box(&s, 0.1, 0.1, 0.3, 0.3);
+  const double v0[] = {0.2, -0.1}, L[] = {0.5, -2.0, 2.0, -0.3};
+  mpm_scene_affine(&s, v0, L);
+  if (warm) {
+    mps_assert_ok(context, mps_particles_add_field(s.particles, "temperature", 0));
+    mps_view T = mpm_scene_view(&s, "temperature"), id = mpm_scene_view(&s, "id");
+    for (int64_t k = 0; k < T.shape[0]; k++)
+      *mps_view_f64(&T, k, 0) = 280.0 + (double)*mps_view_i64(&id, k, 0);
+  }
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.02;
+  mpm_scene_solve(&s, &def);
+  return s;
+}
+
+/* ---- what a block tells -----------------------------------------------------------------------
+ */
+
+static void a_block_tells_ids_places_time_and_temperature(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  for (int warm = 0; warm < 2; warm++) {
+    static seen told;
+    told = (seen){.bad = -1000};
+    mpm_scene s = begin(context, make_law(context, "spy", 0, NULL, &told), warm);
+    mps_assert_ok(context, mps_mpm_step(s.mpm, 30)); /* sorted by now */
+    mps_view x = mpm_scene_view(&s, "position");
+    assert_int_equal(x.shape[0], PARTICLES);
+    for (int64_t id = 0; id < PARTICLES; id++) {
+      const int64_t k = mps_particles_index(s.particles, id);
+      for (int c = 0; c < 2; c++) mps_assert_near(told.x[id][c], *mps_view_f64(&x, k, c), 0.0);
+      mps_assert_near(told.temperature[id], warm ? 280.0 + (double)id : -1.0, 0.0);
+      mps_assert_near(told.time[id], mps_mpm_time(s.mpm), 1e-15);
+    }
+    mpm_scene_end(&s);
+  }
+  mps_context_destroy(&context);
+}
+
+/* ---- history ----------------------------------------------------------------------------------
+ */
+
+static void same_column(mpm_scene *a, mpm_scene *b, const char *name) {
+  mps_view va = mpm_scene_view(a, name), vb = mpm_scene_view(b, name);
+  for (int64_t k = 0; k < va.shape[0]; k++)
+    for (int64_t c = 0; c < va.shape[1]; c++)
+      assert_memory_equal(mps_view_f64(&va, k, c), mps_view_f64(&vb, k, c), 8);
+}
+
+/* A column called as a field of the library is neither that field nor disturbs it. */
+static void names_of_the_field_table_do_no_harm(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  static const char *const table[] = {"group",  "volume",   "density", "mass",
+                                      "stress", "velocity", "id",      "position"};
+  static const char *const plain[] = {"a", "b", "c", "d", "e", "f", "g", "h"};
+  mpm_scene x = begin(context, make_law(context, "clay", 8, table, NULL), false);
+  mpm_scene y = begin(context, make_law(context, "clay", 8, plain, NULL), false);
+  mps_assert_ok(context, mps_mpm_step(x.mpm, 50));
+  mps_assert_ok(context, mps_mpm_step(y.mpm, 50));
+  same_column(&x, &y, "position");
+  same_column(&x, &y, "stress");
+  same_column(&x, &y, "volume");
+  same_column(&x, &y, "mass");
+  same_column(&x, &y, "density");
+  mps_view group = mpm_scene_view(&x, "clay.group");
+  mps_assert_near(*mps_view_f64(&group, 7, 0), 50.0, 0.0);
+  assert_string_equal(mps_material_history_field(x.material, 3), "clay.mass");
+  assert_string_equal(mps_material_history_name(x.material, 3), "mass");
+  assert_null(mps_material_history_field(x.material, 8));
+  assert_null(mps_material_history_field(NULL, 0));
+  mps_view mass = mpm_scene_view(&x, "mass");
+  mps_assert_near(*mps_view_f64(&mass, 0, 0), 1000.0 * 1e-4, 1e-12);
+  mpm_scene_end(&x);
+  mpm_scene_end(&y);
+  mps_context_destroy(&context);
+}
+
+/* Two laws with a column of the same name, and a caller's field so called. */
+static void laws_do_not_share_columns(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  static const char *const names[] = {"damage"};
+  mpm_scene s = begin(context, make_law(context, "clay", 1, names, NULL), false);
+  mps_material *silt = make_law(context, "silt", 1, names, NULL);
+  mps_assert_ok(context, mps_particles_add_field(s.particles, "damage", 3));
+  const int64_t ids[] = {5};
+  mps_assert_ok(context, mps_mpm_set_material(s.mpm, silt, 1, ids));
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 10));
+  mps_view a = mpm_scene_view(&s, "clay.damage"), b = mpm_scene_view(&s, "silt.damage");
+  for (int64_t id = 0; id < PARTICLES; id++) {
+    const int64_t k = mps_particles_index(s.particles, id);
+    mps_assert_near(*mps_view_f64(&a, k, 0), id == 5 ? 0.0 : 10.0, 0.0);
+    mps_assert_near(*mps_view_f64(&b, k, 0), id == 5 ? 10.0 : 0.0, 0.0);
+  }
+  mps_material_destroy(&silt);
+  mpm_scene_end(&s);
+  mps_context_destroy(&context);
+}
+
+static void histories_may_be_long(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  static char text[MOST][8];
+  const char *names[MOST];
+  for (int c = 0; c < MOST; c++) {
+    snprintf(text[c], sizeof text[c], "h%d", c);
+    names[c] = text[c];
+  }
+  mps_material *law = make_law(context, "long", MOST, names, NULL);
+  mps_material_point point;
+  mps_assert_fails(context, mps_material_point_init(context, law, &point), MPS_ERROR_ARGUMENT,
+                   "has 40 columns of history, a point has room for 32");
+  mpm_scene s = begin(context, law, false);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 10));
+  mps_view last = mpm_scene_view(&s, "long.h39");
+  for (int64_t k = 0; k < PARTICLES; k++) mps_assert_near(*mps_view_f64(&last, k, 0), 400.0, 0.0);
+  mpm_scene_end(&s);
+  mps_context_destroy(&context);
+}
+
+/* ---- refusals ---------------------------------------------------------------------------------
+ */
+
+/* The status, the words and the particle reach the caller, whichever thread met them first. */
+static void a_refusal_names_the_particle(void **state) {
+  (void)state;
+  int64_t told_first = -1;
+  for (int32_t threads = 1; threads <= 4; threads++) {
+    mps_context_def own = pthread_executor_def(&threads);
+    mps_context *context = NULL;
+    assert_int_equal(mps_context_create(&own, &context, NULL, 0), MPS_OK);
+    static seen told;
+    told = (seen){.bad = 30, .from = 0.01}; /* and 180, in another block */
+    mpm_scene s = begin(context, make_law(context, "touchy", 0, NULL, &told), false);
+    mps_assert_fails(context, mps_mpm_run(s.mpm, 1.0, 1, NULL, NULL), MPS_ERROR_DIVERGED,
+                     "the law 'touchy' has refused particle ");
+    const mps_error *error = mps_context_error(context);
+    assert_non_null(strstr(error->message, ": stretch 1.5"));
+    assert_true(error->particle == 30 || error->particle == 180);
+    assert_true(mps_mpm_time(s.mpm) > 0.01 && error->step > 0);
+    if (told_first < 0) told_first = error->particle;
+    assert_int_equal(error->particle, told_first);
+    told.bad = -1000;
+    mps_assert_fails(context, mps_mpm_step(s.mpm, 1), MPS_ERROR_STATE, "failed");
+    mpm_scene_end(&s);
+    mps_context_destroy(&context);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_block_tells_ids_places_time_and_temperature),
+      cmocka_unit_test(names_of_the_field_table_do_no_harm),
+      cmocka_unit_test(laws_do_not_share_columns),
+      cmocka_unit_test(histories_may_be_long),
+      cmocka_unit_test(a_refusal_names_the_particle),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
