@@ -38,8 +38,13 @@ typedef void (*mps_parallel_for_fn)(void *user, int64_t count, mps_task_fn task,
 
 typedef enum mps_executor_kind {
   MPS_EXECUTOR_SERIAL = 0, /* the calling thread only */
-  MPS_EXECUTOR_OPENMP = 1, /* `threads` OpenMP threads */
-  MPS_EXECUTOR_CALLER = 2  /* parallel_for below */
+  MPS_EXECUTOR_OPENMP = 1, /* `threads` OpenMP threads: for programs that use OpenMP themselves. How
+                              its threads wait is the program's choice (OMP_WAIT_POLICY); by
+                              default they spin, which costs much where other programs compute */
+  MPS_EXECUTOR_CALLER = 2, /* parallel_for below */
+  MPS_EXECUTOR_THREADS = 3 /* `threads`, with the calling thread, of the context's own: they start
+                              with the first loop, and sleep when they have waited for some
+                              microseconds. All signals are blocked in them */
 } mps_executor_kind;
 
 typedef enum mps_log_level {
@@ -64,7 +69,7 @@ typedef int32_t (*mps_cancel_fn)(void *user);
 /** Definition of a context; always start from mps_context_def_init or mps_context_defaults. */
 typedef struct mps_context_def {
   uint32_t struct_size;
-  int32_t executor; /* mps_executor_kind; default OPENMP where built in, else SERIAL */
+  int32_t executor; /* mps_executor_kind; default THREADS */
   int32_t threads;  /* 1..1024; 0 (default): all processors the process may use */
   /** x86-64 level of the inner loops of all that is made from the context: 1 (the plain build, on
    *  other processors the only one), 3 (AVX2) or 4 (AVX-512); 0 (default): the highest that

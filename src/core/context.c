@@ -80,9 +80,7 @@ mps_status mpsi_out_write(mps_context *context, const char *function, void *out,
 
 static const mps_context_def context_defaults = {
     .struct_size = sizeof(mps_context_def),
-#ifdef MPSI_OPENMP
-    .executor = MPS_EXECUTOR_OPENMP,
-#endif
+    .executor = MPS_EXECUTOR_THREADS,
 };
 
 mps_status mps_context_def_init(mps_context_def *def, size_t size) {
@@ -98,15 +96,17 @@ static mps_status refuse(char *text, size_t size, mps_status status, const char 
 
 static mps_status check_def(const mps_context_def *def, char *text, size_t size) {
   char why[160];
-  if (def->executor < MPS_EXECUTOR_SERIAL || def->executor > MPS_EXECUTOR_CALLER) {
-    snprintf(why, sizeof why, "executor is %d, allowed are 0 (serial), 1 (OpenMP), 2 (caller)",
+  if (def->executor < MPS_EXECUTOR_SERIAL || def->executor > MPS_EXECUTOR_THREADS) {
+    snprintf(why, sizeof why,
+             "executor is %d, allowed are 0 (serial), 1 (OpenMP), 2 (caller), 3 (threads)",
              def->executor);
     return refuse(text, size, MPS_ERROR_ARGUMENT, why);
   }
 #ifndef MPSI_OPENMP
   if (def->executor == MPS_EXECUTOR_OPENMP)
-    return refuse(text, size, MPS_ERROR_UNSUPPORTED,
-                  "this libmps was built without OpenMP: use the serial or the caller's executor");
+    return refuse(
+        text, size, MPS_ERROR_UNSUPPORTED,
+        "this libmps was built without OpenMP: use MPS_EXECUTOR_THREADS, or the caller's");
 #endif
   if (def->threads < 0 || def->threads > MPSI_MAX_THREADS) {
     snprintf(why, sizeof why, "threads is %d, allowed are 0 (all processors) to %d", def->threads,
@@ -150,12 +150,19 @@ mps_status mps_context_create(const mps_context_def *user_def, mps_context **out
     def.alloc = system_alloc;
     def.free = system_free;
   }
-  const size_t bytes = (sizeof(mps_context) + MPSI_ALIGNMENT - 1) / MPSI_ALIGNMENT * MPSI_ALIGNMENT;
+  const int32_t threads = mpsi_executor_threads(&def);
+  size_t bytes = sizeof(mps_context) + mpsi_pool_bytes(threads);
+  bytes = (bytes + MPSI_ALIGNMENT - 1) / MPSI_ALIGNMENT * MPSI_ALIGNMENT;
   mps_context *context = def.alloc(def.memory_user, bytes, MPSI_ALIGNMENT);
   if (!context) return refuse(error_text, error_size, MPS_ERROR_MEMORY, "out of memory");
   memset(context, 0, bytes);
   context->def = def;
-  context->threads = mpsi_executor_threads(&def);
+  context->threads = threads;
+  if (def.executor == MPS_EXECUTOR_THREADS &&
+      !mpsi_pool_begin(&context->pool, threads, context + 1)) {
+    def.free(def.memory_user, context);
+    return refuse(error_text, error_size, MPS_ERROR_MEMORY, "the system refuses a lock");
+  }
   context->level = mpsi_level(def.instruction_level);
   context->error.step = context->error.particle = -1;
   atomic_init(&context->references, 1);
@@ -169,8 +176,9 @@ mps_context *mpsi_context_retain(mps_context *context) {
 }
 
 void mpsi_context_release(mps_context *context) {
-  if (atomic_fetch_sub(&context->references, 1) == 1)
-    context->def.free(context->def.memory_user, context);
+  if (atomic_fetch_sub(&context->references, 1) != 1) return;
+  mpsi_pool_end(&context->pool);
+  context->def.free(context->def.memory_user, context);
 }
 
 void mps_context_destroy(mps_context **context) {

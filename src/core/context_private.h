@@ -4,6 +4,7 @@
 #define MPSI_CONTEXT_PRIVATE_H
 
 #include "internal.h"
+#include "pool.h"
 
 #define MPSI_MAX_THREADS 1024
 
@@ -14,6 +15,7 @@ struct mps_context {
   int32_t threads;
   int32_t level;         /* 1, 3 or 4: of the instruction set of inner loops */
   atomic_int references; /* the caller's one, and one for each living object */
+  mpsi_pool pool;          /* of MPS_EXECUTOR_THREADS; its members lie behind the context */
 };
 
 /* Number of workers that the definition asks for (0 resolved to the processors available). */

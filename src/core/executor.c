@@ -1,20 +1,25 @@
-/* executor.c - parallel loops: serial, OpenMP, or the caller's own parallel_for.
+/* executor.c - parallel loops: serial, threads of our own, OpenMP, or the caller's parallel_for.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "context_private.h"
+
+#include <unistd.h>
 
 #ifdef MPSI_OPENMP
 #include <omp.h>
 #endif
 
+static int32_t processors(void) {
+#ifdef MPSI_OPENMP
+  const long count = omp_get_num_procs(); /* those that the process may use */
+#else
+  const long count = sysconf(_SC_NPROCESSORS_ONLN);
+#endif
+  return count < 1 ? 1 : count > MPSI_MAX_THREADS ? MPSI_MAX_THREADS : (int32_t)count;
+}
+
 int32_t mpsi_executor_threads(const mps_context_def *def) {
   if (def->executor == MPS_EXECUTOR_SERIAL) return 1;
-  if (def->threads > 0) return def->threads;
-#ifdef MPSI_OPENMP
-  const int processors = omp_get_num_procs();
-  return processors < 1 ? 1 : processors > MPSI_MAX_THREADS ? MPSI_MAX_THREADS : processors;
-#else
-  return 1;
-#endif
+  return def->threads > 0 ? def->threads : processors();
 }
 
 #ifdef MPSI_OPENMP
@@ -27,17 +32,20 @@ static void openmp_for(int32_t threads, int64_t count, mps_task_fn task, void *d
 }
 #endif
 
+static void serial_for(int64_t count, mps_task_fn task, void *data) {
+  for (int64_t i = 0; i < count; i++) task(data, i, 0);
+}
+
 void mpsi_parallel_for(mps_context *context, int64_t count, mps_task_fn task, void *data) {
   const mps_context_def *def = &context->def;
-  if (count > 1 && context->threads > 1) {
-    if (def->executor == MPS_EXECUTOR_CALLER) {
-      def->parallel_for(def->parallel_user, count, task, data);
-      return;
-    }
+  if (count <= 1 || context->threads <= 1)
+    serial_for(count, task, data);
+  else if (def->executor == MPS_EXECUTOR_CALLER)
+    def->parallel_for(def->parallel_user, count, task, data);
+  else if (def->executor == MPS_EXECUTOR_THREADS)
+    mpsi_pool_for(&context->pool, count, task, data);
 #ifdef MPSI_OPENMP
+  else
     openmp_for(context->threads, count, task, data);
-    return;
 #endif
-  }
-  for (int64_t i = 0; i < count; i++) task(data, i, 0);
 }

@@ -103,11 +103,12 @@ static void same_bits(const setting *settings, int count, bool damped) {
 static void every_number_of_threads(void **state) {
   (void)state;
   static const setting settings[] = {
-      {MPS_EXECUTOR_OPENMP, 1, 0, false}, {MPS_EXECUTOR_OPENMP, 2, 0, false},
-      {MPS_EXECUTOR_OPENMP, 3, 0, false}, {MPS_EXECUTOR_OPENMP, 8, 0, false},
-      {MPS_EXECUTOR_CALLER, 2, 0, false}, {MPS_EXECUTOR_CALLER, 3, 0, false}};
-  same_bits(settings, 6, false);
-  same_bits(settings, 6, true);
+      {MPS_EXECUTOR_OPENMP, 1, 0, false},  {MPS_EXECUTOR_OPENMP, 2, 0, false},
+      {MPS_EXECUTOR_OPENMP, 3, 0, false},  {MPS_EXECUTOR_OPENMP, 8, 0, false},
+      {MPS_EXECUTOR_CALLER, 2, 0, false},  {MPS_EXECUTOR_CALLER, 3, 0, false},
+      {MPS_EXECUTOR_THREADS, 2, 0, false}, {MPS_EXECUTOR_THREADS, 3, 0, false}};
+  same_bits(settings, 8, false);
+  same_bits(settings, 8, true);
 }
 
 static void every_instruction_set(void **state) {

@@ -129,7 +129,7 @@ static uint64_t hash_of(int32_t executor, int32_t threads, int32_t geometry, int
 static void same_bits(int32_t geometry, int options, int count, const int32_t *threads) {
   const uint64_t first = hash_of(MPS_EXECUTOR_SERIAL, 1, geometry, options);
   for (int k = 0; k < count; k++)
-    for (int32_t executor = MPS_EXECUTOR_OPENMP; executor <= MPS_EXECUTOR_CALLER; executor++) {
+    for (int32_t executor = MPS_EXECUTOR_OPENMP; executor <= MPS_EXECUTOR_THREADS; executor++) {
       const uint64_t hash = hash_of(executor, threads[k], geometry, options);
       if (hash == 0)
         print_message("executor %d is missing here: not compared\n", executor);
