@@ -18,22 +18,23 @@ in_range "$work/disc/summary.json" x_theory 0.61312 0.61313
 in_range "$work/disc/summary.json" x_error_05 -0.001 0.001
 tail -n 1 "$work/log" | grep -q "theory 0.6131" || fail "last line"
 "$1/mps-rolling-disc" --h 0.02 --mu 0.3 --fill rings --threads 1 --out "$work/disc" >/dev/null
-in_range "$work/disc/summary.json" x_error_05 -0.135 0.01
-in_range "$work/disc/summary.json" omega_ratio 0.95 1.05
+in_range "$work/disc/summary.json" x_error_05 -0.135 -0.125
+in_range "$work/disc/summary.json" omega_ratio 0.96 0.98
 "$1/mps-rolling-disc" --mu 0.3 --fill rings --threads 1 --out "$work/disc" >/dev/null
-in_range "$work/disc/summary.json" x_error_05 -0.05 0.01
-in_range "$work/disc/summary.json" omega_ratio 0.97 1.02
+in_range "$work/disc/summary.json" x_error_05 -0.045 -0.035
+in_range "$work/disc/summary.json" omega_ratio 0.98 1.0
 
 # A free rigid disc on an elastic slope rolls too.
 "$1/mps-rolling-disc" --body disc --mu 0.3 --h 0.02 --threads 1 --out "$work/two-way" >/dev/null
-in_range "$work/two-way/summary.json" x_error_05 -0.1 0.1
-in_range "$work/two-way/summary.json" omega_ratio 0.9 1.1
+in_range "$work/two-way/summary.json" x_error_05 -0.02 0.02
+in_range "$work/two-way/summary.json" omega_ratio 0.97 1.0
 head -n 1 "$work/two-way/motion.csv" | grep -q '^t_s,x_m,x_theory_m,v_m_s,omega_rad_s$' ||
   fail "header of motion.csv"
-# A footing on a small domain at ten times the speed: above Prandtl's 5.14, by the coarse grid.
+# A footing on a small domain at ten times the speed: above Prandtl's 5.14, by the coarse grid; the
+# value of docs/verification/wls-mpm.md.
 "$1/mps-footing" --rate 5 --domain 3x2 --threads 1 --out "$work/footing" >/dev/null
 in_range "$work/footing/summary.json" q_exact 5.1415 5.1416
-in_range "$work/footing/summary.json" q_over_c 5.14 6.1
+in_range "$work/footing/summary.json" q_over_c 6.04 6.07
 head -n 1 "$work/footing/pressure.csv" | grep -q '^settlement_mm,q_kPa,q_over_c$' ||
   fail "header of pressure.csv"
 # The same on frictional ground with weight: above the exact capacity, by the coarse
@@ -42,10 +43,9 @@ head -n 1 "$work/footing/pressure.csv" | grep -q '^settlement_mm,q_kPa,q_over_c$
   --out "$work/friction" >"$work/log"
 in_range "$work/friction/summary.json" q_exact 36.80 36.82
 in_range "$work/friction/summary.json" q_exact_rough 42.63 42.66
-in_range "$work/friction/summary.json" q_over_c_undeformed 36.8 45
+in_range "$work/friction/summary.json" q_over_c_undeformed 43.4 43.6
 tail -n 1 "$work/log" | grep -q "exact: 36.81 (smooth base)" || fail "last line"
-if command -v gnuplot >/dev/null; then
-  for picture in box/forces.png disc/motion.png footing/pressure.png footing/shear_bands.png; do
-    [ "$(head -c 4 "$work/$picture" | tail -c 3)" = PNG ] || fail "$picture"
-  done
-fi
+for name in box/forces disc/motion footing/pressure; do
+  picture "$work/$name.png" 1000x640 1f4e8c c0392b
+done
+picture "$work/footing/shear_bands.png" 1100x660 888888 f7fbff 6baed6

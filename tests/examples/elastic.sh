@@ -40,9 +40,11 @@ in_range "$work/plate/summary.json" stress_l2_error 0 1e-10
 "$1/mps-plate" --case hole --out "$work/hole" >/dev/null
 in_range "$work/hole/summary.json" concentration 2.91 3.09
 
-if command -v gnuplot >/dev/null; then
-  for figure in beam/deflection beam/stress-axis beam/stress-section beam/shape beam/convergence \
-    plate/displacement hole/ligament hole/stress; do
-    [ "$(head -c 4 "$work/$figure.png" | tail -c 3)" = PNG ] || fail "$figure.png"
-  done
-fi
+for figure in beam/stress-axis beam/stress-section plate/displacement beam/shape; do
+  picture "$work/$figure.png" 0x0
+done
+for figure in beam/deflection hole/ligament; do
+  picture "$work/$figure.png" 0x0 c0392b 2c3e50
+done
+picture "$work/beam/convergence.png" 900x600 c0392b 2980b9 16a085 7f8c8d
+picture "$work/hole/stress.png" 0x0

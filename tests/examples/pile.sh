@@ -13,21 +13,22 @@ in_range "$s" volume_ratio_max 1 1.02
 in_range "$s" volume_ratio_min 0.3 1
 in_range "$s" rest_speed 0 1e-3 # m/s: the soil rests before the pile comes
 in_range "$s" depth 0.19999 0.20001
-in_range "$s" plug_height 0.08 0.2 # the plug sinks with the pile
-in_range "$s" tip_nq 25 200         # Prandtl's 48.9 is for a long footing at the surface
-in_range "$s" force_inside 1 1000
-in_range "$s" force_outside 1 1000
+in_range "$s" plug_height 0.12 0.14 # the plug sinks with the pile
+# The coarse case of docs/verification/wls-mpm.md. Prandtl's 48.9 is for a long footing at the surface.
+in_range "$s" tip_nq 66 71
+in_range "$s" nq_prandtl 48.9 48.95
+in_range "$s" force_inside 55 61
+in_range "$s" force_outside 81 88
 in_range "$s" roughness 0 0.1
-in_range "$s" steps 2000 3000
+in_range "$s" steps 2250 2310
 awk -F'[:,]' '/"force_total"/ { total = $2 } /"force_tip"|"force_inside"|"force_outside"/ { sum += $2 }
   END { exit !(total > 0 && (total - sum) ^ 2 < 1e-18 * total ^ 2) }' "$s" || fail "the parts' sum"
 has "$work/a/load.csv" "depth_m,total_N,tip_N,inside_N,outside_N,total_smooth_N,"
 has "$work/a/fields-4.csv" "r_m,z_m,mean_stress_kPa,deviatoric_stress_kPa,plastic_strain"
-if command -v gnuplot >/dev/null; then
-  for picture in pile mean_stress deviatoric_stress shear_strain; do
-    [ "$(head -c 4 "$work/a/$picture.png" | tail -c 3)" = PNG ] || fail "$picture.png"
-  done
-fi
+picture "$work/a/pile.png" 0x760 c0392b 1f4e8c 2e8b57 555555
+for name in mean_stress deviatoric_stress shear_strain; do
+  picture "$work/a/$name.png" 0x850
+done
 
 # The same for every number of threads; friction is all that the shafts bear.
 "$1/mps-pile" $coarse --rest 0.3 --threads 3 --out "$work/b" >/dev/null
@@ -35,7 +36,7 @@ cmp "$work/a/load.csv" "$work/b/load.csv" || fail "three threads give another lo
 "$1/mps-pile" $coarse --friction 0 --frames 1 --threads 1 --out "$work/smooth" >/dev/null
 in_range "$work/smooth/summary.json" force_inside -1e-9 1e-9
 in_range "$work/smooth/summary.json" force_outside -1e-9 1e-9
-in_range "$work/smooth/summary.json" force_tip 100 1e5
+in_range "$work/smooth/summary.json" force_tip 3700 4150
 
 # A checkpoint that cannot be written is noticed at the start.
 status=0
@@ -73,7 +74,7 @@ mkdir "$work/disk"
   --threads 1 --out "$work/g" >"$work/out" 2>"$work/log" &
 pid=$!
 until [ -f "$work/disk/pile.h5" ] || ! kill -0 "$pid" 2>/dev/null; do sleep 0.02; done
-rm -r "$work/disk"
+mv "$work/disk" "$work/gone"
 status=0
 wait "$pid" || status=$?
 [ "$status" -eq 1 ] || fail "checkpoint lost on the way: exit code $status"

@@ -19,9 +19,7 @@ has "$out/summary.json" '"outcome": "complete"'
 head -n 1 "$out/receivers.csv" |
   grep -q '^t_s,ax_m_s2_GL-0.5m,.*,ax_m_s2_GL-19.5m,ax_m_s2_GL-0.5m_edge$' || fail "header"
 awk -F, 'NF != 7 || /nan|inf/ { exit 1 }' "$out/receivers.csv" || fail "rows of receivers.csv"
-if command -v gnuplot >/dev/null; then
-  [ "$(head -c 4 "$out/wave.png" | tail -c 3)" = PNG ] || fail "wave.png"
-fi
+picture "$out/wave.png" 1200x900 1f4e8c c0392b
 [ "$(find "$out" -name '*.part')" = "" ] || fail "temporary files are left"
 
 # Layers on a half space; the height follows from the file. 4/100 + 6/200 + 9.5/300 s.
