@@ -55,7 +55,7 @@ static result measure(int32_t dim, int64_t cells, int threads, int solver) {
   check(NULL, mps_context_create(&context_def, &context, text, sizeof text), text);
   set.dim = dim;
   set.spacing = 1.0 / (double)cells;
-  const double lo[3] = {0, 0, 0}, hi[3] = {1, 1, 1}, top[3] = {1.0, 0.0, 0.0};
+  const double lo[3] = {0, 0, 0}, hi[3] = {1, 1, 1};
   check(context, mps_particles_create(context, &set, &particles), "particles");
   check(context, mps_particles_fill_box(particles, lo, hi, NULL), "fill");
   check(context, mps_particles_set(particles, "young", 0, 1.0), "young");
@@ -67,11 +67,18 @@ static result measure(int32_t dim, int64_t cells, int threads, int solver) {
   const double start = seconds();
   check(context, mps_elastic_create(context, particles, &def, &elastic), "create");
   const double created = seconds();
-  for (int32_t c = 0; c < dim; c++)
-    check(context, mps_elastic_prescribe(elastic, c, count, ids, NULL), "prescribe");
+  mps_elastic_boundary_def clamp = mps_elastic_boundary_defaults();
+  clamp.ids = ids;
+  clamp.id_count = count;
+  check(context, mps_elastic_add_boundary(elastic, &clamp, NULL), "boundary");
   check(context, mps_elastic_select_facets(elastic, dim - 1, 1, NULL, NULL, n, ids, &count),
         "facets");
-  check(context, mps_elastic_add_traction(elastic, count, ids, top), "traction");
+  mps_elastic_load_def pull = mps_elastic_load_defaults();
+  pull.kind = MPS_ELASTIC_LOAD_TRACTION;
+  pull.ids = ids;
+  pull.id_count = count;
+  pull.force[0] = 1.0;
+  check(context, mps_elastic_add_load(elastic, &pull, NULL), "load");
   check(context, mps_elastic_solve(elastic), "solve");
   const double end = seconds();
   mps_elastic_report report;

@@ -82,7 +82,7 @@ static int run(app *a, const settings *s) {
   model m = {0};
   q4 reference = {0};
   const beam *problem = &s->problem;
-  const mps_elastic_def def = elastic_settings_def(&s->method);
+  const elastic_method method = elastic_settings_method(&s->method);
   int64_t elements = (int64_t)ceil(48.0 * problem->length / problem->height);
   if (elements > 1000) elements = 1000;
   bool done = output_directory(a, s->out);
@@ -92,10 +92,10 @@ static int run(app *a, const settings *s) {
          elastic_method_name(&s->method), (long long)s->nx, (long long)s->ny, problem->length,
          problem->height);
   app_leave_at_once(a, true); /* no hook reaches into the factorisation */
-  done =
-      done && model_solve(a, problem, problem->clamped ? &reference : NULL, s->nx, s->ny, &def, &m);
+  done = done &&
+         model_solve(a, problem, problem->clamped ? &reference : NULL, s->nx, s->ny, &method, &m);
   app_leave_at_once(a, false);
-  done = done && results_write(&m, &def, s->out);
+  done = done && results_write(&m, &method, s->out);
   if (done) {
     printf("%lld unknowns, %lld entries in the factor, factorised in %.3f s; reactions balance "
            "the load to %.1e\n",

@@ -68,12 +68,12 @@ static int parse(settings *s, int argc, char **argv) {
 
 static int run(app *a, const settings *s) {
   plate p = {0};
-  const mps_elastic_def def = elastic_settings_def(&s->method);
+  const elastic_method method = elastic_settings_method(&s->method);
   bool done = output_directory(a, s->out);
   app_leave_at_once(a, true); /* no hook reaches into the factorisation */
-  done = done && plate_solve(a, &s->plate, &def, &p);
+  done = done && plate_solve(a, &s->plate, &method, &p);
   app_leave_at_once(a, false);
-  done = done && plate_write(&p, &def, s->out);
+  done = done && plate_write(&p, &method, s->out);
   if (done) {
     printf("%s method, %lld particles, %lld entries in the factor, factorised in %.3f s\n",
            elastic_method_name(&s->method), (long long)mps_particles_count(p.particles),

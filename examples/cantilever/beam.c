@@ -1,5 +1,5 @@
-/* beam.c - the exact solution of the cantilever, Chikazawa (11) (Timoshenko and Goodier, article 21).
- * SPDX-License-Identifier: BSD-3-Clause */
+/* beam.c - the exact solution of the cantilever, Chikazawa (11) (Timoshenko and Goodier, article
+ * 21). SPDX-License-Identifier: BSD-3-Clause */
 #include "beam.h"
 
 /* In plane strain E and nu are replaced by E / (1 - nu^2) and nu / (1 - nu). */

@@ -16,7 +16,8 @@ typedef struct beam {
   bool clamped; /* the wall does not move; otherwise it moves as the exact solution */
 } beam;
 
-/* Displacements of Chikazawa (11) and of the u that belongs to it: u = v = du/dy = 0 at (length, 0).
+/* Displacements of Chikazawa (11) and of the u that belongs to it: u = v = du/dy = 0 at (length,
+ * 0).
  */
 void beam_displacement(const beam *b, double x, double y, double *u);
 /* Its stresses xx, yy, xy (Pa). */

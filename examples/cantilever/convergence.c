@@ -15,12 +15,11 @@ static const char *const names[METHODS] = {"conservative", "published, re = 3.0"
 
 static bool particle_error(app *a, const beam *problem, const q4 *reference, int64_t nx, int64_t ny,
                            int method, double *error) {
-  mps_elastic_def def = mps_elastic_defaults();
+  elastic_method how = {.def = mps_elastic_defaults(), .published = method != 0};
   model m;
-  def.method = method == 0 ? MPS_ELASTIC_CONSERVATIVE : MPS_ELASTIC_PUBLISHED;
-  def.state = problem->plane_strain ? MPS_ELASTIC_PLANE_STRAIN : MPS_ELASTIC_PLANE_STRESS;
-  if (method == 2) def.radius_ratio = 2.1;
-  const bool done = model_solve(a, problem, reference, nx, ny, &def, &m);
+  how.def.state = problem->plane_strain ? MPS_ELASTIC_PLANE_STRAIN : MPS_ELASTIC_PLANE_STRESS;
+  if (method == 2) how.def.radius_ratio = 2.1;
+  const bool done = model_solve(a, problem, reference, nx, ny, &how, &m);
   *error = m.tip_error;
   model_free(&m);
   return done;

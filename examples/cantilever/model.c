@@ -28,7 +28,7 @@ static bool make_particles(model *m) {
 
 /* ---- supports and loads ---------------------------------------------------------------------- */
 
-static bool support_wall(model *m, const mps_elastic_def *def, int64_t *ids, double *values) {
+static bool support_wall(model *m, const elastic_method *method, int64_t *ids, double *values) {
   const double lo[2] = {m->problem->length - 0.25 * m->spacing, -INFINITY};
   const double hi[2] = {INFINITY, INFINITY};
   int64_t count;
@@ -42,11 +42,10 @@ static bool support_wall(model *m, const mps_elastic_def *def, int64_t *ids, dou
       beam_wall(m->problem, *mps_view_f64(&x, mps_particles_index(m->particles, ids[k]), 1), u);
       values[k] = u[c];
     }
-    if (!app_check(m->a, mps_elastic_prescribe(m->elastic, c, count, ids, values))) return false;
+    if (!elastic_hold(m->a, m->elastic, c, count, ids, values)) return false;
   }
   /* The published method has whole cells everywhere. */
-  return def->method == MPS_ELASTIC_PUBLISHED ||
-         app_check(m->a, mps_elastic_cut(m->elastic, 0, 1, count, ids));
+  return method->published || app_check(m->a, mps_elastic_cut(m->elastic, 0, 1, count, ids));
 }
 
 static mps_status end_traction(void *user, const double *x, const double *normal,
@@ -56,15 +55,14 @@ static mps_status end_traction(void *user, const double *x, const double *normal
   return MPS_OK;
 }
 
-static bool support_and_load(model *m, const mps_elastic_def *def) {
+static bool support_and_load(model *m, const elastic_method *method) {
   int64_t *list = malloc((size_t)m->ny * sizeof *list), count;
   double *values = malloc((size_t)m->ny * sizeof *values);
   beam problem = *m->problem;
-  bool done = list && values ? support_wall(m, def, list, values) : app_no_memory(m->a);
+  bool done = list && values ? support_wall(m, method, list, values) : app_no_memory(m->a);
   done = done && app_check(m->a, mps_elastic_select_facets(m->elastic, 0, -1, NULL, NULL, m->ny,
                                                            list, &count));
-  done = done && app_check(m->a, mps_elastic_add_traction_fn(m->elastic, count, list, end_traction,
-                                                             &problem));
+  done = done && elastic_pull(m->a, m->elastic, count, list, end_traction, &problem);
   free(list);
   free(values);
   return done;
@@ -110,26 +108,28 @@ static bool find_errors(model *m) {
   m->tip_exact = u[1];
   m->tip_error = m->tip / m->tip_exact - 1.0;
   m->stress_error = sqrt(wrong / all);
-  double load[2], reaction[2];
+  double load[3];
+  mps_reaction reaction[2]; /* of the two components of the wall */
   if (!app_check(m->a, mps_elastic_load_resultant(m->elastic, NULL, load, NULL)) ||
-      !app_check(m->a, mps_elastic_reaction_resultant(m->elastic, NULL, reaction, NULL)) ||
+      !app_check(m->a, mps_elastic_get_reaction(m->elastic, 0, &reaction[0])) ||
+      !app_check(m->a, mps_elastic_get_reaction(m->elastic, 1, &reaction[1])) ||
       !app_check(m->a, mps_elastic_energy(m->elastic, &m->energy, NULL)))
     return false;
-  m->equilibrium = hypot(load[0] + reaction[0], load[1] + reaction[1]) / hypot(load[0], load[1]);
+  m->equilibrium = hypot(load[0] + reaction[0].force[0], load[1] + reaction[1].force[1]) /
+                   hypot(load[0], load[1]);
   return true;
 }
 
 bool model_solve(app *a, const beam *problem, const q4 *reference, int64_t nx, int64_t ny,
-                 const mps_elastic_def *def, model *out) {
+                 const elastic_method *method, model *out) {
   *out = (model){.a = a,
                  .problem = problem,
                  .reference = reference,
                  .nx = nx,
                  .ny = ny,
                  .spacing = problem->height / (double)ny};
-  return make_particles(out) &&
-         app_check(a, mps_elastic_create(a->context, out->particles, def, &out->elastic)) &&
-         support_and_load(out, def) && app_check(a, mps_elastic_solve(out->elastic)) &&
+  return make_particles(out) && elastic_make(a, out->particles, method, &out->elastic) &&
+         support_and_load(out, method) && app_check(a, mps_elastic_solve(out->elastic)) &&
          app_check(a, mps_elastic_stress(out->elastic)) &&
          app_check(a, mps_elastic_get_report(out->elastic, &out->report)) && find_errors(out);
 }

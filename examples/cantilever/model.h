@@ -27,7 +27,7 @@ double model_length(double height, int64_t nx, int64_t ny);
 
 /* Makes, supports, loads and solves the beam, and finds the errors. False after an error line. */
 bool model_solve(app *a, const beam *problem, const q4 *reference, int64_t nx, int64_t ny,
-                 const mps_elastic_def *def, model *out);
+                 const elastic_method *method, model *out);
 void model_free(model *m);
 
 /* Results at particle (i, j) from the loaded end and from below. */

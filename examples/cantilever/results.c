@@ -44,11 +44,11 @@ static bool write_stress(const model *m, const char *directory, const char *name
   return output_close(&f);
 }
 
-static bool write_summary(const model *m, const mps_elastic_def *def, const char *directory) {
+static bool write_summary(const model *m, const elastic_method *method, const char *directory) {
   output f;
   if (!output_open(&f, m->a, directory, "summary.json")) return false;
   json_begin(&f);
-  json_text(&f, "method", def->method == MPS_ELASTIC_PUBLISHED ? "published" : "conservative");
+  json_text(&f, "method", method->published ? "published" : "conservative");
   json_text(&f, "state", m->problem->plane_strain ? "strain" : "stress");
   json_text(&f, "reference", m->reference ? "fine bilinear finite elements" : "Chikazawa (11)");
   json_integer(&f, "particles", m->nx * m->ny);
@@ -129,7 +129,7 @@ static bool draw_shape(const model *m, const char *directory) {
   return plot_close(&f, directory, "shape");
 }
 
-bool results_write(const model *m, const mps_elastic_def *def, const char *directory) {
+bool results_write(const model *m, const elastic_method *method, const char *directory) {
   /* The paper's section is at x = 2 of 4. */
   const int64_t middle = m->ny / 2, section = m->nx / 2;
   elastic_point p;
@@ -141,7 +141,7 @@ bool results_write(const model *m, const mps_elastic_def *def, const char *direc
          write_stress(m, directory, "stress.csv", 0, m->nx - 1, 0, m->ny - 1) &&
          write_stress(m, directory, "stress-axis.csv", 0, m->nx - 1, middle, middle) &&
          write_stress(m, directory, "stress-section.csv", section, section, 0, m->ny - 1) &&
-         write_summary(m, def, directory) &&
+         write_summary(m, method, directory) &&
          frame_write(m->a, m->particles, directory, "cantilever.vtkhdf") &&
          draw_deflection(m, directory) &&
          draw_stress(m, directory, "stress-axis", axis, "x (m)", 1) &&

@@ -7,10 +7,11 @@
 
 /* deflection.csv (the axis, the paper's Figure 5), stress.csv (all particles), stress-axis.csv and
  * stress-section.csv (Figures 7 and 8), summary.json and their pictures in DIR. */
-bool results_write(const model *m, const mps_elastic_def *def, const char *directory);
+bool results_write(const model *m, const elastic_method *method, const char *directory);
 
-/* The comparison of the paper's Figure 6: tip errors of both methods and of bilinear finite elements at
- * four sizes, each with twice the particles a side of the one before. convergence.csv and .png. */
+/* The comparison of the paper's Figure 6: tip errors of both methods and of bilinear finite
+ * elements at four sizes, each with twice the particles a side of the one before. convergence.csv
+ * and .png. */
 bool convergence_run(app *a, const beam *problem, int64_t nx, int64_t ny, const char *directory);
 
 #endif

@@ -3,19 +3,52 @@
 #include "elastic.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 elastic_settings elastic_settings_defaults(void) {
   return (elastic_settings){.young = 1.0, .poisson = 0.3, .radius_ratio = NAN, .alpha = 1.0};
 }
 
-mps_elastic_def elastic_settings_def(const elastic_settings *s) {
+elastic_method elastic_settings_method(const elastic_settings *s) {
   mps_elastic_def def = mps_elastic_defaults();
-  def.method = s->method == 1 ? MPS_ELASTIC_PUBLISHED : MPS_ELASTIC_CONSERVATIVE;
-  def.divisor = s->divisor == 1 ? MPS_ELASTIC_CONSTANT : MPS_ELASTIC_LOCAL;
   def.state = s->state == 1 ? MPS_ELASTIC_PLANE_STRAIN : MPS_ELASTIC_PLANE_STRESS;
   def.alpha = s->alpha;
-  if (!isnan(s->radius_ratio)) def.radius_ratio = s->radius_ratio;
-  return def;
+  def.radius_ratio = s->radius_ratio;
+  return (elastic_method){.def = def, .published = s->method == 1, .constant = s->divisor == 1};
+}
+
+bool elastic_make(app *a, mps_particles *particles, const elastic_method *method,
+                  mps_elastic **out) {
+  if (!method->published)
+    return app_check(a, mps_elastic_create(a->context, particles, &method->def, out));
+  return app_check(a, mps_experimental_elastic_published(a->context, particles, &method->def,
+                                                         method->constant, out));
+}
+
+bool elastic_hold(app *a, mps_elastic *elastic, int32_t component, int64_t count,
+                  const int64_t *ids, const double *values) {
+  mps_elastic_boundary_def def = mps_elastic_boundary_defaults();
+  double *all = calloc((size_t)(3 * count + 1), sizeof *all);
+  if (!all) return app_no_memory(a);
+  for (int64_t k = 0; values && k < count; k++) all[3 * k + component] = values[k];
+  def.ids = ids;
+  def.id_count = count;
+  def.dofs = 1u << component;
+  def.values = all;
+  const bool done = app_check(a, mps_elastic_add_boundary(elastic, &def, NULL));
+  free(all);
+  return done;
+}
+
+bool elastic_pull(app *a, mps_elastic *elastic, int64_t count, const int64_t *facets,
+                  mps_traction_fn traction, void *user) {
+  mps_elastic_load_def def = mps_elastic_load_defaults();
+  def.kind = MPS_ELASTIC_LOAD_FUNCTION;
+  def.ids = facets;
+  def.id_count = count;
+  def.function = traction;
+  def.user = user;
+  return app_check(a, mps_elastic_add_load(elastic, &def, NULL));
 }
 
 const char *elastic_method_name(const elastic_settings *s) {

@@ -8,6 +8,7 @@
 #include "common/options.h"
 
 #include <mps/elastic.h>
+#include <mps/experimental.h>
 
 typedef struct elastic_settings {
   double young, poisson;      /* Pa, - */
@@ -16,8 +17,21 @@ typedef struct elastic_settings {
 } elastic_settings;
 
 elastic_settings elastic_settings_defaults(void);
-/* The solver's definition. */
-mps_elastic_def elastic_settings_def(const elastic_settings *s);
+/* The method of solution: the library's, or the one that the paper prints. */
+typedef struct elastic_method {
+  mps_elastic_def def;
+  bool published, constant;
+} elastic_method;
+elastic_method elastic_settings_method(const elastic_settings *s);
+/* The functions below are false after an error line. */
+bool elastic_make(app *a, mps_particles *particles, const elastic_method *method,
+                  mps_elastic **out);
+/* Prescribes component `component` of `count` particles: values[i], m, or 0 (values NULL). */
+bool elastic_hold(app *a, mps_elastic *elastic, int32_t component, int64_t count,
+                  const int64_t *ids, const double *values);
+/* Tractions by a function on `count` facets. */
+bool elastic_pull(app *a, mps_elastic *elastic, int64_t count, const int64_t *facets,
+                  mps_traction_fn traction, void *user);
 const char *elastic_method_name(const elastic_settings *s);
 
 /* Rows of an option table. */

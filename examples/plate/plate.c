@@ -57,15 +57,14 @@ static bool make_particles(plate *p) {
 /* ---- supports and loads ---------------------------------------------------------------------- */
 
 /* The layer at `at` along `axis` slides in its own plane; conservative: its cells end there. */
-static bool slide(plate *p, const mps_elastic_def *def, int32_t axis, double at, int64_t *ids,
+static bool slide(plate *p, const elastic_method *method, int32_t axis, double at, int64_t *ids,
                   int64_t room) {
   double lo[2] = {-INFINITY, -INFINITY}, hi[2] = {INFINITY, INFINITY};
   int64_t count;
   hi[axis] = at + 0.25 * p->spacing;
   return app_check(p->a, mps_particles_select_box(p->particles, lo, hi, room, ids, &count)) &&
-         app_check(p->a, mps_elastic_prescribe(p->elastic, axis, count, ids, NULL)) &&
-         (def->method == MPS_ELASTIC_PUBLISHED ||
-          app_check(p->a, mps_elastic_cut(p->elastic, axis, -1, count, ids)));
+         elastic_hold(p->a, p->elastic, axis, count, ids, NULL) &&
+         (method->published || app_check(p->a, mps_elastic_cut(p->elastic, axis, -1, count, ids)));
 }
 
 static mps_status outer_traction(void *user, const double *x, const double *normal,
@@ -85,19 +84,18 @@ static bool pull(plate *p, int32_t axis, int64_t *facets, int64_t room) {
   lo[axis] = (p->def->hole || axis == 0 ? p->def->side : 0.5 * p->def->side) - 1.5 * p->spacing;
   return app_check(p->a,
                    mps_elastic_select_facets(p->elastic, axis, 1, lo, hi, room, facets, &count)) &&
-         app_check(p->a,
-                   mps_elastic_add_traction_fn(p->elastic, count, facets, outer_traction, &copy));
+         elastic_pull(p->a, p->elastic, count, facets, outer_traction, &copy);
 }
 
-static bool support_and_load(plate *p, const mps_elastic_def *def) {
+static bool support_and_load(plate *p, const elastic_method *method) {
   const int64_t n = mps_particles_count(p->particles);
   const int64_t room =
       n > mps_elastic_facet_count(p->elastic) ? n : mps_elastic_facet_count(p->elastic);
   int64_t *list = malloc((size_t)room * sizeof *list);
   if (!list) return app_no_memory(p->a);
-  bool done = slide(p, def, 0, p->wall, list, room) && pull(p, 0, list, room);
+  bool done = slide(p, method, 0, p->wall, list, room) && pull(p, 0, list, room);
   if (p->def->hole) {
-    done = done && slide(p, def, 1, 0.0, list, room) && pull(p, 1, list, room);
+    done = done && slide(p, method, 1, 0.0, list, room) && pull(p, 1, list, room);
   } else { /* against sliding as a whole */
     const double middle[2] = {p->wall, 0.0};
     list[0] = mps_particles_nearest(p->particles, middle);
@@ -106,7 +104,7 @@ static bool support_and_load(plate *p, const mps_elastic_def *def) {
     double at[2] = {p->wall, 0.0}, u[2];
     if (done) at[1] = *mps_view_f64(&x, mps_particles_index(p->particles, list[0]), 1);
     plate_exact_displacement(p, at, u);
-    done = done && app_check(p->a, mps_elastic_prescribe(p->elastic, 1, 1, list, &u[1]));
+    done = done && elastic_hold(p->a, p->elastic, 1, 1, list, &u[1]);
   }
   free(list);
   return done;
@@ -189,11 +187,10 @@ static bool find_errors(plate *p) {
   return true;
 }
 
-bool plate_solve(app *a, const plate_def *def, const mps_elastic_def *elastic, plate *out) {
+bool plate_solve(app *a, const plate_def *def, const elastic_method *method, plate *out) {
   *out = (plate){.a = a, .def = def};
-  return make_particles(out) &&
-         app_check(a, mps_elastic_create(a->context, out->particles, elastic, &out->elastic)) &&
-         support_and_load(out, elastic) && app_check(a, mps_elastic_solve(out->elastic)) &&
+  return make_particles(out) && elastic_make(a, out->particles, method, &out->elastic) &&
+         support_and_load(out, method) && app_check(a, mps_elastic_solve(out->elastic)) &&
          app_check(a, mps_elastic_stress(out->elastic)) &&
          app_check(a, mps_elastic_get_report(out->elastic, &out->report)) && find_errors(out);
 }

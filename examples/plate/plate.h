@@ -32,7 +32,7 @@ typedef struct plate {
   double largest;            /* largest principal stress of a particle, over the tension */
 } plate;
 
-bool plate_solve(app *a, const plate_def *def, const mps_elastic_def *elastic, plate *out);
+bool plate_solve(app *a, const plate_def *def, const elastic_method *method, plate *out);
 void plate_free(plate *p);
 
 /* Results at the particle of index k in the views. */
@@ -44,6 +44,6 @@ void plate_exact_displacement(const plate *p, const double *x, double *u);
 bool plate_on_ligament(const plate *p, const elastic_point *at);
 
 /* Tables, summary and pictures in DIR. */
-bool plate_write(const plate *p, const mps_elastic_def *elastic, const char *directory);
+bool plate_write(const plate *p, const elastic_method *method, const char *directory);
 
 #endif

@@ -50,12 +50,12 @@ static bool write_line(const plate *p, const char *directory) {
   return output_close(&f);
 }
 
-static bool write_summary(const plate *p, const mps_elastic_def *elastic, const char *directory) {
+static bool write_summary(const plate *p, const elastic_method *method, const char *directory) {
   output f;
   if (!output_open(&f, p->a, directory, "summary.json")) return false;
   json_begin(&f);
   json_text(&f, "case", p->def->hole ? "hole" : "tension");
-  json_text(&f, "method", elastic->method == MPS_ELASTIC_PUBLISHED ? "published" : "conservative");
+  json_text(&f, "method", method->published ? "published" : "conservative");
   json_integer(&f, "particles", mps_particles_count(p->particles));
   json_number(&f, "spacing", p->spacing);
   if (p->def->hole) {
@@ -123,9 +123,9 @@ static bool draw_map(const plate *p, const char *directory) {
   return plot_close(&f, directory, "stress");
 }
 
-bool plate_write(const plate *p, const mps_elastic_def *elastic, const char *directory) {
+bool plate_write(const plate *p, const elastic_method *method, const char *directory) {
   return write_particles(p, directory) && write_line(p, directory) &&
-         write_summary(p, elastic, directory) &&
+         write_summary(p, method, directory) &&
          frame_write(p->a, p->particles, directory, "plate.vtkhdf") && draw_line(p, directory) &&
          (!p->def->hole || draw_map(p, directory));
 }

@@ -8,12 +8,21 @@
 #ifndef LIBMPS_EXPERIMENTAL_H
 #define LIBMPS_EXPERIMENTAL_H
 
-#include "base.h"
+#include "elastic.h"
 
 /* Marks what is exported under that node. */
 #define MPS_EXPERIMENTAL_API MPS_API
 
 MPS_EXTERN_C_BEGIN
+
+/** As mps_elastic_create, of the method that Chikazawa prints in (10), corrected, with R and D
+ *  eliminated; two-dimensional, 0 <= nu < 0.5. The sums (7), (8) are divided by each particle's own
+ *  number density, or (constant not 0) by that of the full lattice, as printed: then a rigid
+ * rotation causes stress at surfaces. radius_ratio is 3 by default; loads on facets act without
+ * their first moments. */
+MPS_EXPERIMENTAL_API MPS_NODISCARD mps_status
+mps_experimental_elastic_published(mps_context *context, mps_particles *particles,
+                                   const mps_elastic_def *def, int32_t constant, mps_elastic **out);
 
 MPS_EXTERN_C_END
 #endif

@@ -16,7 +16,10 @@
   X(mps_context_def, mps_context_def_init, "0.2", 104) \
   X(mps_drucker_prager_def, mps_drucker_prager_def_init, "0.2", 56) \
   X(mps_dynamics_def, mps_dynamics_def_init, "0.2", 80) \
-  X(mps_elastic_def, mps_elastic_def_init, "0.2", 80) \
+  X(mps_elastic_boundary_def, mps_elastic_boundary_def_init, "0.2", 160) \
+  X(mps_elastic_def, mps_elastic_def_init, "0.2", 72) \
+  X(mps_elastic_load_def, mps_elastic_load_def_init, "0.2", 120) \
+  X(mps_elastic_motion_def, mps_elastic_motion_def_init, "0.2", 88) \
   X(mps_fluid_boundary_def, mps_fluid_boundary_def_init, "0.2", 72) \
   X(mps_fluid_def, mps_fluid_def_init, "0.2", 88) \
   X(mps_geostatic_def, mps_geostatic_def_init, "0.2", 72) \
@@ -24,7 +27,6 @@
   X(mps_mohr_coulomb_def, mps_mohr_coulomb_def_init, "0.2", 56) \
   X(mps_mpm_def, mps_mpm_def_init, "0.2", 232) \
   X(mps_neighbours_def, mps_neighbours_def_init, "0.2", 24) \
-  X(mps_newmark_def, mps_newmark_def_init, "0.2", 32) \
   X(mps_newtonian_def, mps_newtonian_def_init, "0.2", 32) \
   X(mps_particles_def, mps_particles_def_init, "0.2", 40) \
   X(mps_predict_def, mps_predict_def_init, "0.2", 64) \

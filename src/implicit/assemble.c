@@ -86,7 +86,7 @@ static void couple_conservative(const mps_elastic *e, int64_t i, const double *a
 /* The same of (10) with R and D eliminated. */
 static void couple_published(const mps_elastic *e, int64_t i, const double *a, const double *b,
                              block *out) {
-  const double n = e->def.divisor == MPS_ELASTIC_CONSTANT ? 1.0 : e->density[i] / e->density0;
+  const double n = e->constant ? 1.0 : e->density[i] / e->density0;
   const double v = e->volume[i] * n;
   const double ra[2] = {-a[1], a[0]}, rb[2] = {-b[1], b[0]};
   for (int c = 0; c < 2; c++)
@@ -190,7 +190,7 @@ static void gather_gradient(const mps_elastic *e, int64_t i, gather *g) {
   for (int32_t b = 0; b < m; b++) {
     if (sites[b] < g->particle) continue;
     block *out = block_of(g, sites[b]);
-    if (e->def.method == MPS_ELASTIC_CONSERVATIVE)
+    if (e->conservative)
       couple_conservative(e, i, coefficient[mine], coefficient[b], out);
     else
       couple_published(e, i, coefficient[mine], coefficient[b], out);
@@ -317,7 +317,7 @@ static void gather_row(const mps_elastic *e, int64_t p, gather *g) {
   g->count = 0;
   g->particle = p;
   for (int32_t a = 0; a < count; a++) gather_gradient(e, list[a], g);
-  if (e->def.method == MPS_ELASTIC_CONSERVATIVE) {
+  if (e->conservative) {
     gather_conservative(e, list, count, g);
     return;
   }
@@ -403,6 +403,8 @@ static void drop_matrix(mps_elastic *e) {
   mpsi_free(e->context, e->value);
   mpsi_free(e->context, e->rhs);
   mpsi_free(e->context, e->solution);
+  mpsi_free(e->context, e->cg_work);
+  e->cg_work = NULL;
   e->column = e->row = NULL;
   e->value = e->rhs = e->solution = NULL;
   e->pattern_valid = e->values_valid = e->analysed = e->factored = false;

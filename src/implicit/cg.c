@@ -89,7 +89,8 @@ static mps_status iterate(const cg *s, const char *function, const double *b, do
 mps_status mpsi_elastic_cg(mps_elastic *e, const char *function, double shift, const double *rhs,
                            double *solution) {
   const int64_t n = e->unknowns;
-  double *work = mpsi_alloc(e->context, 5 * n, sizeof *work);
+  if (!e->cg_work) e->cg_work = mpsi_alloc(e->context, 5 * n, sizeof *e->cg_work);
+  double *work = e->cg_work; /* kept with the matrix: a step allocates nothing */
   if (!work) return mpsi_fail_memory(e->context, function, (size_t)(5 * n) * sizeof *work);
   double *diagonal = work + 4 * n;
   for (int64_t k = 0; k < e->n * e->dim; k++)
@@ -98,8 +99,5 @@ mps_status mpsi_elastic_cg(mps_elastic *e, const char *function, double shift, c
           e->value[e->column[e->dof[k]]] + (shift != 0.0 ? shift * e->mass[k / e->dim] : 0.0);
   const cg s = {.e = e, .diagonal = diagonal, .n = n};
   const int64_t limit = e->def.iterations > 0 ? e->def.iterations : 10 * n;
-  const mps_status status =
-      iterate(&s, function, rhs, solution, work, limit, &e->report.iterations);
-  mpsi_free(e->context, work);
-  return status;
+  return iterate(&s, function, rhs, solution, work, limit, &e->report.iterations);
 }

@@ -17,6 +17,7 @@ struct mpsi_cholesky {
   cholmod_factor *factor;
   cholmod_dense *result, *y, *e; /* of the triangular solution */
   mpsi_ordering ordering;
+  int32_t threads; /* of BLAS */
   bool ldlt, factored;
 };
 
@@ -50,12 +51,13 @@ static mps_status failure(mpsi_cholesky *c, const char *function, const char *wh
 }
 
 mps_status mpsi_cholesky_create(mps_context *context, const char *function, mpsi_ordering ordering,
-                                bool ldlt, mpsi_cholesky **out) {
+                                bool ldlt, int32_t threads, mpsi_cholesky **out) {
   mpsi_cholesky *c = mpsi_alloc(context, 1, sizeof *c);
   if (!c) return mpsi_fail_memory(context, function, sizeof *c);
   c->context = context;
   c->ordering = ordering;
   c->ldlt = ldlt;
+  c->threads = threads;
   if (!cholmod_l_start(&c->common)) {
     mpsi_free(context, c);
     return mpsi_fail(context, function, MPS_ERROR_INTERNAL, "CHOLMOD did not start");
@@ -221,7 +223,7 @@ mps_status mpsi_cholesky_factor(mpsi_cholesky *c, const char *function, const mp
   if (cancelled != MPS_OK) return cancelled;
   c->factored = false;
   cholmod_sparse s = wrap(a);
-  mpsi_foreign_enter(mps_context_threads(c->context));
+  mpsi_foreign_enter(c->threads);
   cholmod_l_factorize(&s, c->factor, &c->common);
   mpsi_foreign_leave();
   if (c->common.status < CHOLMOD_OK) return failure(c, function, "the factorisation");
@@ -258,7 +260,7 @@ mps_status mpsi_cholesky_solve(mpsi_cholesky *c, const char *function, int64_t c
   right.xtype = CHOLMOD_REAL;
   right.dtype = CHOLMOD_DOUBLE;
   /* The three work arrays stay for the next call, which then allocates nothing. */
-  mpsi_foreign_enter(mps_context_threads(c->context));
+  mpsi_foreign_enter(c->threads);
   const bool good =
       ensure_work(c, count) && cholmod_l_solve2(CHOLMOD_A, c->factor, &right, NULL, &c->result,
                                                 NULL, &c->y, &c->e, &c->common);

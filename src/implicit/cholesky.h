@@ -26,7 +26,7 @@ typedef struct mpsi_cholesky_symbolic {
 
 /* One CHOLMOD workspace. */
 mps_status mpsi_cholesky_create(mps_context *context, const char *function, mpsi_ordering ordering,
-                                bool ldlt, mpsi_cholesky **out);
+                                bool ldlt, int32_t threads, mpsi_cholesky **out);
 void mpsi_cholesky_destroy(mpsi_cholesky **cholesky);
 /* Orders and analyses the pattern; drops a former factor. group[c], ascending from 0, is the node
  * (particle) that unknown c belongs to: the ordering is found on the graph of the `groups` nodes,

@@ -6,6 +6,8 @@
 #include <mps/elastic.h>
 
 extern const mps_elastic_def mpsi_elastic_defaults;
-extern const mps_newmark_def mpsi_newmark_defaults;
+extern const mps_elastic_boundary_def mpsi_elastic_boundary_defaults;
+extern const mps_elastic_load_def mpsi_elastic_load_defaults;
+extern const mps_elastic_motion_def mpsi_elastic_motion_defaults;
 
 #endif

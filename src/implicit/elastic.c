@@ -5,7 +5,13 @@
 
 #include "core/particles_internal.h"
 
+#include <mps/experimental.h>
+
+#include <stdlib.h>
 #include <string.h>
+
+#define LEAST 1e-30 /* of a positive quantity in SI units */
+#define MOST 1e30
 
 /* ---- definition ------------------------------------------------------------------------------ */
 
@@ -29,25 +35,23 @@ static mps_status check_numbers(mps_context *context, const char *function,
   mps_status status = MPS_OK;
   if (!(def->radius_ratio > 1.0 && def->radius_ratio <= 4.0))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "radius_ratio is %g, must be above 1 and at most 4 (0: default)",
+                     "radius_ratio is %g, must be above 1 and at most 4 (NaN: default)",
                      def->radius_ratio);
-  if (!(def->thickness > 0.0 && isfinite(def->thickness)))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "thickness is %g m, must be finite and > 0", def->thickness);
   if (!(def->memory_limit >= 0.0))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "memory_limit is %g bytes, must be >= 0 (0: none)", def->memory_limit);
+                     "memory_limit is %g bytes, must be >= 0 (NaN: none)", def->memory_limit);
   if (def->iterations < 0)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "iterations is %lld, must be >= 0 (0: default)", (long long)def->iterations);
-  status = check_range(context, function, "alpha", def->alpha, 0.03, 100.0);
+  status = check_range(context, function, "measure", def->measure, LEAST, MOST);
+  if (status == MPS_OK) status = check_range(context, function, "alpha", def->alpha, 0.03, 100.0);
   if (status == MPS_OK)
     status = check_range(context, function, "tolerance", def->tolerance, 1e-14, 1e-2);
   return status;
 }
 
 static mps_status read_def(mps_context *context, const char *function, const mps_elastic_def *user,
-                           int32_t dim, mps_elastic_def *def) {
+                           int32_t dim, bool published, mps_elastic_def *def) {
   *def = mpsi_elastic_defaults;
   mps_status status = MPS_OK;
   if (user) status = MPSI_DEF_READ(context, function, mps_elastic_def, user, def);
@@ -55,27 +59,63 @@ static mps_status read_def(mps_context *context, const char *function, const mps
     const char *name;
     int32_t value, low, high;
   } choices[] = {
-      {"method", def->method, MPS_ELASTIC_CONSERVATIVE, MPS_ELASTIC_PUBLISHED},
       {"state", def->state, MPS_ELASTIC_PLANE_STRESS, MPS_ELASTIC_PLANE_STRAIN},
-      {"divisor", def->divisor, MPS_ELASTIC_LOCAL, MPS_ELASTIC_CONSTANT},
       {"solver", def->solver, MPS_ELASTIC_AUTO, MPS_ELASTIC_CG},
       {"ordering", def->ordering, MPS_ELASTIC_ORDER_BEST, MPS_ELASTIC_ORDER_METIS},
       {"refinements", def->refinements, 0, 10},
-      {"first_moment", def->first_moment, -1, 1},
+      {"blas_threads", def->blas_threads, 0, 1024},
   };
   for (size_t k = 0; k < sizeof choices / sizeof *choices && status == MPS_OK; k++)
     status = check_choice(context, function, choices[k].name, choices[k].value, choices[k].low,
                           choices[k].high);
   if (status != MPS_OK) return status;
-  const bool conservative = def->method == MPS_ELASTIC_CONSERVATIVE;
-  if (def->radius_ratio == 0.0) def->radius_ratio = conservative ? 1.5 : 3.0;
-  if (def->first_moment < 0) def->first_moment = conservative;
-  if (dim == 3) def->thickness = 1.0;
-  if (!conservative && dim == 3)
+  if (isnan(def->radius_ratio)) def->radius_ratio = published ? 3.0 : 1.5;
+  if (isnan(def->memory_limit)) def->memory_limit = INFINITY;
+  if (isnan(def->measure) || dim == 3) def->measure = 1.0;
+  if (isnan(def->alpha)) def->alpha = mpsi_elastic_defaults.alpha;
+  if (isnan(def->tolerance)) def->tolerance = mpsi_elastic_defaults.tolerance;
+  if (published && dim == 3)
     return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
                      "the published method is two-dimensional: at surfaces in 3D a rigid rotation "
-                     "would cause stress; use the conservative method");
+                     "would cause stress; use mps_elastic_create");
   return check_numbers(context, function, def);
+}
+
+/* ---- calls back from the solver ----------------------------------------------------------------
+ */
+
+mps_status mpsi_elastic_enter(mps_elastic *e, const char *function) {
+  if (e->busy)
+    return mpsi_fail(e->context, function, MPS_ERROR_STATE,
+                     "called back from within %s of the same solver, which may only be asked then",
+                     e->busy);
+  e->busy = function;
+  return MPS_OK;
+}
+
+mps_status mpsi_elastic_leave(mps_elastic *e, mps_status status) {
+  e->busy = NULL;
+  e->within = false;
+  return status;
+}
+
+mps_status mpsi_elastic_check_between(const mps_elastic *e, const char *function) {
+  if (!e->within) return MPS_OK;
+  return mpsi_fail(e->context, function, MPS_ERROR_STATE,
+                   "called back from within %s: the state is between two steps", e->busy);
+}
+
+int64_t mpsi_elastic_find(const mps_elastic *e, int64_t id) {
+  int64_t low = 0, high = e->n;
+  if (id >= 0 && id < e->n && e->id[id] == id) return id; /* as long as none is missing */
+  while (low < high) {
+    const int64_t middle = low + (high - low) / 2;
+    if (e->id[middle] < id)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low < e->n && e->id[low] == id ? low : -1;
 }
 
 /* ---- fields ---------------------------------------------------------------------------------- */
@@ -89,7 +129,7 @@ mps_status mpsi_elastic_read(mps_elastic *e, const char *function, const char *n
                        "the particles have no field '%s' (component %d of %d)", name, c,
                        components);
     for (int64_t i = 0; i < e->n; i++)
-      values[i * components + c] = column[mps_particles_index(e->particles, i)];
+      values[i * components + c] = column[mps_particles_index(e->particles, e->id[i])];
   }
   return MPS_OK;
 }
@@ -102,7 +142,7 @@ mps_status mpsi_elastic_write(mps_elastic *e, const char *function, const char *
   for (int32_t c = 0; c < components; c++) {
     double *column = mpsi_particles_column(e->particles, name, c);
     for (int64_t i = 0; i < e->n; i++)
-      column[mps_particles_index(e->particles, i)] = values[i * components + c];
+      column[mps_particles_index(e->particles, e->id[i])] = values[i * components + c];
   }
   return MPS_OK;
 }
@@ -111,8 +151,8 @@ static mps_status bad_value(mps_elastic *e, const char *function, const char *na
                             double value, const char *allowed) {
   const mps_status status =
       mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "%s of particle %lld is %g, %s", name,
-                (long long)i, value, allowed);
-  mpsi_fail_where(e->context, -1, i);
+                (long long)e->id[i], value, allowed);
+  mpsi_fail_where(e->context, -1, e->id[i]);
   return status;
 }
 
@@ -121,8 +161,8 @@ mps_status mpsi_elastic_read_mass(mps_elastic *e, const char *function) {
   if (!mass) return mpsi_fail_memory(e->context, function, (size_t)e->n * sizeof *mass);
   mps_status status = mpsi_elastic_read(e, function, "density", mass, 1);
   for (int64_t i = 0; i < e->n && status == MPS_OK; i++) {
-    if (!(mass[i] > 0.0 && isfinite(mass[i])))
-      status = bad_value(e, function, "density", i, mass[i], "must be finite and > 0 (kg/m3)");
+    if (!(mass[i] >= LEAST && mass[i] <= MOST))
+      status = bad_value(e, function, "density", i, mass[i], "allowed is 1e-30 to 1e30 (kg/m3)");
     mass[i] *= e->volume[i];
   }
   if (status != MPS_OK) {
@@ -140,12 +180,11 @@ void mpsi_elastic_measure(mps_elastic *e) {
   const int d = e->dim;
   for (int64_t i = 0; i < e->n; i++) {
     e->volume[i] =
-        d == 2 ? e->spacing * e->spacing * e->def.thickness : e->spacing * e->spacing * e->spacing;
+        d == 2 ? e->spacing * e->spacing * e->def.measure : e->spacing * e->spacing * e->spacing;
     for (int bit = 0; bit < 2 * d; bit++)
       if (e->cut[i] & 1 << bit) e->volume[i] *= 0.5;
-    e->kappa[i] = e->def.method == MPS_ELASTIC_CONSERVATIVE
-                      ? 2.0 * e->def.alpha * e->mu[i] * d * e->volume[i] / e->density[i]
-                      : 2.0 * e->mu[i] * d * e->volume[i] / e->density0;
+    e->kappa[i] = e->conservative ? 2.0 * e->def.alpha * e->mu[i] * d * e->volume[i] / e->density[i]
+                                  : 2.0 * e->mu[i] * d * e->volume[i] / e->density0;
   }
   e->values_valid = false;
 }
@@ -157,10 +196,10 @@ static mps_status read_material(mps_elastic *e, const char *function) {
   double *poisson = young + e->n;
   mps_status status = mpsi_elastic_read(e, function, "young", young, 1);
   if (status == MPS_OK) status = mpsi_elastic_read(e, function, "poisson", poisson, 1);
-  const double least = e->def.method == MPS_ELASTIC_PUBLISHED ? 0.0 : -0.99;
+  const double least = !e->conservative ? 0.0 : -0.99;
   for (int64_t i = 0; i < e->n && status == MPS_OK; i++)
-    if (!(young[i] > 0.0 && isfinite(young[i])))
-      status = bad_value(e, function, "young", i, young[i], "must be finite and > 0 (Pa)");
+    if (!(young[i] >= LEAST && young[i] <= MOST))
+      status = bad_value(e, function, "young", i, young[i], "allowed is 1e-30 to 1e30 (Pa)");
     else if (!(poisson[i] >= least && poisson[i] < 0.5))
       status = bad_value(e, function, "poisson", i, poisson[i],
                          least < 0.0 ? "must be at least -0.99 and below 0.5"
@@ -178,10 +217,12 @@ static mps_status read_material(mps_elastic *e, const char *function) {
 
 mps_status mps_elastic_update_material(mps_elastic *e) {
   if (!e) return MPS_ERROR_ARGUMENT;
-  mps_status status = read_material(e, __func__);
+  mps_status status = mpsi_elastic_enter(e, __func__);
+  if (status != MPS_OK) return status;
+  status = read_material(e, __func__);
   if (status == MPS_OK) status = mpsi_elastic_find_joints(e, __func__);
   if (status == MPS_OK) mpsi_elastic_measure(e);
-  return status;
+  return mpsi_elastic_leave(e, status);
 }
 
 mps_status mps_elastic_cut(mps_elastic *e, int32_t axis, int32_t side, int64_t count,
@@ -194,20 +235,27 @@ mps_status mps_elastic_cut(mps_elastic *e, int32_t axis, int32_t side, int64_t c
   if (count < 0 || (count > 0 && !ids))
     return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
                      "count is %lld (must be >= 0) or ids is NULL", (long long)count);
+  mps_status status = mpsi_elastic_enter(e, __func__);
+  if (status != MPS_OK) return status;
+  (void)mpsi_elastic_leave(e, status);
   const int32_t k = e->links.face[axis][side > 0];
   for (int64_t i = 0; i < count; i++) {
-    if (ids[i] < 0 || ids[i] >= e->n)
+    const int64_t found = mpsi_elastic_find(e, ids[i]);
+    if (found < 0)
       return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
-                       "ids[%lld] is %lld, allowed are 0..%lld", (long long)i, (long long)ids[i],
-                       (long long)e->n - 1);
-    if (e->links.to[ids[i] * e->links.count + k] >= 0)
+                       "ids[%lld] is %lld: no particle of the solver has that id", (long long)i,
+                       (long long)ids[i]);
+    if (e->links.to[found * e->links.count + k] >= 0)
       return mpsi_fail(e->context, __func__, MPS_ERROR_STATE,
                        "particle %lld has a neighbour on side %d of %c: no surface can pass "
                        "through it there",
                        (long long)ids[i], side, "xyz"[axis]);
   }
   mpsi_elastic_end_motion(e); /* its masses are no longer those of the cells */
-  for (int64_t i = 0; i < count; i++) e->cut[ids[i]] |= (uint8_t)(1 << (2 * axis + (side > 0)));
+  mpsi_free(e->context, e->mass);
+  e->mass = NULL;
+  for (int64_t i = 0; i < count; i++)
+    e->cut[mpsi_elastic_find(e, ids[i])] |= (uint8_t)(1 << (2 * axis + (side > 0)));
   mpsi_elastic_measure(e);
   return MPS_OK;
 }
@@ -221,6 +269,7 @@ static mps_status allocate(mps_elastic *e, const char *function) {
     int64_t count;
     size_t size;
   } arrays[] = {
+      {(void **)&e->id, n, sizeof(int64_t)},
       {(void **)&e->x, all, sizeof(double)},
       {(void **)&e->density, n, sizeof(double)},
       {(void **)&e->faces, n, sizeof(uint8_t)},
@@ -252,24 +301,40 @@ void mps_elastic_destroy(mps_elastic **elastic) {
   if (!elastic || !*elastic) return;
   mps_elastic *e = *elastic;
   mps_context *context = e->context;
+  if (e->busy) { /* from a callback: whoever works on it needs it still */
+    (void)mpsi_elastic_enter(e, __func__);
+    return;
+  }
   *elastic = NULL;
   mpsi_elastic_end_motion(e);
   mpsi_cholesky_destroy(&e->cholesky);
   mpsi_elastic_disconnect(e);
   mpsi_elastic_drop_joints(e);
-  void *arrays[] = {e->x,           e->density, e->cut,          e->volume,   e->lambda,
-                    e->mu,          e->poisson, e->kappa,        e->supports, e->support_of,
-                    e->facets,      e->load,    e->displacement, e->reaction, e->gradient,
-                    e->stress_work, e->work,    e->dof,          e->column,   e->row,
-                    e->value,       e->faces,   e->rhs,          e->solution, e->mass};
+  mpsi_elastic_drop_boundaries(e);
+  mpsi_state_forget(&e->identity);
+  mpsi_elastic_drop_loads(e);
+  void *arrays[] = {e->id,           e->x,        e->density,     e->cut,   e->volume,
+                    e->lambda,       e->mu,       e->poisson,     e->kappa, e->facets,
+                    e->load,         e->reaction, e->gradient,    e->work,  e->dof,
+                    e->displacement, e->column,   e->stress_work, e->row,   e->value,
+                    e->faces,        e->rhs,      e->solution,    e->mass,  e->cg_work};
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) mpsi_free(context, arrays[k]);
   mpsi_particles_unpin(e->particles);
   mpsi_free(context, e);
   mpsi_context_release(context);
 }
 
+static int compare_ids(const void *a, const void *b) {
+  const int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
+  return (x > y) - (x < y);
+}
+
 static mps_status build(mps_elastic *e, const char *function) {
   mps_status status = allocate(e, function);
+  if (status == MPS_OK) {
+    memcpy(e->id, mpsi_particles_integers(e->particles, "id"), (size_t)e->n * sizeof *e->id);
+    qsort(e->id, (size_t)e->n, sizeof *e->id, compare_ids);
+  }
   if (status == MPS_OK) status = mpsi_elastic_read(e, function, "position", e->x, e->dim);
   for (int64_t i = 0; i < e->n * e->dim && status == MPS_OK; i++)
     if (!isfinite(e->x[i]))
@@ -284,31 +349,34 @@ static mps_status build(mps_elastic *e, const char *function) {
   return status;
 }
 
-mps_status mps_elastic_create(mps_context *context, mps_particles *particles,
-                              const mps_elastic_def *user_def, mps_elastic **out) {
+mps_status mpsi_elastic_create(mps_context *context, const char *function, mps_particles *particles,
+                               const mps_elastic_def *user_def, bool published, bool constant,
+                               mps_elastic **out) {
   if (!context) return MPS_ERROR_ARGUMENT;
-  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
+  if (!out) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
   if (!particles || mps_particles_count(particles) == 0)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "particles is %s",
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "particles is %s",
                      particles ? "empty" : "NULL");
   if (mpsi_particles_context(particles) != context)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "the particle set was made from another context");
   mps_elastic_def def;
-  mps_status status = read_def(context, __func__, user_def, mps_particles_dim(particles), &def);
+  mps_status status =
+      read_def(context, function, user_def, mps_particles_dim(particles), published, &def);
   if (status != MPS_OK) return status;
   mps_elastic *e = mpsi_alloc(context, 1, sizeof *e);
-  if (!e) return mpsi_fail_memory(context, __func__, sizeof *e);
+  if (!e) return mpsi_fail_memory(context, function, sizeof *e);
   e->context = mpsi_context_retain(context);
   e->particles = mpsi_particles_pin(particles);
   e->def = def;
-  e->conservative = def.method == MPS_ELASTIC_CONSERVATIVE;
+  e->conservative = !published;
+  e->constant = constant;
   e->dim = mps_particles_dim(particles);
   e->modes = e->dim == 2 ? 3 : 6;
   e->n = mps_particles_count(particles);
   e->spacing = mps_particles_spacing(particles);
-  status = build(e, __func__);
+  status = build(e, function);
   if (status != MPS_OK) {
     mps_elastic_destroy(&e);
     return status;
@@ -316,3 +384,22 @@ mps_status mps_elastic_create(mps_context *context, mps_particles *particles,
   *out = e;
   return MPS_OK;
 }
+
+mps_status mps_elastic_create(mps_context *context, mps_particles *particles,
+                              const mps_elastic_def *def, mps_elastic **out) {
+  return mpsi_elastic_create(context, __func__, particles, def, false, false, out);
+}
+
+mps_status mps_experimental_elastic_published(mps_context *context, mps_particles *particles,
+                                              const mps_elastic_def *def, int32_t constant,
+                                              mps_elastic **out) {
+  return mpsi_elastic_create(context, __func__, particles, def, true, constant != 0, out);
+}
+
+mps_status mps_elastic_get_def_sized(const mps_elastic *e, mps_elastic_def *out, size_t size) {
+  if (!e) return MPS_ERROR_ARGUMENT;
+  return mpsi_out_write(e->context, __func__, out, size, &e->def, sizeof e->def);
+}
+
+mps_particles *mps_elastic_particles(const mps_elastic *e) { return e ? e->particles : NULL; }
+mps_context *mps_elastic_context(const mps_elastic *e) { return e ? e->context : NULL; }

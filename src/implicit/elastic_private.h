@@ -3,23 +3,25 @@
  * lattice.c   sites, neighbours, n_i           operator.c  gradient and K u, matrix free
  * joints.c    faces between two materials
  * supports.c  fixed directions, free unknowns  rigid.c     which rigid motions are left free
- * loads.c     facets and nodal forces          assemble.c  the sparse matrix of free unknowns
+ * boundaries.c  what is prescribed, reactions  facets.c    the surface
+ * loads.c     nodal forces                     assemble.c  the sparse matrix of free unknowns
  * system.c    factor, solve, refine            cholesky.c  CHOLMOD;  cg.c  conjugate gradients
- * stress.c    stresses, sections, energy       newmark.c, modes.c  dynamics
+ * stress.c    stresses, sections, energy       motion.c, budget.c, modes.c  dynamics
  *
- * Vectors over all particles are indexed [i * dim + c], i being the particle's id: sorting the set
- * does not matter. Vectors of free unknowns hold the local directions that no support fixes.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * Vectors over all particles are indexed [i * dim + c], i being the rank of the particle's id:
+ * sorting the set does not matter. Vectors of free unknowns hold the local directions that no
+ * support fixes. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_ELASTIC_PRIVATE_H
 #define MPSI_ELASTIC_PRIVATE_H
 
 #include "cholesky.h"
 #include "core/internal.h"
+#include "core/state.h"
 
 #include <mps/elastic.h>
 
-#define MPSI_STENCIL_MAX 64 /* sites of one gradient: a disc of radius < 4 has 45 */
-#define MPSI_CHUNK 2048     /* particles of one unit of parallel work */
+#define MPSI_STENCIL_MAX 64     /* sites of one gradient: a disc of radius < 4 has 45 */
+#define MPSI_ELASTIC_CHUNK 2048 /* particles of one unit of parallel work */
 
 /* Neighbours on the lattice, by offset. */
 typedef struct mpsi_links {
@@ -32,15 +34,57 @@ typedef struct mpsi_links {
   int64_t *to;        /* to[i * count + k]: the neighbour, or -1 */
 } mpsi_links;
 
-/* The supports of one particle. `basis` has the fixed directions first, then free ones, all
- * orthonormal; `fixed` are the displacements along the first `count`. */
+/* A boundary of the caller. */
+typedef struct mpsi_elastic_boundary {
+  bool used;
+  int32_t kind;
+  uint32_t dofs;
+  double normal[3]; /* unit */
+  int64_t count;
+  int64_t *particles; /* count */
+  double *values;     /* count * 3, a roller's count; or NULL */
+  mps_signal *signal[3];
+  double factor[3];
+  double motion[3][3]; /* factor * signal at the time driven to: [derivative][component] */
+  mps_reaction reaction;
+} mpsi_elastic_boundary;
+
+/* The supports of one particle: rows normal . u = value, of unit length. `basis` has the fixed
+ * directions first, then free ones, all orthonormal; `fixed` are displacement, velocity and
+ * acceleration along the first `count`. */
 typedef struct mpsi_support {
   int64_t particle;
   int32_t count;
-  double normal[3][3], value[3]; /* as given: normal . u = value, normals of unit length */
-  double basis[3][3];            /* basis[c] is direction c */
-  double fixed[3];
+  int32_t owner[3];  /* boundary of the row */
+  int32_t signal[3]; /* component of the owner's motion */
+  double normal[3][3], offset[3];
+  double basis[3][3]; /* basis[c] is direction c */
+  double fixed[3][3]; /* [derivative][direction] */
 } mpsi_support;
+
+/* Force and first moment int t_c (x - x_i)_b of a load on one cell. */
+typedef struct mpsi_patch {
+  int64_t particle;
+  double force[3], moment[3][3];
+} mpsi_patch;
+
+typedef struct mpsi_elastic_load {
+  bool used;
+  int32_t kind;
+  double force[3]; /* BODY, GRAVITY */
+  mps_signal *signal[3];
+  double factor[3];
+  mpsi_patch *patches;
+  int64_t count, capacity;
+} mpsi_elastic_load;
+
+/* Works since the motion began, or of the last static solution (J). */
+typedef struct mpsi_ledger {
+  double loads, boundaries;
+  double inner; /* of K (u + a1 v): strain energy and stiffness damping together */
+  double mass_damping;
+  double kinetic, strain; /* at the start */
+} mpsi_ledger;
 
 /* A face between cells of different material: `low` is below it along `axis`, `high` above. */
 typedef struct mpsi_joint {
@@ -74,7 +118,11 @@ struct mps_elastic {
   mps_particles *particles;
   mps_elastic_def def;
   int32_t dim, modes; /* modes: rigid motions, 3 or 6 */
-  bool conservative;  /* method */
+  bool conservative;  /* method; else the published one */
+  bool constant;      /* published: divided by n0, else by n_i */
+  const char *busy;   /* the public function that is at work, or NULL */
+  bool within;        /* it is not between steps */
+  int64_t *id;        /* of each particle, ascending */
   int64_t n;
   double spacing;
 
@@ -93,13 +141,19 @@ struct mps_elastic {
   int64_t *joint_at;     /* [i * 2 dim + 2 axis + up], or -1; NULL without joints */
   double *joint_scratch; /* joints * dim */
 
+  mpsi_elastic_boundary *boundaries;
+  int32_t boundary_count;
   mpsi_support *supports;
-  int64_t support_count, support_capacity;
+  int64_t support_count;
   int64_t *support_of; /* index in supports, or -1 */
 
   mpsi_facet *facets;
   int64_t facet_count;
 
+  mpsi_elastic_load *loads;
+  int32_t load_count;
+  mpsi_patch *spare; /* room for the patches of a load that is set */
+  int64_t spare_capacity;
   double *load;         /* nodal forces, n * dim */
   double *displacement; /* n * dim */
   double *reaction;     /* n * dim */
@@ -119,10 +173,13 @@ struct mps_elastic {
   double factored_shift; /* the factor is that of K + shift * M */
   bool use_cg;
   double *rhs, *solution; /* unknowns each */
+  double *cg_work;        /* 5 * unknowns, or NULL */
   double *mass;           /* n, or NULL until dynamics asks for it */
   mps_elastic_report report;
 
-  struct mpsi_motion *motion; /* NULL: no dynamics under way */
+  mpsi_identity *identity; /* of its snapshots */
+  mpsi_ledger ledger;
+  struct mpsi_elastic_motion *motion; /* NULL: no dynamics under way */
 };
 
 /* ---- lattice.c --------------------------------------------------------------------------------
@@ -183,15 +240,21 @@ void mpsi_elastic_stretch(const mps_elastic *e, const double *u, int64_t i, int3
 /* Particles of chunk `chunk`: [*first, *last). */
 static inline void mpsi_elastic_chunk(const mps_elastic *e, int64_t chunk, int64_t *first,
                                       int64_t *last) {
-  *first = chunk * MPSI_CHUNK;
-  *last = *first + MPSI_CHUNK < e->n ? *first + MPSI_CHUNK : e->n;
+  *first = chunk * MPSI_ELASTIC_CHUNK;
+  *last = *first + MPSI_ELASTIC_CHUNK < e->n ? *first + MPSI_ELASTIC_CHUNK : e->n;
 }
 static inline int64_t mpsi_elastic_chunks(const mps_elastic *e) {
-  return (e->n + MPSI_CHUNK - 1) / MPSI_CHUNK;
+  return (e->n + MPSI_ELASTIC_CHUNK - 1) / MPSI_ELASTIC_CHUNK;
 }
 
 /* ---- supports.c -------------------------------------------------------------------------------
  */
+/* Adds the row normal . u to the support of a particle, or replaces a parallel one. False: the
+ * direction is fixed already by the others. */
+bool mpsi_elastic_add_row(mpsi_support *s, int dim, const double *normal, double offset,
+                          int32_t owner, int32_t signal);
+/* Length of row r along direction c of its basis. */
+double mpsi_elastic_row(const mpsi_support *s, int32_t r, int32_t c);
 /* Numbers the free unknowns. */
 void mpsi_elastic_number(mps_elastic *e);
 /* Unit vector of local direction c of particle i. */
@@ -199,25 +262,62 @@ void mpsi_elastic_direction(const mps_elastic *e, int64_t i, int32_t c, double *
 /* u += the prescribed displacements (prescribed true), and those of the free unknowns. */
 void mpsi_elastic_expand(const mps_elastic *e, const double *free_values, bool prescribed,
                          double *u);
+/* Replaces the components along fixed directions by those prescribed: displacements (derivative
+ * 0), velocities (1), accelerations (2). */
+void mpsi_elastic_impose(const mps_elastic *e, int derivative, double *values);
 /* The free components of a vector over all particles. */
 void mpsi_elastic_reduce(const mps_elastic *e, const double *f, double *free_values);
 /* Keeps only the components of f along fixed directions. */
 void mpsi_elastic_keep_fixed(const mps_elastic *e, double *f);
+
+/* ---- boundaries.c -----------------------------------------------------------------------------
+ */
+/* Prescribed displacements, velocities and accelerations become those of time t. */
+mps_status mpsi_elastic_drive(mps_elastic *e, const char *function, double t);
+/* Resultants of e->reaction by boundary; dt > 0: adds the mean of former and new ones times dt to
+ * the impulses. */
+void mpsi_elastic_count_reactions(mps_elastic *e, double dt);
+/* Adds the work of `force` (n * dim, of fixed directions) over the displacements `du` by boundary,
+ * and what kinetic energy driven particles gain from v0 to v1 (NULL: statics); the sum. */
+double mpsi_elastic_count_work(mps_elastic *e, const double *force, const double *du,
+                               const double *v0, const double *v1);
+void mpsi_elastic_forget_reactions(mps_elastic *e);
+void mpsi_elastic_drop_boundaries(mps_elastic *e);
 
 /* ---- rigid.c ----------------------------------------------------------------------------------
  */
 /* MPS_ERROR_STATE naming the rigid motions that the supports leave free. */
 mps_status mpsi_elastic_check_supported(mps_elastic *e, const char *function);
 
-/* ---- loads.c ----------------------------------------------------------------------------------
+/* ---- facets.c ---------------------------------------------------------------------------------
  */
 mps_status mpsi_elastic_find_facets(mps_elastic *e, const char *function);
+/* The cell of particle i reaches from low to high (relative to the particle) along `axis`. */
+void mpsi_elastic_reach(const mps_elastic *e, int64_t i, int axis, double *low, double *high);
+/* The facet as a box relative to its particle. */
+void mpsi_elastic_facet_box(const mps_elastic *e, const mpsi_facet *f, double *low, double *high);
+
+/* ---- loads.c ----------------------------------------------------------------------------------
+ */
+/* The nodal forces of all loads and of `external_force` at time t, to e->load. */
+mps_status mpsi_elastic_gather_loads(mps_elastic *e, const char *function, double t);
+void mpsi_elastic_drop_loads(mps_elastic *e);
 /* Resultant of nodal forces. */
 void mpsi_elastic_resultant(const mps_elastic *e, const double *f, const double *about,
                             double *force, double *moment);
 
 /* ---- elastic.c --------------------------------------------------------------------------------
  */
+mps_status mpsi_elastic_create(mps_context *context, const char *function, mps_particles *particles,
+                               const mps_elastic_def *def, bool published, bool constant,
+                               mps_elastic **out);
+/* MPS_ERROR_STATE when called back from the solver; from then to `leave` it is busy. */
+mps_status mpsi_elastic_enter(mps_elastic *e, const char *function);
+mps_status mpsi_elastic_leave(mps_elastic *e, mps_status status);
+/* For what only reads, but needs the scratch arrays: refused within a step. */
+mps_status mpsi_elastic_check_between(const mps_elastic *e, const char *function);
+/* The rank of an id, or -1. */
+int64_t mpsi_elastic_find(const mps_elastic *e, int64_t id);
 /* Reads `density` into mass. */
 mps_status mpsi_elastic_read_mass(mps_elastic *e, const char *function);
 /* Volumes and pair stiffnesses from cuts and material. */
@@ -241,13 +341,37 @@ mps_status mpsi_elastic_factor(mps_elastic *e, const char *function, double shif
 mps_status mpsi_elastic_backsolve(mps_elastic *e, const char *function, int64_t count,
                                   const double *rhs, double *solution);
 
+/* Vectors of `count` cases in the set's present order, three components a particle. */
+void mpsi_elastic_to_caller(const mps_elastic *e, int64_t count, double *ours, double *out);
+
 /* ---- cg.c -------------------------------------------------------------------------------------
  */
 mps_status mpsi_elastic_cg(mps_elastic *e, const char *function, double shift, const double *rhs,
                            double *solution);
 
-/* ---- newmark.c --------------------------------------------------------------------------------
+/* ---- motion.c ---------------------------------------------------------------------------------
  */
+typedef struct mpsi_elastic_motion {
+  double dt, time;
+  int64_t steps;
+  double alpha_m, alpha_f, beta, gamma; /* of the family */
+  double a0, a1;                        /* C = a0 M + a1 K */
+  bool conserving;                      /* average acceleration */
+  double *velocity, *acceleration;      /* n * dim, as all here */
+  double *force;                        /* loads at the end of the last step */
+  double *inner;                        /* K (u + a1 v) there */
+  double *held;                         /* inner + a0 M v - force along fixed directions */
+  double *next[5];                      /* u, v, a, inner, held of the step being made */
+  double *scratch;
+} mpsi_elastic_motion;
 void mpsi_elastic_end_motion(mps_elastic *e);
+
+/* ---- budget.c ---------------------------------------------------------------------------------
+ */
+void mpsi_elastic_begin_ledger(mps_elastic *e);   /* at the start of a motion */
+void mpsi_elastic_count_solution(mps_elastic *e); /* statics: loaded in proportion from rest */
+/* Works of a step to displacements u, velocities v and forces inner, held. */
+void mpsi_elastic_count_step(mps_elastic *e, const double *u, const double *v, const double *inner,
+                             const double *held);
 
 #endif

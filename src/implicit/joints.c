@@ -127,8 +127,9 @@ typedef struct joint_task {
 } joint_task;
 
 static void joints_of_chunk(const mps_elastic *e, int64_t chunk, int64_t *first, int64_t *last) {
-  *first = chunk * MPSI_CHUNK;
-  *last = *first + MPSI_CHUNK < e->joint_count ? *first + MPSI_CHUNK : e->joint_count;
+  *first = chunk * MPSI_ELASTIC_CHUNK;
+  *last =
+      *first + MPSI_ELASTIC_CHUNK < e->joint_count ? *first + MPSI_ELASTIC_CHUNK : e->joint_count;
 }
 
 /* delta of each joint, from the plain gradients. */
@@ -175,7 +176,7 @@ static void add_delta_chunk(void *data, int64_t chunk, int32_t worker) {
 void mpsi_elastic_joint_gradients(mps_elastic *e, const double *u, double *gradient) {
   if (e->joint_count == 0) return;
   joint_task task = {.e = e, .u = u, .tensor = gradient};
-  const int64_t chunks = (e->joint_count + MPSI_CHUNK - 1) / MPSI_CHUNK;
+  const int64_t chunks = (e->joint_count + MPSI_ELASTIC_CHUNK - 1) / MPSI_ELASTIC_CHUNK;
   mpsi_parallel_for(e->context, chunks, delta_chunk, &task);
   mpsi_parallel_for(e->context, mpsi_elastic_chunks(e), add_delta_chunk, &task);
 }
@@ -227,7 +228,7 @@ static void add_pull_chunk(void *data, int64_t chunk, int32_t worker) {
 void mpsi_elastic_joint_forces(mps_elastic *e, double *stress, double *f) {
   if (e->joint_count == 0) return;
   joint_task task = {.e = e, .tensor = stress, .f = f};
-  const int64_t chunks = (e->joint_count + MPSI_CHUNK - 1) / MPSI_CHUNK;
+  const int64_t chunks = (e->joint_count + MPSI_ELASTIC_CHUNK - 1) / MPSI_ELASTIC_CHUNK;
   mpsi_parallel_for(e->context, chunks, pull_chunk, &task);
   mpsi_parallel_for(e->context, mpsi_elastic_chunks(e), add_pull_chunk, &task);
 }

@@ -43,19 +43,19 @@ static mps_status read_sites(const mps_elastic *e, const char *function, int32_t
         return mpsi_fail(e->context, function, MPS_ERROR_UNSUPPORTED,
                          "particle %lld lies %g spacings from particle %lld along %c, at most %d "
                          "are possible",
-                         (long long)i, away, 0LL, "xyz"[c], SITE_LIMIT - 1);
+                         (long long)e->id[i], away, (long long)e->id[0], "xyz"[c], SITE_LIMIT - 1);
       if (fabs(away - near) > OFF_LATTICE)
         return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
                          "particle %lld is off the lattice: it lies %.9g spacings (%g m) from "
                          "particle %lld along %c, which must be a whole number",
-                         (long long)i, away, e->spacing, 0LL, "xyz"[c]);
+                         (long long)e->id[i], away, e->spacing, (long long)e->id[0], "xyz"[c]);
       sites[i][c] = (int32_t)near;
     }
     const uint64_t key = pack(sites[i]), slot = slot_of(t, key);
     if (t->key[slot])
       return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
                        "particles %lld and %lld are on the same lattice site",
-                       (long long)t->particle[slot], (long long)i);
+                       (long long)e->id[t->particle[slot]], (long long)e->id[i]);
     t->key[slot] = key;
     t->particle[slot] = i;
   }
@@ -124,9 +124,7 @@ static void link_chunk(void *data, int64_t chunk, int32_t worker) {
       int32_t site[3];
       for (int c = 0; c < 3; c++) site[c] = t->sites[i][c] + l->step[k][c];
       int64_t j = find(t->table, site);
-      if (j >= 0 && e->def.method == MPS_ELASTIC_CONSERVATIVE &&
-          !reachable(t->table, t->sites[i], l->step[k]))
-        j = -1;
+      if (j >= 0 && e->conservative && !reachable(t->table, t->sites[i], l->step[k])) j = -1;
       l->to[i * l->count + k] = j;
       if (j < 0) continue;
       e->density[i] += l->weight[k];
@@ -145,11 +143,11 @@ static mps_status check_thickness(const mps_elastic *e, const char *function) {
           any ? mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
                           "the body is one particle thick along %c at particle %lld: at least two "
                           "are needed",
-                          "xyz"[axis], (long long)i)
+                          "xyz"[axis], (long long)e -> id[i])
               : mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
                           "particle %lld is isolated: it has no neighbour within %g spacings",
-                          (long long)i, e->def.radius_ratio);
-      mpsi_fail_where(e->context, -1, i);
+                          (long long)e->id[i], e->def.radius_ratio);
+      mpsi_fail_where(e->context, -1, e->id[i]);
       return status;
     }
   }

@@ -1,227 +1,82 @@
-/* loads.c - surface facets, found from the lattice, and loads as nodal forces.
+/* loads.c - loads as nodal forces.
  *
  * The virtual work of a traction t on a facet of cell i is int t . (u_i + G_i u (x - x_i)) dA: its
  * resultant acts on particle i, its first moment on the sites of the gradient G_i. The same holds
- * for a body force on a cell that is cut in half.
+ * for a body force on a cell that is cut in half. The published method takes resultants only.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "defs.h"
 #include "elastic_private.h"
+
+#include "core/particles_internal.h"
+#include "core/retain.h"
+#include "signal/signal_internal.h"
 
 #include <string.h>
 
-/* ---- facets -------------------------------------------------------------------------------------
+/* ---- one definition ---------------------------------------------------------------------------
  */
 
-mps_status mpsi_elastic_find_facets(mps_elastic *e, const char *function) {
-  const mpsi_links *l = &e->links;
-  for (int pass = 0; pass < 2; pass++) {
-    e->facet_count = 0;
-    for (int64_t i = 0; i < e->n; i++)
-      for (int axis = 0; axis < e->dim; axis++)
-        for (int up = 0; up < 2; up++) {
-          if (l->to[i * l->count + l->face[axis][up]] >= 0) continue;
-          if (pass == 1)
-            e->facets[e->facet_count] =
-                (mpsi_facet){.particle = i, .axis = (int8_t)axis, .side = (int8_t)(up ? 1 : -1)};
-          e->facet_count++;
-        }
-    if (pass == 1) break;
-    e->facets = mpsi_alloc(e->context, e->facet_count, sizeof *e->facets);
-    if (!e->facets)
-      return mpsi_fail_memory(e->context, function, (size_t)e->facet_count * sizeof *e->facets);
-  }
-  return MPS_OK;
-}
+static bool on_facets(int32_t kind) { return kind >= MPS_ELASTIC_LOAD_TRACTION; }
 
-/* The cell of particle i reaches from low to high (relative to the particle) along `axis`. */
-static void reach(const mps_elastic *e, int64_t i, int axis, double *low, double *high) {
-  *low = e->cut[i] & 1 << 2 * axis ? 0.0 : -0.5 * e->spacing;
-  *high = e->cut[i] & 2 << 2 * axis ? 0.0 : 0.5 * e->spacing;
-}
-
-/* The facet as a box relative to its particle. */
-static void facet_box(const mps_elastic *e, const mpsi_facet *f, double *low, double *high) {
-  for (int axis = 0; axis < e->dim; axis++) {
-    reach(e, f->particle, axis, &low[axis], &high[axis]);
-    if (axis == f->axis) low[axis] = high[axis] = f->side > 0 ? high[axis] : low[axis];
-  }
-}
-
-int64_t mps_elastic_facet_count(const mps_elastic *e) { return e ? e->facet_count : 0; }
-
-mps_status mps_elastic_get_facet(const mps_elastic *e, int64_t facet, mps_elastic_facet *out) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  if (!out || facet < 0 || facet >= e->facet_count)
-    return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
-                     out ? "facet is %lld, allowed are 0..%lld"
-                         : "out is NULL (facet %lld of %lld)",
-                     (long long)facet, (long long)e->facet_count - 1);
-  const mpsi_facet *f = &e->facets[facet];
-  double low[3] = {0.0, 0.0, 0.0}, high[3] = {0.0, 0.0, 0.0};
-  memset(out, 0, sizeof *out);
-  facet_box(e, f, low, high);
-  out->particle = f->particle;
-  out->axis = f->axis;
-  out->side = f->side;
-  out->area = e->dim == 2 ? e->def.thickness : 1.0;
-  for (int c = 0; c < e->dim; c++) {
-    out->centre[c] = e->x[f->particle * e->dim + c] + 0.5 * (low[c] + high[c]);
-    out->extent[c] = high[c] - low[c];
-    if (c != f->axis) out->area *= out->extent[c];
-  }
-  return MPS_OK;
-}
-
-mps_status mps_elastic_select_facets(const mps_elastic *e, int32_t axis, int32_t side,
-                                     const double *lo, const double *hi, int64_t capacity,
-                                     int64_t *facets, int64_t *count) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  if (axis < 0 || axis >= e->dim || side < -1 || side > 1)
-    return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
-                     "axis is %d and side %d, allowed are 0..%d and -1, 0 (any), 1", axis, side,
-                     e->dim - 1);
-  if (!count || capacity < 0 || (capacity > 0 && !facets))
-    return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT, "%s",
-                     !count ? "count is NULL" : "facets is NULL or capacity negative");
-  *count = 0;
-  for (int64_t k = 0; k < e->facet_count; k++) {
-    const mpsi_facet *f = &e->facets[k];
-    mps_elastic_facet facet;
-    if (side != 0 && (f->axis != axis || f->side != side)) continue;
-    const mps_status status = mps_elastic_get_facet(e, k, &facet);
-    if (status != MPS_OK) return status;
-    bool inside = true;
-    for (int c = 0; c < e->dim; c++)
-      inside = inside && (!lo || facet.centre[c] >= lo[c]) && (!hi || facet.centre[c] <= hi[c]);
-    if (!inside) continue;
-    if (*count < capacity) facets[*count] = k;
-    ++*count;
-  }
-  return MPS_OK;
-}
-
-/* ---- loads ----------------------------------------------------------------------------------- */
-
-/* Adds the force and the first moment m[c][b] = int t_c (x - x_i)_b of a load on cell i. */
-static void add_load(mps_elastic *e, int64_t i, const double *force, const double (*moment)[3]) {
-  const int d = e->dim;
-  for (int c = 0; c < d; c++) e->load[i * d + c] += force[c];
-  if (!e->def.first_moment) return;
-  mpsi_elastic_spread(e, i, moment, e->load);
-}
-
-mps_status mps_elastic_clear_loads(mps_elastic *e) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  memset(e->load, 0, (size_t)(e->n * e->dim) * sizeof *e->load);
-  return MPS_OK;
-}
-
-mps_status mps_elastic_add_forces(mps_elastic *e, int64_t count, const int64_t *ids,
-                                  const double *forces) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  if (count < 0 || (count > 0 && (!ids || !forces)))
-    return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
-                     "count is %lld (must be >= 0), ids or forces may be NULL", (long long)count);
-  for (int64_t i = 0; i < count; i++) {
-    if (ids[i] < 0 || ids[i] >= e->n)
-      return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
-                       "ids[%lld] is %lld: no particle of the solver has that id", (long long)i,
-                       (long long)ids[i]);
-    for (int c = 0; c < e->dim; c++)
-      if (!isfinite(forces[i * e->dim + c]))
-        return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
-                         "force %c on particle %lld is %g, must be finite (N)", "xyz"[c],
-                         (long long)ids[i], forces[i * e->dim + c]);
-  }
-  for (int64_t i = 0; i < count; i++)
-    for (int c = 0; c < e->dim; c++) e->load[ids[i] * e->dim + c] += forces[i * e->dim + c];
-  return MPS_OK;
-}
-
-static mps_status check_vector(const mps_elastic *e, const char *function, const char *name,
-                               const double *v) {
-  if (!v) return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "%s is NULL", name);
-  for (int c = 0; c < e->dim; c++)
-    if (!isfinite(v[c]))
-      return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "%s[%d] is %g, must be finite",
-                       name, c, v[c]);
-  return MPS_OK;
-}
-
-mps_status mps_elastic_add_body_force(mps_elastic *e, const double *force) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  const mps_status status = check_vector(e, __func__, "force", force);
-  if (status != MPS_OK) return status;
-  for (int64_t i = 0; i < e->n; i++) {
-    double total[3] = {0.0, 0.0, 0.0}, moment[3][3];
-    for (int c = 0; c < e->dim; c++) {
-      total[c] = force[c] * e->volume[i];
-      for (int b = 0; b < e->dim; b++) {
-        double low, high;
-        reach(e, i, b, &low, &high);
-        moment[c][b] = total[c] * 0.5 * (low + high);
-      }
-    }
-    add_load(e, i, total, (const double(*)[3])moment);
-  }
-  return MPS_OK;
-}
-
-static mps_status check_facets(const mps_elastic *e, const char *function, int64_t count,
-                               const int64_t *facets) {
-  if (count < 0 || (count > 0 && !facets))
+static mps_status check_list(const mps_elastic *e, const char *function,
+                             const mps_elastic_load_def *def) {
+  const bool facets = on_facets(def->kind);
+  const int64_t each = def->kind == MPS_ELASTIC_LOAD_PRESSURE ? 1 : 3;
+  if (def->id_count < 0 || (def->id_count > 0 && !def->ids))
     return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                     count < 0 ? "count is %lld, must be >= 0" : "facets is NULL, count is %lld",
-                     (long long)count);
-  for (int64_t k = 0; k < count; k++)
-    if (facets[k] < 0 || facets[k] >= e->facet_count)
+                     def->id_count < 0 ? "id_count is %lld, must be >= 0"
+                                       : "ids is NULL, id_count is %lld",
+                     (long long)def->id_count);
+  for (int64_t k = 0; k < def->id_count; k++) {
+    const int64_t id = def->ids[k];
+    if (facets && (id < 0 || id >= e->facet_count))
       return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                       "facets[%lld] is %lld, allowed are 0..%lld", (long long)k,
-                       (long long)facets[k], (long long)e->facet_count - 1);
+                       "ids[%lld] is %lld, facets are 0..%lld", (long long)k, (long long)id,
+                       (long long)e->facet_count - 1);
+    if (!facets && mpsi_elastic_find(e, id) < 0)
+      return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
+                       "ids[%lld] is %lld: no particle of the solver has that id", (long long)k,
+                       (long long)id);
+  }
+  for (int64_t k = 0; def->values && k < def->id_count * each; k++)
+    if ((each == 1 || k % 3 < e->dim) && !isfinite(def->values[k]))
+      return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
+                       "values[%lld] is %g, must be finite", (long long)k, def->values[k]);
+  return MPS_OK;
+}
+
+static mps_status check_def(const mps_elastic *e, const char *function,
+                            const mps_elastic_load_def *def) {
+  if (def->kind < MPS_ELASTIC_LOAD_BODY || def->kind > MPS_ELASTIC_LOAD_FUNCTION)
+    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
+                     "kind is %d, allowed are MPS_ELASTIC_LOAD_..., 0..5", def->kind);
+  for (int c = 0; c < 3; c++)
+    if (!isfinite(def->force[c]) || !isfinite(def->factor[c]))
+      return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
+                       "force[%d] is %g and factor[%d] %g, must be finite", c, def->force[c], c,
+                       def->factor[c]);
+  if (def->kind == MPS_ELASTIC_LOAD_FUNCTION && !def->function)
+    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "function is NULL");
+  if (def->kind > MPS_ELASTIC_LOAD_GRAVITY) return check_list(e, function, def);
+  if (def->ids || def->id_count != 0 || def->values)
+    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
+                     "a load of kind %d acts on the whole body: it takes no ids or values",
+                     def->kind);
   return MPS_OK;
 }
 
 /* A uniform traction on one facet. */
-static void add_uniform(mps_elastic *e, int64_t k, const double *traction) {
-  const mpsi_facet *f = &e->facets[k];
-  double low[3] = {0.0, 0.0, 0.0}, high[3] = {0.0, 0.0, 0.0}, force[3], moment[3][3];
-  double area = e->dim == 2 ? e->def.thickness : 1.0;
-  facet_box(e, f, low, high);
+static void make_uniform(const mps_elastic *e, const mpsi_facet *f, const double *traction,
+                         mpsi_patch *out) {
+  double low[3] = {0.0, 0.0, 0.0}, high[3] = {0.0, 0.0, 0.0};
+  double area = e->dim == 2 ? e->def.measure : 1.0;
+  mpsi_elastic_facet_box(e, f, low, high);
   for (int c = 0; c < e->dim; c++)
     if (c != f->axis) area *= high[c] - low[c];
   for (int c = 0; c < e->dim; c++) {
-    force[c] = traction[c] * area;
-    for (int b = 0; b < e->dim; b++) moment[c][b] = force[c] * 0.5 * (low[b] + high[b]);
+    out->force[c] = traction[c] * area;
+    for (int b = 0; b < e->dim; b++) out->moment[c][b] = out->force[c] * 0.5 * (low[b] + high[b]);
   }
-  add_load(e, f->particle, force, (const double(*)[3])moment);
-}
-
-mps_status mps_elastic_add_traction(mps_elastic *e, int64_t count, const int64_t *facets,
-                                    const double *traction) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  mps_status status = check_vector(e, __func__, "traction", traction);
-  if (status == MPS_OK) status = check_facets(e, __func__, count, facets);
-  for (int64_t k = 0; k < count && status == MPS_OK; k++) add_uniform(e, facets[k], traction);
-  return status;
-}
-
-mps_status mps_elastic_add_pressure(mps_elastic *e, int64_t count, const int64_t *facets,
-                                    const double *pressures) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  const mps_status status = check_facets(e, __func__, count, facets);
-  if (status != MPS_OK) return status;
-  if (count > 0 && !pressures)
-    return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT, "pressures is NULL");
-  for (int64_t k = 0; k < count; k++)
-    if (!isfinite(pressures[k]))
-      return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
-                       "pressures[%lld] is %g, must be finite (Pa)", (long long)k, pressures[k]);
-  for (int64_t k = 0; k < count; k++) {
-    double traction[3] = {0.0, 0.0, 0.0};
-    const mpsi_facet *f = &e->facets[facets[k]];
-    traction[f->axis] = -pressures[k] * f->side;
-    add_uniform(e, facets[k], traction);
-  }
-  return MPS_OK;
 }
 
 /* Integrates the caller's traction over one facet. */
@@ -233,24 +88,27 @@ static mps_status integrate(const mps_elastic *e, const char *function, int64_t 
   const mpsi_facet *f = &e->facets[k];
   double low[3] = {0.0, 0.0, 0.0}, high[3] = {0.0, 0.0, 0.0};
   double normal[3] = {0.0, 0.0, 0.0}, x[3] = {0.0, 0.0, 0.0}, r[3] = {0.0, 0.0, 0.0};
-  facet_box(e, f, low, high);
+  mpsi_elastic_facet_box(e, f, low, high);
   normal[f->axis] = f->side;
   memset(force, 0, 3 * sizeof *force);
   memset(moment, 0, 9 * sizeof **moment);
   const int p = f->axis == 0 ? 1 : 0, q = f->axis == 2 ? 1 : 2; /* the facet's own axes */
   for (int b = 0; b < (e->dim == 3 ? 3 : 1); b++)
     for (int a = 0; a < 3; a++) {
-      double dA = e->dim == 2 ? e->def.thickness : weight[b] * (high[q] - low[q]), t[3] = {0};
+      double dA = e->dim == 2 ? e->def.measure : weight[b] * (high[q] - low[q]), t[3] = {0};
       dA *= weight[a] * (high[p] - low[p]);
       r[f->axis] = low[f->axis];
       r[p] = 0.5 * (low[p] + high[p]) + 0.5 * at[a] * (high[p] - low[p]);
       if (e->dim == 3) r[q] = 0.5 * (low[q] + high[q]) + 0.5 * at[b] * (high[q] - low[q]);
       for (int c = 0; c < e->dim; c++) x[c] = e->x[f->particle * e->dim + c] + r[c];
-      mps_status status = traction(user, x, normal, t);
+      const mps_status status = traction(user, x, normal, t);
       if (status != MPS_OK)
         return mpsi_fail(e->context, function, status, "the traction callback stopped the call");
-      status = check_vector(e, function, "traction", t);
-      if (status != MPS_OK) return status;
+      for (int c = 0; c < e->dim; c++)
+        if (!isfinite(t[c]))
+          return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
+                           "the traction callback gave %g Pa along %c, must be finite", t[c],
+                           "xyz"[c]);
       for (int c = 0; c < e->dim; c++) {
         force[c] += t[c] * dA;
         for (int m = 0; m < e->dim; m++) moment[c][m] += t[c] * dA * r[m];
@@ -259,22 +117,206 @@ static mps_status integrate(const mps_elastic *e, const char *function, int64_t 
   return MPS_OK;
 }
 
-mps_status mps_elastic_add_traction_fn(mps_elastic *e, int64_t count, const int64_t *facets,
-                                       mps_traction_fn traction, void *user) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  if (!traction) return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT, "traction is NULL");
-  mps_status status = check_facets(e, __func__, count, facets);
-  if (status != MPS_OK) return status;
-  const size_t bytes = (size_t)(e->n * e->dim) * sizeof *e->load;
-  memcpy(e->work, e->load, bytes); /* put back when the caller's function misbehaves */
-  for (int64_t k = 0; k < count && status == MPS_OK; k++) {
-    double force[3], moment[3][3];
-    status = integrate(e, __func__, facets[k], traction, user, force, moment);
-    if (status == MPS_OK)
-      add_load(e, e->facets[facets[k]].particle, force, (const double(*)[3])moment);
+static mps_status make_patch(const mps_elastic *e, const char *function,
+                             const mps_elastic_load_def *def, int64_t k, mpsi_patch *out) {
+  const double *value = def->values ? def->values + 3 * k : def->force;
+  memset(out, 0, sizeof *out);
+  if (!on_facets(def->kind)) {
+    out->particle = mpsi_elastic_find(e, def->ids[k]);
+    for (int c = 0; c < e->dim; c++) out->force[c] = value[c];
+    return MPS_OK;
   }
-  if (status != MPS_OK) memcpy(e->load, e->work, bytes);
+  const mpsi_facet *f = &e->facets[def->ids[k]];
+  out->particle = f->particle;
+  if (def->kind == MPS_ELASTIC_LOAD_FUNCTION)
+    return integrate(e, function, def->ids[k], def->function, def->user, out->force, out->moment);
+  double traction[3] = {0.0, 0.0, 0.0};
+  if (def->kind == MPS_ELASTIC_LOAD_PRESSURE)
+    traction[f->axis] = -(def->values ? def->values[k] : def->force[0]) * f->side;
+  else
+    memcpy(traction, value, sizeof traction);
+  make_uniform(e, f, traction, out);
+  return MPS_OK;
+}
+
+/* The patches of the definition, to e->spare. */
+static mps_status make_patches(mps_elastic *e, const char *function,
+                               const mps_elastic_load_def *def) {
+  mps_status status = MPS_OK;
+  if (def->kind <= MPS_ELASTIC_LOAD_GRAVITY) return MPS_OK;
+  if (def->id_count > e->spare_capacity) {
+    if (!mpsi_grow(e->context, (void **)&e->spare, e->spare_capacity, def->id_count,
+                   sizeof *e->spare))
+      return mpsi_fail_memory(e->context, function, (size_t)def->id_count * sizeof *e->spare);
+    e->spare_capacity = def->id_count;
+  }
+  for (int64_t k = 0; k < def->id_count && status == MPS_OK; k++)
+    status = make_patch(e, function, def, k, &e->spare[k]);
   return status;
+}
+
+static void release(mps_elastic *e, mpsi_elastic_load *l) {
+  mpsi_free(e->context, l->patches);
+  for (int c = 0; c < 3; c++) mps_signal_destroy(&l->signal[c]);
+  *l = (mpsi_elastic_load){.used = false};
+}
+
+static mps_status put(mps_elastic *e, const char *function, int32_t number,
+                      const mps_elastic_load_def *user) {
+  mps_elastic_load_def def = mpsi_elastic_load_defaults;
+  mps_status status = MPSI_DEF_READ(e->context, function, mps_elastic_load_def, user, &def);
+  if (status == MPS_OK) status = check_def(e, function, &def);
+  if (status == MPS_OK && def.kind == MPS_ELASTIC_LOAD_GRAVITY && !e->mass)
+    status = mpsi_elastic_read_mass(e, function);
+  if (status == MPS_OK) status = make_patches(e, function, &def);
+  if (status != MPS_OK) return status;
+  mpsi_elastic_load *l = &e->loads[number];
+  if (def.kind > MPS_ELASTIC_LOAD_GRAVITY) { /* the former patches become the spare room */
+    mpsi_patch *patches = l->patches;
+    const int64_t capacity = l->capacity;
+    l->patches = e->spare;
+    l->capacity = e->spare_capacity;
+    e->spare = patches;
+    e->spare_capacity = capacity;
+  }
+  l->used = true;
+  l->kind = def.kind;
+  l->count = def.kind > MPS_ELASTIC_LOAD_GRAVITY ? def.id_count : 0;
+  for (int c = 0; c < 3; c++) {
+    mps_signal *signal = def.signal[c] ? mpsi_signal_retain(def.signal[c]) : NULL;
+    mps_signal_destroy(&l->signal[c]);
+    l->signal[c] = signal;
+    l->factor[c] = def.factor[c];
+    l->force[c] = def.force[c];
+  }
+  return MPS_OK;
+}
+
+/* ---- public calls -----------------------------------------------------------------------------
+ */
+
+static mps_status check_number(const mps_elastic *e, const char *function, int32_t number) {
+  if (number >= 0 && number < e->load_count && e->loads[number].used) return MPS_OK;
+  return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "there is no load %d", number);
+}
+
+mps_status mps_elastic_add_load(mps_elastic *e, const mps_elastic_load_def *def, int32_t *number) {
+  if (!e) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_elastic_enter(e, __func__);
+  if (status != MPS_OK) return status;
+  int32_t at = 0;
+  while (at < e->load_count && e->loads[at].used) at++;
+  if (at == e->load_count) {
+    if (!mpsi_grow(e->context, (void **)&e->loads, at, at + 8, sizeof *e->loads))
+      return mpsi_elastic_leave(e, mpsi_fail_memory(e->context, __func__, 8 * sizeof *e->loads));
+    e->load_count = at + 8;
+  }
+  status = put(e, __func__, at, def);
+  if (status == MPS_OK && number) *number = at;
+  return mpsi_elastic_leave(e, status);
+}
+
+mps_status mps_elastic_set_load(mps_elastic *e, int32_t number, const mps_elastic_load_def *def) {
+  if (!e) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_elastic_enter(e, __func__);
+  if (status != MPS_OK) return status;
+  status = check_number(e, __func__, number);
+  if (status == MPS_OK) status = put(e, __func__, number, def);
+  return mpsi_elastic_leave(e, status);
+}
+
+mps_status mps_elastic_remove_load(mps_elastic *e, int32_t number) {
+  if (!e) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_elastic_enter(e, __func__);
+  if (status != MPS_OK) return status;
+  status = check_number(e, __func__, number);
+  if (status == MPS_OK) release(e, &e->loads[number]);
+  return mpsi_elastic_leave(e, status);
+}
+
+void mpsi_elastic_drop_loads(mps_elastic *e) {
+  for (int32_t k = 0; k < e->load_count; k++) release(e, &e->loads[k]);
+  mpsi_free(e->context, e->loads);
+  mpsi_free(e->context, e->spare);
+}
+
+/* ---- nodal forces -----------------------------------------------------------------------------
+ */
+
+/* Adds the force and the first moment m[c][b] = int t_c (x - x_i)_b of a load on cell i. */
+static void add_patch(mps_elastic *e, const mpsi_patch *patch, const double *scale) {
+  const int d = e->dim;
+  double moment[3][3];
+  bool any = false;
+  for (int c = 0; c < d; c++) {
+    e->load[patch->particle * d + c] += scale[c] * patch->force[c];
+    for (int b = 0; b < d; b++) {
+      moment[c][b] = scale[c] * patch->moment[c][b];
+      any |= moment[c][b] != 0.0;
+    }
+  }
+  if (any && e->conservative)
+    mpsi_elastic_spread(e, patch->particle, (const double(*)[3])moment, e->load);
+}
+
+/* The whole body: `force` by volume, or by mass. */
+static void add_body(mps_elastic *e, const mpsi_elastic_load *l, const double *scale) {
+  for (int64_t i = 0; i < e->n; i++) {
+    mpsi_patch patch = {.particle = i};
+    const double amount = l->kind == MPS_ELASTIC_LOAD_GRAVITY ? e->mass[i] : e->volume[i];
+    for (int c = 0; c < e->dim; c++) {
+      patch.force[c] = l->force[c] * amount;
+      for (int b = 0; e->cut[i] && b < e->dim; b++) {
+        double low, high;
+        mpsi_elastic_reach(e, i, b, &low, &high);
+        patch.moment[c][b] = patch.force[c] * 0.5 * (low + high);
+      }
+    }
+    add_patch(e, &patch, scale);
+  }
+}
+
+static mps_status add_external(mps_elastic *e, const char *function) {
+  for (int c = 0; c < e->dim; c++) {
+    const double *column = mpsi_particles_column(e->particles, "external_force", c);
+    if (!column) return MPS_OK;
+    for (int64_t i = 0; i < e->n; i++) {
+      const double f = column[mps_particles_index(e->particles, e->id[i])];
+      if (!isfinite(f)) {
+        const mps_status status =
+            mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
+                      "external_force %c of particle %lld is %g, must be finite (N)", "xyz"[c],
+                      (long long)e -> id[i], f);
+        mpsi_fail_where(e->context, -1, e->id[i]);
+        return status;
+      }
+      e->load[i * e->dim + c] += f;
+    }
+  }
+  return MPS_OK;
+}
+
+mps_status mpsi_elastic_gather_loads(mps_elastic *e, const char *function, double t) {
+  memset(e->load, 0, (size_t)(e->n * e->dim) * sizeof *e->load);
+  for (int32_t k = 0; k < e->load_count; k++) {
+    const mpsi_elastic_load *l = &e->loads[k];
+    double scale[3];
+    mps_status status = MPS_OK;
+    if (!l->used) continue;
+    for (int c = 0; c < 3; c++) {
+      const int s = l->kind == MPS_ELASTIC_LOAD_PRESSURE ? 0 : c;
+      mpsi_signal_motion m = {.u = 1.0};
+      if (l->signal[s]) status = mpsi_signal_at(l->signal[s], e->context, function, t, &m);
+      if (status != MPS_OK) return status;
+      scale[c] = l->factor[s] * m.u;
+    }
+    if (l->kind == MPS_ELASTIC_LOAD_GRAVITY && !e->mass &&
+        (status = mpsi_elastic_read_mass(e, function)) != MPS_OK)
+      return status;
+    if (l->kind <= MPS_ELASTIC_LOAD_GRAVITY) add_body(e, l, scale);
+    for (int64_t p = 0; p < l->count; p++) add_patch(e, &l->patches[p], scale);
+  }
+  return add_external(e, function);
 }
 
 /* ---- resultants ------------------------------------------------------------------------------ */
@@ -293,24 +335,16 @@ void mpsi_elastic_resultant(const mps_elastic *e, const double *f, const double 
     for (int c = 0; c < 3; c++)
       turn[c] += r[(c + 1) % 3] * p[(c + 2) % 3] - r[(c + 2) % 3] * p[(c + 1) % 3];
   }
-  if (force) memcpy(force, sum, (size_t)d * sizeof *force);
-  if (!moment) return;
-  if (d == 2)
-    moment[0] = turn[2];
-  else
-    memcpy(moment, turn, sizeof turn);
+  if (force) memcpy(force, sum, sizeof sum);
+  if (moment) memcpy(moment, turn, sizeof turn);
 }
 
-mps_status mps_elastic_load_resultant(const mps_elastic *e, const double *about, double *force,
+mps_status mps_elastic_load_resultant(mps_elastic *e, const double *about, double *force,
                                       double *moment) {
   if (!e) return MPS_ERROR_ARGUMENT;
-  mpsi_elastic_resultant(e, e->load, about, force, moment);
-  return MPS_OK;
-}
-
-mps_status mps_elastic_reaction_resultant(const mps_elastic *e, const double *about, double *force,
-                                          double *moment) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  mpsi_elastic_resultant(e, e->reaction, about, force, moment);
-  return MPS_OK;
+  mps_status status = mpsi_elastic_enter(e, __func__);
+  if (status != MPS_OK) return status;
+  status = mpsi_elastic_gather_loads(e, __func__, mps_elastic_time(e));
+  if (status == MPS_OK) mpsi_elastic_resultant(e, e->load, about, force, moment);
+  return mpsi_elastic_leave(e, status);
 }

@@ -77,8 +77,9 @@ static void deliver(const mps_elastic *e, const lanczos *s, double *omega, doubl
     if (!shapes) continue;
     double *v = s->vectors + (int64_t)from * s->n;
     for (int32_t c = 0; c < s->n; c++) v[c] /= s->root[c]; /* y.y = 1 is phi.M phi = 1 */
-    memset(shapes + k * all, 0, (size_t)all * sizeof *shapes);
-    mpsi_elastic_expand(e, v, false, shapes + k * all);
+    memset(e->work, 0, (size_t)all * sizeof *e->work);
+    mpsi_elastic_expand(e, v, false, e->work);
+    mpsi_elastic_to_caller(e, 1, e->work, shapes + k * 3 * e->n);
   }
 }
 
@@ -116,20 +117,28 @@ static mps_status solve(mps_elastic *e, const char *function, int32_t count, dou
 }
 #endif
 
-mps_status mps_elastic_modes(mps_elastic *e, int32_t count, double *omega, double *shapes) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  if (!omega) return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT, "omega is NULL");
-  mps_status status = mpsi_elastic_read_mass(e, __func__);
-  if (status == MPS_OK) status = mpsi_elastic_prepare(e, __func__);
+static mps_status find_modes(mps_elastic *e, const char *function, int32_t count, double *omega,
+                             double *shapes) {
+  mps_status status = mpsi_elastic_read_mass(e, function);
+  if (status == MPS_OK) status = mpsi_elastic_prepare(e, function);
   if (status != MPS_OK) return status;
   if (count < 1 || count >= e->unknowns)
-    return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
                      "count is %d, must be at least 1 and below the %lld unknowns", count,
                      (long long)e->unknowns);
   if (e->unknowns > INT32_MAX / 64)
-    return mpsi_fail(e->context, __func__, MPS_ERROR_UNSUPPORTED,
+    return mpsi_fail(e->context, function, MPS_ERROR_UNSUPPORTED,
                      "%lld unknowns are too many for ARPACK's integers", (long long)e->unknowns);
-  status = mpsi_elastic_factor(e, __func__, 0.0);
-  if (status == MPS_OK) status = solve(e, __func__, count, omega, shapes);
+  status = mpsi_elastic_factor(e, function, 0.0);
+  if (status == MPS_OK) status = solve(e, function, count, omega, shapes);
   return status;
+}
+
+mps_status mps_elastic_modes(mps_elastic *e, int32_t count, double *omega, double *shapes) {
+  if (!e) return MPS_ERROR_ARGUMENT;
+  if (!omega) return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT, "omega is NULL");
+  const mps_status status = mpsi_elastic_enter(e, __func__);
+  if (status != MPS_OK) return status;
+  e->within = true;
+  return mpsi_elastic_leave(e, find_modes(e, __func__, count, omega, shapes));
 }

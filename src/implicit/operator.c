@@ -18,7 +18,7 @@
 /* ---- gradient -------------------------------------------------------------------------------- */
 
 static double divisor(const mps_elastic *e, int64_t i) {
-  return e->def.divisor == MPS_ELASTIC_CONSTANT ? e->density0 : e->density[i];
+  return e->constant ? e->density0 : e->density[i];
 }
 
 static void conservative_coefficient(const mps_elastic *e, int64_t i, int32_t k, double *g) {
@@ -32,7 +32,7 @@ static void conservative_coefficient(const mps_elastic *e, int64_t i, int32_t k,
 }
 
 void mpsi_elastic_coefficient(const mps_elastic *e, int64_t i, int32_t k, double *g) {
-  if (e->def.method == MPS_ELASTIC_CONSERVATIVE) {
+  if (e->conservative) {
     conservative_coefficient(e, i, k, g);
     return;
   }
@@ -64,7 +64,7 @@ int32_t mpsi_elastic_stencil(const mps_elastic *e, int64_t i, int64_t *sites, do
   const mpsi_links *l = &e->links;
   sites[0] = i;
   g[0][0] = g[0][1] = g[0][2] = 0.0;
-  if (e->def.method == MPS_ELASTIC_CONSERVATIVE) return conservative_stencil(e, i, sites, g);
+  if (e->conservative) return conservative_stencil(e, i, sites, g);
   int32_t m = 1;
   for (int32_t k = 0; k < l->count; k++) {
     const int64_t j = l->to[i * l->count + k];
@@ -140,7 +140,7 @@ static void stretch(const mps_elastic *e, const double *u, const double *gradien
   const int d = e->dim;
   const int64_t j = l->to[i * l->count + k];
   for (int c = 0; c < d; c++) out[c] = u[j * d + c] - u[i * d + c];
-  if (e->def.method != MPS_ELASTIC_CONSERVATIVE) return;
+  if (!e->conservative) return;
   const double *gi = gradient + i * d * d, *gj = gradient + j * d * d;
   for (int c = 0; c < d; c++)
     for (int b = 0; b < d; b++)
@@ -159,7 +159,7 @@ static void local_stress(const mps_elastic *e, int64_t i, const double *G, doubl
   const int d = e->dim;
   double trace = 0.0;
   for (int c = 0; c < d; c++) trace += G[c * d + c];
-  if (e->def.method == MPS_ELASTIC_PUBLISHED) {
+  if (!e->conservative) {
     const double v = e->volume[i] * divisor(e, i) / e->density0;
     const double rotation = G[2] - G[1];
     P[0] = P[3] = v * e->lambda[i] * trace;
@@ -180,7 +180,7 @@ static void stress_chunk(void *data, int64_t chunk, int32_t worker) {
   const mps_elastic *e = t->e;
   const mpsi_links *l = &e->links;
   const int d = e->dim;
-  const bool moment = e->def.method == MPS_ELASTIC_CONSERVATIVE;
+  const bool moment = e->conservative;
   int64_t first, last;
   mpsi_elastic_chunk(e, chunk, &first, &last);
   for (int64_t i = first; i < last; i++) {
@@ -219,7 +219,7 @@ static void force_chunk(void *data, int64_t chunk, int32_t worker) {
     for (int c = 0; c < d; c++)
       for (int b = 0; b < d; b++) f[c] += t->stress[(p * d + c) * d + b] * g[0][b];
     const mpsi_links *l = &e->links;
-    const bool conservative = e->def.method == MPS_ELASTIC_CONSERVATIVE;
+    const bool conservative = e->conservative;
     for (int32_t a = 0, used = 1; used < m; a++) {
       const int32_t k = conservative ? l->face[a / 2][a % 2] : a;
       const int64_t j = l->to[p * l->count + k];

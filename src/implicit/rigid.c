@@ -13,7 +13,7 @@
 
 typedef struct part {
   double centre[3], size;
-  int64_t count, example; /* particles; the id of one of them */
+  int64_t count, example; /* particles; one of them */
   double gram[36];        /* sum of row row^T, modes * modes */
 } part;
 
@@ -165,8 +165,8 @@ static mps_status check_part(const mps_elastic *e, const char *function, const p
       mpsi_fail(e->context, function, MPS_ERROR_STATE,
                 "the supports leave %d of the %d rigid motions of the part of %lld particles with "
                 "particle %lld free: %s",
-                count, m, (long long)p->count, (long long)p->example, list);
-  mpsi_fail_where(e->context, -1, p->example);
+                count, m, (long long)p->count, (long long)e->id[p->example], list);
+  mpsi_fail_where(e->context, -1, e->id[p->example]);
   return status;
 }
 

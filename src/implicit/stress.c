@@ -109,6 +109,8 @@ static double von_mises(const double *p) {
 
 mps_status mps_elastic_stress(mps_elastic *e) {
   if (!e) return MPS_ERROR_ARGUMENT;
+  const mps_status within = mpsi_elastic_check_between(e, __func__);
+  if (within != MPS_OK) return within;
   double *values = mpsi_alloc(e->context, 16 * e->n, sizeof *values);
   if (!values) return mpsi_fail_memory(e->context, __func__, (size_t)(16 * e->n) * sizeof *values);
   double *strains = values, *stresses = values + 6 * e->n, *principals = values + 12 * e->n;
@@ -118,7 +120,7 @@ mps_status mps_elastic_stress(mps_elastic *e) {
   for (int64_t i = 0; i < e->n; i++) {
     double strain[3][3], stress[3][3];
     symmetric_part(e->dim, e->gradient + i * e->dim * e->dim, strain);
-    if (e->def.method == MPS_ELASTIC_PUBLISHED)
+    if (!e->conservative)
       virial(e, i, stress);
     else
       hooke(e, i, (const double(*)[3])strain, stress);
@@ -147,6 +149,8 @@ mps_status mps_elastic_section(mps_elastic *e, int32_t axis, double position, co
     return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
                      "axis is %d (allowed are 0..%d), position is %g m (must be finite)", axis,
                      e->dim - 1, position);
+  const mps_status status = mpsi_elastic_check_between(e, __func__);
+  if (status != MPS_OK) return status;
   /* K u is what loads and reactions put on each particle. Those on the near side are balanced
    * across the section by minus their sum. */
   mpsi_elastic_apply(e, e->displacement, e->work);
@@ -159,6 +163,8 @@ mps_status mps_elastic_section(mps_elastic *e, int32_t axis, double position, co
 
 mps_status mps_elastic_energy(mps_elastic *e, double *strain, double *stabilising) {
   if (!e) return MPS_ERROR_ARGUMENT;
+  const mps_status status = mpsi_elastic_check_between(e, __func__);
+  if (status != MPS_OK) return status;
   const int64_t all = e->n * e->dim;
   double total = 0.0, pairs = 0.0;
   mpsi_elastic_apply(e, e->displacement, e->work);
@@ -173,6 +179,6 @@ mps_status mps_elastic_energy(mps_elastic *e, double *strain, double *stabilisin
         pairs += 0.5 * mpsi_elastic_bond(e, i, j, k) * pull[c] * pull[c];
     }
   if (strain) *strain = total;
-  if (stabilising) *stabilising = e->def.method == MPS_ELASTIC_CONSERVATIVE ? pairs : 0.0;
+  if (stabilising) *stabilising = e->conservative ? pairs : 0.0;
   return MPS_OK;
 }

@@ -54,12 +54,13 @@ static mps_status analyse(mps_elastic *e, const char *function) {
   }
   mps_status status = MPS_OK;
   if (!e->cholesky)
-    status = mpsi_cholesky_create(e->context, function, orderings[e->def.ordering],
-                                  e->def.solver == MPS_ELASTIC_LDLT, &e->cholesky);
+    status = mpsi_cholesky_create(
+        e->context, function, orderings[e->def.ordering], e->def.solver == MPS_ELASTIC_LDLT,
+        e->def.blas_threads ? e->def.blas_threads : mps_context_threads(e->context), &e->cholesky);
   if (status == MPS_OK) status = order(e, function);
   if (status != MPS_OK) return status;
   e->report.analyses++;
-  if (e->def.memory_limit > 0.0 && e->symbolic.bytes > e->def.memory_limit) {
+  if (e->symbolic.bytes > e->def.memory_limit) {
     if (e->def.solver != MPS_ELASTIC_AUTO)
       return mpsi_fail(e->context, function, MPS_ERROR_MEMORY,
                        "the factor takes %.4g bytes, memory_limit is %.4g: raise it, or set solver "
@@ -108,8 +109,8 @@ static mps_status diagnose(mps_elastic *e, const char *function, int64_t bad) {
       "the stiffness matrix is not positive definite at direction %d of particle %lld although the "
       "supports hold every rigid motion: a part of the body hangs on too few particles, or the "
       "stiffnesses differ by more than double precision can resolve",
-      direction, (long long)particle);
-  mpsi_fail_where(e->context, -1, particle);
+      direction, (long long)e->id[particle]);
+  mpsi_fail_where(e->context, -1, e->id[particle]);
   return status;
 }
 
@@ -196,57 +197,118 @@ static mps_status solve_block(mps_elastic *e, const char *function, int64_t coun
       return mpsi_fail(e->context, function, MPS_ERROR_NUMERIC,
                        "the displacement of particle %lld is %g: loads or stiffnesses are too "
                        "large for double precision",
-                       (long long)(k % all / e->dim), u[k]);
+                       (long long)e->id[k % all / e->dim], u[k]);
   return MPS_OK;
 }
 
-mps_status mps_elastic_analyse(mps_elastic *e, mps_elastic_estimate *out) {
+static int32_t solver_used(const mps_elastic *e) {
+  if (e->use_cg) return MPS_ELASTIC_CG;
+  return e->def.solver == MPS_ELASTIC_AUTO ? MPS_ELASTIC_LLT : e->def.solver;
+}
+
+mps_status mps_elastic_analyse_sized(mps_elastic *e, mps_elastic_estimate *out, size_t size) {
   if (!e) return MPS_ERROR_ARGUMENT;
-  if (!out) return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
-  const mps_status status = mpsi_elastic_prepare(e, __func__);
+  mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;
-  *out = (mps_elastic_estimate){.unknowns = e->unknowns,
-                                .matrix_nonzeros = e->column[e->unknowns],
-                                .factor_nonzeros = e->symbolic.nonzeros,
-                                .factor_flops = e->symbolic.flops,
-                                .factor_bytes = e->symbolic.bytes,
-                                .ordering = (int32_t)e->symbolic.ordering,
-                                .solver = e->use_cg                           ? MPS_ELASTIC_CG
-                                          : e->def.solver == MPS_ELASTIC_AUTO ? MPS_ELASTIC_LLT
-                                                                              : e->def.solver};
-  return MPS_OK;
+  status = mpsi_elastic_prepare(e, __func__);
+  if (status != MPS_OK) return mpsi_elastic_leave(e, status);
+  const mps_elastic_estimate found = {.unknowns = e->unknowns,
+                                      .matrix_nonzeros = e->column[e->unknowns],
+                                      .factor_nonzeros = e->symbolic.nonzeros,
+                                      .factor_flops = e->symbolic.flops,
+                                      .factor_bytes = e->symbolic.bytes,
+                                      .ordering = (int32_t)e->symbolic.ordering,
+                                      .solver = solver_used(e)};
+  return mpsi_elastic_leave(e,
+                            mpsi_out_write(e->context, __func__, out, size, &found, sizeof found));
 }
 
-mps_status mps_elastic_solve(mps_elastic *e) {
-  if (!e) return MPS_ERROR_ARGUMENT;
+/* Scale of the residual: the load together with what prescribed displacements pull. */
+static double residual_scale(mps_elastic *e, double *u) {
+  memset(u, 0, (size_t)(e->n * e->dim) * sizeof *u);
+  mpsi_elastic_expand(e, NULL, true, u);
+  residual(e, e->load, u, e->rhs);
+  return norm(e->rhs, e->unknowns);
+}
+
+static mps_status solve(mps_elastic *e, const char *function, double *u) {
   const int64_t all = e->n * e->dim;
-  mps_status status = mpsi_elastic_prepare(e, __func__);
-  if (status == MPS_OK) status = mpsi_elastic_factor(e, __func__, 0.0);
+  mps_status status = mpsi_elastic_prepare(e, function);
+  if (status == MPS_OK) status = mpsi_elastic_drive(e, function, mps_elastic_time(e));
+  if (status == MPS_OK) status = mpsi_elastic_gather_loads(e, function, mps_elastic_time(e));
+  if (status == MPS_OK) status = mpsi_elastic_factor(e, function, 0.0);
   if (status != MPS_OK) return status;
-  double *u = mpsi_alloc(e->context, all, sizeof *u);
-  if (!u) return mpsi_fail_memory(e->context, __func__, (size_t)all * sizeof *u);
   const double start = now();
   e->report.iterations = 0;
-  status = solve_block(e, __func__, 1, e->load, u, e->rhs, e->solution);
-  if (status != MPS_OK) {
-    mpsi_free(e->context, u);
-    return status;
-  }
-  /* Scale of the residual: the load together with what prescribed displacements pull. */
-  memset(e->displacement, 0, (size_t)all * sizeof *u);
-  mpsi_elastic_expand(e, NULL, true, e->displacement);
-  residual(e, e->load, e->displacement, e->rhs);
-  const double scale = norm(e->rhs, e->unknowns);
+  const double scale = residual_scale(e, u);
+  status = solve_block(e, function, 1, e->load, u, e->rhs, e->solution);
+  if (status != MPS_OK) return status;
   memcpy(e->displacement, u, (size_t)all * sizeof *u);
-  mpsi_free(e->context, u);
   residual(e, e->load, e->displacement, e->rhs);
   e->report.residual = scale > 0.0 ? norm(e->rhs, e->unknowns) / scale : 0.0;
   for (int64_t k = 0; k < all; k++) e->reaction[k] = -e->work[k];
   mpsi_elastic_keep_fixed(e, e->reaction);
   e->report.seconds_solve = now() - start;
   mpsi_elastic_end_motion(e);
-  status = mpsi_elastic_write(e, __func__, "displacement", e->displacement, e->dim);
-  if (status == MPS_OK) status = mpsi_elastic_write(e, __func__, "reaction", e->reaction, e->dim);
+  mpsi_elastic_count_solution(e);
+  status = mpsi_elastic_write(e, function, "displacement", e->displacement, e->dim);
+  if (status == MPS_OK) status = mpsi_elastic_write(e, function, "reaction", e->reaction, e->dim);
+  return status;
+}
+
+mps_status mps_elastic_solve(mps_elastic *e) {
+  if (!e) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_elastic_enter(e, __func__);
+  if (status != MPS_OK) return status;
+  e->within = true;
+  double *u = mpsi_alloc(e->context, e->n * e->dim, sizeof *u);
+  if (!u)
+    status = mpsi_fail_memory(e->context, __func__, (size_t)(e->n * e->dim) * sizeof *u);
+  else
+    status = solve(e, __func__, u);
+  mpsi_free(e->context, u);
+  return mpsi_elastic_leave(e, status);
+}
+
+/* Between the caller's order, three components a particle, and ours. */
+static void sort_cases(const mps_elastic *e, int64_t count, double *ours, double *callers,
+                       bool to_caller) {
+  for (int64_t k = 0; k < count; k++)
+    for (int64_t i = 0; i < e->n; i++) {
+      const int64_t at = k * e->n + mps_particles_index(e->particles, e->id[i]);
+      double *own = ours + (k * e->n + i) * e->dim, *other = callers + 3 * at;
+      for (int c = 0; c < 3; c++) {
+        if (to_caller)
+          other[c] = c < e->dim ? own[c] : 0.0;
+        else if (c < e->dim)
+          own[c] = other[c];
+      }
+    }
+}
+
+void mpsi_elastic_to_caller(const mps_elastic *e, int64_t count, double *ours, double *out) {
+  sort_cases(e, count, ours, out, true);
+}
+
+static mps_status solve_cases(mps_elastic *e, const char *function, int64_t count,
+                              const double *loads, double *displacements) {
+  const int64_t all = e->n * e->dim, block = count < CASES_AT_ONCE ? count : CASES_AT_ONCE;
+  mps_status status = mpsi_elastic_prepare(e, function);
+  if (status == MPS_OK) status = mpsi_elastic_drive(e, function, mps_elastic_time(e));
+  if (status == MPS_OK) status = mpsi_elastic_factor(e, function, 0.0);
+  if (status != MPS_OK || count == 0) return status;
+  const int64_t words = 2 * block * (e->unknowns + all);
+  double *rhs = mpsi_alloc(e->context, words, sizeof *rhs);
+  if (!rhs) return mpsi_fail_memory(e->context, function, (size_t)words * sizeof *rhs);
+  double *solution = rhs + block * e->unknowns, *load = solution + block * e->unknowns;
+  double *u = load + block * all;
+  for (int64_t k = 0; k < count && status == MPS_OK; k += block) {
+    const int64_t some = count - k < block ? count - k : block;
+    sort_cases(e, some, load, (double *)loads + k * e->n * 3, false);
+    status = solve_block(e, function, some, load, u, rhs, solution);
+    if (status == MPS_OK) sort_cases(e, some, u, displacements + k * e->n * 3, true);
+  }
+  mpsi_free(e->context, rhs);
   return status;
 }
 
@@ -256,38 +318,27 @@ mps_status mps_elastic_solve_cases(mps_elastic *e, int64_t count, const double *
   if (count < 0 || (count > 0 && (!loads || !displacements)))
     return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
                      "count is %lld (must be >= 0) or an array is NULL", (long long)count);
-  const int64_t all = e->n * e->dim;
-  for (int64_t k = 0; k < count * all; k++)
-    if (!isfinite(loads[k]))
+  for (int64_t k = 0; k < count * e->n * 3; k++)
+    if (k % 3 < e->dim && !isfinite(loads[k]))
       return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
                        "loads[%lld] is %g, must be finite (N)", (long long)k, loads[k]);
-  mps_status status = mpsi_elastic_prepare(e, __func__);
-  if (status == MPS_OK) status = mpsi_elastic_factor(e, __func__, 0.0);
-  if (status != MPS_OK || count == 0) return status;
-  const int64_t block = count < CASES_AT_ONCE ? count : CASES_AT_ONCE;
-  double *rhs = mpsi_alloc(e->context, 2 * block * e->unknowns, sizeof *rhs);
-  if (!rhs)
-    return mpsi_fail_memory(e->context, __func__, (size_t)(2 * block * e->unknowns) * sizeof *rhs);
-  for (int64_t k = 0; k < count && status == MPS_OK; k += block)
-    status = solve_block(e, __func__, count - k < block ? count - k : block, loads + k * all,
-                         displacements + k * all, rhs, rhs + block * e->unknowns);
-  mpsi_free(e->context, rhs);
-  return status;
+  mps_status status = mpsi_elastic_enter(e, __func__);
+  if (status != MPS_OK) return status;
+  e->within = true;
+  return mpsi_elastic_leave(e, solve_cases(e, __func__, count, loads, displacements));
 }
 
-mps_status mps_elastic_get_report(const mps_elastic *e, mps_elastic_report *out) {
+mps_status mps_elastic_get_report_sized(const mps_elastic *e, mps_elastic_report *out,
+                                        size_t size) {
   if (!e) return MPS_ERROR_ARGUMENT;
-  if (!out) return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
-  *out = e->report;
-  out->unknowns = e->unknowns;
-  out->matrix_nonzeros = e->column ? e->column[e->unknowns] : 0;
-  out->factor_nonzeros = e->symbolic.nonzeros;
-  out->factor_flops = e->symbolic.flops;
-  out->ordering = (int32_t)e->symbolic.ordering;
-  out->solver = e->use_cg                           ? MPS_ELASTIC_CG
-                : e->def.solver == MPS_ELASTIC_AUTO ? MPS_ELASTIC_LLT
-                                                    : e->def.solver;
-  out->factor_bytes = e->use_cg ? 16.0 * (double)out->matrix_nonzeros + 48.0 * (double)e->unknowns
-                                : e->symbolic.bytes;
-  return MPS_OK;
+  mps_elastic_report r = e->report;
+  r.unknowns = e->unknowns;
+  r.matrix_nonzeros = e->column ? e->column[e->unknowns] : 0;
+  r.factor_nonzeros = e->symbolic.nonzeros;
+  r.factor_flops = e->symbolic.flops;
+  r.ordering = (int32_t)e->symbolic.ordering;
+  r.solver = solver_used(e);
+  r.factor_bytes =
+      e->use_cg ? 16.0 * (double)r.matrix_nonzeros + 48.0 * (double)e->unknowns : e->symbolic.bytes;
+  return mpsi_out_write(e->context, __func__, out, size, &r, sizeof r);
 }

@@ -27,10 +27,10 @@ static test_body square(mps_context *context, int cells) {
   mps_assert_ok(context, mps_particles_set(b.particles, "density", 0, 1.0));
   int64_t count, *ids = test_select(&b, 1, -1, 0.3, &count);
   for (int c = 0; c < 2; c++)
-    mps_assert_ok(context, mps_elastic_prescribe(b.elastic, c, count, ids, NULL));
+    mps_assert_ok(context, test_prescribe(b.elastic, c, count, ids, NULL));
   free(ids);
   const double gravity[2] = {0.2, -1.0};
-  mps_assert_ok(context, mps_elastic_add_body_force(b.elastic, gravity));
+  mps_assert_ok(context, test_body_force(b.elastic, gravity));
   return b;
 }
 

@@ -81,7 +81,7 @@ static void hold_corner(test_body *b, const laminate *l, const double *corner, i
     double x[3];
     for (int k = 0; k < b->dim; k++) x[k] = test_value(b, "position", id, k);
     const double value = laminate_u(l, x, c);
-    mps_assert_ok(b->context, mps_elastic_prescribe(b->elastic, c, 1, &id, &value));
+    mps_assert_ok(b->context, test_prescribe(b->elastic, c, 1, &id, &value));
   }
 }
 
@@ -93,8 +93,7 @@ static void load_laminate(test_body *b, laminate *l) {
   int64_t *facets = malloc((size_t)all * sizeof *facets);
   mps_assert_ok(b->context,
                 mps_elastic_select_facets(b->elastic, 0, 0, NULL, NULL, all, facets, &count));
-  mps_assert_ok(b->context,
-                mps_elastic_add_traction_fn(b->elastic, count, facets, laminate_traction, l));
+  mps_assert_ok(b->context, test_traction_fn(b->elastic, count, facets, laminate_traction, l));
   free(facets);
   hold_corner(b, l, corner, 0);
   hold_corner(b, l, far_x, 1);
@@ -274,12 +273,12 @@ static double beam_error(mps_context *context, const beam *q, int cells) {
   mps_assert_ok(context, mps_elastic_update_material(b.elastic));
   int64_t count, *ids = test_select(&b, 0, -1, 0.6 * h, &count);
   for (int c = 0; c < 2; c++)
-    mps_assert_ok(context, mps_elastic_prescribe(b.elastic, c, count, ids, NULL));
+    mps_assert_ok(context, test_prescribe(b.elastic, c, count, ids, NULL));
   mps_assert_ok(context, mps_elastic_cut(b.elastic, 0, -1, count, ids));
   free(ids);
   int64_t *facets = test_facets(&b, 0, 1, &count);
   double depth = q->depth;
-  mps_assert_ok(context, mps_elastic_add_traction_fn(b.elastic, count, facets, end_shear, &depth));
+  mps_assert_ok(context, test_traction_fn(b.elastic, count, facets, end_shear, &depth));
   free(facets);
   mps_assert_ok(context, mps_elastic_solve(b.elastic));
   /* The mean deflection of the end, extrapolated by half a cell. */
@@ -428,14 +427,13 @@ static void inclusion_error(mps_context *context, inclusion *q, int cells, doubl
   mps_assert_ok(context, mps_elastic_update_material(b.elastic));
   for (int c = 0; c < 2; c++) {
     int64_t count, *ids = test_select(&b, c, -1, 0.1 * h, &count);
-    mps_assert_ok(context, mps_elastic_prescribe(b.elastic, c, count, ids, NULL));
+    mps_assert_ok(context, test_prescribe(b.elastic, c, count, ids, NULL));
     mps_assert_ok(context, mps_elastic_cut(b.elastic, c, -1, count, ids));
     free(ids);
   }
   for (int axis = 0; axis < 2; axis++) {
     int64_t count, *facets = test_facets(&b, axis, 1, &count);
-    mps_assert_ok(context,
-                  mps_elastic_add_traction_fn(b.elastic, count, facets, inclusion_traction, q));
+    mps_assert_ok(context, test_traction_fn(b.elastic, count, facets, inclusion_traction, q));
     free(facets);
   }
   mps_assert_ok(context, mps_elastic_solve(b.elastic));

@@ -19,10 +19,10 @@ static double tension_error(mps_context *context, int32_t state) {
   int64_t *wall = test_select(&b, 0, -1, 0.5 / 17 + 1e-9, &count);
   int64_t *facets = test_facets(&b, 0, 1, &facet_count);
   const double traction[2] = {load, 0.0};
-  mps_assert_ok(context, mps_elastic_prescribe(b.elastic, 0, count, wall, NULL));
-  mps_assert_ok(context, mps_elastic_prescribe(b.elastic, 1, 1, wall + count / 2, NULL));
+  mps_assert_ok(context, test_prescribe(b.elastic, 0, count, wall, NULL));
+  mps_assert_ok(context, test_prescribe(b.elastic, 1, 1, wall + count / 2, NULL));
   mps_assert_ok(context, mps_elastic_cut(b.elastic, 0, -1, count, wall));
-  mps_assert_ok(context, mps_elastic_add_traction(b.elastic, facet_count, facets, traction));
+  mps_assert_ok(context, test_traction(b.elastic, facet_count, facets, traction));
   mps_assert_ok(context, mps_elastic_solve(b.elastic));
   mps_assert_ok(context, mps_elastic_stress(b.elastic));
   const double x0 = 0.5 / 17, y0 = test_value(&b, "position", wall[count / 2], 1);
@@ -41,12 +41,12 @@ static double tension_error(mps_context *context, int32_t state) {
     worst = fmax(worst, fabs(test_value(&b, "von_mises", i, 0) / load - mises));
   }
   /* The force through any section is the load, without a moment about the middle. */
-  const double middle[2] = {0.0, 0.5};
-  double force[2], moment;
-  mps_assert_ok(context, mps_elastic_section(b.elastic, 0, 0.4, middle, force, &moment));
+  const double middle[3] = {0.0, 0.5, 0.0};
+  double force[3], moment[3];
+  mps_assert_ok(context, mps_elastic_section(b.elastic, 0, 0.4, middle, force, moment));
   mps_assert_near(force[0] / load, 1.0, 1e-10);
   mps_assert_near(force[1] / load, 0.0, 1e-10);
-  mps_assert_near(moment / load, 0.0, 1e-10);
+  mps_assert_near(moment[2] / load, 0.0, 1e-10);
   free(wall);
   free(facets);
   test_body_end(&b);
@@ -68,21 +68,19 @@ static void a_plate_in_tension_is_exact(void **state) {
 static void the_published_plate_is_the_reference_value(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  mps_elastic_def def = mps_elastic_defaults();
-  def.method = MPS_ELASTIC_PUBLISHED;
   const double l0 = 1.0 / 16;
   test_body b = test_body_begin(context, 2, l0);
   test_body_box(&b, 0, 0, 0, 17 * l0, 17 * l0, 0);
-  test_body_finish(&b, 1.0, 0.3, &def);
+  test_body_finish_by(&b, 1.0, 0.3, NULL, TEST_PUBLISHED);
   int64_t count, ends;
   int64_t *wall = test_select(&b, 0, -1, 0.6 * l0, &count);
   int64_t *end = test_select(&b, 0, 16.4 * l0, 99, &ends);
-  mps_assert_ok(context, mps_elastic_prescribe(b.elastic, 0, count, wall, NULL));
-  mps_assert_ok(context, mps_elastic_prescribe(b.elastic, 1, 1, wall + count / 2, NULL));
+  mps_assert_ok(context, test_prescribe(b.elastic, 0, count, wall, NULL));
+  mps_assert_ok(context, test_prescribe(b.elastic, 1, 1, wall + count / 2, NULL));
   for (int64_t k = 0; k < ends; k++) {
     const double y = test_value(&b, "position", end[k], 1);
     const double force[2] = {y < l0 || y > 16 * l0 ? 0.5 * l0 : l0, 0.0};
-    mps_assert_ok(context, mps_elastic_add_forces(b.elastic, 1, end + k, force));
+    mps_assert_ok(context, test_forces(b.elastic, 1, end + k, force));
   }
   mps_assert_ok(context, mps_elastic_solve(b.elastic));
   double mean = 0.0;
@@ -157,7 +155,7 @@ static double kirsch_concentration(mps_context *context, int m) {
   test_body_finish(&b, 1.0, 0.3, NULL);
   for (int axis = 0; axis < 2; axis++) {
     int64_t count, *plane = test_select(&b, axis, -1, 0.1 * l0, &count);
-    mps_assert_ok(context, mps_elastic_prescribe(b.elastic, axis, count, plane, NULL));
+    mps_assert_ok(context, test_prescribe(b.elastic, axis, count, plane, NULL));
     mps_assert_ok(context, mps_elastic_cut(b.elastic, axis, -1, count, plane));
     free(plane);
     int64_t all = mps_elastic_facet_count(b.elastic), *facets = malloc((size_t)all * 8);
@@ -165,8 +163,7 @@ static double kirsch_concentration(mps_context *context, int m) {
     from[axis] = (cells - 1) * l0;
     mps_assert_ok(context,
                   mps_elastic_select_facets(b.elastic, axis, 1, from, NULL, all, facets, &count));
-    mps_assert_ok(context,
-                  mps_elastic_add_traction_fn(b.elastic, count, facets, kirsch_traction, &a));
+    mps_assert_ok(context, test_traction_fn(b.elastic, count, facets, kirsch_traction, &a));
     free(facets);
   }
   mps_assert_ok(context, mps_elastic_solve(b.elastic));
