@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "context_private.h"
 
+#include <time.h>
 #include <unistd.h>
 
 #ifdef MPSI_OPENMP
@@ -48,4 +49,30 @@ void mpsi_parallel_for(mps_context *context, int64_t count, mps_task_fn task, vo
   else
     openmp_for(context->threads, count, task, data);
 #endif
+}
+
+/* ---- waiting --------------------------------------------------------------------------------- */
+
+#define LOOKS 200      /* before a thread sleeps: some microseconds */
+#define SLEEP_NS 20000 /* and what the system adds */
+
+bool mpsi_executor_is_own(const mps_context *context) {
+  return context->def.executor != MPS_EXECUTOR_CALLER;
+}
+
+void mpsi_pause(void) {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_ia32_pause();
+#elif defined(__aarch64__)
+  __asm__ volatile("yield");
+#endif
+}
+
+bool mpsi_wait_a_little(int32_t look, bool may_sleep) {
+  if (look >= LOOKS && !may_sleep) return false;
+  if (look < LOOKS)
+    mpsi_pause();
+  else
+    nanosleep(&(struct timespec){.tv_nsec = SLEEP_NS}, NULL);
+  return true;
 }

@@ -95,5 +95,13 @@ mps_status mpsi_out_write(mps_context *context, const char *function, void *out,
 int32_t mpsi_context_level(const mps_context *context);
 /* As mps_context_parallel_for, without argument checks. Never fails. */
 void mpsi_parallel_for(mps_context *context, int64_t count, mps_task_fn task, void *data);
+/* Whether the threads are the library's or OpenMP's: a unit may then wait for others that run at
+ * the same time. A caller's executor may run units one after the other. */
+bool mpsi_executor_is_own(const mps_context *context);
+/* For a unit that looks for work the `look`-th time (from 0) and finds none: waits, for a moment at
+ * first and then asleep. False where it may not sleep: then it must return. */
+bool mpsi_wait_a_little(int32_t look, bool may_sleep);
+/* For loops that look at memory which another thread writes. */
+void mpsi_pause(void);
 
 #endif

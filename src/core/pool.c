@@ -8,18 +8,12 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "pool.h"
 
+#include "internal.h"
+
 #include <signal.h>
 #include <unistd.h>
 
 #define LOOKS 400 /* before a thread sleeps: 5 to 20 microseconds */
-
-static void pause_a_little(void) {
-#if defined(__x86_64__) || defined(__i386__)
-  __builtin_ia32_pause();
-#elif defined(__aarch64__)
-  __asm__ volatile("yield");
-#endif
-}
 
 /* ---- workers --------------------------------------------------------------------------------- */
 
@@ -38,7 +32,7 @@ static void *live(void *argument) {
   for (;;) {
     for (int look = 0; look < LOOKS; look++) {
       if (atomic_load_explicit(&p->number, memory_order_relaxed) != seen) break;
-      pause_a_little();
+      mpsi_pause();
     }
     pthread_mutex_lock(&p->lock);
     while (!p->quit && !(p->open && p->number != seen)) {
@@ -100,7 +94,7 @@ static void close_loop(mpsi_pool *p) {
   pthread_mutex_unlock(&p->lock);
   for (int look = 0; look < LOOKS; look++) {
     if (atomic_load_explicit(&p->inside, memory_order_relaxed) == 0) break;
-    pause_a_little();
+    mpsi_pause();
   }
   pthread_mutex_lock(&p->lock);
   while (p->inside > 0) pthread_cond_wait(&p->done, &p->lock);

@@ -10,14 +10,16 @@
  * neighbours at +x, +y, +x+y (and so on at +z).
  *
  * Each task sums the particles of one block of cells into a tile of its own and adds that to the
- * nodes. Blocks of one colour (2 along each axis) share no nodes: they work at once, colour after
- * colour. No two tasks write the same memory, and no sum depends on the number of threads.
+ * nodes. Blocks of one colour (2 along each axis) share no nodes; blocks that do give one after the
+ * other, in the order of their colours (pass.h). No two tasks write the same memory, and no sum
+ * depends on the number of threads.
  *
  * Arrays of three hold x, y, z; in 2D the last is 0 (one node thick).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_BLOCKS_H
 #define MPSI_MPM_BLOCKS_H
 
+#include "pass.h"
 #include "restart.h"
 #include "room.h"
 
@@ -29,19 +31,26 @@
 
 /* A block of cells with particles. */
 typedef struct mpsi_cell_block {
-  int64_t begin, end;          /* particles */
-  int32_t at[3];               /* block coordinates: its first node is at * MPSI_SIDE */
-  int32_t low[3], high[3];     /* its stencils use tile nodes low to high - 1 of each axis */
-  int32_t to[MPSI_CORNERS];    /* blocks of nodes under the tile: own, +x, +y, +x+y, ... */
-  bool edge;                   /* some node of the tile is outside the domain */
-  bool inside;                 /* some node that its stencils may use is in a body */
-  bool cut;                    /* one of both: some particle may have a cut support */
-  bool split;                  /* forces are summed apart from momenta: see mpsi_node_block */
-  bool apart;                  /* the tile of forces is in use: split, or at an edge */
-  bool left;                   /* a particle is more than a cell outside the block */
-  int32_t first_pair, pairs;   /* bodies that it may meet: of the list of mpsi_cell_pair */
-  int64_t bad;                 /* first particle not finite or outside the domain, or -1 */
-  double speed;                /* largest c + |v|, m/s */
+  int64_t begin, end;       /* particles */
+  int32_t at[3];            /* block coordinates: its first node is at * MPSI_SIDE */
+  int32_t low[3], high[3];  /* its stencils use tile nodes low to high - 1 of each axis */
+  int32_t to[MPSI_CORNERS]; /* blocks of nodes under the tile: own, +x, +y, +x+y, ... */
+  /* What the loops must look after in the block; a block without any of these, which most are, has
+   * full supports only.
+   *   edge    some node of the tile is outside the domain
+   *   inside  some node that its stencils may use is in a body
+   *   cut     edge or inside, or the standard scheme: some support may be cut, states are found
+   *   split   some block of nodes under it is split: forces are summed apart from momenta there
+   *   apart   edge or split: the tile of forces is in use */
+  bool edge, inside, cut, split, apart;
+  bool left;                  /* a particle is more than a cell outside the block */
+  int32_t first_pair, pairs;  /* bodies that it may meet: of the list of mpsi_cell_pair */
+  int32_t next[MPSI_CORNERS]; /* the block of cells that gives to the block of nodes to[q] after
+                                 this one, in the order of colours; -1: this is the last */
+  int32_t waits;              /* number of to[q] that others give to before */
+  uint8_t first;              /* bit q: this is the first that gives to to[q] */
+  int64_t bad;                /* first particle not finite or outside the domain, or -1 */
+  double speed;               /* largest c + |v|, m/s */
 } mpsi_cell_block;
 
 /* A block of nodes. Its nodes are node[mpsi_first_node(g)] and on, x fastest. */
@@ -51,10 +60,12 @@ typedef struct mpsi_node_block {
   int32_t near; /* slot of its inside masks, or -1: no body near */
   bool split;   /* side has the forces: the velocity before them is needed */
   bool inside;  /* some node is in a body: */
-  int32_t low[3], high[3];   /* they are within low to high - 1 */
-  uint32_t bodies;           /* bit b: a block of cells whose tile covers it may meet body b */
-  int32_t first_pair, pairs; /* bodies that may touch it: of the list of mpsi_node_pair */
-  int32_t first_held, holds; /* of the list of mpsi_held */
+  int32_t low[3], high[3];    /* they are within low to high - 1 */
+  uint32_t bodies;            /* bit b: a block of cells whose tile covers it may meet body b */
+  int32_t first_pair, pairs;  /* bodies that may touch it: of the list of mpsi_node_pair */
+  int32_t first_held, holds;  /* of the list of mpsi_held */
+  int32_t from[MPSI_CORNERS]; /* blocks of cells whose tiles cover it, as corner q; -1: none */
+  bool waits;                 /* its friction needs the mass of all nodes in contact with a body */
 } mpsi_node_block;
 
 /* A node, four doubles: particles to nodes sums mass and momentum; then lane 0 is the mass and the
@@ -98,7 +109,7 @@ typedef struct mpsi_grid {
   mpsi_radix *radix;        /* 2 items a particle */
   const mpsi_radix *sorted; /* the half of `radix` with the order, while the blocks are made */
   int32_t own_bits;         /* lower bits of a sorted key: the stencil's place within its block */
-  mpsi_room digits_room;
+  mpsi_room digits_room, pass_room;
   mpsi_worker *workers;
   int32_t worker_count;
 } mpsi_grid;

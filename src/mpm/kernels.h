@@ -24,7 +24,7 @@ typedef struct mpsi_kernels {
 /* dispatch.c: the kernels of an x86-64 level; 0: the best that processor and build have. */
 const mpsi_kernels *mpsi_mpm_kernels(int32_t isa);
 
-/* near.c: states of the nodes under a cut block's tile, to worker->state and worker->inside. */
+/* inside.c: states of the nodes under a cut block's tile, to worker->state and worker->inside. */
 void mpsi_mpm_find_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker);
 /* volumetric.c: the diagonals of the velocity gradients of particles [begin, end), at most a chunk,
  * with the mean trace of their cells. */

@@ -99,11 +99,13 @@ static int64_t make_nodes(mps_mpm *mpm, mpsi_node_block *nodes) {
     if (!any) return count;
     if (nodes) {
       nodes[count] = (mpsi_node_block){.side = -1, .near = -1};
+      for (int q = 0; q < MPSI_CORNERS; q++) nodes[count].from[q] = -1;
       memcpy(nodes[count].at, least, sizeof least);
     }
     for (int q = 0; q < corners; q++) {
       if (head[q] == mpm->grid.cell_count || before(least, at[q])) continue;
       cells[head[q]].to[q] = (int32_t)count;
+      if (nodes) nodes[count].from[q] = (int32_t)head[q];
       head[q]++;
     }
     count++;
@@ -149,7 +151,8 @@ static bool build_nodes(mps_mpm *mpm, int64_t cells) {
   mpm->grid.nodes = mpm->grid.nodes_room.item;
   mpm->grid.node = mpm->grid.node_room.item;
   make_nodes(mpm, mpm->grid.nodes);
-  return true;
+  mpsi_mpm_link_blocks(mpm);
+  return mpsi_mpm_ensure_pass(mpm);
 }
 
 static mps_status no_room(mps_mpm *mpm, const char *function, int64_t cells) {

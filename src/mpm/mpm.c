@@ -358,6 +358,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
                    mpm->grid.cells_room.item,
                    mpm->grid.coloured_room.item,
                    mpm->grid.digits_room.item,
+                   mpm->grid.pass_room.item,
                    mpm->grid.nodes_room.item,
                    mpm->grid.node_room.item,
                    mpm->grid.side_room.item,

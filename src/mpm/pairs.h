@@ -9,6 +9,8 @@
 
 #include <mps/mpm.h>
 
+#include <stdatomic.h>
+
 /* A block of cells and a body that its particles may touch. */
 typedef struct mpsi_cell_pair {
   int32_t cells, body;
@@ -40,14 +42,24 @@ typedef struct mpsi_contacts {
   mpsi_cell_pair *cell_pair;
   mpsi_node_pair *node_pair;
   mpsi_contact_node *node;
-  uint32_t *inside; /* bit b: in body b; mask_count * block_nodes */
-  uint8_t *reached; /* corner of a cell that holds a particle; likewise */
+  uint32_t *inside;         /* bit b: in body b; mask_count * block_nodes */
+  _Atomic uint8_t *reached; /* corner of a cell that holds a particle; likewise */
   int64_t cell_pair_count, node_pair_count, mask_count;
   mpsi_room cell_pair_room, node_pair_room, node_room, inside_room, reached_room;
 } mpsi_contacts;
 
-/* near.c: finds which blocks are near which bodies, and which blocks are cut and split. */
+/* cut.c: all that is to be known of bodies near particles before a step; which blocks are cut and
+ * split. It calls the next ones. */
 mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function);
+/* pairs.c: lists the pairs; whether a body may have a node inside of the tile or block at `at` of
+ * `side` nodes an axis; the masses that friction with free bodies asks for, when those of the node
+ * pairs are known. */
+mps_status mpsi_mpm_list_pairs(mps_mpm *mpm, const char *function);
+bool mpsi_mpm_body_reaches(const mps_mpm *mpm, int32_t body, const int32_t *at, int side);
+void mpsi_mpm_find_contact_mass(mps_mpm *mpm);
+/* inside.c: nodes of a block inside bodies; corners of the cells of a block that hold particles. */
+void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker);
+void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker);
 /* friction.c: normal forces of all bodies on a block of nodes; friction; what the bodies feel, and
  * their motion. */
 void mpsi_mpm_apply_contact(mps_mpm *mpm, int64_t g);

@@ -16,13 +16,6 @@ typedef struct mpsi_run {
   uint32_t warned_about_chatter; /* bit b: ... that body b's contact is too stiff for dt */
 } mpsi_run;
 
-/* work.c: runs task(mpm, index, worker) for all blocks on the executor, in units of several where
- * that pays: blocks of nodes; of cells; of cells, those of one colour at once. */
-typedef void (*mpsi_mpm_task)(mps_mpm *mpm, int64_t index, int32_t worker);
-void mpsi_mpm_for_nodes(mps_mpm *mpm, mpsi_mpm_task task);
-void mpsi_mpm_for_cells(mps_mpm *mpm, mpsi_mpm_task task);
-void mpsi_mpm_for_colours(mps_mpm *mpm, mpsi_mpm_task task);
-
 /* step.c: one step of dt; on an error the solver is broken. */
 mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt);
 /* run.c: MPS_ERROR_STATE after a step that has failed. */

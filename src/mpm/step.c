@@ -52,12 +52,6 @@ mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function) {
   return MPS_OK;
 }
 
-static void find_contact_mass(mps_mpm *mpm) {
-  memset(mpm->contact.mass, 0, sizeof mpm->contact.mass);
-  for (int64_t t = 0; t < mpm->contact.node_pair_count; t++)
-    mpm->contact.mass[mpm->contact.node_pair[t].body] += mpm->contact.node_pair[t].mass;
-}
-
 /* Tells the log, once each, of a step too large for the present state. */
 static void warn_about_step(mps_mpm *mpm, double dt) {
   const double limit = mps_mpm_limit(mpm), courant = mpm->def.courant;
@@ -83,32 +77,53 @@ static void warn_about_step(mps_mpm *mpm, double dt) {
   }
 }
 
-mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
-  const int32_t geometry = mpm->def.geometry, spline = mpm->def.spline - 2;
+/* Before anything moves: the particles in order where some have left their blocks, and what is near
+ * them. */
+static mps_status prepare(mps_mpm *mpm, const char *function) {
   mps_status status = MPS_OK;
   if (mpm->run.stale) {
     status = mpsi_mpm_sort(mpm, function);
     if (status == MPS_OK) status = mpsi_mpm_list_holds(mpm, function);
   }
   if (status == MPS_OK) status = mpsi_mpm_find_near(mpm, function);
+  return status;
+}
+
+/* From the particles to the nodes and back (pass.h), Nakamura 6 and Table 2:
+ *   clear    the nodes of a block
+ *   scatter  x, v, L, sigma, V, m --> mass, momentum, forces and contact at the nodes: p2g.c
+ *            (23)-(25), (39), fitted.c (28)-(30)
+ *   update   velocities before and after the forces, normal contact: grid.c (26), contact (31)
+ *   between  masses in contact with each free rough body
+ *   finish   friction with bodies (31)-(34); walls and prescribed nodes
+ *   gather   velocities of the nodes --> v, L, x (41)-(44); then the laws, L --> sigma, V and their
+ *            histories (45)-(48), and c + |v| for the next step (49), (50): g2p.c, law.c */
+static void move(mps_mpm *mpm) {
+  const int32_t geometry = mpm->def.geometry, spline = mpm->def.spline - 2;
+  const mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes,
+                          .scatter = mpm->kernels->p2g[geometry][spline],
+                          .update = mpsi_mpm_update_nodes,
+                          .between = mpm->contact.bodies > 0 ? mpsi_mpm_find_contact_mass : NULL,
+                          .finish = mpsi_mpm_finish_nodes,
+                          .gather = mpm->kernels->g2p[geometry][spline]};
+  mpsi_mpm_run_pass(mpm, &pass);
+}
+
+mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
+  const mps_status status = prepare(mpm, function);
   if (status != MPS_OK) {
     mpm->run.broken = true;
     return status;
   }
   mpm->run.dt = dt;
   warn_about_step(mpm, dt);
-  mpsi_mpm_begin_holds(mpm, dt);
-  mpsi_mpm_find_forces(mpm);
-  mpsi_mpm_for_nodes(mpm, mpsi_mpm_clear_nodes);
-  mpsi_mpm_for_colours(mpm, mpm->kernels->p2g[geometry][spline]);
-  mpsi_mpm_for_nodes(mpm, mpsi_mpm_update_nodes);
-  if (mpm->contact.cell_pair_count > 0) find_contact_mass(mpm);
-  mpsi_mpm_for_nodes(mpm, mpsi_mpm_finish_nodes);
-  mpsi_mpm_for_cells(mpm, mpm->kernels->g2p[geometry][spline]);
-  mpsi_mpm_sum_holds(mpm);
-  if (mpm->p.stencil) mpsi_mpm_apply_laws_by_cell(mpm);
-  if (mpm->contact.bodies > 0) mpsi_mpm_update_bodies(mpm);
+  mpsi_mpm_begin_holds(mpm, dt);                        /* signals --> velocities of walls, boxes */
+  mpsi_mpm_find_forces(mpm);                            /* loads --> forces on the particles */
+  move(mpm);                                            /* particles --> nodes --> particles */
+  mpsi_mpm_sum_holds(mpm);                              /* impulses of nodes --> forces of walls */
+  if (mpm->p.stencil) mpsi_mpm_apply_laws_by_cell(mpm); /* L, V --> sigma by means of cells */
+  if (mpm->contact.bodies > 0) mpsi_mpm_update_bodies(mpm); /* contact --> reactions, poses */
   mpm->run.time += dt;
   mpm->run.steps++;
-  return mpsi_mpm_collect_block_results(mpm, function);
+  return mpsi_mpm_collect_block_results(mpm, function); /* bad particles, c + |v|, stale or not */
 }

@@ -10,6 +10,7 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
               {mpm->grid.coloured_room.capacity, sizeof *mpm->grid.coloured},
               {mpm->grid.nodes_room.capacity, sizeof *mpm->grid.nodes},
               {mpm->grid.digits_room.capacity, 2048 * sizeof(int32_t)},
+              {mpm->grid.pass_room.capacity, sizeof(int32_t)},
               {mpm->grid.node_room.capacity, sizeof *mpm->grid.node},
               {mpm->grid.side_room.capacity, sizeof *mpm->grid.side},
               {mpm->contact.cell_pair_room.capacity, sizeof *mpm->contact.cell_pair},

@@ -59,9 +59,9 @@ static void apply_laws(mps_mpm *mpm, int64_t b, int32_t worker) {
 }
 
 void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm) {
+  static const mpsi_pass pass = {
+      .clear = mpsi_mpm_clear_nodes, .scatter = add_cells, .gather = apply_laws};
   for (int64_t b = 0; b < mpm->grid.cell_count; b++)
     if (mpm->grid.cells[b].bad >= 0) return; /* the step has failed; its places may be no places */
-  mpsi_mpm_for_nodes(mpm, mpsi_mpm_clear_nodes);
-  mpsi_mpm_for_colours(mpm, add_cells);
-  mpsi_mpm_for_cells(mpm, apply_laws);
+  mpsi_mpm_run_pass(mpm, &pass);
 }

@@ -1,0 +1,113 @@
+/* cut.c - before each step: which blocks have particles with cut supports, and which sum the forces
+ * apart from the momenta (see mpsi_cell_block).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_private.h"
+
+/* Nodes low to high - 1 of a tile. */
+typedef struct box {
+  int low[3], high[3];
+} box;
+
+static bool is_empty(const box *a) {
+  return a->low[0] >= a->high[0] || a->low[1] >= a->high[1] || a->low[2] >= a->high[2];
+}
+
+static box common(const box *a, const box *b) {
+  box out;
+  for (int c = 0; c < 3; c++) {
+    out.low[c] = a->low[c] > b->low[c] ? a->low[c] : b->low[c];
+    out.high[c] = a->high[c] < b->high[c] ? a->high[c] : b->high[c];
+  }
+  return out;
+}
+
+/* Of the nodes that the block's stencils may use, those of the node block at corner q of the tile
+ * from its `low` to its `high`. */
+static box box_under(const mpsi_cell_block *cells, int q, const int32_t *low, const int32_t *high) {
+  box used, out;
+  for (int c = 0; c < 3; c++) {
+    const int first = q >> c & 1 ? MPSI_SIDE : 0;
+    used.low[c] = cells->low[c], used.high[c] = cells->high[c];
+    out.low[c] = first + low[c], out.high[c] = first + high[c];
+  }
+  return common(&used, &out);
+}
+
+/* Where the stencils that have a node in a body may have nodes; empty where none has. */
+static box near_bodies(const mps_mpm *mpm, const mpsi_cell_block *cells) {
+  const int reach = mpm->def.spline;
+  box out = {{MPSI_TILE_SIDE, MPSI_TILE_SIDE, MPSI_TILE_SIDE}, {0}};
+  for (int q = 0; q < 1 << mpm->dim; q++) {
+    const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
+    const box in = box_under(cells, q, nodes->low, nodes->high);
+    for (int c = 0; c < 3 && nodes->inside && !is_empty(&in); c++) {
+      if (in.low[c] - reach < out.low[c]) out.low[c] = in.low[c] - reach;
+      if (in.high[c] + reach > out.high[c]) out.high[c] = in.high[c] + reach;
+    }
+  }
+  return out;
+}
+
+/* Slots of sides, and what is split, of the blocks of nodes under a cut block of cells. */
+static void mark_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const box *near, bool finds) {
+  static const int32_t low[3] = {0}, high[3] = {MPSI_SIDE, MPSI_SIDE, MPSI_SIDE};
+  const bool all =
+      mpm->def.transfer == MPS_TRANSFER_WEIGHT || mpm->flip > 0.0 || (finds && cells->edge);
+  bool rough = false;
+  for (int32_t k = 0; cells->inside && k < cells->pairs; k++)
+    rough =
+        rough ||
+        mpm->contact.body[mpm->contact.cell_pair[cells->first_pair + k].body]->def.friction > 0.0;
+  for (int q = 0; q < 1 << mpm->dim; q++) {
+    mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
+    box under = box_under(cells, q, low, high);
+    under = common(&under, near);
+    const bool touched = !is_empty(&under);
+    if (!touched && !cells->edge && !mpm->standard) continue;
+    if (nodes->side < 0) nodes->side = (int32_t)mpm->grid.side_count++;
+    nodes->split = nodes->split || all || (touched && rough);
+  }
+}
+
+/* Cut: some particle may have a cut support, or, with the standard scheme, one without a fit.
+ * Split: friction needs the velocity before the forces; so does FLIP, and the transfer by weights,
+ * which divides momentum and force by different masses. */
+static mps_status find_cut(mps_mpm *mpm, const char *function) {
+  bool finds = false; /* an absorbing wall asks for the forces of its first step */
+  for (int32_t k = 0; k < MPSI_WALLS && !(mpm->def.settle > 0.0); k++)
+    finds = finds || mpm->boundaries.hold[k].finds;
+  for (int64_t g = 0; g < mpm->grid.node_count; g++)
+    mpm->grid.nodes[g].side = -1, mpm->grid.nodes[g].split = false;
+  mpm->grid.side_count = 0;
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+    mpsi_cell_block *cells = &mpm->grid.cells[b];
+    const box near = near_bodies(mpm, cells);
+    cells->inside = !is_empty(&near);
+    cells->cut = cells->edge || cells->inside || mpm->standard;
+    if (cells->cut) mark_cut(mpm, cells, &near, finds);
+  }
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+    mpsi_cell_block *cells = &mpm->grid.cells[b];
+    cells->split = false;
+    for (int q = 0; q < 1 << mpm->dim; q++)
+      cells->split = cells->split || mpm->grid.nodes[cells->to[q]].split;
+    cells->apart = cells->split || cells->edge;
+  }
+  if (!mpsi_room_ensure(mpm->context, &mpm->grid.side_room,
+                        mpm->grid.side_count * mpm->grid.block_nodes, sizeof *mpm->grid.side))
+    return mpsi_fail_memory(mpm->context, function,
+                            (size_t)(mpm->grid.side_count * mpm->grid.block_nodes) *
+                                sizeof *mpm->grid.side);
+  mpm->grid.side = mpm->grid.side_room.item;
+  return MPS_OK;
+}
+
+mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function) {
+  static const mpsi_pass pass = {.update = mpsi_mpm_find_inside, .gather = mpsi_mpm_mark_reached};
+  if (mpm->contact.bodies > 0) {
+    const mps_status status = mpsi_mpm_list_pairs(mpm, function);
+    if (status != MPS_OK) return status;
+    if (mpm->contact.cell_pair_count > 0) mpsi_mpm_run_pass(mpm, &pass);
+  }
+  return find_cut(mpm, function);
+}

@@ -1,0 +1,131 @@
+/* inside.c - which nodes lie inside a body or outside the domain, and which are corners of cells
+ * that hold particles. These decide which nodes a particle near a body may use (Nakamura 5.1, with
+ * the same-side test of fitted.c). SPDX-License-Identifier: BSD-3-Clause */
+#include "kernels.h"
+
+#include <string.h>
+
+/* ---- before a step --------------------------------------------------------------------------- */
+
+/* Normals at the nodes of a block that lie inside bodies. */
+void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
+  (void)worker;
+  mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  nodes->inside = false;
+  for (int c = 0; c < 3; c++) nodes->low[c] = MPSI_SIDE, nodes->high[c] = 0;
+  if (nodes->near < 0) return;
+  uint32_t *inside = mpm->contact.inside + mpsi_first_node(mpm, nodes->near);
+  memset(inside, 0, (size_t)mpm->grid.block_nodes * sizeof *inside);
+  _Atomic uint8_t *reached = mpm->contact.reached + mpsi_first_node(mpm, nodes->near);
+  for (int k = 0; k < mpm->grid.block_nodes; k++)
+    atomic_store_explicit(&reached[k], 0, memory_order_relaxed);
+  for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
+    mpsi_contact_node *node = mpm->contact.node + (int64_t)t * mpm->grid.block_nodes;
+    const int32_t b = mpm->contact.node_pair[t].body;
+    memset(node, 0, (size_t)mpm->grid.block_nodes * sizeof *node);
+    if (!mpsi_mpm_body_reaches(mpm, b, nodes->at, MPSI_SIDE)) continue;
+    for (int k = 0; k < mpm->grid.block_nodes; k++) {
+      int place[3];
+      double x[3];
+      mpsi_unravel(k, MPSI_SIDE, place);
+      const double local[3] = {place[0], place[1], place[2]};
+      mpsi_node_position(mpm, nodes->at, local, x);
+      const mpsi_foot foot = mpsi_body_foot(mpm->contact.body[b], x);
+      if (!(foot.distance < 0.0)) continue;
+      for (int c = 0; c < mpm->dim; c++) node[k].normal[c] = foot.normal[c];
+      inside[k] |= UINT32_C(1) << b;
+      nodes->inside = true;
+      for (int c = 0; c < 3; c++) {
+        if (place[c] < nodes->low[c]) nodes->low[c] = place[c];
+        if (place[c] >= nodes->high[c]) nodes->high[c] = place[c] + 1;
+      }
+    }
+  }
+}
+
+static bool some_inside(const mps_mpm *mpm, const mpsi_cell_block *cells) {
+  bool any = false;
+  for (int q = 0; q < 1 << mpm->dim; q++) any = any || mpm->grid.nodes[cells->to[q]].inside;
+  return any;
+}
+
+/* Corners of the cells that hold particles. Several blocks may mark one node at once. */
+void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker) {
+  (void)worker;
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  if (cells->pairs == 0 || !some_inside(mpm, cells)) return;
+  bool seen[MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE];
+  memset(seen, 0, (size_t)mpm->grid.tile_nodes * sizeof *seen);
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    int at[3] = {0};
+    for (int c = 0; c < mpm->dim; c++) {
+      /* counted from the block: not negative, so that truncation is floor */
+      const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE, last = mpm->grid.high[c] - 1 - first;
+      const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k]) - (double)first;
+      at[c] = X < (double)last ? (int)X : (int)last;
+    }
+    bool *here = &seen[mpsi_tile_index(at[0], at[1], at[2])];
+    if (*here) continue;
+    *here = true;
+    for (int q = 0; q < 1 << mpm->dim; q++) {
+      const int64_t node =
+          mpsi_node_under(mpm, cells, at[0] + (q & 1), at[1] + (q >> 1 & 1), at[2] + (q >> 2));
+      const mpsi_node_block *nodes = &mpm->grid.nodes[node / mpm->grid.block_nodes];
+      const int64_t at_node = mpsi_first_node(mpm, nodes->near) + node % mpm->grid.block_nodes;
+      atomic_store_explicit(&mpm->contact.reached[at_node], 1, memory_order_relaxed);
+    }
+  }
+}
+
+/* ---- states under a tile ----------------------------------------------------------------------
+ */
+
+/* Nodes low to high - 1 of the tile along axis c are in the domain. */
+static void domain_under(const mps_mpm *mpm, const mpsi_cell_block *cells, int c, int *low,
+                         int *high) {
+  const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
+  *low = mpm->grid.low[c] > first ? (int)(mpm->grid.low[c] - first) : 0;
+  *high = mpm->grid.high[c] < first + MPSI_TILE_SIDE ? (int)(mpm->grid.high[c] - first) + 1
+                                                     : MPSI_TILE_SIDE;
+}
+
+static void mark_outside(const mps_mpm *mpm, const mpsi_cell_block *cells, uint8_t *state) {
+  int low[3] = {0}, high[3] = {1, 1, 1};
+  for (int c = 0; c < mpm->dim; c++) domain_under(mpm, cells, c, &low[c], &high[c]);
+  memset(state, MPSI_OUTSIDE, (size_t)mpm->grid.tile_nodes);
+  for (int k = low[2]; k < high[2]; k++)
+    for (int j = low[1]; j < high[1] && low[0] < high[0]; j++)
+      memset(state + mpsi_tile_index(low[0], j, k), mpm->standard ? MPSI_PLAIN : 0,
+             (size_t)(high[0] - low[0]));
+}
+
+/* Of the nodes of a block under the corner q of the tile. */
+static void mark_inside(const mps_mpm *mpm, const mpsi_node_block *nodes, int q,
+                        mpsi_worker *worker) {
+  int low[3] = {0}, size[3] = {1, 1, 1};
+  for (int c = 0; c < mpm->dim; c++) {
+    low[c] = q >> c & 1 ? MPSI_SIDE : 0;
+    size[c] = low[c] ? MPSI_TILE_SIDE - MPSI_SIDE : MPSI_SIDE;
+  }
+  const int64_t first = mpsi_first_node(mpm, nodes->near);
+  for (int k = 0; k < size[2]; k++)
+    for (int j = 0; j < size[1]; j++)
+      for (int i = 0; i < size[0]; i++) {
+        const int64_t at = first + (k * MPSI_SIDE + j) * MPSI_SIDE + i;
+        const int t = mpsi_tile_index(low[0] + i, low[1] + j, low[2] + k);
+        if (!mpm->contact.inside[at]) continue;
+        worker->inside[t] = mpm->contact.inside[at];
+        const bool reached =
+            atomic_load_explicit(&mpm->contact.reached[at], memory_order_relaxed) != 0;
+        worker->state[t] |= reached ? MPSI_INSIDE | MPSI_REACHED : MPSI_INSIDE;
+      }
+}
+
+void mpsi_mpm_find_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
+  mark_outside(mpm, cells, worker->state);
+  memset(worker->inside, 0, (size_t)mpm->grid.tile_nodes * sizeof *worker->inside);
+  for (int q = 0; q < 1 << mpm->dim; q++) {
+    const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
+    if (nodes->inside) mark_inside(mpm, nodes, q, worker);
+  }
+}

@@ -1,0 +1,229 @@
+/* pass.c - see pass.h. Blocks that are ready stand in a queue, from which the threads claim some at
+ * a time; who does the last that a block waits for puts that block there. A thread that finds
+ * nothing ready looks again for some microseconds and then sleeps for a moment; under a caller's
+ * executor, which may run the units one after the other, it leaves. All is done when all have left,
+ * since who makes a block ready looks at the queue after that. SPDX-License-Identifier:
+ * BSD-3-Clause */
+#include "mpm_private.h"
+
+#include <stdatomic.h>
+
+#define SMALL_SET 2048 /* particles: below, sharing the work costs more than it gains */
+#define VISITS 4       /* of a thread of a caller's executor: it may leave and come back so often */
+#define MOST_CLAIMED 8
+
+/* ---- one thread ------------------------------------------------------------------------------ */
+
+static bool is_first(const mpsi_cell_block *cells, int q) { return cells->first >> q & 1; }
+
+static void clear_and_scatter(mps_mpm *mpm, const mpsi_pass *pass, int64_t b, int32_t worker) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  for (int q = 0; q < 1 << mpm->dim; q++)
+    if (is_first(cells, q)) pass->clear(mpm, cells->to[q], worker);
+  pass->scatter(mpm, b, worker);
+}
+
+static void run_alone(mps_mpm *mpm, const mpsi_pass *pass) {
+  const mpsi_grid *grid = &mpm->grid;
+  for (int64_t k = 0; pass->scatter && k < grid->cell_count; k++)
+    clear_and_scatter(mpm, pass, grid->coloured[k], 0);
+  for (int64_t g = 0; pass->update && g < grid->node_count; g++) pass->update(mpm, g, 0);
+  if (pass->between) pass->between(mpm);
+  for (int64_t g = 0; pass->finish && g < grid->node_count; g++) pass->finish(mpm, g, 0);
+  for (int64_t b = 0; pass->gather && b < grid->cell_count; b++) pass->gather(mpm, b, 0);
+}
+
+/* ---- several --------------------------------------------------------------------------------- */
+
+/* Entries of the queue: scatter of b is b, gather of b is cells + b, and 2 cells + g is the update
+ * of g where there is no scatter, else its end after `between`. */
+typedef struct flow {
+  mps_mpm *mpm;
+  const mpsi_pass *pass;
+  int32_t cells, nodes;
+  _Atomic int32_t *scatter_waits, *gather_waits; /* of each block of cells: for how many nodes */
+  _Atomic int32_t *queue;                        /* EMPTY where there is no entry yet */
+  int64_t entries;                               /* that there will be, all in all */
+  _Atomic int64_t head, tail;                    /* of the queue: next to claim, next to fill */
+  _Atomic int32_t held;                          /* blocks of nodes to update before `between` */
+} flow;
+enum { EMPTY = -1 };
+
+static void put(flow *f, int32_t entry) {
+  const int64_t at = atomic_fetch_add_explicit(&f->tail, 1, memory_order_relaxed);
+  atomic_store_explicit(&f->queue[at], entry, memory_order_release);
+}
+
+/* Whether that was the last. What was done before by all who have counted is then visible. */
+static bool count_down(_Atomic int32_t *count) {
+  return atomic_fetch_sub_explicit(count, 1, memory_order_acq_rel) == 1;
+}
+
+static void finish_nodes(flow *f, int32_t g, int32_t worker) {
+  const mpsi_node_block *nodes = &f->mpm->grid.nodes[g];
+  if (f->pass->finish) f->pass->finish(f->mpm, g, worker);
+  for (int q = 0; q < 1 << f->mpm->dim; q++) {
+    const int32_t b = nodes->from[q];
+    if (b >= 0 && count_down(&f->gather_waits[b]) && f->pass->gather) put(f, f->cells + b);
+  }
+}
+
+static void update_nodes(flow *f, int32_t g, int32_t worker) {
+  if (f->pass->update) f->pass->update(f->mpm, g, worker);
+  if (!f->pass->between || !f->mpm->grid.nodes[g].waits) {
+    finish_nodes(f, g, worker);
+    return;
+  }
+  if (!count_down(&f->held)) return;
+  f->pass->between(f->mpm);
+  for (int32_t k = 0; k < f->nodes; k++)
+    if (f->mpm->grid.nodes[k].waits) put(f, 2 * f->cells + k);
+}
+
+static void scatter_cells(flow *f, int32_t b, int32_t worker) {
+  const mpsi_cell_block *cells = &f->mpm->grid.cells[b];
+  clear_and_scatter(f->mpm, f->pass, b, worker);
+  for (int q = 0; q < 1 << f->mpm->dim; q++) {
+    const int32_t next = cells->next[q];
+    if (next < 0)
+      update_nodes(f, cells->to[q], worker);
+    else if (count_down(&f->scatter_waits[next]))
+      put(f, next);
+  }
+}
+
+static void work_on(flow *f, int32_t entry, int32_t worker) {
+  if (entry < f->cells)
+    scatter_cells(f, entry, worker);
+  else if (entry < 2 * f->cells)
+    f->pass->gather(f->mpm, entry - f->cells, worker);
+  else if (f->pass->scatter)
+    finish_nodes(f, entry - 2 * f->cells, worker);
+  else
+    update_nodes(f, entry - 2 * f->cells, worker);
+}
+
+/* Claims some entries that stand one behind the other; returns how many. */
+static int32_t claim(flow *f, int32_t *entry) {
+  int64_t head = atomic_load_explicit(&f->head, memory_order_relaxed);
+  for (;;) {
+    const int64_t waiting = atomic_load_explicit(&f->tail, memory_order_relaxed) - head;
+    int64_t most = waiting / (4 * f->mpm->grid.worker_count);
+    most = most < 1 ? 1 : most > MOST_CLAIMED ? MOST_CLAIMED : most;
+    int32_t n = 0;
+    for (; n < most && head + n < f->entries; n++) {
+      entry[n] = atomic_load_explicit(&f->queue[head + n], memory_order_acquire);
+      if (entry[n] == EMPTY) break;
+    }
+    if (n == 0) return 0;
+    if (atomic_compare_exchange_weak_explicit(&f->head, &head, head + n, memory_order_relaxed,
+                                              memory_order_relaxed))
+      return n;
+  }
+}
+
+static void visit(void *data, int64_t unit, int32_t worker) {
+  flow *f = data;
+  const bool own = mpsi_executor_is_own(f->mpm->context);
+  (void)unit;
+  for (int32_t look = 0; atomic_load_explicit(&f->head, memory_order_relaxed) < f->entries;
+       look++) {
+    int32_t entry[MOST_CLAIMED];
+    const int32_t n = claim(f, entry);
+    for (int32_t k = 0; k < n; k++) work_on(f, entry[k], worker);
+    if (n > 0)
+      look = -1;
+    else if (!mpsi_wait_a_little(look, own))
+      return;
+  }
+}
+
+/* What is ready at once. */
+static void fill(flow *f) {
+  const mpsi_grid *grid = &f->mpm->grid;
+  int32_t held = 0;
+  for (int64_t k = 0; k < 2 * grid->cell_count + grid->node_count; k++)
+    atomic_store_explicit(&f->queue[k], EMPTY, memory_order_relaxed);
+  for (int32_t b = 0; b < f->cells; b++) {
+    atomic_store_explicit(&f->scatter_waits[b], grid->cells[b].waits, memory_order_relaxed);
+    atomic_store_explicit(&f->gather_waits[b], 1 << f->mpm->dim, memory_order_relaxed);
+  }
+  for (int32_t g = 0; f->pass->between && g < f->nodes; g++) held += grid->nodes[g].waits;
+  atomic_init(&f->held, held);
+  f->entries = held + (f->pass->scatter ? f->cells : f->nodes) + (f->pass->gather ? f->cells : 0);
+  for (int32_t k = 0; f->pass->scatter && k < f->cells; k++)
+    if (grid->cells[grid->coloured[k]].waits == 0) put(f, grid->coloured[k]);
+  for (int32_t g = 0; !f->pass->scatter && g < f->nodes; g++) put(f, 2 * f->cells + g);
+}
+
+void mpsi_mpm_run_pass(mps_mpm *mpm, const mpsi_pass *pass) {
+  mpsi_grid *grid = &mpm->grid;
+  if (grid->worker_count == 1 || mpm->p.count < SMALL_SET) {
+    run_alone(mpm, pass);
+    return;
+  }
+  _Atomic int32_t *room = grid->pass_room.item;
+  flow f = {.mpm = mpm,
+            .pass = pass,
+            .cells = (int32_t)grid->cell_count,
+            .nodes = (int32_t)grid->node_count,
+            .scatter_waits = room,
+            .gather_waits = room + grid->cell_count,
+            .queue = room + 2 * grid->cell_count};
+  const int64_t visits = mpsi_executor_is_own(mpm->context) ? 1 : VISITS;
+  fill(&f);
+  mpsi_parallel_for(mpm->context, visits * grid->worker_count, visit, &f);
+}
+
+bool mpsi_mpm_ensure_pass(mps_mpm *mpm) {
+  const int64_t entries = 4 * mpm->grid.cell_count + mpm->grid.node_count;
+  return mpsi_room_ensure(mpm->context, &mpm->grid.pass_room, entries, sizeof(_Atomic int32_t));
+}
+
+/* ---- blocks ---------------------------------------------------------------------------------- */
+
+/* The tile of the block of cells at corner q begins q blocks below the block of nodes, so that
+ * their parities, and the colour of the cells, follow from those of the nodes. */
+void mpsi_mpm_link_blocks(mps_mpm *mpm) {
+  mpsi_cell_block *cells = mpm->grid.cells;
+  for (int64_t g = 0; g < mpm->grid.node_count; g++) {
+    const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+    const int parity = (nodes->at[0] & 1) | (nodes->at[1] & 1) << 1 | (nodes->at[2] & 1) << 2;
+    int32_t last = -1;
+    int last_q = 0;
+    for (int colour = 0; colour < 1 << mpm->dim; colour++) {
+      const int q = colour ^ parity;
+      const int32_t b = nodes->from[q];
+      if (b < 0) continue;
+      cells[b].next[q] = -1;
+      if (last < 0)
+        cells[b].first |= (uint8_t)(1u << q);
+      else
+        cells[last].next[last_q] = b, cells[b].waits++;
+      last = b, last_q = q;
+    }
+  }
+}
+
+/* ---- cells by themselves --------------------------------------------------------------------- */
+
+typedef struct cell_loop {
+  mps_mpm *mpm;
+  mpsi_mpm_task task;
+  int64_t grain;
+} cell_loop;
+
+static void some_cells(void *data, int64_t unit, int32_t worker) {
+  const cell_loop *w = data;
+  const int64_t end = (unit + 1) * w->grain;
+  for (int64_t b = unit * w->grain; b < end && b < w->mpm->grid.cell_count; b++)
+    w->task(w->mpm, b, worker);
+}
+
+void mpsi_mpm_for_cells(mps_mpm *mpm, mpsi_mpm_task task) {
+  const int64_t most = mpm->p.count < SMALL_SET ? 1 : 8 * (int64_t)mpm->grid.worker_count;
+  const int64_t count = mpm->grid.cell_count, units = count < most ? count : most;
+  if (units == 0) return;
+  cell_loop w = {mpm, task, (count + units - 1) / units};
+  mpsi_parallel_for(mpm->context, units, some_cells, &w);
+}
