@@ -61,7 +61,7 @@ eval text(15.75, 7.6, 'Embree: meshes (body)')
 eval text(45.25, 7.6, 'HDF5: files (io)')
 eval text(79, 7.6, 'CHOLMOD, LAPACK, ARPACK (implicit)')
 eval text(108, 7.6, 'OpenMP (core)')
-eval text(60, 3.2, "Each of them is behind one file, and no public header names it. Calls go down the arrows only.")
+eval text(60, 3.2, "Each of them stays behind its layer, and no public header names it. Calls go down the arrows only.")
 plot NaN
 
 # ---- one step ---------------------------------------------------------------------------------
