@@ -16,16 +16,17 @@ MPS_EXTERN_C_BEGIN
 /** A layer of ground. Layers follow the surface: depths are vertical ones below it. Frozen layout.
  */
 typedef struct mps_soil_layer {
-  double thickness; /* m, > 0; infinite allowed for the lowest */
+  double thickness; /* m, 1e-9 to 1e9; infinite allowed for the lowest */
   double k0;        /* horizontal over vertical stress, >= 0; elastic ground held at its sides:
                        nu/(1 - nu) */
-  double density;   /* kg/m3, > 0; 0: that of the field `density` of the particles whose centres lie
-                       in the layer, which must be one value */
+  double density;   /* kg/m3, 1e-9 to 1e9; 0: that of the field `density` of the particles whose
+                       centres lie   in the layer, which must be one value */
 } mps_soil_layer;
 
-/** Level (m) of the surface above or below the position x (m, as many values as the set has
- *  dimensions; the vertical one is that of the particle). */
-typedef double (*mps_level_fn)(void *user, const double *x);
+/** Writes the level (m) of the surface above or below the position x (m, as many values as the set
+ *  has dimensions; the vertical one is that of the particle). Another status than MPS_OK ends the
+ *  call, which returns it. */
+typedef mps_status (*mps_level_fn)(void *user, const double *x, double *level);
 
 typedef struct mps_geostatic_def {
   uint32_t struct_size;
@@ -64,12 +65,12 @@ MPS_API MPS_NODISCARD mps_status mps_particles_set_geostatic(mps_particles *part
                                                              const mps_geostatic_def *def);
 
 /** Writes the stress (Pa) at the position x (m): xx, yy, zz, xy in 2D, and zx, yz in 3D, which are
- *  zero on entry. Returns 0, or anything else to give up. */
-typedef int32_t (*mps_stress_fn)(void *user, const double *x, double *stress);
+ *  zero on entry. Another status than MPS_OK ends the call, which returns it. */
+typedef mps_status (*mps_stress_fn)(void *user, const double *x, double *stress);
 
 /** Sets the stress of every particle by the caller's function, adding the field where the set lacks
- *  it. MPS_ERROR_ARGUMENT for a stress that is not finite, MPS_ERROR_CANCELLED when the function
- *  gives up; then nothing is changed. */
+ *  it. MPS_ERROR_ARGUMENT for a stress that is not finite, or the status that the function returns;
+ *  then nothing is changed. */
 MPS_API MPS_NODISCARD mps_status mps_particles_set_stress(mps_particles *particles,
                                                           mps_stress_fn stress, void *user);
 

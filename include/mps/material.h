@@ -12,7 +12,7 @@
 #ifndef LIBMPS_MATERIAL_H
 #define LIBMPS_MATERIAL_H
 
-#include "context.h"
+#include "particles.h"
 
 MPS_EXTERN_C_BEGIN
 
@@ -61,7 +61,8 @@ static inline mps_material_block mps_material_block_defaults(void) {
 }
 
 /* ---- laws ----------------------------------------------------------------------------------
- * E is Young's modulus (Pa, finite, > 0), nu Poisson's ratio (-1 < nu < 0.5). Every law but the
+ * E is Young's modulus (1e-6 to 1e18 Pa), nu Poisson's ratio (-0.999 to 0.49999); other moduli and
+ * strengths up to 1e18 Pa, viscosities up to 1e18 Pa s. Every law but the
  * neo-Hookean solid and the fluid turns the stress of the step before by the step's spin, Nakamura
  * (45)-(47) in a form that keeps its principal values to the last bits, adds C:d, and then maps the
  * trial stress back to the yield surface. Errors: MPS_ERROR_ARGUMENT with the value and its range,
@@ -266,6 +267,61 @@ MPS_API const char *mps_material_history_name(const mps_material *material, int3
 MPS_API const char *mps_material_history_field(const mps_material *material, int32_t index);
 /** Value of a history column before the first step. */
 MPS_API double mps_material_history_initial(const mps_material *material, int32_t index);
+
+/* ---- elastic ground in all its words ----------------------------------------------------------
+ */
+
+/** Constants of isotropic elasticity. */
+typedef struct mps_moduli {
+  double young, poisson;      /* E, Pa; nu */
+  double shear, bulk, lambda; /* G, K, K - 2G/3, Pa */
+  double wave;                /* K + 4G/3, Pa */
+  double density;             /* kg/m3 */
+  double shear_velocity;      /* Vs = sqrt(G/rho), m/s */
+  double pressure_velocity;   /* Vp = sqrt((K + 4G/3)/rho), m/s */
+} mps_moduli;
+
+/** From E (1e-6 to 1e18 Pa), nu (-0.999 to 0.49999) and the density (1e-9 to 1e9 kg/m3). These
+ *  ranges hold wherever a material takes such a value. MPS_ERROR_ARGUMENT: outside. */
+MPS_API MPS_NODISCARD mps_status mps_moduli_from_elastic_sized(mps_context *context, double young,
+                                                               double poisson, double density,
+                                                               mps_moduli *out, size_t size);
+static inline mps_status mps_moduli_from_elastic(mps_context *owner, double young, double poisson,
+                                                 double density, mps_moduli *out) {
+  return mps_moduli_from_elastic_sized(owner, young, poisson, density, out, sizeof *out);
+}
+/** From Vs and Vp (1e-6 to 1e9 m/s; Vp 1.155 to 223 times Vs, so that nu is in its range) and the
+ *  density. E must come out in its range. */
+MPS_API MPS_NODISCARD mps_status mps_moduli_from_velocities_sized(mps_context *context,
+                                                                  double shear_velocity,
+                                                                  double pressure_velocity,
+                                                                  double density, mps_moduli *out,
+                                                                  size_t size);
+static inline mps_status mps_moduli_from_velocities(mps_context *owner, double shear_velocity,
+                                                    double pressure_velocity, double density,
+                                                    mps_moduli *out) {
+  return mps_moduli_from_velocities_sized(owner, shear_velocity, pressure_velocity, density, out,
+                                          sizeof *out);
+}
+/** Of a material in its elastic range, at zero strain. MPS_ERROR_UNSUPPORTED: a fluid, or a law of
+ *  the caller's own. */
+MPS_API MPS_NODISCARD mps_status mps_material_get_moduli_sized(const mps_material *material,
+                                                               double density, mps_moduli *out,
+                                                               size_t size);
+static inline mps_status mps_material_get_moduli(const mps_material *material, double density,
+                                                 mps_moduli *out) {
+  return mps_material_get_moduli_sized(material, density, out, sizeof *out);
+}
+/** Says what the particles `ids` (count 0 and NULL: all) are made of in the fields that the solvers
+ *  of elasticity read: `density`, `young`, `poisson`, `shear_velocity`, `pressure_velocity`, added
+ *  where the set lacks them. So one linear elastic material serves explicit dynamics, implicit
+ *  elasticity and, given to its create, WLS-MPM. MPS_ERROR_UNSUPPORTED: another law;
+ *  MPS_ERROR_ARGUMENT: a material of another context, a density out of range, an id that the set
+ *  lacks. Nothing has changed on an error. */
+MPS_API MPS_NODISCARD mps_status mps_particles_set_material(mps_particles *particles,
+                                                            const mps_material *material,
+                                                            double density, int64_t count,
+                                                            const int64_t *ids);
 
 /* ---- use without a solver -------------------------------------------------------------------- */
 

@@ -25,18 +25,12 @@ mps_status mpsi_check_within(mps_context *context, const char *function, const c
   return out_of_range(context, function, name, unit, value, low, high, ">=");
 }
 
-mps_status mpsi_check_between(mps_context *context, const char *function, const char *name,
-                              const char *unit, double value, double low, double high) {
-  if (value > low && value < high) return MPS_OK;
-  return out_of_range(context, function, name, unit, value, low, high, ">");
-}
-
 mps_status mpsi_check_elastic(mps_context *context, const char *function, double young,
                               double poisson) {
   const mps_status status =
-      mpsi_check_between(context, function, "Young's modulus", " Pa", young, 0.0, INFINITY);
+      mpsi_check_range(context, function, "Young's modulus", young, MPSI_RANGE_MODULUS);
   if (status != MPS_OK) return status;
-  return mpsi_check_between(context, function, "Poisson's ratio", "", poisson, -1.0, 0.5);
+  return mpsi_check_range(context, function, "Poisson's ratio", poisson, MPSI_RANGE_POISSON);
 }
 
 mps_status mpsi_check_friction(mps_context *context, const char *function, double friction,
@@ -49,7 +43,7 @@ mps_status mpsi_check_friction(mps_context *context, const char *function, doubl
                      "the dilation angle is %g rad, must be >= 0 and at most the friction angle, "
                      "%g rad",
                      dilation, friction);
-  status = mpsi_check_within(context, function, "cohesion", " Pa", cohesion, 0.0, INFINITY);
+  status = mpsi_check_range_or_0(context, function, "cohesion", cohesion, MPSI_RANGE_STRESS);
   if (status != MPS_OK) return status;
   if (friction == 0.0 && cohesion == 0.0)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,

@@ -68,10 +68,11 @@ mps_status mps_material_von_mises(mps_context *context, const mps_von_mises_def 
     status = MPSI_DEF_READ(context, __func__, mps_von_mises_def, user_def, &def);
   if (status == MPS_OK) status = mpsi_check_elastic(context, __func__, def.young, def.poisson);
   if (status == MPS_OK)
-    status = mpsi_check_between(context, __func__, "yield stress", " Pa", def.yield_stress, 0.0,
-                                INFINITY);
+    status =
+        mpsi_check_range(context, __func__, "yield stress", def.yield_stress, MPSI_RANGE_STRESS);
   if (status == MPS_OK)
-    status = mpsi_check_within(context, __func__, "hardening", " Pa", def.hardening, 0.0, INFINITY);
+    status =
+        mpsi_check_range_or_0(context, __func__, "hardening", def.hardening, MPSI_RANGE_STRESS);
   if (status != MPS_OK) return status;
   mpsi_law law = mpsi_law_elastic(def.young, def.poisson);
   law.yield = def.yield_stress;
@@ -142,10 +143,11 @@ static mps_status check_newtonian(mps_context *context, const char *function,
   if (def->no_tension != 0 && def->no_tension != 1)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "no_tension is %d, must be 0 or 1",
                      (int)def->no_tension);
-  const mps_status status = mpsi_check_between(context, function, "bulk modulus", " Pa",
-                                               def->bulk_modulus, 0.0, INFINITY);
+  const mps_status status =
+      mpsi_check_range(context, function, "bulk modulus", def->bulk_modulus, MPSI_RANGE_MODULUS);
   if (status != MPS_OK) return status;
-  return mpsi_check_within(context, function, "viscosity", " Pa s", def->viscosity, 0.0, INFINITY);
+  return mpsi_check_range_or_0(context, function, "viscosity", def->viscosity,
+                               MPSI_RANGE_VISCOSITY);
 }
 
 mps_status mps_material_newtonian(mps_context *context, const mps_newtonian_def *user_def,

@@ -2,6 +2,7 @@
  * caller's function says.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles_internal.h"
+#include "core/ranges.h"
 
 #include <mps/geostatic.h>
 
@@ -42,16 +43,17 @@ static mps_status check_layers(const geostatic *g) {
   for (int32_t k = 0; k < d->layer_count; k++) {
     const mps_soil_layer *layer = &d->layers[k];
     const bool lowest = k == d->layer_count - 1;
-    if (!(layer->thickness > 0.0) || (isinf(layer->thickness) && !lowest))
+    if (!mpsi_in_range(MPSI_RANGE_LENGTH, layer->thickness) &&
+        !(lowest && layer->thickness == INFINITY))
       return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
-                       "layer %d has thickness %g m, must be > 0%s", (int)k, layer->thickness,
-                       lowest ? "" : " and finite (only the lowest may be infinite)");
-    if (!(layer->k0 >= 0.0) || isinf(layer->k0))
+                       "layer %d has thickness %g m, must be > 0 (1e-9 to 1e9)%s", (int)k,
+                       layer->thickness, lowest ? "" : "; only the lowest may be infinite");
+    if (layer->k0 != 0.0 && !mpsi_in_range(MPSI_RANGE_STRESS_RATIO, layer->k0))
       return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
-                       "layer %d has k0 %g, must be finite and >= 0", (int)k, layer->k0);
-    if (!(layer->density >= 0.0) || isinf(layer->density))
+                       "layer %d has k0 %g, must be 0 or 1e-9 to 1e6", (int)k, layer->k0);
+    if (layer->density != 0.0 && !mpsi_in_range(MPSI_RANGE_DENSITY, layer->density))
       return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
-                       "layer %d has density %g kg/m3, must be finite and > 0, or 0 for the "
+                       "layer %d has density %g kg/m3, must be 1e-9 to 1e9, or 0 for the "
                        "particles'",
                        (int)k, layer->density);
     if (layer->density == 0.0 && !g->density_field)
@@ -87,20 +89,18 @@ static mps_status check_line(const geostatic *g) {
 
 static mps_status check_numbers(const geostatic *g) {
   const mps_geostatic_def *d = &g->def;
-  if (!isfinite(d->gravity) || d->gravity <= 0.0)
-    return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
-                     "gravity is %g m/s2, must be finite and > 0", d->gravity);
-  if (!isfinite(d->surcharge) || d->surcharge < 0.0)
-    return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
-                     "surcharge is %g Pa, must be finite and >= 0", d->surcharge);
+  mps_status status =
+      mpsi_check_range(g->context, set_geostatic, "gravity", d->gravity, MPSI_RANGE_ACCELERATION);
+  if (status == MPS_OK)
+    status = mpsi_check_range_or_0(g->context, set_geostatic, "surcharge", d->surcharge,
+                                   MPSI_RANGE_STRESS);
+  if (status == MPS_OK && !isnan(d->surface))
+    status = mpsi_check_range(g->context, set_geostatic, "surface", d->surface, MPSI_RANGE_LEVEL);
+  if (status != MPS_OK) return status;
   if (g->up < 0 || g->up >= g->dim)
     return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
                      "vertical is %d, must be 0..%d, or -1 for the last axis", (int)d->vertical,
                      (int)g->dim - 1);
-  if (isinf(d->surface))
-    return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
-                     "surface is %g m, must be finite, or NaN for that of the highest particle",
-                     d->surface);
   const int given = !isnan(d->surface) + (d->surface_line != NULL) + (d->surface_level != NULL);
   if (given > 1)
     return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
@@ -136,9 +136,11 @@ static mps_status find_depths(geostatic *g) {
   for (int64_t k = 0; k < g->count; k++) {
     double x[3] = {0.0};
     for (int32_t c = 0; c < g->dim; c++) x[c] = g->x[c][k];
-    const double level = d->surface_level  ? d->surface_level(d->user, x)
-                         : d->surface_line ? level_of_line(d, x[0])
-                                           : flat;
+    double level = d->surface_line ? level_of_line(d, x[0]) : flat;
+    const mps_status status = d->surface_level ? d->surface_level(d->user, x, &level) : MPS_OK;
+    if (status != MPS_OK)
+      return mpsi_fail(g->context, set_geostatic, status,
+                       "surface_level refused the position of particle %lld", (long long)g->id[k]);
     const double depth = level - x[g->up];
     if (!isfinite(depth) || depth < -ON_SURFACE * spacing)
       return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
@@ -174,9 +176,9 @@ static mps_status take_densities(geostatic *g, double *density) {
                        g->top[n - 1] + g->def.layers[n - 1].thickness);
     if (g->def.layers[layer].density > 0.0) continue;
     const double rho = g->density_field[k];
-    if (!(rho > 0.0) || isinf(rho))
+    if (!mpsi_in_range(MPSI_RANGE_DENSITY, rho))
       return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
-                       "particle %lld has density %g kg/m3, must be finite and > 0",
+                       "particle %lld has density %g kg/m3, must be 1e-9 to 1e9",
                        (long long)g->id[k], rho);
     if (density[layer] == 0.0) density[layer] = rho;
     if (rho != density[layer])
@@ -256,10 +258,9 @@ static mps_status ask_stress(const geostatic *g, mps_stress_fn fn, void *user, d
   for (int64_t k = 0; k < g->count; k++) {
     double x[3] = {0.0};
     for (int32_t c = 0; c < g->dim; c++) x[c] = g->x[c][k];
-    const int32_t refused = fn(user, x, &s[6 * k]);
-    if (refused != 0)
-      return mpsi_fail(g->context, function, MPS_ERROR_CANCELLED,
-                       "the function returned %d at particle %lld", (int)refused,
+    const mps_status refused = fn(user, x, &s[6 * k]);
+    if (refused != MPS_OK)
+      return mpsi_fail(g->context, function, refused, "the stress function refused particle %lld",
                        (long long)g->id[k]);
     for (int32_t c = 0; c < 2 * g->dim; c++)
       if (!isfinite(s[6 * k + c]))

@@ -189,7 +189,7 @@ static mps_status check_umat(mps_context *context, const char *function, const m
   if (!isfinite(def->temperature))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "temperature is %g, must be finite",
                      def->temperature);
-  return mpsi_check_between(context, function, "length", " m", def->length, 0.0, INFINITY);
+  return mpsi_check_range(context, function, "length", def->length, MPSI_RANGE_LENGTH);
 }
 
 static void fill_law(const mps_umat_def *def, umat_law *law) {

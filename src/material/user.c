@@ -63,11 +63,11 @@ static mps_status check_user_law(mps_context *context, const char *function,
   if (def->turns_stress != 0 && def->turns_stress != 1)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "turns_stress is %d, must be 0 or 1",
                      (int)def->turns_stress);
-  mps_status status = mpsi_check_between(context, function, "wave modulus", " Pa",
-                                         def->wave_modulus, 0.0, INFINITY);
+  mps_status status =
+      mpsi_check_range(context, function, "wave modulus", def->wave_modulus, MPSI_RANGE_MODULUS);
   if (status == MPS_OK)
     status =
-        mpsi_check_within(context, function, "viscosity", " Pa s", def->viscosity, 0.0, INFINITY);
+        mpsi_check_range_or_0(context, function, "viscosity", def->viscosity, MPSI_RANGE_VISCOSITY);
   return status == MPS_OK ? check_history(context, function, def) : status;
 }
 

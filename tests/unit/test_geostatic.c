@@ -61,9 +61,14 @@ static double at_three(double x) { return 0.0 * x + 3.0; }
 static double at_four(double x) { return 0.0 * x + 4.0; }
 /* 3 m at the left, 5 m from x = 0.5 m on. */
 static double slope(double x) { return x < 0.5 ? 3.0 + 4.0 * x : 5.0; }
-static double level(void *user, const double *x) {
+static mps_status level(void *user, const double *x, double *at) {
   *(int *)user += 1;
-  return slope(x[0]);
+  *at = slope(x[0]);
+  return MPS_OK;
+}
+static mps_status no_level(void *user, const double *x, double *at) {
+  (void)user, (void)x, (void)at;
+  return MPS_ERROR_IO;
 }
 
 static void layers_carry_what_lies_above(void **state) {
@@ -163,6 +168,13 @@ static void bad_layers_are_refused_and_nothing_is_changed(void **state) {
   REFUSED((def.surface_line = backwards, def.surface_points = 2), "point 1 of surface_line");
   REFUSED((def.surface = 3.0, def.surface_level = level), "only one may be");
   REFUSED(def.struct_size = 8, "struct_size is 8");
+  REFUSED(def.gravity = 1e308, "gravity is 1e+308 m/s2");
+  REFUSED(layers[0].density = 1e20, "layer 0 has density 1e+20 kg/m3");
+  REFUSED(layers[0].k0 = 1e300, "layer 0 has k0 1e+300");
+  mps_geostatic_def refusing = two_layers();
+  refusing.surface_level = no_level;
+  mps_assert_fails(context, mps_particles_set_geostatic(set, &refusing), MPS_ERROR_IO,
+                   "surface_level refused the position of particle 0");
   assert_int_equal(mps_particles_set_geostatic(NULL, NULL), MPS_ERROR_ARGUMENT);
   mps_particles_destroy(&set);
 }
@@ -170,12 +182,12 @@ static void bad_layers_are_refused_and_nothing_is_changed(void **state) {
 /* ---- a caller's function ----------------------------------------------------------------------
  */
 
-static int32_t radial(void *user, const double *x, double *stress) {
+static mps_status radial(void *user, const double *x, double *stress) {
   const double limit = *(const double *)user;
   for (int c = 0; c < 3; c++) stress[c] = -100.0 * (c + 1) * x[1];
   stress[3] = 7.0 * x[0];
   if (x[1] > limit) stress[2] = NAN;
-  return x[0] > limit ? 5 : 0;
+  return x[0] > limit ? MPS_ERROR_CANCELLED : MPS_OK;
 }
 
 static void a_function_sets_the_stress(void **state) {
@@ -184,7 +196,7 @@ static void a_function_sets_the_stress(void **state) {
   mps_view s;
   mps_particles *set = ground(context, 2, 1.0);
   mps_assert_fails(context, mps_particles_set_stress(set, radial, &limit), MPS_ERROR_CANCELLED,
-                   "returned 5 at particle 3");
+                   "the stress function refused particle 3");
   mps_view x = view_of(set, "position");
   for (int64_t k = 0; k < x.shape[0]; k++) *mps_view_f64(&x, k, 0) *= 0.5;
   mps_assert_fails(context, mps_particles_set_stress(set, radial, &limit), MPS_ERROR_ARGUMENT,

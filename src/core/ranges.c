@@ -1,0 +1,32 @@
+/* ranges.c - see ranges.h. SPDX-License-Identifier: BSD-3-Clause */
+#include "ranges.h"
+
+static const struct {
+  const char *unit;
+  double low, high;
+} table[] = {
+#define ROW(name, unit, low, high) {unit, low, high},
+    MPSI_RANGE_TABLE(ROW)
+#undef ROW
+};
+
+bool mpsi_in_range(mpsi_range range, double value) {
+  return value >= table[range].low && value <= table[range].high; /* not NaN */
+}
+
+static mps_status check(mps_context *context, const char *function, const char *name, double value,
+                        mpsi_range range, const char *zero) {
+  if (mpsi_in_range(range, value) || (zero[0] && value == 0.0)) return MPS_OK;
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %.6g%s, must be %s%g to %g", name,
+                   value, table[range].unit, zero, table[range].low, table[range].high);
+}
+
+mps_status mpsi_check_range(mps_context *context, const char *function, const char *name,
+                            double value, mpsi_range range) {
+  return check(context, function, name, value, range, "");
+}
+
+mps_status mpsi_check_range_or_0(mps_context *context, const char *function, const char *name,
+                                 double value, mpsi_range range) {
+  return check(context, function, name, value, range, "0 or ");
+}

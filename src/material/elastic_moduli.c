@@ -1,0 +1,133 @@
+/* elastic_moduli.c - the elastic constants of isotropic ground in all their forms, and the fields
+ * that the solvers of elasticity read, from a material.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "constants.h"
+#include "core/particles_internal.h"
+
+static mps_moduli moduli_of(double shear, double bulk, double density) {
+  const double wave = bulk + 4.0 / 3.0 * shear;
+  return (mps_moduli){.young = 9.0 * bulk * shear / (3.0 * bulk + shear),
+                      .poisson = 0.5 * (3.0 * bulk - 2.0 * shear) / (3.0 * bulk + shear),
+                      .shear = shear,
+                      .bulk = bulk,
+                      .lambda = bulk - 2.0 / 3.0 * shear,
+                      .wave = wave,
+                      .density = density,
+                      .shear_velocity = sqrt(shear / density),
+                      .pressure_velocity = sqrt(wave / density)};
+}
+
+mps_status mps_moduli_from_elastic_sized(mps_context *context, double young, double poisson,
+                                         double density, mps_moduli *out, size_t size) {
+  static const char function[] = "mps_moduli_from_elastic";
+  if (!context) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_check_elastic(context, function, young, poisson);
+  if (status == MPS_OK)
+    status = mpsi_check_range(context, function, "density", density, MPSI_RANGE_DENSITY);
+  if (status != MPS_OK) return status;
+  const mpsi_law law = mpsi_law_elastic(young, poisson);
+  mps_moduli m = moduli_of(law.shear, law.bulk, density);
+  m.young = young, m.poisson = poisson; /* to the last bit */
+  return mpsi_out_write(context, function, out, size, &m, sizeof m);
+}
+
+mps_status mps_moduli_from_velocities_sized(mps_context *context, double shear_velocity,
+                                            double pressure_velocity, double density,
+                                            mps_moduli *out, size_t size) {
+  static const char function[] = "mps_moduli_from_velocities";
+  if (!context) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_check_range(context, function, "the shear wave velocity", shear_velocity,
+                                       MPSI_RANGE_WAVE_VELOCITY);
+  if (status == MPS_OK)
+    status = mpsi_check_range(context, function, "the pressure wave velocity", pressure_velocity,
+                              MPSI_RANGE_WAVE_VELOCITY);
+  if (status == MPS_OK)
+    status = mpsi_check_range(context, function, "density", density, MPSI_RANGE_DENSITY);
+  if (status != MPS_OK) return status;
+  const double ratio = pressure_velocity / shear_velocity, square = ratio * ratio;
+  const double poisson = 0.5 * (square - 2.0) / (square - 1.0);
+  if (!(square > 4.0 / 3.0) || !mpsi_in_range(MPSI_RANGE_POISSON, poisson))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "the pressure wave velocity is %g times the shear wave velocity, Poisson's "
+                     "ratio would be %.6g: must be -0.999 to 0.49999 (1.155 to 223 times)",
+                     ratio, poisson);
+  const double shear = density * shear_velocity * shear_velocity;
+  mps_moduli m = moduli_of(shear, shear * (square - 4.0 / 3.0), density);
+  m.shear_velocity = shear_velocity, m.pressure_velocity = pressure_velocity;
+  status = mpsi_check_range(context, function, "Young's modulus by these velocities", m.young,
+                            MPSI_RANGE_MODULUS);
+  return status == MPS_OK ? mpsi_out_write(context, function, out, size, &m, sizeof m) : status;
+}
+
+mps_status mps_material_get_moduli_sized(const mps_material *material, double density,
+                                         mps_moduli *out, size_t size) {
+  static const char function[] = "mps_material_get_moduli";
+  if (!material) return MPS_ERROR_ARGUMENT;
+  mps_context *context = material->context;
+  if (material->kind == MPSI_LAW_USER || material->kind == MPSI_LAW_NEWTONIAN)
+    return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
+                     "the law %s has no elastic constants that the library knows", material->name);
+  const mps_status status =
+      mpsi_check_range(context, function, "density", density, MPSI_RANGE_DENSITY);
+  if (status != MPS_OK) return status;
+  const mps_moduli m = moduli_of(material->law.shear, material->law.bulk, density);
+  return mpsi_out_write(context, function, out, size, &m, sizeof m);
+}
+
+/* ---- fields ---------------------------------------------------------------------------------- */
+
+static const char set_material[] = "mps_particles_set_material";
+
+static mps_status check_ids(const mps_particles *set, mps_context *context, int64_t count,
+                            const int64_t *ids) {
+  if (count < 0 || (ids == NULL && count != 0))
+    return mpsi_fail(context, set_material, MPS_ERROR_ARGUMENT,
+                     "count is %lld with ids %s, must be >= 0, and 0 where ids is NULL (all)",
+                     (long long)count, ids ? "given" : "NULL");
+  for (int64_t i = 0; i < count; i++)
+    if (mps_particles_index(set, ids[i]) < 0)
+      return mpsi_fail(context, set_material, MPS_ERROR_ARGUMENT,
+                       "ids[%lld] is %lld, the set has no such particle", (long long)i,
+                       (long long)ids[i]);
+  return MPS_OK;
+}
+
+static mps_status check_use(mps_context *context, const mps_material *material) {
+  if (!material) return mpsi_fail(context, set_material, MPS_ERROR_ARGUMENT, "material is NULL");
+  if (material->context != context)
+    return mpsi_fail(context, set_material, MPS_ERROR_ARGUMENT,
+                     "the material was made from another context");
+  if (material->kind != MPSI_LAW_LINEAR_ELASTIC)
+    return mpsi_fail(context, set_material, MPS_ERROR_UNSUPPORTED,
+                     "the law is %s: fields hold linear_elastic ground only; WLS-MPM takes other "
+                     "laws as they are",
+                     material->name);
+  return MPS_OK;
+}
+
+mps_status mps_particles_set_material(mps_particles *particles, const mps_material *material,
+                                      double density, int64_t count, const int64_t *ids) {
+  static const char *const names[] = {"density", "young", "poisson", "shear_velocity",
+                                      "pressure_velocity"};
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  mps_context *context = mpsi_particles_context(particles);
+  mps_moduli m = {0};
+  mps_status status = check_use(context, material);
+  if (status == MPS_OK) status = check_ids(particles, context, count, ids);
+  if (status == MPS_OK) status = mps_material_get_moduli(material, density, &m);
+  const int32_t before = mps_particles_field_count(particles);
+  for (int k = 0; k < 5 && status == MPS_OK; k++)
+    status = mps_particles_add_field(particles, names[k], 0);
+  if (status != MPS_OK) {
+    mpsi_particles_drop_fields(particles, before);
+    return status;
+  }
+  const double value[] = {density, m.young, m.poisson, m.shear_velocity, m.pressure_velocity};
+  for (int k = 0; k < 5; k++) {
+    double *column = mpsi_particles_column(particles, names[k], 0);
+    const int64_t most = ids ? count : mps_particles_count(particles);
+    for (int64_t i = 0; i < most; i++)
+      column[ids ? mps_particles_index(particles, ids[i]) : i] = value[k];
+  }
+  return MPS_OK;
+}
