@@ -29,6 +29,7 @@ static contender contender_create(int64_t columns, int64_t rows, int threads, do
   char text[256] = "";
   mps_context_def context_def = mps_context_defaults();
   context_def.threads = threads;
+  context_def.instruction_level = isa;
   if (threads == 1) context_def.executor = MPS_EXECUTOR_SERIAL;
   check(NULL, mps_context_create(&context_def, &c.context, text, sizeof text), text);
   mps_particles_def set = mps_particles_defaults();
@@ -48,7 +49,6 @@ static contender contender_create(int64_t columns, int64_t rows, int threads, do
     *mps_view_f64(&v, k, 0) = 1e-3 * sin(0.1 * *mps_view_f64(&x, k, 1));
   mps_dynamics_def def = mps_dynamics_defaults();
   def.dt = 1e-4;
-  def.isa = isa;
   check(c.context, mps_dynamics_create(c.context, c.particles, &def, &c.dynamics), "solver");
   return c;
 }

@@ -10,7 +10,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-enum { PLAIN_EULER, PLAIN_LEAPFROG, PLAIN_VERLET };
+enum { PLAIN_VERLET, PLAIN_LEAPFROG, PLAIN_EULER };
 
 typedef struct plain_body {
   int64_t n;

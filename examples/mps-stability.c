@@ -10,7 +10,7 @@
 
 typedef struct settings {
   bool study;
-  int wave, integrator, rotation;
+  int wave, integrator;
   double radius, velocity, other, damping; /* as in stability_case */
   method m;
   int64_t threads;
@@ -37,8 +37,7 @@ static void choose_velocities(settings *s, double vs, double vp) {
 
 static int parse(settings *s, int argc, char **argv) {
   double vs = NAN, vp = NAN;
-  *s = (settings){.integrator = MPS_INTEGRATOR_VERLET,
-                  .rotation = 1,
+  *s = (settings){.integrator = MPS_DYNAMICS_INTEGRATOR_VERLET,
                   .radius = 0.5,
                   .velocity = NAN,
                   .m = {.kind = METHOD_BOTH,
@@ -64,7 +63,7 @@ static int parse(settings *s, int argc, char **argv) {
                     "instead: the velocity V of the wave as in the paper, S: Vs = V, P: Vp = V"),
       OPTION_NUMBER("damping", "1", OPTION_FROM_TO(0.0, 10.0), &s->damping,
                     "Rayleigh damping ratio h"),
-      OPTION_CHOICE("integrator", "euler|leapfrog|verlet", &s->integrator, "time integration"),
+      OPTION_CHOICE("integrator", "verlet|leapfrog|euler", &s->integrator, "time integration"),
       OPTION_HEADING("Method"),
       OPTION_CHOICE("method", "linear|stepping|both", &m->kind,
                     "linear theory (fast), bisection by time stepping, or both"),
@@ -80,10 +79,11 @@ static int parse(settings *s, int argc, char **argv) {
       OPTION_NUMBER("f2", "Hz", OPTION_FREQUENCY, &m->f2,
                     "second frequency of the damping; default 14, of the study 15: f1 + f2 = 16 "
                     "gives the paper's Table 2"),
-      OPTION_CHOICE("rotation", "11|12", &s->rotation,
-                    "the paper's equation that removes the rigid rotation"),
-      OPTION_CHOICE("torque", "conserving|printed", &m->torque,
-                    "prefactor of (A14): d conserves angular momentum, 2d is as printed"),
+      OPTION_CHOICE("rotation", "mean-matrix|mean-angle", &m->rotation,
+                    "how the rigid rotation of a pair is removed"),
+      OPTION_CHOICE(
+          "torque", "conserving|printed", &m->torque,
+          "as derived, which conserves angular momentum, or twice that as the paper prints it"),
       OPTION_HEADING("Running and results"),
       OPTION_THREADS(&s->threads),
       OPTION_OUT(&s->out),
@@ -110,14 +110,13 @@ static int parse(settings *s, int argc, char **argv) {
     return options_refuse(&program, text);
   }
   if (isnan(m->f2)) m->f2 = s->study ? 15.0 : 14.0;
-  m->rotation = s->rotation == 0 ? MPS_ROTATION_MEAN_ANGLE : MPS_ROTATION_MEAN_MATRIX;
   return -1;
 }
 
 /* ---- one case -------------------------------------------------------------------------------- */
 
 static bool write_case(app *a, const settings *s, const stability_case *x) {
-  static const char *const integrators[] = {"euler", "leapfrog", "verlet"};
+  static const char *const integrators[] = {"verlet", "leapfrog", "euler"};
   const char wave[2] = {x->wave, '\0'};
   output f;
   if (!output_open(&f, a, s->out, "summary.json")) return false;

@@ -7,6 +7,8 @@
 #include "wave/results.h"
 #include "wave/settings.h"
 
+#include <mps/experimental.h>
+
 #include <math.h>
 #include <stdio.h>
 
@@ -48,10 +50,13 @@ static bool build(app *a, const settings *s, simulation *sim) {
   if (!receivers_create(a, &sim->ground, settings_wave(s), s->receivers, &sim->record))
     return false;
   mps_particles *particles = sim->ground.particles;
-  for (int side = MPS_SIDE_LEFT; side <= MPS_SIDE_RIGHT && s->sides == SIDES_FREEFIELD; side++)
+  for (int32_t side = MPS_DYNAMICS_SIDE_LEFT;
+       side <= MPS_DYNAMICS_SIDE_RIGHT && s->sides == SIDES_FREEFIELD; side++)
     if (!app_check(a, mps_dynamics_add_free_field(particles, side, 2))) return false;
   const mps_dynamics_def dynamics = settings_dynamics(s, sim->ground.width);
   return app_check(a, mps_dynamics_create(a->context, particles, &dynamics, &sim->dynamics)) &&
+         (s->torque == 0 ||
+          app_check(a, mps_experimental_dynamics_printed_torque(sim->dynamics))) &&
          app_check(a, build_boundaries(s, sim)) &&
          files_open(a, s, particles, sim->dynamics, &sim->files) &&
          field_create(a, s, particles, &sim->peaks);
@@ -106,16 +111,20 @@ static mps_status record(void *user, mps_dynamics *dynamics) {
 
 /* Exit code; the results are filled as far as the run came. */
 static int march(app *a, const settings *s, simulation *sim, results *x) {
-  mps_linear_limit limit;
+  mps_dynamics_linear_limit limit;
   x->particles = mps_particles_count(sim->ground.particles);
   x->dt_limit = NAN;
-  if (!app_check(a, mps_dynamics_limit_linear(sim->dynamics, sim->duration, &limit)))
+  if (!app_check(a, mps_dynamics_find_limit(sim->dynamics, sim->duration, &limit)))
     return APP_FAILED;
   x->dt_limit = limit.dt;
   x->dt = mps_dynamics_dt(sim->dynamics);
   if (!(x->dt > 0.0)) {
     app_check(a, mps_context_error(a->context)->status);
     return APP_FAILED;
+  }
+  if (!s->restart) { /* equal steps over the whole run, so that each row is dt after its step */
+    x->dt = sim->duration / ceil(sim->duration / x->dt - 1e-9);
+    if (!app_check(a, mps_dynamics_set_dt(sim->dynamics, x->dt))) return APP_FAILED;
   }
   const int64_t every = (int64_t)(sim->duration / x->dt / MAX_ROWS) + 1;
   printf("%s wave, %lld particles, dt %.4g s (linear limit %.4g s), %.0f steps\n",

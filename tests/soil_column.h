@@ -39,6 +39,41 @@ static inline mps_particles *soil_particles(mps_context *context, double spacing
   return particles;
 }
 
+/* Boundaries of listed particles, in short: held, driven in one component, viscous (`def` NULL or
+ * one whose list is filled in). */
+static inline mps_status soil_add_held(mps_dynamics *dynamics, uint32_t dofs, int64_t count,
+                                       const int64_t *ids) {
+  mps_dynamics_boundary_def def = mps_dynamics_boundary_defaults();
+  int32_t number;
+  def.dofs = dofs;
+  def.ids = ids;
+  def.id_count = count;
+  return mps_dynamics_add_boundary(dynamics, &def, &number);
+}
+
+static inline mps_status soil_add_driven(mps_dynamics *dynamics, int component, mps_signal *signal,
+                                         double factor, int64_t count, const int64_t *ids) {
+  mps_dynamics_boundary_def def = mps_dynamics_boundary_defaults();
+  int32_t number;
+  def.kind = MPS_DYNAMICS_BOUNDARY_DRIVEN;
+  def.signal[component] = signal;
+  def.factor[component] = factor;
+  def.ids = ids;
+  def.id_count = count;
+  return mps_dynamics_add_boundary(dynamics, &def, &number);
+}
+
+static inline mps_status soil_add_viscous(mps_dynamics *dynamics,
+                                          const mps_dynamics_boundary_def *user_def, int64_t count,
+                                          const int64_t *ids) {
+  mps_dynamics_boundary_def def = user_def ? *user_def : mps_dynamics_boundary_defaults();
+  int32_t number;
+  def.kind = MPS_DYNAMICS_BOUNDARY_VISCOUS;
+  def.ids = ids;
+  def.id_count = count;
+  return mps_dynamics_add_boundary(dynamics, &def, &number);
+}
+
 /* Ids of the particles in a box; the caller frees. */
 static inline int64_t *soil_select(mps_context *context, mps_particles *particles, double x0,
                                    double y0, double x1, double y1, int64_t *count) {
@@ -55,15 +90,15 @@ static inline void soil_hold(mps_context *context, mps_particles *particles, mps
                              uint32_t dofs, double x0, double y0, double x1, double y1) {
   int64_t count;
   int64_t *ids = soil_select(context, particles, x0, y0, x1, y1, &count);
-  mps_assert_ok(context, mps_dynamics_hold(dynamics, dofs, count, ids));
+  mps_assert_ok(context, soil_add_held(dynamics, dofs, count, ids));
   free(ids);
 }
 
 /* The paper's column, 10 m x 100 m, density 1500 kg/m3, rollers on sides and base, Ricker base
  * motion: wave 'S' or 'P'. `damping` for every particle. */
 static inline mps_dynamics *paper_column(mps_context *context, double radius, double vs, double vp,
-                                        double damping, char wave, const mps_dynamics_def *def,
-                                        mps_particles **particles) {
+                                         double damping, char wave, const mps_dynamics_def *def,
+                                         mps_particles **particles) {
   const double D = 2.0 * radius;
   const double width = round(10.0 / D) * D, height = round(100.0 / D) * D;
   const soil_layer soil = {height, 14.7 / 9.8 * 1000.0, vs, vp, damping};
@@ -78,8 +113,7 @@ static inline mps_dynamics *paper_column(mps_context *context, double radius, do
   int64_t count;
   int64_t *base = soil_select(context, *particles, -1.0, -1.0, width, D, &count);
   mps_assert_ok(context, mps_signal_ricker(context, 4.0, 0.25, 1.0, &ricker));
-  mps_assert_ok(context,
-                mps_dynamics_drive(dynamics, wave == 'S' ? 0 : 1, ricker, 1.0, count, base));
+  mps_assert_ok(context, soil_add_driven(dynamics, wave == 'S' ? 0 : 1, ricker, 1.0, count, base));
   mps_signal_destroy(&ricker);
   free(base);
   return dynamics;

@@ -68,58 +68,40 @@ int32_t column_component(char wave) { return wave == 'S' ? 0 : 1; }
 /* The degree of freedom across the wave, which rollers hold. */
 static uint32_t across(char wave) { return wave == 'S' ? MPS_DOF_Y : MPS_DOF_X; }
 
-/* Ids of the particles between x0 and x1 and below y1, to be freed by the caller. */
-static mps_status select_ids(const column *c, double x0, double x1, double y1, int64_t **ids,
-                             int64_t *count) {
-  const double lo[2] = {x0, -INFINITY}, hi[2] = {x1, y1};
-  *ids = NULL;
-  mps_status status = mps_particles_select_box(c->particles, lo, hi, 0, NULL, count);
-  if (status != MPS_OK || *count == 0) return status;
-  *ids = malloc((size_t)*count * sizeof **ids);
-  if (!*ids) return MPS_ERROR_MEMORY;
-  return mps_particles_select_box(c->particles, lo, hi, *count, *ids, count);
-}
-
-/* The bottom row, with that of the free-field columns beside. */
-static mps_status select_base(const column *c, int64_t **ids, int64_t *count) {
-  return select_ids(c, -INFINITY, INFINITY, c->spacing, ids, count);
+/* Adds a boundary on the particles between x0 and x1 and below y1. */
+static mps_status add(mps_dynamics *dynamics, mps_dynamics_boundary_def *def, double x0, double x1,
+                      double y1) {
+  int32_t number;
+  def->lower[0] = x0, def->lower[1] = -INFINITY;
+  def->upper[0] = x1, def->upper[1] = y1;
+  return mps_dynamics_add_boundary(dynamics, def, &number);
 }
 
 mps_status column_hold_sides(const column *c, mps_dynamics *dynamics, char wave) {
-  mps_status status = MPS_OK;
-  for (int side = 0; side < 2 && status == MPS_OK; side++) {
-    int64_t *ids, count;
-    const double from = side == 0 ? -INFINITY : c->width - c->spacing;
-    const double to = side == 0 ? c->spacing : INFINITY;
-    status = select_ids(c, from, to, INFINITY, &ids, &count);
-    if (status == MPS_OK) status = mps_dynamics_hold(dynamics, across(wave), count, ids);
-    free(ids);
-  }
+  mps_dynamics_boundary_def def = mps_dynamics_boundary_defaults();
+  def.dofs = across(wave);
+  mps_status status = add(dynamics, &def, -INFINITY, c->spacing, INFINITY);
+  if (status == MPS_OK) status = add(dynamics, &def, c->width - c->spacing, INFINITY, INFINITY);
   return status;
 }
 
+/* The base is the bottom row, with that of the free-field columns beside. */
 mps_status column_drive_base(const column *c, mps_dynamics *dynamics, char wave,
                              mps_signal *signal) {
-  int64_t *ids, count;
-  mps_status status = select_base(c, &ids, &count);
-  if (status == MPS_OK) status = mps_dynamics_hold(dynamics, across(wave), count, ids);
-  if (status == MPS_OK)
-    status = mps_dynamics_drive(dynamics, column_component(wave), signal, 1.0, count, ids);
-  free(ids);
-  return status;
+  mps_dynamics_boundary_def def = mps_dynamics_boundary_defaults();
+  def.kind = MPS_DYNAMICS_BOUNDARY_DRIVEN;
+  def.dofs = across(wave);
+  def.signal[column_component(wave)] = signal;
+  return add(dynamics, &def, -INFINITY, INFINITY, c->spacing);
 }
 
 mps_status column_viscous_base(const column *c, mps_dynamics *dynamics, char wave,
                                mps_signal *signal, const layer *half_space) {
-  mps_viscous_def def = mps_viscous_defaults();
-  def.normal = 1;
+  mps_dynamics_boundary_def def = mps_dynamics_boundary_defaults();
+  def.kind = MPS_DYNAMICS_BOUNDARY_VISCOUS;
   def.density = layers_density(half_space);
   def.shear_velocity = half_space->vs;
   def.pressure_velocity = half_space->vp;
-  def.incoming[column_component(wave)] = signal;
-  int64_t *ids, count;
-  mps_status status = select_base(c, &ids, &count);
-  if (status == MPS_OK) status = mps_dynamics_viscous(dynamics, &def, count, ids);
-  free(ids);
-  return status;
+  def.signal[column_component(wave)] = signal;
+  return add(dynamics, &def, -INFINITY, INFINITY, c->spacing);
 }

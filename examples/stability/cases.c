@@ -2,7 +2,11 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "cases.h"
 
+#include "bisection.h"
 #include "common/column.h"
+#include "regression.h"
+
+#include <mps/experimental.h>
 
 #include <math.h>
 #include <stdio.h>
@@ -41,13 +45,15 @@ static mps_status build(mps_context *context, const method *m, const stability_c
   mps_dynamics_def solver = mps_dynamics_defaults();
   solver.integrator = x->integrator;
   solver.rotation = m->rotation;
-  solver.torque = m->torque;
+  solver.divergence = m->criterion;
   solver.f1 = m->f1;
   solver.f2 = m->f2;
   mps_signal *pulse = NULL;
   mps_status status = column_create(context, &def, c);
   if (status == MPS_OK) status = mps_signal_ricker(context, FREQUENCY, PEAK_TIME, 1.0, &pulse);
   if (status == MPS_OK) status = mps_dynamics_create(context, c->particles, &solver, dynamics);
+  if (status == MPS_OK && m->torque == 1)
+    status = mps_experimental_dynamics_printed_torque(*dynamics);
   if (status == MPS_OK) status = column_hold_sides(c, *dynamics, x->wave);
   if (status == MPS_OK) status = column_drive_base(c, *dynamics, x->wave, pulse);
   mps_signal_destroy(&pulse);
@@ -55,33 +61,37 @@ static mps_status build(mps_context *context, const method *m, const stability_c
 }
 
 static mps_status find_linear(const method *m, mps_dynamics *dynamics, stability_case *x) {
-  mps_linear_limit limit;
+  mps_dynamics_linear_limit limit;
   const mps_status status =
-      mps_dynamics_limit_linear(dynamics, method_duration(m, x->velocity), &limit);
+      mps_dynamics_find_limit(dynamics, method_duration(m, x->velocity), &limit);
   if (status == MPS_OK) x->linear = limit.dt;
   return status;
 }
 
-static mps_status find_stepping(const method *m, mps_dynamics *dynamics, stability_case *x) {
-  mps_bisection_def def = mps_bisection_defaults();
-  mps_bisection found;
-  def.criterion = m->criterion;
+static mps_status find_stepping(const method *m, mps_dynamics *dynamics, stability_case *x,
+                                mps_progress_fn hook, void *user) {
+  bisection_def def = bisection_defaults();
+  bisection found;
+  char why[160];
   def.accuracy = m->accuracy;
   def.duration = method_duration(m, x->velocity);
-  const mps_status status = mps_dynamics_limit_stepping(dynamics, &def, &found);
-  if (status != MPS_OK) return status;
+  def.hook = hook;
+  def.user = user;
+  const mps_status status = bisection_find(dynamics, &def, &found, why);
+  if (status != MPS_OK) {
+    snprintf(x->why, sizeof x->why, "%s", why);
+    return status;
+  }
   x->stepping = found.stable;
   x->unstable = found.unstable;
   x->steps = found.steps;
   return MPS_OK;
 }
 
-static mps_status find_printed(mps_context *context, stability_case *x) {
-  mps_limit_fit printed;
-  if (x->damping > 0.2201 || x->damping <= 0.0) return MPS_OK;
-  const mps_status status = mps_limit_fit_printed(context, x->wave, &printed);
-  if (status == MPS_OK) x->table2 = mps_limit_fit_dt(&printed, x->radius, x->velocity, x->damping);
-  return status;
+static void find_printed(stability_case *x) {
+  const limit_fit printed = limit_fit_printed(x->wave);
+  if (x->damping <= 0.2201 && x->damping > 0.0)
+    x->table2 = limit_fit_dt(&printed, x->radius, x->velocity, x->damping);
 }
 
 void case_find(const method *m, stability_case *x, mps_progress_fn hook, void *user) {
@@ -91,21 +101,24 @@ void case_find(const method *m, stability_case *x, mps_progress_fn hook, void *u
   column c = {0};
   x->linear = x->stepping = x->unstable = x->table2 = NAN;
   x->steps = 0;
+  x->why[0] = '\0';
   def.executor = MPS_EXECUTOR_SERIAL;
   def.threads = 1;
   def.cancel = progress_cancel_hook;
-  def.progress = hook;
-  def.progress_user = user;
   x->status = mps_context_create(&def, &context, x->why, sizeof x->why);
   if (x->status != MPS_OK) return;
   x->status = build(context, m, x, &c, &dynamics);
   if (x->status == MPS_OK) x->particles = mps_particles_count(c.particles);
-  if (x->status == MPS_OK) x->status = find_printed(context, x);
+  find_printed(x);
   if (x->status == MPS_OK && m->kind != METHOD_STEPPING) x->status = find_linear(m, dynamics, x);
-  if (x->status == MPS_OK && m->kind != METHOD_LINEAR) x->status = find_stepping(m, dynamics, x);
-  if (x->status != MPS_OK)
-    snprintf(x->why, sizeof x->why, "%c wave, R = %g m, V = %g m/s, h = %g: %.200s", x->wave,
-             x->radius, x->velocity, x->damping, mps_context_error(context)->message);
+  if (x->status == MPS_OK && m->kind != METHOD_LINEAR)
+    x->status = find_stepping(m, dynamics, x, hook, user);
+  if (x->status != MPS_OK) {
+    char why[160];
+    snprintf(why, sizeof why, "%.150s", x->why[0] ? x->why : mps_context_error(context)->message);
+    snprintf(x->why, sizeof x->why, "%c wave, R = %g m, V = %g m/s, h = %g: %s", x->wave, x->radius,
+             x->velocity, x->damping, why);
+  }
   mps_dynamics_destroy(&dynamics);
   column_destroy(&c);
   mps_context_destroy(&context);

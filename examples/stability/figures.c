@@ -206,7 +206,7 @@ static bool figure8(app *a, const study *s, const char *directory) {
               "set palette defined (0 '#1b4f8c', 0.5 '#1e8449', 1 '#c0392b')\n"
               "unset colorbox\nset cbrange [-3:0]\n");
   for (int wave = 0; wave < 2; wave++) {
-    const mps_limit_fit *fit = &shown(s, wave)->fit;
+    const limit_fit *fit = &shown(s, wave)->fit;
     output_text(&f, "set xlabel 'R / V_%c (s)'\nset title '%s wave'\nplot ", "SP"[wave],
                 wave == 0 ? "shear" : "pressure");
     for (int32_t i = 0; i < fit->dampings; i++)
@@ -272,7 +272,7 @@ static bool figure10(app *a, const study *s, const char *directory) {
               "set xrange [8e-6:6e-2]\nset yrange [8e-6:6e-2]\n",
               has_stepping(s) ? "time stepping" : "linear theory");
   for (int wave = 0; wave < 2; wave++) {
-    const mps_limit_fit *fit = &shown(s, wave)->fit;
+    const limit_fit *fit = &shown(s, wave)->fit;
     output_text(&f, "a1(h) = 10**(%.9g*log10(h)**2 + %.9g*log10(h) + %.9g)\n", fit->b1[0],
                 fit->b1[1], fit->b1[2]);
     output_text(&f, "a2(h) = 10**(%.9g*log10(h)**2 + %.9g*log10(h) + %.9g)\n", fit->b2[0],

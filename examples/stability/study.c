@@ -22,15 +22,17 @@ static void list_cases(study *s) {
       for (int v = 0; v < STUDY_VELOCITIES; v++)
         for (int h = 0; h < STUDY_DAMPINGS; h++)
           *x++ = (stability_case){.wave = wave == 0 ? 'S' : 'P',
-                                  .integrator = MPS_INTEGRATOR_VERLET,
+                                  .integrator = MPS_DYNAMICS_INTEGRATOR_VERLET,
                                   .radius = study_radius[r],
                                   .velocity = study_velocity[v],
                                   .damping = study_damping[h]};
-  for (int other = MPS_INTEGRATOR_EULER; other <= MPS_INTEGRATOR_VERLET; other++)
+  static const int others[3] = {MPS_DYNAMICS_INTEGRATOR_EULER, MPS_DYNAMICS_INTEGRATOR_LEAPFROG,
+                                MPS_DYNAMICS_INTEGRATOR_VERLET};
+  for (int other = 0; other < 3; other++)
     for (int r = 1; r < STUDY_RADII; r += 2) /* 0.5 and 1.6 m */
       for (int h = 0; h < STUDY_DAMPINGS; h++)
         *x++ = (stability_case){.wave = 'S',
-                                .integrator = other,
+                                .integrator = others[other],
                                 .radius = study_radius[r],
                                 .velocity = study_velocity[0],
                                 .damping = study_damping[h]};
@@ -51,8 +53,8 @@ typedef struct work {
 } work;
 
 static int64_t estimate_cost(mps_context *context, const method *m, const stability_case *x) {
-  mps_predict_def def = mps_predict_defaults();
-  mps_prediction guess;
+  mps_dynamics_predict_def def = mps_dynamics_predict_defaults();
+  mps_dynamics_prediction guess;
   def.spacing = 2.0 * x->radius;
   def.shear_velocity = x->wave == 'S' ? x->velocity : 0.5 * x->velocity;
   def.pressure_velocity = 2.0 * def.shear_velocity;
@@ -60,8 +62,8 @@ static int64_t estimate_cost(mps_context *context, const method *m, const stabil
   def.f1 = m->f1;
   def.f2 = m->f2;
   double dt = 1e-3;
-  if (mps_dynamics_predict_dt(context, &def, &guess) == MPS_OK) dt = guess.linear;
-  if (x->integrator == MPS_INTEGRATOR_EULER) dt *= 0.2;
+  if (mps_dynamics_predict(context, &def, &guess) == MPS_OK) dt = guess.dt;
+  if (x->integrator == MPS_DYNAMICS_INTEGRATOR_EULER) dt *= 0.2;
   const double particles = (double)case_particles(x->radius);
   if (m->kind == METHOD_LINEAR) return (int64_t)(particles * sqrt(particles));
   return (int64_t)(particles * method_duration(m, x->velocity) / dt) + 1;
@@ -127,7 +129,7 @@ bool study_run(app *a, const method *m, study *s) {
 static bool fit_wave(app *a, study *s, int wave, bool stepping) {
   double R[STUDY_WAVE], V[STUDY_WAVE], h[STUDY_WAVE], dt[STUDY_WAVE];
   regression *r = stepping ? &s->stepping[wave] : &s->linear[wave];
-  const mps_limit_fit *printed = &s->printed[wave];
+  const limit_fit *printed = &s->printed[wave];
   double sum = 0.0, sum_fits = 0.0;
   int64_t count = 0;
   for (int64_t i = 0; i < STUDY_WAVE; i++) {
@@ -137,13 +139,13 @@ static bool fit_wave(app *a, study *s, int wave, bool stepping) {
     h[i] = x->damping;
     dt[i] = stepping ? x->stepping : x->linear;
   }
-  if (!app_check(a,
-                 mps_dynamics_fit_limits(a->context, STUDY_WAVE, R, V, h, dt, FIT_LIMIT, &r->fit)))
-    return false;
+  char why[160];
+  if (!limit_fit_make(STUDY_WAVE, R, V, h, dt, FIT_LIMIT, &r->fit, why))
+    return app_error(a, "%s", why);
   for (int64_t i = 0; i < STUDY_WAVE; i++) {
     if (h[i] > FIT_LIMIT) continue;
-    const double table2 = mps_limit_fit_dt(printed, R[i], V[i], h[i]);
-    const double fitted = mps_limit_fit_dt(&r->fit, R[i], V[i], h[i]);
+    const double table2 = limit_fit_dt(printed, R[i], V[i], h[i]);
+    const double fitted = limit_fit_dt(&r->fit, R[i], V[i], h[i]);
     sum += pow(dt[i] / table2 - 1.0, 2.0);
     sum_fits += pow(fitted / table2 - 1.0, 2.0);
     count++;
@@ -156,8 +158,7 @@ static bool fit_wave(app *a, study *s, int wave, bool stepping) {
 
 bool study_fit(app *a, study *s) {
   for (int wave = 0; wave < 2; wave++) {
-    if (!app_check(a, mps_limit_fit_printed(a->context, wave == 0 ? 'S' : 'P', &s->printed[wave])))
-      return false;
+    s->printed[wave] = limit_fit_printed(wave == 0 ? 'S' : 'P');
     if (s->m.kind != METHOD_STEPPING && !fit_wave(a, s, wave, false)) return false;
     if (s->m.kind != METHOD_LINEAR && !fit_wave(a, s, wave, true)) return false;
   }

@@ -5,6 +5,7 @@
 #define EXAMPLES_STABILITY_STUDY_H
 
 #include "cases.h"
+#include "regression.h"
 
 enum {
   STUDY_RADII = 4,
@@ -22,7 +23,7 @@ extern const double study_damping[STUDY_DAMPINGS];
 /* Regression of one wave's limits by one method. */
 typedef struct regression {
   bool known;
-  mps_limit_fit fit;
+  limit_fit fit;
   double rms_table2; /* of dt / printed - 1, h up to 0.22 */
   double rms_fits;   /* of own regression / printed - 1 */
 } regression;
@@ -35,7 +36,7 @@ typedef struct study {
   method m;
   stability_case cases[STUDY_CASES]; /* by wave, R, V, h; then by integrator, R, h */
   regression linear[2], stepping[2]; /* S, P */
-  mps_limit_fit printed[2];
+  limit_fit printed[2];
   int64_t done; /* cases that have been run; fewer than all after Ctrl-C */
 } study;
 

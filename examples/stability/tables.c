@@ -23,7 +23,7 @@ static bool write_limits(app *a, const study *s, const char *directory) {
 }
 
 static bool write_integrators(app *a, const study *s, const char *directory) {
-  static const char *const names[] = {"euler", "leapfrog", "verlet"};
+  static const char *const names[] = {"verlet", "leapfrog", "euler"};
   output f;
   if (!output_open(&f, a, directory, "integrators.csv")) return false;
   csv_header(&f, "integrator,R_m,h,dt_linear_s?,dt_stepping_s?");
@@ -50,7 +50,7 @@ static bool write_regression(app *a, const study *s, const char *directory) {
     const int wave = k % 2;
     const regression *r = k < 2 ? &s->linear[wave] : &s->stepping[wave];
     if (!r->known) continue;
-    const mps_limit_fit *fit = &r->fit, *printed = &s->printed[wave];
+    const limit_fit *fit = &r->fit, *printed = &s->printed[wave];
     for (int32_t i = 0; i < fit->dampings; i++) {
       const double h = fit->h[i];
       const bool inside = h <= 0.2201; /* the quadratics hold up to there */
@@ -77,7 +77,7 @@ static bool write_coefficients(app *a, const study *s, const char *directory) {
     for (int k = 0; k < 3; k++) {
       const regression *r = k == 0 ? &s->linear[wave] : &s->stepping[wave];
       if (k < 2 && !r->known) continue;
-      const mps_limit_fit *fit = k < 2 ? &r->fit : &s->printed[wave];
+      const limit_fit *fit = k < 2 ? &r->fit : &s->printed[wave];
       static const char *const names[] = {"linear", "stepping", "table2"};
       const double row[] = {fit->b1[0],
                             fit->b1[1],

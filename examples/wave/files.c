@@ -31,8 +31,7 @@ bool files_peek(app *a, settings *s) {
 static bool put_back(app *a, const settings *s, mps_dynamics *dynamics, const files *f) {
   mps_checkpoint info = mps_checkpoint_defaults();
   memcpy(info.user_key, f->key, sizeof info.user_key); /* the library refuses another one */
-  return app_check(a, mps_checkpoint_read(f->particles, s->restart, &info)) &&
-         app_check(a, mps_dynamics_resume(dynamics, info.time, info.step));
+  return app_check(a, mps_dynamics_restore(dynamics, s->restart, &info));
 }
 
 static bool open_recorder(app *a, const settings *s, files *f) {
@@ -64,11 +63,8 @@ bool files_open(app *a, const settings *s, mps_particles *particles, mps_dynamic
 
 static mps_status write_checkpoint(const files *f, mps_dynamics *dynamics) {
   mps_checkpoint info = mps_checkpoint_defaults();
-  info.time = mps_dynamics_time(dynamics);
-  info.step = mps_dynamics_steps(dynamics);
-  info.dt = mps_dynamics_dt(dynamics);
   memcpy(info.user_key, f->key, sizeof info.user_key);
-  return mps_checkpoint_write(f->particles, f->checkpoint, &info);
+  return mps_dynamics_save(dynamics, f->checkpoint, &info);
 }
 
 static mps_status record(files *f, mps_dynamics *dynamics) {

@@ -65,10 +65,10 @@ static double *next_row(receivers *r) {
 }
 
 static mps_status record_energy(receivers *r, mps_dynamics *dynamics) {
-  mps_dynamics_energy energy;
-  const mps_status status = mps_dynamics_get_energy(dynamics, &energy);
+  mps_totals totals;
+  const mps_status status = mps_dynamics_get_totals(dynamics, &totals);
   if (status != MPS_OK) return status;
-  const double e = energy.total;
+  const double e = totals.kinetic + totals.strain;
   if (r->energies++ == 0) r->energy_least = r->energy_most = e;
   r->energy_least = fmin(r->energy_least, e);
   r->energy_most = fmax(r->energy_most, e);

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static const char *const integrators[] = {"euler", "leapfrog", "verlet"};
+static const char *const integrators[] = {"verlet", "leapfrog", "euler"};
 
 /* ---- travel time ----------------------------------------------------------------------------- */
 
@@ -95,7 +95,7 @@ bool results_write(app *a, const settings *s, const results *x) {
   json_text(&file, "outcome", ends[x->end]);
   json_text(&file, "wave", wave);
   json_text(&file, "integrator", integrators[s->integrator]);
-  json_integer(&file, "rotation", s->rotation == 0 ? 11 : 12);
+  json_text(&file, "rotation", s->rotation == 0 ? "mean-matrix" : "mean-angle");
   json_text(&file, "torque", s->torque == 0 ? "conserving" : "printed");
   json_text(&file, "base", bases[s->base]);
   json_text(&file, "sides", sides[s->sides]);

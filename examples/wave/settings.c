@@ -28,8 +28,7 @@ static const settings defaults = {
     .scale = 1.0,
     .baseline = MPS_SIGNAL_BASELINE_LINEAR,
     .half_space = {.vs = NAN, .vp = NAN, .unit_weight = NAN},
-    .integrator = MPS_INTEGRATOR_VERLET,
-    .rotation = 1,
+    .integrator = MPS_DYNAMICS_INTEGRATOR_VERLET,
     .dt = 1e-4,
     .courant = 0.9,
     .duration = NAN,
@@ -89,7 +88,7 @@ static int check_rest(const options_program *program, settings *s) {
   }
   if (options_given(table, "dt") && options_given(table, "courant"))
     return options_refuse(program, "--dt and --courant exclude each other");
-  if (options_given(table, "courant")) s->dt = 0.0;
+  if (options_given(table, "courant")) s->dt = NAN;
   if (s->sloped && s->sides == SIDES_PERIODIC)
     return options_refuse(program, "--slope and --sides periodic exclude each other");
   return -1;
@@ -157,11 +156,12 @@ int settings_parse(settings *s, int argc, char **argv) {
                     "rollers along the wave's motion, a model repeated sideways, or free-field "
                     "columns with dashpots"),
       OPTION_HEADING("Method"),
-      OPTION_CHOICE("integrator", "euler|leapfrog|verlet", &s->integrator, "time integration"),
-      OPTION_CHOICE("rotation", "11|12", &s->rotation,
-                    "the paper's equation that removes the rigid rotation"),
-      OPTION_CHOICE("torque", "conserving|printed", &s->torque,
-                    "prefactor of (A14): d conserves angular momentum, 2d is as printed"),
+      OPTION_CHOICE("integrator", "verlet|leapfrog|euler", &s->integrator, "time integration"),
+      OPTION_CHOICE("rotation", "mean-matrix|mean-angle", &s->rotation,
+                    "how the rigid rotation of a pair is removed"),
+      OPTION_CHOICE(
+          "torque", "conserving|printed", &s->torque,
+          "as derived, which conserves angular momentum, or twice that as the paper prints it"),
       OPTION_NUMBER("dt", "s", OPTION_DURATION, &s->dt, "time step"),
       OPTION_NUMBER("courant", "1", OPTION_FROM_TO(1e-3, 1.0), &s->courant,
                     "instead of --dt: time step as a fraction of the stability limit"),
@@ -242,13 +242,12 @@ bool settings_signal(app *a, const settings *s, mps_signal **out) {
 mps_dynamics_def settings_dynamics(const settings *s, double width) {
   mps_dynamics_def def = mps_dynamics_defaults();
   def.integrator = s->integrator;
-  def.rotation = s->rotation == 0 ? MPS_ROTATION_MEAN_ANGLE : MPS_ROTATION_MEAN_MATRIX;
-  def.torque = s->torque;
+  def.rotation = s->rotation;
   def.dt = s->dt;
   def.courant = s->courant;
   def.f1 = s->f1;
   def.f2 = s->f2;
-  def.period_x = s->sides == SIDES_PERIODIC ? width : 0.0;
+  def.period_x = s->sides == SIDES_PERIODIC ? width : NAN;
   return def;
 }
 

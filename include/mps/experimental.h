@@ -8,6 +8,7 @@
 #ifndef LIBMPS_EXPERIMENTAL_H
 #define LIBMPS_EXPERIMENTAL_H
 
+#include "dynamics.h"
 #include "elastic.h"
 
 /* Marks what is exported under that node. */
@@ -23,6 +24,12 @@ MPS_EXTERN_C_BEGIN
 MPS_EXPERIMENTAL_API MPS_NODISCARD mps_status
 mps_experimental_elastic_published(mps_context *context, mps_particles *particles,
                                    const mps_elastic_def *def, int32_t constant, mps_elastic **out);
+
+/** Before the first step: doubles the torques of explicit dynamics, as Yoshida (A14) is printed.
+ *  Angular momentum is then not conserved, and the stability limit lower by about sqrt(2).
+ *  MPS_ERROR_STATE after a step. */
+MPS_EXPERIMENTAL_API MPS_NODISCARD mps_status
+mps_experimental_dynamics_printed_torque(mps_dynamics *dynamics);
 
 MPS_EXTERN_C_END
 #endif

@@ -49,7 +49,7 @@
   X(poisson, F64, 1, "-", "Poisson's ratio",                                                       \
     "the caller", "as written")                                                                    \
   X(reaction, F64, MPSI_PER_DIM, "N", "force of the supports on the particle",                     \
-    "implicit elasticity", "after a solution or a step")                                           \
+    "implicit elasticity; explicit dynamics, where the set has it", "after a solution or a step")                                           \
   X(strain, F64, MPSI_PER_STRESS, "-",                                                             \
     "strain xx, yy, zz, xy; 3D: and zx, yz (shear: tensor components)",                            \
     "implicit elasticity", "after mps_elastic_stress")                                             \
@@ -85,6 +85,8 @@
     "the caller (initial state; 0: 1); WLS-MPM with a law that reads it", "after a step or a run") \
   X(deformation_gradient, F64, MPSI_PER_GRADIENT, "-", "F row by row, in 2D then the hoop or out-of-plane stretch", \
     "the caller (initial state; all 0: no deformation); WLS-MPM with a law that reads it", "after a step or a run") \
+  X(external_force, F64, MPSI_PER_DIM, "N", "force on the particle, such as another code computes", \
+    "the caller", "as written; explicit dynamics reads it in each step") \
   X(body_acceleration, F64, MPSI_PER_DIM, "m/s2", "acceleration by forces on the particle's mass, besides gravity", \
     "the caller", "as written; WLS-MPM reads it in each step if it is there at creation") \
   X(temperature, F64, 1, "K", "temperature", \

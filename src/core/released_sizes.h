@@ -9,13 +9,15 @@
 
 /* clang-format off */
 #define MPSI_RELEASED_SIZES(X) \
-  X(mps_bisection_def, mps_bisection_def_init, "0.2", 48) \
   X(mps_body_def, mps_body_def_init, "0.2", 200) \
   X(mps_body_motion, mps_body_motion_init, "0.2", 104) \
   X(mps_checkpoint, mps_checkpoint_init, "0.2", 112) \
   X(mps_context_def, mps_context_def_init, "0.2", 104) \
   X(mps_drucker_prager_def, mps_drucker_prager_def_init, "0.2", 56) \
-  X(mps_dynamics_def, mps_dynamics_def_init, "0.2", 80) \
+  X(mps_dynamics_boundary_def, mps_dynamics_boundary_def_init, "0.2", 152) \
+  X(mps_dynamics_def, mps_dynamics_def_init, "0.2", 88) \
+  X(mps_dynamics_load_def, mps_dynamics_load_def_init, "0.2", 176) \
+  X(mps_dynamics_predict_def, mps_dynamics_predict_def_init, "0.2", 64) \
   X(mps_elastic_boundary_def, mps_elastic_boundary_def_init, "0.2", 160) \
   X(mps_elastic_def, mps_elastic_def_init, "0.2", 72) \
   X(mps_elastic_load_def, mps_elastic_load_def_init, "0.2", 120) \
@@ -29,12 +31,10 @@
   X(mps_neighbours_def, mps_neighbours_def_init, "0.2", 24) \
   X(mps_newtonian_def, mps_newtonian_def_init, "0.2", 32) \
   X(mps_particles_def, mps_particles_def_init, "0.2", 40) \
-  X(mps_predict_def, mps_predict_def_init, "0.2", 64) \
   X(mps_recorder_def, mps_recorder_def_init, "0.2", 32) \
   X(mps_signal_record_def, mps_signal_record_def_init, "0.2", 32) \
   X(mps_umat_def, mps_umat_def_init, "0.2", 88) \
   X(mps_user_law_def, mps_user_law_def_init, "0.2", 72) \
-  X(mps_viscous_def, mps_viscous_def_init, "0.2", 56) \
   X(mps_von_mises_def, mps_von_mises_def_init, "0.2", 40)
 /* clang-format on */
 

@@ -1,279 +1,512 @@
-/* boundary.c - held, driven and viscous boundaries of the explicit MPS solver.
- *
- * A dashpot acts with the mean of the velocities before and after the step, which keeps the stable
- * time step as it is: (1 + c dt/2) v+ = (1 - c dt/2) v- + dt (a + c target). It is applied as a
- * correction to what the ordinary step did. Columns come before the edges that follow them.
+/* boundary.c - boundaries of the explicit MPS solver as the caller defines them: which particles,
+ * which degrees of freedom, and the lists that a step works through (constrain.c).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles_internal.h"
 #include "core/retain.h"
 #include "dynamics_private.h"
+#include "signal/signal_internal.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-static mps_status check_list(mps_dynamics *dynamics, const char *function, int64_t count,
-                             const int64_t *ids) {
-  mps_context *context = dynamics->context;
-  if (!dynamics->fresh)
-    return mpsi_fail(context, function, MPS_ERROR_STATE,
-                     "boundaries are set before the first step (or after mps_dynamics_restart)");
-  if (count < 1 || !ids)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "count is %lld and ids is %s: at least one particle is required",
-                     (long long)count, ids ? "given" : "NULL");
-  for (int64_t k = 0; k < count; k++)
-    if (mps_particles_index(dynamics->particles, ids[k]) < 0)
-      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+static const mps_dynamics_boundary_def boundary_defaults = {
+    .struct_size = sizeof(mps_dynamics_boundary_def),
+    .kind = MPS_DYNAMICS_BOUNDARY_HELD,
+    .lower = {NAN, NAN, NAN},
+    .upper = {NAN, NAN, NAN},
+    .normal = 1,
+    .factor = {1.0, 1.0, 1.0},
+    .density = NAN,
+    .shear_velocity = NAN,
+    .pressure_velocity = NAN,
+};
+
+mps_status mps_dynamics_boundary_def_init(mps_dynamics_boundary_def *def, size_t size) {
+  return MPSI_DEF_INIT(mps_dynamics_boundary_def, def, size, &boundary_defaults);
+}
+
+/* ---- particles of a definition ----------------------------------------------------------------
+ */
+
+static int compare_indices(const void *left, const void *right) {
+  const int32_t a = *(const int32_t *)left, b = *(const int32_t *)right;
+  return a < b ? -1 : a > b;
+}
+
+static mps_status select_list(mps_dynamics *dynamics, const char *function,
+                              const mpsi_dynamics_selection *s, mpsi_dynamics_part *out) {
+  for (int64_t k = 0; k < s->id_count; k++) {
+    const int64_t i = mps_particles_index(dynamics->particles, s->ids[k]);
+    if (i < 0)
+      return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
                        "ids[%lld] is %lld: the set has no such particle", (long long)k,
-                       (long long)ids[k]);
-  return MPS_OK;
-}
-
-/* The limit, and whether dt was compared with it, depend on the boundaries. */
-static void boundaries_changed(mps_dynamics *dynamics) {
-  dynamics->have_limit = dynamics->checked = false;
-  if (dynamics->def.dt == 0.0) dynamics->dt = 0.0;
-}
-
-static bool reserve(mps_dynamics *dynamics, void **array, int64_t used, int64_t more, int64_t *room,
-                    size_t size) {
-  if (used + more <= *room) return true;
-  const int64_t wanted = used + more + used / 2;
-  if (!mpsi_grow(dynamics->context, array, used, wanted, size)) return false;
-  *room = wanted;
-  return true;
-}
-
-static bool keep_signal(mps_dynamics *dynamics, mps_signal *signal) {
-  if (!signal) return true;
-  if (!reserve(dynamics, (void **)&dynamics->signals, dynamics->signal_count, 1,
-               &dynamics->signal_room, sizeof *dynamics->signals))
-    return false;
-  dynamics->signals[dynamics->signal_count++] = mpsi_signal_retain(signal);
-  return true;
-}
-
-mps_status mps_dynamics_hold(mps_dynamics *dynamics, uint32_t dofs, int64_t count,
-                             const int64_t *ids) {
-  if (!dynamics) return MPS_ERROR_ARGUMENT;
-  if (dofs == 0 || dofs & ~(MPS_DOF_X | MPS_DOF_Y | MPS_DOF_ROTATION))
-    return mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT,
-                     "dofs is %u, allowed is a combination of 1 (x), 2 (y) and 8 (rotation)", dofs);
-  const mps_status status = check_list(dynamics, __func__, count, ids);
-  if (status != MPS_OK) return status;
-  for (int64_t k = 0; k < count; k++) {
-    const int64_t i = mps_particles_index(dynamics->particles, ids[k]);
-    if (dofs & MPS_DOF_X) dynamics->state.ix[i] = 0.0;
-    if (dofs & MPS_DOF_Y) dynamics->state.iy[i] = 0.0;
-    if (dofs & MPS_DOF_ROTATION) dynamics->state.ith[i] = 0.0;
+                       (long long)s->ids[k]);
+    out->particle[k] = (int32_t)i;
   }
-  boundaries_changed(dynamics);
-  mpsi_dynamics_rewind(dynamics); /* the held particles start at rest */
+  qsort(out->particle, (size_t)s->id_count, sizeof *out->particle, compare_indices);
+  for (int64_t k = 0; k < s->id_count; k++) /* each particle once */
+    if (k == 0 || out->particle[k] != out->particle[k - 1])
+      out->particle[out->count++] = out->particle[k];
   return MPS_OK;
 }
 
-mps_status mps_dynamics_drive(mps_dynamics *dynamics, int32_t component, mps_signal *signal,
-                              double factor, int64_t count, const int64_t *ids) {
-  if (!dynamics) return MPS_ERROR_ARGUMENT;
+static mps_status select_box(mps_dynamics *dynamics, const char *function,
+                             const mpsi_dynamics_selection *s, mpsi_dynamics_part *out) {
+  const double *x = mpsi_dynamics_column(dynamics, "position", 0);
+  const double *y = mpsi_dynamics_column(dynamics, "position", 1);
+  for (int64_t k = 0; k < dynamics->count; k++)
+    if (s->all ||
+        (x[k] >= s->lower[0] && x[k] <= s->upper[0] && y[k] >= s->lower[1] && y[k] <= s->upper[1]))
+      out->particle[out->count++] = (int32_t)k;
+  if (out->count == 0)
+    return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
+                     "no particle lies in the box from (%g, %g) m to (%g, %g) m", s->lower[0],
+                     s->lower[1], s->upper[0], s->upper[1]);
+  return MPS_OK;
+}
+
+static mps_status check_selection(mps_dynamics *dynamics, const char *function,
+                                  const mpsi_dynamics_selection *s) {
   mps_context *context = dynamics->context;
-  if (component != 0 && component != 1)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                     "component is %d, allowed are 0 (x) and 1 (y)", component);
-  if (!signal) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "signal is NULL");
-  if (!isfinite(factor))
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "factor is %g, must be finite", factor);
-  const mps_status status = check_list(dynamics, __func__, count, ids);
-  if (status != MPS_OK) return status;
-  if (!reserve(dynamics, (void **)&dynamics->drive, dynamics->drives, count, &dynamics->drive_room,
-               sizeof *dynamics->drive) ||
-      !keep_signal(dynamics, signal))
-    return mpsi_fail_memory(context, __func__, (size_t)count * sizeof *dynamics->drive);
-  for (int64_t k = 0; k < count; k++) {
-    const int64_t i = mps_particles_index(dynamics->particles, ids[k]);
-    (component == 0 ? dynamics->state.ix : dynamics->state.iy)[i] = 0.0;
-    dynamics->drive[dynamics->drives++] = (mpsi_dynamics_drive){
-        .particle = (int32_t)i, .component = component, .signal = signal, .factor = factor};
-  }
-  boundaries_changed(dynamics);
-  mpsi_dynamics_rewind(dynamics); /* the driven particles start on the signal */
+  const bool listed = s->ids || s->id_count != 0;
+  bool boxed = false;
+  for (int c = 0; c < 2; c++) boxed = boxed || !isnan(s->lower[c]) || !isnan(s->upper[c]);
+  if (listed && (!s->ids || s->id_count < 1))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "id_count is %lld and ids is %s: at least one particle is required",
+                     (long long)s->id_count, s->ids ? "given" : "NULL");
+  if (listed == boxed && !(s->all && !listed))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "%s: give either ids and id_count, or lower and upper",
+                     listed ? "both a list and a box are given" : "no particles are given");
+  for (int c = 0; c < 2 && boxed; c++)
+    if (!(s->lower[c] <= s->upper[c]))
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                       "lower[%d] is %g m and upper[%d] %g m: must be numbers, lower <= upper", c,
+                       s->lower[c], c, s->upper[c]);
+  for (int c = 0; c < 2; c++)
+    if (!isfinite(s->factor[c]))
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "factor[%d] is %g, must be finite", c,
+                       s->factor[c]);
+  if (s->signal[2])
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "signal[2] is given: the plane has x and y only");
   return MPS_OK;
 }
 
-/* ---- viscous --------------------------------------------------------------------------------- */
-
-static const mps_viscous_def viscous_defaults = {
-    .struct_size = sizeof(mps_viscous_def), .normal = 1, .factor = 1.0};
-
-mps_status mps_viscous_def_init(mps_viscous_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_viscous_def, def, size, &viscous_defaults);
+mps_status mpsi_dynamics_select(mps_dynamics *dynamics, const char *function,
+                                const mpsi_dynamics_selection *selection, mpsi_dynamics_part *out) {
+  *out = (mpsi_dynamics_part){0};
+  mpsi_dynamics_selection s = *selection;
+  mps_status status = check_selection(dynamics, function, &s);
+  if (status != MPS_OK) return status;
+  s.all = s.all && isnan(s.lower[0]) && isnan(s.lower[1]);
+  const int64_t room = s.ids ? s.id_count : dynamics->count;
+  out->particle = mpsi_alloc(dynamics->context, room, sizeof *out->particle);
+  if (!out->particle)
+    return mpsi_fail_memory(dynamics->context, function, (size_t)room * sizeof *out->particle);
+  status =
+      s.ids ? select_list(dynamics, function, &s, out) : select_box(dynamics, function, &s, out);
+  for (int c = 0; c < 2; c++) {
+    out->factor[c] = s.factor[c];
+    if (status == MPS_OK && s.signal[c]) out->signal[c] = mpsi_signal_retain(s.signal[c]);
+  }
+  if (status != MPS_OK) mpsi_dynamics_release_part(dynamics, out);
+  return status;
 }
 
-static mps_status check_viscous(mps_context *context, const mps_viscous_def *def) {
-  static const char *const function = "mps_dynamics_viscous";
-  const double values[3] = {def->density, def->shear_velocity, def->pressure_velocity};
-  const char *const names[3] = {"density", "shear_velocity", "pressure_velocity"};
+void mpsi_dynamics_release_part(mps_dynamics *dynamics, mpsi_dynamics_part *part) {
+  mpsi_free(dynamics->context, part->particle);
+  for (int c = 0; c < 2; c++) mps_signal_destroy(&part->signal[c]);
+  *part = (mpsi_dynamics_part){0};
+}
+
+/* ---- a boundary --------------------------------------------------------------------------------
+ */
+
+static mps_status check_def(mps_dynamics *dynamics, const char *function,
+                            const mps_dynamics_boundary_def *def) {
+  mps_context *context = dynamics->context;
+  const uint32_t all = MPS_DOF_X | MPS_DOF_Y | MPS_DOF_ROTATION;
+  const bool viscous = def->kind == MPS_DYNAMICS_BOUNDARY_VISCOUS;
+  if (def->kind < MPS_DYNAMICS_BOUNDARY_HELD || def->kind > MPS_DYNAMICS_BOUNDARY_VISCOUS)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "kind is %d, allowed are 0 (held), 1 (driven), 2 (viscous)", def->kind);
+  if ((def->dofs & ~all) || (viscous && def->dofs) ||
+      (def->kind == MPS_DYNAMICS_BOUNDARY_HELD && !def->dofs))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "dofs is %u, allowed is %s", def->dofs,
+                     viscous ? "0 of a viscous boundary"
+                             : "a combination of 1 (x), 2 (y) and 8 (rotation)");
+  if (def->kind == MPS_DYNAMICS_BOUNDARY_HELD && (def->signal[0] || def->signal[1]))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "a held boundary takes no signal: make its kind driven");
+  if (def->kind == MPS_DYNAMICS_BOUNDARY_DRIVEN && !def->signal[0] && !def->signal[1])
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "a driven boundary needs a signal: signal[0] and signal[1] are NULL");
   if (def->normal != 0 && def->normal != 1)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "normal is %d, allowed are 0 (x) and 1 (y)", def->normal);
+  const double values[3] = {def->density, def->shear_velocity, def->pressure_velocity};
+  const char *const names[3] = {"density", "shear_velocity", "pressure_velocity"};
   for (int k = 0; k < 3; k++)
-    if (!isfinite(values[k]) || values[k] < 0.0)
+    if (!isnan(values[k]) && !(values[k] >= 1e-6 && values[k] <= 1e9))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "%s is %g, must be finite and > 0, or 0 for that of the particles", names[k],
+                       "%s is %g, must be in 1e-6..1e9, or NaN for that of the particles", names[k],
                        values[k]);
-  if (!isfinite(def->factor))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "factor is %g, must be finite",
-                     def->factor);
   return MPS_OK;
 }
 
-bool mpsi_dynamics_add_dashpot(mps_dynamics *dynamics, mpsi_dynamics_dashpot dashpot) {
-  if (!reserve(dynamics, (void **)&dynamics->dashpot, dynamics->dashpots, 1,
-               &dynamics->dashpot_room, sizeof dashpot))
-    return false;
-  dynamics->dashpot[dynamics->dashpots++] = dashpot;
-  dynamics->dashpots_sorted = false;
-  return true;
+static void release(mps_dynamics *dynamics, mpsi_dynamics_boundary **boundary) {
+  if (*boundary) mpsi_dynamics_release_part(dynamics, &(*boundary)->part);
+  mpsi_free(dynamics->context, *boundary);
+  *boundary = NULL;
 }
 
-mps_status mps_dynamics_viscous(mps_dynamics *dynamics, const mps_viscous_def *user_def,
-                                int64_t count, const int64_t *ids) {
-  if (!dynamics) return MPS_ERROR_ARGUMENT;
-  mps_viscous_def def = viscous_defaults;
-  mps_status status = MPS_OK;
-  if (user_def)
-    status = MPSI_DEF_READ(dynamics->context, __func__, mps_viscous_def, user_def, &def);
-  if (status == MPS_OK) status = check_viscous(dynamics->context, &def);
-  if (status == MPS_OK) status = check_list(dynamics, __func__, count, ids);
+/* A boundary made from the caller's definition. */
+static mps_status make(mps_dynamics *dynamics, const char *function,
+                       const mps_dynamics_boundary_def *user_def, mpsi_dynamics_boundary **out) {
+  mps_dynamics_boundary_def def = boundary_defaults;
+  *out = NULL;
+  mps_status status =
+      MPSI_DEF_READ(dynamics->context, function, mps_dynamics_boundary_def, user_def, &def);
+  if (status == MPS_OK) status = check_def(dynamics, function, &def);
   if (status != MPS_OK) return status;
-  if (!reserve(dynamics, (void **)&dynamics->dashpot, dynamics->dashpots, 2 * count,
-               &dynamics->dashpot_room, sizeof *dynamics->dashpot) ||
-      !keep_signal(dynamics, def.incoming[0]) || !keep_signal(dynamics, def.incoming[1]))
-    return mpsi_fail_memory(dynamics->context, __func__,
-                            (size_t)count * 2 * sizeof *dynamics->dashpot);
+  mpsi_dynamics_boundary *b = mpsi_alloc(dynamics->context, 1, sizeof *b);
+  if (!b) return mpsi_fail_memory(dynamics->context, function, sizeof *b);
+  const mpsi_dynamics_selection selection = {.ids = def.ids,
+                                             .id_count = def.id_count,
+                                             .lower = def.lower,
+                                             .upper = def.upper,
+                                             .signal = def.signal,
+                                             .factor = def.factor};
+  status = mpsi_dynamics_select(dynamics, function, &selection, &b->part);
+  b->kind = def.kind;
+  b->normal = def.normal;
+  b->dofs = def.dofs;
+  for (int c = 0; c < 2; c++)
+    if (def.kind == MPS_DYNAMICS_BOUNDARY_DRIVEN && def.signal[c])
+      b->dofs |= c == 0 ? MPS_DOF_X : MPS_DOF_Y;
+  b->density = def.density;
+  b->shear = def.shear_velocity;
+  b->pressure = def.pressure_velocity;
+  if (status != MPS_OK) release(dynamics, &b);
+  *out = b;
+  return status;
+}
+
+/* ---- the lists ----------------------------------------------------------------------------------
+ */
+
+/* What is held or driven, and the dashpots, of all boundaries. */
+typedef struct lists {
+  mpsi_dynamics_bound *bound;
+  mpsi_dynamics_dashpot *dashpot;
+  int64_t bounds, dashpots;
+} lists;
+
+static void free_lists(mps_dynamics *dynamics, lists *l) {
+  mpsi_free(dynamics->context, l->bound);
+  mpsi_free(dynamics->context, l->dashpot);
+}
+
+static const uint32_t dof_of[3] = {MPS_DOF_X, MPS_DOF_Y, MPS_DOF_ROTATION};
+
+/* Number + 1 of the boundary that has each degree of freedom, 0 none; component by component. */
+static int64_t find_owners(const mps_dynamics *dynamics, int32_t *owner) {
+  int64_t owned = 0;
+  for (int32_t k = 0; k < dynamics->boundary_room; k++) {
+    const mpsi_dynamics_boundary *b = dynamics->boundary[k];
+    for (int c = 0; b && c < 3; c++)
+      for (int64_t p = 0; (b->dofs & dof_of[c]) && p < b->part.count; p++) {
+        int32_t *at = &owner[c * dynamics->count + b->part.particle[p]];
+        owned += *at == 0;
+        *at = k + 1;
+      }
+  }
+  return owned;
+}
+
+/* Fills the list of what is held or driven. One that its boundary has already, and that has not
+ * been changed, is copied; the others go on from where they are. */
+static void list_bounds(const mps_dynamics *dynamics, const int32_t *owner, int32_t changed,
+                        lists *l) {
+  const mpsi_dynamics_state *s = &dynamics->state;
+  const double *const displacement[3] = {s->dx, s->dy, s->th};
+  const mpsi_dynamics_bound *old = dynamics->bound, *end = old + dynamics->bounds;
+  for (int c = 0; c < 3; c++)
+    for (int64_t i = 0; i < dynamics->count; i++) {
+      const int32_t number = owner[c * dynamics->count + i] - 1;
+      if (number < 0) continue;
+      while (old < end && (old->component < c || (old->component == c && old->particle < i))) old++;
+      mpsi_dynamics_bound *q = &l->bound[l->bounds++];
+      if (old < end && old->component == c && old->particle == i && old->boundary == number &&
+          number != changed) {
+        *q = *old;
+        continue;
+      }
+      *q = (mpsi_dynamics_bound){.particle = (int32_t)i,
+                                 .component = c,
+                                 .boundary = number,
+                                 .rest = displacement[c][i] - dynamics->boundary[number]->reach[c],
+                                 .at = displacement[c][i],
+                                 .before = dynamics->fresh ? dynamics->boundary[number]->speed[c]
+                                                           : mpsi_dynamics_velocity(dynamics, c, i),
+                                 .c = s->c[i],
+                                 .s = s->s[i]};
+    }
+}
+
+static int compare_dashpots(const void *left, const void *right) {
+  const mpsi_dynamics_dashpot *a = left, *b = right;
+  if (a->particle != b->particle) return a->particle > b->particle ? -1 : 1;
+  if (a->component != b->component) return a->component < b->component ? -1 : 1;
+  if (a->boundary != b->boundary) return a->boundary < b->boundary ? -1 : 1;
+  return a->partner < b->partner ? -1 : a->partner > b->partner;
+}
+
+/* Fills the list of dashpots: columns last in memory, first here, since an edge needs the velocity
+ * of its column after the step. */
+static void list_dashpots(const mps_dynamics *dynamics, const int32_t *owner, lists *l) {
   const double *rho = mpsi_dynamics_column(dynamics, "density", 0);
   const double *vs = mpsi_dynamics_column(dynamics, "shear_velocity", 0);
   const double *vp = mpsi_dynamics_column(dynamics, "pressure_velocity", 0);
   const double D = mps_particles_spacing(dynamics->particles);
-  for (int64_t k = 0; k < count; k++) {
-    const int64_t i = mps_particles_index(dynamics->particles, ids[k]);
-    for (int c = 0; c < 2; c++) {
-      const double own = c == def.normal ? vp[i] : vs[i];
-      const double outside = c == def.normal ? def.pressure_velocity : def.shear_velocity;
-      const double impedance = (def.density > 0.0 ? def.density : rho[i]) *
-                               (outside > 0.0 ? outside : own); /* kg/(m2 s) */
-      const mpsi_dynamics_dashpot dashpot = {.particle = (int32_t)i,
-                                             .component = c,
-                                             .partner = -1,
-                                             .c = impedance /
-                                                  (rho[i] * D), /* face D, mass rho D^2 */
-                                             .signal = def.incoming[c],
-                                             .factor = def.factor};
-      dynamics->dashpot[dynamics->dashpots++] = dashpot;
-    }
+  for (int64_t k = 0; k < dynamics->column_dashpots; k++)
+    l->dashpot[l->dashpots++] = dynamics->column_dashpot[k];
+  for (int32_t number = 0; number < dynamics->boundary_room; number++) {
+    const mpsi_dynamics_boundary *b = dynamics->boundary[number];
+    if (!b || b->kind != MPS_DYNAMICS_BOUNDARY_VISCOUS) continue;
+    for (int64_t p = 0; p < b->part.count; p++)
+      for (int c = 0; c < 2; c++) {
+        const int32_t i = b->part.particle[p];
+        const double own = c == b->normal ? vp[i] : vs[i];
+        const double outside = c == b->normal ? b->pressure : b->shear;
+        const double impedance = (isnan(b->density) ? rho[i] : b->density) *
+                                 (isnan(outside) ? own : outside); /* kg/(m2 s) */
+        l->dashpot[l->dashpots++] =
+            (mpsi_dynamics_dashpot){.particle = i,
+                                    .component = c,
+                                    .boundary = number,
+                                    .partner = -1,
+                                    .c = impedance / (rho[i] * D)}; /* face D, mass rho D^2 */
+      }
   }
-  dynamics->dashpots_sorted = false;
-  boundaries_changed(dynamics);
+  for (int64_t k = 0; k < l->dashpots; k++)
+    l->dashpot[k].idle = owner[l->dashpot[k].component * dynamics->count + l->dashpot[k].particle];
+  qsort(l->dashpot, (size_t)l->dashpots, sizeof *l->dashpot, compare_dashpots);
+}
+
+/* Makes the lists of the present boundaries, of which `changed` (-1: none) has just been defined.
+ */
+static mps_status make_lists(mps_dynamics *dynamics, const char *function, int32_t changed,
+                             lists *out) {
+  mps_context *context = dynamics->context;
+  *out = (lists){0};
+  int32_t *owner = mpsi_alloc(context, 3 * dynamics->count, sizeof *owner);
+  if (!owner) return mpsi_fail_memory(context, function, (size_t)dynamics->count * 12);
+  const int64_t owned = find_owners(dynamics, owner);
+  int64_t dashpots = dynamics->column_dashpots;
+  for (int32_t k = 0; k < dynamics->boundary_room; k++)
+    if (dynamics->boundary[k] && dynamics->boundary[k]->kind == MPS_DYNAMICS_BOUNDARY_VISCOUS)
+      dashpots += 2 * dynamics->boundary[k]->part.count;
+  out->bound = mpsi_alloc(context, owned, sizeof *out->bound);
+  out->dashpot = mpsi_alloc(context, dashpots, sizeof *out->dashpot);
+  if (!out->bound || !out->dashpot) {
+    free_lists(dynamics, out);
+    mpsi_free(context, owner);
+    return mpsi_fail_memory(context, function, (size_t)owned * sizeof *out->bound);
+  }
+  list_bounds(dynamics, owner, changed, out);
+  list_dashpots(dynamics, owner, out);
+  mpsi_free(context, owner);
   return MPS_OK;
 }
 
-/* ---- around a step --------------------------------------------------------------------------- */
+/* Are other degrees of freedom held or driven than before? Then the limit is another. */
+static bool other_freedoms(const mps_dynamics *dynamics, const lists *l) {
+  if (l->bounds != dynamics->bounds) return true;
+  for (int64_t k = 0; k < l->bounds; k++)
+    if (l->bound[k].particle != dynamics->bound[k].particle ||
+        l->bound[k].component != dynamics->bound[k].component)
+      return true;
+  return false;
+}
 
-/* Displacement, previous displacement (Verlet), velocity and inverse mass of one component. */
-typedef struct motion {
-  double *d, *o, *v, *a;
-  const double *inverse_mass;
-} motion;
+static void put_lists(mps_dynamics *dynamics, lists *l, int32_t changed) {
+  mpsi_dynamics_state *s = &dynamics->state;
+  double *const velocity[3] = {s->vx, s->vy, s->vth};
+  if (other_freedoms(dynamics, l)) {
+    dynamics->have_limit = dynamics->checked = false;
+    if (dynamics->fresh && isnan(dynamics->def.dt)) dynamics->dt = NAN;
+  }
+  for (int64_t k = 0; dynamics->fresh && k < l->bounds; k++) { /* at rest, or with the signal */
+    const mpsi_dynamics_bound *q = &l->bound[k];
+    if (q->boundary == changed) velocity[q->component][q->particle] = q->before;
+  }
+  mpsi_free(dynamics->context, dynamics->bound);
+  mpsi_free(dynamics->context, dynamics->dashpot);
+  dynamics->bound = l->bound;
+  dynamics->bounds = l->bounds;
+  dynamics->dashpot = l->dashpot;
+  dynamics->dashpots = l->dashpots;
+}
 
-static motion component(const mps_dynamics *dynamics, int32_t c) {
+/* Where the signals of a driven boundary are at time t. */
+static mps_status ask(mps_dynamics *dynamics, const char *function, mpsi_dynamics_boundary *b,
+                      double t) {
+  if (b->kind != MPS_DYNAMICS_BOUNDARY_DRIVEN) return MPS_OK;
+  for (int c = 0; c < 2; c++) {
+    mpsi_signal_motion at;
+    const mps_status status =
+        mpsi_signal_at(b->part.signal[c], dynamics->context, function, t, &at);
+    if (status != MPS_OK) return status;
+    b->reach[c] = b->part.factor[c] * at.u;
+    b->speed[c] = b->part.factor[c] * at.v;
+  }
+  return MPS_OK;
+}
+
+mps_status mpsi_dynamics_list_boundaries(mps_dynamics *dynamics, const char *function) {
+  lists l;
+  const mps_status status = make_lists(dynamics, function, -1, &l);
+  if (status == MPS_OK) put_lists(dynamics, &l, -1);
+  return status;
+}
+
+mps_status mpsi_dynamics_take_bounds(mps_dynamics *dynamics, const char *function) {
+  const double now = mps_dynamics_time(dynamics);
+  for (int32_t k = 0; k < dynamics->boundary_room; k++) {
+    const mps_status status =
+        dynamics->boundary[k] ? ask(dynamics, function, dynamics->boundary[k], now) : MPS_OK;
+    if (status != MPS_OK) return status;
+  }
   const mpsi_dynamics_state *s = &dynamics->state;
-  return c == 0 ? (motion){s->dx, s->ox, s->vx, s->ax, s->ix}
-                : (motion){s->dy, s->oy, s->vy, s->ay, s->iy};
-}
-
-static double velocity(const mps_dynamics *dynamics, const motion *m, int32_t i) {
-  if (dynamics->def.integrator != MPS_INTEGRATOR_VERLET) return m->v[i];
-  return (m->d[i] - m->o[i]) / dynamics->dt;
-}
-
-void mpsi_dynamics_apply_drives(mps_dynamics *dynamics, double t, double now, bool output) {
-  const mps_signal *signal = NULL;
-  const int integrator = dynamics->def.integrator;
-  double u = 0.0, v = 0.0, a = 0.0;
-  for (int64_t k = 0; k < dynamics->drives; k++) {
-    const mpsi_dynamics_drive *drive = &dynamics->drive[k];
-    if (drive->signal != signal) { /* lists share one signal: evaluate it once */
-      signal = drive->signal;
-      u = mps_signal_displacement(signal, t);
-      v = integrator == MPS_INTEGRATOR_EULER ? mps_signal_velocity(signal, t) : 0.0;
-      a = output ? mps_signal_acceleration(signal, now) : 0.0;
-    }
-    const motion m = component(dynamics, drive->component);
-    const int32_t i = drive->particle;
-    if (integrator == MPS_INTEGRATOR_EULER) m.v[i] = drive->factor * v;
-    if (integrator == MPS_INTEGRATOR_LEAPFROG) /* at mid-step */
-      m.v[i] = (drive->factor * u - m.d[i]) / dynamics->dt + m.v[i];
-    m.d[i] = drive->factor * u;
-    if (output) m.a[i] = drive->factor * a;
+  const double *const displacement[3] = {s->dx, s->dy, s->th};
+  double *const velocity[3] = {s->vx, s->vy, s->vth};
+  for (int64_t k = 0; k < dynamics->bounds; k++) {
+    mpsi_dynamics_bound *q = &dynamics->bound[k];
+    const mpsi_dynamics_boundary *b = dynamics->boundary[q->boundary];
+    q->at = displacement[q->component][q->particle];
+    q->rest = q->at - b->reach[q->component];
+    q->before = velocity[q->component][q->particle] = b->speed[q->component];
+    q->force = 0.0;
+    q->c = s->c[q->particle];
+    q->s = s->s[q->particle];
   }
+  return MPS_OK;
 }
 
-static int compare(const void *left, const void *right) {
-  const mpsi_dynamics_dashpot *a = left, *b = right;
-  if (a->particle != b->particle) return a->particle > b->particle ? -1 : 1;
-  if (a->component != b->component) return a->component < b->component ? -1 : 1;
-  return a->partner < b->partner ? -1 : a->partner > b->partner;
-}
+/* ---- what the caller does -----------------------------------------------------------------------
+ */
 
-void mpsi_dynamics_dashpots_before(mps_dynamics *dynamics) {
-  if (!dynamics->dashpots_sorted) /* columns last in memory, first here */
-    qsort(dynamics->dashpot, (size_t)dynamics->dashpots, sizeof *dynamics->dashpot, compare);
-  dynamics->dashpots_sorted = true;
-  for (int64_t k = 0; k < dynamics->dashpots; k++) {
-    mpsi_dynamics_dashpot *dashpot = &dynamics->dashpot[k];
-    const motion m = component(dynamics, dashpot->component);
-    dashpot->before = velocity(dynamics, &m, dashpot->particle);
-    if (dashpot->partner >= 0) dashpot->partner_before = velocity(dynamics, &m, dashpot->partner);
+/* Puts `boundary` (NULL: none) into slot `number`, which held another or none; that one is in
+ * `boundary` on success. */
+static mps_status exchange(mps_dynamics *dynamics, const char *function, int32_t number,
+                           mpsi_dynamics_boundary **boundary) {
+  mpsi_dynamics_boundary *former = dynamics->boundary[number];
+  mps_status status = MPS_OK;
+  lists l;
+  if (*boundary) status = ask(dynamics, function, *boundary, mps_dynamics_time(dynamics));
+  if (status == MPS_OK && !mpsi_dynamics_reserve_accounts(dynamics))
+    status = mpsi_fail_memory(dynamics->context, function, (size_t)dynamics->count * 24);
+  if (status != MPS_OK) return status;
+  dynamics->boundary[number] = *boundary;
+  status = make_lists(dynamics, function, number, &l);
+  if (status != MPS_OK) {
+    dynamics->boundary[number] = former;
+    return status;
   }
+  put_lists(dynamics, &l, number);
+  *boundary = former;
+  return MPS_OK;
 }
 
-/* Velocity that a dashpot pulls towards, m/s. */
-static double target(const mps_dynamics *dynamics, const mpsi_dynamics_dashpot *dashpot,
-                     const motion *m, double now) {
-  if (dashpot->partner >= 0) {
-    const double after = dynamics->def.integrator == MPS_INTEGRATOR_EULER
-                             ? dashpot->partner_before
-                             : velocity(dynamics, m, dashpot->partner);
-    return 0.5 * (dashpot->partner_before + after);
-  }
-  return dashpot->signal ? 2.0 * dashpot->factor * mps_signal_velocity(dashpot->signal, now) : 0.0;
+static mps_status check_number(mps_dynamics *dynamics, const char *function, int32_t number) {
+  if (number >= 0 && number < dynamics->boundary_room && dynamics->boundary[number]) return MPS_OK;
+  return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
+                   "there is no boundary number %d", number);
 }
 
-void mpsi_dynamics_dashpots_after(mps_dynamics *dynamics, double now, bool output) {
-  const double dt = dynamics->dt;
-  const int integrator = dynamics->def.integrator;
-  for (int64_t k = 0, next; k < dynamics->dashpots; k = next) {
-    const mpsi_dynamics_dashpot *first = &dynamics->dashpot[k];
-    const motion m = component(dynamics, first->component);
-    const int32_t i = first->particle;
-    double c = 0.0, pull = 0.0; /* all dashpots of this component together */
-    for (next = k; next < dynamics->dashpots && dynamics->dashpot[next].particle == i &&
-                   dynamics->dashpot[next].component == first->component;
-         next++) {
-      c += dynamics->dashpot[next].c;
-      pull += dynamics->dashpot[next].c * target(dynamics, &dynamics->dashpot[next], &m, now);
-    }
-    if (m.inverse_mass[i] == 0.0) continue; /* held or driven */
-    const double before = first->before, ordinary = velocity(dynamics, &m, i);
-    double after;
-    if (integrator == MPS_INTEGRATOR_EULER)
-      after = ordinary + dt * (pull - c * before);
-    else
-      after = (ordinary - 0.5 * c * dt * before + dt * pull) / (1.0 + 0.5 * c * dt);
-    if (integrator == MPS_INTEGRATOR_VERLET) {
-      m.d[i] = m.o[i] + dt * after;
-    } else {
-      m.v[i] = after;
-      if (integrator == MPS_INTEGRATOR_LEAPFROG) m.d[i] += dt * (after - ordinary);
-    }
-    if (output) m.a[i] = (after - before) / dt;
+mps_status mps_dynamics_add_boundary(mps_dynamics *dynamics, const mps_dynamics_boundary_def *def,
+                                     int32_t *number) {
+  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  mps_context *context = dynamics->context;
+  mps_status status = mpsi_dynamics_enter(dynamics, __func__);
+  if (status != MPS_OK) return status;
+  if (!def || !number)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL", def ? "number" : "def");
+  int32_t at = 0;
+  while (at < dynamics->boundary_room && dynamics->boundary[at]) at++;
+  if (at == dynamics->boundary_room) {
+    void *array = dynamics->boundary;
+    if (!mpsi_grow(context, &array, at, at + 8, sizeof *dynamics->boundary))
+      return mpsi_fail_memory(context, __func__, (size_t)(at + 8) * sizeof *dynamics->boundary);
+    dynamics->boundary = array;
+    dynamics->boundary_room = at + 8;
   }
+  mpsi_dynamics_boundary *boundary = NULL;
+  status = make(dynamics, __func__, def, &boundary);
+  if (status == MPS_OK) status = exchange(dynamics, __func__, at, &boundary);
+  release(dynamics, &boundary);
+  if (status == MPS_OK) *number = at;
+  return status;
+}
+
+mps_status mps_dynamics_set_boundary(mps_dynamics *dynamics, int32_t number,
+                                     const mps_dynamics_boundary_def *def) {
+  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_dynamics_enter(dynamics, __func__);
+  if (status == MPS_OK && !def)
+    status = mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT, "def is NULL");
+  if (status == MPS_OK) status = check_number(dynamics, __func__, number);
+  if (status != MPS_OK) return status;
+  mpsi_dynamics_boundary *boundary = NULL;
+  status = make(dynamics, __func__, def, &boundary);
+  if (status == MPS_OK) {
+    const mpsi_dynamics_boundary *former = dynamics->boundary[number];
+    memcpy(boundary->pushed, former->pushed, sizeof boundary->pushed);
+    memcpy(boundary->impulse, former->impulse, sizeof boundary->impulse);
+    boundary->kick = former->kick;
+    boundary->work = former->work;
+    status = exchange(dynamics, __func__, number, &boundary);
+  }
+  release(dynamics, &boundary);
+  return status;
+}
+
+mps_status mps_dynamics_remove_boundary(mps_dynamics *dynamics, int32_t number) {
+  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_dynamics_enter(dynamics, __func__);
+  if (status == MPS_OK) status = check_number(dynamics, __func__, number);
+  mpsi_dynamics_boundary *boundary = NULL;
+  if (status == MPS_OK) status = exchange(dynamics, __func__, number, &boundary);
+  release(dynamics, &boundary);
+  return status;
+}
+
+mps_status mps_dynamics_get_reaction_sized(const mps_dynamics *dynamics, int32_t number,
+                                           mps_reaction *out, size_t size) {
+  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  if (number < 0 || number >= dynamics->boundary_room || !dynamics->boundary[number])
+    return mpsi_fail(dynamics->context, "mps_dynamics_get_reaction", MPS_ERROR_ARGUMENT,
+                     "there is no boundary number %d", number);
+  const mpsi_dynamics_boundary *b = dynamics->boundary[number];
+  const double rate = b->kick > 0.0 ? 1.0 / b->kick : 0.0;
+  const mps_reaction r = {
+      .force = {b->pushed[0] * rate, b->pushed[1] * rate, 0.0},
+      .moment = {0.0, 0.0, b->pushed[2] * rate},
+      .impulse = {b->impulse[0], b->impulse[1], 0.0},
+      .moment_impulse = {0.0, 0.0, b->impulse[2]},
+      .count = b->kick > 0.0 ? b->part.count : 0,
+      .work = b->work,
+  };
+  return mpsi_out_write(dynamics->context, "mps_dynamics_get_reaction", out, size, &r, sizeof r);
+}
+
+void mpsi_dynamics_free_boundaries(mps_dynamics *dynamics) {
+  for (int32_t k = 0; k < dynamics->boundary_room; k++) release(dynamics, &dynamics->boundary[k]);
+  mpsi_free(dynamics->context, dynamics->boundary);
+  mpsi_free(dynamics->context, dynamics->bound);
+  mpsi_free(dynamics->context, dynamics->dashpot);
+  mpsi_free(dynamics->context, dynamics->column_dashpot);
 }

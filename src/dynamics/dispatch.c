@@ -4,8 +4,7 @@
 
 #include "core/levels.h"
 
-const mpsi_dynamics_kernels *mpsi_dynamics_kernels_select(int32_t isa) {
-  const int32_t level = mpsi_level(isa);
+const mpsi_dynamics_kernels *mpsi_dynamics_kernels_select(int32_t level) {
 #ifdef MPSI_X86_LEVELS
   if (level == 4) return &mpsi_dynamics_kernels_v4;
   if (level == 3) return &mpsi_dynamics_kernels_v3;

@@ -3,19 +3,27 @@
 #include "dynamics_private.h"
 
 #include "core/particles_internal.h"
+#include "core/state.h"
 #include "layout.h"
+
+#include <mps/experimental.h>
+#include <mps/kernel.h>
 
 #include <float.h>
 
 static const mps_dynamics_def dynamics_defaults = {
     .struct_size = sizeof(mps_dynamics_def),
-    .integrator = MPS_INTEGRATOR_VERLET,
-    .rotation = MPS_ROTATION_MEAN_MATRIX,
+    .integrator = MPS_DYNAMICS_INTEGRATOR_VERLET,
+    .rotation = MPS_DYNAMICS_ROTATION_MEAN_MATRIX,
+    .damping = MPS_DYNAMICS_DAMPING_PAIR,
+    .dt = NAN,
     .courant = 0.9,
     .radius_ratio = 1.5,
     .f1 = 1.0,
     .f2 = 14.0,
+    .period_x = NAN,
     .divergence = 1e15,
+    .measure = 1.0,
 };
 
 mps_status mps_dynamics_def_init(mps_dynamics_def *def, size_t size) {
@@ -29,55 +37,55 @@ mps_status mps_dynamics_def_init(mps_dynamics_def *def, size_t size) {
 
 static mps_status check_choices(mps_context *context, const mps_dynamics_def *def) {
   static const char *const function = "mps_dynamics_create";
-  if (def->integrator < MPS_INTEGRATOR_EULER || def->integrator > MPS_INTEGRATOR_VERLET)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "integrator is %d, allowed are 0 (Euler), 1 (leapfrog), 2 (Verlet)",
-                     def->integrator);
-  if (def->rotation != MPS_ROTATION_MEAN_ANGLE && def->rotation != MPS_ROTATION_MEAN_MATRIX)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "rotation is %d, allowed are 11 (mean angle) and 12 (mean matrix)",
-                     def->rotation);
-  if (def->torque != MPS_TORQUE_CONSERVING && def->torque != MPS_TORQUE_PRINTED)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "torque is %d, allowed are 0 (conserving) and 1 (as printed)", def->torque);
-  if (def->damping != MPS_DAMPING_PAIR && def->damping != MPS_DAMPING_PARTICLE)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "damping is %d, allowed are 0 (pair) and 1 (particle)", def->damping);
-  if (def->isa != 0 && def->isa != 1 && def->isa != 3 && def->isa != 4)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "isa is %d, allowed are 0 (the best), 1, 3 and 4", def->isa);
-  if (!mpsi_dynamics_kernels_select(def->isa))
-    return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
-                     "this processor or build lacks x86-64-v%d", def->isa);
+  const struct {
+    const char *name, *allowed;
+    int32_t value, most;
+  } checks[] = {
+      {"integrator", "0 (Verlet), 1 (leapfrog), 2 (Euler)", def->integrator, 2},
+      {"rotation", "0 (mean matrix), 1 (mean angle)", def->rotation, 1},
+      {"damping", "0 (pair), 1 (particle)", def->damping, 1},
+      {"watch_damping", "0 and 1", def->watch_damping, 1},
+      {"reserved", "0", def->reserved, 0},
+  };
+  for (size_t k = 0; k < sizeof checks / sizeof *checks; k++)
+    if (checks[k].value < 0 || checks[k].value > checks[k].most)
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %d, allowed are %s",
+                       checks[k].name, checks[k].value, checks[k].allowed);
   return MPS_OK;
 }
 
 static mps_status check_numbers(mps_context *context, const mps_dynamics_def *def) {
   const struct {
-    const char *name, *allowed;
-    double value;
-    bool good;
+    const char *name, *unit;
+    double value, least, most;
+    bool open, may_lack; /* `least` itself is not allowed; NaN is */
   } checks[] = {
-      {"dt", "0 (chosen by the library) or > 0 s", def->dt, def->dt >= 0.0},
-      {"courant", "in (0, 1]", def->courant, def->courant > 0.0 && def->courant <= 1.0},
-      {"radius_ratio", "in (1, 4]", def->radius_ratio,
-       def->radius_ratio > 1.0 && def->radius_ratio <= 4.0},
-      {"f1", "> 0 Hz", def->f1, def->f1 > 0.0},
-      {"f2", "> 0 Hz", def->f2, def->f2 > 0.0},
-      {"period_x", "0 (none) or > 0 m", def->period_x, def->period_x >= 0.0},
-      {"divergence", "> 0 m/s2", def->divergence, def->divergence > 0.0},
+      {"dt", " s, or NaN (chosen by the library)", def->dt, MPSI_DYN_LEAST_DT, MPSI_DYN_MOST_DT,
+       false, true},
+      {"courant", "", def->courant, 0.0, 1.0, true, false},
+      {"radius_ratio", "", def->radius_ratio, 1.0, 4.0, true, false},
+      {"f1", " Hz", def->f1, 1e-20, 1e9, false, false},
+      {"f2", " Hz", def->f2, 1e-20, 1e9, false, false},
+      {"period_x", " m, or NaN (none)", def->period_x, 0.0, 1e300, true, true},
+      {"divergence", " m/s2", def->divergence, 0.0, 1e300, true, false},
+      {"measure", " m", def->measure, 1e-9, 1e9, false, false},
   };
-  for (size_t k = 0; k < sizeof checks / sizeof *checks; k++)
-    if (!checks[k].good || !isfinite(checks[k].value))
-      return mpsi_fail(context, "mps_dynamics_create", MPS_ERROR_ARGUMENT,
-                       "%s is %g, must be finite and %s", checks[k].name, checks[k].value,
-                       checks[k].allowed);
+  for (size_t k = 0; k < sizeof checks / sizeof *checks; k++) {
+    const double value = checks[k].value;
+    const bool above = checks[k].open ? value > checks[k].least : value >= checks[k].least;
+    if ((above && value <= checks[k].most) || (isnan(value) && checks[k].may_lack)) continue;
+    return mpsi_fail(context, "mps_dynamics_create", MPS_ERROR_ARGUMENT,
+                     "%s is %g, must be %s %g and at most %g%s", checks[k].name, value,
+                     checks[k].open ? "above" : "at least", checks[k].least, checks[k].most,
+                     checks[k].unit);
+  }
   return MPS_OK;
 }
 
 static mps_status check_material(mps_context *context, mps_particles *particles) {
   static const char *const function = "mps_dynamics_create";
   const int64_t n = mps_particles_count(particles);
+  const int64_t *id = mpsi_particles_integers(particles, "id");
   const char *const names[3] = {"density", "shear_velocity", "pressure_velocity"};
   const double *column[3];
   for (int f = 0; f < 3; f++) {
@@ -87,10 +95,10 @@ static mps_status check_material(mps_context *context, mps_particles *particles)
                        "the particle set has no field '%s': set it with mps_particles_set",
                        names[f]);
     for (int64_t k = 0; k < n; k++)
-      if (!isfinite(column[f][k]) || column[f][k] <= 0.0)
+      if (!(column[f][k] >= 1e-6 && column[f][k] <= 1e9))
         return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                         "%s of particle %lld is %g, must be finite and > 0", names[f],
-                         (long long)mpsi_particles_integers(particles, "id")[k], column[f][k]);
+                         "%s of particle %lld is %g, must be in 1e-6..1e9 %s", names[f],
+                         (long long)id[k], column[f][k], f == 0 ? "kg/m3" : "m/s");
   }
   const double *damping = mpsi_particles_column(particles, "damping", 0);
   for (int64_t k = 0; k < n; k++) {
@@ -98,12 +106,11 @@ static mps_status check_material(mps_context *context, mps_particles *particles)
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "pressure_velocity of particle %lld is %g m/s, must be at least sqrt(2) "
                        "times its shear_velocity %g m/s (lambda >= 0)",
-                       (long long)mpsi_particles_integers(particles, "id")[k], column[2][k],
-                       column[1][k]);
-    if (damping && !(damping[k] >= 0.0 && isfinite(damping[k])))
+                       (long long)id[k], column[2][k], column[1][k]);
+    if (damping && !(damping[k] >= 0.0 && damping[k] <= 1000.0))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "damping of particle %lld is %g, must be finite and >= 0",
-                       (long long)mpsi_particles_integers(particles, "id")[k], damping[k]);
+                       "damping of particle %lld is %g, must be in 0..1000", (long long)id[k],
+                       damping[k]);
   }
   return MPS_OK;
 }
@@ -153,7 +160,7 @@ static mps_status check_geometry(mps_context *context, mps_particles *particles,
   int64_t body = 0;
   for (int c = 0; c < 2; c++) extent(particles, c, &lo[c], &hi[c]);
   for (int64_t k = 0; k < n; k++) {
-    if (side && (side[k] < 0 || side[k] > MPS_SIDE_RIGHT))
+    if (side && (side[k] < 0 || side[k] > MPS_DYNAMICS_SIDE_RIGHT))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "free_field of particle %lld is %lld, allowed are 0, 1 (left), 2 (right)",
                        (long long)mpsi_particles_integers(particles, "id")[k], (long long)side[k]);
@@ -170,7 +177,7 @@ static mps_status check_geometry(mps_context *context, mps_particles *particles,
                      (long long)n);
   if (def->period_x > 0.0 && body < n)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "period_x is %g m, must be 0 with free-field columns", def->period_x);
+                     "period_x is %g m, must be NaN with free-field columns", def->period_x);
   if (def->period_x > 0.0 && (def->period_x <= re || def->period_x <= hi[0] - lo[0]))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "period_x is %g m, must be above re = %g m and the body's width %g m "
@@ -226,20 +233,23 @@ static bool allocate(mps_dynamics *dynamics) {
                                  (int64_t)mps_context_threads(dynamics->context) * MPSI_DYN_SCRATCH,
                                  sizeof(double));
   dynamics->bad = mpsi_alloc(dynamics->context, dynamics->mesh.blocks, sizeof(int32_t));
-  if (!dynamics->slab || !dynamics->scratch || !dynamics->bad) return false;
+  dynamics->part = mpsi_alloc(dynamics->context, 2 * dynamics->mesh.blocks, sizeof(double));
+  if (!dynamics->part || !dynamics->slab || !dynamics->scratch || !dynamics->bad) return false;
   for (int64_t k = 0; k < number; k++) *arrays[k] = dynamics->slab + k * stride;
   s->ex = dynamics->slab + number * stride;
   s->ey = s->ex + slots;
   return true;
 }
 
-static void bind_fields(mps_dynamics *dynamics) {
+void mpsi_dynamics_bind(mps_dynamics *dynamics) {
   mpsi_dynamics_state *s = &dynamics->state;
   const struct {
     double **to;
     const char *name;
     int component;
-  } bind[] = {{&s->dx, "displacement", 0},
+  } bind[] = {{&s->rx, "reference", 0},
+              {&s->ry, "reference", 1},
+              {&s->dx, "displacement", 0},
               {&s->dy, "displacement", 1},
               {&s->th, "rotation", 0},
               {&s->ox, "displacement_old", 0},
@@ -258,17 +268,16 @@ static void bind_fields(mps_dynamics *dynamics) {
     *bind[k].to = mpsi_dynamics_column(dynamics, bind[k].name, bind[k].component);
 }
 
-/* Coefficients of each particle: Lame constants, inverse masses, Rayleigh damping (A16). */
-static void set_coefficients(mps_dynamics *dynamics) {
+/* Coefficients of each particle: Lame constants, inverse masses, Rayleigh damping. */
+void mpsi_dynamics_set_coefficients(mps_dynamics *dynamics) {
   const double *rho = mpsi_dynamics_column(dynamics, "density", 0);
   const double *vs = mpsi_dynamics_column(dynamics, "shear_velocity", 0);
   const double *vp = mpsi_dynamics_column(dynamics, "pressure_velocity", 0);
   const double *h = mpsi_dynamics_column(dynamics, "damping", 0);
   const double D = mps_particles_spacing(dynamics->particles);
   const double f1 = dynamics->def.f1, f2 = dynamics->def.f2, pi = 3.14159265358979323846;
-  /* I = rho D^4/6 and one half of each pair's moment to either end: 3/(rho D^2); (A14) as printed
-   * gives twice that */
-  const double spin = dynamics->def.torque == MPS_TORQUE_PRINTED ? 6.0 : 3.0;
+  /* I = rho D^4/6 and one half of each pair's moment to either end: 3/(rho D^2) */
+  const double spin = 3.0 * dynamics->torque;
   double least = INFINITY, most = 0.0;
   mpsi_dynamics_state *s = &dynamics->state;
   for (int64_t k = 0; k < dynamics->count; k++) {
@@ -283,7 +292,7 @@ static void set_coefficients(mps_dynamics *dynamics) {
     least = fmin(least, ratio), most = fmax(most, ratio);
   }
   if (most > 0.0)
-    dynamics->damping = least == most || dynamics->def.damping == MPS_DAMPING_PARTICLE
+    dynamics->damping = least == most || dynamics->def.damping == MPS_DYNAMICS_DAMPING_PARTICLE
                             ? MPSI_DYN_BY_PARTICLES
                             : MPSI_DYN_BY_PAIRS;
 }
@@ -311,7 +320,8 @@ static mps_status arrange(mps_dynamics *dynamics) {
                               .side = mpsi_particles_integers(p, "free_field"),
                               .spacing = mps_particles_spacing(p),
                               .radius = dynamics->radius,
-                              .period_x = dynamics->def.period_x};
+                              .period_x =
+                                  isnan(dynamics->def.period_x) ? 0.0 : dynamics->def.period_x};
   mps_status status = MPS_OK;
   if (!order || !mpsi_dynamics_layout_order(context, &g, order))
     status = mpsi_fail_memory(context, function, (size_t)dynamics->count * sizeof *order);
@@ -338,40 +348,57 @@ static mps_status arrange(mps_dynamics *dynamics) {
 
 /* Dashpots between each free-field column and the edge of the body beside it. */
 static mps_status couple_columns(mps_dynamics *dynamics) {
-  if (dynamics->body == dynamics->count) return MPS_OK;
+  const int64_t columns = dynamics->count - dynamics->body;
+  if (columns == 0) return MPS_OK;
+  mps_context *context = dynamics->context;
   mps_particles *p = dynamics->particles;
   const mpsi_dynamics_geometry g = {.count = dynamics->count,
                                     .x = mpsi_particles_column(p, "reference", 0),
                                     .y = mpsi_particles_column(p, "reference", 1),
                                     .side = mpsi_particles_integers(p, "free_field"),
-                                    .spacing = mps_particles_spacing(p),
+                                    .spacing = dynamics->spacing,
                                     .radius = dynamics->radius};
-  int64_t *edge = mpsi_alloc(dynamics->context, dynamics->count, sizeof *edge);
-  if (!edge)
-    return mpsi_fail_memory(dynamics->context, "mps_dynamics_create",
-                            (size_t)dynamics->count * sizeof *edge);
-  mps_status status =
-      mpsi_dynamics_layout_edges(dynamics->context, "mps_dynamics_create", &g, edge);
+  int64_t *edge = mpsi_alloc(context, dynamics->count, sizeof *edge);
+  dynamics->column_dashpot = mpsi_alloc(context, 2 * columns, sizeof *dynamics->column_dashpot);
+  if (!edge || !dynamics->column_dashpot) {
+    mpsi_free(context, edge);
+    return mpsi_fail_memory(context, "mps_dynamics_create", (size_t)dynamics->count * sizeof *edge);
+  }
+  const mps_status status = mpsi_dynamics_layout_edges(context, "mps_dynamics_create", &g, edge);
   const double *velocity[2] = {mpsi_particles_column(p, "pressure_velocity", 0),
                                mpsi_particles_column(p, "shear_velocity", 0)};
   for (int64_t k = dynamics->body; status == MPS_OK && k < dynamics->count; k++)
     for (int c = 0; c < 2 && edge[k] >= 0; c++)
-      if (!mpsi_dynamics_add_dashpot(dynamics,
-                                     (mpsi_dynamics_dashpot){.particle = (int32_t)edge[k],
-                                                             .component = c,
-                                                             .partner = (int32_t)k,
-                                                             .c = velocity[c][k] / g.spacing}))
-        status = mpsi_fail_memory(dynamics->context, "mps_dynamics_create",
-                                  sizeof(mpsi_dynamics_dashpot));
-  mpsi_free(dynamics->context, edge);
+      dynamics->column_dashpot[dynamics->column_dashpots++] =
+          (mpsi_dynamics_dashpot){.particle = (int32_t)edge[k],
+                                  .component = c,
+                                  .boundary = -1,
+                                  .partner = (int32_t)k,
+                                  .c = velocity[c][k] / g.spacing};
+  mpsi_free(context, edge);
   return status;
+}
+
+bool mpsi_dynamics_reserve_accounts(mps_dynamics *dynamics) {
+  if (!dynamics->before)
+    dynamics->before = mpsi_alloc(dynamics->context, 3 * dynamics->count, sizeof(double));
+  return dynamics->before != NULL;
+}
+
+/* What Rayleigh damping that is watched needs. */
+static mps_status reserve_watch(mps_dynamics *dynamics) {
+  if (!dynamics->def.watch_damping || dynamics->damping == MPSI_DYN_UNDAMPED) return MPS_OK;
+  dynamics->drag = mpsi_alloc(dynamics->context, 3 * dynamics->count, sizeof *dynamics->drag);
+  if (dynamics->drag && mpsi_dynamics_reserve_accounts(dynamics)) return MPS_OK;
+  return mpsi_fail_memory(dynamics->context, "mps_dynamics_create", (size_t)dynamics->count * 24);
 }
 
 static mps_status build(mps_dynamics *dynamics) {
   static const char *const function = "mps_dynamics_create";
   mps_context *context = dynamics->context;
-  const double spacing = mps_particles_spacing(dynamics->particles);
+  const double spacing = dynamics->spacing = mps_particles_spacing(dynamics->particles);
   mps_kernel *kernel = NULL;
+  dynamics->torque = 1.0;
   dynamics->radius = dynamics->def.radius_ratio * spacing;
   mps_status status = mps_kernel_create(context, MPS_KERNEL_MPS, dynamics->radius, &kernel);
   if (status == MPS_OK) /* n0 is the interior value for every particle, no dummies */
@@ -382,10 +409,12 @@ static mps_status build(mps_dynamics *dynamics) {
   if (status == MPS_OK && !allocate(dynamics))
     status = mpsi_fail_memory(context, function, (size_t)dynamics->mesh.slots * 16);
   if (status != MPS_OK) return status;
-  bind_fields(dynamics);
-  set_coefficients(dynamics);
+  mpsi_dynamics_bind(dynamics);
+  mpsi_dynamics_set_coefficients(dynamics);
   status = couple_columns(dynamics);
-  if (status == MPS_OK) status = mps_dynamics_restart(dynamics, 0.0);
+  if (status == MPS_OK) status = reserve_watch(dynamics);
+  if (status == MPS_OK) status = mpsi_dynamics_list_boundaries(dynamics, function);
+  if (status == MPS_OK) status = mpsi_dynamics_begin(dynamics, function, 0.0);
   return status;
 }
 
@@ -416,8 +445,9 @@ mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
   dynamics->particles = mpsi_particles_pin(particles);
   dynamics->def = def;
   dynamics->count = mps_particles_count(particles);
-  dynamics->kernels = mpsi_dynamics_kernels_select(def.isa);
+  dynamics->kernels = mpsi_dynamics_kernels_select(mpsi_context_level(context));
   dynamics->dt = def.dt;
+  dynamics->fresh = true;
   if ((status = build(dynamics)) != MPS_OK) {
     mps_dynamics_destroy(&dynamics);
     return status;
@@ -430,22 +460,52 @@ void mps_dynamics_destroy(mps_dynamics **pointer) {
   if (!pointer || !*pointer) return;
   mps_dynamics *dynamics = *pointer;
   mps_context *context = dynamics->context;
+  if (mpsi_dynamics_enter(dynamics, __func__) != MPS_OK) return;
   *pointer = NULL;
+  mps_snapshot_destroy(&dynamics->present);
+  mpsi_state_forget(&dynamics->identity);
   mpsi_dynamics_mesh_free(context, &dynamics->mesh);
-  for (int64_t k = 0; k < dynamics->signal_count; k++) mps_signal_destroy(&dynamics->signals[k]);
-  void *parts[] = {dynamics->slab,    dynamics->scratch, dynamics->bad,    dynamics->drive,
-                   dynamics->dashpot, dynamics->signals, dynamics->initial};
+  mpsi_dynamics_free_boundaries(dynamics);
+  mpsi_dynamics_free_loads(dynamics);
+  void *parts[] = {dynamics->slab,   dynamics->scratch, dynamics->bad,
+                   dynamics->before, dynamics->drag,    dynamics->part};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
   mpsi_particles_unpin(dynamics->particles);
   mpsi_free(context, dynamics);
   mpsi_context_release(context);
 }
 
-double mps_dynamics_time(const mps_dynamics *dynamics) {
-  if (!dynamics) return 0.0;
-  return dynamics->base_time + (double)(dynamics->steps - dynamics->base_step) * dynamics->dt;
+mps_status mps_experimental_dynamics_printed_torque(mps_dynamics *dynamics) {
+  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  const mps_status status = mpsi_dynamics_enter(dynamics, __func__);
+  if (status != MPS_OK) return status;
+  if (!dynamics->fresh)
+    return mpsi_fail(dynamics->context, __func__, MPS_ERROR_STATE,
+                     "steps have been taken: call it before the first");
+  dynamics->torque = 2.0;
+  mpsi_dynamics_set_coefficients(dynamics);
+  dynamics->have_limit = dynamics->checked = false;
+  dynamics->dt = dynamics->def.dt;
+  return MPS_OK;
 }
 
-int64_t mps_dynamics_steps(const mps_dynamics *dynamics) { return dynamics ? dynamics->steps : 0; }
+/* ---- questions ------------------------------------------------------------------------------- */
+
+mps_status mps_dynamics_get_def_sized(const mps_dynamics *dynamics, mps_dynamics_def *out,
+                                      size_t size) {
+  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  mps_dynamics_def def = dynamics->def;
+  def.struct_size = (uint32_t)size;
+  def.dt = dynamics->dt;
+  return mpsi_out_write(dynamics->context, "mps_dynamics_get_def", out, size, &def, sizeof def);
+}
+
+mps_particles *mps_dynamics_particles(const mps_dynamics *dynamics) {
+  return dynamics ? dynamics->particles : NULL;
+}
+
+mps_context *mps_dynamics_context(const mps_dynamics *dynamics) {
+  return dynamics ? dynamics->context : NULL;
+}
 
 int64_t mps_dynamics_pairs(const mps_dynamics *dynamics) { return dynamics ? dynamics->pairs : 0; }

@@ -1,4 +1,13 @@
-/* dynamics_private.h - the members of the explicit MPS solver.
+/* dynamics_private.h - the members of the explicit MPS solver, and who does what in a step:
+ *
+ *   step.c        the step: forces (kernels.c), loads, dashpots, what is held or driven, budget
+ *   constrain.c   dashpots and held or driven degrees of freedom around a step
+ *   boundary.c    boundaries: definitions, lists, reactions
+ *   loads.c       loads: definitions, the forces of a step
+ *   budget.c      energies and momenta, works of a step
+ *   run.c         step and run as the caller sees them, hooks, callbacks
+ *   limit.c       the stability limit; tangent.c, lattice.c what it is made from
+ *   state.c       snapshots and checkpoints
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_DYNAMICS_PRIVATE_H
 #define MPSI_DYNAMICS_PRIVATE_H
@@ -8,30 +17,74 @@
 
 #include <mps/dynamics.h>
 
-/* A component driven by a signal. */
-typedef struct mpsi_dynamics_drive {
-  int32_t particle, component;
-  mps_signal *signal; /* owned through mps_dynamics.signals */
-  double factor;
-} mpsi_dynamics_drive;
+#define MPSI_DYN_LEAST_DT 1e-12 /* s */
+#define MPSI_DYN_MOST_DT 1e9
+
+/* What one of the caller's definitions selects: sorted indices, signals of x and y. */
+typedef struct mpsi_dynamics_part {
+  int64_t count;
+  int32_t *particle;
+  mps_signal *signal[2];
+  double factor[2];
+} mpsi_dynamics_part;
+
+typedef struct mpsi_dynamics_boundary {
+  mpsi_dynamics_part part;
+  int32_t kind;
+  uint32_t dofs;                   /* held or driven */
+  int32_t normal;                  /* viscous */
+  double density, shear, pressure; /* viscous: of the half space, NaN: of each particle */
+  /* At the end of the step under way, driven: factor times displacement and velocity of the signal;
+   * at its start: factor times acceleration; viscous: factor times velocity. 0 without signal. */
+  double reach[3], speed[3], gain[3], incoming[3];
+  /* Sums: of the last step (N s, N m s), and since it was made, the latter with the work (J). */
+  double pushed[3], impulse[3]; /* x, y, moment about the origin */
+  double kick;                  /* s that the last step's forces acted for, 0: no step yet */
+  double work;
+} mpsi_dynamics_boundary;
+
+typedef struct mpsi_dynamics_load {
+  mpsi_dynamics_part part;
+  int32_t kind;
+  double amount[2]; /* traction: N a particle; body: m/s2 */
+  double now[2];    /* factor times signal at the start of the step under way */
+} mpsi_dynamics_load;
+
+/* A degree of freedom that is held or driven. */
+typedef struct mpsi_dynamics_bound {
+  int32_t particle, component; /* 0 x, 1 y, 2 rotation */
+  int32_t boundary;
+  double rest;   /* its displacement (m, rad) less `reach` of the boundary */
+  double at;     /* its displacement before the step, m, rad */
+  double before; /* its velocity before the step, m/s, rad/s */
+  double force;  /* on the particle in the last step, N, N m */
+  double c, s;   /* rotation: its trigonometry (mpsi_dynamics_state) */
+} mpsi_dynamics_bound;
 
 /* A dashpot on one component of one particle: acceleration c (target - v). */
 typedef struct mpsi_dynamics_dashpot {
   int32_t particle, component;
-  int32_t partner;    /* free-field particle whose velocity is the target, or -1 */
-  double c;           /* 1/s */
-  mps_signal *signal; /* incoming wave: the target is 2 factor v_in; NULL: 0 */
-  double factor;
+  int32_t boundary;              /* or -1: between the body and a free-field column */
+  int32_t partner;               /* free-field particle whose velocity is the target, or -1 */
+  bool idle;                     /* the degree of freedom is held or driven */
+  double c;                      /* 1/s */
   double before, partner_before; /* velocities before the step, m/s */
+  double force;                  /* on the particle in the last step, N */
 } mpsi_dynamics_dashpot;
+
+/* Works and energies, J, since the state began. */
+typedef struct mpsi_dynamics_works {
+  double loads, boundaries, damping;
+  double start; /* kinetic and strain energy at the start */
+} mpsi_dynamics_works;
 
 struct mps_dynamics {
   mps_context *context;
   mps_particles *particles;
   mps_dynamics_def def;
-  double radius, density; /* re (m), n0 */
-  int64_t count;          /* particles, free-field columns included */
-  int64_t body;           /* particles of the body: 0 .. body - 1 */
+  double spacing, radius, density; /* D, re (m), n0 */
+  int64_t count;                   /* particles, free-field columns included */
+  int64_t body;                    /* particles of the body: 0 .. body - 1 */
   int64_t pairs;
   bool lattice; /* all pairs' offsets are whole spacings */
   mpsi_dynamics_mesh mesh;
@@ -40,59 +93,145 @@ struct mps_dynamics {
   double *slab;    /* the arrays of state that are not particle fields */
   double *scratch; /* MPSI_DYN_SCRATCH a worker */
   int32_t *bad;    /* one a block */
-  mpsi_dynamics_drive *drive;
-  mpsi_dynamics_dashpot *dashpot;
-  mps_signal **signals; /* every signal kept alive */
-  int64_t drives, drive_room, dashpots, dashpot_room, signal_count, signal_room;
-  bool dashpots_sorted;
   mpsi_dynamics_damping damping;
-  bool fresh;   /* no step since creation or restart: G_{-1} = G_0 */
+  double torque; /* factor on all torques: 1, or 2 as printed */
+
+  /* boundaries and loads: by number, NULL where free */
+  mpsi_dynamics_boundary **boundary;
+  mpsi_dynamics_load **load;
+  int32_t boundary_room, load_room;
+  mpsi_dynamics_bound *bound;            /* in order of component and memory */
+  mpsi_dynamics_dashpot *dashpot;        /* columns first, then edges; from the far end of memory */
+  mpsi_dynamics_dashpot *column_dashpot; /* those of the free-field columns */
+  int64_t bounds, dashpots, column_dashpots;
+  double *force[2]; /* of all loads, N: present when there is a load */
+  bool forces_stale;
+  double *before; /* 3 columns of velocities before a step, NULL until works are counted */
+  double *drag;   /* 3 columns of accelerations by Rayleigh damping, NULL: not watched */
+  double *part;   /* 2 partial sums a block */
+
+  /* time */
+  double dt;        /* s, chosen or given; NaN: not yet */
+  double length;    /* s, of the steps being taken */
+  double kept;      /* s, of the last step taken: restoring_old is that old */
+  double lag;       /* s, from displacement_old to displacement (Verlet) */
+  double base_time; /* time = base_time + (steps - base_step) length */
+  int64_t base_step, steps;
+  bool fresh;   /* no step since creation or restart: no history */
   bool checked; /* dt has been compared with the linear limit */
   bool diverged;
+  bool begun;       /* works.start is known */
+  const char *busy; /* the public function that is under way, NULL: none */
   bool have_limit;
-  mps_linear_limit limit; /* valid when have_limit */
-  double dt;              /* s, 0: not yet chosen */
-  double history_dt;      /* s, of the last step taken: restoring_old is that old */
-  double base_time;       /* time = base_time + (steps - base_step) dt */
-  int64_t base_step, steps;
-  double *initial; /* copy of the initial displacement, rotation, velocity and spin */
-  double initial_time;
+  mps_dynamics_linear_limit limit; /* valid when have_limit */
+  mpsi_dynamics_works works;
+  struct mpsi_identity *identity; /* state.c */
+  mps_snapshot *present;          /* of mps_dynamics_refresh, NULL before the first */
 };
 
 /* Column of a field that the solver has added itself: never NULL. */
 double *mpsi_dynamics_column(const mps_dynamics *dynamics, const char *name, int32_t component);
+/* Coefficients of each particle, from its fields. */
+void mpsi_dynamics_set_coefficients(mps_dynamics *dynamics);
+/* Finds the columns of the fields in the set. */
+void mpsi_dynamics_bind(mps_dynamics *dynamics);
+/* Room for what is accounted for in each step, made once. False: out of memory. */
+bool mpsi_dynamics_reserve_accounts(mps_dynamics *dynamics);
 
-/* Sets the history (old positions, trigonometry) that displacement, rotation, velocity and spin
- * imply, time and step 0. */
-void mpsi_dynamics_begin(mps_dynamics *dynamics, double time);
-/* The same from the kept initial state. */
-void mpsi_dynamics_rewind(mps_dynamics *dynamics);
-/* Steps without touching the public fields beyond those that carry the state; the last step
- * writes accelerations when `output`. */
+/* MPS_ERROR_STATE when a call of the solver is under way. */
+mps_status mpsi_dynamics_enter(mps_dynamics *dynamics, const char *function);
+/* That, or when the run has diverged; then finds dt if need be. */
+mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function);
+
+/* ---- step.c ---- */
+
+/* Begins a new history from displacement, rotation, velocity and spin. */
+mps_status mpsi_dynamics_begin(mps_dynamics *dynamics, const char *function, double time);
+/* Takes `count` steps of `length`; the last writes accelerations when `output`. On an error of a
+ * signal the step has not happened. */
 mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, int64_t count,
-                                 bool output);
-/* Brings position, velocity and spin up to date. */
+                                 double length, bool output);
+/* Brings position, velocity, spin and reaction up to date. */
 void mpsi_dynamics_publish(mps_dynamics *dynamics);
 /* Chooses dt where the definition left it open, and warns of one above the limit. */
 mps_status mpsi_dynamics_settle_dt(mps_dynamics *dynamics, const char *function);
+/* Velocity of a degree of freedom (component 0, 1, 2) half a step before the present state (Euler:
+ * of it). */
+double mpsi_dynamics_velocity(const mps_dynamics *dynamics, int32_t component, int64_t k);
+/* Mass (kg) or moment of inertia (kg m2) of a degree of freedom. */
+double mpsi_dynamics_mass(const mps_dynamics *dynamics, int32_t component, int64_t k);
 
-/* Imposes driven displacements at time t; with `output` their accelerations at time `now`. */
-void mpsi_dynamics_apply_drives(mps_dynamics *dynamics, double t, double now, bool output);
-/* Dashpots around a step: remember the velocities before, correct those after. */
+/* ---- boundary.c ---- */
+
+/* Selects the particles of a definition. `all`: neither list nor box selects all. */
+typedef struct mpsi_dynamics_selection {
+  const int64_t *ids;
+  int64_t id_count;
+  const double *lower, *upper;
+  mps_signal *const *signal;
+  const double *factor;
+  bool all;
+} mpsi_dynamics_selection;
+mps_status mpsi_dynamics_select(mps_dynamics *dynamics, const char *function,
+                                const mpsi_dynamics_selection *selection, mpsi_dynamics_part *out);
+void mpsi_dynamics_release_part(mps_dynamics *dynamics, mpsi_dynamics_part *part);
+/* Lists what is held or driven and the dashpots, without changes of the state. */
+mps_status mpsi_dynamics_list_boundaries(mps_dynamics *dynamics, const char *function);
+/* Takes the present state as that from which what is held or driven goes on: at the start. */
+mps_status mpsi_dynamics_take_bounds(mps_dynamics *dynamics, const char *function);
+void mpsi_dynamics_free_boundaries(mps_dynamics *dynamics);
+
+/* ---- constrain.c ---- */
+
+/* Asks the signals for a step from `now` to `then`: the one thing of a step that can fail. */
+mps_status mpsi_dynamics_ask_signals(mps_dynamics *dynamics, const char *function, double now,
+                                     double then);
 void mpsi_dynamics_dashpots_before(mps_dynamics *dynamics);
-void mpsi_dynamics_dashpots_after(mps_dynamics *dynamics, double now, bool output);
-bool mpsi_dynamics_add_dashpot(mps_dynamics *dynamics, mpsi_dynamics_dashpot dashpot);
+void mpsi_dynamics_dashpots_after(mps_dynamics *dynamics, double kick, bool output);
+void mpsi_dynamics_hold_bounds(mps_dynamics *dynamics, double kick, bool output);
+
+/* ---- loads.c ---- */
+
+mps_status mpsi_dynamics_ask_loads(mps_dynamics *dynamics, const char *function, double now);
+/* Forces (N) on the particles in the coming step, component 0 or 1: a sum of up to two columns. */
+typedef struct mpsi_dynamics_forces {
+  const double *load[2], *external[2]; /* NULL: none */
+  bool any;
+} mpsi_dynamics_forces;
+mpsi_dynamics_forces mpsi_dynamics_find_forces(mps_dynamics *dynamics);
+/* Adds what forces contribute to the step that block b has just taken. */
+void mpsi_dynamics_apply_forces(mps_dynamics *dynamics, const mpsi_dynamics_forces *forces,
+                                int64_t b, const mpsi_dynamics_step *step);
+void mpsi_dynamics_free_loads(mps_dynamics *dynamics);
+
+/* ---- budget.c ---- */
+
+/* The parts of a step that works are counted from. */
+typedef struct mpsi_dynamics_account {
+  mps_dynamics *dynamics;
+  const mpsi_dynamics_forces *forces;
+  const double *drag; /* NULL: damping is not watched */
+  double kick;
+} mpsi_dynamics_account;
+/* Keeps the velocities of a block's particles before a step; after it, adds up the works. */
+void mpsi_dynamics_note_velocities(mps_dynamics *dynamics, int64_t block);
+void mpsi_dynamics_count_works(mpsi_dynamics_account *account);
+
+/* Kinetic and strain energy of the present state, J. */
+void mpsi_dynamics_energies(mps_dynamics *dynamics, double *kinetic, double *strain);
+
+/* ---- limit.c, tangent.c, lattice.c ---- */
 
 /* y = S x, the symmetric tangent at the reference state: S = M^-1/2 K M^-1/2 over the 3 count
  * unknowns (x, y, rotation each in a row); held ones give 0. `weight` (NULL: 1) multiplies each
  * particle's pressure, its mean each pair's shear force. `work` has 4 count doubles. */
 void mpsi_dynamics_tangent_apply(mps_dynamics *dynamics, const double *weight, const double *x,
                                  double *y, double *work);
-
-/* Square of the highest eigenfrequency (rad/s)^2 of the endless square lattice. */
-double mpsi_dynamics_lattice_omega2(double spacing, double radius_ratio, double density, double vs,
-                                    double vp, int32_t torque);
-/* Yoshida's scheme at the limit z = -1: largest dt for a mode of frequency^2 omega2. */
+/* Square of the highest eigenfrequency (rad/s)^2 of the endless square lattice; `torque` as above.
+ */
+double mpsi_dynamics_lattice_omega2(double spacing, double radius_ratio, double vs, double vp,
+                                    double torque);
+/* Largest stable dt of Verlet and leapfrog for a mode of frequency^2 omega2 (rad/s)^2. */
 double mpsi_dynamics_damped_limit(double omega2, double alpha, double beta);
 
 #endif

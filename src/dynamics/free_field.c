@@ -17,20 +17,20 @@ typedef struct edge {
   int64_t *index; /* their indices, bottom up after sorting by y is left to the solver */
 } edge;
 
-static mps_status find_edge(mps_context *context, mps_particles *particles, mps_side side,
+static mps_status find_edge(mps_context *context, mps_particles *particles, int32_t side,
                             edge *out) {
   const int64_t n = mps_particles_count(particles);
   const double *x = mpsi_particles_column(particles, "position", 0);
   const int64_t *mark = mpsi_particles_integers(particles, "free_field");
   const double D = mps_particles_spacing(particles);
-  out->x = side == MPS_SIDE_LEFT ? INFINITY : -INFINITY;
+  out->x = side == MPS_DYNAMICS_SIDE_LEFT ? INFINITY : -INFINITY;
   for (int64_t k = 0; k < n; k++) {
     if (mark && mark[k] == (int64_t)side)
       return mpsi_fail(context, "mps_dynamics_add_free_field", MPS_ERROR_STATE,
                        "the set already has a %s free-field column",
-                       side == MPS_SIDE_LEFT ? "left" : "right");
+                       side == MPS_DYNAMICS_SIDE_LEFT ? "left" : "right");
     if (mark && mark[k]) continue;
-    out->x = side == MPS_SIDE_LEFT ? fmin(out->x, x[k]) : fmax(out->x, x[k]);
+    out->x = side == MPS_DYNAMICS_SIDE_LEFT ? fmin(out->x, x[k]) : fmax(out->x, x[k]);
   }
   out->index = mpsi_alloc(context, n, sizeof *out->index);
   if (!out->index) return mpsi_fail_memory(context, "mps_dynamics_add_free_field", (size_t)n * 8);
@@ -41,7 +41,7 @@ static mps_status find_edge(mps_context *context, mps_particles *particles, mps_
 
 /* Copies every field but id, position and the mark from the edge to the new particles. */
 static mps_status copy_fields(mps_context *context, mps_particles *particles, const edge *e,
-                              int64_t first, mps_side side, double shift) {
+                              int64_t first, int32_t side, double shift) {
   mps_status status = MPS_OK;
   for (int32_t f = 0; status == MPS_OK && f < mps_particles_field_count(particles); f++) {
     mps_field_info info;
@@ -66,12 +66,12 @@ static mps_status copy_fields(mps_context *context, mps_particles *particles, co
   return status;
 }
 
-static mps_status append_column(mps_context *context, mps_particles *particles, mps_side side,
+static mps_status append_column(mps_context *context, mps_particles *particles, int32_t side,
                                 int32_t gap, const edge *e) {
   const double *x = mpsi_particles_column(particles, "position", 0);
   const double *y = mpsi_particles_column(particles, "position", 1);
   const double D = mps_particles_spacing(particles);
-  const double shift = (side == MPS_SIDE_LEFT ? -D : D) * gap;
+  const double shift = (side == MPS_DYNAMICS_SIDE_LEFT ? -D : D) * gap;
   double *at = mpsi_alloc(context, 2 * e->count, sizeof *at);
   if (!at) return mpsi_fail_memory(context, "mps_dynamics_add_free_field", (size_t)e->count * 16);
   for (int64_t k = 0; k < e->count; k++) {
@@ -86,10 +86,10 @@ static mps_status append_column(mps_context *context, mps_particles *particles, 
   return status;
 }
 
-mps_status mps_dynamics_add_free_field(mps_particles *particles, mps_side side, int32_t gap) {
+mps_status mps_dynamics_add_free_field(mps_particles *particles, int32_t side, int32_t gap) {
   if (!particles) return MPS_ERROR_ARGUMENT;
   mps_context *context = mpsi_particles_context(particles);
-  if (side != MPS_SIDE_LEFT && side != MPS_SIDE_RIGHT)
+  if (side != MPS_DYNAMICS_SIDE_LEFT && side != MPS_DYNAMICS_SIDE_RIGHT)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
                      "side is %d, allowed are 1 (left) and 2 (right)", (int)side);
   if (gap < 2 || gap > 1000000)

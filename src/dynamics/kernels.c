@@ -12,8 +12,8 @@
 #define CONCAT(a, b) CONCAT_(a, b)
 #define SIMD _Pragma("omp simd")
 
-enum { MEAN_ANGLE, MEAN_MATRIX };
-enum { EULER, LEAPFROG, VERLET };
+enum { MEAN_MATRIX, MEAN_ANGLE };
+enum { VERLET, LEAPFROG, EULER };
 enum { UNDAMPED, BY_PARTICLES, BY_PAIRS };
 
 /* ---- pairs ----------------------------------------------------------------------------------- */
@@ -321,11 +321,16 @@ typedef struct freedom {
  * ones; `sk` the same times beta, of which the damping is the rate (A24). */
 MPSI_INLINE void advance(const int integrator, const int damping, const mpsi_dynamics_step *step,
                          int32_t n, double *restrict g, double *restrict sk, freedom f,
-                         const double *restrict alpha, const double *restrict beta) {
-  const double dt = step->dt, rdt = 1.0 / dt, rate = step->rate;
+                         const double *restrict alpha, const double *restrict beta,
+                         double *restrict drag) {
+  const double dt = step->dt, kick = step->kick, rdt = 1.0 / dt, rate = step->rate;
   double *restrict d = f.d, *restrict o = f.o, *restrict v = f.v, *restrict h = f.h;
   if (damping == BY_PARTICLES) SIMD for (int32_t t = 0; t < n; t++) sk[t] = beta[t] * g[t];
   if (damping && step->first) SIMD for (int32_t t = 0; t < n; t++) h[t] = sk[t];
+  if (damping && drag) SIMD for (int32_t t = 0; t < n; t++) {
+      const double speed = integrator == VERLET ? (d[t] - o[t]) * rdt : v[t];
+      drag[t] = (sk[t] - h[t]) * rate - alpha[t] * speed;
+    }
   SIMD for (int32_t t = 0; t < n; t++) {
     double a = g[t];
     if (damping) {
@@ -336,10 +341,10 @@ MPSI_INLINE void advance(const int integrator, const int damping, const mpsi_dyn
     }
     if (integrator == VERLET) {
       const double now = d[t];
-      d[t] = now + ((now - o[t]) + dt * dt * a); /* (8); differences first keep small motion */
+      d[t] = now + ((now - o[t]) + dt * kick * a); /* (8); differences first keep small motion */
       o[t] = now;
     } else if (integrator == LEAPFROG) {
-      const double speed = v[t] + dt * a; /* (4) */
+      const double speed = v[t] + kick * a; /* (4) */
       v[t] = speed;
       d[t] = d[t] + dt * speed; /* (5) */
     } else {
@@ -393,9 +398,12 @@ MPSI_INLINE int pass2(const int removal, const int integrator, const int damping
   const freedom x = {s->dx + begin, s->ox + begin, s->vx + begin, s->hx + begin};
   const freedom y = {s->dy + begin, s->oy + begin, s->vy + begin, s->hy + begin};
   const freedom th = {s->th + begin, s->oth + begin, s->vth + begin, s->hth + begin};
-  advance(integrator, damping, step, n, f.fx, f.sx, x, alpha, beta);
-  advance(integrator, damping, step, n, f.fy, f.sy, y, alpha, beta);
-  advance(integrator, damping, step, n, f.ft, f.st, th, alpha, beta);
+  double *drag[3] = {NULL, NULL, NULL};
+  for (int c = 0; damping && step->drag && c < 3; c++)
+    drag[c] = step->drag + c * step->stride + begin;
+  advance(integrator, damping, step, n, f.fx, f.sx, x, alpha, beta, drag[0]);
+  advance(integrator, damping, step, n, f.fy, f.sy, y, alpha, beta, drag[1]);
+  advance(integrator, damping, step, n, f.ft, f.st, th, alpha, beta, drag[2]);
   trig(removal, s, begin, block->end);
 
   const double *restrict fx = f.fx, *restrict fy = f.fy;
@@ -428,7 +436,7 @@ MPSI_INLINE int pass2(const int removal, const int integrator, const int damping
     return pass2(removal, integrator, damping, s, mesh, b, step, scratch);                         \
   }
 #define INTEGRATORS(X, removal, damping)                                                           \
-  X(removal, EULER, damping) X(removal, LEAPFROG, damping) X(removal, VERLET, damping)
+  X(removal, VERLET, damping) X(removal, LEAPFROG, damping) X(removal, EULER, damping)
 #define NAME(removal, integrator, damping) pass2_##removal##_##integrator##_##damping,
 #define PASS2_TABLE(removal)                                                                       \
   {                                                                                                \
@@ -444,11 +452,11 @@ MPSI_INLINE int pass2(const int removal, const int integrator, const int damping
   INTEGRATORS(PASS2, removal, BY_PARTICLES)                                                        \
   INTEGRATORS(PASS2, removal, BY_PAIRS)
 
-ALL(MEAN_ANGLE)
 ALL(MEAN_MATRIX)
+ALL(MEAN_ANGLE)
 
 const mpsi_dynamics_kernels CONCAT(mpsi_dynamics_kernels_v, MPSI_LEVEL) = {
-    .pass1 = {{pass1_MEAN_ANGLE_0, pass1_MEAN_ANGLE_1}, {pass1_MEAN_MATRIX_0, pass1_MEAN_MATRIX_1}},
-    .pass2 = {PASS2_TABLE(MEAN_ANGLE), PASS2_TABLE(MEAN_MATRIX)},
-    .trig = {trig_MEAN_ANGLE, trig_MEAN_MATRIX},
+    .pass1 = {{pass1_MEAN_MATRIX_0, pass1_MEAN_MATRIX_1}, {pass1_MEAN_ANGLE_0, pass1_MEAN_ANGLE_1}},
+    .pass2 = {PASS2_TABLE(MEAN_MATRIX), PASS2_TABLE(MEAN_ANGLE)},
+    .trig = {trig_MEAN_MATRIX, trig_MEAN_ANGLE},
 };

@@ -9,6 +9,7 @@
 
 /* The arrays of a body, one value a particle, in sorted order. Names follow the paper. */
 typedef struct mpsi_dynamics_state {
+  double *rx, *ry;       /* reference position, m */
   double *dx, *dy, *th;  /* displacement (m), rotation (rad): r = r0 + d */
   double *ox, *oy, *oth; /* the same one step earlier (Verlet) */
   double *vx, *vy, *vth; /* velocity at mid-step (leapfrog) or at the step (Euler) */
@@ -19,7 +20,7 @@ typedef struct mpsi_dynamics_state {
   double *p;             /* pressure, Pa */
   double *c, *s;         /* removal (12): cos th - 1, sin th; (11): cos th/2 - 1, sin th/2 */
   double *mu, *lambda;   /* Pa */
-  double *ix, *iy, *ith; /* 1/rho for x and y, 3/(rho D^2) for the torque; 0 where held */
+  double *ix, *iy, *ith; /* 1/rho for x and y, 3/(rho D^2) for the torque */
   double *alpha, *beta;  /* Rayleigh coefficients, 1/s and s */
   double *ex, *ey;       /* a slot a pair: kc e, from the first pass to the second */
 } mpsi_dynamics_state;
@@ -35,11 +36,16 @@ typedef enum mpsi_dynamics_damping {
 
 /* What one step is told. */
 typedef struct mpsi_dynamics_step {
-  double dt;
+  double dt;      /* s: of the displacement */
+  double kick;    /* s: for which forces act: dt, or its mean with that of the step before */
   double rate;    /* 1/s: of the step that led here, for the rate of the damping force */
   double limit2;  /* square of the divergence criterion, (m/s2)^2 */
   int32_t first;  /* no history yet: the damping force has no rate */
   int32_t output; /* 1: write acceleration */
+  /* What Rayleigh damping contributes to the accelerations, 3 columns of `stride`; NULL: not kept.
+   */
+  double *drag;
+  int64_t stride;
 } mpsi_dynamics_step;
 
 /* Doubles of scratch memory a worker needs. */
@@ -58,13 +64,14 @@ typedef int (*mpsi_dynamics_pass2_fn)(const mpsi_dynamics_state *state,
 typedef void (*mpsi_dynamics_trig_fn)(const mpsi_dynamics_state *state, int64_t begin, int64_t end);
 
 typedef struct mpsi_dynamics_kernels {
-  mpsi_dynamics_pass1_fn pass1[2][2];    /* removal (11), (12); damping by pairs */
-  mpsi_dynamics_pass2_fn pass2[2][3][3]; /* removal, mpsi_dynamics_damping, integrator */
+  mpsi_dynamics_pass1_fn pass1[2][2]; /* MPS_DYNAMICS_ROTATION_...; damping by pairs */
+  mpsi_dynamics_pass2_fn pass2[2][3]
+                              [3]; /* removal, mpsi_dynamics_damping, MPS_DYNAMICS_INTEGRATOR_... */
   mpsi_dynamics_trig_fn trig[2];
 } mpsi_dynamics_kernels;
 
-/* x86-64 level: 0 the best that processor and build have, 1 the plain build; NULL if missing. */
-const mpsi_dynamics_kernels *mpsi_dynamics_kernels_select(int32_t isa);
+/* Those of an x86-64 level, as mpsi_context_level gives it. */
+const mpsi_dynamics_kernels *mpsi_dynamics_kernels_select(int32_t level);
 
 extern const mpsi_dynamics_kernels mpsi_dynamics_kernels_v1;
 #ifdef MPSI_X86_LEVELS

@@ -1,70 +1,80 @@
-/* step.c - running the explicit MPS solver: initial state, steps, the run loop, divergence.
+/* step.c - the time step of the explicit MPS solver: initial state, choice of dt, the parts of a
+ * step in order, divergence.
+ *
+ * A step of length dt_k from x_k with the velocity v- half a step before:
+ *   v+ = v- + (dt_{k-1} + dt_k)/2 a(x_k),  x_{k+1} = x_k + dt_k v+,
+ * which is Verlet and leapfrog of constant dt, and stays of second order where dt changes (Euler:
+ * x + dt v-, v- + dt a). Forces so act for the "kick" (dt_{k-1} + dt_k)/2.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles_internal.h"
 #include "dynamics_private.h"
 
 #include <float.h>
-#include <string.h>
 
-/* ---- initial state ----------------------------------------------------------------------------
- */
-
-/* The columns that make the initial state: displacement, rotation, velocity, spin. */
-static void state_columns(const mps_dynamics *dynamics, double *columns[6]) {
+double mpsi_dynamics_velocity(const mps_dynamics *dynamics, int32_t component, int64_t k) {
   const mpsi_dynamics_state *s = &dynamics->state;
-  double *list[6] = {s->dx, s->dy, s->th, s->vx, s->vy, s->vth};
-  memcpy(columns, list, sizeof list);
+  if (dynamics->def.integrator != MPS_DYNAMICS_INTEGRATOR_VERLET || dynamics->fresh)
+    return (component == 0 ? s->vx : component == 1 ? s->vy : s->vth)[k];
+  if (component == 2) return (s->th[k] - s->oth[k]) / dynamics->lag;
+  return component == 0 ? (s->dx[k] - s->ox[k]) / dynamics->lag
+                        : (s->dy[k] - s->oy[k]) / dynamics->lag;
 }
 
-static void start_history(mps_dynamics *dynamics) {
+double mpsi_dynamics_mass(const mps_dynamics *dynamics, int32_t component, int64_t k) {
+  const double D = dynamics->spacing, area = D * D;
+  const double mass = area * dynamics->def.measure / dynamics->state.ix[k];
+  return component == 2 ? mass * area / 6.0 : mass;
+}
+
+/* ---- initial state -----------------------------------------------------------------------------
+ */
+
+/* Displacements of a step of `length` before the first, as the initial velocities imply. */
+static void start_history(mps_dynamics *dynamics, double length) {
   mpsi_dynamics_state *s = &dynamics->state;
   double *d[3] = {s->dx, s->dy, s->th}, *o[3] = {s->ox, s->oy, s->oth};
   double *v[3] = {s->vx, s->vy, s->vth};
   for (int c = 0; c < 3; c++)
-    for (int64_t k = 0; k < dynamics->count; k++) o[c][k] = d[c][k] - dynamics->dt * v[c][k];
+    for (int64_t k = 0; k < dynamics->count; k++) o[c][k] = d[c][k] - length * v[c][k];
+  dynamics->lag = dynamics->kept = length;
 }
 
-void mpsi_dynamics_begin(mps_dynamics *dynamics, double time) {
+mps_status mpsi_dynamics_begin(mps_dynamics *dynamics, const char *function, double time) {
+  const double former[2] = {dynamics->base_time, dynamics->length};
+  const int64_t counted[2] = {dynamics->base_step, dynamics->steps};
+  const bool fresh = dynamics->fresh;
   dynamics->base_time = time;
   dynamics->steps = dynamics->base_step = 0;
   dynamics->fresh = true;
-  dynamics->diverged = false;
-  const mpsi_dynamics_state *s = &dynamics->state;
-  const double *inverse[3] = {s->ix, s->iy, s->ith};
-  double *v[3] = {s->vx, s->vy, s->vth};
-  for (int c = 0; c < 3; c++) /* held: at rest */
-    for (int64_t k = 0; k < dynamics->count; k++)
-      if (inverse[c][k] == 0.0) v[c][k] = 0.0;
-  /* driven particles: where the signal is, at the speed it has */
-  for (int64_t k = 0; k < dynamics->drives; k++) {
-    const mpsi_dynamics_drive *drive = &dynamics->drive[k];
-    (drive->component == 0 ? s->dx : s->dy)[drive->particle] =
-        drive->factor * mps_signal_displacement(drive->signal, time);
-    (drive->component == 0 ? s->vx : s->vy)[drive->particle] =
-        drive->factor * mps_signal_velocity(drive->signal, time);
+  dynamics->kernels->trig[dynamics->def.rotation](&dynamics->state, 0, dynamics->count);
+  const mps_status status = mpsi_dynamics_take_bounds(dynamics, function);
+  if (status != MPS_OK) { /* a signal refused */
+    dynamics->base_time = former[0];
+    dynamics->base_step = counted[0], dynamics->steps = counted[1];
+    dynamics->fresh = fresh;
+    return status;
   }
-  start_history(dynamics);
-  dynamics->kernels->trig[dynamics->def.rotation == MPS_ROTATION_MEAN_MATRIX](&dynamics->state, 0,
-                                                                              dynamics->count);
+  dynamics->diverged = dynamics->begun = false;
+  dynamics->works = (mpsi_dynamics_works){0};
+  for (int32_t k = 0; k < dynamics->boundary_room; k++) {
+    mpsi_dynamics_boundary *b = dynamics->boundary[k];
+    for (int c = 0; b && c < 3; c++) b->pushed[c] = b->impulse[c] = 0.0;
+    if (b) b->kick = b->work = 0.0;
+  }
+  for (int64_t k = 0; k < dynamics->dashpots; k++) dynamics->dashpot[k].force = 0.0;
   mpsi_dynamics_publish(dynamics);
-}
-
-void mpsi_dynamics_rewind(mps_dynamics *dynamics) {
-  double *column[6];
-  state_columns(dynamics, column);
-  for (int c = 0; c < 6; c++)
-    memcpy(column[c], dynamics->initial + c * dynamics->count,
-           (size_t)dynamics->count * sizeof(double));
-  mpsi_dynamics_begin(dynamics, dynamics->initial_time);
+  return MPS_OK;
 }
 
 mps_status mps_dynamics_restart(mps_dynamics *dynamics, double time) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_dynamics_enter(dynamics, __func__);
+  if (status != MPS_OK) return status;
   if (!isfinite(time))
     return mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT,
                      "time is %g s, must be finite", time);
-  double *column[6];
-  state_columns(dynamics, column);
+  const mpsi_dynamics_state *s = &dynamics->state;
+  const double *const column[6] = {s->dx, s->dy, s->th, s->vx, s->vy, s->vth};
   for (int c = 0; c < 6; c++)
     for (int64_t k = 0; k < dynamics->count; k++)
       if (!isfinite(column[c][k]))
@@ -72,84 +82,47 @@ mps_status mps_dynamics_restart(mps_dynamics *dynamics, double time) {
                          "the initial state of particle %lld is not finite (%g)",
                          (long long)mpsi_particles_integers(dynamics->particles, "id")[k],
                          column[c][k]);
-  if (!dynamics->initial)
-    dynamics->initial = mpsi_alloc(dynamics->context, 6 * dynamics->count, sizeof(double));
-  if (!dynamics->initial)
-    return mpsi_fail_memory(dynamics->context, __func__, (size_t)dynamics->count * 48);
-  for (int c = 0; c < 6; c++)
-    memcpy(dynamics->initial + c * dynamics->count, column[c],
-           (size_t)dynamics->count * sizeof(double));
-  dynamics->initial_time = time;
-  mpsi_dynamics_begin(dynamics, time);
-  return MPS_OK;
+  return mpsi_dynamics_begin(dynamics, __func__, time);
 }
 
-mps_status mps_dynamics_resume(mps_dynamics *dynamics, double time, int64_t step) {
-  if (!dynamics) return MPS_ERROR_ARGUMENT;
-  if (!isfinite(time) || step < 0)
-    return mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT,
-                     "time is %g s and step %lld: must be finite and >= 0", time, (long long)step);
-  if (dynamics->dt == 0.0)
-    return mpsi_fail(dynamics->context, __func__, MPS_ERROR_STATE,
-                     "give the time step of the checkpoint in the definition or by "
-                     "mps_dynamics_set_dt before resuming");
-  if (step == 0) return mps_dynamics_restart(dynamics, time); /* no history yet */
-  dynamics->steps = step;
-  /* Later times must be rounded as in the run that went before: counted from its start, where that
-   * gives the time of the checkpoint, which is so unless dt was changed on the way. */
-  const bool from_start = dynamics->initial_time + (double)step * dynamics->dt == time;
-  dynamics->base_time = from_start ? dynamics->initial_time : time;
-  dynamics->base_step = from_start ? 0 : step;
-  dynamics->fresh = false;
-  dynamics->history_dt = dynamics->dt;
-  dynamics->diverged = false;
-  dynamics->kernels->trig[dynamics->def.rotation == MPS_ROTATION_MEAN_MATRIX](&dynamics->state, 0,
-                                                                              dynamics->count);
-  return MPS_OK;
+static void publish_reactions(mps_dynamics *dynamics) {
+  double *const r[2] = {mpsi_particles_column(dynamics->particles, "reaction", 0),
+                        mpsi_particles_column(dynamics->particles, "reaction", 1)};
+  if (!r[0]) return;
+  for (int64_t k = 0; k < dynamics->count; k++) r[0][k] = r[1][k] = 0.0;
+  for (int64_t k = 0; k < dynamics->bounds; k++)
+    if (dynamics->bound[k].component < 2)
+      r[dynamics->bound[k].component][dynamics->bound[k].particle] += dynamics->bound[k].force;
+  for (int64_t k = 0; k < dynamics->dashpots; k++)
+    if (dynamics->dashpot[k].boundary >= 0)
+      r[dynamics->dashpot[k].component][dynamics->dashpot[k].particle] +=
+          dynamics->dashpot[k].force;
 }
 
 void mpsi_dynamics_publish(mps_dynamics *dynamics) {
   mpsi_dynamics_state *s = &dynamics->state;
-  double *d[3] = {s->dx, s->dy, s->th}, *o[3] = {s->ox, s->oy, s->oth};
-  double *v[3] = {s->vx, s->vy, s->vth};
+  const double *const d[3] = {s->dx, s->dy, s->th}, *const o[3] = {s->ox, s->oy, s->oth};
+  const double *const reference[2] = {s->rx, s->ry};
+  double *const v[3] = {s->vx, s->vy, s->vth};
   for (int c = 0; c < 2; c++) {
-    const double *reference = mpsi_dynamics_column(dynamics, "reference", c);
     double *position = mpsi_dynamics_column(dynamics, "position", c);
-    for (int64_t k = 0; k < dynamics->count; k++) position[k] = reference[k] + d[c][k];
+    for (int64_t k = 0; k < dynamics->count; k++) position[k] = reference[c][k] + d[c][k];
   }
-  if (dynamics->def.integrator != MPS_INTEGRATOR_VERLET || dynamics->fresh) return;
+  publish_reactions(dynamics);
+  if (dynamics->def.integrator != MPS_DYNAMICS_INTEGRATOR_VERLET || dynamics->fresh) return;
   for (int c = 0; c < 3; c++)
-    for (int64_t k = 0; k < dynamics->count; k++) v[c][k] = (d[c][k] - o[c][k]) / dynamics->dt;
+    for (int64_t k = 0; k < dynamics->count; k++) v[c][k] = (d[c][k] - o[c][k]) / dynamics->lag;
 }
 
-/* ---- time step ---------------------------------------------------------------------------------
+/* ---- the time step's length --------------------------------------------------------------------
  */
-
-/* A bound of the limit that costs nothing: the endless lattice of the stiffest and lightest
- * material in the set. Below it no warning is due. Off a lattice there is none: 0. */
-static double cheap_limit(mps_dynamics *dynamics) {
-  if (!dynamics->lattice) return 0.0;
-  const mpsi_dynamics_state *s = &dynamics->state;
-  const double *rho = mpsi_dynamics_column(dynamics, "density", 0);
-  double mu = 0.0, lambda = 0.0, light = INFINITY, alpha = 0.0, beta = 0.0;
-  for (int64_t k = 0; k < dynamics->count; k++) {
-    mu = fmax(mu, s->mu[k]), lambda = fmax(lambda, s->lambda[k]), light = fmin(light, rho[k]);
-    alpha = fmax(alpha, s->alpha[k]), beta = fmax(beta, s->beta[k]);
-  }
-  const double omega2 = mpsi_dynamics_lattice_omega2(
-      mps_particles_spacing(dynamics->particles), dynamics->def.radius_ratio, light,
-      sqrt(mu / light), sqrt((lambda + 2.0 * mu) / light), dynamics->def.torque);
-  /* Shear is softer where neighbours are missing, pressure can be stiffer: up to 1.13 times omega
-   * over all the shapes tried, and only where the highest mode is not the spin's. */
-  return (lambda <= 7.0 * mu ? 0.95 : 0.8) * mpsi_dynamics_damped_limit(omega2, alpha, beta);
-}
 
 /* Warns of a `dt` above the limit. */
 static mps_status compare_dt(mps_dynamics *dynamics, double dt) {
-  const bool euler = dynamics->def.integrator == MPS_INTEGRATOR_EULER;
-  if (!euler && dt <= cheap_limit(dynamics)) return MPS_OK;
-  mps_linear_limit limit;
-  const mps_status status = mps_dynamics_limit_linear(dynamics, 0.0, &limit);
+  const bool euler = dynamics->def.integrator == MPS_DYNAMICS_INTEGRATOR_EULER;
+  if (!euler && dt <= mps_dynamics_limit(dynamics)) return MPS_OK;
+  mps_dynamics_linear_limit limit;
+  const mps_status status = mps_dynamics_find_limit(dynamics, 0.0, &limit);
   if (status != MPS_OK) return status;
   if (euler && limit.dt == 0.0)
     mpsi_log(dynamics->context, MPS_LOG_WARNING,
@@ -163,8 +136,8 @@ static mps_status compare_dt(mps_dynamics *dynamics, double dt) {
 
 /* Chooses dt from the limit. */
 static mps_status choose_dt(mps_dynamics *dynamics, const char *function) {
-  mps_linear_limit limit;
-  const mps_status status = mps_dynamics_limit_linear(dynamics, 0.0, &limit);
+  mps_dynamics_linear_limit limit;
+  const mps_status status = mps_dynamics_find_limit(dynamics, 0.0, &limit);
   if (status != MPS_OK) return status;
   if (!(limit.dt > 0.0))
     return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
@@ -173,14 +146,13 @@ static mps_status choose_dt(mps_dynamics *dynamics, const char *function) {
     return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
                      "no force between particles that can move limits the time step: give dt");
   dynamics->dt = dynamics->def.courant * limit.dt;
-  start_history(dynamics);
   return MPS_OK;
 }
 
 mps_status mpsi_dynamics_settle_dt(mps_dynamics *dynamics, const char *function) {
   if (dynamics->checked) return MPS_OK;
   const mps_status status =
-      dynamics->dt == 0.0 ? choose_dt(dynamics, function) : compare_dt(dynamics, dynamics->dt);
+      isnan(dynamics->dt) ? choose_dt(dynamics, function) : compare_dt(dynamics, dynamics->dt);
   dynamics->checked = status == MPS_OK;
   return status;
 }
@@ -192,28 +164,34 @@ double mps_dynamics_dt(mps_dynamics *dynamics) {
 
 mps_status mps_dynamics_set_dt(mps_dynamics *dynamics, double dt) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
-  if (!isfinite(dt) || dt <= 0.0)
-    return mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT,
-                     "dt is %g s, must be finite and > 0", dt);
-  const mps_status status = compare_dt(dynamics, dt);
+  mps_status status = mpsi_dynamics_enter(dynamics, __func__);
   if (status != MPS_OK) return status;
-  dynamics->base_time = mps_dynamics_time(dynamics);
-  dynamics->base_step = dynamics->steps;
-  const double ratio = dynamics->dt > 0.0 ? dt / dynamics->dt : 1.0;
-  mpsi_dynamics_state *s = &dynamics->state;
-  double *d[3] = {s->dx, s->dy, s->th}, *o[3] = {s->ox, s->oy, s->oth};
-  const bool start = dynamics->fresh;
+  if (!(dt >= MPSI_DYN_LEAST_DT && dt <= MPSI_DYN_MOST_DT))
+    return mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT,
+                     "dt is %g s, must be in %g..%g", dt, MPSI_DYN_LEAST_DT, MPSI_DYN_MOST_DT);
+  status = compare_dt(dynamics, dt);
+  if (status != MPS_OK) return status;
   dynamics->dt = dynamics->def.dt = dt; /* as if the definition had given it */
   dynamics->checked = true;
-  if (start)
-    start_history(dynamics);
-  else
-    for (int c = 0; c < 3; c++)
-      for (int64_t k = 0; k < dynamics->count; k++) o[c][k] = d[c][k] - ratio * (d[c][k] - o[c][k]);
   return MPS_OK;
 }
 
-/* ---- steps ------------------------------------------------------------------------------------
+double mps_dynamics_time(const mps_dynamics *dynamics) {
+  if (!dynamics) return 0.0;
+  return dynamics->base_time + (double)(dynamics->steps - dynamics->base_step) * dynamics->length;
+}
+
+int64_t mps_dynamics_steps(const mps_dynamics *dynamics) { return dynamics ? dynamics->steps : 0; }
+
+/* Makes `length` that of the steps to come. */
+static void set_length(mps_dynamics *dynamics, double length) {
+  if (dynamics->length == length) return;
+  dynamics->base_time = mps_dynamics_time(dynamics);
+  dynamics->base_step = dynamics->steps;
+  dynamics->length = length;
+}
+
+/* ---- a step ------------------------------------------------------------------------------------
  */
 
 #define SMALL_BODY 40 /* blocks, about 20 000 particles */
@@ -223,6 +201,8 @@ typedef struct work {
   mpsi_dynamics_step step;
   mpsi_dynamics_pass1_fn pass1;
   mpsi_dynamics_pass2_fn pass2;
+  mpsi_dynamics_forces forces;
+  bool account;  /* works of loads or damping are counted */
   int64_t grain; /* blocks a unit of work */
 } work;
 
@@ -238,9 +218,12 @@ static void second_pass(void *data, int64_t unit, int32_t worker) {
   const work *w = data;
   mps_dynamics *dynamics = w->dynamics;
   const int64_t last = (unit + 1) * w->grain, n = dynamics->mesh.blocks;
-  for (int64_t b = unit * w->grain; b < last && b < n; b++)
+  for (int64_t b = unit * w->grain; b < last && b < n; b++) {
+    if (w->account) mpsi_dynamics_note_velocities(dynamics, b);
     dynamics->bad[b] = w->pass2(&dynamics->state, &dynamics->mesh, b, &w->step,
                                 dynamics->scratch + worker * MPSI_DYN_SCRATCH);
+    if (w->forces.any) mpsi_dynamics_apply_forces(dynamics, &w->forces, b, &w->step);
+  }
 }
 
 /* The particle that broke the limit, its acceleration and where it is. */
@@ -264,131 +247,121 @@ static mps_status report_divergence(mps_dynamics *dynamics, const char *function
       dynamics->context, function, MPS_ERROR_DIVERGED,
       "diverged at step %lld, t = %.6g s: |acceleration| of particle %lld at (%.6g, %.6g) m is "
       "%.4g m/s2, beyond %g; dt is %.6g s%s: take a smaller time step",
-      (long long)dynamics->steps, now, id, mpsi_dynamics_column(dynamics, "reference", 0)[worst],
-      mpsi_dynamics_column(dynamics, "reference", 1)[worst], most, dynamics->def.divergence,
-      dynamics->dt,
-      dynamics->have_limit && dynamics->dt > dynamics->limit.dt
+      (long long)dynamics->steps, now, id, s->rx[worst], s->ry[worst], most,
+      dynamics->def.divergence, dynamics->length,
+      dynamics->have_limit && dynamics->length > dynamics->limit.dt
           ? ", above the linear stability limit"
           : "");
   mpsi_fail_where(dynamics->context, dynamics->steps, id);
   return status;
 }
 
+/* Before a step of `length`: the displacements of a step before it, if the last was another. */
+static void fit_history(mps_dynamics *dynamics) {
+  const double length = dynamics->length, ratio = length / dynamics->lag;
+  mpsi_dynamics_state *s = &dynamics->state;
+  const double *const d[3] = {s->dx, s->dy, s->th};
+  double *const o[3] = {s->ox, s->oy, s->oth};
+  if (dynamics->fresh) {
+    start_history(dynamics, length);
+  } else if (dynamics->lag != length) {
+    if (dynamics->def.integrator == MPS_DYNAMICS_INTEGRATOR_VERLET)
+      for (int c = 0; c < 3; c++)
+        for (int64_t k = 0; k < dynamics->count; k++)
+          o[c][k] = d[c][k] - ratio * (d[c][k] - o[c][k]);
+    dynamics->lag = length;
+  }
+}
+
+/* The kinetic and strain energy that the budget starts from. */
+static void begin_budget(mps_dynamics *dynamics) {
+  double kinetic, strain;
+  if (dynamics->begun) return;
+  mpsi_dynamics_energies(dynamics, &kinetic, &strain);
+  dynamics->works.start = kinetic + strain;
+  dynamics->begun = true;
+}
+
+static void begin_counting(mps_dynamics *dynamics) {
+  for (int32_t k = 0; k < dynamics->boundary_room; k++)
+    for (int c = 0; dynamics->boundary[k] && c < 3; c++) dynamics->boundary[k]->pushed[c] = 0.0;
+}
+
+static void end_counting(mps_dynamics *dynamics, double kick) {
+  for (int32_t k = 0; k < dynamics->boundary_room; k++) {
+    mpsi_dynamics_boundary *b = dynamics->boundary[k];
+    for (int c = 0; b && c < 3; c++) b->impulse[c] += b->pushed[c];
+    if (b) b->kick = kick;
+  }
+}
+
+/* All of a step but asking the signals, which alone can fail. */
 static bool take_step(work *w, bool output) {
   mps_dynamics *dynamics = w->dynamics;
-  const double now = mps_dynamics_time(dynamics);
+  const double kick = dynamics->def.integrator == MPS_DYNAMICS_INTEGRATOR_EULER || dynamics->fresh
+                          ? dynamics->length
+                          : 0.5 * (dynamics->kept + dynamics->length);
+  fit_history(dynamics);
+  w->step.kick = kick;
+  w->step.rate = 1.0 / dynamics->kept;
   w->step.first = dynamics->fresh;
   w->step.output = output;
-  if (dynamics->dashpots) mpsi_dynamics_dashpots_before(dynamics);
+  begin_counting(dynamics);
+  mpsi_dynamics_dashpots_before(dynamics);
   const int64_t units = (dynamics->mesh.blocks + w->grain - 1) / w->grain;
   mpsi_parallel_for(dynamics->context, units, first_pass, w);
   mpsi_parallel_for(dynamics->context, units, second_pass, w);
   dynamics->steps++;
   dynamics->fresh = false;
-  dynamics->history_dt = dynamics->dt;
-  w->step.rate = 1.0 / dynamics->dt;
-  if (dynamics->dashpots) mpsi_dynamics_dashpots_after(dynamics, now, output);
-  if (dynamics->drives)
-    mpsi_dynamics_apply_drives(dynamics, mps_dynamics_time(dynamics), now, output);
+  dynamics->kept = dynamics->length;
+  mpsi_dynamics_dashpots_after(dynamics, kick, output);
+  mpsi_dynamics_hold_bounds(dynamics, kick, output);
+  end_counting(dynamics, kick);
+  if (w->account) {
+    mpsi_dynamics_account account = {dynamics, &w->forces, w->step.drag, kick};
+    mpsi_dynamics_count_works(&account);
+  }
   bool bad = false;
   for (int64_t b = 0; b < dynamics->mesh.blocks; b++) bad = bad || dynamics->bad[b];
   return !bad;
 }
 
 mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, int64_t count,
-                                 bool output) {
-  const int removal = dynamics->def.rotation == MPS_ROTATION_MEAN_MATRIX;
+                                 double length, bool output) {
   const double limit = dynamics->def.divergence;
+  const bool watch = dynamics->def.watch_damping && dynamics->damping != MPSI_DYN_UNDAMPED;
   /* Small bodies are one unit of work, run where the caller is: two barriers a step cost more
    * than sharing gains. */
   const int64_t blocks = dynamics->mesh.blocks;
   const int64_t units = blocks < SMALL_BODY ? 1 : 8 * mps_context_threads(dynamics->context);
+  const int32_t removal = dynamics->def.rotation, integrator = dynamics->def.integrator;
   work w = {.dynamics = dynamics,
-            .step = {.dt = dynamics->dt,
-                     .rate = 1.0 / (dynamics->fresh ? dynamics->dt : dynamics->history_dt),
-                     .limit2 = fmin(limit * limit, DBL_MAX)}, /* never lets an infinite one pass */
+            .step = {.dt = length,
+                     .limit2 = fmin(limit * limit, DBL_MAX), /* never lets an infinite one pass */
+                     .stride = dynamics->count},
             .pass1 = dynamics->kernels->pass1[removal][dynamics->damping == MPSI_DYN_BY_PAIRS],
-            .pass2 = dynamics->kernels->pass2[removal][dynamics->damping][dynamics->def.integrator],
+            .pass2 = dynamics->kernels->pass2[removal][dynamics->damping][integrator],
             .grain = (blocks + units - 1) / units};
-  for (int64_t k = 0; k < count; k++) {
+  if (count == 0) return MPS_OK;
+  if (mpsi_particles_column(dynamics->particles, "external_force", 0) &&
+      !mpsi_dynamics_reserve_accounts(dynamics))
+    return mpsi_fail_memory(dynamics->context, function, (size_t)dynamics->count * 24);
+  set_length(dynamics, length);
+  if (dynamics->fresh) start_history(dynamics, length);
+  begin_budget(dynamics);
+  mps_status status = MPS_OK;
+  w.step.drag = watch ? dynamics->drag : NULL;
+  for (int64_t k = 0; status == MPS_OK && k < count; k++) {
     const double now = mps_dynamics_time(dynamics);
-    if (!take_step(&w, output && k == count - 1)) return report_divergence(dynamics, function, now);
-  }
-  return MPS_OK;
-}
-
-#define PROMPT_WORK 5000000 /* particle-steps between looks at the cancel hook: some 0.1 s */
-
-static mps_status ready(mps_dynamics *dynamics, const char *function) {
-  if (dynamics->diverged)
-    return mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
-                     "the run has diverged: mps_dynamics_restart begins a new one");
-  return mpsi_dynamics_settle_dt(dynamics, function);
-}
-
-mps_status mps_dynamics_step(mps_dynamics *dynamics, int64_t count) {
-  if (!dynamics) return MPS_ERROR_ARGUMENT;
-  if (count < 0)
-    return mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
-                     (long long)count);
-  mps_status status = ready(dynamics, __func__);
-  if (status != MPS_OK) return status;
-  status = mpsi_dynamics_advance(dynamics, __func__, count, true);
-  mpsi_dynamics_publish(dynamics);
-  return status;
-}
-
-/* Calls the caller's callback, and keeps a record of its refusal when it left none. */
-static mps_status ask(mps_dynamics *dynamics, const char *function, mps_dynamics_fn callback,
-                      void *user) {
-  const mps_status status = callback(user, dynamics);
-  if (status != MPS_OK && mps_context_error(dynamics->context)->status != status)
-    return mpsi_fail(dynamics->context, function, status,
-                     "stopped by the callback with status %d at step %lld, t = %g s", (int)status,
-                     (long long)dynamics->steps, mps_dynamics_time(dynamics));
-  return status;
-}
-
-mps_status mps_dynamics_run(mps_dynamics *dynamics, double t_end, int64_t every,
-                            mps_dynamics_fn callback, void *user) {
-  if (!dynamics) return MPS_ERROR_ARGUMENT;
-  mps_context *context = dynamics->context;
-  if (!isfinite(t_end) || every < 1)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                     "t_end is %g s and every %lld: must be finite and >= 1", t_end,
-                     (long long)every);
-  mps_status status = ready(dynamics, __func__);
-  if (status != MPS_OK) return status;
-  const double start = mps_dynamics_time(dynamics);
-  const double exact = (t_end - start) / dynamics->dt;
-  if (exact > 1e15)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                     "a run to %g s takes %g steps of dt = %g s: too many", t_end, exact,
-                     dynamics->dt);
-  const int64_t total = exact > 0.0 ? (int64_t)ceil(exact - 1e-9) : 0;
-  int64_t report = total / 100 > 0 ? total / 100 : 1;
-  const int64_t prompt = PROMPT_WORK / dynamics->count + 1;
-  if (report > prompt) report = prompt;
-  if (callback) status = ask(dynamics, __func__, callback, user);
-  for (int64_t done = 0; status == MPS_OK && done < total;) {
-    int64_t n = every - done % every, m = report - done % report;
-    n = n < m ? n : m;
-    if (n > total - done) n = total - done;
-    done += n;
-    const bool call = callback && (done % every == 0 || done == total);
-    status = mpsi_dynamics_advance(dynamics, __func__, n, call || done == total);
-    if (call || done == total || status != MPS_OK) mpsi_dynamics_publish(dynamics);
-    if (status == MPS_OK && call) status = ask(dynamics, __func__, callback, user);
-    if (done % report == 0 || done == total) {
-      mpsi_progress(context, "dynamics", dynamics->steps, mps_dynamics_time(dynamics) - start,
-                    t_end - start);
-      if (status == MPS_OK && mpsi_cancelled(context)) {
-        mpsi_dynamics_publish(dynamics);
-        status = mpsi_fail(context, __func__, MPS_ERROR_CANCELLED,
-                           "stopped by the cancel hook at step %lld, t = %g s",
-                           (long long)dynamics->steps, mps_dynamics_time(dynamics));
-      }
-    }
+    const double then =
+        dynamics->base_time + (double)(dynamics->steps + 1 - dynamics->base_step) * length;
+    status = mpsi_dynamics_ask_signals(dynamics, function, now, then);
+    if (status == MPS_OK) status = mpsi_dynamics_ask_loads(dynamics, function, now);
+    if (status != MPS_OK) return status;
+    w.forces = mpsi_dynamics_find_forces(dynamics);
+    w.account = w.forces.any || watch;
+    if (!take_step(&w, output && k == count - 1))
+      status = report_divergence(dynamics, function, now);
   }
   return status;
 }

@@ -112,4 +112,6 @@ void mpsi_dynamics_tangent_apply(mps_dynamics *dynamics, const double *weight, c
   tangent t = {.dynamics = dynamics, .x = work, .y = y, .p = work + 3 * n, .weight = weight};
   mpsi_parallel_for(dynamics->context, dynamics->mesh.blocks, shear_block, &t);
   mpsi_parallel_for(dynamics->context, dynamics->mesh.blocks, pressure_block, &t);
+  for (int64_t k = 0; k < dynamics->bounds; k++)
+    y[dynamics->bound[k].component * n + dynamics->bound[k].particle] = 0.0;
 }

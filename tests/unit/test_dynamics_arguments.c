@@ -24,33 +24,34 @@ static void definitions_carry_their_size_and_defaults(void **state) {
   (void)state;
   const mps_dynamics_def d = mps_dynamics_defaults();
   assert_int_equal(d.struct_size, sizeof d);
-  assert_int_equal(d.integrator, MPS_INTEGRATOR_VERLET);
-  assert_int_equal(d.rotation, MPS_ROTATION_MEAN_MATRIX);
-  assert_int_equal(d.torque, MPS_TORQUE_CONSERVING);
-  assert_int_equal(d.damping, MPS_DAMPING_PAIR);
-  assert_int_equal(d.isa, 0);
-  const double values[] = {d.dt, d.courant, d.radius_ratio, d.f1, d.f2, d.period_x, d.divergence};
-  const double expected[] = {0.0, 0.9, 1.5, 1.0, 14.0, 0.0, 1e15};
-  for (int k = 0; k < 7; k++) mps_assert_near(values[k], expected[k], 0.0);
-  const mps_viscous_def v = mps_viscous_defaults();
+  assert_int_equal(d.integrator, MPS_DYNAMICS_INTEGRATOR_VERLET);
+  assert_int_equal(d.rotation, MPS_DYNAMICS_ROTATION_MEAN_MATRIX);
+  assert_int_equal(d.damping, MPS_DYNAMICS_DAMPING_PAIR);
+  const double values[] = {d.courant, d.radius_ratio, d.f1, d.f2, d.divergence, d.measure};
+  const double expected[] = {0.9, 1.5, 1.0, 14.0, 1e15, 1.0};
+  assert_true(isnan(d.dt) && isnan(d.period_x));
+  for (int k = 0; k < 6; k++) mps_assert_near(values[k], expected[k], 0.0);
+  const mps_dynamics_boundary_def v = mps_dynamics_boundary_defaults();
   assert_int_equal(v.struct_size, sizeof v);
   assert_int_equal(v.normal, 1);
-  mps_assert_near(v.factor, 1.0, 0.0);
-  mps_assert_near(v.density + v.shear_velocity + v.pressure_velocity, 0.0, 0.0);
-  assert_true(!v.incoming[0] && !v.incoming[1]);
-  const mps_bisection_def b = mps_bisection_defaults();
-  assert_int_equal(b.struct_size, sizeof b);
-  mps_assert_near(b.criterion, 1e15, 0.0);
-  mps_assert_near(b.accuracy, 1.2, 0.0);
-  mps_assert_near(b.duration, 2.5, 0.0);
-  const mps_predict_def p = mps_predict_defaults();
+  assert_int_equal(v.kind, MPS_DYNAMICS_BOUNDARY_HELD);
+  for (int c = 0; c < 3; c++) {
+    mps_assert_near(v.factor[c], 1.0, 0.0);
+    assert_true(isnan(v.lower[c]) && isnan(v.upper[c]));
+  }
+  assert_true(isnan(v.density) && isnan(v.shear_velocity) && isnan(v.pressure_velocity));
+  const mps_dynamics_load_def l = mps_dynamics_load_defaults();
+  assert_int_equal(l.struct_size, sizeof l);
+  assert_true(isnan(l.area) && l.factor[1] == 1.0 && l.traction[0] == 0.0);
+  assert_true(!v.signal[0] && !v.signal[1]);
+  const mps_dynamics_predict_def p = mps_dynamics_predict_defaults();
   assert_int_equal(p.struct_size, sizeof p);
   mps_assert_near(p.radius_ratio, 1.5, 0.0);
   assert_int_equal(mps_dynamics_def_init(NULL, sizeof d), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_dynamics_def_init((mps_dynamics_def *)&d, 8), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_viscous_def_init(NULL, sizeof v), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_bisection_def_init(NULL, sizeof b), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_predict_def_init(NULL, sizeof p), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_boundary_def_init(NULL, sizeof v), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_load_def_init(NULL, sizeof l), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_predict_def_init(NULL, sizeof p), MPS_ERROR_ARGUMENT);
 }
 
 static void definitions_of_another_size(void **state) {
@@ -103,26 +104,29 @@ static void bad_definitions_are_refused(void **state) {
 #define REAL(member, value, text) refuse(set, offsetof(mps_dynamics_def, member), true, value, text)
   WHOLE(integrator, -1, "integrator is -1, allowed are 0");
   WHOLE(integrator, 3, "integrator is 3, allowed are 0");
-  WHOLE(rotation, 10, "rotation is 10, allowed are 11");
-  WHOLE(torque, 2, "torque is 2, allowed are 0");
+  WHOLE(rotation, 10, "rotation is 10, allowed are 0");
   WHOLE(damping, 2, "damping is 2, allowed are 0");
-  WHOLE(isa, 2, "isa is 2, allowed are 0");
-  REAL(dt, -1e-3, "dt is -0.001, must be finite and 0");
-  REAL(dt, NAN, "dt is nan");
+  WHOLE(watch_damping, 2, "watch_damping is 2, allowed are 0");
+  WHOLE(reserved, 1, "reserved is 1, allowed are 0");
+  REAL(dt, -1e-3, "dt is -0.001, must be at least 1e-12 and at most 1e+09 s, or NaN");
+  REAL(dt, 0.0, "dt is 0");
+  REAL(dt, 1e-308, "dt is 1e-308");
   REAL(dt, INFINITY, "dt is inf");
-  REAL(courant, 0.0, "courant is 0, must be finite and in (0, 1]");
+  REAL(courant, 0.0, "courant is 0, must be above 0 and at most 1");
   REAL(courant, 1.01, "courant is 1.01");
   REAL(courant, NAN, "courant is nan");
-  REAL(radius_ratio, 1.0, "radius_ratio is 1, must be finite and in (1, 4]");
+  REAL(radius_ratio, 1.0, "radius_ratio is 1, must be above 1 and at most 4");
   REAL(radius_ratio, 4.1, "radius_ratio is 4.1");
   REAL(radius_ratio, NAN, "radius_ratio is nan");
-  REAL(f1, 0.0, "f1 is 0, must be finite and > 0 Hz");
+  REAL(f1, 0.0, "f1 is 0, must be at least 1e-20 and at most 1e+09 Hz");
   REAL(f2, -2.0, "f2 is -2");
   REAL(f2, INFINITY, "f2 is inf");
   REAL(period_x, -1.0, "period_x is -1");
-  REAL(period_x, NAN, "period_x is nan");
+  REAL(period_x, 0.0, "period_x is 0");
+  REAL(measure, 0.0, "measure is 0, must be at least 1e-09 and at most 1e+09 m");
+  REAL(measure, NAN, "measure is nan");
   REAL(period_x, 2.0, "period_x is 2 m, must be above re = 1.5 m and the body's width 2 m");
-  REAL(divergence, 0.0, "divergence is 0, must be finite and > 0 m/s2");
+  REAL(divergence, 0.0, "divergence is 0, must be above 0 and at most 1e+300 m/s2");
   REAL(divergence, INFINITY, "divergence is inf");
 #undef WHOLE
 #undef REAL
@@ -163,14 +167,14 @@ static void refuse_value(const char *field, int component, double value, const c
 
 static void bad_fields_are_refused_and_can_be_mended(void **state) {
   (void)state;
-  const double bad[] = {0.0, -1.0, NAN, INFINITY};
-  for (int k = 0; k < 4; k++) {
+  const double bad[] = {0.0, -1.0, NAN, INFINITY, 1e-308, 1e20};
+  for (int k = 0; k < 6; k++) {
     refuse_value("density", 0, bad[k], "density of particle 4 is");
     refuse_value("shear_velocity", 0, bad[k], "shear_velocity of particle 4 is");
     refuse_value("pressure_velocity", 0, bad[k], "pressure_velocity of particle 4 is");
   }
   refuse_value("pressure_velocity", 0, 141.0, "is 141 m/s, must be at least sqrt(2) times");
-  refuse_value("damping", 0, -0.1, "damping of particle 4 is -0.1, must be finite and >= 0");
+  refuse_value("damping", 0, -0.1, "damping of particle 4 is -0.1, must be in 0..1000");
   refuse_value("damping", 0, NAN, "damping of particle 4 is nan");
   refuse_value("position", 0, NAN, "position of particle 4 is nan, must be finite");
   refuse_value("position", 1, 1e12, "to 1e+12 m in y, allowed are 1e+09 spacings");
@@ -243,7 +247,7 @@ static void marks_of_columns_must_make_sense(void **state) {
   mps_dynamics_def def = mps_dynamics_defaults();
   def.period_x = 10.0;
   mps_assert_fails(context, mps_dynamics_create(context, set, &def, &dynamics), MPS_ERROR_ARGUMENT,
-                   "period_x is 10 m, must be 0 with free-field columns");
+                   "period_x is 10 m, must be NaN with free-field columns");
   mps_assert_ok(context, mps_dynamics_create(context, set, NULL, &dynamics));
   mps_dynamics_destroy(&dynamics);
   mps_particles_destroy(&set);
@@ -254,23 +258,34 @@ static void marks_of_columns_must_make_sense(void **state) {
 static void calls_without_a_solver_are_refused(void **state) {
   (void)state;
   mps_dynamics *none = NULL;
-  assert_int_equal(mps_dynamics_hold(none, 1, 0, NULL), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_dynamics_drive(none, 0, NULL, 1.0, 0, NULL), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_dynamics_viscous(none, NULL, 0, NULL), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_dynamics_add_free_field(NULL, MPS_SIDE_LEFT, 2), MPS_ERROR_ARGUMENT);
+  assert_int_equal(soil_add_held(none, 1, 0, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(soil_add_driven(none, 0, NULL, 1.0, 0, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(soil_add_viscous(none, NULL, 0, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_add_free_field(NULL, MPS_DYNAMICS_SIDE_LEFT, 2),
+                   MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_dynamics_step(none, 1), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_dynamics_run(none, 1.0, 1, NULL, NULL), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_dynamics_restart(none, 0.0), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_dynamics_resume(none, 0.0, 0), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_dynamics_set_dt(none, 1.0), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_dynamics_get_energy(none, NULL), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_dynamics_get_momentum(none, NULL), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_dynamics_limit_linear(none, 0.0, NULL), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_dynamics_limit_stepping(none, NULL, NULL), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_dynamics_predict_dt(NULL, NULL, NULL), MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_dynamics_fit_limits(NULL, 0, NULL, NULL, NULL, NULL, 1.0, NULL),
-                   MPS_ERROR_ARGUMENT);
-  assert_int_equal(mps_limit_fit_printed(NULL, 'S', NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_refresh(none), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_snapshot(none, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_rollback(none, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_save(none, "x", NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_restore(none, "x", NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_get_totals(none, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_get_totals(none, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_find_limit(none, 0.0, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_set_boundary(none, 0, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_remove_boundary(none, 0), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_get_reaction(none, 0, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_add_load(none, NULL, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_set_load(none, 0, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_remove_load(none, 0), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_get_def(none, NULL), MPS_ERROR_ARGUMENT);
+  assert_null(mps_dynamics_particles(none));
+  assert_null(mps_dynamics_context(none));
+  mps_assert_near(mps_dynamics_limit(none), 0.0, 0.0);
+  assert_int_equal(mps_dynamics_predict(NULL, NULL, NULL), MPS_ERROR_ARGUMENT);
   assert_true(mps_dynamics_time(none) == 0.0 && mps_dynamics_dt(none) == 0.0);
   assert_int_equal(mps_dynamics_steps(none), 0);
   assert_int_equal(mps_dynamics_pairs(none), 0);
@@ -282,51 +297,25 @@ static void bad_calls_are_refused(void **state) {
   (void)state;
   mps_particles *set = block(3, 3);
   mps_dynamics *d = solver(set);
-  mps_linear_limit limit = {.dt = -7.0};
-  mps_bisection found = {.stable = -7.0};
+  mps_dynamics_linear_limit limit = {.dt = -7.0};
   mps_assert_fails(context, mps_dynamics_step(d, -1), MPS_ERROR_ARGUMENT, "count is -1");
   mps_assert_fails(context, mps_dynamics_run(d, NAN, 1, NULL, NULL), MPS_ERROR_ARGUMENT, "nan");
-  mps_assert_fails(context, mps_dynamics_run(d, 1.0, 0, NULL, NULL), MPS_ERROR_ARGUMENT, "every 0");
+  mps_assert_fails(context, mps_dynamics_run(d, 1.0, 0, NULL, NULL), MPS_ERROR_ARGUMENT,
+                   "every is 0");
   mps_assert_fails(context, mps_dynamics_run(d, 1e300, 1, NULL, NULL), MPS_ERROR_ARGUMENT,
                    "1e+300");
   mps_assert_fails(context, mps_dynamics_restart(d, NAN), MPS_ERROR_ARGUMENT, "time is nan");
-  mps_assert_fails(context, mps_dynamics_resume(d, INFINITY, 1), MPS_ERROR_ARGUMENT, "inf");
-  mps_assert_fails(context, mps_dynamics_resume(d, 0.0, -1), MPS_ERROR_ARGUMENT, "step -1");
   const double bad[] = {0.0, -1.0, NAN, INFINITY};
   for (int k = 0; k < 4; k++)
     mps_assert_fails(context, mps_dynamics_set_dt(d, bad[k]), MPS_ERROR_ARGUMENT,
-                     "must be finite and > 0");
-  mps_assert_fails(context, mps_dynamics_get_energy(d, NULL), MPS_ERROR_ARGUMENT, "out is NULL");
-  mps_assert_fails(context, mps_dynamics_get_momentum(d, NULL), MPS_ERROR_ARGUMENT, "out is NULL");
-  mps_assert_fails(context, mps_dynamics_limit_linear(d, 0.0, NULL), MPS_ERROR_ARGUMENT, "out");
-  mps_assert_fails(context, mps_dynamics_limit_linear(d, -1.0, &limit), MPS_ERROR_ARGUMENT,
+                     "must be in 1e-12..1e+09");
+  mps_assert_fails(context, mps_dynamics_get_totals(d, NULL), MPS_ERROR_ARGUMENT, "out is NULL");
+  mps_assert_fails(context, mps_dynamics_get_totals(d, NULL), MPS_ERROR_ARGUMENT, "out is NULL");
+  mps_assert_fails(context, mps_dynamics_find_limit(d, 0.0, NULL), MPS_ERROR_ARGUMENT, "out");
+  mps_assert_fails(context, mps_dynamics_find_limit(d, -1.0, &limit), MPS_ERROR_ARGUMENT,
                    "duration is -1 s, must be finite and >= 0");
-  mps_assert_fails(context, mps_dynamics_limit_linear(d, NAN, &limit), MPS_ERROR_ARGUMENT, "nan");
+  mps_assert_fails(context, mps_dynamics_find_limit(d, NAN, &limit), MPS_ERROR_ARGUMENT, "nan");
   mps_assert_near(limit.dt, -7.0, 0.0);
-  mps_assert_fails(context, mps_dynamics_limit_stepping(d, NULL, NULL), MPS_ERROR_ARGUMENT, "out");
-  const struct {
-    double criterion, accuracy, duration, lower, upper;
-    const char *text;
-  } cases[] = {{0.0, 1.2, 1.0, 0.0, 0.0, "criterion is 0 m/s2, must be finite and > 0"},
-               {NAN, 1.2, 1.0, 0.0, 0.0, "criterion is nan"},
-               {1.0, 1.0, 1.0, 0.0, 0.0, "accuracy is 1, must be a ratio in (1, 100]"},
-               {1.0, NAN, 1.0, 0.0, 0.0, "accuracy is nan"},
-               {1.0, 1.2, 0.0, 0.0, 0.0, "duration is 0 s, must be finite and > 0"},
-               {1.0, 1.2, INFINITY, 0.0, 0.0, "duration is inf"},
-               {1.0, 1.2, 1.0, 2.0, 1.0, "lower is 2 s and upper 1 s"},
-               {1.0, 1.2, 1.0, -1.0, 0.0, "lower is -1 s"},
-               {1.0, 1.2, 1.0, 0.0, NAN, "upper nan"}};
-  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-    mps_bisection_def def = mps_bisection_defaults();
-    def.criterion = cases[k].criterion;
-    def.accuracy = cases[k].accuracy;
-    def.duration = cases[k].duration;
-    def.lower = cases[k].lower;
-    def.upper = cases[k].upper;
-    mps_assert_fails(context, mps_dynamics_limit_stepping(d, &def, &found), MPS_ERROR_ARGUMENT,
-                     cases[k].text);
-  }
-  mps_assert_near(found.stable, -7.0, 0.0);
   mps_assert_near(mps_dynamics_dt(d), 1e-3, 0.0);
   assert_int_equal(mps_dynamics_steps(d), 0);
   mps_dynamics_destroy(&d);

@@ -31,55 +31,81 @@ static mps_signal *sine(double phase) {
 static void bad_boundaries_are_refused(void **state) {
   (void)state;
   mps_particles *set = soil_particles(context, 1.0, 3.0, 3.0, 1, &soil);
-  mps_dynamics *d = solver(set, MPS_INTEGRATOR_VERLET, 1e-3);
+  mps_dynamics *d = solver(set, MPS_DYNAMICS_INTEGRATOR_VERLET, 1e-3);
   mps_signal *signal = sine(0.0);
   const int64_t ids[2] = {0, 9};
-  mps_assert_fails(context, mps_dynamics_hold(d, 0, 1, ids), MPS_ERROR_ARGUMENT, "dofs is 0");
-  mps_assert_fails(context, mps_dynamics_hold(d, 16, 1, ids), MPS_ERROR_ARGUMENT, "dofs is 16");
-  mps_assert_fails(context, mps_dynamics_hold(d, 1, 0, ids), MPS_ERROR_ARGUMENT, "count is 0");
-  mps_assert_fails(context, mps_dynamics_hold(d, 1, -1, ids), MPS_ERROR_ARGUMENT, "count is -1");
-  mps_assert_fails(context, mps_dynamics_hold(d, 1, 1, NULL), MPS_ERROR_ARGUMENT, "ids is NULL");
-  mps_assert_fails(context, mps_dynamics_hold(d, 1, 2, ids), MPS_ERROR_ARGUMENT,
+  int32_t number = -7;
+  mps_assert_fails(context, soil_add_held(d, 0, 1, ids), MPS_ERROR_ARGUMENT, "dofs is 0");
+  mps_assert_fails(context, soil_add_held(d, 16, 1, ids), MPS_ERROR_ARGUMENT, "dofs is 16");
+  mps_assert_fails(context, soil_add_held(d, 4, 1, ids), MPS_ERROR_ARGUMENT, "dofs is 4");
+  mps_assert_fails(context, soil_add_held(d, 1, 0, ids), MPS_ERROR_ARGUMENT, "id_count is 0");
+  mps_assert_fails(context, soil_add_held(d, 1, -1, ids), MPS_ERROR_ARGUMENT, "id_count is -1");
+  mps_assert_fails(context, soil_add_held(d, 1, 1, NULL), MPS_ERROR_ARGUMENT, "ids is NULL");
+  mps_assert_fails(context, soil_add_held(d, 1, 2, ids), MPS_ERROR_ARGUMENT,
                    "ids[1] is 9: the set has no such particle");
-  mps_assert_fails(context, mps_dynamics_drive(d, 2, signal, 1.0, 1, ids), MPS_ERROR_ARGUMENT,
-                   "component is 2, allowed are 0 (x) and 1 (y)");
-  mps_assert_fails(context, mps_dynamics_drive(d, 0, NULL, 1.0, 1, ids), MPS_ERROR_ARGUMENT,
-                   "signal is NULL");
-  mps_assert_fails(context, mps_dynamics_drive(d, 0, signal, NAN, 1, ids), MPS_ERROR_ARGUMENT,
-                   "factor is nan");
-  mps_assert_fails(context, mps_dynamics_drive(d, 0, signal, 1.0, 2, ids), MPS_ERROR_ARGUMENT,
+  mps_assert_fails(context, soil_add_driven(d, 2, signal, 1.0, 1, ids), MPS_ERROR_ARGUMENT,
+                   "signal[0] and signal[1] are NULL");
+  mps_assert_fails(context, soil_add_driven(d, 0, NULL, 1.0, 1, ids), MPS_ERROR_ARGUMENT,
+                   "needs a signal");
+  mps_assert_fails(context, soil_add_driven(d, 0, signal, NAN, 1, ids), MPS_ERROR_ARGUMENT,
+                   "factor[0] is nan");
+  mps_assert_fails(context, soil_add_driven(d, 0, signal, 1.0, 2, ids), MPS_ERROR_ARGUMENT,
                    "ids[1] is 9");
   const struct {
-    int32_t normal;
-    double density, vs, vp, factor;
+    int32_t kind, normal;
+    uint32_t dofs;
+    double density, vs, vp, factor, lower, upper;
     const char *text;
-  } cases[] = {{2, 0.0, 0.0, 0.0, 1.0, "normal is 2, allowed are 0 (x) and 1 (y)"},
-               {1, -1.0, 0.0, 0.0, 1.0, "density is -1, must be finite and > 0, or 0"},
-               {1, 0.0, NAN, 0.0, 1.0, "shear_velocity is nan"},
-               {1, 0.0, 0.0, INFINITY, 1.0, "pressure_velocity is inf"},
-               {1, 0.0, 0.0, 0.0, NAN, "factor is nan"}};
-  for (int k = 0; k < 5; k++) {
-    mps_viscous_def def = mps_viscous_defaults();
+  } cases[] = {
+      {3, 1, 1, NAN, NAN, NAN, 1.0, NAN, NAN, "kind is 3, allowed are 0 (held)"},
+      {2, 1, 1, NAN, NAN, NAN, 1.0, NAN, NAN, "dofs is 1, allowed is 0 of a viscous"},
+      {2, 2, 0, NAN, NAN, NAN, 1.0, NAN, NAN, "normal is 2, allowed are 0 (x) and 1 (y)"},
+      {2, 1, 0, -1.0, NAN, NAN, 1.0, NAN, NAN, "density is -1, must be in 1e-6..1e9, or NaN"},
+      {2, 1, 0, NAN, 0.0, NAN, 1.0, NAN, NAN, "shear_velocity is 0"},
+      {2, 1, 0, NAN, NAN, INFINITY, 1.0, NAN, NAN, "pressure_velocity is inf"},
+      {2, 1, 0, NAN, NAN, NAN, NAN, NAN, NAN, "factor[0] is nan"},
+      {2, 1, 0, NAN, NAN, NAN, 1.0, 0.0, 1.0, "both a list and a box"}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    mps_dynamics_boundary_def def = mps_dynamics_boundary_defaults();
+    def.ids = ids;
+    def.id_count = 1;
+    def.kind = cases[k].kind;
     def.normal = cases[k].normal;
+    def.dofs = cases[k].dofs;
     def.density = cases[k].density;
     def.shear_velocity = cases[k].vs;
     def.pressure_velocity = cases[k].vp;
-    def.factor = cases[k].factor;
-    mps_assert_fails(context, mps_dynamics_viscous(d, &def, 1, ids), MPS_ERROR_ARGUMENT,
+    def.factor[0] = cases[k].factor;
+    def.lower[0] = def.lower[1] = cases[k].lower;
+    def.upper[0] = def.upper[1] = cases[k].upper;
+    mps_assert_fails(context, mps_dynamics_add_boundary(d, &def, &number), MPS_ERROR_ARGUMENT,
                      cases[k].text);
   }
-  mps_assert_fails(context, mps_dynamics_viscous(d, NULL, 2, ids), MPS_ERROR_ARGUMENT, "ids[1]");
+  mps_dynamics_boundary_def def = mps_dynamics_boundary_defaults();
+  def.dofs = MPS_DOF_X;
+  mps_assert_fails(context, mps_dynamics_add_boundary(d, &def, &number), MPS_ERROR_ARGUMENT,
+                   "no particles are given");
+  def.lower[0] = def.lower[1] = 50.0;
+  def.upper[0] = def.upper[1] = INFINITY;
+  mps_assert_fails(context, mps_dynamics_add_boundary(d, &def, &number), MPS_ERROR_ARGUMENT,
+                   "no particle lies in the box from (50, 50) m");
+  def.upper[1] = 49.0;
+  mps_assert_fails(context, mps_dynamics_add_boundary(d, &def, &number), MPS_ERROR_ARGUMENT,
+                   "lower[1] is 50 m and upper[1] 49 m");
+  mps_assert_fails(context, mps_dynamics_add_boundary(d, NULL, &number), MPS_ERROR_ARGUMENT, "def");
+  mps_assert_fails(context, mps_dynamics_add_boundary(d, &def, NULL), MPS_ERROR_ARGUMENT, "number");
+  mps_assert_fails(context, mps_dynamics_set_boundary(d, 0, &def), MPS_ERROR_ARGUMENT,
+                   "no boundary number 0");
+  mps_assert_fails(context, mps_dynamics_remove_boundary(d, -1), MPS_ERROR_ARGUMENT, "number -1");
+  mps_reaction reaction;
+  mps_assert_fails(context, mps_dynamics_get_reaction(d, 0, &reaction), MPS_ERROR_ARGUMENT,
+                   "no boundary number 0");
+  assert_int_equal(number, -7);
   /* none of it has left a boundary: the block still moves freely as a whole */
   mps_assert_ok(context, mps_particles_set(set, "velocity", 0, 0.5));
   mps_assert_ok(context, mps_dynamics_restart(d, 0.0));
   mps_assert_ok(context, mps_dynamics_step(d, 10));
   for (int64_t id = 0; id < 9; id++) mps_assert_near(value(set, "velocity", id, 0), 0.5, 1e-12);
-  mps_assert_fails(context, mps_dynamics_hold(d, 1, 1, ids), MPS_ERROR_STATE, "before the first");
-  mps_assert_fails(context, mps_dynamics_drive(d, 0, signal, 1.0, 1, ids), MPS_ERROR_STATE,
-                   "first");
-  mps_assert_fails(context, mps_dynamics_viscous(d, NULL, 1, ids), MPS_ERROR_STATE, "first");
-  mps_assert_ok(context, mps_dynamics_restart(d, 0.0));
-  mps_assert_ok(context, mps_dynamics_hold(d, 1, 1, ids));
   mps_dynamics_destroy(&d);
   mps_particles_destroy(&set);
   mps_signal_destroy(&signal);
@@ -91,24 +117,24 @@ static void bad_columns_are_refused(void **state) {
   mps_particles *set = NULL;
   def.spacing = 1.0;
   mps_assert_ok(context, mps_particles_create(context, &def, &set));
-  mps_assert_fails(context, mps_dynamics_add_free_field(set, MPS_SIDE_LEFT, 2), MPS_ERROR_ARGUMENT,
-                   "0 particles");
+  mps_assert_fails(context, mps_dynamics_add_free_field(set, MPS_DYNAMICS_SIDE_LEFT, 2),
+                   MPS_ERROR_ARGUMENT, "0 particles");
   mps_particles_destroy(&set);
   def.dim = 3;
   mps_assert_ok(context, mps_particles_create(context, &def, &set));
-  mps_assert_fails(context, mps_dynamics_add_free_field(set, MPS_SIDE_LEFT, 2), MPS_ERROR_ARGUMENT,
-                   "dim 3");
+  mps_assert_fails(context, mps_dynamics_add_free_field(set, MPS_DYNAMICS_SIDE_LEFT, 2),
+                   MPS_ERROR_ARGUMENT, "dim 3");
   mps_particles_destroy(&set);
   set = soil_particles(context, 1.0, 3.0, 4.0, 1, &soil);
-  mps_assert_fails(context, mps_dynamics_add_free_field(set, (mps_side)3, 2), MPS_ERROR_ARGUMENT,
+  mps_assert_fails(context, mps_dynamics_add_free_field(set, 3, 2), MPS_ERROR_ARGUMENT,
                    "side is 3, allowed are 1 (left) and 2 (right)");
-  mps_assert_fails(context, mps_dynamics_add_free_field(set, MPS_SIDE_LEFT, 1), MPS_ERROR_ARGUMENT,
-                   "gap is 1 spacings, must be 2 to");
+  mps_assert_fails(context, mps_dynamics_add_free_field(set, MPS_DYNAMICS_SIDE_LEFT, 1),
+                   MPS_ERROR_ARGUMENT, "gap is 1 spacings, must be 2 to");
   assert_int_equal(mps_particles_count(set), 12);
-  mps_assert_ok(context, mps_dynamics_add_free_field(set, MPS_SIDE_LEFT, 3));
+  mps_assert_ok(context, mps_dynamics_add_free_field(set, MPS_DYNAMICS_SIDE_LEFT, 3));
   assert_int_equal(mps_particles_count(set), 16);
-  mps_assert_fails(context, mps_dynamics_add_free_field(set, MPS_SIDE_LEFT, 3), MPS_ERROR_STATE,
-                   "already has a left");
+  mps_assert_fails(context, mps_dynamics_add_free_field(set, MPS_DYNAMICS_SIDE_LEFT, 3),
+                   MPS_ERROR_STATE, "already has a left");
   assert_int_equal(mps_particles_count(set), 16);
   for (int64_t id = 12; id < 16; id++) {
     mps_assert_near(value(set, "position", id, 0), 0.5 - 3.0, 1e-15);
@@ -129,9 +155,9 @@ static void a_held_freedom_stays_where_it_is(void **state) {
     mps_assert_ok(context, mps_particles_set(set, "spin", 0, 0.3));
     mps_assert_ok(context, mps_particles_set(set, "displacement", 0, 0.05));
     mps_dynamics *d = solver(set, integrator, 1e-3);
-    mps_assert_ok(context, mps_dynamics_hold(d, MPS_DOF_X, 1, &ids[0]));
-    mps_assert_ok(context, mps_dynamics_hold(d, MPS_DOF_Y, 1, &ids[1]));
-    mps_assert_ok(context, mps_dynamics_hold(d, MPS_DOF_ROTATION, 1, &ids[2]));
+    mps_assert_ok(context, soil_add_held(d, MPS_DOF_X, 1, &ids[0]));
+    mps_assert_ok(context, soil_add_held(d, MPS_DOF_Y, 1, &ids[1]));
+    mps_assert_ok(context, soil_add_held(d, MPS_DOF_ROTATION, 1, &ids[2]));
     mps_assert_ok(context, mps_dynamics_step(d, 25));
     const char *const field[3] = {"displacement", "displacement", "rotation"};
     const char *const rate[3] = {"velocity", "velocity", "spin"};
@@ -158,23 +184,26 @@ static void a_driven_particle_follows_its_signal(void **state) {
     mps_particles *set = soil_particles(context, 1.0, 4.0, 4.0, 1, &damped);
     mps_dynamics *d = solver(set, integrator, dt);
     const int64_t id = 5;
-    mps_assert_ok(context, mps_dynamics_drive(d, 0, y, 7.0, 1, &id));
-    mps_assert_ok(context, mps_dynamics_drive(d, 0, x, 2.0, 1, &id)); /* the last one counts */
-    mps_assert_ok(context, mps_dynamics_drive(d, 1, y, -3.0, 1, &id));
-    mps_assert_near(value(set, "displacement", id, 0), 2.0 * mps_signal_displacement(x, 0.0), 0.0);
+    mps_assert_ok(context, soil_add_driven(d, 0, y, 7.0, 1, &id));
+    mps_assert_ok(context, soil_add_driven(d, 0, x, 2.0, 1, &id)); /* the last one counts */
+    mps_assert_ok(context, soil_add_driven(d, 1, y, -3.0, 1, &id));
+    mps_assert_near(value(set, "displacement", id, 0), 0.0, 0.0); /* from where it is */
     mps_assert_ok(context, mps_dynamics_restart(d, start));
     for (int k = 0; k <= 30; k++) {
       const double t = mps_dynamics_time(d);
       const mps_signal *signal[2] = {x, y};
       const double factor[2] = {2.0, -3.0};
       for (int c = 0; c < 2; c++) {
-        const double u = factor[c] * mps_signal_displacement(signal[c], t);
-        const double before = factor[c] * mps_signal_displacement(signal[c], t - dt);
+        const double u = factor[c] * (mps_signal_displacement(signal[c], t) -
+                                      mps_signal_displacement(signal[c], start));
+        const double before = factor[c] * (mps_signal_displacement(signal[c], t - dt) -
+                                           mps_signal_displacement(signal[c], start));
         const double v = factor[c] * mps_signal_velocity(signal[c], t);
-        mps_assert_near(value(set, "displacement", id, c), u, 0.0);
-        mps_assert_near(value(set, "position", id, c), value(set, "reference", id, c) + u, 0.0);
-        mps_assert_near(value(set, "velocity", id, c),
-                        k == 0 || integrator == MPS_INTEGRATOR_EULER ? v : (u - before) / dt, 1e-9);
+        mps_assert_near(value(set, "displacement", id, c), u, 1e-16);
+        mps_assert_near(value(set, "position", id, c), value(set, "reference", id, c) + u, 1e-15);
+        mps_assert_near(
+            value(set, "velocity", id, c),
+            k == 0 || integrator == MPS_DYNAMICS_INTEGRATOR_EULER ? v : (u - before) / dt, 1e-9);
         if (k > 0) /* that of the instant before, as everybody's */
           mps_assert_near(value(set, "acceleration", id, c),
                           factor[c] * mps_signal_acceleration(signal[c], t - dt), 1e-9);
@@ -204,16 +233,16 @@ static void dashpots_on_one_particle(void **state) {
       mps_assert_ok(context, mps_particles_set(set, "velocity", 0, 0.3));
       mps_assert_ok(context, mps_particles_set(set, "velocity", 1, -0.2));
       mps_dynamics *d = solver(set, integrator, dt);
-      mps_viscous_def def = mps_viscous_defaults();
+      mps_dynamics_boundary_def def = mps_dynamics_boundary_defaults();
       def.density = 2000.0;
       def.shear_velocity = 80.0;
-      def.incoming[0] = wave;
-      def.factor = 1.5;
-      mps_assert_ok(context, mps_dynamics_viscous(d, &def, 1, &id)); /* face across y */
+      def.signal[0] = wave;
+      def.factor[0] = 1.5;
+      mps_assert_ok(context, soil_add_viscous(d, &def, 1, &id)); /* face across y */
       if (corner) {
-        def = mps_viscous_defaults();
+        def = mps_dynamics_boundary_defaults();
         def.normal = 0;
-        mps_assert_ok(context, mps_dynamics_viscous(d, &def, 1, &id));
+        mps_assert_ok(context, soil_add_viscous(d, &def, 1, &id));
       }
       const double c1[2] = {2000.0 * 80.0 * D / (1500.0 * area),   /* Vs across */
                             2000.0 * 200.0 * D / (1500.0 * area)}; /* Vp, the particle's own */
@@ -224,7 +253,7 @@ static void dashpots_on_one_particle(void **state) {
           const double c = c1[m] + c2[m];
           const double in = m == 0 ? 1.5 * mps_signal_velocity(wave, mps_dynamics_time(d)) : 0.0;
           const double pull = dt * 2.0 * c1[m] * in;
-          v[m] = integrator == MPS_INTEGRATOR_EULER
+          v[m] = integrator == MPS_DYNAMICS_INTEGRATOR_EULER
                      ? v[m] * (1.0 - c * dt) + pull
                      : (v[m] * (1.0 - 0.5 * c * dt) + pull) / (1.0 + 0.5 * c * dt);
         }
@@ -245,7 +274,7 @@ static double reflected(int wave, int integrator, double width) {
   mps_particles *set = soil_particles(context, 1.0, 3.0, height, 1, &soil);
   mps_dynamics_def def = mps_dynamics_defaults();
   mps_dynamics *d = NULL;
-  mps_dynamics_energy first, last;
+  mps_totals first, last;
   mps_view x, v;
   mps_assert_ok(context, mps_particles_add_field(set, "velocity", 0));
   mps_assert_ok(context, mps_particles_view(set, "position", &x));
@@ -261,15 +290,15 @@ static double reflected(int wave, int integrator, double width) {
     int64_t *ids =
         soil_select(context, set, -1.0, end ? height - 1.0 : 0.0, 9.0, end ? height : 1.0, &count);
     assert_int_equal(count, 3);
-    mps_assert_ok(context, mps_dynamics_viscous(d, NULL, count, ids));
+    mps_assert_ok(context, soil_add_viscous(d, NULL, count, ids));
     free(ids);
   }
-  mps_assert_ok(context, mps_dynamics_get_energy(d, &first));
+  mps_assert_ok(context, mps_dynamics_get_totals(d, &first));
   mps_assert_ok(context, mps_dynamics_run(d, 1.2, 1000, NULL, NULL));
-  mps_assert_ok(context, mps_dynamics_get_energy(d, &last));
+  mps_assert_ok(context, mps_dynamics_get_totals(d, &last));
   mps_dynamics_destroy(&d);
   mps_particles_destroy(&set);
-  return last.total / first.total;
+  return (last.kinetic + last.strain) / (first.kinetic + first.strain);
 }
 
 /* The ends sit half a spacing off, so the reflected amplitude is of the order D over the length of
@@ -277,7 +306,7 @@ static double reflected(int wave, int integrator, double width) {
 static void waves_leave_through_viscous_ends(void **state) {
   (void)state;
   for (int wave = 0; wave < 2; wave++)
-    for (int integrator = 1; integrator < 3; integrator++) {
+    for (int integrator = 0; integrator < 2; integrator++) {
       const double shorter = reflected(wave, integrator, 8.0);
       const double longer = reflected(wave, integrator, 16.0);
       print_message("%s wave, integrator %d: %.2e and %.2e of the energy come back\n",
@@ -302,7 +331,7 @@ static void a_period_closes_the_body(void **state) {
     assert_int_equal(mps_dynamics_pairs(d), w * h + 3 * w * (h - 1));
     int64_t count;
     int64_t *ids = soil_select(context, set, 0.0, 0.0, w, 1.0, &count);
-    mps_assert_ok(context, mps_dynamics_drive(d, 0, signal, 1.0, count, ids));
+    mps_assert_ok(context, soil_add_driven(d, 0, signal, 1.0, count, ids));
     free(ids);
     mps_assert_ok(context, mps_dynamics_step(d, 200));
     for (int64_t id = 0; id < w * h; id++) { /* every column moves as the first */
@@ -334,13 +363,15 @@ static void level_ground_moves_as_its_columns(void **state) {
         def.dt = 5e-4;
         def.radius_ratio = wide ? 2.3 : 1.5;
         if (run == 0) def.period_x = 5.0;
-        if (run == 1) mps_assert_ok(context, mps_dynamics_add_free_field(set, MPS_SIDE_LEFT, 3));
-        if (run == 1) mps_assert_ok(context, mps_dynamics_add_free_field(set, MPS_SIDE_RIGHT, 2));
+        if (run == 1)
+          mps_assert_ok(context, mps_dynamics_add_free_field(set, MPS_DYNAMICS_SIDE_LEFT, 3));
+        if (run == 1)
+          mps_assert_ok(context, mps_dynamics_add_free_field(set, MPS_DYNAMICS_SIDE_RIGHT, 2));
         mps_assert_ok(context, mps_dynamics_create(context, set, &def, &d));
         int64_t count;
         int64_t *ids = soil_select(context, set, -9.0, 0.0, 20.0, 1.0, &count);
-        mps_assert_ok(context, mps_dynamics_drive(d, 0, signal, 1.0, count, ids));
-        mps_assert_ok(context, mps_dynamics_drive(d, 1, signal, 0.3, count, ids));
+        mps_assert_ok(context, soil_add_driven(d, 0, signal, 1.0, count, ids));
+        mps_assert_ok(context, soil_add_driven(d, 1, signal, 0.3, count, ids));
         free(ids);
         mps_assert_ok(context, mps_dynamics_step(d, 300));
         for (int64_t id = 0; id < mps_particles_count(set); id++) {
@@ -415,8 +446,8 @@ static void odd_shapes_move_the_same_with_axes_exchanged(void **state) {
                            (4 * 40 + 5 * 39 + 2 * 4 * 39) + (24 * 3 + 25 * 2 + 2 * 24 * 2) + 3 + 5};
   for (int which = 0; which < 8; which++) {
     mps_particles *set[2] = {shape(which, false), shape(which, true)};
-    mps_dynamics *d[2] = {solver(set[0], MPS_INTEGRATOR_VERLET, 2e-4),
-                          solver(set[1], MPS_INTEGRATOR_VERLET, 2e-4)};
+    mps_dynamics *d[2] = {solver(set[0], MPS_DYNAMICS_INTEGRATOR_VERLET, 2e-4),
+                          solver(set[1], MPS_DYNAMICS_INTEGRATOR_VERLET, 2e-4)};
     if (which < 7) assert_int_equal(mps_dynamics_pairs(d[0]), pairs[which]);
     assert_int_equal(mps_dynamics_pairs(d[0]), mps_dynamics_pairs(d[1]));
     for (int t = 0; t < 2; t++) mps_assert_ok(context, mps_dynamics_step(d[t], 50));

@@ -26,8 +26,8 @@ static void a_set_is_pinned_while_a_solver_lives(void **state) {
   mps_assert_fails(context, mps_particles_append(set, 1, x), MPS_ERROR_STATE, "in use");
   mps_assert_fails(context, mps_dynamics_create(context, set, NULL, &second), MPS_ERROR_STATE,
                    "another solver uses the set");
-  mps_assert_fails(context, mps_dynamics_add_free_field(set, MPS_SIDE_LEFT, 2), MPS_ERROR_STATE,
-                   "in use");
+  mps_assert_fails(context, mps_dynamics_add_free_field(set, MPS_DYNAMICS_SIDE_LEFT, 2),
+                   MPS_ERROR_STATE, "in use");
   assert_int_equal(mps_particles_field_count(set), fields);
   mps_dynamics_destroy(&d);
   assert_null(d);
@@ -67,7 +67,7 @@ static void parts_may_go_in_any_order(void **state) {
     const int64_t id = 0;
     mps_assert_ok(own, mps_dynamics_create(own, set, NULL, &d));
     mps_assert_ok(own, mps_signal_ricker(own, 4.0, 0.25, 1.0, &signal));
-    mps_assert_ok(own, mps_dynamics_drive(d, 0, signal, 1.0, 1, &id));
+    mps_assert_ok(own, soil_add_driven(d, 0, signal, 1.0, 1, &id));
     int left[4] = {0, 1, 2, 3};
     for (int k = 0, rest = order; k < 4; k++) {
       const int pick = rest % (4 - k);
@@ -104,27 +104,28 @@ static mps_status everything(mps_context *own, int integrator) {
     status = mps_particles_view(set, "damping", &h);
     if (status == MPS_OK) *mps_view_f64(&h, 5, 0) = 0.2; /* uneven */
   }
-  if (status == MPS_OK) status = mps_dynamics_add_free_field(set, MPS_SIDE_LEFT, 2);
+  if (status == MPS_OK) status = mps_dynamics_add_free_field(set, MPS_DYNAMICS_SIDE_LEFT, 2);
   mps_dynamics_def def = mps_dynamics_defaults();
   def.integrator = integrator;
   if (status == MPS_OK) status = mps_dynamics_create(own, set, &def, &d);
   if (status == MPS_OK) status = mps_signal_ricker(own, 4.0, 0.25, 1.0, &signal);
-  if (status == MPS_OK) status = mps_dynamics_hold(d, MPS_DOF_Y, 3, ids);
-  if (status == MPS_OK) status = mps_dynamics_drive(d, 0, signal, 1.0, 3, ids);
-  mps_viscous_def viscous = mps_viscous_defaults();
-  viscous.incoming[0] = viscous.incoming[1] = signal;
-  if (status == MPS_OK) status = mps_dynamics_viscous(d, &viscous, 3, ids);
-  mps_linear_limit limit;
-  if (status == MPS_OK) status = mps_dynamics_limit_linear(d, 1.0, &limit);
-  mps_bisection_def bisection = mps_bisection_defaults();
-  mps_bisection found;
-  bisection.duration = 0.6;
-  bisection.accuracy = 2.0;
-  if (status == MPS_OK) status = mps_dynamics_limit_stepping(d, &bisection, &found);
+  if (status == MPS_OK) status = soil_add_held(d, MPS_DOF_Y, 3, ids);
+  if (status == MPS_OK) status = soil_add_driven(d, 0, signal, 1.0, 3, ids);
+  mps_dynamics_boundary_def viscous = mps_dynamics_boundary_defaults();
+  viscous.signal[0] = viscous.signal[1] = signal;
+  if (status == MPS_OK) status = soil_add_viscous(d, &viscous, 3, ids);
+  mps_dynamics_linear_limit limit;
+  if (status == MPS_OK) status = mps_dynamics_find_limit(d, 1.0, &limit);
+  mps_dynamics_load_def load = mps_dynamics_load_defaults();
+  int32_t number;
+  load.kind = MPS_DYNAMICS_LOAD_BODY;
+  load.acceleration[1] = -9.8;
+  load.signal[1] = signal;
+  if (status == MPS_OK) status = mps_dynamics_add_load(d, &load, &number);
   if (status == MPS_OK) status = mps_dynamics_run(d, 0.01, 1, NULL, NULL);
   if (status == MPS_OK) status = mps_dynamics_set_dt(d, 1e-3);
-  mps_dynamics_energy energy;
-  if (status == MPS_OK) status = mps_dynamics_get_energy(d, &energy);
+  mps_totals energy;
+  if (status == MPS_OK) status = mps_dynamics_get_totals(d, &energy);
   mps_dynamics_destroy(&d);
   mps_particles_destroy(&set);
   mps_signal_destroy(&signal);
@@ -164,8 +165,8 @@ static void steps_allocate_nothing(void **state) {
   const int64_t ids[2] = {0, 199};
   mps_assert_ok(own, mps_dynamics_create(own, set, NULL, &d));
   mps_assert_ok(own, mps_signal_ricker(own, 4.0, 0.25, 1.0, &signal));
-  mps_assert_ok(own, mps_dynamics_drive(d, 0, signal, 1.0, 1, &ids[0]));
-  mps_assert_ok(own, mps_dynamics_viscous(d, NULL, 1, &ids[1]));
+  mps_assert_ok(own, soil_add_driven(d, 0, signal, 1.0, 1, &ids[0]));
+  mps_assert_ok(own, soil_add_viscous(d, NULL, 1, &ids[1]));
   mps_assert_ok(own, mps_dynamics_step(d, 1)); /* finds dt */
   const int64_t calls = allocator.calls;
   mps_assert_ok(own, mps_dynamics_step(d, 20));

@@ -1,6 +1,5 @@
-/* test_dynamics_run.c - running the explicit MPS solver: hooks, restart, resume, change of the time
- * step, divergence, warnings.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* test_dynamics_run.c - running the explicit MPS solver: hooks, restart, rollback, change of the
+ * time step, divergence, warnings. SPDX-License-Identifier: BSD-3-Clause */
 #include "soil_column.h"
 #include "test_fixture.h"
 
@@ -108,7 +107,7 @@ static void a_run_calls_its_callback_at_start_every_and_end(void **state) {
   hooks h;
   mps_context *own = hooked(&h);
   mps_particles *set;
-  const mps_dynamics_def def = def_of(MPS_INTEGRATOR_VERLET, DT);
+  const mps_dynamics_def def = def_of(MPS_DYNAMICS_INTEGRATOR_VERLET, DT);
   mps_dynamics *d = shaken(own, &def, 0.0, &set);
   mps_assert_ok(own, mps_dynamics_run(d, 10.0 * DT, 3, on_call, &h));
   assert_int_equal(h.callbacks, 5); /* 0, 3, 6, 9, 10 */
@@ -117,8 +116,9 @@ static void a_run_calls_its_callback_at_start_every_and_end(void **state) {
   mps_assert_ok(own, mps_dynamics_run(d, 10.0 * DT, 3, on_call, &h)); /* already there */
   assert_int_equal(h.callbacks, 6);
   assert_int_equal(mps_dynamics_steps(d), 10);
-  mps_assert_ok(own, mps_dynamics_run(d, 12.5 * DT, 100, NULL, NULL)); /* first instant past it */
+  mps_assert_ok(own, mps_dynamics_run(d, 12.5 * DT, 100, NULL, NULL)); /* three shorter steps */
   assert_int_equal(mps_dynamics_steps(d), 13);
+  assert_true(mps_dynamics_time(d) == 12.5 * DT);
   mps_dynamics_destroy(&d);
   mps_particles_destroy(&set);
   mps_context_destroy(&own);
@@ -129,7 +129,7 @@ static void progress_rises_to_one_in_a_hundred_reports(void **state) {
   hooks h;
   mps_context *own = hooked(&h);
   mps_particles *set;
-  const mps_dynamics_def def = def_of(MPS_INTEGRATOR_VERLET, DT);
+  const mps_dynamics_def def = def_of(MPS_DYNAMICS_INTEGRATOR_VERLET, DT);
   mps_dynamics *d = shaken(own, &def, 0.0, &set);
   mps_assert_ok(own, mps_dynamics_run(d, 1234.0 * DT, 1000, NULL, NULL));
   assert_true(h.rising);
@@ -151,7 +151,7 @@ static void the_cancel_hook_stops_a_run_which_can_go_on(void **state) {
   hooks h;
   mps_context *own = hooked(&h);
   mps_particles *set;
-  const mps_dynamics_def def = def_of(MPS_INTEGRATOR_VERLET, DT);
+  const mps_dynamics_def def = def_of(MPS_DYNAMICS_INTEGRATOR_VERLET, DT);
   mps_dynamics *d = shaken(own, &def, 0.0, &set);
   h.cancel_after = 7;
   mps_assert_fails(own, mps_dynamics_run(d, 50.0 * DT, 1000, NULL, NULL), MPS_ERROR_CANCELLED,
@@ -164,13 +164,6 @@ static void the_cancel_hook_stops_a_run_which_can_go_on(void **state) {
   assert_memory_equal(x, again, sizeof x);
   mps_assert_ok(own, mps_dynamics_run(d, 50.0 * DT, 1000, NULL, NULL));
   assert_int_equal(mps_dynamics_steps(d), 50);
-  /* and a search for the limit */
-  mps_bisection found = {0};
-  h.cancel_after = h.cancels + 3;
-  mps_assert_fails(own, mps_dynamics_limit_stepping(d, NULL, &found), MPS_ERROR_CANCELLED,
-                   "cancel hook");
-  mps_assert_near(found.stable, 0.0, 0.0);
-  mps_assert_near(mps_dynamics_dt(d), DT, 0.0);
   mps_dynamics_destroy(&d);
   mps_particles_destroy(&set);
   mps_context_destroy(&own);
@@ -181,18 +174,19 @@ static void the_callback_stops_a_run_with_its_own_status(void **state) {
   hooks h;
   mps_context *own = hooked(&h);
   mps_particles *set;
-  const mps_dynamics_def def = def_of(MPS_INTEGRATOR_VERLET, DT);
+  const mps_dynamics_def def = def_of(MPS_DYNAMICS_INTEGRATOR_VERLET, DT);
   mps_dynamics *d = shaken(own, &def, 0.0, &set);
   h.answer = MPS_ERROR_IO;
   mps_assert_fails(own, mps_dynamics_run(d, 50.0 * DT, 4, on_call, &h), MPS_ERROR_IO,
-                   "stopped by the callback with status 5 at step 8");
+                   "stopped by the callback of mps_dynamics_run with status 5 at step 8");
   assert_int_equal(mps_dynamics_steps(d), 8);
   mps_dynamics_destroy(&d);
   mps_particles_destroy(&set);
   mps_context_destroy(&own);
 }
 
-/* ---- restart, resume, dt --------------------------------------------------------------------- */
+/* ---- restart, rollback, dt ---------------------------------------------------------------------
+ */
 
 static void a_restart_repeats_the_run_at_another_time(void **state) {
   (void)state;
@@ -234,7 +228,7 @@ static void a_restart_repeats_the_run_at_another_time(void **state) {
 static void a_bad_state_cannot_be_restarted_from(void **state) {
   (void)state;
   mps_particles *set;
-  const mps_dynamics_def def = def_of(MPS_INTEGRATOR_VERLET, DT);
+  const mps_dynamics_def def = def_of(MPS_DYNAMICS_INTEGRATOR_VERLET, DT);
   mps_dynamics *d = shaken(context, &def, 0.0, &set);
   mps_view spin;
   mps_assert_ok(context, mps_dynamics_step(d, 4));
@@ -246,63 +240,46 @@ static void a_bad_state_cannot_be_restarted_from(void **state) {
   mps_particles_destroy(&set);
 }
 
-/* A driven, damped body, all of whose checkpoint is carried to a new solver of a new set. */
-static void a_resumed_run_goes_on_bit_for_bit(void **state) {
+/* A driven, damped body goes back to a snapshot, also after other steps, a divergence and another
+ * dt, and repeats what it did. */
+static void a_rollback_repeats_a_run_bit_for_bit(void **state) {
   (void)state;
-  static const char *const fields[] = {"displacement", "rotation",     "velocity",
-                                       "spin",         "position",     "displacement_old",
-                                       "rotation_old", "restoring_old"};
   for (int integrator = 0; integrator < 3; integrator++)
-    for (int64_t at = 0; at <= 100; at += 100) {
+    for (int64_t at = 0; at <= 40; at += 40) {
       const mps_dynamics_def def = def_of(integrator, 1e-3 / 3.0);
       const int64_t base[2] = {0, 35};
       mps_signal *sine = NULL;
-      mps_particles *set[2];
-      mps_dynamics *d[2];
+      mps_particles *set;
+      mps_snapshot *snapshot = NULL;
+      mps_reaction first, again;
+      double one[36], two[36];
       mps_assert_ok(context, mps_signal_sine(context, 3.0, 0.01, 0.3, &sine));
-      for (int run = 0; run < 2; run++) {
-        d[run] = shaken(context, &def, 0.1, &set[run]);
-        mps_assert_ok(context, mps_dynamics_drive(d[run], 0, sine, 1.0, 1, &base[0]));
-        mps_assert_ok(context, mps_dynamics_viscous(d[run], NULL, 1, &base[1]));
-      }
-      mps_assert_ok(context, mps_dynamics_step(d[0], at));
-      for (size_t f = 0; f < sizeof fields / sizeof *fields; f++) {
-        mps_view from, to;
-        mps_assert_ok(context, mps_particles_view(set[0], fields[f], &from));
-        mps_assert_ok(context, mps_particles_view(set[1], fields[f], &to));
-        for (int64_t c = 0; c < from.shape[1]; c++)
-          memcpy(mps_view_f64(&to, 0, c), mps_view_f64(&from, 0, c), 36 * sizeof(double));
-      }
-      mps_assert_ok(context, mps_dynamics_resume(d[1], mps_dynamics_time(d[0]), at));
-      assert_int_equal(mps_dynamics_steps(d[1]), at);
-      for (int k = 0; k < 60; k++) {
-        double one[36], two[36];
-        assert_true(mps_dynamics_time(d[0]) == mps_dynamics_time(d[1]));
-        mps_assert_ok(context, mps_dynamics_step(d[0], 1));
-        mps_assert_ok(context, mps_dynamics_step(d[1], 1));
-        copy(context, set[0], "displacement", k % 2, one);
-        copy(context, set[1], "displacement", k % 2, two);
-        assert_memory_equal(one, two, sizeof one);
-      }
-      for (int run = 0; run < 2; run++) {
-        mps_dynamics_destroy(&d[run]);
-        mps_particles_destroy(&set[run]);
-      }
+      mps_dynamics *d = shaken(context, &def, 0.1, &set);
+      mps_assert_ok(context, soil_add_driven(d, 0, sine, 1.0, 1, &base[0]));
+      mps_assert_ok(context, soil_add_viscous(d, NULL, 1, &base[1]));
+      mps_assert_ok(context, mps_dynamics_step(d, at));
+      mps_assert_ok(context, mps_dynamics_snapshot(d, &snapshot));
+      const double time = mps_dynamics_time(d);
+      mps_assert_ok(context, mps_dynamics_step(d, 60));
+      copy(context, set, "displacement", 0, one);
+      mps_assert_ok(context, mps_dynamics_get_reaction(d, 0, &first));
+      mps_assert_ok(context, mps_dynamics_set_dt(d, 1.0));
+      assert_int_equal(mps_dynamics_step(d, 2000), MPS_ERROR_DIVERGED);
+      mps_assert_ok(context, mps_dynamics_rollback(d, snapshot));
+      assert_true(mps_dynamics_time(d) == time && mps_dynamics_steps(d) == at);
+      mps_assert_ok(context, mps_dynamics_step(d, 60));
+      copy(context, set, "displacement", 0, two);
+      mps_assert_ok(context, mps_dynamics_get_reaction(d, 0, &again));
+      assert_memory_equal(one, two, sizeof one);
+      assert_memory_equal(&first, &again, sizeof first);
+      /* other boundaries than then are refused */
+      mps_assert_ok(context, soil_add_held(d, MPS_DOF_X, 1, &base[1]));
+      mps_assert_fails(context, mps_dynamics_rollback(d, snapshot), MPS_ERROR_STATE, "boundaries");
+      mps_snapshot_destroy(&snapshot);
+      mps_dynamics_destroy(&d);
+      mps_particles_destroy(&set);
       mps_signal_destroy(&sine);
     }
-}
-
-static void resuming_needs_a_time_step(void **state) {
-  (void)state;
-  mps_particles *set;
-  mps_dynamics *d = shaken(context, NULL, 0.0, &set);
-  mps_assert_fails(context, mps_dynamics_resume(d, 1.0, 10), MPS_ERROR_STATE, "time step");
-  mps_assert_ok(context, mps_dynamics_set_dt(d, DT));
-  mps_assert_ok(context, mps_dynamics_resume(d, 1.0, 10));
-  assert_int_equal(mps_dynamics_steps(d), 10);
-  mps_assert_near(mps_dynamics_time(d), 1.0, 1e-15);
-  mps_dynamics_destroy(&d);
-  mps_particles_destroy(&set);
 }
 
 /* A change of dt keeps velocity, time and what acts on the particles: the damping force is a rate
@@ -342,7 +319,7 @@ static void a_dt_given_later_survives_new_boundaries(void **state) {
   mps_dynamics *d = shaken(context, NULL, 0.0, &set);
   const int64_t id = 3;
   mps_assert_ok(context, mps_dynamics_set_dt(d, DT));
-  mps_assert_ok(context, mps_dynamics_hold(d, MPS_DOF_X, 1, &id));
+  mps_assert_ok(context, soil_add_held(d, MPS_DOF_X, 1, &id));
   mps_assert_near(mps_dynamics_dt(d), DT, 0.0);
   mps_dynamics_destroy(&d);
   mps_particles_destroy(&set);
@@ -356,9 +333,9 @@ static void the_library_chooses_courant_times_the_limit(void **state) {
     mps_dynamics_def def = mps_dynamics_defaults();
     def.courant = courant[k];
     mps_dynamics *d = shaken(context, &def, 0.05, &set);
-    mps_linear_limit limit;
+    mps_dynamics_linear_limit limit;
     mps_assert_ok(context, mps_dynamics_step(d, 1));
-    mps_assert_ok(context, mps_dynamics_limit_linear(d, 0.0, &limit));
+    mps_assert_ok(context, mps_dynamics_find_limit(d, 0.0, &limit));
     mps_assert_near(mps_dynamics_dt(d) / limit.dt, courant[k], 1e-15);
     mps_assert_near(mps_dynamics_time(d), mps_dynamics_dt(d), 0.0);
     mps_dynamics_destroy(&d);
@@ -372,7 +349,7 @@ static void where_nothing_limits_dt_it_must_be_given(void **state) {
                            18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31, 32, 33, 34, 35};
   mps_particles *set;
   mps_dynamics *d = shaken(context, NULL, 0.0, &set);
-  mps_assert_ok(context, mps_dynamics_hold(d, MPS_DOF_X | MPS_DOF_Y | MPS_DOF_ROTATION, 36, ids));
+  mps_assert_ok(context, soil_add_held(d, MPS_DOF_X | MPS_DOF_Y | MPS_DOF_ROTATION, 36, ids));
   mps_assert_fails(context, mps_dynamics_step(d, 1), MPS_ERROR_ARGUMENT, "give dt");
   assert_true(mps_dynamics_dt(d) == 0.0);
   mps_assert_ok(context, mps_dynamics_set_dt(d, 1.0));
@@ -380,7 +357,7 @@ static void where_nothing_limits_dt_it_must_be_given(void **state) {
   mps_assert_near(soil_value(context, set, "displacement", 7, 0), 0.0, 0.0);
   mps_dynamics_destroy(&d);
   mps_particles_destroy(&set);
-  const mps_dynamics_def euler = def_of(MPS_INTEGRATOR_EULER, 0.0);
+  const mps_dynamics_def euler = def_of(MPS_DYNAMICS_INTEGRATOR_EULER, NAN);
   d = shaken(context, &euler, 0.0, &set);
   mps_assert_fails(context, mps_dynamics_step(d, 1), MPS_ERROR_ARGUMENT, "Euler without damping");
   mps_dynamics_destroy(&d);
@@ -394,14 +371,14 @@ static void a_step_above_the_limit_is_warned_of(void **state) {
   hooks h;
   mps_context *own = hooked(&h);
   mps_particles *set;
-  mps_linear_limit limit;
+  mps_dynamics_linear_limit limit;
   mps_dynamics *d = shaken(own, NULL, 0.0, &set);
-  mps_assert_ok(own, mps_dynamics_limit_linear(d, 0.0, &limit));
+  mps_assert_ok(own, mps_dynamics_find_limit(d, 0.0, &limit));
   mps_dynamics_destroy(&d);
   mps_particles_destroy(&set);
   const double factor[4] = {0.5, 0.999, 1.001, 1.5};
   for (int k = 0; k < 4; k++) {
-    const mps_dynamics_def def = def_of(MPS_INTEGRATOR_VERLET, factor[k] * limit.dt);
+    const mps_dynamics_def def = def_of(MPS_DYNAMICS_INTEGRATOR_VERLET, factor[k] * limit.dt);
     const int expected = factor[k] > 1.0 ? 1 : 0;
     h.warnings = 0;
     d = shaken(own, &def, 0.0, &set);
@@ -421,7 +398,7 @@ static void a_step_above_the_limit_is_warned_of(void **state) {
     mps_particles_destroy(&set);
   }
   h.warnings = 0;
-  const mps_dynamics_def euler = def_of(MPS_INTEGRATOR_EULER, 1e-6);
+  const mps_dynamics_def euler = def_of(MPS_DYNAMICS_INTEGRATOR_EULER, 1e-6);
   d = shaken(own, &euler, 0.0, &set);
   mps_assert_ok(own, mps_dynamics_step(d, 1));
   assert_int_equal(h.warnings, 1);
@@ -439,7 +416,7 @@ static void the_warning_is_right_off_a_lattice(void **state) {
   mps_particles_def set_def = mps_particles_defaults();
   mps_particles *set = NULL;
   mps_dynamics *d = NULL;
-  mps_linear_limit limit;
+  mps_dynamics_linear_limit limit;
   const double x[8] = {0.0, 0.0, 0.2, 0.0, 0.0, 0.2, 1.0, 1.0};
   set_def.spacing = 1.0;
   mps_assert_ok(own, mps_particles_create(own, &set_def, &set));
@@ -447,9 +424,9 @@ static void the_warning_is_right_off_a_lattice(void **state) {
   mps_assert_ok(own, mps_particles_set(set, "density", 0, 1500.0));
   mps_assert_ok(own, mps_particles_set(set, "shear_velocity", 0, 100.0));
   mps_assert_ok(own, mps_particles_set(set, "pressure_velocity", 0, 200.0));
-  const mps_dynamics_def def = def_of(MPS_INTEGRATOR_VERLET, DT);
+  const mps_dynamics_def def = def_of(MPS_DYNAMICS_INTEGRATOR_VERLET, DT);
   mps_assert_ok(own, mps_dynamics_create(own, set, &def, &d));
-  mps_assert_ok(own, mps_dynamics_limit_linear(d, 0.0, &limit));
+  mps_assert_ok(own, mps_dynamics_find_limit(d, 0.0, &limit));
   assert_true(limit.dt < 0.1 * DT);
   mps_assert_ok(own, mps_dynamics_step(d, 1));
   assert_int_equal(h.warnings, 1);
@@ -499,7 +476,7 @@ static void divergence_names_step_time_and_particle(void **state) {
 static void an_infinite_acceleration_passes_no_limit(void **state) {
   (void)state;
   mps_particles *set;
-  mps_dynamics_def def = def_of(MPS_INTEGRATOR_VERLET, 1e-3);
+  mps_dynamics_def def = def_of(MPS_DYNAMICS_INTEGRATOR_VERLET, 1e-3);
   def.divergence = 1e300; /* its square is not finite */
   mps_dynamics *d = shaken(context, &def, 0.0, &set);
   mps_view x;
@@ -519,8 +496,7 @@ int main(void) {
       cmocka_unit_test(the_callback_stops_a_run_with_its_own_status),
       cmocka_unit_test(a_restart_repeats_the_run_at_another_time),
       cmocka_unit_test(a_bad_state_cannot_be_restarted_from),
-      cmocka_unit_test(a_resumed_run_goes_on_bit_for_bit),
-      cmocka_unit_test(resuming_needs_a_time_step),
+      cmocka_unit_test(a_rollback_repeats_a_run_bit_for_bit),
       cmocka_unit_test(a_new_dt_keeps_velocity_time_and_forces),
       cmocka_unit_test(a_dt_given_later_survives_new_boundaries),
       cmocka_unit_test(the_library_chooses_courant_times_the_limit),

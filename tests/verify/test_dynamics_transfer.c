@@ -91,15 +91,15 @@ static mps_dynamics *build(mps_context *context, bool viscous, double spacing, m
   int64_t count;
   int64_t *base = soil_select(context, *particles, -1.0, -1.0, 100.0, spacing, &count);
   if (viscous) {
-    mps_viscous_def boundary = mps_viscous_defaults();
+    mps_dynamics_boundary_def boundary = mps_dynamics_boundary_defaults();
     boundary.density = rock_density;
     boundary.shear_velocity = rock_vs;
     boundary.pressure_velocity = 2.0 * rock_vs;
-    boundary.incoming[0] = input;
-    mps_assert_ok(context, mps_dynamics_viscous(dynamics, &boundary, count, base));
+    boundary.signal[0] = input;
+    mps_assert_ok(context, soil_add_viscous(dynamics, &boundary, count, base));
   } else {
-    mps_assert_ok(context, mps_dynamics_hold(dynamics, MPS_DOF_Y, count, base));
-    mps_assert_ok(context, mps_dynamics_drive(dynamics, 0, input, 1.0, count, base));
+    mps_assert_ok(context, soil_add_held(dynamics, MPS_DOF_Y, count, base));
+    mps_assert_ok(context, soil_add_driven(dynamics, 0, input, 1.0, count, base));
   }
   free(base);
   return dynamics;

@@ -1,5 +1,5 @@
-/* predict.c - the stable time step of uniform ground without any particles: own linear theory on
- * the endless lattice beside the printed regression of Yoshida (14)-(16).
+/* lattice.c - the stable time step of uniform ground without any particles, by linear theory on the
+ * endless lattice.
  *
  * On the endless square lattice the tangent has plane waves exp(i k.x): a Hermitian 3 x 3 problem
  * for each wave vector. Its highest eigenvalue over all wave vectors bounds the scheme. For
@@ -12,19 +12,20 @@
  * volume change get faster, most in a strip two or three particles thick: measured over all strips
  * and Vp/Vs up to 50, by 5.3 % for re = 1.5 D and 13.3 % at most for others, nothing below
  * Vp = 3.4 Vs. */
-static double edge_factor(const mps_predict_def *def) {
+static double edge_factor(const mps_dynamics_predict_def *def) {
   if (def->pressure_velocity <= 3.3 * def->shear_velocity) return 1.0;
   return def->radius_ratio <= 1.5 ? 1.06 : 1.14;
 }
 
-static const mps_predict_def predict_defaults = {.struct_size = sizeof(mps_predict_def),
-                                                 .integrator = MPS_INTEGRATOR_VERLET,
-                                                 .f1 = 1.0,
-                                                 .f2 = 14.0,
-                                                 .radius_ratio = 1.5};
+static const mps_dynamics_predict_def predict_defaults = {
+    .struct_size = sizeof(mps_dynamics_predict_def),
+    .integrator = MPS_DYNAMICS_INTEGRATOR_VERLET,
+    .f1 = 1.0,
+    .f2 = 14.0,
+    .radius_ratio = 1.5};
 
-mps_status mps_predict_def_init(mps_predict_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_predict_def, def, size, &predict_defaults);
+mps_status mps_dynamics_predict_def_init(mps_dynamics_predict_def *def, size_t size) {
+  return MPSI_DEF_INIT(mps_dynamics_predict_def, def, size, &predict_defaults);
 }
 
 /* Symbol of the tangent at wave numbers (a, b)/D, with lengths in D and velocities in Vs: real
@@ -75,12 +76,11 @@ static double highest(symbol m) {
   return mean + 2.0 * sqrt(q) * cos(acos(c) / 3.0);
 }
 
-double mpsi_dynamics_lattice_omega2(double spacing, double radius_ratio, double density, double vs,
-                                    double vp, int32_t torque) {
-  (void)density; /* velocities carry it */
+double mpsi_dynamics_lattice_omega2(double spacing, double radius_ratio, double vs, double vp,
+                                    double torque) {
   const double pi = 3.14159265358979323846;
   const double lambda = fmax(0.0, vp * vp / (vs * vs) - 2.0);
-  const double inertia = torque == MPS_TORQUE_PRINTED ? 1.0 / 12.0 : 1.0 / 6.0;
+  const double inertia = 1.0 / (6.0 * torque);
   const int reach = (int)ceil(radius_ratio);
   double n0 = 0.0, most = 0.0;
   for (int i = -reach; i <= reach; i++)
@@ -95,64 +95,48 @@ double mpsi_dynamics_lattice_omega2(double spacing, double radius_ratio, double 
   return most * vs * vs / (spacing * spacing);
 }
 
-static mps_status check(mps_context *context, const mps_predict_def *def) {
-  static const char *const function = "mps_dynamics_predict_dt";
+static mps_status check(mps_context *context, const mps_dynamics_predict_def *def) {
+  static const char *const function = "mps_dynamics_predict";
   const struct {
-    const char *name, *allowed;
-    double value;
-    bool good;
+    const char *name, *unit;
+    double value, least, most;
   } checks[] = {
-      {"spacing", "> 0 m", def->spacing, def->spacing > 0.0},
-      {"shear_velocity", "> 0 m/s", def->shear_velocity, def->shear_velocity > 0.0},
-      {"pressure_velocity", "at least sqrt(2) times shear_velocity (m/s)", def->pressure_velocity,
-       def->pressure_velocity >= sqrt(2.0) * def->shear_velocity * (1.0 - 1e-12)},
-      {"damping", ">= 0", def->damping, def->damping >= 0.0},
-      {"f1", "> 0 Hz", def->f1, def->f1 > 0.0},
-      {"f2", "> 0 Hz", def->f2, def->f2 > 0.0},
-      {"radius_ratio", "in (1, 4]", def->radius_ratio,
-       def->radius_ratio > 1.0 && def->radius_ratio <= 4.0},
+      {"spacing", " m", def->spacing, 1e-9, 1e9},
+      {"shear_velocity", " m/s", def->shear_velocity, 1e-6, 1e9},
+      {"pressure_velocity", " m/s (sqrt(2) times shear_velocity or more)", def->pressure_velocity,
+       sqrt(2.0) * def->shear_velocity * (1.0 - 1e-12), 1e9},
+      {"damping", "", def->damping, 0.0, 1000.0},
+      {"f1", " Hz", def->f1, 1e-20, 1e9},
+      {"f2", " Hz", def->f2, 1e-20, 1e9},
+      {"radius_ratio", "", def->radius_ratio, 1.0 + 1e-9, 4.0},
   };
   for (size_t k = 0; k < sizeof checks / sizeof *checks; k++)
-    if (!checks[k].good || !isfinite(checks[k].value))
-      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %g, must be finite and %s",
-                       checks[k].name, checks[k].value, checks[k].allowed);
-  if (def->integrator != MPS_INTEGRATOR_VERLET && def->integrator != MPS_INTEGRATOR_LEAPFROG)
+    if (!(checks[k].value >= checks[k].least && checks[k].value <= checks[k].most))
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %g, must be in %g..%g%s",
+                       checks[k].name, checks[k].value, checks[k].least, checks[k].most,
+                       checks[k].unit);
+  if (def->integrator != MPS_DYNAMICS_INTEGRATOR_VERLET &&
+      def->integrator != MPS_DYNAMICS_INTEGRATOR_LEAPFROG)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "integrator is %d, allowed are 1 (leapfrog) and 2 (Verlet)", def->integrator);
+                     "integrator is %d, allowed are 0 (Verlet) and 1 (leapfrog)", def->integrator);
   return MPS_OK;
 }
 
-mps_status mps_dynamics_predict_dt(mps_context *context, const mps_predict_def *user_def,
-                                   mps_prediction *out) {
+mps_status mps_dynamics_predict_sized(mps_context *context,
+                                      const mps_dynamics_predict_def *user_def,
+                                      mps_dynamics_prediction *out, size_t size) {
+  static const char *const function = "mps_dynamics_predict";
   if (!context) return MPS_ERROR_ARGUMENT;
-  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
-  mps_predict_def def = predict_defaults;
-  mps_status status = MPSI_DEF_READ(context, __func__, mps_predict_def, user_def, &def);
+  mps_dynamics_predict_def def = predict_defaults;
+  mps_status status = MPSI_DEF_READ(context, function, mps_dynamics_predict_def, user_def, &def);
   if (status == MPS_OK) status = check(context, &def);
   if (status != MPS_OK) return status;
   const double pi = 3.14159265358979323846, h = def.damping;
-  const double omega2 =
-      mpsi_dynamics_lattice_omega2(def.spacing, def.radius_ratio, 1.0, def.shear_velocity,
-                                   def.pressure_velocity, MPS_TORQUE_CONSERVING);
-  const double R = 0.5 * def.spacing, vs = def.shear_velocity, vp = def.pressure_velocity;
-  mps_prediction p = {.omega = sqrt(omega2), .printed_s = NAN, .printed_p = NAN, .printed = NAN};
+  const double omega2 = mpsi_dynamics_lattice_omega2(
+      def.spacing, def.radius_ratio, def.shear_velocity, def.pressure_velocity, 1.0);
+  mps_dynamics_prediction p = {.omega = sqrt(omega2)};
   const double edge = edge_factor(&def) * p.omega;
-  p.linear =
-      mpsi_dynamics_damped_limit(edge * edge, h * 4.0 * pi * def.f1 * def.f2 / (def.f1 + def.f2),
-                                 h / (pi * (def.f1 + def.f2)));
-  /* the paper fitted h <= 0.22; its undamped case is its h = 0.001 */
-  const double seed_h = h == 0.0 ? 0.001 : h;
-  if (seed_h >= 0.001 && seed_h <= 0.22) {
-    mps_limit_fit fit_s, fit_p;
-    status = mps_limit_fit_printed(context, 'S', &fit_s);
-    if (status == MPS_OK) status = mps_limit_fit_printed(context, 'P', &fit_p);
-    if (status != MPS_OK) return status;
-    p.printed_s = mps_limit_fit_dt(&fit_s, R, vs, seed_h);
-    p.printed_p = mps_limit_fit_dt(&fit_p, R, vp, seed_h);
-    p.printed = fmin(p.printed_s, p.printed_p);
-    p.printed_in_range = R >= 0.25 && R <= 1.6 && vs >= 100.0 && vp <= 1600.0;
-    p.printed_is_safe = p.printed <= p.linear;
-  }
-  *out = p;
-  return MPS_OK;
+  p.dt = mpsi_dynamics_damped_limit(edge * edge, h * 4.0 * pi * def.f1 * def.f2 / (def.f1 + def.f2),
+                                    h / (pi * (def.f1 + def.f2)));
+  return mpsi_out_write(context, function, out, size, &p, sizeof p);
 }

@@ -1,0 +1,163 @@
+/* bisection.c - the stability limit of the time step by bisection over whole runs, Yoshida 3.3.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "bisection.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define WIDENINGS 40 /* tries to move a first bound outwards */
+enum { COLUMNS = 6 };
+
+typedef struct search {
+  mps_dynamics *dynamics;
+  const bisection_def *def;
+  bisection *result;
+  double start;    /* s */
+  double *initial; /* displacement, rotation, velocity, spin of each particle */
+  char *why;
+} search;
+
+/* ---- the initial state -------------------------------------------------------------------------
+ */
+
+/* Copies the initial state from the fields, or back to them. */
+static mps_status copy_state(const search *s, bool back) {
+  static const struct {
+    const char *field;
+    int64_t component;
+  } columns[COLUMNS] = {{"displacement", 0}, {"displacement", 1}, {"rotation", 0},
+                        {"velocity", 0},     {"velocity", 1},     {"spin", 0}};
+  mps_particles *particles = mps_dynamics_particles(s->dynamics);
+  for (int c = 0; c < COLUMNS; c++) {
+    mps_view view;
+    const mps_status status = mps_particles_view(particles, columns[c].field, &view);
+    if (status != MPS_OK) return status;
+    double *kept = s->initial + c * view.shape[0];
+    double *field = mps_view_f64(&view, 0, columns[c].component);
+    memcpy(back ? field : kept, back ? kept : field, (size_t)view.shape[0] * sizeof(double));
+  }
+  return MPS_OK;
+}
+
+static mps_status go_back(const search *s) {
+  const mps_status status = copy_state(s, true);
+  return status == MPS_OK ? mps_dynamics_restart(s->dynamics, s->start) : status;
+}
+
+/* ---- the search --------------------------------------------------------------------------------
+ */
+
+/* Runs from the initial state with `dt`; `stable` tells whether no acceleration passed the
+ * criterion. */
+static mps_status try_dt(search *s, double dt, bool *stable) {
+  mps_context *context = mps_dynamics_context(s->dynamics);
+  mps_status status = go_back(s);
+  if (status == MPS_OK) status = mps_dynamics_set_dt(s->dynamics, dt);
+  if (status != MPS_OK) return status;
+  const double steps = ceil(s->def->duration / dt - 1e-9);
+  if (steps > 1e10) {
+    snprintf(s->why, 160, "a run of %g s with dt = %g s takes %g steps: too many", s->def->duration,
+             dt, steps);
+    return MPS_ERROR_NUMERIC;
+  }
+  s->result->runs++;
+  status = mps_dynamics_step(s->dynamics, (int64_t)steps);
+  s->result->steps += mps_dynamics_steps(s->dynamics);
+  *stable = status == MPS_OK;
+  if (status == MPS_ERROR_DIVERGED) { /* that is an answer */
+    mps_context_clear_error(context);
+    status = MPS_OK;
+  }
+  const mps_progress progress = {.task = "bisection",
+                                 .step = s->result->runs,
+                                 .time = (double)s->result->runs,
+                                 .fraction = NAN};
+  if (s->def->hook) s->def->hook(s->def->user, &progress);
+  return status;
+}
+
+/* Finds one stable and one unstable time step, starting from `lower` and `upper`. */
+static mps_status bracket(search *s, double lower, double upper) {
+  bool stable = false;
+  mps_status status = try_dt(s, lower, &stable);
+  for (int k = 0; status == MPS_OK && !stable && k < WIDENINGS; k++) {
+    upper = lower;
+    lower /= 2.0;
+    status = try_dt(s, lower, &stable);
+  }
+  if (status != MPS_OK) return status;
+  if (!stable) {
+    snprintf(s->why, 160, "even dt = %g s passes the criterion: is the response itself larger?",
+             lower);
+    return MPS_ERROR_NUMERIC;
+  }
+  s->result->stable = lower;
+  status = try_dt(s, upper, &stable);
+  /* beyond the duration a run is one step, which shows nothing */
+  for (int k = 0; status == MPS_OK && stable && upper < s->def->duration && k < WIDENINGS; k++) {
+    s->result->stable = upper;
+    upper *= 2.0;
+    status = try_dt(s, upper, &stable);
+  }
+  if (status == MPS_OK && stable) {
+    snprintf(s->why, 160,
+             "even dt = %g s stays below the criterion within %g s: no limit was found", upper,
+             s->def->duration);
+    return MPS_ERROR_NUMERIC;
+  }
+  s->result->unstable = upper;
+  return status;
+}
+
+/* Steps 2 to 4 of the paper's algorithm: the geometric mean replaces one of the bounds. */
+static mps_status bisect(search *s, double lower, double upper) {
+  mps_status status = bracket(s, lower, upper);
+  while (status == MPS_OK && s->result->unstable > s->def->accuracy * s->result->stable) {
+    const double middle = sqrt(s->result->stable * s->result->unstable);
+    bool stable = false;
+    if (!(middle > s->result->stable && middle < s->result->unstable)) break; /* neighbours */
+    status = try_dt(s, middle, &stable);
+    if (stable)
+      s->result->stable = middle;
+    else
+      s->result->unstable = middle;
+  }
+  return status;
+}
+
+/* First bounds where none are given. */
+static mps_status choose_bounds(const search *s, double *lower, double *upper) {
+  const bisection_def *def = s->def;
+  *lower = def->lower, *upper = def->upper;
+  if (!isnan(*lower) && !isnan(*upper)) return MPS_OK;
+  mps_dynamics_linear_limit limit;
+  const mps_status status = mps_dynamics_find_limit(s->dynamics, def->duration, &limit);
+  const double guess =
+      status == MPS_OK && limit.dt > 0.0 && isfinite(limit.dt) ? limit.dt : def->duration / 1000.0;
+  if (isnan(*lower)) *lower = fmin(0.98 * guess, isnan(*upper) ? INFINITY : 0.5 * *upper);
+  if (isnan(*upper)) *upper = fmax(1.2 * guess, isnan(def->lower) ? 0.0 : 2.0 * def->lower);
+  return status;
+}
+
+mps_status bisection_find(mps_dynamics *dynamics, const bisection_def *def, bisection *out,
+                          char why[160]) {
+  bisection result = {0};
+  search s = {.dynamics = dynamics,
+              .def = def,
+              .result = &result,
+              .start = mps_dynamics_time(dynamics),
+              .why = why};
+  const int64_t n = mps_particles_count(mps_dynamics_particles(dynamics));
+  double lower, upper;
+  why[0] = '\0';
+  s.initial = malloc((size_t)n * COLUMNS * sizeof *s.initial);
+  if (!s.initial) return MPS_ERROR_MEMORY;
+  mps_status status = copy_state(&s, false);
+  if (status == MPS_OK) status = choose_bounds(&s, &lower, &upper);
+  if (status == MPS_OK) status = bisect(&s, lower, upper);
+  const mps_status end = go_back(&s);
+  free(s.initial);
+  if (status == MPS_OK && end == MPS_OK) *out = result;
+  return status == MPS_OK ? end : status;
+}

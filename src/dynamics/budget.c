@@ -1,0 +1,191 @@
+/* budget.c - energies and momenta of the present state, works of a step. Free-field columns are not
+ * counted.
+ *
+ * The energy that Verlet and leapfrog keep exactly for a linear body without damping is
+ * v-.M.v+ / 2 + U(x), with the velocities half a step before and after the state x. With other
+ * forces P besides the restoring ones F, and v+ = v- + dt F/M the velocity that these alone lead
+ * to, it changes from step to step by dt P.(v- + v)/2, v the velocity that the step really ends
+ * with: docs/dynamics.md 3.3. That is the work that is summed here and in constrain.c. Sums run by
+ * blocks in a fixed order.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/particles_internal.h"
+#include "dynamics_private.h"
+
+static void first_pass(void *data, int64_t b, int32_t worker) {
+  mps_dynamics *dynamics = data;
+  dynamics->kernels->pass1[dynamics->def.rotation][0](
+      &dynamics->state, &dynamics->mesh, b, dynamics->scratch + worker * MPSI_DYN_SCRATCH);
+}
+
+/* |u|^2 of a pair, by the removal in use. */
+static double deformation2(const mps_dynamics *dynamics, int64_t i, int64_t j, double r0x,
+                           double r0y) {
+  const mpsi_dynamics_state *s = &dynamics->state;
+  double a = 0.5 * (s->c[i] + s->c[j]), b = 0.5 * (s->s[i] + s->s[j]);
+  if (dynamics->def.rotation == MPS_DYNAMICS_ROTATION_MEAN_ANGLE) {
+    a = s->c[i] + s->c[j] + s->c[i] * s->c[j] - s->s[i] * s->s[j];
+    b = s->s[i] * (1.0 + s->c[j]) + (1.0 + s->c[i]) * s->s[j];
+  }
+  const double ux = s->dx[j] - s->dx[i] - (a * r0x - b * r0y);
+  const double uy = s->dy[j] - s->dy[i] - (b * r0x + a * r0y);
+  return ux * ux + uy * uy;
+}
+
+/* Energy of the pairs whose first end the block owns (per area and thickness), and the pressure
+ * forces on its particles (into fx, fy). */
+static double block_pairs(const mps_dynamics *dynamics, const mpsi_dynamics_block *block,
+                          double *fx, double *fy) {
+  const mpsi_dynamics_mesh *mesh = &dynamics->mesh;
+  const mpsi_dynamics_state *s = &dynamics->state;
+  const mpsi_dynamics_scattered *list = &mesh->scattered;
+  const int64_t begin = block->begin;
+  double shear = 0.0;
+  int64_t slot = block->slot;
+  for (int64_t r = block->run_begin; r < block->run_end; r++) {
+    const mpsi_dynamics_pair_run *run = &mesh->run[r];
+    for (int64_t k = 0; k < run->count; k++, slot++) {
+      const int64_t i = run->i0 + k, j = run->j0 + k;
+      const double sum = s->p[i] + s->p[j], x = sum * s->ex[slot], y = sum * s->ey[slot];
+      if (run->own_i) fx[i - begin] -= x, fy[i - begin] -= y;
+      if (run->own_j) fx[j - begin] += x, fy[j - begin] += y;
+      if (run->own_i && i < dynamics->body)
+        shear += 0.5 * run->kf * (s->mu[i] + s->mu[j]) *
+                 deformation2(dynamics, i, j, run->r0x, run->r0y);
+    }
+  }
+  for (int64_t k = block->scattered_begin; k < block->scattered_end; k++, slot++) {
+    const int64_t i = list->i[k], j = list->j[k];
+    const double sum = s->p[i] + s->p[j], x = sum * s->ex[slot], y = sum * s->ey[slot];
+    if (list->ti[k] >= 0) fx[list->ti[k] - begin] -= x, fy[list->ti[k] - begin] -= y;
+    if (list->tj[k] >= 0) fx[list->tj[k] - begin] += x, fy[list->tj[k] - begin] += y;
+    if (list->ti[k] == i && i < dynamics->body)
+      shear += 0.5 * list->kf[k] * (s->mu[i] + s->mu[j]) *
+               deformation2(dynamics, i, j, list->r0x[k], list->r0y[k]);
+  }
+  return shear;
+}
+
+static void energy_block(void *data, int64_t b, int32_t worker) {
+  (void)worker;
+  const mps_dynamics *dynamics = data;
+  const mpsi_dynamics_state *s = &dynamics->state;
+  const mpsi_dynamics_block *block = &dynamics->mesh.block[b];
+  const double D = mps_particles_spacing(dynamics->particles);
+  const double volume = D * D * dynamics->def.measure;
+  const bool euler = dynamics->def.integrator == MPS_DYNAMICS_INTEGRATOR_EULER;
+  const double ahead = euler ? 0.0 : dynamics->kept; /* s from v- to v+ */
+  double f[2][MPSI_DYN_BLOCK] = {{0}, {0}};
+  double kinetic = 0.0, strain = volume * block_pairs(dynamics, block, f[0], f[1]);
+  for (int64_t k = block->begin; k < block->end && k < dynamics->body; k++) {
+    const int64_t at = k - block->begin;
+    const double a[3] = {s->ix[k] * (s->gx[k] + f[0][at]), s->iy[k] * (s->gy[k] + f[1][at]),
+                         s->ith[k] * s->gth[k]};
+    for (int c = 0; c < 3; c++) {
+      const double v = mpsi_dynamics_velocity(dynamics, c, k);
+      kinetic += 0.5 * mpsi_dynamics_mass(dynamics, c, k) * v * (v + ahead * a[c]);
+    }
+    if (s->lambda[k] > 0.0) strain += 0.5 * volume * s->p[k] * s->p[k] / s->lambda[k];
+  }
+  dynamics->part[2 * b] = kinetic;
+  dynamics->part[2 * b + 1] = strain;
+}
+
+void mpsi_dynamics_energies(mps_dynamics *dynamics, double *kinetic, double *strain) {
+  const int64_t blocks = dynamics->mesh.blocks;
+  mpsi_parallel_for(dynamics->context, blocks, first_pass, dynamics);
+  mpsi_parallel_for(dynamics->context, blocks, energy_block, dynamics);
+  *kinetic = *strain = 0.0;
+  for (int64_t b = 0; b < blocks; b++) {
+    *kinetic += dynamics->part[2 * b];
+    *strain += dynamics->part[2 * b + 1];
+  }
+}
+
+/* ---- works of a step
+ * ------------------------------------------------------------------------------ */
+
+void mpsi_dynamics_note_velocities(mps_dynamics *dynamics, int64_t block) {
+  const mpsi_dynamics_block *b = &dynamics->mesh.block[block];
+  for (int c = 0; c < 3; c++)
+    for (int64_t k = b->begin; k < b->end; k++)
+      dynamics->before[c * dynamics->count + k] = mpsi_dynamics_velocity(dynamics, c, k);
+}
+
+/* The works of one block's particles in the step that has ended, J. */
+static void work_block(void *data, int64_t block, int32_t worker) {
+  (void)worker;
+  const mpsi_dynamics_account *account = data;
+  mps_dynamics *dynamics = account->dynamics;
+  const mpsi_dynamics_block *b = &dynamics->mesh.block[block];
+  double loads = 0.0, damping = 0.0;
+  for (int c = 0; c < 3; c++) {
+    const double *before = dynamics->before + c * dynamics->count;
+    for (int64_t k = b->begin; k < b->end && k < dynamics->body; k++) {
+      const double path = 0.5 * (before[k] + mpsi_dynamics_velocity(dynamics, c, k));
+      if (c < 2 && account->forces->load[c]) loads += account->forces->load[c][k] * path;
+      if (c < 2 && account->forces->external[c]) loads += account->forces->external[c][k] * path;
+      if (account->drag)
+        damping +=
+            mpsi_dynamics_mass(dynamics, c, k) * account->drag[c * dynamics->count + k] * path;
+    }
+  }
+  dynamics->part[2 * block] = account->kick * loads;
+  dynamics->part[2 * block + 1] = account->kick * damping;
+}
+
+void mpsi_dynamics_count_works(mpsi_dynamics_account *account) {
+  mps_dynamics *dynamics = account->dynamics;
+  const int64_t blocks = dynamics->mesh.blocks;
+  mpsi_parallel_for(dynamics->context, blocks, work_block, account);
+  for (int64_t b = 0; b < blocks; b++) {
+    dynamics->works.loads += dynamics->part[2 * b];
+    dynamics->works.damping -= dynamics->part[2 * b + 1];
+  }
+}
+
+/* ---- totals
+ * --------------------------------------------------------------------------------------- */
+
+static void sum_momenta(mps_dynamics *dynamics, mps_totals *out) {
+  const mpsi_dynamics_state *s = &dynamics->state;
+  const double D = mps_particles_spacing(dynamics->particles);
+  mps_totals sum = {0};
+  for (int64_t k = 0; k < dynamics->body; k++) {
+    const double mass = mpsi_dynamics_mass(dynamics, 0, k);
+    const double x = s->rx[k] + s->dx[k], y = s->ry[k] + s->dy[k];
+    const double vx = mpsi_dynamics_velocity(dynamics, 0, k);
+    const double vy = mpsi_dynamics_velocity(dynamics, 1, k);
+    sum.mass += mass;
+    sum.linear[0] += mass * vx;
+    sum.linear[1] += mass * vy;
+    sum.angular[2] += mass * (x * vy - y * vx) +
+                      mpsi_dynamics_mass(dynamics, 2, k) * mpsi_dynamics_velocity(dynamics, 2, k);
+  }
+  sum.volume = (double)dynamics->body * D * D * dynamics->def.measure;
+  *out = sum;
+}
+
+mps_status mps_dynamics_get_totals_sized(mps_dynamics *dynamics, mps_totals *out, size_t size) {
+  static const char *const function = "mps_dynamics_get_totals";
+  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  mps_totals t;
+  const mps_status status = mpsi_dynamics_settle_dt(dynamics, function);
+  if (status != MPS_OK) return status;
+  if (dynamics->fresh) dynamics->kept = dynamics->dt; /* the step to come */
+  sum_momenta(dynamics, &t);
+  mpsi_dynamics_energies(dynamics, &t.kinetic, &t.strain);
+  const mpsi_dynamics_works *w = &dynamics->works;
+  t.work_loads = w->loads;
+  t.work_boundaries = w->boundaries;
+  t.dissipated = w->damping;
+  const double start = dynamics->begun ? w->start : t.kinetic + t.strain;
+  const double rest = w->loads + w->boundaries - w->damping - (t.kinetic + t.strain - start);
+  t.scheme = NAN;
+  if (dynamics->body < dynamics->count) {
+    t.work_boundaries -= rest;
+  } else {
+    t.dissipated += rest;
+    if (dynamics->damping == MPSI_DYN_UNDAMPED || dynamics->def.watch_damping) t.scheme = rest;
+  }
+  return mpsi_out_write(dynamics->context, function, out, size, &t, sizeof t);
+}

@@ -1,0 +1,163 @@
+/* run.c - stepping as the caller sees it: step, run, refresh; cancel and progress hooks; callbacks.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/particles_internal.h"
+#include "dynamics_private.h"
+
+#include <float.h>
+#include <string.h>
+
+#define PROMPT_WORK 5000000 /* particle-steps between looks at the cancel hook: some 0.1 s */
+
+mps_status mpsi_dynamics_enter(mps_dynamics *dynamics, const char *function) {
+  if (!dynamics->busy) return MPS_OK;
+  return mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
+                   "called while %s of the same solver is under way (from its callback or from the "
+                   "function of a signal): only reading functions may be",
+                   dynamics->busy);
+}
+
+mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function) {
+  mps_status status = mpsi_dynamics_enter(dynamics, function);
+  if (status != MPS_OK) return status;
+  if (dynamics->diverged)
+    return mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
+                     "the run has diverged: mps_dynamics_rollback or mps_dynamics_restore leads "
+                     "back, mps_dynamics_restart begins a new one");
+  return mpsi_dynamics_settle_dt(dynamics, function);
+}
+
+/* Steps between looks at the cancel hook. */
+static int64_t prompt_steps(const mps_dynamics *dynamics) {
+  return PROMPT_WORK / dynamics->count + 1;
+}
+
+static mps_status cancelled(mps_dynamics *dynamics, const char *function) {
+  if (!mpsi_cancelled(dynamics->context)) return MPS_OK;
+  return mpsi_fail(dynamics->context, function, MPS_ERROR_CANCELLED,
+                   "stopped by the cancel hook at step %lld, t = %g s", (long long)dynamics->steps,
+                   mps_dynamics_time(dynamics));
+}
+
+mps_status mps_dynamics_step(mps_dynamics *dynamics, int64_t count) {
+  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_dynamics_ready(dynamics, __func__);
+  if (status != MPS_OK) return status;
+  if (count < 0)
+    return mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
+                     (long long)count);
+  const int64_t prompt = prompt_steps(dynamics);
+  dynamics->busy = __func__;
+  for (int64_t done = 0; status == MPS_OK && done < count;) {
+    const int64_t n = count - done < prompt ? count - done : prompt;
+    status = cancelled(dynamics, __func__);
+    if (status == MPS_OK) status = mpsi_dynamics_advance(dynamics, __func__, n, dynamics->dt, true);
+    done += n;
+  }
+  dynamics->busy = NULL;
+  mpsi_dynamics_publish(dynamics);
+  return status;
+}
+
+/* Calls the caller's callback and records its refusal. */
+static mps_status ask(mps_dynamics *dynamics, const char *function, mps_dynamics_fn callback,
+                      void *user) {
+  mps_context_clear_error(dynamics->context);
+  const mps_status status = callback(user, dynamics);
+  if (status == MPS_OK) return MPS_OK;
+  const mps_error error = *mps_context_error(dynamics->context); /* the callback's own */
+  const bool told = error.status == status && error.message[0] != '\0';
+  return mpsi_fail(dynamics->context, function, status,
+                   "stopped by the callback of mps_dynamics_run with status %d at step %lld, "
+                   "t = %g s%s%s",
+                   (int)status, (long long)dynamics->steps, mps_dynamics_time(dynamics),
+                   told ? ": " : "", told ? error.message : "");
+}
+
+/* Equal steps of at most dt from `start` to `t_end`: their number and length. Where dt, or the
+ * length of the last steps, fits to round-off, it is kept bit for bit. */
+static double divide(const mps_dynamics *dynamics, double start, double t_end, int64_t *total) {
+  const double dt = dynamics->dt, way = t_end - start, exact = way / dt;
+  const double round_off = fmax(1e-9, 4.0 * DBL_EPSILON * (exact + fabs(t_end) / dt));
+  *total = exact > round_off ? (int64_t)ceil(exact - round_off) : 0;
+  const double length = *total > 0 ? way / (double)*total : dt;
+  const double kept[2] = {dt, dynamics->length};
+  for (int k = 0; k < 2; k++)
+    if (fabs(kept[k] - length) * (double)*total <= round_off * dt) return kept[k];
+  return length;
+}
+
+/* A run under way. */
+typedef struct run {
+  mps_dynamics *dynamics;
+  double start, t_end, length;
+  int64_t total, every, report;
+  mps_dynamics_fn callback;
+  void *user;
+} run;
+
+static mps_status march(const run *r) {
+  static const char *const function = "mps_dynamics_run";
+  mps_dynamics *dynamics = r->dynamics;
+  mps_status status = MPS_OK;
+  for (int64_t done = 0; status == MPS_OK && done < r->total;) {
+    int64_t n = r->every - done % r->every, m = r->report - done % r->report;
+    n = n < m ? n : m;
+    if (n > r->total - done) n = r->total - done;
+    const bool last = done + n == r->total,
+               call = r->callback && (last || !((done + n) % r->every));
+    const bool look = last || (done + n) % r->report == 0;
+    done += n;
+    status = mpsi_dynamics_advance(dynamics, function, n, r->length, call || last);
+    if (last && status == MPS_OK) {
+      dynamics->base_time = r->t_end; /* to the last bit */
+      dynamics->base_step = dynamics->steps;
+    }
+    if (call || last || status != MPS_OK) mpsi_dynamics_publish(dynamics);
+    if (status == MPS_OK && call) status = ask(dynamics, function, r->callback, r->user);
+    if (look)
+      mpsi_progress(dynamics->context, "dynamics", dynamics->steps,
+                    mps_dynamics_time(dynamics) - r->start, r->t_end - r->start);
+    if (look && status == MPS_OK) {
+      status = cancelled(dynamics, function);
+      if (status != MPS_OK) mpsi_dynamics_publish(dynamics);
+    }
+  }
+  return status;
+}
+
+mps_status mps_dynamics_run(mps_dynamics *dynamics, double t_end, int64_t every,
+                            mps_dynamics_fn callback, void *user) {
+  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  mps_context *context = dynamics->context;
+  mps_status status = mpsi_dynamics_ready(dynamics, __func__);
+  if (status != MPS_OK) return status;
+  run r = {.dynamics = dynamics,
+           .start = mps_dynamics_time(dynamics),
+           .t_end = t_end,
+           .every = every,
+           .callback = callback,
+           .user = user};
+  if (!isfinite(t_end) || t_end < r.start)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+                     "t_end is %.17g s, must be finite and not before the present time %.17g s",
+                     t_end, r.start);
+  if (every < 1)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "every is %lld, must be >= 1",
+                     (long long)every);
+  if ((t_end - r.start) / dynamics->dt > 1e15)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+                     "a run to %g s takes %g steps of dt = %g s: must be at most 1e15", t_end,
+                     (t_end - r.start) / dynamics->dt, dynamics->dt);
+  r.length = divide(dynamics, r.start, t_end, &r.total);
+  r.report = r.total / 100 > 0 ? r.total / 100 : 1;
+  if (r.report > prompt_steps(dynamics)) r.report = prompt_steps(dynamics);
+  dynamics->busy = __func__;
+  if (r.total == 0) {
+    dynamics->base_time = t_end;
+    dynamics->base_step = dynamics->steps;
+  }
+  if (callback) status = ask(dynamics, __func__, callback, user);
+  if (status == MPS_OK) status = march(&r);
+  dynamics->busy = NULL;
+  return status;
+}

@@ -1,0 +1,232 @@
+/* state.c - the state of the explicit MPS solver (core/state.h): snapshots, rollback, checkpoints;
+ * a look at the step to come.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/state.h"
+
+#include "core/particles_internal.h"
+#include "dynamics_private.h"
+#include "io/checkpoint.h"
+
+#include <string.h>
+
+/* ---- what is held or driven, dashpots ----------------------------------------------------------
+ */
+
+enum { BOUND = 4 };
+
+static int64_t count_bounds(const void *solver) { return ((const mps_dynamics *)solver)->bounds; }
+
+static void get_bounds(const void *solver, void *values) {
+  const mps_dynamics *dynamics = solver;
+  double *row = values;
+  for (int64_t k = 0; k < dynamics->bounds; k++, row += BOUND) {
+    const mpsi_dynamics_bound *q = &dynamics->bound[k];
+    const double of[BOUND] = {q->rest, q->at, q->before, q->force};
+    memcpy(row, of, sizeof of);
+  }
+}
+
+static void set_bounds(void *solver, int64_t rows, const void *values) {
+  mps_dynamics *dynamics = solver;
+  const double *row = values;
+  for (int64_t k = 0; k < rows && k < dynamics->bounds; k++, row += BOUND) {
+    mpsi_dynamics_bound *q = &dynamics->bound[k];
+    q->rest = row[0], q->at = row[1], q->before = row[2], q->force = row[3];
+  }
+}
+
+static int64_t count_dashpots(const void *solver) {
+  return ((const mps_dynamics *)solver)->dashpots;
+}
+
+static void get_dashpots(const void *solver, void *values) {
+  const mps_dynamics *dynamics = solver;
+  for (int64_t k = 0; k < dynamics->dashpots; k++)
+    ((double *)values)[k] = dynamics->dashpot[k].force;
+}
+
+static void set_dashpots(void *solver, int64_t rows, const void *values) {
+  mps_dynamics *dynamics = solver;
+  for (int64_t k = 0; k < rows && k < dynamics->dashpots; k++)
+    dynamics->dashpot[k].force = ((const double *)values)[k];
+}
+
+static const mpsi_state_table bounds_table = {MPSI_STATE_F64, BOUND, count_bounds,
+                                              get_bounds,     NULL,  set_bounds};
+static const mpsi_state_table dashpots_table = {MPSI_STATE_F64, 1,    count_dashpots,
+                                                get_dashpots,   NULL, set_dashpots};
+
+/* ---- the list
+ * ------------------------------------------------------------------------------------ */
+
+/* Tells apart bodies whose pairs are not the same: a hash of the reference positions, 32 bits. */
+static int64_t hash_positions(const mps_dynamics *dynamics) {
+  const double *const column[2] = {dynamics->state.rx, dynamics->state.ry};
+  uint64_t hash = 0xcbf29ce484222325u;
+  for (int c = 0; c < 2; c++)
+    for (int64_t k = 0; k < dynamics->count; k++) {
+      uint64_t bits;
+      memcpy(&bits, &column[c][k], sizeof bits);
+      hash = (hash ^ bits) * 0x100000001b3u;
+    }
+  return (int64_t)(hash >> 32);
+}
+
+static void list_setting(mpsi_state *s, const mps_dynamics *dynamics) {
+  const mps_dynamics_def *def = &dynamics->def;
+  mpsi_state_agree_integer(s, "integrator", def->integrator);
+  mpsi_state_agree_integer(s, "rotation", def->rotation);
+  mpsi_state_agree_integer(s, "damping", def->damping);
+  mpsi_state_agree_integer(s, "watch_damping", def->watch_damping);
+  mpsi_state_agree_number(s, "radius_ratio", def->radius_ratio);
+  mpsi_state_agree_number(s, "f1", def->f1);
+  mpsi_state_agree_number(s, "f2", def->f2);
+  mpsi_state_agree_number(s, "period_x", isnan(def->period_x) ? 0.0 : def->period_x);
+  mpsi_state_agree_number(s, "measure", def->measure);
+  mpsi_state_agree_number(s, "torque", dynamics->torque);
+  mpsi_state_agree_integer(s, "particles", dynamics->count);
+  mpsi_state_agree_integer(s, "pairs", dynamics->pairs);
+  mpsi_state_agree_integer(s, "reference_positions", hash_positions(dynamics));
+}
+
+static void list_boundary(mpsi_state *s, mpsi_dynamics_boundary *b, int32_t number) {
+  mpsi_state_enter(s, "boundary%d", (int)number);
+  mpsi_state_agree_integer(s, "kind", b->kind);
+  mpsi_state_agree_integer(s, "dofs", b->dofs);
+  mpsi_state_agree_integer(s, "particles", b->part.count);
+  mpsi_state_f64(s, "pushed", b->pushed, 3);
+  mpsi_state_f64(s, "impulse", b->impulse, 3);
+  mpsi_state_f64(s, "kick", &b->kick, 1);
+  mpsi_state_f64(s, "work", &b->work, 1);
+  mpsi_state_leave(s);
+}
+
+static void list_state(mpsi_state *s, void *solver) {
+  mps_dynamics *dynamics = solver;
+  list_setting(s, dynamics);
+  int64_t boundaries = 0;
+  for (int32_t k = 0; k < dynamics->boundary_room; k++) boundaries += dynamics->boundary[k] != NULL;
+  mpsi_state_agree_integer(s, "boundaries", boundaries);
+  for (int32_t k = 0; k < dynamics->boundary_room; k++)
+    if (dynamics->boundary[k]) list_boundary(s, dynamics->boundary[k], k);
+  mpsi_state_agree_integer(s, "held", dynamics->bounds);
+  mpsi_state_agree_integer(s, "dashpots", dynamics->dashpots);
+  mpsi_state_f64(s, "dt", &dynamics->dt, 1);
+  mpsi_state_f64(s, "length", &dynamics->length, 1);
+  mpsi_state_f64(s, "kept", &dynamics->kept, 1);
+  mpsi_state_f64(s, "lag", &dynamics->lag, 1);
+  mpsi_state_f64(s, "base_time", &dynamics->base_time, 1);
+  mpsi_state_i64(s, "base_step", &dynamics->base_step, 1);
+  mpsi_state_i64(s, "steps", &dynamics->steps, 1);
+  mpsi_state_bool(s, "fresh", &dynamics->fresh);
+  mpsi_state_bool(s, "diverged", &dynamics->diverged);
+  mpsi_state_bool(s, "begun", &dynamics->begun);
+  mpsi_state_f64(s, "work_loads", &dynamics->works.loads, 1);
+  mpsi_state_f64(s, "work_boundaries", &dynamics->works.boundaries, 1);
+  mpsi_state_f64(s, "work_damping", &dynamics->works.damping, 1);
+  mpsi_state_f64(s, "energy_start", &dynamics->works.start, 1);
+  mpsi_state_add_table(s, "held_values", &bounds_table);
+  mpsi_state_add_table(s, "dashpot_forces", &dashpots_table);
+}
+
+static void bind(void *solver) { mpsi_dynamics_bind(solver); }
+
+/* What follows from the state. */
+static void after(void *solver) {
+  mps_dynamics *dynamics = solver;
+  const mpsi_dynamics_state *s = &dynamics->state;
+  mpsi_dynamics_set_coefficients(dynamics);
+  dynamics->kernels->trig[dynamics->def.rotation](s, 0, dynamics->count);
+  for (int64_t k = 0; k < dynamics->bounds; k++) {
+    mpsi_dynamics_bound *q = &dynamics->bound[k];
+    q->c = s->c[q->particle];
+    q->s = s->s[q->particle];
+  }
+  dynamics->checked = !isnan(dynamics->dt);
+}
+
+static mpsi_state_of state_of(mps_dynamics *dynamics) {
+  return (mpsi_state_of){.solver = dynamics,
+                         .name = "explicit dynamics",
+                         .context = dynamics->context,
+                         .particles = dynamics->particles,
+                         .identity = &dynamics->identity,
+                         .list = list_state,
+                         .bind = bind,
+                         .after = after,
+                         .time = mps_dynamics_time(dynamics),
+                         .dt = isnan(dynamics->dt) ? 0.0 : dynamics->dt,
+                         .steps = dynamics->steps};
+}
+
+/* ---- what the caller does
+ * ------------------------------------------------------------------------ */
+
+mps_status mps_dynamics_snapshot(mps_dynamics *dynamics, mps_snapshot **snapshot) {
+  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  const mpsi_state_of of = state_of(dynamics);
+  return mpsi_state_snapshot(&of, __func__, snapshot);
+}
+
+mps_status mps_dynamics_rollback(mps_dynamics *dynamics, const mps_snapshot *snapshot) {
+  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  const mps_status status = mpsi_dynamics_enter(dynamics, __func__);
+  if (status != MPS_OK) return status;
+  const mpsi_state_of of = state_of(dynamics);
+  return mpsi_state_rollback(&of, __func__, snapshot);
+}
+
+mps_status mps_dynamics_save(mps_dynamics *dynamics, const char *path, const mps_checkpoint *info) {
+  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  const mpsi_state_of of = state_of(dynamics);
+  return mpsi_checkpoint_save(&of, __func__, path, info);
+}
+
+mps_status mps_dynamics_restore(mps_dynamics *dynamics, const char *path, mps_checkpoint *info) {
+  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  const mps_status status = mpsi_dynamics_enter(dynamics, __func__);
+  if (status != MPS_OK) return status;
+  const mpsi_state_of of = state_of(dynamics);
+  return mpsi_checkpoint_restore(&of, __func__, path, info);
+}
+
+/* ---- the step to come
+ * ---------------------------------------------------------------------------- */
+
+/* Takes a step and goes back, keeping its accelerations and pressures in `kept`. */
+static mps_status look_ahead(mps_dynamics *dynamics, const char *function, double *kept) {
+  const size_t bytes = (size_t)dynamics->count * sizeof(double);
+  const mpsi_state_of of = state_of(dynamics);
+  const double limit = dynamics->def.divergence;
+  mps_status status = mpsi_state_snapshot(&of, function, &dynamics->present);
+  if (status != MPS_OK) return status;
+  dynamics->def.divergence = INFINITY; /* that is for the step itself to find */
+  dynamics->busy = function;
+  status = mpsi_dynamics_advance(dynamics, function, 1, dynamics->dt, true);
+  dynamics->busy = NULL;
+  dynamics->def.divergence = limit;
+  memcpy(kept, dynamics->state.ax, bytes);
+  memcpy(kept + dynamics->count, dynamics->state.ay, bytes);
+  memcpy(kept + 2 * dynamics->count, dynamics->state.p, bytes);
+  const mps_status back = mpsi_state_rollback(&of, function, dynamics->present);
+  return status == MPS_OK || status == MPS_ERROR_DIVERGED ? back : status;
+}
+
+mps_status mps_dynamics_refresh(mps_dynamics *dynamics) {
+  if (!dynamics) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_dynamics_ready(dynamics, __func__);
+  if (status != MPS_OK) return status;
+  double *kept = mpsi_alloc(dynamics->context, 3 * dynamics->count, sizeof *kept);
+  if (!kept)
+    return mpsi_fail_memory(dynamics->context, __func__,
+                            (size_t)dynamics->count * 3 * sizeof *kept);
+  status = look_ahead(dynamics, __func__, kept);
+  const size_t bytes = (size_t)dynamics->count * sizeof(double);
+  if (status == MPS_OK) {
+    memcpy(dynamics->state.ax, kept, bytes);
+    memcpy(dynamics->state.ay, kept + dynamics->count, bytes);
+    memcpy(dynamics->state.p, kept + 2 * dynamics->count, bytes);
+  }
+  mpsi_free(dynamics->context, kept);
+  return status;
+}
