@@ -1,8 +1,9 @@
 /* mps/geostatic.h - the stress of ground before anything happens: at rest under its own weight.
  *
- * Writes the field `stress` of a particle set, for solvers that start from it (WLS-MPM with a law
- * of the rate; laws of the deformation gradient or of the volume do not read it). Tension is
- * positive, so that these stresses are negative.
+ * Writes the field `stress` of a particle set: the initial stress of WLS-MPM with laws in rate form
+ * (linear elastic, von Mises, Drucker-Prager, Mohr-Coulomb). Laws that take the stress from the
+ * deformation gradient or the volume (neo-Hookean, Newtonian) do not read it. Tension is positive,
+ * so that these stresses are negative.
  *
  * Thread rule: one thread at a time per set and context; callbacks run on the calling thread.
  * SPDX-License-Identifier: BSD-3-Clause */

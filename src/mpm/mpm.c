@@ -267,10 +267,11 @@ static void place_walls(mps_mpm *mpm) {
 static mps_status check_step(mps_mpm *mpm) {
   const double dt = mpm->def.dt, limit = mps_mpm_limit(mpm);
   if (dt <= limit) return MPS_OK;
-  return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
-                   "dt is %g s, above the limit (49) of the first state, %g s: choose at most half "
-                   "of that, or 0 for a step that follows the limit",
-                   dt, limit);
+  return mpsi_fail(
+      mpm->context, create, MPS_ERROR_ARGUMENT,
+      "dt is %g s, above the Courant limit of the first state, %g s: choose at most half "
+      "of that, or 0 for a step that follows the limit",
+      dt, limit);
 }
 
 static mps_status build(mps_mpm *mpm, mps_material *material) {

@@ -20,7 +20,7 @@ static mps_status report_bad(mps_mpm *mpm, const char *function, int64_t k) {
   const mps_status status = mpsi_fail(
       mpm->context, function, MPS_ERROR_DIVERGED,
       "step %lld, t = %.6g s: particle %lld at (%.6g, %.6g, %.6g) m with velocity (%.4g, %.4g, "
-      "%.4g) m/s and volume %.4g m3 %s; dt was %.4g s, %.3g of the limit (49): check dt, the "
+      "%.4g) m/s and volume %.4g m3 %s; dt was %.4g s, %.3g of the Courant limit: check dt, the "
       "contact stiffness and the initial stress",
       (long long)mpm->run.steps, mpm->run.time, id, p->x[0][k], p->x[1][k], z, p->v[0][k],
       p->v[1][k], vz, p->V[k], number ? "has left the domain or has no volume" : "is not finite",
@@ -58,7 +58,7 @@ static void warn_about_step(mps_mpm *mpm, double dt) {
   if (!mpm->run.warned_about_dt && dt > courant * limit * (1.0 + 1e-9)) {
     mpm->run.warned_about_dt = true;
     mpsi_log(mpm->context, MPS_LOG_WARNING,
-             "step %lld: dt is %.4g s, %.3g of the limit (49), above the fraction courant = %g: "
+             "step %lld: dt is %.4g s, %.3g of the Courant limit, above the fraction courant = %g: "
              "choose a smaller dt, or 0 for a step that follows the limit",
              (long long)mpm->run.steps, dt, dt / limit, courant);
   }
