@@ -1,5 +1,6 @@
 /* race.c - a race in a parallel loop, on purpose: the thread sanitizer must see it, or its silence about
- * the other tests says nothing. Argument: the executor, "openmp" or "caller".
+ * the other tests says nothing. Argument: the executor, "openmp",
+ * "threads" or "caller".
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "pthread_executor.h"
 
@@ -27,6 +28,7 @@ int main(int argc, char **argv) {
   meeting m = {0};
   char text[256] = "";
   if (argc == 2 && strcmp(argv[1], "openmp") == 0) def.executor = MPS_EXECUTOR_OPENMP;
+  if (argc == 2 && strcmp(argv[1], "threads") == 0) def.executor = MPS_EXECUTOR_THREADS;
   if (mps_context_create(&def, &context, text, sizeof text) != MPS_OK ||
       mps_context_parallel_for(context, 2, add, &m) != MPS_OK) {
     printf("no loop ran: %s\n", text);
