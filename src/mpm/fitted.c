@@ -47,7 +47,7 @@ static bool same_side(const mps_mpm *mpm, int32_t g, int local, const double *s)
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
     const double *n = mpm->contact.node[(int64_t)t * mpm->grid.block_nodes + local].normal;
     if (n[0] == 0.0 && n[1] == 0.0 && n[2] == 0.0) continue;
-    if (!(n[0] * s[0] + n[1] * s[1] + n[2] * s[2] < 0.0)) return false;
+    if (!mpsi_contact_same_side(n, s)) return false;
   }
   return true;
 }
@@ -282,14 +282,6 @@ static mpsi_contact_node *contact_node_of(const mps_mpm *mpm, int32_t g, int loc
   return &mpm->contact.node[(int64_t)t * mpm->grid.block_nodes + local];
 }
 
-/* Adds force f at `arm` from the body's reference point to a load. */
-static void add_load(mpsi_load *load, const double *arm, const double *f) {
-  for (int c = 0; c < 3; c++) load->force[c] += f[c];
-  load->moment[0] += arm[1] * f[2] - arm[2] * f[1];
-  load->moment[1] += arm[2] * f[0] - arm[0] * f[2];
-  load->moment[2] += arm[0] * f[1] - arm[1] * f[0];
-}
-
 /* Normal force and slip of a particle against one body, Nakamura (28)-(30). */
 MPSI_INLINE void scatter_contact(mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
                                  int64_t p, const support *at, const mpsi_shape_values *f,
@@ -301,7 +293,7 @@ MPSI_INLINE void scatter_contact(mps_mpm *mpm, const mpsi_cell_block *cells, int
   pair->contacts[c.part]++;
   double arm[3], reaction[3];
   for (int a = 0; a < 3; a++) arm[a] = c.x[a] - body->pose.x[a], reaction[a] = -c.force[a];
-  add_load(&pair->load[c.part], arm, reaction);
+  mpsi_contact_add_load(&pair->load[c.part], arm, reaction);
   FOR_NODES(dim, spline) {
     if (f->w[n] == 0.0) continue;
     mpsi_contact_node *to =
@@ -333,7 +325,7 @@ MPSI_INLINE void share_friction(mps_mpm *mpm, const mpsi_cell_block *cells, int 
     double arm[3], reaction[3];
     mpsi_node_position(mpm, cells->at, local, arm);
     for (int a = 0; a < 3; a++) arm[a] -= body->pose.x[a], reaction[a] = -mass * from->slip[a];
-    add_load(&pair->load[c.part], arm, reaction);
+    mpsi_contact_add_load(&pair->load[c.part], arm, reaction);
   }
 }
 

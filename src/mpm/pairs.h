@@ -4,7 +4,7 @@
 #ifndef MPSI_MPM_PAIRS_H
 #define MPSI_MPM_PAIRS_H
 
-#include "body/body.h"
+#include "contact/contact.h"
 #include "room.h"
 
 #include <mps/mpm.h>
@@ -24,14 +24,6 @@ typedef struct mpsi_node_pair {
   int32_t nodes, body;
   double mass; /* kg, of the nodes in contact */
 } mpsi_node_pair;
-
-/* A node and a body. */
-typedef struct mpsi_contact_node {
-  double normal[3]; /* of the surface at a node inside the body, else 0 */
-  double mass;      /* W: sum phi m of the particles in contact, Nakamura (30) */
-  double slip[3];   /* S: sum phi m slip; then the tangential force over W */
-  double force[3];  /* N, normal force fn, Nakamura (29) */
-} mpsi_contact_node;
 
 typedef struct mpsi_contacts {
   mps_body *body[MPS_MPM_MAX_BODIES];
@@ -60,7 +52,7 @@ void mpsi_mpm_find_contact_mass(mps_mpm *mpm);
 /* inside.c: nodes of a block inside bodies; corners of the cells of a block that hold particles. */
 void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker);
 void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker);
-/* friction.c: normal forces of all bodies on a block of nodes; friction; what the bodies feel, and
+/* contact.c: normal forces of all bodies on a block of nodes; friction; what the bodies feel, and
  * their motion. */
 void mpsi_mpm_apply_contact(mps_mpm *mpm, int64_t g);
 void mpsi_mpm_apply_friction(mps_mpm *mpm, int64_t g);

@@ -1,0 +1,46 @@
+/* friction.c - Coulomb friction between the particles at a node and a body, Nakamura (31)-(34).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "contact.h"
+
+static double dot(const double *a, const double *b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* The part of a stick force that a body leaves: 1 for a prescribed one. A free one moves too: two
+ * masses m (all nodes in contact) and M (the body's, at this point and along the unit vector
+ * `along`) lose their relative velocity by the reduced mass m M/(m + M). */
+static double stick_share(const mps_body *body, int dim, double contact_mass, const double *x,
+                          const double *along) {
+  if (body->def.motion == MPS_BODY_MOTION_PRESCRIBED) return 1.0;
+  const double *R = body->pose.R;
+  const double r[3] = {x[0] - body->pose.x[0], x[1] - body->pose.x[1], x[2] - body->pose.x[2]};
+  const double arm[3] = {r[1] * along[2] - r[2] * along[1], r[2] * along[0] - r[0] * along[2],
+                         r[0] * along[1] - r[1] * along[0]};
+  double inverse = 1.0 / body->def.mass;
+  for (int c = dim == 2 ? 2 : 0; c < 3; c++) { /* the body's axes are the principal ones */
+    const double own = R[c] * arm[0] + R[3 + c] * arm[1] + R[6 + c] * arm[2];
+    inverse += own * own / body->def.inertia[c];
+  }
+  return 1.0 / (1.0 + contact_mass * inverse);
+}
+
+bool mpsi_contact_friction(const mps_body *body, int dim, const mpsi_contact_node *at,
+                           double contact_mass, const double *x, const double *v,
+                           const double *before, double m, double dt, double *force) {
+  const double fn = sqrt(dot(at->force, at->force));
+  if (!(at->mass > 0.0) || !(m > 0.0) || !(fn > 0.0)) return false;
+  double n[3], s[3];
+  for (int c = 0; c < 3; c++) {
+    n[c] = at->force[c] / fn;
+    s[c] = v[c] - before[c] - at->slip[c] / at->mass;
+  }
+  const double across = dot(s, n);
+  for (int c = 0; c < 3; c++) s[c] -= across * n[c];
+  const double slip = sqrt(dot(s, s));
+  if (!(slip > 0.0)) return false;
+  for (int c = 0; c < 3; c++) s[c] /= slip;
+  const double stick = m * slip / dt * stick_share(body, dim, contact_mass, x, s);
+  const double f = fmin(stick, body->def.friction * fn);
+  for (int c = 0; c < 3; c++) force[c] = -f * s[c];
+  return true;
+}
