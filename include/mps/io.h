@@ -37,11 +37,10 @@ static inline mps_recorder_def mps_recorder_defaults(void) {
   return def;
 }
 
-/** Begins a series of the set `particles`, which the recorder borrows: it must live at each
- *  mps_recorder_write. The fields are those the set has now, so create the solver first.
- *  MPS_ERROR_FIELD: the set lacks a name of the list; MPS_ERROR_IO: the file cannot be written;
- *  MPS_ERROR_UNSUPPORTED: no HDF5, or one without zlib where compression is asked for. The file is
- *  touched only once all else is found right. */
+/** Begins a series of the set `particles`, which the recorder keeps alive. The fields are those the
+ * set has now, so create the solver first. MPS_ERROR_FIELD: the set lacks a name of the list;
+ * MPS_ERROR_IO: the file cannot be written; MPS_ERROR_UNSUPPORTED: no HDF5, or one without zlib
+ * where compression is asked for. The file is touched only once all else is found right. */
 MPS_API MPS_NODISCARD mps_status mps_recorder_create(mps_context *context, mps_particles *particles,
                                                      const mps_recorder_def *def,
                                                      mps_recorder **out);

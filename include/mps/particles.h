@@ -1,8 +1,9 @@
 /* mps/particles.h - a set of particles: positions on or off a lattice, and named fields.
  *
  * Storage is a structure of arrays: each component of a field is one contiguous array, aligned to
- * 64 bytes. Fields are looked at through zero-copy views. Each particle keeps a stable `id`;
- * appending or sorting particles changes the order and the epoch, and invalidates views.
+ * 64 bytes. Fields are read through zero-copy views and written between mps_particles_edit and
+ * mps_particles_commit. Each particle has an `id` that no other one had or will have; ids need not
+ * be consecutive. Adding, removing and sorting change the order and the epoch, and end views.
  * Thread rule: one thread at a time per set (and per context).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_PARTICLES_H
@@ -17,7 +18,7 @@ typedef struct mps_particles mps_particles;
 typedef struct mps_particles_def {
   uint32_t struct_size;
   int32_t dim;      /* 2 (default) or 3 */
-  double spacing;   /* D, m, > 0; no default */
+  double spacing;   /* D, m, 1e-12 to 1e12; no default */
   double origin[3]; /* m; the fills put particles at origin + (i + 1/2) D (cell centred) */
 } mps_particles_def;
 
@@ -46,13 +47,14 @@ MPS_API uint64_t mps_particles_epoch(const mps_particles *particles);
 /* ---- filling -------------------------------------------------------------------------------
  * Every fill appends and may be repeated; `added` (may be NULL) receives the number of particles
  * appended, other fields of the new particles are zero. On any error nothing is appended. While a
- * solver uses the set, filling is MPS_ERROR_STATE. Lattice fills never put a second particle on a
- * lattice site that an earlier lattice fill occupied. They go through a shape x fastest, then y,
- * then z, and may look at up to 2^31 sites. A site's centre within 1e-9 spacings of a bound counts
- * as on it: in at `lo` and at the left and lower edges of a polygon, out at `hi`, at the right and
- * upper edges and on the surface of a ball. So shapes that share an edge share no site. */
+ * solver holds the set that takes no more particles, filling is MPS_ERROR_STATE. Lattice fills
+ * never put a second particle on a lattice site that an earlier lattice fill occupied. They go
+ * through a shape x fastest, then y, then z, and may look at up to 2^31 sites. A site's centre
+ * within 1e-9 spacings of a bound counts as on it: in at `lo` and at the left and lower edges of a
+ * polygon, out at `hi`, at the right and upper edges and on the surface of a ball. So shapes that
+ * share an edge share no site. */
 
-/** Appends `count` particles at given positions: positions[i * dim + c] in m, finite. */
+/** Appends `count` particles at given positions: positions[i * dim + c] in m, within 1e15 m. */
 MPS_API MPS_NODISCARD mps_status mps_particles_append(mps_particles *particles, int64_t count,
                                                       const double *positions);
 /** Lattice sites whose centre lies in the box [lo, hi) (dim values each, m). */
@@ -76,6 +78,13 @@ MPS_API MPS_NODISCARD mps_status mps_particles_fill_where(mps_particles *particl
                                                           mps_predicate_fn inside, void *user,
                                                           int64_t *added);
 
+/** Removes `count` particles, by their ids (all different). The others keep their ids and the order
+ *  among them; the lattice sites of those removed stay taken. On an error nothing has changed.
+ *  MPS_ERROR_STATE: the solver that holds the set lets no particle go, or a field is being edited.
+ */
+MPS_API MPS_NODISCARD mps_status mps_particles_remove(mps_particles *particles, int64_t count,
+                                                      const int64_t *ids);
+
 /* ---- fields -------------------------------------------------------------------------------- */
 
 /** Description of a field. Strings live as long as the particle set. */
@@ -94,12 +103,24 @@ typedef struct mps_field_info {
  *  (1..16). A name with a dot, "<material>.<column>", is the history of a material. Adding a field that exists with the same shape does nothing. Keeps the epoch. */
 MPS_API MPS_NODISCARD mps_status mps_particles_add_field(mps_particles *particles, const char *name,
                                                          int32_t components);
-/** Borrows a field. MPS_ERROR_FIELD when the set has none of that name (the message lists the
- *  names it has). */
+/** Borrows a field for reading (MPS_VIEW_READONLY), until the epoch changes. MPS_ERROR_FIELD when
+ * the set has none of that name (the message lists the names it has). */
 MPS_API MPS_NODISCARD mps_status mps_particles_view(mps_particles *particles, const char *name,
                                                     mps_view *out);
-/** Sets component `component` of a float64 field to `value` (finite) for every particle there is,
- *  adding the field if the table knows it and the set lacks it. */
+/** Borrows a field for writing, until mps_particles_commit: meanwhile solvers refuse their steps
+ *  (MPS_ERROR_STATE), and particles neither come nor go. Several fields may be open at once, each
+ *  once. MPS_ERROR_FIELD: no such field, or one that only the library writes. */
+MPS_API MPS_NODISCARD mps_status mps_particles_edit(mps_particles *particles, const char *name,
+                                                    mps_view *out);
+/** Ends the editing of a field. Its values must be finite and in the field's range
+ * (docs/fields.md), and the solver that holds the set may ask for more: positions inside its
+ * domain. It reads them before its next step. On MPS_ERROR_ARGUMENT, which names the particle, the
+ * field stays open with what was written: mend it and commit again. Then the view is for reading.
+ */
+MPS_API MPS_NODISCARD mps_status mps_particles_commit(mps_particles *particles, mps_view *view);
+/** Sets component `component` of a float64 field to `value` (in the field's range) for every
+ * particle there is, adding the field if the table knows it and the set lacks it; edit and commit
+ * in one. */
 MPS_API MPS_NODISCARD mps_status mps_particles_set(mps_particles *particles, const char *name,
                                                    int32_t component, double value);
 MPS_API int32_t mps_particles_field_count(const mps_particles *particles);

@@ -228,6 +228,14 @@ mps_status mpsi_fail_memory(mps_context *context, const char *function, size_t b
   return mpsi_fail(context, function, MPS_ERROR_MEMORY, "could not allocate %zu bytes", bytes);
 }
 
+mps_status mpsi_check_limits(mps_context *context, const char *function, const char *what,
+                             const char *unit, double value, double lower, double upper) {
+  if (value >= lower && value <= upper) return MPS_OK;
+  const char *blank = *unit ? " " : "";
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %g%s%s, allowed are %g to %g%s%s",
+                   what, value, blank, unit, lower, upper, blank, unit);
+}
+
 const mps_error *mps_context_error(const mps_context *context) {
   return context ? &context->error : NULL;
 }

@@ -229,9 +229,25 @@ mps_status mps_particles_view(mps_particles *particles, const char *name, mps_vi
                     .shape = {particles->count, field->components, 1},
                     .stride = {1, field->stride, 1},
                     .dtype = field->dtype,
-                    .flags = field->flags,
+                    .flags = field->flags | MPS_VIEW_READONLY,
                     .epoch = particles->epoch};
   return MPS_OK;
+}
+
+/* Fills a column; where a holder refuses that, the column is as before. */
+static mps_status set_column(mps_particles *p, const char *function, const char *name,
+                             int32_t component, double value) {
+  double *column = mpsi_particles_column(p, name, component), *former = NULL;
+  if (p->holders) {
+    former = mpsi_alloc(p->context, p->count, sizeof *former);
+    if (!former) return mpsi_fail_memory(p->context, function, (size_t)p->count * sizeof *former);
+    memcpy(former, column, (size_t)p->count * sizeof *former);
+  }
+  for (int64_t i = 0; i < p->count; i++) column[i] = value;
+  const mps_status status = mpsi_particles_tell(p, function, name);
+  if (status != MPS_OK) memcpy(column, former, (size_t)p->count * sizeof *former);
+  mpsi_free(p->context, former);
+  return status;
 }
 
 mps_status mps_particles_set(mps_particles *particles, const char *name, int32_t component,
@@ -253,16 +269,11 @@ mps_status mps_particles_set(mps_particles *particles, const char *name, int32_t
     return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT,
                      "component of field '%s' is %d, allowed are 0 to %d", name, component,
                      shape.components - 1);
-  if (!isfinite(value))
-    return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT,
-                     "value of field '%s' is %g, must be finite", name, value);
-  if (!field) {
-    const mps_status status = insert_field(particles, __func__, &shape);
-    if (status != MPS_OK) return status;
-  }
-  double *column = mpsi_particles_column(particles, name, component);
-  for (int64_t i = 0; i < particles->count; i++) column[i] = value;
-  return MPS_OK;
+  if (field && field->open) return mpsi_particles_ready(particles, __func__);
+  snprintf(shape.name, sizeof shape.name, "%s", name);
+  mps_status status = mpsi_field_check_value(particles, __func__, &shape, value);
+  if (status == MPS_OK && !field) status = insert_field(particles, __func__, &shape);
+  return status == MPS_OK ? set_column(particles, __func__, name, component, value) : status;
 }
 
 int32_t mps_particles_field_count(const mps_particles *particles) {

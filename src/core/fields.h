@@ -18,7 +18,7 @@
 
 /* clang-format off */
 #define MPSI_FIELD_TABLE(X)                                                                        \
-  X(id, I64, 1, "-", "number of the particle: 0, 1, 2, ... in order of insertion, never changes",  \
+  X(id, I64, 1, "-", "number of the particle, of no other one before or after, never changes",  \
     "the library (the caller only reads)", "always")                                               \
   X(position, F64, MPSI_PER_DIM, "m", "present position",                                          \
     "fills and append; solvers", "always")                                                         \
@@ -98,6 +98,25 @@
   X(material, I64, 1, "-", "number of the law: 0 that of creation, then as mps_mpm_set_material met them", \
     "WLS-MPM (the caller only reads)", "after mps_mpm_set_material")
 /* clang-format on */
+
+/* The values that a caller may give a field of the table: X(name, lower, upper), both allowed.
+ * Fields that are not listed take every value up to MPSI_LARGEST in magnitude. 0 stands for "not
+ * given yet" where a solver asks for more. */
+#define MPSI_LARGEST 1e100
+#define MPSI_FIELD_RANGES(X)                                                                       \
+  X(position, -MPSI_FARTHEST, MPSI_FARTHEST)                                                                         \
+  X(reference, -MPSI_FARTHEST, MPSI_FARTHEST)                                                                        \
+  X(displacement, -MPSI_FARTHEST, MPSI_FARTHEST)                                                                     \
+  X(velocity, -3e8, 3e8)                                                                           \
+  X(density, 0.0, 1e12)                                                                            \
+  X(shear_velocity, 0.0, 3e8)                                                                      \
+  X(pressure_velocity, 0.0, 3e8)                                                                   \
+  X(damping, 0.0, 1e6)                                                                             \
+  X(young, 0.0, 1e24)                                                                              \
+  X(poisson, -1.0, 0.5)                                                                            \
+  X(mass, 0.0, 1e48)                                                                               \
+  X(volume, 0.0, 1e36)                                                                             \
+  X(volume_ratio, 0.0, 1e12)
 
 /* Number of components in a set of dimension `dim`, from the table's number or code. */
 static inline int32_t mpsi_field_components(int32_t code, int32_t dim) {

@@ -14,10 +14,11 @@
 
 #include <string.h>
 
-#define ON_EDGE 1e-9      /* spacings: a centre this close to a bound lies on it */
-#define MAX_INDEX 0x1p40  /* spacings from the origin */
-#define MAX_SITES 0x1p31  /* of one fill, before the shape is cut out */
-#define ROUND_OFF 0x1p-50 /* a few units of relative rounding error */
+#define ON_EDGE 1e-9        /* spacings: a centre this close to a bound lies on it */
+#define MAX_INDEX 0x1p40    /* spacings from the origin */
+#define MAX_SITES 0x1p31    /* of one fill, before the shape is cut out */
+#define MAX_CORNERS 1000000 /* of a polygon */
+#define ROUND_OFF 0x1p-50   /* a few units of relative rounding error */
 
 /* ---- runs ------------------------------------------------------------------------------------ */
 
@@ -127,9 +128,6 @@ static mps_status put_runs(mps_particles *p, const char *function, mpsi_runs *ru
                            : mpsi_fail(context, function, MPS_ERROR_MEMORY,
                                        "could not allocate the list of lattice sites");
   if (status == MPS_OK) {
-    mpsi_runs *old = &p->sites, keep = sites;
-    sites = *old;
-    *old = keep;
     double *x[3] = {0};
     for (int32_t c = 0; c < p->def.dim; c++)
       x[c] = mpsi_field_column(p->fields[MPSI_FIELD_POSITION], c);
@@ -142,6 +140,12 @@ static mps_status put_runs(mps_particles *p, const char *function, mpsi_runs *ru
         if (p->def.dim == 3) x[2][n] = centre(p, 2, run.k);
       }
     }
+    status = mpsi_particles_arrive(p, function, first);
+  }
+  if (status == MPS_OK) {
+    const mpsi_runs former = p->sites;
+    p->sites = sites;
+    sites = former;
     if (added) *added = count;
   }
   mpsi_free(context, runs->item);
@@ -272,9 +276,9 @@ static mps_status check_polygon(const mps_particles *p, const char *function, co
     return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
                      "the set has %d dimensions, a polygon needs 2", p->def.dim);
   if (!s->xy) return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT, "xy is NULL");
-  if (s->n < 3)
-    return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT, "vertices is %lld, must be >= 3",
-                     (long long)s->n);
+  if (s->n < 3 || s->n > MAX_CORNERS)
+    return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
+                     "vertices is %lld, allowed are 3 to %d", (long long)s->n, MAX_CORNERS);
   mps_status status = MPS_OK;
   for (int64_t k = 0; k < 2 * s->n && status == MPS_OK; k++)
     status = check_bound(p, function, "a corner", k % 2, s->xy[k]);

@@ -29,6 +29,6 @@ mps_status mpsi_guard_leave(mpsi_guard *guard, mps_context *context, const char 
     snprintf(reason, sizeof reason, ": %.63s: %.300s", error->function, error->message);
   const bool known = status > MPS_OK && status <= MPS_ERROR_INTERNAL;
   return mpsi_fail(context, function, known ? status : MPS_ERROR_ARGUMENT,
-                   "%s returned status %d (%s)%s", callback, (int)status,
-                   mps_status_text(status), reason);
+                   "%s returned status %d (%s)%s", callback, (int)status, mps_status_text(status),
+                   reason);
 }

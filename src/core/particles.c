@@ -1,8 +1,7 @@
 /* particles.c - the particle set: life, growth, order, selection.
  *
- * A set only grows. Ids are 0, 1, 2, ... in order of insertion, so the map from id to index is one
- * array, the identity until somebody sorts.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * Ids are given in order of insertion and never twice, so the map from id to index is one array:
+ * the identity until somebody sorts or removes. SPDX-License-Identifier: BSD-3-Clause */
 #include "particles_private.h"
 
 #include <string.h>
@@ -20,14 +19,13 @@ static mps_status check_def(mps_context *context, const char *function,
                             const mps_particles_def *def) {
   if (def->dim != 2 && def->dim != 3)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "dim is %d, must be 2 or 3", def->dim);
-  if (!isfinite(def->spacing) || def->spacing <= 0.0)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "spacing is %g m, must be finite and > 0", def->spacing);
-  for (int c = 0; c < 3; c++)
-    if (!isfinite(def->origin[c]))
-      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "origin[%d] is %g m, must be finite",
-                       c, def->origin[c]);
-  return MPS_OK;
+  mps_status status = mpsi_check_limits(context, function, "spacing", "m", def->spacing,
+                                        MPSI_SHORTEST, MPSI_LONGEST);
+  static const char *const names[] = {"origin[0]", "origin[1]", "origin[2]"};
+  for (int c = 0; c < 3 && status == MPS_OK; c++)
+    status = mpsi_check_limits(context, function, names[c], "m", def->origin[c], -MPSI_FARTHEST,
+                               MPSI_FARTHEST);
+  return status;
 }
 
 static void free_set(mps_particles *p) {
@@ -69,12 +67,16 @@ mps_status mps_particles_create(mps_context *context, const mps_particles_def *d
   return MPS_OK;
 }
 
+void mpsi_particles_free_if_unused(mps_particles *p) {
+  if (!p->owned && p->pins == 0 && !p->holders) free_set(p);
+}
+
 void mps_particles_destroy(mps_particles **particles) {
   if (!particles || !*particles) return;
   mps_particles *p = *particles;
   *particles = NULL;
   p->owned = false;
-  if (p->pins == 0) free_set(p);
+  mpsi_particles_free_if_unused(p);
 }
 
 mps_particles *mpsi_particles_pin(mps_particles *particles) {
@@ -83,7 +85,9 @@ mps_particles *mpsi_particles_pin(mps_particles *particles) {
 }
 
 void mpsi_particles_unpin(mps_particles *particles) {
-  if (particles && --particles->pins == 0 && !particles->owned) free_set(particles);
+  if (!particles) return;
+  particles->pins--;
+  mpsi_particles_free_if_unused(particles);
 }
 
 mps_context *mpsi_particles_context(const mps_particles *particles) { return particles->context; }
@@ -104,10 +108,15 @@ uint64_t mps_particles_epoch(const mps_particles *particles) {
 /* ---- growth ---------------------------------------------------------------------------------- */
 
 mps_status mpsi_particles_check_free(const mps_particles *p, const char *function) {
-  if (p->pins == 0) return MPS_OK;
-  return mpsi_fail(p->context, function, MPS_ERROR_STATE,
-                   "the set is in use by %d solver%s: destroy %s before adding particles", p->pins,
-                   p->pins > 1 ? "s" : "", p->pins > 1 ? "them" : "it");
+  const mps_status status = mpsi_particles_ready(p, function);
+  if (status != MPS_OK) return status;
+  const char *who = p->pins > 0 ? "a solver" : NULL;
+  for (const mpsi_holder *h = p->holders; h && !who; h = h->next)
+    if (!h->insert && h->kind != MPSI_USE_LOOK) who = h->name;
+  if (!who) return MPS_OK;
+  return mpsi_fail(
+      p->context, function, MPS_ERROR_STATE,
+      "the particle set is held by %s, which takes no more particles: destroy it first", who);
 }
 
 /* Makes room for `capacity` particles: first all the memory, then the moves, so that a failure
@@ -118,12 +127,7 @@ static bool reserve(mps_particles *p, int64_t capacity) {
   bool good = blocks != NULL;
   for (int32_t f = 0; good && f < p->field_count; f++)
     good = (blocks[f] = mpsi_field_allocate(context, p->fields[f], capacity)) != NULL;
-  void *index_of = p->index_of;
-  good = good && mpsi_grow(context, &index_of, p->count, capacity, sizeof *p->index_of);
-  if (good) {
-    p->index_of = index_of;
-    p->capacity = capacity;
-  }
+  if (good) p->capacity = capacity;
   for (int32_t f = 0; blocks && f < p->field_count; f++) {
     if (good)
       mpsi_field_move(context, p->fields[f], blocks[f], p->count, capacity);
@@ -132,6 +136,18 @@ static bool reserve(mps_particles *p, int64_t capacity) {
   }
   mpsi_free(context, blocks);
   return good;
+}
+
+/* Room in the map for `count` more ids. */
+static bool reserve_ids(mps_particles *p, int64_t count) {
+  const int64_t needed = p->next_id + count, half_more = p->id_capacity + p->id_capacity / 2;
+  if (needed <= p->id_capacity) return true;
+  const int64_t capacity = needed > half_more ? needed : half_more;
+  void *index_of = p->index_of;
+  if (!mpsi_grow(p->context, &index_of, p->next_id, capacity, sizeof *p->index_of)) return false;
+  p->index_of = index_of;
+  p->id_capacity = capacity;
+  return true;
 }
 
 mps_status mpsi_particles_extend(mps_particles *p, const char *function, int64_t count) {
@@ -148,9 +164,15 @@ mps_status mpsi_particles_extend(mps_particles *p, const char *function, int64_t
                        "could not allocate %d fields of %lld particles", p->field_count,
                        (long long)needed);
   }
+  if (!reserve_ids(p, count))
+    return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
+                     "could not allocate the numbers of %lld particles", (long long)count);
   if (count == 0) return MPS_OK;
   int64_t *id = p->fields[MPSI_FIELD_ID]->data;
-  for (int64_t i = p->count; i < needed; i++) id[i] = p->index_of[i] = i;
+  for (int64_t i = p->count; i < needed; i++) {
+    id[i] = p->next_id++;
+    p->index_of[id[i]] = i;
+  }
   p->count = needed;
   p->epoch++;
   return MPS_OK;
@@ -169,17 +191,17 @@ mps_status mps_particles_append(mps_particles *particles, int64_t count, const d
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "positions is NULL");
   for (int64_t i = 0; i < count; i++)
     for (int32_t c = 0; c < dim; c++)
-      if (!isfinite(positions[i * dim + c]))
+      if (!(fabs(positions[i * dim + c]) <= MPSI_FARTHEST))
         return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                         "position %lld has %c = %g m, must be finite", (long long)i, "xyz"[c],
-                         positions[i * dim + c]);
+                         "position %lld has %c = %g m, allowed are %g to %g m", (long long)i,
+                         "xyz"[c], positions[i * dim + c], -MPSI_FARTHEST, MPSI_FARTHEST);
   const int64_t first = particles->count;
   if ((status = mpsi_particles_extend(particles, __func__, count)) != MPS_OK) return status;
   for (int32_t c = 0; c < dim; c++) {
     double *x = mpsi_field_column(particles->fields[MPSI_FIELD_POSITION], c);
     for (int64_t i = 0; i < count; i++) x[first + i] = positions[i * dim + c];
   }
-  return MPS_OK;
+  return mpsi_particles_arrive(particles, __func__, first);
 }
 
 /* ---- order ----------------------------------------------------------------------------------- */
@@ -240,9 +262,11 @@ static void index_chunk(void *data, int64_t chunk, int32_t worker) {
 
 mps_status mpsi_particles_permute_in(mps_particles *p, const char *function, const int64_t *order,
                                      void *const *scratch, int32_t columns) {
-  if (p->pins > 1)
+  bool mover = false;
+  for (const mpsi_holder *h = p->holders; h; h = h->next) mover = mover || h->kind == MPSI_USE_MOVE;
+  if (p->pins + mover > 1)
     return mpsi_fail(p->context, function, MPS_ERROR_STATE,
-                     "the set cannot be sorted: it is in use by %d solvers", p->pins);
+                     "the set cannot be sorted: it is held by %d solvers", p->pins + mover);
   permutation m = {.order = order, .count = p->count};
   m.chunks = (p->count + PERMUTE_CHUNK - 1) / PERMUTE_CHUNK;
   for (int32_t k = 0; k < columns; k++) m.sorted[k] = scratch[k];
@@ -265,6 +289,8 @@ mps_status mpsi_particles_permute(mps_particles *p, const char *function, const 
   mpsi_free(p->context, scratch);
   return status;
 }
+
+bool mpsi_particles_dense(const mps_particles *p) { return p->next_id == p->count; }
 
 /* ---- selection ------------------------------------------------------------------------------- */
 
@@ -293,12 +319,12 @@ mps_status mps_particles_select_box(mps_particles *particles, const double *lo, 
   const mps_status status = check_select(particles, __func__, lo, hi, capacity, ids, count);
   if (status != MPS_OK) return status;
   int64_t found = 0;
-  for (int64_t id = 0; id < particles->count; id++) {
-    bool inside = true;
-    for (int32_t c = 0; c < particles->def.dim; c++) {
+  for (int64_t id = 0; id < particles->next_id; id++) {
+    bool inside = particles->index_of[id] >= 0;
+    for (int32_t c = 0; inside && c < particles->def.dim; c++) {
       const double *x = mpsi_field_column(particles->fields[MPSI_FIELD_POSITION], c);
       const double value = x[particles->index_of[id]];
-      inside = inside && value >= lo[c] && value <= hi[c];
+      inside = value >= lo[c] && value <= hi[c];
     }
     if (!inside) continue;
     if (found < capacity) ids[found] = id;
@@ -309,14 +335,15 @@ mps_status mps_particles_select_box(mps_particles *particles, const double *lo, 
 }
 
 int64_t mps_particles_index(const mps_particles *particles, int64_t id) {
-  return particles && id >= 0 && id < particles->count ? particles->index_of[id] : -1;
+  return particles && id >= 0 && id < particles->next_id ? particles->index_of[id] : -1;
 }
 
 int64_t mps_particles_nearest(const mps_particles *particles, const double *x) {
   if (!particles || !x) return -1;
   int64_t best = -1;
   double best_square = INFINITY;
-  for (int64_t id = 0; id < particles->count; id++) {
+  for (int64_t id = 0; id < particles->next_id; id++) {
+    if (particles->index_of[id] < 0) continue;
     double square = 0.0;
     for (int32_t c = 0; c < particles->def.dim; c++) {
       const double *column = mpsi_field_column(particles->fields[MPSI_FIELD_POSITION], c);

@@ -7,8 +7,8 @@
 
 #include <mps/particles.h>
 
-/* Whether `name` is one of the field table, whose meaning nobody else may change: neither a caller's
- * field of another shape nor a history column of a law. */
+/* Whether `name` is one of the field table, whose meaning nobody else may change: neither a
+ * caller's field of another shape nor a history column of a law. */
 bool mpsi_field_reserved(const char *name);
 
 /* One component of a float64 field as a contiguous array, or NULL when the set has no such field
@@ -33,16 +33,77 @@ mps_status mpsi_particles_permute(mps_particles *particles, const char *function
 mps_status mpsi_particles_permute_in(mps_particles *particles, const char *function,
                                      const int64_t *order, void *const *scratch, int32_t columns);
 
-/* While pinned, no particle can be added and the caller's destroy only gives up the caller's
- * share: the set goes with the last unpin. Each pin needs its unpin. */
+/* ---- holders: who uses a set ------------------------------------------------------------------
+ * A held set lives on when the caller destroys it, and goes with the last release. A solver holds
+ * the set first of all and releases it last:
+ *
+ *   s->holder = (mpsi_holder){.name = "an mps_s solver", .self = s, .kind = MPSI_USE_MOVE, ...};
+ *   status = mpsi_particles_hold(particles, function, &s->holder);
+ *
+ * and begins every step with mpsi_particles_ready. */
+typedef enum mpsi_use {
+  MPSI_USE_LOOK, /* looks at whatever is there: a recorder */
+  MPSI_USE_FIX,  /* relies on order and positions, as other such holders may */
+  MPSI_USE_MOVE  /* moves or sorts the particles: the only one besides those that look */
+} mpsi_use;
+
+typedef struct mpsi_holder mpsi_holder;
+struct mpsi_holder {
+  const char *name; /* "a WLS-MPM solver (mps_mpm)" */
+  void *self;
+  mpsi_use kind;
+  /* The caller has written `field`. Refuses with an error recorded for `function` (the edit then
+   * stays open), or notes what it must read or sort before the next step. NULL: all the same to it.
+   */
+  mps_status (*commit)(void *self, const char *function, const char *field);
+  /* Particles [first, first + count) have come, with id and position, all else zero: refuses, or
+   * makes room for them. NULL: always refuses (but MPSI_USE_LOOK never). */
+  mps_status (*insert)(void *self, const char *function, int64_t first, int64_t count);
+  /* These particles are to go (ids of the set, all different): refuses, or makes ready. NULL: as
+   * above. */
+  mps_status (*remove)(void *self, const char *function, int64_t count, const int64_t *ids);
+  /* After both, also where another holder refused: columns, count and order may have changed.
+   * May be NULL. */
+  void (*renew)(void *self);
+  mpsi_holder *next;
+};
+
+/* MPS_ERROR_STATE where another holder is in the way, or a field is being edited. */
+mps_status mpsi_particles_check_hold(const mps_particles *particles, const char *function,
+                                     mpsi_use kind);
+mps_status mpsi_particles_hold(mps_particles *particles, const char *function, mpsi_holder *holder);
+void mpsi_particles_release(mps_particles *particles, mpsi_holder *holder); /* set may be NULL */
+/* At the beginning of each step: MPS_ERROR_STATE while the caller edits a field. */
+mps_status mpsi_particles_ready(const mps_particles *particles, const char *function);
+
+/* As MPSI_USE_FIX without a name: no particle can be added or removed. Each pin needs its unpin.
+ */
 mps_particles *mpsi_particles_pin(mps_particles *particles); /* returns `particles` */
 void mpsi_particles_unpin(mps_particles *particles);         /* accepts NULL */
 
-/* Takes back the fields added since there were `keep` of them; nobody may have borrowed them yet. */
+/* ---- going back ------------------------------------------------------------------------------ */
+
+/* All of a set as it is (fields, values, order, epoch), to go back to when the creation of a solver
+ * fails: no particle may come or go in between. Needs the memory of the set once more. */
+typedef struct mpsi_backup {
+  void *memory; /* NULL: none taken */
+  int32_t field_count;
+  uint64_t epoch;
+} mpsi_backup;
+mps_status mpsi_particles_back_up(mps_particles *particles, const char *function,
+                                  mpsi_backup *backup);
+void mpsi_particles_go_back(mps_particles *particles, mpsi_backup *backup);
+void mpsi_backup_drop(mps_particles *particles, mpsi_backup *backup);
+
+/* Takes back the fields added since there were `keep` of them; nobody may have borrowed them yet.
+ */
 void mpsi_particles_drop_fields(mps_particles *particles, int32_t keep);
 
-/* MPS_ERROR_STATE when a solver uses the set. */
+/* MPS_ERROR_STATE when particles cannot come now: a holder refuses that, or a field is edited. */
 mps_status mpsi_particles_check_free(const mps_particles *particles, const char *function);
+
+/* Whether the ids are 0 to count - 1, as long as no particle was removed. */
+bool mpsi_particles_dense(const mps_particles *particles);
 
 mps_context *mpsi_particles_context(const mps_particles *particles);
 

@@ -1,5 +1,5 @@
-/* particles_private.h - the members of a particle set, for particles.c, fields.c and fill.c only.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* particles_private.h - the members of a particle set, for particles.c, edit.c, fields.c, fill.c
+ * and remove.c only. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_PARTICLES_PRIVATE_H
 #define MPSI_PARTICLES_PRIVATE_H
 
@@ -15,6 +15,7 @@ typedef struct mpsi_field {
   const char *unit, *meaning;
   mps_dtype dtype;
   uint32_t flags;
+  bool open; /* the caller is editing it */
   int32_t components;
   int64_t first_column; /* number of columns of the fields before it: staggers the addresses */
   void *block;          /* as allocated */
@@ -38,13 +39,17 @@ struct mps_particles {
   mps_particles_def def;
   int64_t count, capacity;
   uint64_t epoch;
-  int32_t pins;
-  bool owned; /* the caller has not destroyed it */
+  mpsi_holder *holders; /* in the order in which they came, the last first */
+  int32_t pins;         /* holders that do not say who they are */
+  bool owned;           /* the caller has not destroyed it */
+  int32_t open_edits;   /* fields that the caller is editing */
   int32_t field_count;
   mpsi_field **fields; /* 0: id, 1: position */
   int64_t columns;
-  int64_t *index_of; /* id -> index */
-  mpsi_runs sites;   /* what the lattice fills have put */
+  int64_t next_id;   /* ids are given once: 0, 1, 2, ... */
+  int64_t *index_of; /* id -> index, -1 of a particle that was removed */
+  int64_t id_capacity;
+  mpsi_runs sites; /* what the lattice fills have put */
 };
 
 /* ---- fields.c -------------------------------------------------------------------------------- */
@@ -63,8 +68,24 @@ void *mpsi_field_allocate(mps_context *context, const mpsi_field *field, int64_t
 void mpsi_field_move(mps_context *context, mpsi_field *field, void *block, int64_t count,
                      int64_t capacity);
 
+/* ---- edit.c ---------------------------------------------------------------------------------- */
+
+/* MPS_ERROR_ARGUMENT unless `value` is one that the caller may give the field. */
+mps_status mpsi_field_check_value(const mps_particles *particles, const char *function,
+                                  const mpsi_field *field, double value);
+/* Tells the holders that the caller has written a field; one may refuse. */
+mps_status mpsi_particles_tell(mps_particles *particles, const char *function, const char *field);
+
+/* ---- remove.c -------------------------------------------------------------------------------- */
+
+/* Tells the holders of the particles from index `first` on, which have been added with their
+ * positions; where one refuses they are gone again. */
+mps_status mpsi_particles_arrive(mps_particles *particles, const char *function, int64_t first);
+
 /* ---- particles.c ----------------------------------------------------------------------------- */
 
+/* Destroys the set when neither the caller nor a holder needs it. */
+void mpsi_particles_free_if_unused(mps_particles *particles);
 /* Adds `count` particles with their ids; all else is zero. Nothing has changed on an error. */
 mps_status mpsi_particles_extend(mps_particles *particles, const char *function, int64_t count);
 

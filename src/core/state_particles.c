@@ -65,7 +65,7 @@ static mps_status check_ids(const mps_particles *p, const char *function, const 
                        "the state has a particle of id %lld, the set has none", (long long)id[k]);
   if (p->pins > 1 && !same_order(p, id))
     return mpsi_fail(p->context, function, MPS_ERROR_STATE,
-                     "the set cannot be sorted: it is in use by %d solvers", p->pins);
+                     "the set cannot be sorted: it is held by %d solvers", p->pins);
   return MPS_OK;
 }
 

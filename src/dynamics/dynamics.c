@@ -433,16 +433,17 @@ mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
   if (status == MPS_OK) status = check_choices(context, &def);
   if (status == MPS_OK) status = check_numbers(context, &def);
   if (status == MPS_OK) status = check_state(context, particles);
-  if (status == MPS_OK && mpsi_particles_check_free(particles, __func__) != MPS_OK)
-    status = mpsi_fail(context, __func__, MPS_ERROR_STATE,
-                       "another solver uses the set: destroy it first");
+  if (status == MPS_OK) status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
   if (status == MPS_OK) status = check_geometry(context, particles, &def);
   if (status == MPS_OK) status = check_material(context, particles);
   if (status != MPS_OK) return status;
   mps_dynamics *dynamics = mpsi_alloc(context, 1, sizeof *dynamics);
   if (!dynamics) return mpsi_fail_memory(context, __func__, sizeof *dynamics);
   dynamics->context = mpsi_context_retain(context);
-  dynamics->particles = mpsi_particles_pin(particles);
+  dynamics->particles = particles;
+  dynamics->holder = (mpsi_holder){
+      .name = "a solver of elastodynamics (mps_dynamics)", .self = dynamics, .kind = MPSI_USE_MOVE};
+  (void)mpsi_particles_hold(particles, __func__, &dynamics->holder); /* checked above */
   dynamics->def = def;
   dynamics->count = mps_particles_count(particles);
   dynamics->kernels = mpsi_dynamics_kernels_select(mpsi_context_level(context));
@@ -470,7 +471,7 @@ void mps_dynamics_destroy(mps_dynamics **pointer) {
   void *parts[] = {dynamics->slab,   dynamics->scratch, dynamics->bad,
                    dynamics->before, dynamics->drag,    dynamics->part};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
-  mpsi_particles_unpin(dynamics->particles);
+  mpsi_particles_release(dynamics->particles, &dynamics->holder);
   mpsi_free(context, dynamics);
   mpsi_context_release(context);
 }

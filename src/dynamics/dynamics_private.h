@@ -12,6 +12,7 @@
 #ifndef MPSI_DYNAMICS_PRIVATE_H
 #define MPSI_DYNAMICS_PRIVATE_H
 
+#include "core/particles_internal.h"
 #include "kernels.h"
 #include "mesh.h"
 
@@ -81,6 +82,7 @@ typedef struct mpsi_dynamics_works {
 struct mps_dynamics {
   mps_context *context;
   mps_particles *particles;
+  mpsi_holder holder; /* of the particles */
   mps_dynamics_def def;
   double spacing, radius, density; /* D, re (m), n0 */
   int64_t count;                   /* particles, free-field columns included */

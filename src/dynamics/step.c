@@ -343,6 +343,7 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
             .pass2 = dynamics->kernels->pass2[removal][dynamics->damping][integrator],
             .grain = (blocks + units - 1) / units};
   if (count == 0) return MPS_OK;
+  if (mpsi_particles_ready(dynamics->particles, function) != MPS_OK) return MPS_ERROR_STATE;
   if (mpsi_particles_column(dynamics->particles, "external_force", 0) &&
       !mpsi_dynamics_reserve_accounts(dynamics))
     return mpsi_fail_memory(dynamics->context, function, (size_t)dynamics->count * 24);

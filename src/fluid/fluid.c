@@ -196,7 +196,7 @@ mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
   if (user_def) status = MPSI_DEF_READ(context, __func__, mps_fluid_def, user_def, &def);
   if (status == MPS_OK) status = check_particles(context, particles);
   if (status == MPS_OK) status = check_def(context, &def, mps_particles_spacing(particles));
-  if (status == MPS_OK) status = mpsi_particles_check_free(particles, __func__);
+  if (status == MPS_OK) status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
   if (status != MPS_OK) return status;
   mps_fluid *f = mpsi_alloc(context, 1, sizeof *f);
   if (!f) return mpsi_fail_memory(context, __func__, sizeof *f);
@@ -212,7 +212,8 @@ mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
     return status;
   }
   mpsi_context_retain(context);
-  mpsi_particles_pin(particles);
+  f->holder = (mpsi_holder){.name = "a fluid solver (mps_fluid)", .self = f, .kind = MPSI_USE_MOVE};
+  (void)mpsi_particles_hold(particles, __func__, &f->holder); /* checked above */
   *out = f;
   return MPS_OK;
 }
@@ -224,8 +225,8 @@ void mps_fluid_destroy(mps_fluid **fluid) {
   mps_context *context = f->context;
   mps_particles *particles = f->particles;
   *fluid = NULL;
+  mpsi_particles_release(particles, &f->holder); /* a member of f */
   release(f);
-  mpsi_particles_unpin(particles);
   mpsi_context_release(context);
 }
 

@@ -80,6 +80,7 @@ typedef struct mpsi_fluid_system {
 struct mps_fluid {
   mps_context *context;
   mps_particles *particles;
+  mpsi_holder holder; /* of the particles */
   mps_fluid_def def;
   mpsi_fluid_weight weight;
   double l0, g, up[2], level; /* m, m/s2, unit vector against gravity, m */

@@ -130,9 +130,11 @@ static void find_pressures(mps_fluid *f, int64_t begin, int64_t end, int64_t chu
 /* The stages read and write the cloud; the fields change when all is done. */
 static mps_status take_step(mps_fluid *f, const char *function, double dt) {
   const mps_fluid_report before = f->report;
+  mps_status status = mpsi_particles_ready(f->particles, function);
+  if (status != MPS_OK) return status;
   f->dt = dt;
   mpsi_fluid_begin_walls(f, dt);
-  mps_status status = mpsi_fluid_look(f, function);
+  status = mpsi_fluid_look(f, function);
   if (status == MPS_OK) status = mpsi_fluid_solve_pressure(f, function);
   if (status == MPS_OK) {
     mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, find_pressures);

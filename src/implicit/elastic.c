@@ -89,8 +89,9 @@ mps_status mpsi_elastic_enter(mps_elastic *e, const char *function) {
     return mpsi_fail(e->context, function, MPS_ERROR_STATE,
                      "called back from within %s of the same solver, which may only be asked then",
                      e->busy);
-  e->busy = function;
-  return MPS_OK;
+  const mps_status status = mpsi_particles_ready(e->particles, function);
+  if (status == MPS_OK) e->busy = function;
+  return status;
 }
 
 mps_status mpsi_elastic_leave(mps_elastic *e, mps_status status) {
@@ -319,7 +320,7 @@ void mps_elastic_destroy(mps_elastic **elastic) {
                     e->displacement, e->column,   e->stress_work, e->row,   e->value,
                     e->faces,        e->rhs,      e->solution,    e->mass,  e->cg_work};
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) mpsi_free(context, arrays[k]);
-  mpsi_particles_unpin(e->particles);
+  mpsi_particles_release(e->particles, &e->holder);
   mpsi_free(context, e);
   mpsi_context_release(context);
 }
@@ -349,6 +350,22 @@ static mps_status build(mps_elastic *e, const char *function) {
   return status;
 }
 
+/* The lattice is found once: other positions than those are not for this solver. */
+static mps_status refuse_positions(void *self, const char *function, const char *field) {
+  mps_elastic *e = self;
+  bool same = true;
+  for (int32_t c = 0; c < e->dim && strcmp(field, "position") == 0; c++) {
+    const double *x = mpsi_particles_column(e->particles, "position", c);
+    for (int64_t i = 0; i < e->n && same; i++)
+      same = x[mps_particles_index(e->particles, e->id[i])] == e->x[i * e->dim + c];
+  }
+  if (same) return MPS_OK;
+  return mpsi_fail(
+      e->context, function, MPS_ERROR_STATE,
+      "the particle set is held by a solver of implicit elasticity, which relies on the "
+      "positions: write the former ones back, or destroy it first");
+}
+
 mps_status mpsi_elastic_create(mps_context *context, const char *function, mps_particles *particles,
                                const mps_elastic_def *user_def, bool published, bool constant,
                                mps_elastic **out) {
@@ -364,11 +381,17 @@ mps_status mpsi_elastic_create(mps_context *context, const char *function, mps_p
   mps_elastic_def def;
   mps_status status =
       read_def(context, function, user_def, mps_particles_dim(particles), published, &def);
+  if (status == MPS_OK) status = mpsi_particles_check_hold(particles, function, MPSI_USE_FIX);
   if (status != MPS_OK) return status;
   mps_elastic *e = mpsi_alloc(context, 1, sizeof *e);
   if (!e) return mpsi_fail_memory(context, function, sizeof *e);
   e->context = mpsi_context_retain(context);
-  e->particles = mpsi_particles_pin(particles);
+  e->particles = particles;
+  e->holder = (mpsi_holder){.name = "a solver of implicit elasticity (mps_elastic)",
+                            .self = e,
+                            .kind = MPSI_USE_FIX,
+                            .commit = refuse_positions};
+  (void)mpsi_particles_hold(particles, function, &e->holder); /* checked above */
   e->def = def;
   e->conservative = !published;
   e->constant = constant;

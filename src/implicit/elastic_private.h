@@ -14,6 +14,7 @@
 #ifndef MPSI_ELASTIC_PRIVATE_H
 #define MPSI_ELASTIC_PRIVATE_H
 
+#include "core/particles_internal.h"
 #include "cholesky.h"
 #include "core/internal.h"
 #include "core/state.h"
@@ -116,6 +117,7 @@ typedef struct mpsi_facet {
 struct mps_elastic {
   mps_context *context;
   mps_particles *particles;
+  mpsi_holder holder; /* of the particles */
   mps_elastic_def def;
   int32_t dim, modes; /* modes: rigid motions, 3 or 6 */
   bool conservative;  /* method; else the published one */

@@ -60,6 +60,7 @@ typedef struct mark {
 struct mps_recorder {
   mps_context *context;
   mps_particles *particles;
+  mpsi_holder holder;
   char *path;
   mpsi_h5_file file;
   bool broken; /* a frame could not be written */
@@ -178,6 +179,7 @@ mps_status mps_recorder_write(mps_recorder *recorder, double time) {
     return mpsi_fail(context, __func__, MPS_ERROR_STATE,
                      "'%.300s' takes no more frames, since one could not be written",
                      recorder->path);
+  if (mpsi_particles_ready(recorder->particles, __func__) != MPS_OK) return MPS_ERROR_STATE;
   if (!isfinite(time))
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "time is %g s, must be finite", time);
   if (recorder->now.frames > 0 && time < recorder->last_time)
@@ -384,11 +386,14 @@ mps_status mps_recorder_create(mps_context *context, mps_particles *particles,
   (void)mps_recorder_def_init(&def, sizeof def);
   mps_status status = MPSI_DEF_READ(context, __func__, mps_recorder_def, user_def, &def);
   if (status == MPS_OK) status = check_def(context, &def);
+  if (status == MPS_OK) status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_LOOK);
   if (status != MPS_OK) return status;
   mps_recorder *recorder = mpsi_alloc(context, 1, sizeof *recorder);
   if (!recorder) return mpsi_fail_memory(context, __func__, sizeof *recorder);
   recorder->context = mpsi_context_retain(context);
   recorder->particles = particles;
+  recorder->holder = (mpsi_holder){.name = "a recorder", .self = recorder, .kind = MPSI_USE_LOOK};
+  (void)mpsi_particles_hold(particles, __func__, &recorder->holder); /* checked above */
   recorder->compression = def.compression;
   const int64_t count = mps_particles_count(particles);
   recorder->chunk_rows = count < MIN_CHUNK_ROWS ? MIN_CHUNK_ROWS : count;
@@ -430,6 +435,7 @@ static mps_status end(mps_recorder **pointer, const char *function) {
   mps_context *context = recorder->context;
   *pointer = NULL;
   const mps_status status = recorder->file.fd >= 0 ? close_file(recorder, function) : MPS_OK;
+  mpsi_particles_release(recorder->particles, &recorder->holder);
   mpsi_free(context, recorder->rows);
   mpsi_free(context, recorder->path);
   mpsi_free(context, recorder->fields);

@@ -144,7 +144,7 @@ static mps_status check_set(mps_context *context, mps_particles *set) {
 }
 
 /* A field's columns must be finite where the solver starts from them. */
-static mps_status check_start(const mps_mpm *mpm) {
+static mps_status check_start(const mps_mpm *mpm, const char *function) {
   static const char *const names[] = {
       "position", "velocity", "velocity_gradient",    "stress",           "volume_ratio",
       "volume",   "density",  "deformation_gradient", "body_acceleration"};
@@ -153,7 +153,7 @@ static mps_status check_start(const mps_mpm *mpm) {
       const double *value = mpsi_particles_column(mpm->particles, names[f], c);
       for (int64_t k = 0; value && k < mpm->p.count; k++)
         if (!isfinite(value[k]))
-          return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
+          return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                            "'%s' of particle %lld is %g, must be finite", names[f],
                            (long long)mpsi_particles_integers(mpm->particles, "id")[k], value[k]);
     }
@@ -162,11 +162,11 @@ static mps_status check_start(const mps_mpm *mpm) {
       const double x = mpm->p.x[c][k], X = mpsi_grid_coordinate(mpm, c, x);
       const long long id = (long long)mpsi_particles_integers(mpm->particles, "id")[k];
       if (!(fabs(X) < MPSI_MAX_CELLS))
-        return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
+        return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                          "particle %lld has %c = %g m, more than 2^30 cells from the origin", id,
                          "xyz"[c], x);
       if (!(X >= (double)mpm->grid.low[c] && X <= (double)mpm->grid.high[c]))
-        return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
+        return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                          "particle %lld has %c = %g m, outside the domain [%g, %g] m", id, "xyz"[c],
                          x, mpm -> def.lower[c], mpm->def.upper[c]);
     }
@@ -280,7 +280,7 @@ static mps_status build(mps_mpm *mpm, mps_material *material) {
   if (status == MPS_OK) status = mpsi_mpm_add_law(mpm, create, material);
   if (status != MPS_OK) return status;
   bind_fields(mpm);
-  status = check_start(mpm);
+  status = check_start(mpm, create);
   if (status == MPS_OK) status = set_start(mpm);
   if (status != MPS_OK) return status;
   mpm->grid.radix = mpsi_alloc(context, 2 * mpm->p.count, sizeof *mpm->grid.radix);
@@ -299,6 +299,16 @@ static mps_status build(mps_mpm *mpm, mps_material *material) {
   mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
   status = mpsi_mpm_collect_block_results(mpm, create);
   return status == MPS_OK ? check_step(mpm) : status;
+}
+
+/* The caller has written a field: it must be one to start from, and is read before the next step.
+ */
+static mps_status note_edit(void *self, const char *function, const char *field) {
+  mps_mpm *mpm = self;
+  (void)field;
+  const mps_status status = check_start(mpm, function);
+  if (status == MPS_OK) mpm->run.edited = mpm->run.stale = true;
+  return status;
 }
 
 mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_material *material,
@@ -320,11 +330,17 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
                        dim_of(&def) == 3 ? "0 (plane strain) or 1 (axisymmetric)" : "2 (space)");
   if (status == MPS_OK) status = check_numbers(context, &def);
   if (status == MPS_OK) status = read_domain(context, &def, low, high);
+  if (status == MPS_OK) status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
   if (status != MPS_OK) return status;
   mps_mpm *mpm = mpsi_alloc(context, 1, sizeof *mpm);
   if (!mpm) return mpsi_fail_memory(context, __func__, sizeof *mpm);
   mpm->context = mpsi_context_retain(context);
-  mpm->particles = mpsi_particles_pin(particles);
+  mpm->particles = particles;
+  mpm->holder = (mpsi_holder){.name = "a WLS-MPM solver (mps_mpm)",
+                              .self = mpm,
+                              .kind = MPSI_USE_MOVE,
+                              .commit = note_edit};
+  (void)mpsi_particles_hold(particles, __func__, &mpm->holder); /* checked above */
   mpm->def = def;
   mpm->standard = def.scheme == MPS_SCHEME_STANDARD;
   mpm->flip = mpm->standard ? def.flip : 0.0;
@@ -385,7 +401,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
     mpsi_free(context, mpm->laws.law[k].history);
   }
   mpsi_state_forget(&mpm->identity);
-  mpsi_particles_unpin(mpm->particles);
+  mpsi_particles_release(mpm->particles, &mpm->holder);
   mpsi_free(context, mpm);
   mpsi_context_release(context);
 }

@@ -3,6 +3,7 @@
 #ifndef MPSI_MPM_PRIVATE_H
 #define MPSI_MPM_PRIVATE_H
 
+#include "core/particles_internal.h"
 #include "blocks.h"
 #include "boundaries.h"
 #include "columns.h"
@@ -16,6 +17,7 @@ struct mpsi_kernels;
 struct mps_mpm {
   mps_context *context;
   mps_particles *particles;
+  mpsi_holder holder; /* of the particles */
   mps_mpm_def def;
   int32_t dim;
   bool standard; /* MPS_SCHEME_STANDARD; then `flip` is that of the definition, else 0 */

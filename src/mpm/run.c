@@ -2,11 +2,23 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_private.h"
 
+#include "kernels.h"
+
 mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function) {
-  if (!mpm->run.broken) return MPS_OK;
-  return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
-                   "an earlier step has failed: the state is kept for a look; make a new solver or "
-                   "restore a checkpoint");
+  if (mpm->run.broken)
+    return mpsi_fail(
+        mpm->context, function, MPS_ERROR_STATE,
+        "an earlier step has failed: the state is kept for a look; make a new solver or "
+        "restore a checkpoint");
+  mps_status status = mpsi_particles_ready(mpm->particles, function);
+  if (status != MPS_OK || !mpm->run.edited) return status;
+  /* Blocks of the new positions, and the Courant limit of the new velocities. */
+  status = mpsi_mpm_sort(mpm, function);
+  if (status == MPS_OK) status = mpsi_mpm_list_holds(mpm, function);
+  if (status != MPS_OK) return status;
+  mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
+  mpm->run.edited = false;
+  return mpsi_mpm_collect_block_results(mpm, function);
 }
 
 double mps_mpm_limit(const mps_mpm *mpm) { return mpm ? mpm->def.cell / mpm->run.speed : 0.0; }
@@ -42,6 +54,8 @@ mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every, mps_mpm_fn cal
   int64_t done = 0, reported = 0;
   if (status == MPS_OK && callback) status = callback(user, mpm);
   while (status == MPS_OK && mpm->run.time < t_end) {
+    if ((status = mpsi_mpm_ready(mpm, __func__)) != MPS_OK)
+      break; /* the callback may have edited */
     double dt = mps_mpm_dt(mpm);
     const double rest = t_end - mpm->run.time;
     const bool last = rest <= dt * (1.0 + 1e-9);

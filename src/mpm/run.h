@@ -11,6 +11,7 @@ typedef struct mpsi_run {
   double speed; /* largest c + |v| of the particles, m/s */
   int64_t steps;
   bool stale;                    /* particles must be sorted before the next step */
+  bool edited;                   /* the caller has written fields since the last step */
   bool broken;                   /* a step has failed half way */
   bool warned_about_dt;          /* the log knows that dt is above the Courant limit */
   uint32_t warned_about_chatter; /* bit b: ... that body b's contact is too stiff for dt */

@@ -23,11 +23,11 @@ static void a_set_is_pinned_while_a_solver_lives(void **state) {
   mps_dynamics *d = solver(set), *second = NULL;
   const double x[2] = {9.5, 0.5};
   const int32_t fields = mps_particles_field_count(set);
-  mps_assert_fails(context, mps_particles_append(set, 1, x), MPS_ERROR_STATE, "in use");
+  mps_assert_fails(context, mps_particles_append(set, 1, x), MPS_ERROR_STATE, "held by");
   mps_assert_fails(context, mps_dynamics_create(context, set, NULL, &second), MPS_ERROR_STATE,
-                   "another solver uses the set");
+                   "held by a solver of elastodynamics");
   mps_assert_fails(context, mps_dynamics_add_free_field(set, MPS_DYNAMICS_SIDE_LEFT, 2),
-                   MPS_ERROR_STATE, "in use");
+                   MPS_ERROR_STATE, "held by");
   assert_int_equal(mps_particles_field_count(set), fields);
   mps_dynamics_destroy(&d);
   assert_null(d);

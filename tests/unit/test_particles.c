@@ -343,11 +343,11 @@ static void a_set_in_use_does_not_grow_and_outlives_its_destruction(void **state
   assert_ptr_equal(pinned, set);
   assert_ptr_equal(mpsi_particles_context(set), context);
   mps_assert_fails(context, mps_particles_append(set, 1, lo), MPS_ERROR_STATE,
-                   "in use by 1 solver:");
-  mps_assert_fails(context, mps_particles_fill_box(set, lo, hi, NULL), MPS_ERROR_STATE, "in use");
-  mps_assert_fails(context, mps_particles_fill_ball(set, lo, 1.0, NULL), MPS_ERROR_STATE, "in use");
+                   "held by a solver");
+  mps_assert_fails(context, mps_particles_fill_box(set, lo, hi, NULL), MPS_ERROR_STATE, "held by");
+  mps_assert_fails(context, mps_particles_fill_ball(set, lo, 1.0, NULL), MPS_ERROR_STATE, "held by");
   mps_assert_fails(context, mps_particles_fill_polygon(set, 3, triangle, NULL), MPS_ERROR_STATE,
-                   "in use");
+                   "held by");
   mps_assert_ok(context, mps_particles_set(set, "density", 0, 1.0)); /* fields may be added */
   mps_assert_ok(context, mpsi_particles_permute(set, __func__, order));
   mpsi_particles_pin(set);

@@ -1,0 +1,169 @@
+/* edit.c - the guard of the store: editing of fields by the caller, and the solvers and recorders
+ * that hold a set.
+ *
+ *   caller                      set                                holders
+ *   mps_particles_edit ------>  field open: steps are refused
+ *   writes through the view
+ *   mps_particles_commit ---->  finite? in range? ------------->   commit(field): may refuse, else
+ *                               field closed                       reads it before the next step
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "particles_private.h"
+
+#include "fields.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* ---- holders --------------------------------------------------------------------------------- */
+
+static const mpsi_holder *holder_in_the_way(const mps_particles *p, mpsi_use kind) {
+  for (const mpsi_holder *h = p->holders; h; h = h->next)
+    if (kind != MPSI_USE_LOOK && h->kind != MPSI_USE_LOOK &&
+        (kind == MPSI_USE_MOVE || h->kind == MPSI_USE_MOVE))
+      return h;
+  return NULL;
+}
+
+mps_status mpsi_particles_check_hold(const mps_particles *p, const char *function, mpsi_use kind) {
+  const mps_status status = mpsi_particles_ready(p, function);
+  if (status != MPS_OK) return status;
+  const mpsi_holder *other = holder_in_the_way(p, kind);
+  const bool unnamed = kind == MPSI_USE_MOVE && p->pins > 0;
+  if (!other && !unnamed) return MPS_OK;
+  return mpsi_fail(p->context, function, MPS_ERROR_STATE,
+                   "the particle set is held by %s: destroy that first, or use a set of its own",
+                   other ? other->name : "a solver");
+}
+
+mps_status mpsi_particles_hold(mps_particles *p, const char *function, mpsi_holder *holder) {
+  const mps_status status = mpsi_particles_check_hold(p, function, holder->kind);
+  if (status != MPS_OK) return status;
+  holder->next = p->holders;
+  p->holders = holder;
+  return MPS_OK;
+}
+
+void mpsi_particles_release(mps_particles *p, mpsi_holder *holder) {
+  if (!p) return;
+  mpsi_holder **link = &p->holders;
+  while (*link && *link != holder) link = &(*link)->next;
+  if (!*link) return; /* it never held the set */
+  *link = holder->next;
+  mpsi_particles_free_if_unused(p);
+}
+
+/* ---- ready ----------------------------------------------------------------------------------- */
+
+mps_status mpsi_particles_ready(const mps_particles *p, const char *function) {
+  for (int32_t f = 0; p->open_edits > 0 && f < p->field_count; f++) {
+    if (!p->fields[f]->open) continue;
+    (void)mpsi_fail(p->context, function, MPS_ERROR_STATE,
+                    "field '%s' is being edited: mps_particles_commit ends that",
+                    p->fields[f]->name);
+    mpsi_fail_object(p->context, "field '%s'", p->fields[f]->name);
+    return MPS_ERROR_STATE;
+  }
+  return MPS_OK;
+}
+
+/* ---- checks of values ------------------------------------------------------------------------ */
+
+typedef struct range {
+  const char *name;
+  double lower, upper;
+} range;
+
+static range range_of(const char *name) {
+#define ROW(name, lower, upper) {#name, lower, upper},
+  static const range ranges[] = {MPSI_FIELD_RANGES(ROW)};
+#undef ROW
+  for (size_t k = 0; k < sizeof ranges / sizeof *ranges; k++)
+    if (strcmp(ranges[k].name, name) == 0) return ranges[k];
+  return (range){name, -MPSI_LARGEST, MPSI_LARGEST};
+}
+
+static mps_status check_value(const mps_particles *p, const char *function, const mpsi_field *field,
+                              range r, double value, int64_t particle) {
+  if (value >= r.lower && value <= r.upper) return MPS_OK;
+  char whose[48] = "";
+  if (particle >= 0) snprintf(whose, sizeof whose, " of particle %lld", (long long)particle);
+  (void)mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
+                  "field '%s'%s is %g%s%s, allowed are %g to %g", field->name, whose, value,
+                  *field->unit ? " " : "", strcmp(field->unit, "-") == 0 ? "" : field->unit,
+                  r.lower, r.upper);
+  mpsi_fail_where(p->context, -1, particle);
+  mpsi_fail_object(p->context, "field '%s'", field->name);
+  return MPS_ERROR_ARGUMENT;
+}
+
+mps_status mpsi_field_check_value(const mps_particles *p, const char *function,
+                                  const mpsi_field *field, double value) {
+  return check_value(p, function, field, range_of(field->name), value, -1);
+}
+
+static mps_status check_field(const mps_particles *p, const char *function,
+                              const mpsi_field *field) {
+  if (field->dtype.code != 2) return MPS_OK;
+  const range r = range_of(field->name);
+  const int64_t *id = p->fields[MPSI_FIELD_ID]->data;
+  for (int32_t c = 0; c < field->components; c++) {
+    const double *value = mpsi_field_column(field, c);
+    for (int64_t k = 0; k < p->count; k++) {
+      const mps_status status = check_value(p, function, field, r, value[k], id[k]);
+      if (status != MPS_OK) return status;
+    }
+  }
+  return MPS_OK;
+}
+
+mps_status mpsi_particles_tell(mps_particles *p, const char *function, const char *field) {
+  mps_status status = MPS_OK;
+  for (mpsi_holder *h = p->holders; h && status == MPS_OK; h = h->next)
+    if (h->commit) status = h->commit(h->self, function, field);
+  return status;
+}
+
+/* ---- editing --------------------------------------------------------------------------------- */
+
+mps_status mps_particles_edit(mps_particles *particles, const char *name, mps_view *out) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  mps_context *context = particles->context;
+  const mps_status status = mps_particles_view(particles, name, out);
+  if (status != MPS_OK) return status;
+  mpsi_field *field = mpsi_field_find(particles, name);
+  const char *reason = NULL;
+  if (field->flags & MPS_VIEW_READONLY) reason = "is written by the library only";
+  if (field->open) reason = "is being edited already: mps_particles_commit ends that";
+  if (reason) {
+    memset(out, 0, sizeof *out);
+    (void)mpsi_fail(context, __func__, field->open ? MPS_ERROR_STATE : MPS_ERROR_FIELD,
+                    "field '%s' %s", name, reason);
+    mpsi_fail_object(context, "field '%s'", name);
+    return field->open ? MPS_ERROR_STATE : MPS_ERROR_FIELD;
+  }
+  field->open = true;
+  particles->open_edits++;
+  out->flags &= ~MPS_VIEW_READONLY;
+  return MPS_OK;
+}
+
+mps_status mps_particles_commit(mps_particles *particles, mps_view *view) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  mps_context *context = particles->context;
+  if (!view) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "view is NULL");
+  mpsi_field *field = NULL;
+  for (int32_t f = 0; f < particles->field_count && !field; f++)
+    if (particles->fields[f]->open && particles->fields[f]->data == view->data)
+      field = particles->fields[f];
+  if (!field)
+    return mpsi_fail(
+        context, __func__, MPS_ERROR_STATE,
+        "the view is not of a field that is being edited: mps_particles_edit gives it");
+  mps_status status = check_field(particles, __func__, field);
+  if (status == MPS_OK) status = mpsi_particles_tell(particles, __func__, field->name);
+  if (status != MPS_OK) return status;
+  field->open = false;
+  particles->open_edits--;
+  view->flags |= MPS_VIEW_READONLY;
+  return MPS_OK;
+}

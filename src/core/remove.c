@@ -1,0 +1,148 @@
+/* remove.c - particles that come and go while solvers hold the set, and the way back when the
+ * creation of a solver fails. SPDX-License-Identifier: BSD-3-Clause */
+#include "particles_private.h"
+
+#include <string.h>
+
+/* Both take notice; `renew` is told to all, since columns may lie elsewhere even after a refusal.
+ */
+static void renew_holders(const mps_particles *p) {
+  for (const mpsi_holder *h = p->holders; h; h = h->next)
+    if (h->renew) h->renew(h->self);
+}
+
+/* Vector loops read zeros behind the last particle. */
+static void clear_tail(mps_particles *p, int64_t count) {
+  for (int32_t f = 0; f < p->field_count; f++)
+    for (int32_t c = 0; c < p->fields[f]->components; c++)
+      memset((char *)mpsi_field_column(p->fields[f], c) + 8 * p->count, 0, (size_t)count * 8);
+}
+
+mps_status mpsi_particles_arrive(mps_particles *p, const char *function, int64_t first) {
+  const int64_t count = p->count - first;
+  mps_status status = MPS_OK;
+  if (count == 0) return MPS_OK;
+  for (mpsi_holder *h = p->holders; h && status == MPS_OK; h = h->next)
+    if (h->insert) status = h->insert(h->self, function, first, count);
+  if (status != MPS_OK) {
+    p->count = first;
+    p->next_id -= count;
+    clear_tail(p, count);
+  }
+  renew_holders(p);
+  return status;
+}
+
+/* ---- removal --------------------------------------------------------------------------------- */
+
+/* Marks what goes; the marks lie by present index. */
+static mps_status mark(const mps_particles *p, const char *function, int64_t count,
+                       const int64_t *ids, uint8_t *gone) {
+  for (int64_t k = 0; k < count; k++) {
+    const int64_t at = mps_particles_index(p, ids[k]);
+    if (at >= 0 && !gone[at]) {
+      gone[at] = 1;
+      continue;
+    }
+    (void)mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
+                    at < 0 ? "ids[%lld] is %lld: the set has no such particle"
+                           : "ids[%lld] is %lld, which stands in the list before",
+                    (long long)k, (long long)ids[k]);
+    mpsi_fail_where(p->context, -1, ids[k]);
+    return MPS_ERROR_ARGUMENT;
+  }
+  return MPS_OK;
+}
+
+static void close_gaps(mps_particles *p, const uint8_t *gone) {
+  int64_t kept = 0;
+  for (int32_t f = 0; f < p->field_count; f++)
+    for (int32_t c = 0; c < p->fields[f]->components; c++) {
+      char *column = mpsi_field_column(p->fields[f], c);
+      kept = 0;
+      for (int64_t k = 0; k < p->count; k++)
+        if (!gone[k]) memmove(column + 8 * kept++, column + 8 * k, 8);
+    }
+  const int64_t removed = p->count - kept, *id = p->fields[MPSI_FIELD_ID]->data;
+  p->count = kept;
+  clear_tail(p, removed);
+  for (int64_t k = 0; k < kept; k++) p->index_of[id[k]] = k;
+  p->epoch++;
+}
+
+static mps_status ask_holders(const mps_particles *p, const char *function, int64_t count,
+                              const int64_t *ids) {
+  const char *who = p->pins > 0 ? "a solver" : NULL;
+  for (const mpsi_holder *h = p->holders; h && !who; h = h->next)
+    if (!h->remove && h->kind != MPSI_USE_LOOK) who = h->name;
+  if (who)
+    return mpsi_fail(p->context, function, MPS_ERROR_STATE,
+                     "the particle set is held by %s, which lets no particle go: destroy it first",
+                     who);
+  mps_status status = MPS_OK;
+  for (mpsi_holder *h = p->holders; h && status == MPS_OK; h = h->next)
+    if (h->remove) status = h->remove(h->self, function, count, ids);
+  if (status != MPS_OK) renew_holders(p);
+  return status;
+}
+
+mps_status mps_particles_remove(mps_particles *particles, int64_t count, const int64_t *ids) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  mps_context *context = particles->context;
+  mps_status status = mpsi_particles_ready(particles, __func__);
+  if (status != MPS_OK) return status;
+  if (count < 0 || count > particles->count)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+                     "count is %lld, allowed are 0 to the set's %lld particles", (long long)count,
+                     (long long)particles->count);
+  if (count == 0) return MPS_OK;
+  if (!ids) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "ids is NULL");
+  uint8_t *gone = mpsi_alloc(context, particles->count, 1);
+  if (!gone) return mpsi_fail_memory(context, __func__, (size_t)particles->count);
+  status = mark(particles, __func__, count, ids, gone);
+  if (status == MPS_OK) status = ask_holders(particles, __func__, count, ids);
+  if (status == MPS_OK) {
+    for (int64_t k = 0; k < particles->count; k++)
+      if (gone[k]) particles->index_of[((int64_t *)particles->fields[MPSI_FIELD_ID]->data)[k]] = -1;
+    close_gaps(particles, gone);
+    renew_holders(particles);
+  }
+  mpsi_free(context, gone);
+  return status;
+}
+
+/* ---- going back ------------------------------------------------------------------------------ */
+
+/* Copies all columns to the backup, or back. */
+static void copy_columns(const mps_particles *p, char *memory, bool back) {
+  const size_t bytes = (size_t)p->count * 8;
+  for (int32_t f = 0; f < p->field_count; f++)
+    for (int32_t c = 0; c < p->fields[f]->components; c++, memory += bytes) {
+      char *column = mpsi_field_column(p->fields[f], c);
+      memcpy(back ? column : memory, back ? memory : column, bytes);
+    }
+}
+
+mps_status mpsi_particles_back_up(mps_particles *p, const char *function, mpsi_backup *backup) {
+  *backup = (mpsi_backup){.field_count = p->field_count, .epoch = p->epoch};
+  backup->memory = mpsi_alloc(p->context, p->columns * p->count, 8);
+  if (!backup->memory)
+    return mpsi_fail_memory(p->context, function, (size_t)(p->columns * p->count) * 8);
+  copy_columns(p, backup->memory, false);
+  return MPS_OK;
+}
+
+void mpsi_particles_go_back(mps_particles *p, mpsi_backup *backup) {
+  if (!backup->memory) return;
+  mpsi_particles_drop_fields(p, backup->field_count);
+  copy_columns(p, backup->memory, true);
+  const int64_t *id = p->fields[MPSI_FIELD_ID]->data;
+  for (int64_t k = 0; k < p->count; k++) p->index_of[id[k]] = k;
+  p->epoch = backup->epoch;
+  mpsi_backup_drop(p, backup);
+}
+
+void mpsi_backup_drop(mps_particles *p, mpsi_backup *backup) {
+  mpsi_free(p->context, backup->memory);
+  backup->memory = NULL;
+}

@@ -1,0 +1,442 @@
+/* test_guarded.c - the guard of the particle store: editing and its checks, holders, particles that
+ * come and go.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "test_fixture.h"
+
+#include "test_allocator.h"
+
+#include "core/particles_internal.h"
+
+#include <mps/dynamics.h>
+#include <mps/mpm.h>
+#include <mps/particles.h>
+
+static mps_particles *make_set(mps_context *own, double width) {
+  mps_particles_def def = mps_particles_defaults();
+  def.spacing = 0.5;
+  mps_particles *set = NULL;
+  const double lo[2] = {0.0, 0.0}, hi[2] = {width, 2.0};
+  mps_assert_ok(own, mps_particles_create(own, &def, &set));
+  mps_assert_ok(own, mps_particles_fill_box(set, lo, hi, NULL));
+  mps_assert_ok(own, mps_particles_set(set, "density", 0, 2000.0));
+  return set;
+}
+
+static mps_mpm *make_mpm(mps_particles *set) {
+  mps_material *material = NULL;
+  mps_mpm *mpm = NULL;
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 1.0;
+  for (int c = 0; c < 2; c++) def.lower[c] = 0.0, def.upper[c] = 8.0;
+  mps_assert_ok(context, mps_material_linear_elastic(context, 1e6, 0.3, &material));
+  mps_assert_ok(context, mps_mpm_create(context, set, material, &def, &mpm));
+  mps_material_destroy(&material);
+  return mpm;
+}
+
+/* Writes one value and commits; what was there before is written back after a refusal. */
+static mps_status write_one(mps_particles *set, const char *field, int64_t id, double value) {
+  mps_view v;
+  mps_assert_ok(context, mps_particles_edit(set, field, &v));
+  double *at = mps_view_f64(&v, mps_particles_index(set, id), 0);
+  const double former = *at;
+  *at = value;
+  const mps_status status = mps_particles_commit(set, &v);
+  if (status == MPS_OK) return status;
+  *at = former;
+  mps_view again = v; /* the field has stayed open */
+  const mps_error keep = *mps_context_error(context);
+  mps_assert_ok(context, mps_particles_commit(set, &again));
+  (void)mpsi_fail(context, keep.function, keep.status, "%s", keep.message);
+  mpsi_fail_where(context, -1, keep.particle);
+  mpsi_fail_object(context, "%s", keep.object);
+  return status;
+}
+
+/* ---- editing ----------------------------------------------------------------------------------
+ */
+
+static void views_are_for_reading_and_edits_for_writing(void **state) {
+  (void)state;
+  mps_particles *set = make_set(context, 2.0);
+  mps_view v, e, other;
+  mps_assert_ok(context, mps_particles_view(set, "density", &v));
+  assert_true(v.flags & MPS_VIEW_READONLY);
+  assert_int_equal(v.device_type, 0);
+  mps_assert_ok(context, mps_particles_edit(set, "density", &e));
+  assert_false(e.flags & MPS_VIEW_READONLY);
+  assert_ptr_equal(e.data, v.data);
+  mps_assert_fails(context, mps_particles_edit(set, "density", &other), MPS_ERROR_STATE,
+                   "is being edited already");
+  assert_null(other.data);
+  mps_assert_fails(context, mps_particles_set(set, "density", 0, 1.0), MPS_ERROR_STATE,
+                   "'density' is being edited");
+  const double x[2] = {9.0, 9.0};
+  const int64_t ids[1] = {0};
+  mps_assert_fails(context, mps_particles_append(set, 1, x), MPS_ERROR_STATE, "'density'");
+  mps_assert_fails(context, mps_particles_remove(set, 1, ids), MPS_ERROR_STATE, "'density'");
+  assert_string_equal(mps_context_error(context)->object, "field 'density'");
+  mps_assert_fails(context, mps_particles_commit(set, NULL), MPS_ERROR_ARGUMENT, "NULL");
+  mps_assert_ok(context, mps_particles_commit(set, &e));
+  assert_true(e.flags & MPS_VIEW_READONLY);
+  mps_assert_fails(context, mps_particles_commit(set, &e), MPS_ERROR_STATE, "not of a field");
+  mps_assert_fails(context, mps_particles_edit(set, "id", &e), MPS_ERROR_FIELD, "library only");
+  mps_assert_fails(context, mps_particles_edit(set, "nothing", &e), MPS_ERROR_FIELD, "no field");
+  mps_particles_destroy(&set);
+}
+
+static void commit_checks_values_and_names_the_particle(void **state) {
+  (void)state;
+  mps_particles *set = make_set(context, 2.0);
+  mps_assert_ok(context, mps_particles_add_field(set, "poisson", 0));
+  mps_assert_ok(context, mps_particles_add_field(set, "mine", 1));
+  const struct {
+    const char *field;
+    double bad[3];
+    double good;
+  } rows[] = {{"density", {-1.0, NAN, 1e13}, 1e12},
+              {"poisson", {-1.1, 0.51, INFINITY}, 0.5},
+              {"position", {2e15, NAN, -INFINITY}, -1e15},
+              {"mine", {NAN, 1e101, -INFINITY}, -1e99}};
+  for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+    for (int b = 0; b < 3; b++) {
+      assert_int_equal(write_one(set, rows[k].field, 5, rows[k].bad[b]), MPS_ERROR_ARGUMENT);
+      const mps_error *error = mps_context_error(context);
+      assert_int_equal(error->particle, 5);
+      assert_non_null(strstr(error->object, rows[k].field));
+      assert_non_null(strstr(error->message, "of particle 5"));
+    }
+    assert_int_equal(write_one(set, rows[k].field, 5, rows[k].good), MPS_OK);
+  }
+  mps_assert_fails(context, mps_particles_set(set, "density", 0, -3.0), MPS_ERROR_ARGUMENT,
+                   "'density' is -3 kg/m3, allowed are 0 to 1e+12");
+  mps_particles_destroy(&set);
+}
+
+/* ---- solvers ----------------------------------------------------------------------------------
+ */
+
+static void a_step_waits_for_the_commit(void **state) {
+  (void)state;
+  mps_particles *set = make_set(context, 2.0);
+  mps_mpm *mpm = make_mpm(set);
+  mps_view v;
+  mps_assert_ok(context, mps_particles_edit(set, "velocity", &v));
+  mps_assert_fails(context, mps_mpm_step(mpm, 1), MPS_ERROR_STATE, "'velocity' is being edited");
+  mps_assert_fails(context, mps_mpm_run(mpm, 1e-3, 1, NULL, NULL), MPS_ERROR_STATE, "'velocity'");
+  mps_assert_ok(context, mps_particles_commit(set, &v));
+  mps_assert_ok(context, mps_mpm_step(mpm, 1));
+  mps_mpm_destroy(&mpm);
+  mps_particles_destroy(&set);
+}
+
+/* Each of these was a heap overflow, a crash or silently wrong before. */
+static void a_solver_never_meets_a_position_outside_its_domain(void **state) {
+  (void)state;
+  mps_particles *set = make_set(context, 2.0);
+  mps_mpm *mpm = make_mpm(set);
+  const double bad[] = {1e3, NAN, 1e9, -5.0, INFINITY};
+  for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+    assert_int_equal(write_one(set, "position", 3, bad[k]), MPS_ERROR_ARGUMENT);
+    mps_assert_ok(context, mps_mpm_step(mpm, 2));
+  }
+  mps_assert_fails(context, write_one(set, "position", 3, 1e3), MPS_ERROR_ARGUMENT,
+                   "outside the domain");
+  mps_mpm_destroy(&mpm);
+  mps_particles_destroy(&set);
+}
+
+/* Two blocks without contact: one carried over by 5 m moves there as it would have here, since the
+ * nodes lie at whole metres. */
+static void a_move_between_steps_is_a_translation(void **state) {
+  (void)state;
+  double moved[2][2];
+  for (int far = 0; far < 2; far++) {
+    mps_particles *set = make_set(context, 2.0);
+    mps_mpm *mpm = make_mpm(set);
+    mps_view x, v;
+    mps_assert_ok(context, mps_particles_edit(set, "position", &x));
+    mps_assert_ok(context, mps_particles_edit(set, "velocity", &v));
+    for (int64_t k = 0; k < x.shape[0]; k++) {
+      *mps_view_f64(&x, k, 0) += far ? 4.0 : 2.0;
+      *mps_view_f64(&x, k, 1) += far ? 4.0 : 3.0;
+      *mps_view_f64(&v, k, 0) = *mps_view_f64(&x, k, 1) - (far ? 4.0 : 3.0);
+    }
+    mps_assert_ok(context, mps_particles_commit(set, &x));
+    mps_assert_ok(context, mps_particles_commit(set, &v));
+    mps_assert_ok(context, mps_mpm_run(mpm, 0.05, 1, NULL, NULL));
+    mps_assert_ok(context, mps_particles_view(set, "position", &x));
+    for (int c = 0; c < 2; c++) {
+      const double start = c == 0 ? (far ? 4.25 : 2.25) : (far ? 4.25 : 3.25);
+      moved[far][c] = *mps_view_f64(&x, mps_particles_index(set, 0), c) - start;
+    }
+    mps_mpm_destroy(&mpm);
+    mps_particles_destroy(&set);
+  }
+  assert_true(fabs(moved[0][0]) > 1e-3);
+  for (int c = 0; c < 2; c++) mps_assert_near(moved[1][c], moved[0][c], 1e-12);
+}
+
+/* The Courant limit h/(c + |v|) follows a velocity that the caller writes. */
+static void the_limit_follows_the_callers_velocity(void **state) {
+  (void)state;
+  mps_particles *set = make_set(context, 2.0);
+  mps_mpm *mpm = make_mpm(set);
+  const double c = sqrt(1e6 * 0.7 / (1.3 * 0.4) / 2000.0);
+  mps_assert_near(mps_mpm_limit(mpm), 1.0 / c, 1e-9);
+  assert_int_equal(write_one(set, "velocity", 7, 100.0), MPS_OK);
+  mps_assert_ok(context, mps_mpm_step(mpm, 0)); /* reads what was written */
+  mps_assert_near(mps_mpm_limit(mpm), 1.0 / (c + 100.0), 1e-9);
+  mps_mpm_destroy(&mpm);
+  mps_particles_destroy(&set);
+}
+
+static void one_solver_moves_a_set(void **state) {
+  (void)state;
+  mps_particles *set = make_set(context, 2.0);
+  mps_mpm *mpm = make_mpm(set), *second = NULL;
+  mps_material *material = NULL;
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 1.0;
+  mps_assert_ok(context, mps_material_linear_elastic(context, 1e6, 0.3, &material));
+  const uint64_t epoch = mps_particles_epoch(set);
+  const int32_t fields = mps_particles_field_count(set);
+  mps_assert_fails(context, mps_mpm_create(context, set, material, &def, &second), MPS_ERROR_STATE,
+                   "held by a WLS-MPM solver");
+  assert_null(second);
+  mps_dynamics *dynamics = NULL;
+  mps_assert_ok(context, mps_particles_set(set, "shear_velocity", 0, 100.0));
+  mps_assert_ok(context, mps_particles_set(set, "pressure_velocity", 0, 200.0));
+  mps_assert_fails(context, mps_dynamics_create(context, set, NULL, &dynamics), MPS_ERROR_STATE,
+                   "held by");
+  assert_int_equal(mps_particles_epoch(set), epoch);
+  assert_int_equal(mps_particles_field_count(set), fields + 2);
+  mps_mpm_destroy(&mpm);
+  mps_assert_ok(context, mps_mpm_create(context, set, material, &def, &mpm));
+  mps_material_destroy(&material);
+  mps_particles *kept = set;
+  mps_particles_destroy(&set);
+  assert_int_equal(mps_particles_count(kept), 16);
+  mps_mpm_destroy(&mpm);
+}
+
+/* ---- coming and going -------------------------------------------------------------------------
+ */
+
+static void particles_are_removed_and_keep_their_ids(void **state) {
+  (void)state;
+  mps_particles *set = make_set(context, 2.0);
+  mps_assert_ok(context, mps_particles_add_field(set, "mine", 2));
+  mps_view mine, x;
+  mps_assert_ok(context, mps_particles_edit(set, "mine", &mine));
+  for (int64_t k = 0; k < 16; k++)
+    for (int c = 0; c < 2; c++) *mps_view_f64(&mine, k, c) = 10.0 * (double)k + c;
+  mps_assert_ok(context, mps_particles_commit(set, &mine));
+  const int64_t ids[] = {15, 0, 7}, twice[] = {3, 3}, unknown[] = {3, 16};
+  const uint64_t epoch = mps_particles_epoch(set);
+  mps_assert_fails(context, mps_particles_remove(set, 2, twice), MPS_ERROR_ARGUMENT,
+                   "ids[1] is 3, which stands in the list before");
+  mps_assert_fails(context, mps_particles_remove(set, 2, unknown), MPS_ERROR_ARGUMENT,
+                   "ids[1] is 16: the set has no such particle");
+  mps_assert_fails(context, mps_particles_remove(set, 17, ids), MPS_ERROR_ARGUMENT, "count is 17");
+  mps_assert_fails(context, mps_particles_remove(set, 1, NULL), MPS_ERROR_ARGUMENT, "NULL");
+  assert_int_equal(mps_particles_count(set), 16);
+  assert_int_equal(mps_particles_epoch(set), epoch);
+  mps_assert_ok(context, mps_particles_remove(set, 3, ids));
+  assert_int_equal(mps_particles_count(set), 13);
+  assert_true(mps_particles_epoch(set) != epoch);
+  for (int k = 0; k < 3; k++) assert_int_equal(mps_particles_index(set, ids[k]), -1);
+  mps_assert_ok(context, mps_particles_view(set, "mine", &mine));
+  for (int64_t id = 0; id < 16; id++) {
+    const int64_t at = mps_particles_index(set, id);
+    if (at < 0) continue;
+    for (int c = 0; c < 2; c++)
+      mps_assert_near(*mps_view_f64(&mine, at, c), 10.0 * (double)id + c, 0.0);
+  }
+  /* Vector loops read zeros behind the last particle. */
+  const double *column = mpsi_particles_column(set, "mine", 1);
+  for (int k = 0; k < MPSI_PARTICLES_PADDING; k++) mps_assert_near(column[13 + k], 0.0, 0.0);
+  mps_assert_fails(context, mps_particles_remove(set, 1, ids), MPS_ERROR_ARGUMENT, "no such");
+
+  /* A new particle gets an id that none had; it is found by its place. */
+  const double there[2] = {5.0, 5.0};
+  mps_assert_ok(context, mps_particles_append(set, 1, there));
+  assert_int_equal(mps_particles_nearest(set, there), 16);
+  assert_int_equal(mps_particles_index(set, 16), 13);
+  int64_t found[16], count;
+  const double lo[2] = {0.0, 0.0}, hi[2] = {9.0, 9.0};
+  mps_assert_ok(context, mps_particles_select_box(set, lo, hi, 16, found, &count));
+  assert_int_equal(count, 14);
+  assert_int_equal(found[0], 1);
+  assert_int_equal(found[13], 16);
+  mps_assert_ok(context, mps_particles_view(set, "position", &x));
+  int64_t all[14];
+  memcpy(all, found, sizeof all);
+  mps_assert_ok(context, mps_particles_remove(set, 14, all));
+  assert_int_equal(mps_particles_count(set), 0);
+  assert_int_equal(mps_particles_nearest(set, there), -1);
+  mps_particles_destroy(&set);
+}
+
+/* What a solver that lets particles come and go would note. */
+typedef struct visitor {
+  mps_particles *set;
+  mps_status answer;
+  int inserts, removes, renewals, commits;
+  int64_t first, count, seen;
+} visitor;
+
+static mps_status visit_commit(void *self, const char *function, const char *field) {
+  visitor *v = self;
+  (void)function;
+  (void)field;
+  v->commits++;
+  return v->answer;
+}
+static mps_status visit_insert(void *self, const char *function, int64_t first, int64_t count) {
+  visitor *v = self;
+  v->inserts++;
+  v->first = first;
+  v->count = count;
+  if (v->answer == MPS_OK) return MPS_OK;
+  return mpsi_fail(context, function, v->answer, "outside the domain");
+}
+static mps_status visit_remove(void *self, const char *function, int64_t count,
+                               const int64_t *ids) {
+  visitor *v = self;
+  (void)ids;
+  v->removes++;
+  v->count = count;
+  if (v->answer == MPS_OK) return MPS_OK;
+  return mpsi_fail(context, function, v->answer, "not now");
+}
+static void visit_renew(void *self) {
+  visitor *v = self;
+  v->renewals++;
+  v->seen = mps_particles_count(v->set);
+}
+
+static void holders_decide_who_comes_and_goes(void **state) {
+  (void)state;
+  mps_particles *set = make_set(context, 2.0);
+  visitor v = {.set = set};
+  mpsi_holder recorder = {.name = "a recorder", .kind = MPSI_USE_LOOK};
+  mpsi_holder solver = {.name = "a solver of the test",
+                        .self = &v,
+                        .kind = MPSI_USE_MOVE,
+                        .commit = visit_commit,
+                        .insert = visit_insert,
+                        .remove = visit_remove,
+                        .renew = visit_renew};
+  mpsi_holder deaf = {.name = "a deaf solver", .kind = MPSI_USE_MOVE};
+  const double lo[2] = {0.0, 0.0}, hi[2] = {2.0, 3.0}, x[4] = {5.0, 5.0, 6.0, 6.0};
+  const int64_t ids[2] = {4, 2};
+  int64_t added = -1;
+  mps_assert_ok(context, mpsi_particles_hold(set, "test", &recorder));
+  mps_assert_ok(context, mpsi_particles_hold(set, "test", &solver));
+  mps_assert_fails(context, mpsi_particles_hold(set, "test", &deaf), MPS_ERROR_STATE,
+                   "held by a solver of the test");
+  mps_assert_ok(context, mps_particles_append(set, 2, x));
+  assert_int_equal(v.first, 16);
+  assert_int_equal(v.count, 2);
+  assert_int_equal(v.seen, 18);
+  mps_assert_ok(context, mps_particles_remove(set, 2, ids));
+  assert_int_equal(v.seen, 16);
+  v.answer = MPS_ERROR_ARGUMENT;
+  mps_assert_fails(context, mps_particles_append(set, 2, x), MPS_ERROR_ARGUMENT, "the domain");
+  mps_assert_fails(context, mps_particles_fill_box(set, lo, hi, &added), MPS_ERROR_ARGUMENT,
+                   "the domain");
+  mps_assert_fails(context, mps_particles_remove(set, 1, ids + 1), MPS_ERROR_ARGUMENT, "no such");
+  const int64_t there[1] = {5};
+  mps_assert_fails(context, mps_particles_remove(set, 1, there), MPS_ERROR_ARGUMENT, "not now");
+  assert_int_equal(mps_particles_count(set), 16);
+  assert_int_equal(v.seen, 16);
+  assert_int_equal(mps_particles_index(set, 18), -1);
+  mps_assert_fails(context, mps_particles_set(set, "density", 0, 1.0), MPS_ERROR_ARGUMENT, "");
+  mps_assert_near(*mpsi_particles_column(set, "density", 0), 2000.0, 0.0);
+  v.answer = MPS_OK;
+  mps_assert_ok(context, mps_particles_fill_box(set, lo, hi, &added)); /* the sites are free yet */
+  assert_int_equal(added, 8);
+  assert_int_equal(mps_particles_index(set, 18), 16);
+  mpsi_particles_release(set, &solver);
+  mps_assert_ok(context, mpsi_particles_hold(set, "test", &deaf));
+  mps_assert_fails(context, mps_particles_append(set, 2, x), MPS_ERROR_STATE, "a deaf solver");
+  mps_assert_fails(context, mps_particles_remove(set, 1, there), MPS_ERROR_STATE, "a deaf solver");
+  mpsi_particles_release(set, &deaf);
+  mpsi_particles_release(set, &deaf); /* does nothing */
+  mps_particles *kept = set;
+  mps_particles_destroy(&set);
+  assert_int_equal(mps_particles_count(kept), 24);
+  mpsi_particles_release(kept, &recorder);
+}
+
+/* ---- going back, and memory -------------------------------------------------------------------
+ */
+
+static void a_set_goes_back_to_what_it_was(void **state) {
+  (void)state;
+  mps_particles *set = make_set(context, 2.0);
+  const uint64_t epoch = mps_particles_epoch(set);
+  const int32_t fields = mps_particles_field_count(set);
+  mpsi_backup backup;
+  mps_assert_ok(context, mpsi_particles_back_up(set, "test", &backup));
+  int64_t order[16];
+  for (int64_t k = 0; k < 16; k++) order[k] = 15 - k;
+  mps_assert_ok(context, mps_particles_set(set, "volume", 0, 3.0));
+  mps_assert_ok(context, mps_particles_set(set, "density", 0, 7.0));
+  mps_assert_ok(context, mpsi_particles_permute(set, "test", order));
+  mpsi_particles_go_back(set, &backup);
+  assert_int_equal(mps_particles_epoch(set), epoch);
+  assert_int_equal(mps_particles_field_count(set), fields);
+  const double *density = mpsi_particles_column(set, "density", 0);
+  for (int64_t k = 0; k < 16; k++) {
+    assert_int_equal(mps_particles_index(set, k), k);
+    assert_int_equal(mpsi_particles_integers(set, "id")[k], k);
+    mps_assert_near(density[k], 2000.0, 0.0);
+  }
+  mpsi_backup_drop(set, &backup);
+  mps_particles_destroy(&set);
+}
+
+static void a_refused_allocation_changes_nothing(void **state) {
+  (void)state;
+  const int64_t ids[2] = {1, 9};
+  const double x[2] = {4.0, 4.0};
+  mps_status status = MPS_ERROR_MEMORY;
+  for (int64_t refuse = 1; status != MPS_OK; refuse++) {
+    test_allocator memory = {0};
+    mps_context *own = test_allocator_context(&memory);
+    mps_particles *set = make_set(own, 2.0);
+    memory.refuse_at = memory.calls + refuse;
+    status = mps_particles_remove(set, 2, ids);
+    if (status == MPS_OK) status = mps_particles_append(set, 1, x);
+    if (status != MPS_OK) {
+      assert_int_equal(status, MPS_ERROR_MEMORY);
+      const int64_t n = mps_particles_count(set);
+      assert_true(n == 16 || n == 14);
+      assert_int_equal(mps_particles_index(set, 9), n == 16 ? 9 : -1);
+      assert_int_equal(mps_particles_index(set, 15), n - 1);
+    }
+    mps_particles_destroy(&set);
+    mps_context_destroy(&own);
+    assert_int_equal(memory.live, 0);
+    assert_true(refuse < 50);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(views_are_for_reading_and_edits_for_writing),
+      cmocka_unit_test(commit_checks_values_and_names_the_particle),
+      cmocka_unit_test(a_step_waits_for_the_commit),
+      cmocka_unit_test(a_solver_never_meets_a_position_outside_its_domain),
+      cmocka_unit_test(a_move_between_steps_is_a_translation),
+      cmocka_unit_test(the_limit_follows_the_callers_velocity),
+      cmocka_unit_test(one_solver_moves_a_set),
+      cmocka_unit_test(particles_are_removed_and_keep_their_ids),
+      cmocka_unit_test(holders_decide_who_comes_and_goes),
+      cmocka_unit_test(a_set_goes_back_to_what_it_was),
+      cmocka_unit_test(a_refused_allocation_changes_nothing),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
