@@ -169,6 +169,34 @@ static void a_step_can_be_repeated_with_other_loads(void **state) {
   mps_context_destroy(&context);
 }
 
+/* A solver built in the same way goes on from a file bit for bit. */
+static void a_saved_motion_goes_on(void **state) {
+  (void)state;
+  const char *path = "test_elastic_steps.h5";
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  test_body b = clamped(context, NULL), twin = clamped(context, NULL);
+  start(&b, 0.1);
+  mps_assert_ok(context, mps_elastic_step(b.elastic, 7));
+  const mps_status status = mps_elastic_save(b.elastic, path, NULL);
+  if (status != MPS_ERROR_UNSUPPORTED) { /* built without HDF5 */
+    mps_assert_ok(context, status);
+    mps_assert_fails(context, mps_elastic_restore(twin.elastic, path, NULL), MPS_ERROR_STATE,
+                     "mps_elastic_start");
+    start(&twin, 0.1);
+    mps_assert_ok(context, mps_elastic_restore(twin.elastic, path, NULL));
+    mps_assert_ok(context, mps_elastic_step(b.elastic, 5));
+    mps_assert_ok(context, mps_elastic_step(twin.elastic, 5));
+    int64_t size;
+    double *expected = picture(&b, &size);
+    assert_same(&twin, expected);
+    free(expected);
+    remove(path);
+  }
+  test_body_end(&b);
+  test_body_end(&twin);
+  mps_context_destroy(&context);
+}
+
 /* ---- runs -------------------------------------------------------------------------------------
  */
 
@@ -344,6 +372,7 @@ int main(void) {
       cmocka_unit_test(a_step_that_fails_has_not_happened),
       cmocka_unit_test(a_cancelled_step_leaves_whole_ones),
       cmocka_unit_test(a_step_can_be_repeated_with_other_loads),
+      cmocka_unit_test(a_saved_motion_goes_on),
       cmocka_unit_test(a_run_ends_where_it_was_told),
       cmocka_unit_test(numbers_are_the_lowest_free_ones),
       cmocka_unit_test(external_forces_act_as_loads),
