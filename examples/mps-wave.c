@@ -21,6 +21,7 @@ typedef struct simulation {
   receivers record;
   files files;
   field peaks;
+  results_so_far so_far;
   double duration; /* s */
 } simulation;
 
@@ -53,13 +54,13 @@ static bool build(app *a, const settings *s, simulation *sim) {
   for (int32_t side = MPS_DYNAMICS_SIDE_LEFT;
        side <= MPS_DYNAMICS_SIDE_RIGHT && s->sides == SIDES_FREEFIELD; side++)
     if (!app_check(a, mps_dynamics_add_free_field(particles, side, 2))) return false;
+  sim->so_far = (results_so_far){.s = s, .record = &sim->record, .peaks = &sim->peaks};
   const mps_dynamics_def dynamics = settings_dynamics(s, sim->ground.width);
   return app_check(a, mps_dynamics_create(a->context, particles, &dynamics, &sim->dynamics)) &&
          (s->torque == 0 ||
           app_check(a, mps_experimental_dynamics_printed_torque(sim->dynamics))) &&
-         app_check(a, build_boundaries(s, sim)) &&
-         files_open(a, s, particles, sim->dynamics, &sim->files) &&
-         field_create(a, s, particles, &sim->peaks);
+         app_check(a, build_boundaries(s, sim)) && field_create(a, s, particles, &sim->peaks) &&
+         files_open(a, s, &sim->so_far, sim->dynamics, &sim->files);
 }
 
 static void destroy(simulation *sim) {
@@ -109,6 +110,14 @@ static mps_status record(void *user, mps_dynamics *dynamics) {
   return status == MPS_OK ? files_record(&sim->files, dynamics) : status;
 }
 
+/* A run that goes on records at the steps of the first: to the next of them. */
+static bool align_rows(app *a, simulation *sim) {
+  const int64_t every = sim->so_far.every, past = mps_dynamics_steps(sim->dynamics) % every;
+  if (past == 0) return true;
+  if (sim->record.rows > 0) sim->record.rows--; /* the row of where it stopped */
+  return app_check(a, mps_dynamics_step(sim->dynamics, every - past));
+}
+
 /* Exit code; the results are filled as far as the run came. */
 static int march(app *a, const settings *s, simulation *sim, results *x) {
   mps_dynamics_linear_limit limit;
@@ -122,17 +131,18 @@ static int march(app *a, const settings *s, simulation *sim, results *x) {
     app_check(a, mps_context_error(a->context)->status);
     return APP_FAILED;
   }
-  if (!s->restart) { /* equal steps over the whole run, so that each row is dt after its step */
-    x->dt = sim->duration / ceil(sim->duration / x->dt - 1e-9);
-    if (!app_check(a, mps_dynamics_set_dt(sim->dynamics, x->dt))) return APP_FAILED;
-  }
-  const int64_t every = (int64_t)(sim->duration / x->dt / MAX_ROWS) + 1;
+  /* to the first whole step at or after the duration, so that all steps are dt */
+  const double end = x->dt * ceil(sim->duration / x->dt - 1e-9);
+  int64_t *every = &sim->so_far.every;
+  if (*every == 0) *every = (int64_t)(sim->duration / x->dt / MAX_ROWS) + 1;
+  if (s->restart && !align_rows(a, sim)) return APP_FAILED;
   printf("%s wave, %lld particles, dt %.4g s (linear limit %.4g s), %.0f steps\n",
          s->wave == WAVE_S ? "S" : "P", (long long)x->particles, x->dt, x->dt_limit,
          fmax(0.0, ceil((sim->duration - mps_dynamics_time(sim->dynamics)) / x->dt)));
   fflush(stdout);
   watch_energy(s, sim);
-  const mps_status status = mps_dynamics_run(sim->dynamics, sim->duration, every, record, sim);
+  const mps_status status = mps_dynamics_run(
+      sim->dynamics, fmax(end, mps_dynamics_time(sim->dynamics)), *every, record, sim);
   x->steps = mps_dynamics_steps(sim->dynamics);
   x->end = OUTCOME_COMPLETE;
   if (status == MPS_ERROR_DIVERGED) {

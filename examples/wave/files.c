@@ -7,12 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The options that make another run of it, in short. */
-static void make_key(const settings *s, int64_t particles, char key[64]) {
-  snprintf(key, 64, "mps-wave %c %lld R=%g base%d sides%d int%d rot%d", settings_wave(s),
-           (long long)particles, s->radius, s->base, s->sides, s->integrator, s->rotation);
-}
-
 static char *join(const char *directory, const char *name) {
   const size_t size = strlen(directory) + strlen(name) + 2;
   char *path = malloc(size);
@@ -30,12 +24,29 @@ bool files_peek(app *a, settings *s) {
 
 static bool put_back(app *a, const settings *s, mps_dynamics *dynamics, const files *f) {
   mps_checkpoint info = mps_checkpoint_defaults();
-  memcpy(info.user_key, f->key, sizeof info.user_key); /* the library refuses another one */
-  return app_check(a, mps_dynamics_restore(dynamics, s->restart, &info));
+  if (!app_check(a, mps_checkpoint_info(a->context, s->restart, &info))) return false;
+  const int64_t size = info.user_bytes;
+  info.user_data = malloc(size > 0 ? (size_t)size : 1);
+  if (!info.user_data) return app_no_memory(a);
+  const bool ok = app_check(a, mps_checkpoint_info(a->context, s->restart, &info)) &&
+                  restart_unpack(a, f->so_far, info.user_data, size) &&
+                  app_check(a, mps_dynamics_restore(dynamics, s->restart, NULL));
+  free(info.user_data);
+  return ok;
 }
 
-static bool open_recorder(app *a, const settings *s, files *f) {
-  char *path = join(s->out, "wave.vtkhdf");
+/* Of a run that goes on, a name that leaves the frames of the first half alone. */
+static void name_series(const settings *s, double now, char name[48]) {
+  if (s->restart)
+    snprintf(name, 48, "wave_from_%.6g_s.vtkhdf", now);
+  else
+    snprintf(name, 48, "wave.vtkhdf");
+}
+
+static bool open_recorder(app *a, const settings *s, double now, files *f) {
+  char name[48];
+  name_series(s, now, name);
+  char *path = join(s->out, name);
   if (!path) return app_no_memory(a);
   mps_recorder_def def = mps_recorder_defaults();
   static const char *const fields[] = {"displacement", "rotation", "velocity",
@@ -48,23 +59,28 @@ static bool open_recorder(app *a, const settings *s, files *f) {
   return ok;
 }
 
-bool files_open(app *a, const settings *s, mps_particles *particles, mps_dynamics *dynamics,
+bool files_open(app *a, const settings *s, results_so_far *so_far, mps_dynamics *dynamics,
                 files *out) {
-  *out = (files){.particles = particles, .frame_every = s->vtk, .checkpoint_every = s->checkpoint};
-  make_key(s, mps_particles_count(particles), out->key);
+  *out = (files){.particles = mps_dynamics_particles(dynamics),
+                 .so_far = so_far,
+                 .frame_every = s->vtk,
+                 .checkpoint_every = s->checkpoint};
   if (s->restart && !put_back(a, s, dynamics, out)) return false;
   const double now = mps_dynamics_time(dynamics);
   out->next_frame = now;
   out->next_checkpoint = now + s->checkpoint;
   if (s->checkpoint > 0.0 && !(out->checkpoint = join(s->out, "checkpoint.h5")))
     return app_no_memory(a);
-  return s->vtk > 0.0 ? open_recorder(a, s, out) : true;
+  return s->vtk > 0.0 ? open_recorder(a, s, now, out) : true;
 }
 
 static mps_status write_checkpoint(const files *f, mps_dynamics *dynamics) {
   mps_checkpoint info = mps_checkpoint_defaults();
-  memcpy(info.user_key, f->key, sizeof info.user_key);
-  return mps_dynamics_save(dynamics, f->checkpoint, &info);
+  info.user_data = restart_pack(f->so_far, &info.user_bytes);
+  if (!info.user_data) return MPS_ERROR_MEMORY;
+  const mps_status status = mps_dynamics_save(dynamics, f->checkpoint, &info);
+  free(info.user_data);
+  return status;
 }
 
 static mps_status record(files *f, mps_dynamics *dynamics) {

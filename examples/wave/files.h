@@ -3,7 +3,7 @@
 #ifndef EXAMPLES_WAVE_FILES_H
 #define EXAMPLES_WAVE_FILES_H
 
-#include "settings.h"
+#include "restart.h"
 
 #include <mps/io.h>
 
@@ -14,13 +14,13 @@ typedef struct files {
   double checkpoint_every, next_checkpoint; /* s; 0: none wanted */
   char *checkpoint;                         /* path */
   bool failed;                              /* files_record, which ended the run */
-  char key[64];                             /* what a restart must agree in */
+  results_so_far *so_far;                   /* borrowed: what a checkpoint keeps of the results */
 } files;
 
 /* Reads the time step of the checkpoint that the options name, before the solver is made. */
 bool files_peek(app *a, settings *s);
 /* Puts the checkpoint back, if any, and opens what the options ask for. */
-bool files_open(app *a, const settings *s, mps_particles *particles, mps_dynamics *dynamics,
+bool files_open(app *a, const settings *s, results_so_far *so_far, mps_dynamics *dynamics,
                 files *out);
 /* Writes what is due; call it with fields up to date. */
 mps_status files_record(files *f, mps_dynamics *dynamics);

@@ -120,10 +120,6 @@ void results_print(const app *a, const settings *s, const results *x) {
   app_tell_results(a, s->out);
   if (diverged) return;
   printf("surface peak %.3f m/s2", x->surface_peak);
-  if (isnan(x->travel_time) && s->restart) {
-    printf(" since the restart (the travel time needs a run from the beginning)\n");
-    return;
-  }
   if (isnan(x->travel_time)) {
     printf(", the wave has not reached the surface (that takes %.3f s)\n", x->travel_exact);
     return;

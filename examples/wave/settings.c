@@ -175,10 +175,9 @@ int settings_parse(settings *s, int argc, char **argv) {
       OPTION_NUMBER("checkpoint", "s", OPTION_FROM_TO(0.0, 1e6), &s->checkpoint,
                     "simulated time between checkpoints in checkpoint.h5, which the end of the run "
                     "writes too; 0: none"),
-      OPTION_TEXT(
-          "restart", "FILE", &s->restart,
-          "go on from a checkpoint of the same model, with its time step; the results begin "
-          "there, so give another --out"),
+      OPTION_TEXT("restart", "FILE", &s->restart,
+                  "go on from a checkpoint of the same model, with its time step; the results are "
+                  "those of the whole run"),
       OPTION_THREADS(&s->threads),
       OPTION_OUT(&s->out),
       {0}};

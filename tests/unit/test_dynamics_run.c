@@ -185,6 +185,91 @@ static void the_callback_stops_a_run_with_its_own_status(void **state) {
   mps_context_destroy(&own);
 }
 
+/* Tries all that a callback must not do. */
+static mps_status meddle(void *user, mps_dynamics *dynamics) {
+  int *tries = user;
+  const mps_context *own = mps_dynamics_context(dynamics);
+  const mps_dynamics_boundary_def def = mps_dynamics_boundary_defaults();
+  const mps_dynamics_load_def load = mps_dynamics_load_defaults();
+  mps_dynamics *same = dynamics;
+  mps_snapshot *snapshot = NULL;
+  int32_t number;
+  mps_dynamics_destroy(&same);
+  assert_ptr_equal(same, dynamics); /* does nothing */
+  assert_int_equal(mps_context_error(own)->status, MPS_ERROR_STATE);
+  assert_int_equal(mps_dynamics_step(dynamics, 1), MPS_ERROR_STATE);
+  assert_int_equal(mps_dynamics_run(dynamics, 9.0, 1, NULL, NULL), MPS_ERROR_STATE);
+  assert_int_equal(mps_dynamics_restart(dynamics, 0.0), MPS_ERROR_STATE);
+  assert_int_equal(mps_dynamics_set_dt(dynamics, 1e-3), MPS_ERROR_STATE);
+  assert_int_equal(mps_dynamics_refresh(dynamics), MPS_ERROR_STATE);
+  assert_int_equal(mps_dynamics_add_boundary(dynamics, &def, &number), MPS_ERROR_STATE);
+  assert_int_equal(mps_dynamics_set_boundary(dynamics, 0, &def), MPS_ERROR_STATE);
+  assert_int_equal(mps_dynamics_remove_boundary(dynamics, 0), MPS_ERROR_STATE);
+  assert_int_equal(mps_dynamics_add_load(dynamics, &load, &number), MPS_ERROR_STATE);
+  assert_int_equal(mps_dynamics_snapshot(dynamics, &snapshot), MPS_OK); /* reading is free */
+  assert_int_equal(mps_dynamics_rollback(dynamics, snapshot), MPS_ERROR_STATE);
+  mps_snapshot_destroy(&snapshot);
+  (*tries)++;
+  return MPS_OK;
+}
+
+static void a_callback_may_only_read(void **state) {
+  (void)state;
+  mps_particles *set;
+  const mps_dynamics_def def = def_of(MPS_DYNAMICS_INTEGRATOR_VERLET, DT);
+  mps_dynamics *d = shaken(context, &def, 0.0, &set);
+  int tries = 0;
+  mps_assert_ok(context, mps_dynamics_run(d, 10.5 * DT, 4, meddle, &tries));
+  assert_int_equal(tries, 4); /* 0, 4, 8, 11 */
+  assert_int_equal(mps_dynamics_steps(d), 11);
+  assert_true(mps_dynamics_time(d) == 10.5 * DT);
+  mps_assert_near(mps_dynamics_dt(d), DT, 0.0);
+  mps_assert_fails(context, mps_dynamics_run(d, 10.0 * DT, 1, NULL, NULL), MPS_ERROR_ARGUMENT,
+                   "not before the present time");
+  mps_assert_ok(context, mps_dynamics_step(d, 1)); /* the guard is open again */
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+}
+
+static void step_asks_the_cancel_hook(void **state) {
+  (void)state;
+  hooks h;
+  mps_context *own = hooked(&h);
+  mps_particles *set;
+  const mps_dynamics_def def = def_of(MPS_DYNAMICS_INTEGRATOR_VERLET, DT);
+  mps_dynamics *d = shaken(own, &def, 0.0, &set);
+  h.cancel_after = 1;
+  mps_assert_fails(own, mps_dynamics_step(d, 5), MPS_ERROR_CANCELLED, "cancel hook at step 0");
+  assert_int_equal(mps_dynamics_steps(d), 0);
+  mps_assert_ok(own, mps_dynamics_step(d, 5));
+  mps_dynamics_destroy(&d);
+  mps_particles_destroy(&set);
+  mps_context_destroy(&own);
+}
+
+/* The accelerations after a look ahead are those that the next step starts from; all else stays. */
+static void a_refresh_brings_accelerations_to_the_positions(void **state) {
+  (void)state;
+  for (int integrator = 0; integrator < 3; integrator++) {
+    mps_particles *set;
+    const mps_dynamics_def def = def_of(integrator, 1e-3 / 3.0);
+    mps_dynamics *d = shaken(context, &def, 0.1, &set);
+    double a[2][36], u[2][36];
+    mps_assert_ok(context, mps_dynamics_step(d, 20));
+    copy(context, set, "displacement", 0, u[0]);
+    mps_assert_ok(context, mps_dynamics_refresh(d));
+    copy(context, set, "acceleration", 0, a[0]);
+    copy(context, set, "displacement", 0, u[1]);
+    assert_memory_equal(u[0], u[1], sizeof u[0]);
+    assert_int_equal(mps_dynamics_steps(d), 20);
+    mps_assert_ok(context, mps_dynamics_step(d, 1));
+    copy(context, set, "acceleration", 0, a[1]);
+    assert_memory_equal(a[0], a[1], sizeof a[0]);
+    mps_dynamics_destroy(&d);
+    mps_particles_destroy(&set);
+  }
+}
+
 /* ---- restart, rollback, dt ---------------------------------------------------------------------
  */
 
@@ -496,6 +581,9 @@ int main(void) {
       cmocka_unit_test(the_callback_stops_a_run_with_its_own_status),
       cmocka_unit_test(a_restart_repeats_the_run_at_another_time),
       cmocka_unit_test(a_bad_state_cannot_be_restarted_from),
+      cmocka_unit_test(a_callback_may_only_read),
+      cmocka_unit_test(step_asks_the_cancel_hook),
+      cmocka_unit_test(a_refresh_brings_accelerations_to_the_positions),
       cmocka_unit_test(a_rollback_repeats_a_run_bit_for_bit),
       cmocka_unit_test(a_new_dt_keeps_velocity_time_and_forces),
       cmocka_unit_test(a_dt_given_later_survives_new_boundaries),
