@@ -25,8 +25,8 @@ do for [i = 1:4] {
   k = k + 1
 }
 eval head(15.75, 49, 'mpm')
-eval text(15.75, 46.3, 'soil on a grid that follows it,')
-eval text(15.75, 44, 'contact with bodies')
+eval text(15.75, 46.3, 'soil on a grid that follows')
+eval text(15.75, 44, 'the particles')
 eval head(45.25, 49, 'dynamics')
 eval text(45.25, 46.3, 'explicit: waves through')
 eval text(45.25, 44, 'ground, step by step')
@@ -41,9 +41,9 @@ eval head(15.75, 35.6, 'material')
 eval text(15.75, 33, 'laws on blocks of particles,')
 eval text(15.75, 30.7, 'stress of ground at rest')
 eval box(k, 31.5, 28, 27.5, 10, '#d9ead3'); k = k + 1
-eval head(45.25, 35.6, 'body')
-eval text(45.25, 33, 'shape, distance, motion and')
-eval text(45.25, 30.7, 'reactions of rigid bodies')
+eval head(45.25, 35.6, 'contact, body')
+eval text(45.25, 33, 'rigid bodies: shape, motion;')
+eval text(45.25, 30.7, 'forces at their surface')
 eval box(k, 61, 28, 27.5, 10, '#d9ead3'); k = k + 1
 eval head(74.75, 35.6, 'signal')
 eval text(74.75, 33, 'functions of time,')
