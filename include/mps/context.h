@@ -33,7 +33,9 @@ typedef void (*mps_free_fn)(void *user, void *memory);
 /** One unit of work. `worker` is in [0, workers) and unique among the units running at once. */
 typedef void (*mps_task_fn)(void *task, int64_t index, int32_t worker);
 /** A caller's own executor: runs task(task_data, i, worker) once for each i in [0, count), in any
- *  order and concurrently, and returns when all are done. */
+ *  order and concurrently, and returns when all are done. It is tried when the context is created.
+ *  A unit with a worker or index out of range is left out: the call, or the next step of a solver,
+ *  is then MPS_ERROR_STATE. */
 typedef void (*mps_parallel_for_fn)(void *user, int64_t count, mps_task_fn task, void *task_data);
 
 typedef enum mps_executor_kind {

@@ -12,21 +12,38 @@ MPS_EXTERN_C_BEGIN
 typedef struct mps_kernel mps_kernel;
 
 typedef enum mps_kernel_kind {
-  MPS_KERNEL_MPS = 0 /* w(r) = re/r - 1 for 0 < r < re, else 0: Yoshida (A8), Chikazawa (6) */
+  MPS_KERNEL_MPS = 0,     /* w(r) = re/r - 1 for 0 < r < re, else 0: Yoshida (A8), Chikazawa (6) */
+  MPS_KERNEL_SPLINE2 = 1, /* quadratic B-spline on nodes h = re/1.5 apart: 3/4 - (r/h)^2, then
+                             (3/2 - r/h)^2/2 from r = h/2 on */
+  MPS_KERNEL_SPLINE3 = 2  /* cubic B-spline on nodes h = re/2 apart: 2/3 - (r/h)^2 + (r/h)^3/2, then
+                             (2 - r/h)^3/6 from r = h on: the weights of a grid, Nakamura (36) */
 } mps_kernel_kind;
 
-/** Creates a kernel with radius of influence `radius` (re, m, finite, > 0). */
-MPS_API MPS_NODISCARD mps_status mps_kernel_create(mps_context *context, mps_kernel_kind kind,
+/** Creates a kernel with radius of influence `radius` (re, m, 1e-12 to 1e12).
+ *  `kind` is an mps_kernel_kind. */
+MPS_API MPS_NODISCARD mps_status mps_kernel_create(mps_context *context, int32_t kind,
                                                    double radius, mps_kernel **out);
 /** Releases and nulls; accepts NULL. Objects that use the kernel keep their own reference. */
 MPS_API void mps_kernel_destroy(mps_kernel **kernel);
 
+/* Questions: thread safe. */
+
+/** mps_kernel_kind, -1 for NULL. */
+MPS_API int32_t mps_kernel_get_kind(const mps_kernel *kernel);
 /** Radius of influence re (m). */
 MPS_API double mps_kernel_radius(const mps_kernel *kernel);
-/** w(r), r in m. Zero at r <= 0 and r >= re. */
+/** w(r), r in m, without a unit. Zero at r >= re and r < 0; re/r - 1 is 0 at r = 0 too: a particle
+ * is not its own neighbour. */
 MPS_API double mps_kernel_weight(const mps_kernel *kernel, double r);
-/** Interior particle number density n0 = sum_j w(r0_ij) of the infinite square (dim 2) or cubic
- *  (dim 3) lattice of spacing `spacing` (m, > 0): Yoshida (A9) with the sum over j. */
+/** dw/dr (1/m). Zero where the weight is. */
+MPS_API double mps_kernel_derivative(const mps_kernel *kernel, double r);
+/** Moment of the weight over the whole space of `dim` (1, 2, 3) dimensions: the integral of
+ *  w(|x|) |x|^order dV (m^(dim + order)), order 0 to 4. That of re/r - 1 over a line diverges with
+ *  order 0: MPS_ERROR_ARGUMENT. */
+MPS_API MPS_NODISCARD mps_status mps_kernel_moment(mps_context *context, const mps_kernel *kernel,
+                                                   int32_t dim, int32_t order, double *out);
+/** Interior particle number density n0 = sum over j != i of w(r0_ij) of the infinite square (dim 2)
+ * or cubic (dim 3) lattice of spacing `spacing` (m, > 0): Yoshida (A9) with the sum over j. */
 MPS_API MPS_NODISCARD mps_status mps_kernel_density(mps_context *context, const mps_kernel *kernel,
                                                     int32_t dim, double spacing, double *out);
 

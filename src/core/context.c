@@ -166,6 +166,14 @@ mps_status mps_context_create(const mps_context_def *user_def, mps_context **out
   context->level = mpsi_level(def.instruction_level);
   context->error.step = context->error.particle = -1;
   atomic_init(&context->references, 1);
+  atomic_init(&context->executor_fault, 0);
+  if (!mpsi_executor_probe(context)) {
+    mpsi_context_release(context);
+    return refuse(
+        error_text, error_size, MPS_ERROR_ARGUMENT,
+        "parallel_for did not run each index from 0 to count - 1 once, with workers from 0 "
+        "to threads - 1");
+  }
   *out = context;
   return MPS_OK;
 }
@@ -338,5 +346,5 @@ mps_status mps_context_parallel_for(mps_context *context, int64_t count, mps_tas
                      (long long)count);
   if (!task) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "task is NULL");
   mpsi_parallel_for(context, count, task, data);
-  return MPS_OK;
+  return mpsi_executor_check(context, __func__);
 }

@@ -11,14 +11,18 @@
 struct mps_context {
   mps_context_def def;
   mps_error error;
-  int64_t failures; /* how often `error` was written */
+  atomic_int executor_fault; /* the caller's executor gave a bad worker or index once */
+  int64_t failures;          /* how often `error` was written */
   int32_t threads;
   int32_t level;         /* 1, 3 or 4: of the instruction set of inner loops */
   atomic_int references; /* the caller's one, and one for each living object */
-  mpsi_pool pool;          /* of MPS_EXECUTOR_THREADS; its members lie behind the context */
+  mpsi_pool pool;        /* of MPS_EXECUTOR_THREADS; its members lie behind the context */
 };
 
 /* Number of workers that the definition asks for (0 resolved to the processors available). */
 int32_t mpsi_executor_threads(const mps_context_def *def);
+
+/* Tries the caller's executor: whether each unit runs once, with a good worker's number. */
+bool mpsi_executor_probe(mps_context *context);
 
 #endif

@@ -63,7 +63,7 @@ mps_status mpsi_particles_ready(const mps_particles *p, const char *function) {
     mpsi_fail_object(p->context, "field '%s'", p->fields[f]->name);
     return MPS_ERROR_STATE;
   }
-  return MPS_OK;
+  return mpsi_executor_check(p->context, function);
 }
 
 /* ---- checks of values ------------------------------------------------------------------------ */

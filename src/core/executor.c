@@ -37,12 +37,59 @@ static void serial_for(int64_t count, mps_task_fn task, void *data) {
   for (int64_t i = 0; i < count; i++) task(data, i, 0);
 }
 
+/* The caller's executor is not trusted: a worker's number chooses scratch memory. */
+typedef struct guarded {
+  mps_task_fn task;
+  void *data;
+  int64_t count;
+  int32_t workers;
+  atomic_int *fault;
+} guarded;
+
+static void guarded_task(void *data, int64_t index, int32_t worker) {
+  const guarded *g = data;
+  if (worker >= 0 && worker < g->workers && index >= 0 && index < g->count)
+    g->task(g->data, index, worker);
+  else
+    atomic_store(g->fault, 1);
+}
+
+static void caller_for(mps_context *context, int64_t count, mps_task_fn task, void *data) {
+  guarded g = {task, data, count, context->threads, &context->executor_fault};
+  context->def.parallel_for(context->def.parallel_user, count, guarded_task, &g);
+}
+
+static void count_run(void *data, int64_t index, int32_t worker) {
+  (void)worker;
+  atomic_fetch_add(&((atomic_int *)data)[index], 1);
+}
+
+bool mpsi_executor_probe(mps_context *context) {
+  if (context->def.executor != MPS_EXECUTOR_CALLER) return true;
+  enum { UNITS = 64 };
+  atomic_int runs[UNITS];
+  for (int k = 0; k < UNITS; k++) atomic_init(&runs[k], 0);
+  caller_for(context, UNITS, count_run, runs);
+  bool good = atomic_load(&context->executor_fault) == 0;
+  for (int k = 0; k < UNITS; k++) good = good && atomic_load(&runs[k]) == 1;
+  return good;
+}
+
+mps_status mpsi_executor_check(mps_context *context, const char *function) {
+  if (atomic_load(&context->executor_fault) == 0) return MPS_OK;
+  return mpsi_fail(
+      context, function, MPS_ERROR_STATE,
+      "the caller's parallel_for gave a worker outside 0 to %d or an index outside its "
+      "range: that unit of work was left out, and what came of it is not to be used",
+      context->threads - 1);
+}
+
 void mpsi_parallel_for(mps_context *context, int64_t count, mps_task_fn task, void *data) {
   const mps_context_def *def = &context->def;
   if (count <= 1 || context->threads <= 1)
     serial_for(count, task, data);
   else if (def->executor == MPS_EXECUTOR_CALLER)
-    def->parallel_for(def->parallel_user, count, task, data);
+    caller_for(context, count, task, data);
   else if (def->executor == MPS_EXECUTOR_THREADS)
     mpsi_pool_for(&context->pool, count, task, data);
 #ifdef MPSI_OPENMP

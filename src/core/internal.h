@@ -103,6 +103,8 @@ mps_status mpsi_out_write(mps_context *context, const char *function, void *out,
 /* x86-64 level of the inner loops: 1 (plain), 3 or 4. What solvers and laws choose their loops by.
  */
 int32_t mpsi_context_level(const mps_context *context);
+/* MPS_ERROR_STATE once the caller's executor has given a worker or an index out of range. */
+mps_status mpsi_executor_check(mps_context *context, const char *function);
 /* As mps_context_parallel_for, without argument checks. Never fails. */
 void mpsi_parallel_for(mps_context *context, int64_t count, mps_task_fn task, void *data);
 /* Whether the threads are the library's or OpenMP's: a unit may then wait for others that run at

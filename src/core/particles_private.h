@@ -6,7 +6,7 @@
 #include "particles_internal.h"
 
 #define MPSI_MAX_PARTICLES (INT64_C(1) << 40)
-#define MPSI_FIELD_NAME 96 /* bytes, with the terminating zero: <material>.<column> */
+#define MPSI_FIELD_NAME 96      /* bytes, with the terminating zero: <material>.<column> */
 #define MPSI_FIELD_NAME_PART 48 /* of each of both, and of a caller's field */
 
 /* A field: its columns lie one behind the other in one block, `stride` items apart. */

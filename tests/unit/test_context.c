@@ -190,6 +190,47 @@ static void a_callback_is_guarded_and_its_status_explained(void **state) {
   mps_context_destroy(&context);
 }
 
+/* Executors that number their workers from 1, or leave the last unit out. */
+static void count_from_one(void *user, int64_t count, mps_task_fn task, void *data) {
+  (void)user;
+  for (int64_t k = 0; k < count; k++) task(data, k, 1 + (int32_t)(k % 2));
+}
+static void forget_one(void *user, int64_t count, mps_task_fn task, void *data) {
+  (void)user;
+  for (int64_t k = 0; k + 1 < count; k++) task(data, k, 0);
+}
+static void go_wrong_later(void *user, int64_t count, mps_task_fn task, void *data) {
+  const int32_t worker = (*(int *)user)++ > 0 ? 99 : 0; /* good at its trial */
+  for (int64_t k = 0; k < count; k++) task(data, k, k == 1 ? worker : 0);
+}
+static void note_worker(void *data, int64_t index, int32_t worker) {
+  (void)index;
+  if (worker < 0 || worker > 1) *(int *)data = 1;
+}
+
+static void a_bad_executor_is_noticed(void **state) {
+  (void)state;
+  char text[256];
+  mps_context *context = NULL;
+  mps_context_def def = mps_context_defaults();
+  def.executor = MPS_EXECUTOR_CALLER;
+  def.threads = 2;
+  def.parallel_for = count_from_one;
+  assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_ERROR_ARGUMENT);
+  assert_non_null(strstr(text, "parallel_for did not run each index"));
+  def.parallel_for = forget_one;
+  assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_ERROR_ARGUMENT);
+  assert_null(context);
+  int calls = 0, seen = 0;
+  def.parallel_for = go_wrong_later;
+  def.parallel_user = &calls;
+  assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_OK);
+  mps_assert_fails(context, mps_context_parallel_for(context, 3, note_worker, &seen),
+                   MPS_ERROR_STATE, "gave a worker outside 0 to 1");
+  assert_int_equal(seen, 0); /* the unit did not run */
+  mps_context_destroy(&context);
+}
+
 static void the_library_tells_what_it_is(void **state) {
   (void)state;
   int major, minor, patch;
@@ -246,7 +287,7 @@ static void every_executor_runs_every_unit_once(void **state) {
                      MPS_ERROR_ARGUMENT, "count is -1");
     mps_context_destroy(&context);
   }
-  assert_int_equal(calls, 1);
+  assert_int_equal(calls, 2); /* once at its trial */
 }
 
 static void the_callers_allocator_is_used_and_everything_returned(void **state) {
@@ -298,6 +339,7 @@ int main(void) {
       cmocka_unit_test(an_error_names_its_object),
       cmocka_unit_test(hooks_can_be_replaced),
       cmocka_unit_test(a_callback_is_guarded_and_its_status_explained),
+      cmocka_unit_test(a_bad_executor_is_noticed),
       cmocka_unit_test(the_library_tells_what_it_is),
       cmocka_unit_test(every_executor_runs_every_unit_once),
       cmocka_unit_test(the_callers_allocator_is_used_and_everything_returned),

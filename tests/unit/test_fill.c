@@ -191,6 +191,8 @@ static void bad_polygons_are_refused_with_the_edges_named(void **state) {
                    "corners 3 and 0 of the polygon coincide");
   mps_assert_fails(context, mps_particles_fill_polygon(set, 2, closed, NULL), MPS_ERROR_ARGUMENT,
                    "vertices is 2");
+  mps_assert_fails(context, mps_particles_fill_polygon(set, INT64_MAX, closed, NULL),
+                   MPS_ERROR_ARGUMENT, "vertices is 9223372036854775807"); /* 2 n overflowed */
   mps_assert_fails(context, mps_particles_fill_polygon(set, 3, NULL, NULL), MPS_ERROR_ARGUMENT,
                    "xy is NULL");
   mps_assert_fails(context, mps_particles_fill_polygon(set, 3, bad, NULL), MPS_ERROR_ARGUMENT,
