@@ -141,10 +141,11 @@ static void add_body(contender *c, int64_t side) {
   mps_body_def def = mps_body_defaults();
   const double s = (double)side;
   def.position[0] = def.position[1] = 0.5 * s;
-  def.friction = 0.3;
+  mps_contact_def contact = mps_contact_defaults();
+  contact.friction = 0.3;
   check(c->context, mps_body_create_box(c->context, &def, 0.5 * s + 2e-4, 0.5 * s + 2e-4, &c->body),
         "body");
-  check(c->context, mps_mpm_add_body(c->mpm, c->body), "body");
+  check(c->context, mps_mpm_add_contact(c->mpm, c->body, &contact, NULL), "body");
 }
 
 static contender contender_create(int dim, int spline, kind k, int64_t side) {
@@ -158,7 +159,7 @@ static contender contender_create(int dim, int spline, kind k, int64_t side) {
   fill(&c, dim, k, side);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 1.0;
-  def.geometry = dim == 3 ? MPS_SPACE : MPS_PLANE_STRAIN;
+  def.geometry = dim == 3 ? MPS_MPM_SPACE : MPS_MPM_PLANE_STRAIN;
   def.spline = spline;
   if (k == MIXED) /* 2D: four walls and the body; 3D: a floor. Either way about 5 % at 1e5 */
     for (size_t d = 0; d < sizeof def.lower / sizeof *def.lower && (int)d < dim; d++) {

@@ -104,19 +104,20 @@ static mps_status build_case(simulation *sim, const column_case *c) {
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
   def.lower[0] = def.lower[1] = 0.0;
-  def.wall_lower[1] = isnan(s->bed_friction) ? MPS_WALL_FIXED : MPS_WALL_ROLLER;
   if (!isnan(s->bed_friction)) def.lower[1] = -4.0 * s->h; /* room below the rigid bed */
   def.gravity[1] = -G;
   mps_status status = fill(sim->context, s, c, m);
   if (status == MPS_OK) status = mps_material_drucker_prager(sim->context, &law, &m->material);
   if (status == MPS_OK)
     status = mps_mpm_create(sim->context, m->particles, m->material, &def, &m->mpm);
+  if (status == MPS_OK && isnan(s->bed_friction))
+    status = mps_mpm_set_side(m->mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
   if (status != MPS_OK || isnan(s->bed_friction)) return status;
   const double up[2] = {0.0, 1.0};
-  mps_body_def bed = mps_body_defaults();
+  mps_contact_def bed = mps_contact_defaults();
   bed.friction = s->bed_friction;
-  status = mps_body_create_half_plane(sim->context, &bed, up, &m->body[0]);
-  return status == MPS_OK ? mps_mpm_add_body(m->mpm, m->body[0]) : status;
+  status = mps_body_create_half_plane(sim->context, NULL, up, &m->body[0]);
+  return status == MPS_OK ? mps_mpm_add_contact(m->mpm, m->body[0], &bed, NULL) : status;
 }
 
 static mps_status build(mps_context *context, void *user) {

@@ -137,12 +137,13 @@ static mps_status build(mps_context *context, void *user) {
   def.volumetric = s->volumetric;
   def.lower[0] = def.lower[1] = 0.0;
   def.upper[0] = s->rest ? s->base : s->tank * s->base;
-  def.wall_lower[1] = s->bed == NO_SLIP ? MPS_WALL_FIXED : MPS_WALL_ROLLER;
   def.gravity[1] = -G;
   mps_status status = fill(context, s, sim);
   if (status == MPS_OK) status = mps_material_newtonian(context, &law, &sim->m.material);
   if (status == MPS_OK)
     status = mps_mpm_create(context, sim->m.particles, sim->m.material, &def, &sim->m.mpm);
+  if (status == MPS_OK && s->bed == NO_SLIP)
+    status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
   return status;
 }
 

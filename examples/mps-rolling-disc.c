@@ -92,8 +92,9 @@ static mps_status make_particles(mps_context *context, const settings *s, simula
 static mps_status make_rigid(mps_context *context, const settings *s, simulation *sim) {
   mps_body_def def = mps_body_defaults();
   mps_status status;
-  def.friction = s->mu;
-  def.penalty = s->k * 1e3;
+  mps_contact_def contact = mps_contact_defaults();
+  contact.friction = s->mu;
+  if (s->k > 0.0) contact.penalty = s->k * 1e3;
   if (s->body == BODY_SLOPE) {
     const double normal[] = {-sim->along[1], sim->along[0]};
     status = mps_body_create_half_plane(context, &def, normal, &sim->m.body[0]);
@@ -106,7 +107,8 @@ static mps_status make_rigid(mps_context *context, const settings *s, simulation
     def.gravity[1] = -G * cos(s->angle * PI / 180.0);
     status = mps_body_create_disc(context, &def, RADIUS, &sim->m.body[0]);
   }
-  return status == MPS_OK ? mps_mpm_add_body(sim->m.mpm, sim->m.body[0]) : status;
+  if (status != MPS_OK) return status;
+  return mps_mpm_add_contact(sim->m.mpm, sim->m.body[0], &contact, NULL);
 }
 
 static mps_status build(mps_context *context, void *user) {
@@ -125,13 +127,14 @@ static mps_status build(mps_context *context, void *user) {
     def.origin[1] = 0.0;
     def.lower[0] = 0.0, def.lower[1] = 0.0;
     def.upper[0] = s->h * ceil(LENGTH / s->h - 1e-9);
-    def.wall_lower[1] = MPS_WALL_FIXED;
   }
   mps_status status = make_particles(context, s, sim);
   if (status == MPS_OK)
     status = mps_material_linear_elastic(context, s->young * 1e3, s->poisson, &sim->m.material);
   if (status == MPS_OK)
     status = mps_mpm_create(context, sim->m.particles, sim->m.material, &def, &sim->m.mpm);
+  if (status == MPS_OK && s->body != BODY_SLOPE)
+    status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
   return status == MPS_OK ? make_rigid(context, s, sim) : status;
 }
 

@@ -55,12 +55,13 @@ static mps_status make_plates(mps_context *context, const settings *s, simulatio
   for (int p = 0; p < PLATES && status == MPS_OK; p++) {
     mps_body_def def = mps_body_defaults();
     def.position[0] = at[p][0], def.position[1] = at[p][1];
-    def.penalty = s->k * 1e3;
-    def.friction = p == BOTTOM ? s->mu : 0.0;
+    mps_contact_def contact = mps_contact_defaults();
+    if (s->k > 0.0) contact.penalty = s->k * 1e3;
+    contact.friction = p == BOTTOM ? s->mu : 0.0;
     status = mps_body_create_half_plane(context, &def, normal[p], &sim->m.body[p]);
     if (status == MPS_OK && p == TOP) status = mps_body_drive(sim->m.body[p], 1, down, -1.0);
     if (status == MPS_OK && p == BOTTOM) status = mps_body_drive(sim->m.body[p], 0, aside, 1.0);
-    if (status == MPS_OK) status = mps_mpm_add_body(sim->m.mpm, sim->m.body[p]);
+    if (status == MPS_OK) status = mps_mpm_add_contact(sim->m.mpm, sim->m.body[p], &contact, NULL);
   }
   mps_signal_destroy(&down);
   mps_signal_destroy(&aside);

@@ -22,20 +22,23 @@ static inline void held_load(mpm_scene *s, mps_signal *signal, int32_t *loads) {
   static double area[MOST];
   const double lo[] = {0.2, 0.1, 0.0}, hi[] = {0.3, 0.15, 0.1};
   const double pull[] = {300.0, -200.0, 50.0}, push[] = {-40.0, 30.0, -20.0};
-  const double own = mps_particles_dim(s->particles) == 3 ? 1e-4 : 1e-2;
+  const int dim = mps_particles_dim(s->particles);
+  const double own = dim == 3 ? 1e-4 : 1e-2;
   int64_t count = held_select(s, lo, hi, ids, MOST);
-  mps_assert_ok(s->context, mps_mpm_add_load(s->mpm, count, ids, NULL, pull, signal, &loads[0]));
+  mps_mpm_load_def load = mpm_scene_load_def(count, ids, NULL, pull, dim, signal);
+  mps_assert_ok(s->context, mps_mpm_add_load(s->mpm, &load, &loads[0]));
   const double all[] = {INFINITY, 0.05, INFINITY}, none[] = {-INFINITY, 0.04, -INFINITY};
   count = held_select(s, none, all, ids, MOST);
   for (int64_t k = 0; k < count; k++) area[k] = own * (1.0 + 0.01 * (double)(ids[k] % 7));
-  mps_assert_ok(s->context, mps_mpm_add_load(s->mpm, count, ids, area, push, NULL, &loads[1]));
+  load = mpm_scene_load_def(count, ids, area, push, dim, NULL);
+  mps_assert_ok(s->context, mps_mpm_add_load(s->mpm, &load, &loads[1]));
 }
 
 /* A domain full of particles that move: x frictional and absorbing; y fixed and sliding, and a
  * roller; z frictional and absorbing. `box` receives the moving nodes' number. */
 static inline mpm_scene held_begin(mps_context *context, int32_t geometry, int32_t *box,
                                    int32_t *loads) {
-  const int dim = geometry == MPS_SPACE ? 3 : 2;
+  const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
   const double lo[] = {0.1, 0.0, 0.0}, hi[] = {dim == 3 ? 0.42 : 0.9, dim == 3 ? 0.16 : 0.4, 0.08};
   const double v0[] = {0.02, -0.03, 0.01};
   const double plane[] = {0.05, -0.3, 0.2, -0.05};
@@ -52,18 +55,20 @@ static inline mpm_scene held_begin(mps_context *context, int32_t geometry, int32
   def.cell = 0.02;
   for (int c = 0; c < dim; c++) {
     def.lower[c] = lo[c], def.upper[c] = hi[c];
-    def.wall_lower[c] = c == 1 ? MPS_WALL_FIXED : MPS_WALL_FRICTIONAL;
-    def.wall_upper[c] = c == 1 ? MPS_WALL_ROLLER : MPS_WALL_ABSORBING;
-    def.wall_friction_lower[c] = c == 1 ? 0.0 : 0.3;
   }
   def.gravity[0] = 1.0, def.gravity[1] = -9.81;
   mpm_scene_solve(&s, &def);
   mps_signal *signal = NULL;
   mps_assert_ok(context, mps_signal_sine(context, 20.0, 0.0005, 0.3, &signal));
-  mps_assert_ok(context, mps_mpm_drive_wall(s.mpm, 1, 0, 0, signal, 1.0));
-  mps_assert_ok(context, mps_mpm_drive_wall(s.mpm, 0, 1, 0, signal, -0.1));
+  for (int c = 0; c < dim; c += 2) {
+    mpm_scene_side(&s, 2 * c, MPS_MPM_BOUNDARY_FRICTIONAL, 0.3);
+    mpm_scene_side(&s, 2 * c + 1, MPS_MPM_BOUNDARY_ABSORBING, 0.0);
+  }
+  mpm_scene_drive(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0, 0, signal, 1.0);
+  mpm_scene_drive(&s, MPS_MPM_SIDE_X_UPPER, MPS_MPM_BOUNDARY_ABSORBING, 0.0, 0, signal, -0.1);
   const double low[] = {0.3, 0.1, 0.02}, high[] = {0.36, 0.16, 0.05};
-  mps_assert_ok(context, mps_mpm_drive_nodes(s.mpm, low, high, 1, signal, 2.0, box));
+  const mps_mpm_boundary_def nodes = mpm_scene_box_def(s.mpm, low, high, 1, signal, 2.0);
+  mps_assert_ok(context, mps_mpm_add_boundary(s.mpm, &nodes, box));
   held_load(&s, signal, loads);
   mps_signal_destroy(&signal);
   return s;

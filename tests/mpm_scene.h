@@ -48,6 +48,62 @@ static inline void mpm_scene_solve(mpm_scene *s, const mps_mpm_def *def) {
   mps_assert_ok(s->context, mps_mpm_create(s->context, s->particles, s->material, def, &s->mpm));
 }
 
+/* Contact with a body, with friction, default stiffness. */
+static inline mps_status mpm_scene_try_contact(mps_mpm *mpm, mps_body *body, double friction) {
+  mps_contact_def def = mps_contact_defaults();
+  def.friction = friction;
+  return mps_mpm_add_contact(mpm, body, &def, NULL);
+}
+
+static inline void mpm_scene_contact(mpm_scene *s, mps_body *body, double friction) {
+  mps_assert_ok(s->context, mpm_scene_try_contact(s->mpm, body, friction));
+}
+
+/* A side of the domain becomes of `kind`, at rest. */
+static inline void mpm_scene_side(mpm_scene *s, int32_t side, int32_t kind, double friction) {
+  mps_assert_ok(s->context, mps_mpm_set_side(s->mpm, side, kind, friction));
+}
+
+/* The same, a signal driving one component. */
+static inline void mpm_scene_drive(mpm_scene *s, int32_t side, int32_t kind, double friction,
+                                   int32_t component, mps_signal *signal, double factor) {
+  mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
+  def.kind = kind;
+  def.friction = friction;
+  def.signal[component] = signal;
+  def.factor[component] = factor;
+  mps_assert_ok(s->context, mps_mpm_set_boundary(s->mpm, side, &def));
+}
+
+/* One component of the nodes in a box. */
+static inline mps_mpm_boundary_def mpm_scene_box_def(mps_mpm *mpm, const double *lower,
+                                                     const double *upper, int32_t component,
+                                                     mps_signal *signal, double factor) {
+  mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
+  const int dim = mps_particles_dim(mps_mpm_particles(mpm));
+  for (int c = 0; c < dim; c++) def.lower[c] = lower[c], def.upper[c] = upper[c];
+  def.dofs = 1u << component;
+  def.signal[component] = signal;
+  def.factor[component] = factor;
+  return def;
+}
+
+static inline mps_mpm_load_def mpm_scene_load_def(int64_t count, const int64_t *ids,
+                                                  const double *area, const double *traction,
+                                                  int dim, mps_signal *signal) {
+  mps_mpm_load_def def = mps_mpm_load_defaults();
+  def.id_count = count, def.ids = ids, def.area = area;
+  for (int c = 0; c < dim; c++) def.traction[c] = traction[c], def.signal[c] = signal;
+  return def;
+}
+
+/* Force of a boundary in the last step. */
+static inline void mpm_scene_force(mpm_scene *s, int32_t boundary, double *force) {
+  mps_reaction r;
+  mps_assert_ok(s->context, mps_mpm_get_reaction(s->mpm, boundary, &r));
+  for (int c = 0; c < 3; c++) force[c] = r.force[c];
+}
+
 static inline void mpm_scene_end(mpm_scene *s) {
   mps_mpm_destroy(&s->mpm);
   mps_particles_destroy(&s->particles);

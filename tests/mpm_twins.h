@@ -36,7 +36,6 @@ static inline mps_status make_material(mps_context *context, const change *c, mp
 static inline mps_status make_free_body(mps_context *context, int32_t dim, mps_body **out) {
   mps_body_def def = mps_body_defaults();
   def.motion = MPS_BODY_MOTION_FREE;
-  def.friction = 0.3;
   def.mass = dim == 3 ? 1.0 : 20.0;
   for (int c = 0; c < 3; c++) def.inertia[c] = dim == 3 ? 1e-3 * (1 + c) : c == 2 ? 0.1 : 0.0;
   def.gravity[1] = -9.81;
@@ -54,7 +53,6 @@ static inline mps_status make_driven_body(mps_context *context, int32_t dim, con
   const double up[] = {0.1, 1.0, 0.0}, t[] = {0.0, 1.0}, v[] = {0.3, 0.3};
   mps_signal *rise = NULL;
   mps_body_def def = mps_body_defaults();
-  def.friction = 0.4;
   def.position[1] = dim == 3 ? 0.075 : 0.05;
   mps_status status = mps_signal_table(context, MPS_SIGNAL_VELOCITY, 2, t, v, &rise);
   if (status != MPS_OK) return status;
@@ -85,7 +83,7 @@ static inline mps_status make_set(mps_context *context, int32_t dim, const chang
 
 static inline mps_status try_build(mps_context *context, int32_t geometry, const change *c,
                                    scene *out) {
-  const int32_t dim = geometry == MPS_SPACE ? 3 : 2;
+  const int32_t dim = geometry == MPS_MPM_SPACE ? 3 : 2;
   *out = (scene){.s = {.context = context}};
   mpm_scene *s = &out->s;
   mps_mpm_def def = mps_mpm_defaults();
@@ -99,8 +97,12 @@ static inline mps_status try_build(mps_context *context, int32_t geometry, const
   if (status == MPS_OK) status = mps_mpm_create(context, s->particles, s->material, &def, &s->mpm);
   if (status == MPS_OK) status = make_free_body(context, dim, &out->body[FREE]);
   if (status == MPS_OK) status = make_driven_body(context, dim, c, &out->body[DRIVEN]);
-  for (int b = 0; b < c->bodies && status == MPS_OK; b++)
-    status = mps_mpm_add_body(s->mpm, out->body[b]);
+  mps_contact_def contact = mps_contact_defaults();
+  contact.thin = 1; /* where the cell is another */
+  for (int b = 0; b < c->bodies && status == MPS_OK; b++) {
+    contact.friction = b == FREE ? 0.3 : 0.4;
+    status = mps_mpm_add_contact(s->mpm, out->body[b], &contact, NULL);
+  }
   return status;
 }
 
@@ -184,11 +186,11 @@ static inline scene build_held(mps_context *context, int32_t geometry) {
 }
 
 static inline void same_forces(scene *a, scene *b) {
-  double force[2][3] = {{0.0}};
+  mps_reaction force[2];
   for (int32_t k = 0; k < 4; k++) {
-    mps_assert_ok(a->s.context, mps_mpm_get_wall_force(a->s.mpm, k / 2, k % 2, force[0]));
-    mps_assert_ok(b->s.context, mps_mpm_get_wall_force(b->s.mpm, k / 2, k % 2, force[1]));
-    assert_memory_equal(force[0], force[1], sizeof force[0]);
+    mps_assert_ok(a->s.context, mps_mpm_get_reaction(a->s.mpm, k, &force[0]));
+    mps_assert_ok(b->s.context, mps_mpm_get_reaction(b->s.mpm, k, &force[1]));
+    assert_memory_equal(&force[0], &force[1], sizeof force[0]);
   }
 }
 

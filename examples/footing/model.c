@@ -49,13 +49,15 @@ static mps_status make_footing(mps_context *context, const settings *s, simulati
   mps_body_def def = mps_body_defaults();
   const double height = s->half_width;
   def.position[1] = s->depth + 0.5 * height;
-  def.friction = s->mu;
-  def.penalty = s->k * 1e3;
+  mps_contact_def contact = mps_contact_defaults();
+  contact.friction = s->mu;
+  if (s->k > 0.0) contact.penalty = s->k * 1e3;
   if (status == MPS_OK)
     status = mps_body_create_box(context, &def, 2.0 * s->half_width, height, &sim->m.body[0]);
   if (status == MPS_OK) status = mps_body_drive(sim->m.body[0], 1, down, -1.0);
   mps_signal_destroy(&down);
-  return status == MPS_OK ? mps_mpm_add_body(sim->m.mpm, sim->m.body[0]) : status;
+  if (status != MPS_OK) return status;
+  return mps_mpm_add_contact(sim->m.mpm, sim->m.body[0], &contact, NULL);
 }
 
 /* Ground at rest under its own weight, (57). */
@@ -101,10 +103,11 @@ mps_status footing_build(mps_context *context, void *user) {
   def.cell = s->h;
   def.lower[0] = def.lower[1] = 0.0;
   def.upper[0] = s->width;
-  def.wall_lower[1] = MPS_WALL_FIXED;
   def.gravity[1] = -s->gravity;
   if (status == MPS_OK)
     status = mps_mpm_create(context, sim->m.particles, sim->m.material, &def, &sim->m.mpm);
+  if (status == MPS_OK)
+    status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
   return status == MPS_OK ? make_footing(context, s, sim) : status;
 }
 

@@ -58,8 +58,8 @@ const char *pen_check(penetrometer *p) {
   p->stride = fmin(0.2 * s->h, s->depth / 200.0);
   p->t_end = (pen_gap(p) + s->depth) / s->speed;
   p->runs = s->axisymmetric && !s->no_space ? 2 : 1;
-  p->run[0].geometry = s->no_space ? MPS_AXISYMMETRIC : MPS_SPACE;
-  p->run[1].geometry = MPS_AXISYMMETRIC;
+  p->run[0].geometry = s->no_space ? MPS_MPM_AXISYMMETRIC : MPS_MPM_SPACE;
+  p->run[1].geometry = MPS_MPM_AXISYMMETRIC;
   return NULL;
 }
 
@@ -71,17 +71,17 @@ static void find_size(const penetrometer *p, pen_run *r) {
   const double in_diameters[3] = {0.5 * s->width, 0.5 * s->breadth, s->height};
   for (int c = 0; c < 3; c++) r->size[c] = s->h * ceil(in_diameters[c] * s->diameter / s->h - 1e-6);
   r->factor = s->model == PEN_QUARTER ? 4.0 : 1.0;
-  if (r->geometry == MPS_SPACE) return;
+  if (r->geometry == MPS_MPM_SPACE) return;
   r->size[0] = s->h * nearbyint(sqrt(4.0 * r->size[0] * r->size[1] / PEN_PI) / s->h);
   r->size[1] = r->size[2];
-  r->factor = 2.0 * PEN_PI;
+  r->factor = 1.0;
 }
 
-static int dim_of(const pen_run *r) { return r->geometry == MPS_SPACE ? 3 : 2; }
+static int dim_of(const pen_run *r) { return r->geometry == MPS_MPM_SPACE ? 3 : 2; }
 
 /* Lower end of the box across axis c: on the axis where the model is cut there. */
 static double lower_of(const penetrometer *p, const pen_run *r, int c) {
-  const bool whole = r->geometry == MPS_SPACE && p->s.model == PEN_WHOLE;
+  const bool whole = r->geometry == MPS_MPM_SPACE && p->s.model == PEN_WHOLE;
   return whole && c < 2 ? -r->size[c] : 0.0;
 }
 
@@ -152,9 +152,11 @@ static mps_status make_solver(penetrometer *p, pen_run *r) {
     def.lower[c] = lower_of(p, r, c);
     if (c < up) def.upper[c] = r->size[c];
   }
-  def.wall_lower[up] = MPS_WALL_FIXED;
   def.gravity[up] = -s->gravity;
-  return mps_mpm_create(p->context, r->m.particles, r->m.material, &def, &r->m.mpm);
+  const mps_status status =
+      mps_mpm_create(p->context, r->m.particles, r->m.material, &def, &r->m.mpm);
+  if (status != MPS_OK) return status;
+  return mps_mpm_set_side(r->m.mpm, 2 * up, MPS_MPM_BOUNDARY_FIXED, 0.0);
 }
 
 /* ---- tip ------------------------------------------------------------------------------------- */
@@ -166,7 +168,7 @@ static mps_status make_cone(penetrometer *p, const pen_run *r, const mps_body_de
   const double R = pen_radius(p), z = pen_shoulder(p), L = 2.0 * (p->s.depth + p->s.diameter) + z;
   const double half[8] = {0.0, 0.0, R, z, R, L, 0.0, L};
   const double whole[10] = {0.0, 0.0, R, z, R, L, -R, L, -R, z};
-  mps_status status = r->geometry == MPS_SPACE
+  mps_status status = r->geometry == MPS_MPM_SPACE
                           ? mps_body_create_revolution(p->context, def, 4, half, out)
                           : mps_body_create_polygon(p->context, def, 5, whole, out);
   if (status == MPS_OK) status = mps_body_name_part(*out, "tip", 0, 1, NULL);
@@ -176,7 +178,7 @@ static mps_status make_cone(penetrometer *p, const pen_run *r, const mps_body_de
 static mps_status make_sphere(penetrometer *p, const pen_run *r, mps_body_def *def,
                               mps_body **out) {
   def->position[dim_of(r) - 1] += pen_radius(p);
-  const mps_status status = r->geometry == MPS_SPACE
+  const mps_status status = r->geometry == MPS_MPM_SPACE
                                 ? mps_body_create_sphere(p->context, def, pen_radius(p), out)
                                 : mps_body_create_disc(p->context, def, pen_radius(p), out);
   return status == MPS_OK ? mps_body_name_part(*out, "tip", 0, 1, NULL) : status;
@@ -227,7 +229,7 @@ static double penalty_of(const penetrometer *p, const pen_run *r) {
   const double spacing = mps_particles_spacing(r->m.particles), dt = mps_mpm_dt(r->m.mpm);
   const double limit = p->s.density * spacing * spacing / (dt * dt);
   const double k = STIFFNESS * fmin(mps_material_wave_modulus(r->m.material), limit);
-  return r->geometry == MPS_SPACE ? k * spacing : k;
+  return r->geometry == MPS_MPM_SPACE ? k * spacing : k;
 }
 
 static mps_status make_tip(penetrometer *p, pen_run *r) {
@@ -237,8 +239,9 @@ static mps_status make_tip(penetrometer *p, pen_run *r) {
   mps_body **body = &r->m.body[0];
   mps_body_def def = mps_body_defaults();
   def.position[up] = r->size[up] + pen_gap(p);
-  def.friction = p->s.friction;
-  def.penalty = r->penalty = penalty_of(p, r);
+  mps_contact_def contact = mps_contact_defaults();
+  contact.friction = p->s.friction;
+  contact.penalty = r->penalty = penalty_of(p, r);
   mps_status status = mps_signal_table(p->context, MPS_SIGNAL_VELOCITY, 2, t, v, &down);
   if (status == MPS_OK && p->s.tip == PEN_CONE) status = make_cone(p, r, &def, body);
   if (status == MPS_OK && p->s.tip == PEN_SPHERE) status = make_sphere(p, r, &def, body);
@@ -247,7 +250,7 @@ static mps_status make_tip(penetrometer *p, pen_run *r) {
   if (status == MPS_OK && p->s.tip == PEN_STL) status = check_mesh(p, r);
   if (status == MPS_OK) status = mps_body_drive(*body, up, down, -1.0);
   mps_signal_destroy(&down);
-  return status == MPS_OK ? mps_mpm_add_body(r->m.mpm, *body) : status;
+  return status == MPS_OK ? mps_mpm_add_contact(r->m.mpm, *body, &contact, NULL) : status;
 }
 
 /* ---- all ------------------------------------------------------------------------------------- */

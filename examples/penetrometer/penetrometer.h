@@ -1,9 +1,9 @@
 /* penetrometer.h - a rigid tip pushed into a box of soil: settings, the runs, and their parts.
  *
  * In space z is upwards and the axis is x = y = 0; in axisymmetry x is the radius and y upwards.
- * The floor is at height 0. Forces are those of the whole tip: 4 times what a quarter feels, 2 pi
- * times what a radian does. Depths count from the ground as it was, downwards, to the lowest point.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * The floor is at height 0. Forces are those of the whole tip: 4 times what a quarter feels. Depths
+ * count from the ground as it was, downwards, to the lowest point. SPDX-License-Identifier:
+ * BSD-3-Clause */
 #ifndef EXAMPLES_PENETROMETER_H
 #define EXAMPLES_PENETROMETER_H
 
@@ -46,10 +46,10 @@ typedef struct pen_point {
 } pen_point;
 
 typedef struct pen_run {
-  mps_geometry geometry;
+  mps_mpm_geometry geometry;
   mpm_model m;
   double size[3]; /* m: half width, half breadth, height; in axisymmetry radius and height */
-  double factor;  /* of the forces: 1, 4 or 2 pi */
+  double factor;  /* of the forces: 1 or 4 */
   double penalty, dt;
   pen_row *row;
   int64_t rows, capacity;

@@ -10,7 +10,7 @@
 #define INSIDE 1e-6     /* cells: deeper below the surface counts as inside the tip */
 #define VOLUME_EVERY 10 /* steps */
 
-static int up_of(const pen_run *r) { return r->geometry == MPS_SPACE ? 2 : 1; }
+static int up_of(const pen_run *r) { return r->geometry == MPS_MPM_SPACE ? 2 : 1; }
 
 /* The reference point moves as the lowest point does. */
 double pen_depth(const penetrometer *p, const pen_run *r) {

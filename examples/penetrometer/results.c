@@ -79,13 +79,13 @@ static void write_settings(output *f, const penetrometer *p) {
   const pen_settings *s = &p->s;
   json_text(f, "tip", tips[s->tip]);
   json_text(f, "law", laws[s->law]);
-  json_text(f, "geometry", p->run[0].geometry == MPS_SPACE ? "space" : "axisymmetric");
+  json_text(f, "geometry", p->run[0].geometry == MPS_MPM_SPACE ? "space" : "axisymmetric");
   json_number(f, "h", s->h);
   json_number(f, "diameter", s->diameter);
   json_number(f, "speed", s->speed);
   json_number(f, "friction", s->friction);
   json_number(f, "half_width", p->run[0].size[0]);
-  json_number(f, "soil_height", p->run[0].size[p->run[0].geometry == MPS_SPACE ? 2 : 1]);
+  json_number(f, "soil_height", p->run[0].size[p->run[0].geometry == MPS_MPM_SPACE ? 2 : 1]);
   json_number(f, "penalty", p->run[0].penalty);
   json_number(f, "dt", p->run[0].dt);
 }
@@ -126,8 +126,8 @@ static bool write_summary(app *a, const penetrometer *p, const mean *m) {
 static void tell_run(const penetrometer *p, const pen_run *r, const mean *m) {
   const double q = 1e-3 * m->force[PEN_TIP] / area(p);
   printf("%s: mean of the last fifth of %.4g m: %.5g N = tip %.5g + shaft %.5g N, q = %.4g kPa",
-         r->geometry == MPS_SPACE ? "space" : "axisymmetric", pen_reached(r), m->force[PEN_TOTAL],
-         m->force[PEN_TIP], m->force[PEN_SHAFT], q);
+         r->geometry == MPS_MPM_SPACE ? "space" : "axisymmetric", pen_reached(r),
+         m->force[PEN_TOTAL], m->force[PEN_TIP], m->force[PEN_SHAFT], q);
   if (p->s.law == PEN_CLAY) printf(" = %.4g c", q / p->s.cohesion);
   if (p->s.law == PEN_ELASTIC && p->s.tip == PEN_SPHERE)
     printf("; Hertz %.5g N, %+.2f %%", m->hertz, 100.0 * (m->force[PEN_TOTAL] / m->hertz - 1.0));

@@ -97,7 +97,7 @@ static mps_status read_impulses(pile *p, double *up) {
     const mps_status status =
         mps_body_get_reaction(p->m.body[0], mps_body_part(p->m.body[0], names[k]), &r);
     if (status != MPS_OK) return status;
-    up[k] = 2.0 * PILE_PI * r.impulse[1];
+    up[k] = r.impulse[1];
     up[PILE_TOTAL] += up[k];
   }
   return MPS_OK;
@@ -164,7 +164,7 @@ static mps_status after_step(void *user, mps_mpm *mpm) {
   mps_status status = watch(p, t, depth);
   if (status == MPS_OK) status = mps_body_get_reaction(p->m.body[0], -1, &r);
   if (status != MPS_OK) return status;
-  const double force = 2.0 * PILE_PI * r.force[1];
+  const double force = r.force[1];
   p->squares += (t - p->last_step) * force * force;
   p->last_step = t;
   const double next = p->stride * (double)(p->rows + 1) - p->s.h;

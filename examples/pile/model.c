@@ -100,15 +100,16 @@ static mps_status make_pile(mps_context *context, pile *p) {
   mps_signal *down = NULL;
   mps_body_def def = mps_body_defaults();
   def.position[1] = s->height + s->h;
-  def.friction = s->friction;
-  def.penalty = p->penalty;
+  mps_contact_def contact = mps_contact_defaults();
+  contact.friction = s->friction;
+  contact.penalty = p->penalty;
   mps_status status = mps_signal_table(context, MPS_SIGNAL_VELOCITY, 2, t, v, &down);
   if (status == MPS_OK) status = mps_body_create_polygon(context, &def, 4, corner, &p->m.body[0]);
   for (int k = 0; k < PILE_PARTS && status == MPS_OK; k++)
     status = mps_body_name_part(p->m.body[0], part[k].name, part[k].edge, 1, NULL);
   if (status == MPS_OK) status = mps_body_drive(p->m.body[0], 1, down, -1.0);
   mps_signal_destroy(&down);
-  return status == MPS_OK ? mps_mpm_add_body(p->m.mpm, p->m.body[0]) : status;
+  return status == MPS_OK ? mps_mpm_add_contact(p->m.mpm, p->m.body[0], &contact, NULL) : status;
 }
 
 /* Contact stiffness (N/m per unit thickness). Nakamura (58) with the particle's mass and the step
@@ -131,7 +132,7 @@ mps_status pile_build(mps_context *context, void *user) {
   mps_status status = s->restart ? pile_peek(context, p) : MPS_OK;
   if (status == MPS_OK) status = make_soil(context, p);
   mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = MPS_AXISYMMETRIC;
+  def.geometry = MPS_MPM_AXISYMMETRIC;
   def.cell = s->h;
   def.courant = s->courant;
   def.lower[0] = def.lower[1] = 0.0;

@@ -1,9 +1,8 @@
 /* pile.h - an open-ended pile pushed into sand (Nakamura 8): settings, the run, and its parts.
  *
- * Axisymmetric: x is the radius r, y the height above the bottom of the soil. The library's forces
- * are per radian; here and in the results they are those of the whole pile, 2 pi times as much.
- * Depths count from the ground as it was, downwards.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * Axisymmetric: x is the radius r, y the height above the bottom of the soil. Forces are those of
+ * the whole pile. Depths count from the ground as it was, downwards. SPDX-License-Identifier:
+ * BSD-3-Clause */
 #ifndef EXAMPLES_PILE_H
 #define EXAMPLES_PILE_H
 

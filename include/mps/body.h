@@ -1,4 +1,4 @@
-/* mps/body.h - rigid bodies: shape, motion, friction, and the reaction they feel (Nakamura 5).
+/* mps/body.h - rigid bodies: shape, motion, and the reaction they feel (Nakamura 5).
  *
  * A body's shape is given in its own frame, whose origin is the body's reference point: the
  * rotation turns about it, moments refer to it, and a free body has its centre of mass there. In
@@ -6,9 +6,9 @@
  * are per unit thickness in plane strain, per radian in axisymmetry.
  *
  * A prescribed body follows signals, or what mps_body_set_motion says; a free body moves by the
- * forces on it. A solver that uses the body moves it and writes the reaction; without one,
- * mps_body_advance does. One solver at a time may use a body. Thread rule: one thread at a time per
- * body (and context).
+ * forces on it. Solvers touch it by contacts (mps/contact.h): each tells its forces, and the body
+ * feels their sum. Of them at most one moves the body; else the caller does by mps_body_advance.
+ * Thread rule: one thread at a time per body (and context).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_BODY_H
 #define LIBMPS_BODY_H
@@ -35,14 +35,6 @@ typedef struct mps_body_def {
                          time 0; 2D: [2] is the angle, anticlockwise */
   double velocity[3]; /* m/s at time 0; free bodies only */
   double spin[3];     /* rad/s, in space, at time 0; free bodies only */
-  double friction;    /* Coulomb's mu on the surface, >= 0; default 0 */
-  double penalty;     /* contact stiffness k of Nakamura (28), N/m (2D: per unit thickness), > 0; 0
-                         (default): from xi, or where that is 0 too, 1.33 (K + 4G/3) of the
-                         particle's material, in 3D times the particles' spacing. In axisymmetry
-                         each is multiplied by the particle's radius */
-  double xi;          /* in (0, 1): k from Nakamura (58), 2 (1 - xi) (K + 4G/3)/(n CFL^2) with n
-                         particles a cell, in 3D times the cell's size; n and CFL are those of the
-                         solver's definition. 0 (default): not so. Exclusive with penalty */
   double mass;        /* kg, 2D: per unit thickness, 1e-30 to 1e30; free bodies only */
   double inertia[3];  /* kg m2 about the reference point, 1e-30 to 1e30, principal: the body's axes
                          are the principal axes. 2D: [2], per unit thickness. Free bodies only */
@@ -128,7 +120,7 @@ MPS_API MPS_NODISCARD mps_status mps_body_create_stl(mps_context *context, const
                                                      const char *path, double scale,
                                                      mps_body **out);
 
-/** Gives up the caller's share and nulls; accepts NULL. A solver keeps the body alive. */
+/** Gives up the caller's share and nulls; accepts NULL. A contact keeps the body alive. */
 MPS_API void mps_body_destroy(mps_body **body);
 /** Dimension of the shape, 2 or 3; 0 for NULL. */
 MPS_API int32_t mps_body_dim(const mps_body *body);
@@ -173,8 +165,8 @@ MPS_API MPS_NODISCARD mps_status mps_body_set_motion(mps_body *body, const mps_b
 MPS_API MPS_NODISCARD mps_status mps_body_load(mps_body *body, const double *force,
                                                const double *moment);
 /** Moves the body on by dt (s, > 0): a prescribed one to where its signals are, a free one under
- *  gravity, load, damping and the reaction of the last step (velocity first, then position). A body
- *  that a solver uses is MPS_ERROR_STATE. */
+ *  gravity, load, damping and the impulses that its contacts have told since it last moved
+ *  (velocity first, then position). A body that a solver moves is MPS_ERROR_STATE. */
 MPS_API MPS_NODISCARD mps_status mps_body_advance(mps_body *body, double dt);
 
 typedef struct mps_body_state {

@@ -10,12 +10,12 @@
  * The solver works in the fields of the particle set itself (zero copy), and sorts the set by
  * blocks whenever a particle has gone a cell beyond its block: views taken before are then stale
  * (their epoch).
- * It reads `density` (kg/m3, > 0) at creation, and `volume` (per unit thickness or per radian;
- * where 0, the spacing to the power of the dimension, in axisymmetry times the radius), `velocity`,
+ * It reads `density` (kg/m3, > 0) at creation, and `volume` (of the measure; where 0, the spacing
+ * to the power of the dimension times the measure, in axisymmetry times the radius), `velocity`,
  * `velocity_gradient` and `stress` where the set has them; it writes these and `mass` and
- * `position`. A field `body_acceleration` (m/s2) that the set has at creation is read in each step
- * and adds to gravity. Laws that need them bring the fields `volume_ratio`, `deformation_gradient`
- * and their history.
+ * `position`. The fields `body_acceleration` (m/s2, adds to gravity) and `external_force` (N) are
+ * read in each step where the set has them. Laws that need them bring the fields `volume_ratio`,
+ * `deformation_gradient` and their history.
  *
  * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
  * its results are the same bit for bit for every number of threads.
@@ -23,7 +23,7 @@
 #ifndef LIBMPS_MPM_H
 #define LIBMPS_MPM_H
 
-#include "body.h"
+#include "contact.h"
 #include "io.h"
 #include "material.h"
 #include "particles.h"
@@ -34,83 +34,72 @@ MPS_EXTERN_C_BEGIN
 
 typedef struct mps_mpm mps_mpm;
 
-typedef enum mps_geometry {
-  MPS_PLANE_STRAIN = 0, /* forces and masses per unit thickness */
-  MPS_AXISYMMETRIC = 1, /* x = r >= 0, y = z; forces and masses per radian */
-  MPS_SPACE = 2         /* three dimensions */
-} mps_geometry;
+typedef enum mps_mpm_geometry {
+  MPS_MPM_PLANE_STRAIN = 0,
+  MPS_MPM_AXISYMMETRIC = 1, /* x = r >= 0, y = z */
+  MPS_MPM_SPACE = 2         /* three dimensions */
+} mps_mpm_geometry;
 
 /** What weighs the particles' velocities on their way to the nodes. */
-typedef enum mps_transfer {
-  MPS_TRANSFER_SHAPE = 0, /* the shape functions: momentum is kept everywhere */
-  MPS_TRANSFER_WEIGHT = 1 /* the weights, Nakamura (12), (39): near bodies and edges the momentum
-                             drifts; for comparison */
-} mps_transfer;
-
-/** A wall acts on its nodes, and so on particles nearer than the spline reaches (1.5 or 2 cells).
- *  The velocities below are those relative to the wall, which mps_mpm_drive_wall may move. */
-typedef enum mps_wall {
-  MPS_WALL_ROLLER = 0,     /* no velocity across the wall */
-  MPS_WALL_FIXED = 1,      /* no velocity at all */
-  MPS_WALL_FRICTIONAL = 2, /* no velocity into the wall, and Coulomb's friction along it; it pushes
-                              but never pulls, so that material may leave */
-  MPS_WALL_ABSORBING = 3   /* dashpots (Lysmer): traction R - rho c_p v across and R - rho c_s v
-                              along the wall, with rho, c_p and c_s of the particles in the cells at
-                              the wall (elastic; under a user's law c_s = c_p/sqrt(3)). The constant
-                              R carries the stress at rest: see settle below. Material that comes to
-                              new nodes finds no R. Stable for every dt. Particles at the wall move
-                              with the waves: one that passes the wall has left the domain */
-} mps_wall;
+typedef enum mps_mpm_transfer {
+  MPS_MPM_TRANSFER_SHAPE = 0, /* the shape functions: momentum is kept everywhere */
+  MPS_MPM_TRANSFER_WEIGHT = 1 /* the weights, Nakamura (12), (39): near bodies and edges the
+                                 momentum drifts; for comparison */
+} mps_mpm_transfer;
 
 /** How particles and nodes exchange what they hold: Nakamura Table 1. */
-typedef enum mps_scheme {
-  MPS_SCHEME_WLS = 0,     /* the paper's: fitted shape functions; particles carry L to the nodes */
-  MPS_SCHEME_STANDARD = 1 /* the original material point method, for comparison: the B-splines and
-                             their own derivatives are the shape functions, also at bodies and
-                             walls, and particles carry no L. Nodes beyond a wall are held as those
-                             on it. Slower: its loops are not tuned */
-} mps_scheme;
+typedef enum mps_mpm_scheme {
+  MPS_MPM_SCHEME_WLS = 0, /* the paper's: fitted shape functions; particles carry L to the nodes */
+  MPS_MPM_SCHEME_STANDARD = 1 /* the original material point method, for comparison: the B-splines
+                                 and their own derivatives are the shape functions, also at bodies
+                                 and sides, and particles carry no L. Nodes beyond a side are held
+                                 as those on it. Slower: its loops are not tuned */
+} mps_mpm_scheme;
+
+/** Which speed bounds the step besides that of viscous laws, rho h^2/(4 dim viscosity). */
+typedef enum mps_mpm_step_from {
+  MPS_MPM_STEP_FROM_SPEED = 0, /* wave velocity and velocity of each particle, c + |v| */
+  MPS_MPM_STEP_FROM_WAVE = 1   /* the wave velocity c alone: steps stay equal in a stiff body that
+                                  moves; particles may then go further than `courant` cells a step */
+} mps_mpm_step_from;
 
 /** What the laws take for the change of volume: a cure for volumetric locking and for pressures
  * that oscillate in nearly incompressible material. */
-typedef enum mps_volumetric {
-  MPS_VOLUMETRIC_POINT = 0, /* each particle's own tr(d), in axisymmetry with the hoop */
-  MPS_VOLUMETRIC_CELL = 1   /* F-bar: the mean of tr(d), weighted by volumes, over the particles of
-                               the cell (quadratic: of the cell-sized box about a node); the part of
-                               d without trace, the spin and `velocity_gradient` stay. Volumes,
+typedef enum mps_mpm_volumetric {
+  MPS_MPM_VOLUMETRIC_POINT = 0, /* each particle's own tr(d), in axisymmetry with the hoop */
+  MPS_MPM_VOLUMETRIC_CELL = 1   /* F-bar: the mean of tr(d), weighted by volumes, over the particles
+                               of   the cell (quadratic: of the cell-sized box about a node); the part
+                               of   d without trace, the spin and `velocity_gradient` stay. Volumes,
                                `volume_ratio` and `deformation_gradient` follow the mean */
-} mps_volumetric;
+} mps_mpm_volumetric;
 
 typedef struct mps_mpm_def {
   uint32_t struct_size;
-  int32_t geometry; /* mps_geometry, default PLANE_STRAIN; of as many dimensions as the set.
-                       In 2D the third value of each array below is not read */
-  int32_t spline;   /* degree of the B-spline weights: 3 (default, Nakamura (36)) or 2 */
-  int32_t transfer; /* mps_transfer, default SHAPE */
-  double cell;      /* h, m, > 0; no default. Usually 2 spacings */
+  int32_t geometry;   /* mps_mpm_geometry, default PLANE_STRAIN; of as many dimensions as the set.
+                         In 2D the third value of each array below is not read */
+  int32_t spline;     /* degree of the B-spline weights: 3 (default, Nakamura (36)) or 2 */
+  int32_t volumetric; /* mps_mpm_volumetric, default POINT */
+  int32_t transfer;   /* mps_mpm_transfer, default SHAPE */
+  int32_t scheme;     /* mps_mpm_scheme, default WLS */
+  double flip;      /* with STANDARD, in [0, 1]: the particle's velocity becomes flip (v_p + dt a) +
+                       (1 - flip) v, with the nodes' acceleration a and velocity v at its place; it
+                       moves with v. 1 (default): FLIP, Table 1; 0: PIC. WLS, which always takes v,
+                       allows only the default */
+  double cell;      /* h, m, > 0; no default. Usually 2 spacings; 0.5 to 1000 are allowed */
   double origin[3]; /* m: a node lies here; default 0 */
-  double lower[3], upper[3]; /* m: walls of the domain, on nodes; default: none (infinite). In
-                                axisymmetry lower[0] is at least 0, and 0 by default */
-  int32_t wall_lower[3], wall_upper[3]; /* mps_wall of each, default ROLLER; on the axis
-                                           r = 0 ROLLER or FIXED */
-  double gravity[3];                    /* m/s2, default 0 */
-  double dt;      /* s, > 0, or 0 (default): each step the largest by Nakamura (49), (50), and by
-                     rho h^2/(4 dim viscosity) of viscous laws. At most that
-                     limit at creation; a warning tells when it gets above the fraction below */
-  double courant; /* fraction of that limit, in (0, 1]; default 0.5 */
-  int32_t volumetric; /* mps_volumetric, default POINT */
-  int32_t scheme;     /* mps_scheme, default WLS */
-  double flip; /* with STANDARD, in [0, 1]: the particle's velocity becomes flip (v_p + dt a) + (1 -
-                  flip) v, with the nodes' acceleration a and velocity v at its place; it moves with
-                  v. 1 (default): FLIP, Table 1; 0: PIC. WLS, which always takes v, allows only the
-                  default */
-  double wall_friction_lower[3], wall_friction_upper[3]; /* Coulomb's mu of frictional walls, >= 0,
-                                                            default 0 */
-  double settle; /* s, >= 0: so long an absorbing wall begins as a fixed one, and R is the mean of
-                    the traction then. 0 (default): R balances the other forces at the wall's nodes
-                    in the first step. A stress that balances gravity on paper does so on the grid
-                    within a percent or so: without settling the wall yields to the rest, as a
-                    dashpot does */
+  double lower[3], upper[3]; /* m: sides of the domain, on nodes; default: none (infinite). In
+                                axisymmetry lower[0] is at least 0, and 0 by default. Each side is
+                                born a roller: see mps_mpm_set_boundary */
+  double measure;    /* what all masses, volumes and forces are of: thickness in m (default 1) in
+                        plane strain, the angle in rad (default 2 pi, the whole ring) in
+                        axisymmetry; 1 in space. NaN: the default */
+  double gravity[3]; /* m/s2, default 0 */
+  double dt;         /* s, > 0: every step; NaN (default): each step `courant` times the limit. At
+                        most that limit at creation; a warning tells when it gets above it */
+  double courant;    /* fraction of the limit h/(c + v), Nakamura (49), (50), that a step takes, in
+                        (0, 1]; default 0.5 */
+  int32_t step_from; /* mps_mpm_step_from, default SPEED */
+  int32_t reserved;
 } mps_mpm_def;
 
 MPS_API mps_status mps_mpm_def_init(mps_mpm_def *def, size_t size);
@@ -122,7 +111,8 @@ static inline mps_mpm_def mps_mpm_defaults(void) {
 }
 
 /** Creates a solver for the set `particles` (at least one, inside the domain), sorting it and
- *  pinning it: until the solver is destroyed no particle can be added. All particles are of the one
+ *  pinning it: until the solver is destroyed no particle can be added. A set has at most one solver
+ *  that moves it. On an error the set is as before. All particles are of the one
  *  `material`, which is kept alive, until mps_mpm_set_material; its history columns become fields
  * of the set, by their names.
  */
@@ -138,84 +128,179 @@ MPS_API void mps_mpm_destroy(mps_mpm **mpm);
  *  alive. Its history begins anew in these particles, by the law's initial values; stress, volume,
  *  `volume_ratio` and `deformation_gradient` stay as they are (0: 1, and all 0: no deformation).
  *  Fields that only this law needs are added, so the set's number of fields grows; `material`
- *  tells each particle's law. The limit (49) follows at once; bodies without a penalty of their own
- *  press each particle by the modulus of its law. */
+ *  tells each particle's law. The Courant limit follows at once; bodies without a penalty of their
+ * own press each particle by the modulus of its law. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material,
                                                       int64_t count, const int64_t *ids);
 
-#define MPS_MPM_MAX_BODIES 32
+#define MPS_MPM_MAX_CONTACTS 32
 
-/** Lets the particles touch `body`, which the solver from now on moves and tells its reaction. The
- *  body's own clock goes on from where it is. At most 32; a body belongs to one solver, and may not
- *  overlap another one of it by more than 0.1 cells. The log hook is warned of walls thinner than
- *  two cells and, in the steps, of a contact stiffness k dt^2/m > 6, which chatters. Where bodies
- * touch the same nodes, friction is found in the order they were added, after all normal forces. */
-MPS_API MPS_NODISCARD mps_status mps_mpm_add_body(mps_mpm *mpm, mps_body *body);
+/** Lets the particles touch `body` (`def` NULL: the defaults) until mps_contact_destroy or the end
+ * of the solver. `contact`, which may be NULL, receives the caller's handle. The body's own clock
+ * goes on from where it is. At most 32 contacts, each with another body, and bodies may not overlap
+ * by more than 0.1 cells. MPS_ERROR_ARGUMENT also where the body is thinner than two cells or
+ *  particles lie inside it, unless `def` allows. A moving body shortens the steps: its surface goes
+ *  at most `courant` cells in one. The log hook is warned of a contact stiffness k dt^2/m > 6,
+ * which chatters. Where bodies touch the same nodes, friction is found in the order they were
+ * added, after all normal forces. */
+MPS_API MPS_NODISCARD mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body,
+                                                     const mps_contact_def *def,
+                                                     mps_contact **contact);
 
-/* ---- walls and moving nodes ------------------------------------------------------------------
- * Nodes keep their place; what moves is their velocity. A signal gives them `factor` times its
- * velocity at the middle of the step; NULL holds them at rest. Signals are kept alive. Where
- * several hold one node, fixed walls come after the others, then boxes in the order of their
- * numbers: the last decides. `upper` is 0 or 1; a wall that the domain does not have is
- * MPS_ERROR_ARGUMENT. Forces are on the particles, N (2D: per unit thickness or per radian), means
- * over the last step; they, gravity and all other forces together change the particles' momentum.
- */
+/** What the solver was made from: the definition as completed by it. */
+MPS_API MPS_NODISCARD mps_status mps_mpm_get_def_sized(mps_mpm *mpm, mps_mpm_def *out, size_t size);
+static inline mps_status mps_mpm_get_def(mps_mpm *mpm, mps_mpm_def *out) {
+  return mps_mpm_get_def_sized(mpm, out, sizeof *out);
+}
+/** The set and the context; NULL for NULL. Lent: they live at least as long as the solver. */
+MPS_API mps_particles *mps_mpm_particles(const mps_mpm *mpm);
+MPS_API mps_context *mps_mpm_context(const mps_mpm *mpm);
 
-/** Makes the wall across `axis` one of kind `wall` (mps_wall) with `friction` (>= 0; 0 for other
- *  than frictional ones). An absorbing wall finds its R anew, from the next step on. */
-MPS_API MPS_NODISCARD mps_status mps_mpm_set_wall(mps_mpm *mpm, int32_t axis, int32_t upper,
-                                                  int32_t wall, double friction);
-/** Moves the wall in `component`: of a roller the one across it, else any. An absorbing wall's
- *  dashpots stand on what moves: it sends a wave of half that velocity in. */
-MPS_API MPS_NODISCARD mps_status mps_mpm_drive_wall(mps_mpm *mpm, int32_t axis, int32_t upper,
-                                                    int32_t component, mps_signal *signal,
-                                                    double factor);
-/** Force[3] of a wall; 0 before the first step. */
-MPS_API MPS_NODISCARD mps_status mps_mpm_get_wall_force(mps_mpm *mpm, int32_t axis, int32_t upper,
-                                                        double *force);
+/* ---- boundaries ------------------------------------------------------------------------------
+ * A boundary holds, drives or rubs the nodes of a side of the domain or of a box, or particles. A
+ * solver is born with a boundary on each finite side of its domain, whose number is that side's
+ * below: a roller. They are set, or removed, as all others; those that are added have numbers from
+ * 6 on. Nodes keep their place; what moves is their velocity: `factor` times that of the signal at
+ * the middle of the step, NULL being rest.
+ *
+ * A side acts on its nodes, and so on particles nearer than the spline reaches (1.5 or 2 cells).
+ * Where several boundaries hold one node, fixed sides come after the others, then boxes in the
+ * order of their numbers: the last decides; held particles come last. */
 
-#define MPS_MPM_MAX_BOXES 32
+typedef enum mps_mpm_side {
+  MPS_MPM_SIDE_X_LOWER = 0, /* 2 axis + upper */
+  MPS_MPM_SIDE_X_UPPER = 1,
+  MPS_MPM_SIDE_Y_LOWER = 2,
+  MPS_MPM_SIDE_Y_UPPER = 3,
+  MPS_MPM_SIDE_Z_LOWER = 4,
+  MPS_MPM_SIDE_Z_UPPER = 5
+} mps_mpm_side;
 
-/** Prescribes velocity `component` of the nodes in the box [lower, upper] (m, dim values each,
- *  infinities allowed; at most 32 boxes). `box` receives its number, the lowest that is free. */
-MPS_API MPS_NODISCARD mps_status mps_mpm_drive_nodes(mps_mpm *mpm, const double *lower,
-                                                     const double *upper, int32_t component,
-                                                     mps_signal *signal, double factor,
-                                                     int32_t *box);
-/** Lets the nodes of a box go. */
-MPS_API MPS_NODISCARD mps_status mps_mpm_free_nodes(mps_mpm *mpm, int32_t box);
-/** Force[3] of what moves the nodes of a box. */
-MPS_API MPS_NODISCARD mps_status mps_mpm_get_nodes_force(mps_mpm *mpm, int32_t box, double *force);
+/** Sides may be all but PRESCRIBED; boxes and particles are PRESCRIBED. The axis r = 0 may be a
+ *  roller or fixed. */
+typedef enum mps_mpm_boundary_kind {
+  MPS_MPM_BOUNDARY_ROLLER = 0,     /* no velocity across */
+  MPS_MPM_BOUNDARY_FIXED = 1,      /* no velocity at all */
+  MPS_MPM_BOUNDARY_FRICTIONAL = 2, /* no velocity into the side, and Coulomb's friction along it; it
+                                      pushes but never pulls, so that material may leave */
+  MPS_MPM_BOUNDARY_ABSORBING =
+      3,                          /* Lysmer dashpots: traction R - rho c_p v across and R - rho c_s
+                                     v  along, with rho, c_p and c_s of the particles in the cells at
+                                     the side (elastic; under a user's law c_s = c_p/sqrt(3)). The
+                                     constant R is the traction at rest: see `settle`. Nodes that
+                                     become active later carry no R. Stable for every dt. Particles
+                                     move with the waves: one that passes the side has left the
+                                     domain. A velocity that drives it sends half of it in */
+  MPS_MPM_BOUNDARY_FREE = 4,      /* an edge where nodes end and nothing is held */
+  MPS_MPM_BOUNDARY_PRESCRIBED = 5 /* the components `dofs`, of a box of nodes or of particles */
+} mps_mpm_boundary_kind;
 
-/* ---- loads ----------------------------------------------------------------------------------- */
+typedef struct mps_mpm_boundary_def {
+  uint32_t struct_size;
+  int32_t kind;       /* mps_mpm_boundary_kind; default PRESCRIBED */
+  double lower[3];    /* m, a box of nodes: default +-infinity; */
+  double upper[3];    /* in 2D the third value is not read */
+  const int64_t *ids; /* `id_count` particles in place of a box, copied; NULL: a box */
+  int64_t id_count;   /* 0 with a box or side */
+  uint32_t dofs;      /* MPS_DOF_X, Y, Z or-ed, of PRESCRIBED; default 0: all */
+  int32_t reserved;
+  mps_signal
+      *signal[3];   /* by component, kept alive; NULL: at rest. Of a roller only the one across */
+  double factor[3]; /* default 1 */
+  double friction;  /* Coulomb's mu of FRICTIONAL, >= 0; default 0 */
+  double settle;    /* s, >= 0: so long an ABSORBING side is held as a fixed one, and R is the
+                       mean traction then. 0 (default): R balances the other forces at the nodes
+                       in the first step. A stress that balances gravity on paper does so on the
+                       grid within a percent: without settling the side yields to the rest, as
+                       a dashpot does */
+} mps_mpm_boundary_def;
 
-/** Dead load on `count` (>= 1) particles, by their ids: each gets the force area * traction, times
- *  the value (displacement) of `signal` at the beginning of the step, 1 where NULL. `area` (m2; 2D:
- *  per unit thickness or per radian; finite, copied) NULL: the spacing to the power dim - 1, in
- *  axisymmetry times the particle's present radius. `traction` (Pa, dim values, finite). `load`
- *  receives a number. The signal is kept alive. */
-MPS_API MPS_NODISCARD mps_status mps_mpm_add_load(mps_mpm *mpm, int64_t count, const int64_t *ids,
-                                                  const double *area, const double *traction,
-                                                  mps_signal *signal, int32_t *load);
-/** Gives a load another traction and signal. */
-MPS_API MPS_NODISCARD mps_status mps_mpm_set_load(mps_mpm *mpm, int32_t load,
-                                                  const double *traction, mps_signal *signal);
-/** Takes a load away; its number may be given to another one. */
-MPS_API MPS_NODISCARD mps_status mps_mpm_remove_load(mps_mpm *mpm, int32_t load);
+MPS_API mps_status mps_mpm_boundary_def_init(mps_mpm_boundary_def *def, size_t size);
+static inline mps_mpm_boundary_def mps_mpm_boundary_defaults(void) {
+  mps_mpm_boundary_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_mpm_boundary_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+
+#define MPS_MPM_MAX_BOUNDARIES 64 /* the six sides counted */
+
+/** Adds a box of nodes or a list of particles; `number` receives the lowest free number from 6. */
+MPS_API MPS_NODISCARD mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mpm_boundary_def *def,
+                                                      int32_t *number);
+/** Gives boundary `number` another definition, from the next step on; its impulse and work go on. A
+ *  side (0 to 5) that the domain does not have is MPS_ERROR_ARGUMENT; an absorbing one finds its R
+ *  anew. */
+MPS_API MPS_NODISCARD mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t number,
+                                                      const mps_mpm_boundary_def *def);
+/** Lets the nodes or particles go; a side becomes FREE. */
+MPS_API MPS_NODISCARD mps_status mps_mpm_remove_boundary(mps_mpm *mpm, int32_t number);
+/** What boundary `number` exerts on the particles. */
+MPS_API MPS_NODISCARD mps_status mps_mpm_get_reaction_sized(mps_mpm *mpm, int32_t number,
+                                                            mps_reaction *out, size_t size);
+static inline mps_status mps_mpm_get_reaction(mps_mpm *mpm, int32_t number, mps_reaction *out) {
+  return mps_mpm_get_reaction_sized(mpm, number, out, sizeof *out);
+}
+/** Shorthand: the side `side` of the domain becomes of `kind`, at rest, with `friction`. */
+static inline mps_status mps_mpm_set_side(mps_mpm *mpm, int32_t side, int32_t kind,
+                                          double friction) {
+  mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
+  def.kind = kind;
+  def.friction = friction;
+  return mps_mpm_set_boundary(mpm, side, &def);
+}
+
+/* ---- loads ------------------------------------------------------------------------------------
+ * Dead loads on particles. Besides, a field `external_force` (N) of the set is added to the forces
+ * on the particles in each step; it may be added and written between steps at any time. */
+
+typedef struct mps_mpm_load_def {
+  uint32_t struct_size;
+  int32_t reserved;
+  const int64_t *ids; /* `id_count` (>= 1) particles, copied */
+  int64_t id_count;
+  const double
+      *area; /* m2, one a particle, finite, copied; of the measure. NULL: the spacing to the
+                power dim - 1 times the measure, in axisymmetry times the present radius */
+  double traction[3]; /* Pa, finite: the force on a particle is area * traction */
+  mps_signal
+      *signal[3];   /* by component, its value (displacement) at the beginning of the step times
+                       `factor` multiplies the traction; NULL: `factor` does. Kept alive */
+  double factor[3]; /* default 1 */
+} mps_mpm_load_def;
+
+MPS_API mps_status mps_mpm_load_def_init(mps_mpm_load_def *def, size_t size);
+static inline mps_mpm_load_def mps_mpm_load_defaults(void) {
+  mps_mpm_load_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_mpm_load_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+/** Adds a load; `number` receives the lowest free number from 0. */
+MPS_API MPS_NODISCARD mps_status mps_mpm_add_load(mps_mpm *mpm, const mps_mpm_load_def *def,
+                                                  int32_t *number);
+/** Gives load `number` another definition; with ids NULL and id_count 0 it keeps its particles and
+ *  areas. */
+MPS_API MPS_NODISCARD mps_status mps_mpm_set_load(mps_mpm *mpm, int32_t number,
+                                                  const mps_mpm_load_def *def);
+MPS_API MPS_NODISCARD mps_status mps_mpm_remove_load(mps_mpm *mpm, int32_t number);
 
 /* ---- running --------------------------------------------------------------------------------- */
 
-/** Takes `count` (>= 0) steps. A particle that passes a wall by less than 0.1 cells is put back on
- * it. MPS_ERROR_DIVERGED: one has left the domain, or has a velocity or a volume that is not
- * finite; the record names step and particle, the fields show the state. */
+/** Takes `count` (>= 0) steps, asking the cancel hook after each. A particle that passes a side of
+ *  the domain by less than 0.1 cells is put back on it. MPS_ERROR_DIVERGED: one has left the
+ * domain, or has a velocity or a volume that is not finite; the record names step and particle, the
+ * fields show the state. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_step(mps_mpm *mpm, int64_t count);
 
-/** Called at the start of a run, then every `every` steps and at the end. Return MPS_OK to go on.
- */
+/** Called at the start of a run, then every `every` steps and at the end. Return MPS_OK to go on;
+ *  any other status ends the run, which returns it. It may ask the solver, but not step, change or
+ *  destroy it: MPS_ERROR_STATE. */
 typedef mps_status (*mps_mpm_fn)(void *user, mps_mpm *mpm);
 
-/** Steps to t_end (s), the last step shortened to end there; `callback` may be NULL, `every` >= 1.
- *  The context's progress hook is told about 100 times, the cancel hook asked after each step. */
+/** Steps to t_end (s, not before mps_mpm_time), the last step shortened to end exactly there;
+ * `callback` may be NULL, `every` >= 1. The context's progress hook is told about 100 times, the
+ * cancel hook asked after each step. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every,
                                              mps_mpm_fn callback, void *user);
 
@@ -223,12 +308,13 @@ MPS_API double mps_mpm_time(const mps_mpm *mpm); /* s */
 MPS_API int64_t mps_mpm_steps(const mps_mpm *mpm);
 /** The step (s) that would come next. */
 MPS_API double mps_mpm_dt(const mps_mpm *mpm);
-/** The limit (49), or that of viscosity, of the present state (s), the Courant fraction not
- * applied.
- */
+/** The Courant limit h/(c + v), Nakamura (49), that of viscosity, or h over the speed of the
+ * fastest body in contact, of the present state (s), the fraction `courant` not applied. Cheap. */
 MPS_API double mps_mpm_limit(const mps_mpm *mpm);
+/** Sets `dt` of the definition: s, > 0, at most the limit; NaN: it follows the limit. */
+MPS_API MPS_NODISCARD mps_status mps_mpm_set_dt(mps_mpm *mpm, double dt);
 
-/** Sums over the particles (bodies not counted), in 2D per unit thickness or per radian. */
+/** Sums over the particles (bodies not counted), of the measure. */
 typedef struct mps_mpm_totals {
   double mass, volume;   /* kg, m3 */
   double linear[3];      /* kg m/s; in 2D [2] is 0 */

@@ -1,4 +1,4 @@
-/* body.c - life of a rigid body: definition, owners, contact stiffness.
+/* body.c - life of a rigid body: definition, checks, owners.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body.h"
 
@@ -67,21 +67,11 @@ static mps_status check_numbers(mps_context *context, const char *function, cons
   const struct {
     const char *name, *unit;
     double value;
-  } list[] = {{"friction", "", d->friction},
-              {"penalty", "N/m", d->penalty},
-              {"damping[0]", "1/s", d->damping[0]},
-              {"damping[1]", "1/s", d->damping[1]}};
+  } list[] = {{"damping[0]", "1/s", d->damping[0]}, {"damping[1]", "1/s", d->damping[1]}};
   for (size_t k = 0; k < sizeof list / sizeof *list; k++)
     if (!(list[k].value >= 0.0 && list[k].value <= MPSI_BODY_HEAVY))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %g %s, must be in 0 to %g",
                        list[k].name, list[k].value, list[k].unit, MPSI_BODY_HEAVY);
-  if (!(d->xi >= 0.0 && d->xi < 1.0))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "xi is %g, must be in (0, 1), or 0",
-                     d->xi);
-  if (d->xi > 0.0 && d->penalty > 0.0)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "xi is %g and penalty %g N/m: give one of them, the other 0", d->xi,
-                     d->penalty);
   return MPS_OK;
 }
 
@@ -172,26 +162,22 @@ void mps_body_destroy(mps_body **body) {
 
 int32_t mps_body_dim(const mps_body *body) { return body ? body->dim : 0; }
 
-double mpsi_body_penalty(const mps_body *body, double modulus, double spacing, double cell,
-                         double courant) {
-  const mps_body_def *def = &body->def;
-  if (def->penalty > 0.0) return def->penalty;
-  const double depth = body->dim == 3 ? spacing : 1.0; /* 2D: per unit thickness */
-  if (def->xi == 0.0) return 1.33 * modulus * depth;
-  /* (58) is 2 (1 - xi) m/dt^2; with dt = CFL cell/sqrt(modulus/density), m/dt^2 is this: */
-  const double share = spacing / (courant * cell);
-  return 2.0 * (1.0 - def->xi) * modulus * share * share * depth;
-}
-
-bool mpsi_body_take(mps_body *body, void *user) {
-  if (body->user) return false;
-  body->user = user;
-  body->references++;
-  return true;
-}
-
-void mpsi_body_give(mps_body *body) {
-  if (!body) return;
-  body->user = NULL;
-  mpsi_body_release(body);
+double mpsi_body_extent(const mps_body *body) {
+  double most = 0.0;
+  switch (body->shape) {
+  case MPSI_BALL:
+    return body->radius;
+  case MPSI_HALF:
+    return 0.0;
+  case MPSI_MESH:
+    for (int64_t s = 0; s < 3 * body->mesh->triangles; s++) {
+      const double *x = body->mesh->xyz + 3 * (int64_t)body->mesh->corner[s];
+      most = fmax(most, hypot(hypot(x[0], x[1]), x[2]));
+    }
+    return most;
+  default:
+    for (int64_t k = 0; k < body->edges; k++)
+      most = fmax(most, hypot(body->xy[2 * k], body->xy[2 * k + 1]));
+    return most;
+  }
 }

@@ -5,7 +5,7 @@
 
 #include "core/state.h"
 
-#include <mps/body.h>
+#include <mps/contact.h>
 
 typedef enum mpsi_shape {
   MPSI_POLYGON = 0,    /* 2D */
@@ -70,8 +70,9 @@ struct mps_body {
   bool outside;       /* prescribed: moves as mps_body_set_motion said, not by the signals */
   mpsi_pose pose;
   double work_contacts, work_loads, dissipated; /* J: see mps_body_totals */
-  mps_reaction reaction[MPS_BODY_MAX_PARTS];
-  void *user; /* the solver that moves it, or NULL */
+  mps_reaction reaction[MPS_BODY_MAX_PARTS];    /* by all contacts */
+  mpsi_load pending;     /* N s, N m s: impulses by the contacts since the body last moved */
+  mps_contact *contacts; /* list: see contact.h */
 };
 
 /* Lists what changes of the body as it moves, and what it is. */
@@ -90,12 +91,6 @@ static inline void mpsi_body_velocity(const mpsi_pose *pose, const double *x, do
   v[1] = pose->v[1] + w[2] * r[0] - w[0] * r[2];
   v[2] = pose->v[2] + w[0] * r[1] - w[1] * r[0];
 }
-
-/* Contact stiffness k (N/m, 2D per unit thickness) of Nakamura (28) or (58) against particles of
- * `modulus` K + 4G/3 (Pa) and `spacing` (m) in cells of size `cell` (m). In axisymmetry the caller
- * multiplies by the radius. */
-double mpsi_body_penalty(const mps_body *body, double modulus, double spacing, double cell,
-                         double courant);
 
 /* Whether two bodies of one dimension overlap by more than `depth` (m, > 0): bodies that touch do
  * not. Two solids without a half space or sphere between them cost up to (size / depth)^2 distances
@@ -122,13 +117,16 @@ mps_status mpsi_body_check_length(mps_context *context, const char *function, co
 /* Puts a new body where its definition says. */
 void mpsi_body_begin(mps_body *body);
 
-/* A solver takes the body: retained, and refused to others. False when another solver has it. */
-bool mpsi_body_take(mps_body *body, void *user);
-void mpsi_body_give(mps_body *body); /* back, and released; accepts NULL */
+/* Distance (m) of the furthest point of the surface from the reference point; 0 of half spaces. */
+double mpsi_body_extent(const mps_body *body);
 
-/* Writes the forces that act in the step of dt that begins, `count` contacts and load[] per part.
- */
+/* Adds the forces of a step of dt by one contact, load[] and number of particles per part; the
+ * body's present forces become those. */
 void mpsi_body_react(mps_body *body, double dt, const mpsi_load *load, const int64_t *contacts);
+/* The sum of the reactions of all `parts` (part -1), or that of one. */
+mps_status mpsi_body_sum_reaction(mps_context *context, const char *function,
+                                  const mps_reaction *reaction, int32_t parts, int32_t part,
+                                  mps_reaction *out);
 /* Moves the body on by dt: see mps_body_advance. */
 void mpsi_body_advance(mps_body *body, double dt);
 

@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body.h"
 
+#include "contact.h"
 #include "core/retain.h"
 #include "rotation.h"
 
@@ -163,12 +164,9 @@ void mpsi_body_advance(mps_body *body, double dt) {
       follow(body);
     return;
   }
-  mpsi_load contact = {{0}, {0}};
-  for (int32_t part = 0; part < body->parts; part++)
-    for (int c = 0; c < 3; c++) {
-      contact.force[c] += body->reaction[part].force[c];
-      contact.moment[c] += body->reaction[part].moment[c];
-    }
+  mpsi_load contact = body->pending;
+  for (int c = 0; c < 3; c++) contact.force[c] /= dt, contact.moment[c] /= dt;
+  memset(&body->pending, 0, sizeof body->pending);
   push(body, &contact, dt);
   if (body->dim == 2)
     spin_in_plane(body, &contact, dt);
@@ -181,9 +179,10 @@ mps_status mps_body_advance(mps_body *body, double dt) {
   if (!isfinite(dt) || dt <= 0.0)
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
                      "dt is %g s, must be finite and > 0", dt);
-  if (body->user)
+  if (mpsi_body_mover(body))
     return mpsi_fail(body->context, __func__, MPS_ERROR_STATE,
-                     "a solver moves this body: destroy the solver first");
+                     "a solver moves this body: end that contact first, or make it with mover 1 "
+                     "(other)");
   mpsi_body_advance(body, dt);
   return MPS_OK;
 }

@@ -18,21 +18,22 @@ void mpsi_body_react(mps_body *body, double dt, const mpsi_load *load, const int
       r->moment[c] = load[part].moment[c];
       r->impulse[c] += dt * load[part].force[c];
       r->moment_impulse[c] += dt * load[part].moment[c];
+      body->pending.force[c] += dt * load[part].force[c];
+      body->pending.moment[c] += dt * load[part].moment[c];
     }
     r->count = contacts[part];
   }
 }
 
-mps_status mps_body_get_reaction_sized(mps_body *body, int32_t part, mps_reaction *out,
-                                       size_t size) {
-  static const char function[] = "mps_body_get_reaction";
-  if (!body) return MPS_ERROR_ARGUMENT;
-  if (part < -1 || part >= body->parts)
-    return mpsi_fail(body->context, function, MPS_ERROR_ARGUMENT,
-                     "part is %d, allowed are 0 to %d, and -1 for all", part, body->parts - 1);
+mps_status mpsi_body_sum_reaction(mps_context *context, const char *function,
+                                  const mps_reaction *reaction, int32_t parts, int32_t part,
+                                  mps_reaction *out) {
+  if (part < -1 || part >= parts)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "part is %d, allowed are 0 to %d, and -1 for all", part, parts - 1);
   mps_reaction sum = {0};
-  for (int32_t p = part < 0 ? 0 : part; p < (part < 0 ? body->parts : part + 1); p++) {
-    const mps_reaction *r = &body->reaction[p];
+  for (int32_t p = part < 0 ? 0 : part; p < (part < 0 ? parts : part + 1); p++) {
+    const mps_reaction *r = &reaction[p];
     for (int c = 0; c < 3; c++) {
       sum.force[c] += r->force[c];
       sum.moment[c] += r->moment[c];
@@ -42,6 +43,18 @@ mps_status mps_body_get_reaction_sized(mps_body *body, int32_t part, mps_reactio
     sum.count += r->count;
     sum.work += r->work;
   }
+  *out = sum;
+  return MPS_OK;
+}
+
+mps_status mps_body_get_reaction_sized(mps_body *body, int32_t part, mps_reaction *out,
+                                       size_t size) {
+  static const char function[] = "mps_body_get_reaction";
+  if (!body) return MPS_ERROR_ARGUMENT;
+  mps_reaction sum;
+  const mps_status status =
+      mpsi_body_sum_reaction(body->context, function, body->reaction, body->parts, part, &sum);
+  if (status != MPS_OK) return status;
   return mpsi_out_write(body->context, function, out, size, &sum, sizeof sum);
 }
 

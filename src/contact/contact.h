@@ -7,17 +7,17 @@
 #ifndef MPSI_CONTACT_H
 #define MPSI_CONTACT_H
 
-#include "body/body.h"
+#include "body/contact.h"
 
 /* ---- a particle at a surface ----------------------------------------------------------------- */
 
-/* How stiff a contact is: see mpsi_body_penalty. */
+/* How stiff a contact is: see mpsi_contact_penalty. */
 typedef struct mpsi_contact_law {
-  double gap;     /* m, l_p: a particle closer than that to the surface touches it */
+  double spacing; /* m, of the particles */
   double modulus; /* Pa, K + 4G/3 of the particle's material */
   double cell;    /* m */
   double courant;
-  double weight; /* factor of the stiffness: 1, or the radius (m) in axisymmetry */
+  double weight; /* factor of the stiffness: measure, and the radius (m) in axisymmetry */
 } mpsi_contact_law;
 
 typedef struct mpsi_contact_particle {
@@ -25,17 +25,20 @@ typedef struct mpsi_contact_particle {
   double force[3]; /* normal force on the particle, N */
   double slip[3];  /* velocity of the surface less that of the particle's material there, m/s */
   int32_t part;    /* of the surface */
+  double depth;    /* m, below the surface; negative above */
 } mpsi_contact_particle;
 
 /* The contact of the particle at out->x, with velocity v and its gradient L (dim x dim, rows; 1/s);
  * false where it does not touch the body. */
-static inline bool mpsi_contact_find(const mps_body *body, int dim, const mpsi_contact_law *law,
-                                     const double *v, const double *L, mpsi_contact_particle *out) {
+static inline bool mpsi_contact_find(const mps_contact *contact, int dim,
+                                     const mpsi_contact_law *law, const double *v, const double *L,
+                                     mpsi_contact_particle *out) {
+  const mps_body *body = contact->body;
   const mpsi_foot foot = mpsi_body_foot(body, out->x);
-  const double d = foot.distance - law->gap;
+  const double d = foot.distance - contact->def.offset;
   if (!(d < 0.0)) return false;
-  const double k =
-      law->weight * mpsi_body_penalty(body, law->modulus, 2.0 * law->gap, law->cell, law->courant);
+  const double k = law->weight * mpsi_contact_penalty(contact, law->modulus, law->spacing,
+                                                      law->cell, law->courant);
   double surface[3];
   mpsi_body_velocity(&body->pose, foot.at, surface);
   for (int c = 0; c < dim; c++) {
@@ -45,6 +48,7 @@ static inline bool mpsi_contact_find(const mps_body *body, int dim, const mpsi_c
     out->slip[c] = surface[c] - material;
   }
   out->part = body->part_of[foot.face];
+  out->depth = -foot.distance;
   return true;
 }
 
@@ -77,7 +81,7 @@ typedef struct mpsi_contact_node {
  * without and v with the forces of the step dt; `contact_mass` (kg) is that of all nodes in contact
  * with the body. It stops the sliding, but is at most friction times the normal force. False where
  * there is none. */
-bool mpsi_contact_friction(const mps_body *body, int dim, const mpsi_contact_node *at,
+bool mpsi_contact_friction(const mps_contact *contact, int dim, const mpsi_contact_node *at,
                            double contact_mass, const double *x, const double *v,
                            const double *before, double m, double dt, double *force);
 

@@ -24,7 +24,7 @@ static double stick_share(const mps_body *body, int dim, double contact_mass, co
   return 1.0 / (1.0 + contact_mass * inverse);
 }
 
-bool mpsi_contact_friction(const mps_body *body, int dim, const mpsi_contact_node *at,
+bool mpsi_contact_friction(const mps_contact *contact, int dim, const mpsi_contact_node *at,
                            double contact_mass, const double *x, const double *v,
                            const double *before, double m, double dt, double *force) {
   const double fn = sqrt(dot(at->force, at->force));
@@ -39,8 +39,8 @@ bool mpsi_contact_friction(const mps_body *body, int dim, const mpsi_contact_nod
   const double slip = sqrt(dot(s, s));
   if (!(slip > 0.0)) return false;
   for (int c = 0; c < 3; c++) s[c] /= slip;
-  const double stick = m * slip / dt * stick_share(body, dim, contact_mass, x, s);
-  const double f = fmin(stick, body->def.friction * fn);
+  const double stick = m * slip / dt * stick_share(contact->body, dim, contact_mass, x, s);
+  const double f = fmin(stick, contact->def.friction * fn);
   for (int c = 0; c < 3; c++) force[c] = -f * s[c];
   return true;
 }

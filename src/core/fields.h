@@ -75,9 +75,9 @@
   X(restoring_old, F64, MPSI_PER_FREEDOM, "m/s, rad/s",                                          \
     "M^-1 times beta times the restoring force of the previous step: displacements, then rotations",          \
     "explicit dynamics", "after a step or a run; part of a checkpoint")                            \
-  X(mass, F64, 1, "kg", "mass per unit thickness (plane strain) or per radian (axisymmetry)",      \
+  X(mass, F64, 1, "kg", "mass, of the solver's measure",      \
     "WLS-MPM", "after creation of the solver")                                                     \
-  X(volume, F64, 1, "m3", "volume per unit thickness (plane strain) or per radian (axisymmetry)",  \
+  X(volume, F64, 1, "m3", "volume, of the solver's measure",  \
     "the caller (initial state; 0: from the spacing); WLS-MPM", "after a step or a run")           \
   X(velocity_gradient, F64, MPSI_PER_GRADIENT, "1/s", "dv_i/dx_j row by row, in 2D then the hoop strain rate v_r/r", \
     "the caller (initial state); WLS-MPM", "after a step or a run")                                \
@@ -86,15 +86,13 @@
   X(deformation_gradient, F64, MPSI_PER_GRADIENT, "-", "F row by row, in 2D then the hoop or out-of-plane stretch", \
     "the caller (initial state; all 0: no deformation); WLS-MPM with a law that reads it", "after a step or a run") \
   X(external_force, F64, MPSI_PER_DIM, "N", "force on the particle, such as another code computes", \
-    "the caller", "as written; explicit dynamics reads it in each step") \
+    "the caller", "as written; solvers read it in each step") \
   X(body_acceleration, F64, MPSI_PER_DIM, "m/s2", "acceleration by forces on the particle's mass, besides gravity", \
-    "the caller", "as written; WLS-MPM reads it in each step if it is there at creation") \
+    "the caller", "as written; WLS-MPM reads it in each step") \
   X(temperature, F64, 1, "K", "temperature", \
     "the caller", "as written; the laws of WLS-MPM read it in each step if it is there at creation") \
   X(plastic_strain, F64, 1, "-", "sum of sqrt(2/3 de:de) over the plastic deviatoric strain increments", \
     "WLS-MPM with a plastic law of the library", "after a step or a run")                            \
-  X(external_force, F64, MPSI_PER_DIM, "N", "force on the particle, besides gravity and loads",      \
-    "the caller", "as written; solvers read it in each step")                                      \
   X(material, I64, 1, "-", "number of the law: 0 that of creation, then as mps_mpm_set_material met them", \
     "WLS-MPM (the caller only reads)", "after mps_mpm_set_material")
 /* clang-format on */

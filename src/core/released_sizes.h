@@ -9,9 +9,10 @@
 
 /* clang-format off */
 #define MPSI_RELEASED_SIZES(X) \
-  X(mps_body_def, mps_body_def_init, "0.2", 200) \
+  X(mps_body_def, mps_body_def_init, "0.2", 176) \
   X(mps_body_motion, mps_body_motion_init, "0.2", 104) \
   X(mps_checkpoint, mps_checkpoint_init, "0.2", 112) \
+  X(mps_contact_def, mps_contact_def_init, "0.2", 56) \
   X(mps_context_def, mps_context_def_init, "0.2", 104) \
   X(mps_drucker_prager_def, mps_drucker_prager_def_init, "0.2", 56) \
   X(mps_dynamics_boundary_def, mps_dynamics_boundary_def_init, "0.2", 152) \
@@ -27,7 +28,9 @@
   X(mps_geostatic_def, mps_geostatic_def_init, "0.2", 72) \
   X(mps_material_block, mps_material_block_init, "0.2", 312) \
   X(mps_mohr_coulomb_def, mps_mohr_coulomb_def_init, "0.2", 56) \
-  X(mps_mpm_def, mps_mpm_def_init, "0.2", 232) \
+  X(mps_mpm_boundary_def, mps_mpm_boundary_def_init, "0.2", 144) \
+  X(mps_mpm_def, mps_mpm_def_init, "0.2", 168) \
+  X(mps_mpm_load_def, mps_mpm_load_def_init, "0.2", 104) \
   X(mps_neighbours_def, mps_neighbours_def_init, "0.2", 24) \
   X(mps_newtonian_def, mps_newtonian_def_init, "0.2", 32) \
   X(mps_particles_def, mps_particles_def_init, "0.2", 40) \

@@ -17,7 +17,7 @@
 void mpsi_mpm_dash(const mps_mpm *mpm, const mpsi_hold *hold, mpsi_dash *dash, const double *node,
                    const double *before, double *velocity) {
   const double per_mass = mpm->run.dt / node[MPSI_MASS];
-  const bool settles = hold->finds && mpm->def.settle > 0.0;
+  const bool settles = hold->finds && hold->settle > 0.0;
   for (int c = 0; c < mpm->dim; c++) {
     const double v = node[MPSI_VECTOR + c], damping = c == hold->axis ? dash->across : dash->along;
     if (settles) {
@@ -111,8 +111,8 @@ static int compare(const mpsi_held *a, const mpsi_held *b) {
 void mpsi_mpm_place_dashes(mps_mpm *mpm, const mpsi_held *old, int64_t old_count,
                            const mpsi_dash *old_dash) {
   const int plane = mpm->grid.block_nodes / MPSI_SIDE;
-  for (int32_t k = 0; k < MPSI_WALLS; k++)
-    if (mpm->boundaries.hold[k].kind == MPS_WALL_ABSORBING) add_wall(mpm, k);
+  for (int32_t k = 0; k < MPSI_SIDES; k++)
+    if (mpm->boundaries.hold[k].kind == MPS_MPM_BOUNDARY_ABSORBING) add_wall(mpm, k);
   int64_t from = 0;
   for (int64_t t = 0; t < mpm->boundaries.held_count; t++) {
     const mpsi_held *held = &mpm->boundaries.held[t];

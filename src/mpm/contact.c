@@ -29,7 +29,7 @@ void mpsi_mpm_apply_friction(mps_mpm *mpm, int64_t g) {
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
     const int32_t b = mpm->contact.node_pair[t].body;
     mpsi_contact_node *at = mpm->contact.node + (int64_t)t * mpm->grid.block_nodes;
-    if (mpm->contact.body[b]->def.friction == 0.0 || mpm->contact.node_pair[t].mass == 0.0)
+    if (mpm->contact.handle[b]->def.friction == 0.0 || mpm->contact.node_pair[t].mass == 0.0)
       continue;
     for (int k = 0; k < mpm->grid.block_nodes; k++) {
       int place[3];
@@ -38,7 +38,7 @@ void mpsi_mpm_apply_friction(mps_mpm *mpm, int64_t g) {
       const double local[3] = {place[0], place[1], place[2]}, m = node[k][MPSI_MASS];
       mpsi_node_position(mpm, nodes->at, local, x);
       const bool rubs =
-          mpsi_contact_friction(mpm->contact.body[b], mpm->dim, &at[k], mpm->contact.mass[b], x,
+          mpsi_contact_friction(mpm->contact.handle[b], mpm->dim, &at[k], mpm->contact.mass[b], x,
                                 node[k] + MPSI_VECTOR, side[k] + MPSI_VECTOR, m, mpm->run.dt, f);
       for (int c = 0; c < 3; c++) {
         at[k].slip[c] = rubs ? f[c] / at[k].mass : 0.0;
@@ -64,7 +64,6 @@ void mpsi_mpm_update_bodies(mps_mpm *mpm) {
         contacts[part] += pair->contacts[part];
       }
     }
-    mpsi_body_react(mpm->contact.body[b], mpm->run.dt, load, contacts);
-    mpsi_body_advance(mpm->contact.body[b], mpm->run.dt);
+    mpsi_contact_react(mpm->contact.handle[b], mpm->run.dt, load, contacts);
   }
 }

@@ -7,19 +7,21 @@
 
 /* False where the particle does not touch the body. The state of the particle is that at the
  * beginning of the step. */
-MPSI_INLINE bool mpsi_find_contact(const mps_mpm *mpm, const mps_body *body, int dim,
+MPSI_INLINE bool mpsi_find_contact(const mps_mpm *mpm, const mps_contact *contact, int dim,
                                    int64_t particle, mpsi_contact_particle *out) {
   const mpsi_columns *p = &mpm->p;
   double v[3], L[9];
   *out = (mpsi_contact_particle){.part = 0};
   for (int c = 0; c < dim; c++) out->x[c] = p->x[c][particle], v[c] = p->v[c][particle];
   for (int c = 0; c < dim * dim; c++) L[c] = p->L[c][particle];
-  const mpsi_contact_law law = {.gap = mpm->contact.gap,
+  const mpsi_contact_law law = {.spacing = mps_particles_spacing(mpm->particles),
                                 .modulus = mpsi_law_of(mpm, particle)->modulus,
                                 .cell = mpm->def.cell,
                                 .courant = mpm->def.courant,
-                                .weight = mpm->def.geometry == MPS_AXISYMMETRIC ? out->x[0] : 1.0};
-  return mpsi_contact_find(body, dim, &law, v, L, out);
+                                .weight = mpm->def.geometry == MPS_MPM_AXISYMMETRIC
+                                              ? mpm->def.measure * out->x[0]
+                                              : mpm->def.measure};
+  return mpsi_contact_find(contact, dim, &law, v, L, out);
 }
 
 #endif

@@ -52,12 +52,12 @@ static box near_bodies(const mps_mpm *mpm, const mpsi_cell_block *cells) {
 static void mark_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const box *near, bool finds) {
   static const int32_t low[3] = {0}, high[3] = {MPSI_SIDE, MPSI_SIDE, MPSI_SIDE};
   const bool all =
-      mpm->def.transfer == MPS_TRANSFER_WEIGHT || mpm->flip > 0.0 || (finds && cells->edge);
+      mpm->def.transfer == MPS_MPM_TRANSFER_WEIGHT || mpm->flip > 0.0 || (finds && cells->edge);
   bool rough = false;
   for (int32_t k = 0; cells->inside && k < cells->pairs; k++)
     rough =
         rough ||
-        mpm->contact.body[mpm->contact.cell_pair[cells->first_pair + k].body]->def.friction > 0.0;
+        mpm->contact.handle[mpm->contact.cell_pair[cells->first_pair + k].body]->def.friction > 0.0;
   for (int q = 0; q < 1 << mpm->dim; q++) {
     mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
     box under = box_under(cells, q, low, high);
@@ -74,8 +74,10 @@ static void mark_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const box *near
  * which divides momentum and force by different masses. */
 static mps_status find_cut(mps_mpm *mpm, const char *function) {
   bool finds = false; /* an absorbing wall asks for the forces of its first step */
-  for (int32_t k = 0; k < MPSI_WALLS && !(mpm->def.settle > 0.0); k++)
-    finds = finds || mpm->boundaries.hold[k].finds;
+  for (int32_t k = 0; k < MPSI_SIDES; k++) {
+    const mpsi_hold *hold = &mpm->boundaries.hold[k];
+    finds = finds || (hold->finds && !(hold->settle > 0.0));
+  }
   for (int64_t g = 0; g < mpm->grid.node_count; g++)
     mpm->grid.nodes[g].side = -1, mpm->grid.nodes[g].split = false;
   mpm->grid.side_count = 0;

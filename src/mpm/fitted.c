@@ -223,7 +223,7 @@ MPSI_INLINE source source_of(const mps_mpm *mpm, int dim, int64_t p) {
       out.stress[d][1 + a] = -c->V[p] * c->s[symmetric[a][d]][p];
     }
   }
-  if (mpm->def.geometry == MPS_AXISYMMETRIC) out.body[1] -= c->V[p] * c->s[2][p] / c->x[0][p];
+  if (mpm->def.geometry == MPS_MPM_AXISYMMETRIC) out.body[1] -= c->V[p] * c->s[2][p] / c->x[0][p];
   return out;
 }
 
@@ -246,7 +246,7 @@ MPSI_INLINE under nodes_under(const mps_mpm *mpm, const mpsi_cell_block *cells, 
 
 MPSI_INLINE void scatter(mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline, int64_t p,
                          const support *at, const mpsi_shape_values *f) {
-  const bool by_weight = mpm->def.transfer == MPS_TRANSFER_WEIGHT;
+  const bool by_weight = mpm->def.transfer == MPS_MPM_TRANSFER_WEIGHT;
   const double m = mpm->p.m[p];
   const source s = source_of(mpm, dim, p);
   const under to = nodes_under(mpm, cells, dim);
@@ -288,9 +288,10 @@ MPSI_INLINE void scatter_contact(mps_mpm *mpm, const mpsi_cell_block *cells, int
                                  mpsi_cell_pair *pair) {
   const mps_body *body = mpm->contact.body[pair->body];
   mpsi_contact_particle c;
-  if (!mpsi_find_contact(mpm, body, dim, p, &c)) return;
+  if (!mpsi_find_contact(mpm, mpm->contact.handle[pair->body], dim, p, &c)) return;
   pair->touched = true;
   pair->contacts[c.part]++;
+  if (c.depth > pair->deepest) pair->deepest = c.depth, pair->deep = p;
   double arm[3], reaction[3];
   for (int a = 0; a < 3; a++) arm[a] = c.x[a] - body->pose.x[a], reaction[a] = -c.force[a];
   mpsi_contact_add_load(&pair->load[c.part], arm, reaction);
@@ -314,7 +315,8 @@ MPSI_INLINE void share_friction(mps_mpm *mpm, const mpsi_cell_block *cells, int 
                                 mpsi_cell_pair *pair) {
   const mps_body *body = mpm->contact.body[pair->body];
   mpsi_contact_particle c;
-  if (!pair->touched || body->def.friction == 0.0 || !mpsi_find_contact(mpm, body, dim, p, &c))
+  if (!pair->touched || mpm->contact.handle[pair->body]->def.friction == 0.0 ||
+      !mpsi_find_contact(mpm, mpm->contact.handle[pair->body], dim, p, &c))
     return;
   FOR_NODES(dim, spline) {
     if (f->w[n] == 0.0) continue;

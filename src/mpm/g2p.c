@@ -111,7 +111,7 @@ MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cell_block *cells, int geometry,
         outside |= there & ~good;
         left |= there & ~here;
         store_some(p->v[c] + at, a[1 + c], n - k);
-        if (geometry == MPS_AXISYMMETRIC && c == 0) store_some(p->L[4] + at, a[1] / x, n - k);
+        if (geometry == MPS_MPM_AXISYMMETRIC && c == 0) store_some(p->L[4] + at, a[1] / x, n - k);
         store_some(p->x[c] + at, to, n - k);
       }
     }
@@ -140,7 +140,7 @@ static int64_t keep_inside(mps_mpm *mpm, int64_t begin, int64_t end) {
       const double X = mpsi_grid_coordinate(mpm, c, *x);
       const double low = (double)mpm->grid.low[c], high = (double)mpm->grid.high[c];
       if (X >= low && X <= high) continue;
-      const bool axis = mpm->def.geometry == MPS_AXISYMMETRIC && c == 0 && !(*x > 0.0);
+      const bool axis = mpm->def.geometry == MPS_MPM_AXISYMMETRIC && c == 0 && !(*x > 0.0);
       if (axis || !(X >= low - BEYOND && X <= high + BEYOND)) return k;
       const double wall = X < low ? low : high, inwards = X < low ? INFINITY : -INFINITY;
       *x = mpm->def.origin[c] + mpm->def.cell * wall;
@@ -155,11 +155,13 @@ MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cell_block *cells, int dim,
   const mpsi_columns *p = &mpm->p;
   const double *v0 = p->v[0] + begin, *v1 = p->v[1] + begin, *v2 = dim == 3 ? p->v[2] + begin : v1;
   const double *V = p->V + begin, *m = p->m + begin;
+  const double moving = mpm->def.step_from == MPS_MPM_STEP_FROM_SPEED ? 1.0 : 0.0;
   double speed[MPSI_CHUNK];
   MPSI_SIMD for (int k = 0; k < n; k++) {
     double square = v0[k] * v0[k] + v1[k] * v1[k];
     if (dim == 3) square += v2[k] * v2[k];
-    speed[k] = sqrt((moduli ? moduli[k] : mpm->laws.law[0].modulus) * V[k] / m[k]) + sqrt(square);
+    speed[k] =
+        sqrt((moduli ? moduli[k] : mpm->laws.law[0].modulus) * V[k] / m[k]) + moving * sqrt(square);
   }
   double largest[4] = {0.0};
   int64_t good = 1;

@@ -14,7 +14,7 @@ typedef void (*mpsi_fit_fn)(const mps_mpm *mpm, const mpsi_cell_block *cells,
                             mpsi_shape_values *out);
 
 typedef struct mpsi_kernels {
-  /* By geometry (mps_geometry) and degree of the spline less 2. */
+  /* By geometry (mps_mpm_geometry) and degree of the spline less 2. */
   const mpsi_mpm_task (*p2g)[2]; /* a block of cells, of the colour in work, to its nodes */
   const mpsi_mpm_task (*g2p)[2]; /* from the nodes: velocities, places; then law and speed */
   mpsi_mpm_task speed;           /* largest speed of a block, by itself */

@@ -21,7 +21,7 @@ static mps_material_block columns_of(const mps_mpm *mpm, const mpsi_law_use *law
   const int tensors = mpm->dim == 3 ? 9 : 5;
   for (int c = 0; c < tensors; c++) {
     const int to = mpm->dim == 3 ? c : planar[c];
-    if (mpm->def.geometry != MPS_PLANE_STRAIN || c < 4) block.gradient[to] = p->L[c] + begin;
+    if (mpm->def.geometry != MPS_MPM_PLANE_STRAIN || c < 4) block.gradient[to] = p->L[c] + begin;
     if (law->needs_deformation) block.deformation[to] = p->F[c] + begin;
   }
   for (int c = 0; c < 2 * mpm->dim; c++) block.stress[c] = p->s[c] + begin;

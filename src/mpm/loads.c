@@ -1,6 +1,6 @@
-/* loads.c - forces on particles besides gravity: accelerations of the field `body_acceleration`,
- * and dead loads on lists of particles, which are found by their ids so that sorting does not
- * matter. SPDX-License-Identifier: BSD-3-Clause */
+/* loads.c - forces on particles besides gravity: the fields `body_acceleration` and
+ * `external_force`, and dead loads on lists of particles, which are found by their ids so that
+ * sorting does not matter. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_private.h"
 
 #include "core/particles_internal.h"
@@ -25,39 +25,63 @@ static void begin_forces(mps_mpm *mpm, int64_t b, int32_t worker) {
   (void)worker;
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   for (int c = 0; c < mpm->dim; c++) {
-    const double *a = mpm->loads.body_acceleration[c];
+    const double *a = mpm->loads.body_acceleration[c], *f = mpm->loads.external_force[c];
     for (int64_t k = cells->begin; k < cells->end; k++)
-      mpm->p.f[c][k] = a ? mpm->p.m[k] * a[k] : 0.0;
+      mpm->p.f[c][k] = (a ? mpm->p.m[k] * a[k] : 0.0) + (f ? f[k] : 0.0);
   }
 }
 
 static double area_by_spacing(const mps_mpm *mpm, int64_t particle) {
-  const double spacing = 2.0 * mpm->contact.gap;
+  const double spacing = mps_particles_spacing(mpm->particles);
   if (mpm->dim == 3) return spacing * spacing;
-  return mpm->def.geometry == MPS_AXISYMMETRIC ? spacing * mpm->p.x[0][particle] : spacing;
+  const double radius = mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? mpm->p.x[0][particle] : 1.0;
+  return spacing * mpm->def.measure * radius;
 }
 
 static void add_traction(mps_mpm *mpm, const mpsi_traction *load) {
-  const double now = load->signal ? mps_signal_displacement(load->signal, mpm->run.time) : 1.0;
+  double traction[3] = {0.0};
+  for (int c = 0; c < mpm->dim; c++) {
+    const mps_signal *signal = load->signal[c];
+    const double value = signal ? mps_signal_displacement(signal, mpm->run.time) : 1.0;
+    traction[c] = load->factor[c] * value * load->traction[c];
+  }
   for (int64_t k = 0; k < load->count; k++) {
     const int64_t particle = mps_particles_index(mpm->particles, load->id[k]);
-    const double by = now * (load->area ? load->area[k] : area_by_spacing(mpm, particle));
-    for (int c = 0; c < mpm->dim; c++) mpm->p.f[c][particle] += by * load->traction[c];
+    if (particle < 0) continue; /* removed */
+    const double area = load->area ? load->area[k] : area_by_spacing(mpm, particle);
+    for (int c = 0; c < mpm->dim; c++) mpm->p.f[c][particle] += area * traction[c];
   }
 }
 
-void mpsi_mpm_find_forces(mps_mpm *mpm) {
-  if (!mpm->loads.force_memory) return;
+mps_status mpsi_mpm_find_forces(mps_mpm *mpm, const char *function) {
+  mpsi_loads *loads = &mpm->loads;
+  for (int c = 0; c < mpm->dim; c++) { /* may be added, and moved, between steps */
+    loads->body_acceleration[c] = mpsi_particles_column(mpm->particles, "body_acceleration", c);
+    loads->external_force[c] = mpsi_particles_column(mpm->particles, "external_force", c);
+  }
+  if (loads->body_acceleration[0] || loads->external_force[0]) {
+    const mps_status status = mpsi_mpm_make_forces(mpm, function);
+    if (status != MPS_OK) return status;
+  }
+  if (!loads->force_memory) return MPS_OK;
   mpsi_mpm_for_cells(mpm, begin_forces);
-  for (int32_t k = 0; k < mpm->loads.count; k++) add_traction(mpm, &mpm->loads.traction[k]);
+  for (int32_t k = 0; k < loads->count; k++) add_traction(mpm, &loads->traction[k]);
+  return MPS_OK;
 }
 
 /* ---- loads ----------------------------------------------------------------------------------- */
 
+static const mps_mpm_load_def load_defaults = {.struct_size = sizeof(mps_mpm_load_def),
+                                               .factor = {1.0, 1.0, 1.0}};
+
+mps_status mps_mpm_load_def_init(mps_mpm_load_def *def, size_t size) {
+  return MPSI_DEF_INIT(mps_mpm_load_def, def, size, &load_defaults);
+}
+
 static void drop(mps_mpm *mpm, mpsi_traction *load) {
   mpsi_free(mpm->context, load->id);
   mpsi_free(mpm->context, load->area);
-  mps_signal_destroy(&load->signal);
+  for (int c = 0; c < 3; c++) mps_signal_destroy(&load->signal[c]);
   memset(load, 0, sizeof *load);
 }
 
@@ -66,88 +90,119 @@ void mpsi_mpm_drop_loads(mps_mpm *mpm) {
   mpsi_free(mpm->context, mpm->loads.traction);
 }
 
-static mps_status check_traction(mps_mpm *mpm, const char *function, const double *traction) {
-  if (!traction) return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "traction is NULL");
-  for (int c = 0; c < mpm->dim; c++)
-    if (!isfinite(traction[c]))
-      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                       "traction[%d] is %g Pa, must be finite", c, traction[c]);
-  return MPS_OK;
-}
-
-static mps_status check_list(mps_mpm *mpm, const char *function, int64_t count, const int64_t *ids,
-                             const double *area) {
-  if (count < 1 || count > mpm->p.count || !ids)
+static mps_status check_list(mps_mpm *mpm, const char *function, const mps_mpm_load_def *def) {
+  if (def->id_count < 1 || def->id_count > mpm->p.count || !def->ids)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "count is %lld and ids %s, allowed are 1 to %lld particles", (long long)count,
-                     ids ? "given" : "NULL", (long long)mpm->p.count);
-  for (int64_t k = 0; k < count; k++) {
-    if (mps_particles_index(mpm->particles, ids[k]) < 0)
+                     "id_count is %lld and ids %s, allowed are 1 to %lld particles",
+                     (long long)def->id_count, def->ids ? "given" : "NULL",
+                     (long long)mpm->p.count);
+  for (int64_t k = 0; k < def->id_count; k++) {
+    if (mps_particles_index(mpm->particles, def->ids[k]) < 0)
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                       "ids[%lld] is %lld, allowed are 0 to %lld", (long long)k, (long long)ids[k],
-                       (long long)mpm->p.count - 1);
-    if (area && !isfinite(area[k]))
+                       "ids[%lld] is %lld, which is no particle of the set", (long long)k,
+                       (long long)def->ids[k]);
+    if (def->area && !isfinite(def->area[k]))
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                       "area[%lld] is %g m2, must be finite", (long long)k, area[k]);
+                       "area[%lld] is %g m2, must be finite", (long long)k, def->area[k]);
   }
   return MPS_OK;
 }
 
-static void take(mps_mpm *mpm, mpsi_traction *load, const double *traction, mps_signal *signal) {
-  mps_signal *old = load->signal;
-  memcpy(load->traction, traction, (size_t)mpm->dim * sizeof *traction);
-  load->signal = signal ? mpsi_signal_retain(signal) : NULL;
-  mps_signal_destroy(&old);
+static mps_status read_def(mps_mpm *mpm, const char *function, const mps_mpm_load_def *user,
+                           mps_mpm_load_def *def) {
+  *def = load_defaults;
+  if (!user) return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "def is NULL");
+  const mps_status status = MPSI_DEF_READ(mpm->context, function, mps_mpm_load_def, user, def);
+  for (int c = 0; c < mpm->dim && status == MPS_OK; c++)
+    if (!isfinite(def->traction[c]) || !isfinite(def->factor[c]))
+      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "traction[%d] is %g Pa and factor[%d] %g, must be finite", c,
+                       def->traction[c], c, def->factor[c]);
+  return status;
 }
 
-mps_status mps_mpm_add_load(mps_mpm *mpm, int64_t count, const int64_t *ids, const double *area,
-                            const double *traction, mps_signal *signal, int32_t *number) {
+static void take_traction(mpsi_traction *load, const mps_mpm_load_def *def) {
+  for (int c = 0; c < 3; c++) {
+    mps_signal *old = load->signal[c];
+    load->traction[c] = def->traction[c];
+    load->factor[c] = def->factor[c];
+    load->signal[c] = def->signal[c] ? mpsi_signal_retain(def->signal[c]) : NULL;
+    mps_signal_destroy(&old);
+  }
+}
+
+/* Copies of the ids and areas. */
+static mps_status copy_list(mps_mpm *mpm, const char *function, const mps_mpm_load_def *def,
+                            mpsi_traction *out) {
+  const size_t bytes = (size_t)def->id_count * 8;
+  out->id = mpsi_alloc(mpm->context, def->id_count, sizeof *out->id);
+  if (out->id && def->area) out->area = mpsi_alloc(mpm->context, def->id_count, sizeof *out->area);
+  if (!out->id || (def->area && !out->area)) {
+    mpsi_free(mpm->context, out->id);
+    out->id = NULL;
+    return mpsi_fail_memory(mpm->context, function, bytes);
+  }
+  out->count = def->id_count;
+  memcpy(out->id, def->ids, bytes);
+  if (def->area) memcpy(out->area, def->area, bytes);
+  return MPS_OK;
+}
+
+mps_status mps_mpm_add_load(mps_mpm *mpm, const mps_mpm_load_def *user, int32_t *number) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  if (!number) return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "load is NULL");
-  mps_status status = check_list(mpm, __func__, count, ids, area);
-  if (status == MPS_OK) status = check_traction(mpm, __func__, traction);
+  mps_mpm_load_def def;
+  mps_status status = mpsi_mpm_between_steps(mpm, __func__);
+  if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
+  if (status == MPS_OK && !number)
+    status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "number is NULL");
+  if (status == MPS_OK) status = check_list(mpm, __func__, &def);
+  if (status == MPS_OK) status = mpsi_mpm_make_forces(mpm, __func__);
   if (status != MPS_OK) return status;
-  mpsi_traction made = {.count = count};
-  const size_t bytes = (size_t)count * 8;
+  mpsi_traction made = {.count = 0};
   int32_t at = 0;
   while (at < mpm->loads.count && mpm->loads.traction[at].count > 0) at++;
-  made.id = mpsi_alloc(mpm->context, count, sizeof *ids);
-  bool good = made.id != NULL;
-  if (good && area) good = (made.area = mpsi_alloc(mpm->context, count, sizeof *area)) != NULL;
-  void *list = mpm->loads.traction;
-  if (good && at == mpm->loads.count)
-    good = mpsi_grow(mpm->context, &list, at, at + 1, sizeof *mpm->loads.traction);
-  if (good) {
+  if (at == mpm->loads.count) {
+    void *list = mpm->loads.traction;
+    if (!mpsi_grow(mpm->context, &list, at, at + 1, sizeof *mpm->loads.traction))
+      return mpsi_fail_memory(mpm->context, __func__, sizeof *mpm->loads.traction);
     mpm->loads.traction = list;
-    if (at == mpm->loads.count) mpm->loads.count++;
-    good = mpsi_mpm_make_forces(mpm, __func__) == MPS_OK;
+    mpm->loads.count++;
   }
-  if (!good) {
-    drop(mpm, &made);
-    return mpsi_fail_memory(mpm->context, __func__, bytes);
-  }
-  memcpy(made.id, ids, bytes);
-  if (area) memcpy(made.area, area, bytes);
-  take(mpm, &made, traction, signal);
+  status = copy_list(mpm, __func__, &def, &made);
+  if (status != MPS_OK) return status;
+  take_traction(&made, &def);
   mpm->loads.traction[at] = made;
   *number = at;
   return MPS_OK;
 }
 
 static mps_status find_load(mps_mpm *mpm, const char *function, int32_t number) {
+  const mps_status status = mpsi_mpm_between_steps(mpm, function);
+  if (status != MPS_OK) return status;
   if (number >= 0 && number < mpm->loads.count && mpm->loads.traction[number].count > 0)
     return MPS_OK;
   return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                    "load is %d, must be a number that mps_mpm_add_load gave", number);
 }
 
-mps_status mps_mpm_set_load(mps_mpm *mpm, int32_t number, const double *traction,
-                            mps_signal *signal) {
+mps_status mps_mpm_set_load(mps_mpm *mpm, int32_t number, const mps_mpm_load_def *user) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_mpm_load_def def;
   mps_status status = find_load(mpm, __func__, number);
-  if (status == MPS_OK) status = check_traction(mpm, __func__, traction);
-  if (status == MPS_OK) take(mpm, &mpm->loads.traction[number], traction, signal);
-  return status;
+  if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
+  if (status != MPS_OK) return status;
+  mpsi_traction *load = &mpm->loads.traction[number];
+  if (def.ids || def.id_count != 0 || def.area) {
+    mpsi_traction list = {.count = 0};
+    status = check_list(mpm, __func__, &def);
+    if (status == MPS_OK) status = copy_list(mpm, __func__, &def, &list);
+    if (status != MPS_OK) return status;
+    mpsi_free(mpm->context, load->id);
+    mpsi_free(mpm->context, load->area);
+    load->count = list.count, load->id = list.id, load->area = list.area;
+  }
+  take_traction(load, &def);
+  return MPS_OK;
 }
 
 mps_status mps_mpm_remove_load(mps_mpm *mpm, int32_t number) {

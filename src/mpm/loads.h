@@ -10,20 +10,21 @@ typedef struct mpsi_traction {
   int64_t count; /* 0: none */
   int64_t *id;
   double *area; /* NULL: by the spacing */
-  double traction[3];
-  mps_signal *signal;
+  double traction[3], factor[3];
+  mps_signal *signal[3];
 } mpsi_traction;
 
 typedef struct mpsi_loads {
   mpsi_traction *traction;
   int32_t count;
   double *body_acceleration[3]; /* m/s2; NULL where the set has no such field */
+  double *external_force[3];    /* N; likewise */
   double *force_memory;         /* of the column f */
 } mpsi_loads;
 
-/* loads.c: body accelerations and loads of the step to the column f. */
+/* loads.c: fields of forces and loads of the step to the column f. */
 mps_status mpsi_mpm_make_forces(mps_mpm *mpm, const char *function);
-void mpsi_mpm_find_forces(mps_mpm *mpm);
+mps_status mpsi_mpm_find_forces(mps_mpm *mpm, const char *function);
 void mpsi_mpm_drop_loads(mps_mpm *mpm);
 
 #endif

@@ -8,13 +8,19 @@
 
 #define ON_NODE 1e-6 /* cells: a wall this close to a node is on it */
 #define MAX_COUNT INT32_MAX
-#define OVERLAP 0.1 /* cells: bodies may by so much */
-#define THIN 2.0    /* cells: walls below let momentum through */
+#define FAR 1e9 /* m, m/s2, s: what has a sane size is within */
+#define LEAST_MEASURE 1e-9
+#define FINEST 0.5 /* spacings: cells that are smaller, or larger than COARSEST, are slips */
+#define COARSEST 100.0
+#define DENSITY_MIN 1e-9 /* kg/m3 */
+#define DENSITY_MAX 1e12
 
 static const mps_mpm_def mpm_defaults = {.struct_size = sizeof(mps_mpm_def),
                                          .spline = 3,
                                          .lower = {-INFINITY, -INFINITY, -INFINITY},
                                          .upper = {INFINITY, INFINITY, INFINITY},
+                                         .measure = NAN,
+                                         .dt = NAN,
                                          .courant = 0.5,
                                          .flip = 1.0};
 
@@ -26,63 +32,68 @@ mps_status mps_mpm_def_init(mps_mpm_def *def, size_t size) {
 
 static const char create[] = "mps_mpm_create";
 
-static int dim_of(const mps_mpm_def *d) { return d->geometry == MPS_SPACE ? 3 : 2; }
+static int dim_of(const mps_mpm_def *d) { return d->geometry == MPS_MPM_SPACE ? 3 : 2; }
 
 static mps_status check_choices(mps_context *context, const mps_mpm_def *d) {
-  if (d->geometry < MPS_PLANE_STRAIN || d->geometry > MPS_SPACE)
+  if (d->geometry < MPS_MPM_PLANE_STRAIN || d->geometry > MPS_MPM_SPACE)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "geometry is %d, allowed are 0 (plane strain), 1 (axisymmetric) and 2 (space)",
                      d->geometry);
   if (d->spline != 2 && d->spline != 3)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "spline is %d, allowed are 2 and 3",
                      d->spline);
-  if (d->transfer != MPS_TRANSFER_SHAPE && d->transfer != MPS_TRANSFER_WEIGHT)
+  if (d->transfer != MPS_MPM_TRANSFER_SHAPE && d->transfer != MPS_MPM_TRANSFER_WEIGHT)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "transfer is %d, allowed are 0 (shape) and 1 (weight)", d->transfer);
-  if (d->volumetric != MPS_VOLUMETRIC_POINT && d->volumetric != MPS_VOLUMETRIC_CELL)
+  if (d->volumetric != MPS_MPM_VOLUMETRIC_POINT && d->volumetric != MPS_MPM_VOLUMETRIC_CELL)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "volumetric is %d, allowed are 0 (point) and 1 (cell)", d->volumetric);
-  if (d->scheme != MPS_SCHEME_WLS && d->scheme != MPS_SCHEME_STANDARD)
+  if (d->scheme != MPS_MPM_SCHEME_WLS && d->scheme != MPS_MPM_SCHEME_STANDARD)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "scheme is %d, allowed are 0 (WLS) and 1 (standard)", d->scheme);
-  for (int c = 0; c < dim_of(d); c++)
-    for (int side = 0; side < 2; side++) {
-      const bool on_axis =
-          d->geometry == MPS_AXISYMMETRIC && c == 0 && side == 0 && !(d->lower[0] > 0.0);
-      const mps_status status = mpsi_mpm_check_wall(
-          context, create, c, side == 1, side ? d->wall_upper[c] : d->wall_lower[c],
-          side ? d->wall_friction_upper[c] : d->wall_friction_lower[c], on_axis,
-          d->scheme == MPS_SCHEME_STANDARD);
-      if (status != MPS_OK) return status;
-    }
+  if (d->step_from != MPS_MPM_STEP_FROM_SPEED && d->step_from != MPS_MPM_STEP_FROM_WAVE)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "step_from is %d, allowed are 0 (speed) and 1 (wave)", d->step_from);
   return MPS_OK;
 }
 
 static mps_status check_numbers(mps_context *context, const mps_mpm_def *d) {
-  if (!isfinite(d->cell) || d->cell <= 0.0)
-    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "cell is %g m, must be finite and > 0",
-                     d->cell);
-  if (!isfinite(d->dt) || d->dt < 0.0)
+  if (!(d->cell > 0.0 && d->cell <= FAR))
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                     "dt is %g s, must be > 0, or 0 for the largest stable one", d->dt);
+                     "cell is %g m, must be > 0 and at most %g", d->cell, FAR);
+  if (!isnan(d->dt) && !(d->dt >= MPSI_MPM_LEAST_DT && d->dt <= FAR))
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "dt is %g s, must be at least %g s, or NaN for a step that follows the limit",
+                     d->dt, MPSI_MPM_LEAST_DT);
   if (!(d->courant > 0.0 && d->courant <= 1.0))
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "courant is %g, must be in (0, 1]",
                      d->courant);
-  if (!isfinite(d->settle) || d->settle < 0.0)
-    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "settle is %g s, must be finite and >= 0",
-                     d->settle);
-  if (!(d->flip >= 0.0 && d->flip <= 1.0) || (d->scheme == MPS_SCHEME_WLS && d->flip != 1.0))
+  if (!(d->flip >= 0.0 && d->flip <= 1.0) || (d->scheme == MPS_MPM_SCHEME_WLS && d->flip != 1.0))
     return mpsi_fail(
         context, create, MPS_ERROR_ARGUMENT,
         "flip is %g, must be in [0, 1] with scheme 1 (standard); with 0 (WLS) it is 1, "
         "the default",
         d->flip);
   for (int c = 0; c < dim_of(d); c++)
-    if (!isfinite(d->origin[c]) || !isfinite(d->gravity[c]))
+    if (!(fabs(d->origin[c]) <= FAR) || !(fabs(d->gravity[c]) <= FAR))
       return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                       "origin[%d] is %g m and gravity[%d] %g m/s2, must be finite", c,
-                       d->origin[c], c, d->gravity[c]);
+                       "origin[%d] is %g m and gravity[%d] %g m/s2, must be within +-%g", c,
+                       d->origin[c], c, d->gravity[c], FAR);
   return MPS_OK;
+}
+
+/* The thickness, or the angle of the sector. */
+static mps_status read_measure(mps_context *context, mps_mpm_def *d) {
+  const bool ring = d->geometry == MPS_MPM_AXISYMMETRIC, space = d->geometry == MPS_MPM_SPACE;
+  const double whole = 8.0 * atan(1.0), most = ring ? whole * (1.0 + 1e-12) : FAR;
+  if (isnan(d->measure)) d->measure = ring ? whole : 1.0;
+  if (d->measure >= LEAST_MEASURE && d->measure <= most && !(space && d->measure != 1.0))
+    return MPS_OK;
+  return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                   "measure is %g, must be %s, or NaN for the default", d->measure,
+                   space  ? "1 in space"
+                   : ring ? "an angle of 1e-9 to 2 pi rad in axisymmetry"
+                          : "a thickness of 1e-9 to 1e9 m in plane strain");
 }
 
 /* A wall's node, or a far one where there is no wall. */
@@ -107,7 +118,7 @@ static mps_status read_wall(mps_context *context, const mps_mpm_def *d, int c, b
 }
 
 static mps_status read_domain(mps_context *context, mps_mpm_def *d, int64_t *low, int64_t *high) {
-  if (d->geometry == MPS_AXISYMMETRIC) {
+  if (d->geometry == MPS_MPM_AXISYMMETRIC) {
     if (d->lower[0] == -INFINITY) d->lower[0] = 0.0;
     if (!(d->lower[0] >= 0.0))
       return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
@@ -125,6 +136,15 @@ static mps_status read_domain(mps_context *context, mps_mpm_def *d, int64_t *low
                        d -> lower[c], d -> upper[c]);
   }
   return MPS_OK;
+}
+
+static mps_status check_cell(mps_context *context, const mps_mpm_def *d, mps_particles *set) {
+  const double spacing = mps_particles_spacing(set), ratio = d->cell / spacing;
+  if (ratio >= FINEST && ratio <= COARSEST) return MPS_OK;
+  return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                   "cell is %g m with particles %g m apart: must be %g to %g of their spacings, "
+                   "usually 2",
+                   d->cell, spacing, FINEST, COARSEST);
 }
 
 static mps_status check_set(mps_context *context, mps_particles *set) {
@@ -146,8 +166,9 @@ static mps_status check_set(mps_context *context, mps_particles *set) {
 /* A field's columns must be finite where the solver starts from them. */
 static mps_status check_start(const mps_mpm *mpm, const char *function) {
   static const char *const names[] = {
-      "position", "velocity", "velocity_gradient",    "stress",           "volume_ratio",
-      "volume",   "density",  "deformation_gradient", "body_acceleration"};
+      "position",          "velocity",      "velocity_gradient", "stress",
+      "volume_ratio",      "volume",        "density",           "deformation_gradient",
+      "body_acceleration", "external_force"};
   for (size_t f = 0; f < sizeof names / sizeof *names; f++)
     for (int32_t c = 0; c < 9; c++) {
       const double *value = mpsi_particles_column(mpm->particles, names[f], c);
@@ -189,7 +210,6 @@ static void bind_fields(mps_mpm *mpm) {
   for (int c = 0; c < mpm->dim; c++) {
     p->x[c] = mpsi_particles_column(set, "position", c);
     p->v[c] = mpsi_particles_column(set, "velocity", c);
-    mpm->loads.body_acceleration[c] = mpsi_particles_column(set, "body_acceleration", c);
   }
   for (int c = 0; c < 2 * mpm->dim; c++) p->s[c] = mpsi_particles_column(set, "stress", c);
   for (int c = 0; c < 9; c++) /* NULL where there is no such component */
@@ -202,7 +222,8 @@ static void bind_fields(mps_mpm *mpm) {
 static double lattice_volume(const mps_mpm *mpm, int64_t k) {
   const double spacing = mps_particles_spacing(mpm->particles);
   if (mpm->dim == 3) return spacing * spacing * spacing;
-  return spacing * spacing * (mpm->def.geometry == MPS_AXISYMMETRIC ? mpm->p.x[0][k] : 1.0);
+  const double radius = mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? mpm->p.x[0][k] : 1.0;
+  return spacing * spacing * mpm->def.measure * radius;
 }
 
 static mps_status check_volumes(const mps_mpm *mpm, const double *density) {
@@ -210,30 +231,62 @@ static mps_status check_volumes(const mps_mpm *mpm, const double *density) {
   for (int64_t k = 0; k < mpm->p.count; k++) {
     const double volume = p->V[k] != 0.0 ? p->V[k] : lattice_volume(mpm, k);
     const double ratio = !p->J ? 1.0 : p->J[k] != 0.0 ? p->J[k] : 1.0;
-    if (!(density[k] > 0.0) || !(volume > 0.0) || !(ratio > 0.0))
+    if (!(density[k] >= DENSITY_MIN && density[k] <= DENSITY_MAX) || !(volume > 0.0) ||
+        !(ratio > 0.0))
       return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
-                       "particle %lld has density %g kg/m3, volume %g m3 and volume ratio %g, must "
-                       "be > 0%s",
+                       "particle %lld has density %g kg/m3, volume %g m3 and volume ratio %g: must "
+                       "be %g to %g, > 0 and > 0%s",
                        (long long)mpsi_particles_integers(mpm->particles, "id")[k], density[k],
-                       volume, ratio, volume == 0.0 ? " (it lies on the axis, r = 0)" : "");
+                       volume, ratio, DENSITY_MIN, DENSITY_MAX,
+                       volume == 0.0 ? " (it lies on the axis, r = 0)" : "");
   }
   return MPS_OK;
 }
 
 /* Volumes and masses from density and spacing; unstrained states where the caller gave none. */
-static mps_status set_start(mps_mpm *mpm) {
+static void set_start(mps_mpm *mpm, const double *density) {
   mpsi_columns *p = &mpm->p;
-  const double *density = mpsi_particles_column(mpm->particles, "density", 0);
-  const mps_status status = check_volumes(mpm, density);
-  if (status != MPS_OK) return status;
   for (int64_t k = 0; k < mpm->p.count; k++) {
     if (p->V[k] == 0.0) p->V[k] = lattice_volume(mpm, k);
     p->m[k] = density[k] * p->V[k]; /* the density is that of the present volume */
-    const double mass = mpm->def.geometry == MPS_AXISYMMETRIC ? p->m[k] / p->x[0][k] : p->m[k];
+    const double mass = mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? p->m[k] / p->x[0][k] : p->m[k];
     if (k == 0 || mass < mpm->contact.least_mass) mpm->contact.least_mass = mass;
     mpsi_mpm_begin_law(mpm, &mpm->laws.law[0], k);
   }
+}
+
+/* ---- what an error takes back ---------------------------------------------------------------- */
+
+/* Columns that set_start writes: volume, mass, V/V0, F and the law's histories. */
+enum { OWN_COLUMNS = 12 };
+
+static double *written(const mps_mpm *mpm, int32_t number) {
+  const mpsi_columns *p = &mpm->p;
+  if (number == 0) return p->V;
+  if (number == 1) return p->m;
+  if (number == 2) return p->J;
+  return number < OWN_COLUMNS ? p->F[number - 3] : mpm->laws.law[0].history[number - OWN_COLUMNS];
+}
+
+static int32_t written_count(const mps_mpm *mpm) {
+  return OWN_COLUMNS + mps_material_history_count(mpm->laws.law[0].material);
+}
+
+static mps_status save_columns(mps_mpm *mpm, double **copy) {
+  const int32_t columns = written_count(mpm);
+  const int64_t count = mpm->p.count;
+  *copy = mpsi_alloc(mpm->context, columns * count, sizeof **copy);
+  if (!*copy)
+    return mpsi_fail_memory(mpm->context, create, (size_t)(columns * count) * sizeof **copy);
+  for (int32_t c = 0; c < columns; c++)
+    if (written(mpm, c)) memcpy(*copy + c * count, written(mpm, c), (size_t)count * sizeof **copy);
   return MPS_OK;
+}
+
+static void put_columns_back(mps_mpm *mpm, const double *copy) {
+  const int64_t count = mpm->p.count;
+  for (int32_t c = 0; c < written_count(mpm); c++)
+    if (written(mpm, c)) memcpy(written(mpm, c), copy + c * count, (size_t)count * sizeof *copy);
 }
 
 /* ---- life ------------------------------------------------------------------------------------ */
@@ -255,50 +308,68 @@ static mps_status make_workers(mps_mpm *mpm) {
                            : mpsi_fail_memory(mpm->context, create, sizeof *mpm->grid.workers);
 }
 
-static void place_walls(mps_mpm *mpm) {
-  const mps_mpm_def *d = &mpm->def;
-  for (int32_t k = 0; k < MPSI_HOLDS; k++) mpm->boundaries.hold[k].kind = MPSI_HOLD_NONE;
-  for (int32_t k = 0; k < 2 * mpm->dim; k++)
-    mpsi_mpm_place_wall(mpm, k, k % 2 ? d->wall_upper[k / 2] : d->wall_lower[k / 2],
-                        k % 2 ? d->wall_friction_upper[k / 2] : d->wall_friction_lower[k / 2]);
-}
-
-/* The first step's size against what the first state allows. */
+/* The first step's size against what the first state allows; in the set's own order. */
 static mps_status check_step(mps_mpm *mpm) {
+  const mpsi_columns *p = &mpm->p;
+  double moduli[MPSI_CHUNK];
+  for (int64_t begin = 0; begin < p->count; begin += MPSI_CHUNK) {
+    const int64_t end = begin + MPSI_CHUNK < p->count ? begin + MPSI_CHUNK : p->count;
+    mpsi_mpm_find_moduli(mpm, begin, end, moduli);
+    for (int64_t k = begin; k < end; k++) {
+      double square = 0.0;
+      for (int c = 0; c < mpm->dim && mpm->def.step_from == MPS_MPM_STEP_FROM_SPEED; c++)
+        square += p->v[c][k] * p->v[c][k];
+      const double speed = sqrt(moduli[k - begin] * p->V[k] / p->m[k]) + sqrt(square);
+      if (!(speed > 0.0 && speed <= 1e300))
+        return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
+                         "particle %lld has a wave velocity plus velocity of %g m/s: must be > 0 "
+                         "and finite; check modulus, density and velocity",
+                         (long long)mpsi_particles_integers(mpm->particles, "id")[k], speed);
+      mpm->run.speed = fmax(mpm->run.speed, speed);
+    }
+  }
   const double dt = mpm->def.dt, limit = mps_mpm_limit(mpm);
-  if (dt <= limit) return MPS_OK;
-  return mpsi_fail(
-      mpm->context, create, MPS_ERROR_ARGUMENT,
-      "dt is %g s, above the Courant limit of the first state, %g s: choose at most half "
-      "of that, or 0 for a step that follows the limit",
-      dt, limit);
+  if (isnan(dt) || dt <= limit) return MPS_OK;
+  return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
+                   "dt is %g s, above the Courant limit h/(c + v) of the first state, %g s: choose "
+                   "at most half of that, or NaN for a step that follows the limit",
+                   dt, limit);
 }
 
-static mps_status build(mps_mpm *mpm, mps_material *material) {
+static mps_status make_memory(mps_mpm *mpm) {
   mps_context *context = mpm->context;
-  mps_status status = add_fields(mpm);
-  if (status == MPS_OK) status = mpsi_mpm_add_law(mpm, create, material);
-  if (status != MPS_OK) return status;
-  bind_fields(mpm);
-  status = check_start(mpm, create);
-  if (status == MPS_OK) status = set_start(mpm);
-  if (status != MPS_OK) return status;
   mpm->grid.radix = mpsi_alloc(context, 2 * mpm->p.count, sizeof *mpm->grid.radix);
   if (mpm->grid.radix) mpm->laws.flags = mpsi_alloc(context, mpm->p.count, sizeof *mpm->laws.flags);
-  const bool by_cell = mpm->def.volumetric == MPS_VOLUMETRIC_CELL;
+  const bool by_cell = mpm->def.volumetric == MPS_MPM_VOLUMETRIC_CELL;
   if (mpm->laws.flags && by_cell)
     mpm->p.stencil = mpsi_alloc(context, mpm->p.count, sizeof *mpm->p.stencil);
   if (!mpm->laws.flags || (by_cell && !mpm->p.stencil))
     return mpsi_fail_memory(context, create, (size_t)mpm->p.count * sizeof *mpm->grid.radix);
-  status = make_workers(mpm);
-  if (status == MPS_OK && mpm->loads.body_acceleration[0])
-    status = mpsi_mpm_make_forces(mpm, create);
-  if (status == MPS_OK) status = mpsi_mpm_sort(mpm, create);
-  if (status == MPS_OK) status = mpsi_mpm_list_holds(mpm, create);
-  if (status != MPS_OK) return status;
-  mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
-  status = mpsi_mpm_collect_block_results(mpm, create);
-  return status == MPS_OK ? check_step(mpm) : status;
+  return make_workers(mpm);
+}
+
+/* All that can fail comes before the sort, whose last act is to order the set. */
+static mps_status build(mps_mpm *mpm, mps_material *material) {
+  const int32_t fields = mps_particles_field_count(mpm->particles);
+  double *copy = NULL;
+  mps_status status = add_fields(mpm);
+  if (status == MPS_OK) status = mpsi_mpm_add_law(mpm, create, material);
+  if (status == MPS_OK) {
+    bind_fields(mpm);
+    const double *density = mpsi_particles_column(mpm->particles, "density", 0);
+    status = check_start(mpm, create);
+    if (status == MPS_OK) status = check_volumes(mpm, density);
+    if (status == MPS_OK) status = save_columns(mpm, &copy);
+    if (status == MPS_OK) set_start(mpm, density);
+    if (status == MPS_OK) status = check_step(mpm);
+    if (status == MPS_OK) status = make_memory(mpm);
+    if (status == MPS_OK) status = mpsi_mpm_sort(mpm, create);
+    if (status != MPS_OK && copy) put_columns_back(mpm, copy);
+    mpsi_free(mpm->context, copy);
+  }
+  if (status != MPS_OK) mpsi_particles_drop_fields(mpm->particles, fields);
+  mpm->boundaries.outdated = true; /* listed with the first step */
+  return status;
 }
 
 /* The caller has written a field: it must be one to start from, and is read before the next step.
@@ -329,6 +400,8 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
                        mps_particles_dim(particles),
                        dim_of(&def) == 3 ? "0 (plane strain) or 1 (axisymmetric)" : "2 (space)");
   if (status == MPS_OK) status = check_numbers(context, &def);
+  if (status == MPS_OK) status = read_measure(context, &def);
+  if (status == MPS_OK) status = check_cell(context, &def, particles);
   if (status == MPS_OK) status = read_domain(context, &def, low, high);
   if (status == MPS_OK) status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
   if (status != MPS_OK) return status;
@@ -342,7 +415,7 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
                               .commit = note_edit};
   (void)mpsi_particles_hold(particles, __func__, &mpm->holder); /* checked above */
   mpm->def = def;
-  mpm->standard = def.scheme == MPS_SCHEME_STANDARD;
+  mpm->standard = def.scheme == MPS_MPM_SCHEME_STANDARD;
   mpm->flip = mpm->standard ? def.flip : 0.0;
   mpm->dim = dim_of(&def);
   mpm->grid.block_nodes = mpm->dim == 3 ? MPSI_SIDE * MPSI_SIDE * MPSI_SIDE : MPSI_SIDE * MPSI_SIDE;
@@ -351,10 +424,9 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   mpm->kernels = mpsi_mpm_kernels(mpsi_context_level(context));
   mpm->p.count = mps_particles_count(particles);
   mpm->grid.inverse = 1.0 / def.cell;
-  mpm->contact.gap = 0.5 * mps_particles_spacing(particles);
   memcpy(mpm->grid.low, low, sizeof low);
   memcpy(mpm->grid.high, high, sizeof high);
-  place_walls(mpm);
+  mpsi_mpm_begin_sides(mpm);
   if ((status = build(mpm, material)) != MPS_OK) {
     mps_mpm_destroy(&mpm);
     return status;
@@ -367,8 +439,9 @@ void mps_mpm_destroy(mps_mpm **pointer) {
   if (!pointer || !*pointer) return;
   mps_mpm *mpm = *pointer;
   mps_context *context = mpm->context;
+  if (mpsi_mpm_between_steps(mpm, __func__) != MPS_OK) return;
   *pointer = NULL;
-  for (int32_t b = 0; b < mpm->contact.bodies; b++) mpsi_body_give(mpm->contact.body[b]);
+  mpsi_mpm_end_contacts(mpm);
   for (int32_t k = 0; mpm->grid.workers && k < mpm->grid.worker_count; k++)
     mpsi_free(context, mpm->grid.workers[k].memory);
   void *parts[] = {mpm->grid.workers,
@@ -394,8 +467,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
                    mpm->p.stencil};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
   mpsi_mpm_drop_loads(mpm);
-  for (int32_t k = 0; k < MPSI_HOLDS; k++)
-    for (int c = 0; c < 3; c++) mps_signal_destroy(&mpm->boundaries.hold[k].signal[c]);
+  mpsi_mpm_drop_boundaries(mpm);
   for (int32_t k = 0; k < mpm->laws.count; k++) {
     mps_material_destroy(&mpm->laws.law[k].material);
     mpsi_free(context, mpm->laws.law[k].history);
@@ -406,48 +478,11 @@ void mps_mpm_destroy(mps_mpm **pointer) {
   mpsi_context_release(context);
 }
 
-/* Half spaces are there to be laid one over the other, as floor and wall. */
-static mps_status check_overlap(mps_mpm *mpm, const char *function, const mps_body *body) {
-  const double depth = OVERLAP * mpm->def.cell;
-  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
-    const bool halves = body->shape == MPSI_HALF && mpm->contact.body[b]->shape == MPSI_HALF;
-    if (mpm->contact.body[b] == body || halves ||
-        !mpsi_body_overlap(mpm->contact.body[b], body, depth))
-      continue;
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "the body overlaps body %d of the solver by more than %g m (%g cells)", b,
-                     depth, OVERLAP);
-  }
-  return MPS_OK;
-}
-
-static void warn_about_thickness(mps_mpm *mpm, const mps_body *body) {
-  const double wall = mpsi_body_thickness(body), cells = wall * mpm->grid.inverse;
-  if (cells < THIN * (1.0 - 1e-9))
-    mpsi_log(
-        mpm->context, MPS_LOG_WARNING,
-        "body %d has a wall %.4g m thin, %.3g cells: below %g cells momentum leaks through it; "
-        "use a cell of at most %.4g m or a thicker wall",
-        mpm->contact.bodies, wall, cells, THIN, wall / THIN);
-}
-
-mps_status mps_mpm_add_body(mps_mpm *mpm, mps_body *body) {
+mps_status mps_mpm_get_def_sized(mps_mpm *mpm, mps_mpm_def *out, size_t size) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  if (!body) return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "body is NULL");
-  if (body->context != mpm->context)
-    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                     "the body was made from another context");
-  if (body->dim != mpm->dim)
-    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "the body is %dD, the solver %dD",
-                     body->dim, mpm->dim);
-  if (mpm->contact.bodies == MPS_MPM_MAX_BODIES)
-    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                     "the solver has %d bodies, the most there can be", MPS_MPM_MAX_BODIES);
-  const mps_status status = check_overlap(mpm, __func__, body);
-  if (status != MPS_OK) return status;
-  if (!mpsi_body_take(body, mpm))
-    return mpsi_fail(mpm->context, __func__, MPS_ERROR_STATE, "a solver has the body already");
-  warn_about_thickness(mpm, body);
-  mpm->contact.body[mpm->contact.bodies++] = body;
-  return MPS_OK;
+  return mpsi_out_write(mpm->context, "mps_mpm_get_def", out, size, &mpm->def, sizeof mpm->def);
 }
+
+mps_particles *mps_mpm_particles(const mps_mpm *mpm) { return mpm ? mpm->particles : NULL; }
+
+mps_context *mps_mpm_context(const mps_mpm *mpm) { return mpm ? mpm->context : NULL; }

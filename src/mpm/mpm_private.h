@@ -20,7 +20,7 @@ struct mps_mpm {
   mpsi_holder holder; /* of the particles */
   mps_mpm_def def;
   int32_t dim;
-  bool standard; /* MPS_SCHEME_STANDARD; then `flip` is that of the definition, else 0 */
+  bool standard; /* MPS_MPM_SCHEME_STANDARD; then `flip` is that of the definition, else 0 */
   double flip;
   const struct mpsi_kernels *kernels;
   mpsi_columns p;

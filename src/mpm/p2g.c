@@ -40,7 +40,7 @@ MPSI_INLINE void find_parts(const mps_mpm *mpm, int geometry, int spline, bool s
     }
     if (p->f[0])
       for (int c = 0; c < dim; c++) force[c] += dt * mpsi_get(p->f[c] + at);
-    if (geometry == MPS_AXISYMMETRIC)
+    if (geometry == MPS_MPM_AXISYMMETRIC)
       force[0] -= V * mpsi_get(p->s[2] + at) / mpsi_get(p->x[0] + at);
     for (int c = 0; c < dim && !split; c++) momentum[c] += force[c];
     put(out->sum, k, 0, m, momentum[0], momentum[1], momentum[2]);
@@ -214,6 +214,7 @@ MPSI_INLINE void p2g_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry,
   for (int32_t q = 0; q < cells->pairs; q++) {
     mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
     pair->touched = false;
+    pair->deepest = 0.0;
     memset(pair->load, 0, sizeof pair->load);
     memset(pair->contacts, 0, sizeof pair->contacts);
   }

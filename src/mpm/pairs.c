@@ -42,8 +42,8 @@ static bool list_cell_pairs(mps_mpm *mpm, int64_t *count) {
 
 /* Friction with a body that moves freely depends on the mass of all nodes in contact with it. */
 static bool asks_for_mass(const mps_mpm *mpm, int32_t body) {
-  const mps_body_def *def = &mpm->contact.body[body]->def;
-  return def->friction > 0.0 && def->motion != MPS_BODY_MOTION_PRESCRIBED;
+  return mpm->contact.handle[body]->def.friction > 0.0 &&
+         mpm->contact.body[body]->def.motion != MPS_BODY_MOTION_PRESCRIBED;
 }
 
 /* The pairs of blocks of nodes and bodies. The same in two goes: see list_cell_pairs. */

@@ -14,7 +14,9 @@
 /* A block of cells and a body that its particles may touch. */
 typedef struct mpsi_cell_pair {
   int32_t cells, body;
-  bool touched; /* some particle is in contact */
+  bool touched;   /* some particle is in contact */
+  double deepest; /* m, >= 0, of a particle below the surface */
+  int64_t deep;   /* that particle */
   mpsi_load load[MPS_BODY_MAX_PARTS];
   int64_t contacts[MPS_BODY_MAX_PARTS];
 } mpsi_cell_pair;
@@ -26,11 +28,11 @@ typedef struct mpsi_node_pair {
 } mpsi_node_pair;
 
 typedef struct mpsi_contacts {
-  mps_body *body[MPS_MPM_MAX_BODIES];
+  mps_contact *handle[MPS_MPM_MAX_CONTACTS];
+  mps_body *body[MPS_MPM_MAX_CONTACTS]; /* of each */
   int32_t bodies;
-  double gap;                      /* m, l_p = d0 */
-  double least_mass;               /* kg, of a particle; in axisymmetry over its radius, kg/m */
-  double mass[MPS_MPM_MAX_BODIES]; /* kg, of the nodes in contact with each body */
+  double least_mass;                 /* kg, of a particle; in axisymmetry over its radius, kg/m */
+  double mass[MPS_MPM_MAX_CONTACTS]; /* kg, of the nodes in contact with each body */
   mpsi_cell_pair *cell_pair;
   mpsi_node_pair *node_pair;
   mpsi_contact_node *node;
@@ -57,5 +59,9 @@ void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker);
 void mpsi_mpm_apply_contact(mps_mpm *mpm, int64_t g);
 void mpsi_mpm_apply_friction(mps_mpm *mpm, int64_t g);
 void mpsi_mpm_update_bodies(mps_mpm *mpm);
+/* contacts.c: MPS_ERROR_DIVERGED where a particle is deeper in a body than its contact allows; ends
+ * all contacts. */
+mps_status mpsi_mpm_check_depth(mps_mpm *mpm, const char *function);
+void mpsi_mpm_end_contacts(mps_mpm *mpm);
 
 #endif

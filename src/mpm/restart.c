@@ -137,7 +137,7 @@ static void list_setting(mpsi_state *s, const mps_mpm *mpm) {
     mpsi_state_leave(s);
   }
   mpsi_state_agree_integer(s, "loads", loads);
-  mpsi_state_agree_integer(s, "accelerations", mpm->loads.body_acceleration[0] != NULL);
+  mpsi_state_agree_number(s, "measure", mpm->def.measure);
   mpsi_state_agree_integer(s, "bodies", mpm->contact.bodies);
 }
 
@@ -146,10 +146,10 @@ static void list_state(mpsi_state *s, void *solver) {
   list_setting(s, mpm);
   for (int32_t k = 0; k < MPSI_HOLDS; k++) {
     mpsi_hold *hold = &mpm->boundaries.hold[k];
-    mpsi_state_enter(s, k < MPSI_WALLS ? "wall%d" : "box%d", k < MPSI_WALLS ? k : k - MPSI_WALLS);
+    mpsi_state_enter(s, "boundary%d", k);
     mpsi_state_agree_integer(s, "kind", hold->kind);
     if (hold->kind != MPSI_HOLD_NONE) {
-      mpsi_state_f64(s, "force", hold->force, 3);
+      mpsi_state_reaction(s, &hold->reaction);
       mpsi_state_bool(s, "finds", &hold->finds);
       mpsi_state_f64(s, "found", &hold->found, 1);
     }
@@ -168,6 +168,7 @@ static void list_state(mpsi_state *s, void *solver) {
   for (int32_t b = 0; b < mpm->contact.bodies; b++) {
     mpsi_state_enter(s, "body%d", b);
     mpsi_body_list_state(s, mpm->contact.body[b]);
+    mpsi_contact_list_state(s, mpm->contact.handle[b]);
     mpsi_state_leave(s);
   }
   mpsi_state_add_table(s, "sizes", &sizes_table);
@@ -279,8 +280,9 @@ static mpsi_state_of state_of(mps_mpm *mpm) {
                          .steps = mpm->run.steps};
 }
 
-static mps_status check_whole(const mps_mpm *mpm, const char *function) {
-  if (!mpm->run.broken) return MPS_OK;
+/* The lists that are kept must be of the present boundaries. */
+static mps_status make_whole(mps_mpm *mpm, const char *function) {
+  if (!mpm->run.broken) return mpsi_mpm_update_holds(mpm, function);
   return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                    "step %lld has failed: there is no state to go on from",
                    (long long)mpm->run.steps);
@@ -289,7 +291,7 @@ static mps_status check_whole(const mps_mpm *mpm, const char *function) {
 mps_status mps_mpm_snapshot(mps_mpm *mpm, mps_snapshot **snapshot) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   const mpsi_state_of of = state_of(mpm);
-  const mps_status status = check_whole(mpm, __func__);
+  const mps_status status = make_whole(mpm, __func__);
   return status == MPS_OK ? mpsi_state_snapshot(&of, __func__, snapshot) : status;
 }
 
@@ -302,7 +304,7 @@ mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot) {
 mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *info) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   const mpsi_state_of of = state_of(mpm);
-  const mps_status status = check_whole(mpm, __func__);
+  const mps_status status = make_whole(mpm, __func__);
   return status == MPS_OK ? mpsi_checkpoint_save(&of, __func__, path, info) : status;
 }
 

@@ -19,7 +19,7 @@ typedef struct mpsi_dash {
 } mpsi_dash;
 enum { MPSI_DASH = 5 }; /* doubles */
 
-#define MPSI_WALLS 6 /* 2 axis + upper */
-#define MPSI_HOLDS (MPSI_WALLS + MPS_MPM_MAX_BOXES)
+#define MPSI_SIDES 6 /* 2 axis + upper */
+#define MPSI_HOLDS MPS_MPM_MAX_BOUNDARIES
 
 #endif

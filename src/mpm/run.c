@@ -4,13 +4,24 @@
 
 #include "kernels.h"
 
+#include <stdio.h>
+
+mps_status mpsi_mpm_between_steps(mps_mpm *mpm, const char *function) {
+  if (!mpm->run.calling) return MPS_OK;
+  return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+                   "a callback of this solver is running: it may ask, but not step, change or "
+                   "destroy it");
+}
+
 mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function) {
+  mps_status status = mpsi_mpm_between_steps(mpm, function);
+  if (status != MPS_OK) return status;
   if (mpm->run.broken)
     return mpsi_fail(
         mpm->context, function, MPS_ERROR_STATE,
         "an earlier step has failed: the state is kept for a look; make a new solver or "
         "restore a checkpoint");
-  mps_status status = mpsi_particles_ready(mpm->particles, function);
+  status = mpsi_particles_ready(mpm->particles, function);
   if (status != MPS_OK || !mpm->run.edited) return status;
   /* Blocks of the new positions, and the Courant limit of the new velocities. */
   status = mpsi_mpm_sort(mpm, function);
@@ -21,16 +32,46 @@ mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function) {
   return mpsi_mpm_collect_block_results(mpm, function);
 }
 
-double mps_mpm_limit(const mps_mpm *mpm) { return mpm ? mpm->def.cell / mpm->run.speed : 0.0; }
+/* ---- the size of a step ---------------------------------------------------------------------- */
+
+double mps_mpm_limit(const mps_mpm *mpm) {
+  if (!mpm) return 0.0;
+  double speed = mpm->run.speed;
+  for (int32_t b = 0; b < mpm->contact.bodies; b++)
+    speed = fmax(speed, mpsi_contact_speed(mpm->contact.handle[b]));
+  return mpm->def.cell / speed;
+}
 
 double mps_mpm_dt(const mps_mpm *mpm) {
   if (!mpm) return 0.0;
   return mpm->def.dt > 0.0 ? mpm->def.dt : mpm->def.courant * mps_mpm_limit(mpm);
 }
 
+mps_status mps_mpm_set_dt(mps_mpm *mpm, double dt) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_mpm_between_steps(mpm, __func__);
+  const double limit = mps_mpm_limit(mpm);
+  if (status == MPS_OK && !isnan(dt) && !(dt >= MPSI_MPM_LEAST_DT && dt <= limit))
+    status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                       "dt is %g s, must be %g s to the Courant limit of the present state, %g s, "
+                       "or NaN for a step that follows the limit",
+                       dt, MPSI_MPM_LEAST_DT, limit);
+  if (status == MPS_OK) mpm->def.dt = dt;
+  return status;
+}
+
 double mps_mpm_time(const mps_mpm *mpm) { return mpm ? mpm->run.time : 0.0; }
 
 int64_t mps_mpm_steps(const mps_mpm *mpm) { return mpm ? mpm->run.steps : 0; }
+
+/* ---- many steps ------------------------------------------------------------------------------ */
+
+static mps_status ask_cancel(mps_mpm *mpm, const char *function) {
+  if (!mpsi_cancelled(mpm->context)) return MPS_OK;
+  return mpsi_fail(mpm->context, function, MPS_ERROR_CANCELLED,
+                   "stopped by the cancel hook at step %lld, t = %g s", (long long)mpm->run.steps,
+                   mpm->run.time);
+}
 
 mps_status mps_mpm_step(mps_mpm *mpm, int64_t count) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
@@ -38,9 +79,27 @@ mps_status mps_mpm_step(mps_mpm *mpm, int64_t count) {
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
                      (long long)count);
   mps_status status = mpsi_mpm_ready(mpm, __func__);
-  for (int64_t k = 0; k < count && status == MPS_OK; k++)
+  for (int64_t k = 0; k < count && status == MPS_OK; k++) {
     status = mpsi_mpm_take_step(mpm, __func__, mps_mpm_dt(mpm));
+    if (status == MPS_OK && k + 1 < count) status = ask_cancel(mpm, __func__);
+  }
   return status;
+}
+
+/* The caller's callback; a status that it returns leaves a record. */
+static mps_status call(mps_mpm *mpm, const char *function, mps_mpm_fn callback, void *user) {
+  mpm->run.calling = true;
+  const mps_status status = callback(user, mpm);
+  mpm->run.calling = false;
+  if (status == MPS_OK) return MPS_OK;
+  const mps_error *inner = mps_context_error(mpm->context);
+  char reason[sizeof inner->message + 2] = "";
+  if (inner->status == status) /* of what the callback called */
+    snprintf(reason, sizeof reason, ": %s", inner->message);
+  return mpsi_fail(
+      mpm->context, function, status,
+      "the callback of mps_mpm_run returned status %d (%s) at step %lld, t = %g s%.300s",
+      (int)status, mps_status_text(status), (long long)mpm->run.steps, mpm->run.time, reason);
 }
 
 mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every, mps_mpm_fn callback, void *user) {
@@ -49,10 +108,14 @@ mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every, mps_mpm_fn cal
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "t_end is %g s and every %lld: must be finite and >= 1", t_end,
                      (long long)every);
+  if (t_end < mpm->run.time)
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                     "t_end is %.9g s, must not be before the solver's time %.9g s", t_end,
+                     mpm->run.time);
   mps_status status = mpsi_mpm_ready(mpm, __func__);
   const double start = mpm->run.time, slice = 0.01 * (t_end - start);
   int64_t done = 0, reported = 0;
-  if (status == MPS_OK && callback) status = callback(user, mpm);
+  if (status == MPS_OK && callback) status = call(mpm, __func__, callback, user);
   while (status == MPS_OK && mpm->run.time < t_end) {
     if ((status = mpsi_mpm_ready(mpm, __func__)) != MPS_OK)
       break; /* the callback may have edited */
@@ -63,15 +126,13 @@ mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every, mps_mpm_fn cal
     status = mpsi_mpm_take_step(mpm, __func__, dt);
     if (last) mpm->run.time = t_end;
     done++;
-    if (status == MPS_OK && callback && (done % every == 0 || last)) status = callback(user, mpm);
+    if (status == MPS_OK && callback && (done % every == 0 || last))
+      status = call(mpm, __func__, callback, user);
     if (last || mpm->run.time >= start + slice * (double)(reported + 1)) {
       reported = last ? 100 : (int64_t)((mpm->run.time - start) / slice);
       mpsi_progress(mpm->context, "mpm", mpm->run.steps, mpm->run.time - start, t_end - start);
     }
-    if (status == MPS_OK && !last && mpsi_cancelled(mpm->context))
-      status = mpsi_fail(mpm->context, __func__, MPS_ERROR_CANCELLED,
-                         "stopped by the cancel hook at step %lld, t = %g s",
-                         (long long)mpm->run.steps, mpm->run.time);
+    if (status == MPS_OK && !last) status = ask_cancel(mpm, __func__);
   }
   return status;
 }

@@ -5,11 +5,14 @@
 
 #include <mps/mpm.h>
 
+#define MPSI_MPM_LEAST_DT 1e-18 /* s */
+
 typedef struct mpsi_run {
   double time;  /* s */
   double dt;    /* s, of the step being made */
   double speed; /* largest c + |v| of the particles, m/s */
   int64_t steps;
+  bool calling;                  /* in a callback of the caller's: only questions are allowed */
   bool stale;                    /* particles must be sorted before the next step */
   bool edited;                   /* the caller has written fields since the last step */
   bool broken;                   /* a step has failed half way */
@@ -19,7 +22,9 @@ typedef struct mpsi_run {
 
 /* step.c: one step of dt; on an error the solver is broken. */
 mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt);
-/* run.c: MPS_ERROR_STATE after a step that has failed. */
+/* run.c: MPS_ERROR_STATE in a callback of the solver. */
+mps_status mpsi_mpm_between_steps(mps_mpm *mpm, const char *function);
+/* run.c: that, and MPS_ERROR_STATE after a step that has failed. */
 mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function);
 /* step.c: what the blocks have found: the largest speed, or the error of a bad particle. */
 mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function);

@@ -58,15 +58,17 @@ static void warn_about_step(mps_mpm *mpm, double dt) {
   if (!mpm->run.warned_about_dt && dt > courant * limit * (1.0 + 1e-9)) {
     mpm->run.warned_about_dt = true;
     mpsi_log(mpm->context, MPS_LOG_WARNING,
-             "step %lld: dt is %.4g s, %.3g of the Courant limit, above the fraction courant = %g: "
-             "choose a smaller dt, or 0 for a step that follows the limit",
+             "step %lld: dt is %.4g s, %.3g of the Courant limit h/(c + v), above the fraction "
+             "courant = %g: "
+             "choose a smaller dt, or NaN for a step that follows the limit",
              (long long)mpm->run.steps, dt, dt / limit, courant);
   }
   double stiffest = 0.0;
   for (int32_t k = 0; k < mpm->laws.count; k++) stiffest = fmax(stiffest, mpm->laws.law[k].modulus);
   for (int32_t b = 0; b < mpm->contact.bodies; b++) {
-    const double k = mpsi_body_penalty(mpm->contact.body[b], stiffest, 2.0 * mpm->contact.gap,
-                                       mpm->def.cell, mpm->def.courant);
+    const double k = mpm->def.measure * mpsi_contact_penalty(mpm->contact.handle[b], stiffest,
+                                                             mps_particles_spacing(mpm->particles),
+                                                             mpm->def.cell, mpm->def.courant);
     const double ratio = k * dt * dt / mpm->contact.least_mass;
     if (!(ratio > CHATTER) || (mpm->run.warned_about_chatter >> b & 1)) continue;
     mpm->run.warned_about_chatter |= UINT32_C(1) << b;
@@ -83,9 +85,11 @@ static mps_status prepare(mps_mpm *mpm, const char *function) {
   mps_status status = MPS_OK;
   if (mpm->run.stale) {
     status = mpsi_mpm_sort(mpm, function);
-    if (status == MPS_OK) status = mpsi_mpm_list_holds(mpm, function);
+    mpm->boundaries.outdated = true;
   }
+  if (status == MPS_OK) status = mpsi_mpm_update_holds(mpm, function);
   if (status == MPS_OK) status = mpsi_mpm_find_near(mpm, function);
+  if (status == MPS_OK) status = mpsi_mpm_find_forces(mpm, function);
   return status;
 }
 
@@ -118,12 +122,14 @@ mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
   mpm->run.dt = dt;
   warn_about_step(mpm, dt);
   mpsi_mpm_begin_holds(mpm, dt);                        /* signals --> velocities of walls, boxes */
-  mpsi_mpm_find_forces(mpm);                            /* loads --> forces on the particles */
   move(mpm);                                            /* particles --> nodes --> particles */
   mpsi_mpm_sum_holds(mpm);                              /* impulses of nodes --> forces of walls */
+  mpsi_mpm_drive_particles(mpm);                        /* held particles: v, x */
   if (mpm->p.stencil) mpsi_mpm_apply_laws_by_cell(mpm); /* L, V --> sigma by means of cells */
   if (mpm->contact.bodies > 0) mpsi_mpm_update_bodies(mpm); /* contact --> reactions, poses */
   mpm->run.time += dt;
   mpm->run.steps++;
+  const mps_status deep = mpsi_mpm_check_depth(mpm, function);
+  if (deep != MPS_OK) return deep;
   return mpsi_mpm_collect_block_results(mpm, function); /* bad particles, c + |v|, stale or not */
 }

@@ -17,7 +17,7 @@ static void find_diagonal(const mps_mpm *mpm, const double **diagonal) {
   const bool space = mpm->dim == 3;
   diagonal[0] = p->L[0];
   diagonal[1] = p->L[space ? 4 : 3];
-  diagonal[2] = space ? p->L[8] : mpm->def.geometry == MPS_AXISYMMETRIC ? p->L[4] : NULL;
+  diagonal[2] = space ? p->L[8] : mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? p->L[4] : NULL;
 }
 
 static double *sums_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t particle) {

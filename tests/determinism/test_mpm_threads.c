@@ -11,9 +11,9 @@ static const char *const names[] = {"id",     "position", "velocity", "velocity_
 enum { BY_CELL = 1, STANDARD = 2 };
 
 static void choose(mps_mpm_def *def, int options) {
-  if (options & BY_CELL) def->volumetric = MPS_VOLUMETRIC_CELL;
+  if (options & BY_CELL) def->volumetric = MPS_MPM_VOLUMETRIC_CELL;
   if (!(options & STANDARD)) return;
-  def->scheme = MPS_SCHEME_STANDARD;
+  def->scheme = MPS_MPM_SCHEME_STANDARD;
   def->flip = 0.9;
 }
 
@@ -42,15 +42,17 @@ static mpm_scene fall(mps_context *context, int32_t geometry, int options, bool 
   mps_body_def body = mps_body_defaults();
   const double up[] = {0.1, 1.0};
   body.position[1] = 0.06;
-  body.friction = 0.4;
   mps_assert_ok(context, mps_body_create_half_plane(context, &body, up, &floor));
-  mps_assert_ok(context, mps_mpm_add_body(s.mpm, floor));
+  mps_contact_def rough = mps_contact_defaults();
+  rough.friction = 0.4;
+  rough.inside = MPS_CONTACT_INSIDE_PUSH; /* some begin below the slope */
+  mps_assert_ok(context, mps_mpm_add_contact(s.mpm, floor, &rough, NULL));
   body.motion = MPS_BODY_MOTION_FREE;
   body.mass = 30.0, body.inertia[2] = 0.15;
   body.position[0] = 0.93, body.position[1] = 0.3;
   body.velocity[0] = -3.0;
   mps_assert_ok(context, mps_body_create_disc(context, &body, 0.07, disc));
-  mps_assert_ok(context, mps_mpm_add_body(s.mpm, *disc));
+  mpm_scene_contact(&s, *disc, 0.4);
   mps_body_destroy(&floor);
   mps_assert_ok(context, mps_mpm_step(s.mpm, 100));
   return s;
@@ -64,7 +66,7 @@ static mpm_scene fall_in_space(mps_context *context, int options) {
   mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
   mpm_scene_affine(&s, v0, L);
   mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = MPS_SPACE;
+  def.geometry = MPS_MPM_SPACE;
   choose(&def, options);
   def.cell = 0.02;
   for (int c = 0; c < 3; c++) def.lower[c] = 0.0;
@@ -73,9 +75,11 @@ static mpm_scene fall_in_space(mps_context *context, int options) {
   mps_body *ball = NULL;
   mps_body_def body = mps_body_defaults();
   body.position[0] = 0.3, body.position[2] = 0.08;
-  body.friction = 0.4;
   mps_assert_ok(context, mps_body_create_sphere(context, &body, 0.03, &ball));
-  mps_assert_ok(context, mps_mpm_add_body(s.mpm, ball));
+  mps_contact_def rough = mps_contact_defaults();
+  rough.friction = 0.4;
+  rough.inside = MPS_CONTACT_INSIDE_PUSH; /* some begin in it */
+  mps_assert_ok(context, mps_mpm_add_contact(s.mpm, ball, &rough, NULL));
   mps_assert_ok(context, mps_mpm_step(s.mpm, 25));
   mps_reaction reaction;
   mps_assert_ok(context, mps_body_get_reaction(ball, -1, &reaction));
@@ -92,8 +96,7 @@ static mpm_scene hold(mps_context *context, int32_t geometry, uint64_t *hash) {
   mps_assert_ok(context, mps_mpm_step(s.mpm, 10));
   double force[3];
   for (int32_t k = -1; k < 4; k++) {
-    mps_assert_ok(context, k < 0 ? mps_mpm_get_nodes_force(s.mpm, box, force)
-                                 : mps_mpm_get_wall_force(s.mpm, k / 2, k % 2, force));
+    mpm_scene_force(&s, k < 0 ? box : k, force);
     for (int c = 0; c < 3; c++) *hash = digest_add(*hash, &force[c]);
   }
   return s;
@@ -112,9 +115,9 @@ static uint64_t hash_of(int32_t executor, int32_t threads, int32_t geometry, int
   mps_body *disc = NULL;
   mps_body_state b = {0};
   uint64_t forces = 0;
-  mpm_scene s = options & HELD          ? hold(context, geometry, &forces)
-                : geometry == MPS_SPACE ? fall_in_space(context, options)
-                                        : fall(context, geometry, options, false, &disc);
+  mpm_scene s = options & HELD              ? hold(context, geometry, &forces)
+                : geometry == MPS_MPM_SPACE ? fall_in_space(context, options)
+                                            : fall(context, geometry, options, false, &disc);
   if (disc) mps_assert_ok(context, mps_body_get_state(disc, &b));
   assert_true(!disc || b.velocity[0] > -2.9); /* it has hit */
   uint64_t hash = digest_add(digest_fields(context, s.particles, names), &b.spin[2]);
@@ -141,25 +144,26 @@ static void same_bits(int32_t geometry, int options, int count, const int32_t *t
 static void every_number_of_threads(void **state) {
   (void)state;
   static const int32_t threads[] = {1, 2, 3, 8};
-  for (int32_t geometry = 0; geometry <= MPS_SPACE; geometry++) same_bits(geometry, 0, 4, threads);
+  for (int32_t geometry = 0; geometry <= MPS_MPM_SPACE; geometry++)
+    same_bits(geometry, 0, 4, threads);
 }
 
 static void options_too(void **state) {
   (void)state;
   static const int32_t threads[] = {3};
-  same_bits(MPS_AXISYMMETRIC, BY_CELL, 1, threads);
-  same_bits(MPS_PLANE_STRAIN, STANDARD, 1, threads);
-  same_bits(MPS_SPACE, STANDARD | BY_CELL, 1, threads);
-  same_bits(MPS_PLANE_STRAIN, HELD, 4, (int32_t[]){1, 2, 3, 8});
-  same_bits(MPS_SPACE, HELD, 4, (int32_t[]){1, 2, 3, 8});
+  same_bits(MPS_MPM_AXISYMMETRIC, BY_CELL, 1, threads);
+  same_bits(MPS_MPM_PLANE_STRAIN, STANDARD, 1, threads);
+  same_bits(MPS_MPM_SPACE, STANDARD | BY_CELL, 1, threads);
+  same_bits(MPS_MPM_PLANE_STRAIN, HELD, 4, (int32_t[]){1, 2, 3, 8});
+  same_bits(MPS_MPM_SPACE, HELD, 4, (int32_t[]){1, 2, 3, 8});
 }
 
 static void any_order_of_particles(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
   mps_body *disc[2] = {NULL};
-  mpm_scene a = fall(context, MPS_PLANE_STRAIN, 0, false, &disc[0]);
-  mpm_scene b = fall(context, MPS_PLANE_STRAIN, 0, true, &disc[1]);
+  mpm_scene a = fall(context, MPS_MPM_PLANE_STRAIN, 0, false, &disc[0]);
+  mpm_scene b = fall(context, MPS_MPM_PLANE_STRAIN, 0, true, &disc[1]);
   const int64_t count = mps_particles_count(a.particles);
   mps_view xa = mpm_scene_view(&a, "position"), xb = mpm_scene_view(&b, "position");
   for (int64_t id = 0; id < count; id++) {

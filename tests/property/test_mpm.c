@@ -23,7 +23,7 @@ enum { COUNT = 4000 };
 /* Bodies of that scene; in space a thin pin with its end, and a ball. */
 static int crowd_bodies(int32_t geometry, mps_body **bodies) {
   mps_body_def body = mps_body_defaults();
-  if (geometry == MPS_SPACE) {
+  if (geometry == MPS_MPM_SPACE) {
     for (int c = 0; c < 3; c++) body.position[c] = 0.05;
     mps_assert_ok(context, mps_body_create_sphere(context, &body, 0.04, &bodies[0]));
     body.position[0] = 0.13, body.position[1] = 0.11, body.rotation[0] = 0.4;
@@ -37,7 +37,7 @@ static int crowd_bodies(int32_t geometry, mps_body **bodies) {
 }
 
 static mpm_scene crowded(int32_t geometry, int32_t spline, bool keep_out) {
-  const int dim = geometry == MPS_SPACE ? 3 : 2;
+  const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
   const double side = dim == 3 ? 0.2 : 1.0;
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.0, 0.0, 1e6);
   mps_body *bodies[2] = {NULL};
@@ -61,7 +61,10 @@ static mpm_scene crowded(int32_t geometry, int32_t spline, bool keep_out) {
   for (int c = 0; c < dim; c++) def.lower[c] = 0.0, def.upper[c] = side;
   mpm_scene_solve(&s, &def);
   for (int b = 0; b < count; b++) {
-    mps_assert_ok(context, mps_mpm_add_body(s.mpm, bodies[b]));
+    mps_contact_def contact = mps_contact_defaults();
+    contact.inside = MPS_CONTACT_INSIDE_PUSH;
+    contact.thin = 1;
+    mps_assert_ok(context, mps_mpm_add_contact(s.mpm, bodies[b], &contact, NULL));
     mps_body_destroy(&bodies[b]);
   }
   return s;
@@ -117,7 +120,8 @@ static void check_shapes(mps_mpm *mpm, int64_t *fitted) {
 static void shapes_are_a_partition(void **state) {
   (void)state;
   for (int variant = 0; variant < 4; variant++) {
-    mpm_scene s = crowded(variant < 2 ? MPS_PLANE_STRAIN : MPS_SPACE, 2 + variant % 2, false);
+    mpm_scene s =
+        crowded(variant < 2 ? MPS_MPM_PLANE_STRAIN : MPS_MPM_SPACE, 2 + variant % 2, false);
     int64_t fitted = 0;
     mps_assert_ok(context, mpsi_mpm_find_near(s.mpm, "test"));
     check_shapes(s.mpm, &fitted);
@@ -134,7 +138,7 @@ static void affine_round_trip(void **state) {
   const double plane[] = {1.1, -0.7, 0.4, 0.9};
   const double space[] = {1.1, -0.7, 0.3, 0.4, 0.9, -0.5, -0.2, 0.6, 0.8};
   for (int variant = 0; variant < 6; variant++) {
-    const int geometry = variant / 2, spline = variant % 2, dim = geometry == MPS_SPACE ? 3 : 2;
+    const int geometry = variant / 2, spline = variant % 2, dim = geometry == MPS_MPM_SPACE ? 3 : 2;
     const double *L = dim == 3 ? space : plane;
     mpm_scene s = crowded(geometry, 2 + spline, true);
     mps_mpm *mpm = s.mpm;
@@ -187,7 +191,7 @@ static void add_by_fit(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t k, no
         v += p->L[dim * c + d][k] * h * s[d];
         force -= p->V[k] * p->s[symmetric[c][d]][k] * f.gradient[d][n];
       }
-      if (mpm->def.geometry == MPS_AXISYMMETRIC && c == 0)
+      if (mpm->def.geometry == MPS_MPM_AXISYMMETRIC && c == 0)
         force -= f.phi[n] * p->V[k] * p->s[2][k] / p->x[0][k];
       to[1 + c] += m * f.phi[n] * v;
       to[5 + c] += force;
@@ -248,7 +252,7 @@ static void transfers_agree_with_the_fit(void **state) {
     mps_mpm *mpm = s.mpm;
     const int dim = mpm->dim;
     for (int b = 0; b < mpm->contact.bodies; b++)
-      mpm->contact.body[b]->def.friction = variant % 4 < 2 ? 0.0 : 0.3;
+      mpm->contact.handle[b]->def.friction = variant % 4 < 2 ? 0.0 : 0.3;
     for (int64_t k = 0; k < COUNT; k++) {
       for (int c = 0; c < dim; c++) mpm->p.v[c][k] = uniform(-1.0, 1.0);
       for (int c = 0; c < dim * dim; c++) mpm->p.L[c][k] = uniform(-9.0, 9.0);
@@ -300,7 +304,7 @@ static void keeps_momentum(int dim, int spline, int64_t steps) {
                 mps_particles_fill_ball(s.particles, centre, dim == 3 ? 0.06 : 0.12, NULL));
   mpm_scene_affine(&s, v0, dim == 3 ? space : plane);
   mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = dim == 3 ? MPS_SPACE : MPS_PLANE_STRAIN;
+  def.geometry = dim == 3 ? MPS_MPM_SPACE : MPS_MPM_PLANE_STRAIN;
   def.spline = spline;
   def.cell = 0.02;
   mpm_scene_solve(&s, &def);
@@ -355,13 +359,11 @@ static void contact_keeps_momentum(void **state) {
   body.motion = MPS_BODY_MOTION_FREE;
   body.mass = 20.0, body.inertia[2] = 0.2;
   body.position[0] = 0.2, body.position[1] = -0.05, body.rotation[2] = 0.4;
-  body.friction = 0.4;
   mps_assert_ok(context, mps_body_create_box(context, &body, 0.1, 0.3, &bodies[0]));
   body.position[0] = 0.1, body.position[1] = -0.2;
-  body.friction = 0.1;
   mps_assert_ok(context, mps_body_create_disc(context, &body, 0.08, &bodies[1]));
   mps_assert_ok(context, mps_body_name_part(bodies[0], "face", 3, 1, NULL));
-  for (int b = 0; b < 2; b++) mps_assert_ok(context, mps_mpm_add_body(s.mpm, bodies[b]));
+  for (int b = 0; b < 2; b++) mpm_scene_contact(&s, bodies[b], b == 0 ? 0.4 : 0.1);
   const mps_mpm_totals start = mpm_scene_totals(&s);
   const double before[3] = {start.linear[0], start.linear[1], start.angular[2]};
   mps_assert_ok(context, mps_mpm_step(s.mpm, 400));
@@ -392,7 +394,7 @@ static void contact_in_space_keeps_momentum(void **state) {
   mps_assert_ok(context, mps_particles_fill_ball(s.particles, centre, 0.05, NULL));
   mpm_scene_affine(&s, v0, L);
   mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = MPS_SPACE;
+  def.geometry = MPS_MPM_SPACE;
   def.cell = 0.02;
   mpm_scene_solve(&s, &def);
   mps_body *bodies[2] = {NULL};
@@ -401,11 +403,10 @@ static void contact_in_space_keeps_momentum(void **state) {
   body.mass = 2.0;
   for (int c = 0; c < 3; c++) body.inertia[c] = 0.002 + 0.001 * c;
   body.position[0] = 0.12, body.position[1] = -0.01;
-  body.friction = 0.4;
   mps_assert_ok(context, mps_body_create_sphere(context, &body, 0.06, &bodies[0]));
   body.position[0] = 0.0, body.position[1] = -0.06;
   mps_assert_ok(context, mps_body_create_half_space(context, &body, normal, &bodies[1]));
-  for (int b = 0; b < 2; b++) mps_assert_ok(context, mps_mpm_add_body(s.mpm, bodies[b]));
+  for (int b = 0; b < 2; b++) mpm_scene_contact(&s, bodies[b], 0.4);
   const mps_mpm_totals start = mpm_scene_totals(&s);
   mps_assert_ok(context, mps_mpm_step(s.mpm, 200));
   const mps_mpm_totals end = mpm_scene_totals(&s);
@@ -447,9 +448,8 @@ static void thin_wall_lets_nothing_pass(void **state) {
     mps_body_def body = mps_body_defaults();
     body.position[0] =
         shift + h - 0.0005; /* off the lump at rest, which would touch by round-off */
-    body.friction = 0.3;
     mps_assert_ok(context, mps_body_create_box(context, &body, 2.0 * h, 1.0, &wall));
-    mps_assert_ok(context, mps_mpm_add_body(s.mpm, wall));
+    mpm_scene_contact(&s, wall, 0.3);
     mps_assert_ok(context, mps_mpm_step(s.mpm, 100));
     mps_reaction reaction;
     mps_assert_ok(context, mps_body_get_reaction(wall, -1, &reaction));

@@ -9,9 +9,9 @@
 /* Sum of all forces of the last step but gravity; counts the walls that act. */
 static void held_force(mpm_scene *s, int32_t box, double *sum, int *acts) {
   double force[3];
-  mps_assert_ok(context, mps_mpm_get_nodes_force(s->mpm, box, sum));
+  mpm_scene_force(s, box, sum);
   for (int32_t k = 0; k < 2 * s->mpm->dim; k++) {
-    mps_assert_ok(context, mps_mpm_get_wall_force(s->mpm, k / 2, k % 2, force));
+    mpm_scene_force(s, k, force);
     acts[k] += force[0] != 0.0 || force[1] != 0.0 || force[2] != 0.0;
     for (int c = 0; c < 3; c++) sum[c] += force[c];
   }
@@ -19,11 +19,18 @@ static void held_force(mpm_scene *s, int32_t box, double *sum, int *acts) {
     for (int64_t k = 0; k < s->mpm->p.count; k++) sum[c] += s->mpm->p.f[c][k];
 }
 
+/* The load keeps its particles and areas. */
+static void push_anew(mpm_scene *s, int32_t load) {
+  mps_mpm_load_def def = mps_mpm_load_defaults();
+  def.traction[0] = 100.0, def.traction[1] = 50.0, def.traction[2] = 10.0;
+  mps_assert_ok(context, mps_mpm_set_load(s->mpm, load, &def));
+}
+
 /* In every step the momentum changes by dt times the sum of the forces. In axisymmetry there is the
  * hoop stress besides, along x. */
 static void momentum_is_balanced(void **state) {
   (void)state;
-  for (int32_t geometry = MPS_PLANE_STRAIN; geometry <= MPS_SPACE; geometry++) {
+  for (int32_t geometry = MPS_MPM_PLANE_STRAIN; geometry <= MPS_MPM_SPACE; geometry++) {
     int32_t box = -1, loads[2];
     mpm_scene s = held_begin(context, geometry, &box, loads);
     mps_mpm_totals before = mpm_scene_totals(&s);
@@ -32,17 +39,16 @@ static void momentum_is_balanced(void **state) {
     for (int step = 0; step < 60; step++) {
       if (step == 20) mps_assert_ok(context, mps_mpm_remove_load(s.mpm, loads[0]));
       if (step == 30)
-        mps_assert_ok(context, mps_mpm_set_wall(s.mpm, 0, 0, MPS_WALL_ABSORBING, 0.0));
-      if (step == 40)
-        mps_assert_ok(context,
-                      mps_mpm_set_load(s.mpm, loads[1], (double[]){100.0, 50.0, 10.0}, NULL));
+        mps_assert_ok(context, mps_mpm_set_side(s.mpm, MPS_MPM_SIDE_X_LOWER,
+                                                MPS_MPM_BOUNDARY_ABSORBING, 0.0));
+      if (step == 40) push_anew(&s, loads[1]);
       const double t = mps_mpm_time(s.mpm);
       mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
       const mps_mpm_totals after = mpm_scene_totals(&s);
       const double dt = mps_mpm_time(s.mpm) - t;
       double force[3];
       held_force(&s, box, force, acts);
-      for (int c = geometry == MPS_AXISYMMETRIC ? 1 : 0; c < s.mpm->dim; c++) {
+      for (int c = geometry == MPS_MPM_AXISYMMETRIC ? 1 : 0; c < s.mpm->dim; c++) {
         const double all = force[c] + after.mass * s.mpm->def.gravity[c];
         worst = fmax(worst, fabs(after.linear[c] - before.linear[c] - s.mpm->run.dt * all));
         total = fmax(total, fabs(after.linear[c]) + fabs(dt * all));
@@ -69,7 +75,8 @@ static void loads_follow_particles(void **state) {
   const int64_t ids[] = {3, 100, 7};
   const double area[] = {0.1, -0.2, 0.3}, pull[] = {10.0, -20.0};
   int32_t load = -1;
-  mps_assert_ok(context, mps_mpm_add_load(s.mpm, 3, ids, area, pull, NULL, &load));
+  const mps_mpm_load_def pulls = mpm_scene_load_def(3, ids, area, pull, 2, NULL);
+  mps_assert_ok(context, mps_mpm_add_load(s.mpm, &pulls, &load));
   const uint64_t epoch = mps_particles_epoch(s.particles);
   mps_assert_ok(context, mps_mpm_step(s.mpm, 200));
   assert_true(mps_particles_epoch(s.particles) > epoch);

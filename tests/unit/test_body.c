@@ -32,13 +32,6 @@ static void refuses_bad_definitions(void **state) {
                    MPS_ERROR_ARGUMENT, "vertices is 2");
   mps_assert_fails(context, mps_body_create_polygon(context, &def, 4, bow, &body),
                    MPS_ERROR_ARGUMENT, "cross or touch");
-  def.friction = -0.1;
-  mps_assert_fails(context, mps_body_create_box(context, &def, 1.0, 1.0, &body), MPS_ERROR_ARGUMENT,
-                   "friction is -0.1");
-  def = mps_body_defaults();
-  def.penalty = NAN;
-  mps_assert_fails(context, mps_body_create_box(context, &def, 1.0, 1.0, &body), MPS_ERROR_ARGUMENT,
-                   "penalty is nan");
   def = mps_body_defaults();
   def.mass = 1.0;
   mps_assert_fails(context, mps_body_create_box(context, &def, 1.0, 1.0, &body), MPS_ERROR_ARGUMENT,
@@ -94,31 +87,6 @@ static void refuses_bad_solids(void **state) {
   mps_assert_fails(context, mps_body_create_revolution(context, NULL, 3, pinched, &body),
                    MPS_ERROR_ARGUMENT, "corner 0 is on the axis with neither of its edges");
   assert_null(body);
-}
-
-/* Nakamura (28) and (58): by hand, for 2 x 2 (x 2) particles a cell of 0.2 m. */
-static void chooses_the_penalty(void **state) {
-  (void)state;
-  mps_body_def def = mps_body_defaults();
-  mps_body *body = NULL;
-  def.xi = 1.0;
-  mps_assert_fails(context, mps_body_create_disc(context, &def, 1.0, &body), MPS_ERROR_ARGUMENT,
-                   "xi is 1, must be in (0, 1), or 0");
-  def.xi = 0.6, def.penalty = 1e6;
-  mps_assert_fails(context, mps_body_create_disc(context, &def, 1.0, &body), MPS_ERROR_ARGUMENT,
-                   "xi is 0.6 and penalty 1e+06 N/m");
-  for (int dim = 2; dim <= 3; dim++)
-    for (int how = 0; how < 3; how++) {
-      def.xi = how == 1 ? 0.6 : 0.0, def.penalty = how == 2 ? 7e4 : 0.0;
-      if (dim == 2) mps_assert_ok(context, mps_body_create_disc(context, &def, 1.0, &body));
-      if (dim == 3) mps_assert_ok(context, mps_body_create_sphere(context, &def, 1.0, &body));
-      const double k = mpsi_body_penalty(body, 1e6, 0.1, 0.2, 0.5);
-      /* m/dt^2 with m = density spacing^dim and dt = 0.5 0.2 m/sqrt(1e6 Pa/density) */
-      const double mass_over_dt2 = (dim == 2 ? 0.01 : 0.001) * 1e6 / (0.1 * 0.1);
-      const double expected[] = {dim == 2 ? 1.33e6 : 1.33e5, 2.0 * 0.4 * mass_over_dt2, 7e4};
-      mps_assert_near(k, expected[how], 1e-9 * k);
-      mps_body_destroy(&body);
-    }
 }
 
 static void refuses_bad_calls(void **state) {
@@ -407,13 +375,18 @@ static void survives_lack_of_memory(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(refuses_bad_definitions), cmocka_unit_test(refuses_what_a_plane_has_not),
-      cmocka_unit_test(refuses_bad_solids),      cmocka_unit_test(chooses_the_penalty),
-      cmocka_unit_test(refuses_bad_calls),       cmocka_unit_test(names_parts),
-      cmocka_unit_test(follows_signals),         cmocka_unit_test(falls_freely),
-      cmocka_unit_test(moves_from_outside),      cmocka_unit_test(turns_from_outside),
-      cmocka_unit_test(keeps_its_books),         cmocka_unit_test(begins_where_it_is),
-      cmocka_unit_test(refuses_insane_numbers),  cmocka_unit_test(survives_lack_of_memory)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(refuses_bad_definitions),
+                                     cmocka_unit_test(refuses_what_a_plane_has_not),
+                                     cmocka_unit_test(refuses_bad_solids),
+                                     cmocka_unit_test(refuses_bad_calls),
+                                     cmocka_unit_test(names_parts),
+                                     cmocka_unit_test(follows_signals),
+                                     cmocka_unit_test(falls_freely),
+                                     cmocka_unit_test(moves_from_outside),
+                                     cmocka_unit_test(turns_from_outside),
+                                     cmocka_unit_test(keeps_its_books),
+                                     cmocka_unit_test(begins_where_it_is),
+                                     cmocka_unit_test(refuses_insane_numbers),
+                                     cmocka_unit_test(survives_lack_of_memory)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -52,25 +52,25 @@ static void stop_and_go_on(int32_t geometry, int64_t steps, int stops) {
 
 static void goes_on_in_plane_strain(void **state) {
   (void)state;
-  stop_and_go_on(MPS_PLANE_STRAIN, 61, 8);
+  stop_and_go_on(MPS_MPM_PLANE_STRAIN, 61, 8);
 }
 
 static void goes_on_in_axisymmetry(void **state) {
   (void)state;
-  stop_and_go_on(MPS_AXISYMMETRIC, 83, 4);
+  stop_and_go_on(MPS_MPM_AXISYMMETRIC, 83, 4);
 }
 
 static void goes_on_in_space(void **state) {
   (void)state;
-  stop_and_go_on(MPS_SPACE, 29, 4);
+  stop_and_go_on(MPS_MPM_SPACE, 29, 4);
 }
 
 /* Stops at every step, some of which leave the particles to be sorted by the next. */
 static void goes_on_from_every_step(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene whole = build(context, MPS_PLANE_STRAIN, &none),
-        next = build(context, MPS_PLANE_STRAIN, &none);
+  scene whole = build(context, MPS_MPM_PLANE_STRAIN, &none),
+        next = build(context, MPS_MPM_PLANE_STRAIN, &none);
   mps_assert_ok(context, mps_mpm_step(whole.s.mpm, 100));
   uint64_t epoch = mps_particles_epoch(whole.s.particles);
   int sorted = 0;
@@ -93,7 +93,7 @@ static void goes_on_from_every_step(void **state) {
 
 static void with_walls_loads_and_materials(void **state) {
   (void)state;
-  for (int32_t geometry = 0; geometry <= MPS_SPACE; geometry++) {
+  for (int32_t geometry = 0; geometry <= MPS_MPM_SPACE; geometry++) {
     mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
     scene whole = build_held(context, geometry);
     for (int k = 0; k < 4; k++) { /* at first before the walls have found their forces at rest */
@@ -120,18 +120,18 @@ static void with_walls_loads_and_materials(void **state) {
 static void other_walls_loads_and_materials_are_refused(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene saved = build_held(context, MPS_PLANE_STRAIN);
+  scene saved = build_held(context, MPS_MPM_PLANE_STRAIN);
   mps_assert_ok(context, mps_mpm_save(saved.s.mpm, path, NULL));
   drop(&saved);
   for (int k = 0; k < 4; k++) {
     int32_t box, loads[2];
-    scene x = {.s = held_begin(context, MPS_PLANE_STRAIN, &box, loads)};
-    if (k == 0) mps_assert_ok(context, mps_mpm_set_wall(x.s.mpm, 0, 1, MPS_WALL_FIXED, 0.0));
+    scene x = {.s = held_begin(context, MPS_MPM_PLANE_STRAIN, &box, loads)};
+    if (k == 0) mps_assert_ok(context, mps_mpm_set_side(x.s.mpm, 1, MPS_MPM_BOUNDARY_FIXED, 0.0));
     if (k == 1) mps_assert_ok(context, mps_mpm_remove_load(x.s.mpm, loads[1]));
-    if (k == 2) mps_assert_ok(context, mps_mpm_free_nodes(x.s.mpm, box));
+    if (k == 2) mps_assert_ok(context, mps_mpm_remove_boundary(x.s.mpm, box));
     static const char *const text[] = {
-        "wall1/kind is 3, in this solver 1", "loads is 2, in this solver 1",
-        "box0/kind is -2, in this solver -1", "materials is 2, in this solver 1"};
+        "boundary1/kind is 3, in this solver 1", "loads is 2, in this solver 1",
+        "boundary6/kind is 5, in this solver -1", "materials is 2, in this solver 1"};
     mps_assert_fails(context, mps_mpm_restore(x.s.mpm, path, NULL), MPS_ERROR_ARGUMENT, text[k]);
     drop(&x);
   }
@@ -143,7 +143,7 @@ static void other_walls_loads_and_materials_are_refused(void **state) {
 static void another_solver_is_refused(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene x = build(context, MPS_PLANE_STRAIN, &none);
+  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none);
   mps_assert_ok(context, mps_mpm_step(x.s.mpm, 20));
   mps_assert_ok(context, mps_mpm_save(x.s.mpm, path, NULL));
   drop(&x);
@@ -152,8 +152,8 @@ static void another_solver_is_refused(void **state) {
     change c;
     const char *text;
   } list[] = {
-      {MPS_AXISYMMETRIC, none, "geometry is 0, in this solver 1"},
-      {MPS_SPACE, none, "particles in 2D, the set has"},
+      {MPS_MPM_AXISYMMETRIC, none, "geometry is 0, in this solver 1"},
+      {MPS_MPM_SPACE, none, "particles in 2D, the set has"},
       {0, {.spacing = 0.02, .cell = 0.02, .bodies = 2}, "particles in 2D, the set has"},
       {0, {.spacing = 0.01, .cell = 0.02, .bodies = 2, .particles = 1}, "the set has 801 in 2D"},
       {0, {.spacing = 0.01, .cell = 0.04, .bodies = 2}, "in this solver 0.0400"},
@@ -189,7 +189,7 @@ static void another_solver_is_refused(void **state) {
 static void other_files_and_bad_arguments(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene x = build(context, MPS_PLANE_STRAIN, &none);
+  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none);
   mps_checkpoint info = mps_checkpoint_defaults();
   assert_int_equal(mps_mpm_save(NULL, path, NULL), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_mpm_restore(NULL, path, NULL), MPS_ERROR_ARGUMENT);
@@ -224,7 +224,8 @@ static void other_files_and_bad_arguments(void **state) {
 static void a_broken_run_goes_back(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene x = build(context, MPS_PLANE_STRAIN, &none), y = build(context, MPS_PLANE_STRAIN, &none);
+  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none),
+        y = build(context, MPS_MPM_PLANE_STRAIN, &none);
   mps_assert_ok(context, mps_mpm_save(x.s.mpm, path, NULL));
   mps_view v = mpm_scene_view(&x.s, "velocity");
   *mps_view_f64(&v, 7, 0) = NAN;
@@ -243,7 +244,7 @@ static void a_broken_run_goes_back(void **state) {
 static void the_callers_bytes_come_back(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene x = build(context, MPS_PLANE_STRAIN, &none);
+  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none);
   char text[] = "rows so far", room[64];
   for (int k = 0; k < 2; k++) {
     mps_checkpoint info = mps_checkpoint_defaults(), back = mps_checkpoint_defaults();
@@ -276,7 +277,7 @@ static void the_callers_bytes_come_back(void **state) {
 static void blocks_elsewhere_are_refused(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene x = build(context, MPS_PLANE_STRAIN, &none);
+  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none);
   enum { ROW = 10 };
   static const int64_t bad[][2] = {{0, 1},  {1, 1000}, {1, INT64_MAX}, {3, 1},
                                    {4, -1}, {4, 12},   {8, 99},        {9, 2}};
@@ -311,7 +312,7 @@ static void blocks_elsewhere_are_refused(void **state) {
 static mps_status restore_once(mps_context *own, int what) {
   (void)what;
   scene x;
-  mps_status status = try_build(own, MPS_PLANE_STRAIN, &none, &x);
+  mps_status status = try_build(own, MPS_MPM_PLANE_STRAIN, &none, &x);
   if (status == MPS_OK) status = mps_mpm_save(x.s.mpm, path, NULL);
   if (status == MPS_OK) status = mps_mpm_restore(x.s.mpm, path, NULL);
   drop(&x);

@@ -36,12 +36,12 @@ static void refuses_bad_arrays(void **state) {
   block.xyz[9 * 5 + 4] = INFINITY;
   mps_assert_fails(context, create(&body), MPS_ERROR_ARGUMENT, "vertex 16 has y = inf m");
   mps_body_def def = mps_body_defaults();
-  def.friction = -1.0;
+  def.damping[0] = -1.0;
   mesh_block(&block, 0.3);
   mps_assert_fails(context,
                    mps_body_create_mesh(context, &def, 3 * block.triangles, block.xyz,
                                         block.triangles, block.corner, &body),
-                   MPS_ERROR_ARGUMENT, "friction is -1");
+                   MPS_ERROR_ARGUMENT, "damping[0] is -1");
 }
 
 /* Every way in which triangles are not the surface of a solid. */

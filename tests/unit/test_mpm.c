@@ -39,9 +39,13 @@ static void refuses_bad_definitions(void **state) {
   CASE(cell, NAN, "cell is nan m");
   CASE(spline, 4, "spline is 4");
   CASE(geometry, 3, "geometry is 3");
-  CASE(geometry, MPS_SPACE, "geometry is 2, and the set has 2 dimensions");
+  CASE(geometry, MPS_MPM_SPACE, "geometry is 2, and the set has 2 dimensions");
   CASE(transfer, -1, "transfer is -1");
-  CASE(wall_upper[1], 9, "wall_upper[1] is 9");
+  CASE(step_from, 9, "step_from is 9");
+  CASE(measure, 0.0, "measure is 0, must be a thickness");
+  CASE(cell, 1e9, "cell is 1e+09 m with particles 0.01 m apart");
+  CASE(cell, 1e-4, "must be 0.5 to 100 of their spacings");
+  CASE(dt, 0.0, "dt is 0 s");
   CASE(courant, 1.5, "courant is 1.5");
   CASE(volumetric, 2, "volumetric is 2");
   CASE(scheme, 2, "scheme is 2");
@@ -62,7 +66,7 @@ static void refuses_bad_definitions(void **state) {
                    MPS_ERROR_ARGUMENT, "material is NULL");
   mps_assert_fails(context, mps_mpm_create(context, s.particles, s.material, &def, NULL),
                    MPS_ERROR_ARGUMENT, "out is NULL");
-  def.geometry = MPS_AXISYMMETRIC;
+  def.geometry = MPS_MPM_AXISYMMETRIC;
   def.lower[0] = -0.02;
   refuses(&s, &def, "radius begins at 0");
   mps_view x = mpm_scene_view(&s, "position");
@@ -101,13 +105,19 @@ static void owns_its_bodies(void **state) {
   mpm_scene_solve(&s, &def);
   mpm_scene_solve(&other, &def);
   mps_body *body = NULL;
-  mps_assert_ok(context, mps_body_create_disc(context, NULL, 0.01, &body));
-  mps_assert_fails(context, mps_mpm_add_body(s.mpm, NULL), MPS_ERROR_ARGUMENT, "body is NULL");
-  mps_assert_ok(context, mps_mpm_add_body(s.mpm, body));
-  mps_assert_fails(context, mps_mpm_add_body(other.mpm, body), MPS_ERROR_STATE, "has the body");
+  mps_body_def disc = mps_body_defaults();
+  disc.position[0] = 0.3;
+  mps_assert_ok(context, mps_body_create_disc(context, &disc, 0.02, &body));
+  mps_assert_fails(context, mpm_scene_try_contact(s.mpm, NULL, 0.0), MPS_ERROR_ARGUMENT,
+                   "body is NULL");
+  mpm_scene_contact(&s, body, 0.0);
+  mps_assert_fails(context, mpm_scene_try_contact(s.mpm, body, 0.0), MPS_ERROR_STATE,
+                   "in contact with the body already");
+  mps_assert_fails(context, mpm_scene_try_contact(other.mpm, body, 0.0), MPS_ERROR_STATE,
+                   "another solver moves the body");
   mps_assert_fails(context, mps_body_advance(body, 0.1), MPS_ERROR_STATE, "a solver moves");
   mps_mpm_destroy(&s.mpm);
-  mps_assert_ok(context, mps_mpm_add_body(other.mpm, body)); /* free again */
+  mpm_scene_contact(&other, body, 0.0); /* free again */
   mps_body_destroy(&body);
   mps_assert_fails(context, mps_mpm_step(other.mpm, -1), MPS_ERROR_ARGUMENT, "count is -1");
   mps_assert_fails(context, mps_mpm_run(other.mpm, NAN, 1, NULL, NULL), MPS_ERROR_ARGUMENT,
@@ -331,8 +341,10 @@ static mps_status make(mps_context *c, int what) {
   if (status == MPS_OK) status = mps_mpm_create(c, particles, material, &def, &mpm);
   if (status == MPS_OK && what == 2) status = mps_material_neo_hookean(c, 1e5, 0.3, &other);
   if (status == MPS_OK && other) status = mps_mpm_set_material(mpm, other, 1, &fifth);
-  if (status == MPS_OK) status = mps_body_create_disc(c, NULL, 0.02, &body);
-  if (status == MPS_OK) status = mps_mpm_add_body(mpm, body);
+  mps_body_def disc = mps_body_defaults();
+  disc.position[0] = 0.12;
+  if (status == MPS_OK) status = mps_body_create_disc(c, &disc, 0.02, &body);
+  if (status == MPS_OK) status = mpm_scene_try_contact(mpm, body, 0.0);
   if (status == MPS_OK) status = mps_mpm_step(mpm, 2);
   mps_body_destroy(&body);
   mps_mpm_destroy(&mpm);
@@ -362,9 +374,8 @@ static void steady_steps_allocate_nothing(void **state) {
   mps_body_def plate = mps_body_defaults();
   const double normal[] = {0.0, 1.0};
   plate.position[1] = 0.002;
-  plate.friction = 0.2;
   mps_assert_ok(own, mps_body_create_half_plane(own, &plate, normal, &body));
-  mps_assert_ok(own, mps_mpm_add_body(s.mpm, body));
+  mpm_scene_contact(&s, body, 0.2);
   mps_assert_ok(own, mps_mpm_step(s.mpm, 100));
   const uint64_t epoch = mps_particles_epoch(s.particles);
   const int64_t calls = allocator.calls;

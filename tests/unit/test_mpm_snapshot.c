@@ -42,16 +42,17 @@ static void goes_back(int32_t geometry, int32_t threads, int64_t steps) {
 
 static void goes_back_bit_for_bit_on_any_threads(void **state) {
   (void)state;
-  for (int32_t threads = 1; threads <= 3; threads++) goes_back(MPS_PLANE_STRAIN, threads, 50);
-  goes_back(MPS_AXISYMMETRIC, 2, 50);
-  goes_back(MPS_SPACE, 2, 25);
+  for (int32_t threads = 1; threads <= 3; threads++) goes_back(MPS_MPM_PLANE_STRAIN, threads, 50);
+  goes_back(MPS_MPM_AXISYMMETRIC, 2, 50);
+  goes_back(MPS_MPM_SPACE, 2, 25);
 }
 
 /* Walls that look for their forces at rest, boxes of nodes, loads, two materials. */
 static void goes_back_with_walls_and_loads(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene x = build_held(context, MPS_PLANE_STRAIN), twin = build_held(context, MPS_PLANE_STRAIN);
+  scene x = build_held(context, MPS_MPM_PLANE_STRAIN),
+        twin = build_held(context, MPS_MPM_PLANE_STRAIN);
   mps_snapshot *snapshot = NULL;
   for (int k = 0; k < 4; k++) {
     mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &snapshot));
@@ -74,7 +75,8 @@ static void goes_back_with_walls_and_loads(void **state) {
 static void mends_a_failed_step(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene x = build(context, MPS_PLANE_STRAIN, &none), twin = build(context, MPS_PLANE_STRAIN, &none);
+  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none),
+        twin = build(context, MPS_MPM_PLANE_STRAIN, &none);
   mps_snapshot *snapshot = NULL;
   mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &snapshot));
   mps_view v = mpm_scene_view(&x.s, "velocity");
@@ -92,7 +94,8 @@ static void mends_a_failed_step(void **state) {
 static void belongs_to_its_solver(void **state) {
   (void)state;
   mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  scene x = build(context, MPS_PLANE_STRAIN, &none), y = build(context, MPS_PLANE_STRAIN, &none);
+  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none),
+        y = build(context, MPS_MPM_PLANE_STRAIN, &none);
   mps_snapshot *snapshot = NULL;
 #define FAILS(call, status, text) mps_assert_fails(context, call, status, text)
   FAILS(mps_mpm_rollback(x.s.mpm, NULL), MPS_ERROR_ARGUMENT, "snapshot is NULL");
@@ -106,7 +109,7 @@ static void belongs_to_its_solver(void **state) {
   FAILS(mps_mpm_snapshot(y.s.mpm, &snapshot), MPS_ERROR_ARGUMENT, "of another solver");
   assert_non_null(snapshot);
   drop(&x); /* it survives, also where the next solver gets the memory of this one */
-  x = build(context, MPS_PLANE_STRAIN, &none);
+  x = build(context, MPS_MPM_PLANE_STRAIN, &none);
   FAILS(mps_mpm_rollback(x.s.mpm, snapshot), MPS_ERROR_ARGUMENT, "of another solver");
   drop(&x);
   drop(&y);
@@ -120,13 +123,14 @@ static void another_build_is_refused(void **state) {
   mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
   change c = none;
   c.bodies = 1;
-  scene x = build(context, MPS_PLANE_STRAIN, &c), twin = build(context, MPS_PLANE_STRAIN, &c);
+  scene x = build(context, MPS_MPM_PLANE_STRAIN, &c),
+        twin = build(context, MPS_MPM_PLANE_STRAIN, &c);
   mps_snapshot *snapshot = NULL;
   mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &snapshot));
   mps_assert_ok(context, mps_mpm_step(x.s.mpm, 5));
   mps_assert_ok(context, mps_mpm_step(twin.s.mpm, 5));
-  mps_assert_ok(context, mps_mpm_add_body(x.s.mpm, x.body[1]));
-  mps_assert_ok(context, mps_mpm_add_body(twin.s.mpm, twin.body[1]));
+  mpm_scene_contact(&x.s, x.body[1], 0.4);
+  mpm_scene_contact(&twin.s, twin.body[1], 0.4);
   FAILS(roll(&x, snapshot), MPS_ERROR_STATE, "in the snapshot bodies is 1, in this solver 2");
   follows(&x, &twin, 5);
 #undef FAILS
@@ -142,7 +146,7 @@ static mps_status snapshot_once(mps_context *own, int what) {
   (void)what;
   scene x;
   mps_snapshot *snapshot = NULL;
-  mps_status status = try_build(own, MPS_PLANE_STRAIN, &none, &x);
+  mps_status status = try_build(own, MPS_MPM_PLANE_STRAIN, &none, &x);
   if (status == MPS_OK) status = mps_mpm_snapshot(x.s.mpm, &snapshot);
   if (status == MPS_OK) status = mps_mpm_rollback(x.s.mpm, snapshot);
   mps_snapshot_destroy(&snapshot);
@@ -161,8 +165,9 @@ static void refused_allocations_change_nothing(void **state) {
   (void)state;
   test_allocator allocator = {0};
   mps_context *context = test_allocator_context(&allocator);
-  scene x = build(context, MPS_PLANE_STRAIN, &none), twin = build(context, MPS_PLANE_STRAIN, &none),
-        first = build(context, MPS_PLANE_STRAIN, &none);
+  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none),
+        twin = build(context, MPS_MPM_PLANE_STRAIN, &none),
+        first = build(context, MPS_MPM_PLANE_STRAIN, &none);
   mps_snapshot *snapshot = NULL;
   mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &snapshot));
   const uint64_t epoch = mps_particles_epoch(x.s.particles);
@@ -212,7 +217,7 @@ static void memory_is_reused(void **state) {
   (void)state;
   test_allocator allocator = {0};
   mps_context *context = test_allocator_context(&allocator);
-  scene x = build(context, MPS_PLANE_STRAIN, &none);
+  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none);
   mps_snapshot *snapshot = NULL;
   mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &snapshot));
   const int64_t live = allocator.live, before = allocator.calls;

@@ -16,46 +16,67 @@ static mpm_scene small_scene(mps_context *c, const mps_mpm_def *changed) {
 
 #define REFUSES(text, call) mps_assert_fails(context, call, MPS_ERROR_ARGUMENT, text)
 
-static void refuses_bad_walls(void **state) {
+static mps_mpm_boundary_def side_def(int32_t kind) {
+  mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
+  def.kind = kind;
+  return def;
+}
+
+static void refuses_bad_sides(void **state) {
   (void)state;
   mpm_scene s = small_scene(context, NULL);
-  mps_mpm *m = s.mpm, *other = NULL;
-  double force[3];
+  mps_mpm *m = s.mpm;
+  const int64_t ids[] = {1};
+  mps_reaction r;
   mps_signal *signal = NULL;
   mps_assert_ok(context, mps_signal_ramp(context, 0.0, 1.0, 1.0, &signal));
-  REFUSES("axis is 2", mps_mpm_set_wall(m, 2, 0, 0, 0.0));
-  REFUSES("upper 2", mps_mpm_set_wall(m, 0, 2, 0, 0.0));
-  REFUSES("no upper wall across x", mps_mpm_set_wall(m, 0, 1, 0, 0.0));
-  REFUSES("wall_lower[1] is 4", mps_mpm_set_wall(m, 1, 0, 4, 0.0));
-  REFUSES("wall_friction_lower[1] is -0.1", mps_mpm_set_wall(m, 1, 0, 2, -0.1));
-  REFUSES("of kind 1", mps_mpm_set_wall(m, 1, 0, MPS_WALL_FIXED, 0.1));
-  REFUSES("component is 2", mps_mpm_drive_wall(m, 0, 0, 2, signal, 1.0));
-  REFUSES("factor is nan", mps_mpm_drive_wall(m, 0, 0, 0, signal, NAN));
-  REFUSES("only 0 is held", mps_mpm_drive_wall(m, 0, 0, 1, signal, 1.0));
-  REFUSES("no upper wall", mps_mpm_get_wall_force(m, 1, 1, force));
-  REFUSES("force is NULL", mps_mpm_get_wall_force(m, 1, 0, NULL));
-  assert_int_equal(mps_mpm_set_wall(NULL, 0, 0, 0, 0.0), MPS_ERROR_ARGUMENT);
-  mps_mpm_destroy(&s.mpm);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.cell = 0.02;
+  REFUSES("no lower side across z", mps_mpm_set_side(m, MPS_MPM_SIDE_Z_LOWER, 0, 0.0));
+  REFUSES("boundary is -1", mps_mpm_set_side(m, -1, 0, 0.0));
+  REFUSES("no upper side across x", mps_mpm_set_side(m, MPS_MPM_SIDE_X_UPPER, 0, 0.0));
+  REFUSES("kind is 5", mps_mpm_set_side(m, MPS_MPM_SIDE_Y_LOWER, 5, 0.0));
+  REFUSES("friction is -0.1", mps_mpm_set_side(m, MPS_MPM_SIDE_Y_LOWER, 2, -0.1));
+  REFUSES("with a boundary of kind 1",
+          mps_mpm_set_side(m, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.1));
+  REFUSES("def is NULL", mps_mpm_set_boundary(m, 0, NULL));
+  mps_mpm_boundary_def def = side_def(MPS_MPM_BOUNDARY_ROLLER);
+  def.signal[0] = signal, def.factor[0] = NAN;
+  REFUSES("factor[0] is nan", mps_mpm_set_boundary(m, 0, &def));
+  def.factor[0] = 1.0;
+  REFUSES("signal[0] is given", mps_mpm_set_boundary(m, MPS_MPM_SIDE_Y_LOWER, &def));
+  def = side_def(MPS_MPM_BOUNDARY_FIXED);
+  def.ids = ids, def.id_count = 1;
+  REFUSES("are not for sides", mps_mpm_set_boundary(m, 0, &def));
+  def = side_def(MPS_MPM_BOUNDARY_ABSORBING);
   def.settle = -1.0;
-  REFUSES("settle is -1 s", mps_mpm_create(context, s.particles, s.material, &def, &other));
-  def.settle = 0.0;
-  def.wall_friction_upper[1] = 0.3;
-  REFUSES("wall_friction_upper[1] is 0.3",
-          mps_mpm_create(context, s.particles, s.material, &def, &other));
-  def.wall_friction_upper[1] = 0.0;
-  def.wall_lower[0] = MPS_WALL_ABSORBING;
-  def.scheme = MPS_SCHEME_STANDARD;
-  REFUSES("allowed with 0 (WLS)", mps_mpm_create(context, s.particles, s.material, &def, &other));
-  def.scheme = MPS_SCHEME_WLS;
-  def.geometry = MPS_AXISYMMETRIC;
-  REFUSES("on the axis r = 0", mps_mpm_create(context, s.particles, s.material, &def, &other));
-  def.wall_lower[0] = MPS_WALL_ROLLER;
-  mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
-  REFUSES("on the axis r = 0", mps_mpm_drive_wall(s.mpm, 0, 0, 0, signal, 1.0));
+  REFUSES("settle is -1 s", mps_mpm_set_boundary(m, 0, &def));
+  REFUSES("no upper side", mps_mpm_get_reaction(m, MPS_MPM_SIDE_Y_UPPER, &r));
+  REFUSES("out is NULL", mps_mpm_get_reaction_sized(m, MPS_MPM_SIDE_Y_LOWER, NULL, sizeof r));
+  assert_int_equal(mps_mpm_set_side(NULL, 0, 0, 0.0), MPS_ERROR_ARGUMENT);
+  mps_mpm_destroy(&s.mpm);
+  mps_mpm_def solver = mps_mpm_defaults();
+  solver.cell = 0.02;
+  solver.lower[1] = 0.0;
+  solver.scheme = MPS_MPM_SCHEME_STANDARD;
+  mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &solver, &s.mpm));
+  REFUSES("allowed with 0 (WLS)",
+          mps_mpm_set_side(s.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_ABSORBING, 0.0));
+  mps_mpm_destroy(&s.mpm);
+  solver.scheme = MPS_MPM_SCHEME_WLS;
+  solver.geometry = MPS_MPM_AXISYMMETRIC;
+  mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &solver, &s.mpm));
+  REFUSES("on the axis r = 0", mps_mpm_set_side(s.mpm, 0, MPS_MPM_BOUNDARY_ABSORBING, 0.0));
+  REFUSES("cannot be free", mps_mpm_remove_boundary(s.mpm, 0));
+  def = side_def(MPS_MPM_BOUNDARY_FIXED);
+  def.signal[0] = signal;
+  REFUSES("on the axis r = 0", mps_mpm_set_boundary(s.mpm, 0, &def));
   mps_signal_destroy(&signal);
   mpm_scene_end(&s);
+}
+
+static mps_status add_box(mpm_scene *s, const double *lower, const double *upper, int32_t component,
+                          int32_t *number) {
+  const mps_mpm_boundary_def def = mpm_scene_box_def(s->mpm, lower, upper, component, NULL, 1.0);
+  return mps_mpm_add_boundary(s->mpm, &def, number);
 }
 
 static void refuses_bad_boxes(void **state) {
@@ -63,26 +84,40 @@ static void refuses_bad_boxes(void **state) {
   mpm_scene s = small_scene(context, NULL);
   const double lower[] = {0.0, 0.0}, upper[] = {0.1, INFINITY}, low[] = {0.001, 0.001};
   const double high[] = {0.019, 0.019};
-  double force[3];
+  const int64_t unknown[] = {3, 100};
+  mps_reaction r;
   int32_t box = -1;
-  REFUSES("lower is NULL", mps_mpm_drive_nodes(s.mpm, NULL, upper, 0, NULL, 1.0, &box));
-  REFUSES("box is NULL", mps_mpm_drive_nodes(s.mpm, lower, upper, 0, NULL, 1.0, NULL));
-  REFUSES("component is -1", mps_mpm_drive_nodes(s.mpm, lower, upper, -1, NULL, 1.0, &box));
-  REFUSES("must hold a node", mps_mpm_drive_nodes(s.mpm, low, high, 0, NULL, 1.0, &box));
-  REFUSES("must hold a node", mps_mpm_drive_nodes(s.mpm, upper, lower, 0, NULL, 1.0, &box));
-  for (int32_t k = 0; k < MPS_MPM_MAX_BOXES; k++) {
-    mps_assert_ok(context, mps_mpm_drive_nodes(s.mpm, lower, upper, 0, NULL, 1.0, &box));
+  mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
+  REFUSES("number is NULL", mps_mpm_add_boundary(s.mpm, &def, NULL));
+  def.kind = MPS_MPM_BOUNDARY_FIXED;
+  REFUSES("kind is 1, boxes of nodes", mps_mpm_add_boundary(s.mpm, &def, &box));
+  REFUSES("dofs is 4", add_box(&s, lower, upper, 2, &box));
+  REFUSES("must hold a node", add_box(&s, low, high, 0, &box));
+  REFUSES("must hold a node", add_box(&s, upper, lower, 0, &box));
+  def = mps_mpm_boundary_defaults();
+  def.ids = unknown, def.id_count = 2;
+  REFUSES("ids[1] is 100", mps_mpm_add_boundary(s.mpm, &def, &box));
+  def.id_count = 0;
+  REFUSES("id_count is 0 with ids given", mps_mpm_add_boundary(s.mpm, &def, &box));
+  for (int32_t k = 6; k < MPS_MPM_MAX_BOUNDARIES; k++) {
+    mps_assert_ok(context, add_box(&s, lower, upper, 0, &box));
     assert_int_equal(box, k);
   }
-  REFUSES("has 32 boxes", mps_mpm_drive_nodes(s.mpm, lower, upper, 0, NULL, 1.0, &box));
-  mps_assert_ok(context, mps_mpm_free_nodes(s.mpm, 5));
-  REFUSES("box is 5", mps_mpm_free_nodes(s.mpm, 5));
-  REFUSES("box is 5", mps_mpm_get_nodes_force(s.mpm, 5, force));
-  REFUSES("box is 32", mps_mpm_get_nodes_force(s.mpm, 32, force));
-  mps_assert_ok(context, mps_mpm_drive_nodes(s.mpm, lower, upper, 1, NULL, 1.0, &box));
-  assert_int_equal(box, 5);
+  REFUSES("has 58 boundaries", add_box(&s, lower, upper, 0, &box));
+  mps_assert_ok(context, mps_mpm_remove_boundary(s.mpm, 11));
+  REFUSES("boundary is 11", mps_mpm_remove_boundary(s.mpm, 11));
+  REFUSES("boundary is 11", mps_mpm_get_reaction(s.mpm, 11, &r));
+  REFUSES("boundary is 64", mps_mpm_get_reaction(s.mpm, 64, &r));
+  mps_assert_ok(context, add_box(&s, lower, upper, 1, &box));
+  assert_int_equal(box, 11);
   mps_assert_ok(context, mps_mpm_step(s.mpm, 3));
   mpm_scene_end(&s);
+}
+
+static mps_status add_load(mpm_scene *s, int64_t count, const int64_t *ids, const double *area,
+                           const double *traction, int32_t *number) {
+  const mps_mpm_load_def def = mpm_scene_load_def(count, ids, area, traction, 2, NULL);
+  return mps_mpm_add_load(s->mpm, &def, number);
 }
 
 static void refuses_bad_loads(void **state) {
@@ -91,20 +126,71 @@ static void refuses_bad_loads(void **state) {
   const int64_t ids[] = {4, 100}, good[] = {4, 5};
   const double pull[] = {1.0, 2.0}, bad[] = {1.0, NAN}, area[] = {1.0, INFINITY};
   int32_t load = -1;
-  REFUSES("count is 0", mps_mpm_add_load(s.mpm, 0, good, NULL, pull, NULL, &load));
-  REFUSES("ids NULL", mps_mpm_add_load(s.mpm, 2, NULL, NULL, pull, NULL, &load));
-  REFUSES("ids[1] is 100", mps_mpm_add_load(s.mpm, 2, ids, NULL, pull, NULL, &load));
-  REFUSES("area[1] is inf", mps_mpm_add_load(s.mpm, 2, good, area, pull, NULL, &load));
-  REFUSES("traction is NULL", mps_mpm_add_load(s.mpm, 2, good, NULL, NULL, NULL, &load));
-  REFUSES("traction[1] is nan", mps_mpm_add_load(s.mpm, 2, good, NULL, bad, NULL, &load));
-  REFUSES("load is NULL", mps_mpm_add_load(s.mpm, 2, good, NULL, pull, NULL, NULL));
+  REFUSES("id_count is 0", add_load(&s, 0, good, NULL, pull, &load));
+  REFUSES("ids NULL", add_load(&s, 2, NULL, NULL, pull, &load));
+  REFUSES("ids[1] is 100", add_load(&s, 2, ids, NULL, pull, &load));
+  REFUSES("area[1] is inf", add_load(&s, 2, good, area, pull, &load));
+  REFUSES("def is NULL", mps_mpm_add_load(s.mpm, NULL, &load));
+  REFUSES("traction[1] is nan", add_load(&s, 2, good, NULL, bad, &load));
+  REFUSES("number is NULL", add_load(&s, 2, good, NULL, pull, NULL));
   REFUSES("load is 0", mps_mpm_remove_load(s.mpm, 0));
-  mps_assert_ok(context, mps_mpm_add_load(s.mpm, 2, good, NULL, pull, NULL, &load));
-  REFUSES("traction[1] is nan", mps_mpm_set_load(s.mpm, load, bad, NULL));
+  mps_assert_ok(context, add_load(&s, 2, good, NULL, pull, &load));
+  const mps_mpm_load_def def = mpm_scene_load_def(0, NULL, NULL, bad, 2, NULL);
+  REFUSES("traction[1] is nan", mps_mpm_set_load(s.mpm, load, &def));
   mps_assert_ok(context, mps_mpm_remove_load(s.mpm, load));
-  REFUSES("load is 0", mps_mpm_set_load(s.mpm, load, pull, NULL));
+  REFUSES("load is 0", mps_mpm_set_load(s.mpm, load, &def));
   mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
   mps_assert_near(mpm_scene_totals(&s).linear[0], 0.0, 0.0); /* nothing pulls any more */
+  mpm_scene_end(&s);
+}
+
+/* Particles driven at a constant velocity go where it says, and what they drag pulls back: the
+ * boundary's impulse is what the momentum gains, its work what the particles' motion costs. */
+static void drives_particles(void **state) {
+  (void)state;
+  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+  mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
+  mps_mpm_def solver = mps_mpm_defaults();
+  solver.cell = 0.02;
+  mpm_scene_solve(&s, &solver);
+  const double t[] = {0.0, 1.0}, v[] = {0.2, 0.2};
+  mps_signal *signal = NULL;
+  mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_VELOCITY, 2, t, v, &signal));
+  mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
+  const int64_t ids[] = {0, 17, 99};
+  def.ids = ids, def.id_count = 3, def.dofs = MPS_DOF_X, def.signal[0] = signal;
+  int32_t number = -1;
+  mps_assert_ok(context, mps_mpm_add_boundary(s.mpm, &def, &number));
+  mps_view x = mpm_scene_view(&s, "position");
+  const double from = *mps_view_f64(&x, mps_particles_index(s.particles, 17), 0);
+  mps_assert_ok(context, mps_mpm_run(s.mpm, 0.3, 1000, NULL, NULL));
+  x = mpm_scene_view(&s, "position");
+  mps_assert_near(*mps_view_f64(&x, mps_particles_index(s.particles, 17), 0), from + 0.06, 1e-12);
+  mps_reaction r;
+  mps_assert_ok(context, mps_mpm_get_reaction(s.mpm, number, &r));
+  const mps_mpm_totals total = mpm_scene_totals(&s);
+  assert_int_equal(r.count, 3);
+  mps_assert_near(total.linear[0], 0.2 * total.mass, 0.1 * 0.2 * total.mass); /* it comes along */
+  mps_assert_near(r.impulse[0], total.linear[0], 1e-12 * total.mass);
+  mps_assert_near(r.work, 0.2 * r.impulse[0], 1e-14 * total.mass);
+  mps_signal_destroy(&signal);
+  mpm_scene_end(&s);
+}
+
+/* A field of forces that comes to the set between steps acts from the next one on. */
+static void reads_external_forces(void **state) {
+  (void)state;
+  mpm_scene s = small_scene(context, NULL);
+  mps_assert_ok(context, mps_mpm_remove_boundary(s.mpm, MPS_MPM_SIDE_X_LOWER)); /* a free edge */
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 2));
+  mps_assert_ok(context, mps_particles_set(s.particles, "external_force", 0, 0.25));
+  double t = mps_mpm_time(s.mpm);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 10));
+  t = mps_mpm_time(s.mpm) - t;
+  mps_assert_near(mpm_scene_totals(&s).linear[0], 25.0 * t, 1e-12 * t);
+  mps_assert_ok(context, mps_particles_set(s.particles, "external_force", 0, 0.0));
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 10));
+  mps_assert_near(mpm_scene_totals(&s).linear[0], 25.0 * t, 1e-12 * t);
   mpm_scene_end(&s);
 }
 
@@ -150,18 +236,22 @@ static void tells_of_bodies(void **state) {
   mps_assert_ok(own, mps_body_create_box(own, &def, 0.03, 0.3, &bodies[1]));
   def.position[0] = 0.335;
   mps_assert_ok(own, mps_body_create_box(own, &def, 0.03, 0.3, &bodies[2]));
-  mps_assert_ok(own, mps_mpm_add_body(s.mpm, bodies[0]));
+  mpm_scene_contact(&s, bodies[0], 0.0);
   assert_int_equal(h.warnings, 0); /* two cells are enough */
-  mps_assert_fails(own, mps_mpm_add_body(s.mpm, bodies[1]), MPS_ERROR_ARGUMENT,
+  mps_assert_fails(own, mpm_scene_try_contact(s.mpm, bodies[1], 0.0), MPS_ERROR_ARGUMENT,
                    "overlaps body 0 of the solver by more than 0.002 m");
-  mps_assert_ok(own, mps_mpm_add_body(s.mpm, bodies[2])); /* they touch */
+  mps_assert_fails(own, mpm_scene_try_contact(s.mpm, bodies[2], 0.0), MPS_ERROR_ARGUMENT,
+                   "0.03 m thin, 1.5 cells");
+  mps_contact_def contact = mps_contact_defaults();
+  contact.thin = 1;
+  mps_assert_ok(own, mps_mpm_add_contact(s.mpm, bodies[2], &contact, NULL)); /* they touch */
   expect_warning(&h, 1, "0.03 m thin, 1.5 cells");
   mps_assert_ok(own, mps_mpm_step(s.mpm, 2));
   assert_int_equal(h.warnings, 1);
   def.position[0] = -0.3;
-  def.penalty = 1e8;
+  contact.penalty = 1e8;
   mps_assert_ok(own, mps_body_create_box(own, &def, 0.1, 0.1, &bodies[3]));
-  mps_assert_ok(own, mps_mpm_add_body(s.mpm, bodies[3]));
+  mps_assert_ok(own, mps_mpm_add_contact(s.mpm, bodies[3], &contact, NULL));
   mps_assert_ok(own, mps_mpm_step(s.mpm, 2));
   expect_warning(&h, 2, "contact with body 2 will chatter: k dt^2/m = ");
   for (int b = 0; b < 4; b++) mps_body_destroy(&bodies[b]);
@@ -231,16 +321,22 @@ static mps_status make(mps_context *c, int what) {
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 0.02;
   def.lower[1] = 0.0;
-  def.wall_lower[1] = MPS_WALL_ABSORBING;
   mps_status status = mps_particles_create(c, &set, &particles);
   if (status == MPS_OK) status = mps_particles_fill_box(particles, lo, hi, NULL);
   if (status == MPS_OK) status = mps_particles_set(particles, "density", 0, 1000.0);
   if (status == MPS_OK) status = mps_material_linear_elastic(c, 1e5, 0.3, &material);
   if (status == MPS_OK) status = mps_mpm_create(c, particles, material, &def, &mpm);
   if (status == MPS_OK) status = mps_signal_ramp(c, 0.0, 1.0, 1.0, &signal);
-  if (status == MPS_OK) status = mps_mpm_drive_nodes(mpm, lo, hi, 0, signal, 1.0, &number);
-  if (status == MPS_OK) status = mps_mpm_drive_wall(mpm, 1, 0, 0, signal, 1.0);
-  if (status == MPS_OK) status = mps_mpm_add_load(mpm, 2, ids, area, lo, signal, &number);
+  mps_mpm_boundary_def base = side_def(MPS_MPM_BOUNDARY_ABSORBING), box, list = base;
+  base.signal[0] = signal;
+  list.kind = MPS_MPM_BOUNDARY_PRESCRIBED;
+  list.ids = ids, list.id_count = 2;
+  const mps_mpm_load_def load = mpm_scene_load_def(2, ids, area, lo, 2, signal);
+  if (status == MPS_OK) box = mpm_scene_box_def(mpm, lo, hi, 0, signal, 1.0);
+  if (status == MPS_OK) status = mps_mpm_add_boundary(mpm, &box, &number);
+  if (status == MPS_OK) status = mps_mpm_add_boundary(mpm, &list, &number);
+  if (status == MPS_OK) status = mps_mpm_set_boundary(mpm, MPS_MPM_SIDE_Y_LOWER, &base);
+  if (status == MPS_OK) status = mps_mpm_add_load(mpm, &load, &number);
   if (status == MPS_OK) status = mps_mpm_step(mpm, 3);
   mps_signal_destroy(&signal);
   mps_mpm_destroy(&mpm);
@@ -260,11 +356,12 @@ static void steady_steps_allocate_nothing(void **state) {
   test_allocator allocator = {0};
   mps_context *own = test_allocator_context(&allocator);
   int32_t box = -1, loads[2];
-  mpm_scene s = held_begin(own, MPS_PLANE_STRAIN, &box, loads);
+  mpm_scene s = held_begin(own, MPS_MPM_PLANE_STRAIN, &box, loads);
   int64_t calls = 0;
   for (int round = 0; round < 5; round++) {
     if (round == 2) calls = allocator.calls;
-    mps_assert_ok(own, mps_mpm_set_wall(s.mpm, 0, 1, MPS_WALL_ABSORBING, 0.0));
+    mps_assert_ok(own,
+                  mps_mpm_set_side(s.mpm, MPS_MPM_SIDE_X_UPPER, MPS_MPM_BOUNDARY_ABSORBING, 0.0));
     mps_assert_ok(own, mps_mpm_step(s.mpm, 5));
   }
   assert_int_equal(allocator.calls, calls);
@@ -275,7 +372,8 @@ static void steady_steps_allocate_nothing(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(refuses_bad_walls),       cmocka_unit_test(refuses_bad_boxes),
+      cmocka_unit_test(drives_particles),        cmocka_unit_test(reads_external_forces),
+      cmocka_unit_test(refuses_bad_sides),       cmocka_unit_test(refuses_bad_boxes),
       cmocka_unit_test(refuses_bad_loads),       cmocka_unit_test(tells_of_bodies),
       cmocka_unit_test(tells_of_steps),          cmocka_unit_test(tells_of_nan),
       cmocka_unit_test(survives_lack_of_memory), cmocka_unit_test(steady_steps_allocate_nothing)};

@@ -133,9 +133,9 @@ static double bend(int32_t spline, int cells, int across, double load) {
   def.cell = cell;
   def.spline = spline;
   def.lower[0] = 0.0;
-  def.wall_lower[0] = MPS_WALL_FIXED;
   def.gravity[1] = -g;
   mpm_scene_solve(&s, &def);
+  mpm_scene_side(&s, MPS_MPM_SIDE_X_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
   const double frequency = 3.516 * sqrt(bending() / (DENSITY * DEPTH)) / (LENGTH * LENGTH);
   while (mps_mpm_time(s.mpm) < 8.0 / frequency) {
     damp(&s, 2.0 * frequency * mps_mpm_dt(s.mpm));

@@ -63,10 +63,10 @@ static void stay_at_rest(int32_t geometry, int32_t spline, double inside, double
 
 static void layers_stay_at_rest(void **state) {
   (void)state;
-  stay_at_rest(MPS_PLANE_STRAIN, 2, 1e-3, 4e-3);
-  stay_at_rest(MPS_AXISYMMETRIC, 2, 4e-3, 0.012);
-  stay_at_rest(MPS_PLANE_STRAIN, 3, 4e-3, 0.025);
-  stay_at_rest(MPS_AXISYMMETRIC, 3, 6e-3, 0.045);
+  stay_at_rest(MPS_MPM_PLANE_STRAIN, 2, 1e-3, 4e-3);
+  stay_at_rest(MPS_MPM_AXISYMMETRIC, 2, 4e-3, 0.012);
+  stay_at_rest(MPS_MPM_PLANE_STRAIN, 3, 4e-3, 0.025);
+  stay_at_rest(MPS_MPM_AXISYMMETRIC, 3, 6e-3, 0.045);
 }
 
 int main(void) {

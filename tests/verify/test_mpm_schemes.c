@@ -14,7 +14,7 @@ static const char *const name[SCHEMES] = {"WLS", "FLIP", "FLIP 0.95", "PIC"};
 
 static void choose(mps_mpm_def *def, int scheme) {
   static const double flip[SCHEMES] = {1.0, 1.0, 0.95, 0.0};
-  def->scheme = scheme == WLS ? MPS_SCHEME_WLS : MPS_SCHEME_STANDARD;
+  def->scheme = scheme == WLS ? MPS_MPM_SCHEME_WLS : MPS_MPM_SCHEME_STANDARD;
   def->flip = flip[scheme];
 }
 

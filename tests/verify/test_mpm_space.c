@@ -47,13 +47,13 @@ static mpm_scene make_tube(const tube *t, bool space) {
 static void solve(mpm_scene *s, const tube *t, double g, double courant) {
   const int up = mps_particles_dim(s->particles) - 1;
   mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = up == 2 ? MPS_SPACE : MPS_AXISYMMETRIC;
+  def.geometry = up == 2 ? MPS_MPM_SPACE : MPS_MPM_AXISYMMETRIC;
   def.cell = t->cell;
   for (int c = 0; c <= up; c++) def.lower[c] = 0.0;
-  if (g > 0.0) def.wall_lower[up] = MPS_WALL_FIXED;
   def.gravity[up] = -g;
   def.dt = courant * t->cell / sqrt(E_ * 0.7 / (1.3 * 0.4) / RHO);
   mpm_scene_solve(s, &def);
+  if (g > 0.0) mpm_scene_side(s, 2 * up, MPS_MPM_BOUNDARY_FIXED, 0.0);
 }
 
 /* Means over mass: outward velocity, upward velocity. */

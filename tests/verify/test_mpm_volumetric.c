@@ -9,12 +9,12 @@
 /* A ball of `material` that deforms by a uniform velocity gradient; the nodes are not needed for
  * it: one step. */
 static mpm_scene stretched(int32_t geometry, int32_t spline, int32_t volumetric, bool rubber) {
-  const int dim = geometry == MPS_SPACE ? 3 : 2;
+  const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
   const double v0[] = {0.3, -0.2, 0.1}, centre[] = {0.1, 0.0, 0.0};
   const double plane[] = {3.0, -7.0, 4.0, 9.0}, axial[] = {3.0, 0.0, 0.0, 9.0};
   const double space[] = {3.0, -7.0, 3.0, 4.0, 9.0, -5.0, -2.0, 6.0, 8.0};
   const double still[] = {0.0, -0.2, 0.0};
-  const bool axis = geometry == MPS_AXISYMMETRIC;
+  const bool axis = geometry == MPS_MPM_AXISYMMETRIC;
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.003, 0.001, 1e6);
   if (rubber) {
     mps_material_destroy(&s.material);
@@ -35,8 +35,8 @@ static void uniform_strain_is_untouched(void **state) {
   for (int variant = 0; variant < 12; variant++) {
     const int geometry = variant / 4, spline = 2 + variant % 2;
     const bool rubber = variant / 2 % 2;
-    mpm_scene a = stretched(geometry, spline, MPS_VOLUMETRIC_POINT, rubber);
-    mpm_scene b = stretched(geometry, spline, MPS_VOLUMETRIC_CELL, rubber);
+    mpm_scene a = stretched(geometry, spline, MPS_MPM_VOLUMETRIC_POINT, rubber);
+    mpm_scene b = stretched(geometry, spline, MPS_MPM_VOLUMETRIC_CELL, rubber);
     mps_view s = mpm_scene_view(&a, "stress"), S = mpm_scene_view(&b, "stress");
     mps_view V = mpm_scene_view(&a, "volume"), W = mpm_scene_view(&b, "volume");
     double worst = 0.0, largest = 0.0;
@@ -79,7 +79,7 @@ static double trace_of(const mps_view *L, int64_t k) {
 static void takes_the_mean(int32_t geometry) {
   static double volume[SIDE * SIDE * SIDE], change[SIDE * SIDE * SIDE], held[20000];
   static int cell[20000];
-  const int dim = geometry == MPS_SPACE ? 3 : 2;
+  const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
   const double h = 0.02, E = 1e6, bulk = E / (3.0 * (1.0 - 2.0 * 0.3)), dt = 1e-4;
   const double centre[] = {0.11, 0.0, 0.0};
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.003, 0.001, E);
@@ -94,7 +94,7 @@ static void takes_the_mean(int32_t geometry) {
     }
   mps_mpm_def def = mps_mpm_defaults();
   def.geometry = geometry, def.cell = h, def.dt = dt;
-  def.volumetric = MPS_VOLUMETRIC_CELL;
+  def.volumetric = MPS_MPM_VOLUMETRIC_CELL;
   mpm_scene_solve(&s, &def);
   mps_assert_ok(context, mps_mpm_step(s.mpm, 15)); /* 12 to 18 mm: within a cell of the blocks */
   mps_view x = mpm_scene_view(&s, "position"), L = mpm_scene_view(&s, "velocity_gradient");
@@ -132,7 +132,7 @@ static void takes_the_mean(int32_t geometry) {
 
 static void pressure_is_of_the_cell(void **state) {
   (void)state;
-  for (int32_t geometry = 0; geometry <= MPS_SPACE; geometry++) takes_the_mean(geometry);
+  for (int32_t geometry = 0; geometry <= MPS_MPM_SPACE; geometry++) takes_the_mean(geometry);
 }
 
 /* ---- nearly incompressible cantilever -------------------------------------------------------- */
@@ -159,9 +159,10 @@ static double deflection(int32_t spline, int32_t volumetric) {
   mpm_scene_box(&s, 0.0, 0.0, length, height);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = h, def.spline = spline, def.volumetric = volumetric;
-  def.lower[0] = 0.0, def.wall_lower[0] = MPS_WALL_FIXED;
+  def.lower[0] = 0.0;
   def.gravity[1] = -g;
   mpm_scene_solve(&s, &def);
+  mpm_scene_side(&s, MPS_MPM_SIDE_X_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
   const double load = rho * g * height, plane = E / (1.0 - nu * nu), shear = 0.5 * E / (1.0 + nu);
   const double exact = load * pow(length, 4.0) / (8.0 * plane * pow(height, 3.0) / 12.0) +
                        load * length * length / (2.0 * 5.0 / 6.0 * shear * height);
@@ -183,8 +184,8 @@ static double deflection(int32_t spline, int32_t volumetric) {
 static void cantilever_bends(void **state) {
   (void)state;
   for (int32_t spline = 2; spline <= 3; spline++) {
-    const double point = deflection(spline, MPS_VOLUMETRIC_POINT);
-    const double cell = deflection(spline, MPS_VOLUMETRIC_CELL);
+    const double point = deflection(spline, MPS_MPM_VOLUMETRIC_POINT);
+    const double cell = deflection(spline, MPS_MPM_VOLUMETRIC_CELL);
     print_message("cantilever, nu = 0.499, spline %d: deflection over exact: %.3f, by cell %.3f\n",
                   spline, point, cell);
     assert_true(cell > (spline == 3 ? 0.9 : 0.85) && cell < 1.02);
@@ -243,8 +244,8 @@ static double footing(int32_t spline, int32_t volumetric, double *rough) {
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 0.1, def.spline = spline, def.volumetric = volumetric;
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.1 * NX;
-  def.wall_lower[1] = MPS_WALL_FIXED;
   mpm_scene_solve(&s, &def);
+  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
   mps_signal *down = NULL;
   mps_body *body = NULL;
   mps_body_def plate = mps_body_defaults();
@@ -252,7 +253,7 @@ static double footing(int32_t spline, int32_t volumetric, double *rough) {
   mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_VELOCITY, 3, t, v, &down));
   mps_assert_ok(context, mps_body_create_box(context, &plate, 2.0 * half, 0.5, &body));
   mps_assert_ok(context, mps_body_drive(body, 1, down, -1.0));
-  mps_assert_ok(context, mps_mpm_add_body(s.mpm, body));
+  mpm_scene_contact(&s, body, 0.0);
   mps_reaction begin, end;
   mps_assert_ok(context, mps_mpm_run(s.mpm, 0.75 * t_end, 1000000, NULL, NULL));
   mps_assert_ok(context, mps_body_get_reaction(body, -1, &begin));
@@ -269,8 +270,8 @@ static void footing_does_not_lock(void **state) {
   (void)state;
   for (int32_t spline = 2; spline <= 3; spline++) {
     double wild, rough;
-    const double point = footing(spline, MPS_VOLUMETRIC_POINT, &wild) / COHESION;
-    const double cell = footing(spline, MPS_VOLUMETRIC_CELL, &rough) / COHESION;
+    const double point = footing(spline, MPS_MPM_VOLUMETRIC_POINT, &wild) / COHESION;
+    const double cell = footing(spline, MPS_MPM_VOLUMETRIC_CELL, &rough) / COHESION;
     print_message("footing, nu = 0.499, spline %d: q/c %.3f, by cell %.3f (2 + pi = 5.142); "
                   "pressure between cells %.3f c, by cell %.3f c\n",
                   spline, point, cell, wild / COHESION, rough / COHESION);

@@ -56,8 +56,8 @@ static double reflected(int shear, int32_t wall, int32_t spline) {
   def.cell = 0.02;
   def.spline = spline;
   def.lower[1] = 0.0;
-  def.wall_lower[1] = wall;
   mpm_scene_solve(&s, &def);
+  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, wall, 0.0);
   const double before = strip_energy(&s, E);
   mps_assert_ok(context, mps_mpm_run(s.mpm, 2.0 * middle / c, 1000000, NULL, NULL));
   const double after = strip_energy(&s, E);
@@ -68,10 +68,10 @@ static double reflected(int shear, int32_t wall, int32_t spline) {
 static void waves_leave(void **state) {
   (void)state;
   for (int shear = 0; shear < 2; shear++) {
-    const double held = reflected(shear, MPS_WALL_FIXED, 3);
+    const double held = reflected(shear, MPS_MPM_BOUNDARY_FIXED, 3);
     assert_true(held > 0.6); /* the measure sees what comes back */
     for (int32_t spline = 2; spline <= 3; spline++) {
-      const double part = reflected(shear, MPS_WALL_ABSORBING, spline);
+      const double part = reflected(shear, MPS_MPM_BOUNDARY_ABSORBING, spline);
       print_message("%s wave, spline %d: %.3f %% of the energy comes back (fixed wall: %.0f %%)\n",
                     shear ? "S" : "P", spline, 100.0 * part, 100.0 * held);
       assert_true(part < 0.01);
@@ -97,13 +97,12 @@ static void absorbing_wall_carries(void **state) {
     def.cell = 0.04;
     def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.2;
     def.gravity[1] = -g;
-    def.settle = 0.2;
-    if (!turned) def.wall_lower[1] = MPS_WALL_ABSORBING;
     mpm_scene_solve(&s, &def);
-    if (turned) {
-      mps_assert_ok(context, mps_mpm_run(s.mpm, 0.1, 1000000, NULL, NULL));
-      mps_assert_ok(context, mps_mpm_set_wall(s.mpm, 1, 0, MPS_WALL_ABSORBING, 0.0));
-    }
+    mps_mpm_boundary_def base = mps_mpm_boundary_defaults();
+    base.kind = MPS_MPM_BOUNDARY_ABSORBING;
+    base.settle = 0.2;
+    if (turned) mps_assert_ok(context, mps_mpm_run(s.mpm, 0.1, 1000000, NULL, NULL));
+    mps_assert_ok(context, mps_mpm_set_boundary(s.mpm, MPS_MPM_SIDE_Y_LOWER, &base));
     mps_assert_ok(context, mps_mpm_run(s.mpm, 0.35, 1000000, NULL, NULL));
     const int64_t id = mps_particles_nearest(s.particles, (double[]){0.1, 0.5});
     const mps_view start = mpm_scene_view(&s, "position");
@@ -112,7 +111,7 @@ static void absorbing_wall_carries(void **state) {
     const mps_view end = mpm_scene_view(&s, "position");
     const double sunk = y0 - *mps_view_f64(&end, mps_particles_index(s.particles, id), 1);
     double force[3];
-    mps_assert_ok(context, mps_mpm_get_wall_force(s.mpm, 1, 0, force));
+    mpm_scene_force(&s, MPS_MPM_SIDE_Y_LOWER, force);
     print_message("middle sinks %.3g m in 1 s, wall force %.6g of the weight\n", sunk,
                   force[1] / (RHO * g * 0.2));
     assert_true(fabs(sunk) < 2e-5); /* without R: by rho g H/(rho c) t = 0.09 m */
@@ -149,15 +148,13 @@ static double slide(int dim, double mu, double degrees, double belt, double *rat
   for (int64_t k = 0; k < x.shape[0]; k++) /* of its weight */
     *mps_view_f64(&stress, k, 1) = -RHO * g * cos(slope) * (hi[1] - *mps_view_f64(&x, k, 1));
   mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = dim == 3 ? MPS_SPACE : MPS_PLANE_STRAIN;
+  def.geometry = dim == 3 ? MPS_MPM_SPACE : MPS_MPM_PLANE_STRAIN;
   def.cell = 0.02;
   def.lower[1] = 0.0;
-  def.wall_lower[1] = MPS_WALL_FRICTIONAL;
-  def.wall_friction_lower[1] = mu;
   def.gravity[0] = g * sin(slope), def.gravity[1] = -g * cos(slope);
   mpm_scene_solve(&s, &def);
   mps_signal *signal = constant_velocity(belt);
-  mps_assert_ok(context, mps_mpm_drive_wall(s.mpm, 1, 0, 0, signal, 1.0));
+  mpm_scene_drive(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FRICTIONAL, mu, 0, signal, 1.0);
   mps_signal_destroy(&signal);
   /* It starts with a shiver, during which friction acts across the slope too, and goes on bouncing
    * a little; places at three instants tell the acceleration without that. */
@@ -214,9 +211,8 @@ static void wall_lets_go(void **state) {
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 0.02;
   def.lower[1] = 0.0;
-  def.wall_lower[1] = MPS_WALL_FRICTIONAL;
-  def.wall_friction_lower[1] = 0.5;
   mpm_scene_solve(&s, &def);
+  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FRICTIONAL, 0.5);
   mps_assert_ok(context, mps_mpm_step(s.mpm, 100));
   const mps_mpm_totals t = mpm_scene_totals(&s);
   mps_assert_near(t.linear[0], 0.5 * t.mass, 1e-12 * t.mass);
@@ -238,14 +234,14 @@ static void moves_as_one(void **state) {
     mps_mpm_def def = mps_mpm_defaults();
     def.cell = 0.02;
     def.lower[1] = 0.0;
-    def.wall_lower[1] = how ? MPS_WALL_ROLLER : MPS_WALL_FIXED;
     mpm_scene_solve(&s, &def);
     if (how) {
       const double lower[] = {-INFINITY, 0.0}, upper[] = {INFINITY, 0.041};
       int32_t box = -1;
-      mps_assert_ok(context, mps_mpm_drive_nodes(s.mpm, lower, upper, 0, signal, 0.7, &box));
+      const mps_mpm_boundary_def nodes = mpm_scene_box_def(s.mpm, lower, upper, 0, signal, 0.7);
+      mps_assert_ok(context, mps_mpm_add_boundary(s.mpm, &nodes, &box));
     } else {
-      mps_assert_ok(context, mps_mpm_drive_wall(s.mpm, 1, 0, 0, signal, 0.7));
+      mpm_scene_drive(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0, 0, signal, 0.7);
     }
     mps_assert_ok(context, mps_mpm_run(s.mpm, 0.1, 1000000, NULL, NULL));
     mps_view x = mpm_scene_view(&s, "position"), v = mpm_scene_view(&s, "velocity");
@@ -266,7 +262,7 @@ static void moves_as_one(void **state) {
  * comes back leaves. */
 static void shake(int32_t geometry, bool absorbing) {
   static const char *const names[] = {"plane strain", "axisymmetry", "space"};
-  const int dim = geometry == MPS_SPACE ? 3 : 2;
+  const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
   const double E = 1e6, height = 1.0, rise = 1e-4, c = sqrt(wave_modulus(E) / RHO);
   const double travel = height / c, y0 = height - 0.005, hi[] = {0.04, height, 0.04};
   const double lo[] = {0.0, 0.0, 0.0};
@@ -281,9 +277,10 @@ static void shake(int32_t geometry, bool absorbing) {
     def.lower[a] = 0.0;
     if (a != 1) def.upper[a] = hi[a];
   }
-  if (absorbing) def.wall_lower[1] = MPS_WALL_ABSORBING;
   mpm_scene_solve(&s, &def);
-  mps_assert_ok(context, mps_mpm_drive_wall(s.mpm, 1, 0, 1, signal, absorbing ? 2.0 : 1.0));
+  mpm_scene_drive(&s, MPS_MPM_SIDE_Y_LOWER,
+                  absorbing ? MPS_MPM_BOUNDARY_ABSORBING : MPS_MPM_BOUNDARY_ROLLER, 0.0, 1, signal,
+                  absorbing ? 2.0 : 1.0);
   const int64_t id = mps_particles_nearest(s.particles, (double[]){0.02, height, 0.02});
   double worst = 0.0;
   while (mps_mpm_time(s.mpm) < (absorbing ? 3.9 : 2.9) * travel) {
@@ -304,8 +301,8 @@ static void shake(int32_t geometry, bool absorbing) {
 
 static void base_shakes(void **state) {
   (void)state;
-  shake(MPS_PLANE_STRAIN, false);
-  for (int32_t geometry = 0; geometry <= MPS_SPACE; geometry++) shake(geometry, true);
+  shake(MPS_MPM_PLANE_STRAIN, false);
+  for (int32_t geometry = 0; geometry <= MPS_MPM_SPACE; geometry++) shake(geometry, true);
 }
 
 /* ---- traction -------------------------------------------------------------------------------- */
@@ -326,7 +323,8 @@ static mpm_scene pulled(double traction, double duration, double t_end) {
   mps_signal *signal = NULL;
   int32_t load = -1;
   mps_assert_ok(context, mps_signal_ramp(context, 0.0, duration, 1.0, &signal));
-  mps_assert_ok(context, mps_mpm_add_load(s.mpm, count, ids, NULL, pull, signal, &load));
+  const mps_mpm_load_def pulls = mpm_scene_load_def(count, ids, NULL, pull, 2, signal);
+  mps_assert_ok(context, mps_mpm_add_load(s.mpm, &pulls, &load));
   mps_signal_destroy(&signal);
   mps_assert_ok(context, mps_mpm_run(s.mpm, t_end, 1000000, NULL, NULL));
   return s;
@@ -342,7 +340,7 @@ static void bar_under_traction(void **state) {
   k = mps_particles_index(s.particles, k);
   const double u = *mps_view_f64(&x, k, 0) - 0.995, exact = traction * 0.995 / M;
   double force[3];
-  mps_assert_ok(context, mps_mpm_get_wall_force(s.mpm, 0, 0, force));
+  mpm_scene_force(&s, MPS_MPM_SIDE_X_LOWER, force);
   print_message("extension %+.3f %%, wall force %+.3f %%\n", 100.0 * (u / exact - 1.0),
                 100.0 * (-force[0] / (traction * 0.08) - 1.0));
   mps_assert_near(u, exact, 0.01 * exact);

@@ -1,0 +1,88 @@
+/* mps/contact.h - the contact of one solver with one rigid body: friction, stiffness, reactions by
+ * part of the surface, and the particles that touch (Nakamura 5).
+ *
+ * A solver makes it (mps_mpm_add_contact, mps/mpm.h). A body may be in contact with several solvers
+ * at once; it feels the sum of their forces. Who moves it is stated once: one of the solvers, or
+ * the caller by mps_body_advance.
+ *
+ * The handle is the caller's; destroying it ends the contact. When the solver goes first, the
+ * contact has ended and still answers what it last saw. Thread rule: as of its solver.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef LIBMPS_CONTACT_H
+#define LIBMPS_CONTACT_H
+
+#include "body.h"
+
+MPS_EXTERN_C_BEGIN
+
+typedef struct mps_contact mps_contact;
+
+/** Who moves the body. */
+typedef enum mps_contact_mover {
+  MPS_CONTACT_MOVER_SOLVER = 0, /* this solver, at the end of each of its steps */
+  MPS_CONTACT_MOVER_OTHER = 1   /* another solver, or the caller by mps_body_advance */
+} mps_contact_mover;
+
+/** What becomes of particles whose centres lie inside the body when the contact is made. */
+typedef enum mps_contact_inside {
+  MPS_CONTACT_INSIDE_REFUSE = 0, /* an error that counts them */
+  MPS_CONTACT_INSIDE_PUSH = 1    /* they stay, and are pushed out with the contact stiffness */
+} mps_contact_inside;
+
+typedef struct mps_contact_def {
+  uint32_t struct_size;
+  int32_t mover;   /* mps_contact_mover, default SOLVER */
+  double friction; /* Coulomb's mu, 0 to 1e3; default 0 */
+  double penalty;  /* contact stiffness k of Nakamura (28), N/m (2D: per m of thickness; in
+                      axisymmetry per m of radius and rad, times the particle's radius), > 0; NaN
+                      (default): from xi, or where that is NaN too 1.33 (K + 4G/3) of the particle's
+                      material, in 3D times the particles' spacing */
+  double xi;       /* in (0, 1): k from Nakamura (58), 2 (1 - xi) (K + 4G/3)/(n CFL^2) with n
+                      particles a cell, in 3D times the cell's size; n and CFL are those of the
+                      solver's definition. NaN (default): not used. Giving both is an error */
+  double offset;   /* m, >= 0: a particle nearer to the surface than this is pushed. NaN (default):
+                      half the particles' spacing, as if the surface passed around the particles */
+  double depth;    /* m, > 0: a step that finds a particle deeper below the surface than this fails.
+                      NaN (default): one cell, or with INSIDE_PUSH    no bound */
+  int32_t thin;    /* 0 (default): a body thinner than two cells somewhere, through which momentum
+                      can pass, is refused; 1: it is allowed, and the log is warned */
+  int32_t inside;  /* mps_contact_inside, default REFUSE */
+} mps_contact_def;
+
+MPS_API mps_status mps_contact_def_init(mps_contact_def *def, size_t size);
+static inline mps_contact_def mps_contact_defaults(void) {
+  mps_contact_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_contact_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+
+/** Ends the contact, gives up the handle and nulls it; accepts NULL. In a callback of the solver
+ *  it does nothing but record MPS_ERROR_STATE. */
+MPS_API void mps_contact_destroy(mps_contact **contact);
+
+/** The body; NULL for NULL. Lives at least as long as the contact. */
+MPS_API mps_body *mps_contact_body(const mps_contact *contact);
+
+/** What the particles of this solver do to part `part` of the body (mps_body_part), or to all of it
+ *  (-1); `work` is that of the body's surface on the particles. */
+MPS_API MPS_NODISCARD mps_status mps_contact_get_reaction_sized(mps_contact *contact, int32_t part,
+                                                                mps_reaction *out, size_t size);
+static inline mps_status mps_contact_get_reaction(mps_contact *contact, int32_t part,
+                                                  mps_reaction *out) {
+  return mps_contact_get_reaction_sized(contact, part, out, sizeof *out);
+}
+
+/** The particles that touch the body where particles and body now are, in the set's order: `count`
+ *  receives their number; at most `capacity` (>= 0) of them are written. Each array may be NULL:
+ *  `ids`; `gap` (m: the surface's distance less `offset`, < 0); `normal` (3 values a particle,
+ *  outward unit vector of the surface); `force` (N, 3 values a particle, by the penalty, on the
+ *  particle); `foot` (m, 3 values a particle, nearest point of the surface). Costs a pass over all
+ *  particles. MPS_ERROR_STATE when the contact has ended. */
+MPS_API MPS_NODISCARD mps_status mps_contact_get_particles(mps_contact *contact, int64_t capacity,
+                                                           int64_t *count, int64_t *ids,
+                                                           double *gap, double *normal,
+                                                           double *force, double *foot);
+
+MPS_EXTERN_C_END
+#endif

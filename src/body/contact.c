@@ -1,0 +1,201 @@
+/* contact.c - life of a contact: definition, the shares of solver and caller, what it tells the
+ * body. SPDX-License-Identifier: BSD-3-Clause */
+#include "contact.h"
+
+#include "rotation.h"
+
+#include <string.h>
+
+#define ROUGHEST 1e3 /* friction */
+
+static const mps_contact_def contact_defaults = {
+    .struct_size = sizeof(mps_contact_def), .penalty = NAN, .xi = NAN, .offset = NAN, .depth = NAN};
+
+mps_status mps_contact_def_init(mps_contact_def *def, size_t size) {
+  return MPSI_DEF_INIT(mps_contact_def, def, size, &contact_defaults);
+}
+
+/* ---- checks ---------------------------------------------------------------------------------- */
+
+static mps_status check_choices(mps_context *context, const char *function,
+                                const mps_contact_def *d) {
+  const struct {
+    const char *name, *allowed;
+    int32_t value;
+  } list[] = {{"mover", "0 (solver) and 1 (other)", d->mover},
+              {"thin", "0 (refused) and 1 (allowed)", d->thin},
+              {"inside", "0 (refuse) and 1 (push)", d->inside}};
+  for (size_t k = 0; k < sizeof list / sizeof *list; k++)
+    if (list[k].value < 0 || list[k].value > 1)
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %d, allowed are %s",
+                       list[k].name, list[k].value, list[k].allowed);
+  return MPS_OK;
+}
+
+static mps_status check_numbers(mps_context *context, const char *function,
+                                const mps_contact_def *d) {
+  if (!(d->friction >= 0.0 && d->friction <= ROUGHEST))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "friction is %g, must be in 0 to %g",
+                     d->friction, ROUGHEST);
+  if (!isnan(d->penalty) && !(d->penalty > 0.0 && d->penalty <= MPSI_BODY_HEAVY))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "penalty is %g N/m, must be > 0 and at most %g, or NaN", d->penalty,
+                     MPSI_BODY_HEAVY);
+  if (!isnan(d->xi) && !(d->xi > 0.0 && d->xi < 1.0))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "xi is %g, must be in (0, 1), or NaN",
+                     d->xi);
+  if (!isnan(d->xi) && !isnan(d->penalty))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "xi is %g and penalty %g N/m: give one of them, the other NaN", d->xi,
+                     d->penalty);
+  if (!isnan(d->offset) && !(d->offset >= 0.0 && d->offset <= MPSI_BODY_FAR))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "offset is %g m, must be in 0 to %g, or NaN", d->offset, MPSI_BODY_FAR);
+  if (!isnan(d->depth) && !(d->depth > 0.0))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "depth is %g m, must be > 0, or NaN",
+                     d->depth);
+  return MPS_OK;
+}
+
+/* ---- life ------------------------------------------------------------------------------------ */
+
+mps_status mpsi_contact_new(mps_context *context, const char *function, mps_body *body,
+                            const mps_contact_def *user, const mpsi_contact_owner *kind,
+                            void *owner, mps_contact **out) {
+  mps_contact_def def = contact_defaults;
+  mps_status status = MPS_OK;
+  if (user) status = MPSI_DEF_READ(context, function, mps_contact_def, user, &def);
+  if (status == MPS_OK) status = check_choices(context, function, &def);
+  if (status == MPS_OK) status = check_numbers(context, function, &def);
+  if (status == MPS_OK && def.mover == MPS_CONTACT_MOVER_SOLVER && mpsi_body_mover(body))
+    status = mpsi_fail(context, function, MPS_ERROR_STATE,
+                       "another solver moves the body: make this contact with mover 1 (other)");
+  if (status != MPS_OK) return status;
+  mps_contact *contact = mpsi_alloc(context, 1, sizeof *contact);
+  if (!contact) return mpsi_fail_memory(context, function, sizeof *contact);
+  contact->context = mpsi_context_retain(context);
+  contact->references = 2;
+  contact->def = def;
+  contact->body = body;
+  contact->extent = mpsi_body_extent(body);
+  contact->kind = kind;
+  contact->owner = owner;
+  body->references++;
+  *out = contact;
+  return MPS_OK;
+}
+
+void mpsi_contact_join(mps_contact *contact) {
+  mps_contact **last = &contact->body->contacts;
+  while (*last) last = &(*last)->next;
+  *last = contact;
+}
+
+void mpsi_contact_leave(mps_contact *contact) {
+  mps_contact **at = &contact->body->contacts;
+  while (*at && *at != contact) at = &(*at)->next;
+  if (*at) *at = contact->next;
+  contact->next = NULL;
+  contact->owner = NULL;
+  mpsi_contact_release(contact);
+}
+
+void mpsi_contact_release(mps_contact *contact) {
+  if (--contact->references > 0) return;
+  mps_context *context = contact->context;
+  mpsi_body_release(contact->body);
+  mpsi_free(context, contact);
+  mpsi_context_release(context);
+}
+
+void mps_contact_destroy(mps_contact **pointer) {
+  if (!pointer || !*pointer) return;
+  mps_contact *contact = *pointer;
+  if (contact->owner && contact->kind->check(contact->owner, __func__) != MPS_OK) return;
+  *pointer = NULL;
+  if (contact->owner) contact->kind->end(contact->owner, contact);
+  mpsi_contact_release(contact);
+}
+
+/* ---- questions ------------------------------------------------------------------------------- */
+
+mps_body *mps_contact_body(const mps_contact *contact) { return contact ? contact->body : NULL; }
+
+mps_status mps_contact_get_reaction_sized(mps_contact *contact, int32_t part, mps_reaction *out,
+                                          size_t size) {
+  static const char function[] = "mps_contact_get_reaction";
+  if (!contact) return MPS_ERROR_ARGUMENT;
+  mps_reaction sum;
+  const mps_status status = mpsi_body_sum_reaction(contact->context, function, contact->reaction,
+                                                   contact->body->parts, part, &sum);
+  if (status != MPS_OK) return status;
+  return mpsi_out_write(contact->context, function, out, size, &sum, sizeof sum);
+}
+
+mps_status mps_contact_get_particles(mps_contact *contact, int64_t capacity, int64_t *count,
+                                     int64_t *ids, double *gap, double *normal, double *force,
+                                     double *foot) {
+  if (!contact) return MPS_ERROR_ARGUMENT;
+  if (capacity < 0 || !count)
+    return mpsi_fail(contact->context, __func__, MPS_ERROR_ARGUMENT,
+                     "capacity is %lld and count %s, must be >= 0 and given", (long long)capacity,
+                     count ? "given" : "NULL");
+  if (!contact->owner)
+    return mpsi_fail(contact->context, __func__, MPS_ERROR_STATE, "the contact has ended");
+  return contact->kind->particles(contact->owner, contact, capacity, count, ids, gap, normal, force,
+                                  foot);
+}
+
+/* ---- for solvers ----------------------------------------------------------------------------- */
+
+/* The body's present forces, by all its contacts. */
+static void sum_forces(mps_body *body) {
+  for (int32_t part = 0; part < body->parts; part++) {
+    mps_reaction *sum = &body->reaction[part];
+    for (int k = 0; k < 3; k++) sum->force[k] = sum->moment[k] = 0.0;
+    sum->count = 0;
+    for (const mps_contact *c = body->contacts; c; c = c->next) {
+      for (int k = 0; k < 3; k++) {
+        sum->force[k] += c->reaction[part].force[k];
+        sum->moment[k] += c->reaction[part].moment[k];
+      }
+      sum->count += c->reaction[part].count;
+    }
+  }
+}
+
+void mpsi_contact_react(mps_contact *contact, double dt, const mpsi_load *load,
+                        const int64_t *count) {
+  mps_body *body = contact->body;
+  for (int32_t part = 0; part < body->parts; part++) {
+    mps_reaction *r = &contact->reaction[part];
+    r->work -= dt * (mpsi_dot3(load[part].force, body->pose.v) +
+                     mpsi_dot3(load[part].moment, body->pose.spin));
+    for (int c = 0; c < 3; c++) {
+      r->force[c] = load[part].force[c];
+      r->moment[c] = load[part].moment[c];
+      r->impulse[c] += dt * load[part].force[c];
+      r->moment_impulse[c] += dt * load[part].moment[c];
+    }
+    r->count = count[part];
+  }
+  mpsi_body_react(body, dt, load, count);
+  if (body->contacts->next) sum_forces(body);
+  if (contact->def.mover == MPS_CONTACT_MOVER_SOLVER) mpsi_body_advance(body, dt);
+}
+
+double mpsi_contact_penalty(const mps_contact *contact, double modulus, double spacing, double cell,
+                            double courant) {
+  const mps_contact_def *def = &contact->def;
+  if (def->penalty > 0.0) return def->penalty;
+  const double depth = contact->body->dim == 3 ? spacing : 1.0; /* 2D: per m of thickness */
+  if (isnan(def->xi)) return 1.33 * modulus * depth;
+  /* (58) is 2 (1 - xi) m/dt^2; with dt = CFL cell/sqrt(modulus/density), m/dt^2 is this: */
+  const double share = spacing / (courant * cell);
+  return 2.0 * (1.0 - def->xi) * modulus * share * share * depth;
+}
+
+double mpsi_contact_speed(const mps_contact *contact) {
+  const mpsi_pose *p = &contact->body->pose;
+  return sqrt(mpsi_dot3(p->v, p->v)) + contact->extent * sqrt(mpsi_dot3(p->spin, p->spin));
+}

@@ -1,0 +1,65 @@
+/* contact.h - the contact of one solver with one body: what the caller's handle is, and what the
+ * solvers use of it. SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_BODY_CONTACT_H
+#define MPSI_BODY_CONTACT_H
+
+#include "body.h"
+
+/* What a kind of solver does for the handles of its contacts. */
+typedef struct mpsi_contact_owner {
+  /* MPS_ERROR_STATE where the contact cannot end now. */
+  mps_status (*check)(void *owner, const char *function);
+  /* The solver forgets the contact, and gives up its share by mpsi_contact_leave. */
+  void (*end)(void *owner, mps_contact *contact);
+  mps_status (*particles)(void *owner, mps_contact *contact, int64_t capacity, int64_t *count,
+                          int64_t *ids, double *gap, double *normal, double *force, double *foot);
+} mpsi_contact_owner;
+
+struct mps_contact {
+  mps_context *context;
+  int32_t references; /* the solver, and the caller's handle; one thread at a time: no atomics */
+  mps_contact_def def;
+  mps_body *body;
+  double extent;     /* m: see mpsi_body_extent */
+  mps_contact *next; /* of the body's contacts */
+  const mpsi_contact_owner *kind;
+  void *owner; /* the solver; NULL: the contact has ended */
+  mps_reaction reaction[MPS_BODY_MAX_PARTS];
+};
+
+/* The contact whose solver moves the body, or NULL. */
+static inline const mps_contact *mpsi_body_mover(const mps_body *body) {
+  const mps_contact *c = body->contacts;
+  while (c && c->def.mover != MPS_CONTACT_MOVER_SOLVER) c = c->next;
+  return c;
+}
+
+/* A contact of two shares (the solver's and the caller's), not yet one of the body's; checks `def`,
+ * NULL means the defaults. */
+mps_status mpsi_contact_new(mps_context *context, const char *function, mps_body *body,
+                            const mps_contact_def *def, const mpsi_contact_owner *kind, void *owner,
+                            mps_contact **out);
+/* From now on it is one of the body's. */
+void mpsi_contact_join(mps_contact *contact);
+/* The solver's share; the contact ends. */
+void mpsi_contact_leave(mps_contact *contact);
+/* Gives up one share; the last frees. */
+void mpsi_contact_release(mps_contact *contact);
+
+/* Tells the body the forces of a step of dt, `count` particles and load[] per part; the body moves
+ * where this solver moves it. */
+void mpsi_contact_react(mps_contact *contact, double dt, const mpsi_load *load,
+                        const int64_t *count);
+
+/* Contact stiffness k (N/m, 2D per m of thickness) of Nakamura (28) or (58) against particles of
+ * `modulus` K + 4G/3 (Pa) and `spacing` (m) in cells of size `cell` (m). In axisymmetry the caller
+ * multiplies by the radius. */
+double mpsi_contact_penalty(const mps_contact *contact, double modulus, double spacing, double cell,
+                            double courant);
+
+/* Largest speed (m/s) of the body's surface. */
+double mpsi_contact_speed(const mps_contact *contact);
+
+void mpsi_contact_list_state(mpsi_state *state, mps_contact *contact);
+
+#endif

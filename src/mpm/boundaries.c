@@ -1,0 +1,313 @@
+/* boundaries.c - which boundaries the caller has: the sides of the domain, boxes of nodes, lists of
+ * particles; their definitions and reactions. At work: walls.c, absorb.c.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_private.h"
+
+#include "core/retain.h"
+
+#include <string.h>
+
+#define ON_NODE 1e-6 /* cells: the edge of a box this close to a node holds it */
+#define ROUGHEST 1e3 /* friction */
+
+static const mps_mpm_boundary_def boundary_defaults = {.struct_size = sizeof(mps_mpm_boundary_def),
+                                                       .kind = MPS_MPM_BOUNDARY_PRESCRIBED,
+                                                       .lower = {-INFINITY, -INFINITY, -INFINITY},
+                                                       .upper = {INFINITY, INFINITY, INFINITY},
+                                                       .factor = {1.0, 1.0, 1.0}};
+
+mps_status mps_mpm_boundary_def_init(mps_mpm_boundary_def *def, size_t size) {
+  return MPSI_DEF_INIT(mps_mpm_boundary_def, def, size, &boundary_defaults);
+}
+
+/* ---- checks ---------------------------------------------------------------------------------- */
+
+static bool on_axis(const mps_mpm *mpm, int32_t number) {
+  return mpm->def.geometry == MPS_MPM_AXISYMMETRIC && number == MPS_MPM_SIDE_X_LOWER &&
+         mpm->def.lower[0] == 0.0;
+}
+
+static bool has_side(const mps_mpm *mpm, int32_t number) {
+  if (number / 2 >= mpm->dim) return false;
+  const int64_t at = number % 2 ? mpm->grid.high[number / 2] : mpm->grid.low[number / 2];
+  return at > -MPSI_NO_WALL && at < MPSI_NO_WALL;
+}
+
+static mps_status check_motion(mps_mpm *mpm, const char *function,
+                               const mps_mpm_boundary_def *def) {
+  for (int c = 0; c < mpm->dim; c++) {
+    const double factor = def->factor[c];
+    const double v = def->signal[c] ? mps_signal_velocity(def->signal[c], mpm->run.time) : 0.0;
+    if (!isfinite(factor) || !isfinite(factor * v))
+      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "factor[%d] is %g, it and the velocity that it makes must be finite", c,
+                       factor);
+  }
+  return MPS_OK;
+}
+
+static mps_status check_numbers(mps_mpm *mpm, const char *function,
+                                const mps_mpm_boundary_def *def) {
+  const bool rubs = def->kind == MPS_MPM_BOUNDARY_FRICTIONAL;
+  if (!(def->friction >= 0.0 && def->friction <= ROUGHEST) || (def->friction > 0.0 && !rubs))
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "friction is %g with a boundary of kind %d, must be in 0 to %g, and 0 for "
+                     "other than frictional ones (2)",
+                     def->friction, def->kind, ROUGHEST);
+  if (!isfinite(def->settle) || def->settle < 0.0)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "settle is %g s, must be finite and >= 0", def->settle);
+  return check_motion(mpm, function, def);
+}
+
+static mps_status check_side(mps_mpm *mpm, const char *function, int32_t number,
+                             const mps_mpm_boundary_def *def) {
+  if (!has_side(mpm, number))
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "the domain has no %s side across %c (boundary %d)",
+                     number % 2 ? "upper" : "lower", "xyz"[number / 2], number);
+  if (def->kind < MPS_MPM_BOUNDARY_ROLLER || def->kind > MPS_MPM_BOUNDARY_FREE)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "kind is %d, allowed on a side are 0 (roller), 1 (fixed), 2 (frictional), 3 "
+                     "(absorbing) and 4 (free)",
+                     def->kind);
+  if (def->ids || def->id_count != 0 || def->dofs != 0)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "ids, id_count (%lld) and dofs (%u) are not for sides of the domain",
+                     (long long)def->id_count, def->dofs);
+  if (mpm->standard && def->kind == MPS_MPM_BOUNDARY_ABSORBING)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "kind is 3 (absorbing) with scheme 1 (standard), whose splines reach over the "
+                     "side: allowed with 0 (WLS)");
+  if (on_axis(mpm, number) && (def->kind > MPS_MPM_BOUNDARY_FIXED || def->signal[0]))
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "kind is %d with signal[0] %s on the axis r = 0: allowed are 0 (roller) and 1 "
+                     "(fixed), and the radial velocity is 0",
+                     def->kind, def->signal[0] ? "given" : "NULL");
+  for (int c = 0; c < mpm->dim; c++)
+    if (def->signal[c] && (def->kind == MPS_MPM_BOUNDARY_FREE ||
+                           (def->kind == MPS_MPM_BOUNDARY_ROLLER && c != number / 2)))
+      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "signal[%d] is given, and a side of kind %d does not hold that component", c,
+                       def->kind);
+  return check_numbers(mpm, function, def);
+}
+
+/* First or last node of a box that begins or ends at x. */
+static int64_t box_node(const mps_mpm *mpm, int c, double x, bool last) {
+  const double X = mpsi_grid_coordinate(mpm, c, x);
+  if (!(X > -(double)MPSI_NO_WALL)) return -MPSI_NO_WALL;
+  if (!(X < (double)MPSI_NO_WALL)) return MPSI_NO_WALL;
+  return (int64_t)(last ? floor(X + ON_NODE) : ceil(X - ON_NODE));
+}
+
+static mps_status find_box(mps_mpm *mpm, const char *function, const mps_mpm_boundary_def *def,
+                           mpsi_hold *out) {
+  for (int c = 0; c < mpm->dim; c++) {
+    out->first[c] = box_node(mpm, c, def->lower[c], false);
+    out->last[c] = box_node(mpm, c, def->upper[c], true);
+    if (!(def->lower[c] <= def->upper[c]) || out->first[c] > out->last[c])
+      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "the box is [%g, %g] m in %c, must hold a node: origin %g m plus a multiple "
+                       "of the cell %g m",
+                       def->lower[c], def->upper[c], "xyz"[c], mpm -> def.origin[c], mpm->def.cell);
+  }
+  return MPS_OK;
+}
+
+static mps_status check_ids(mps_mpm *mpm, const char *function, const mps_mpm_boundary_def *def) {
+  if ((def->id_count > 0) != (def->ids != NULL) || def->id_count < 0 ||
+      def->id_count > mpm->p.count)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "id_count is %lld with ids %s, allowed are 1 to %lld particles, or 0 and NULL",
+                     (long long)def->id_count, def->ids ? "given" : "NULL",
+                     (long long)mpm->p.count);
+  for (int64_t k = 0; k < def->id_count; k++)
+    if (mps_particles_index(mpm->particles, def->ids[k]) < 0)
+      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "ids[%lld] is %lld, which is no particle of the set", (long long)k,
+                       (long long)def->ids[k]);
+  return MPS_OK;
+}
+
+static mps_status check_prescribed(mps_mpm *mpm, const char *function,
+                                   const mps_mpm_boundary_def *def, mpsi_hold *out) {
+  const uint32_t all = mpm->dim == 3 ? MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z : MPS_DOF_X | MPS_DOF_Y;
+  if (def->kind != MPS_MPM_BOUNDARY_PRESCRIBED)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "kind is %d, boxes of nodes and particles are 5 (prescribed)", def->kind);
+  if (def->dofs & ~all)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "dofs is %u, allowed are those or-ed from MPS_DOF_X, MPS_DOF_Y%s", def->dofs,
+                     mpm->dim == 3 ? ", MPS_DOF_Z" : "");
+  mps_status status = check_numbers(mpm, function, def);
+  if (status == MPS_OK) status = check_ids(mpm, function, def);
+  if (status == MPS_OK && !def->ids) status = find_box(mpm, function, def, out);
+  return status;
+}
+
+/* ---- putting in place ------------------------------------------------------------------------ */
+
+static void place_side(mps_mpm *mpm, int32_t number, int32_t kind) {
+  mpsi_hold *hold = &mpm->boundaries.hold[number];
+  const int axis = number / 2;
+  hold->axis = axis;
+  /* the standard scheme has nodes beyond the side too */
+  const int64_t beyond = mpm->standard ? MPSI_SIDE : 0;
+  for (int c = 0; c < mpm->dim; c++)
+    hold->first[c] = mpm->grid.low[c] - beyond, hold->last[c] = mpm->grid.high[c] + beyond;
+  if (number % 2)
+    hold->first[axis] = mpm->grid.high[axis];
+  else
+    hold->last[axis] = mpm->grid.low[axis];
+  hold->dofs = MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z;
+  hold->finds = kind == MPS_MPM_BOUNDARY_ABSORBING;
+  hold->found = 0.0;
+  hold->kind = kind == MPS_MPM_BOUNDARY_FREE ? MPSI_HOLD_NONE : kind;
+}
+
+void mpsi_mpm_begin_sides(mps_mpm *mpm) {
+  for (int32_t k = 0; k < MPSI_HOLDS; k++) mpm->boundaries.hold[k].kind = MPSI_HOLD_NONE;
+  for (int32_t k = 0; k < MPSI_SIDES; k++)
+    if (has_side(mpm, k)) place_side(mpm, k, MPS_MPM_BOUNDARY_ROLLER);
+}
+
+static void take_numbers(mpsi_hold *hold, const mps_mpm_boundary_def *def) {
+  hold->friction = def->friction;
+  hold->settle = def->settle;
+  for (int c = 0; c < 3; c++) {
+    mps_signal *old = hold->signal[c];
+    hold->signal[c] = def->signal[c] ? mpsi_signal_retain(def->signal[c]) : NULL;
+    hold->factor[c] = def->factor[c];
+    mps_signal_destroy(&old);
+  }
+}
+
+static void drop(mps_mpm *mpm, mpsi_hold *hold) {
+  const mps_mpm_boundary_def rest = boundary_defaults;
+  take_numbers(hold, &rest);
+  mpsi_free(mpm->context, hold->ids);
+  hold->ids = NULL;
+  hold->id_count = 0;
+  hold->kind = MPSI_HOLD_NONE;
+}
+
+void mpsi_mpm_drop_boundaries(mps_mpm *mpm) {
+  for (int32_t k = 0; k < MPSI_HOLDS; k++) drop(mpm, &mpm->boundaries.hold[k]);
+}
+
+/* A box or list, in place of what `hold` was. */
+static mps_status take_prescribed(mps_mpm *mpm, const char *function,
+                                  const mps_mpm_boundary_def *def, mpsi_hold *hold) {
+  mpsi_hold made = {.kind = MPS_MPM_BOUNDARY_PRESCRIBED,
+                    .dofs = def->dofs ? def->dofs : MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z};
+  const mps_status status = check_prescribed(mpm, function, def, &made);
+  if (status != MPS_OK) return status;
+  if (def->ids) {
+    made.ids = mpsi_alloc(mpm->context, def->id_count, sizeof *made.ids);
+    if (!made.ids)
+      return mpsi_fail_memory(mpm->context, function, (size_t)def->id_count * sizeof *made.ids);
+    memcpy(made.ids, def->ids, (size_t)def->id_count * sizeof *made.ids);
+    made.id_count = def->id_count;
+  }
+  if (hold->kind == MPSI_HOLD_NONE || made.ids || hold->ids ||
+      memcmp(made.first, hold->first, sizeof made.first) != 0 ||
+      memcmp(made.last, hold->last, sizeof made.last) != 0)
+    mpm->boundaries.outdated = true;
+  mpsi_free(mpm->context, hold->ids);
+  hold->kind = made.kind;
+  hold->dofs = made.dofs;
+  hold->ids = made.ids;
+  hold->id_count = made.id_count;
+  memcpy(hold->first, made.first, sizeof made.first);
+  memcpy(hold->last, made.last, sizeof made.last);
+  take_numbers(hold, def);
+  return MPS_OK;
+}
+
+static mps_status read_def(mps_mpm *mpm, const char *function, const mps_mpm_boundary_def *user,
+                           mps_mpm_boundary_def *def) {
+  *def = boundary_defaults;
+  if (!user) return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "def is NULL");
+  return MPSI_DEF_READ(mpm->context, function, mps_mpm_boundary_def, user, def);
+}
+
+/* ---- the calls ------------------------------------------------------------------------------- */
+
+mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mpm_boundary_def *user, int32_t *number) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_mpm_boundary_def def;
+  mps_status status = mpsi_mpm_between_steps(mpm, __func__);
+  if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
+  if (status != MPS_OK) return status;
+  if (!number) return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "number is NULL");
+  int32_t at = MPSI_SIDES;
+  while (at < MPSI_HOLDS && mpm->boundaries.hold[at].kind != MPSI_HOLD_NONE) at++;
+  if (at == MPSI_HOLDS)
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                     "the solver has %d boundaries, the most there can be besides the sides",
+                     MPSI_HOLDS - MPSI_SIDES);
+  status = take_prescribed(mpm, __func__, &def, &mpm->boundaries.hold[at]);
+  if (status != MPS_OK) return status;
+  memset(&mpm->boundaries.hold[at].reaction, 0, sizeof mpm->boundaries.hold[at].reaction);
+  *number = at;
+  return MPS_OK;
+}
+
+static mps_status find(mps_mpm *mpm, const char *function, int32_t number) {
+  const bool side = number >= 0 && number < MPSI_SIDES;
+  if (side ? has_side(mpm, number)
+           : number >= 0 && number < MPSI_HOLDS &&
+                 mpm->boundaries.hold[number].kind != MPSI_HOLD_NONE)
+    return MPS_OK;
+  if (side)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "the domain has no %s side across %c (boundary %d)",
+                     number % 2 ? "upper" : "lower", "xyz"[number / 2], number);
+  return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                   "boundary is %d, must be that of a side of the domain (0 to 5) or a number that "
+                   "mps_mpm_add_boundary gave",
+                   number);
+}
+
+mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t number, const mps_mpm_boundary_def *user) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_mpm_boundary_def def;
+  mps_status status = mpsi_mpm_between_steps(mpm, __func__);
+  if (status == MPS_OK) status = find(mpm, __func__, number);
+  if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
+  if (status != MPS_OK) return status;
+  mpsi_hold *hold = &mpm->boundaries.hold[number];
+  if (number >= MPSI_SIDES) return take_prescribed(mpm, __func__, &def, hold);
+  status = check_side(mpm, __func__, number, &def);
+  if (status != MPS_OK) return status;
+  if (hold->kind != def.kind || def.kind == MPS_MPM_BOUNDARY_ABSORBING) {
+    place_side(mpm, number, def.kind);
+    mpm->boundaries.outdated = true;
+  }
+  take_numbers(hold, &def);
+  return MPS_OK;
+}
+
+mps_status mps_mpm_remove_boundary(mps_mpm *mpm, int32_t number) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_mpm_between_steps(mpm, __func__);
+  if (status == MPS_OK) status = find(mpm, __func__, number);
+  if (status == MPS_OK && on_axis(mpm, number))
+    status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                       "boundary is 0, the axis r = 0, which cannot be free");
+  if (status != MPS_OK) return status;
+  drop(mpm, &mpm->boundaries.hold[number]);
+  mpm->boundaries.outdated = true;
+  return MPS_OK;
+}
+
+mps_status mps_mpm_get_reaction_sized(mps_mpm *mpm, int32_t number, mps_reaction *out,
+                                      size_t size) {
+  static const char function[] = "mps_mpm_get_reaction";
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  const mps_status status = find(mpm, function, number);
+  if (status != MPS_OK) return status;
+  const mps_reaction *r = &mpm->boundaries.hold[number].reaction;
+  return mpsi_out_write(mpm->context, function, out, size, r, sizeof *r);
+}

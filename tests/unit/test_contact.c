@@ -1,0 +1,249 @@
+/* test_contact.c - contacts of the WLS-MPM solver with bodies: the handle, bodies that several
+ * solvers share, and what must not pass without a word: thin walls, particles inside, bodies driven
+ * through the ground.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_scene.h"
+#include "test_fixture.h"
+
+#define REFUSES(text, call) mps_assert_fails(context, call, MPS_ERROR_ARGUMENT, text)
+
+/* A block 0.2 x 0.1 m in cells of 0.02 m, its lower side on y = 0. */
+static mpm_scene block_at(double x) {
+  mpm_scene s = mpm_scene_begin(context, 0.01, x, 0.0, 1e5);
+  mpm_scene_box(&s, x, 0.0, x + 0.2, 0.1);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.02;
+  def.origin[0] = x;
+  def.lower[1] = 0.0;
+  mpm_scene_solve(&s, &def);
+  return s;
+}
+
+static mps_body *box_at(double x, double y, double width, double height) {
+  mps_body_def def = mps_body_defaults();
+  mps_body *body = NULL;
+  def.position[0] = x, def.position[1] = y;
+  mps_assert_ok(context, mps_body_create_box(context, &def, width, height, &body));
+  return body;
+}
+
+static void bad_definitions(void **state) {
+  (void)state;
+  mpm_scene s = block_at(0.0);
+  mps_body *body = box_at(0.1, 0.2, 0.1, 0.1);
+  mps_contact *contact = (mps_contact *)1;
+#define CASE(member, value, text)                                                                  \
+  do {                                                                                             \
+    mps_contact_def def = mps_contact_defaults();                                                  \
+    def.member = value;                                                                            \
+    REFUSES(text, mps_mpm_add_contact(s.mpm, body, &def, &contact));                               \
+    assert_null(contact);                                                                          \
+  } while (0)
+  CASE(friction, -0.1, "friction is -0.1");
+  CASE(penalty, 0.0, "penalty is 0 N/m");
+  CASE(xi, 1.0, "xi is 1, must be in (0, 1)");
+  CASE(offset, -1.0, "offset is -1 m");
+  CASE(depth, 0.0, "depth is 0 m");
+  CASE(mover, 2, "mover is 2");
+  CASE(thin, -1, "thin is -1");
+  CASE(inside, 3, "inside is 3");
+#undef CASE
+  mps_contact_def both = mps_contact_defaults();
+  both.xi = 0.6, both.penalty = 1e6;
+  REFUSES("xi is 0.6 and penalty 1e+06 N/m", mps_mpm_add_contact(s.mpm, body, &both, NULL));
+  mps_body_destroy(&body);
+  mpm_scene_end(&s);
+}
+
+/* Pressed by 1 mm: the particles that touch, each with its gap, normal and force by the penalty. */
+static void tells_who_touches(void **state) {
+  (void)state;
+  mpm_scene s = block_at(0.0);
+  mps_body *plate = box_at(0.1, 0.149, 0.4, 0.1);
+  mps_contact_def def = mps_contact_defaults();
+  mps_contact *contact = NULL;
+  def.penalty = 5e4;
+  mps_assert_ok(context, mps_mpm_add_contact(s.mpm, plate, &def, &contact));
+  assert_ptr_equal(mps_contact_body(contact), plate);
+  int64_t count = 0, ids[32];
+  double gap[32], normal[96], force[96], foot[96], sum = 0.0;
+  mps_assert_ok(context,
+                mps_contact_get_particles(contact, 0, &count, NULL, NULL, NULL, NULL, NULL));
+  assert_int_equal(count, 20); /* the upper row */
+  mps_assert_ok(context,
+                mps_contact_get_particles(contact, 32, &count, ids, gap, normal, force, foot));
+  for (int64_t k = 0; k < count; k++) {
+    mps_assert_near(gap[k], -0.001, 1e-15);
+    mps_assert_near(normal[3 * k + 1], -1.0, 0.0);
+    mps_assert_near(force[3 * k + 1], -50.0, 1e-10);
+    mps_assert_near(foot[3 * k + 1], 0.099, 1e-15);
+    assert_true(mps_particles_index(s.particles, ids[k]) >= 0);
+    sum += force[3 * k + 1];
+  }
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+  mps_reaction r, body;
+  mps_assert_ok(context, mps_contact_get_reaction(contact, -1, &r));
+  mps_assert_near(r.force[1], -sum, 1e-9);
+  assert_int_equal(r.count, 20);
+  mps_assert_ok(context, mps_body_get_reaction(plate, 0, &body));
+  assert_memory_equal(&r, &body, sizeof r);
+  mps_assert_fails(context, mps_contact_get_reaction(contact, 1, &r), MPS_ERROR_ARGUMENT,
+                   "part is 1");
+  /* its end: nothing touches any more, and the body is the caller's */
+  mps_contact_destroy(&contact);
+  assert_null(contact);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 5));
+  mps_assert_ok(context, mps_body_get_reaction(plate, -1, &r));
+  mps_assert_near(r.impulse[1], body.impulse[1], 0.0);
+  mps_assert_ok(context, mps_body_advance(plate, 0.1));
+  /* the solver goes first: the handle still answers */
+  mps_assert_ok(context, mps_mpm_add_contact(s.mpm, plate, &def, &contact));
+  mpm_scene_end(&s);
+  mps_assert_ok(context, mps_contact_get_reaction(contact, -1, &r));
+  mps_assert_fails(context,
+                   mps_contact_get_particles(contact, 0, &count, NULL, NULL, NULL, NULL, NULL),
+                   MPS_ERROR_STATE, "has ended");
+  mps_contact_destroy(&contact);
+  mps_body_destroy(&plate);
+}
+
+/* A beam lies free on two blocks of two solvers: it feels both, and momentum is kept. */
+static void bodies_are_shared(void **state) {
+  (void)state;
+  mpm_scene s[2] = {block_at(0.0), block_at(0.5)};
+  mps_body_def def = mps_body_defaults();
+  def.motion = MPS_BODY_MOTION_FREE;
+  def.mass = 40.0, def.inertia[2] = 4.0;
+  def.position[0] = 0.35, def.position[1] = 0.151, def.velocity[1] = -0.5;
+  mps_body *beam = NULL;
+  mps_contact *contact[2];
+  mps_assert_ok(context, mps_body_create_box(context, &def, 1.2, 0.1, &beam));
+  mps_contact_def other = mps_contact_defaults();
+  other.mover = MPS_CONTACT_MOVER_OTHER;
+  for (int k = 0; k < 2; k++) {
+    mps_assert_ok(context, mps_mpm_remove_boundary(s[k].mpm, MPS_MPM_SIDE_Y_LOWER));
+    mps_assert_ok(context, mps_mpm_add_contact(s[k].mpm, beam, k ? &other : NULL, &contact[k]));
+  }
+  const double dt = 0.4 * mps_mpm_limit(s[0].mpm);
+  for (int step = 0; step < 100; step++)
+    for (int k = 1; k >= 0; k--)
+      mps_assert_ok(context, mps_mpm_run(s[k].mpm, (step + 1) * dt, 1, NULL, NULL));
+  mps_reaction part[2], all;
+  mps_assert_ok(context, mps_body_get_reaction(beam, -1, &all));
+  for (int k = 0; k < 2; k++) {
+    mps_assert_ok(context, mps_contact_get_reaction(contact[k], -1, &part[k]));
+    assert_true(part[k].impulse[1] > 1.0);
+  }
+  mps_assert_near(part[0].impulse[1] + part[1].impulse[1], all.impulse[1], 1e-12);
+  mps_assert_near(part[0].force[1] + part[1].force[1], all.force[1], 1e-9);
+  mps_assert_near(part[0].impulse[1], part[1].impulse[1], 1e-9 * part[0].impulse[1]);
+  mps_body_totals beam_now;
+  mps_assert_ok(context, mps_body_get_totals(beam, &beam_now));
+  const double sum = mpm_scene_totals(&s[0]).linear[1] + mpm_scene_totals(&s[1]).linear[1];
+  mps_assert_near(sum + beam_now.linear[1], -0.5 * 40.0, 1e-10);
+  mps_assert_near(beam_now.kinetic - beam_now.work_contacts, 0.5 * 40.0 * 0.25, 1e-10);
+  for (int k = 0; k < 2; k++) {
+    mpm_scene_end(&s[k]);
+    mps_contact_destroy(&contact[k]);
+  }
+  mps_body_destroy(&beam);
+}
+
+/* A servo: the plate's speed answers to the force that it feels, until that is what was asked for.
+ */
+static void servo_keeps_a_force(void **state) {
+  (void)state;
+  mpm_scene s = block_at(0.0);
+  mps_body *plate = box_at(0.1, 0.15, 0.4, 0.1);
+  mpm_scene_contact(&s, plate, 0.0);
+  const double wanted = 100.0;
+  double mean = 0.0;
+  mps_reaction r;
+  for (int step = 0; step < 6000; step++) {
+    mps_assert_ok(context, mps_body_get_reaction(plate, -1, &r));
+    mean += 0.01 * (r.force[1] - mean);
+    mps_body_motion motion = mps_body_motion_defaults();
+    motion.velocity[1] = -1e-4 * (wanted - mean);
+    mps_assert_ok(context, mps_body_set_motion(plate, &motion));
+    mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+  }
+  print_message("servo: mean force %.4g N of %.4g\n", mean, wanted);
+  mps_assert_near(mean, wanted, 0.02 * wanted);
+  mps_body_destroy(&plate);
+  mpm_scene_end(&s);
+}
+
+/* Plates of 0.6 and 0.9 cells, between nodes or not: all momentum would pass. */
+static void thin_plates_are_refused(void **state) {
+  (void)state;
+  mpm_scene s = block_at(0.0);
+  const double cells[] = {0.6, 0.9};
+  for (int k = 0; k < 2; k++) {
+    mps_body *plate = box_at(0.3, 0.05, cells[k] * 0.02, 0.5);
+    REFUSES("below 2 cells momentum passes", mps_mpm_add_contact(s.mpm, plate, NULL, NULL));
+    mps_contact_def def = mps_contact_defaults();
+    def.thin = 1;
+    mps_assert_ok(context, mps_mpm_add_contact(s.mpm, plate, &def, NULL));
+    mps_body_destroy(&plate);
+    mps_mpm_destroy(&s.mpm);
+    mps_mpm_def solver = mps_mpm_defaults();
+    solver.cell = 0.02;
+    mpm_scene_solve(&s, &solver);
+  }
+  mpm_scene_end(&s);
+}
+
+static void covered_particles_are_refused(void **state) {
+  (void)state;
+  mpm_scene s = block_at(0.0);
+  mps_body *box = box_at(0.1, 0.05, 0.06, 0.06);
+  REFUSES("36 particles lie inside the body", mps_mpm_add_contact(s.mpm, box, NULL, NULL));
+  assert_true(mps_context_error(context)->particle >= 0);
+  mps_contact_def def = mps_contact_defaults();
+  def.inside = MPS_CONTACT_INSIDE_PUSH;
+  mps_assert_ok(context, mps_mpm_add_contact(s.mpm, box, &def, NULL));
+  mps_body_destroy(&box);
+  mpm_scene_end(&s);
+}
+
+/* A wedge through soil and floor at any speed: the step follows it, and where the soil cannot yield
+ * the run stops. */
+static void driven_too_deep_is_told(void **state) {
+  (void)state;
+  const double speeds[] = {30.0, 1000.0, 1e5};
+  const double wedge[] = {0.0, 0.0, 0.1, 0.2, -0.1, 0.2}, t[] = {0.0, 1.0};
+  for (int k = 0; k < 3; k++) {
+    mpm_scene s = block_at(0.0);
+    const double v[] = {speeds[k], speeds[k]};
+    mps_signal *down = NULL;
+    mps_body *body = NULL;
+    mps_body_def def = mps_body_defaults();
+    def.position[0] = 0.1, def.position[1] = 0.105;
+    mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_VELOCITY, 2, t, v, &down));
+    mps_assert_ok(context, mps_body_create_polygon(context, &def, 3, wedge, &body));
+    mps_assert_ok(context, mps_body_drive(body, 1, down, -1.0));
+    mpm_scene_contact(&s, body, 0.0);
+    assert_true(mps_mpm_limit(s.mpm) <= 0.02 / speeds[k] * (1.0 + 1e-12));
+    mps_status status = MPS_OK;
+    for (int step = 0; step < 4000 && status == MPS_OK; step++) status = mps_mpm_step(s.mpm, 1);
+    assert_int_equal(status, MPS_ERROR_DIVERGED);
+    if (strstr(mps_context_error(context)->message, "below the surface of body 0")) {
+      assert_true(mps_context_error(context)->particle >= 0);
+      mps_assert_fails(context, mps_mpm_step(s.mpm, 1), MPS_ERROR_STATE, "failed");
+    } else if (k > 0) {
+      fail_msg("%s", mps_context_error(context)->message);
+    }
+    mps_signal_destroy(&down);
+    mps_body_destroy(&body);
+    mpm_scene_end(&s);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(bad_definitions),         cmocka_unit_test(tells_who_touches),
+      cmocka_unit_test(bodies_are_shared),       cmocka_unit_test(servo_keeps_a_force),
+      cmocka_unit_test(thin_plates_are_refused), cmocka_unit_test(covered_particles_are_refused),
+      cmocka_unit_test(driven_too_deep_is_told)};
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
