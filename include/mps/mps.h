@@ -9,10 +9,12 @@
  *   material.h    constitutive laws
  *   geostatic.h   stress of ground at rest
  *   body.h        rigid bodies
+ *   contact.h     contact of particles with bodies
  *   solver.h      what the solvers have in common
  *   mpm.h         WLS-MPM: large deformation and contact
  *   dynamics.h    explicit elastodynamics
  *   elastic.h     implicit elasticity
+ *   fluid.h       free-surface flow
  *   io.h          series of results, restart files
  *
  * Another library of this name, MPSolve (Debian's libmps), has a header mps/mps.h too. A source may use
@@ -23,9 +25,11 @@
 
 #include "base.h"
 #include "body.h"
+#include "contact.h"
 #include "context.h"
 #include "dynamics.h"
 #include "elastic.h"
+#include "fluid.h"
 #include "geostatic.h"
 #include "io.h"
 #include "kernel.h"

@@ -295,6 +295,31 @@ static void end_counting(mps_dynamics *dynamics, double kick) {
   }
 }
 
+/* Whether an acceleration is beyond the limit. What holds or drives a particle gives it its
+ * acceleration; the loops have found that of the forces. */
+static bool diverges(mps_dynamics *dynamics) {
+  mpsi_dynamics_state *s = &dynamics->state;
+  const double limit2 = dynamics->def.divergence * dynamics->def.divergence;
+  double *const a[2] = {s->ax, s->ay};
+  bool any = false;
+  for (int64_t b = 0; b < dynamics->mesh.blocks; b++) any = any || dynamics->bad[b];
+  if (!any) return false;
+  for (int64_t k = 0; k < dynamics->bounds; k++) {
+    const mpsi_dynamics_bound *q = &dynamics->bound[k];
+    if (q->component < 2)
+      a[q->component][q->particle] = dynamics->boundary[q->boundary]->gain[q->component];
+  }
+  any = false;
+  for (int64_t b = 0; b < dynamics->mesh.blocks; b++) {
+    if (!dynamics->bad[b]) continue;
+    dynamics->bad[b] = 0;
+    for (int64_t k = dynamics->mesh.block[b].begin; k < dynamics->mesh.block[b].end; k++)
+      if (!(s->ax[k] * s->ax[k] + s->ay[k] * s->ay[k] <= limit2)) dynamics->bad[b] = 1;
+    any = any || dynamics->bad[b];
+  }
+  return any;
+}
+
 /* All of a step but asking the signals, which alone can fail. */
 static bool take_step(work *w, bool output) {
   mps_dynamics *dynamics = w->dynamics;
@@ -321,9 +346,7 @@ static bool take_step(work *w, bool output) {
     mpsi_dynamics_account account = {dynamics, &w->forces, w->step.drag, kick};
     mpsi_dynamics_count_works(&account);
   }
-  bool bad = false;
-  for (int64_t b = 0; b < dynamics->mesh.blocks; b++) bad = bad || dynamics->bad[b];
-  return !bad;
+  return !diverges(dynamics);
 }
 
 mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, int64_t count,

@@ -145,6 +145,30 @@ static void bad_columns_are_refused(void **state) {
 
 /* ---- held and driven ------------------------------------------------------------------------- */
 
+/* A strained body, held everywhere: its particles bear forces, but do not accelerate. */
+static void what_a_support_bears_is_no_divergence(void **state) {
+  (void)state;
+  for (int integrator = 0; integrator < 3; integrator++) {
+    mps_particles *set = soil_particles(context, 1.0, 4.0, 4.0, 1, &damped);
+    mps_dynamics_def def = mps_dynamics_defaults();
+    mps_dynamics *d = NULL;
+    mps_view u;
+    def.integrator = integrator;
+    def.dt = 1e-3;
+    def.divergence = 1.0;
+    mps_assert_ok(context, mps_particles_add_field(set, "displacement", 0));
+    mps_assert_ok(context, mps_particles_edit(set, "displacement", &u));
+    *mps_view_f64(&u, 5, 0) = 0.05; /* some 1e3 m/s2 */
+    mps_assert_ok(context, mps_particles_commit(set, &u));
+    mps_assert_ok(context, mps_dynamics_create(context, set, &def, &d));
+    soil_hold(context, set, d, MPS_DOF_X | MPS_DOF_Y | MPS_DOF_ROTATION, -1.0, -1.0, 9.0, 9.0);
+    mps_assert_ok(context, mps_dynamics_step(d, 10));
+    mps_assert_near(value(set, "acceleration", 5, 0), 0.0, 0.0);
+    mps_dynamics_destroy(&d);
+    mps_particles_destroy(&set);
+  }
+}
+
 static void a_held_freedom_stays_where_it_is(void **state) {
   (void)state;
   for (int integrator = 0; integrator < 3; integrator++) {
@@ -468,6 +492,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bad_boundaries_are_refused),
       cmocka_unit_test(bad_columns_are_refused),
+      cmocka_unit_test(what_a_support_bears_is_no_divergence),
       cmocka_unit_test(a_held_freedom_stays_where_it_is),
       cmocka_unit_test(a_driven_particle_follows_its_signal),
       cmocka_unit_test(dashpots_on_one_particle),
