@@ -295,11 +295,10 @@ static void end_counting(mps_dynamics *dynamics, double kick) {
   }
 }
 
-/* Whether an acceleration is beyond the limit. What holds or drives a particle gives it its
+/* Whether an acceleration is beyond the limit, given by its square. What holds or drives a particle gives it its
  * acceleration; the loops have found that of the forces. */
-static bool diverges(mps_dynamics *dynamics) {
+static bool diverges(mps_dynamics *dynamics, double limit2) {
   mpsi_dynamics_state *s = &dynamics->state;
-  const double limit2 = dynamics->def.divergence * dynamics->def.divergence;
   double *const a[2] = {s->ax, s->ay};
   bool any = false;
   for (int64_t b = 0; b < dynamics->mesh.blocks; b++) any = any || dynamics->bad[b];
@@ -346,7 +345,7 @@ static bool take_step(work *w, bool output) {
     mpsi_dynamics_account account = {dynamics, &w->forces, w->step.drag, kick};
     mpsi_dynamics_count_works(&account);
   }
-  return !diverges(dynamics);
+  return !diverges(dynamics, w->step.limit2);
 }
 
 mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, int64_t count,
