@@ -62,8 +62,7 @@ MPS_API void mps_fluid_destroy(mps_fluid **fluid);
 /* ---- boundaries ------------------------------------------------------------------------------ */
 
 typedef enum mps_fluid_boundary_kind {
-  MPS_FLUID_BOUNDARY_SLIP = 0,   /* no flow across, no shear */
-  MPS_FLUID_BOUNDARY_NO_SLIP = 1 /* no flow across, and the viscosity holds the fluid along it */
+  MPS_FLUID_BOUNDARY_SLIP = 0 /* no flow across, no shear */
 } mps_fluid_boundary_kind;
 
 #define MPS_FLUID_MAX_BOUNDARIES 16

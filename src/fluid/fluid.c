@@ -235,9 +235,9 @@ void mps_fluid_destroy(mps_fluid **fluid) {
 static mps_status check_boundary(mps_fluid *f, const mps_fluid_boundary_def *d) {
   static const char *const function = "mps_fluid_add_boundary";
   const double length = hypot(d->normal[0], d->normal[1]);
-  if (d->kind != MPS_FLUID_BOUNDARY_SLIP && d->kind != MPS_FLUID_BOUNDARY_NO_SLIP)
+  if (d->kind != MPS_FLUID_BOUNDARY_SLIP)
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "kind of the boundary is %d, allowed are 0 (slip) and 1 (no slip)", d->kind);
+                     "kind of the boundary is %d, allowed is 0 (slip)", d->kind);
   if (!(length > 1e-150 && length < 1e150) || d->normal[2] != 0.0)
     return mpsi_fail(
         f->context, function, MPS_ERROR_ARGUMENT,

@@ -4,7 +4,7 @@
  * corners only the particles themselves are mirrored, and images behind another wall are dropped.
  *
  * A ghost moves as the mirror image of its parent seen from the wall (velocity of the step before:
- * free slip, or its opposite: no slip); its reduced pressure is the parent's less
+ * free slip); its reduced pressure is the parent's less
  * rho (a . N)(distance of the two), N out of the fluid: the one place where the wall's new velocity
  * enters.
  * SPDX-License-Identifier: BSD-3-Clause */

@@ -67,7 +67,7 @@ static void bad_boundaries_are_refused(void **state) {
                    "must be at least 0.3 l0");
   def.point[1] = NAN;
   mps_assert_fails(context, mps_fluid_add_boundary(f, &def, NULL), MPS_ERROR_ARGUMENT, "finite");
-  def.point[1] = 0.0, def.kind = 2;
+  def.point[1] = 0.0, def.kind = 1;
   mps_assert_fails(context, mps_fluid_add_boundary(f, &def, NULL), MPS_ERROR_ARGUMENT, "kind");
   def.kind = MPS_FLUID_BOUNDARY_SLIP;
   mps_assert_ok(context, mps_fluid_add_boundary(f, &def, NULL));
