@@ -92,7 +92,7 @@ MPS_API const char *mps_library_feature_name(int32_t feature);
  *  Thread safe. */
 MPS_API int32_t mps_library_has_level(int32_t level);
 
-/** Element type of a view, laid out as DLPack's DLDataType. */
+/** Element type of a view, laid out as DLPack's DLDataType. Frozen layout. */
 typedef struct mps_dtype {
   uint8_t code;   /* 0 signed integer, 1 unsigned integer, 2 IEEE float */
   uint8_t bits;   /* 32 or 64 */

@@ -115,7 +115,7 @@ static void write_motion(mps_elastic *e, int64_t count, const int64_t *facets, c
 mps_status mps_elastic_get_facets_sized(mps_elastic *e, int64_t count, const int64_t *facets,
                                         const mps_elastic_facet_arrays *arrays, size_t size) {
   if (!e) return MPS_ERROR_ARGUMENT;
-  mps_elastic_facet_arrays a = {NULL, NULL, NULL, NULL, NULL, NULL, NULL};
+  mps_elastic_facet_arrays a = {0};
   if (!arrays || size == 0 || count < 0 || (!facets && count != e->facet_count))
     return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
                      "arrays is NULL, or count is %lld (without a list of facets it must be %lld)",
