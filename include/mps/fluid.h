@@ -68,18 +68,23 @@ typedef enum mps_fluid_boundary_kind {
 #define MPS_FLUID_MAX_BOUNDARIES 16
 
 /** A plane wall: the fluid is where (x - point) . normal > 0. It moves with a signal (piston), or
- *  as a signal of the caller's own says. Walls meet at right angles, or so that their images do
- *  not overlap (a slope of at most 45 degrees). */
+ * as its caller says (mps_fluid_set_wall_motion); then it may bend a little: a displacement along
+ * the normal at each of its nodes, linear between them, at which it mirrors locally. Walls meet at
+ *  right angles, or so that their images do not overlap (a slope of at most 45 degrees). */
 typedef struct mps_fluid_boundary_def {
   uint32_t struct_size;
-  int32_t kind;       /* mps_fluid_boundary_kind, default SLIP */
-  double point[3];    /* m, of the wall at time 0; its pressures are sampled from here on, every
-                         l0: choose the corner */
-  double normal[3];   /* into the fluid, any length > 0; [2] must be 0; no default */
-  mps_signal *signal; /* displacement along the normal: factor times that of the signal, from its
-                         value at the time when the boundary is added; NULL (default): at rest.
-                         Kept alive */
-  double factor;      /* default 1 */
+  int32_t kind;        /* mps_fluid_boundary_kind, default SLIP */
+  double point[3];     /* m, of the wall at time 0; its pressures are sampled from here on, every
+                          l0: choose the corner */
+  double normal[3];    /* into the fluid, any length > 0; [2] must be 0; no default */
+  mps_signal *signal;  /* displacement along the normal: factor times that of the signal, from its
+                          value at the time when the boundary is added; NULL (default): at rest.
+                          Kept alive */
+  double factor;       /* default 1 */
+  const double *nodes; /* of a wall that bends: points along it (3 values each, m, in any order;
+                          their distance from the plane does not count), read at once; NULL
+                          (default): it stays plane, and moves as one node */
+  int64_t node_count;  /* default 0; at most 1 with a signal */
 } mps_fluid_boundary_def;
 
 MPS_API mps_status mps_fluid_boundary_def_init(mps_fluid_boundary_def *def, size_t size);
@@ -99,6 +104,16 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_add_boundary(mps_fluid *fluid,
 /** Takes a wall away: the fluid may flow out there. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_remove_boundary(mps_fluid *fluid, int32_t number);
 
+/** How a wall without a signal moves: `velocity` (m/s) at the end of the next step, or of the open
+ *  one, and `displacement` (m) there from where the wall was added, both along the normal (into the
+ *  fluid), one value a node (mps_fluid_boundary_def.nodes; else one). `displacement` NULL: the mean
+ *  of the velocities before and after takes it there. It holds for one step; without it the wall
+ *  goes on at its velocity. The wall's acceleration on the water is the change of velocity over dt.
+ */
+MPS_API MPS_NODISCARD mps_status mps_fluid_set_wall_motion(mps_fluid *fluid, int32_t number,
+                                                           const double *displacement,
+                                                           const double *velocity);
+
 /** What a wall exerts on the fluid: its pressures summed over the points of mps_fluid_get_wall. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_reaction_sized(mps_fluid *fluid, int32_t number,
                                                               mps_reaction *out, size_t size);
@@ -107,14 +122,15 @@ static inline mps_status mps_fluid_get_reaction(mps_fluid *fluid, int32_t number
   return mps_fluid_get_reaction_sized(fluid, number, out, sizeof *out);
 }
 
-/** Pressure along a wall after the last step, at its wetted points every l0. Writes at most
- *  `capacity` points: `x` (3 values a point, m) and `pressure` (Pa), NULL where not wanted; `count`
- *  receives how many there are. Each point stands for the area l0 times `measure`. */
+/** Pressure along a wall after the last step (within an open step: of the last solution), at its
+ * wetted points every l0. Writes at most `capacity` points: `x` (3 values a point, m) and
+ * `pressure` (Pa), NULL where not wanted; `count` receives how many there are. Each point stands
+ * for the area l0 times `measure`. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_wall(mps_fluid *fluid, int32_t number,
                                                     int64_t capacity, double *x, double *pressure,
                                                     int64_t *count);
-/** Pressure (Pa) at `count` points of a wall: x[3 * k], ... in m, on it to a hundredth of l0; 0
- *  where there is no water. */
+/** Pressure (Pa) at `count` points of a wall, likewise: x[3 * k], ... in m, to a hundredth of l0 on
+ *  it as it is or as it was added; 0 where there is no water. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_pressure(mps_fluid *fluid, int32_t number,
                                                         int64_t count, const double *x,
                                                         double *pressure);
@@ -130,6 +146,34 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_get_levels(mps_fluid *fluid, int64_t 
  *  solution did not converge; MPS_ERROR_DIVERGED, a particle would pass a wall or its velocity is
  *  not finite; MPS_ERROR_CANCELLED. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_step(mps_fluid *fluid, int64_t count);
+
+/* A step in parts, for what the water and something else move together (two-way coupling):
+ *
+ *   mps_fluid_begin_step(fluid, dt);                    who is near whom; the equation's matrix and
+ *                                                       its preconditioner, which stay
+ *   do {
+ *     mps_fluid_set_wall_motion(fluid, wall, s, v);     at the end of the step: a guess
+ *     mps_fluid_solve_pressure(fluid);                  only the right side changes
+ *     mps_fluid_get_reaction(fluid, wall, &reaction);   forces and pressures at mid step
+ *   } while (v is not what these forces give);
+ *   mps_fluid_end_step(fluid);                          velocities, positions: the step has
+ * happened
+ *
+ * The pressure that is solved for acts through the step: it is to be used as the one at its middle.
+ * With one solution a step in parts is mps_fluid_step bit for bit. In between, the set's fields and
+ * the time stay as they were before the step, and only mps_fluid_set_wall_motion and functions that
+ * read may be called: others are MPS_ERROR_STATE, as are the parts in another order. */
+
+/** Begins a step of `dt` (s; NaN: mps_fluid_dt). After an error no step is open. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_begin_step(mps_fluid *fluid, double dt);
+/** Solves for the pressure with the walls' present motions; MPS_ERROR_NUMERIC: it did not converge;
+ *  the step stays open. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_solve_pressure(mps_fluid *fluid);
+/** Ends the step with the last solution. A motion set since has to be solved for first. After
+ *  MPS_ERROR_DIVERGED no step is open and it has not happened. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_end_step(mps_fluid *fluid);
+/** Gives the open step up: all is as before it. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_abandon_step(mps_fluid *fluid);
 
 /** Called at the start of a run, then every `every` steps and at the end. Any status but MPS_OK
  * ends the run, which returns it. It may read, not step or destroy. */
@@ -183,8 +227,8 @@ static inline mps_status mps_fluid_get_report(const mps_fluid *fluid, mps_fluid_
  *  signals are as they are now. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_snapshot(mps_fluid *fluid, mps_snapshot **snapshot);
 MPS_API MPS_NODISCARD mps_status mps_fluid_rollback(mps_fluid *fluid, const mps_snapshot *snapshot);
-/** The same with a file, as mps_mpm_save and mps_mpm_restore, also for errors: into a fluid with the
- *  same particles, density, level and walls. */
+/** The same with a file, as mps_mpm_save and mps_mpm_restore, also for errors: into a fluid with
+ * the same particles, density, level and walls. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_save(mps_fluid *fluid, const char *path,
                                                 const mps_checkpoint *info);
 MPS_API MPS_NODISCARD mps_status mps_fluid_restore(mps_fluid *fluid, const char *path,

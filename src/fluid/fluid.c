@@ -153,12 +153,19 @@ static double energy_of(const mps_fluid *f, double *kinetic) {
 
 static void release(mps_fluid *f) {
   mps_context *context = f->context;
-  void *const parts[] = {f->slab,           f->local,           f->state,
-                         f->cloud,          f->index_room.item, f->w_room.item,
-                         f->cell_room.item, f->fit_room.item,   f->lower_col_room.item,
-                         f->lower_room.item};
+  void *const parts[] = {f->slab,
+                         f->local,
+                         f->state,
+                         f->cloud,
+                         f->index_room.item,
+                         f->w_room.item,
+                         f->cell_room.item,
+                         f->fit_room.item,
+                         f->lower_col_room.item,
+                         f->lower_room.item,
+                         f->near_wall_room.item};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) mps_signal_destroy(&f->wall[b].signal);
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) mpsi_fluid_drop_wall(f, &f->wall[b]);
   mpsi_state_forget(&f->identity);
   mpsi_free(context, f);
 }
@@ -248,6 +255,18 @@ static mps_status check_boundary(mps_fluid *f, const mps_fluid_boundary_def *d) 
                      "point of the boundary is (%g, %g) m and factor %g: must be finite, the point "
                      "within 1e12 m",
                      d->point[0], d->point[1], d->factor);
+  if (d->node_count < 0 || d->node_count > 1000000 || (d->node_count > 0 && !d->nodes) ||
+      (d->node_count > 1 && d->signal))
+    return mpsi_fail(
+        f->context, function, MPS_ERROR_ARGUMENT,
+        "node_count of the boundary is %lld with nodes %s and %s signal: allowed are 0 "
+        "to 1e6 with nodes given, and at most one node with a signal",
+        (long long)d->node_count, d->nodes ? "given" : "NULL", d->signal ? "a" : "no");
+  for (int64_t k = 0; k < 3 * d->node_count; k++)
+    if (!(fabs(d->nodes[k]) <= 1e12))
+      return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                       "node %lld of the boundary is at %g m: must be within 1e12 m",
+                       (long long)(k / 3), d->nodes[k]);
   return MPS_OK;
 }
 
@@ -257,7 +276,7 @@ static mps_status check_place(mps_fluid *f, const mpsi_fluid_wall *w) {
   const double *x = mpsi_particles_column(f->particles, "position", 0);
   const double *y = mpsi_particles_column(f->particles, "position", 1);
   for (int64_t i = 0; i < f->count; i++) {
-    const double d = mpsi_fluid_distance(w, 0.0, x[i], y[i]);
+    const double d = mpsi_fluid_distance(w, w->now.s, x[i], y[i]);
     if (d < LEAST_WALL * f->l0)
       return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                        "particle %lld at (%g, %g) m is %g m inside the boundary, must be at least "
@@ -297,8 +316,12 @@ mps_status mps_fluid_add_boundary(mps_fluid *f, const mps_fluid_boundary_def *us
   const double length = hypot(def.normal[0], def.normal[1]);
   mpsi_fluid_wall w = {.used = true, .kind = def.kind, .factor = def.factor};
   for (int c = 0; c < 2; c++) w.at[c] = def.point[c], w.normal[c] = def.normal[c] / length;
-  status = check_place(f, &w);
-  if (status != MPS_OK) return status;
+  status = mpsi_fluid_make_motion(f, __func__, &w, def.node_count, def.nodes);
+  if (status == MPS_OK) status = check_place(f, &w);
+  if (status != MPS_OK) {
+    mpsi_fluid_drop_wall(f, &w);
+    return status;
+  }
   if (def.signal) {
     w.signal = mpsi_signal_retain(def.signal);
     w.origin = mps_signal_displacement(def.signal, f->time);
@@ -315,8 +338,7 @@ mps_status mps_fluid_remove_boundary(mps_fluid *f, int32_t number) {
   if (number < 0 || number >= MPS_FLUID_MAX_BOUNDARIES || !f->wall[number].used)
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                      "the fluid has no boundary of number %d", number);
-  mps_signal_destroy(&f->wall[number].signal);
-  f->wall[number] = (mpsi_fluid_wall){0};
+  mpsi_fluid_drop_wall(f, &f->wall[number]);
   return MPS_OK;
 }
 

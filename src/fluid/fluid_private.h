@@ -29,18 +29,34 @@ typedef struct mpsi_fluid_room {
   int64_t capacity;
 } mpsi_fluid_room;
 
-/* A wall. Displacement and velocity are along the normal. */
+/* How a wall moves along its normal, at its nodes: linear between them, constant beyond the ends.
+ * A wall that stays plane has one node. */
+typedef struct mpsi_fluid_motion {
+  double *s, *u, *a; /* m, m/s, m/s2; a is the mean over the step that ends there */
+} mpsi_fluid_motion;
+
+/* What a wall exerts on the fluid. */
+typedef struct mpsi_fluid_load {
+  double force[2], moment, power; /* N; N m about the origin; W */
+  int64_t wetted;                 /* points with water */
+} mpsi_fluid_load;
+
+/* A wall. */
 typedef struct mpsi_fluid_wall {
   bool used;
+  bool given, placed; /* the caller wants next.u, and next.s */
   int32_t kind;
   double at[2], normal[2]; /* m, of the wall without displacement; unit, into the fluid */
   mps_signal *signal;
-  double factor, origin;   /* origin: the signal's displacement that counts as 0, m */
-  double s, u;             /* m, m/s: at the beginning of the step; u the mean of the step before */
-  double s_new, u_new, a;  /* at its end; a = (u_new - u)/dt */
-  double force[2], moment; /* N, N m about the origin: on the fluid, of the last step */
+  double factor, origin; /* origin: the signal's displacement that counts as 0, m */
+  int64_t nodes;
+  double *node;                 /* m along the wall from `at`, ascending */
+  int64_t *order;               /* order[k]: the caller's number of node k */
+  mpsi_fluid_motion now, next;  /* at the beginning and at the end of the step being made */
+  double *mean;                 /* m/s, over the step being made */
+  double *motion;               /* the memory of all these */
+  mpsi_fluid_load load, before; /* of the last step or solution; before the step being made */
   double impulse[2], moment_impulse, work;
-  int64_t wetted; /* points with water */
 } mpsi_fluid_wall;
 
 /* The weight (1-z)^4 (1+4z), z = r/re, and its sums over the full lattice. */
@@ -77,6 +93,14 @@ typedef struct mpsi_fluid_system {
   double *sums;    /* by chunk or block, two values each */
 } mpsi_fluid_system;
 
+/* How far the step is. */
+typedef enum mpsi_fluid_stage {
+  MPSI_FLUID_BETWEEN = 0, /* no step is open */
+  MPSI_FLUID_BEGUN,       /* the pressure is that of the step before */
+  MPSI_FLUID_SOLVED,
+  MPSI_FLUID_MOVED /* the cloud is at the end of the step, the fields are not */
+} mpsi_fluid_stage;
+
 struct mps_fluid {
   mps_context *context;
   mps_particles *particles;
@@ -90,6 +114,7 @@ struct mps_fluid {
   double *x[2], *u[2], *q, *offset; /* offset: of a ghost's q from its parent's, Pa */
   int32_t *parent;                  /* of a ghost, by index - count */
   uint32_t *flips;                  /* walls that it is mirrored at, bits */
+  uint32_t bent;                    /* walls with several nodes, bits */
   int64_t cloud_capacity;
   double *u_new[2], *pressure; /* count */
   uint8_t *state;              /* MPSI_FLUID_..., count */
@@ -104,6 +129,7 @@ struct mps_fluid {
   int32_t *index;                      /* of the pairs' other ends, ghosts too */
   double *w;                           /* of the pairs */
   mpsi_fluid_room cell_room, fit_room; /* int32_t; sums of fits, see probe.c */
+  mpsi_fluid_room near_wall_room;      /* double */
   int32_t *slot;                       /* cloud sorted by cells */
   double *slot_x[2];
   mpsi_fluid_system system;
@@ -113,12 +139,13 @@ struct mps_fluid {
   void *cloud;
   double time, dt, speed; /* s; s, of the step being made; largest |u|, m/s */
   int64_t steps;
+  mpsi_fluid_stage stage;
   bool in_callback;
   bool stale; /* what is known of the surroundings is not that of the fields */
   mpsi_identity *identity;
-  mps_fluid_report report;
-  double energy;          /* J, kinetic and potential at creation */
-  double work_boundaries; /* J, since creation */
+  mps_fluid_report report, before; /* before: as the step being made began */
+  double energy;                   /* J, kinetic and potential at creation */
+  double work_boundaries;          /* J, since creation */
 };
 
 bool mpsi_fluid_room_ensure(mps_context *context, mpsi_fluid_room *room, int64_t count,
@@ -141,16 +168,42 @@ static inline double mpsi_fluid_head(const mps_fluid *f, double x, double y) {
 mpsi_fluid_weight mpsi_fluid_make_weight(double l0, double re);
 
 /* walls.c */
-void mpsi_fluid_begin_walls(mps_fluid *fluid, double dt);
-void mpsi_fluid_end_walls(mps_fluid *fluid);
+mps_status mpsi_fluid_make_motion(mps_fluid *fluid, const char *function, mpsi_fluid_wall *wall,
+                                  int64_t nodes, const double *points);
+void mpsi_fluid_drop_wall(mps_fluid *fluid, mpsi_fluid_wall *wall);
+void mpsi_fluid_begin_walls(mps_fluid *fluid, double dt); /* next, from signals and callers */
+void mpsi_fluid_end_walls(mps_fluid *fluid);              /* now = next */
 void mpsi_fluid_add_impulses(mps_fluid *fluid);
 bool mpsi_fluid_grow_cloud(mps_fluid *fluid,
                            int64_t capacity); /* room for the ghosts; false: none */
 mps_status mpsi_fluid_make_ghosts(mps_fluid *fluid, const char *function);
-void mpsi_fluid_move_ghosts(mps_fluid *fluid); /* their velocities and pressure offsets */
+void mpsi_fluid_mirror_point(const mps_fluid *fluid, uint32_t flips,
+                             double *x);       /* at these walls */
+void mpsi_fluid_move_ghosts(mps_fluid *fluid); /* their velocities */
+void mpsi_fluid_press_ghosts(
+    mps_fluid *fluid); /* their pressure offsets, by walls' new velocities */
+/* Coordinate along a wall, m. */
+static inline double mpsi_fluid_along(const mpsi_fluid_wall *w, double x, double y) {
+  return -(x - w->at[0]) * w->normal[1] + (y - w->at[1]) * w->normal[0];
+}
+/* Where walls are, and their accelerations, in the state that the cloud has. */
+static inline const double *mpsi_fluid_places(const mps_fluid *f, const mpsi_fluid_wall *w) {
+  return f->stage == MPSI_FLUID_MOVED ? w->next.s : w->now.s;
+}
+static inline const double *mpsi_fluid_accelerations(const mps_fluid *f, const mpsi_fluid_wall *w) {
+  return f->stage >= MPSI_FLUID_SOLVED ? w->next.a : w->now.a;
+}
+double mpsi_fluid_between(const mpsi_fluid_wall *wall, const double *values, double along);
+/* Displacement, velocity or acceleration of the wall where (x, y) is mirrored. */
+static inline double mpsi_fluid_of_wall(const mpsi_fluid_wall *w, const double *values, double x,
+                                        double y) {
+  return w->nodes == 1 ? values[0] : mpsi_fluid_between(w, values, mpsi_fluid_along(w, x, y));
+}
 /* Distance (m) from a wall displaced by s, > 0 in the fluid. */
-static inline double mpsi_fluid_distance(const mpsi_fluid_wall *w, double s, double x, double y) {
-  return (x - w->at[0]) * w->normal[0] + (y - w->at[1]) * w->normal[1] - s;
+static inline double mpsi_fluid_distance(const mpsi_fluid_wall *w, const double *s, double x,
+                                         double y) {
+  const double across = (x - w->at[0]) * w->normal[0] + (y - w->at[1]) * w->normal[1];
+  return across - mpsi_fluid_of_wall(w, s, x, y);
 }
 
 /* near.c */
@@ -158,6 +211,7 @@ mps_status mpsi_fluid_find_neighbours(mps_fluid *fluid, const char *function);
 /* moments.c */
 void mpsi_fluid_find_moments(mps_fluid *fluid);
 /* pressure.c */
+mps_status mpsi_fluid_prepare_pressure(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_solve_pressure(mps_fluid *fluid, const char *function);
 /* pcg.c: solves for system.x, starting from what it holds; the number of iterations, or -1. */
 mps_status mpsi_fluid_factor(mps_fluid *fluid, const char *function);
@@ -173,7 +227,10 @@ mps_status mpsi_fluid_look(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_refresh(mps_fluid *fluid, const char *function);
 /* step.c: sorts the particles by place. */
 mps_status mpsi_fluid_sort(mps_fluid *fluid, const char *function);
-/* step.c: MPS_ERROR_STATE within a callback of the run. */
+/* step.c: MPS_ERROR_STATE within a callback of the run (free), while a step is open (closed), or
+ * both (ready). */
+mps_status mpsi_fluid_free(mps_fluid *fluid, const char *function);
+mps_status mpsi_fluid_closed(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_ready(mps_fluid *fluid, const char *function);
 
 #endif

@@ -105,7 +105,8 @@ static void image_velocity(const mps_fluid *f, int64_t ghost, double *v) {
   for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
     if (!(f->flips[ghost] >> b & 1)) continue;
     const mpsi_fluid_wall *w = &f->wall[b];
-    const double across = v[0] * w->normal[0] + v[1] * w->normal[1] - w->u_new;
+    const double u = mpsi_fluid_of_wall(w, w->next.u, f->x[0][own], f->x[1][own]);
+    const double across = v[0] * w->normal[0] + v[1] * w->normal[1] - u;
     v[0] -= 2.0 * across * w->normal[0], v[1] -= 2.0 * across * w->normal[1];
   }
 }
@@ -181,9 +182,10 @@ static int64_t keep_off_walls(const mps_fluid *f, double *x, double *u) {
   for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
     const mpsi_fluid_wall *w = &f->wall[b];
     if (!w->used) continue;
-    const double d = mpsi_fluid_distance(w, w->s_new, x[0], x[1]), off = OFF_WALL * f->l0;
+    const double d = mpsi_fluid_distance(w, w->next.s, x[0], x[1]), off = OFF_WALL * f->l0;
     if (d >= off) continue;
-    const double into = u[0] * w->normal[0] + u[1] * w->normal[1] - w->u_new;
+    const double moves = mpsi_fluid_of_wall(w, w->next.u, x[0], x[1]);
+    const double into = u[0] * w->normal[0] + u[1] * w->normal[1] - moves;
     for (int c = 0; c < 2; c++) {
       x[c] += (off - d) * w->normal[c];
       if (into < 0.0) u[c] -= into * w->normal[c];

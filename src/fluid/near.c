@@ -139,6 +139,21 @@ static int64_t search(const mps_fluid *f, const cells *c, int64_t i, int64_t roo
   return found;
 }
 
+/* At a bent wall particle i may be at another distance from the image of j than j from that of i:
+ * the mean of both weights keeps the matrix symmetric. */
+static void average_weights(const mps_fluid *f, int64_t i, int64_t count, const int32_t *index,
+                            double *w) {
+  for (int64_t k = 0; k < count; k++) {
+    const int64_t ghost = index[k] - f->count;
+    if (ghost < 0 || !(f->flips[ghost] & f->bent)) continue;
+    const int64_t own = f->parent[ghost];
+    double x[2] = {f->x[0][i], f->x[1][i]};
+    mpsi_fluid_mirror_point(f, f->flips[ghost], x);
+    const double r = hypot(x[0] - f->x[0][own], x[1] - f->x[1][own]);
+    w[k] = 0.5 * (w[k] + (r < f->weight.re ? mpsi_fluid_w(&f->weight, r) : 0.0));
+  }
+}
+
 typedef struct pass {
   mps_fluid *fluid;
   const cells *cells;
@@ -162,6 +177,7 @@ static void find_chunk(void *data, int64_t chunk, int32_t worker) {
     }
     double *w = f->w + at;
     for (int64_t k = 0; k < found; k++) w[k] = mpsi_fluid_w(&f->weight, fmax(sqrt(w[k]), least));
+    if (f->bent) average_weights(f, i, found, f->index + at, w);
     f->start[i] = at;
     f->near[i] = (int32_t)found;
     at += found;

@@ -18,27 +18,43 @@ static double density_source(const mps_fluid *f, int64_t i) {
   return f->zone[i] ? fmax(k, 0.0) : fmax(k, LEAST_DENSITY);
 }
 
+/* The diagonal, and the start vector from the last step. */
 static void make_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   (void)chunk;
   mpsi_fluid_system *s = &f->system;
+  for (int64_t i = begin; i < end; i++) {
+    s->diagonal[i] = 1.0, s->x[i] = 0.0;
+    if (f->state[i] == MPSI_FLUID_APART) continue;
+    const int32_t *index = f->index + f->start[i];
+    const double *w = f->w + f->start[i];
+    double sum = f->local[i].c;
+    for (int32_t k = 0; k < f->near[i]; k++) {
+      const int64_t j = index[k], ghost = j - f->count;
+      if (f->state[ghost < 0 ? j : f->parent[ghost]] != MPSI_FLUID_APART) sum += w[k];
+    }
+    s->diagonal[i] = sum * (1.0 + 1e-10) + 1e-12;
+    s->x[i] = f->q[i];
+  }
+}
+
+/* The right side, with the walls' accelerations. */
+static void make_right(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  (void)chunk;
   const double rho = f->def.density, dt = f->dt;
   for (int64_t i = begin; i < end; i++) {
-    s->diagonal[i] = 1.0, s->right[i] = s->x[i] = 0.0;
+    f->system.right[i] = 0.0;
     if (f->state[i] == MPSI_FLUID_APART) continue;
     const mpsi_fluid_local *local = &f->local[i];
     const int32_t *index = f->index + f->start[i];
     const double *w = f->w + f->start[i];
-    double sum = local->c, right = local->c * local->qs;
+    double right = local->c * local->qs;
     for (int32_t k = 0; k < f->near[i]; k++) {
-      const int64_t j = index[k], ghost = j - f->count;
-      if (f->state[ghost < 0 ? j : f->parent[ghost]] == MPSI_FLUID_APART) continue;
-      sum += w[k];
-      if (ghost >= 0) right += w[k] * f->offset[ghost];
+      const int64_t ghost = index[k] - f->count;
+      if (ghost >= 0 && f->state[f->parent[ghost]] != MPSI_FLUID_APART)
+        right += w[k] * f->offset[ghost];
     }
     const double divergence = local->gradient[0] + local->gradient[3];
-    s->diagonal[i] = sum * (1.0 + 1e-10) + 1e-12;
-    s->right[i] = right - local->S * rho / dt * (divergence - density_source(f, i) / dt);
-    s->x[i] = f->q[i];
+    f->system.right[i] = right - local->S * rho / dt * (divergence - density_source(f, i) / dt);
   }
 }
 
@@ -51,15 +67,19 @@ static void take_solution(mps_fluid *f, int64_t begin, int64_t end, int64_t chun
   }
 }
 
-mps_status mpsi_fluid_solve_pressure(mps_fluid *f, const char *function) {
+mps_status mpsi_fluid_prepare_pressure(mps_fluid *f, const char *function) {
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, make_rows);
-  const mps_status status = mpsi_fluid_factor(f, function);
-  if (status != MPS_OK) return status;
+  return mpsi_fluid_factor(f, function);
+}
+
+mps_status mpsi_fluid_solve_pressure(mps_fluid *f, const char *function) {
+  mpsi_fluid_press_ghosts(f);
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, make_right);
   const int64_t iterations = mpsi_fluid_pcg(f);
   if (iterations < 0)
     return mpsi_fail(f->context, function, MPS_ERROR_NUMERIC,
                      "step %lld, t = %g s: the pressure has not converged to %g in %d iterations; "
-                     "the step was not made",
+                     "the step is not made",
                      (long long)f->steps, f->time, f->def.tolerance, f->def.iterations);
   f->report.iterations = iterations;
   f->report.all_iterations += iterations;

@@ -32,23 +32,23 @@ static double weight_of(const mps_fluid *f, double d, double s) {
   return a > 0.0 ? a * a : 0.0;
 }
 
-/* Coordinate along a wall from its point, and the place of a coordinate in space. */
-static double along(const mpsi_fluid_wall *w, double x, double y) {
-  return -(x - w->at[0]) * w->normal[1] + (y - w->at[1]) * w->normal[0];
+/* The place of a coordinate along the wall in space. */
+static void place(const mps_fluid *f, const mpsi_fluid_wall *w, double along, double *x) {
+  const double *at = mpsi_fluid_places(f, w);
+  const double s = w->nodes == 1 ? at[0] : mpsi_fluid_between(w, at, along);
+  x[0] = w->at[0] + s * w->normal[0] - along * w->normal[1];
+  x[1] = w->at[1] + s * w->normal[1] + along * w->normal[0];
 }
 
-static void place(const mpsi_fluid_wall *w, double s, double *x) {
-  x[0] = w->at[0] + w->s * w->normal[0] - s * w->normal[1];
-  x[1] = w->at[1] + w->s * w->normal[1] + s * w->normal[0];
-}
-
-/* What a particle contributes: false where it is too far from the wall. */
+/* What a particle contributes: false where it is too far from the wall. Its acceleration is along
+ * the normal into the fluid, -N. */
 static bool near_wall(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t i, double *d, double *s,
                       double *q) {
-  *d = mpsi_fluid_distance(w, w->s, f->x[0][i], f->x[1][i]);
+  const double x = f->x[0][i], y = f->x[1][i];
+  *d = mpsi_fluid_distance(w, mpsi_fluid_places(f, w), x, y);
   if (fabs(*d) >= REACH * f->l0 || f->state[i] == MPSI_FLUID_APART) return false;
-  *s = along(w, f->x[0][i], f->x[1][i]);
-  *q = f->q[i] + f->def.density * w->a * *d; /* a is along the normal into the fluid, -N */
+  *s = mpsi_fluid_along(w, x, y);
+  *q = f->q[i] + f->def.density * mpsi_fluid_of_wall(w, mpsi_fluid_accelerations(f, w), x, y) * *d;
   return true;
 }
 
@@ -56,7 +56,8 @@ static bool near_wall(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t i, d
 static bool among_walls(const mps_fluid *f, int32_t b, const double *x) {
   for (int32_t k = 0; k < MPS_FLUID_MAX_BOUNDARIES; k++) {
     const mpsi_fluid_wall *w = &f->wall[k];
-    if (k != b && w->used && mpsi_fluid_distance(w, w->s, x[0], x[1]) < 0.0) return false;
+    if (k != b && w->used && mpsi_fluid_distance(w, mpsi_fluid_places(f, w), x[0], x[1]) < 0.0)
+      return false;
   }
   return true;
 }
@@ -102,7 +103,7 @@ static mps_status for_points(mps_fluid *f, int32_t b, const char *function, poin
   }
   for (int64_t k = low; k < high; k++) {
     double x[2];
-    place(w, ((double)k + 0.5) * f->l0, x);
+    place(f, w, ((double)k + 0.5) * f->l0, x);
     if (sum[k - low].w <= LEAST_SUM || !among_walls(f, b, x)) continue;
     const double p = fit_value(f, &sum[k - low]) - mpsi_fluid_head(f, x[0], x[1]);
     if (p > 0.0) point(user, x, p);
@@ -120,17 +121,18 @@ typedef struct resultant {
 static void add_force(void *user, const double *x, double p) {
   const resultant *r = user;
   const double force[2] = {p * r->area * r->wall->normal[0], p * r->area * r->wall->normal[1]};
-  for (int c = 0; c < 2; c++) r->wall->force[c] += force[c];
-  r->wall->moment += x[0] * force[1] - x[1] * force[0];
-  r->wall->wetted++;
+  mpsi_fluid_load *load = &r->wall->load;
+  for (int c = 0; c < 2; c++) load->force[c] += force[c];
+  load->moment += x[0] * force[1] - x[1] * force[0];
+  load->power += p * r->area * mpsi_fluid_of_wall(r->wall, r->wall->mean, x[0], x[1]);
+  load->wetted++;
 }
 
 mps_status mpsi_fluid_load_walls(mps_fluid *f, const char *function) {
   for (int32_t b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
     if (!w->used) continue;
-    w->force[0] = w->force[1] = w->moment = 0.0;
-    w->wetted = 0;
+    w->load = (mpsi_fluid_load){0};
     resultant r = {w, f->l0 * f->def.measure};
     const mps_status status = for_points(f, b, function, add_force, &r);
     if (status != MPS_OK) return status;
@@ -151,12 +153,21 @@ mps_status mps_fluid_get_reaction_sized(mps_fluid *f, int32_t number, mps_reacti
   const mps_status status = check_wall(f, "mps_fluid_get_reaction", number);
   if (status != MPS_OK) return status;
   const mpsi_fluid_wall *w = &f->wall[number];
-  mps_reaction reaction = {.count = w->wetted, .work = w->work};
-  for (int c = 0; c < 2; c++) reaction.force[c] = w->force[c], reaction.impulse[c] = w->impulse[c];
-  reaction.moment[2] = w->moment;
+  mps_reaction reaction = {.count = w->load.wetted, .work = w->work};
+  for (int c = 0; c < 2; c++)
+    reaction.force[c] = w->load.force[c], reaction.impulse[c] = w->impulse[c];
+  reaction.moment[2] = w->load.moment;
   reaction.moment_impulse[2] = w->moment_impulse;
   return mpsi_out_write(f->context, "mps_fluid_get_reaction", out, size, &reaction,
                         sizeof reaction);
+}
+
+/* Pressures belong to a state: of the last step, or of the last solution in an open step. */
+static mps_status check_pressure(mps_fluid *f, const char *function) {
+  if (f->stage == MPSI_FLUID_BEGUN)
+    return mpsi_fail(f->context, function, MPS_ERROR_STATE,
+                     "the open step's pressure has not been solved");
+  return mpsi_fluid_refresh(f, function);
 }
 
 /* ---- pressures ------------------------------------------------------------------------------- */
@@ -184,39 +195,61 @@ mps_status mps_fluid_get_wall(mps_fluid *f, int32_t number, int64_t capacity, do
                      "capacity is %lld and count %s: must be >= 0 and given", (long long)capacity,
                      count ? "given" : "NULL");
   listing list = {.capacity = capacity, .x = x, .pressure = pressure};
-  status = mpsi_fluid_refresh(f, __func__);
+  status = check_pressure(f, __func__);
   if (status == MPS_OK) status = for_points(f, number, __func__, list_point, &list);
   if (status == MPS_OK) *count = list.count;
   return status;
+}
+
+/* Particles near a wall: place along it, distance, q. */
+static mps_status gather(mps_fluid *f, const mpsi_fluid_wall *w, const char *function,
+                         int64_t *count) {
+  if (!mpsi_fluid_room_ensure(f->context, &f->near_wall_room, 3 * f->count, sizeof(double)))
+    return mpsi_fail_memory(f->context, function, 3 * (size_t)f->count * sizeof(double));
+  double *at = f->near_wall_room.item;
+  *count = 0;
+  for (int64_t i = 0; i < f->count; i++)
+    if (near_wall(f, w, i, at + 1, at, at + 2)) at += 3, ++*count;
+  return MPS_OK;
+}
+
+/* Points are given on the wall as it is, or as it was without displacement. */
+static mps_status check_points(mps_fluid *f, const char *function, const mpsi_fluid_wall *w,
+                               int64_t count, const double *x) {
+  for (int64_t k = 0; k < count; k++) {
+    const double off = mpsi_fluid_distance(w, w->now.s, x[3 * k], x[3 * k + 1]);
+    const double s = mpsi_fluid_of_wall(w, w->now.s, x[3 * k], x[3 * k + 1]);
+    if (!(fabs(off) <= 0.01 * f->l0) && !(fabs(off + s) <= 0.01 * f->l0))
+      return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                       "point %lld (%g, %g) m is %g m off the wall, allowed is l0/100 = %g m",
+                       (long long)k, x[3 * k], x[3 * k + 1], off, 0.01 * f->l0);
+  }
+  return MPS_OK;
 }
 
 mps_status mps_fluid_get_pressure(mps_fluid *f, int32_t number, int64_t count, const double *x,
                                   double *pressure) {
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_status status = check_wall(f, __func__, number);
-  if (status == MPS_OK) status = mpsi_fluid_refresh(f, __func__);
-  if (status != MPS_OK) return status;
-  if (count < 0 || (count > 0 && (!x || !pressure)))
+  if (status == MPS_OK && (count < 0 || (count > 0 && (!x || !pressure))))
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                      "count is %lld, x and pressure must be given", (long long)count);
-  const mpsi_fluid_wall *w = &f->wall[number];
+  if (status == MPS_OK) status = check_pressure(f, __func__);
+  int64_t near = 0;
+  if (status == MPS_OK) status = check_points(f, __func__, &f->wall[number], count, x);
+  if (status == MPS_OK) status = gather(f, &f->wall[number], __func__, &near);
+  if (status != MPS_OK) return status;
   for (int64_t k = 0; k < count; k++) {
-    const double off = mpsi_fluid_distance(w, w->s, x[3 * k], x[3 * k + 1]);
-    if (!(fabs(off) <= 0.01 * f->l0))
-      return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                       "point %lld (%g, %g) m is %g m off the wall, allowed is l0/100 = %g m",
-                       (long long)k, x[3 * k], x[3 * k + 1], off, 0.01 * f->l0);
-  }
-  for (int64_t k = 0; k < count; k++) {
-    const double at = along(w, x[3 * k], x[3 * k + 1]);
+    const double at = mpsi_fluid_along(&f->wall[number], x[3 * k], x[3 * k + 1]);
+    const double *particle = f->near_wall_room.item;
+    double to[2];
     fit sum = {0};
-    for (int64_t i = 0; i < f->count; i++) {
-      double d, s, q;
-      if (!near_wall(f, w, i, &d, &s, &q)) continue;
-      const double weight = weight_of(f, d, s - at);
-      if (weight > 0.0) fit_add(&sum, weight, s - at, q);
+    for (int64_t i = 0; i < near; i++, particle += 3) {
+      const double weight = weight_of(f, particle[1], particle[0] - at);
+      if (weight > 0.0) fit_add(&sum, weight, particle[0] - at, particle[2]);
     }
-    const double head = mpsi_fluid_head(f, x[3 * k], x[3 * k + 1]);
+    place(f, &f->wall[number], at, to);
+    const double head = mpsi_fluid_head(f, to[0], to[1]);
     pressure[k] = sum.w > LEAST_SUM ? fmax(fit_value(f, &sum) - head, 0.0) : 0.0;
   }
   return MPS_OK;

@@ -14,15 +14,16 @@ static void list_wall(mpsi_state *s, mpsi_fluid_wall *w) {
     mpsi_state_agree_number(s, c ? "normal_y" : "normal_x", w->normal[c]);
   }
   mpsi_state_f64(s, "origin", &w->origin, 1);
-  mpsi_state_f64(s, "displacement", &w->s, 1);
-  mpsi_state_f64(s, "velocity", &w->u, 1);
-  mpsi_state_f64(s, "acceleration", &w->a, 1);
-  mpsi_state_f64(s, "force", w->force, 2);
-  mpsi_state_f64(s, "moment", &w->moment, 1);
+  mpsi_state_agree_integer(s, "nodes", w->nodes);
+  mpsi_state_f64(s, "displacement", w->now.s, w->nodes);
+  mpsi_state_f64(s, "velocity", w->now.u, w->nodes);
+  mpsi_state_f64(s, "acceleration", w->now.a, w->nodes);
+  mpsi_state_f64(s, "force", w->load.force, 2);
+  mpsi_state_f64(s, "moment", &w->load.moment, 1);
   mpsi_state_f64(s, "impulse", w->impulse, 2);
   mpsi_state_f64(s, "moment_impulse", &w->moment_impulse, 1);
   mpsi_state_f64(s, "work", &w->work, 1);
-  mpsi_state_i64(s, "wetted", &w->wetted, 1);
+  mpsi_state_i64(s, "wetted", &w->load.wetted, 1);
 }
 
 static void list_state(mpsi_state *s, void *solver) {
@@ -61,7 +62,11 @@ static bool fits(void *solver, mps_snapshot *values, const char **what) {
   return true;
 }
 
-static void after(void *solver) { ((mps_fluid *)solver)->stale = true; }
+static void after(void *solver) {
+  mps_fluid *f = solver;
+  f->stale = true;
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) f->wall[b].given = f->wall[b].placed = false;
+}
 
 static mpsi_state_of state_of(mps_fluid *f) {
   return (mpsi_state_of){.solver = f,
@@ -80,7 +85,8 @@ static mpsi_state_of state_of(mps_fluid *f) {
 mps_status mps_fluid_snapshot(mps_fluid *f, mps_snapshot **snapshot) {
   if (!f) return MPS_ERROR_ARGUMENT;
   const mpsi_state_of of = state_of(f);
-  return mpsi_state_snapshot(&of, __func__, snapshot);
+  const mps_status status = mpsi_fluid_closed(f, __func__);
+  return status == MPS_OK ? mpsi_state_snapshot(&of, __func__, snapshot) : status;
 }
 
 mps_status mps_fluid_rollback(mps_fluid *f, const mps_snapshot *snapshot) {
@@ -93,7 +99,8 @@ mps_status mps_fluid_rollback(mps_fluid *f, const mps_snapshot *snapshot) {
 mps_status mps_fluid_save(mps_fluid *f, const char *path, const mps_checkpoint *info) {
   if (!f) return MPS_ERROR_ARGUMENT;
   const mpsi_state_of of = state_of(f);
-  return mpsi_checkpoint_save(&of, __func__, path, info);
+  const mps_status status = mpsi_fluid_closed(f, __func__);
+  return status == MPS_OK ? mpsi_checkpoint_save(&of, __func__, path, info) : status;
 }
 
 mps_status mps_fluid_restore(mps_fluid *f, const char *path, mps_checkpoint *info) {

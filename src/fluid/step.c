@@ -127,36 +127,58 @@ static void find_pressures(mps_fluid *f, int64_t begin, int64_t end, int64_t chu
     f->pressure[i] = fmax(f->q[i] - mpsi_fluid_head(f, f->x[0][i], f->x[1][i]), 0.0);
 }
 
-/* The stages read and write the cloud; the fields change when all is done. */
-static mps_status take_step(mps_fluid *f, const char *function, double dt) {
-  const mps_fluid_report before = f->report;
+/* A step is made in three parts. They read and write the cloud; the fields change when all is
+ * done. Where one fails, the surroundings are found again when they are asked for. */
+static mps_status begin(mps_fluid *f, const char *function, double dt) {
   mps_status status = mpsi_particles_ready(f->particles, function);
   if (status != MPS_OK) return status;
   f->dt = dt;
+  f->before = f->report;
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) f->wall[b].before = f->wall[b].load;
   mpsi_fluid_begin_walls(f, dt);
   status = mpsi_fluid_look(f, function);
-  if (status == MPS_OK) status = mpsi_fluid_solve_pressure(f, function);
-  if (status == MPS_OK) {
-    mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, find_pressures);
-    mpsi_fluid_find_velocities(f);
-    const int64_t bad = mpsi_fluid_advance(f);
-    if (bad >= 0) status = went_wrong(f, function, bad);
-  }
-  if (status == MPS_OK) {
-    mpsi_fluid_end_walls(f);
-    status = mpsi_fluid_load_walls(f, function);
-  }
-  if (status != MPS_OK) {
-    f->report = before;
-    return status;
-  }
+  if (status == MPS_OK) status = mpsi_fluid_prepare_pressure(f, function);
+  f->stage = MPSI_FLUID_BEGUN;
+  return status;
+}
+
+static mps_status finish(mps_fluid *f, const char *function) {
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, find_pressures);
+  mpsi_fluid_find_velocities(f);
+  const int64_t bad = mpsi_fluid_advance(f);
+  if (bad >= 0) return went_wrong(f, function, bad);
+  f->stage = MPSI_FLUID_MOVED;
+  return mpsi_fluid_load_walls(f, function);
+}
+
+/* After all parts: keeps the new state and sorts it now and then. */
+static mps_status keep(mps_fluid *f, const char *function) {
+  mpsi_fluid_end_walls(f);
+  f->stage = MPSI_FLUID_BETWEEN;
   mpsi_fluid_add_impulses(f);
   store_cloud(f);
-  f->time += dt;
+  f->time += f->dt;
   f->steps++;
   if (f->steps % SORT_EVERY != 0) return MPS_OK;
-  status = mpsi_fluid_sort(f, function);
-  return status == MPS_OK ? mpsi_fluid_look(f, function) : status;
+  f->stale = true;
+  return mpsi_fluid_sort(f, function);
+}
+
+/* Forgets what was done of a step. */
+static void abandon(mps_fluid *f) {
+  f->report = f->before;
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) f->wall[b].load = f->wall[b].before;
+  f->stage = MPSI_FLUID_BETWEEN;
+  f->stale = true;
+}
+
+static mps_status take_step(mps_fluid *f, const char *function, double dt) {
+  mps_status status = begin(f, function, dt);
+  if (status == MPS_OK) status = mpsi_fluid_solve_pressure(f, function);
+  if (status == MPS_OK) status = finish(f, function);
+  if (status == MPS_OK) return keep(f, function);
+  abandon(f);
+  return status;
 }
 
 /* ---- running --------------------------------------------------------------------------------- */
@@ -167,8 +189,9 @@ double mps_fluid_limit(const mps_fluid *f) {
   if (f->speed > 0.0) limit = fmin(limit, 0.25 * f->l0 / f->speed);
   for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
     const mpsi_fluid_wall *w = &f->wall[b];
-    if (!w->used || !w->signal) continue;
-    const double u = fmax(fabs(w->factor * mps_signal_velocity(w->signal, f->time)), fabs(w->u));
+    if (!w->used) continue;
+    double u = w->signal ? fabs(w->factor * mps_signal_velocity(w->signal, f->time)) : 0.0;
+    for (int64_t k = 0; k < w->nodes; k++) u = fmax(u, fabs(w->now.u[k]));
     if (u > 0.0) limit = fmin(limit, 0.2 * f->l0 / u);
   }
   if (f->def.viscosity > 0.0)
@@ -185,10 +208,21 @@ double mps_fluid_time(const mps_fluid *f) { return f ? f->time : 0.0; }
 
 int64_t mps_fluid_steps(const mps_fluid *f) { return f ? f->steps : 0; }
 
-mps_status mpsi_fluid_ready(mps_fluid *f, const char *function) {
+mps_status mpsi_fluid_free(mps_fluid *f, const char *function) {
   if (!f->in_callback) return MPS_OK;
   return mpsi_fail(f->context, function, MPS_ERROR_STATE,
                    "the fluid's own callback may only read it");
+}
+
+mps_status mpsi_fluid_ready(mps_fluid *f, const char *function) {
+  const mps_status status = mpsi_fluid_free(f, function);
+  return status == MPS_OK ? mpsi_fluid_closed(f, function) : status;
+}
+
+mps_status mpsi_fluid_closed(mps_fluid *f, const char *function) {
+  if (f->stage == MPSI_FLUID_BETWEEN) return MPS_OK;
+  return mpsi_fail(f->context, function, MPS_ERROR_STATE,
+                   "a step is open: end or abandon it first");
 }
 
 static mps_status check_dt(mps_fluid *f, const char *function) {
@@ -216,6 +250,68 @@ mps_status mps_fluid_step(mps_fluid *f, int64_t count) {
   }
   return status;
 }
+
+/* ---- a step in parts ------------------------------------------------------------------------- */
+
+mps_status mps_fluid_begin_step(mps_fluid *f, double dt) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_fluid_ready(f, __func__);
+  if (status != MPS_OK) return status;
+  const double longest = f->g > 0.0 ? 0.5 * sqrt(f->l0 / f->g) : INFINITY;
+  if (!isnan(dt) && !(dt > 0.0 && dt <= longest && isfinite(dt)))
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "dt is %g s, must be NaN or > 0 and at most half of (l0/g)^1/2, %g s", dt,
+                     longest);
+  if (mpsi_cancelled(f->context)) return cancelled(f, __func__);
+  if (isnan(dt)) status = check_dt(f, __func__);
+  if (status != MPS_OK) return status;
+  status = begin(f, __func__, isnan(dt) ? mps_fluid_dt(f) : dt);
+  if (status != MPS_OK) abandon(f);
+  return status;
+}
+
+static mps_status check_stage(mps_fluid *f, const char *function, mpsi_fluid_stage least) {
+  const mps_status status = mpsi_fluid_free(f, function);
+  if (status != MPS_OK || f->stage >= least) return status;
+  return mpsi_fail(f->context, function, MPS_ERROR_STATE,
+                   f->stage == MPSI_FLUID_BETWEEN ? "no step is open: begin it first"
+                                                  : "the open step's pressure has not been solved");
+}
+
+mps_status mps_fluid_solve_pressure(mps_fluid *f) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_status status = check_stage(f, __func__, MPSI_FLUID_BEGUN);
+  if (status != MPS_OK) return status;
+  f->stage = MPSI_FLUID_BEGUN;
+  status = mpsi_fluid_solve_pressure(f, __func__);
+  if (status != MPS_OK) return status;
+  f->stage = MPSI_FLUID_SOLVED;
+  status = mpsi_fluid_load_walls(f, __func__);
+  if (status != MPS_OK) f->stage = MPSI_FLUID_BEGUN;
+  return status;
+}
+
+mps_status mps_fluid_end_step(mps_fluid *f) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_status status = check_stage(f, __func__, MPSI_FLUID_SOLVED);
+  if (status == MPS_OK) status = mpsi_particles_ready(f->particles, __func__);
+  if (status != MPS_OK) return status;
+  status = finish(f, __func__);
+  if (status == MPS_OK) return keep(f, __func__);
+  abandon(f);
+  return status;
+}
+
+mps_status mps_fluid_abandon_step(mps_fluid *f) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  const mps_status status = check_stage(f, __func__, MPSI_FLUID_BEGUN);
+  if (status != MPS_OK) return status;
+  abandon(f);
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) f->wall[b].given = f->wall[b].placed = false;
+  return MPS_OK;
+}
+
+/* ---- runs ------------------------------------------------------------------------------------ */
 
 static mps_status call_back(mps_fluid *f, mps_fluid_fn callback, void *user) {
   if (!callback) return MPS_OK;

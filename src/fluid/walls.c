@@ -14,35 +14,139 @@
 
 #define SQUARE 1e-6 /* cosine of the angle of walls at right angles */
 
+/* ---- motion ---------------------------------------------------------------------------------- */
+
+double mpsi_fluid_between(const mpsi_fluid_wall *w, const double *values, double along) {
+  const int64_t last = w->nodes - 1;
+  if (!(along > w->node[0])) return values[0];
+  if (along >= w->node[last]) return values[last];
+  int64_t low = 0, high = last;
+  while (high - low > 1) {
+    const int64_t middle = (low + high) / 2;
+    if (w->node[middle] <= along)
+      low = middle;
+    else
+      high = middle;
+  }
+  const double part = (along - w->node[low]) / (w->node[high] - w->node[low]);
+  return values[low] + part * (values[high] - values[low]);
+}
+
+/* Places the nodes (points in space, 3 values each; none: one node) along the wall. */
+mps_status mpsi_fluid_make_motion(mps_fluid *f, const char *function, mpsi_fluid_wall *w,
+                                  int64_t nodes, const double *points) {
+  enum { ARRAYS = 9 };
+  w->nodes = nodes > 0 ? nodes : 1;
+  w->motion = mpsi_alloc(f->context, ARRAYS * w->nodes, sizeof *w->motion);
+  if (!w->motion) return mpsi_fail_memory(f->context, function, ARRAYS * 8 * (size_t)w->nodes);
+  double *const part = w->motion;
+  const int64_t n = w->nodes;
+  w->now = (mpsi_fluid_motion){part, part + n, part + 2 * n};
+  w->next = (mpsi_fluid_motion){part + 3 * n, part + 4 * n, part + 5 * n};
+  w->node = part + 6 * n;
+  w->mean = part + 7 * n;
+  w->order = (int64_t *)(part + 8 * n);
+  for (int64_t k = 0; k < nodes; k++) {
+    const double along = mpsi_fluid_along(w, points[3 * k], points[3 * k + 1]);
+    int64_t at = k;
+    for (; at > 0 && w->node[at - 1] > along; at--)
+      w->node[at] = w->node[at - 1], w->order[at] = w->order[at - 1];
+    w->node[at] = along, w->order[at] = k;
+  }
+  for (int64_t k = 1; k < n; k++)
+    if (!(w->node[k] - w->node[k - 1] > 1e-6 * f->l0))
+      return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                       "nodes %lld and %lld of the boundary are %g m apart along it, must be more "
+                       "than l0/1e6",
+                       (long long)w->order[k - 1], (long long)w->order[k],
+                       w->node[k] - w->node[k - 1]);
+  return MPS_OK;
+}
+
+void mpsi_fluid_drop_wall(mps_fluid *f, mpsi_fluid_wall *w) {
+  mps_signal_destroy(&w->signal);
+  mpsi_free(f->context, w->motion);
+  *w = (mpsi_fluid_wall){0};
+}
+
 static double displacement(const mpsi_fluid_wall *w, double t) {
   return w->signal ? w->factor * (mps_signal_displacement(w->signal, t) - w->origin) : 0.0;
 }
 
+/* Walls that nobody moves go on as they are. */
 void mpsi_fluid_begin_walls(mps_fluid *f, double dt) {
   for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
     if (!w->used) continue;
-    w->s_new = displacement(w, f->time + dt);
-    w->u_new = (w->s_new - w->s) / dt;
-    w->a = (w->u_new - w->u) / dt;
+    for (int64_t k = 0; k < w->nodes; k++) {
+      if (w->signal) {
+        w->next.s[k] = displacement(w, f->time + dt);
+        w->next.u[k] = (w->next.s[k] - w->now.s[k]) / dt;
+      } else if (!w->given) {
+        w->next.u[k] = w->now.u[k];
+        w->next.s[k] = w->now.s[k] + dt * w->now.u[k];
+      } else if (!w->placed) {
+        w->next.s[k] = w->now.s[k] + 0.5 * dt * (w->now.u[k] + w->next.u[k]);
+      }
+      w->next.a[k] = (w->next.u[k] - w->now.u[k]) / dt;
+      w->mean[k] = (w->next.s[k] - w->now.s[k]) / dt;
+    }
   }
 }
 
 void mpsi_fluid_end_walls(mps_fluid *f) {
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++)
-    f->wall[b].s = f->wall[b].s_new, f->wall[b].u = f->wall[b].u_new;
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+    mpsi_fluid_wall *w = &f->wall[b];
+    if (!w->used) continue;
+    memcpy(w->now.s, w->next.s, 3 * (size_t)w->nodes * sizeof *w->now.s);
+    w->given = w->placed = false;
+  }
 }
 
 void mpsi_fluid_add_impulses(mps_fluid *f) {
   for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
     if (!w->used) continue;
-    const double across = w->force[0] * w->normal[0] + w->force[1] * w->normal[1];
-    for (int c = 0; c < 2; c++) w->impulse[c] += w->force[c] * f->dt;
-    w->moment_impulse += w->moment * f->dt;
-    w->work += across * w->u * f->dt;
-    f->work_boundaries += across * w->u * f->dt;
+    const mpsi_fluid_load *load = &w->load;
+    for (int c = 0; c < 2; c++) w->impulse[c] += load->force[c] * f->dt;
+    w->moment_impulse += load->moment * f->dt;
+    w->work += load->power * f->dt;
+    f->work_boundaries += load->power * f->dt;
   }
+}
+
+mps_status mps_fluid_set_wall_motion(mps_fluid *f, int32_t number, const double *displacement_of,
+                                     const double *velocity) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  const mps_status status = mpsi_fluid_free(f, __func__);
+  if (status != MPS_OK) return status;
+  if (number < 0 || number >= MPS_FLUID_MAX_BOUNDARIES || !f->wall[number].used || !velocity)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "boundary is %d and velocity %s: must be one of the fluid's, and given",
+                     number, velocity ? "given" : "NULL");
+  mpsi_fluid_wall *w = &f->wall[number];
+  if (w->signal)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "boundary %d follows a signal",
+                     number);
+  for (int64_t k = 0; k < w->nodes; k++) {
+    const double s = displacement_of ? displacement_of[k] : 0.0;
+    if (!(fabs(velocity[k]) <= 1e6 && fabs(s) <= 1e12))
+      return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                       "velocity of node %lld of boundary %d is %g m/s, its displacement %g m: "
+                       "allowed are 1e6 m/s and 1e12 m",
+                       (long long)k, number, velocity[k], s);
+  }
+  for (int64_t k = 0; k < w->nodes; k++) {
+    const int64_t from = w->order[k];
+    if (displacement_of) w->next.s[k] = displacement_of[from];
+    w->next.u[k] = velocity[from];
+  }
+  w->given = true, w->placed = displacement_of != NULL;
+  if (f->stage != MPSI_FLUID_BETWEEN) {
+    mpsi_fluid_begin_walls(f, f->dt);
+    f->stage = MPSI_FLUID_BEGUN;
+  }
+  return MPS_OK;
 }
 
 /* ---- ghosts ---------------------------------------------------------------------------------- */
@@ -56,7 +160,7 @@ static bool behind_another(const mps_fluid *f, int wall, double x, double y) {
   for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
     const mpsi_fluid_wall *w = &f->wall[b];
     if (b == wall || !w->used || square(w, &f->wall[wall])) continue;
-    if (mpsi_fluid_distance(w, w->s, x, y) < 0.0) return true;
+    if (mpsi_fluid_distance(w, w->now.s, x, y) < 0.0) return true;
   }
   return false;
 }
@@ -68,13 +172,16 @@ static bool mirrors_again(const mps_fluid *f, int wall, uint32_t flips) {
   return true;
 }
 
-/* Images of the cloud at one wall; false where there is no room. */
+/* Images of the cloud at one wall; false where there is no room. A bent wall mirrors at its local
+ * position, and goes on beyond other walls as their mirror image: where an image's parent is. */
 static bool mirror(mps_fluid *f, int wall) {
   const mpsi_fluid_wall *w = &f->wall[wall];
   const int64_t all = f->count + f->ghosts;
   for (int64_t i = 0; i < all; i++) {
-    const double x = f->x[0][i], y = f->x[1][i], d = mpsi_fluid_distance(w, w->s, x, y);
-    const int64_t ghost = i - f->count;
+    const int64_t ghost = i - f->count, own = ghost < 0 ? i : f->parent[ghost];
+    const double x = f->x[0][i], y = f->x[1][i];
+    const double s = mpsi_fluid_of_wall(w, w->now.s, f->x[0][own], f->x[1][own]);
+    const double d = (x - w->at[0]) * w->normal[0] + (y - w->at[1]) * w->normal[1] - s;
     if (d >= f->weight.re || d < 0.0) continue;
     if (ghost >= 0 && !mirrors_again(f, wall, f->flips[ghost])) continue;
     const double to[2] = {x - 2.0 * d * w->normal[0], y - 2.0 * d * w->normal[1]};
@@ -82,7 +189,7 @@ static bool mirror(mps_fluid *f, int wall) {
     if (f->count + f->ghosts == f->cloud_capacity) return false;
     const int64_t g = f->ghosts++;
     f->x[0][f->count + g] = to[0], f->x[1][f->count + g] = to[1];
-    f->parent[g] = ghost < 0 ? (int32_t)i : f->parent[ghost];
+    f->parent[g] = (int32_t)own;
     f->flips[g] = (ghost < 0 ? 0u : f->flips[ghost]) | UINT32_C(1) << wall;
   }
   return true;
@@ -113,7 +220,10 @@ bool mpsi_fluid_grow_cloud(mps_fluid *f, int64_t capacity) {
 mps_status mpsi_fluid_make_ghosts(mps_fluid *f, const char *function) {
   for (bool room = false; !room;) {
     f->ghosts = 0;
+    f->bent = 0;
     room = true;
+    for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++)
+      if (f->wall[b].nodes > 1) f->bent |= UINT32_C(1) << b;
     for (int b = 0; room && b < MPS_FLUID_MAX_BOUNDARIES; b++)
       if (f->wall[b].used) room = mirror(f, b);
     const int64_t capacity = f->cloud_capacity + f->cloud_capacity / 2;
@@ -124,26 +234,43 @@ mps_status mpsi_fluid_make_ghosts(mps_fluid *f, const char *function) {
   return MPS_OK;
 }
 
-/* The velocity of an image at wall w of what moves with v. */
-static void reflect(const mpsi_fluid_wall *w, double *v) {
-  const double across =
-      (v[0] - w->u * w->normal[0]) * w->normal[0] + (v[1] - w->u * w->normal[1]) * w->normal[1];
-  v[0] -= 2.0 * across * w->normal[0], v[1] -= 2.0 * across * w->normal[1];
+void mpsi_fluid_mirror_point(const mps_fluid *f, uint32_t flips, double *x) {
+  const double from[2] = {x[0], x[1]};
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+    if (!(flips >> b & 1)) continue;
+    const mpsi_fluid_wall *w = &f->wall[b];
+    const double s = mpsi_fluid_of_wall(w, w->now.s, from[0], from[1]);
+    const double d = (x[0] - w->at[0]) * w->normal[0] + (x[1] - w->at[1]) * w->normal[1] - s;
+    x[0] -= 2.0 * d * w->normal[0], x[1] -= 2.0 * d * w->normal[1];
+  }
 }
 
 void mpsi_fluid_move_ghosts(mps_fluid *f) {
+  for (int64_t g = 0; g < f->ghosts; g++) {
+    const int64_t j = f->count + g, own = f->parent[g];
+    double v[2] = {f->u[0][own], f->u[1][own]};
+    for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+      if (!(f->flips[g] >> b & 1)) continue;
+      const mpsi_fluid_wall *w = &f->wall[b];
+      const double u = mpsi_fluid_of_wall(w, w->now.u, f->x[0][own], f->x[1][own]);
+      const double across = v[0] * w->normal[0] + v[1] * w->normal[1] - u;
+      v[0] -= 2.0 * across * w->normal[0], v[1] -= 2.0 * across * w->normal[1];
+    }
+    f->u[0][j] = v[0], f->u[1][j] = v[1];
+  }
+}
+
+void mpsi_fluid_press_ghosts(mps_fluid *f) {
   const double rho = f->def.density;
   for (int64_t g = 0; g < f->ghosts; g++) {
     const int64_t j = f->count + g, own = f->parent[g];
     const double apart[2] = {f->x[0][j] - f->x[0][own], f->x[1][j] - f->x[1][own]};
-    double v[2] = {f->u[0][own], f->u[1][own]};
     f->offset[g] = 0.0;
     for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
       if (!(f->flips[g] >> b & 1)) continue;
       const mpsi_fluid_wall *w = &f->wall[b];
-      reflect(w, v);
-      f->offset[g] -= rho * w->a * (apart[0] * w->normal[0] + apart[1] * w->normal[1]);
+      const double a = mpsi_fluid_of_wall(w, w->next.a, f->x[0][own], f->x[1][own]);
+      f->offset[g] -= rho * a * (apart[0] * w->normal[0] + apart[1] * w->normal[1]);
     }
-    f->u[0][j] = v[0], f->u[1][j] = v[1];
   }
 }

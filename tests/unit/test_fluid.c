@@ -235,6 +235,95 @@ static void a_rollback_repeats_the_steps_bit_for_bit(void **state) {
   mps_signal_destroy(&piston);
 }
 
+/* ---- a step in parts ------------------------------------------------------------------------- */
+
+/* One solution and the piston's motion given: the same bits as the step in one with a signal. */
+static void a_step_in_parts_is_the_step(void **state) {
+  (void)state;
+  tank t = tank_make(context, 0.6, 0.3, 0.03, NULL, 2e-3);
+  const int64_t n = mps_particles_count(t.water);
+  double *whole = malloc(12 * (size_t)n * sizeof *whole), *parts = whole + 4 * n,
+         *before = parts + 4 * n;
+  mps_snapshot *snapshot = NULL;
+  mps_reaction force[2];
+  mps_assert_ok(context, mps_fluid_snapshot(t.fluid, &snapshot));
+  for (int k = 0; k < 40; k++) {
+    const double v = 0.01 * sin(0.1 * k);
+    mps_assert_ok(context, mps_fluid_set_wall_motion(t.fluid, TANK_LEFT, NULL, &v));
+    mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
+  }
+  copy_state(&t, whole);
+  mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, TANK_LEFT, &force[0]));
+  mps_assert_ok(context, mps_fluid_rollback(t.fluid, snapshot));
+  for (int k = 0; k < 40; k++) {
+    const double v = 0.01 * sin(0.1 * k), wrong = 1.0;
+    copy_state(&t, before);
+    if (k == 7) { /* one that is given up leaves no trace */
+      mps_reaction kept;
+      mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, TANK_LEFT, &kept));
+      mps_assert_ok(context, mps_fluid_begin_step(t.fluid, NAN));
+      mps_assert_ok(context, mps_fluid_set_wall_motion(t.fluid, TANK_LEFT, NULL, &wrong));
+      mps_assert_ok(context, mps_fluid_solve_pressure(t.fluid));
+      mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, TANK_LEFT, &force[1]));
+      assert_true(force[1].force[0] > kept.force[0] + 100.0);
+      mps_assert_ok(context, mps_fluid_abandon_step(t.fluid));
+      mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, TANK_LEFT, &force[1]));
+      assert_memory_equal(&kept, &force[1], sizeof kept);
+    }
+    mps_assert_ok(context, mps_fluid_begin_step(t.fluid, NAN));
+    mps_assert_ok(context, mps_fluid_set_wall_motion(t.fluid, TANK_LEFT, NULL, &v));
+    mps_assert_ok(context, mps_fluid_solve_pressure(t.fluid));
+    copy_state(&t, parts);
+    assert_memory_equal(before, parts, 4 * (size_t)n * sizeof *before);
+    mps_assert_ok(context, mps_fluid_end_step(t.fluid));
+  }
+  copy_state(&t, parts);
+  mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, TANK_LEFT, &force[1]));
+  assert_memory_equal(whole, parts, 4 * (size_t)n * sizeof *whole);
+  assert_memory_equal(&force[0], &force[1], sizeof force[0]);
+  mps_snapshot_destroy(&snapshot);
+  free(whole);
+  tank_free(&t);
+}
+
+static void parts_of_a_step_have_their_order(void **state) {
+  (void)state;
+  tank t = tank_make(context, 0.6, 0.3, 0.05, NULL, 2e-3);
+  const double v = 0.1, at[3] = {0.0, 0.1, 0.0}, far = NAN;
+  double p;
+  int64_t count;
+  mps_snapshot *snapshot = NULL;
+  mps_assert_fails(context, mps_fluid_solve_pressure(t.fluid), MPS_ERROR_STATE, "no step is open");
+  mps_assert_fails(context, mps_fluid_end_step(t.fluid), MPS_ERROR_STATE, "no step is open");
+  mps_assert_fails(context, mps_fluid_abandon_step(t.fluid), MPS_ERROR_STATE, "no step is open");
+  mps_assert_fails(context, mps_fluid_begin_step(t.fluid, 0.0), MPS_ERROR_ARGUMENT, "dt is 0");
+  mps_assert_ok(context, mps_fluid_begin_step(t.fluid, 1e-3));
+  mps_assert_fails(context, mps_fluid_begin_step(t.fluid, NAN), MPS_ERROR_STATE, "step is open");
+  mps_assert_fails(context, mps_fluid_step(t.fluid, 1), MPS_ERROR_STATE, "step is open");
+  mps_assert_fails(context, mps_fluid_run(t.fluid, 1.0, 1, NULL, NULL), MPS_ERROR_STATE, "open");
+  mps_assert_fails(context, mps_fluid_remove_boundary(t.fluid, 0), MPS_ERROR_STATE, "open");
+  mps_assert_fails(context, mps_fluid_snapshot(t.fluid, &snapshot), MPS_ERROR_STATE, "open");
+  mps_assert_fails(context, mps_fluid_end_step(t.fluid), MPS_ERROR_STATE, "not been solved");
+  mps_assert_fails(context, mps_fluid_get_pressure(t.fluid, TANK_LEFT, 1, at, &p), MPS_ERROR_STATE,
+                   "not been solved");
+  mps_assert_fails(context, mps_fluid_get_wall(t.fluid, TANK_LEFT, 0, NULL, NULL, &count),
+                   MPS_ERROR_STATE, "not been solved");
+  mps_assert_ok(context, mps_fluid_solve_pressure(t.fluid));
+  mps_assert_ok(context, mps_fluid_get_pressure(t.fluid, TANK_LEFT, 1, at, &p));
+  mps_assert_near(p, 1000.0 * TANK_G * 0.2, 1.0);
+  mps_assert_ok(context, mps_fluid_set_wall_motion(t.fluid, TANK_LEFT, NULL, &v));
+  mps_assert_fails(context, mps_fluid_end_step(t.fluid), MPS_ERROR_STATE, "not been solved");
+  mps_assert_fails(context, mps_fluid_set_wall_motion(t.fluid, TANK_LEFT, NULL, &far),
+                   MPS_ERROR_ARGUMENT, "node 0 of boundary 1");
+  mps_assert_fails(context, mps_fluid_set_wall_motion(t.fluid, 9, NULL, &v), MPS_ERROR_ARGUMENT,
+                   "boundary is 9");
+  mps_assert_ok(context, mps_fluid_solve_pressure(t.fluid));
+  mps_assert_near(mps_fluid_time(t.fluid), 0.0, 0.0);
+  mps_assert_ok(context, mps_fluid_end_step(t.fluid));
+  mps_assert_near(mps_fluid_time(t.fluid), 1e-3, 0.0);
+  tank_free(&t);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bad_definitions_are_refused),
@@ -245,6 +334,8 @@ int main(void) {
       cmocka_unit_test(a_film_one_particle_thick_lies_still),
       cmocka_unit_test(a_tank_runs_empty),
       cmocka_unit_test(a_rollback_repeats_the_steps_bit_for_bit),
+      cmocka_unit_test(a_step_in_parts_is_the_step),
+      cmocka_unit_test(parts_of_a_step_have_their_order),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
