@@ -13,9 +13,10 @@
  * It reads `density` (kg/m3, > 0) at creation, and `volume` (of the measure; where 0, the spacing
  * to the power of the dimension times the measure, in axisymmetry times the radius), `velocity`,
  * `velocity_gradient` and `stress` where the set has them; it writes these and `mass` and
- * `position`. The fields `body_acceleration` (m/s2, adds to gravity) and `external_force` (N) are
- * read in each step where the set has them. Laws that need them bring the fields `volume_ratio`,
- * `deformation_gradient` and their history.
+ * `position`. Committing `density` or `volume` gives those particles whose value has changed the
+ * mass density * volume; the density is that of the present volume. The fields `body_acceleration`
+ * (m/s2, adds to gravity) and `external_force` (N) are read in each step where the set has them.
+ * Laws that need them bring the fields `volume_ratio`, `deformation_gradient` and their history.
  *
  * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
  * its results are the same bit for bit for every number of threads.
@@ -110,9 +111,12 @@ static inline mps_mpm_def mps_mpm_defaults(void) {
   return def;
 }
 
-/** Creates a solver for the set `particles` (at least one, inside the domain), sorting it and
- *  pinning it: until the solver is destroyed no particle can be added. A set has at most one solver
- *  that moves it. On an error the set is as before. All particles are of the one
+/** Creates a solver for the set `particles` (at least one, inside the domain) and sorts it. A set
+ *  has at most one solver that moves it. Between steps particles may be added to the set, inside
+ * the domain and outside the bodies, and removed from it; a callback is not between steps. New ones
+ *  have the lattice's volume, no stress, and the material of creation; the next step is
+ *  MPS_ERROR_STATE until their density is committed. Lists of ids pass over particles that are no
+ *  more. On an error the set is as before. All particles are of the one
  *  `material`, which is kept alive, until mps_mpm_set_material; its history columns become fields
  * of the set, by their names.
  */
@@ -334,7 +338,8 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_get_totals(mps_mpm *mpm, mps_mpm_totals
  *  mps_mpm_run. On an error *snapshot is as before. MPS_ERROR_ARGUMENT: a snapshot of another
  *  solver; MPS_ERROR_STATE: a step has failed. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_snapshot(mps_mpm *mpm, mps_snapshot **snapshot);
-/** Goes back to a snapshot, bit for bit; a step that failed is forgotten. Not in the snapshot, and
+/** Goes back to a snapshot, bit for bit; a step that failed is forgotten, particles that came or
+ *  went since then go or come back, and ids given since are given again. Not in the snapshot, and
  *  so as they are now: gravity, dt, courant, constants of materials and bodies, signals, loads. On
  * an error nothing has changed. MPS_ERROR_ARGUMENT: of another solver; MPS_ERROR_STATE: bodies,
  *  boundaries, loads or materials are not those of the snapshot, the message says which. */
@@ -349,14 +354,14 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapsh
 MPS_API MPS_NODISCARD mps_status mps_mpm_save(mps_mpm *mpm, const char *path,
                                               const mps_checkpoint *info);
 
-/** Puts the state of mps_mpm_save into a solver that was built in the same way. What must agree:
- *  the particles, spacing, geometry, scheme, spline, cell, origin, places and kinds of walls and
- *  boxes, number of loads, whether there are body accelerations, names and order of materials, and
- *  the shapes, motions and numbers of parts of the bodies in their order. Where the solver is now
- *  does not matter; a step that failed is forgotten. From there it goes on bit for bit as the run
- *  that never stopped, for every number of threads. All else is the caller's to set up
- *  again, and may be other than it was: constants of materials, gravity, dt, courant, signals,
- *  loads on particles, friction, masses of bodies.
+/** Puts the state of mps_mpm_save into a solver that was built in the same way; its set takes the
+ *  particles of the file, whichever it has. What must agree: spacing, geometry, scheme, spline,
+ * cell, origin, places and kinds of walls and boxes, number of loads, whether there are body
+ * accelerations, names and order of materials, and the shapes, motions and numbers of parts of the
+ * bodies in their order. Where the solver is now does not matter; a step that failed is forgotten.
+ * From there it goes on bit for bit as the run that never stopped, for every number of threads. All
+ * else is the caller's to set up again, and may be other than it was: constants of materials,
+ * gravity, dt, courant, signals, loads on particles, friction, masses of bodies.
  *
  *  The set takes the order of the file: views taken before are stale. On an error nothing has
  *  changed. `info` (NULL: not wanted) is as for mps_checkpoint_info. Statuses are

@@ -46,8 +46,9 @@ MPS_API uint64_t mps_particles_epoch(const mps_particles *particles);
 
 /* ---- filling -------------------------------------------------------------------------------
  * Every fill appends and may be repeated; `added` (may be NULL) receives the number of particles
- * appended, other fields of the new particles are zero. On any error nothing is appended. While a
- * solver holds the set that takes no more particles, filling is MPS_ERROR_STATE. Lattice fills
+ * appended, other fields of the new particles are zero. On any error nothing is appended. A solver
+ * that holds the set is asked first: it may refuse places outside its domain, or (MPS_ERROR_STATE)
+ * all. Lattice fills
  * never put a second particle on a lattice site that an earlier lattice fill occupied. They go
  * through a shape x fastest, then y, then z, and may look at up to 2^31 sites. A site's centre
  * within 1e-9 spacings of a bound counts as on it: in at `lo` and at the left and lower edges of a
@@ -100,7 +101,8 @@ typedef struct mps_field_info {
 /** Adds a field, zero filled. A name of the library's field table (docs/fields.md) gets its
  *  documented type; there `components` must be 0 or the table's. Any other name
  *  ([A-Za-z_][A-Za-z0-9_]*, at most 47 characters) makes a user field of `components` float64
- *  (1..16). A name with a dot, "<material>.<column>", is the history of a material. Adding a field that exists with the same shape does nothing. Keeps the epoch. */
+ *  (1..16). A name with a dot, "<material>.<column>", is the history of a material. Adding a field
+ * that exists with the same shape does nothing. Keeps the epoch. */
 MPS_API MPS_NODISCARD mps_status mps_particles_add_field(mps_particles *particles, const char *name,
                                                          int32_t components);
 /** Borrows a field for reading (MPS_VIEW_READONLY), until the epoch changes. MPS_ERROR_FIELD when

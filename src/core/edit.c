@@ -116,19 +116,39 @@ static mps_status check_field(const mps_particles *p, const char *function,
   return MPS_OK;
 }
 
-mps_status mpsi_particles_tell(mps_particles *p, const char *function, const char *field) {
+bool mpsi_particles_compares(const mps_particles *p, const char *field) {
+  for (const mpsi_holder *h = p->holders; h; h = h->next)
+    if (h->compares && h->compares(h->self, field)) return true;
+  return false;
+}
+
+mps_status mpsi_particles_tell(mps_particles *p, const char *function, const char *field,
+                               const double *former) {
   mps_status status = MPS_OK;
   for (mpsi_holder *h = p->holders; h && status == MPS_OK; h = h->next)
-    if (h->commit) status = h->commit(h->self, function, field);
+    if (h->commit)
+      status = h->commit(h->self, function, field,
+                         h->compares && h->compares(h->self, field) ? former : NULL);
   return status;
 }
 
 /* ---- editing --------------------------------------------------------------------------------- */
 
+/* Keeps what a field is before the caller writes it. */
+static mps_status keep_former(mps_particles *p, const char *function, mpsi_field *field) {
+  if (!mpsi_particles_compares(p, field->name)) return MPS_OK;
+  field->former = mpsi_alloc(p->context, field->components * p->count, sizeof *field->former);
+  if (!field->former)
+    return mpsi_fail_memory(p->context, function, (size_t)(field->components * p->count) * 8);
+  for (int32_t c = 0; c < field->components; c++)
+    memcpy(field->former + c * p->count, mpsi_field_column(field, c), (size_t)p->count * 8);
+  return MPS_OK;
+}
+
 mps_status mps_particles_edit(mps_particles *particles, const char *name, mps_view *out) {
   if (!particles) return MPS_ERROR_ARGUMENT;
   mps_context *context = particles->context;
-  const mps_status status = mps_particles_view(particles, name, out);
+  mps_status status = mps_particles_view(particles, name, out);
   if (status != MPS_OK) return status;
   mpsi_field *field = mpsi_field_find(particles, name);
   const char *reason = NULL;
@@ -140,6 +160,11 @@ mps_status mps_particles_edit(mps_particles *particles, const char *name, mps_vi
                     "field '%s' %s", name, reason);
     mpsi_fail_object(context, "field '%s'", name);
     return field->open ? MPS_ERROR_STATE : MPS_ERROR_FIELD;
+  }
+  status = keep_former(particles, __func__, field);
+  if (status != MPS_OK) {
+    memset(out, 0, sizeof *out);
+    return status;
   }
   field->open = true;
   particles->open_edits++;
@@ -160,8 +185,11 @@ mps_status mps_particles_commit(mps_particles *particles, mps_view *view) {
         context, __func__, MPS_ERROR_STATE,
         "the view is not of a field that is being edited: mps_particles_edit gives it");
   mps_status status = check_field(particles, __func__, field);
-  if (status == MPS_OK) status = mpsi_particles_tell(particles, __func__, field->name);
+  if (status == MPS_OK)
+    status = mpsi_particles_tell(particles, __func__, field->name, field->former);
   if (status != MPS_OK) return status;
+  mpsi_free(context, field->former);
+  field->former = NULL;
   field->open = false;
   particles->open_edits--;
   view->flags |= MPS_VIEW_READONLY;

@@ -65,14 +65,18 @@ void *mpsi_field_allocate(mps_context *context, const mpsi_field *field, int64_t
   return mpsi_alloc(context, field->components * column_stride(capacity) + PAGE_ITEMS, 8);
 }
 
+void mpsi_field_place(mpsi_field *field, void *block, int64_t capacity) {
+  const uint64_t have = (uintptr_t)block / MPSI_ALIGNMENT;
+  const uint64_t want = (uint64_t)field->first_column * STAGGER;
+  field->block = block;
+  field->data = (char *)block + (want - have) % PAGE_LINES * MPSI_ALIGNMENT;
+  field->stride = column_stride(capacity);
+}
+
 void mpsi_field_move(mps_context *context, mpsi_field *field, void *block, int64_t count,
                      int64_t capacity) {
   mpsi_field moved = *field;
-  const uint64_t have = (uintptr_t)block / MPSI_ALIGNMENT;
-  const uint64_t want = (uint64_t)field->first_column * STAGGER;
-  moved.block = block;
-  moved.data = (char *)block + (want - have) % PAGE_LINES * MPSI_ALIGNMENT;
-  moved.stride = column_stride(capacity);
+  mpsi_field_place(&moved, block, capacity);
   for (int32_t c = 0; c < field->components && count > 0; c++)
     memcpy(mpsi_field_column(&moved, c), mpsi_field_column(field, c), (size_t)count * 8);
   mpsi_free(context, field->block);
@@ -244,7 +248,9 @@ static mps_status set_column(mps_particles *p, const char *function, const char 
     memcpy(former, column, (size_t)p->count * sizeof *former);
   }
   for (int64_t i = 0; i < p->count; i++) column[i] = value;
-  const mps_status status = mpsi_particles_tell(p, function, name);
+  const mpsi_field *field = mpsi_field_find(p, name);
+  const mps_status status =
+      mpsi_particles_tell(p, function, name, field->components == 1 ? former : NULL);
   if (status != MPS_OK) memcpy(column, former, (size_t)p->count * sizeof *former);
   mpsi_free(p->context, former);
   return status;

@@ -31,6 +31,7 @@ static mps_status check_def(mps_context *context, const char *function,
 static void free_set(mps_particles *p) {
   mps_context *context = p->context;
   for (int32_t f = 0; f < p->field_count; f++) {
+    mpsi_free(context, p->fields[f]->former);
     mpsi_free(context, p->fields[f]->block);
     mpsi_free(context, p->fields[f]);
   }

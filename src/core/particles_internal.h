@@ -54,16 +54,18 @@ struct mpsi_holder {
   mpsi_use kind;
   /* The caller has written `field`. Refuses with an error recorded for `function` (the edit then
    * stays open), or notes what it must read or sort before the next step. NULL: all the same to it.
-   */
-  mps_status (*commit)(void *self, const char *function, const char *field);
-  /* Particles [first, first + count) have come, with id and position, all else zero: refuses, or
-   * makes room for them. NULL: always refuses (but MPSI_USE_LOOK never). */
+   * `former`, [component][particle], is what it was, of the fields that it compares; else NULL. */
+  mps_status (*commit)(void *self, const char *function, const char *field, const double *former);
+  bool (*compares)(const void *self, const char *field); /* NULL: none; of float64 fields */
+  /* Particles [first, first + count) have come, with id and position, all else zero, and columns
+   * may lie elsewhere: refuses, or makes room for them, and gives them values to begin with. NULL:
+   * always refuses (but MPSI_USE_LOOK never). */
   mps_status (*insert)(void *self, const char *function, int64_t first, int64_t count);
   /* These particles are to go (ids of the set, all different): refuses, or makes ready. NULL: as
    * above. */
   mps_status (*remove)(void *self, const char *function, int64_t count, const int64_t *ids);
   /* After both, also where another holder refused: columns, count and order may have changed.
-   * May be NULL. */
+   * May be NULL. A holder that only looks is told too when the set goes back in time. */
   void (*renew)(void *self);
   mpsi_holder *next;
 };
@@ -98,6 +100,10 @@ void mpsi_backup_drop(mps_particles *particles, mpsi_backup *backup);
 /* Takes back the fields added since there were `keep` of them; nobody may have borrowed them yet.
  */
 void mpsi_particles_drop_fields(mps_particles *particles, int32_t keep);
+
+/* A solver removes particles of its own set, after a step: those with a mark, by present index. The
+ * other holders only look; all are told. Nothing is allocated. */
+void mpsi_particles_take_out(mps_particles *particles, const uint8_t *gone);
 
 /* MPS_ERROR_STATE when particles cannot come now: a holder refuses that, or a field is edited. */
 mps_status mpsi_particles_check_free(const mps_particles *particles, const char *function);

@@ -15,7 +15,8 @@ typedef struct mpsi_field {
   const char *unit, *meaning;
   mps_dtype dtype;
   uint32_t flags;
-  bool open; /* the caller is editing it */
+  bool open;      /* the caller is editing it */
+  double *former; /* what it was before that, if a holder compares; [component][particle] */
   int32_t components;
   int64_t first_column; /* number of columns of the fields before it: staggers the addresses */
   void *block;          /* as allocated */
@@ -64,6 +65,8 @@ static inline void *mpsi_field_column(const mpsi_field *field, int32_t component
 }
 /* Memory for a field of `capacity` particles, or NULL. */
 void *mpsi_field_allocate(mps_context *context, const mpsi_field *field, int64_t capacity);
+/* The field lies in a block of mpsi_field_allocate from now on; nothing is copied or freed. */
+void mpsi_field_place(mpsi_field *field, void *block, int64_t capacity);
 /* Moves a field of `count` particles into a block of mpsi_field_allocate. */
 void mpsi_field_move(mps_context *context, mpsi_field *field, void *block, int64_t count,
                      int64_t capacity);
@@ -73,8 +76,12 @@ void mpsi_field_move(mps_context *context, mpsi_field *field, void *block, int64
 /* MPS_ERROR_ARGUMENT unless `value` is one that the caller may give the field. */
 mps_status mpsi_field_check_value(const mps_particles *particles, const char *function,
                                   const mpsi_field *field, double value);
-/* Tells the holders that the caller has written a field; one may refuse. */
-mps_status mpsi_particles_tell(mps_particles *particles, const char *function, const char *field);
+/* Whether a holder wants to know what the field was before the caller wrote it. */
+bool mpsi_particles_compares(const mps_particles *particles, const char *field);
+/* Tells the holders that the caller has written a field, which was `former` before that (NULL: not
+ * known); one may refuse. */
+mps_status mpsi_particles_tell(mps_particles *particles, const char *function, const char *field,
+                               const double *former);
 
 /* ---- remove.c -------------------------------------------------------------------------------- */
 

@@ -70,6 +70,14 @@ static void close_gaps(mps_particles *p, const uint8_t *gone) {
   p->epoch++;
 }
 
+void mpsi_particles_take_out(mps_particles *p, const uint8_t *gone) {
+  const int64_t *id = p->fields[MPSI_FIELD_ID]->data;
+  for (int64_t k = 0; k < p->count; k++)
+    if (gone[k]) p->index_of[id[k]] = -1;
+  close_gaps(p, gone);
+  renew_holders(p);
+}
+
 static mps_status ask_holders(const mps_particles *p, const char *function, int64_t count,
                               const int64_t *ids) {
   const char *who = p->pins > 0 ? "a solver" : NULL;
@@ -101,12 +109,7 @@ mps_status mps_particles_remove(mps_particles *particles, int64_t count, const i
   if (!gone) return mpsi_fail_memory(context, __func__, (size_t)particles->count);
   status = mark(particles, __func__, count, ids, gone);
   if (status == MPS_OK) status = ask_holders(particles, __func__, count, ids);
-  if (status == MPS_OK) {
-    for (int64_t k = 0; k < particles->count; k++)
-      if (gone[k]) particles->index_of[((int64_t *)particles->fields[MPSI_FIELD_ID]->data)[k]] = -1;
-    close_gaps(particles, gone);
-    renew_holders(particles);
-  }
+  if (status == MPS_OK) mpsi_particles_take_out(particles, gone);
   mpsi_free(context, gone);
   return status;
 }

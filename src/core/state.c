@@ -22,6 +22,7 @@ typedef struct item {
   int64_t rows;
   void *data;                    /* NULL: in `own`, or behind `table` */
   const mpsi_state_table *table; /* or NULL */
+  void *owner;                   /* of the table */
   union {
     int64_t integer;
     double number;
@@ -135,16 +136,23 @@ void mpsi_state_leave(mpsi_state *state) {
     state->prefix[state->cut[state->depth]] = '\0';
 }
 
-void mpsi_state_add_table(mpsi_state *state, const char *name, const mpsi_state_table *table) {
-  item *made = add(state, name, table->type, table->rows(state->solver));
+void mpsi_state_add_table_of(mpsi_state *state, const char *name, const mpsi_state_table *table,
+                             void *owner) {
+  item *made = add(state, name, table->type, table->rows(owner));
   if (!made) return;
   made->columns = table->columns;
   made->table = table;
+  made->owner = owner;
+}
+
+void mpsi_state_add_table(mpsi_state *state, const char *name, const mpsi_state_table *table) {
+  mpsi_state_add_table_of(state, name, table, state->solver);
 }
 
 static mps_status list(const mpsi_state_of *of, const char *function, mpsi_state *out) {
   *out = (mpsi_state){.context = of->context, .solver = of->solver};
   of->list(out, of->solver);
+  if (of->particles && of->make_room) mpsi_particles_list_state(out, of->particles);
   if (!out->refused) return MPS_OK;
   mpsi_free(of->context, out->item);
   return mpsi_fail_memory(of->context, function, (size_t)out->capacity * 2 * sizeof *out->item);
@@ -186,11 +194,11 @@ void mpsi_values_free(mps_context *context, mpsi_values *values) {
   *values = (mpsi_values){0};
 }
 
-static void read_item(const mpsi_state *s, const item *from, void *to) {
+static void read_item(const item *from, void *to) {
   const int64_t count = from->rows * from->columns;
   int64_t *integer = to;
   if (from->table) {
-    if (count > 0) from->table->get(s->solver, to);
+    if (count > 0) from->table->get(from->owner, to);
   } else if (from->agrees) {
     memcpy(to, &from->own, (size_t)(count * mpsi_state_size(from->type)));
   } else if (from->width == INT32) {
@@ -202,12 +210,12 @@ static void read_item(const mpsi_state *s, const item *from, void *to) {
   }
 }
 
-static void write_item(const mpsi_state *s, const item *to, const mpsi_value *from) {
+static void write_item(const item *to, const mpsi_value *from) {
   const int64_t count = from->rows * from->columns;
   const int64_t *integer = from->data;
   if (to->agrees) return;
   if (to->table) {
-    to->table->set(s->solver, from->rows, from->data);
+    to->table->set(to->owner, from->rows, from->data);
   } else if (to->width == INT32) {
     for (int64_t k = 0; k < count; k++) ((int32_t *)to->data)[k] = (int32_t)integer[k];
   } else if (to->width == BOOL) {
@@ -232,7 +240,7 @@ mps_status mpsi_state_get(const mpsi_state_of *of, const char *function, mps_sna
     to->type = from->type;
     to->agrees = from->agrees, to->table = from->table != NULL, to->text = from->text;
     to->columns = from->columns, to->rows = from->rows;
-    read_item(&s, from, to->data);
+    read_item(from, to->data);
   }
   if (good) out->state.count = s.count;
   mpsi_free(of->context, s.item);
@@ -395,7 +403,8 @@ static bool reserve(const mpsi_state *s, const mps_snapshot *from) {
   for (int32_t k = 0; k < s->count; k++) {
     const mpsi_state_table *table = s->item[k].table;
     const mpsi_value *then = value_of(from, s, k);
-    if (table && table->reserve && !table->reserve(s->solver, then->rows, then->data)) return false;
+    if (table && table->reserve && !table->reserve(s->item[k].owner, then->rows, then->data))
+      return false;
   }
   return true;
 }
@@ -408,7 +417,10 @@ mps_status mpsi_state_put(const mpsi_state_of *of, const char *function, const m
   mps_status status = list(of, function, &s);
   if (status != MPS_OK) return status;
   status = match(&w, &s, from);
-  if (status == MPS_OK && !reserve(&s, from))
+  const bool room =
+      status == MPS_OK && reserve(&s, from) &&
+      (!of->particles || !of->make_room || of->make_room(of->solver, from->particles));
+  if (status == MPS_OK && !room)
     status = mpsi_fail(of->context, function, MPS_ERROR_MEMORY,
                        "could not allocate what going back to %s needs", source);
   if (status == MPS_OK && of->particles)
@@ -416,7 +428,7 @@ mps_status mpsi_state_put(const mpsi_state_of *of, const char *function, const m
   if (status == MPS_OK) { /* from here on nothing fails */
     if (of->particles) mpsi_particles_put_state(of->particles, from, scratch);
     if (of->bind) of->bind(of->solver);
-    for (int32_t k = 0; k < s.count; k++) write_item(&s, &s.item[k], value_of(from, &s, k));
+    for (int32_t k = 0; k < s.count; k++) write_item(&s.item[k], value_of(from, &s, k));
     if (of->after) of->after(of->solver);
   }
   mpsi_free(of->context, s.item);

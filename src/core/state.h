@@ -90,6 +90,9 @@ typedef struct mpsi_state_table {
   void (*set)(void *solver, int64_t rows, const void *values); /* cannot fail */
 } mpsi_state_table;
 void mpsi_state_add_table(mpsi_state *state, const char *name, const mpsi_state_table *table);
+/* A table of another object than the solver, which its functions are given instead. */
+void mpsi_state_add_table_of(mpsi_state *state, const char *name, const mpsi_state_table *table,
+                             void *owner);
 
 /* ---- a solver's description ---------------------------------------------------------------- */
 
@@ -105,6 +108,10 @@ typedef struct mpsi_state_of {
   /* Of a file only, may be NULL: do the values fit, such as indices into arrays? False: the file is
    * malformed; `*what` says in what. It may mend a value in place. */
   bool (*fits)(void *solver, mps_snapshot *values, const char **what);
+  /* Makes room for what the solver keeps for each of so many particles, keeping what is there;
+   * false: refused. NULL: the solver cannot go back to another number of particles. Where it is
+   * given, the ids to come and the occupied lattice sites of the set belong to the state too. */
+  bool (*make_room)(void *solver, int64_t particles);
   /* May be NULL, cannot fail. `bind`: the set is back, its columns may have moved and its number of
    * particles changed; the values of the list are still to be written. `after`: they are too. */
   void (*bind)(void *solver);
@@ -176,11 +183,15 @@ mps_status mpsi_state_put(const mpsi_state_of *of, const char *function, const m
 mps_status mpsi_particles_reserve_state(mps_particles *particles, const char *function,
                                         mps_snapshot *out);
 void mpsi_particles_get_state(const mps_particles *particles, mps_snapshot *out);
-/* The two phases of going back. A field that `from` lacks keeps its values, each with its particle;
- * one that the set lacks is added. `scratch` is what the first phase hands to the second, which
- * frees it. */
+/* Lists what a set has besides its fields. A state that has it may be gone back to from another
+ * number of particles. */
+void mpsi_particles_list_state(mpsi_state *state, mps_particles *particles);
+/* The two phases of going back. A field that `from` lacks keeps its values, each with its particle
+ * (zero in one that comes back); one that the set lacks is added. `scratch` is what the first phase
+ * hands to the second, which frees it. */
 mps_status mpsi_particles_prepare_state(mps_particles *particles, const char *function,
                                         const mps_snapshot *from, void **scratch);
+void mpsi_particles_drop_prepared(mps_particles *particles, void *scratch);
 void mpsi_particles_put_state(mps_particles *particles, const mps_snapshot *from, void *scratch);
 
 #endif

@@ -351,9 +351,11 @@ static mps_status build(mps_elastic *e, const char *function) {
 }
 
 /* The lattice is found once: other positions than those are not for this solver. */
-static mps_status refuse_positions(void *self, const char *function, const char *field) {
+static mps_status refuse_positions(void *self, const char *function, const char *field,
+                                   const double *former) {
   mps_elastic *e = self;
   bool same = true;
+  (void)former;
   for (int32_t c = 0; c < e->dim && strcmp(field, "position") == 0; c++) {
     const double *x = mpsi_particles_column(e->particles, "position", c);
     for (int64_t i = 0; i < e->n && same; i++)

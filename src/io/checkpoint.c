@@ -294,7 +294,7 @@ static mps_status check_set(const reading *r) {
   const int64_t count = mps_particles_count(r->particles);
   const int32_t dim = mps_particles_dim(r->particles);
   const double spacing = mps_particles_spacing(r->particles);
-  if (h->dim != dim || h->count != count)
+  if (h->dim != dim || h->count < 0 || (h->count != count && !r->any_particles))
     return mpsi_fail(r->context, r->function, MPS_ERROR_ARGUMENT,
                      "'%.200s' has %lld particles in %lldD, the set has %lld in %dD", r->path,
                      (long long)h->count, (long long)h->dim, (long long)count, dim);
@@ -505,7 +505,7 @@ static mps_status look(reading *r, const mps_checkpoint *info, const mpsi_state_
   mps_status status = check_path(r->context, r->function, r->path);
   if (status == MPS_OK) status = read_info(r->context, r->function, info, &wanted);
   if (status == MPS_OK) status = stage(r, &wanted, of);
-  if (status == MPS_OK) status = match_ids(r);
+  if (status == MPS_OK && !r->any_particles) status = match_ids(r);
   if (status == MPS_OK) status = check_shapes(r);
   return status;
 }
@@ -534,6 +534,7 @@ mps_status mps_checkpoint_read(mps_particles *particles, const char *path, mps_c
 mps_status mpsi_checkpoint_restore(const mpsi_state_of *of, const char *function, const char *path,
                                    mps_checkpoint *info) {
   reading r = reading_of(of->particles, function, path);
+  r.any_particles = of->make_room != NULL;
   mps_checkpoint unwanted = mps_checkpoint_defaults();
   if (!info) info = &unwanted;
   mps_status status = look(&r, info, of);

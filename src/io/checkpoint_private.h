@@ -25,6 +25,7 @@ typedef struct mpsi_reading {
   char *user_data;
   int64_t user_bytes;
   mps_snapshot values; /* fields: of the file, by name; state: of its solver */
+  bool any_particles;  /* the set takes those of the file, whichever it has now */
   int64_t *source;     /* source[i]: place in the file of the particle at index i of the set */
 } mpsi_reading;
 

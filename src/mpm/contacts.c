@@ -57,10 +57,11 @@ static mps_status check_thickness(mps_mpm *mpm, const char *function, const mps_
   return MPS_OK;
 }
 
-static mps_status check_inside(mps_mpm *mpm, const char *function, const mps_contact *contact) {
+mps_status mpsi_mpm_check_inside(mps_mpm *mpm, const char *function, const mps_contact *contact,
+                                 int64_t from) {
   int64_t count = 0, first = -1;
   double deepest = 0.0;
-  for (int64_t k = 0; k < mpm->p.count; k++) {
+  for (int64_t k = from; k < mpm->p.count; k++) {
     double x[3] = {0.0};
     for (int c = 0; c < mpm->dim; c++) x[c] = mpm->p.x[c][k];
     if (!mpsi_body_reaches(contact->body, x, 0.0)) continue;
@@ -162,7 +163,7 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
   if (isnan(d->offset)) d->offset = 0.5 * mps_particles_spacing(mpm->particles);
   if (isnan(d->depth)) d->depth = d->inside == MPS_CONTACT_INSIDE_PUSH ? INFINITY : mpm->def.cell;
   status = check_thickness(mpm, __func__, contact);
-  if (status == MPS_OK) status = check_inside(mpm, __func__, contact);
+  if (status == MPS_OK) status = mpsi_mpm_check_inside(mpm, __func__, contact, 0);
   if (status != MPS_OK) {
     mpsi_contact_release(contact);
     mpsi_contact_release(contact);

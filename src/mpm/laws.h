@@ -47,6 +47,8 @@ void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm);
 /* materials.c: puts the law at the end of the list, with the fields it works on; nothing has
  * changed on an error. Gives the particle (an index) the state in which the law begins. */
 mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *material);
+/* materials.c: where the columns of a law's own fields are now. */
+void mpsi_mpm_bind_law(mps_mpm *mpm, mpsi_law_use *law);
 void mpsi_mpm_begin_law(mps_mpm *mpm, const mpsi_law_use *law, int64_t particle);
 
 #endif

@@ -198,6 +198,10 @@ static bool list_order(const mps_mpm *mpm, int64_t *order) {
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
   const int64_t count = mpm->p.count;
   mpsi_radix *lower = mpm->grid.radix, *upper = lower + count;
+  if (count == 0) {
+    mpm->run.stale = false;
+    return ensure_cells(mpm, 0) && build_nodes(mpm, 0) ? MPS_OK : no_room(mpm, function, 0);
+  }
   mpm->grid.sorted = mpsi_mpm_find_order(mpm, &mpm->grid.own_bits);
   if (!mpm->grid.sorted) return no_room(mpm, function, count / mpm->grid.block_nodes + 1);
   const mps_status status = build_blocks(mpm, function);

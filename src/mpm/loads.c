@@ -1,7 +1,7 @@
 /* loads.c - forces on particles besides gravity: the fields `body_acceleration` and
  * `external_force`, and dead loads on lists of particles, which are found by their ids so that
  * sorting does not matter. SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm_private.h"
+#include "particles.h"
 
 #include "core/particles_internal.h"
 #include "core/retain.h"
@@ -11,14 +11,8 @@
 /* ---- forces of a step ------------------------------------------------------------------------ */
 
 mps_status mpsi_mpm_make_forces(mps_mpm *mpm, const char *function) {
-  if (mpm->loads.force_memory) return MPS_OK;
-  const int64_t line = MPSI_ALIGNMENT / (int64_t)sizeof(double);
-  const int64_t stride = (mpm->p.count + MPSI_PARTICLES_PADDING + line - 1) / line * line;
-  mpm->loads.force_memory = mpsi_alloc(mpm->context, mpm->dim * stride, sizeof(double));
-  if (!mpm->loads.force_memory)
-    return mpsi_fail_memory(mpm->context, function, (size_t)(mpm->dim * stride) * sizeof(double));
-  for (int c = 0; c < mpm->dim; c++) mpm->p.f[c] = mpm->loads.force_memory + c * stride;
-  return MPS_OK;
+  if (mpm->rooms.force.item || mpsi_mpm_force_room(mpm, mpm->p.count)) return MPS_OK;
+  return mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count * sizeof(double));
 }
 
 static void begin_forces(mps_mpm *mpm, int64_t b, int32_t worker) {
@@ -63,7 +57,7 @@ mps_status mpsi_mpm_find_forces(mps_mpm *mpm, const char *function) {
     const mps_status status = mpsi_mpm_make_forces(mpm, function);
     if (status != MPS_OK) return status;
   }
-  if (!loads->force_memory) return MPS_OK;
+  if (!mpm->rooms.force.item) return MPS_OK;
   mpsi_mpm_for_cells(mpm, begin_forces);
   for (int32_t k = 0; k < loads->count; k++) add_traction(mpm, &loads->traction[k]);
   return MPS_OK;

@@ -19,7 +19,6 @@ typedef struct mpsi_loads {
   int32_t count;
   double *body_acceleration[3]; /* m/s2; NULL where the set has no such field */
   double *external_force[3];    /* N; likewise */
-  double *force_memory;         /* of the column f */
 } mpsi_loads;
 
 /* loads.c: fields of forces and loads of the step to the column f. */

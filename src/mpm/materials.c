@@ -17,6 +17,17 @@ static mps_status add_fields(mps_particles *set, const mpsi_law_use *law) {
   return status;
 }
 
+void mpsi_mpm_bind_law(mps_mpm *mpm, mpsi_law_use *law) {
+  mps_particles *set = mpm->particles;
+  if (law->reads_volume) mpm->p.J = mpsi_particles_column(set, "volume_ratio", 0);
+  for (int c = 0; c < 9 && law->needs_deformation; c++)
+    mpm->p.F[c] = mpsi_particles_column(set, "deformation_gradient", c);
+  for (int32_t h = 0; h < law->columns; h++)
+    law->history[h] = mpsi_particles_column(set, mps_material_history_field(law->material, h), 0);
+  mpm->laws.ids = mpsi_particles_integers(set, "id");
+  mpm->laws.temperature = mpsi_particles_column(set, "temperature", 0);
+}
+
 mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *material) {
   if (mpm->laws.count == MPS_MPM_MAX_MATERIALS)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
@@ -37,13 +48,7 @@ mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *ma
     mpsi_free(mpm->context, law.history);
     return status;
   }
-  if (law.reads_volume) mpm->p.J = mpsi_particles_column(set, "volume_ratio", 0);
-  for (int c = 0; c < 9 && law.needs_deformation; c++)
-    mpm->p.F[c] = mpsi_particles_column(set, "deformation_gradient", c);
-  for (int32_t h = 0; h < law.columns; h++)
-    law.history[h] = mpsi_particles_column(set, mps_material_history_field(material, h), 0);
-  mpm->laws.ids = mpsi_particles_integers(set, "id");
-  mpm->laws.temperature = mpsi_particles_column(set, "temperature", 0);
+  mpsi_mpm_bind_law(mpm, &law);
   mpsi_material_retain(material);
   if (mpm->laws.count == 0) atomic_flag_clear(&mpm->laws.refusal.busy);
   mpm->laws.one_modulus = mpm->laws.count == 0 && !mpsi_material_stiffens(material) &&
@@ -119,7 +124,7 @@ mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material, int64_t co
                                 const int64_t *ids) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   int32_t number = 0;
-  mps_status status = mpsi_mpm_ready(mpm, __func__);
+  mps_status status = mpsi_mpm_usable(mpm, __func__);
   if (status == MPS_OK) status = check(mpm, __func__, material, count, ids);
   if (status == MPS_OK) status = list_law(mpm, __func__, material, &number);
   if (status != MPS_OK) return status;
@@ -128,7 +133,8 @@ mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material, int64_t co
     if (mpm->p.law) mpm->p.law[k] = number; /* else there is but the one */
     mpsi_mpm_begin_law(mpm, &mpm->laws.law[number], k);
   }
-  mpm->boundaries.outdated = true; /* the dashpots of absorbing walls follow the laws */
+  mpm->boundaries.outdated = true;    /* the dashpots of absorbing walls follow the laws */
+  if (mpm->run.edited) return MPS_OK; /* what follows waits for what else is new */
   mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
   return mpsi_mpm_collect_block_results(mpm, __func__);
 }

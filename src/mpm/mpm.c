@@ -1,19 +1,17 @@
 /* mpm.c - life of the WLS-MPM solver: definition, checks, fields, bodies.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
+#include "particles.h"
 
 #include "core/particles_internal.h"
 
 #include <string.h>
 
 #define ON_NODE 1e-6 /* cells: a wall this close to a node is on it */
-#define MAX_COUNT INT32_MAX
-#define FAR 1e9 /* m, m/s2, s: what has a sane size is within */
+#define FAR 1e9      /* m, m/s2, s: what has a sane size is within */
 #define LEAST_MEASURE 1e-9
 #define FINEST 0.5 /* spacings: cells that are smaller, or larger than COARSEST, are slips */
 #define COARSEST 100.0
-#define DENSITY_MIN 1e-9 /* kg/m3 */
-#define DENSITY_MAX 1e12
 
 static const mps_mpm_def mpm_defaults = {.struct_size = sizeof(mps_mpm_def),
                                          .spline = 3,
@@ -153,44 +151,13 @@ static mps_status check_set(mps_context *context, mps_particles *set) {
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "the particle set was made from another context");
   const int64_t count = mps_particles_count(set);
-  if (count < 1 || count > MAX_COUNT)
+  if (count < 1 || count > MPSI_MPM_MOST_PARTICLES)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "the set has %lld particles, allowed are 1 to %d", (long long)count,
-                     MAX_COUNT);
+                     MPSI_MPM_MOST_PARTICLES);
   if (!mpsi_particles_column(set, "density", 0))
     return mpsi_fail(context, create, MPS_ERROR_FIELD,
                      "the set has no field 'density': mps_particles_set adds it");
-  return MPS_OK;
-}
-
-/* A field's columns must be finite where the solver starts from them. */
-static mps_status check_start(const mps_mpm *mpm, const char *function) {
-  static const char *const names[] = {
-      "position",          "velocity",      "velocity_gradient", "stress",
-      "volume_ratio",      "volume",        "density",           "deformation_gradient",
-      "body_acceleration", "external_force"};
-  for (size_t f = 0; f < sizeof names / sizeof *names; f++)
-    for (int32_t c = 0; c < 9; c++) {
-      const double *value = mpsi_particles_column(mpm->particles, names[f], c);
-      for (int64_t k = 0; value && k < mpm->p.count; k++)
-        if (!isfinite(value[k]))
-          return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                           "'%s' of particle %lld is %g, must be finite", names[f],
-                           (long long)mpsi_particles_integers(mpm->particles, "id")[k], value[k]);
-    }
-  for (int64_t k = 0; k < mpm->p.count; k++)
-    for (int c = 0; c < mpm->dim; c++) {
-      const double x = mpm->p.x[c][k], X = mpsi_grid_coordinate(mpm, c, x);
-      const long long id = (long long)mpsi_particles_integers(mpm->particles, "id")[k];
-      if (!(fabs(X) < MPSI_MAX_CELLS))
-        return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                         "particle %lld has %c = %g m, more than 2^30 cells from the origin", id,
-                         "xyz"[c], x);
-      if (!(X >= (double)mpm->grid.low[c] && X <= (double)mpm->grid.high[c]))
-        return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                         "particle %lld has %c = %g m, outside the domain [%g, %g] m", id, "xyz"[c],
-                         x, mpm -> def.lower[c], mpm->def.upper[c]);
-    }
   return MPS_OK;
 }
 
@@ -204,60 +171,9 @@ static mps_status add_fields(mps_mpm *mpm) {
   return status;
 }
 
-static void bind_fields(mps_mpm *mpm) {
-  mps_particles *set = mpm->particles;
-  mpsi_columns *p = &mpm->p;
-  for (int c = 0; c < mpm->dim; c++) {
-    p->x[c] = mpsi_particles_column(set, "position", c);
-    p->v[c] = mpsi_particles_column(set, "velocity", c);
-  }
-  for (int c = 0; c < 2 * mpm->dim; c++) p->s[c] = mpsi_particles_column(set, "stress", c);
-  for (int c = 0; c < 9; c++) /* NULL where there is no such component */
-    p->L[c] = mpsi_particles_column(set, "velocity_gradient", c);
-  p->V = mpsi_particles_column(set, "volume", 0);
-  p->m = mpsi_particles_column(set, "mass", 0);
-}
-
-/* The volume of a particle that the caller gave none. */
-static double lattice_volume(const mps_mpm *mpm, int64_t k) {
-  const double spacing = mps_particles_spacing(mpm->particles);
-  if (mpm->dim == 3) return spacing * spacing * spacing;
-  const double radius = mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? mpm->p.x[0][k] : 1.0;
-  return spacing * spacing * mpm->def.measure * radius;
-}
-
-static mps_status check_volumes(const mps_mpm *mpm, const double *density) {
-  const mpsi_columns *p = &mpm->p;
-  for (int64_t k = 0; k < mpm->p.count; k++) {
-    const double volume = p->V[k] != 0.0 ? p->V[k] : lattice_volume(mpm, k);
-    const double ratio = !p->J ? 1.0 : p->J[k] != 0.0 ? p->J[k] : 1.0;
-    if (!(density[k] >= DENSITY_MIN && density[k] <= DENSITY_MAX) || !(volume > 0.0) ||
-        !(ratio > 0.0))
-      return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
-                       "particle %lld has density %g kg/m3, volume %g m3 and volume ratio %g: must "
-                       "be %g to %g, > 0 and > 0%s",
-                       (long long)mpsi_particles_integers(mpm->particles, "id")[k], density[k],
-                       volume, ratio, DENSITY_MIN, DENSITY_MAX,
-                       volume == 0.0 ? " (it lies on the axis, r = 0)" : "");
-  }
-  return MPS_OK;
-}
-
-/* Volumes and masses from density and spacing; unstrained states where the caller gave none. */
-static void set_start(mps_mpm *mpm, const double *density) {
-  mpsi_columns *p = &mpm->p;
-  for (int64_t k = 0; k < mpm->p.count; k++) {
-    if (p->V[k] == 0.0) p->V[k] = lattice_volume(mpm, k);
-    p->m[k] = density[k] * p->V[k]; /* the density is that of the present volume */
-    const double mass = mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? p->m[k] / p->x[0][k] : p->m[k];
-    if (k == 0 || mass < mpm->contact.least_mass) mpm->contact.least_mass = mass;
-    mpsi_mpm_begin_law(mpm, &mpm->laws.law[0], k);
-  }
-}
-
 /* ---- what an error takes back ---------------------------------------------------------------- */
 
-/* Columns that set_start writes: volume, mass, V/V0, F and the law's histories. */
+/* Columns that mpsi_mpm_begin_particles writes: volume, mass, V/V0, F and the law's histories. */
 enum { OWN_COLUMNS = 12 };
 
 static double *written(const mps_mpm *mpm, int32_t number) {
@@ -337,14 +253,8 @@ static mps_status check_step(mps_mpm *mpm) {
 }
 
 static mps_status make_memory(mps_mpm *mpm) {
-  mps_context *context = mpm->context;
-  mpm->grid.radix = mpsi_alloc(context, 2 * mpm->p.count, sizeof *mpm->grid.radix);
-  if (mpm->grid.radix) mpm->laws.flags = mpsi_alloc(context, mpm->p.count, sizeof *mpm->laws.flags);
-  const bool by_cell = mpm->def.volumetric == MPS_MPM_VOLUMETRIC_CELL;
-  if (mpm->laws.flags && by_cell)
-    mpm->p.stencil = mpsi_alloc(context, mpm->p.count, sizeof *mpm->p.stencil);
-  if (!mpm->laws.flags || (by_cell && !mpm->p.stencil))
-    return mpsi_fail_memory(context, create, (size_t)mpm->p.count * sizeof *mpm->grid.radix);
+  if (!mpsi_mpm_make_room(mpm, mpm->p.count))
+    return mpsi_fail_memory(mpm->context, create, (size_t)mpm->p.count * sizeof *mpm->grid.radix);
   return make_workers(mpm);
 }
 
@@ -355,12 +265,11 @@ static mps_status build(mps_mpm *mpm, mps_material *material) {
   mps_status status = add_fields(mpm);
   if (status == MPS_OK) status = mpsi_mpm_add_law(mpm, create, material);
   if (status == MPS_OK) {
-    bind_fields(mpm);
-    const double *density = mpsi_particles_column(mpm->particles, "density", 0);
-    status = check_start(mpm, create);
-    if (status == MPS_OK) status = check_volumes(mpm, density);
+    mpsi_mpm_bind(mpm);
+    status = mpsi_mpm_check_start(mpm, create);
+    if (status == MPS_OK) status = mpsi_mpm_check_amounts(mpm, create);
     if (status == MPS_OK) status = save_columns(mpm, &copy);
-    if (status == MPS_OK) set_start(mpm, density);
+    if (status == MPS_OK) mpsi_mpm_begin_particles(mpm);
     if (status == MPS_OK) status = check_step(mpm);
     if (status == MPS_OK) status = make_memory(mpm);
     if (status == MPS_OK) status = mpsi_mpm_sort(mpm, create);
@@ -369,16 +278,6 @@ static mps_status build(mps_mpm *mpm, mps_material *material) {
   }
   if (status != MPS_OK) mpsi_particles_drop_fields(mpm->particles, fields);
   mpm->boundaries.outdated = true; /* listed with the first step */
-  return status;
-}
-
-/* The caller has written a field: it must be one to start from, and is read before the next step.
- */
-static mps_status note_edit(void *self, const char *function, const char *field) {
-  mps_mpm *mpm = self;
-  (void)field;
-  const mps_status status = check_start(mpm, function);
-  if (status == MPS_OK) mpm->run.edited = mpm->run.stale = true;
   return status;
 }
 
@@ -412,7 +311,11 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   mpm->holder = (mpsi_holder){.name = "a WLS-MPM solver (mps_mpm)",
                               .self = mpm,
                               .kind = MPSI_USE_MOVE,
-                              .commit = note_edit};
+                              .commit = mpsi_mpm_note_edit,
+                              .compares = mpsi_mpm_compares,
+                              .insert = mpsi_mpm_insert,
+                              .remove = mpsi_mpm_remove,
+                              .renew = mpsi_mpm_renew};
   (void)mpsi_particles_hold(particles, __func__, &mpm->holder); /* checked above */
   mpm->def = def;
   mpm->standard = def.scheme == MPS_MPM_SCHEME_STANDARD;
@@ -461,10 +364,10 @@ void mps_mpm_destroy(mps_mpm **pointer) {
                    mpm->boundaries.dash_room.item,
                    mpm->boundaries.old_held_room.item,
                    mpm->boundaries.old_dash_room.item,
-                   mpm->loads.force_memory,
-                   mpm->grid.radix,
-                   mpm->laws.flags,
-                   mpm->p.stencil};
+                   mpm->rooms.force.item,
+                   mpm->rooms.radix.item,
+                   mpm->rooms.flags.item,
+                   mpm->rooms.stencil.item};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
   mpsi_mpm_drop_loads(mpm);
   mpsi_mpm_drop_boundaries(mpm);

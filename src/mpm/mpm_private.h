@@ -14,6 +14,12 @@
 
 struct mpsi_kernels;
 
+/* Memory for each particle. */
+typedef struct mpsi_rooms {
+  mpsi_room radix, flags, stencil;
+  mpsi_room force; /* of the columns f; none without loads */
+} mpsi_rooms;
+
 struct mps_mpm {
   mps_context *context;
   mps_particles *particles;
@@ -24,6 +30,7 @@ struct mps_mpm {
   double flip;
   const struct mpsi_kernels *kernels;
   mpsi_columns p;
+  mpsi_rooms rooms;
   mpsi_grid grid;
   mpsi_contacts contact;
   mpsi_boundaries boundaries;

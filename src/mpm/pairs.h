@@ -59,6 +59,10 @@ void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker);
 void mpsi_mpm_apply_contact(mps_mpm *mpm, int64_t g);
 void mpsi_mpm_apply_friction(mps_mpm *mpm, int64_t g);
 void mpsi_mpm_update_bodies(mps_mpm *mpm);
+/* contacts.c: MPS_ERROR_ARGUMENT where particles from index `from` on lie inside the body, unless
+ * the contact pushes them out. */
+mps_status mpsi_mpm_check_inside(mps_mpm *mpm, const char *function, const mps_contact *contact,
+                                 int64_t from);
 /* contacts.c: MPS_ERROR_DIVERGED where a particle is deeper in a body than its contact allows; ends
  * all contacts. */
 mps_status mpsi_mpm_check_depth(mps_mpm *mpm, const char *function);

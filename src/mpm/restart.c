@@ -4,7 +4,7 @@
 #include "restart.h"
 
 #include "io/checkpoint.h"
-#include "mpm_private.h"
+#include "particles.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -43,8 +43,10 @@ static bool reserve_blocks(void *solver, int64_t rows, const void *values) {
   mps_mpm *mpm = solver;
   mpsi_grid *grid = &mpm->grid;
   (void)values;
+  const int64_t entries = 4 * rows + grid->nodes_room.capacity; /* see mpsi_mpm_ensure_pass */
   const bool good = keep_room(mpm->context, &grid->cells_room, rows, sizeof *grid->cells) &&
-                    keep_room(mpm->context, &grid->coloured_room, rows, sizeof *grid->coloured);
+                    keep_room(mpm->context, &grid->coloured_room, rows, sizeof *grid->coloured) &&
+                    keep_room(mpm->context, &grid->pass_room, entries, sizeof(_Atomic int32_t));
   grid->cells = grid->cells_room.item;
   grid->coloured = grid->coloured_room.item;
   return good;
@@ -193,6 +195,7 @@ static bool within_tile(const mps_mpm *mpm, const int64_t *b) {
 }
 
 static bool orderly(const mps_mpm *mpm, int64_t rows, const mpsi_block *block, int64_t particles) {
+  if (particles == 0) return rows == 0;
   if (rows < 1 || rows > particles || block[0][0] != 0) return false;
   for (int64_t k = 0; k < rows; k++) {
     const int64_t *b = block[k], *next = block[k + 1 < rows ? k + 1 : k];
@@ -257,7 +260,9 @@ static bool fits(void *solver, mps_snapshot *from, const char **what) {
   const mpsi_value *sizes = mpsi_values_find(&from->state, "sizes");
   const double speed = *(const double *)mpsi_values_find(&from->state, "speed")->data;
   *what = "its blocks do not hold its particles";
-  if (!(speed > 0.0 && isfinite(speed)) || sizes->rows != 1) return false;
+  if (!(speed > 0.0 || (speed == 0.0 && from->particles == 0)) || !isfinite(speed) ||
+      sizes->rows != 1 || from->particles > MPSI_MPM_MOST_PARTICLES)
+    return false;
   for (int k = 0; k < SIZES; k++) {
     const int64_t size = ((const int64_t *)sizes->data)[k];
     if (size < 0 || size > MPSI_NO_WALL) return false;
@@ -267,6 +272,11 @@ static bool fits(void *solver, mps_snapshot *from, const char **what) {
 
 /* ---- public ---------------------------------------------------------------------------------- */
 
+static void bind(void *solver) { mpsi_mpm_bind(solver); }
+
+/* Snapshots are of a state that has taken up what the caller wrote. */
+static void forget_edits(void *solver) { ((mps_mpm *)solver)->run.edited = false; }
+
 static mpsi_state_of state_of(mps_mpm *mpm) {
   return (mpsi_state_of){.solver = mpm,
                          .name = "WLS-MPM",
@@ -275,6 +285,9 @@ static mpsi_state_of state_of(mps_mpm *mpm) {
                          .identity = &mpm->identity,
                          .list = list_state,
                          .fits = fits,
+                         .make_room = mpsi_mpm_make_room,
+                         .bind = bind,
+                         .after = forget_edits,
                          .time = mpm->run.time,
                          .dt = mps_mpm_dt(mpm),
                          .steps = mpm->run.steps};
@@ -282,6 +295,8 @@ static mpsi_state_of state_of(mps_mpm *mpm) {
 
 /* The lists that are kept must be of the present boundaries. */
 static mps_status make_whole(mps_mpm *mpm, const char *function) {
+  const mps_status status = mpm->run.broken ? MPS_OK : mpsi_mpm_tidy(mpm, function);
+  if (status != MPS_OK) return status;
   if (!mpm->run.broken) return mpsi_mpm_update_holds(mpm, function);
   return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                    "step %lld has failed: there is no state to go on from",
@@ -290,8 +305,8 @@ static mps_status make_whole(mps_mpm *mpm, const char *function) {
 
 mps_status mps_mpm_snapshot(mps_mpm *mpm, mps_snapshot **snapshot) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mpsi_state_of of = state_of(mpm);
   const mps_status status = make_whole(mpm, __func__);
+  const mpsi_state_of of = state_of(mpm);
   return status == MPS_OK ? mpsi_state_snapshot(&of, __func__, snapshot) : status;
 }
 
@@ -303,8 +318,8 @@ mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot) {
 
 mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *info) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mpsi_state_of of = state_of(mpm);
   const mps_status status = make_whole(mpm, __func__);
+  const mpsi_state_of of = state_of(mpm);
   return status == MPS_OK ? mpsi_checkpoint_save(&of, __func__, path, info) : status;
 }
 

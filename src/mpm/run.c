@@ -1,8 +1,7 @@
 /* run.c - running the WLS-MPM solver: the size of its steps, and how many.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm_private.h"
-
 #include "kernels.h"
+#include "particles.h"
 
 #include <stdio.h>
 
@@ -13,23 +12,36 @@ mps_status mpsi_mpm_between_steps(mps_mpm *mpm, const char *function) {
                    "destroy it");
 }
 
-mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function) {
-  mps_status status = mpsi_mpm_between_steps(mpm, function);
-  if (status != MPS_OK) return status;
+/* Not after a step that has failed, nor while a field is being edited. */
+static mps_status check_whole(mps_mpm *mpm, const char *function) {
   if (mpm->run.broken)
     return mpsi_fail(
         mpm->context, function, MPS_ERROR_STATE,
         "an earlier step has failed: the state is kept for a look; make a new solver or "
         "restore a checkpoint");
-  status = mpsi_particles_ready(mpm->particles, function);
+  return mpsi_particles_ready(mpm->particles, function);
+}
+
+mps_status mpsi_mpm_usable(mps_mpm *mpm, const char *function) {
+  const mps_status status = mpsi_mpm_between_steps(mpm, function);
+  return status == MPS_OK ? check_whole(mpm, function) : status;
+}
+
+mps_status mpsi_mpm_tidy(mps_mpm *mpm, const char *function) {
+  mps_status status = check_whole(mpm, function);
   if (status != MPS_OK || !mpm->run.edited) return status;
-  /* Blocks of the new positions, and the Courant limit of the new velocities. */
-  status = mpsi_mpm_sort(mpm, function);
+  status = mpsi_mpm_check_masses(mpm, function);
+  if (status == MPS_OK) status = mpsi_mpm_sort(mpm, function);
   if (status == MPS_OK) status = mpsi_mpm_list_holds(mpm, function);
   if (status != MPS_OK) return status;
   mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
   mpm->run.edited = false;
   return mpsi_mpm_collect_block_results(mpm, function);
+}
+
+mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function) {
+  const mps_status status = mpsi_mpm_between_steps(mpm, function);
+  return status == MPS_OK ? mpsi_mpm_tidy(mpm, function) : status;
 }
 
 /* ---- the size of a step ---------------------------------------------------------------------- */
@@ -39,7 +51,7 @@ double mps_mpm_limit(const mps_mpm *mpm) {
   double speed = mpm->run.speed;
   for (int32_t b = 0; b < mpm->contact.bodies; b++)
     speed = fmax(speed, mpsi_contact_speed(mpm->contact.handle[b]));
-  return mpm->def.cell / speed;
+  return speed > 0.0 ? mpm->def.cell / speed : INFINITY; /* there are no particles */
 }
 
 double mps_mpm_dt(const mps_mpm *mpm) {
@@ -79,6 +91,10 @@ mps_status mps_mpm_step(mps_mpm *mpm, int64_t count) {
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
                      (long long)count);
   mps_status status = mpsi_mpm_ready(mpm, __func__);
+  if (status == MPS_OK && count > 0 && !isfinite(mps_mpm_dt(mpm)))
+    status = mpsi_fail(mpm->context, __func__, MPS_ERROR_STATE,
+                       "the solver has no particles, and nothing bounds dt: set it, or run to a "
+                       "time");
   for (int64_t k = 0; k < count && status == MPS_OK; k++) {
     status = mpsi_mpm_take_step(mpm, __func__, mps_mpm_dt(mpm));
     if (status == MPS_OK && k + 1 < count) status = ask_cancel(mpm, __func__);

@@ -24,7 +24,12 @@ typedef struct mpsi_run {
 mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt);
 /* run.c: MPS_ERROR_STATE in a callback of the solver. */
 mps_status mpsi_mpm_between_steps(mps_mpm *mpm, const char *function);
-/* run.c: that, and MPS_ERROR_STATE after a step that has failed. */
+/* run.c: that, and MPS_ERROR_STATE after a step that has failed or while a field is edited. */
+mps_status mpsi_mpm_usable(mps_mpm *mpm, const char *function);
+/* run.c: what the caller has written, added or removed is taken up: masses, blocks of the present
+ * positions, the Courant limit of the present velocities. */
+mps_status mpsi_mpm_tidy(mps_mpm *mpm, const char *function);
+/* run.c: both: ready for a step. */
 mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function);
 /* step.c: what the blocks have found: the largest speed, or the error of a bad particle. */
 mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function);

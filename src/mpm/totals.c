@@ -23,7 +23,7 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
               {mpm->boundaries.dash_room.capacity + mpm->boundaries.old_dash_room.capacity,
                sizeof *mpm->boundaries.dash},
               {mpm->grid.worker_count, mpsi_worker_bytes(mpm)},
-              {mpm->loads.force_memory ? mpm->p.count : 0, (size_t)mpm->dim * sizeof(double)},
+              {mpm->rooms.force.item ? mpm->p.count : 0, (size_t)mpm->dim * sizeof(double)},
               {mpm->p.stencil ? mpm->p.count : 0, sizeof *mpm->p.stencil},
               {mpm->p.count, 2 * sizeof *mpm->grid.radix + sizeof *mpm->laws.flags}};
   int64_t bytes = 0;

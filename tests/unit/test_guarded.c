@@ -284,12 +284,20 @@ typedef struct visitor {
   mps_status answer;
   int inserts, removes, renewals, commits;
   int64_t first, count, seen;
+  double former;
 } visitor;
 
-static mps_status visit_commit(void *self, const char *function, const char *field) {
+static bool visit_compares(const void *self, const char *field) {
+  (void)self;
+  return strcmp(field, "density") == 0;
+}
+
+static mps_status visit_commit(void *self, const char *function, const char *field,
+                               const double *former) {
   visitor *v = self;
   (void)function;
-  (void)field;
+  assert_true((former != NULL) == (strcmp(field, "density") == 0));
+  if (former) v->former = former[5];
   v->commits++;
   return v->answer;
 }
@@ -325,6 +333,7 @@ static void holders_decide_who_comes_and_goes(void **state) {
                         .self = &v,
                         .kind = MPSI_USE_MOVE,
                         .commit = visit_commit,
+                        .compares = visit_compares,
                         .insert = visit_insert,
                         .remove = visit_remove,
                         .renew = visit_renew};

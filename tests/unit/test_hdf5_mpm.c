@@ -154,8 +154,7 @@ static void another_solver_is_refused(void **state) {
   } list[] = {
       {MPS_MPM_AXISYMMETRIC, none, "geometry is 0, in this solver 1"},
       {MPS_MPM_SPACE, none, "particles in 2D, the set has"},
-      {0, {.spacing = 0.02, .cell = 0.02, .bodies = 2}, "particles in 2D, the set has"},
-      {0, {.spacing = 0.01, .cell = 0.02, .bodies = 2, .particles = 1}, "the set has 801 in 2D"},
+      {0, {.spacing = 0.02, .cell = 0.02, .bodies = 2}, "spacing 0.01 m, the set has 0.02"},
       {0, {.spacing = 0.01, .cell = 0.04, .bodies = 2}, "in this solver 0.0400"},
       {0,
        {.spacing = 0.01, .cell = 0.02, .bodies = 2, .origin = -0.1},
@@ -183,6 +182,33 @@ static void another_solver_is_refused(void **state) {
     drop(&a);
     drop(&b);
   }
+  mps_context_destroy(&context);
+}
+
+/* The set takes the particles of the file: more, fewer, or others than it has. */
+static void another_number_of_particles_is_taken(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  change more = none;
+  more.particles = 1;
+  scene few = build(context, MPS_MPM_PLANE_STRAIN, &none),
+        many = build(context, MPS_MPM_PLANE_STRAIN, &more);
+  mps_assert_ok(context, mps_mpm_step(few.s.mpm, 60));
+  mps_assert_ok(context, mps_mpm_save(few.s.mpm, path, NULL));
+  mps_assert_ok(context, mps_mpm_restore(many.s.mpm, path, NULL));
+  assert_int_equal(mps_particles_count(many.s.particles), 800);
+  same(&few, &many);
+  mps_assert_ok(context, mps_mpm_step(few.s.mpm, 60));
+  mps_assert_ok(context, mps_mpm_step(many.s.mpm, 60));
+  same(&few, &many);
+  const int64_t gone[3] = {0, 401, 799};
+  mps_assert_ok(context, mps_particles_remove(few.s.particles, 3, gone));
+  mps_assert_ok(context, mps_mpm_step(few.s.mpm, 20));
+  mps_assert_ok(context, mps_mpm_restore(few.s.mpm, path, NULL));
+  mps_assert_ok(context, mps_mpm_step(few.s.mpm, 60));
+  same(&few, &many);
+  drop(&few);
+  drop(&many);
   mps_context_destroy(&context);
 }
 
@@ -336,6 +362,7 @@ int main(void) {
       cmocka_unit_test(with_walls_loads_and_materials),
       cmocka_unit_test(other_walls_loads_and_materials_are_refused),
       cmocka_unit_test(another_solver_is_refused),
+      cmocka_unit_test(another_number_of_particles_is_taken),
       cmocka_unit_test(other_files_and_bad_arguments),
       cmocka_unit_test(a_broken_run_goes_back),
       cmocka_unit_test(the_callers_bytes_come_back),

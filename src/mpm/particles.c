@@ -1,0 +1,235 @@
+/* particles.c - the particles of the set as the solver has them: where their columns lie, what it
+ * keeps for each, the state in which they begin, and how they come and go between steps.
+ *
+ *   caller                       set                          solver
+ *   mps_particles_append, fill   new ones, with places   -->  insert: inside the domain, outside
+ * the bodies? room, volume, first law edit, commit                 density, volume         -->
+ * commit: mass of those that changed mps_particles_remove         asks, closes the gaps   -->
+ * renew: columns, number step                                                 -->  all have a mass?
+ * sort, blocks, limit SPDX-License-Identifier: BSD-3-Clause */
+#include "particles.h"
+
+#include "contact_particle.h"
+
+#include <string.h>
+
+#define DENSITY_MIN 1e-9 /* kg/m3 */
+#define DENSITY_MAX 1e12
+
+/* ---- columns and room ------------------------------------------------------------------------ */
+
+void mpsi_mpm_bind(mps_mpm *mpm) {
+  mps_particles *set = mpm->particles;
+  mpsi_columns *p = &mpm->p;
+  p->count = mps_particles_count(set);
+  for (int c = 0; c < mpm->dim; c++) {
+    p->x[c] = mpsi_particles_column(set, "position", c);
+    p->v[c] = mpsi_particles_column(set, "velocity", c);
+  }
+  for (int c = 0; c < 2 * mpm->dim; c++) p->s[c] = mpsi_particles_column(set, "stress", c);
+  for (int c = 0; c < 9; c++) /* NULL where there is no such component */
+    p->L[c] = mpsi_particles_column(set, "velocity_gradient", c);
+  p->V = mpsi_particles_column(set, "volume", 0);
+  p->m = mpsi_particles_column(set, "mass", 0);
+  if (p->law) p->law = mpsi_particles_integers(set, "material");
+  for (int32_t k = 0; k < mpm->laws.count; k++) mpsi_mpm_bind_law(mpm, &mpm->laws.law[k]);
+}
+
+bool mpsi_mpm_make_room(void *solver, int64_t particles) {
+  mps_mpm *mpm = solver;
+  mps_context *context = mpm->context;
+  mpsi_rooms *r = &mpm->rooms;
+  const bool by_cell = mpm->def.volumetric == MPS_MPM_VOLUMETRIC_CELL;
+  const bool good =
+      mpsi_room_ensure(context, &r->radix, 2 * particles, sizeof *mpm->grid.radix) &&
+      mpsi_room_ensure(context, &r->flags, particles, sizeof *mpm->laws.flags) &&
+      (!by_cell || mpsi_room_ensure(context, &r->stencil, particles, sizeof *mpm->p.stencil)) &&
+      (!r->force.item || mpsi_mpm_force_room(mpm, particles));
+  mpm->grid.radix = r->radix.item;
+  mpm->laws.flags = r->flags.item;
+  mpm->p.stencil = r->stencil.item;
+  return good;
+}
+
+bool mpsi_mpm_force_room(mps_mpm *mpm, int64_t particles) {
+  const int64_t line = MPSI_ALIGNMENT / (int64_t)sizeof(double);
+  const int64_t stride = (particles + MPSI_PARTICLES_PADDING + line - 1) / line * line;
+  if (!mpsi_room_ensure(mpm->context, &mpm->rooms.force, mpm->dim * stride, sizeof(double)))
+    return false;
+  const int64_t widest = mpm->rooms.force.capacity / mpm->dim / line * line;
+  for (int c = 0; c < mpm->dim; c++)
+    mpm->p.f[c] = (double *)mpm->rooms.force.item + c * (widest > stride ? widest : stride);
+  return true;
+}
+
+/* ---- checks ---------------------------------------------------------------------------------- */
+
+static mps_status check_places(const mps_mpm *mpm, const char *function, int64_t first,
+                               int64_t end) {
+  const int64_t *id = mpsi_particles_integers(mpm->particles, "id");
+  for (int64_t k = first; k < end; k++)
+    for (int c = 0; c < mpm->dim; c++) {
+      const double x = mpm->p.x[c][k], X = mpsi_grid_coordinate(mpm, c, x);
+      if (!(fabs(X) < MPSI_MAX_CELLS))
+        return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                         "particle %lld has %c = %g m, more than 2^30 cells from the origin",
+                         (long long)id[k], "xyz"[c], x);
+      if (!(X >= (double)mpm->grid.low[c] && X <= (double)mpm->grid.high[c]))
+        return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                         "particle %lld has %c = %g m, outside the domain [%g, %g] m",
+                         (long long)id[k], "xyz"[c], x, mpm -> def.lower[c], mpm->def.upper[c]);
+    }
+  return MPS_OK;
+}
+
+mps_status mpsi_mpm_check_start(const mps_mpm *mpm, const char *function) {
+  static const char *const names[] = {
+      "position",          "velocity",      "velocity_gradient", "stress",
+      "volume_ratio",      "volume",        "density",           "deformation_gradient",
+      "body_acceleration", "external_force"};
+  for (size_t f = 0; f < sizeof names / sizeof *names; f++)
+    for (int32_t c = 0; c < 9; c++) {
+      const double *value = mpsi_particles_column(mpm->particles, names[f], c);
+      for (int64_t k = 0; value && k < mpm->p.count; k++)
+        if (!isfinite(value[k]))
+          return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                           "'%s' of particle %lld is %g, must be finite", names[f],
+                           (long long)mpsi_particles_integers(mpm->particles, "id")[k], value[k]);
+    }
+  return check_places(mpm, function, 0, mpm->p.count);
+}
+
+/* ---- volume and mass ------------------------------------------------------------------------- */
+
+double mpsi_mpm_lattice_volume(const mps_mpm *mpm, int64_t k) {
+  const double spacing = mps_particles_spacing(mpm->particles);
+  if (mpm->dim == 3) return spacing * spacing * spacing;
+  const double radius = mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? mpm->p.x[0][k] : 1.0;
+  return spacing * spacing * mpm->def.measure * radius;
+}
+
+static mps_status check_amount(const mps_mpm *mpm, const char *function, int64_t k,
+                               double density) {
+  const mpsi_columns *p = &mpm->p;
+  const double volume = p->V[k] != 0.0 ? p->V[k] : mpsi_mpm_lattice_volume(mpm, k);
+  const double ratio = !p->J ? 1.0 : p->J[k] != 0.0 ? p->J[k] : 1.0;
+  if (density >= DENSITY_MIN && density <= DENSITY_MAX && volume > 0.0 && ratio > 0.0)
+    return MPS_OK;
+  return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                   "particle %lld has density %g kg/m3, volume %g m3 and volume ratio %g: must "
+                   "be %g to %g, > 0 and > 0%s",
+                   (long long)mpsi_particles_integers(mpm->particles, "id")[k], density, volume,
+                   ratio, DENSITY_MIN, DENSITY_MAX,
+                   volume == 0.0 ? " (it lies on the axis, r = 0)" : "");
+}
+
+mps_status mpsi_mpm_check_amounts(const mps_mpm *mpm, const char *function) {
+  const double *density = mpsi_particles_column(mpm->particles, "density", 0);
+  mps_status status = MPS_OK;
+  for (int64_t k = 0; k < mpm->p.count && status == MPS_OK; k++)
+    status = check_amount(mpm, function, k, density[k]);
+  return status;
+}
+
+/* The density is that of the present volume. */
+static void set_mass(mps_mpm *mpm, int64_t k, double density) {
+  mpsi_columns *p = &mpm->p;
+  if (p->V[k] == 0.0) p->V[k] = mpsi_mpm_lattice_volume(mpm, k);
+  p->m[k] = density * p->V[k];
+  const double mass = mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? p->m[k] / p->x[0][k] : p->m[k];
+  if (mass > 0.0 && !(mass >= mpm->contact.least_mass)) mpm->contact.least_mass = mass;
+}
+
+void mpsi_mpm_begin_particles(mps_mpm *mpm) {
+  const double *density = mpsi_particles_column(mpm->particles, "density", 0);
+  mpm->contact.least_mass = NAN;
+  for (int64_t k = 0; k < mpm->p.count; k++) {
+    set_mass(mpm, k, density[k]);
+    mpsi_mpm_begin_law(mpm, &mpm->laws.law[0], k);
+  }
+}
+
+/* The caller has written density or volume: the mass follows in the particles that changed. Those
+ * that have come since have none yet, and may wait. */
+static mps_status renew_masses(mps_mpm *mpm, const char *function, const char *field,
+                               const double *former) {
+  const double *density = mpsi_particles_column(mpm->particles, "density", 0);
+  const double *now = strcmp(field, "density") == 0 ? density : mpm->p.V;
+  for (int64_t k = 0; k < mpm->p.count; k++) {
+    if (now[k] == former[k] || (mpm->p.m[k] == 0.0 && density[k] == 0.0)) continue;
+    const mps_status status = check_amount(mpm, function, k, density[k]);
+    if (status != MPS_OK) return status;
+  }
+  for (int64_t k = 0; k < mpm->p.count; k++)
+    if (now[k] != former[k]) set_mass(mpm, k, density[k]);
+  return MPS_OK;
+}
+
+bool mpsi_mpm_compares(const void *self, const char *field) {
+  (void)self;
+  return strcmp(field, "density") == 0 || strcmp(field, "volume") == 0;
+}
+
+/* What the caller has written must be something to start from; it is read before the next step. */
+mps_status mpsi_mpm_note_edit(void *self, const char *function, const char *field,
+                              const double *former) {
+  mps_mpm *mpm = self;
+  mps_status status = mpsi_mpm_check_start(mpm, function);
+  if (status == MPS_OK && former) status = renew_masses(mpm, function, field, former);
+  if (status == MPS_OK) mpm->run.edited = mpm->run.stale = true;
+  return status;
+}
+
+mps_status mpsi_mpm_check_masses(const mps_mpm *mpm, const char *function) {
+  for (int64_t k = 0; k < mpm->p.count; k++) {
+    if (mpm->p.m[k] > 0.0) continue;
+    const int64_t id = mpsi_particles_integers(mpm->particles, "id")[k];
+    (void)mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+                    "particle %lld has come since the last step and has density 0: give it one by "
+                    "mps_particles_edit or mps_particles_set of 'density'",
+                    (long long)id);
+    mpsi_fail_where(mpm->context, -1, id);
+    return MPS_ERROR_STATE;
+  }
+  return MPS_OK;
+}
+
+/* ---- coming and going ------------------------------------------------------------------------ */
+
+mps_status mpsi_mpm_insert(void *self, const char *function, int64_t first, int64_t count) {
+  mps_mpm *mpm = self;
+  mps_status status = mpsi_mpm_usable(mpm, function);
+  if (status != MPS_OK) return status;
+  if (first + count > MPSI_MPM_MOST_PARTICLES)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "%lld particles to add to %lld, a WLS-MPM solver has at most %d",
+                     (long long)count, (long long)first, MPSI_MPM_MOST_PARTICLES);
+  if (!mpsi_mpm_make_room(mpm, first + count))
+    return mpsi_fail_memory(mpm->context, function,
+                            (size_t)(first + count) * 2 * sizeof *mpm->grid.radix);
+  mpsi_mpm_bind(mpm);
+  status = check_places(mpm, function, first, first + count);
+  for (int32_t b = 0; b < mpm->contact.bodies && status == MPS_OK; b++)
+    status = mpsi_mpm_check_inside(mpm, function, mpm->contact.handle[b], first);
+  for (int64_t k = first; k < first + count && status == MPS_OK; k++) {
+    mpm->p.V[k] = mpsi_mpm_lattice_volume(mpm, k);
+    mpsi_mpm_begin_law(mpm, &mpm->laws.law[0], k);
+  }
+  return status;
+}
+
+mps_status mpsi_mpm_remove(void *self, const char *function, int64_t count, const int64_t *ids) {
+  (void)count, (void)ids; /* lists of ids pass over those that are no more */
+  return mpsi_mpm_usable(self, function);
+}
+
+void mpsi_mpm_renew(void *self) {
+  mps_mpm *mpm = self;
+  const mpsi_grid *grid = &mpm->grid;
+  const int64_t sorted = grid->cell_count > 0 ? grid->cells[grid->cell_count - 1].end : 0;
+  mpsi_mpm_bind(mpm);
+  if (mpm->p.count == sorted && !mpm->run.edited) return; /* another holder has refused */
+  mpm->grid.cell_count = mpm->grid.node_count = 0;        /* they are of other particles */
+  mpm->contact.cell_pair_count = mpm->contact.node_pair_count = mpm->contact.mask_count = 0;
+  mpm->run.edited = mpm->run.stale = true;
+}

@@ -1,0 +1,35 @@
+/* particles.h - the particles of the set as the solver has them (particles.c).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_PARTICLES_H
+#define MPSI_MPM_PARTICLES_H
+
+#include "mpm_private.h"
+
+#define MPSI_MPM_MOST_PARTICLES INT32_MAX
+
+/* Columns and number as they are in the set now. */
+void mpsi_mpm_bind(mps_mpm *mpm);
+/* Room for what the solver keeps for each particle; false: refused. Of the forces of loads only
+ * where there are such, or by the second. */
+bool mpsi_mpm_make_room(void *mpm, int64_t particles);
+bool mpsi_mpm_force_room(mps_mpm *mpm, int64_t particles);
+
+/* Fields are finite and places inside the domain; density, volume and volume ratio are positive;
+ * every particle has a mass. */
+mps_status mpsi_mpm_check_start(const mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_check_amounts(const mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_check_masses(const mps_mpm *mpm, const char *function);
+/* Volumes and masses from density and spacing; unstrained states where the caller gave none. */
+void mpsi_mpm_begin_particles(mps_mpm *mpm);
+/* The volume of a particle that the caller gave none. */
+double mpsi_mpm_lattice_volume(const mps_mpm *mpm, int64_t particle);
+
+/* As the holder of the set: see mpsi_holder. */
+bool mpsi_mpm_compares(const void *mpm, const char *field);
+mps_status mpsi_mpm_note_edit(void *mpm, const char *function, const char *field,
+                              const double *former);
+mps_status mpsi_mpm_insert(void *mpm, const char *function, int64_t first, int64_t count);
+mps_status mpsi_mpm_remove(void *mpm, const char *function, int64_t count, const int64_t *ids);
+void mpsi_mpm_renew(void *mpm);
+
+#endif

@@ -1,0 +1,441 @@
+/* test_mpm_flow.c - particles come and go while a WLS-MPM solver lives: balances, threads, the same
+ * results as from a solver made afresh, the way back, and what is refused.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_twins.h"
+#include "test_allocator.h"
+
+#define FAILS(call, status, text) mps_assert_fails(context, call, status, text)
+
+enum { MOST = 10000 };
+
+/* Ids of the particles from y on. */
+static int64_t above(mps_particles *set, double y, int64_t *ids) {
+  const double lo[3] = {-INFINITY, y, -INFINITY}, hi[3] = {INFINITY, INFINITY, INFINITY};
+  int64_t count = 0;
+  assert_int_equal(mps_particles_select_box(set, lo, hi, MOST, ids, &count), MPS_OK);
+  assert_true(count <= MOST);
+  return count;
+}
+
+static double *column(mps_particles *set, const char *name, int32_t component, mps_view *v) {
+  assert_int_equal(mps_particles_view(set, name, v), MPS_OK);
+  return mps_view_f64(v, 0, component);
+}
+
+/* ---- balances -------------------------------------------------------------------------------- */
+
+static void erosion_of_half_a_column_takes_its_mass_and_momentum(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none);
+  int64_t ids[MOST];
+  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 100));
+  const int64_t count = above(x.s.particles, 0.18, ids);
+  const mps_mpm_totals before = mpm_scene_totals(&x.s);
+  double mass = 0.0, momentum[2] = {0.0, 0.0}, former[2 * MOST];
+  mps_view v, w;
+  const double *m = column(x.s.particles, "mass", 0, &v);
+  mps_view velocity = mpm_scene_view(&x.s, "velocity");
+  for (int64_t k = 0; k < count; k++) {
+    const int64_t at = mps_particles_index(x.s.particles, ids[k]);
+    mass += m[at];
+    for (int c = 0; c < 2; c++) momentum[c] += m[at] * *mps_view_f64(&velocity, at, c);
+  }
+  const double *stress = column(x.s.particles, "stress", 1, &w);
+  for (int64_t id = 0; id < 800; id++) {
+    const int64_t at = mps_particles_index(x.s.particles, id);
+    former[2 * id] = stress[at], former[2 * id + 1] = m[at];
+  }
+  mps_assert_ok(context, mps_particles_remove(x.s.particles, count, ids));
+  const mps_mpm_totals after = mpm_scene_totals(&x.s);
+  assert_in_range(count, 300, 500);
+  mps_assert_near(after.mass, before.mass - mass, 1e-13 * before.mass);
+  for (int c = 0; c < 2; c++)
+    mps_assert_near(after.linear[c], before.linear[c] - momentum[c], 1e-12 * before.mass);
+  stress = column(x.s.particles, "stress", 1, &w), m = column(x.s.particles, "mass", 0, &v);
+  for (int64_t id = 0; id < 800; id++) { /* those that stay are what they were */
+    const int64_t at = mps_particles_index(x.s.particles, id);
+    if (at >= 0) assert_true(stress[at] == former[2 * id] && m[at] == former[2 * id + 1]);
+  }
+  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 100));
+  mps_assert_near(mpm_scene_totals(&x.s).mass, after.mass, 1e-13 * after.mass);
+  drop(&x);
+  mps_context_destroy(&context);
+}
+
+/* A column of 1 m x 0.2 m between rollers. */
+static mpm_scene soil(mps_context *context, double height) {
+  mpm_scene s = mpm_scene_begin(context, 0.025, 0.0, 0.0, 1e6);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.05;
+  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.2;
+  def.gravity[1] = -10.0;
+  mpm_scene_box(&s, 0.0, 0.0, 0.2, height);
+  mpm_scene_solve(&s, &def);
+  return s;
+}
+
+/* Steps, and now and then takes a part of the velocities away. */
+static void settle(mpm_scene *s, int times) {
+  for (int k = 0; k < times; k++) {
+    mps_view v;
+    mps_assert_ok(s->context, mps_mpm_step(s->mpm, 10));
+    mps_assert_ok(s->context, mps_particles_edit(s->particles, "velocity", &v));
+    for (int64_t i = 0; i < v.shape[0]; i++)
+      for (int c = 0; c < 2; c++) *mps_view_f64(&v, i, c) *= 0.7;
+    mps_assert_ok(s->context, mps_particles_commit(s->particles, &v));
+  }
+}
+
+static void a_fed_column_bears_its_weight(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mpm_scene fed = soil(context, 0.25), whole = soil(context, 1.0);
+  for (int layer = 0; layer < 6; layer++) {
+    const double lo[2] = {0.0, 0.25 + 0.125 * layer}, hi[2] = {0.2, lo[1] + 0.125};
+    int64_t added = 0;
+    mps_assert_ok(context, mps_particles_fill_box(fed.particles, lo, hi, &added));
+    assert_int_equal(added, 40);
+    mps_assert_ok(context, mps_particles_set(fed.particles, "density", 0, 1000.0));
+    settle(&fed, 10);
+  }
+  settle(&fed, 60);
+  settle(&whole, 60);
+  mps_view x = mpm_scene_view(&fed, "position"), stress = mpm_scene_view(&fed, "stress");
+  mps_view other = mpm_scene_view(&whole, "stress");
+  assert_int_equal(x.shape[0], 320);
+  mps_assert_near(mpm_scene_totals(&fed).mass, 200.0, 1e-11);
+  double worst = 0.0, apart = 0.0;
+  for (int64_t id = 0; id < 320; id++) {
+    const int64_t k = mps_particles_index(fed.particles, id);
+    const int64_t q = mps_particles_index(whole.particles, id);
+    const double y = 0.025 * ((double)(id / 8) + 0.5); /* small strains: where it has been put */
+    const double error = *mps_view_f64(&stress, k, 1) + 1e4 * (1.0 - y);
+    worst = fmax(worst, fabs(error));
+    apart = fmax(apart, fabs(*mps_view_f64(&stress, k, 1) - *mps_view_f64(&other, q, 1)));
+  }
+  if (!(worst < 200.0) || !(apart < 200.0))
+    fail_msg("stress is %g Pa from rho g (H - y), %g Pa from that of a column made whole", worst,
+             apart);
+  mpm_scene_end(&fed);
+  mpm_scene_end(&whole);
+  mps_context_destroy(&context);
+}
+
+/* ---- bits ------------------------------------------------------------------------------------ */
+
+/* Some go and some come, at rest below what is there or with a velocity of their own. */
+static void change_some(scene *x) {
+  mps_particles *set = x->s.particles;
+  mps_context *context = x->s.context;
+  int64_t ids[MOST], some = 0;
+  const int64_t count = above(set, 0.12, ids), first = mps_particles_count(set);
+  for (int64_t k = 0; k < count; k += 7) ids[some++] = ids[k];
+  mps_assert_ok(context, mps_particles_remove(set, some, ids));
+  const double lo[3] = {0.5, 0.1, 0.02}, hi[3] = {0.6, 0.2, 0.12};
+  int64_t added = 0;
+  mps_assert_ok(context, mps_particles_fill_box(set, lo, hi, &added));
+  mps_assert_ok(context, mps_particles_set(set, "density", 0, 1500.0));
+  assert_true(added >= 100 && some > 20);
+  mps_view v;
+  mps_assert_ok(context, mps_particles_edit(set, "velocity", &v));
+  for (int64_t k = first - some; k < v.shape[0]; k++) *mps_view_f64(&v, k, 0) = -1.0;
+  mps_assert_ok(context, mps_particles_commit(set, &v));
+}
+
+static void same_bits_on_any_threads(void **state) {
+  (void)state;
+  int32_t threads[3] = {1, 2, 3};
+  scene x[3];
+  mps_context *context[3];
+  for (int t = 0; t < 3; t++) {
+    context[t] = on_threads(&threads[t]);
+    change c = none;
+    c.spacing = 0.005, c.cell = 0.01; /* many enough to share */
+    x[t] = build(context[t], MPS_MPM_PLANE_STRAIN, &c);
+    mps_assert_ok(context[t], mps_mpm_step(x[t].s.mpm, 20));
+    change_some(&x[t]);
+    mps_assert_ok(context[t], mps_mpm_step(x[t].s.mpm, 20));
+    assert_true(mps_particles_count(x[t].s.particles) > 2500);
+    if (t > 0) same(&x[t], &x[0]);
+  }
+  for (int t = 0; t < 3; t++) {
+    drop(&x[t]);
+    mps_context_destroy(&context[t]);
+  }
+}
+
+/* A column, some of it removed before the first step; and one that never had it. */
+static void what_remains_moves_as_if_made_so(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mpm_scene eroded = soil(context, 1.0), fresh = soil(context, 0.5);
+  int64_t ids[MOST];
+  const int64_t count = above(eroded.particles, 0.5, ids);
+  mps_assert_ok(context, mps_particles_remove(eroded.particles, count, ids));
+  for (int k = 0; k < 3; k++) {
+    mps_assert_ok(context, mps_mpm_step(eroded.mpm, 50));
+    mps_assert_ok(context, mps_mpm_step(fresh.mpm, 50));
+    scene a = {.s = eroded}, b = {.s = fresh};
+    same_fields(&a, &b);
+  }
+  /* And one that got it after it was made, once all is in its place. */
+  const double lo[2] = {0.0, 0.5}, hi[2] = {0.2, 1.0};
+  mpm_scene grown = soil(context, 0.5), whole = soil(context, 1.0);
+  mps_assert_ok(context, mps_particles_fill_box(grown.particles, lo, hi, NULL));
+  mps_assert_ok(context, mps_particles_set(grown.particles, "density", 0, 1000.0));
+  for (int k = 0; k < 3; k++) {
+    mps_assert_ok(context, mps_mpm_step(grown.mpm, 50));
+    mps_assert_ok(context, mps_mpm_step(whole.mpm, 50));
+    scene a = {.s = grown}, b = {.s = whole};
+    same_fields(&a, &b);
+  }
+  mpm_scene_end(&eroded);
+  mpm_scene_end(&fresh);
+  mpm_scene_end(&grown);
+  mpm_scene_end(&whole);
+  mps_context_destroy(&context);
+}
+
+/* The way back crosses insertions and removals; a step repeated gives the particles that come again
+ * the ids that they had. */
+static void goes_back_across(int32_t geometry, int32_t threads) {
+  mps_context *context = on_threads(&threads);
+  scene x = build(context, geometry, &none), twin = build(context, geometry, &none);
+  mps_snapshot *start = NULL, *later = NULL;
+  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 10));
+  mps_assert_ok(context, mps_mpm_step(twin.s.mpm, 10));
+  mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &start));
+  for (int k = 0; k < 2; k++) {
+    change_some(&x);
+    mps_assert_ok(context, mps_mpm_step(x.s.mpm, 10));
+    if (k == 0) mps_assert_ok(context, mps_mpm_rollback(x.s.mpm, start));
+    if (k == 0) same(&x, &twin);
+  }
+  change_some(&twin);
+  mps_assert_ok(context, mps_mpm_step(twin.s.mpm, 10));
+  same(&x, &twin);
+  mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &later));
+  mps_assert_ok(context, mps_mpm_rollback(x.s.mpm, start)); /* to and fro */
+  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 5));
+  mps_assert_ok(context, mps_mpm_rollback(x.s.mpm, later));
+  same(&x, &twin);
+  int64_t ids[MOST];
+  const int64_t count = above(x.s.particles, 0.0, ids);
+  mps_assert_ok(context, mps_particles_remove(x.s.particles, count, ids)); /* all */
+  mps_assert_ok(context, mps_mpm_rollback(x.s.mpm, later));
+  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 5));
+  mps_assert_ok(context, mps_mpm_step(twin.s.mpm, 5));
+  same(&x, &twin);
+  mps_snapshot_destroy(&start);
+  mps_snapshot_destroy(&later);
+  drop(&x);
+  drop(&twin);
+  mps_context_destroy(&context);
+}
+
+static void goes_back_across_what_came_and_went(void **state) {
+  (void)state;
+  goes_back_across(MPS_MPM_PLANE_STRAIN, 1);
+  goes_back_across(MPS_MPM_AXISYMMETRIC, 2);
+  goes_back_across(MPS_MPM_SPACE, 3);
+}
+
+/* ---- what new particles are ------------------------------------------------------------------ */
+
+static void new_particles_take_material_volume_and_mass(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mpm_scene s = soil(context, 0.5);
+  mps_von_mises_def def = mps_von_mises_defaults();
+  def.young = 1e6, def.poisson = 0.3, def.yield_stress = 1e3;
+  mps_material *clay = NULL;
+  mps_assert_ok(context, mps_material_von_mises(context, &def, &clay));
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 30));
+  const double places[4] = {0.05, 0.7, 0.15, 0.7};
+  mps_assert_ok(context, mps_particles_append(s.particles, 2, places));
+  FAILS(mps_mpm_step(s.mpm, 1), MPS_ERROR_STATE, "particle 160 has come since");
+  assert_int_equal(mps_context_error(context)->particle, 160);
+  mps_snapshot *snapshot = NULL;
+  FAILS(mps_mpm_snapshot(s.mpm, &snapshot), MPS_ERROR_STATE, "has density 0");
+  const int64_t last[1] = {161};
+  mps_assert_ok(context, mps_mpm_set_material(s.mpm, clay, 1, last));
+  mps_material_destroy(&clay);
+  mps_view rho, volume, mass;
+  const double heavy = column(s.particles, "mass", 0, &mass)[3];
+  mps_assert_ok(context, mps_particles_edit(s.particles, "density", &rho));
+  const int64_t a = mps_particles_index(s.particles, 160),
+                b = mps_particles_index(s.particles, 161);
+  *mps_view_f64(&rho, a, 0) = 2000.0;
+  *mps_view_f64(&rho, b, 0) = 1e13;
+  FAILS(mps_particles_commit(s.particles, &rho), MPS_ERROR_ARGUMENT, "of particle 161");
+  *mps_view_f64(&rho, b, 0) = 3000.0;
+  mps_assert_ok(context, mps_particles_commit(s.particles, &rho));
+  mps_assert_near(*mps_view_f64(&mass, a, 0), 2000.0 * 0.025 * 0.025, 1e-15);
+  mps_assert_ok(context, mps_particles_edit(s.particles, "volume", &volume));
+  *mps_view_f64(&volume, b, 0) = 1e-3;
+  mps_assert_ok(context, mps_particles_commit(s.particles, &volume));
+  mps_assert_near(*mps_view_f64(&mass, b, 0), 3.0, 1e-15);
+  assert_true(*mps_view_f64(&mass, 3, 0) == heavy); /* deformed, and not written to */
+  mps_assert_ok(context, mps_particles_edit(s.particles, "volume", &volume));
+  *mps_view_f64(&volume, b, 0) = -1.0;
+  FAILS(mps_particles_commit(s.particles, &volume), MPS_ERROR_ARGUMENT, "of particle 161 is -1 m3");
+  *mps_view_f64(&volume, b, 0) = 0.0; /* the lattice's */
+  mps_assert_ok(context, mps_particles_commit(s.particles, &volume));
+  mps_assert_near(*mps_view_f64(&mass, b, 0), 3000.0 * 0.025 * 0.025, 1e-15);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 5));
+  mps_view law = mpm_scene_view(&s, "material");
+  const int64_t *number = law.data;
+  assert_int_equal(number[mps_particles_index(s.particles, 161)], 1);
+  assert_int_equal(number[mps_particles_index(s.particles, 160)], 0);
+  mps_assert_near(mpm_scene_totals(&s).mass, 160 * 0.625 + 5 * 0.625, 1e-11);
+  /* They fall freely, but for what the others' nodes take. */
+  mps_view v = mpm_scene_view(&s, "velocity");
+  assert_true(*mps_view_f64(&v, mps_particles_index(s.particles, 160), 1) < 0.0);
+  mpm_scene_end(&s);
+  mps_context_destroy(&context);
+}
+
+/* A boundary holds those of its list that there are. */
+static void held_particles_leave_the_list_and_come_back(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mpm_scene s = soil(context, 0.5);
+  const int64_t ids[3] = {150, 151, 152}, gone[2] = {151, 3};
+  mps_mpm_boundary_def def = mps_mpm_boundary_defaults();
+  mps_snapshot *snapshot = NULL;
+  mps_reaction r;
+  int32_t number = -1;
+  def.ids = ids, def.id_count = 3;
+  mps_assert_ok(context, mps_mpm_add_boundary(s.mpm, &def, &number));
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 5));
+  mps_assert_ok(context, mps_mpm_snapshot(s.mpm, &snapshot));
+  mps_assert_ok(context, mps_particles_remove(s.particles, 2, gone));
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+  mps_assert_ok(context, mps_mpm_get_reaction(s.mpm, number, &r));
+  assert_int_equal(r.count, 2);
+  mps_assert_ok(context, mps_mpm_rollback(s.mpm, snapshot));
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+  mps_assert_ok(context, mps_mpm_get_reaction(s.mpm, number, &r));
+  assert_int_equal(r.count, 3);
+  mps_snapshot_destroy(&snapshot);
+  mpm_scene_end(&s);
+  mps_context_destroy(&context);
+}
+
+/* ---- what is refused ------------------------------------------------------------------------- */
+
+static mps_status meddle(void *user, mps_mpm *mpm) {
+  mps_context *context = mps_mpm_context(mpm);
+  mps_particles *set = mps_mpm_particles(mpm);
+  const double there[2] = {0.5, 0.5};
+  const int64_t ids[1] = {5};
+  ++*(int *)user;
+  FAILS(mps_particles_append(set, 1, there), MPS_ERROR_STATE, "a callback of this solver");
+  FAILS(mps_particles_remove(set, 1, ids), MPS_ERROR_STATE, "a callback of this solver");
+  return MPS_OK;
+}
+
+static void refusals_change_nothing(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  scene x = build(context, MPS_MPM_PLANE_STRAIN, &none),
+        twin = build(context, MPS_MPM_PLANE_STRAIN, &none);
+  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 20));
+  mps_assert_ok(context, mps_mpm_step(twin.s.mpm, 20));
+  const double out[4] = {0.7, 0.7, 1.2, 0.7}, within[4] = {0.7, 0.7, 0.1, 0.03};
+  const double lo[2] = {0.9, 0.5}, hi[2] = {1.1, 0.6};
+  const int64_t bad[2] = {7, 4711};
+  int calls = 0;
+  FAILS(mps_particles_append(x.s.particles, 2, out), MPS_ERROR_ARGUMENT, "outside the domain");
+  FAILS(mps_particles_append(x.s.particles, 2, within), MPS_ERROR_ARGUMENT,
+        "1 particles lie inside");
+  FAILS(mps_particles_fill_box(x.s.particles, lo, hi, NULL), MPS_ERROR_ARGUMENT, "outside the");
+  FAILS(mps_particles_remove(x.s.particles, 2, bad), MPS_ERROR_ARGUMENT, "no such particle");
+  same(&x, &twin);
+  mps_assert_ok(context, mps_mpm_run(x.s.mpm, mps_mpm_time(x.s.mpm) + 1e-3, 1000, meddle, &calls));
+  mps_assert_ok(context,
+                mps_mpm_run(twin.s.mpm, mps_mpm_time(twin.s.mpm) + 1e-3, 1000, NULL, NULL));
+  assert_int_equal(calls, 2);
+  same(&x, &twin);
+  drop(&x);
+  drop(&twin);
+  mps_context_destroy(&context);
+}
+
+/* All may go; time goes on, and others may come. */
+static void an_empty_solver_waits(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mpm_scene s = soil(context, 0.5);
+  int64_t ids[MOST];
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 5));
+  const int64_t count = above(s.particles, 0.0, ids);
+  assert_int_equal(count, 160);
+  mps_assert_ok(context, mps_particles_remove(s.particles, count, ids));
+  FAILS(mps_mpm_step(s.mpm, 1), MPS_ERROR_STATE, "no particles");
+  mps_assert_ok(context, mps_mpm_run(s.mpm, 1.0, 1, NULL, NULL));
+  mps_assert_near(mps_mpm_time(s.mpm), 1.0, 0.0);
+  mps_assert_near(mpm_scene_totals(&s).mass, 0.0, 0.0);
+  mps_snapshot *snapshot = NULL;
+  mps_assert_ok(context, mps_mpm_snapshot(s.mpm, &snapshot));
+  const double place[2] = {0.1, 0.9};
+  for (int k = 0; k < 2; k++) {
+    mps_assert_ok(context, mps_particles_append(s.particles, 1, place));
+    assert_int_equal(mps_particles_nearest(s.particles, place), 160);
+    mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 500.0));
+    mps_assert_ok(context, mps_mpm_run(s.mpm, 1.1, 1, NULL, NULL));
+    mps_view v = mpm_scene_view(&s, "velocity");
+    mps_assert_near(*mps_view_f64(&v, 0, 1), -1.0, 1e-12); /* g t */
+    if (k == 0) mps_assert_ok(context, mps_mpm_rollback(s.mpm, snapshot));
+  }
+  mps_snapshot_destroy(&snapshot);
+  mpm_scene_end(&s);
+  mps_context_destroy(&context);
+}
+
+/* Each allocation is refused in turn: all or nothing. */
+static mps_status come_and_go(mps_context *own, int what) {
+  (void)what;
+  scene x;
+  mps_snapshot *snapshot = NULL;
+  const double lo[2] = {0.5, 0.1}, hi[2] = {0.9, 0.3};
+  const int64_t ids[2] = {3, 400};
+  mps_status status = try_build(own, MPS_MPM_PLANE_STRAIN, &none, &x);
+  if (status == MPS_OK) status = mps_mpm_snapshot(x.s.mpm, &snapshot);
+  if (status == MPS_OK) status = mps_particles_remove(x.s.particles, 2, ids);
+  if (status == MPS_OK) {
+    status = mps_particles_fill_box(x.s.particles, lo, hi, NULL);
+    assert_int_equal(mps_particles_count(x.s.particles), status == MPS_OK ? 1598 : 798);
+  }
+  if (status == MPS_OK) status = mps_particles_set(x.s.particles, "density", 0, 1500.0);
+  if (status == MPS_OK) status = mps_mpm_step(x.s.mpm, 1);
+  if (status == MPS_OK) {
+    status = mps_mpm_rollback(x.s.mpm, snapshot);
+    assert_int_equal(mps_particles_count(x.s.particles), status == MPS_OK ? 800 : 1598);
+  }
+  mps_snapshot_destroy(&snapshot);
+  drop(&x);
+  return status;
+}
+
+static void refused_allocations_leave_nothing_behind(void **state) {
+  (void)state;
+  test_allocator_sweep(come_and_go, 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(erosion_of_half_a_column_takes_its_mass_and_momentum),
+      cmocka_unit_test(a_fed_column_bears_its_weight),
+      cmocka_unit_test(same_bits_on_any_threads),
+      cmocka_unit_test(what_remains_moves_as_if_made_so),
+      cmocka_unit_test(goes_back_across_what_came_and_went),
+      cmocka_unit_test(new_particles_take_material_volume_and_mass),
+      cmocka_unit_test(held_particles_leave_the_list_and_come_back),
+      cmocka_unit_test(refusals_change_nothing),
+      cmocka_unit_test(an_empty_solver_waits),
+      cmocka_unit_test(refused_allocations_leave_nothing_behind),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
