@@ -9,16 +9,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-bool plot_open(output *script, app *a, const char *directory, const char *name, int width,
-               int height) {
+static bool open_script(output *script, app *a, const char *directory, const char *name,
+                        const char *kind, const char *terminal) {
   char file[80];
   snprintf(file, sizeof file, "%s.gp", name);
   if (!output_open(script, a, directory, file)) return false;
   output_text(script,
-              "# Draws %s.png from the CSV files beside it: gnuplot %s.gp\n"
+              "# Draws %s.%s from the data beside it: gnuplot %s.gp\n"
               "reset\n"
-              "if (!exists(\"picture\")) picture = '%s.png'\n"
-              "set terminal pngcairo size %d,%d enhanced font 'DejaVu Sans,15' linewidth 1.5\n"
+              "if (!exists(\"picture\")) picture = '%s.%s'\n"
+              "set terminal %s\n"
               "set output picture\n"
               "set encoding utf8\n"
               "set datafile separator ','\n"
@@ -26,8 +26,26 @@ bool plot_open(output *script, app *a, const char *directory, const char *name, 
               "set border linecolor rgb '#333333'\n"
               "set tics nomirror out\n"
               "set grid linecolor rgb '#dddddd' linetype 1 linewidth 0.6\n",
-              name, name, name, width, height);
+              name, kind, name, name, kind, terminal);
   return true;
+}
+
+bool plot_open(output *script, app *a, const char *directory, const char *name, int width,
+               int height) {
+  char terminal[120];
+  snprintf(terminal, sizeof terminal,
+           "pngcairo size %d,%d enhanced font 'DejaVu Sans,15' linewidth 1.5", width, height);
+  return open_script(script, a, directory, name, "png", terminal);
+}
+
+bool plot_open_animation(output *script, app *a, const char *directory, const char *name, int width,
+                         int height, double step) {
+  char terminal[160];
+  const int hundredths = (int)(100.0 * step + 0.5);
+  snprintf(terminal, sizeof terminal,
+           "gif animate delay %d loop 0 optimize size %d,%d enhanced font 'DejaVu Sans,11'",
+           hundredths > 2 ? hundredths : 2, width, height);
+  return open_script(script, a, directory, name, "gif", terminal);
 }
 
 /* ---- gnuplot --------------------------------------------------------------------------------- */
@@ -87,8 +105,8 @@ static const char *reason_of(char *said) {
 
 /* ---- the picture ----------------------------------------------------------------------------- */
 
-/* A PNG begins with its signature and ends with the chunk IEND. */
-static bool is_complete(const char *path) {
+/* A PNG begins with its signature and ends with the chunk IEND; a GIF with GIF8 and a semicolon. */
+static bool is_complete(const char *path, const char *kind) {
   static const unsigned char begin[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
   static const unsigned char end[8] = {'I', 'E', 'N', 'D', 0xae, 0x42, 0x60, 0x82};
   unsigned char first[8], last[8];
@@ -97,16 +115,17 @@ static bool is_complete(const char *path) {
   const bool read =
       fread(first, 1, 8, f) == 8 && fseek(f, -8, SEEK_END) == 0 && fread(last, 1, 8, f) == 8;
   fclose(f);
+  if (strcmp(kind, "gif") == 0) return read && memcmp(first, "GIF8", 4) == 0 && last[7] == ';';
   return read && memcmp(first, begin, 8) == 0 && memcmp(last, end, 8) == 0;
 }
 
-static bool draw(app *a, const char *directory, const char *name) {
+static bool draw(app *a, const char *directory, const char *name, const char *kind) {
   char variable[120], script[80], said[2048], picture[4096], part[4096];
   snprintf(script, sizeof script, "%s.gp", name);
-  snprintf(variable, sizeof variable, "picture='%s.png.part'", name);
-  if (snprintf(picture, sizeof picture, "%s/%s.png", directory, name) >= (int)sizeof picture ||
-      snprintf(part, sizeof part, "%s/%s.png.part", directory, name) >= (int)sizeof part)
-    return app_error(a, "the path of %s.png is too long", name);
+  snprintf(variable, sizeof variable, "picture='%s.%s.part'", name, kind);
+  if (snprintf(picture, sizeof picture, "%s/%s.%s", directory, name, kind) >= (int)sizeof picture ||
+      snprintf(part, sizeof part, "%s/%s.%s.part", directory, name, kind) >= (int)sizeof part)
+    return app_error(a, "the path of %s.%s is too long", name, kind);
   const int status = run(directory, variable, script, said, sizeof said);
   if (status == NOT_FOUND) {
     if (!a->no_gnuplot)
@@ -114,7 +133,7 @@ static bool draw(app *a, const char *directory, const char *name) {
     a->no_gnuplot = true;
     return true;
   }
-  if (status == 0 && is_complete(part) && rename(part, picture) == 0) {
+  if (status == 0 && is_complete(part, kind) && rename(part, picture) == 0) {
     app_wrote(a, picture);
     return true;
   }
@@ -123,11 +142,20 @@ static bool draw(app *a, const char *directory, const char *name) {
                    status == 0 ? "the picture is cut off, as on a full disk" : reason_of(said));
 }
 
-bool plot_close(output *script, const char *directory, const char *name) {
+static bool close_script(output *script, const char *directory, const char *name,
+                         const char *kind) {
   app *a = script->a;
   output_text(script, "unset output\nundefine picture\n");
   if (!output_close(script)) return false;
   progress_clear(&a->bar);
   fflush(stdout);
-  return draw(a, directory, name);
+  return draw(a, directory, name, kind);
+}
+
+bool plot_close(output *script, const char *directory, const char *name) {
+  return close_script(script, directory, name, "png");
+}
+
+bool plot_close_animation(output *script, const char *directory, const char *name) {
+  return close_script(script, directory, name, "gif");
 }

@@ -14,4 +14,9 @@ bool plot_open(output *script, app *a, const char *directory, const char *name, 
  * to draw it later, which is no error. */
 bool plot_close(output *script, const char *directory, const char *name);
 
+/* The same for an animation NAME.gif: each plot of the script is a frame, shown for `step` s. */
+bool plot_open_animation(output *script, app *a, const char *directory, const char *name, int width,
+                         int height, double step);
+bool plot_close_animation(output *script, const char *directory, const char *name);
+
 #endif

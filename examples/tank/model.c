@@ -10,7 +10,7 @@
 
 /* First mode of sloshing: a particle of the lattice where linear theory has it. */
 static void displace(const tank_settings *s, double *x) {
-  const double k = TANK_PI / s->length, at = x[0], y = x[1], a = s->amplitude;
+  const double k = WAVES_PI / s->length, at = x[0], y = x[1], a = s->amplitude;
   x[0] -= a * sin(k * at) * cosh(k * y) / sinh(k * s->depth);
   x[1] += a * cos(k * at) * sinh(k * y) / sinh(k * s->depth);
 }
@@ -54,35 +54,15 @@ static mps_status fill_drop(const tank_settings *s, mps_particles *water) {
 
 /* ---- walls ----------------------------------------------------------------------------------- */
 
-/* amplitude sin(2 pi t/T), risen by 3 s^2 - 2 s^3 over the ramp. */
-static mps_status move_piston(void *user, double t, double motion[3]) {
-  const tank_settings *p = user;
-  const double w = 2.0 * TANK_PI / p->period, ramp = p->ramp;
-  const double s = t <= 0.0 ? 0.0 : ramp > 0.0 && t < ramp ? t / ramp : 1.0;
-  const bool rising = t > 0.0 && s < 1.0;
-  const double rise = s * s * (3.0 - 2.0 * s), rate = rising ? 6.0 * s * (1.0 - s) / ramp : 0.0;
-  const double bend = rising ? (6.0 - 12.0 * s) / (ramp * ramp) : 0.0;
-  motion[0] = p->amplitude * rise * sin(w * t);
-  motion[1] = p->amplitude * (rate * sin(w * t) + rise * w * cos(w * t));
-  motion[2] =
-      p->amplitude * (bend * sin(w * t) + 2.0 * rate * w * cos(w * t) - rise * w * w * sin(w * t));
-  return MPS_OK;
-}
-
-static mps_status add_wall(tank_model *m, double x, double nx, double ny, mps_signal *signal) {
-  mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
-  def.point[0] = x;
-  def.normal[0] = nx, def.normal[1] = ny;
-  def.signal = signal;
-  return mps_fluid_add_boundary(m->fluid, &def, NULL);
-}
-
 static mps_status add_walls(mps_context *context, tank_model *m) {
+  const double corner[2] = {0.0, 0.0}, right[2] = {m->s.length, 0.0};
   mps_status status = MPS_OK;
-  if (m->s.kind == TANK_PISTON) status = mps_signal_user(context, move_piston, &m->s, &m->piston);
-  if (status == MPS_OK) status = add_wall(m, 0.0, 0.0, 1.0, NULL);
-  if (status == MPS_OK) status = add_wall(m, 0.0, 1.0, 0.0, m->piston);
-  if (status == MPS_OK) status = add_wall(m, m->s.length, -1.0, 0.0, NULL);
+  m->motion = (waves_piston){m->s.amplitude, m->s.period, m->s.ramp};
+  if (m->s.kind == TANK_PISTON)
+    status = mps_signal_user(context, waves_move_piston, &m->motion, &m->piston);
+  if (status == MPS_OK) status = waves_add_wall(m->fluid, corner, 0.0, 1.0, NULL, NULL);
+  if (status == MPS_OK) status = waves_add_wall(m->fluid, corner, 1.0, 0.0, m->piston, NULL);
+  if (status == MPS_OK) status = waves_add_wall(m->fluid, right, -1.0, 0.0, NULL, NULL);
   return status;
 }
 
@@ -93,7 +73,7 @@ mps_status tank_build(mps_context *context, tank_model *m) {
   set.spacing = s->spacing;
   def.dt = s->dt;
   def.viscosity = s->viscosity;
-  def.density = TANK_DENSITY;
+  def.density = WAVES_DENSITY;
   if (s->kind == TANK_DROP)
     def.gravity[1] = 0.0;
   else

@@ -26,7 +26,7 @@ static double harmonic(const tank_model *m, int gauge) {
     const tank_sample *end[2] = {p, q};
     for (int e = 0; e < 2; e++) {
       const double value = gauge < 0 ? end[e]->right : end[e]->level[gauge];
-      const double half = 0.5 * (q->t - p->t) * value, w = 2.0 * TANK_PI * end[e]->t / T;
+      const double half = 0.5 * (q->t - p->t) * value, w = 2.0 * WAVES_PI * end[e]->t / T;
       c += half * cos(w), s += half * sin(w);
     }
   }
@@ -178,7 +178,7 @@ static bool draw_water(app *a, const tank_model *m) {
 
 static bool draw_force(app *a, const tank_model *m) {
   const tank_settings *s = &m->s;
-  const double still = 0.5 * TANK_DENSITY * TANK_G * s->depth * s->depth;
+  const double still = 0.5 * WAVES_DENSITY * WAVES_G * s->depth * s->depth;
   output f;
   if (!plot_open(&f, a, s->out, "force", 1000, 700)) return false;
   output_text(
@@ -205,8 +205,8 @@ static bool draw_force(app *a, const tank_model *m) {
 
 static void summarise_waves(output *f, const tank_model *m, const figures *g) {
   const tank_settings *s = &m->s;
-  const double k = tank_wave_number(s->period, s->depth);
-  const double havelock = 2.0 * s->amplitude * tank_havelock(k, s->depth);
+  const double k = waves_number(s->period, s->depth);
+  const double havelock = 2.0 * s->amplitude * waves_havelock(k, s->depth);
   const double H = harmonic(m, TANK_GAUGES);
   const double gauge = gauges_of(m) ? 2.0 * harmonic(m, 0) : NAN;
   json_number(f, "wave_number", k);
@@ -216,14 +216,15 @@ static void summarise_waves(output *f, const tank_model *m, const figures *g) {
   json_optional(f, "force_harmonic", harmonic(m, -1));
   json_optional(f, "crest_force", g->most);
   json_optional(f, "trough_force", g->least);
-  json_optional(f, "sainflou_crest", isnan(H) ? NAN : tank_sainflou(k, s->depth, H, 1));
-  json_optional(f, "sainflou_trough", isnan(H) ? NAN : tank_sainflou(k, s->depth, H, -1));
+  json_optional(f, "sainflou_crest", isnan(H) ? NAN : waves_sainflou(k, s->depth, H, 1));
+  json_optional(f, "sainflou_trough", isnan(H) ? NAN : waves_sainflou(k, s->depth, H, -1));
   if (!isnan(gauge))
     printf("wave height at the gauge %.4f m, Havelock for an endless flume %.4f m\n", gauge,
            havelock);
   if (!isnan(H))
     printf("force on the wall: crest %.1f N, Sainflou %.1f N; trough %.1f N, Sainflou %.1f N\n",
-           g->most, tank_sainflou(k, s->depth, H, 1), g->least, tank_sainflou(k, s->depth, H, -1));
+           g->most, waves_sainflou(k, s->depth, H, 1), g->least,
+           waves_sainflou(k, s->depth, H, -1));
 }
 
 static void summarise_drop(output *f, const tank_model *m) {
@@ -242,7 +243,7 @@ static void summarise_drop(output *f, const tank_model *m) {
 static void summarise_tank(output *f, const tank_model *m) {
   const tank_settings *s = &m->s;
   const figures g = find_figures(m);
-  const double still = 0.5 * TANK_DENSITY * TANK_G * s->depth * s->depth;
+  const double still = 0.5 * WAVES_DENSITY * WAVES_G * s->depth * s->depth;
   json_optional(f, "force_mean", g.mean);
   json_optional(f, "force_std", g.deviation);
   json_number(f, "force_still", still);
@@ -251,7 +252,7 @@ static void summarise_tank(output *f, const tank_model *m) {
         "force on the right wall: mean %.3f N, rho g d^2/2 is %.3f N; standard deviation %.3f N\n",
         g.mean, still, g.deviation);
   if (s->kind == TANK_SLOSHING) {
-    const double exact = tank_sloshing_period(s->length, s->depth);
+    const double exact = waves_sloshing_period(s->length, s->depth);
     json_optional(f, "period", g.period);
     json_number(f, "period_exact", exact);
     json_optional(f, "decay", g.decay);

@@ -15,6 +15,7 @@
  *   dynamics.h    explicit elastodynamics
  *   elastic.h     implicit elasticity
  *   fluid.h       free-surface flow
+ *   couple.h      implicit coupling of two codes
  *   io.h          series of results, restart files
  *
  * Another library of this name, MPSolve (Debian's libmps), has a header mps/mps.h too. A source may use
@@ -27,6 +28,7 @@
 #include "body.h"
 #include "contact.h"
 #include "context.h"
+#include "couple.h"
 #include "dynamics.h"
 #include "elastic.h"
 #include "fluid.h"

@@ -1,0 +1,81 @@
+/* waves.c - see waves.h.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "waves.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+/* ---- tank ------------------------------------------------------------------------------------ */
+
+mps_status waves_move_piston(void *user, double t, double motion[3]) {
+  const waves_piston *p = user;
+  const double w = 2.0 * WAVES_PI / p->period, ramp = p->ramp;
+  const double s = t <= 0.0 ? 0.0 : ramp > 0.0 && t < ramp ? t / ramp : 1.0;
+  const bool rising = t > 0.0 && s < 1.0;
+  const double rise = s * s * (3.0 - 2.0 * s), rate = rising ? 6.0 * s * (1.0 - s) / ramp : 0.0;
+  const double bend = rising ? (6.0 - 12.0 * s) / (ramp * ramp) : 0.0;
+  motion[0] = p->amplitude * rise * sin(w * t);
+  motion[1] = p->amplitude * (rate * sin(w * t) + rise * w * cos(w * t));
+  motion[2] =
+      p->amplitude * (bend * sin(w * t) + 2.0 * rate * w * cos(w * t) - rise * w * w * sin(w * t));
+  return MPS_OK;
+}
+
+mps_status waves_fill(mps_context *context, double length, double depth, double spacing,
+                      mps_particles **out) {
+  mps_particles_def def = mps_particles_defaults();
+  const double lo[] = {0.0, 0.0}, hi[] = {length, depth};
+  def.spacing = spacing;
+  const mps_status status = mps_particles_create(context, &def, out);
+  return status == MPS_OK ? mps_particles_fill_box(*out, lo, hi, NULL) : status;
+}
+
+mps_status waves_add_wall(mps_fluid *fluid, const double *point, double nx, double ny,
+                          mps_signal *signal, int32_t *number) {
+  mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+  def.point[0] = point[0], def.point[1] = point[1];
+  def.normal[0] = nx, def.normal[1] = ny;
+  def.signal = signal;
+  return mps_fluid_add_boundary(fluid, &def, number);
+}
+
+/* ---- theory ---------------------------------------------------------------------------------- */
+
+double waves_number(double period, double depth) {
+  const double w2 = 4.0 * WAVES_PI * WAVES_PI / (period * period);
+  double k = w2 / WAVES_G / sqrt(tanh(w2 * depth / WAVES_G)); /* close for all depths */
+  for (int n = 0; n < 50; n++) {
+    const double t = tanh(k * depth);
+    k -= (WAVES_G * k * t - w2) / (WAVES_G * (t + k * depth * (1.0 - t * t)));
+  }
+  return k;
+}
+
+double waves_havelock(double k, double depth) {
+  const double a = 2.0 * k * depth;
+  return 2.0 * (cosh(a) - 1.0) / (sinh(a) + a);
+}
+
+double waves_sainflou_rise(double k, double depth, double H) { /* pi H^2 coth(kd)/L */
+  return 0.5 * k * H * H / tanh(k * depth);
+}
+
+double waves_sainflou_bed(double k, double depth, double H) {
+  return WAVES_DENSITY * WAVES_G * H / cosh(k * depth);
+}
+
+double waves_sainflou(double k, double depth, double H, int sign) {
+  const double top = depth + sign * H + waves_sainflou_rise(k, depth, H);
+  return 0.5 * top * (WAVES_DENSITY * WAVES_G * depth + sign * waves_sainflou_bed(k, depth, H));
+}
+
+/* H + rise(H) = level: the positive root. */
+double waves_sainflou_height(double k, double depth, double level) {
+  const double a = 0.5 * k / tanh(k * depth);
+  return 2.0 * level / (1.0 + sqrt(1.0 + 4.0 * a * level));
+}
+
+double waves_sloshing_period(double length, double depth) {
+  const double k = WAVES_PI / length;
+  return 2.0 * WAVES_PI / sqrt(WAVES_G * k * tanh(k * depth));
+}

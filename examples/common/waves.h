@@ -1,0 +1,44 @@
+/* waves.h - what programs with waves share: the water's constants, a piston that makes waves, and
+ * what theory says of them; docs/references.md has the sources.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef EXAMPLES_WAVES_H
+#define EXAMPLES_WAVES_H
+
+#include <mps/fluid.h>
+#include <mps/signal.h>
+
+#define WAVES_PI 3.14159265358979323846
+#define WAVES_G 9.81         /* m/s2 */
+#define WAVES_DENSITY 1000.0 /* kg/m3 */
+
+/* amplitude sin(2 pi t/period), risen by 3 s^2 - 2 s^3 over the ramp (0: from the first instant).
+ */
+typedef struct waves_piston {
+  double amplitude, period, ramp; /* m, s, s */
+} waves_piston;
+/* A mps_signal_fn, `user` a waves_piston. */
+mps_status waves_move_piston(void *user, double t, double motion[3]);
+
+/* A set of water at rest, whole columns and rows of the spacing from the origin. */
+mps_status waves_fill(mps_context *context, double length, double depth, double spacing,
+                      mps_particles **out);
+/* A plane wall through (x, y) with the normal (nx, ny) into the water. `signal` may be NULL. */
+mps_status waves_add_wall(mps_fluid *fluid, const double *point, double nx, double ny,
+                          mps_signal *signal, int32_t *number);
+
+/* Wave number (1/m) of the period (s) in water of the depth (m): (2 pi/T)^2 = g k tanh(k d). */
+double waves_number(double period, double depth);
+/* Wave height over stroke of a piston (Havelock): 2 (cosh 2kd - 1)/(sinh 2kd + 2kd). */
+double waves_havelock(double k, double depth);
+/* Sainflou's standing wave at a vertical wall, the incident height H: rise of the mean level (m),
+ * swing of the pressure at the bed (Pa), and force (N/m) under the crest (sign 1) or the trough
+ * (-1). The pressure is linear from the crest to the bed. */
+double waves_sainflou_rise(double k, double depth, double H);
+double waves_sainflou_bed(double k, double depth, double H);
+double waves_sainflou(double k, double depth, double H, int sign);
+/* The incident height whose crest stands `level` (m, >= 0) above the water at rest. */
+double waves_sainflou_height(double k, double depth, double level);
+/* Period (s) of the first mode of a closed tank. */
+double waves_sloshing_period(double length, double depth);
+
+#endif

@@ -1,0 +1,159 @@
+/* mps-seawall - waves of a piston against an elastic wall: Chikazawa, section 4, Figures 9 to 13.
+ * The water is mps_fluid, the wall mps_elastic; the wall is loaded with the pressures of the water.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "seawall/seawall.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static bool is_whole(double length, double spacing) {
+  return fabs(length / spacing - nearbyint(length / spacing)) < 1e-6 * (1.0 + length / spacing);
+}
+
+static const char *check(const seawall_settings *s) {
+  if (!is_whole(s->length, s->spacing) || !is_whole(s->depth, s->spacing) ||
+      !is_whole(s->wall_thickness, s->spacing) || !is_whole(s->wall_height, s->spacing))
+    return "--length, --depth, --wall-thickness and --wall-height must be whole numbers of "
+           "--spacing";
+  if (s->depth < 5.0 * s->spacing * (1.0 - 1e-9)) return "--depth must be at least 5 spacings";
+  if (s->length < 10.0 * s->spacing) return "--length must be at least 10 spacings";
+  if (s->wall_thickness < 2.0 * s->spacing * (1.0 - 1e-9) || s->wall_height < s->depth)
+    return "--wall-thickness must be at least 2 spacings, --wall-height at least --depth";
+  if (s->length * s->depth / (s->spacing * s->spacing) > 2e6 ||
+      s->wall_thickness * s->wall_height / (s->spacing * s->spacing) > 2e6)
+    return "--spacing gives more than 2 million particles";
+  if (4.0 * fabs(s->amplitude) > s->length)
+    return "--amplitude must be at most a quarter of --length";
+  if (s->sample > s->duration || s->duration / s->sample > 1e6)
+    return "--sample must be between a millionth of --duration and all of it";
+  return NULL;
+}
+
+static mps_status open_series(app *a, seawall *w, const char *what, mps_particles *set,
+                              mps_recorder **out) {
+  mps_recorder_def def = mps_recorder_defaults();
+  char path[1200];
+  if (isnan(w->restarted))
+    snprintf(path, sizeof path, "%s/%s.vtkhdf", w->s.out, what);
+  else
+    snprintf(path, sizeof path, "%s/%s-from-%g.vtkhdf", w->s.out, what, w->restarted);
+  def.path = path;
+  const mps_status status = mps_recorder_create(a->context, set, &def, out);
+  if (status == MPS_OK) app_wrote(a, path);
+  return status == MPS_ERROR_UNSUPPORTED ? MPS_OK : status; /* a libmps without HDF5 */
+}
+
+static mps_status prepare(app *a, seawall *w) {
+  mps_status status = MPS_OK;
+  if (w->s.restart) status = seawall_peek(a->context, w);
+  if (status == MPS_OK) status = seawall_build(a, w);
+  if (status == MPS_OK && w->s.restart) status = seawall_restore(a->context, w);
+  if (status == MPS_OK && w->s.frames > 0)
+    status = open_series(a, w, "water", w->water, &w->series);
+  if (status == MPS_OK && w->s.frames > 0) {
+    status = mps_elastic_solve(w->wall.solver); /* so that its fields are there */
+    if (status == MPS_OK) status = open_series(a, w, "wall", w->wall.set, &w->wall_series);
+  }
+  return status;
+}
+
+static int run(app *a, seawall *w) {
+  static char path[1200];
+  if (!output_directory(a, w->s.out)) return APP_FAILED;
+  if (!w->s.checkpoint) {
+    snprintf(path, sizeof path, "%s/checkpoint.h5", w->s.out);
+    w->s.checkpoint = path;
+  }
+  mps_status status = prepare(a, w);
+  if (status != MPS_OK && w->why[0]) return app_error(a, "%s", w->why), APP_FAILED;
+  if (status != MPS_OK) return app_end_run(a, status, 0.0, false);
+  printf("%lld particles as the paper counts: %lld of water, %lld of the wall above the bed\n",
+         (long long)seawall_paper_particles(&w->s), (long long)mps_particles_count(w->water),
+         (long long)mps_particles_count(w->wall.set));
+  fflush(stdout);
+  status = seawall_run(a, w);
+  const int code = app_end_run(a, status, mps_fluid_time(w->fluid), w->samples > 0);
+  if (status == MPS_ERROR_CANCELLED && w->samples > 0 && !w->checkpoint_lost)
+    printf("To go on: the same command with --restart %s\n", w->s.checkpoint);
+  if (w->samples == 0) return code;
+  if (!seawall_write(a, w)) return APP_FAILED;
+  return w->checkpoint_lost && code == APP_OK ? APP_FAILED : code;
+}
+
+int main(int argc, char **argv) {
+  static seawall w = {.s = {.length = 1.6,
+                            .depth = 0.3,
+                            .spacing = 0.01,
+                            .amplitude = 0.05,
+                            .period = 1.0,
+                            .dt = 1e-3,
+                            .duration = 5.5,
+                            .sample = 0.01,
+                            .wall_thickness = 0.1,
+                            .wall_height = 0.43,
+                            .young = 2.1e11,
+                            .poisson = 0.3,
+                            .wall_density = 7850.0,
+                            .every_checkpoint = 1.0,
+                            .frames = 55,
+                            .out = "out/seawall"}};
+  seawall_settings *s = &w.s;
+  option table[] = {
+      OPTION_HEADING("Tank"),
+      OPTION_NUMBER("length", "m", OPTION_LENGTH, &s->length, "from the piston to the wall"),
+      OPTION_NUMBER("depth", "m", OPTION_LENGTH, &s->depth, "of the water"),
+      OPTION_NUMBER("spacing", "m", OPTION_LENGTH, &s->spacing, "of the particles, water and wall"),
+      OPTION_HEADING("Wave maker: amplitude sin(2 pi t/period)"),
+      OPTION_NUMBER("amplitude", "m", OPTION_FROM_TO(0.0, 1e3), &s->amplitude, "of the piston"),
+      OPTION_NUMBER("period", "s", OPTION_DURATION, &s->period, "of the piston"),
+      OPTION_NUMBER("ramp", "s", OPTION_FROM_TO(0.0, 1e6), &s->ramp,
+                    "in which the amplitude rises"),
+      OPTION_HEADING("Wall: plane strain, held in the layer of particles at the bed"),
+      OPTION_NUMBER("wall-thickness", "m", OPTION_LENGTH, &s->wall_thickness, "of the wall"),
+      OPTION_NUMBER("wall-height", "m", OPTION_LENGTH, &s->wall_height, "above the bed"),
+      OPTION_NUMBER("young", "Pa", OPTION_FROM_TO(1e3, 1e16), &s->young, "Young's modulus"),
+      OPTION_NUMBER("poisson", "1", OPTION_FROM_TO(0.0, 0.49), &s->poisson, "Poisson's ratio"),
+      OPTION_NUMBER("wall-density", "kg/m3", OPTION_DENSITY, &s->wall_density, "of the wall"),
+      OPTION_HEADING("Run"),
+      OPTION_NUMBER("duration", "s", OPTION_DURATION, &s->duration, "of the run"),
+      OPTION_NUMBER("dt", "s", OPTION_DURATION, &s->dt, "step"),
+      OPTION_NUMBER("sample", "s", OPTION_DURATION, &s->sample,
+                    "between rows of the table; then the wall is solved too"),
+      OPTION_INTEGER("frames", "N", OPTION_FROM_TO(0.0, 10000.0), &s->frames,
+                     "of the animation and of the series for ParaView; 0: none"),
+      OPTION_TEXT("checkpoint", "FILE", &s->checkpoint,
+                  "written on the way and at Ctrl-C, to go on from (default OUT/checkpoint.h5)"),
+      OPTION_NUMBER("every-checkpoint", "s", OPTION_DURATION, &s->every_checkpoint,
+                    "between checkpoints"),
+      OPTION_TEXT("restart", "FILE", &s->restart,
+                  "go on from a checkpoint made with the same options (but --out, --threads and "
+                  "those of checkpoints); the results are those of the whole run, the frames for "
+                  "ParaView those from here on"),
+      OPTION_OUT(&s->out),
+      OPTION_THREADS(&s->threads),
+      {0}};
+  const options_program program = {
+      "mps-seawall",
+      "Waves of a piston against an elastic wall (MPS fluid, implicit elasticity): Chikazawa, "
+      "Figures 9\n"
+      "to 13. The paper gives the piston, the step, E, nu and 5878 particles; length, depth and "
+      "spacing\n"
+      "of its tank, the height and thickness of the wall and how it is held are open. The defaults "
+      "are a\n"
+      "reading that gives its number: 160 x 30 of water, 3 layers under it, and, 43 above the bed "
+      "and 3\n"
+      "below, 3 columns of the piston and 10 of the wall. Here the piston and the bed need no "
+      "particles.",
+      table};
+  const int code = options_parse(&program, argc, argv);
+  if (code >= 0) return code;
+  const char *reason = check(s);
+  if (reason) return options_refuse(&program, reason);
+  app a;
+  w.table = table;
+  if (!app_start(&a, program.name, s->threads)) return app_finish(&a, APP_FAILED);
+  const int result = run(&a, &w);
+  seawall_free(&w);
+  return app_finish(&a, result);
+}

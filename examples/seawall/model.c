@@ -1,0 +1,88 @@
+/* model.c - the tank of mps-seawall: water, walls, and the elastic structure behind the right one.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "seawall.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+int64_t seawall_paper_particles(const seawall_settings *s) {
+  const int64_t columns = llround(s->length / s->spacing), rows = llround(s->depth / s->spacing);
+  const int64_t thick = llround(s->wall_thickness / s->spacing);
+  const int64_t high = llround(s->wall_height / s->spacing) + SEAWALL_LAYERS;
+  return columns * (rows + SEAWALL_LAYERS) + (SEAWALL_LAYERS + thick) * high;
+}
+
+static mps_status make_fluid(mps_context *context, seawall *w) {
+  const seawall_settings *s = &w->s;
+  const double corner[2] = {0.0, 0.0}, right[2] = {s->length, 0.0};
+  mps_fluid_def def = mps_fluid_defaults();
+  def.dt = s->dt, def.level = s->depth, def.density = WAVES_DENSITY;
+  w->motion = (waves_piston){s->amplitude, s->period, s->ramp};
+  mps_status status = waves_fill(context, s->length, s->depth, s->spacing, &w->water);
+  if (status == MPS_OK) status = mps_fluid_create(context, w->water, &def, &w->fluid);
+  if (status == MPS_OK)
+    status = mps_signal_user(context, waves_move_piston, &w->motion, &w->piston);
+  if (status == MPS_OK) status = waves_add_wall(w->fluid, corner, 0.0, 1.0, NULL, NULL);
+  if (status == MPS_OK) status = waves_add_wall(w->fluid, corner, 1.0, 0.0, w->piston, NULL);
+  return status == MPS_OK ? waves_add_wall(w->fluid, right, -1.0, 0.0, NULL, NULL) : status;
+}
+
+/* Its face is the plane of the fluid's wall; its particles begin half a spacing behind. It holds in
+ * the layer at the bed. */
+static mps_status make_wall(mps_context *context, seawall *w) {
+  const seawall_settings *s = &w->s;
+  const strip_def def = {.lower = {s->length, 0.0},
+                         .upper = {s->length + s->wall_thickness, s->wall_height},
+                         .spacing = s->spacing,
+                         .young = s->young,
+                         .poisson = s->poisson,
+                         .density = s->wall_density,
+                         .clamped = STRIP_BOTTOM,
+                         .level = STRIP_TOP,
+                         .wet = STRIP_LEFT};
+  mps_status status = strip_make(context, &def, &w->wall);
+  if (status != MPS_OK) return status;
+  w->pressure = calloc((size_t)w->wall.count, sizeof *w->pressure);
+  return w->pressure ? MPS_OK : MPS_ERROR_MEMORY;
+}
+
+static mps_status make_records(seawall *w) {
+  const seawall_settings *s = &w->s;
+  const size_t n = (size_t)mps_particles_count(w->wall.set);
+  w->capacity = (int64_t)ceil(s->duration / s->sample - 1e-9);
+  w->room = (int64_t)ceil(16.0 * s->depth / s->spacing) + 16;
+  w->sample = calloc((size_t)w->capacity + 1, sizeof *w->sample);
+  w->frame = calloc((size_t)s->frames + 2, sizeof *w->frame);
+  w->steps = (int64_t)ceil(s->duration / s->dt) + 8;
+  w->force = calloc((size_t)w->steps, sizeof *w->force);
+  w->look.y = calloc((size_t)w->room, sizeof(double));
+  w->look.pressure = calloc((size_t)w->room, sizeof(double));
+  w->look.displacement = calloc(2 * n, sizeof(double));
+  w->restarted = NAN;
+  return w->sample && w->frame && w->force && w->look.y && w->look.pressure && w->look.displacement
+             ? MPS_OK
+             : MPS_ERROR_MEMORY;
+}
+
+mps_status seawall_build(app *a, seawall *w) {
+  mps_status status = make_fluid(a->context, w);
+  if (status == MPS_OK) status = make_wall(a->context, w);
+  return status == MPS_OK ? make_records(w) : status;
+}
+
+void seawall_free(seawall *w) {
+  mps_recorder_destroy(&w->series);
+  mps_recorder_destroy(&w->wall_series);
+  mps_fluid_destroy(&w->fluid);
+  mps_signal_destroy(&w->piston);
+  mps_particles_destroy(&w->water);
+  strip_free(&w->wall);
+  for (int64_t k = 0; k < w->frames; k++) free(w->frame[k].value);
+  free(w->frame);
+  free(w->sample);
+  free(w->force);
+  free(w->pressure);
+  free(w->look.y);
+  free(w->look.pressure);
+  free(w->look.displacement);
+}

@@ -1,0 +1,161 @@
+/* pictures.c - Chikazawa's Figures 9 to 13 anew: the tank and the waves in it, the force on the
+ * wall in time, its pressures and its bending at the crest; and the waves as an animation.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "seawall.h"
+
+#include "common/plot.h"
+
+#include <math.h>
+
+enum { PANELS = 6, ACROSS = 2, STILL_WIDTH = 860 };
+
+static double highest(const seawall_settings *s) {
+  return fmax(s->wall_height, 1.5 * s->depth) + 2.0 * s->spacing;
+}
+
+/* What every picture of the water shares: axes, colours, the wall's outline. */
+static void begin_water(output *f, const seawall_settings *s) {
+  const double left = -1.2 * fabs(s->amplitude) - 4.0 * s->spacing;
+  output_text(f,
+              "set size ratio -1\nunset grid\nset ytics 0.1\nset xrange [%.6g:%.6g]\nset yrange "
+              "[%.6g:%.6g]\n"
+              "set palette defined (0 '#2c3e8f', 0.35 '#4aa3c7', 0.7 '#b7e0a5', 1 '#f4d03f')\n"
+              "set cbrange [0:%.6g]\nset cblabel 'pressure (kPa)'\n"
+              "set object 1 rectangle from %.9g,0 to %.9g,%.9g fillcolor rgb '#8a8f98' fillstyle "
+              "solid 1.0 noborder behind\n"
+              "set object 2 rectangle from %.9g,%.9g to %.9g,0 fillcolor rgb '#8a8f98' fillstyle "
+              "solid 1.0 noborder behind\n",
+              left, s->length + s->wall_thickness + 0.02, -2.0 * s->spacing, highest(s),
+              1.35e-3 * WAVES_DENSITY * WAVES_G * s->depth, s->length,
+              s->length + s->wall_thickness, s->wall_height, left, -2.0 * s->spacing,
+              s->length + s->wall_thickness);
+}
+
+/* Frame k; the piston is a bar behind its face. */
+static void plot_water(output *f, const seawall *w, int64_t k, double pixels) {
+  const seawall_settings *s = &w->s;
+  const seawall_frame *frame = &w->frame[k];
+  int64_t skip = 0;
+  for (int64_t i = 0; i < k; i++) skip += 3 * w->frame[i].count * (int64_t)sizeof(float);
+  const double size = 0.2 * pixels * s->spacing / (s->length + s->wall_thickness);
+  output_text(f,
+              "set object 3 rectangle from %.9g,0 to %.9g,%.9g fillcolor rgb '#c0392b' fillstyle "
+              "solid 1.0 noborder behind\nset title 't = %.2f s' offset 0,-0.6\n"
+              "plot 'frames.bin' binary format='%%float%%float%%float' record=%lld skip=%lld using "
+              "1:2:($3*1e-3) with points pointtype 7 pointsize %.3g linecolor palette notitle\n",
+              frame->piston - 2.0 * s->spacing, frame->piston, s->wall_height, frame->t,
+              (long long)frame->count, (long long)skip, fmax(size, 0.1));
+}
+
+/* Figures 9 and 10: the tank at rest, then the last waves. */
+static bool draw_waves(app *a, const seawall *w) {
+  const int down = PANELS / ACROSS, height = 70 + 245 * down;
+  output f;
+  if (w->frames == 0) return true;
+  if (!plot_open(&f, a, w->s.out, "waves", 1500, height)) return false;
+  output_text(&f,
+              "set multiplot layout %d,%d columnsfirst margins screen 0.045, screen 0.9, screen "
+              "0.05, screen 0.96 spacing screen 0.04, screen 0.07\n",
+              down, ACROSS);
+  begin_water(&f, &w->s);
+  output_text(&f, "set colorbox user origin screen 0.925,0.25 size screen 0.012,0.5\n");
+  for (int64_t p = 0; p < PANELS && p < w->frames; p++) {
+    const int64_t shown = w->frames < PANELS ? w->frames : PANELS;
+    plot_water(&f, w, shown > 1 ? p * (w->frames - 1) / (shown - 1) : 0, 640.0);
+    if (p == 0) output_text(&f, "unset colorbox\n");
+  }
+  output_text(&f, "unset multiplot\n");
+  return plot_close(&f, w->s.out, "waves");
+}
+
+static bool draw_animation(app *a, const seawall *w) {
+  output f;
+  if (w->frames < 3) return true;
+  const double step = (w->frame[w->frames - 1].t - w->frame[0].t) / (double)(w->frames - 1);
+  if (!plot_open_animation(&f, a, w->s.out, "animation", STILL_WIDTH, 330, step)) return false;
+  begin_water(&f, &w->s);
+  output_text(&f, "set lmargin 6\nset rmargin 12\nset bmargin 2.5\nset tmargin 2\n");
+  for (int64_t k = 0; k < w->frames; k++) plot_water(&f, w, k, 640.0);
+  return plot_close_animation(&f, w->s.out, "animation");
+}
+
+/* Figure 11. */
+static bool draw_force(app *a, const seawall *w, double H) {
+  const seawall_settings *s = &w->s;
+  const double k = waves_number(s->period, s->depth);
+  output f;
+  if (!plot_open(&f, a, s->out, "force", 1100, 560)) return false;
+  output_text(&f,
+              "set title 'Force of the water on the wall'\nset xlabel 't (s)'\nset ylabel 'force "
+              "(N per m of wall)'\nset key outside bottom center horizontal\n"
+              "set xrange [0:%.9g]\nset yrange [0:*]\n",
+              s->duration);
+  if (!isnan(H))
+    output_text(&f, "crest = %.9g\ntrough = %.9g\n", waves_sainflou(k, s->depth, H, 1),
+                waves_sainflou(k, s->depth, H, -1));
+  output_text(&f, "still = %.9g\nplot ", 0.5 * WAVES_DENSITY * WAVES_G * s->depth * s->depth);
+  output_text(&f, "still with lines linecolor rgb '#999999' linewidth 1 title 'water at rest', ");
+  if (!isnan(H))
+    output_text(
+        &f,
+        "\\\n  crest with lines dashtype '--' linecolor rgb '#c0392b' title 'Sainflou, crest "
+        "(H = %.3f m)', \\\n  trough with lines dashtype '.' linecolor rgb '#c0392b' title "
+        "'Sainflou, trough', ",
+        H);
+  output_text(&f,
+              "\\\n  'force.csv' every ::1 using ($1 < %.9g ? NaN : $1):2 with lines linecolor rgb "
+              "'#8fb3dd' linewidth 1 title 'MPS', \\\n  '' every ::1 using ($1 < %.9g ? NaN : "
+              "$1):3 with lines linecolor rgb '#1f4e8c' "
+              "linewidth 1.6 title 'below 10 Hz'\n",
+              SEAWALL_IMPULSE, SEAWALL_IMPULSE);
+  return plot_close(&f, s->out, "force");
+}
+
+/* Figure 12. */
+static bool draw_pressure(app *a, const seawall *w, double H) {
+  output f;
+  if (!plot_open(&f, a, w->s.out, "pressure", 640, 720)) return false;
+  output_text(&f,
+              "set title 'Pressure on the wall, t = %.2f s'\nset xlabel 'pressure (kPa)'\n"
+              "set ylabel 'height above the bed (m)'\nset key top right\nset xrange [0:*]\n"
+              "set yrange [0:%.9g]\nset arrow 1 from graph 0, first %.9g to graph 1, first %.9g "
+              "nohead linecolor rgb '#4aa3c7'\nset label 1 'water at rest' at graph 0.97, first "
+              "%.9g right offset 0,0.6 textcolor rgb '#4aa3c7'\nplot ",
+              w->look.at.t, 1.5 * w->s.depth, w->s.depth, w->s.depth, w->s.depth);
+  if (!isnan(H))
+    output_text(&f,
+                "'pressure.csv' every ::1 using ($3*1e-3):1 with lines dashtype '--' linecolor rgb "
+                "'#c0392b' title 'Sainflou, H = %.3f m', \\\n  ",
+                H);
+  output_text(&f,
+              "'pressure.csv' every ::1 using ($2*1e-3):1 with points pointtype 7 pointsize 0.9 "
+              "linecolor rgb '#1f4e8c' title 'MPS'\n");
+  return plot_close(&f, w->s.out, "pressure");
+}
+
+/* Figure 13. */
+static bool draw_deflection(app *a, const seawall *w) {
+  const seawall_settings *s = &w->s;
+  const double most = fmax(1e6 * fabs(w->look.at.deflection), 0.02);
+  output f;
+  if (!plot_open(&f, a, s->out, "deflection", 560, 760)) return false;
+  output_text(
+      &f,
+      "set title 'Wall at t = %.2f s, displacement times 10^6'\nset xlabel 'x (m)'\n"
+      "set ylabel 'y (m)'\nset size ratio -1\nset xrange [%.9g:%.9g]\nset yrange [%.9g:%.9g]\n"
+      "set xtics 0.1\nset key top left reverse Left\n"
+      "set label 1 'crest: %.3g m' at %.9g,%.9g center offset 0,1 textcolor rgb '#1f4e8c'\n"
+      "plot 'wall.csv' every ::1 using 1:2 with points pointtype 6 pointsize 0.7 linecolor "
+      "rgb '#bbbbbb' title 'unloaded', \\\n"
+      "  '' every ::1 using ($1+1e6*$3):($2+1e6*$4) with points pointtype 7 pointsize 0.7 "
+      "linecolor rgb '#1f4e8c' title 'bent'\n",
+      w->look.at.t, s->length - 0.05, s->length + s->wall_thickness + most + 0.05,
+      -2.0 * s->spacing, 1.3 * s->wall_height, w->look.at.deflection,
+      s->length + 0.5 * s->wall_thickness + 0.5 * most, 1.06 * s->wall_height);
+  return plot_close(&f, s->out, "deflection");
+}
+
+bool seawall_draw(app *a, const seawall *w, double H) {
+  return draw_waves(a, w) && draw_force(a, w, H) && draw_pressure(a, w, H) &&
+         draw_deflection(a, w) && draw_animation(a, w);
+}

@@ -1,0 +1,156 @@
+/* results.c - tables and summary of mps-seawall, and Sainflou's wave beside them.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "seawall.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* The incident height of the Sainflou wave whose crest is at the level of the look. */
+static double sainflou_height(const seawall *w) {
+  const double k = waves_number(w->s.period, w->s.depth);
+  if (w->samples == 0 || !(w->look.at.level > 0.02 * w->s.spacing)) return NAN;
+  return waves_sainflou_height(k, w->s.depth, w->look.at.level);
+}
+
+/* ---- tables ---------------------------------------------------------------------------------- */
+
+static bool write_force(app *a, const seawall *w) {
+  output f;
+  if (!output_open(&f, a, w->s.out, "force.csv")) return false;
+  csv_header(&f, "t_s,force_N,force_10_Hz_N,moment_N_m,level_m?,deflection_m,piston_m");
+  for (int64_t k = 0; k < w->samples; k++) {
+    const seawall_sample *p = &w->sample[k];
+    const double slow = seawall_smooth(w, llround(p->t / w->s.dt) - 1);
+    const double row[] = {p->t, p->force, slow, p->moment, p->level, p->deflection, p->piston};
+    csv_row(&f, 7, row);
+  }
+  return output_close(&f);
+}
+
+static bool write_pressure(app *a, const seawall *w, double H) {
+  const seawall_settings *s = &w->s;
+  const double k = waves_number(s->period, s->depth);
+  const double top = s->depth + H + waves_sainflou_rise(k, s->depth, H);
+  const double bed = WAVES_DENSITY * WAVES_G * s->depth + waves_sainflou_bed(k, s->depth, H);
+  output f;
+  if (!output_open(&f, a, s->out, "pressure.csv")) return false;
+  csv_header(&f, "y_m,pressure_Pa,sainflou_Pa?");
+  for (int64_t i = 0; i < w->look.points; i++) {
+    const double y = w->look.y[i];
+    const double row[] = {y, w->look.pressure[i],
+                          isnan(H) ? NAN : fmax(bed * (1.0 - y / top), 0.0)};
+    csv_row(&f, 3, row);
+  }
+  return output_close(&f);
+}
+
+static bool write_wall(app *a, const seawall *w) {
+  mps_view x;
+  output f;
+  if (!app_check(a, mps_particles_view(w->wall.set, "position", &x)) ||
+      !output_open(&f, a, w->s.out, "wall.csv"))
+    return false;
+  csv_header(&f, "x_m,y_m,u_m,v_m");
+  for (int64_t i = 0; i < x.shape[0]; i++) {
+    const double row[] = {*mps_view_f64(&x, i, 0), *mps_view_f64(&x, i, 1),
+                          w->look.displacement[2 * i], w->look.displacement[2 * i + 1]};
+    csv_row(&f, 4, row);
+  }
+  return output_close(&f);
+}
+
+/* x, y (m) and pressure (Pa) of all particles, frame after frame, as 4 byte numbers: what the
+ * pictures read. */
+static bool write_frames(app *a, const seawall *w) {
+  output f;
+  if (!output_open(&f, a, w->s.out, "frames.bin")) return false;
+  for (int64_t k = 0; k < w->frames; k++) {
+    const size_t values = 3 * (size_t)w->frame[k].count;
+    if (fwrite(w->frame[k].value, sizeof(float), values, f.stream) != values) break;
+  }
+  return output_close(&f);
+}
+
+/* ---- summary --------------------------------------------------------------------------------- */
+
+/* The largest force after the piston's jerk, less all that is faster than 10 Hz, and when. */
+static double find_peak(const seawall *w, double *at) {
+  double most = 0.0;
+  *at = 0.0;
+  for (int64_t k = (int64_t)(SEAWALL_IMPULSE / w->s.dt); k < w->forces; k++) {
+    const double force = seawall_smooth(w, k);
+    if (force > most) most = force, *at = (double)(k + 1) * w->s.dt;
+  }
+  return most;
+}
+
+static void summarise(output *f, const seawall *w, double H) {
+  const seawall_settings *s = &w->s;
+  const seawall_sample *at = &w->look.at;
+  const double k = waves_number(s->period, s->depth);
+  const bool crest = at->t >= SEAWALL_LOOK - 0.5 * s->sample;
+  const double paddle = 2.0 * fabs(s->amplitude) * waves_havelock(k, s->depth);
+  json_optional(f, "force_at_516", crest ? at->force : NAN);
+  json_optional(f, "moment_at_516", crest ? at->moment : NAN);
+  json_optional(f, "deflection_at_516", crest ? at->deflection : NAN);
+  json_optional(f, "level_at_516", crest ? at->level : NAN);
+  double peak_at;
+  const double peak = find_peak(w, &peak_at);
+  json_number(f, "force_peak", peak);
+  json_number(f, "force_peak_time", peak_at);
+  json_optional(f, "sainflou_force", isnan(H) ? NAN : waves_sainflou(k, s->depth, H, 1));
+  json_optional(f, "sainflou_height", H);
+  json_number(f, "havelock_height", paddle);
+  json_number(f, "sainflou_force_havelock", waves_sainflou(k, s->depth, paddle, 1));
+  json_number(f, "force_still", 0.5 * WAVES_DENSITY * WAVES_G * s->depth * s->depth);
+  const seawall_sample *last = &w->sample[w->samples - 1];
+  json_number(f, "force_end", last->force);
+  json_number(f, "moment_end", last->moment);
+  json_number(f, "deflection_end", last->deflection);
+  if (crest)
+    printf("t = %.2f s: force %.1f N, moment %.1f N m about the bed, wall moves by %.4g m\n", at->t,
+           at->force, at->moment, at->deflection);
+  if (!isnan(H))
+    printf("Sainflou for the level at the wall at t = %.2f s (H = %.3f m): %.1f N\n", at->t, H,
+           waves_sainflou(k, s->depth, H, 1));
+  printf("largest force below 10 Hz %.1f N at %.3f s\n", peak, peak_at);
+}
+
+static bool write_summary(app *a, const seawall *w, double H) {
+  output f;
+  mps_fluid_report report;
+  mps_elastic_report factor;
+  if (!app_check(a, mps_fluid_get_report(w->fluid, &report)) ||
+      !app_check(a, mps_elastic_get_report(w->wall.solver, &factor)) ||
+      !output_open(&f, a, w->s.out, "summary.json"))
+    return false;
+  json_begin(&f);
+  json_text(&f, "program", a->program);
+  json_text(&f, "version", mps_version());
+  json_text(&f, "outcome", a->outcome);
+  json_integer(&f, "particles", seawall_paper_particles(&w->s));
+  json_integer(&f, "particles_water", mps_particles_count(w->water));
+  json_integer(&f, "particles_structure", mps_particles_count(w->wall.set));
+  json_integer(&f, "steps", mps_fluid_steps(w->fluid));
+  json_number(&f, "time", mps_fluid_time(w->fluid));
+  summarise(&f, w, H);
+  json_integer(&f, "collisions", report.collisions);
+  json_integer(&f, "limited", report.limited);
+  json_integer(&f, "pushed", report.pushed);
+  json_end(&f);
+  return output_close(&f);
+}
+
+static bool close_series(app *a, seawall *w) {
+  return (!w->series || app_check(a, mps_recorder_close(&w->series))) &&
+         (!w->wall_series || app_check(a, mps_recorder_close(&w->wall_series)));
+}
+
+bool seawall_write(app *a, seawall *w) {
+  const double H = sainflou_height(w);
+  if (!write_force(a, w) || !write_pressure(a, w, H) || !write_wall(a, w) || !write_frames(a, w) ||
+      !close_series(a, w) || !write_summary(a, w, H) || !seawall_draw(a, w, H))
+    return false;
+  app_tell_results(a, w->s.out);
+  return true;
+}

@@ -1,0 +1,150 @@
+/* run.c - waves against the wall: at every sample the pressures of the water are put on the facets
+ * of the structure, which is solved with the factor that it keeps.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "seawall.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* ---- a moment -------------------------------------------------------------------------------- */
+
+static mps_status bend_wall(seawall *w, double *deflection) {
+  const strip *wall = &w->wall;
+  const double edge = 0.25 * w->s.spacing;
+  const double lower[2] = {-INFINITY, wall->def.upper[1] - edge}, upper[2] = {INFINITY, INFINITY};
+  mps_status status =
+      mps_fluid_get_pressure(w->fluid, SEAWALL_WALL, wall->count, wall->centre, w->pressure);
+  if (status == MPS_OK) status = strip_load(&w->wall, w->pressure);
+  if (status == MPS_OK) status = mps_elastic_solve(wall->solver);
+  return status == MPS_OK ? strip_displacement(&w->wall, lower, upper, 0, deflection) : status;
+}
+
+static mps_status take_look(seawall *w, const seawall_sample *sample) {
+  seawall_look *look = &w->look;
+  double *x = malloc(3 * (size_t)w->room * sizeof *x);
+  mps_view u;
+  if (!x) return MPS_ERROR_MEMORY;
+  mps_status status =
+      mps_fluid_get_wall(w->fluid, SEAWALL_WALL, w->room, x, look->pressure, &look->points);
+  if (look->points > w->room) look->points = w->room;
+  for (int64_t k = 0; status == MPS_OK && k < look->points; k++) look->y[k] = x[3 * k + 1];
+  if (status == MPS_OK) status = mps_particles_view(w->wall.set, "displacement", &u);
+  for (int64_t i = 0; status == MPS_OK && i < u.shape[0]; i++)
+    for (int c = 0; c < 2; c++) look->displacement[2 * i + c] = *mps_view_f64(&u, i, c);
+  look->at = *sample;
+  free(x);
+  return status;
+}
+
+static mps_status take_sample(seawall *w) {
+  const double station = w->s.length - w->s.spacing;
+  seawall_sample sample = {.t = mps_fluid_time(w->fluid)};
+  double motion[3];
+  mps_reaction r;
+  mps_status status = mps_fluid_get_reaction(w->fluid, SEAWALL_WALL, &r);
+  if (status == MPS_OK) status = mps_fluid_get_levels(w->fluid, 1, &station, &sample.level);
+  if (status == MPS_OK) status = waves_move_piston(&w->motion, sample.t, motion);
+  if (status == MPS_OK) status = bend_wall(w, &sample.deflection);
+  if (status != MPS_OK) return status;
+  sample.force = -r.force[0]; /* the wall pushes the water, the water the wall */
+  sample.moment = r.moment[2];
+  sample.level -= w->s.depth;
+  sample.piston = motion[0];
+  w->sample[w->samples++] = sample;
+  return sample.t <= SEAWALL_LOOK + 0.5 * w->s.sample ? take_look(w, &sample) : MPS_OK;
+}
+
+/* ---- frames ---------------------------------------------------------------------------------- */
+
+static mps_status take_frame(seawall *w) {
+  seawall_frame *f = &w->frame[w->frames];
+  double motion[3];
+  mps_view x, p;
+  mps_status status = mps_particles_view(w->water, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(w->water, "pressure", &p);
+  f->t = mps_fluid_time(w->fluid);
+  if (status == MPS_OK) status = waves_move_piston(&w->motion, f->t, motion);
+  if (status != MPS_OK) return status;
+  f->piston = motion[0];
+  f->count = x.shape[0];
+  f->value = malloc(3 * (size_t)f->count * sizeof *f->value);
+  if (!f->value) return MPS_ERROR_MEMORY;
+  for (int64_t i = 0; i < f->count; i++) {
+    float *at = f->value + 3 * i;
+    for (int c = 0; c < 2; c++) at[c] = (float)*mps_view_f64(&x, i, c);
+    at[2] = (float)*mps_view_f64(&p, i, 0);
+    if (mps_fluid_steps(w->fluid) == 0) /* nothing is solved yet: at rest */
+      at[2] = (float)(WAVES_DENSITY * WAVES_G * (w->s.depth - (double)at[1]));
+  }
+  w->frames++;
+  if (w->series) status = mps_recorder_write(w->series, f->t);
+  if (status == MPS_OK && w->wall_series) status = mps_recorder_write(w->wall_series, f->t);
+  return status;
+}
+
+/* Frames are spread over the samples; the first is the start. */
+static bool is_due(const seawall *w, int64_t k) {
+  return k == 0 || k * w->s.frames / w->capacity > (k - 1) * w->s.frames / w->capacity;
+}
+
+/* ---- the run --------------------------------------------------------------------------------- */
+
+static mps_status note_force(seawall *w) {
+  mps_reaction r;
+  const mps_status status = mps_fluid_get_reaction(w->fluid, SEAWALL_WALL, &r);
+  if (status == MPS_OK && w->forces < w->steps) w->force[w->forces++] = -r.force[0];
+  return status;
+}
+
+double seawall_smooth(const seawall *w, int64_t k) {
+  const int64_t half = (int64_t)(0.5 * SEAWALL_WINDOW / w->s.dt);
+  double sum = 0.0, whole = 0.0;
+  for (int64_t i = k - half; i <= k + half; i++) {
+    if (i < 0 || i >= w->forces) continue;
+    const double weight = 1.0 + cos(WAVES_PI * (double)(i - k) / (double)(half + 1));
+    sum += weight * w->force[i], whole += weight;
+  }
+  return sum / whole;
+}
+
+static mps_status advance(app *a, seawall *w, double t) {
+  mps_status status = MPS_OK;
+  while (status == MPS_OK && mps_fluid_time(w->fluid) < t) {
+    status = mps_fluid_step(w->fluid, 1);
+    if (status == MPS_OK) status = note_force(w);
+    char text[64];
+    snprintf(text, sizeof text, "t = %.3f s", mps_fluid_time(w->fluid));
+    progress_draw(&a->bar, mps_fluid_time(w->fluid) / w->s.duration, text);
+  }
+  return status;
+}
+
+static void try_save(app *a, seawall *w) {
+  const mps_status status = seawall_save(w);
+  if (status == MPS_OK || status == MPS_ERROR_UNSUPPORTED || w->checkpoint_lost) return;
+  app_check(a, status);
+  w->checkpoint_lost = true;
+}
+
+static void save_when_due(app *a, seawall *w) {
+  const int64_t due = (int64_t)floor(mps_fluid_time(w->fluid) / w->s.every_checkpoint + 1e-9);
+  if (!w->s.checkpoint || due <= w->checkpoints) return;
+  w->checkpoints = due;
+  try_save(a, w);
+}
+
+/* Samples are taken after the first step that reaches their time: no step is shortened for them, so
+ * that a run goes on from a checkpoint as if it had never ended. */
+mps_status seawall_run(app *a, seawall *w) {
+  const seawall_settings *s = &w->s;
+  mps_status status = isnan(w->restarted) && s->frames > 0 ? take_frame(w) : MPS_OK;
+  for (int64_t k = w->samples + 1; k <= w->capacity && status == MPS_OK; k++) {
+    status = advance(a, w, fmin((double)k * s->sample, s->duration) * (1.0 - 1e-9));
+    if (status == MPS_OK) status = take_sample(w);
+    if (status == MPS_OK && s->frames > 0 && is_due(w, k)) status = take_frame(w);
+    if (status == MPS_OK) save_when_due(a, w);
+  }
+  if (status == MPS_ERROR_CANCELLED) try_save(a, w);
+  return status;
+}
