@@ -7,6 +7,7 @@
 #include "core/internal.h"
 
 #include <mps/body.h>
+#include <mps/couple.h>
 #include <mps/dynamics.h>
 #include <mps/elastic.h>
 #include <mps/fluid.h>
@@ -144,6 +145,14 @@ static mps_status use_fluid(const void *def) {
   return status;
 }
 
+static void need_coupling(void *def) { ((mps_coupling_def *)def)->size = 3; }
+static mps_status use_coupling(const void *def) {
+  mps_coupling *made = NULL;
+  const mps_status status = mps_coupling_create(context, def, &made);
+  mps_coupling_destroy(&made);
+  return status;
+}
+
 static void need_geostatic(void *def) {
   static const mps_soil_layer layer = {.thickness = 10.0, .k0 = 0.5, .density = 2000.0};
   mps_geostatic_def *d = def;
@@ -173,6 +182,7 @@ typedef struct user {
 static const user users[] = {
     {"mps_body_def", need_nothing, use_body},
     {"mps_context_def", need_nothing, use_context},
+    {"mps_coupling_def", need_coupling, use_coupling},
     {"mps_drucker_prager_def", need_drucker_prager, use_drucker_prager},
     {"mps_dynamics_def", need_nothing, use_dynamics},
     {"mps_elastic_def", need_nothing, use_elastic},

@@ -1,0 +1,210 @@
+/* test_couple.c - the coupling on linear problems x = b - A x whose solutions are known: how many
+ * repeats each method takes, guesses, what is learnt and kept, refusals.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "test_fixture.h"
+
+#include <mps/couple.h>
+
+enum { N = 24 };
+
+/* A is symmetric, with the eigenvalues 9, 4, 1 and 0.25 on smooth shapes and 0 across them: an
+ * added mass that is heavier than the structure for the first shapes. */
+static void apply(const double *x, double *y) {
+  static const double value[] = {9.0, 4.0, 1.0, 0.25};
+  for (int i = 0; i < N; i++) y[i] = 0.0;
+  for (int k = 0; k < 4; k++) {
+    double share = 0.0;
+    for (int i = 0; i < N; i++) share += sin(3.14159265358979 * (k + 1) * (i + 0.5) / N) * x[i];
+    for (int i = 0; i < N; i++)
+      y[i] += value[k] * share * 2.0 / N * sin(3.14159265358979 * (k + 1) * (i + 0.5) / N);
+  }
+}
+
+/* The solution of step k, and H(x) = exact + A (exact - x). */
+static void exact_at(int step, double *exact) {
+  for (int i = 0; i < N; i++) exact[i] = sin(0.1 * step + 0.3 * i) + 0.05 * i * cos(0.07 * step);
+}
+
+static void answer_to(const double *exact, const double *x, double *answer) {
+  double difference[N], pulled[N];
+  for (int i = 0; i < N; i++) difference[i] = exact[i] - x[i];
+  apply(difference, pulled);
+  for (int i = 0; i < N; i++) answer[i] = exact[i] + pulled[i];
+}
+
+static mps_coupling *make(int32_t method, int64_t size) {
+  mps_coupling_def def = mps_coupling_defaults();
+  mps_coupling *c = NULL;
+  def.method = method;
+  def.size = size;
+  def.tolerance = 1e-8;
+  mps_assert_ok(context, mps_coupling_create(context, &def, &c));
+  return c;
+}
+
+/* Repeats that a step takes; the values agreed on are right. */
+static int take_step(mps_coupling *c, int step, double *x) {
+  double exact[N], answer[N];
+  int32_t done = 0;
+  exact_at(step, exact);
+  mps_assert_ok(context, mps_coupling_begin(c, NULL, x));
+  while (!done) {
+    answer_to(exact, x, answer);
+    mps_assert_ok(context, mps_coupling_next(c, answer, x, &done));
+  }
+  mps_assert_ok(context, mps_coupling_accept(c));
+  for (int i = 0; i < N; i++) mps_assert_near(x[i], exact[i], 1e-6);
+  mps_coupling_report report;
+  mps_assert_ok(context, mps_coupling_get_report(c, &report));
+  return report.repeats;
+}
+
+static void one_value_takes_three_repeats_then_two(void **state) {
+  (void)state;
+  mps_coupling *c = make(MPS_COUPLING_AITKEN, 1);
+  for (int step = 0; step < 4; step++) { /* x = 5 + step - 20 x: handed to and fro it diverges */
+    double x, answer;
+    int32_t done = 0;
+    int repeats = 0;
+    mps_assert_ok(context, mps_coupling_begin(c, NULL, &x));
+    while (!done) {
+      answer = 5.0 + step * step - 20.0 * x;
+      mps_assert_ok(context, mps_coupling_next(c, &answer, &x, &done));
+      repeats++;
+    }
+    mps_assert_ok(context, mps_coupling_accept(c));
+    mps_assert_near(x, (5.0 + step * step) / 21.0, 1e-7);
+    assert_true(repeats <= (step == 0 ? 3 : 2));
+  }
+  mps_coupling_destroy(&c);
+}
+
+/* Four eigenvalues besides zero: what they do is known after five differences. */
+static void a_field_is_agreed_on_after_as_many_repeats_as_it_has_shapes(void **state) {
+  (void)state;
+  double x[N];
+  mps_coupling *c = make(MPS_COUPLING_QUASI_NEWTON, N);
+  const int first = take_step(c, 0, x);
+  assert_in_range(first, 4, 8);
+  int later = 0;
+  for (int step = 1; step <= 10; step++) later += take_step(c, step, x);
+  print_message("%d repeats, then %.1f a step\n", first, later / 10.0);
+  assert_true(later <= 35); /* what was learnt serves again */
+  mps_coupling_destroy(&c);
+}
+
+static void a_field_by_one_factor_takes_more(void **state) {
+  (void)state;
+  double x[N], y[N];
+  mps_coupling *newton = make(MPS_COUPLING_QUASI_NEWTON, N), *aitken = make(MPS_COUPLING_AITKEN, N);
+  int counts[2] = {0, 0};
+  for (int step = 0; step < 5; step++) {
+    counts[0] += take_step(newton, step, x);
+    counts[1] += take_step(aitken, step, y);
+  }
+  print_message("quasi-Newton %d repeats, Aitken %d\n", counts[0], counts[1]);
+  assert_true(counts[1] > 2 * counts[0]);
+  mps_coupling_destroy(&newton);
+  mps_coupling_destroy(&aitken);
+}
+
+static void what_does_not_agree_is_an_error_and_can_begin_again(void **state) {
+  (void)state;
+  double x = 0.0, answer = 0.0;
+  int32_t done = 0;
+  mps_coupling *c = NULL;
+  mps_coupling_def def = mps_coupling_defaults();
+  def.method = MPS_COUPLING_CONSTANT;
+  def.size = 1, def.relaxation = 0.5, def.repeats = 7;
+  mps_assert_ok(context, mps_coupling_create(context, &def, &c));
+  mps_assert_ok(context, mps_coupling_begin(c, NULL, &x));
+  mps_status status = MPS_OK;
+  for (int k = 0; k < 7 && status == MPS_OK; k++) {
+    answer = 1.0 - 9.0 * x;
+    status = mps_coupling_next(c, &answer, &x, &done);
+  }
+  mps_assert_fails(context, status, MPS_ERROR_NUMERIC, "does not agree after 7 repeats");
+  mps_assert_fails(context, mps_coupling_accept(c), MPS_ERROR_STATE, "not agreed on");
+  const double start = 0.25;
+  mps_assert_ok(context, mps_coupling_begin(c, &start, &x));
+  assert_true(x == start);
+  answer = start;
+  mps_assert_ok(context, mps_coupling_next(c, &answer, &x, &done));
+  assert_int_equal(done, 1);
+  mps_assert_ok(context, mps_coupling_accept(c));
+  mps_coupling_destroy(&c);
+}
+
+static void guesses_lie_on_a_line_through_the_last_steps(void **state) {
+  (void)state;
+  mps_coupling *c = make(MPS_COUPLING_QUASI_NEWTON, 1);
+  for (int step = 0; step < 4; step++) {
+    double x, answer = 2.0 + 3.0 * step;
+    int32_t done;
+    mps_assert_ok(context, mps_coupling_begin(c, step ? NULL : &answer, &x));
+    if (step != 1) mps_assert_near(x, answer, 1e-12);
+    if (step == 1) mps_assert_ok(context, mps_coupling_begin(c, &answer, &x));
+    mps_assert_ok(context, mps_coupling_next(c, &answer, &x, &done));
+    assert_int_equal(done, 1);
+    mps_assert_ok(context, mps_coupling_accept(c));
+  }
+  mps_coupling_destroy(&c);
+}
+
+/* Memory put into another object: both go on bit for bit. */
+static void what_is_learnt_can_be_kept(void **state) {
+  (void)state;
+  double x[N], y[N], memory[4000];
+  int64_t count = 0, again = 0;
+  mps_coupling *c = make(MPS_COUPLING_QUASI_NEWTON, N), *d = make(MPS_COUPLING_QUASI_NEWTON, N);
+  for (int step = 0; step < 5; step++) take_step(c, step, x);
+  mps_assert_ok(context, mps_coupling_get_memory(c, 0, NULL, &count));
+  assert_in_range(count, 1, 4000);
+  mps_assert_ok(context, mps_coupling_get_memory(c, 4000, memory, &again));
+  assert_int_equal(count, again);
+  mps_assert_ok(context, mps_coupling_set_memory(d, count, memory));
+  for (int step = 5; step < 9; step++) {
+    assert_int_equal(take_step(c, step, x), take_step(d, step, y));
+    assert_memory_equal(x, y, sizeof x);
+  }
+  memory[1] = 3.0;
+  mps_assert_fails(context, mps_coupling_set_memory(d, count, memory), MPS_ERROR_FORMAT,
+                   "not the memory of a coupling of 24 values");
+  mps_coupling_destroy(&c);
+  mps_coupling_destroy(&d);
+}
+
+static void bad_input_is_refused(void **state) {
+  (void)state;
+  mps_coupling_def def = mps_coupling_defaults();
+  mps_coupling *c = NULL;
+  mps_assert_fails(context, mps_coupling_create(context, &def, &c), MPS_ERROR_ARGUMENT,
+                   "size of the coupling is 0");
+  def.size = 2, def.relaxation = 1.5;
+  mps_assert_fails(context, mps_coupling_create(context, &def, &c), MPS_ERROR_ARGUMENT,
+                   "relaxation of the coupling is 1.5");
+  assert_null(c);
+  c = make(MPS_COUPLING_QUASI_NEWTON, 2);
+  double x[2] = {0.0, 0.0}, answer[2] = {1.0, NAN};
+  int32_t done;
+  mps_assert_fails(context, mps_coupling_next(c, x, x, &done), MPS_ERROR_STATE, "begin");
+  mps_assert_ok(context, mps_coupling_begin(c, NULL, x));
+  mps_assert_fails(context, mps_coupling_next(c, answer, x, &done), MPS_ERROR_NUMERIC,
+                   "answer 1 at repeat 1 of the coupling is nan");
+  mps_assert_fails(context, mps_coupling_begin(c, answer, x), MPS_ERROR_ARGUMENT, "start value 1");
+  mps_coupling_destroy(&c);
+  mps_coupling_destroy(&c);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(one_value_takes_three_repeats_then_two),
+      cmocka_unit_test(a_field_is_agreed_on_after_as_many_repeats_as_it_has_shapes),
+      cmocka_unit_test(a_field_by_one_factor_takes_more),
+      cmocka_unit_test(what_does_not_agree_is_an_error_and_can_begin_again),
+      cmocka_unit_test(guesses_lie_on_a_line_through_the_last_steps),
+      cmocka_unit_test(what_is_learnt_can_be_kept),
+      cmocka_unit_test(bad_input_is_refused),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
