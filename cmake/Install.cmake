@@ -8,7 +8,7 @@ install(FILES LICENSE README.md CHANGELOG.md CONTRIBUTING.md DESTINATION ${CMAKE
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN Doxyfile EXCLUDE)
 
 install(DIRECTORY include/mps DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/libmps-${PROJECT_VERSION_MAJOR}
-        FILES_MATCHING PATTERN "*.h")
+        FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
 
 # Two export sets: who links libmps.so is not asked to have what only libmps.a needs.
 install(TARGETS mps EXPORT mps-shared)

@@ -1,0 +1,258 @@
+/* mps/mps.hpp - libmps for C++17 programs: handles that destroy what they own, failed calls as
+ * exceptions with the library's own message, fields as arrays. Nothing else: every function is the
+ * C function of its header, called through one of five templates.
+ *
+ *   mps::context context = mps::create_context();
+ *   mps_particles_def set = mps_particles_defaults();
+ *   set.spacing = 0.1;
+ *   auto sand = mps::create(context, mps_particles_create, set);
+ *   mps::call(sand, mps_particles_set, "density", 0, 1800.0);
+ *   auto law = mps::create(context, mps_material_linear_elastic, 1e7, 0.3);
+ *   auto solver = mps::create(context, mps_mpm_create, sand, law, def);
+ *   mps::run(solver, mps_mpm_run, 1.0, 100, [](mps_mpm *s) { ... });
+ *   mps_totals totals = mps::get<mps_totals>(solver, mps_mpm_get_totals);
+ *   for (auto v = mps::view(sand, "velocity"); ...) ... v(i, 0) ...
+ *
+ * Arguments are those of the C function, with a struct in place of a pointer to it and a handle in
+ * place of its object. The context must outlive the handles that were made from it, as it does when
+ * it is declared first. Thread rules are those of the C functions.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef LIBMPS_MPS_HPP
+#define LIBMPS_MPS_HPP
+
+#include "mps.h"
+
+#include <exception>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+namespace mps {
+
+/** A failed call: the context's error record as it was then. what() is
+ *  "mps_mpm_create: cell of the solver is 0 m, must be ...". */
+class error : public std::exception {
+public:
+  error(const mps_context *context, mps_status status) : status_(status) {
+    const mps_error *last = context ? mps_context_error(context) : nullptr;
+    if (last && last->status == status) record_ = *last;
+    record_.status = status;
+    text_ = record_.function[0] ? std::string(record_.function) + ": " : std::string();
+    text_ += record_.message[0] ? record_.message : mps_status_text(status);
+  }
+  explicit error(mps_status status, const std::string &text) : status_(status), text_(text) {
+    record_.status = status;
+  }
+  const char *what() const noexcept override { return text_.c_str(); }
+  mps_status status() const noexcept { return status_; }
+  /** Step, particle, object, where the library knew them. */
+  const mps_error &record() const noexcept { return record_; }
+
+private:
+  mps_status status_;
+  mps_error record_ = {MPS_OK, 0, -1, -1, {0}, {0}, {0}};
+  std::string text_;
+};
+
+/** Owns an object of the C library, and destroys it; moves, never copies. Converts to the pointer
+ *  that C functions take. */
+template <class T> class handle {
+public:
+  handle() noexcept = default;
+  handle(T *object, mps_context *context) noexcept : object_(object), context_(context) {}
+  handle(handle &&other) noexcept { swap(other); }
+  handle &operator=(handle &&other) noexcept {
+    handle gone(std::move(other));
+    swap(gone);
+    return *this;
+  }
+  ~handle() { reset(); }
+
+  T *get() const noexcept { return object_; }
+  operator T *() const noexcept { return object_; }
+  /** Whose error record tells why a call with this object failed. */
+  mps_context *error_context() const noexcept { return context_; }
+  void reset() noexcept; /* destroys the object */
+  T *release() noexcept { return std::exchange(object_, nullptr); } /* gives it up */
+  void swap(handle &other) noexcept {
+    std::swap(object_, other.object_);
+    std::swap(context_, other.context_);
+  }
+
+private:
+  T *object_ = nullptr;
+  mps_context *context_ = nullptr;
+};
+
+#define MPS_CPP_HANDLE(name)                                                                       \
+  using name = handle<mps_##name>;                                                                 \
+  template <> inline void handle<mps_##name>::reset() noexcept { mps_##name##_destroy(&object_); }
+MPS_CPP_HANDLE(context)
+MPS_CPP_HANDLE(particles)
+MPS_CPP_HANDLE(neighbours)
+MPS_CPP_HANDLE(kernel)
+MPS_CPP_HANDLE(signal)
+MPS_CPP_HANDLE(material)
+MPS_CPP_HANDLE(body)
+MPS_CPP_HANDLE(contact)
+MPS_CPP_HANDLE(snapshot)
+MPS_CPP_HANDLE(recorder)
+MPS_CPP_HANDLE(mpm)
+MPS_CPP_HANDLE(dynamics)
+MPS_CPP_HANDLE(elastic)
+MPS_CPP_HANDLE(fluid)
+#undef MPS_CPP_HANDLE
+
+/** Throws where `status` is not MPS_OK. */
+inline void check(const mps_context *context, mps_status status) {
+  if (status != MPS_OK) throw error(context, status);
+}
+
+namespace detail {
+/* What a C function takes in place of what a C++ program gives: the object of a handle, the address
+ * of a struct, and everything else as it is. */
+template <class T> T *pass(const handle<T> &h) { return h.get(); }
+template <class T> T *pass(handle<T> &h) { return h.get(); }
+template <class S> using is_struct = std::enable_if_t<std::is_class_v<std::remove_reference_t<S>>>;
+template <class S, class = is_struct<S>> auto pass(S &s) -> decltype(&s) { return &s; }
+template <class S, class = std::enable_if_t<!std::is_class_v<std::remove_reference_t<S>>>>
+decltype(auto) pass(S &&s) {
+  return std::forward<S>(s);
+}
+
+/* T of the last parameter, T **, of a function that creates. */
+template <class... P> struct last;
+template <class P> struct last<P> {
+  using type = P;
+};
+template <class P, class... Q> struct last<P, Q...> : last<Q...> {};
+template <class... P>
+using created = std::remove_pointer_t<std::remove_pointer_t<typename last<P...>::type>>;
+} // namespace detail
+
+/** A context, by `def` or the defaults. */
+inline context create_context(const mps_context_def &def = mps_context_defaults()) {
+  mps_context *made = nullptr;
+  char text[512] = "";
+  const mps_status status = mps_context_create(&def, &made, text, sizeof text);
+  if (status != MPS_OK) throw error(status, text);
+  return context(made, made);
+}
+
+/** Calls f(owner, arguments...). */
+template <class T, class... P, class... A>
+void call(const handle<T> &owner, mps_status (*f)(T *, P...), A &&...arguments) {
+  check(owner.error_context(), f(owner.get(), detail::pass(arguments)...));
+}
+template <class T, class... P, class... A>
+void call(const handle<T> &owner, mps_status (*f)(const T *, P...), A &&...arguments) {
+  check(owner.error_context(), f(owner.get(), detail::pass(arguments)...));
+}
+
+/** What f(owner, arguments..., &object) makes. */
+template <class T, class... P, class... A>
+handle<detail::created<P...>> create(const handle<T> &owner, mps_status (*f)(T *, P...),
+                                     A &&...arguments) {
+  detail::created<P...> *made = nullptr;
+  check(owner.error_context(), f(owner.get(), detail::pass(arguments)..., &made));
+  return {made, owner.error_context()};
+}
+
+/** The value that f(owner, arguments..., &value) writes: a struct of results, a number. */
+template <class V, class T, class... P, class... A>
+V get(const handle<T> &owner, mps_status (*f)(T *, P...), A &&...arguments) {
+  V value = V();
+  check(owner.error_context(), f(owner.get(), detail::pass(arguments)..., &value));
+  return value;
+}
+template <class V, class T, class... P, class... A>
+V get(const handle<T> &owner, mps_status (*f)(const T *, P...), A &&...arguments) {
+  V value = V();
+  check(owner.error_context(), f(owner.get(), detail::pass(arguments)..., &value));
+  return value;
+}
+
+/** mps_X_run(solver, t_end, every, ...) with a C++ function for the callback: `each(mps_X *)`. An
+ *  exception of it ends the run and comes out of here. */
+template <class T, class F>
+void run(const handle<T> &solver,
+         mps_status (*f)(T *, double, int64_t, mps_status (*)(void *, T *), void *), double t_end,
+         int64_t every, F &&each) {
+  struct caught {
+    std::remove_reference_t<F> *each;
+    std::exception_ptr exception;
+  } state = {&each, nullptr};
+  const auto callback = [](void *user, T *object) -> mps_status {
+    caught *c = static_cast<caught *>(user);
+    try {
+      (*c->each)(object);
+      return MPS_OK;
+    } catch (...) {
+      c->exception = std::current_exception();
+      return MPS_ERROR_CANCELLED;
+    }
+  };
+  const mps_status status = f(solver.get(), t_end, every, callback, &state);
+  if (state.exception) std::rethrow_exception(state.exception);
+  check(solver.error_context(), status);
+}
+
+/** A field for reading: v(i, c) is component c of the particle at present index i. `V` is double or
+ *  int64_t, as the field's. */
+template <class V> class array {
+public:
+  array(const particles &set, const char *name) : set_(set.get()) {
+    check(set.error_context(), mps_particles_view(set_, name, &view_));
+    const bool integers = view_.dtype.code == 0;
+    if (integers != std::is_integral_v<V> || view_.dtype.bits != 64)
+      throw error(MPS_ERROR_FIELD, std::string("field '") + name + "' holds " +
+                                       (integers ? "int64_t" : "double"));
+  }
+  int64_t size() const noexcept { return view_.shape[0]; }
+  int64_t components() const noexcept { return view_.shape[1]; }
+  /** Particles have come, gone or been sorted since: the array must be taken again. */
+  bool stale() const noexcept { return mps_particles_epoch(set_) != view_.epoch; }
+  const V &operator()(int64_t i, int64_t c = 0) const noexcept { return *at(i, c); }
+  const V *data() const noexcept { return at(0, 0); }
+  const mps_view &raw() const noexcept { return view_; } /* strides */
+
+protected:
+  array() noexcept = default;
+  V *at(int64_t i, int64_t c) const noexcept {
+    return static_cast<V *>(view_.data) + i * view_.stride[0] + c * view_.stride[1];
+  }
+  mps_particles *set_ = nullptr;
+  mps_view view_ = {};
+};
+
+template <class V = double> array<V> view(const particles &set, const char *name) {
+  return array<V>(set, name);
+}
+
+/** A field of numbers for writing, until commit(), which throws where a value is out of range: mend
+ *  it and commit again. */
+class edit : public array<double> {
+public:
+  edit(const particles &set, const char *name) : context_(set.error_context()) {
+    set_ = set.get();
+    check(context_, mps_particles_edit(set_, name, &view_));
+  }
+  edit(const edit &) = delete;
+  edit &operator=(const edit &) = delete;
+  ~edit() { /* left by an exception: the values as they are, checked as ever */
+    if (open_ && mps_particles_commit(set_, &view_) != MPS_OK) mps_context_clear_error(context_);
+  }
+  double &operator()(int64_t i, int64_t c = 0) const noexcept { return *at(i, c); }
+  void commit() {
+    check(context_, mps_particles_commit(set_, &view_));
+    open_ = false;
+  }
+
+private:
+  mps_context *context_;
+  bool open_ = true;
+};
+
+} // namespace mps
+
+#endif

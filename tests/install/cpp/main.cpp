@@ -1,0 +1,144 @@
+// main.cpp - a C++ program on mps/mps.hpp: a block of sand falls freely, its values against theory;
+// handles that move and end, errors as exceptions, an exception out of a callback, stale arrays.
+// SPDX-License-Identifier: BSD-3-Clause
+#include <mps/mps.hpp>
+
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+
+static int failures = 0;
+#define EXPECT(condition)                                                                          \
+  do {                                                                                             \
+    if (!(condition)) {                                                                            \
+      std::printf("line %d: not so: %s\n", __LINE__, #condition);                                  \
+      failures++;                                                                                  \
+    }                                                                                              \
+  } while (0)
+
+static mps::particles block(const mps::context &context) {
+  mps_particles_def def = mps_particles_defaults();
+  def.spacing = 0.1;
+  mps::particles sand = mps::create(context, mps_particles_create, def);
+  const double lo[2] = {0.0, 5.0}, hi[2] = {1.0, 6.0};
+  mps::call(sand, mps_particles_fill_box, lo, hi, nullptr);
+  mps::call(sand, mps_particles_set, "density", 0, 1800.0);
+  return sand; // moves
+}
+
+static mps::mpm falling(const mps::context &context, const mps::particles &sand) {
+  const mps::material law = mps::create(context, mps_material_linear_elastic, 1e6, 0.3);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.2;
+  def.gravity[1] = -9.81;
+  def.dt = 1e-3;
+  return mps::create(context, mps_mpm_create, sand, law, def); // keeps law and set alive
+}
+
+static void free_fall(const mps::context &context) {
+  const mps::particles sand = block(context);
+  const mps::mpm solver = falling(context, sand);
+  EXPECT(mps_mpm_particles(solver) == sand.get());
+  int calls = 0;
+  mps::run(solver, mps_mpm_run, 0.1, 10, [&](mps_mpm *s) {
+    EXPECT(std::fabs(mps_mpm_time(s) - 0.01 * calls) < 1e-12);
+    calls++;
+  });
+  EXPECT(calls == 11);
+  const mps::array<double> v = mps::view(sand, "velocity");
+  EXPECT(v.size() == 100 && v.components() == 2 && !v.stale());
+  for (int64_t i = 0; i < v.size(); i++) EXPECT(std::fabs(v(i, 1) + 0.981) < 1e-12);
+  const mps_mpm_def used = mps::get<mps_mpm_def>(solver, mps_mpm_get_def);
+  EXPECT(used.cell == 0.2);
+
+  // Back in time, and the same again.
+  const mps::snapshot before = [&] {
+    mps_snapshot *made = nullptr;
+    mps::call(solver, mps_mpm_snapshot, &made);
+    return mps::snapshot(made, context);
+  }();
+  mps::call(solver, mps_mpm_step, 5);
+  mps::call(solver, mps_mpm_rollback, before);
+  EXPECT(std::fabs(mps_mpm_time(solver) - 0.1) < 1e-12);
+}
+
+static void writing(const mps::context &context) {
+  const mps::particles sand = block(context);
+  const mps::array<int64_t> ids = mps::view<int64_t>(sand, "id");
+  {
+    mps::call(sand, mps_particles_add_field, "velocity", 0);
+    mps::edit v(sand, "velocity");
+    for (int64_t i = 0; i < v.size(); i++) v(i, 0) = double(ids(i));
+    v(7, 1) = std::nan("");
+    try {
+      v.commit();
+      EXPECT(!"a NaN was taken");
+    } catch (const mps::error &e) {
+      EXPECT(e.status() == MPS_ERROR_ARGUMENT);
+      EXPECT(std::strstr(e.what(), "mps_particles_commit: ") == e.what());
+      EXPECT(std::strstr(e.what(), "nan") != nullptr);
+    }
+    v(7, 1) = 0.0;
+    v.commit();
+  }
+  EXPECT(mps::view(sand, "velocity")(99, 0) == double(ids(99)));
+  const int64_t gone[1] = {ids(3)};
+  EXPECT(!ids.stale());
+  mps::call(sand, mps_particles_remove, 1, gone);
+  EXPECT(ids.stale());
+  try {
+    mps::view(sand, "id");
+    EXPECT(!"integers were given as numbers");
+  } catch (const mps::error &e) {
+    EXPECT(e.status() == MPS_ERROR_FIELD);
+  }
+}
+
+static void errors(const mps::context &context) {
+  const mps::particles sand = block(context);
+  mps::mpm solver = falling(context, sand);
+  try {
+    falling(context, sand);
+    EXPECT(!"two solvers for a set");
+  } catch (const mps::error &e) {
+    EXPECT(e.status() == MPS_ERROR_STATE && std::strlen(e.record().function) > 0);
+  }
+  try {
+    mps::run(solver, mps_mpm_run, 1.0, 1, [](mps_mpm *s) {
+      if (mps_mpm_steps(s) == 3) throw std::runtime_error("enough");
+    });
+    EXPECT(!"the exception was lost");
+  } catch (const std::runtime_error &e) {
+    EXPECT(std::strcmp(e.what(), "enough") == 0);
+  }
+  EXPECT(mps_mpm_steps(solver) == 3);
+  mps::mpm moved = std::move(solver);
+  EXPECT(!solver && moved);
+  moved.reset();
+  EXPECT(!moved);
+  moved = falling(context, sand); // the set is free again
+  EXPECT(mps_mpm_steps(moved) == 0);
+  mps_context_def def = mps_context_defaults();
+  def.threads = -1;
+  try {
+    mps::create_context(def);
+    EXPECT(!"-1 threads");
+  } catch (const mps::error &e) {
+    EXPECT(std::strstr(e.what(), "threads is -1") != nullptr);
+  }
+}
+
+int main() {
+  try {
+    const mps::context context = mps::create_context();
+    free_fall(context);
+    writing(context);
+    errors(context);
+  } catch (const std::exception &e) {
+    std::printf("unexpected: %s\n", e.what());
+    return 1;
+  }
+  if (failures == 0) std::printf("ok, libmps %s\n", mps_version());
+  return failures > 0;
+}
