@@ -14,14 +14,20 @@ mps_status mpsi_guard_check(const mpsi_guard *guard, mps_context *context, const
 }
 
 void mpsi_guard_enter(mpsi_guard *guard, mps_context *context, const char *callback) {
+  guard->outer = guard->callback;
   guard->callback = callback;
   guard->failures = context->failures;
+}
+
+void mpsi_guard_end(mpsi_guard *guard) {
+  guard->callback = guard->outer;
+  guard->outer = NULL;
 }
 
 mps_status mpsi_guard_leave(mpsi_guard *guard, mps_context *context, const char *function,
                             mps_status status) {
   const char *callback = guard->callback;
-  guard->callback = NULL;
+  mpsi_guard_end(guard);
   if (status == MPS_OK) return MPS_OK;
   const mps_error *error = &context->error;
   char reason[380] = "";

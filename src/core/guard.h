@@ -5,6 +5,9 @@
  *   mpsi_guard_enter(&s->guard, s->context, "the callback of mps_s_run");
  *   status = callback(user, s);
  *   status = mpsi_guard_leave(&s->guard, s->context, __func__, status);
+ *
+ * A whole call that asks signals and hooks on its way is guarded by its own name, from
+ * mpsi_guard_enter to mpsi_guard_end; a callback may be within.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_GUARD_H
 #define MPSI_GUARD_H
@@ -13,6 +16,7 @@
 
 typedef struct mpsi_guard {
   const char *callback; /* what is running, NULL: nothing */
+  const char *outer;    /* the call that it is within, or NULL */
   int64_t failures;     /* of the context, when it began */
 } mpsi_guard;
 
@@ -25,5 +29,7 @@ void mpsi_guard_enter(mpsi_guard *guard, mps_context *context, const char *callb
  * Returns `status`, or MPS_ERROR_ARGUMENT where that is no status at all. */
 mps_status mpsi_guard_leave(mpsi_guard *guard, mps_context *context, const char *function,
                             mps_status status);
+/* Ends a guarded call that answers for its status itself. */
+void mpsi_guard_end(mpsi_guard *guard);
 
 #endif
