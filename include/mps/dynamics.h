@@ -11,16 +11,22 @@
  * The solver works in the fields of the particle set itself (zero copy) and sorts the set once, at
  * creation. It reads `density` (kg/m3, 1e-6 to 1e9), `shear_velocity` Vs (m/s, 1e-6 to 1e9),
  * `pressure_velocity` Vp (m/s, Vp >= sqrt(2) Vs so that lambda >= 0) and, if present, `damping`
- * (ratio h, 0 to 1000) at creation; `displacement`, `velocity`, `rotation`, `spin` at creation and
- * at mps_dynamics_restart; `external_force` (N) at every step, if the set has it by then; it writes
- * displacement, velocity, rotation, spin, `position`, `acceleration`, `pressure`, the history
- * fields `displacement_old`, `rotation_old`, `restoring_old` and, if the set has it, `reaction`
- * (N).
+ * (ratio h, 0 to 1000) at creation and when they have been edited (mps_particles_edit) between two
+ * steps; `displacement`, `velocity`, `rotation`, `spin` at creation and, once edited, at
+ * mps_dynamics_restart, without which no step is taken then; `external_force` (N) at every step, if
+ * the set has it by then; it writes displacement, velocity, rotation, spin, `position`,
+ * `acceleration`, `pressure`, the history fields `displacement_old`, `rotation_old`,
+ * `restoring_old` and, if the set has it, `reaction` (N).
  *
  * After a step to time t = mps_dynamics_time the positions, displacements and rotations are those
  * of t; accelerations, pressures and reactions those that the step began with, of t - dt
  * (mps_dynamics_refresh brings accelerations and pressures to t); velocity and spin those of
  * t - dt/2 (Verlet, leapfrog) or of t (Euler).
+ *
+ * Between two steps particles may be removed (mps_particles_remove): erosion, excavation. The rest
+ * moves on, without the forces of those that have gone, as a new solver on it would; boundaries and
+ * loads lose them, dt is checked or chosen anew, and snapshots from before cannot be gone back to.
+ * None can be added: a newcomer has no reference position in a body that has moved.
  *
  * Every force, mass and energy is that of the thickness `measure`.
  *
@@ -31,6 +37,8 @@
 #define LIBMPS_DYNAMICS_H
 
 #include "io.h"
+#include "kernel.h"
+#include "material.h"
 #include "particles.h"
 #include "signal.h"
 #include "solver.h"
@@ -69,7 +77,7 @@ typedef struct mps_dynamics_def {
   double dt; /* s, 1e-12 to 1e9; NaN (default): `courant` times the linear limit, found at the first
                 step */
   double courant;        /* fraction of the linear limit for dt, in (0, 1]; default 0.9 */
-  double radius_ratio;   /* re / D, in (1, 4]; default 1.5 */
+  double radius_ratio;   /* re / D, in (1, 4]; default 1.5. Not read with a kernel */
   double f1, f2;         /* Rayleigh damping has the ratio h at these frequencies, Hz, 1e-20 to 1e9;
                             default 1 and 14 */
   double period_x;       /* m, > 0: the body repeats itself in x with this period; NaN (default): it
@@ -81,6 +89,10 @@ typedef struct mps_dynamics_def {
                             takes or gives; costs about a tenth of a step. 0 (default): the two are
                             found together */
   int32_t reserved;      /* 0 */
+  mps_material *material; /* linear elastic, of all particles; NULL (default): what the fields say.
+                             Kept alive */
+  mps_kernel *kernel; /* weight function, its radius in (1, 4] spacings; NULL (default): re/r - 1
+                         with radius_ratio, Yoshida (A8). Kept alive */
 } mps_dynamics_def;
 
 MPS_API mps_status mps_dynamics_def_init(mps_dynamics_def *def, size_t size);
@@ -91,8 +103,8 @@ static inline mps_dynamics_def mps_dynamics_defaults(void) {
   return def;
 }
 
-/** Creates a solver for the 2D set `particles`, sorting it (its epoch changes) and pinning it:
- *  until the solver is destroyed no particle can be added. `def` NULL: defaults. */
+/** Creates a solver for the 2D set `particles`, sorting it (its epoch changes). `def` NULL:
+ *  defaults. On an error the set is as before: fields, values, order, epoch. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
                                                      const mps_dynamics_def *def,
                                                      mps_dynamics **out);
@@ -109,6 +121,13 @@ static inline mps_status mps_dynamics_get_def(const mps_dynamics *dynamics, mps_
 /** The set and the context that it was created with, or NULL of NULL. */
 MPS_API mps_particles *mps_dynamics_particles(const mps_dynamics *dynamics);
 MPS_API mps_context *mps_dynamics_context(const mps_dynamics *dynamics);
+/** Says what the particles `ids` (NULL with count 0: all) are made of, before the first step or
+ *  between two: writes `shear_velocity` and `pressure_velocity` from the constants of `material`
+ *  and the particles' `density`. MPS_ERROR_UNSUPPORTED: not linear elastic. On an error nothing has
+ *  changed. */
+MPS_API MPS_NODISCARD mps_status mps_dynamics_set_material(mps_dynamics *dynamics,
+                                                           const mps_material *material,
+                                                           int64_t count, const int64_t *ids);
 /** Number of interacting pairs (each once). */
 MPS_API int64_t mps_dynamics_pairs(const mps_dynamics *dynamics);
 
@@ -367,8 +386,7 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_predict_sized(mps_context *context
                                                             const mps_dynamics_predict_def *def,
                                                             mps_dynamics_prediction *out,
                                                             size_t size);
-static inline mps_status mps_dynamics_predict(mps_context *ctx,
-                                              const mps_dynamics_predict_def *def,
+static inline mps_status mps_dynamics_predict(mps_context *ctx, const mps_dynamics_predict_def *def,
                                               mps_dynamics_prediction *out) {
   return mps_dynamics_predict_sized(ctx, def, out, sizeof *out);
 }

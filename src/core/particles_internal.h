@@ -75,6 +75,10 @@ mps_status mpsi_particles_check_hold(const mps_particles *particles, const char 
                                      mpsi_use kind);
 mps_status mpsi_particles_hold(mps_particles *particles, const char *function, mpsi_holder *holder);
 void mpsi_particles_release(mps_particles *particles, mpsi_holder *holder); /* set may be NULL */
+/* Tells the holders that the caller has written a field, which was `former` before that (NULL: not
+ * known); one may refuse. */
+mps_status mpsi_particles_tell(mps_particles *particles, const char *function, const char *field,
+                               const double *former);
 /* At the beginning of each step: MPS_ERROR_STATE while the caller edits a field. */
 mps_status mpsi_particles_ready(const mps_particles *particles, const char *function);
 

@@ -78,10 +78,6 @@ mps_status mpsi_field_check_value(const mps_particles *particles, const char *fu
                                   const mpsi_field *field, double value);
 /* Whether a holder wants to know what the field was before the caller wrote it. */
 bool mpsi_particles_compares(const mps_particles *particles, const char *field);
-/* Tells the holders that the caller has written a field, which was `former` before that (NULL: not
- * known); one may refuse. */
-mps_status mpsi_particles_tell(mps_particles *particles, const char *function, const char *field,
-                               const double *former);
 
 /* ---- remove.c -------------------------------------------------------------------------------- */
 

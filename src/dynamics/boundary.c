@@ -197,16 +197,13 @@ static mps_status make(mps_dynamics *dynamics, const char *function,
 /* ---- the lists ----------------------------------------------------------------------------------
  */
 
-/* What is held or driven, and the dashpots, of all boundaries. */
-typedef struct lists {
-  mpsi_dynamics_bound *bound;
-  mpsi_dynamics_dashpot *dashpot;
-  int64_t bounds, dashpots;
-} lists;
+typedef mpsi_dynamics_lists lists;
 
-static void free_lists(mps_dynamics *dynamics, lists *l) {
+void mpsi_dynamics_free_lists(mps_dynamics *dynamics, lists *l) {
   mpsi_free(dynamics->context, l->bound);
   mpsi_free(dynamics->context, l->dashpot);
+  mpsi_free(dynamics->context, l->owner);
+  *l = (lists){0};
 }
 
 static const uint32_t dof_of[3] = {MPS_DOF_X, MPS_DOF_Y, MPS_DOF_ROTATION};
@@ -264,61 +261,77 @@ static int compare_dashpots(const void *left, const void *right) {
   return a->partner < b->partner ? -1 : a->partner > b->partner;
 }
 
-/* Fills the list of dashpots: columns last in memory, first here, since an edge needs the velocity
- * of its column after the step. */
-static void list_dashpots(const mps_dynamics *dynamics, const int32_t *owner, lists *l) {
+/* What dashpots are worth (1/s), from the fields: that of a face of length D on a mass rho D^2. */
+static void set_rates(const mps_dynamics *dynamics, int64_t count, mpsi_dynamics_dashpot *dashpot) {
   const double *rho = mpsi_dynamics_column(dynamics, "density", 0);
   const double *vs = mpsi_dynamics_column(dynamics, "shear_velocity", 0);
   const double *vp = mpsi_dynamics_column(dynamics, "pressure_velocity", 0);
-  const double D = mps_particles_spacing(dynamics->particles);
+  for (int64_t k = 0; k < count; k++) {
+    mpsi_dynamics_dashpot *q = &dashpot[k];
+    const int32_t i = q->particle;
+    if (q->boundary < 0) { /* of a column: its own ground */
+      q->c = (q->component == 0 ? vp : vs)[q->partner] / dynamics->spacing;
+      continue;
+    }
+    const mpsi_dynamics_boundary *b = dynamics->boundary[q->boundary];
+    const bool along = q->component == b->normal;
+    const double own = along ? vp[i] : vs[i], outside = along ? b->pressure : b->shear;
+    const double impedance = (isnan(b->density) ? rho[i] : b->density) *
+                             (isnan(outside) ? own : outside); /* kg/(m2 s) */
+    q->c = impedance / (rho[i] * dynamics->spacing);
+  }
+}
+
+void mpsi_dynamics_renew_dashpots(mps_dynamics *dynamics) {
+  set_rates(dynamics, dynamics->dashpots, dynamics->dashpot);
+}
+
+/* Fills the list of dashpots: columns last in memory, first here, since an edge needs the velocity
+ * of its column after the step. */
+static void list_dashpots(const mps_dynamics *dynamics, const int32_t *owner, lists *l) {
   for (int64_t k = 0; k < dynamics->column_dashpots; k++)
     l->dashpot[l->dashpots++] = dynamics->column_dashpot[k];
   for (int32_t number = 0; number < dynamics->boundary_room; number++) {
     const mpsi_dynamics_boundary *b = dynamics->boundary[number];
     if (!b || b->kind != MPS_DYNAMICS_BOUNDARY_VISCOUS) continue;
     for (int64_t p = 0; p < b->part.count; p++)
-      for (int c = 0; c < 2; c++) {
-        const int32_t i = b->part.particle[p];
-        const double own = c == b->normal ? vp[i] : vs[i];
-        const double outside = c == b->normal ? b->pressure : b->shear;
-        const double impedance = (isnan(b->density) ? rho[i] : b->density) *
-                                 (isnan(outside) ? own : outside); /* kg/(m2 s) */
-        l->dashpot[l->dashpots++] =
-            (mpsi_dynamics_dashpot){.particle = i,
-                                    .component = c,
-                                    .boundary = number,
-                                    .partner = -1,
-                                    .c = impedance / (rho[i] * D)}; /* face D, mass rho D^2 */
-      }
+      for (int c = 0; c < 2; c++)
+        l->dashpot[l->dashpots++] = (mpsi_dynamics_dashpot){
+            .particle = b->part.particle[p], .component = c, .boundary = number, .partner = -1};
   }
+  set_rates(dynamics, l->dashpots, l->dashpot);
   for (int64_t k = 0; k < l->dashpots; k++)
     l->dashpot[k].idle = owner[l->dashpot[k].component * dynamics->count + l->dashpot[k].particle];
   qsort(l->dashpot, (size_t)l->dashpots, sizeof *l->dashpot, compare_dashpots);
+}
+
+mps_status mpsi_dynamics_reserve_lists(mps_dynamics *dynamics, const char *function,
+                                       int64_t particles, int64_t column_dashpots, lists *out) {
+  mps_context *context = dynamics->context;
+  *out = (lists){0};
+  out->owner = mpsi_alloc(context, 3 * particles, sizeof *out->owner);
+  if (!out->owner) return mpsi_fail_memory(context, function, (size_t)particles * 12);
+  const int64_t owned = find_owners(dynamics, out->owner);
+  int64_t dashpots = column_dashpots;
+  for (int32_t k = 0; k < dynamics->boundary_room; k++)
+    if (dynamics->boundary[k] && dynamics->boundary[k]->kind == MPS_DYNAMICS_BOUNDARY_VISCOUS)
+      dashpots += 2 * dynamics->boundary[k]->part.count;
+  out->bound = mpsi_alloc(context, owned, sizeof *out->bound);
+  out->dashpot = mpsi_alloc(context, dashpots, sizeof *out->dashpot);
+  if (out->bound && out->dashpot) return MPS_OK;
+  mpsi_dynamics_free_lists(dynamics, out);
+  return mpsi_fail_memory(context, function, (size_t)owned * sizeof *out->bound);
 }
 
 /* Makes the lists of the present boundaries, of which `changed` (-1: none) has just been defined.
  */
 static mps_status make_lists(mps_dynamics *dynamics, const char *function, int32_t changed,
                              lists *out) {
-  mps_context *context = dynamics->context;
-  *out = (lists){0};
-  int32_t *owner = mpsi_alloc(context, 3 * dynamics->count, sizeof *owner);
-  if (!owner) return mpsi_fail_memory(context, function, (size_t)dynamics->count * 12);
-  const int64_t owned = find_owners(dynamics, owner);
-  int64_t dashpots = dynamics->column_dashpots;
-  for (int32_t k = 0; k < dynamics->boundary_room; k++)
-    if (dynamics->boundary[k] && dynamics->boundary[k]->kind == MPS_DYNAMICS_BOUNDARY_VISCOUS)
-      dashpots += 2 * dynamics->boundary[k]->part.count;
-  out->bound = mpsi_alloc(context, owned, sizeof *out->bound);
-  out->dashpot = mpsi_alloc(context, dashpots, sizeof *out->dashpot);
-  if (!out->bound || !out->dashpot) {
-    free_lists(dynamics, out);
-    mpsi_free(context, owner);
-    return mpsi_fail_memory(context, function, (size_t)owned * sizeof *out->bound);
-  }
-  list_bounds(dynamics, owner, changed, out);
-  list_dashpots(dynamics, owner, out);
-  mpsi_free(context, owner);
+  const mps_status status = mpsi_dynamics_reserve_lists(dynamics, function, dynamics->count,
+                                                        dynamics->column_dashpots, out);
+  if (status != MPS_OK) return status;
+  list_bounds(dynamics, out->owner, changed, out);
+  list_dashpots(dynamics, out->owner, out);
   return MPS_OK;
 }
 
@@ -349,6 +362,16 @@ static void put_lists(mps_dynamics *dynamics, lists *l, int32_t changed) {
   dynamics->bounds = l->bounds;
   dynamics->dashpot = l->dashpot;
   dynamics->dashpots = l->dashpots;
+  mpsi_free(dynamics->context, l->owner);
+  *l = (lists){0};
+}
+
+void mpsi_dynamics_use_lists(mps_dynamics *dynamics, lists *room) {
+  for (int64_t k = 0; k < 3 * dynamics->count; k++) room->owner[k] = 0;
+  (void)find_owners(dynamics, room->owner);
+  list_bounds(dynamics, room->owner, -1, room);
+  list_dashpots(dynamics, room->owner, room);
+  put_lists(dynamics, room, -1);
 }
 
 /* Where the signals of a driven boundary are at time t. */

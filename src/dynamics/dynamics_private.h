@@ -1,5 +1,8 @@
 /* dynamics_private.h - the members of the explicit MPS solver, and who does what in a step:
  *
+ *   structure.c   order, pairs, mesh and arrays: what follows from which particles there are
+ *   ground.c      what the body is made of; fields that the caller edits
+ *   removal.c     particles that leave between two steps
  *   step.c        the step: forces (kernels.c), loads, dashpots, what is held or driven, budget
  *   constrain.c   dashpots and held or driven degrees of freedom around a step
  *   boundary.c    boundaries: definitions, lists, reactions
@@ -12,8 +15,10 @@
 #ifndef MPSI_DYNAMICS_PRIVATE_H
 #define MPSI_DYNAMICS_PRIVATE_H
 
+#include "core/guard.h"
 #include "core/particles_internal.h"
 #include "kernels.h"
+#include "layout.h"
 #include "mesh.h"
 
 #include <mps/dynamics.h>
@@ -73,6 +78,27 @@ typedef struct mpsi_dynamics_dashpot {
   double force;                  /* on the particle in the last step, N */
 } mpsi_dynamics_dashpot;
 
+/* What is held or driven, and the dashpots, of all boundaries. */
+typedef struct mpsi_dynamics_lists {
+  mpsi_dynamics_bound *bound;
+  mpsi_dynamics_dashpot *dashpot;
+  int64_t bounds, dashpots;
+  int32_t *owner; /* 1 + the boundary that has each degree of freedom, component by component */
+} mpsi_dynamics_lists;
+
+/* What follows from which particles there are: the solver's present one lies in its own members. */
+#define MPSI_DYN_SLAB_COLUMNS 15
+typedef struct mpsi_dynamics_structure {
+  int64_t count, body, pairs;
+  bool lattice;
+  mpsi_dynamics_mesh mesh;
+  double *slab, *scratch, *part;
+  int64_t stride, room; /* of the slab: from column to column, pair slots */
+  int32_t *bad;
+  mpsi_dynamics_dashpot *column_dashpot;
+  int64_t column_dashpots;
+} mpsi_dynamics_structure;
+
 /* Works and energies, J, since the state began. */
 typedef struct mpsi_dynamics_works {
   double loads, boundaries, damping;
@@ -82,13 +108,15 @@ typedef struct mpsi_dynamics_works {
 struct mps_dynamics {
   mps_context *context;
   mps_particles *particles;
-  mpsi_holder holder; /* of the particles */
-  mps_dynamics_def def;
+  mpsi_holder holder;              /* of the particles */
+  mps_dynamics_def def;            /* with a share in the material */
+  mps_kernel *kernel;              /* w(r), shared */
   double spacing, radius, density; /* D, re (m), n0 */
   int64_t count;                   /* particles, free-field columns included */
   int64_t body;                    /* particles of the body: 0 .. body - 1 */
   int64_t pairs;
-  bool lattice; /* all pairs' offsets are whole spacings */
+  int64_t places; /* hash of the reference positions that the pairs are made of */
+  bool lattice;   /* all pairs' offsets are whole spacings */
   mpsi_dynamics_mesh mesh;
   mpsi_dynamics_state state;
   const mpsi_dynamics_kernels *kernels;
@@ -122,23 +150,71 @@ struct mps_dynamics {
   bool fresh;   /* no step since creation or restart: no history */
   bool checked; /* dt has been compared with the linear limit */
   bool diverged;
-  bool begun;       /* works.start is known */
-  const char *busy; /* the public function that is under way, NULL: none */
+  bool begun;    /* works.start is known */
+  bool no_rate;  /* restoring_old is not of the present ground: damping has no rate yet */
+  bool stepping; /* within a step, not between two */
+  mpsi_guard guard;
+  bool unread;           /* fields of the ground have been edited, and do not go together so far */
+  const char *rewritten; /* field of the motion that the caller has written, or NULL */
+  const char *broken;    /* field that nobody may write and somebody has, or NULL */
   bool have_limit;
   mps_dynamics_linear_limit limit; /* valid when have_limit */
   mpsi_dynamics_works works;
-  struct mpsi_identity *identity; /* state.c */
-  mps_snapshot *present;          /* of mps_dynamics_refresh, NULL before the first */
+  struct mpsi_identity *identity;        /* state.c */
+  struct mpsi_dynamics_removal *removal; /* removal.c: under way, or NULL */
+  mps_snapshot *present;                 /* of mps_dynamics_refresh, NULL before the first */
 };
 
 /* Column of a field that the solver has added itself: never NULL. */
 double *mpsi_dynamics_column(const mps_dynamics *dynamics, const char *name, int32_t component);
-/* Coefficients of each particle, from its fields. */
-void mpsi_dynamics_set_coefficients(mps_dynamics *dynamics);
-/* Finds the columns of the fields in the set. */
-void mpsi_dynamics_bind(mps_dynamics *dynamics);
 /* Room for what is accounted for in each step, made once. False: out of memory. */
 bool mpsi_dynamics_reserve_accounts(mps_dynamics *dynamics);
+/* What Rayleigh damping that is watched needs. */
+mps_status mpsi_dynamics_reserve_watch(mps_dynamics *dynamics, const char *function);
+
+/* ---- structure.c ---- */
+
+/* Adds the fields that the solver writes. */
+mps_status mpsi_dynamics_add_fields(mps_dynamics *dynamics);
+/* Sorts the set. */
+mps_status mpsi_dynamics_sort(mps_dynamics *dynamics, const char *function);
+/* Makes the structure of sorted particles: those of the set, or of `geometry`. Nothing else has
+ * changed on an error. */
+mps_status mpsi_dynamics_make_structure(mps_dynamics *dynamics, const char *function,
+                                        const mpsi_dynamics_geometry *geometry,
+                                        mpsi_dynamics_structure *out);
+void mpsi_dynamics_free_structure(mps_dynamics *dynamics, mpsi_dynamics_structure *structure);
+/* Puts it in place of the solver's own, which is released; finds columns and coefficients. */
+void mpsi_dynamics_use_structure(mps_dynamics *dynamics, mpsi_dynamics_structure *structure);
+/* Finds the columns of the fields in the set. */
+void mpsi_dynamics_bind(mps_dynamics *dynamics);
+
+/* ---- removal.c: the holder's functions ---- */
+
+typedef struct mpsi_dynamics_removal mpsi_dynamics_removal;
+mps_status mpsi_dynamics_remove(void *self, const char *function, int64_t count,
+                                const int64_t *ids);
+void mpsi_dynamics_renew(void *self);
+
+/* ---- ground.c ---- */
+
+mps_status mpsi_dynamics_check_ground(mps_particles *particles, const char *function);
+/* Writes wave velocities of `count` particles, or of all (0, NULL): all or nothing. */
+mps_status mpsi_dynamics_write_material(mps_particles *particles, const char *function,
+                                        const mps_material *material, int64_t count,
+                                        const int64_t *ids);
+/* Coefficients of each particle, from its fields; whether one is another than before. */
+bool mpsi_dynamics_set_coefficients(mps_dynamics *dynamics);
+/* Kinetic and strain energy that the budget knows of: 0 where it has not begun. What changes the
+ * body between steps moves the budget's start by the difference. */
+double mpsi_dynamics_present_energy(mps_dynamics *dynamics);
+/* Takes up the fields of the ground as they are now. */
+mps_status mpsi_dynamics_read_ground(mps_dynamics *dynamics, const char *function);
+/* The holder's commit: a field has been edited. */
+mps_status mpsi_dynamics_commit(void *self, const char *function, const char *field,
+                                const double *former);
+/* Before a step or a look at the state: takes up what has been edited, or says why it cannot. */
+mps_status mpsi_dynamics_take_edits(mps_dynamics *dynamics, const char *function);
 
 /* MPS_ERROR_STATE when a call of the solver is under way. */
 mps_status mpsi_dynamics_enter(mps_dynamics *dynamics, const char *function);
@@ -155,6 +231,8 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
                                  double length, bool output);
 /* Brings position, velocity, spin and reaction up to date. */
 void mpsi_dynamics_publish(mps_dynamics *dynamics);
+/* The body or what it is made of is another: so are the limit and the dt that followed from it. */
+void mpsi_dynamics_forget_limit(mps_dynamics *dynamics);
 /* Chooses dt where the definition left it open, and warns of one above the limit. */
 mps_status mpsi_dynamics_settle_dt(mps_dynamics *dynamics, const char *function);
 /* Velocity of a degree of freedom (component 0, 1, 2) half a step before the present state (Euler:
@@ -182,6 +260,15 @@ mps_status mpsi_dynamics_list_boundaries(mps_dynamics *dynamics, const char *fun
 /* Takes the present state as that from which what is held or driven goes on: at the start. */
 mps_status mpsi_dynamics_take_bounds(mps_dynamics *dynamics, const char *function);
 void mpsi_dynamics_free_boundaries(mps_dynamics *dynamics);
+/* Room for the lists of the present boundaries on a body of `particles` and so many dashpots of
+ * free-field columns; then, when nothing can fail any more, the lists themselves. */
+mps_status mpsi_dynamics_reserve_lists(mps_dynamics *dynamics, const char *function,
+                                       int64_t particles, int64_t column_dashpots,
+                                       mpsi_dynamics_lists *out);
+void mpsi_dynamics_use_lists(mps_dynamics *dynamics, mpsi_dynamics_lists *room);
+void mpsi_dynamics_free_lists(mps_dynamics *dynamics, mpsi_dynamics_lists *lists);
+/* Rates of all dashpots, from the fields. */
+void mpsi_dynamics_renew_dashpots(mps_dynamics *dynamics);
 
 /* ---- constrain.c ---- */
 
@@ -229,10 +316,10 @@ void mpsi_dynamics_energies(mps_dynamics *dynamics, double *kinetic, double *str
  * particle's pressure, its mean each pair's shear force. `work` has 4 count doubles. */
 void mpsi_dynamics_tangent_apply(mps_dynamics *dynamics, const double *weight, const double *x,
                                  double *y, double *work);
-/* Square of the highest eigenfrequency (rad/s)^2 of the endless square lattice; `torque` as above.
- */
-double mpsi_dynamics_lattice_omega2(double spacing, double radius_ratio, double vs, double vp,
-                                    double torque);
+/* Square of the highest eigenfrequency (rad/s)^2 of the endless square lattice; `torque` as above;
+ * `kernel` NULL: re/r - 1. */
+double mpsi_dynamics_lattice_omega2(const mps_kernel *kernel, double spacing, double radius_ratio,
+                                    double vs, double vp, double torque);
 /* Largest stable dt of Verlet and leapfrog for a mode of frequency^2 omega2 (rad/s)^2. */
 double mpsi_dynamics_damped_limit(double omega2, double alpha, double beta);
 

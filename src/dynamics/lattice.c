@@ -34,8 +34,14 @@ typedef struct symbol {
   double xx, yy, xy, xs, ys, ss;
 } symbol;
 
-static symbol lattice_symbol(double ratio, double density, double lambda, double inertia, double a,
-                             double b) {
+/* Weight at the distance r, in spacings; of re/r - 1 where `kernel` is NULL. */
+static double weight(const mps_kernel *kernel, double ratio, double r) {
+  if (mps_kernel_get_kind(kernel) <= MPS_KERNEL_MPS) return ratio / r - 1.0;
+  return mps_kernel_weight(kernel, r * mps_kernel_radius(kernel) / ratio);
+}
+
+static symbol lattice_symbol(const mps_kernel *kernel, double ratio, double density, double lambda,
+                             double inertia, double a, double b) {
   const double d = 2.0;
   const int reach = (int)ceil(ratio);
   symbol m = {0};
@@ -44,7 +50,7 @@ static symbol lattice_symbol(double ratio, double density, double lambda, double
     for (int j = -reach; j <= reach; j++) {
       const double r2 = i * i + j * j, r = sqrt(r2);
       if (r2 == 0.0 || r >= ratio * (1.0 - 1e-9)) continue;
-      const double w = ratio / r - 1.0, phase = a * i + b * j;
+      const double w = weight(kernel, ratio, r), phase = a * i + b * j;
       const double stiff = 4.0 * d / density * w / r2;
       /* u = (U_j - U_i) - 1/2 (th_i + th_j) (-r0y, r0x) */
       m.xx += stiff * (1.0 - cos(phase));
@@ -76,8 +82,8 @@ static double highest(symbol m) {
   return mean + 2.0 * sqrt(q) * cos(acos(c) / 3.0);
 }
 
-double mpsi_dynamics_lattice_omega2(double spacing, double radius_ratio, double vs, double vp,
-                                    double torque) {
+double mpsi_dynamics_lattice_omega2(const mps_kernel *kernel, double spacing, double radius_ratio,
+                                    double vs, double vp, double torque) {
   const double pi = 3.14159265358979323846;
   const double lambda = fmax(0.0, vp * vp / (vs * vs) - 2.0);
   const double inertia = 1.0 / (6.0 * torque);
@@ -86,12 +92,12 @@ double mpsi_dynamics_lattice_omega2(double spacing, double radius_ratio, double 
   for (int i = -reach; i <= reach; i++)
     for (int j = -reach; j <= reach; j++) {
       const double r = sqrt((double)(i * i + j * j));
-      if (r > 0.0 && r < radius_ratio * (1.0 - 1e-9)) n0 += radius_ratio / r - 1.0;
+      if (r > 0.0 && r < radius_ratio * (1.0 - 1e-9)) n0 += weight(kernel, radius_ratio, r);
     }
   for (int i = 0; i <= WAVES; i++) /* the lattice is symmetric in x, y and x <-> y */
     for (int j = 0; j <= i; j++)
-      most = fmax(most, highest(lattice_symbol(radius_ratio, n0, lambda, inertia, pi * i / WAVES,
-                                               pi * j / WAVES)));
+      most = fmax(most, highest(lattice_symbol(kernel, radius_ratio, n0, lambda, inertia,
+                                               pi * i / WAVES, pi * j / WAVES)));
   return most * vs * vs / (spacing * spacing);
 }
 
@@ -133,7 +139,7 @@ mps_status mps_dynamics_predict_sized(mps_context *context,
   if (status != MPS_OK) return status;
   const double pi = 3.14159265358979323846, h = def.damping;
   const double omega2 = mpsi_dynamics_lattice_omega2(
-      def.spacing, def.radius_ratio, def.shear_velocity, def.pressure_velocity, 1.0);
+      NULL, def.spacing, def.radius_ratio, def.shear_velocity, def.pressure_velocity, 1.0);
   mps_dynamics_prediction p = {.omega = sqrt(omega2)};
   const double edge = edge_factor(&def) * p.omega;
   p.dt = mpsi_dynamics_damped_limit(edge * edge, h * 4.0 * pi * def.f1 * def.f2 / (def.f1 + def.f2),

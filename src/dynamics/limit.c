@@ -284,9 +284,9 @@ static double lattice_bound(const mps_dynamics *dynamics) {
     light = fmin(light, 1.0 / s->ix[k]);
     alpha = fmax(alpha, s->alpha[k]), beta = fmax(beta, s->beta[k]);
   }
-  const double omega2 =
-      mpsi_dynamics_lattice_omega2(dynamics->spacing, dynamics->def.radius_ratio, sqrt(mu / light),
-                                   sqrt((lambda + 2.0 * mu) / light), dynamics->torque);
+  const double omega2 = mpsi_dynamics_lattice_omega2(
+      dynamics->kernel, dynamics->spacing, dynamics->def.radius_ratio, sqrt(mu / light),
+      sqrt((lambda + 2.0 * mu) / light), dynamics->torque);
   /* Shear is softer where neighbours are missing, pressure can be stiffer: up to 1.13 times omega
    * over all the shapes tried, and only where the highest mode is not the spin's. */
   return (lambda <= 7.0 * mu ? 0.95 : 0.8) * mpsi_dynamics_damped_limit(omega2, alpha, beta);

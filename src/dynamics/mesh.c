@@ -67,7 +67,7 @@ static void arrange_block(void *data, int64_t b, int32_t worker) {
 
 static void coefficients(const mpsi_dynamics_mesh_def *def, double r0x, double r0y, double *kf,
                          double *kc) {
-  const double d = 2.0, r0 = sqrt(r0x * r0x + r0y * r0y), w = def->radius / r0 - 1.0;
+  const double d = 2.0, r0 = sqrt(r0x * r0x + r0y * r0y), w = mps_kernel_weight(def->kernel, r0);
   *kf = 0.5 * (4.0 * d / def->density) * w / (r0 * r0);
   *kc = (d / def->density) * w / r0;
 }

@@ -12,6 +12,8 @@
 
 #include "core/internal.h"
 
+#include <mps/kernel.h>
+
 #define MPSI_DYN_BLOCK 512 /* particles a block: its sums stay in the first-level cache */
 #define MPSI_DYN_CHUNK 128 /* pairs a vector loop */
 #define MPSI_DYN_STRIP 64  /* particles a row before a wide body is cut into strips */
@@ -59,9 +61,8 @@ typedef struct mpsi_dynamics_pair {
 
 /* What arranging needs to know of the discretisation. */
 typedef struct mpsi_dynamics_mesh_def {
-  double spacing; /* D, m */
-  double radius;  /* re, m */
-  double density; /* n0 */
+  const mps_kernel *kernel; /* w(r) */
+  double density;           /* n0 */
 } mpsi_dynamics_mesh_def;
 
 /* Arranges `count` pairs over `particles` sorted particles. `pair` is reordered. False: out of

@@ -9,11 +9,7 @@
 #define PROMPT_WORK 5000000 /* particle-steps between looks at the cancel hook: some 0.1 s */
 
 mps_status mpsi_dynamics_enter(mps_dynamics *dynamics, const char *function) {
-  if (!dynamics->busy) return MPS_OK;
-  return mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
-                   "called while %s of the same solver is under way (from its callback or from the "
-                   "function of a signal): only reading functions may be",
-                   dynamics->busy);
+  return mpsi_guard_check(&dynamics->guard, dynamics->context, function);
 }
 
 mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function) {
@@ -23,6 +19,8 @@ mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function) {
     return mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
                      "the run has diverged: mps_dynamics_rollback or mps_dynamics_restore leads "
                      "back, mps_dynamics_restart begins a new one");
+  status = mpsi_dynamics_take_edits(dynamics, function);
+  if (status != MPS_OK) return status;
   return mpsi_dynamics_settle_dt(dynamics, function);
 }
 
@@ -46,14 +44,14 @@ mps_status mps_dynamics_step(mps_dynamics *dynamics, int64_t count) {
     return mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
                      (long long)count);
   const int64_t prompt = prompt_steps(dynamics);
-  dynamics->busy = __func__;
+  mpsi_guard_enter(&dynamics->guard, dynamics->context, "mps_dynamics_step");
   for (int64_t done = 0; status == MPS_OK && done < count;) {
     const int64_t n = count - done < prompt ? count - done : prompt;
     status = cancelled(dynamics, __func__);
     if (status == MPS_OK) status = mpsi_dynamics_advance(dynamics, __func__, n, dynamics->dt, true);
     done += n;
   }
-  dynamics->busy = NULL;
+  mpsi_guard_end(&dynamics->guard);
   mpsi_dynamics_publish(dynamics);
   return status;
 }
@@ -61,16 +59,11 @@ mps_status mps_dynamics_step(mps_dynamics *dynamics, int64_t count) {
 /* Calls the caller's callback and records its refusal. */
 static mps_status ask(mps_dynamics *dynamics, const char *function, mps_dynamics_fn callback,
                       void *user) {
-  mps_context_clear_error(dynamics->context);
-  const mps_status status = callback(user, dynamics);
-  if (status == MPS_OK) return MPS_OK;
-  const mps_error error = *mps_context_error(dynamics->context); /* the callback's own */
-  const bool told = error.status == status && error.message[0] != '\0';
-  return mpsi_fail(dynamics->context, function, status,
-                   "stopped by the callback of mps_dynamics_run with status %d at step %lld, "
-                   "t = %g s%s%s",
-                   (int)status, (long long)dynamics->steps, mps_dynamics_time(dynamics),
-                   told ? ": " : "", told ? error.message : "");
+  mpsi_guard_enter(&dynamics->guard, dynamics->context, "the callback of mps_dynamics_run");
+  const mps_status status =
+      mpsi_guard_leave(&dynamics->guard, dynamics->context, function, callback(user, dynamics));
+  if (status != MPS_OK) mpsi_fail_where(dynamics->context, dynamics->steps, -1);
+  return status;
 }
 
 /* Equal steps of at most dt from `start` to `t_end`: their number and length. Where dt, or the
@@ -151,13 +144,13 @@ mps_status mps_dynamics_run(mps_dynamics *dynamics, double t_end, int64_t every,
   r.length = divide(dynamics, r.start, t_end, &r.total);
   r.report = r.total / 100 > 0 ? r.total / 100 : 1;
   if (r.report > prompt_steps(dynamics)) r.report = prompt_steps(dynamics);
-  dynamics->busy = __func__;
+  mpsi_guard_enter(&dynamics->guard, context, "mps_dynamics_run");
   if (r.total == 0) {
     dynamics->base_time = t_end;
     dynamics->base_step = dynamics->steps;
   }
   if (callback) status = ask(dynamics, __func__, callback, user);
   if (status == MPS_OK) status = march(&r);
-  dynamics->busy = NULL;
+  mpsi_guard_end(&dynamics->guard);
   return status;
 }

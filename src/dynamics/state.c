@@ -59,25 +59,13 @@ static const mpsi_state_table dashpots_table = {MPSI_STATE_F64, 1,    count_dash
 /* ---- the list
  * ------------------------------------------------------------------------------------ */
 
-/* Tells apart bodies whose pairs are not the same: a hash of the reference positions, 32 bits. */
-static int64_t hash_positions(const mps_dynamics *dynamics) {
-  const double *const column[2] = {dynamics->state.rx, dynamics->state.ry};
-  uint64_t hash = 0xcbf29ce484222325u;
-  for (int c = 0; c < 2; c++)
-    for (int64_t k = 0; k < dynamics->count; k++) {
-      uint64_t bits;
-      memcpy(&bits, &column[c][k], sizeof bits);
-      hash = (hash ^ bits) * 0x100000001b3u;
-    }
-  return (int64_t)(hash >> 32);
-}
-
 static void list_setting(mpsi_state *s, const mps_dynamics *dynamics) {
   const mps_dynamics_def *def = &dynamics->def;
   mpsi_state_agree_integer(s, "integrator", def->integrator);
   mpsi_state_agree_integer(s, "rotation", def->rotation);
   mpsi_state_agree_integer(s, "damping", def->damping);
   mpsi_state_agree_integer(s, "watch_damping", def->watch_damping);
+  mpsi_state_agree_integer(s, "kernel", mps_kernel_get_kind(dynamics->kernel));
   mpsi_state_agree_number(s, "radius_ratio", def->radius_ratio);
   mpsi_state_agree_number(s, "f1", def->f1);
   mpsi_state_agree_number(s, "f2", def->f2);
@@ -86,7 +74,7 @@ static void list_setting(mpsi_state *s, const mps_dynamics *dynamics) {
   mpsi_state_agree_number(s, "torque", dynamics->torque);
   mpsi_state_agree_integer(s, "particles", dynamics->count);
   mpsi_state_agree_integer(s, "pairs", dynamics->pairs);
-  mpsi_state_agree_integer(s, "reference_positions", hash_positions(dynamics));
+  mpsi_state_agree_integer(s, "reference_positions", dynamics->places);
 }
 
 static void list_boundary(mpsi_state *s, mpsi_dynamics_boundary *b, int32_t number) {
@@ -121,6 +109,7 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_bool(s, "fresh", &dynamics->fresh);
   mpsi_state_bool(s, "diverged", &dynamics->diverged);
   mpsi_state_bool(s, "begun", &dynamics->begun);
+  mpsi_state_bool(s, "no_rate", &dynamics->no_rate);
   mpsi_state_f64(s, "work_loads", &dynamics->works.loads, 1);
   mpsi_state_f64(s, "work_boundaries", &dynamics->works.boundaries, 1);
   mpsi_state_f64(s, "work_damping", &dynamics->works.damping, 1);
@@ -135,7 +124,13 @@ static void bind(void *solver) { mpsi_dynamics_bind(solver); }
 static void after(void *solver) {
   mps_dynamics *dynamics = solver;
   const mpsi_dynamics_state *s = &dynamics->state;
-  mpsi_dynamics_set_coefficients(dynamics);
+  if (mpsi_dynamics_set_coefficients(dynamics)) {
+    mpsi_dynamics_renew_dashpots(dynamics);
+    dynamics->forces_stale = true; /* masses may be others */
+    dynamics->have_limit = false;
+  }
+  dynamics->unread = false;
+  dynamics->rewritten = dynamics->broken = NULL;
   dynamics->kernels->trig[dynamics->def.rotation](s, 0, dynamics->count);
   for (int64_t k = 0; k < dynamics->bounds; k++) {
     mpsi_dynamics_bound *q = &dynamics->bound[k];
@@ -162,8 +157,17 @@ static mpsi_state_of state_of(mps_dynamics *dynamics) {
 /* ---- what the caller does
  * ------------------------------------------------------------------------ */
 
+/* A state is kept between steps only, with what has been edited taken up. */
+static mps_status check_whole(mps_dynamics *dynamics, const char *function) {
+  if (!dynamics->stepping) return mpsi_dynamics_take_edits(dynamics, function);
+  return mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
+                   "called from within a step of the same solver: the state is not whole");
+}
+
 mps_status mps_dynamics_snapshot(mps_dynamics *dynamics, mps_snapshot **snapshot) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
+  const mps_status status = check_whole(dynamics, __func__);
+  if (status != MPS_OK) return status;
   const mpsi_state_of of = state_of(dynamics);
   return mpsi_state_snapshot(&of, __func__, snapshot);
 }
@@ -178,6 +182,8 @@ mps_status mps_dynamics_rollback(mps_dynamics *dynamics, const mps_snapshot *sna
 
 mps_status mps_dynamics_save(mps_dynamics *dynamics, const char *path, const mps_checkpoint *info) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
+  const mps_status status = check_whole(dynamics, __func__);
+  if (status != MPS_OK) return status;
   const mpsi_state_of of = state_of(dynamics);
   return mpsi_checkpoint_save(&of, __func__, path, info);
 }
@@ -201,9 +207,9 @@ static mps_status look_ahead(mps_dynamics *dynamics, const char *function, doubl
   mps_status status = mpsi_state_snapshot(&of, function, &dynamics->present);
   if (status != MPS_OK) return status;
   dynamics->def.divergence = INFINITY; /* that is for the step itself to find */
-  dynamics->busy = function;
+  mpsi_guard_enter(&dynamics->guard, dynamics->context, function);
   status = mpsi_dynamics_advance(dynamics, function, 1, dynamics->dt, true);
-  dynamics->busy = NULL;
+  mpsi_guard_end(&dynamics->guard);
   dynamics->def.divergence = limit;
   memcpy(kept, dynamics->state.ax, bytes);
   memcpy(kept + dynamics->count, dynamics->state.ay, bytes);

@@ -54,7 +54,8 @@ mps_status mpsi_dynamics_begin(mps_dynamics *dynamics, const char *function, dou
     dynamics->fresh = fresh;
     return status;
   }
-  dynamics->diverged = dynamics->begun = false;
+  dynamics->diverged = dynamics->begun = dynamics->no_rate = false;
+  dynamics->rewritten = NULL;
   dynamics->works = (mpsi_dynamics_works){0};
   for (int32_t k = 0; k < dynamics->boundary_room; k++) {
     mpsi_dynamics_boundary *b = dynamics->boundary[k];
@@ -155,6 +156,11 @@ mps_status mpsi_dynamics_settle_dt(mps_dynamics *dynamics, const char *function)
       isnan(dynamics->dt) ? choose_dt(dynamics, function) : compare_dt(dynamics, dynamics->dt);
   dynamics->checked = status == MPS_OK;
   return status;
+}
+
+void mpsi_dynamics_forget_limit(mps_dynamics *dynamics) {
+  dynamics->have_limit = dynamics->checked = false;
+  if (isnan(dynamics->def.dt)) dynamics->dt = NAN;
 }
 
 double mps_dynamics_dt(mps_dynamics *dynamics) {
@@ -295,8 +301,8 @@ static void end_counting(mps_dynamics *dynamics, double kick) {
   }
 }
 
-/* Whether an acceleration is beyond the limit, given by its square. What holds or drives a particle gives it its
- * acceleration; the loops have found that of the forces. */
+/* Whether an acceleration is beyond the limit, given by its square. What holds or drives a particle
+ * gives it its acceleration; the loops have found that of the forces. */
 static bool diverges(mps_dynamics *dynamics, double limit2) {
   mpsi_dynamics_state *s = &dynamics->state;
   double *const a[2] = {s->ax, s->ay};
@@ -328,7 +334,7 @@ static bool take_step(work *w, bool output) {
   fit_history(dynamics);
   w->step.kick = kick;
   w->step.rate = 1.0 / dynamics->kept;
-  w->step.first = dynamics->fresh;
+  w->step.first = dynamics->fresh || dynamics->no_rate;
   w->step.output = output;
   begin_counting(dynamics);
   mpsi_dynamics_dashpots_before(dynamics);
@@ -336,7 +342,7 @@ static bool take_step(work *w, bool output) {
   mpsi_parallel_for(dynamics->context, units, first_pass, w);
   mpsi_parallel_for(dynamics->context, units, second_pass, w);
   dynamics->steps++;
-  dynamics->fresh = false;
+  dynamics->fresh = dynamics->no_rate = false;
   dynamics->kept = dynamics->length;
   mpsi_dynamics_dashpots_after(dynamics, kick, output);
   mpsi_dynamics_hold_bounds(dynamics, kick, output);
@@ -366,13 +372,15 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
             .grain = (blocks + units - 1) / units};
   if (count == 0) return MPS_OK;
   if (mpsi_particles_ready(dynamics->particles, function) != MPS_OK) return MPS_ERROR_STATE;
+  mps_status status = mpsi_dynamics_take_edits(dynamics, function);
+  if (status != MPS_OK) return status;
   if (mpsi_particles_column(dynamics->particles, "external_force", 0) &&
       !mpsi_dynamics_reserve_accounts(dynamics))
     return mpsi_fail_memory(dynamics->context, function, (size_t)dynamics->count * 24);
   set_length(dynamics, length);
   if (dynamics->fresh) start_history(dynamics, length);
   begin_budget(dynamics);
-  mps_status status = MPS_OK;
+  dynamics->stepping = true;
   w.step.drag = watch ? dynamics->drag : NULL;
   for (int64_t k = 0; status == MPS_OK && k < count; k++) {
     const double now = mps_dynamics_time(dynamics);
@@ -380,11 +388,12 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
         dynamics->base_time + (double)(dynamics->steps + 1 - dynamics->base_step) * length;
     status = mpsi_dynamics_ask_signals(dynamics, function, now, then);
     if (status == MPS_OK) status = mpsi_dynamics_ask_loads(dynamics, function, now);
-    if (status != MPS_OK) return status;
+    if (status != MPS_OK) break;
     w.forces = mpsi_dynamics_find_forces(dynamics);
     w.account = w.forces.any || watch;
     if (!take_step(&w, output && k == count - 1))
       status = report_divergence(dynamics, function, now);
   }
+  dynamics->stepping = false;
   return status;
 }

@@ -92,17 +92,14 @@ static mps_status check_ids(const mps_particles *set, mps_context *context, int6
   return MPS_OK;
 }
 
-static mps_status check_use(mps_context *context, const mps_material *material) {
-  if (!material) return mpsi_fail(context, set_material, MPS_ERROR_ARGUMENT, "material is NULL");
-  if (material->context != context)
-    return mpsi_fail(context, set_material, MPS_ERROR_ARGUMENT,
-                     "the material was made from another context");
-  if (material->kind != MPSI_LAW_LINEAR_ELASTIC)
-    return mpsi_fail(context, set_material, MPS_ERROR_UNSUPPORTED,
-                     "the law is %s: fields hold linear_elastic ground only; WLS-MPM takes other "
-                     "laws as they are",
-                     material->name);
-  return MPS_OK;
+mps_status mpsi_material_check_elastic(mps_context *context, const char *function,
+                                       const mps_material *material) {
+  if (!material) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "material is NULL");
+  if (material->kind == MPSI_LAW_LINEAR_ELASTIC) return MPS_OK;
+  return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
+                   "the law is %s: fields and solvers of elasticity hold linear_elastic ground "
+                   "only; WLS-MPM takes other laws as they are",
+                   material->name);
 }
 
 mps_status mps_particles_set_material(mps_particles *particles, const mps_material *material,
@@ -112,12 +109,22 @@ mps_status mps_particles_set_material(mps_particles *particles, const mps_materi
   if (!particles) return MPS_ERROR_ARGUMENT;
   mps_context *context = mpsi_particles_context(particles);
   mps_moduli m = {0};
-  mps_status status = check_use(context, material);
+  mps_status status = mpsi_material_check_elastic(context, set_material, material);
+  if (status == MPS_OK && material->context != context)
+    status = mpsi_fail(context, set_material, MPS_ERROR_ARGUMENT,
+                       "the material was made from another context");
   if (status == MPS_OK) status = check_ids(particles, context, count, ids);
   if (status == MPS_OK) status = mps_material_get_moduli(material, density, &m);
+  if (status == MPS_OK) status = mpsi_particles_ready(particles, set_material);
   const int32_t before = mps_particles_field_count(particles);
   for (int k = 0; k < 5 && status == MPS_OK; k++)
     status = mps_particles_add_field(particles, names[k], 0);
+  if (status != MPS_OK) {
+    mpsi_particles_drop_fields(particles, before);
+    return status;
+  }
+  for (int k = 0; k < 5 && status == MPS_OK; k++) /* may they be written now? */
+    status = mpsi_particles_tell(particles, set_material, names[k], NULL);
   if (status != MPS_OK) {
     mpsi_particles_drop_fields(particles, before);
     return status;
@@ -129,5 +136,7 @@ mps_status mps_particles_set_material(mps_particles *particles, const mps_materi
     for (int64_t i = 0; i < most; i++)
       column[ids ? mps_particles_index(particles, ids[i]) : i] = value[k];
   }
-  return MPS_OK;
+  for (int k = 0; k < 5 && status == MPS_OK; k++)
+    status = mpsi_particles_tell(particles, set_material, names[k], NULL);
+  return status;
 }

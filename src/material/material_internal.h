@@ -31,6 +31,10 @@
 /* One more owner; mps_material_destroy releases. Thread safe. */
 mps_material *mpsi_material_retain(mps_material *material);
 
+/* MPS_ERROR_ARGUMENT of NULL, MPS_ERROR_UNSUPPORTED of another law than linear elasticity. */
+mps_status mpsi_material_check_elastic(mps_context *context, const char *function,
+                                       const mps_material *material);
+
 /* Applies the law to block->count >= 0 particles. Not MPS_OK: a user's law refused the block; its
  * reason is in block->message, its particle in block->refused, which the caller has set to "" and
  * -1. */
