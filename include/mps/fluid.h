@@ -62,7 +62,9 @@ MPS_API void mps_fluid_destroy(mps_fluid **fluid);
 /* ---- boundaries ------------------------------------------------------------------------------ */
 
 typedef enum mps_fluid_boundary_kind {
-  MPS_FLUID_BOUNDARY_SLIP = 0 /* no flow across, no shear */
+  MPS_FLUID_BOUNDARY_SLIP = 0,   /* no flow across, no shear */
+  MPS_FLUID_BOUNDARY_NO_SLIP = 1 /* no flow across; the fluid's viscosity holds it at the wall,
+                                    which does not move along itself */
 } mps_fluid_boundary_kind;
 
 #define MPS_FLUID_MAX_BOUNDARIES 16
@@ -101,6 +103,10 @@ static inline mps_fluid_boundary_def mps_fluid_boundary_defaults(void) {
 MPS_API MPS_NODISCARD mps_status mps_fluid_add_boundary(mps_fluid *fluid,
                                                         const mps_fluid_boundary_def *def,
                                                         int32_t *number);
+/** Gives a wall another definition: it stands at `point` now and keeps the velocity that it has;
+ *  what it has exerted so far stays counted. Errors as above: then it stays as it is. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_set_boundary(mps_fluid *fluid, int32_t number,
+                                                        const mps_fluid_boundary_def *def);
 /** Takes a wall away: the fluid may flow out there. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_remove_boundary(mps_fluid *fluid, int32_t number);
 

@@ -4,7 +4,6 @@
 
 #include <string.h>
 
-#define LEAST_WALL 0.3 /* l0: distance of a particle from a wall */
 #define MOST_PARTICLES (INT32_MAX / 4)
 
 static const mps_fluid_def defaults = {
@@ -19,15 +18,8 @@ static const mps_fluid_def defaults = {
     .tolerance = 1e-5,
 };
 
-static const mps_fluid_boundary_def boundary_defaults = {
-    .struct_size = sizeof(mps_fluid_boundary_def), .factor = 1.0};
-
 mps_status mps_fluid_def_init(mps_fluid_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_fluid_def, def, size, &defaults);
-}
-
-mps_status mps_fluid_boundary_def_init(mps_fluid_boundary_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_fluid_boundary_def, def, size, &boundary_defaults);
 }
 
 /* ---- checks ---------------------------------------------------------------------------------- */
@@ -228,118 +220,13 @@ mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
 void mps_fluid_destroy(mps_fluid **fluid) {
   if (!fluid || !*fluid) return;
   mps_fluid *f = *fluid;
-  if (mpsi_fluid_ready(f, __func__) != MPS_OK) return;
+  if (mpsi_fluid_free(f, __func__) != MPS_OK) return;
   mps_context *context = f->context;
   mps_particles *particles = f->particles;
   *fluid = NULL;
   mpsi_particles_release(particles, &f->holder); /* a member of f */
   release(f);
   mpsi_context_release(context);
-}
-
-/* ---- boundaries ------------------------------------------------------------------------------ */
-
-static mps_status check_boundary(mps_fluid *f, const mps_fluid_boundary_def *d) {
-  static const char *const function = "mps_fluid_add_boundary";
-  const double length = hypot(d->normal[0], d->normal[1]);
-  if (d->kind != MPS_FLUID_BOUNDARY_SLIP)
-    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "kind of the boundary is %d, allowed is 0 (slip)", d->kind);
-  if (!(length > 1e-150 && length < 1e150) || d->normal[2] != 0.0)
-    return mpsi_fail(
-        f->context, function, MPS_ERROR_ARGUMENT,
-        "normal of the boundary is (%g, %g, %g): it must lie in the plane and have a length",
-        d->normal[0], d->normal[1], d->normal[2]);
-  if (!(fabs(d->point[0]) <= 1e12 && fabs(d->point[1]) <= 1e12) || !isfinite(d->factor))
-    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "point of the boundary is (%g, %g) m and factor %g: must be finite, the point "
-                     "within 1e12 m",
-                     d->point[0], d->point[1], d->factor);
-  if (d->node_count < 0 || d->node_count > 1000000 || (d->node_count > 0 && !d->nodes) ||
-      (d->node_count > 1 && d->signal))
-    return mpsi_fail(
-        f->context, function, MPS_ERROR_ARGUMENT,
-        "node_count of the boundary is %lld with nodes %s and %s signal: allowed are 0 "
-        "to 1e6 with nodes given, and at most one node with a signal",
-        (long long)d->node_count, d->nodes ? "given" : "NULL", d->signal ? "a" : "no");
-  for (int64_t k = 0; k < 3 * d->node_count; k++)
-    if (!(fabs(d->nodes[k]) <= 1e12))
-      return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                       "node %lld of the boundary is at %g m: must be within 1e12 m",
-                       (long long)(k / 3), d->nodes[k]);
-  return MPS_OK;
-}
-
-/* The wall against particles and other walls. */
-static mps_status check_place(mps_fluid *f, const mpsi_fluid_wall *w) {
-  static const char *const function = "mps_fluid_add_boundary";
-  const double *x = mpsi_particles_column(f->particles, "position", 0);
-  const double *y = mpsi_particles_column(f->particles, "position", 1);
-  for (int64_t i = 0; i < f->count; i++) {
-    const double d = mpsi_fluid_distance(w, w->now.s, x[i], y[i]);
-    if (d < LEAST_WALL * f->l0)
-      return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                       "particle %lld at (%g, %g) m is %g m inside the boundary, must be at least "
-                       "%g l0 = %g m",
-                       (long long)mpsi_particles_integers(f->particles, "id")[i], x[i], y[i], d,
-                       LEAST_WALL, LEAST_WALL * f->l0);
-  }
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
-    const double *N = f->wall[b].normal, cosine = N[0] * w->normal[0] + N[1] * w->normal[1];
-    if (!f->wall[b].used) continue;
-    /* opposite walls are parallel; otherwise the fluid's corner has pi - acos(cosine) */
-    if (cosine < -1e-6 && cosine > -1.0 + 1e-9)
-      return mpsi_fail(
-          f->context, function, MPS_ERROR_ARGUMENT,
-          "the boundary and boundary %d enclose %g degrees of fluid, allowed are 90 and "
-          "more",
-          b, 180.0 - acos(cosine) * 57.29577951308232);
-  }
-  return MPS_OK;
-}
-
-mps_status mps_fluid_add_boundary(mps_fluid *f, const mps_fluid_boundary_def *user_def,
-                                  int32_t *number) {
-  if (!f) return MPS_ERROR_ARGUMENT;
-  if (!user_def) return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "def is NULL");
-  mps_fluid_boundary_def def = boundary_defaults;
-  mps_status status = mpsi_fluid_ready(f, __func__);
-  if (status == MPS_OK)
-    status = MPSI_DEF_READ(f->context, __func__, mps_fluid_boundary_def, user_def, &def);
-  if (status == MPS_OK) status = check_boundary(f, &def);
-  if (status != MPS_OK) return status;
-  int32_t b = 0;
-  while (b < MPS_FLUID_MAX_BOUNDARIES && f->wall[b].used) b++;
-  if (b == MPS_FLUID_MAX_BOUNDARIES)
-    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                     "the fluid has %d boundaries, the most there can be", b);
-  const double length = hypot(def.normal[0], def.normal[1]);
-  mpsi_fluid_wall w = {.used = true, .kind = def.kind, .factor = def.factor};
-  for (int c = 0; c < 2; c++) w.at[c] = def.point[c], w.normal[c] = def.normal[c] / length;
-  status = mpsi_fluid_make_motion(f, __func__, &w, def.node_count, def.nodes);
-  if (status == MPS_OK) status = check_place(f, &w);
-  if (status != MPS_OK) {
-    mpsi_fluid_drop_wall(f, &w);
-    return status;
-  }
-  if (def.signal) {
-    w.signal = mpsi_signal_retain(def.signal);
-    w.origin = mps_signal_displacement(def.signal, f->time);
-  }
-  f->wall[b] = w;
-  if (number) *number = b;
-  return mpsi_fluid_look(f, __func__);
-}
-
-mps_status mps_fluid_remove_boundary(mps_fluid *f, int32_t number) {
-  if (!f) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_fluid_ready(f, __func__);
-  if (status != MPS_OK) return status;
-  if (number < 0 || number >= MPS_FLUID_MAX_BOUNDARIES || !f->wall[number].used)
-    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                     "the fluid has no boundary of number %d", number);
-  mpsi_fluid_drop_wall(f, &f->wall[number]);
-  return MPS_OK;
 }
 
 /* ---- questions ------------------------------------------------------------------------------- */

@@ -114,7 +114,7 @@ struct mps_fluid {
   double *x[2], *u[2], *q, *offset; /* offset: of a ghost's q from its parent's, Pa */
   int32_t *parent;                  /* of a ghost, by index - count */
   uint32_t *flips;                  /* walls that it is mirrored at, bits */
-  uint32_t bent;                    /* walls with several nodes, bits */
+  uint32_t bent, sticky;            /* walls with several nodes; of no slip: bits */
   int64_t cloud_capacity;
   double *u_new[2], *pressure; /* count */
   uint8_t *state;              /* MPSI_FLUID_..., count */

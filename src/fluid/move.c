@@ -1,12 +1,14 @@
 /* move.c - from the pressure to the new velocities and positions:
  *
  *   grad q = (M + c e e^T)^-1 (sum w (q_j - q_i) dx/r^2 + c (q_s - q_i) e/h),
- *   u += -(dt/rho) grad q + a v + viscosity,  a = .6 dt s0 + 2 |v|^2/(l0^2 |G|^2 + 1e-4 g l0) <=
+ *   u += -(dt/rho) grad q + a v,  a = .6 dt s0 + 2 |v|^2/(l0^2 |G|^2 + 1e-4 g l0) <=
  * .5,
  *
- * where v is what a linear velocity field leaves over (moments.c) and s0 = sqrt(g/l0). Guards:
- * pairs that approach within l0/2 share their momentum, |u| <= 1.1 of the neighbours' largest plus
- * a free fall's share, and nobody comes nearer than .1 l0 to a wall; the report counts them. Then
+ * where v is what a linear velocity field leaves over (moments.c) and s0 = sqrt(g/l0). The
+ * Laplacian of u is n v/S: a viscosity nu takes the share nu dt n/S of v, and a only what that
+ * leaves. Guards: pairs that approach within l0/2 share their momentum, |u| <= 1.1 of the
+ * neighbours' largest plus a free fall's share, and nobody comes nearer than .1 l0 to a wall; the
+ * report counts them. Then
  *
  *   x += dt u + f,  u += G f,  f = -2.5 dt s0 l0 sum w dx/(r n0), |f| <= .05 l0,
  *
@@ -56,6 +58,28 @@ static double smoothing(const mps_fluid *f, const mpsi_fluid_local *local) {
   return fmin(a, MOST_SMOOTH);
 }
 
+/* v of the velocity field that sticks to the walls of no slip: there an image moves with the
+ * opposite velocity. */
+static void viscous_rest(const mps_fluid *f, int64_t i, double *v) {
+  const mpsi_fluid_local *local = &f->local[i];
+  const int32_t *index = f->index + f->start[i];
+  const double *w = f->w + f->start[i];
+  v[0] = local->rest[0], v[1] = local->rest[1];
+  if (!f->sticky) return;
+  for (int32_t k = 0; k < f->near[i]; k++) {
+    const int64_t j = index[k], ghost = j - f->count;
+    if (ghost < 0 || !(f->flips[ghost] & f->sticky)) continue;
+    double stuck[2] = {f->u[0][j], f->u[1][j]};
+    for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+      const double *N = f->wall[b].normal;
+      if (!(f->flips[ghost] & f->sticky & UINT32_C(1) << b)) continue;
+      const double across = stuck[0] * N[0] + stuck[1] * N[1];
+      for (int c = 0; c < 2; c++) stuck[c] = 2.0 * across * N[c] - stuck[c];
+    }
+    for (int c = 0; c < 2; c++) v[c] += w[k] * (stuck[c] - f->u[c][j]) / local->n;
+  }
+}
+
 static void accelerate(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   (void)chunk;
   const double rho = f->def.density, dt = f->dt, nu = f->def.viscosity / rho;
@@ -67,9 +91,11 @@ static void accelerate(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
     } else {
       double gradient[2];
       pressure_gradient(f, i, gradient);
-      /* the Laplacian of u is sum w (du - G dx)/S */
-      const double a = smoothing(f, local) + nu * dt * local->n / local->S;
-      for (int c = 0; c < 2; c++) u[c] += -dt / rho * gradient[c] + a * local->rest[c];
+      const double a = smoothing(f, local), share = nu * dt * local->n / local->S;
+      double v[2] = {0.0, 0.0};
+      if (share > 0.0) viscous_rest(f, i, v);
+      for (int c = 0; c < 2; c++)
+        u[c] += -dt / rho * gradient[c] + share * v[c] + fmax(a - share, 0.0) * local->rest[c];
     }
     for (int c = 0; c < 2; c++) f->u_new[c][i] = u[c];
   }

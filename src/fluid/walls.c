@@ -220,10 +220,12 @@ bool mpsi_fluid_grow_cloud(mps_fluid *f, int64_t capacity) {
 mps_status mpsi_fluid_make_ghosts(mps_fluid *f, const char *function) {
   for (bool room = false; !room;) {
     f->ghosts = 0;
-    f->bent = 0;
+    f->bent = f->sticky = 0;
     room = true;
     for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++)
-      if (f->wall[b].nodes > 1) f->bent |= UINT32_C(1) << b;
+      f->bent |= (uint32_t)(f->wall[b].used && f->wall[b].nodes > 1) << b,
+          f->sticky |= (uint32_t)(f->wall[b].used && f->wall[b].kind == MPS_FLUID_BOUNDARY_NO_SLIP)
+                       << b;
     for (int b = 0; room && b < MPS_FLUID_MAX_BOUNDARIES; b++)
       if (f->wall[b].used) room = mirror(f, b);
     const int64_t capacity = f->cloud_capacity + f->cloud_capacity / 2;

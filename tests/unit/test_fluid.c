@@ -67,7 +67,7 @@ static void bad_boundaries_are_refused(void **state) {
                    "must be at least 0.3 l0");
   def.point[1] = NAN;
   mps_assert_fails(context, mps_fluid_add_boundary(f, &def, NULL), MPS_ERROR_ARGUMENT, "finite");
-  def.point[1] = 0.0, def.kind = 1;
+  def.point[1] = 0.0, def.kind = 2;
   mps_assert_fails(context, mps_fluid_add_boundary(f, &def, NULL), MPS_ERROR_ARGUMENT, "kind");
   def.kind = MPS_FLUID_BOUNDARY_SLIP;
   mps_assert_ok(context, mps_fluid_add_boundary(f, &def, NULL));
@@ -235,6 +235,40 @@ static void a_rollback_repeats_the_steps_bit_for_bit(void **state) {
   mps_signal_destroy(&piston);
 }
 
+/* A piston that gets another signal goes on from where it is with the velocity it has. */
+static void a_boundary_can_change(void **state) {
+  (void)state;
+  mps_signal *piston = NULL, *slow = NULL;
+  mps_assert_ok(context, mps_signal_sine(context, 1.0, 0.02, 0.0, &piston));
+  mps_assert_ok(context, mps_signal_sine(context, 0.5, 0.02, 0.0, &slow));
+  tank t = tank_make(context, 0.6, 0.3, 0.03, piston, 2e-3);
+  mps_assert_ok(context, mps_fluid_run(t.fluid, 0.25, 1000, NULL, NULL)); /* at .02 m, at rest */
+  mps_reaction before, after;
+  mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, TANK_LEFT, &before));
+  mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+  def.point[0] = 0.1, def.normal[0] = 1.0;
+  mps_assert_fails(context, mps_fluid_set_boundary(t.fluid, TANK_LEFT, &def), MPS_ERROR_ARGUMENT,
+                   "m inside the boundary");
+  mps_assert_fails(context, mps_fluid_set_boundary(t.fluid, 5, &def), MPS_ERROR_ARGUMENT,
+                   "number 5");
+  def.point[0] = 0.02, def.signal = slow, def.kind = MPS_FLUID_BOUNDARY_NO_SLIP;
+  mps_assert_ok(context, mps_fluid_set_boundary(t.fluid, TANK_LEFT, &def));
+  mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, TANK_LEFT, &after));
+  assert_memory_equal(&before, &after, sizeof before);
+  mps_assert_ok(context, mps_fluid_run(t.fluid, 1.0, 1000, NULL, NULL));
+  mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, TANK_LEFT, &after));
+  assert_true(after.impulse[0] > before.impulse[0] + 100.0);
+  double x[3 * 20];
+  int64_t count = 0;
+  mps_assert_ok(context, mps_fluid_get_wall(t.fluid, TANK_LEFT, 20, x, NULL, &count));
+  assert_in_range(count, 8, 13);
+  /* .02 m + .02 (sin(pi) - sin(.25 pi)) m */
+  mps_assert_near(x[0], 0.02 - 0.02 * sin(0.25 * TANK_PI), 1e-12);
+  tank_free(&t);
+  mps_signal_destroy(&piston);
+  mps_signal_destroy(&slow);
+}
+
 /* ---- a step in parts ------------------------------------------------------------------------- */
 
 /* One solution and the piston's motion given: the same bits as the step in one with a signal. */
@@ -334,6 +368,7 @@ int main(void) {
       cmocka_unit_test(a_film_one_particle_thick_lies_still),
       cmocka_unit_test(a_tank_runs_empty),
       cmocka_unit_test(a_rollback_repeats_the_steps_bit_for_bit),
+      cmocka_unit_test(a_boundary_can_change),
       cmocka_unit_test(a_step_in_parts_is_the_step),
       cmocka_unit_test(parts_of_a_step_have_their_order),
   };

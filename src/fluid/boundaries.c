@@ -1,0 +1,154 @@
+/* boundaries.c - plane walls as the caller gives them: their definitions, what is refused, how they
+ * come, change and go.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid_private.h"
+
+#define LEAST_WALL 0.3 /* l0: distance of a particle from a wall */
+
+static const mps_fluid_boundary_def boundary_defaults = {
+    .struct_size = sizeof(mps_fluid_boundary_def), .factor = 1.0};
+
+mps_status mps_fluid_boundary_def_init(mps_fluid_boundary_def *def, size_t size) {
+  return MPSI_DEF_INIT(mps_fluid_boundary_def, def, size, &boundary_defaults);
+}
+
+static mps_status check_boundary(mps_fluid *f, const char *function,
+                                 const mps_fluid_boundary_def *d) {
+  const double length = hypot(d->normal[0], d->normal[1]);
+  if (d->kind != MPS_FLUID_BOUNDARY_SLIP && d->kind != MPS_FLUID_BOUNDARY_NO_SLIP)
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "kind of the boundary is %d, allowed are 0 (slip) and 1 (no slip)", d->kind);
+  if (!(length > 1e-150 && length < 1e150) || d->normal[2] != 0.0)
+    return mpsi_fail(
+        f->context, function, MPS_ERROR_ARGUMENT,
+        "normal of the boundary is (%g, %g, %g): it must lie in the plane and have a length",
+        d->normal[0], d->normal[1], d->normal[2]);
+  if (!(fabs(d->point[0]) <= 1e12 && fabs(d->point[1]) <= 1e12) || !isfinite(d->factor))
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "point of the boundary is (%g, %g) m and factor %g: must be finite, the point "
+                     "within 1e12 m",
+                     d->point[0], d->point[1], d->factor);
+  if (d->node_count < 0 || d->node_count > 1000000 || (d->node_count > 0 && !d->nodes) ||
+      (d->node_count > 1 && d->signal))
+    return mpsi_fail(
+        f->context, function, MPS_ERROR_ARGUMENT,
+        "node_count of the boundary is %lld with nodes %s and %s signal: allowed are 0 "
+        "to 1e6 with nodes given, and at most one node with a signal",
+        (long long)d->node_count, d->nodes ? "given" : "NULL", d->signal ? "a" : "no");
+  for (int64_t k = 0; k < 3 * d->node_count; k++)
+    if (!(fabs(d->nodes[k]) <= 1e12))
+      return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                       "node %lld of the boundary is at %g m: must be within 1e12 m",
+                       (long long)(k / 3), d->nodes[k]);
+  return MPS_OK;
+}
+
+/* The wall against particles and other walls. */
+static mps_status check_place(mps_fluid *f, const char *function, const mpsi_fluid_wall *w,
+                              int32_t number) {
+  const double *x = mpsi_particles_column(f->particles, "position", 0);
+  const double *y = mpsi_particles_column(f->particles, "position", 1);
+  for (int64_t i = 0; i < f->count; i++) {
+    const double d = mpsi_fluid_distance(w, w->now.s, x[i], y[i]);
+    if (d < LEAST_WALL * f->l0)
+      return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                       "particle %lld at (%g, %g) m is %g m inside the boundary, must be at least "
+                       "%g l0 = %g m",
+                       (long long)mpsi_particles_integers(f->particles, "id")[i], x[i], y[i], d,
+                       LEAST_WALL, LEAST_WALL * f->l0);
+  }
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+    const double *N = f->wall[b].normal, cosine = N[0] * w->normal[0] + N[1] * w->normal[1];
+    if (!f->wall[b].used || b == number) continue;
+    /* opposite walls are parallel; otherwise the fluid's corner has pi - acos(cosine) */
+    if (cosine < -1e-6 && cosine > -1.0 + 1e-9)
+      return mpsi_fail(
+          f->context, function, MPS_ERROR_ARGUMENT,
+          "the boundary and boundary %d enclose %g degrees of fluid, allowed are 90 and "
+          "more",
+          b, 180.0 - acos(cosine) * 57.29577951308232);
+  }
+  return MPS_OK;
+}
+
+/* Checks a definition and makes the wall of it that is to have `number`. */
+static mps_status make_wall(mps_fluid *f, const char *function,
+                            const mps_fluid_boundary_def *user_def, int32_t number,
+                            mpsi_fluid_wall *out) {
+  if (!user_def) return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT, "def is NULL");
+  mps_fluid_boundary_def def = boundary_defaults;
+  mps_status status = MPSI_DEF_READ(f->context, function, mps_fluid_boundary_def, user_def, &def);
+  if (status == MPS_OK) status = check_boundary(f, function, &def);
+  if (status != MPS_OK) return status;
+  const double length = hypot(def.normal[0], def.normal[1]);
+  mpsi_fluid_wall w = {.used = true, .kind = def.kind, .factor = def.factor};
+  for (int c = 0; c < 2; c++) w.at[c] = def.point[c], w.normal[c] = def.normal[c] / length;
+  status = mpsi_fluid_make_motion(f, function, &w, def.node_count, def.nodes);
+  if (status == MPS_OK) status = check_place(f, function, &w, number);
+  if (status != MPS_OK) {
+    mpsi_fluid_drop_wall(f, &w);
+    return status;
+  }
+  if (def.signal) {
+    w.signal = mpsi_signal_retain(def.signal);
+    w.origin = mps_signal_displacement(def.signal, f->time);
+  }
+  *out = w;
+  return MPS_OK;
+}
+
+mps_status mps_fluid_add_boundary(mps_fluid *f, const mps_fluid_boundary_def *def,
+                                  int32_t *number) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_fluid_ready(f, __func__);
+  if (status != MPS_OK) return status;
+  int32_t b = 0;
+  while (b < MPS_FLUID_MAX_BOUNDARIES && f->wall[b].used) b++;
+  if (b == MPS_FLUID_MAX_BOUNDARIES)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "the fluid has %d boundaries, the most there can be", b);
+  mpsi_fluid_wall wall;
+  status = make_wall(f, __func__, def, b, &wall);
+  if (status != MPS_OK) return status;
+  f->wall[b] = wall;
+  f->stale = true;
+  if (number) *number = b;
+  return MPS_OK;
+}
+
+static mps_status check_number(mps_fluid *f, const char *function, int32_t number) {
+  const mps_status status = mpsi_fluid_ready(f, function);
+  if (status != MPS_OK) return status;
+  if (number < 0 || number >= MPS_FLUID_MAX_BOUNDARIES || !f->wall[number].used)
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "the fluid has no boundary of number %d", number);
+  return MPS_OK;
+}
+
+mps_status mps_fluid_set_boundary(mps_fluid *f, int32_t number, const mps_fluid_boundary_def *def) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_status status = check_number(f, __func__, number);
+  mpsi_fluid_wall wall;
+  if (status == MPS_OK) status = make_wall(f, __func__, def, number, &wall);
+  if (status != MPS_OK) return status;
+  mpsi_fluid_wall *old = &f->wall[number];
+  if (wall.nodes == old->nodes)
+    for (int64_t k = 0; k < wall.nodes; k++) wall.now.u[k] = old->now.u[k];
+  wall.load = old->load;
+  for (int c = 0; c < 2; c++) wall.impulse[c] = old->impulse[c];
+  wall.moment_impulse = old->moment_impulse;
+  wall.work = old->work;
+  mpsi_fluid_drop_wall(f, old);
+  *old = wall;
+  f->stale = true;
+  return MPS_OK;
+}
+
+mps_status mps_fluid_remove_boundary(mps_fluid *f, int32_t number) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  const mps_status status = check_number(f, __func__, number);
+  if (status != MPS_OK) return status;
+  mpsi_fluid_drop_wall(f, &f->wall[number]);
+  f->stale = true;
+  return MPS_OK;
+}

@@ -1,0 +1,88 @@
+/* test_fluid_viscous.c - viscosity in closed boxes full of water against exact decay rates: a
+ * vortex between walls that slip, and the slowest Stokes flow between walls that hold the water.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "test_fixture.h"
+
+#include "fluid_tank.h"
+
+#define NU 0.01 /* m2/s */
+
+/* Velocities of the stream function sin(pi x) sin(pi y)/pi, or its square. */
+static void add_swirl(mps_particles *water, bool square, double size) {
+  mps_view x, u;
+  mps_assert_ok(context, mps_particles_add_field(water, "velocity", 0));
+  mps_assert_ok(context, mps_particles_view(water, "position", &x));
+  mps_assert_ok(context, mps_particles_edit(water, "velocity", &u));
+  for (int64_t i = 0; i < mps_particles_count(water); i++) {
+    const double a = TANK_PI * *mps_view_f64(&x, i, 0), b = TANK_PI * *mps_view_f64(&x, i, 1);
+    *mps_view_f64(&u, i, 0) = size * (square ? sin(a) * sin(a) * sin(2.0 * b) : sin(a) * cos(b));
+    *mps_view_f64(&u, i, 1) = -size * (square ? sin(b) * sin(b) * sin(2.0 * a) : cos(a) * sin(b));
+  }
+  mps_assert_ok(context, mps_particles_commit(water, &u));
+}
+
+/* Rate of the velocity's decay between t1 and t2, in units of NU/(1 m)^2. The level stands above
+ * the box, so that no pressure is below 0. */
+static double decay(int32_t kind, double l0, double t1, double t2) {
+  mps_particles *water = NULL;
+  mps_fluid *fluid = NULL;
+  mps_particles_def set = mps_particles_defaults();
+  mps_fluid_def def = mps_fluid_defaults();
+  set.spacing = l0;
+  def.gravity[1] = -0.1, def.level = 2.0;
+  def.viscosity = 1000.0 * NU;
+  def.dt = fmin(0.02, 0.15 * l0 * l0 / NU);
+  mps_assert_ok(context, mps_particles_create(context, &set, &water));
+  tank_fill(context, water, 1.0, 1.0, NULL, NULL);
+  add_swirl(water, kind == MPS_FLUID_BOUNDARY_NO_SLIP, 0.02);
+  mps_assert_ok(context, mps_fluid_create(context, water, &def, &fluid));
+  for (int b = 0; b < 4; b++) {
+    mps_fluid_boundary_def wall = mps_fluid_boundary_defaults();
+    wall.kind = kind;
+    wall.point[0] = wall.point[1] = b < 2 ? 0.0 : 1.0;
+    wall.normal[b % 2] = b < 2 ? 1.0 : -1.0;
+    mps_assert_ok(context, mps_fluid_add_boundary(fluid, &wall, NULL));
+  }
+  mps_totals first, last;
+  mps_assert_ok(context, mps_fluid_run(fluid, t1, 1000, NULL, NULL));
+  mps_assert_ok(context, mps_fluid_get_totals(fluid, &first));
+  mps_assert_ok(context, mps_fluid_run(fluid, t2, 1000, NULL, NULL));
+  mps_assert_ok(context, mps_fluid_get_totals(fluid, &last));
+  mps_fluid_destroy(&fluid);
+  mps_particles_destroy(&water);
+  return 0.5 * log(first.kinetic / last.kinetic) / (t2 - t1) / NU;
+}
+
+static void a_vortex_between_slip_walls_decays_as_exact(void **state) {
+  (void)state;
+  const double exact = 2.0 * TANK_PI * TANK_PI, l0[2] = {1.0 / 20.0, 1.0 / 40.0};
+  double error[2];
+  for (int k = 0; k < 2; k++) {
+    error[k] = decay(MPS_FLUID_BOUNDARY_SLIP, l0[k], 0.5, 2.5) / exact - 1.0;
+    print_message("slip, l0 1/%g: rate %+.2f %%\n", 1.0 / l0[k], 100.0 * error[k]);
+  }
+  mps_assert_near(error[0], 0.0, 0.05);
+  mps_assert_near(error[1], 0.0, 0.02);
+}
+
+/* The lowest eigenvalue of the Stokes operator in the unit square: 4 x 13.0861727 (Leriche and
+ * Labrosse 2004). */
+static void flow_between_walls_of_no_slip_decays_as_the_stokes_mode(void **state) {
+  (void)state;
+  const double exact = 4.0 * 13.0861727, l0[2] = {1.0 / 20.0, 1.0 / 40.0};
+  double error[2];
+  for (int k = 0; k < 2; k++) {
+    error[k] = decay(MPS_FLUID_BOUNDARY_NO_SLIP, l0[k], 2.0, 4.0) / exact - 1.0;
+    print_message("no slip, l0 1/%g: rate %+.2f %%\n", 1.0 / l0[k], 100.0 * error[k]);
+  }
+  mps_assert_near(error[0], 0.0, 0.10);
+  mps_assert_near(error[1], 0.0, 0.02);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_vortex_between_slip_walls_decays_as_exact),
+      cmocka_unit_test(flow_between_walls_of_no_slip_decays_as_the_stokes_mode),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
