@@ -18,6 +18,7 @@
 #ifndef LIBMPS_FLUID_H
 #define LIBMPS_FLUID_H
 
+#include "body.h"
 #include "io.h"
 #include "particles.h"
 #include "signal.h"
@@ -72,7 +73,7 @@ typedef enum mps_fluid_boundary_kind {
 /** A plane wall: the fluid is where (x - point) . normal > 0. It moves with a signal (piston), or
  * as its caller says (mps_fluid_set_wall_motion); then it may bend a little: a displacement along
  * the normal at each of its nodes, linear between them, at which it mirrors locally. Walls meet at
- *  right angles, or so that their images do not overlap (a slope of at most 45 degrees). */
+ * 90 degrees or more; of a bed and a slope, add the bed first. */
 typedef struct mps_fluid_boundary_def {
   uint32_t struct_size;
   int32_t kind;        /* mps_fluid_boundary_kind, default SLIP */
@@ -99,7 +100,7 @@ static inline mps_fluid_boundary_def mps_fluid_boundary_defaults(void) {
 
 /** Adds a wall, between steps; `number` (may be NULL) receives the lowest free number.
  *  MPS_ERROR_ARGUMENT: a particle lies outside or closer than .3 l0 to it; two walls that enclose
- *  less than 90 degrees. */
+ *  less than 90 degrees, unless that corner lies more than re behind a third one. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_add_boundary(mps_fluid *fluid,
                                                         const mps_fluid_boundary_def *def,
                                                         int32_t *number);
@@ -145,6 +146,26 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_get_pressure(mps_fluid *fluid, int32_
  * where there is no surface. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_levels(mps_fluid *fluid, int64_t count,
                                                       const double *station, double *level);
+
+/* ---- bodies ---------------------------------------------------------------------------------- */
+
+/** Puts a rigid body into the fluid: a convex polygon (mps_body_create_box, _polygon) with edges of
+ *  at least l0, standing on a boundary, through the surface or all in the water; all bodies
+ * together may have 16 edges. `kind` is that of its surface, mps_fluid_boundary_kind. The caller
+ * moves it (mps_body_advance, mps_body_set_motion): where it is and how fast when a step is made,
+ * or solved for in parts, is taken as the end of that step. It is kept alive. MPS_ERROR_ARGUMENT:
+ * another shape; a particle inside or closer than .3 l0. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_add_body(mps_fluid *fluid, mps_body *body, int32_t kind,
+                                                    int32_t *number);
+MPS_API MPS_NODISCARD mps_status mps_fluid_remove_body(mps_fluid *fluid, int32_t number);
+/** What the fluid exerts on a body; moments about its reference point, moment_impulse about where
+ *  that is now. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_get_body_reaction_sized(mps_fluid *fluid, int32_t number,
+                                                                   mps_reaction *out, size_t size);
+static inline mps_status mps_fluid_get_body_reaction(mps_fluid *fluid, int32_t number,
+                                                     mps_reaction *out) {
+  return mps_fluid_get_body_reaction_sized(fluid, number, out, sizeof *out);
+}
 
 /* ---- running --------------------------------------------------------------------------------- */
 

@@ -43,6 +43,23 @@ static mps_status check_boundary(mps_fluid *f, const char *function,
   return MPS_OK;
 }
 
+/* Whether the corner of the wall and boundary b lies behind another boundary. */
+static bool cut_off(const mps_fluid *f, const mpsi_fluid_wall *w, int b, int32_t number) {
+  const mpsi_fluid_wall *o = &f->wall[b];
+  const double det = w->normal[0] * o->normal[1] - w->normal[1] * o->normal[0];
+  const double p = w->at[0] * w->normal[0] + w->at[1] * w->normal[1];
+  const double q = o->at[0] * o->normal[0] + o->at[1] * o->normal[1] + o->now.s[0];
+  const double x = (p * o->normal[1] - q * w->normal[1]) / det;
+  const double y = (q * w->normal[0] - p * o->normal[0]) / det;
+  for (int k = 0; k < MPS_FLUID_MAX_BOUNDARIES; k++) {
+    const mpsi_fluid_wall *other = &f->wall[k];
+    if (k != b && k != number && other->used &&
+        mpsi_fluid_distance(other, other->now.s, x, y) < -f->weight.re)
+      return true;
+  }
+  return false;
+}
+
 /* The wall against particles and other walls. */
 static mps_status check_place(mps_fluid *f, const char *function, const mpsi_fluid_wall *w,
                               int32_t number) {
@@ -61,7 +78,7 @@ static mps_status check_place(mps_fluid *f, const char *function, const mpsi_flu
     const double *N = f->wall[b].normal, cosine = N[0] * w->normal[0] + N[1] * w->normal[1];
     if (!f->wall[b].used || b == number) continue;
     /* opposite walls are parallel; otherwise the fluid's corner has pi - acos(cosine) */
-    if (cosine < -1e-6 && cosine > -1.0 + 1e-9)
+    if (cosine < -1e-6 && cosine > -1.0 + 1e-9 && !cut_off(f, w, b, number))
       return mpsi_fail(
           f->context, function, MPS_ERROR_ARGUMENT,
           "the boundary and boundary %d enclose %g degrees of fluid, allowed are 90 and "

@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid_private.h"
 
+#include <mps/body.h>
+
 #include <string.h>
 
 #define MOST_PARTICLES (INT32_MAX / 4)
@@ -157,7 +159,8 @@ static void release(mps_fluid *f) {
                          f->lower_room.item,
                          f->near_wall_room.item};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) mpsi_fluid_drop_wall(f, &f->wall[b]);
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) mpsi_fluid_drop_wall(f, &f->wall[b]);
+  for (int b = 0; b < MPSI_FLUID_BODIES; b++) mps_body_destroy(&f->body[b].body);
   mpsi_state_forget(&f->identity);
   mpsi_free(context, f);
 }

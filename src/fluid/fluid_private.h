@@ -1,7 +1,8 @@
 /* fluid_private.h - the members of the incompressible fluid solver, by the stages of its step:
  *
  *   walls.c     where the walls are and go; mirror images (ghosts) of the particles beyond them
- *   near.c      who is near whom, and the weights w
+ *   bodies.c    rigid bodies, whose faces are walls too
+ *   near.c      who is near whom, and the weights w; sight.c: who sees whom past walls that end
  *   moments.c   sums over the neighbours: density, moments, velocity gradient, free surface
  *   pressure.c  rows of the pressure equation; pcg.c solves it
  *   move.c      pressure gradient, velocity, guards, positions
@@ -41,10 +42,12 @@ typedef struct mpsi_fluid_load {
   int64_t wetted;                 /* points with water */
 } mpsi_fluid_load;
 
-/* A wall. */
+/* A wall: a boundary of the caller, or the face of a body. */
 typedef struct mpsi_fluid_wall {
   bool used;
-  bool given, placed; /* the caller wants next.u, and next.s */
+  int32_t of_body;         /* 0: a boundary; number of the body + 1 */
+  double from, to, length; /* of a face, m along it: it ends there, or goes on behind a boundary */
+  bool given, placed;      /* the caller wants next.u, and next.s */
   int32_t kind;
   double at[2], normal[2]; /* m, of the wall without displacement; unit, into the fluid */
   mps_signal *signal;
@@ -58,6 +61,20 @@ typedef struct mpsi_fluid_wall {
   mpsi_fluid_load load, before; /* of the last step or solution; before the step being made */
   double impulse[2], moment_impulse, work;
 } mpsi_fluid_wall;
+
+/* Where a body is and how it moves. */
+typedef struct mpsi_fluid_pose {
+  double x[2], R[4], v[2], spin;
+} mpsi_fluid_pose;
+
+typedef struct mpsi_fluid_body {
+  struct mps_body *body; /* NULL: none */
+  int first, faces;      /* walls */
+  mpsi_fluid_pose pose, next;
+} mpsi_fluid_body;
+
+#define MPSI_FLUID_WALLS 32 /* boundaries, then faces */
+#define MPSI_FLUID_BODIES 4
 
 /* The weight (1-z)^4 (1+4z), z = r/re, and its sums over the full lattice. */
 typedef struct mpsi_fluid_weight {
@@ -108,12 +125,14 @@ struct mps_fluid {
   mps_fluid_def def;
   mpsi_fluid_weight weight;
   double l0, g, up[2], level; /* m, m/s2, unit vector against gravity, m */
-  mpsi_fluid_wall wall[MPS_FLUID_MAX_BOUNDARIES];
+  mpsi_fluid_wall wall[MPSI_FLUID_WALLS];
+  mpsi_fluid_body body[MPSI_FLUID_BODIES];
   int64_t count, ghosts;
   /* positions, velocities: particles, then ghosts */
   double *x[2], *u[2], *q, *offset; /* offset: of a ghost's q from its parent's, Pa */
   int32_t *parent;                  /* of a ghost, by index - count */
   uint32_t *flips;                  /* walls that it is mirrored at, bits */
+  uint32_t limited, faces;          /* walls that end, those of bodies: bits, see sight.c */
   uint32_t bent, sticky;            /* walls with several nodes; of no slip: bits */
   int64_t cloud_capacity;
   double *u_new[2], *pressure; /* count */
@@ -206,6 +225,22 @@ static inline double mpsi_fluid_distance(const mpsi_fluid_wall *w, const double 
   return across - mpsi_fluid_of_wall(w, s, x, y);
 }
 
+/* bodies.c */
+void mpsi_fluid_place_bodies(mps_fluid *fluid);            /* faces as of the pose */
+void mpsi_fluid_drive_bodies(mps_fluid *fluid, double dt); /* next of the faces */
+void mpsi_fluid_end_bodies(mps_fluid *fluid);
+void mpsi_fluid_drop_body(mps_fluid *fluid, mpsi_fluid_body *body);
+/* The face nearest to x as the body has it, and the distance, negative inside. */
+int mpsi_fluid_face_of(const mps_fluid *fluid, const mpsi_fluid_body *body, bool moved,
+                       const double *x, double *distance);
+/* Whether x is inside a body other than number `besides` - 1. */
+bool mpsi_fluid_inside_body(const mps_fluid *fluid, int besides, const double *x);
+/* sight.c */
+void mpsi_fluid_find_limits(mps_fluid *fluid);
+int64_t mpsi_fluid_keep_seen(const mps_fluid *fluid, int64_t i, int64_t count, int32_t *index,
+                             double *r2);
+/* Whether a face other than `wall` is between two points. */
+bool mpsi_fluid_hidden(const mps_fluid *fluid, int wall, const double *a, const double *b);
 /* near.c */
 mps_status mpsi_fluid_find_neighbours(mps_fluid *fluid, const char *function);
 /* moments.c */

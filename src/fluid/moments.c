@@ -123,7 +123,7 @@ static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
 static void mirrored_moment(const mps_fluid *f, int64_t ghost, double *m) {
   const mpsi_fluid_local *local = &f->local[f->parent[ghost]];
   m[0] = local->m[0], m[1] = local->m[1];
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
     if (!(f->flips[ghost] >> b & 1)) continue;
     const double *N = f->wall[b].normal, across = m[0] * N[0] + m[1] * N[1];
     m[0] -= 2.0 * across * N[0], m[1] -= 2.0 * across * N[1];

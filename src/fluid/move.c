@@ -70,7 +70,7 @@ static void viscous_rest(const mps_fluid *f, int64_t i, double *v) {
     const int64_t j = index[k], ghost = j - f->count;
     if (ghost < 0 || !(f->flips[ghost] & f->sticky)) continue;
     double stuck[2] = {f->u[0][j], f->u[1][j]};
-    for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+    for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
       const double *N = f->wall[b].normal;
       if (!(f->flips[ghost] & f->sticky & UINT32_C(1) << b)) continue;
       const double across = stuck[0] * N[0] + stuck[1] * N[1];
@@ -128,7 +128,7 @@ static void limit_speed(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
 static void image_velocity(const mps_fluid *f, int64_t ghost, double *v) {
   const int64_t own = f->parent[ghost];
   v[0] = f->u_new[0][own], v[1] = f->u_new[1][own];
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
     if (!(f->flips[ghost] >> b & 1)) continue;
     const mpsi_fluid_wall *w = &f->wall[b];
     const double u = mpsi_fluid_of_wall(w, w->next.u, f->x[0][own], f->x[1][own]);
@@ -202,22 +202,30 @@ static void find_shift(const mps_fluid *f, int64_t i, double *shift) {
     for (int c = 0; c < 2; c++) shift[c] *= most / length;
 }
 
-/* Puts what came too near back on each wall's inner side, and takes its velocity into the wall. */
+/* Puts x back to `off` from a wall that is nearer than that, and takes its velocity into the wall.
+ */
+static bool keep_off(const mps_fluid *f, const mpsi_fluid_wall *w, double *x, double *u) {
+  const double d = mpsi_fluid_distance(w, w->next.s, x[0], x[1]), off = OFF_WALL * f->l0;
+  if (d >= off) return false;
+  const double moves = mpsi_fluid_of_wall(w, w->next.u, x[0], x[1]);
+  const double into = u[0] * w->normal[0] + u[1] * w->normal[1] - moves;
+  for (int c = 0; c < 2; c++) {
+    x[c] += (off - d) * w->normal[c];
+    if (into < 0.0) u[c] -= into * w->normal[c];
+  }
+  return true;
+}
+
 static int64_t keep_off_walls(const mps_fluid *f, double *x, double *u) {
   int64_t pushed = 0;
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
-    const mpsi_fluid_wall *w = &f->wall[b];
-    if (!w->used) continue;
-    const double d = mpsi_fluid_distance(w, w->next.s, x[0], x[1]), off = OFF_WALL * f->l0;
-    if (d >= off) continue;
-    const double moves = mpsi_fluid_of_wall(w, w->next.u, x[0], x[1]);
-    const double into = u[0] * w->normal[0] + u[1] * w->normal[1] - moves;
-    for (int c = 0; c < 2; c++) {
-      x[c] += (off - d) * w->normal[c];
-      if (into < 0.0) u[c] -= into * w->normal[c];
-    }
-    pushed++;
+  for (int b = 0; f->faces && b < MPSI_FLUID_BODIES; b++) {
+    double d;
+    if (!f->body[b].body) continue;
+    const int face = mpsi_fluid_face_of(f, &f->body[b], true, x, &d);
+    if (d < OFF_WALL * f->l0 && f->wall[face].used) pushed += keep_off(f, &f->wall[face], x, u);
   }
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++)
+    if (f->wall[b].used) pushed += keep_off(f, &f->wall[b], x, u);
   return pushed;
 }
 

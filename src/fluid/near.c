@@ -170,12 +170,13 @@ static void find_chunk(void *data, int64_t chunk, int32_t worker) {
   const int64_t last = (chunk + 1) * MPSI_FLUID_CHUNK, limit = (chunk + 1) * p->per_chunk;
   int64_t at = chunk * p->per_chunk;
   for (int64_t i = chunk * MPSI_FLUID_CHUNK; i < last && i < f->count; i++) {
-    const int64_t found = search(f, p->cells, i, limit - at, f->index + at, f->w + at);
+    int64_t found = search(f, p->cells, i, limit - at, f->index + at, f->w + at);
     if (found >= limit - at) {
       atomic_store(&p->full, true);
       return;
     }
     double *w = f->w + at;
+    if (f->limited) found = mpsi_fluid_keep_seen(f, i, found, f->index + at, w);
     for (int64_t k = 0; k < found; k++) w[k] = mpsi_fluid_w(&f->weight, fmax(sqrt(w[k]), least));
     if (f->bent) average_weights(f, i, found, f->index + at, w);
     f->start[i] = at;

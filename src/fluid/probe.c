@@ -47,19 +47,25 @@ static bool near_wall(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t i, d
   const double x = f->x[0][i], y = f->x[1][i];
   *d = mpsi_fluid_distance(w, mpsi_fluid_places(f, w), x, y);
   if (fabs(*d) >= REACH * f->l0 || f->state[i] == MPSI_FLUID_APART) return false;
+  if (w->of_body && *d < 0.0) return false;
   *s = mpsi_fluid_along(w, x, y);
   *q = f->q[i] + f->def.density * mpsi_fluid_of_wall(w, mpsi_fluid_accelerations(f, w), x, y) * *d;
   return true;
 }
 
-/* Whether a point of wall b lies on its wetted side of the other walls. */
+/* Whether a point of wall b lies on its wetted side of the boundaries and outside of bodies. */
 static bool among_walls(const mps_fluid *f, int32_t b, const double *x) {
   for (int32_t k = 0; k < MPS_FLUID_MAX_BOUNDARIES; k++) {
     const mpsi_fluid_wall *w = &f->wall[k];
     if (k != b && w->used && mpsi_fluid_distance(w, mpsi_fluid_places(f, w), x[0], x[1]) < 0.0)
       return false;
   }
-  return true;
+  return !f->faces || !mpsi_fluid_inside_body(f, f->wall[b].of_body, x);
+}
+
+/* Distance of a wall's points: the spacing, or a face's length in whole parts. */
+static double pitch(const mps_fluid *f, const mpsi_fluid_wall *w) {
+  return w->of_body ? w->length / fmax(round(w->length / f->l0), 1.0) : f->l0;
 }
 
 /* Places of the wall's points that have particles near: numbers low to high - 1. */
@@ -73,8 +79,20 @@ static void wetted_range(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t *
   }
   *low = *high = 0;
   if (!(least <= most)) return;
-  *low = (int64_t)floor(least / f->l0) - 3;
-  *high = (int64_t)ceil(most / f->l0) + 3;
+  const double step = pitch(f, w);
+  *low = (int64_t)floor(least / step) - 4;
+  *high = (int64_t)ceil(most / step) + 4;
+  if (!w->of_body) return;
+  const int64_t points = (int64_t)round(w->length / step);
+  *low = *low > 0 ? *low : 0;
+  *high = *high < points ? *high : points;
+}
+
+static bool sees_point(const mps_fluid *f, int32_t b, double along, int64_t i) {
+  double at[2];
+  const double x[2] = {f->x[0][i], f->x[1][i]};
+  place(f, &f->wall[b], along, at);
+  return !mpsi_fluid_hidden(f, b, x, at);
 }
 
 /* Calls `point` for each wetted point of wall b with its place and pressure. */
@@ -83,6 +101,7 @@ typedef void (*point_fn)(void *user, const double *x, double p);
 static mps_status for_points(mps_fluid *f, int32_t b, const char *function, point_fn point,
                              void *user) {
   const mpsi_fluid_wall *w = &f->wall[b];
+  const double step = pitch(f, w);
   int64_t low, high;
   wetted_range(f, w, &low, &high);
   fit *sum = NULL;
@@ -95,15 +114,16 @@ static mps_status for_points(mps_fluid *f, int32_t b, const char *function, poin
   for (int64_t i = 0; i < f->count && high > low; i++) {
     double d, s, q;
     if (!near_wall(f, w, i, &d, &s, &q)) continue;
-    const int64_t first = (int64_t)floor(s / f->l0 - REACH - 0.5), last = first + 6;
+    const int64_t first = (int64_t)floor(s / step - 1.5 * REACH - 0.5), last = first + 8;
     for (int64_t k = first > low ? first : low; k <= last && k < high; k++) {
-      const double to = s - ((double)k + 0.5) * f->l0, weight = weight_of(f, d, to);
-      if (weight > 0.0) fit_add(&sum[k - low], weight, to, q);
+      const double to = s - ((double)k + 0.5) * step, weight = weight_of(f, d, to);
+      if (weight > 0.0 && (!f->faces || sees_point(f, b, ((double)k + 0.5) * step, i)))
+        fit_add(&sum[k - low], weight, to, q);
     }
   }
   for (int64_t k = low; k < high; k++) {
     double x[2];
-    place(f, w, ((double)k + 0.5) * f->l0, x);
+    place(f, w, ((double)k + 0.5) * step, x);
     if (sum[k - low].w <= LEAST_SUM || !among_walls(f, b, x)) continue;
     const double p = fit_value(f, &sum[k - low]) - mpsi_fluid_head(f, x[0], x[1]);
     if (p > 0.0) point(user, x, p);
@@ -129,11 +149,11 @@ static void add_force(void *user, const double *x, double p) {
 }
 
 mps_status mpsi_fluid_load_walls(mps_fluid *f, const char *function) {
-  for (int32_t b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+  for (int32_t b = 0; b < MPSI_FLUID_WALLS; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
     if (!w->used) continue;
     w->load = (mpsi_fluid_load){0};
-    resultant r = {w, f->l0 * f->def.measure};
+    resultant r = {w, pitch(f, w) * f->def.measure};
     const mps_status status = for_points(f, b, function, add_force, &r);
     if (status != MPS_OK) return status;
   }

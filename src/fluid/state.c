@@ -7,9 +7,9 @@
 #include "io/checkpoint.h"
 
 static void list_wall(mpsi_state *s, mpsi_fluid_wall *w) {
-  mpsi_state_agree_integer(s, "kind", w->used ? w->kind : -1);
-  if (!w->used) return;
-  for (int c = 0; c < 2; c++) {
+  mpsi_state_agree_integer(s, "kind", w->motion ? w->kind : -1);
+  if (!w->motion) return;
+  for (int c = 0; c < 2 && !w->of_body; c++) {
     mpsi_state_agree_number(s, c ? "point_y" : "point_x", w->at[c]);
     mpsi_state_agree_number(s, c ? "normal_y" : "normal_x", w->normal[c]);
   }
@@ -40,9 +40,19 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_i64(s, "collisions", &f->report.collisions, 1);
   mpsi_state_i64(s, "limited", &f->report.limited, 1);
   mpsi_state_i64(s, "pushed", &f->report.pushed, 1);
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
     mpsi_state_enter(s, "boundary%d", b);
     list_wall(s, &f->wall[b]);
+    mpsi_state_leave(s);
+  }
+  for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
+    mpsi_fluid_pose *pose = &f->body[b].pose;
+    mpsi_state_enter(s, "body%d", b);
+    mpsi_state_agree_integer(s, "faces", f->body[b].faces);
+    mpsi_state_f64(s, "position", pose->x, 2);
+    mpsi_state_f64(s, "orientation", pose->R, 4);
+    mpsi_state_f64(s, "velocity", pose->v, 2);
+    mpsi_state_f64(s, "spin", &pose->spin, 1);
     mpsi_state_leave(s);
   }
 }
@@ -65,7 +75,8 @@ static bool fits(void *solver, mps_snapshot *values, const char **what) {
 static void after(void *solver) {
   mps_fluid *f = solver;
   f->stale = true;
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) f->wall[b].given = f->wall[b].placed = false;
+  mpsi_fluid_place_bodies(f);
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].given = f->wall[b].placed = false;
 }
 
 static mpsi_state_of state_of(mps_fluid *f) {

@@ -134,7 +134,7 @@ static mps_status begin(mps_fluid *f, const char *function, double dt) {
   if (status != MPS_OK) return status;
   f->dt = dt;
   f->before = f->report;
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) f->wall[b].before = f->wall[b].load;
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].before = f->wall[b].load;
   mpsi_fluid_begin_walls(f, dt);
   status = mpsi_fluid_look(f, function);
   if (status == MPS_OK) status = mpsi_fluid_prepare_pressure(f, function);
@@ -167,7 +167,7 @@ static mps_status keep(mps_fluid *f, const char *function) {
 /* Forgets what was done of a step. */
 static void abandon(mps_fluid *f) {
   f->report = f->before;
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) f->wall[b].load = f->wall[b].before;
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].load = f->wall[b].before;
   f->stage = MPSI_FLUID_BETWEEN;
   f->stale = true;
 }
@@ -187,7 +187,7 @@ double mps_fluid_limit(const mps_fluid *f) {
   if (!f) return 0.0;
   double limit = f->g > 0.0 ? 0.1 * sqrt(f->l0 / f->g) : INFINITY;
   if (f->speed > 0.0) limit = fmin(limit, 0.25 * f->l0 / f->speed);
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
     const mpsi_fluid_wall *w = &f->wall[b];
     if (!w->used) continue;
     double u = w->signal ? fabs(w->factor * mps_signal_velocity(w->signal, f->time)) : 0.0;
@@ -283,6 +283,7 @@ mps_status mps_fluid_solve_pressure(mps_fluid *f) {
   mps_status status = check_stage(f, __func__, MPSI_FLUID_BEGUN);
   if (status != MPS_OK) return status;
   f->stage = MPSI_FLUID_BEGUN;
+  mpsi_fluid_begin_walls(f, f->dt);
   status = mpsi_fluid_solve_pressure(f, __func__);
   if (status != MPS_OK) return status;
   f->stage = MPSI_FLUID_SOLVED;
@@ -307,7 +308,7 @@ mps_status mps_fluid_abandon_step(mps_fluid *f) {
   const mps_status status = check_stage(f, __func__, MPSI_FLUID_BEGUN);
   if (status != MPS_OK) return status;
   abandon(f);
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) f->wall[b].given = f->wall[b].placed = false;
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].given = f->wall[b].placed = false;
   return MPS_OK;
 }
 

@@ -1,7 +1,7 @@
 /* walls.c - plane walls, what moves them, and the mirror images (ghosts) of the particles within re
  * of each. Walls are taken in the order of their numbers, and images are mirrored at later walls
  * that stand at right angles to the earlier ones, so that corners of 90 degrees fill. At other
- * corners only the particles themselves are mirrored, and images behind another wall are dropped.
+ * corners only the particles themselves are mirrored, and sight.c says who sees which image.
  *
  * A ghost moves as the mirror image of its parent seen from the wall (velocity of the step before:
  * free slip); its reduced pressure is the parent's less
@@ -75,9 +75,9 @@ static double displacement(const mpsi_fluid_wall *w, double t) {
 
 /* Walls that nobody moves go on as they are. */
 void mpsi_fluid_begin_walls(mps_fluid *f, double dt) {
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
-    if (!w->used) continue;
+    if (!w->used || w->of_body) continue;
     for (int64_t k = 0; k < w->nodes; k++) {
       if (w->signal) {
         w->next.s[k] = displacement(w, f->time + dt);
@@ -92,19 +92,21 @@ void mpsi_fluid_begin_walls(mps_fluid *f, double dt) {
       w->mean[k] = (w->next.s[k] - w->now.s[k]) / dt;
     }
   }
+  mpsi_fluid_drive_bodies(f, dt);
 }
 
 void mpsi_fluid_end_walls(mps_fluid *f) {
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
-    if (!w->used) continue;
+    if (!w->used || w->of_body) continue;
     memcpy(w->now.s, w->next.s, 3 * (size_t)w->nodes * sizeof *w->now.s);
     w->given = w->placed = false;
   }
+  mpsi_fluid_end_bodies(f);
 }
 
 void mpsi_fluid_add_impulses(mps_fluid *f) {
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
     if (!w->used) continue;
     const mpsi_fluid_load *load = &w->load;
@@ -142,10 +144,7 @@ mps_status mps_fluid_set_wall_motion(mps_fluid *f, int32_t number, const double 
     w->next.u[k] = velocity[from];
   }
   w->given = true, w->placed = displacement_of != NULL;
-  if (f->stage != MPSI_FLUID_BETWEEN) {
-    mpsi_fluid_begin_walls(f, f->dt);
-    f->stage = MPSI_FLUID_BEGUN;
-  }
+  if (f->stage != MPSI_FLUID_BETWEEN) f->stage = MPSI_FLUID_BEGUN;
   return MPS_OK;
 }
 
@@ -155,21 +154,17 @@ static bool square(const mpsi_fluid_wall *a, const mpsi_fluid_wall *b) {
   return fabs(a->normal[0] * b->normal[0] + a->normal[1] * b->normal[1]) < SQUARE;
 }
 
-/* Whether an image made at `wall` is dropped: behind another wall that is not at right angles. */
-static bool behind_another(const mps_fluid *f, int wall, double x, double y) {
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
-    const mpsi_fluid_wall *w = &f->wall[b];
-    if (b == wall || !w->used || square(w, &f->wall[wall])) continue;
-    if (mpsi_fluid_distance(w, w->now.s, x, y) < 0.0) return true;
-  }
-  return false;
-}
-
-/* Only images at walls at right angles to this one are mirrored again. */
+/* Only images at boundaries at right angles to this wall are mirrored again. */
 static bool mirrors_again(const mps_fluid *f, int wall, uint32_t flips) {
   for (int b = 0; b < wall; b++)
-    if ((flips >> b & 1) && !square(&f->wall[b], &f->wall[wall])) return false;
+    if ((flips >> b & 1) && (f->wall[b].of_body || !square(&f->wall[b], &f->wall[wall])))
+      return false;
   return true;
+}
+
+static bool beyond_the_ends(const mps_fluid *f, const mpsi_fluid_wall *w, double x, double y) {
+  const double along = mpsi_fluid_along(w, x, y), re = f->weight.re;
+  return along < w->from - re || along > w->to + re;
 }
 
 /* Images of the cloud at one wall; false where there is no room. A bent wall mirrors at its local
@@ -185,7 +180,7 @@ static bool mirror(mps_fluid *f, int wall) {
     if (d >= f->weight.re || d < 0.0) continue;
     if (ghost >= 0 && !mirrors_again(f, wall, f->flips[ghost])) continue;
     const double to[2] = {x - 2.0 * d * w->normal[0], y - 2.0 * d * w->normal[1]};
-    if (behind_another(f, wall, to[0], to[1])) continue;
+    if (w->of_body && beyond_the_ends(f, w, x, y)) continue;
     if (f->count + f->ghosts == f->cloud_capacity) return false;
     const int64_t g = f->ghosts++;
     f->x[0][f->count + g] = to[0], f->x[1][f->count + g] = to[1];
@@ -221,12 +216,13 @@ mps_status mpsi_fluid_make_ghosts(mps_fluid *f, const char *function) {
   for (bool room = false; !room;) {
     f->ghosts = 0;
     f->bent = f->sticky = 0;
+    mpsi_fluid_find_limits(f);
     room = true;
-    for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++)
-      f->bent |= (uint32_t)(f->wall[b].used && f->wall[b].nodes > 1) << b,
+    for (int b = 0; b < MPSI_FLUID_WALLS; b++)
+      f->bent |= (uint32_t)(f->wall[b].used && !f->wall[b].of_body && f->wall[b].nodes > 1) << b,
           f->sticky |= (uint32_t)(f->wall[b].used && f->wall[b].kind == MPS_FLUID_BOUNDARY_NO_SLIP)
                        << b;
-    for (int b = 0; room && b < MPS_FLUID_MAX_BOUNDARIES; b++)
+    for (int b = 0; room && b < MPSI_FLUID_WALLS; b++)
       if (f->wall[b].used) room = mirror(f, b);
     const int64_t capacity = f->cloud_capacity + f->cloud_capacity / 2;
     if (!room && !mpsi_fluid_grow_cloud(f, capacity))
@@ -238,7 +234,7 @@ mps_status mpsi_fluid_make_ghosts(mps_fluid *f, const char *function) {
 
 void mpsi_fluid_mirror_point(const mps_fluid *f, uint32_t flips, double *x) {
   const double from[2] = {x[0], x[1]};
-  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
     if (!(flips >> b & 1)) continue;
     const mpsi_fluid_wall *w = &f->wall[b];
     const double s = mpsi_fluid_of_wall(w, w->now.s, from[0], from[1]);
@@ -251,7 +247,7 @@ void mpsi_fluid_move_ghosts(mps_fluid *f) {
   for (int64_t g = 0; g < f->ghosts; g++) {
     const int64_t j = f->count + g, own = f->parent[g];
     double v[2] = {f->u[0][own], f->u[1][own]};
-    for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+    for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
       if (!(f->flips[g] >> b & 1)) continue;
       const mpsi_fluid_wall *w = &f->wall[b];
       const double u = mpsi_fluid_of_wall(w, w->now.u, f->x[0][own], f->x[1][own]);
@@ -268,7 +264,7 @@ void mpsi_fluid_press_ghosts(mps_fluid *f) {
     const int64_t j = f->count + g, own = f->parent[g];
     const double apart[2] = {f->x[0][j] - f->x[0][own], f->x[1][j] - f->x[1][own]};
     f->offset[g] = 0.0;
-    for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+    for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
       if (!(f->flips[g] >> b & 1)) continue;
       const mpsi_fluid_wall *w = &f->wall[b];
       const double a = mpsi_fluid_of_wall(w, w->next.a, f->x[0][own], f->x[1][own]);

@@ -269,6 +269,62 @@ static void a_boundary_can_change(void **state) {
   mps_signal_destroy(&slow);
 }
 
+/* What a body must be; a snapshot with a body in the water; how it goes again. */
+static void bodies_come_and_go(void **state) {
+  (void)state;
+  tank t = tank_make(context, 0.6, 0.3, 0.03, NULL, 2e-3);
+  mps_body_def at = mps_body_defaults();
+  mps_body *box = NULL, *disc = NULL, *small = NULL, *corner = NULL;
+  mps_snapshot *snapshot = NULL;
+  mps_reaction r[2];
+  int32_t number = -1;
+  const double xy[8] = {0.0, 0.0, 0.1, 0.0, 0.02, 0.02, 0.0, 0.1};
+  at.position[0] = 0.3, at.position[1] = 0.5;
+  mps_assert_ok(context, mps_body_create_disc(context, &at, 0.1, &disc));
+  mps_assert_ok(context, mps_body_create_box(context, &at, 0.2, 0.02, &small));
+  mps_assert_ok(context, mps_body_create_polygon(context, &at, 4, xy, &corner));
+  mps_assert_ok(context, mps_body_create_box(context, &at, 0.2, 0.2, &box));
+  mps_assert_fails(context, mps_fluid_add_body(t.fluid, NULL, 0, NULL), MPS_ERROR_ARGUMENT, "NULL");
+  mps_assert_fails(context, mps_fluid_add_body(t.fluid, disc, 0, NULL), MPS_ERROR_ARGUMENT,
+                   "no polygon");
+  mps_assert_fails(context, mps_fluid_add_body(t.fluid, small, 0, NULL), MPS_ERROR_ARGUMENT,
+                   "edge 1 of the body");
+  mps_assert_fails(context, mps_fluid_add_body(t.fluid, corner, 0, NULL), MPS_ERROR_ARGUMENT,
+                   "edge 1 of the body");
+  mps_assert_fails(context, mps_fluid_add_body(t.fluid, box, 2, NULL), MPS_ERROR_ARGUMENT,
+                   "kind of the body");
+  mps_assert_ok(context, mps_fluid_add_body(t.fluid, box, 0, &number));
+  assert_int_equal(number, 0);
+  mps_assert_fails(context, mps_fluid_get_body_reaction(t.fluid, 1, &r[0]), MPS_ERROR_ARGUMENT,
+                   "no body of number 1");
+  /* it dips into the water at 1 m/s */
+  mps_assert_ok(context, mps_fluid_snapshot(t.fluid, &snapshot));
+  for (int run = 0; run < 2; run++) {
+    mps_body_motion motion = mps_body_motion_defaults();
+    if (run > 0) mps_assert_ok(context, mps_fluid_rollback(t.fluid, snapshot));
+    for (int k = 0; k < 75; k++) {
+      motion.velocity[1] = -1.0, motion.position[1] = 0.5 - 2e-3 * (k + 1);
+      mps_assert_ok(context, mps_body_set_motion(box, &motion));
+      mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
+    }
+    mps_assert_ok(context, mps_fluid_get_body_reaction(t.fluid, 0, &r[run]));
+  }
+  assert_true(r[0].force[1] > 0.5 * 1000.0 * TANK_G * 0.2 * 0.05);
+  assert_true(r[0].work > 0.0 && r[0].impulse[1] > 0.0);
+  assert_memory_equal(&r[0], &r[1], sizeof r[0]);
+  mps_body_destroy(&box); /* the fluid keeps it */
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
+  mps_assert_fails(context, mps_fluid_remove_body(t.fluid, 3), MPS_ERROR_ARGUMENT, "number 3");
+  mps_assert_ok(context, mps_fluid_remove_body(t.fluid, 0));
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
+  mps_assert_fails(context, mps_fluid_rollback(t.fluid, snapshot), MPS_ERROR_STATE, "");
+  mps_snapshot_destroy(&snapshot);
+  mps_body_destroy(&disc);
+  mps_body_destroy(&small);
+  mps_body_destroy(&corner);
+  tank_free(&t);
+}
+
 /* ---- a step in parts ------------------------------------------------------------------------- */
 
 /* One solution and the piston's motion given: the same bits as the step in one with a signal. */
@@ -369,6 +425,7 @@ int main(void) {
       cmocka_unit_test(a_tank_runs_empty),
       cmocka_unit_test(a_rollback_repeats_the_steps_bit_for_bit),
       cmocka_unit_test(a_boundary_can_change),
+      cmocka_unit_test(bodies_come_and_go),
       cmocka_unit_test(a_step_in_parts_is_the_step),
       cmocka_unit_test(parts_of_a_step_have_their_order),
   };

@@ -1,0 +1,110 @@
+/* sight.c - who sees whom. A wall that ends (the face of a body, a boundary that meets another one
+ * at an angle other than 90 degrees) is a mirror of finite size: a particle sees an image in it
+ * only where the straight line to the image passes through the mirror, and sees another particle
+ * only where no face is in between. The line from a to the image of b folds into the one from b to
+ * the image of a, so a sees b's image exactly when b sees a's: the matrix stays symmetric. Every
+ * line from a particle meets one mirror first, so that images neither overlap nor leave gaps, at
+ * concave and at convex corners.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid_private.h"
+
+#define EDGE 1e-6 /* l0 */
+
+static bool meet_at_an_angle(const mpsi_fluid_wall *a, const mpsi_fluid_wall *b) {
+  const double cosine = a->normal[0] * b->normal[0] + a->normal[1] * b->normal[1];
+  return fabs(cosine) > 1e-6 && fabs(cosine) < 1.0 - 1e-9;
+}
+
+/* Which walls end, and which are faces. */
+void mpsi_fluid_find_limits(mps_fluid *f) {
+  f->limited = f->faces = 0;
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+    const mpsi_fluid_wall *w = &f->wall[b];
+    if (!w->used) continue;
+    if (w->of_body) f->faces |= UINT32_C(1) << b;
+    for (int k = 0; k < MPS_FLUID_MAX_BOUNDARIES && !w->of_body; k++)
+      if (k != b && f->wall[k].used && meet_at_an_angle(w, &f->wall[k]))
+        f->limited |= UINT32_C(1) << b;
+  }
+  f->limited |= f->faces;
+}
+
+static double ahead(const mpsi_fluid_wall *w, const double *x) {
+  return mpsi_fluid_distance(w, w->now.s, x[0], x[1]);
+}
+
+/* Whether the line from a to b passes through the wall, and where. Through a corner is past it, and
+ * so it is from b to a, whatever the rounding. */
+static bool passes(const mps_fluid *f, const mpsi_fluid_wall *w, const double *a, const double *b,
+                   double *at) {
+  const double da = ahead(w, a), db = ahead(w, b);
+  if ((da > 0.0) == (db > 0.0)) return false;
+  const double t = da / (da - db);
+  for (int c = 0; c < 2; c++) at[c] = a[c] + t * (b[c] - a[c]);
+  if (!w->of_body) return true;
+  const double along = mpsi_fluid_along(w, at[0], at[1]);
+  return along > w->from + EDGE * f->l0 && along < w->to - EDGE * f->l0;
+}
+
+/* Whether a face besides those of `except` is between a and b. */
+static bool hidden(const mps_fluid *f, uint32_t except, const double *a, const double *b) {
+  double at[2];
+  for (uint32_t rest = f->faces & ~except, k = MPS_FLUID_MAX_BOUNDARIES; rest >> k && k < 32; k++)
+    if ((rest >> k & 1) && passes(f, &f->wall[k], a, b, at)) return true;
+  return false;
+}
+
+bool mpsi_fluid_hidden(const mps_fluid *f, int wall, const double *a, const double *b) {
+  return hidden(f, UINT32_C(1) << wall, a, b);
+}
+
+/* Whether the mirror passes through is there: not behind a boundary at an angle to it. */
+static bool mirror_is_there(const mps_fluid *f, int wall, const double *at) {
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+    const mpsi_fluid_wall *w = &f->wall[b];
+    if (b != wall && w->used && meet_at_an_angle(w, &f->wall[wall]) && ahead(w, at) < -EDGE * f->l0)
+      return false;
+  }
+  return true;
+}
+
+static bool sees(const mps_fluid *f, int64_t i, int64_t j) {
+  const double a[2] = {f->x[0][i], f->x[1][i]}, b[2] = {f->x[0][j], f->x[1][j]};
+  const uint32_t flips = j < f->count ? 0 : f->flips[j - f->count] & f->limited;
+  if (!flips) return !hidden(f, 0, a, b);
+  for (int k = 0; k < MPSI_FLUID_WALLS; k++) {
+    const mpsi_fluid_wall *w = &f->wall[k];
+    double at[2];
+    if (!(flips >> k & 1)) continue;
+    if (!(ahead(w, a) > 0.0) || !passes(f, w, a, b, at) || !mirror_is_there(f, k, at)) return false;
+    const double d = ahead(w, b),
+                 back[2] = {b[0] - 2.0 * d * w->normal[0], b[1] - 2.0 * d * w->normal[1]};
+    if (hidden(f, flips, a, at) || hidden(f, flips, at, back)) return false;
+  }
+  return true;
+}
+
+/* Whether particle i may have something in its list that it must not see: images are up to re
+ * behind and beyond a wall that ends. */
+static bool near_limit(const mps_fluid *f, int64_t i) {
+  const double x[2] = {f->x[0][i], f->x[1][i]}, reach = 2.0 * f->weight.re;
+  for (int k = 0; k < MPSI_FLUID_WALLS; k++) {
+    const mpsi_fluid_wall *w = &f->wall[k];
+    if (!(f->limited >> k & 1) || !(fabs(ahead(w, x)) < reach)) continue;
+    const double along = mpsi_fluid_along(w, x[0], x[1]);
+    if (!w->of_body || (along > w->from - reach && along < w->to + reach)) return true;
+  }
+  return false;
+}
+
+int64_t mpsi_fluid_keep_seen(const mps_fluid *f, int64_t i, int64_t count, int32_t *index,
+                             double *r2) {
+  if (!near_limit(f, i)) return count;
+  int64_t kept = 0;
+  for (int64_t k = 0; k < count; k++) {
+    if (!sees(f, i, index[k])) continue;
+    index[kept] = index[k], r2[kept] = r2[k];
+    kept++;
+  }
+  return kept;
+}

@@ -1,0 +1,264 @@
+/* test_fluid_bodies.c - water around what stands in it: boxes on the bed, through the surface and
+ * all under water, sloping beds.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "test_fixture.h"
+
+#include "fluid_tank.h"
+
+#define L0 0.02
+
+typedef struct scene {
+  tank t;
+  mps_body *body;
+} scene;
+
+/* A tank 1.2 x .4 m with a box about (x, y), turned by `angle`, and the particles of a lattice
+ * outside of it, each displaced by up to `part` of half the spacing. */
+static scene make_scene(double x, double y, double width, double height, double angle,
+                        double part) {
+  scene s = {{NULL, NULL}, NULL};
+  mps_particles_def set = mps_particles_defaults();
+  mps_fluid_def def = mps_fluid_defaults();
+  mps_body_def at = mps_body_defaults();
+  uint64_t seed = 5;
+  int32_t number;
+  at.position[0] = x, at.position[1] = y, at.rotation[2] = angle;
+  mps_assert_ok(context, mps_body_create_box(context, &at, width, height, &s.body));
+  set.spacing = L0;
+  def.dt = 2e-3, def.level = 0.4;
+  mps_assert_ok(context, mps_particles_create(context, &set, &s.t.water));
+  for (int j = 0; j < 20; j++)
+    for (int i = 0; i < 60; i++) {
+      double p[2] = {(i + 0.5) * L0, (j + 0.5) * L0}, d;
+      mps_assert_ok(context, mps_body_distance(s.body, 1, p, &d, NULL, NULL, NULL));
+      if (d < 0.45 * L0) continue;
+      for (int c = 0; c < 2; c++) {
+        seed = seed * 6364136223846793005u + 1442695040888963407u;
+        p[c] += 0.5 * part * L0 * ((double)(seed >> 11) * 0x1p-52 - 1.0);
+      }
+      mps_assert_ok(context, mps_particles_append(s.t.water, 1, p));
+    }
+  mps_assert_ok(context, mps_fluid_create(context, s.t.water, &def, &s.t.fluid));
+  tank_wall(context, s.t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_wall(context, s.t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+  tank_wall(context, s.t.fluid, 1.2, 0.0, -1.0, 0.0, NULL);
+  mps_assert_ok(context, mps_fluid_add_body(s.t.fluid, s.body, MPS_FLUID_BOUNDARY_SLIP, &number));
+  assert_int_equal(number, 0);
+  return s;
+}
+
+static void free_scene(scene *s) {
+  tank_free(&s->t);
+  mps_body_destroy(&s->body);
+}
+
+typedef struct place {
+  const char *name;
+  double x, y, width, height, angle;
+  double up; /* exact force of water at rest with its surface at .4 m, N */
+} place;
+
+static const double weight = 1000.0 * TANK_G;
+
+/* Mean and standard deviation of the force over the last .5 of .9 s, against the weight of the
+ * water that the box displaces (under water) or carries. */
+static void look_at(const place *p, double part, double bar, double scatter) {
+  scene s = make_scene(p->x, p->y, p->width, p->height, p->angle, part);
+  double mean[2] = {0.0, 0.0}, square = 0.0, level = 0.0, spot[2];
+  const double at[2] = {0.1, 1.1}, unit = fmax(fabs(p->up), weight * 0.24 * 0.08);
+  enum { SAMPLES = 60 };
+  mps_assert_ok(context, mps_fluid_step(s.t.fluid, 200));
+  for (int k = 0; k < SAMPLES; k++) {
+    mps_reaction r;
+    mps_assert_ok(context, mps_fluid_step(s.t.fluid, 4));
+    mps_assert_ok(context, mps_fluid_get_body_reaction(s.t.fluid, 0, &r));
+    mps_assert_ok(context, mps_fluid_get_levels(s.t.fluid, 2, at, spot));
+    level += 0.5 * (spot[0] + spot[1]) / SAMPLES;
+    for (int c = 0; c < 2; c++) mean[c] += r.force[c] / SAMPLES;
+    square += r.force[1] * r.force[1] / SAMPLES;
+  }
+  const double deviation = sqrt(fmax(square - mean[1] * mean[1], 0.0));
+  mps_totals sum;
+  mps_fluid_report report;
+  mps_assert_ok(context, mps_fluid_get_totals(s.t.fluid, &sum));
+  mps_assert_ok(context, mps_fluid_get_report(s.t.fluid, &report));
+  print_message(
+      "%-29s force (%+.2f, %.2f +- %.2f) N, exact (0, %.2f): %+.2f %%; level %.4f m, kinetic "
+      "%.1e J\n",
+      p->name, mean[0], mean[1], deviation, p->up, 100.0 * (mean[1] - p->up) / unit, level,
+      sum.kinetic);
+  mps_assert_near(mean[0], 0.0, bar * unit);
+  mps_assert_near(mean[1], p->up, bar * unit);
+  assert_true(deviation < scatter * unit);
+  assert_true(sum.kinetic < 1e-5 * sum.mass * TANK_G * 0.4);
+  assert_int_equal(report.pushed, 0);
+  free_scene(&s);
+}
+
+static void water_stays_still_around_a_box(void **state) {
+  (void)state;
+  const place places[] = {
+      {"on the bed, under water", 0.6, 0.1, 0.24, 0.2, 0.0, -weight * 0.24 * 0.2},
+      {"on the bed, through surface", 0.6, 0.3, 0.24, 0.6, 0.0, 0.0},
+      {"thin, on the bed", 0.6, 0.1, 0.04, 0.2, 0.0, -weight * 0.04 * 0.2},
+      {"under water", 0.6, 0.2, 0.24, 0.16, 0.0, weight * 0.24 * 0.16},
+      {"in the surface", 0.6, 0.4, 0.24, 0.16, 0.0, weight * 0.24 * 0.08},
+      {"under water, turned by 30 deg", 0.6, 0.2, 0.24, 0.16, 0.5235987755982988,
+       weight * 0.24 * 0.16},
+  };
+  for (size_t k = 0; k < sizeof places / sizeof *places; k++) look_at(&places[k], 0.2, 0.01, 0.02);
+}
+
+/* ---- a box that starts to move --------------------------------------------------------------- */
+
+enum { NX = 240, NY = 80 }; /* cells of l0/4 */
+
+/* Force by area and density on a box that accelerates by 1 along `axis`: Laplace's equation for p
+ * by finite differences in cells, p = 0 at .4 m, by Gauss-Seidel with over-relaxation. */
+static double laplace(const place *p, int axis) {
+  static double q[NX][NY];
+  static unsigned char solid[NX][NY];
+  const double h = 1.2 / NX;
+  memset(q, 0, sizeof q);
+  for (int i = 0; i < NX; i++)
+    for (int j = 0; j < NY; j++)
+      solid[i][j] = fabs((i + 0.5) * h - p->x) < 0.5 * p->width &&
+                    fabs((j + 0.5) * h - p->y) < 0.5 * p->height;
+  for (int sweep = 0; sweep < 3000; sweep++)
+    for (int i = 0; i < NX; i++)
+      for (int j = 0; j < NY; j++) {
+        if (solid[i][j]) continue;
+        double sum = 0.0, count = 0.0;
+        for (int k = 0; k < 4; k++) {
+          const int di = k == 0 ? 1 : k == 1 ? -1 : 0, dj = k == 2 ? 1 : k == 3 ? -1 : 0;
+          const int a = i + di, b = j + dj;
+          if (a < 0 || a >= NX || b < 0) continue;
+          if (b == NY)
+            count += 2.0; /* p = 0 half a cell away */
+          else if (solid[a][b])
+            sum -= h * (axis == 0 ? di : dj); /* dp/dn = -a.n, n from here into the box */
+          else
+            sum += q[a][b], count += 1.0;
+        }
+        q[i][j] += 1.9 * (sum / count - q[i][j]);
+      }
+  double force = 0.0;
+  for (int i = 0; i < NX; i++)
+    for (int j = 0; j < NY; j++) {
+      const int a = i + (axis == 0), b = j + (axis == 1);
+      if (a >= NX || b >= NY) continue;
+      if (!solid[i][j] && solid[a][b]) force += q[i][j] * h;
+      if (solid[i][j] && !solid[a][b]) force -= q[a][b] * h;
+    }
+  return force;
+}
+
+/* The force on a box whose acceleration is a: the hydrostatic one and -m_a a. */
+static void a_box_that_starts_feels_its_added_mass(void **state) {
+  (void)state;
+  const place places[] = {
+      {"under water", 0.6, 0.2, 0.24, 0.16, 0.0, weight * 0.24 * 0.16},
+      {"in the surface", 0.6, 0.4, 0.24, 0.16, 0.0, weight * 0.24 * 0.08},
+      {"on the bed, through surface", 0.6, 0.3, 0.24, 0.6, 0.0, 0.0},
+  };
+  const double dt = 2e-3, a = 2.0;
+  for (size_t k = 0; k < sizeof places / sizeof *places; k++)
+    for (int axis = 0; axis < (k == 2 ? 1 : 2); axis++) {
+      scene s = make_scene(places[k].x, places[k].y, places[k].width, places[k].height, 0.0, 0.0);
+      mps_body_motion motion = mps_body_motion_defaults();
+      mps_reaction r;
+      mps_assert_ok(context, mps_fluid_begin_step(s.t.fluid, dt));
+      motion.velocity[axis] = a * dt;
+      motion.position[axis] = (axis ? places[k].y : places[k].x) + 0.5 * a * dt * dt;
+      mps_assert_ok(context, mps_body_set_motion(s.body, &motion));
+      mps_assert_ok(context, mps_fluid_solve_pressure(s.t.fluid));
+      mps_assert_ok(context, mps_fluid_get_body_reaction(s.t.fluid, 0, &r));
+      const double mass = -(r.force[axis] - (axis ? places[k].up : 0.0)) / a;
+      const double exact = -1000.0 * laplace(&places[k], axis);
+      print_message("%-28s added mass along %c %.2f kg, finite differences %.2f kg (%+.2f %%)\n",
+                    places[k].name, axis ? 'y' : 'x', mass, exact, 100.0 * (mass / exact - 1.0));
+      mps_assert_near(mass, exact, 0.08 * fmax(exact, 19.2));
+      mps_assert_ok(context, mps_fluid_end_step(s.t.fluid));
+      free_scene(&s);
+    }
+}
+
+/* ---- sloping beds ---------------------------------------------------------------------------- */
+
+/* Water .3 m deep before a beach that rises from x = .6 m on: pressures on both beds, at 1 to 1.4
+ * s, particles displaced by up to .1 l0 at first. */
+static void water_before_a_beach_stays_still(void **state) {
+  (void)state;
+  const double slopes[3] = {10.0, 30.0, 45.0};
+  for (int n = 0; n < 3; n++) {
+    const double angle = slopes[n] * TANK_PI / 180.0, T[2] = {cos(angle), sin(angle)};
+    mps_particles_def set = mps_particles_defaults();
+    mps_fluid_def def = mps_fluid_defaults();
+    tank t = {NULL, NULL};
+    uint64_t seed = 5;
+    set.spacing = L0;
+    def.dt = 2e-3;
+    mps_assert_ok(context, mps_particles_create(context, &set, &t.water));
+    double area = 0.0;
+    for (int j = 0; j < 15; j++)
+      for (int i = 0; i < 200; i++) {
+        double p[2] = {(i + 0.5) * L0, (j + 0.5) * L0};
+        if (-(p[0] - 0.6) * T[1] + p[1] * T[0] < 0.4 * L0) continue;
+        for (int c = 0; c < 2; c++) {
+          seed = seed * 6364136223846793005u + 1442695040888963407u;
+          p[c] += 0.1 * L0 * ((double)(seed >> 11) * 0x1p-52 - 1.0);
+        }
+        mps_assert_ok(context, mps_particles_append(t.water, 1, p));
+        area += L0 * L0;
+      }
+    /* .6 d + d^2/(2 tan) = area */
+    const double tangent = T[1] / T[0];
+    const double depth = tangent * (sqrt(0.36 + 2.0 * area / tangent) - 0.6);
+    def.level = depth;
+    mps_assert_ok(context, mps_fluid_create(context, t.water, &def, &t.fluid));
+    tank_wall(context, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+    tank_wall(context, t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+    const int32_t beach = tank_wall(context, t.fluid, 0.6, 0.0, -T[1], T[0], NULL);
+    mps_assert_ok(context, mps_fluid_step(t.fluid, 500));
+    double mean[2] = {0.0, 0.0}, x[6], p[2], worst = 0.0, square = 0.0;
+    for (int k = 0; k < 50; k++) {
+      mps_reaction bed, slope;
+      mps_assert_ok(context, mps_fluid_step(t.fluid, 4));
+      mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, 0, &bed));
+      mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, beach, &slope));
+      mean[0] += bed.force[1] / 50.0;
+      const double force = hypot(slope.force[0], slope.force[1]);
+      mean[1] += force / 50.0, square += force * force / 50.0;
+      for (int c = 0; c < 2; c++) { /* a spacing before and after the foot, and halfway up */
+        x[0] = 0.6 - L0, x[1] = 0.0, x[2] = 0.0;
+        const double up = c ? 0.5 * depth / T[1] : L0;
+        x[3] = 0.6 + up * T[0], x[4] = up * T[1], x[5] = 0.0;
+        mps_assert_ok(context, mps_fluid_get_pressure(t.fluid, 0, 1, x, &p[0]));
+        mps_assert_ok(context, mps_fluid_get_pressure(t.fluid, beach, 1, x + 3, &p[1]));
+        worst = fmax(worst, fabs(p[0] - weight * depth) / (weight * depth));
+        worst = fmax(worst, fabs(p[1] - weight * (depth - x[4])) / (weight * depth));
+      }
+    }
+    const double exact[2] = {weight * depth * 0.6, 0.5 * weight * depth * depth / T[1]};
+    mps_totals sum;
+    mps_assert_ok(context, mps_fluid_get_totals(t.fluid, &sum));
+    print_message("slope %.0f deg: force on the bed %+.2f %%, on the slope %+.2f %% +- %.2f %%, "
+                  "pressures within %.2f %%, kinetic %.1e J\n",
+                  slopes[n], 100.0 * (mean[0] / exact[0] - 1.0), 100.0 * (mean[1] / exact[1] - 1.0),
+                  100.0 * sqrt(fmax(square - mean[1] * mean[1], 0.0)) / exact[1], 100.0 * worst,
+                  sum.kinetic);
+    mps_assert_near(mean[0], exact[0], 0.01 * exact[0]);
+    mps_assert_near(mean[1], exact[1], 0.02 * exact[1]);
+    assert_true(worst < 0.04);
+    tank_free(&t);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(water_stays_still_around_a_box),
+      cmocka_unit_test(a_box_that_starts_feels_its_added_mass),
+      cmocka_unit_test(water_before_a_beach_stays_still),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
