@@ -1,5 +1,6 @@
 /* mps-tank - water in a tank by moving particles against theory: at rest, sloshing, waves of a
- * piston, and a drop without walls. SPDX-License-Identifier: BSD-3-Clause */
+ * piston, against structures that move with it, and a drop without walls. SPDX-License-Identifier:
+ * BSD-3-Clause */
 #include "common/options.h"
 #include "tank/tank.h"
 
@@ -9,24 +10,34 @@
 
 /* Defaults that depend on the case. Returns -1, or an exit code. */
 static int complete(const options_program *program, tank_settings *s) {
-  static const double length[] = {0.6, 0.7, 1.6, 0.0}, depth[] = {0.3, 0.3, 0.3, 1.0};
-  static const double amplitude[] = {0.0, 0.01, 0.02, 0.0}, duration[] = {4.0, 5.2, 6.0, 1.0};
-  if (isnan(s->length)) s->length = length[s->kind];
-  if (isnan(s->depth)) s->depth = depth[s->kind];
-  if (isnan(s->spacing)) s->spacing = s->kind == TANK_DROP ? s->depth / 20.0 : 0.02;
-  if (isnan(s->amplitude)) s->amplitude = amplitude[s->kind];
-  if (isnan(s->duration)) s->duration = duration[s->kind];
-  if (isnan(s->sample)) s->sample = fmin(0.01, s->duration / 50.0);
+  static const struct {
+    double length, depth, amplitude, duration, dt;
+  } usual[TANK_KINDS] = {{0.6, 0.3, 0.0, 4.0, NAN},   {0.7, 0.3, 0.01, 5.2, NAN},
+                         {1.6, 0.3, 0.02, 6.0, NAN},  {0.6, 0.3, 0.001, 1.0, 5e-4},
+                         {1.0, 2.0, 0.0, 0.25, 2e-4}, {0.0, 1.0, 0.0, 1.0, NAN}};
+  const int kind = s->kind;
+  if (kind == TANK_PLATE) s->length = s->plate_length;
+  if (isnan(s->length)) s->length = usual[kind].length;
+  if (isnan(s->depth)) s->depth = usual[kind].depth;
+  if (isnan(s->spacing))
+    s->spacing = kind == TANK_DROP ? s->depth / 20.0 : kind == TANK_PLATE ? 0.05 : 0.02;
+  if (isnan(s->amplitude)) s->amplitude = usual[kind].amplitude;
+  if (isnan(s->duration)) s->duration = usual[kind].duration;
+  if (isnan(s->dt)) s->dt = kind == TANK_DROP ? 0.05 * s->spacing / s->depth : usual[kind].dt;
+  if (isnan(s->sample)) s->sample = fmin(tank_is_coupled(s) ? s->dt : 0.01, s->duration / 50.0);
   if (isnan(s->window[1])) s->window[1] = s->duration;
-  const double window[] = {0.5 * s->duration, s->duration, 4.0 * s->period, s->duration};
-  if (isnan(s->window[0])) s->window[0] = fmax(s->duration - window[s->kind], 0.0);
-  if (s->kind == TANK_DROP && isnan(s->dt)) s->dt = 0.05 * s->spacing / s->depth;
+  const double last = kind == TANK_STILL    ? 0.5 * s->duration
+                      : kind == TANK_PISTON ? 4.0 * s->period
+                                            : s->duration;
+  if (isnan(s->window[0])) s->window[0] = fmax(s->duration - last, 0.0);
   if (s->depth < 5.0 * s->spacing)
     return options_refuse(program, "--depth must be at least 5 spacings");
   if (s->kind != TANK_DROP && s->length < 5.0 * s->spacing)
     return options_refuse(program, "--length must be at least 5 spacings");
   if (s->kind != TANK_DROP && s->length / s->spacing * s->depth / s->spacing > 2e6)
     return options_refuse(program, "--spacing gives more than 2 million particles");
+  if (kind == TANK_PLATE && fabs(s->length / s->spacing - nearbyint(s->length / s->spacing)) > 1e-6)
+    return options_refuse(program, "--plate-length must be a whole number of spacings");
   if (s->kind != TANK_DROP && 4.0 * fabs(s->amplitude) > s->length)
     return options_refuse(program, "--amplitude must be at most a quarter of the length");
   if (s->sample > s->duration || s->duration / s->sample > 1e6)
@@ -83,6 +94,13 @@ int main(int argc, char **argv) {
                                .ramp = 1.0,
                                .duration = NAN,
                                .sample = NAN,
+                               .mass = 10.0,
+                               .stiffness = 211800.0,
+                               .plate_length = 1.0,
+                               .plate_thickness = 0.05,
+                               .young = 67.5e9,
+                               .poisson = 0.34,
+                               .plate_density = 2700.0,
                                .dt = NAN,
                                .gauge = {NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN},
                                .window = {NAN, NAN},
@@ -92,29 +110,44 @@ int main(int argc, char **argv) {
   const char *gauges = NULL;
   option table[] = {
       OPTION_HEADING("Case"),
-      OPTION_CHOICE("case", "still|sloshing|piston|drop", &s->kind,
+      OPTION_CHOICE("case", "still|sloshing|piston|spring|plate|drop", &s->kind,
                     "water at rest; first mode of sloshing; waves of a piston in a closed tank; an "
-                    "elliptic drop of radius --depth without gravity"),
-      OPTION_NUMBER("length", "m", OPTION_LENGTH, &s->length, "of the tank (default .6, .7, 1.6)"),
+                    "end wall on a spring, let go --amplitude off its rest; a column of water on a "
+                    "clamped plate; an elliptic drop of radius --depth without gravity"),
+      OPTION_NUMBER("length", "m", OPTION_LENGTH, &s->length,
+                    "of the tank (default .6, .7, 1.6, .6; on a plate, the plate's)"),
       OPTION_NUMBER("depth", "m", OPTION_LENGTH, &s->depth,
-                    "of the water (default .3), or the drop's radius (default 1)"),
-      OPTION_NUMBER("amplitude", "m", OPTION_FROM_TO(0.0, 1e3), &s->amplitude,
-                    "of the sloshing at the walls (default .01), of the piston (default .02)"),
+                    "of the water (default .3, on a plate 2), or the drop's radius (default 1)"),
+      OPTION_NUMBER(
+          "amplitude", "m", OPTION_FROM_TO(0.0, 1e3), &s->amplitude,
+          "of the sloshing at the walls (default .01), of the piston (.02), of the wall on "
+          "the spring (.001)"),
       OPTION_NUMBER("period", "s", OPTION_DURATION, &s->period, "of the piston"),
       OPTION_NUMBER("ramp", "s", OPTION_FROM_TO(0.0, 1e6), &s->ramp,
                     "in which the piston's amplitude rises"),
       OPTION_NUMBER("viscosity", "Pa s", OPTION_FROM_TO(0.0, 1e3), &s->viscosity, "of the water"),
+      OPTION_HEADING("Structures, of 1 m across"),
+      OPTION_NUMBER("mass", "kg", OPTION_FROM_TO(1e-6, 1e12), &s->mass, "of the wall on a spring"),
+      OPTION_NUMBER("stiffness", "N/m", OPTION_FROM_TO(1e-3, 1e16), &s->stiffness, "of its spring"),
+      OPTION_NUMBER("plate-length", "m", OPTION_LENGTH, &s->plate_length, "of the plate"),
+      OPTION_NUMBER("plate-thickness", "m", OPTION_LENGTH, &s->plate_thickness, "of the plate"),
+      OPTION_NUMBER("young", "Pa", OPTION_FROM_TO(1e-3, 1e16), &s->young,
+                    "Young's modulus of the plate"),
+      OPTION_NUMBER("poisson", "1", OPTION_FROM_TO(0.0, 0.499), &s->poisson, "its Poisson's ratio"),
+      OPTION_NUMBER("plate-density", "kg/m3", OPTION_DENSITY, &s->plate_density, "of the plate"),
       OPTION_HEADING("Particles"),
       OPTION_NUMBER("spacing", "m", OPTION_LENGTH, &s->spacing,
-                    "of the particles (default .02, of a drop a twentieth of its radius)"),
+                    "of the particles (default .02, on a plate .05, of a drop a twentieth of its "
+                    "radius)"),
       OPTION_NUMBER("disturb", "spacings", OPTION_FROM_TO(0.0, 0.2), &s->disturb,
                     "random displacement of the particles at the start, at most"),
       OPTION_HEADING("Run"),
       OPTION_NUMBER("duration", "s", OPTION_DURATION, &s->duration,
-                    "of the run (default 4, 5.2, 6, 1)"),
-      OPTION_NUMBER("dt", "s", OPTION_DURATION, &s->dt, "step (default: the library's)"),
+                    "of the run (default 4, 5.2, 6, 1, .25, 1)"),
+      OPTION_NUMBER("dt", "s", OPTION_DURATION, &s->dt,
+                    "step (default: the library's; spring 5e-4, plate 2e-4)"),
       OPTION_NUMBER("sample", "s", OPTION_DURATION, &s->sample,
-                    "between rows of the tables (default .01)"),
+                    "between rows of the tables (default .01; of structures --dt)"),
       OPTION_TEXT("gauge", "m,...", &gauges, "stations of level gauges, at most 8"),
       {.name = "window",
        .unit = "s,s",

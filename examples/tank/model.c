@@ -54,13 +54,22 @@ static mps_status fill_drop(const tank_settings *s, mps_particles *water) {
 
 /* ---- walls ----------------------------------------------------------------------------------- */
 
+/* A bed that bends has the structure's points. */
+static mps_status add_bed(tank_model *m) {
+  mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+  def.normal[1] = 1.0;
+  def.nodes = m->structure.x, def.node_count = m->structure.points;
+  return mps_fluid_add_boundary(m->fluid, &def, NULL);
+}
+
 static mps_status add_walls(mps_context *context, tank_model *m) {
   const double corner[2] = {0.0, 0.0}, right[2] = {m->s.length, 0.0};
   mps_status status = MPS_OK;
   m->motion = (waves_piston){m->s.amplitude, m->s.period, m->s.ramp};
   if (m->s.kind == TANK_PISTON)
     status = mps_signal_user(context, waves_move_piston, &m->motion, &m->piston);
-  if (status == MPS_OK) status = waves_add_wall(m->fluid, corner, 0.0, 1.0, NULL, NULL);
+  if (tank_is_coupled(&m->s)) status = tank_make_structure(context, m);
+  if (status == MPS_OK) status = add_bed(m);
   if (status == MPS_OK) status = waves_add_wall(m->fluid, corner, 1.0, 0.0, m->piston, NULL);
   if (status == MPS_OK) status = waves_add_wall(m->fluid, right, -1.0, 0.0, NULL, NULL);
   return status;
@@ -121,6 +130,7 @@ static mps_status measure_tank(tank_model *m, tank_sample *sample) {
     status = mps_fluid_get_levels(m->fluid, TANK_GAUGES + 1, station, sample->level);
   if (status != MPS_OK) return status;
   for (int k = 0; k <= TANK_GAUGES; k++) sample->level[k] -= s->depth;
+  sample->deflection = tank_is_coupled(s) ? tank_deflection(m) : 0.0;
   sample->left = left.force[0]; /* the walls push inwards, the water outwards */
   sample->right = -right.force[0];
   return MPS_OK;
@@ -155,7 +165,7 @@ mps_status tank_run(app *a, tank_model *m) {
   for (int64_t k = 1; k <= count && status == MPS_OK; k++) {
     const double t = fmin((double)k * s->sample, s->duration) * (1.0 - 1e-9);
     while (status == MPS_OK && mps_fluid_time(m->fluid) < t) {
-      status = mps_fluid_step(m->fluid, 1);
+      status = tank_is_coupled(s) ? tank_coupled_step(m) : mps_fluid_step(m->fluid, 1);
       char text[64];
       snprintf(text, sizeof text, "t = %.3f s", mps_fluid_time(m->fluid));
       progress_draw(&a->bar, mps_fluid_time(m->fluid) / s->duration, text);
@@ -168,6 +178,7 @@ mps_status tank_run(app *a, tank_model *m) {
 
 void tank_free(tank_model *m) {
   mps_recorder_destroy(&m->series);
+  tank_free_structure(&m->structure);
   mps_fluid_destroy(&m->fluid);
   mps_signal_destroy(&m->piston);
   mps_particles_destroy(&m->water);

@@ -34,12 +34,28 @@ static double harmonic(const tank_model *m, int gauge) {
 }
 
 typedef struct figures {
-  double mean, deviation, least, most, period, decay;
+  double mean, deviation, least, most, period, decay, first, last, deflection;
 } figures;
 
-/* Mean period and decay (1/s) of the force's swing about its mean, from its rising zeros and from
- * the largest value between them. */
-static void find_swing(const tank_model *m, figures *f) {
+/* What swings: the force on the right wall, or the structure. */
+static double swings(const tank_model *m, int64_t k) {
+  return tank_is_coupled(&m->s) ? m->sample[k].deflection : m->sample[k].right;
+}
+
+/* Mean over the whole periods between two times (trapezium rule). */
+static double mean_between(const tank_model *m, double first, double last) {
+  double sum = 0.0, span = 0.0;
+  for (int64_t k = 1; k < m->samples; k++) {
+    const double t = m->sample[k - 1].t, dt = m->sample[k].t - t;
+    if (t < first || m->sample[k].t > last) continue;
+    sum += 0.5 * dt * (swings(m, k - 1) + swings(m, k)), span += dt;
+  }
+  return span > 0.0 ? sum / span : NAN;
+}
+
+/* Mean period and decay (1/s) of what swings about `mean`, from its rising zeros and from the
+ * largest value between them. */
+static void find_swing(const tank_model *m, double mean, figures *f) {
   double first = NAN, last = NAN, peak = 0.0, early = NAN, early_at = 0.0, late = NAN,
          late_at = 0.0;
   double peak_at = 0.0;
@@ -47,7 +63,7 @@ static void find_swing(const tank_model *m, figures *f) {
   for (int64_t k = 1; k < m->samples; k++) {
     if (!in_window(m, k - 1) || !in_window(m, k)) continue;
     const tank_sample *p = &m->sample[k - 1], *q = &m->sample[k];
-    const double a = p->right - f->mean, b = q->right - f->mean;
+    const double a = swings(m, k - 1) - mean, b = swings(m, k) - mean;
     if (zeros > 0 && b > peak) peak = b, peak_at = q->t;
     if (!(a < 0.0 && b >= 0.0)) continue;
     last = p->t + (q->t - p->t) * a / (a - b);
@@ -57,8 +73,19 @@ static void find_swing(const tank_model *m, figures *f) {
     zeros++;
     peak = 0.0;
   }
+  f->first = first, f->last = last;
   f->period = zeros > 1 ? (last - first) / (double)(zeros - 1) : NAN;
   f->decay = late_at > early_at ? log(early / late) / (late_at - early_at) : NAN;
+}
+
+/* The structure swings about a mean that is known only over whole periods. */
+static void find_motion(const tank_model *m, figures *f) {
+  f->deflection = mean_between(m, m->s.window[0], m->s.window[1]);
+  for (int n = 0; n < 3; n++) {
+    find_swing(m, f->deflection, f);
+    if (isnan(f->period)) return;
+    f->deflection = mean_between(m, f->first, f->last);
+  }
 }
 
 static figures find_figures(const tank_model *m) {
@@ -70,10 +97,13 @@ static figures find_figures(const tank_model *m) {
     sum += force, square += force * force, n += 1.0;
     f.least = fmin(f.least, force), f.most = fmax(f.most, force);
   }
-  if (n == 0.0) return (figures){NAN, NAN, NAN, NAN, NAN, NAN};
+  if (n == 0.0) return (figures){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
   f.mean = sum / n;
   f.deviation = sqrt(fmax(square / n - f.mean * f.mean, 0.0));
-  find_swing(m, &f);
+  if (tank_is_coupled(&m->s))
+    find_motion(m, &f);
+  else
+    find_swing(m, f.mean, &f);
   return f;
 }
 
@@ -127,6 +157,17 @@ static bool write_drop(app *a, const tank_model *m) {
     tank_drop(m->s.depth, p->t, &x, &y, &centre);
     const double row[] = {p->t, p->a, x, p->b, y, p->centre, centre, p->kinetic};
     csv_row(&f, 8, row);
+  }
+  return output_close(&f);
+}
+
+static bool write_structure(app *a, const tank_model *m) {
+  output f;
+  if (!output_open(&f, a, m->s.out, "structure.csv")) return false;
+  csv_header(&f, "t_s,deflection_m");
+  for (int64_t k = 0; k < m->samples; k++) {
+    const double row[] = {m->sample[k].t, m->sample[k].deflection};
+    csv_row(&f, 2, row);
   }
   return output_close(&f);
 }
@@ -201,6 +242,22 @@ static bool draw_force(app *a, const tank_model *m) {
   return plot_close(&f, s->out, "force");
 }
 
+static bool draw_structure(app *a, const tank_model *m) {
+  const bool plate = m->s.kind == TANK_PLATE;
+  const double unit = plate ? 1e6 : 1e3;
+  output f;
+  if (!plot_open(&f, a, m->s.out, "structure", 1000, 460)) return false;
+  output_text(&f,
+              "set title '%s'\nset xlabel 't (s)'\nset ylabel '%s'\nset xrange [0:%.9g]\n"
+              "set key outside bottom center horizontal\nplot %.9g with lines dashtype '--' "
+              "linecolor rgb '#c0392b' title 'at rest', 'structure.csv' every ::1 using 1:($2*%g) "
+              "with lines linecolor rgb '#1f4e8c' title 'MPS'\n",
+              plate ? "Middle of the plate" : "Wall on a spring",
+              plate ? "deflection (10^{-6} m)" : "displacement (mm)", m->s.duration,
+              plate ? unit * tank_plate_deflection(&m->s) : 0.0, unit);
+  return plot_close(&f, m->s.out, "structure");
+}
+
 /* ---- summary --------------------------------------------------------------------------------- */
 
 static void summarise_waves(output *f, const tank_model *m, const figures *g) {
@@ -225,6 +282,28 @@ static void summarise_waves(output *f, const tank_model *m, const figures *g) {
     printf("force on the wall: crest %.1f N, Sainflou %.1f N; trough %.1f N, Sainflou %.1f N\n",
            g->most, waves_sainflou(k, s->depth, H, 1), g->least,
            waves_sainflou(k, s->depth, H, -1));
+}
+
+static void summarise_structure(output *f, const tank_model *m, const figures *g) {
+  const tank_settings *s = &m->s;
+  const bool plate = s->kind == TANK_PLATE;
+  const double exact = plate ? tank_plate_omega(s) : tank_spring_omega(s);
+  mps_coupling_report report;
+  if (mps_coupling_get_report(m->structure.coupling, &report) == MPS_OK)
+    json_number(f, "solutions_a_step",
+                (double)report.all_repeats / fmax((double)report.steps, 1.0));
+  json_optional(f, "omega", 2.0 * WAVES_PI / g->period);
+  json_number(f, "omega_exact", exact);
+  json_optional(f, "decay", g->decay);
+  json_optional(f, "deflection", g->deflection);
+  json_number(f, "deflection_exact", plate ? tank_plate_deflection(s) : 0.0);
+  if (!isnan(g->period))
+    printf("omega %.3f rad/s, potential flow %.3f (%+.2f %%), decay %.3f 1/s\n",
+           2.0 * WAVES_PI / g->period, exact, 100.0 * (2.0 * WAVES_PI / g->period / exact - 1.0),
+           g->decay);
+  if (plate && !isnan(g->deflection))
+    printf("mean deflection %.4g m, at rest %.4g m (%+.2f %%)\n", g->deflection,
+           tank_plate_deflection(s), 100.0 * (g->deflection / tank_plate_deflection(s) - 1.0));
 }
 
 static void summarise_drop(output *f, const tank_model *m) {
@@ -261,6 +340,7 @@ static void summarise_tank(output *f, const tank_model *m) {
              100.0 * (g.period / exact - 1.0));
   }
   if (s->kind == TANK_PISTON) summarise_waves(f, m, &g);
+  if (tank_is_coupled(s)) summarise_structure(f, m, &g);
 }
 
 static bool write_summary(app *a, const tank_model *m) {
@@ -289,9 +369,10 @@ static bool write_summary(app *a, const tank_model *m) {
 bool tank_write(app *a, tank_model *m) {
   const bool drop = m->s.kind == TANK_DROP;
   if (drop ? !write_drop(a, m) : !write_force(a, m) || !write_gauges(a, m)) return false;
+  if (tank_is_coupled(&m->s) && !write_structure(a, m)) return false;
   if (m->series && !app_check(a, mps_recorder_close(&m->series))) return false;
   if (!write_particles(a, m) || !write_summary(a, m) || !draw_water(a, m) ||
-      (!drop && !draw_force(a, m)))
+      (!drop && !draw_force(a, m)) || (tank_is_coupled(&m->s) && !draw_structure(a, m)))
     return false;
   app_tell_results(a, m->s.out);
   return true;

@@ -6,15 +6,18 @@
 #include "common/output.h"
 #include "common/waves.h"
 
+#include <mps/couple.h>
 #include <mps/fluid.h>
 #include <mps/io.h>
 
-enum { TANK_STILL = 0, TANK_SLOSHING, TANK_PISTON, TANK_DROP };
-enum { TANK_GAUGES = 8, TANK_BED = 0, TANK_LEFT = 1, TANK_RIGHT = 2 };
+enum { TANK_STILL = 0, TANK_SLOSHING, TANK_PISTON, TANK_SPRING, TANK_PLATE, TANK_DROP, TANK_KINDS };
+enum { TANK_SHAPES = 6, TANK_GAUGES = 8, TANK_BED = 0, TANK_LEFT = 1, TANK_RIGHT = 2 };
 
 typedef struct tank_settings {
   int kind; /* TANK_... */
   double length, depth, spacing, amplitude, period, ramp, duration, sample, dt, viscosity, disturb;
+  double mass, stiffness; /* kg and N/m, of a wall of 1 m */
+  double plate_length, plate_thickness, young, poisson, plate_density;
   double gauge[TANK_GAUGES]; /* m, NaN where there is none */
   double window[2];          /* s: of the harmonics and means */
   int64_t threads, frames;
@@ -27,7 +30,26 @@ typedef struct tank_sample {
                                                     gauge stands at the right wall */
   double a, b, centre;                           /* m, m, Pa */
   double kinetic, potential;                     /* J */
+  double deflection; /* m: of the wall into the water, of the plate downwards */
 } tank_sample;
+
+typedef struct tank_motion {
+  double d, v, a; /* m, m/s, m/s2 */
+} tank_motion;
+
+/* What moves with the water: shapes, each with its mass, stiffness and motion along the normal of a
+ * wall, into the water. */
+typedef struct tank_structure {
+  int shapes, wall;
+  double mass[TANK_SHAPES], stiffness[TANK_SHAPES], load[TANK_SHAPES]; /* kg, N/m, N */
+  double start;                         /* m: the spring's first displacement */
+  double alpha_m, alpha_f, beta, gamma; /* of the generalised-alpha method */
+  tank_motion at[TANK_SHAPES];
+  int64_t points;                             /* of the plate; 0: the wall stays plane */
+  double *x, *shape, each;                    /* m; values of each shape; m between them */
+  double *pressure, *displacement, *velocity; /* at the points */
+  mps_coupling *coupling;
+} tank_structure;
 
 typedef struct tank_model {
   tank_settings s;
@@ -35,18 +57,39 @@ typedef struct tank_model {
   waves_piston motion;
   mps_signal *piston;
   mps_fluid *fluid;
+  tank_structure structure;
   mps_recorder *series;
   tank_sample *sample;
   int64_t samples;
   mps_fluid_report report;
 } tank_model;
 
+static inline bool tank_is_coupled(const tank_settings *s) {
+  return s->kind == TANK_SPRING || s->kind == TANK_PLATE;
+}
+
 /* model.c: water, walls, fluid; a run that fills `sample`. */
 mps_status tank_build(mps_context *context, tank_model *m);
 mps_status tank_run(app *a, tank_model *m);
 void tank_free(tank_model *m);
 
+/* coupled.c */
+mps_status tank_make_structure(mps_context *context, tank_model *m);
+void tank_free_structure(tank_structure *p);
+mps_status tank_coupled_step(tank_model *m);
+double tank_deflection(const tank_model *m); /* m: of the wall, of the plate's middle */
+
 /* theory.c */
+/* The clamped plate in cylindrical bending: rigidity of 1 m (N m), roots of cos r cosh r = 1,
+ * shapes at x/L whose mean square is 1; deflection (m) of the middle under water and own weight. */
+double tank_plate_rigidity(const tank_settings *s);
+double tank_plate_root(int k);
+double tank_plate_shape(int k, double at);
+double tank_plate_deflection(const tank_settings *s);
+/* Frequency (rad/s) of the wall on a spring and of the plate, with the water's added mass by linear
+ * potential flow. */
+double tank_spring_omega(const tank_settings *s);
+double tank_plate_omega(const tank_settings *s);
 /* Semi-axes (m) and pressure in the middle (Pa) of the drop of radius R at time t. */
 void tank_drop(double radius, double t, double *a, double *b, double *centre);
 
