@@ -196,7 +196,7 @@ static bool write_particles(app *a, tank_model *m) {
 static bool draw_water(app *a, const tank_model *m) {
   const tank_settings *s = &m->s;
   const bool drop = s->kind == TANK_DROP;
-  const double width = drop ? 5.0 * s->depth : s->length + 2.0 * fabs(s->amplitude);
+  const double width = drop ? 5.0 * s->depth : s->length + 2.0 * fabs(s->amplitude) + 2.0 * s->spacing;
   const double height = drop ? 5.0 * s->depth : 1.6 * s->depth + 4.0 * fabs(s->amplitude);
   const double least = drop ? -2.5 * s->depth : -fabs(s->amplitude) - s->spacing;
   const int across = 1000, down = (int)fmin(fmax(820.0 * height / width, 160.0), 1000.0) + 130;

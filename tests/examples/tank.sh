@@ -11,6 +11,18 @@ tank "$1" sloshing
 in_range "$work/sloshing/summary.json" period_exact 1.01335 1.01337
 in_range "$work/sloshing/summary.json" period 1.0083 1.0184
 in_range "$work/sloshing/summary.json" decay -0.03 0.03
+# Coupled: frequencies with the added mass of potential flow, the plate's rest under water and own weight.
+coupled() { "$1/mps-tank" --threads 1 --frames 0 --out "$work/$2" --case "$2" --duration "$3" >"$work/log"; }
+coupled "$1" spring 0.5
+in_range "$work/spring/summary.json" omega_exact 60.3 60.4
+in_range "$work/spring/summary.json" omega 60.05 60.65
+in_range "$work/spring/summary.json" solutions_a_step 1 4
+coupled "$1" plate 0.1
+in_range "$work/plate/summary.json" omega_exact 503.0 503.2
+in_range "$work/plate/summary.json" omega 498.1 508.1
+in_range "$work/plate/summary.json" deflection 6.791e-5 6.929e-5
+in_range "$work/plate/summary.json" decay -1 5
+picture "$work/plate/structure.png" 1000x460 1f4e8c
 tank "$1" drop
 in_range "$work/drop/summary.json" a 0.4329 0.4461
 in_range "$work/drop/summary.json" b 2.2641 2.2869
@@ -22,4 +34,4 @@ in_range "$work/piston/summary.json" collisions 0 0
 head -n 1 "$work/piston/gauges.csv" | grep -q '^t_s,level_at_0.3_m,level_at_0.5_m,level_at_wall_m$' ||
   fail "header of gauges.csv: $(head -n 1 "$work/piston/gauges.csv")"
 picture "$work/piston/force.png" 1000x700 1f4e8c
-picture "$work/piston/water.png" 1000x409 2c3e8f
+picture "$work/piston/water.png" 1000x403 2c3e8f
