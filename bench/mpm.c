@@ -214,15 +214,15 @@ static double time_steps(contender *c, int64_t steps, double (*clock_of)(void)) 
 }
 
 static void print_line(anchor *a, double anchor_best, contender *c, int kinds) {
-  mps_mpm_totals totals;
-  check(c[ELASTIC].context, mps_mpm_get_totals(c[ELASTIC].mpm, &totals), "totals");
+  mps_mpm_usage grid;
+  check(c[ELASTIC].context, mps_mpm_get_usage(c[ELASTIC].mpm, &grid), "usage");
   printf("%3d %6d %9lld %8.1f", a->dim, a->degree, (long long)a->count, 1e9 * anchor_best);
   for (int k = 0; k < KINDS; k++)
     k < kinds ? printf(" %7.1f", 1e9 * c[k].best) : printf(" %7s", "-");
   for (int k = 0; k < KINDS; k++)
     k < kinds ? printf(" %6.2f", c[k].best / anchor_best) : printf(" %6s", "-");
-  printf(" %6.0f %6.0f %7.1f\n", particle_bytes(&c[ELASTIC]),
-         (double)totals.bytes / (double)a->count, (double)totals.bytes / (double)totals.nodes);
+  printf(" %6.0f %6.0f %7.1f\n", particle_bytes(&c[ELASTIC]), (double)grid.bytes / (double)a->count,
+         (double)grid.bytes / (double)grid.nodes);
   fflush(stdout);
 }
 

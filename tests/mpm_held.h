@@ -34,10 +34,12 @@ static inline void held_load(mpm_scene *s, mps_signal *signal, int32_t *loads) {
   mps_assert_ok(s->context, mps_mpm_add_load(s->mpm, &load, &loads[1]));
 }
 
-/* A domain full of particles that move: x frictional and absorbing; y fixed and sliding, and a
- * roller; z frictional and absorbing. `box` receives the moving nodes' number. */
-static inline mpm_scene held_begin(mps_context *context, int32_t geometry, int32_t *box,
-                                   int32_t *loads) {
+/* A domain full of particles that move, with the geometry and choices of `from`: x frictional and
+ * absorbing; y fixed and sliding, and a roller; z frictional and absorbing. `box` receives the
+ * moving nodes' number. */
+static inline mpm_scene held_begin_with(mps_context *context, const mps_mpm_def *from, int32_t *box,
+                                        int32_t *loads) {
+  const int32_t geometry = from->geometry;
   const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
   const double lo[] = {0.1, 0.0, 0.0}, hi[] = {dim == 3 ? 0.42 : 0.9, dim == 3 ? 0.16 : 0.4, 0.08};
   const double v0[] = {0.02, -0.03, 0.01};
@@ -50,8 +52,7 @@ static inline mpm_scene held_begin(mps_context *context, int32_t geometry, int32
   mps_view x = mpm_scene_view(&s, "position"), a = mpm_scene_view(&s, "body_acceleration");
   for (int64_t k = 0; k < x.shape[0]; k++)
     for (int c = 0; c < dim; c++) *mps_view_f64(&a, k, c) = 5.0 * *mps_view_f64(&x, k, 1 - c % 2);
-  mps_mpm_def def = mps_mpm_defaults();
-  def.geometry = geometry;
+  mps_mpm_def def = *from;
   def.cell = 0.02;
   for (int c = 0; c < dim; c++) {
     def.lower[c] = lo[c], def.upper[c] = hi[c];
@@ -72,6 +73,13 @@ static inline mpm_scene held_begin(mps_context *context, int32_t geometry, int32
   held_load(&s, signal, loads);
   mps_signal_destroy(&signal);
   return s;
+}
+
+static inline mpm_scene held_begin(mps_context *context, int32_t geometry, int32_t *box,
+                                   int32_t *loads) {
+  mps_mpm_def def = mps_mpm_defaults();
+  def.geometry = geometry;
+  return held_begin_with(context, &def, box, loads);
 }
 
 #endif

@@ -134,8 +134,8 @@ static inline void mpm_scene_affine(mpm_scene *s, const double *v0, const double
     }
 }
 
-static inline mps_mpm_totals mpm_scene_totals(mpm_scene *s) {
-  mps_mpm_totals totals;
+static inline mps_totals mpm_scene_totals(mpm_scene *s) {
+  mps_totals totals;
   mps_assert_ok(s->context, mps_mpm_get_totals(s->mpm, &totals));
   return totals;
 }

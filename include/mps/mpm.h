@@ -100,7 +100,9 @@ typedef struct mps_mpm_def {
   double courant;    /* fraction of the limit h/(c + v), Nakamura (49), (50), that a step takes, in
                         (0, 1]; default 0.5 */
   int32_t step_from; /* mps_mpm_step_from, default SPEED */
-  int32_t reserved;
+  int32_t budget;    /* 1: each step counts what becomes of the energy, see mps_mpm_get_totals; it
+                        then sums all forces apart from the momenta, which costs time and changes
+                        last bits. 0 (default): it does not */
 } mps_mpm_def;
 
 MPS_API mps_status mps_mpm_def_init(mps_mpm_def *def, size_t size);
@@ -318,17 +320,61 @@ MPS_API double mps_mpm_limit(const mps_mpm *mpm);
 /** Sets `dt` of the definition: s, > 0, at most the limit; NaN: it follows the limit. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_set_dt(mps_mpm *mpm, double dt);
 
-/** Sums over the particles (bodies not counted), of the measure. */
-typedef struct mps_mpm_totals {
-  double mass, volume;   /* kg, m3 */
-  double linear[3];      /* kg m/s; in 2D [2] is 0 */
-  double angular[3];     /* kg m2/s about the origin of space, with the spin that the particles'
-                            velocity gradients carry: conserved with full supports. In 2D [2] */
-  double kinetic;        /* J, of the particles' velocities */
+/* ---- sums ------------------------------------------------------------------------------------ */
+
+/** Sums over the particles (bodies not counted), of the measure. `angular` has the spin that the
+ *  velocity gradients carry, m h^2/3 (cubic; quadratic: /4) curl v; it is conserved with full
+ *  supports. `kinetic` is that of the particles' velocities alone. `work_boundaries` and
+ *  `work_bodies` are always there; the others NaN unless `budget` is 1 in the definition. Then
+ *
+ *    kinetic + strain + dissipated - work_loads - work_boundaries - work_bodies
+ *
+ *  stays as it was to round-off (1e-12 of the sum of all terms' changes in the tests), wherever
+ *  fields and particles are left as the steps have made them: each term is measured where it
+ *  happens, and mps_mpm_losses.residual is what they leave. `strain` is the work against the
+ * stresses that the laws give back, and the energy of the contacts' springs: of elastic laws all;
+ * of elastic-plastic ones the change of the energy of the stress by Hooke's law; of fluids the work
+ * of the pressure; of users' laws, which do not tell, all. Loads do work by the velocity that the
+ *  nodes give the particles. */
+MPS_API MPS_NODISCARD mps_status mps_mpm_get_totals_sized(mps_mpm *mpm, mps_totals *out,
+                                                          size_t size);
+static inline mps_status mps_mpm_get_totals(mps_mpm *mpm, mps_totals *out) {
+  return mps_mpm_get_totals_sized(mpm, out, sizeof *out);
+}
+
+/** Where `dissipated` of mps_totals went, J since creation; `scheme` there is transfer + stepping.
+ */
+typedef struct mps_mpm_losses {
+  double laws;       /* plasticity and viscosity */
+  double boundaries; /* friction of sides, dashpots with their forces at rest */
+  double bodies;     /* friction of bodies */
+  double damping;    /* of the definition's members */
+  double transfer;   /* kinetic energy of the particles less that of the nodes before the forces,
+                        and of the nodes less that of the particles after them. WLS takes energy
+                        at lengths of a few cells; what a velocity gradient carries to the nodes
+                        comes back as a negative part */
+  double stepping;   /* by the explicit step: impulses act at once, stresses and contacts by their
+                        values at its beginning. Swings about 0 where all is smooth; an impact on
+                        what holds or drives is here */
+  double residual;   /* work less all changes and losses: round-off */
+} mps_mpm_losses;
+/** MPS_ERROR_STATE: the definition's `budget` is 0. */
+MPS_API MPS_NODISCARD mps_status mps_mpm_get_losses_sized(mps_mpm *mpm, mps_mpm_losses *out,
+                                                          size_t size);
+static inline mps_status mps_mpm_get_losses(mps_mpm *mpm, mps_mpm_losses *out) {
+  return mps_mpm_get_losses_sized(mpm, out, sizeof *out);
+}
+
+/** How large the grid is. */
+typedef struct mps_mpm_usage {
   int64_t blocks, nodes; /* blocks of cells that hold particles; nodes that exist */
   int64_t bytes;         /* memory of the grid, the particles' fields not counted */
-} mps_mpm_totals;
-MPS_API MPS_NODISCARD mps_status mps_mpm_get_totals(mps_mpm *mpm, mps_mpm_totals *out);
+} mps_mpm_usage;
+MPS_API MPS_NODISCARD mps_status mps_mpm_get_usage_sized(mps_mpm *mpm, mps_mpm_usage *out,
+                                                         size_t size);
+static inline mps_status mps_mpm_get_usage(mps_mpm *mpm, mps_mpm_usage *out) {
+  return mps_mpm_get_usage_sized(mpm, out, sizeof *out);
+}
 
 /* ---- state ----------------------------------------------------------------------------------- */
 

@@ -56,6 +56,13 @@ void mpsi_material_wave_moduli(const mps_material *material, const mps_material_
 /* G (Pa) at zero strain; of a user's law, which does not tell, a third of the wave modulus (nu =
  * 1/4). */
 double mpsi_material_shear(const mps_material *material);
+/* Which part of the work against its stresses the law gives back. */
+typedef enum mpsi_kept {
+  MPSI_KEPT_ALL,     /* elastic; and users' laws, which do not tell */
+  MPSI_KEPT_ELASTIC, /* what changes the energy of the stress by Hooke's law: elastic-plastic */
+  MPSI_KEPT_PRESSURE /* the mean stress times tr(d): fluids */
+} mpsi_kept;
+mpsi_kept mpsi_material_kept(const mps_material *material);
 /* Pa s; 0 for all but fluids and users' laws. */
 double mpsi_material_viscosity(const mps_material *material);
 /* Fills the history columns of new particles [begin, end). */

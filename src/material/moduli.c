@@ -51,3 +51,16 @@ void mpsi_material_wave_moduli(const mps_material *material, const mps_material_
 double mpsi_material_shear(const mps_material *material) {
   return material->kind == MPSI_LAW_USER ? material->wave_modulus / 3.0 : material->law.shear;
 }
+
+mpsi_kept mpsi_material_kept(const mps_material *material) {
+  switch (material->kind) {
+  case MPSI_LAW_VON_MISES:
+  case MPSI_LAW_DRUCKER_PRAGER:
+  case MPSI_LAW_MOHR_COULOMB:
+    return MPSI_KEPT_ELASTIC;
+  case MPSI_LAW_NEWTONIAN:
+    return MPSI_KEPT_PRESSURE;
+  default:
+    return MPSI_KEPT_ALL;
+  }
+}

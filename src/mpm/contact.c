@@ -2,6 +2,7 @@
  * friction body by body, Nakamura (31)-(34); then what the bodies feel. The contact itself, of one
  * particle or node, is in src/contact.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "body/rotation.h"
 #include "mpm_private.h"
 
 #include <string.h>
@@ -64,6 +65,10 @@ void mpsi_mpm_update_bodies(mps_mpm *mpm) {
         contacts[part] += pair->contacts[part];
       }
     }
+    const mpsi_pose *pose = &mpm->contact.body[b]->pose;
+    for (int32_t part = 0; part < mpm->contact.body[b]->parts; part++)
+      mpm->energy.bodies -= mpm->run.dt * (mpsi_dot3(load[part].force, pose->v) +
+                                           mpsi_dot3(load[part].moment, pose->spin));
     mpsi_contact_react(mpm->contact.handle[b], mpm->run.dt, load, contacts);
   }
 }

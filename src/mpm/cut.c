@@ -51,8 +51,8 @@ static box near_bodies(const mps_mpm *mpm, const mpsi_cell_block *cells) {
 /* Slots of sides, and what is split, of the blocks of nodes under a cut block of cells. */
 static void mark_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const box *near, bool finds) {
   static const int32_t low[3] = {0}, high[3] = {MPSI_SIDE, MPSI_SIDE, MPSI_SIDE};
-  const bool all =
-      mpm->def.transfer == MPS_MPM_TRANSFER_WEIGHT || mpm->flip > 0.0 || (finds && cells->edge);
+  const bool all = mpm->energy.counts || mpm->def.transfer == MPS_MPM_TRANSFER_WEIGHT ||
+                   mpm->flip > 0.0 || (finds && cells->edge);
   bool rough = false;
   for (int32_t k = 0; cells->inside && k < cells->pairs; k++)
     rough =
@@ -63,15 +63,15 @@ static void mark_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const box *near
     box under = box_under(cells, q, low, high);
     under = common(&under, near);
     const bool touched = !is_empty(&under);
-    if (!touched && !cells->edge && !mpm->standard) continue;
+    if (!touched && !cells->edge && !mpm->standard && !mpm->energy.counts) continue;
     if (nodes->side < 0) nodes->side = (int32_t)mpm->grid.side_count++;
     nodes->split = nodes->split || all || (touched && rough);
   }
 }
 
 /* Cut: some particle may have a cut support, or, with the standard scheme, one without a fit.
- * Split: friction needs the velocity before the forces; so does FLIP, and the transfer by weights,
- * which divides momentum and force by different masses. */
+ * Split: friction needs the velocity before the forces; so do the energy budget, FLIP, and the
+ * transfer by weights, which divides momentum and force by different masses. */
 static mps_status find_cut(mps_mpm *mpm, const char *function) {
   bool finds = false; /* an absorbing wall asks for the forces of its first step */
   for (int32_t k = 0; k < MPSI_SIDES; k++) {
@@ -86,7 +86,7 @@ static mps_status find_cut(mps_mpm *mpm, const char *function) {
     const box near = near_bodies(mpm, cells);
     cells->inside = !is_empty(&near);
     cells->cut = cells->edge || cells->inside || mpm->standard;
-    if (cells->cut) mark_cut(mpm, cells, &near, finds);
+    if (cells->cut || mpm->energy.counts) mark_cut(mpm, cells, &near, finds);
   }
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     mpsi_cell_block *cells = &mpm->grid.cells[b];

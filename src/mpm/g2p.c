@@ -209,7 +209,9 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cell_block *cells, const mpsi_work
     else
       MPSI_LEVELLED(mpsi_gather_fitted)(mpm, cells, worker, begin + k, motion[k]);
   }
+  if (mpm->energy.counts) mpsi_energy_before(mpm, cells, begin, begin + n);
   const moved m = move(mpm, cells, geometry, spline, begin, n, (const double(*)[4][4])motion);
+  if (mpm->energy.counts) mpsi_energy_moved(mpm, cells, begin, begin + n);
   if (mpm->flip > 0.0) add_own(mpm, begin, n, (const double(*)[4][4])motion);
   if (m.left) cells->left = true;
   if (m.outside && cells->bad < 0) cells->bad = keep_inside(mpm, begin, begin + n);

@@ -57,8 +57,19 @@ void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
   if (nodes->pairs > 0) mpsi_mpm_apply_contact(mpm, g);
 }
 
+static void finish_and_count(mps_mpm *mpm, int64_t g) {
+  mpsi_node held[MPSI_SIDE * MPSI_SIDE * MPSI_SIDE];
+  const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(mpm, g));
+  memcpy(held, node, (size_t)mpm->grid.block_nodes * sizeof *held);
+  mpsi_mpm_hold_nodes(mpm, g);
+  mpsi_energy_nodes(mpm, g, (const mpsi_node *)held, node);
+}
+
 void mpsi_mpm_finish_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
   (void)worker;
   if (mpm->grid.nodes[g].pairs > 0) mpsi_mpm_apply_friction(mpm, g);
-  mpsi_mpm_hold_nodes(mpm, g);
+  if (mpm->energy.counts)
+    finish_and_count(mpm, g);
+  else
+    mpsi_mpm_hold_nodes(mpm, g);
 }

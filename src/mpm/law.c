@@ -80,10 +80,13 @@ static void apply_run(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64
     mpsi_mpm_mean_diagonals(mpm, cells, begin, end, diagonal);
     for (int c = 0; c < 3; c++) block.gradient[4 * c] = diagonal[c];
   }
+  mpsi_before_law before;
+  if (mpm->energy.counts) mpsi_energy_keep(mpm, begin, end, &before);
   /* Where the law works on J, V stands for V0 meanwhile. */
   for (int64_t k = begin; law->reads_volume && k < end; k++) p->V[k] /= p->J[k];
   apply_law(mpm, cells, law, &block, begin);
   for (int64_t k = begin; law->reads_volume && k < end; k++) p->V[k] *= p->J[k];
+  if (mpm->energy.counts) mpsi_energy_law(mpm, cells, law, &block, &before, begin);
 }
 
 void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end) {

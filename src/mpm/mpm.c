@@ -49,6 +49,10 @@ static mps_status check_choices(mps_context *context, const mps_mpm_def *d) {
   if (d->scheme != MPS_MPM_SCHEME_WLS && d->scheme != MPS_MPM_SCHEME_STANDARD)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "scheme is %d, allowed are 0 (WLS) and 1 (standard)", d->scheme);
+  if (d->budget != 0 && d->budget != 1)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "budget is %d, allowed are 0 (no energies) and 1 (the energy budget)",
+                     d->budget);
   if (d->step_from != MPS_MPM_STEP_FROM_SPEED && d->step_from != MPS_MPM_STEP_FROM_WAVE)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "step_from is %d, allowed are 0 (speed) and 1 (wave)", d->step_from);
@@ -324,6 +328,7 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   mpm->grid.block_nodes = mpm->dim == 3 ? MPSI_SIDE * MPSI_SIDE * MPSI_SIDE : MPSI_SIDE * MPSI_SIDE;
   mpm->grid.tile_nodes = mpm->dim == 3 ? MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE
                                        : MPSI_TILE_SIDE * MPSI_TILE_SIDE;
+  mpm->energy.counts = def.budget != 0;
   mpm->kernels = mpsi_mpm_kernels(mpsi_context_level(context));
   mpm->p.count = mps_particles_count(particles);
   mpm->grid.inverse = 1.0 / def.cell;
@@ -364,6 +369,8 @@ void mps_mpm_destroy(mps_mpm **pointer) {
                    mpm->boundaries.dash_room.item,
                    mpm->boundaries.old_held_room.item,
                    mpm->boundaries.old_dash_room.item,
+                   mpm->energy.cells_room.item,
+                   mpm->energy.nodes_room.item,
                    mpm->rooms.force.item,
                    mpm->rooms.radix.item,
                    mpm->rooms.flags.item,

@@ -7,6 +7,7 @@
 #include "blocks.h"
 #include "boundaries.h"
 #include "columns.h"
+#include "energy.h"
 #include "laws.h"
 #include "loads.h"
 #include "pairs.h"
@@ -37,6 +38,7 @@ struct mps_mpm {
   mpsi_loads loads;
   mpsi_laws laws;
   mpsi_run run;
+  mpsi_energy energy;
   mpsi_identity *identity; /* of its snapshots */
 };
 

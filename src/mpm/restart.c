@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
+_Static_assert(sizeof(mpsi_energy_sums) == MPSI_ENERGY_SUMS * sizeof(double), "kept as numbers");
 _Static_assert(sizeof(mpsi_dash) == MPSI_DASH * sizeof(double), "kept as numbers");
 
 /* ---- tables: blocks, their nodes, dashpots --------------------------------------------------- */
@@ -55,6 +56,7 @@ static bool reserve_blocks(void *solver, int64_t rows, const void *values) {
 /* The room is there: but where a file lies about it, the solver takes no step. */
 static void set_blocks(void *solver, int64_t rows, const void *values) {
   mps_mpm *mpm = solver;
+  mpm->energy.springs_known = false;
   mpm->run.broken =
       mpsi_mpm_place_blocks(mpm, "restore", rows, (const mpsi_block *)values) != MPS_OK;
 }
@@ -167,6 +169,7 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_i64(s, "steps", &mpm->run.steps, 1);
   mpsi_state_f64(s, "speed", &mpm->run.speed, 1);
   mpsi_state_bool(s, "stale", &mpm->run.stale);
+  mpsi_state_f64(s, "energies", &mpm->energy.sum.kinetic, MPSI_ENERGY_SUMS);
   for (int32_t b = 0; b < mpm->contact.bodies; b++) {
     mpsi_state_enter(s, "body%d", b);
     mpsi_body_list_state(s, mpm->contact.body[b]);

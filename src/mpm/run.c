@@ -35,7 +35,7 @@ mps_status mpsi_mpm_tidy(mps_mpm *mpm, const char *function) {
   if (status == MPS_OK) status = mpsi_mpm_list_holds(mpm, function);
   if (status != MPS_OK) return status;
   mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
-  mpm->run.edited = false;
+  mpm->run.edited = mpm->energy.springs_known = false;
   return mpsi_mpm_collect_block_results(mpm, function);
 }
 

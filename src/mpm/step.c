@@ -90,6 +90,7 @@ static mps_status prepare(mps_mpm *mpm, const char *function) {
   if (status == MPS_OK) status = mpsi_mpm_update_holds(mpm, function);
   if (status == MPS_OK) status = mpsi_mpm_find_near(mpm, function);
   if (status == MPS_OK) status = mpsi_mpm_find_forces(mpm, function);
+  if (status == MPS_OK) status = mpsi_energy_begin(mpm, function);
   return status;
 }
 
@@ -127,6 +128,7 @@ mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
   mpsi_mpm_drive_particles(mpm);                        /* held particles: v, x */
   if (mpm->p.stencil) mpsi_mpm_apply_laws_by_cell(mpm); /* L, V --> sigma by means of cells */
   if (mpm->contact.bodies > 0) mpsi_mpm_update_bodies(mpm); /* contact --> reactions, poses */
+  mpsi_energy_end(mpm);
   mpm->run.time += dt;
   mpm->run.steps++;
   const mps_status deep = mpsi_mpm_check_depth(mpm, function);

@@ -262,6 +262,7 @@ static void add_impulse(mps_reaction *r, double dt, const double *impulse, const
 
 void mpsi_mpm_sum_holds(mps_mpm *mpm) {
   mpsi_hold *hold = mpm->boundaries.hold;
+  mpm->energy.boundaries = mpm->energy.driven = mpm->energy.driven_work = 0.0;
   for (int32_t k = 0; k < MPSI_HOLDS; k++) {
     mps_reaction *r = &hold[k].reaction;
     for (int c = 0; c < 3; c++) r->force[c] = r->moment[c] = 0.0;
@@ -272,6 +273,7 @@ void mpsi_mpm_sum_holds(mps_mpm *mpm) {
     const mpsi_held *held = &mpm->boundaries.held[t];
     add_impulse(&hold[held->hold].reaction, mpm->run.dt, held->impulse, held->moment, held->work,
                 held->count);
+    mpm->energy.boundaries += held->work;
   }
 }
 
@@ -314,6 +316,7 @@ static void drive_particle(mps_mpm *mpm, mpsi_hold *hold, int64_t k) {
     const double change = hold->v[c] - p->v[c][k];
     impulse[c] = p->m[k] * change;
     work += impulse[c] * hold->v[c];
+    mpm->energy.driven += 0.5 * impulse[c] * (hold->v[c] + p->v[c][k]);
     p->v[c][k] = hold->v[c];
     p->x[c][k] += mpm->run.dt * change;
   }
@@ -323,6 +326,8 @@ static void drive_particle(mps_mpm *mpm, mpsi_hold *hold, int64_t k) {
     moment[c] = x[a] * impulse[b] - x[b] * impulse[a];
   }
   add_impulse(&hold->reaction, mpm->run.dt, impulse, moment, work, 1);
+  mpm->energy.boundaries += work;
+  mpm->energy.driven_work += work;
   check_place(mpm, k);
 }
 

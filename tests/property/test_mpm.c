@@ -308,9 +308,9 @@ static void keeps_momentum(int dim, int spline, int64_t steps) {
   def.spline = spline;
   def.cell = 0.02;
   mpm_scene_solve(&s, &def);
-  const mps_mpm_totals a = mpm_scene_totals(&s);
+  const mps_totals a = mpm_scene_totals(&s);
   mps_assert_ok(context, mps_mpm_step(s.mpm, steps));
-  const mps_mpm_totals b = mpm_scene_totals(&s);
+  const mps_totals b = mpm_scene_totals(&s);
   double linear[3], angular[3];
   for (int c = 0; c < 3; c++) {
     linear[c] = b.linear[c] - a.linear[c];
@@ -364,10 +364,10 @@ static void contact_keeps_momentum(void **state) {
   mps_assert_ok(context, mps_body_create_disc(context, &body, 0.08, &bodies[1]));
   mps_assert_ok(context, mps_body_name_part(bodies[0], "face", 3, 1, NULL));
   for (int b = 0; b < 2; b++) mpm_scene_contact(&s, bodies[b], b == 0 ? 0.4 : 0.1);
-  const mps_mpm_totals start = mpm_scene_totals(&s);
+  const mps_totals start = mpm_scene_totals(&s);
   const double before[3] = {start.linear[0], start.linear[1], start.angular[2]};
   mps_assert_ok(context, mps_mpm_step(s.mpm, 400));
-  const mps_mpm_totals end = mpm_scene_totals(&s);
+  const mps_totals end = mpm_scene_totals(&s);
   double after[3] = {end.linear[0], end.linear[1], end.angular[2]};
   mps_reaction face, all;
   mps_assert_ok(context, mps_body_get_reaction(bodies[0], -1, &all));
@@ -407,9 +407,9 @@ static void contact_in_space_keeps_momentum(void **state) {
   body.position[0] = 0.0, body.position[1] = -0.06;
   mps_assert_ok(context, mps_body_create_half_space(context, &body, normal, &bodies[1]));
   for (int b = 0; b < 2; b++) mpm_scene_contact(&s, bodies[b], 0.4);
-  const mps_mpm_totals start = mpm_scene_totals(&s);
+  const mps_totals start = mpm_scene_totals(&s);
   mps_assert_ok(context, mps_mpm_step(s.mpm, 200));
-  const mps_mpm_totals end = mpm_scene_totals(&s);
+  const mps_totals end = mpm_scene_totals(&s);
   double lost[3], spin = 0.0;
   for (int c = 0; c < 3; c++) lost[c] = start.linear[c] - end.linear[c];
   for (int b = 0; b < 2; b++) {

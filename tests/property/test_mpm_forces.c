@@ -33,7 +33,7 @@ static void momentum_is_balanced(void **state) {
   for (int32_t geometry = MPS_MPM_PLANE_STRAIN; geometry <= MPS_MPM_SPACE; geometry++) {
     int32_t box = -1, loads[2];
     mpm_scene s = held_begin(context, geometry, &box, loads);
-    mps_mpm_totals before = mpm_scene_totals(&s);
+    mps_totals before = mpm_scene_totals(&s);
     double worst = 0.0, total = 0.0;
     int acts[6] = {0};
     for (int step = 0; step < 60; step++) {
@@ -44,7 +44,7 @@ static void momentum_is_balanced(void **state) {
       if (step == 40) push_anew(&s, loads[1]);
       const double t = mps_mpm_time(s.mpm);
       mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
-      const mps_mpm_totals after = mpm_scene_totals(&s);
+      const mps_totals after = mpm_scene_totals(&s);
       const double dt = mps_mpm_time(s.mpm) - t;
       double force[3];
       held_force(&s, box, force, acts);

@@ -254,7 +254,7 @@ static void viscosity_limits_the_step(void **state) {
   mps_material *material = NULL;
   mps_mpm *mpm = NULL;
   mps_view x, v;
-  mps_mpm_totals before, after;
+  mps_totals before, after;
   const double lo[] = {0.0, 0.0}, hi[] = {0.2, 0.2}, viscosity = 2000.0;
   mps_newtonian_def law = mps_newtonian_defaults();
   law.bulk_modulus = 1e5, law.viscosity = viscosity;

@@ -48,7 +48,7 @@ static void refused_creation_changes_nothing(void **state) {
   def = small_def();
   def.geometry = MPS_MPM_AXISYMMETRIC;
   mps_assert_ok(context, mps_mpm_create(context, s.particles, rubber, &def, &mpm));
-  mps_mpm_totals t;
+  mps_totals t;
   mps_assert_ok(context, mps_mpm_get_totals(mpm, &t));
   const double cylinder = 3.14159265358979323846 * 0.1 * 0.1 * 0.1;
   mps_assert_near(t.volume, cylinder, 1e-12 * cylinder);

@@ -168,7 +168,7 @@ static void drives_particles(void **state) {
   mps_assert_near(*mps_view_f64(&x, mps_particles_index(s.particles, 17), 0), from + 0.06, 1e-12);
   mps_reaction r;
   mps_assert_ok(context, mps_mpm_get_reaction(s.mpm, number, &r));
-  const mps_mpm_totals total = mpm_scene_totals(&s);
+  const mps_totals total = mpm_scene_totals(&s);
   assert_int_equal(r.count, 3);
   mps_assert_near(total.linear[0], 0.2 * total.mass, 0.1 * 0.2 * total.mass); /* it comes along */
   mps_assert_near(r.impulse[0], total.linear[0], 1e-12 * total.mass);

@@ -93,9 +93,9 @@ static kept rotating_disc(int scheme, int32_t spline, double turns) {
   def.cell = 0.02, def.spline = spline;
   choose(&def, scheme);
   mpm_scene_solve(&s, &def);
-  const mps_mpm_totals a = mpm_scene_totals(&s);
+  const mps_totals a = mpm_scene_totals(&s);
   mps_assert_ok(context, mps_mpm_run(s.mpm, turns * 2.0 * PI / w, 1000000, NULL, NULL));
-  const mps_mpm_totals b = mpm_scene_totals(&s);
+  const mps_totals b = mpm_scene_totals(&s);
   const double away = 0.5 * (v0[0] * v0[0] + v0[1] * v0[1]); /* J/kg of the flight */
   mpm_scene_end(&s);
   return (kept){

@@ -161,12 +161,12 @@ static double slide(int dim, double mu, double degrees, double belt, double *rat
   const double span = dim == 3 ? 0.15 : 0.3;
   double at[3];
   mps_assert_ok(context, mps_mpm_run(s.mpm, 0.1, 1000000, NULL, NULL));
-  const mps_mpm_totals begin = mpm_scene_totals(&s);
+  const mps_totals begin = mpm_scene_totals(&s);
   for (int k = 0; k < 3; k++) {
     if (k > 0) mps_assert_ok(context, mps_mpm_run(s.mpm, 0.1 + k * span, 1000000, NULL, NULL));
     at[k] = mean_x(&s);
   }
-  const mps_mpm_totals end = mpm_scene_totals(&s);
+  const mps_totals end = mpm_scene_totals(&s);
   mpm_scene_end(&s);
   const double along = (end.linear[0] - begin.linear[0]) / end.mass / (2.0 * span);
   const double across = (end.linear[1] - begin.linear[1]) / end.mass / (2.0 * span);
@@ -214,7 +214,7 @@ static void wall_lets_go(void **state) {
   mpm_scene_solve(&s, &def);
   mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FRICTIONAL, 0.5);
   mps_assert_ok(context, mps_mpm_step(s.mpm, 100));
-  const mps_mpm_totals t = mpm_scene_totals(&s);
+  const mps_totals t = mpm_scene_totals(&s);
   mps_assert_near(t.linear[0], 0.5 * t.mass, 1e-12 * t.mass);
   mps_assert_near(t.linear[1], t.mass, 1e-12 * t.mass);
   mpm_scene_end(&s);

@@ -1,0 +1,237 @@
+/* energy.c - see energy.h. Sums go block by block in their order: they do not depend on the number
+ * of threads. SPDX-License-Identifier: BSD-3-Clause */
+#include "body/rotation.h"
+#include "contact_particle.h"
+#include "kernels.h"
+
+#include <string.h>
+
+/* ---- particles ------------------------------------------------------------------------------- */
+
+static mpsi_cell_energy *of_cells(const mps_mpm *mpm, const mpsi_cell_block *cells) {
+  return &mpm->energy.cells[cells - mpm->grid.cells];
+}
+
+static double kinetic_of(const mps_mpm *mpm, int64_t begin, int64_t end) {
+  const mpsi_columns *p = &mpm->p;
+  double sum = 0.0;
+  for (int64_t k = begin; k < end; k++)
+    for (int c = 0; c < mpm->dim; c++) sum += 0.5 * p->m[k] * p->v[c][k] * p->v[c][k];
+  return sum;
+}
+
+void mpsi_energy_before(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end) {
+  of_cells(mpm, cells)->kinetic_before += kinetic_of(mpm, begin, end);
+}
+
+/* Column of the velocity gradient and of the stress of d(v_a)/d(x_b). */
+static int gradient_column(int dim, int a, int b) { return dim * a + b; }
+static int stress_column(int a, int b) {
+  static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+  return symmetric[a][b];
+}
+
+void mpsi_energy_moved(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end) {
+  const mpsi_columns *p = &mpm->p;
+  const int dim = mpm->dim;
+  double loads = 0.0, stresses = 0.0;
+  for (int64_t k = begin; k < end; k++) {
+    double power = 0.0;
+    for (int a = 0; a < dim; a++) {
+      loads += (p->m[k] * mpm->def.gravity[a] + (p->f[a] ? p->f[a][k] : 0.0)) * p->v[a][k];
+      for (int b = 0; b < dim; b++)
+        power += p->s[stress_column(a, b)][k] * p->L[gradient_column(dim, a, b)][k];
+    }
+    if (mpm->def.geometry == MPS_MPM_AXISYMMETRIC) power += p->s[2][k] * p->L[4][k];
+    stresses += p->V[k] * power;
+  }
+  of_cells(mpm, cells)->loads += mpm->run.dt * loads;
+  of_cells(mpm, cells)->stresses += mpm->run.dt * stresses;
+}
+
+void mpsi_energy_keep(const mps_mpm *mpm, int64_t begin, int64_t end, mpsi_before_law *out) {
+  const size_t bytes = (size_t)(end - begin) * sizeof(double);
+  for (int c = 0; c < 2 * mpm->dim; c++) memcpy(out->stress[c], mpm->p.s[c] + begin, bytes);
+  memcpy(out->volume, mpm->p.V + begin, bytes);
+}
+
+/* Recoverable energy (J/m3) of an isotropic elastic solid by its stress. */
+static double elastic_energy(const double *s, double bulk, double shear) {
+  const double trace = s[0] + s[1] + s[2], mean = trace / 3.0;
+  const double a = s[0] - mean, b = s[1] - mean, c = s[2] - mean;
+  const double square = a * a + b * b + c * c + 2.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]);
+  return trace * mean / (6.0 * bulk) + square / (4.0 * shear);
+}
+
+/* sum of V sigma_ab d_ab over the step, trapezoidal in V sigma; `trace`: that of its mean stress.
+ */
+static double stress_work(const mps_material_block *block, int64_t k, const double *s0,
+                          const double *s1, double V0, double V1, double *trace) {
+  double mean[6], work = 0.0, rate = 0.0;
+  for (int c = 0; c < 6; c++) mean[c] = 0.5 * (V0 * s0[c] + V1 * s1[c]);
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) {
+      const double *L = block->gradient[3 * a + b];
+      if (L) work += mean[stress_column(a, b)] * L[k];
+      if (L && a == b) rate += L[k];
+    }
+  *trace = block->dt * rate * (mean[0] + mean[1] + mean[2]) / 3.0;
+  return block->dt * work;
+}
+
+void mpsi_energy_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_law_use *law,
+                     const mps_material_block *block, const mpsi_before_law *before,
+                     int64_t begin) {
+  const mpsi_columns *p = &mpm->p;
+  const mpsi_kept kept = mpsi_material_kept(law->material);
+  const double shear = mpsi_material_shear(law->material), bulk = law->modulus - 4.0 / 3.0 * shear;
+  mpsi_cell_energy *sum = of_cells(mpm, cells);
+  for (int64_t k = 0; k < block->count; k++) {
+    double s0[6] = {0.0}, s1[6] = {0.0}, trace;
+    for (int c = 0; c < 2 * mpm->dim; c++) s0[c] = before->stress[c][k], s1[c] = p->s[c][begin + k];
+    const double V0 = before->volume[k], V1 = p->V[begin + k];
+    const double work = stress_work(block, k, s0, s1, V0, V1, &trace);
+    double stays = work;
+    if (kept == MPSI_KEPT_PRESSURE)
+      stays = trace;
+    else if (kept == MPSI_KEPT_ELASTIC && block->flags[k] != 0)
+      stays = 0.5 * (V0 + V1) * (elastic_energy(s1, bulk, shear) - elastic_energy(s0, bulk, shear));
+    sum->kept += stays;
+    sum->spent += work - stays;
+  }
+  sum->kinetic += kinetic_of(mpm, begin, begin + block->count);
+}
+
+/* ---- nodes ----------------------------------------------------------------------------------- */
+
+/* Work of all bodies on node k with the velocity v. */
+static void count_contact(const mps_mpm *mpm, const mpsi_node_block *nodes, int k, const double *v,
+                          mpsi_node_energy *out) {
+  for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
+    const mpsi_node_pair *pair = &mpm->contact.node_pair[t];
+    const mpsi_contact_node *at = &mpm->contact.node[(int64_t)t * mpm->grid.block_nodes + k];
+    if (at->mass == 0.0) continue;
+    out->normal += mpm->run.dt * mpsi_dot3(at->force, v);
+    if (mpm->contact.handle[pair->body]->def.friction == 0.0 || pair->mass == 0.0) continue;
+    int place[3];
+    double x[3], surface[3], f[3];
+    mpsi_unravel(k, MPSI_SIDE, place);
+    const double local[3] = {place[0], place[1], place[2]};
+    mpsi_node_position(mpm, nodes->at, local, x);
+    mpsi_body_velocity(&mpm->contact.body[pair->body]->pose, x, surface);
+    for (int c = 0; c < 3; c++) f[c] = mpm->run.dt * at->mass * at->slip[c];
+    out->friction += mpsi_dot3(f, v);
+    out->surface += mpsi_dot3(f, surface);
+  }
+}
+
+void mpsi_energy_nodes(mps_mpm *mpm, int64_t g, const mpsi_node *held, const mpsi_node *damped) {
+  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(mpm, g));
+  const mpsi_node *side = (const mpsi_node *)(mpm->grid.side + mpsi_first_node(mpm, nodes->side));
+  mpsi_node_energy sum = {0};
+  for (int k = 0; k < mpm->grid.block_nodes; k++) {
+    const double m = node[k][MPSI_MASS], *v = node[k] + MPSI_VECTOR;
+    const double *before = side[k] + MPSI_VECTOR;
+    if (!(m > 0.0)) continue;
+    for (int c = 0; c < 3; c++) {
+      sum.kinetic_before += 0.5 * m * before[c] * before[c];
+      sum.kinetic += 0.5 * m * v[c] * v[c];
+      sum.jump += 0.5 * m * (v[c] - before[c]) * (v[c] - before[c]);
+      sum.holds += m * (damped[k][MPSI_VECTOR + c] - held[k][MPSI_VECTOR + c]) * v[c];
+      sum.damping += m * (v[c] - damped[k][MPSI_VECTOR + c]) * v[c];
+    }
+    count_contact(mpm, nodes, k, v, &sum);
+  }
+  mpm->energy.nodes[g] = sum;
+}
+
+/* ---- springs of contacts ----------------------------------------------------------------------
+ */
+
+/* Half the normal force times the depth that it comes from, summed over what touches. */
+static double spring_energy(const mps_mpm *mpm) {
+  double sum = 0.0;
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
+    const mps_contact *contact = mpm->contact.handle[b];
+    for (int64_t k = 0; k < mpm->p.count; k++) {
+      mpsi_contact_particle c;
+      double x[3] = {0.0};
+      for (int a = 0; a < mpm->dim; a++) x[a] = mpm->p.x[a][k];
+      if (mpsi_body_reaches(contact->body, x, contact->def.offset) &&
+          mpsi_find_contact(mpm, contact, mpm->dim, k, &c))
+        sum += 0.5 * sqrt(mpsi_dot3(c.force, c.force)) * (c.depth + contact->def.offset);
+    }
+  }
+  return sum;
+}
+
+/* ---- a step ---------------------------------------------------------------------------------- */
+
+mps_status mpsi_energy_begin(mps_mpm *mpm, const char *function) {
+  mpsi_energy *e = &mpm->energy;
+  if (!e->counts) return MPS_OK;
+  const int64_t cells = mpm->grid.cell_count, nodes = mpm->grid.node_count;
+  if (!mpsi_room_ensure(mpm->context, &e->cells_room, cells, sizeof *e->cells) ||
+      !mpsi_room_ensure(mpm->context, &e->nodes_room, nodes, sizeof *e->nodes))
+    return mpsi_fail_memory(mpm->context, function,
+                            (size_t)cells * sizeof *e->cells + (size_t)nodes * sizeof *e->nodes);
+  e->cells = e->cells_room.item;
+  e->nodes = e->nodes_room.item;
+  memset(e->cells, 0, (size_t)cells * sizeof *e->cells);
+  memset(e->nodes, 0, (size_t)nodes * sizeof *e->nodes);
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) /* it may have moved meanwhile */
+    if (mpm->contact.handle[b]->def.mover != MPS_CONTACT_MOVER_SOLVER) e->springs_known = false;
+  if (!e->springs_known) e->springs = spring_energy(mpm);
+  e->springs_known = true;
+  return MPS_OK;
+}
+
+static mpsi_cell_energy sum_cells(const mps_mpm *mpm) {
+  mpsi_cell_energy out = {0};
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+    const mpsi_cell_energy *e = &mpm->energy.cells[b];
+    out.kinetic_before += e->kinetic_before, out.kinetic += e->kinetic;
+    out.loads += e->loads, out.stresses += e->stresses;
+    out.kept += e->kept, out.spent += e->spent;
+  }
+  return out;
+}
+
+static mpsi_node_energy sum_nodes(const mps_mpm *mpm) {
+  mpsi_node_energy out = {0};
+  for (int64_t g = 0; g < mpm->grid.node_count; g++) {
+    const mpsi_node_energy *e = &mpm->energy.nodes[g];
+    out.kinetic_before += e->kinetic_before, out.kinetic += e->kinetic;
+    out.jump += e->jump;
+    out.normal += e->normal, out.friction += e->friction, out.surface += e->surface;
+    out.holds += e->holds, out.damping += e->damping;
+  }
+  return out;
+}
+
+void mpsi_energy_end(mps_mpm *mpm) {
+  mpsi_energy *e = &mpm->energy;
+  mpsi_energy_sums *sum = &e->sum;
+  sum->boundaries += e->boundaries;
+  sum->bodies += e->bodies;
+  const double bodies = e->bodies;
+  e->bodies = 0.0;
+  if (!e->counts) return;
+  const mpsi_cell_energy p = sum_cells(mpm);
+  const mpsi_node_energy n = sum_nodes(mpm);
+  const double before = e->springs;
+  e->springs = mpm->contact.bodies > 0 ? spring_energy(mpm) : 0.0;
+  const double pushed = bodies - n.surface - n.normal; /* work on the springs */
+  sum->kinetic += p.kinetic + e->driven - p.kinetic_before;
+  sum->kept += p.kept;
+  sum->spent += p.spent;
+  sum->springs += e->springs - before;
+  sum->loads += p.loads;
+  sum->boundary_loss += e->boundaries - e->driven_work - n.holds;
+  sum->friction_loss += n.surface - n.friction;
+  sum->damping_loss -= n.damping;
+  sum->transfer += (p.kinetic_before - n.kinetic_before) + (n.kinetic - p.kinetic) +
+                   (e->driven_work - e->driven);
+  sum->stepping += n.jump - (p.kept + p.spent - p.stresses) + (pushed - (e->springs - before));
+}

@@ -1,0 +1,308 @@
+/* test_mpm_budget.c - the energy budget of WLS-MPM: it closes to round-off with every kind of
+ * boundary, load, body and law; its terms are what theory says of a falling block, a sliding box, a
+ * piston and a vibrating bar. SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_twins.h"
+#include "test_fixture.h"
+
+static mps_mpm_losses losses(mpm_scene *s) {
+  mps_mpm_losses l;
+  mps_assert_ok(s->context, mps_mpm_get_losses(s->mpm, &l));
+  return l;
+}
+
+/* The sum of the sizes of all terms, the kinetic energy by its change since `start`. */
+static double size_of(mpm_scene *s, double start) {
+  const mps_totals t = mpm_scene_totals(s);
+  const mps_mpm_losses l = losses(s);
+  return fabs(t.kinetic - start) + fabs(t.strain) + fabs(t.work_loads) + fabs(t.work_boundaries) +
+         fabs(t.work_bodies) + fabs(l.laws) + fabs(l.boundaries) + fabs(l.bodies) +
+         fabs(l.damping) + fabs(l.transfer) + fabs(l.stepping);
+}
+
+static double sum_of(const mps_totals *t) {
+  return t->kinetic + t->strain + t->dissipated - t->work_loads - t->work_boundaries -
+         t->work_bodies;
+}
+
+/* The residual, and what the totals leave: they are two sums of the same terms. */
+static void assert_closes(mpm_scene *s, double start, const char *what, double tolerance) {
+  const mps_totals t = mpm_scene_totals(s);
+  const mps_mpm_losses l = losses(s);
+  const double size = size_of(s, start);
+  print_message(
+      "%s: K %.4g U %.4g, works %.4g %.4g %.4g, laws %.3g sides %.3g bodies %.3g transfer "
+      "%.3g stepping %.3g; residual %.2g of it\n",
+      what, t.kinetic, t.strain, t.work_loads, t.work_boundaries, t.work_bodies, l.laws,
+      l.boundaries, l.bodies, l.transfer, l.stepping, l.residual / size);
+  assert_true(size > 0.0 && fabs(l.residual) < tolerance * size);
+  assert_true(fabs(sum_of(&t) - start + l.residual) < 1e-12 * (size + start));
+}
+
+/* Driven sides, moving nodes, absorbing and frictional sides, loads, body accelerations. */
+static void closes_with_boundaries(void **state) {
+  (void)state;
+  for (int32_t geometry = MPS_MPM_PLANE_STRAIN; geometry <= MPS_MPM_SPACE; geometry++)
+    for (int32_t choice = 0; choice < 3; choice++) {
+      int32_t box = -1, loads[2];
+      mps_mpm_def def = mps_mpm_defaults();
+      def.geometry = geometry;
+      def.budget = 1;
+      def.spline = choice == 1 ? 2 : 3;
+      def.volumetric = choice == 2 ? MPS_MPM_VOLUMETRIC_CELL : MPS_MPM_VOLUMETRIC_POINT;
+      mpm_scene s = held_begin_with(context, &def, &box, loads);
+      const double start = mpm_scene_totals(&s).kinetic;
+      mps_assert_ok(context, mps_mpm_step(s.mpm, 60));
+      assert_closes(&s, start, "boundaries", 1e-12);
+      mpm_scene_end(&s);
+    }
+}
+
+/* A driven and a free rough body, plastic soil; particles held by a list. */
+static void closes_with_bodies(void **state) {
+  (void)state;
+  for (int32_t geometry = MPS_MPM_PLANE_STRAIN; geometry <= MPS_MPM_SPACE; geometry++) {
+    change c = none;
+    c.budget = 1;
+    c.half_plane = true;
+    scene x = build(context, geometry, &c);
+    int64_t ids[20];
+    for (int k = 0; k < 20; k++) ids[k] = 7 * k;
+    mps_mpm_boundary_def held = mps_mpm_boundary_defaults();
+    held.ids = ids, held.id_count = 20, held.dofs = MPS_DOF_X;
+    int32_t number;
+    mps_assert_ok(context, mps_mpm_add_boundary(x.s.mpm, &held, &number));
+    const double start = mpm_scene_totals(&x.s).kinetic;
+    mps_assert_ok(context, mps_mpm_step(x.s.mpm, 150));
+    const mps_mpm_losses l = losses(&x.s);
+    assert_closes(&x.s, start, "bodies", 1e-12);
+    assert_true(l.bodies > 0.0 && l.laws > 0.0);
+    drop(&x);
+  }
+}
+
+/* The works are those that the reactions tell, added up. */
+static void works_are_those_of_the_reactions(void **state) {
+  (void)state;
+  int32_t box = -1, loads[2];
+  mps_mpm_def def = mps_mpm_defaults();
+  def.budget = 1;
+  mpm_scene s = held_begin_with(context, &def, &box, loads);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 50));
+  const int32_t numbers[] = {0, 1, 2, 3, box};
+  double work = 0.0;
+  for (int k = 0; k < 5; k++) {
+    mps_reaction r;
+    mps_assert_ok(context, mps_mpm_get_reaction(s.mpm, numbers[k], &r));
+    work += r.work;
+  }
+  const double total = mpm_scene_totals(&s).work_boundaries;
+  assert_true(fabs(work - total) < 1e-12 * fabs(total));
+  mpm_scene_end(&s);
+}
+
+/* Without the budget there are no energies but the kinetic one, and the run is the same but for
+ * round-off. */
+static void is_asked_for(void **state) {
+  (void)state;
+  mpm_scene s[2];
+  for (int k = 0; k < 2; k++) {
+    int32_t box = -1, loads[2];
+    mps_mpm_def def = mps_mpm_defaults();
+    def.budget = k;
+    s[k] = held_begin_with(context, &def, &box, loads);
+    mps_assert_ok(context, mps_mpm_step(s[k].mpm, 60));
+  }
+  const mps_totals a = mpm_scene_totals(&s[0]), b = mpm_scene_totals(&s[1]);
+  assert_true(isnan(a.strain) && isnan(a.dissipated) && isnan(a.scheme) && isnan(a.work_loads));
+  assert_true(fabs(a.kinetic - b.kinetic) < 1e-12 * a.kinetic);
+  assert_true(fabs(a.work_boundaries - b.work_boundaries) < 1e-11 * fabs(a.work_boundaries));
+  mps_mpm_losses l;
+  mps_assert_fails(context, mps_mpm_get_losses(s[0].mpm, &l), MPS_ERROR_STATE, "budget is 0");
+  for (int k = 0; k < 2; k++) mpm_scene_end(&s[k]);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.02, def.budget = 2;
+  mpm_scene other = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+  mpm_scene_box(&other, 0.0, 0.0, 0.1, 0.1);
+  mps_assert_ok(context, mps_particles_set(other.particles, "density", 0, 1000.0));
+  mps_assert_fails(context,
+                   mps_mpm_create(context, other.particles, other.material, &def, &other.mpm),
+                   MPS_ERROR_ARGUMENT, "budget is 2");
+  mpm_scene_end(&other);
+}
+
+/* A block falls freely: gravity does m g times the fall, all of which is kinetic but for half of
+ * m (g dt)^2 a step, which an explicit step with the velocity at its end gives away. */
+static void falling_block(void **state) {
+  (void)state;
+  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+  mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.1);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.02, def.gravity[1] = -10.0, def.dt = 1e-4, def.budget = 1;
+  mpm_scene_solve(&s, &def);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 500));
+  const mps_totals t = mpm_scene_totals(&s);
+  const mps_mpm_losses l = losses(&s);
+  const double v = 0.5, fall = 0.5 * 10.0 * 1e-8 * 500.0 * 501.0, m = 20.0;
+  mps_assert_near(t.work_loads, m * 10.0 * fall, 1e-10);
+  mps_assert_near(t.kinetic, 0.5 * m * v * v, 1e-10);
+  mps_assert_near(l.stepping, 500.0 * 0.5 * m * 1e-6, 1e-10);
+  mps_assert_near(l.transfer, 0.0, 1e-10);
+  mps_assert_near(t.linear[1], -m * 10.0 * 0.05, 1e-10);
+  mpm_scene_end(&s);
+}
+
+/* A box slides to rest on a rough floor: friction takes mu N s, and gravity pushes N. */
+static void sliding_box(void **state, bool body) {
+  (void)state;
+  const double mu = 0.4, g = 10.0, v0 = 0.6, m = 20.0;
+  mpm_scene s = mpm_scene_begin(context, 0.01, 0.2, 0.2, 1e8); /* stiff: it hardly shakes */
+  mpm_scene_box(&s, 0.2, 0.2, 0.4, 0.3);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.02, def.gravity[1] = -g, def.budget = 1;
+  if (!body) def.lower[1] = 0.2;
+  mps_assert_ok(context, mps_particles_set(s.particles, "velocity", 0, v0));
+  mpm_scene_solve(&s, &def);
+  mps_body *floor = NULL;
+  if (body) {
+    const double up[] = {0.0, 1.0};
+    mps_body_def plane = mps_body_defaults();
+    plane.position[1] = 0.2;
+    mps_assert_ok(context, mps_body_create_half_plane(context, &plane, up, &floor));
+    mpm_scene_contact(&s, floor, mu);
+  } else {
+    mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FRICTIONAL, mu);
+  }
+  double before = 0.0, after = 0.0;
+  mps_view x = mpm_scene_view(&s, "position");
+  for (int64_t k = 0; k < x.shape[0]; k++) before += *mps_view_f64(&x, k, 0);
+  mps_assert_ok(context, mps_mpm_run(s.mpm, 0.25, 1, NULL, NULL));
+  x = mpm_scene_view(&s, "position");
+  for (int64_t k = 0; k < x.shape[0]; k++) after += *mps_view_f64(&x, k, 0);
+  const double slid = (after - before) / (double)x.shape[0];
+  const mps_totals t = mpm_scene_totals(&s);
+  const mps_mpm_losses l = losses(&s);
+  const double friction = body ? l.bodies : l.boundaries;
+  print_message("slid %.4f m, theory %.4f; friction %.4f J, mu N s %.4f\n", slid,
+                v0 * v0 / (2.0 * mu * g), friction, mu * m * g * slid);
+  mps_assert_near(slid, v0 * v0 / (2.0 * mu * g), 0.02 * slid);
+  mps_assert_near(friction, mu * m * g * slid, 0.01 * friction);
+  assert_closes(&s, 0.5 * m * v0 * v0, body ? "box on body" : "box on side", 1e-12);
+  assert_true(t.kinetic < 1e-4 * friction);
+  mpm_scene_end(&s);
+  mps_body_destroy(&floor);
+}
+
+static void box_slides_on_a_side(void **state) { sliding_box(state, false); }
+static void box_slides_on_a_body(void **state) { sliding_box(state, true); }
+
+/* A wall pushes slowly against a bar between rollers: its work is the energy of the strain, half
+ * of M (u/L)^2 V, and the momentum is the impulse of the sides. */
+static void piston(void **state) {
+  (void)state;
+  const double young = 1e5, M = young * 0.7 / (1.3 * 0.4), t[] = {0.0, 1.0}, v[] = {0.004, 0.004};
+  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, young);
+  mpm_scene_box(&s, 0.0, 0.0, 0.4, 0.1);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.02, def.budget = 1;
+  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.6, def.upper[1] = 0.1;
+  mpm_scene_solve(&s, &def);
+  mps_signal *push = NULL;
+  mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_VELOCITY, 2, t, v, &push));
+  const double low[] = {0.36, -1.0}, high[] = {0.5, 1.0};
+  mps_mpm_boundary_def wall = mpm_scene_box_def(s.mpm, low, high, 0, push, -1.0);
+  int32_t number;
+  mps_assert_ok(context, mps_mpm_add_boundary(s.mpm, &wall, &number));
+  mps_assert_ok(context, mps_mpm_run(s.mpm, 0.5, 1, NULL, NULL));
+  const mps_totals all = mpm_scene_totals(&s);
+  const double u = 0.002, theory = 0.5 * M * (u / 0.36) * (u / 0.36) * 0.036;
+  print_message("piston: work %.5g J, strain %.5g, theory %.5g\n", all.work_boundaries, all.strain,
+                theory);
+  mps_assert_near(all.work_boundaries, theory, 0.05 * theory);
+  mps_assert_near(all.strain, all.work_boundaries, 0.03 * theory);
+  assert_closes(&s, 0.0, "piston", 1e-12);
+  double impulse = 0.0;
+  for (int k = 0; k < 5; k++) {
+    mps_reaction r;
+    mps_assert_ok(context, mps_mpm_get_reaction(s.mpm, k < 4 ? k : number, &r));
+    impulse += r.impulse[0];
+  }
+  mps_assert_near(all.linear[0], impulse, 1e-12 * M * 0.5);
+  mps_signal_destroy(&push);
+  mpm_scene_end(&s);
+}
+
+/* A free bar in its first axial mode: energy goes to and fro between motion and strain; what is
+ * lost, the transfers have taken. */
+static void vibrating_bar(void **state) {
+  (void)state;
+  const double pi = 3.14159265358979323846;
+  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e6);
+  mpm_scene_box(&s, 0.0, 0.0, 1.0, 0.04);
+  mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity", 0));
+  mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity_gradient", 0));
+  mps_view x = mpm_scene_view(&s, "position"), v = mpm_scene_view(&s, "velocity");
+  mps_view L = mpm_scene_view(&s, "velocity_gradient");
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    *mps_view_f64(&v, k, 0) = -0.01 * cos(pi * *mps_view_f64(&x, k, 0));
+    *mps_view_f64(&L, k, 0) = 0.01 * pi * sin(pi * *mps_view_f64(&x, k, 0));
+  }
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.02, def.budget = 1;
+  mpm_scene_solve(&s, &def);
+  const double start = mpm_scene_totals(&s).kinetic;
+  double most = 0.0;
+  for (int step = 0; step < 1500; step++) {
+    mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+    const mps_totals t = mpm_scene_totals(&s);
+    most = fmax(most, t.strain);
+    assert_true(fabs(sum_of(&t) - start) < 1e-12 * start);
+  }
+  const mps_mpm_losses l = losses(&s);
+  print_message("bar: start %.6g J, most strain %.6g, transfer %.3g, stepping %.3g\n", start, most,
+                l.transfer, l.stepping);
+  assert_true(most > 0.97 * start && most < 1.001 * start);
+  assert_true(l.laws == 0.0 && l.bodies == 0.0 && l.boundaries == 0.0 && l.damping == 0.0);
+  assert_true(l.transfer > 0.0 && l.transfer < 0.2 * start && fabs(l.stepping) < 0.05 * start);
+  mpm_scene_end(&s);
+}
+
+/* The sums go through a snapshot, and do not depend on the threads. */
+static void sums_go_back_and_are_the_same(void **state) {
+  (void)state;
+  change c = none;
+  c.budget = 1;
+  scene x = build(context, MPS_MPM_PLANE_STRAIN, &c);
+  mps_snapshot *snapshot = NULL;
+  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 30));
+  mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &snapshot));
+  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 30));
+  const mps_totals a = mpm_scene_totals(&x.s);
+  mps_assert_ok(context, mps_mpm_rollback(x.s.mpm, snapshot));
+  mps_assert_ok(context, mps_mpm_step(x.s.mpm, 30));
+  const mps_totals b = mpm_scene_totals(&x.s);
+  assert_memory_equal(&a, &b, sizeof a);
+  int32_t threads = 3;
+  mps_context *other = on_threads(&threads);
+  scene y = build(other, MPS_MPM_PLANE_STRAIN, &c);
+  mps_assert_ok(other, mps_mpm_step(y.s.mpm, 60));
+  const mps_totals d = mpm_scene_totals(&y.s);
+  assert_memory_equal(&a, &d, sizeof a);
+  drop(&y);
+  mps_context_destroy(&other);
+  mps_snapshot_destroy(&snapshot);
+  drop(&x);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(closes_with_boundaries),
+                                     cmocka_unit_test(closes_with_bodies),
+                                     cmocka_unit_test(works_are_those_of_the_reactions),
+                                     cmocka_unit_test(is_asked_for),
+                                     cmocka_unit_test(falling_block),
+                                     cmocka_unit_test(box_slides_on_a_side),
+                                     cmocka_unit_test(box_slides_on_a_body),
+                                     cmocka_unit_test(piston),
+                                     cmocka_unit_test(vibrating_bar),
+                                     cmocka_unit_test(sums_go_back_and_are_the_same)};
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
