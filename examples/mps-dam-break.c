@@ -8,6 +8,8 @@
 #include "common/mpm_model.h"
 #include "common/plot.h"
 
+#include <mps/experimental.h>
+
 #include <math.h>
 #include <stdio.h>
 
@@ -116,8 +118,9 @@ static mps_status fill(mps_context *context, const settings *s, simulation *sim)
   for (int64_t k = 0; status == MPS_OK && k < x.shape[0]; k++) {
     const double p = pressure_at(s, *mps_view_f64(&x, k, 0), *mps_view_f64(&x, k, 1));
     for (int c = 0; c < 3; c++) *mps_view_f64(&stress, k, c) = -p;
-    *mps_view_f64(&ratio, k, 0) =
-        s->state == MPS_MATERIAL_STATE_TAIT ? pow(1.0 + 7.0 * p / K, -1.0 / 7.0) : 1.0 / (1.0 + p / K);
+    *mps_view_f64(&ratio, k, 0) = s->state == MPS_MATERIAL_STATE_TAIT
+                                      ? pow(1.0 + 7.0 * p / K, -1.0 / 7.0)
+                                      : 1.0 / (1.0 + p / K);
   }
   return status;
 }
@@ -133,7 +136,6 @@ static mps_status build(mps_context *context, void *user) {
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
   def.spline = s->spline + 2;
-  def.transfer = s->transfer;
   def.volumetric = s->volumetric;
   def.lower[0] = def.lower[1] = 0.0;
   def.upper[0] = s->rest ? s->base : s->tank * s->base;
@@ -142,6 +144,7 @@ static mps_status build(mps_context *context, void *user) {
   if (status == MPS_OK) status = mps_material_newtonian(context, &law, &sim->m.material);
   if (status == MPS_OK)
     status = mps_mpm_create(context, sim->m.particles, sim->m.material, &def, &sim->m.mpm);
+  if (status == MPS_OK) status = mps_experimental_mpm_transfer(sim->m.mpm, s->transfer);
   if (status == MPS_OK && s->bed == NO_SLIP)
     status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
   return status;

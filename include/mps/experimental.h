@@ -10,6 +10,7 @@
 
 #include "dynamics.h"
 #include "elastic.h"
+#include "mpm.h"
 
 /* Marks what is exported under that node. */
 #define MPS_EXPERIMENTAL_API MPS_API
@@ -30,6 +31,26 @@ mps_experimental_elastic_published(mps_context *context, mps_particles *particle
  *  MPS_ERROR_STATE after a step. */
 MPS_EXPERIMENTAL_API MPS_NODISCARD mps_status
 mps_experimental_dynamics_printed_torque(mps_dynamics *dynamics);
+
+/** What weighs the particles' velocities on their way to the nodes of WLS-MPM. */
+typedef enum mps_experimental_transfer {
+  MPS_EXPERIMENTAL_TRANSFER_SHAPE = 0, /* the shape functions: momentum is kept everywhere */
+  MPS_EXPERIMENTAL_TRANSFER_WEIGHT = 1 /* the weights, Nakamura (12), (39): near bodies and edges
+                                          the momentum drifts */
+} mps_experimental_transfer;
+
+/** Before the first step: mps_experimental_transfer. MPS_ERROR_STATE after a step. */
+MPS_EXPERIMENTAL_API MPS_NODISCARD mps_status mps_experimental_mpm_transfer(mps_mpm *mpm,
+                                                                            int32_t transfer);
+
+/** Before the first step: the original material point method in place of WLS-MPM, Nakamura Table 1.
+ *  The B-splines and their own derivatives are the shape functions, also at bodies and sides, and
+ *  particles carry no velocity gradient to the nodes. Nodes beyond a side are held as those on it.
+ *  With the nodes' acceleration a and velocity v at its place a particle's velocity becomes
+ *  flip (v_p + dt a) + (1 - flip) v, flip in [0, 1]; 1: FLIP, Table 1; 0: PIC. It moves with v.
+ *  Slower: these loops are not tuned. MPS_ERROR_STATE after a step. */
+MPS_EXPERIMENTAL_API MPS_NODISCARD mps_status mps_experimental_mpm_standard(mps_mpm *mpm,
+                                                                            double flip);
 
 MPS_EXTERN_C_END
 #endif

@@ -41,22 +41,6 @@ typedef enum mps_mpm_geometry {
   MPS_MPM_SPACE = 2         /* three dimensions */
 } mps_mpm_geometry;
 
-/** What weighs the particles' velocities on their way to the nodes. */
-typedef enum mps_mpm_transfer {
-  MPS_MPM_TRANSFER_SHAPE = 0, /* the shape functions: momentum is kept everywhere */
-  MPS_MPM_TRANSFER_WEIGHT = 1 /* the weights, Nakamura (12), (39): near bodies and edges the
-                                 momentum drifts; for comparison */
-} mps_mpm_transfer;
-
-/** How particles and nodes exchange what they hold: Nakamura Table 1. */
-typedef enum mps_mpm_scheme {
-  MPS_MPM_SCHEME_WLS = 0, /* the paper's: fitted shape functions; particles carry L to the nodes */
-  MPS_MPM_SCHEME_STANDARD = 1 /* the original material point method, for comparison: the B-splines
-                                 and their own derivatives are the shape functions, also at bodies
-                                 and sides, and particles carry no L. Nodes beyond a side are held
-                                 as those on it. Slower: its loops are not tuned */
-} mps_mpm_scheme;
-
 /** Which speed bounds the step besides that of viscous laws, rho h^2/(4 dim viscosity). */
 typedef enum mps_mpm_step_from {
   MPS_MPM_STEP_FROM_SPEED = 0, /* wave velocity and velocity of each particle, c + |v| */
@@ -80,14 +64,12 @@ typedef struct mps_mpm_def {
                          In 2D the third value of each array below is not read */
   int32_t spline;     /* degree of the B-spline weights: 3 (default, Nakamura (36)) or 2 */
   int32_t volumetric; /* mps_mpm_volumetric, default POINT */
-  int32_t transfer;   /* mps_mpm_transfer, default SHAPE */
-  int32_t scheme;     /* mps_mpm_scheme, default WLS */
-  double flip;      /* with STANDARD, in [0, 1]: the particle's velocity becomes flip (v_p + dt a) +
-                       (1 - flip) v, with the nodes' acceleration a and velocity v at its place; it
-                       moves with v. 1 (default): FLIP, Table 1; 0: PIC. WLS, which always takes v,
-                       allows only the default */
-  double cell;      /* h, m, > 0; no default. Usually 2 spacings; 0.5 to 1000 are allowed */
-  double origin[3]; /* m: a node lies here; default 0 */
+  int32_t step_from;  /* mps_mpm_step_from, default SPEED */
+  int32_t budget;     /* 1: each step counts what becomes of the energy, see mps_mpm_get_totals; it
+                         then sums all forces apart from the momenta, which costs time and changes
+                         last bits. 0 (default): it does not */
+  double cell;        /* h, m, > 0; no default. Usually 2 spacings; 0.5 to 1000 are allowed */
+  double origin[3];   /* m: a node lies here; default 0 */
   double lower[3], upper[3]; /* m: sides of the domain, on nodes; default: none (infinite). In
                                 axisymmetry lower[0] is at least 0, and 0 by default. Each side is
                                 born a roller: see mps_mpm_set_boundary */
@@ -99,10 +81,6 @@ typedef struct mps_mpm_def {
                         most that limit at creation; a warning tells when it gets above it */
   double courant;    /* fraction of the limit h/(c + v), Nakamura (49), (50), that a step takes, in
                         (0, 1]; default 0.5 */
-  int32_t step_from; /* mps_mpm_step_from, default SPEED */
-  int32_t budget;    /* 1: each step counts what becomes of the energy, see mps_mpm_get_totals; it
-                        then sums all forces apart from the momenta, which costs time and changes
-                        last bits. 0 (default): it does not */
 } mps_mpm_def;
 
 MPS_API mps_status mps_mpm_def_init(mps_mpm_def *def, size_t size);

@@ -88,7 +88,7 @@ typedef struct mpsi_worker {
 #define MPSI_INSIDE 2u  /* in a body */
 #define MPSI_REACHED 4u /* in a body, and corner of a cell that holds a particle */
 #define MPSI_PLAIN                                                                                 \
-  8u /* any node with MPS_MPM_SCHEME_STANDARD: no particle takes the closed form                   \
+  8u /* any node with the standard method: no particle takes the closed form                       \
       */
 
 /* A particle by its key, as it is sorted. */

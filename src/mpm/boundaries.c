@@ -77,8 +77,8 @@ static mps_status check_side(mps_mpm *mpm, const char *function, int32_t number,
                      (long long)def->id_count, def->dofs);
   if (mpm->standard && def->kind == MPS_MPM_BOUNDARY_ABSORBING)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "kind is 3 (absorbing) with scheme 1 (standard), whose splines reach over the "
-                     "side: allowed with 0 (WLS)");
+                     "kind is 3 (absorbing), which the standard method does not allow: its splines "
+                     "reach over the side");
   if (on_axis(mpm, number) && (def->kind > MPS_MPM_BOUNDARY_FIXED || def->signal[0]))
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "kind is %d with signal[0] %s on the axis r = 0: allowed are 0 (roller) and 1 "
@@ -170,6 +170,18 @@ void mpsi_mpm_begin_sides(mps_mpm *mpm) {
   for (int32_t k = 0; k < MPSI_HOLDS; k++) mpm->boundaries.hold[k].kind = MPSI_HOLD_NONE;
   for (int32_t k = 0; k < MPSI_SIDES; k++)
     if (has_side(mpm, k)) place_side(mpm, k, MPS_MPM_BOUNDARY_ROLLER);
+}
+
+mps_status mpsi_mpm_widen_sides(mps_mpm *mpm, const char *function) {
+  mpsi_hold *hold = mpm->boundaries.hold;
+  for (int32_t k = 0; k < MPSI_SIDES; k++)
+    if (hold[k].kind == MPS_MPM_BOUNDARY_ABSORBING)
+      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "boundary %d is absorbing, which the standard method does not allow", k);
+  for (int32_t k = 0; k < MPSI_SIDES; k++)
+    if (hold[k].kind != MPSI_HOLD_NONE) place_side(mpm, k, hold[k].kind);
+  mpm->boundaries.outdated = true;
+  return MPS_OK;
 }
 
 static void take_numbers(mpsi_hold *hold, const mps_mpm_boundary_def *def) {

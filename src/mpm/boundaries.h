@@ -59,6 +59,8 @@ void mpsi_mpm_drive_particles(mps_mpm *mpm);
 /* boundaries.c: rollers on the sides of a new solver; frees all. */
 void mpsi_mpm_begin_sides(mps_mpm *mpm);
 void mpsi_mpm_drop_boundaries(mps_mpm *mpm);
+/* boundaries.c: sides hold the nodes beyond them too, where the standard method has some. */
+mps_status mpsi_mpm_widen_sides(mps_mpm *mpm, const char *function);
 /* absorb.c: dashpots of the absorbing sides, after a sort, taking over the forces at rest from the
  * list before; one of them at work: the velocity of its node across and along. */
 void mpsi_mpm_place_dashes(mps_mpm *mpm, const mpsi_held *old, int64_t old_count,

@@ -51,8 +51,8 @@ static box near_bodies(const mps_mpm *mpm, const mpsi_cell_block *cells) {
 /* Slots of sides, and what is split, of the blocks of nodes under a cut block of cells. */
 static void mark_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const box *near, bool finds) {
   static const int32_t low[3] = {0}, high[3] = {MPSI_SIDE, MPSI_SIDE, MPSI_SIDE};
-  const bool all = mpm->energy.counts || mpm->def.transfer == MPS_MPM_TRANSFER_WEIGHT ||
-                   mpm->flip > 0.0 || (finds && cells->edge);
+  const bool all =
+      mpm->energy.counts || mpm->by_weight || mpm->flip > 0.0 || (finds && cells->edge);
   bool rough = false;
   for (int32_t k = 0; cells->inside && k < cells->pairs; k++)
     rough =

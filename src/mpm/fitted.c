@@ -246,7 +246,7 @@ MPSI_INLINE under nodes_under(const mps_mpm *mpm, const mpsi_cell_block *cells, 
 
 MPSI_INLINE void scatter(mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline, int64_t p,
                          const support *at, const mpsi_shape_values *f) {
-  const bool by_weight = mpm->def.transfer == MPS_MPM_TRANSFER_WEIGHT;
+  const bool by_weight = mpm->by_weight;
   const double m = mpm->p.m[p];
   const source s = source_of(mpm, dim, p);
   const under to = nodes_under(mpm, cells, dim);

@@ -35,7 +35,7 @@ static void update_cut(mps_mpm *mpm, bool split, mpsi_node *node, mpsi_node *sid
       continue;
     }
     const double m = fmax(node[k][MPSI_MASS], LEAST_MASS * weight);
-    const double carried = mpm->def.transfer == MPS_MPM_TRANSFER_WEIGHT ? weight : m;
+    const double carried = mpm->by_weight ? weight : m;
     node[k][MPSI_MASS] = m;
     for (int c = MPSI_VECTOR; c < 4; c++) {
       const double before = node[k][c] / carried;

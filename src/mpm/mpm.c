@@ -5,6 +5,8 @@
 
 #include "core/particles_internal.h"
 
+#include <mps/experimental.h>
+
 #include <string.h>
 
 #define ON_NODE 1e-6 /* cells: a wall this close to a node is on it */
@@ -19,8 +21,7 @@ static const mps_mpm_def mpm_defaults = {.struct_size = sizeof(mps_mpm_def),
                                          .upper = {INFINITY, INFINITY, INFINITY},
                                          .measure = NAN,
                                          .dt = NAN,
-                                         .courant = 0.5,
-                                         .flip = 1.0};
+                                         .courant = 0.5};
 
 mps_status mps_mpm_def_init(mps_mpm_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_mpm_def, def, size, &mpm_defaults);
@@ -40,15 +41,9 @@ static mps_status check_choices(mps_context *context, const mps_mpm_def *d) {
   if (d->spline != 2 && d->spline != 3)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "spline is %d, allowed are 2 and 3",
                      d->spline);
-  if (d->transfer != MPS_MPM_TRANSFER_SHAPE && d->transfer != MPS_MPM_TRANSFER_WEIGHT)
-    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                     "transfer is %d, allowed are 0 (shape) and 1 (weight)", d->transfer);
   if (d->volumetric != MPS_MPM_VOLUMETRIC_POINT && d->volumetric != MPS_MPM_VOLUMETRIC_CELL)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "volumetric is %d, allowed are 0 (point) and 1 (cell)", d->volumetric);
-  if (d->scheme != MPS_MPM_SCHEME_WLS && d->scheme != MPS_MPM_SCHEME_STANDARD)
-    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                     "scheme is %d, allowed are 0 (WLS) and 1 (standard)", d->scheme);
   if (d->budget != 0 && d->budget != 1)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "budget is %d, allowed are 0 (no energies) and 1 (the energy budget)",
@@ -70,12 +65,6 @@ static mps_status check_numbers(mps_context *context, const mps_mpm_def *d) {
   if (!(d->courant > 0.0 && d->courant <= 1.0))
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "courant is %g, must be in (0, 1]",
                      d->courant);
-  if (!(d->flip >= 0.0 && d->flip <= 1.0) || (d->scheme == MPS_MPM_SCHEME_WLS && d->flip != 1.0))
-    return mpsi_fail(
-        context, create, MPS_ERROR_ARGUMENT,
-        "flip is %g, must be in [0, 1] with scheme 1 (standard); with 0 (WLS) it is 1, "
-        "the default",
-        d->flip);
   for (int c = 0; c < dim_of(d); c++)
     if (!(fabs(d->origin[c]) <= FAR) || !(fabs(d->gravity[c]) <= FAR))
       return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
@@ -322,8 +311,6 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
                               .renew = mpsi_mpm_renew};
   (void)mpsi_particles_hold(particles, __func__, &mpm->holder); /* checked above */
   mpm->def = def;
-  mpm->standard = def.scheme == MPS_MPM_SCHEME_STANDARD;
-  mpm->flip = mpm->standard ? def.flip : 0.0;
   mpm->dim = dim_of(&def);
   mpm->grid.block_nodes = mpm->dim == 3 ? MPSI_SIDE * MPSI_SIDE * MPSI_SIDE : MPSI_SIDE * MPSI_SIDE;
   mpm->grid.tile_nodes = mpm->dim == 3 ? MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE
@@ -396,3 +383,38 @@ mps_status mps_mpm_get_def_sized(mps_mpm *mpm, mps_mpm_def *out, size_t size) {
 mps_particles *mps_mpm_particles(const mps_mpm *mpm) { return mpm ? mpm->particles : NULL; }
 
 mps_context *mps_mpm_context(const mps_mpm *mpm) { return mpm ? mpm->context : NULL; }
+
+/* ---- for comparison -------------------------------------------------------------------------- */
+
+static mps_status check_before_steps(mps_mpm *mpm, const char *function) {
+  const mps_status status = mpsi_mpm_between_steps(mpm, function);
+  if (status != MPS_OK || mpm->run.steps == 0) return status;
+  return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+                   "the solver has taken %lld steps: the variant is chosen before the first",
+                   (long long)mpm->run.steps);
+}
+
+mps_status mps_experimental_mpm_transfer(mps_mpm *mpm, int32_t transfer) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  const mps_status status = check_before_steps(mpm, __func__);
+  if (status != MPS_OK) return status;
+  if (transfer != MPS_EXPERIMENTAL_TRANSFER_SHAPE && transfer != MPS_EXPERIMENTAL_TRANSFER_WEIGHT)
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                     "transfer is %d, allowed are 0 (shape) and 1 (weight)", transfer);
+  mpm->by_weight = transfer == MPS_EXPERIMENTAL_TRANSFER_WEIGHT;
+  return MPS_OK;
+}
+
+mps_status mps_experimental_mpm_standard(mps_mpm *mpm, double flip) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  const mps_status status = check_before_steps(mpm, __func__);
+  if (status != MPS_OK) return status;
+  if (!(flip >= 0.0 && flip <= 1.0))
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "flip is %g, must be in [0, 1]",
+                     flip);
+  mpm->standard = true;
+  mpm->flip = flip;
+  const mps_status widened = mpsi_mpm_widen_sides(mpm, __func__);
+  if (widened != MPS_OK) mpm->standard = false, mpm->flip = 0.0;
+  return widened;
+}

@@ -27,7 +27,9 @@ struct mps_mpm {
   mpsi_holder holder; /* of the particles */
   mps_mpm_def def;
   int32_t dim;
-  bool standard; /* MPS_MPM_SCHEME_STANDARD; then `flip` is that of the definition, else 0 */
+  /* For comparison (mps/experimental.h): */
+  bool by_weight; /* velocities go to the nodes by the weights */
+  bool standard;  /* the original material point method, with `flip`; else that is 0 */
   double flip;
   const struct mpsi_kernels *kernels;
   mpsi_columns p;

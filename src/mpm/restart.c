@@ -130,7 +130,7 @@ static void list_setting(mpsi_state *s, const mps_mpm *mpm) {
   int64_t loads = 0;
   for (int32_t k = 0; k < mpm->loads.count; k++) loads += mpm->loads.traction[k].count > 0;
   mpsi_state_agree_integer(s, "geometry", mpm->def.geometry);
-  mpsi_state_agree_integer(s, "scheme", mpm->def.scheme);
+  mpsi_state_agree_integer(s, "scheme", mpm->standard);
   mpsi_state_agree_integer(s, "spline", mpm->def.spline);
   mpsi_state_agree_number(s, "cell", mpm->def.cell);
   for (int c = 0; c < mpm->dim; c++) {

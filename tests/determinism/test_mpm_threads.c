@@ -5,16 +5,17 @@
 #include "mpm_held.h"
 #include "pthread_executor.h"
 
+#include <mps/experimental.h>
+
 static const char *const names[] = {"id",     "position", "velocity", "velocity_gradient",
                                     "stress", "volume",   NULL};
 
 enum { BY_CELL = 1, STANDARD = 2 };
 
-static void choose(mps_mpm_def *def, int options) {
+static void solve(mpm_scene *s, mps_mpm_def *def, int options) {
   if (options & BY_CELL) def->volumetric = MPS_MPM_VOLUMETRIC_CELL;
-  if (!(options & STANDARD)) return;
-  def->scheme = MPS_MPM_SCHEME_STANDARD;
-  def->flip = 0.9;
+  mpm_scene_solve(s, def);
+  if (options & STANDARD) mps_assert_ok(s->context, mps_experimental_mpm_standard(s->mpm, 0.9));
 }
 
 /* A block that falls on a rough floor while a free rough disc hits its side: many blocks of cells,
@@ -33,11 +34,10 @@ static mpm_scene fall(mps_context *context, int32_t geometry, int options, bool 
   mpm_scene_affine(&s, v0, L);
   mps_mpm_def def = mps_mpm_defaults();
   def.geometry = geometry;
-  choose(&def, options);
   def.cell = 0.02;
   def.lower[0] = 0.0, def.upper[0] = 1.0;
   def.gravity[1] = -9.81;
-  mpm_scene_solve(&s, &def);
+  solve(&s, &def, options);
   mps_body *floor = NULL;
   mps_body_def body = mps_body_defaults();
   const double up[] = {0.1, 1.0};
@@ -67,11 +67,10 @@ static mpm_scene fall_in_space(mps_context *context, int options) {
   mpm_scene_affine(&s, v0, L);
   mps_mpm_def def = mps_mpm_defaults();
   def.geometry = MPS_MPM_SPACE;
-  choose(&def, options);
   def.cell = 0.02;
   for (int c = 0; c < 3; c++) def.lower[c] = 0.0;
   def.gravity[1] = -9.81;
-  mpm_scene_solve(&s, &def);
+  solve(&s, &def, options);
   mps_body *ball = NULL;
   mps_body_def body = mps_body_defaults();
   body.position[0] = 0.3, body.position[2] = 0.08;

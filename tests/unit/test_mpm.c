@@ -4,6 +4,8 @@
 #include "test_allocator.h"
 #include "test_fixture.h"
 
+#include <mps/experimental.h>
+
 static mps_mpm_def small_def(void) {
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 0.02;
@@ -40,7 +42,6 @@ static void refuses_bad_definitions(void **state) {
   CASE(spline, 4, "spline is 4");
   CASE(geometry, 3, "geometry is 3");
   CASE(geometry, MPS_MPM_SPACE, "geometry is 2, and the set has 2 dimensions");
-  CASE(transfer, -1, "transfer is -1");
   CASE(step_from, 9, "step_from is 9");
   CASE(measure, 0.0, "measure is 0, must be a thickness");
   CASE(cell, 1e9, "cell is 1e+09 m with particles 0.01 m apart");
@@ -48,9 +49,7 @@ static void refuses_bad_definitions(void **state) {
   CASE(dt, 0.0, "dt is 0 s");
   CASE(courant, 1.5, "courant is 1.5");
   CASE(volumetric, 2, "volumetric is 2");
-  CASE(scheme, 2, "scheme is 2");
-  CASE(flip, 0.5, "flip is 0.5");
-  CASE(flip, NAN, "flip is nan");
+  CASE(budget, 2, "budget is 2");
   CASE(dt, -1.0, "dt is -1 s");
   CASE(gravity[1], INFINITY, "gravity[1] inf");
   CASE(lower[0], 0.013, "must lie on a node");
@@ -388,12 +387,36 @@ static void steady_steps_allocate_nothing(void **state) {
   assert_int_equal(allocator.live, 0);
 }
 
+/* Variants for comparison are chosen before the first step. */
+static void variants_are_chosen_first(void **state) {
+  (void)state;
+  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+  mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.02, def.lower[0] = 0.0;
+  mpm_scene_solve(&s, &def);
+  mps_assert_fails(context, mps_experimental_mpm_transfer(s.mpm, -1), MPS_ERROR_ARGUMENT,
+                   "transfer is -1");
+  mps_assert_fails(context, mps_experimental_mpm_standard(s.mpm, 1.5), MPS_ERROR_ARGUMENT,
+                   "flip is 1.5");
+  mpm_scene_side(&s, MPS_MPM_SIDE_X_LOWER, MPS_MPM_BOUNDARY_ABSORBING, 0.0);
+  mps_assert_fails(context, mps_experimental_mpm_standard(s.mpm, 1.0), MPS_ERROR_ARGUMENT,
+                   "boundary 0 is absorbing");
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+  mps_assert_fails(context, mps_experimental_mpm_standard(s.mpm, 1.0), MPS_ERROR_STATE,
+                   "has taken 1 steps");
+  mps_assert_fails(context, mps_experimental_mpm_transfer(s.mpm, 1), MPS_ERROR_STATE,
+                   "before the first");
+  mpm_scene_end(&s);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(refuses_bad_definitions), cmocka_unit_test(refuses_bad_sets),
-      cmocka_unit_test(owns_its_bodies),         cmocka_unit_test(sets_materials),
-      cmocka_unit_test(runs_to_the_end),         cmocka_unit_test(tells_what_left),
-      cmocka_unit_test(keeps_on_the_wall),       cmocka_unit_test(viscosity_limits_the_step),
-      cmocka_unit_test(survives_lack_of_memory), cmocka_unit_test(steady_steps_allocate_nothing)};
+      cmocka_unit_test(refuses_bad_definitions),  cmocka_unit_test(refuses_bad_sets),
+      cmocka_unit_test(owns_its_bodies),          cmocka_unit_test(sets_materials),
+      cmocka_unit_test(runs_to_the_end),          cmocka_unit_test(tells_what_left),
+      cmocka_unit_test(keeps_on_the_wall),        cmocka_unit_test(viscosity_limits_the_step),
+      cmocka_unit_test(survives_lack_of_memory),  cmocka_unit_test(steady_steps_allocate_nothing),
+      cmocka_unit_test(variants_are_chosen_first)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -4,6 +4,8 @@
 #include "test_allocator.h"
 #include "test_fixture.h"
 
+#include <mps/experimental.h>
+
 static mpm_scene small_scene(mps_context *c, const mps_mpm_def *changed) {
   mpm_scene s = mpm_scene_begin(c, 0.01, 0.0, 0.0, 1e5);
   mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
@@ -56,12 +58,11 @@ static void refuses_bad_sides(void **state) {
   mps_mpm_def solver = mps_mpm_defaults();
   solver.cell = 0.02;
   solver.lower[1] = 0.0;
-  solver.scheme = MPS_MPM_SCHEME_STANDARD;
   mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &solver, &s.mpm));
-  REFUSES("allowed with 0 (WLS)",
+  mps_assert_ok(context, mps_experimental_mpm_standard(s.mpm, 1.0));
+  REFUSES("the standard method does not allow",
           mps_mpm_set_side(s.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_ABSORBING, 0.0));
   mps_mpm_destroy(&s.mpm);
-  solver.scheme = MPS_MPM_SCHEME_WLS;
   solver.geometry = MPS_MPM_AXISYMMETRIC;
   mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &solver, &s.mpm));
   REFUSES("on the axis r = 0", mps_mpm_set_side(s.mpm, 0, MPS_MPM_BOUNDARY_ABSORBING, 0.0));

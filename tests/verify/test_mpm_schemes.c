@@ -5,6 +5,8 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
+#include <mps/experimental.h>
+
 #include "mpm/kernels.h"
 
 #define PI 3.14159265358979323846
@@ -12,10 +14,10 @@
 enum { WLS, FLIP, BLEND, PIC, SCHEMES };
 static const char *const name[SCHEMES] = {"WLS", "FLIP", "FLIP 0.95", "PIC"};
 
-static void choose(mps_mpm_def *def, int scheme) {
+static void solve(mpm_scene *s, const mps_mpm_def *def, int scheme) {
   static const double flip[SCHEMES] = {1.0, 1.0, 0.95, 0.0};
-  def->scheme = scheme == WLS ? MPS_MPM_SCHEME_WLS : MPS_MPM_SCHEME_STANDARD;
-  def->flip = flip[scheme];
+  mpm_scene_solve(s, def);
+  if (scheme != WLS) mps_assert_ok(s->context, mps_experimental_mpm_standard(s->mpm, flip[scheme]));
 }
 
 /* ---- shape functions and transfer ------------------------------------------------------------ */
@@ -28,8 +30,7 @@ static mpm_scene linear_velocity(int scheme, int32_t spline) {
   mpm_scene_affine(&s, v0, L);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 0.02, def.spline = spline, def.dt = 1e-12;
-  choose(&def, scheme);
-  mpm_scene_solve(&s, &def);
+  solve(&s, &def, scheme);
   mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
   return s;
 }
@@ -91,8 +92,7 @@ static kept rotating_disc(int scheme, int32_t spline, double turns) {
   mpm_scene_affine(&s, v0, L);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 0.02, def.spline = spline;
-  choose(&def, scheme);
-  mpm_scene_solve(&s, &def);
+  solve(&s, &def, scheme);
   const mps_totals a = mpm_scene_totals(&s);
   mps_assert_ok(context, mps_mpm_run(s.mpm, turns * 2.0 * PI / w, 1000000, NULL, NULL));
   const mps_totals b = mpm_scene_totals(&s);
@@ -146,8 +146,7 @@ static void vibrating_bar(int scheme, int periods, double *period, double *energ
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 0.04;
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.08;
-  choose(&def, scheme);
-  mpm_scene_solve(&s, &def);
+  solve(&s, &def, scheme);
   const double start = bar_energy(&s, modulus);
   double first = 0.0, last = 0.0, before = mpm_scene_totals(&s).linear[1], t_before = 0.0;
   for (int found = 0; found < 2 * periods + 1;) {
@@ -198,8 +197,7 @@ static double column(int scheme, int32_t spline) {
   def.cell = 0.04, def.spline = spline;
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.2;
   def.gravity[1] = -g;
-  choose(&def, scheme);
-  mpm_scene_solve(&s, &def);
+  solve(&s, &def, scheme);
   mps_assert_ok(context, mps_mpm_run(s.mpm, 0.2, 1000000, NULL, NULL));
   x = mpm_scene_view(&s, "position"), stress = mpm_scene_view(&s, "stress");
   double worst = 0.0;
