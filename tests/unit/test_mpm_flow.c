@@ -31,7 +31,7 @@ static void erosion_of_half_a_column_takes_its_mass_and_momentum(void **state) {
   int64_t ids[MOST];
   mps_assert_ok(context, mps_mpm_step(x.s.mpm, 100));
   const int64_t count = above(x.s.particles, 0.18, ids);
-  const mps_mpm_totals before = mpm_scene_totals(&x.s);
+  const mps_totals before = mpm_scene_totals(&x.s);
   double mass = 0.0, momentum[2] = {0.0, 0.0}, former[2 * MOST];
   mps_view v, w;
   const double *m = column(x.s.particles, "mass", 0, &v);
@@ -47,7 +47,7 @@ static void erosion_of_half_a_column_takes_its_mass_and_momentum(void **state) {
     former[2 * id] = stress[at], former[2 * id + 1] = m[at];
   }
   mps_assert_ok(context, mps_particles_remove(x.s.particles, count, ids));
-  const mps_mpm_totals after = mpm_scene_totals(&x.s);
+  const mps_totals after = mpm_scene_totals(&x.s);
   assert_in_range(count, 300, 500);
   mps_assert_near(after.mass, before.mass - mass, 1e-13 * before.mass);
   for (int c = 0; c < 2; c++)
