@@ -18,20 +18,21 @@
  * A libmps built without CHOLMOD has these functions too; mps_elastic_create then returns
  * MPS_ERROR_UNSUPPORTED.
  *
- * The set may be sorted, but not added to, while a solver uses it. Thread rule: one thread at a
- * time per context; the work is shared among the context's threads. During a factorisation or
- * triangular solution OpenBLAS, whose number of threads is one for the process, is set to at most
- * the context's and set back after it (calls of several contexts at once share the smallest); on a
- * context of one thread CHOLMOD's OpenMP loops have one thread too, otherwise at most four. Other
- * BLAS libraries keep the number that the process gave them. The cancel hook is asked before the
- * ordering, the analysis and the factorisation, each of which runs to its end once begun, every 64
- * iterations of CG and before each step. METIS (ordering BEST and METIS) prints a line of its own
- * on stderr when the process is out of memory; AMD does not. From hooks, signals and callbacks the
- * solver may be asked, but not changed: MPS_ERROR_STATE. SPDX-License-Identifier: BSD-3-Clause */
+ * The set may be sorted while a solver uses it, and particles may be removed (mps_particles_remove:
+ * excavation): what is left must be a body still, boundaries and loads lose what has gone, facets
+ * are numbered anew, a motion ends. None can be added: the lattice is found once.
+ *
+ * Thread rule: one thread at a time per context; the work is shared among the context's threads, of
+ * BLAS and CHOLMOD too (docs/elastic.md). The cancel hook is asked before the ordering, the
+ * analysis and the factorisation, each of which runs to its end once begun, every 64 iterations of
+ * CG and before each step. From hooks, signals and callbacks the solver may be asked, but not
+ * changed: MPS_ERROR_STATE. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_ELASTIC_H
 #define LIBMPS_ELASTIC_H
 
 #include "io.h"
+#include "kernel.h"
+#include "material.h"
 #include "signal.h"
 #include "solver.h"
 
@@ -69,8 +70,12 @@ typedef struct mps_elastic_def {
   double tolerance;    /* CG: |residual| / |load| to reach, in [1e-14, 1e-2]; default 1e-10 */
   int64_t iterations;  /* CG: most iterations; 0 (default): ten times the unknowns */
   int32_t refinements; /* steps of iterative refinement after a direct solution, 0..10; default 1 */
-  int32_t blas_threads; /* most threads of BLAS, up to 1024; 0 (default): the context's. LLT gives
-                           the same bits for the same number only; all else does for every number */
+  int32_t blas_threads;   /* most threads of BLAS, up to 1024; 0 (default): the context's. LLT gives
+                             the same bits for the same number only; all else does for every number */
+  mps_material *material; /* linear elastic, of all particles; NULL (default): what the fields say.
+                             Kept alive, as the kernel */
+  mps_kernel *kernel;     /* weight of the pairs, its radius in (1, 4] spacings, in place of
+                             radius_ratio;     NULL (default): re/r - 1 */
 } mps_elastic_def;
 
 MPS_API mps_status mps_elastic_def_init(mps_elastic_def *def, size_t size);
@@ -87,25 +92,31 @@ static inline mps_elastic_def mps_elastic_defaults(void) {
 MPS_API MPS_NODISCARD mps_status mps_elastic_create(mps_context *context, mps_particles *particles,
                                                     const mps_elastic_def *def, mps_elastic **out);
 /** Destroys and nulls; accepts NULL. From within a callback of the solver: nothing happens. */
-MPS_API void mps_elastic_destroy(mps_elastic **elastic);
+MPS_API void mps_elastic_destroy(mps_elastic **e);
 /** What the solver was made from, completed. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_get_def_sized(const mps_elastic *elastic,
+MPS_API MPS_NODISCARD mps_status mps_elastic_get_def_sized(const mps_elastic *e,
                                                            mps_elastic_def *out, size_t size);
-static inline mps_status mps_elastic_get_def(const mps_elastic *elastic, mps_elastic_def *out) {
-  return mps_elastic_get_def_sized(elastic, out, sizeof *out);
+static inline mps_status mps_elastic_get_def(const mps_elastic *e, mps_elastic_def *out) {
+  return mps_elastic_get_def_sized(e, out, sizeof *out);
 }
 /** The set and the context; NULL for NULL. Lent: they live at least as long as the solver. */
-MPS_API mps_particles *mps_elastic_particles(const mps_elastic *elastic);
-MPS_API mps_context *mps_elastic_context(const mps_elastic *elastic);
+MPS_API mps_particles *mps_elastic_particles(const mps_elastic *e);
+MPS_API mps_context *mps_elastic_context(const mps_elastic *e);
 
 /** Reads `young` and `poisson` again after the caller has changed them. The symbolic factorisation
  *  is kept where joints of different materials are still on the same faces. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_update_material(mps_elastic *elastic);
+MPS_API MPS_NODISCARD mps_status mps_elastic_update_material(mps_elastic *e);
+
+/** Says what the particles `ids` (NULL with count 0: all) are made of: writes `young` and
+ * `poisson`, then as mps_elastic_update_material. MPS_ERROR_UNSUPPORTED: not linear elastic. */
+MPS_API MPS_NODISCARD mps_status mps_elastic_set_material(mps_elastic *e,
+                                                          const mps_material *material,
+                                                          int64_t count, const int64_t *ids);
 
 /** The surface passes through these particles: the half of their cells on `side` (-1 or +1) of
  *  `axis` does not belong to the body. Refused where a particle has a neighbour on that side. Ends
  *  a motion under way. Loads on facets set before keep the areas that they had. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_cut(mps_elastic *elastic, int32_t axis, int32_t side,
+MPS_API MPS_NODISCARD mps_status mps_elastic_cut(mps_elastic *e, int32_t axis, int32_t side,
                                                  int64_t count, const int64_t *ids);
 
 /* ---- boundaries ------------------------------------------------------------------------------ */
@@ -143,33 +154,30 @@ static inline mps_elastic_boundary_def mps_elastic_boundary_defaults(void) {
 /** Adds a boundary; `number` (may be NULL) receives the lowest free number, from 0. Where two fix
  *  the same direction of a particle, the one with the higher number has it. MPS_ERROR_STATE where a
  *  direction is fixed already by two or three others of that particle. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_add_boundary(mps_elastic *elastic,
+MPS_API MPS_NODISCARD mps_status mps_elastic_add_boundary(mps_elastic *e,
                                                           const mps_elastic_boundary_def *def,
                                                           int32_t *number);
-/** Another definition; impulse and work go on. The factor is kept where particles and directions
- *  are the same. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_set_boundary(mps_elastic *elastic, int32_t number,
+/** Another definition; impulse and work go on. The same directions keep the factor. */
+MPS_API MPS_NODISCARD mps_status mps_elastic_set_boundary(mps_elastic *e, int32_t number,
                                                           const mps_elastic_boundary_def *def);
-MPS_API MPS_NODISCARD mps_status mps_elastic_remove_boundary(mps_elastic *elastic, int32_t number);
+MPS_API MPS_NODISCARD mps_status mps_elastic_remove_boundary(mps_elastic *e, int32_t number);
 /** Force and moment of the boundary on its particles, of the last solution or at the end of the
- * last step; impulse and work since the motion began. Particle by particle: the field `reaction`.
- */
-MPS_API MPS_NODISCARD mps_status mps_elastic_get_reaction_sized(mps_elastic *elastic,
-                                                                int32_t number, mps_reaction *out,
-                                                                size_t size);
-static inline mps_status mps_elastic_get_reaction(mps_elastic *elastic, int32_t number,
+ * last step; impulse and work since the motion began. By particles: the field `reaction`. */
+MPS_API MPS_NODISCARD mps_status mps_elastic_get_reaction_sized(mps_elastic *e, int32_t number,
+                                                                mps_reaction *out, size_t size);
+static inline mps_status mps_elastic_get_reaction(mps_elastic *e, int32_t number,
                                                   mps_reaction *out) {
-  return mps_elastic_get_reaction_sized(elastic, number, out, sizeof *out);
+  return mps_elastic_get_reaction_sized(e, number, out, sizeof *out);
 }
 
 /* ---- facets ---------------------------------------------------------------------------------- */
-/** The body's surface is made of facets, faces of cells that no neighbour shares, numbered from 0
- *  for the solver's life. */
-MPS_API int64_t mps_elastic_facet_count(const mps_elastic *elastic);
+/** The body's surface is made of facets, faces of cells that no neighbour shares, numbered from 0,
+ *  anew when particles are removed. */
+MPS_API int64_t mps_elastic_facet_count(const mps_elastic *e);
 /** Facets with outward normal `side` * `axis` (side 0: every facet) whose centre lies in the box
  *  [lo, hi] (dim values, infinities allowed; NULL: everywhere), ascending. Writes at most
  *  `capacity` of them to `facets` (may be NULL when capacity is 0); `count` receives how many. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_select_facets(const mps_elastic *elastic, int32_t axis,
+MPS_API MPS_NODISCARD mps_status mps_elastic_select_facets(const mps_elastic *e, int32_t axis,
                                                            int32_t side, const double *lo,
                                                            const double *hi, int64_t capacity,
                                                            int64_t *facets, int64_t *count);
@@ -185,17 +193,15 @@ typedef struct mps_elastic_facet_arrays {
 } mps_elastic_facet_arrays;
 /** Of `count` facets, or of all (facets NULL, count mps_elastic_facet_count). */
 MPS_API MPS_NODISCARD mps_status
-mps_elastic_get_facets_sized(mps_elastic *elastic, int64_t count, const int64_t *facets,
+mps_elastic_get_facets_sized(mps_elastic *e, int64_t count, const int64_t *facets,
                              const mps_elastic_facet_arrays *arrays, size_t size);
-static inline mps_status mps_elastic_get_facets(mps_elastic *elastic, int64_t count,
+static inline mps_status mps_elastic_get_facets(mps_elastic *e, int64_t count,
                                                 const int64_t *facets,
                                                 const mps_elastic_facet_arrays *arrays) {
-  return mps_elastic_get_facets_sized(elastic, count, facets, arrays, sizeof *arrays);
+  return mps_elastic_get_facets_sized(e, count, facets, arrays, sizeof *arrays);
 }
 
-/* ---- loads ------------------------------------------------------------------------------------
- * Forces that another code computes for particles may go into the field `external_force` instead.
- */
+/* ---- loads; forces that another code computes may go to the field `external_force` instead --- */
 
 typedef enum mps_elastic_load_kind {
   MPS_ELASTIC_LOAD_BODY = 0,     /* `force` per volume (N/m3) on the whole body */
@@ -236,18 +242,17 @@ static inline mps_elastic_load_def mps_elastic_load_defaults(void) {
 }
 
 /** Adds a load to the others; `number` (may be NULL) receives the lowest free number, from 0. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_add_load(mps_elastic *elastic,
+MPS_API MPS_NODISCARD mps_status mps_elastic_add_load(mps_elastic *e,
                                                       const mps_elastic_load_def *def,
                                                       int32_t *number);
 /** Another definition. As often as every step; allocates nothing when the list is not longer. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_set_load(mps_elastic *elastic, int32_t number,
+MPS_API MPS_NODISCARD mps_status mps_elastic_set_load(mps_elastic *e, int32_t number,
                                                       const mps_elastic_load_def *def);
-MPS_API MPS_NODISCARD mps_status mps_elastic_remove_load(mps_elastic *elastic, int32_t number);
+MPS_API MPS_NODISCARD mps_status mps_elastic_remove_load(mps_elastic *e, int32_t number);
 /** Resultant of the present loads and of `external_force`: force (3 values, N) and moment (3, N m,
  *  about `about`, 3 values, NULL: the origin). Either may be NULL. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_load_resultant(mps_elastic *elastic,
-                                                            const double *about, double *force,
-                                                            double *moment);
+MPS_API MPS_NODISCARD mps_status mps_elastic_load_resultant(mps_elastic *e, const double *about,
+                                                            double *force, double *moment);
 
 /* ---- statics --------------------------------------------------------------------------------- */
 /** What the solution takes, known before it is made. */
@@ -260,21 +265,21 @@ typedef struct mps_elastic_estimate {
 
 /** Orders and analyses the matrix (kept for the solution). MPS_ERROR_STATE with the rigid motions
  *  that are left free where the boundaries do not hold the body. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_analyse_sized(mps_elastic *elastic,
+MPS_API MPS_NODISCARD mps_status mps_elastic_analyse_sized(mps_elastic *e,
                                                            mps_elastic_estimate *out, size_t size);
-static inline mps_status mps_elastic_analyse(mps_elastic *elastic, mps_elastic_estimate *out) {
-  return mps_elastic_analyse_sized(elastic, out, sizeof *out);
+static inline mps_status mps_elastic_analyse(mps_elastic *e, mps_elastic_estimate *out) {
+  return mps_elastic_analyse_sized(e, out, sizeof *out);
 }
 
 /** Solves for the loads and boundaries as they are at the present time; writes `displacement` and
  *  `reaction` (N, force of the boundaries on the particle). The factor is kept: it is made again
  *  only when boundaries, cuts or material have changed. Ends a motion under way. On an error
  * nothing has changed. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_solve(mps_elastic *elastic);
+MPS_API MPS_NODISCARD mps_status mps_elastic_solve(mps_elastic *e);
 /** Solves for `count` load cases at once with the present boundaries. loads[(k * n + i) * 3 + c] is
  *  the force (N) of case k on particle i of the set's present order, displacements likewise (m). No
  *  field is written. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_solve_cases(mps_elastic *elastic, int64_t count,
+MPS_API MPS_NODISCARD mps_status mps_elastic_solve_cases(mps_elastic *e, int64_t count,
                                                          const double *loads,
                                                          double *displacements);
 
@@ -292,27 +297,25 @@ typedef struct mps_elastic_report {
   int32_t solver, ordering;         /* mps_elastic_solver and mps_elastic_ordering used */
 } mps_elastic_report;
 
-MPS_API MPS_NODISCARD mps_status mps_elastic_get_report_sized(const mps_elastic *elastic,
+MPS_API MPS_NODISCARD mps_status mps_elastic_get_report_sized(const mps_elastic *e,
                                                               mps_elastic_report *out, size_t size);
-static inline mps_status mps_elastic_get_report(const mps_elastic *elastic,
-                                                mps_elastic_report *out) {
-  return mps_elastic_get_report_sized(elastic, out, sizeof *out);
+static inline mps_status mps_elastic_get_report(const mps_elastic *e, mps_elastic_report *out) {
+  return mps_elastic_get_report_sized(e, out, sizeof *out);
 }
 
-/* ---- results --------------------------------------------------------------------------------- */
 /** Writes strain and stress of the present displacement to the fields `strain` and `stress`
  *  (components xx, yy, zz, xy and in 3D zx, yz; shear strain is tensorial), the principal stresses,
  *  largest first, to `principal`, and the von Mises stress to `von_mises`. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_stress(mps_elastic *elastic);
+MPS_API MPS_NODISCARD mps_status mps_elastic_stress(mps_elastic *e);
 /** Force (3 values, N) and moment (3, N m, about `about`, 3 values, NULL: origin) that the part of
  *  the body with x[axis] > position exerts on the rest, from the static balance of the rest's
  *  particles: normal force N, shear Q and bending moment M of the section. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_section(mps_elastic *elastic, int32_t axis,
-                                                     double position, const double *about,
-                                                     double *force, double *moment);
-/** Strain energy (J) of the present displacement; `stabilising` (may be NULL) receives the part of
- *  it in the stabilising pairs. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_energy(mps_elastic *elastic, double *strain,
+MPS_API MPS_NODISCARD mps_status mps_elastic_section(mps_elastic *e, int32_t axis, double position,
+                                                     const double *about, double *force,
+                                                     double *moment);
+/** Strain energy (J) now; `stabilising` (may be NULL) receives its part in the stabilising pairs.
+ */
+MPS_API MPS_NODISCARD mps_status mps_elastic_energy(mps_elastic *e, double *strain,
                                                     double *stabilising);
 /** Sums over the body. Since the motion began, or of the last static solution, which counts as
  *  loaded in proportion from rest, so that the work of the loads is half of load times
@@ -321,14 +324,13 @@ MPS_API MPS_NODISCARD mps_status mps_elastic_energy(mps_elastic *elastic, double
  * (1e-10) with Newmark's average acceleration. `dissipated` is that of Rayleigh damping and
  * `scheme`, which for other members of the family is what the scheme takes, measured as the rest of
  * the budget. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_get_totals_sized(mps_elastic *elastic, mps_totals *out,
+MPS_API MPS_NODISCARD mps_status mps_elastic_get_totals_sized(mps_elastic *e, mps_totals *out,
                                                               size_t size);
-static inline mps_status mps_elastic_get_totals(mps_elastic *elastic, mps_totals *out) {
-  return mps_elastic_get_totals_sized(elastic, out, sizeof *out);
+static inline mps_status mps_elastic_get_totals(mps_elastic *e, mps_totals *out) {
+  return mps_elastic_get_totals_sized(e, out, sizeof *out);
 }
 
-/* ---- dynamics: the same matrices, lumped mass density * cell volume, C = a0 M + a1 K -----------
- */
+/* ---- dynamics: the same matrices, lumped mass density * cell volume, C = a0 M + a1 K --------- */
 
 typedef struct mps_elastic_motion_def {
   uint32_t struct_size;
@@ -353,48 +355,46 @@ static inline mps_elastic_motion_def mps_elastic_motion_defaults(void) {
   return def;
 }
 
-/** Begins a motion at time 0 at the fields `displacement` and `velocity` (zero where the set has
- *  none), with the acceleration that the loads give it. Reads `density`. Ends a former one. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_start(mps_elastic *elastic,
+/** Begins a motion at time 0 at the fields `displacement` and `velocity` (without: 0), accelerated
+ * as the loads say. Reads `density`. Ends a former one. */
+MPS_API MPS_NODISCARD mps_status mps_elastic_start(mps_elastic *e,
                                                    const mps_elastic_motion_def *def);
 /** Takes `count` (>= 0) steps, and writes `displacement`, `velocity`, `acceleration` and
  * `reaction`. Loads and boundaries may be changed between calls: they act as they are at the end of
  * a step. A step that fails or is cancelled has not happened: state, time and fields are those
  * after the last whole one. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_step(mps_elastic *elastic, int64_t count);
+MPS_API MPS_NODISCARD mps_status mps_elastic_step(mps_elastic *e, int64_t count);
 /** Called at the start of a run, then every `every` steps and at the end, with fields up to date. A
  *  status other than MPS_OK ends the run, which returns it. */
-typedef mps_status (*mps_elastic_fn)(void *user, mps_elastic *elastic);
+typedef mps_status (*mps_elastic_fn)(void *user, mps_elastic *e);
 /** Goes to exactly t_end (s, not before the present time) in equal steps of at most dt, which
  * stays. `callback` may be NULL, `every` >= 1. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_run(mps_elastic *elastic, double t_end, int64_t every,
+MPS_API MPS_NODISCARD mps_status mps_elastic_run(mps_elastic *e, double t_end, int64_t every,
                                                  mps_elastic_fn callback, void *user);
-MPS_API double mps_elastic_time(const mps_elastic *elastic);   /* s since the start; 0 without */
-MPS_API int64_t mps_elastic_steps(const mps_elastic *elastic); /* since the start */
-MPS_API double mps_elastic_dt(const mps_elastic *elastic);     /* s; 0 without a motion */
-MPS_API double mps_elastic_limit(const mps_elastic *elastic);  /* infinite: all are stable */
+MPS_API double mps_elastic_time(const mps_elastic *e);   /* s since the start; 0 without */
+MPS_API int64_t mps_elastic_steps(const mps_elastic *e); /* since the start */
+MPS_API double mps_elastic_dt(const mps_elastic *e);     /* s; 0 without a motion */
+MPS_API double mps_elastic_limit(const mps_elastic *e);  /* infinite: all are stable */
 /** From the next step on (s, 1e-30 to 1e30); the matrix is factored again. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_set_dt(mps_elastic *elastic, double dt);
+MPS_API MPS_NODISCARD mps_status mps_elastic_set_dt(mps_elastic *e, double dt);
 
 /** The motion, its set and what has been counted: bit for bit back to a snapshot (memory), or to
  * what a solver built and started in the same way has saved. As they are now stay: loads, values
  * and signals of boundaries, dt, moduli. Between steps only; on an error nothing has changed. As
  *  mps_mpm_snapshot and so on. MPS_ERROR_STATE: no motion under way, or other boundaries. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_snapshot(mps_elastic *elastic,
-                                                      mps_snapshot **snapshot);
-MPS_API MPS_NODISCARD mps_status mps_elastic_rollback(mps_elastic *elastic,
-                                                      const mps_snapshot *snapshot);
-MPS_API MPS_NODISCARD mps_status mps_elastic_save(mps_elastic *elastic, const char *path,
+MPS_API MPS_NODISCARD mps_status mps_elastic_snapshot(mps_elastic *e, mps_snapshot **snapshot);
+MPS_API MPS_NODISCARD mps_status mps_elastic_rollback(mps_elastic *e, const mps_snapshot *snapshot);
+MPS_API MPS_NODISCARD mps_status mps_elastic_save(mps_elastic *e, const char *path,
                                                   const mps_checkpoint *info);
-MPS_API MPS_NODISCARD mps_status mps_elastic_restore(mps_elastic *elastic, const char *path,
+MPS_API MPS_NODISCARD mps_status mps_elastic_restore(mps_elastic *e, const char *path,
                                                      mps_checkpoint *info);
 
 /** The lowest `count` circular eigenfrequencies (rad/s, ascending) of the supported body and, where
  *  `shapes` is not NULL, its modes: shapes[(k * n + i) * 3 + c], i in the set's present order, each
  *  of unit modal mass. By ARPACK on the inverse. Reads `density`. One calculation at a time in a
  *  process: others wait. */
-MPS_API MPS_NODISCARD mps_status mps_elastic_modes(mps_elastic *elastic, int32_t count,
-                                                   double *omega, double *shapes);
+MPS_API MPS_NODISCARD mps_status mps_elastic_modes(mps_elastic *e, int32_t count, double *omega,
+                                                   double *shapes);
 
 MPS_EXTERN_C_END
 #endif

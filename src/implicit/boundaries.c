@@ -183,8 +183,7 @@ static bool same_directions(const mps_elastic *e, const new_supports *s) {
   return true;
 }
 
-/* Supports from the boundaries as they are. On an error those of before stay. */
-static mps_status rebuild(mps_elastic *e, const char *function) {
+mps_status mpsi_elastic_make_supports(mps_elastic *e, const char *function) {
   int64_t room = 0;
   for (int32_t k = 0; k < e->boundary_count; k++)
     if (e->boundaries[k].used) room += e->boundaries[k].count;
@@ -225,7 +224,7 @@ static mps_status replace(mps_elastic *e, const char *function, int32_t number,
   mpsi_elastic_boundary before = e->boundaries[number];
   now->reaction = before.reaction;
   e->boundaries[number] = *now;
-  const mps_status status = rebuild(e, function);
+  const mps_status status = mpsi_elastic_make_supports(e, function);
   if (status != MPS_OK) e->boundaries[number] = before;
   release(e, status == MPS_OK ? &before : now);
   return status;
@@ -286,8 +285,6 @@ mps_status mps_elastic_get_reaction_sized(mps_elastic *e, int32_t number, mps_re
 void mpsi_elastic_drop_boundaries(mps_elastic *e) {
   for (int32_t k = 0; k < e->boundary_count; k++) release(e, &e->boundaries[k]);
   mpsi_free(e->context, e->boundaries);
-  mpsi_free(e->context, e->supports);
-  mpsi_free(e->context, e->support_of);
 }
 
 /* ---- driving ----------------------------------------------------------------------------------

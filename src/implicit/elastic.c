@@ -4,6 +4,8 @@
 #include "elastic_private.h"
 
 #include "core/particles_internal.h"
+#include "core/retain.h"
+#include "material/material_internal.h"
 
 #include <mps/experimental.h>
 
@@ -51,7 +53,7 @@ static mps_status check_numbers(mps_context *context, const char *function,
 }
 
 static mps_status read_def(mps_context *context, const char *function, const mps_elastic_def *user,
-                           int32_t dim, bool published, mps_elastic_def *def) {
+                           int32_t dim, double spacing, bool published, mps_elastic_def *def) {
   *def = mpsi_elastic_defaults;
   mps_status status = MPS_OK;
   if (user) status = MPSI_DEF_READ(context, function, mps_elastic_def, user, def);
@@ -69,6 +71,12 @@ static mps_status read_def(mps_context *context, const char *function, const mps
     status = check_choice(context, function, choices[k].name, choices[k].value, choices[k].low,
                           choices[k].high);
   if (status != MPS_OK) return status;
+  if (def->kernel) def->radius_ratio = mps_kernel_radius(def->kernel) / spacing;
+  if (def->kernel && !(def->radius_ratio > 1.0 && def->radius_ratio <= 4.0))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "the kernel's radius of influence is %g m, must be above the spacing %g m and "
+                     "at most 4 times that",
+                     mps_kernel_radius(def->kernel), spacing);
   if (isnan(def->radius_ratio)) def->radius_ratio = published ? 3.0 : 1.5;
   if (isnan(def->memory_limit)) def->memory_limit = INFINITY;
   if (isnan(def->measure) || dim == 3) def->measure = 1.0;
@@ -85,17 +93,14 @@ static mps_status read_def(mps_context *context, const char *function, const mps
  */
 
 mps_status mpsi_elastic_enter(mps_elastic *e, const char *function) {
-  if (e->busy)
-    return mpsi_fail(e->context, function, MPS_ERROR_STATE,
-                     "called back from within %s of the same solver, which may only be asked then",
-                     e->busy);
-  const mps_status status = mpsi_particles_ready(e->particles, function);
-  if (status == MPS_OK) e->busy = function;
+  mps_status status = mpsi_guard_check(&e->guard, e->context, function);
+  if (status == MPS_OK) status = mpsi_particles_ready(e->particles, function);
+  if (status == MPS_OK) mpsi_guard_enter(&e->guard, e->context, function);
   return status;
 }
 
 mps_status mpsi_elastic_leave(mps_elastic *e, mps_status status) {
-  e->busy = NULL;
+  mpsi_guard_end(&e->guard);
   e->within = false;
   return status;
 }
@@ -103,7 +108,7 @@ mps_status mpsi_elastic_leave(mps_elastic *e, mps_status status) {
 mps_status mpsi_elastic_check_between(const mps_elastic *e, const char *function) {
   if (!e->within) return MPS_OK;
   return mpsi_fail(e->context, function, MPS_ERROR_STATE,
-                   "called back from within %s: the state is between two steps", e->busy);
+                   "called back from within %s: the state is between two steps", e->guard.callback);
 }
 
 int64_t mpsi_elastic_find(const mps_elastic *e, int64_t id) {
@@ -190,6 +195,30 @@ void mpsi_elastic_measure(mps_elastic *e) {
   e->values_valid = false;
 }
 
+/* Writes `young` and `poisson` of `count` particles, or of all (0, NULL). */
+static mps_status write_material(mps_elastic *e, const mps_material *material, int64_t count,
+                                 const int64_t *ids) {
+  mps_moduli m = {0};
+  mps_status status = mps_material_get_moduli(material, 1.0, &m);
+  double *young = mpsi_particles_column(e->particles, "young", 0);
+  double *poisson = mpsi_particles_column(e->particles, "poisson", 0);
+  if (status != MPS_OK || !young || !poisson) return status;
+  const int64_t most = ids ? count : mps_particles_count(e->particles);
+  for (int64_t k = 0; k < most; k++) {
+    const int64_t at = ids ? mps_particles_index(e->particles, ids[k]) : k;
+    young[at] = m.young, poisson[at] = m.poisson;
+  }
+  return MPS_OK;
+}
+
+/* The definition's material, at creation. */
+static mps_status add_material(mps_elastic *e, const char *function) {
+  mps_status status = mpsi_material_check_elastic(e->context, function, e->def.material);
+  if (status == MPS_OK) status = mps_particles_add_field(e->particles, "young", 0);
+  if (status == MPS_OK) status = mps_particles_add_field(e->particles, "poisson", 0);
+  return status == MPS_OK ? write_material(e, e->def.material, 0, NULL) : status;
+}
+
 /* lambda and mu of every particle; nothing has changed on an error. */
 static mps_status read_material(mps_elastic *e, const char *function) {
   double *young = mpsi_alloc(e->context, 2 * e->n, sizeof *young);
@@ -223,6 +252,46 @@ mps_status mps_elastic_update_material(mps_elastic *e) {
   status = read_material(e, __func__);
   if (status == MPS_OK) status = mpsi_elastic_find_joints(e, __func__);
   if (status == MPS_OK) mpsi_elastic_measure(e);
+  return mpsi_elastic_leave(e, status);
+}
+
+static mps_status check_ids(const mps_elastic *e, const char *function, int64_t count,
+                            const int64_t *ids) {
+  if (count < 0 || (ids == NULL && count != 0))
+    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
+                     "count is %lld with ids %s, must be >= 0, and 0 where ids is NULL (all)",
+                     (long long)count, ids ? "given" : "NULL");
+  for (int64_t k = 0; k < count; k++)
+    if (mpsi_elastic_find(e, ids[k]) < 0)
+      return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
+                       "ids[%lld] is %lld: no particle of the solver has that id", (long long)k,
+                       (long long)ids[k]);
+  return MPS_OK;
+}
+
+mps_status mps_elastic_set_material(mps_elastic *e, const mps_material *material, int64_t count,
+                                    const int64_t *ids) {
+  if (!e) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_elastic_enter(e, __func__);
+  if (status != MPS_OK) return status;
+  double *former = mpsi_alloc(e->context, 2 * e->n, sizeof *former);
+  if (!former) status = mpsi_fail_memory(e->context, __func__, (size_t)e->n * 16);
+  if (status == MPS_OK) status = mpsi_material_check_elastic(e->context, __func__, material);
+  if (status == MPS_OK) status = check_ids(e, __func__, count, ids);
+  if (status == MPS_OK) status = mpsi_elastic_read(e, __func__, "young", former, 1);
+  if (status == MPS_OK) status = mpsi_elastic_read(e, __func__, "poisson", former + e->n, 1);
+  if (status == MPS_OK) {
+    status = write_material(e, material, count, ids);
+    if (status == MPS_OK) status = read_material(e, __func__);
+    if (status == MPS_OK) status = mpsi_elastic_find_joints(e, __func__);
+    if (status == MPS_OK) mpsi_elastic_measure(e);
+    for (int k = 0; k < 2 && status != MPS_OK; k++) { /* the fields are there: it cannot fail */
+      const mps_status back =
+          mpsi_elastic_write(e, __func__, k ? "poisson" : "young", former + k * e->n, 1);
+      (void)back;
+    }
+  }
+  mpsi_free(e->context, former);
   return mpsi_elastic_leave(e, status);
 }
 
@@ -263,7 +332,7 @@ mps_status mps_elastic_cut(mps_elastic *e, int32_t axis, int32_t side, int64_t c
 
 /* ---- life ------------------------------------------------------------------------------------ */
 
-static mps_status allocate(mps_elastic *e, const char *function) {
+mps_status mpsi_elastic_allocate(mps_elastic *e, const char *function) {
   const int64_t n = e->n, all = n * e->dim;
   const struct {
     void **array;
@@ -302,27 +371,34 @@ void mps_elastic_destroy(mps_elastic **elastic) {
   if (!elastic || !*elastic) return;
   mps_elastic *e = *elastic;
   mps_context *context = e->context;
-  if (e->busy) { /* from a callback: whoever works on it needs it still */
-    (void)mpsi_elastic_enter(e, __func__);
-    return;
-  }
+  /* from a callback: whoever works on it needs it still */
+  if (mpsi_guard_check(&e->guard, context, __func__) != MPS_OK) return;
   *elastic = NULL;
   mpsi_elastic_end_motion(e);
-  mpsi_cholesky_destroy(&e->cholesky);
-  mpsi_elastic_disconnect(e);
-  mpsi_elastic_drop_joints(e);
+  mpsi_elastic_drop_removal(e);
   mpsi_elastic_drop_boundaries(e);
   mpsi_state_forget(&e->identity);
   mpsi_elastic_drop_loads(e);
-  void *arrays[] = {e->id,           e->x,        e->density,     e->cut,   e->volume,
-                    e->lambda,       e->mu,       e->poisson,     e->kappa, e->facets,
-                    e->load,         e->reaction, e->gradient,    e->work,  e->dof,
-                    e->displacement, e->column,   e->stress_work, e->row,   e->value,
-                    e->faces,        e->rhs,      e->solution,    e->mass,  e->cg_work};
-  for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) mpsi_free(context, arrays[k]);
+  mpsi_elastic_free_body(e);
+  mps_kernel_destroy(&e->def.kernel);
+  mps_material_destroy(&e->def.material);
   mpsi_particles_release(e->particles, &e->holder);
   mpsi_free(context, e);
   mpsi_context_release(context);
+}
+
+void mpsi_elastic_free_body(mps_elastic *e) {
+  mps_context *context = e->context;
+  mpsi_cholesky_destroy(&e->cholesky);
+  mpsi_elastic_disconnect(e);
+  mpsi_elastic_drop_joints(e);
+  void *arrays[] = {e->id,           e->x,         e->density,     e->cut,   e->volume,
+                    e->lambda,       e->mu,        e->poisson,     e->kappa, e->facets,
+                    e->load,         e->reaction,  e->gradient,    e->work,  e->dof,
+                    e->displacement, e->column,    e->stress_work, e->row,   e->value,
+                    e->faces,        e->rhs,       e->solution,    e->mass,  e->cg_work,
+                    e->supports,     e->support_of};
+  for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) mpsi_free(context, arrays[k]);
 }
 
 static int compare_ids(const void *a, const void *b) {
@@ -330,8 +406,18 @@ static int compare_ids(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
+mps_status mpsi_elastic_make_body(mps_elastic *e, const char *function) {
+  mps_status status = mpsi_elastic_connect(e, function);
+  if (status == MPS_OK) status = read_material(e, function);
+  if (status == MPS_OK) status = mpsi_elastic_find_joints(e, function);
+  if (status == MPS_OK) status = mpsi_elastic_find_facets(e, function);
+  if (status == MPS_OK) mpsi_elastic_measure(e);
+  return status;
+}
+
 static mps_status build(mps_elastic *e, const char *function) {
-  mps_status status = allocate(e, function);
+  mps_status status = mpsi_elastic_allocate(e, function);
+  if (status == MPS_OK && e->def.material) status = add_material(e, function);
   if (status == MPS_OK) {
     memcpy(e->id, mpsi_particles_integers(e->particles, "id"), (size_t)e->n * sizeof *e->id);
     qsort(e->id, (size_t)e->n, sizeof *e->id, compare_ids);
@@ -340,11 +426,7 @@ static mps_status build(mps_elastic *e, const char *function) {
   for (int64_t i = 0; i < e->n * e->dim && status == MPS_OK; i++)
     if (!isfinite(e->x[i]))
       status = bad_value(e, function, "position", i / e->dim, e->x[i], "must be finite");
-  if (status == MPS_OK) status = mpsi_elastic_connect(e, function);
-  if (status == MPS_OK) status = read_material(e, function);
-  if (status == MPS_OK) status = mpsi_elastic_find_joints(e, function);
-  if (status == MPS_OK) status = mpsi_elastic_find_facets(e, function);
-  if (status == MPS_OK) mpsi_elastic_measure(e);
+  if (status == MPS_OK) status = mpsi_elastic_make_body(e, function);
   if (status == MPS_OK) status = mps_particles_add_field(e->particles, "displacement", 0);
   if (status == MPS_OK) status = mps_particles_add_field(e->particles, "reaction", 0);
   return status;
@@ -381,20 +463,30 @@ mps_status mpsi_elastic_create(mps_context *context, const char *function, mps_p
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "the particle set was made from another context");
   mps_elastic_def def;
-  mps_status status =
-      read_def(context, function, user_def, mps_particles_dim(particles), published, &def);
+  mps_status status = read_def(context, function, user_def, mps_particles_dim(particles),
+                               mps_particles_spacing(particles), published, &def);
   if (status == MPS_OK) status = mpsi_particles_check_hold(particles, function, MPSI_USE_FIX);
   if (status != MPS_OK) return status;
+  mpsi_backup backup;
+  status = mpsi_particles_back_up(particles, function, &backup);
+  if (status != MPS_OK) return status;
   mps_elastic *e = mpsi_alloc(context, 1, sizeof *e);
-  if (!e) return mpsi_fail_memory(context, function, sizeof *e);
+  if (!e) {
+    mpsi_backup_drop(particles, &backup);
+    return mpsi_fail_memory(context, function, sizeof *e);
+  }
   e->context = mpsi_context_retain(context);
   e->particles = particles;
   e->holder = (mpsi_holder){.name = "a solver of implicit elasticity (mps_elastic)",
                             .self = e,
                             .kind = MPSI_USE_FIX,
-                            .commit = refuse_positions};
+                            .commit = refuse_positions,
+                            .remove = mpsi_elastic_remove,
+                            .renew = mpsi_elastic_renew};
   (void)mpsi_particles_hold(particles, function, &e->holder); /* checked above */
   e->def = def;
+  if (def.kernel) e->def.kernel = mpsi_kernel_retain(def.kernel);
+  if (def.material) e->def.material = mpsi_material_retain(def.material);
   e->conservative = !published;
   e->constant = constant;
   e->dim = mps_particles_dim(particles);
@@ -403,9 +495,11 @@ mps_status mpsi_elastic_create(mps_context *context, const char *function, mps_p
   e->spacing = mps_particles_spacing(particles);
   status = build(e, function);
   if (status != MPS_OK) {
+    mpsi_particles_go_back(particles, &backup);
     mps_elastic_destroy(&e);
     return status;
   }
+  mpsi_backup_drop(particles, &backup);
   *out = e;
   return MPS_OK;
 }

@@ -7,6 +7,7 @@
  * loads.c     nodal forces                     assemble.c  the sparse matrix of free unknowns
  * system.c    factor, solve, refine            cholesky.c  CHOLMOD;  cg.c  conjugate gradients
  * stress.c    stresses, sections, energy       motion.c, budget.c, modes.c  dynamics
+ * removal.c   particles that leave
  *
  * Vectors over all particles are indexed [i * dim + c], i being the rank of the particle's id:
  * sorting the set does not matter. Vectors of free unknowns hold the local directions that no
@@ -16,6 +17,7 @@
 
 #include "core/particles_internal.h"
 #include "cholesky.h"
+#include "core/guard.h"
 #include "core/internal.h"
 #include "core/state.h"
 
@@ -122,7 +124,7 @@ struct mps_elastic {
   int32_t dim, modes; /* modes: rigid motions, 3 or 6 */
   bool conservative;  /* method; else the published one */
   bool constant;      /* published: divided by n0, else by n_i */
-  const char *busy;   /* the public function that is at work, or NULL */
+  mpsi_guard guard;   /* of the public function that is at work */
   bool within;        /* it is not between steps */
   int64_t *id;        /* of each particle, ascending */
   int64_t n;
@@ -181,7 +183,8 @@ struct mps_elastic {
 
   mpsi_identity *identity; /* of its snapshots */
   mpsi_ledger ledger;
-  struct mpsi_elastic_motion *motion; /* NULL: no dynamics under way */
+  struct mpsi_elastic_motion *motion;   /* NULL: no dynamics under way */
+  struct mpsi_elastic_removal *removal; /* removal.c: under way, or NULL */
 };
 
 /* ---- lattice.c --------------------------------------------------------------------------------
@@ -286,6 +289,15 @@ double mpsi_elastic_count_work(mps_elastic *e, const double *force, const double
 void mpsi_elastic_forget_reactions(mps_elastic *e);
 void mpsi_elastic_drop_boundaries(mps_elastic *e);
 
+/* Supports from the boundaries as they are. On an error those of before stay. */
+mps_status mpsi_elastic_make_supports(mps_elastic *e, const char *function);
+
+/* ---- removal.c: the holder's functions ----------------------------------------------------------
+ */
+mps_status mpsi_elastic_remove(void *self, const char *function, int64_t count, const int64_t *ids);
+void mpsi_elastic_renew(void *self);
+void mpsi_elastic_drop_removal(mps_elastic *e);
+
 /* ---- rigid.c ----------------------------------------------------------------------------------
  */
 /* MPS_ERROR_STATE naming the rigid motions that the supports leave free. */
@@ -318,6 +330,11 @@ mps_status mpsi_elastic_enter(mps_elastic *e, const char *function);
 mps_status mpsi_elastic_leave(mps_elastic *e, mps_status status);
 /* For what only reads, but needs the scratch arrays: refused within a step. */
 mps_status mpsi_elastic_check_between(const mps_elastic *e, const char *function);
+/* The arrays of e->n particles; what follows from ids, positions, cuts and material in them; and
+ * the end of both. */
+mps_status mpsi_elastic_allocate(mps_elastic *e, const char *function);
+mps_status mpsi_elastic_make_body(mps_elastic *e, const char *function);
+void mpsi_elastic_free_body(mps_elastic *e);
 /* The rank of an id, or -1. */
 int64_t mpsi_elastic_find(const mps_elastic *e, int64_t id);
 /* Reads `density` into mass. */

@@ -84,7 +84,8 @@ static void list_offsets(const mps_elastic *e, mpsi_links *l) {
         l->step[k][2] = c;
         l->r2[k] = square * e->spacing * e->spacing;
         l->far[k] = abs(a) > 1 || abs(b) > 1 || abs(c) > 1;
-        l->weight[k] = ratio / sqrt((double)square) - 1.0;
+        l->weight[k] = e->def.kernel ? mps_kernel_weight(e->def.kernel, e->spacing * sqrt(square))
+                                     : ratio / sqrt((double)square) - 1.0;
         for (int axis = 0; axis < e->dim; axis++)
           if (square == 1 && l->step[k][axis] != 0) l->face[axis][l->step[k][axis] > 0] = k;
       }

@@ -406,9 +406,10 @@ mps_status mps_elastic_run(mps_elastic *e, double t_end, int64_t every, mps_elas
     if (status == MPS_OK && k % (1 + steps / 100) == 0)
       mpsi_progress(e->context, "elastic", e->motion->steps, e->motion->time, t_end);
     if (status != MPS_OK || !callback || (k % every != 0 && k != steps)) continue;
-    if ((status = publish(e, __func__)) == MPS_OK && (status = callback(user, e)) != MPS_OK)
-      status = mpsi_fail(e->context, __func__, status, "the callback ended the run at %g s",
-                         e->motion->time);
+    if ((status = publish(e, __func__)) != MPS_OK) continue;
+    mpsi_guard_enter(&e->guard, e->context, "the callback of mps_elastic_run");
+    status = mpsi_guard_leave(&e->guard, e->context, __func__, callback(user, e));
+    if (status != MPS_OK) mpsi_fail_where(e->context, e->motion->steps, -1);
   }
   return mpsi_elastic_leave(e, finish(e, __func__, status));
 }

@@ -53,6 +53,15 @@ mps_status mps_elastic_update_material(mps_elastic *elastic) {
   return MPS_ERROR_UNSUPPORTED;
 }
 
+mps_status mps_elastic_set_material(mps_elastic *elastic, const mps_material *material,
+                                    int64_t count, const int64_t *ids) {
+  (void)elastic;
+  (void)material;
+  (void)count;
+  (void)ids;
+  return MPS_ERROR_UNSUPPORTED;
+}
+
 mps_status mps_elastic_cut(mps_elastic *elastic, int32_t axis, int32_t side, int64_t count,
                            const int64_t *ids) {
   (void)elastic;

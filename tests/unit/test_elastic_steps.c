@@ -243,7 +243,7 @@ static void a_run_ends_where_it_was_told(void **state) {
                    "t_end is nan");
   c = (caller){.body = &b, .stop_at = 2};
   mps_assert_fails(context, mps_elastic_run(b.elastic, 2.0, 1, look, &c), MPS_ERROR_IO,
-                   "callback ended the run");
+                   "the callback of mps_elastic_run returned status 5");
   assert_int_equal(mps_elastic_steps(b.elastic), 9);
   test_body_end(&b);
   mps_context_destroy(&context);
