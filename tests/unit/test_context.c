@@ -245,6 +245,10 @@ static void the_library_tells_what_it_is(void **state) {
   assert_int_equal(count, MPS_FEATURE_PETSC + 1);
   assert_int_equal(mps_library_has(0), 0);
   assert_int_equal(mps_library_has(count), 0);
+  assert_int_equal(mps_library_has(MPS_FEATURE_HDF5), TEST_HDF5);
+  assert_int_equal(mps_library_has(MPS_FEATURE_CHOLMOD), TEST_CHOLMOD);
+  assert_int_equal(mps_library_has(MPS_FEATURE_ARPACK), TEST_ARPACK);
+  assert_int_equal(mps_library_has(MPS_FEATURE_EMBREE), TEST_EMBREE);
   assert_int_equal(mps_library_has(MPS_FEATURE_PETSC), 0);
   assert_null(mps_library_feature_name(0));
   mps_context *context = NULL;
