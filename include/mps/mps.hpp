@@ -72,7 +72,7 @@ public:
   operator T *() const noexcept { return object_; }
   /** Whose error record tells why a call with this object failed. */
   mps_context *error_context() const noexcept { return context_; }
-  void reset() noexcept; /* destroys the object */
+  void reset() noexcept;                                            /* destroys the object */
   T *release() noexcept { return std::exchange(object_, nullptr); } /* gives it up */
   void swap(handle &other) noexcept {
     std::swap(object_, other.object_);
@@ -101,6 +101,7 @@ MPS_CPP_HANDLE(mpm)
 MPS_CPP_HANDLE(dynamics)
 MPS_CPP_HANDLE(elastic)
 MPS_CPP_HANDLE(fluid)
+MPS_CPP_HANDLE(coupling)
 #undef MPS_CPP_HANDLE
 
 /** Throws where `status` is not MPS_OK. */
@@ -122,9 +123,7 @@ decltype(auto) pass(S &&s) {
 
 /* T of the last parameter, T **, of a function that creates. */
 template <class... P> struct last;
-template <class P> struct last<P> {
-  using type = P;
-};
+template <class P> struct last<P> { using type = P; };
 template <class P, class... Q> struct last<P, Q...> : last<Q...> {};
 template <class... P>
 using created = std::remove_pointer_t<std::remove_pointer_t<typename last<P...>::type>>;
@@ -205,8 +204,8 @@ public:
     check(set.error_context(), mps_particles_view(set_, name, &view_));
     const bool integers = view_.dtype.code == 0;
     if (integers != std::is_integral_v<V> || view_.dtype.bits != 64)
-      throw error(MPS_ERROR_FIELD, std::string("field '") + name + "' holds " +
-                                       (integers ? "int64_t" : "double"));
+      throw error(MPS_ERROR_FIELD,
+                  std::string("field '") + name + "' holds " + (integers ? "int64_t" : "double"));
   }
   int64_t size() const noexcept { return view_.shape[0]; }
   int64_t components() const noexcept { return view_.shape[1]; }

@@ -1,0 +1,45 @@
+"""libmps from Python: meshfree solid mechanics by the C library, through its public headers only.
+
+    import libmps as mps
+
+    context = mps.Context(threads=2)
+    sand = context.particles_create(spacing=0.1)
+    sand.fill_box([0, 0], [1, 1])
+    sand.set("density", 0, 1800.0)
+    law = context.material_linear_elastic(1e7, 0.3)
+    solver = context.mpm_create(sand, law, cell=0.2, gravity=[0, -9.81, 0])
+    solver.run(0.1, 10, lambda s: print(s.time()))
+    print(sand["velocity"].mean(axis=0), solver.get_totals().kinetic)
+
+Every function of the C headers is here: mps_mpm_step(mpm, 10) is solver.step(10), and a function
+whose first argument is another object of the library is also a method of that object:
+context.mpm_create(...). The C header says what it does. So much is different:
+
+- a definition struct is given by keywords, its members; the rest are the defaults;
+- what C returns through trailing pointers is returned: objects, numbers, structs of results;
+- arrays are lists or NumPy arrays, of float64 or int64; where the function writes, NumPy arrays;
+- a failed call raises Error with the text of the error record;
+- a callback is a Python function, without C's `user`; an exception in it ends the call and comes out.
+
+A particle set gives its fields as NumPy arrays without a copy: sand["velocity"], for reading. They
+raise StaleError once particles have come, gone or been sorted. To write:
+
+    with sand.edit("velocity") as v:
+        v[:, 0] = 1.0
+"""
+
+from ._call import Error, StaleError, column, functions, library
+from ._objects import Context, Object
+
+__all__ = ["Context", "Error", "Object", "StaleError", "column", "library", *functions]
+
+
+def __getattr__(name):
+    """Functions without an object (status_text, version), constants (DOF_X, MPM_SPACE)."""
+    from . import _call
+
+    return _call.function_or_constant(name)
+
+
+def __dir__():
+    return sorted(__all__)

@@ -1,0 +1,239 @@
+"""The Python package: values against theory, errors as exceptions, arrays that know when they are stale,
+callbacks, and that every function and definition of the C headers is reachable."""
+
+import gc
+import unittest
+
+import numpy as np
+
+import libmps as mps
+from libmps import _cdef
+from libmps._call import Call, ffi, signature
+
+
+def block(context, spacing=0.1):
+    sand = context.particles_create(spacing=spacing)
+    sand.fill_box([0.0, 5.0], [1.0, 6.0])
+    sand.set("density", 0, 1800.0)
+    return sand
+
+
+def falling(context, sand, **more):
+    law = context.material_linear_elastic(1e6, 0.3)
+    return context.mpm_create(sand, law, **{"cell": 0.2, "gravity": [0, -9.81, 0], "dt": 1e-3, **more})
+
+
+class Values(unittest.TestCase):
+    def test_free_fall(self):
+        context = mps.Context(threads=2)
+        sand = block(context)
+        solver = falling(context, sand)
+        times = []
+        solver.run(0.1, 10, lambda s: times.append(s.time()))
+        np.testing.assert_allclose(times, 0.01 * np.arange(11), atol=1e-12)
+        np.testing.assert_allclose(sand["velocity"][:, 1], -0.981, rtol=1e-12)
+        totals = solver.get_totals()
+        self.assertAlmostEqual(totals.mass, 1800.0, delta=1e-9)
+        self.assertAlmostEqual(totals.linear[1], -0.981 * 1800.0, delta=1e-8)
+        self.assertEqual(solver.get_def().cell, 0.2)
+
+    def test_the_way_back_is_the_same_bit_for_bit(self):
+        context = mps.Context(executor=mps.EXECUTOR_SERIAL)
+        sand = block(context)
+        solver = falling(context, sand)
+        solver.step(20)
+        snapshot = solver.snapshot()
+        solver.step(30)
+        once = np.array(sand["position"])
+        solver.rollback(snapshot)
+        self.assertEqual(solver.steps(), 20)
+        solver.step(30)
+        self.assertTrue(np.array_equal(once, sand["position"]))
+
+    def test_a_law_in_python(self):
+        """Linear elasticity moves the particles as the library's own does, and counts its steps."""
+        bulk, shear = 1e7 / 3.0 / (1 - 2 * 0.3), 1e7 / 2.0 / 1.3
+
+        def update(block):
+            rate = [[mps.column(block.gradient[3 * i + j], block.count) for j in range(2)]
+                    for i in range(2)]
+            stress = [mps.column(p, block.count) for p in block.stress[:4]]
+            volume = block.dt * (rate[0][0] + rate[1][1])
+            for i, d in enumerate((block.dt * rate[0][0], block.dt * rate[1][1], 0.0)):
+                stress[i] += (bulk - 2.0 * shear / 3.0) * volume + 2.0 * shear * d
+            stress[3] += shear * block.dt * (rate[0][1] + rate[1][0])
+            mps.column(block.history[0], block.count)[:] += 1.0
+
+        places = []
+        for own in (False, True):
+            context = mps.Context(threads=2)
+            sand = block(context)
+            law = context.material_user(
+                update=update, name="python", history=["steps"], history_count=1,
+                wave_modulus=bulk + 4.0 * shear / 3.0) if own else \
+                context.material_linear_elastic(1e7, 0.3)
+            sand.add_field("velocity", 0)
+            with sand.edit("velocity") as v:
+                v[:] = np.sin(3.0 * np.array(sand["position"]))
+            solver = context.mpm_create(sand, law, cell=0.2, dt=2e-4)
+            solver.step(50)
+            places.append(np.array(sand["position"])[np.argsort(np.array(sand["id"]))])
+        self.assertTrue(np.all(sand["python.steps"] == 50.0))
+        np.testing.assert_allclose(places[0], places[1], rtol=0, atol=1e-13)
+        self.assertGreater(np.abs(np.diff(places[0][:, 0])).max(), 0.1)
+
+    def test_a_driven_base(self):
+        context = mps.Context()
+        sand = block(context)
+        sand.set("shear_velocity", 0, 100.0)
+        sand.set("pressure_velocity", 0, 200.0)
+        solver = context.dynamics_create(sand)
+        sine = context.signal_sine(1.0, 0.01, 0.0)
+        number = solver.add_boundary(kind=mps.DYNAMICS_BOUNDARY_DRIVEN, lower=[-1, 4.9, 0],
+                                     upper=[2, 5.1, 0], signal=[sine, None, None])
+        self.assertEqual(number, 0)
+        solver.run(0.25, 100, None)
+        moved = sand["displacement"][sand["position"][:, 1] < 5.1, 0]
+        np.testing.assert_allclose(moved, 0.01, rtol=1e-9)
+        self.assertGreater(abs(solver.get_reaction(number).impulse[0]), 0.0)
+
+
+class Errors(unittest.TestCase):
+    def test_a_failed_call_is_an_exception_with_the_record(self):
+        context = mps.Context()
+        sand = block(context)
+        with self.assertRaisesRegex(mps.Error, "mps_mpm_create: cell is -1 m") as caught:
+            falling(context, sand, cell=-1.0)
+        self.assertEqual(caught.exception.status, mps.ERROR_ARGUMENT)
+        with self.assertRaisesRegex(mps.Error, "threads is -1"):
+            mps.Context(threads=-1)
+
+    def test_wrong_words(self):
+        context = mps.Context()
+        sand = block(context)
+        with self.assertRaisesRegex(TypeError, "mps_mpm_def has no member 'cel': it has geometry"):
+            falling(context, sand, cel=0.2)
+        with self.assertRaisesRegex(TypeError, "lacks 'material'"):
+            context.mpm_create(sand)
+        with self.assertRaisesRegex(TypeError, "too many arguments"):
+            sand.set("density", 0, 1.0, 2.0)
+        with self.assertRaisesRegex(AttributeError, "mpm of libmps has no 'stepp'"):
+            falling(context, sand).stepp
+        with self.assertRaises(AttributeError):
+            mps.nonsense
+
+    def test_an_exception_in_a_callback_comes_out(self):
+        context = mps.Context()
+        sand = block(context)
+        solver = falling(context, sand)
+
+        def stop(s):
+            if s.steps() == 3:
+                raise ZeroDivisionError("enough")
+
+        with self.assertRaisesRegex(ZeroDivisionError, "enough"):
+            solver.run(1.0, 1, stop)
+        self.assertEqual(solver.steps(), 3)
+
+    def test_arrays_that_c_writes_must_be_numpy(self):
+        context = mps.Context()
+        sand = block(context)
+        ids = np.zeros(200, np.int64)
+        self.assertEqual(sand.select_box([0, 5], [0.2, 5.2], 200, ids), 4)
+        with self.assertRaisesRegex(TypeError, "give a NumPy array"):
+            sand.select_box([0, 5], [0.2, 5.2], 4, [0, 0, 0, 0])
+        with self.assertRaisesRegex(TypeError, "of int64"):
+            sand.select_box([0, 5], [0.2, 5.2], 4, np.zeros(4))
+
+    def test_what_is_closed_says_so(self):
+        context = mps.Context()
+        sand = block(context)
+        solver = falling(context, sand)
+        solver.close()
+        solver.close()
+        with self.assertRaisesRegex(ValueError, "the mpm is closed"):
+            solver.step(1)
+        falling(context, sand).step(1)  # the set is free again
+
+
+class Arrays(unittest.TestCase):
+    def test_a_field_is_the_memory_itself(self):
+        context = mps.Context()
+        sand = block(context)
+        sand.add_field("velocity", 0)
+        v = sand["velocity"]
+        with self.assertRaises(ValueError):
+            v[0, 0] = 1.0
+        with sand.edit("velocity") as w:
+            w[:, 0] = np.arange(100.0)
+        self.assertEqual(v[99, 0], 99.0)
+        self.assertEqual(float((v + 1.0).max()), 100.0)
+        self.assertNotIsInstance(v + 1.0, type(v))
+        self.assertEqual(sand["id"].dtype, np.int64)
+        self.assertEqual(sand["density"].shape, (100,))
+
+    def test_a_stale_array_refuses(self):
+        context = mps.Context()
+        sand = block(context)
+        x = sand["position"]
+        corner = x[:5]
+        copy = np.array(x)
+        self.assertFalse(x.stale)
+        sand.remove(1, [int(sand["id"][0])])
+        self.assertTrue(x.stale and corner.stale)
+        for use in (lambda: x[0], lambda: x + 1, lambda: corner.sum(), lambda: np.concatenate([x, x]),
+                    lambda: x.mean(axis=0)):
+            with self.assertRaises(mps.StaleError):
+                use()
+        self.assertEqual(repr(x), "Field(stale)")
+        self.assertEqual(copy.shape, (100, 2))
+        self.assertEqual(sand["position"].shape, (99, 2))
+
+    def test_a_value_out_of_range_can_be_mended(self):
+        context = mps.Context()
+        sand = block(context)
+        solver = falling(context, sand)
+        edit = sand.edit("density")
+        edit.array[7] = -1.0
+        with self.assertRaisesRegex(mps.Error, "density"):
+            edit.commit()
+        with self.assertRaisesRegex(mps.Error, "edit"):
+            solver.step(1)
+        edit.array[7] = 1800.0
+        edit.commit()
+        solver.step(1)
+
+    def test_an_array_keeps_its_set_alive(self):
+        context = mps.Context()
+        x = block(context)["position"]
+        del context
+        gc.collect()
+        self.assertAlmostEqual(float(x[:, 1].max()), 5.95, delta=1e-12)
+
+
+class Whole(unittest.TestCase):
+    def test_every_function_has_its_parameters(self):
+        for name in _cdef.PARAMETERS:
+            function = getattr(mps.library, name)
+            self.assertEqual(len(ffi.typeof(function).args), len(_cdef.PARAMETERS[name]), name)
+        self.assertGreater(len(_cdef.PARAMETERS), 200)
+        self.assertEqual(signature("mpm_step"), "(mps_mpm * mpm, int64_t count)")
+
+    def test_every_definition_has_defaults(self):
+        made = 0
+        for name in _cdef.PARAMETERS:
+            if name.endswith("_init") and len(_cdef.PARAMETERS[name]) == 2:
+                kind = ffi.typeof(name.removesuffix("_init"))
+                self.assertEqual(Call().struct(kind, {}).struct_size, ffi.sizeof(kind), name)
+                made += 1
+        self.assertGreaterEqual(made, 30)
+
+    def test_every_object_can_be_destroyed(self):
+        for name in _cdef.PARAMETERS:
+            if name.endswith("_destroy"):
+                kind = name.removesuffix("_destroy")
+                getattr(mps.library, name)(ffi.new(f"{kind} *[1]"))  # NULL is accepted
+
+
+if __name__ == "__main__":
+    unittest.main()
