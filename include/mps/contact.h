@@ -26,7 +26,9 @@ typedef enum mps_contact_mover {
 /** What becomes of particles whose centres lie inside the body when the contact is made. */
 typedef enum mps_contact_inside {
   MPS_CONTACT_INSIDE_REFUSE = 0, /* an error that counts them */
-  MPS_CONTACT_INSIDE_PUSH = 1    /* they stay, and are pushed out with the contact stiffness */
+  MPS_CONTACT_INSIDE_PUSH = 1,   /* they stay, and are pushed out with the contact stiffness */
+  MPS_CONTACT_INSIDE_REMOVE = 2  /* they leave the set, as before each step those that are deeper
+                                    than `depth`; the reaction counts them */
 } mps_contact_inside;
 
 typedef struct mps_contact_def {
@@ -42,8 +44,10 @@ typedef struct mps_contact_def {
                       solver's definition. NaN (default): not used. Giving both is an error */
   double offset;   /* m, >= 0: a particle nearer to the surface than this is pushed. NaN (default):
                       half the particles' spacing, as if the surface passed around the particles */
-  double depth;    /* m, > 0: a step that finds a particle deeper below the surface than this fails.
-                      NaN (default): one cell, or with INSIDE_PUSH    no bound */
+  double depth;    /* m, > 0: a step that finds a particle deeper below the surface than this fails
+                      before anything moves.
+                      NaN (default): one cell; with INSIDE_PUSH no bound; with INSIDE_REMOVE,
+                      where such particles are removed instead, half the particles' spacing */
   int32_t thin;    /* 0 (default): a body thinner than two cells somewhere, through which momentum
                       can pass, is refused; 1: it is allowed, and the log is warned */
   int32_t inside;  /* mps_contact_inside, default REFUSE */

@@ -168,15 +168,19 @@ typedef enum mps_mpm_boundary_kind {
   MPS_MPM_BOUNDARY_FRICTIONAL = 2, /* no velocity into the side, and Coulomb's friction along it; it
                                       pushes but never pulls, so that material may leave */
   MPS_MPM_BOUNDARY_ABSORBING =
-      3,                          /* Lysmer dashpots: traction R - rho c_p v across and R - rho c_s
-                                     v  along, with rho, c_p and c_s of the particles in the cells at
-                                     the side (elastic; under a user's law c_s = c_p/sqrt(3)). The
-                                     constant R is the traction at rest: see `settle`. Nodes that
-                                     become active later carry no R. Stable for every dt. Particles
-                                     move with the waves: one that passes the side has left the
-                                     domain. A velocity that drives it sends half of it in */
-  MPS_MPM_BOUNDARY_FREE = 4,      /* an edge where nodes end and nothing is held */
-  MPS_MPM_BOUNDARY_PRESCRIBED = 5 /* the components `dofs`, of a box of nodes or of particles */
+      3,                           /* Lysmer dashpots: traction R - rho c_p v across and R - rho c_s
+                                      v  along, with rho, c_p and c_s of the particles in the cells at
+                                      the side (elastic; under a user's law c_s = c_p/sqrt(3)). The
+                                      constant R is the traction at rest: see `settle`. Nodes that
+                                      become active later carry no R. Stable for every dt. Particles
+                                      move with the waves: one that passes the side has left the
+                                      domain. A velocity that drives it sends half of it in */
+  MPS_MPM_BOUNDARY_FREE = 4,       /* an edge where nodes end and nothing is held */
+  MPS_MPM_BOUNDARY_PRESCRIBED = 5, /* the components `dofs`, of a box of nodes or of particles */
+  MPS_MPM_BOUNDARY_OPEN = 6 /* an edge as FREE; particles that pass it leave the set at the end of
+                               the step. The reaction's `removed` and `removed_mass` count them, its
+                               `count` those of the last step; its impulses and `work` are less the
+                               momentum and kinetic energy that they carry out */
 } mps_mpm_boundary_kind;
 
 typedef struct mps_mpm_boundary_def {
@@ -272,9 +276,11 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_remove_load(mps_mpm *mpm, int32_t numbe
 /* ---- running --------------------------------------------------------------------------------- */
 
 /** Takes `count` (>= 0) steps, asking the cancel hook after each. A particle that passes a side of
- *  the domain by less than 0.1 cells is put back on it. MPS_ERROR_DIVERGED: one has left the
- * domain, or has a velocity or a volume that is not finite; the record names step and particle, the
- * fields show the state. */
+ *  the domain by less than 0.1 cells is put back on it. A step that finds a particle too deep in a
+ *  body (MPS_ERROR_DIVERGED), or no memory, has not begun: all is as before it. MPS_ERROR_DIVERGED
+ *  where a particle leaves the domain, or gets a velocity or a volume that is not finite, and the
+ *  refusal of a law are found when particles have moved: the record names step and particle, the
+ *  fields show the state, and only mps_mpm_rollback or mps_mpm_restore goes on from there. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_step(mps_mpm *mpm, int64_t count);
 
 /** Called at the start of a run, then every `every` steps and at the end. Return MPS_OK to go on;

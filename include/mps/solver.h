@@ -38,6 +38,9 @@ typedef struct mps_reaction {
   int64_t count;            /* particles (or nodes) held, driven or touched in the last step */
   double work;              /* J, likewise: done on the particles by what holds, drives or touches
                                them; of a body, by the body on the particles */
+  int64_t removed;     /* particles that it has taken out of the set since it was made: passed an
+                          open side, or were found inside a body that removes them */
+  double removed_mass; /* kg, of these */
 } mps_reaction;
 
 /** Sums over the particles of a solver. Bodies are not counted: their energy is their own.

@@ -24,9 +24,9 @@ static mps_status check_choices(mps_context *context, const char *function,
     int32_t value;
   } list[] = {{"mover", "0 (solver) and 1 (other)", d->mover},
               {"thin", "0 (refused) and 1 (allowed)", d->thin},
-              {"inside", "0 (refuse) and 1 (push)", d->inside}};
+              {"inside", "0 (refuse), 1 (push) and 2 (remove)", d->inside}};
   for (size_t k = 0; k < sizeof list / sizeof *list; k++)
-    if (list[k].value < 0 || list[k].value > 1)
+    if (list[k].value < 0 || list[k].value > (k == 2 ? 2 : 1))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %d, allowed are %s",
                        list[k].name, list[k].value, list[k].allowed);
   return MPS_OK;

@@ -42,6 +42,8 @@ mps_status mpsi_body_sum_reaction(mps_context *context, const char *function,
     }
     sum.count += r->count;
     sum.work += r->work;
+    sum.removed += r->removed;
+    sum.removed_mass += r->removed_mass;
   }
   *out = sum;
   return MPS_OK;

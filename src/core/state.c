@@ -96,6 +96,8 @@ void mpsi_state_reaction(mpsi_state *state, mps_reaction *reaction) {
   mpsi_state_f64(state, "moment_impulse", reaction->moment_impulse, 3);
   mpsi_state_i64(state, "count", &reaction->count, 1);
   mpsi_state_f64(state, "work", &reaction->work, 1);
+  mpsi_state_i64(state, "removed", &reaction->removed, 1);
+  mpsi_state_f64(state, "removed_mass", &reaction->removed_mass, 1);
 }
 
 void mpsi_state_agree_integer(mpsi_state *state, const char *name, int64_t value) {

@@ -43,6 +43,7 @@ typedef struct mpsi_cell_block {
    *   split   some block of nodes under it is split: forces are summed apart from momenta there
    *   apart   edge or split: the tile of forces is in use */
   bool edge, inside, cut, split, apart;
+  bool gone;                  /* a particle has passed an open side */
   bool left;                  /* a particle is more than a cell outside the block */
   int32_t first_pair, pairs;  /* bodies that it may meet: of the list of mpsi_cell_pair */
   int32_t next[MPSI_CORNERS]; /* the block of cells that gives to the block of nodes to[q] after

@@ -66,10 +66,11 @@ static mps_status check_side(mps_mpm *mpm, const char *function, int32_t number,
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "the domain has no %s side across %c (boundary %d)",
                      number % 2 ? "upper" : "lower", "xyz"[number / 2], number);
-  if (def->kind < MPS_MPM_BOUNDARY_ROLLER || def->kind > MPS_MPM_BOUNDARY_FREE)
+  const bool open = def->kind == MPS_MPM_BOUNDARY_OPEN;
+  if (def->kind < MPS_MPM_BOUNDARY_ROLLER || (def->kind > MPS_MPM_BOUNDARY_FREE && !open))
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "kind is %d, allowed on a side are 0 (roller), 1 (fixed), 2 (frictional), 3 "
-                     "(absorbing) and 4 (free)",
+                     "(absorbing), 4 (free) and 6 (open)",
                      def->kind);
   if (def->ids || def->id_count != 0 || def->dofs != 0)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
@@ -85,7 +86,7 @@ static mps_status check_side(mps_mpm *mpm, const char *function, int32_t number,
                      "(fixed), and the radial velocity is 0",
                      def->kind, def->signal[0] ? "given" : "NULL");
   for (int c = 0; c < mpm->dim; c++)
-    if (def->signal[c] && (def->kind == MPS_MPM_BOUNDARY_FREE ||
+    if (def->signal[c] && (def->kind == MPS_MPM_BOUNDARY_FREE || open ||
                            (def->kind == MPS_MPM_BOUNDARY_ROLLER && c != number / 2)))
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "signal[%d] is given, and a side of kind %d does not hold that component", c,

@@ -39,6 +39,7 @@ typedef struct mpsi_boundaries {
   mpsi_held *held;
   mpsi_dash *dash;
   int64_t held_count, dash_count;
+  uint32_t open; /* bit k: side k is open, in the step being made */
   bool outdated; /* the lists are not of the present boundaries and laws */
   mpsi_room held_room, dash_room, old_held_room, old_dash_room;
 } mpsi_boundaries;

@@ -1,6 +1,7 @@
 /* contacts.c - which bodies the particles touch: contacts made, asked and ended. At work: pairs.c,
  * inside.c, fitted.c, friction.c. SPDX-License-Identifier: BSD-3-Clause */
 #include "contact_particle.h"
+#include "particles.h"
 
 #include "core/particles_internal.h"
 
@@ -155,6 +156,7 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
   mps_contact *contact = NULL;
   if (out) *out = NULL;
   mps_status status = mpsi_mpm_between_steps(mpm, __func__);
+  if (status == MPS_OK) status = mpsi_particles_ready(mpm->particles, __func__);
   if (status == MPS_OK) status = check_body(mpm, __func__, body);
   if (status == MPS_OK) status = check_overlap(mpm, __func__, body);
   if (status == MPS_OK)
@@ -162,9 +164,16 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
   if (status != MPS_OK) return status;
   mps_contact_def *d = &contact->def;
   if (isnan(d->offset)) d->offset = 0.5 * mps_particles_spacing(mpm->particles);
-  if (isnan(d->depth)) d->depth = d->inside == MPS_CONTACT_INSIDE_PUSH ? INFINITY : mpm->def.cell;
+  if (isnan(d->depth))
+    d->depth = d->inside == MPS_CONTACT_INSIDE_PUSH ? INFINITY
+               : d->inside == MPS_CONTACT_INSIDE_REMOVE
+                   ? 0.5 * mps_particles_spacing(mpm->particles)
+                   : mpm->def.cell;
   status = check_thickness(mpm, __func__, contact);
-  if (status == MPS_OK) status = mpsi_mpm_check_inside(mpm, __func__, contact, 0);
+  if (status == MPS_OK && d->inside == MPS_CONTACT_INSIDE_REMOVE)
+    status = mpsi_mpm_clear_body(mpm, __func__, contact);
+  else if (status == MPS_OK)
+    status = mpsi_mpm_check_inside(mpm, __func__, contact, 0);
   if (status != MPS_OK) {
     mpsi_contact_release(contact);
     mpsi_contact_release(contact);
@@ -190,9 +199,10 @@ mps_status mpsi_mpm_check_depth(mps_mpm *mpm, const char *function) {
   for (int64_t k = 0; k < mpm->contact.cell_pair_count; k++) {
     const mpsi_cell_pair *pair = &mpm->contact.cell_pair[k];
     const double most = mpm->contact.handle[pair->body]->def.depth;
-    if (!pair->touched || !(pair->deepest > most)) continue;
+    if (!pair->touched || !(pair->deepest > most) ||
+        mpm->contact.handle[pair->body]->def.inside == MPS_CONTACT_INSIDE_REMOVE)
+      continue;
     const int64_t id = mpsi_particles_integers(mpm->particles, "id")[pair->deep];
-    mpm->run.broken = true;
     const mps_status status = mpsi_fail(
         mpm->context, function, MPS_ERROR_DIVERGED,
         "step %lld, t = %.6g s: particle %lld is %.4g m below the surface of body %d, at most %.4g "

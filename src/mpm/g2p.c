@@ -131,15 +131,20 @@ static void add_own(mps_mpm *mpm, int64_t begin, int n, const double (*motion)[4
 #define BEYOND 0.1 /* cells: a particle so far behind a wall is put back on it */
 
 /* Looks after particles [begin, end), one of which is outside the domain: the first that is too far
- * beyond a wall, or not a number; -1 where there is none. Nothing is put back on the axis: there
+ * beyond a wall, or not a number; -1 where there is none. Those beyond an open side leave after the
+ * step. Nothing is put back on the axis: there
  * the hoop strain has no end. */
-static int64_t keep_inside(mps_mpm *mpm, int64_t begin, int64_t end) {
+static int64_t keep_inside(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end) {
   for (int64_t k = begin; k < end; k++)
     for (int c = 0; c < mpm->dim; c++) {
       double *x = &mpm->p.x[c][k];
       const double X = mpsi_grid_coordinate(mpm, c, *x);
       const double low = (double)mpm->grid.low[c], high = (double)mpm->grid.high[c];
       if (X >= low && X <= high) continue;
+      if (mpsi_mpm_passes(mpm, c, X)) {
+        cells->gone = true;
+        continue;
+      }
       const bool axis = mpm->def.geometry == MPS_MPM_AXISYMMETRIC && c == 0 && !(*x > 0.0);
       if (axis || !(X >= low - BEYOND && X <= high + BEYOND)) return k;
       const double wall = X < low ? low : high, inwards = X < low ? INFINITY : -INFINITY;
@@ -214,13 +219,13 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cell_block *cells, const mpsi_work
   if (mpm->energy.counts) mpsi_energy_moved(mpm, cells, begin, begin + n);
   if (mpm->flip > 0.0) add_own(mpm, begin, n, (const double(*)[4][4])motion);
   if (m.left) cells->left = true;
-  if (m.outside && cells->bad < 0) cells->bad = keep_inside(mpm, begin, begin + n);
+  if (m.outside && cells->bad < 0) cells->bad = keep_inside(mpm, cells, begin, begin + n);
 }
 
 MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {
   mpsi_cell_block *cells = &mpm->grid.cells[b];
   mpsi_worker *worker = &mpm->grid.workers[number];
-  cells->left = false;
+  cells->left = cells->gone = false;
   cells->bad = -1;
   cells->speed = 0.0;
   gather_tile(mpm, cells, worker->tile);

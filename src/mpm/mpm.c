@@ -361,7 +361,8 @@ void mps_mpm_destroy(mps_mpm **pointer) {
                    mpm->rooms.force.item,
                    mpm->rooms.radix.item,
                    mpm->rooms.flags.item,
-                   mpm->rooms.stencil.item};
+                   mpm->rooms.stencil.item,
+                   mpm->rooms.gone.item};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
   mpsi_mpm_drop_loads(mpm);
   mpsi_mpm_drop_boundaries(mpm);

@@ -18,6 +18,7 @@ struct mpsi_kernels;
 /* Memory for each particle. */
 typedef struct mpsi_rooms {
   mpsi_room radix, flags, stencil;
+  mpsi_room gone;  /* marks of what leaves at the end of a step; none where nothing can */
   mpsi_room force; /* of the columns f; none without loads */
 } mpsi_rooms;
 
@@ -57,6 +58,13 @@ static inline double mpsi_grid_coordinate(const mps_mpm *mpm, int c, double x) {
 static inline int64_t mpsi_own_cell(const mps_mpm *mpm, int c, double X) {
   const int64_t cell = (int64_t)floor(X);
   return cell < mpm->grid.high[c] ? cell : mpm->grid.high[c] - 1;
+}
+
+/* Whether X, outside the domain along axis c, lies beyond a side that is open. */
+static inline bool mpsi_mpm_passes(const mps_mpm *mpm, int c, double X) {
+  const bool upper = X > (double)mpm->grid.high[c];
+  return (upper || X < (double)mpm->grid.low[c]) &&
+         (mpm->boundaries.open >> (2 * c + (upper ? 1 : 0)) & 1) != 0;
 }
 
 /* Nodes of a stencil beyond its lowest, as the loops take them: rows along x are read and written

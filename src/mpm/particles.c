@@ -229,7 +229,5 @@ void mpsi_mpm_renew(void *self) {
   const int64_t sorted = grid->cell_count > 0 ? grid->cells[grid->cell_count - 1].end : 0;
   mpsi_mpm_bind(mpm);
   if (mpm->p.count == sorted && !mpm->run.edited) return; /* another holder has refused */
-  mpm->grid.cell_count = mpm->grid.node_count = 0;        /* they are of other particles */
-  mpm->contact.cell_pair_count = mpm->contact.node_pair_count = mpm->contact.mask_count = 0;
   mpm->run.edited = mpm->run.stale = true;
 }

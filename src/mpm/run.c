@@ -85,18 +85,22 @@ static mps_status ask_cancel(mps_mpm *mpm, const char *function) {
                    mpm->run.time);
 }
 
+static mps_status check_bounded(mps_mpm *mpm, const char *function) {
+  if (isfinite(mps_mpm_dt(mpm))) return MPS_OK;
+  return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+                   "the solver has no particles, and nothing bounds dt: set it, or run to a time");
+}
+
 mps_status mps_mpm_step(mps_mpm *mpm, int64_t count) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   if (count < 0)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
                      (long long)count);
   mps_status status = mpsi_mpm_ready(mpm, __func__);
-  if (status == MPS_OK && count > 0 && !isfinite(mps_mpm_dt(mpm)))
-    status = mpsi_fail(mpm->context, __func__, MPS_ERROR_STATE,
-                       "the solver has no particles, and nothing bounds dt: set it, or run to a "
-                       "time");
   for (int64_t k = 0; k < count && status == MPS_OK; k++) {
-    status = mpsi_mpm_take_step(mpm, __func__, mps_mpm_dt(mpm));
+    if (mpm->run.edited) status = mpsi_mpm_tidy(mpm, __func__); /* some have left */
+    if (status == MPS_OK) status = check_bounded(mpm, __func__);
+    if (status == MPS_OK) status = mpsi_mpm_take_step(mpm, __func__, mps_mpm_dt(mpm));
     if (status == MPS_OK && k + 1 < count) status = ask_cancel(mpm, __func__);
   }
   return status;

@@ -20,7 +20,7 @@ typedef struct mpsi_run {
   uint32_t warned_about_chatter; /* bit b: ... that body b's contact is too stiff for dt */
 } mpsi_run;
 
-/* step.c: one step of dt; on an error the solver is broken. */
+/* step.c: one step of dt. On an error nothing has moved, or the solver is broken. */
 mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt);
 /* run.c: MPS_ERROR_STATE in a callback of the solver. */
 mps_status mpsi_mpm_between_steps(mps_mpm *mpm, const char *function);

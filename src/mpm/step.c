@@ -1,6 +1,7 @@
 /* step.c - one step of WLS-MPM: the order of its stages (Nakamura 6), and what goes wrong in it.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
+#include "particles.h"
 
 #include "core/particles_internal.h"
 
@@ -80,15 +81,21 @@ static void warn_about_step(mps_mpm *mpm, double dt) {
 }
 
 /* Before anything moves: the particles in order where some have left their blocks, and what is near
- * them. */
+ * them. An error loses nothing but the tractions at rest of absorbing sides. */
 static mps_status prepare(mps_mpm *mpm, const char *function) {
-  mps_status status = MPS_OK;
-  if (mpm->run.stale) {
+  mps_status status = mpsi_mpm_prepare_outflow(mpm, function);
+  if (status == MPS_OK && mpm->run.stale) {
     status = mpsi_mpm_sort(mpm, function);
     mpm->boundaries.outdated = true;
   }
-  if (status == MPS_OK) status = mpsi_mpm_update_holds(mpm, function);
+  const bool dashes = mpm->boundaries.dash_count > 0;
+  if (status == MPS_OK && (status = mpsi_mpm_update_holds(mpm, function)) != MPS_OK)
+    mpm->run.broken = dashes;
   if (status == MPS_OK) status = mpsi_mpm_find_near(mpm, function);
+  if (status == MPS_OK && mpsi_mpm_clear_bodies(mpm)) {
+    status = mpsi_mpm_tidy(mpm, function);
+    return status == MPS_OK ? prepare(mpm, function) : status;
+  }
   if (status == MPS_OK) status = mpsi_mpm_find_forces(mpm, function);
   if (status == MPS_OK) status = mpsi_energy_begin(mpm, function);
   return status;
@@ -103,27 +110,32 @@ static mps_status prepare(mps_mpm *mpm, const char *function) {
  *   finish   friction with bodies (31)-(34); walls and prescribed nodes
  *   gather   velocities of the nodes --> v, L, x (41)-(44); then the laws, L --> sigma, V and their
  *            histories (45)-(48), and c + |v| for the next step (49), (50): g2p.c, law.c */
-static void move(mps_mpm *mpm) {
+static mps_status move(mps_mpm *mpm, const char *function, double dt) {
   const int32_t geometry = mpm->def.geometry, spline = mpm->def.spline - 2;
-  const mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes,
-                          .scatter = mpm->kernels->p2g[geometry][spline],
-                          .update = mpsi_mpm_update_nodes,
-                          .between = mpm->contact.bodies > 0 ? mpsi_mpm_find_contact_mass : NULL,
-                          .finish = mpsi_mpm_finish_nodes,
-                          .gather = mpm->kernels->g2p[geometry][spline]};
+  mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes,
+                    .scatter = mpm->kernels->p2g[geometry][spline],
+                    .update = mpsi_mpm_update_nodes,
+                    .between = mpm->contact.bodies > 0 ? mpsi_mpm_find_contact_mass : NULL};
+  if (mpm->contact.cell_pair_count > 0) { /* no particle moves before all depths are known */
+    mpsi_mpm_run_pass(mpm, &pass);
+    const mps_status status = mpsi_mpm_check_depth(mpm, function);
+    if (status != MPS_OK) return status;
+    pass = (mpsi_pass){.clear = NULL};
+  }
+  pass.finish = mpsi_mpm_finish_nodes;
+  pass.gather = mpm->kernels->g2p[geometry][spline];
+  mpsi_mpm_begin_holds(mpm, dt); /* signals --> velocities of walls, boxes */
   mpsi_mpm_run_pass(mpm, &pass);
+  return MPS_OK;
 }
 
 mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
-  const mps_status status = prepare(mpm, function);
-  if (status != MPS_OK) {
-    mpm->run.broken = true;
-    return status;
-  }
+  mps_status status = prepare(mpm, function);
+  if (status != MPS_OK) return status;
   mpm->run.dt = dt;
   warn_about_step(mpm, dt);
-  mpsi_mpm_begin_holds(mpm, dt);                        /* signals --> velocities of walls, boxes */
-  move(mpm);                                            /* particles --> nodes --> particles */
+  status = move(mpm, function, dt); /* particles --> nodes --> particles */
+  if (status != MPS_OK) return status;
   mpsi_mpm_sum_holds(mpm);                              /* impulses of nodes --> forces of walls */
   mpsi_mpm_drive_particles(mpm);                        /* held particles: v, x */
   if (mpm->p.stencil) mpsi_mpm_apply_laws_by_cell(mpm); /* L, V --> sigma by means of cells */
@@ -131,7 +143,7 @@ mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
   mpsi_energy_end(mpm);
   mpm->run.time += dt;
   mpm->run.steps++;
-  const mps_status deep = mpsi_mpm_check_depth(mpm, function);
-  if (deep != MPS_OK) return deep;
-  return mpsi_mpm_collect_block_results(mpm, function); /* bad particles, c + |v|, stale or not */
+  status = mpsi_mpm_collect_block_results(mpm, function); /* bad particles, c + |v|, stale or not */
+  if (status == MPS_OK) mpsi_mpm_let_go(mpm);             /* through open sides */
+  return status;
 }

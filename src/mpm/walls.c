@@ -37,7 +37,7 @@ static bool list(mps_mpm *mpm, int64_t *count, int64_t *dashes) {
     for (int32_t k = 0; k < MPSI_HOLDS; k++) {
       range r;
       const int32_t kind = mpm->boundaries.hold[k].kind;
-      if (kind == MPSI_HOLD_NONE || mpm->boundaries.hold[k].ids ||
+      if (kind == MPSI_HOLD_NONE || kind == MPS_MPM_BOUNDARY_OPEN || mpm->boundaries.hold[k].ids ||
           !find_range(mpm, nodes->at, &mpm->boundaries.hold[k], &r))
         continue;
       const bool absorbs = kind == MPS_MPM_BOUNDARY_ABSORBING;
@@ -301,7 +301,10 @@ static void check_place(mps_mpm *mpm, int64_t k) {
     const double local = X - (double)cells->at[c] * MPSI_SIDE - first;
     if (!(local >= cells->low[c] && local < cells->high[c] - mpsi_reach(mpm, c)))
       cells->left = true;
-    if (!(X >= (double)mpm->grid.low[c] && X <= (double)mpm->grid.high[c]) && cells->bad < 0)
+    if (X >= (double)mpm->grid.low[c] && X <= (double)mpm->grid.high[c]) continue;
+    if (mpsi_mpm_passes(mpm, c, X))
+      cells->gone = true;
+    else if (cells->bad < 0)
       cells->bad = k;
   }
 }

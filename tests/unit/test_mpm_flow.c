@@ -394,6 +394,51 @@ static void an_empty_solver_waits(void **state) {
   mps_context_destroy(&context);
 }
 
+/* A box is driven into the column: the step that finds a particle too deep has not begun. */
+static void a_step_that_would_go_too_deep_does_not_begin(void **state) {
+  (void)state;
+  int32_t threads = 2;
+  mps_context *context = on_threads(&threads);
+  scene x[2];
+  mps_contact *contact[2] = {NULL, NULL};
+  memset(x, 0, sizeof x);
+  for (int k = 0; k < 2; k++) {
+    x[k].s = soil(context, 1.0);
+    mps_body_def def = mps_body_defaults();
+    mps_contact_def touch = mps_contact_defaults();
+    def.position[0] = 0.1, def.position[1] = 1.1;
+    touch.depth = 0.002, touch.penalty = 1e4;
+    mps_body_motion down = mps_body_motion_defaults();
+    down.velocity[1] = -5.0;
+    mps_assert_ok(context, mps_body_create_box(context, &def, 0.15, 0.15, &x[k].body[0]));
+    mps_assert_ok(context, mps_body_set_motion(x[k].body[0], &down));
+    mps_assert_ok(context, mps_mpm_add_contact(x[k].s.mpm, x[k].body[0], &touch, &contact[k]));
+  }
+  mps_status status = MPS_OK;
+  while ((status = mps_mpm_step(x[0].s.mpm, 1)) == MPS_OK)
+    assert_in_range(mps_mpm_steps(x[0].s.mpm), 0, 500);
+  assert_int_equal(status, MPS_ERROR_DIVERGED);
+  assert_non_null(strstr(mps_context_error(context)->message, "below the surface of body 0"));
+  mps_assert_ok(context, mps_mpm_step(x[1].s.mpm, mps_mpm_steps(x[0].s.mpm)));
+  same_fields(&x[0], &x[1]);
+  FAILS(mps_mpm_step(x[0].s.mpm, 1), MPS_ERROR_DIVERGED, "below the surface"); /* again */
+  mps_reaction r[2];
+  mps_snapshot *snapshot = NULL;
+  for (int k = 0; k < 2; k++) { /* without the body it goes on, as that which never failed */
+    mps_assert_ok(context, mps_contact_get_reaction(contact[k], -1, &r[k]));
+    mps_assert_ok(context, mps_mpm_snapshot(x[k].s.mpm, &snapshot));
+    mps_snapshot_destroy(&snapshot);
+    mps_contact_destroy(&contact[k]);
+    mps_assert_ok(context, mps_mpm_step(x[k].s.mpm, 50));
+  }
+  assert_memory_equal(&r[0], &r[1], sizeof r[0]);
+  same_fields(&x[0], &x[1]);
+  assert_true(mps_mpm_time(x[0].s.mpm) == mps_mpm_time(x[1].s.mpm));
+  drop(&x[0]);
+  drop(&x[1]);
+  mps_context_destroy(&context);
+}
+
 /* Each allocation is refused in turn: all or nothing. */
 static mps_status come_and_go(mps_context *own, int what) {
   (void)what;
@@ -435,6 +480,7 @@ int main(void) {
       cmocka_unit_test(held_particles_leave_the_list_and_come_back),
       cmocka_unit_test(refusals_change_nothing),
       cmocka_unit_test(an_empty_solver_waits),
+      cmocka_unit_test(a_step_that_would_go_too_deep_does_not_begin),
       cmocka_unit_test(refused_allocations_leave_nothing_behind),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

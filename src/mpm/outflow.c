@@ -1,0 +1,131 @@
+/* outflow.c - particles that leave the set: at the end of a step those that have passed an open
+ * side of the domain; before a step those that lie too deep in a body which takes away what it
+ * finds. SPDX-License-Identifier: BSD-3-Clause */
+#include "particles.h"
+
+#include <string.h>
+
+static bool takes_away(const mps_contact *contact) {
+  return contact->def.inside == MPS_CONTACT_INSIDE_REMOVE;
+}
+
+mps_status mpsi_mpm_prepare_outflow(mps_mpm *mpm, const char *function) {
+  mpsi_boundaries *b = &mpm->boundaries;
+  b->open = 0;
+  for (int32_t k = 0; k < MPSI_SIDES; k++)
+    if (b->hold[k].kind == MPS_MPM_BOUNDARY_OPEN) b->open |= 1u << k;
+  bool any = b->open != 0;
+  for (int32_t c = 0; c < mpm->contact.bodies; c++) any = any || takes_away(mpm->contact.handle[c]);
+  if (!any || mpsi_room_ensure(mpm->context, &mpm->rooms.gone, mpm->p.count, 1)) return MPS_OK;
+  return mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count);
+}
+
+/* The open side that the particle has passed, or -1. */
+static int32_t passed(const mps_mpm *mpm, int64_t k) {
+  for (int c = 0; c < mpm->dim; c++) {
+    const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k]);
+    if (mpm->boundaries.open >> (2 * c) & 1 && X < (double)mpm->grid.low[c]) return 2 * c;
+    if (mpm->boundaries.open >> (2 * c + 1) & 1 && X > (double)mpm->grid.high[c]) return 2 * c + 1;
+  }
+  return -1;
+}
+
+/* What a particle carries out is taken from those that stay, as by an impulse. */
+static void carry_out(const mps_mpm *mpm, int64_t k, mps_reaction *r) {
+  const mpsi_columns *p = &mpm->p;
+  const double m = p->m[k], h = mpm->def.cell;
+  const double second = mpm->standard ? 0.0 : h * h / (mpm->def.spline == 3 ? 3.0 : 4.0);
+  double x[3] = {0.0}, v[3] = {0.0}, L[3][3] = {{0.0}};
+  for (int c = 0; c < mpm->dim; c++) {
+    x[c] = p->x[c][k], v[c] = p->v[c][k];
+    for (int d = 0; d < mpm->dim; d++) L[c][d] = p->L[mpm->dim * c + d][k];
+  }
+  for (int c = 0; c < 3; c++) {
+    const int a = (c + 1) % 3, b = (c + 2) % 3;
+    const double spin = m * (x[a] * v[b] - x[b] * v[a] + second * (L[b][a] - L[a][b]));
+    r->impulse[c] -= m * v[c];
+    r->force[c] -= m * v[c] / mpm->run.dt;
+    r->moment_impulse[c] -= spin;
+    r->moment[c] -= spin / mpm->run.dt;
+    r->work -= 0.5 * m * v[c] * v[c];
+  }
+  r->count++;
+}
+
+static void count_out(const mps_mpm *mpm, int64_t k, mps_reaction *r, uint8_t *gone) {
+  r->removed++;
+  r->removed_mass += mpm->p.m[k];
+  gone[k] = 1;
+}
+
+static int64_t through_sides(mps_mpm *mpm, uint8_t *gone) {
+  int64_t count = 0;
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+    const mpsi_cell_block *cells = &mpm->grid.cells[b];
+    for (int64_t k = cells->begin; k < cells->end && cells->gone; k++) {
+      const int32_t side = passed(mpm, k);
+      if (side < 0) continue;
+      carry_out(mpm, k, &mpm->boundaries.hold[side].reaction);
+      count_out(mpm, k, &mpm->boundaries.hold[side].reaction, gone);
+      count++;
+    }
+  }
+  return count;
+}
+
+/* Particles [begin, end) that lie deeper than `depth` below the surface. */
+static int64_t into_body(const mps_mpm *mpm, mps_contact *contact, double depth, int64_t begin,
+                         int64_t end, uint8_t *gone) {
+  int64_t count = 0;
+  for (int64_t k = begin; k < end; k++) {
+    double x[3] = {0.0};
+    for (int c = 0; c < mpm->dim; c++) x[c] = mpm->p.x[c][k];
+    if (gone[k] || !mpsi_body_reaches(contact->body, x, 0.0)) continue;
+    const mpsi_foot foot = mpsi_body_foot(contact->body, x);
+    if (!(foot.distance < -depth)) continue;
+    count_out(mpm, k, &contact->reaction[contact->body->part_of[foot.face]], gone);
+    count++;
+  }
+  return count;
+}
+
+static void begin_marks(const mps_mpm *mpm) {
+  memset(mpm->rooms.gone.item, 0, (size_t)mpm->p.count);
+}
+
+void mpsi_mpm_let_go(mps_mpm *mpm) {
+  bool any = false;
+  for (int64_t b = 0; b < mpm->grid.cell_count && mpm->boundaries.open && !any; b++)
+    any = mpm->grid.cells[b].gone;
+  if (!any) return;
+  begin_marks(mpm);
+  if (through_sides(mpm, mpm->rooms.gone.item) > 0)
+    mpsi_particles_take_out(mpm->particles, mpm->rooms.gone.item);
+}
+
+bool mpsi_mpm_clear_bodies(mps_mpm *mpm) {
+  int64_t count = 0;
+  bool begun = false;
+  for (int64_t t = 0; t < mpm->contact.cell_pair_count; t++) {
+    const mpsi_cell_pair *pair = &mpm->contact.cell_pair[t];
+    mps_contact *contact = mpm->contact.handle[pair->body];
+    const mpsi_cell_block *cells = &mpm->grid.cells[pair->cells];
+    if (!takes_away(contact)) continue;
+    if (!begun) begin_marks(mpm);
+    begun = true;
+    count +=
+        into_body(mpm, contact, contact->def.depth, cells->begin, cells->end, mpm->rooms.gone.item);
+  }
+  if (count > 0) mpsi_particles_take_out(mpm->particles, mpm->rooms.gone.item);
+  return count > 0;
+}
+
+mps_status mpsi_mpm_clear_body(mps_mpm *mpm, const char *function, mps_contact *contact) {
+  if (!takes_away(contact)) return MPS_OK;
+  uint8_t *gone = mpsi_alloc(mpm->context, mpm->p.count, 1);
+  if (!gone) return mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count);
+  const int64_t count = into_body(mpm, contact, 0.0, 0, mpm->p.count, gone);
+  if (count > 0) mpsi_particles_take_out(mpm->particles, gone);
+  mpsi_free(mpm->context, gone);
+  return MPS_OK;
+}
