@@ -31,11 +31,11 @@ static int32_t passed(const mps_mpm *mpm, int64_t k) {
 }
 
 /* What a particle carries out is taken from those that stay, as by an impulse. */
-static void carry_out(const mps_mpm *mpm, int64_t k, mps_reaction *r) {
+static void carry_out(mps_mpm *mpm, int64_t k, mps_reaction *r) {
   const mpsi_columns *p = &mpm->p;
   const double m = p->m[k], h = mpm->def.cell;
   const double second = mpm->standard ? 0.0 : h * h / (mpm->def.spline == 3 ? 3.0 : 4.0);
-  double x[3] = {0.0}, v[3] = {0.0}, L[3][3] = {{0.0}};
+  double x[3] = {0.0}, v[3] = {0.0}, L[3][3] = {{0.0}}, kinetic = 0.0;
   for (int c = 0; c < mpm->dim; c++) {
     x[c] = p->x[c][k], v[c] = p->v[c][k];
     for (int d = 0; d < mpm->dim; d++) L[c][d] = p->L[mpm->dim * c + d][k];
@@ -47,9 +47,12 @@ static void carry_out(const mps_mpm *mpm, int64_t k, mps_reaction *r) {
     r->force[c] -= m * v[c] / mpm->run.dt;
     r->moment_impulse[c] -= spin;
     r->moment[c] -= spin / mpm->run.dt;
-    r->work -= 0.5 * m * v[c] * v[c];
+    kinetic += 0.5 * m * v[c] * v[c];
   }
+  r->work -= kinetic;
   r->count++;
+  mpm->energy.sum.boundaries -= kinetic;
+  mpm->energy.sum.kinetic -= kinetic;
 }
 
 static void count_out(const mps_mpm *mpm, int64_t k, mps_reaction *r, uint8_t *gone) {

@@ -1,12 +1,13 @@
 /* particles.c - the particles of the set as the solver has them: where their columns lie, what it
  * keeps for each, the state in which they begin, and how they come and go between steps.
  *
- *   caller                       set                          solver
- *   mps_particles_append, fill   new ones, with places   -->  insert: inside the domain, outside
- * the bodies? room, volume, first law edit, commit                 density, volume         -->
- * commit: mass of those that changed mps_particles_remove         asks, closes the gaps   -->
- * renew: columns, number step                                                 -->  all have a mass?
- * sort, blocks, limit SPDX-License-Identifier: BSD-3-Clause */
+ *   caller                      set                       solver
+ *   mps_particles_append, fill  new ones, with places --> insert: inside the domain? volume, law
+ *   edit, commit                density, volume       --> commit: mass of those that changed
+ *   mps_particles_remove        closes the gaps       --> renew: columns, number
+ *   step                                              --> all have a mass? sort, blocks, limit
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "particles.h"
 
 #include "contact_particle.h"
@@ -229,5 +230,6 @@ void mpsi_mpm_renew(void *self) {
   const int64_t sorted = grid->cell_count > 0 ? grid->cells[grid->cell_count - 1].end : 0;
   mpsi_mpm_bind(mpm);
   if (mpm->p.count == sorted && !mpm->run.edited) return; /* another holder has refused */
+  mpm->energy.springs_known = false;
   mpm->run.edited = mpm->run.stale = true;
 }
