@@ -52,7 +52,8 @@ static mps_status prepare(app *a, seawall *w) {
   if (status == MPS_OK && w->s.frames > 0)
     status = open_series(a, w, "water", w->water, &w->series);
   if (status == MPS_OK && w->s.frames > 0) {
-    status = mps_elastic_solve(w->wall.solver); /* so that its fields are there */
+    if (!w->s.coupled)
+      status = mps_elastic_solve(w->wall.solver); /* so that its fields are there */
     if (status == MPS_OK) status = open_series(a, w, "wall", w->wall.set, &w->wall_series);
   }
   return status;
@@ -115,6 +116,9 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("young", "Pa", OPTION_FROM_TO(1e3, 1e16), &s->young, "Young's modulus"),
       OPTION_NUMBER("poisson", "1", OPTION_FROM_TO(0.0, 0.49), &s->poisson, "Poisson's ratio"),
       OPTION_NUMBER("wall-density", "kg/m3", OPTION_DENSITY, &s->wall_density, "of the wall"),
+      OPTION_FLAG("coupled", &s->coupled,
+                  "the wall moves the water too, in every step until both agree; else it is loaded "
+                  "only"),
       OPTION_HEADING("Run"),
       OPTION_NUMBER("duration", "s", OPTION_DURATION, &s->duration, "of the run"),
       OPTION_NUMBER("dt", "s", OPTION_DURATION, &s->dt, "step"),

@@ -14,7 +14,7 @@ int64_t seawall_paper_particles(const seawall_settings *s) {
 
 static mps_status make_fluid(mps_context *context, seawall *w) {
   const seawall_settings *s = &w->s;
-  const double corner[2] = {0.0, 0.0}, right[2] = {s->length, 0.0};
+  const double corner[2] = {0.0, 0.0};
   mps_fluid_def def = mps_fluid_defaults();
   def.dt = s->dt, def.level = s->depth, def.density = WAVES_DENSITY;
   w->motion = (waves_piston){s->amplitude, s->period, s->ramp};
@@ -24,7 +24,12 @@ static mps_status make_fluid(mps_context *context, seawall *w) {
     status = mps_signal_user(context, waves_move_piston, &w->motion, &w->piston);
   if (status == MPS_OK) status = waves_add_wall(w->fluid, corner, 0.0, 1.0, NULL, NULL);
   if (status == MPS_OK) status = waves_add_wall(w->fluid, corner, 1.0, 0.0, w->piston, NULL);
-  return status == MPS_OK ? waves_add_wall(w->fluid, right, -1.0, 0.0, NULL, NULL) : status;
+  if (status != MPS_OK) return status;
+  mps_fluid_boundary_def wall = mps_fluid_boundary_defaults();
+  wall.point[0] = s->length;
+  wall.normal[0] = -1.0;
+  if (s->coupled) wall.nodes = w->wall.centre, wall.node_count = w->wall.count;
+  return mps_fluid_add_boundary(w->fluid, &wall, NULL);
 }
 
 /* Its face is the plane of the fluid's wall; its particles begin half a spacing behind. It holds in
@@ -65,8 +70,9 @@ static mps_status make_records(seawall *w) {
 }
 
 mps_status seawall_build(app *a, seawall *w) {
-  mps_status status = make_fluid(a->context, w);
-  if (status == MPS_OK) status = make_wall(a->context, w);
+  mps_status status = make_wall(a->context, w);
+  if (status == MPS_OK) status = make_fluid(a->context, w);
+  if (status == MPS_OK && w->s.coupled) status = seawall_couple(a->context, w);
   return status == MPS_OK ? make_records(w) : status;
 }
 
@@ -76,6 +82,7 @@ void seawall_free(seawall *w) {
   mps_fluid_destroy(&w->fluid);
   mps_signal_destroy(&w->piston);
   mps_particles_destroy(&w->water);
+  seawall_free_coupled(&w->both);
   strip_free(&w->wall);
   for (int64_t k = 0; k < w->frames; k++) free(w->frame[k].value);
   free(w->frame);

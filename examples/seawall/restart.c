@@ -17,7 +17,7 @@ static const char *const free_options[] = {"out",     "threads", "checkpoint", "
 /* What comes first; then the samples, the look, and of each frame its header and values. */
 typedef struct notes {
   char options[1536];
-  int64_t samples, frames, points, checkpoints, forces;
+  int64_t samples, frames, points, checkpoints, forces, learnt;
   seawall_sample at;
 } notes;
 
@@ -65,31 +65,68 @@ static void pass_all(cursor *c, seawall *w) {
   memset(&n, 0, sizeof n);
   n.samples = w->samples, n.frames = w->frames, n.points = w->look.points;
   n.checkpoints = w->checkpoints;
-  n.forces = w->forces, n.at = w->look.at;
+  n.forces = w->forces, n.learnt = w->both.learnt, n.at = w->look.at;
   if (!options_record(w->table, free_options, n.options, sizeof n.options)) n.options[0] = '\0';
   pass(c, &n, sizeof n);
   if (!c->writes && c->at) {
     if (c->damaged || n.samples < 0 || n.samples > w->capacity || n.frames < 0 ||
         n.frames > w->s.frames + 1 || n.points < 0 || n.points > w->room || n.forces < 0 ||
-        n.forces > w->steps) {
+        n.forces > w->steps || n.learnt < 0 || n.learnt > w->both.room) {
       c->damaged = true;
       return;
     }
     w->samples = n.samples, w->look.points = n.points, w->checkpoints = n.checkpoints;
-    w->forces = n.forces, w->look.at = n.at;
+    w->forces = n.forces, w->both.learnt = n.learnt, w->look.at = n.at;
   }
   pass(c, w->sample, (size_t)w->samples * sizeof *w->sample);
   pass(c, w->force, (size_t)w->forces * sizeof *w->force);
   pass(c, w->look.y, (size_t)w->look.points * sizeof(double));
   pass(c, w->look.pressure, (size_t)w->look.points * sizeof(double));
   pass(c, w->look.displacement, 2 * (size_t)mps_particles_count(w->wall.set) * sizeof(double));
+  if (w->s.coupled) {
+    pass(c, w->both.before, (size_t)w->wall.count * sizeof(double));
+    pass(c, w->both.memory, (size_t)w->both.learnt * sizeof(double));
+  }
   pass_frames(c, w, n.frames);
 }
 
 /* ---- to the file and back -------------------------------------------------------------------- */
 
+/* The structure's file beside the fluid's. */
+static void name_wall(char *path, size_t size, const char *checkpoint) {
+  snprintf(path, size, "%s.wall", checkpoint);
+}
+
+static mps_status save_wall(seawall *w) {
+  char path[1300];
+  mps_checkpoint info = mps_checkpoint_defaults();
+  name_wall(path, sizeof path, w->s.checkpoint);
+  const mps_status status =
+      mps_coupling_get_memory(w->both.coupling, w->both.room, w->both.memory, &w->both.learnt);
+  return status == MPS_OK ? mps_elastic_save(w->wall.solver, path, &info) : status;
+}
+
+/* Both files must be of the same moment. */
+static mps_status restore_wall(seawall *w) {
+  char path[1300];
+  mps_checkpoint info = mps_checkpoint_defaults();
+  name_wall(path, sizeof path, w->s.restart);
+  const mps_status status = mps_elastic_restore(w->wall.solver, path, &info);
+  if (status != MPS_OK) return status;
+  if (mps_elastic_steps(w->wall.solver) != mps_fluid_steps(w->fluid)) {
+    snprintf(w->why, sizeof w->why, "%.150s and %.150s are not of the same moment", w->s.restart,
+             path);
+    return MPS_ERROR_FORMAT;
+  }
+  return mps_coupling_set_memory(w->both.coupling, w->both.learnt, w->both.memory);
+}
+
 mps_status seawall_save(seawall *w) {
   if (!w->s.checkpoint) return MPS_OK;
+  if (w->s.coupled) {
+    const mps_status saved = save_wall(w);
+    if (saved != MPS_OK) return saved;
+  }
   cursor c = {.writes = true};
   pass_all(&c, w); /* counts */
   mps_checkpoint info = mps_checkpoint_defaults();
@@ -140,6 +177,7 @@ mps_status seawall_restore(mps_context *context, seawall *w) {
     pass_all(&c, w);
     if (c.damaged || c.bytes != info.user_bytes) status = MPS_ERROR_FORMAT;
     w->restarted = mps_fluid_time(w->fluid);
+    if (status == MPS_OK && w->s.coupled) status = restore_wall(w);
   }
   free(info.user_data);
   return status;

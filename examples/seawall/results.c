@@ -137,6 +137,9 @@ static bool write_summary(app *a, const seawall *w, double H) {
   json_integer(&f, "collisions", report.collisions);
   json_integer(&f, "limited", report.limited);
   json_integer(&f, "pushed", report.pushed);
+  mps_coupling_report both;
+  if (w->s.coupled && mps_coupling_get_report(w->both.coupling, &both) == MPS_OK)
+    json_number(&f, "solutions_a_step", (double)both.all_repeats / fmax((double)both.steps, 1.0));
   json_end(&f);
   return output_close(&f);
 }

@@ -1,5 +1,5 @@
 /* run.c - waves against the wall: at every sample the pressures of the water are put on the facets
- * of the structure, which is solved with the factor that it keeps.
+ * of the structure, which is solved with the factor that it keeps; or both move together.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "seawall.h"
 
@@ -13,10 +13,12 @@ static mps_status bend_wall(seawall *w, double *deflection) {
   const strip *wall = &w->wall;
   const double edge = 0.25 * w->s.spacing;
   const double lower[2] = {-INFINITY, wall->def.upper[1] - edge}, upper[2] = {INFINITY, INFINITY};
-  mps_status status =
-      mps_fluid_get_pressure(w->fluid, SEAWALL_WALL, wall->count, wall->centre, w->pressure);
-  if (status == MPS_OK) status = strip_load(&w->wall, w->pressure);
-  if (status == MPS_OK) status = mps_elastic_solve(wall->solver);
+  mps_status status = MPS_OK;
+  if (!w->s.coupled) {
+    status = mps_fluid_get_pressure(w->fluid, SEAWALL_WALL, wall->count, wall->centre, w->pressure);
+    if (status == MPS_OK) status = strip_load(&w->wall, w->pressure);
+    if (status == MPS_OK) status = mps_elastic_solve(wall->solver);
+  }
   return status == MPS_OK ? strip_displacement(&w->wall, lower, upper, 0, deflection) : status;
 }
 
@@ -111,7 +113,7 @@ double seawall_smooth(const seawall *w, int64_t k) {
 static mps_status advance(app *a, seawall *w, double t) {
   mps_status status = MPS_OK;
   while (status == MPS_OK && mps_fluid_time(w->fluid) < t) {
-    status = mps_fluid_step(w->fluid, 1);
+    status = w->s.coupled ? seawall_coupled_step(w) : mps_fluid_step(w->fluid, 1);
     if (status == MPS_OK) status = note_force(w);
     char text[64];
     snprintf(text, sizeof text, "t = %.3f s", mps_fluid_time(w->fluid));

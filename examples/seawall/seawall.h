@@ -8,6 +8,7 @@
 #include "common/strip.h"
 #include "common/waves.h"
 
+#include <mps/couple.h>
 #include <mps/io.h>
 
 #define SEAWALL_LOOK 5.16    /* s: the crest of Chikazawa's Figures 12 and 13 */
@@ -22,6 +23,7 @@ typedef struct seawall_settings {
   double wall_thickness, wall_height, young, poisson, wall_density;
   double every_checkpoint;
   int64_t frames, threads;
+  bool coupled;
   const char *out, *checkpoint, *restart;
 } seawall_settings;
 
@@ -44,6 +46,19 @@ typedef struct seawall_look {
   double *displacement; /* m, 2 a particle of the structure */
 } seawall_look;
 
+/* Of a wall that moves the water; arrays over its facets, along the normal into the water. */
+typedef struct seawall_both {
+  mps_coupling *coupling;
+  mps_snapshot *start; /* of the structure, at the beginning of the step */
+  double *block;
+  double *rest, *displacement, *velocity; /* m, m, m/s: under still water; at the beginning */
+  double *mean, *answer;                  /* m/s2: accelerations over the step */
+  double *moved, *speed;                  /* m, m/s: at its end */
+  double *before, *given, *vector;        /* Pa: loads at its beginning and end; room */
+  double *memory;                         /* of the coupling, before the step */
+  int64_t room, learnt;
+} seawall_both;
+
 typedef struct seawall {
   seawall_settings s;
   const option *table;
@@ -52,6 +67,7 @@ typedef struct seawall {
   mps_signal *piston;
   mps_fluid *fluid;
   strip wall;
+  seawall_both both;
   double *pressure; /* Pa, a facet of the wall */
   mps_recorder *series, *wall_series;
   seawall_sample *sample;
@@ -72,6 +88,10 @@ int64_t seawall_paper_particles(const seawall_settings *s);
 /* model.c */
 mps_status seawall_build(app *a, seawall *w);
 void seawall_free(seawall *w);
+/* coupled.c */
+mps_status seawall_couple(mps_context *context, seawall *w);
+void seawall_free_coupled(seawall_both *b);
+mps_status seawall_coupled_step(seawall *w);
 /* run.c: steps to the end, or until Ctrl-C, which leaves a checkpoint. */
 mps_status seawall_run(app *a, seawall *w);
 /* restart.c. seawall_peek compares the options of the file with these before the model is built. */

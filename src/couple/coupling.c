@@ -6,8 +6,7 @@
 #include <string.h>
 
 #define MOST_COLUMNS 64 /* as quasi_newton.c has room for */
-#define MEMORY_HEAD 5   /* numbers before the arrays: format, size, past, columns, Aitken's factor \
-                         */
+#define MEMORY_HEAD 6   /* format, size, steps, columns, factor, repeats: before the arrays */
 #define MEMORY_FORMAT 1.0
 
 static const mps_coupling_def defaults = {
@@ -237,8 +236,8 @@ mps_status mps_coupling_get_memory(const mps_coupling *c, int64_t capacity, doub
   const int64_t n = c->def.size;
   *count = MEMORY_HEAD + MPSI_COUPLING_PAST * n + c->columns * (1 + 2 * n);
   if (capacity < *count) return MPS_OK;
-  const double head[MEMORY_HEAD] = {MEMORY_FORMAT, (double)n, (double)c->steps, c->columns,
-                                    c->factor};
+  const double head[MEMORY_HEAD] = {MEMORY_FORMAT, (double)n, (double)c->steps,
+                                    c->columns,    c->factor, (double)c->all_repeats};
   double *at = values;
   memcpy(at, head, sizeof head);
   at += MEMORY_HEAD;
@@ -260,7 +259,8 @@ mps_status mps_coupling_set_memory(mps_coupling *c, int64_t count, const double 
   const bool good =
       count >= MEMORY_HEAD && values[0] == MEMORY_FORMAT && values[1] == (double)n &&
       values[2] >= 0.0 && values[2] < 9e15 && values[3] >= 0.0 && values[3] <= most &&
-      values[3] == floor(values[3]) && isfinite(values[4]) &&
+      values[3] == floor(values[3]) && isfinite(values[4]) && values[5] >= 0.0 &&
+      values[5] < 9e15 &&
       count == MEMORY_HEAD + MPSI_COUPLING_PAST * n + (int64_t)values[3] * (1 + 2 * n);
   if (!good)
     return mpsi_fail(c->context, __func__, MPS_ERROR_FORMAT,
@@ -272,6 +272,7 @@ mps_status mps_coupling_set_memory(mps_coupling *c, int64_t count, const double 
                        "value %lld of the coupling's memory is %g, must be finite", (long long)i,
                        values[i]);
   c->steps = (int64_t)values[2], c->columns = (int32_t)values[3], c->factor = values[4];
+  c->all_repeats = (int64_t)values[5];
   const double *at = values + MEMORY_HEAD;
   for (int k = 0; k < MPSI_COUPLING_PAST; k++, at += n)
     memcpy(c->past[k], at, (size_t)n * sizeof *at);

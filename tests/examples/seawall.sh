@@ -46,6 +46,20 @@ if "$1/mps-seawall" $run --restart "$work/c.h5" --period 1.1 --out "$work/e" 2>"
 fi
 has "$work/log" "c.h5 was made with other options: --period is 1.1, was 1"
 
+# Coupled: a wall so stiff bends as under the same load alone, and a run goes on with what it had learnt.
+soft="$run --young 2.1e7 --coupled"
+"$1/mps-seawall" $run --coupled --out "$work/h" >"$work/log"
+alone=$(sed -n 's/^ *"deflection_end": \([^,]*\),*$/\1/p' "$work/b/summary.json")
+in_range "$work/h/summary.json" deflection_end "$(awk "BEGIN { print 0.995 * $alone }")" \
+  "$(awk "BEGIN { print 1.005 * $alone }")"
+"$1/mps-seawall" $soft --out "$work/i" >"$work/log"
+in_range "$work/i/summary.json" solutions_a_step 1 5
+"$1/mps-seawall" $soft --every-checkpoint 0.2 --checkpoint "$work/j.h5" --out "$work/j" >"$work/log"
+"$1/mps-seawall" $soft --restart "$work/j.h5" --out "$work/k" >"$work/log"
+for file in force.csv wall.csv summary.json; do
+  cmp "$work/i/$file" "$work/k/$file" || fail "another $file after a restart, coupled"
+done
+
 # Stopped by Ctrl-C: written, and gone on with.
 "$1/mps-seawall" $run --every-checkpoint 0.05 --out "$work/f" >"$work/out" 2>"$work/log" &
 pid=$!
