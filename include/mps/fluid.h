@@ -10,7 +10,8 @@
  * The set's spacing l0 is the particles' distance: each stands for l0^2 times `measure` of water.
  * The solver works in the fields of the set (zero copy) and sorts it now and then: views taken
  * before are then stale (their epoch). It reads `velocity` at creation where the set has it, and
- * writes `position`, `velocity`, `pressure`, `reduced_pressure` and `free_surface`.
+ * writes `position`, `velocity`, `pressure`, `reduced_pressure`, `reduced_pressure_old` and
+ * `free_surface`.
  *
  * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
  * its results are the same bit for bit for every number of threads.

@@ -66,6 +66,8 @@
     "solvers", "after a step or a run")                                                            \
   X(reduced_pressure, F64, 1, "Pa", "pressure plus density g (height - reference level)",           \
     "fluid", "after a step or a run")                                                              \
+  X(reduced_pressure_old, F64, 1, "Pa", "reduced pressure of the previous step",                   \
+    "fluid", "after a step or a run; part of a checkpoint")                                        \
   X(free_surface, I64, 1, "-", "0 inside the fluid, 1 at its free surface, 2 apart from the rest",  \
     "fluid", "after a step or a run")                                                              \
   X(displacement_old, F64, MPSI_PER_DIM, "m", "displacement of the previous step",                 \

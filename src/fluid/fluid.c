@@ -109,7 +109,7 @@ static bool allocate(mps_fluid *f) {
   enum { DOUBLES = sizeof doubles / sizeof *doubles };
   double *block = mpsi_alloc(f->context, n * (DOUBLES + 1 + 2) + 2 * chunks, sizeof *block);
   f->local = mpsi_alloc(f->context, f->count, sizeof *f->local);
-  f->state = mpsi_alloc(f->context, 2 * f->count, sizeof *f->state);
+  f->state = mpsi_alloc(f->context, 3 * f->count, sizeof *f->state);
   f->slab = block;
   if (!block || !f->local || !f->state) return false;
   for (int k = 0; k < DOUBLES; k++) *doubles[k] = block + k * n;
@@ -119,11 +119,13 @@ static bool allocate(mps_fluid *f) {
   s->lower_end = s->lower_start + n;
   s->sums = block + (DOUBLES + 3) * n;
   f->zone = f->state + f->count;
+  f->company = f->zone + f->count;
   return true;
 }
 
 static mps_status add_fields(mps_particles *particles) {
-  static const char *const names[] = {"velocity", "pressure", "reduced_pressure", "free_surface"};
+  static const char *const names[] = {"velocity", "pressure", "reduced_pressure",
+                                      "reduced_pressure_old", "free_surface"};
   mps_status status = MPS_OK;
   for (size_t k = 0; status == MPS_OK && k < sizeof names / sizeof *names; k++)
     status = mps_particles_add_field(particles, names[k], 0);
@@ -169,7 +171,7 @@ static mps_status start(mps_fluid *f, const char *function) {
   f->count = mps_particles_count(f->particles);
   f->l0 = mps_particles_spacing(f->particles);
   f->weight = mpsi_fluid_make_weight(f->l0, f->def.radius_ratio * f->l0);
-  f->most_near = 44, f->most_lower = 22;
+  f->most_near = 32, f->most_lower = 16;
   set_gravity(f);
   if (!allocate(f) || !mpsi_fluid_grow_cloud(f, f->count + f->count / 4 + 256))
     return mpsi_fail_memory(f->context, function, (size_t)f->count * sizeof *f->local);
@@ -272,7 +274,7 @@ mps_status mps_fluid_get_totals_sized(mps_fluid *f, mps_totals *out, size_t size
 
 static int64_t bytes_of(const mps_fluid *f) {
   const int64_t n = (f->count + 7) / 8 * 8 + 24, chunks = f->count / MPSI_FLUID_CHUNK + 2;
-  return 8 * (14 * n + 2 * chunks) + f->count * ((int64_t)sizeof *f->local + 2) +
+  return 8 * (14 * n + 2 * chunks) + f->count * ((int64_t)sizeof *f->local + 3) +
          f->cloud_capacity * (11 * 8 + 8) + f->index_room.capacity * 4 + f->w_room.capacity * 8 +
          f->cell_room.capacity * 4 + f->lower_col_room.capacity * 4 + f->lower_room.capacity * 4;
 }

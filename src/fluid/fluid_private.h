@@ -96,6 +96,10 @@ typedef struct mpsi_fluid_local {
   double qs;              /* reduced pressure of the surface there, Pa */
 } mpsi_fluid_local;
 
+/* Whether a particle has images among its neighbours, and neighbours within l0/2. */
+enum { MPSI_FLUID_NEAR_IMAGES = 1, MPSI_FLUID_NEAR_CLOSE = 2 };
+#define MPSI_FLUID_CLOSE 0.5 /* l0 */
+
 enum { MPSI_FLUID_INSIDE = 0, MPSI_FLUID_SURFACE = 1, MPSI_FLUID_APART = 2 };
 
 /* Rows of the pressure equation and what its solution needs; see pcg.c. */
@@ -138,6 +142,7 @@ struct mps_fluid {
   double *u_new[2], *pressure; /* count */
   uint8_t *state;              /* MPSI_FLUID_..., count */
   uint8_t *zone;               /* at the surface or within 1.6 l0 of it */
+  uint8_t *company;            /* MPSI_FLUID_NEAR_..., bits */
   double *zone_normal[2];
   mpsi_fluid_local *local;
   /* neighbours */
@@ -157,6 +162,7 @@ struct mps_fluid {
   void *slab;         /* of all arrays of fixed size */
   void *cloud;
   double time, dt, speed; /* s; s, of the step being made; largest |u|, m/s */
+  double last_dt;         /* s, of the last step; 0 before the first */
   int64_t steps;
   mpsi_fluid_stage stage;
   bool in_callback;
@@ -167,12 +173,16 @@ struct mps_fluid {
   double work_boundaries;          /* J, since creation */
 };
 
+/* Makes room for a quarter more than `count`; or, fit, for just as many. */
+bool mpsi_fluid_room_fit(mps_context *context, mpsi_fluid_room *room, int64_t count, size_t size);
 bool mpsi_fluid_room_ensure(mps_context *context, mpsi_fluid_room *room, int64_t count,
                             size_t size);
 
 /* Runs task(fluid, chunk) for the chunks of `items` items on the executor. */
 typedef void (*mpsi_fluid_task)(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
 void mpsi_fluid_for(mps_fluid *fluid, int64_t items, int64_t chunk, mpsi_fluid_task task);
+
+static inline double mpsi_fluid_larger(double a, double b) { return a > b ? a : b; }
 
 static inline double mpsi_fluid_w(const mpsi_fluid_weight *weight, double r) {
   const double a = 1.0 - r * weight->inverse;

@@ -21,10 +21,12 @@
 
 typedef struct sums {
   double n, m[2], r2, M[3], du[2], G[4], shift[2];
+  double closest2; /* square of the nearest neighbour's distance */
+  int32_t last;    /* largest index */
 } sums;
 
 static sums add_up(const mps_fluid *f, int64_t i) {
-  sums s = {0};
+  sums s = {.closest2 = INFINITY};
   const int32_t *index = f->index + f->start[i];
   const double *weight = f->w + f->start[i], *x = f->x[0], *y = f->x[1], *u = f->u[0], *v = f->u[1];
   const double least = 0.0025 * f->l0 * f->l0;
@@ -32,8 +34,11 @@ static sums add_up(const mps_fluid *f, int64_t i) {
     const int32_t j = index[k];
     const double w = weight[k], dx = x[j] - x[i], dy = y[j] - y[i], du = u[j] - u[i],
                  dv = v[j] - v[i];
-    const double r2 = fmax(dx * dx + dy * dy, least), inverse = 1.0 / r2, by_r = w * sqrt(inverse);
+    const double r2 = mpsi_fluid_larger(dx * dx + dy * dy, least), inverse = 1.0 / r2,
+                 by_r = w * sqrt(inverse);
     const double wx = w * inverse * dx, wy = w * inverse * dy;
+    s.closest2 = r2 < s.closest2 ? r2 : s.closest2;
+    s.last = j > s.last ? j : s.last;
     s.n += w, s.m[0] += w * dx, s.m[1] += w * dy, s.r2 += w * r2;
     s.M[0] += wx * dx, s.M[1] += wx * dy, s.M[2] += wy * dy;
     s.du[0] += w * du, s.du[1] += w * dv;
@@ -92,11 +97,13 @@ static void place_surface(const mps_fluid *f, int64_t i, const double *M, double
 
 static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   (void)chunk;
-  const double n0 = f->weight.n0;
+  const double n0 = f->weight.n0, close2 = MPSI_FLUID_CLOSE * MPSI_FLUID_CLOSE * f->l0 * f->l0;
   for (int64_t i = begin; i < end; i++) {
     const sums s = add_up(f, i);
     mpsi_fluid_local local = {.n = s.n, .m = {s.m[0], s.m[1]}, .S = 0.25 * s.r2};
     f->state[i] = MPSI_FLUID_APART;
+    f->company[i] = (uint8_t)((s.last >= f->count ? MPSI_FLUID_NEAR_IMAGES : 0) |
+                              (s.closest2 < close2 ? MPSI_FLUID_NEAR_CLOSE : 0));
     double M[3] = {s.M[0], s.M[1], s.M[2]};
     if (f->near[i] >= 2 && s.n >= APART * n0) {
       regularise(M);

@@ -21,7 +21,6 @@
 #define MOST_SMOOTH 0.5
 #define SHIFT 2.5
 #define MOST_SHIFT 0.05 /* l0 */
-#define CLOSE 0.5       /* l0 */
 #define OFF_WALL 0.1    /* l0 */
 
 /* s0 of the sheet: 1/s. Without gravity by the largest velocity. */
@@ -37,7 +36,7 @@ static void pressure_gradient(const mps_fluid *f, int64_t i, double *gradient) {
   for (int32_t k = 0; k < f->near[i]; k++) {
     const int32_t j = index[k];
     const double dx = f->x[0][j] - f->x[0][i], dy = f->x[1][j] - f->x[1][i];
-    const double s = weight[k] * (f->q[j] - f->q[i]) / fmax(dx * dx + dy * dy, least);
+    const double s = weight[k] * (f->q[j] - f->q[i]) / mpsi_fluid_larger(dx * dx + dy * dy, least);
     sum[0] += s * dx, sum[1] += s * dy;
   }
   if (local->c > 0.0) { /* c = |m|/h and e = -m/|m| */
@@ -105,18 +104,21 @@ static void accelerate(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
 
 /* Cuts velocities that no neighbour explains. */
 static void limit_speed(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  const double allowed = 0.5 * sqrt(f->g * f->l0) + 2.0 * f->g * f->dt;
   int64_t cuts = 0;
   for (int64_t i = begin; i < end; i++) {
     const int32_t *index = f->index + f->start[i];
     const double u2 = f->u_new[0][i] * f->u_new[0][i] + f->u_new[1][i] * f->u_new[1][i];
     double most = f->u[0][i] * f->u[0][i] + f->u[1][i] * f->u[1][i];
+    const double least = 1.1 * sqrt(most) + allowed;
+    if (f->g == 0.0 || !(u2 > least * least)) continue;
     for (int32_t k = 0; k < f->near[i]; k++) {
       const int32_t j = index[k];
       const int64_t own = j < f->count ? j : f->parent[j - f->count];
-      most = fmax(most, f->u[0][own] * f->u[0][own] + f->u[1][own] * f->u[1][own]);
+      most = mpsi_fluid_larger(most, f->u[0][own] * f->u[0][own] + f->u[1][own] * f->u[1][own]);
     }
-    const double limit = 1.1 * sqrt(most) + 0.5 * sqrt(f->g * f->l0) + 2.0 * f->g * f->dt;
-    if (f->g == 0.0 || !(u2 > limit * limit)) continue;
+    const double limit = 1.1 * sqrt(most) + allowed;
+    if (!(u2 > limit * limit)) continue;
     const double factor = limit / sqrt(u2);
     for (int c = 0; c < 2; c++) f->u_new[c][i] *= factor;
     cuts++;
@@ -140,13 +142,14 @@ static void image_velocity(const mps_fluid *f, int64_t ghost, double *v) {
 /* Pairs that are too close and approach lose half their relative velocity each. The result goes to
  * r and z of the system, free now. */
 static void collide(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  const double close2 = CLOSE * CLOSE * f->l0 * f->l0;
+  const double close2 = MPSI_FLUID_CLOSE * MPSI_FLUID_CLOSE * f->l0 * f->l0;
   int64_t collisions = 0;
   for (int64_t i = begin; i < end; i++) {
     const int32_t *index = f->index + f->start[i];
     double u[2] = {f->u_new[0][i], f->u_new[1][i]};
     const double own[2] = {u[0], u[1]};
-    for (int32_t k = 0; k < f->near[i]; k++) {
+    const int32_t near = f->company[i] & MPSI_FLUID_NEAR_CLOSE ? f->near[i] : 0;
+    for (int32_t k = 0; k < near; k++) {
       const int32_t j = index[k];
       const double dx = f->x[0][j] - f->x[0][i], dy = f->x[1][j] - f->x[1][i];
       const double r2 = dx * dx + dy * dy;

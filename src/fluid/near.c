@@ -14,15 +14,19 @@
 #define SEARCHED 512   /* candidates that a search may write before it sorts them out */
 #define MOST_NEAR 2000 /* neighbours a particle, on average over a chunk */
 
-bool mpsi_fluid_room_ensure(mps_context *context, mpsi_fluid_room *room, int64_t count,
-                            size_t size) {
+bool mpsi_fluid_room_fit(mps_context *context, mpsi_fluid_room *room, int64_t count, size_t size) {
   if (count <= room->capacity) return true;
-  const int64_t capacity = count + count / 4 + 64;
-  void *item = mpsi_alloc(context, capacity, size);
+  void *item = mpsi_alloc(context, count, size);
   if (!item) return false;
   mpsi_free(context, room->item);
-  *room = (mpsi_fluid_room){item, capacity};
+  *room = (mpsi_fluid_room){item, count};
   return true;
+}
+
+bool mpsi_fluid_room_ensure(mps_context *context, mpsi_fluid_room *room, int64_t count,
+                            size_t size) {
+  return count <= room->capacity ||
+         mpsi_fluid_room_fit(context, room, count + count / 4 + 64, size);
 }
 
 mpsi_fluid_weight mpsi_fluid_make_weight(double l0, double re) {
@@ -177,7 +181,8 @@ static void find_chunk(void *data, int64_t chunk, int32_t worker) {
     }
     double *w = f->w + at;
     if (f->limited) found = mpsi_fluid_keep_seen(f, i, found, f->index + at, w);
-    for (int64_t k = 0; k < found; k++) w[k] = mpsi_fluid_w(&f->weight, fmax(sqrt(w[k]), least));
+    for (int64_t k = 0; k < found; k++)
+      w[k] = mpsi_fluid_w(&f->weight, mpsi_fluid_larger(sqrt(w[k]), least));
     if (f->bent) average_weights(f, i, found, f->index + at, w);
     f->start[i] = at;
     f->near[i] = (int32_t)found;
@@ -194,8 +199,8 @@ mps_status mpsi_fluid_find_neighbours(mps_fluid *f, const char *function) {
   for (;;) {
     const int64_t per_chunk = f->most_near * MPSI_FLUID_CHUNK + SEARCHED,
                   pairs = chunks * per_chunk;
-    if (!mpsi_fluid_room_ensure(f->context, &f->index_room, pairs, sizeof *f->index) ||
-        !mpsi_fluid_room_ensure(f->context, &f->w_room, pairs, sizeof *f->w))
+    if (!mpsi_fluid_room_fit(f->context, &f->index_room, pairs, sizeof *f->index) ||
+        !mpsi_fluid_room_fit(f->context, &f->w_room, pairs, sizeof *f->w))
       return mpsi_fail_memory(f->context, function,
                               (size_t)pairs * (sizeof *f->index + sizeof *f->w));
     f->index = f->index_room.item;
@@ -206,6 +211,6 @@ mps_status mpsi_fluid_find_neighbours(mps_fluid *f, const char *function) {
     if (f->most_near > MOST_NEAR)
       return mpsi_fail(f->context, function, MPS_ERROR_DIVERGED,
                        "more than %d neighbours a particle: the fluid has collapsed", MOST_NEAR);
-    f->most_near += f->most_near / 2;
+    f->most_near += f->most_near / 8;
   }
 }

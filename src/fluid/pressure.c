@@ -18,10 +18,12 @@ static double density_source(const mps_fluid *f, int64_t i) {
   return f->zone[i] ? fmax(k, 0.0) : fmax(k, LEAST_DENSITY);
 }
 
-/* The diagonal, and the start vector from the last step. */
+/* The diagonal, and a start vector that goes on as q has changed in the last step. */
 static void make_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   (void)chunk;
   mpsi_fluid_system *s = &f->system;
+  const double *old = mpsi_particles_column(f->particles, "reduced_pressure_old", 0);
+  const double ahead = f->last_dt > 0.0 ? f->dt / f->last_dt : 0.0;
   for (int64_t i = begin; i < end; i++) {
     s->diagonal[i] = 1.0, s->x[i] = 0.0;
     if (f->state[i] == MPSI_FLUID_APART) continue;
@@ -33,7 +35,7 @@ static void make_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
       if (f->state[ghost < 0 ? j : f->parent[ghost]] != MPSI_FLUID_APART) sum += w[k];
     }
     s->diagonal[i] = sum * (1.0 + 1e-10) + 1e-12;
-    s->x[i] = f->q[i];
+    s->x[i] = f->q[i] + ahead * (f->q[i] - old[i]);
   }
 }
 
@@ -48,7 +50,8 @@ static void make_right(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
     const int32_t *index = f->index + f->start[i];
     const double *w = f->w + f->start[i];
     double right = local->c * local->qs;
-    for (int32_t k = 0; k < f->near[i]; k++) {
+    const int32_t near = f->company[i] & MPSI_FLUID_NEAR_IMAGES ? f->near[i] : 0;
+    for (int32_t k = 0; k < near; k++) {
       const int64_t ghost = index[k] - f->count;
       if (ghost >= 0 && f->state[f->parent[ghost]] != MPSI_FLUID_APART)
         right += w[k] * f->offset[ghost];

@@ -33,6 +33,7 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_agree_number(s, "level", f->level);
   mpsi_state_f64(s, "time", &f->time, 1);
   mpsi_state_i64(s, "steps", &f->steps, 1);
+  mpsi_state_f64(s, "last_dt", &f->last_dt, 1);
   mpsi_state_f64(s, "speed", &f->speed, 1);
   mpsi_state_f64(s, "energy", &f->energy, 1);
   mpsi_state_f64(s, "work_boundaries", &f->work_boundaries, 1);
@@ -60,7 +61,7 @@ static void list_state(mpsi_state *s, void *solver) {
 /* Of a file: a step relies on places that are numbers. */
 static bool fits(void *solver, mps_snapshot *values, const char **what) {
   (void)solver;
-  const char *const names[] = {"position", "velocity", "reduced_pressure"};
+  const char *const names[] = {"position", "velocity", "reduced_pressure", "reduced_pressure_old"};
   for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
     const mpsi_value *value = mpsi_values_find(&values->fields, names[k]);
     *what = "a particle's position, velocity or pressure is missing or not finite";

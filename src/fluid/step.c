@@ -48,7 +48,9 @@ static void store_cloud(mps_fluid *f) {
     memcpy(column(f, "position", c), f->x[c], bytes);
     memcpy(column(f, "velocity", c), f->u[c], bytes);
   }
+  memcpy(column(f, "reduced_pressure_old", 0), column(f, "reduced_pressure", 0), bytes);
   memcpy(column(f, "reduced_pressure", 0), f->q, bytes);
+  f->last_dt = f->dt;
   double most = 0.0;
   for (int64_t i = 0; i < f->count; i++) {
     p[i] = f->pressure[i];

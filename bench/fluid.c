@@ -1,0 +1,105 @@
+/* fluid.c - benchmark of the fluid: waves of a piston in a closed tank 16/3 as long as deep, of
+ * growing size. Time of a particle-step and its shares: preparation (neighbours, moments, the
+ * matrix and its preconditioner), solution of the pressure, and motion (gradient, guards,
+ * positions, wall pressures); iterations; memory besides the fields; and the gain of a second
+ * thread.
+ *
+ * bench-fluid [PARTICLES [STEPS [SMALLEST]]]: the largest and the smallest size, default 1e5 and
+ * 1e3, and the steps timed at each, default 40. SPDX-License-Identifier: BSD-3-Clause */
+#include "measure.h"
+
+#include <mps/fluid.h>
+
+#include <math.h>
+
+typedef struct result {
+  int64_t particles;
+  double prepare, solve, move; /* s a step */
+  double iterations, bytes;
+} result;
+
+static void add_wall(mps_context *context, mps_fluid *fluid, double x, int axis, double sign,
+                     mps_signal *signal) {
+  mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+  def.point[0] = x, def.normal[axis] = sign, def.signal = signal;
+  check(context, mps_fluid_add_boundary(fluid, &def, NULL), "wall");
+}
+
+/* Steps of .04 (l0/g)^1/2 after as many that are not timed. */
+static result measure(int64_t rows, int64_t steps, int32_t threads) {
+  mps_context *context = NULL;
+  mps_particles *water = NULL;
+  mps_fluid *fluid = NULL;
+  mps_signal *piston = NULL;
+  mps_context_def context_def = mps_context_defaults();
+  mps_particles_def set = mps_particles_defaults();
+  mps_fluid_def def = mps_fluid_defaults();
+  char text[256] = "";
+  context_def.threads = threads;
+  check(NULL, mps_context_create(&context_def, &context, text, sizeof text), text);
+  set.spacing = 0.3 / (double)rows;
+  const double length = set.spacing * round(16.0 / 3.0 * (double)rows);
+  const double lo[2] = {0.0, 0.0}, hi[2] = {length, 0.3};
+  check(context, mps_particles_create(context, &set, &water), "particles");
+  check(context, mps_particles_fill_box(water, lo, hi, NULL), "fill");
+  def.dt = 0.04 * sqrt(set.spacing / 9.81);
+  def.level = 0.3;
+  check(context, mps_fluid_create(context, water, &def, &fluid), "fluid");
+  check(context, mps_signal_sine(context, 1.0, 0.02, 0.0, &piston), "signal");
+  add_wall(context, fluid, 0.0, 1, 1.0, NULL);
+  add_wall(context, fluid, 0.0, 0, 1.0, piston);
+  add_wall(context, fluid, length, 0, -1.0, NULL);
+  check(context, mps_fluid_step(fluid, steps), "steps");
+  result r = {.particles = mps_particles_count(water)};
+  mps_fluid_report before, after;
+  check(context, mps_fluid_get_report(fluid, &before), "report");
+  for (int64_t k = 0; k < steps; k++) {
+    double clock[4];
+    clock[0] = seconds();
+    check(context, mps_fluid_begin_step(fluid, NAN), "begin");
+    clock[1] = seconds();
+    check(context, mps_fluid_solve_pressure(fluid), "solve");
+    clock[2] = seconds();
+    check(context, mps_fluid_end_step(fluid), "end");
+    clock[3] = seconds();
+    r.prepare += (clock[1] - clock[0]) / (double)steps;
+    r.solve += (clock[2] - clock[1]) / (double)steps;
+    r.move += (clock[3] - clock[2]) / (double)steps;
+  }
+  check(context, mps_fluid_get_report(fluid, &after), "report");
+  r.iterations = (double)(after.all_iterations - before.all_iterations) / (double)steps;
+  r.bytes = (double)after.bytes / (double)r.particles;
+  mps_fluid_destroy(&fluid);
+  mps_signal_destroy(&piston);
+  mps_particles_destroy(&water);
+  mps_context_destroy(&context);
+  return r;
+}
+
+static double argument(int count, char **values, int at, double usual) {
+  return at < count ? strtod(values[at], NULL) : usual;
+}
+
+int main(int count, char **values) {
+  const double largest = argument(count, values, 1, 1e5);
+  const int64_t steps = (int64_t)argument(count, values, 2, 40.0);
+  const double smallest = argument(count, values, 3, 1e3);
+  if (!(largest >= smallest && largest <= 1e7 && smallest >= 200.0) || steps < 1 ||
+      steps > 100000) {
+    fprintf(stderr, "bench-fluid [PARTICLES [STEPS [SMALLEST]]]: 200 to 1e7, 1 to 1e5\n");
+    return 1;
+  }
+  printf("%10s %10s %8s %8s %8s %11s %10s %12s\n", "particles", "us/particle", "prepare", "solve",
+         "move", "iterations", "B/particle", "two threads");
+  for (double size = smallest; size < 1.01 * largest; size *= sqrt(10.0)) {
+    const int64_t rows = (int64_t)round(sqrt(size * 3.0 / 16.0));
+    const result one = measure(rows, steps, 1), two = measure(rows, steps, 2);
+    const double total = one.prepare + one.solve + one.move;
+    printf("%10lld %10.3f %7.0f%% %7.0f%% %7.0f%% %11.1f %10.0f %11.2fx\n",
+           (long long)one.particles, 1e6 * total / (double)one.particles,
+           100.0 * one.prepare / total, 100.0 * one.solve / total, 100.0 * one.move / total,
+           one.iterations, one.bytes, total / (two.prepare + two.solve + two.move));
+    fflush(stdout);
+  }
+  return 0;
+}
