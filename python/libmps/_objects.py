@@ -18,14 +18,22 @@ class Object:
         self.kind = ffi.typeof(pointer).item.cname.removeprefix("mps_")
         self.context = context or self
         self._alive = list(alive)  # callbacks, and what the object was made from
+        # Garbage is collected anywhere, inside cffi too: nothing may have to be looked up then.
+        self._destroy = getattr(library, f"mps_{self.kind}_destroy")
+        self._holder = ffi.new(f"mps_{self.kind} *[1]", [pointer])
+        if context is None:
+            self._running, self._late = 0, []  # calls under way; what is destroyed after them
 
     def close(self):
         """Destroys the object; without effect the second time."""
-        if self.pointer is not None:
-            holder = ffi.new(f"mps_{self.kind} *[1]", [self.pointer])
-            self.pointer = None
-            getattr(library, f"mps_{self.kind}_destroy")(holder)
-            self._alive.clear()
+        if self.pointer is None:
+            return
+        self.pointer = None
+        if self.context._running:  # by garbage collection in a callback
+            self.context._late.append((self._destroy, self._holder, self._alive))
+        else:
+            self._destroy(self._holder)
+        self._alive = []
 
     def __del__(self):
         if self.pointer is not None:
@@ -67,7 +75,15 @@ class Object:
     def _invoke(self, name, values, members):
         if self.pointer is None:
             raise ValueError(f"the {self.kind} is closed")
-        result, outputs, state = call(name, self, values, members)
+        context = self.context
+        context._running += 1
+        try:
+            result, outputs, state = call(name, self, values, members)
+        finally:
+            context._running -= 1
+            while not context._running and context._late:
+                destroy, holder, _alive = context._late.pop()
+                destroy(holder)
         if state.exception:
             raise state.exception
         if not returns_status(name):

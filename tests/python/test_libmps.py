@@ -211,6 +211,29 @@ class Arrays(unittest.TestCase):
         self.assertAlmostEqual(float(x[:, 1].max()), 5.95, delta=1e-12)
 
 
+class Garbage(unittest.TestCase):
+    def test_objects_in_cycles_go_whenever_python_looks(self):
+        context = mps.Context(threads=2)
+        sand = block(context)
+        solver = falling(context, sand)
+
+        def leave_garbage(_solver):
+            cycle = [context.signal_sine(1.0, 0.01, 0.0)]
+            cycle.append(cycle)
+
+        threshold = gc.get_threshold()
+        gc.set_threshold(5)  # nearly everywhere
+        try:
+            solver.run(0.05, 1, leave_garbage)
+            for _ in range(50):
+                leave_garbage(None)
+        finally:
+            gc.set_threshold(*threshold)
+        gc.collect()
+        self.assertEqual(solver.steps(), 50)
+        self.assertFalse(context._late)
+
+
 class Whole(unittest.TestCase):
     def test_every_function_has_its_parameters(self):
         for name in _cdef.PARAMETERS:
