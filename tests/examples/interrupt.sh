@@ -63,6 +63,9 @@ wrote cone force.csv section.csv summary.json
 interrupt wave 0.5 mps-wave --radius 1 --duration 3000
 wrote wave receivers.csv summary.json
 
+interrupt tank 1 mps-tank --duration 100
+wrote tank summary.json
+
 # The study: the cells of the cases that were not run are empty.
 "$programs/mps-stability" --study --method stepping --threads 1 --out "$work/study" >"$work/out" \
   2>"$work/log" &

@@ -1,0 +1,106 @@
+/* servo.c - a plate that keeps its load: a rigid body whose velocity answers, before each step, to
+ * the force that it feels. It presses a column of soil between smooth walls, with friction nowhere;
+ * the settlement is that of an oedometer, F H / (M W), M = K + 4G/3.
+ *
+ * The plate moves by v = gain (F - R) with the wanted force F and the reaction R, so that it rests
+ * when they agree. A stiff soil answers with a frequency of its own; the gain lets the plate go
+ * about one settlement in ten travel times of the wave through the column.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include <mps/mpm.h>
+
+#include <math.h>
+#include <stdio.h>
+
+static const double spacing = 0.05, width = 0.4, height = 1.0;    /* m */
+static const double young = 1e7, poisson = 0.3, density = 1800.0; /* Pa, kg/m3 */
+static const double force = 4e4;                                  /* N, per m of thickness */
+
+typedef struct test {
+  mps_particles *soil;
+  mps_mpm *mpm;
+  mps_body *plate;
+  mps_contact *contact;
+  double gain; /* m/s a N */
+} test;
+
+static mps_status make(mps_context *context, test *t) {
+  const double lo[2] = {0.0, 0.0}, hi[2] = {width, height};
+  mps_particles_def of_soil = mps_particles_defaults();
+  mps_mpm_def def = mps_mpm_defaults();
+  mps_material *sand = NULL;
+  of_soil.spacing = spacing;
+  def.cell = 2.0 * spacing;
+  def.upper[0] = width, def.upper[1] = 2.0; /* sides are smooth walls, as they are born */
+  def.lower[0] = def.lower[1] = 0.0;
+  mps_status status = mps_particles_create(context, &of_soil, &t->soil);
+  if (status == MPS_OK) status = mps_particles_fill_box(t->soil, lo, hi, NULL);
+  if (status == MPS_OK) status = mps_particles_set(t->soil, "density", 0, density);
+  if (status == MPS_OK) status = mps_material_linear_elastic(context, young, poisson, &sand);
+  if (status == MPS_OK) status = mps_mpm_create(context, t->soil, sand, &def, &t->mpm);
+  mps_material_destroy(&sand);
+  /* wider than the column, so that its corners touch nothing */
+  mps_body_def place = mps_body_defaults();
+  place.position[0] = 0.5 * width, place.position[1] = height + 0.2;
+  if (status == MPS_OK) status = mps_body_create_box(context, &place, 2.0 * width, 0.4, &t->plate);
+  if (status == MPS_OK) status = mps_mpm_add_contact(t->mpm, t->plate, NULL, &t->contact);
+  return status;
+}
+
+/* Before each step: the plate's velocity from the force of the last one. */
+static mps_status steer(void *user, mps_mpm *mpm) {
+  test *t = user;
+  mps_reaction r;
+  mps_body_motion motion = mps_body_motion_defaults(); /* the place stays as it is */
+  (void)mpm;
+  mps_status status = mps_contact_get_reaction(t->contact, -1, &r);
+  motion.velocity[1] = -t->gain * (force - r.force[1]);
+  return status == MPS_OK ? mps_body_set_motion(t->plate, &motion) : status;
+}
+
+/* Mean settlement of the top row, m. */
+static double settlement(const test *t, const double *before) {
+  mps_view x;
+  double sum = 0.0;
+  if (mps_particles_view(t->soil, "position", &x) != MPS_OK) return NAN;
+  for (int64_t k = 0; k < x.shape[0]; k++) sum += before[0] - *mps_view_f64(&x, k, 1);
+  return sum / (double)x.shape[0];
+}
+
+static double mean_height(const test *t) {
+  const double zero = 0.0;
+  return -settlement(t, &zero);
+}
+
+int main(void) {
+  mps_context *context = NULL;
+  test t = {0};
+  const double modulus = young * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+  const double wanted = force * height / (modulus * width),
+               travel = height / sqrt(modulus / density);
+  t.gain = wanted / (10.0 * travel * force);
+  if (mps_context_create(NULL, &context, NULL, 0) != MPS_OK) return 1;
+  mps_status status = make(context, &t);
+  const double start = status == MPS_OK ? mean_height(&t) : 0.0;
+  mps_reaction r = {0};
+  printf("   t, s   force, N  settlement of the surface, mm\n");
+  for (int part = 1; part <= 10 && status == MPS_OK; part++) {
+    status = mps_mpm_run(t.mpm, 10.0 * travel * part, 1, steer, &t);
+    if (status == MPS_OK) status = mps_contact_get_reaction(t.contact, -1, &r);
+    /* in uniform strain the mean of all particles has gone half as far as the surface */
+    if (status == MPS_OK)
+      printf("%7.4f  %9.1f  %8.4f\n", mps_mpm_time(t.mpm), r.force[1],
+             2e3 * (start - mean_height(&t)));
+  }
+  const double got = 2.0 * (start - (status == MPS_OK ? mean_height(&t) : 0.0));
+  printf("wanted: %9.1f  %8.4f\n", force, 1e3 * wanted);
+  if (status != MPS_OK) fprintf(stderr, "%s\n", mps_context_error(context)->message);
+  mps_contact_destroy(&t.contact);
+  mps_mpm_destroy(&t.mpm);
+  mps_body_destroy(&t.plate);
+  mps_particles_destroy(&t.soil);
+  mps_context_destroy(&context);
+  return status == MPS_OK && fabs(r.force[1] / force - 1.0) < 0.01 &&
+                 fabs(got / wanted - 1.0) < 0.02
+             ? 0
+             : 1;
+}
