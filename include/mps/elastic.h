@@ -345,6 +345,7 @@ typedef struct mps_elastic_motion_def {
   double ratio[2]; /* damping ratios in [0, 1) at the two frequencies, in place of a0 and a1, which
                       they must give >= 0; NaN (default): none */
   double frequency[2]; /* Hz, > 0, different */
+  double time;         /* s, of the start, finite; default 0 */
 } mps_elastic_motion_def;
 
 MPS_API mps_status mps_elastic_motion_def_init(mps_elastic_motion_def *def, size_t size);
@@ -355,8 +356,7 @@ static inline mps_elastic_motion_def mps_elastic_motion_defaults(void) {
   return def;
 }
 
-/** Begins a motion at time 0 at the fields `displacement` and `velocity` (without: 0), accelerated
- * as the loads say. Reads `density`. Ends a former one. */
+/** Begins a motion from the fields `displacement`, `velocity` (0 without) and `density`. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_start(mps_elastic *e,
                                                    const mps_elastic_motion_def *def);
 /** Takes `count` (>= 0) steps, and writes `displacement`, `velocity`, `acceleration` and

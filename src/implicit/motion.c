@@ -169,6 +169,9 @@ static mps_status begin(mps_elastic *e, const char *function, const mps_elastic_
   mpsi_elastic_motion made = {.dt = 0.0}, *m = NULL;
   mps_status status = MPSI_DEF_READ(e->context, function, mps_elastic_motion_def, user, &def);
   if (status == MPS_OK) status = check_dt(e->context, function, made.dt = def.dt);
+  if (status == MPS_OK && !isfinite(made.time = def.time))
+    status = mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "time is %g s, must be finite",
+                       def.time);
   if (status == MPS_OK) status = read_family(e->context, function, &def, &made);
   if (status == MPS_OK) status = read_damping(e->context, function, &def, &made);
   if (status == MPS_OK) status = mpsi_elastic_read_mass(e, function);
@@ -178,8 +181,8 @@ static mps_status begin(mps_elastic *e, const char *function, const mps_elastic_
     status = mpsi_elastic_factor(e, function, shift_of(&made, made.dt, &factor));
   for (int a = 0; a < 2 && status == MPS_OK; a++)
     status = mps_particles_add_field(e->particles, a ? "acceleration" : "velocity", 0);
-  if (status == MPS_OK) status = mpsi_elastic_drive(e, function, 0.0);
-  if (status == MPS_OK) status = mpsi_elastic_gather_loads(e, function, 0.0);
+  if (status == MPS_OK) status = mpsi_elastic_drive(e, function, made.time);
+  if (status == MPS_OK) status = mpsi_elastic_gather_loads(e, function, made.time);
   if (status != MPS_OK) return status;
   mpsi_elastic_motion *former = e->motion;
   if (!(m = mpsi_alloc(e->context, 1, sizeof *m)))

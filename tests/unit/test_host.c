@@ -1,0 +1,334 @@
+/* test_host.c - one host program and every solver, through the public interface only: soil
+ * (WLS-MPM) under a plate, the ground below it (explicit dynamics), a wall (implicit elasticity)
+ * and water against it (fluid). In each of its steps the host carries forces and motions from one
+ * to the other, takes particles away and brings others, makes the step, goes back, makes it with
+ * other loads, goes back again, and repeats the first: the same bits. What the solvers have in
+ * common (mps/solver.h) is asked in one way. SPDX-License-Identifier: BSD-3-Clause */
+#include "test_fixture.h"
+
+#include <mps/mps.h>
+
+#define STEP 2e-3 /* s, of the host: each solver takes its own steps in it */
+#define STEPS 12
+
+/* ---- one vocabulary ---------------------------------------------------------------------------
+ */
+
+typedef struct verbs {
+  const char *name;
+  mps_status (*run)(void *solver, double t_end);
+  mps_status (*snapshot)(void *solver, mps_snapshot **snapshot);
+  mps_status (*rollback)(void *solver, const mps_snapshot *snapshot);
+  mps_status (*totals)(void *solver, mps_totals *totals);
+  mps_status (*reaction)(void *solver, int32_t number, mps_reaction *reaction);
+  double (*time)(const void *solver);
+  mps_particles *(*particles)(const void *solver);
+} verbs;
+
+#define VERBS(S)                                                                                   \
+  static mps_status S##_run(void *s, double t) { return mps_##S##_run(s, t, 1, NULL, NULL); }      \
+  static mps_status S##_snapshot(void *s, mps_snapshot **to) { return mps_##S##_snapshot(s, to); } \
+  static mps_status S##_rollback(void *s, const mps_snapshot *to) {                                \
+    return mps_##S##_rollback(s, to);                                                              \
+  }                                                                                                \
+  static mps_status S##_totals(void *s, mps_totals *t) { return mps_##S##_get_totals(s, t); }      \
+  static mps_status S##_reaction(void *s, int32_t n, mps_reaction *r) {                            \
+    return mps_##S##_get_reaction(s, n, r);                                                        \
+  }                                                                                                \
+  static double S##_time(const void *s) { return mps_##S##_time(s); }                              \
+  static mps_particles *S##_particles(const void *s) { return mps_##S##_particles(s); }            \
+  static const verbs of_##S = {#S,         S##_run,      S##_snapshot, S##_rollback,               \
+                               S##_totals, S##_reaction, S##_time,     S##_particles};
+
+VERBS(mpm)
+VERBS(dynamics)
+VERBS(elastic)
+VERBS(fluid)
+
+enum { SOIL, GROUND, WALL, WATER, SOLVERS };
+
+typedef struct host {
+  const verbs *verb[SOLVERS];
+  void *solver[SOLVERS];
+  mps_snapshot *before[SOLVERS];
+  int32_t boundary[SOLVERS]; /* whose reaction is asked */
+  int32_t wall_load, water_wall;
+  mps_body *plate;
+  mps_contact *contact;
+  mps_signal *shake;
+  int64_t facets[32], facet_count; /* of the wall, towards the water */
+  double amplitude;                /* m, of what the signal answers */
+  double time;
+} host;
+
+/* ---- the scene --------------------------------------------------------------------------------
+ */
+
+static mps_particles *box(double spacing, double width, double height) {
+  mps_particles_def def = mps_particles_defaults();
+  mps_particles *set = NULL;
+  const double lo[2] = {0.0, 0.0}, hi[2] = {width, height};
+  def.spacing = spacing;
+  mps_assert_ok(context, mps_particles_create(context, &def, &set));
+  mps_assert_ok(context, mps_particles_fill_box(set, lo, hi, NULL));
+  mps_assert_ok(context, mps_particles_set(set, "density", 0, 2000.0));
+  return set;
+}
+
+static mps_material *stuff(double young) {
+  mps_material *material = NULL;
+  mps_assert_ok(context, mps_material_linear_elastic(context, young, 0.25, &material));
+  return material;
+}
+
+static void make_soil(host *h) {
+  mps_particles *set = box(0.1, 1.0, 0.8);
+  mps_material *sand = stuff(2e6);
+  mps_mpm_def def = mps_mpm_defaults();
+  mps_body_def place = mps_body_defaults();
+  def.cell = 0.2;
+  def.gravity[1] = -9.81;
+  for (int c = 0; c < 2; c++) def.lower[c] = 0.0, def.upper[c] = c ? 3.0 : 1.0;
+  mps_assert_ok(context, mps_particles_add_field(set, "external_force", 0));
+  mps_assert_ok(context, mps_mpm_create(context, set, sand, &def, (mps_mpm **)&h->solver[SOIL]));
+  place.position[0] = 0.5, place.position[1] = 1.05;
+  mps_assert_ok(context, mps_body_create_box(context, &place, 0.6, 0.5, &h->plate));
+  mps_assert_ok(context, mps_mpm_add_contact(h->solver[SOIL], h->plate, NULL, &h->contact));
+  h->boundary[SOIL] = MPS_MPM_SIDE_Y_LOWER;
+  mps_material_destroy(&sand);
+  mps_particles_destroy(&set);
+}
+
+/* What the host tells its signals: the ground's base is shaken by it. */
+static mps_status shake(void *user, double t, double motion[3]) {
+  const host *h = user;
+  const double w = 60.0;
+  motion[0] = h->amplitude * (1.0 - cos(w * t));
+  motion[1] = h->amplitude * w * sin(w * t);
+  motion[2] = h->amplitude * w * w * cos(w * t);
+  return MPS_OK;
+}
+
+static void make_ground(host *h) {
+  mps_particles *set = box(0.25, 3.0, 2.0);
+  mps_dynamics_def def = mps_dynamics_defaults();
+  def.dt = 2.5e-4;
+  def.material = stuff(5e7);
+  mps_assert_ok(context, mps_particles_add_field(set, "external_force", 0));
+  mps_assert_ok(context,
+                mps_dynamics_create(context, set, &def, (mps_dynamics **)&h->solver[GROUND]));
+  mps_dynamics_boundary_def base = mps_dynamics_boundary_defaults();
+  mps_assert_ok(context, mps_signal_user(context, shake, h, &h->shake));
+  base.kind = MPS_DYNAMICS_BOUNDARY_DRIVEN;
+  base.lower[0] = base.lower[1] = -1.0, base.upper[0] = 9.0, base.upper[1] = 0.3;
+  base.dofs = MPS_DOF_Y;
+  base.signal[0] = h->shake;
+  mps_assert_ok(context, mps_dynamics_add_boundary(h->solver[GROUND], &base, &h->boundary[GROUND]));
+  mps_material_destroy(&def.material);
+  mps_particles_destroy(&set);
+}
+
+static void start_wall(host *h) {
+  mps_elastic_motion_def motion = mps_elastic_motion_defaults();
+  motion.dt = STEP / 2.0;
+  motion.time = h->time;
+  mps_assert_ok(context, mps_elastic_start(h->solver[WALL], &motion));
+  mps_assert_ok(context, mps_elastic_select_facets(h->solver[WALL], 0, 1, NULL, NULL, 32, h->facets,
+                                                   &h->facet_count));
+}
+
+static void make_wall(host *h) {
+  mps_particles *set = box(0.1, 0.4, 1.2);
+  mps_elastic_def def = mps_elastic_defaults();
+  mps_elastic_boundary_def foot = mps_elastic_boundary_defaults();
+  mps_elastic_load_def pressure = mps_elastic_load_defaults();
+  def.material = stuff(3e7);
+  mps_assert_ok(context, mps_elastic_create(context, set, &def, (mps_elastic **)&h->solver[WALL]));
+  foot.lower[0] = foot.lower[1] = -1.0, foot.upper[0] = 9.0, foot.upper[1] = 0.1;
+  mps_assert_ok(context, mps_elastic_add_boundary(h->solver[WALL], &foot, &h->boundary[WALL]));
+  start_wall(h);
+  pressure.kind = MPS_ELASTIC_LOAD_PRESSURE;
+  pressure.ids = h->facets, pressure.id_count = h->facet_count;
+  mps_assert_ok(context, mps_elastic_add_load(h->solver[WALL], &pressure, &h->wall_load));
+  mps_material_destroy(&def.material);
+  mps_particles_destroy(&set);
+}
+
+static void make_water(host *h) {
+  mps_particles *set = box(0.05, 0.8, 0.4);
+  const double wall[3][5] = {{0, 0, 0, 1, 0}, {0, 0, 1, 0, 1}, {0.8, 0, -1, 0, 0}};
+  mps_assert_ok(context, mps_fluid_create(context, set, NULL, (mps_fluid **)&h->solver[WATER]));
+  for (int k = 0; k < 3; k++) {
+    mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+    int32_t number;
+    for (int c = 0; c < 2; c++) def.point[c] = wall[k][c], def.normal[c] = wall[k][2 + c];
+    mps_assert_ok(context, mps_fluid_add_boundary(h->solver[WATER], &def, &number));
+    if (wall[k][4] > 0.0) h->water_wall = h->boundary[WATER] = number;
+  }
+  mps_particles_destroy(&set);
+}
+
+/* ---- exchange ---------------------------------------------------------------------------------
+ */
+
+/* Forces (N) on the particles above `level`, shared evenly, times a factor by place. */
+static void push(mps_particles *set, double level, double fx, double fy) {
+  mps_view f, x;
+  int64_t met = 0;
+  mps_assert_ok(context, mps_particles_view(set, "position", &x));
+  for (int64_t k = 0; k < x.shape[0]; k++) met += *mps_view_f64(&x, k, 1) > level;
+  mps_assert_ok(context, mps_particles_edit(set, "external_force", &f));
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    const double part = *mps_view_f64(&x, k, 1) > level ? 1.0 / (double)met : 0.0;
+    *mps_view_f64(&f, k, 0) = fx * part;
+    *mps_view_f64(&f, k, 1) = fy * part;
+  }
+  mps_assert_ok(context, mps_particles_commit(set, &f));
+}
+
+/* What the solvers feel now, to what they are told for the next step; `more` makes it another. */
+static void exchange(host *h, double more) {
+  mps_reaction plate, base, water;
+  mps_assert_ok(context, mps_contact_get_reaction(h->contact, -1, &plate));
+  mps_assert_ok(context, mps_dynamics_get_reaction(h->solver[GROUND], h->boundary[GROUND], &base));
+  mps_assert_ok(context, mps_fluid_get_reaction(h->solver[WATER], h->water_wall, &water));
+  /* the soil's weight on the ground, the ground's drag on the soil */
+  push(h->verb[GROUND]->particles(h->solver[GROUND]), 1.7, 0.0, -1.5e4 - plate.force[1]);
+  push(h->verb[SOIL]->particles(h->solver[SOIL]), 0.5, more + 1e-3 * base.force[0], 0.0);
+  /* the plate keeps a load of 2 kN */
+  mps_body_motion motion = mps_body_motion_defaults();
+  motion.velocity[1] = -1e-4 * (2e3 + more - plate.force[1]);
+  mps_assert_ok(context, mps_body_set_motion(h->plate, &motion));
+  /* water on the wall, the wall's velocity to the water */
+  mps_elastic_load_def pressure = mps_elastic_load_defaults();
+  pressure.kind = MPS_ELASTIC_LOAD_PRESSURE;
+  pressure.ids = h->facets, pressure.id_count = h->facet_count;
+  pressure.force[0] = (water.force[0] + more) / (0.1 * (double)h->facet_count);
+  mps_assert_ok(context, mps_elastic_set_load(h->solver[WALL], h->wall_load, &pressure));
+  double velocity[3 * 32], mean = 0.0;
+  const mps_elastic_facet_arrays arrays = {.velocity = velocity};
+  mps_assert_ok(context,
+                mps_elastic_get_facets(h->solver[WALL], h->facet_count, h->facets, &arrays));
+  for (int64_t k = 0; k < h->facet_count; k++) mean += velocity[3 * k] / (double)h->facet_count;
+  mean += 1e-5 * more;
+  mps_assert_ok(context, mps_fluid_set_wall_motion(h->solver[WATER], h->water_wall, NULL, &mean));
+  h->amplitude = 1e-4 + 1e-7 * more;
+}
+
+/* Particles that go and come: one of the soil is thrown on top again, the ground is dug, the wall
+ * erodes; the water lets none go. */
+static void trade(host *h, int step) {
+  mps_particles *soil = h->verb[SOIL]->particles(h->solver[SOIL]);
+  mps_particles *ground = h->verb[GROUND]->particles(h->solver[GROUND]);
+  mps_view id, x;
+  mps_assert_ok(context, mps_particles_view(soil, "id", &id));
+  const int64_t gone[1] = {*mps_view_i64(&id, 3, 0)};
+  const double back[2] = {0.1, 1.3 + 0.01 * step};
+  mps_assert_ok(context, mps_particles_remove(soil, 1, gone));
+  mps_assert_ok(context, mps_particles_append(soil, 1, back));
+  mps_assert_ok(context, mps_particles_set(soil, "density", 0, 2000.0));
+  mps_assert_ok(context, mps_particles_view(ground, "id", &id));
+  int64_t dug[1] = {-1};
+  mps_assert_ok(context, mps_particles_view(ground, "reference", &x));
+  for (int64_t k = 0; k < x.shape[0] && dug[0] < 0; k++)
+    if (*mps_view_f64(&x, k, 1) > 1.7) dug[0] = *mps_view_i64(&id, k, 0);
+  mps_assert_ok(context, mps_particles_remove(ground, 1, dug));
+  mps_assert_fails(context, mps_particles_append(ground, 1, back), MPS_ERROR_STATE,
+                   "takes no more particles");
+  if (step != STEPS / 2) return;
+  mps_particles *wall = h->verb[WALL]->particles(h->solver[WALL]);
+  int64_t top[8], count;
+  const double lo[2] = {-1.0, 1.1}, hi[2] = {9.0, 9.0};
+  mps_assert_ok(context, mps_particles_select_box(wall, lo, hi, 8, top, &count));
+  mps_assert_ok(context, mps_particles_remove(wall, count, top));
+  start_wall(h);
+}
+
+/* ---- a step -----------------------------------------------------------------------------------
+ */
+
+static void mix(uint64_t *hash, const void *data, size_t bytes) {
+  for (size_t k = 0; k < bytes; k++)
+    *hash = (*hash ^ ((const unsigned char *)data)[k]) * 0x100000001b3u;
+}
+
+/* All that can be seen of a solver. */
+static uint64_t look(const host *h, int k) {
+  uint64_t hash = 0xcbf29ce484222325u;
+  const verbs *v = h->verb[k];
+  mps_particles *set = v->particles(h->solver[k]);
+  mps_totals totals;
+  mps_reaction reaction;
+  for (int32_t f = 0; f < mps_particles_field_count(set); f++) {
+    mps_field_info info;
+    mps_view view;
+    mps_assert_ok(context, mps_particles_field(set, f, &info));
+    mps_assert_ok(context, mps_particles_view(set, info.name, &view));
+    for (int64_t c = 0; c < view.shape[1]; c++)
+      mix(&hash, (const char *)view.data + 8 * c * view.stride[1], 8 * (size_t)view.shape[0]);
+  }
+  mps_assert_ok(context, v->reaction(h->solver[k], h->boundary[k], &reaction));
+  mps_assert_ok(context, v->totals(h->solver[k], &totals));
+  mix(&hash, &reaction, sizeof reaction);
+  mix(&hash, &totals, sizeof totals);
+  return hash;
+}
+
+static void step(host *h, uint64_t *hash) {
+  for (int k = 0; k < SOLVERS; k++) {
+    mps_assert_ok(context, h->verb[k]->run(h->solver[k], h->time + STEP));
+    assert_true(h->verb[k]->time(h->solver[k]) == h->time + STEP); /* all are there, to the bit */
+    hash[k] = look(h, k);
+  }
+}
+
+static void go_back(host *h) {
+  for (int k = 0; k < SOLVERS; k++)
+    mps_assert_ok(context, h->verb[k]->rollback(h->solver[k], h->before[k]));
+}
+
+static void a_host_exchanges_and_repeats(void **state) {
+  (void)state;
+  host h = {.verb = {&of_mpm, &of_dynamics, &of_elastic, &of_fluid}, .amplitude = 1e-4};
+  double most = 0.0;
+  make_soil(&h);
+  make_ground(&h);
+  make_wall(&h);
+  make_water(&h);
+  for (int n = 0; n < STEPS; n++) {
+    uint64_t first[SOLVERS], other[SOLVERS], again[SOLVERS];
+    trade(&h, n);
+    for (int k = 0; k < SOLVERS; k++)
+      mps_assert_ok(context, h.verb[k]->snapshot(h.solver[k], &h.before[k]));
+    exchange(&h, 0.0);
+    step(&h, first);
+    go_back(&h);
+    exchange(&h, 50.0);
+    step(&h, other);
+    go_back(&h);
+    exchange(&h, 0.0);
+    step(&h, again);
+    for (int k = 0; k < SOLVERS; k++) {
+      if (first[k] != again[k]) fail_msg("%s, step %d: not the same bits", h.verb[k]->name, n);
+      if (first[k] == other[k]) fail_msg("%s, step %d: loads changed nothing", h.verb[k]->name, n);
+    }
+    h.time += STEP;
+    mps_reaction plate;
+    mps_assert_ok(context, mps_contact_get_reaction(h.contact, -1, &plate));
+    most = fmax(most, plate.force[1]);
+  }
+  assert_true(most > 1e3); /* soil and plate have met */
+  for (int k = 0; k < SOLVERS; k++) mps_snapshot_destroy(&h.before[k]);
+  mps_contact_destroy(&h.contact);
+  mps_mpm_destroy((mps_mpm **)&h.solver[SOIL]);
+  mps_dynamics_destroy((mps_dynamics **)&h.solver[GROUND]);
+  mps_elastic_destroy((mps_elastic **)&h.solver[WALL]);
+  mps_fluid_destroy((mps_fluid **)&h.solver[WATER]);
+  mps_body_destroy(&h.plate);
+  mps_signal_destroy(&h.shake);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(a_host_exchanges_and_repeats)};
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
