@@ -12,6 +12,7 @@
  *   contact.h     contact of particles with bodies
  *   solver.h      what the solvers have in common
  *   mpm.h         WLS-MPM: large deformation and contact
+ *   grid.h        its grid: nodes, fields at points
  *   dynamics.h    explicit elastodynamics
  *   elastic.h     implicit elasticity
  *   fluid.h       free-surface flow
@@ -33,6 +34,7 @@
 #include "elastic.h"
 #include "fluid.h"
 #include "geostatic.h"
+#include "grid.h"
 #include "io.h"
 #include "kernel.h"
 #include "material.h"

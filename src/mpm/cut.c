@@ -48,11 +48,13 @@ static box near_bodies(const mps_mpm *mpm, const mpsi_cell_block *cells) {
   return out;
 }
 
+/* Forces are wanted apart from the momenta at all nodes. */
+static bool all_apart(const mps_mpm *mpm) { return mpm->energy.counts || mpm->grid.apart; }
+
 /* Slots of sides, and what is split, of the blocks of nodes under a cut block of cells. */
 static void mark_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const box *near, bool finds) {
   static const int32_t low[3] = {0}, high[3] = {MPSI_SIDE, MPSI_SIDE, MPSI_SIDE};
-  const bool all =
-      mpm->energy.counts || mpm->by_weight || mpm->flip > 0.0 || (finds && cells->edge);
+  const bool all = all_apart(mpm) || mpm->by_weight || mpm->flip > 0.0 || (finds && cells->edge);
   bool rough = false;
   for (int32_t k = 0; cells->inside && k < cells->pairs; k++)
     rough =
@@ -63,7 +65,7 @@ static void mark_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const box *near
     box under = box_under(cells, q, low, high);
     under = common(&under, near);
     const bool touched = !is_empty(&under);
-    if (!touched && !cells->edge && !mpm->standard && !mpm->energy.counts) continue;
+    if (!touched && !cells->edge && !mpm->standard && !all_apart(mpm)) continue;
     if (nodes->side < 0) nodes->side = (int32_t)mpm->grid.side_count++;
     nodes->split = nodes->split || all || (touched && rough);
   }
@@ -86,7 +88,7 @@ static mps_status find_cut(mps_mpm *mpm, const char *function) {
     const box near = near_bodies(mpm, cells);
     cells->inside = !is_empty(&near);
     cells->cut = cells->edge || cells->inside || mpm->standard;
-    if (cells->cut || mpm->energy.counts) mark_cut(mpm, cells, &near, finds);
+    if (cells->cut || all_apart(mpm)) mark_cut(mpm, cells, &near, finds);
   }
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     mpsi_cell_block *cells = &mpm->grid.cells[b];

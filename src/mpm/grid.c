@@ -5,10 +5,6 @@
 
 #include <string.h>
 
-/* Shape functions of a fit can be negative, so that a node with hardly any particle could get a
- * tiny or negative mass: at least this fraction of its mass by weights, which never is. */
-#define LEAST_MASS 0.02
-
 void mpsi_mpm_clear_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
   (void)worker;
   const mpsi_node_block *nodes = &mpm->grid.nodes[g];
@@ -34,7 +30,7 @@ static void update_cut(mps_mpm *mpm, bool split, mpsi_node *node, mpsi_node *sid
       memset(side[k], 0, sizeof side[k]);
       continue;
     }
-    const double m = fmax(node[k][MPSI_MASS], LEAST_MASS * weight);
+    const double m = mpsi_node_mass(node[k][MPSI_MASS], weight);
     const double carried = mpm->by_weight ? weight : m;
     node[k][MPSI_MASS] = m;
     for (int c = MPSI_VECTOR; c < 4; c++) {

@@ -299,6 +299,7 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   if (status != MPS_OK) return status;
   mps_mpm *mpm = mpsi_alloc(context, 1, sizeof *mpm);
   if (!mpm) return mpsi_fail_memory(context, __func__, sizeof *mpm);
+  mpm->reader.mpm = mpm;
   mpm->context = mpsi_context_retain(context);
   mpm->particles = particles;
   mpm->holder = (mpsi_holder){.name = "a WLS-MPM solver (mps_mpm)",

@@ -22,7 +22,13 @@ typedef struct mpsi_rooms {
   mpsi_room force; /* of the columns f; none without loads */
 } mpsi_rooms;
 
+/* The handle of mps/grid.h: lent, a part of the solver. */
+struct mps_grid {
+  mps_mpm *mpm;
+};
+
 struct mps_mpm {
+  struct mps_grid reader;
   mps_context *context;
   mps_particles *particles;
   mpsi_holder holder; /* of the particles */
