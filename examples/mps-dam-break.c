@@ -4,20 +4,13 @@
  * The water stands between the wall x = 0 and a gate at x = a that vanishes at once; it is n^2 a
  * high. --rest keeps the gate: then nothing should move, and p = rho g depth.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "common/mpm_heap.h"
-#include "common/mpm_model.h"
 #include "common/plot.h"
+#include "dam_break/dam_break.h"
 
 #include <mps/experimental.h>
 
-#include <math.h>
 #include <stdio.h>
-
-#define PI 3.14159265358979323846
-#define G 9.81         /* m/s2 */
-#define DENSITY 1000.0 /* kg/m3 */
-
-enum { SAMPLES = 300, FRAMES = 6, SLIP = 0, NO_SLIP };
+#include <stdlib.h>
 
 /* ---- Martin and Moyce -------------------------------------------------------------------------
  * "An experimental study of the collapse of liquid columns on a rigid horizontal plane", Phil.
@@ -63,24 +56,6 @@ static double interpolate(int count, const double *t, const double *value, doubl
 
 /* ---- the run --------------------------------------------------------------------------------- */
 
-typedef struct settings {
-  double h, base, viscosity, sound, duration, tank, friction;
-  int64_t n2, ppc, threads;
-  int state, tension, spline, transfer, volumetric, bed;
-  bool rest;
-  const char *out;
-} settings;
-
-typedef struct simulation {
-  settings s;
-  mpm_model m;
-  int rows;
-  double t[SAMPLES + 1], Z[SAMPLES + 1], H[SAMPLES + 1]; /* s, -, - */
-  mpm_heap heap[SAMPLES + 1];
-  mpm_snapshot shot[FRAMES];
-} simulation;
-
-static double column_height(const settings *s) { return s->base * (double)s->n2; }
 static double speed_of_sound(const settings *s) {
   return isnan(s->sound) ? 10.0 * sqrt(2.0 * G * column_height(s)) : s->sound;
 }
@@ -241,36 +216,44 @@ static bool write_front(app *a, const simulation *sim, double T, double tau) {
 
 static bool draw_front(app *a, const settings *s, double shift) {
   output f;
+  char how[80];
+  const char *name = s->method == METHOD_MPS ? "MPS" : "WLS-MPM";
+  if (s->method == METHOD_MPS)
+    snprintf(how, sizeof how, "particles every %.4g m", s->h);
+  else
+    snprintf(how, sizeof how, "h = %.4g m, c = %.3g m/s", s->h, speed_of_sound(s));
   if (!plot_open(&f, a, s->out, "front", 1200, 560)) return false;
   output_text(&f,
               "set multiplot layout 1,2 title \"Collapse of a water column, n^2 = %d\\n{/*0.8 base "
-              "%.4g m, h = %.4g m, c = %.3g m/s}\"\n"
+              "%.4g m, %s}\"\n"
               "set key left top reverse Left\nset xrange [0:4.2]\nset yrange [1:5.2]\n"
               "set xlabel 'T = t (n^2 g/a)^{1/2}'\nset ylabel 'front Z = x/a'\n"
               "plot 'experiment.csv' every ::1 using 1:2 with points pointtype 6 pointsize 1.2 "
               "linecolor rgb '#c0392b' title 'Martin and Moyce 1952', \\\n"
               "  'front.csv' every ::1 using 2:3 with lines linecolor rgb '#1f4e8c' title "
-              "'WLS-MPM'",
-              (int)s->n2, s->base, s->h, speed_of_sound(s));
+              "'%s'",
+              (int)s->n2, s->base, how, name);
   if (isfinite(shift))
     output_text(&f,
                 ", \\\n  'front.csv' every ::1 using ($2%+.4f):3 with lines dashtype '--' "
                 "linecolor rgb '#1f4e8c' title 'clock set at Z = 1.44'",
                 shift);
-  output_text(&f, "\nset key right top reverse Left\nset xrange [0:6]\nset yrange [0:1.05]\n"
-                  "set xlabel '{/Symbol t} = t (g/a)^{1/2}'\nset ylabel 'height at the wall H = "
-                  "y/(n^2 a)'\n"
-                  "plot 'experiment.csv' every ::1 using 3:4 with points pointtype 6 pointsize 1.2 "
-                  "linecolor rgb '#c0392b' title 'Martin and Moyce 1952', \\\n"
-                  "  'front.csv' every ::1 using 5:6 with lines linecolor rgb '#1f4e8c' title "
-                  "'WLS-MPM'\nunset multiplot\n");
+  output_text(&f,
+              "\nset key right top reverse Left\nset xrange [0:6]\nset yrange [0:1.05]\n"
+              "set xlabel '{/Symbol t} = t (g/a)^{1/2}'\nset ylabel 'height at the wall H = "
+              "y/(n^2 a)'\n"
+              "plot 'experiment.csv' every ::1 using 3:4 with points pointtype 6 pointsize 1.2 "
+              "linecolor rgb '#c0392b' title 'Martin and Moyce 1952', \\\n"
+              "  'front.csv' every ::1 using 5:6 with lines linecolor rgb '#1f4e8c' title "
+              "'%s'\nunset multiplot\n",
+              name);
   return plot_close(&f, s->out, "front");
 }
 
 /* Frames in one scale, lengths in bases: flat ones in two columns, a tank at rest in a row. */
 static bool draw_water(app *a, const simulation *sim, double T) {
   const settings *s = &sim->s;
-  const double width = s->rest ? 1.0 : s->tank, height = 1.2 * (double)s->n2;
+  const double width = s->rest ? 1.0 : s->tank, height = 1.2 * (s->impact ? 1.0 : (double)s->n2);
   const int across = s->rest ? FRAMES : 2, down = FRAMES / across, panel = s->rest ? 180 : 600;
   const int panel_height = (int)(panel * height / width), edge = 45;
   const double x = across * (panel + edge) + 135.0, y = down * (panel_height + 74.0);
@@ -293,7 +276,8 @@ static bool draw_water(app *a, const simulation *sim, double T) {
                 "plot 'particles.csv' every ::1 using ($1==%d ? $3/%.9g : NaN):($4/%.9g):($5*1e-3) "
                 "with points pointtype 7 pointsize %.3g linecolor palette notitle\n",
                 k == 1 ? "unset colorbox\n" : "", sim->shot[k].time * T, k, s->base, s->base,
-                0.24 * panel * s->h / sqrt((double)s->ppc) / (width * s->base));
+                0.24 * panel * s->h / (s->method == METHOD_MPS ? 1.0 : sqrt((double)s->ppc)) /
+                    (width * s->base));
   }
   output_text(&f, "unset multiplot\n");
   return plot_close(&f, s->out, "water");
@@ -326,7 +310,7 @@ static void summarise(output *f, const simulation *sim, double T, double tau, do
   }
   json_number(f, "h", s->h);
   json_integer(f, "n2", s->n2);
-  json_number(f, "sound_speed", speed_of_sound(s));
+  if (s->method == METHOD_MPM) json_number(f, "sound_speed", speed_of_sound(s));
   json_number(f, "mass", last->mass);
   json_number(f, "mass_error", last->mass / (DENSITY * s->base * column_height(s)) - 1.0);
   json_number(f, "volume_drift", volume);
@@ -357,6 +341,9 @@ static void summarise(output *f, const simulation *sim, double T, double tau, do
 static bool finish(app *a, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
+  if (s->impact)
+    return mpm_snapshots_write(a, s->out, "particles.csv", "pressure_Pa", FRAMES, sim->shot) &&
+           draw_water(a, sim, sqrt(2.0 * G / s->base)) && dam_impact_write(a, sim);
   const double tau = sqrt(G / s->base), T = tau * sqrt((double)s->n2);
   const double shift = s->rest ? NAN : clock_shift(sim, &fronts[s->n2 - 1], T);
   output f;
@@ -379,24 +366,29 @@ static bool finish(app *a, void *user) {
 
 /* Defaults that depend on others, and lengths that must be whole cells. Returns -1 or a code. */
 static int complete(const options_program *program, settings *s) {
-  if (isnan(s->h)) s->h = s->base / 40.0;
+  if (s->impact && (s->method != METHOD_MPS || s->rest || s->n2 != 2))
+    return options_refuse(program, "--impact needs --method mps, and has no --rest and --n2");
+  if (s->impact) s->tank = 0.5 * 5.366;
+  if (isnan(s->base)) s->base = s->impact ? 1.2 : 0.05715;
+  if (isnan(s->h)) s->h = s->base / (s->impact ? 60.0 : s->method == METHOD_MPS ? 20.0 : 40.0);
   const double cells = s->base / s->h, tank = s->tank * cells;
   if (cells < 4.0 || fabs(cells - nearbyint(cells)) > 1e-6)
     return options_refuse(program, "--base must be a whole number of cells --h, at least 4");
-  if (!s->rest && fabs(tank - nearbyint(tank)) > 1e-6)
+  if (s->method == METHOD_MPM && !s->rest && fabs(tank - nearbyint(tank)) > 1e-6)
     return options_refuse(program, "--tank times --base must be a whole number of cells --h");
   const char *large = mpm_model_too_large(cells * cells * (double)(s->n2 * s->ppc));
   if (large) return options_refuse(program, large);
-  if (speed_of_sound(s) < 2.0 * sqrt(2.0 * G * column_height(s)))
+  if (s->method == METHOD_MPM && speed_of_sound(s) < 2.0 * sqrt(2.0 * G * column_height(s)))
     return options_refuse(program, "--sound-speed must be at least 2 (2 g n^2 a)^1/2, twice the "
                                    "speed of the water: it is to be all but incompressible");
+  if (isnan(s->duration) && s->impact) s->duration = 7.0 * sqrt(0.5 * s->base / G);
   if (isnan(s->duration)) s->duration = 6.0 * sqrt(s->base / (G * (double)s->n2));
   return -1;
 }
 
 int main(int argc, char **argv) {
   static simulation sim = {.s = {.h = NAN,
-                                 .base = 0.05715,
+                                 .base = NAN,
                                  .viscosity = 1e-3,
                                  .sound = NAN,
                                  .duration = NAN,
@@ -408,8 +400,18 @@ int main(int argc, char **argv) {
                                  .out = "out/dam-break"}};
   settings *s = &sim.s;
   option table[] = {
+      OPTION_HEADING("Method"),
+      OPTION_CHOICE(
+          "method", "mpm|mps", &s->method,
+          "WLS-MPM on a grid, weakly compressible; MPS, moving particles, incompressible: "
+          "then --h is their spacing, and of the options of the grid none is read"),
+      OPTION_FLAG(
+          "impact", &s->impact,
+          "by MPS: a column H high and 2 H = --base wide (default 1.2 m) hits a wall at 5.366 "
+          "H; its pressure at .2 H against Buchner (2002)"),
       OPTION_HEADING("Water"),
-      OPTION_NUMBER("base", "m", OPTION_LENGTH, &s->base, "width a of the column, whole cells"),
+      OPTION_NUMBER("base", "m", OPTION_LENGTH, &s->base,
+                    "width a of the column, whole cells (default .05715)"),
       OPTION_INTEGER("n2", "1", OPTION_FROM_TO(1.0, 2.0), &s->n2, "n^2: the height over a"),
       OPTION_NUMBER("tank", "bases", OPTION_FROM_TO(1.5, 1000.0), &s->tank, "to the far wall"),
       OPTION_NUMBER("viscosity", "Pa s", OPTION_FROM_TO(0.0, 1e6), &s->viscosity, "of the water"),
@@ -420,7 +422,8 @@ int main(int argc, char **argv) {
       OPTION_CHOICE("bed", "slip|fixed", &s->bed, "bed of the tank"),
       OPTION_FLAG("rest", &s->rest, "keep the gate: water at rest"),
       OPTION_HEADING("Grid"),
-      OPTION_NUMBER("h", "m", OPTION_LENGTH, &s->h, "grid spacing (default base/40)"),
+      OPTION_NUMBER("h", "m", OPTION_LENGTH, &s->h,
+                    "grid spacing (default base/40, of MPS base/20 or with --impact base/60)"),
       OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
       OPTION_CHOICE("spline", "2|3", &s->spline, "degree of the weights"),
       OPTION_CHOICE("transfer", "shape|weight", &s->transfer, "particles to nodes"),
@@ -431,15 +434,18 @@ int main(int argc, char **argv) {
       OPTION_THREADS(&s->threads),
       {0}};
   const options_program program = {"mps-dam-break",
-                                   "A column of water collapses on a dry bed (WLS-MPM, weakly "
-                                   "compressible): Nakamura, Figure 2,\n"
-                                   "against the experiments of Martin and Moyce (1952).",
+                                   "A column of water collapses on a dry bed, by WLS-MPM (weakly "
+                                   "compressible: Nakamura,\nFigure 2) or MPS, against the "
+                                   "experiments of Martin and Moyce (1952).",
                                    table};
   int code = options_parse(&program, argc, argv);
   if (code < 0) code = complete(&program, s);
   if (code >= 0) return code;
-  static const mpm_model_parts parts = {build, march, finish};
-  code = mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
+  static const mpm_model_parts methods[] = {{build, march, finish},
+                                            {dam_mps_build, dam_mps_march, finish}};
+  code = mpm_model_run(&program, s->threads, s->out, &sim.m, &methods[s->method], &sim);
+  free(sim.gauge_t);
+  free(sim.gauge_p);
   for (int k = 0; k < FRAMES; k++) mpm_snapshot_free(&sim.shot[k]);
   return code;
 }

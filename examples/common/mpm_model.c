@@ -4,6 +4,7 @@
 
 void mpm_model_destroy(mpm_model *model) {
   mps_mpm_destroy(&model->mpm);
+  mps_fluid_destroy(&model->fluid);
   for (int b = 0; b < MPM_MODEL_BODIES; b++) mps_body_destroy(&model->body[b]);
   mps_material_destroy(&model->material);
   mps_particles_destroy(&model->particles);
@@ -14,10 +15,15 @@ const char *mpm_model_too_large(double particles) {
                           : "more than 1e8 particles: take a coarser --h, or a smaller model";
 }
 
+static double time_of(const mpm_model *model) {
+  if (model->fluid) return mps_fluid_time(model->fluid);
+  return model->mpm ? mps_mpm_time(model->mpm) : 0.0;
+}
+
 /* Prints the one line on how the run ended; returns the exit code. */
 static int end_run(app *a, mps_status status, const mpm_model *model, bool any) {
   if (status == MPS_OK || status == MPS_ERROR_CANCELLED || !model->why[0])
-    return app_end_run(a, status, model->mpm ? mps_mpm_time(model->mpm) : 0.0, any);
+    return app_end_run(a, status, time_of(model), any);
   a->outcome = "failed";
   app_error(a, "%s", model->why);
   return APP_FAILED;
@@ -31,7 +37,7 @@ static int build_and_march(app *a, const char *out, mpm_model *model, const mpm_
   const mps_status built = parts->build(a->context, user);
   if (built != MPS_OK) return end_run(a, built, model, false);
   printf("%lld particles, dt %.4g s\n", (long long)mps_particles_count(model->particles),
-         mps_mpm_dt(model->mpm));
+         model->fluid ? mps_fluid_dt(model->fluid) : mps_mpm_dt(model->mpm));
   fflush(stdout);
   const mps_status status = parts->march(user);
   const bool any = model->samples >= MPM_MODEL_SAMPLES;
@@ -58,6 +64,7 @@ bool mpm_model_summary(app *a, const mpm_model *model, const char *directory, ou
   json_text(file, "version", mps_version());
   json_text(file, "outcome", a->outcome);
   json_integer(file, "particles", mps_particles_count(model->particles));
-  json_integer(file, "steps", mps_mpm_steps(model->mpm));
+  json_integer(file, "steps",
+               model->fluid ? mps_fluid_steps(model->fluid) : mps_mpm_steps(model->mpm));
   return true;
 }

@@ -7,6 +7,7 @@
 #include "options.h"
 #include "output.h"
 
+#include <mps/fluid.h>
 #include <mps/mpm.h>
 
 enum { MPM_MODEL_BODIES = 8, MPM_MODEL_SAMPLES = 3 };
@@ -15,6 +16,7 @@ typedef struct mpm_model {
   mps_particles *particles;
   mps_material *material;
   mps_mpm *mpm;
+  mps_fluid *fluid;                 /* in its place where a program has the choice */
   mps_body *body[MPM_MODEL_BODIES]; /* NULL where there is none */
   int64_t samples;                  /* rows of results so far, which `march` counts */
   bool failed;   /* `march` sets it where something is missing that was asked for: exit code 1 */

@@ -58,7 +58,7 @@ mps_status seawall_couple(mps_context *context, seawall *w) {
   seawall_both *b = &w->both;
   mps_coupling_def def = mps_coupling_defaults();
   def.size = w->wall.count;
-  def.floor = 1e-5 * WAVES_G;
+  def.floor = 1e-4 * WAVES_G; /* what the solution of the pressures leaves open */
   b->room = (def.columns + 4) * (1 + 2 * def.size);
   b->memory = calloc((size_t)b->room, sizeof *b->memory);
   if (!b->memory || !allocate(b, (size_t)w->wall.count)) return MPS_ERROR_MEMORY;

@@ -88,7 +88,7 @@ mps_status tank_make_structure(mps_context *context, tank_model *m) {
   if (status != MPS_OK) return status;
   def.size = m->structure.shapes;
   def.method = def.size > 1 ? MPS_COUPLING_QUASI_NEWTON : MPS_COUPLING_AITKEN;
-  def.floor = 1e-6 * WAVES_G;
+  def.floor = 1e-4 * WAVES_G; /* what the solution of the pressures leaves open */
   return mps_coupling_create(context, &def, &m->structure.coupling);
 }
 

@@ -34,7 +34,8 @@ static double harmonic(const tank_model *m, int gauge) {
 }
 
 typedef struct figures {
-  double mean, deviation, least, most, period, decay, first, last, deflection;
+  double mean, deviation, least, most, period, decay, first, last, first_fall, last_fall,
+      deflection;
 } figures;
 
 /* What swings: the force on the right wall, or the structure. */
@@ -58,13 +59,17 @@ static double mean_between(const tank_model *m, double first, double last) {
 static void find_swing(const tank_model *m, double mean, figures *f) {
   double first = NAN, last = NAN, peak = 0.0, early = NAN, early_at = 0.0, late = NAN,
          late_at = 0.0;
-  double peak_at = 0.0;
+  double peak_at = 0.0, first_fall = NAN, last_fall = NAN;
   int64_t zeros = 0;
   for (int64_t k = 1; k < m->samples; k++) {
     if (!in_window(m, k - 1) || !in_window(m, k)) continue;
     const tank_sample *p = &m->sample[k - 1], *q = &m->sample[k];
     const double a = swings(m, k - 1) - mean, b = swings(m, k) - mean;
     if (zeros > 0 && b > peak) peak = b, peak_at = q->t;
+    if (a >= 0.0 && b < 0.0) {
+      last_fall = p->t + (q->t - p->t) * a / (a - b);
+      if (isnan(first_fall)) first_fall = last_fall;
+    }
     if (!(a < 0.0 && b >= 0.0)) continue;
     last = p->t + (q->t - p->t) * a / (a - b);
     if (zeros == 0) first = last;
@@ -74,17 +79,20 @@ static void find_swing(const tank_model *m, double mean, figures *f) {
     peak = 0.0;
   }
   f->first = first, f->last = last;
+  f->first_fall = first_fall, f->last_fall = last_fall;
   f->period = zeros > 1 ? (last - first) / (double)(zeros - 1) : NAN;
   f->decay = late_at > early_at ? log(early / late) / (late_at - early_at) : NAN;
 }
 
-/* The structure swings about a mean that is known only over whole periods. */
+/* The structure swings about a mean that is known only over whole periods. Between rising zeros a
+ * decaying swing adds to the mean what it takes from it between falling ones. */
 static void find_motion(const tank_model *m, figures *f) {
   f->deflection = mean_between(m, m->s.window[0], m->s.window[1]);
   for (int n = 0; n < 3; n++) {
     find_swing(m, f->deflection, f);
     if (isnan(f->period)) return;
-    f->deflection = mean_between(m, f->first, f->last);
+    f->deflection =
+        0.5 * (mean_between(m, f->first, f->last) + mean_between(m, f->first_fall, f->last_fall));
   }
 }
 
@@ -97,7 +105,7 @@ static figures find_figures(const tank_model *m) {
     sum += force, square += force * force, n += 1.0;
     f.least = fmin(f.least, force), f.most = fmax(f.most, force);
   }
-  if (n == 0.0) return (figures){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
+  if (n == 0.0) return (figures){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
   f.mean = sum / n;
   f.deviation = sqrt(fmax(square / n - f.mean * f.mean, 0.0));
   if (tank_is_coupled(&m->s))
@@ -196,7 +204,8 @@ static bool write_particles(app *a, tank_model *m) {
 static bool draw_water(app *a, const tank_model *m) {
   const tank_settings *s = &m->s;
   const bool drop = s->kind == TANK_DROP;
-  const double width = drop ? 5.0 * s->depth : s->length + 2.0 * fabs(s->amplitude) + 2.0 * s->spacing;
+  const double width =
+      drop ? 5.0 * s->depth : s->length + 2.0 * fabs(s->amplitude) + 2.0 * s->spacing;
   const double height = drop ? 5.0 * s->depth : 1.6 * s->depth + 4.0 * fabs(s->amplitude);
   const double least = drop ? -2.5 * s->depth : -fabs(s->amplitude) - s->spacing;
   const int across = 1000, down = (int)fmin(fmax(820.0 * height / width, 160.0), 1000.0) + 130;

@@ -1,0 +1,48 @@
+/* dam_break.h - what the parts of mps-dam-break share: settings, records, and the water by moving
+ * particles (mps_fluid) in place of the grid.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef EXAMPLES_DAM_BREAK_H
+#define EXAMPLES_DAM_BREAK_H
+
+#include "common/mpm_heap.h"
+#include "common/mpm_model.h"
+
+#include <mps/fluid.h>
+
+#include <math.h>
+
+#define PI 3.14159265358979323846
+#define G 9.81         /* m/s2 */
+#define DENSITY 1000.0 /* kg/m3 */
+
+enum { SAMPLES = 300, FRAMES = 6, SLIP = 0, NO_SLIP, METHOD_MPM = 0, METHOD_MPS };
+
+typedef struct settings {
+  double h, base, viscosity, sound, duration, tank, friction;
+  int64_t n2, ppc, threads;
+  int method, state, tension, spline, transfer, volumetric, bed;
+  bool rest, impact;
+  const char *out;
+} settings;
+
+typedef struct simulation {
+  settings s;
+  mpm_model m;
+  int rows;
+  double t[SAMPLES + 1], Z[SAMPLES + 1], H[SAMPLES + 1]; /* s, -, - */
+  mpm_heap heap[SAMPLES + 1];
+  mpm_snapshot shot[FRAMES];
+  double *gauge_t, *gauge_p; /* s, Pa: of --impact, after each step */
+  int64_t gauges, gauge_room;
+} simulation;
+
+static inline double column_height(const settings *s) {
+  return s->impact ? 0.5 * s->base : s->base * (double)s->n2;
+}
+/* mps.c: the parts of a run by moving particles. */
+mps_status dam_mps_build(mps_context *context, void *user);
+mps_status dam_mps_march(void *user);
+/* Results of --impact: pressure.csv, summary.json, pictures but the water's. */
+bool dam_impact_write(app *a, simulation *sim);
+
+#endif

@@ -1,0 +1,196 @@
+/* mps.c - the collapse of a column by moving particles (mps_fluid), and its impact on a far wall:
+ * Buchner's case, a column H high and 2 H wide in a tank of 5.366 H, with a gauge on the wall.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "dam_break.h"
+
+#include "common/plot.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#define GAUGE 0.2 /* H: height of the gauge, where Greco (2001) puts Buchner's */
+#define MEAN 0.05 /* (H/g)^1/2: means are taken from so long before to so long after */
+#define RISE 0.05 /* rho g H: the pressure that the water arrives with */
+
+enum { BED = 0, LEFT, FAR_WALL };
+
+/* ---- water ----------------------------------------------------------------------------------- */
+
+static double far_wall(const settings *s) { return (s->rest ? 1.0 : s->tank) * s->base; }
+
+static mps_status add_wall(mps_fluid *fluid, double x, double nx, double ny) {
+  mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+  def.point[0] = x;
+  def.normal[0] = nx, def.normal[1] = ny;
+  return mps_fluid_add_boundary(fluid, &def, NULL);
+}
+
+/* Mass and volume stay what they are: the heap is measured by them. */
+mps_status dam_mps_build(mps_context *context, void *user) {
+  simulation *sim = user;
+  const settings *s = &sim->s;
+  const double lo[2] = {0.0, 0.0}, hi[2] = {s->base, column_height(s)};
+  mps_particles_def set = mps_particles_defaults();
+  mps_fluid_def def = mps_fluid_defaults();
+  set.spacing = s->h;
+  def.density = DENSITY, def.viscosity = s->viscosity;
+  def.gravity[1] = -G;
+  mps_status status = mps_particles_create(context, &set, &sim->m.particles);
+  mps_particles *water = sim->m.particles;
+  if (status == MPS_OK) status = mps_particles_fill_box(water, lo, hi, NULL);
+  if (status == MPS_OK) status = mps_particles_set(water, "mass", 0, DENSITY * s->h * s->h);
+  if (status == MPS_OK) status = mps_particles_set(water, "volume", 0, s->h * s->h);
+  if (status == MPS_OK) status = mps_fluid_create(context, water, &def, &sim->m.fluid);
+  if (status == MPS_OK) status = add_wall(sim->m.fluid, 0.0, 0.0, 1.0);
+  if (status == MPS_OK) status = add_wall(sim->m.fluid, 0.0, 1.0, 0.0);
+  return status == MPS_OK ? add_wall(sim->m.fluid, far_wall(s), -1.0, 0.0) : status;
+}
+
+/* ---- the run --------------------------------------------------------------------------------- */
+
+static bool grow(simulation *sim) {
+  if (sim->gauges < sim->gauge_room) return true;
+  const int64_t room = 2 * sim->gauge_room + 1024;
+  double *times = realloc(sim->gauge_t, (size_t)room * sizeof *times);
+  if (times) sim->gauge_t = times;
+  double *values = realloc(sim->gauge_p, (size_t)room * sizeof *values);
+  if (values) sim->gauge_p = values;
+  if (!times || !values) return false;
+  sim->gauge_room = room;
+  return true;
+}
+
+static mps_status read_gauge(simulation *sim) {
+  const settings *s = &sim->s;
+  const double at[3] = {far_wall(s), GAUGE * column_height(s), 0.0};
+  if (!grow(sim)) return MPS_ERROR_MEMORY;
+  sim->gauge_t[sim->gauges] = mps_fluid_time(sim->m.fluid);
+  const mps_status status =
+      mps_fluid_get_pressure(sim->m.fluid, FAR_WALL, 1, at, &sim->gauge_p[sim->gauges]);
+  if (status == MPS_OK) sim->gauges++;
+  return status;
+}
+
+/* No step is shortened to end at t: a change of the step from one to the next shows in the
+ * pressure.
+ */
+static mps_status advance(simulation *sim, double t) {
+  mps_status status = MPS_OK;
+  while (status == MPS_OK && mps_fluid_time(sim->m.fluid) < t) {
+    status = mps_fluid_step(sim->m.fluid, 1);
+    if (status == MPS_OK && sim->s.impact) status = read_gauge(sim);
+  }
+  return status;
+}
+
+mps_status dam_mps_march(void *user) {
+  simulation *sim = user;
+  const settings *s = &sim->s;
+  mps_status status = MPS_OK;
+  for (int k = 0; k <= SAMPLES && status == MPS_OK; k++) {
+    status = advance(sim, k > 0 ? s->duration * k / SAMPLES * (1.0 - 1e-9) : 1e-12);
+    mpm_heap *heap = &sim->heap[k];
+    if (status == MPS_OK) status = mpm_heap_measure(sim->m.particles, G, 2.0 * s->h, heap);
+    if (status == MPS_OK && k % (SAMPLES / (FRAMES - 1)) == 0)
+      status = mpm_snapshot_take(sim->m.particles, mps_fluid_time(sim->m.fluid), "pressure",
+                                 &sim->shot[k / (SAMPLES / (FRAMES - 1))]);
+    sim->t[k] = mps_fluid_time(sim->m.fluid);
+    sim->Z[k] = heap->front / s->base;
+    sim->H[k] = heap->top / column_height(s);
+    if (status == MPS_OK) sim->m.samples = sim->rows = k + 1;
+    progress_draw(&sim->m.a->bar, (double)k / SAMPLES, "water");
+  }
+  return status;
+}
+
+/* ---- impact ---------------------------------------------------------------------------------- */
+
+/* Of the gauge, times in (H/g)^1/2 and pressures in rho g H; maxima are of means over .1. */
+typedef struct impact {
+  double rise, first, first_at, mean, second, second_at;
+} impact;
+
+/* Mean of the pressure over the times from..to; each value stands for the step before it. */
+static double mean_between(const simulation *sim, double from, double to) {
+  double sum = 0.0, span = 0.0;
+  for (int64_t k = 1; k < sim->gauges; k++) {
+    const double dt = sim->gauge_t[k] - sim->gauge_t[k - 1];
+    if (sim->gauge_t[k] < from || sim->gauge_t[k] > to) continue;
+    sum += dt * sim->gauge_p[k], span += dt;
+  }
+  return span > 0.0 ? sum / span : NAN;
+}
+
+static impact find_impact(const simulation *sim) {
+  const double H = column_height(&sim->s), unit = DENSITY * G * H, clock = sqrt(G / H);
+  impact i = {NAN, 0.0, NAN, mean_between(sim, 3.3 / clock, 4.9 / clock) / unit, 0.0, NAN};
+  for (int64_t k = 0; k < sim->gauges; k++) {
+    const double t = sim->gauge_t[k] * clock;
+    const double p = mean_between(sim, (t - MEAN) / clock, (t + MEAN) / clock) / unit;
+    if (isnan(i.rise) && sim->gauge_p[k] > RISE * unit) i.rise = t;
+    if (t < 3.3 && p > i.first) i.first = p, i.first_at = t;
+    if (t > 5.0 && p > i.second) i.second = p, i.second_at = t;
+  }
+  return i;
+}
+
+static bool write_gauge(app *a, const simulation *sim) {
+  const double H = column_height(&sim->s), unit = DENSITY * G * H, clock = sqrt(G / H);
+  output f;
+  if (!output_open(&f, a, sim->s.out, "pressure.csv")) return false;
+  csv_header(&f, "t_s,t_scaled,pressure_Pa,pressure_scaled,mean_scaled?");
+  for (int64_t k = 0; k < sim->gauges; k++) {
+    const double t = sim->gauge_t[k], p = sim->gauge_p[k];
+    const double mean = mean_between(sim, t - MEAN / clock, t + MEAN / clock) / unit;
+    const double row[] = {t, t * clock, p, p / unit, mean};
+    csv_row(&f, 5, row);
+  }
+  return output_close(&f);
+}
+
+static bool draw_gauge(app *a, const settings *s) {
+  output f;
+  if (!plot_open(&f, a, s->out, "pressure", 1000, 520)) return false;
+  output_text(
+      &f,
+      "set title 'Impact of a column: pressure on the far wall at 0.2 H, spacing %.3g H'\nset xlabel 't (g/H)^{1/2}'\nset ylabel 'p/({/Symbol r} g "
+      "H)'\nset xrange [0:%.9g]\nset yrange [0:1.4]\nset key top left reverse Left\n"
+      "set object 1 rectangle from 3.3,graph 0 to 4.9,graph 1 fillcolor rgb '#eef3fa' "
+      "fillstyle solid noborder behind\n"
+      "set arrow 1 from 3.3,0.545 to 4.9,0.545 nohead dashtype '--' linecolor rgb "
+      "'#c0392b' front\nset label 1 'mean of Buchner 2002' at 4.85,1.3 right textcolor rgb "
+      "'#c0392b' front\n"
+      "plot 'pressure.csv' every ::1 using 2:4 with lines linecolor rgb '#8fb3dd' linewidth 0.7 "
+      "title "
+      "'MPS', '' every ::1 using 2:5 with lines linecolor rgb '#1f4e8c' linewidth 1.6 title 'mean "
+      "over 0.1'\n",
+      s->h / column_height(s), s->duration * sqrt(G / column_height(s)));
+  return plot_close(&f, s->out, "pressure");
+}
+
+bool dam_impact_write(app *a, simulation *sim) {
+  const impact i = find_impact(sim);
+  mps_fluid_report report;
+  output f;
+  if (!write_gauge(a, sim) || !app_check(a, mps_fluid_get_report(sim->m.fluid, &report)) ||
+      !mpm_model_summary(a, &sim->m, sim->s.out, &f))
+    return false;
+  json_optional(&f, "impact_mean", i.mean);
+  json_number(&f, "impact_mean_buchner", 0.545);
+  json_optional(&f, "impact_rise", i.rise);
+  json_number(&f, "impact_first", i.first);
+  json_optional(&f, "impact_first_time", i.first_at);
+  json_number(&f, "impact_second", i.second);
+  json_optional(&f, "impact_second_time", i.second_at);
+  json_integer(&f, "collisions", report.collisions);
+  json_integer(&f, "limited", report.limited);
+  json_integer(&f, "pushed", report.pushed);
+  json_end(&f);
+  if (!output_close(&f) || !draw_gauge(a, &sim->s)) return false;
+  app_tell_results(a, sim->s.out);
+  if (!isnan(i.mean))
+    printf("gauge: mean p/(rho g H) %.3f, Buchner .545 (%+.1f %%); the water arrives at %.2f, "
+           "first maximum %.2f\n",
+           i.mean, 100.0 * (i.mean / 0.545 - 1.0), i.rise, i.first);
+  return true;
+}
