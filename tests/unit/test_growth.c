@@ -309,7 +309,11 @@ static mps_status use_elastic_load(const void *def) {
 
 static void need_elastic_motion(void *def) { ((mps_elastic_motion_def *)def)->dt = 1e-3; }
 static mps_status use_elastic_motion(const void *def) {
+  static const int64_t held[2] = {0, 1};
   mps_elastic *elastic = make_elastic();
+  mps_elastic_boundary_def foot = mps_elastic_boundary_defaults();
+  foot.ids = held, foot.id_count = 2;
+  mps_assert_ok(context, mps_elastic_add_boundary(elastic, &foot, NULL));
   const mps_status status = mps_elastic_start(elastic, def);
   mps_elastic_destroy(&elastic);
   return status;
