@@ -9,7 +9,8 @@
  *
  * The set's spacing l0 is the particles' distance: each stands for l0^2 times `measure` of water.
  * The solver works in the fields of the set (zero copy) and sorts it now and then: views taken
- * before are then stale (their epoch). It reads `velocity` at creation where the set has it, and
+ * before are then stale (their epoch). It reads `velocity` at creation where the set has it,
+ * `external_force` (N) at every step if the set has it by then, and
  * writes `position`, `velocity`, `pressure`, `reduced_pressure`, `reduced_pressure_old` and
  * `free_surface`.
  *

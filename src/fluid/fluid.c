@@ -268,7 +268,8 @@ mps_status mps_fluid_get_totals_sized(mps_fluid *f, mps_totals *out, size_t size
   const double energy = energy_of(f, &t.kinetic);
   t.strain = energy - t.kinetic;
   t.work_boundaries = f->work_boundaries;
-  t.dissipated = t.scheme = f->work_boundaries - (energy - f->energy);
+  t.work_loads = f->work_loads;
+  t.dissipated = t.scheme = f->work_boundaries + f->work_loads - (energy - f->energy);
   return mpsi_out_write(f->context, "mps_fluid_get_totals", out, size, &t, sizeof t);
 }
 

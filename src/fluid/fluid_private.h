@@ -5,6 +5,7 @@
  *   near.c      who is near whom, and the weights w; sight.c: who sees whom past walls that end
  *   moments.c   sums over the neighbours: density, moments, velocity gradient, free surface
  *   pressure.c  rows of the pressure equation; pcg.c solves it
+ *   classical.c the classical scheme's own parts of these
  *   move.c      pressure gradient, velocity, guards, positions
  *   probe.c     pressure at walls, level of the surface
  *   step.c      the order of all this
@@ -114,6 +115,11 @@ typedef struct mpsi_fluid_system {
   double *sums;    /* by chunk or block, two values each */
 } mpsi_fluid_system;
 
+/* The classical scheme, see classical.c; gamma 0: the library's own. */
+typedef struct mpsi_fluid_classical {
+  double gamma, n0, n_wide, lambda; /* sums over the lattice; lambda: mean of r^2, m2 */
+} mpsi_fluid_classical;
+
 /* How far the step is. */
 typedef enum mpsi_fluid_stage {
   MPSI_FLUID_BETWEEN = 0, /* no step is open */
@@ -165,12 +171,13 @@ struct mps_fluid {
   double last_dt;         /* s, of the last step; 0 before the first */
   int64_t steps;
   mpsi_fluid_stage stage;
+  mpsi_fluid_classical classical;
   bool in_callback;
   bool stale; /* what is known of the surroundings is not that of the fields */
   mpsi_identity *identity;
-  mps_fluid_report report, before; /* before: as the step being made began */
-  double energy;                   /* J, kinetic and potential at creation */
-  double work_boundaries;          /* J, since creation */
+  mps_fluid_report report, before;    /* before: as the step being made began */
+  double energy;                      /* J, kinetic and potential at creation */
+  double work_boundaries, work_loads; /* J, since creation */
 };
 
 /* Makes room for a quarter more than `count`; or, fit, for just as many. */
@@ -264,6 +271,11 @@ int64_t mpsi_fluid_pcg(mps_fluid *fluid);
 /* move.c */
 void mpsi_fluid_find_velocities(mps_fluid *fluid);
 int64_t mpsi_fluid_advance(mps_fluid *fluid); /* first particle that went wrong, or -1 */
+/* classical.c */
+mps_status mpsi_fluid_classical_look(mps_fluid *fluid, const char *function);
+void mpsi_fluid_classical_rows(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
+void mpsi_fluid_classical_solution(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
+void mpsi_fluid_classical_accelerate(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
 /* probe.c */
 mps_status mpsi_fluid_load_walls(mps_fluid *fluid, const char *function);
 /* step.c: the surroundings of the particles where the fields have them. */

@@ -177,8 +177,11 @@ static void take_velocities(mps_fluid *f, int64_t begin, int64_t end, int64_t ch
 
 void mpsi_fluid_find_velocities(mps_fluid *f) {
   const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
-  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, accelerate);
-  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, limit_speed);
+  const bool classical = f->classical.gamma > 0.0;
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK,
+                 classical ? mpsi_fluid_classical_accelerate : accelerate);
+  for (int64_t k = 0; k < chunks; k++) f->system.sums[2 * k] = 0.0;
+  if (!classical) mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, limit_speed);
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, collide);
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, take_velocities);
   for (int64_t k = 0; k < chunks; k++) {
@@ -237,9 +240,11 @@ static void move_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
   for (int64_t i = begin; i < end; i++) {
     double shift[2], x[2], u[2];
     find_shift(f, i, shift);
+    /* the classical particles have moved by u* already */
+    const bool moved = f->classical.gamma > 0.0;
     const double *G = f->local[i].gradient;
     for (int c = 0; c < 2; c++) {
-      x[c] = f->x[c][i] + f->dt * f->u_new[c][i] + shift[c];
+      x[c] = f->x[c][i] + f->dt * (f->u_new[c][i] - (moved ? f->u[c][i] : 0.0)) + shift[c];
       u[c] = f->u_new[c][i] + G[2 * c] * shift[0] + G[2 * c + 1] * shift[1];
     }
     pushed += keep_off_walls(f, x, u);

@@ -71,13 +71,17 @@ static void take_solution(mps_fluid *f, int64_t begin, int64_t end, int64_t chun
 }
 
 mps_status mpsi_fluid_prepare_pressure(mps_fluid *f, const char *function) {
-  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, make_rows);
+  const bool classical = f->classical.gamma > 0.0;
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, classical ? mpsi_fluid_classical_rows : make_rows);
   return mpsi_fluid_factor(f, function);
 }
 
 mps_status mpsi_fluid_solve_pressure(mps_fluid *f, const char *function) {
-  mpsi_fluid_press_ghosts(f);
-  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, make_right);
+  const bool classical = f->classical.gamma > 0.0;
+  if (!classical) {
+    mpsi_fluid_press_ghosts(f);
+    mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, make_right);
+  }
   const int64_t iterations = mpsi_fluid_pcg(f);
   if (iterations < 0)
     return mpsi_fail(f->context, function, MPS_ERROR_NUMERIC,
@@ -86,7 +90,9 @@ mps_status mpsi_fluid_solve_pressure(mps_fluid *f, const char *function) {
                      (long long)f->steps, f->time, f->def.tolerance, f->def.iterations);
   f->report.iterations = iterations;
   f->report.all_iterations += iterations;
-  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, take_solution);
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK,
+                 classical ? mpsi_fluid_classical_solution : take_solution);
+  if (classical) return MPS_OK;
   for (int64_t g = 0; g < f->ghosts; g++) f->q[f->count + g] = f->q[f->parent[g]] + f->offset[g];
   return MPS_OK;
 }

@@ -31,12 +31,14 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_agree_number(s, "density", f->def.density);
   mpsi_state_agree_number(s, "radius_ratio", f->def.radius_ratio);
   mpsi_state_agree_number(s, "level", f->level);
+  mpsi_state_agree_number(s, "gamma", f->classical.gamma);
   mpsi_state_f64(s, "time", &f->time, 1);
   mpsi_state_i64(s, "steps", &f->steps, 1);
   mpsi_state_f64(s, "last_dt", &f->last_dt, 1);
   mpsi_state_f64(s, "speed", &f->speed, 1);
   mpsi_state_f64(s, "energy", &f->energy, 1);
   mpsi_state_f64(s, "work_boundaries", &f->work_boundaries, 1);
+  mpsi_state_f64(s, "work_loads", &f->work_loads, 1);
   mpsi_state_i64(s, "iterations", &f->report.all_iterations, 1);
   mpsi_state_i64(s, "collisions", &f->report.collisions, 1);
   mpsi_state_i64(s, "limited", &f->report.limited, 1);

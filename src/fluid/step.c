@@ -96,14 +96,18 @@ mps_status mpsi_fluid_sort(mps_fluid *f, const char *function) {
 
 /* ---- one step -------------------------------------------------------------------------------- */
 
-mps_status mpsi_fluid_look(mps_fluid *f, const char *function) {
-  load_cloud(f);
+static mps_status look_around(mps_fluid *f, const char *function) {
   mps_status status = mpsi_fluid_make_ghosts(f, function);
   if (status == MPS_OK) mpsi_fluid_move_ghosts(f);
   if (status == MPS_OK) status = mpsi_fluid_find_neighbours(f, function);
   if (status == MPS_OK) mpsi_fluid_find_moments(f);
   f->stale = status != MPS_OK;
   return status;
+}
+
+mps_status mpsi_fluid_look(mps_fluid *f, const char *function) {
+  load_cloud(f);
+  return look_around(f, function);
 }
 
 mps_status mpsi_fluid_refresh(mps_fluid *f, const char *function) {
@@ -129,6 +133,25 @@ static void find_pressures(mps_fluid *f, int64_t begin, int64_t end, int64_t chu
     f->pressure[i] = fmax(f->q[i] - mpsi_fluid_head(f, f->x[0][i], f->x[1][i]), 0.0);
 }
 
+/* The caller's forces on particles, over the step: the pressure then answers to them. */
+static void add_forces(mps_fluid *f) {
+  const double mass = f->def.density * f->l0 * f->l0 * f->def.measure;
+  for (int c = 0; c < 2; c++) {
+    const double *force = column(f, "external_force", c);
+    for (int64_t i = 0; force && i < f->count; i++) f->u[c][i] += f->dt / mass * force[i];
+  }
+}
+
+/* Work of the same, with the velocity that they have led to. */
+static double work_of_forces(const mps_fluid *f) {
+  double sum = 0.0;
+  for (int c = 0; c < 2; c++) {
+    const double *force = column(f, "external_force", c);
+    for (int64_t i = 0; force && i < f->count; i++) sum += f->dt * force[i] * f->u[c][i];
+  }
+  return sum;
+}
+
 /* A step is made in three parts. They read and write the cloud; the fields change when all is
  * done. Where one fails, the surroundings are found again when they are asked for. */
 static mps_status begin(mps_fluid *f, const char *function, double dt) {
@@ -138,14 +161,17 @@ static mps_status begin(mps_fluid *f, const char *function, double dt) {
   f->before = f->report;
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].before = f->wall[b].load;
   mpsi_fluid_begin_walls(f, dt);
-  status = mpsi_fluid_look(f, function);
+  load_cloud(f);
+  add_forces(f);
+  const bool classical = f->classical.gamma > 0.0;
+  status = classical ? mpsi_fluid_classical_look(f, function) : look_around(f, function);
   if (status == MPS_OK) status = mpsi_fluid_prepare_pressure(f, function);
   f->stage = MPSI_FLUID_BEGUN;
   return status;
 }
 
 static mps_status finish(mps_fluid *f, const char *function) {
-  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, find_pressures);
+  if (!(f->classical.gamma > 0.0)) mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, find_pressures);
   mpsi_fluid_find_velocities(f);
   const int64_t bad = mpsi_fluid_advance(f);
   if (bad >= 0) return went_wrong(f, function, bad);
@@ -158,6 +184,7 @@ static mps_status keep(mps_fluid *f, const char *function) {
   mpsi_fluid_end_walls(f);
   f->stage = MPSI_FLUID_BETWEEN;
   mpsi_fluid_add_impulses(f);
+  f->work_loads += work_of_forces(f);
   store_cloud(f);
   f->time += f->dt;
   f->steps++;
@@ -264,6 +291,9 @@ mps_status mps_fluid_begin_step(mps_fluid *f, double dt) {
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                      "dt is %g s, must be NaN or > 0 and at most half of (l0/g)^1/2, %g s", dt,
                      longest);
+  if (f->classical.gamma > 0.0)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_STATE,
+                     "the classical scheme's steps cannot be made in parts");
   if (mpsi_cancelled(f->context)) return cancelled(f, __func__);
   if (isnan(dt)) status = check_dt(f, __func__);
   if (status != MPS_OK) return status;

@@ -175,7 +175,7 @@ static bool mirror(mps_fluid *f, int wall) {
   for (int64_t i = 0; i < all; i++) {
     const int64_t ghost = i - f->count, own = ghost < 0 ? i : f->parent[ghost];
     const double x = f->x[0][i], y = f->x[1][i];
-    const double s = mpsi_fluid_of_wall(w, w->now.s, f->x[0][own], f->x[1][own]);
+    const double s = mpsi_fluid_of_wall(w, mpsi_fluid_places(f, w), f->x[0][own], f->x[1][own]);
     const double d = (x - w->at[0]) * w->normal[0] + (y - w->at[1]) * w->normal[1] - s;
     if (d >= f->weight.re || d < 0.0) continue;
     if (ghost >= 0 && !mirrors_again(f, wall, f->flips[ghost])) continue;

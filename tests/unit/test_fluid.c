@@ -325,6 +325,60 @@ static void bodies_come_and_go(void **state) {
   tank_free(&t);
 }
 
+/* Water pushed sideways by a in every particle leans on the right wall and off the left one, alike;
+ * what the walls do not take is its momentum. */
+static void forces_on_particles_push(void **state) {
+  (void)state;
+  tank t = tank_make(context, 0.6, 0.3, 0.02, NULL, 1e-3);
+  mps_view force;
+  const double a = 0.5, share = 1000.0 * a * 0.3 * 0.3, still = 0.5 * 1000.0 * TANK_G * 0.09;
+  mps_assert_ok(context, mps_particles_add_field(t.water, "external_force", 0));
+  mps_assert_ok(context, mps_particles_edit(t.water, "external_force", &force));
+  for (int64_t i = 0; i < mps_particles_count(t.water); i++)
+    *mps_view_f64(&force, i, 0) = a * 1000.0 * 0.02 * 0.02;
+  mps_assert_ok(context, mps_particles_commit(t.water, &force));
+  mps_reaction left, right;
+  mps_totals sum;
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
+  mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, TANK_LEFT, &left));
+  mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, TANK_RIGHT, &right));
+  /* at the surface p is 0: less than rho a (L/2) d on each */
+  const double more = -right.force[0] - still, less = still - left.force[0];
+  assert_true(more > 0.3 * share && more < share);
+  mps_assert_near(more, less, 0.03 * share);
+  mps_assert_ok(context, mps_fluid_get_totals(t.fluid, &sum));
+  mps_assert_near(sum.linear[0], 1e-3 * (a * sum.mass - more - less), 1e-3 * 0.03 * share);
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 100));
+  mps_assert_ok(context, mps_fluid_get_totals(t.fluid, &sum));
+  assert_true(sum.work_loads > 0.0 && fabs(sum.dissipated) < 0.05 * sum.work_loads);
+  tank_free(&t);
+}
+
+/* A wall that moves by more than a spacing in one step puts the particles before it; nothing is
+ * lost, and the next steps are short. */
+static void a_wall_may_be_fast(void **state) {
+  (void)state;
+  tank t = tank_make(context, 0.6, 0.3, 0.03, NULL, NAN);
+  const double v = 40.0, place = 0.04, stop = 0.0;
+  mps_assert_ok(context, mps_fluid_set_wall_motion(t.fluid, TANK_LEFT, &place, &v));
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
+  mps_fluid_report report;
+  mps_assert_ok(context, mps_fluid_get_report(t.fluid, &report));
+  assert_true(report.pushed > 0);
+  assert_true(mps_fluid_limit(t.fluid) <= 0.2 * 0.03 / 40.0 * (1.0 + 1e-12));
+  for (int k = 0; k < 50; k++) {
+    mps_assert_ok(context, mps_fluid_set_wall_motion(t.fluid, TANK_LEFT, &place, &stop));
+    mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
+  }
+  mps_view x;
+  mps_assert_ok(context, mps_particles_view(t.water, "position", &x));
+  for (int64_t i = 0; i < mps_particles_count(t.water); i++) {
+    assert_true(*mps_view_f64(&x, i, 0) > 0.04 && *mps_view_f64(&x, i, 0) < 0.6);
+    assert_true(*mps_view_f64(&x, i, 1) > 0.0);
+  }
+  tank_free(&t);
+}
+
 /* ---- a step in parts ------------------------------------------------------------------------- */
 
 /* One solution and the piston's motion given: the same bits as the step in one with a signal. */
@@ -426,6 +480,8 @@ int main(void) {
       cmocka_unit_test(a_rollback_repeats_the_steps_bit_for_bit),
       cmocka_unit_test(a_boundary_can_change),
       cmocka_unit_test(bodies_come_and_go),
+      cmocka_unit_test(forces_on_particles_push),
+      cmocka_unit_test(a_wall_may_be_fast),
       cmocka_unit_test(a_step_in_parts_is_the_step),
       cmocka_unit_test(parts_of_a_step_have_their_order),
   };

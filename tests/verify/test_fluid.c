@@ -6,6 +6,8 @@
 
 #include "fluid_tank.h"
 
+#include <mps/experimental.h>
+
 static double force_right(const tank *t) {
   mps_reaction r;
   mps_assert_ok(context, mps_fluid_get_reaction(t->fluid, TANK_RIGHT, &r));
@@ -210,10 +212,39 @@ static void waves_press_on_the_wall_as_potential_flow_does(void **state) {
   mps_signal_destroy(&motion);
 }
 
+/* The classical scheme stays as noisy as it is known to be; its mean force is right. */
+static void the_classical_scheme_has_the_mean_force(void **state) {
+  (void)state;
+  const double gamma[2] = {1.0, 0.2}, still = 0.5 * 1000.0 * TANK_G * 0.09;
+  for (int k = 0; k < 2; k++) {
+    tank t = tank_make(context, 0.6, 0.3, 0.015, NULL, 1e-3);
+    mps_fluid_report report;
+    mps_assert_fails(context, mps_experimental_fluid_classical(t.fluid, 1.5), MPS_ERROR_ARGUMENT,
+                     "gamma is 1.5");
+    mps_assert_ok(context, mps_experimental_fluid_classical(t.fluid, gamma[k]));
+    mps_assert_fails(context, mps_fluid_begin_step(t.fluid, NAN), MPS_ERROR_STATE, "in parts");
+    mps_assert_ok(context, mps_fluid_step(t.fluid, 300));
+    double mean = 0.0, square = 0.0;
+    for (int n = 0; n < 500; n++) {
+      mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
+      const double f = force_right(&t) / still;
+      mean += f / 500.0, square += f * f / 500.0;
+    }
+    mps_assert_ok(context, mps_fluid_get_report(t.fluid, &report));
+    print_message("classical, gamma %.1f: force %+.2f %%, standard deviation %.0f %%\n", gamma[k],
+                  100.0 * (mean - 1.0), 100.0 * sqrt(square - mean * mean));
+    mps_assert_near(mean, 1.0, 0.10);
+    mps_assert_fails(context, mps_experimental_fluid_classical(t.fluid, 1.0), MPS_ERROR_STATE,
+                     "has made");
+    tank_free(&t);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(water_on_a_lattice_stays_at_rest),
       cmocka_unit_test(disturbed_water_settles),
+      cmocka_unit_test(the_classical_scheme_has_the_mean_force),
       cmocka_unit_test(sloshing_has_the_period_of_theory),
       cmocka_unit_test(a_drop_becomes_the_ellipse_of_theory),
       cmocka_unit_test(waves_press_on_the_wall_as_potential_flow_does),
