@@ -26,6 +26,7 @@
 
 #include "contact.h"
 #include "io.h"
+#include "kernel.h"
 #include "material.h"
 #include "particles.h"
 #include "signal.h"
@@ -81,6 +82,9 @@ typedef struct mps_mpm_def {
                         most that limit at creation; a warning tells when it gets above it */
   double courant;    /* fraction of the limit h/(c + v), Nakamura (49), (50), that a step takes, in
                         (0, 1]; default 0.5 */
+  mps_kernel *kernel; /* NULL (default): weights by `spline` and `cell`; else a B-spline of degree 2
+                         or 3 of radius 1.5 or 2 cells, which says the degree in place of `spline`;
+                         kept alive */
 } mps_mpm_def;
 
 MPS_API mps_status mps_mpm_def_init(mps_mpm_def *def, size_t size);
@@ -139,6 +143,8 @@ static inline mps_status mps_mpm_get_def(mps_mpm *mpm, mps_mpm_def *out) {
 /** The set and the context; NULL for NULL. Lent: they live at least as long as the solver. */
 MPS_API mps_particles *mps_mpm_particles(const mps_mpm *mpm);
 MPS_API mps_context *mps_mpm_context(const mps_mpm *mpm);
+/** The weights along each axis, to ask for values, derivatives and moments; lent, NULL for NULL. */
+MPS_API mps_kernel *mps_mpm_kernel(const mps_mpm *mpm);
 
 /* ---- boundaries ------------------------------------------------------------------------------
  * A boundary holds, drives or rubs the nodes of a side of the domain or of a box, or particles. A

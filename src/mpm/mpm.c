@@ -4,6 +4,7 @@
 #include "particles.h"
 
 #include "core/particles_internal.h"
+#include "core/retain.h"
 
 #include <mps/experimental.h>
 
@@ -32,6 +33,9 @@ mps_status mps_mpm_def_init(mps_mpm_def *def, size_t size) {
 static const char create[] = "mps_mpm_create";
 
 static int dim_of(const mps_mpm_def *d) { return d->geometry == MPS_MPM_SPACE ? 3 : 2; }
+
+/* Of the weights, m. */
+static double radius_of(const mps_mpm_def *d) { return (d->spline == 2 ? 1.5 : 2.0) * d->cell; }
 
 static mps_status check_choices(mps_context *context, const mps_mpm_def *d) {
   if (d->geometry < MPS_MPM_PLANE_STRAIN || d->geometry > MPS_MPM_SPACE)
@@ -71,6 +75,22 @@ static mps_status check_numbers(mps_context *context, const mps_mpm_def *d) {
                        "origin[%d] is %g m and gravity[%d] %g m/s2, must be within +-%g", c,
                        d->origin[c], c, d->gravity[c], FAR);
   return MPS_OK;
+}
+
+/* The degree of the caller's weights, which must be those of the grid. */
+static mps_status read_kernel(mps_context *context, mps_mpm_def *d) {
+  const int32_t kind = mps_kernel_get_kind(d->kernel);
+  if (!d->kernel) return MPS_OK;
+  if (kind != MPS_KERNEL_SPLINE2 && kind != MPS_KERNEL_SPLINE3)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "kernel is of kind %d, allowed are 1 and 2 (quadratic and cubic B-spline)",
+                     kind);
+  d->spline = kind == MPS_KERNEL_SPLINE2 ? 2 : 3;
+  const double wanted = radius_of(d), radius = mps_kernel_radius(d->kernel);
+  if (fabs(radius - wanted) <= ON_NODE * wanted) return MPS_OK;
+  return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                   "kernel has radius %g m, must be %g cells of %g m, %g m", radius,
+                   wanted / d->cell, d->cell, wanted);
 }
 
 /* The thickness, or the angle of the sector. */
@@ -292,6 +312,7 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
                        mps_particles_dim(particles),
                        dim_of(&def) == 3 ? "0 (plane strain) or 1 (axisymmetric)" : "2 (space)");
   if (status == MPS_OK) status = check_numbers(context, &def);
+  if (status == MPS_OK) status = read_kernel(context, &def);
   if (status == MPS_OK) status = read_measure(context, &def);
   if (status == MPS_OK) status = check_cell(context, &def, particles);
   if (status == MPS_OK) status = read_domain(context, &def, low, high);
@@ -323,7 +344,12 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   memcpy(mpm->grid.low, low, sizeof low);
   memcpy(mpm->grid.high, high, sizeof high);
   mpsi_mpm_begin_sides(mpm);
-  if ((status = build(mpm, material)) != MPS_OK) {
+  if (def.kernel)
+    mpm->weights = mpsi_kernel_retain(def.kernel);
+  else
+    status = mps_kernel_create(context, def.spline == 2 ? MPS_KERNEL_SPLINE2 : MPS_KERNEL_SPLINE3,
+                               radius_of(&def), &mpm->weights);
+  if (status != MPS_OK || (status = build(mpm, material)) != MPS_OK) {
     mps_mpm_destroy(&mpm);
     return status;
   }
@@ -371,6 +397,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
     mps_material_destroy(&mpm->laws.law[k].material);
     mpsi_free(context, mpm->laws.law[k].history);
   }
+  mps_kernel_destroy(&mpm->weights);
   mpsi_state_forget(&mpm->identity);
   mpsi_particles_release(mpm->particles, &mpm->holder);
   mpsi_free(context, mpm);
@@ -383,6 +410,8 @@ mps_status mps_mpm_get_def_sized(mps_mpm *mpm, mps_mpm_def *out, size_t size) {
 }
 
 mps_particles *mps_mpm_particles(const mps_mpm *mpm) { return mpm ? mpm->particles : NULL; }
+
+mps_kernel *mps_mpm_kernel(const mps_mpm *mpm) { return mpm ? mpm->weights : NULL; }
 
 mps_context *mps_mpm_context(const mps_mpm *mpm) { return mpm ? mpm->context : NULL; }
 

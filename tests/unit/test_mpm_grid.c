@@ -258,6 +258,43 @@ static void nodes_fill_a_set(void **state) {
   mps_context_destroy(&context);
 }
 
+/* The weights as an object, given or asked for. */
+static void weights_are_a_kernel(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mpm_scene s = block(context, MPS_MPM_PLANE_STRAIN, false);
+  mps_kernel *kernel = mps_mpm_kernel(s.mpm), *other = NULL;
+  double mean = 0.0;
+  assert_int_equal(mps_kernel_get_kind(kernel), MPS_KERNEL_SPLINE3);
+  mps_assert_near(mps_kernel_weight(kernel, 0.0), 2.0 / 3.0, 1e-15);
+  mps_assert_near(mps_kernel_weight(kernel, 0.1), 1.0 / 6.0, 1e-15); /* at the next node */
+  mps_assert_ok(context, mps_kernel_moment(context, kernel, 1, 2, &mean));
+  mps_assert_near(mean, 0.1 * 0.01 / 3.0, 1e-15); /* h times the moment h^2/3 of the fit */
+  assert_null(mps_mpm_kernel(NULL));
+  mps_mpm_def def;
+  mps_assert_ok(context, mps_mpm_get_def(s.mpm, &def));
+  mps_mpm_destroy(&s.mpm);
+  assert_null(def.kernel);
+  mps_assert_ok(context, mps_kernel_create(context, MPS_KERNEL_MPS, 0.2, &def.kernel));
+  FAILS(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm), MPS_ERROR_ARGUMENT,
+        "kernel is of kind 0");
+  mps_kernel_destroy(&def.kernel);
+  mps_assert_ok(context, mps_kernel_create(context, MPS_KERNEL_SPLINE2, 0.2, &def.kernel));
+  FAILS(mps_mpm_create(context, s.particles, s.material, &def, &s.mpm), MPS_ERROR_ARGUMENT,
+        "must be 1.5 cells");
+  mps_kernel_destroy(&def.kernel);
+  mps_assert_ok(context, mps_kernel_create(context, MPS_KERNEL_SPLINE2, 0.15, &other));
+  def.kernel = other;
+  mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
+  mps_kernel_destroy(&def.kernel); /* the caller's share */
+  mps_assert_ok(context, mps_mpm_get_def(s.mpm, &def));
+  assert_int_equal(def.spline, 2);
+  assert_ptr_equal(mps_mpm_kernel(s.mpm), other);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 3));
+  mpm_scene_end(&s);
+  mps_context_destroy(&context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(nodes_have_the_particles_mass_and_momentum),
@@ -266,6 +303,7 @@ int main(void) {
       cmocka_unit_test(points_know_where_they_are),
       cmocka_unit_test(asking_changes_nothing),
       cmocka_unit_test(nodes_fill_a_set),
+      cmocka_unit_test(weights_are_a_kernel),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
