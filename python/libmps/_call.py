@@ -72,6 +72,12 @@ def to_python(value):
     return value
 
 
+def same(pointer, other):
+    """Whether both are one object: a part may lie where its owner does."""
+    return (isinstance(pointer, ffi.CData) and isinstance(other, ffi.CData) and
+            ffi.typeof(pointer) is ffi.typeof(other) and pointer == other)
+
+
 def column(pointer, count):
     """The `count` numbers (double or int64_t) behind a pointer that a callback was given, as an array:
     for the duration of the callback."""
@@ -126,7 +132,7 @@ class Call:
     def wrap(self, value):
         """An argument of a callback; the pointer of an object that the call knows as that object."""
         for held in self.alive:
-            if getattr(held, "pointer", None) is not None and held.pointer == value:
+            if getattr(held, "pointer", None) is not None and same(held.pointer, value):
                 return held
         return to_python(value)
 

@@ -4,7 +4,7 @@ import numpy
 
 from . import _cdef
 from ._call import (Call, Error, StaleError, call, ffi, functions, library, returns_status,
-                    signature, to_python)
+                    same, signature, to_python)
 
 
 class Object:
@@ -13,13 +13,13 @@ class Object:
 
     pointer = None
 
-    def __init__(self, pointer, context=None, alive=()):
+    def __init__(self, pointer, context=None, alive=(), owned=True):
         self.pointer = pointer
         self.kind = ffi.typeof(pointer).item.cname.removeprefix("mps_")
         self.context = context or self
         self._alive = list(alive)  # callbacks, and what the object was made from
         # Garbage is collected anywhere, inside cffi too: nothing may have to be looked up then.
-        self._destroy = getattr(library, f"mps_{self.kind}_destroy")
+        self._destroy = getattr(library, f"mps_{self.kind}_destroy") if owned else _leave
         self._holder = ffi.new(f"mps_{self.kind} *[1]", [pointer])
         if context is None:
             self._running, self._late = 0, []  # calls under way; what is destroyed after them
@@ -101,12 +101,20 @@ class Object:
         return to_python(value)
 
     def _known(self, result, state):
-        """What a question returns: an object that was lent is the one that made this."""
+        """What a question returns. An object that is lent is the one that made this, or a part of
+        this, which it keeps alive."""
         if isinstance(result, ffi.CData) and ffi.typeof(result).kind == "pointer":
             for held in [self.context, *self._alive, *state.alive]:
-                if isinstance(held, Object) and held.pointer == result:
+                if isinstance(held, Object) and same(held.pointer, result):
                     return held
+            kind = ffi.typeof(result).item
+            if result and kind.kind == "struct" and kind.fields is None:
+                return Object(result, self.context, [self], owned=False)
         return to_python(result)
+
+
+def _leave(_holder):
+    """Destroys nothing: the object is its owner's."""
 
 
 def _is_callback(held):

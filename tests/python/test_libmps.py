@@ -37,6 +37,26 @@ class Values(unittest.TestCase):
         self.assertAlmostEqual(totals.linear[1], -0.981 * 1800.0, delta=1e-8)
         self.assertEqual(solver.get_def().cell, 0.2)
 
+    def test_the_grid_is_lent(self):
+        context = mps.Context()
+        sand = block(context)
+        solver = falling(context, sand)
+        solver.step(1)
+        grid = solver.grid()
+        self.assertEqual(grid.kind, "grid")
+        del solver
+        gc.collect()
+        self.assertEqual(grid.get_info().cell, 0.2)  # the grid keeps its solver
+        count = np.zeros(1, np.int64)
+        grid.get_nodes(0, count, None, None, None, None)
+        mass = np.zeros(int(count[0]))
+        grid.get_nodes(mass.size, count, None, mass, None, None)
+        self.assertAlmostEqual(mass.sum(), 1800.0, delta=1e-9)
+        v = np.zeros(2)
+        grid.evaluate("velocity", -1, 1, [0.5, 5.5, 0.0], v, None)
+        self.assertAlmostEqual(v[1], -9.81e-3, delta=1e-14)
+        grid.close()
+
     def test_the_way_back_is_the_same_bit_for_bit(self):
         context = mps.Context(executor=mps.EXECUTOR_SERIAL)
         sand = block(context)
