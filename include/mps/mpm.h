@@ -69,8 +69,13 @@ typedef struct mps_mpm_def {
   int32_t budget;     /* 1: each step counts what becomes of the energy, see mps_mpm_get_totals; it
                          then sums all forces apart from the momenta, which costs time and changes
                          last bits. 0 (default): it does not */
-  double cell;        /* h, m, > 0; no default. Usually 2 spacings; 0.5 to 1000 are allowed */
-  double origin[3];   /* m: a node lies here; default 0 */
+  double local_damping;   /* in [0, 1): each component of a node's force shrinks by this fraction of
+                             the unbalanced force against its motion; default 0 */
+  double viscous_damping; /* 1/s, >= 0: force on a node for each of its momentum; default 0. Both
+                             come after all other forces and spare what boundaries prescribe, so
+                             that reactions are right; they also slow free flight */
+  double cell;            /* h, m, > 0; no default. Usually 2 spacings; 0.5 to 1000 are allowed */
+  double origin[3];       /* m: a node lies here; default 0 */
   double lower[3], upper[3]; /* m: sides of the domain, on nodes; default: none (infinite). In
                                 axisymmetry lower[0] is at least 0, and 0 by default. Each side is
                                 born a roller: see mps_mpm_set_boundary */
@@ -315,44 +320,12 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_set_dt(mps_mpm *mpm, double dt);
 /** Sums over the particles (bodies not counted), of the measure. `angular` has the spin that the
  *  velocity gradients carry, m h^2/3 (cubic; quadratic: /4) curl v; it is conserved with full
  *  supports. `kinetic` is that of the particles' velocities alone. `work_boundaries` and
- *  `work_bodies` are always there; the others NaN unless `budget` is 1 in the definition. Then
- *
- *    kinetic + strain + dissipated - work_loads - work_boundaries - work_bodies
- *
- *  stays as it was to round-off (1e-12 of the sum of all terms' changes in the tests), wherever
- *  fields and particles are left as the steps have made them: each term is measured where it
- *  happens, and mps_mpm_losses.residual is what they leave. `strain` is the work against the
- * stresses that the laws give back, and the energy of the contacts' springs: of elastic laws all;
- * of elastic-plastic ones the change of the energy of the stress by Hooke's law; of fluids the work
- * of the pressure; of users' laws, which do not tell, all. Loads do work by the velocity that the
- *  nodes give the particles. */
+ *  `work_bodies` are always there; the others NaN unless the definition asks for the budget, which
+ *  mps/mpm_energy.h explains. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_get_totals_sized(mps_mpm *mpm, mps_totals *out,
                                                           size_t size);
 static inline mps_status mps_mpm_get_totals(mps_mpm *mpm, mps_totals *out) {
   return mps_mpm_get_totals_sized(mpm, out, sizeof *out);
-}
-
-/** Where `dissipated` of mps_totals went, J since creation; `scheme` there is transfer + stepping.
- */
-typedef struct mps_mpm_losses {
-  double laws;       /* plasticity and viscosity */
-  double boundaries; /* friction of sides, dashpots with their forces at rest */
-  double bodies;     /* friction of bodies */
-  double damping;    /* of the definition's members */
-  double transfer;   /* kinetic energy of the particles less that of the nodes before the forces,
-                        and of the nodes less that of the particles after them. WLS takes energy
-                        at lengths of a few cells; what a velocity gradient carries to the nodes
-                        comes back as a negative part */
-  double stepping;   /* by the explicit step: impulses act at once, stresses and contacts by their
-                        values at its beginning. Swings about 0 where all is smooth; an impact on
-                        what holds or drives is here */
-  double residual;   /* work less all changes and losses: round-off */
-} mps_mpm_losses;
-/** MPS_ERROR_STATE: the definition's `budget` is 0. */
-MPS_API MPS_NODISCARD mps_status mps_mpm_get_losses_sized(mps_mpm *mpm, mps_mpm_losses *out,
-                                                          size_t size);
-static inline mps_status mps_mpm_get_losses(mps_mpm *mpm, mps_mpm_losses *out) {
-  return mps_mpm_get_losses_sized(mpm, out, sizeof *out);
 }
 
 /** How large the grid is. */

@@ -13,6 +13,8 @@
  *   solver.h      what the solvers have in common
  *   mpm.h         WLS-MPM: large deformation and contact
  *   grid.h        its grid: nodes, fields at points
+ *   mpm_energy.h  where the energy of a run of WLS-MPM goes
+ *   mpm_settle.h  static equilibrium of WLS-MPM
  *   dynamics.h    explicit elastodynamics
  *   elastic.h     implicit elasticity
  *   fluid.h       free-surface flow
@@ -39,6 +41,8 @@
 #include "kernel.h"
 #include "material.h"
 #include "mpm.h"
+#include "mpm_energy.h"
+#include "mpm_settle.h"
 #include "neighbours.h"
 #include "particles.h"
 #include "signal.h"

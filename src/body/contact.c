@@ -165,7 +165,7 @@ static void sum_forces(mps_body *body) {
 }
 
 void mpsi_contact_react(mps_contact *contact, double dt, const mpsi_load *load,
-                        const int64_t *count) {
+                        const int64_t *count, bool moves) {
   mps_body *body = contact->body;
   for (int32_t part = 0; part < body->parts; part++) {
     mps_reaction *r = &contact->reaction[part];
@@ -181,7 +181,7 @@ void mpsi_contact_react(mps_contact *contact, double dt, const mpsi_load *load,
   }
   mpsi_body_react(body, dt, load, count);
   if (body->contacts->next) sum_forces(body);
-  if (contact->def.mover == MPS_CONTACT_MOVER_SOLVER) mpsi_body_advance(body, dt);
+  if (moves && contact->def.mover == MPS_CONTACT_MOVER_SOLVER) mpsi_body_advance(body, dt);
 }
 
 double mpsi_contact_penalty(const mps_contact *contact, double modulus, double spacing, double cell,

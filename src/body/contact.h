@@ -47,9 +47,9 @@ void mpsi_contact_leave(mps_contact *contact);
 void mpsi_contact_release(mps_contact *contact);
 
 /* Tells the body the forces of a step of dt, `count` particles and load[] per part; the body moves
- * where this solver moves it. */
+ * where this solver moves it and `moves` is true. */
 void mpsi_contact_react(mps_contact *contact, double dt, const mpsi_load *load,
-                        const int64_t *count);
+                        const int64_t *count, bool moves);
 
 /* Contact stiffness k (N/m, 2D per m of thickness) of Nakamura (28) or (58) against particles of
  * `modulus` K + 4G/3 (Pa) and `spacing` (m) in cells of size `cell` (m). In axisymmetry the caller

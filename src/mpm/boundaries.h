@@ -53,7 +53,8 @@ mps_status mpsi_mpm_update_holds(mps_mpm *mpm, const char *function);
 mps_status mpsi_mpm_put_dashes(mps_mpm *mpm, const char *function, int64_t count,
                                const mpsi_dash *dash);
 void mpsi_mpm_begin_holds(mps_mpm *mpm, double dt);
-void mpsi_mpm_hold_nodes(mps_mpm *mpm, int64_t g);
+/* `fixed`: of each node, bit c where a boundary alone moves component c; left where none acts. */
+void mpsi_mpm_hold_nodes(mps_mpm *mpm, int64_t g, uint8_t *fixed);
 void mpsi_mpm_sum_holds(mps_mpm *mpm);
 /* walls.c: after G2P, the particles of the lists. */
 void mpsi_mpm_drive_particles(mps_mpm *mpm);

@@ -69,6 +69,6 @@ void mpsi_mpm_update_bodies(mps_mpm *mpm) {
     for (int32_t part = 0; part < mpm->contact.body[b]->parts; part++)
       mpm->energy.bodies -= mpm->run.dt * (mpsi_dot3(load[part].force, pose->v) +
                                            mpsi_dot3(load[part].moment, pose->spin));
-    mpsi_contact_react(mpm->contact.handle[b], mpm->run.dt, load, contacts);
+    mpsi_contact_react(mpm->contact.handle[b], mpm->run.dt, load, contacts, !mpm->settling.on);
   }
 }

@@ -49,7 +49,7 @@ static box near_bodies(const mps_mpm *mpm, const mpsi_cell_block *cells) {
 }
 
 /* Forces are wanted apart from the momenta at all nodes. */
-static bool all_apart(const mps_mpm *mpm) { return mpm->energy.counts || mpm->grid.apart; }
+static bool all_apart(const mps_mpm *mpm) { return mpsi_forces_apart(mpm) || mpm->grid.apart; }
 
 /* Slots of sides, and what is split, of the blocks of nodes under a cut block of cells. */
 static void mark_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const box *near, bool finds) {
@@ -72,8 +72,8 @@ static void mark_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const box *near
 }
 
 /* Cut: some particle may have a cut support, or, with the standard scheme, one without a fit.
- * Split: friction needs the velocity before the forces; so do the energy budget, FLIP, and the
- * transfer by weights, which divides momentum and force by different masses. */
+ * Split: friction needs the velocity before the forces; so do the energy budget, damping by forces,
+ * FLIP, and the transfer by weights, which divides momentum and force by different masses. */
 static mps_status find_cut(mps_mpm *mpm, const char *function) {
   bool finds = false; /* an absorbing wall asks for the forces of its first step */
   for (int32_t k = 0; k < MPSI_SIDES; k++) {

@@ -53,19 +53,29 @@ void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
   if (nodes->pairs > 0) mpsi_mpm_apply_contact(mpm, g);
 }
 
-static void finish_and_count(mps_mpm *mpm, int64_t g) {
-  mpsi_node held[MPSI_SIDE * MPSI_SIDE * MPSI_SIDE];
+/* The same with damping, and with the energies of the nodes and their distance from equilibrium
+ * where these are wanted. */
+static void finish_and_damp(mps_mpm *mpm, int64_t g) {
+  enum { MOST = MPSI_SIDE * MPSI_SIDE * MPSI_SIDE };
+  mpsi_node held[MOST], damped[MOST];
+  uint8_t fixed[MOST] = {0};
   const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(mpm, g));
-  memcpy(held, node, (size_t)mpm->grid.block_nodes * sizeof *held);
-  mpsi_mpm_hold_nodes(mpm, g);
-  mpsi_energy_nodes(mpm, g, (const mpsi_node *)held, node);
+  const size_t bytes = (size_t)mpm->grid.block_nodes * sizeof *held;
+  memcpy(held, node, bytes);
+  mpsi_mpm_hold_nodes(mpm, g, fixed);
+  memcpy(damped, node, bytes);
+  if (mpm->settling.on) mpsi_mpm_measure_balance(mpm, g, fixed, (const mpsi_node *)held);
+  mpsi_mpm_damp_nodes(mpm, g, fixed);
+  if (mpm->energy.counts)
+    mpsi_energy_nodes(mpm, g, (const mpsi_node *)held, (const mpsi_node *)damped);
 }
 
 void mpsi_mpm_finish_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
   (void)worker;
+  uint8_t fixed[MPSI_SIDE * MPSI_SIDE * MPSI_SIDE];
   if (mpm->grid.nodes[g].pairs > 0) mpsi_mpm_apply_friction(mpm, g);
-  if (mpm->energy.counts)
-    finish_and_count(mpm, g);
+  if (mpsi_forces_apart(mpm) || mpm->def.viscous_damping > 0.0)
+    finish_and_damp(mpm, g);
   else
-    mpsi_mpm_hold_nodes(mpm, g);
+    mpsi_mpm_hold_nodes(mpm, g, fixed);
 }

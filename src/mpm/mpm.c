@@ -69,6 +69,12 @@ static mps_status check_numbers(mps_context *context, const mps_mpm_def *d) {
   if (!(d->courant > 0.0 && d->courant <= 1.0))
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "courant is %g, must be in (0, 1]",
                      d->courant);
+  if (!(d->local_damping >= 0.0 && d->local_damping < 1.0) ||
+      !(d->viscous_damping >= 0.0 && d->viscous_damping <= FAR))
+    return mpsi_fail(
+        context, create, MPS_ERROR_ARGUMENT,
+        "local_damping is %g and viscous_damping %g 1/s, must be in [0, 1) and 0 to %g",
+        d->local_damping, d->viscous_damping, FAR);
   for (int c = 0; c < dim_of(d); c++)
     if (!(fabs(d->origin[c]) <= FAR) || !(fabs(d->gravity[c]) <= FAR))
       return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
@@ -385,6 +391,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
                    mpm->boundaries.old_dash_room.item,
                    mpm->energy.cells_room.item,
                    mpm->energy.nodes_room.item,
+                   mpm->settling.nodes_room.item,
                    mpm->rooms.force.item,
                    mpm->rooms.radix.item,
                    mpm->rooms.flags.item,

@@ -7,6 +7,7 @@
 #include "blocks.h"
 #include "boundaries.h"
 #include "columns.h"
+#include "damping.h"
 #include "energy.h"
 #include "laws.h"
 #include "loads.h"
@@ -49,8 +50,14 @@ struct mps_mpm {
   mpsi_laws laws;
   mpsi_run run;
   mpsi_energy energy;
+  mpsi_settling settling;
   mpsi_identity *identity; /* of its snapshots */
 };
+
+/* Whether each node needs its velocity before the forces: all blocks are split then. */
+static inline bool mpsi_forces_apart(const mps_mpm *mpm) {
+  return mpm->energy.counts || mpm->settling.on || mpm->def.local_damping > 0.0;
+}
 
 static inline const mpsi_law_use *mpsi_law_of(const mps_mpm *mpm, int64_t particle) {
   return &mpm->laws.law[mpm->p.law ? mpm->p.law[particle] : 0];

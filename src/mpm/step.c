@@ -98,6 +98,7 @@ static mps_status prepare(mps_mpm *mpm, const char *function) {
   }
   if (status == MPS_OK) status = mpsi_mpm_find_forces(mpm, function);
   if (status == MPS_OK) status = mpsi_energy_begin(mpm, function);
+  if (status == MPS_OK) status = mpsi_mpm_begin_balance(mpm, function);
   return status;
 }
 

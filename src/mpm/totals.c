@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_private.h"
 
+#include <mps/mpm_energy.h>
+
 static int64_t grid_bytes(const mps_mpm *mpm) {
   const struct {
     int64_t capacity;

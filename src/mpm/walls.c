@@ -119,7 +119,7 @@ mps_status mpsi_mpm_put_dashes(mps_mpm *mpm, const char *function, int64_t count
 typedef struct block {
   mps_mpm *mpm;
   mpsi_node *node, *side;         /* side: NULL where the block has none */
-  uint8_t held[BLOCK];            /* bit c: nothing else moves component c */
+  uint8_t *held;                  /* bit c: nothing else moves component c */
   double push[MPSI_SIDES][BLOCK]; /* N s, of frictional sides at their nodes */
 } block;
 
@@ -187,6 +187,7 @@ static void apply_friction(block *b, const mpsi_hold *hold, mpsi_held *held, int
 static void prescribe(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
   for (int c = 0; c < b->mpm->dim; c++)
     if (hold->dofs >> c & 1) set(b, hold, held, k, c, hold->v[c]);
+  b->held[k] |= (uint8_t)hold->dofs;
 }
 
 /* ---- a block --------------------------------------------------------------------------------- */
@@ -206,7 +207,7 @@ static void for_range(block *b, const mpsi_hold *hold, mpsi_held *held, hold_fn 
 
 /* What acts across walls comes before friction: where walls meet, that of one must not move a node
  * into the other. */
-void mpsi_mpm_hold_nodes(mps_mpm *mpm, int64_t g) {
+void mpsi_mpm_hold_nodes(mps_mpm *mpm, int64_t g, uint8_t *fixed) {
   static const struct {
     int32_t kind;
     hold_fn work;
@@ -221,7 +222,8 @@ void mpsi_mpm_hold_nodes(mps_mpm *mpm, int64_t g) {
   b.mpm = mpm;
   b.node = mpm->grid.node + mpsi_first_node(mpm, g);
   b.side = nodes->side >= 0 ? mpm->grid.side + mpsi_first_node(mpm, nodes->side) : NULL;
-  memset(b.held, 0, sizeof b.held);
+  b.held = fixed;
+  memset(fixed, 0, (size_t)mpm->grid.block_nodes);
   for (int32_t t = 0; t < nodes->holds; t++) {
     memset(first[t].impulse, 0, sizeof first[t].impulse);
     memset(first[t].moment, 0, sizeof first[t].moment);
@@ -242,9 +244,10 @@ void mpsi_mpm_begin_holds(mps_mpm *mpm, double dt) {
     mpsi_hold *hold = &mpm->boundaries.hold[k];
     if (hold->finds) hold->found += dt;
     for (int c = 0; c < mpm->dim; c++)
-      hold->v[c] = hold->signal[c] ? hold->factor[c] * mps_signal_velocity(hold->signal[c],
-                                                                           mpm->run.time + 0.5 * dt)
-                                   : 0.0;
+      hold->v[c] =
+          hold->signal[c] && !mpm->settling.on
+              ? hold->factor[c] * mps_signal_velocity(hold->signal[c], mpm->run.time + 0.5 * dt)
+              : 0.0;
   }
 }
 

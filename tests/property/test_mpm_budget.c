@@ -4,6 +4,8 @@
 #include "mpm_twins.h"
 #include "test_fixture.h"
 
+#include <mps/mpm_energy.h>
+
 static mps_mpm_losses losses(mpm_scene *s) {
   mps_mpm_losses l;
   mps_assert_ok(s->context, mps_mpm_get_losses(s->mpm, &l));

@@ -1,0 +1,180 @@
+/* settle.c - static equilibrium by dynamic relaxation with kinetic damping: the particles swing
+ * towards equilibrium, and where their kinetic energy has passed a peak they are stopped, since
+ * there the forces are near balance. SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_private.h"
+
+#include <mps/mpm_settle.h>
+
+#include <string.h>
+
+#define TOLERANCE 1e-3
+#define MOST_STEPS 20000
+
+static const mps_mpm_settle_def settle_defaults = {
+    .struct_size = sizeof(mps_mpm_settle_def), .max_steps = MOST_STEPS, .tolerance = NAN};
+
+mps_status mps_mpm_settle_def_init(mps_mpm_settle_def *def, size_t size) {
+  return MPSI_DEF_INIT(mps_mpm_settle_def, def, size, &settle_defaults);
+}
+
+/* ---- bodies stand still ---------------------------------------------------------------------- */
+
+typedef struct motions {
+  double v[MPS_MPM_MAX_CONTACTS][3], spin[MPS_MPM_MAX_CONTACTS][3];
+} motions;
+
+static mps_status check_bodies(mps_mpm *mpm, const char *function) {
+  for (int32_t b = 0; b < mpm->contact.bodies; b++)
+    if (mpm->contact.body[b]->def.motion == MPS_BODY_MOTION_FREE)
+      return mpsi_fail(mpm->context, function, MPS_ERROR_UNSUPPORTED,
+                       "body %d moves freely: only what is held or driven stands still while the "
+                       "particles settle",
+                       b);
+  return MPS_OK;
+}
+
+static void stop_bodies(mps_mpm *mpm, motions *kept) {
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
+    mpsi_pose *pose = &mpm->contact.body[b]->pose;
+    memcpy(kept->v[b], pose->v, sizeof pose->v);
+    memcpy(kept->spin[b], pose->spin, sizeof pose->spin);
+    memset(pose->v, 0, sizeof pose->v);
+    memset(pose->spin, 0, sizeof pose->spin);
+  }
+}
+
+static void let_bodies_go(mps_mpm *mpm, const motions *kept) {
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
+    mpsi_pose *pose = &mpm->contact.body[b]->pose;
+    memcpy(pose->v, kept->v[b], sizeof pose->v);
+    memcpy(pose->spin, kept->spin[b], sizeof pose->spin);
+  }
+}
+
+/* ---- particles ------------------------------------------------------------------------------- */
+
+static void stop_block(mps_mpm *mpm, int64_t b, int32_t worker) {
+  (void)worker;
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  const size_t bytes = (size_t)(cells->end - cells->begin) * sizeof(double);
+  for (int c = 0; c < mpm->dim; c++) memset(mpm->p.v[c] + cells->begin, 0, bytes);
+  for (int c = 0; c < 9; c++)
+    if (mpm->p.L[c]) memset(mpm->p.L[c] + cells->begin, 0, bytes);
+}
+
+/* All particles stop; the budget counts their kinetic energy as damped. */
+static void stop_particles(mps_mpm *mpm) {
+  const mpsi_columns *p = &mpm->p;
+  double kinetic = 0.0;
+  for (int64_t k = 0; mpm->energy.counts && k < p->count; k++)
+    for (int c = 0; c < mpm->dim; c++) kinetic += 0.5 * p->m[k] * p->v[c][k] * p->v[c][k];
+  mpm->energy.sum.kinetic -= kinetic;
+  mpm->energy.sum.damping_loss += kinetic;
+  mpsi_mpm_for_cells(mpm, stop_block);
+}
+
+/* N, the sum of the sizes of gravity and loads. */
+static double applied_to_particles(const mps_mpm *mpm) {
+  const mpsi_columns *p = &mpm->p;
+  double sum = 0.0;
+  for (int64_t k = 0; k < p->count; k++) {
+    double square = 0.0;
+    for (int c = 0; c < mpm->dim; c++) {
+      const double f = p->m[k] * mpm->def.gravity[c] + (p->f[c] ? p->f[c][k] : 0.0);
+      square += f * f;
+    }
+    sum += sqrt(square);
+  }
+  return sum;
+}
+
+/* ---- settling -------------------------------------------------------------------------------- */
+
+/* One step; the time of the run stands still. */
+static mps_status relax(mps_mpm *mpm, const char *function, mps_mpm_settled *now) {
+  const double time = mpm->run.time;
+  const mps_status status = mpsi_mpm_take_step(mpm, function, mps_mpm_dt(mpm));
+  mpm->run.time = time;
+  if (status != MPS_OK) return status;
+  double unbalanced = 0.0;
+  now->kinetic = 0.0;
+  now->applied = applied_to_particles(mpm);
+  for (int64_t g = 0; g < mpm->grid.node_count; g++) {
+    const mpsi_node_balance *n = &mpm->settling.nodes[g];
+    unbalanced += n->unbalanced;
+    now->applied += n->applied;
+    now->kinetic += n->kinetic;
+  }
+  now->unbalanced = unbalanced > 0.0 ? unbalanced / now->applied : 0.0;
+  now->steps++;
+  return MPS_OK;
+}
+
+static mps_status relax_until(mps_mpm *mpm, const char *function, const mps_mpm_settle_def *def,
+                              mps_mpm_settled *now) {
+  double before = 0.0;
+  bool from_rest = true;
+  while (now->steps < def->max_steps) {
+    const mps_status status = relax(mpm, function, now);
+    if (status != MPS_OK) return status;
+    const bool balanced = now->unbalanced <= def->tolerance;
+    if (balanced && from_rest) return MPS_OK;
+    from_rest = balanced || now->kinetic < before;
+    before = from_rest ? 0.0 : now->kinetic;
+    now->peaks += from_rest;
+    if (from_rest) stop_particles(mpm);
+    if (now->steps % 100 == 0)
+      mpsi_progress(mpm->context, "mpm settle", mpm->run.steps, (double)now->steps,
+                    (double)def->max_steps);
+    if (mpsi_cancelled(mpm->context))
+      return mpsi_fail(mpm->context, function, MPS_ERROR_CANCELLED,
+                       "stopped by the cancel hook after %lld steps, the unbalanced force being "
+                       "%.3g of the applied",
+                       (long long)now->steps, now->unbalanced);
+  }
+  return mpsi_fail(mpm->context, function, MPS_ERROR_NUMERIC,
+                   "no equilibrium after %lld steps: the unbalanced force is %.3g of the applied "
+                   "%.4g N, above the tolerance %.3g; more steps, or there is none (the ground "
+                   "flows)",
+                   (long long)now->steps, now->unbalanced, now->applied, def->tolerance);
+}
+
+static mps_status read_def(mps_mpm *mpm, const char *function, const mps_mpm_settle_def *user,
+                           mps_mpm_settle_def *def) {
+  *def = settle_defaults;
+  mps_status status = MPS_OK;
+  if (user) status = MPSI_DEF_READ(mpm->context, function, mps_mpm_settle_def, user, def);
+  if (status != MPS_OK) return status;
+  if (isnan(def->tolerance)) def->tolerance = TOLERANCE;
+  if (!(def->tolerance > 0.0 && def->tolerance < 1.0))
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "tolerance is %g, must be in (0, 1), or NaN for %g", def->tolerance,
+                     TOLERANCE);
+  if (def->max_steps < 1)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "max_steps is %lld, must be at least 1", (long long)def->max_steps);
+  return MPS_OK;
+}
+
+mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mps_mpm_settled *out,
+                                size_t size) {
+  static const char function[] = "mps_mpm_settle";
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_mpm_settle_def def;
+  mps_mpm_settled now = {0};
+  motions kept;
+  mps_status status = mpsi_mpm_ready(mpm, function);
+  if (status == MPS_OK) status = read_def(mpm, function, user, &def);
+  if (status == MPS_OK) status = check_bodies(mpm, function);
+  if (status != MPS_OK) return status;
+  mpm->settling.on = true;
+  stop_bodies(mpm, &kept);
+  stop_particles(mpm);
+  status = relax_until(mpm, function, &def, &now);
+  if (!mpm->run.broken) stop_particles(mpm);
+  let_bodies_go(mpm, &kept);
+  mpm->settling.on = false;
+  if (!out) return status;
+  const mps_status written = mpsi_out_write(mpm->context, function, out, size, &now, sizeof now);
+  return status == MPS_OK ? written : status;
+}

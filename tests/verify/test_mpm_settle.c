@@ -1,0 +1,376 @@
+/* test_mpm_settle.c - damping of WLS-MPM leaves reactions right and books what it takes; ground
+ * settles under its weight to what theory and a slow loading say, in fewer steps.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_scene.h"
+#include "test_fixture.h"
+
+#include <mps/mpm_energy.h>
+#include <mps/mpm_settle.h>
+
+static double mean_of(mpm_scene *s, const char *field, int c) {
+  mps_view v = mpm_scene_view(s, field);
+  double sum = 0.0;
+  for (int64_t k = 0; k < v.shape[0]; k++) sum += *mps_view_f64(&v, k, c);
+  return sum / (double)v.shape[0];
+}
+
+static mps_mpm_losses losses(mpm_scene *s) {
+  mps_mpm_losses l;
+  mps_assert_ok(s->context, mps_mpm_get_losses(s->mpm, &l));
+  return l;
+}
+
+/* ---- damping --------------------------------------------------------------------------------- */
+
+/* Free fall: with local damping of 0.3 at 0.7 g; with viscous damping the velocity of the implicit
+ * step, (v + g dt)/(1 + c dt), on its way to g/c. What damping takes is booked. */
+static void damped_fall(void **state) {
+  (void)state;
+  for (int viscous = 0; viscous <= 1; viscous++) {
+    const double g = 10.0, rate = 40.0, dt = 1e-4;
+    mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+    mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
+    mps_mpm_def def = mps_mpm_defaults();
+    def.cell = 0.02, def.dt = dt, def.gravity[1] = -g, def.budget = 1;
+    def.local_damping = viscous ? 0.0 : 0.3;
+    def.viscous_damping = viscous ? rate : 0.0;
+    mpm_scene_solve(&s, &def);
+    mps_assert_ok(context, mps_mpm_step(s.mpm, 500));
+    double v = 0.0, taken = 0.0;
+    for (int k = 0; k < 500; k++) {
+      const double to = viscous ? (v + g * dt) / (1.0 + rate * dt) : v + 0.7 * g * dt;
+      taken += 10.0 * (v + g * dt - to) * to;
+      v = to;
+    }
+    mps_assert_near(mean_of(&s, "velocity", 1), -v, 1e-12);
+    const mps_mpm_losses l = losses(&s);
+    mps_assert_near(l.damping, taken, 1e-11);
+    mps_assert_near(l.residual, 0.0, 1e-12);
+    if (viscous) assert_true(v > 0.8 * g / rate && v < g / rate);
+    mpm_scene_end(&s);
+  }
+}
+
+/* A block comes to rest on a fixed floor, between rollers or driven ahead by a box of nodes: the
+ * floor bears the weight whatever the damping, and in each step the momentum changes by the forces
+ * of boundaries, gravity and damping. */
+static void floor_bears_the_weight(void **state) {
+  (void)state;
+  for (int viscous = 0; viscous <= 1; viscous++) {
+    mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+    mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.3);
+    mps_mpm_def def = mps_mpm_defaults();
+    def.cell = 0.02, def.gravity[1] = -10.0, def.budget = 1;
+    def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.2;
+    def.local_damping = viscous ? 0.0 : 0.7;
+    def.viscous_damping = viscous ? 30.0 : 0.0;
+    mpm_scene_solve(&s, &def);
+    mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
+    mps_assert_ok(context, mps_mpm_step(s.mpm, 4000));
+    double force[3];
+    mpm_scene_force(&s, MPS_MPM_SIDE_Y_LOWER, force);
+    const mps_mpm_losses l = losses(&s);
+    print_message("%s damping: floor bears %.9g of 600 N, damping took %.4g J\n",
+                  viscous ? "viscous" : "local", force[1], l.damping);
+    mps_assert_near(fabs(force[1]), 600.0, viscous ? 1e-3 : 1e-6);
+    assert_true(l.damping > 0.0 && fabs(l.residual) < 1e-12 * l.damping * 100.0);
+    mpm_scene_end(&s);
+  }
+}
+
+/* What a boundary drives is not damped: a box of nodes keeps its velocity, and so do the particles
+ * well inside it. */
+static void driven_nodes_are_not_damped(void **state) {
+  (void)state;
+  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+  mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.2);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.02, def.local_damping = 0.8, def.viscous_damping = 100.0;
+  mpm_scene_solve(&s, &def);
+  mps_signal *go = NULL;
+  const double t[] = {0.0, 1.0}, v[] = {0.3, 0.3}, low[] = {-1.0, -1.0}, high[] = {1.0, 1.0};
+  mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_VELOCITY, 2, t, v, &go));
+  const mps_mpm_boundary_def all = mpm_scene_box_def(s.mpm, low, high, 0, go, 1.0);
+  int32_t number;
+  mps_assert_ok(context, mps_mpm_add_boundary(s.mpm, &all, &number));
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 20));
+  mps_view velocity = mpm_scene_view(&s, "velocity");
+  for (int64_t k = 0; k < velocity.shape[0]; k++)
+    mps_assert_near(*mps_view_f64(&velocity, k, 0), 0.3, 1e-14);
+  mps_signal_destroy(&go);
+  mpm_scene_end(&s);
+}
+
+static void damping_is_checked(void **state) {
+  (void)state;
+  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+  mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
+  mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 1000.0));
+  const double bad[][2] = {{1.0, 0.0}, {-0.1, 0.0}, {NAN, 0.0}, {0.0, -1.0}, {0.0, NAN}};
+  for (int k = 0; k < 5; k++) {
+    mps_mpm_def def = mps_mpm_defaults();
+    def.cell = 0.02, def.local_damping = bad[k][0], def.viscous_damping = bad[k][1];
+    mps_assert_fails(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm),
+                     MPS_ERROR_ARGUMENT, "must be in [0, 1) and 0 to");
+  }
+  mpm_scene_end(&s);
+}
+
+/* ---- settling -------------------------------------------------------------------------------- */
+
+static mpm_scene column(double young, mps_material *law) {
+  mpm_scene s = mpm_scene_begin(context, 0.025, 0.0, 0.0, young);
+  if (law) {
+    mps_material_destroy(&s.material);
+    s.material = law;
+  }
+  mpm_scene_box(&s, 0.0, 0.0, 0.2, 1.0);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.05, def.gravity[1] = -10.0, def.budget = 1;
+  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.2;
+  mpm_scene_solve(&s, &def);
+  return s;
+}
+
+/* A column between rollers: its middle sinks by rho g (H y - y^2/2)/M on average, the floor bears
+ * the weight; the time stands still; the budget closes. */
+static void column_settles(void **state) {
+  (void)state;
+  const double young = 1e7, M = young * 0.7 / (1.3 * 0.4), g = 10.0, rho = 1000.0;
+  mpm_scene s = column(young, NULL);
+  const double before = mean_of(&s, "position", 1);
+  mps_mpm_settle_def def = mps_mpm_settle_defaults();
+  mps_mpm_settled out;
+  def.tolerance = 1e-6;
+  mps_assert_ok(context, mps_mpm_settle(s.mpm, &def, &out));
+  const double sunk = before - mean_of(&s, "position", 1), theory = rho * g / (3.0 * M);
+  double force[3];
+  mpm_scene_force(&s, MPS_MPM_SIDE_Y_LOWER, force);
+  const mps_mpm_losses l = losses(&s);
+  print_message(
+      "column: sunk %.6g m, theory %.6g, in %d steps and %d peaks, unbalanced %.2g; floor "
+      "bears %.8g of 2000 N\n",
+      sunk, theory, (int)out.steps, (int)out.peaks, out.unbalanced, fabs(force[1]));
+  mps_assert_near(sunk, theory, 0.005 * theory);
+  mps_assert_near(fabs(force[1]), 2000.0, 1e-5 * 2000.0);
+  assert_true(out.unbalanced <= 1e-6 && out.steps < 2000 && out.peaks > 1);
+  assert_true(mps_mpm_time(s.mpm) == 0.0 && mps_mpm_steps(s.mpm) == out.steps);
+  assert_true(mpm_scene_totals(&s).kinetic == 0.0);
+  mps_assert_near(l.residual, 0.0, 1e-12 * (l.damping + l.transfer));
+  mps_assert_ok(context, mps_mpm_settle(s.mpm, &def, &out)); /* it is at rest */
+  assert_int_equal(out.steps, 1);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 100)); /* and stays there */
+  assert_true(mpm_scene_totals(&s).kinetic < 1e-10 * l.damping);
+  mpm_scene_end(&s);
+}
+
+static int32_t cancels(void *user) { return ++*(int *)user > 7; }
+
+/* Clay that cannot stand flows: no equilibrium, a clear status, the particles at rest, the result
+ * written; arguments are checked. */
+static void flow_does_not_settle(void **state) {
+  (void)state;
+  mps_von_mises_def weak = mps_von_mises_defaults();
+  mps_material *law = NULL;
+  weak.young = 1e7, weak.yield_stress = 500.0;
+  mps_assert_ok(context, mps_material_von_mises(context, &weak, &law));
+  mpm_scene s = mpm_scene_begin(context, 0.025, 0.0, 0.0, 1e7);
+  mps_material_destroy(&s.material);
+  s.material = law;
+  mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.5);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.05, def.gravity[1] = -10.0;
+  def.lower[0] = def.lower[1] = 0.0;
+  mpm_scene_solve(&s, &def);
+  mps_mpm_settle_def settle = mps_mpm_settle_defaults();
+  mps_mpm_settled out;
+  settle.max_steps = 200;
+  mps_assert_fails(context, mps_mpm_settle(s.mpm, &settle, &out), MPS_ERROR_NUMERIC,
+                   "no equilibrium after 200 steps");
+  assert_true(out.steps == 200 && out.unbalanced > 1e-3 && out.applied > 1000.0);
+  assert_true(mpm_scene_totals(&s).kinetic == 0.0);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 1)); /* it goes on */
+  settle.max_steps = 0;
+  mps_assert_fails(context, mps_mpm_settle(s.mpm, &settle, NULL), MPS_ERROR_ARGUMENT,
+                   "max_steps is 0");
+  settle = mps_mpm_settle_defaults();
+  settle.tolerance = 0.0;
+  mps_assert_fails(context, mps_mpm_settle(s.mpm, &settle, NULL), MPS_ERROR_ARGUMENT,
+                   "tolerance is 0");
+  mps_body_def ball = mps_body_defaults();
+  mps_body *body = NULL;
+  ball.motion = MPS_BODY_MOTION_FREE, ball.mass = ball.inertia[2] = 1.0, ball.position[1] = 1.0;
+  mps_assert_ok(context, mps_body_create_disc(context, &ball, 0.1, &body));
+  mpm_scene_contact(&s, body, 0.0);
+  mps_assert_fails(context, mps_mpm_settle(s.mpm, NULL, NULL), MPS_ERROR_UNSUPPORTED,
+                   "body 0 moves freely");
+  mps_body_destroy(&body);
+  mpm_scene_end(&s);
+}
+
+/* ---- a slope --------------------------------------------------------------------------------- */
+
+static mpm_scene slope(double gravity) {
+  const double xy[] = {0.0, 0.0, 8.0, 0.0, 8.0, 2.0, 6.0, 2.0, 3.0, 4.0, 0.0, 4.0};
+  mps_drucker_prager_def law = mps_drucker_prager_defaults();
+  law.young = 2e7, law.poisson = 0.3, law.friction = 0.45, law.cohesion = 6e3;
+  mpm_scene s = mpm_scene_begin(context, 0.125, 0.0, 0.0, 1e7);
+  mps_material_destroy(&s.material);
+  mps_assert_ok(context, mps_material_drucker_prager(context, &law, &s.material));
+  mps_assert_ok(context, mps_particles_fill_polygon(s.particles, 6, xy, NULL));
+  mps_assert_ok(context, mps_particles_add_field(s.particles, "body_acceleration", 0));
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.25, def.gravity[1] = -gravity;
+  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 8.0;
+  mpm_scene_solve(&s, &def);
+  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
+  return s;
+}
+
+/* Weight that grows over 5 s, eighty first periods of the slope's height, in 40 steps of it. */
+static void load_slowly(mpm_scene *s, double g) {
+  for (int k = 1; k <= 200; k++) {
+    mps_assert_ok(context, mps_particles_set(s->particles, "body_acceleration", 1, -g * k / 200.0));
+    mps_assert_ok(context, mps_mpm_run(s->mpm, 0.025 * k, 1, NULL, NULL));
+  }
+  mps_assert_ok(context, mps_mpm_run(s->mpm, 6.0, 1, NULL, NULL));
+}
+
+/* How far the top has sunk, and the mean of the size of the displacement. */
+static void slope_settles(void **state) {
+  (void)state;
+  mpm_scene slow = slope(0.0), fast = slope(10.0);
+  mps_view x = mpm_scene_view(&slow, "position");
+  const double start = mean_of(&slow, "position", 1), aside = mean_of(&slow, "position", 0);
+  assert_true(x.shape[0] > 1000);
+  load_slowly(&slow, 10.0);
+  mps_mpm_settled out;
+  mps_assert_ok(context, mps_mpm_settle(fast.mpm, NULL, &out));
+  double sunk[2], moved[2];
+  mpm_scene *both[] = {&slow, &fast};
+  for (int k = 0; k < 2; k++) {
+    sunk[k] = start - mean_of(both[k], "position", 1);
+    moved[k] = mean_of(both[k], "position", 0) - aside;
+  }
+  print_message("slope: sunk %.6g and %.6g m, aside %.4g and %.4g, slowly in %d steps, settled in "
+                "%d\n",
+                sunk[0], sunk[1], moved[0], moved[1], (int)mps_mpm_steps(slow.mpm), (int)out.steps);
+  mps_assert_near(sunk[1], sunk[0], 0.01 * sunk[0]);
+  assert_true(4 * out.steps < mps_mpm_steps(slow.mpm));
+  mpm_scene_end(&slow);
+  mpm_scene_end(&fast);
+}
+
+/* ---- a footing ------------------------------------------------------------------------------- */
+
+typedef struct footing {
+  mpm_scene s;
+  mps_body *strip;
+} footing;
+
+static footing make_footing(void) {
+  footing f = {.s = mpm_scene_begin(context, 0.05, 0.0, 0.0, 1e9)};
+  mps_von_mises_def law = mps_von_mises_defaults();
+  law.young = 1e9, law.poisson = 0.3, law.yield_stress = sqrt(3.0) * 1e4;
+  mps_material_destroy(&f.s.material);
+  mps_assert_ok(context, mps_material_von_mises(context, &law, &f.s.material));
+  mpm_scene_box(&f.s, 0.0, 0.0, 2.0, 1.2);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.1;
+  def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 2.0;
+  mpm_scene_solve(&f.s, &def);
+  mpm_scene_side(&f.s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
+  mps_body_def body = mps_body_defaults();
+  body.position[1] = 1.45;
+  mps_assert_ok(context, mps_body_create_box(context, &body, 1.0, 0.5, &f.strip));
+  mps_contact_def contact = mps_contact_defaults();
+  contact.penalty = 2e9;
+  mps_assert_ok(context, mps_mpm_add_contact(f.s.mpm, f.strip, &contact, NULL));
+  return f;
+}
+
+static double pressure(footing *f) {
+  mps_reaction r;
+  mps_assert_ok(context, mps_body_get_reaction(f->strip, -1, &r));
+  return r.force[1] / (0.5 * 1e4);
+}
+
+static void press(footing *f, double speed, double way) {
+  mps_body_motion down = mps_body_motion_defaults();
+  down.velocity[1] = -speed;
+  mps_assert_ok(context, mps_body_set_motion(f->strip, &down));
+  mps_assert_ok(context,
+                mps_mpm_run(f->s.mpm, mps_mpm_time(f->s.mpm) + way / speed, 1, NULL, NULL));
+}
+
+/* q/c at 0.6 mm: at two speeds, which tell the one without inertia; and by settling after each of
+ * six small ways. A fast way makes the ground flow further than the footing asks for, and leaves
+ * less than it can bear. */
+static void footing_bears(void **state) {
+  (void)state;
+  double q[2];
+  int64_t steps = 0;
+  for (int k = 0; k < 2; k++) {
+    footing f = make_footing();
+    const double speed = k == 0 ? 2e-3 : 1e-3;
+    press(&f, 0.25 * speed, 0.01e-3);
+    press(&f, 0.5 * speed, 0.02e-3);
+    press(&f, speed, 0.57e-3);
+    q[k] = pressure(&f);
+    steps = mps_mpm_steps(f.s.mpm);
+    mps_body_destroy(&f.strip);
+    mpm_scene_end(&f.s);
+  }
+  const double slow = 2.0 * q[1] - q[0];
+  footing f = make_footing();
+  mps_mpm_settle_def def = mps_mpm_settle_defaults();
+  def.tolerance = 2e-3;
+  press(&f, 8e-3, 0.48e-3);
+  mps_assert_ok(context, mps_mpm_settle(f.s.mpm, &def, NULL));
+  const double rough = pressure(&f);
+  for (int k = 0; k < 6; k++) {
+    press(&f, 1.5e-3, 0.02e-3);
+    mps_assert_ok(context, mps_mpm_settle(f.s.mpm, &def, NULL));
+  }
+  const double settled = pressure(&f);
+  print_message("footing: q/c %.4f at 2 mm/s, %.4f at 1, so %.4f without inertia in %d steps; "
+                "settled %.4f in %d (after one fast way %.4f)\n",
+                q[0], q[1], slow, (int)steps, settled, (int)mps_mpm_steps(f.s.mpm), rough);
+  mps_assert_near(settled, slow, 0.01 * slow);
+  assert_true(3 * mps_mpm_steps(f.s.mpm) < steps);
+  mps_body_destroy(&f.strip);
+  mpm_scene_end(&f.s);
+}
+
+static void settling_can_be_cancelled(void **state) {
+  (void)state;
+  int asked = 0;
+  mps_context_def def = test_context_defaults();
+  def.cancel = cancels, def.cancel_user = &asked;
+  mps_context *other = NULL;
+  assert_int_equal(mps_context_create(&def, &other, NULL, 0), MPS_OK);
+  mpm_scene s = mpm_scene_begin(other, 0.025, 0.0, 0.0, 1e7);
+  mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.5);
+  mps_mpm_def solver = mps_mpm_defaults();
+  solver.cell = 0.05, solver.gravity[1] = -10.0, solver.lower[1] = 0.0;
+  mpm_scene_solve(&s, &solver);
+  asked = 0;
+  mps_mpm_settled out;
+  mps_assert_fails(other, mps_mpm_settle(s.mpm, NULL, &out), MPS_ERROR_CANCELLED, "cancel hook");
+  assert_int_equal(out.steps, 8);
+  mpm_scene_end(&s);
+  mps_context_destroy(&other);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(damped_fall),
+                                     cmocka_unit_test(floor_bears_the_weight),
+                                     cmocka_unit_test(driven_nodes_are_not_damped),
+                                     cmocka_unit_test(damping_is_checked),
+                                     cmocka_unit_test(column_settles),
+                                     cmocka_unit_test(flow_does_not_settle),
+                                     cmocka_unit_test(settling_can_be_cancelled),
+                                     cmocka_unit_test(slope_settles),
+                                     cmocka_unit_test(footing_bears)};
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
