@@ -15,6 +15,7 @@
 #include <mps/io.h>
 #include <mps/material.h>
 #include <mps/mpm.h>
+#include <mps/mpm_settle.h>
 #include <mps/neighbours.h>
 #include <mps/particles.h>
 #include <mps/signal.h>
@@ -112,6 +113,21 @@ static mps_status use_mpm(const void *def) {
   mps_mpm *made = NULL;
   mps_assert_ok(context, mps_material_linear_elastic(context, 1e7, 0.3, &material));
   const mps_status status = mps_mpm_create(context, set, material, def, &made);
+  mps_mpm_destroy(&made);
+  mps_material_destroy(&material);
+  mps_particles_destroy(&set);
+  return status;
+}
+
+static mps_status use_mpm_settle(const void *def) {
+  mps_particles *set = square();
+  mps_material *material = NULL;
+  mps_mpm_def solver = mps_mpm_defaults();
+  mps_mpm *made = NULL;
+  solver.cell = 1.0;
+  mps_assert_ok(context, mps_material_linear_elastic(context, 1e7, 0.3, &material));
+  mps_assert_ok(context, mps_mpm_create(context, set, material, &solver, &made));
+  const mps_status status = mps_mpm_settle(made, def, NULL);
   mps_mpm_destroy(&made);
   mps_material_destroy(&material);
   mps_particles_destroy(&set);
@@ -453,6 +469,7 @@ static const user users[] = {
     {"mps_geostatic_def", need_geostatic, use_geostatic},
     {"mps_mohr_coulomb_def", need_mohr_coulomb, use_mohr_coulomb},
     {"mps_mpm_def", need_mpm, use_mpm},
+    {"mps_mpm_settle_def", need_nothing, use_mpm_settle},
     {"mps_neighbours_def", need_neighbours, use_neighbours},
     {"mps_newtonian_def", need_newtonian, use_newtonian},
     {"mps_particles_def", need_particles, use_particles},
