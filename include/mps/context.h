@@ -75,7 +75,8 @@ typedef struct mps_context_def {
   int32_t threads;  /* 1..1024; 0 (default): all processors the process may use */
   /** x86-64 level of the inner loops of all that is made from the context: 1 (the plain build, on
    *  other processors the only one), 3 (AVX2) or 4 (AVX-512); 0 (default): the highest that
-   *  processor and build have. Results are the same bit for bit for every level. */
+   *  processor and build have. Results are the same bit for bit for every level, but for WLS-MPM,
+   *  whose loops use fused multiply-adds where a level has them: there last bits differ. */
   int32_t instruction_level;
   mps_parallel_for_fn parallel_for; /* for MPS_EXECUTOR_CALLER, with `threads` workers */
   void *parallel_user;

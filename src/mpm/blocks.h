@@ -98,15 +98,21 @@ typedef struct mpsi_radix {
   int64_t index;
 } mpsi_radix;
 
-/* Shape functions of a fit can be negative, so that a node with hardly any particle could get a
- * tiny or negative mass: at least this fraction of its mass by weights, which never is. */
+/* Shape functions of a fit can be negative, so that a node with hardly any particle, between two
+ * bodies above all, could get a tiny or negative mass. Forces accelerate at least this fraction of
+ * its mass by weights, which never is. */
 #define MPSI_LEAST_MASS 0.02
 static inline double mpsi_node_mass(double mass, double weight) {
   return fmax(mass, MPSI_LEAST_MASS * weight);
 }
+/* What its momentum is divided by: its own mass, unless that is smaller than the fraction. Else a
+ * node of negative mass would move against its particles, and these would lose momentum by it. */
+static inline double mpsi_carried_mass(double mass, double weight) {
+  return mass < -MPSI_LEAST_MASS * weight ? mass : mpsi_node_mass(mass, weight);
+}
 
 typedef struct mpsi_grid {
-  bool apart; /* a reader wants the forces apart from the momenta everywhere */
+  bool apart;                      /* a reader wants the forces apart from the momenta everywhere */
   int32_t block_nodes, tile_nodes; /* nodes of a block, of a tile */
   double inverse;                  /* 1/m, 1/h */
   int64_t low[3], high[3];         /* first and last node of the domain */

@@ -67,13 +67,14 @@ static void mark_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const box *near
     const bool touched = !is_empty(&under);
     if (!touched && !cells->edge && !mpm->standard && !all_apart(mpm)) continue;
     if (nodes->side < 0) nodes->side = (int32_t)mpm->grid.side_count++;
-    nodes->split = nodes->split || all || (touched && rough);
+    nodes->split = nodes->split || all || (touched && (rough || cells->pairs > 1));
   }
 }
 
 /* Cut: some particle may have a cut support, or, with the standard scheme, one without a fit.
  * Split: friction needs the velocity before the forces; so do the energy budget, damping by forces,
- * FLIP, and the transfer by weights, which divides momentum and force by different masses. */
+ * FLIP, and the transfer by weights, which divides momentum and force by different masses, as nodes
+ * of small mass between two bodies do (grid.c). */
 static mps_status find_cut(mps_mpm *mpm, const char *function) {
   bool finds = false; /* an absorbing wall asks for the forces of its first step */
   for (int32_t k = 0; k < MPSI_SIDES; k++) {

@@ -30,8 +30,8 @@ static void update_cut(mps_mpm *mpm, bool split, mpsi_node *node, mpsi_node *sid
       memset(side[k], 0, sizeof side[k]);
       continue;
     }
-    const double m = mpsi_node_mass(node[k][MPSI_MASS], weight);
-    const double carried = mpm->by_weight ? weight : m;
+    const double own = node[k][MPSI_MASS], m = mpsi_node_mass(own, weight);
+    const double carried = mpm->by_weight ? weight : split ? mpsi_carried_mass(own, weight) : m;
     node[k][MPSI_MASS] = m;
     for (int c = MPSI_VECTOR; c < 4; c++) {
       const double before = node[k][c] / carried;

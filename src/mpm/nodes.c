@@ -46,7 +46,7 @@ static bool read_node(const mps_mpm *mpm, int64_t g, int k, node *out) {
   const double *side = mpm->grid.side[mpsi_first_node(mpm, nodes->side) + k];
   const double weight = sum[MPSI_MASS] + side[MPSI_EXCESS];
   if (!(weight > 0.0)) return false;
-  const double m = mpsi_node_mass(sum[MPSI_MASS], weight), carried = mpm->by_weight ? weight : m;
+  const double carried = mpm->by_weight ? weight : mpsi_carried_mass(sum[MPSI_MASS], weight);
   int place[3];
   mpsi_unravel(k, MPSI_SIDE, place);
   const double local[3] = {place[0], place[1], place[2]};
