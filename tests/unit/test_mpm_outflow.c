@@ -3,6 +3,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_scene.h"
 
+#include <mps/mpm_energy.h>
+
 #define FAILS(call, status, text) mps_assert_fails(context, call, status, text)
 
 /* Numbers with few digits: sums of masses are exact. */
