@@ -62,21 +62,11 @@ mps_status mps_body_get_reaction_sized(mps_body *body, int32_t part, mps_reactio
 
 /* ---- parts ----------------------------------------------------------------------------------- */
 
-static bool good_name(const char *name) {
-  const size_t length = strlen(name);
-  if (length < 1 || length >= MPSI_PART_NAME) return false;
-  for (size_t k = 0; k < length; k++) {
-    const char c = name[k];
-    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-    if (!letter && !(k > 0 && c >= '0' && c <= '9')) return false;
-  }
-  return true;
-}
-
 mps_status mps_body_name_part(mps_body *body, const char *name, int64_t first, int64_t count,
                               int32_t *part) {
   if (!body) return MPS_ERROR_ARGUMENT;
-  if (!name || !good_name(name))
+  const size_t length = name ? mpsi_identifier(name, MPSI_PART_NAME) : 0;
+  if (length == 0 || name[length] != '\0')
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
                      "name is \"%.60s\", must be [A-Za-z_][A-Za-z0-9_]* of at most 47 characters",
                      name ? name : "(NULL)");

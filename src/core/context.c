@@ -236,12 +236,14 @@ mps_status mpsi_fail_memory(mps_context *context, const char *function, size_t b
   return mpsi_fail(context, function, MPS_ERROR_MEMORY, "could not allocate %zu bytes", bytes);
 }
 
-mps_status mpsi_check_limits(mps_context *context, const char *function, const char *what,
-                             const char *unit, double value, double lower, double upper) {
-  if (value >= lower && value <= upper) return MPS_OK;
-  const char *blank = *unit ? " " : "";
-  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %g%s%s, allowed are %g to %g%s%s",
-                   what, value, blank, unit, lower, upper, blank, unit);
+size_t mpsi_identifier(const char *name, size_t room) {
+  size_t length = 0;
+  for (;; length++) {
+    const char c = name[length];
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    if (!letter && !(length > 0 && c >= '0' && c <= '9')) return length;
+    if (length + 1 >= room) return 0;
+  }
 }
 
 const mps_error *mps_context_error(const mps_context *context) {

@@ -125,26 +125,14 @@ static mps_status insert_field(mps_particles *p, const char *function, const mps
   return MPS_OK;
 }
 
-/* An identifier of at most 47 characters; returns its length, else 0. */
-static size_t identifier(const char *name) {
-  size_t length = 0;
-  for (; name[length] && name[length] != '.'; length++) {
-    const char c = name[length];
-    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-    if (length >= MPSI_FIELD_NAME_PART - 1 || !(letter || (length > 0 && c >= '0' && c <= '9')))
-      return 0;
-  }
-  return length;
-}
-
 /* The rule for other names than the table's: an identifier is the caller's, two with a dot between
  * are the history of a material. */
 static bool good_name(const char *name) {
-  const size_t length = identifier(name);
+  const size_t length = mpsi_identifier(name, MPSI_FIELD_NAME_PART);
   if (length == 0 || name[length] == '\0') return length > 0;
   const char *column = name + length + 1;
-  const size_t rest = identifier(column);
-  return rest > 0 && column[rest] == '\0';
+  const size_t rest = mpsi_identifier(column, MPSI_FIELD_NAME_PART);
+  return name[length] == '.' && rest > 0 && column[rest] == '\0';
 }
 
 static mps_status describe_user_field(mps_particles *p, const char *function, const char *name,

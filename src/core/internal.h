@@ -39,15 +39,11 @@ void mpsi_fail_object(mps_context *context, const char *format, ...) MPSI_PRINTF
 mps_status mpsi_fail_memory(mps_context *context, const char *function, size_t bytes);
 void mpsi_log(mps_context *context, mps_log_level level, const char *format, ...) MPSI_PRINTF(3, 4);
 
-/* MPS_ERROR_ARGUMENT unless lower <= value <= upper (NaN is not): "spacing is 0 m, allowed are
- * 1e-12 to 1e+12 m". `unit` may be "". */
-mps_status mpsi_check_limits(mps_context *context, const char *function, const char *what,
-                             const char *unit, double value, double lower, double upper);
-/* Lengths (m) that make sense in a body of particles: their products stay far from the ends of the
- * doubles. */
-#define MPSI_SHORTEST 1e-12
-#define MPSI_LONGEST 1e12
 #define MPSI_FARTHEST 1e15 /* coordinates, either sign */
+
+/* Length of the identifier [A-Za-z_][A-Za-z0-9_]* that `name` begins with; 0: none, or one of
+ * `room` characters or more. What follows is not looked at. */
+size_t mpsi_identifier(const char *name, size_t room);
 
 /* ---- memory: zero filled, aligned to MPSI_ALIGNMENT ----------------------------------------- */
 

@@ -2,6 +2,7 @@
  * and the density of a lattice, Yoshida (A9). SPDX-License-Identifier: BSD-3-Clause */
 #include "internal.h"
 
+#include "ranges.h"
 #include "retain.h"
 
 struct mps_kernel {
@@ -19,8 +20,8 @@ mps_status mps_kernel_create(mps_context *context, int32_t kind, double radius, 
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
                      "kind is %d, allowed are 0 (re/r - 1), 1 and 2 (quadratic and cubic B-spline)",
                      kind);
-  const mps_status status = mpsi_check_limits(context, __func__, "radius of influence", "m", radius,
-                                              MPSI_SHORTEST, MPSI_LONGEST);
+  const mps_status status =
+      mpsi_check_range(context, __func__, "radius of influence", radius, MPSI_RANGE_SPACING);
   if (status != MPS_OK) return status;
   mps_kernel *kernel = mpsi_alloc(context, 1, sizeof *kernel);
   if (!kernel) return mpsi_fail_memory(context, __func__, sizeof *kernel);
@@ -119,7 +120,7 @@ mps_status mps_kernel_density(mps_context *context, const mps_kernel *kernel, in
   if (dim != 2 && dim != 3)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "dim is %d, must be 2 or 3", dim);
   const mps_status status =
-      mpsi_check_limits(context, __func__, "spacing", "m", spacing, MPSI_SHORTEST, MPSI_LONGEST);
+      mpsi_check_range(context, __func__, "spacing", spacing, MPSI_RANGE_SPACING);
   if (status != MPS_OK) return status;
   const double ratio = kernel->radius / spacing;
   if (ratio > 1000.0)

@@ -4,6 +4,8 @@
  * the identity until somebody sorts or removes. SPDX-License-Identifier: BSD-3-Clause */
 #include "particles_private.h"
 
+#include "ranges.h"
+
 #include <string.h>
 
 static const mps_particles_def particles_defaults = {.struct_size = sizeof(mps_particles_def),
@@ -19,12 +21,11 @@ static mps_status check_def(mps_context *context, const char *function,
                             const mps_particles_def *def) {
   if (def->dim != 2 && def->dim != 3)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "dim is %d, must be 2 or 3", def->dim);
-  mps_status status = mpsi_check_limits(context, function, "spacing", "m", def->spacing,
-                                        MPSI_SHORTEST, MPSI_LONGEST);
+  mps_status status =
+      mpsi_check_range(context, function, "spacing", def->spacing, MPSI_RANGE_SPACING);
   static const char *const names[] = {"origin[0]", "origin[1]", "origin[2]"};
   for (int c = 0; c < 3 && status == MPS_OK; c++)
-    status = mpsi_check_limits(context, function, names[c], "m", def->origin[c], -MPSI_FARTHEST,
-                               MPSI_FARTHEST);
+    status = mpsi_check_range(context, function, names[c], def->origin[c], MPSI_RANGE_PLACE);
   return status;
 }
 

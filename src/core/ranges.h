@@ -8,6 +8,7 @@
 
 /* X(name, unit, lowest, highest) */
 #define MPSI_RANGE_TABLE(X)                                                                        \
+  X(SPACING, " m", 1e-12, 1e12) /* of particles, radii of influence */                             \
   X(LENGTH, " m", 1e-9, 1e9)                                                                       \
   X(MODULUS, " Pa", 1e-6, 1e18)                                                                    \
   X(STRESS, " Pa", 1e-9, 1e18)                                                                     \
@@ -17,7 +18,8 @@
   X(VISCOSITY, " Pa s", 1e-12, 1e18)                                                               \
   X(ACCELERATION, " m/s2", 1e-9, 1e9)                                                              \
   X(STRESS_RATIO, "", 1e-9, 1e6)                                                                   \
-  X(LEVEL, " m", -1e9, 1e9)
+  X(LEVEL, " m", -1e9, 1e9)                                                                        \
+  X(PLACE, " m", -MPSI_FARTHEST, MPSI_FARTHEST)
 
 typedef enum mpsi_range {
 #define MPSI_RANGE_ENTRY(name, unit, low, high) MPSI_RANGE_##name,

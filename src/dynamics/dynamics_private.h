@@ -5,6 +5,7 @@
  *   removal.c     particles that leave between two steps
  *   step.c        the step: forces (kernels.c), loads, dashpots, what is held or driven, budget
  *   constrain.c   dashpots and held or driven degrees of freedom around a step
+ *   selection.c   which particles a boundary or load is on
  *   boundary.c    boundaries: definitions, lists, reactions
  *   loads.c       loads: definitions, the forces of a step
  *   budget.c      energies and momenta, works of a step
@@ -241,7 +242,7 @@ double mpsi_dynamics_velocity(const mps_dynamics *dynamics, int32_t component, i
 /* Mass (kg) or moment of inertia (kg m2) of a degree of freedom. */
 double mpsi_dynamics_mass(const mps_dynamics *dynamics, int32_t component, int64_t k);
 
-/* ---- boundary.c ---- */
+/* ---- selection.c ---- */
 
 /* Selects the particles of a definition. `all`: neither list nor box selects all. */
 typedef struct mpsi_dynamics_selection {
@@ -255,6 +256,8 @@ typedef struct mpsi_dynamics_selection {
 mps_status mpsi_dynamics_select(mps_dynamics *dynamics, const char *function,
                                 const mpsi_dynamics_selection *selection, mpsi_dynamics_part *out);
 void mpsi_dynamics_release_part(mps_dynamics *dynamics, mpsi_dynamics_part *part);
+/* ---- boundary.c ---- */
+
 /* Lists what is held or driven and the dashpots, without changes of the state. */
 mps_status mpsi_dynamics_list_boundaries(mps_dynamics *dynamics, const char *function);
 /* Takes the present state as that from which what is held or driven goes on: at the start. */

@@ -7,10 +7,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_private.h"
 
-#include <string.h>
+#include "core/symmetric.h"
 
-/* Order of components: xx, yy, zz, xy and, in 3D, zx, yz. */
-static const int ROW[6] = {0, 1, 2, 0, 2, 1}, COL[6] = {0, 1, 2, 1, 0, 2};
+#include <string.h>
 
 /* ---- strain and stress ----------------------------------------------------------------------- */
 
@@ -74,25 +73,9 @@ static void virial(const mps_elastic *e, int64_t i, double (*stress)[3]) {
 
 /* ---- principal values ------------------------------------------------------------------------ */
 
-/* Eigenvalues of a symmetric 3 x 3 matrix, largest first, by Jacobi rotations. */
+/* Principal values, largest first. */
 static void principal(const double (*stress)[3], double *out) {
-  double a[3][3];
-  memcpy(a, stress, sizeof a);
-  for (int sweep = 0; sweep < 12; sweep++)
-    for (int k = 0; k < 3; k++) {
-      const int p = k == 2 ? 0 : k, q = k == 2 ? 2 : k + 1, r = 3 - p - q;
-      if (a[p][q] == 0.0) continue;
-      const double theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q];
-      const double t = (theta >= 0.0 ? 1.0 : -1.0) / (fabs(theta) + sqrt(theta * theta + 1.0));
-      const double c = 1.0 / sqrt(t * t + 1.0), s = t * c;
-      const double rp = a[r][p], rq = a[r][q];
-      a[p][p] -= t * a[p][q];
-      a[q][q] += t * a[p][q];
-      a[p][q] = a[q][p] = 0.0;
-      a[r][p] = a[p][r] = c * rp - s * rq;
-      a[r][q] = a[q][r] = s * rp + c * rq;
-    }
-  for (int k = 0; k < 3; k++) out[k] = a[k][k];
+  mpsi_symmetric_principal(stress, out, NULL);
   for (int pass = 0; pass < 2; pass++)
     for (int k = 0; k < 2; k++)
       if (out[k] < out[k + 1]) {
@@ -126,8 +109,8 @@ mps_status mps_elastic_stress(mps_elastic *e) {
       hooke(e, i, (const double(*)[3])strain, stress);
     complete_plane(e, i, strain, stress);
     for (int k = 0; k < m; k++) {
-      strains[i * m + k] = strain[ROW[k]][COL[k]];
-      stresses[i * m + k] = stress[ROW[k]][COL[k]];
+      strains[i * m + k] = strain[mpsi_symmetric_row[k]][mpsi_symmetric_column[k]];
+      stresses[i * m + k] = stress[mpsi_symmetric_row[k]][mpsi_symmetric_column[k]];
     }
     principal((const double(*)[3])stress, principals + i * 3);
     mises[i] = von_mises(principals + i * 3);

@@ -5,6 +5,7 @@
  * The yield functions are linear and the flow directions are constant, so each return is one step:
  * solved exactly, without iteration.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/symmetric.h"
 #include "material_private.h"
 
 /* Principal stresses in any order, and how to go back. */
@@ -34,46 +35,15 @@ static void join_plane(const principal *trial, const double *value, double *s) {
   s[3] *= scale;
 }
 
-/* One rotation of Jacobi's method in the plane (i, j): a[i][j] becomes zero. */
-static void rotate(double a[3][3], double axis[3][3], int i, int j) {
-  const int k = 3 - i - j;
-  if (fabs(a[i][j]) < 1e-150) return; /* Pa: its square would vanish */
-  const double gap = a[j][j] - a[i][i], twice = 2.0 * a[i][j];
-  const double root = sqrt(gap * gap + twice * twice);
-  const double t = twice / (gap < 0.0 ? gap - root : gap + root);
-  const double c = 1.0 / sqrt(1.0 + t * t), s = t * c, move = t * a[i][j];
-  const double ki = a[k][i], kj = a[k][j];
-  a[i][i] -= move;
-  a[j][j] += move;
-  a[i][j] = a[j][i] = 0.0;
-  a[k][i] = a[i][k] = c * ki - s * kj;
-  a[k][j] = a[j][k] = s * ki + c * kj;
-  for (int r = 0; r < 3; r++) {
-    const double vi = axis[r][i], vj = axis[r][j];
-    axis[r][i] = c * vi - s * vj;
-    axis[r][j] = s * vi + c * vj;
-  }
-}
-
-/* Jacobi: directions orthogonal to the last bits also where values coincide. It converges
- * quadratically; 12 sweeps are far more than it ever needs, and end it for a NaN. */
 static principal split_space(const double *s) {
-  double a[3][3] = {{s[0], s[3], s[4]}, {s[3], s[1], s[5]}, {s[4], s[5], s[2]}};
-  principal p = {.axis = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
-  for (int sweep = 0; sweep < 12; sweep++) {
-    const double off = fabs(a[0][1]) + fabs(a[1][2]) + fabs(a[2][0]);
-    const double size = fabs(a[0][0]) + fabs(a[1][1]) + fabs(a[2][2]);
-    if (off <= 1e-16 * size) break;
-    rotate(a, p.axis, 0, 1);
-    rotate(a, p.axis, 1, 2);
-    rotate(a, p.axis, 0, 2);
-  }
-  for (int i = 0; i < 3; i++) p.value[i] = a[i][i];
+  const double a[3][3] = {{s[0], s[3], s[4]}, {s[3], s[1], s[5]}, {s[4], s[5], s[2]}};
+  principal p;
+  mpsi_symmetric_principal(a, p.value, p.axis);
   return p;
 }
 
 static void join_space(const principal *trial, const double *value, double *s) {
-  static const int row[6] = {0, 1, 2, 0, 2, 1}, column[6] = {0, 1, 2, 1, 0, 2};
+  const int *row = mpsi_symmetric_row, *column = mpsi_symmetric_column;
   for (int c = 0; c < 6; c++) {
     s[c] = 0.0;
     for (int a = 0; a < 3; a++)

@@ -10,17 +10,9 @@ mps_status mps_user_law_def_init(mps_user_law_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_user_law_def, def, size, &user_law_defaults);
 }
 
-static bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-
-/* [A-Za-z_][A-Za-z0-9_]*, at most 47 characters. */
 static bool is_name(const char *name) {
-  size_t length = 0;
-  for (; name[length] != '\0'; length++) {
-    const char c = name[length];
-    const bool digit = length > 0 && c >= '0' && c <= '9';
-    if (length >= MPSI_MATERIAL_NAME - 1 || !(is_letter(c) || c == '_' || digit)) return false;
-  }
-  return length > 0;
+  const size_t length = mpsi_identifier(name, MPSI_MATERIAL_NAME);
+  return length > 0 && name[length] == '\0';
 }
 
 static mps_status check_history(mps_context *context, const char *function,

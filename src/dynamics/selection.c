@@ -1,0 +1,100 @@
+/* selection.c - which particles a boundary or load of the explicit MPS solver is on: those of a
+ * list, of a box, or all. SPDX-License-Identifier: BSD-3-Clause */
+#include "core/particles_internal.h"
+#include "core/retain.h"
+#include "dynamics_private.h"
+
+#include <stdlib.h>
+
+static int compare_indices(const void *left, const void *right) {
+  const int32_t a = *(const int32_t *)left, b = *(const int32_t *)right;
+  return a < b ? -1 : a > b;
+}
+
+static mps_status select_list(mps_dynamics *dynamics, const char *function,
+                              const mpsi_dynamics_selection *s, mpsi_dynamics_part *out) {
+  for (int64_t k = 0; k < s->id_count; k++) {
+    const int64_t i = mps_particles_index(dynamics->particles, s->ids[k]);
+    if (i < 0)
+      return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
+                       "ids[%lld] is %lld: the set has no such particle", (long long)k,
+                       (long long)s->ids[k]);
+    out->particle[k] = (int32_t)i;
+  }
+  qsort(out->particle, (size_t)s->id_count, sizeof *out->particle, compare_indices);
+  for (int64_t k = 0; k < s->id_count; k++) /* each particle once */
+    if (k == 0 || out->particle[k] != out->particle[k - 1])
+      out->particle[out->count++] = out->particle[k];
+  return MPS_OK;
+}
+
+static mps_status select_box(mps_dynamics *dynamics, const char *function,
+                             const mpsi_dynamics_selection *s, mpsi_dynamics_part *out) {
+  const double *x = mpsi_dynamics_column(dynamics, "position", 0);
+  const double *y = mpsi_dynamics_column(dynamics, "position", 1);
+  for (int64_t k = 0; k < dynamics->count; k++)
+    if (s->all ||
+        (x[k] >= s->lower[0] && x[k] <= s->upper[0] && y[k] >= s->lower[1] && y[k] <= s->upper[1]))
+      out->particle[out->count++] = (int32_t)k;
+  if (out->count == 0)
+    return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
+                     "no particle lies in the box from (%g, %g) m to (%g, %g) m", s->lower[0],
+                     s->lower[1], s->upper[0], s->upper[1]);
+  return MPS_OK;
+}
+
+static mps_status check_selection(mps_dynamics *dynamics, const char *function,
+                                  const mpsi_dynamics_selection *s) {
+  mps_context *context = dynamics->context;
+  const bool listed = s->ids || s->id_count != 0;
+  bool boxed = false;
+  for (int c = 0; c < 2; c++) boxed = boxed || !isnan(s->lower[c]) || !isnan(s->upper[c]);
+  if (listed && (!s->ids || s->id_count < 1))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "id_count is %lld and ids is %s: at least one particle is required",
+                     (long long)s->id_count, s->ids ? "given" : "NULL");
+  if (listed == boxed && !(s->all && !listed))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "%s: give either ids and id_count, or lower and upper",
+                     listed ? "both a list and a box are given" : "no particles are given");
+  for (int c = 0; c < 2 && boxed; c++)
+    if (!(s->lower[c] <= s->upper[c]))
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                       "lower[%d] is %g m and upper[%d] %g m: must be numbers, lower <= upper", c,
+                       s->lower[c], c, s->upper[c]);
+  for (int c = 0; c < 2; c++)
+    if (!isfinite(s->factor[c]))
+      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "factor[%d] is %g, must be finite", c,
+                       s->factor[c]);
+  if (s->signal[2])
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "signal[2] is given: the plane has x and y only");
+  return MPS_OK;
+}
+
+mps_status mpsi_dynamics_select(mps_dynamics *dynamics, const char *function,
+                                const mpsi_dynamics_selection *selection, mpsi_dynamics_part *out) {
+  *out = (mpsi_dynamics_part){0};
+  mpsi_dynamics_selection s = *selection;
+  mps_status status = check_selection(dynamics, function, &s);
+  if (status != MPS_OK) return status;
+  s.all = s.all && isnan(s.lower[0]) && isnan(s.lower[1]);
+  const int64_t room = s.ids ? s.id_count : dynamics->count;
+  out->particle = mpsi_alloc(dynamics->context, room, sizeof *out->particle);
+  if (!out->particle)
+    return mpsi_fail_memory(dynamics->context, function, (size_t)room * sizeof *out->particle);
+  status =
+      s.ids ? select_list(dynamics, function, &s, out) : select_box(dynamics, function, &s, out);
+  for (int c = 0; c < 2; c++) {
+    out->factor[c] = s.factor[c];
+    if (status == MPS_OK && s.signal[c]) out->signal[c] = mpsi_signal_retain(s.signal[c]);
+  }
+  if (status != MPS_OK) mpsi_dynamics_release_part(dynamics, out);
+  return status;
+}
+
+void mpsi_dynamics_release_part(mps_dynamics *dynamics, mpsi_dynamics_part *part) {
+  mpsi_free(dynamics->context, part->particle);
+  for (int c = 0; c < 2; c++) mps_signal_destroy(&part->signal[c]);
+  *part = (mpsi_dynamics_part){0};
+}
