@@ -14,6 +14,9 @@
  * writes `position`, `velocity`, `pressure`, `reduced_pressure`, `reduced_pressure_old` and
  * `free_surface`.
  *
+ * Between steps particles may be edited, added (at rest, at least .3 l0 inside of all walls) and
+ * removed (not the last one); what they bring or take of energy is no work.
+ *
  * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
  * its results are the same bit for bit for every number of threads.
  * SPDX-License-Identifier: BSD-3-Clause */

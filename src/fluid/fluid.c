@@ -6,8 +6,6 @@
 
 #include <string.h>
 
-#define MOST_PARTICLES (INT32_MAX / 4)
-
 static const mps_fluid_def defaults = {
     .struct_size = sizeof(mps_fluid_def),
     .iterations = 2000,
@@ -66,10 +64,10 @@ static mps_status check_particles(mps_context *context, mps_particles *particles
     return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
                      "the particle set has dim %d: the fluid is in the plane, dim 2",
                      mps_particles_dim(particles));
-  if (n < 1 || n > MOST_PARTICLES)
+  if (n < 1 || n > MPSI_FLUID_MOST_PARTICLES)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "the particle set has %lld particles, allowed are 1 to %d", (long long)n,
-                     MOST_PARTICLES);
+                     MPSI_FLUID_MOST_PARTICLES);
   static const char *const names[] = {"position", "velocity"};
   for (int f = 0; f < 2; f++)
     for (int c = 0; c < 2; c++) {
@@ -99,30 +97,6 @@ static void set_gravity(mps_fluid *f) {
     f->level = fmax(f->level, f->up[0] * x[i] + f->up[1] * y[i] + 0.5 * f->l0);
 }
 
-/* The arrays over particles that never grow, from one block. */
-static bool allocate(mps_fluid *f) {
-  mpsi_fluid_system *s = &f->system;
-  const int64_t n = (f->count + 7) / 8 * 8 + 24, chunks = f->count / MPSI_FLUID_CHUNK + 2;
-  double **doubles[] = {&f->u_new[0], &f->u_new[1], &f->zone_normal[0], &f->zone_normal[1],
-                        &f->pressure, &s->diagonal, &s->right,          &s->r,
-                        &s->z,        &s->q,        &s->inverse};
-  enum { DOUBLES = sizeof doubles / sizeof *doubles };
-  double *block = mpsi_alloc(f->context, n * (DOUBLES + 1 + 2) + 2 * chunks, sizeof *block);
-  f->local = mpsi_alloc(f->context, f->count, sizeof *f->local);
-  f->state = mpsi_alloc(f->context, 3 * f->count, sizeof *f->state);
-  f->slab = block;
-  if (!block || !f->local || !f->state) return false;
-  for (int k = 0; k < DOUBLES; k++) *doubles[k] = block + k * n;
-  f->start = (int64_t *)(block + DOUBLES * n);
-  f->near = (int32_t *)(block + (DOUBLES + 1) * n);
-  s->lower_start = f->near + n;
-  s->lower_end = s->lower_start + n;
-  s->sums = block + (DOUBLES + 3) * n;
-  f->zone = f->state + f->count;
-  f->company = f->zone + f->count;
-  return true;
-}
-
 static mps_status add_fields(mps_particles *particles) {
   static const char *const names[] = {"velocity", "pressure", "reduced_pressure",
                                       "reduced_pressure_old", "free_surface"};
@@ -132,7 +106,7 @@ static mps_status add_fields(mps_particles *particles) {
   return status;
 }
 
-static double energy_of(const mps_fluid *f, double *kinetic) {
+double mpsi_fluid_energy(const mps_fluid *f, double *kinetic) {
   const double *x = mpsi_particles_column(f->particles, "position", 0);
   const double *y = mpsi_particles_column(f->particles, "position", 1);
   const double *u = mpsi_particles_column(f->particles, "velocity", 0);
@@ -173,18 +147,15 @@ static mps_status start(mps_fluid *f, const char *function) {
   f->weight = mpsi_fluid_make_weight(f->l0, f->def.radius_ratio * f->l0);
   f->most_near = 32, f->most_lower = 16;
   set_gravity(f);
-  if (!allocate(f) || !mpsi_fluid_grow_cloud(f, f->count + f->count / 4 + 256))
+  if (!mpsi_fluid_reserve(f, f->count))
     return mpsi_fail_memory(f->context, function, (size_t)f->count * sizeof *f->local);
   mps_status status = mpsi_fluid_look(f, function);
   if (status == MPS_OK) status = mpsi_fluid_sort(f, function);
   if (status == MPS_OK) status = mpsi_fluid_look(f, function);
   if (status != MPS_OK) return status;
-  double most = 0.0;
-  for (int64_t i = 0; i < f->count; i++)
-    most = fmax(most, f->u[0][i] * f->u[0][i] + f->u[1][i] * f->u[1][i]);
-  f->speed = sqrt(most);
+  mpsi_fluid_find_speed(f);
   double kinetic;
-  f->energy = energy_of(f, &kinetic);
+  f->energy = mpsi_fluid_energy(f, &kinetic);
   return MPS_OK;
 }
 
@@ -216,7 +187,13 @@ mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
     return status;
   }
   mpsi_context_retain(context);
-  f->holder = (mpsi_holder){.name = "a fluid solver (mps_fluid)", .self = f, .kind = MPSI_USE_MOVE};
+  f->holder = (mpsi_holder){.name = "a fluid solver (mps_fluid)",
+                            .self = f,
+                            .kind = MPSI_USE_MOVE,
+                            .commit = mpsi_fluid_commit,
+                            .insert = mpsi_fluid_insert,
+                            .remove = mpsi_fluid_remove,
+                            .renew = mpsi_fluid_renew};
   (void)mpsi_particles_hold(particles, __func__, &f->holder); /* checked above */
   *out = f;
   return MPS_OK;
@@ -265,7 +242,7 @@ mps_status mps_fluid_get_totals_sized(mps_fluid *f, mps_totals *out, size_t size
     t.linear[0] += mass * u[i], t.linear[1] += mass * v[i];
     t.angular[2] += mass * (x[i] * v[i] - y[i] * u[i]);
   }
-  const double energy = energy_of(f, &t.kinetic);
+  const double energy = mpsi_fluid_energy(f, &t.kinetic);
   t.strain = energy - t.kinetic;
   t.work_boundaries = f->work_boundaries;
   t.work_loads = f->work_loads;

@@ -137,7 +137,7 @@ struct mps_fluid {
   double l0, g, up[2], level; /* m, m/s2, unit vector against gravity, m */
   mpsi_fluid_wall wall[MPSI_FLUID_WALLS];
   mpsi_fluid_body body[MPSI_FLUID_BODIES];
-  int64_t count, ghosts;
+  int64_t count, ghosts, capacity; /* capacity: of the arrays over particles */
   /* positions, velocities: particles, then ghosts */
   double *x[2], *u[2], *q, *offset; /* offset: of a ghost's q from its parent's, Pa */
   int32_t *parent;                  /* of a ghost, by index - count */
@@ -173,9 +173,11 @@ struct mps_fluid {
   mpsi_fluid_stage stage;
   mpsi_fluid_classical classical;
   bool in_callback;
-  bool stale; /* what is known of the surroundings is not that of the fields */
+  bool changing; /* energy_before is that of before a change of the set that is under way */
+  bool stale;    /* what is known of the surroundings is not that of the fields */
   mpsi_identity *identity;
   mps_fluid_report report, before;    /* before: as the step being made began */
+  double energy_before;               /* J, before particles come or go */
   double energy;                      /* J, kinetic and potential at creation */
   double work_boundaries, work_loads; /* J, since creation */
 };
@@ -276,6 +278,17 @@ mps_status mpsi_fluid_classical_look(mps_fluid *fluid, const char *function);
 void mpsi_fluid_classical_rows(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
 void mpsi_fluid_classical_solution(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
 void mpsi_fluid_classical_accelerate(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
+/* particles.c */
+#define MPSI_FLUID_MOST_PARTICLES (INT32_MAX / 4)
+bool mpsi_fluid_reserve(mps_fluid *fluid, int64_t count);
+void mpsi_fluid_find_speed(mps_fluid *fluid);
+mps_status mpsi_fluid_commit(void *fluid, const char *function, const char *field,
+                             const double *former);
+mps_status mpsi_fluid_insert(void *fluid, const char *function, int64_t first, int64_t count);
+mps_status mpsi_fluid_remove(void *fluid, const char *function, int64_t count, const int64_t *ids);
+void mpsi_fluid_renew(void *fluid);
+/* fluid.c: kinetic energy, and with that of gravity, J */
+double mpsi_fluid_energy(const mps_fluid *fluid, double *kinetic);
 /* probe.c */
 mps_status mpsi_fluid_load_walls(mps_fluid *fluid, const char *function);
 /* step.c: the surroundings of the particles where the fields have them. */

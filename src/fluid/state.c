@@ -78,6 +78,7 @@ static bool fits(void *solver, mps_snapshot *values, const char **what) {
 static void after(void *solver) {
   mps_fluid *f = solver;
   f->stale = true;
+  f->count = mps_particles_count(f->particles); /* never more than there has been room for */
   mpsi_fluid_place_bodies(f);
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].given = f->wall[b].placed = false;
 }

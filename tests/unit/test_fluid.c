@@ -379,6 +379,56 @@ static void a_wall_may_be_fast(void **state) {
   tank_free(&t);
 }
 
+/* A second layer of water comes onto the first, and goes again. */
+static void particles_come_and_go(void **state) {
+  (void)state;
+  tank t = tank_make(context, 0.6, 0.2, 0.02, NULL, 2e-3);
+  const int64_t n = mps_particles_count(t.water);
+  const double outside[2] = {0.1, -0.1};
+  mps_snapshot *snapshot = NULL;
+  double x[2 * 600];
+  int64_t ids[600];
+  mps_totals sum;
+  mps_reaction r;
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 20));
+  mps_assert_fails(context, mps_particles_append(t.water, 1, outside), MPS_ERROR_ARGUMENT,
+                   "inside the fluid's walls");
+  assert_int_equal(mps_particles_count(t.water), n);
+  for (int j = 0; j < 20; j++)
+    for (int i = 0; i < 30; i++)
+      x[2 * (30 * j + i)] = (i + 0.5) * 0.02, x[2 * (30 * j + i) + 1] = 0.2 + (j + 0.5) * 0.02;
+  mps_assert_ok(context, mps_fluid_snapshot(t.fluid, &snapshot));
+  mps_assert_ok(context, mps_particles_append(t.water, 600, x));
+  mps_assert_ok(context, mps_fluid_get_totals(t.fluid, &sum));
+  mps_assert_near(sum.mass, 1000.0 * 0.6 * 0.6, 1e-9);
+  mps_assert_near(sum.dissipated, 0.0, 1e-4);
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 200));
+  mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, TANK_RIGHT, &r));
+  mps_assert_near(-r.force[0], 0.5 * 1000.0 * TANK_G * 0.36, 2.0);
+  /* the last 600 go, wherever the sorting has put them */
+  mps_view id;
+  mps_assert_ok(context, mps_particles_view(t.water, "id", &id));
+  int64_t found = 0;
+  for (int64_t i = 0; i < n + 600; i++)
+    if (*mps_view_i64(&id, i, 0) >= n) ids[found++] = *mps_view_i64(&id, i, 0);
+  assert_int_equal(found, 600);
+  mps_assert_ok(context, mps_fluid_begin_step(t.fluid, NAN));
+  mps_assert_fails(context, mps_particles_remove(t.water, 600, ids), MPS_ERROR_STATE,
+                   "step is open");
+  mps_assert_ok(context, mps_fluid_abandon_step(t.fluid));
+  mps_assert_ok(context, mps_particles_remove(t.water, 600, ids));
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 200));
+  mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, TANK_RIGHT, &r));
+  mps_assert_near(-r.force[0], 0.5 * 1000.0 * TANK_G * 0.04, 2.0);
+  mps_assert_ok(context,
+                mps_fluid_rollback(t.fluid, snapshot)); /* all of the first are there yet */
+  assert_int_equal(mps_particles_count(t.water), n);
+  assert_int_equal(mps_fluid_steps(t.fluid), 20);
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 40));
+  mps_snapshot_destroy(&snapshot);
+  tank_free(&t);
+}
+
 /* ---- a step in parts ------------------------------------------------------------------------- */
 
 /* One solution and the piston's motion given: the same bits as the step in one with a signal. */
@@ -482,6 +532,7 @@ int main(void) {
       cmocka_unit_test(bodies_come_and_go),
       cmocka_unit_test(forces_on_particles_push),
       cmocka_unit_test(a_wall_may_be_fast),
+      cmocka_unit_test(particles_come_and_go),
       cmocka_unit_test(a_step_in_parts_is_the_step),
       cmocka_unit_test(parts_of_a_step_have_their_order),
   };

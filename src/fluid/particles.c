@@ -1,0 +1,125 @@
+/* particles.c - particles that the caller edits, adds and removes between steps.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid_private.h"
+
+#define LEAST_GAP 0.3 /* l0: distance of a new particle from walls */
+
+/* The arrays over particles, from three blocks, in place of smaller ones; what they held is found
+ * again. false: as before. */
+bool mpsi_fluid_reserve(mps_fluid *f, int64_t count) {
+  if (count <= f->capacity) return true;
+  mpsi_fluid_system *s = &f->system;
+  const int64_t n = (count + 7) / 8 * 8 + 24, chunks = count / MPSI_FLUID_CHUNK + 2;
+  double **doubles[] = {&f->u_new[0], &f->u_new[1], &f->zone_normal[0], &f->zone_normal[1],
+                        &f->pressure, &s->diagonal, &s->right,          &s->r,
+                        &s->z,        &s->q,        &s->inverse};
+  enum { DOUBLES = sizeof doubles / sizeof *doubles };
+  double *block = mpsi_alloc(f->context, n * (DOUBLES + 1 + 2) + 2 * chunks, sizeof *block);
+  mpsi_fluid_local *local = mpsi_alloc(f->context, count, sizeof *local);
+  uint8_t *state = mpsi_alloc(f->context, 3 * count, sizeof *state);
+  if (!block || !local || !state || !mpsi_fluid_grow_cloud(f, count + count / 4 + 256)) {
+    mpsi_free(f->context, block);
+    mpsi_free(f->context, local);
+    mpsi_free(f->context, state);
+    return false;
+  }
+  mpsi_free(f->context, f->slab);
+  mpsi_free(f->context, f->local);
+  mpsi_free(f->context, f->state);
+  f->slab = block, f->local = local, f->state = state;
+  for (int k = 0; k < DOUBLES; k++) *doubles[k] = block + k * n;
+  f->start = (int64_t *)(block + DOUBLES * n);
+  f->near = (int32_t *)(block + (DOUBLES + 1) * n);
+  s->lower_start = f->near + n;
+  s->lower_end = s->lower_start + n;
+  s->sums = block + (DOUBLES + 3) * n;
+  f->zone = f->state + count;
+  f->company = f->zone + count;
+  f->capacity = count;
+  f->stale = true;
+  return true;
+}
+
+void mpsi_fluid_find_speed(mps_fluid *f) {
+  const double *u = mpsi_particles_column(f->particles, "velocity", 0);
+  const double *v = mpsi_particles_column(f->particles, "velocity", 1);
+  double most = 0.0;
+  for (int64_t i = 0; i < f->count; i++) most = fmax(most, u[i] * u[i] + v[i] * v[i]);
+  f->speed = sqrt(most);
+}
+
+static mps_status check_places(mps_fluid *f, const char *function, int64_t first, int64_t end) {
+  const double *x = mpsi_particles_column(f->particles, "position", 0);
+  const double *y = mpsi_particles_column(f->particles, "position", 1);
+  for (int64_t i = first; i < end; i++) {
+    const double at[2] = {x[i], y[i]};
+    double least = INFINITY, d;
+    for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++)
+      if (f->wall[b].used)
+        least = fmin(least, mpsi_fluid_distance(&f->wall[b], f->wall[b].now.s, x[i], y[i]));
+    for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
+      if (!f->body[b].body) continue;
+      mpsi_fluid_face_of(f, &f->body[b], false, at, &d);
+      least = fmin(least, d);
+    }
+    if (!(least >= LEAST_GAP * f->l0))
+      return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                       "the particle at (%g, %g) m is %g m inside the fluid's walls, must be at "
+                       "least %g l0 = %g m",
+                       x[i], y[i], least, LEAST_GAP, LEAST_GAP * f->l0);
+  }
+  return MPS_OK;
+}
+
+mps_status mpsi_fluid_commit(void *self, const char *function, const char *field,
+                             const double *former) {
+  mps_fluid *f = self;
+  (void)field, (void)former;
+  const mps_status status = mpsi_fluid_ready(f, function);
+  if (status != MPS_OK) return status;
+  f->stale = true;
+  mpsi_fluid_find_speed(f);
+  return MPS_OK;
+}
+
+mps_status mpsi_fluid_insert(void *self, const char *function, int64_t first, int64_t count) {
+  mps_fluid *f = self;
+  mps_status status = mpsi_fluid_ready(f, function);
+  if (status == MPS_OK && first + count > MPSI_FLUID_MOST_PARTICLES)
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "%lld particles to add to %lld, a fluid has at most %d", (long long)count,
+                     (long long)first, MPSI_FLUID_MOST_PARTICLES);
+  if (status == MPS_OK) status = check_places(f, function, first, first + count);
+  if (status != MPS_OK) return status;
+  double kinetic;
+  f->energy_before = mpsi_fluid_energy(f, &kinetic);
+  f->changing = true;
+  if (mpsi_fluid_reserve(f, first + count)) return MPS_OK;
+  return mpsi_fail_memory(f->context, function, (size_t)(first + count) * sizeof *f->local);
+}
+
+mps_status mpsi_fluid_remove(void *self, const char *function, int64_t count, const int64_t *ids) {
+  mps_fluid *f = self;
+  (void)ids;
+  const mps_status status = mpsi_fluid_ready(f, function);
+  if (status != MPS_OK) return status;
+  if (count >= f->count)
+    return mpsi_fail(f->context, function, MPS_ERROR_STATE,
+                     "all %lld particles are to go, a fluid needs one", (long long)f->count);
+  double kinetic;
+  f->energy_before = mpsi_fluid_energy(f, &kinetic);
+  f->changing = true;
+  return MPS_OK;
+}
+
+/* What came or went with the particles is no work. */
+void mpsi_fluid_renew(void *self) {
+  mps_fluid *f = self;
+  double kinetic;
+  f->count = mps_particles_count(f->particles);
+  if (f->changing) f->energy += mpsi_fluid_energy(f, &kinetic) - f->energy_before;
+  f->changing = false;
+  f->ghosts = 0;
+  f->stale = true;
+  mpsi_fluid_find_speed(f);
+}
