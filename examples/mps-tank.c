@@ -30,6 +30,8 @@ static int complete(const options_program *program, tank_settings *s) {
                       : kind == TANK_PISTON ? 4.0 * s->period
                                             : s->duration;
   if (isnan(s->window[0])) s->window[0] = fmax(s->duration - last, 0.0);
+  if (s->scheme == 1 && (tank_is_coupled(s) || s->viscosity > 0.0))
+    return options_refuse(program, "--scheme classical has no coupling and no --viscosity");
   if (s->depth < 5.0 * s->spacing)
     return options_refuse(program, "--depth must be at least 5 spacings");
   if (s->kind != TANK_DROP && s->length < 5.0 * s->spacing)
@@ -141,6 +143,9 @@ int main(int argc, char **argv) {
                     "radius)"),
       OPTION_NUMBER("disturb", "spacings", OPTION_FROM_TO(0.0, 0.2), &s->disturb,
                     "random displacement of the particles at the start, at most"),
+      OPTION_CHOICE(
+          "scheme", "modern|classical", &s->scheme,
+          "the library's; the first one of MPS, for comparison: noisy pressures, no levels"),
       OPTION_HEADING("Run"),
       OPTION_NUMBER("duration", "s", OPTION_DURATION, &s->duration,
                     "of the run (default 4, 5.2, 6, 1, .25, 1)"),

@@ -2,9 +2,13 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "tank.h"
 
+#include <mps/experimental.h>
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+
+#define CLASSICAL_SHARE 0.2 /* of the density error, taken back in each step */
 
 /* ---- water ----------------------------------------------------------------------------------- */
 
@@ -91,6 +95,8 @@ mps_status tank_build(mps_context *context, tank_model *m) {
   if (status == MPS_OK)
     status = s->kind == TANK_DROP ? fill_drop(s, m->water) : fill_tank(s, m->water);
   if (status == MPS_OK) status = mps_fluid_create(context, m->water, &def, &m->fluid);
+  if (status == MPS_OK && s->scheme == 1)
+    status = mps_experimental_fluid_classical(m->fluid, CLASSICAL_SHARE);
   if (status == MPS_OK && s->kind != TANK_DROP) status = add_walls(context, m);
   return status;
 }

@@ -14,7 +14,8 @@ enum { TANK_STILL = 0, TANK_SLOSHING, TANK_PISTON, TANK_SPRING, TANK_PLATE, TANK
 enum { TANK_SHAPES = 6, TANK_GAUGES = 8, TANK_BED = 0, TANK_LEFT = 1, TANK_RIGHT = 2 };
 
 typedef struct tank_settings {
-  int kind; /* TANK_... */
+  int kind;   /* TANK_... */
+  int scheme; /* 1: classical */
   double length, depth, spacing, amplitude, period, ramp, duration, sample, dt, viscosity, disturb;
   double mass, stiffness; /* kg and N/m, of a wall of 1 m */
   double plate_length, plate_thickness, young, poisson, plate_density;
