@@ -215,8 +215,8 @@ static void exchange(host *h, double more) {
   h->amplitude = 1e-4 + 1e-7 * more;
 }
 
-/* Particles that go and come: one of the soil is thrown on top again, the ground is dug, the wall
- * erodes; the water lets none go. */
+/* Particles that go and come: one of the soil is thrown on top again, water is scooped, the ground
+ * is dug, the wall erodes. */
 static void trade(host *h, int step) {
   mps_particles *soil = h->verb[SOIL]->particles(h->solver[SOIL]);
   mps_particles *ground = h->verb[GROUND]->particles(h->solver[GROUND]);
@@ -235,6 +235,13 @@ static void trade(host *h, int step) {
   mps_assert_ok(context, mps_particles_remove(ground, 1, dug));
   mps_assert_fails(context, mps_particles_append(ground, 1, back), MPS_ERROR_STATE,
                    "takes no more particles");
+  mps_particles *water = h->verb[WATER]->particles(h->solver[WATER]);
+  int64_t scooped[1] = {-1};
+  mps_assert_ok(context, mps_particles_view(water, "id", &id));
+  mps_assert_ok(context, mps_particles_view(water, "position", &x));
+  for (int64_t k = 0; k < x.shape[0] && scooped[0] < 0; k++)
+    if (*mps_view_f64(&x, k, 1) > 0.35) scooped[0] = *mps_view_i64(&id, k, 0);
+  if (scooped[0] >= 0) mps_assert_ok(context, mps_particles_remove(water, 1, scooped));
   if (step != STEPS / 2) return;
   mps_particles *wall = h->verb[WALL]->particles(h->solver[WALL]);
   int64_t top[8], count;
