@@ -181,8 +181,10 @@ class Call:
         if kind.kind == "pointer" and kind.item.kind == "struct":
             if isinstance(value, dict):
                 return self.struct(kind.item, value)
-            if isinstance(value, (list, tuple)):
+            if isinstance(value, (list, tuple)) and kind.item.fields:
                 return self.structs(kind.item, value)
+            if not isinstance(value, ffi.CData):
+                raise TypeError(f"{value!r} is no {kind.item.cname}")
             return value
         if kind.kind == "pointer" and not isinstance(value, ffi.CData):
             return self.array(value, kind.item, constant)

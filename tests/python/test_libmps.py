@@ -135,6 +135,8 @@ class Errors(unittest.TestCase):
             falling(context, sand, cel=0.2)
         with self.assertRaisesRegex(TypeError, "lacks 'material'"):
             context.mpm_create(sand)
+        with self.assertRaisesRegex(TypeError, r"\[1\] is no mps_material"):
+            context.mpm_create(sand, [1], cell=0.2)
         with self.assertRaisesRegex(TypeError, "too many arguments"):
             sand.set("density", 0, 1.0, 2.0)
         with self.assertRaisesRegex(AttributeError, "mpm of libmps has no 'stepp'"):
