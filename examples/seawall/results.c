@@ -75,11 +75,11 @@ static bool write_frames(app *a, const seawall *w) {
 
 /* The largest force after the piston's jerk, less all that is faster than 10 Hz, and when. */
 static double find_peak(const seawall *w, double *at) {
-  double most = 0.0;
-  *at = 0.0;
+  double most = NAN;
+  *at = NAN;
   for (int64_t k = (int64_t)(SEAWALL_IMPULSE / w->s.dt); k < w->forces; k++) {
     const double force = seawall_smooth(w, k);
-    if (force > most) most = force, *at = (double)(k + 1) * w->s.dt;
+    if (!(force <= most)) most = force, *at = (double)(k + 1) * w->s.dt;
   }
   return most;
 }
@@ -96,8 +96,8 @@ static void summarise(output *f, const seawall *w, double H) {
   json_optional(f, "level_at_516", crest ? at->level : NAN);
   double peak_at;
   const double peak = find_peak(w, &peak_at);
-  json_number(f, "force_peak", peak);
-  json_number(f, "force_peak_time", peak_at);
+  json_optional(f, "force_peak", peak);
+  json_optional(f, "force_peak_time", peak_at);
   json_optional(f, "sainflou_force", isnan(H) ? NAN : waves_sainflou(k, s->depth, H, 1));
   json_optional(f, "sainflou_height", H);
   json_number(f, "havelock_height", paddle);
@@ -113,7 +113,7 @@ static void summarise(output *f, const seawall *w, double H) {
   if (!isnan(H))
     printf("Sainflou for the level at the wall at t = %.2f s (H = %.3f m): %.1f N\n", at->t, H,
            waves_sainflou(k, s->depth, H, 1));
-  printf("largest force below 10 Hz %.1f N at %.3f s\n", peak, peak_at);
+  if (!isnan(peak)) printf("largest force below 10 Hz %.1f N at %.3f s\n", peak, peak_at);
 }
 
 static bool write_summary(app *a, const seawall *w, double H) {

@@ -287,7 +287,7 @@ static void summarise_waves(output *f, const tank_model *m, const figures *g) {
   if (!isnan(gauge))
     printf("wave height at the gauge %.4f m, Havelock for an endless flume %.4f m\n", gauge,
            havelock);
-  if (!isnan(H))
+  if (!isnan(H) && !isnan(g->most))
     printf("force on the wall: crest %.1f N, Sainflou %.1f N; trough %.1f N, Sainflou %.1f N\n",
            g->most, waves_sainflou(k, s->depth, H, 1), g->least,
            waves_sainflou(k, s->depth, H, -1));

@@ -116,7 +116,7 @@ MPS_API void mps_mpm_destroy(mps_mpm **mpm);
 
 #define MPS_MPM_MAX_MATERIALS 16
 
-/** Gives the `count` (>= 0) particles of `ids` another law, before the first step or between steps;
+/** Gives the `count` (>= 0) particles of `ids` (NULL with count 0: all) another law, before the first step or between steps;
  *  at most 16 different materials in a solver, that of creation with them. The material is kept
  *  alive. Its history begins anew in these particles, by the law's initial values; stress, volume,
  *  `volume_ratio` and `deformation_gradient` stay as they are (0: 1, and all 0: no deformation).

@@ -66,8 +66,10 @@ typedef struct mps_totals {
 } mps_totals;
 
 /** The state of a solver, in memory: what mps_S_snapshot fills and mps_S_rollback goes back to, bit
- *  for bit, so that a step can be repeated with other loads (implicit coupling). It belongs to the
- *  solver that filled it; filling it again reuses its memory. */
+ *  for bit, so that a step can be repeated with other loads (implicit coupling). The fields of the
+ *  set are part of it, `external_force` too; definitions of boundaries and loads, signals and
+ *  materials are not: they stay as they are now. It belongs to the solver that filled it; filling
+ *  it again reuses its memory. */
 typedef struct mps_snapshot mps_snapshot;
 /** Frees and nulls; accepts NULL. A snapshot may outlive its solver, which then nobody can roll
  *  back. */

@@ -23,7 +23,7 @@
 #define MOST_SHIFT 0.05 /* l0 */
 #define OFF_WALL 0.1    /* l0 */
 
-/* s0 of the sheet: 1/s. Without gravity by the largest velocity. */
+/* The rate (g/l0)^1/2 of smoothing and shifting, 1/s; without gravity by the largest velocity. */
 static double rate(const mps_fluid *f) {
   return f->g > 0.0 ? sqrt(f->g / f->l0) : f->speed / f->l0;
 }

@@ -71,6 +71,15 @@ void mpsi_mpm_begin_law(mps_mpm *mpm, const mpsi_law_use *law, int64_t k) {
 
 /* ---- several laws ---------------------------------------------------------------------------- */
 
+/* How many particles a list means, NULL being all, and where the i-th of them is, -1 for nowhere.
+ */
+static int64_t listed(const mps_mpm *mpm, int64_t count, const int64_t *ids) {
+  return ids ? count : mpm->p.count;
+}
+static int64_t place(const mps_mpm *mpm, const int64_t *ids, int64_t i) {
+  return ids ? mps_particles_index(mpm->particles, ids[i]) : i;
+}
+
 static mps_status check(const mps_mpm *mpm, const char *function, const mps_material *material,
                         int64_t count, const int64_t *ids) {
   if (!material) return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "material is NULL");
@@ -81,16 +90,16 @@ static mps_status check(const mps_mpm *mpm, const char *function, const mps_mate
   const double *J = mpsi_material_reads_volume(material)
                         ? mpsi_particles_column(mpm->particles, "volume_ratio", 0)
                         : NULL;
-  for (int64_t i = 0; i < count; i++) {
-    const int64_t k = mps_particles_index(mpm->particles, ids[i]);
+  for (int64_t i = 0; i < listed(mpm, count, ids); i++) {
+    const int64_t k = place(mpm, ids, i);
     if (k < 0)
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                       "ids[%lld] is %lld, allowed are 0 to %lld", (long long)i, (long long)ids[i],
-                       (long long)mpm->p.count - 1);
+                       "ids[%lld] is %lld: the set has no such particle", (long long)i,
+                       (long long)ids[i]);
     if (J && !(J[k] >= 0.0 && J[k] < INFINITY))
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "particle %lld has volume ratio %g, must be > 0, or 0 for 1",
-                       (long long)ids[i], J[k]);
+                       (long long)mpm->laws.ids[k], J[k]);
   }
   return MPS_OK;
 }
@@ -128,8 +137,8 @@ mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material, int64_t co
   if (status == MPS_OK) status = check(mpm, __func__, material, count, ids);
   if (status == MPS_OK) status = list_law(mpm, __func__, material, &number);
   if (status != MPS_OK) return status;
-  for (int64_t i = 0; i < count; i++) {
-    const int64_t k = mps_particles_index(mpm->particles, ids[i]);
+  for (int64_t i = 0; i < listed(mpm, count, ids); i++) {
+    const int64_t k = place(mpm, ids, i);
     if (mpm->p.law) mpm->p.law[k] = number; /* else there is but the one */
     mpsi_mpm_begin_law(mpm, &mpm->laws.law[number], k);
   }

@@ -194,7 +194,7 @@ static void sets_materials(void **state) {
   mps_assert_fails(context, mps_mpm_set_material(s.mpm, law, 1, NULL), MPS_ERROR_ARGUMENT,
                    "ids NULL");
   mps_assert_fails(context, mps_mpm_set_material(s.mpm, law, 2, bad), MPS_ERROR_ARGUMENT,
-                   "ids[1] is 100, allowed are 0 to 99");
+                   "ids[1] is 100: the set has no such particle");
   assert_int_equal(mps_particles_field_count(s.particles), fields);
   mps_assert_ok(context, mps_mpm_set_material(s.mpm, law, 2, ids));
   mps_view of = mpm_scene_view(&s, "material"), damage = mpm_scene_view(&s, "touchy.damage");
@@ -220,6 +220,9 @@ static void sets_materials(void **state) {
   mps_assert_fails(context, mps_mpm_set_material(s.mpm, last, 1, ids), MPS_ERROR_ARGUMENT,
                    "has 16 materials");
   mps_assert_ok(context, mps_mpm_set_material(s.mpm, law, 1, ids)); /* known: no new one */
+  mps_assert_ok(context, mps_mpm_set_material(s.mpm, law, 0, NULL)); /* all */
+  of = mpm_scene_view(&s, "material");
+  for (int64_t k = 0; k < 100; k++) assert_int_equal(*mps_view_i64(&of, k, 0), 1);
   refuses_now = 1;
   mps_assert_fails(context, mps_mpm_step(s.mpm, 1), MPS_ERROR_NUMERIC,
                    "the law 'touchy' has refused");
