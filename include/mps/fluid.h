@@ -65,6 +65,13 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_create(mps_context *context, mps_part
                                                   const mps_fluid_def *def, mps_fluid **out);
 MPS_API void mps_fluid_destroy(mps_fluid **fluid);
 
+/** What the solver was made from, with the level that it found and the present dt. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_get_def_sized(const mps_fluid *fluid, mps_fluid_def *out,
+                                                         size_t size);
+static inline mps_status mps_fluid_get_def(const mps_fluid *fluid, mps_fluid_def *out) {
+  return mps_fluid_get_def_sized(fluid, out, sizeof *out);
+}
+
 /* ---- boundaries ------------------------------------------------------------------------------ */
 
 typedef enum mps_fluid_boundary_kind {

@@ -78,6 +78,14 @@ mps_status mpsi_out_write(mps_context *context, const char *function, void *out,
   return MPS_OK;
 }
 
+mps_status mpsi_def_write(mps_context *context, const char *function, void *out, size_t size,
+                          const void *known, size_t known_size) {
+  const uint32_t written = (uint32_t)(size < known_size ? size : known_size);
+  const mps_status status = mpsi_out_write(context, function, out, size, known, known_size);
+  if (status == MPS_OK && size >= sizeof written) memcpy(out, &written, sizeof written);
+  return status;
+}
+
 static const mps_context_def context_defaults = {
     .struct_size = sizeof(mps_context_def),
     .executor = MPS_EXECUTOR_THREADS,

@@ -92,6 +92,10 @@ mps_status mpsi_def_init(void *def, size_t size, size_t minimum, const void *def
  * MPS_ERROR_ARGUMENT for NULL or a size of 0; then nothing is written. */
 mps_status mpsi_out_write(mps_context *context, const char *function, void *out, size_t size,
                           const void *known, size_t known_size);
+/* The same of a definition, the body of mps_x_get_def_sized: its `struct_size`, the first member,
+ * is what of it was written, so that the caller may create another object by it. */
+mps_status mpsi_def_write(mps_context *context, const char *function, void *out, size_t size,
+                          const void *known, size_t known_size);
 
 /* ---- threads and instruction level
  * --------------------------------------------------------------------------------- */

@@ -304,9 +304,8 @@ mps_status mps_dynamics_get_def_sized(const mps_dynamics *dynamics, mps_dynamics
                                       size_t size) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
   mps_dynamics_def def = dynamics->def;
-  def.struct_size = (uint32_t)size;
   def.dt = dynamics->dt;
-  return mpsi_out_write(dynamics->context, "mps_dynamics_get_def", out, size, &def, sizeof def);
+  return mpsi_def_write(dynamics->context, "mps_dynamics_get_def", out, size, &def, sizeof def);
 }
 
 mps_particles *mps_dynamics_particles(const mps_dynamics *dynamics) {

@@ -226,6 +226,13 @@ mps_status mps_fluid_set_dt(mps_fluid *f, double dt) {
   return MPS_OK;
 }
 
+mps_status mps_fluid_get_def_sized(const mps_fluid *f, mps_fluid_def *out, size_t size) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_fluid_def def = f->def;
+  def.level = f->level;
+  return mpsi_def_write(f->context, "mps_fluid_get_def", out, size, &def, sizeof def);
+}
+
 mps_particles *mps_fluid_particles(const mps_fluid *f) { return f ? f->particles : NULL; }
 
 mps_context *mps_fluid_context(const mps_fluid *f) { return f ? f->context : NULL; }

@@ -517,7 +517,7 @@ mps_status mps_experimental_elastic_published(mps_context *context, mps_particle
 
 mps_status mps_elastic_get_def_sized(const mps_elastic *e, mps_elastic_def *out, size_t size) {
   if (!e) return MPS_ERROR_ARGUMENT;
-  return mpsi_out_write(e->context, __func__, out, size, &e->def, sizeof e->def);
+  return mpsi_def_write(e->context, "mps_elastic_get_def", out, size, &e->def, sizeof e->def);
 }
 
 mps_particles *mps_elastic_particles(const mps_elastic *e) { return e ? e->particles : NULL; }

@@ -413,7 +413,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
 
 mps_status mps_mpm_get_def_sized(mps_mpm *mpm, mps_mpm_def *out, size_t size) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  return mpsi_out_write(mpm->context, "mps_mpm_get_def", out, size, &mpm->def, sizeof mpm->def);
+  return mpsi_def_write(mpm->context, "mps_mpm_get_def", out, size, &mpm->def, sizeof mpm->def);
 }
 
 mps_particles *mps_mpm_particles(const mps_mpm *mpm) { return mpm ? mpm->particles : NULL; }

@@ -54,6 +54,24 @@ static void bad_definitions_are_refused(void **state) {
   mps_particles_destroy(&p);
 }
 
+static void the_definition_comes_back_completed(void **state) {
+  (void)state;
+  mps_particles *p = block(0.1);
+  mps_fluid *f = NULL;
+  mps_fluid_def def = mps_fluid_defaults(), now;
+  def.density = 1025.0, def.measure = 2.0;
+  mps_assert_ok(context, mps_fluid_create(context, p, &def, &f));
+  mps_assert_ok(context, mps_fluid_set_dt(f, 0.01));
+  mps_assert_ok(context, mps_fluid_get_def(f, &now));
+  assert_int_equal(now.struct_size, sizeof now);
+  assert_true(now.density == 1025.0 && now.measure == 2.0 && now.dt == 0.01);
+  mps_assert_near(now.level, 0.5, 1e-12); /* half a spacing above the highest row, at .45 */
+  assert_int_equal(mps_fluid_get_def(NULL, &now), MPS_ERROR_ARGUMENT);
+  mps_assert_fails(context, mps_fluid_get_def(f, NULL), MPS_ERROR_ARGUMENT, "NULL");
+  mps_fluid_destroy(&f);
+  mps_particles_destroy(&p);
+}
+
 static void bad_boundaries_are_refused(void **state) {
   (void)state;
   mps_particles *p = block(0.1);
@@ -521,6 +539,7 @@ static void parts_of_a_step_have_their_order(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bad_definitions_are_refused),
+      cmocka_unit_test(the_definition_comes_back_completed),
       cmocka_unit_test(bad_boundaries_are_refused),
       cmocka_unit_test(a_run_ends_on_time_and_its_callback_only_reads),
       cmocka_unit_test(a_solution_that_does_not_converge_keeps_the_state),

@@ -599,6 +599,43 @@ static void results_stay_within_the_callers_struct(void **state) {
 }
 
 /* Field by field: the struct of a caller who knows only its first members. */
+/* A program built against an older libmps asks for a definition and creates another solver by it:
+ * the size that comes with it is the program's. */
+static void definitions_come_back_with_the_callers_size(void **state) {
+  (void)state;
+  mps_particles *set = square();
+  mps_fluid *fluid = NULL;
+  mps_dynamics *dynamics = NULL;
+  mps_material *material = NULL;
+  mps_mpm *mpm = NULL;
+  const uint32_t size = 16;
+  union {
+    uint32_t size;
+    mps_mpm_def mpm;
+    mps_fluid_def fluid;
+    mps_dynamics_def dynamics;
+  } part;
+  mps_assert_ok(context, mps_fluid_create(context, set, NULL, &fluid));
+  mps_assert_ok(context, mps_fluid_get_def_sized(fluid, &part.fluid, size));
+  assert_int_equal(part.size, size);
+  mps_assert_ok(context, mps_fluid_get_def(fluid, &part.fluid));
+  assert_int_equal(part.size, sizeof part.fluid);
+  mps_fluid_destroy(&fluid);
+  mps_assert_ok(context, mps_dynamics_create(context, set, NULL, &dynamics));
+  mps_assert_ok(context, mps_dynamics_get_def_sized(dynamics, &part.dynamics, size));
+  assert_int_equal(part.size, size);
+  mps_dynamics_destroy(&dynamics);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 1.0;
+  mps_assert_ok(context, mps_material_linear_elastic(context, 1e7, 0.3, &material));
+  mps_assert_ok(context, mps_mpm_create(context, set, material, &def, &mpm));
+  mps_assert_ok(context, mps_mpm_get_def_sized(mpm, &part.mpm, size));
+  assert_int_equal(part.size, size);
+  mps_mpm_destroy(&mpm);
+  mps_material_destroy(&material);
+  mps_particles_destroy(&set);
+}
+
 static void descriptions_of_fields_are_sized(void **state) {
   (void)state;
   mps_particles *set = square();
@@ -621,6 +658,7 @@ int main(void) {
       cmocka_unit_test(init_takes_every_size),
       cmocka_unit_test(create_takes_every_size),
       cmocka_unit_test(results_stay_within_the_callers_struct),
+      cmocka_unit_test(definitions_come_back_with_the_callers_size),
       cmocka_unit_test(descriptions_of_fields_are_sized),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);
