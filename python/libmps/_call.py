@@ -265,7 +265,9 @@ def signature(name):
     full = f"mps_{name}_sized" if f"mps_{name}_sized" in _cdef.PARAMETERS else f"mps_{name}"
     kinds = ffi.typeof(getattr(library, full)).args
     pairs = zip(kinds, _cdef.PARAMETERS[full])
-    return "(" + ", ".join(f"{k.cname} {p}" for k, p in pairs if p != "size") + ")"
+    return "(" + ", ".join(("const " if p.startswith("const ") else "") +
+                           f"{k.cname} {p.removeprefix('const ')}"
+                           for k, p in pairs if p != "size") + ")"
 
 
 def returns_status(name):

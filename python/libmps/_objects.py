@@ -91,8 +91,8 @@ class Object:
         if result != 0:
             raise Error("mps_" + name, result, library.mps_context_error(self.context.pointer))
         made = [self._made(output[0], state) for output in outputs]
-        if not made and any(isinstance(held, ffi.CData) for held in state.alive):
-            self._alive += [h for h in state.alive if _is_callback(h)]  # a hook may stay
+        if name.startswith("context_set_"):
+            self._alive += [held for held in state.alive if _is_callback(held)]  # a hook stays
         return None if not made else made[0] if len(made) == 1 else tuple(made)
 
     def _made(self, value, state):

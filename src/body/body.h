@@ -120,6 +120,9 @@ void mpsi_body_begin(mps_body *body);
 /* Distance (m) of the furthest point of the surface from the reference point; 0 of half spaces. */
 double mpsi_body_extent(const mps_body *body);
 
+/* Puts the force on one part in a step of dt into its account: `count` particles touch it. */
+void mpsi_body_account(const mpsi_pose *pose, double dt, const mpsi_load *load, int64_t count,
+                       mps_reaction *r);
 /* Adds the forces of a step of dt by one contact, load[] and number of particles per part; the
  * body's present forces become those. */
 void mpsi_body_react(mps_body *body, double dt, const mpsi_load *load, const int64_t *contacts);

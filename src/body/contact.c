@@ -168,16 +168,7 @@ void mpsi_contact_react(mps_contact *contact, double dt, const mpsi_load *load,
                         const int64_t *count, bool moves) {
   mps_body *body = contact->body;
   for (int32_t part = 0; part < body->parts; part++) {
-    mps_reaction *r = &contact->reaction[part];
-    r->work -= dt * (mpsi_dot3(load[part].force, body->pose.v) +
-                     mpsi_dot3(load[part].moment, body->pose.spin));
-    for (int c = 0; c < 3; c++) {
-      r->force[c] = load[part].force[c];
-      r->moment[c] = load[part].moment[c];
-      r->impulse[c] += dt * load[part].force[c];
-      r->moment_impulse[c] += dt * load[part].moment[c];
-    }
-    r->count = count[part];
+    mpsi_body_account(&body->pose, dt, &load[part], count[part], &contact->reaction[part]);
   }
   mpsi_body_react(body, dt, load, count);
   if (body->contacts->next) sum_forces(body);

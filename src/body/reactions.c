@@ -8,20 +8,25 @@
 
 /* ---- reactions ------------------------------------------------------------------------------- */
 
+void mpsi_body_account(const mpsi_pose *pose, double dt, const mpsi_load *load, int64_t count,
+                       mps_reaction *r) {
+  r->work -= dt * (mpsi_dot3(load->force, pose->v) + mpsi_dot3(load->moment, pose->spin));
+  for (int c = 0; c < 3; c++) {
+    r->force[c] = load->force[c];
+    r->moment[c] = load->moment[c];
+    r->impulse[c] += dt * load->force[c];
+    r->moment_impulse[c] += dt * load->moment[c];
+  }
+  r->count = count;
+}
+
 void mpsi_body_react(mps_body *body, double dt, const mpsi_load *load, const int64_t *contacts) {
   for (int32_t part = 0; part < body->parts; part++) {
-    mps_reaction *r = &body->reaction[part];
-    r->work -= dt * (mpsi_dot3(load[part].force, body->pose.v) +
-                     mpsi_dot3(load[part].moment, body->pose.spin));
+    mpsi_body_account(&body->pose, dt, &load[part], contacts[part], &body->reaction[part]);
     for (int c = 0; c < 3; c++) {
-      r->force[c] = load[part].force[c];
-      r->moment[c] = load[part].moment[c];
-      r->impulse[c] += dt * load[part].force[c];
-      r->moment_impulse[c] += dt * load[part].moment[c];
       body->pending.force[c] += dt * load[part].force[c];
       body->pending.moment[c] += dt * load[part].moment[c];
     }
-    r->count = contacts[part];
   }
 }
 

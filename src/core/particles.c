@@ -340,6 +340,25 @@ int64_t mps_particles_index(const mps_particles *particles, int64_t id) {
   return particles && id >= 0 && id < particles->next_id ? particles->index_of[id] : -1;
 }
 
+mps_status mpsi_particles_check_ids(const mps_particles *particles, const char *function,
+                                    int64_t count, const int64_t *ids) {
+  for (int64_t k = 0; k < count; k++)
+    if (mps_particles_index(particles, ids[k]) < 0)
+      return mpsi_fail(particles->context, function, MPS_ERROR_ARGUMENT,
+                       "ids[%lld] is %lld: the set has no such particle", (long long)k,
+                       (long long)ids[k]);
+  return MPS_OK;
+}
+
+mps_status mpsi_particles_check_ids_or_all(const mps_particles *particles, const char *function,
+                                           int64_t count, const int64_t *ids) {
+  if (count < 0 || (ids == NULL && count != 0))
+    return mpsi_fail(particles->context, function, MPS_ERROR_ARGUMENT,
+                     "count is %lld with ids %s, must be >= 0, and 0 where ids is NULL (all)",
+                     (long long)count, ids ? "given" : "NULL");
+  return mpsi_particles_check_ids(particles, function, count, ids);
+}
+
 int64_t mps_particles_nearest(const mps_particles *particles, const double *x) {
   if (!particles || !x) return -1;
   int64_t best = -1;

@@ -21,6 +21,13 @@ double *mpsi_particles_column(mps_particles *particles, const char *name, int32_
 /* The same for a field of one int64, or NULL. */
 int64_t *mpsi_particles_integers(mps_particles *particles, const char *name);
 
+/* Whether `ids` are particles of the set. The second takes NULL with a count of 0 for all of them,
+ * as functions do that say what particles are made of. */
+mps_status mpsi_particles_check_ids(const mps_particles *particles, const char *function,
+                                    int64_t count, const int64_t *ids);
+mps_status mpsi_particles_check_ids_or_all(const mps_particles *particles, const char *function,
+                                           int64_t count, const int64_t *ids);
+
 /* Reorders all fields: new index k holds what index order[k] held. `order` is a permutation of
  * [0, count). Columns stay where they are; the epoch changes. A solver that sorts holds its own
  * pin; when another one holds a pin too, this is MPS_ERROR_STATE. Errors (that one, or memory)

@@ -119,21 +119,6 @@ mps_status mpsi_dynamics_read_ground(mps_dynamics *dynamics, const char *functio
 
 /* ---- a material ------------------------------------------------------------------------------ */
 
-static mps_status check_ids(mps_particles *particles, const char *function, int64_t count,
-                            const int64_t *ids) {
-  mps_context *context = mpsi_particles_context(particles);
-  if (count < 0 || (ids == NULL && count != 0))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "count is %lld with ids %s, must be >= 0, and 0 where ids is NULL (all)",
-                     (long long)count, ids ? "given" : "NULL");
-  for (int64_t k = 0; k < count; k++)
-    if (mps_particles_index(particles, ids[k]) < 0)
-      return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                       "ids[%lld] is %lld: the set has no such particle", (long long)k,
-                       (long long)ids[k]);
-  return MPS_OK;
-}
-
 /* Wave velocities (m/s) of a material, of which `modulus` are those of unit density. */
 static mps_status check_velocities(mps_particles *particles, const char *function,
                                    const mps_moduli *modulus, int64_t k, double *vs, double *vp) {
@@ -154,7 +139,7 @@ mps_status mpsi_dynamics_write_material(mps_particles *particles, const char *fu
   mps_context *context = mpsi_particles_context(particles);
   mps_moduli m = {0};
   mps_status status = mpsi_material_check_elastic(context, function, material);
-  if (status == MPS_OK) status = check_ids(particles, function, count, ids);
+  if (status == MPS_OK) status = mpsi_particles_check_ids_or_all(particles, function, count, ids);
   if (status == MPS_OK) status = mps_material_get_moduli(material, 1.0, &m);
   if (status != MPS_OK) return status;
   if (m.lambda < -1e-12 * m.shear)

@@ -213,17 +213,21 @@ void mps_fluid_destroy(mps_fluid **fluid) {
 
 /* ---- questions ------------------------------------------------------------------------------- */
 
+mps_status mpsi_fluid_check_dt(const mps_fluid *f, const char *function, double dt) {
+  const double longest = f->g > 0.0 ? 0.5 * sqrt(f->l0 / f->g) : INFINITY;
+  if (isnan(dt) || (dt > 0.0 && dt <= longest && isfinite(dt))) return MPS_OK;
+  return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                   "dt is %g s, must be NaN or > 0 and at most half of (l0/g)^1/2, %g s", dt,
+                   longest);
+}
+
 mps_status mps_fluid_set_dt(mps_fluid *f, double dt) {
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_fluid_ready(f, __func__);
   if (status != MPS_OK) return status;
-  const double longest = f->g > 0.0 ? 0.5 * sqrt(f->l0 / f->g) : INFINITY;
-  if (!isnan(dt) && !(dt > 0.0 && dt <= longest && isfinite(dt)))
-    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                     "dt is %g s, must be NaN or > 0 and at most half of (l0/g)^1/2, %g s", dt,
-                     longest);
-  f->def.dt = dt;
-  return MPS_OK;
+  status = mpsi_fluid_check_dt(f, __func__, dt);
+  if (status == MPS_OK) f->def.dt = dt;
+  return status;
 }
 
 mps_status mps_fluid_get_def_sized(const mps_fluid *f, mps_fluid_def *out, size_t size) {

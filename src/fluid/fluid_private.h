@@ -302,5 +302,7 @@ mps_status mpsi_fluid_sort(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_free(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_closed(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_ready(mps_fluid *fluid, const char *function);
+/* fluid.c: whether `dt` (s; NaN: the library chooses) is a step that the fluid may take. */
+mps_status mpsi_fluid_check_dt(const mps_fluid *f, const char *function, double dt);
 
 #endif

@@ -285,12 +285,8 @@ mps_status mps_fluid_step(mps_fluid *f, int64_t count) {
 mps_status mps_fluid_begin_step(mps_fluid *f, double dt) {
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_fluid_ready(f, __func__);
+  if (status == MPS_OK) status = mpsi_fluid_check_dt(f, __func__, dt);
   if (status != MPS_OK) return status;
-  const double longest = f->g > 0.0 ? 0.5 * sqrt(f->l0 / f->g) : INFINITY;
-  if (!isnan(dt) && !(dt > 0.0 && dt <= longest && isfinite(dt)))
-    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                     "dt is %g s, must be NaN or > 0 and at most half of (l0/g)^1/2, %g s", dt,
-                     longest);
   if (f->classical.gamma > 0.0)
     return mpsi_fail(f->context, __func__, MPS_ERROR_STATE,
                      "the classical scheme's steps cannot be made in parts");

@@ -255,20 +255,6 @@ mps_status mps_elastic_update_material(mps_elastic *e) {
   return mpsi_elastic_leave(e, status);
 }
 
-static mps_status check_ids(const mps_elastic *e, const char *function, int64_t count,
-                            const int64_t *ids) {
-  if (count < 0 || (ids == NULL && count != 0))
-    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                     "count is %lld with ids %s, must be >= 0, and 0 where ids is NULL (all)",
-                     (long long)count, ids ? "given" : "NULL");
-  for (int64_t k = 0; k < count; k++)
-    if (mpsi_elastic_find(e, ids[k]) < 0)
-      return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
-                       "ids[%lld] is %lld: no particle of the solver has that id", (long long)k,
-                       (long long)ids[k]);
-  return MPS_OK;
-}
-
 mps_status mps_elastic_set_material(mps_elastic *e, const mps_material *material, int64_t count,
                                     const int64_t *ids) {
   if (!e) return MPS_ERROR_ARGUMENT;
@@ -277,7 +263,8 @@ mps_status mps_elastic_set_material(mps_elastic *e, const mps_material *material
   double *former = mpsi_alloc(e->context, 2 * e->n, sizeof *former);
   if (!former) status = mpsi_fail_memory(e->context, __func__, (size_t)e->n * 16);
   if (status == MPS_OK) status = mpsi_material_check_elastic(e->context, __func__, material);
-  if (status == MPS_OK) status = check_ids(e, __func__, count, ids);
+  if (status == MPS_OK)
+    status = mpsi_particles_check_ids_or_all(e->particles, __func__, count, ids);
   if (status == MPS_OK) status = mpsi_elastic_read(e, __func__, "young", former, 1);
   if (status == MPS_OK) status = mpsi_elastic_read(e, __func__, "poisson", former + e->n, 1);
   if (status == MPS_OK) {

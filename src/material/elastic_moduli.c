@@ -78,20 +78,6 @@ mps_status mps_material_get_moduli_sized(const mps_material *material, double de
 
 static const char set_material[] = "mps_particles_set_material";
 
-static mps_status check_ids(const mps_particles *set, mps_context *context, int64_t count,
-                            const int64_t *ids) {
-  if (count < 0 || (ids == NULL && count != 0))
-    return mpsi_fail(context, set_material, MPS_ERROR_ARGUMENT,
-                     "count is %lld with ids %s, must be >= 0, and 0 where ids is NULL (all)",
-                     (long long)count, ids ? "given" : "NULL");
-  for (int64_t i = 0; i < count; i++)
-    if (mps_particles_index(set, ids[i]) < 0)
-      return mpsi_fail(context, set_material, MPS_ERROR_ARGUMENT,
-                       "ids[%lld] is %lld, the set has no such particle", (long long)i,
-                       (long long)ids[i]);
-  return MPS_OK;
-}
-
 mps_status mpsi_material_check_elastic(mps_context *context, const char *function,
                                        const mps_material *material) {
   if (!material) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "material is NULL");
@@ -113,7 +99,8 @@ mps_status mps_particles_set_material(mps_particles *particles, const mps_materi
   if (status == MPS_OK && material->context != context)
     status = mpsi_fail(context, set_material, MPS_ERROR_ARGUMENT,
                        "the material was made from another context");
-  if (status == MPS_OK) status = check_ids(particles, context, count, ids);
+  if (status == MPS_OK)
+    status = mpsi_particles_check_ids_or_all(particles, set_material, count, ids);
   if (status == MPS_OK) status = mps_material_get_moduli(material, density, &m);
   if (status == MPS_OK) status = mpsi_particles_ready(particles, set_material);
   const int32_t before = mps_particles_field_count(particles);

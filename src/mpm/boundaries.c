@@ -123,12 +123,7 @@ static mps_status check_ids(mps_mpm *mpm, const char *function, const mps_mpm_bo
                      "id_count is %lld with ids %s, allowed are 1 to %lld particles, or 0 and NULL",
                      (long long)def->id_count, def->ids ? "given" : "NULL",
                      (long long)mpm->p.count);
-  for (int64_t k = 0; k < def->id_count; k++)
-    if (mps_particles_index(mpm->particles, def->ids[k]) < 0)
-      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                       "ids[%lld] is %lld, which is no particle of the set", (long long)k,
-                       (long long)def->ids[k]);
-  return MPS_OK;
+  return mpsi_particles_check_ids(mpm->particles, function, def->id_count, def->ids);
 }
 
 static mps_status check_prescribed(mps_mpm *mpm, const char *function,

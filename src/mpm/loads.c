@@ -90,16 +90,11 @@ static mps_status check_list(mps_mpm *mpm, const char *function, const mps_mpm_l
                      "id_count is %lld and ids %s, allowed are 1 to %lld particles",
                      (long long)def->id_count, def->ids ? "given" : "NULL",
                      (long long)mpm->p.count);
-  for (int64_t k = 0; k < def->id_count; k++) {
-    if (mps_particles_index(mpm->particles, def->ids[k]) < 0)
-      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                       "ids[%lld] is %lld, which is no particle of the set", (long long)k,
-                       (long long)def->ids[k]);
-    if (def->area && !isfinite(def->area[k]))
+  for (int64_t k = 0; def->area && k < def->id_count; k++)
+    if (!isfinite(def->area[k]))
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "area[%lld] is %g m2, must be finite", (long long)k, def->area[k]);
-  }
-  return MPS_OK;
+  return mpsi_particles_check_ids(mpm->particles, function, def->id_count, def->ids);
 }
 
 static mps_status read_def(mps_mpm *mpm, const char *function, const mps_mpm_load_def *user,

@@ -71,8 +71,7 @@ void mpsi_mpm_begin_law(mps_mpm *mpm, const mpsi_law_use *law, int64_t k) {
 
 /* ---- several laws ---------------------------------------------------------------------------- */
 
-/* How many particles a list means, NULL being all, and where the i-th of them is, -1 for nowhere.
- */
+/* How many particles a list means, NULL being all, and where the i-th of them is. */
 static int64_t listed(const mps_mpm *mpm, int64_t count, const int64_t *ids) {
   return ids ? count : mpm->p.count;
 }
@@ -83,19 +82,13 @@ static int64_t place(const mps_mpm *mpm, const int64_t *ids, int64_t i) {
 static mps_status check(const mps_mpm *mpm, const char *function, const mps_material *material,
                         int64_t count, const int64_t *ids) {
   if (!material) return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "material is NULL");
-  if (count < 0 || (count > 0 && !ids))
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "count is %lld with ids %s, must be >= 0, and 0 where ids is NULL",
-                     (long long)count, ids ? "given" : "NULL");
+  const mps_status status = mpsi_particles_check_ids_or_all(mpm->particles, function, count, ids);
+  if (status != MPS_OK) return status;
   const double *J = mpsi_material_reads_volume(material)
                         ? mpsi_particles_column(mpm->particles, "volume_ratio", 0)
                         : NULL;
   for (int64_t i = 0; i < listed(mpm, count, ids); i++) {
     const int64_t k = place(mpm, ids, i);
-    if (k < 0)
-      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                       "ids[%lld] is %lld: the set has no such particle", (long long)i,
-                       (long long)ids[i]);
     if (J && !(J[k] >= 0.0 && J[k] < INFINITY))
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "particle %lld has volume ratio %g, must be > 0, or 0 for 1",

@@ -102,6 +102,33 @@ class Values(unittest.TestCase):
         np.testing.assert_allclose(places[0], places[1], rtol=0, atol=1e-13)
         self.assertGreater(np.abs(np.diff(places[0][:, 0])).max(), 0.1)
 
+    def test_layers_are_dictionaries_and_hooks_are_functions(self):
+        """Stress at rest under two layers; a warning through the log hook."""
+        said = []
+        context = mps.Context(threads=1, log=lambda level, text: said.append((level, text)))
+        ground = context.particles_create(spacing=0.5)
+        ground.fill_box([0, 0], [2, 4])
+        ground.set_geostatic(gravity=10.0, surface=4.0, layer_count=2, layers=[
+            {"thickness": 2.0, "k0": 0.5, "density": 1800.0},
+            {"thickness": 2.0, "k0": 0.4, "density": 2000.0}])
+        depth = 4.0 - ground["position"][:, 1]
+        exact = np.where(depth < 2, 18e3 * depth, 36e3 + 20e3 * (depth - 2))
+        np.testing.assert_allclose(ground["stress"][:, 1], -exact, rtol=1e-12)
+        np.testing.assert_allclose(ground["stress"][:, 0],
+                                   -np.where(depth < 2, 0.5, 0.4) * exact, rtol=1e-12)
+        ground.set("shear_velocity", 0, 100.0)
+        ground.set("pressure_velocity", 0, 200.0)
+        ground.set("density", 0, 1800.0)
+        solver = context.dynamics_create(ground)
+        self.assertEqual(said, [])
+        solver.set_dt(2.0 * solver.limit())
+        self.assertEqual([level for level, _ in said], [mps.LOG_WARNING])
+        self.assertIn("limit", said[0][1])
+        later = []
+        context.set_log(lambda level, text: later.append(text))
+        solver.set_dt(3.0 * solver.limit())
+        self.assertEqual((len(said), len(later)), (1, 1))
+
     def test_a_driven_base(self):
         context = mps.Context()
         sand = block(context)
@@ -262,6 +289,8 @@ class Whole(unittest.TestCase):
             function = getattr(mps.library, name)
             self.assertEqual(len(ffi.typeof(function).args), len(_cdef.PARAMETERS[name]), name)
         self.assertGreater(len(_cdef.PARAMETERS), 200)
+        self.assertEqual(signature("particles_set_geostatic"),
+                         "(mps_particles * particles, const mps_geostatic_def * def)")
         self.assertEqual(signature("mpm_step"), "(mps_mpm * mpm, int64_t count)")
 
     def test_every_definition_has_defaults(self):
