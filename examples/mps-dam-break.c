@@ -100,8 +100,7 @@ static mps_status fill(mps_context *context, const settings *s, simulation *sim)
   return status;
 }
 
-static mps_status build(mps_context *context, void *user) {
-  simulation *sim = user;
+mps_status dam_mpm_build(mps_context *context, simulation *sim) {
   const settings *s = &sim->s;
   mps_newtonian_def law = mps_newtonian_defaults();
   law.state = s->state;
@@ -122,25 +121,6 @@ static mps_status build(mps_context *context, void *user) {
   if (status == MPS_OK) status = mps_experimental_mpm_transfer(sim->m.mpm, s->transfer);
   if (status == MPS_OK && s->bed == NO_SLIP)
     status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
-  return status;
-}
-
-static mps_status march(void *user) {
-  simulation *sim = user;
-  const settings *s = &sim->s;
-  mps_status status = MPS_OK;
-  for (int k = 0; k <= SAMPLES && status == MPS_OK; k++) {
-    if (k > 0) status = mps_mpm_run(sim->m.mpm, s->duration * k / SAMPLES, INT64_MAX, NULL, NULL);
-    mpm_heap *heap = &sim->heap[k];
-    if (status == MPS_OK) status = mpm_heap_measure(sim->m.particles, G, 2.0 * s->h, heap);
-    if (status == MPS_OK && k % (SAMPLES / (FRAMES - 1)) == 0)
-      status = mpm_snapshot_take(sim->m.particles, mps_mpm_time(sim->m.mpm), "stress",
-                                 &sim->shot[k / (SAMPLES / (FRAMES - 1))]);
-    sim->t[k] = mps_mpm_time(sim->m.mpm);
-    sim->Z[k] = heap->front / s->base;
-    sim->H[k] = heap->top / column_height(s);
-    if (status == MPS_OK) sim->m.samples = sim->rows = k + 1;
-  }
   return status;
 }
 
@@ -341,6 +321,7 @@ static void summarise(output *f, const simulation *sim, double T, double tau, do
 static bool finish(app *a, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
+  if (sim->series && !app_check(a, mps_recorder_close(&sim->series))) return false;
   if (s->impact)
     return mpm_snapshots_write(a, s->out, "particles.csv", "pressure_Pa", FRAMES, sim->shot) &&
            draw_water(a, sim, sqrt(2.0 * G / s->base)) && dam_impact_write(a, sim);
@@ -383,6 +364,7 @@ static int complete(const options_program *program, settings *s) {
                                    "speed of the water: it is to be all but incompressible");
   if (isnan(s->duration) && s->impact) s->duration = 7.0 * sqrt(0.5 * s->base / G);
   if (isnan(s->duration)) s->duration = 6.0 * sqrt(s->base / (G * (double)s->n2));
+  if (isnan(s->every_checkpoint)) s->every_checkpoint = 0.2 * s->duration;
   return -1;
 }
 
@@ -397,6 +379,8 @@ int main(int argc, char **argv) {
                                  .ppc = 4,
                                  .state = MPS_MATERIAL_STATE_TAIT,
                                  .spline = 1,
+                                 .frames = 60,
+                                 .every_checkpoint = NAN,
                                  .out = "out/dam-break"}};
   settings *s = &sim.s;
   option table[] = {
@@ -430,6 +414,16 @@ int main(int argc, char **argv) {
       OPTION_CHOICE("volumetric", "point|cell", &s->volumetric, "change of volume: F-bar by cell"),
       OPTION_HEADING("Run"),
       OPTION_NUMBER("duration", "s", OPTION_DURATION, &s->duration, "of the run (default T = 6)"),
+      OPTION_INTEGER("frames", "N", OPTION_FROM_TO(0.0, 100000.0), &s->frames,
+                     "of the series for ParaView; 0: none"),
+      OPTION_TEXT("checkpoint", "FILE", &s->checkpoint,
+                  "written on the way and at Ctrl-C, to go on from (default OUT/checkpoint.h5)"),
+      OPTION_NUMBER("every-checkpoint", "s", OPTION_DURATION, &s->every_checkpoint,
+                    "between checkpoints (default: a fifth of the run)"),
+      OPTION_TEXT("restart", "FILE", &s->restart,
+                  "go on from a checkpoint made with the same options (but --out, --threads and "
+                  "those of checkpoints); the results are those of the whole run, the frames for "
+                  "ParaView those from here on"),
       OPTION_OUT(&s->out),
       OPTION_THREADS(&s->threads),
       {0}};
@@ -441,9 +435,10 @@ int main(int argc, char **argv) {
   int code = options_parse(&program, argc, argv);
   if (code < 0) code = complete(&program, s);
   if (code >= 0) return code;
-  static const mpm_model_parts methods[] = {{build, march, finish},
-                                            {dam_mps_build, dam_mps_march, finish}};
-  code = mpm_model_run(&program, s->threads, s->out, &sim.m, &methods[s->method], &sim);
+  static const mpm_model_parts parts = {dam_build, dam_march, finish};
+  sim.table = table;
+  code = mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
+  mps_recorder_destroy(&sim.series);
   free(sim.gauge_t);
   free(sim.gauge_p);
   for (int k = 0; k < FRAMES; k++) mpm_snapshot_free(&sim.shot[k]);

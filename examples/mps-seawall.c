@@ -1,6 +1,7 @@
 /* mps-seawall - waves of a piston against an elastic wall: Chikazawa, section 4, Figures 9 to 13.
  * The water is mps_fluid, the wall mps_elastic; the wall is loaded with the pressures of the water.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "common/frame.h"
 #include "seawall/seawall.h"
 
 #include <math.h>
@@ -30,31 +31,19 @@ static const char *check(const seawall_settings *s) {
   return NULL;
 }
 
-static mps_status open_series(app *a, seawall *w, const char *what, mps_particles *set,
-                              mps_recorder **out) {
-  mps_recorder_def def = mps_recorder_defaults();
-  char path[1200];
-  if (isnan(w->restarted))
-    snprintf(path, sizeof path, "%s/%s.vtkhdf", w->s.out, what);
-  else
-    snprintf(path, sizeof path, "%s/%s-from-%g.vtkhdf", w->s.out, what, w->restarted);
-  def.path = path;
-  const mps_status status = mps_recorder_create(a->context, set, &def, out);
-  if (status == MPS_OK) app_wrote(a, path);
-  return status == MPS_ERROR_UNSUPPORTED ? MPS_OK : status; /* a libmps without HDF5 */
-}
-
 static mps_status prepare(app *a, seawall *w) {
   mps_status status = MPS_OK;
   if (w->s.restart) status = seawall_peek(a->context, w);
   if (status == MPS_OK) status = seawall_build(a, w);
   if (status == MPS_OK && w->s.restart) status = seawall_restore(a->context, w);
+  if (status == MPS_OK) resume_schedule_at(&w->saves, mps_fluid_time(w->fluid));
   if (status == MPS_OK && w->s.frames > 0)
-    status = open_series(a, w, "water", w->water, &w->series);
+    status = frame_series(a, w->water, w->s.out, "water", w->restarted, &w->series);
   if (status == MPS_OK && w->s.frames > 0) {
     if (!w->s.coupled)
       status = mps_elastic_solve(w->wall.solver); /* so that its fields are there */
-    if (status == MPS_OK) status = open_series(a, w, "wall", w->wall.set, &w->wall_series);
+    if (status == MPS_OK)
+      status = frame_series(a, w->wall.set, w->s.out, "wall", w->restarted, &w->wall_series);
   }
   return status;
 }
@@ -66,6 +55,8 @@ static int run(app *a, seawall *w) {
     snprintf(path, sizeof path, "%s/checkpoint.h5", w->s.out);
     w->s.checkpoint = path;
   }
+  w->saves = (resume_schedule){
+      .path = w->s.checkpoint, .every = w->s.every_checkpoint, .save = seawall_save, .user = w};
   mps_status status = prepare(a, w);
   if (status != MPS_OK && w->why[0]) return app_error(a, "%s", w->why), APP_FAILED;
   if (status != MPS_OK) return app_end_run(a, status, 0.0, false);
@@ -75,11 +66,11 @@ static int run(app *a, seawall *w) {
   fflush(stdout);
   status = seawall_run(a, w);
   const int code = app_end_run(a, status, mps_fluid_time(w->fluid), w->samples > 0);
-  if (status == MPS_ERROR_CANCELLED && w->samples > 0 && !w->checkpoint_lost)
+  if (status == MPS_ERROR_CANCELLED && w->saves.saved)
     printf("To go on: the same command with --restart %s\n", w->s.checkpoint);
   if (w->samples == 0) return code;
   if (!seawall_write(a, w)) return APP_FAILED;
-  return w->checkpoint_lost && code == APP_OK ? APP_FAILED : code;
+  return w->saves.lost && code == APP_OK ? APP_FAILED : code;
 }
 
 int main(int argc, char **argv) {

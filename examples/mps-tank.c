@@ -1,6 +1,7 @@
 /* mps-tank - water in a tank by moving particles against theory: at rest, sloshing, waves of a
  * piston, against structures that move with it, and a drop without walls. SPDX-License-Identifier:
  * BSD-3-Clause */
+#include "common/frame.h"
 #include "common/options.h"
 #include "tank/tank.h"
 
@@ -63,27 +64,38 @@ static bool read_gauges(const char *text, double *gauge) {
   return true;
 }
 
+static mps_status prepare(app *a, tank_model *m) {
+  const tank_settings *s = &m->s;
+  mps_status status = s->restart ? tank_peek(a->context, m) : MPS_OK;
+  if (status == MPS_OK) status = tank_build(a->context, m);
+  if (status == MPS_OK && s->restart) status = tank_restore(a->context, m);
+  if (status == MPS_OK && s->frames > 0)
+    status = frame_series(a, m->water, s->out, "water", m->restarted, &m->series);
+  return status;
+}
+
 static int run(app *a, tank_model *m) {
-  mps_recorder_def def = mps_recorder_defaults();
-  char path[1200];
+  static char path[1200];
   if (!output_directory(a, m->s.out)) return APP_FAILED;
-  mps_status status = tank_build(a->context, m);
+  if (!m->s.checkpoint) {
+    snprintf(path, sizeof path, "%s/checkpoint.h5", m->s.out);
+    m->s.checkpoint = path;
+  }
+  m->saves = (resume_schedule){
+      .path = m->s.checkpoint, .every = m->s.every_checkpoint, .save = tank_save, .user = m};
+  mps_status status = prepare(a, m);
+  if (status != MPS_OK && m->why[0]) return app_error(a, "%s", m->why), APP_FAILED;
   if (status != MPS_OK) return app_end_run(a, status, 0.0, false);
   printf("%lld particles, dt %.4g s\n", (long long)mps_particles_count(m->water),
          mps_fluid_dt(m->fluid));
   fflush(stdout);
-  snprintf(path, sizeof path, "%s/water.vtkhdf", m->s.out);
-  def.path = path;
-  if (m->s.frames > 0) status = mps_recorder_create(a->context, m->water, &def, &m->series);
-  if (status == MPS_ERROR_UNSUPPORTED) status = MPS_OK; /* a libmps without HDF5 */
-  if (status != MPS_OK) return app_end_run(a, status, 0.0, false);
-  const bool series = m->series != NULL;
   status = tank_run(a, m);
   const int code = app_end_run(a, status, mps_fluid_time(m->fluid), m->samples > 0);
+  if (status == MPS_ERROR_CANCELLED && m->saves.saved)
+    printf("To go on: the same command with --restart %s\n", m->s.checkpoint);
   if (m->samples == 0) return code;
   if (!tank_write(a, m)) return APP_FAILED;
-  if (series) printf("ParaView: %s\n", path);
-  return code;
+  return m->saves.lost && code == APP_OK ? APP_FAILED : code;
 }
 
 int main(int argc, char **argv) {
@@ -106,6 +118,7 @@ int main(int argc, char **argv) {
                                .dt = NAN,
                                .gauge = {NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN},
                                .window = {NAN, NAN},
+                               .every_checkpoint = 1.0,
                                .frames = 60,
                                .out = "out/tank"}};
   tank_settings *s = &m.s;
@@ -163,6 +176,14 @@ int main(int argc, char **argv) {
                "at rest, else all)"},
       OPTION_INTEGER("frames", "N", OPTION_FROM_TO(0.0, 100000.0), &s->frames,
                      "of the series for ParaView; 0: none"),
+      OPTION_TEXT("checkpoint", "FILE", &s->checkpoint,
+                  "written on the way and at Ctrl-C, to go on from (default OUT/checkpoint.h5)"),
+      OPTION_NUMBER("every-checkpoint", "s", OPTION_DURATION, &s->every_checkpoint,
+                    "between checkpoints"),
+      OPTION_TEXT("restart", "FILE", &s->restart,
+                  "go on from a checkpoint made with the same options (but --out, --threads and "
+                  "those of checkpoints); the results are those of the whole run, the frames for "
+                  "ParaView those from here on"),
       OPTION_OUT(&s->out),
       OPTION_THREADS(&s->threads),
       {0}};
@@ -177,6 +198,7 @@ int main(int argc, char **argv) {
   if (code >= 0) return code;
   app a;
   if (!app_start(&a, program.name, s->threads)) return app_finish(&a, APP_FAILED);
+  m.table = table;
   code = run(&a, &m);
   tank_free(&m);
   return app_finish(&a, code);

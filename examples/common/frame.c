@@ -4,6 +4,7 @@
 
 #include <mps/io.h>
 
+#include <math.h>
 #include <stdio.h>
 
 bool frame_write(app *a, mps_particles *particles, const char *directory, const char *name) {
@@ -20,4 +21,18 @@ bool frame_write(app *a, mps_particles *particles, const char *directory, const 
   if (!app_check(a, status == MPS_OK ? closed : status)) return false;
   app_wrote(a, path);
   return true;
+}
+
+mps_status frame_series(app *a, mps_particles *particles, const char *directory, const char *what,
+                        double from, mps_recorder **out) {
+  mps_recorder_def def = mps_recorder_defaults();
+  char path[1200];
+  if (isnan(from))
+    snprintf(path, sizeof path, "%s/%s.vtkhdf", directory, what);
+  else
+    snprintf(path, sizeof path, "%s/%s-from-%g.vtkhdf", directory, what, from);
+  def.path = path;
+  const mps_status status = mps_recorder_create(a->context, particles, &def, out);
+  if (status == MPS_OK) app_wrote(a, path);
+  return status == MPS_ERROR_UNSUPPORTED ? MPS_OK : status;
 }

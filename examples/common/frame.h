@@ -1,13 +1,17 @@
-/* frame.h - the particles of a static result as one frame of a VTKHDF series, for ParaView.
+/* frame.h - VTKHDF series of particles for ParaView: of a run, and of a static result as one frame.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_FRAME_H
 #define EXAMPLES_FRAME_H
 
 #include "app.h"
 
-#include <mps/particles.h>
+#include <mps/io.h>
 
 /* Writes DIR/NAME with all fields. Does nothing in a libmps without HDF5. */
 bool frame_write(app *a, mps_particles *particles, const char *directory, const char *name);
+/* Begins the series DIR/WHAT.vtkhdf, or DIR/WHAT-from-T.vtkhdf of a run that goes on from the time
+ * `from` (s; NaN: from the start). `out` stays NULL in a libmps without HDF5. */
+mps_status frame_series(app *a, mps_particles *particles, const char *directory, const char *what,
+                        double from, mps_recorder **out);
 
 #endif

@@ -6,6 +6,7 @@
 
 #include "common/mpm_heap.h"
 #include "common/mpm_model.h"
+#include "common/resume.h"
 
 #include <mps/fluid.h>
 
@@ -21,8 +22,10 @@ typedef struct settings {
   double h, base, viscosity, sound, duration, tank, friction;
   int64_t n2, ppc, threads;
   int method, state, tension, spline, transfer, volumetric, bed;
+  int64_t frames;
   bool rest, impact;
-  const char *out;
+  double every_checkpoint; /* s */
+  const char *out, *checkpoint, *restart;
 } settings;
 
 typedef struct simulation {
@@ -34,14 +37,25 @@ typedef struct simulation {
   mpm_snapshot shot[FRAMES];
   double *gauge_t, *gauge_p; /* s, Pa: of --impact, after each step */
   int64_t gauges, gauge_room;
+  mps_recorder *series;
+  const option *table;
+  resume_schedule saves;
+  double restarted; /* s, NaN: from the start */
 } simulation;
 
 static inline double column_height(const settings *s) {
   return s->impact ? 0.5 * s->base : s->base * (double)s->n2;
 }
-/* mps.c: the parts of a run by moving particles. */
-mps_status dam_mps_build(mps_context *context, void *user);
-mps_status dam_mps_march(void *user);
+/* run.c: parts of a run, for mpm_model_run; dam_march leaves a checkpoint at Ctrl-C. */
+mps_status dam_build(mps_context *context, void *user);
+mps_status dam_march(void *user);
+/* mps-dam-break.c: the water on the grid. */
+mps_status dam_mpm_build(mps_context *context, simulation *sim);
+/* mps.c: the water by moving particles; dam_mps_advance steps until the time t (s) is reached. */
+mps_status dam_mps_build(mps_context *context, simulation *sim);
+mps_status dam_mps_advance(simulation *sim, double t);
+/* Makes room for more values of the gauge; false when out of memory. */
+bool dam_grow_gauge(simulation *sim);
 /* Results of --impact: pressure.csv, summary.json, pictures but the water's. */
 bool dam_impact_write(app *a, simulation *sim);
 

@@ -26,8 +26,7 @@ static mps_status add_wall(mps_fluid *fluid, double x, double nx, double ny) {
 }
 
 /* Mass and volume stay what they are: the heap is measured by them. */
-mps_status dam_mps_build(mps_context *context, void *user) {
-  simulation *sim = user;
+mps_status dam_mps_build(mps_context *context, simulation *sim) {
   const settings *s = &sim->s;
   const double lo[2] = {0.0, 0.0}, hi[2] = {s->base, column_height(s)};
   mps_particles_def set = mps_particles_defaults();
@@ -48,8 +47,7 @@ mps_status dam_mps_build(mps_context *context, void *user) {
 
 /* ---- the run --------------------------------------------------------------------------------- */
 
-static bool grow(simulation *sim) {
-  if (sim->gauges < sim->gauge_room) return true;
+bool dam_grow_gauge(simulation *sim) {
   const int64_t room = 2 * sim->gauge_room + 1024;
   double *times = realloc(sim->gauge_t, (size_t)room * sizeof *times);
   if (times) sim->gauge_t = times;
@@ -63,7 +61,7 @@ static bool grow(simulation *sim) {
 static mps_status read_gauge(simulation *sim) {
   const settings *s = &sim->s;
   const double at[3] = {far_wall(s), GAUGE * column_height(s), 0.0};
-  if (!grow(sim)) return MPS_ERROR_MEMORY;
+  if (sim->gauges == sim->gauge_room && !dam_grow_gauge(sim)) return MPS_ERROR_MEMORY;
   sim->gauge_t[sim->gauges] = mps_fluid_time(sim->m.fluid);
   const mps_status status =
       mps_fluid_get_pressure(sim->m.fluid, FAR_WALL, 1, at, &sim->gauge_p[sim->gauges]);
@@ -72,33 +70,15 @@ static mps_status read_gauge(simulation *sim) {
 }
 
 /* No step is shortened to end at t: a change of the step from one to the next shows in the
- * pressure.
+ * pressure. The first one shows the pressures at the start.
  */
-static mps_status advance(simulation *sim, double t) {
+mps_status dam_mps_advance(simulation *sim, double t) {
+  const double until = t > 0.0 ? t * (1.0 - 1e-9) : 1e-12;
   mps_status status = MPS_OK;
-  while (status == MPS_OK && mps_fluid_time(sim->m.fluid) < t) {
+  while (status == MPS_OK && mps_fluid_time(sim->m.fluid) < until) {
     status = mps_fluid_step(sim->m.fluid, 1);
     if (status == MPS_OK && sim->s.impact) status = read_gauge(sim);
-  }
-  return status;
-}
-
-mps_status dam_mps_march(void *user) {
-  simulation *sim = user;
-  const settings *s = &sim->s;
-  mps_status status = MPS_OK;
-  for (int k = 0; k <= SAMPLES && status == MPS_OK; k++) {
-    status = advance(sim, k > 0 ? s->duration * k / SAMPLES * (1.0 - 1e-9) : 1e-12);
-    mpm_heap *heap = &sim->heap[k];
-    if (status == MPS_OK) status = mpm_heap_measure(sim->m.particles, G, 2.0 * s->h, heap);
-    if (status == MPS_OK && k % (SAMPLES / (FRAMES - 1)) == 0)
-      status = mpm_snapshot_take(sim->m.particles, mps_fluid_time(sim->m.fluid), "pressure",
-                                 &sim->shot[k / (SAMPLES / (FRAMES - 1))]);
-    sim->t[k] = mps_fluid_time(sim->m.fluid);
-    sim->Z[k] = heap->front / s->base;
-    sim->H[k] = heap->top / column_height(s);
-    if (status == MPS_OK) sim->m.samples = sim->rows = k + 1;
-    progress_draw(&sim->m.a->bar, (double)k / SAMPLES, "water");
+    progress_draw(&sim->m.a->bar, mps_fluid_time(sim->m.fluid) / sim->s.duration, "water");
   }
   return status;
 }
@@ -153,7 +133,8 @@ static bool draw_gauge(app *a, const settings *s) {
   if (!plot_open(&f, a, s->out, "pressure", 1000, 520)) return false;
   output_text(
       &f,
-      "set title 'Impact of a column: pressure on the far wall at 0.2 H, spacing %.3g H'\nset xlabel 't (g/H)^{1/2}'\nset ylabel 'p/({/Symbol r} g "
+      "set title 'Impact of a column: pressure on the far wall at 0.2 H, spacing %.3g H'\nset "
+      "xlabel 't (g/H)^{1/2}'\nset ylabel 'p/({/Symbol r} g "
       "H)'\nset xrange [0:%.9g]\nset yrange [0:1.4]\nset key top left reverse Left\n"
       "set object 1 rectangle from 3.3,graph 0 to 4.9,graph 1 fillcolor rgb '#eef3fa' "
       "fillstyle solid noborder behind\n"

@@ -122,20 +122,6 @@ static mps_status advance(app *a, seawall *w, double t) {
   return status;
 }
 
-static void try_save(app *a, seawall *w) {
-  const mps_status status = seawall_save(w);
-  if (status == MPS_OK || status == MPS_ERROR_UNSUPPORTED || w->checkpoint_lost) return;
-  app_check(a, status);
-  w->checkpoint_lost = true;
-}
-
-static void save_when_due(app *a, seawall *w) {
-  const int64_t due = (int64_t)floor(mps_fluid_time(w->fluid) / w->s.every_checkpoint + 1e-9);
-  if (!w->s.checkpoint || due <= w->checkpoints) return;
-  w->checkpoints = due;
-  try_save(a, w);
-}
-
 /* Samples are taken after the first step that reaches their time: no step is shortened for them, so
  * that a run goes on from a checkpoint as if it had never ended. */
 mps_status seawall_run(app *a, seawall *w) {
@@ -145,8 +131,8 @@ mps_status seawall_run(app *a, seawall *w) {
     status = advance(a, w, fmin((double)k * s->sample, s->duration) * (1.0 - 1e-9));
     if (status == MPS_OK) status = take_sample(w);
     if (status == MPS_OK && s->frames > 0 && is_due(w, k)) status = take_frame(w);
-    if (status == MPS_OK) save_when_due(a, w);
+    if (status == MPS_OK) resume_save_when_due(a, &w->saves, mps_fluid_time(w->fluid));
   }
-  if (status == MPS_ERROR_CANCELLED) try_save(a, w);
+  if (status == MPS_ERROR_CANCELLED) resume_save_now(a, &w->saves);
   return status;
 }

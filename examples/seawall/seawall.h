@@ -5,6 +5,7 @@
 
 #include "common/options.h"
 #include "common/output.h"
+#include "common/resume.h"
 #include "common/strip.h"
 #include "common/waves.h"
 
@@ -72,13 +73,13 @@ typedef struct seawall {
   mps_recorder *series, *wall_series;
   seawall_sample *sample;
   seawall_frame *frame;
-  int64_t samples, capacity, frames, checkpoints, room; /* room: points of the look */
-  double *force;                                        /* N, after each step */
+  int64_t samples, capacity, frames, room; /* room: points of the look */
+  resume_schedule saves;
+  double *force;         /* N, after each step */
   int64_t forces, steps; /* how many there are, and will be at the end */
   seawall_look look;
   double restarted; /* s, NaN: from the start */
-  bool checkpoint_lost;
-  char why[400]; /* why a restart is refused; "": the library says it */
+  char why[400];    /* why a restart is refused; "": the library says it */
 } seawall;
 
 /* The particles that the method of the paper has for this tank: the water, three layers under it
@@ -95,7 +96,7 @@ mps_status seawall_coupled_step(seawall *w);
 /* run.c: steps to the end, or until Ctrl-C, which leaves a checkpoint. */
 mps_status seawall_run(app *a, seawall *w);
 /* restart.c. seawall_peek compares the options of the file with these before the model is built. */
-mps_status seawall_save(seawall *w);
+mps_status seawall_save(void *user);
 mps_status seawall_peek(mps_context *context, seawall *w);
 mps_status seawall_restore(mps_context *context, seawall *w);
 /* run.c: the force around step k less all that is faster than 10 Hz. */

@@ -89,7 +89,19 @@ mps_status tank_make_structure(mps_context *context, tank_model *m) {
   def.size = m->structure.shapes;
   def.method = def.size > 1 ? MPS_COUPLING_QUASI_NEWTON : MPS_COUPLING_AITKEN;
   def.floor = 1e-4 * WAVES_G; /* what the solution of the pressures leaves open */
+  m->structure.room = (def.columns + 4) * (1 + 2 * def.size);
+  m->structure.memory = calloc((size_t)m->structure.room, sizeof(double));
+  if (!m->structure.memory) return MPS_ERROR_MEMORY;
   return mps_coupling_create(context, &def, &m->structure.coupling);
+}
+
+mps_status tank_remember(tank_structure *p) {
+  if (!p->coupling) return MPS_OK;
+  return mps_coupling_get_memory(p->coupling, p->room, p->memory, &p->learnt);
+}
+
+mps_status tank_recall(tank_structure *p) {
+  return p->coupling ? mps_coupling_set_memory(p->coupling, p->learnt, p->memory) : MPS_OK;
 }
 
 void tank_free_structure(tank_structure *p) {
@@ -97,6 +109,7 @@ void tank_free_structure(tank_structure *p) {
   free(p->x);
   free(p->shape);
   free(p->pressure);
+  free(p->memory);
 }
 
 /* ---- a step ---------------------------------------------------------------------------------- */
@@ -159,9 +172,11 @@ mps_status tank_coupled_step(tank_model *m) {
   double mean[TANK_SHAPES];
   mps_status status = mps_fluid_begin_step(m->fluid, dt);
   if (status != MPS_OK) return status;
-  status = agree(m, dt, mean);
-  if (status != MPS_OK) {
-    const mps_status given_up = mps_fluid_abandon_step(m->fluid);
+  status = tank_remember(p);
+  if (status == MPS_OK) status = agree(m, dt, mean);
+  if (status != MPS_OK) { /* all as before the step */
+    mps_status given_up = mps_fluid_abandon_step(m->fluid);
+    if (given_up == MPS_OK) given_up = tank_recall(p);
     return given_up == MPS_OK ? status : given_up;
   }
   status = mps_fluid_end_step(m->fluid);

@@ -98,7 +98,10 @@ mps_status tank_build(mps_context *context, tank_model *m) {
   if (status == MPS_OK && s->scheme == 1)
     status = mps_experimental_fluid_classical(m->fluid, CLASSICAL_SHARE);
   if (status == MPS_OK && s->kind != TANK_DROP) status = add_walls(context, m);
-  return status;
+  m->restarted = NAN;
+  m->capacity = (int64_t)ceil(s->duration / s->sample - 1e-9);
+  m->sample = calloc((size_t)m->capacity + 1, sizeof *m->sample);
+  return status == MPS_OK && !m->sample ? MPS_ERROR_MEMORY : status;
 }
 
 /* ---- the run --------------------------------------------------------------------------------- */
@@ -164,11 +167,9 @@ static mps_status write_frame(tank_model *m, int64_t k, int64_t count) {
 /* Samples are taken after the first step that reaches their time: no step is shortened for them. */
 mps_status tank_run(app *a, tank_model *m) {
   const tank_settings *s = &m->s;
-  const int64_t count = (int64_t)ceil(s->duration / s->sample - 1e-9);
-  m->sample = calloc((size_t)count + 1, sizeof *m->sample);
-  if (!m->sample) return MPS_ERROR_MEMORY;
-  mps_status status = write_frame(m, 0, count);
-  for (int64_t k = 1; k <= count && status == MPS_OK; k++) {
+  const int64_t count = m->capacity;
+  mps_status status = isnan(m->restarted) ? write_frame(m, 0, count) : MPS_OK;
+  for (int64_t k = m->samples + 1; k <= count && status == MPS_OK; k++) {
     const double t = fmin((double)k * s->sample, s->duration) * (1.0 - 1e-9);
     while (status == MPS_OK && mps_fluid_time(m->fluid) < t) {
       status = tank_is_coupled(s) ? tank_coupled_step(m) : mps_fluid_step(m->fluid, 1);
@@ -178,7 +179,9 @@ mps_status tank_run(app *a, tank_model *m) {
     }
     if (status == MPS_OK) status = take_sample(m);
     if (status == MPS_OK) status = write_frame(m, k, count);
+    if (status == MPS_OK) resume_save_when_due(a, &m->saves, mps_fluid_time(m->fluid));
   }
+  if (status == MPS_ERROR_CANCELLED) resume_save_now(a, &m->saves);
   return status;
 }
 

@@ -206,7 +206,8 @@ static bool draw_water(app *a, const tank_model *m) {
   const bool drop = s->kind == TANK_DROP;
   const double width =
       drop ? 5.0 * s->depth : s->length + 2.0 * fabs(s->amplitude) + 2.0 * s->spacing;
-  const double height = drop ? 5.0 * s->depth : 1.6 * s->depth + 4.0 * fabs(s->amplitude);
+  const double rise = tank_is_coupled(s) ? 1.1 : 1.6;
+  const double height = drop ? 5.0 * s->depth : rise * s->depth + 4.0 * fabs(s->amplitude);
   const double least = drop ? -2.5 * s->depth : -fabs(s->amplitude) - s->spacing;
   const int across = 1000, down = (int)fmin(fmax(820.0 * height / width, 160.0), 1000.0) + 130;
   const double last = m->samples ? m->sample[m->samples - 1].t : 0.0;
@@ -235,7 +236,7 @@ static bool draw_force(app *a, const tank_model *m) {
       &f,
       "set multiplot layout 2,1\nset xrange [0:%.6g]\nset xlabel 't (s)'\nset ylabel 'force on the "
       "wall (N)'\n"
-      "set key top left\n"
+      "set lmargin 10\nset key outside top center horizontal\n"
       "plot 'force.csv' every ::1 using 1:3 with lines linewidth 1.5 linecolor rgb '#1f4e8c' "
       "title 'right wall', %.9g with lines dashtype '--' linecolor rgb '#888888' title 'water "
       "at rest'\n"

@@ -4,6 +4,7 @@
 #define EXAMPLES_TANK_H
 
 #include "common/output.h"
+#include "common/resume.h"
 #include "common/waves.h"
 
 #include <mps/couple.h>
@@ -22,7 +23,8 @@ typedef struct tank_settings {
   double gauge[TANK_GAUGES]; /* m, NaN where there is none */
   double window[2];          /* s: of the harmonics and means */
   int64_t threads, frames;
-  const char *out;
+  double every_checkpoint; /* s */
+  const char *out, *checkpoint, *restart;
 } tank_settings;
 
 /* A moment of the run; of a drop only the last three. */
@@ -50,6 +52,8 @@ typedef struct tank_structure {
   double *x, *shape, each;                    /* m; values of each shape; m between them */
   double *pressure, *displacement, *velocity; /* at the points */
   mps_coupling *coupling;
+  double *memory; /* of the coupling: between steps, before the step under way */
+  int64_t room, learnt;
 } tank_structure;
 
 typedef struct tank_model {
@@ -61,8 +65,12 @@ typedef struct tank_model {
   tank_structure structure;
   mps_recorder *series;
   tank_sample *sample;
-  int64_t samples;
+  int64_t samples, capacity;
   mps_fluid_report report;
+  const option *table;
+  resume_schedule saves;
+  double restarted; /* s, NaN: from the start */
+  char why[400];    /* why a restart is refused; "": the library says it */
 } tank_model;
 
 static inline bool tank_is_coupled(const tank_settings *s) {
@@ -74,10 +82,18 @@ mps_status tank_build(mps_context *context, tank_model *m);
 mps_status tank_run(app *a, tank_model *m);
 void tank_free(tank_model *m);
 
+/* restart.c. tank_peek compares the options of the file with these before the model is built. */
+mps_status tank_save(void *user);
+mps_status tank_peek(mps_context *context, tank_model *m);
+mps_status tank_restore(mps_context *context, tank_model *m);
+
 /* coupled.c */
 mps_status tank_make_structure(mps_context *context, tank_model *m);
 void tank_free_structure(tank_structure *p);
 mps_status tank_coupled_step(tank_model *m);
+/* Notes what the coupling has learnt, and gives it that; nothing where there is no structure. */
+mps_status tank_remember(tank_structure *p);
+mps_status tank_recall(tank_structure *p);
 double tank_deflection(const tank_model *m); /* m: of the wall, of the plate's middle */
 
 /* theory.c */

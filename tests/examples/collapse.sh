@@ -58,3 +58,17 @@ picture "$work/dam/water.png" 0x0 2c3e8f 4aa3c7
 picture "$work/rest/water.png" 0x0
 picture "$work/sand/columns.png" 0x0
 picture "$work/three/columns.png" 0x0 f3e3bd c98f4a 5b2c12
+
+# By either method, on from a checkpoint: the results of the run that never stopped.
+[ -f "$work/moving/water.vtkhdf" ] || exit 0 # built without HDF5
+for method in mps mpm; do
+  again="$1/mps-dam-break --method $method --h 0.01143 --threads 1 --frames 5"
+  $again --out "$work/whole" >"$work/log"
+  $again --restart "$work/whole/checkpoint.h5" --out "$work/on" >"$work/log"
+  for file in front.csv particles.csv summary.json; do
+    cmp "$work/whole/$file" "$work/on/$file" || fail "another $file after a restart, $method"
+  done
+  rm -r "$work/whole" "$work/on"
+done
+if $again --restart "$work/whole/checkpoint.h5" --out "$work/on" 2>"$work/log"; then fail "no file"; fi
+has "$work/log" "whole/checkpoint.h5"

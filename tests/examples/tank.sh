@@ -38,3 +38,37 @@ head -n 1 "$work/piston/gauges.csv" | grep -q '^t_s,level_at_0.3_m,level_at_0.5_
   fail "header of gauges.csv: $(head -n 1 "$work/piston/gauges.csv")"
 picture "$work/piston/force.png" 1000x700 1f4e8c
 picture "$work/piston/water.png" 1000x403 2c3e8f
+
+# On from a checkpoint, and from one that Ctrl-C left: the results of the run that never stopped.
+[ -f "$work/piston/water.vtkhdf" ] || exit 0 # built without HDF5
+again() { # CASE OPTION...
+  kind=$1
+  shift
+  "$programs/mps-tank" --case "$kind" "$@" --threads 1 --frames 3 --out "$work/whole-$kind" >"$work/log"
+  "$programs/mps-tank" --case "$kind" "$@" --threads 2 --frames 3 --out "$work/on-$kind" \
+    --restart "$work/whole-$kind/checkpoint.h5" >"$work/log"
+  for file in "$work/whole-$kind"/*.csv "$work/whole-$kind/summary.json"; do
+    cmp "$file" "$work/on-$kind/$(basename "$file")" || fail "$kind after a restart"
+  done
+}
+programs=$1
+again piston --duration 0.5 --every-checkpoint 0.3
+again spring --duration 0.05 --every-checkpoint 0.03
+again plate --duration 0.02 --every-checkpoint 0.012
+again drop --duration 0.5 --every-checkpoint 0.3
+run="--case spring --duration 0.4 --threads 1 --frames 0"
+"$1/mps-tank" $run --every-checkpoint 0.02 --checkpoint "$work/c.h5" --out "$work/cut" >"$work/out" 2>"$work/log" &
+pid=$!
+until [ -f "$work/c.h5" ] || ! kill -0 "$pid" 2>/dev/null; do sleep 0.02; done
+kill -INT "$pid" 2>/dev/null || :
+wait "$pid" || :
+has "$work/out" "--restart $work/c.h5"
+"$1/mps-tank" $run --out "$work/uncut" >"$work/log"
+"$1/mps-tank" $run --restart "$work/c.h5" --out "$work/on" >"$work/log"
+for file in force.csv structure.csv particles.csv summary.json; do
+  cmp "$work/uncut/$file" "$work/on/$file" || fail "another $file after Ctrl-C and a restart"
+done
+if "$1/mps-tank" $run --restart "$work/c.h5" --mass 11 --out "$work/other" 2>"$work/log"; then
+  fail "a restart with another --mass"
+fi
+has "$work/log" "c.h5 was made with other options: --mass is 11, was 10"

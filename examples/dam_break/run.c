@@ -1,0 +1,140 @@
+/* run.c - the run of mps-dam-break by either method: samples, frames, and checkpoints to go on from
+ * (common/resume.h). SPDX-License-Identifier: BSD-3-Clause */
+#include "dam_break.h"
+
+#include "common/frame.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SHOT_EVERY = SAMPLES / (FRAMES - 1) };
+
+static double time_now(const simulation *sim) {
+  return sim->s.method == METHOD_MPS ? mps_fluid_time(sim->m.fluid) : mps_mpm_time(sim->m.mpm);
+}
+
+/* ---- what the run has seen ------------------------------------------------------------------- */
+
+static void pass_shot(resume_bytes *b, mpm_snapshot *shot) {
+  resume_pass(b, &shot->time, sizeof shot->time);
+  resume_pass(b, &shot->count, sizeof shot->count);
+  if (resume_wrong(b, shot->count < 0 || shot->count > b->size)) {
+    shot->count = 0;
+    return;
+  }
+  const size_t values = 3 * (size_t)shot->count * sizeof *shot->row;
+  if (b->reads && shot->count > 0 && !(shot->row = malloc(values))) b->status = MPS_ERROR_MEMORY;
+  resume_pass(b, shot->row, values);
+}
+
+static void pass(void *user, resume_bytes *b) {
+  simulation *sim = user;
+  int64_t rows = sim->rows, gauges = sim->gauges;
+  resume_pass(b, &rows, sizeof rows);
+  resume_pass(b, &gauges, sizeof gauges);
+  if (resume_wrong(b, rows < 0 || rows > SAMPLES + 1 || gauges < 0 || gauges > b->size)) return;
+  while (b->reads && sim->gauge_room < gauges)
+    if (!dam_grow_gauge(sim)) {
+      b->status = MPS_ERROR_MEMORY;
+      return;
+    }
+  sim->rows = (int)rows, sim->gauges = gauges;
+  resume_pass(b, sim->t, (size_t)rows * sizeof *sim->t);
+  resume_pass(b, sim->Z, (size_t)rows * sizeof *sim->Z);
+  resume_pass(b, sim->H, (size_t)rows * sizeof *sim->H);
+  resume_pass(b, sim->heap, (size_t)rows * sizeof *sim->heap);
+  resume_pass(b, sim->gauge_t, (size_t)gauges * sizeof *sim->gauge_t);
+  resume_pass(b, sim->gauge_p, (size_t)gauges * sizeof *sim->gauge_p);
+  for (int k = 0; k < FRAMES; k++) pass_shot(b, &sim->shot[k]);
+}
+
+static resume parts(simulation *sim) { return (resume){"mps-dam-break 1", sim->table, pass, sim}; }
+
+static mps_status save(void *user) {
+  simulation *sim = user;
+  const resume r = parts(sim);
+  const char *path = sim->s.checkpoint;
+  mps_checkpoint info;
+  mps_status status = resume_pack(&r, &info);
+  if (status == MPS_OK)
+    status = sim->s.method == METHOD_MPS ? mps_fluid_save(sim->m.fluid, path, &info)
+                                         : mps_mpm_save(sim->m.mpm, path, &info);
+  free(info.user_data);
+  return status;
+}
+
+static mps_status restore(mps_context *context, simulation *sim) {
+  const resume r = parts(sim);
+  const char *path = sim->s.restart;
+  mps_checkpoint info;
+  mps_status status = resume_read(context, &r, path, &info);
+  if (status == MPS_OK)
+    status = sim->s.method == METHOD_MPS ? mps_fluid_restore(sim->m.fluid, path, &info)
+                                         : mps_mpm_restore(sim->m.mpm, path, &info);
+  if (status == MPS_OK) status = resume_unpack(&r, &info);
+  free(info.user_data);
+  sim->m.samples = sim->rows;
+  sim->restarted = time_now(sim);
+  resume_schedule_at(&sim->saves, sim->restarted);
+  return status;
+}
+
+/* ---- the run --------------------------------------------------------------------------------- */
+
+mps_status dam_build(mps_context *context, void *user) {
+  simulation *sim = user;
+  const settings *s = &sim->s;
+  const resume r = parts(sim);
+  mps_status status = MPS_OK;
+  static char path[1200];
+  snprintf(path, sizeof path, "%s/checkpoint.h5", s->out);
+  if (!s->checkpoint) sim->s.checkpoint = path;
+  sim->restarted = NAN;
+  sim->saves = (resume_schedule){
+      .path = s->checkpoint, .every = s->every_checkpoint, .save = save, .user = sim};
+  if (s->restart) status = resume_peek(context, &r, s->restart, sim->m.why, sizeof sim->m.why);
+  if (status == MPS_OK)
+    status = s->method == METHOD_MPS ? dam_mps_build(context, sim) : dam_mpm_build(context, sim);
+  if (status == MPS_OK && s->restart) status = restore(context, sim);
+  return status == MPS_OK && s->frames > 0 ? frame_series(sim->m.a, sim->m.particles, s->out,
+                                                          "water", sim->restarted, &sim->series)
+                                           : status;
+}
+
+static mps_status take_sample(simulation *sim, int k) {
+  const settings *s = &sim->s;
+  const char *pressure = s->method == METHOD_MPS ? "pressure" : "stress";
+  mpm_heap *heap = &sim->heap[k];
+  mps_status status = mpm_heap_measure(sim->m.particles, G, 2.0 * s->h, heap);
+  if (status == MPS_OK && k % SHOT_EVERY == 0)
+    status =
+        mpm_snapshot_take(sim->m.particles, time_now(sim), pressure, &sim->shot[k / SHOT_EVERY]);
+  if (status == MPS_OK && sim->series &&
+      (k == 0 || k * s->frames / SAMPLES > (k - 1) * s->frames / SAMPLES))
+    status = mps_recorder_write(sim->series, time_now(sim));
+  sim->t[k] = time_now(sim);
+  sim->Z[k] = heap->front / s->base;
+  sim->H[k] = heap->top / column_height(s);
+  if (status == MPS_OK) sim->m.samples = sim->rows = k + 1;
+  return status;
+}
+
+mps_status dam_march(void *user) {
+  simulation *sim = user;
+  mps_status status = MPS_OK;
+  for (int k = sim->rows; k <= SAMPLES && status == MPS_OK; k++) {
+    const double t = sim->s.duration * k / SAMPLES;
+    if (sim->s.method == METHOD_MPS)
+      status = dam_mps_advance(sim, t);
+    else if (k > 0)
+      status = mps_mpm_run(sim->m.mpm, t, INT64_MAX, NULL, NULL);
+    if (status == MPS_OK) status = take_sample(sim, k);
+    if (status == MPS_OK) resume_save_when_due(sim->m.a, &sim->saves, time_now(sim));
+  }
+  if (status == MPS_ERROR_CANCELLED) resume_save_now(sim->m.a, &sim->saves);
+  if (status == MPS_ERROR_CANCELLED && sim->saves.saved)
+    printf("To go on: the same command with --restart %s\n", sim->s.checkpoint);
+  sim->m.failed = sim->saves.lost;
+  return status;
+}

@@ -1,0 +1,62 @@
+/* restart.c - what the run has seen so far, in a file to go on from (common/resume.h).
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "tank.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What comes first; then the samples and what the coupling has learnt. */
+typedef struct notes {
+  int64_t samples, learnt;
+  mps_fluid_report report;
+  tank_motion at[TANK_SHAPES];
+} notes;
+
+static void pass(void *user, resume_bytes *b) {
+  tank_model *m = user;
+  tank_structure *p = &m->structure;
+  notes n;
+  memset(&n, 0, sizeof n);
+  n.samples = m->samples, n.learnt = p->learnt, n.report = m->report;
+  memcpy(n.at, p->at, sizeof n.at);
+  resume_pass(b, &n, sizeof n);
+  if (resume_wrong(b,
+                   n.samples < 0 || n.samples > m->capacity || n.learnt < 0 || n.learnt > p->room))
+    return;
+  m->samples = n.samples, p->learnt = n.learnt, m->report = n.report;
+  memcpy(p->at, n.at, sizeof n.at);
+  resume_pass(b, m->sample, (size_t)m->samples * sizeof *m->sample);
+  resume_pass(b, p->memory, (size_t)p->learnt * sizeof *p->memory);
+}
+
+static resume parts(tank_model *m) { return (resume){"mps-tank 1", m->table, pass, m}; }
+
+mps_status tank_save(void *user) {
+  tank_model *m = user;
+  const resume r = parts(m);
+  mps_checkpoint info;
+  mps_status status = tank_remember(&m->structure);
+  if (status != MPS_OK) return status;
+  status = resume_pack(&r, &info);
+  if (status == MPS_OK) status = mps_fluid_save(m->fluid, m->s.checkpoint, &info);
+  free(info.user_data);
+  return status;
+}
+
+mps_status tank_peek(mps_context *context, tank_model *m) {
+  const resume r = parts(m);
+  return resume_peek(context, &r, m->s.restart, m->why, sizeof m->why);
+}
+
+mps_status tank_restore(mps_context *context, tank_model *m) {
+  const resume r = parts(m);
+  mps_checkpoint info;
+  mps_status status = resume_read(context, &r, m->s.restart, &info);
+  if (status == MPS_OK) status = mps_fluid_restore(m->fluid, m->s.restart, &info);
+  if (status == MPS_OK) status = resume_unpack(&r, &info);
+  free(info.user_data);
+  m->restarted = mps_fluid_time(m->fluid);
+  resume_schedule_at(&m->saves, m->restarted);
+  return status == MPS_OK ? tank_recall(&m->structure) : status;
+}
