@@ -1,6 +1,6 @@
 /* fluid.c - the fluid solver as an object: definition, creation, boundaries, questions.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid_private.h"
+#include "loops.h"
 
 #include <mps/body.h>
 
@@ -146,6 +146,7 @@ static mps_status start(mps_fluid *f, const char *function) {
   f->l0 = mps_particles_spacing(f->particles);
   f->weight = mpsi_fluid_make_weight(f->l0, f->def.radius_ratio * f->l0);
   f->most_near = 32, f->most_lower = 16;
+  f->loops = mpsi_fluid_choose_loops(mpsi_context_level(f->context));
   set_gravity(f);
   if (!mpsi_fluid_reserve(f, f->count))
     return mpsi_fail_memory(f->context, function, (size_t)f->count * sizeof *f->local);

@@ -128,11 +128,14 @@ typedef enum mpsi_fluid_stage {
   MPSI_FLUID_MOVED /* the cloud is at the end of the step, the fields are not */
 } mpsi_fluid_stage;
 
+typedef struct mpsi_fluid_loops mpsi_fluid_loops; /* loops.h */
+
 struct mps_fluid {
   mps_context *context;
   mps_particles *particles;
   mpsi_holder holder; /* of the particles */
   mps_fluid_def def;
+  const mpsi_fluid_loops *loops;
   mpsi_fluid_weight weight;
   double l0, g, up[2], level; /* m, m/s2, unit vector against gravity, m */
   mpsi_fluid_wall wall[MPSI_FLUID_WALLS];
@@ -159,7 +162,7 @@ struct mps_fluid {
   int32_t *index;                      /* of the pairs' other ends, ghosts too */
   double *w;                           /* of the pairs */
   mpsi_fluid_room cell_room, fit_room; /* int32_t; sums of fits, see probe.c */
-  mpsi_fluid_room near_wall_room;      /* double */
+  mpsi_fluid_room near_wall_room;      /* of a wall, see probe.c */
   int32_t *slot;                       /* cloud sorted by cells */
   double *slot_x[2];
   mpsi_fluid_system system;

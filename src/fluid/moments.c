@@ -9,7 +9,7 @@
  * surface then lies at x + h e, h = l0 (1/2 + (n - n_half)/n_slope): in an undisturbed lattice half
  * a spacing outside. A particle with n < .12 n0 is apart from the rest and falls freely.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid_private.h"
+#include "loops.h"
 
 #define APART 0.12     /* n/n0 */
 #define FEW 0.72       /* n/n0 */
@@ -18,35 +18,6 @@
 #define CONE 0.70710678118654752
 #define LEAST_RATIO 0.1 /* of the eigenvalues of M */
 #define ZONE 1.6        /* l0 */
-
-typedef struct sums {
-  double n, m[2], r2, M[3], du[2], G[4], shift[2];
-  double closest2; /* square of the nearest neighbour's distance */
-  int32_t last;    /* largest index */
-} sums;
-
-static sums add_up(const mps_fluid *f, int64_t i) {
-  sums s = {.closest2 = INFINITY};
-  const int32_t *index = f->index + f->start[i];
-  const double *weight = f->w + f->start[i], *x = f->x[0], *y = f->x[1], *u = f->u[0], *v = f->u[1];
-  const double least = 0.0025 * f->l0 * f->l0;
-  for (int32_t k = 0; k < f->near[i]; k++) {
-    const int32_t j = index[k];
-    const double w = weight[k], dx = x[j] - x[i], dy = y[j] - y[i], du = u[j] - u[i],
-                 dv = v[j] - v[i];
-    const double r2 = mpsi_fluid_larger(dx * dx + dy * dy, least), inverse = 1.0 / r2,
-                 by_r = w * sqrt(inverse);
-    const double wx = w * inverse * dx, wy = w * inverse * dy;
-    s.closest2 = r2 < s.closest2 ? r2 : s.closest2;
-    s.last = j > s.last ? j : s.last;
-    s.n += w, s.m[0] += w * dx, s.m[1] += w * dy, s.r2 += w * r2;
-    s.M[0] += wx * dx, s.M[1] += wx * dy, s.M[2] += wy * dy;
-    s.du[0] += w * du, s.du[1] += w * dv;
-    s.G[0] += du * wx, s.G[1] += du * wy, s.G[2] += dv * wx, s.G[3] += dv * wy;
-    s.shift[0] += by_r * dx, s.shift[1] += by_r * dy;
-  }
-  return s;
-}
 
 static double invert(const double *M, double *inverse) {
   const double det = M[0] * M[2] - M[1] * M[1];
@@ -97,13 +68,12 @@ static void place_surface(const mps_fluid *f, int64_t i, const double *M, double
 
 static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   (void)chunk;
-  const double n0 = f->weight.n0, close2 = MPSI_FLUID_CLOSE * MPSI_FLUID_CLOSE * f->l0 * f->l0;
+  const double n0 = f->weight.n0;
   for (int64_t i = begin; i < end; i++) {
-    const sums s = add_up(f, i);
+    mpsi_fluid_sums s;
+    f->loops->add_up(f, i, &s);
     mpsi_fluid_local local = {.n = s.n, .m = {s.m[0], s.m[1]}, .S = 0.25 * s.r2};
     f->state[i] = MPSI_FLUID_APART;
-    f->company[i] = (uint8_t)((s.last >= f->count ? MPSI_FLUID_NEAR_IMAGES : 0) |
-                              (s.closest2 < close2 ? MPSI_FLUID_NEAR_CLOSE : 0));
     double M[3] = {s.M[0], s.M[1], s.M[2]};
     if (f->near[i] >= 2 && s.n >= APART * n0) {
       regularise(M);

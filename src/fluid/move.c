@@ -15,7 +15,7 @@
  * without its part across the surface near it, keeps the particles evenly apart (Lind 2012,
  * Khayyer 2017).
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid_private.h"
+#include "loops.h"
 
 #define SMOOTH 0.6
 #define MOST_SMOOTH 0.5
@@ -30,15 +30,8 @@ static double rate(const mps_fluid *f) {
 
 static void pressure_gradient(const mps_fluid *f, int64_t i, double *gradient) {
   const mpsi_fluid_local *local = &f->local[i];
-  const int32_t *index = f->index + f->start[i];
-  const double *weight = f->w + f->start[i], least = 0.0025 * f->l0 * f->l0;
-  double sum[2] = {0.0, 0.0};
-  for (int32_t k = 0; k < f->near[i]; k++) {
-    const int32_t j = index[k];
-    const double dx = f->x[0][j] - f->x[0][i], dy = f->x[1][j] - f->x[1][i];
-    const double s = weight[k] * (f->q[j] - f->q[i]) / mpsi_fluid_larger(dx * dx + dy * dy, least);
-    sum[0] += s * dx, sum[1] += s * dy;
-  }
+  double sum[2];
+  f->loops->slope(f, i, sum);
   if (local->c > 0.0) { /* c = |m|/h and e = -m/|m| */
     const double s = (local->qs - f->q[i]) / (local->h * local->h);
     sum[0] -= s * local->m[0], sum[1] -= s * local->m[1];

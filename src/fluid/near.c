@@ -5,7 +5,7 @@
  * cells. Particles are sorted in the same order now and then (step.c), so that indices of
  * neighbours are near each other too.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid_private.h"
+#include "loops.h"
 
 #include <string.h>
 
@@ -66,8 +66,9 @@ static mps_status make_cells(mps_fluid *f, const char *function, cells *c) {
   for (int k = 0; k < 2; k++) {
     c->low[k] = INFINITY, high[k] = -INFINITY;
     for (int64_t i = 0; i < all; i++) {
-      c->low[k] = fmin(c->low[k], f->x[k][i]);
-      high[k] = fmax(high[k], f->x[k][i]);
+      const double x = f->x[k][i];
+      c->low[k] = x < c->low[k] ? x : c->low[k];
+      high[k] = x > high[k] ? x : high[k];
     }
     const double cells_along = (high[k] - c->low[k]) * c->inverse + 1.0;
     if (!(cells_along < MOST_CELLS))
@@ -124,8 +125,8 @@ static void column_range(const cells *c, int64_t column, double y, int64_t *begi
  * one that does not count. Returns their number. */
 static int64_t search(const mps_fluid *f, const cells *c, int64_t i, int64_t room, int32_t *index,
                       double *r2) {
-  const double x = f->x[0][i], y = f->x[1][i], re2 = f->weight.re * f->weight.re;
-  const int64_t at = cell_along(c, 0, x);
+  const double y = f->x[1][i];
+  const int64_t at = cell_along(c, 0, f->x[0][i]);
   const int64_t low = at > REACH ? at - REACH : 0;
   const int64_t high = at + REACH < c->n[0] - 1 ? at + REACH : c->n[0] - 1;
   int64_t found = 0;
@@ -133,12 +134,7 @@ static int64_t search(const mps_fluid *f, const cells *c, int64_t i, int64_t roo
     int64_t begin, end;
     column_range(c, column, y, &begin, &end);
     if (found + end - begin >= room) return room;
-    for (int64_t k = begin; k < end; k++) {
-      const double dx = f->slot_x[0][k] - x, dy = f->slot_x[1][k] - y, d = dx * dx + dy * dy;
-      index[found] = f->slot[k];
-      r2[found] = d;
-      found += d < re2 && f->slot[k] != i;
-    }
+    found = f->loops->search(f, i, begin, end, found, index, r2);
   }
   return found;
 }
@@ -170,23 +166,27 @@ static void find_chunk(void *data, int64_t chunk, int32_t worker) {
   (void)worker;
   pass *p = data;
   mps_fluid *f = p->fluid;
-  const double least = 0.05 * f->l0;
+  const double close2 = MPSI_FLUID_CLOSE * MPSI_FLUID_CLOSE * f->l0 * f->l0;
   const int64_t last = (chunk + 1) * MPSI_FLUID_CHUNK, limit = (chunk + 1) * p->per_chunk;
   int64_t at = chunk * p->per_chunk;
   for (int64_t i = chunk * MPSI_FLUID_CHUNK; i < last && i < f->count; i++) {
-    int64_t found = search(f, p->cells, i, limit - at, f->index + at, f->w + at);
-    if (found >= limit - at) {
+    const int64_t room = limit - at - MPSI_FLUID_WIDE;
+    int32_t *index = f->index + at, most = 0;
+    double *w = f->w + at;
+    int64_t found = room > 0 ? search(f, p->cells, i, room, index, w) : room;
+    if (found >= room) {
       atomic_store(&p->full, true);
       return;
     }
-    double *w = f->w + at;
-    if (f->limited) found = mpsi_fluid_keep_seen(f, i, found, f->index + at, w);
-    for (int64_t k = 0; k < found; k++)
-      w[k] = mpsi_fluid_w(&f->weight, mpsi_fluid_larger(sqrt(w[k]), least));
-    if (f->bent) average_weights(f, i, found, f->index + at, w);
+    if (f->limited) found = mpsi_fluid_keep_seen(f, i, found, index, w);
+    const double closest2 = f->loops->weigh(f, i, found, index, w);
+    if (f->bent) average_weights(f, i, found, index, w);
+    for (int64_t k = 0; k < found; k++) most = index[k] > most ? index[k] : most;
+    f->company[i] = (uint8_t)((most >= f->count ? MPSI_FLUID_NEAR_IMAGES : 0) |
+                              (closest2 < close2 ? MPSI_FLUID_NEAR_CLOSE : 0));
     f->start[i] = at;
     f->near[i] = (int32_t)found;
-    at += found;
+    at += mpsi_fluid_padded((int32_t)found);
   }
 }
 

@@ -1,18 +1,22 @@
-/* pcg.c - conjugate gradients for the pressure, preconditioned by an incomplete Cholesky factor
- * without fill, L D L^T, of diagonal blocks of the matrix.
+/* pcg.c - conjugate gradients for the pressure, preconditioned by a modified incomplete Cholesky
+ * factorisation (L + D) D^-1 (L + D)^T of diagonal blocks of the matrix: L is the matrix's own
+ * lower part, and what elimination would fill in goes to the pivots D, most of it (Gustafsson
+ * 1978).
  *
  * The matrix is not stored: a row is the weights of the particle's neighbours, and vectors that are
  * multiplied have the values of the ghosts' parents appended. The start vector is extrapolated from
  * the last two steps (pressure.c), which more than halves the iterations in waves. The blocks
  * depend on the number of particles alone, and sums are made chunk by chunk, so the result does not
  * depend on the threads. SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid_private.h"
+#include "loops.h"
 
 #include <string.h>
 
 #define BLOCK 2560       /* particles in a block of the preconditioner, about */
+#define MOST_BLOCKS 32   /* larger blocks instead */
+#define MODIFIED 0.95    /* share of the fill that goes to the pivots */
 #define LEAST_PIVOT 1e-3 /* of the diagonal */
-#define MOST_LOWER 256   /* entries of a row of L */
+#define TURN_CHUNK 4096
 
 /* ---- preconditioner -------------------------------------------------------------------------- */
 
@@ -22,34 +26,35 @@ typedef struct blocks {
 
 static blocks cut(const mps_fluid *f) {
   const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
-  const int64_t wanted = (f->count + BLOCK - 1) / BLOCK;
+  int64_t wanted = (f->count + BLOCK - 1) / BLOCK;
+  if (wanted > MOST_BLOCKS) wanted = MOST_BLOCKS;
   const int64_t each = (chunks + wanted - 1) / wanted; /* whole chunks */
   return (blocks){(chunks + each - 1) / each, each * MPSI_FLUID_CHUNK};
 }
 
-/* Row i of the block's matrix left of the diagonal, columns ascending; the diagonal without what
- * the particle's own images take back. */
-static int32_t lower_row(const mps_fluid *f, int64_t first, int64_t i, int32_t *column,
-                         double *value, double *diagonal) {
+/* Row i of L, scaled by the pivots' inverses; the pivot of row i, and what is right of it. A
+ * neighbour and its image are two entries. */
+static int32_t lower_row(const mps_fluid *f, int64_t first, int64_t end, int64_t i, int32_t *column,
+                         float *lower) {
+  const mpsi_fluid_system *s = &f->system;
   const int32_t *index = f->index + f->start[i];
-  const double *w = f->w + f->start[i];
+  const double *w = f->w + f->start[i], *inverse = s->inverse, *upper = s->z;
+  double pivot = s->diagonal[i], right = 0.0;
   int32_t count = 0;
   for (int32_t k = 0; k < f->near[i]; k++) {
     const int64_t ghost = index[k] - f->count;
     const int32_t j = ghost < 0 ? index[k] : f->parent[ghost];
-    if (j == i) *diagonal -= w[k];
-    if (j >= i || j < first || f->state[j] == MPSI_FLUID_APART) continue;
-    int32_t at = count;
-    while (at > 0 && column[at - 1] > j) at--;
-    if (at > 0 && column[at - 1] == j) {
-      value[at - 1] -= w[k];
-      continue;
-    }
-    if (count == MOST_LOWER) continue; /* left out of the preconditioner only */
-    for (int32_t e = count; e > at; e--) column[e] = column[e - 1], value[e] = value[e - 1];
-    column[at] = j, value[at] = -w[k];
+    if (j < first || j >= end || f->state[j] == MPSI_FLUID_APART) continue;
+    if (j == i) pivot -= w[k];
+    if (j > i) right += w[k];
+    if (j >= i) continue;
+    const double l = w[k] * inverse[j];
+    pivot -= l * (w[k] + MODIFIED * (upper[j] - w[k]));
+    column[count] = j, lower[count] = (float)-l;
     count++;
   }
+  s->z[i] = right;
+  s->inverse[i] = 1.0 / fmax(pivot, LEAST_PIVOT * s->diagonal[i]);
   return count;
 }
 
@@ -60,7 +65,6 @@ typedef struct factor_pass {
   atomic_bool full;
 } factor_pass;
 
-/* One block, row by row; `row` holds (L D)_i. */
 static void factor_block(void *data, int64_t b, int32_t worker) {
   (void)worker;
   factor_pass *p = data;
@@ -68,42 +72,18 @@ static void factor_block(void *data, int64_t b, int32_t worker) {
   mpsi_fluid_system *s = &f->system;
   const int64_t first = b * p->blocks.size;
   const int64_t end = first + p->blocks.size < f->count ? first + p->blocks.size : f->count;
-  int32_t *column = s->lower_col + b * p->room, at = 0, found[MOST_LOWER + 1];
-  float *lower = s->lower + b * p->room;
-  double value[MOST_LOWER + 1], *row = s->z;
-  memset(row + first, 0, (size_t)(end - first) * sizeof *row);
+  int64_t at = b * p->room;
   for (int64_t i = first; i < end; i++) {
-    double diagonal = s->diagonal[i];
-    s->lower_start[i] = at;
-    const int32_t count =
-        f->state[i] == MPSI_FLUID_APART ? 0 : lower_row(f, first, i, found, value, &diagonal);
-    if (at + count > p->room) {
+    if (at + f->near[i] > (b + 1) * p->room) {
       atomic_store(&p->full, true);
       return;
     }
-    const double whole = diagonal;
-    for (int32_t k = 0; k < count; k++) {
-      const int32_t j = found[k];
-      const int32_t last = s->lower_end[j];
-      double sum = value[k], other = 0.0;
-      int32_t e = s->lower_start[j];
-      for (; e + 2 <= last; e += 2) {
-        sum -= row[column[e]] * lower[e];
-        other -= row[column[e + 1]] * lower[e + 1];
-      }
-      if (e < last) sum -= row[column[e]] * lower[e];
-      row[j] = sum + other;
-    }
-    for (int32_t k = 0; k < count; k++) {
-      const double sum = row[found[k]], l = sum * s->inverse[found[k]];
-      column[at + k] = found[k];
-      lower[at + k] = (float)l;
-      diagonal -= sum * l;
-      row[found[k]] = 0.0;
-    }
-    at += count;
-    s->lower_end[i] = at;
-    s->inverse[i] = 1.0 / fmax(diagonal, LEAST_PIVOT * whole);
+    s->lower_start[i] = (int32_t)(at - b * p->room);
+    if (f->state[i] == MPSI_FLUID_APART)
+      s->inverse[i] = 1.0;
+    else
+      at += lower_row(f, first, end, i, s->lower_col + at, s->lower + at);
+    s->lower_end[i] = (int32_t)(at - b * p->room);
   }
 }
 
@@ -145,25 +125,14 @@ static void append_ghosts(const mps_fluid *f, double *v) {
   for (int64_t g = 0; g < f->ghosts; g++) v[f->count + g] = v[f->parent[g]];
 }
 
-static double row_times(const mps_fluid *f, int64_t i, const double *v) {
-  const int32_t *index = f->index + f->start[i];
-  const double *w = f->w + f->start[i];
-  const int32_t near = f->near[i];
-  double sum[4] = {0.0, 0.0, 0.0, 0.0}; /* four chains of additions at a time */
-  int32_t k = 0;
-  for (; k + 4 <= near; k += 4)
-    for (int c = 0; c < 4; c++) sum[c] += w[k + c] * v[index[k + c]];
-  for (; k < near; k++) sum[0] += w[k] * v[index[k]];
-  return f->system.diagonal[i] * v[i] - ((sum[0] + sum[1]) + (sum[2] + sum[3]));
-}
-
 /* r = b - A x, and the square of b. */
 static void first_residual(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   mpsi_fluid_system *s = &f->system;
   double bb = 0.0;
+  f->loops->times(f, begin, end, s->x, s->q);
   for (int64_t i = begin; i < end; i++) {
-    const bool apart = f->state[i] == MPSI_FLUID_APART;
-    s->r[i] = apart ? 0.0 : s->right[i] - row_times(f, i, s->x);
+    s->r[i] = s->right[i] - s->q[i];
+    s->q[i] = 0.0;
     bb += s->right[i] * s->right[i];
   }
   s->sums[2 * chunk] = bb;
@@ -172,52 +141,27 @@ static void first_residual(mps_fluid *f, int64_t begin, int64_t end, int64_t chu
 /* q = A p and p . q. */
 static void multiply(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   mpsi_fluid_system *s = &f->system;
-  double pq = 0.0;
-  for (int64_t i = begin; i < end; i++) {
-    s->q[i] = f->state[i] == MPSI_FLUID_APART ? 0.0 : row_times(f, i, s->p);
-    pq += s->p[i] * s->q[i];
-  }
-  s->sums[2 * chunk] = pq;
+  s->sums[2 * chunk] = f->loops->times(f, begin, end, s->p, s->q);
 }
 
-/* x += alpha p, r -= alpha q, z = (L D L^T)^-1 r in a block; r . r and r . z. */
+/* x += alpha p, r -= alpha q and z from r in a block. */
 static void precondition(void *data, int64_t b, int32_t worker) {
   (void)worker;
   const iteration *it = data;
   mps_fluid *f = it->fluid;
-  mpsi_fluid_system *s = &f->system;
-  const int64_t first = b * it->blocks.size;
-  const int64_t end = first + it->blocks.size < f->count ? first + it->blocks.size : f->count;
-  const int32_t *column = s->lower_col + b * it->room;
-  const float *lower = s->lower + b * it->room;
-  double rr = 0.0, rz = 0.0, *z = s->z;
-  for (int64_t i = first; i < end; i++) {
-    s->x[i] += it->alpha * s->p[i];
-    const double r = s->r[i] - it->alpha * s->q[i];
-    const int32_t last = s->lower_end[i];
-    double sum = r, other = 0.0; /* two chains of additions */
-    int32_t e = s->lower_start[i];
-    for (; e + 2 <= last; e += 2) {
-      sum -= lower[e] * z[column[e]];
-      other -= lower[e + 1] * z[column[e + 1]];
-    }
-    if (e < last) sum -= lower[e] * z[column[e]];
-    s->r[i] = r, z[i] = sum + other;
-    rr += r * r;
-  }
-  for (int64_t i = first; i < end; i++) z[i] *= s->inverse[i];
-  for (int64_t i = end - 1; i >= first; i--) {
-    const double here = z[i];
-    for (int32_t e = s->lower_start[i]; e < s->lower_end[i]; e++) z[column[e]] -= lower[e] * here;
-    rz += s->r[i] * here;
-  }
-  s->sums[2 * b] = rr, s->sums[2 * b + 1] = rz;
+  const int64_t first = b * it->blocks.size, last = first + it->blocks.size;
+  f->loops->precondition(f, first, last < f->count ? last : f->count, b * it->room, it->alpha,
+                         f->system.sums + 2 * b);
 }
 
-static void turn_direction(mps_fluid *f, double beta) {
-  mpsi_fluid_system *s = &f->system;
-  for (int64_t i = 0; i < f->count; i++) s->p[i] = s->z[i] + beta * s->p[i];
-  append_ghosts(f, s->p);
+/* p = z + beta p */
+static void turn(void *data, int64_t unit, int32_t worker) {
+  (void)worker;
+  const iteration *it = data;
+  const mpsi_fluid_system *s = &it->fluid->system;
+  const int64_t begin = unit * TURN_CHUNK, last = begin + TURN_CHUNK;
+  const int64_t end = last < it->fluid->count ? last : it->fluid->count;
+  for (int64_t i = begin; i < end; i++) s->p[i] = s->z[i] + it->beta * s->p[i];
 }
 
 int64_t mpsi_fluid_pcg(mps_fluid *f) {
@@ -229,14 +173,15 @@ int64_t mpsi_fluid_pcg(mps_fluid *f) {
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, first_residual);
   const double enough = f->def.tolerance * f->def.tolerance * total(f, chunks, 0);
   memset(s->p, 0, (size_t)(f->count + f->ghosts) * sizeof *s->p);
-  memset(s->q, 0, (size_t)f->count * sizeof *s->q);
   double rz = 0.0;
   for (int64_t k = 0;; k++) {
     mpsi_parallel_for(f->context, it.blocks.count, precondition, &it);
     const double rr = total(f, it.blocks.count, 0), next = total(f, it.blocks.count, 1);
     if (rr <= enough) return k;
     if (!isfinite(rr) || k == f->def.iterations) return -1;
-    turn_direction(f, k == 0 ? 0.0 : next / rz);
+    it.beta = k == 0 ? 0.0 : next / rz;
+    mpsi_parallel_for(f->context, (f->count + TURN_CHUNK - 1) / TURN_CHUNK, turn, &it);
+    append_ghosts(f, s->p);
     rz = next;
     mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, multiply);
     it.alpha = rz / total(f, chunks, 0);

@@ -40,17 +40,49 @@ static void place(const mps_fluid *f, const mpsi_fluid_wall *w, double along, do
   x[1] = w->at[1] + s * w->normal[1] + along * w->normal[0];
 }
 
+/* A particle near a wall. */
+typedef struct neighbour {
+  double d, s, q; /* distance; place along the wall; q carried over to it */
+  int64_t i;
+} neighbour;
+
 /* What a particle contributes: false where it is too far from the wall. Its acceleration is along
  * the normal into the fluid, -N. */
-static bool near_wall(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t i, double *d, double *s,
-                      double *q) {
+static bool near_wall(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t i, neighbour *out) {
   const double x = f->x[0][i], y = f->x[1][i];
-  *d = mpsi_fluid_distance(w, mpsi_fluid_places(f, w), x, y);
-  if (fabs(*d) >= REACH * f->l0 || f->state[i] == MPSI_FLUID_APART) return false;
-  if (w->of_body && *d < 0.0) return false;
-  *s = mpsi_fluid_along(w, x, y);
-  *q = f->q[i] + f->def.density * mpsi_fluid_of_wall(w, mpsi_fluid_accelerations(f, w), x, y) * *d;
+  out->d = mpsi_fluid_distance(w, mpsi_fluid_places(f, w), x, y);
+  if (fabs(out->d) >= REACH * f->l0 || f->state[i] == MPSI_FLUID_APART) return false;
+  if (w->of_body && out->d < 0.0) return false;
+  const double a = mpsi_fluid_of_wall(w, mpsi_fluid_accelerations(f, w), x, y);
+  out->s = mpsi_fluid_along(w, x, y);
+  out->q = f->q[i] + f->def.density * a * out->d;
+  out->i = i;
   return true;
+}
+
+/* The particles near a wall, in the order of the set, to near_wall_room. */
+static mps_status gather(mps_fluid *f, const mpsi_fluid_wall *w, const char *function,
+                         int64_t *count) {
+  const double *moved = mpsi_fluid_places(f, w), *N = w->normal, *at = w->at;
+  double low = moved[0], high = moved[0];
+  for (int64_t k = 1; k < w->nodes; k++) low = fmin(low, moved[k]), high = fmax(high, moved[k]);
+  low -= REACH * f->l0, high += REACH * f->l0;
+  const double *x = f->x[0], *y = f->x[1], offset = at[0] * N[0] + at[1] * N[1];
+  for (int pass = 0; pass < 2; pass++) {
+    neighbour *list = f->near_wall_room.item;
+    int64_t found = 0, maybe = 0;
+    for (int64_t i = 0; i < f->count; i++) {
+      const double across = x[i] * N[0] + y[i] * N[1] - offset;
+      if (!(across > low && across < high)) continue;
+      maybe++;
+      if (pass == 1 && near_wall(f, w, i, &list[found])) found++;
+    }
+    if (pass == 0 &&
+        !mpsi_fluid_room_ensure(f->context, &f->near_wall_room, maybe + 1, sizeof *list))
+      return mpsi_fail_memory(f->context, function, (size_t)maybe * sizeof *list);
+    *count = found;
+  }
+  return MPS_OK;
 }
 
 /* Whether a point of wall b lies on its wetted side of the boundaries and outside of bodies. */
@@ -69,14 +101,11 @@ static double pitch(const mps_fluid *f, const mpsi_fluid_wall *w) {
 }
 
 /* Places of the wall's points that have particles near: numbers low to high - 1. */
-static void wetted_range(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t *low,
+static void wetted_range(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t near, int64_t *low,
                          int64_t *high) {
+  const neighbour *list = f->near_wall_room.item;
   double least = INFINITY, most = -INFINITY;
-  for (int64_t i = 0; i < f->count; i++) {
-    double d, s, q;
-    if (!near_wall(f, w, i, &d, &s, &q)) continue;
-    least = fmin(least, s), most = fmax(most, s);
-  }
+  for (int64_t k = 0; k < near; k++) least = fmin(least, list[k].s), most = fmax(most, list[k].s);
   *low = *high = 0;
   if (!(least <= most)) return;
   const double step = pitch(f, w);
@@ -102,8 +131,10 @@ static mps_status for_points(mps_fluid *f, int32_t b, const char *function, poin
                              void *user) {
   const mpsi_fluid_wall *w = &f->wall[b];
   const double step = pitch(f, w);
-  int64_t low, high;
-  wetted_range(f, w, &low, &high);
+  int64_t low, high, near;
+  const mps_status status = gather(f, w, function, &near);
+  if (status != MPS_OK) return status;
+  wetted_range(f, w, near, &low, &high);
   fit *sum = NULL;
   if (high > low) {
     if (!mpsi_fluid_room_ensure(f->context, &f->fit_room, high - low, sizeof *sum))
@@ -111,14 +142,14 @@ static mps_status for_points(mps_fluid *f, int32_t b, const char *function, poin
     sum = f->fit_room.item;
     for (int64_t k = 0; k < high - low; k++) sum[k] = (fit){0};
   }
-  for (int64_t i = 0; i < f->count && high > low; i++) {
-    double d, s, q;
-    if (!near_wall(f, w, i, &d, &s, &q)) continue;
+  const neighbour *list = f->near_wall_room.item;
+  for (int64_t n = 0; n < near && high > low; n++) {
+    const double s = list[n].s;
     const int64_t first = (int64_t)floor(s / step - 1.5 * REACH - 0.5), last = first + 8;
     for (int64_t k = first > low ? first : low; k <= last && k < high; k++) {
-      const double to = s - ((double)k + 0.5) * step, weight = weight_of(f, d, to);
-      if (weight > 0.0 && (!f->faces || sees_point(f, b, ((double)k + 0.5) * step, i)))
-        fit_add(&sum[k - low], weight, to, q);
+      const double at = ((double)k + 0.5) * step, weight = weight_of(f, list[n].d, s - at);
+      if (weight > 0.0 && (!f->faces || sees_point(f, b, at, list[n].i)))
+        fit_add(&sum[k - low], weight, s - at, list[n].q);
     }
   }
   for (int64_t k = low; k < high; k++) {
@@ -221,18 +252,6 @@ mps_status mps_fluid_get_wall(mps_fluid *f, int32_t number, int64_t capacity, do
   return status;
 }
 
-/* Particles near a wall: place along it, distance, q. */
-static mps_status gather(mps_fluid *f, const mpsi_fluid_wall *w, const char *function,
-                         int64_t *count) {
-  if (!mpsi_fluid_room_ensure(f->context, &f->near_wall_room, 3 * f->count, sizeof(double)))
-    return mpsi_fail_memory(f->context, function, 3 * (size_t)f->count * sizeof(double));
-  double *at = f->near_wall_room.item;
-  *count = 0;
-  for (int64_t i = 0; i < f->count; i++)
-    if (near_wall(f, w, i, at + 1, at, at + 2)) at += 3, ++*count;
-  return MPS_OK;
-}
-
 /* Points are given on the wall as it is, or as it was without displacement. */
 static mps_status check_points(mps_fluid *f, const char *function, const mpsi_fluid_wall *w,
                                int64_t count, const double *x) {
@@ -261,12 +280,12 @@ mps_status mps_fluid_get_pressure(mps_fluid *f, int32_t number, int64_t count, c
   if (status != MPS_OK) return status;
   for (int64_t k = 0; k < count; k++) {
     const double at = mpsi_fluid_along(&f->wall[number], x[3 * k], x[3 * k + 1]);
-    const double *particle = f->near_wall_room.item;
+    const neighbour *list = f->near_wall_room.item;
     double to[2];
     fit sum = {0};
-    for (int64_t i = 0; i < near; i++, particle += 3) {
-      const double weight = weight_of(f, particle[1], particle[0] - at);
-      if (weight > 0.0) fit_add(&sum, weight, particle[0] - at, particle[2]);
+    for (int64_t i = 0; i < near; i++) {
+      const double s = list[i].s - at, weight = weight_of(f, list[i].d, s);
+      if (weight > 0.0) fit_add(&sum, weight, s, list[i].q);
     }
     place(f, &f->wall[number], at, to);
     const double head = mpsi_fluid_head(f, to[0], to[1]);
