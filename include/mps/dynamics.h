@@ -25,8 +25,9 @@
  *
  * Between two steps particles may be removed (mps_particles_remove): erosion, excavation. The rest
  * moves on, without the forces of those that have gone, as a new solver on it would; boundaries and
- * loads lose them, dt is checked or chosen anew, and snapshots from before cannot be gone back to.
- * None can be added: a newcomer has no reference position in a body that has moved.
+ * loads lose them, dt is checked or chosen anew. They come back, to boundaries and loads too, with
+ * a state from before (mps_dynamics_rollback, mps_dynamics_restore). None can be added: a newcomer
+ * has no reference position in a body that has moved.
  *
  * Every force, mass and energy is that of the thickness `measure`.
  *
@@ -289,9 +290,9 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_refresh(mps_dynamics *dynamics);
  *  mps_dynamics_run. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_snapshot(mps_dynamics *dynamics,
                                                        mps_snapshot **snapshot);
-/** Goes back to a snapshot, bit for bit, also from a run that has diverged. Not in the snapshot:
- *  loads, signals, and what reads them. MPS_ERROR_STATE, changing nothing: the boundaries are on
- *  other particles than then. */
+/** Goes back to a snapshot, bit for bit, also from a run that has diverged or lost particles. Not
+ * in the snapshot: loads, signals, and what reads them. MPS_ERROR_STATE, changing nothing: the
+ *  boundaries are on other particles than then. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_rollback(mps_dynamics *dynamics,
                                                        const mps_snapshot *snapshot);
 /** Writes the state to a file, as mps_dynamics_snapshot; of `info` (NULL: nothing) user_key and
@@ -299,7 +300,8 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_rollback(mps_dynamics *dynamics,
 MPS_API MPS_NODISCARD mps_status mps_dynamics_save(mps_dynamics *dynamics, const char *path,
                                                    const mps_checkpoint *info);
 /** Puts the state of mps_dynamics_save into a solver that was built in the same way: set,
- *  definition (but dt), boundaries. Coefficients follow the fields in the file. MPS_ERROR_FORMAT,
+ *  definition (but dt), boundaries. What has been removed since, in the file or here, goes or comes
+ *  back. Coefficients follow the fields in the file. MPS_ERROR_FORMAT,
  *  changing nothing: a file of another model, the message says in what. `info` (NULL: not wanted)
  *  as for mps_checkpoint_info. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_restore(mps_dynamics *dynamics, const char *path,

@@ -119,6 +119,9 @@ void mpsi_particles_take_out(mps_particles *particles, const uint8_t *gone);
 /* MPS_ERROR_STATE when particles cannot come now: a holder refuses that, or a field is edited. */
 mps_status mpsi_particles_check_free(const mps_particles *particles, const char *function);
 
+/* How many particles the set ever had: ids lie below it. */
+int64_t mpsi_particles_made(const mps_particles *particles);
+
 /* Whether the ids are 0 to count - 1, as long as no particle was removed. */
 bool mpsi_particles_dense(const mps_particles *particles);
 

@@ -154,7 +154,7 @@ void mpsi_state_add_table(mpsi_state *state, const char *name, const mpsi_state_
 static mps_status list(const mpsi_state_of *of, const char *function, mpsi_state *out) {
   *out = (mpsi_state){.context = of->context, .solver = of->solver};
   of->list(out, of->solver);
-  if (of->particles && of->make_room) mpsi_particles_list_state(out, of->particles);
+  if (of->particles && mpsi_state_any_particles(of)) mpsi_particles_list_state(out, of->particles);
   if (!out->refused) return MPS_OK;
   mpsi_free(of->context, out->item);
   return mpsi_fail_memory(of->context, function, (size_t)out->capacity * 2 * sizeof *out->item);
@@ -425,8 +425,14 @@ mps_status mpsi_state_put(const mpsi_state_of *of, const char *function, const m
   if (status == MPS_OK && !room)
     status = mpsi_fail(of->context, function, MPS_ERROR_MEMORY,
                        "could not allocate what going back to %s needs", source);
+  const int32_t fields = of->particles ? mps_particles_field_count(of->particles) : 0;
   if (status == MPS_OK && of->particles)
     status = mpsi_particles_prepare_state(of->particles, function, from, &scratch);
+  if (status == MPS_OK && of->prepare) {
+    status = of->prepare(of->solver, function, from, source, disagreement);
+    if (status != MPS_OK) mpsi_particles_drop_prepared(of->particles, scratch);
+    if (status != MPS_OK) mpsi_particles_drop_fields(of->particles, fields);
+  }
   if (status == MPS_OK) { /* from here on nothing fails */
     if (of->particles) mpsi_particles_put_state(of->particles, from, scratch);
     if (of->bind) of->bind(of->solver);

@@ -109,9 +109,16 @@ typedef struct mpsi_state_of {
    * malformed; `*what` says in what. It may mend a value in place. */
   bool (*fits)(void *solver, mps_snapshot *values, const char **what);
   /* Makes room for what the solver keeps for each of so many particles, keeping what is there;
-   * false: refused. NULL: the solver cannot go back to another number of particles. Where it is
-   * given, the ids to come and the occupied lattice sites of the set belong to the state too. */
+   * false: refused. May be NULL. Where neither this nor `prepare` is given, the solver cannot go
+   * back to other particles; where one is, the ids to come and the occupied lattice sites of the
+   * set belong to the state too. */
   bool (*make_room)(void *solver, int64_t particles);
+  /* The same for a solver that makes more of its particles than room, which `bind` then puts in
+   * place: everything of `from` that it needs, whose ids are known to be good. It refuses, with an
+   * error of status `disagreement` that names `source`, where the state is not of this solver. It
+   * may be called again, or never followed by `bind`. May be NULL. */
+  mps_status (*prepare)(void *solver, const char *function, const mps_snapshot *from,
+                        const char *source, mps_status disagreement);
   /* May be NULL, cannot fail. `bind`: the set is back, its columns may have moved and its number of
    * particles changed; the values of the list are still to be written. `after`: they are too. */
   void (*bind)(void *solver);
@@ -128,6 +135,10 @@ mps_status mpsi_state_snapshot(const mpsi_state_of *of, const char *function,
  * MPS_ERROR_STATE: something that must agree is not as it was. On an error nothing has changed. */
 mps_status mpsi_state_rollback(const mpsi_state_of *of, const char *function,
                                const mps_snapshot *snapshot);
+/* Whether the solver can go back to other particles than the set has. */
+static inline bool mpsi_state_any_particles(const mpsi_state_of *of) {
+  return of->make_room || of->prepare;
+}
 /* Where a solver is destroyed. */
 void mpsi_state_forget(mpsi_identity **identity);
 

@@ -112,18 +112,13 @@ void mpsi_dynamics_free_lists(mps_dynamics *dynamics, lists *l) {
 static const uint32_t dof_of[3] = {MPS_DOF_X, MPS_DOF_Y, MPS_DOF_ROTATION};
 
 /* Number + 1 of the boundary that has each degree of freedom, 0 none; component by component. */
-static int64_t find_owners(const mps_dynamics *dynamics, int32_t *owner) {
-  int64_t owned = 0;
+static void find_owners(const mps_dynamics *dynamics, int32_t *owner) {
   for (int32_t k = 0; k < dynamics->boundary_room; k++) {
     const mpsi_dynamics_boundary *b = dynamics->boundary[k];
     for (int c = 0; b && c < 3; c++)
-      for (int64_t p = 0; (b->dofs & dof_of[c]) && p < b->part.count; p++) {
-        int32_t *at = &owner[c * dynamics->count + b->part.particle[p]];
-        owned += *at == 0;
-        *at = k + 1;
-      }
+      for (int64_t p = 0; (b->dofs & dof_of[c]) && p < b->part.count; p++)
+        owner[c * dynamics->count + b->part.particle[p]] = k + 1;
   }
-  return owned;
 }
 
 /* Fills the list of what is held or driven. One that its boundary has already, and that has not
@@ -211,19 +206,19 @@ static void list_dashpots(const mps_dynamics *dynamics, const int32_t *owner, li
 mps_status mpsi_dynamics_reserve_lists(mps_dynamics *dynamics, const char *function,
                                        int64_t particles, int64_t column_dashpots, lists *out) {
   mps_context *context = dynamics->context;
+  int64_t bounds = 0, dashpots = column_dashpots; /* at most */
+  for (int32_t k = 0; k < dynamics->boundary_room; k++) {
+    const mpsi_dynamics_boundary *b = dynamics->boundary[k];
+    for (int c = 0; b && c < 3; c++) bounds += b->dofs & dof_of[c] ? b->part.listed : 0;
+    if (b && b->kind == MPS_DYNAMICS_BOUNDARY_VISCOUS) dashpots += 2 * b->part.listed;
+  }
   *out = (lists){0};
   out->owner = mpsi_alloc(context, 3 * particles, sizeof *out->owner);
-  if (!out->owner) return mpsi_fail_memory(context, function, (size_t)particles * 12);
-  const int64_t owned = find_owners(dynamics, out->owner);
-  int64_t dashpots = column_dashpots;
-  for (int32_t k = 0; k < dynamics->boundary_room; k++)
-    if (dynamics->boundary[k] && dynamics->boundary[k]->kind == MPS_DYNAMICS_BOUNDARY_VISCOUS)
-      dashpots += 2 * dynamics->boundary[k]->part.count;
-  out->bound = mpsi_alloc(context, owned, sizeof *out->bound);
+  out->bound = mpsi_alloc(context, bounds, sizeof *out->bound);
   out->dashpot = mpsi_alloc(context, dashpots, sizeof *out->dashpot);
-  if (out->bound && out->dashpot) return MPS_OK;
+  if (out->owner && out->bound && out->dashpot) return MPS_OK;
   mpsi_dynamics_free_lists(dynamics, out);
-  return mpsi_fail_memory(context, function, (size_t)owned * sizeof *out->bound);
+  return mpsi_fail_memory(context, function, (size_t)bounds * sizeof *out->bound);
 }
 
 /* Makes the lists of the present boundaries, of which `changed` (-1: none) has just been defined.
@@ -233,6 +228,7 @@ static mps_status make_lists(mps_dynamics *dynamics, const char *function, int32
   const mps_status status = mpsi_dynamics_reserve_lists(dynamics, function, dynamics->count,
                                                         dynamics->column_dashpots, out);
   if (status != MPS_OK) return status;
+  find_owners(dynamics, out->owner);
   list_bounds(dynamics, out->owner, changed, out);
   list_dashpots(dynamics, out->owner, out);
   return MPS_OK;
@@ -271,7 +267,7 @@ static void put_lists(mps_dynamics *dynamics, lists *l, int32_t changed) {
 
 void mpsi_dynamics_use_lists(mps_dynamics *dynamics, lists *room) {
   for (int64_t k = 0; k < 3 * dynamics->count; k++) room->owner[k] = 0;
-  (void)find_owners(dynamics, room->owner);
+  find_owners(dynamics, room->owner);
   list_bounds(dynamics, room->owner, -1, room);
   list_dashpots(dynamics, room->owner, room);
   put_lists(dynamics, room, -1);

@@ -28,9 +28,6 @@ mps_status mps_dynamics_def_init(mps_dynamics_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_dynamics_def, def, size, &dynamics_defaults);
 }
 
-/* Extent of a set in spacings: positions keep a millionth of one. */
-#define MOST_SPACINGS 1e9
-
 /* ---- checks ---------------------------------------------------------------------------------- */
 
 static mps_status check_choices(mps_context *context, const mps_dynamics_def *def) {
@@ -138,10 +135,10 @@ static mps_status check_geometry(mps_context *context, mps_particles *particles,
     body += !(side && side[k]);
   }
   for (int c = 0; c < 2; c++)
-    if (!(hi[c] - lo[c] <= MOST_SPACINGS * D))
+    if (!(hi[c] - lo[c] <= MPSI_DYN_MOST_SPACINGS * D))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "the particles reach from %g m to %g m in %c, allowed are %g spacings",
-                       lo[c], hi[c], c == 0 ? 'x' : 'y', MOST_SPACINGS);
+                       lo[c], hi[c], c == 0 ? 'x' : 'y', MPSI_DYN_MOST_SPACINGS);
   if (body == 0)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "all %lld particles belong to free-field columns, a body is needed",
@@ -270,6 +267,7 @@ void mps_dynamics_destroy(mps_dynamics **pointer) {
   if (mpsi_dynamics_enter(dynamics, __func__) != MPS_OK) return;
   *pointer = NULL;
   mps_snapshot_destroy(&dynamics->present);
+  mpsi_dynamics_drop_change(dynamics);
   mpsi_state_forget(&dynamics->identity);
   mpsi_dynamics_mesh_free(context, &dynamics->mesh);
   mpsi_dynamics_free_boundaries(dynamics);

@@ -2,6 +2,7 @@
  *
  *   structure.c   order, pairs, mesh and arrays: what follows from which particles there are
  *   ground.c      what the body is made of; fields that the caller edits
+ *   change.c      other particles: what must be made anew when some leave, or come back
  *   removal.c     particles that leave between two steps
  *   step.c        the step: forces (kernels.c), loads, dashpots, what is held or driven, budget
  *   constrain.c   dashpots and held or driven degrees of freedom around a step
@@ -18,6 +19,7 @@
 
 #include "core/guard.h"
 #include "core/particles_internal.h"
+#include "core/state.h"
 #include "kernels.h"
 #include "layout.h"
 #include "mesh.h"
@@ -26,11 +28,14 @@
 
 #define MPSI_DYN_LEAST_DT 1e-12 /* s */
 #define MPSI_DYN_MOST_DT 1e9
+#define MPSI_DYN_MOST_SPACINGS 1e9 /* extent of a set: positions keep a millionth of a spacing */
 
-/* What one of the caller's definitions selects: sorted indices, signals of x and y. */
+/* What one of the caller's definitions selects: particles, signals of x and y. */
 typedef struct mpsi_dynamics_part {
+  int64_t *id; /* as defined, also of particles that are gone */
+  int64_t listed;
   int64_t count;
-  int32_t *particle;
+  int32_t *particle; /* present index of those that are there, ascending */
   mps_signal *signal[2];
   double factor[2];
 } mpsi_dynamics_part;
@@ -161,9 +166,9 @@ struct mps_dynamics {
   bool have_limit;
   mps_dynamics_linear_limit limit; /* valid when have_limit */
   mpsi_dynamics_works works;
-  struct mpsi_identity *identity;        /* state.c */
-  struct mpsi_dynamics_removal *removal; /* removal.c: under way, or NULL */
-  mps_snapshot *present;                 /* of mps_dynamics_refresh, NULL before the first */
+  struct mpsi_identity *identity;      /* state.c */
+  struct mpsi_dynamics_change *change; /* change.c: under way, or NULL */
+  mps_snapshot *present;               /* of mps_dynamics_refresh, NULL before the first */
 };
 
 /* Column of a field that the solver has added itself: never NULL. */
@@ -184,15 +189,40 @@ mps_status mpsi_dynamics_sort(mps_dynamics *dynamics, const char *function);
 mps_status mpsi_dynamics_make_structure(mps_dynamics *dynamics, const char *function,
                                         const mpsi_dynamics_geometry *geometry,
                                         mpsi_dynamics_structure *out);
+/* Sorted particles of the solver's body at these reference positions. */
+mpsi_dynamics_geometry mpsi_dynamics_geometry_of(const mps_dynamics *dynamics, int64_t count,
+                                                 const double *x, const double *y,
+                                                 const int64_t *side);
+/* Tells apart bodies whose pairs are not the same: a hash of the reference positions, 32 bits. */
+int64_t mpsi_dynamics_hash_positions(int64_t count, const double *x, const double *y);
 void mpsi_dynamics_free_structure(mps_dynamics *dynamics, mpsi_dynamics_structure *structure);
 /* Puts it in place of the solver's own, which is released; finds columns and coefficients. */
 void mpsi_dynamics_use_structure(mps_dynamics *dynamics, mpsi_dynamics_structure *structure);
 /* Finds the columns of the fields in the set. */
 void mpsi_dynamics_bind(mps_dynamics *dynamics);
 
+/* ---- change.c ---- */
+
+/* All that is made anew for other particles: beside the present, which it then replaces. */
+typedef struct mpsi_dynamics_change {
+  int32_t *now; /* of a removal: index after it of each particle, -1: it goes; else NULL */
+  mpsi_dynamics_structure structure;
+  mpsi_dynamics_lists lists;     /* room */
+  double *force, *before, *drag; /* each NULL where the solver has none */
+  double energy;                 /* of a removal: J, before */
+} mpsi_dynamics_change;
+/* Makes dynamics->change for sorted particles. */
+mps_status mpsi_dynamics_prepare_change(mps_dynamics *dynamics, const char *function,
+                                        const mpsi_dynamics_geometry *geometry);
+/* Puts it in place, once the set has those particles: cannot fail. */
+void mpsi_dynamics_use_change(mps_dynamics *dynamics);
+void mpsi_dynamics_drop_change(mps_dynamics *dynamics);
+/* Of a state to go back to (core/state.h). */
+mps_status mpsi_dynamics_prepare_state(void *solver, const char *function, const mps_snapshot *from,
+                                       const char *source, mps_status disagreement);
+
 /* ---- removal.c: the holder's functions ---- */
 
-typedef struct mpsi_dynamics_removal mpsi_dynamics_removal;
 mps_status mpsi_dynamics_remove(void *self, const char *function, int64_t count,
                                 const int64_t *ids);
 void mpsi_dynamics_renew(void *self);
@@ -255,6 +285,8 @@ typedef struct mpsi_dynamics_selection {
 } mpsi_dynamics_selection;
 mps_status mpsi_dynamics_select(mps_dynamics *dynamics, const char *function,
                                 const mpsi_dynamics_selection *selection, mpsi_dynamics_part *out);
+/* Finds its particles in the set as it is now. */
+void mpsi_dynamics_find_part(const mps_dynamics *dynamics, mpsi_dynamics_part *part);
 void mpsi_dynamics_release_part(mps_dynamics *dynamics, mpsi_dynamics_part *part);
 /* ---- boundary.c ---- */
 

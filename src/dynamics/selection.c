@@ -85,6 +85,11 @@ mps_status mpsi_dynamics_select(mps_dynamics *dynamics, const char *function,
     return mpsi_fail_memory(dynamics->context, function, (size_t)room * sizeof *out->particle);
   status =
       s.ids ? select_list(dynamics, function, &s, out) : select_box(dynamics, function, &s, out);
+  if (status == MPS_OK && !(out->id = mpsi_alloc(dynamics->context, out->count, sizeof *out->id)))
+    status = mpsi_fail_memory(dynamics->context, function, (size_t)out->count * sizeof *out->id);
+  const int64_t *id = mpsi_particles_integers(dynamics->particles, "id");
+  for (int64_t k = 0; status == MPS_OK && k < out->count; k++) out->id[k] = id[out->particle[k]];
+  out->listed = out->count;
   for (int c = 0; c < 2; c++) {
     out->factor[c] = s.factor[c];
     if (status == MPS_OK && s.signal[c]) out->signal[c] = mpsi_signal_retain(s.signal[c]);
@@ -93,7 +98,20 @@ mps_status mpsi_dynamics_select(mps_dynamics *dynamics, const char *function,
   return status;
 }
 
+void mpsi_dynamics_find_part(const mps_dynamics *dynamics, mpsi_dynamics_part *part) {
+  bool sorted = true;
+  part->count = 0;
+  for (int64_t k = 0; k < part->listed; k++) {
+    const int64_t i = mps_particles_index(dynamics->particles, part->id[k]);
+    if (i < 0) continue;
+    part->particle[part->count++] = (int32_t)i;
+    sorted = sorted && (part->count < 2 || part->particle[part->count - 2] < i);
+  }
+  if (!sorted) qsort(part->particle, (size_t)part->count, sizeof *part->particle, compare_indices);
+}
+
 void mpsi_dynamics_release_part(mps_dynamics *dynamics, mpsi_dynamics_part *part) {
+  mpsi_free(dynamics->context, part->id);
   mpsi_free(dynamics->context, part->particle);
   for (int c = 0; c < 2; c++) mps_signal_destroy(&part->signal[c]);
   *part = (mpsi_dynamics_part){0};

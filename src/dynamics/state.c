@@ -72,16 +72,14 @@ static void list_setting(mpsi_state *s, const mps_dynamics *dynamics) {
   mpsi_state_agree_number(s, "period_x", isnan(def->period_x) ? 0.0 : def->period_x);
   mpsi_state_agree_number(s, "measure", def->measure);
   mpsi_state_agree_number(s, "torque", dynamics->torque);
-  mpsi_state_agree_integer(s, "particles", dynamics->count);
-  mpsi_state_agree_integer(s, "pairs", dynamics->pairs);
-  mpsi_state_agree_integer(s, "reference_positions", dynamics->places);
+  mpsi_state_agree_integer(s, "particles_made", mpsi_particles_made(dynamics->particles));
 }
 
 static void list_boundary(mpsi_state *s, mpsi_dynamics_boundary *b, int32_t number) {
   mpsi_state_enter(s, "boundary%d", (int)number);
   mpsi_state_agree_integer(s, "kind", b->kind);
   mpsi_state_agree_integer(s, "dofs", b->dofs);
-  mpsi_state_agree_integer(s, "particles", b->part.count);
+  mpsi_state_i64(s, "particles", &b->part.count, 1);
   mpsi_state_f64(s, "pushed", b->pushed, 3);
   mpsi_state_f64(s, "impulse", b->impulse, 3);
   mpsi_state_f64(s, "kick", &b->kick, 1);
@@ -97,8 +95,6 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_agree_integer(s, "boundaries", boundaries);
   for (int32_t k = 0; k < dynamics->boundary_room; k++)
     if (dynamics->boundary[k]) list_boundary(s, dynamics->boundary[k], k);
-  mpsi_state_agree_integer(s, "held", dynamics->bounds);
-  mpsi_state_agree_integer(s, "dashpots", dynamics->dashpots);
   mpsi_state_f64(s, "dt", &dynamics->dt, 1);
   mpsi_state_f64(s, "length", &dynamics->length, 1);
   mpsi_state_f64(s, "kept", &dynamics->kept, 1);
@@ -118,7 +114,13 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_add_table(s, "dashpot_forces", &dashpots_table);
 }
 
-static void bind(void *solver) { mpsi_dynamics_bind(solver); }
+static void bind(void *solver) {
+  mps_dynamics *dynamics = solver;
+  mpsi_dynamics_bind(dynamics);
+  if (!dynamics->change) return;
+  mpsi_dynamics_use_change(dynamics);
+  mpsi_dynamics_drop_change(dynamics);
+}
 
 /* What follows from the state. */
 static void after(void *solver) {
@@ -147,6 +149,7 @@ static mpsi_state_of state_of(mps_dynamics *dynamics) {
                          .particles = dynamics->particles,
                          .identity = &dynamics->identity,
                          .list = list_state,
+                         .prepare = mpsi_dynamics_prepare_state,
                          .bind = bind,
                          .after = after,
                          .time = mps_dynamics_time(dynamics),

@@ -69,22 +69,30 @@ void mpsi_dynamics_bind(mps_dynamics *dynamics) {
 
 /* ---- order ----------------------------------------------------------------------------------- */
 
-/* The particles as they are in the set. */
-static mpsi_dynamics_geometry geometry_of(const mps_dynamics *dynamics) {
-  mps_particles *p = dynamics->particles;
-  return (mpsi_dynamics_geometry){.count = mps_particles_count(p),
-                                  .x = mpsi_particles_column(p, "reference", 0),
-                                  .y = mpsi_particles_column(p, "reference", 1),
-                                  .side = mpsi_particles_integers(p, "free_field"),
-                                  .spacing = mps_particles_spacing(p),
+mpsi_dynamics_geometry mpsi_dynamics_geometry_of(const mps_dynamics *dynamics, int64_t count,
+                                                 const double *x, const double *y,
+                                                 const int64_t *side) {
+  return (mpsi_dynamics_geometry){.count = count,
+                                  .x = x,
+                                  .y = y,
+                                  .side = side,
+                                  .spacing = mps_particles_spacing(dynamics->particles),
                                   .radius = dynamics->radius,
                                   .period_x =
                                       isnan(dynamics->def.period_x) ? 0.0 : dynamics->def.period_x};
 }
 
+/* The particles as they are in the set. */
+static mpsi_dynamics_geometry present_geometry(const mps_dynamics *dynamics) {
+  mps_particles *p = dynamics->particles;
+  return mpsi_dynamics_geometry_of(
+      dynamics, mps_particles_count(p), mpsi_particles_column(p, "reference", 0),
+      mpsi_particles_column(p, "reference", 1), mpsi_particles_integers(p, "free_field"));
+}
+
 mps_status mpsi_dynamics_sort(mps_dynamics *dynamics, const char *function) {
   mps_context *context = dynamics->context;
-  const mpsi_dynamics_geometry g = geometry_of(dynamics);
+  const mpsi_dynamics_geometry g = present_geometry(dynamics);
   int64_t *order = mpsi_alloc(context, g.count, sizeof *order);
   mps_status status = MPS_OK;
   if (!order || !mpsi_dynamics_layout_order(context, &g, order))
@@ -161,7 +169,7 @@ static mps_status couple_columns(mps_dynamics *dynamics, const char *function,
 mps_status mpsi_dynamics_make_structure(mps_dynamics *dynamics, const char *function,
                                         const mpsi_dynamics_geometry *geometry,
                                         mpsi_dynamics_structure *out) {
-  const mpsi_dynamics_geometry g = geometry ? *geometry : geometry_of(dynamics);
+  const mpsi_dynamics_geometry g = geometry ? *geometry : present_geometry(dynamics);
   *out = (mpsi_dynamics_structure){.count = g.count};
   while (out->body < g.count && !(g.side && g.side[out->body])) out->body++;
   mps_status status = make_mesh(dynamics, function, &g, out);
@@ -178,12 +186,11 @@ void mpsi_dynamics_free_structure(mps_dynamics *dynamics, mpsi_dynamics_structur
   *s = (mpsi_dynamics_structure){0};
 }
 
-/* Tells apart bodies whose pairs are not the same: a hash of the reference positions, 32 bits. */
-static int64_t hash_positions(const mps_dynamics *dynamics) {
-  const double *const column[2] = {dynamics->state.rx, dynamics->state.ry};
+int64_t mpsi_dynamics_hash_positions(int64_t count, const double *x, const double *y) {
+  const double *const column[2] = {x, y};
   uint64_t hash = 0xcbf29ce484222325u;
   for (int c = 0; c < 2; c++)
-    for (int64_t k = 0; k < dynamics->count; k++) {
+    for (int64_t k = 0; k < count; k++) {
       uint64_t bits;
       memcpy(&bits, &column[c][k], sizeof bits);
       hash = (hash ^ bits) * 0x100000001b3u;
@@ -215,6 +222,6 @@ void mpsi_dynamics_use_structure(mps_dynamics *dynamics, mpsi_dynamics_structure
   *from = (mpsi_dynamics_structure){0};
   mpsi_dynamics_free_structure(dynamics, &former);
   mpsi_dynamics_bind(dynamics);
-  dynamics->places = hash_positions(dynamics);
+  dynamics->places = mpsi_dynamics_hash_positions(dynamics->count, s->rx, s->ry);
   (void)mpsi_dynamics_set_coefficients(dynamics);
 }

@@ -67,7 +67,7 @@ static bool fits(void *solver, mps_snapshot *values, const char **what) {
   for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
     const mpsi_value *value = mpsi_values_find(&values->fields, names[k]);
     *what = "a particle's position, velocity or pressure is missing or not finite";
-    if (!value || value->type != MPSI_STATE_F64) return false;
+    if (!value || value->type != MPSI_STATE_F64 || value->rows < 1) return false;
     const double *x = value->data;
     for (int64_t i = 0; i < value->rows * value->columns; i++)
       if (!(fabs(x[i]) <= 1e150)) return false;
@@ -75,10 +75,15 @@ static bool fits(void *solver, mps_snapshot *values, const char **what) {
   return true;
 }
 
+static bool make_room(void *solver, int64_t particles) {
+  return particles <= MPSI_FLUID_MOST_PARTICLES && mpsi_fluid_reserve(solver, particles);
+}
+
 static void after(void *solver) {
   mps_fluid *f = solver;
   f->stale = true;
-  f->count = mps_particles_count(f->particles); /* never more than there has been room for */
+  f->count = mps_particles_count(f->particles);
+  f->ghosts = 0; /* of other particles: found again */
   mpsi_fluid_place_bodies(f);
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].given = f->wall[b].placed = false;
 }
@@ -91,6 +96,7 @@ static mpsi_state_of state_of(mps_fluid *f) {
                          .identity = &f->identity,
                          .list = list_state,
                          .fits = fits,
+                         .make_room = make_room,
                          .after = after,
                          .time = f->time,
                          .dt = f->dt,

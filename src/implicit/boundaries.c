@@ -80,7 +80,7 @@ static mps_status check_kind(const mps_elastic *e, const char *function,
 }
 
 static void release(mps_elastic *e, mpsi_elastic_boundary *b) {
-  mpsi_free(e->context, b->particles);
+  mpsi_free(e->context, b->id);
   mpsi_free(e->context, b->values);
   for (int c = 0; c < 3; c++) mps_signal_destroy(&b->signal[c]);
   *b = (mpsi_elastic_boundary){.used = false};
@@ -94,13 +94,12 @@ static bool in_box(const mps_elastic *e, const mps_elastic_boundary_def *def, in
   return inside;
 }
 
-/* The particles of a box, to `particles` where it is not NULL; how many. */
-static int64_t list_box(const mps_elastic *e, const mps_elastic_boundary_def *def,
-                        int64_t *particles) {
+/* The particles of a box, to `ids` where it is not NULL; how many. */
+static int64_t list_box(const mps_elastic *e, const mps_elastic_boundary_def *def, int64_t *ids) {
   int64_t count = 0;
   for (int64_t i = 0; i < e->n; i++) {
     if (!in_box(e, def, i)) continue;
-    if (particles) particles[count] = i;
+    if (ids) ids[count] = e->id[i];
     count++;
   }
   return count;
@@ -118,15 +117,16 @@ static mps_status make(mps_elastic *e, const char *function, const mps_elastic_b
   const uint32_t all = MPS_DOF_X | MPS_DOF_Y | (e->dim == 3 ? MPS_DOF_Z : 0);
   mpsi_elastic_boundary b = {.used = true, .kind = def.kind, .dofs = def.dofs ? def.dofs : all};
   b.count = box ? list_box(e, &def, NULL) : def.id_count;
-  if (!(b.particles = mpsi_alloc(e->context, b.count, sizeof *b.particles)) ||
+  if (!(b.id = mpsi_alloc(e->context, b.count, sizeof *b.id)) ||
       (def.values && !(b.values = mpsi_alloc(e->context, b.count * each, sizeof *b.values)))) {
-    mpsi_free(e->context, b.particles);
-    return mpsi_fail_memory(e->context, function, (size_t)b.count * sizeof *b.particles);
+    mpsi_free(e->context, b.id);
+    return mpsi_fail_memory(e->context, function, (size_t)b.count * sizeof *b.id);
   }
   if (box)
-    list_box(e, &def, b.particles);
+    list_box(e, &def, b.id);
   else
-    for (int64_t k = 0; k < b.count; k++) b.particles[k] = mpsi_elastic_find(e, def.ids[k]);
+    for (int64_t k = 0; k < b.count; k++) b.id[k] = def.ids[k];
+  b.present = b.count;
   if (def.values) memcpy(b.values, def.values, (size_t)(b.count * each) * sizeof *b.values);
   double length = 0.0;
   for (int c = 0; c < e->dim; c++) length += def.normal[c] * def.normal[c];
@@ -152,7 +152,8 @@ static mps_status add_boundary_rows(const mps_elastic *e, const char *function, 
   const mpsi_elastic_boundary *b = &e->boundaries[number];
   const bool roller = b->kind == MPS_ELASTIC_BOUNDARY_ROLLER;
   for (int64_t k = 0; b->used && k < b->count; k++) {
-    const int64_t i = b->particles[k];
+    const int64_t i = mpsi_elastic_find(e, b->id[k]);
+    if (i < 0) continue;
     if (to->of[i] < 0) {
       to->supports[to->count].particle = i;
       to->of[i] = to->count++;
@@ -339,7 +340,7 @@ void mpsi_elastic_count_reactions(mps_elastic *e, double dt) {
   const int d = e->dim;
   for (int32_t k = 0; k < e->boundary_count; k++) {
     mps_reaction *q = &e->boundaries[k].reaction;
-    q->count = e->boundaries[k].used ? e->boundaries[k].count : 0;
+    q->count = e->boundaries[k].used ? e->boundaries[k].present : 0;
     for (int c = 0; c < 3; c++) {
       q->impulse[c] += 0.5 * dt * q->force[c];
       q->moment_impulse[c] += 0.5 * dt * q->moment[c];

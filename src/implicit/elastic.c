@@ -219,6 +219,29 @@ static mps_status add_material(mps_elastic *e, const char *function) {
   return status == MPS_OK ? write_material(e, e->def.material, 0, NULL) : status;
 }
 
+static mps_status check_moduli(mps_elastic *e, const char *function, int64_t i, double young,
+                               double poisson) {
+  const double least = !e->conservative ? 0.0 : -0.99;
+  if (!(young >= LEAST && young <= MOST))
+    return bad_value(e, function, "young", i, young, "allowed is 1e-30 to 1e30 (Pa)");
+  if (poisson >= least && poisson < 0.5) return MPS_OK;
+  return bad_value(e, function, "poisson", i, poisson,
+                   least < 0.0 ? "must be at least -0.99 and below 0.5"
+                               : "must be at least 0 and below 0.5 (published method)");
+}
+
+mps_status mpsi_elastic_set_moduli(mps_elastic *e, const char *function, int64_t i, double young,
+                                   double poisson) {
+  const mps_status status = check_moduli(e, function, i, young, poisson);
+  if (status != MPS_OK) return status;
+  const double two_mu = young / (1.0 + poisson);
+  const bool plane_stress = e->dim == 2 && e->def.state == MPS_ELASTIC_PLANE_STRESS;
+  e->mu[i] = 0.5 * two_mu;
+  e->lambda[i] = two_mu * poisson / (plane_stress ? 1.0 - poisson : 1.0 - 2.0 * poisson);
+  e->poisson[i] = poisson;
+  return MPS_OK;
+}
+
 /* lambda and mu of every particle; nothing has changed on an error. */
 static mps_status read_material(mps_elastic *e, const char *function) {
   double *young = mpsi_alloc(e->context, 2 * e->n, sizeof *young);
@@ -226,21 +249,10 @@ static mps_status read_material(mps_elastic *e, const char *function) {
   double *poisson = young + e->n;
   mps_status status = mpsi_elastic_read(e, function, "young", young, 1);
   if (status == MPS_OK) status = mpsi_elastic_read(e, function, "poisson", poisson, 1);
-  const double least = !e->conservative ? 0.0 : -0.99;
   for (int64_t i = 0; i < e->n && status == MPS_OK; i++)
-    if (!(young[i] >= LEAST && young[i] <= MOST))
-      status = bad_value(e, function, "young", i, young[i], "allowed is 1e-30 to 1e30 (Pa)");
-    else if (!(poisson[i] >= least && poisson[i] < 0.5))
-      status = bad_value(e, function, "poisson", i, poisson[i],
-                         least < 0.0 ? "must be at least -0.99 and below 0.5"
-                                     : "must be at least 0 and below 0.5 (published method)");
-  for (int64_t i = 0; i < e->n && status == MPS_OK; i++) {
-    const double nu = poisson[i], two_mu = young[i] / (1.0 + nu);
-    const bool plane_stress = e->dim == 2 && e->def.state == MPS_ELASTIC_PLANE_STRESS;
-    e->mu[i] = 0.5 * two_mu;
-    e->lambda[i] = two_mu * nu / (plane_stress ? 1.0 - nu : 1.0 - 2.0 * nu);
-    e->poisson[i] = nu;
-  }
+    status = check_moduli(e, function, i, young[i], poisson[i]);
+  for (int64_t i = 0; i < e->n && status == MPS_OK; i++)
+    status = mpsi_elastic_set_moduli(e, function, i, young[i], poisson[i]);
   mpsi_free(e->context, young);
   return status;
 }
@@ -362,7 +374,7 @@ void mps_elastic_destroy(mps_elastic **elastic) {
   if (mpsi_guard_check(&e->guard, context, __func__) != MPS_OK) return;
   *elastic = NULL;
   mpsi_elastic_end_motion(e);
-  mpsi_elastic_drop_removal(e);
+  mpsi_elastic_drop_change(e);
   mpsi_elastic_drop_boundaries(e);
   mpsi_state_forget(&e->identity);
   mpsi_elastic_drop_loads(e);
@@ -393,9 +405,9 @@ static int compare_ids(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-mps_status mpsi_elastic_make_body(mps_elastic *e, const char *function) {
+mps_status mpsi_elastic_make_body(mps_elastic *e, const char *function, bool moduli_known) {
   mps_status status = mpsi_elastic_connect(e, function);
-  if (status == MPS_OK) status = read_material(e, function);
+  if (status == MPS_OK && !moduli_known) status = read_material(e, function);
   if (status == MPS_OK) status = mpsi_elastic_find_joints(e, function);
   if (status == MPS_OK) status = mpsi_elastic_find_facets(e, function);
   if (status == MPS_OK) mpsi_elastic_measure(e);
@@ -413,7 +425,7 @@ static mps_status build(mps_elastic *e, const char *function) {
   for (int64_t i = 0; i < e->n * e->dim && status == MPS_OK; i++)
     if (!isfinite(e->x[i]))
       status = bad_value(e, function, "position", i / e->dim, e->x[i], "must be finite");
-  if (status == MPS_OK) status = mpsi_elastic_make_body(e, function);
+  if (status == MPS_OK) status = mpsi_elastic_make_body(e, function, false);
   if (status == MPS_OK) status = mps_particles_add_field(e->particles, "displacement", 0);
   if (status == MPS_OK) status = mps_particles_add_field(e->particles, "reaction", 0);
   return status;

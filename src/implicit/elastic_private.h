@@ -7,7 +7,7 @@
  * loads.c     nodal forces                     assemble.c  the sparse matrix of free unknowns
  * system.c    factor, solve, refine            cholesky.c  CHOLMOD;  cg.c  conjugate gradients
  * stress.c    stresses, sections, energy       motion.c, budget.c, modes.c  dynamics
- * removal.c   particles that leave
+ * change.c    particles that leave, or come back with a former state;  restart.c  that state
  *
  * Vectors over all particles are indexed [i * dim + c], i being the rank of the particle's id:
  * sorting the set does not matter. Vectors of free unknowns hold the local directions that no
@@ -44,8 +44,9 @@ typedef struct mpsi_elastic_boundary {
   uint32_t dofs;
   double normal[3]; /* unit */
   int64_t count;
-  int64_t *particles; /* count */
-  double *values;     /* count * 3, a roller's count; or NULL */
+  int64_t *id;     /* count, also of particles that are gone */
+  double *values;  /* count * 3, a roller's count; or NULL */
+  int64_t present; /* of them, in the body as it is */
   mps_signal *signal[3];
   double factor[3];
   double motion[3][3]; /* factor * signal at the time driven to: [derivative][component] */
@@ -65,9 +66,9 @@ typedef struct mpsi_support {
   double fixed[3][3]; /* [derivative][direction] */
 } mpsi_support;
 
-/* Force and first moment int t_c (x - x_i)_b of a load on one cell. */
+/* Force and first moment int t_c (x - x_i)_b of a load on one cell, which may be gone. */
 typedef struct mpsi_patch {
-  int64_t particle;
+  int64_t id;
   double force[3], moment[3][3];
 } mpsi_patch;
 
@@ -183,8 +184,9 @@ struct mps_elastic {
 
   mpsi_identity *identity; /* of its snapshots */
   mpsi_ledger ledger;
-  struct mpsi_elastic_motion *motion;   /* NULL: no dynamics under way */
-  struct mpsi_elastic_removal *removal; /* removal.c: under way, or NULL */
+  struct mpsi_elastic_motion *motion; /* NULL: no dynamics under way */
+  struct mpsi_elastic_motion *ended;  /* by a removal: its numbers without arrays, or NULL */
+  struct mpsi_elastic_change *change; /* change.c: under way, or NULL */
 };
 
 /* ---- lattice.c --------------------------------------------------------------------------------
@@ -292,11 +294,16 @@ void mpsi_elastic_drop_boundaries(mps_elastic *e);
 /* Supports from the boundaries as they are. On an error those of before stay. */
 mps_status mpsi_elastic_make_supports(mps_elastic *e, const char *function);
 
-/* ---- removal.c: the holder's functions ----------------------------------------------------------
+/* ---- change.c ---------------------------------------------------------------------------------
  */
+/* The holder's functions. */
 mps_status mpsi_elastic_remove(void *self, const char *function, int64_t count, const int64_t *ids);
 void mpsi_elastic_renew(void *self);
-void mpsi_elastic_drop_removal(mps_elastic *e);
+/* Of a state to go back to (core/state.h): prepares, then puts the body of the state in place. */
+mps_status mpsi_elastic_prepare_state(void *self, const char *function, const mps_snapshot *from,
+                                      const char *source, mps_status disagreement);
+void mpsi_elastic_bind(void *self);
+void mpsi_elastic_drop_change(mps_elastic *e);
 
 /* ---- rigid.c ----------------------------------------------------------------------------------
  */
@@ -333,7 +340,10 @@ mps_status mpsi_elastic_check_between(const mps_elastic *e, const char *function
 /* The arrays of e->n particles; what follows from ids, positions, cuts and material in them; and
  * the end of both. */
 mps_status mpsi_elastic_allocate(mps_elastic *e, const char *function);
-mps_status mpsi_elastic_make_body(mps_elastic *e, const char *function);
+mps_status mpsi_elastic_make_body(mps_elastic *e, const char *function, bool moduli_known);
+/* Moduli of particle i; MPS_ERROR_ARGUMENT naming one that is out of range. */
+mps_status mpsi_elastic_set_moduli(mps_elastic *e, const char *function, int64_t i, double young,
+                                   double poisson);
 void mpsi_elastic_free_body(mps_elastic *e);
 /* The rank of an id, or -1. */
 int64_t mpsi_elastic_find(const mps_elastic *e, int64_t id);
@@ -384,6 +394,13 @@ typedef struct mpsi_elastic_motion {
   double *scratch;
 } mpsi_elastic_motion;
 void mpsi_elastic_end_motion(mps_elastic *e);
+/* Ends it but for its numbers, which a rollback may need. */
+void mpsi_elastic_suspend_motion(mps_elastic *e);
+/* Arrays of e's particles; moving them to `to`; and their end. */
+mps_status mpsi_elastic_allocate_motion(mps_elastic *e, const char *function,
+                                        mpsi_elastic_motion *m);
+void mpsi_elastic_move_arrays(mpsi_elastic_motion *from, mpsi_elastic_motion *to);
+void mpsi_elastic_free_arrays(mps_elastic *e, mpsi_elastic_motion *m);
 
 /* ---- budget.c ---------------------------------------------------------------------------------
  */

@@ -122,12 +122,12 @@ static mps_status make_patch(const mps_elastic *e, const char *function,
   const double *value = def->values ? def->values + 3 * k : def->force;
   memset(out, 0, sizeof *out);
   if (!on_facets(def->kind)) {
-    out->particle = mpsi_elastic_find(e, def->ids[k]);
+    out->id = def->ids[k];
     for (int c = 0; c < e->dim; c++) out->force[c] = value[c];
     return MPS_OK;
   }
   const mpsi_facet *f = &e->facets[def->ids[k]];
-  out->particle = f->particle;
+  out->id = e->id[f->particle];
   if (def->kind == MPS_ELASTIC_LOAD_FUNCTION)
     return integrate(e, function, def->ids[k], def->function, def->user, out->force, out->moment);
   double traction[3] = {0.0, 0.0, 0.0};
@@ -244,25 +244,24 @@ void mpsi_elastic_drop_loads(mps_elastic *e) {
  */
 
 /* Adds the force and the first moment m[c][b] = int t_c (x - x_i)_b of a load on cell i. */
-static void add_patch(mps_elastic *e, const mpsi_patch *patch, const double *scale) {
+static void add_patch(mps_elastic *e, int64_t i, const mpsi_patch *patch, const double *scale) {
   const int d = e->dim;
   double moment[3][3];
   bool any = false;
   for (int c = 0; c < d; c++) {
-    e->load[patch->particle * d + c] += scale[c] * patch->force[c];
+    e->load[i * d + c] += scale[c] * patch->force[c];
     for (int b = 0; b < d; b++) {
       moment[c][b] = scale[c] * patch->moment[c][b];
       any |= moment[c][b] != 0.0;
     }
   }
-  if (any && e->conservative)
-    mpsi_elastic_spread(e, patch->particle, (const double(*)[3])moment, e->load);
+  if (any && e->conservative) mpsi_elastic_spread(e, i, (const double(*)[3])moment, e->load);
 }
 
 /* The whole body: `force` by volume, or by mass. */
 static void add_body(mps_elastic *e, const mpsi_elastic_load *l, const double *scale) {
   for (int64_t i = 0; i < e->n; i++) {
-    mpsi_patch patch = {.particle = i};
+    mpsi_patch patch = {.id = e->id[i]};
     const double amount = l->kind == MPS_ELASTIC_LOAD_GRAVITY ? e->mass[i] : e->volume[i];
     for (int c = 0; c < e->dim; c++) {
       patch.force[c] = l->force[c] * amount;
@@ -272,7 +271,7 @@ static void add_body(mps_elastic *e, const mpsi_elastic_load *l, const double *s
         patch.moment[c][b] = patch.force[c] * 0.5 * (low + high);
       }
     }
-    add_patch(e, &patch, scale);
+    add_patch(e, i, &patch, scale);
   }
 }
 
@@ -314,7 +313,10 @@ mps_status mpsi_elastic_gather_loads(mps_elastic *e, const char *function, doubl
         (status = mpsi_elastic_read_mass(e, function)) != MPS_OK)
       return status;
     if (l->kind <= MPS_ELASTIC_LOAD_GRAVITY) add_body(e, l, scale);
-    for (int64_t p = 0; p < l->count; p++) add_patch(e, &l->patches[p], scale);
+    for (int64_t p = 0; p < l->count; p++) {
+      const int64_t i = mpsi_elastic_find(e, l->patches[p].id);
+      if (i >= 0) add_patch(e, i, &l->patches[p], scale);
+    }
   }
   return add_external(e, function);
 }

@@ -15,15 +15,60 @@
 
 #include <string.h>
 
-enum { NEXT_U, NEXT_V, NEXT_A, NEXT_INNER, NEXT_HELD, NEXT };
+enum { NEXT_U, NEXT_V, NEXT_A, NEXT_INNER, NEXT_HELD };
+
+/* ---- its memory -------------------------------------------------------------------------------
+ */
+
+#define ARRAYS 11
+static void list_arrays(mpsi_elastic_motion *m, double **list[ARRAYS]) {
+  double **const all[ARRAYS] = {&m->velocity, &m->acceleration, &m->force,   &m->inner,
+                                &m->held,     &m->scratch,      &m->next[0], &m->next[1],
+                                &m->next[2],  &m->next[3],      &m->next[4]};
+  memcpy(list, all, sizeof all);
+}
+
+void mpsi_elastic_free_arrays(mps_elastic *e, mpsi_elastic_motion *m) {
+  double **array[ARRAYS];
+  list_arrays(m, array);
+  for (int k = 0; k < ARRAYS; k++) {
+    mpsi_free(e->context, *array[k]);
+    *array[k] = NULL;
+  }
+}
+
+mps_status mpsi_elastic_allocate_motion(mps_elastic *e, const char *function,
+                                        mpsi_elastic_motion *m) {
+  const int64_t all = e->n * e->dim;
+  double **array[ARRAYS];
+  list_arrays(m, array);
+  for (int k = 0; k < ARRAYS; k++)
+    if (!(*array[k] = mpsi_alloc(e->context, all, sizeof(double))))
+      return mpsi_fail_memory(e->context, function, (size_t)all * sizeof(double));
+  return MPS_OK;
+}
+
+void mpsi_elastic_move_arrays(mpsi_elastic_motion *from, mpsi_elastic_motion *to) {
+  double **source[ARRAYS], **target[ARRAYS];
+  list_arrays(from, source), list_arrays(to, target);
+  for (int k = 0; k < ARRAYS; k++) {
+    *target[k] = *source[k];
+    *source[k] = NULL;
+  }
+}
 
 void mpsi_elastic_end_motion(mps_elastic *e) {
-  mpsi_elastic_motion *m = e->motion;
-  if (!m) return;
-  double *arrays[] = {m->velocity, m->acceleration, m->force, m->inner, m->held, m->scratch};
-  for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) mpsi_free(e->context, arrays[k]);
-  for (int k = 0; k < NEXT; k++) mpsi_free(e->context, m->next[k]);
-  mpsi_free(e->context, m);
+  if (e->motion) mpsi_elastic_free_arrays(e, e->motion);
+  mpsi_free(e->context, e->motion);
+  mpsi_free(e->context, e->ended);
+  e->motion = e->ended = NULL;
+}
+
+void mpsi_elastic_suspend_motion(mps_elastic *e) {
+  if (!e->motion) return;
+  mpsi_elastic_free_arrays(e, e->motion);
+  mpsi_free(e->context, e->ended);
+  e->ended = e->motion;
   e->motion = NULL;
 }
 
@@ -153,17 +198,6 @@ static void set_reaction(mps_elastic *e, const double *held, const double *a) {
   mpsi_elastic_keep_fixed(e, e->reaction);
 }
 
-static mps_status allocate(mps_elastic *e, const char *function, mpsi_elastic_motion *m) {
-  const int64_t all = e->n * e->dim;
-  double **arrays[] = {&m->velocity, &m->acceleration, &m->force,   &m->inner,
-                       &m->held,     &m->scratch,      &m->next[0], &m->next[1],
-                       &m->next[2],  &m->next[3],      &m->next[4]};
-  for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
-    if (!(*arrays[k] = mpsi_alloc(e->context, all, sizeof(double))))
-      return mpsi_fail_memory(e->context, function, (size_t)all * sizeof(double));
-  return MPS_OK;
-}
-
 static mps_status begin(mps_elastic *e, const char *function, const mps_elastic_motion_def *user) {
   mps_elastic_motion_def def = mpsi_elastic_motion_defaults;
   mpsi_elastic_motion made = {.dt = 0.0}, *m = NULL;
@@ -189,13 +223,15 @@ static mps_status begin(mps_elastic *e, const char *function, const mps_elastic_
     return mpsi_fail_memory(e->context, function, sizeof *m);
   *m = made;
   e->motion = m;
-  status = allocate(e, function, m);
+  status = mpsi_elastic_allocate_motion(e, function, m);
   if (status == MPS_OK) status = read_or_zero(e, function, "velocity", m->velocity);
   if (status == MPS_OK) status = read_or_zero(e, function, "displacement", e->displacement);
-  m = status == MPS_OK ? e->motion : former;
+  mpsi_elastic_motion *const kept = status == MPS_OK ? e->motion : former;
+  mpsi_elastic_motion *const ended = status == MPS_OK ? NULL : e->ended;
   if (status == MPS_OK) e->motion = former;
+  if (status != MPS_OK) e->ended = NULL;
   mpsi_elastic_end_motion(e); /* the former one, or the new one that could not be made */
-  e->motion = m;
+  e->motion = kept, e->ended = ended;
   return status;
 }
 

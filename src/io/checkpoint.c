@@ -534,7 +534,7 @@ mps_status mps_checkpoint_read(mps_particles *particles, const char *path, mps_c
 mps_status mpsi_checkpoint_restore(const mpsi_state_of *of, const char *function, const char *path,
                                    mps_checkpoint *info) {
   reading r = reading_of(of->particles, function, path);
-  r.any_particles = of->make_room != NULL;
+  r.any_particles = mpsi_state_any_particles(of);
   mps_checkpoint unwanted = mps_checkpoint_defaults();
   if (!info) info = &unwanted;
   mps_status status = look(&r, info, of);

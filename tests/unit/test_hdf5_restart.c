@@ -13,7 +13,7 @@
 #define STEPS_BEFORE 37
 #define STEPS_AFTER 53
 
-static const char path[] = TEST_TMP "/restart.h5";
+static const char path[] = TEST_TMP "/restart.h5", before[] = TEST_TMP "/restart_before.h5";
 typedef struct run {
   int integrator, rotation;
   double damping;
@@ -109,12 +109,12 @@ static body resume(const run *r) {
   return b;
 }
 
-static void stop_and_go_on(const run *r, double dt, int64_t before) {
+static void stop_and_go_on(const run *r, double dt, int64_t steps) {
   char what[128];
   snprintf(what, sizeof what, "integrator %d rotation %d damping %g driven %d start %g",
            r->integrator, r->rotation, r->damping, r->driven, r->start);
   body whole = build(r, dt);
-  mps_assert_ok(context, mps_dynamics_step(whole.solver, before));
+  mps_assert_ok(context, mps_dynamics_step(whole.solver, steps));
   checkpoint(&whole);
   body other = resume(r);
   same_bits(&whole, &other, what);
@@ -164,11 +164,49 @@ static void so_does_one_that_has_not_begun(void **state) {
   }
 }
 
+/* A run that is dug into, and stops after that, goes on in a new solver on all particles; and a run
+ * goes back to a file from before in a solver that has been dug into. */
+static void so_does_one_that_was_dug_into(void **state) {
+  (void)state;
+  for (int driven = 0; driven < 2; driven++) {
+    const run r = {0, MPS_DYNAMICS_ROTATION_MEAN_MATRIX, 0.02, driven == 1, 0.0};
+    const double lo[2] = {2.1, -1.0}, hi[2] = {4.9, 99.0}; /* down to the base */
+    int64_t ids[32], count;
+    body whole = build(&r, 7e-4);
+    mps_assert_ok(context, mps_dynamics_step(whole.solver, STEPS_BEFORE));
+    mps_assert_ok(context, mps_dynamics_save(whole.solver, before, NULL));
+    mps_assert_ok(context, mps_particles_select_box(whole.set, lo, hi, 32, ids, &count));
+    mps_assert_ok(context, mps_particles_remove(whole.set, count, ids));
+    mps_assert_ok(context, mps_dynamics_step(whole.solver, 5));
+    checkpoint(&whole);
+    body other = resume(&r);
+    assert_int_equal(mps_particles_count(whole.set), mps_particles_count(other.set));
+    assert_int_equal(mps_dynamics_pairs(whole.solver), mps_dynamics_pairs(other.solver));
+    for (int part = 0; part < 2; part++) {
+      same_bits(&whole, &other, "dug");
+      mps_assert_ok(context, mps_dynamics_step(whole.solver, STEPS_AFTER));
+      mps_assert_ok(context, mps_dynamics_step(other.solver, STEPS_AFTER));
+    }
+    body fresh = build(&r, 7e-4);
+    mps_assert_ok(context, mps_dynamics_restore(fresh.solver, before, NULL));
+    mps_assert_ok(context, mps_dynamics_restore(other.solver, before, NULL));
+    for (int part = 0; part < 2; part++) {
+      same_bits(&fresh, &other, "filled");
+      mps_assert_ok(context, mps_dynamics_step(fresh.solver, STEPS_AFTER));
+      mps_assert_ok(context, mps_dynamics_step(other.solver, STEPS_AFTER));
+    }
+    drop(&whole);
+    drop(&other);
+    drop(&fresh);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_integrator_goes_on_bit_for_bit),
       cmocka_unit_test(so_does_a_run_with_the_librarys_time_step),
       cmocka_unit_test(so_does_one_that_has_not_begun),
+      cmocka_unit_test(so_does_one_that_was_dug_into),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
