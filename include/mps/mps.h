@@ -3,6 +3,7 @@
  *   base.h        status codes, version, views of arrays
  *   context.h     errors, memory, threads, hooks
  *   particles.h   sets of particles and their fields
+ *   domain.h      several ranks that compute one model
  *   neighbours.h  pairs of particles that are near one another
  *   kernel.h      weight functions
  *   signal.h      functions of time, recorded motions
@@ -32,6 +33,7 @@
 #include "contact.h"
 #include "context.h"
 #include "couple.h"
+#include "domain.h"
 #include "dynamics.h"
 #include "elastic.h"
 #include "fluid.h"

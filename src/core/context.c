@@ -244,6 +244,8 @@ mps_status mpsi_fail_memory(mps_context *context, const char *function, size_t b
   return mpsi_fail(context, function, MPS_ERROR_MEMORY, "could not allocate %zu bytes", bytes);
 }
 
+int64_t mpsi_failures(const mps_context *context) { return context->failures; }
+
 size_t mpsi_identifier(const char *name, size_t room) {
   size_t length = 0;
   for (;; length++) {

@@ -197,6 +197,10 @@ void mpsi_particles_get_state(const mps_particles *particles, mps_snapshot *out)
 /* Lists what a set has besides its fields. A state that has it may be gone back to from another
  * number of particles. */
 void mpsi_particles_list_state(mpsi_state *state, mps_particles *particles);
+/* Makes an item, which has room for one integer, the one of that list that tells the id to come. */
+void mpsi_particles_name_next_id(mpsi_value *item, int64_t next_id);
+/* Once such a state is put back without a solver's list. */
+void mpsi_particles_take_next_id(mps_particles *particles, const mps_snapshot *from);
 /* The two phases of going back. A field that `from` lacks keeps its values, each with its particle
  * (zero in one that comes back); one that the set lacks is added. `scratch` is what the first phase
  * hands to the second, which frees it. */

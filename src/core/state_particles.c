@@ -82,6 +82,17 @@ void mpsi_particles_list_state(mpsi_state *state, mps_particles *p) {
   mpsi_state_add_table_of(state, OCCUPIED, &sites_table, p);
 }
 
+void mpsi_particles_name_next_id(mpsi_value *item, int64_t next_id) {
+  snprintf(item->name, sizeof item->name, NEXT_ID);
+  item->type = MPSI_STATE_I64;
+  item->rows = item->columns = 1;
+  memcpy(item->data, &next_id, sizeof next_id);
+}
+
+void mpsi_particles_take_next_id(mps_particles *p, const mps_snapshot *from) {
+  memcpy(&p->next_id, mpsi_values_find(&from->state, NEXT_ID)->data, sizeof p->next_id);
+}
+
 /* ---- going back ---------------------------------------------------------------------------- */
 
 /* What the first phase hands to the second, where order or number change. */

@@ -5,9 +5,11 @@
 #include "test_fixture.h"
 
 #include "core/internal.h"
+#include "domain_threads.h"
 
 #include <mps/body.h>
 #include <mps/couple.h>
+#include <mps/domain.h>
 #include <mps/dynamics.h>
 #include <mps/elastic.h>
 #include <mps/fluid.h>
@@ -158,6 +160,21 @@ static mps_status use_fluid(const void *def) {
   const mps_status status = mps_fluid_create(context, set, def, &made);
   mps_fluid_destroy(&made);
   mps_particles_destroy(&set);
+  return status;
+}
+
+/* A domain of this process alone. */
+static team alone;
+static void need_domain(void *def) {
+  team_begin(&alone, 1);
+  mps_domain_def known = team_domain_def(&alone, 0);
+  known.struct_size = ((mps_domain_def *)def)->struct_size;
+  memcpy(def, &known, sizeof known);
+}
+static mps_status use_domain(const void *def) {
+  mps_domain *made = NULL;
+  const mps_status status = mps_domain_create(context, def, &made);
+  mps_domain_destroy(&made);
   return status;
 }
 
@@ -462,6 +479,7 @@ static const user users[] = {
     {"mps_body_def", need_nothing, use_body},
     {"mps_context_def", need_nothing, use_context},
     {"mps_coupling_def", need_coupling, use_coupling},
+    {"mps_domain_def", need_domain, use_domain},
     {"mps_drucker_prager_def", need_drucker_prager, use_drucker_prager},
     {"mps_dynamics_def", need_nothing, use_dynamics},
     {"mps_elastic_def", need_nothing, use_elastic},

@@ -1,0 +1,56 @@
+/* domain_internal.h - what solvers use of a domain. Every function takes NULL for a domain of one
+ * rank, and is collective unless it says otherwise. A failure that ranks have agreed upon has the
+ * same record on all of them, and may be agreed upon again without harm.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_DOMAIN_INTERNAL_H
+#define MPSI_DOMAIN_INTERNAL_H
+
+#include "core/exact.h"
+#include "core/internal.h"
+
+#include <mps/domain.h>
+
+mps_domain *mpsi_domain_retain(mps_domain *domain); /* not collective */
+/* MPS_ERROR_ARGUMENT for a domain of another context. Not collective. */
+mps_status mpsi_domain_check(mps_context *context, const char *function, const mps_domain *domain);
+/* Whether there is anybody to agree with. Not collective. */
+static inline bool mpsi_domain_many(const mps_domain *domain) {
+  return mps_domain_size(domain) > 1;
+}
+
+/* What has become of the ranks: MPS_OK where all are well, else the worst status, with the record
+ * of the lowest rank that has it. `status` is this rank's, its record the last of the context. */
+mps_status mpsi_domain_settle(mps_domain *domain, const char *function, mps_status status);
+/* The same, and in the same message the greatest of each value: at most MPSI_DOMAIN_ALONG. Where
+ * ranks are not well the values are not to be used. */
+#define MPSI_DOMAIN_ALONG 8
+mps_status mpsi_domain_settle_max(mps_domain *domain, const char *function, mps_status status,
+                                  int32_t count, double *values);
+/* The same, and MPS_ERROR_ARGUMENT where ranks give different values of `name`. */
+mps_status mpsi_domain_settle_same(mps_domain *domain, const char *function, mps_status status,
+                                   const char *name, double value);
+
+mps_status mpsi_domain_max(mps_domain *domain, const char *function, int32_t count, double *values);
+mps_status mpsi_domain_sum(mps_domain *domain, const char *function, int32_t count,
+                           int64_t *values);
+/* Sums whose terms lie on all ranks. */
+mps_status mpsi_domain_sum_exact(mps_domain *domain, const char *function, int32_t count,
+                                 mpsi_exact *sums);
+
+/* Messages to whom it may concern, and from whom they come: those that come are the context's
+ * memory, freed with mpsi_domain_free_mail. */
+typedef struct mpsi_mail {
+  int32_t rank;
+  int64_t bytes;
+  void *data;
+} mpsi_mail;
+typedef struct mpsi_mailbox {
+  mps_context *context;
+  mpsi_mail *mail; /* in order of rank */
+  int32_t count, room;
+} mpsi_mailbox;
+mps_status mpsi_domain_exchange(mps_domain *domain, const char *function, int32_t count,
+                                const mps_domain_message *messages, mpsi_mailbox *box);
+void mpsi_domain_free_mail(mpsi_mailbox *box); /* not collective */
+
+#endif

@@ -1,0 +1,22 @@
+/* domain_private.h - the members of a domain.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_DOMAIN_PRIVATE_H
+#define MPSI_DOMAIN_PRIVATE_H
+
+#include "domain_internal.h"
+
+struct mps_domain {
+  mps_context *context;
+  mps_domain_def def;
+  mps_status lost;    /* what the transport failed with: it is used no more */
+  int64_t settled;    /* number of the record that the ranks have agreed upon last */
+  int32_t references; /* one thread at a time: no atomics */
+};
+
+/* Records that the transport has failed; returns its status, or MPS_OK. Not collective. */
+mps_status mpsi_domain_note(mps_domain *domain, const char *function, const char *callback,
+                            mps_status status);
+/* The transport's failure so far. Not collective. */
+mps_status mpsi_domain_alive(mps_domain *domain, const char *function);
+
+#endif

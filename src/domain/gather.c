@@ -1,0 +1,235 @@
+/* gather.c - the particles of all ranks as one set on rank 0.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/particles_internal.h"
+#include "core/state.h"
+#include "domain_private.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* ---- a share as a message: head, then for each field its column heads and columns -------------
+ */
+
+typedef struct head {
+  int64_t particles, fields, dim;
+  double spacing;
+} head;
+
+typedef struct field_head {
+  char name[MPSI_STATE_NAME];
+  int64_t columns, integer;
+} field_head;
+
+static mps_status pack(mps_domain *domain, const char *function, mps_particles *particles,
+                       char **out, int64_t *bytes) {
+  const head h = {.particles = mps_particles_count(particles),
+                  .fields = mps_particles_field_count(particles),
+                  .dim = mps_particles_dim(particles),
+                  .spacing = mps_particles_spacing(particles)};
+  mps_field_info info;
+  mps_view view;
+  mps_status status = MPS_OK;
+  *bytes = (int64_t)sizeof h;
+  for (int32_t f = 0; status == MPS_OK && f < h.fields; f++) {
+    status = mps_particles_field(particles, f, &info);
+    *bytes += (int64_t)sizeof(field_head) + info.components * h.particles * 8;
+  }
+  char *at = *out = mpsi_alloc(domain->context, *bytes, 1);
+  if (!at) return mpsi_fail_memory(domain->context, function, (size_t)*bytes);
+  memcpy(at, &h, sizeof h);
+  at += sizeof h;
+  for (int32_t f = 0; status == MPS_OK && f < h.fields; f++) {
+    status = mps_particles_field(particles, f, &info);
+    if (status == MPS_OK) status = mps_particles_view(particles, info.name, &view);
+    if (status != MPS_OK) return status;
+    field_head field = {.columns = info.components, .integer = info.dtype.code == 0};
+    snprintf(field.name, sizeof field.name, "%s", info.name);
+    memcpy(at, &field, sizeof field);
+    at += sizeof field;
+    for (int32_t c = 0; c < info.components; c++, at += 8 * h.particles)
+      memcpy(at, (const char *)view.data + 8 * c * view.stride[1], (size_t)h.particles * 8);
+  }
+  return status;
+}
+
+/* ---- rank 0 ---------------------------------------------------------------------------------- */
+
+/* Where a message has the columns of each field. */
+typedef struct share {
+  head h;
+  const char *field; /* the next field's head */
+} share;
+
+/* What rank 0 puts together. */
+typedef struct assembly {
+  mps_domain *domain;
+  const char *function;
+  const mpsi_mailbox *box;
+  share *share;
+  int32_t *owner; /* by id: the rank whose copy counts, -1: nobody has it */
+  int64_t ids, count;
+  mps_snapshot whole;
+} assembly;
+
+static const int64_t *ids_of(const share *s) { /* the first field of every set */
+  return (const int64_t *)(s->field + sizeof(field_head));
+}
+
+static bool open_shares(assembly *a) {
+  a->share = mpsi_alloc(a->domain->context, a->box->count, sizeof *a->share);
+  if (!a->share) return false;
+  for (int32_t r = 0; r < a->box->count; r++) {
+    share *s = &a->share[r];
+    memcpy(&s->h, a->box->mail[r].data, sizeof s->h);
+    s->field = (const char *)a->box->mail[r].data + sizeof s->h;
+    for (int64_t k = 0; k < s->h.particles; k++)
+      if (ids_of(s)[k] >= a->ids) a->ids = ids_of(s)[k] + 1;
+  }
+  return true;
+}
+
+static bool find_owners(assembly *a) {
+  a->owner = mpsi_alloc(a->domain->context, a->ids, sizeof *a->owner);
+  if (!a->owner) return false;
+  for (int64_t id = 0; id < a->ids; id++) a->owner[id] = -1;
+  for (int32_t r = 0; r < a->box->count; r++)
+    for (int64_t k = 0; k < a->share[r].h.particles; k++) {
+      int32_t *owner = &a->owner[ids_of(&a->share[r])[k]];
+      a->count += *owner < 0;
+      *owner = r;
+    }
+  return true;
+}
+
+/* Puts the columns of field `f` of all ranks together. */
+static mps_status assemble_field(assembly *a, int32_t f) {
+  mps_context *context = a->domain->context;
+  mpsi_value *to = &a->whole.fields.item[f];
+  field_head first;
+  memcpy(&first, a->share[0].field, sizeof first);
+  memcpy(to->name, first.name, sizeof to->name);
+  to->type = first.integer ? MPSI_STATE_I64 : MPSI_STATE_F64;
+  to->columns = (int32_t)first.columns;
+  to->rows = a->count;
+  if (!mpsi_value_reserve(context, to, to->type, a->count, to->columns))
+    return mpsi_fail_memory(context, a->function, (size_t)(a->count * to->columns) * 8);
+  int64_t row = 0;
+  for (int32_t r = 0; r < a->box->count; r++) {
+    share *s = &a->share[r];
+    const int64_t n = s->h.particles, *id = (const int64_t *)((const char *)a->box->mail[r].data +
+                                                              sizeof(head) + sizeof(field_head));
+    field_head own;
+    memcpy(&own, s->field, sizeof own);
+    if (memcmp(&own, &first, sizeof own) != 0)
+      return mpsi_fail(context, a->function, MPS_ERROR_FIELD,
+                       "field %d is '%.90s' on rank 0 and '%.90s' on rank %d: all ranks must have "
+                       "the same fields",
+                       f, first.name, own.name, (int)r);
+    const char *data = s->field + sizeof own;
+    int64_t kept = 0;
+    for (int64_t k = 0; k < n; k++) {
+      if (a->owner[id[k]] != r) continue;
+      for (int32_t c = 0; c < to->columns; c++)
+        memcpy((char *)to->data + 8 * (c * a->count + row + kept), data + 8 * (c * n + k), 8);
+      kept++;
+    }
+    row += kept;
+    s->field = data + 8 * n * to->columns;
+  }
+  return MPS_OK;
+}
+
+static mps_status assemble(assembly *a) {
+  mps_context *context = a->domain->context;
+  for (int32_t r = 1; r < a->box->count; r++)
+    if (a->share[r].h.fields != a->share[0].h.fields || a->share[r].h.dim != a->share[0].h.dim ||
+        a->share[r].h.spacing != a->share[0].h.spacing)
+      return mpsi_fail(context, a->function, MPS_ERROR_FIELD,
+                       "the set has %lld fields, dim %lld and spacing %g m on rank 0 and %lld, "
+                       "%lld and %g m on rank %d: all ranks must have the same",
+                       (long long)a->share[0].h.fields, (long long)a->share[0].h.dim,
+                       a->share[0].h.spacing, (long long)a->share[r].h.fields,
+                       (long long)a->share[r].h.dim, a->share[r].h.spacing, (int)r);
+  const int32_t fields = (int32_t)a->share[0].h.fields;
+  a->whole.particles = a->count;
+  if (!mpsi_values_reserve(context, &a->whole.fields, fields) ||
+      !mpsi_values_reserve(context, &a->whole.state, 1) ||
+      !mpsi_value_reserve(context, &a->whole.state.item[0], MPSI_STATE_I64, 1, 1))
+    return mpsi_fail_memory(context, a->function, (size_t)fields * sizeof(mpsi_value));
+  mpsi_particles_name_next_id(&a->whole.state.item[0], a->ids);
+  a->whole.state.count = 1;
+  mps_status status = MPS_OK;
+  for (int32_t f = 0; f < fields && status == MPS_OK; f++) {
+    status = assemble_field(a, f);
+    a->whole.fields.count = f + 1;
+  }
+  return status;
+}
+
+/* Makes the set, or fills it again. */
+static mps_status put(assembly *a, mps_particles **whole) {
+  mps_particles_def def = mps_particles_defaults();
+  mps_particles *set = *whole;
+  void *scratch = NULL;
+  def.dim = (int32_t)a->share[0].h.dim;
+  def.spacing = a->share[0].h.spacing;
+  mps_status status = set ? MPS_OK : mps_particles_create(a->domain->context, &def, &set);
+  if (status == MPS_OK)
+    status = mpsi_particles_prepare_state(set, a->function, &a->whole, &scratch);
+  if (status == MPS_OK) {
+    mpsi_particles_put_state(set, &a->whole, scratch);
+    mpsi_particles_take_next_id(set, &a->whole);
+  }
+  if (status != MPS_OK && !*whole) mps_particles_destroy(&set);
+  if (status == MPS_OK) *whole = set;
+  return status;
+}
+
+static mps_status make_whole(mps_domain *domain, const char *function, const mpsi_mailbox *box,
+                             mps_particles **whole) {
+  mps_context *context = domain->context;
+  assembly a = {.domain = domain, .function = function, .box = box, .whole.context = context};
+  mps_status status = MPS_OK;
+  if (!open_shares(&a) || !find_owners(&a))
+    status = mpsi_fail_memory(context, function, (size_t)a.ids * sizeof *a.owner);
+  if (status == MPS_OK) status = assemble(&a);
+  if (status == MPS_OK) status = put(&a, whole);
+  mpsi_values_free(context, &a.whole.fields);
+  mpsi_values_free(context, &a.whole.state);
+  mpsi_free(context, a.owner);
+  mpsi_free(context, a.share);
+  return status;
+}
+
+/* Without other ranks: a message to itself. */
+static mps_status send_to_first(mps_domain *domain, const char *function, char *data, int64_t bytes,
+                                mpsi_mailbox *box) {
+  const mps_domain_message message = {.rank = 0, .bytes = bytes, .data = data};
+  return mpsi_domain_exchange(domain, function, 1, &message, box);
+}
+
+mps_status mps_domain_gather(mps_domain *domain, mps_particles *particles, mps_particles **whole) {
+  if (!domain) return MPS_ERROR_ARGUMENT;
+  mps_context *context = domain->context;
+  mpsi_mailbox box = {.context = context};
+  char *data = NULL;
+  int64_t bytes = 0;
+  mps_status status = MPS_OK;
+  if (!particles || !whole)
+    status = mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL",
+                       particles ? "whole" : "particles");
+  else if (*whole == particles)
+    status = mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+                       "whole is the set that is to be gathered: give another, or NULL");
+  else if (mpsi_particles_context(particles) != context)
+    status = mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+                       "the particle set was made from another context than the domain");
+  else
+    status = pack(domain, __func__, particles, &data, &bytes);
+  status = mpsi_domain_settle(domain, __func__, status);
+  if (status == MPS_OK) status = send_to_first(domain, __func__, data, bytes, &box);
+  mpsi_free(context, data);
+  if (status == MPS_OK && domain->def.rank == 0) status = make_whole(domain, __func__, &box, whole);
+  mpsi_domain_free_mail(&box);
+  return mpsi_domain_settle(domain, __func__, status);
+}

@@ -1,0 +1,287 @@
+/* domain_threads.h - a transport for domains whose ranks are threads of one process, each with a
+ * context of its own: for tests with sanitizers, allocations that are refused and partners that
+ * are lost. Every wait ends after a time limit, with an error on all ranks.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPS_TEST_DOMAIN_THREADS_H
+#define MPS_TEST_DOMAIN_THREADS_H
+
+#include "test_common.h"
+
+#include <mps/domain.h>
+
+#include <pthread.h>
+#include <time.h>
+
+#define TEAM_MOST 16
+#define TEAM_STARS 256
+
+typedef struct team team;
+
+/* One rank's end. */
+typedef struct team_member {
+  team *team;
+  int32_t rank;
+  int32_t stars;   /* made so far: the next one's number */
+  int64_t turn;    /* meetings so far */
+  int64_t calls;   /* of callbacks so far */
+  int64_t deaf_at; /* the call from which on it takes no part, from 1; 0: never */
+  /* what the others may read in a meeting */
+  int32_t messages;
+  const mps_domain_message *message;
+  const double *max;
+  const int64_t *sum;
+  const char *own[TEAM_STARS]; /* items of each star while a copy is under way */
+} team_member;
+
+struct team {
+  int32_t size;
+  double limit; /* s, of a wait */
+  pthread_mutex_t lock;
+  pthread_cond_t change;
+  int64_t turn;    /* meetings that have ended */
+  int32_t arrived; /* at the present one */
+  bool lost;       /* a wait has ended by the limit */
+  bool posted[TEAM_STARS][TEAM_MOST];
+  int32_t copied[TEAM_STARS];
+  team_member member[TEAM_MOST];
+};
+
+typedef struct team_star {
+  int32_t number, item_bytes;
+  int64_t guests;
+  int32_t *rank;
+  int64_t *index;
+  char *to;
+} team_star;
+
+static inline void team_begin(team *t, int32_t size) {
+  memset(t, 0, sizeof *t);
+  t->size = size;
+  t->limit = 20.0;
+  pthread_mutex_init(&t->lock, NULL);
+  pthread_cond_init(&t->change, NULL);
+  for (int32_t r = 0; r < size; r++) {
+    t->member[r].team = t;
+    t->member[r].rank = r;
+  }
+}
+
+static inline void team_end(team *t) {
+  pthread_cond_destroy(&t->change);
+  pthread_mutex_destroy(&t->lock);
+}
+
+/* With the lock held: waits until something changes; false where the limit has passed. */
+static inline bool team_wait(team *t, const struct timespec *until) {
+  if (!t->lost && pthread_cond_timedwait(&t->change, &t->lock, until) != 0) t->lost = true;
+  if (t->lost) pthread_cond_broadcast(&t->change);
+  return !t->lost;
+}
+
+static inline struct timespec team_limit(const team *t) {
+  struct timespec until;
+  clock_gettime(CLOCK_REALTIME, &until);
+  until.tv_sec += (time_t)t->limit;
+  until.tv_nsec += (long)((t->limit - (double)(time_t)t->limit) * 1e9);
+  if (until.tv_nsec >= 1000000000) until.tv_nsec -= 1000000000, until.tv_sec++;
+  return until;
+}
+
+/* Whether this rank still takes part. */
+static inline bool team_listens(team_member *m) {
+  m->calls++;
+  return m->deaf_at == 0 || m->calls < m->deaf_at;
+}
+
+/* All ranks are here. */
+static inline mps_status team_meet(team_member *m) {
+  team *t = m->team;
+  const struct timespec until = team_limit(t);
+  pthread_mutex_lock(&t->lock);
+  const int64_t turn = ++m->turn;
+  if (++t->arrived == t->size) {
+    t->arrived = 0;
+    t->turn = turn;
+    pthread_cond_broadcast(&t->change);
+  }
+  while (t->turn < turn && team_wait(t, &until)) {
+  }
+  const bool good = t->turn >= turn;
+  pthread_mutex_unlock(&t->lock);
+  return good ? MPS_OK : MPS_ERROR_IO;
+}
+
+static inline mps_status team_rendezvous(void *user, int32_t count,
+                                         const mps_domain_message *message, mps_domain_room_fn room,
+                                         void *room_user) {
+  team_member *m = user;
+  bool refused = false;
+  if (!team_listens(m)) return MPS_ERROR_IO;
+  m->message = message;
+  m->messages = count;
+  if (team_meet(m) != MPS_OK) return MPS_ERROR_IO;
+  for (int32_t r = 0; r < m->team->size; r++) {
+    const team_member *from = &m->team->member[r];
+    for (int32_t k = 0; k < from->messages; k++) {
+      if (from->message[k].rank != m->rank) continue;
+      void *to = room(room_user, r, from->message[k].bytes);
+      if (to && from->message[k].bytes > 0)
+        memcpy(to, from->message[k].data, (size_t)from->message[k].bytes);
+      refused = refused || !to;
+    }
+  }
+  if (team_meet(m) != MPS_OK) return MPS_ERROR_IO;
+  return refused ? MPS_ERROR_MEMORY : MPS_OK;
+}
+
+static inline mps_status team_max(void *user, int32_t count, double *values) {
+  team_member *m = user;
+  if (!team_listens(m)) return MPS_ERROR_IO;
+  double *most = malloc((size_t)count * sizeof *most + 8);
+  m->max = values;
+  mps_status status = team_meet(m);
+  for (int32_t k = 0; status == MPS_OK && k < count; k++) {
+    most[k] = values[k];
+    for (int32_t r = 0; r < m->team->size; r++) most[k] = fmax(most[k], m->team->member[r].max[k]);
+  }
+  if (status == MPS_OK) status = team_meet(m);
+  if (status == MPS_OK && count > 0) memcpy(values, most, (size_t)count * sizeof *most);
+  free(most);
+  return status;
+}
+
+static inline mps_status team_sum(void *user, int32_t count, int64_t *values) {
+  team_member *m = user;
+  if (!team_listens(m)) return MPS_ERROR_IO;
+  uint64_t *sum = calloc((size_t)count + 1, sizeof *sum);
+  m->sum = values;
+  mps_status status = team_meet(m);
+  for (int32_t k = 0; status == MPS_OK && k < count; k++)
+    for (int32_t r = 0; r < m->team->size; r++) sum[k] += (uint64_t)m->team->member[r].sum[k];
+  if (status == MPS_OK) status = team_meet(m);
+  if (status == MPS_OK && count > 0) memcpy(values, sum, (size_t)count * sizeof *sum);
+  free(sum);
+  return status;
+}
+
+static inline mps_status team_star_create(void *user, int64_t own, int64_t guests,
+                                          const int32_t *rank, const int64_t *index, void **out) {
+  team_member *m = user;
+  (void)own;
+  if (!team_listens(m) || m->stars == TEAM_STARS) return MPS_ERROR_IO;
+  team_star *star = calloc(1, sizeof *star);
+  star->number = m->stars++;
+  star->guests = guests;
+  star->rank = malloc((size_t)guests * sizeof *star->rank + 8);
+  star->index = malloc((size_t)guests * sizeof *star->index + 8);
+  if (guests > 0) {
+    memcpy(star->rank, rank, (size_t)guests * sizeof *star->rank);
+    memcpy(star->index, index, (size_t)guests * sizeof *star->index);
+  }
+  *out = star;
+  return MPS_OK;
+}
+
+static inline mps_status team_star_begin(void *user, void *handle, int32_t item_bytes,
+                                         const void *own, void *guests) {
+  team_member *m = user;
+  team *t = m->team;
+  team_star *star = handle;
+  if (!team_listens(m)) return MPS_ERROR_IO;
+  star->item_bytes = item_bytes;
+  star->to = guests;
+  pthread_mutex_lock(&t->lock);
+  m->own[star->number] = own;
+  t->posted[star->number][m->rank] = true;
+  pthread_cond_broadcast(&t->change);
+  pthread_mutex_unlock(&t->lock);
+  return MPS_OK;
+}
+
+/* Takes the items of those who have posted theirs, and waits until all have taken this one's. */
+static inline mps_status team_star_end(void *user, void *handle) {
+  team_member *m = user;
+  team *t = m->team;
+  const team_star *star = handle;
+  const struct timespec until = team_limit(t);
+  bool good = team_listens(m);
+  pthread_mutex_lock(&t->lock);
+  for (int32_t r = 0; good && r < t->size; r++)
+    while (good && !t->posted[star->number][r]) good = team_wait(t, &until);
+  pthread_mutex_unlock(&t->lock);
+  for (int64_t k = 0; good && k < star->guests; k++)
+    memcpy(star->to + k * star->item_bytes,
+           t->member[star->rank[k]].own[star->number] + star->index[k] * star->item_bytes,
+           (size_t)star->item_bytes);
+  pthread_mutex_lock(&t->lock);
+  if (good && ++t->copied[star->number] == t->size) {
+    t->copied[star->number] = 0;
+    memset(t->posted[star->number], 0, sizeof t->posted[star->number]);
+    pthread_cond_broadcast(&t->change);
+  }
+  while (good && t->posted[star->number][m->rank]) good = team_wait(t, &until);
+  pthread_mutex_unlock(&t->lock);
+  return good ? MPS_OK : MPS_ERROR_IO;
+}
+
+static inline void team_star_destroy(void *user, void *handle) {
+  team_star *star = handle;
+  (void)user;
+  free(star->rank);
+  free(star->index);
+  free(star);
+}
+
+static inline mps_domain_def team_domain_def(team *t, int32_t rank) {
+  mps_domain_def def = mps_domain_defaults();
+  def.rank = rank;
+  def.size = t->size;
+  def.user = &t->member[rank];
+  def.rendezvous = team_rendezvous;
+  def.star_create = team_star_create;
+  def.star_begin = team_star_begin;
+  def.star_end = team_star_end;
+  def.star_destroy = team_star_destroy;
+  def.reduce_max = team_max;
+  def.reduce_sum = team_sum;
+  return def;
+}
+
+/* ---- running --------------------------------------------------------------------------------- */
+
+/* What each rank runs, in its own thread: no assertions there. */
+typedef void (*team_fn)(void *user, team *t, int32_t rank);
+
+typedef struct team_thread {
+  pthread_t thread;
+  team *team;
+  int32_t rank;
+  team_fn run;
+  void *user;
+} team_thread;
+
+static inline void *team_thread_main(void *argument) {
+  const team_thread *self = argument;
+  self->run(self->user, self->team, self->rank);
+  return NULL;
+}
+
+static inline void team_run(team *t, team_fn run, void *user) {
+  team_thread thread[TEAM_MOST];
+  for (int32_t r = 0; r < t->size; r++) {
+    thread[r] = (team_thread){.team = t, .rank = r, .run = run, .user = user};
+    if (pthread_create(&thread[r].thread, NULL, team_thread_main, &thread[r]) != 0) abort();
+  }
+  for (int32_t r = 0; r < t->size; r++) pthread_join(thread[r].thread, NULL);
+}
+
+/* A context for a rank, or NULL. */
+static inline mps_context *team_context(int32_t executor, int32_t threads) {
+  mps_context_def def = test_context_defaults();
+  mps_context *made = NULL;
+  def.executor = executor;
+  def.threads = threads;
+  return mps_context_create(&def, &made, NULL, 0) == MPS_OK ? made : NULL;
+}
+
+#endif

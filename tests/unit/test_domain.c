@@ -1,0 +1,386 @@
+/* test_domain.c - domains: exact sums, errors that all ranks share, gathering, partners that are
+ * lost, memory that is refused.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "test_allocator.h"
+#include "test_fixture.h"
+
+#include "domain/domain_internal.h"
+#include "domain_threads.h"
+
+#include <mps/domain.h>
+
+#include <float.h>
+
+/* ---- exact sums ------------------------------------------------------------------------------ */
+
+static double sum_of(int count, const double *terms) {
+  mpsi_exact sum = {{0}};
+  for (int k = 0; k < count; k++) mpsi_exact_add(&sum, terms[k]);
+  return mpsi_exact_value(&sum);
+}
+
+static void test_exact_sums(void **state) {
+  (void)state;
+  static const struct {
+    double term[4], sum;
+  } cases[] = {
+      {{0.0, -0.0, 0.0, 0.0}, 0.0},
+      {{1e300, 1.0, -1e300, 0.0}, 1.0},
+      {{0x1p53, 1.0, 0.0, 0.0}, 0x1p53},                 /* half: to even */
+      {{0x1p53, 1.0, 0x1p-1074, 0.0}, 0x1p53 + 2.0},     /* above half */
+      {{0x1p53 + 2.0, 1.0, 0.0, 0.0}, 0x1p53 + 4.0},     /* half: to even */
+      {{-0x1p53, -1.0, -0x1p-1074, 0.0}, -0x1p53 - 2.0}, /* the same below zero */
+      {{0x1p-1074, 0x1p-1074, 0.0, 0.0}, 0x1p-1073},     /* not normalised */
+      {{0x1p-1022, -0x1p-1074, 0.0, 0.0}, 0x1.ffffffffffffep-1023},
+      {{DBL_MAX, DBL_MAX, -DBL_MAX, 0.0}, DBL_MAX},
+      {{DBL_MAX, DBL_MAX, 0.0, 0.0}, INFINITY},
+      {{-DBL_MAX, -DBL_MAX, 0.0, 0.0}, -INFINITY},
+      {{INFINITY, 1.0, 0.0, 0.0}, INFINITY},
+      {{-INFINITY, 1.0, 0.0, 0.0}, -INFINITY},
+      {{0.1, 0.2, 0.3, -0.6}, 0.0}, /* see below */
+  };
+  const size_t count = sizeof cases / sizeof *cases;
+  for (size_t k = 0; k + 1 < count; k++) {
+    const double sum = sum_of(4, cases[k].term);
+    if (memcmp(&sum, &cases[k].sum, sizeof sum) != 0)
+      fail_msg("case %zu: %a, expected %a", k, sum, cases[k].sum);
+  }
+  /* against long double, which holds these four terms' sum exactly */
+  const long double exact =
+      (long double)0.1 + (long double)0.2 + (long double)0.3 - (long double)0.6;
+  mps_assert_near(sum_of(4, cases[count - 1].term), (double)exact, 0.0);
+  const double infinities[2] = {INFINITY, -INFINITY}, none[1] = {NAN};
+  assert_true(isnan(sum_of(2, infinities)));
+  assert_true(isnan(sum_of(1, none)));
+}
+
+static void test_exact_sums_have_no_order(void **state) {
+  (void)state;
+  enum { TERMS = 5000 };
+  static double term[TERMS];
+  uint64_t h = 1;
+  for (int k = 0; k < TERMS; k++) {
+    h = h * 6364136223846793005u + 1442695040888963407u;
+    term[k] = ldexp((double)(int64_t)h, (int)(h >> 33 & 127) - 64 - 63);
+  }
+  mpsi_exact forth = {{0}}, back = {{0}}, part[3] = {{{0}}, {{0}}, {{0}}};
+  for (int k = 0; k < TERMS; k++) {
+    mpsi_exact_add(&forth, term[k]);
+    mpsi_exact_add(&back, term[TERMS - 1 - k]);
+    mpsi_exact_add(&part[h % 3], term[k]);
+    h = h * 6364136223846793005u + 1442695040888963407u;
+    if (k % 100 == 0) mpsi_exact_carry(&part[h % 3]);
+  }
+  for (int p = 1; p < 3; p++) {
+    mpsi_exact_carry(&part[p]);
+    for (int k = 0; k < MPSI_EXACT_LIMBS; k++) part[0].limb[k] += part[p].limb[k];
+  }
+  const double a = mpsi_exact_value(&forth), b = mpsi_exact_value(&back),
+               c = mpsi_exact_value(&part[0]);
+  assert_memory_equal(&a, &b, sizeof a);
+  assert_memory_equal(&a, &c, sizeof a);
+  for (int k = 0; k < TERMS; k++) mpsi_exact_add(&forth, -term[k]);
+  mps_assert_near(mpsi_exact_value(&forth), 0.0, 0.0);
+}
+
+/* ---- ranks ----------------------------------------------------------------------------------- */
+
+/* What a rank has found: looked at when all threads have ended. */
+typedef struct found {
+  mps_status status[8];
+  double value[8];
+  char message[512];
+  int64_t count;
+  bool good;
+} found;
+
+typedef struct scene {
+  found rank[TEAM_MOST];
+  int what;
+  int64_t refuse; /* allocation that rank 1 is refused, from 1; 0 none */
+  test_allocator allocator[TEAM_MOST];
+} scene;
+
+static mps_context *rank_context(scene *s, int32_t rank) {
+  s->allocator[rank].refuse_at = rank == 1 ? s->refuse : 0;
+  return test_allocator_context(&s->allocator[rank]);
+}
+
+static void run_sums(void *user, team *t, int32_t rank) {
+  scene *s = user;
+  found *f = &s->rank[rank];
+  mps_domain *domain = NULL;
+  mps_context *own = rank_context(s, rank);
+  const mps_domain_def def = team_domain_def(t, rank);
+  f->status[0] = mps_domain_create(own, &def, &domain);
+  mpsi_exact sum = {{0}};
+  mpsi_exact_add(&sum, ldexp(1.0, 60 * rank));
+  mpsi_exact_add(&sum, -1e-3);
+  f->status[1] = mpsi_domain_sum_exact(domain, "test", 1, &sum);
+  f->value[0] = mpsi_exact_value(&sum);
+  double most[2] = {rank, -rank};
+  f->status[2] = mps_domain_max(domain, 2, most);
+  f->value[1] = most[0];
+  f->value[2] = most[1];
+  f->status[3] = mps_domain_agree(domain, MPS_OK);
+  f->good = mps_domain_rank(domain) == rank && mps_domain_size(domain) == t->size;
+  mps_domain_destroy(&domain);
+  mps_context_destroy(&own);
+}
+
+static void test_reductions(void **state) {
+  (void)state;
+  for (int32_t size = 1; size <= 7; size += 3) {
+    scene s = {.what = 0};
+    team t;
+    team_begin(&t, size);
+    team_run(&t, run_sums, &s);
+    team_end(&t);
+    mpsi_exact sum = {{0}};
+    for (int32_t r = 0; r < size; r++) {
+      mpsi_exact_add(&sum, ldexp(1.0, 60 * r));
+      mpsi_exact_add(&sum, -1e-3);
+    }
+    for (int32_t r = 0; r < size; r++) {
+      for (int k = 0; k < 4; k++) assert_int_equal(s.rank[r].status[k], MPS_OK);
+      mps_assert_near(s.rank[r].value[0], mpsi_exact_value(&sum), 0.0);
+      mps_assert_near(s.rank[r].value[1], size - 1, 0.0);
+      mps_assert_near(s.rank[r].value[2], 0.0, 0.0);
+      assert_true(s.rank[r].good);
+      assert_int_equal(s.allocator[r].live, 0);
+    }
+  }
+}
+
+/* Rank 2 fails by argument, rank 3 by memory: all get the higher status with its record. */
+static void run_errors(void *user, team *t, int32_t rank) {
+  scene *s = user;
+  found *f = &s->rank[rank];
+  mps_domain *domain = NULL;
+  mps_context *own = rank_context(s, rank);
+  const mps_domain_def def = team_domain_def(t, rank);
+  f->status[0] = mps_domain_create(own, &def, &domain);
+  mps_status status = MPS_OK;
+  if (rank == 2) status = mpsi_fail(own, "mps_two", MPS_ERROR_ARGUMENT, "two is %d", 2);
+  if (rank == 3) {
+    status = mpsi_fail(own, "mps_three", MPS_ERROR_MEMORY, "three is %d", 3);
+    mpsi_fail_where(own, 17, 33);
+    mpsi_fail_object(own, "body 3");
+  }
+  f->status[1] = mpsi_domain_settle(domain, "outer", mpsi_domain_settle(domain, "test", status));
+  const mps_error *error = mps_context_error(own);
+  f->good = error->step == 17 && error->particle == 33 && strcmp(error->object, "body 3") == 0 &&
+            strcmp(error->function, "mps_three") == 0;
+  snprintf(f->message, sizeof f->message, "%s", error->message);
+  f->status[2] = mpsi_domain_settle_same(domain, "test", MPS_OK, "dt", rank == 1 ? NAN : 1e-3);
+  f->status[3] = mpsi_domain_settle_same(domain, "test", MPS_OK, "dt", NAN);
+  f->status[4] = mps_domain_agree(domain, rank == 0 ? MPS_ERROR_IO : MPS_OK); /* no record */
+  mps_domain_destroy(&domain);
+  mps_context_destroy(&own);
+}
+
+static void test_errors_are_shared(void **state) {
+  (void)state;
+  scene s = {.what = 0};
+  team t;
+  team_begin(&t, 4);
+  team_run(&t, run_errors, &s);
+  team_end(&t);
+  for (int32_t r = 0; r < 4; r++) {
+    assert_int_equal(s.rank[r].status[0], MPS_OK);
+    assert_int_equal(s.rank[r].status[1], MPS_ERROR_MEMORY);
+    assert_true(s.rank[r].good);
+    assert_string_equal(s.rank[r].message, "rank 3: three is 3");
+    assert_int_equal(s.rank[r].status[2], MPS_ERROR_ARGUMENT);
+    assert_int_equal(s.rank[r].status[3], MPS_OK);
+    assert_int_equal(s.rank[r].status[4], MPS_ERROR_IO);
+    assert_int_equal(s.allocator[r].live, 0);
+  }
+}
+
+/* ---- gathering ------------------------------------------------------------------------------- */
+
+/* Every rank makes 4 x 3 particles and keeps those whose id is its own modulo size, and id 0. */
+static mps_status make_share(mps_context *own, int32_t rank, int32_t size, mps_particles **out) {
+  mps_particles_def def = mps_particles_defaults();
+  def.spacing = 0.5;
+  mps_status status = mps_particles_create(own, &def, out);
+  const double lo[2] = {0.0, 0.0}, hi[2] = {2.0, 1.5};
+  if (status == MPS_OK) status = mps_particles_fill_box(*out, lo, hi, NULL);
+  if (status == MPS_OK) status = mps_particles_set(*out, "density", 0, 1000.0 + rank);
+  int64_t gone[12], count = 0;
+  for (int64_t id = 1; id < 12; id++)
+    if (id % size != rank) gone[count++] = id;
+  if (status == MPS_OK) status = mps_particles_remove(*out, count, gone);
+  return status;
+}
+
+static void run_gather(void *user, team *t, int32_t rank) {
+  scene *s = user;
+  found *f = &s->rank[rank];
+  mps_domain *domain = NULL;
+  mps_particles *share = NULL, *whole = NULL;
+  mps_context *own = rank_context(s, rank);
+  const mps_domain_def def = team_domain_def(t, rank);
+  f->status[0] = mps_domain_create(own, &def, &domain);
+  if (f->status[0] == MPS_OK)
+    f->status[1] = mps_domain_agree(domain, make_share(own, rank, t->size, &share));
+  if (f->status[0] == MPS_OK && f->status[1] == MPS_OK) {
+    if (s->what == 1 && rank == 1)
+      f->status[3] = mps_particles_set(share, "pressure", 0, 1.0); /* others lack it */
+    f->status[2] = mps_domain_gather(domain, share, &whole);
+    f->count = mps_particles_count(whole);
+    f->good = true;
+    int32_t before = 0;
+    for (int64_t k = 0; k < f->count; k++) {
+      mps_view id, density, position;
+      f->status[4] = mps_particles_view(whole, "id", &id);
+      f->status[5] = mps_particles_view(whole, "density", &density);
+      f->status[6] = mps_particles_view(whole, "position", &position);
+      const int64_t i = *mps_view_i64(&id, k, 0);
+      const int32_t from = (int32_t)(*mps_view_f64(&density, k, 0) - 1000.0);
+      f->good = f->good && (i == 0 ? from == t->size - 1 : from == i % t->size) && from >= before &&
+                *mps_view_f64(&position, k, 0) == 0.25 + 0.5 * (double)(i % 4) &&
+                mps_particles_index(whole, i) == k;
+      before = from;
+    }
+    const uint64_t epoch = mps_particles_epoch(whole);
+    if (f->status[2] == MPS_OK) f->status[7] = mps_domain_gather(domain, share, &whole);
+    f->good = f->good && epoch == mps_particles_epoch(whole); /* views stay good */
+  }
+  snprintf(f->message, sizeof f->message, "%s", mps_context_error(own)->message);
+  mps_particles_destroy(&whole);
+  mps_particles_destroy(&share);
+  mps_domain_destroy(&domain);
+  mps_context_destroy(&own);
+}
+
+static void test_gather(void **state) {
+  (void)state;
+  for (int32_t size = 1; size <= 5; size += 2) {
+    scene s = {.what = 0};
+    team t;
+    team_begin(&t, size);
+    team_run(&t, run_gather, &s);
+    team_end(&t);
+    for (int32_t r = 0; r < size; r++) {
+      for (int k = 0; k < 8; k++) assert_int_equal(s.rank[r].status[k], MPS_OK);
+      assert_int_equal(s.rank[r].count, r == 0 ? 12 : 0);
+      assert_true(s.rank[r].good);
+      assert_int_equal(s.allocator[r].live, 0);
+    }
+  }
+  scene s = {.what = 1};
+  team t;
+  team_begin(&t, 2);
+  team_run(&t, run_gather, &s);
+  team_end(&t);
+  for (int32_t r = 0; r < 2; r++) {
+    assert_int_equal(s.rank[r].status[2], MPS_ERROR_FIELD);
+    assert_non_null(strstr(s.rank[r].message, "the set has 3 fields"));
+  }
+}
+
+/* One rank is refused one allocation after the other: all ranks report it, none hangs. */
+static void test_refused_memory(void **state) {
+  (void)state;
+  for (int64_t refuse = 3;; refuse++) { /* 1: the context, 2: the domain, which none knows yet */
+    scene s = {.refuse = refuse};
+    team t;
+    team_begin(&t, 3);
+    team_run(&t, run_gather, &s);
+    team_end(&t);
+    assert_false(t.lost);
+    const mps_status worst = s.rank[1].status[1]   ? s.rank[1].status[1]
+                             : s.rank[1].status[2] ? s.rank[1].status[2]
+                                                   : s.rank[1].status[7];
+    for (int32_t r = 0; r < 3; r++) {
+      assert_int_equal(s.allocator[r].live, 0);
+      for (int k = 1; k < 8; k++)
+        if (k == 1 || k == 2 || k == 7) assert_int_equal(s.rank[r].status[k], s.rank[1].status[k]);
+      if (worst != MPS_OK) assert_non_null(strstr(s.rank[r].message, "rank 1: "));
+    }
+    if (worst == MPS_OK) break;
+    assert_int_equal(worst, MPS_ERROR_MEMORY);
+    assert_true(refuse < 200);
+  }
+}
+
+/* A rank that falls silent: the others give up after the limit, with an error. */
+static void run_lost(void *user, team *t, int32_t rank) {
+  scene *s = user;
+  found *f = &s->rank[rank];
+  mps_domain *domain = NULL;
+  mps_context *own = rank_context(s, rank);
+  const mps_domain_def def = team_domain_def(t, rank);
+  f->status[0] = mps_domain_create(own, &def, &domain);
+  for (int k = 1; domain && k < 4; k++) f->status[k] = mps_domain_agree(domain, MPS_OK);
+  snprintf(f->message, sizeof f->message, "%s", mps_context_error(own)->message);
+  mps_domain_destroy(&domain);
+  mps_context_destroy(&own);
+}
+
+static void test_lost_partner(void **state) {
+  (void)state;
+  for (int64_t deaf = 1; deaf <= 6; deaf++) {
+    scene s = {.what = 0};
+    team t;
+    team_begin(&t, 3);
+    t.limit = 0.2;
+    t.member[2].deaf_at = deaf;
+    team_run(&t, run_lost, &s);
+    team_end(&t);
+    for (int32_t r = 0; r < 3; r++) {
+      const mps_status last = s.rank[r].status[0] ? s.rank[r].status[0] : s.rank[r].status[3];
+      assert_int_equal(last, MPS_ERROR_IO);
+      assert_non_null(strstr(s.rank[r].message, "lost one another"));
+      assert_int_equal(s.allocator[r].live, 0);
+    }
+  }
+}
+
+/* ---- arguments ------------------------------------------------------------------------------- */
+
+static void test_arguments(void **state) {
+  (void)state;
+  mps_domain *domain = NULL;
+  team t;
+  team_begin(&t, 1);
+  mps_domain_def def = team_domain_def(&t, 0);
+  assert_int_equal(mps_domain_create(NULL, &def, &domain), MPS_ERROR_ARGUMENT);
+  mps_assert_fails(context, mps_domain_create(context, NULL, &domain), MPS_ERROR_ARGUMENT, "NULL");
+  mps_assert_fails(context, mps_domain_create(context, &def, NULL), MPS_ERROR_ARGUMENT, "out");
+  def.size = 0;
+  mps_assert_fails(context, mps_domain_create(context, &def, &domain), MPS_ERROR_ARGUMENT,
+                   "size is 0 ranks");
+  def.size = 1, def.rank = 1;
+  mps_assert_fails(context, mps_domain_create(context, &def, &domain), MPS_ERROR_ARGUMENT,
+                   "rank is 1");
+  def.rank = 0, def.star_end = NULL;
+  mps_assert_fails(context, mps_domain_create(context, &def, &domain), MPS_ERROR_ARGUMENT,
+                   "star_end is NULL");
+  def = team_domain_def(&t, 0);
+  mps_assert_ok(context, mps_domain_create(context, &def, &domain));
+  double value[1] = {NAN};
+  mps_assert_fails(context, mps_domain_max(domain, 1, value), MPS_ERROR_ARGUMENT, "NaN");
+  mps_assert_fails(context, mps_domain_max(domain, 1, NULL), MPS_ERROR_ARGUMENT, "NULL");
+  mps_particles *whole = NULL;
+  mps_assert_fails(context, mps_domain_gather(domain, NULL, &whole), MPS_ERROR_ARGUMENT,
+                   "particles is NULL");
+  assert_int_equal(mps_domain_agree(NULL, MPS_OK), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_domain_rank(NULL), -1);
+  assert_int_equal(mps_domain_size(NULL), 0);
+  mps_domain_destroy(&domain);
+  mps_domain_destroy(&domain);
+  team_end(&t);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_exact_sums),   cmocka_unit_test(test_exact_sums_have_no_order),
+      cmocka_unit_test(test_reductions),   cmocka_unit_test(test_errors_are_shared),
+      cmocka_unit_test(test_gather),       cmocka_unit_test(test_refused_memory),
+      cmocka_unit_test(test_lost_partner), cmocka_unit_test(test_arguments),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
