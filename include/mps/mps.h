@@ -37,6 +37,7 @@
 #include "dynamics.h"
 #include "elastic.h"
 #include "fluid.h"
+#include "fluid_solver.h"
 #include "geostatic.h"
 #include "grid.h"
 #include "io.h"

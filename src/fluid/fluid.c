@@ -123,6 +123,7 @@ double mpsi_fluid_energy(const mps_fluid *f, double *kinetic) {
 
 static void release(mps_fluid *f) {
   mps_context *context = f->context;
+  mpsi_fluid_drop_solver(f);
   void *const parts[] = {f->slab,
                          f->local,
                          f->state,

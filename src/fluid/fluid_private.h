@@ -4,7 +4,7 @@
  *   bodies.c    rigid bodies, whose faces are walls too
  *   near.c      who is near whom, and the weights w; sight.c: who sees whom past walls that end
  *   moments.c   sums over the neighbours: density, moments, velocity gradient, free surface
- *   pressure.c  rows of the pressure equation; pcg.c solves it
+ *   pressure.c  rows of the pressure equation; pcg.c solves it, or solver.c has it solved
  *   classical.c the classical scheme's own parts of these
  *   move.c      pressure gradient, velocity, guards, positions
  *   probe.c     pressure at walls, level of the surface
@@ -115,6 +115,18 @@ typedef struct mpsi_fluid_system {
   double *sums;    /* by chunk or block, two values each */
 } mpsi_fluid_system;
 
+/* A solver of the caller, and the matrix as it gets it; see solver.c. */
+typedef struct mpsi_fluid_outside {
+  void *user;
+  mps_status (*matrix)(void *user, int64_t rows, const int64_t *start, const int32_t *column,
+                       const double *value);
+  mps_status (*solve)(void *user, const double *b, double tolerance, double *x,
+                      int64_t *iterations);
+  int64_t least, rows; /* rows: room of start */
+  int64_t *start;
+  mpsi_fluid_room column_room, value_room; /* int32_t, double */
+} mpsi_fluid_outside;
+
 /* The classical scheme, see classical.c; gamma 0: the library's own. */
 typedef struct mpsi_fluid_classical {
   double gamma, n0, n_wide, lambda; /* sums over the lattice; lambda: mean of r^2, m2 */
@@ -175,6 +187,7 @@ struct mps_fluid {
   int64_t steps;
   mpsi_fluid_stage stage;
   mpsi_fluid_classical classical;
+  mpsi_fluid_outside *outside; /* NULL: none */
   bool in_callback;
   bool changing; /* energy_before is that of before a change of the set that is under way */
   bool stale;    /* what is known of the surroundings is not that of the fields */
@@ -273,6 +286,11 @@ mps_status mpsi_fluid_solve_pressure(mps_fluid *fluid, const char *function);
 /* pcg.c: solves for system.x, starting from what it holds; the number of iterations, or -1. */
 mps_status mpsi_fluid_factor(mps_fluid *fluid, const char *function);
 int64_t mpsi_fluid_pcg(mps_fluid *fluid);
+/* solver.c */
+bool mpsi_fluid_solved_outside(const mps_fluid *fluid);
+mps_status mpsi_fluid_hand_matrix(mps_fluid *fluid, const char *function);
+mps_status mpsi_fluid_solve_outside(mps_fluid *fluid, const char *function);
+void mpsi_fluid_drop_solver(mps_fluid *fluid);
 /* move.c */
 void mpsi_fluid_find_velocities(mps_fluid *fluid);
 int64_t mpsi_fluid_advance(mps_fluid *fluid); /* first particle that went wrong, or -1 */

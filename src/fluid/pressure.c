@@ -73,15 +73,11 @@ static void take_solution(mps_fluid *f, int64_t begin, int64_t end, int64_t chun
 mps_status mpsi_fluid_prepare_pressure(mps_fluid *f, const char *function) {
   const bool classical = f->classical.gamma > 0.0;
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, classical ? mpsi_fluid_classical_rows : make_rows);
+  if (mpsi_fluid_solved_outside(f)) return mpsi_fluid_hand_matrix(f, function);
   return mpsi_fluid_factor(f, function);
 }
 
-mps_status mpsi_fluid_solve_pressure(mps_fluid *f, const char *function) {
-  const bool classical = f->classical.gamma > 0.0;
-  if (!classical) {
-    mpsi_fluid_press_ghosts(f);
-    mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, make_right);
-  }
+static mps_status solve_inside(mps_fluid *f, const char *function) {
   const int64_t iterations = mpsi_fluid_pcg(f);
   if (iterations < 0)
     return mpsi_fail(f->context, function, MPS_ERROR_NUMERIC,
@@ -90,6 +86,18 @@ mps_status mpsi_fluid_solve_pressure(mps_fluid *f, const char *function) {
                      (long long)f->steps, f->time, f->def.tolerance, f->def.iterations);
   f->report.iterations = iterations;
   f->report.all_iterations += iterations;
+  return MPS_OK;
+}
+
+mps_status mpsi_fluid_solve_pressure(mps_fluid *f, const char *function) {
+  const bool classical = f->classical.gamma > 0.0;
+  if (!classical) {
+    mpsi_fluid_press_ghosts(f);
+    mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, make_right);
+  }
+  const mps_status status = mpsi_fluid_solved_outside(f) ? mpsi_fluid_solve_outside(f, function)
+                                                         : solve_inside(f, function);
+  if (status != MPS_OK) return status;
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK,
                  classical ? mpsi_fluid_classical_solution : take_solution);
   if (classical) return MPS_OK;

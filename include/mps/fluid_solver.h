@@ -1,0 +1,59 @@
+/* mps/fluid_solver.h - another solver of the fluid's pressure equation in place of the library's
+ * own: an algebraic multigrid for large fluids, a direct solver to check with.
+ *
+ * Each step has one equation A x = b, symmetric and positive definite, with one row a particle in
+ * the present order of the set and about 33 entries a row; x is the reduced pressure. The matrix
+ * changes at every step, as the neighbours do. The library's own solver (conjugate gradients with
+ * an incomplete factor) takes a number of iterations that grows like the number of particles along
+ * the fluid's side (docs/fluid.md), which a multigrid avoids.
+ *
+ * Thread rule: as mps/fluid.h; the callbacks are called by the thread that steps, outside of the
+ * context's executor.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef LIBMPS_FLUID_SOLVER_H
+#define LIBMPS_FLUID_SOLVER_H
+
+#include "fluid.h"
+
+MPS_EXTERN_C_BEGIN
+
+/** A, by rows: row i has the columns column[start[i]] to column[start[i + 1] - 1], ascending, with
+ *  the diagonal and both halves; `rows` + 1 starts, start[0] is 0. A particle apart from the rest
+ *  has a row of its diagonal alone, 1. The arrays stay as they are until the equation has been
+ *  solved for the last time: until the next call. */
+typedef mps_status (*mps_fluid_matrix_fn)(void *user, int64_t rows, const int64_t *start,
+                                          const int32_t *column, const double *value);
+
+/** Solves A x = b with the last matrix. `x` (`rows` values) holds a good start and receives the
+ *  solution: |b - A x| <= `tolerance` |b|, which the library checks. `iterations` (0 at the call)
+ *  may be set, for the report. Called once a step, and in a step in parts once for every
+ *  mps_fluid_solve_pressure. */
+typedef mps_status (*mps_fluid_solve_fn)(void *user, const double *b, double tolerance, double *x,
+                                         int64_t *iterations);
+
+typedef struct mps_fluid_solver_def {
+  uint32_t struct_size;
+  int32_t reserved;
+  void *user;                 /* handed to both; the caller's own */
+  mps_fluid_matrix_fn matrix; /* no default */
+  mps_fluid_solve_fn solve;   /* no default */
+  int64_t least;              /* particles; a smaller fluid is solved by the library, >= 0;
+                                 default 0 */
+} mps_fluid_solver_def;
+
+MPS_API mps_status mps_fluid_solver_def_init(mps_fluid_solver_def *def, size_t size);
+static inline mps_fluid_solver_def mps_fluid_solver_defaults(void) {
+  mps_fluid_solver_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_fluid_solver_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+
+/** Puts a solver in, between steps; `def` NULL takes it out. The callbacks may read the fluid, not
+ *  step or destroy it. A status they return ends the step, which has not happened; so does a
+ *  residual above the tolerance (MPS_ERROR_NUMERIC). It belongs to no snapshot and no file. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_set_solver(mps_fluid *fluid,
+                                                      const mps_fluid_solver_def *def);
+
+MPS_EXTERN_C_END
+#endif

@@ -1,0 +1,181 @@
+/* solver.c - the pressure equation handed to a solver of the caller (mps/fluid_solver.h): the
+ * matrix by rows with the ghosts' columns folded into their parents', and what the solver answers,
+ * checked. SPDX-License-Identifier: BSD-3-Clause */
+#include "loops.h"
+
+#include <mps/fluid_solver.h>
+
+#include <string.h>
+
+#define ROUNDING 1e-12 /* of |b|: what no solver need be better than */
+
+static const mps_fluid_solver_def defaults = {.struct_size = sizeof(mps_fluid_solver_def)};
+
+mps_status mps_fluid_solver_def_init(mps_fluid_solver_def *def, size_t size) {
+  return MPSI_DEF_INIT(mps_fluid_solver_def, def, size, &defaults);
+}
+
+void mpsi_fluid_drop_solver(mps_fluid *f) {
+  if (!f->outside) return;
+  void *const parts[] = {f->outside->start, f->outside->column_room.item,
+                         f->outside->value_room.item, f->outside};
+  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(f->context, parts[k]);
+  f->outside = NULL;
+}
+
+mps_status mps_fluid_set_solver(mps_fluid *f, const mps_fluid_solver_def *user_def) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_fluid_ready(f, __func__);
+  mps_fluid_solver_def def = defaults;
+  if (status == MPS_OK && user_def)
+    status = MPSI_DEF_READ(f->context, __func__, mps_fluid_solver_def, user_def, &def);
+  if (status != MPS_OK) return status;
+  if (user_def && (!def.matrix || !def.solve || def.least < 0))
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "matrix is %s, solve %s, least %lld: both must be given, and least >= 0",
+                     def.matrix ? "given" : "NULL", def.solve ? "given" : "NULL",
+                     (long long)def.least);
+  mpsi_fluid_outside *outside = NULL;
+  if (user_def) {
+    outside = mpsi_alloc(f->context, 1, sizeof *outside);
+    if (!outside) return mpsi_fail_memory(f->context, __func__, sizeof *outside);
+    *outside = (mpsi_fluid_outside){
+        .user = def.user, .matrix = def.matrix, .solve = def.solve, .least = def.least};
+  }
+  mpsi_fluid_drop_solver(f);
+  f->outside = outside;
+  return MPS_OK;
+}
+
+bool mpsi_fluid_solved_outside(const mps_fluid *f) {
+  return f->outside && f->count >= f->outside->least;
+}
+
+/* ---- matrix ---------------------------------------------------------------------------------- */
+
+/* Row i to `column` and `value`, which have room for near[i] + 1; returns its length. */
+static int64_t fill_row(const mps_fluid *f, int64_t i, int32_t *column, double *value) {
+  const int32_t *index = f->index + f->start[i];
+  const double *w = f->w + f->start[i];
+  int64_t count = 1;
+  column[0] = (int32_t)i, value[0] = f->system.diagonal[i];
+  if (f->state[i] == MPSI_FLUID_APART) return 1;
+  for (int32_t k = 0; k < f->near[i]; k++) {
+    const int32_t j = index[k] < f->count ? index[k] : f->parent[index[k] - f->count];
+    if (f->state[j] == MPSI_FLUID_APART) continue;
+    int64_t at = count;
+    while (at > 0 && column[at - 1] > j) at--;
+    if (at > 0 && column[at - 1] == j) {
+      value[at - 1] -= w[k];
+      continue;
+    }
+    for (int64_t e = count; e > at; e--) column[e] = column[e - 1], value[e] = value[e - 1];
+    column[at] = j, value[at] = -w[k];
+    count++;
+  }
+  return count;
+}
+
+/* The rows of a chunk one after the other, from where its pairs and diagonals leave room;
+ * start[i + 1] receives the length of row i. */
+static void fill_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  (void)chunk;
+  mpsi_fluid_outside *o = f->outside;
+  int64_t at = f->start[begin] + begin;
+  for (int64_t i = begin; i < end; i++) {
+    o->start[i + 1] =
+        fill_row(f, i, (int32_t *)o->column_room.item + at, (double *)o->value_room.item + at);
+    at += o->start[i + 1];
+  }
+}
+
+static mps_status make_room(mps_fluid *f, const char *function) {
+  mpsi_fluid_outside *o = f->outside;
+  const int64_t last = f->count - 1;
+  const int64_t entries = f->start[last] + f->near[last] + f->count;
+  if (o->rows < f->count) {
+    mpsi_free(f->context, o->start);
+    o->rows = 0;
+    o->start = mpsi_alloc(f->context, f->count + 1, sizeof *o->start);
+    if (!o->start) return mpsi_fail_memory(f->context, function, (size_t)f->count * 8);
+    o->rows = f->count;
+  }
+  if (!mpsi_fluid_room_ensure(f->context, &o->column_room, entries, sizeof(int32_t)) ||
+      !mpsi_fluid_room_ensure(f->context, &o->value_room, entries, sizeof(double)))
+    return mpsi_fail_memory(f->context, function, (size_t)entries * 12);
+  return MPS_OK;
+}
+
+static mps_status answered(mps_fluid *f, const char *function, const char *callback,
+                           mps_status status) {
+  if (status != MPS_OK && mps_context_error(f->context)->status == MPS_OK)
+    return mpsi_fail(f->context, function, status,
+                     "step %lld, t = %g s: the callback %s of mps_fluid_set_solver returned %d; "
+                     "the step is not made",
+                     (long long)f->steps, f->time, callback, (int)status);
+  return status;
+}
+
+mps_status mpsi_fluid_hand_matrix(mps_fluid *f, const char *function) {
+  mpsi_fluid_outside *o = f->outside;
+  mps_status status = make_room(f, function);
+  if (status != MPS_OK) return status;
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, fill_chunk);
+  int32_t *column = o->column_room.item;
+  double *value = o->value_room.item;
+  int64_t at = 0, from = 0;
+  o->start[0] = 0;
+  for (int64_t i = 0; i < f->count; i++) {
+    const int64_t length = o->start[i + 1];
+    if (i % MPSI_FLUID_CHUNK == 0) from = f->start[i] + i;
+    memmove(column + at, column + from, (size_t)length * sizeof *column);
+    memmove(value + at, value + from, (size_t)length * sizeof *value);
+    at += length, from += length;
+    o->start[i + 1] = at;
+  }
+  mps_context_clear_error(f->context);
+  f->in_callback = true;
+  status = o->matrix(o->user, f->count, o->start, column, value);
+  f->in_callback = false;
+  return answered(f, function, "matrix", status);
+}
+
+/* ---- solution -------------------------------------------------------------------------------- */
+
+static void residual(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  mpsi_fluid_system *s = &f->system;
+  double rr = 0.0, bb = 0.0;
+  f->loops->times(f, begin, end, s->x, s->q);
+  for (int64_t i = begin; i < end; i++) {
+    const double r = f->state[i] == MPSI_FLUID_APART ? s->x[i] : s->right[i] - s->q[i];
+    rr += r * r, bb += s->right[i] * s->right[i];
+  }
+  s->sums[2 * chunk] = rr, s->sums[2 * chunk + 1] = bb;
+}
+
+mps_status mpsi_fluid_solve_outside(mps_fluid *f, const char *function) {
+  mpsi_fluid_outside *o = f->outside;
+  mpsi_fluid_system *s = &f->system;
+  int64_t iterations = 0;
+  mps_context_clear_error(f->context);
+  f->in_callback = true;
+  mps_status status = o->solve(o->user, s->right, f->def.tolerance, s->x, &iterations);
+  f->in_callback = false;
+  status = answered(f, function, "solve", status);
+  if (status != MPS_OK) return status;
+  for (int64_t g = 0; g < f->ghosts; g++) s->x[f->count + g] = s->x[f->parent[g]];
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, residual);
+  double rr = 0.0, bb = 0.0;
+  for (int64_t k = 0; k < (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK; k++)
+    rr += s->sums[2 * k], bb += s->sums[2 * k + 1];
+  const double allowed = f->def.tolerance * 1.01 + ROUNDING;
+  if (!(rr <= allowed * allowed * bb))
+    return mpsi_fail(f->context, function, MPS_ERROR_NUMERIC,
+                     "step %lld, t = %g s: the pressure of the callback solve has the residual %g "
+                     "of the right side, allowed is %g; the step is not made",
+                     (long long)f->steps, f->time, bb > 0.0 ? sqrt(rr / bb) : sqrt(rr),
+                     f->def.tolerance);
+  f->report.iterations = iterations;
+  f->report.all_iterations += iterations;
+  return MPS_OK;
+}
