@@ -13,6 +13,7 @@
 #include <mps/dynamics.h>
 #include <mps/elastic.h>
 #include <mps/fluid.h>
+#include <mps/fluid_solver.h>
 #include <mps/geostatic.h>
 #include <mps/io.h>
 #include <mps/material.h>
