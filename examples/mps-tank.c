@@ -15,21 +15,29 @@ static int complete(const options_program *program, tank_settings *s) {
     double length, depth, amplitude, duration, dt;
   } usual[TANK_KINDS] = {{0.6, 0.3, 0.0, 4.0, NAN},   {0.7, 0.3, 0.01, 5.2, NAN},
                          {1.6, 0.3, 0.02, 6.0, NAN},  {0.6, 0.3, 0.001, 1.0, 5e-4},
-                         {1.0, 2.0, 0.0, 0.25, 2e-4}, {0.0, 1.0, 0.0, 1.0, NAN}};
+                         {1.0, 2.0, 0.0, 0.25, 2e-4}, {0.0, 1.0, 0.0, 1.0, NAN},
+                         {3.0, 0.3, 0.01, 9.0, NAN}};
   const int kind = s->kind;
   if (kind == TANK_PLATE) s->length = s->plate_length;
   if (isnan(s->length)) s->length = usual[kind].length;
   if (isnan(s->depth)) s->depth = usual[kind].depth;
   if (isnan(s->spacing))
-    s->spacing = kind == TANK_DROP ? s->depth / 20.0 : kind == TANK_PLATE ? 0.05 : 0.02;
+    s->spacing = kind == TANK_DROP        ? s->depth / 20.0
+                 : kind == TANK_PLATE     ? 0.05
+                 : kind == TANK_RESONANCE ? 0.015
+                                          : 0.02;
   if (isnan(s->amplitude)) s->amplitude = usual[kind].amplitude;
   if (isnan(s->duration)) s->duration = usual[kind].duration;
   if (isnan(s->dt)) s->dt = kind == TANK_DROP ? 0.05 * s->spacing / s->depth : usual[kind].dt;
-  if (isnan(s->sample)) s->sample = fmin(tank_is_coupled(s) ? s->dt : 0.01, s->duration / 50.0);
+  if (isnan(s->sample))
+    s->sample =
+        fmin(tank_is_coupled(s) && s->kind != TANK_RESONANCE ? s->dt : 0.01, s->duration / 50.0);
   if (isnan(s->window[1])) s->window[1] = s->duration;
-  const double last = kind == TANK_STILL    ? 0.5 * s->duration
-                      : kind == TANK_PISTON ? 4.0 * s->period
-                                            : s->duration;
+  const bool waves = kind == TANK_PISTON || kind == TANK_RESONANCE;
+  const double last = waves ? 4.0 * s->period : (kind == TANK_STILL ? 0.5 : 1.0) * s->duration;
+  if (isnan(s->mass)) s->mass = kind == TANK_RESONANCE ? 100.0 : 10.0;
+  if (isnan(s->stiffness))
+    s->stiffness = kind == TANK_RESONANCE ? tank_resonant_stiffness(s, s->ratio) : 211800.0;
   if (isnan(s->window[0])) s->window[0] = fmax(s->duration - last, 0.0);
   if (s->scheme == 1 && (tank_is_coupled(s) || s->viscosity > 0.0))
     return options_refuse(program, "--scheme classical has no coupling and no --viscosity");
@@ -108,8 +116,9 @@ int main(int argc, char **argv) {
                                .ramp = 1.0,
                                .duration = NAN,
                                .sample = NAN,
-                               .mass = 10.0,
-                               .stiffness = 211800.0,
+                               .mass = NAN,
+                               .stiffness = NAN,
+                               .ratio = 1.0,
                                .plate_length = 1.0,
                                .plate_thickness = 0.05,
                                .young = 67.5e9,
@@ -125,25 +134,33 @@ int main(int argc, char **argv) {
   const char *gauges = NULL;
   option table[] = {
       OPTION_HEADING("Case"),
-      OPTION_CHOICE("case", "still|sloshing|piston|spring|plate|drop", &s->kind,
+      OPTION_CHOICE("case", "still|sloshing|piston|spring|plate|drop|resonance", &s->kind,
                     "water at rest; first mode of sloshing; waves of a piston in a closed tank; an "
                     "end wall on a spring, let go --amplitude off its rest; a column of water on a "
-                    "clamped plate; an elliptic drop of radius --depth without gravity"),
-      OPTION_NUMBER("length", "m", OPTION_LENGTH, &s->length,
-                    "of the tank (default .6, .7, 1.6, .6; on a plate, the plate's)"),
+                    "clamped plate; an elliptic drop of radius --depth without gravity; an end "
+                    "wall on a spring "
+                    "that waves of a piston swing"),
+      OPTION_NUMBER(
+          "length", "m", OPTION_LENGTH, &s->length,
+          "of the tank (default .6, .7, 1.6, .6, of resonance 3; on a plate, the plate's)"),
       OPTION_NUMBER("depth", "m", OPTION_LENGTH, &s->depth,
                     "of the water (default .3, on a plate 2), or the drop's radius (default 1)"),
-      OPTION_NUMBER(
-          "amplitude", "m", OPTION_FROM_TO(0.0, 1e3), &s->amplitude,
-          "of the sloshing at the walls (default .01), of the piston (.02), of the wall on "
-          "the spring (.001)"),
+      OPTION_NUMBER("amplitude", "m", OPTION_FROM_TO(0.0, 1e3), &s->amplitude,
+                    "of the sloshing at the walls (default .01), of the piston (.02, of resonance "
+                    ".01), of the "
+                    "wall on the spring (.001)"),
       OPTION_NUMBER("period", "s", OPTION_DURATION, &s->period, "of the piston"),
       OPTION_NUMBER("ramp", "s", OPTION_FROM_TO(0.0, 1e6), &s->ramp,
                     "in which the piston's amplitude rises"),
       OPTION_NUMBER("viscosity", "Pa s", OPTION_FROM_TO(0.0, 1e3), &s->viscosity, "of the water"),
       OPTION_HEADING("Structures, of 1 m across"),
-      OPTION_NUMBER("mass", "kg", OPTION_FROM_TO(1e-6, 1e12), &s->mass, "of the wall on a spring"),
-      OPTION_NUMBER("stiffness", "N/m", OPTION_FROM_TO(1e-3, 1e16), &s->stiffness, "of its spring"),
+      OPTION_NUMBER("mass", "kg", OPTION_FROM_TO(1e-6, 1e12), &s->mass,
+                    "of the wall on a spring (default 10, of resonance 100)"),
+      OPTION_NUMBER("stiffness", "N/m", OPTION_FROM_TO(1e-3, 1e16), &s->stiffness,
+                    "of its spring (default 211800, of resonance by --ratio)"),
+      OPTION_NUMBER("ratio", "1", OPTION_FROM_TO(0.05, 20.0), &s->ratio,
+                    "resonance: frequency of the waves over that of the wall in water, which gives "
+                    "its spring"),
       OPTION_NUMBER("plate-length", "m", OPTION_LENGTH, &s->plate_length, "of the plate"),
       OPTION_NUMBER("plate-thickness", "m", OPTION_LENGTH, &s->plate_thickness, "of the plate"),
       OPTION_NUMBER("young", "Pa", OPTION_FROM_TO(1e-3, 1e16), &s->young,
@@ -161,7 +178,7 @@ int main(int argc, char **argv) {
           "the library's; the first one of MPS, for comparison: noisy pressures, no levels"),
       OPTION_HEADING("Run"),
       OPTION_NUMBER("duration", "s", OPTION_DURATION, &s->duration,
-                    "of the run (default 4, 5.2, 6, 1, .25, 1)"),
+                    "of the run (default 4, 5.2, 6, 1, .25, 1, 9)"),
       OPTION_NUMBER("dt", "s", OPTION_DURATION, &s->dt,
                     "step (default: the library's; spring 5e-4, plate 2e-4)"),
       OPTION_NUMBER("sample", "s", OPTION_DURATION, &s->sample,

@@ -30,6 +30,11 @@ mps_status waves_fill(mps_context *context, double length, double depth, double 
   return status == MPS_OK ? mps_particles_fill_box(*out, lo, hi, NULL) : status;
 }
 
+double waves_noise(uint64_t *state) {
+  *state = *state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+  return (double)(*state >> 11) * 0x1p-52 - 1.0;
+}
+
 mps_status waves_add_wall(mps_fluid *fluid, const double *point, double nx, double ny,
                           mps_signal *signal, int32_t *number) {
   mps_fluid_boundary_def def = mps_fluid_boundary_defaults();

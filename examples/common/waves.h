@@ -22,6 +22,8 @@ mps_status waves_move_piston(void *user, double t, double motion[3]);
 /* A set of water at rest, whole columns and rows of the spacing from the origin. */
 mps_status waves_fill(mps_context *context, double length, double depth, double spacing,
                       mps_particles **out);
+/* The next of a row of random numbers in [-1, 1), the same in every run; begin with any state. */
+double waves_noise(uint64_t *state);
 /* A plane wall through (x, y) with the normal (nx, ny) into the water. `signal` may be NULL. */
 mps_status waves_add_wall(mps_fluid *fluid, const double *point, double nx, double ny,
                           mps_signal *signal, int32_t *number);

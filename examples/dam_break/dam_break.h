@@ -19,7 +19,7 @@
 enum { SAMPLES = 300, FRAMES = 6, SLIP = 0, NO_SLIP, METHOD_MPM = 0, METHOD_MPS };
 
 typedef struct settings {
-  double h, base, viscosity, sound, duration, tank, friction;
+  double h, base, viscosity, sound, duration, tank, disturb;
   int64_t n2, ppc, threads;
   int method, state, tension, spline, transfer, volumetric, bed;
   int64_t frames;
@@ -56,6 +56,8 @@ mps_status dam_mps_build(mps_context *context, simulation *sim);
 mps_status dam_mps_advance(simulation *sim, double t);
 /* Makes room for more values of the gauge; false when out of memory. */
 bool dam_grow_gauge(simulation *sim);
+/* How often the guards of the moving particles acted, to a summary. */
+bool dam_guards_write(app *a, const simulation *sim, output *f);
 /* Results of --impact: pressure.csv, summary.json, pictures but the water's. */
 bool dam_impact_write(app *a, simulation *sim);
 

@@ -51,7 +51,7 @@ static mps_status make_spring(tank_model *m) {
   p->shapes = 1, p->wall = TANK_RIGHT;
   p->mass[0] = s->mass, p->stiffness[0] = s->stiffness;
   p->load[0] = 0.5 * WAVES_DENSITY * WAVES_G * s->depth * s->depth; /* at rest: no motion */
-  p->at[0].d = p->start = s->amplitude;
+  p->at[0].d = p->start = s->kind == TANK_SPRING ? s->amplitude : 0.0;
   set_method(p, 1.0);
   return MPS_OK;
 }
@@ -84,7 +84,7 @@ static mps_status make_plate(tank_model *m) {
 
 mps_status tank_make_structure(mps_context *context, tank_model *m) {
   mps_coupling_def def = mps_coupling_defaults();
-  const mps_status status = m->s.kind == TANK_SPRING ? make_spring(m) : make_plate(m);
+  const mps_status status = m->s.kind == TANK_PLATE ? make_plate(m) : make_spring(m);
   if (status != MPS_OK) return status;
   def.size = m->structure.shapes;
   def.method = def.size > 1 ? MPS_COUPLING_QUASI_NEWTON : MPS_COUPLING_AITKEN;
@@ -187,7 +187,7 @@ mps_status tank_coupled_step(tank_model *m) {
 double tank_deflection(const tank_model *m) {
   const tank_structure *p = &m->structure;
   double d = 0.0;
-  if (m->s.kind == TANK_SPRING) return p->at[0].d;
+  if (m->s.kind != TANK_PLATE) return p->at[0].d;
   for (int k = 0; k < p->shapes; k++) d -= p->at[k].d * tank_plate_shape(k, 0.5);
   return d;
 }

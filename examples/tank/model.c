@@ -19,11 +19,6 @@ static void displace(const tank_settings *s, double *x) {
   x[1] += a * cos(k * at) * sinh(k * y) / sinh(k * s->depth);
 }
 
-static double noise(uint64_t *state) { /* in [-1, 1) */
-  *state = *state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-  return (double)(*state >> 11) * 0x1p-52 - 1.0;
-}
-
 static mps_status fill_tank(const tank_settings *s, mps_particles *water) {
   const int64_t columns = llround(s->length / s->spacing), rows = llround(s->depth / s->spacing);
   double *x = malloc((size_t)(columns * rows) * 2 * sizeof *x);
@@ -34,7 +29,7 @@ static mps_status fill_tank(const tank_settings *s, mps_particles *water) {
       double *at = x + 2 * (j * columns + i);
       at[0] = ((double)i + 0.5) * s->spacing, at[1] = ((double)j + 0.5) * s->spacing;
       if (s->kind == TANK_SLOSHING) displace(s, at);
-      for (int c = 0; c < 2; c++) at[c] += s->disturb * s->spacing * noise(&state);
+      for (int c = 0; c < 2; c++) at[c] += s->disturb * s->spacing * waves_noise(&state);
     }
   const mps_status status = mps_particles_append(water, columns * rows, x);
   free(x);
@@ -70,7 +65,7 @@ static mps_status add_walls(mps_context *context, tank_model *m) {
   const double corner[2] = {0.0, 0.0}, right[2] = {m->s.length, 0.0};
   mps_status status = MPS_OK;
   m->motion = (waves_piston){m->s.amplitude, m->s.period, m->s.ramp};
-  if (m->s.kind == TANK_PISTON)
+  if (m->s.kind == TANK_PISTON || m->s.kind == TANK_RESONANCE)
     status = mps_signal_user(context, waves_move_piston, &m->motion, &m->piston);
   if (tank_is_coupled(&m->s)) status = tank_make_structure(context, m);
   if (status == MPS_OK) status = add_bed(m);
@@ -192,4 +187,5 @@ void tank_free(tank_model *m) {
   mps_signal_destroy(&m->piston);
   mps_particles_destroy(&m->water);
   free(m->sample);
+  free(m->linear);
 }

@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- figures of the run ---------------------------------------------------------------------- */
@@ -14,22 +15,34 @@ static bool in_window(const tank_model *m, int64_t k) {
   return m->sample[k].t >= m->s.window[0] - 1e-9 && m->sample[k].t <= m->s.window[1] + 1e-9;
 }
 
+/* What a harmonic is taken of, besides the gauges. */
+enum { FORCE = -1, WALL = -2, LINEAR = -3 };
+
+static double value_of(const tank_model *m, int64_t k, int what) {
+  const tank_sample *p = &m->sample[k];
+  if (what >= 0) return p->level[what];
+  return what == FORCE ? p->right : what == WALL ? p->deflection : m->linear[k];
+}
+
 /* Amplitude of the first harmonic of the period in the window, by the trapezium rule over whole
- * periods; NaN where the window has less than one. `gauge` -1: the force on the right wall. */
-static double harmonic(const tank_model *m, int gauge) {
+ * periods; NaN where the window has less than one. `phase` (rad, may be NULL): before sin(2 pi
+ * t/T).
+ */
+static double harmonic(const tank_model *m, int what, double *phase) {
   const double T = m->s.period, whole = floor((m->s.window[1] - m->s.window[0]) / T + 1e-6) * T;
   double c = 0.0, s = 0.0;
+  if (phase) *phase = NAN;
   if (!(whole >= T)) return NAN;
   for (int64_t k = 1; k < m->samples; k++) {
-    const tank_sample *p = &m->sample[k - 1], *q = &m->sample[k];
-    if (p->t < m->s.window[1] - whole - 1e-9 || q->t > m->s.window[1] + 1e-9) continue;
-    const tank_sample *end[2] = {p, q};
+    const double early = m->sample[k - 1].t, late = m->sample[k].t;
+    if (early < m->s.window[1] - whole - 1e-9 || late > m->s.window[1] + 1e-9) continue;
     for (int e = 0; e < 2; e++) {
-      const double value = gauge < 0 ? end[e]->right : end[e]->level[gauge];
-      const double half = 0.5 * (q->t - p->t) * value, w = 2.0 * WAVES_PI * end[e]->t / T;
+      const double half = 0.5 * (late - early) * value_of(m, k - 1 + e, what);
+      const double w = 2.0 * WAVES_PI * (e ? late : early) / T;
       c += half * cos(w), s += half * sin(w);
     }
   }
+  if (phase) *phase = atan2(c, s);
   return 2.0 * hypot(c, s) / whole;
 }
 
@@ -172,10 +185,10 @@ static bool write_drop(app *a, const tank_model *m) {
 static bool write_structure(app *a, const tank_model *m) {
   output f;
   if (!output_open(&f, a, m->s.out, "structure.csv")) return false;
-  csv_header(&f, "t_s,deflection_m");
+  csv_header(&f, "t_s,deflection_m,deflection_linear_m?");
   for (int64_t k = 0; k < m->samples; k++) {
-    const double row[] = {m->sample[k].t, m->sample[k].deflection};
-    csv_row(&f, 2, row);
+    const double row[] = {m->sample[k].t, m->sample[k].deflection, m->linear ? m->linear[k] : NAN};
+    csv_row(&f, 3, row);
   }
   return output_close(&f);
 }
@@ -259,12 +272,21 @@ static bool draw_structure(app *a, const tank_model *m) {
   if (!plot_open(&f, a, m->s.out, "structure", 1000, 460)) return false;
   output_text(&f,
               "set title '%s'\nset xlabel 't (s)'\nset ylabel '%s'\nset xrange [0:%.9g]\n"
-              "set key outside bottom center horizontal\nplot %.9g with lines dashtype '--' "
-              "linecolor rgb '#c0392b' title 'at rest', 'structure.csv' every ::1 using 1:($2*%g) "
-              "with lines linecolor rgb '#1f4e8c' title 'MPS'\n",
+              "set key outside bottom center horizontal\nplot ",
               plate ? "Middle of the plate" : "Wall on a spring",
-              plate ? "deflection (10^{-6} m)" : "displacement (mm)", m->s.duration,
-              plate ? unit * tank_plate_deflection(&m->s) : 0.0, unit);
+              plate ? "deflection (10^{-6} m)" : "displacement (mm)", m->s.duration);
+  if (m->linear)
+    output_text(&f,
+                "'structure.csv' every ::1 using 1:($3*%g) with lines linewidth 3 linecolor rgb "
+                "'#f0b27a' title 'linear potential flow'",
+                unit);
+  else
+    output_text(&f, "%.9g with lines dashtype '--' linecolor rgb '#c0392b' title 'at rest'",
+                plate ? unit * tank_plate_deflection(&m->s) : 0.0);
+  output_text(&f,
+              ", 'structure.csv' every ::1 using 1:($2*%g) with lines linecolor rgb '#1f4e8c' "
+              "title 'MPS'\n",
+              unit);
   return plot_close(&f, m->s.out, "structure");
 }
 
@@ -274,13 +296,13 @@ static void summarise_waves(output *f, const tank_model *m, const figures *g) {
   const tank_settings *s = &m->s;
   const double k = waves_number(s->period, s->depth);
   const double havelock = 2.0 * s->amplitude * waves_havelock(k, s->depth);
-  const double H = harmonic(m, TANK_GAUGES);
-  const double gauge = gauges_of(m) ? 2.0 * harmonic(m, 0) : NAN;
+  const double H = harmonic(m, TANK_GAUGES, NULL);
+  const double gauge = gauges_of(m) ? 2.0 * harmonic(m, 0, NULL) : NAN;
   json_number(f, "wave_number", k);
   json_number(f, "havelock_height", havelock);
   json_optional(f, "gauge_height", gauge);
   json_optional(f, "wall_harmonic", H);
-  json_optional(f, "force_harmonic", harmonic(m, -1));
+  json_optional(f, "force_harmonic", harmonic(m, FORCE, NULL));
   json_optional(f, "crest_force", g->most);
   json_optional(f, "trough_force", g->least);
   json_optional(f, "sainflou_crest", isnan(H) ? NAN : waves_sainflou(k, s->depth, H, 1));
@@ -292,6 +314,36 @@ static void summarise_waves(output *f, const tank_model *m, const figures *g) {
     printf("force on the wall: crest %.1f N, Sainflou %.1f N; trough %.1f N, Sainflou %.1f N\n",
            g->most, waves_sainflou(k, s->depth, H, 1), g->least,
            waves_sainflou(k, s->depth, H, -1));
+}
+
+static double degrees(double angle) { return 180.0 / WAVES_PI * remainder(angle, 2.0 * WAVES_PI); }
+
+/* Phases are those behind the piston, of motions away from the water. */
+static void summarise_resonance(output *f, const tank_model *m) {
+  const tank_settings *s = &m->s;
+  mps_coupling_report report;
+  tank_response flume;
+  double phase, linear;
+  const double wall = harmonic(m, WALL, &phase), exact = harmonic(m, LINEAR, &linear);
+  tank_flume(s, &flume);
+  if (mps_coupling_get_report(m->structure.coupling, &report) == MPS_OK)
+    json_number(f, "solutions_a_step",
+                (double)report.all_repeats / fmax((double)report.steps, 1.0));
+  json_number(f, "frequency_ratio", flume.ratio);
+  json_number(f, "stiffness", s->stiffness);
+  json_number(f, "added_mass", flume.added_mass);
+  json_number(f, "radiation_damping", flume.damping);
+  json_optional(f, "deflection", wall);
+  json_optional(f, "deflection_exact", exact);
+  json_number(f, "deflection_flume", flume.amplitude);
+  json_optional(f, "phase", degrees(WAVES_PI - phase));
+  json_optional(f, "phase_exact", degrees(WAVES_PI - linear));
+  json_number(f, "lag_flume", degrees(flume.lag));
+  if (isnan(wall)) return;
+  printf("wall %.3f mm, linear potential flow in this tank %.3f mm (%+.2f %%), phase %+.1f degrees "
+         "from it; in an endless flume %.3f mm\n",
+         1e3 * wall, 1e3 * exact, 100.0 * (wall / exact - 1.0), degrees(phase - linear),
+         1e3 * flume.amplitude);
 }
 
 static void summarise_structure(output *f, const tank_model *m, const figures *g) {
@@ -350,7 +402,10 @@ static void summarise_tank(output *f, const tank_model *m) {
              100.0 * (g.period / exact - 1.0));
   }
   if (s->kind == TANK_PISTON) summarise_waves(f, m, &g);
-  if (tank_is_coupled(s)) summarise_structure(f, m, &g);
+  if (s->kind == TANK_RESONANCE)
+    summarise_resonance(f, m);
+  else if (tank_is_coupled(s))
+    summarise_structure(f, m, &g);
 }
 
 static bool write_summary(app *a, const tank_model *m) {
@@ -376,8 +431,16 @@ static bool write_summary(app *a, const tank_model *m) {
   return output_close(&f);
 }
 
+static bool find_linear(app *a, tank_model *m) {
+  if (m->s.kind != TANK_RESONANCE) return true;
+  m->linear = calloc((size_t)m->samples, sizeof *m->linear);
+  if (!m->linear) return app_no_memory(a);
+  return app_check(a, tank_linear_wall(&m->s, m->samples, m->sample, m->linear));
+}
+
 bool tank_write(app *a, tank_model *m) {
   const bool drop = m->s.kind == TANK_DROP;
+  if (!find_linear(a, m)) return false;
   if (drop ? !write_drop(a, m) : !write_force(a, m) || !write_gauges(a, m)) return false;
   if (tank_is_coupled(&m->s) && !write_structure(a, m)) return false;
   if (m->series && !app_check(a, mps_recorder_close(&m->series))) return false;

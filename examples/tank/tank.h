@@ -11,7 +11,16 @@
 #include <mps/fluid.h>
 #include <mps/io.h>
 
-enum { TANK_STILL = 0, TANK_SLOSHING, TANK_PISTON, TANK_SPRING, TANK_PLATE, TANK_DROP, TANK_KINDS };
+enum {
+  TANK_STILL = 0,
+  TANK_SLOSHING,
+  TANK_PISTON,
+  TANK_SPRING,
+  TANK_PLATE,
+  TANK_DROP,
+  TANK_RESONANCE,
+  TANK_KINDS
+};
 enum { TANK_SHAPES = 6, TANK_GAUGES = 8, TANK_BED = 0, TANK_LEFT = 1, TANK_RIGHT = 2 };
 
 typedef struct tank_settings {
@@ -19,6 +28,7 @@ typedef struct tank_settings {
   int scheme; /* 1: classical */
   double length, depth, spacing, amplitude, period, ramp, duration, sample, dt, viscosity, disturb;
   double mass, stiffness; /* kg and N/m, of a wall of 1 m */
+  double ratio;           /* of the waves' frequency to that of the wall in water */
   double plate_length, plate_thickness, young, poisson, plate_density;
   double gauge[TANK_GAUGES]; /* m, NaN where there is none */
   double window[2];          /* s: of the harmonics and means */
@@ -66,6 +76,7 @@ typedef struct tank_model {
   mps_recorder *series;
   tank_sample *sample;
   int64_t samples, capacity;
+  double *linear; /* m: tank_linear_wall at the samples, NULL where it does not apply */
   mps_fluid_report report;
   const option *table;
   resume_schedule saves;
@@ -74,7 +85,7 @@ typedef struct tank_model {
 } tank_model;
 
 static inline bool tank_is_coupled(const tank_settings *s) {
-  return s->kind == TANK_SPRING || s->kind == TANK_PLATE;
+  return s->kind == TANK_SPRING || s->kind == TANK_PLATE || s->kind == TANK_RESONANCE;
 }
 
 /* model.c: water, walls, fluid; a run that fills `sample`. */
@@ -107,8 +118,25 @@ double tank_plate_deflection(const tank_settings *s);
  * potential flow. */
 double tank_spring_omega(const tank_settings *s);
 double tank_plate_omega(const tank_settings *s);
+/* Added mass (kg) of the end wall of a tank (length INFINITY: of an endless flume) that swings with
+ * w (rad/s), without the part of the travelling wave. */
+double tank_added_mass(double w, double length, double depth);
 /* Semi-axes (m) and pressure in the middle (Pa) of the drop of radius R at time t. */
 void tank_drop(double radius, double t, double *a, double *b, double *centre);
+
+/* resonance.c: a wall on a spring in waves. */
+typedef struct tank_response {
+  double added_mass, damping; /* kg, N s/m: of the waves that the wall sends out */
+  double amplitude, lag;      /* m; rad, behind the force of the waves on a wall at rest */
+  double ratio;               /* of the waves' frequency to the wall's in water */
+} tank_response;
+/* What lasts in an endless flume. */
+void tank_flume(const tank_settings *s, tank_response *r);
+/* Stiffness (N/m) of the wall whose frequency is the waves' over `ratio`. */
+double tank_resonant_stiffness(const tank_settings *s, double ratio);
+/* Displacement (m, into the water) at the times of the samples in the closed tank, from rest. */
+mps_status tank_linear_wall(const tank_settings *s, int64_t count, const tank_sample *sample,
+                            double *y);
 
 /* results.c: tables, summary, pictures, the last lines on stdout. */
 bool tank_write(app *a, tank_model *m);

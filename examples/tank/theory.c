@@ -26,7 +26,7 @@ void tank_drop(double radius, double t, double *a, double *b, double *centre) {
  * k tan(k d) = -w^2/g of rho I^2 coth(k L)/(k N), I the integral of cos(k y) over the depth, N that
  * of its square. The travelling wave carries next to nothing at the frequencies of a stiff spring.
  */
-static double added_mass(double w, double length, double depth) {
+double tank_added_mass(double w, double length, double depth) {
   double sum = 0.0;
   for (int j = 0; j < 2000; j++) {
     double low = (j + 0.5) * WAVES_PI / depth * (1.0 + 1e-12), high = (j + 1) * WAVES_PI / depth;
@@ -47,7 +47,7 @@ static double added_mass(double w, double length, double depth) {
 double tank_spring_omega(const tank_settings *s) {
   double w = sqrt(s->stiffness / s->mass);
   for (int n = 0; n < 50; n++)
-    w = sqrt(s->stiffness / (s->mass + added_mass(w, s->length, s->depth)));
+    w = sqrt(s->stiffness / (s->mass + tank_added_mass(w, s->length, s->depth)));
   return w;
 }
 

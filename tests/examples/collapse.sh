@@ -18,6 +18,8 @@ in_range "$work/dam/summary.json" detached_max 0 0.001
 "$1/mps-dam-break" --method mps --threads 1 --out "$work/moving" >"$work/log"
 in_range "$work/moving/summary.json" front_error_rms_clock 0.01 0.1
 in_range "$work/moving/summary.json" front_clock_shift 0.1 0.4
+in_range "$work/moving/summary.json" front_error_rms_fit 0.01 0.06
+in_range "$work/moving/summary.json" collisions 0 4000 # above 17000 of a lattice, which stays one
 picture "$work/moving/front.png" 1200x560 1f4e8c c0392b
 "$1/mps-dam-break" --method mps --impact --threads 1 --out "$work/impact" >"$work/log"
 in_range "$work/impact/summary.json" impact_mean 0.5014 0.5886

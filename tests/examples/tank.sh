@@ -26,6 +26,13 @@ in_range "$work/plate/summary.json" omega 498.1 508.1
 in_range "$work/plate/summary.json" deflection 6.791e-5 6.929e-5
 in_range "$work/plate/summary.json" decay -1 5
 picture "$work/plate/structure.png" 1000x460 1f4e8c
+# In waves near its own frequency: linear potential flow of this tank, and of an endless flume.
+"$1/mps-tank" --case resonance --spacing 0.02 --threads 1 --frames 0 --out "$work/resonance" >"$work/log"
+in_range "$work/resonance/summary.json" radiation_damping 389.6 389.8
+in_range "$work/resonance/summary.json" deflection_flume 0.01999 0.02001 # at resonance the wall moves as twice the piston
+in_range "$work/resonance/summary.json" deflection_exact 0.01964 0.01984
+in_range "$work/resonance/summary.json" deflection 0.0186 0.0199
+in_range "$work/resonance/summary.json" phase 65 72 # 69.4 by theory
 tank "$1" drop
 in_range "$work/drop/summary.json" a 0.4329 0.4461
 in_range "$work/drop/summary.json" b 2.2641 2.2869
