@@ -49,6 +49,7 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("rate", "mm/s", OPTION_FROM_TO(1e-3, 100.0), &s->rate, "its speed"),
       OPTION_NUMBER("settlement", "mm", OPTION_FROM_TO(1e-3, 1e6), &s->settlement,
                     "where the run ends; default 0.6, Drucker-Prager 4"),
+      MPM_MODEL_CONTACT(&s->contact),
       OPTION_NUMBER("k", "kN/m", OPTION_STIFFNESS, &s->k,
                     "contact stiffness per unit thickness of each particle, Nakamura (28)"),
       OPTION_HEADING("Grid"),
@@ -68,6 +69,8 @@ int main(int argc, char **argv) {
   if (code >= 0) return code;
   const char *reason = footing_settle(s, table);
   if (reason) return options_refuse(&program, reason);
+  const char *refused = mpm_model_refuse_stiffness(table, s->contact);
+  if (refused) return options_refuse(&program, refused);
   static const mpm_model_parts parts = {footing_build, footing_march, footing_finish};
   return mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
 }

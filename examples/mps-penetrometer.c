@@ -35,6 +35,7 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("angle", "degrees", OPTION_FROM_TO(20.0, 160.0), &s->angle,
                     "of the cone's apex"),
       OPTION_NUMBER("friction", "1", OPTION_FROM_TO(0.0, 10.0), &s->friction, "mu of its surface"),
+      MPM_MODEL_CONTACT(&s->contact),
       OPTION_NUMBER("depth", "m", OPTION_LENGTH, &s->depth,
                     "of the lowest point, where the run ends"),
       OPTION_NUMBER("speed", "m/s", OPTION_FROM_TO(1e-6, 10.0), &s->speed, "of the tip"),

@@ -38,6 +38,7 @@ int main(int argc, char **argv) {
                     "mu of its surface, tan(delta)"),
       OPTION_NUMBER("depth", "m", OPTION_LENGTH, &s->depth, "of the tip, where the run ends"),
       OPTION_NUMBER("speed", "m/s", OPTION_FROM_TO(1e-6, 10.0), &s->speed, "of the pile"),
+      MPM_MODEL_CONTACT(&s->contact),
       OPTION_NUMBER("k", "kN/m", OPTION_STIFFNESS, &s->k,
                     "contact stiffness of each particle per unit thickness, Nakamura (28); "
                     "4 (K + 4G/3) if not given"),
@@ -88,6 +89,8 @@ int main(int argc, char **argv) {
   if (code >= 0) return code;
   if (options_given(table, "xi") && options_given(table, "k"))
     return options_refuse(&program, "--xi and --k exclude each other");
+  const char *refused = mpm_model_refuse_stiffness(table, s->contact);
+  if (refused) return options_refuse(&program, refused);
   if (options_given(table, "every-checkpoint") && !s->checkpoint)
     return options_refuse(&program, "--every-checkpoint needs --checkpoint FILE");
   const char *reason = pile_check(s);

@@ -21,7 +21,7 @@ enum { BODY_SLOPE, BODY_DISC, FILL_LATTICE = 0, FILL_RINGS, SAMPLES = 100 };
 typedef struct settings {
   double h, mu, angle, k, young, poisson, duration;
   int64_t ppc, threads;
-  int fill, body;
+  int fill, body, contact; /* contact: mps_contact_method */
   const char *out;
 } settings;
 
@@ -94,7 +94,8 @@ static mps_status make_rigid(mps_context *context, const settings *s, simulation
   mps_status status;
   mps_contact_def contact = mps_contact_defaults();
   contact.friction = s->mu;
-  if (s->k > 0.0) contact.penalty = s->k * 1e3;
+  contact.method = s->contact;
+  if (s->contact == MPS_CONTACT_METHOD_PENALTY) contact.penalty = s->k * 1e3;
   if (s->body == BODY_SLOPE) {
     const double normal[] = {-sim->along[1], sim->along[0]};
     status = mps_body_create_half_plane(context, &def, normal, &sim->m.body[0]);
@@ -274,6 +275,7 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("angle", "degrees", OPTION_FROM_TO(1.0, 60.0), &s->angle, "of the slope"),
       OPTION_NUMBER("mu", "1", OPTION_FROM_TO(0.0, 10.0), &s->mu,
                     "friction; the disc rolls where tan(angle) <= 3 mu"),
+      MPM_MODEL_CONTACT(&s->contact),
       OPTION_NUMBER("k", "kN/m", OPTION_STIFFNESS, &s->k,
                     "contact stiffness per unit thickness of each particle, Nakamura (28)"),
       OPTION_NUMBER("young", "kPa", OPTION_MODULUS, &s->young, "Young's modulus E"),
@@ -296,6 +298,8 @@ int main(int argc, char **argv) {
       table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
+  const char *refused = mpm_model_refuse_stiffness(table, s->contact);
+  if (refused) return options_refuse(&program, refused);
   static const mpm_model_parts parts = {build, march, finish};
   return mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
 }

@@ -20,6 +20,7 @@ enum { BOTTOM, RIGHT, TOP, LEFT, PLATES, SAMPLES = 400 };
 
 typedef struct settings {
   double h, k, offset, mu, young, poisson, density;
+  int contact; /* mps_contact_method */
   int64_t ppc, threads;
   const char *out;
 } settings;
@@ -56,7 +57,8 @@ static mps_status make_plates(mps_context *context, const settings *s, simulatio
     mps_body_def def = mps_body_defaults();
     def.position[0] = at[p][0], def.position[1] = at[p][1];
     mps_contact_def contact = mps_contact_defaults();
-    if (s->k > 0.0) contact.penalty = s->k * 1e3;
+    contact.method = s->contact;
+    if (s->contact == MPS_CONTACT_METHOD_PENALTY && s->k > 0.0) contact.penalty = s->k * 1e3;
     contact.friction = p == BOTTOM ? s->mu : 0.0;
     status = mps_body_create_half_plane(context, &def, normal[p], &sim->m.body[p]);
     if (status == MPS_OK && p == TOP) status = mps_body_drive(sim->m.body[p], 1, down, -1.0);
@@ -167,7 +169,7 @@ static bool finish(app *a, void *user) {
   output f;
   if (!write_forces(a, s, sim) || !mpm_model_summary(a, &sim->m, s->out, &f)) return false;
   json_number(&f, "h", s->h);
-  json_number(&f, "k", s->k);
+  if (s->contact == MPS_CONTACT_METHOD_PENALTY) json_number(&f, "k", s->k);
   json_number(&f, "Fy_exact", exact);
   if (count > 0) {
     json_number(&f, "Fy", fy);
@@ -200,6 +202,7 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("poisson", "1", OPTION_FROM_TO(0.0, 0.49), &s->poisson, "Poisson's ratio"),
       OPTION_NUMBER("density", "kg/m3", OPTION_DENSITY, &s->density, "density"),
       OPTION_HEADING("Contact"),
+      MPM_MODEL_CONTACT(&s->contact),
       OPTION_NUMBER("k", "kN/m", OPTION_STIFFNESS, &s->k,
                     "contact stiffness per unit thickness of each particle, Nakamura (28)"),
       OPTION_NUMBER("mu", "1", OPTION_FROM_TO(0.0, 10.0), &s->mu, "friction of the lower plate"),
@@ -220,6 +223,8 @@ int main(int argc, char **argv) {
       table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
+  const char *refused = mpm_model_refuse_stiffness(table, s->contact);
+  if (refused) return options_refuse(&program, refused);
   const char *large = mpm_model_too_large(pow(SIDE / s->h, 2.0) * (double)s->ppc);
   if (large) return options_refuse(&program, large);
   if (RAMP * sqrt(confined_modulus(s) / s->density) < 5.0 * SIDE)

@@ -2,12 +2,22 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_model.h"
 
+#include <string.h>
+
 void mpm_model_destroy(mpm_model *model) {
   mps_mpm_destroy(&model->mpm);
   mps_fluid_destroy(&model->fluid);
   for (int b = 0; b < MPM_MODEL_BODIES; b++) mps_body_destroy(&model->body[b]);
   mps_material_destroy(&model->material);
   mps_particles_destroy(&model->particles);
+}
+
+const char *mpm_model_refuse_stiffness(const option *table, int contact) {
+  if (contact == MPS_CONTACT_METHOD_PENALTY) return NULL;
+  for (; table->help; table++)
+    if (table->given && (strcmp(table->name, "k") == 0 || strcmp(table->name, "xi") == 0))
+      return "--k and --xi need --contact penalty: impulses have no stiffness";
+  return NULL;
 }
 
 const char *mpm_model_too_large(double particles) {

@@ -37,6 +37,13 @@ typedef struct mpm_model_parts {
 int mpm_model_run(const options_program *program, int64_t threads, const char *out,
                   mpm_model *model, const mpm_model_parts *parts, void *user);
 
+/* The row of a program's table that chooses the contact's method, an mps_contact_method. */
+#define MPM_MODEL_CONTACT(value)                                                                   \
+  OPTION_CHOICE("contact", "impulse|penalty", value,                                               \
+                "impulses at the surface, or springs at the particles, Nakamura (28) to (34)")
+/* Why an option of the springs alone, --k or --xi, cannot be given; NULL where it can. */
+const char *mpm_model_refuse_stiffness(const option *table, int contact);
+
 /* Why a model of so many particles is not begun; NULL where it is. */
 const char *mpm_model_too_large(double particles);
 

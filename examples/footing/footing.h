@@ -15,6 +15,7 @@ typedef struct settings {
   double phi, psi;        /* degrees */
   double cohesion, young; /* kPa */
   double poisson, density, gravity;
+  int contact; /* mps_contact_method */
   double h, mu, rate, half_width, k, settlement; /* m, 1, mm/s, m, kN/m, mm */
   int64_t ppc, threads;
   const char *domain, *out;

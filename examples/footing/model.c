@@ -51,7 +51,8 @@ static mps_status make_footing(mps_context *context, const settings *s, simulati
   def.position[1] = s->depth + 0.5 * height;
   mps_contact_def contact = mps_contact_defaults();
   contact.friction = s->mu;
-  if (s->k > 0.0) contact.penalty = s->k * 1e3;
+  contact.method = s->contact;
+  if (s->contact == MPS_CONTACT_METHOD_PENALTY && s->k > 0.0) contact.penalty = s->k * 1e3;
   if (status == MPS_OK)
     status = mps_body_create_box(context, &def, 2.0 * s->half_width, height, &sim->m.body[0]);
   if (status == MPS_OK) status = mps_body_drive(sim->m.body[0], 1, down, -1.0);

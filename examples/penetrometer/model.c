@@ -241,7 +241,9 @@ static mps_status make_tip(penetrometer *p, pen_run *r) {
   def.position[up] = r->size[up] + pen_gap(p);
   mps_contact_def contact = mps_contact_defaults();
   contact.friction = p->s.friction;
-  contact.penalty = r->penalty = penalty_of(p, r);
+  r->penalty = penalty_of(p, r);
+  contact.method = p->s.contact;
+  if (p->s.contact == MPS_CONTACT_METHOD_PENALTY) contact.penalty = r->penalty;
   mps_status status = mps_signal_table(p->context, MPS_SIGNAL_VELOCITY, 2, t, v, &down);
   if (status == MPS_OK && p->s.tip == PEN_CONE) status = make_cone(p, r, &def, body);
   if (status == MPS_OK && p->s.tip == PEN_SPHERE) status = make_sphere(p, r, &def, body);

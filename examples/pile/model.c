@@ -102,7 +102,8 @@ static mps_status make_pile(mps_context *context, pile *p) {
   def.position[1] = s->height + s->h;
   mps_contact_def contact = mps_contact_defaults();
   contact.friction = s->friction;
-  contact.penalty = p->penalty;
+  contact.method = s->contact;
+  if (s->contact == MPS_CONTACT_METHOD_PENALTY) contact.penalty = p->penalty;
   mps_status status = mps_signal_table(context, MPS_SIGNAL_VELOCITY, 2, t, v, &down);
   if (status == MPS_OK) status = mps_body_create_polygon(context, &def, 4, corner, &p->m.body[0]);
   for (int k = 0; k < PILE_PARTS && status == MPS_OK; k++)

@@ -16,6 +16,7 @@
 typedef struct pile_settings {
   double inner_diameter, wall;         /* m */
   double friction, speed, depth, rest; /* mu; m/s; m; s of waiting before the pile moves */
+  int contact;                         /* mps_contact_method */
   double xi, k;                   /* contact stiffness by Nakamura (58), or in kN/m; NaN: not so */
   const char *soil;               /* "WxH" */
   double width, height;           /* m, what `soil` says */

@@ -78,7 +78,7 @@ static void write_settings(output *f, const pile *p) {
   json_text(f, "cone", pile_cone_name(s));
   json_number(f, "inner_diameter", s->inner_diameter);
   json_number(f, "wall", s->wall);
-  json_number(f, "penalty", p->penalty);
+  if (p->s.contact == MPS_CONTACT_METHOD_PENALTY) json_number(f, "penalty", p->penalty);
   json_number(f, "dt", p->dt);
 }
 

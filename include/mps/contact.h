@@ -1,5 +1,6 @@
 /* mps/contact.h - the contact of one solver with one rigid body: friction, stiffness, reactions by
- * part of the surface, and the particles that touch (Nakamura 5).
+ * part of the surface, and the particles that touch. By impulses at the surface (docs/theory/
+ * contact.md), or by springs at the particles (Nakamura 5).
  *
  * A solver makes it (mps_mpm_add_contact, mps/mpm.h). A body may be in contact with several solvers
  * at once; it feels the sum of their forces. Who moves it is stated once: one of the solvers, or
@@ -26,24 +27,38 @@ typedef enum mps_contact_mover {
 /** What becomes of particles whose centres lie inside the body when the contact is made. */
 typedef enum mps_contact_inside {
   MPS_CONTACT_INSIDE_REFUSE = 0, /* an error that counts them */
-  MPS_CONTACT_INSIDE_PUSH = 1,   /* they stay, and are pushed out with the contact stiffness */
+  MPS_CONTACT_INSIDE_PUSH = 1,   /* they stay, and are pushed out: a tenth of the way in each
+                                   step, or with the contact stiffness */
   MPS_CONTACT_INSIDE_REMOVE = 2  /* they leave the set, as before each step those that are deeper
                                     than `depth`; the reaction counts them */
 } mps_contact_inside;
 
+/** How the contact keeps particles out of the body. */
+typedef enum mps_contact_method {
+  MPS_CONTACT_METHOD_IMPULSE = 0, /* impulses at the surface, such that nothing enters it and
+                                     friction holds; without a stiffness */
+  MPS_CONTACT_METHOD_PENALTY = 1  /* Nakamura 5: springs at the particles (28), friction at the
+                                     nodes (31)-(34) */
+} mps_contact_method;
+
 typedef struct mps_contact_def {
   uint32_t struct_size;
   int32_t mover;   /* mps_contact_mover, default SOLVER */
+  int32_t method;  /* mps_contact_method, default IMPULSE */
+  int32_t sweeps;  /* of Gauss and Seidel over the contacts of a step, 1 to 1000, by METHOD_IMPULSE;
+                      0 (default): 10. Each step begins with the impulses of the last; the solver
+                      takes the most that one of its contacts asks for */
   double friction; /* Coulomb's mu, 0 to 1e3; default 0 */
-  double penalty;  /* contact stiffness k of Nakamura (28), N/m (2D: per m of thickness; in
+  double penalty;  /* for METHOD_PENALTY: contact stiffness k of Nakamura (28), N/m (2D: per m of thickness; in
                       axisymmetry per m of radius and rad, times the particle's radius), > 0; NaN
                       (default): from xi, or where that is NaN too 1.33 (K + 4G/3) of the particle's
                       material, in 3D times the particles' spacing */
   double xi;       /* in (0, 1): k from Nakamura (58), 2 (1 - xi) (K + 4G/3)/(n CFL^2) with n
                       particles a cell, in 3D times the cell's size; n and CFL are those of the
                       solver's definition. NaN (default): not used. Giving both is an error */
-  double offset;   /* m, >= 0: a particle nearer to the surface than this is pushed. NaN (default):
-                      half the particles' spacing, as if the surface passed around the particles */
+  double offset;   /* m, >= 0: half the size of a particle, which is pushed where it is nearer to the
+                      surface; by impulses it changes with the particle's elastic strain across the
+                      surface. NaN (default): half the particles' spacing */
   double depth;    /* m, > 0: a step that finds a particle deeper below the surface than this fails
                       before anything moves.
                       NaN (default): one cell; with INSIDE_PUSH no bound; with INSIDE_REMOVE,
@@ -77,11 +92,14 @@ static inline mps_status mps_contact_get_reaction(mps_contact *contact, int32_t 
   return mps_contact_get_reaction_sized(contact, part, out, sizeof *out);
 }
 
-/** The particles that touch the body where particles and body now are, in the set's order: `count`
- *  receives their number; at most `capacity` (>= 0) of them are written. Each array may be NULL:
- *  `ids`; `gap` (m: the surface's distance less `offset`, < 0); `normal` (3 values a particle,
- *  outward unit vector of the surface); `force` (N, 3 values a particle, by the penalty, on the
- *  particle); `foot` (m, 3 values a particle, nearest point of the surface). Costs a pass over all
+/** The particles that touch the body, in the set's order: `count` receives their number; at most
+ *  `capacity` (>= 0) of them are written. By impulses those that the body has pushed in the last
+ *  step; by the penalty those nearer than `offset` where particles and body now are. Each array may
+ *  be NULL: `ids`; `gap` (m: the surface's present distance less half the particle's size); `normal`
+ *  (3 values a particle, outward unit vector of the surface); `force` (N, 3 values a particle, on
+ *  the particle: normal force and friction in the last step; by the penalty the present normal
+ *  force); `foot` (m, 3 values a particle, nearest point of the surface). Forces of neighbours may
+ *  be shared out between them unevenly: their sum is what is determined. Costs a pass over all
  *  particles. MPS_ERROR_STATE when the contact has ended. */
 MPS_API MPS_NODISCARD mps_status mps_contact_get_particles(mps_contact *contact, int64_t capacity,
                                                            int64_t *count, int64_t *ids,

@@ -133,9 +133,8 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material
  * goes on from where it is. At most 32 contacts, each with another body, and bodies may not overlap
  * by more than 0.1 cells. MPS_ERROR_ARGUMENT also where the body is thinner than two cells or
  *  particles lie inside it, unless `def` allows. A moving body shortens the steps: its surface goes
- *  at most `courant` cells in one. The log hook is warned of a contact stiffness k dt^2/m > 6,
- * which chatters. Where bodies touch the same nodes, friction is found in the order they were
- * added, after all normal forces. */
+ *  at most `courant` cells in one. With MPS_CONTACT_METHOD_PENALTY the log hook is warned of a
+ *  contact stiffness k dt^2/m > 6, which chatters. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body,
                                                      const mps_contact_def *def,
                                                      mps_contact **contact);

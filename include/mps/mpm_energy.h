@@ -27,7 +27,8 @@ MPS_EXTERN_C_BEGIN
 typedef struct mps_mpm_losses {
   double laws;       /* plasticity and viscosity */
   double boundaries; /* friction of sides, dashpots with their forces at rest */
-  double bodies;     /* friction of bodies */
+  double bodies;     /* friction of bodies; by impulses also what their closing of gaps takes and
+                        their opening of overlaps gives */
   double damping;    /* what the definition's damping, and mps_mpm_settle, take */
   double transfer;   /* kinetic energy of the particles less that of the nodes before the forces,
                         and of the nodes less that of the particles after them. WLS takes energy

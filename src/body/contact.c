@@ -7,6 +7,8 @@
 #include <string.h>
 
 #define ROUGHEST 1e3 /* friction */
+#define MOST_SWEEPS 1000
+#define SWEEPS 10 /* usual */
 
 static const mps_contact_def contact_defaults = {
     .struct_size = sizeof(mps_contact_def), .penalty = NAN, .xi = NAN, .offset = NAN, .depth = NAN};
@@ -23,10 +25,11 @@ static mps_status check_choices(mps_context *context, const char *function,
     const char *name, *allowed;
     int32_t value;
   } list[] = {{"mover", "0 (solver) and 1 (other)", d->mover},
+              {"method", "0 (impulse) and 1 (penalty)", d->method},
               {"thin", "0 (refused) and 1 (allowed)", d->thin},
               {"inside", "0 (refuse), 1 (push) and 2 (remove)", d->inside}};
   for (size_t k = 0; k < sizeof list / sizeof *list; k++)
-    if (list[k].value < 0 || list[k].value > (k == 2 ? 2 : 1))
+    if (list[k].value < 0 || list[k].value > (k == 3 ? 2 : 1))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %d, allowed are %s",
                        list[k].name, list[k].value, list[k].allowed);
   return MPS_OK;
@@ -34,6 +37,9 @@ static mps_status check_choices(mps_context *context, const char *function,
 
 static mps_status check_numbers(mps_context *context, const char *function,
                                 const mps_contact_def *d) {
+  if (d->sweeps < 0 || d->sweeps > MOST_SWEEPS)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "sweeps is %d, must be in 0 to %d",
+                     d->sweeps, MOST_SWEEPS);
   if (!(d->friction >= 0.0 && d->friction <= ROUGHEST))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "friction is %g, must be in 0 to %g",
                      d->friction, ROUGHEST);
@@ -44,6 +50,11 @@ static mps_status check_numbers(mps_context *context, const char *function,
   if (!isnan(d->xi) && !(d->xi > 0.0 && d->xi < 1.0))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "xi is %g, must be in (0, 1), or NaN",
                      d->xi);
+  if (d->method == MPS_CONTACT_METHOD_IMPULSE && (!isnan(d->xi) || !isnan(d->penalty)))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "%s is given, and method is 0 (impulse), which has no stiffness: leave it "
+                     "NaN, or choose method 1 (penalty)",
+                     isnan(d->xi) ? "penalty" : "xi");
   if (!isnan(d->xi) && !isnan(d->penalty))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "xi is %g and penalty %g N/m: give one of them, the other NaN", d->xi,
@@ -76,6 +87,7 @@ mps_status mpsi_contact_new(mps_context *context, const char *function, mps_body
   contact->context = mpsi_context_retain(context);
   contact->references = 2;
   contact->def = def;
+  if (def.sweeps == 0) contact->def.sweeps = SWEEPS;
   contact->body = body;
   contact->extent = mpsi_body_extent(body);
   contact->kind = kind;

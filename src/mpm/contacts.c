@@ -104,36 +104,59 @@ static void forget_pairs(mps_mpm *mpm) {
 static void end(void *owner, mps_contact *contact) {
   mps_mpm *mpm = owner;
   mpsi_contacts *all = &mpm->contact;
-  int32_t to = 0;
+  int32_t to = 0, ended = 0;
   for (int32_t b = 0; b < all->bodies; b++) {
-    if (all->handle[b] == contact) continue;
+    if (all->handle[b] == contact) {
+      ended = b;
+      continue;
+    }
     all->handle[to] = all->handle[b];
     all->body[to++] = all->body[b];
   }
   all->bodies = to;
+  mpsi_mpm_forget_impulses(mpm, ended);
   mpm->run.warned_about_chatter = 0;
   mpm->energy.springs_known = false;
   forget_pairs(mpm);
   mpsi_contact_leave(contact);
 }
 
+/* Whether particle k at x touches the body now, by the method of the contact; `c` receives force
+ * and depth, `half` the half size (m) from which its gap counts. By impulses: one that the body
+ * has pushed in the last step. */
+static bool touches(const mps_mpm *mpm, const mps_contact *contact, int32_t body, int64_t k,
+                    int64_t id, const double *x, mpsi_contact_particle *c, double *half) {
+  *half = contact->def.offset;
+  if (!mpsi_by_impulses(contact))
+    return mpsi_body_reaches(contact->body, x, contact->def.offset) &&
+           mpsi_find_contact(mpm, contact, mpm->dim, k, c);
+  const mpsi_kept_impulse *kept = mpsi_mpm_kept_impulse(mpm, id, body);
+  if (!kept) return false;
+  for (int a = 0; a < 3; a++) c->force[a] = kept->by[a] / mpm->contact.impulses.kept_dt;
+  *half = mpsi_mpm_half_size(mpm, contact, k, mpsi_body_foot(contact->body, x).normal);
+  return true;
+}
+
 static mps_status list_particles(void *owner, mps_contact *contact, int64_t capacity,
                                  int64_t *count, int64_t *ids, double *gap, double *normal,
                                  double *force, double *foot) {
-  const mps_mpm *mpm = owner;
+  mps_mpm *mpm = owner;
   const int64_t *id = mpsi_particles_integers(mpm->particles, "id");
   int64_t n = 0;
+  int32_t body = 0;
+  if (!mpsi_mpm_index_impulses(mpm))
+    return mpsi_fail_memory(mpm->context, "mps_contact_get_particles",
+                            (size_t)mpm->contact.impulses.kept_count * 4 * sizeof(int32_t));
+  while (mpm->contact.handle[body] != contact) body++;
   for (int64_t k = 0; k < mpm->p.count; k++) {
     mpsi_contact_particle c;
-    double x[3] = {0.0};
+    double x[3] = {0.0}, half;
     for (int a = 0; a < mpm->dim; a++) x[a] = mpm->p.x[a][k];
-    if (!mpsi_body_reaches(contact->body, x, contact->def.offset) ||
-        !mpsi_find_contact(mpm, contact, mpm->dim, k, &c))
-      continue;
+    if (!touches(mpm, contact, body, k, id[k], x, &c, &half)) continue;
     const mpsi_foot at = mpsi_body_foot(contact->body, x);
     if (n < capacity) {
       if (ids) ids[n] = id[k];
-      if (gap) gap[n] = at.distance - contact->def.offset;
+      if (gap) gap[n] = at.distance - half;
       for (int a = 0; a < 3; a++) {
         if (normal) normal[3 * n + a] = a < mpm->dim ? at.normal[a] : 0.0;
         if (force) force[3 * n + a] = a < mpm->dim ? c.force[a] : 0.0;

@@ -56,10 +56,11 @@ static void mark_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const box *near
   static const int32_t low[3] = {0}, high[3] = {MPSI_SIDE, MPSI_SIDE, MPSI_SIDE};
   const bool all = all_apart(mpm) || mpm->by_weight || mpm->flip > 0.0 || (finds && cells->edge);
   bool rough = false;
-  for (int32_t k = 0; cells->inside && k < cells->pairs; k++)
-    rough =
-        rough ||
-        mpm->contact.handle[mpm->contact.cell_pair[cells->first_pair + k].body]->def.friction > 0.0;
+  for (int32_t k = 0; cells->inside && k < cells->pairs; k++) {
+    const int32_t body = mpm->contact.cell_pair[cells->first_pair + k].body;
+    const mps_contact *contact = mpm->contact.handle[body];
+    rough = rough || (contact->def.friction > 0.0 && !mpsi_by_impulses(contact));
+  }
   for (int q = 0; q < 1 << mpm->dim; q++) {
     mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
     box under = box_under(cells, q, low, high);
@@ -72,9 +73,9 @@ static void mark_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const box *near
 }
 
 /* Cut: some particle may have a cut support, or, with the standard scheme, one without a fit.
- * Split: friction needs the velocity before the forces; so do the energy budget, damping by forces,
- * FLIP, and the transfer by weights, which divides momentum and force by different masses, as nodes
- * of small mass between two bodies do (grid.c). */
+ * Split: friction at nodes needs the velocity before the forces; so do the energy budget, damping
+ * by forces, FLIP, and the transfer by weights, which divides momentum and force by different
+ * masses, as nodes of small mass between two bodies do (grid.c). */
 static mps_status find_cut(mps_mpm *mpm, const char *function) {
   bool finds = false; /* an absorbing wall asks for the forces of its first step */
   for (int32_t k = 0; k < MPSI_SIDES; k++) {

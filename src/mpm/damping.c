@@ -48,7 +48,6 @@ static double contact_force(const mps_mpm *mpm, const mpsi_node_block *nodes, in
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
     const mpsi_node_pair *pair = &mpm->contact.node_pair[t];
     const mpsi_contact_node *at = &mpm->contact.node[(int64_t)t * mpm->grid.block_nodes + k];
-    if (at->mass == 0.0) continue;
     sum += size_of(at->force);
     if (mpm->contact.handle[pair->body]->def.friction > 0.0 && pair->mass != 0.0)
       sum += fabs(at->mass) * size_of(at->slip);

@@ -154,6 +154,7 @@ static double spring_energy(const mps_mpm *mpm) {
   double sum = 0.0;
   for (int32_t b = 0; b < mpm->contact.bodies; b++) {
     const mps_contact *contact = mpm->contact.handle[b];
+    if (mpsi_by_impulses(contact)) continue;
     for (int64_t k = 0; k < mpm->p.count; k++) {
       mpsi_contact_particle c;
       double x[3] = {0.0};
@@ -222,14 +223,16 @@ void mpsi_energy_end(mps_mpm *mpm) {
   const mpsi_node_energy n = sum_nodes(mpm);
   const double before = e->springs;
   e->springs = mpm->contact.bodies > 0 ? spring_energy(mpm) : 0.0;
-  const double pushed = bodies - n.surface - n.normal; /* work on the springs */
+  if (mpm->contact.bodies > 0) mpsi_mpm_find_impulse_loss(mpm);
+  /* work of the bodies on the springs: the rest is that by friction and by impulses */
+  const double pushed = bodies - n.surface - n.normal - mpm->contact.impulses.surface;
   sum->kinetic += p.kinetic + e->driven - p.kinetic_before;
   sum->kept += p.kept;
   sum->spent += p.spent;
   sum->springs += e->springs - before;
   sum->loads += p.loads;
   sum->boundary_loss += e->boundaries - e->driven_work - n.holds;
-  sum->friction_loss += n.surface - n.friction;
+  sum->friction_loss += n.surface - n.friction + mpm->contact.impulses.loss;
   sum->damping_loss -= n.damping;
   sum->transfer += (p.kinetic_before - n.kinetic_before) + (n.kinetic - p.kinetic) +
                    (e->driven_work - e->driven);

@@ -288,7 +288,9 @@ MPSI_INLINE void scatter_contact(mps_mpm *mpm, const mpsi_cell_block *cells, int
                                  mpsi_cell_pair *pair) {
   const mps_body *body = mpm->contact.body[pair->body];
   mpsi_contact_particle c;
-  if (!mpsi_find_contact(mpm, mpm->contact.handle[pair->body], dim, p, &c)) return;
+  if (mpsi_by_impulses(mpm->contact.handle[pair->body]) ||
+      !mpsi_find_contact(mpm, mpm->contact.handle[pair->body], dim, p, &c))
+    return;
   pair->touched = true;
   pair->contacts[c.part]++;
   if (c.depth > pair->deepest) pair->deepest = c.depth, pair->deep = p;
@@ -315,7 +317,8 @@ MPSI_INLINE void share_friction(mps_mpm *mpm, const mpsi_cell_block *cells, int 
                                 mpsi_cell_pair *pair) {
   const mps_body *body = mpm->contact.body[pair->body];
   mpsi_contact_particle c;
-  if (!pair->touched || mpm->contact.handle[pair->body]->def.friction == 0.0 ||
+  if (!pair->touched || mpsi_by_impulses(mpm->contact.handle[pair->body]) ||
+      mpm->contact.handle[pair->body]->def.friction == 0.0 ||
       !mpsi_find_contact(mpm, mpm->contact.handle[pair->body], dim, p, &c))
     return;
   FOR_NODES(dim, spline) {

@@ -398,6 +398,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
                    mpm->rooms.stencil.item,
                    mpm->rooms.gone.item};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  mpsi_mpm_free_impulses(mpm);
   mpsi_mpm_drop_loads(mpm);
   mpsi_mpm_drop_boundaries(mpm);
   for (int32_t k = 0; k < mpm->laws.count; k++) {

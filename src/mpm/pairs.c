@@ -43,6 +43,7 @@ static bool list_cell_pairs(mps_mpm *mpm, int64_t *count) {
 /* Friction with a body that moves freely depends on the mass of all nodes in contact with it. */
 static bool asks_for_mass(const mps_mpm *mpm, int32_t body) {
   return mpm->contact.handle[body]->def.friction > 0.0 &&
+         !mpsi_by_impulses(mpm->contact.handle[body]) &&
          mpm->contact.body[body]->def.motion != MPS_BODY_MOTION_PRESCRIBED;
 }
 

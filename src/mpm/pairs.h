@@ -5,6 +5,7 @@
 #define MPSI_MPM_PAIRS_H
 
 #include "contact/contact.h"
+#include "impulses.h"
 #include "room.h"
 
 #include <mps/mpm.h>
@@ -19,6 +20,7 @@ typedef struct mpsi_cell_pair {
   int64_t deep;   /* that particle */
   mpsi_load load[MPS_BODY_MAX_PARTS];
   int64_t contacts[MPS_BODY_MAX_PARTS];
+  int64_t first_candidate, candidates; /* for contact by impulses: see touches.c */
 } mpsi_cell_pair;
 
 /* A block of nodes and a body that may act on it; its nodes are contact.node[k * block_nodes]. */
@@ -39,6 +41,7 @@ typedef struct mpsi_contacts {
   uint32_t *inside;         /* bit b: in body b; mask_count * block_nodes */
   _Atomic uint8_t *reached; /* corner of a cell that holds a particle; likewise */
   int64_t cell_pair_count, node_pair_count, mask_count;
+  mpsi_impulses impulses;
   mpsi_room cell_pair_room, node_pair_room, node_room, inside_room, reached_room;
 } mpsi_contacts;
 

@@ -117,6 +117,50 @@ static void set_dashes(void *solver, int64_t rows, const void *values) {
     mpm->run.broken = mpsi_mpm_put_dashes(mpm, "restore", rows, values) != MPS_OK;
 }
 
+/* ---- impulses of the last step, for contact ---------------------------------------------------
+ */
+
+static int64_t count_kept(const void *solver) {
+  return ((const mps_mpm *)solver)->contact.impulses.kept_count;
+}
+
+static void get_kept_owners(const void *solver, void *values) {
+  const mpsi_impulses *all = &((const mps_mpm *)solver)->contact.impulses;
+  int64_t *row = values;
+  for (int64_t k = 0; k < all->kept_count; k++)
+    row[2 * k] = all->kept[k].id, row[2 * k + 1] = all->kept[k].body;
+}
+
+static bool reserve_kept(void *solver, int64_t rows, const void *values) {
+  mps_mpm *mpm = solver;
+  mpsi_impulses *all = &mpm->contact.impulses;
+  (void)values;
+  const bool good = keep_room(mpm->context, &all->kept_room, rows, sizeof *all->kept);
+  all->kept = all->kept_room.item;
+  return good;
+}
+
+static void set_kept_owners(void *solver, int64_t rows, const void *values) {
+  mpsi_impulses *all = &((mps_mpm *)solver)->contact.impulses;
+  const int64_t *row = values;
+  all->kept_count = rows;
+  for (int64_t k = 0; k < rows; k++)
+    all->kept[k].id = row[2 * k], all->kept[k].body = row[2 * k + 1];
+}
+
+static void get_kept(const void *solver, void *values) {
+  const mpsi_impulses *all = &((const mps_mpm *)solver)->contact.impulses;
+  double *row = values;
+  for (int64_t k = 0; k < all->kept_count; k++)
+    memcpy(row + 3 * k, all->kept[k].by, sizeof all->kept[k].by);
+}
+
+static void set_kept(void *solver, int64_t rows, const void *values) {
+  mpsi_impulses *all = &((mps_mpm *)solver)->contact.impulses;
+  const double *row = values;
+  for (int64_t k = 0; k < rows; k++) memcpy(all->kept[k].by, row + 3 * k, sizeof all->kept[k].by);
+}
+
 /* ---- the list ------------------------------------------------------------------------------- */
 
 static const mpsi_state_table blocks_table = {MPSI_STATE_I64, MPSI_BLOCK,     count_blocks,
@@ -125,6 +169,11 @@ static const mpsi_state_table sizes_table = {MPSI_STATE_I64, SIZES,         one_
                                              get_sizes,      reserve_sizes, set_sizes};
 static const mpsi_state_table dashes_table = {MPSI_STATE_F64, MPSI_DASH, count_dashes,
                                               get_dashes,     NULL,      set_dashes};
+
+static const mpsi_state_table kept_owners_table = {
+    MPSI_STATE_I64, 2, count_kept, get_kept_owners, reserve_kept, set_kept_owners};
+static const mpsi_state_table kept_table = {MPSI_STATE_F64, 3,    count_kept,
+                                            get_kept,       NULL, set_kept};
 
 static void list_setting(mpsi_state *s, const mps_mpm *mpm) {
   int64_t loads = 0;
@@ -176,6 +225,9 @@ static void list_state(mpsi_state *s, void *solver) {
     mpsi_contact_list_state(s, mpm->contact.handle[b]);
     mpsi_state_leave(s);
   }
+  mpsi_state_f64(s, "impulses_dt", &mpm->contact.impulses.kept_dt, 1);
+  mpsi_state_add_table(s, "impulses_of", &kept_owners_table);
+  mpsi_state_add_table(s, "impulses", &kept_table);
   mpsi_state_add_table(s, "sizes", &sizes_table);
   mpsi_state_add_table(s, "blocks", &blocks_table);
   mpsi_state_add_table(s, "dashpots", &dashes_table);
@@ -258,6 +310,21 @@ static bool holds_particles(const mps_mpm *mpm, mps_snapshot *from) {
   return true;
 }
 
+static bool holds_impulses(const mps_mpm *mpm, const mps_snapshot *from) {
+  const mpsi_value *owners = mpsi_values_find(&from->state, "impulses_of");
+  const mpsi_value *impulses = mpsi_values_find(&from->state, "impulses");
+  const double dt = *(const double *)mpsi_values_find(&from->state, "impulses_dt")->data;
+  if (owners->rows != impulses->rows || owners->rows > MPSI_MPM_MOST_PARTICLES) return false;
+  if (!(dt >= 0.0) || !isfinite(dt)) return false;
+  for (int64_t k = 0; k < owners->rows; k++) {
+    const int64_t body = ((const int64_t *)owners->data)[2 * k + 1];
+    if (body < 0 || body >= mpm->contact.bodies) return false;
+    for (int c = 0; c < 3; c++)
+      if (!isfinite(((const double *)impulses->data)[3 * k + c])) return false;
+  }
+  return true;
+}
+
 static bool fits(void *solver, mps_snapshot *from, const char **what) {
   const mps_mpm *mpm = solver;
   const mpsi_value *sizes = mpsi_values_find(&from->state, "sizes");
@@ -270,7 +337,9 @@ static bool fits(void *solver, mps_snapshot *from, const char **what) {
     const int64_t size = ((const int64_t *)sizes->data)[k];
     if (size < 0 || size > MPSI_NO_WALL) return false;
   }
-  return holds_particles(mpm, from);
+  if (!holds_particles(mpm, from)) return false;
+  *what = "its impulses of contact are not one of each particle and body";
+  return holds_impulses(mpm, from);
 }
 
 /* ---- public ---------------------------------------------------------------------------------- */

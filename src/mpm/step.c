@@ -67,6 +67,7 @@ static void warn_about_step(mps_mpm *mpm, double dt) {
   double stiffest = 0.0;
   for (int32_t k = 0; k < mpm->laws.count; k++) stiffest = fmax(stiffest, mpm->laws.law[k].modulus);
   for (int32_t b = 0; b < mpm->contact.bodies; b++) {
+    if (mpsi_by_impulses(mpm->contact.handle[b])) continue;
     const double k = mpm->def.measure * mpsi_contact_penalty(mpm->contact.handle[b], stiffest,
                                                              mps_particles_spacing(mpm->particles),
                                                              mpm->def.cell, mpm->def.courant);
@@ -108,6 +109,7 @@ static mps_status prepare(mps_mpm *mpm, const char *function) {
  *            (23)-(25), (39), fitted.c (28)-(30)
  *   update   velocities before and after the forces, normal contact: grid.c (26), contact (31)
  *   between  masses in contact with each free rough body
+ *            then the impulses of contacts, where there are any: touches.c, impulses.c
  *   finish   friction with bodies (31)-(34); walls and prescribed nodes
  *   gather   velocities of the nodes --> v, L, x (41)-(44); then the laws, L --> sigma, V and their
  *            histories (45)-(48), and c + |v| for the next step (49), (50): g2p.c, law.c */
@@ -119,9 +121,13 @@ static mps_status move(mps_mpm *mpm, const char *function, double dt) {
                     .between = mpm->contact.bodies > 0 ? mpsi_mpm_find_contact_mass : NULL};
   if (mpm->contact.cell_pair_count > 0) { /* no particle moves before all depths are known */
     mpsi_mpm_run_pass(mpm, &pass);
+    mpsi_mpm_fit_touches(mpm);
     const mps_status status = mpsi_mpm_check_depth(mpm, function);
     if (status != MPS_OK) return status;
+    mpsi_mpm_apply_impulses(mpm);
     pass = (mpsi_pass){.clear = NULL};
+  } else {
+    mpm->contact.impulses.kept_count = 0;
   }
   pass.finish = mpsi_mpm_finish_nodes;
   pass.gather = mpm->kernels->g2p[geometry][spline];
@@ -135,6 +141,8 @@ mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
   if (status != MPS_OK) return status;
   mpm->run.dt = dt;
   warn_about_step(mpm, dt);
+  status = mpsi_mpm_find_touches(mpm, function);
+  if (status != MPS_OK) return status;
   status = move(mpm, function, dt); /* particles --> nodes --> particles */
   if (status != MPS_OK) return status;
   mpsi_mpm_sum_holds(mpm);                              /* impulses of nodes --> forces of walls */

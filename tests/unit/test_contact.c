@@ -40,6 +40,10 @@ static void bad_definitions(void **state) {
     assert_null(contact);                                                                          \
   } while (0)
   CASE(friction, -0.1, "friction is -0.1");
+  CASE(method, 2, "method is 2, allowed are 0 (impulse) and 1 (penalty)");
+  CASE(sweeps, -1, "sweeps is -1, must be in 0 to 1000");
+  CASE(penalty, 1e6, "penalty is given, and method is 0 (impulse)");
+  CASE(xi, 0.5, "xi is given, and method is 0 (impulse)");
   CASE(penalty, 0.0, "penalty is 0 N/m");
   CASE(xi, 1.0, "xi is 1, must be in (0, 1)");
   CASE(offset, -1.0, "offset is -1 m");
@@ -49,6 +53,7 @@ static void bad_definitions(void **state) {
   CASE(inside, 3, "inside is 3");
 #undef CASE
   mps_contact_def both = mps_contact_defaults();
+  both.method = MPS_CONTACT_METHOD_PENALTY;
   both.xi = 0.6, both.penalty = 1e6;
   REFUSES("xi is 0.6 and penalty 1e+06 N/m", mps_mpm_add_contact(s.mpm, body, &both, NULL));
   mps_body_destroy(&body);
@@ -62,7 +67,7 @@ static void tells_who_touches(void **state) {
   mps_body *plate = box_at(0.1, 0.149, 0.4, 0.1);
   mps_contact_def def = mps_contact_defaults();
   mps_contact *contact = NULL;
-  def.penalty = 5e4;
+  def.method = MPS_CONTACT_METHOD_PENALTY, def.penalty = 5e4;
   mps_assert_ok(context, mps_mpm_add_contact(s.mpm, plate, &def, &contact));
   assert_ptr_equal(mps_contact_body(contact), plate);
   int64_t count = 0, ids[32];
@@ -136,7 +141,8 @@ static void bodies_are_shared(void **state) {
   }
   mps_assert_near(part[0].impulse[1] + part[1].impulse[1], all.impulse[1], 1e-12);
   mps_assert_near(part[0].force[1] + part[1].force[1], all.force[1], 1e-9);
-  mps_assert_near(part[0].impulse[1], part[1].impulse[1], 1e-9 * part[0].impulse[1]);
+  /* equal but for the order in which the solvers stop the beam */
+  mps_assert_near(part[0].impulse[1], part[1].impulse[1], 2e-3 * part[0].impulse[1]);
   mps_body_totals beam_now;
   mps_assert_ok(context, mps_body_get_totals(beam, &beam_now));
   const double sum = mpm_scene_totals(&s[0]).linear[1] + mpm_scene_totals(&s[1]).linear[1];

@@ -408,6 +408,7 @@ static void a_step_that_would_go_too_deep_does_not_begin(void **state) {
     mps_contact_def touch = mps_contact_defaults();
     def.position[0] = 0.1, def.position[1] = 1.1;
     touch.depth = 0.002, touch.penalty = 1e4;
+    touch.method = MPS_CONTACT_METHOD_PENALTY;
     mps_body_motion down = mps_body_motion_defaults();
     down.velocity[1] = -5.0;
     mps_assert_ok(context, mps_body_create_box(context, &def, 0.15, 0.15, &x[k].body[0]));

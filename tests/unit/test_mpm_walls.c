@@ -250,7 +250,7 @@ static void tells_of_bodies(void **state) {
   mps_assert_ok(own, mps_mpm_step(s.mpm, 2));
   assert_int_equal(h.warnings, 1);
   def.position[0] = -0.3;
-  contact.penalty = 1e8;
+  contact.method = MPS_CONTACT_METHOD_PENALTY, contact.penalty = 1e8;
   mps_assert_ok(own, mps_body_create_box(own, &def, 0.1, 0.1, &bodies[3]));
   mps_assert_ok(own, mps_mpm_add_contact(s.mpm, bodies[3], &contact, NULL));
   mps_assert_ok(own, mps_mpm_step(s.mpm, 2));

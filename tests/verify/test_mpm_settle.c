@@ -284,7 +284,7 @@ static footing make_footing(void) {
   body.position[1] = 1.45;
   mps_assert_ok(context, mps_body_create_box(context, &body, 1.0, 0.5, &f.strip));
   mps_contact_def contact = mps_contact_defaults();
-  contact.penalty = 2e9;
+  contact.method = MPS_CONTACT_METHOD_PENALTY, contact.penalty = 2e9;
   mps_assert_ok(context, mps_mpm_add_contact(f.s.mpm, f.strip, &contact, NULL));
   return f;
 }

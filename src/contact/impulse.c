@@ -1,0 +1,128 @@
+/* impulse.c - see impulse.h. SPDX-License-Identifier: BSD-3-Clause */
+#include "impulse.h"
+
+#include "body/rotation.h"
+
+#include <string.h>
+
+#define LARGEST_STRAIN 0.2 /* elastic: beyond it the law's own answer is not a size any more */
+#define RECOVERED 0.1      /* of an overlap, in a step: .02 to .3 give the same within .2 % */
+#define FASTEST 0.02       /* of the waves, at which an overlap opens: it must not throw */
+
+/* ---- geometry -------------------------------------------------------------------------------- */
+
+double mpsi_impulse_half_size(double half, double wave, double shear, const double *stress,
+                              const double *n) {
+  static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
+  if (!(shear > 0.0)) return half;
+  double across = 0.0;
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) across += n[a] * n[b] * stress[symmetric[a][b]];
+  const double lame = wave - 2.0 * shear, trace = stress[0] + stress[1] + stress[2];
+  const double strain = (across - lame / (3.0 * lame + 2.0 * shear) * trace) / (2.0 * shear);
+  return half * (1.0 + fmin(LARGEST_STRAIN, fmax(-LARGEST_STRAIN, strain)));
+}
+
+double mpsi_impulse_aim(double gap, double dt, double speed) {
+  return gap > 0.0 ? -gap / dt : fmin(-RECOVERED * gap / dt, FASTEST * speed);
+}
+
+/* ---- the body's side ------------------------------------------------------------------------- */
+
+/* Component a of R I^-1 R^T m: the spin by a unit of time of the moment m. The body's axes are the
+ * principal ones; in the plane it turns about z alone. */
+static void spin_by(const mps_body *body, const double *m, double *spin) {
+  const double *R = body->pose.R;
+  for (int c = 0; c < 3; c++) spin[c] = 0.0;
+  for (int a = body->dim == 2 ? 2 : 0; a < 3; a++) {
+    const double own = (R[a] * m[0] + R[3 + a] * m[1] + R[6 + a] * m[2]) / body->def.inertia[a];
+    for (int c = 0; c < 3; c++) spin[c] += R[3 * c + a] * own;
+  }
+}
+
+void mpsi_impulse_begin_body(mpsi_impulse_body *b, const mps_body *body, double dt) {
+  const mps_body_def *def = &body->def;
+  *b = (mpsi_impulse_body){.body = body, .free = def->motion != MPS_BODY_MOTION_PRESCRIBED};
+  memcpy(b->v, body->pose.v, sizeof b->v);
+  memcpy(b->spin, body->pose.spin, sizeof b->spin);
+  for (int k = 0; k < 2; k++) b->left[k] = b->free ? 1.0 / (1.0 + dt * def->damping[k]) : 1.0;
+  if (!b->free) return;
+  double moment[3], spin[3];
+  for (int c = 0; c < 3; c++) moment[c] = dt * body->load.moment[c] + body->pending.moment[c];
+  spin_by(body, moment, spin);
+  for (int c = 0; c < 3; c++) {
+    const double force = dt * body->load.force[c] + body->pending.force[c];
+    b->v[c] = b->left[0] * (b->v[c] + force / def->mass + dt * def->gravity[c]);
+    b->spin[c] = b->left[1] * (b->spin[c] + spin[c]);
+  }
+}
+
+void mpsi_impulse_surface(const mpsi_impulse_body *b, const double *x, double *v) {
+  double r[3];
+  for (int c = 0; c < 3; c++) r[c] = x[c] - b->body->pose.x[c];
+  mpsi_cross3(b->spin, r, v);
+  for (int c = 0; c < 3; c++) v[c] += b->v[c];
+}
+
+double mpsi_impulse_mobility(const mps_body *body, const double *x, const double *along) {
+  if (body->def.motion == MPS_BODY_MOTION_PRESCRIBED) return 0.0;
+  double r[3], arm[3], spin[3];
+  for (int c = 0; c < 3; c++) r[c] = x[c] - body->pose.x[c];
+  mpsi_cross3(r, along, arm);
+  spin_by(body, arm, spin);
+  return 1.0 / body->def.mass + mpsi_dot3(arm, spin);
+}
+
+void mpsi_impulse_kick(mpsi_impulse_body *b, const double *x, const double *by) {
+  if (!b->free) return;
+  double r[3], moment[3], spin[3];
+  for (int c = 0; c < 3; c++) r[c] = x[c] - b->body->pose.x[c];
+  mpsi_cross3(by, r, moment); /* r x -by */
+  spin_by(b->body, moment, spin);
+  for (int c = 0; c < 3; c++) {
+    b->v[c] -= b->left[0] * by[c] / b->body->def.mass;
+    b->spin[c] += b->left[1] * spin[c];
+  }
+}
+
+/* ---- a contact ------------------------------------------------------------------------------- */
+
+/* Takes T back into the cone |T| <= mu P. */
+static void into_cone(const mpsi_impulse *c, double *rub) {
+  const double size = sqrt(mpsi_dot3(rub, rub)), most = c->friction * c->push;
+  for (int a = 0; a < 3 && size > most; a++) rub[a] *= most / size;
+}
+
+void mpsi_impulse_warm(mpsi_impulse *c, const double *last, double share, double *by) {
+  const double across = mpsi_dot3(last, c->normal);
+  c->push = fmax(0.0, share * across);
+  for (int a = 0; a < 3; a++)
+    c->rub[a] = c->push > 0.0 ? share * (last[a] - across * c->normal[a]) : 0.0;
+  into_cone(c, c->rub);
+  for (int a = 0; a < 3; a++) by[a] = c->push * c->normal[a] + c->rub[a];
+}
+
+double mpsi_impulse_visit(mpsi_impulse *c, const mpsi_impulse_body *b, const double *u,
+                          double *by) {
+  const mps_body *body = b->body;
+  const double across = mpsi_dot3(u, c->normal), before = c->push;
+  double inverse = c->mobility;
+  if (b->free) inverse += mpsi_impulse_mobility(body, c->at, c->normal);
+  c->push = fmax(0.0, before + (c->aim - across) / inverse);
+  for (int a = 0; a < 3; a++) by[a] = (c->push - before) * c->normal[a];
+  if (c->friction > 0.0) {
+    double slip[3], rub[3];
+    for (int a = 0; a < 3; a++) slip[a] = u[a] - across * c->normal[a];
+    const double speed = sqrt(mpsi_dot3(slip, slip));
+    for (int a = 0; a < 3 && speed > 0.0; a++) slip[a] /= speed;
+    inverse = c->mobility;
+    if (b->free && speed > 0.0) inverse += mpsi_impulse_mobility(body, c->at, slip);
+    for (int a = 0; a < 3; a++) rub[a] = c->rub[a] - speed / inverse * slip[a];
+    into_cone(c, rub);
+    for (int a = 0; a < 3; a++) {
+      by[a] += rub[a] - c->rub[a];
+      c->rub[a] = rub[a];
+    }
+  }
+  return sqrt(mpsi_dot3(by, by));
+}

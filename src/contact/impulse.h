@@ -1,0 +1,70 @@
+/* impulse.h - contact by impulses at the foot of a particle, whatever the solver: docs/theory/
+ * contact.md derives it. A particle p with its nearest point x_c on the surface (the foot), the
+ * outward normal n there and its own half size e is in contact over the gap g = D - e, D the
+ * surface's distance. An impulse P n + T, with P >= 0 and |T| <= mu P, acts at x_c such that the
+ * relative velocity there, u, is at least w along n (P > 0: just w) and does not slide unless |T|
+ * is at its bound. Who owns the mass on the other side (nodes of a grid, ...) is the solver's:
+ * it tells u and the mobility 1/m_c of its side. Vectors have three components, of which the last
+ * is 0 in 2D. SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_IMPULSE_H
+#define MPSI_IMPULSE_H
+
+#include "body/contact.h"
+
+/* ---- geometry -------------------------------------------------------------------------------- */
+
+/* Half the size (m) along n of a particle that has half the size `half` unstrained: half (1 +
+ * eps_nn), with the elastic strain of the stress (Pa; xx, yy, zz, xy, zx, yz) in a material of wave
+ * modulus K + 4G/3 and shear modulus G (Pa), between +-0.2. `half` where G is 0. */
+double mpsi_impulse_half_size(double half, double wave, double shear, const double *stress,
+                              const double *n);
+
+/* Whether a particle of half size `half` over the gap g (m) may touch within dt, where body and
+ * particle approach each other by `closing` (m/s). */
+static inline bool mpsi_impulse_near(double gap, double half, double closing, double dt) {
+  return gap <= 0.2 * half + dt * fmax(0.0, closing);
+}
+
+/* w (m/s): a gap may close within dt, no more; a tenth of an overlap opens again, by at most 0.02
+ * of `speed` (m/s, of waves and particles). */
+double mpsi_impulse_aim(double gap, double dt, double speed);
+
+/* ---- the body's side ------------------------------------------------------------------------- */
+
+/* A body as the impulses of a step change its velocities; its place is that before the step. */
+typedef struct mpsi_impulse_body {
+  const mps_body *body;
+  bool free;            /* impulses move it */
+  double v[3], spin[3]; /* m/s, rad/s: at the end of the step, by all that is known so far */
+  double left[2];       /* what damping leaves of a change of v, of spin */
+} mpsi_impulse_body;
+
+/* The body with the velocities to which its loads, gravity, damping and impulses of other contacts
+ * will bring it in dt. */
+void mpsi_impulse_begin_body(mpsi_impulse_body *b, const mps_body *body, double dt);
+/* Velocity v (m/s) of its surface at x. */
+void mpsi_impulse_surface(const mpsi_impulse_body *b, const double *x, double *v);
+/* 1/kg: velocity at x along the unit vector `along` by a unit impulse there; 0 of a driven body. */
+double mpsi_impulse_mobility(const mps_body *body, const double *x, const double *along);
+/* The impulse `by` (N s) on the particle at x takes its opposite to the body. */
+void mpsi_impulse_kick(mpsi_impulse_body *b, const double *x, const double *by);
+
+/* ---- a contact ------------------------------------------------------------------------------- */
+
+typedef struct mpsi_impulse {
+  double at[3], normal[3]; /* m, foot; n */
+  double aim;              /* m/s, w */
+  double mobility;         /* 1/kg, 1/m_c of the solver's side */
+  double friction;         /* mu */
+  double push, rub[3];     /* N s: P; T */
+} mpsi_impulse;
+
+/* Begins with `share` of the last step's impulse `last` (N s), split on the present normal, or with
+ * none where that pulled; `by` (N s) is what acts on the particle. */
+void mpsi_impulse_warm(mpsi_impulse *c, const double *last, double share, double *by);
+/* One visit of a sweep: P and T such that the contact alone, all others as they are, is satisfied
+ * from the relative velocity u (m/s, of the particle's side less the body's, at the foot). `by` (N
+ * s) is the change on the particle. Returns the size of that change. */
+double mpsi_impulse_visit(mpsi_impulse *c, const mpsi_impulse_body *b, const double *u, double *by);
+
+#endif

@@ -1,0 +1,80 @@
+/* impulses.h - contact by impulses on the grid (impulses.c, touches.c): which particles may touch
+ * which body in a step, the nodes through which they do, and what is kept for the next step.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_IMPULSES_H
+#define MPSI_MPM_IMPULSES_H
+
+#include "contact/impulse.h"
+#include "room.h"
+
+#include <mps/mpm.h>
+
+/* A particle that may touch a body in the step being made. Its weights psi and nodes are
+ * weight[k * stride] and on, node[k * stride] and on, k its number in the list. */
+typedef struct mpsi_touch {
+  mpsi_impulse impulse;
+  double x[3];      /* m, of the particle */
+  int64_t particle; /* index, */
+  int64_t id;       /* and what it keeps when the particles are sorted */
+  int64_t pair;     /* of contact.cell_pair */
+  int32_t body, part, nodes;
+} mpsi_touch;
+
+/* The touches of a block of cells: neighbours in the list. */
+typedef struct mpsi_touch_block {
+  int64_t first, count;
+  int32_t cells;
+  double impulse, change; /* N s: sums of P and of what the last sweep has changed */
+} mpsi_touch_block;
+
+/* What a body gave to a particle in the last step. */
+typedef struct mpsi_kept_impulse {
+  int64_t id, body;
+  double by[3]; /* N s */
+} mpsi_kept_impulse;
+
+typedef struct mpsi_impulses {
+  mpsi_touch *touch;
+  mpsi_touch_block *block; /* colour by colour */
+  double *weight;
+  double **node; /* its four values: see mpsi_node */
+  int32_t *candidate;
+  int64_t touch_count, block_count;
+  int64_t colour[9]; /* first block of each in `block` */
+  int32_t stride;
+  bool free_bodies; /* one of those that may be touched moves freely */
+  mpsi_impulse_body body[MPS_MPM_MAX_CONTACTS];
+  mpsi_kept_impulse *kept; /* of the last step */
+  int64_t kept_count;
+  double kept_dt;  /* s, of that step */
+  int32_t *lookup; /* by particle and body: index into `kept`, or -1; lookup_mask + 1 of them */
+  uint64_t lookup_mask;
+  double surface; /* J, of the step: work of the surfaces, */
+  double loss;    /* and that less what the nodes received */
+  mpsi_room touch_room, block_room, weight_room, node_room, candidate_room, kept_room, next_room,
+      lookup_room;
+} mpsi_impulses;
+
+/* touches.c: before anything moves, what may touch in a step of mpm->run.dt, and room for it; then,
+ * the masses of the nodes known, the touches with their weights, and how deep particles are. */
+mps_status mpsi_mpm_find_touches(mps_mpm *mpm, const char *function);
+void mpsi_mpm_fit_touches(mps_mpm *mpm);
+/* touches.c: prepares `lookup` (false: memory refused), by which the next finds the impulse of the
+ * last step on a particle, or NULL; half its size along n (m); a contact has ended: bodies above it
+ * move down by one. */
+bool mpsi_mpm_index_impulses(mps_mpm *mpm);
+const mpsi_kept_impulse *mpsi_mpm_kept_impulse(const mps_mpm *mpm, int64_t id, int32_t body);
+double mpsi_mpm_half_size(const mps_mpm *mpm, const mps_contact *contact, int64_t particle,
+                          const double *n);
+void mpsi_mpm_forget_impulses(mps_mpm *mpm, int32_t body);
+/* impulses.c: the impulses of a step, to nodes and pairs; and, the nodes' last velocities known,
+ * what the contacts have lost. */
+void mpsi_mpm_apply_impulses(mps_mpm *mpm);
+void mpsi_mpm_find_impulse_loss(mps_mpm *mpm);
+void mpsi_mpm_free_impulses(mps_mpm *mpm);
+
+static inline bool mpsi_by_impulses(const mps_contact *contact) {
+  return contact->def.method == MPS_CONTACT_METHOD_IMPULSE;
+}
+
+#endif

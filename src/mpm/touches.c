@@ -1,0 +1,278 @@
+/* touches.c - which particles may touch which body in a step, their weights at the foot, and the
+ * impulses of the last step, with which the next begins. A particle counts by its distance from
+ * the surface, not by the nodes inside the body that it sees: so thin bodies are touched too.
+ *
+ * The impulse acts at the foot x_c through psi_i = phi_i(x_p) + grad phi_i . (x_c - x_p): sum psi_i
+ * = 1 and sum psi_i x_i = x_c, so that nodes receive its force and its moment about any point.
+ *
+ * Blocks of cells are listed colour by colour (blocks.h), the touches of a block by place, then by
+ * body: in the order in which impulses.c sweeps, whatever the order of the particles.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "body/rotation.h"
+#include "kernels.h"
+
+#include "core/particles_internal.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- the impulses of the last step ----------------------------------------------------------- */
+
+static uint64_t slot_of(const mpsi_impulses *all, int64_t id, int64_t body) {
+  const uint64_t key = ((uint64_t)id * 64u + (uint64_t)body) * UINT64_C(0x9E3779B97F4A7C15);
+  return (key >> 20) & all->lookup_mask;
+}
+
+/* Twice as many slots as impulses at least. */
+bool mpsi_mpm_index_impulses(mps_mpm *mpm) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  int64_t slots = 16;
+  while (slots < 2 * all->kept_count) slots *= 2;
+  if (!mpsi_room_ensure(mpm->context, &all->lookup_room, slots, sizeof *all->lookup)) return false;
+  all->lookup = all->lookup_room.item;
+  all->lookup_mask = (uint64_t)slots - 1;
+  for (int64_t k = 0; k < slots; k++) all->lookup[k] = -1;
+  for (int64_t k = 0; k < all->kept_count; k++) {
+    uint64_t at = slot_of(all, all->kept[k].id, all->kept[k].body);
+    while (all->lookup[at] >= 0) at = (at + 1) & all->lookup_mask;
+    all->lookup[at] = (int32_t)k;
+  }
+  return true;
+}
+
+const mpsi_kept_impulse *mpsi_mpm_kept_impulse(const mps_mpm *mpm, int64_t id, int32_t body) {
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  for (uint64_t at = slot_of(all, id, body); all->lookup[at] >= 0;
+       at = (at + 1) & all->lookup_mask) {
+    const mpsi_kept_impulse *kept = &all->kept[all->lookup[at]];
+    if (kept->id == id && kept->body == body) return kept;
+  }
+  return NULL;
+}
+
+void mpsi_mpm_forget_impulses(mps_mpm *mpm, int32_t body) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  int64_t to = 0;
+  for (int64_t k = 0; k < all->kept_count; k++) {
+    mpsi_kept_impulse kept = all->kept[k];
+    if (kept.body == body) continue;
+    kept.body -= kept.body > body;
+    all->kept[to++] = kept;
+  }
+  all->kept_count = to;
+}
+
+/* ---- who may touch --------------------------------------------------------------------------- */
+
+double mpsi_mpm_half_size(const mps_mpm *mpm, const mps_contact *contact, int64_t particle,
+                          const double *n) {
+  double wave, shear, stress[6] = {0.0};
+  mpsi_mpm_elastic(mpm, particle, &wave, &shear);
+  for (int c = 0; c < 2 * mpm->dim; c++) stress[c] = mpm->p.s[c][particle];
+  return mpsi_impulse_half_size(contact->def.offset, wave, shear, stress, n);
+}
+
+static void place_of(const mps_mpm *mpm, int64_t k, double *x) {
+  for (int c = 0; c < 3; c++) x[c] = c < mpm->dim ? mpm->p.x[c][k] : 0.0;
+}
+
+/* No particle touches that is further away than this (m). */
+static double longest_reach(const mps_mpm *mpm, const mps_contact *contact, int64_t k) {
+  double square = 0.0;
+  for (int c = 0; c < mpm->dim; c++) square += mpm->p.v[c][k] * mpm->p.v[c][k];
+  return 1.4 * contact->def.offset +
+         mpm->run.dt * (mpsi_contact_speed(contact) + sqrt(square)) * (1.0 + 1e-9);
+}
+
+static bool may_touch(const mps_mpm *mpm, const mps_contact *contact, int64_t k, const double *x,
+                      const mpsi_foot *foot) {
+  const double half = mpsi_mpm_half_size(mpm, contact, k, foot->normal);
+  double surface[3], closing = 0.0;
+  (void)x;
+  mpsi_body_velocity(&contact->body->pose, foot->at, surface);
+  for (int c = 0; c < mpm->dim; c++) closing += (surface[c] - mpm->p.v[c][k]) * foot->normal[c];
+  return mpsi_impulse_near(foot->distance - half, half, closing, mpm->run.dt);
+}
+
+/* Those of a pair of a block and a body. Distances change no faster than places: the last one that
+ * was found tells of most particles that they are too far. */
+static void find_candidates(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_cell_pair *pair) {
+  const mps_contact *contact = mpm->contact.handle[pair->body];
+  int32_t *out = mpm->contact.impulses.candidate + pair->first_candidate;
+  double known[3] = {0.0}, distance = -1.0;
+  pair->candidates = 0;
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    double x[3], square = 0.0;
+    place_of(mpm, k, x);
+    for (int c = 0; c < 3; c++) square += (x[c] - known[c]) * (x[c] - known[c]);
+    const double reach = longest_reach(mpm, contact, k), slack = distance - reach;
+    if (slack > 0.0 && square < slack * slack) continue;
+    const mpsi_foot foot = mpsi_body_foot(contact->body, x);
+    memcpy(known, x, sizeof known);
+    distance = foot.distance;
+    if (distance <= reach && may_touch(mpm, contact, k, x, &foot))
+      out[pair->candidates++] = (int32_t)(k - cells->begin);
+  }
+}
+
+static void find_in_block(mps_mpm *mpm, int64_t b, int32_t worker) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  (void)worker;
+  for (int32_t q = 0; q < cells->pairs; q++) {
+    mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
+    if (mpsi_by_impulses(mpm->contact.handle[pair->body])) find_candidates(mpm, cells, pair);
+  }
+}
+
+/* Room for as many candidates as there are particles in the blocks near each body. */
+static int64_t share_candidates(mps_mpm *mpm) {
+  int64_t count = 0;
+  for (int64_t t = 0; t < mpm->contact.cell_pair_count; t++) {
+    mpsi_cell_pair *pair = &mpm->contact.cell_pair[t];
+    const mpsi_cell_block *cells = &mpm->grid.cells[pair->cells];
+    pair->first_candidate = count;
+    pair->candidates = 0;
+    if (mpsi_by_impulses(mpm->contact.handle[pair->body])) count += cells->end - cells->begin;
+  }
+  return count;
+}
+
+/* The blocks with candidates, colour by colour. */
+static void list_blocks(mps_mpm *mpm) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  all->touch_count = all->block_count = 0;
+  for (int colour = 0; colour < MPSI_CORNERS; colour++) {
+    all->colour[colour] = all->block_count;
+    for (int64_t i = mpm->grid.colour[colour]; i < mpm->grid.colour[colour + 1]; i++) {
+      const mpsi_cell_block *cells = &mpm->grid.cells[mpm->grid.coloured[i]];
+      int64_t count = 0;
+      for (int32_t q = 0; q < cells->pairs; q++)
+        count += mpm->contact.cell_pair[cells->first_pair + q].candidates;
+      if (count == 0) continue;
+      all->block[all->block_count++] = (mpsi_touch_block){
+          .first = all->touch_count, .count = count, .cells = mpm->grid.coloured[i]};
+      all->touch_count += count;
+    }
+  }
+  all->colour[MPSI_CORNERS] = all->block_count;
+}
+
+mps_status mpsi_mpm_find_touches(mps_mpm *mpm, const char *function) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  mps_context *context = mpm->context;
+  all->touch_count = all->block_count = 0;
+  if (mpm->contact.bodies == 0) return MPS_OK;
+  const int64_t candidates = share_candidates(mpm);
+  all->stride = mpm->dim == 3 ? MPSI_STENCIL : MPSI_STENCIL / 4;
+  bool good = mpsi_room_ensure(context, &all->candidate_room, candidates, sizeof *all->candidate) &&
+              mpsi_room_ensure(context, &all->block_room, mpm->grid.cell_count, sizeof *all->block);
+  all->candidate = all->candidate_room.item;
+  all->block = all->block_room.item;
+  if (good && candidates > 0) {
+    mpsi_mpm_for_cells(mpm, find_in_block);
+    list_blocks(mpm);
+  }
+  const int64_t n = all->touch_count;
+  good = good && mpsi_room_ensure(context, &all->touch_room, n, sizeof *all->touch) &&
+         mpsi_room_ensure(context, &all->weight_room, n * all->stride, sizeof *all->weight) &&
+         mpsi_room_ensure(context, &all->node_room, n * all->stride, sizeof *all->node) &&
+         mpsi_room_ensure(context, &all->next_room, n, sizeof *all->kept) &&
+         mpsi_mpm_index_impulses(mpm);
+  if (!good) {
+    all->touch_count = all->block_count = 0;
+    return mpsi_fail_memory(context, function,
+                            (size_t)(n + 1) * (sizeof *all->touch + (size_t)all->stride * 16) +
+                                (size_t)candidates * sizeof *all->candidate);
+  }
+  all->touch = all->touch_room.item;
+  all->weight = all->weight_room.item;
+  all->node = all->node_room.item;
+  all->free_bodies = false;
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
+    mpsi_impulse_begin_body(&all->body[b], mpm->contact.body[b], mpm->run.dt);
+    if (mpm->settling.on) all->body[b].free = false;
+    all->free_bodies = all->free_bodies || all->body[b].free;
+  }
+  return MPS_OK;
+}
+
+/* ---- their weights --------------------------------------------------------------------------- */
+
+static int by_place(const void *a, const void *b) {
+  const mpsi_touch *s = a, *t = b;
+  for (int c = 0; c < 3; c++)
+    if (s->x[c] != t->x[c]) return s->x[c] < t->x[c] ? -1 : 1;
+  if (s->id != t->id) return s->id < t->id ? -1 : 1;
+  return (s->body > t->body) - (s->body < t->body);
+}
+
+static void begin_touch(mps_mpm *mpm, int64_t t, int64_t k, const int64_t *id, mpsi_touch *out) {
+  mpsi_cell_pair *pair = &mpm->contact.cell_pair[t];
+  const mps_contact *contact = mpm->contact.handle[pair->body];
+  *out = (mpsi_touch){.particle = k, .id = id[k], .pair = t, .body = pair->body};
+  place_of(mpm, k, out->x);
+  const mpsi_foot foot = mpsi_body_foot(contact->body, out->x);
+  mpsi_impulse *c = &out->impulse;
+  for (int a = 0; a < mpm->dim; a++) c->at[a] = foot.at[a], c->normal[a] = foot.normal[a];
+  out->part = contact->body->part_of[foot.face];
+  const double gap = foot.distance - mpsi_mpm_half_size(mpm, contact, k, c->normal);
+  c->aim = mpsi_impulse_aim(gap, mpm->run.dt, mpm->run.speed);
+  c->friction = contact->def.friction;
+  if (-foot.distance > pair->deepest) {
+    pair->touched = true;
+    pair->deepest = -foot.distance, pair->deep = k;
+  }
+}
+
+/* psi at the nodes of the touch's stencil that have mass, and its mobility. */
+static void fit_touch(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker, int64_t n) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  mpsi_touch *touch = &all->touch[n];
+  double *weight = all->weight + n * all->stride, **node = all->node + n * all->stride;
+  mpsi_stencil at;
+  mpsi_shape_values f;
+  mpm->kernels->fit(mpm, cells, &mpm->grid.workers[worker], touch->particle, &at, &f);
+  touch->nodes = 0;
+  touch->impulse.mobility = 0.0;
+  for (int s = 0; s < all->stride; s++) {
+    if (f.w[s] == 0.0) continue;
+    double psi = f.phi[s];
+    for (int a = 0; a < mpm->dim; a++)
+      psi += f.gradient[a][s] * (touch->impulse.at[a] - touch->x[a]);
+    const int64_t g =
+        mpsi_node_under(mpm, cells, at.at[0] + s % 4, at.at[1] + s / 4 % 4, at.at[2] + s / 16);
+    const double m = mpm->grid.node[g][MPSI_MASS];
+    if (!(m > 0.0)) continue;
+    node[touch->nodes] = mpm->grid.node[g];
+    weight[touch->nodes++] = psi;
+    touch->impulse.mobility += psi * psi / m;
+  }
+}
+
+static void fit_block(void *data, int64_t unit, int32_t worker) {
+  mps_mpm *mpm = data;
+  mpsi_impulses *all = &mpm->contact.impulses;
+  const mpsi_touch_block *block = &all->block[unit];
+  const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
+  const int64_t *id = mpsi_particles_integers(mpm->particles, "id");
+  int64_t n = block->first;
+  for (int32_t q = 0; q < cells->pairs; q++) {
+    const int64_t t = cells->first_pair + q;
+    const mpsi_cell_pair *pair = &mpm->contact.cell_pair[t];
+    const int32_t *candidate = all->candidate + pair->first_candidate;
+    for (int64_t i = 0; i < pair->candidates; i++)
+      begin_touch(mpm, t, cells->begin + candidate[i], id, &all->touch[n++]);
+  }
+  qsort(all->touch + block->first, (size_t)block->count, sizeof *all->touch, by_place);
+  mpsi_mpm_find_states(mpm, cells, &mpm->grid.workers[worker]);
+  for (n = block->first; n < block->first + block->count; n++) {
+    fit_touch(mpm, cells, worker, n);
+    mpsi_touch *touch = &all->touch[n];
+    const mpsi_kept_impulse *kept = mpsi_mpm_kept_impulse(mpm, touch->id, touch->body);
+    for (int a = 0; a < 3; a++) touch->impulse.rub[a] = kept ? kept->by[a] : 0.0;
+  }
+}
+
+void mpsi_mpm_fit_touches(mps_mpm *mpm) {
+  mpsi_parallel_for(mpm->context, mpm->contact.impulses.block_count, fit_block, mpm);
+}

@@ -1,0 +1,285 @@
+/* test_impulse.c - contact by impulses: the parts of src/contact/impulse.h against their formulas,
+ * and the contacts of WLS-MPM by them: force and moment on the grid, friction, several bodies and
+ * materials, thin plates, handles that end.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_scene.h"
+#include "test_fixture.h"
+
+#include "contact/impulse.h"
+
+#include <mps/mpm_energy.h>
+
+/* ---- parts ----------------------------------------------------------------------------------- */
+
+/* Of an isotropic solid of E = 1e6 Pa, nu = 0.3 under a stress, strain along n by Hooke's law. */
+static void half_size_follows_elastic_strain(void **state) {
+  (void)state;
+  const double E = 1e6, nu = 0.3, K = E / (3.0 * (1.0 - 2.0 * nu)), G = E / (2.0 * (1.0 + nu));
+  const double wave = K + 4.0 / 3.0 * G, s[6] = {-3e4, 1e4, 5e3, 2e4, -1e4, 4e3};
+  const double n[3] = {0.48, 0.6, 0.64};
+  const double S[3][3] = {{s[0], s[3], s[4]}, {s[3], s[1], s[5]}, {s[4], s[5], s[2]}};
+  double across = 0.0;
+  for (int a = 0; a < 3; a++)
+    for (int b = 0; b < 3; b++) across += n[a] * n[b] * S[a][b];
+  const double strain = ((1.0 + nu) * across - nu * (s[0] + s[1] + s[2])) / E;
+  mps_assert_near(mpsi_impulse_half_size(0.01, wave, G, s, n), 0.01 * (1.0 + strain), 1e-16);
+  const double crushed[6] = {-1e7, -1e7, -1e7, 0.0, 0.0, 0.0};
+  mps_assert_near(mpsi_impulse_half_size(0.01, wave, G, crushed, n), 0.008, 1e-16);
+  mps_assert_near(mpsi_impulse_half_size(0.01, K, 0.0, s, n), 0.01, 0.0);
+}
+
+static void aims_at_the_surface(void **state) {
+  (void)state;
+  mps_assert_near(mpsi_impulse_aim(1e-3, 1e-4, 50.0), -10.0, 1e-14);
+  mps_assert_near(mpsi_impulse_aim(-1e-4, 1e-4, 50.0), 0.1, 1e-15);
+  mps_assert_near(mpsi_impulse_aim(-1.0, 1e-4, 50.0), 1.0, 1e-14);
+  assert_true(mpsi_impulse_near(0.5e-3, 1e-2, 0.0, 1e-4));
+  assert_false(mpsi_impulse_near(2.5e-3, 1e-2, -50.0, 1e-4));
+  assert_true(mpsi_impulse_near(2.5e-3, 1e-2, 6.0, 1e-4));
+}
+
+/* A free body's velocity at a point by an impulse there is that of mobility and kick alike. */
+static void mobility_is_what_a_kick_does(void **state) {
+  (void)state;
+  mps_body_def def = mps_body_defaults();
+  def.motion = MPS_BODY_MOTION_FREE;
+  def.mass = 3.0, def.inertia[0] = 0.2, def.inertia[1] = 0.3, def.inertia[2] = 0.4;
+  def.rotation[0] = 0.3, def.rotation[1] = -0.5, def.rotation[2] = 0.9;
+  def.gravity[1] = -9.81;
+  mps_body *body = NULL;
+  mps_assert_ok(context, mps_body_create_sphere(context, &def, 0.5, &body));
+  const double x[3] = {0.3, -0.2, 0.35}, along[3] = {0.48, 0.6, 0.64}, dt = 1e-2;
+  double v[3], by[3], mobility = 0.0;
+  mpsi_impulse_body b;
+  mpsi_impulse_begin_body(&b, body, dt);
+  mps_assert_near(b.v[1], -9.81 * dt, 1e-15);
+  for (int c = 0; c < 3; c++) by[c] = -along[c]; /* the body gets the opposite */
+  b.v[1] = 0.0;
+  mpsi_impulse_kick(&b, x, by);
+  mpsi_impulse_surface(&b, x, v);
+  for (int c = 0; c < 3; c++) mobility += v[c] * along[c];
+  mps_assert_near(mpsi_impulse_mobility(body, x, along), mobility, 1e-14);
+  mps_body_destroy(&body);
+}
+
+/* One mass on a driven floor: what it falls with is stopped, what it slides with by at most mu. */
+static void one_visit_solves_one_contact(void **state) {
+  (void)state;
+  mps_body *floor = NULL;
+  const double up[] = {0.0, 1.0};
+  mps_assert_ok(context, mps_body_create_half_plane(context, NULL, up, &floor));
+  mpsi_impulse_body b;
+  mpsi_impulse_begin_body(&b, floor, 1e-3);
+  const double m = 2.0, slides[] = {0.1, 5.0};
+  for (int k = 0; k < 2; k++) {
+    mpsi_impulse c = {.normal = {0.0, 1.0, 0.0}, .mobility = 1.0 / m, .friction = 0.3};
+    double u[3] = {slides[k], -1.0, 0.0}, by[3];
+    mps_assert_near(mpsi_impulse_visit(&c, &b, u, by), sqrt(by[0] * by[0] + by[1] * by[1]), 1e-15);
+    mps_assert_near(c.push, m * 1.0, 1e-15);
+    mps_assert_near(c.rub[0], -fmin(m * slides[k], 0.3 * m), 1e-15);
+    u[0] += by[0] / m, u[1] += by[1] / m;
+    mps_assert_near(mpsi_impulse_visit(&c, &b, u, by), 0.0, 1e-15); /* solved */
+    u[1] = 3.0; /* something else throws it off: nothing pulls */
+    (void)mpsi_impulse_visit(&c, &b, u, by);
+    mps_assert_near(c.push, 0.0, 0.0);
+    mps_assert_near(c.rub[0], 0.0, 0.0);
+    const double last[3] = {-0.5, 1.0, 0.0}, pulls[3] = {0.1, -1.0, 0.0};
+    mpsi_impulse_warm(&c, last, 2.0, by);
+    mps_assert_near(by[1], 2.0, 1e-15);
+    mps_assert_near(by[0], -0.6, 1e-15); /* cut to mu P */
+    mpsi_impulse_warm(&c, pulls, 2.0, by);
+    mps_assert_near(fabs(by[0]) + fabs(by[1]), 0.0, 0.0);
+  }
+  mps_body_destroy(&floor);
+}
+
+/* ---- on the grid ----------------------------------------------------------------------------- */
+
+/* A block of 0.2 x 0.1 m, on a smooth floor or free, and a plate over it. */
+static mpm_scene block_and_plate(bool floor, double thickness, double gap, mps_body **plate) {
+  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e6);
+  mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.1);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.02;
+  def.budget = 1;
+  if (floor) def.lower[1] = 0.0;
+  mpm_scene_solve(&s, &def);
+  mps_body_def body = mps_body_defaults();
+  body.position[0] = 0.1, body.position[1] = 0.1 + gap + 0.5 * thickness;
+  mps_assert_ok(context, mps_body_create_box(context, &body, 0.5, thickness, plate));
+  return s;
+}
+
+static void drive(mps_body *body, double vx, double vy) {
+  mps_body_motion motion = mps_body_motion_defaults();
+  motion.velocity[0] = vx, motion.velocity[1] = vy;
+  mps_assert_ok(context, mps_body_set_motion(body, &motion));
+}
+
+/* A plate strikes a block that nothing else holds: momentum and moment of momentum of the block,
+ * with the spin of the velocity gradients, are what the plate gave; the touching particles' forces
+ * sum up to the reaction, within the cone; the energies balance. */
+static void gives_force_and_moment(void **state) {
+  (void)state;
+  mps_body *plate = NULL;
+  mpm_scene s = block_and_plate(false, 0.1, 0.0, &plate);
+  mps_contact_def def = mps_contact_defaults();
+  mps_contact *contact = NULL;
+  def.friction = 0.4;
+  mps_assert_ok(context, mps_mpm_add_contact(s.mpm, plate, &def, &contact));
+  drive(plate, 0.3, -0.5);
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+  int64_t count = 0, ids[64];
+  double gap[64], normal[192], force[192], foot[192], sum[3] = {0.0};
+  mps_assert_ok(context,
+                mps_contact_get_particles(contact, 64, &count, ids, gap, normal, force, foot));
+  assert_in_range(count, 15, 20); /* of the upper row: forces are not unique */
+  for (int64_t k = 0; k < count; k++) {
+    const double *f = force + 3 * k;
+    sum[0] += f[0], sum[1] += f[1];
+    sum[2] += (foot[3 * k] - 0.1) * f[1] - (foot[3 * k + 1] - 0.15) * f[0];
+    mps_assert_near(normal[3 * k + 1], -1.0, 0.0);
+    assert_true(f[1] < 0.0 && fabs(f[0]) <= 0.4 * -f[1] * (1.0 + 1e-12));
+    assert_true(fabs(gap[k]) < 1e-5);
+  }
+  mps_reaction r;
+  mps_assert_ok(context, mps_contact_get_reaction(contact, -1, &r));
+  assert_int_equal(r.count, count);
+  for (int c = 0; c < 2; c++) mps_assert_near(r.force[c], -sum[c], 1e-12 * fabs(sum[1]));
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 20));
+  mps_assert_ok(context, mps_contact_get_reaction(contact, -1, &r));
+  const mps_totals t = mpm_scene_totals(&s);
+  for (int c = 0; c < 2; c++) mps_assert_near(t.linear[c], -r.impulse[c], 1e-12);
+  mps_mpm_losses l;
+  mps_assert_ok(context, mps_mpm_get_losses(s.mpm, &l));
+  mps_assert_near(l.residual, 0.0, 1e-12 * fabs(r.work));
+  assert_true(l.bodies > 0.0);
+  mps_contact_destroy(&contact);
+  mps_body_destroy(&plate);
+  mpm_scene_end(&s);
+}
+
+/* Two blocks of one solver, the second of three times the modulus, under one plate: no stiffness is
+ * given, and the forces are those of the two columns, M eps each. A second body ends in between:
+ * what is kept of the first stays. */
+static void bodies_end_and_materials_differ(void **state) {
+  (void)state;
+  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e6);
+  mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
+  mpm_scene_box(&s, 0.2, 0.0, 0.3, 0.1);
+  mps_material *stiff = NULL;
+  mps_assert_ok(context, mps_material_linear_elastic(context, 3e6, 0.0, &stiff));
+  mps_material_destroy(&s.material);
+  mps_assert_ok(context, mps_material_linear_elastic(context, 1e6, 0.0, &s.material));
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.02;
+  def.lower[1] = 0.0;
+  def.viscous_damping = 200.0;
+  mpm_scene_solve(&s, &def);
+  int64_t ids[128], n = 0;
+  mps_view x = mpm_scene_view(&s, "position");
+  const int64_t *id = NULL;
+  mps_view idv = mpm_scene_view(&s, "id");
+  id = idv.data;
+  for (int64_t k = 0; k < x.shape[0]; k++)
+    if (*mps_view_f64(&x, k, 0) > 0.15) ids[n++] = id[k];
+  mps_assert_ok(context, mps_mpm_set_material(s.mpm, stiff, n, ids));
+  mps_body *plate[2] = {NULL, NULL};
+  mps_contact *contact[2] = {NULL, NULL};
+  for (int k = 0; k < 2; k++) {
+    mps_body_def body = mps_body_defaults();
+    body.position[0] = 0.05 + 0.2 * (1 - k), body.position[1] = 0.15;
+    mps_assert_ok(context, mps_body_create_box(context, &body, 0.18, 0.1, &plate[k]));
+    mps_assert_ok(context, mps_mpm_add_contact(s.mpm, plate[k], NULL, &contact[k]));
+    drive(plate[k], 0.0, -0.005);
+  }
+  mps_assert_ok(context, mps_mpm_run(s.mpm, 0.1, 1, NULL, NULL));
+  for (int k = 0; k < 2; k++) drive(plate[k], 0.0, 0.0);
+  mps_assert_ok(context, mps_mpm_run(s.mpm, 0.2, 1, NULL, NULL));
+  mps_reaction r[2];
+  for (int k = 0; k < 2; k++)
+    mps_assert_ok(context, mps_contact_get_reaction(contact[k], -1, &r[k]));
+  print_message("columns: %.5g and %.5g N of 1500 and 500\n", r[0].force[1], r[1].force[1]);
+  mps_assert_near(r[0].force[1], 1500.0, 15.0);
+  mps_assert_near(r[1].force[1], 500.0, 5.0);
+  mps_contact_destroy(&contact[0]); /* the stiff one goes up; the other bears on */
+  mps_assert_ok(context, mps_mpm_step(s.mpm, 10));
+  mps_reaction now;
+  mps_assert_ok(context, mps_contact_get_reaction(contact[1], -1, &now));
+  mps_assert_near(now.force[1], r[1].force[1], 1.0);
+  mps_contact_destroy(&contact[1]);
+  for (int k = 0; k < 2; k++) mps_body_destroy(&plate[k]);
+  mps_material_destroy(&stiff);
+  mpm_scene_end(&s);
+}
+
+/* A plate a tenth of a cell thick, which no node is inside of, presses as a thick one does. */
+static void thin_plates_press(void **state) {
+  (void)state;
+  double force[2];
+  for (int k = 0; k < 2; k++) {
+    mps_body *plate = NULL;
+    mpm_scene s = block_and_plate(true, k ? 0.1 : 0.002, 0.0, &plate);
+    mps_contact_def def = mps_contact_defaults();
+    mps_contact *contact = NULL;
+    def.thin = 1;
+    mps_assert_ok(context, mps_mpm_add_contact(s.mpm, plate, &def, &contact));
+    drive(plate, 0.0, -0.05);
+    double impulse = 0.0;
+    mps_assert_ok(context, mps_mpm_run(s.mpm, 0.01, 1, NULL, NULL));
+    mps_reaction r;
+    mps_assert_ok(context, mps_contact_get_reaction(contact, -1, &r));
+    impulse = r.impulse[1];
+    force[k] = impulse;
+    mps_contact_destroy(&contact);
+    mps_body_destroy(&plate);
+    mpm_scene_end(&s);
+  }
+  print_message("plates of 0.1 and 5 cells: impulse %.5g and %.5g N s\n", force[0], force[1]);
+  mps_assert_near(force[0], force[1], 0.02 * force[1]);
+}
+
+/* The step of a plate that is as fast as it may be; the plate takes the block along, and no
+ * particle is inside it after any step; or an error says how deep one is. */
+static void fast_plates_are_met(void **state) {
+  (void)state;
+  const double speeds[] = {1.0, 30.0, 300.0};
+  for (int k = 0; k < 3; k++) {
+    mps_body *plate = NULL;
+    mpm_scene s = block_and_plate(false, 0.1, 0.03, &plate);
+    mps_contact *contact = NULL;
+    mps_assert_ok(context, mps_mpm_add_contact(s.mpm, plate, NULL, &contact));
+    drive(plate, 0.0, -speeds[k]);
+    mps_status status = MPS_OK;
+    double deepest = 0.0;
+    for (int step = 0; step < 60 && status == MPS_OK; step++) {
+      status = mps_mpm_step(s.mpm, 1);
+      mps_view x = mpm_scene_view(&s, "position");
+      for (int64_t p = 0; p < x.shape[0]; p++) {
+        double at[2] = {*mps_view_f64(&x, p, 0), *mps_view_f64(&x, p, 1)}, distance;
+        mps_assert_ok(context, mps_body_distance(plate, 1, at, &distance, NULL, NULL, NULL));
+        deepest = fmax(deepest, -distance);
+      }
+    }
+    print_message("plate at %g m/s: deepest %.3g m\n", speeds[k], deepest);
+    if (status != MPS_OK)
+      assert_int_equal(status, MPS_ERROR_DIVERGED);
+    else
+      mps_assert_near(deepest, 0.0, 0.0);
+    mps_contact_destroy(&contact);
+    mps_body_destroy(&plate);
+    mpm_scene_end(&s);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(half_size_follows_elastic_strain),
+                                     cmocka_unit_test(aims_at_the_surface),
+                                     cmocka_unit_test(mobility_is_what_a_kick_does),
+                                     cmocka_unit_test(one_visit_solves_one_contact),
+                                     cmocka_unit_test(gives_force_and_moment),
+                                     cmocka_unit_test(bodies_end_and_materials_differ),
+                                     cmocka_unit_test(thin_plates_press),
+                                     cmocka_unit_test(fast_plates_are_met)};
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
