@@ -388,8 +388,8 @@ mps_status mps_dynamics_set_boundary(mps_dynamics *dynamics, int32_t number,
     const mpsi_dynamics_boundary *former = dynamics->boundary[number];
     memcpy(boundary->pushed, former->pushed, sizeof boundary->pushed);
     memcpy(boundary->impulse, former->impulse, sizeof boundary->impulse);
+    memcpy(&boundary->work, &former->work, sizeof boundary->work);
     boundary->kick = former->kick;
-    boundary->work = former->work;
     status = exchange(dynamics, __func__, number, &boundary);
   }
   release(dynamics, &boundary);
@@ -414,13 +414,19 @@ mps_status mps_dynamics_get_reaction_sized(const mps_dynamics *dynamics, int32_t
                      "there is no boundary number %d", number);
   const mpsi_dynamics_boundary *b = dynamics->boundary[number];
   const double rate = b->kick > 0.0 ? 1.0 / b->kick : 0.0;
+  mpsi_exact sum[7];
+  double value[7];
+  memcpy(sum, b->pushed, sizeof b->pushed);
+  memcpy(sum + 3, b->impulse, sizeof b->impulse);
+  sum[6] = b->work;
+  for (int k = 0; k < 7; k++) value[k] = mpsi_exact_value(&sum[k]);
   const mps_reaction r = {
-      .force = {b->pushed[0] * rate, b->pushed[1] * rate, 0.0},
-      .moment = {0.0, 0.0, b->pushed[2] * rate},
-      .impulse = {b->impulse[0], b->impulse[1], 0.0},
-      .moment_impulse = {0.0, 0.0, b->impulse[2]},
+      .force = {value[0] * rate, value[1] * rate, 0.0},
+      .moment = {0.0, 0.0, value[2] * rate},
+      .impulse = {value[3], value[4], 0.0},
+      .moment_impulse = {0.0, 0.0, value[5]},
       .count = b->kick > 0.0 ? b->part.count : 0,
-      .work = b->work,
+      .work = value[6],
   };
   return mpsi_out_write(dynamics->context, "mps_dynamics_get_reaction", out, size, &r, sizeof r);
 }

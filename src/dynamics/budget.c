@@ -5,11 +5,13 @@
  * v-.M.v+ / 2 + U(x), with the velocities half a step before and after the state x. With other
  * forces P besides the restoring ones F, and v+ = v- + dt F/M the velocity that these alone lead
  * to, it changes from step to step by dt P.(v- + v)/2, v the velocity that the step really ends
- * with: docs/dynamics.md 3.3. That is the work that is summed here and in constrain.c. Sums run by
- * blocks in a fixed order.
+ * with: docs/dynamics.md 3.3. That is the work that is summed here and in constrain.c. Sums run in
+ * a fixed order within a block, and over blocks without round-off (core/exact.h).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles_internal.h"
 #include "dynamics_private.h"
+
+#include <string.h>
 
 static void first_pass(void *data, int64_t b, int32_t worker) {
   mps_dynamics *dynamics = data;
@@ -94,11 +96,10 @@ void mpsi_dynamics_energies(mps_dynamics *dynamics, double *kinetic, double *str
   const int64_t blocks = dynamics->mesh.blocks;
   mpsi_parallel_for(dynamics->context, blocks, first_pass, dynamics);
   mpsi_parallel_for(dynamics->context, blocks, energy_block, dynamics);
-  *kinetic = *strain = 0.0;
-  for (int64_t b = 0; b < blocks; b++) {
-    *kinetic += dynamics->part[2 * b];
-    *strain += dynamics->part[2 * b + 1];
-  }
+  mpsi_exact sum[2] = {{{0}}, {{0}}};
+  for (int64_t k = 0; k < 2 * blocks; k++) mpsi_exact_add(&sum[k % 2], dynamics->part[k]);
+  *kinetic = mpsi_exact_value(&sum[0]);
+  *strain = mpsi_exact_value(&sum[1]);
 }
 
 /* ---- works of a step
@@ -138,31 +139,42 @@ void mpsi_dynamics_count_works(mpsi_dynamics_account *account) {
   const int64_t blocks = dynamics->mesh.blocks;
   mpsi_parallel_for(dynamics->context, blocks, work_block, account);
   for (int64_t b = 0; b < blocks; b++) {
-    dynamics->works.loads += dynamics->part[2 * b];
-    dynamics->works.damping -= dynamics->part[2 * b + 1];
+    mpsi_exact_add(&dynamics->works.loads, dynamics->part[2 * b]);
+    mpsi_exact_add(&dynamics->works.damping, -dynamics->part[2 * b + 1]);
   }
 }
 
 /* ---- totals
  * --------------------------------------------------------------------------------------- */
 
+enum { MASS, LINEAR_X, LINEAR_Y, ANGULAR, MOMENTA };
+
 static void sum_momenta(mps_dynamics *dynamics, mps_totals *out) {
   const mpsi_dynamics_state *s = &dynamics->state;
   const double D = mps_particles_spacing(dynamics->particles);
-  mps_totals sum = {0};
-  for (int64_t k = 0; k < dynamics->body; k++) {
-    const double mass = mpsi_dynamics_mass(dynamics, 0, k);
-    const double x = s->rx[k] + s->dx[k], y = s->ry[k] + s->dy[k];
-    const double vx = mpsi_dynamics_velocity(dynamics, 0, k);
-    const double vy = mpsi_dynamics_velocity(dynamics, 1, k);
-    sum.mass += mass;
-    sum.linear[0] += mass * vx;
-    sum.linear[1] += mass * vy;
-    sum.angular[2] += mass * (x * vy - y * vx) +
-                      mpsi_dynamics_mass(dynamics, 2, k) * mpsi_dynamics_velocity(dynamics, 2, k);
+  mpsi_exact sum[MOMENTA];
+  memset(sum, 0, sizeof sum);
+  for (int64_t b = 0; b < dynamics->mesh.blocks; b++) {
+    double part[MOMENTA] = {0.0};
+    for (int64_t k = dynamics->mesh.block[b].begin;
+         k < dynamics->mesh.block[b].end && k < dynamics->body; k++) {
+      const double mass = mpsi_dynamics_mass(dynamics, 0, k);
+      const double x = s->rx[k] + s->dx[k], y = s->ry[k] + s->dy[k];
+      const double vx = mpsi_dynamics_velocity(dynamics, 0, k);
+      const double vy = mpsi_dynamics_velocity(dynamics, 1, k);
+      part[MASS] += mass;
+      part[LINEAR_X] += mass * vx;
+      part[LINEAR_Y] += mass * vy;
+      part[ANGULAR] += mass * (x * vy - y * vx) +
+                       mpsi_dynamics_mass(dynamics, 2, k) * mpsi_dynamics_velocity(dynamics, 2, k);
+    }
+    for (int m = 0; m < MOMENTA; m++) mpsi_exact_add(&sum[m], part[m]);
   }
-  sum.volume = (double)dynamics->body * D * D * dynamics->def.measure;
-  *out = sum;
+  *out = (mps_totals){
+      .mass = mpsi_exact_value(&sum[MASS]),
+      .volume = (double)dynamics->body * D * D * dynamics->def.measure,
+      .linear = {mpsi_exact_value(&sum[LINEAR_X]), mpsi_exact_value(&sum[LINEAR_Y]), 0.0},
+      .angular = {0.0, 0.0, mpsi_exact_value(&sum[ANGULAR])}};
 }
 
 mps_status mps_dynamics_get_totals_sized(mps_dynamics *dynamics, mps_totals *out, size_t size) {
@@ -175,11 +187,12 @@ mps_status mps_dynamics_get_totals_sized(mps_dynamics *dynamics, mps_totals *out
   sum_momenta(dynamics, &t);
   mpsi_dynamics_energies(dynamics, &t.kinetic, &t.strain);
   const mpsi_dynamics_works *w = &dynamics->works;
-  t.work_loads = w->loads;
-  t.work_boundaries = w->boundaries;
-  t.dissipated = w->damping;
+  t.work_loads = mpsi_exact_value(&w->loads);
+  t.work_boundaries = mpsi_exact_value(&w->boundaries);
+  t.dissipated = mpsi_exact_value(&w->damping);
   const double start = dynamics->begun ? w->start : t.kinetic + t.strain;
-  const double rest = w->loads + w->boundaries - w->damping - (t.kinetic + t.strain - start);
+  const double rest =
+      t.work_loads + t.work_boundaries - t.dissipated - (t.kinetic + t.strain - start);
   t.scheme = NAN;
   if (dynamics->body < dynamics->count) {
     t.work_boundaries -= rest;

@@ -11,6 +11,8 @@
 #include "dynamics_private.h"
 #include "signal/signal_internal.h"
 
+#include <string.h>
+
 /* Displacement, previous displacement (Verlet), velocity and acceleration of one component. */
 typedef struct motion {
   double *d, *o, *v, *a;
@@ -83,15 +85,60 @@ static double coordinate(const mps_dynamics *dynamics, int32_t c, int32_t i) {
   return reference + d - dynamics->length * (c == 0 ? s->vx : s->vy)[i];
 }
 
+/* ---- sums of impulses and works ----------------------------------------------------------------
+ */
+
+static void flush(mpsi_exact *sum, double *part) {
+  if (*part != 0.0) mpsi_exact_add(sum, *part);
+  *part = 0.0;
+}
+
+static void flush_boundary(mpsi_dynamics_boundary *b) {
+  for (int c = 0; c < 3; c++) {
+    if (b->block_sum[c] != 0.0) mpsi_exact_add(&b->pushed[c], b->block_sum[c]);
+    flush(&b->impulse[c], &b->block_sum[c]);
+  }
+  flush(&b->work, &b->block_work);
+}
+
+void mpsi_dynamics_begin_counting(mps_dynamics *dynamics) {
+  for (int32_t k = 0; k < dynamics->boundary_room; k++)
+    if (dynamics->boundary[k])
+      memset(dynamics->boundary[k]->pushed, 0, sizeof dynamics->boundary[k]->pushed);
+}
+
+void mpsi_dynamics_end_counting(mps_dynamics *dynamics, double kick) {
+  for (int32_t k = 0; k < dynamics->boundary_room; k++) {
+    mpsi_dynamics_boundary *b = dynamics->boundary[k];
+    if (!b) continue;
+    flush_boundary(b);
+    b->kick = kick;
+  }
+  flush(&dynamics->works.boundaries, &dynamics->works.part);
+}
+
+/* The work of boundaries and dashpots on a particle of the body. */
+static void count_work(mps_dynamics *dynamics, int32_t i, double work) {
+  const int64_t block = mpsi_dynamics_block_of(dynamics->body, i);
+  if (i >= dynamics->body) return;
+  if (block != dynamics->works.block) flush(&dynamics->works.boundaries, &dynamics->works.part);
+  dynamics->works.block = block;
+  dynamics->works.part += work;
+}
+
 /* Counts the impulse (N s, N m s) of a boundary on a component of particle i, whose velocity it
  * changed from `before` to `after`. */
 static void count_impulse(mps_dynamics *dynamics, mpsi_dynamics_boundary *b, int32_t c, int32_t i,
                           double impulse, double before, double after) {
   const double work = 0.5 * impulse * (before + after);
-  b->work += work;
-  if (i < dynamics->body) dynamics->works.boundaries += work;
-  if (c < 2) b->pushed[c] += impulse;
-  b->pushed[2] += c == 2 ? impulse : (c == 0 ? -impulse : impulse) * coordinate(dynamics, 1 - c, i);
+  const int64_t block = mpsi_dynamics_block_of(dynamics->body, i);
+  count_work(dynamics, i, work);
+  if (block != b->block) flush_boundary(b);
+  b->block = block;
+  b->block_work += work;
+  if (c < 2) b->block_sum[c] += impulse;
+  b->block_sum[2] +=
+      c == 2 ? impulse : (c == 0 ? -impulse : impulse) * coordinate(dynamics, 1 - c, i);
 }
 
 static void count_dashpot(mps_dynamics *dynamics, mpsi_dynamics_dashpot *q, double pull,
@@ -102,8 +149,7 @@ static void count_dashpot(mps_dynamics *dynamics, mpsi_dynamics_dashpot *q, doub
       kick * mpsi_dynamics_mass(dynamics, q->component, q->particle) * q->c * (pull - v);
   q->force = impulse / kick;
   if (q->boundary < 0) {
-    if (q->particle < dynamics->body)
-      dynamics->works.boundaries += 0.5 * impulse * (before + after);
+    count_work(dynamics, q->particle, 0.5 * impulse * (before + after));
     return;
   }
   count_impulse(dynamics, dynamics->boundary[q->boundary], q->component, q->particle, impulse,

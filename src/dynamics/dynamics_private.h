@@ -17,6 +17,7 @@
 #ifndef MPSI_DYNAMICS_PRIVATE_H
 #define MPSI_DYNAMICS_PRIVATE_H
 
+#include "core/exact.h"
 #include "core/guard.h"
 #include "core/particles_internal.h"
 #include "core/state.h"
@@ -49,10 +50,13 @@ typedef struct mpsi_dynamics_boundary {
   /* At the end of the step under way, driven: factor times displacement and velocity of the signal;
    * at its start: factor times acceleration; viscous: factor times velocity. 0 without signal. */
   double reach[3], speed[3], gain[3], incoming[3];
-  /* Sums: of the last step (N s, N m s), and since it was made, the latter with the work (J). */
-  double pushed[3], impulse[3]; /* x, y, moment about the origin */
-  double kick;                  /* s that the last step's forces acted for, 0: no step yet */
-  double work;
+  /* Sums: of the last step (N s, N m s), and since it was made, the latter with the work (J).
+   * Terms are added up within a block of particles, and blocks exactly: on whichever rank. */
+  mpsi_exact pushed[3], impulse[3]; /* x, y, moment about the origin */
+  mpsi_exact work;
+  double kick;                     /* s that the last step's forces acted for, 0: no step yet */
+  double block_sum[3], block_work; /* of one block, on their way into the sums */
+  int64_t block;
 } mpsi_dynamics_boundary;
 
 typedef struct mpsi_dynamics_load {
@@ -107,8 +111,10 @@ typedef struct mpsi_dynamics_structure {
 
 /* Works and energies, J, since the state began. */
 typedef struct mpsi_dynamics_works {
-  double loads, boundaries, damping;
+  mpsi_exact loads, boundaries, damping;
   double start; /* kinetic and strain energy at the start */
+  double part;  /* of one block, on its way into `boundaries` */
+  int64_t block;
 } mpsi_dynamics_works;
 
 struct mps_dynamics {
@@ -311,6 +317,9 @@ void mpsi_dynamics_renew_dashpots(mps_dynamics *dynamics);
 mps_status mpsi_dynamics_ask_signals(mps_dynamics *dynamics, const char *function, double now,
                                      double then);
 void mpsi_dynamics_dashpots_before(mps_dynamics *dynamics);
+/* Around what follows: sums of what boundaries exert in a step. */
+void mpsi_dynamics_begin_counting(mps_dynamics *dynamics);
+void mpsi_dynamics_end_counting(mps_dynamics *dynamics, double kick);
 void mpsi_dynamics_dashpots_after(mps_dynamics *dynamics, double kick, bool output);
 void mpsi_dynamics_hold_bounds(mps_dynamics *dynamics, double kick, bool output);
 

@@ -137,12 +137,12 @@ MPSI_INLINE void pass1_scattered(const int removal, const int by_pairs,
 #undef ROOM
   pair_chunk(removal, by_pairs, 1, n, e, list->r0x + k, list->r0y + k, list->kf + k, list->kc + k,
              terms, ex, ey);
-  const int32_t *target[2] = {list->ti + k, list->tj + k};
-  for (int side = 0; side < 2; side++) {
-    const double sign = side == 0 ? 1.0 : -1.0;
-    for (int32_t t = 0; t < n; t++) {
-      const int32_t at = target[side][t] - begin;
-      if (target[side][t] < 0) continue;
+  for (int32_t t = 0; t < n; t++) { /* pair by pair: the order does not show where chunks end */
+    const int32_t target[2] = {list->ti[k + t], list->tj[k + t]};
+    for (int side = 0; side < 2; side++) {
+      const double sign = side == 0 ? 1.0 : -1.0;
+      const int32_t at = target[side] - begin;
+      if (target[side] < 0) continue;
       sums.fx[at] += sign * terms.fx[t];
       sums.fy[at] += sign * terms.fy[t];
       sums.torque[at] += terms.torque[t];

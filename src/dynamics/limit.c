@@ -53,14 +53,18 @@ static void apply(operator_data *op, const double *x, double *y) {
   for (int64_t k = 0; k < 3 * n; k++) y[k] += 2.0 * dt * alpha[k % n] * x[k];
 }
 
-static double dot(const double *a, const double *b, int64_t n) {
-  double sum = 0.0;
-  for (int64_t k0 = 0; k0 < n; k0 += 1024) { /* short partial sums: little round-off */
-    double part = 0.0;
-    for (int64_t k = k0; k < n && k < k0 + 1024; k++) part += a[k] * b[k];
-    sum += part;
-  }
-  return sum;
+/* Sums over blocks are exact: the same on any number of ranks. */
+static double dot(const mps_dynamics *dynamics, const double *a, const double *b) {
+  mpsi_exact sum = {{0}};
+  for (int c = 0; c < 3; c++)
+    for (int64_t i = 0; i < dynamics->mesh.blocks; i++) {
+      const mpsi_dynamics_block *block = &dynamics->mesh.block[i];
+      const int64_t first = c * dynamics->count;
+      double part = 0.0;
+      for (int64_t k = first + block->begin; k < first + block->end; k++) part += a[k] * b[k];
+      mpsi_exact_add(&sum, part);
+    }
+  return mpsi_exact_value(&sum);
 }
 
 /* Start near the usual highest mode, where all particles spin alike, with a part in every other.
@@ -105,17 +109,17 @@ static bool lanczos(operator_data *op, double bound, double *basis, ritz *out) {
   double *v = basis, *before = basis + n, *next = basis + 2 * n;
   double diagonal[LANCZOS_MOST], off[LANCZOS_MOST], value = 0.0, last = 0.0;
   start_vector(op->dynamics, v);
-  double norm = sqrt(dot(v, v, n));
+  double norm = sqrt(dot(op->dynamics, v, v));
   *out = (ritz){0.0, 0.0, 0};
   if (norm == 0.0) return true; /* everything is held */
   for (int64_t k = 0; k < n; k++) v[k] /= norm, before[k] = 0.0;
   norm = 0.0;
   for (int m = 1; m <= LANCZOS_MOST; m++) {
     apply(op, v, next);
-    const double a = dot(v, next, n);
+    const double a = dot(op->dynamics, v, next);
     for (int64_t k = 0; k < n; k++) next[k] -= a * v[k] + norm * before[k];
     diagonal[m - 1] = a;
-    norm = off[m - 1] = sqrt(dot(next, next, n));
+    norm = off[m - 1] = sqrt(dot(op->dynamics, next, next));
     const bool stuck = !(norm > 1e-14 * fabs(a));
     if (m % LANCZOS_EVERY == 0 || stuck || m == LANCZOS_MOST) {
       const double former = value;

@@ -21,7 +21,16 @@ typedef struct arrange {
   int64_t *first; /* first entry of each block, blocks + 1 */
 } arrange;
 
-static int32_t block_of(int32_t particle) { return particle / MPSI_DYN_BLOCK; }
+/* Which block of this rank has a particle; -1: none. */
+static int64_t slot_of(const arrange *work, int32_t particle) {
+  if (particle < 0) return -1;
+  const int64_t block = mpsi_dynamics_block_of(work->def->body, particle);
+  return work->def->cut ? work->def->cut->slot[block] : block;
+}
+
+static int32_t local(const arrange *work, int32_t particle) {
+  return work->def->cut && particle >= 0 ? work->def->cut->local[particle] : particle;
+}
 
 static int compare(const void *left, const void *right) {
   const mpsi_dynamics_pair *a = &((const entry *)left)->pair, *b = &((const entry *)right)->pair;
@@ -43,13 +52,62 @@ static bool continues(const mpsi_dynamics_pair *a, const mpsi_dynamics_pair *b) 
          (b->ti < 0) == (a->ti < 0) && (b->tj < 0) == (a->tj < 0) && ordinary(b);
 }
 
+/* ---- what of a block is here: of a ghost, what acts on wanted particles -----------------------
+ */
+
+static bool is_ghost(const arrange *work, int64_t b) {
+  return work->def->cut && b >= work->def->cut->blocks;
+}
+
+/* Whether the pair that comes `t`-th in a run from `p` on is needed. */
+static bool needed(const arrange *work, int64_t b, const mpsi_dynamics_pair *p, int32_t t) {
+  if (!is_ghost(work, b)) return true;
+  const uint8_t *wanted = work->def->cut->wanted;
+  return (p->ti >= 0 && wanted[p->ti + t]) || (p->tj >= 0 && wanted[p->tj + t]);
+}
+
+/* The next piece of a run, from *begin on, that is needed and lies in one piece here; false: none.
+ * Vector loops go through a run in chunks, of which the order of its sums shows the ends where a
+ * block owns both sides. So a ghost's run is cut there too, before parts of it are left out. */
+static bool next_piece(const arrange *work, int64_t b, const entry *e, int32_t *begin,
+                       int32_t *end) {
+  const mpsi_dynamics_pair *p = &e->pair;
+  while (*begin < e->run && !needed(work, b, p, *begin)) (*begin)++;
+  if (*begin >= e->run) return false;
+  if (!work->def->cut) {
+    *end = e->run;
+    return true;
+  }
+  const int32_t first_i = local(work, p->i + *begin), first_j = local(work, p->j + *begin);
+  for (*end = *begin + 1; *end < e->run; (*end)++) {
+    const int32_t t = *end;
+    if (is_ghost(work, b) && (t % MPSI_DYN_CHUNK == 0 || !needed(work, b, p, t))) break;
+    if (local(work, p->i + t) != first_i + t - *begin) break;
+    if (local(work, p->j + t) != first_j + t - *begin) break;
+  }
+  return true;
+}
+
+/* Counts the runs and scattered pairs of a block. */
+static void count_block(const arrange *work, int64_t b) {
+  mpsi_dynamics_block *block = &work->mesh->block[b];
+  for (int64_t k = work->first[b]; k < work->first[b + 1]; k++) {
+    const entry *e = &work->entry[k];
+    if (e->run == 0) block->scattered_end += needed(work, b, &e->pair, 0);
+    for (int32_t begin = 0, end; e->run > 0 && next_piece(work, b, e, &begin, &end); begin = end)
+      block->run_end++;
+  }
+}
+
+/* ---- arranging --------------------------------------------------------------------------------
+ */
+
 /* Sorts the entries of one block and marks its runs. */
 static void arrange_block(void *data, int64_t b, int32_t worker) {
   (void)worker;
   arrange *work = data;
   entry *e = work->entry + work->first[b];
   const int64_t n = work->first[b + 1] - work->first[b];
-  mpsi_dynamics_block *block = &work->mesh->block[b];
   qsort(e, (size_t)n, sizeof *e, compare);
   for (int64_t k = 0, next; k < n; k = next) {
     for (next = k + 1;
@@ -58,11 +116,8 @@ static void arrange_block(void *data, int64_t b, int32_t worker) {
     e[k].run = (int32_t)(next - k);
     if (next - k < SHORTEST_RUN)
       for (int64_t s = k; s < next; s++) e[s].run = 0;
-    if (e[k].run > 0)
-      block->run_end++;
-    else
-      block->scattered_end += next - k;
   }
+  count_block(work, b);
 }
 
 static void coefficients(const mpsi_dynamics_mesh_def *def, double r0x, double r0y, double *kf,
@@ -77,33 +132,33 @@ static void write_block(void *data, int64_t b, int32_t worker) {
   (void)worker;
   arrange *work = data;
   mpsi_dynamics_mesh *mesh = work->mesh;
+  mpsi_dynamics_scattered *list = &mesh->scattered;
   int64_t r = mesh->block[b].run_begin, s = mesh->block[b].scattered_begin;
   for (int64_t k = work->first[b]; k < work->first[b + 1]; k++) {
     const entry *e = &work->entry[k];
+    const mpsi_dynamics_pair *p = &e->pair;
     double kf, kc;
     if (e->run < 0) continue;
-    coefficients(work->def, e->pair.r0x, e->pair.r0y, &kf, &kc);
-    if (e->run > 0) {
-      mesh->run[r++] = (mpsi_dynamics_pair_run){.i0 = e->pair.i,
-                                                .j0 = e->pair.j,
-                                                .count = e->run,
-                                                .own_i = e->pair.ti >= 0,
-                                                .own_j = e->pair.tj >= 0,
-                                                .r0x = e->pair.r0x,
-                                                .r0y = e->pair.r0y,
+    coefficients(work->def, p->r0x, p->r0y, &kf, &kc);
+    for (int32_t begin = 0, end; e->run > 0 && next_piece(work, b, e, &begin, &end); begin = end)
+      mesh->run[r++] = (mpsi_dynamics_pair_run){.i0 = local(work, p->i + begin),
+                                                .j0 = local(work, p->j + begin),
+                                                .count = end - begin,
+                                                .own_i = p->ti >= 0,
+                                                .own_j = p->tj >= 0,
+                                                .r0x = p->r0x,
+                                                .r0y = p->r0y,
                                                 .kf = kf,
                                                 .kc = kc};
-    } else {
-      mpsi_dynamics_scattered *list = &mesh->scattered;
-      list->i[s] = e->pair.i;
-      list->j[s] = e->pair.j;
-      list->ti[s] = e->pair.ti;
-      list->tj[s] = e->pair.tj;
-      list->r0x[s] = e->pair.r0x;
-      list->r0y[s] = e->pair.r0y;
-      list->kf[s] = kf;
-      list->kc[s++] = kc;
-    }
+    if (e->run > 0 || !needed(work, b, p, 0)) continue;
+    list->i[s] = local(work, p->i);
+    list->j[s] = local(work, p->j);
+    list->ti[s] = local(work, p->ti);
+    list->tj[s] = local(work, p->tj);
+    list->r0x[s] = p->r0x;
+    list->r0y[s] = p->r0y;
+    list->kf[s] = kf;
+    list->kc[s++] = kc;
   }
 }
 
@@ -111,7 +166,7 @@ static void write_block(void *data, int64_t b, int32_t worker) {
 static void deal(const arrange *work, int64_t count, entry *entries, int64_t *next) {
   for (int64_t k = 0; k < count; k++) {
     const mpsi_dynamics_pair *p = &work->pair[k];
-    const int32_t bi = p->ti < 0 ? -1 : block_of(p->ti), bj = p->tj < 0 ? -1 : block_of(p->tj);
+    const int64_t bi = slot_of(work, p->ti), bj = slot_of(work, p->tj);
     if (bi >= 0) {
       const int64_t at = next[bi]++;
       if (entries) {
@@ -141,15 +196,28 @@ static bool alloc_scattered(mps_context *context, mpsi_dynamics_scattered *list,
   return ok;
 }
 
+/* Particles of a block: all of the body's blocks are full but the last, then come the columns'. */
+static void place_block(const mpsi_dynamics_mesh_def *def, int64_t b, mpsi_dynamics_block *block) {
+  if (def->cut) {
+    block->begin = def->cut->begin[b];
+    block->end = def->cut->end[b];
+    return;
+  }
+  const int64_t body_blocks = mpsi_dynamics_block_of(def->body, def->body);
+  const int64_t first = b < body_blocks ? 0 : def->body, last = first ? def->particles : def->body;
+  const int64_t begin = first + (b - (first ? body_blocks : 0)) * MPSI_DYN_BLOCK;
+  block->begin = (int32_t)begin;
+  block->end = (int32_t)(begin + MPSI_DYN_BLOCK < last ? begin + MPSI_DYN_BLOCK : last);
+}
+
 /* Turns the counts left in run_end and scattered_end into ranges. */
-static void number_blocks(mpsi_dynamics_mesh *mesh, const int64_t *first) {
+static void number_blocks(const arrange *work) {
+  mpsi_dynamics_mesh *mesh = work->mesh;
   int64_t runs = 0, scattered = 0;
-  for (int64_t b = 0; b < mesh->blocks; b++) {
+  for (int64_t b = 0; b < mesh->blocks + mesh->ghosts; b++) {
     mpsi_dynamics_block *block = &mesh->block[b];
-    const int64_t end = (b + 1) * MPSI_DYN_BLOCK;
-    block->begin = (int32_t)(b * MPSI_DYN_BLOCK);
-    block->end = (int32_t)(end < mesh->particles ? end : mesh->particles);
-    block->slot = first[b];
+    place_block(work->def, b, block);
+    block->slot = work->first[b];
     block->run_begin = runs;
     block->scattered_begin = scattered;
     block->run_end = runs += block->run_end;
@@ -159,33 +227,66 @@ static void number_blocks(mpsi_dynamics_mesh *mesh, const int64_t *first) {
   mesh->scattered.count = scattered;
 }
 
+/* Whether a block looks at particles of other ranks, which have numbers from `own` on. */
+static bool looks_out(const mpsi_dynamics_mesh *mesh, const mpsi_dynamics_block *block,
+                      int64_t own) {
+  for (int64_t r = block->run_begin; r < block->run_end; r++)
+    if (mesh->run[r].i0 >= own || mesh->run[r].j0 >= own) return true;
+  for (int64_t k = block->scattered_begin; k < block->scattered_end; k++)
+    if (mesh->scattered.i[k] >= own || mesh->scattered.j[k] >= own) return true;
+  return false;
+}
+
+/* First the blocks that need not wait for other ranks. */
+static bool take_turns(mps_context *context, const mpsi_dynamics_cut *cut,
+                       mpsi_dynamics_mesh *mesh) {
+  const int64_t all = mesh->blocks + mesh->ghosts;
+  mesh->interior = mesh->blocks;
+  if (!cut) return true;
+  if (!(mesh->turn = mpsi_alloc(context, all, sizeof *mesh->turn))) return false;
+  int64_t taken = 0;
+  for (int pass = 0; pass < 2; pass++) {
+    for (int64_t b = 0; b < all; b++) {
+      const bool outer = b >= mesh->blocks || looks_out(mesh, &mesh->block[b], cut->count);
+      if (outer == (pass == 1)) mesh->turn[taken++] = (int32_t)b;
+    }
+    if (pass == 0) mesh->interior = taken;
+  }
+  return true;
+}
+
 bool mpsi_dynamics_mesh_build(mps_context *context, mpsi_dynamics_mesh *mesh,
-                              const mpsi_dynamics_mesh_def *def, int64_t particles, int64_t count,
-                              mpsi_dynamics_pair *pair) {
-  *mesh = (mpsi_dynamics_mesh){.particles = particles};
-  mesh->blocks = (particles + MPSI_DYN_BLOCK - 1) / MPSI_DYN_BLOCK;
+                              const mpsi_dynamics_mesh_def *def, int64_t count,
+                              const mpsi_dynamics_pair *pair) {
+  *mesh = (mpsi_dynamics_mesh){0};
+  mesh->blocks = def->cut ? def->cut->blocks
+                          : mpsi_dynamics_block_of(def->body, def->body) +
+                                (def->particles - def->body + MPSI_DYN_BLOCK - 1) / MPSI_DYN_BLOCK;
+  mesh->ghosts = def->cut ? def->cut->ghosts : 0;
+  const int64_t blocks = mesh->blocks + mesh->ghosts;
   arrange work = {.mesh = mesh, .def = def, .pair = pair};
-  work.first = mpsi_alloc(context, mesh->blocks + 1, sizeof(int64_t));
-  int64_t *next = mpsi_alloc(context, mesh->blocks + 1, sizeof(int64_t));
-  mesh->block = mpsi_alloc(context, mesh->blocks, sizeof(mpsi_dynamics_block));
+  work.first = mpsi_alloc(context, blocks + 1, sizeof(int64_t));
+  int64_t *next = mpsi_alloc(context, blocks + 1, sizeof(int64_t));
+  mesh->block = mpsi_alloc(context, blocks, sizeof(mpsi_dynamics_block));
   bool ok = work.first && next && mesh->block;
   if (ok) {
     deal(&work, count, NULL, next);
-    for (int64_t b = 0; b < mesh->blocks; b++) {
+    for (int64_t b = 0; b < blocks; b++) {
       work.first[b + 1] = work.first[b] + next[b];
       next[b] = work.first[b];
     }
-    mesh->slots = work.first[mesh->blocks];
+    mesh->slots = work.first[blocks];
     ok = (work.entry = mpsi_alloc(context, mesh->slots, sizeof(entry))) != NULL;
   }
   if (ok) {
     deal(&work, count, work.entry, next);
-    mpsi_parallel_for(context, mesh->blocks, arrange_block, &work);
-    number_blocks(mesh, work.first);
+    mpsi_parallel_for(context, blocks, arrange_block, &work);
+    number_blocks(&work);
     mesh->run = mpsi_alloc(context, mesh->runs, sizeof(mpsi_dynamics_pair_run));
     ok = mesh->run && alloc_scattered(context, &mesh->scattered, mesh->scattered.count);
   }
-  if (ok) mpsi_parallel_for(context, mesh->blocks, write_block, &work);
+  if (ok) mpsi_parallel_for(context, blocks, write_block, &work);
+  ok = ok && take_turns(context, def->cut, mesh);
   mpsi_free(context, work.entry);
   mpsi_free(context, work.first);
   mpsi_free(context, next);
@@ -195,8 +296,8 @@ bool mpsi_dynamics_mesh_build(mps_context *context, mpsi_dynamics_mesh *mesh,
 
 void mpsi_dynamics_mesh_free(mps_context *context, mpsi_dynamics_mesh *mesh) {
   mpsi_dynamics_scattered *list = &mesh->scattered;
-  void *parts[] = {mesh->block, mesh->run, list->i,   list->j,  list->ti,
-                   list->tj,    list->r0x, list->r0y, list->kf, list->kc};
+  void *parts[] = {mesh->block, mesh->run, mesh->turn, list->i,  list->j, list->ti,
+                   list->tj,    list->r0x, list->r0y,  list->kf, list->kc};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
   *mesh = (mpsi_dynamics_mesh){0};
 }

@@ -44,10 +44,11 @@ typedef struct mpsi_dynamics_block {
 } mpsi_dynamics_block;
 
 typedef struct mpsi_dynamics_mesh {
-  int64_t particles;
-  int64_t pairs; /* distinct ordinary pairs */
   int64_t slots; /* pair evaluations a step */
   int64_t blocks, runs;
+  int64_t ghosts;   /* blocks of other ranks, behind the own ones: only their first pass is done */
+  int64_t interior; /* own blocks that look at no particle of another rank: the first of `turn` */
+  int32_t *turn;    /* the order of the first pass: all blocks; NULL: as they lie */
   mpsi_dynamics_block *block;
   mpsi_dynamics_pair_run *run;
   mpsi_dynamics_scattered scattered;
@@ -59,17 +60,38 @@ typedef struct mpsi_dynamics_pair {
   double r0x, r0y;
 } mpsi_dynamics_pair;
 
+/* The part of a body that one rank has. Particles and blocks of the whole body have global numbers,
+ * in which pairs are arranged; so a particle's sum has one order whatever the number of ranks. */
+typedef struct mpsi_dynamics_cut {
+  int64_t blocks, ghosts; /* of this rank; of others, of which some particles are wanted */
+  int32_t *block;         /* their global numbers */
+  int32_t *begin, *end;   /* local particles of each that are here: of ghosts not all */
+  int32_t *slot;          /* by global block: which of these it is, -1: none */
+  int32_t *local;         /* by global particle: its number here, -1: it is not here */
+  uint8_t *wanted;        /* by global particle: 1: a ghost whose pressure is wanted */
+  int64_t count;          /* local particles that are this rank's own */
+} mpsi_dynamics_cut;
+
 /* What arranging needs to know of the discretisation. */
 typedef struct mpsi_dynamics_mesh_def {
   const mps_kernel *kernel; /* w(r) */
   double density;           /* n0 */
+  int64_t particles, body;  /* sorted; those of the body, which come first: no block has both them
+                               and free-field columns */
+  const mpsi_dynamics_cut *cut; /* NULL: all of the body is here */
 } mpsi_dynamics_mesh_def;
 
-/* Arranges `count` pairs over `particles` sorted particles. `pair` is reordered. False: out of
- * memory (everything released). */
+/* Number of a particle's block, and of all blocks. */
+static inline int64_t mpsi_dynamics_block_of(int64_t body, int64_t particle) {
+  const int64_t body_blocks = (body + MPSI_DYN_BLOCK - 1) / MPSI_DYN_BLOCK;
+  return particle < body ? particle / MPSI_DYN_BLOCK
+                         : body_blocks + (particle - body) / MPSI_DYN_BLOCK;
+}
+
+/* Arranges `count` pairs. False: out of memory (everything released). */
 bool mpsi_dynamics_mesh_build(mps_context *context, mpsi_dynamics_mesh *mesh,
-                              const mpsi_dynamics_mesh_def *def, int64_t particles, int64_t count,
-                              mpsi_dynamics_pair *pair);
+                              const mpsi_dynamics_mesh_def *def, int64_t count,
+                              const mpsi_dynamics_pair *pair);
 void mpsi_dynamics_mesh_free(mps_context *context, mpsi_dynamics_mesh *mesh);
 
 #endif

@@ -80,10 +80,10 @@ static void list_boundary(mpsi_state *s, mpsi_dynamics_boundary *b, int32_t numb
   mpsi_state_agree_integer(s, "kind", b->kind);
   mpsi_state_agree_integer(s, "dofs", b->dofs);
   mpsi_state_i64(s, "particles", &b->part.count, 1);
-  mpsi_state_f64(s, "pushed", b->pushed, 3);
-  mpsi_state_f64(s, "impulse", b->impulse, 3);
+  mpsi_state_i64(s, "pushed", b->pushed[0].limb, 3 * MPSI_EXACT_LIMBS);
+  mpsi_state_i64(s, "impulse", b->impulse[0].limb, 3 * MPSI_EXACT_LIMBS);
+  mpsi_state_i64(s, "work", b->work.limb, MPSI_EXACT_LIMBS);
   mpsi_state_f64(s, "kick", &b->kick, 1);
-  mpsi_state_f64(s, "work", &b->work, 1);
   mpsi_state_leave(s);
 }
 
@@ -106,9 +106,9 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_bool(s, "diverged", &dynamics->diverged);
   mpsi_state_bool(s, "begun", &dynamics->begun);
   mpsi_state_bool(s, "no_rate", &dynamics->no_rate);
-  mpsi_state_f64(s, "work_loads", &dynamics->works.loads, 1);
-  mpsi_state_f64(s, "work_boundaries", &dynamics->works.boundaries, 1);
-  mpsi_state_f64(s, "work_damping", &dynamics->works.damping, 1);
+  mpsi_state_i64(s, "work_loads", dynamics->works.loads.limb, MPSI_EXACT_LIMBS);
+  mpsi_state_i64(s, "work_boundaries", dynamics->works.boundaries.limb, MPSI_EXACT_LIMBS);
+  mpsi_state_i64(s, "work_damping", dynamics->works.damping.limb, MPSI_EXACT_LIMBS);
   mpsi_state_f64(s, "energy_start", &dynamics->works.start, 1);
   mpsi_state_add_table(s, "held_values", &bounds_table);
   mpsi_state_add_table(s, "dashpot_forces", &dashpots_table);

@@ -10,6 +10,7 @@
 #include "dynamics_private.h"
 
 #include <float.h>
+#include <string.h>
 
 double mpsi_dynamics_velocity(const mps_dynamics *dynamics, int32_t component, int64_t k) {
   const mpsi_dynamics_state *s = &dynamics->state;
@@ -56,11 +57,14 @@ mps_status mpsi_dynamics_begin(mps_dynamics *dynamics, const char *function, dou
   }
   dynamics->diverged = dynamics->begun = dynamics->no_rate = false;
   dynamics->rewritten = NULL;
-  dynamics->works = (mpsi_dynamics_works){0};
+  memset(&dynamics->works, 0, sizeof dynamics->works);
   for (int32_t k = 0; k < dynamics->boundary_room; k++) {
     mpsi_dynamics_boundary *b = dynamics->boundary[k];
-    for (int c = 0; b && c < 3; c++) b->pushed[c] = b->impulse[c] = 0.0;
-    if (b) b->kick = b->work = 0.0;
+    if (!b) continue;
+    memset(b->pushed, 0, sizeof b->pushed);
+    memset(b->impulse, 0, sizeof b->impulse);
+    memset(&b->work, 0, sizeof b->work);
+    b->kick = 0.0;
   }
   for (int64_t k = 0; k < dynamics->dashpots; k++) dynamics->dashpot[k].force = 0.0;
   mpsi_dynamics_publish(dynamics);
@@ -288,19 +292,6 @@ static void begin_budget(mps_dynamics *dynamics) {
   dynamics->begun = true;
 }
 
-static void begin_counting(mps_dynamics *dynamics) {
-  for (int32_t k = 0; k < dynamics->boundary_room; k++)
-    for (int c = 0; dynamics->boundary[k] && c < 3; c++) dynamics->boundary[k]->pushed[c] = 0.0;
-}
-
-static void end_counting(mps_dynamics *dynamics, double kick) {
-  for (int32_t k = 0; k < dynamics->boundary_room; k++) {
-    mpsi_dynamics_boundary *b = dynamics->boundary[k];
-    for (int c = 0; b && c < 3; c++) b->impulse[c] += b->pushed[c];
-    if (b) b->kick = kick;
-  }
-}
-
 /* Whether an acceleration is beyond the limit, given by its square. What holds or drives a particle
  * gives it its acceleration; the loops have found that of the forces. */
 static bool diverges(mps_dynamics *dynamics, double limit2) {
@@ -336,7 +327,7 @@ static bool take_step(work *w, bool output) {
   w->step.rate = 1.0 / dynamics->kept;
   w->step.first = dynamics->fresh || dynamics->no_rate;
   w->step.output = output;
-  begin_counting(dynamics);
+  mpsi_dynamics_begin_counting(dynamics);
   mpsi_dynamics_dashpots_before(dynamics);
   const int64_t units = (dynamics->mesh.blocks + w->grain - 1) / w->grain;
   mpsi_parallel_for(dynamics->context, units, first_pass, w);
@@ -346,7 +337,7 @@ static bool take_step(work *w, bool output) {
   dynamics->kept = dynamics->length;
   mpsi_dynamics_dashpots_after(dynamics, kick, output);
   mpsi_dynamics_hold_bounds(dynamics, kick, output);
-  end_counting(dynamics, kick);
+  mpsi_dynamics_end_counting(dynamics, kick);
   if (w->account) {
     mpsi_dynamics_account account = {dynamics, &w->forces, w->step.drag, kick};
     mpsi_dynamics_count_works(&account);

@@ -122,8 +122,11 @@ static mps_status make_mesh(mps_dynamics *dynamics, const char *function,
       mpsi_dynamics_layout_pairs(context, function, g, &count, &pair, &out->pairs);
   if (status != MPS_OK) return status;
   out->lattice = on_lattice(g->spacing, count, pair);
-  const mpsi_dynamics_mesh_def def = {dynamics->kernel, dynamics->density};
-  const bool built = mpsi_dynamics_mesh_build(context, &out->mesh, &def, g->count, count, pair);
+  const mpsi_dynamics_mesh_def def = {.kernel = dynamics->kernel,
+                                      .density = dynamics->density,
+                                      .particles = g->count,
+                                      .body = out->body};
+  const bool built = mpsi_dynamics_mesh_build(context, &out->mesh, &def, count, pair);
   mpsi_free(context, pair);
   return built ? MPS_OK : mpsi_fail_memory(context, function, (size_t)count * sizeof *pair);
 }
