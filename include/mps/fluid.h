@@ -170,6 +170,13 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_get_levels(mps_fluid *fluid, int64_t 
 MPS_API MPS_NODISCARD mps_status mps_fluid_add_body(mps_fluid *fluid, mps_body *body, int32_t kind,
                                                     int32_t *number);
 MPS_API MPS_NODISCARD mps_status mps_fluid_remove_body(mps_fluid *fluid, int32_t number);
+/** `floats` 1: from now on the fluid moves the body in each of its steps, as the water's pressure
+ *  and the body's own mass, gravity and load (mps_body_load) do; mps_body_get_reaction then has
+ * what the water does to it, per unit thickness. It feels no boundary: keep it from the ground. 0
+ *  (as after mps_fluid_add_body): the caller moves it. MPS_ERROR_ARGUMENT: the body is not free
+ *  (MPS_BODY_MOTION_FREE) or touches another solver's particles. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_float_body(mps_fluid *fluid, int32_t number,
+                                                      int32_t floats);
 /** What the fluid exerts on a body; moments about its reference point, moment_impulse about where
  *  that is now. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_body_reaction_sized(mps_fluid *fluid, int32_t number,

@@ -79,6 +79,7 @@ void mpsi_fluid_drive_bodies(mps_fluid *f, double dt) {
     mpsi_fluid_body *body = &f->body[b];
     if (!body->body) continue;
     body->next = pose_of(body->body);
+    if (body->floats) mpsi_fluid_drift(f, body, dt);
     for (int k = 0; k < body->faces; k++) {
       mpsi_fluid_wall *w = &f->wall[body->first + k];
       for (int n = 0; n < 2; n++) {
@@ -99,7 +100,8 @@ void mpsi_fluid_end_bodies(mps_fluid *f) {
   for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
     mpsi_fluid_body *body = &f->body[b];
     if (!body->body) continue;
-    body->pose = body->next;
+    if (body->floats) mpsi_fluid_end_afloat(f, body);
+    body->pose = body->floats ? pose_of(body->body) : body->next;
     for (int k = 0; k < body->faces; k++) {
       mpsi_fluid_wall *w = &f->wall[body->first + k];
       for (int n = 0; n < 2; n++) w->now.a[n] = w->next.a[n];

@@ -1,7 +1,7 @@
 /* fluid_private.h - the members of the incompressible fluid solver, by the stages of its step:
  *
  *   walls.c     where the walls are and go; mirror images (ghosts) of the particles beyond them
- *   bodies.c    rigid bodies, whose faces are walls too
+ *   bodies.c    rigid bodies, whose faces are walls too; afloat.c moves those that float
  *   near.c      who is near whom, and the weights w; sight.c: who sees whom past walls that end
  *   moments.c   sums over the neighbours: density, moments, velocity gradient, free surface
  *   pressure.c  rows of the pressure equation; pcg.c solves it, or solver.c has it solved
@@ -16,6 +16,7 @@
 #ifndef MPSI_FLUID_PRIVATE_H
 #define MPSI_FLUID_PRIVATE_H
 
+#include "body/body.h"
 #include "core/internal.h"
 #include "core/particles_internal.h"
 #include "core/retain.h"
@@ -72,6 +73,11 @@ typedef struct mpsi_fluid_body {
   struct mps_body *body; /* NULL: none */
   int first, faces;      /* walls */
   mpsi_fluid_pose pose, next;
+  /* of one that floats, see afloat.c; per metre of thickness */
+  bool floats;
+  double rate[3], mass[9]; /* accelerations (m/s2); masses with the added ones (kg), 0: unknown */
+  mpsi_load water[MPS_BODY_MAX_PARTS]; /* forces of the last solution */
+  int64_t wetted[MPS_BODY_MAX_PARTS];
 } mpsi_fluid_body;
 
 #define MPSI_FLUID_WALLS 32 /* boundaries, then faces */
@@ -270,6 +276,11 @@ int mpsi_fluid_face_of(const mps_fluid *fluid, const mpsi_fluid_body *body, bool
                        const double *x, double *distance);
 /* Whether x is inside a body other than number `besides` - 1. */
 bool mpsi_fluid_inside_body(const mps_fluid *fluid, int besides, const double *x);
+/* afloat.c */
+bool mpsi_fluid_any_afloat(const mps_fluid *fluid);
+void mpsi_fluid_drift(const mps_fluid *fluid, mpsi_fluid_body *body, double dt); /* next, from it */
+mps_status mpsi_fluid_solve_afloat(mps_fluid *fluid, const char *function);
+void mpsi_fluid_end_afloat(mps_fluid *fluid, mpsi_fluid_body *body); /* the body moves on */
 /* sight.c */
 void mpsi_fluid_find_limits(mps_fluid *fluid);
 int64_t mpsi_fluid_keep_seen(const mps_fluid *fluid, int64_t i, int64_t count, int32_t *index,

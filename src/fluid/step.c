@@ -170,6 +170,11 @@ static mps_status begin(mps_fluid *f, const char *function, double dt) {
   return status;
 }
 
+static mps_status solve(mps_fluid *f, const char *function) {
+  return mpsi_fluid_any_afloat(f) ? mpsi_fluid_solve_afloat(f, function)
+                                  : mpsi_fluid_solve_pressure(f, function);
+}
+
 static mps_status finish(mps_fluid *f, const char *function) {
   if (!(f->classical.gamma > 0.0)) mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, find_pressures);
   mpsi_fluid_find_velocities(f);
@@ -203,7 +208,7 @@ static void abandon(mps_fluid *f) {
 
 static mps_status take_step(mps_fluid *f, const char *function, double dt) {
   mps_status status = begin(f, function, dt);
-  if (status == MPS_OK) status = mpsi_fluid_solve_pressure(f, function);
+  if (status == MPS_OK) status = solve(f, function);
   if (status == MPS_OK) status = finish(f, function);
   if (status == MPS_OK) return keep(f, function);
   abandon(f);
@@ -312,8 +317,11 @@ mps_status mps_fluid_solve_pressure(mps_fluid *f) {
   if (status != MPS_OK) return status;
   f->stage = MPSI_FLUID_BEGUN;
   mpsi_fluid_begin_walls(f, f->dt);
-  status = mpsi_fluid_solve_pressure(f, __func__);
-  if (status != MPS_OK) return status;
+  status = solve(f, __func__);
+  if (status != MPS_OK) {
+    f->stage = MPSI_FLUID_BEGUN;
+    return status;
+  }
   f->stage = MPSI_FLUID_SOLVED;
   status = mpsi_fluid_load_walls(f, __func__);
   if (status != MPS_OK) f->stage = MPSI_FLUID_BEGUN;

@@ -1,0 +1,210 @@
+/* afloat.c - bodies that the water carries. In each step the accelerations a (two of the reference
+ * point and one of the rotation, times a length) are sought with which pressure, loads and inertia
+ * agree:
+ *
+ *   F(a) + loads - M a = 0,  M the body's masses.
+ *
+ * F is linear in a but for suction that is cut off: F = F0 - M_a a, M_a the added masses. So
+ * Newton's method with E = M + M_a is stable however light the body is. E is learnt from the
+ * solutions made (Broyden 1965) and kept from step to step, so that two or three solutions do.
+ *
+ * The pressure acts through the step: velocity first, then place, as the particles move
+ * (mpsi_body_advance). SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid_private.h"
+
+#include "body/body.h"
+
+#include <string.h>
+
+#define REPEATS 40      /* most solutions a step */
+#define AGREED 2e-4     /* of the acceleration */
+#define FLOOR 2e-5      /* of gravity */
+#define FIRST_ADDED 1.0 /* of the displaced mass: added mass before anything is known */
+
+mps_status mps_fluid_float_body(mps_fluid *f, int32_t number, int32_t floats) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  const mps_status status = mpsi_fluid_ready(f, __func__);
+  if (status != MPS_OK) return status;
+  if (number < 0 || number >= MPSI_FLUID_BODIES || !f->body[number].body || floats < 0 ||
+      floats > 1)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "body is %d and floats %d: must be one of the fluid's, and 0 or 1", number,
+                     floats);
+  mpsi_fluid_body *own = &f->body[number];
+  if (floats && (own->body->def.motion != MPS_BODY_MOTION_FREE || own->body->contacts))
+    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                     "body %d is prescribed or in contact with another solver's particles: a body "
+                     "that floats must be free",
+                     number);
+  own->floats = floats;
+  memset(own->mass, 0, sizeof own->mass);
+  memset(own->rate, 0, sizeof own->rate);
+  return MPS_OK;
+}
+
+bool mpsi_fluid_any_afloat(const mps_fluid *f) {
+  for (int b = 0; b < MPSI_FLUID_BODIES; b++)
+    if (f->body[b].floats) return true;
+  return false;
+}
+
+/* ---- one body -------------------------------------------------------------------------------- */
+
+/* m: half its circumference over pi. */
+static double length_of(const mpsi_fluid_body *body, const mps_fluid *f) {
+  double sum = 0.0;
+  for (int k = 0; k < body->faces; k++) sum += f->wall[body->first + k].length;
+  return sum / 6.283185307179586;
+}
+
+/* Masses by component, kg a metre of thickness. */
+static void masses(const mpsi_fluid_body *body, double length, double *mass) {
+  mass[0] = mass[1] = body->body->def.mass;
+  mass[2] = body->body->def.inertia[2] / (length * length);
+}
+
+/* Where the body is at the end of a step with the accelerations `rate`. */
+void mpsi_fluid_drift(const mps_fluid *f, mpsi_fluid_body *body, double dt) {
+  const mps_body_def *def = &body->body->def;
+  mpsi_fluid_pose *p = &body->next;
+  for (int c = 0; c < 2; c++) {
+    p->v[c] = (p->v[c] + dt * body->rate[c]) / (1.0 + dt * def->damping[0]);
+    p->x[c] += dt * p->v[c];
+  }
+  p->spin = (p->spin + dt * body->rate[2] / length_of(body, f)) / (1.0 + dt * def->damping[1]);
+  const double angle = dt * p->spin, C = cos(angle), S = sin(angle);
+  const double R[4] = {p->R[0], p->R[1], p->R[2], p->R[3]};
+  for (int c = 0; c < 2; c++)
+    p->R[c] = C * R[c] - S * R[2 + c], p->R[2 + c] = S * R[c] + C * R[2 + c];
+}
+
+/* What the last solution does to the body, by parts, per metre of thickness. */
+static void take_water(const mps_fluid *f, mpsi_fluid_body *own) {
+  const mps_body *body = own->body;
+  memset(own->water, 0, sizeof own->water);
+  memset(own->wetted, 0, sizeof own->wetted);
+  for (int k = 0; k < own->faces; k++) {
+    const mpsi_fluid_wall *w = &f->wall[own->first + k];
+    if (!w->used) continue;
+    const int32_t part = body->part_of[body->face_of[k]];
+    const double force[2] = {-w->load.force[0] / f->def.measure,
+                             -w->load.force[1] / f->def.measure};
+    for (int c = 0; c < 2; c++) own->water[part].force[c] += force[c];
+    own->water[part].moment[2] +=
+        -w->load.moment / f->def.measure - (own->pose.x[0] * force[1] - own->pose.x[1] * force[0]);
+    own->wetted[part] += w->load.wetted;
+  }
+}
+
+/* Forces that the accelerations do not explain. */
+static void imbalance(const mpsi_fluid_body *own, const double *mass, double length, double *g) {
+  const mps_body *body = own->body;
+  for (int c = 0; c < 2; c++) g[c] = body->load.force[c] + body->def.mass * body->def.gravity[c];
+  g[2] = body->load.moment[2] / length;
+  for (int32_t part = 0; part < body->parts; part++) {
+    for (int c = 0; c < 2; c++) g[c] += own->water[part].force[c];
+    g[2] += own->water[part].moment[2] / length;
+  }
+  for (int c = 0; c < 3; c++) g[c] -= mass[c] * own->rate[c];
+}
+
+/* Masses with the added ones of a body of whose water nothing is known. */
+static void first_guess(const mps_fluid *f, mpsi_fluid_body *own, const double *mass,
+                        double length) {
+  const double displaced = FIRST_ADDED * f->def.density * 3.141592653589793 * length * length;
+  memset(own->mass, 0, sizeof own->mass);
+  for (int c = 0; c < 3; c++) own->mass[4 * c] = mass[c] + displaced * (c < 2 ? 1.0 : 0.25);
+}
+
+/* x of E x = g, by Cramer's rule; false where E is no mass. */
+static bool solve3(const double *E, const double *g, double *x) {
+  const double minor[3] = {E[4] * E[8] - E[5] * E[7], E[5] * E[6] - E[3] * E[8],
+                           E[3] * E[7] - E[4] * E[6]};
+  const double det = E[0] * minor[0] + E[1] * minor[1] + E[2] * minor[2];
+  if (!(det > 1e-6 * fabs(E[0] * E[4] * E[8]))) return false;
+  for (int c = 0; c < 3; c++) {
+    double A[9];
+    memcpy(A, E, sizeof A);
+    for (int r = 0; r < 3; r++) A[3 * r + c] = g[r];
+    x[c] = (A[0] * (A[4] * A[8] - A[5] * A[7]) - A[1] * (A[3] * A[8] - A[5] * A[6]) +
+            A[2] * (A[3] * A[7] - A[4] * A[6])) /
+           det;
+  }
+  return true;
+}
+
+/* What the change of g over that of a says of E. */
+static void learn(double *E, const double *da, const double *dg) {
+  const double square = da[0] * da[0] + da[1] * da[1] + da[2] * da[2];
+  if (!(square > 0.0)) return;
+  for (int r = 0; r < 3; r++) {
+    const double miss = -dg[r] - (E[3 * r] * da[0] + E[3 * r + 1] * da[1] + E[3 * r + 2] * da[2]);
+    for (int c = 0; c < 3; c++) E[3 * r + c] += miss * da[c] / square;
+  }
+}
+
+typedef struct trial {
+  double rate[3], g[3];
+} trial;
+
+/* Judges the last solution: true where the body's accelerations agree with it; else the next to
+ * try. `before` is the trial before this one, if any. The body then moves with just these
+ * accelerations, which the water has answered to: what is left of forces counts as the water's. */
+static bool judge(const mps_fluid *f, mpsi_fluid_body *own, trial *before, bool first) {
+  const double length = length_of(own, f);
+  double mass[3], g[3], step[3], largest = 0.0, change = 0.0;
+  masses(own, length, mass);
+  take_water(f, own);
+  imbalance(own, mass, length, g);
+  if (!(own->mass[0] > 0.0)) first_guess(f, own, mass, length);
+  if (!first) {
+    double da[3], dg[3];
+    for (int c = 0; c < 3; c++) da[c] = own->rate[c] - before->rate[c], dg[c] = g[c] - before->g[c];
+    learn(own->mass, da, dg);
+  }
+  if (!solve3(own->mass, g, step)) {
+    first_guess(f, own, mass, length);
+    (void)solve3(own->mass, g, step);
+  }
+  for (int c = 0; c < 3; c++) {
+    largest = fmax(largest, fabs(own->rate[c]));
+    change = fmax(change, fabs(step[c]));
+  }
+  const double g_size = hypot(own->body->def.gravity[0], own->body->def.gravity[1]);
+  if (change <= AGREED * largest + FLOOR * fmax(g_size, f->g)) {
+    for (int c = 0; c < 2; c++) own->water[0].force[c] -= g[c];
+    own->water[0].moment[2] -= length * g[2];
+    return true;
+  }
+  memcpy(before->rate, own->rate, sizeof before->rate);
+  memcpy(before->g, g, sizeof before->g);
+  for (int c = 0; c < 3; c++) own->rate[c] += step[c];
+  return false;
+}
+
+/* ---- a step ---------------------------------------------------------------------------------- */
+
+mps_status mpsi_fluid_solve_afloat(mps_fluid *f, const char *function) {
+  trial before[MPSI_FLUID_BODIES];
+  for (int repeat = 0; repeat < REPEATS; repeat++) {
+    mpsi_fluid_drive_bodies(f, f->dt);
+    f->stage = MPSI_FLUID_BEGUN;
+    mps_status status = mpsi_fluid_solve_pressure(f, function);
+    f->stage = MPSI_FLUID_SOLVED;
+    if (status == MPS_OK) status = mpsi_fluid_load_walls(f, function);
+    if (status != MPS_OK) return status;
+    bool agreed = true;
+    for (int b = 0; b < MPSI_FLUID_BODIES; b++)
+      if (f->body[b].floats) agreed &= judge(f, &f->body[b], &before[b], repeat == 0);
+    if (agreed) return MPS_OK;
+  }
+  return mpsi_fail(f->context, function, MPS_ERROR_NUMERIC,
+                   "step %lld, t = %g s: the bodies afloat and the water have not agreed in %d "
+                   "solutions; the step is not made",
+                   (long long)f->steps, f->time, REPEATS);
+}
+
+void mpsi_fluid_end_afloat(mps_fluid *f, mpsi_fluid_body *own) {
+  mpsi_body_react(own->body, f->dt, own->water, own->wetted);
+  mpsi_body_advance(own->body, f->dt);
+}

@@ -1,0 +1,279 @@
+/* test_fluid_afloat.c - bodies that the water carries.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "test_fixture.h"
+
+#include "fluid_tank.h"
+
+#define PERIOD_BAR 0.09 /* at 20 spacings of width and 5 of draft */
+
+/* A box of `width` that floats `draft` deep in the middle of a closed tank of `length` and
+ * `depth`. */
+typedef struct scene {
+  tank t;
+  mps_body *body;
+  double l0, length, depth, width, draft;
+  double lightness; /* mass over that of the water displaced; 0: 1 */
+} scene;
+
+static void launch(scene *s) {
+  mps_particles_def set = mps_particles_defaults();
+  mps_fluid_def def = mps_fluid_defaults();
+  mps_body_def at = mps_body_defaults();
+  const double height = 2.0 * s->draft;
+  int32_t number;
+  at.motion = MPS_BODY_MOTION_FREE;
+  at.position[0] = 0.5 * s->length, at.position[1] = s->depth - s->draft + 0.5 * height;
+  at.mass = 1000.0 * s->width * s->draft * (s->lightness > 0.0 ? s->lightness : 1.0);
+  at.inertia[2] = at.mass * (s->width * s->width + height * height) / 12.0;
+  at.gravity[1] = -TANK_G;
+  mps_assert_ok(context, mps_body_create_box(context, &at, s->width, height, &s->body));
+  set.spacing = s->l0;
+  def.level = s->depth;
+  mps_assert_ok(context, mps_particles_create(context, &set, &s->t.water));
+  const int columns = (int)lround(s->length / s->l0), rows = (int)lround(s->depth / s->l0);
+  for (int j = 0; j < rows; j++)
+    for (int i = 0; i < columns; i++) {
+      const double p[2] = {(i + 0.5) * s->l0, (j + 0.5) * s->l0};
+      double d;
+      mps_assert_ok(context, mps_body_distance(s->body, 1, p, &d, NULL, NULL, NULL));
+      if (d > 0.4 * s->l0) mps_assert_ok(context, mps_particles_append(s->t.water, 1, p));
+    }
+  mps_assert_ok(context, mps_fluid_create(context, s->t.water, &def, &s->t.fluid));
+  tank_wall(context, s->t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_wall(context, s->t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+  tank_wall(context, s->t.fluid, s->length, 0.0, -1.0, 0.0, NULL);
+  mps_assert_ok(context, mps_fluid_add_body(s->t.fluid, s->body, MPS_FLUID_BOUNDARY_SLIP, &number));
+  mps_assert_ok(context, mps_fluid_float_body(s->t.fluid, number, 1));
+}
+
+/* ---- linear potential theory ----------------------------------------------------------------- */
+
+/* Heave of the box in the tank by one half of it (symmetric), in coordinates q[0], the body's
+ * place, and q[n], the level cos(n pi x/gap) in the gap of width (length - width)/2; the level's
+ * mean follows from the body's place. Masses are rho int phi_i dphi_j/dn over body and surface,
+ * with phi from Laplace's equation by finite differences. */
+enum { MODES = 5, CELLS = 80 }; /* cells along half of the tank */
+
+typedef struct theory {
+  const scene *s;
+  double h;
+  int nx, ny, gap, top; /* cells: tank, gap, below the box */
+  double phi[CELLS][CELLS];
+} theory;
+
+static bool in_box(const theory *t, int i, int j) { return i >= t->gap && j >= t->top; }
+
+/* Velocity out of the water of mode n at the top of column i. */
+static double outflow(const theory *t, int n, int i) {
+  const double gap = 0.5 * (t->s->length - t->s->width);
+  if (i >= t->gap) return n == 0 ? 1.0 : 0.0;
+  if (n == 0) return -t->s->width / (t->s->length - t->s->width);
+  return cos(n * TANK_PI * (i + 0.5) * t->h / gap);
+}
+
+static void potential(theory *t, int n) {
+  memset(t->phi, 0, sizeof t->phi);
+  for (int sweep = 0; sweep < 4000; sweep++)
+    for (int i = 0; i < t->nx; i++)
+      for (int j = 0; j < t->ny; j++) {
+        if (in_box(t, i, j)) continue;
+        double sum = 0.0, count = 0.0;
+        const int at[4][2] = {{i + 1, j}, {i - 1, j}, {i, j + 1}, {i, j - 1}};
+        for (int k = 0; k < 4; k++) {
+          const int a = at[k][0], b = at[k][1];
+          if (a < 0 || a >= t->nx || b < 0) continue;
+          if (b >= t->ny || (in_box(t, a, b) && k == 2))
+            sum += t->h * outflow(t, n, i);
+          else if (!in_box(t, a, b))
+            sum += t->phi[a][b], count += 1.0;
+        }
+        t->phi[i][j] += 1.9 * (sum / count - t->phi[i][j]);
+      }
+}
+
+/* Period (s) of the slowest motion: the largest ratio of masses to stiffnesses, by iteration. */
+static double heave_period(const scene *s) {
+  static theory t;
+  t = (theory){.s = s, .h = 0.5 * s->length / CELLS, .nx = CELLS};
+  t.ny = (int)lround(s->depth / t.h), t.gap = (int)lround(0.5 * (s->length - s->width) / t.h);
+  t.top = (int)lround((s->depth - s->draft) / t.h);
+  const double gap = 0.5 * (s->length - s->width), rest = s->width / (s->length - s->width);
+  double M[MODES][MODES] = {{0}}, K[MODES], q[MODES] = {1.0}, ratio = 0.0;
+  for (int n = 0; n < MODES; n++) {
+    potential(&t, n);
+    for (int m = 0; m < MODES; m++)
+      for (int i = 0; i < t.nx; i++) { /* phi at the top: half a cell further on */
+        const double phi = t.phi[i][(i < t.gap ? t.ny : t.top) - 1] + 0.5 * t.h * outflow(&t, n, i);
+        M[n][m] += 1000.0 * t.h * phi * outflow(&t, m, i);
+      }
+    K[n] = 0.5 * 1000.0 * TANK_G * gap;
+  }
+  M[0][0] += 0.5 * 1000.0 * s->width * s->draft;
+  K[0] = 1000.0 * TANK_G * (0.5 * s->width + gap * rest * rest);
+  for (int k = 0; k < 200; k++) {
+    double next[MODES], norm = 0.0;
+    for (int n = 0; n < MODES; n++) {
+      next[n] = 0.0;
+      for (int m = 0; m < MODES; m++) next[n] += M[n][m] * q[m] / K[n];
+      norm = fmax(norm, fabs(next[n]));
+    }
+    for (int n = 0; n < MODES; n++) q[n] = next[n] / norm;
+    ratio = norm;
+  }
+  return 2.0 * TANK_PI * sqrt(ratio);
+}
+
+/* ---- tests ----------------------------------------------------------------------------------- */
+
+static void drop_scene(scene *s) {
+  tank_free(&s->t);
+  mps_body_destroy(&s->body);
+}
+
+/* A load of 40 N sets the box going: it heaves about 40 N over its stiffness, rho g times its width
+ * and what the water in the gaps adds. */
+static void a_box_heaves(void **state) {
+  (void)state;
+  scene s = {.l0 = 0.02, .length = 0.8, .depth = 0.4, .width = 0.4, .draft = 0.1};
+  const double load[3] = {0.0, -40.0, 0.0}, exact = heave_period(&s);
+  const double stiffness = 1000.0 * TANK_G * s.width / (1.0 - s.width / s.length);
+  double at[3] = {0.0, 0.0, 0.0}, place[3] = {0.0, 0.0, 0.0}, turn[4][2];
+  int64_t solutions = 0;
+  int turns = 0;
+  launch(&s);
+  mps_assert_ok(context, mps_body_load(s.body, load, NULL));
+  while (turns < 3) {
+    mps_body_state b;
+    mps_assert_ok(context, mps_fluid_step(s.t.fluid, 1));
+    mps_assert_ok(context, mps_body_get_state(s.body, &b));
+    assert_true(b.time < 2.0);
+    mps_assert_near(b.position[0], 0.4, 1e-4);
+    mps_assert_near(b.rotation[2], 0.0, 1e-3);
+    for (int k = 0; k < 2; k++) at[k] = at[k + 1], place[k] = place[k + 1];
+    at[2] = b.time, place[2] = b.position[1] - s.depth;
+    solutions++;
+    if (solutions < 3 || (place[1] - place[0]) * (place[2] - place[1]) > 0.0) continue;
+    if (turns > 0 && at[1] - turn[turns - 1][0] < 0.1) continue;
+    turn[turns][0] = at[1], turn[turns][1] = place[1];
+    turns++;
+  }
+  const double period = turn[2][0] - turn[0][0];
+  const double mean = 0.25 * (turn[0][1] + 2.0 * turn[1][1] + turn[2][1]);
+  const double decay = log((turn[1][1] - turn[0][1]) / (turn[1][1] - turn[2][1])) / (0.5 * period);
+  print_message("heave: period %.4f s, potential theory %.4f s (%+.1f %%); mean %.3f mm, load over "
+                "stiffness %.3f mm (%+.1f %%); decay %.2f 1/s\n",
+                period, exact, 100.0 * (period / exact - 1.0), 1e3 * mean,
+                1e3 * load[1] / stiffness, 100.0 * (mean * stiffness / load[1] - 1.0), decay);
+  mps_assert_near(period, exact, PERIOD_BAR * exact);
+  mps_assert_near(mean, load[1] / stiffness, 0.02 * fabs(load[1]) / stiffness);
+  drop_scene(&s);
+}
+
+/* Force of the water along y on the box that is moved with the acceleration `a`, in a step that is
+ * not made. */
+static double pushed(scene *s, double a) {
+  const double dt = mps_fluid_dt(s->t.fluid);
+  mps_body_motion motion = mps_body_motion_defaults();
+  mps_reaction r;
+  mps_assert_ok(context, mps_fluid_float_body(s->t.fluid, 0, 0));
+  mps_assert_ok(context, mps_fluid_begin_step(s->t.fluid, dt));
+  motion.velocity[1] = a * dt;
+  mps_assert_ok(context, mps_body_set_motion(s->body, &motion));
+  mps_assert_ok(context, mps_fluid_solve_pressure(s->t.fluid));
+  mps_assert_ok(context, mps_fluid_get_body_reaction(s->t.fluid, 0, &r));
+  mps_assert_ok(context, mps_fluid_abandon_step(s->t.fluid));
+  motion.velocity[1] = 0.0;
+  mps_assert_ok(context, mps_body_set_motion(s->body, &motion));
+  mps_assert_ok(context, mps_fluid_float_body(s->t.fluid, 0, 1));
+  return r.force[1];
+}
+
+/* However light the box, it starts with the acceleration at which force and inertia agree, the
+ * added mass many times its own, and its momentum is what water and gravity give. */
+static void a_light_box_starts_with_its_added_mass(void **state) {
+  (void)state;
+  const double masses[] = {1.0, 0.1, 0.01}; /* of the water it displaces */
+  for (int k = 0; k < 3; k++) {
+    scene s = {.l0 = 0.02, .length = 0.8, .depth = 0.4, .width = 0.4, .draft = 0.1};
+    s.lightness = masses[k];
+    launch(&s);
+    const double mass = masses[k] * 1000.0 * s.width * s.draft;
+    const double still = pushed(&s, 0.0), added = still - pushed(&s, 1.0);
+    mps_body_state b;
+    mps_body_totals totals;
+    mps_reaction r;
+    const double dt = mps_fluid_dt(s.t.fluid);
+    mps_assert_ok(context, mps_fluid_begin_step(s.t.fluid, dt));
+    mps_assert_ok(context, mps_fluid_solve_pressure(s.t.fluid));
+    mps_assert_ok(context, mps_fluid_end_step(s.t.fluid));
+    mps_assert_ok(context, mps_body_get_state(s.body, &b));
+    const double a = b.velocity[1] / dt, linear = (still - mass * TANK_G) / (mass + added);
+    mps_body_destroy(&s.body);
+    tank_free(&s.t);
+    launch(&s); /* the same place again */
+    const double force = pushed(&s, a) - mass * TANK_G;
+    print_message("mass %.2f of the displaced water's, added mass %.2f: starts with %.4f m/s2, "
+                  "without suction cut off %.4f; force over mass there %.4f\n",
+                  masses[k], added / (1000.0 * s.width * s.draft), a, linear, force / mass);
+    mps_assert_near(force, mass * a, 0.002 * still);
+    if (masses[k] >= 0.1) mps_assert_near(a, linear, 0.01 * fmax(linear, 0.1));
+    mps_assert_ok(context, mps_fluid_step(s.t.fluid, 10));
+    mps_assert_ok(context, mps_body_get_totals(s.body, &totals));
+    mps_assert_ok(context, mps_body_get_reaction(s.body, -1, &r));
+    mps_assert_ok(context, mps_body_get_state(s.body, &b));
+    mps_assert_near(b.time, mps_fluid_time(s.t.fluid), 1e-12);
+    mps_assert_near(totals.linear[1], r.impulse[1] - mass * TANK_G * b.time, 1e-9 * (1.0 + mass));
+    mps_assert_near(b.position[0], 0.4, 1e-4);
+    drop_scene(&s);
+  }
+}
+
+static void going_back_is_exact(void **state) {
+  (void)state;
+  scene s = {.l0 = 0.02, .length = 0.8, .depth = 0.4, .width = 0.4, .draft = 0.1};
+  const double load[3] = {3.0, -40.0, 0.0}, moment[3] = {0.0, 0.0, 2.0};
+  mps_snapshot *start = NULL;
+  mps_body_state first, again;
+  launch(&s);
+  mps_assert_ok(context, mps_body_load(s.body, load, moment));
+  mps_assert_ok(context, mps_fluid_step(s.t.fluid, 40));
+  mps_assert_ok(context, mps_fluid_snapshot(s.t.fluid, &start));
+  mps_assert_ok(context, mps_fluid_step(s.t.fluid, 10));
+  mps_assert_ok(context, mps_body_get_state(s.body, &first));
+  assert_true(first.position[0] > 0.4 && first.position[1] < 0.4 && first.rotation[2] > 0.0);
+  mps_assert_ok(context, mps_fluid_rollback(s.t.fluid, start));
+  mps_assert_ok(context, mps_fluid_step(s.t.fluid, 10));
+  mps_assert_ok(context, mps_body_get_state(s.body, &again));
+  assert_memory_equal(&first, &again, sizeof first);
+  mps_snapshot_destroy(&start);
+  drop_scene(&s);
+}
+
+static void bad_bodies_are_refused(void **state) {
+  (void)state;
+  scene s = {.l0 = 0.02, .length = 0.8, .depth = 0.4, .width = 0.4, .draft = 0.1};
+  launch(&s);
+  mps_assert_fails(context, mps_fluid_float_body(s.t.fluid, 1, 1), MPS_ERROR_ARGUMENT, "body is 1");
+  mps_assert_fails(context, mps_fluid_float_body(s.t.fluid, 0, 2), MPS_ERROR_ARGUMENT, "floats 2");
+  mps_assert_ok(context, mps_fluid_remove_body(s.t.fluid, 0));
+  mps_body_def def = mps_body_defaults();
+  mps_body *held = NULL;
+  int32_t number;
+  def.position[0] = 0.4, def.position[1] = 0.4;
+  mps_assert_ok(context, mps_body_create_box(context, &def, 0.4, 0.2, &held));
+  mps_assert_ok(context, mps_fluid_add_body(s.t.fluid, held, MPS_FLUID_BOUNDARY_SLIP, &number));
+  mps_assert_fails(context, mps_fluid_float_body(s.t.fluid, number, 1), MPS_ERROR_ARGUMENT,
+                   "must be free");
+  mps_body_destroy(&held);
+  drop_scene(&s);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_box_heaves),
+      cmocka_unit_test(a_light_box_starts_with_its_added_mass),
+      cmocka_unit_test(going_back_is_exact),
+      cmocka_unit_test(bad_bodies_are_refused),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
