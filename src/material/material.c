@@ -95,6 +95,10 @@ bool mpsi_material_reads_volume(const mps_material *material) {
          material->kind == MPSI_LAW_USER;
 }
 
+bool mpsi_material_may_refuse(const mps_material *material) {
+  return material->kind == MPSI_LAW_USER;
+}
+
 double mpsi_material_viscosity(const mps_material *material) { return material->law.viscosity; }
 
 void mpsi_material_begin(const mps_material *material, double *const *history, int64_t begin,

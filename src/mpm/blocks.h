@@ -51,6 +51,7 @@ typedef struct mpsi_cell_block {
   int32_t waits;              /* number of to[q] that others give to before */
   uint8_t first;              /* bit q: this is the first that gives to to[q] */
   int64_t bad;                /* first particle not finite or outside the domain, or -1 */
+  bool lost;                  /* that one, and no other, is outside: all are finite */
   double speed;               /* largest c + |v|, m/s */
 } mpsi_cell_block;
 

@@ -135,6 +135,7 @@ static void add_own(mps_mpm *mpm, int64_t begin, int n, const double (*motion)[4
  * step. Nothing is put back on the axis: there
  * the hoop strain has no end. */
 static int64_t keep_inside(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end) {
+  int64_t bad = -1;
   for (int64_t k = begin; k < end; k++)
     for (int c = 0; c < mpm->dim; c++) {
       double *x = &mpm->p.x[c][k];
@@ -146,12 +147,15 @@ static int64_t keep_inside(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, 
         continue;
       }
       const bool axis = mpm->def.geometry == MPS_MPM_AXISYMMETRIC && c == 0 && !(*x > 0.0);
-      if (axis || !(X >= low - BEYOND && X <= high + BEYOND)) return k;
+      if (axis || !(X >= low - BEYOND && X <= high + BEYOND)) {
+        if (bad < 0) bad = k;
+        break;
+      }
       const double wall = X < low ? low : high, inwards = X < low ? INFINITY : -INFINITY;
       *x = mpm->def.origin[c] + mpm->def.cell * wall;
       while ((mpsi_grid_coordinate(mpm, c, *x) - wall) * inwards < 0.0) *x = nextafter(*x, inwards);
     }
-  return -1;
+  return bad;
 }
 
 /* c + |v| of particles [begin, begin + n), at most a chunk. A NaN or infinity is a bad particle. */
@@ -176,8 +180,8 @@ MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cell_block *cells, int dim,
   }
   for (int k = 0; k < 4; k++)
     if (largest[k] > cells->speed) cells->speed = largest[k];
-  for (int k = 0; k < n && !good && cells->bad < 0; k++)
-    if (!isfinite(speed[k])) cells->bad = begin + k;
+  for (int k = 0; k < n && !good && (cells->bad < 0 || cells->lost); k++)
+    if (!isfinite(speed[k])) cells->bad = begin + k, cells->lost = false;
 }
 
 MPSI_INLINE void speed_chunk(const mps_mpm *mpm, mpsi_cell_block *cells, int dim, int64_t begin,
@@ -219,13 +223,15 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cell_block *cells, const mpsi_work
   if (mpm->energy.counts) mpsi_energy_moved(mpm, cells, begin, begin + n);
   if (mpm->flip > 0.0) add_own(mpm, begin, n, (const double(*)[4][4])motion);
   if (m.left) cells->left = true;
-  if (m.outside && cells->bad < 0) cells->bad = keep_inside(mpm, cells, begin, begin + n);
+  if (!m.outside) return;
+  const int64_t bad = keep_inside(mpm, cells, begin, begin + n);
+  if (cells->bad < 0 && bad >= 0) cells->bad = bad, cells->lost = true;
 }
 
 MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {
   mpsi_cell_block *cells = &mpm->grid.cells[b];
   mpsi_worker *worker = &mpm->grid.workers[number];
-  cells->left = cells->gone = false;
+  cells->left = cells->gone = cells->lost = false;
   cells->bad = -1;
   cells->speed = 0.0;
   gather_tile(mpm, cells, worker->tile);
@@ -253,7 +259,7 @@ const mpsi_mpm_task MPSI_LEVELLED(mpsi_g2p)[3][2] = {MPSI_VARIANTS(ENTRY)};
 void MPSI_LEVELLED(mpsi_speed)(mps_mpm *mpm, int64_t b, int32_t worker) {
   (void)worker;
   mpsi_cell_block *cells = &mpm->grid.cells[b];
-  cells->bad = -1;
+  if (!cells->lost) cells->bad = -1;
   cells->speed = 0.0;
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;

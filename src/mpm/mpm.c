@@ -396,7 +396,10 @@ void mps_mpm_destroy(mps_mpm **pointer) {
                    mpm->rooms.radix.item,
                    mpm->rooms.flags.item,
                    mpm->rooms.stencil.item,
-                   mpm->rooms.gone.item};
+                   mpm->rooms.gone.item,
+                   mpm->undo.list_room.item,
+                   mpm->undo.room.item,
+                   mpm->undo.dash_room.item};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
   mpsi_mpm_free_impulses(mpm);
   mpsi_mpm_drop_loads(mpm);

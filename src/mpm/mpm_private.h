@@ -13,6 +13,7 @@
 #include "loads.h"
 #include "pairs.h"
 #include "run.h"
+#include "undo.h"
 
 struct mpsi_kernels;
 
@@ -49,6 +50,7 @@ struct mps_mpm {
   mpsi_loads loads;
   mpsi_laws laws;
   mpsi_run run;
+  mpsi_undo undo;
   mpsi_energy energy;
   mpsi_settling settling;
   mpsi_identity *identity; /* of its snapshots */

@@ -17,6 +17,8 @@ bool mpsi_mpm_force_room(mps_mpm *mpm, int64_t particles);
 /* Fields are finite and places inside the domain; density, volume and volume ratio are positive;
  * every particle has a mass. */
 mps_status mpsi_mpm_check_start(const mps_mpm *mpm, const char *function);
+/* After a step that has lost a particle: MPS_ERROR_STATE as long as one is outside the domain. */
+mps_status mpsi_mpm_check_lost(mps_mpm *mpm, const char *function);
 mps_status mpsi_mpm_check_amounts(const mps_mpm *mpm, const char *function);
 mps_status mpsi_mpm_check_masses(const mps_mpm *mpm, const char *function);
 /* Volumes and masses from density and spacing; unstrained states where the caller gave none. */

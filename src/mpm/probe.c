@@ -199,9 +199,10 @@ static mps_status check(const mps_mpm *mpm, const char *function, const char *fi
                      field ? "given" : "NULL", (long long)count, points ? "given" : "NULL",
                      values ? "given" : "NULL");
   mps_status status = mpsi_particles_ready(mpm->particles, function);
-  if (status == MPS_OK && mpm->run.broken)
+  if (status == MPS_OK && (mpm->run.broken || mpm->run.lost))
     status = mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
-                       "an earlier step has failed: there is no state to read");
+                       "the last step ended with a particle that is %s: there is no state to read",
+                       mpm->run.broken ? "not finite" : "outside the domain");
   if (status != MPS_OK) return status;
   for (*components = 0; mpsi_particles_column(mpm->particles, field, *components); ++*components)
     continue;

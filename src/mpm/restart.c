@@ -56,7 +56,7 @@ static bool reserve_blocks(void *solver, int64_t rows, const void *values) {
 /* The room is there: but where a file lies about it, the solver takes no step. */
 static void set_blocks(void *solver, int64_t rows, const void *values) {
   mps_mpm *mpm = solver;
-  mpm->energy.springs_known = false;
+  mpm->energy.springs_known = mpm->run.lost = false;
   mpm->run.broken =
       mpsi_mpm_place_blocks(mpm, "restore", rows, (const mpsi_block *)values) != MPS_OK;
 }

@@ -12,13 +12,13 @@ mps_status mpsi_mpm_between_steps(mps_mpm *mpm, const char *function) {
                    "destroy it");
 }
 
-/* Not after a step that has failed, nor while a field is being edited. */
+/* Not after a step that gave no numbers, nor while a field is being edited. */
 static mps_status check_whole(mps_mpm *mpm, const char *function) {
   if (mpm->run.broken)
-    return mpsi_fail(
-        mpm->context, function, MPS_ERROR_STATE,
-        "an earlier step has failed: the state is kept for a look; make a new solver or "
-        "restore a checkpoint");
+    return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+                     "an earlier step has left no state to go on from: roll back, restore a "
+                     "checkpoint or make a "
+                     "new solver");
   return mpsi_particles_ready(mpm->particles, function);
 }
 
@@ -29,6 +29,7 @@ mps_status mpsi_mpm_usable(mps_mpm *mpm, const char *function) {
 
 mps_status mpsi_mpm_tidy(mps_mpm *mpm, const char *function) {
   mps_status status = check_whole(mpm, function);
+  if (status == MPS_OK) status = mpsi_mpm_check_lost(mpm, function);
   if (status != MPS_OK || !mpm->run.edited) return status;
   status = mpsi_mpm_check_masses(mpm, function);
   if (status == MPS_OK) status = mpsi_mpm_sort(mpm, function);

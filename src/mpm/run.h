@@ -12,15 +12,17 @@ typedef struct mpsi_run {
   double dt;    /* s, of the step being made */
   double speed; /* largest c + |v| of the particles, m/s */
   int64_t steps;
-  bool calling;                  /* in a callback of the caller's: only questions are allowed */
-  bool stale;                    /* particles must be sorted before the next step */
-  bool edited;                   /* the caller has written fields since the last step */
-  bool broken;                   /* a step has failed half way */
-  bool warned_about_dt;          /* the log knows that dt is above the Courant limit */
+  bool calling;         /* in a callback of the caller's: only questions are allowed */
+  bool stale;           /* particles must be sorted before the next step */
+  bool edited;          /* the caller has written fields since the last step */
+  bool broken;          /* a step has given values that are no numbers */
+  bool lost;            /* a particle has left the domain in the last step, which is whole */
+  bool warned_about_dt; /* the log knows that dt is above the Courant limit */
   uint32_t warned_about_chatter; /* bit b: ... that body b's contact is too stiff for dt */
 } mpsi_run;
 
-/* step.c: one step of dt. On an error nothing has moved, or the solver is broken. */
+/* step.c: one step of dt. On an error nothing has moved, but where a particle has left the domain
+ * (run.lost: the step is whole) or got values that are no numbers (run.broken). */
 mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt);
 /* run.c: MPS_ERROR_STATE in a callback of the solver. */
 mps_status mpsi_mpm_between_steps(mps_mpm *mpm, const char *function);

@@ -9,30 +9,25 @@
 
 #define CHATTER 6.0 /* k dt^2/m above which a contact does not settle */
 
-static mps_status report_bad(mps_mpm *mpm, const char *function, int64_t k) {
+/* The particle that ends the step, of which the message says what is wrong with it. */
+static mps_status report_bad(mps_mpm *mpm, const char *function, int64_t k, const char *what) {
   const mpsi_columns *p = &mpm->p;
   const long long id = (long long)mpsi_particles_integers(mpm->particles, "id")[k];
   const bool space = mpm->dim == 3;
   const double z = space ? p->x[2][k] : 0.0, vz = space ? p->v[2][k] : 0.0;
-  bool number = isfinite(p->V[k]);
-  for (int c = 0; c < mpm->dim; c++)
-    number = number && isfinite(p->x[c][k]) && isfinite(p->v[c][k]);
-  mpm->run.broken = true;
   const mps_status status = mpsi_fail(
       mpm->context, function, MPS_ERROR_DIVERGED,
       "step %lld, t = %.6g s: particle %lld at (%.6g, %.6g, %.6g) m with velocity (%.4g, %.4g, "
       "%.4g) m/s and volume %.4g m3 %s; dt was %.4g s, %.3g of the Courant limit: check dt, the "
       "contact stiffness and the initial stress",
       (long long)mpm->run.steps, mpm->run.time, id, p->x[0][k], p->x[1][k], z, p->v[0][k],
-      p->v[1][k], vz, p->V[k], number ? "has left the domain or has no volume" : "is not finite",
-      mpm->run.dt, mpm->run.dt * mpm->run.speed * mpm->grid.inverse);
+      p->v[1][k], vz, p->V[k], what, mpm->run.dt, mpm->run.dt * mpm->run.speed * mpm->grid.inverse);
   mpsi_fail_where(mpm->context, mpm->run.steps, id);
   return status;
 }
 
 static mps_status report_refusal(mps_mpm *mpm, const char *function) {
   mpsi_refusal *r = &mpm->laws.refusal;
-  mpm->run.broken = true;
   r->cells = NULL;
   return mpsi_material_refused(mpm->context, function, r->material, r->status, r->message,
                                r->particle >= 0 ? mpm->laws.ids[r->particle] : -1, mpm->run.steps);
@@ -40,17 +35,20 @@ static mps_status report_refusal(mps_mpm *mpm, const char *function) {
 
 mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function) {
   double speed = 0.0;
-  int64_t bad = -1;
+  int64_t bad = -1, lost = -1;
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     const mpsi_cell_block *cells = &mpm->grid.cells[b];
-    if (cells->bad >= 0 && bad < 0) bad = cells->bad;
+    int64_t *which = cells->lost ? &lost : &bad;
+    if (cells->bad >= 0 && *which < 0) *which = cells->bad;
     if (cells->left) mpm->run.stale = true;
     if (cells->speed > speed) speed = cells->speed;
   }
-  if (mpm->laws.refusal.cells) return report_refusal(mpm, function);
-  if (bad >= 0) return report_bad(mpm, function, bad);
+  mpm->run.broken = bad >= 0;
+  if (bad >= 0) return report_bad(mpm, function, bad, "is not finite or has no volume");
   mpm->run.speed = speed;
-  return MPS_OK;
+  if (lost < 0) return MPS_OK;
+  mpm->run.lost = mpm->run.stale = true;
+  return report_bad(mpm, function, lost, "has left the domain");
 }
 
 /* Tells the log, once each, of a step too large for the present state. */
@@ -113,6 +111,11 @@ static mps_status prepare(mps_mpm *mpm, const char *function) {
  *   finish   friction with bodies (31)-(34); walls and prescribed nodes
  *   gather   velocities of the nodes --> v, L, x (41)-(44); then the laws, L --> sigma, V and their
  *            histories (45)-(48), and c + |v| for the next step (49), (50): g2p.c, law.c */
+static void keep_and_gather(mps_mpm *mpm, int64_t b, int32_t worker) {
+  mpsi_mpm_keep_block(mpm, b);
+  mpm->kernels->g2p[mpm->def.geometry][mpm->def.spline - 2](mpm, b, worker);
+}
+
 static mps_status move(mps_mpm *mpm, const char *function, double dt) {
   const int32_t geometry = mpm->def.geometry, spline = mpm->def.spline - 2;
   mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes,
@@ -130,7 +133,7 @@ static mps_status move(mps_mpm *mpm, const char *function, double dt) {
     mpm->contact.impulses.kept_count = 0;
   }
   pass.finish = mpsi_mpm_finish_nodes;
-  pass.gather = mpm->kernels->g2p[geometry][spline];
+  pass.gather = mpm->undo.on ? keep_and_gather : mpm->kernels->g2p[geometry][spline];
   mpsi_mpm_begin_holds(mpm, dt); /* signals --> velocities of walls, boxes */
   mpsi_mpm_run_pass(mpm, &pass);
   return MPS_OK;
@@ -138,6 +141,7 @@ static mps_status move(mps_mpm *mpm, const char *function, double dt) {
 
 mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
   mps_status status = prepare(mpm, function);
+  if (status == MPS_OK) status = mpsi_mpm_prepare_undo(mpm, function);
   if (status != MPS_OK) return status;
   mpm->run.dt = dt;
   warn_about_step(mpm, dt);
@@ -148,11 +152,15 @@ mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
   mpsi_mpm_sum_holds(mpm);                              /* impulses of nodes --> forces of walls */
   mpsi_mpm_drive_particles(mpm);                        /* held particles: v, x */
   if (mpm->p.stencil) mpsi_mpm_apply_laws_by_cell(mpm); /* L, V --> sigma by means of cells */
+  if (mpm->laws.refusal.cells) {                        /* a law of the caller's refuses */
+    mpsi_mpm_undo(mpm);
+    return report_refusal(mpm, function);
+  }
   if (mpm->contact.bodies > 0) mpsi_mpm_update_bodies(mpm); /* contact --> reactions, poses */
   mpsi_energy_end(mpm);
   mpm->run.time += dt;
   mpm->run.steps++;
   status = mpsi_mpm_collect_block_results(mpm, function); /* bad particles, c + |v|, stale or not */
-  if (status == MPS_OK) mpsi_mpm_let_go(mpm);             /* through open sides */
+  if (!mpm->run.broken) mpsi_mpm_let_go(mpm);             /* through open sides */
   return status;
 }

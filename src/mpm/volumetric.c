@@ -62,6 +62,7 @@ void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm) {
   static const mpsi_pass pass = {
       .clear = mpsi_mpm_clear_nodes, .scatter = add_cells, .gather = apply_laws};
   for (int64_t b = 0; b < mpm->grid.cell_count; b++)
-    if (mpm->grid.cells[b].bad >= 0) return; /* the step has failed; its places may be no places */
+    if (mpm->grid.cells[b].bad >= 0 && !mpm->grid.cells[b].lost)
+      return; /* the step has failed; its places may be no places */
   mpsi_mpm_run_pass(mpm, &pass);
 }

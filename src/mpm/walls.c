@@ -308,7 +308,7 @@ static void check_place(mps_mpm *mpm, int64_t k) {
     if (mpsi_mpm_passes(mpm, c, X))
       cells->gone = true;
     else if (cells->bad < 0)
-      cells->bad = k;
+      cells->bad = k, cells->lost = true;
   }
 }
 
