@@ -229,7 +229,7 @@ template <class V = double> array<V> view(const particles &set, const char *name
 }
 
 /** A field of numbers for writing, until commit(), which throws where a value is out of range: mend
- *  it and commit again. */
+ *  it and commit again. Left without it, the values are those from before. */
 class edit : public array<double> {
 public:
   edit(const particles &set, const char *name) : context_(set.error_context()) {
@@ -238,8 +238,8 @@ public:
   }
   edit(const edit &) = delete;
   edit &operator=(const edit &) = delete;
-  ~edit() { /* left by an exception: the values as they are, checked as ever */
-    if (open_ && mps_particles_commit(set_, &view_) != MPS_OK) mps_context_clear_error(context_);
+  ~edit() {
+    if (open_ && mps_particles_abandon(set_, &view_) != MPS_OK) mps_context_clear_error(context_);
   }
   double &operator()(int64_t i, int64_t c = 0) const noexcept { return *at(i, c); }
   void commit() {

@@ -109,17 +109,20 @@ MPS_API MPS_NODISCARD mps_status mps_particles_add_field(mps_particles *particle
  * the set has none of that name (the message lists the names it has). */
 MPS_API MPS_NODISCARD mps_status mps_particles_view(mps_particles *particles, const char *name,
                                                     mps_view *out);
-/** Borrows a field for writing, until mps_particles_commit: meanwhile solvers refuse their steps
- *  (MPS_ERROR_STATE), and particles neither come nor go. Several fields may be open at once, each
- *  once. MPS_ERROR_FIELD: no such field, or one that only the library writes. */
+/** Borrows a field for writing, until mps_particles_commit or _abandon: meanwhile solvers refuse
+ *  their steps (MPS_ERROR_STATE), and particles neither come nor go. Several fields may be open at
+ *  once, each once. The set keeps memory for the former values. MPS_ERROR_FIELD: no such field, or one that only the library writes. */
 MPS_API MPS_NODISCARD mps_status mps_particles_edit(mps_particles *particles, const char *name,
                                                     mps_view *out);
 /** Ends the editing of a field. Its values must be finite and in the field's range
  * (docs/fields.md), and the solver that holds the set may ask for more: positions inside its
- * domain. It reads them before its next step. On MPS_ERROR_ARGUMENT, which names the particle, the
+ * domain. It reads them before its next step, and finds neighbours and blocks of particles anew only
+ * where that is `position`. On MPS_ERROR_ARGUMENT, which names the particle, the
  * field stays open with what was written: mend it and commit again. Then the view is for reading.
  */
 MPS_API MPS_NODISCARD mps_status mps_particles_commit(mps_particles *particles, mps_view *view);
+/** Ends it with the values from before mps_particles_edit: no solver takes notice. */
+MPS_API MPS_NODISCARD mps_status mps_particles_abandon(mps_particles *particles, mps_view *view);
 /** Sets component `component` of a float64 field to `value` (in the field's range) for every
  * particle there is, adding the field if the table knows it and the set lacks it; edit and commit
  * in one. */

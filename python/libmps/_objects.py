@@ -199,8 +199,9 @@ def _array(owner, view):
 
 
 class Edit:
-    """A field open for writing: `array`, or the value of a `with` block, whose end commits. Where
-    a value is out of range commit() raises and the field stays open: mend it, commit again."""
+    """A field open for writing: `array`, or the value of a `with` block, whose end commits; left by
+    an exception it abandons, and the values are those from before. Where a value is out of range
+    commit() raises and the field stays open: mend it and commit again, or abandon()."""
 
     def __init__(self, owner, name):
         self._owner, self._view = owner, ffi.new("mps_view *")
@@ -211,11 +212,22 @@ class Edit:
         self._owner._invoke("particles_commit", (self._view,), {})
         self.array.flags.writeable = False
 
+    def abandon(self):
+        self._owner._invoke("particles_abandon", (self._view,), {})
+        self.array.flags.writeable = False
+
     def __enter__(self):
         return self.array
 
-    def __exit__(self, *_):
-        self.commit()
+    def __exit__(self, kind, *_):
+        if kind is not None:
+            self.abandon()
+            return
+        try:
+            self.commit()
+        except BaseException:
+            self.abandon()
+            raise
 
 
 class Particles(Object):

@@ -6,6 +6,7 @@
  *   writes through the view
  *   mps_particles_commit ---->  finite? in range? ------------->   commit(field): may refuse, else
  *                               field closed                       reads it before the next step
+ *   mps_particles_abandon --->  former values, field closed
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "particles_private.h"
 
@@ -116,12 +117,6 @@ static mps_status check_field(const mps_particles *p, const char *function,
   return MPS_OK;
 }
 
-bool mpsi_particles_compares(const mps_particles *p, const char *field) {
-  for (const mpsi_holder *h = p->holders; h; h = h->next)
-    if (h->compares && h->compares(h->self, field)) return true;
-  return false;
-}
-
 mps_status mpsi_particles_tell(mps_particles *p, const char *function, const char *field,
                                const double *former) {
   mps_status status = MPS_OK;
@@ -134,14 +129,25 @@ mps_status mpsi_particles_tell(mps_particles *p, const char *function, const cha
 
 /* ---- editing --------------------------------------------------------------------------------- */
 
-/* Keeps what a field is before the caller writes it. */
+/* Copies a field to what is kept of it, or back. */
+static void copy_former(const mps_particles *p, mpsi_field *field, bool back) {
+  for (int32_t c = 0; c < field->components; c++) {
+    char *column = mpsi_field_column(field, c), *kept = (char *)(field->former + c * p->count);
+    memcpy(back ? column : kept, back ? kept : column, (size_t)p->count * 8);
+  }
+}
+
+/* Keeps what a field is before the caller writes it; the memory stays for the next time. */
 static mps_status keep_former(mps_particles *p, const char *function, mpsi_field *field) {
-  if (!mpsi_particles_compares(p, field->name)) return MPS_OK;
-  field->former = mpsi_alloc(p->context, field->components * p->count, sizeof *field->former);
-  if (!field->former)
-    return mpsi_fail_memory(p->context, function, (size_t)(field->components * p->count) * 8);
-  for (int32_t c = 0; c < field->components; c++)
-    memcpy(field->former + c * p->count, mpsi_field_column(field, c), (size_t)p->count * 8);
+  const int64_t items = field->components * p->count;
+  if (items > field->former_capacity || !field->former) {
+    double *former = mpsi_alloc(p->context, items, sizeof *former);
+    if (!former) return mpsi_fail_memory(p->context, function, (size_t)items * 8);
+    mpsi_free(p->context, field->former);
+    field->former = former;
+    field->former_capacity = items;
+  }
+  copy_former(p, field, false);
   return MPS_OK;
 }
 
@@ -172,26 +178,41 @@ mps_status mps_particles_edit(mps_particles *particles, const char *name, mps_vi
   return MPS_OK;
 }
 
+/* The open field that the view is of; NULL with an error recorded. */
+static mpsi_field *find_open(const mps_particles *p, const char *function, const mps_view *view) {
+  if (!view) {
+    (void)mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT, "view is NULL");
+    return NULL;
+  }
+  for (int32_t f = 0; f < p->field_count; f++)
+    if (p->fields[f]->open && p->fields[f]->data == view->data) return p->fields[f];
+  (void)mpsi_fail(p->context, function, MPS_ERROR_STATE,
+                  "the view is not of a field that is being edited: mps_particles_edit gives it");
+  return NULL;
+}
+
+static void close_field(mps_particles *p, mpsi_field *field, mps_view *view) {
+  field->open = false;
+  p->open_edits--;
+  view->flags |= MPS_VIEW_READONLY;
+}
+
 mps_status mps_particles_commit(mps_particles *particles, mps_view *view) {
   if (!particles) return MPS_ERROR_ARGUMENT;
-  mps_context *context = particles->context;
-  if (!view) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "view is NULL");
-  mpsi_field *field = NULL;
-  for (int32_t f = 0; f < particles->field_count && !field; f++)
-    if (particles->fields[f]->open && particles->fields[f]->data == view->data)
-      field = particles->fields[f];
-  if (!field)
-    return mpsi_fail(
-        context, __func__, MPS_ERROR_STATE,
-        "the view is not of a field that is being edited: mps_particles_edit gives it");
+  mpsi_field *field = find_open(particles, __func__, view);
+  if (!field) return mps_context_error(particles->context)->status;
   mps_status status = check_field(particles, __func__, field);
   if (status == MPS_OK)
     status = mpsi_particles_tell(particles, __func__, field->name, field->former);
-  if (status != MPS_OK) return status;
-  mpsi_free(context, field->former);
-  field->former = NULL;
-  field->open = false;
-  particles->open_edits--;
-  view->flags |= MPS_VIEW_READONLY;
+  if (status == MPS_OK) close_field(particles, field, view);
+  return status;
+}
+
+mps_status mps_particles_abandon(mps_particles *particles, mps_view *view) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  mpsi_field *field = find_open(particles, __func__, view);
+  if (!field) return mps_context_error(particles->context)->status;
+  copy_former(particles, field, true);
+  close_field(particles, field, view);
   return MPS_OK;
 }

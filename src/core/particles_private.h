@@ -16,7 +16,8 @@ typedef struct mpsi_field {
   mps_dtype dtype;
   uint32_t flags;
   bool open;      /* the caller is editing it */
-  double *former; /* what it was before that, if a holder compares; [component][particle] */
+  double *former; /* what it was before that: 8 bytes an item, [component][particle] */
+  int64_t former_capacity;
   int32_t components;
   int64_t first_column; /* number of columns of the fields before it: staggers the addresses */
   void *block;          /* as allocated */
@@ -76,8 +77,6 @@ void mpsi_field_move(mps_context *context, mpsi_field *field, void *block, int64
 /* MPS_ERROR_ARGUMENT unless `value` is one that the caller may give the field. */
 mps_status mpsi_field_check_value(const mps_particles *particles, const char *function,
                                   const mpsi_field *field, double value);
-/* Whether a holder wants to know what the field was before the caller wrote it. */
-bool mpsi_particles_compares(const mps_particles *particles, const char *field);
 
 /* ---- remove.c -------------------------------------------------------------------------------- */
 

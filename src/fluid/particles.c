@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid_private.h"
 
+#include <string.h>
+
 #define LEAST_GAP 0.3 /* l0: distance of a new particle from walls */
 
 /* The arrays over particles, from three blocks, in place of smaller ones; what they held is found
@@ -74,10 +76,10 @@ static mps_status check_places(mps_fluid *f, const char *function, int64_t first
 mps_status mpsi_fluid_commit(void *self, const char *function, const char *field,
                              const double *former) {
   mps_fluid *f = self;
-  (void)field, (void)former;
+  (void)former;
   const mps_status status = mpsi_fluid_ready(f, function);
-  if (status != MPS_OK) return status;
-  f->stale = true;
+  if (status != MPS_OK || strcmp(field, "external_force") == 0) return status; /* steps read it */
+  if (strcmp(field, "velocity") != 0) f->stale = true;
   mpsi_fluid_find_speed(f);
   return MPS_OK;
 }

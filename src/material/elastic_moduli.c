@@ -4,6 +4,8 @@
 #include "constants.h"
 #include "core/particles_internal.h"
 
+#include <string.h>
+
 static mps_moduli moduli_of(double shear, double bulk, double density) {
   const double wave = bulk + 4.0 / 3.0 * shear;
   return (mps_moduli){.young = 9.0 * bulk * shear / (3.0 * bulk + shear),
@@ -112,18 +114,24 @@ mps_status mps_particles_set_material(mps_particles *particles, const mps_materi
   }
   for (int k = 0; k < 5 && status == MPS_OK; k++) /* may they be written now? */
     status = mpsi_particles_tell(particles, set_material, names[k], NULL);
+  const int64_t all = mps_particles_count(particles);
+  double *former = mpsi_alloc(context, all, sizeof *former); /* densities: masses follow */
+  if (status == MPS_OK && !former)
+    status = mpsi_fail_memory(context, set_material, (size_t)all * sizeof *former);
   if (status != MPS_OK) {
+    mpsi_free(context, former);
     mpsi_particles_drop_fields(particles, before);
     return status;
   }
+  memcpy(former, mpsi_particles_column(particles, "density", 0), (size_t)all * sizeof *former);
   const double value[] = {density, m.young, m.poisson, m.shear_velocity, m.pressure_velocity};
   for (int k = 0; k < 5; k++) {
     double *column = mpsi_particles_column(particles, names[k], 0);
-    const int64_t most = ids ? count : mps_particles_count(particles);
-    for (int64_t i = 0; i < most; i++)
+    for (int64_t i = 0; i < (ids ? count : all); i++)
       column[ids ? mps_particles_index(particles, ids[i]) : i] = value[k];
   }
   for (int k = 0; k < 5 && status == MPS_OK; k++)
-    status = mpsi_particles_tell(particles, set_material, names[k], NULL);
+    status = mpsi_particles_tell(particles, set_material, names[k], k == 0 ? former : NULL);
+  mpsi_free(context, former);
   return status;
 }

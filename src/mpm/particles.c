@@ -184,14 +184,25 @@ bool mpsi_mpm_compares(const void *self, const char *field) {
   return strcmp(field, "density") == 0 || strcmp(field, "volume") == 0;
 }
 
-/* What the caller has written must be something to start from; it is read before the next step. */
+/* Fields that each step reads anew, so that nothing follows from an edit. */
+static bool read_by_steps(const char *field) {
+  return strcmp(field, "external_force") == 0 || strcmp(field, "body_acceleration") == 0;
+}
+
+/* The set has checked that the values are finite and in range. Places must be in the domain, and
+ * the particles are sorted anew; the limit follows from all else. */
 mps_status mpsi_mpm_note_edit(void *self, const char *function, const char *field,
                               const double *former) {
   mps_mpm *mpm = self;
-  mps_status status = mpsi_mpm_check_start(mpm, function);
+  const bool moved = strcmp(field, "position") == 0;
+  mps_status status = MPS_OK;
+  if (read_by_steps(field)) return MPS_OK;
+  if (moved) status = check_places(mpm, function, 0, mpm->p.count);
   if (status == MPS_OK && former) status = renew_masses(mpm, function, field, former);
-  if (status == MPS_OK) mpm->run.edited = mpm->run.stale = true;
-  return status;
+  if (status != MPS_OK) return status;
+  mpm->run.edited = true;
+  mpm->run.stale = mpm->run.stale || moved;
+  return MPS_OK;
 }
 
 mps_status mpsi_mpm_check_masses(const mps_mpm *mpm, const char *function) {

@@ -32,7 +32,7 @@ mps_status mpsi_mpm_tidy(mps_mpm *mpm, const char *function) {
   if (status == MPS_OK) status = mpsi_mpm_check_lost(mpm, function);
   if (status != MPS_OK || !mpm->run.edited) return status;
   status = mpsi_mpm_check_masses(mpm, function);
-  if (status == MPS_OK) status = mpsi_mpm_sort(mpm, function);
+  if (status == MPS_OK && mpm->run.stale) status = mpsi_mpm_sort(mpm, function);
   if (status == MPS_OK) status = mpsi_mpm_list_holds(mpm, function);
   if (status != MPS_OK) return status;
   mpsi_mpm_for_cells(mpm, mpm->kernels->speed);

@@ -252,6 +252,21 @@ class Arrays(unittest.TestCase):
         edit.commit()
         solver.step(1)
 
+    def test_an_edit_left_by_an_exception_was_none(self):
+        context = mps.Context()
+        sand = block(context)
+        solver = falling(context, sand)
+        density = np.array(sand["density"])
+        with self.assertRaises(KeyError):
+            with sand.edit("density") as d:
+                d[:] = 1.0
+                raise KeyError
+        with self.assertRaisesRegex(mps.Error, "density"):
+            with sand.edit("density") as d:
+                d[3] = -1.0
+        np.testing.assert_array_equal(sand["density"], density)
+        solver.step(1)
+
     def test_an_array_keeps_its_set_alive(self):
         context = mps.Context()
         x = block(context)["position"]

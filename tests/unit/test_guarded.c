@@ -191,6 +191,111 @@ static void the_limit_follows_the_callers_velocity(void **state) {
   mps_particles_destroy(&set);
 }
 
+/* Two metres of soil far from the walls, in flight: particles enter other cells, but stay near
+ * enough to the blocks that they were sorted to. */
+static mps_particles *free_set(void) {
+  mps_particles_def def = mps_particles_defaults();
+  mps_particles *set = NULL;
+  const double lo[2] = {2.1, 3.1}, hi[2] = {4.1, 5.1};
+  def.spacing = 0.25;
+  mps_assert_ok(context, mps_particles_create(context, &def, &set));
+  mps_assert_ok(context, mps_particles_fill_box(set, lo, hi, NULL));
+  mps_assert_ok(context, mps_particles_set(set, "density", 0, 2000.0));
+  mps_assert_ok(context, mps_particles_set(set, "velocity", 0, 2.0));
+  mps_assert_ok(context, mps_particles_add_field(set, "external_force", 0));
+  return set;
+}
+
+/* What each step reads anew moves nobody in memory, and no other field but positions does. */
+static void only_positions_make_a_solver_sort(void **state) {
+  (void)state;
+  static const char *const fields[] = {"external_force", "velocity", "stress", "density", "position"};
+  mps_particles *set = free_set();
+  mps_mpm *mpm = make_mpm(set);
+  const uint64_t first = mps_particles_epoch(set);
+  mps_assert_ok(context, mps_mpm_run(mpm, 0.3, 1, NULL, NULL)); /* 0.6 m */
+  assert_int_equal(mps_particles_epoch(set), first);
+  for (int f = 0; f < 5; f++) {
+    mps_view view;
+    mps_assert_ok(context, mps_particles_edit(set, fields[f], &view));
+    mps_assert_ok(context, mps_particles_commit(set, &view));
+    mps_assert_ok(context, mps_mpm_step(mpm, 1));
+    assert_int_equal(mps_particles_epoch(set) != first, f == 4);
+  }
+  mps_mpm_destroy(&mpm);
+  mps_particles_destroy(&set);
+}
+
+/* A force that is edited is that of the next step: a body in flight has its acceleration. */
+static void an_edited_force_acts_at_once(void **state) {
+  (void)state;
+  mps_particles *set = free_set();
+  mps_view f, v;
+  mps_mpm *mpm = make_mpm(set);
+  double speed = 2.0;
+  for (int step = 1; step <= 3; step++) {
+    mps_view m;
+    mps_assert_ok(context, mps_particles_view(set, "mass", &m));
+    mps_assert_ok(context, mps_particles_edit(set, "external_force", &f));
+    for (int64_t k = 0; k < f.shape[0]; k++)
+      *mps_view_f64(&f, k, 0) = 3.0 * step * *mps_view_f64(&m, k, 0);
+    mps_assert_ok(context, mps_particles_commit(set, &f));
+    const double before = mps_mpm_time(mpm);
+    mps_assert_ok(context, mps_mpm_step(mpm, 1));
+    speed += 3.0 * step * (mps_mpm_time(mpm) - before);
+    mps_assert_ok(context, mps_particles_view(set, "velocity", &v));
+    for (int64_t k = 0; k < v.shape[0]; k++) mps_assert_near(*mps_view_f64(&v, k, 0), speed, 1e-12);
+  }
+  mps_mpm_destroy(&mpm);
+  mps_particles_destroy(&set);
+}
+
+/* The values are those from before, also where the solver had refused them, and nobody re-reads. */
+static void an_abandoned_edit_was_none(void **state) {
+  (void)state;
+  mps_particles *set = make_set(context, 2.0);
+  mps_mpm *mpm = make_mpm(set);
+  mps_view x, other;
+  mps_assert_ok(context, mps_mpm_step(mpm, 1));
+  const double limit = mps_mpm_limit(mpm);
+  for (int f = 0; f < 2; f++) {
+    const char *name = f == 0 ? "position" : "velocity";
+    mps_assert_ok(context, mps_particles_edit(set, name, &x));
+    const double kept[2] = {*mps_view_f64(&x, 3, 0), *mps_view_f64(&x, 3, 1)};
+    for (int c = 0; c < 2; c++) *mps_view_f64(&x, 3, c) = f == 0 ? 1e9 : 1e3;
+    if (f == 0)
+      mps_assert_fails(context, mps_particles_commit(set, &x), MPS_ERROR_ARGUMENT, "outside");
+    mps_assert_ok(context, mps_particles_abandon(set, &x));
+    assert_true(x.flags & MPS_VIEW_READONLY);
+    for (int c = 0; c < 2; c++) assert_true(*mps_view_f64(&x, 3, c) == kept[c]);
+    mps_assert_fails(context, mps_particles_abandon(set, &x), MPS_ERROR_STATE, "being edited");
+    mps_assert_ok(context, mps_mpm_step(mpm, 0));
+    assert_true(mps_mpm_limit(mpm) == limit);
+  }
+  mps_assert_fails(context, mps_particles_abandon(set, NULL), MPS_ERROR_ARGUMENT, "view is NULL");
+  assert_int_equal(mps_particles_abandon(NULL, &x), MPS_ERROR_ARGUMENT);
+  mps_assert_ok(context, mps_particles_view(set, "position", &other));
+  mps_mpm_destroy(&mpm);
+  mps_particles_destroy(&set);
+}
+
+/* One material for all solvers, given to a set that a solver holds: its masses follow. */
+static void a_sets_material_renews_its_masses(void **state) {
+  (void)state;
+  mps_particles *set = make_set(context, 2.0);
+  mps_mpm *mpm = make_mpm(set);
+  mps_material *rock = NULL;
+  mps_totals before, after;
+  mps_assert_ok(context, mps_material_linear_elastic(context, 1e7, 0.2, &rock));
+  mps_assert_ok(context, mps_mpm_get_totals(mpm, &before));
+  mps_assert_ok(context, mps_particles_set_material(set, rock, 3000.0, 0, NULL));
+  mps_assert_ok(context, mps_mpm_get_totals(mpm, &after));
+  mps_assert_near(after.mass, 1.5 * before.mass, 1e-9 * before.mass);
+  mps_material_destroy(&rock);
+  mps_mpm_destroy(&mpm);
+  mps_particles_destroy(&set);
+}
+
 static void one_solver_moves_a_set(void **state) {
   (void)state;
   mps_particles *set = make_set(context, 2.0);
@@ -441,6 +546,10 @@ int main(void) {
       cmocka_unit_test(a_solver_never_meets_a_position_outside_its_domain),
       cmocka_unit_test(a_move_between_steps_is_a_translation),
       cmocka_unit_test(the_limit_follows_the_callers_velocity),
+      cmocka_unit_test(only_positions_make_a_solver_sort),
+      cmocka_unit_test(an_edited_force_acts_at_once),
+      cmocka_unit_test(an_abandoned_edit_was_none),
+      cmocka_unit_test(a_sets_material_renews_its_masses),
       cmocka_unit_test(one_solver_moves_a_set),
       cmocka_unit_test(particles_are_removed_and_keep_their_ids),
       cmocka_unit_test(holders_decide_who_comes_and_goes),
