@@ -288,9 +288,9 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_remove_load(mps_mpm *mpm, int32_t numbe
 /** Takes `count` (>= 0) steps, asking the cancel hook after each. A particle that passes a side of
  *  the domain by less than 0.1 cells is put back on it. A step that finds a particle too deep in a
  *  body (MPS_ERROR_DIVERGED), no memory, or that a user's law refuses has not happened: all is as
- *  before it. A step in which a particle leaves the domain (MPS_ERROR_DIVERGED) is whole and counted;
- *  no other is made until the particle is put back (mps_particles_edit of `position`) or removed, or
- *  the solver goes back. One that gives a velocity or a volume that is not finite
+ *  before it, but perhaps the order of the particles. A step in which a particle leaves the domain
+ *  (MPS_ERROR_DIVERGED) is whole and counted; no other is made until the particle is put back
+ *  (mps_particles_edit of `position`) or removed, or the solver goes back. One that gives a velocity or a volume that is not finite
  *  (MPS_ERROR_DIVERGED) leaves it to be looked at: only mps_mpm_rollback or mps_mpm_restore goes on
  *  from there. The record names step and particle. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_step(mps_mpm *mpm, int64_t count);

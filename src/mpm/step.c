@@ -101,6 +101,11 @@ static mps_status prepare(mps_mpm *mpm, const char *function) {
   return status;
 }
 
+static void keep_and_gather(mps_mpm *mpm, int64_t b, int32_t worker) {
+  mpsi_mpm_keep_block(mpm, b);
+  mpm->kernels->g2p[mpm->def.geometry][mpm->def.spline - 2](mpm, b, worker);
+}
+
 /* From the particles to the nodes and back (pass.h), Nakamura 6 and Table 2:
  *   clear    the nodes of a block
  *   scatter  x, v, L, sigma, V, m --> mass, momentum, forces and contact at the nodes: p2g.c
@@ -111,11 +116,6 @@ static mps_status prepare(mps_mpm *mpm, const char *function) {
  *   finish   friction with bodies (31)-(34); walls and prescribed nodes
  *   gather   velocities of the nodes --> v, L, x (41)-(44); then the laws, L --> sigma, V and their
  *            histories (45)-(48), and c + |v| for the next step (49), (50): g2p.c, law.c */
-static void keep_and_gather(mps_mpm *mpm, int64_t b, int32_t worker) {
-  mpsi_mpm_keep_block(mpm, b);
-  mpm->kernels->g2p[mpm->def.geometry][mpm->def.spline - 2](mpm, b, worker);
-}
-
 static mps_status move(mps_mpm *mpm, const char *function, double dt) {
   const int32_t geometry = mpm->def.geometry, spline = mpm->def.spline - 2;
   mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes,

@@ -1,5 +1,6 @@
 /* undo.c - see undo.h. What a step has written when a law refuses: the particles' columns, where
- * boundaries are and what they have counted, the forces at rest of absorbing sides. Time, bodies
+ * boundaries are and what they have counted, the forces at rest of absorbing sides, the impulses of
+ * contacts from which the next ones begin. Time, bodies
  * and the account of energy come after the laws. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_private.h"
 
@@ -31,6 +32,26 @@ static double *kept(const mpsi_undo *u, int32_t c, int64_t count) {
   return (double *)u->room.item + c * count;
 }
 
+/* A step exchanges the memory of the impulses of contacts with that of the step before. */
+static void keep_impulses(mps_mpm *mpm) {
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  mpm->undo.kept_impulses = all->kept_room.item;
+  mpm->undo.kept_count = all->kept_count;
+  mpm->undo.kept_dt = all->kept_dt;
+}
+
+static void put_impulses_back(mps_mpm *mpm) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  if (all->kept_room.item != mpm->undo.kept_impulses) {
+    const mpsi_room next = all->kept_room;
+    all->kept_room = all->next_room;
+    all->next_room = next;
+  }
+  all->kept = all->kept_room.item;
+  all->kept_count = mpm->undo.kept_count;
+  all->kept_dt = mpm->undo.kept_dt;
+}
+
 mps_status mpsi_mpm_prepare_undo(mps_mpm *mpm, const char *function) {
   mpsi_undo *u = &mpm->undo;
   const mpsi_boundaries *b = &mpm->boundaries;
@@ -48,6 +69,7 @@ mps_status mpsi_mpm_prepare_undo(mps_mpm *mpm, const char *function) {
     return mpsi_fail_memory(mpm->context, function,
                             (size_t)(u->columns * mpm->p.count) * sizeof(double));
   memcpy(u->hold, b->hold, sizeof u->hold);
+  keep_impulses(mpm);
   if (b->dash_count > 0)
     memcpy(u->dash_room.item, b->dash, (size_t)b->dash_count * sizeof *b->dash);
   return MPS_OK;
@@ -67,6 +89,7 @@ void mpsi_mpm_undo(mps_mpm *mpm) {
   for (int32_t c = 0; c < u->columns; c++)
     memcpy(u->column[c], kept(u, c, mpm->p.count), (size_t)mpm->p.count * sizeof(double));
   memcpy(b->hold, u->hold, sizeof u->hold);
+  put_impulses_back(mpm);
   if (b->dash_count > 0)
     memcpy(b->dash, u->dash_room.item, (size_t)b->dash_count * sizeof *b->dash);
   for (int64_t c = 0; c < mpm->grid.cell_count; c++) { /* nobody has moved */

@@ -14,6 +14,9 @@ typedef struct mpsi_undo {
   int32_t columns;
   mpsi_room list_room, room, dash_room;
   mpsi_hold hold[MPSI_HOLDS];
+  void *kept_impulses; /* of contacts, in the step before */
+  int64_t kept_count;
+  double kept_dt;
 } mpsi_undo;
 
 /* Before a step: room, and what belongs to no particle. MPS_ERROR_MEMORY. */
