@@ -7,7 +7,8 @@
 
 #define LARGEST_STRAIN 0.2 /* elastic: beyond it the law's own answer is not a size any more */
 #define RECOVERED 0.1      /* of an overlap, in a step: .02 to .3 give the same within .2 % */
-#define FASTEST 0.02       /* of the waves, at which an overlap opens: it must not throw */
+#define LEAST_MOBILE 1e-3
+#define FASTEST 0.02 /* of the waves, at which an overlap opens: it must not throw */
 
 /* ---- geometry -------------------------------------------------------------------------------- */
 
@@ -102,22 +103,27 @@ void mpsi_impulse_warm(mpsi_impulse *c, const double *last, double share, double
   for (int a = 0; a < 3; a++) by[a] = c->push * c->normal[a] + c->rub[a];
 }
 
+/* 1/m_c along the unit vector d, > 0: that of the weakest direction counts for a thousandth at
+ * least, where walls hold the nodes. */
+static double mobility_along(const mpsi_impulse *c, const mpsi_impulse_body *b, const double *d) {
+  const double *m = c->mobility, most = fmax(m[0], fmax(m[1], m[2]));
+  const double own = m[0] * d[0] * d[0] + m[1] * d[1] * d[1] + m[2] * d[2] * d[2];
+  return fmax(own, LEAST_MOBILE * most) +
+         (b->free ? mpsi_impulse_mobility(b->body, c->at, d) : 0.0);
+}
+
 double mpsi_impulse_visit(mpsi_impulse *c, const mpsi_impulse_body *b, const double *u,
                           double *by) {
-  const mps_body *body = b->body;
   const double across = mpsi_dot3(u, c->normal), before = c->push;
-  double inverse = c->mobility;
-  if (b->free) inverse += mpsi_impulse_mobility(body, c->at, c->normal);
-  c->push = fmax(0.0, before + (c->aim - across) / inverse);
+  c->push = fmax(0.0, before + (c->aim - across) / mobility_along(c, b, c->normal));
   for (int a = 0; a < 3; a++) by[a] = (c->push - before) * c->normal[a];
   if (c->friction > 0.0) {
     double slip[3], rub[3];
     for (int a = 0; a < 3; a++) slip[a] = u[a] - across * c->normal[a];
     const double speed = sqrt(mpsi_dot3(slip, slip));
     for (int a = 0; a < 3 && speed > 0.0; a++) slip[a] /= speed;
-    inverse = c->mobility;
-    if (b->free && speed > 0.0) inverse += mpsi_impulse_mobility(body, c->at, slip);
-    for (int a = 0; a < 3; a++) rub[a] = c->rub[a] - speed / inverse * slip[a];
+    const double stop = speed > 0.0 ? speed / mobility_along(c, b, slip) : 0.0;
+    for (int a = 0; a < 3; a++) rub[a] = c->rub[a] - stop * slip[a];
     into_cone(c, rub);
     for (int a = 0; a < 3; a++) {
       by[a] += rub[a] - c->rub[a];

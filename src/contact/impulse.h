@@ -25,6 +25,14 @@ static inline bool mpsi_impulse_near(double gap, double half, double closing, do
   return gap <= 0.2 * half + dt * fmax(0.0, closing);
 }
 
+/* Where the impulse acts, from the particle (0) to its foot (1): at the foot, unless the particle
+ * has come nearer to the surface than 3/4 of its half size; from 1/4 on at itself. Where soil can
+ * flow such that the foot is clear and the particle sinks, as below a pointed tip on the axis, that
+ * keeps the particle out. */
+static inline double mpsi_impulse_lever(double distance, double half) {
+  return fmin(1.0, fmax(0.0, 2.0 * distance / half - 0.5));
+}
+
 /* w (m/s): a gap may close within dt, no more; a tenth of an overlap opens again, by at most 0.02
  * of `speed` (m/s, of waves and particles). */
 double mpsi_impulse_aim(double gap, double dt, double speed);
@@ -52,9 +60,9 @@ void mpsi_impulse_kick(mpsi_impulse_body *b, const double *x, const double *by);
 /* ---- a contact ------------------------------------------------------------------------------- */
 
 typedef struct mpsi_impulse {
-  double at[3], normal[3]; /* m, foot; n */
+  double at[3], normal[3]; /* m, where it acts; n */
   double aim;              /* m/s, w */
-  double mobility;         /* 1/kg, 1/m_c of the solver's side */
+  double mobility[3];      /* 1/kg, 1/m_c of the solver's side along x, y, z */
   double friction;         /* mu */
   double push, rub[3];     /* N s: P; T */
 } mpsi_impulse;

@@ -213,10 +213,12 @@ static void begin_touch(mps_mpm *mpm, int64_t t, int64_t k, const int64_t *id, m
   place_of(mpm, k, out->x);
   const mpsi_foot foot = mpsi_body_foot(contact->body, out->x);
   mpsi_impulse *c = &out->impulse;
-  for (int a = 0; a < mpm->dim; a++) c->at[a] = foot.at[a], c->normal[a] = foot.normal[a];
+  for (int a = 0; a < mpm->dim; a++) c->normal[a] = foot.normal[a];
   out->part = contact->body->part_of[foot.face];
-  const double gap = foot.distance - mpsi_mpm_half_size(mpm, contact, k, c->normal);
-  c->aim = mpsi_impulse_aim(gap, mpm->run.dt, mpm->run.speed);
+  const double half = mpsi_mpm_half_size(mpm, contact, k, c->normal);
+  const double lever = mpsi_impulse_lever(foot.distance, half);
+  for (int a = 0; a < mpm->dim; a++) c->at[a] = out->x[a] + lever * (foot.at[a] - out->x[a]);
+  c->aim = mpsi_impulse_aim(foot.distance - half, mpm->run.dt, mpm->run.speed);
   c->friction = contact->def.friction;
   if (-foot.distance > pair->deepest) {
     pair->touched = true;
@@ -233,7 +235,6 @@ static void fit_touch(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker
   mpsi_shape_values f;
   mpm->kernels->fit(mpm, cells, &mpm->grid.workers[worker], touch->particle, &at, &f);
   touch->nodes = 0;
-  touch->impulse.mobility = 0.0;
   for (int s = 0; s < all->stride; s++) {
     if (f.w[s] == 0.0) continue;
     double psi = f.phi[s];
@@ -245,7 +246,7 @@ static void fit_touch(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker
     if (!(m > 0.0)) continue;
     node[touch->nodes] = mpm->grid.node[g];
     weight[touch->nodes++] = psi;
-    touch->impulse.mobility += psi * psi / m;
+    for (int a = 0; a < 3; a++) touch->impulse.mobility[a] += psi * psi / m;
   }
 }
 

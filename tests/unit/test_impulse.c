@@ -72,7 +72,8 @@ static void one_visit_solves_one_contact(void **state) {
   mpsi_impulse_begin_body(&b, floor, 1e-3);
   const double m = 2.0, slides[] = {0.1, 5.0};
   for (int k = 0; k < 2; k++) {
-    mpsi_impulse c = {.normal = {0.0, 1.0, 0.0}, .mobility = 1.0 / m, .friction = 0.3};
+    mpsi_impulse c = {
+        .normal = {0.0, 1.0, 0.0}, .mobility = {1.0 / m, 1.0 / m, 1.0 / m}, .friction = 0.3};
     double u[3] = {slides[k], -1.0, 0.0}, by[3];
     mps_assert_near(mpsi_impulse_visit(&c, &b, u, by), sqrt(by[0] * by[0] + by[1] * by[1]), 1e-15);
     mps_assert_near(c.push, m * 1.0, 1e-15);
