@@ -9,6 +9,10 @@
 #include <stdio.h>
 #include <string.h>
 
+static bool is_whole(double length, double spacing) {
+  return fabs(length / spacing - nearbyint(length / spacing)) < 1e-6 * (1.0 + length / spacing);
+}
+
 /* Defaults that depend on the case. Returns -1, or an exit code. */
 static int complete(const options_program *program, tank_settings *s) {
   static const struct {
@@ -18,6 +22,7 @@ static int complete(const options_program *program, tank_settings *s) {
                          {1.0, 2.0, 0.0, 0.25, 2e-4}, {0.0, 1.0, 0.0, 1.0, NAN},
                          {3.0, 0.3, 0.01, 9.0, NAN}};
   const int kind = s->kind;
+  const bool given_amplitude = !isnan(s->amplitude);
   if (kind == TANK_PLATE) s->length = s->plate_length;
   if (isnan(s->length)) s->length = usual[kind].length;
   if (isnan(s->depth)) s->depth = usual[kind].depth;
@@ -26,7 +31,6 @@ static int complete(const options_program *program, tank_settings *s) {
                  : kind == TANK_PLATE     ? 0.05
                  : kind == TANK_RESONANCE ? 0.015
                                           : 0.02;
-  if (isnan(s->amplitude)) s->amplitude = usual[kind].amplitude;
   if (isnan(s->duration)) s->duration = usual[kind].duration;
   if (isnan(s->dt)) s->dt = kind == TANK_DROP ? 0.05 * s->spacing / s->depth : usual[kind].dt;
   if (isnan(s->sample))
@@ -38,6 +42,9 @@ static int complete(const options_program *program, tank_settings *s) {
   if (isnan(s->mass)) s->mass = kind == TANK_RESONANCE ? 100.0 : 10.0;
   if (isnan(s->stiffness))
     s->stiffness = kind == TANK_RESONANCE ? tank_resonant_stiffness(s, s->ratio) : 211800.0;
+  if (isnan(s->amplitude)) s->amplitude = usual[kind].amplitude;
+  if (kind == TANK_SPRING && !given_amplitude) /* else the water would have to pull */
+    s->amplitude = fmin(s->amplitude, 0.4 * WAVES_G / pow(tank_spring_omega(s), 2.0));
   if (isnan(s->window[0])) s->window[0] = fmax(s->duration - last, 0.0);
   if (s->scheme == 1 && (tank_is_coupled(s) || s->viscosity > 0.0))
     return options_refuse(program, "--scheme classical has no coupling and no --viscosity");
@@ -47,8 +54,12 @@ static int complete(const options_program *program, tank_settings *s) {
     return options_refuse(program, "--length must be at least 5 spacings");
   if (s->kind != TANK_DROP && s->length / s->spacing * s->depth / s->spacing > 2e6)
     return options_refuse(program, "--spacing gives more than 2 million particles");
-  if (kind == TANK_PLATE && fabs(s->length / s->spacing - nearbyint(s->length / s->spacing)) > 1e-6)
-    return options_refuse(program, "--plate-length must be a whole number of spacings");
+  if (kind != TANK_DROP && !(is_whole(s->length, s->spacing) && is_whole(s->depth, s->spacing)))
+    return options_refuse(program, kind == TANK_PLATE
+                                       ? "--plate-length and --depth must be whole numbers of "
+                                         "--spacing: else the water does not fill the tank"
+                                       : "--length and --depth must be whole numbers of --spacing: "
+                                         "else the water does not fill the tank");
   if (s->kind != TANK_DROP && 4.0 * fabs(s->amplitude) > s->length)
     return options_refuse(program, "--amplitude must be at most a quarter of the length");
   if (s->sample > s->duration || s->duration / s->sample > 1e6)
@@ -148,7 +159,7 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("amplitude", "m", OPTION_FROM_TO(0.0, 1e3), &s->amplitude,
                     "of the sloshing at the walls (default .01), of the piston (.02, of resonance "
                     ".01), of the "
-                    "wall on the spring (.001)"),
+                    "wall on the spring (.001, less where its acceleration would exceed .4 g)"),
       OPTION_NUMBER("period", "s", OPTION_DURATION, &s->period, "of the piston"),
       OPTION_NUMBER("ramp", "s", OPTION_FROM_TO(0.0, 1e6), &s->ramp,
                     "in which the piston's amplitude rises"),

@@ -16,28 +16,26 @@ static bool in_window(const tank_model *m, int64_t k) {
 }
 
 /* What a harmonic is taken of, besides the gauges. */
-enum { FORCE = -1, WALL = -2, LINEAR = -3 };
+enum { FORCE = -1, WALL = -2 };
 
-static double value_of(const tank_model *m, int64_t k, int what) {
-  const tank_sample *p = &m->sample[k];
-  if (what >= 0) return p->level[what];
-  return what == FORCE ? p->right : what == WALL ? p->deflection : m->linear[k];
+static double value_of(const tank_sample *p, int what) {
+  return what >= 0 ? p->level[what] : what == FORCE ? p->right : p->deflection;
 }
 
 /* Amplitude of the first harmonic of the period in the window, by the trapezium rule over whole
  * periods; NaN where the window has less than one. `phase` (rad, may be NULL): before sin(2 pi
  * t/T).
  */
-static double harmonic(const tank_model *m, int what, double *phase) {
+static double harmonic(const tank_model *m, const tank_sample *sample, int what, double *phase) {
   const double T = m->s.period, whole = floor((m->s.window[1] - m->s.window[0]) / T + 1e-6) * T;
   double c = 0.0, s = 0.0;
   if (phase) *phase = NAN;
   if (!(whole >= T)) return NAN;
   for (int64_t k = 1; k < m->samples; k++) {
-    const double early = m->sample[k - 1].t, late = m->sample[k].t;
+    const double early = sample[k - 1].t, late = sample[k].t;
     if (early < m->s.window[1] - whole - 1e-9 || late > m->s.window[1] + 1e-9) continue;
     for (int e = 0; e < 2; e++) {
-      const double half = 0.5 * (late - early) * value_of(m, k - 1 + e, what);
+      const double half = 0.5 * (late - early) * value_of(&sample[k - 1 + e], what);
       const double w = 2.0 * WAVES_PI * (e ? late : early) / T;
       c += half * cos(w), s += half * sin(w);
     }
@@ -168,6 +166,19 @@ static bool write_gauges(app *a, const tank_model *m) {
   return output_close(&f);
 }
 
+static bool write_linear(app *a, const tank_model *m) {
+  output f;
+  if (!output_open(&f, a, m->s.out, "linear.csv")) return false;
+  csv_header(&f, "t_s,force_right_N,level_at_wall_m");
+  const double still = 0.5 * WAVES_DENSITY * WAVES_G * m->s.depth * m->s.depth;
+  for (int64_t k = 0; k < m->samples; k++) {
+    const tank_sample *p = &m->linear[k];
+    const double row[] = {p->t, still + p->right, p->level[TANK_GAUGES]};
+    csv_row(&f, 3, row);
+  }
+  return output_close(&f);
+}
+
 static bool write_drop(app *a, const tank_model *m) {
   output f;
   if (!output_open(&f, a, m->s.out, "drop.csv")) return false;
@@ -187,7 +198,8 @@ static bool write_structure(app *a, const tank_model *m) {
   if (!output_open(&f, a, m->s.out, "structure.csv")) return false;
   csv_header(&f, "t_s,deflection_m,deflection_linear_m?");
   for (int64_t k = 0; k < m->samples; k++) {
-    const double row[] = {m->sample[k].t, m->sample[k].deflection, m->linear ? m->linear[k] : NAN};
+    const double row[] = {m->sample[k].t, m->sample[k].deflection,
+                          m->linear ? m->linear[k].deflection : NAN};
     csv_row(&f, 3, row);
   }
   return output_close(&f);
@@ -250,11 +262,15 @@ static bool draw_force(app *a, const tank_model *m) {
       "set multiplot layout 2,1\nset xrange [0:%.6g]\nset xlabel 't (s)'\nset ylabel 'force on the "
       "wall (N)'\n"
       "set lmargin 10\nset key outside top center horizontal\n"
-      "plot 'force.csv' every ::1 using 1:3 with lines linewidth 1.5 linecolor rgb '#1f4e8c' "
+      "plot %s'force.csv' every ::1 using 1:3 with lines linewidth 1.5 linecolor rgb '#1f4e8c' "
       "title 'right wall', %.9g with lines dashtype '--' linecolor rgb '#888888' title 'water "
       "at rest'\n"
       "set ylabel 'level (m)'\nplot ",
-      s->duration, still);
+      s->duration,
+      m->linear ? "'linear.csv' every ::1 using 1:2 with lines linewidth 3 linecolor rgb '#f0b27a' "
+                  "title 'linear potential flow', "
+                : "",
+      still);
   for (int k = 0; k <= gauges_of(m); k++) {
     char where[48] = "at the right wall";
     if (k < gauges_of(m)) snprintf(where, sizeof where, "x = %g m", s->gauge[k]);
@@ -296,20 +312,26 @@ static void summarise_waves(output *f, const tank_model *m, const figures *g) {
   const tank_settings *s = &m->s;
   const double k = waves_number(s->period, s->depth);
   const double havelock = 2.0 * s->amplitude * waves_havelock(k, s->depth);
-  const double H = harmonic(m, TANK_GAUGES, NULL);
-  const double gauge = gauges_of(m) ? 2.0 * harmonic(m, 0, NULL) : NAN;
+  const double H = harmonic(m, m->sample, TANK_GAUGES, NULL);
+  const double gauge = gauges_of(m) ? 2.0 * harmonic(m, m->sample, 0, NULL) : NAN;
   json_number(f, "wave_number", k);
   json_number(f, "havelock_height", havelock);
   json_optional(f, "gauge_height", gauge);
+  json_optional(f, "gauge_height_linear",
+                gauges_of(m) ? 2.0 * harmonic(m, m->linear, 0, NULL) : NAN);
   json_optional(f, "wall_harmonic", H);
-  json_optional(f, "force_harmonic", harmonic(m, FORCE, NULL));
+  json_optional(f, "wall_harmonic_linear", harmonic(m, m->linear, TANK_GAUGES, NULL));
+  json_optional(f, "force_harmonic", harmonic(m, m->sample, FORCE, NULL));
+  json_optional(f, "force_harmonic_linear", harmonic(m, m->linear, FORCE, NULL));
   json_optional(f, "crest_force", g->most);
   json_optional(f, "trough_force", g->least);
   json_optional(f, "sainflou_crest", isnan(H) ? NAN : waves_sainflou(k, s->depth, H, 1));
   json_optional(f, "sainflou_trough", isnan(H) ? NAN : waves_sainflou(k, s->depth, H, -1));
   if (!isnan(gauge))
-    printf("wave height at the gauge %.4f m, Havelock for an endless flume %.4f m\n", gauge,
-           havelock);
+    printf(
+        "wave height at the gauge %.4f m, linear potential flow in this tank %.4f m, Havelock for "
+        "an endless flume %.4f m\n",
+        gauge, 2.0 * harmonic(m, m->linear, 0, NULL), havelock);
   if (!isnan(H) && !isnan(g->most))
     printf("force on the wall: crest %.1f N, Sainflou %.1f N; trough %.1f N, Sainflou %.1f N\n",
            g->most, waves_sainflou(k, s->depth, H, 1), g->least,
@@ -324,7 +346,8 @@ static void summarise_resonance(output *f, const tank_model *m) {
   mps_coupling_report report;
   tank_response flume;
   double phase, linear;
-  const double wall = harmonic(m, WALL, &phase), exact = harmonic(m, LINEAR, &linear);
+  const double wall = harmonic(m, m->sample, WALL, &phase);
+  const double exact = harmonic(m, m->linear, WALL, &linear);
   tank_flume(s, &flume);
   if (mps_coupling_get_report(m->structure.coupling, &report) == MPS_OK)
     json_number(f, "solutions_a_step",
@@ -432,10 +455,10 @@ static bool write_summary(app *a, const tank_model *m) {
 }
 
 static bool find_linear(app *a, tank_model *m) {
-  if (m->s.kind != TANK_RESONANCE) return true;
+  if (m->s.kind != TANK_RESONANCE && m->s.kind != TANK_PISTON) return true;
   m->linear = calloc((size_t)m->samples, sizeof *m->linear);
   if (!m->linear) return app_no_memory(a);
-  return app_check(a, tank_linear_wall(&m->s, m->samples, m->sample, m->linear));
+  return app_check(a, tank_linear(&m->s, m->samples, m->sample, m->linear));
 }
 
 bool tank_write(app *a, tank_model *m) {
@@ -443,6 +466,7 @@ bool tank_write(app *a, tank_model *m) {
   if (!find_linear(a, m)) return false;
   if (drop ? !write_drop(a, m) : !write_force(a, m) || !write_gauges(a, m)) return false;
   if (tank_is_coupled(&m->s) && !write_structure(a, m)) return false;
+  if (m->linear && !write_linear(a, m)) return false;
   if (m->series && !app_check(a, mps_recorder_close(&m->series))) return false;
   if (!write_particles(a, m) || !write_summary(a, m) || !draw_water(a, m) ||
       (!drop && !draw_force(a, m)) || (tank_is_coupled(&m->s) && !draw_structure(a, m)))

@@ -76,7 +76,7 @@ typedef struct tank_model {
   mps_recorder *series;
   tank_sample *sample;
   int64_t samples, capacity;
-  double *linear; /* m: tank_linear_wall at the samples, NULL where it does not apply */
+  tank_sample *linear; /* tank_linear at the samples, NULL where there is no piston */
   mps_fluid_report report;
   const option *table;
   resume_schedule saves;
@@ -124,7 +124,7 @@ double tank_added_mass(double w, double length, double depth);
 /* Semi-axes (m) and pressure in the middle (Pa) of the drop of radius R at time t. */
 void tank_drop(double radius, double t, double *a, double *b, double *centre);
 
-/* resonance.c: a wall on a spring in waves. */
+/* linear.c: waves of a piston before a wall. */
 typedef struct tank_response {
   double added_mass, damping; /* kg, N s/m: of the waves that the wall sends out */
   double amplitude, lag;      /* m; rad, behind the force of the waves on a wall at rest */
@@ -134,9 +134,10 @@ typedef struct tank_response {
 void tank_flume(const tank_settings *s, tank_response *r);
 /* Stiffness (N/m) of the wall whose frequency is the waves' over `ratio`. */
 double tank_resonant_stiffness(const tank_settings *s, double ratio);
-/* Displacement (m, into the water) at the times of the samples in the closed tank, from rest. */
-mps_status tank_linear_wall(const tank_settings *s, int64_t count, const tank_sample *sample,
-                            double *y);
+/* In the closed tank, from rest, at the times of the samples: levels, deflection of the wall, and
+ * the force on it above that of water at rest. */
+mps_status tank_linear(const tank_settings *s, int64_t count, const tank_sample *sample,
+                       tank_sample *out);
 
 /* results.c: tables, summary, pictures, the last lines on stdout. */
 bool tank_write(app *a, tank_model *m);

@@ -1,12 +1,10 @@
-/* resonance.c - linear potential flow for a wall on a spring that waves of a piston swing: in an
- * endless flume, where the wall's own waves carry its energy away, and in the closed tank of the
- * run, from the first moment on. Displacements of both walls are into the water.
+/* linear.c - linear potential flow for the waves of a piston before a wall that stands, or swings
+ * on a spring: in an endless flume, where the wall's own waves carry its energy away, and in the
+ * closed tank of the run, from the first moment on. Displacements of both walls are into the water.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "tank.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 /* ---- an endless flume ------------------------------------------------------------------------ */
 
@@ -43,6 +41,7 @@ enum { MODES = 120, TAIL = 20000 };
 
 typedef struct closed {
   const tank_settings *s;
+  bool held; /* the wall stands */
   waves_piston piston;
   double swing[MODES], push[MODES], share[MODES]; /* g k T; 2 T/(k L); T/k */
   double m_x, m_y;
@@ -54,7 +53,8 @@ typedef struct closed_state {
 
 static void prepare(closed *c, const tank_settings *s) {
   const double L = s->length, d = s->depth;
-  *c = (closed){.s = s, .piston = {s->amplitude, s->period, s->ramp}};
+  *c = (closed){
+      .s = s, .held = s->kind != TANK_RESONANCE, .piston = {s->amplitude, s->period, s->ramp}};
   c->m_x = -(L * L / 3.0 - d * d) * d / (2.0 * L) - d * d * d / (6.0 * L);
   c->m_y = -(L * L / 3.0 - d * d) * d / (2.0 * L) + (L * L * d - d * d * d / 3.0) / (2.0 * L);
   for (int j = 1; j <= TAIL; j++) {
@@ -67,14 +67,23 @@ static void prepare(closed *c, const tank_settings *s) {
   c->m_x *= WAVES_DENSITY, c->m_y *= WAVES_DENSITY;
 }
 
-static mps_status accelerate(closed *c, double t, const closed_state *at, closed_state *a) {
+/* Force (N, above the rest) of the water on a wall that does not accelerate; X is the piston's. */
+static double press(const closed *c, const double *X, const closed_state *at) {
   const tank_settings *s = c->s;
-  double X[3];
-  const mps_status status = waves_move_piston(&c->piston, t, X);
   double force = WAVES_G * (X[0] + at->b[MODES]) * s->depth * s->depth / s->length;
   for (int j = 0; j < MODES; j++) force += (j % 2 ? 1.0 : -1.0) * WAVES_G * at->b[j] * c->share[j];
-  force = WAVES_DENSITY * force + c->m_x * X[2];
-  const double wall = -(s->stiffness * at->b[MODES] + force) / (s->mass + c->m_y);
+  return WAVES_DENSITY * force + c->m_x * X[2];
+}
+
+static double wall_acceleration(const closed *c, const double *X, const closed_state *at) {
+  const double force = c->s->stiffness * at->b[MODES] + press(c, X, at);
+  return c->held ? 0.0 : -force / (c->s->mass + c->m_y);
+}
+
+static mps_status accelerate(closed *c, double t, const closed_state *at, closed_state *a) {
+  double X[3];
+  const mps_status status = waves_move_piston(&c->piston, t, X);
+  const double wall = wall_acceleration(c, X, at);
   for (int j = 0; j < MODES; j++)
     a->b[j] = c->push[j] * (X[2] + (j % 2 ? wall : -wall)) - c->swing[j] * at->b[j];
   a->b[MODES] = wall;
@@ -104,12 +113,28 @@ static mps_status step(closed *c, double t, double h, closed_state *x, closed_st
   return status;
 }
 
-mps_status tank_linear_wall(const tank_settings *s, int64_t count, const tank_sample *sample,
-                            double *y) {
+static mps_status look(closed *c, const closed_state *x, tank_sample *out) {
+  const tank_settings *s = c->s;
+  double X[3];
+  const mps_status status = waves_move_piston(&c->piston, out->t, X);
+  out->deflection = x->b[MODES];
+  out->right = press(c, X, x) + c->m_y * wall_acceleration(c, X, x);
+  for (int g = 0; g <= TANK_GAUGES; g++) {
+    const double at = g == TANK_GAUGES ? s->length : s->gauge[g];
+    out->level[g] = (X[0] + x->b[MODES]) * s->depth / s->length;
+    for (int j = 0; j < MODES; j++)
+      out->level[g] += x->b[j] * cos((j + 1) * WAVES_PI * at / s->length);
+  }
+  return status;
+}
+
+mps_status tank_linear(const tank_settings *s, int64_t count, const tank_sample *sample,
+                       tank_sample *out) {
   closed c;
   prepare(&c, s);
   const double own = sqrt((s->mass + fmax(c.m_y, 0.0)) / s->stiffness);
-  const double most = fmax(fmin(s->period / 300.0, 0.3 * own), 1e-5 * s->period);
+  const double fine = fmin(s->period, 40.0 / sqrt(c.swing[MODES - 1])) / 300.0;
+  const double most = fmax(c.held ? fine : fmin(fine, 0.3 * own), 1e-5 * s->period);
   closed_state x = {{0.0}}, v = {{0.0}};
   mps_status status = MPS_OK;
   double t = 0.0;
@@ -118,8 +143,8 @@ mps_status tank_linear_wall(const tank_settings *s, int64_t count, const tank_sa
     for (int64_t n = 0; n < steps && status == MPS_OK; n++)
       status = step(&c, t + (sample[k].t - t) * (double)n / (double)steps,
                     (sample[k].t - t) / (double)steps, &x, &v);
-    t = sample[k].t;
-    y[k] = x.b[MODES];
+    out[k] = (tank_sample){.t = t = sample[k].t};
+    if (status == MPS_OK) status = look(&c, &x, &out[k]);
   }
   return status;
 }
