@@ -225,7 +225,8 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_abandon_step(mps_fluid *fluid);
  * ends the run, which returns it. It may read, not step or destroy. */
 typedef mps_status (*mps_fluid_fn)(void *user, mps_fluid *fluid);
 
-/** Steps to t_end (s, not before the present time), the last step shortened to end there. */
+/** Steps to t_end (s, not before the present time); the last 32 steps, or all where there are
+ * fewer, are equal and a little shorter to end there. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_run(mps_fluid *fluid, double t_end, int64_t every,
                                                mps_fluid_fn callback, void *user);
 

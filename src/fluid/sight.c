@@ -4,7 +4,8 @@
  * only where no face is in between. The line from a to the image of b folds into the one from b to
  * the image of a, so a sees b's image exactly when b sees a's: the matrix stays symmetric. Every
  * line from a particle meets one mirror first, so that images neither overlap nor leave gaps, at
- * concave and at convex corners.
+ * concave and at convex corners. Around a convex corner particles that do not see each other are
+ * neighbours at the length of the way around it: without them the water turns too hard there.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid_private.h"
 
@@ -97,13 +98,35 @@ static bool near_limit(const mps_fluid *f, int64_t i) {
   return false;
 }
 
+/* The way from a to b around the nearest corner of a body, m; INFINITY where there is none. */
+static double way_around(const mps_fluid *f, const double *a, const double *b) {
+  double least = INFINITY;
+  for (uint32_t k = MPS_FLUID_MAX_BOUNDARIES; k < MPSI_FLUID_WALLS; k++) {
+    const mpsi_fluid_wall *w = &f->wall[k];
+    if (!(f->faces >> k & 1) || w->from < 0.0) continue; /* that corner stands on a boundary */
+    const double way =
+        hypot(a[0] - w->at[0], a[1] - w->at[1]) + hypot(b[0] - w->at[0], b[1] - w->at[1]);
+    if (way < least && way < f->weight.re && !hidden(f, 0, a, w->at) && !hidden(f, 0, w->at, b))
+      least = way;
+  }
+  return least;
+}
+
 int64_t mpsi_fluid_keep_seen(const mps_fluid *f, int64_t i, int64_t count, int32_t *index,
                              double *r2) {
   if (!near_limit(f, i)) return count;
   int64_t kept = 0;
+  const double own[2] = {f->x[0][i], f->x[1][i]};
   for (int64_t k = 0; k < count; k++) {
-    if (!sees(f, i, index[k])) continue;
-    index[kept] = index[k], r2[kept] = r2[k];
+    const int64_t j = index[k];
+    double square = r2[k];
+    if (!sees(f, i, j)) {
+      const double other[2] = {f->x[0][j], f->x[1][j]};
+      const double way = j < f->count && f->faces ? way_around(f, own, other) : INFINITY;
+      if (!(way < f->weight.re)) continue;
+      square = way * way;
+    }
+    index[kept] = index[k], r2[kept] = square;
     kept++;
   }
   return kept;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #define SORT_EVERY 32 /* steps */
+#define EVEN_STEPS 32 /* at the end of a run */
 
 typedef struct work {
   mps_fluid *fluid;
@@ -363,6 +364,13 @@ static mps_status call_back(mps_fluid *f, mps_fluid_fn callback, void *user) {
   return status;
 }
 
+/* A step of at most `full` of which whole ones fill the rest; far from its end just `full`, as a
+ * change of the step shows in the pressure. */
+static double even_step(double rest, double full) {
+  const double steps = ceil(rest / full * (1.0 - 1e-9));
+  return steps > EVEN_STEPS ? full : rest / steps;
+}
+
 mps_status mps_fluid_run(mps_fluid *f, double t_end, int64_t every, mps_fluid_fn callback,
                          void *user) {
   if (!f) return MPS_ERROR_ARGUMENT;
@@ -379,8 +387,7 @@ mps_status mps_fluid_run(mps_fluid *f, double t_end, int64_t every, mps_fluid_fn
     if (status != MPS_OK) break;
     const double rest = t_end - f->time, full = mps_fluid_dt(f);
     const bool last = rest <= full * (1.0 + 1e-9);
-    /* two even steps rather than a whole one and a sliver */
-    const double dt = last ? rest : rest < 2.0 * full * (1.0 - 1e-9) ? 0.5 * rest : full;
+    const double dt = last ? rest : even_step(rest, full);
     status = take_step(f, __func__, dt);
     if (status != MPS_OK) break;
     if (last) f->time = t_end;

@@ -536,6 +536,36 @@ static void parts_of_a_step_have_their_order(void **state) {
   tank_free(&t);
 }
 
+typedef struct clock_log {
+  double time[256];
+  int count;
+} clock_log;
+
+static mps_status note_time(void *user, mps_fluid *fluid) {
+  clock_log *log = user;
+  log->time[log->count++] = mps_fluid_time(fluid);
+  return MPS_OK;
+}
+
+/* A run that is no whole number of steps: its last 32 are equal, or all of fewer. */
+static void a_run_ends_with_even_steps(void **state) {
+  (void)state;
+  tank t = tank_make(context, 0.3, 0.15, 0.025, NULL, 2e-3);
+  clock_log log = {.count = 0};
+  mps_assert_ok(context, mps_fluid_run(t.fluid, 0.0211, 1, note_time, &log));
+  assert_int_equal(log.count, 12);
+  for (int k = 1; k < log.count; k++)
+    mps_assert_near(log.time[k] - log.time[k - 1], 0.0211 / 11.0, 1e-15);
+  assert_true(mps_fluid_time(t.fluid) == 0.0211);
+  log.count = 0;
+  mps_assert_ok(context, mps_fluid_run(t.fluid, 0.0211 + 0.1005, 1, note_time, &log));
+  assert_int_equal(log.count, 52);
+  for (int k = 1; k < log.count; k++)
+    mps_assert_near(log.time[k] - log.time[k - 1], k < 20 ? 2e-3 : (0.1005 - 19 * 2e-3) / 32.0,
+                    1e-15);
+  tank_free(&t);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bad_definitions_are_refused),
@@ -554,6 +584,7 @@ int main(void) {
       cmocka_unit_test(particles_come_and_go),
       cmocka_unit_test(a_step_in_parts_is_the_step),
       cmocka_unit_test(parts_of_a_step_have_their_order),
+      cmocka_unit_test(a_run_ends_with_even_steps),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

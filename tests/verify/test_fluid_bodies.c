@@ -153,7 +153,31 @@ static double laplace(const place *p, int axis) {
   return force;
 }
 
-/* The force on a box whose acceleration is a: the hydrostatic one and -m_a a. */
+enum { STARTS = 6 }; /* steps */
+
+/* Forces along `axis` on a box that starts with the acceleration a, step by step. */
+static void start_box(const place *p, int axis, double a, double *force) {
+  const double dt = 2e-3;
+  scene s = make_scene(p->x, p->y, p->width, p->height, 0.0, 0.0);
+  mps_body_motion motion = mps_body_motion_defaults();
+  motion.position[axis] = axis ? p->y : p->x;
+  for (int n = 0; n < STARTS; n++) {
+    mps_reaction r;
+    mps_assert_ok(context, mps_fluid_begin_step(s.t.fluid, dt));
+    motion.velocity[axis] = a * dt * (n + 1);
+    motion.position[axis] += dt * motion.velocity[axis];
+    mps_assert_ok(context, mps_body_set_motion(s.body, &motion));
+    mps_assert_ok(context, mps_fluid_solve_pressure(s.t.fluid));
+    mps_assert_ok(context, mps_fluid_get_body_reaction(s.t.fluid, 0, &r));
+    mps_assert_ok(context, mps_fluid_end_step(s.t.fluid));
+    force[n] = r.force[axis];
+  }
+  free_scene(&s);
+}
+
+/* The force on a box whose acceleration is a is -m_a a besides the one at rest. A first step from
+ * rest has more: the divergence that it leaves is taken away in the next ones, whose mean counts.
+ */
 static void a_box_that_starts_feels_its_added_mass(void **state) {
   (void)state;
   const place places[] = {
@@ -161,25 +185,20 @@ static void a_box_that_starts_feels_its_added_mass(void **state) {
       {"in the surface", 0.6, 0.4, 0.24, 0.16, 0.0, weight * 0.24 * 0.08},
       {"on the bed, through surface", 0.6, 0.3, 0.24, 0.6, 0.0, 0.0},
   };
-  const double dt = 2e-3, a = 2.0;
+  const double a = 0.2;
   for (size_t k = 0; k < sizeof places / sizeof *places; k++)
     for (int axis = 0; axis < (k == 2 ? 1 : 2); axis++) {
-      scene s = make_scene(places[k].x, places[k].y, places[k].width, places[k].height, 0.0, 0.0);
-      mps_body_motion motion = mps_body_motion_defaults();
-      mps_reaction r;
-      mps_assert_ok(context, mps_fluid_begin_step(s.t.fluid, dt));
-      motion.velocity[axis] = a * dt;
-      motion.position[axis] = (axis ? places[k].y : places[k].x) + 0.5 * a * dt * dt;
-      mps_assert_ok(context, mps_body_set_motion(s.body, &motion));
-      mps_assert_ok(context, mps_fluid_solve_pressure(s.t.fluid));
-      mps_assert_ok(context, mps_fluid_get_body_reaction(s.t.fluid, 0, &r));
-      const double mass = -(r.force[axis] - (axis ? places[k].up : 0.0)) / a;
+      double to[STARTS], fro[STARTS], mean = 0.0;
+      start_box(&places[k], axis, a, to);
+      start_box(&places[k], axis, -a, fro);
+      for (int n = 1; n < STARTS; n++) mean += 0.5 * (fro[n] - to[n]) / a / (STARTS - 1);
       const double exact = -1000.0 * laplace(&places[k], axis);
-      print_message("%-28s added mass along %c %.2f kg, finite differences %.2f kg (%+.2f %%)\n",
-                    places[k].name, axis ? 'y' : 'x', mass, exact, 100.0 * (mass / exact - 1.0));
-      mps_assert_near(mass, exact, 0.08 * fmax(exact, 19.2));
-      mps_assert_ok(context, mps_fluid_end_step(s.t.fluid));
-      free_scene(&s);
+      print_message(
+          "%-28s added mass along %c %.2f kg (first step %.2f), finite differences %.2f kg "
+          "(%+.2f %%)\n",
+          places[k].name, axis ? 'y' : 'x', mean, 0.5 * (fro[0] - to[0]) / a, exact,
+          100.0 * (mean / exact - 1.0));
+      mps_assert_near(mean, exact, 0.08 * fmax(exact, 25.0));
     }
 }
 
