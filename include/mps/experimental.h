@@ -44,6 +44,17 @@ typedef enum mps_experimental_transfer {
 MPS_EXPERIMENTAL_API MPS_NODISCARD mps_status mps_experimental_mpm_transfer(mps_mpm *mpm,
                                                                             int32_t transfer);
 
+/** Which gradient of the velocity the laws of WLS-MPM see. */
+typedef enum mps_experimental_strain {
+  MPS_EXPERIMENTAL_STRAIN_DERIVATIVE = 0, /* of the field that the shape functions span */
+  MPS_EXPERIMENTAL_STRAIN_FIT = 1         /* `velocity_gradient`, the slope of the fit, Nakamura (42):
+                                             bodies that bend far creep */
+} mps_experimental_strain;
+
+/** Before the first step: mps_experimental_strain. MPS_ERROR_STATE after a step. */
+MPS_EXPERIMENTAL_API MPS_NODISCARD mps_status mps_experimental_mpm_strain(mps_mpm *mpm,
+                                                                          int32_t strain);
+
 /** Before the first step: the original material point method in place of WLS-MPM, Nakamura Table 1.
  *  The B-splines and their own derivatives are the shape functions, also at bodies and sides, and
  *  particles carry no velocity gradient to the nodes. Nodes beyond a side are held as those on it.

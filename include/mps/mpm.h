@@ -18,6 +18,9 @@
  * (m/s2, adds to gravity) and `external_force` (N) are read in each step where the set has them.
  * Laws that need them bring the fields `volume_ratio`, `deformation_gradient` and their history.
  *
+ * Forces and transfers take the slope of the fit, which is `velocity_gradient`; the laws see the
+ * derivative of the shape functions, along axes whose stencil neither sides nor bodies cut.
+ *
  * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
  * its results are the same bit for bit for every number of threads.
  * SPDX-License-Identifier: BSD-3-Clause */

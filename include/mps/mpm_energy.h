@@ -7,7 +7,7 @@
  * tests), wherever fields and particles are left as the steps have made them: each term is measured
  * where it happens, and mps_mpm_losses.residual is what they leave.
  *
- * `strain` is the work against the stresses that the laws give back, and the energy of the
+ * `strain` is the work, by the strains that the laws see, against the stresses that the laws give back, and the energy of the
  * contacts' springs. Of elastic laws that is all; of elastic-plastic ones the change of the energy
  * of the stress by Hooke's law; of fluids the work of the pressure; of users' laws, which do not
  * tell, all. Loads do work by the velocity that the nodes give the particles, boundaries and bodies
@@ -22,7 +22,8 @@
 
 MPS_EXTERN_C_BEGIN
 
-/** Where `dissipated` of mps_totals went, J since creation; `scheme` there is transfer + stepping.
+/** Where `dissipated` of mps_totals went, J since creation; `scheme` there is transfer + stepping +
+ *  strain.
  */
 typedef struct mps_mpm_losses {
   double laws;       /* plasticity and viscosity */
@@ -38,6 +39,9 @@ typedef struct mps_mpm_losses {
                         values at its beginning. Swings about 0 where all is smooth; an impact on
                         what holds or drives is here */
   double residual;   /* work less all changes and losses: round-off */
+  double strain;     /* work of the nodes against the stresses less that by the gradient which the
+                        laws see: forces come from the slope of the fit, strains from the derivative
+                        of the shape functions, or (F-bar) from means of cells. Of both signs */
 } mps_mpm_losses;
 /** MPS_ERROR_STATE: the definition's `budget` is 0. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_get_losses_sized(mps_mpm *mpm, mps_mpm_losses *out,

@@ -10,6 +10,8 @@ typedef struct mpsi_columns {
   int64_t count;
   double *x[3], *v[3]; /* m, m/s */
   double *L[9];        /* 1/s, velocity gradient; 2D: xx, xy, yx, yy, hoop */
+  double *D[9];        /* 1/s, derivatives of the velocity that the laws see, as L without the hoop;
+                          NULL but with VOLUMETRIC_CELL: G2P hands them on */
   double *s[6];        /* Pa: xx, yy, zz, xy, zx, yz; 2D: the first four */
   double *V, *m;       /* m3, kg */
   double *J;           /* V/V0 where some law reads it, else NULL */

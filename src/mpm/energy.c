@@ -90,6 +90,7 @@ void mpsi_energy_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_law_
     double s0[6] = {0.0}, s1[6] = {0.0}, trace;
     for (int c = 0; c < 2 * mpm->dim; c++) s0[c] = before->stress[c][k], s1[c] = p->s[c][begin + k];
     const double V0 = before->volume[k], V1 = p->V[begin + k];
+    sum->seen += stress_work(block, k, s0, s0, V0, V0, &trace);
     const double work = stress_work(block, k, s0, s1, V0, V1, &trace);
     double stays = work;
     if (kept == MPSI_KEPT_PRESSURE)
@@ -193,7 +194,7 @@ static mpsi_cell_energy sum_cells(const mps_mpm *mpm) {
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     const mpsi_cell_energy *e = &mpm->energy.cells[b];
     out.kinetic_before += e->kinetic_before, out.kinetic += e->kinetic;
-    out.loads += e->loads, out.stresses += e->stresses;
+    out.loads += e->loads, out.stresses += e->stresses, out.seen += e->seen;
     out.kept += e->kept, out.spent += e->spent;
   }
   return out;
@@ -236,5 +237,6 @@ void mpsi_energy_end(mps_mpm *mpm) {
   sum->damping_loss -= n.damping;
   sum->transfer += (p.kinetic_before - n.kinetic_before) + (n.kinetic - p.kinetic) +
                    (e->driven_work - e->driven);
-  sum->stepping += n.jump - (p.kept + p.spent - p.stresses) + (pushed - (e->springs - before));
+  sum->stepping += n.jump - (p.kept + p.spent - p.seen) + (pushed - (e->springs - before));
+  sum->strain += p.stresses - p.seen;
 }

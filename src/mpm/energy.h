@@ -21,7 +21,8 @@
 typedef struct mpsi_cell_energy {
   double kinetic_before, kinetic;
   double loads;    /* work of gravity, loads and fields of forces */
-  double stresses; /* work against the stresses at the beginning of the step */
+  double stresses; /* work of the nodes against the stresses at the beginning of the step */
+  double seen;     /* the same by the gradient that the laws see */
   double kept;     /* work against the mean stresses of the step that the laws keep */
   double spent;    /* the rest of that: plasticity, viscosity */
 } mpsi_cell_energy;
@@ -43,9 +44,9 @@ typedef struct mpsi_energy_sums {
   double kept, spent, springs;
   double loads, boundaries, bodies; /* works */
   double boundary_loss, friction_loss, damping_loss;
-  double transfer, stepping;
+  double transfer, stepping, strain;
 } mpsi_energy_sums;
-enum { MPSI_ENERGY_SUMS = 12 };
+enum { MPSI_ENERGY_SUMS = 13 };
 
 typedef struct mpsi_energy {
   bool counts; /* the definition asks for the budget */

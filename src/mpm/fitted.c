@@ -353,8 +353,7 @@ MPSI_INLINE void scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells, const 
 /* FLIP: what the particle keeps of its own, flip times its velocity less that of the nodes before
  * the forces, in the lanes of the mass; add_own() in g2p.c adds it. */
 MPSI_INLINE void keep_own(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
-                          int64_t p, const support *at, const mpsi_shape_values *f,
-                          double (*motion)[4]) {
+                          int64_t p, const support *at, const mpsi_shape_values *f, mpsi_two *L) {
   const under from = nodes_under(mpm, cells, dim);
   mpsi_quad before = {0.0};
   FOR_NODES(dim, spline) {
@@ -362,26 +361,52 @@ MPSI_INLINE void keep_own(const mps_mpm *mpm, const mpsi_cell_block *cells, int 
     before += f->phi[n] * mpsi_get(from.side[q][local_of(at, i, j, k)]);
   }
   for (int c = 0; c < dim; c++)
-    motion[1 + c][MPSI_MASS] = mpm->flip * (mpm->p.v[c][p] - before[MPSI_VECTOR + c]);
+    L[c][MPSI_MASS] = mpm->flip * (mpm->p.v[c][p] - before[MPSI_VECTOR + c]);
+}
+
+/* Derivatives along the axes whose stencil is full, where nothing but sides of the domain cuts the
+ * support: there the fit falls apart into one along each axis (wall.h), so that phi/w along such an
+ * axis is constant and d phi = phi dw/w. Along the other axes, and near bodies, the slopes serve.
+ */
+MPSI_INLINE void find_strain(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                             const mpsi_worker *worker, int dim, int spline, const support *at,
+                             const mpsi_shape_values *f, mpsi_two *L) {
+  for (int d = 0; d < dim; d++) {
+    const int64_t low = (int64_t)cells->at[d] * MPSI_SIDE + at->at.at[d];
+    if (low < mpm->grid.low[d] || low + spline > mpm->grid.high[d]) continue;
+    const double *w = at->at.w[d];
+    double slope[4], ratio[4];
+    mpsi_slopes(spline, -at->at.s[d][0], slope);
+    for (int i = 0; i <= spline; i++)
+      ratio[i] = w[i] > 0.0 ? mpm->grid.inverse * slope[i] / w[i] : 0.0;
+    mpsi_quad sum = {0.0};
+    FOR_NODES(dim, spline) {
+      const int own = d == 0 ? i : d == 1 ? j : k;
+      const int t = mpsi_tile_index(at->at.at[0] + i, at->at.at[1] + j, at->at.at[2] + k);
+      sum += ratio[own] * f->phi[n] * mpsi_get(worker->tile[t]);
+    }
+    mpsi_put(L[d] + 4, sum);
+  }
 }
 
 MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                             int dim, int spline, int64_t particle, double (*motion)[4]) {
+                             int dim, int spline, int64_t particle, double *v, mpsi_two *L) {
   support at;
   mpsi_shape_values f;
   make_support(mpm, cells, dim, spline, particle, &at);
   const uint32_t bodies = fit(mpm, cells, worker, dim, spline, &at, &f);
-  mpsi_quad v = {0.0}, by[3] = {v, v, v};
+  mpsi_quad sum = {0.0}, by[3] = {sum, sum, sum};
   FOR_NODES(dim, spline) {
     const double *from =
         worker->tile[mpsi_tile_index(at.at.at[0] + i, at.at.at[1] + j, at.at.at[2] + k)];
     const mpsi_quad node = mpsi_get(from);
-    v += f.phi[n] * node;
+    sum += f.phi[n] * node;
     for (int d = 0; d < dim; d++) by[d] += f.gradient[d][n] * node;
   }
-  mpsi_put(motion[0], v);
-  for (int d = 0; d < dim; d++) mpsi_put(motion[1 + d], by[d]);
-  if (mpm->flip > 0.0) keep_own(mpm, cells, dim, spline, particle, &at, &f, motion);
+  mpsi_put(v, sum);
+  for (int d = 0; d < dim; d++) mpsi_put(L[d], by[d]), mpsi_put(L[d] + 4, by[d]);
+  if (!bodies && !mpm->standard) find_strain(mpm, cells, worker, dim, spline, &at, &f, L);
+  if (mpm->flip > 0.0) keep_own(mpm, cells, dim, spline, particle, &at, &f, L);
   for (int32_t q = 0; bodies && q < cells->pairs; q++) {
     mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
     if (bodies >> pair->body & 1) share_friction(mpm, cells, dim, spline, particle, &at, &f, pair);
@@ -410,9 +435,9 @@ void MPSI_LEVELLED(mpsi_scatter_fitted)(mps_mpm *mpm, const mpsi_cell_block *cel
 }
 
 void MPSI_LEVELLED(mpsi_gather_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                       const mpsi_worker *worker, int64_t particle,
-                                       double (*motion)[4]) {
-  CHOOSE(mpm->dim, mpm->def.spline, gather_body, particle, motion);
+                                       const mpsi_worker *worker, int64_t particle, double *v,
+                                       mpsi_two *L) {
+  CHOOSE(mpm->dim, mpm->def.spline, gather_body, particle, v, L);
 }
 
 void MPSI_LEVELLED(mpsi_fit)(const mps_mpm *mpm, const mpsi_cell_block *cells,

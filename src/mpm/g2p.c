@@ -18,12 +18,39 @@ MPSI_INLINE void gather_tile(const mps_mpm *mpm, const mpsi_cell_block *cells, m
     }
 }
 
-/* Velocity (motion[0], lanes 1 to 3) and its derivatives by x, y, z, by factors: sums of the rows
- * by their weights across, w and w s, node by node, and at last along x. */
+/* Differences along y of a stencil, node by node along x, in each of its planes across z. */
+typedef struct differences {
+  int32_t first; /* lowest node of the stencil */
+  mpsi_vec along_y[4][MPSI_ROW];
+} differences;
+
+MPSI_INLINE void find_differences(int dim, int spline, int32_t first, const mpsi_node *tile,
+                                  differences *out) {
+  out->first = first;
+  for (int plane = 0; plane <= (dim == 3 ? spline : 0); plane++)
+    MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
+      const double *node = tile[first + mpsi_tile_index(0, 0, plane)] + 4 * MPSI_WIDE * v;
+      mpsi_vec sum = {0.0};
+      MPSI_UNROLL for (int j = 0; j <= spline; j++) sum +=
+          mpsi_difference(spline, j) * mpsi_get_row(node + 4 * mpsi_tile_index(0, j, 0));
+      out->along_y[plane][v] = sum;
+    }
+}
+
+/* A particle's velocity (lanes 1 to 3), its slopes by x, y, z, which the transfer takes, and its
+ * derivatives, which the laws see. */
+typedef struct gathered {
+  mpsi_two v;    /* velocity, 0 */
+  mpsi_two L[3]; /* slope and derivative by each axis */
+} gathered;
+
+/* By factors: sums of the rows by their weights across, w and w s, node by node, and at last along
+ * x. `excess` (1/m) of each axis: see mpsi_excess. */
 MPSI_INLINE void gather_full(int dim, int spline, double scale, const mpsi_places *places,
                              const mpsi_rows *rows, int k, const mpsi_node *tile,
-                             double (*motion)[4]) {
-  mpsi_vec sum[3][MPSI_ROW] = {{{0.0}}}; /* by w of y and z, by w s of y, by w s of z */
+                             const differences *difference, const double *excess, gathered *out) {
+  /* by w of y and z, by w s of y, by w s of z, by differences of y, of z */
+  mpsi_vec sum[5][MPSI_ROW] = {{{0.0}}};
   tile += places->first[k];
   for (int plane = 0; plane <= (dim == 3 ? spline : 0); plane++) {
     MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
@@ -34,38 +61,52 @@ MPSI_INLINE void gather_full(int dim, int spline, double scale, const mpsi_place
         slope += places->ws[0][j][k] * node;
       }
       if (dim == 2) {
-        sum[0][v] = value, sum[1][v] = slope;
+        sum[0][v] = value, sum[1][v] = slope, sum[3][v] = difference->along_y[0][v];
         continue;
       }
       const double wz = places->w[1][plane][k], wzs = places->ws[1][plane][k];
       sum[0][v] += wz * value;
       sum[1][v] += wz * slope;
       sum[2][v] += wzs * value;
+      sum[3][v] += wz * difference->along_y[plane][v];
+      sum[4][v] += mpsi_difference(spline, plane) * value;
     }
   }
-  mpsi_vec w[MPSI_ROW], ws[MPSI_ROW], all[4] = {{0.0}};
+  mpsi_vec w[MPSI_ROW], ws[MPSI_ROW], all[4] = {{0.0}}, rise[3] = {{0.0}};
   mpsi_weights_along(spline, places, rows, k, w, ws);
   MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
+    double by_x[4];
+    for (int i = 0; i < 4; i++) by_x[i] = mpsi_difference(spline, i);
     all[0] += w[v] * sum[0][v];
     all[1] += ws[v] * sum[0][v];
-    for (int d = 2; d <= dim; d++) all[d] += w[v] * sum[d - 1][v];
+    rise[0] += mpsi_by_node(by_x, v * MPSI_WIDE) * sum[0][v];
+    for (int d = 2; d <= dim; d++) {
+      all[d] += w[v] * sum[d - 1][v];
+      rise[d - 1] += w[v] * sum[d + 1][v];
+    }
   }
-  mpsi_put(motion[0], mpsi_fold(all[0]));
-  for (int d = 1; d <= dim; d++) mpsi_put(motion[d], scale * mpsi_fold(all[d]));
+  mpsi_put(out->v, mpsi_fold(all[0]));
+  for (int d = 0; d < dim; d++) {
+    const mpsi_vec slope = scale * all[1 + d];
+    mpsi_fold_two(slope, slope + excess[d] * rise[d], out->L[d]);
+  }
 }
 
-/* The same at the wall across `axis`. */
+/* The same at the wall across `axis`, where the laws see the slope across it. */
 MPSI_INLINE void gather_at_wall(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
                                 int spline, double scale, const mpsi_places *places, int axis,
-                                int k, const mpsi_node *tile, double (*motion)[4]) {
+                                int k, const mpsi_node *tile, const differences *difference,
+                                const double *excess, gathered *out) {
   mpsi_wall wall;
-  double across[4][4];
-  mpsi_wall_places(mpm, cells, dim, spline, places, k, k + 1, axis, MPSI_WALL_SLOPE, &wall);
-  gather_full(dim, spline, scale, &wall.places, &wall.rows, 0, tile, across);
+  double along[3] = {excess[0], excess[1], excess[2]};
+  gathered slopes;
+  along[axis] = 0.0;
   mpsi_wall_places(mpm, cells, dim, spline, places, k, k + 1, axis, MPSI_WALL_ALONG, &wall);
-  gather_full(dim, spline, scale, &wall.places, &wall.rows, 0, tile, motion);
-  memcpy(motion[0], across[0], sizeof across[0]);
-  memcpy(motion[1 + axis], across[1 + axis], sizeof across[0]);
+  gather_full(dim, spline, scale, &wall.places, &wall.rows, 0, tile, difference, along, &slopes);
+  mpsi_wall_places(mpm, cells, dim, spline, places, k, k + 1, axis, MPSI_WALL_SLOPE, &wall);
+  gather_full(dim, spline, scale, &wall.places, &wall.rows, 0, tile, difference, along, out);
+  for (int d = 0; d < dim; d++)
+    if (d != axis) memcpy(out->L[d], slopes.L[d], sizeof(mpsi_node));
 }
 
 /* The first `n` (at most 4) values of a vector. */
@@ -84,36 +125,60 @@ typedef struct moved {
   bool outside, left;
 } moved;
 
-MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cell_block *cells, int geometry, int spline,
-                       int64_t begin, int n, const double (*motion)[4][4]) {
+/* Slopes, or (second 4) derivatives, of four particles to columns from `at`; `n` of them are there.
+ */
+MPSI_INLINE void store_gradients(int dim, int n, const gathered *from, int second,
+                                 double *const *to, int64_t at) {
+  MPSI_UNROLL for (int d = 0; d < dim; d++) {
+    mpsi_quad a[4];
+    MPSI_UNROLL for (int i = 0; i < 4; i++) a[i] = mpsi_get(from[i].L[d] + second);
+    mpsi_transpose(a);
+    MPSI_UNROLL for (int c = 0; c < dim; c++) store_some(to[dim * c + d] + at, a[1 + c], n);
+  }
+}
+
+/* Four particles from `at`, of which `n` are there. */
+MPSI_INLINE void move_four(mps_mpm *mpm, const mpsi_cell_block *cells, int geometry, int spline,
+                           int64_t at, int n, const gathered *from, mpsi_mask *outside,
+                           mpsi_mask *left) {
   const int dim = mpsi_dim_of(geometry);
   const double first = spline == 3 ? 1.0 : 0.5; /* of the block: see mpsi_find_places */
   const mpsi_columns *p = &mpm->p;
+  const mpsi_mask there = (mpsi_mask){0, 1, 2, 3} < n;
+  mpsi_quad v[4];
+  MPSI_UNROLL for (int i = 0; i < 4; i++) v[i] = mpsi_get(from[i].v);
+  mpsi_transpose(v);
+  MPSI_UNROLL for (int c = 0; c < dim; c++) {
+    const int reach = c == 0 ? 3 : spline; /* see widen_use in layout.c */
+    const mpsi_quad x = mpsi_get_some(p->x[c] + at, n), to = x + mpm->run.dt * v[1 + c];
+    const mpsi_quad X = mpsi_from_block(mpm, cells, c, to);
+    const double corner = (double)cells->at[c] * MPSI_SIDE;
+    const mpsi_mask good =
+        (X >= (double)mpm->grid.low[c] - corner) & (X <= (double)mpm->grid.high[c] - corner);
+    const mpsi_mask here = (X >= first + cells->low[c]) & (X < first + (cells->high[c] - reach));
+    *outside |= there & ~good;
+    *left |= there & ~here;
+    store_some(p->v[c] + at, v[1 + c], n);
+    if (geometry == MPS_MPM_AXISYMMETRIC && c == 0) store_some(p->L[4] + at, v[1] / x, n);
+    store_some(p->x[c] + at, to, n);
+  }
+}
+
+MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cell_block *cells, int geometry, int spline,
+                       int64_t begin, int n, const gathered *from, double *const *D) {
+  const int dim = mpsi_dim_of(geometry);
+  double *const *L = mpm->p.L;
   mpsi_mask outside = {0}, left = {0};
   for (int k = 0; k < n; k += 4) {
     const int64_t at = begin + k;
-    const mpsi_mask there = (mpsi_mask){k, k + 1, k + 2, k + 3} < n;
-    for (int d = 0; d <= dim; d++) {
-      mpsi_quad a[4];
-      for (int i = 0; i < 4; i++) a[i] = mpsi_get(motion[k + i][d]);
-      mpsi_transpose(a);
-      for (int c = 0; c < dim && d > 0; c++)
-        store_some(p->L[dim * c + d - 1] + at, a[1 + c], n - k);
-      for (int c = 0; c < dim && d == 0; c++) {
-        const int reach = c == 0 ? 3 : spline; /* see widen_use in layout.c */
-        const mpsi_quad x = mpsi_get_some(p->x[c] + at, n - k), to = x + mpm->run.dt * a[1 + c];
-        const mpsi_quad X = mpsi_from_block(mpm, cells, c, to);
-        const double corner = (double)cells->at[c] * MPSI_SIDE;
-        const mpsi_mask good =
-            (X >= (double)mpm->grid.low[c] - corner) & (X <= (double)mpm->grid.high[c] - corner);
-        const mpsi_mask here =
-            (X >= first + cells->low[c]) & (X < first + (cells->high[c] - reach));
-        outside |= there & ~good;
-        left |= there & ~here;
-        store_some(p->v[c] + at, a[1 + c], n - k);
-        if (geometry == MPS_MPM_AXISYMMETRIC && c == 0) store_some(p->L[4] + at, a[1] / x, n - k);
-        store_some(p->x[c] + at, to, n - k);
-      }
+    if (n - k >= 4) { /* apart: without questions */
+      move_four(mpm, cells, geometry, spline, at, 4, from + k, &outside, &left);
+      store_gradients(dim, 4, from + k, 0, L, at);
+      store_gradients(dim, 4, from + k, 4, D, k);
+    } else {
+      move_four(mpm, cells, geometry, spline, at, n - k, from + k, &outside, &left);
+      store_gradients(dim, n - k, from + k, 0, L, at);
+      store_gradients(dim, n - k, from + k, 4, D, k);
     }
   }
   return (moved){(outside[0] | outside[1] | outside[2] | outside[3]) != 0,
@@ -121,9 +186,9 @@ MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cell_block *cells, int geometry,
 }
 
 /* FLIP: what the particles keep of their own velocities, where fitted.c has put it. */
-static void add_own(mps_mpm *mpm, int64_t begin, int n, const double (*motion)[4][4]) {
+static void add_own(mps_mpm *mpm, int64_t begin, int n, const gathered *from) {
   for (int c = 0; c < mpm->dim; c++)
-    for (int k = 0; k < n; k++) mpm->p.v[c][begin + k] += motion[k][1 + c][MPSI_MASS];
+    for (int k = 0; k < n; k++) mpm->p.v[c][begin + k] += from[k].L[c][MPSI_MASS];
 }
 
 /* The nodes of a wall stand still, but a velocity fitted over them need not at the wall itself: a
@@ -195,33 +260,51 @@ MPSI_INLINE void speed_chunk(const mps_mpm *mpm, mpsi_cell_block *cells, int dim
   find_speed(mpm, cells, dim, begin, n, moduli);
 }
 
-MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cell_block *cells, const mpsi_worker *worker,
-                           int geometry, int spline, int64_t begin, int n) {
-  const int dim = mpsi_dim_of(geometry);
+/* What the nodes give to particles [begin, begin + n). */
+MPSI_INLINE void gather_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                              int dim, int spline, int64_t begin, int n, gathered *out) {
   const double scale = mpsi_inverse_moment(spline) * mpm->grid.inverse;
+  const mpsi_node *tile = (const mpsi_node *)worker->tile;
   mpsi_places places;
-  double motion[MPSI_CHUNK][4][4] __attribute__((aligned(64)));
+  differences difference = {.first = -1};
+  double excess[3][MPSI_CHUNK];
   mpsi_find_places(mpm, cells, dim, spline, begin, n, &places);
+  for (int c = 0; c < dim; c++)
+    for (int k = 0; k < n; k += 4)
+      mpsi_put(excess[c] + k, mpm->grid.inverse * mpsi_excess(spline, mpsi_get(places.t[c] + k)));
   if (mpm->p.stencil)
     memcpy(mpm->p.stencil + begin, places.first, (size_t)n * sizeof *mpm->p.stencil);
-  const mpsi_node *tile = (const mpsi_node *)worker->tile;
   uint32_t state = 0;
   for (int k = 0; k < n; k++) {
     const int32_t first = places.first[k];
-    if (cells->cut && (k == 0 || first != places.first[k - 1]))
-      state = mpsi_support_state(worker, dim, spline, first);
+    const double e[3] = {excess[0][k], excess[1][k], dim == 3 ? excess[2][k] : 0.0};
+    if (first != difference.first) {
+      find_differences(dim, spline, first, tile, &difference);
+      if (cells->cut) state = mpsi_support_state(worker, dim, spline, first);
+    }
     const int axis = state ? mpsi_wall_axis(mpm, cells, dim, spline, state, first) : -1;
     if (!state)
-      gather_full(dim, spline, scale, &places, NULL, k, tile, motion[k]);
+      gather_full(dim, spline, scale, &places, NULL, k, tile, &difference, e, &out[k]);
     else if (axis >= 0)
-      gather_at_wall(mpm, cells, dim, spline, scale, &places, axis, k, tile, motion[k]);
+      gather_at_wall(mpm, cells, dim, spline, scale, &places, axis, k, tile, &difference, e,
+                     &out[k]);
     else
-      MPSI_LEVELLED(mpsi_gather_fitted)(mpm, cells, worker, begin + k, motion[k]);
+      MPSI_LEVELLED(mpsi_gather_fitted)(mpm, cells, worker, begin + k, out[k].v, out[k].L);
+    for (int d = 0; d < dim && mpm->strain_by_fit; d++)
+      memcpy(out[k].L[d] + 4, out[k].L[d], sizeof(mpsi_node));
   }
+}
+
+/* `D`: columns of the derivatives of these particles, as those of L, for the laws. */
+MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cell_block *cells, const mpsi_worker *worker,
+                           int geometry, int spline, int64_t begin, int n, double *const *D) {
+  const int dim = mpsi_dim_of(geometry);
+  gathered from[MPSI_CHUNK] __attribute__((aligned(64)));
+  gather_chunk(mpm, cells, worker, dim, spline, begin, n, from);
   if (mpm->energy.counts) mpsi_energy_before(mpm, cells, begin, begin + n);
-  const moved m = move(mpm, cells, geometry, spline, begin, n, (const double(*)[4][4])motion);
+  const moved m = move(mpm, cells, geometry, spline, begin, n, from, D);
   if (mpm->energy.counts) mpsi_energy_moved(mpm, cells, begin, begin + n);
-  if (mpm->flip > 0.0) add_own(mpm, begin, n, (const double(*)[4][4])motion);
+  if (mpm->flip > 0.0) add_own(mpm, begin, n, from);
   if (m.left) cells->left = true;
   if (!m.outside) return;
   const int64_t bad = keep_inside(mpm, cells, begin, begin + n);
@@ -231,6 +314,7 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cell_block *cells, const mpsi_work
 MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {
   mpsi_cell_block *cells = &mpm->grid.cells[b];
   mpsi_worker *worker = &mpm->grid.workers[number];
+  const int dim = mpsi_dim_of(geometry);
   cells->left = cells->gone = cells->lost = false;
   cells->bad = -1;
   cells->speed = 0.0;
@@ -238,10 +322,12 @@ MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry,
   if (cells->cut) mpsi_mpm_find_states(mpm, cells, worker);
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
-    g2p_chunk(mpm, cells, worker, geometry, spline, k, n);
+    double own[9][MPSI_CHUNK], *D[9];
+    for (int c = 0; c < dim * dim; c++) D[c] = mpm->p.D[c] ? mpm->p.D[c] + k : own[c];
+    g2p_chunk(mpm, cells, worker, geometry, spline, k, n, D);
     if (mpm->p.stencil) continue; /* the laws wait for the cells' means */
-    mpsi_mpm_apply_law(mpm, cells, k, k + n);
-    speed_chunk(mpm, cells, mpsi_dim_of(geometry), k, n);
+    mpsi_mpm_apply_law(mpm, cells, k, k + n, D);
+    speed_chunk(mpm, cells, dim, k, n);
   }
 }
 

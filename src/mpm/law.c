@@ -71,11 +71,21 @@ static void apply_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_law
   note_refusal(mpm, cells, law->material, status, there ? begin + refused : -1, message);
 }
 
-static void apply_run(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end) {
+/* Gives the law the derivatives D of its particles from the `first` on in place of L. */
+static void take_strains(const mps_mpm *mpm, double *const *D, int64_t first,
+                         mps_material_block *block) {
+  for (int a = 0; a < mpm->dim; a++)
+    for (int b = 0; b < mpm->dim; b++) block->gradient[3 * a + b] = D[mpm->dim * a + b] + first;
+}
+
+/* The particles from `begin` on; `first` is its place in the columns D. */
+static void apply_run(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end,
+                      double *const *D, int64_t first) {
   mpsi_columns *p = &mpm->p;
   const mpsi_law_use *law = mpsi_law_of(mpm, begin);
   mps_material_block block = columns_of(mpm, law, begin, end);
   double diagonal[3][MPSI_CHUNK];
+  take_strains(mpm, D, first, &block);
   if (mpm->p.stencil) {
     mpsi_mpm_mean_diagonals(mpm, cells, begin, end, diagonal);
     for (int c = 0; c < 3; c++) block.gradient[4 * c] = diagonal[c];
@@ -89,10 +99,11 @@ static void apply_run(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64
   if (mpm->energy.counts) mpsi_energy_law(mpm, cells, law, &block, &before, begin);
 }
 
-void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end) {
+void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end,
+                        double *const *D) {
   for (int64_t k = begin, next; k < end; k = next) {
     next = end_of_run(mpm->p.law, k, end);
-    apply_run(mpm, cells, k, next);
+    apply_run(mpm, cells, k, next, D, k - begin);
   }
 }
 

@@ -36,8 +36,10 @@ typedef struct mpsi_laws {
   mpsi_refusal refusal;
 } mpsi_laws;
 
-/* law.c: their laws on particles [begin, end) of a block. */
-void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end);
+/* law.c: their laws on particles [begin, end) of a block, with the velocity gradients of the columns
+ * `D` of these particles, as mpsi_columns.D. */
+void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end,
+                        double *const *D);
 /* law.c: the present wave moduli of particles [begin, end), raised where viscosity limits dt. */
 void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli);
 /* law.c: K + 4G/3 and G (Pa) of a particle's material at zero strain. */

@@ -54,7 +54,10 @@ MPSI_INLINE void mpsi_put_row(double *to, mpsi_vec v) { *(mpsi_vec_any *)to = v;
 typedef int64_t mpsi_mask __attribute__((vector_size(32))); /* of comparisons: 0 or -1 */
 #ifdef __clang__
 #define MPSI_SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
+#define MPSI_SHUFFLE_WIDE MPSI_SHUFFLE
 #else
+typedef int64_t mpsi_mask_wide __attribute__((vector_size(64)));
+#define MPSI_SHUFFLE_WIDE(a, b, ...) __builtin_shuffle(a, b, (mpsi_mask_wide){__VA_ARGS__})
 #define MPSI_SHUFFLE(a, b, ...) __builtin_shuffle(a, b, (mpsi_mask){__VA_ARGS__})
 #endif
 
@@ -70,7 +73,9 @@ MPSI_INLINE void mpsi_transpose(mpsi_quad *a) {
   a[3] = MPSI_SHUFFLE(q, s, 2, 3, 6, 7);
 }
 
-/* The same node values for every node of a vector; the sum over its nodes. */
+typedef double mpsi_two[8]; /* two rows of four side by side */
+
+/* The same node values for every node of a vector; the sum over its nodes; two such sums. */
 MPSI_INLINE mpsi_vec mpsi_spread(mpsi_quad a) {
 #if MPSI_WIDE == 2
   return (mpsi_vec){a[0], a[1], a[2], a[3], a[0], a[1], a[2], a[3]};
@@ -84,6 +89,17 @@ MPSI_INLINE mpsi_quad mpsi_fold(mpsi_vec a) {
   return (mpsi_quad){a[0], a[1], a[2], a[3]} + (mpsi_quad){a[4], a[5], a[6], a[7]};
 #else
   return a;
+#endif
+}
+
+MPSI_INLINE void mpsi_fold_two(mpsi_vec a, mpsi_vec b, double *out) {
+#if MPSI_WIDE == 2
+  const mpsi_vec sum = MPSI_SHUFFLE_WIDE(a, b, 0, 1, 2, 3, 8, 9, 10, 11) +
+                       MPSI_SHUFFLE_WIDE(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
+  mpsi_put_row(out, sum);
+#else
+  mpsi_put(out, a);
+  mpsi_put(out + 4, b);
 #endif
 }
 
@@ -117,6 +133,19 @@ MPSI_INLINE void mpsi_row_weights(int spline, double t, mpsi_vec *w, mpsi_vec *w
     }
     ws[v] = w[v] * (mpsi_by_node(at, i) - t);
   }
+}
+
+/* The derivative of a B-spline is the fit's slope w s/m2 and, times `excess`, the difference of
+ * second (quadratic) or third order (cubic) of the nodes of its stencil: sums of differences serve
+ * all particles of a stencil. t as of mpsi_weights. */
+MPSI_INLINE mpsi_quad mpsi_excess(int spline, mpsi_quad t) {
+  const mpsi_quad f = t - 1.0, g = 2.0 - t;
+  return spline == 3 ? 0.5 * (f * f) * (g * g) : 2.0 * f * (f * f - 0.25);
+}
+
+MPSI_INLINE double mpsi_difference(int spline, int i) {
+  static const double second[4] = {1.0, -2.0, 1.0, 0.0}, third[4] = {-1.0, 3.0, -3.0, 1.0};
+  return spline == 3 ? third[i] : second[i];
 }
 
 /* ---- chunks of particles --------------------------------------------------------------------- */
@@ -226,10 +255,11 @@ MPSI_INLINE uint32_t mpsi_support_state(const mpsi_worker *worker, int dim, int 
 /* Gives a particle to its nodes, straight. */
 void MPSI_LEVELLED(mpsi_scatter_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
                                         const mpsi_worker *worker, int64_t particle);
-/* Velocity (lanes 1 to 3 of motion[0]) and its derivatives by x, y, z (motion[1] to [3]). */
+/* Velocity (lanes 1 to 3 of v), its slopes by x, y, z and, behind each, its derivatives, which are
+ * others along axes with a full stencil. */
 void MPSI_LEVELLED(mpsi_gather_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                       const mpsi_worker *worker, int64_t particle,
-                                       double (*motion)[4]);
+                                       const mpsi_worker *worker, int64_t particle, double *v,
+                                       mpsi_two *L);
 
 /* The fit by itself; the largest speed of a block: see mpsi_kernels. */
 void MPSI_LEVELLED(mpsi_fit)(const mps_mpm *mpm, const mpsi_cell_block *cells,

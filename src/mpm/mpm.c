@@ -396,6 +396,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
                    mpm->rooms.radix.item,
                    mpm->rooms.flags.item,
                    mpm->rooms.stencil.item,
+                   mpm->rooms.strain.item,
                    mpm->rooms.gone.item,
                    mpm->undo.list_room.item,
                    mpm->undo.room.item,
@@ -444,6 +445,17 @@ mps_status mps_experimental_mpm_transfer(mps_mpm *mpm, int32_t transfer) {
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "transfer is %d, allowed are 0 (shape) and 1 (weight)", transfer);
   mpm->by_weight = transfer == MPS_EXPERIMENTAL_TRANSFER_WEIGHT;
+  return MPS_OK;
+}
+
+mps_status mps_experimental_mpm_strain(mps_mpm *mpm, int32_t strain) {
+  if (!mpm) return MPS_ERROR_ARGUMENT;
+  const mps_status status = check_before_steps(mpm, __func__);
+  if (status != MPS_OK) return status;
+  if (strain != MPS_EXPERIMENTAL_STRAIN_DERIVATIVE && strain != MPS_EXPERIMENTAL_STRAIN_FIT)
+    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                     "strain is %d, allowed are 0 (derivative) and 1 (fit)", strain);
+  mpm->strain_by_fit = strain == MPS_EXPERIMENTAL_STRAIN_FIT;
   return MPS_OK;
 }
 

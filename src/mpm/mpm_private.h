@@ -20,6 +20,7 @@ struct mpsi_kernels;
 /* Memory for each particle. */
 typedef struct mpsi_rooms {
   mpsi_room radix, flags, stencil;
+  mpsi_room strain; /* of the columns D */
   mpsi_room gone;  /* marks of what leaves at the end of a step; none where nothing can */
   mpsi_room force; /* of the columns f; none without loads */
 } mpsi_rooms;
@@ -38,6 +39,7 @@ struct mps_mpm {
   int32_t dim;
   /* For comparison (mps/experimental.h): */
   bool by_weight; /* velocities go to the nodes by the weights */
+  bool strain_by_fit; /* the laws see the slopes of the fit */
   bool standard;  /* the original material point method, with `flip`; else that is 0 */
   double flip;
   const struct mpsi_kernels *kernels;

@@ -36,6 +36,22 @@ void mpsi_mpm_bind(mps_mpm *mpm) {
   for (int32_t k = 0; k < mpm->laws.count; k++) mpsi_mpm_bind_law(mpm, &mpm->laws.law[k]);
 }
 
+/* So many columns, each over the particles, in one room. */
+static bool make_columns(mps_mpm *mpm, mpsi_room *room, int64_t particles, int32_t columns,
+                         double **column) {
+  const int64_t line = MPSI_ALIGNMENT / (int64_t)sizeof(double);
+  const int64_t stride = (particles + MPSI_PARTICLES_PADDING + line - 1) / line * line;
+  if (!mpsi_room_ensure(mpm->context, room, columns * stride, sizeof(double))) return false;
+  const int64_t widest = room->capacity / columns / line * line;
+  for (int c = 0; c < columns; c++)
+    column[c] = (double *)room->item + c * (widest > stride ? widest : stride);
+  return true;
+}
+
+bool mpsi_mpm_force_room(mps_mpm *mpm, int64_t particles) {
+  return make_columns(mpm, &mpm->rooms.force, particles, mpm->dim, mpm->p.f);
+}
+
 bool mpsi_mpm_make_room(void *solver, int64_t particles) {
   mps_mpm *mpm = solver;
   mps_context *context = mpm->context;
@@ -45,22 +61,12 @@ bool mpsi_mpm_make_room(void *solver, int64_t particles) {
       mpsi_room_ensure(context, &r->radix, 2 * particles, sizeof *mpm->grid.radix) &&
       mpsi_room_ensure(context, &r->flags, particles, sizeof *mpm->laws.flags) &&
       (!by_cell || mpsi_room_ensure(context, &r->stencil, particles, sizeof *mpm->p.stencil)) &&
+      (!by_cell || make_columns(mpm, &r->strain, particles, mpm->dim * mpm->dim, mpm->p.D)) &&
       (!r->force.item || mpsi_mpm_force_room(mpm, particles));
   mpm->grid.radix = r->radix.item;
   mpm->laws.flags = r->flags.item;
   mpm->p.stencil = r->stencil.item;
   return good;
-}
-
-bool mpsi_mpm_force_room(mps_mpm *mpm, int64_t particles) {
-  const int64_t line = MPSI_ALIGNMENT / (int64_t)sizeof(double);
-  const int64_t stride = (particles + MPSI_PARTICLES_PADDING + line - 1) / line * line;
-  if (!mpsi_room_ensure(mpm->context, &mpm->rooms.force, mpm->dim * stride, sizeof(double)))
-    return false;
-  const int64_t widest = mpm->rooms.force.capacity / mpm->dim / line * line;
-  for (int c = 0; c < mpm->dim; c++)
-    mpm->p.f[c] = (double *)mpm->rooms.force.item + c * (widest > stride ? widest : stride);
-  return true;
 }
 
 /* ---- checks ---------------------------------------------------------------------------------- */

@@ -66,7 +66,7 @@ mps_status mps_mpm_get_totals_sized(mps_mpm *mpm, mps_totals *out, size_t size) 
   mps_totals t = {.work_boundaries = e->boundaries, .work_bodies = e->bodies};
   sum_particles(mpm, &t);
   t.strain = e->kept + e->springs;
-  t.scheme = e->transfer + e->stepping;
+  t.scheme = e->transfer + e->stepping + e->strain;
   t.dissipated = e->spent + e->boundary_loss + e->friction_loss + e->damping_loss + t.scheme;
   t.work_loads = e->loads;
   if (!mpm->energy.counts) t.strain = t.scheme = t.dissipated = t.work_loads = NAN;
@@ -85,9 +85,10 @@ mps_status mps_mpm_get_losses_sized(mps_mpm *mpm, mps_mpm_losses *out, size_t si
                       .bodies = e->friction_loss,
                       .damping = e->damping_loss,
                       .transfer = e->transfer,
-                      .stepping = e->stepping};
+                      .stepping = e->stepping,
+                      .strain = e->strain};
   l.residual = e->loads + e->boundaries + e->bodies - e->kinetic - e->kept - e->springs - l.laws -
-               l.boundaries - l.bodies - l.damping - l.transfer - l.stepping;
+               l.boundaries - l.bodies - l.damping - l.transfer - l.stepping - l.strain;
   return mpsi_out_write(mpm->context, function, out, size, &l, sizeof l);
 }
 

@@ -15,9 +15,9 @@ enum { SUM_VOLUME = 0, SUM_TRACE = 1 };
 static void find_diagonal(const mps_mpm *mpm, const double **diagonal) {
   const mpsi_columns *p = &mpm->p;
   const bool space = mpm->dim == 3;
-  diagonal[0] = p->L[0];
-  diagonal[1] = p->L[space ? 4 : 3];
-  diagonal[2] = space ? p->L[8] : mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? p->L[4] : NULL;
+  diagonal[0] = p->D[0];
+  diagonal[1] = p->D[space ? 4 : 3];
+  diagonal[2] = space ? p->D[8] : mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? p->L[4] : NULL;
 }
 
 static double *sums_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t particle) {
@@ -53,8 +53,11 @@ void mpsi_mpm_mean_diagonals(const mps_mpm *mpm, const mpsi_cell_block *cells, i
 
 static void apply_laws(mps_mpm *mpm, int64_t b, int32_t worker) {
   mpsi_cell_block *cells = &mpm->grid.cells[b];
-  for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK)
-    mpsi_mpm_apply_law(mpm, cells, k, k + MPSI_CHUNK < cells->end ? k + MPSI_CHUNK : cells->end);
+  for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
+    double *D[9];
+    for (int c = 0; c < mpm->dim * mpm->dim; c++) D[c] = mpm->p.D[c] + k;
+    mpsi_mpm_apply_law(mpm, cells, k, k + MPSI_CHUNK < cells->end ? k + MPSI_CHUNK : cells->end, D);
+  }
   mpm->kernels->speed(mpm, b, worker);
 }
 

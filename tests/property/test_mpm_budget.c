@@ -18,7 +18,7 @@ static double size_of(mpm_scene *s, double start) {
   const mps_mpm_losses l = losses(s);
   return fabs(t.kinetic - start) + fabs(t.strain) + fabs(t.work_loads) + fabs(t.work_boundaries) +
          fabs(t.work_bodies) + fabs(l.laws) + fabs(l.boundaries) + fabs(l.bodies) +
-         fabs(l.damping) + fabs(l.transfer) + fabs(l.stepping);
+         fabs(l.damping) + fabs(l.transfer) + fabs(l.stepping) + fabs(l.strain);
 }
 
 static double sum_of(const mps_totals *t) {
@@ -33,9 +33,9 @@ static void assert_closes(mpm_scene *s, double start, const char *what, double t
   const double size = size_of(s, start);
   print_message(
       "%s: K %.4g U %.4g, works %.4g %.4g %.4g, laws %.3g sides %.3g bodies %.3g transfer "
-      "%.3g stepping %.3g; residual %.2g of it\n",
+      "%.3g stepping %.3g strain %.3g; residual %.2g of it\n",
       what, t.kinetic, t.strain, t.work_loads, t.work_boundaries, t.work_bodies, l.laws,
-      l.boundaries, l.bodies, l.transfer, l.stepping, l.residual / size);
+      l.boundaries, l.bodies, l.transfer, l.stepping, l.strain, l.residual / size);
   assert_true(size > 0.0 && fabs(l.residual) < tolerance * size);
   assert_true(fabs(sum_of(&t) - start + l.residual) < 1e-12 * (size + start));
 }

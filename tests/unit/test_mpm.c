@@ -402,6 +402,8 @@ static void variants_are_chosen_first(void **state) {
   mpm_scene_solve(&s, &def);
   mps_assert_fails(context, mps_experimental_mpm_transfer(s.mpm, -1), MPS_ERROR_ARGUMENT,
                    "transfer is -1");
+  mps_assert_fails(context, mps_experimental_mpm_strain(s.mpm, 2), MPS_ERROR_ARGUMENT,
+                   "strain is 2");
   mps_assert_fails(context, mps_experimental_mpm_standard(s.mpm, 1.5), MPS_ERROR_ARGUMENT,
                    "flip is 1.5");
   mpm_scene_side(&s, MPS_MPM_SIDE_X_LOWER, MPS_MPM_BOUNDARY_ABSORBING, 0.0);
@@ -411,6 +413,8 @@ static void variants_are_chosen_first(void **state) {
   mps_assert_fails(context, mps_experimental_mpm_standard(s.mpm, 1.0), MPS_ERROR_STATE,
                    "has taken 1 steps");
   mps_assert_fails(context, mps_experimental_mpm_transfer(s.mpm, 1), MPS_ERROR_STATE,
+                   "before the first");
+  mps_assert_fails(context, mps_experimental_mpm_strain(s.mpm, 1), MPS_ERROR_STATE,
                    "before the first");
   mpm_scene_end(&s);
 }
