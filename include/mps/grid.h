@@ -35,7 +35,9 @@ static inline mps_status mps_grid_get_info(mps_grid *grid, mps_grid_info *out) {
  *  their sum is that of the particles), `velocity` (m/s, 3 values a node, before the forces of the
  *  next step) and `force` (N, 3 values a node: of stresses, gravity, loads and the normal forces of
  *  bodies, not what boundaries and friction add in a step). Where bodies or edges cut supports a
- *  node's mass can be a little below 0. It costs about half a step. The particles are sorted if the
+ *  node's mass can be a little below 0. Nodes near a mirrored side (mps_mpm_walls) have what the
+ *  images beyond it give too: their masses add up as before, momenta and forces across it do not. It
+ *  costs about half a step. The particles are sorted if the
  *  next step would sort them: views are then stale. MPS_ERROR_STATE: a step has failed, a field is
  *  being edited, or new particles have no density. */
 MPS_API MPS_NODISCARD mps_status mps_grid_get_nodes(mps_grid *grid, int64_t capacity,

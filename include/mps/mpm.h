@@ -62,6 +62,13 @@ typedef enum mps_mpm_volumetric {
                                `volume_ratio` and `deformation_gradient` follow the mean */
 } mps_mpm_volumetric;
 
+/** What particles near a roller, a fixed side or the axis use beyond it. */
+typedef enum mps_mpm_walls {
+  MPS_MPM_WALLS_MIRROR = 0, /* images of the nodes inside: a roller is a mirror */
+  MPS_MPM_WALLS_FIT = 1     /* nothing: the fit takes the nodes that there are, as at other sides and
+                               at bodies (Nakamura). Affine velocities are kept that no mirror has */
+} mps_mpm_walls;
+
 typedef struct mps_mpm_def {
   uint32_t struct_size;
   int32_t geometry;   /* mps_mpm_geometry, default PLANE_STRAIN; of as many dimensions as the set.
@@ -93,6 +100,8 @@ typedef struct mps_mpm_def {
   mps_kernel *kernel; /* NULL (default): weights by `spline` and `cell`; else a B-spline of degree 2
                          or 3 of radius 1.5 or 2 cells, which says the degree in place of `spline`;
                          kept alive */
+  int32_t walls;      /* mps_mpm_walls, default MIRROR */
+  int32_t reserved;
 } mps_mpm_def;
 
 MPS_API mps_status mps_mpm_def_init(mps_mpm_def *def, size_t size);

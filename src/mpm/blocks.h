@@ -37,12 +37,14 @@ typedef struct mpsi_cell_block {
   int32_t to[MPSI_CORNERS]; /* blocks of nodes under the tile: own, +x, +y, +x+y, ... */
   /* What the loops must look after in the block; a block without any of these, which most are, has
    * full supports only.
-   *   edge    some node of the tile is outside the domain
+   *   edge    some node of the tile is outside the domain, beyond a side that is no mirror
    *   inside  some node that its stencils may use is in a body
    *   cut     edge or inside, or the standard scheme: some support may be cut, states are found
    *   split   some block of nodes under it is split: forces are summed apart from momenta there
-   *   apart   edge or split: the tile of forces is in use */
+   *   apart   edge, split, or inside with mirrors: the tile of forces is in use */
   bool edge, inside, cut, split, apart;
+  uint8_t mirrors;      /* bit k: its stencils may have nodes beyond side k, a mirror (mirror.h) */
+  int32_t first_mirror; /* of these in the list */
   bool gone;                  /* a particle has passed an open side */
   bool left;                  /* a particle is more than a cell outside the block */
   int32_t first_pair, pairs;  /* bodies that it may meet: of the list of mpsi_cell_pair */
@@ -117,6 +119,7 @@ typedef struct mpsi_grid {
   int32_t block_nodes, tile_nodes; /* nodes of a block, of a tile */
   double inverse;                  /* 1/m, 1/h */
   int64_t low[3], high[3];         /* first and last node of the domain */
+  int64_t use_low[3], use_high[3]; /* and of those that stencils may use: none beyond mirrors */
   mpsi_cell_block *cells;
   mpsi_node_block *nodes;
   mpsi_node *node, *side;

@@ -52,7 +52,17 @@ mps_status mpsi_mpm_update_holds(mps_mpm *mpm, const char *function);
 /* walls.c: the same with dashpots as they were at an earlier sort. */
 mps_status mpsi_mpm_put_dashes(mps_mpm *mpm, const char *function, int64_t count,
                                const mpsi_dash *dash);
+/* walls.c: their velocities in the next step of dt. */
+void mpsi_mpm_move_holds(mps_mpm *mpm, double dt);
+/* walls.c: absorbing walls at rest have looked for dt longer. */
 void mpsi_mpm_begin_holds(mps_mpm *mpm, double dt);
+void mpsi_hold_add_impulse(mps_reaction *r, double dt, const double *impulse, const double *moment,
+                           double work, int64_t count);
+/* walls.c: before all others: no impulses yet on the held nodes of a block. */
+void mpsi_mpm_begin_held(mps_mpm *mpm, int64_t g);
+/* walls.c: mirrored sides alone, also before the forces: for friction with bodies, which must see
+ * nodes on a mirror as their own images. */
+void mpsi_mpm_hold_mirrors(mps_mpm *mpm, int64_t g);
 /* `fixed`: of each node, bit c where a boundary alone moves component c; left where none acts. */
 void mpsi_mpm_hold_nodes(mps_mpm *mpm, int64_t g, uint8_t *fixed);
 void mpsi_mpm_sum_holds(mps_mpm *mpm);

@@ -232,7 +232,7 @@ void mpsi_energy_end(mps_mpm *mpm) {
   sum->spent += p.spent;
   sum->springs += e->springs - before;
   sum->loads += p.loads;
-  sum->boundary_loss += e->boundaries - e->driven_work - n.holds;
+  sum->boundary_loss += e->boundaries - e->driven_work - n.holds + e->mirrored;
   sum->friction_loss += n.surface - n.friction + mpm->contact.impulses.loss;
   sum->damping_loss -= n.damping;
   sum->transfer += (p.kinetic_before - n.kinetic_before) + (n.kinetic - p.kinetic) +

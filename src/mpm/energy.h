@@ -55,6 +55,7 @@ typedef struct mpsi_energy {
   mpsi_energy_sums sum;
   /* Of the step being made: */
   double boundaries, bodies;  /* works */
+  double mirrored;            /* work of the particles' forces on what moving mirrors add */
   double driven, driven_work; /* held particles: change of kinetic energy, work */
   double springs;             /* of contacts, at the end of the last step that was counted */
   bool springs_known;

@@ -17,15 +17,34 @@
 /* A stencil, and where in the blocks of nodes its nodes are. */
 typedef struct support {
   mpsi_stencil at;
-  int corner[3][4], local[3][4]; /* which block under the tile, and the node's number in it: sums */
+  int corner[3][4], local[3][4]; /* which block under the tile, and the node's number in it: sums;
+                                    of a ghost beyond a mirror those of its partner (mirror.h) */
+  bool ghost[3][4];              /* which are, along each axis; */
+  bool folds[3][4], any_folds;   /* and which are folded, on the mirror or beyond */
 } support;
+
+/* The partner of tile node t along axis c, or -1: t is inside. */
+MPSI_INLINE int partner_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int c, int t) {
+  const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
+  if (cells->mirrors >> (2 * c) & 1 && t <= mpm->grid.low[c] - first)
+    return 2 * (int)(mpm->grid.low[c] - first) - t;
+  if (cells->mirrors >> (2 * c + 1) & 1 && t >= mpm->grid.high[c] - first)
+    return 2 * (int)(mpm->grid.high[c] - first) - t;
+  return -1;
+}
 
 MPSI_INLINE void make_support(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
                               int64_t particle, support *out) {
   mpsi_make_stencil(mpm, cells, dim, spline, particle, &out->at);
+  out->any_folds = false;
   for (int c = 0, stride = 1; c < 3; c++, stride *= MPSI_SIDE)
     for (int i = 0; i < 4; i++) {
-      const int t = out->at.at[c] + i;
+      const int node = out->at.at[c] + i;
+      const int partner = cells->mirrors && c < dim ? partner_of(mpm, cells, c, node) : -1;
+      const int t = partner >= 0 ? partner : node;
+      out->ghost[c][i] = t != node;
+      out->folds[c][i] = partner >= 0;
+      out->any_folds = out->any_folds || partner >= 0;
       out->corner[c][i] = c < dim && t >= MPSI_SIDE ? 1 << c : 0;
       out->local[c][i] = c < dim ? (t & (MPSI_SIDE - 1)) * stride : 0;
     }
@@ -39,6 +58,22 @@ MPSI_INLINE int32_t block_under(const mpsi_cell_block *cells, const support *s, 
 
 MPSI_INLINE int local_of(const support *s, int i, int j, int k) {
   return s->local[0][i] + s->local[1][j] + s->local[2][k];
+}
+
+MPSI_INLINE bool is_ghost(const support *s, int i, int j, int k) {
+  return s->any_folds && (s->ghost[0][i] || s->ghost[1][j] || s->ghost[2][k]);
+}
+
+MPSI_INLINE bool is_folded(const support *s, int i, int j, int k) {
+  return s->any_folds && (s->folds[0][i] || s->folds[1][j] || s->folds[2][k]);
+}
+
+/* The force of a contact on a node that is folded, or its slip; `impulse` times what that
+ * changes the walls give. */
+static void reflect(const mps_mpm *mpm, const mpsi_cell_block *cells, const support *s, int i,
+                    int j, int k, double *vector, double impulse) {
+  int at[3] = {s->at.at[0] + i, s->at.at[1] + j, s->at.at[2] + k};
+  mpsi_mpm_reflect(mpm, cells, at, vector, impulse);
 }
 
 /* Outside every body that holds the node, seen from the node along the surface's normal. */
@@ -60,7 +95,9 @@ static bool active(const mps_mpm *mpm, const mpsi_cell_block *cells, uint8_t sta
   const unsigned dk = (unsigned)(k - at->own[2]);
   if (di <= 1 && dj <= 1 && dk <= 1) return true;
   if (!(state & MPSI_REACHED)) return false;
-  const double from[3] = {at->s[0][i], at->s[1][j], at->s[2][k]};
+  const double from[3] = {s->ghost[0][i] ? -at->s[0][i] : at->s[0][i],
+                          s->ghost[1][j] ? -at->s[1][j] : at->s[1][j],
+                          s->ghost[2][k] ? -at->s[2][k] : at->s[2][k]};
   return same_side(mpm, block_under(cells, s, i, j, k), local_of(s, i, j, k), from);
 }
 
@@ -244,8 +281,9 @@ MPSI_INLINE under nodes_under(const mps_mpm *mpm, const mpsi_cell_block *cells, 
   return out;
 }
 
-MPSI_INLINE void scatter(mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline, int64_t p,
-                         const support *at, const mpsi_shape_values *f) {
+MPSI_INLINE void scatter(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                         int dim, int spline, int64_t p, const support *at,
+                         const mpsi_shape_values *f) {
   const bool by_weight = mpm->by_weight;
   const double m = mpm->p.m[p];
   const source s = source_of(mpm, dim, p);
@@ -264,6 +302,13 @@ MPSI_INLINE void scatter(mps_mpm *mpm, const mpsi_cell_block *cells, int dim, in
     }
     mpsi_quad sum = v * (m * (by_weight ? w : phi));
     if (by_weight) sum[MPSI_MASS] = m * phi;
+    if (is_ghost(at, i, j, k)) { /* folded in the tile, with what other particles give */
+      const int t = mpsi_tile_index(at->at.at[0] + i, at->at.at[1] + j, at->at.at[2] + k);
+      force[MPSI_EXCESS] = m * (w - phi);
+      mpsi_put(worker->tile[t], mpsi_get(worker->tile[t]) + sum);
+      mpsi_put(worker->force[t], mpsi_get(worker->force[t]) + force);
+      continue;
+    }
     sum += to.dt[q] * force;
     double *side = to.side[q][local], *node = to.node[q][local];
     if (to.dt[q] == 0.0) mpsi_put(side, mpsi_get(side) + force);
@@ -302,11 +347,14 @@ MPSI_INLINE void scatter_contact(mps_mpm *mpm, const mpsi_cell_block *cells, int
     mpsi_contact_node *to =
         contact_node_of(mpm, block_under(cells, at, i, j, k), local_of(at, i, j, k), pair->body);
     const double mass = mpm->p.m[p] * f->phi[n];
-    to->mass += mass;
-    for (int a = 0; a < dim; a++) {
-      to->slip[a] += mass * c.slip[a];
-      to->force[a] += f->phi[n] * c.force[a];
+    double slip[3] = {0.0}, force[3] = {0.0};
+    for (int a = 0; a < dim; a++) slip[a] = mass * c.slip[a], force[a] = f->phi[n] * c.force[a];
+    if (is_folded(at, i, j, k)) {
+      reflect(mpm, cells, at, i, j, k, slip, 0.0);
+      reflect(mpm, cells, at, i, j, k, force, mpm->run.dt);
     }
+    to->mass += mass;
+    for (int a = 0; a < dim; a++) to->slip[a] += slip[a], to->force[a] += force[a];
   }
 }
 
@@ -327,9 +375,14 @@ MPSI_INLINE void share_friction(mps_mpm *mpm, const mpsi_cell_block *cells, int 
         contact_node_of(mpm, block_under(cells, at, i, j, k), local_of(at, i, j, k), pair->body);
     const double local[3] = {at->at.at[0] + i, at->at.at[1] + j, at->at.at[2] + k};
     const double mass = mpm->p.m[p] * f->phi[n];
-    double arm[3], reaction[3];
+    double arm[3], reaction[3], slip[3] = {from->slip[0], from->slip[1], from->slip[2]};
+    if (is_folded(at, i, j, k)) { /* its own slip, and what the wall has given with it */
+      reflect(mpm, cells, at, i, j, k, slip, 0.0);
+      double given[3] = {slip[0], slip[1], slip[2]};
+      reflect(mpm, cells, at, i, j, k, given, mpm->run.dt * mass);
+    }
     mpsi_node_position(mpm, cells->at, local, arm);
-    for (int a = 0; a < 3; a++) arm[a] -= body->pose.x[a], reaction[a] = -mass * from->slip[a];
+    for (int a = 0; a < 3; a++) arm[a] -= body->pose.x[a], reaction[a] = -mass * slip[a];
     mpsi_contact_add_load(&pair->load[c.part], arm, reaction);
   }
 }
@@ -343,7 +396,7 @@ MPSI_INLINE void scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells, const 
   mpsi_shape_values f;
   make_support(mpm, cells, dim, spline, particle, &at);
   const uint32_t bodies = fit(mpm, cells, worker, dim, spline, &at, &f);
-  scatter(mpm, cells, dim, spline, particle, &at, &f);
+  scatter(mpm, cells, worker, dim, spline, particle, &at, &f);
   for (int32_t q = 0; bodies && q < cells->pairs; q++) {
     mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
     if (bodies >> pair->body & 1) scatter_contact(mpm, cells, dim, spline, particle, &at, &f, pair);

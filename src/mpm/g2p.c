@@ -192,7 +192,7 @@ static void add_own(mps_mpm *mpm, int64_t begin, int n, const gathered *from) {
 }
 
 /* The nodes of a wall stand still, but a velocity fitted over them need not at the wall itself: a
- * particle that is pressed on it passes it by a little in time. */
+ * particle that is pressed on it passes it by a little in time. At a mirror it does not. */
 #define BEYOND 0.1 /* cells: a particle so far behind a wall is put back on it */
 
 /* Looks after particles [begin, end), one of which is outside the domain: the first that is too far
@@ -319,6 +319,7 @@ MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry,
   cells->bad = -1;
   cells->speed = 0.0;
   gather_tile(mpm, cells, worker->tile);
+  if (cells->mirrors) mpsi_mpm_unfold(mpm, cells, worker->tile);
   if (cells->cut) mpsi_mpm_find_states(mpm, cells, worker);
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;

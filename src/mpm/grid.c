@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+enum { MOST = MPSI_SIDE * MPSI_SIDE * MPSI_SIDE }; /* nodes of a block */
+
 void mpsi_mpm_clear_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
   (void)worker;
   const mpsi_node_block *nodes = &mpm->grid.nodes[g];
@@ -53,15 +55,33 @@ void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
   if (nodes->pairs > 0) mpsi_mpm_apply_contact(mpm, g);
 }
 
+/* Friction with bodies, mirrors having acted. `held` receives the velocities that the nodes would
+ * have without boundaries. */
+static void rub(mps_mpm *mpm, int64_t g, mpsi_node *held) {
+  const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(mpm, g));
+  const size_t bytes = (size_t)mpm->grid.block_nodes * sizeof *held;
+  mpsi_mpm_begin_held(mpm, g);
+  memcpy(held, node, bytes);
+  if (mpm->grid.nodes[g].pairs == 0 || mpm->grid.nodes[g].side < 0) return;
+  mpsi_node before[MOST], old[MOST];
+  mpsi_node *side = mpm->grid.side + mpsi_first_node(mpm, mpm->grid.nodes[g].side);
+  memcpy(old, side, bytes);
+  mpsi_mpm_hold_mirrors(mpm, g);
+  memcpy(before, node, bytes);
+  mpsi_mpm_apply_friction(mpm, g);
+  memcpy(side, old, bytes);
+  for (int k = 0; k < mpm->grid.block_nodes; k++)
+    for (int c = MPSI_VECTOR; c < 4; c++) held[k][c] += node[k][c] - before[k][c];
+}
+
 /* The same with damping, and with the energies of the nodes and their distance from equilibrium
  * where these are wanted. */
 static void finish_and_damp(mps_mpm *mpm, int64_t g) {
-  enum { MOST = MPSI_SIDE * MPSI_SIDE * MPSI_SIDE };
   mpsi_node held[MOST], damped[MOST];
   uint8_t fixed[MOST] = {0};
   const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(mpm, g));
   const size_t bytes = (size_t)mpm->grid.block_nodes * sizeof *held;
-  memcpy(held, node, bytes);
+  rub(mpm, g, held);
   mpsi_mpm_hold_nodes(mpm, g, fixed);
   memcpy(damped, node, bytes);
   if (mpm->settling.on) mpsi_mpm_measure_balance(mpm, g, fixed, (const mpsi_node *)held);
@@ -72,10 +92,15 @@ static void finish_and_damp(mps_mpm *mpm, int64_t g) {
 
 void mpsi_mpm_finish_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
   (void)worker;
-  uint8_t fixed[MPSI_SIDE * MPSI_SIDE * MPSI_SIDE];
-  if (mpm->grid.nodes[g].pairs > 0) mpsi_mpm_apply_friction(mpm, g);
-  if (mpsi_forces_apart(mpm) || mpm->def.viscous_damping > 0.0)
+  uint8_t fixed[MOST];
+  if (mpsi_forces_apart(mpm) || mpm->def.viscous_damping > 0.0) {
     finish_and_damp(mpm, g);
-  else
-    mpsi_mpm_hold_nodes(mpm, g, fixed);
+    return;
+  }
+  mpsi_mpm_begin_held(mpm, g);
+  if (mpm->grid.nodes[g].pairs > 0) {
+    mpsi_mpm_hold_mirrors(mpm, g);
+    mpsi_mpm_apply_friction(mpm, g);
+  }
+  mpsi_mpm_hold_nodes(mpm, g, fixed);
 }

@@ -80,13 +80,13 @@ void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker) {
 /* ---- states under a tile ----------------------------------------------------------------------
  */
 
-/* Nodes low to high - 1 of the tile along axis c are in the domain. */
+/* Nodes low to high - 1 of the tile along axis c are in the domain, or beyond a mirror. */
 static void domain_under(const mps_mpm *mpm, const mpsi_cell_block *cells, int c, int *low,
                          int *high) {
   const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
-  *low = mpm->grid.low[c] > first ? (int)(mpm->grid.low[c] - first) : 0;
-  *high = mpm->grid.high[c] < first + MPSI_TILE_SIDE ? (int)(mpm->grid.high[c] - first) + 1
-                                                     : MPSI_TILE_SIDE;
+  *low = mpm->grid.use_low[c] > first ? (int)(mpm->grid.use_low[c] - first) : 0;
+  *high = mpm->grid.use_high[c] < first + MPSI_TILE_SIDE ? (int)(mpm->grid.use_high[c] - first) + 1
+                                                         : MPSI_TILE_SIDE;
 }
 
 static void mark_outside(const mps_mpm *mpm, const mpsi_cell_block *cells, uint8_t *state) {
@@ -128,4 +128,5 @@ void mpsi_mpm_find_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi
     const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
     if (nodes->inside) mark_inside(mpm, nodes, q, worker);
   }
+  if (cells->mirrors) mpsi_mpm_mirror_states(mpm, cells, worker);
 }

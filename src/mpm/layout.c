@@ -24,14 +24,6 @@ bool mpsi_room_ensure(mps_context *context, mpsi_room *room, int64_t count, size
 
 /* ---- blocks ---------------------------------------------------------------------------------- */
 
-static void find_edge(const mps_mpm *mpm, mpsi_cell_block *cells) {
-  for (int c = 0; c < mpm->dim; c++) {
-    const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
-    if (first < mpm->grid.low[c] || first + MPSI_TILE_SIDE - 1 > mpm->grid.high[c])
-      cells->edge = true;
-  }
-}
-
 /* Widens the part of the tile in use by a stencil, and by a cell to either side. */
 static void widen_use(const mps_mpm *mpm, uint64_t within, mpsi_cell_block *cells) {
   for (int c = 0; c < mpm->dim; c++, within /= MPSI_SIDE) {
@@ -57,7 +49,6 @@ static void place_block(mps_mpm *mpm, int64_t b, int32_t worker) {
   }
   for (int64_t k = cells->begin; k < cells->end; k++)
     if (k == cells->begin || key[k].key != key[k - 1].key) widen_use(mpm, key[k].key & own, cells);
-  find_edge(mpm, cells);
 }
 
 /* Runs of particles of the sorted keys; the count alone where `cells` is NULL. */
@@ -180,7 +171,6 @@ mps_status mpsi_mpm_place_blocks(mps_mpm *mpm, const char *function, int64_t cou
       mpm->grid.cells[k].low[c] = (int32_t)block[k][MPSI_BLOCK_LOW + c];
       mpm->grid.cells[k].high[c] = (int32_t)block[k][MPSI_BLOCK_HIGH + c];
     }
-    find_edge(mpm, &mpm->grid.cells[k]);
   }
   return build_nodes(mpm, count) ? MPS_OK : no_room(mpm, function, count);
 }

@@ -52,6 +52,9 @@ static mps_status check_choices(mps_context *context, const mps_mpm_def *d) {
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "budget is %d, allowed are 0 (no energies) and 1 (the energy budget)",
                      d->budget);
+  if (d->walls != MPS_MPM_WALLS_MIRROR && d->walls != MPS_MPM_WALLS_FIT)
+    return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                     "walls is %d, allowed are 0 (mirror) and 1 (fit)", d->walls);
   if (d->step_from != MPS_MPM_STEP_FROM_SPEED && d->step_from != MPS_MPM_STEP_FROM_WAVE)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "step_from is %d, allowed are 0 (speed) and 1 (wave)", d->step_from);
@@ -385,6 +388,8 @@ void mps_mpm_destroy(mps_mpm **pointer) {
                    mpm->contact.node_room.item,
                    mpm->contact.inside_room.item,
                    mpm->contact.reached_room.item,
+                   mpm->mirrors.mirror_room.item,
+                   mpm->mirrors.mass_room.item,
                    mpm->boundaries.held_room.item,
                    mpm->boundaries.dash_room.item,
                    mpm->boundaries.old_held_room.item,

@@ -11,6 +11,7 @@
 #include "energy.h"
 #include "laws.h"
 #include "loads.h"
+#include "mirror.h"
 #include "pairs.h"
 #include "run.h"
 #include "undo.h"
@@ -49,6 +50,7 @@ struct mps_mpm {
   mpsi_grid grid;
   mpsi_contacts contact;
   mpsi_boundaries boundaries;
+  mpsi_mirrors mirrors;
   mpsi_loads loads;
   mpsi_laws laws;
   mpsi_run run;

@@ -29,7 +29,12 @@ static mps_status make_sums(mps_mpm *mpm, const char *function) {
   mpm->grid.apart = true;
   if (status == MPS_OK) status = mpsi_mpm_find_near(mpm, function);
   if (status == MPS_OK) status = mpsi_mpm_find_forces(mpm, function);
-  if (status == MPS_OK) mpsi_mpm_run_pass(mpm, &pass);
+  if (status != MPS_OK) {
+    mpm->grid.apart = false;
+    return status;
+  }
+  mpsi_mpm_move_holds(mpm, mps_mpm_dt(mpm));
+  mpsi_mpm_run_pass(mpm, &pass);
   mpm->grid.apart = false;
   return status;
 }

@@ -219,6 +219,7 @@ MPSI_INLINE void p2g_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry,
     memset(pair->contacts, 0, sizeof pair->contacts);
   }
   if (cells->cut) mpsi_mpm_find_states(mpm, cells, worker);
+  if (cells->mirrors) mpsi_mpm_begin_mirrors(mpm, cells);
   clear(cells, worker->tile);
   if (cells->apart) clear(cells, worker->force);
   const mpsi_cell_block *next = dim == 2 && b + 2 < mpm->grid.cell_count ? cells + 2 : NULL;
@@ -227,6 +228,7 @@ MPSI_INLINE void p2g_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry,
     if (next) prefetch_chunk(&mpm->p, next->begin + (k - cells->begin), next->end);
     p2g_chunk(mpm, cells, worker, geometry, spline, k, rest < MPSI_CHUNK ? (int)rest : MPSI_CHUNK);
   }
+  if (cells->mirrors) mpsi_mpm_fold(mpm, cells, worker);
   for (int q = 0; q < 1 << dim; q++) flush(mpm, cells, q, worker);
 }
 

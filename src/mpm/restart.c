@@ -61,9 +61,9 @@ static void set_blocks(void *solver, int64_t rows, const void *values) {
       mpsi_mpm_place_blocks(mpm, "restore", rows, (const mpsi_block *)values) != MPS_OK;
 }
 
-/* How much room the lists that follow from the blocks take: blocks of nodes, held ones, dashpots.
- */
-enum { SIZES = 3 };
+/* How much room the lists that follow from the blocks take: blocks of nodes, held ones, dashpots,
+ * mirrors. */
+enum { SIZES = 4 };
 
 static int64_t one_row(const void *solver) {
   (void)solver;
@@ -76,6 +76,7 @@ static void get_sizes(const void *solver, void *values) {
   size[0] = mpm->grid.node_count;
   size[1] = mpm->boundaries.held_count;
   size[2] = mpm->boundaries.dash_count;
+  size[3] = mpm->mirrors.count;
 }
 
 static bool reserve_sizes(void *solver, int64_t rows, const void *values) {
@@ -90,11 +91,16 @@ static bool reserve_sizes(void *solver, int64_t rows, const void *values) {
       keep_room(mpm->context, &b->held_room, size[1], sizeof *b->held) &&
       keep_room(mpm->context, &b->old_held_room, size[1], sizeof *b->held) &&
       keep_room(mpm->context, &b->dash_room, size[2], sizeof *b->dash) &&
-      keep_room(mpm->context, &b->old_dash_room, size[2], sizeof *b->dash);
+      keep_room(mpm->context, &b->old_dash_room, size[2], sizeof *b->dash) &&
+      keep_room(mpm->context, &mpm->mirrors.mirror_room, size[3], sizeof *mpm->mirrors.mirror) &&
+      keep_room(mpm->context, &mpm->mirrors.mass_room,
+                size[3] * mpsi_mirror_plane(grid->tile_nodes), sizeof *mpm->mirrors.mass);
   grid->nodes = grid->nodes_room.item;
   grid->node = grid->node_room.item;
   b->held = b->held_room.item;
   b->dash = b->dash_room.item;
+  mpm->mirrors.mirror = mpm->mirrors.mirror_room.item;
+  mpm->mirrors.mass = mpm->mirrors.mass_room.item;
   return good;
 }
 
@@ -180,6 +186,7 @@ static void list_setting(mpsi_state *s, const mps_mpm *mpm) {
   for (int32_t k = 0; k < mpm->loads.count; k++) loads += mpm->loads.traction[k].count > 0;
   mpsi_state_agree_integer(s, "geometry", mpm->def.geometry);
   mpsi_state_agree_integer(s, "scheme", mpm->standard);
+  mpsi_state_agree_integer(s, "walls", mpm->def.walls);
   mpsi_state_agree_integer(s, "spline", mpm->def.spline);
   mpsi_state_agree_number(s, "cell", mpm->def.cell);
   for (int c = 0; c < mpm->dim; c++) {

@@ -122,6 +122,7 @@ static mps_status move(mps_mpm *mpm, const char *function, double dt) {
                     .scatter = mpm->kernels->p2g[geometry][spline],
                     .update = mpsi_mpm_update_nodes,
                     .between = mpm->contact.bodies > 0 ? mpsi_mpm_find_contact_mass : NULL};
+  mpsi_mpm_move_holds(mpm, dt); /* signals --> velocities of walls, boxes */
   if (mpm->contact.cell_pair_count > 0) { /* no particle moves before all depths are known */
     mpsi_mpm_run_pass(mpm, &pass);
     mpsi_mpm_fit_touches(mpm);
@@ -134,7 +135,7 @@ static mps_status move(mps_mpm *mpm, const char *function, double dt) {
   }
   pass.finish = mpsi_mpm_finish_nodes;
   pass.gather = mpm->undo.on ? keep_and_gather : mpm->kernels->g2p[geometry][spline];
-  mpsi_mpm_begin_holds(mpm, dt); /* signals --> velocities of walls, boxes */
+  mpsi_mpm_begin_holds(mpm, dt);
   mpsi_mpm_run_pass(mpm, &pass);
   return MPS_OK;
 }

@@ -1,4 +1,5 @@
-/* wall.h - particles whose support nothing but one wall of the domain cuts, across one axis. Their
+/* wall.h - particles whose support nothing but one wall of the domain cuts, across one axis: sides
+ * that are no mirrors (mirror.h). Their
  * fit, Nakamura (5), (6), falls apart into one along each axis: along the others the stencil is
  * full, and across the wall, with the moments M0, M1, M2 of w over its active nodes, phi = w (M2 -
  * M1 s)/D,  dphi/ds = w (M0 s - M1)/D,  D = M0 M2 - M1^2. The shape function is phi times the w of
@@ -34,7 +35,7 @@ MPSI_INLINE int mpsi_wall_axis(const mps_mpm *mpm, const mpsi_cell_block *cells,
   mpsi_unravel(first, MPSI_TILE_SIDE, place);
   for (int c = 0; c < dim; c++) {
     const int64_t node = (int64_t)cells->at[c] * MPSI_SIDE + place[c];
-    if (node >= mpm->grid.low[c] && node + spline <= mpm->grid.high[c]) continue;
+    if (node >= mpm->grid.use_low[c] && node + spline <= mpm->grid.use_high[c]) continue;
     if (axis >= 0) return -1;
     axis = c;
   }
@@ -45,7 +46,7 @@ MPSI_INLINE int mpsi_wall_axis(const mps_mpm *mpm, const mpsi_cell_block *cells,
 MPSI_INLINE bool mpsi_wall_active(const mps_mpm *mpm, const mpsi_cell_block *cells, int c,
                                   int place, int i) {
   const int64_t node = (int64_t)cells->at[c] * MPSI_SIDE + place + i;
-  return node >= mpm->grid.low[c] && node <= mpm->grid.high[c];
+  return node >= mpm->grid.use_low[c] && node <= mpm->grid.use_high[c];
 }
 
 /* The weights of particle k of the chunk across the wall; returns M0. */

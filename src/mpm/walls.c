@@ -62,6 +62,9 @@ static void swap_rooms(mpsi_room *a, mpsi_room *b) {
 /* A new list, in other memory than the old one. */
 static mps_status make_list(mps_mpm *mpm, const char *function) {
   int64_t count, dashes;
+  mpm->boundaries.outdated = true;
+  const mps_status status = mpsi_mpm_list_mirrors(mpm, function);
+  if (status != MPS_OK) return status;
   swap_rooms(&mpm->boundaries.held_room, &mpm->boundaries.old_held_room);
   swap_rooms(&mpm->boundaries.dash_room, &mpm->boundaries.old_dash_room);
   bool good = list(mpm, &count, &dashes);
@@ -205,6 +208,44 @@ static void for_range(block *b, const mpsi_hold *hold, mpsi_held *held, hold_fn 
       }
 }
 
+static void begin_block(mps_mpm *mpm, int64_t g, uint8_t *fixed, block *b) {
+  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  b->mpm = mpm; /* push is written before it is read */
+  b->node = mpm->grid.node + mpsi_first_node(mpm, g);
+  b->side = nodes->side >= 0 ? mpm->grid.side + mpsi_first_node(mpm, nodes->side) : NULL;
+  b->held = fixed;
+  memset(fixed, 0, (size_t)mpm->grid.block_nodes);
+}
+
+void mpsi_mpm_begin_held(mps_mpm *mpm, int64_t g) {
+  mpsi_held *first = mpm->boundaries.held + mpm->grid.nodes[g].first_held;
+  for (int32_t t = 0; t < mpm->grid.nodes[g].holds; t++) {
+    memset(first[t].impulse, 0, sizeof first[t].impulse);
+    memset(first[t].moment, 0, sizeof first[t].moment);
+    first[t].work = 0.0;
+    first[t].count = 0;
+  }
+}
+
+void mpsi_mpm_hold_mirrors(mps_mpm *mpm, int64_t g) {
+  uint8_t fixed[BLOCK];
+  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  mpsi_held *first = mpm->boundaries.held + nodes->first_held;
+  if (nodes->holds == 0) return;
+  block b;
+  begin_block(mpm, g, fixed, &b);
+  for (int pass = 0; pass < 2; pass++)
+    for (int32_t t = 0; t < nodes->holds; t++) {
+      const mpsi_hold *hold = &mpm->boundaries.hold[first[t].hold];
+      const bool holds_all = hold->kind == MPS_MPM_BOUNDARY_FIXED;
+      if (mpsi_is_mirror(mpm, first[t].hold) && holds_all == (pass == 1))
+        for_range(&b, hold, &first[t], holds_all ? prescribe : hold_across);
+    }
+  for (int k = 0; k < mpm->grid.block_nodes && nodes->split; k++)
+    for (int c = 0; c < mpm->dim; c++)
+      if (fixed[k] >> c & 1) b.side[k][MPSI_VECTOR + c] = b.node[k][MPSI_VECTOR + c];
+}
+
 /* What acts across walls comes before friction: where walls meet, that of one must not move a node
  * into the other. */
 void mpsi_mpm_hold_nodes(mps_mpm *mpm, int64_t g, uint8_t *fixed) {
@@ -218,18 +259,8 @@ void mpsi_mpm_hold_nodes(mps_mpm *mpm, int64_t g, uint8_t *fixed) {
   const mpsi_node_block *nodes = &mpm->grid.nodes[g];
   if (nodes->holds == 0) return;
   mpsi_held *first = mpm->boundaries.held + nodes->first_held;
-  block b; /* push is written before it is read */
-  b.mpm = mpm;
-  b.node = mpm->grid.node + mpsi_first_node(mpm, g);
-  b.side = nodes->side >= 0 ? mpm->grid.side + mpsi_first_node(mpm, nodes->side) : NULL;
-  b.held = fixed;
-  memset(fixed, 0, (size_t)mpm->grid.block_nodes);
-  for (int32_t t = 0; t < nodes->holds; t++) {
-    memset(first[t].impulse, 0, sizeof first[t].impulse);
-    memset(first[t].moment, 0, sizeof first[t].moment);
-    first[t].work = 0.0;
-    first[t].count = 0;
-  }
+  block b;
+  begin_block(mpm, g, fixed, &b);
   for (size_t pass = 0; pass < sizeof order / sizeof *order; pass++)
     for (int32_t t = 0; t < nodes->holds; t++) {
       const mpsi_hold *hold = &mpm->boundaries.hold[first[t].hold];
@@ -240,9 +271,13 @@ void mpsi_mpm_hold_nodes(mps_mpm *mpm, int64_t g, uint8_t *fixed) {
 /* ---- a step ---------------------------------------------------------------------------------- */
 
 void mpsi_mpm_begin_holds(mps_mpm *mpm, double dt) {
+  for (int32_t k = 0; k < MPSI_HOLDS; k++)
+    if (mpm->boundaries.hold[k].finds) mpm->boundaries.hold[k].found += dt;
+}
+
+void mpsi_mpm_move_holds(mps_mpm *mpm, double dt) {
   for (int32_t k = 0; k < MPSI_HOLDS; k++) {
     mpsi_hold *hold = &mpm->boundaries.hold[k];
-    if (hold->finds) hold->found += dt;
     for (int c = 0; c < mpm->dim; c++)
       hold->v[c] =
           hold->signal[c] && !mpm->settling.on
@@ -251,8 +286,8 @@ void mpsi_mpm_begin_holds(mps_mpm *mpm, double dt) {
   }
 }
 
-static void add_impulse(mps_reaction *r, double dt, const double *impulse, const double *moment,
-                        double work, int64_t count) {
+void mpsi_hold_add_impulse(mps_reaction *r, double dt, const double *impulse, const double *moment,
+                           double work, int64_t count) {
   for (int c = 0; c < 3; c++) {
     r->force[c] += impulse[c] / dt;
     r->moment[c] += moment[c] / dt;
@@ -274,10 +309,11 @@ void mpsi_mpm_sum_holds(mps_mpm *mpm) {
   }
   for (int64_t t = 0; t < mpm->boundaries.held_count; t++) {
     const mpsi_held *held = &mpm->boundaries.held[t];
-    add_impulse(&hold[held->hold].reaction, mpm->run.dt, held->impulse, held->moment, held->work,
-                held->count);
+    mpsi_hold_add_impulse(&hold[held->hold].reaction, mpm->run.dt, held->impulse, held->moment,
+                          held->work, held->count);
     mpm->energy.boundaries += held->work;
   }
+  mpsi_mpm_sum_mirrors(mpm);
 }
 
 /* ---- particles ------------------------------------------------------------------------------- */
@@ -331,7 +367,7 @@ static void drive_particle(mps_mpm *mpm, mpsi_hold *hold, int64_t k) {
     const int a = (c + 1) % 3, b = (c + 2) % 3;
     moment[c] = x[a] * impulse[b] - x[b] * impulse[a];
   }
-  add_impulse(&hold->reaction, mpm->run.dt, impulse, moment, work, 1);
+  mpsi_hold_add_impulse(&hold->reaction, mpm->run.dt, impulse, moment, work, 1);
   mpm->energy.boundaries += work;
   mpm->energy.driven_work += work;
   check_place(mpm, k);

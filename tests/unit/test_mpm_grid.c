@@ -63,10 +63,10 @@ static void nodes_have_the_particles_mass_and_momentum(void **state) {
         }
       }
       mps_assert_near(mass, t.mass, 1e-13 * t.mass);
-      mps_assert_near(force[1], -9.81 * t.mass, 1e-12 * 9.81 * t.mass);
-      mps_assert_near(force[0], 0.0, 1e-12 * 9.81 * t.mass);
-      for (int c = 0; c < 3 && !corner; c++)
+      for (int c = 0; c < 3 && !corner; c++) { /* in the corner the images give theirs */
+        mps_assert_near(force[c], c == 1 ? -9.81 * t.mass : 0.0, 1e-12 * 9.81 * t.mass);
         mps_assert_near(momentum[c], t.linear[c], 1e-12 * t.mass);
+      }
       assert_true(extent < 2.2);
       free(n);
       mpm_scene_end(&s);

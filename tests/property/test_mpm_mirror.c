@@ -1,0 +1,304 @@
+/* test_mpm_mirror.c - mirrored sides of the WLS-MPM solver: a roller is a mirror, also at corners
+ * and where bodies cross it; what walls and bodies give is what the particles get, also of moving
+ * walls; the energy budget closes. SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_scene.h"
+#include "test_fixture.h"
+
+#include "mpm/mpm_private.h"
+
+#include <mps/mpm_energy.h>
+
+static uint64_t seed = 1;
+
+static double uniform(double low, double high) { /* Knuth's MMIX generator, the upper 53 bits */
+  seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+  return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
+}
+
+/* ---- half and whole -------------------------------------------------------------------------- */
+
+enum { STEPS = 150 };
+
+/* The part of a box of 0.2 m, centred on x = z = 0 and standing on y = 0, in which bit c of `cut`
+ * says that only c > 0 is there, beyond a roller. A smooth or rough ball falls on its top. */
+static mpm_scene part_of_box(int32_t geometry, int32_t spline, uint32_t cut, double friction) {
+  const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
+  const double spacing = dim == 3 ? 0.02 : 0.01, half = 0.1;
+  mpm_scene s = mpm_scene_begin_in(context, dim, spacing, 0.0, 0.0, 1e5);
+  double lo[3], hi[3];
+  for (int c = 0; c < 3; c++)
+    lo[c] = c == 1 || cut >> c & 1 ? 0.0 : -half, hi[c] = c == 1 ? 2.0 * half : half;
+  mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
+  mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity", 0));
+  mps_view x = mpm_scene_view(&s, "position"), v = mpm_scene_view(&s, "velocity");
+  for (int64_t k = 0; k < x.shape[0]; k++) { /* what all the mirrors have */
+    double at[3] = {0.0};
+    for (int c = 0; c < dim; c++) at[c] = *mps_view_f64(&x, k, c);
+    for (int c = 0; c < dim; c++)
+      *mps_view_f64(&v, k, c) =
+          c == 1 ? cos(20.0 * at[0]) * sin(9.0 * at[1]) * cos(15.0 * at[2])
+                 : sin(12.0 * at[c]) * cos(7.0 * at[1]) * (c == 0 ? cos(8.0 * at[2]) : 1.0);
+  }
+  mps_mpm_def def = mps_mpm_defaults();
+  def.geometry = geometry;
+  def.spline = spline;
+  def.cell = 2.0 * spacing;
+  def.dt = 0.2 * def.cell / sqrt(1e5 * 0.7 / (1.3 * 0.4) / 1000.0);
+  for (int c = 0; c < dim; c++)
+    if (c == 1 || cut >> c & 1) def.lower[c] = 0.0;
+  def.gravity[1] = -9.81;
+  mpm_scene_solve(&s, &def);
+  if (friction < 0.0) return s;
+  mps_body *ball = NULL;
+  mps_body_def body = mps_body_defaults();
+  mps_signal *down = NULL;
+  const double t[] = {0.0, 1.0}, way[] = {0.0, -0.5}; /* s, m */
+  body.position[1] = 0.2 + 0.08 + 0.5 * spacing;
+  mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_DISPLACEMENT, 2, t, way, &down));
+  mps_assert_ok(context, dim == 3 ? mps_body_create_sphere(context, &body, 0.08, &ball)
+                                  : mps_body_create_disc(context, &body, 0.08, &ball));
+  mps_assert_ok(context, mps_body_drive(ball, 1, down, 1.0));
+  mpm_scene_contact(&s, ball, friction);
+  mps_signal_destroy(&down);
+  mps_body_destroy(&ball);
+  return s;
+}
+
+/* The particle of `set` nearest to x. */
+static int64_t nearest_of(const mps_view *x, int dim, const double *at) {
+  int64_t best = -1;
+  double least = INFINITY;
+  for (int64_t k = 0; k < x->shape[0]; k++) {
+    double d = 0.0;
+    for (int c = 0; c < dim; c++) d += pow(*mps_view_f64(x, k, c) - at[c], 2);
+    if (d < least) least = d, best = k;
+  }
+  return best;
+}
+
+static void compare_part(int32_t geometry, int32_t spline, uint32_t cut, double friction) {
+  mps_reaction r = {0};
+  mpm_scene whole = part_of_box(geometry, spline, 0, friction);
+  mpm_scene part = part_of_box(geometry, spline, cut, friction);
+  const int dim = part.mpm->dim;
+  mps_assert_ok(context, mps_mpm_step(whole.mpm, STEPS));
+  mps_assert_ok(context, mps_mpm_step(part.mpm, STEPS));
+  double force = 0.0;
+  if (friction >= 0.0) { /* the body feels the part */
+    mps_assert_ok(context, mps_body_get_reaction(whole.mpm->contact.body[0], -1, &r));
+    force = r.impulse[1] / (cut == 5 ? 4.0 : 2.0);
+    mps_assert_ok(context, mps_body_get_reaction(part.mpm->contact.body[0], -1, &r));
+    assert_true(force > 0.0);
+    mps_assert_near(r.impulse[1], force, 1e-11 * force);
+  }
+  mps_view x = mpm_scene_view(&part, "position"), X = mpm_scene_view(&whole, "position");
+  mps_view stress = mpm_scene_view(&part, "stress"), S = mpm_scene_view(&whole, "stress");
+  double apart = 0.0, stresses = 0.0, largest = 0.0;
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    double at[3] = {0.0};
+    for (int c = 0; c < dim; c++) at[c] = *mps_view_f64(&x, k, c);
+    const int64_t K = nearest_of(&X, dim, at);
+    for (int c = 0; c < dim; c++) apart = fmax(apart, fabs(*mps_view_f64(&X, K, c) - at[c]));
+    for (int c = 0; c < 2 * dim; c++) {
+      stresses = fmax(stresses, fabs(*mps_view_f64(&S, K, c) - *mps_view_f64(&stress, k, c)));
+      largest = fmax(largest, fabs(*mps_view_f64(&S, K, c)));
+    }
+  }
+  print_message(
+      "geometry %d, spline %d, cut %u, friction %g: places apart %.2g m, stresses %.2g of "
+      "the largest\n",
+      (int)geometry, (int)spline, (unsigned)cut, friction, apart, stresses / largest);
+  assert_true(apart < 1e-12);
+  assert_true(stresses < 1e-10 * largest);
+  mpm_scene_end(&whole);
+  mpm_scene_end(&part);
+}
+
+static void roller_is_a_mirror(void **state) {
+  (void)state;
+  for (int32_t spline = 2; spline <= 3; spline++) {
+    compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, -1.0);
+    compare_part(MPS_MPM_SPACE, spline, 5, -1.0);
+  }
+}
+
+/* A body that crosses the wall cuts the supports of ghosts as it does those of their partners. */
+static void bodies_cross_a_mirror(void **state) {
+  (void)state;
+  for (int32_t spline = 2; spline <= 3; spline++)
+    for (int rough = 0; rough < 2; rough++) {
+      compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, 0.3 * rough);
+      compare_part(MPS_MPM_SPACE, spline, 5, 0.3 * rough);
+    }
+}
+
+/* ---- balances -------------------------------------------------------------------------------- */
+
+/* A domain full of particles in disorder, walls of all mirrored kinds at work; y frictional above,
+ * so that mirrors meet a wall of the other kind; a rough disc or ball across the wall x = 0.4. */
+static mpm_scene turmoil(int32_t geometry, int32_t spline, bool moves, bool body, int32_t budget) {
+  const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
+  const double lo[] = {geometry == MPS_MPM_AXISYMMETRIC ? 0.0 : 0.1, -0.1, 0.0};
+  const double hi[] = {0.4, 0.1, 0.04};
+  mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.0, 0.0, 1e5);
+  mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
+  mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity", 0));
+  mps_view v = mpm_scene_view(&s, "velocity");
+  for (int64_t k = 0; k < v.shape[0]; k++)
+    for (int c = 0; c < dim; c++) *mps_view_f64(&v, k, c) = uniform(-0.5, 0.5);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.geometry = geometry;
+  def.spline = spline;
+  def.budget = budget;
+  def.cell = 0.02;
+  for (int c = 0; c < dim; c++) def.lower[c] = lo[c], def.upper[c] = hi[c];
+  def.gravity[0] = geometry == MPS_MPM_AXISYMMETRIC ? 0.0 : 3.0, def.gravity[1] = -9.81;
+  mpm_scene_solve(&s, &def);
+  mps_signal *signal = NULL;
+  mps_assert_ok(context, mps_signal_sine(context, 20.0, 0.0005, 0.3, &signal));
+  mpm_scene_side(&s, MPS_MPM_SIDE_X_UPPER, MPS_MPM_BOUNDARY_ROLLER, 0.0);
+  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
+  mpm_scene_side(&s, MPS_MPM_SIDE_Y_UPPER, MPS_MPM_BOUNDARY_FRICTIONAL, 0.2);
+  if (moves) {
+    mpm_scene_drive(&s, MPS_MPM_SIDE_X_UPPER, MPS_MPM_BOUNDARY_ROLLER, 0.0, 0, signal, 0.7);
+    mpm_scene_drive(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0, 0, signal, 1.0);
+    if (dim == 3)
+      mpm_scene_drive(&s, MPS_MPM_SIDE_Z_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0, 1, signal, -0.5);
+  }
+  mps_signal_destroy(&signal);
+  if (!body) return s;
+  mps_body *ball = NULL;
+  mps_body_def at = mps_body_defaults();
+  mps_contact_def contact = mps_contact_defaults();
+  at.position[0] = 0.4, at.position[2] = dim == 3 ? 0.01 : 0.0;
+  contact.friction = 0.4;
+  contact.inside = MPS_CONTACT_INSIDE_REMOVE;
+  mps_assert_ok(context, dim == 3 ? mps_body_create_sphere(context, &at, 0.05, &ball)
+                                  : mps_body_create_disc(context, &at, 0.05, &ball));
+  mps_assert_ok(context, mps_mpm_add_contact(s.mpm, ball, &contact, NULL));
+  mps_body_destroy(&ball);
+  return s;
+}
+
+/* Impulse and moment of all walls and bodies until now. */
+static void given(mpm_scene *s, double *impulse, double *moment) {
+  memset(impulse, 0, 3 * sizeof *impulse);
+  memset(moment, 0, 3 * sizeof *moment);
+  for (int32_t k = 0; k < 2 * s->mpm->dim; k++) {
+    mps_reaction r;
+    mps_assert_ok(context, mps_mpm_get_reaction(s->mpm, k, &r));
+    for (int c = 0; c < 3; c++) impulse[c] += r.impulse[c], moment[c] += r.moment_impulse[c];
+  }
+  for (int32_t b = 0; b < s->mpm->contact.bodies; b++) {
+    mps_reaction r; /* what the particles do to it */
+    mps_assert_ok(context, mps_body_get_reaction(s->mpm->contact.body[b], -1, &r));
+    for (int c = 0; c < 3; c++) impulse[c] -= r.impulse[c];
+  }
+}
+
+static void check_balance(int32_t geometry, int32_t spline, bool moves, bool body) {
+  mpm_scene s = turmoil(geometry, spline, moves, body, 0);
+  const int dim = s.mpm->dim, first = geometry == MPS_MPM_AXISYMMETRIC ? 1 : 0;
+  double worst = 0.0, size = 0.0;
+  double before[3], after[3], moment[3];
+  given(&s, before, moment);
+  for (int step = 0; step < 40; step++) {
+    const mps_totals a = mpm_scene_totals(&s);
+    mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+    const mps_totals b = mpm_scene_totals(&s);
+    given(&s, after, moment);
+    const double dt = s.mpm->run.dt;
+    for (int c = first; c < dim; c++) {
+      const double by = after[c] - before[c] + dt * a.mass * s.mpm->def.gravity[c];
+      worst = fmax(worst, fabs(b.linear[c] - a.linear[c] - by));
+      size = fmax(size, fabs(after[c] - before[c]) + fabs(b.linear[c]));
+    }
+    memcpy(before, after, sizeof before);
+  }
+  print_message("geometry %d, spline %d, %s walls%s: momentum balanced within %.2g of it\n",
+                (int)geometry, (int)spline, moves ? "moving" : "resting", body ? ", a body" : "",
+                worst / size);
+  assert_true(worst < 1e-12 * size);
+  mpm_scene_end(&s);
+}
+
+static void momentum_is_balanced(void **state) {
+  (void)state;
+  for (int32_t geometry = MPS_MPM_PLANE_STRAIN; geometry <= MPS_MPM_SPACE; geometry++)
+    for (int variant = 0; variant < 8; variant++)
+      check_balance(geometry, 2 + variant % 2, variant / 2 % 2, variant / 4 % 2);
+}
+
+/* Between four or six mirrors the angular momentum is balanced too. */
+static void moments_are_balanced(void **state) {
+  (void)state;
+  for (int variant = 0; variant < 4; variant++) {
+    const int32_t geometry = variant / 2 ? MPS_MPM_SPACE : MPS_MPM_PLANE_STRAIN;
+    mpm_scene s = turmoil(geometry, 2 + variant % 2, true, false, 0);
+    mpm_scene_side(&s, MPS_MPM_SIDE_Y_UPPER, MPS_MPM_BOUNDARY_ROLLER, 0.0);
+    memset(s.mpm->def.gravity, 0, sizeof s.mpm->def.gravity);
+    double impulse[3], moment[3], worst = 0.0, size = 0.0;
+    const mps_totals a = mpm_scene_totals(&s);
+    mps_assert_ok(context, mps_mpm_step(s.mpm, 40));
+    const mps_totals b = mpm_scene_totals(&s);
+    given(&s, impulse, moment);
+    for (int c = geometry == MPS_MPM_SPACE ? 0 : 2; c < 3; c++) {
+      worst = fmax(worst, fabs(b.angular[c] - a.angular[c] - moment[c]));
+      size = fmax(size, fabs(moment[c]));
+    }
+    print_message("geometry %d: angular momentum balanced within %.2g of %.2g\n", (int)geometry,
+                  worst, size);
+    assert_true(worst < 1e-12 * size);
+    mpm_scene_end(&s);
+  }
+}
+
+static void energy_is_balanced(void **state) {
+  (void)state;
+  for (int variant = 0; variant < 12; variant++) {
+    mpm_scene s = turmoil(variant / 4, 2 + variant % 2, variant / 2 % 2, variant % 2 == 1, 1);
+    mps_mpm_losses l;
+    mps_assert_ok(context, mps_mpm_step(s.mpm, 60));
+    mps_assert_ok(context, mps_mpm_get_losses(s.mpm, &l));
+    const mps_totals t = mpm_scene_totals(&s);
+    const double size = t.kinetic + fabs(t.work_boundaries) + fabs(l.transfer) + fabs(l.stepping);
+    print_message("variant %d: residual %.2g of it\n", variant, l.residual / size);
+    assert_true(fabs(l.residual) < 1e-12 * size);
+    mpm_scene_end(&s);
+  }
+}
+
+/* ---- particles on the wall ------------------------------------------------------------------- */
+
+/* Nothing passes a mirror, and what lies on one stays there. */
+static void nothing_passes(void **state) {
+  (void)state;
+  for (int32_t spline = 2; spline <= 3; spline++) {
+    mpm_scene s = turmoil(MPS_MPM_PLANE_STRAIN, spline, false, false, 0);
+    mps_view x = mpm_scene_view(&s, "position");
+    for (int k = 0; k < 40; k++) *mps_view_f64(&x, k, k % 2) = k % 2 ? -0.1 : k % 4 ? 0.4 : 0.1;
+    double on[40][2];
+    int64_t ids[40];
+    mps_view id = mpm_scene_view(&s, "id");
+    for (int k = 0; k < 40; k++) {
+      ids[k] = *mps_view_i64(&id, k, 0);
+      for (int c = 0; c < 2; c++) on[k][c] = *mps_view_f64(&x, k, c);
+    }
+    mps_assert_ok(context, mpsi_mpm_sort(s.mpm, "test"));
+    s.mpm->boundaries.outdated = true;
+    mps_assert_ok(context, mps_mpm_step(s.mpm, 100));
+    x = mpm_scene_view(&s, "position");
+    for (int k = 0; k < 40; k++)
+      mps_assert_near(*mps_view_f64(&x, mps_particles_index(s.particles, ids[k]), k % 2),
+                      on[k][k % 2], 1e-15);
+    mpm_scene_end(&s);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(roller_is_a_mirror),   cmocka_unit_test(bodies_cross_a_mirror),
+      cmocka_unit_test(momentum_is_balanced), cmocka_unit_test(moments_are_balanced),
+      cmocka_unit_test(energy_is_balanced),   cmocka_unit_test(nothing_passes)};
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
