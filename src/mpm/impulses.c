@@ -14,22 +14,22 @@
 #define SHARED 512 /* touches: below, sharing the work costs more than it gains */
 
 static void kick(const mps_mpm *mpm, mpsi_impulses *all, int64_t n, const double *by) {
-  const double *weight = all->weight + n * all->stride;
+  double(*weight)[3] = all->weight + n * all->stride;
   double **node = all->node + n * all->stride;
   for (int32_t i = 0; i < all->touch[n].nodes; i++) {
-    const double f = weight[i] / node[i][MPSI_MASS];
-    for (int a = 0; a < mpm->dim; a++) node[i][MPSI_VECTOR + a] += f * by[a];
+    const double f = 1.0 / node[i][MPSI_MASS];
+    for (int a = 0; a < mpm->dim; a++) node[i][MPSI_VECTOR + a] += f * weight[i][a] * by[a];
   }
   mpsi_impulse_kick(&all->body[all->touch[n].body], all->touch[n].impulse.at, by);
 }
 
 /* Velocity of the particle's side at the foot. */
 static void velocity_at(const mps_mpm *mpm, const mpsi_impulses *all, int64_t n, double *v) {
-  const double *weight = all->weight + n * all->stride;
+  double(*weight)[3] = all->weight + n * all->stride;
   double *const *node = all->node + n * all->stride;
-  v[0] = v[1] = v[2] = 0.0;
+  memcpy(v, all->touch[n].carried, sizeof all->touch[n].carried);
   for (int32_t i = 0; i < all->touch[n].nodes; i++)
-    for (int a = 0; a < mpm->dim; a++) v[a] += weight[i] * node[i][MPSI_VECTOR + a];
+    for (int a = 0; a < mpm->dim; a++) v[a] += weight[i][a] * node[i][MPSI_VECTOR + a];
 }
 
 /* ---- a block --------------------------------------------------------------------------------- */
@@ -140,6 +140,7 @@ void mpsi_mpm_apply_impulses(mps_mpm *mpm) {
       sweeps = mpm->contact.handle[b]->def.sweeps;
   if (all->touch_count > 0) sweep_all(mpm, true, false);
   for (int32_t s = 0; s < sweeps && all->touch_count > 0; s++) sweep_all(mpm, false, s % 2 != 0);
+  mpsi_mpm_mirror_touches(mpm);
   take_over(mpm);
 }
 

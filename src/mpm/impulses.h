@@ -9,14 +9,16 @@
 
 #include <mps/mpm.h>
 
-/* A particle that may touch a body in the step being made. Its weights psi and nodes are
- * weight[k * stride] and on, node[k * stride] and on, k its number in the list. */
+/* A particle that may touch a body in the step being made. Its weights psi, one for each component
+ * of a node's velocity, and nodes are weight[k * stride] and on, node[k * stride] and on, k its
+ * number in the list. The components differ where ghosts of mirrors (mirror.h) stand for nodes. */
 typedef struct mpsi_touch {
   mpsi_impulse impulse;
-  double x[3];      /* m, of the particle */
-  int64_t particle; /* index, */
-  int64_t id;       /* and what it keeps when the particles are sorted */
-  int64_t pair;     /* of contact.cell_pair */
+  double x[3];       /* m, of the particle */
+  double carried[3]; /* m/s, velocity at the foot that moving mirrors give besides the nodes */
+  int64_t particle;  /* index, */
+  int64_t id;        /* and what it keeps when the particles are sorted */
+  int64_t pair;      /* of contact.cell_pair */
   int32_t body, part, nodes;
 } mpsi_touch;
 
@@ -36,7 +38,7 @@ typedef struct mpsi_kept_impulse {
 typedef struct mpsi_impulses {
   mpsi_touch *touch;
   mpsi_touch_block *block; /* colour by colour */
-  double *weight;
+  double (*weight)[3];
   double **node; /* its four values: see mpsi_node */
   int32_t *candidate;
   int64_t touch_count, block_count;
@@ -59,6 +61,8 @@ typedef struct mpsi_impulses {
  * the masses of the nodes known, the touches with their weights, and how deep particles are. */
 mps_status mpsi_mpm_find_touches(mps_mpm *mpm, const char *function);
 void mpsi_mpm_fit_touches(mps_mpm *mpm);
+/* touches.c: what mirrors give with the impulses of a step. */
+void mpsi_mpm_mirror_touches(mps_mpm *mpm);
 /* touches.c: prepares `lookup` (false: memory refused), by which the next finds the impulse of the
  * last step on a particle, or NULL; half its size along n (m); a contact has ended: bodies above it
  * move down by one. */

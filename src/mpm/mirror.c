@@ -216,19 +216,27 @@ void mpsi_mpm_mirror_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mp
   }
 }
 
+static bool is_folded(const side *s, const int *at) {
+  return (at[s->axis] - s->wall) * s->inwards <= 0;
+}
+
+/* What is left of component c at tile node `at`: a node on the wall is its own image. */
+static double share_of(const side *s, const int *at, int c) {
+  return at[s->axis] == s->wall && s->keeps[c] < 0.0 ? 0.0 : s->keeps[c];
+}
+
 static void reflect_by(const mps_mpm *mpm, const side *s, int *at, double *vector, double impulse) {
   double x_before[3], x_after[3], before[3], after[3];
   const double from[3] = {at[0], at[1], at[2]};
   mpsi_node_position(mpm, s->cells->at, from, x_before);
-  const bool on_wall = at[s->axis] == s->wall;
+  for (int c = 0; c < 3; c++) {
+    before[c] = impulse * vector[c];
+    vector[c] *= share_of(s, at, c);
+    after[c] = impulse * vector[c];
+  }
   at[s->axis] = 2 * s->wall - at[s->axis];
   const double to[3] = {at[0], at[1], at[2]};
   mpsi_node_position(mpm, s->cells->at, to, x_after);
-  for (int c = 0; c < 3; c++) {
-    before[c] = impulse * vector[c];
-    vector[c] *= on_wall && s->keeps[c] < 0.0 ? 0.0 : s->keeps[c];
-    after[c] = impulse * vector[c];
-  }
   if (impulse != 0.0) add_change(s->mirror, x_after, after, x_before, before);
 }
 
@@ -237,8 +245,39 @@ void mpsi_mpm_reflect(const mps_mpm *mpm, const mpsi_cell_block *cells, int *at,
   for (int32_t k = 0; k < MPSI_SIDES; k++) {
     if (!(cells->mirrors >> k & 1)) continue;
     const side s = side_of(mpm, cells, k);
-    if ((at[s.axis] - s.wall) * s.inwards <= 0) reflect_by(mpm, &s, at, vector, impulse);
+    if (is_folded(&s, at)) reflect_by(mpm, &s, at, vector, impulse);
   }
+}
+
+void mpsi_mpm_reflect_impulse(const mps_mpm *mpm, const mpsi_cell_block *cells, int *at,
+                              const double *impulse) {
+  double vector[3] = {impulse[0], impulse[1], impulse[2]};
+  for (int32_t k = 0; k < MPSI_SIDES; k++) {
+    if (!(cells->mirrors >> k & 1)) continue;
+    const side s = side_of(mpm, cells, k);
+    if (!is_folded(&s, at)) continue;
+    const double before[3] = {vector[0], vector[1], vector[2]};
+    reflect_by(mpm, &s, at, vector, 1.0);
+    for (int c = 0; c < 3; c++) s.mirror->passed += 0.5 * (before[c] - vector[c]) * s.velocity[c];
+  }
+}
+
+bool mpsi_mpm_find_image(const mps_mpm *mpm, const mpsi_cell_block *cells, int *at, double *keeps,
+                         double *carried) {
+  bool any = false;
+  for (int c = 0; c < 3; c++) keeps[c] = 1.0, carried[c] = 0.0;
+  for (int32_t k = 0; k < MPSI_SIDES; k++) {
+    if (!(cells->mirrors >> k & 1)) continue;
+    const side s = side_of(mpm, cells, k);
+    if (!is_folded(&s, at)) continue;
+    any = true;
+    for (int c = 0; c < 3; c++) {
+      carried[c] += 0.5 * keeps[c] * (1.0 - share_of(&s, at, c)) * s.velocity[c];
+      keeps[c] *= share_of(&s, at, c);
+    }
+    at[s.axis] = 2 * s.wall - at[s.axis];
+  }
+  return any;
 }
 
 /* ---- a step ---------------------------------------------------------------------------------- */

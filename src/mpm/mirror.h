@@ -53,4 +53,12 @@ void mpsi_mpm_sum_mirrors(mps_mpm *mpm);
 void mpsi_mpm_reflect(const mps_mpm *mpm, const mpsi_cell_block *cells, int *at, double *vector,
                       double impulse);
 
+/* The same for an impulse, with its work. */
+void mpsi_mpm_reflect_impulse(const mps_mpm *mpm, const mpsi_cell_block *cells, int *at,
+                              const double *impulse);
+/* Velocity at tile node `at`, which becomes its partner: `keeps` (by component) times that of the
+ * partner and `carried`. Whether it is a ghost or on a wall. */
+bool mpsi_mpm_find_image(const mps_mpm *mpm, const mpsi_cell_block *cells, int *at, double *keeps,
+                         double *carried);
+
 #endif

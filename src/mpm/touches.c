@@ -181,7 +181,7 @@ mps_status mpsi_mpm_find_touches(mps_mpm *mpm, const char *function) {
   if (!good) {
     all->touch_count = all->block_count = 0;
     return mpsi_fail_memory(context, function,
-                            (size_t)(n + 1) * (sizeof *all->touch + (size_t)all->stride * 16) +
+                            (size_t)(n + 1) * (sizeof *all->touch + (size_t)all->stride * 32) +
                                 (size_t)candidates * sizeof *all->candidate);
   }
   all->touch = all->touch_room.item;
@@ -226,28 +226,84 @@ static void begin_touch(mps_mpm *mpm, int64_t t, int64_t k, const int64_t *id, m
   }
 }
 
+/* psi at node s of the touch's stencil. */
+static double psi_at(const mps_mpm *mpm, const mpsi_touch *touch, const mpsi_shape_values *f,
+                     int s) {
+  double psi = f->phi[s];
+  for (int a = 0; a < mpm->dim; a++)
+    psi += f->gradient[a][s] * (touch->impulse.at[a] - touch->x[a]);
+  return psi;
+}
+
+/* Adds `weight` to those of a node of the touch, which may be there already, for a ghost. */
+static void add_node(mpsi_touch *touch, double **node, double (*to)[3], double *at,
+                     const double *weight, bool may_be_there) {
+  int32_t i = may_be_there ? 0 : touch->nodes;
+  while (i < touch->nodes && node[i] != at) i++;
+  if (i == touch->nodes) {
+    node[touch->nodes++] = at;
+    memcpy(to[i], weight, sizeof to[i]);
+    return;
+  }
+  for (int a = 0; a < 3; a++) to[i][a] += weight[a];
+}
+
 /* psi at the nodes of the touch's stencil that have mass, and its mobility. */
 static void fit_touch(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker, int64_t n) {
   mpsi_impulses *all = &mpm->contact.impulses;
   mpsi_touch *touch = &all->touch[n];
-  double *weight = all->weight + n * all->stride, **node = all->node + n * all->stride;
+  double(*weight)[3] = all->weight + n * all->stride, **node = all->node + n * all->stride;
   mpsi_stencil at;
   mpsi_shape_values f;
   mpm->kernels->fit(mpm, cells, &mpm->grid.workers[worker], touch->particle, &at, &f);
   touch->nodes = 0;
   for (int s = 0; s < all->stride; s++) {
     if (f.w[s] == 0.0) continue;
-    double psi = f.phi[s];
-    for (int a = 0; a < mpm->dim; a++)
-      psi += f.gradient[a][s] * (touch->impulse.at[a] - touch->x[a]);
-    const int64_t g =
-        mpsi_node_under(mpm, cells, at.at[0] + s % 4, at.at[1] + s / 4 % 4, at.at[2] + s / 16);
-    const double m = mpm->grid.node[g][MPSI_MASS];
-    if (!(m > 0.0)) continue;
-    node[touch->nodes] = mpm->grid.node[g];
-    weight[touch->nodes++] = psi;
-    for (int a = 0; a < 3; a++) touch->impulse.mobility[a] += psi * psi / m;
+    int place[3] = {at.at[0] + s % 4, at.at[1] + s / 4 % 4, at.at[2] + s / 16};
+    const double psi = psi_at(mpm, touch, &f, s);
+    double psis[3] = {psi, psi, psi}, keeps[3], carried[3];
+    const bool image = cells->mirrors && mpsi_mpm_find_image(mpm, cells, place, keeps, carried);
+    for (int a = 0; a < 3 && image; a++) {
+      psis[a] *= keeps[a];
+      touch->carried[a] += psi * carried[a];
+    }
+    const int64_t g = mpsi_node_under(mpm, cells, place[0], place[1], place[2]);
+    if (mpm->grid.node[g][MPSI_MASS] > 0.0)
+      add_node(touch, node, weight, mpm->grid.node[g], psis, cells->mirrors != 0);
   }
+  for (int32_t i = 0; i < touch->nodes; i++)
+    for (int a = 0; a < 3; a++)
+      touch->impulse.mobility[a] += weight[i][a] * weight[i][a] / node[i][MPSI_MASS];
+}
+
+static void mirror_block(void *data, int64_t unit, int32_t number) {
+  mps_mpm *mpm = data;
+  mpsi_impulses *all = &mpm->contact.impulses;
+  const mpsi_touch_block *block = &all->block[unit];
+  const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
+  mpsi_worker *worker = &mpm->grid.workers[number];
+  if (!cells->mirrors) return;
+  mpsi_mpm_find_states(mpm, cells, worker);
+  for (int64_t n = block->first; n < block->first + block->count; n++) {
+    const mpsi_touch *touch = &all->touch[n];
+    const mpsi_impulse *c = &touch->impulse;
+    mpsi_stencil at;
+    mpsi_shape_values f;
+    if (!(c->push > 0.0)) continue;
+    mpm->kernels->fit(mpm, cells, worker, touch->particle, &at, &f);
+    for (int s = 0; s < all->stride; s++) {
+      int place[3] = {at.at[0] + s % 4, at.at[1] + s / 4 % 4, at.at[2] + s / 16};
+      const double psi = f.w[s] == 0.0 ? 0.0 : psi_at(mpm, touch, &f, s);
+      double by[3];
+      for (int a = 0; a < 3; a++) by[a] = psi * (c->push * c->normal[a] + c->rub[a]);
+      if (psi != 0.0) mpsi_mpm_reflect_impulse(mpm, cells, place, by);
+    }
+  }
+}
+
+void mpsi_mpm_mirror_touches(mps_mpm *mpm) {
+  if (mpm->mirrors.sides)
+    mpsi_parallel_for(mpm->context, mpm->contact.impulses.block_count, mirror_block, mpm);
 }
 
 static void fit_block(void *data, int64_t unit, int32_t worker) {

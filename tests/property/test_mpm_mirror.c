@@ -21,7 +21,8 @@ enum { STEPS = 150 };
 
 /* The part of a box of 0.2 m, centred on x = z = 0 and standing on y = 0, in which bit c of `cut`
  * says that only c > 0 is there, beyond a roller. A smooth or rough ball falls on its top. */
-static mpm_scene part_of_box(int32_t geometry, int32_t spline, uint32_t cut, double friction) {
+static mpm_scene part_of_box(int32_t geometry, int32_t spline, uint32_t cut, double friction,
+                             int32_t method) {
   const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
   const double spacing = dim == 3 ? 0.02 : 0.01, half = 0.1;
   mpm_scene s = mpm_scene_begin_in(context, dim, spacing, 0.0, 0.0, 1e5);
@@ -58,7 +59,11 @@ static mpm_scene part_of_box(int32_t geometry, int32_t spline, uint32_t cut, dou
   mps_assert_ok(context, dim == 3 ? mps_body_create_sphere(context, &body, 0.08, &ball)
                                   : mps_body_create_disc(context, &body, 0.08, &ball));
   mps_assert_ok(context, mps_body_drive(ball, 1, down, 1.0));
-  mpm_scene_contact(&s, ball, friction);
+  mps_contact_def contact = mps_contact_defaults();
+  contact.friction = friction;
+  contact.method = method;
+  contact.sweeps = 400; /* until nothing changes */
+  mps_assert_ok(context, mps_mpm_add_contact(s.mpm, ball, &contact, NULL));
   mps_signal_destroy(&down);
   mps_body_destroy(&ball);
   return s;
@@ -76,10 +81,12 @@ static int64_t nearest_of(const mps_view *x, int dim, const double *at) {
   return best;
 }
 
-static void compare_part(int32_t geometry, int32_t spline, uint32_t cut, double friction) {
+/* They differ by round-off; with contact by impulses by what its sweeps leave, `rest`. */
+static void compare_part(int32_t geometry, int32_t spline, uint32_t cut, double friction,
+                         int32_t method, double rest) {
   mps_reaction r = {0};
-  mpm_scene whole = part_of_box(geometry, spline, 0, friction);
-  mpm_scene part = part_of_box(geometry, spline, cut, friction);
+  mpm_scene whole = part_of_box(geometry, spline, 0, friction, method);
+  mpm_scene part = part_of_box(geometry, spline, cut, friction, method);
   const int dim = part.mpm->dim;
   mps_assert_ok(context, mps_mpm_step(whole.mpm, STEPS));
   mps_assert_ok(context, mps_mpm_step(part.mpm, STEPS));
@@ -89,7 +96,7 @@ static void compare_part(int32_t geometry, int32_t spline, uint32_t cut, double 
     force = r.impulse[1] / (cut == 5 ? 4.0 : 2.0);
     mps_assert_ok(context, mps_body_get_reaction(part.mpm->contact.body[0], -1, &r));
     assert_true(force > 0.0);
-    mps_assert_near(r.impulse[1], force, 1e-11 * force);
+    mps_assert_near(r.impulse[1], force, (1e-11 + rest) * force);
   }
   mps_view x = mpm_scene_view(&part, "position"), X = mpm_scene_view(&whole, "position");
   mps_view stress = mpm_scene_view(&part, "stress"), S = mpm_scene_view(&whole, "stress");
@@ -108,8 +115,8 @@ static void compare_part(int32_t geometry, int32_t spline, uint32_t cut, double 
       "geometry %d, spline %d, cut %u, friction %g: places apart %.2g m, stresses %.2g of "
       "the largest\n",
       (int)geometry, (int)spline, (unsigned)cut, friction, apart, stresses / largest);
-  assert_true(apart < 1e-12);
-  assert_true(stresses < 1e-10 * largest);
+  assert_true(apart < 1e-12 + 0.01 * rest);
+  assert_true(stresses < (1e-10 + rest) * largest);
   mpm_scene_end(&whole);
   mpm_scene_end(&part);
 }
@@ -117,8 +124,8 @@ static void compare_part(int32_t geometry, int32_t spline, uint32_t cut, double 
 static void roller_is_a_mirror(void **state) {
   (void)state;
   for (int32_t spline = 2; spline <= 3; spline++) {
-    compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, -1.0);
-    compare_part(MPS_MPM_SPACE, spline, 5, -1.0);
+    compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, -1.0, 0, 0.0);
+    compare_part(MPS_MPM_SPACE, spline, 5, -1.0, 0, 0.0);
   }
 }
 
@@ -127,8 +134,12 @@ static void bodies_cross_a_mirror(void **state) {
   (void)state;
   for (int32_t spline = 2; spline <= 3; spline++)
     for (int rough = 0; rough < 2; rough++) {
-      compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, 0.3 * rough);
-      compare_part(MPS_MPM_SPACE, spline, 5, 0.3 * rough);
+      const int32_t penalty = MPS_CONTACT_METHOD_PENALTY, impulse = MPS_CONTACT_METHOD_IMPULSE;
+      compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, 0.3 * rough, penalty, 0.0);
+      compare_part(MPS_MPM_SPACE, spline, 5, 0.3 * rough, penalty, 0.0);
+      if (rough) continue; /* sweeps over sliding contacts are not symmetric */
+      compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, 0.0, impulse, 1e-4);
+      compare_part(MPS_MPM_SPACE, spline, 5, 0.0, impulse, 1e-4);
     }
 }
 
@@ -136,7 +147,7 @@ static void bodies_cross_a_mirror(void **state) {
 
 /* A domain full of particles in disorder, walls of all mirrored kinds at work; y frictional above,
  * so that mirrors meet a wall of the other kind; a rough disc or ball across the wall x = 0.4. */
-static mpm_scene turmoil(int32_t geometry, int32_t spline, bool moves, bool body, int32_t budget) {
+static mpm_scene turmoil(int32_t geometry, int32_t spline, bool moves, int body, int32_t budget) {
   const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
   const double lo[] = {geometry == MPS_MPM_AXISYMMETRIC ? 0.0 : 0.1, -0.1, 0.0};
   const double hi[] = {0.4, 0.1, 0.04};
@@ -172,6 +183,7 @@ static mpm_scene turmoil(int32_t geometry, int32_t spline, bool moves, bool body
   mps_contact_def contact = mps_contact_defaults();
   at.position[0] = 0.4, at.position[2] = dim == 3 ? 0.01 : 0.0;
   contact.friction = 0.4;
+  contact.method = body == 1 ? MPS_CONTACT_METHOD_PENALTY : MPS_CONTACT_METHOD_IMPULSE;
   contact.inside = MPS_CONTACT_INSIDE_REMOVE;
   mps_assert_ok(context, dim == 3 ? mps_body_create_sphere(context, &at, 0.05, &ball)
                                   : mps_body_create_disc(context, &at, 0.05, &ball));
@@ -196,7 +208,7 @@ static void given(mpm_scene *s, double *impulse, double *moment) {
   }
 }
 
-static void check_balance(int32_t geometry, int32_t spline, bool moves, bool body) {
+static void check_balance(int32_t geometry, int32_t spline, bool moves, int body) {
   mpm_scene s = turmoil(geometry, spline, moves, body, 0);
   const int dim = s.mpm->dim, first = geometry == MPS_MPM_AXISYMMETRIC ? 1 : 0;
   double worst = 0.0, size = 0.0;
@@ -216,7 +228,10 @@ static void check_balance(int32_t geometry, int32_t spline, bool moves, bool bod
     memcpy(before, after, sizeof before);
   }
   print_message("geometry %d, spline %d, %s walls%s: momentum balanced within %.2g of it\n",
-                (int)geometry, (int)spline, moves ? "moving" : "resting", body ? ", a body" : "",
+                (int)geometry, (int)spline, moves ? "moving" : "resting",
+                body == 0   ? ""
+                : body == 1 ? ", a body"
+                            : ", a body by impulses",
                 worst / size);
   assert_true(worst < 1e-12 * size);
   mpm_scene_end(&s);
@@ -225,8 +240,8 @@ static void check_balance(int32_t geometry, int32_t spline, bool moves, bool bod
 static void momentum_is_balanced(void **state) {
   (void)state;
   for (int32_t geometry = MPS_MPM_PLANE_STRAIN; geometry <= MPS_MPM_SPACE; geometry++)
-    for (int variant = 0; variant < 8; variant++)
-      check_balance(geometry, 2 + variant % 2, variant / 2 % 2, variant / 4 % 2);
+    for (int variant = 0; variant < 12; variant++)
+      check_balance(geometry, 2 + variant % 2, variant / 2 % 2, variant / 4);
 }
 
 /* Between four or six mirrors the angular momentum is balanced too. */
@@ -234,7 +249,7 @@ static void moments_are_balanced(void **state) {
   (void)state;
   for (int variant = 0; variant < 4; variant++) {
     const int32_t geometry = variant / 2 ? MPS_MPM_SPACE : MPS_MPM_PLANE_STRAIN;
-    mpm_scene s = turmoil(geometry, 2 + variant % 2, true, false, 0);
+    mpm_scene s = turmoil(geometry, 2 + variant % 2, true, 0, 0);
     mpm_scene_side(&s, MPS_MPM_SIDE_Y_UPPER, MPS_MPM_BOUNDARY_ROLLER, 0.0);
     memset(s.mpm->def.gravity, 0, sizeof s.mpm->def.gravity);
     double impulse[3], moment[3], worst = 0.0, size = 0.0;
@@ -255,8 +270,8 @@ static void moments_are_balanced(void **state) {
 
 static void energy_is_balanced(void **state) {
   (void)state;
-  for (int variant = 0; variant < 12; variant++) {
-    mpm_scene s = turmoil(variant / 4, 2 + variant % 2, variant / 2 % 2, variant % 2 == 1, 1);
+  for (int variant = 0; variant < 18; variant++) {
+    mpm_scene s = turmoil(variant / 6, 2 + variant % 2, variant / 3 % 2, variant % 3, 1);
     mps_mpm_losses l;
     mps_assert_ok(context, mps_mpm_step(s.mpm, 60));
     mps_assert_ok(context, mps_mpm_get_losses(s.mpm, &l));
@@ -274,7 +289,7 @@ static void energy_is_balanced(void **state) {
 static void nothing_passes(void **state) {
   (void)state;
   for (int32_t spline = 2; spline <= 3; spline++) {
-    mpm_scene s = turmoil(MPS_MPM_PLANE_STRAIN, spline, false, false, 0);
+    mpm_scene s = turmoil(MPS_MPM_PLANE_STRAIN, spline, false, 0, 0);
     mps_view x = mpm_scene_view(&s, "position");
     for (int k = 0; k < 40; k++) *mps_view_f64(&x, k, k % 2) = k % 2 ? -0.1 : k % 4 ? 0.4 : 0.1;
     double on[40][2];
