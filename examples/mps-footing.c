@@ -10,7 +10,7 @@
 
 int main(int argc, char **argv) {
   static simulation sim = {.s = {.h = 0.1,
-                                 .rate = 0.5,
+                                 .rate = NAN,
                                  .half_width = 0.5,
                                  .domain = "5x5",
                                  .phi = 30.0,
@@ -46,7 +46,8 @@ int main(int argc, char **argv) {
       OPTION_HEADING("Footing"),
       OPTION_NUMBER("half-width", "m", OPTION_LENGTH, &s->half_width, "B/2"),
       OPTION_NUMBER("mu", "1", OPTION_FROM_TO(0.0, 10.0), &s->mu, "friction of its base"),
-      OPTION_NUMBER("rate", "mm/s", OPTION_FROM_TO(1e-3, 100.0), &s->rate, "its speed"),
+      OPTION_NUMBER("rate", "mm/s", OPTION_FROM_TO(1e-3, 100.0), &s->rate,
+                    "its speed; default 0.5, quasi-static 1.5"),
       OPTION_NUMBER("settlement", "mm", OPTION_FROM_TO(1e-3, 1e6), &s->settlement,
                     "where the run ends; default 0.6, Drucker-Prager 4"),
       MPM_MODEL_CONTACT(&s->contact),
@@ -56,6 +57,14 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("h", "m", OPTION_LENGTH, &s->h, "grid spacing"),
       OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
       OPTION_HEADING("Run"),
+      OPTION_FLAG("quasi-static", &s->settled,
+                  "the ground comes to rest after each of 30 parts of the path: less inertia in "
+                  "fewer steps"),
+      OPTION_TEXT("checkpoint", "FILE", &s->checkpoint,
+                  "written ten times on the way and at Ctrl-C, to go on from"),
+      OPTION_TEXT("restart", "FILE", &s->restart,
+                  "go on from a checkpoint made with the same options (but --out, --threads and "
+                  "--checkpoint); the results are those of the whole run"),
       OPTION_OUT(&s->out),
       OPTION_THREADS(&s->threads),
       {0}};
@@ -67,6 +76,7 @@ int main(int argc, char **argv) {
       table};
   const int code = options_parse(&program, argc, argv);
   if (code >= 0) return code;
+  sim.table = table;
   const char *reason = footing_settle(s, table);
   if (reason) return options_refuse(&program, reason);
   const char *refused = mpm_model_refuse_stiffness(table, s->contact);

@@ -1,13 +1,14 @@
-/* footing.h - the parts of mps-footing: model and run (model.c), results (results.c), the exact
- * capacity (characteristics.c).
+/* footing.h - the parts of mps-footing: model and run (model.c), a run that goes on (restart.c),
+ * results (results.c), the exact capacity (characteristics.c).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_FOOTING_H
 #define EXAMPLES_FOOTING_H
 
 #include "characteristics.h"
 #include "common/mpm_model.h"
+#include "common/resume.h"
 
-enum { FOOTING_SAMPLES = 120, VON_MISES = 0, DRUCKER_PRAGER = 1 };
+enum { FOOTING_SAMPLES = 120, FOOTING_SETTLED = 30, VON_MISES = 0, DRUCKER_PRAGER = 1 };
 
 typedef struct settings {
   int model, cone;        /* VON_MISES or DRUCKER_PRAGER; mps_cone */
@@ -15,10 +16,11 @@ typedef struct settings {
   double phi, psi;        /* degrees */
   double cohesion, young; /* kPa */
   double poisson, density, gravity;
-  int contact; /* mps_contact_method */
+  int contact;                                   /* mps_contact_method */
   double h, mu, rate, half_width, k, settlement; /* m, 1, mm/s, m, kN/m, mm */
   int64_t ppc, threads;
-  const char *domain, *out;
+  bool settled; /* --quasi-static */
+  const char *domain, *out, *checkpoint, *restart;
 } settings;
 
 typedef struct simulation {
@@ -26,8 +28,11 @@ typedef struct simulation {
   mpm_model m;
   double ramp, t_end;                                       /* s */
   double path[FOOTING_SAMPLES + 1], q[FOOTING_SAMPLES + 1]; /* m, Pa */
-  int rows;
-  double strain; /* largest plastic strain */
+  int rows, samples;                                        /* so far, in all */
+  double last_time, last_impulse;                           /* s, N s: at the last sample */
+  double strain;                                            /* largest plastic strain */
+  const option *table;
+  resume_schedule saves;
 } simulation;
 
 /* Fills in what depends on the model. A text tells why settings do not go together; NULL: good. */
@@ -35,5 +40,10 @@ const char *footing_settle(settings *s, const option *table);
 mps_status footing_build(mps_context *context, void *user);
 mps_status footing_march(void *user);
 bool footing_finish(app *a, void *user);
+
+/* restart.c. footing_peek compares the options of the file with these before the model is built. */
+mps_status footing_save(void *user);
+mps_status footing_peek(mps_context *context, simulation *sim);
+mps_status footing_restore(mps_context *context, simulation *sim);
 
 #endif

@@ -3,6 +3,7 @@
 #include "footing.h"
 
 #include <mps/geostatic.h>
+#include <mps/mpm_settle.h>
 
 #include <math.h>
 #include <stdlib.h>
@@ -27,6 +28,7 @@ const char *footing_settle(settings *s, const option *table) {
     return "--domain must be at least 3 half widths of the footing wide and 1.5 deep: as far as "
            "the "
            "ground moves when it fails";
+  if (isnan(s->rate)) s->rate = s->settled ? 1.5 : 0.5;
   if (isnan(s->psi)) s->psi = s->phi;
   if (s->psi > s->phi) return "--psi must be at most --phi";
   if (isnan(s->settlement)) s->settlement = cone ? 4.0 : 0.6;
@@ -98,7 +100,9 @@ static mps_status make_material(mps_context *context, const settings *s, mps_mat
 mps_status footing_build(mps_context *context, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
-  mps_status status = make_ground(context, s, &sim->m.particles);
+  sim->samples = s->settled ? FOOTING_SETTLED : FOOTING_SAMPLES;
+  mps_status status = s->restart ? footing_peek(context, sim) : MPS_OK;
+  if (status == MPS_OK) status = make_ground(context, s, &sim->m.particles);
   if (status == MPS_OK) status = make_material(context, s, &sim->m.material);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
@@ -109,31 +113,51 @@ mps_status footing_build(mps_context *context, void *user) {
     status = mps_mpm_create(context, sim->m.particles, sim->m.material, &def, &sim->m.mpm);
   if (status == MPS_OK)
     status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
-  return status == MPS_OK ? make_footing(context, s, sim) : status;
+  if (status == MPS_OK) status = make_footing(context, s, sim);
+  return status == MPS_OK && s->restart ? footing_restore(context, sim) : status;
 }
 
 /* ---- running --------------------------------------------------------------------------------- */
 
-/* Pressure from the impulse since the last sample. */
+/* A sample of the path: where the footing is, and the pressure on it, from the impulse since the
+ * last sample or, at rest, from the force. */
+static mps_status take_sample(simulation *sim) {
+  const settings *s = &sim->s;
+  mps_reaction reaction;
+  mps_body_state body;
+  mps_status status = mps_body_get_reaction(sim->m.body[0], -1, &reaction);
+  if (status == MPS_OK) status = mps_body_get_state(sim->m.body[0], &body);
+  if (status != MPS_OK) return status;
+  const double t = mps_mpm_time(sim->m.mpm);
+  const double force = s->settled
+                           ? reaction.force[1]
+                           : (reaction.impulse[1] - sim->last_impulse) / (t - sim->last_time);
+  sim->path[sim->rows] = s->depth + 0.5 * s->half_width - body.position[1];
+  sim->q[sim->rows++] = force / s->half_width;
+  sim->m.samples = sim->rows;
+  sim->last_impulse = reaction.impulse[1];
+  sim->last_time = t;
+  return MPS_OK;
+}
+
+/* The path in equal parts. After each of them the ground comes to rest under the footing where a
+ * quasi-static run is asked for: what inertia has carried too far then no longer counts. */
 mps_status footing_march(void *user) {
   simulation *sim = user;
-  const settings *s = &sim->s;
-  double last_impulse = 0.0, last_time = 0.0;
+  mps_mpm_settle_def rest = mps_mpm_settle_defaults();
   mps_status status = MPS_OK;
-  for (int k = 1; k <= FOOTING_SAMPLES && status == MPS_OK; k++) {
-    mps_reaction reaction;
-    mps_body_state body;
-    status = mps_mpm_run(sim->m.mpm, sim->t_end * k / FOOTING_SAMPLES, INT64_MAX, NULL, NULL);
-    if (status == MPS_OK) status = mps_body_get_reaction(sim->m.body[0], -1, &reaction);
-    if (status == MPS_OK) status = mps_body_get_state(sim->m.body[0], &body);
-    if (status != MPS_OK) break;
-    const double t = mps_mpm_time(sim->m.mpm);
-    sim->path[sim->rows] = s->depth + 0.5 * s->half_width - body.position[1];
-    sim->q[sim->rows] = (reaction.impulse[1] - last_impulse) / (t - last_time) / s->half_width;
-    sim->rows++;
-    sim->m.samples = sim->rows;
-    last_impulse = reaction.impulse[1];
-    last_time = t;
+  sim->saves = (resume_schedule){
+      .path = sim->s.checkpoint, .every = sim->t_end / 10.0, .save = footing_save, .user = sim};
+  resume_schedule_at(&sim->saves, mps_mpm_time(sim->m.mpm));
+  rest.tolerance = 2e-3;
+  while (sim->rows < sim->samples && status == MPS_OK) {
+    const double t = sim->t_end * (sim->rows + 1) / sim->samples;
+    status = mps_mpm_run(sim->m.mpm, t, INT64_MAX, NULL, NULL);
+    if (status == MPS_OK && sim->s.settled) status = mps_mpm_settle(sim->m.mpm, &rest, NULL);
+    if (status == MPS_OK) status = take_sample(sim);
+    if (status == MPS_OK) resume_save_when_due(sim->m.a, &sim->saves, t);
   }
+  if (status == MPS_ERROR_CANCELLED) resume_save_now(sim->m.a, &sim->saves);
+  sim->m.failed = sim->saves.lost;
   return status;
 }

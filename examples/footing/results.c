@@ -97,6 +97,7 @@ static bool write_summary(app *a, const simulation *sim, const capacity *c) {
   json_number(&f, "h", s->h);
   json_number(&f, "mu", s->mu);
   json_number(&f, "rate", s->rate);
+  json_text(&f, "loading", s->settled ? "quasi-static" : "steady");
   json_number(&f, "q_over_c", c->last);
   json_number(&f, "q_over_c_undeformed", c->undeformed);
   json_number(&f, "q_over_c_per_mm", c->slope);
@@ -118,14 +119,16 @@ static void draw_limit(output *f, double value, const char *dash, const char *ti
 
 static bool draw_pressure(app *a, const settings *s, const capacity *c) {
   output f;
+  char loading[32] = "quasi-static";
   if (!plot_open(&f, a, s->out, "pressure", 1000, 640)) return false;
+  if (!s->settled) snprintf(loading, sizeof loading, "%g mm/s", s->rate);
   output_text(&f,
               "set title \"Strip footing on %s ground\\n{/*0.85 h = %g m, half width %g m, "
-              "%g mm/s, friction of the base %g}\"\nset xlabel 'settlement (mm)'\n"
+              "%s, friction of the base %g}\"\nset xlabel 'settlement (mm)'\n"
               "set ylabel 'pressure over cohesion, q/c'\nset key right bottom opaque\n"
               "set yrange [0:*]\nplot 'pressure.csv' every ::1 using 1:3 with lines "
               "linecolor rgb '#1f4e8c' title 'WLS-MPM'",
-              s->model == VON_MISES ? "cohesive" : "frictional", s->h, s->half_width, s->rate,
+              s->model == VON_MISES ? "cohesive" : "frictional", s->h, s->half_width, loading,
               s->mu);
   const bool cone = s->model == DRUCKER_PRAGER;
   if (!cone) draw_limit(&f, c->exact, "--", "Prandtl");

@@ -1,0 +1,33 @@
+#!/bin/sh
+# footing.sh DIRECTORY: mps-footing --quasi-static bears what slow loading does without its inertia,
+# in fewer steps; and a run that goes on from a checkpoint is the whole run.
+. "$(dirname "$0")/checks.sh"
+
+value() { sed -n "s/^ *\"$2\": \([^,]*\),*$/\1/p" "$1/summary.json"; }
+
+# 0.25 and 0.5 mm/s tell the capacity at no speed.
+for rate in 0.25 0.5; do
+  "$1/mps-footing" --rate $rate --domain 2x1.2 --threads 1 --out "$work/$rate" >/dev/null
+done
+"$1/mps-footing" --quasi-static --domain 2x1.2 --threads 1 --checkpoint "$work/stop.h5" \
+  --out "$work/whole" >"$work/log" || exit 1
+if ! awk -v q="$(value "$work/whole" q_over_c)" -v a="$(value "$work/0.25" q_over_c)" \
+  -v b="$(value "$work/0.5" q_over_c)" -v n="$(value "$work/whole" steps)" \
+  -v m="$(value "$work/0.5" steps)" \
+  'BEGIN { slow = 2 * a - b; exit !(q > 0.99 * slow && q < 1.01 * slow && 1.5 * n < m) }'; then
+  fail "quasi-static capacity against slow loading, or too many steps"
+fi
+"$1/mps-footing" --quasi-static --domain 2x1.2 --threads 2 --restart "$work/stop.h5" \
+  --out "$work/rest" >/dev/null
+cmp "$work/whole/pressure.csv" "$work/rest/pressure.csv" || fail "the run that went on"
+"$1/mps-footing" --domain 2x1.2 --restart "$work/stop.h5" --out "$work/rest" 2>"$work/log" &&
+  fail "a restart with other options"
+grep -q "was made with other options" "$work/log" || fail "which option differs"
+# Ctrl-C while the ground settles.
+timeout -s INT 0.6 "$1/mps-footing" --quasi-static --domain 2x1.2 --threads 1 \
+  --checkpoint "$work/cut.h5" --out "$work/cut" >/dev/null 2>&1 || true
+[ -s "$work/cut.h5" ] || exit 0 # too slow a machine: it had not begun
+"$1/mps-footing" --quasi-static --domain 2x1.2 --threads 1 --restart "$work/cut.h5" \
+  --out "$work/rest" >/dev/null
+cmp "$work/whole/pressure.csv" "$work/rest/pressure.csv" || fail "the run that was interrupted"
+exit 0
