@@ -12,8 +12,8 @@
  *   }
  *   mps_coupling_accept(c);                              the step is made
  *
- * The object knows nothing of the codes: they may be solvers of this library or not. docs/fluid.md
- * has a whole loop. Thread rule: one thread at a time per context.
+ * The object knows nothing of the codes: they may be solvers of this library or not.
+ * docs/coupling.md has a whole program, and says what to choose. Thread rule: one thread at a time per context.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_COUPLE_H
 #define LIBMPS_COUPLE_H
@@ -38,7 +38,8 @@ typedef struct mps_coupling_def {
   double relaxation; /* x + relaxation (H - x) where nothing is known yet, in (0, 1]; default .1 */
   double tolerance;  /* agreed when |H - x| <= tolerance |H| (Euclid), in (0, 1); default 1e-4 */
   double floor;      /* ... or when the root mean square of H - x is at most this, in the values'
-                        unit, >= 0; default 0 */
+                        unit, >= 0; default 0. Of accelerations under mps_fluid 1e-4 g: its own
+                        solution leaves as much open */
   double filter;     /* QUASI_NEWTON: a difference is left out of which less than this share is
                         news, in [0, 1); default 1e-4 */
   int32_t repeats;   /* most a step, >= 1; default 50 */
@@ -69,7 +70,8 @@ MPS_API MPS_NODISCARD mps_status mps_coupling_begin(mps_coupling *coupling, cons
 /** What the codes answered to the last guess (size values). `done` receives 1 where they agree:
  *  `guess` is then as it was; else 0, and `guess` (it may be the array of `answer`) receives what
  *  to try next. MPS_ERROR_NUMERIC: no agreement after `repeats`, or an answer that is not finite;
- *  begin the step again, with a shorter one if need be. MPS_ERROR_STATE: none is begun. */
+ *  begin the step again, with a shorter one if need be (mps_coupling_set_memory with what was kept
+ *  before the step takes back what the failed one has taught). MPS_ERROR_STATE: none is begun. */
 MPS_API MPS_NODISCARD mps_status mps_coupling_next(mps_coupling *coupling, const double *answer,
                                                    double *guess, int32_t *done);
 /** The step is made: the last guess and the differences seen serve the next ones. */
