@@ -3,20 +3,20 @@
  * damping, held, driven, viscous and free-field boundaries, and the stability limit of the time
  * step. docs/dynamics.md is a guide.
  *
- * Three unknowns a particle: two displacements (m) and a rotation (rad). Neighbours and the weight
- * function come from the reference positions, at creation those without the displacement, and
- * never change. Restoring forces follow from displacement differences, so that small strains keep
- * all their digits.
+ * Three unknowns a particle: two displacements (m) and a rotation (rad); every force, mass and
+ * energy is that of the thickness `measure`. Neighbours and the weight function come from the
+ * reference positions, at creation those without the displacement, and never change. Restoring
+ * forces follow from displacement differences, so that small strains keep all their digits.
  *
- * The solver works in the fields of the particle set itself (zero copy) and sorts the set once, at
- * creation. It reads `density` (kg/m3, 1e-6 to 1e9), `shear_velocity` Vs (m/s, 1e-6 to 1e9),
- * `pressure_velocity` Vp (m/s, Vp >= sqrt(2) Vs so that lambda >= 0) and, if present, `damping`
- * (ratio h, 0 to 1000) at creation and when they have been edited (mps_particles_edit) between two
- * steps; `displacement`, `velocity`, `rotation`, `spin` at creation and, once edited, at
- * mps_dynamics_restart, without which no step is taken then; `external_force` (N) at every step, if
- * the set has it by then; it writes displacement, velocity, rotation, spin, `position`,
- * `acceleration`, `pressure`, the history fields `displacement_old`, `rotation_old`,
- * `restoring_old` and, if the set has it, `reaction` (N).
+ * The solver works in the fields of the set itself and sorts it once, at creation. It reads
+ * `density` (kg/m3, 1e-6 to 1e9), `shear_velocity` Vs (m/s, 1e-6 to 1e9), `pressure_velocity` Vp
+ * (m/s, Vp >= sqrt(2) Vs so that lambda >= 0) and, if present, `damping` (ratio h, 0 to 1000) at
+ * creation and when they have been edited (mps_particles_edit) between two steps; `displacement`,
+ * `velocity`, `rotation`, `spin` at creation and, once edited, at mps_dynamics_restart, without
+ * which no step is taken then; `external_force` (N) at every step, if the set has it by then; it
+ * writes displacement, velocity, rotation, spin, `position`, `acceleration`, `pressure`, the
+ * history fields `displacement_old`, `rotation_old`, `restoring_old` and, if the set has it,
+ * `reaction` (N).
  *
  * After a step to time t = mps_dynamics_time the positions, displacements and rotations are those
  * of t; accelerations, pressures and reactions those that the step began with, of t - dt
@@ -29,14 +29,16 @@
  * a state from before (mps_dynamics_rollback, mps_dynamics_restore). None can be added: a newcomer
  * has no reference position in a body that has moved.
  *
- * Every force, mass and energy is that of the thickness `measure`.
- *
- * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
- * its results are the same bit for bit for every number of threads.
+ * Ranks (mps/domain.h) each make the same whole set, of which the solver leaves each its share, and
+ * all free-field columns. All functions but those that only tell (get_def, particles, context,
+ * pairs, limit, time, steps) are collective; lists of ids name particles of any rank. None can be
+ * removed, and save and restore are MPS_ERROR_UNSUPPORTED. Thread rule: one thread at a time per
+ * context; a step runs on its executor, with the same bits for every number of threads and ranks.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_DYNAMICS_H
 #define LIBMPS_DYNAMICS_H
 
+#include "domain.h"
 #include "io.h"
 #include "kernel.h"
 #include "material.h"
@@ -94,6 +96,7 @@ typedef struct mps_dynamics_def {
                              Kept alive */
   mps_kernel *kernel; /* weight function, its radius in (1, 4] spacings; NULL (default): re/r - 1
                          with radius_ratio, Yoshida (A8). Kept alive */
+  mps_domain *domain; /* ranks that share the body; NULL (default): none. Kept alive */
 } mps_dynamics_def;
 
 MPS_API mps_status mps_dynamics_def_init(mps_dynamics_def *def, size_t size);

@@ -108,6 +108,15 @@ mps_status mpsi_particles_back_up(mps_particles *particles, const char *function
 void mpsi_particles_go_back(mps_particles *particles, mpsi_backup *backup);
 void mpsi_backup_drop(mps_particles *particles, mpsi_backup *backup);
 
+/* A set keeps `count` of its particles, rows[0], rows[1], ... in this order, with room for
+ * `capacity`, and gives up the rest, on behalf of a solver whose particles lie on several ranks.
+ * What it was is in *former, to be taken back or dropped. */
+typedef struct mpsi_storage mpsi_storage;
+mps_status mpsi_particles_keep(mps_particles *particles, const char *function, int64_t count,
+                               const int64_t *rows, int64_t capacity, mpsi_storage **former);
+void mpsi_particles_take_back(mps_particles *particles, mpsi_storage **former);
+void mpsi_storage_drop(mps_particles *particles, mpsi_storage **former);
+
 /* Takes back the fields added since there were `keep` of them; nobody may have borrowed them yet.
  */
 void mpsi_particles_drop_fields(mps_particles *particles, int32_t keep);

@@ -417,8 +417,8 @@ mps_status mpsi_state_put(const mpsi_state_of *of, const char *function, const m
   void *scratch = NULL;
   mpsi_state s;
   mps_status status = list(of, function, &s);
-  if (status != MPS_OK) return status;
-  status = match(&w, &s, from);
+  const bool listed = status == MPS_OK;
+  if (listed) status = match(&w, &s, from);
   const bool room =
       status == MPS_OK && reserve(&s, from) &&
       (!of->particles || !of->make_room || of->make_room(of->solver, from->particles));
@@ -428,10 +428,13 @@ mps_status mpsi_state_put(const mpsi_state_of *of, const char *function, const m
   const int32_t fields = of->particles ? mps_particles_field_count(of->particles) : 0;
   if (status == MPS_OK && of->particles)
     status = mpsi_particles_prepare_state(of->particles, function, from, &scratch);
-  if (status == MPS_OK && of->prepare) {
+  const bool prepared = status == MPS_OK;
+  if (status == MPS_OK && of->prepare)
     status = of->prepare(of->solver, function, from, source, disagreement);
-    if (status != MPS_OK) mpsi_particles_drop_prepared(of->particles, scratch);
-    if (status != MPS_OK) mpsi_particles_drop_fields(of->particles, fields);
+  if (of->settle) status = of->settle(of->solver, function, status);
+  if (prepared && status != MPS_OK && of->particles) {
+    mpsi_particles_drop_prepared(of->particles, scratch);
+    mpsi_particles_drop_fields(of->particles, fields);
   }
   if (status == MPS_OK) { /* from here on nothing fails */
     if (of->particles) mpsi_particles_put_state(of->particles, from, scratch);
@@ -439,6 +442,6 @@ mps_status mpsi_state_put(const mpsi_state_of *of, const char *function, const m
     for (int32_t k = 0; k < s.count; k++) write_item(&s.item[k], value_of(from, &s, k));
     if (of->after) of->after(of->solver);
   }
-  mpsi_free(of->context, s.item);
+  if (listed) mpsi_free(of->context, s.item);
   return status;
 }

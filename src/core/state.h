@@ -119,6 +119,9 @@ typedef struct mpsi_state_of {
    * may be called again, or never followed by `bind`. May be NULL. */
   mps_status (*prepare)(void *solver, const char *function, const mps_snapshot *from,
                         const char *source, mps_status disagreement);
+  /* May be NULL: of a solver on several ranks. What has become of all of them, when all that can
+   * fail on this one is done; its own status so far is `status`. */
+  mps_status (*settle)(void *solver, const char *function, mps_status status);
   /* May be NULL, cannot fail. `bind`: the set is back, its columns may have moved and its number of
    * particles changed; the values of the list are still to be written. `after`: they are too. */
   void (*bind)(void *solver);

@@ -66,23 +66,28 @@ static void release(mps_dynamics *dynamics, mpsi_dynamics_boundary **boundary) {
 }
 
 /* A boundary made from the caller's definition. */
-static mps_status make(mps_dynamics *dynamics, const char *function,
+static mps_status make(mps_dynamics *dynamics, const char *function, mps_status status,
                        const mps_dynamics_boundary_def *user_def, mpsi_dynamics_boundary **out) {
   mps_dynamics_boundary_def def = boundary_defaults;
   *out = NULL;
-  mps_status status =
-      MPSI_DEF_READ(dynamics->context, function, mps_dynamics_boundary_def, user_def, &def);
+  if (status == MPS_OK)
+    status = MPSI_DEF_READ(dynamics->context, function, mps_dynamics_boundary_def, user_def, &def);
   if (status == MPS_OK) status = check_def(dynamics, function, &def);
-  if (status != MPS_OK) return status;
-  mpsi_dynamics_boundary *b = mpsi_alloc(dynamics->context, 1, sizeof *b);
-  if (!b) return mpsi_fail_memory(dynamics->context, function, sizeof *b);
+  mpsi_dynamics_boundary *b = NULL;
+  if (status == MPS_OK && !(b = mpsi_alloc(dynamics->context, 1, sizeof *b)))
+    status = mpsi_fail_memory(dynamics->context, function, sizeof *b);
+  status = mpsi_domain_settle(dynamics->domain, function, status);
+  if (status != MPS_OK) {
+    mpsi_free(dynamics->context, b);
+    return status;
+  }
   const mpsi_dynamics_selection selection = {.ids = def.ids,
                                              .id_count = def.id_count,
                                              .lower = def.lower,
                                              .upper = def.upper,
                                              .signal = def.signal,
                                              .factor = def.factor};
-  status = mpsi_dynamics_select(dynamics, function, &selection, &b->part);
+  status = mpsi_dynamics_select(dynamics, function, status, &selection, &b->part);
   b->kind = def.kind;
   b->normal = def.normal;
   b->dofs = def.dofs;
@@ -244,10 +249,10 @@ static bool other_freedoms(const mps_dynamics *dynamics, const lists *l) {
   return false;
 }
 
-static void put_lists(mps_dynamics *dynamics, lists *l, int32_t changed) {
+static void put_lists(mps_dynamics *dynamics, lists *l, int32_t changed, bool other) {
   mpsi_dynamics_state *s = &dynamics->state;
   double *const velocity[3] = {s->vx, s->vy, s->vth};
-  if (other_freedoms(dynamics, l)) {
+  if (other) {
     dynamics->have_limit = dynamics->checked = false;
     if (dynamics->fresh && isnan(dynamics->def.dt)) dynamics->dt = NAN;
   }
@@ -270,7 +275,7 @@ void mpsi_dynamics_use_lists(mps_dynamics *dynamics, lists *room) {
   find_owners(dynamics, room->owner);
   list_bounds(dynamics, room->owner, -1, room);
   list_dashpots(dynamics, room->owner, room);
-  put_lists(dynamics, room, -1);
+  put_lists(dynamics, room, -1, other_freedoms(dynamics, room));
 }
 
 /* Where the signals of a driven boundary are at time t. */
@@ -291,7 +296,7 @@ static mps_status ask(mps_dynamics *dynamics, const char *function, mpsi_dynamic
 mps_status mpsi_dynamics_list_boundaries(mps_dynamics *dynamics, const char *function) {
   lists l;
   const mps_status status = make_lists(dynamics, function, -1, &l);
-  if (status == MPS_OK) put_lists(dynamics, &l, -1);
+  if (status == MPS_OK) put_lists(dynamics, &l, -1, other_freedoms(dynamics, &l));
   return status;
 }
 
@@ -327,18 +332,20 @@ static mps_status exchange(mps_dynamics *dynamics, const char *function, int32_t
                            mpsi_dynamics_boundary **boundary) {
   mpsi_dynamics_boundary *former = dynamics->boundary[number];
   mps_status status = MPS_OK;
-  lists l;
+  lists l = {0};
   if (*boundary) status = ask(dynamics, function, *boundary, mps_dynamics_time(dynamics));
   if (status == MPS_OK && !mpsi_dynamics_reserve_accounts(dynamics))
     status = mpsi_fail_memory(dynamics->context, function, (size_t)dynamics->count * 24);
-  if (status != MPS_OK) return status;
   dynamics->boundary[number] = *boundary;
-  status = make_lists(dynamics, function, number, &l);
+  if (status == MPS_OK) status = make_lists(dynamics, function, number, &l);
+  double other = status == MPS_OK && other_freedoms(dynamics, &l);
+  status = mpsi_domain_settle_max(dynamics->domain, function, status, 1, &other);
   if (status != MPS_OK) {
     dynamics->boundary[number] = former;
+    mpsi_dynamics_free_lists(dynamics, &l);
     return status;
   }
-  put_lists(dynamics, &l, number);
+  put_lists(dynamics, &l, number, other != 0.0);
   *boundary = former;
   return MPS_OK;
 }
@@ -361,13 +368,14 @@ mps_status mps_dynamics_add_boundary(mps_dynamics *dynamics, const mps_dynamics_
   while (at < dynamics->boundary_room && dynamics->boundary[at]) at++;
   if (at == dynamics->boundary_room) {
     void *array = dynamics->boundary;
-    if (!mpsi_grow(context, &array, at, at + 8, sizeof *dynamics->boundary))
-      return mpsi_fail_memory(context, __func__, (size_t)(at + 8) * sizeof *dynamics->boundary);
+    if (mpsi_grow(context, &array, at, at + 8, sizeof *dynamics->boundary))
+      dynamics->boundary_room = at + 8;
+    else
+      status = mpsi_fail_memory(context, __func__, (size_t)(at + 8) * sizeof *dynamics->boundary);
     dynamics->boundary = array;
-    dynamics->boundary_room = at + 8;
   }
   mpsi_dynamics_boundary *boundary = NULL;
-  status = make(dynamics, __func__, def, &boundary);
+  status = make(dynamics, __func__, status, def, &boundary);
   if (status == MPS_OK) status = exchange(dynamics, __func__, at, &boundary);
   release(dynamics, &boundary);
   if (status == MPS_OK) *number = at;
@@ -383,7 +391,7 @@ mps_status mps_dynamics_set_boundary(mps_dynamics *dynamics, int32_t number,
   if (status == MPS_OK) status = check_number(dynamics, __func__, number);
   if (status != MPS_OK) return status;
   mpsi_dynamics_boundary *boundary = NULL;
-  status = make(dynamics, __func__, def, &boundary);
+  status = make(dynamics, __func__, status, def, &boundary);
   if (status == MPS_OK) {
     const mpsi_dynamics_boundary *former = dynamics->boundary[number];
     memcpy(boundary->pushed, former->pushed, sizeof boundary->pushed);
@@ -419,13 +427,18 @@ mps_status mps_dynamics_get_reaction_sized(const mps_dynamics *dynamics, int32_t
   memcpy(sum, b->pushed, sizeof b->pushed);
   memcpy(sum + 3, b->impulse, sizeof b->impulse);
   sum[6] = b->work;
+  const mps_status status =
+      mpsi_domain_sum_exact(dynamics->domain, "mps_dynamics_get_reaction", 7, sum);
+  if (status != MPS_OK) return status;
   for (int k = 0; k < 7; k++) value[k] = mpsi_exact_value(&sum[k]);
   const mps_reaction r = {
       .force = {value[0] * rate, value[1] * rate, 0.0},
       .moment = {0.0, 0.0, value[2] * rate},
       .impulse = {value[3], value[4], 0.0},
       .moment_impulse = {0.0, 0.0, value[5]},
-      .count = b->kick > 0.0 ? b->part.count : 0,
+      .count = b->kick <= 0.0                       ? 0
+               : mpsi_domain_many(dynamics->domain) ? b->part.total
+                                                    : b->part.count,
       .work = value[6],
   };
   return mpsi_out_write(dynamics->context, "mps_dynamics_get_reaction", out, size, &r, sizeof r);

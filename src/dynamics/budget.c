@@ -92,14 +92,19 @@ static void energy_block(void *data, int64_t b, int32_t worker) {
   dynamics->part[2 * b + 1] = strain;
 }
 
-void mpsi_dynamics_energies(mps_dynamics *dynamics, double *kinetic, double *strain) {
+mps_status mpsi_dynamics_energies(mps_dynamics *dynamics, const char *function, double *kinetic,
+                                  double *strain) {
   const int64_t blocks = dynamics->mesh.blocks;
-  mpsi_parallel_for(dynamics->context, blocks, first_pass, dynamics);
+  mps_status status = mpsi_dynamics_bring_motion(dynamics, function);
+  if (status != MPS_OK) return status;
+  mpsi_parallel_for(dynamics->context, blocks + dynamics->mesh.ghosts, first_pass, dynamics);
   mpsi_parallel_for(dynamics->context, blocks, energy_block, dynamics);
   mpsi_exact sum[2] = {{{0}}, {{0}}};
   for (int64_t k = 0; k < 2 * blocks; k++) mpsi_exact_add(&sum[k % 2], dynamics->part[k]);
+  status = mpsi_domain_sum_exact(dynamics->domain, function, 2, sum);
   *kinetic = mpsi_exact_value(&sum[0]);
   *strain = mpsi_exact_value(&sum[1]);
+  return status;
 }
 
 /* ---- works of a step
@@ -147,13 +152,17 @@ void mpsi_dynamics_count_works(mpsi_dynamics_account *account) {
 /* ---- totals
  * --------------------------------------------------------------------------------------- */
 
-enum { MASS, LINEAR_X, LINEAR_Y, ANGULAR, MOMENTA };
+enum { MASS, LINEAR_X, LINEAR_Y, ANGULAR, MOMENTA, LOADS = MOMENTA, BOUNDARIES, DAMPING, SUMS };
 
-static void sum_momenta(mps_dynamics *dynamics, mps_totals *out) {
+/* Momenta and works, over all ranks. */
+static mps_status sum_up(mps_dynamics *dynamics, const char *function, mps_totals *out) {
   const mpsi_dynamics_state *s = &dynamics->state;
   const double D = mps_particles_spacing(dynamics->particles);
-  mpsi_exact sum[MOMENTA];
+  mpsi_exact sum[SUMS];
   memset(sum, 0, sizeof sum);
+  sum[LOADS] = dynamics->works.loads;
+  sum[BOUNDARIES] = dynamics->works.boundaries;
+  sum[DAMPING] = dynamics->works.damping;
   for (int64_t b = 0; b < dynamics->mesh.blocks; b++) {
     double part[MOMENTA] = {0.0};
     for (int64_t k = dynamics->mesh.block[b].begin;
@@ -170,26 +179,29 @@ static void sum_momenta(mps_dynamics *dynamics, mps_totals *out) {
     }
     for (int m = 0; m < MOMENTA; m++) mpsi_exact_add(&sum[m], part[m]);
   }
+  const mps_status status = mpsi_domain_sum_exact(dynamics->domain, function, SUMS, sum);
   *out = (mps_totals){
       .mass = mpsi_exact_value(&sum[MASS]),
-      .volume = (double)dynamics->body * D * D * dynamics->def.measure,
+      .volume = (double)dynamics->whole_body * D * D * dynamics->def.measure,
       .linear = {mpsi_exact_value(&sum[LINEAR_X]), mpsi_exact_value(&sum[LINEAR_Y]), 0.0},
-      .angular = {0.0, 0.0, mpsi_exact_value(&sum[ANGULAR])}};
+      .angular = {0.0, 0.0, mpsi_exact_value(&sum[ANGULAR])},
+      .work_loads = mpsi_exact_value(&sum[LOADS]),
+      .work_boundaries = mpsi_exact_value(&sum[BOUNDARIES]),
+      .dissipated = mpsi_exact_value(&sum[DAMPING])};
+  return status;
 }
 
 mps_status mps_dynamics_get_totals_sized(mps_dynamics *dynamics, mps_totals *out, size_t size) {
   static const char *const function = "mps_dynamics_get_totals";
   if (!dynamics) return MPS_ERROR_ARGUMENT;
   mps_totals t;
-  const mps_status status = mpsi_dynamics_settle_dt(dynamics, function);
+  mps_status status = mpsi_dynamics_settle_dt(dynamics, function);
   if (status != MPS_OK) return status;
   if (dynamics->fresh) dynamics->kept = dynamics->dt; /* the step to come */
-  sum_momenta(dynamics, &t);
-  mpsi_dynamics_energies(dynamics, &t.kinetic, &t.strain);
+  status = sum_up(dynamics, function, &t);
+  if (status == MPS_OK) status = mpsi_dynamics_energies(dynamics, function, &t.kinetic, &t.strain);
+  if (status != MPS_OK) return status;
   const mpsi_dynamics_works *w = &dynamics->works;
-  t.work_loads = mpsi_exact_value(&w->loads);
-  t.work_boundaries = mpsi_exact_value(&w->boundaries);
-  t.dissipated = mpsi_exact_value(&w->damping);
   const double start = dynamics->begun ? w->start : t.kinetic + t.strain;
   const double rest =
       t.work_loads + t.work_boundaries - t.dissipated - (t.kinetic + t.strain - start);

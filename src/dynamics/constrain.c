@@ -107,14 +107,18 @@ void mpsi_dynamics_begin_counting(mps_dynamics *dynamics) {
       memset(dynamics->boundary[k]->pushed, 0, sizeof dynamics->boundary[k]->pushed);
 }
 
-void mpsi_dynamics_end_counting(mps_dynamics *dynamics, double kick) {
-  for (int32_t k = 0; k < dynamics->boundary_room; k++) {
-    mpsi_dynamics_boundary *b = dynamics->boundary[k];
-    if (!b) continue;
-    flush_boundary(b);
-    b->kick = kick;
-  }
+/* Where a list has been gone through: the next begins with sums of its own, also where a rank has
+ * one block alone. */
+static void flush_all(mps_dynamics *dynamics) {
+  for (int32_t k = 0; k < dynamics->boundary_room; k++)
+    if (dynamics->boundary[k]) flush_boundary(dynamics->boundary[k]);
   flush(&dynamics->works.boundaries, &dynamics->works.part);
+}
+
+void mpsi_dynamics_end_counting(mps_dynamics *dynamics, double kick) {
+  flush_all(dynamics);
+  for (int32_t k = 0; k < dynamics->boundary_room; k++)
+    if (dynamics->boundary[k]) dynamics->boundary[k]->kick = kick;
 }
 
 /* The work of boundaries and dashpots on a particle of the body. */
@@ -130,6 +134,7 @@ static void count_work(mps_dynamics *dynamics, int32_t i, double work) {
  * changed from `before` to `after`. */
 static void count_impulse(mps_dynamics *dynamics, mpsi_dynamics_boundary *b, int32_t c, int32_t i,
                           double impulse, double before, double after) {
+  if (i >= dynamics->body && !dynamics->lead) return; /* a column, counted by another rank */
   const double work = 0.5 * impulse * (before + after);
   const int64_t block = mpsi_dynamics_block_of(dynamics->body, i);
   count_work(dynamics, i, work);
@@ -200,6 +205,7 @@ void mpsi_dynamics_hold_bounds(mps_dynamics *dynamics, double kick, bool output)
   const double rate = 1.0 / dynamics->length;
   for (int64_t k = 0; k < dynamics->bounds; k++) {
     mpsi_dynamics_bound *q = &dynamics->bound[k];
+    if (k == 0 || q->component != q[-1].component) flush_all(dynamics);
     mpsi_dynamics_boundary *b = dynamics->boundary[q->boundary];
     const int32_t i = q->particle, c = q->component;
     const motion m = component(dynamics, c);

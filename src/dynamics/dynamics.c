@@ -187,7 +187,7 @@ static mps_status choose_kernel(mps_dynamics *dynamics) {
                             &dynamics->density);
 }
 
-static mps_status build(mps_dynamics *dynamics) {
+static mps_status build(mps_dynamics *dynamics, mpsi_storage **former) {
   static const char *const function = "mps_dynamics_create";
   mpsi_dynamics_structure made;
   dynamics->torque = 1.0;
@@ -196,13 +196,19 @@ static mps_status build(mps_dynamics *dynamics) {
     status = mpsi_dynamics_write_material(dynamics->particles, function, dynamics->def.material, 0,
                                           NULL);
   if (status == MPS_OK) status = mpsi_dynamics_check_ground(dynamics->particles, function);
-  if (status == MPS_OK) status = mpsi_dynamics_add_fields(dynamics);
-  if (status == MPS_OK) status = mpsi_dynamics_sort(dynamics, function);
-  if (status == MPS_OK) status = mpsi_dynamics_make_structure(dynamics, function, NULL, &made);
+  if (mpsi_domain_many(dynamics->domain)) {
+    status = mpsi_dynamics_take_share(dynamics, function, status, &made, former);
+  } else {
+    if (status == MPS_OK) status = mpsi_dynamics_add_fields(dynamics);
+    if (status == MPS_OK) status = mpsi_dynamics_sort(dynamics, function);
+    if (status == MPS_OK) status = mpsi_dynamics_make_structure(dynamics, function, NULL, &made);
+  }
   if (status != MPS_OK) return status;
   mpsi_dynamics_use_structure(dynamics, &made);
-  status = mpsi_dynamics_reserve_watch(dynamics, function);
+  status = mpsi_dynamics_join_coefficients(dynamics, function, MPS_OK);
+  if (status == MPS_OK) status = mpsi_dynamics_reserve_watch(dynamics, function);
   if (status == MPS_OK) status = mpsi_dynamics_list_boundaries(dynamics, function);
+  status = mpsi_domain_settle(dynamics->domain, function, status);
   if (status == MPS_OK) status = mpsi_dynamics_begin(dynamics, function, 0.0);
   return status;
 }
@@ -218,20 +224,25 @@ mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
   mps_dynamics_def def = dynamics_defaults;
   mps_status status = MPS_OK;
   if (user_def) status = MPSI_DEF_READ(context, __func__, mps_dynamics_def, user_def, &def);
+  if (status == MPS_OK) status = mpsi_domain_check(context, __func__, def.domain);
+  if (status != MPS_OK) return status;
   if (def.kernel) def.radius_ratio = dynamics_defaults.radius_ratio; /* not read */
   if (status == MPS_OK) status = check_choices(context, &def);
   if (status == MPS_OK) status = check_numbers(context, &def);
   if (status == MPS_OK) status = check_state(context, particles);
   if (status == MPS_OK) status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
   if (status == MPS_OK) status = check_geometry(context, particles, &def);
-  if (status != MPS_OK) return status;
-  mpsi_backup backup;
-  status = mpsi_particles_back_up(particles, __func__, &backup);
-  if (status != MPS_OK) return status;
-  mps_dynamics *dynamics = mpsi_alloc(context, 1, sizeof *dynamics);
-  if (!dynamics) {
+  mpsi_backup backup = {0};
+  mpsi_storage *former = NULL;
+  mps_dynamics *dynamics = NULL;
+  if (status == MPS_OK) status = mpsi_particles_back_up(particles, __func__, &backup);
+  if (status == MPS_OK && !(dynamics = mpsi_alloc(context, 1, sizeof *dynamics)))
+    status = mpsi_fail_memory(context, __func__, sizeof *dynamics);
+  status = mpsi_domain_settle(def.domain, __func__, status);
+  if (status != MPS_OK) {
     mpsi_backup_drop(particles, &backup);
-    return mpsi_fail_memory(context, __func__, sizeof *dynamics);
+    mpsi_free(context, dynamics);
+    return status;
   }
   dynamics->context = mpsi_context_retain(context);
   dynamics->particles = particles;
@@ -250,12 +261,16 @@ mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
   dynamics->dt = def.dt;
   dynamics->fresh = true;
   if (def.material) dynamics->def.material = mpsi_material_retain(def.material);
-  if ((status = build(dynamics)) != MPS_OK) {
+  dynamics->domain = mpsi_domain_retain(def.domain);
+  dynamics->lead = true;
+  if ((status = build(dynamics, &former)) != MPS_OK) {
+    mpsi_particles_take_back(particles, &former);
     mpsi_particles_go_back(particles, &backup);
     mps_dynamics_destroy(&dynamics);
     return status;
   }
   mpsi_backup_drop(particles, &backup);
+  mpsi_storage_drop(particles, &former);
   *out = dynamics;
   return MPS_OK;
 }
@@ -270,6 +285,7 @@ void mps_dynamics_destroy(mps_dynamics **pointer) {
   mpsi_dynamics_drop_change(dynamics);
   mpsi_state_forget(&dynamics->identity);
   mpsi_dynamics_mesh_free(context, &dynamics->mesh);
+  mpsi_halo_destroy(context, &dynamics->halo);
   mpsi_dynamics_free_boundaries(dynamics);
   mpsi_dynamics_free_loads(dynamics);
   void *parts[] = {dynamics->slab,   dynamics->scratch, dynamics->bad,
@@ -278,6 +294,7 @@ void mps_dynamics_destroy(mps_dynamics **pointer) {
   mps_kernel_destroy(&dynamics->kernel);
   mps_material_destroy(&dynamics->def.material);
   mpsi_particles_release(dynamics->particles, &dynamics->holder);
+  mps_domain_destroy(&dynamics->domain);
   mpsi_free(context, dynamics);
   mpsi_context_release(context);
 }
@@ -293,7 +310,7 @@ mps_status mps_experimental_dynamics_printed_torque(mps_dynamics *dynamics) {
   (void)mpsi_dynamics_set_coefficients(dynamics);
   dynamics->have_limit = dynamics->checked = false;
   dynamics->dt = dynamics->def.dt;
-  return MPS_OK;
+  return mpsi_dynamics_join_coefficients(dynamics, __func__, MPS_OK);
 }
 
 /* ---- questions ------------------------------------------------------------------------------- */

@@ -2,6 +2,7 @@
  *
  *   structure.c   order, pairs, mesh and arrays: what follows from which particles there are
  *   ground.c      what the body is made of; fields that the caller edits
+ *   share.c       the share of one rank in a body that lies on several
  *   change.c      other particles: what must be made anew when some leave, or come back
  *   removal.c     particles that leave between two steps
  *   step.c        the step: forces (kernels.c), loads, dashpots, what is held or driven, budget
@@ -21,6 +22,7 @@
 #include "core/guard.h"
 #include "core/particles_internal.h"
 #include "core/state.h"
+#include "domain/halo.h"
 #include "kernels.h"
 #include "layout.h"
 #include "mesh.h"
@@ -37,6 +39,7 @@ typedef struct mpsi_dynamics_part {
   int64_t listed;
   int64_t count;
   int32_t *particle; /* present index of those that are there, ascending */
+  int64_t total;     /* when it was defined, on all ranks */
   mps_signal *signal[2];
   double factor[2];
 } mpsi_dynamics_part;
@@ -107,7 +110,15 @@ typedef struct mpsi_dynamics_structure {
   int32_t *bad;
   mpsi_dynamics_dashpot *column_dashpot;
   int64_t column_dashpots;
+  int64_t ghosts;  /* particles of other ranks, behind the own ones */
+  mpsi_halo *halo; /* brings their values; NULL: one rank */
 } mpsi_dynamics_structure;
+
+/* Extremes over all particles, of all ranks. */
+typedef struct mpsi_dynamics_extremes {
+  double mu, lambda, lightest; /* most, most (Pa), least density (kg/m3) */
+  double alpha[2], beta[2];    /* least and most */
+} mpsi_dynamics_extremes;
 
 /* Works and energies, J, since the state began. */
 typedef struct mpsi_dynamics_works {
@@ -124,9 +135,15 @@ struct mps_dynamics {
   mps_dynamics_def def;            /* with a share in the material */
   mps_kernel *kernel;              /* w(r), shared */
   double spacing, radius, density; /* D, re (m), n0 */
+  mps_domain *domain;              /* shared; NULL: none */
   int64_t count;                   /* particles, free-field columns included */
   int64_t body;                    /* particles of the body: 0 .. body - 1 */
-  int64_t pairs;
+  int64_t ghosts;                  /* of other ranks: count .. count + ghosts - 1 */
+  int64_t whole, whole_body;       /* as count and body, of all ranks */
+  bool lead;                       /* sums over columns, which all ranks have, are this rank's */
+  mpsi_halo *halo;                 /* NULL: one rank */
+  mpsi_dynamics_extremes extremes;
+  int64_t pairs;  /* of all ranks */
   int64_t places; /* hash of the reference positions that the pairs are made of */
   bool lattice;   /* all pairs' offsets are whole spacings */
   mpsi_dynamics_mesh mesh;
@@ -227,6 +244,25 @@ void mpsi_dynamics_drop_change(mps_dynamics *dynamics);
 mps_status mpsi_dynamics_prepare_state(void *solver, const char *function, const mps_snapshot *from,
                                        const char *source, mps_status disagreement);
 
+mps_status mpsi_dynamics_add_reference(mps_dynamics *dynamics);
+mpsi_dynamics_geometry mpsi_dynamics_present_geometry(const mps_dynamics *dynamics);
+/* Are all offsets whole spacings? */
+bool mpsi_dynamics_on_lattice(double spacing, int64_t count, const mpsi_dynamics_pair *pair);
+mps_status mpsi_dynamics_allocate(mps_dynamics *dynamics, const char *function,
+                                  mpsi_dynamics_structure *out);
+
+/* ---- share.c: of a domain of several ranks; collective ---- */
+
+/* Keeps this rank's share of the set, which is sorted; the rest is in *former. `status` is what has
+ * become of the rank so far. */
+mps_status mpsi_dynamics_take_share(mps_dynamics *dynamics, const char *function, mps_status status,
+                                    mpsi_dynamics_structure *out, mpsi_storage **former);
+/* Displacement and rotation of ghosts as they are now; nothing to do on one rank. */
+mps_status mpsi_dynamics_bring_motion(mps_dynamics *dynamics, const char *function);
+/* After mpsi_dynamics_set_coefficients: those of ghosts, extremes, kind of damping. */
+mps_status mpsi_dynamics_join_coefficients(mps_dynamics *dynamics, const char *function,
+                                           mps_status status);
+
 /* ---- removal.c: the holder's functions ---- */
 
 mps_status mpsi_dynamics_remove(void *self, const char *function, int64_t count,
@@ -242,9 +278,11 @@ mps_status mpsi_dynamics_write_material(mps_particles *particles, const char *fu
                                         const int64_t *ids);
 /* Coefficients of each particle, from its fields; whether one is another than before. */
 bool mpsi_dynamics_set_coefficients(mps_dynamics *dynamics);
+void mpsi_dynamics_choose_damping(mps_dynamics *dynamics); /* from the extremes */
 /* Kinetic and strain energy that the budget knows of: 0 where it has not begun. What changes the
- * body between steps moves the budget's start by the difference. */
-double mpsi_dynamics_present_energy(mps_dynamics *dynamics);
+ * body between steps moves the budget's start by the difference. Fails with a domain only. */
+mps_status mpsi_dynamics_present_energy(mps_dynamics *dynamics, const char *function,
+                                        double *energy);
 /* Takes up the fields of the ground as they are now. */
 mps_status mpsi_dynamics_read_ground(mps_dynamics *dynamics, const char *function);
 /* The holder's commit: a field has been edited. */
@@ -289,7 +327,9 @@ typedef struct mpsi_dynamics_selection {
   const double *factor;
   bool all;
 } mpsi_dynamics_selection;
-mps_status mpsi_dynamics_select(mps_dynamics *dynamics, const char *function,
+/* Collective, as everything that defines boundaries and loads; `status` is what has become of this
+ * rank so far. */
+mps_status mpsi_dynamics_select(mps_dynamics *dynamics, const char *function, mps_status status,
                                 const mpsi_dynamics_selection *selection, mpsi_dynamics_part *out);
 /* Finds its particles in the set as it is now. */
 void mpsi_dynamics_find_part(const mps_dynamics *dynamics, mpsi_dynamics_part *part);
@@ -351,15 +391,18 @@ void mpsi_dynamics_note_velocities(mps_dynamics *dynamics, int64_t block);
 void mpsi_dynamics_count_works(mpsi_dynamics_account *account);
 
 /* Kinetic and strain energy of the present state, J. */
-void mpsi_dynamics_energies(mps_dynamics *dynamics, double *kinetic, double *strain);
+mps_status mpsi_dynamics_energies(mps_dynamics *dynamics, const char *function, double *kinetic,
+                                  double *strain);
 
 /* ---- limit.c, tangent.c, lattice.c ---- */
 
 /* y = S x, the symmetric tangent at the reference state: S = M^-1/2 K M^-1/2 over the 3 count
  * unknowns (x, y, rotation each in a row); held ones give 0. `weight` (NULL: 1) multiplies each
- * particle's pressure, its mean each pair's shear force. `work` has 4 count doubles. */
-void mpsi_dynamics_tangent_apply(mps_dynamics *dynamics, const double *weight, const double *x,
-                                 double *y, double *work);
+ * particle's pressure, its mean each pair's shear force. `work` has 4 (count + ghosts) doubles,
+ * `weight` count + ghosts. Fails with a domain only. */
+mps_status mpsi_dynamics_tangent_apply(mps_dynamics *dynamics, const char *function,
+                                       const double *weight, const double *x, double *y,
+                                       double *work);
 /* Square of the highest eigenfrequency (rad/s)^2 of the endless square lattice; `torque` as above;
  * `kernel` NULL: re/r - 1. */
 double mpsi_dynamics_lattice_omega2(const mps_kernel *kernel, double spacing, double radius_ratio,

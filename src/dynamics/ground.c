@@ -66,6 +66,15 @@ static bool put(double *at, double value) {
   return other;
 }
 
+void mpsi_dynamics_choose_damping(mps_dynamics *dynamics) {
+  const double *beta = dynamics->extremes.beta;
+  dynamics->damping = MPSI_DYN_UNDAMPED;
+  if (beta[1] > 0.0)
+    dynamics->damping = beta[0] == beta[1] || dynamics->def.damping == MPS_DYNAMICS_DAMPING_PARTICLE
+                            ? MPSI_DYN_BY_PARTICLES
+                            : MPSI_DYN_BY_PAIRS;
+}
+
 bool mpsi_dynamics_set_coefficients(mps_dynamics *dynamics) {
   const double *rho = mpsi_dynamics_column(dynamics, "density", 0);
   const double *vs = mpsi_dynamics_column(dynamics, "shear_velocity", 0);
@@ -75,7 +84,7 @@ bool mpsi_dynamics_set_coefficients(mps_dynamics *dynamics) {
   const double f1 = dynamics->def.f1, f2 = dynamics->def.f2, pi = 3.14159265358979323846;
   /* I = rho D^4/6 and one half of each pair's moment to either end: 3/(rho D^2) */
   const double spin = 3.0 * dynamics->torque;
-  double least = INFINITY, most = 0.0;
+  mpsi_dynamics_extremes e = {.lightest = INFINITY, .alpha[0] = INFINITY, .beta[0] = INFINITY};
   bool other = false;
   mpsi_dynamics_state *s = &dynamics->state;
   for (int64_t k = 0; k < dynamics->count; k++) {
@@ -88,33 +97,44 @@ bool mpsi_dynamics_set_coefficients(mps_dynamics *dynamics) {
     const double ratio = h ? h[k] : 0.0;
     other |= put(&s->alpha[k], ratio * 4.0 * pi * f1 * f2 / (f1 + f2));
     other |= put(&s->beta[k], ratio / (pi * (f1 + f2)));
-    least = fmin(least, ratio), most = fmax(most, ratio);
+    e.mu = fmax(e.mu, s->mu[k]), e.lambda = fmax(e.lambda, s->lambda[k]);
+    e.lightest = fmin(e.lightest, 1.0 / s->ix[k]);
+    e.alpha[0] = fmin(e.alpha[0], s->alpha[k]), e.alpha[1] = fmax(e.alpha[1], s->alpha[k]);
+    e.beta[0] = fmin(e.beta[0], s->beta[k]), e.beta[1] = fmax(e.beta[1], s->beta[k]);
   }
-  dynamics->damping = MPSI_DYN_UNDAMPED;
-  if (most > 0.0)
-    dynamics->damping = least == most || dynamics->def.damping == MPS_DYNAMICS_DAMPING_PARTICLE
-                            ? MPSI_DYN_BY_PARTICLES
-                            : MPSI_DYN_BY_PAIRS;
+  dynamics->extremes = e;
+  mpsi_dynamics_choose_damping(dynamics);
   return other;
 }
 
-double mpsi_dynamics_present_energy(mps_dynamics *dynamics) {
+mps_status mpsi_dynamics_present_energy(mps_dynamics *dynamics, const char *function,
+                                        double *energy) {
   double kinetic = 0.0, strain = 0.0;
-  if (dynamics->begun) mpsi_dynamics_energies(dynamics, &kinetic, &strain);
-  return kinetic + strain;
+  const mps_status status =
+      dynamics->begun ? mpsi_dynamics_energies(dynamics, function, &kinetic, &strain) : MPS_OK;
+  *energy = kinetic + strain;
+  return status;
 }
 
 mps_status mpsi_dynamics_read_ground(mps_dynamics *dynamics, const char *function) {
-  mps_status status = mpsi_dynamics_check_ground(dynamics->particles, function);
+  mps_domain *domain = dynamics->domain;
+  double before = 0.0, after = 0.0;
+  mps_status status = mpsi_domain_settle(domain, function,
+                                         mpsi_dynamics_check_ground(dynamics->particles, function));
+  if (status == MPS_OK) status = mpsi_dynamics_present_energy(dynamics, function, &before);
   if (status != MPS_OK) return status;
-  const double energy = mpsi_dynamics_present_energy(dynamics);
-  if (mpsi_dynamics_set_coefficients(dynamics)) {
-    dynamics->works.start += mpsi_dynamics_present_energy(dynamics) - energy;
+  double other = mpsi_dynamics_set_coefficients(dynamics);
+  status = mpsi_dynamics_join_coefficients(dynamics, function, MPS_OK);
+  if (status == MPS_OK) status = mpsi_domain_max(domain, function, 1, &other);
+  if (status == MPS_OK && other != 0.0) {
+    status = mpsi_dynamics_present_energy(dynamics, function, &after);
+    dynamics->works.start += after - before;
     mpsi_dynamics_renew_dashpots(dynamics);
     mpsi_dynamics_forget_limit(dynamics);
     dynamics->no_rate = dynamics->forces_stale = true;
   }
-  return mpsi_dynamics_reserve_watch(dynamics, function);
+  if (status != MPS_OK) return status;
+  return mpsi_domain_settle(domain, function, mpsi_dynamics_reserve_watch(dynamics, function));
 }
 
 /* ---- a material ------------------------------------------------------------------------------ */
@@ -167,13 +187,42 @@ mps_status mpsi_dynamics_write_material(mps_particles *particles, const char *fu
   return status;
 }
 
+/* Of a list of particles, those on this rank. */
+static mps_status write_own(mps_dynamics *dynamics, const char *function, mps_status status,
+                            const mps_material *material, int64_t count, const int64_t *ids) {
+  mps_context *context = dynamics->context;
+  int64_t *own = mpsi_alloc(context, count < 0 ? 0 : count, sizeof *own), here = 0, known = 0;
+  if (status == MPS_OK && !own) status = mpsi_fail_memory(context, function, (size_t)count * 8);
+  for (int64_t k = 0; own && k < count; k++) {
+    const int64_t i = mps_particles_index(dynamics->particles, ids[k]);
+    if (i < 0) continue;
+    own[here++] = ids[k];
+    known += i < dynamics->body || dynamics->lead;
+  }
+  status = mpsi_domain_settle(dynamics->domain, function, status);
+  if (status == MPS_OK) status = mpsi_domain_sum(dynamics->domain, function, 1, &known);
+  if (status == MPS_OK && known != count)
+    status = mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                       "of %lld ids %lld are of particles of the set on any rank", (long long)count,
+                       (long long)known);
+  if (status == MPS_OK && here > 0)
+    status = mpsi_dynamics_write_material(dynamics->particles, function, material, here, own);
+  mpsi_free(context, own);
+  return mpsi_domain_settle(dynamics->domain, function, status);
+}
+
 mps_status mps_dynamics_set_material(mps_dynamics *dynamics, const mps_material *material,
                                      int64_t count, const int64_t *ids) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_dynamics_enter(dynamics, __func__);
   if (status == MPS_OK) status = mpsi_particles_ready(dynamics->particles, __func__);
-  if (status == MPS_OK)
-    status = mpsi_dynamics_write_material(dynamics->particles, __func__, material, count, ids);
+  if (mpsi_domain_many(dynamics->domain) && ids) {
+    status = write_own(dynamics, __func__, status, material, count, ids);
+  } else {
+    if (status == MPS_OK)
+      status = mpsi_dynamics_write_material(dynamics->particles, __func__, material, count, ids);
+    status = mpsi_domain_settle(dynamics->domain, __func__, status);
+  }
   return status == MPS_OK ? mpsi_dynamics_read_ground(dynamics, __func__) : status;
 }
 
@@ -224,7 +273,8 @@ mps_status mpsi_dynamics_commit(void *self, const char *function, const char *fi
                      "field '%s' is committed within a step of the solver that holds the set",
                      field);
   if (position) status = check_positions(dynamics, function);
-  if (of_ground && mpsi_dynamics_check_ground(dynamics->particles, function) == MPS_OK)
+  if (of_ground && !mpsi_domain_many(dynamics->domain) &&
+      mpsi_dynamics_check_ground(dynamics->particles, function) == MPS_OK)
     status = mpsi_dynamics_read_ground(dynamics, function);
   else if (of_ground)
     dynamics->unread = true; /* another field may follow that goes with it: the step tells */
@@ -234,21 +284,23 @@ mps_status mpsi_dynamics_commit(void *self, const char *function, const char *fi
 }
 
 mps_status mpsi_dynamics_take_edits(mps_dynamics *dynamics, const char *function) {
-  if (dynamics->broken)
-    return mpsi_fail(
-        dynamics->context, function, MPS_ERROR_STATE,
-        "field '%s' has been written, which the solver relies on: "
-        "mps_dynamics_rollback or mps_dynamics_restore leads back, else make a new one",
-        dynamics->broken);
-  if (dynamics->rewritten && !dynamics->fresh)
-    return mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
-                     "field '%s' has been written: mps_dynamics_restart begins a motion from "
-                     "it, mps_dynamics_rollback leads back",
-                     dynamics->rewritten);
   mps_status status = MPS_OK;
-  if (dynamics->unread) status = mpsi_dynamics_read_ground(dynamics, function);
+  double edited[2] = {dynamics->unread, dynamics->rewritten != NULL};
+  if (dynamics->broken)
+    status =
+        mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
+                  "field '%s' has been written, which the solver relies on: "
+                  "mps_dynamics_rollback or mps_dynamics_restore leads back, else make a new one",
+                  dynamics->broken);
+  else if (dynamics->rewritten && !dynamics->fresh)
+    status = mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
+                       "field '%s' has been written: mps_dynamics_restart begins a motion from "
+                       "it, mps_dynamics_rollback leads back",
+                       dynamics->rewritten);
+  status = mpsi_domain_settle_max(dynamics->domain, function, status, 2, edited);
+  if (status == MPS_OK && edited[0] != 0.0) status = mpsi_dynamics_read_ground(dynamics, function);
   if (status == MPS_OK) dynamics->unread = false;
-  if (status == MPS_OK && dynamics->rewritten)
+  if (status == MPS_OK && edited[1] != 0.0)
     status = mpsi_dynamics_begin(dynamics, function, mps_dynamics_time(dynamics));
   return status;
 }

@@ -111,8 +111,10 @@ MPSI_INLINE void pass1_run(const int removal, const int by_pairs, const mpsi_dyn
                     s->dx + j, s->dy + j, s->c + j, s->s + j, s->mu + j, s->beta + j};
     pair_chunk(removal, by_pairs, 0, n, e, &run->r0x, &run->r0y, &run->kf, &run->kc, terms, ex + t0,
                ey + t0);
-    if (run->own_i) add_terms(by_pairs, sums, terms, i - begin, 1.0, n);
+    /* j > i, so that a particle is j of an earlier pair than that of which it is i: in this order
+     * its sums do not show where chunks end, nor where a run does that another rank has whole. */
     if (run->own_j) add_terms(by_pairs, sums, terms, j - begin, -1.0, n);
+    if (run->own_i) add_terms(by_pairs, sums, terms, i - begin, 1.0, n);
   }
 }
 

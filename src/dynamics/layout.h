@@ -13,6 +13,7 @@ typedef struct mpsi_dynamics_geometry {
   double spacing;      /* D, m */
   double radius;       /* re, m */
   double period_x;     /* m, 0: none */
+  const double *edge;  /* x of the body's outermost particles, m; NULL: of those given here */
 } mpsi_dynamics_geometry;
 
 /* Writes to order[k] the old index of the particle that comes k-th: the body in strips of rows

@@ -24,6 +24,8 @@ double mpsi_dynamics_damped_limit(double omega2, double alpha, double beta) {
   return 4.0 / omega2 / (b + sqrt(b * b + 4.0 / omega2)); /* without cancellation */
 }
 
+#define FUNCTION "mps_dynamics_find_limit"
+
 /* ---- Lanczos -----------------------------------------------------------------------------------
  */
 
@@ -31,40 +33,44 @@ double mpsi_dynamics_damped_limit(double omega2, double alpha, double beta) {
 typedef struct operator_data {
   mps_dynamics *dynamics;
   double dt;
-  double *weight, *scaled, *work; /* n, 3 n, 4 n */
+  double *weight, *scaled, *work; /* m, 3 n, 4 m; m with ghosts */
 } operator_data;
 
-static void apply(operator_data *op, const double *x, double *y) {
-  const int64_t n = op->dynamics->count;
+static mps_status apply(operator_data *op, const double *x, double *y) {
+  const int64_t n = op->dynamics->count, m = n + op->dynamics->ghosts;
+  mps_status status;
   const double dt = op->dt;
   const double *alpha = op->dynamics->state.alpha, *beta = op->dynamics->state.beta;
   if (dt == 0.0) {
-    mpsi_dynamics_tangent_apply(op->dynamics, NULL, x, y, op->work);
-    return;
+    return mpsi_dynamics_tangent_apply(op->dynamics, FUNCTION, NULL, x, y, op->work);
   }
-  for (int64_t k = 0; k < n; k++) op->weight[k] = dt * dt + 2.0 * dt * beta[k];
+  for (int64_t k = 0; k < m; k++) op->weight[k] = dt * dt + 2.0 * dt * beta[k];
   if (op->dynamics->damping == MPSI_DYN_BY_PAIRS) {
-    mpsi_dynamics_tangent_apply(op->dynamics, op->weight, x, y, op->work);
+    status = mpsi_dynamics_tangent_apply(op->dynamics, FUNCTION, op->weight, x, y, op->work);
   } else { /* diag(w) S is similar to diag(sqrt w) S diag(sqrt w) */
     for (int64_t k = 0; k < 3 * n; k++) op->scaled[k] = sqrt(op->weight[k % n]) * x[k];
-    mpsi_dynamics_tangent_apply(op->dynamics, NULL, op->scaled, y, op->work);
+    status = mpsi_dynamics_tangent_apply(op->dynamics, FUNCTION, NULL, op->scaled, y, op->work);
     for (int64_t k = 0; k < 3 * n; k++) y[k] *= sqrt(op->weight[k % n]);
   }
   for (int64_t k = 0; k < 3 * n; k++) y[k] += 2.0 * dt * alpha[k % n] * x[k];
+  return status;
 }
 
 /* Sums over blocks are exact: the same on any number of ranks. */
-static double dot(const mps_dynamics *dynamics, const double *a, const double *b) {
+static mps_status dot(const mps_dynamics *dynamics, const double *a, const double *b, double *out) {
   mpsi_exact sum = {{0}};
   for (int c = 0; c < 3; c++)
     for (int64_t i = 0; i < dynamics->mesh.blocks; i++) {
       const mpsi_dynamics_block *block = &dynamics->mesh.block[i];
+      if (block->begin >= dynamics->body && !dynamics->lead) continue;
       const int64_t first = c * dynamics->count;
       double part = 0.0;
       for (int64_t k = first + block->begin; k < first + block->end; k++) part += a[k] * b[k];
       mpsi_exact_add(&sum, part);
     }
-  return mpsi_exact_value(&sum);
+  const mps_status status = mpsi_domain_sum_exact(dynamics->domain, FUNCTION, 1, &sum);
+  *out = mpsi_exact_value(&sum);
+  return status;
 }
 
 /* Start near the usual highest mode, where all particles spin alike, with a part in every other.
@@ -89,44 +95,58 @@ typedef struct ritz {
   int64_t iterations;
 } ritz;
 
-/* Highest eigenvalue of the tridiagonal matrix, and the last component of its vector. */
-static bool highest(int m, const double *diagonal, const double *off, double *value, double *last) {
+/* Highest eigenvalue of the tridiagonal matrix, and the last component of its vector. Rank 0 finds
+ * them: processors of several kinds may not find the same bits. */
+static mps_status highest(const mps_dynamics *dynamics, int m, const double *diagonal,
+                          const double *off, double *value, double *last) {
   double d[LANCZOS_MOST], e[LANCZOS_MOST], w[LANCZOS_MOST], z[LANCZOS_MOST];
-  lapack_int found = 0, support[2];
-  memcpy(d, diagonal, (size_t)m * sizeof *d);
-  memcpy(e, off, (size_t)m * sizeof *e);
-  const lapack_int info = LAPACKE_dstevr(LAPACK_COL_MAJOR, 'V', 'I', m, d, e, 0.0, 0.0, m, m, 0.0,
-                                         &found, w, z, m, support);
-  if (info == 0 && found == 1) {
-    *value = w[0];
-    *last = z[m - 1];
+  double found[2] = {-INFINITY, -INFINITY};
+  mps_status status = MPS_OK;
+  if (mps_domain_rank(dynamics->domain) <= 0) {
+    lapack_int count = 0, support[2];
+    memcpy(d, diagonal, (size_t)m * sizeof *d);
+    memcpy(e, off, (size_t)m * sizeof *e);
+    const lapack_int info = LAPACKE_dstevr(LAPACK_COL_MAJOR, 'V', 'I', m, d, e, 0.0, 0.0, m, m, 0.0,
+                                           &count, w, z, m, support);
+    if (info == 0 && count == 1)
+      found[0] = w[0], found[1] = z[m - 1];
+    else
+      status = mpsi_fail(dynamics->context, FUNCTION, MPS_ERROR_NUMERIC,
+                         "LAPACK could not solve the tridiagonal eigenproblem");
   }
-  return info == 0 && found == 1;
+  status = mpsi_domain_settle_max(dynamics->domain, FUNCTION, status, 2, found);
+  *value = found[0], *last = found[1];
+  return status;
 }
 
-static bool lanczos(operator_data *op, double bound, double *basis, ritz *out) {
+static mps_status lanczos(operator_data *op, double bound, double *basis, ritz *out) {
   const int64_t n = 3 * op->dynamics->count;
   double *v = basis, *before = basis + n, *next = basis + 2 * n;
-  double diagonal[LANCZOS_MOST], off[LANCZOS_MOST], value = 0.0, last = 0.0;
+  double diagonal[LANCZOS_MOST], off[LANCZOS_MOST], value = 0.0, last = 0.0, norm, a = 0.0;
   start_vector(op->dynamics, v);
-  double norm = sqrt(dot(op->dynamics, v, v));
+  mps_status status = dot(op->dynamics, v, v, &norm);
+  norm = sqrt(norm);
   *out = (ritz){0.0, 0.0, 0};
-  if (norm == 0.0) return true; /* everything is held */
+  if (norm == 0.0 || status != MPS_OK) return status; /* 0: everything is held */
   for (int64_t k = 0; k < n; k++) v[k] /= norm, before[k] = 0.0;
   norm = 0.0;
   for (int m = 1; m <= LANCZOS_MOST; m++) {
-    apply(op, v, next);
-    const double a = dot(op->dynamics, v, next);
+    status = apply(op, v, next);
+    if (status == MPS_OK) status = dot(op->dynamics, v, next, &a);
+    if (status != MPS_OK) return status;
     for (int64_t k = 0; k < n; k++) next[k] -= a * v[k] + norm * before[k];
     diagonal[m - 1] = a;
-    norm = off[m - 1] = sqrt(dot(op->dynamics, next, next));
+    status = dot(op->dynamics, next, next, &norm);
+    if (status != MPS_OK) return status;
+    norm = off[m - 1] = sqrt(norm);
     const bool stuck = !(norm > 1e-14 * fabs(a));
     if (m % LANCZOS_EVERY == 0 || stuck || m == LANCZOS_MOST) {
       const double former = value;
-      if (!highest(m, diagonal, off, &value, &last)) return false;
+      status = highest(op->dynamics, m, diagonal, off, &value, &last);
+      if (status != MPS_OK) return status;
       *out = (ritz){value, fabs(norm * last), m};
       if (stuck || out->error <= bound * value || value - former <= 1e-3 * bound * value)
-        return true;
+        return MPS_OK;
     }
     double *spare = before;
     before = v;
@@ -134,37 +154,26 @@ static bool lanczos(operator_data *op, double bound, double *basis, ritz *out) {
     next = spare;
     for (int64_t k = 0; k < n; k++) v[k] /= norm;
   }
-  return true;
+  return MPS_OK;
 }
 
 /* ---- limits ------------------------------------------------------------------------------------
  */
 
-typedef struct range {
-  double alpha[2], beta[2]; /* least and most */
-} range;
-
-static range damping_range(const mps_dynamics *dynamics) {
-  const mpsi_dynamics_state *s = &dynamics->state;
-  range r = {{INFINITY, 0.0}, {INFINITY, 0.0}};
-  for (int64_t k = 0; k < dynamics->count; k++) {
-    r.alpha[0] = fmin(r.alpha[0], s->alpha[k]), r.alpha[1] = fmax(r.alpha[1], s->alpha[k]);
-    r.beta[0] = fmin(r.beta[0], s->beta[k]), r.beta[1] = fmax(r.beta[1], s->beta[k]);
-  }
-  return r;
-}
+typedef mpsi_dynamics_extremes range; /* of damping */
 
 /* dt at which lambda_max of the damped operator is 4. lambda grows with dt at least like dt and at
  * most like dt^2, which brackets the root after each round; a secant in logarithms finds it. */
-static bool uneven_limit(operator_data *op, double *basis, const range *r, double omega2,
-                         double *dt, int64_t *iterations) {
+static mps_status uneven_limit(operator_data *op, double *basis, const range *r, double omega2,
+                               double *dt, int64_t *iterations) {
   double low = mpsi_dynamics_damped_limit(omega2, r->alpha[1], r->beta[1]);
   double high = mpsi_dynamics_damped_limit(omega2, r->alpha[0], r->beta[0]);
   double power = 0.75, last_dt = 0.0, last_value = 0.0;
   op->dt = low;
   for (int round = 0; round < 20; round++) {
     ritz top;
-    if (!lanczos(op, UNEVEN_BOUND, basis, &top)) return false;
+    const mps_status status = lanczos(op, UNEVEN_BOUND, basis, &top);
+    if (status != MPS_OK) return status;
     *iterations += top.iterations;
     const double ratio = 4.0 / top.value;
     if (round > 0 && top.value != last_value)
@@ -178,7 +187,7 @@ static bool uneven_limit(operator_data *op, double *basis, const range *r, doubl
   }
   *dt = low * (1.0 - UNEVEN_BOUND); /* never above the limit */
   op->dt = 0.0;
-  return true;
+  return MPS_OK;
 }
 
 /* Are all roots of z^3 + a2 z^2 + a1 z + a0 inside the unit circle (Jury)? */
@@ -223,19 +232,23 @@ static double euler_limit(double omega2, const range *r, double duration) {
   return stable;
 }
 
+/* Doubles of memory: three Lanczos vectors and a scaled one of 3 n each, 4 m of work for the
+ * tangent, weights; m is n with ghosts. */
+static int64_t memory_size(const mps_dynamics *dynamics) {
+  return 12 * dynamics->count + 5 * (dynamics->count + dynamics->ghosts);
+}
+
 static mps_status find_limit(mps_dynamics *dynamics, double duration, double *memory,
                              mps_dynamics_linear_limit *out) {
-  static const char *const function = "mps_dynamics_find_limit";
   const int64_t n = 3 * dynamics->count;
   operator_data op = {.dynamics = dynamics,
                       .scaled = memory + 3 * n,
                       .work = memory + 4 * n,
-                      .weight = memory + 16 * dynamics->count};
+                      .weight = memory + 4 * n + 4 * (dynamics->count + dynamics->ghosts)};
   ritz top;
-  if (!lanczos(&op, LANCZOS_BOUND, memory, &top))
-    return mpsi_fail(dynamics->context, function, MPS_ERROR_NUMERIC,
-                     "LAPACK could not solve the tridiagonal eigenproblem");
-  const range r = damping_range(dynamics);
+  const mps_status status = lanczos(&op, LANCZOS_BOUND, memory, &top);
+  if (status != MPS_OK) return status;
+  const range r = dynamics->extremes;
   *out = (mps_dynamics_linear_limit){.dt = INFINITY, .iterations = top.iterations};
   if (!(top.value > 0.0)) { /* no forces: only alpha is left */
     if (r.alpha[1] > 0.0) out->dt = 2.0 / r.alpha[1];
@@ -247,15 +260,14 @@ static mps_status find_limit(mps_dynamics *dynamics, double duration, double *me
     out->dt = euler_limit(top.value, &r, duration);
   else if (r.beta[0] == r.beta[1])
     out->dt = mpsi_dynamics_damped_limit(top.value, r.alpha[0], r.beta[0]);
-  else if (!uneven_limit(&op, memory, &r, top.value, &out->dt, &out->iterations))
-    return mpsi_fail(dynamics->context, function, MPS_ERROR_NUMERIC,
-                     "LAPACK could not solve the tridiagonal eigenproblem");
+  else
+    return uneven_limit(&op, memory, &r, top.value, &out->dt, &out->iterations);
   return MPS_OK;
 }
 
 mps_status mps_dynamics_find_limit_sized(mps_dynamics *dynamics, double duration,
                                          mps_dynamics_linear_limit *out, size_t size) {
-  static const char *const function = "mps_dynamics_find_limit";
+  static const char *const function = FUNCTION;
   if (!dynamics) return MPS_ERROR_ARGUMENT;
   mps_context *context = dynamics->context;
   if (!isfinite(duration) || duration < 0.0)
@@ -264,11 +276,12 @@ mps_status mps_dynamics_find_limit_sized(mps_dynamics *dynamics, double duration
   const bool plain = duration == 0.0 || dynamics->def.integrator != MPS_DYNAMICS_INTEGRATOR_EULER;
   mps_dynamics_linear_limit limit = dynamics->limit;
   if (!plain || !dynamics->have_limit) {
-    /* three Lanczos vectors and a scaled one of 3 n each, 4 n of work for the tangent, weights */
-    double *memory = mpsi_alloc(context, 17 * dynamics->count, sizeof *memory);
-    if (!memory)
-      return mpsi_fail_memory(context, function, (size_t)dynamics->count * 17 * sizeof *memory);
-    const mps_status status = find_limit(dynamics, duration, memory, &limit);
+    double *memory = mpsi_alloc(context, memory_size(dynamics), sizeof *memory);
+    mps_status status = memory ? MPS_OK
+                               : mpsi_fail_memory(context, function,
+                                                  (size_t)memory_size(dynamics) * sizeof *memory);
+    status = mpsi_domain_settle(dynamics->domain, function, status);
+    if (status == MPS_OK) status = find_limit(dynamics, duration, memory, &limit);
     mpsi_free(context, memory);
     if (status != MPS_OK) return status;
   }
@@ -281,19 +294,14 @@ mps_status mps_dynamics_find_limit_sized(mps_dynamics *dynamics, double duration
 
 /* Bound of the limit from the endless lattice of the stiffest and lightest material in the set. */
 static double lattice_bound(const mps_dynamics *dynamics) {
-  const mpsi_dynamics_state *s = &dynamics->state;
-  double mu = 0.0, lambda = 0.0, light = INFINITY, alpha = 0.0, beta = 0.0;
-  for (int64_t k = 0; k < dynamics->count; k++) {
-    mu = fmax(mu, s->mu[k]), lambda = fmax(lambda, s->lambda[k]);
-    light = fmin(light, 1.0 / s->ix[k]);
-    alpha = fmax(alpha, s->alpha[k]), beta = fmax(beta, s->beta[k]);
-  }
+  const mpsi_dynamics_extremes *e = &dynamics->extremes;
   const double omega2 = mpsi_dynamics_lattice_omega2(
-      dynamics->kernel, dynamics->spacing, dynamics->def.radius_ratio, sqrt(mu / light),
-      sqrt((lambda + 2.0 * mu) / light), dynamics->torque);
+      dynamics->kernel, dynamics->spacing, dynamics->def.radius_ratio, sqrt(e->mu / e->lightest),
+      sqrt((e->lambda + 2.0 * e->mu) / e->lightest), dynamics->torque);
   /* Shear is softer where neighbours are missing, pressure can be stiffer: up to 1.13 times omega
    * over all the shapes tried, and only where the highest mode is not the spin's. */
-  return (lambda <= 7.0 * mu ? 0.95 : 0.8) * mpsi_dynamics_damped_limit(omega2, alpha, beta);
+  return (e->lambda <= 7.0 * e->mu ? 0.95 : 0.8) *
+         mpsi_dynamics_damped_limit(omega2, e->alpha[1], e->beta[1]);
 }
 
 double mps_dynamics_limit(const mps_dynamics *dynamics) {

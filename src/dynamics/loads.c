@@ -52,16 +52,21 @@ static void release(mps_dynamics *dynamics, mpsi_dynamics_load **load) {
   *load = NULL;
 }
 
-static mps_status make(mps_dynamics *dynamics, const char *function,
+static mps_status make(mps_dynamics *dynamics, const char *function, mps_status status,
                        const mps_dynamics_load_def *user_def, mpsi_dynamics_load **out) {
   mps_dynamics_load_def def = load_defaults;
   *out = NULL;
-  mps_status status =
-      MPSI_DEF_READ(dynamics->context, function, mps_dynamics_load_def, user_def, &def);
+  if (status == MPS_OK)
+    status = MPSI_DEF_READ(dynamics->context, function, mps_dynamics_load_def, user_def, &def);
   if (status == MPS_OK) status = check_def(dynamics, function, &def);
-  if (status != MPS_OK) return status;
-  mpsi_dynamics_load *load = mpsi_alloc(dynamics->context, 1, sizeof *load);
-  if (!load) return mpsi_fail_memory(dynamics->context, function, sizeof *load);
+  mpsi_dynamics_load *load = NULL;
+  if (status == MPS_OK && !(load = mpsi_alloc(dynamics->context, 1, sizeof *load)))
+    status = mpsi_fail_memory(dynamics->context, function, sizeof *load);
+  status = mpsi_domain_settle(dynamics->domain, function, status);
+  if (status != MPS_OK) {
+    mpsi_free(dynamics->context, load);
+    return status;
+  }
   const mpsi_dynamics_selection selection = {.ids = def.ids,
                                              .id_count = def.id_count,
                                              .lower = def.lower,
@@ -69,7 +74,7 @@ static mps_status make(mps_dynamics *dynamics, const char *function,
                                              .signal = def.signal,
                                              .factor = def.factor,
                                              .all = def.kind == MPS_DYNAMICS_LOAD_BODY};
-  status = mpsi_dynamics_select(dynamics, function, &selection, &load->part);
+  status = mpsi_dynamics_select(dynamics, function, status, &selection, &load->part);
   const double spacing = mps_particles_spacing(dynamics->particles);
   const double area = isnan(def.area) ? spacing * dynamics->def.measure : def.area;
   load->kind = def.kind;
@@ -113,14 +118,17 @@ mps_status mps_dynamics_add_load(mps_dynamics *dynamics, const mps_dynamics_load
   while (at < dynamics->load_room && dynamics->load[at]) at++;
   if (at == dynamics->load_room) {
     void *array = dynamics->load;
-    if (!mpsi_grow(context, &array, at, at + 8, sizeof *dynamics->load))
-      return mpsi_fail_memory(context, __func__, (size_t)(at + 8) * sizeof *dynamics->load);
+    if (mpsi_grow(context, &array, at, at + 8, sizeof *dynamics->load))
+      dynamics->load_room = at + 8;
+    else
+      status = mpsi_fail_memory(context, __func__, (size_t)(at + 8) * sizeof *dynamics->load);
     dynamics->load = array;
-    dynamics->load_room = at + 8;
   }
-  status = reserve_forces(dynamics, __func__);
-  if (status == MPS_OK) status = make(dynamics, __func__, def, &dynamics->load[at]);
+  if (status == MPS_OK) status = reserve_forces(dynamics, __func__);
+  mpsi_dynamics_load *load = NULL;
+  status = make(dynamics, __func__, status, def, &load);
   if (status != MPS_OK) return status;
+  dynamics->load[at] = load;
   dynamics->forces_stale = true;
   *number = at;
   return MPS_OK;
@@ -135,7 +143,7 @@ mps_status mps_dynamics_set_load(mps_dynamics *dynamics, int32_t number,
   if (status == MPS_OK) status = check_number(dynamics, __func__, number);
   if (status != MPS_OK) return status;
   mpsi_dynamics_load *load = NULL;
-  status = make(dynamics, __func__, def, &load);
+  status = make(dynamics, __func__, status, def, &load);
   if (status != MPS_OK) return status;
   release(dynamics, &dynamics->load[number]);
   dynamics->load[number] = load;

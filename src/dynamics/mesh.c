@@ -67,8 +67,7 @@ static bool needed(const arrange *work, int64_t b, const mpsi_dynamics_pair *p, 
 }
 
 /* The next piece of a run, from *begin on, that is needed and lies in one piece here; false: none.
- * Vector loops go through a run in chunks, of which the order of its sums shows the ends where a
- * block owns both sides. So a ghost's run is cut there too, before parts of it are left out. */
+ */
 static bool next_piece(const arrange *work, int64_t b, const entry *e, int32_t *begin,
                        int32_t *end) {
   const mpsi_dynamics_pair *p = &e->pair;
@@ -81,7 +80,7 @@ static bool next_piece(const arrange *work, int64_t b, const entry *e, int32_t *
   const int32_t first_i = local(work, p->i + *begin), first_j = local(work, p->j + *begin);
   for (*end = *begin + 1; *end < e->run; (*end)++) {
     const int32_t t = *end;
-    if (is_ghost(work, b) && (t % MPSI_DYN_CHUNK == 0 || !needed(work, b, p, t))) break;
+    if (!needed(work, b, p, t)) break;
     if (local(work, p->i + t) != first_i + t - *begin) break;
     if (local(work, p->j + t) != first_j + t - *begin) break;
   }

@@ -45,7 +45,7 @@ typedef struct cloud {
 
 static bool make_cloud(mps_context *context, const mpsi_dynamics_geometry *g, cloud *out) {
   int64_t own = 0, copies = 0;
-  double left = INFINITY;
+  double left = g->edge ? g->edge[0] : INFINITY;
   for (int64_t k = 0; k < g->count; k++)
     if (!g->side || !g->side[k]) left = fmin(left, g->x[k]), own++;
   const double reach = g->period_x > 0.0 ? left + g->radius : -INFINITY;
@@ -100,15 +100,16 @@ static mps_status find_body_pairs(const mpsi_dynamics_geometry *g, pair_list *li
   mps_status status = MPS_OK;
   if (!make_cloud(context, g, &points))
     status = mpsi_fail_memory(context, function, (size_t)g->count * 24);
-  if (status == MPS_OK) status = mps_neighbours_create(context, &def, &lists);
-  if (status == MPS_OK) {
+  const bool any = status == MPS_OK && points.count > 0; /* none on a rank without particles */
+  if (any) status = mps_neighbours_create(context, &def, &lists);
+  if (any && status == MPS_OK) {
     const mps_view view = {.data = points.x,
                            .shape = {points.count, 2, 1},
                            .stride = {1, points.count, 1},
                            .dtype = {2, 64, 1}};
     status = mps_neighbours_build(lists, &view);
   }
-  if (status == MPS_OK) {
+  if (any && status == MPS_OK) {
     const int64_t *offset, *index;
     status = mps_neighbours_lists(lists, NULL, &offset, &index);
     if (status == MPS_OK) status = body_pairs(g, &points, offset, index, list, function);
@@ -142,7 +143,7 @@ static column find_column(const mpsi_dynamics_geometry *g, int side) {
 /* at[depth * rows + row] = body particle `depth` columns in from the edge, in the column's row. */
 static bool map_edge(mps_context *context, const mpsi_dynamics_geometry *g, const column *c,
                      int depths, int64_t **at) {
-  double edge = c->side == 1 ? INFINITY : -INFINITY;
+  double edge = g->edge ? g->edge[c->side - 1] : c->side == 1 ? INFINITY : -INFINITY;
   for (int64_t k = 0; k < g->count && !g->side[k]; k++)
     edge = c->side == 1 ? fmin(edge, g->x[k]) : fmax(edge, g->x[k]);
   *at = mpsi_alloc(context, c->rows * depths, sizeof(int64_t));

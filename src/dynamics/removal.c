@@ -56,7 +56,7 @@ static mps_status prepare(mps_dynamics *dynamics, const char *function, int64_t 
   }
   if (status == MPS_OK) {
     dynamics->change->now = now;
-    dynamics->change->energy = mpsi_dynamics_present_energy(dynamics);
+    status = mpsi_dynamics_present_energy(dynamics, function, &dynamics->change->energy);
   } else {
     mpsi_free(context, now);
   }
@@ -69,6 +69,10 @@ mps_status mpsi_dynamics_remove(void *self, const char *function, int64_t count,
                                 const int64_t *ids) {
   mps_dynamics *dynamics = self;
   mps_status status = mpsi_dynamics_enter(dynamics, function);
+  if (mpsi_domain_many(dynamics->domain))
+    return mpsi_fail(dynamics->context, function, MPS_ERROR_UNSUPPORTED,
+                     "the particles lie on %d ranks: none can be removed there",
+                     mps_domain_size(dynamics->domain));
   if (status == MPS_OK) status = mpsi_dynamics_take_edits(dynamics, function);
   return status == MPS_OK ? prepare(dynamics, function, count, ids) : status;
 }
@@ -80,7 +84,9 @@ void mpsi_dynamics_renew(void *self) {
   if (c && mps_particles_count(dynamics->particles) == c->structure.count) { /* nobody refused */
     const double energy = c->energy;
     mpsi_dynamics_use_change(dynamics);
-    dynamics->works.start += mpsi_dynamics_present_energy(dynamics) - energy;
+    double left = 0.0;
+    (void)mpsi_dynamics_present_energy(dynamics, "mps_particles_remove", &left); /* one rank */
+    dynamics->works.start += left - energy;
     dynamics->no_rate = true;
   }
   mpsi_dynamics_drop_change(dynamics);

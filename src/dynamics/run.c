@@ -26,11 +26,14 @@ mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function) {
 
 /* Steps between looks at the cancel hook. */
 static int64_t prompt_steps(const mps_dynamics *dynamics) {
-  return PROMPT_WORK / dynamics->count + 1;
+  const int32_t ranks = mps_domain_size(dynamics->domain);
+  return PROMPT_WORK / (dynamics->whole / (ranks > 0 ? ranks : 1) + 1) + 1;
 }
 
 static mps_status cancelled(mps_dynamics *dynamics, const char *function) {
-  if (!mpsi_cancelled(dynamics->context)) return MPS_OK;
+  double asked = mpsi_cancelled(dynamics->context);
+  const mps_status status = mpsi_domain_max(dynamics->domain, function, 1, &asked);
+  if (status != MPS_OK || asked == 0.0) return status;
   return mpsi_fail(dynamics->context, function, MPS_ERROR_CANCELLED,
                    "stopped by the cancel hook at step %lld, t = %g s", (long long)dynamics->steps,
                    mps_dynamics_time(dynamics));
@@ -43,6 +46,8 @@ mps_status mps_dynamics_step(mps_dynamics *dynamics, int64_t count) {
   if (count < 0)
     return mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
                      (long long)count);
+  status = mpsi_domain_settle_same(dynamics->domain, __func__, status, "count", (double)count);
+  if (status != MPS_OK) return status;
   const int64_t prompt = prompt_steps(dynamics);
   mpsi_guard_enter(&dynamics->guard, dynamics->context, "mps_dynamics_step");
   for (int64_t done = 0; status == MPS_OK && done < count;) {
@@ -60,8 +65,9 @@ mps_status mps_dynamics_step(mps_dynamics *dynamics, int64_t count) {
 static mps_status ask(mps_dynamics *dynamics, const char *function, mps_dynamics_fn callback,
                       void *user) {
   mpsi_guard_enter(&dynamics->guard, dynamics->context, "the callback of mps_dynamics_run");
-  const mps_status status =
+  const mps_status own =
       mpsi_guard_leave(&dynamics->guard, dynamics->context, function, callback(user, dynamics));
+  const mps_status status = mpsi_domain_settle(dynamics->domain, function, own);
   if (status != MPS_OK) mpsi_fail_where(dynamics->context, dynamics->steps, -1);
   return status;
 }
@@ -141,6 +147,13 @@ mps_status mps_dynamics_run(mps_dynamics *dynamics, double t_end, int64_t every,
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
                      "a run to %g s takes %g steps of dt = %g s: must be at most 1e15", t_end,
                      (t_end - r.start) / dynamics->dt, dynamics->dt);
+  status = mpsi_domain_settle_same(dynamics->domain, __func__, status, "t_end", t_end);
+  if (status == MPS_OK)
+    status = mpsi_domain_settle_same(dynamics->domain, __func__, status, "every", (double)every);
+  if (status == MPS_OK)
+    status = mpsi_domain_settle_same(dynamics->domain, __func__, status, "having a callback",
+                                     callback != NULL);
+  if (status != MPS_OK) return status;
   r.length = divide(dynamics, r.start, t_end, &r.total);
   r.report = r.total / 100 > 0 ? r.total / 100 : 1;
   if (r.report > prompt_steps(dynamics)) r.report = prompt_steps(dynamics);

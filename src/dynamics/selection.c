@@ -12,31 +12,52 @@ static int compare_indices(const void *left, const void *right) {
 }
 
 static mps_status select_list(mps_dynamics *dynamics, const char *function,
-                              const mpsi_dynamics_selection *s, mpsi_dynamics_part *out) {
+                              const mpsi_dynamics_selection *s, mpsi_dynamics_part *out,
+                              int64_t *found) {
   for (int64_t k = 0; k < s->id_count; k++) {
     const int64_t i = mps_particles_index(dynamics->particles, s->ids[k]);
+    if (i < 0 && mpsi_domain_many(dynamics->domain)) continue; /* another rank's, perhaps */
     if (i < 0)
       return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
                        "ids[%lld] is %lld: the set has no such particle", (long long)k,
                        (long long)s->ids[k]);
-    out->particle[k] = (int32_t)i;
+    out->particle[(*found)++] = (int32_t)i;
   }
-  qsort(out->particle, (size_t)s->id_count, sizeof *out->particle, compare_indices);
-  for (int64_t k = 0; k < s->id_count; k++) /* each particle once */
+  qsort(out->particle, (size_t)*found, sizeof *out->particle, compare_indices);
+  for (int64_t k = 0; k < *found; k++) /* each particle once */
     if (k == 0 || out->particle[k] != out->particle[k - 1])
       out->particle[out->count++] = out->particle[k];
   return MPS_OK;
 }
 
-static mps_status select_box(mps_dynamics *dynamics, const char *function,
-                             const mpsi_dynamics_selection *s, mpsi_dynamics_part *out) {
+static void select_box(const mps_dynamics *dynamics, const mpsi_dynamics_selection *s,
+                       mpsi_dynamics_part *out) {
   const double *x = mpsi_dynamics_column(dynamics, "position", 0);
   const double *y = mpsi_dynamics_column(dynamics, "position", 1);
   for (int64_t k = 0; k < dynamics->count; k++)
     if (s->all ||
         (x[k] >= s->lower[0] && x[k] <= s->upper[0] && y[k] >= s->lower[1] && y[k] <= s->upper[1]))
       out->particle[out->count++] = (int32_t)k;
-  if (out->count == 0)
+}
+
+/* Particles selected by all ranks; of columns, which all have, the leading rank's count. */
+static mps_status count_selected(mps_dynamics *dynamics, const char *function,
+                                 const mpsi_dynamics_selection *s, mpsi_dynamics_part *part) {
+  int64_t sum[2] = {0, 0}; /* in all, and of the list as given */
+  for (int64_t k = 0; k < part->count; k++)
+    sum[0] += part->particle[k] < dynamics->body || dynamics->lead;
+  for (int64_t k = 0; s->ids && k < s->id_count; k++) {
+    const int64_t i = mps_particles_index(dynamics->particles, s->ids[k]);
+    sum[1] += i >= 0 && (i < dynamics->body || dynamics->lead);
+  }
+  const mps_status status = mpsi_domain_sum(dynamics->domain, function, 2, sum);
+  if (status != MPS_OK) return status;
+  part->total = sum[0];
+  if (s->ids && sum[1] != s->id_count)
+    return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
+                     "of %lld ids %lld are of particles of the set on any rank",
+                     (long long)s->id_count, (long long)sum[1]);
+  if (part->total == 0)
     return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
                      "no particle lies in the box from (%g, %g) m to (%g, %g) m", s->lower[0],
                      s->lower[1], s->upper[0], s->upper[1]);
@@ -72,19 +93,21 @@ static mps_status check_selection(mps_dynamics *dynamics, const char *function,
   return MPS_OK;
 }
 
-mps_status mpsi_dynamics_select(mps_dynamics *dynamics, const char *function,
+mps_status mpsi_dynamics_select(mps_dynamics *dynamics, const char *function, mps_status status,
                                 const mpsi_dynamics_selection *selection, mpsi_dynamics_part *out) {
   *out = (mpsi_dynamics_part){0};
   mpsi_dynamics_selection s = *selection;
-  mps_status status = check_selection(dynamics, function, &s);
-  if (status != MPS_OK) return status;
+  if (status == MPS_OK) status = check_selection(dynamics, function, &s);
   s.all = s.all && isnan(s.lower[0]) && isnan(s.lower[1]);
-  const int64_t room = s.ids ? s.id_count : dynamics->count;
-  out->particle = mpsi_alloc(dynamics->context, room, sizeof *out->particle);
-  if (!out->particle)
-    return mpsi_fail_memory(dynamics->context, function, (size_t)room * sizeof *out->particle);
-  status =
-      s.ids ? select_list(dynamics, function, &s, out) : select_box(dynamics, function, &s, out);
+  const int64_t room = status != MPS_OK ? 0 : s.ids ? s.id_count : dynamics->count;
+  int64_t found = 0;
+  if (status == MPS_OK) out->particle = mpsi_alloc(dynamics->context, room, sizeof *out->particle);
+  if (status == MPS_OK && !out->particle)
+    status = mpsi_fail_memory(dynamics->context, function, (size_t)room * sizeof *out->particle);
+  if (status == MPS_OK && s.ids)
+    status = select_list(dynamics, function, &s, out, &found);
+  else if (status == MPS_OK)
+    select_box(dynamics, &s, out);
   if (status == MPS_OK && !(out->id = mpsi_alloc(dynamics->context, out->count, sizeof *out->id)))
     status = mpsi_fail_memory(dynamics->context, function, (size_t)out->count * sizeof *out->id);
   const int64_t *id = mpsi_particles_integers(dynamics->particles, "id");
@@ -94,6 +117,8 @@ mps_status mpsi_dynamics_select(mps_dynamics *dynamics, const char *function,
     out->factor[c] = s.factor[c];
     if (status == MPS_OK && s.signal[c]) out->signal[c] = mpsi_signal_retain(s.signal[c]);
   }
+  status = mpsi_domain_settle(dynamics->domain, function, status);
+  if (status == MPS_OK) status = count_selected(dynamics, function, &s, out);
   if (status != MPS_OK) mpsi_dynamics_release_part(dynamics, out);
   return status;
 }

@@ -142,6 +142,10 @@ static void after(void *solver) {
   dynamics->checked = !isnan(dynamics->dt);
 }
 
+static mps_status agree_to_go_back(void *solver, const char *function, mps_status status) {
+  return mpsi_domain_settle(((mps_dynamics *)solver)->domain, function, status);
+}
+
 static mpsi_state_of state_of(mps_dynamics *dynamics) {
   return (mpsi_state_of){.solver = dynamics,
                          .name = "explicit dynamics",
@@ -150,6 +154,7 @@ static mpsi_state_of state_of(mps_dynamics *dynamics) {
                          .identity = &dynamics->identity,
                          .list = list_state,
                          .prepare = mpsi_dynamics_prepare_state,
+                         .settle = agree_to_go_back,
                          .bind = bind,
                          .after = after,
                          .time = mps_dynamics_time(dynamics),
@@ -172,7 +177,18 @@ mps_status mps_dynamics_snapshot(mps_dynamics *dynamics, mps_snapshot **snapshot
   const mps_status status = check_whole(dynamics, __func__);
   if (status != MPS_OK) return status;
   const mpsi_state_of of = state_of(dynamics);
-  return mpsi_state_snapshot(&of, __func__, snapshot);
+  return mpsi_domain_settle(dynamics->domain, __func__,
+                            mpsi_state_snapshot(&of, __func__, snapshot));
+}
+
+/* What follows from a state and lies on other ranks. */
+static mps_status settle_back(mps_dynamics *dynamics, const char *function, mps_status status) {
+  double other = !dynamics->have_limit;
+  if (status != MPS_OK || !mpsi_domain_many(dynamics->domain)) return status;
+  status = mpsi_dynamics_join_coefficients(dynamics, function, MPS_OK);
+  if (status == MPS_OK) status = mpsi_domain_max(dynamics->domain, function, 1, &other);
+  if (other != 0.0) dynamics->have_limit = false;
+  return status;
 }
 
 mps_status mps_dynamics_rollback(mps_dynamics *dynamics, const mps_snapshot *snapshot) {
@@ -180,11 +196,19 @@ mps_status mps_dynamics_rollback(mps_dynamics *dynamics, const mps_snapshot *sna
   const mps_status status = mpsi_dynamics_enter(dynamics, __func__);
   if (status != MPS_OK) return status;
   const mpsi_state_of of = state_of(dynamics);
-  return mpsi_state_rollback(&of, __func__, snapshot);
+  return settle_back(dynamics, __func__, mpsi_state_rollback(&of, __func__, snapshot));
+}
+
+static mps_status check_alone(mps_dynamics *dynamics, const char *function) {
+  if (!mpsi_domain_many(dynamics->domain)) return MPS_OK;
+  return mpsi_fail(dynamics->context, function, MPS_ERROR_UNSUPPORTED,
+                   "the particles lie on %d ranks: files are written and read by one rank alone",
+                   mps_domain_size(dynamics->domain));
 }
 
 mps_status mps_dynamics_save(mps_dynamics *dynamics, const char *path, const mps_checkpoint *info) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
+  if (check_alone(dynamics, __func__) != MPS_OK) return MPS_ERROR_UNSUPPORTED;
   const mps_status status = check_whole(dynamics, __func__);
   if (status != MPS_OK) return status;
   const mpsi_state_of of = state_of(dynamics);
@@ -193,6 +217,7 @@ mps_status mps_dynamics_save(mps_dynamics *dynamics, const char *path, const mps
 
 mps_status mps_dynamics_restore(mps_dynamics *dynamics, const char *path, mps_checkpoint *info) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
+  if (check_alone(dynamics, __func__) != MPS_OK) return MPS_ERROR_UNSUPPORTED;
   const mps_status status = mpsi_dynamics_enter(dynamics, __func__);
   if (status != MPS_OK) return status;
   const mpsi_state_of of = state_of(dynamics);
@@ -207,7 +232,8 @@ static mps_status look_ahead(mps_dynamics *dynamics, const char *function, doubl
   const size_t bytes = (size_t)dynamics->count * sizeof(double);
   const mpsi_state_of of = state_of(dynamics);
   const double limit = dynamics->def.divergence;
-  mps_status status = mpsi_state_snapshot(&of, function, &dynamics->present);
+  mps_status status = mpsi_domain_settle(dynamics->domain, function,
+                                         mpsi_state_snapshot(&of, function, &dynamics->present));
   if (status != MPS_OK) return status;
   dynamics->def.divergence = INFINITY; /* that is for the step itself to find */
   mpsi_guard_enter(&dynamics->guard, dynamics->context, function);
@@ -217,7 +243,8 @@ static mps_status look_ahead(mps_dynamics *dynamics, const char *function, doubl
   memcpy(kept, dynamics->state.ax, bytes);
   memcpy(kept + dynamics->count, dynamics->state.ay, bytes);
   memcpy(kept + 2 * dynamics->count, dynamics->state.p, bytes);
-  const mps_status back = mpsi_state_rollback(&of, function, dynamics->present);
+  const mps_status back =
+      settle_back(dynamics, function, mpsi_state_rollback(&of, function, dynamics->present));
   return status == MPS_OK || status == MPS_ERROR_DIVERGED ? back : status;
 }
 
@@ -227,9 +254,10 @@ mps_status mps_dynamics_refresh(mps_dynamics *dynamics) {
   if (status != MPS_OK) return status;
   double *kept = mpsi_alloc(dynamics->context, 3 * dynamics->count, sizeof *kept);
   if (!kept)
-    return mpsi_fail_memory(dynamics->context, __func__,
-                            (size_t)dynamics->count * 3 * sizeof *kept);
-  status = look_ahead(dynamics, __func__, kept);
+    status =
+        mpsi_fail_memory(dynamics->context, __func__, (size_t)dynamics->count * 3 * sizeof *kept);
+  status = mpsi_domain_settle(dynamics->domain, __func__, status);
+  if (status == MPS_OK) status = look_ahead(dynamics, __func__, kept);
   const size_t bytes = (size_t)dynamics->count * sizeof(double);
   if (status == MPS_OK) {
     memcpy(dynamics->state.ax, kept, bytes);

@@ -48,7 +48,8 @@ mps_status mpsi_dynamics_begin(mps_dynamics *dynamics, const char *function, dou
   dynamics->steps = dynamics->base_step = 0;
   dynamics->fresh = true;
   dynamics->kernels->trig[dynamics->def.rotation](&dynamics->state, 0, dynamics->count);
-  const mps_status status = mpsi_dynamics_take_bounds(dynamics, function);
+  const mps_status status =
+      mpsi_domain_settle(dynamics->domain, function, mpsi_dynamics_take_bounds(dynamics, function));
   if (status != MPS_OK) { /* a signal refused */
     dynamics->base_time = former[0];
     dynamics->base_step = counted[0], dynamics->steps = counted[1];
@@ -80,13 +81,15 @@ mps_status mps_dynamics_restart(mps_dynamics *dynamics, double time) {
                      "time is %g s, must be finite", time);
   const mpsi_dynamics_state *s = &dynamics->state;
   const double *const column[6] = {s->dx, s->dy, s->th, s->vx, s->vy, s->vth};
-  for (int c = 0; c < 6; c++)
-    for (int64_t k = 0; k < dynamics->count; k++)
+  for (int c = 0; c < 6 && status == MPS_OK; c++)
+    for (int64_t k = 0; k < dynamics->count && status == MPS_OK; k++)
       if (!isfinite(column[c][k]))
-        return mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT,
-                         "the initial state of particle %lld is not finite (%g)",
-                         (long long)mpsi_particles_integers(dynamics->particles, "id")[k],
-                         column[c][k]);
+        status = mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT,
+                           "the initial state of particle %lld is not finite (%g)",
+                           (long long)mpsi_particles_integers(dynamics->particles, "id")[k],
+                           column[c][k]);
+  status = mpsi_domain_settle_same(dynamics->domain, __func__, status, "time", time);
+  if (status != MPS_OK) return status;
   return mpsi_dynamics_begin(dynamics, __func__, time);
 }
 
@@ -179,7 +182,8 @@ mps_status mps_dynamics_set_dt(mps_dynamics *dynamics, double dt) {
   if (!(dt >= MPSI_DYN_LEAST_DT && dt <= MPSI_DYN_MOST_DT))
     return mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT,
                      "dt is %g s, must be in %g..%g", dt, MPSI_DYN_LEAST_DT, MPSI_DYN_MOST_DT);
-  status = compare_dt(dynamics, dt);
+  status = mpsi_domain_settle_same(dynamics->domain, __func__, status, "dt", dt);
+  if (status == MPS_OK) status = compare_dt(dynamics, dt);
   if (status != MPS_OK) return status;
   dynamics->dt = dynamics->def.dt = dt; /* as if the definition had given it */
   dynamics->checked = true;
@@ -212,16 +216,44 @@ typedef struct work {
   mpsi_dynamics_pass1_fn pass1;
   mpsi_dynamics_pass2_fn pass2;
   mpsi_dynamics_forces forces;
-  bool account;  /* works of loads or damping are counted */
-  int64_t grain; /* blocks a unit of work */
+  bool account;       /* works of loads or damping are counted */
+  int64_t grain;      /* blocks a unit of work */
+  int64_t begin, end; /* turns of the first pass under way */
 } work;
 
 static void first_pass(void *data, int64_t unit, int32_t worker) {
   const work *w = data;
   mps_dynamics *dynamics = w->dynamics;
-  const int64_t last = (unit + 1) * w->grain, n = dynamics->mesh.blocks;
-  for (int64_t b = unit * w->grain; b < last && b < n; b++)
-    w->pass1(&dynamics->state, &dynamics->mesh, b, dynamics->scratch + worker * MPSI_DYN_SCRATCH);
+  const int32_t *turn = dynamics->mesh.turn;
+  const int64_t first = w->begin + unit * w->grain, last = first + w->grain;
+  for (int64_t b = first; b < last && b < w->end; b++)
+    w->pass1(&dynamics->state, &dynamics->mesh, turn ? turn[b] : b,
+             dynamics->scratch + worker * MPSI_DYN_SCRATCH);
+}
+
+static void pass_turns(work *w, int64_t begin, int64_t end) {
+  w->begin = begin, w->end = end;
+  mpsi_parallel_for(w->dynamics->context, (end - begin + w->grain - 1) / w->grain, first_pass, w);
+}
+
+/* The first pass of all blocks. What lies on other ranks arrives while those blocks are at work
+ * that do not need it. */
+static mps_status pass_all(work *w) {
+  mps_dynamics *dynamics = w->dynamics;
+  const mpsi_dynamics_mesh *mesh = &dynamics->mesh;
+  mpsi_dynamics_state *s = &dynamics->state;
+  double *const column[3] = {s->dx, s->dy, s->th};
+  mps_status status = MPS_OK;
+  if (dynamics->halo) status = mpsi_halo_begin(dynamics->halo, "mps_dynamics_step", 3, column);
+  if (status != MPS_OK) return status;
+  pass_turns(w, 0, mesh->interior);
+  if (!dynamics->halo) return MPS_OK;
+  status = mpsi_halo_end(dynamics->halo, "mps_dynamics_step", column);
+  if (status != MPS_OK) return status;
+  dynamics->kernels->trig[dynamics->def.rotation](s, dynamics->count,
+                                                  dynamics->count + dynamics->ghosts);
+  pass_turns(w, mesh->interior, mesh->blocks + mesh->ghosts);
+  return MPS_OK;
 }
 
 static void second_pass(void *data, int64_t unit, int32_t worker) {
@@ -236,34 +268,49 @@ static void second_pass(void *data, int64_t unit, int32_t worker) {
   }
 }
 
-/* The particle that broke the limit, its acceleration and where it is. */
-static mps_status report_divergence(mps_dynamics *dynamics, const char *function, double now) {
+/* The particle of this rank that has the greatest acceleration where the limit is broken, -1: none
+ * has; NaN is beyond all others. */
+static int64_t find_worst(const mps_dynamics *dynamics, double *most) {
   const mpsi_dynamics_state *s = &dynamics->state;
   int64_t worst = -1;
-  double most = 0.0;
+  *most = 0.0;
   for (int64_t b = 0; b < dynamics->mesh.blocks; b++)
     for (int64_t k = dynamics->mesh.block[b].begin;
          dynamics->bad[b] && k < dynamics->mesh.block[b].end; k++) {
       const double a = hypot(s->ax[k], s->ay[k]);
-      if (worst >= 0 && !(a > most) && !isnan(a)) continue;
+      if (worst >= 0 && !(a > *most) && !isnan(a)) continue;
       worst = k;
-      most = a;
-      if (isnan(a)) break;
+      *most = a;
+      if (isnan(a)) return k;
     }
+  return worst;
+}
+
+/* The particle that broke the limit, its acceleration and where it is: of several ranks the one
+ * with the greatest acceleration tells. */
+static mps_status report_divergence(mps_dynamics *dynamics, const char *function) {
+  const mpsi_dynamics_state *s = &dynamics->state;
+  const double now = mps_dynamics_time(dynamics) - dynamics->length;
+  double most;
+  const int64_t worst = find_worst(dynamics, &most);
+  double key = worst < 0 ? -1.0 : isnan(most) ? INFINITY : most, greatest = key;
+  mps_status status = mpsi_domain_max(dynamics->domain, function, 1, &greatest);
   dynamics->diverged = true;
-  if (worst < 0) worst = 0;
-  const long long id = (long long)mpsi_particles_integers(dynamics->particles, "id")[worst];
-  const mps_status status = mpsi_fail(
-      dynamics->context, function, MPS_ERROR_DIVERGED,
-      "diverged at step %lld, t = %.6g s: |acceleration| of particle %lld at (%.6g, %.6g) m is "
-      "%.4g m/s2, beyond %g; dt is %.6g s%s: take a smaller time step",
-      (long long)dynamics->steps, now, id, s->rx[worst], s->ry[worst], most,
-      dynamics->def.divergence, dynamics->length,
-      dynamics->have_limit && dynamics->length > dynamics->limit.dt
-          ? ", above the linear stability limit"
-          : "");
-  mpsi_fail_where(dynamics->context, dynamics->steps, id);
-  return status;
+  if (status != MPS_OK) return status;
+  if (worst >= 0 && key == greatest) {
+    const long long id = (long long)mpsi_particles_integers(dynamics->particles, "id")[worst];
+    status = mpsi_fail(
+        dynamics->context, function, MPS_ERROR_DIVERGED,
+        "diverged at step %lld, t = %.6g s: |acceleration| of particle %lld at (%.6g, %.6g) m is "
+        "%.4g m/s2, beyond %g; dt is %.6g s%s: take a smaller time step",
+        (long long)dynamics->steps, now, id, s->rx[worst], s->ry[worst], most,
+        dynamics->def.divergence, dynamics->length,
+        dynamics->have_limit && dynamics->length > dynamics->limit.dt
+            ? ", above the linear stability limit"
+            : "");
+    mpsi_fail_where(dynamics->context, dynamics->steps, id);
+  }
+  return mpsi_domain_settle(dynamics->domain, function, status);
 }
 
 /* Before a step of `length`: the displacements of a step before it, if the last was another. */
@@ -284,12 +331,14 @@ static void fit_history(mps_dynamics *dynamics) {
 }
 
 /* The kinetic and strain energy that the budget starts from. */
-static void begin_budget(mps_dynamics *dynamics) {
+static mps_status begin_budget(mps_dynamics *dynamics, const char *function) {
   double kinetic, strain;
-  if (dynamics->begun) return;
-  mpsi_dynamics_energies(dynamics, &kinetic, &strain);
+  if (dynamics->begun) return MPS_OK;
+  const mps_status status = mpsi_dynamics_energies(dynamics, function, &kinetic, &strain);
+  if (status != MPS_OK) return status;
   dynamics->works.start = kinetic + strain;
   dynamics->begun = true;
+  return MPS_OK;
 }
 
 /* Whether an acceleration is beyond the limit, given by its square. What holds or drives a particle
@@ -316,8 +365,8 @@ static bool diverges(mps_dynamics *dynamics, double limit2) {
   return any;
 }
 
-/* All of a step but asking the signals, which alone can fail. */
-static bool take_step(work *w, bool output) {
+/* All of a step but asking the signals, which can fail, as can other ranks. */
+static mps_status take_step(work *w, bool output, bool *diverged) {
   mps_dynamics *dynamics = w->dynamics;
   const double kick = dynamics->def.integrator == MPS_DYNAMICS_INTEGRATOR_EULER || dynamics->fresh
                           ? dynamics->length
@@ -330,7 +379,8 @@ static bool take_step(work *w, bool output) {
   mpsi_dynamics_begin_counting(dynamics);
   mpsi_dynamics_dashpots_before(dynamics);
   const int64_t units = (dynamics->mesh.blocks + w->grain - 1) / w->grain;
-  mpsi_parallel_for(dynamics->context, units, first_pass, w);
+  const mps_status status = pass_all(w);
+  if (status != MPS_OK) return status;
   mpsi_parallel_for(dynamics->context, units, second_pass, w);
   dynamics->steps++;
   dynamics->fresh = dynamics->no_rate = false;
@@ -342,7 +392,17 @@ static bool take_step(work *w, bool output) {
     mpsi_dynamics_account account = {dynamics, &w->forces, w->step.drag, kick};
     mpsi_dynamics_count_works(&account);
   }
-  return !diverges(dynamics, w->step.limit2);
+  *diverged = diverges(dynamics, w->step.limit2);
+  return MPS_OK;
+}
+
+/* What has become of the ranks: `status` of this one, and whether its last step has diverged. */
+static mps_status settle_step(mps_dynamics *dynamics, const char *function, mps_status status,
+                              bool *diverged) {
+  double any = *diverged;
+  status = mpsi_domain_settle_max(dynamics->domain, function, status, 1, &any);
+  if (status != MPS_OK || any == 0.0) return status;
+  return report_divergence(dynamics, function);
 }
 
 mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, int64_t count,
@@ -360,18 +420,21 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
                      .stride = dynamics->count},
             .pass1 = dynamics->kernels->pass1[removal][dynamics->damping == MPSI_DYN_BY_PAIRS],
             .pass2 = dynamics->kernels->pass2[removal][dynamics->damping][integrator],
-            .grain = (blocks + units - 1) / units};
+            .grain = blocks > 0 ? (blocks + units - 1) / units : 1};
   if (count == 0) return MPS_OK;
-  if (mpsi_particles_ready(dynamics->particles, function) != MPS_OK) return MPS_ERROR_STATE;
-  mps_status status = mpsi_dynamics_take_edits(dynamics, function);
-  if (status != MPS_OK) return status;
-  if (mpsi_particles_column(dynamics->particles, "external_force", 0) &&
+  mps_status status = mpsi_particles_ready(dynamics->particles, function);
+  if (status == MPS_OK && mpsi_particles_column(dynamics->particles, "external_force", 0) &&
       !mpsi_dynamics_reserve_accounts(dynamics))
-    return mpsi_fail_memory(dynamics->context, function, (size_t)dynamics->count * 24);
+    status = mpsi_fail_memory(dynamics->context, function, (size_t)dynamics->count * 24);
+  status = mpsi_domain_settle(dynamics->domain, function, status);
+  if (status == MPS_OK) status = mpsi_dynamics_take_edits(dynamics, function);
+  if (status != MPS_OK) return status;
   set_length(dynamics, length);
   if (dynamics->fresh) start_history(dynamics, length);
-  begin_budget(dynamics);
+  status = begin_budget(dynamics, function);
+  if (status != MPS_OK) return status;
   dynamics->stepping = true;
+  bool diverged = false; /* the step before */
   w.step.drag = watch ? dynamics->drag : NULL;
   for (int64_t k = 0; status == MPS_OK && k < count; k++) {
     const double now = mps_dynamics_time(dynamics);
@@ -379,11 +442,13 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
         dynamics->base_time + (double)(dynamics->steps + 1 - dynamics->base_step) * length;
     status = mpsi_dynamics_ask_signals(dynamics, function, now, then);
     if (status == MPS_OK) status = mpsi_dynamics_ask_loads(dynamics, function, now);
+    status = settle_step(dynamics, function, status, &diverged);
     if (status != MPS_OK) break;
     w.forces = mpsi_dynamics_find_forces(dynamics);
     w.account = w.forces.any || watch;
-    if (!take_step(&w, output && k == count - 1))
-      status = report_divergence(dynamics, function, now);
+    status = take_step(&w, output && k == count - 1, &diverged);
+    if (status == MPS_OK && (k == count - 1 || !mpsi_domain_many(dynamics->domain)))
+      status = settle_step(dynamics, function, MPS_OK, &diverged);
   }
   dynamics->stepping = false;
   return status;

@@ -17,16 +17,24 @@ double *mpsi_dynamics_column(const mps_dynamics *dynamics, const char *name, int
 /* Takes the reference position from position and displacement, but keeps one that differs from it
  * by round-off alone: a second solver on a set finds the pairs of the first. */
 static void set_reference(mps_dynamics *dynamics) {
+  const int64_t count = mps_particles_count(dynamics->particles);
   const double spacing = mps_particles_spacing(dynamics->particles);
   for (int32_t c = 0; c < 2; c++) {
     const double *x = mpsi_dynamics_column(dynamics, "position", c);
     const double *d = mpsi_dynamics_column(dynamics, "displacement", c);
     double *r = mpsi_dynamics_column(dynamics, "reference", c);
-    for (int64_t k = 0; k < dynamics->count; k++) {
+    for (int64_t k = 0; k < count; k++) {
       const double round_off = 1e-9 * spacing + 4.0 * DBL_EPSILON * (fabs(x[k]) + fabs(d[k]));
       if (!(fabs(x[k] - d[k] - r[k]) <= round_off)) r[k] = x[k] - d[k];
     }
   }
+}
+
+mps_status mpsi_dynamics_add_reference(mps_dynamics *dynamics) {
+  mps_status status = mps_particles_add_field(dynamics->particles, "displacement", 0);
+  if (status == MPS_OK) status = mps_particles_add_field(dynamics->particles, "reference", 0);
+  if (status == MPS_OK) set_reference(dynamics);
+  return status;
 }
 
 mps_status mpsi_dynamics_add_fields(mps_dynamics *dynamics) {
@@ -83,7 +91,7 @@ mpsi_dynamics_geometry mpsi_dynamics_geometry_of(const mps_dynamics *dynamics, i
 }
 
 /* The particles as they are in the set. */
-static mpsi_dynamics_geometry present_geometry(const mps_dynamics *dynamics) {
+mpsi_dynamics_geometry mpsi_dynamics_present_geometry(const mps_dynamics *dynamics) {
   mps_particles *p = dynamics->particles;
   return mpsi_dynamics_geometry_of(
       dynamics, mps_particles_count(p), mpsi_particles_column(p, "reference", 0),
@@ -92,7 +100,7 @@ static mpsi_dynamics_geometry present_geometry(const mps_dynamics *dynamics) {
 
 mps_status mpsi_dynamics_sort(mps_dynamics *dynamics, const char *function) {
   mps_context *context = dynamics->context;
-  const mpsi_dynamics_geometry g = present_geometry(dynamics);
+  const mpsi_dynamics_geometry g = mpsi_dynamics_present_geometry(dynamics);
   int64_t *order = mpsi_alloc(context, g.count, sizeof *order);
   mps_status status = MPS_OK;
   if (!order || !mpsi_dynamics_layout_order(context, &g, order))
@@ -105,7 +113,7 @@ mps_status mpsi_dynamics_sort(mps_dynamics *dynamics, const char *function) {
 /* ---- pairs, mesh, arrays --------------------------------------------------------------------- */
 
 /* Are all offsets whole spacings? Those of a lattice have been made exact. */
-static bool on_lattice(double spacing, int64_t count, const mpsi_dynamics_pair *pair) {
+bool mpsi_dynamics_on_lattice(double spacing, int64_t count, const mpsi_dynamics_pair *pair) {
   for (int64_t k = 0; k < count; k++)
     if (pair[k].r0x != nearbyint(pair[k].r0x / spacing) * spacing ||
         pair[k].r0y != nearbyint(pair[k].r0y / spacing) * spacing)
@@ -121,7 +129,7 @@ static mps_status make_mesh(mps_dynamics *dynamics, const char *function,
   const mps_status status =
       mpsi_dynamics_layout_pairs(context, function, g, &count, &pair, &out->pairs);
   if (status != MPS_OK) return status;
-  out->lattice = on_lattice(g->spacing, count, pair);
+  out->lattice = mpsi_dynamics_on_lattice(g->spacing, count, pair);
   const mpsi_dynamics_mesh_def def = {.kernel = dynamics->kernel,
                                       .density = dynamics->density,
                                       .particles = g->count,
@@ -133,11 +141,11 @@ static mps_status make_mesh(mps_dynamics *dynamics, const char *function,
 
 /* The arrays that are not fields, from one slab; starts staggered so that they do not alias in the
  * first-level cache. */
-static mps_status allocate(mps_dynamics *dynamics, const char *function,
-                           mpsi_dynamics_structure *out) {
+mps_status mpsi_dynamics_allocate(mps_dynamics *dynamics, const char *function,
+                                  mpsi_dynamics_structure *out) {
   mps_context *context = dynamics->context;
   const int64_t workers = mps_context_threads(context);
-  const int64_t n = (out->count + 7) / 8 * 8, stride = n + 24;
+  const int64_t n = (out->count + out->ghosts + 7) / 8 * 8, stride = n + 24;
   const int64_t slots = (out->mesh.slots + 7) / 8 * 8 + 40;
   const int64_t doubles = MPSI_DYN_SLAB_COLUMNS * stride + 2 * slots;
   out->stride = stride, out->room = slots;
@@ -172,11 +180,11 @@ static mps_status couple_columns(mps_dynamics *dynamics, const char *function,
 mps_status mpsi_dynamics_make_structure(mps_dynamics *dynamics, const char *function,
                                         const mpsi_dynamics_geometry *geometry,
                                         mpsi_dynamics_structure *out) {
-  const mpsi_dynamics_geometry g = geometry ? *geometry : present_geometry(dynamics);
+  const mpsi_dynamics_geometry g = geometry ? *geometry : mpsi_dynamics_present_geometry(dynamics);
   *out = (mpsi_dynamics_structure){.count = g.count};
   while (out->body < g.count && !(g.side && g.side[out->body])) out->body++;
   mps_status status = make_mesh(dynamics, function, &g, out);
-  if (status == MPS_OK) status = allocate(dynamics, function, out);
+  if (status == MPS_OK) status = mpsi_dynamics_allocate(dynamics, function, out);
   if (status == MPS_OK) status = couple_columns(dynamics, function, &g, out);
   if (status != MPS_OK) mpsi_dynamics_free_structure(dynamics, out);
   return status;
@@ -184,6 +192,7 @@ mps_status mpsi_dynamics_make_structure(mps_dynamics *dynamics, const char *func
 
 void mpsi_dynamics_free_structure(mps_dynamics *dynamics, mpsi_dynamics_structure *s) {
   mpsi_dynamics_mesh_free(dynamics->context, &s->mesh);
+  mpsi_halo_destroy(dynamics->context, &s->halo);
   void *parts[] = {s->slab, s->scratch, s->bad, s->part, s->column_dashpot};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(dynamics->context, parts[k]);
   *s = (mpsi_dynamics_structure){0};
@@ -207,6 +216,7 @@ void mpsi_dynamics_use_structure(mps_dynamics *dynamics, mpsi_dynamics_structure
                                     .scratch = dynamics->scratch,
                                     .bad = dynamics->bad,
                                     .part = dynamics->part,
+                                    .halo = dynamics->halo,
                                     .column_dashpot = dynamics->column_dashpot};
   mpsi_dynamics_state *s = &dynamics->state;
   double **arrays[MPSI_DYN_SLAB_COLUMNS] = {&s->gx, &s->gy,     &s->gth, &s->c,     &s->s,
@@ -214,6 +224,9 @@ void mpsi_dynamics_use_structure(mps_dynamics *dynamics, mpsi_dynamics_structure
                                             &s->ix, &s->iy,     &s->ith, &s->alpha, &s->beta};
   dynamics->count = from->count, dynamics->body = from->body, dynamics->pairs = from->pairs;
   dynamics->lattice = from->lattice;
+  dynamics->ghosts = from->ghosts, dynamics->halo = from->halo;
+  if (!mpsi_domain_many(dynamics->domain))
+    dynamics->whole = from->count, dynamics->whole_body = from->body;
   dynamics->mesh = from->mesh;
   dynamics->slab = from->slab, dynamics->scratch = from->scratch;
   dynamics->bad = from->bad, dynamics->part = from->part;

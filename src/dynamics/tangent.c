@@ -10,7 +10,7 @@
 
 typedef struct tangent {
   const mps_dynamics *dynamics;
-  const double *x; /* displacements and rotations, 3 n */
+  const double *x; /* displacements and rotations, 3 columns of count + ghosts */
   double *y, *p;
   const double *weight; /* or NULL */
 } tangent;
@@ -23,7 +23,7 @@ typedef struct sums {
 /* One pair of the first pass; i and j are added to where ti and tj are not negative. */
 static inline void shear_pair(const tangent *t, int64_t i, int64_t j, int64_t ti, int64_t tj,
                               double r0x, double r0y, double kf, double kc, sums *s) {
-  const int64_t n = t->dynamics->count;
+  const int64_t n = t->dynamics->count + t->dynamics->ghosts;
   const double *x = t->x, *mu = t->dynamics->state.mu;
   const double dx = x[j] - x[i], dy = x[n + j] - x[n + i];
   const double mean = 0.5 * (x[2 * n + i] + x[2 * n + j]);
@@ -78,9 +78,11 @@ static void shear_block(void *data, int64_t b, int32_t worker) {
   sums s = {0};
   block_pairs(t, block, false, &s);
   for (int64_t k = begin; k < block->end; k++) {
-    t->y[k] = s.fx[k - begin];
-    t->y[n + k] = s.fy[k - begin];
-    t->y[2 * n + k] = s.moment[k - begin];
+    if (k < n) { /* not a ghost */
+      t->y[k] = s.fx[k - begin];
+      t->y[n + k] = s.fy[k - begin];
+      t->y[2 * n + k] = s.moment[k - begin];
+    }
     t->p[k] = -(t->weight ? t->weight[k] : 1.0) * t->dynamics->state.lambda[k] * s.div[k - begin];
   }
 }
@@ -100,18 +102,27 @@ static void pressure_block(void *data, int64_t b, int32_t worker) {
   }
 }
 
-void mpsi_dynamics_tangent_apply(mps_dynamics *dynamics, const double *weight, const double *x,
-                                 double *y, double *work) {
+mps_status mpsi_dynamics_tangent_apply(mps_dynamics *dynamics, const char *function,
+                                       const double *weight, const double *x, double *y,
+                                       double *work) {
   const mpsi_dynamics_state *state = &dynamics->state;
-  const int64_t n = dynamics->count;
+  const int64_t n = dynamics->count, m = n + dynamics->ghosts;
+  double *const column[3] = {work, work + m, work + 2 * m};
   for (int64_t k = 0; k < n; k++) {
-    work[k] = sqrt(state->ix[k]) * x[k];
-    work[n + k] = sqrt(state->iy[k]) * x[n + k];
-    work[2 * n + k] = sqrt(2.0 * state->ith[k]) * x[2 * n + k];
+    column[0][k] = sqrt(state->ix[k]) * x[k];
+    column[1][k] = sqrt(state->iy[k]) * x[n + k];
+    column[2][k] = sqrt(2.0 * state->ith[k]) * x[2 * n + k];
   }
-  tangent t = {.dynamics = dynamics, .x = work, .y = y, .p = work + 3 * n, .weight = weight};
-  mpsi_parallel_for(dynamics->context, dynamics->mesh.blocks, shear_block, &t);
+  if (dynamics->halo) {
+    mps_status status = mpsi_halo_begin(dynamics->halo, function, 3, column);
+    if (status == MPS_OK) status = mpsi_halo_end(dynamics->halo, function, column);
+    if (status != MPS_OK) return status;
+  }
+  tangent t = {.dynamics = dynamics, .x = work, .y = y, .p = work + 3 * m, .weight = weight};
+  mpsi_parallel_for(dynamics->context, dynamics->mesh.blocks + dynamics->mesh.ghosts, shear_block,
+                    &t);
   mpsi_parallel_for(dynamics->context, dynamics->mesh.blocks, pressure_block, &t);
   for (int64_t k = 0; k < dynamics->bounds; k++)
     y[dynamics->bound[k].component * n + dynamics->bound[k].particle] = 0.0;
+  return MPS_OK;
 }

@@ -1,0 +1,162 @@
+/* halo.c - copies of particles that other ranks own: made once, filled again and again.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "domain_private.h"
+#include "halo.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+struct mpsi_halo {
+  mps_domain *domain;
+  void *star;
+  int64_t items, guests; /* own items that others have copies of; copies here */
+  int64_t *item;         /* index of each of these items */
+  int64_t first;         /* index of the first guest */
+  double *out, *in;      /* [item][column] */
+  int32_t columns;       /* of the copy under way */
+};
+
+static int compare(const void *left, const void *right) {
+  const int64_t a = *(const int64_t *)left, b = *(const int64_t *)right;
+  return a < b ? -1 : a > b;
+}
+
+/* One message to each rank that owns guests: `value` of each of them, in their order. */
+static mps_status ask_owners(mpsi_halo *halo, const char *function, const int32_t *rank,
+                             const int64_t *value, mpsi_mailbox *box) {
+  mps_context *context = halo->domain->context;
+  mps_domain_message *message = mpsi_alloc(context, mps_domain_size(halo->domain), sizeof *message);
+  int32_t count = 0;
+  for (int64_t k = 0, end; message && k < halo->guests; k = end) {
+    for (end = k + 1; end < halo->guests && rank[end] == rank[k];) end++;
+    message[count++] =
+        (mps_domain_message){.rank = rank[k], .bytes = 8 * (end - k), .data = value + k};
+  }
+  mps_status status = message ? MPS_OK : mpsi_fail_memory(context, function, 24);
+  status = mpsi_domain_settle(halo->domain, function, status);
+  if (status == MPS_OK) status = mpsi_domain_exchange(halo->domain, function, count, message, box);
+  mpsi_free(context, message);
+  return status;
+}
+
+/* The items that others ask for, each once. */
+static mps_status list_items(mpsi_halo *halo, const char *function, const mpsi_mailbox *asked) {
+  mps_context *context = halo->domain->context;
+  int64_t wanted = 0;
+  for (int32_t k = 0; k < asked->count; k++) wanted += asked->mail[k].bytes / 8;
+  halo->item = mpsi_alloc(context, wanted, sizeof *halo->item);
+  if (!halo->item) return mpsi_fail_memory(context, function, (size_t)wanted * 8);
+  for (int32_t k = 0; k < asked->count; k++) {
+    memcpy(halo->item + halo->items, asked->mail[k].data, (size_t)asked->mail[k].bytes);
+    halo->items += asked->mail[k].bytes / 8;
+  }
+  qsort(halo->item, (size_t)halo->items, sizeof *halo->item, compare);
+  int64_t kept = 0;
+  for (int64_t k = 0; k < halo->items; k++)
+    if (k == 0 || halo->item[k] != halo->item[k - 1]) halo->item[kept++] = halo->item[k];
+  halo->items = kept;
+  return MPS_OK;
+}
+
+/* Where in the list each of the items asked for stands: goes back to who asked. */
+static mps_status answer(mpsi_halo *halo, const char *function, mpsi_mailbox *asked,
+                         mpsi_mailbox *answers) {
+  mps_context *context = halo->domain->context;
+  mps_domain_message *message = mpsi_alloc(context, asked->count, sizeof *message);
+  mps_status status = message ? MPS_OK : mpsi_fail_memory(context, function, 24);
+  for (int32_t k = 0; message && k < asked->count; k++) {
+    int64_t *index = asked->mail[k].data;
+    for (int64_t i = 0; i < asked->mail[k].bytes / 8; i++)
+      index[i] = (int64_t *)bsearch(&index[i], halo->item, (size_t)halo->items, sizeof *halo->item,
+                                    compare) -
+                 halo->item;
+    message[k] = (mps_domain_message){
+        .rank = asked->mail[k].rank, .bytes = asked->mail[k].bytes, .data = index};
+  }
+  status = mpsi_domain_settle(halo->domain, function, status);
+  if (status == MPS_OK)
+    status = mpsi_domain_exchange(halo->domain, function, asked->count, message, answers);
+  mpsi_free(context, message);
+  return status;
+}
+
+/* Guests lie in order of rank, and so do the answers. */
+static mps_status make_star(mpsi_halo *halo, const char *function, const int32_t *rank,
+                            const mpsi_mailbox *answers, int32_t columns) {
+  mps_context *context = halo->domain->context;
+  int64_t *index = mpsi_alloc(context, halo->guests, sizeof *index), count = 0;
+  halo->out = mpsi_alloc(context, halo->items * columns, sizeof *halo->out);
+  halo->in = mpsi_alloc(context, halo->guests * columns, sizeof *halo->in);
+  mps_status status = MPS_OK;
+  if (!index || !halo->out || !halo->in)
+    status = mpsi_fail_memory(context, function, (size_t)(halo->guests * columns) * 8);
+  status = mpsi_domain_settle(halo->domain, function, status);
+  for (int32_t k = 0; status == MPS_OK && k < answers->count; k++) {
+    memcpy(index + count, answers->mail[k].data, (size_t)answers->mail[k].bytes);
+    count += answers->mail[k].bytes / 8;
+  }
+  if (status == MPS_OK) {
+    const mps_domain_def *def = &halo->domain->def;
+    status = mpsi_domain_note(
+        halo->domain, function, "star_create",
+        def->star_create(def->user, halo->items, halo->guests, rank, index, &halo->star));
+  }
+  mpsi_free(context, index);
+  return status;
+}
+
+mps_status mpsi_halo_create(mps_domain *domain, const char *function, const mpsi_halo_def *def,
+                            mpsi_halo **out) {
+  mps_context *context = domain->context;
+  mpsi_mailbox asked = {.context = context}, answers = {.context = context};
+  mpsi_halo *halo = *out = mpsi_alloc(context, 1, sizeof *halo);
+  mps_status status = halo ? MPS_OK : mpsi_fail_memory(context, function, sizeof *halo);
+  status = mpsi_domain_settle(domain, function, status);
+  if (status == MPS_OK) {
+    *halo = (mpsi_halo){.domain = domain, .guests = def->guests, .first = def->first};
+    status = ask_owners(halo, function, def->rank, def->index, &asked);
+  }
+  if (status == MPS_OK)
+    status = mpsi_domain_settle(domain, function, list_items(halo, function, &asked));
+  if (status == MPS_OK) status = answer(halo, function, &asked, &answers);
+  if (status == MPS_OK) status = make_star(halo, function, def->rank, &answers, def->columns);
+  mpsi_domain_free_mail(&asked);
+  mpsi_domain_free_mail(&answers);
+  if (status != MPS_OK) mpsi_halo_destroy(context, out);
+  return status;
+}
+
+void mpsi_halo_destroy(mps_context *context, mpsi_halo **pointer) {
+  mpsi_halo *halo = *pointer;
+  *pointer = NULL;
+  if (!halo) return;
+  if (halo->star) halo->domain->def.star_destroy(halo->domain->def.user, halo->star);
+  mpsi_free(context, halo->item);
+  mpsi_free(context, halo->out);
+  mpsi_free(context, halo->in);
+  mpsi_free(context, halo);
+}
+
+mps_status mpsi_halo_begin(mpsi_halo *halo, const char *function, int32_t columns,
+                           double *const *column) {
+  const mps_domain_def *def = &halo->domain->def;
+  const mps_status status = mpsi_domain_alive(halo->domain, function);
+  if (status != MPS_OK) return status;
+  halo->columns = columns;
+  for (int32_t c = 0; c < columns; c++)
+    for (int64_t k = 0; k < halo->items; k++) halo->out[k * columns + c] = column[c][halo->item[k]];
+  return mpsi_domain_note(halo->domain, function, "star_begin",
+                          def->star_begin(def->user, halo->star, columns * (int32_t)sizeof(double),
+                                          halo->out, halo->in));
+}
+
+mps_status mpsi_halo_end(mpsi_halo *halo, const char *function, double *const *column) {
+  const mps_domain_def *def = &halo->domain->def;
+  const mps_status status =
+      mpsi_domain_note(halo->domain, function, "star_end", def->star_end(def->user, halo->star));
+  if (status != MPS_OK) return status;
+  for (int32_t c = 0; c < halo->columns; c++)
+    for (int64_t k = 0; k < halo->guests; k++)
+      column[c][halo->first + k] = halo->in[k * halo->columns + c];
+  return MPS_OK;
+}
