@@ -18,7 +18,7 @@
   X(mps_domain_def, mps_domain_def_init, "0.2", 88) \
   X(mps_drucker_prager_def, mps_drucker_prager_def_init, "0.2", 56) \
   X(mps_dynamics_boundary_def, mps_dynamics_boundary_def_init, "0.2", 152) \
-  X(mps_dynamics_def, mps_dynamics_def_init, "0.2", 104) \
+  X(mps_dynamics_def, mps_dynamics_def_init, "0.2", 112) \
   X(mps_dynamics_load_def, mps_dynamics_load_def_init, "0.2", 176) \
   X(mps_dynamics_predict_def, mps_dynamics_predict_def_init, "0.2", 64) \
   X(mps_elastic_boundary_def, mps_elastic_boundary_def_init, "0.2", 160) \
