@@ -27,7 +27,7 @@ typedef enum mps_contact_mover {
 /** What becomes of particles whose centres lie inside the body when the contact is made. */
 typedef enum mps_contact_inside {
   MPS_CONTACT_INSIDE_REFUSE = 0, /* an error that counts them */
-  MPS_CONTACT_INSIDE_PUSH = 1,   /* they stay, and are pushed out: a tenth of the way in each
+  MPS_CONTACT_INSIDE_PUSH = 1,   /* they stay, and are pushed out: a twentieth of the way in each
                                    step, or with the contact stiffness */
   MPS_CONTACT_INSIDE_REMOVE = 2  /* they leave the set, as before each step those that are deeper
                                     than `depth`; the reaction counts them */

@@ -33,7 +33,7 @@ static inline double mpsi_impulse_lever(double distance, double half) {
   return fmin(1.0, fmax(0.0, 2.0 * distance / half - 0.5));
 }
 
-/* w (m/s): a gap may close within dt, no more; a tenth of an overlap opens again, by at most 0.02
+/* w (m/s): a gap may close within dt, no more; a twentieth of an overlap opens again, by at most 0.02
  * of `speed` (m/s, of waves and particles). */
 double mpsi_impulse_aim(double gap, double dt, double speed);
 

@@ -87,6 +87,33 @@ static mpm_scene fall_in_space(mps_context *context, int options) {
   return s;
 }
 
+/* A slab that slides on a rough floor in space, so that more particles touch than one thread sweeps
+ * alone (SHARED in mpm/impulses.c). */
+static mpm_scene slide_in_space(mps_context *context) {
+  const double lo[] = {0.0, 0.0, 0.0}, hi[] = {0.3, 0.06, 0.3}, up[] = {0.0, 1.0, 0.0};
+  const double v0[] = {1.0, -1.0, 0.5}, L[9] = {0.0};
+  mpm_scene s = mpm_scene_begin_in(context, 3, 0.01, 0.0, 0.0, 1e5);
+  mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
+  mpm_scene_affine(&s, v0, L);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.geometry = MPS_MPM_SPACE;
+  def.cell = 0.02;
+  mpm_scene_solve(&s, &def);
+  mps_body *floor = NULL;
+  mps_assert_ok(context, mps_body_create_half_space(context, NULL, up, &floor));
+  mpm_scene_contact(&s, floor, 0.3);
+  mps_reaction reaction;
+  int64_t most = 0;
+  for (int k = 0; k < 20; k++) {
+    mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+    mps_assert_ok(context, mps_body_get_reaction(floor, -1, &reaction));
+    most = reaction.count > most ? reaction.count : most;
+  }
+  assert_true(most > 600);
+  mps_body_destroy(&floor);
+  return s;
+}
+
 /* The scene with everything that holds and loads, in the plane and in space; the forces that act.
  */
 static mpm_scene hold(mps_context *context, int32_t geometry, uint64_t *hash) {
@@ -101,8 +128,8 @@ static mpm_scene hold(mps_context *context, int32_t geometry, uint64_t *hash) {
   return s;
 }
 
-/* Besides the options of `fall`: the scene with everything that holds. */
-enum { HELD = 1024 };
+/* Besides the options of `fall`: the scene with everything that holds; the slab. */
+enum { HELD = 1024, SLAB = 2048 };
 
 static uint64_t hash_of(int32_t executor, int32_t threads, int32_t geometry, int options) {
   mps_context_def def =
@@ -115,6 +142,7 @@ static uint64_t hash_of(int32_t executor, int32_t threads, int32_t geometry, int
   mps_body_state b = {0};
   uint64_t forces = 0;
   mpm_scene s = options & HELD              ? hold(context, geometry, &forces)
+                : options & SLAB            ? slide_in_space(context)
                 : geometry == MPS_MPM_SPACE ? fall_in_space(context, options)
                                             : fall(context, geometry, options, false, &disc);
   if (disc) mps_assert_ok(context, mps_body_get_state(disc, &b));
@@ -155,6 +183,7 @@ static void options_too(void **state) {
   same_bits(MPS_MPM_SPACE, STANDARD | BY_CELL, 1, threads);
   same_bits(MPS_MPM_PLANE_STRAIN, HELD, 4, (int32_t[]){1, 2, 3, 8});
   same_bits(MPS_MPM_SPACE, HELD, 4, (int32_t[]){1, 2, 3, 8});
+  same_bits(MPS_MPM_SPACE, SLAB, 2, (int32_t[]){2, 3});
 }
 
 static void any_order_of_particles(void **state) {
