@@ -103,8 +103,9 @@ typedef struct mpsi_fluid_local {
   double qs;              /* reduced pressure of the surface there, Pa */
 } mpsi_fluid_local;
 
-/* Whether a particle has images among its neighbours, and neighbours within l0/2. */
-enum { MPSI_FLUID_NEAR_IMAGES = 1, MPSI_FLUID_NEAR_CLOSE = 2 };
+/* Whether a particle has images among its neighbours, neighbours within l0/2, and a body's corner
+ * within 1.5 l0. */
+enum { MPSI_FLUID_NEAR_IMAGES = 1, MPSI_FLUID_NEAR_CLOSE = 2, MPSI_FLUID_NEAR_CORNER = 4 };
 #define MPSI_FLUID_CLOSE 0.5 /* l0 */
 
 enum { MPSI_FLUID_INSIDE = 0, MPSI_FLUID_SURFACE = 1, MPSI_FLUID_APART = 2 };
@@ -285,6 +286,8 @@ void mpsi_fluid_end_afloat(mps_fluid *fluid, mpsi_fluid_body *body); /* the body
 void mpsi_fluid_find_limits(mps_fluid *fluid);
 int64_t mpsi_fluid_keep_seen(const mps_fluid *fluid, int64_t i, int64_t count, int32_t *index,
                              double *r2);
+/* Whether a corner of a body, in the water, is within 1.5 l0 of particle i. */
+bool mpsi_fluid_near_corner(const mps_fluid *fluid, int64_t i);
 /* Whether a face other than `wall` is between two points. */
 bool mpsi_fluid_hidden(const mps_fluid *fluid, int wall, const double *a, const double *b);
 /* near.c */

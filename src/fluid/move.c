@@ -41,12 +41,16 @@ static void pressure_gradient(const mps_fluid *f, int64_t i, double *gradient) {
   gradient[1] = I[1] * sum[0] + I[2] * sum[1];
 }
 
-/* Part of v that is taken over: of a rough velocity field more. */
-static double smoothing(const mps_fluid *f, const mpsi_fluid_local *local) {
+/* Part of v that is taken over: of a rough velocity field more, but not where the flow turns around
+ * a corner, which is no linear field however smooth it is. */
+static double smoothing(const mps_fluid *f, int64_t i) {
+  const mpsi_fluid_local *local = &f->local[i];
   double steep = 1e-4 * f->g * f->l0, v2 = 0.0;
   for (int c = 0; c < 4; c++) steep += f->l0 * f->l0 * local->gradient[c] * local->gradient[c];
   for (int c = 0; c < 2; c++) v2 += local->rest[c] * local->rest[c];
-  const double a = SMOOTH * f->dt * rate(f) + (steep > 0.0 ? 2.0 * v2 / steep : 0.0);
+  const bool corner = f->company[i] & MPSI_FLUID_NEAR_CORNER;
+  const double rough = steep > 0.0 && !corner ? 2.0 * v2 / steep : 0.0;
+  const double a = SMOOTH * f->dt * rate(f) + rough;
   return fmin(a, MOST_SMOOTH);
 }
 
@@ -83,7 +87,7 @@ static void accelerate(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
     } else {
       double gradient[2];
       pressure_gradient(f, i, gradient);
-      const double a = smoothing(f, local), share = nu * dt * local->n / local->S;
+      const double a = smoothing(f, i), share = nu * dt * local->n / local->S;
       double v[2] = {0.0, 0.0};
       if (share > 0.0) viscous_rest(f, i, v);
       for (int c = 0; c < 2; c++)

@@ -183,7 +183,8 @@ static void find_chunk(void *data, int64_t chunk, int32_t worker) {
     if (f->bent) average_weights(f, i, found, index, w);
     for (int64_t k = 0; k < found; k++) most = index[k] > most ? index[k] : most;
     f->company[i] = (uint8_t)((most >= f->count ? MPSI_FLUID_NEAR_IMAGES : 0) |
-                              (closest2 < close2 ? MPSI_FLUID_NEAR_CLOSE : 0));
+                              (closest2 < close2 ? MPSI_FLUID_NEAR_CLOSE : 0) |
+                              (mpsi_fluid_near_corner(f, i) ? MPSI_FLUID_NEAR_CORNER : 0));
     f->start[i] = at;
     f->near[i] = (int32_t)found;
     at += mpsi_fluid_padded((int32_t)found);

@@ -9,7 +9,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid_private.h"
 
-#define EDGE 1e-6 /* l0 */
+#define EDGE 1e-6  /* l0 */
+#define CORNER 1.5 /* l0 */
 
 static bool meet_at_an_angle(const mpsi_fluid_wall *a, const mpsi_fluid_wall *b) {
   const double cosine = a->normal[0] * b->normal[0] + a->normal[1] * b->normal[1];
@@ -94,6 +95,16 @@ static bool near_limit(const mps_fluid *f, int64_t i) {
     if (!(f->limited >> k & 1) || !(fabs(ahead(w, x)) < reach)) continue;
     const double along = mpsi_fluid_along(w, x[0], x[1]);
     if (!w->of_body || (along > w->from - reach && along < w->to + reach)) return true;
+  }
+  return false;
+}
+
+bool mpsi_fluid_near_corner(const mps_fluid *f, int64_t i) {
+  const double reach = CORNER * f->l0;
+  for (uint32_t k = MPS_FLUID_MAX_BOUNDARIES; f->faces >> k && k < MPSI_FLUID_WALLS; k++) {
+    const mpsi_fluid_wall *w = &f->wall[k];
+    const double dx = f->x[0][i] - w->at[0], dy = f->x[1][i] - w->at[1];
+    if ((f->faces >> k & 1) && w->from == 0.0 && dx * dx + dy * dy < reach * reach) return true;
   }
   return false;
 }

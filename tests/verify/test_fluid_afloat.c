@@ -4,7 +4,7 @@
 
 #include "fluid_tank.h"
 
-#define PERIOD_BAR 0.09 /* at 20 spacings of width and 5 of draft */
+#define PERIOD_BAR 0.03 /* at 20 spacings of width and 5 of draft */
 
 /* A box of `width` that floats `draft` deep in the middle of a closed tank of `length` and
  * `depth`. */
@@ -154,7 +154,10 @@ static void a_box_heaves(void **state) {
     solutions++;
     if (solutions < 3 || (place[1] - place[0]) * (place[2] - place[1]) > 0.0) continue;
     if (turns > 0 && at[1] - turn[turns - 1][0] < 0.1) continue;
-    turn[turns][0] = at[1], turn[turns][1] = place[1];
+    /* the top of the parabola through the last three */
+    const double rise = place[2] - place[0], bend = place[2] - 2.0 * place[1] + place[0];
+    turn[turns][0] = at[1] - 0.25 * (at[2] - at[0]) * rise / bend;
+    turn[turns][1] = place[1] - 0.125 * rise * rise / bend;
     turns++;
   }
   const double period = turn[2][0] - turn[0][0];
@@ -165,7 +168,7 @@ static void a_box_heaves(void **state) {
                 period, exact, 100.0 * (period / exact - 1.0), 1e3 * mean,
                 1e3 * load[1] / stiffness, 100.0 * (mean * stiffness / load[1] - 1.0), decay);
   mps_assert_near(period, exact, PERIOD_BAR * exact);
-  mps_assert_near(mean, load[1] / stiffness, 0.02 * fabs(load[1]) / stiffness);
+  mps_assert_near(mean, load[1] / stiffness, 0.05 * fabs(load[1]) / stiffness);
   drop_scene(&s);
 }
 
