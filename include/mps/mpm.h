@@ -56,10 +56,14 @@ typedef enum mps_mpm_step_from {
  * that oscillate in nearly incompressible material. */
 typedef enum mps_mpm_volumetric {
   MPS_MPM_VOLUMETRIC_POINT = 0, /* each particle's own tr(d), in axisymmetry with the hoop */
-  MPS_MPM_VOLUMETRIC_CELL = 1   /* F-bar: the mean of tr(d), weighted by volumes, over the particles
-                               of   the cell (quadratic: of the cell-sized box about a node); the part
-                               of   d without trace, the spin and `velocity_gradient` stay. Volumes,
+  MPS_MPM_VOLUMETRIC_CELL = 1,  /* F-bar: the mean of tr(d), weighted by volumes, over the particles
+                               of the cell (quadratic: of the cell-sized box about a node); the part
+                               of d without trace, the spin and `velocity_gradient` stay. Volumes,
                                `volume_ratio` and `deformation_gradient` follow the mean */
+  MPS_MPM_VOLUMETRIC_NODES = 2  /* the mean of tr(d) over the nodes near, each the mean of its
+                               particles, by the weights and volumes; and of pressures likewise:
+                               fluids (Newtonian) act with that mean, in other laws the pressure
+                               tends to it by 0.03 c dt/h of the difference in each step */
 } mps_mpm_volumetric;
 
 /** What particles near a roller, a fixed side or the axis use beyond it. */

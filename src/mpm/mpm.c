@@ -45,9 +45,9 @@ static mps_status check_choices(mps_context *context, const mps_mpm_def *d) {
   if (d->spline != 2 && d->spline != 3)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT, "spline is %d, allowed are 2 and 3",
                      d->spline);
-  if (d->volumetric != MPS_MPM_VOLUMETRIC_POINT && d->volumetric != MPS_MPM_VOLUMETRIC_CELL)
+  if (d->volumetric < MPS_MPM_VOLUMETRIC_POINT || d->volumetric > MPS_MPM_VOLUMETRIC_NODES)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                     "volumetric is %d, allowed are 0 (point) and 1 (cell)", d->volumetric);
+                     "volumetric is %d, allowed are 0 (point), 1 (cell) and 2 (nodes)", d->volumetric);
   if (d->budget != 0 && d->budget != 1)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "budget is %d, allowed are 0 (no energies) and 1 (the energy budget)",

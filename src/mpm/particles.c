@@ -56,7 +56,7 @@ bool mpsi_mpm_make_room(void *solver, int64_t particles) {
   mps_mpm *mpm = solver;
   mps_context *context = mpm->context;
   mpsi_rooms *r = &mpm->rooms;
-  const bool by_cell = mpm->def.volumetric == MPS_MPM_VOLUMETRIC_CELL;
+  const bool by_cell = mpm->def.volumetric != MPS_MPM_VOLUMETRIC_POINT;
   const bool good =
       mpsi_room_ensure(context, &r->radix, 2 * particles, sizeof *mpm->grid.radix) &&
       mpsi_room_ensure(context, &r->flags, particles, sizeof *mpm->laws.flags) &&

@@ -1,4 +1,6 @@
-/* volumetric.c - F-bar by cell: the laws see the mean change of volume of the cell in place of the
+/* volumetric.c - means of the change of volume, by cell or by node.
+ *
+ * F-bar by cell: the laws see the mean change of volume of the cell in place of the
  * particle's own. A cell with many particles then has one condition of constant volume, as the
  * nodes can satisfy, instead of one for each particle.
  *
@@ -6,8 +8,17 @@
  * block they are sorted to. When G2P has read the nodes, these have done their work: the lowest
  * node of each stencil then holds {sum V, sum V tr(d)} of its cell. In plane strain a deviation
  * from the mean changes the strain out of the plane too, by its third, as in space: else the part
- * without trace would change. SPDX-License-Identifier: BSD-3-Clause */
+ * without trace would change.
+ *
+ * By node, with the B-spline weights w of the step's beginning: t_i = sum w V tr(d)/sum w V, and
+ * the particle's is sum w t_i. A rate that is smooth leaves differences of pressures that are there
+ * already; so, after the laws, p_i = sum w V p/sum w V and p~ = sum w p_i, which takes the place of
+ * the mean stress of a fluid (its state J stays as it is, so nothing is smoothed twice), and to
+ * which that of other laws tends by beta c dt/h. Ghosts of mirrors fold as mass does (mirror.h).
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
+
+#define BETA 0.03 /* larger ones spread pressure at free surfaces */
 
 enum { SUM_VOLUME = 0, SUM_TRACE = 1 };
 
@@ -26,6 +37,103 @@ static double *sums_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t
   return mpm->grid.node[mpsi_node_under(mpm, cells, at[0], at[1], at[2])];
 }
 
+/* ---- by node --------------------------------------------------------------------------------- */
+
+static bool by_nodes(const mps_mpm *mpm) { return mpm->def.volumetric == MPS_MPM_VOLUMETRIC_NODES; }
+
+/* Nodes of a tile along each axis, ghosts of mirrors by their partners, and weights. */
+typedef struct support {
+  int at[3][4];
+  double w[3][4];
+} support;
+
+static int partner_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int c, int node) {
+  const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
+  const int64_t low = mpm->grid.low[c] - first, high = mpm->grid.high[c] - first;
+  if (cells->mirrors >> (2 * c) & 1 && node < low) return (int)(2 * low - node);
+  if (cells->mirrors >> (2 * c + 1) & 1 && node > high) return (int)(2 * high - node);
+  return node;
+}
+
+/* The particle has moved by dt v since G2P found its stencil, or was put back on a wall. */
+static support support_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t k) {
+  const double least = mpm->def.spline == 3 ? 1.0 : 0.5;
+  support out = {.w = {{1.0}, {1.0}, {1.0}}};
+  int base[3];
+  mpsi_unravel(mpm->p.stencil[k], MPSI_TILE_SIDE, base);
+  for (int c = 0; c < mpm->dim; c++) {
+    const double x = mpm->p.x[c][k] - mpm->run.dt * mpm->p.v[c][k];
+    const double t =
+        mpsi_grid_coordinate(mpm, c, x) - (double)cells->at[c] * MPSI_SIDE - (double)base[c];
+    mpsi_weights(mpm->def.spline, fmin(fmax(t, least), least + 1.0), out.w[c]);
+    for (int i = 0; i <= mpm->def.spline; i++)
+      out.at[c][i] = partner_of(mpm, cells, c, base[c] + i);
+  }
+  return out;
+}
+
+/* Adds {V, V value} by the weights; or the mean of the nodes' means. */
+static void give(const mps_mpm *mpm, const mpsi_cell_block *cells, const support *s, double V,
+                 double value) {
+  const int n = mpm->def.spline, depth = mpm->dim == 3 ? n : 0;
+  for (int k = 0; k <= depth; k++)
+    for (int j = 0; j <= n; j++)
+      for (int i = 0; i <= n; i++) {
+        const double w = s->w[0][i] * s->w[1][j] * s->w[2][k] * V;
+        double *to =
+            mpm->grid.node[mpsi_node_under(mpm, cells, s->at[0][i], s->at[1][j], s->at[2][k])];
+        to[SUM_VOLUME] += w;
+        to[SUM_TRACE] += w * value;
+      }
+}
+
+static double take(const mps_mpm *mpm, const mpsi_cell_block *cells, const support *s) {
+  const int n = mpm->def.spline, depth = mpm->dim == 3 ? n : 0;
+  double sum = 0.0, weight = 0.0;
+  for (int k = 0; k <= depth; k++)
+    for (int j = 0; j <= n; j++)
+      for (int i = 0; i <= n; i++) {
+        const double w = s->w[0][i] * s->w[1][j] * s->w[2][k];
+        const double *from =
+            mpm->grid.node[mpsi_node_under(mpm, cells, s->at[0][i], s->at[1][j], s->at[2][k])];
+        if (!(from[SUM_VOLUME] > 0.0) || w == 0.0) continue;
+        sum += w * (from[SUM_TRACE] / from[SUM_VOLUME]);
+        weight += w;
+      }
+  return sum / weight;
+}
+
+static double mean_stress(const mps_mpm *mpm, int64_t k) {
+  return (mpm->p.s[0][k] + mpm->p.s[1][k] + mpm->p.s[2][k]) / 3.0;
+}
+
+static void add_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
+  (void)worker;
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    const support s = support_of(mpm, cells, k);
+    give(mpm, cells, &s, mpm->p.V[k], mean_stress(mpm, k));
+  }
+}
+
+static void smooth_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  const mpsi_columns *p = &mpm->p;
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    const support s = support_of(mpm, cells, k);
+    double share = 1.0, wave, shear;
+    if (mpsi_material_kept(mpsi_law_of(mpm, k)->material) != MPSI_KEPT_PRESSURE) {
+      mpsi_mpm_elastic(mpm, k, &wave, &shear);
+      share = fmin(1.0, BETA * sqrt(wave * p->V[k] / p->m[k]) * mpm->run.dt * mpm->grid.inverse);
+    }
+    const double change = share * (take(mpm, cells, &s) - mean_stress(mpm, k));
+    for (int c = 0; c < 3; c++) p->s[c][k] += change;
+  }
+  mpm->kernels->speed(mpm, b, worker);
+}
+
+/* ---- both ------------------------------------------------------------------------------------ */
+
 /* Blocks of one colour have no node in common. */
 static void add_cells(mps_mpm *mpm, int64_t b, int32_t worker) {
   (void)worker;
@@ -33,9 +141,15 @@ static void add_cells(mps_mpm *mpm, int64_t b, int32_t worker) {
   const double *L[3], *V = mpm->p.V;
   find_diagonal(mpm, L);
   for (int64_t k = cells->begin; k < cells->end; k++) {
+    const double trace = L[0][k] + L[1][k] + (L[2] ? L[2][k] : 0.0);
+    if (by_nodes(mpm)) {
+      const support s = support_of(mpm, cells, k);
+      give(mpm, cells, &s, V[k], trace);
+      continue;
+    }
     double *sums = sums_of(mpm, cells, k);
     sums[SUM_VOLUME] += V[k];
-    sums[SUM_TRACE] += V[k] * (L[0][k] + L[1][k] + (L[2] ? L[2][k] : 0.0));
+    sums[SUM_TRACE] += V[k] * trace;
   }
 }
 
@@ -44,9 +158,16 @@ void mpsi_mpm_mean_diagonals(const mps_mpm *mpm, const mpsi_cell_block *cells, i
   const double *L[3];
   find_diagonal(mpm, L);
   for (int64_t k = begin; k < end; k++) {
-    const double *sums = sums_of(mpm, cells, k);
     const double own = L[0][k] + L[1][k] + (L[2] ? L[2][k] : 0.0);
-    const double change = (sums[SUM_TRACE] / sums[SUM_VOLUME] - own) / 3.0;
+    double mean;
+    if (by_nodes(mpm)) {
+      const support s = support_of(mpm, cells, k);
+      mean = take(mpm, cells, &s);
+    } else {
+      const double *sums = sums_of(mpm, cells, k);
+      mean = sums[SUM_TRACE] / sums[SUM_VOLUME];
+    }
+    const double change = (mean - own) / 3.0;
     for (int c = 0; c < 3; c++) diagonal[c][k - begin] = (L[c] ? L[c][k] : 0.0) + change;
   }
 }
@@ -58,14 +179,17 @@ static void apply_laws(mps_mpm *mpm, int64_t b, int32_t worker) {
     for (int c = 0; c < mpm->dim * mpm->dim; c++) D[c] = mpm->p.D[c] + k;
     mpsi_mpm_apply_law(mpm, cells, k, k + MPSI_CHUNK < cells->end ? k + MPSI_CHUNK : cells->end, D);
   }
-  mpm->kernels->speed(mpm, b, worker);
+  if (!by_nodes(mpm)) mpm->kernels->speed(mpm, b, worker);
 }
 
 void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm) {
   static const mpsi_pass pass = {
       .clear = mpsi_mpm_clear_nodes, .scatter = add_cells, .gather = apply_laws};
+  static const mpsi_pass pressures = {
+      .clear = mpsi_mpm_clear_nodes, .scatter = add_pressures, .gather = smooth_pressures};
   for (int64_t b = 0; b < mpm->grid.cell_count; b++)
     if (mpm->grid.cells[b].bad >= 0 && !mpm->grid.cells[b].lost)
       return; /* the step has failed; its places may be no places */
   mpsi_mpm_run_pass(mpm, &pass);
+  if (by_nodes(mpm) && !mpm->laws.refusal.cells) mpsi_mpm_run_pass(mpm, &pressures);
 }

@@ -10,10 +10,11 @@
 static const char *const names[] = {"id",     "position", "velocity", "velocity_gradient",
                                     "stress", "volume",   NULL};
 
-enum { BY_CELL = 1, STANDARD = 2 };
+enum { BY_CELL = 1, STANDARD = 2, BY_NODES = 64 };
 
 static void solve(mpm_scene *s, mps_mpm_def *def, int options) {
   if (options & BY_CELL) def->volumetric = MPS_MPM_VOLUMETRIC_CELL;
+  if (options & BY_NODES) def->volumetric = MPS_MPM_VOLUMETRIC_NODES;
   mpm_scene_solve(s, def);
   if (options & STANDARD) mps_assert_ok(s->context, mps_experimental_mpm_standard(s->mpm, 0.9));
 }
@@ -179,6 +180,8 @@ static void options_too(void **state) {
   (void)state;
   static const int32_t threads[] = {3};
   same_bits(MPS_MPM_AXISYMMETRIC, BY_CELL, 1, threads);
+  same_bits(MPS_MPM_PLANE_STRAIN, BY_NODES, 1, threads);
+  same_bits(MPS_MPM_SPACE, BY_NODES, 1, threads);
   same_bits(MPS_MPM_PLANE_STRAIN, STANDARD, 1, threads);
   same_bits(MPS_MPM_SPACE, STANDARD | BY_CELL, 1, threads);
   same_bits(MPS_MPM_PLANE_STRAIN, HELD, 4, (int32_t[]){1, 2, 3, 8});

@@ -48,7 +48,7 @@ static void refuses_bad_definitions(void **state) {
   CASE(cell, 1e-4, "must be 0.5 to 100 of their spacings");
   CASE(dt, 0.0, "dt is 0 s");
   CASE(courant, 1.5, "courant is 1.5");
-  CASE(volumetric, 2, "volumetric is 2");
+  CASE(volumetric, 3, "volumetric is 3");
   CASE(budget, 2, "budget is 2");
   CASE(dt, -1.0, "dt is -1 s");
   CASE(gravity[1], INFINITY, "gravity[1] inf");

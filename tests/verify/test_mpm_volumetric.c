@@ -34,11 +34,13 @@ static mpm_scene stretched(int32_t geometry, int32_t spline, int32_t volumetric,
 
 static void uniform_strain_is_untouched(void **state) {
   (void)state;
-  for (int variant = 0; variant < 12; variant++) {
-    const int geometry = variant / 4, spline = 2 + variant % 2;
+  for (int variant = 0; variant < 24; variant++) {
+    const int geometry = variant % 12 / 4, spline = 2 + variant % 2;
     const bool rubber = variant / 2 % 2;
     mpm_scene a = stretched(geometry, spline, MPS_MPM_VOLUMETRIC_POINT, rubber);
-    mpm_scene b = stretched(geometry, spline, MPS_MPM_VOLUMETRIC_CELL, rubber);
+    mpm_scene b =
+        stretched(geometry, spline,
+                  variant < 12 ? MPS_MPM_VOLUMETRIC_CELL : MPS_MPM_VOLUMETRIC_NODES, rubber);
     mps_view s = mpm_scene_view(&a, "stress"), S = mpm_scene_view(&b, "stress");
     mps_view V = mpm_scene_view(&a, "volume"), W = mpm_scene_view(&b, "volume");
     double worst = 0.0, largest = 0.0;
@@ -190,8 +192,12 @@ static void cantilever_bends(void **state) {
   for (int32_t spline = 2; spline <= 3; spline++) {
     const double point = deflection(spline, MPS_MPM_VOLUMETRIC_POINT);
     const double cell = deflection(spline, MPS_MPM_VOLUMETRIC_CELL);
-    print_message("cantilever, nu = 0.499, spline %d: deflection over exact: %.3f, by cell %.3f\n",
-                  spline, point, cell);
+    const double nodes = deflection(spline, MPS_MPM_VOLUMETRIC_NODES);
+    print_message(
+        "cantilever, nu = 0.499, spline %d: deflection over exact: %.3f, by cell %.3f, by "
+        "nodes %.3f\n",
+        spline, point, cell, nodes);
+    assert_true(nodes > 0.9 && nodes < 1.0);
     assert_true(cell > (spline == 3 ? 0.9 : 0.85) && cell < 1.02);
     assert_true(1.0 - cell < 0.6 * (1.0 - point));
   }
@@ -273,9 +279,12 @@ static double footing(int32_t spline, int32_t volumetric, double *rough) {
 static void footing_does_not_lock(void **state) {
   (void)state;
   for (int32_t spline = 2; spline <= 3; spline++) {
-    double wild, rough;
+    double wild, rough, smooth;
     const double point = footing(spline, MPS_MPM_VOLUMETRIC_POINT, &wild) / COHESION;
     const double cell = footing(spline, MPS_MPM_VOLUMETRIC_CELL, &rough) / COHESION;
+    const double nodes = footing(spline, MPS_MPM_VOLUMETRIC_NODES, &smooth) / COHESION;
+    print_message("footing by nodes: q/c %.3f, pressure between cells %.3f c\n", nodes,
+                  smooth / COHESION);
     print_message("footing, nu = 0.499, spline %d: q/c %.3f, by cell %.3f (2 + pi = 5.142); "
                   "pressure between cells %.3f c, by cell %.3f c\n",
                   spline, point, cell, wild / COHESION, rough / COHESION);
