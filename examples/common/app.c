@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static void print_warning(void *user, mps_log_level level, const char *message) {
+static void print_warning(void *user, int32_t level, const char *message) {
   app *a = user;
   if (level != MPS_LOG_WARNING) return;
   progress_clear(&a->bar);

@@ -28,9 +28,10 @@ void plate_exact_displacement(const plate *p, const double *x, double *u) {
 
 /* ---- particles ------------------------------------------------------------------------------- */
 
-static int32_t solid(void *user, const double *x) {
+static mps_status solid(void *user, const double *x, int32_t *inside) {
   const plate_def *d = user;
-  return !d->hole || x[0] * x[0] + x[1] * x[1] > d->radius * d->radius;
+  *inside = !d->hole || x[0] * x[0] + x[1] * x[1] > d->radius * d->radius;
+  return MPS_OK;
 }
 
 /* The plate in tension: x from 0 to side, y from -side/2. The quarter: particles on both planes of

@@ -55,7 +55,7 @@ typedef enum mps_log_level {
   MPS_LOG_DEBUG = 2
 } mps_log_level;
 
-typedef void (*mps_log_fn)(void *user, mps_log_level level, const char *message);
+typedef void (*mps_log_fn)(void *user, int32_t level, const char *message);
 
 /** What a progress hook is told. */
 typedef struct mps_progress {

@@ -117,8 +117,8 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_create(mps_context *context, mps_p
 MPS_API void mps_dynamics_destroy(mps_dynamics **dynamics);
 
 /** The definition in use, with dt as set since (NaN: not yet chosen). */
-MPS_API mps_status mps_dynamics_get_def_sized(const mps_dynamics *dynamics, mps_dynamics_def *out,
-                                              size_t size);
+MPS_API MPS_NODISCARD mps_status mps_dynamics_get_def_sized(const mps_dynamics *dynamics,
+                                                            mps_dynamics_def *out, size_t size);
 static inline mps_status mps_dynamics_get_def(const mps_dynamics *dynamics, mps_dynamics_def *out) {
   return mps_dynamics_get_def_sized(dynamics, out, sizeof *out);
 }

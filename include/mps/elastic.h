@@ -20,8 +20,7 @@
  *
  * The set may be sorted while a solver uses it, and particles may be removed (mps_particles_remove:
  * excavation): what is left must be a body still, boundaries and loads lose what has gone, facets
- * are numbered anew, a motion ends. They come back with a state from before (mps_elastic_rollback,
- * mps_elastic_restore). None can be added: the lattice is found once.
+ * are numbered anew, a motion ends. A rollback or restore brings them back. None can be added.
  *
  * Thread rule: one thread at a time per context; the work is shared among the context's threads, of
  * BLAS and CHOLMOD too (docs/elastic.md). The cancel hook is asked before the ordering, the
@@ -379,12 +378,10 @@ MPS_API double mps_elastic_limit(const mps_elastic *e);  /* infinite: all are st
 /** From the next step on (s, 1e-30 to 1e30); the matrix is factored again. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_set_dt(mps_elastic *e, double dt);
 
-/** The motion, its set and what has been counted: bit for bit back to a snapshot (memory), or to
- * what a solver built and started in the same way has saved. As they are now stay: loads, values
- * and signals of boundaries, dt, moduli. Particles removed since come back with their boundaries
- * and loads, and so does the motion that their removal ended; after it facets have their numbers of
- *  then. Between steps only; on an error nothing has changed. As mps_mpm_snapshot and so on.
- *  MPS_ERROR_STATE: no motion under way, or other boundaries. */
+/** The motion, its set (particles removed since, numbers of facets) and what has been counted: bit
+ *  for bit back to a snapshot (memory), or to what a solver built and started in the same way has
+ *  saved. Loads, values and signals of boundaries, dt and moduli stay. Between steps only; on an
+ * error nothing has changed. MPS_ERROR_STATE: no motion under way, or other boundaries. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_snapshot(mps_elastic *e, mps_snapshot **snapshot);
 MPS_API MPS_NODISCARD mps_status mps_elastic_rollback(mps_elastic *e, const mps_snapshot *snapshot);
 MPS_API MPS_NODISCARD mps_status mps_elastic_save(mps_elastic *e, const char *path,

@@ -71,9 +71,11 @@ MPS_API MPS_NODISCARD mps_status mps_particles_fill_polygon(mps_particles *parti
 MPS_API MPS_NODISCARD mps_status mps_particles_fill_ball(mps_particles *particles,
                                                          const double *centre, double radius,
                                                          int64_t *added);
-/** Non-zero: a particle is wanted at position x (m, dim values). Must not use the set. */
-typedef int32_t (*mps_predicate_fn)(void *user, const double *x);
-/** Lattice sites in the box [lo, hi) for which inside(user, x) is non-zero. */
+/** Writes to *inside, 0 on entry, 1 where a particle is wanted at position x (m, dim values). Any
+ *  status but MPS_OK ends the call, which returns it with a record and adds nothing. Must not use
+ *  the set. */
+typedef mps_status (*mps_predicate_fn)(void *user, const double *x, int32_t *inside);
+/** Lattice sites in the box [lo, hi) that inside(user, x, ...) wants. */
 MPS_API MPS_NODISCARD mps_status mps_particles_fill_where(mps_particles *particles,
                                                           const double *lo, const double *hi,
                                                           mps_predicate_fn inside, void *user,
@@ -111,14 +113,15 @@ MPS_API MPS_NODISCARD mps_status mps_particles_view(mps_particles *particles, co
                                                     mps_view *out);
 /** Borrows a field for writing, until mps_particles_commit or _abandon: meanwhile solvers refuse
  *  their steps (MPS_ERROR_STATE), and particles neither come nor go. Several fields may be open at
- *  once, each once. The set keeps memory for the former values. MPS_ERROR_FIELD: no such field, or one that only the library writes. */
+ *  once, each once. The set keeps memory for the former values. MPS_ERROR_FIELD: no such field, or
+ * one that only the library writes. */
 MPS_API MPS_NODISCARD mps_status mps_particles_edit(mps_particles *particles, const char *name,
                                                     mps_view *out);
 /** Ends the editing of a field. Its values must be finite and in the field's range
  * (docs/fields.md), and the solver that holds the set may ask for more: positions inside its
- * domain. It reads them before its next step, and finds neighbours and blocks of particles anew only
- * where that is `position`. On MPS_ERROR_ARGUMENT, which names the particle, the
- * field stays open with what was written: mend it and commit again. Then the view is for reading.
+ * domain. It reads them before its next step, and finds neighbours and blocks of particles anew
+ * only where that is `position`. On MPS_ERROR_ARGUMENT, which names the particle, the field stays
+ * open with what was written: mend it and commit again. Then the view is for reading.
  */
 MPS_API MPS_NODISCARD mps_status mps_particles_commit(mps_particles *particles, mps_view *view);
 /** Ends it with the values from before mps_particles_edit: no solver takes notice. */

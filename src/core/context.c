@@ -266,7 +266,7 @@ void mps_context_clear_error(mps_context *context) {
   context->error.step = context->error.particle = -1;
 }
 
-void mpsi_log(mps_context *context, mps_log_level level, const char *format, ...) {
+void mpsi_log(mps_context *context, int32_t level, const char *format, ...) {
   if (!context->def.log) return;
   char message[512];
   va_list args;

@@ -8,6 +8,7 @@
  * centre within round-off of a bound (1e-9 spacings) lies on it. Boxes and polygons that share an
  * edge so share no site and leave none out.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "guard.h"
 #include "particles_private.h"
 
 #include "polygon.h"
@@ -185,23 +186,43 @@ static mps_status read_box(const mps_particles *p, const char *function, const d
   return MPS_OK;
 }
 
-/* The runs of a box, cut to where `inside` is non-zero (NULL: everywhere). */
-static bool box_runs(const mps_particles *p, const site_box *box, mps_predicate_fn inside,
-                     void *user, mpsi_runs *out) {
+/* A row of a box. */
+static bool push_row(const mps_particles *p, const site_box *box, int64_t j, int64_t k,
+                     mpsi_runs *out) {
+  const mpsi_run row = {.begin = box->begin[0], .end = box->end[0], .j = j, .k = k};
+  return row.begin >= row.end || runs_push(p->context, out, row);
+}
+
+/* Of a row, the sites that `inside` wants. `*complete` is false where memory was refused. */
+static mps_status push_wanted(const mps_particles *p, const char *function, const site_box *box,
+                              int64_t j, int64_t k, mps_predicate_fn inside, void *user,
+                              mpsi_runs *out, bool *complete) {
+  for (int64_t i = box->begin[0]; i < box->end[0] && *complete; i++) {
+    const double x[3] = {centre(p, 0, i), centre(p, 1, j), centre(p, 2, k)};
+    const mpsi_run site = {.begin = i, .end = i + 1, .j = j, .k = k};
+    int32_t wanted = 0;
+    mpsi_guard guard = {0};
+    mpsi_guard_enter(&guard, p->context, "the predicate of the fill");
+    const mps_status status =
+        mpsi_guard_leave(&guard, p->context, function, inside(user, x, &wanted));
+    if (status != MPS_OK) return status;
+    if (wanted) *complete = runs_push(p->context, out, site);
+  }
+  return MPS_OK;
+}
+
+/* The runs of a box, cut to where `inside` wants a particle (NULL: everywhere). */
+static mps_status box_runs(const mps_particles *p, const char *function, const site_box *box,
+                           mps_predicate_fn inside, void *user, mpsi_runs *out, bool *complete) {
+  mps_status status = MPS_OK;
+  *complete = true;
   for (int64_t k = box->begin[2]; k < box->end[2]; k++)
-    for (int64_t j = box->begin[1]; j < box->end[1]; j++) {
-      if (!inside) {
-        const mpsi_run row = {.begin = box->begin[0], .end = box->end[0], .j = j, .k = k};
-        if (row.begin < row.end && !runs_push(p->context, out, row)) return false;
-        continue;
-      }
-      for (int64_t i = box->begin[0]; i < box->end[0]; i++) {
-        const double x[3] = {centre(p, 0, i), centre(p, 1, j), centre(p, 2, k)};
-        const mpsi_run site = {.begin = i, .end = i + 1, .j = j, .k = k};
-        if (inside(user, x) && !runs_push(p->context, out, site)) return false;
-      }
-    }
-  return true;
+    for (int64_t j = box->begin[1]; j < box->end[1] && status == MPS_OK && *complete; j++)
+      if (inside)
+        status = push_wanted(p, function, box, j, k, inside, user, out, complete);
+      else
+        *complete = push_row(p, box, j, k, out);
+  return status;
 }
 
 static mps_status fill_box(mps_particles *p, const char *function, const double *lo,
@@ -211,8 +232,11 @@ static mps_status fill_box(mps_particles *p, const char *function, const double 
   mps_status status = mpsi_particles_check_free(p, function);
   if (status == MPS_OK) status = read_box(p, function, lo, hi, &box);
   if (status != MPS_OK) return status;
-  const bool complete = box_runs(p, &box, inside, user, &runs);
-  return put_runs(p, function, &runs, complete, added);
+  bool complete;
+  status = box_runs(p, function, &box, inside, user, &runs, &complete);
+  if (status == MPS_OK) return put_runs(p, function, &runs, complete, added);
+  mpsi_free(p->context, runs.item);
+  return status;
 }
 
 mps_status mps_particles_fill_box(mps_particles *particles, const double *lo, const double *hi,
@@ -233,11 +257,12 @@ typedef struct ball {
   int32_t dim;
 } ball;
 
-static int32_t in_ball(void *user, const double *x) {
+static mps_status in_ball(void *user, const double *x, int32_t *inside) {
   const ball *b = user;
   double square = 0.0;
   for (int32_t c = 0; c < b->dim; c++) square += (x[c] - b->centre[c]) * (x[c] - b->centre[c]);
-  return square < b->square;
+  *inside = square < b->square;
+  return MPS_OK;
 }
 
 mps_status mps_particles_fill_ball(mps_particles *particles, const double *centre_of_ball,

@@ -38,7 +38,7 @@ void mpsi_fail_where(mps_context *context, int64_t step, int64_t particle);
 void mpsi_fail_object(mps_context *context, const char *format, ...) MPSI_PRINTF(2, 3);
 mps_status mpsi_fail_memory(mps_context *context, const char *function, size_t bytes);
 int64_t mpsi_failures(const mps_context *context); /* how many records there have been */
-void mpsi_log(mps_context *context, mps_log_level level, const char *format, ...) MPSI_PRINTF(3, 4);
+void mpsi_log(mps_context *context, int32_t level, const char *format, ...) MPSI_PRINTF(3, 4);
 
 #define MPSI_FARTHEST 1e15 /* coordinates, either sign */
 

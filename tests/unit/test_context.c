@@ -122,7 +122,7 @@ static void an_error_names_its_object(void **state) {
   mps_context_destroy(&context);
 }
 
-static void count_log(void *user, mps_log_level level, const char *message) {
+static void count_log(void *user, int32_t level, const char *message) {
   (void)level;
   (void)message;
   (*(int *)user)++;

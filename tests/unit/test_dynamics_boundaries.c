@@ -415,9 +415,10 @@ static void level_ground_moves_as_its_columns(void **state) {
 
 /* ---- shapes ---------------------------------------------------------------------------------- */
 
-static int32_t l_shape(void *user, const double *x) {
+static mps_status l_shape(void *user, const double *x, int32_t *inside) {
   (void)user;
-  return x[0] < 5.0 || x[1] < 3.0;
+  *inside = x[0] < 5.0 || x[1] < 3.0;
+  return MPS_OK;
 }
 
 /* Shape `which`, its axes exchanged if `turned`; smooth initial velocities. */

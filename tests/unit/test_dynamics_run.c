@@ -18,7 +18,7 @@ typedef struct hooks {
   mps_status answer; /* of the callback */
 } hooks;
 
-static void on_log(void *user, mps_log_level level, const char *message) {
+static void on_log(void *user, int32_t level, const char *message) {
   hooks *h = user;
   h->warnings += level == MPS_LOG_WARNING;
   snprintf(h->text, sizeof h->text, "%s", message);

@@ -252,9 +252,10 @@ static void bad_boxes_are_refused(void **state) {
 }
 
 /* A chequerboard; counts how often it is asked. */
-static int32_t dark_field(void *user, const double *x) {
+static mps_status dark_field(void *user, const double *x, int32_t *inside) {
   ++*(int *)user;
-  return ((int)floor(x[0]) + (int)floor(x[1])) % 2 == 0;
+  *inside = ((int)floor(x[0]) + (int)floor(x[1])) % 2 == 0;
+  return MPS_OK;
 }
 
 static void a_predicate_is_asked_once_for_each_site(void **state) {
@@ -267,6 +268,28 @@ static void a_predicate_is_asked_once_for_each_site(void **state) {
   assert_int_equal(asked, 64);
   assert_int_equal(added, 32);
   assert_int_equal(box(set, 0, 0, 8, 8), 32); /* the light fields */
+  mps_particles_destroy(&set);
+}
+
+/* Refuses the eleventh site. */
+static mps_status eleven(void *user, const double *x, int32_t *inside) {
+  (void)x;
+  *inside = 1;
+  return ++*(int *)user > 10 ? MPS_ERROR_UNSUPPORTED : MPS_OK;
+}
+
+static void a_predicate_that_refuses_adds_nothing(void **state) {
+  (void)state;
+  mps_particles *set = make_set(2, 1.0, 0, 0);
+  const double lo[2] = {0, 0}, hi[2] = {8, 8};
+  int asked = 0;
+  const uint64_t epoch = mps_particles_epoch(set);
+  mps_assert_fails(context, mps_particles_fill_where(set, lo, hi, eleven, &asked, NULL),
+                   MPS_ERROR_UNSUPPORTED, "the predicate of the fill returned status");
+  assert_int_equal(asked, 11);
+  assert_int_equal(mps_particles_count(set), 0);
+  assert_int_equal(mps_particles_epoch(set), epoch);
+  assert_int_equal(box(set, 0, 0, 8, 8), 64);
   mps_particles_destroy(&set);
 }
 
@@ -300,6 +323,7 @@ int main(void) {
       cmocka_unit_test(bad_polygons_are_refused_with_the_edges_named),
       cmocka_unit_test(bad_boxes_are_refused),
       cmocka_unit_test(a_predicate_is_asked_once_for_each_site),
+      cmocka_unit_test(a_predicate_that_refuses_adds_nothing),
       cmocka_unit_test(balls_are_symmetric_and_open),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);

@@ -202,7 +202,7 @@ typedef struct heard {
   char last[512];
 } heard;
 
-static void listen(void *user, mps_log_level level, const char *message) {
+static void listen(void *user, int32_t level, const char *message) {
   heard *h = user;
   if (level != MPS_LOG_WARNING) return;
   h->warnings++;
@@ -302,7 +302,7 @@ static void tells_of_nan(void **state) {
     if (!isnan(*mps_view_f64(&v, k, 1))) far = fmax(far, fabs(*mps_view_f64(&x, k, 0) - at));
   assert_true(far > 0.04);
   assert_int_equal(id.shape[0], 100);
-  mps_assert_fails(context, mps_mpm_step(s.mpm, 1), MPS_ERROR_STATE, "state is kept");
+  mps_assert_fails(context, mps_mpm_step(s.mpm, 1), MPS_ERROR_STATE, "left no state to go on from");
   mpm_scene_end(&s);
 }
 

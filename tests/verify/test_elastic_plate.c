@@ -115,9 +115,10 @@ static mps_status kirsch_traction(void *user, const double *x, const double *nor
   return MPS_OK;
 }
 
-static int32_t outside(void *user, const double *x) {
+static mps_status outside(void *user, const double *x, int32_t *inside) {
   const double a = *(double *)user;
-  return x[0] * x[0] + x[1] * x[1] > a * a;
+  *inside = x[0] * x[0] + x[1] * x[1] > a * a;
+  return MPS_OK;
 }
 
 /* A lattice makes a staircase of the hole, which disturbs a few layers: the concentration at its

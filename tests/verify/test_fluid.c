@@ -97,9 +97,10 @@ static void sloshing_has_the_period_of_theory(void **state) {
 
 /* ---- elliptic drop --------------------------------------------------------------------------- */
 
-static int32_t in_circle(void *user, const double *x) {
+static mps_status in_circle(void *user, const double *x, int32_t *inside) {
   (void)user;
-  return x[0] * x[0] + x[1] * x[1] < 1.0;
+  *inside = x[0] * x[0] + x[1] * x[1] < 1.0;
+  return MPS_OK;
 }
 
 /* a' = -A a, b' = A b, A' = A^2 (a^2 - b^2)/(a^2 + b^2): semi-axes at t = 1 by small Euler steps of
