@@ -267,7 +267,10 @@ static bool draw_water(app *a, const simulation *sim, double T) {
                 "%sset title 'T = %.2f' offset 0,-0.7\n"
                 "plot 'particles.csv' every ::1 using ($1==%d ? $3/%.9g : NaN):($4/%.9g):($5*1e-3) "
                 "with points pointtype 7 pointsize %.3g linecolor palette notitle\n",
-                k == 1 ? "unset colorbox\n" : "", sim->shot[k].time * T, k, s->base, s->base,
+                k == 0   ? "set label 1 'axes x/a, y/a' at graph 0.98,0.9 right\n"
+                : k == 1 ? "unset colorbox\nunset label 1\n"
+                         : "",
+                sim->shot[k].time * T, k, s->base, s->base,
                 0.24 * panel * s->h / (s->method == METHOD_MPS ? 1.0 : sqrt((double)s->ppc)) /
                     (width * s->base));
   }

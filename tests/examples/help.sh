@@ -31,3 +31,11 @@ for text in "Usage: mps-penetrometer" "--tip cone|sphere|stl" "--h [m]" "(defaul
   has "$work/help" "$text"
 done
 [ "$(awk 'length > 100' "$work/help" | wc -l)" -eq 0 ] || fail "mps-penetrometer: long lines"
+for program in mps-tank mps-seawall mps-dam-break; do
+  [ -x "$1/$program" ] || continue
+  "$1/$program" --help >"$work/help" || fail "$program --help"
+  for text in "--checkpoint FILE" "--restart FILE" "--every-checkpoint [s]" "--frames N"; do
+    has "$work/help" "$text"
+  done
+  [ "$(awk 'length > 100' "$work/help" | wc -l)" -eq 0 ] || fail "$program --help has long lines"
+done
