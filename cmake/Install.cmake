@@ -7,12 +7,19 @@ set(cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/mps)
 install(FILES LICENSE README.md CHANGELOG.md CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN Doxyfile EXCLUDE)
 
+if(NOT PETSc_FOUND)
+  set(without_petsc PATTERN petsc.h EXCLUDE)
+endif()
 install(DIRECTORY include/mps DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/libmps-${PROJECT_VERSION_MAJOR}
-        FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp")
+        FILES_MATCHING PATTERN "*.h" PATTERN "*.hpp" ${without_petsc})
 
 # Two export sets: who links libmps.so is not asked to have what only libmps.a needs.
 install(TARGETS mps EXPORT mps-shared)
 install(TARGETS mps_static EXPORT mps-static)
+if(PETSc_FOUND)
+  install(TARGETS mps_petsc EXPORT mps-petsc)
+  install(EXPORT mps-petsc NAMESPACE mps:: DESTINATION ${cmake_dir})
+endif()
 install(EXPORT mps-shared NAMESPACE mps:: DESTINATION ${cmake_dir})
 install(EXPORT mps-static NAMESPACE mps:: DESTINATION ${cmake_dir})
 
@@ -93,3 +100,7 @@ foreach(variable PREFIX LIBDIR INCLUDEDIR)
 endforeach()
 configure_file(pkgconfig/libmps.pc.in ${PROJECT_BINARY_DIR}/libmps.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/libmps.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+if(PETSc_FOUND)
+  configure_file(pkgconfig/libmps-petsc.pc.in ${PROJECT_BINARY_DIR}/libmps-petsc.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/libmps-petsc.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endif()

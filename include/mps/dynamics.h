@@ -32,9 +32,9 @@
  * Ranks (mps/domain.h) each make the same whole set, of which the solver leaves each its share, and
  * all free-field columns. All functions but those that only tell (get_def, particles, context,
  * pairs, limit, time, steps) are collective; lists of ids name particles of any rank. None can be
- * removed, and save and restore are MPS_ERROR_UNSUPPORTED. Thread rule: one thread at a time per
- * context; a step runs on its executor, with the same bits for every number of threads and ranks.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * removed. Rank 0 writes files, all read them, on any number of ranks. Thread rule: one thread at a
+ * time per context; a step runs on its executor, with the same bits for every number of threads and
+ * ranks. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_DYNAMICS_H
 #define LIBMPS_DYNAMICS_H
 

@@ -119,6 +119,10 @@ typedef struct mpsi_state_of {
    * may be called again, or never followed by `bind`. May be NULL. */
   mps_status (*prepare)(void *solver, const char *function, const mps_snapshot *from,
                         const char *source, mps_status disagreement);
+  /* Of a file only, may be NULL: leaves of the values those of this rank's particles; `status` is
+   * what has become of reading them here. */
+  mps_status (*take_share)(void *solver, const char *function, mps_status status,
+                           mps_snapshot *values);
   /* May be NULL: of a solver on several ranks. What has become of all of them, when all that can
    * fail on this one is done; its own status so far is `status`. */
   mps_status (*settle)(void *solver, const char *function, mps_status status);

@@ -13,7 +13,7 @@
  *   budget.c      energies and momenta, works of a step
  *   run.c         step and run as the caller sees them, hooks, callbacks
  *   limit.c       the stability limit; tangent.c, lattice.c what it is made from
- *   state.c       snapshots and checkpoints
+ *   state.c       snapshots and checkpoints; files.c checkpoints of several ranks
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_DYNAMICS_PRIVATE_H
 #define MPSI_DYNAMICS_PRIVATE_H
@@ -28,6 +28,7 @@
 #include "mesh.h"
 
 #include <mps/dynamics.h>
+#include <mps/io.h>
 
 #define MPSI_DYN_LEAST_DT 1e-12 /* s */
 #define MPSI_DYN_MOST_DT 1e9
@@ -262,6 +263,14 @@ mps_status mpsi_dynamics_bring_motion(mps_dynamics *dynamics, const char *functi
 /* After mpsi_dynamics_set_coefficients: those of ghosts, extremes, kind of damping. */
 mps_status mpsi_dynamics_join_coefficients(mps_dynamics *dynamics, const char *function,
                                            mps_status status);
+
+/* ---- files.c: checkpoints of several ranks ---- */
+
+mps_status mpsi_dynamics_save_shares(mps_dynamics *dynamics, const mpsi_state_of *of,
+                                     const char *function, const char *path,
+                                     const mps_checkpoint *info);
+mps_status mpsi_dynamics_take_values(void *solver, const char *function, mps_status status,
+                                     mps_snapshot *values);
 
 /* ---- removal.c: the holder's functions ---- */
 

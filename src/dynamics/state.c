@@ -16,11 +16,38 @@ enum { BOUND = 4 };
 
 static int64_t count_bounds(const void *solver) { return ((const mps_dynamics *)solver)->bounds; }
 
+/* The next in order of particles, then of components, in which lists are kept outside of the
+ * solver: the whole body's is then made of those of its parts. The list itself has the component
+ * first. */
+typedef struct walk {
+  int64_t at[3], end[3];
+} walk;
+
+static walk begin_walk(const mps_dynamics *dynamics) {
+  walk w = {{0}, {0}};
+  int64_t k = 0;
+  for (int c = 0; c < 3; c++) {
+    w.at[c] = k;
+    while (k < dynamics->bounds && dynamics->bound[k].component == c) k++;
+    w.end[c] = k;
+  }
+  return w;
+}
+
+static mpsi_dynamics_bound *next_bound(const mps_dynamics *dynamics, walk *w) {
+  int64_t *least = NULL;
+  for (int c = 0; c < 3; c++)
+    if (w->at[c] < w->end[c] &&
+        (!least || dynamics->bound[w->at[c]].particle < dynamics->bound[*least].particle))
+      least = &w->at[c];
+  return least ? &dynamics->bound[(*least)++] : NULL;
+}
+
 static void get_bounds(const void *solver, void *values) {
   const mps_dynamics *dynamics = solver;
   double *row = values;
-  for (int64_t k = 0; k < dynamics->bounds; k++, row += BOUND) {
-    const mpsi_dynamics_bound *q = &dynamics->bound[k];
+  walk w = begin_walk(dynamics);
+  for (const mpsi_dynamics_bound *q; (q = next_bound(dynamics, &w)); row += BOUND) {
     const double of[BOUND] = {q->rest, q->at, q->before, q->force};
     memcpy(row, of, sizeof of);
   }
@@ -28,27 +55,27 @@ static void get_bounds(const void *solver, void *values) {
 
 static void set_bounds(void *solver, int64_t rows, const void *values) {
   mps_dynamics *dynamics = solver;
-  const double *row = values;
-  for (int64_t k = 0; k < rows && k < dynamics->bounds; k++, row += BOUND) {
-    mpsi_dynamics_bound *q = &dynamics->bound[k];
+  const double *row = values, *end = row + rows * BOUND;
+  walk w = begin_walk(dynamics);
+  for (mpsi_dynamics_bound *q; row < end && (q = next_bound(dynamics, &w)); row += BOUND)
     q->rest = row[0], q->at = row[1], q->before = row[2], q->force = row[3];
-  }
 }
 
 static int64_t count_dashpots(const void *solver) {
   return ((const mps_dynamics *)solver)->dashpots;
 }
 
+/* Backwards: in order of particles. */
 static void get_dashpots(const void *solver, void *values) {
   const mps_dynamics *dynamics = solver;
   for (int64_t k = 0; k < dynamics->dashpots; k++)
-    ((double *)values)[k] = dynamics->dashpot[k].force;
+    ((double *)values)[k] = dynamics->dashpot[dynamics->dashpots - 1 - k].force;
 }
 
 static void set_dashpots(void *solver, int64_t rows, const void *values) {
   mps_dynamics *dynamics = solver;
   for (int64_t k = 0; k < rows && k < dynamics->dashpots; k++)
-    dynamics->dashpot[k].force = ((const double *)values)[k];
+    dynamics->dashpot[dynamics->dashpots - 1 - k].force = ((const double *)values)[k];
 }
 
 static const mpsi_state_table bounds_table = {MPSI_STATE_F64, BOUND, count_bounds,
@@ -155,6 +182,7 @@ static mpsi_state_of state_of(mps_dynamics *dynamics) {
                          .list = list_state,
                          .prepare = mpsi_dynamics_prepare_state,
                          .settle = agree_to_go_back,
+                         .take_share = mpsi_dynamics_take_values,
                          .bind = bind,
                          .after = after,
                          .time = mps_dynamics_time(dynamics),
@@ -199,29 +227,22 @@ mps_status mps_dynamics_rollback(mps_dynamics *dynamics, const mps_snapshot *sna
   return settle_back(dynamics, __func__, mpsi_state_rollback(&of, __func__, snapshot));
 }
 
-static mps_status check_alone(mps_dynamics *dynamics, const char *function) {
-  if (!mpsi_domain_many(dynamics->domain)) return MPS_OK;
-  return mpsi_fail(dynamics->context, function, MPS_ERROR_UNSUPPORTED,
-                   "the particles lie on %d ranks: files are written and read by one rank alone",
-                   mps_domain_size(dynamics->domain));
-}
-
 mps_status mps_dynamics_save(mps_dynamics *dynamics, const char *path, const mps_checkpoint *info) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
-  if (check_alone(dynamics, __func__) != MPS_OK) return MPS_ERROR_UNSUPPORTED;
   const mps_status status = check_whole(dynamics, __func__);
   if (status != MPS_OK) return status;
   const mpsi_state_of of = state_of(dynamics);
+  if (mpsi_domain_many(dynamics->domain))
+    return mpsi_dynamics_save_shares(dynamics, &of, __func__, path, info);
   return mpsi_checkpoint_save(&of, __func__, path, info);
 }
 
 mps_status mps_dynamics_restore(mps_dynamics *dynamics, const char *path, mps_checkpoint *info) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
-  if (check_alone(dynamics, __func__) != MPS_OK) return MPS_ERROR_UNSUPPORTED;
   const mps_status status = mpsi_dynamics_enter(dynamics, __func__);
   if (status != MPS_OK) return status;
   const mpsi_state_of of = state_of(dynamics);
-  return mpsi_checkpoint_restore(&of, __func__, path, info);
+  return settle_back(dynamics, __func__, mpsi_checkpoint_restore(&of, __func__, path, info));
 }
 
 /* ---- the step to come

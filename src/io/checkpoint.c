@@ -203,10 +203,10 @@ mps_status mps_checkpoint_write(mps_particles *particles, const char *path,
   return write_checkpoint(particles, __func__, path, info, NULL, NULL);
 }
 
-mps_status mpsi_checkpoint_save(const mpsi_state_of *of, const char *function, const char *path,
-                                const mps_checkpoint *user_info) {
+mps_status mpsi_checkpoint_save_values(const mpsi_state_of *of, const char *function,
+                                       const char *path, const mps_checkpoint *user_info,
+                                       mps_particles *whole, const mpsi_values *state) {
   mps_checkpoint info = mps_checkpoint_defaults();
-  mps_snapshot state = {.context = of->context};
   mps_status status = MPS_OK;
   if (user_info) status = MPSI_DEF_READ(of->context, function, mps_checkpoint, user_info, &info);
   if (status != MPS_OK) return status;
@@ -214,9 +214,15 @@ mps_status mpsi_checkpoint_save(const mpsi_state_of *of, const char *function, c
   info.time = of->time;
   info.step = of->steps;
   info.dt = of->dt;
-  status = mpsi_state_get(of, function, &state);
+  return write_checkpoint(whole, function, path, &info, of->name, state);
+}
+
+mps_status mpsi_checkpoint_save(const mpsi_state_of *of, const char *function, const char *path,
+                                const mps_checkpoint *info) {
+  mps_snapshot state = {.context = of->context};
+  mps_status status = mpsi_state_get(of, function, &state);
   if (status == MPS_OK)
-    status = write_checkpoint(of->particles, function, path, &info, of->name, &state.state);
+    status = mpsi_checkpoint_save_values(of, function, path, info, of->particles, &state.state);
   mpsi_values_free(of->context, &state.state);
   return status;
 }
@@ -546,6 +552,7 @@ mps_status mpsi_checkpoint_restore(const mpsi_state_of *of, const char *function
   const char *what = "its values do not fit";
   if (status == MPS_OK && of->fits && !of->fits(of->solver, &r.values, &what))
     status = mpsi_checkpoint_malformed(&r, what);
+  if (of->take_share) status = of->take_share(of->solver, function, status, &r.values);
   if (status == MPS_OK)
     status = mpsi_state_put(of, function, &r.values, source, MPS_ERROR_ARGUMENT);
   if (status == MPS_OK) tell(&r, info);

@@ -11,6 +11,11 @@
  * and the user_data are read: time, step and dt are those of `of`. */
 mps_status mpsi_checkpoint_save(const mpsi_state_of *of, const char *function, const char *path,
                                 const mps_checkpoint *info);
+/* The same with the particles and values of other ranks: `whole` in the place of the solver's set.
+ */
+mps_status mpsi_checkpoint_save_values(const mpsi_state_of *of, const char *function,
+                                       const char *path, const mps_checkpoint *info,
+                                       mps_particles *whole, const mpsi_values *state);
 /* Puts a solver that was built in the same way, and its set, into that state and order. `info`
  * (NULL: not wanted) is as for mps_checkpoint_info. On an error nothing has changed. */
 mps_status mpsi_checkpoint_restore(const mpsi_state_of *of, const char *function, const char *path,

@@ -6,28 +6,7 @@
 #include "test_fixture.h"
 
 #include "domain_threads.h"
-
-#include <mps/dynamics.h>
-
-enum { LAYERS, SCATTERED, PERIODIC, STRIP, SCENES };
-
-#define FIELDS 8
-static const struct {
-  const char *name;
-  int columns;
-} fields[FIELDS] = {{"position", 2},     {"displacement", 2}, {"velocity", 2}, {"rotation", 1},
-                    {"acceleration", 2}, {"pressure", 1},     {"spin", 1},     {"reaction", 2}};
-
-/* What a run ends with: of one rank, or without a domain. */
-typedef struct result {
-  mps_status status;
-  char message[512];
-  int64_t count, pairs, *id;
-  double *value[FIELDS];
-  mps_totals totals;
-  mps_reaction reaction;
-  double dt, limit, omega;
-} result;
+#include "dynamics_scene.h"
 
 typedef struct scene {
   int what;
@@ -37,171 +16,6 @@ typedef struct scene {
   result rank[TEAM_MOST];
   test_allocator allocator[TEAM_MOST];
 } scene;
-
-#define TRY(call)                                                                                  \
-  do {                                                                                             \
-    if (status == MPS_OK) status = (call);                                                         \
-  } while (0)
-
-static double noise(uint64_t k) {
-  k = (k + 1) * UINT64_C(0x9e3779b97f4a7c15);
-  k = (k ^ (k >> 31)) * UINT64_C(0xbf58476d1ce4e5b9);
-  return (double)(k >> 11) * 0x1p-53 - 0.5;
-}
-
-/* Wave velocities that grow with depth, more damping at the top; a start in motion. */
-static mps_status give_ground(mps_particles *set, bool even) {
-  mps_status status = MPS_OK;
-  mps_view x, vs, vp, h, v;
-  TRY(mps_particles_set(set, "density", 0, 1900.0));
-  TRY(mps_particles_set(set, "shear_velocity", 0, 200.0));
-  TRY(mps_particles_set(set, "pressure_velocity", 0, 400.0));
-  TRY(mps_particles_set(set, "damping", 0, 0.02));
-  TRY(mps_particles_set(set, "velocity", 0, 0.0));
-  TRY(mps_particles_add_field(set, "reaction", 0));
-  TRY(mps_particles_view(set, "position", &x));
-  TRY(mps_particles_edit(set, "shear_velocity", &vs));
-  TRY(mps_particles_edit(set, "pressure_velocity", &vp));
-  TRY(mps_particles_edit(set, "damping", &h));
-  TRY(mps_particles_edit(set, "velocity", &v));
-  for (int64_t k = 0; status == MPS_OK && k < mps_particles_count(set); k++) {
-    const double depth = 30.0 - *mps_view_f64(&x, k, 1);
-    *mps_view_f64(&vs, k, 0) = even ? 200.0 : 100.0 + 10.0 * floor(depth / 5.0);
-    *mps_view_f64(&vp, k, 0) = 2.2 * *mps_view_f64(&vs, k, 0);
-    *mps_view_f64(&h, k, 0) = even ? 0.02 : depth < 10.0 ? 0.05 : 0.02;
-    *mps_view_f64(&v, k, 0) = 1e-2 * sin(0.3 * *mps_view_f64(&x, k, 0) + 0.1 * depth);
-  }
-  TRY(mps_particles_commit(set, &vs));
-  TRY(mps_particles_commit(set, &vp));
-  TRY(mps_particles_commit(set, &h));
-  TRY(mps_particles_commit(set, &v));
-  return status;
-}
-
-static mps_status make_set(mps_context *own, int what, mps_particles **out) {
-  mps_particles_def def = mps_particles_defaults();
-  def.spacing = 0.5;
-  mps_status status = mps_particles_create(own, &def, out);
-  const double lo[2] = {0.0, 0.0}, hi[2] = {what == STRIP ? 400.0 : 45.0, what == STRIP ? 2.5 : 30};
-  TRY(mps_particles_fill_box(*out, lo, hi, NULL));
-  if (what == SCATTERED && status == MPS_OK) {
-    mps_view x;
-    TRY(mps_particles_edit(*out, "position", &x));
-    for (int64_t k = 0; status == MPS_OK && k < mps_particles_count(*out); k++)
-      for (int c = 0; c < 2; c++) *mps_view_f64(&x, k, c) += 0.1 * noise((uint64_t)(2 * k + c));
-    TRY(mps_particles_commit(*out, &x));
-  }
-  TRY(give_ground(*out, what == PERIODIC));
-  if (what == LAYERS) {
-    TRY(mps_dynamics_add_free_field(*out, MPS_DYNAMICS_SIDE_LEFT, 4));
-    TRY(mps_dynamics_add_free_field(*out, MPS_DYNAMICS_SIDE_RIGHT, 4));
-  }
-  return status;
-}
-
-static mps_status ramp(void *user, double t, double motion[3]) {
-  (void)user;
-  motion[0] = 1e-3 * (t - sin(40.0 * t) / 40.0);
-  motion[1] = 1e-3 * (1.0 - cos(40.0 * t));
-  motion[2] = 1e-3 * 40.0 * sin(40.0 * t);
-  return MPS_OK;
-}
-
-/* A base that drives or absorbs, a load on part of the surface, gravity. */
-static mps_status add_conditions(mps_context *own, mps_domain *domain, mps_dynamics *dynamics,
-                                 int what, int32_t *base) {
-  mps_signal *signal = NULL;
-  int32_t number;
-  mps_status status = mps_signal_user(own, ramp, NULL, &signal);
-  if (domain) status = mps_domain_agree(domain, status);
-  mps_dynamics_boundary_def boundary = mps_dynamics_boundary_defaults();
-  boundary.lower[0] = boundary.lower[1] = -INFINITY;
-  boundary.upper[0] = INFINITY, boundary.upper[1] = 0.4;
-  boundary.kind = what == LAYERS ? MPS_DYNAMICS_BOUNDARY_VISCOUS : MPS_DYNAMICS_BOUNDARY_DRIVEN;
-  boundary.dofs = what == LAYERS ? 0 : MPS_DOF_Y | MPS_DOF_ROTATION;
-  boundary.signal[0] = signal;
-  TRY(mps_dynamics_add_boundary(dynamics, &boundary, base));
-  mps_dynamics_boundary_def point = mps_dynamics_boundary_defaults();
-  const int64_t ids[3] = {700, 20, 1403};
-  point.ids = ids, point.id_count = 3, point.dofs = MPS_DOF_Y;
-  TRY(mps_dynamics_add_boundary(dynamics, &point, &number));
-  mps_dynamics_load_def load = mps_dynamics_load_defaults();
-  load.lower[0] = 3.0, load.upper[0] = 30.0;
-  load.lower[1] = what == STRIP ? 2.0 : 29.0, load.upper[1] = INFINITY;
-  load.traction[1] = -1e4, load.traction[0] = 2e3;
-  load.signal[0] = signal;
-  TRY(mps_dynamics_add_load(dynamics, &load, &number));
-  mps_dynamics_load_def gravity = mps_dynamics_load_defaults();
-  gravity.kind = MPS_DYNAMICS_LOAD_BODY;
-  gravity.acceleration[1] = -9.81;
-  TRY(mps_dynamics_add_load(dynamics, &gravity, &number));
-  mps_signal_destroy(&signal);
-  return status;
-}
-
-static mps_status march(mps_dynamics *dynamics, bool short_run) {
-  mps_status status = mps_dynamics_step(dynamics, 3);
-  mps_snapshot *then = NULL;
-  if (short_run) return status;
-  TRY(mps_dynamics_snapshot(dynamics, &then));
-  TRY(mps_dynamics_step(dynamics, 20));
-  TRY(mps_dynamics_rollback(dynamics, then));
-  TRY(mps_dynamics_run(dynamics, mps_dynamics_time(dynamics) + 0.03, 7, NULL, NULL));
-  TRY(mps_dynamics_refresh(dynamics));
-  mps_snapshot_destroy(&then);
-  return status;
-}
-
-static mps_status keep(mps_particles *set, result *r) {
-  mps_status status = MPS_OK;
-  mps_view view;
-  r->count = mps_particles_count(set);
-  r->id = malloc((size_t)r->count * sizeof *r->id + 8);
-  TRY(mps_particles_view(set, "id", &view));
-  for (int64_t k = 0; status == MPS_OK && k < r->count; k++) r->id[k] = *mps_view_i64(&view, k, 0);
-  for (int f = 0; f < FIELDS; f++) {
-    r->value[f] = calloc((size_t)r->count * (size_t)fields[f].columns + 1, sizeof(double));
-    TRY(mps_particles_view(set, fields[f].name, &view));
-    for (int64_t k = 0; status == MPS_OK && k < r->count; k++)
-      for (int c = 0; c < fields[f].columns; c++)
-        r->value[f][k * fields[f].columns + c] = *mps_view_f64(&view, k, c);
-  }
-  return status;
-}
-
-static void drop(result *r) {
-  free(r->id);
-  for (int f = 0; f < FIELDS; f++) free(r->value[f]);
-}
-
-static mps_status compute(mps_context *own, mps_domain *domain, const scene *s, result *r) {
-  mps_particles *set = NULL;
-  mps_dynamics *dynamics = NULL;
-  int32_t base = -1;
-  mps_dynamics_def def = mps_dynamics_defaults();
-  def.domain = domain;
-  def.watch_damping = s->what == LAYERS;
-  def.integrator =
-      s->what == SCATTERED ? MPS_DYNAMICS_INTEGRATOR_LEAPFROG : MPS_DYNAMICS_INTEGRATOR_VERLET;
-  if (s->what == PERIODIC) def.period_x = 45.0;
-  if (s->what == STRIP) def.radius_ratio = 2.1;
-  mps_status status = make_set(own, s->what, &set);
-  if (domain) status = mps_domain_agree(domain, status);
-  TRY(mps_dynamics_create(own, set, &def, &dynamics));
-  if (status == MPS_OK) status = add_conditions(own, domain, dynamics, s->what, &base);
-  TRY(march(dynamics, s->short_run));
-  TRY(mps_dynamics_get_totals(dynamics, &r->totals));
-  TRY(mps_dynamics_get_reaction(dynamics, base, &r->reaction));
-  mps_dynamics_linear_limit limit = {0};
-  TRY(mps_dynamics_find_limit(dynamics, 0.0, &limit));
-  r->dt = mps_dynamics_dt(dynamics);
-  r->limit = limit.dt, r->omega = limit.omega;
-  r->pairs = mps_dynamics_pairs(dynamics);
-  TRY(keep(set, r));
-  mps_dynamics_destroy(&dynamics);
-  mps_particles_destroy(&set);
-  return status;
-}
 
 static void run_rank(void *user, team *t, int32_t rank) {
   scene *s = user;
@@ -216,7 +30,7 @@ static void run_rank(void *user, team *t, int32_t rank) {
   r->status = mps_context_create(&def, &own, NULL, 0);
   const mps_domain_def domain_def = team_domain_def(t, rank);
   if (r->status == MPS_OK) r->status = mps_domain_create(own, &domain_def, &domain);
-  if (r->status == MPS_OK) r->status = compute(own, domain, s, r);
+  if (r->status == MPS_OK) r->status = compute(own, domain, s->what, s->short_run, r);
   if (own) snprintf(r->message, sizeof r->message, "%s", mps_context_error(own)->message);
   mps_domain_destroy(&domain);
   mps_context_destroy(&own);
@@ -230,35 +44,13 @@ static void run_team(scene *s, int32_t size, double limit) {
   team_end(&t);
 }
 
-static void compare(const result *alone, const result *rank, int64_t *seen) {
-  mps_assert_near(rank->dt, alone->dt, 0.0);
-  mps_assert_near(rank->limit, alone->limit, 0.0);
-  mps_assert_near(rank->omega, alone->omega, 0.0);
-  assert_int_equal(rank->pairs, alone->pairs);
-  int64_t *at = malloc((size_t)alone->count * sizeof *at);
-  for (int64_t k = 0; k < alone->count; k++) at[alone->id[k]] = k;
-  for (int64_t k = 0; k < rank->count; k++)
-    for (int f = 0; f < FIELDS; f++) {
-      const size_t bytes = (size_t)fields[f].columns * sizeof(double);
-      seen[rank->id[k]] = 1;
-      const double *a = alone->value[f] + at[rank->id[k]] * fields[f].columns;
-      const double *b = rank->value[f] + k * fields[f].columns;
-      if (memcmp(a, b, bytes) != 0)
-        fail_msg("%s of particle %lld: %.17g, expected %.17g", fields[f].name,
-                 (long long)rank->id[k], b[0], a[0]);
-    }
-  free(at);
-  assert_memory_equal(&rank->totals, &alone->totals, sizeof alone->totals);
-  assert_memory_equal(&rank->reaction, &alone->reaction, sizeof alone->reaction);
-}
-
 static void compare_scene(int what) {
   static const struct {
     int32_t ranks, threads;
   } teams[] = {{1, 1}, {2, 1}, {3, 2}, {4, 1}, {7, 3}, {15, 1}};
   scene alone = {.what = what, .threads = 1};
   mps_context *serial = test_context(MPS_EXECUTOR_SERIAL, 1);
-  mps_assert_ok(serial, compute(serial, NULL, &alone, &alone.rank[0]));
+  mps_assert_ok(serial, compute(serial, NULL, what, false, &alone.rank[0]));
   mps_context_destroy(&serial);
   for (size_t k = 0; k < sizeof teams / sizeof *teams; k++) {
     if (what != LAYERS && (teams[k].ranks == 1 || teams[k].ranks == 4)) continue;
@@ -282,6 +74,74 @@ static void test_layers(void **state) { (void)state, compare_scene(LAYERS); }
 static void test_scattered(void **state) { (void)state, compare_scene(SCATTERED); }
 static void test_periodic(void **state) { (void)state, compare_scene(PERIODIC); }
 static void test_strip(void **state) { (void)state, compare_scene(STRIP); }
+
+/* ---- cut in two -------------------------------------------------------------------------------
+ */
+
+#define CHECKPOINT "test_domain_dynamics.h5"
+
+typedef struct cut_run {
+  int what, halves;
+  result rank[TEAM_MOST];
+} cut_run;
+
+static void run_half(void *user, team *t, int32_t rank) {
+  cut_run *c = user;
+  result *r = &c->rank[rank];
+  mps_domain *domain = NULL;
+  mps_context *own = team_context(MPS_EXECUTOR_SERIAL, 1);
+  const mps_domain_def def = team_domain_def(t, rank);
+  r->status = mps_domain_create(own, &def, &domain);
+  if (r->status == MPS_OK)
+    r->status = compute_halves(own, domain, c->what, c->halves, CHECKPOINT, r);
+  snprintf(r->message, sizeof r->message, "%s", mps_context_error(own)->message);
+  mps_domain_destroy(&domain);
+  mps_context_destroy(&own);
+}
+
+static void run_halves(cut_run *c, int32_t ranks) {
+  team t;
+  team_begin(&t, ranks);
+  team_run(&t, run_half, c);
+  team_end(&t);
+  for (int32_t r = 0; r < ranks; r++)
+    if (c->rank[r].status != MPS_OK) fail_msg("rank %d: %s", (int)r, c->rank[r].message);
+}
+
+static void drop_halves(cut_run *c, int32_t ranks) {
+  for (int32_t r = 0; r < ranks; r++) drop(&c->rank[r]);
+}
+
+/* Written on 4 ranks, a run goes on with the bits of one that was not cut: on 3, and on one without
+ * a domain; written without a domain, on 3. */
+static void compare_cut(int what) {
+  if (!mps_library_has(MPS_FEATURE_HDF5)) skip();
+  result alone = {0}, on = {0};
+  mps_context *own = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_assert_ok(own, compute_halves(own, NULL, what, FIRST_HALF | SECOND_HALF, NULL, &alone));
+  int64_t *seen = calloc((size_t)alone.count, sizeof *seen);
+  cut_run first = {.what = what, .halves = FIRST_HALF};
+  run_halves(&first, 4);
+  drop_halves(&first, 4);
+  mps_assert_ok(own, compute_halves(own, NULL, what, SECOND_HALF, CHECKPOINT, &on));
+  compare(&alone, &on, seen);
+  drop(&on);
+  for (int round = 0; round < 2; round++) {
+    cut_run second = {.what = what, .halves = SECOND_HALF};
+    run_halves(&second, 3);
+    for (int32_t r = 0; r < 3; r++) compare(&alone, &second.rank[r], seen);
+    drop_halves(&second, 3);
+    mps_assert_ok(own, compute_halves(own, NULL, what, FIRST_HALF, CHECKPOINT, &on));
+    drop(&on);
+  }
+  free(seen);
+  drop(&alone);
+  remove(CHECKPOINT);
+  mps_context_destroy(&own);
+}
+
+static void test_cut_layers(void **state) { (void)state, compare_cut(LAYERS); }
+static void test_cut_scattered(void **state) { (void)state, compare_cut(SCATTERED); }
 
 /* ---- what goes wrong on one rank --------------------------------------------------------------
  */
@@ -445,7 +305,7 @@ static void run_lost_rank(void *user, team *t, int32_t rank) {
   mps_context *own = test_allocator_context(&s->allocator[rank]);
   const mps_domain_def def = team_domain_def(t, rank);
   r->status = mps_domain_create(own, &def, &domain);
-  if (r->status == MPS_OK) r->status = compute(own, domain, s, r);
+  if (r->status == MPS_OK) r->status = compute(own, domain, s->what, s->short_run, r);
   mps_domain_destroy(&domain);
   mps_context_destroy(&own);
 }
@@ -472,6 +332,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_layers),         cmocka_unit_test(test_scattered),
       cmocka_unit_test(test_periodic),       cmocka_unit_test(test_strip),
+      cmocka_unit_test(test_cut_layers),     cmocka_unit_test(test_cut_scattered),
       cmocka_unit_test(test_refused_memory), cmocka_unit_test(test_troubles),
       cmocka_unit_test(test_lost_partner),
   };

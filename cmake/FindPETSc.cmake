@@ -1,0 +1,17 @@
+# Finds PETSc (3.15 or newer, real numbers) with the MPI that it was built with, and defines the target
+# PETSc::PETSc. On Debian and Ubuntu: libpetsc-real-dev.
+find_package(PkgConfig QUIET)
+find_package(MPI QUIET COMPONENTS C)
+if(PKG_CONFIG_FOUND)
+  pkg_check_modules(PETSC QUIET IMPORTED_TARGET PETSc)
+endif()
+if(PETSC_FOUND AND MPI_C_FOUND)
+  set(PETSc_LIBRARY PkgConfig::PETSC)
+  set(PETSc_VERSION ${PETSC_VERSION})
+endif()
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(PETSc REQUIRED_VARS PETSc_LIBRARY VERSION_VAR PETSc_VERSION)
+if(PETSc_FOUND AND NOT TARGET PETSc::PETSc)
+  add_library(PETSc::PETSc INTERFACE IMPORTED)
+  target_link_libraries(PETSc::PETSc INTERFACE PkgConfig::PETSC MPI::MPI_C)
+endif()

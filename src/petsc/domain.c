@@ -1,0 +1,278 @@
+/* domain.c - a transport for domains: MPI's reductions, PETSc's rendezvous and star forests.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include <petscsf.h>
+
+#include <mps/petsc.h>
+
+#include <stdbool.h>
+#include <stdlib.h>
+
+#define TAG 7351
+#define PIECE (1 << 30) /* bytes of one message of MPI, whose counts are int */
+
+typedef struct transport {
+  MPI_Comm comm;
+} transport;
+
+/* ---- guest of the program -----------------------------------------------------------------------
+ * The one state of the process: MPI and PETSc exist once in it. */
+
+static struct {
+  int domains;
+  bool began_mpi, began_petsc;
+} guest;
+
+/* PETSc's errors come back as codes and are not printed. */
+static PetscErrorCode quiet(MPI_Comm comm, int line, const char *function, const char *file,
+                            PetscErrorCode code, PetscErrorType type, const char *message,
+                            void *context) {
+  (void)comm, (void)line, (void)function, (void)file, (void)type, (void)message, (void)context;
+  return code;
+}
+
+#define STATUS(call) ((call) == 0 ? MPS_OK : MPS_ERROR_IO)
+
+static mps_status enter(void) {
+  PetscBool petsc = PETSC_FALSE;
+  int mpi = 0, ended = 0;
+  if (MPI_Initialized(&mpi) != 0 || MPI_Finalized(&ended) != 0 || ended) return MPS_ERROR_STATE;
+  if (!mpi) {
+    int provided;
+    if (MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &provided) != 0) return MPS_ERROR_IO;
+    guest.began_mpi = true;
+  }
+  if (PetscInitialized(&petsc) != 0) return MPS_ERROR_IO;
+  if (!petsc) {
+    static char name[] = "libmps", option[] = "-no_signal_handler";
+    char *words[] = {name, option, NULL}, **arguments = words;
+    int count = 2;
+    if (PetscInitialize(&count, &arguments, NULL, NULL) != 0) return MPS_ERROR_IO;
+    guest.began_petsc = true;
+  }
+  if (PetscPushErrorHandler(quiet, NULL) != 0) return MPS_ERROR_IO;
+  guest.domains++;
+  return MPS_OK;
+}
+
+static void leave(void) {
+  (void)PetscPopErrorHandler();
+  if (--guest.domains > 0) return;
+  if (guest.began_petsc) (void)PetscFinalize();
+  if (guest.began_mpi) (void)MPI_Finalize();
+  guest.began_petsc = guest.began_mpi = false;
+}
+
+/* ---- callbacks --------------------------------------------------------------------------------
+ */
+
+static mps_status reduce_max(void *user, int32_t count, double *values) {
+  const transport *t = user;
+  return STATUS(MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, MPI_MAX, t->comm));
+}
+
+static mps_status reduce_sum(void *user, int32_t count, int64_t *values) {
+  const transport *t = user;
+  return STATUS(MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_INT64_T, MPI_SUM, t->comm));
+}
+
+static int pieces(int64_t bytes) { return (int)((bytes + PIECE - 1) / PIECE); }
+
+static int piece_size(int64_t bytes, int k) {
+  const int64_t left = bytes - (int64_t)k * PIECE;
+  return (int)(left < PIECE ? left : PIECE);
+}
+
+/* Messages as they are under way. */
+typedef struct post {
+  int32_t incoming;
+  PetscMPIInt *from;
+  int64_t *bytes;
+  char **room;
+  MPI_Request *request;
+  int requests, error;
+  bool refused;
+} post;
+
+static void receive(const transport *t, post *p, mps_domain_room_fn room, void *room_user) {
+  for (int32_t k = 0; k < p->incoming; k++) {
+    p->room[k] = room(room_user, p->from[k], p->bytes[k]);
+    if (!p->room[k]) { /* it must be received all the same */
+      p->refused = true;
+      p->room[k] = malloc((size_t)p->bytes[k] + 1);
+    }
+    for (int i = 0; i < pieces(p->bytes[k]) && p->error == 0; i++)
+      p->error = MPI_Irecv(p->room[k] + (int64_t)i * PIECE, piece_size(p->bytes[k], i), MPI_BYTE,
+                           p->from[k], TAG, t->comm, &p->request[p->requests++]);
+  }
+}
+
+static void send_all(const transport *t, post *p, int32_t count, const mps_domain_message *m) {
+  for (int32_t k = 0; k < count; k++)
+    for (int i = 0; i < pieces(m[k].bytes) && p->error == 0; i++)
+      p->error = MPI_Isend((const char *)m[k].data + (int64_t)i * PIECE, piece_size(m[k].bytes, i),
+                           MPI_BYTE, m[k].rank, TAG, t->comm, &p->request[p->requests++]);
+}
+
+static mps_status exchange(const transport *t, post *p, int32_t count, const mps_domain_message *m,
+                           mps_domain_room_fn room, void *room_user) {
+  int all = 0;
+  for (int32_t k = 0; k < p->incoming; k++) all += pieces(p->bytes[k]);
+  for (int32_t k = 0; k < count; k++) all += pieces(m[k].bytes);
+  p->room = calloc((size_t)p->incoming + 1, sizeof *p->room);
+  p->request = calloc((size_t)all + 1, sizeof *p->request);
+  if (!p->room || !p->request) return MPS_ERROR_IO; /* the messages cannot be received any more */
+  receive(t, p, room, room_user);
+  send_all(t, p, count, m);
+  if (p->error == 0) p->error = MPI_Waitall(p->requests, p->request, MPI_STATUSES_IGNORE);
+  return p->error ? MPS_ERROR_IO : p->refused ? MPS_ERROR_MEMORY : MPS_OK;
+}
+
+static mps_status rendezvous(void *user, int32_t count, const mps_domain_message *messages,
+                             mps_domain_room_fn room, void *room_user) {
+  const transport *t = user;
+  post p = {.incoming = 0};
+  PetscMPIInt incoming = 0;
+  void *bytes = NULL;
+  PetscMPIInt *to = malloc(((size_t)count + 1) * sizeof *to);
+  int64_t *size = malloc(((size_t)count + 1) * sizeof *size);
+  mps_status status = to && size ? MPS_OK : MPS_ERROR_IO;
+  for (int32_t k = 0; status == MPS_OK && k < count; k++)
+    to[k] = messages[k].rank, size[k] = messages[k].bytes;
+  if (status == MPS_OK)
+    status = STATUS(PetscCommBuildTwoSided(t->comm, 1, MPI_INT64_T, count, to, size, &incoming,
+                                           &p.from, &bytes));
+  p.incoming = incoming, p.bytes = bytes;
+  if (status == MPS_OK) status = exchange(t, &p, count, messages, room, room_user);
+  free(p.room);
+  free(p.request);
+  free(to);
+  free(size);
+  (void)PetscFree(p.from);
+  (void)PetscFree(bytes);
+  return status;
+}
+
+/* ---- stars ------------------------------------------------------------------------------------
+ */
+
+typedef struct star {
+  PetscSF forest;
+  MPI_Datatype item;
+  int32_t item_bytes;
+  const void *own;
+  void *guests;
+} star;
+
+static void star_destroy(void *user, void *handle) {
+  star *s = handle;
+  (void)user;
+  if (s->item_bytes > 0) (void)MPI_Type_free(&s->item);
+  (void)PetscSFDestroy(&s->forest);
+  free(s);
+}
+
+static mps_status star_create(void *user, int64_t own, int64_t guests, const int32_t *rank,
+                              const int64_t *index, void **out) {
+  const transport *t = user;
+  star *s = calloc(1, sizeof *s);
+  PetscSFNode *node = malloc(((size_t)guests + 1) * sizeof *node);
+  bool good = s && node && own <= PETSC_MAX_INT && guests <= PETSC_MAX_INT;
+  for (int64_t k = 0; good && k < guests; k++) {
+    node[k].rank = rank[k];
+    node[k].index = (PetscInt)index[k];
+  }
+  good = good && PetscSFCreate(t->comm, &s->forest) == 0 &&
+         PetscSFSetGraph(s->forest, (PetscInt)own, (PetscInt)guests, NULL, PETSC_OWN_POINTER, node,
+                         PETSC_COPY_VALUES) == 0 &&
+         PetscSFSetUp(s->forest) == 0;
+  free(node);
+  if (!good && s) star_destroy(user, s);
+  *out = good ? s : NULL;
+  return good ? MPS_OK : MPS_ERROR_IO;
+}
+
+static mps_status star_begin(void *user, void *handle, int32_t item_bytes, const void *own,
+                             void *guests) {
+  star *s = handle;
+  (void)user;
+  if (item_bytes != s->item_bytes) {
+    const int size = (int)sizeof(double);
+    const bool doubles = item_bytes % size == 0;
+    if (s->item_bytes > 0) (void)MPI_Type_free(&s->item);
+    s->item_bytes = 0;
+    if (MPI_Type_contiguous(doubles ? item_bytes / size : item_bytes,
+                            doubles ? MPI_DOUBLE : MPI_BYTE, &s->item) != 0 ||
+        MPI_Type_commit(&s->item) != 0)
+      return MPS_ERROR_IO;
+    s->item_bytes = item_bytes;
+  }
+  s->own = own, s->guests = guests;
+  return STATUS(PetscSFBcastBegin(s->forest, s->item, own, guests, MPI_REPLACE));
+}
+
+static mps_status star_end(void *user, void *handle) {
+  star *s = handle;
+  (void)user;
+  return STATUS(PetscSFBcastEnd(s->forest, s->item, s->own, s->guests, MPI_REPLACE));
+}
+
+/* ---- life -------------------------------------------------------------------------------------
+ */
+
+static void destroy(void *user) {
+  transport *t = user;
+  (void)MPI_Comm_free(&t->comm);
+  free(t);
+  leave();
+}
+
+static mps_status refuse(mps_status status) {
+  leave();
+  return status;
+}
+
+static mps_status create(mps_context *context, MPI_Comm communicator, mps_domain **out) {
+  transport *t = calloc(1, sizeof *t);
+  int rank = 0, size = 0;
+  if (!t) return refuse(MPS_ERROR_MEMORY);
+  if (MPI_Comm_dup(communicator, &t->comm) != 0) {
+    free(t);
+    return refuse(MPS_ERROR_IO);
+  }
+  (void)MPI_Comm_set_errhandler(t->comm, MPI_ERRORS_RETURN);
+  (void)MPI_Comm_rank(t->comm, &rank);
+  (void)MPI_Comm_size(t->comm, &size);
+  mps_domain_def def = mps_domain_defaults();
+  def.rank = rank;
+  def.size = size;
+  def.user = t;
+  def.rendezvous = rendezvous;
+  def.star_create = star_create;
+  def.star_begin = star_begin;
+  def.star_end = star_end;
+  def.star_destroy = star_destroy;
+  def.reduce_max = reduce_max;
+  def.reduce_sum = reduce_sum;
+  def.destroy = destroy;
+  const mps_status status = mps_domain_create(context, &def, out);
+  if (status != MPS_OK) destroy(t);
+  return status;
+}
+
+mps_status mps_petsc_domain_create_c2f(mps_context *context, int32_t communicator,
+                                       mps_domain **out) {
+  int running = 0, ended = 0;
+  if (!context || !out) return MPS_ERROR_ARGUMENT;
+  *out = NULL;
+  if (MPI_Initialized(&running) != 0 || MPI_Finalized(&ended) != 0 || !running || ended)
+    return MPS_ERROR_STATE;
+  const mps_status status = enter();
+  return status == MPS_OK ? create(context, MPI_Comm_f2c((MPI_Fint)communicator), out) : status;
+}
+
+mps_status mps_petsc_domain_create_world(mps_context *context, mps_domain **out) {
+  if (!context || !out) return MPS_ERROR_ARGUMENT;
+  *out = NULL;
+  const mps_status status = enter();
+  return status == MPS_OK ? create(context, MPI_COMM_WORLD, out) : status;
+}

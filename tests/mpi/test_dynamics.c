@@ -1,0 +1,68 @@
+/* test_dynamics.c - explicit dynamics on the ranks that mpirun starts: each rank computes the body
+ * alone, then all of them together, and compares its share bit for bit. SPDX-License-Identifier:
+ * BSD-3-Clause */
+#include "dynamics_scene.h"
+
+#include <mps/petsc.h>
+
+static mps_context *own;
+static mps_domain *domain;
+
+static void compare_scene(void **state) {
+  const int what = *(const int *)*state;
+  result alone = {0}, share = {0};
+  mps_assert_ok(own, compute(own, NULL, what, false, &alone));
+  mps_assert_ok(own, compute(own, domain, what, false, &share));
+  int64_t *seen = calloc((size_t)alone.count, sizeof *seen);
+  compare(&alone, &share, seen);
+  free(seen);
+  drop(&alone);
+  drop(&share);
+}
+
+/* A second domain in the same process; an error of the last rank is an error of all. */
+static void test_errors(void **state) {
+  (void)state;
+  mps_domain *second = NULL;
+  mps_assert_ok(own, mps_petsc_domain_create_world(own, &second));
+  const int32_t rank = mps_domain_rank(second), ranks = mps_domain_size(second);
+  mps_particles_def def = mps_particles_defaults();
+  mps_particles *set = NULL, *whole = NULL;
+  def.spacing = rank == ranks - 1 ? -1.0 : 1.0;
+  const mps_status status = mps_domain_agree(second, mps_particles_create(own, &def, &set));
+  assert_int_equal(status, MPS_ERROR_ARGUMENT);
+  assert_non_null(strstr(mps_context_error(own)->message, "spacing is -1"));
+  mps_particles_destroy(&set);
+  def.spacing = 1.0;
+  mps_assert_ok(own, mps_particles_create(own, &def, &set));
+  const double lo[2] = {0.0, 0.0}, hi[2] = {300.0, 200.0};
+  mps_assert_ok(own, mps_particles_fill_box(set, lo, hi, NULL));
+  mps_assert_ok(own, mps_domain_gather(second, set, &whole));
+  assert_int_equal(mps_particles_count(whole), rank == 0 ? 60000 : 0);
+  mps_particles_destroy(&whole);
+  mps_particles_destroy(&set);
+  mps_domain_destroy(&second);
+  assert_int_equal(mps_petsc_domain_create_world(NULL, &second), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_petsc_domain_create_world(own, NULL), MPS_ERROR_ARGUMENT);
+}
+
+int main(void) {
+  static int scene[SCENES] = {LAYERS, SCATTERED, PERIODIC, STRIP};
+  own = test_context(MPS_EXECUTOR_SERIAL, 1);
+  const mps_status status = mps_petsc_domain_create_world(own, &domain);
+  if (status != MPS_OK) {
+    fprintf(stderr, "no domain: %s\n", mps_status_text(status));
+    return 1;
+  }
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test_prestate(compare_scene, &scene[0]),
+      cmocka_unit_test_prestate(compare_scene, &scene[1]),
+      cmocka_unit_test_prestate(compare_scene, &scene[2]),
+      cmocka_unit_test_prestate(compare_scene, &scene[3]),
+      cmocka_unit_test(test_errors),
+  };
+  const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+  mps_domain_destroy(&domain);
+  mps_context_destroy(&own);
+  return failed;
+}
