@@ -15,7 +15,7 @@
  * `free_surface`.
  *
  * Between steps particles may be edited, added (at rest, at least .3 l0 inside of all walls) and
- * removed (not the last one); what they bring or take of energy is no work.
+ * removed (not the last one), and pass open sides; what they bring or take of energy is no work.
  *
  * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
  * its results are the same bit for bit for every number of threads.
@@ -75,9 +75,12 @@ static inline mps_status mps_fluid_get_def(const mps_fluid *fluid, mps_fluid_def
 /* ---- boundaries ------------------------------------------------------------------------------ */
 
 typedef enum mps_fluid_boundary_kind {
-  MPS_FLUID_BOUNDARY_SLIP = 0,   /* no flow across, no shear */
-  MPS_FLUID_BOUNDARY_NO_SLIP = 1 /* no flow across; the fluid's viscosity holds it at the wall,
-                                    which does not move along itself */
+  MPS_FLUID_BOUNDARY_SLIP = 0,    /* no flow across, no shear */
+  MPS_FLUID_BOUNDARY_NO_SLIP = 1, /* no flow across; the fluid's viscosity holds it at the wall,
+                                     which does not move along itself */
+  MPS_FLUID_BOUNDARY_OPEN = 2     /* no wall: the end of a step removes what has passed it, and its
+                                     reaction counts that; the pressure there is the air's, as where
+                                     water falls over an edge. It does not move */
 } mps_fluid_boundary_kind;
 
 #define MPS_FLUID_MAX_BOUNDARIES 16

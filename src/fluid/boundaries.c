@@ -15,9 +15,13 @@ mps_status mps_fluid_boundary_def_init(mps_fluid_boundary_def *def, size_t size)
 static mps_status check_boundary(mps_fluid *f, const char *function,
                                  const mps_fluid_boundary_def *d) {
   const double length = hypot(d->normal[0], d->normal[1]);
-  if (d->kind != MPS_FLUID_BOUNDARY_SLIP && d->kind != MPS_FLUID_BOUNDARY_NO_SLIP)
+  if (d->kind < MPS_FLUID_BOUNDARY_SLIP || d->kind > MPS_FLUID_BOUNDARY_OPEN)
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                     "kind of the boundary is %d, allowed are 0 (slip) and 1 (no slip)", d->kind);
+                     "kind of the boundary is %d, allowed are 0 (slip), 1 (no slip) and 2 (open)",
+                     d->kind);
+  if (d->kind == MPS_FLUID_BOUNDARY_OPEN && (d->signal || d->node_count > 0))
+    return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                     "the open boundary has a signal or nodes: an open side does not move");
   if (!(length > 1e-150 && length < 1e150) || d->normal[2] != 0.0)
     return mpsi_fail(
         f->context, function, MPS_ERROR_ARGUMENT,
@@ -98,10 +102,11 @@ static mps_status make_wall(mps_fluid *f, const char *function,
   if (status == MPS_OK) status = check_boundary(f, function, &def);
   if (status != MPS_OK) return status;
   const double length = hypot(def.normal[0], def.normal[1]);
-  mpsi_fluid_wall w = {.used = true, .kind = def.kind, .factor = def.factor};
+  const bool open = def.kind == MPS_FLUID_BOUNDARY_OPEN;
+  mpsi_fluid_wall w = {.used = !open, .open = open, .kind = def.kind, .factor = def.factor};
   for (int c = 0; c < 2; c++) w.at[c] = def.point[c], w.normal[c] = def.normal[c] / length;
   status = mpsi_fluid_make_motion(f, function, &w, def.node_count, def.nodes);
-  if (status == MPS_OK) status = check_place(f, function, &w, number);
+  if (status == MPS_OK && !open) status = check_place(f, function, &w, number);
   if (status != MPS_OK) {
     mpsi_fluid_drop_wall(f, &w);
     return status;
@@ -120,7 +125,7 @@ mps_status mps_fluid_add_boundary(mps_fluid *f, const mps_fluid_boundary_def *de
   mps_status status = mpsi_fluid_ready(f, __func__);
   if (status != MPS_OK) return status;
   int32_t b = 0;
-  while (b < MPS_FLUID_MAX_BOUNDARIES && f->wall[b].used) b++;
+  while (MPSI_FLUID_IS_BOUNDARY(f, b)) b++;
   if (b == MPS_FLUID_MAX_BOUNDARIES)
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                      "the fluid has %d boundaries, the most there can be", b);
@@ -136,7 +141,7 @@ mps_status mps_fluid_add_boundary(mps_fluid *f, const mps_fluid_boundary_def *de
 static mps_status check_number(mps_fluid *f, const char *function, int32_t number) {
   const mps_status status = mpsi_fluid_ready(f, function);
   if (status != MPS_OK) return status;
-  if (number < 0 || number >= MPS_FLUID_MAX_BOUNDARIES || !f->wall[number].used)
+  if (!MPSI_FLUID_IS_BOUNDARY(f, number))
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "the fluid has no boundary of number %d", number);
   return MPS_OK;
@@ -155,6 +160,8 @@ mps_status mps_fluid_set_boundary(mps_fluid *f, int32_t number, const mps_fluid_
   for (int c = 0; c < 2; c++) wall.impulse[c] = old->impulse[c];
   wall.moment_impulse = old->moment_impulse;
   wall.work = old->work;
+  wall.removed = old->removed;
+  wall.removed_mass = old->removed_mass;
   mpsi_fluid_drop_wall(f, old);
   *old = wall;
   f->stale = true;

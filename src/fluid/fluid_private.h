@@ -46,7 +46,8 @@ typedef struct mpsi_fluid_load {
 
 /* A wall: a boundary of the caller, or the face of a body. */
 typedef struct mpsi_fluid_wall {
-  bool used;
+  bool used;               /* as a wall */
+  bool open;               /* an open side instead */
   int32_t of_body;         /* 0: a boundary; number of the body + 1 */
   double from, to, length; /* of a face, m along it: it ends there, or goes on behind a boundary */
   bool given, placed;      /* the caller wants next.u, and next.s */
@@ -62,6 +63,8 @@ typedef struct mpsi_fluid_wall {
   double *motion;               /* the memory of all these */
   mpsi_fluid_load load, before; /* of the last step or solution; before the step being made */
   double impulse[2], moment_impulse, work;
+  int64_t removed; /* particles through an open side */
+  double removed_mass;
 } mpsi_fluid_wall;
 
 /* Where a body is and how it moves. */
@@ -79,6 +82,11 @@ typedef struct mpsi_fluid_body {
   mpsi_load water[MPS_BODY_MAX_PARTS]; /* forces of the last solution */
   int64_t wetted[MPS_BODY_MAX_PARTS];
 } mpsi_fluid_body;
+
+/* Whether the caller has made boundary `number`. */
+#define MPSI_FLUID_IS_BOUNDARY(f, number)                                                          \
+  ((number) >= 0 && (number) < MPS_FLUID_MAX_BOUNDARIES &&                                         \
+   ((f)->wall[number].used || (f)->wall[number].open))
 
 #define MPSI_FLUID_WALLS 32 /* boundaries, then faces */
 #define MPSI_FLUID_BODIES 4
@@ -314,6 +322,7 @@ void mpsi_fluid_classical_rows(mps_fluid *fluid, int64_t begin, int64_t end, int
 void mpsi_fluid_classical_solution(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
 void mpsi_fluid_classical_accelerate(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
 /* particles.c */
+void mpsi_fluid_let_go(mps_fluid *fluid); /* what has passed an open side, at the end of a step */
 #define MPSI_FLUID_MOST_PARTICLES (INT32_MAX / 4)
 bool mpsi_fluid_reserve(mps_fluid *fluid, int64_t count);
 void mpsi_fluid_find_speed(mps_fluid *fluid);

@@ -114,6 +114,57 @@ mps_status mpsi_fluid_remove(void *self, const char *function, int64_t count, co
   return MPS_OK;
 }
 
+/* ---- open sides ------------------------------------------------------------------------------ */
+
+/* The open side that x has passed, or -1. */
+static int passed(const mps_fluid *f, uint32_t open, double x, double y) {
+  for (int b = 0; open >> b; b++) {
+    const mpsi_fluid_wall *w = &f->wall[b];
+    if ((open >> b & 1) && (x - w->at[0]) * w->normal[0] + (y - w->at[1]) * w->normal[1] < 0.0)
+      return b;
+  }
+  return -1;
+}
+
+/* What a particle carries out is taken from those that stay, as by an impulse. */
+static void carry_out(const mps_fluid *f, mpsi_fluid_wall *w, const double *x, const double *u) {
+  const double mass = f->def.density * f->l0 * f->l0 * f->def.measure;
+  const double spin = mass * (x[0] * u[1] - x[1] * u[0]);
+  for (int c = 0; c < 2; c++) {
+    w->load.force[c] -= mass * u[c] / f->dt;
+    w->impulse[c] -= mass * u[c];
+  }
+  w->load.moment -= spin / f->dt;
+  w->moment_impulse -= spin;
+  w->load.wetted++;
+  w->removed++;
+  w->removed_mass += mass;
+}
+
+void mpsi_fluid_let_go(mps_fluid *f) {
+  uint8_t *const gone = f->zone; /* free between steps; found again when it is asked for */
+  uint32_t open = 0;
+  int64_t count = 0;
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+    if (f->wall[b].open) open |= UINT32_C(1) << b, f->wall[b].load = (mpsi_fluid_load){0};
+  }
+  if (!open) return;
+  for (int64_t i = 0; i < f->count; i++) {
+    const double x[2] = {f->x[0][i], f->x[1][i]}, u[2] = {f->u[0][i], f->u[1][i]};
+    const int b = passed(f, open, x[0], x[1]);
+    gone[i] = b >= 0 && count < f->count - 1; /* a fluid needs one */
+    if (!gone[i]) continue;
+    carry_out(f, &f->wall[b], x, u);
+    count++;
+  }
+  f->stale = true;
+  if (count == 0) return;
+  double kinetic;
+  f->energy_before = mpsi_fluid_energy(f, &kinetic);
+  f->changing = true;
+  mpsi_particles_take_out(f->particles, gone);
+}
+
 /* What came or went with the particles is no work. */
 void mpsi_fluid_renew(void *self) {
   mps_fluid *f = self;

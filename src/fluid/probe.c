@@ -201,10 +201,12 @@ static mps_status check_wall(mps_fluid *f, const char *function, int32_t number)
 mps_status mps_fluid_get_reaction_sized(mps_fluid *f, int32_t number, mps_reaction *out,
                                         size_t size) {
   if (!f) return MPS_ERROR_ARGUMENT;
-  const mps_status status = check_wall(f, "mps_fluid_get_reaction", number);
-  if (status != MPS_OK) return status;
+  if (!MPSI_FLUID_IS_BOUNDARY(f, number)) return check_wall(f, "mps_fluid_get_reaction", number);
   const mpsi_fluid_wall *w = &f->wall[number];
-  mps_reaction reaction = {.count = w->load.wetted, .work = w->work};
+  mps_reaction reaction = {.count = w->load.wetted,
+                           .work = w->work,
+                           .removed = w->removed,
+                           .removed_mass = w->removed_mass};
   for (int c = 0; c < 2; c++)
     reaction.force[c] = w->load.force[c], reaction.impulse[c] = w->impulse[c];
   reaction.moment[2] = w->load.moment;

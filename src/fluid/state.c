@@ -24,6 +24,8 @@ static void list_wall(mpsi_state *s, mpsi_fluid_wall *w) {
   mpsi_state_f64(s, "moment_impulse", &w->moment_impulse, 1);
   mpsi_state_f64(s, "work", &w->work, 1);
   mpsi_state_i64(s, "wetted", &w->load.wetted, 1);
+  mpsi_state_i64(s, "removed", &w->removed, 1);
+  mpsi_state_f64(s, "removed_mass", &w->removed_mass, 1);
 }
 
 static void list_state(mpsi_state *s, void *solver) {

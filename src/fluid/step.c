@@ -194,6 +194,7 @@ static mps_status keep(mps_fluid *f, const char *function) {
   store_cloud(f);
   f->time += f->dt;
   f->steps++;
+  mpsi_fluid_let_go(f);
   if (f->steps % SORT_EVERY != 0) return MPS_OK;
   f->stale = true;
   return mpsi_fluid_sort(f, function);

@@ -85,7 +85,7 @@ static void bad_boundaries_are_refused(void **state) {
                    "must be at least 0.3 l0");
   def.point[1] = NAN;
   mps_assert_fails(context, mps_fluid_add_boundary(f, &def, NULL), MPS_ERROR_ARGUMENT, "finite");
-  def.point[1] = 0.0, def.kind = 2;
+  def.point[1] = 0.0, def.kind = 3;
   mps_assert_fails(context, mps_fluid_add_boundary(f, &def, NULL), MPS_ERROR_ARGUMENT, "kind");
   def.kind = MPS_FLUID_BOUNDARY_SLIP;
   mps_assert_ok(context, mps_fluid_add_boundary(f, &def, NULL));
@@ -566,6 +566,72 @@ static void a_run_ends_with_even_steps(void **state) {
   tank_free(&t);
 }
 
+/* Water that flows off the end of its bed is taken out and counted, and its momentum too; a
+ * rollback brings it back. */
+static void water_leaves_by_an_open_side(void **state) {
+  (void)state;
+  mps_particles_def set = mps_particles_defaults();
+  mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+  tank t = {NULL, NULL};
+  int32_t number = -1;
+  set.spacing = 0.02;
+  mps_assert_ok(context, mps_particles_create(context, &set, &t.water));
+  tank_fill(context, t.water, 0.3, 0.2, NULL, NULL);
+  mps_assert_ok(context, mps_fluid_create(context, t.water, NULL, &t.fluid));
+  tank_wall(context, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_wall(context, t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+  def.kind = MPS_FLUID_BOUNDARY_OPEN, def.point[0] = 0.4, def.normal[0] = -1.0;
+  mps_assert_ok(context, mps_fluid_add_boundary(t.fluid, &def, &number));
+  assert_int_equal(number, 2);
+  const double mass = 1000.0 * 0.02 * 0.02;
+  mps_snapshot *before = NULL;
+  mps_reaction r = {.removed = 0};
+  double x[96], p[32];
+  int64_t count = 0;
+  while (r.removed < 40) {
+    mps_totals sum;
+    if (r.removed < 10) mps_snapshot_destroy(&before);
+    if (!before) mps_assert_ok(context, mps_fluid_snapshot(t.fluid, &before));
+    mps_assert_ok(context, mps_fluid_step(t.fluid, 5));
+    mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, number, &r));
+    mps_assert_ok(context, mps_fluid_get_totals(t.fluid, &sum));
+    assert_int_equal(mps_particles_count(t.water) + r.removed, 150);
+    mps_assert_near(sum.mass + r.removed_mass, 150.0 * mass, 1e-9);
+    assert_true(mps_fluid_time(t.fluid) < 1.0);
+    /* what has gone took its momentum along x; what is left got the wall's */
+    mps_reaction wall;
+    mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, 1, &wall));
+    mps_assert_near(sum.linear[0], wall.impulse[0] + r.impulse[0], 0.05 * wall.impulse[0]);
+    mps_assert_ok(context, mps_fluid_get_wall(t.fluid, 0, 32, x, p, &count));
+    assert_true(count > 5 && count <= 23);
+    for (int64_t k = 0; k < count; k++) assert_true(x[3 * k] < 0.46);
+  }
+  const int64_t left = mps_particles_count(t.water);
+  mps_totals first, again;
+  mps_assert_ok(context, mps_fluid_get_totals(t.fluid, &first));
+  const int64_t steps = mps_fluid_steps(t.fluid);
+  mps_assert_ok(context, mps_fluid_rollback(t.fluid, before));
+  assert_true(mps_particles_count(t.water) > left);
+  mps_assert_ok(context, mps_fluid_step(t.fluid, steps - mps_fluid_steps(t.fluid)));
+  mps_assert_ok(context, mps_fluid_get_totals(t.fluid, &again));
+  assert_memory_equal(&first, &again, sizeof first);
+  mps_snapshot_destroy(&before);
+  /* It is no wall, does not move, and becomes a wall again only where nobody is near. */
+  mps_assert_fails(context, mps_fluid_get_wall(t.fluid, number, 0, NULL, NULL, &count),
+                   MPS_ERROR_ARGUMENT, "number 2");
+  def.nodes = x, def.node_count = 1;
+  mps_assert_fails(context, mps_fluid_set_boundary(t.fluid, number, &def), MPS_ERROR_ARGUMENT,
+                   "does not move");
+  /* To the last particle but one. */
+  def.nodes = NULL, def.node_count = 0, def.point[0] = -1.0;
+  mps_assert_ok(context, mps_fluid_remove_boundary(t.fluid, number));
+  def.normal[0] = 1.0, def.point[0] = 10.0;
+  mps_assert_ok(context, mps_fluid_add_boundary(t.fluid, &def, &number));
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 3));
+  assert_int_equal(mps_particles_count(t.water), 1);
+  tank_free(&t);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bad_definitions_are_refused),
@@ -585,6 +651,7 @@ int main(void) {
       cmocka_unit_test(a_step_in_parts_is_the_step),
       cmocka_unit_test(parts_of_a_step_have_their_order),
       cmocka_unit_test(a_run_ends_with_even_steps),
+      cmocka_unit_test(water_leaves_by_an_open_side),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
