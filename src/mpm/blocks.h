@@ -41,7 +41,7 @@ typedef struct mpsi_cell_block {
    *   inside  some node that its stencils may use is in a body
    *   cut     edge or inside, or the standard scheme: some support may be cut, states are found
    *   split   some block of nodes under it is split: forces are summed apart from momenta there
-   *   apart   edge, split, or inside with mirrors: the tile of forces is in use */
+   *   apart   cut or split: the tile of forces is in use */
   bool edge, inside, cut, split, apart;
   uint8_t mirrors;      /* bit k: its stencils may have nodes beyond side k, a mirror (mirror.h) */
   int32_t first_mirror; /* of these in the list */
@@ -128,7 +128,7 @@ typedef struct mpsi_grid {
   int64_t colour[MPSI_CORNERS + 1];           /* first of each in `coloured` */
   mpsi_room cells_room, nodes_room, node_room, side_room, coloured_room;
   mpsi_radix *radix;        /* 2 items a particle */
-  const mpsi_radix *sorted; /* the half of `radix` with the order, while the blocks are made */
+  mpsi_radix *sorted;       /* the half of `radix` with the order, while the blocks are made */
   int32_t own_bits;         /* lower bits of a sorted key: the stencil's place within its block */
   mpsi_room digits_room, pass_room;
   mpsi_worker *workers;
@@ -163,7 +163,7 @@ static inline int64_t mpsi_block_of(int64_t base) {
 
 /* order.c: keys and indices of the particles in their order, the block above `own_bits` bits; NULL
  * when out of memory. */
-const mpsi_radix *mpsi_mpm_find_order(mps_mpm *mpm, int32_t *own_bits);
+mpsi_radix *mpsi_mpm_find_order(mps_mpm *mpm, int32_t *own_bits);
 /* layout.c: sorts the particles by blocks and builds the lists of blocks. */
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function);
 /* layout.c: builds the lists of blocks for particles that are in order, as at an earlier sort. */

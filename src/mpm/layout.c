@@ -34,11 +34,109 @@ static void widen_use(const mps_mpm *mpm, uint64_t within, mpsi_cell_block *cell
   }
 }
 
-/* Where the block is whose particles are in their order: `begin` and `end` are known. */
+/* ---- the sorted keys, in chunks -------------------------------------------------------------- */
+
+#define CHUNKS 64
+#define LEAST_CHUNK 4096 /* particles */
+
+typedef struct key_chunks {
+  mps_mpm *mpm;
+  int64_t length;         /* particles in a chunk */
+  int64_t first[CHUNKS];  /* blocks that begin in the chunk; then the number of its first */
+  mpsi_cell_block *cells; /* NULL: they are only counted */
+  int64_t *order;         /* of list_order */
+  bool kept[CHUNKS];      /* its particles are in order already */
+} key_chunks;
+
+static int32_t for_chunks(key_chunks *c, void (*work)(void *data, int64_t chunk, int32_t worker)) {
+  c->length = (c->mpm->p.count + CHUNKS - 1) / CHUNKS;
+  if (c->length < LEAST_CHUNK) c->length = LEAST_CHUNK;
+  const int64_t chunks = (c->mpm->p.count + c->length - 1) / c->length;
+  mpsi_parallel_for(c->mpm->context, chunks, work, c);
+  return (int32_t)chunks;
+}
+
+static int64_t end_of_chunk(const key_chunks *c, int64_t chunk) {
+  const int64_t end = (chunk + 1) * c->length;
+  return end < c->mpm->p.count ? end : c->mpm->p.count;
+}
+
+/* Counts the blocks that begin in a chunk, or notes where. */
+static void find_begins(void *data, int64_t chunk, int32_t worker) {
+  key_chunks *c = data;
+  const mpsi_grid *grid = &c->mpm->grid;
+  const mpsi_radix *key = grid->sorted;
+  const int64_t end = end_of_chunk(c, chunk);
+  int64_t number = c->cells ? c->first[chunk] : 0;
+  (void)worker;
+  for (int64_t k = chunk * c->length; k < end; k++) {
+    if (k > 0 && key[k].key >> grid->own_bits == key[k - 1].key >> grid->own_bits) continue;
+    if (c->cells) c->cells[number] = (mpsi_cell_block){.begin = k, .bad = -1};
+    number++;
+  }
+  if (!c->cells) c->first[chunk] = number;
+}
+
+/* Runs of particles of the sorted keys: how many there are, or the blocks with their particles. */
+static int64_t count_cells(key_chunks *c) {
+  int64_t sum = 0;
+  const int32_t chunks = for_chunks(c, find_begins);
+  for (int32_t k = 0; k < chunks; k++) {
+    const int64_t here = c->first[k];
+    c->first[k] = sum;
+    sum += here;
+  }
+  return sum;
+}
+
+static void make_cells(key_chunks *c, int64_t count, mpsi_cell_block *cells) {
+  c->cells = cells;
+  for_chunks(c, find_begins);
+  for (int64_t b = 0; b < count; b++)
+    cells[b].end = b + 1 < count ? cells[b + 1].begin : c->mpm->p.count;
+}
+
+/* The order, for mpsi_particles_permute_in. */
+static void list_chunk(void *data, int64_t chunk, int32_t worker) {
+  key_chunks *c = data;
+  const int64_t end = end_of_chunk(c, chunk);
+  (void)worker;
+  c->kept[chunk] = true;
+  for (int64_t k = chunk * c->length; k < end; k++) {
+    c->order[k] = c->mpm->grid.sorted[k].index;
+    if (c->order[k] != k) c->kept[chunk] = false;
+  }
+}
+
+/* Whether the particles have it already. */
+static bool list_order(mps_mpm *mpm, int64_t *order) {
+  key_chunks c = {.mpm = mpm, .order = order};
+  bool kept = true;
+  const int32_t chunks = for_chunks(&c, list_chunk);
+  for (int32_t k = 0; k < chunks; k++) kept = kept && c.kept[k];
+  return kept;
+}
+
+/* Particles [begin, end) of one stencil by their ids, so that their order is not that of former
+ * sorts: by insertion at falling distances, few steps where they are nearly in order. */
+static void order_by_id(mpsi_radix *key, const int64_t *id, int64_t begin, int64_t end) {
+  static const int64_t gap[] = {701, 301, 132, 57, 23, 10, 4, 1};
+  for (size_t g = 0; g < sizeof gap / sizeof *gap; g++)
+    for (int64_t k = begin + gap[g]; k < end; k++) {
+      const int64_t index = key[k].index;
+      int64_t at = k;
+      for (; at - gap[g] >= begin && id[key[at - gap[g]].index] > id[index]; at -= gap[g])
+        key[at].index = key[at - gap[g]].index;
+      key[at].index = index;
+    }
+}
+
+/* Where the block is whose particles are in their order but for those of one stencil: `begin` and
+ * `end` are known. */
 static void place_block(mps_mpm *mpm, int64_t b, int32_t worker) {
   (void)worker;
   mpsi_cell_block *cells = &mpm->grid.cells[b];
-  const mpsi_radix *key = mpm->grid.sorted;
+  mpsi_radix *key = mpm->grid.sorted;
   const uint64_t own = (UINT64_C(1) << mpm->grid.own_bits) - 1;
   for (int c = 0; c < 3; c++) {
     const double x = c < mpm->dim ? mpm->p.x[c][key[cells->begin].index] : 0.0;
@@ -47,23 +145,11 @@ static void place_block(mps_mpm *mpm, int64_t b, int32_t worker) {
         c < mpm->dim ? (int32_t)mpsi_block_of((int64_t)mpsi_base(mpm->def.spline, X)) : 0;
     cells->low[c] = c < mpm->dim ? MPSI_TILE_SIDE : 0, cells->high[c] = 1;
   }
-  for (int64_t k = cells->begin; k < cells->end; k++)
-    if (k == cells->begin || key[k].key != key[k - 1].key) widen_use(mpm, key[k].key & own, cells);
-}
-
-/* Runs of particles of the sorted keys; the count alone where `cells` is NULL. */
-static int64_t make_cells(const mps_mpm *mpm, mpsi_cell_block *cells) {
-  const mpsi_radix *key = mpm->grid.sorted;
-  int64_t count = 0;
-  for (int64_t k = 0; k < mpm->p.count; k++) {
-    if (k > 0 && key[k].key >> mpm->grid.own_bits == key[k - 1].key >> mpm->grid.own_bits) continue;
-    if (cells) {
-      if (count > 0) cells[count - 1].end = k;
-      cells[count] = (mpsi_cell_block){.begin = k, .end = mpm->p.count, .bad = -1};
-    }
-    count++;
+  for (int64_t k = cells->begin, end; k < cells->end; k = end) {
+    for (end = k + 1; end < cells->end && key[end].key == key[k].key;) end++;
+    widen_use(mpm, key[k].key & own, cells);
+    order_by_id(key, mpm->laws.ids, k, end);
   }
-  return count;
 }
 
 static bool before(const int32_t *a, const int32_t *b) {
@@ -152,9 +238,10 @@ static mps_status no_room(mps_mpm *mpm, const char *function, int64_t cells) {
 }
 
 static mps_status build_blocks(mps_mpm *mpm, const char *function) {
-  const int64_t cells = make_cells(mpm, NULL);
+  key_chunks chunks = {.mpm = mpm};
+  const int64_t cells = count_cells(&chunks);
   if (!ensure_cells(mpm, cells)) return no_room(mpm, function, cells);
-  make_cells(mpm, mpm->grid.cells);
+  make_cells(&chunks, cells, mpm->grid.cells);
   mpm->grid.cell_count = cells;
   mpsi_mpm_for_cells(mpm, place_block);
   return build_nodes(mpm, cells) ? MPS_OK : no_room(mpm, function, cells);
@@ -173,16 +260,6 @@ mps_status mpsi_mpm_place_blocks(mps_mpm *mpm, const char *function, int64_t cou
     }
   }
   return build_nodes(mpm, count) ? MPS_OK : no_room(mpm, function, count);
-}
-
-/* The order, for mpsi_particles_permute_in; whether the particles have it already. */
-static bool list_order(const mps_mpm *mpm, int64_t *order) {
-  bool sorted = true;
-  for (int64_t k = 0; k < mpm->p.count; k++) {
-    order[k] = mpm->grid.sorted[k].index;
-    sorted = sorted && order[k] == k;
-  }
-  return sorted;
 }
 
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {

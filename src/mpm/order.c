@@ -1,6 +1,7 @@
 /* order.c - the order of the particles: by blocks of cells (z, y, x from the top), within a block
- * by the lowest nodes of their stencils, row by row. A radix sort from the lowest digit up, shared
- * out in chunks: it is stable, so that the order does not depend on the chunks.
+ * by the lowest nodes of their stencils, row by row, and those of one stencil (layout.c) by their
+ * ids: the order is that of the positions, whatever it was before. A radix sort from the lowest digit
+ * up, shared out in chunks: it is stable, so that the order does not depend on the chunks.
  *
  * Where the blocks are so far apart that their coordinates do not fit one word, the particles are
  * sorted by two words, the lower first, and blocks are then counted through.
@@ -176,7 +177,7 @@ static void number_blocks(sorter *s) {
   }
 }
 
-const mpsi_radix *mpsi_mpm_find_order(mps_mpm *mpm, int32_t *own_bits) {
+mpsi_radix *mpsi_mpm_find_order(mps_mpm *mpm, int32_t *own_bits) {
   sorter s = {.mpm = mpm, .p = &mpm->p, .own_bits = mpm->dim == 3 ? 9 : 6};
   s.chunk = (mpm->p.count + MOST_CHUNKS - 1) / MOST_CHUNKS;
   if (s.chunk < CHUNK) s.chunk = CHUNK;
