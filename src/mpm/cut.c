@@ -97,7 +97,7 @@ static mps_status find_cut(mps_mpm *mpm, const char *function) {
     cells->split = false;
     for (int q = 0; q < 1 << mpm->dim; q++)
       cells->split = cells->split || mpm->grid.nodes[cells->to[q]].split;
-    cells->apart = cells->split || cells->edge || (cells->inside && cells->mirrors);
+    cells->apart = cells->split || cells->cut;
   }
   if (!mpsi_room_ensure(mpm->context, &mpm->grid.side_room,
                         mpm->grid.side_count * mpm->grid.block_nodes, sizeof *mpm->grid.side))

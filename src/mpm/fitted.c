@@ -264,35 +264,17 @@ MPSI_INLINE source source_of(const mps_mpm *mpm, int dim, int64_t p) {
   return out;
 }
 
-/* The blocks of nodes under a tile. */
-typedef struct under {
-  mpsi_node *node[MPSI_CORNERS], *side[MPSI_CORNERS];
-  double dt[MPSI_CORNERS]; /* of the force that goes with the momentum: 0 in split blocks */
-} under;
-
-MPSI_INLINE under nodes_under(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim) {
-  under out;
-  for (int q = 0; q < 1 << dim; q++) {
-    const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
-    out.node[q] = mpm->grid.node + mpsi_first_node(mpm, cells->to[q]);
-    out.side[q] = nodes->side < 0 ? NULL : mpm->grid.side + mpsi_first_node(mpm, nodes->side);
-    out.dt[q] = nodes->split ? 0.0 : mpm->run.dt;
-  }
-  return out;
-}
-
-MPSI_INLINE void scatter(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                         int dim, int spline, int64_t p, const support *at,
-                         const mpsi_shape_values *f) {
+/* Momentum to the tile, force and excess mass to the tile of forces, as all particles of the block.
+ */
+MPSI_INLINE void scatter(const mps_mpm *mpm, const mpsi_worker *worker, int dim, int spline,
+                         int64_t p, const support *at, const mpsi_shape_values *f) {
   const bool by_weight = mpm->by_weight;
   const double m = mpm->p.m[p];
   const source s = source_of(mpm, dim, p);
-  const under to = nodes_under(mpm, cells, dim);
   FOR_NODES(dim, spline) {
     const double w = f->w[n], phi = f->phi[n];
     if (w == 0.0) continue;
-    const int q = at->corner[0][i] | at->corner[1][j] | at->corner[2][k];
-    const int local = local_of(at, i, j, k);
+    const int t = mpsi_tile_index(at->at.at[0] + i, at->at.at[1] + j, at->at.at[2] + k);
     mpsi_quad v = s.v + s.L[0] * at->at.s[0][i] + s.L[1] * at->at.s[1][j];
     mpsi_quad force =
         s.body * phi + s.stress[0] * f->gradient[0][n] + s.stress[1] * f->gradient[1][n];
@@ -302,18 +284,9 @@ MPSI_INLINE void scatter(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_
     }
     mpsi_quad sum = v * (m * (by_weight ? w : phi));
     if (by_weight) sum[MPSI_MASS] = m * phi;
-    if (is_ghost(at, i, j, k)) { /* folded in the tile, with what other particles give */
-      const int t = mpsi_tile_index(at->at.at[0] + i, at->at.at[1] + j, at->at.at[2] + k);
-      force[MPSI_EXCESS] = m * (w - phi);
-      mpsi_put(worker->tile[t], mpsi_get(worker->tile[t]) + sum);
-      mpsi_put(worker->force[t], mpsi_get(worker->force[t]) + force);
-      continue;
-    }
-    sum += to.dt[q] * force;
-    double *side = to.side[q][local], *node = to.node[q][local];
-    if (to.dt[q] == 0.0) mpsi_put(side, mpsi_get(side) + force);
-    side[MPSI_EXCESS] += m * (w - phi);
-    mpsi_put(node, mpsi_get(node) + sum);
+    force[MPSI_EXCESS] = m * (w - phi);
+    mpsi_put(worker->tile[t], mpsi_get(worker->tile[t]) + sum);
+    mpsi_put(worker->force[t], mpsi_get(worker->force[t]) + force);
   }
 }
 
@@ -396,7 +369,7 @@ MPSI_INLINE void scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells, const 
   mpsi_shape_values f;
   make_support(mpm, cells, dim, spline, particle, &at);
   const uint32_t bodies = fit(mpm, cells, worker, dim, spline, &at, &f);
-  scatter(mpm, cells, worker, dim, spline, particle, &at, &f);
+  scatter(mpm, worker, dim, spline, particle, &at, &f);
   for (int32_t q = 0; bodies && q < cells->pairs; q++) {
     mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
     if (bodies >> pair->body & 1) scatter_contact(mpm, cells, dim, spline, particle, &at, &f, pair);
@@ -407,11 +380,11 @@ MPSI_INLINE void scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells, const 
  * the forces, in the lanes of the mass; add_own() in g2p.c adds it. */
 MPSI_INLINE void keep_own(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
                           int64_t p, const support *at, const mpsi_shape_values *f, mpsi_two *L) {
-  const under from = nodes_under(mpm, cells, dim);
   mpsi_quad before = {0.0};
   FOR_NODES(dim, spline) {
-    const int q = at->corner[0][i] | at->corner[1][j] | at->corner[2][k];
-    before += f->phi[n] * mpsi_get(from.side[q][local_of(at, i, j, k)]);
+    const int32_t side = mpm->grid.nodes[block_under(cells, at, i, j, k)].side;
+    const mpsi_node *node = (const mpsi_node *)(mpm->grid.side + mpsi_first_node(mpm, side));
+    before += f->phi[n] * mpsi_get(node[local_of(at, i, j, k)]);
   }
   for (int c = 0; c < dim; c++)
     L[c][MPSI_MASS] = mpm->flip * (mpm->p.v[c][p] - before[MPSI_VECTOR + c]);

@@ -252,7 +252,7 @@ MPSI_INLINE uint32_t mpsi_support_state(const mpsi_worker *worker, int dim, int 
 /* ---- fitted.c: particles whose support is cut -------------------------------------------------
  */
 
-/* Gives a particle to its nodes, straight. */
+/* Gives a particle to the tiles; at bodies also what contact needs to the nodes, straight. */
 void MPSI_LEVELLED(mpsi_scatter_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
                                         const mpsi_worker *worker, int64_t particle);
 /* Velocity (lanes 1 to 3 of v), its slopes by x, y, z and, behind each, its derivatives, which are
