@@ -60,10 +60,6 @@ MPSI_INLINE int local_of(const support *s, int i, int j, int k) {
   return s->local[0][i] + s->local[1][j] + s->local[2][k];
 }
 
-MPSI_INLINE bool is_ghost(const support *s, int i, int j, int k) {
-  return s->any_folds && (s->ghost[0][i] || s->ghost[1][j] || s->ghost[2][k]);
-}
-
 MPSI_INLINE bool is_folded(const support *s, int i, int j, int k) {
   return s->any_folds && (s->folds[0][i] || s->folds[1][j] || s->folds[2][k]);
 }

@@ -1,7 +1,7 @@
 /* order.c - the order of the particles: by blocks of cells (z, y, x from the top), within a block
  * by the lowest nodes of their stencils, row by row, and those of one stencil (layout.c) by their
- * ids: the order is that of the positions, whatever it was before. A radix sort from the lowest digit
- * up, shared out in chunks: it is stable, so that the order does not depend on the chunks.
+ * ids: the order is that of the positions, whatever it was before. A radix sort from the lowest
+ * digit up, shared out in chunks: it is stable, so that the order does not depend on the chunks.
  *
  * Where the blocks are so far apart that their coordinates do not fit one word, the particles are
  * sorted by two words, the lower first, and blocks are then counted through.
@@ -182,7 +182,8 @@ mpsi_radix *mpsi_mpm_find_order(mps_mpm *mpm, int32_t *own_bits) {
   s.chunk = (mpm->p.count + MOST_CHUNKS - 1) / MOST_CHUNKS;
   if (s.chunk < CHUNK) s.chunk = CHUNK;
   s.chunks = (int32_t)((mpm->p.count + s.chunk - 1) / s.chunk);
-  if (!mpsi_room_ensure(mpm->context, &mpm->grid.digits_room, s.chunks, sizeof *s.place))
+  if (!mpsi_room_ensure(mpm->context, &mpm->grid.digits_room, (int64_t)s.chunks * DIGITS,
+                        sizeof(int32_t)))
     return NULL;
   s.place = mpm->grid.digits_room.item;
   s.from = mpm->grid.radix, s.to = mpm->grid.radix + mpm->p.count;

@@ -11,7 +11,7 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
   } list[] = {{mpm->grid.cells_room.capacity, sizeof *mpm->grid.cells},
               {mpm->grid.coloured_room.capacity, sizeof *mpm->grid.coloured},
               {mpm->grid.nodes_room.capacity, sizeof *mpm->grid.nodes},
-              {mpm->grid.digits_room.capacity, 2048 * sizeof(int32_t)},
+              {mpm->grid.digits_room.capacity, sizeof(int32_t)},
               {mpm->grid.pass_room.capacity, sizeof(int32_t)},
               {mpm->grid.node_room.capacity, sizeof *mpm->grid.node},
               {mpm->grid.side_room.capacity, sizeof *mpm->grid.side},
@@ -28,6 +28,7 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
               {mpm->energy.cells_room.capacity, sizeof *mpm->energy.cells},
               {mpm->energy.nodes_room.capacity, sizeof *mpm->energy.nodes},
               {mpm->rooms.force.item ? mpm->p.count : 0, (size_t)mpm->dim * sizeof(double)},
+              {mpm->rooms.strain.capacity, sizeof(double)},
               {mpm->p.stencil ? mpm->p.count : 0, sizeof *mpm->p.stencil},
               {mpm->p.count, 2 * sizeof *mpm->grid.radix + sizeof *mpm->laws.flags}};
   int64_t bytes = 0;
