@@ -17,8 +17,7 @@ static mps_status check_whole(mps_mpm *mpm, const char *function) {
   if (mpm->run.broken)
     return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                      "an earlier step has left no state to go on from: roll back, restore a "
-                     "checkpoint or make a "
-                     "new solver");
+                     "checkpoint or make a new solver");
   return mpsi_particles_ready(mpm->particles, function);
 }
 

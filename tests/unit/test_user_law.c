@@ -200,11 +200,13 @@ static void a_refusal_names_the_particle(void **state) {
     const mps_error *error = mps_context_error(context);
     assert_non_null(strstr(error->message, ": stretch 1.5"));
     assert_true(error->particle == 30 || error->particle == 180);
-    assert_true(mps_mpm_time(s.mpm) > 0.01 && error->step > 0);
+    assert_true(error->step > 0); /* the step that it refused has not happened */
+    const double time = mps_mpm_time(s.mpm);
+    assert_true(time <= 0.01 && time + mps_mpm_dt(s.mpm) > 0.01);
     if (told_first < 0) told_first = error->particle;
     assert_int_equal(error->particle, told_first);
     told.bad = -1000;
-    mps_assert_fails(context, mps_mpm_step(s.mpm, 1), MPS_ERROR_STATE, "failed");
+    mps_assert_ok(context, mps_mpm_step(s.mpm, 1)); /* it refuses no more */
     mpm_scene_end(&s);
     mps_context_destroy(&context);
   }
