@@ -1,21 +1,25 @@
 /* fluid.c - benchmark of the fluid: waves of a piston in a closed tank 16/3 as long as deep, of
  * growing size. Time of a particle-step and its shares: preparation (neighbours, moments, the
  * matrix and its preconditioner), solution of the pressure, and motion (gradient, guards,
- * positions, wall pressures); iterations; memory besides the fields; and the gain of a second
- * thread.
+ * positions, wall pressures); iterations; memory besides the fields; the gain of a second thread;
+ * and the classical scheme (mps/experimental.h, gamma .2) with the same particles and steps. Times
+ * of one thread are the processor's.
  *
  * bench-fluid [PARTICLES [STEPS [SMALLEST]]]: the largest and the smallest size, default 1e5 and
  * 1e3, and the steps timed at each, default 40. SPDX-License-Identifier: BSD-3-Clause */
 #include "measure.h"
 
+#include <mps/experimental.h>
 #include <mps/fluid.h>
 
 #include <math.h>
+#include <stdbool.h>
 #include <time.h>
 
 typedef struct result {
   int64_t particles;
   double prepare, solve, move; /* s a step */
+  double wall;                 /* s a step, by the clock */
   double iterations, bytes;
 } result;
 
@@ -34,8 +38,8 @@ static double now(int32_t threads) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* Steps of .04 (l0/g)^1/2 after as many that are not timed. */
-static result measure(int64_t rows, int64_t steps, int32_t threads) {
+/* Steps of .04 (l0/g)^1/2 after as many that are not timed; classical ones count as motion. */
+static result measure(int64_t rows, int64_t steps, int32_t threads, bool classical) {
   mps_context *context = NULL;
   mps_particles *water = NULL;
   mps_fluid *fluid = NULL;
@@ -58,13 +62,20 @@ static result measure(int64_t rows, int64_t steps, int32_t threads) {
   add_wall(context, fluid, 0.0, 1, 1.0, NULL);
   add_wall(context, fluid, 0.0, 0, 1.0, piston);
   add_wall(context, fluid, length, 0, -1.0, NULL);
+  if (classical) check(context, mps_experimental_fluid_classical(fluid, 0.2), "classical");
   check(context, mps_fluid_step(fluid, steps), "steps");
   result r = {.particles = mps_particles_count(water)};
   mps_fluid_report before, after;
   check(context, mps_fluid_get_report(fluid, &before), "report");
+  const double begin = seconds();
   for (int64_t k = 0; k < steps; k++) {
     double clock[4];
     clock[0] = now(threads);
+    if (classical) {
+      check(context, mps_fluid_step(fluid, 1), "classical step");
+      r.move += (now(threads) - clock[0]) / (double)steps;
+      continue;
+    }
     check(context, mps_fluid_begin_step(fluid, NAN), "begin");
     clock[1] = now(threads);
     check(context, mps_fluid_solve_pressure(fluid), "solve");
@@ -75,6 +86,7 @@ static result measure(int64_t rows, int64_t steps, int32_t threads) {
     r.solve += (clock[2] - clock[1]) / (double)steps;
     r.move += (clock[3] - clock[2]) / (double)steps;
   }
+  r.wall = (seconds() - begin) / (double)steps;
   check(context, mps_fluid_get_report(fluid, &after), "report");
   r.iterations = (double)(after.all_iterations - before.all_iterations) / (double)steps;
   r.bytes = (double)after.bytes / (double)r.particles;
@@ -98,16 +110,18 @@ int main(int count, char **values) {
     fprintf(stderr, "bench-fluid [PARTICLES [STEPS [SMALLEST]]]: 200 to 1e7, 1 to 1e5\n");
     return 1;
   }
-  printf("%10s %10s %8s %8s %8s %11s %10s %12s\n", "particles", "us/particle", "prepare", "solve",
-         "move", "iterations", "B/particle", "two threads");
+  printf("%10s %10s %8s %8s %8s %11s %10s %12s %10s\n", "particles", "us/particle", "prepare",
+         "solve", "move", "iterations", "B/particle", "two threads", "classical");
   for (double size = smallest; size < 1.01 * largest; size *= sqrt(10.0)) {
     const int64_t rows = (int64_t)round(sqrt(size * 3.0 / 16.0));
-    const result one = measure(rows, steps, 1), two = measure(rows, steps, 2);
+    const result one = measure(rows, steps, 1, false);
+    const result two = measure(rows, steps, 2, false), peer = measure(rows, steps, 1, true);
     const double total = one.prepare + one.solve + one.move;
-    printf("%10lld %10.3f %7.0f%% %7.0f%% %7.0f%% %11.1f %10.0f %11.2fx\n",
+    printf("%10lld %10.3f %7.0f%% %7.0f%% %7.0f%% %11.1f %10.0f %11.2fx %10.3f\n",
            (long long)one.particles, 1e6 * total / (double)one.particles,
            100.0 * one.prepare / total, 100.0 * one.solve / total, 100.0 * one.move / total,
-           one.iterations, one.bytes, total / (two.prepare + two.solve + two.move));
+           one.iterations, one.bytes, one.wall / two.wall,
+           1e6 * peer.move / (double)peer.particles);
     fflush(stdout);
   }
   return 0;
