@@ -140,20 +140,34 @@ static mps_status take_sample(simulation *sim) {
   return MPS_OK;
 }
 
+/* Brings the ground to rest. Where Ctrl-C cuts that short it is again as before, so that a run that
+ * goes on settles as the whole one does. */
+static mps_status come_to_rest(simulation *sim) {
+  mps_mpm_settle_def rest = mps_mpm_settle_defaults();
+  mps_snapshot *before = NULL;
+  rest.tolerance = 2e-3;
+  mps_status status = mps_mpm_snapshot(sim->m.mpm, &before);
+  if (status == MPS_OK) status = mps_mpm_settle(sim->m.mpm, &rest, NULL);
+  if (status == MPS_ERROR_CANCELLED) {
+    const mps_status back = mps_mpm_rollback(sim->m.mpm, before);
+    if (back != MPS_OK) status = back;
+  }
+  mps_snapshot_destroy(&before);
+  return status;
+}
+
 /* The path in equal parts. After each of them the ground comes to rest under the footing where a
  * quasi-static run is asked for: what inertia has carried too far then no longer counts. */
 mps_status footing_march(void *user) {
   simulation *sim = user;
-  mps_mpm_settle_def rest = mps_mpm_settle_defaults();
   mps_status status = MPS_OK;
   sim->saves = (resume_schedule){
       .path = sim->s.checkpoint, .every = sim->t_end / 10.0, .save = footing_save, .user = sim};
   resume_schedule_at(&sim->saves, mps_mpm_time(sim->m.mpm));
-  rest.tolerance = 2e-3;
   while (sim->rows < sim->samples && status == MPS_OK) {
     const double t = sim->t_end * (sim->rows + 1) / sim->samples;
     status = mps_mpm_run(sim->m.mpm, t, INT64_MAX, NULL, NULL);
-    if (status == MPS_OK && sim->s.settled) status = mps_mpm_settle(sim->m.mpm, &rest, NULL);
+    if (status == MPS_OK && sim->s.settled) status = come_to_rest(sim);
     if (status == MPS_OK) status = take_sample(sim);
     if (status == MPS_OK) resume_save_when_due(sim->m.a, &sim->saves, t);
   }

@@ -7,9 +7,8 @@
  * in blocks of 8 x 8 (x 8) around particles, so memory grows with the particles: 32 bytes a node,
  * 64 near bodies and walls.
  *
- * The solver works in the fields of the particle set itself (zero copy), and sorts the set by
- * blocks whenever a particle has gone a cell beyond its block: views taken before are then stale
- * (their epoch).
+ * The solver works in the fields of the particle set itself (zero copy), and sorts the set when a
+ * particle has gone a cell beyond its block: views taken before are then stale (their epoch).
  * It reads `density` (kg/m3, > 0) at creation, and `volume` (of the measure; where 0, the spacing
  * to the power of the dimension times the measure, in axisymmetry times the radius), `velocity`,
  * `velocity_gradient` and `stress` where the set has them; it writes these and `mass` and

@@ -102,6 +102,7 @@ MPS_CPP_HANDLE(dynamics)
 MPS_CPP_HANDLE(elastic)
 MPS_CPP_HANDLE(fluid)
 MPS_CPP_HANDLE(coupling)
+MPS_CPP_HANDLE(domain)
 #undef MPS_CPP_HANDLE
 
 /** Throws where `status` is not MPS_OK. */
