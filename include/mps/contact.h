@@ -49,23 +49,23 @@ typedef struct mps_contact_def {
                       0 (default): 10. Each step begins with the impulses of the last; the solver
                       takes the most that one of its contacts asks for */
   double friction; /* Coulomb's mu, 0 to 1e3; default 0 */
-  double penalty;  /* for METHOD_PENALTY: contact stiffness k of Nakamura (28), N/m (2D: per m of thickness; in
-                      axisymmetry per m of radius and rad, times the particle's radius), > 0; NaN
-                      (default): from xi, or where that is NaN too 1.33 (K + 4G/3) of the particle's
-                      material, in 3D times the particles' spacing */
+  double penalty;  /* for METHOD_PENALTY: contact stiffness k of Nakamura (28), N/m (2D: per m of
+                      thickness; in  axisymmetry per m of radius and rad, times the particle's
+                      radius), > 0; NaN  (default): from xi, or where that is NaN too 1.33 (K + 4G/3)
+                      of the particle's  material, in 3D times the particles' spacing */
   double xi;       /* in (0, 1): k from Nakamura (58), 2 (1 - xi) (K + 4G/3)/(n CFL^2) with n
                       particles a cell, in 3D times the cell's size; n and CFL are those of the
                       solver's definition. NaN (default): not used. Giving both is an error */
-  double offset;   /* m, >= 0: half the size of a particle, which is pushed where it is nearer to the
-                      surface; by impulses it changes with the particle's elastic strain across the
-                      surface. NaN (default): half the particles' spacing */
-  double depth;    /* m, > 0: a step that finds a particle deeper below the surface than this fails
-                      before anything moves.
-                      NaN (default): one cell; with INSIDE_PUSH no bound; with INSIDE_REMOVE,
-                      where such particles are removed instead, half the particles' spacing */
-  int32_t thin;    /* 0 (default): a body thinner than two cells somewhere, through which momentum
-                      can pass, is refused; 1: it is allowed, and the log is warned */
-  int32_t inside;  /* mps_contact_inside, default REFUSE */
+  double offset;  /* m, >= 0: half the size of a particle, which is pushed where it is nearer to the
+                     surface; by impulses it changes with the particle's elastic strain across the
+                     surface. NaN (default): half the particles' spacing */
+  double depth;   /* m, > 0: a step that finds a particle deeper below the surface than this fails
+                     before anything moves.
+                     NaN (default): one cell; with INSIDE_PUSH no bound; with INSIDE_REMOVE,
+                     where such particles are removed instead, half the particles' spacing */
+  int32_t thin;   /* 0 (default): a body thinner than two cells somewhere, through which momentum
+                     can pass, is refused; 1: it is allowed, and the log is warned */
+  int32_t inside; /* mps_contact_inside, default REFUSE */
 } mps_contact_def;
 
 MPS_API mps_status mps_contact_def_init(mps_contact_def *def, size_t size);
@@ -95,12 +95,12 @@ static inline mps_status mps_contact_get_reaction(mps_contact *contact, int32_t 
 /** The particles that touch the body, in the set's order: `count` receives their number; at most
  *  `capacity` (>= 0) of them are written. By impulses those that the body has pushed in the last
  *  step; by the penalty those nearer than `offset` where particles and body now are. Each array may
- *  be NULL: `ids`; `gap` (m: the surface's present distance less half the particle's size); `normal`
- *  (3 values a particle, outward unit vector of the surface); `force` (N, 3 values a particle, on
- *  the particle: normal force and friction in the last step; by the penalty the present normal
- *  force); `foot` (m, 3 values a particle, nearest point of the surface). Forces of neighbours may
- *  be shared out between them unevenly: their sum is what is determined. Costs a pass over all
- *  particles. MPS_ERROR_STATE when the contact has ended. */
+ *  be NULL: `ids`; `gap` (m: the surface's present distance less half the particle's size);
+ * `normal` (3 values a particle, outward unit vector of the surface); `force` (N, 3 values a
+ * particle, on the particle: normal force and friction in the last step; by the penalty the present
+ * normal force); `foot` (m, 3 values a particle, nearest point of the surface). Forces of
+ * neighbours may be shared out between them unevenly: their sum is what is determined. Costs a pass
+ * over all particles. MPS_ERROR_STATE when the contact has ended. */
 MPS_API MPS_NODISCARD mps_status mps_contact_get_particles(mps_contact *contact, int64_t capacity,
                                                            int64_t *count, int64_t *ids,
                                                            double *gap, double *normal,

@@ -13,8 +13,8 @@
  *   mps_coupling_accept(c);                              the step is made
  *
  * The object knows nothing of the codes: they may be solvers of this library or not.
- * docs/coupling.md has a whole program, and says what to choose. Thread rule: one thread at a time per context.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * docs/coupling.md has a whole program, and says what to choose. Thread rule: one thread at a time
+ * per context. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_COUPLE_H
 #define LIBMPS_COUPLE_H
 

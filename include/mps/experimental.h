@@ -47,8 +47,8 @@ MPS_EXPERIMENTAL_API MPS_NODISCARD mps_status mps_experimental_mpm_transfer(mps_
 /** Which gradient of the velocity the laws of WLS-MPM see. */
 typedef enum mps_experimental_strain {
   MPS_EXPERIMENTAL_STRAIN_DERIVATIVE = 0, /* of the field that the shape functions span */
-  MPS_EXPERIMENTAL_STRAIN_FIT = 1         /* `velocity_gradient`, the slope of the fit, Nakamura (42):
-                                             bodies that bend far creep */
+  MPS_EXPERIMENTAL_STRAIN_FIT = 1 /* `velocity_gradient`, the slope of the fit, Nakamura (42):
+                                     bodies that bend far creep */
 } mps_experimental_strain;
 
 /** Before the first step: mps_experimental_strain. MPS_ERROR_STATE after a step. */

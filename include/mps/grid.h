@@ -33,13 +33,13 @@ static inline mps_status mps_grid_get_info(mps_grid *grid, mps_grid_info *out) {
 /** The active nodes, those that particles reach: `count` receives their number; at most `capacity`
  *  (>= 0) of them are written. Each array may be NULL: `position` (m, 3 values a node), `mass` (kg;
  *  their sum is that of the particles), `velocity` (m/s, 3 values a node, before the forces of the
- *  next step) and `force` (N, 3 values a node: of stresses, gravity, loads and the normal forces of
- *  bodies, not what boundaries and friction add in a step). Where bodies or edges cut supports a
- *  node's mass can be a little below 0. Nodes near a mirrored side (mps_mpm_walls) have what the
- *  images beyond it give too: their masses add up as before, momenta and forces across it do not. It
- *  costs about half a step. The particles are sorted if the
- *  next step would sort them: views are then stale. MPS_ERROR_STATE: a step has failed, a field is
- *  being edited, or new particles have no density. */
+ *  next step) and `force` (N, 3 values a node: of stresses, gravity, loads and springs of contacts,
+ *  not what boundaries, friction and contacts by impulses add in a step). Where bodies or edges cut
+ *  supports a node's mass can be a little below 0. Nodes near a mirrored side (mps_mpm_walls) have
+ *  what the images beyond it give too: their masses add up as before, momenta and forces across it
+ *  do not. It costs about half a step. The particles are sorted if the next step would sort them:
+ *  views are then stale. MPS_ERROR_STATE: a step has failed, a field is being edited, or new
+ *  particles have no density. */
 MPS_API MPS_NODISCARD mps_status mps_grid_get_nodes(mps_grid *grid, int64_t capacity,
                                                     int64_t *count, double *position, double *mass,
                                                     double *velocity, double *force);

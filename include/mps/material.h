@@ -145,8 +145,8 @@ typedef struct mps_newtonian_def {
  *  other status ends the call that asked for the step, which returns it; the error record names the
  *  law, the particle block->refused and what the law has written to block->message. Of several
  *  blocks refused in a step the first tells. A step of a solver that a law has refused has not
- * happened: all is as before it, and a solver with such a law keeps its particles' former values for
- * that (8 bytes for each component of the fields that a step writes). */
+ * happened: all is as before it, and a solver with such a law keeps its particles' former values
+ * for that (8 bytes for each component of the fields that a step writes). */
 typedef mps_status (*mps_material_fn)(void *user, const mps_material_block *block);
 
 typedef struct mps_user_law_def {

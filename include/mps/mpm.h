@@ -68,8 +68,8 @@ typedef enum mps_mpm_volumetric {
 /** What particles near a roller, a fixed side or the axis use beyond it. */
 typedef enum mps_mpm_walls {
   MPS_MPM_WALLS_MIRROR = 0, /* images of the nodes inside: a roller is a mirror */
-  MPS_MPM_WALLS_FIT = 1     /* nothing: the fit takes the nodes that there are, as at other sides and
-                               at bodies (Nakamura). Affine velocities are kept that no mirror has */
+  MPS_MPM_WALLS_FIT = 1 /* nothing: the fit takes the nodes that there are, as at other sides and
+                           at bodies (Nakamura). Affine velocities are kept that no mirror has */
 } mps_mpm_walls;
 
 typedef struct mps_mpm_def {
@@ -92,14 +92,14 @@ typedef struct mps_mpm_def {
   double lower[3], upper[3]; /* m: sides of the domain, on nodes; default: none (infinite). In
                                 axisymmetry lower[0] is at least 0, and 0 by default. Each side is
                                 born a roller: see mps_mpm_set_boundary */
-  double measure;    /* what all masses, volumes and forces are of: thickness in m (default 1) in
-                        plane strain, the angle in rad (default 2 pi, the whole ring) in
-                        axisymmetry; 1 in space. NaN: the default */
-  double gravity[3]; /* m/s2, default 0 */
-  double dt;         /* s, > 0: every step; NaN (default): each step `courant` times the limit. At
-                        most that limit at creation; a warning tells when it gets above it */
-  double courant;    /* fraction of the limit h/(c + v), Nakamura (49), (50), that a step takes, in
-                        (0, 1]; default 0.5 */
+  double measure;     /* what all masses, volumes and forces are of: thickness in m (default 1) in
+                         plane strain, the angle in rad (default 2 pi, the whole ring) in
+                         axisymmetry; 1 in space. NaN: the default */
+  double gravity[3];  /* m/s2, default 0 */
+  double dt;          /* s, > 0: every step; NaN (default): each step `courant` times the limit. At
+                         most that limit at creation; a warning tells when it gets above it */
+  double courant;     /* fraction of the limit h/(c + v), Nakamura (49), (50), that a step takes, in
+                         (0, 1]; default 0.5 */
   mps_kernel *kernel; /* NULL (default): weights by `spline` and `cell`; else a B-spline of degree 2
                          or 3 of radius 1.5 or 2 cells, which says the degree in place of `spline`;
                          kept alive */
@@ -131,13 +131,13 @@ MPS_API void mps_mpm_destroy(mps_mpm **mpm);
 
 #define MPS_MPM_MAX_MATERIALS 16
 
-/** Gives the `count` (>= 0) particles of `ids` (NULL with count 0: all) another law, before the first step or between steps;
- *  at most 16 different materials in a solver, that of creation with them. The material is kept
- *  alive. Its history begins anew in these particles, by the law's initial values; stress, volume,
- *  `volume_ratio` and `deformation_gradient` stay as they are (0: 1, and all 0: no deformation).
- *  Fields that only this law needs are added, so the set's number of fields grows; `material`
- *  tells each particle's law. The Courant limit follows at once; bodies without a penalty of their
- * own press each particle by the modulus of its law. */
+/** Gives the `count` (>= 0) particles of `ids` (NULL with count 0: all) another law, before the
+ * first step or between steps; at most 16 different materials in a solver, that of creation with
+ * them. The material is kept alive. Its history begins anew in these particles, by the law's
+ * initial values; stress, volume, `volume_ratio` and `deformation_gradient` stay as they are (0: 1,
+ * and all 0: no deformation). Fields that only this law needs are added, so the set's number of
+ * fields grows; `material` tells each particle's law. The Courant limit follows at once; bodies
+ * without a penalty of their own press each particle by the modulus of its law. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material,
                                                       int64_t count, const int64_t *ids);
 
@@ -305,9 +305,9 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_remove_load(mps_mpm *mpm, int32_t numbe
  *  body (MPS_ERROR_DIVERGED), no memory, or that a user's law refuses has not happened: all is as
  *  before it, but perhaps the order of the particles. A step in which a particle leaves the domain
  *  (MPS_ERROR_DIVERGED) is whole and counted; no other is made until the particle is put back
- *  (mps_particles_edit of `position`) or removed, or the solver goes back. One that gives a velocity or a volume that is not finite
- *  (MPS_ERROR_DIVERGED) leaves it to be looked at: only mps_mpm_rollback or mps_mpm_restore goes on
- *  from there. The record names step and particle. */
+ *  (mps_particles_edit of `position`) or removed, or the solver goes back. One that gives a
+ * velocity or a volume that is not finite (MPS_ERROR_DIVERGED) leaves it to be looked at: only
+ * mps_mpm_rollback or mps_mpm_restore goes on from there. The record names step and particle. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_step(mps_mpm *mpm, int64_t count);
 
 /** Called at the start of a run, then every `every` steps and at the end. Return MPS_OK to go on;

@@ -7,11 +7,11 @@
  * tests), wherever fields and particles are left as the steps have made them: each term is measured
  * where it happens, and mps_mpm_losses.residual is what they leave.
  *
- * `strain` is the work, by the strains that the laws see, against the stresses that the laws give back, and the energy of the
- * contacts' springs. Of elastic laws that is all; of elastic-plastic ones the change of the energy
- * of the stress by Hooke's law; of fluids the work of the pressure; of users' laws, which do not
- * tell, all. Loads do work by the velocity that the nodes give the particles, boundaries and bodies
- * by their own.
+ * `strain` is the work, by the strains that the laws see, against the stresses that the laws give
+ * back, and the energy of the contacts' springs. Of elastic laws that is all; of elastic-plastic
+ * ones the change of the energy of the stress by Hooke's law; of fluids the work of the pressure;
+ * of users' laws, which do not tell, all. Loads do work by the velocity that the nodes give the
+ * particles, boundaries and bodies by their own.
  *
  * Thread rule: as mps/mpm.h.
  * SPDX-License-Identifier: BSD-3-Clause */

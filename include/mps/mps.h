@@ -22,9 +22,9 @@
  *   couple.h      implicit coupling of two codes
  *   io.h          series of results, restart files
  *
- * Another library of this name, MPSolve (Debian's libmps), has a header mps/mps.h too. A source may use
- * both: the compiler searches MPSolve's directory first, and the headers listed here are included.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * Another library of this name, MPSolve (Debian's libmps), has a header mps/mps.h too. A source may
+ * use both: the compiler searches MPSolve's directory first, and the headers listed here are
+ * included. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_MPS_H
 #define LIBMPS_MPS_H
 
