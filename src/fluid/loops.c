@@ -32,14 +32,20 @@ static double weigh(const mps_fluid *f, int64_t i, int64_t count, int32_t *index
   const double inverse = f->weight.inverse, least = LEAST * f->l0 * f->l0, re = f->weight.re;
   const int32_t all = mpsi_fluid_padded((int32_t)count);
   for (int32_t k = (int32_t)count; k < all; k++) index[k] = (int32_t)i, w[k] = re * re;
-  double closest2 = re * re;
-#pragma omp simd reduction(min : closest2)
+  double closest[MPSI_FLUID_WIDE]; /* clang has no reduction to a minimum */
+  for (int c = 0; c < MPSI_FLUID_WIDE; c++) closest[c] = re * re;
+  for (int32_t k = 0; k < all; k += MPSI_FLUID_WIDE)
+#pragma omp simd
+    for (int c = 0; c < MPSI_FLUID_WIDE; c++)
+      closest[c] = w[k + c] < closest[c] ? w[k + c] : closest[c];
+#pragma omp simd
   for (int32_t k = 0; k < all; k++) {
     const double r2 = w[k] > least ? w[k] : least, a = 1.0 - sqrt(r2) * inverse;
-    closest2 = w[k] < closest2 ? w[k] : closest2;
     w[k] = a * a * a * a * (5.0 - 4.0 * a);
   }
   for (int32_t k = (int32_t)count; k < all; k++) w[k] = 0.0;
+  double closest2 = closest[0];
+  for (int c = 1; c < MPSI_FLUID_WIDE; c++) closest2 = fmin(closest2, closest[c]);
   return closest2;
 }
 
