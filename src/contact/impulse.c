@@ -7,8 +7,8 @@
 
 #define LARGEST_STRAIN 0.2 /* elastic: beyond it the law's own answer is not a size any more */
 #define RECOVERED 0.05     /* of an overlap, in a step: more is rougher */
-#define LEAST_MOBILE 1e-3
-#define FASTEST 0.02 /* of the waves, at which an overlap opens: it must not throw */
+#define LEAST_MOBILE 1e-3  /* of the direction that gives most */
+#define FASTEST 0.02       /* of the waves, at which an overlap opens: it must not throw */
 
 /* ---- geometry -------------------------------------------------------------------------------- */
 

@@ -1,7 +1,7 @@
 /* undo.c - see undo.h. What a step has written when a law refuses: the particles' columns, where
  * boundaries are and what they have counted, the forces at rest of absorbing sides, the impulses of
- * contacts from which the next ones begin. Time, bodies
- * and the account of energy come after the laws. SPDX-License-Identifier: BSD-3-Clause */
+ * contacts from which the next ones begin. Time, bodies and the account of energy come after the
+ * laws. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_private.h"
 
 #include <string.h>
