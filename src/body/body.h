@@ -97,9 +97,11 @@ static inline void mpsi_body_velocity(const mpsi_pose *pose, const double *x, do
  * where faces lie on each other; the round surface of a solid of revolution then counts 0.2 % of
  * its radius too small. */
 bool mpsi_body_overlap(const mps_body *a, const mps_body *b, double depth);
-/* Smallest wall (m): way through the body from samples of its surface, straight inwards, to where
- * the surface faces the other way within 45 degrees; so corners and tips blunter than that do not
- * count. INFINITY of a half space. */
+/* Two faces are a wall's two sides where their normals are opposite within 20 degrees: a plate's.
+ * Those of a wedge or cone of more than that meet in a tip, past which the ground flows. */
+#define MPSI_BODY_OPPOSITE -0.94
+/* Smallest wall (m): way through the body from samples of its surface, straight inwards, to its
+ * other side. INFINITY of a half space. */
 double mpsi_body_thickness(const mps_body *body);
 
 /* A new body of `faces` faces without its shape, at its first position; checks `def`, NULL means

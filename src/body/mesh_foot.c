@@ -20,9 +20,6 @@
 #define SLACK_RELATIVE 1e-5
 #define TOO_FAR 1e5 /* beyond, single precision tells the triangles no more apart */
 
-/* Faces are a wall's two sides where their normals are opposite within 45 degrees. */
-#define OPPOSITE -0.7
-
 typedef struct search {
   const mpsi_mesh *mesh;
   const double *x;
@@ -213,7 +210,7 @@ double mpsi_mesh_wall(const mpsi_mesh *mesh, int64_t t) {
   rtcIntersect1(mesh->scene, &context, &ray);
   if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID || ray.hit.primID == (unsigned)t) return INFINITY;
   const double *m = mesh->normal + 3 * (int64_t)ray.hit.primID, facing = mpsi_dot3(n, m);
-  if (facing > OPPOSITE) return INFINITY;
+  if (facing > MPSI_BODY_OPPOSITE) return INFINITY;
   const double *a = mesh->xyz + 3 * (int64_t)mesh->corner[3 * (int64_t)ray.hit.primID];
   const double to[3] = {centre[0] - a[0], centre[1] - a[1], centre[2] - a[2]};
   return mpsi_dot3(to, m) / facing;

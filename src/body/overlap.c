@@ -11,9 +11,7 @@
 #include <string.h>
 
 #define SECTORS 48 /* of a solid of revolution, seen as triangles */
-#define OPPOSITE                                                                                   \
-  -0.7           /* two faces are a wall's where their normals are opposite within 45 degrees */
-#define END 1e-6 /* the samples nearest to an edge's ends, in its length */
+#define END 1e-6   /* the samples nearest to an edge's ends, in its length */
 
 /* ---- overlap --------------------------------------------------------------------------------- */
 
@@ -142,8 +140,8 @@ static void normal_of(const double *a, const double *b, double *n) {
   n[0] = y / length, n[1] = -x / length;
 }
 
-/* The way from x on edge k straight inwards to the next edge, INFINITY where that does not face the
- * other way. */
+/* The way from x on edge k straight inwards to the next edge, INFINITY where that is not a wall's
+ * other side. */
 static double wall_at(const mps_body *body, int64_t k, const double *x, const double *n) {
   const int64_t all = body->shape == MPSI_REVOLUTION ? 2 * body->edges : body->edges;
   double nearest = INFINITY, facing = 0.0;
@@ -159,7 +157,7 @@ static double wall_at(const mps_body *body, int64_t k, const double *x, const do
     nearest = t;
     facing = n[0] * other[0] + n[1] * other[1];
   }
-  return facing <= OPPOSITE ? nearest : INFINITY;
+  return facing <= MPSI_BODY_OPPOSITE ? nearest : INFINITY;
 }
 
 static double polygon_thickness(const mps_body *body) {

@@ -9,6 +9,7 @@
 
 #define OVERLAP 0.1 /* cells: bodies may by so much */
 #define THIN 2.0    /* cells: walls below let momentum through */
+#define SHARP 1e-3  /* cells: walls below are the edge where two faces meet */
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
@@ -46,6 +47,12 @@ static mps_status check_overlap(mps_mpm *mpm, const char *function, const mps_bo
 static mps_status check_thickness(mps_mpm *mpm, const char *function, const mps_contact *contact) {
   const double wall = mpsi_body_thickness(contact->body), cells = wall * mpm->grid.inverse;
   if (!(cells < THIN * (1.0 - 1e-9))) return MPS_OK;
+  if (!contact->def.thin && cells < SHARP)
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "two faces of the body meet at less than 20 degrees: momentum passes through "
+                     "such an edge where it is thinner than %g cells; blunt it, or allow it with "
+                     "thin = 1",
+                     THIN);
   if (!contact->def.thin)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "the body has a wall %.4g m thin, %.3g cells: below %g cells momentum passes "

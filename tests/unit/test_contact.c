@@ -179,6 +179,44 @@ static void servo_keeps_a_force(void **state) {
   mpm_scene_end(&s);
 }
 
+/* A wedge of 30 degrees has a tip and no thin wall: driven a cell and a half into the block it
+ * splits the particles, evenly to both sides, and keeps them out. One of 15 degrees is an edge that
+ * leaks. */
+static void wedges_are_no_walls(void **state) {
+  (void)state;
+  mpm_scene s = block_at(0.0);
+  mps_body_def def = mps_body_defaults();
+  mps_body *wedge = NULL;
+  const double t[] = {0.0, 0.04}, way[] = {0.0, -0.04}; /* s, m */
+  mps_signal *down = NULL;
+  def.position[0] = 0.1, def.position[1] = 0.11;
+  for (int k = 0; k < 2; k++) {
+    const double half = 0.2 * tan((k ? 15.0 : 7.5) * atan(1.0) / 45.0);
+    const double xy[] = {0.0, 0.0, half, 0.2, -half, 0.2};
+    mps_body_destroy(&wedge);
+    mps_assert_ok(context, mps_body_create_polygon(context, &def, 3, xy, &wedge));
+    if (!k) REFUSES("meet at less than 20 degrees", mps_mpm_add_contact(s.mpm, wedge, NULL, NULL));
+  }
+  mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_DISPLACEMENT, 2, t, way, &down));
+  mps_assert_ok(context, mps_body_drive(wedge, 1, down, 1.0));
+  mps_assert_ok(context, mps_mpm_add_contact(s.mpm, wedge, NULL, NULL));
+  mps_assert_ok(context, mps_mpm_run(s.mpm, 0.04, 1, NULL, NULL));
+  const mps_view x = mpm_scene_view(&s, "position");
+  double sum = 0.0, across = 0.0;
+  for (int64_t i = 0; i < x.shape[0]; i++) {
+    const double at[] = {*mps_view_f64(&x, i, 0), *mps_view_f64(&x, i, 1)};
+    double distance;
+    mps_assert_ok(context, mps_body_distance(wedge, 1, at, &distance, NULL, NULL, NULL));
+    assert_true(distance > 0.0);
+    sum += at[0] - 0.1;
+    across += fabs(at[0] - 0.1);
+  }
+  assert_true(fabs(sum) < 0.01 * across);
+  mps_signal_destroy(&down);
+  mps_body_destroy(&wedge);
+  mpm_scene_end(&s);
+}
+
 /* Plates of 0.6 and 0.9 cells, between nodes or not: all momentum would pass. */
 static void thin_plates_are_refused(void **state) {
   (void)state;
@@ -264,10 +302,13 @@ static void driven_too_deep_is_told(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(bad_definitions),         cmocka_unit_test(tells_who_touches),
-      cmocka_unit_test(bodies_are_shared),       cmocka_unit_test(servo_keeps_a_force),
-      cmocka_unit_test(thin_plates_are_refused), cmocka_unit_test(covered_particles_are_refused),
-      cmocka_unit_test(driven_too_deep_is_told)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(bad_definitions),
+                                     cmocka_unit_test(tells_who_touches),
+                                     cmocka_unit_test(bodies_are_shared),
+                                     cmocka_unit_test(servo_keeps_a_force),
+                                     cmocka_unit_test(thin_plates_are_refused),
+                                     cmocka_unit_test(wedges_are_no_walls),
+                                     cmocka_unit_test(covered_particles_are_refused),
+                                     cmocka_unit_test(driven_too_deep_is_told)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
