@@ -1,11 +1,12 @@
-/* mps/petsc.h - domains (mps/domain.h) on MPI, by PETSc. In a library of its own, libmps-petsc,
- * which is built where PETSc is found (CMake: the component `petsc` of the package mps; pkg-config:
- * libmps-petsc).
+/* mps/petsc.h - what libmps has of PETSc: domains (mps/domain.h) on MPI, and solvers of large
+ * equations. In a library of its own, libmps-petsc, which is built where PETSc is found (CMake: the
+ * component `petsc` of the package mps; pkg-config: libmps-petsc).
  *
  * The library is a guest of the program. Where MPI or PETSc is not running yet it is started,
- * without handlers of signals, and ended with the last domain; what the program has started is left
- * as it is. An error of MPI or PETSc comes back as a status. No handle of MPI is part of the binary
- * interface: communicators are passed as integers, by MPI_Comm_c2f.
+ * without handlers of signals, and ended with the last domain or solver; MPI cannot be started a
+ * second time (MPS_ERROR_STATE). What the program has started is left as it is. An error of MPI or
+ * PETSc comes back as a status. No handle of MPI is part of the binary interface: communicators are
+ * passed as integers, by MPI_Comm_c2f.
  *
  * Include <mpi.h> before this header for mps_petsc_domain_create.
  *
@@ -15,6 +16,7 @@
 #define LIBMPS_PETSC_H
 
 #include "domain.h"
+#include "fluid_solver.h"
 
 #define MPS_PETSC_API MPS_API
 
@@ -35,6 +37,31 @@ mps_petsc_domain_create(mps_context *context, MPI_Comm communicator, mps_domain 
   return mps_petsc_domain_create_c2f(context, (int32_t)MPI_Comm_c2f(communicator), out);
 }
 #endif
+
+/* ---- equations ------------------------------------------------------------------------------- */
+
+typedef struct mps_petsc_solver mps_petsc_solver;
+
+typedef enum mps_petsc_method {
+  MPS_PETSC_MULTIGRID = 0, /* conjugate gradients with an algebraic multigrid (GAMG): iterations
+                              hardly grow with the size. A multigrid serves for several equations,
+                              as long as it is good enough */
+  MPS_PETSC_DIRECT = 1     /* a Cholesky factor by MUMPS for every equation */
+} mps_petsc_method;
+
+/** Makes a solver (mps_petsc_method) of one process, for one fluid at a time. PETSc's
+ *  options that begin with mps_ change it: PETSC_OPTIONS="-mps_pc_type hypre".
+ *  MPS_ERROR_UNSUPPORTED: PETSc was built without the part, or does not know an option. */
+MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solver_create(int32_t method,
+                                                               mps_petsc_solver **out);
+/** Releases and nulls; accepts NULL. What it solves for must have gone, or have another solver. */
+MPS_PETSC_API void mps_petsc_solver_destroy(mps_petsc_solver **solver);
+
+/** Has the pressure of a fluid of at least `least` (>= 0) particles solved by `solver`, as
+ *  mps_fluid_set_solver: until that function puts in another one, or none. The multigrid pays from
+ *  some fifty thousand particles on (docs/fluid.md). */
+MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solve_fluid(mps_petsc_solver *solver,
+                                                             mps_fluid *fluid, int64_t least);
 
 MPS_EXTERN_C_END
 #endif

@@ -1,8 +1,6 @@
 /* domain.c - a transport for domains: MPI's reductions, PETSc's rendezvous and star forests.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include <petscsf.h>
-
-#include <mps/petsc.h>
+#include "guest.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -14,65 +12,19 @@ typedef struct transport {
   MPI_Comm comm;
 } transport;
 
-/* ---- guest of the program -----------------------------------------------------------------------
- * The one state of the process: MPI and PETSc exist once in it. */
-
-static struct {
-  int domains;
-  bool began_mpi, began_petsc;
-} guest;
-
-/* PETSc's errors come back as codes and are not printed. */
-static PetscErrorCode quiet(MPI_Comm comm, int line, const char *function, const char *file,
-                            PetscErrorCode code, PetscErrorType type, const char *message,
-                            void *context) {
-  (void)comm, (void)line, (void)function, (void)file, (void)type, (void)message, (void)context;
-  return code;
-}
-
-#define STATUS(call) ((call) == 0 ? MPS_OK : MPS_ERROR_IO)
-
-static mps_status enter(void) {
-  PetscBool petsc = PETSC_FALSE;
-  int mpi = 0, ended = 0;
-  if (MPI_Initialized(&mpi) != 0 || MPI_Finalized(&ended) != 0 || ended) return MPS_ERROR_STATE;
-  if (!mpi) {
-    int provided;
-    if (MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &provided) != 0) return MPS_ERROR_IO;
-    guest.began_mpi = true;
-  }
-  if (PetscInitialized(&petsc) != 0) return MPS_ERROR_IO;
-  if (!petsc) {
-    static char name[] = "libmps", option[] = "-no_signal_handler";
-    char *words[] = {name, option, NULL}, **arguments = words;
-    int count = 2;
-    if (PetscInitialize(&count, &arguments, NULL, NULL) != 0) return MPS_ERROR_IO;
-    guest.began_petsc = true;
-  }
-  if (PetscPushErrorHandler(quiet, NULL) != 0) return MPS_ERROR_IO;
-  guest.domains++;
-  return MPS_OK;
-}
-
-static void leave(void) {
-  (void)PetscPopErrorHandler();
-  if (--guest.domains > 0) return;
-  if (guest.began_petsc) (void)PetscFinalize();
-  if (guest.began_mpi) (void)MPI_Finalize();
-  guest.began_petsc = guest.began_mpi = false;
-}
-
 /* ---- callbacks --------------------------------------------------------------------------------
  */
 
 static mps_status reduce_max(void *user, int32_t count, double *values) {
   const transport *t = user;
-  return STATUS(MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, MPI_MAX, t->comm));
+  return MPSI_PETSC_STATUS(
+      MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, MPI_MAX, t->comm));
 }
 
 static mps_status reduce_sum(void *user, int32_t count, int64_t *values) {
   const transport *t = user;
-  return STATUS(MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_INT64_T, MPI_SUM, t->comm));
+  return MPSI_PETSC_STATUS(
+      MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_INT64_T, MPI_SUM, t->comm));
 }
 
 static int pieces(int64_t bytes) { return (int)((bytes + PIECE - 1) / PIECE); }
@@ -139,8 +91,8 @@ static mps_status rendezvous(void *user, int32_t count, const mps_domain_message
   for (int32_t k = 0; status == MPS_OK && k < count; k++)
     to[k] = messages[k].rank, size[k] = messages[k].bytes;
   if (status == MPS_OK)
-    status = STATUS(PetscCommBuildTwoSided(t->comm, 1, MPI_INT64_T, count, to, size, &incoming,
-                                           &p.from, &bytes));
+    status = MPSI_PETSC_STATUS(PetscCommBuildTwoSided(t->comm, 1, MPI_INT64_T, count, to, size,
+                                                      &incoming, &p.from, &bytes));
   p.incoming = incoming, p.bytes = bytes;
   if (status == MPS_OK) status = exchange(t, &p, count, messages, room, room_user);
   free(p.room);
@@ -207,13 +159,13 @@ static mps_status star_begin(void *user, void *handle, int32_t item_bytes, const
     s->item_bytes = item_bytes;
   }
   s->own = own, s->guests = guests;
-  return STATUS(PetscSFBcastBegin(s->forest, s->item, own, guests, MPI_REPLACE));
+  return MPSI_PETSC_STATUS(PetscSFBcastBegin(s->forest, s->item, own, guests, MPI_REPLACE));
 }
 
 static mps_status star_end(void *user, void *handle) {
   star *s = handle;
   (void)user;
-  return STATUS(PetscSFBcastEnd(s->forest, s->item, s->own, s->guests, MPI_REPLACE));
+  return MPSI_PETSC_STATUS(PetscSFBcastEnd(s->forest, s->item, s->own, s->guests, MPI_REPLACE));
 }
 
 /* ---- life -------------------------------------------------------------------------------------
@@ -223,11 +175,11 @@ static void destroy(void *user) {
   transport *t = user;
   (void)MPI_Comm_free(&t->comm);
   free(t);
-  leave();
+  mpsi_petsc_leave();
 }
 
 static mps_status refuse(mps_status status) {
-  leave();
+  mpsi_petsc_leave();
   return status;
 }
 
@@ -266,13 +218,13 @@ mps_status mps_petsc_domain_create_c2f(mps_context *context, int32_t communicato
   *out = NULL;
   if (MPI_Initialized(&running) != 0 || MPI_Finalized(&ended) != 0 || !running || ended)
     return MPS_ERROR_STATE;
-  const mps_status status = enter();
+  const mps_status status = mpsi_petsc_enter();
   return status == MPS_OK ? create(context, MPI_Comm_f2c((MPI_Fint)communicator), out) : status;
 }
 
 mps_status mps_petsc_domain_create_world(mps_context *context, mps_domain **out) {
   if (!context || !out) return MPS_ERROR_ARGUMENT;
   *out = NULL;
-  const mps_status status = enter();
+  const mps_status status = mpsi_petsc_enter();
   return status == MPS_OK ? create(context, MPI_COMM_WORLD, out) : status;
 }

@@ -1,0 +1,126 @@
+/* test_alone_pressure.c - a fluid's pressure solved by PETSc, in a process that no mpirun started:
+ * the same motion as by the library's own solver, in iterations that do not grow with the fluid.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "test_fixture.h"
+
+#include "fluid_tank.h"
+
+#include <mps/petsc.h>
+
+/* A tank of `rows` rows whose left wall moves, and a particle above it that falls alone. */
+static tank waves(int rows, double tolerance) {
+  const double l0 = 0.25 / rows, drop[] = {0.3, 0.6};
+  mps_signal *piston = NULL;
+  tank t = {NULL, NULL};
+  mps_particles_def set = mps_particles_defaults();
+  mps_fluid_def def = mps_fluid_defaults();
+  set.spacing = l0, def.dt = 0.04 * sqrt(l0 / TANK_G), def.level = 0.25, def.tolerance = tolerance;
+  mps_assert_ok(context, mps_particles_create(context, &set, &t.water));
+  tank_fill(context, t.water, 0.5, 0.25, NULL, NULL);
+  mps_assert_ok(context, mps_particles_append(t.water, 1, drop));
+  mps_assert_ok(context, mps_fluid_create(context, t.water, &def, &t.fluid));
+  mps_assert_ok(context, mps_signal_sine(context, 1.0, 0.02, 0.0, &piston));
+  tank_wall(context, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_wall(context, t.fluid, 0.0, 0.0, 1.0, 0.0, piston);
+  tank_wall(context, t.fluid, 0.5, 0.0, -1.0, 0.0, NULL);
+  mps_signal_destroy(&piston);
+  return t;
+}
+
+static double force_on_the_wall(tank *t) {
+  mps_reaction r;
+  mps_assert_ok(context, mps_fluid_get_reaction(t->fluid, TANK_RIGHT, &r));
+  return r.force[0];
+}
+
+static void moves_the_water_as_the_library_does(void **state) {
+  (void)state;
+  for (int32_t method = MPS_PETSC_MULTIGRID; method <= MPS_PETSC_DIRECT; method++) {
+    mps_petsc_solver *solver = NULL;
+    tank own = waves(20, 1e-12), other = waves(20, 1e-10);
+    assert_int_equal(mps_petsc_solver_create(method, &solver), MPS_OK);
+    mps_assert_ok(context, mps_petsc_solve_fluid(solver, other.fluid, 0));
+    for (int k = 0; k < 20; k++) {
+      mps_assert_ok(context, mps_fluid_step(own.fluid, 1));
+      mps_assert_ok(context, mps_fluid_step(other.fluid, 1));
+      const double force = force_on_the_wall(&own);
+      mps_assert_near(force_on_the_wall(&other), force, 1e-6 * fabs(force));
+    }
+    mps_totals a, b;
+    mps_assert_ok(context, mps_fluid_get_totals(own.fluid, &a));
+    mps_assert_ok(context, mps_fluid_get_totals(other.fluid, &b));
+    assert_true(a.kinetic > 1e-5);
+    mps_assert_near(b.kinetic, a.kinetic, 1e-7 * a.kinetic);
+    tank_free(&other);
+    tank_free(&own);
+    mps_petsc_solver_destroy(&solver);
+  }
+}
+
+/* Iterations of the first step, whose preconditioner is new, and of three steps. */
+static void iterations(int rows, mps_petsc_solver *solver, int64_t *first, int64_t *all) {
+  tank t = waves(rows, 1e-8);
+  mps_fluid_report report;
+  if (solver) mps_assert_ok(context, mps_petsc_solve_fluid(solver, t.fluid, 100));
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
+  mps_assert_ok(context, mps_fluid_get_report(t.fluid, &report));
+  *first = report.iterations;
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 2));
+  mps_assert_ok(context, mps_fluid_get_report(t.fluid, &report));
+  *all = report.all_iterations;
+  tank_free(&t);
+}
+
+static void a_larger_fluid_takes_hardly_more_iterations(void **state) {
+  (void)state;
+  mps_petsc_solver *solver = NULL;
+  int64_t small[2], large[2], own[2];
+  assert_int_equal(mps_petsc_solver_create(MPS_PETSC_MULTIGRID, &solver), MPS_OK);
+  iterations(20, solver, &small[0], &small[1]);
+  iterations(80, solver, &large[0], &large[1]);
+  iterations(80, NULL, &own[0], &own[1]);
+  print_message("801 particles: %lld iterations, %lld in 3 steps; 12801: %lld, %lld; by the "
+                "library: %lld, %lld\n",
+                (long long)small[0], (long long)small[1], (long long)large[0], (long long)large[1],
+                (long long)own[0], (long long)own[1]);
+  assert_true(large[0] <= 2 * small[0] + 2);
+  assert_true(4 * large[0] < own[0]);
+  mps_petsc_solver_destroy(&solver);
+}
+
+static void bad_calls_are_refused(void **state) {
+  (void)state;
+  mps_petsc_solver *solver = NULL;
+  tank t = waves(8, 1e-8);
+  assert_int_equal(mps_petsc_solver_create(2, &solver), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_petsc_solver_create(-1, &solver), MPS_ERROR_ARGUMENT);
+  assert_null(solver);
+  assert_int_equal(mps_petsc_solver_create(MPS_PETSC_MULTIGRID, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_petsc_solver_create(MPS_PETSC_MULTIGRID, &solver), MPS_OK);
+  assert_int_equal(mps_petsc_solve_fluid(NULL, t.fluid, 0), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_petsc_solve_fluid(solver, NULL, 0), MPS_ERROR_ARGUMENT);
+  mps_assert_fails(context, mps_petsc_solve_fluid(solver, t.fluid, -1), MPS_ERROR_ARGUMENT,
+                   "least");
+  /* Below `least` the library's own solver is at work: no iteration of the other. */
+  mps_assert_ok(context, mps_petsc_solve_fluid(solver, t.fluid, 1000));
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
+  tank_free(&t);
+  mps_petsc_solver_destroy(&solver);
+  mps_petsc_solver_destroy(&solver);
+  mps_petsc_solver_destroy(NULL);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(moves_the_water_as_the_library_does),
+      cmocka_unit_test(a_larger_fluid_takes_hardly_more_iterations),
+      cmocka_unit_test(bad_calls_are_refused),
+  };
+  mps_petsc_solver *first = NULL; /* MPI can be started once in a process: it lives as long */
+  if (mps_petsc_solver_create(MPS_PETSC_MULTIGRID, &first) != MPS_OK) return 1;
+  const int failed = cmocka_run_group_tests(tests, make_context, drop_context);
+  mps_petsc_solver_destroy(&first);
+  mps_petsc_solver *late = NULL;
+  if (mps_petsc_solver_create(MPS_PETSC_MULTIGRID, &late) != MPS_ERROR_STATE) return 1;
+  return failed;
+}
