@@ -18,7 +18,9 @@
  * Laws that need them bring the fields `volume_ratio`, `deformation_gradient` and their history.
  *
  * Forces and transfers take the slope of the fit, which is `velocity_gradient`; the laws see the
- * derivative of the shape functions, along axes whose stencil neither sides nor bodies cut.
+ * derivative of the shape functions, along axes whose stencil neither sides nor bodies cut. Beside
+ * bodies with contact by impulses the spin of `velocity_gradient` is that by which the particle
+ * carries the moment of its nodes' momenta (not in axisymmetry).
  *
  * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
  * its results are the same bit for bit for every number of threads.

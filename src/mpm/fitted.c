@@ -9,7 +9,7 @@
  * side momentum passes through thin walls.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "contact_particle.h"
-#include "loops.h"
+#include "spin.h"
 
 /* ---- active nodes -----------------------------------------------------------------------------
  */
@@ -150,29 +150,6 @@ MPSI_INLINE void moments(int dim, int spline, const mpsi_stencil *at, const doub
   }
 }
 
-/* Inverse of a symmetric positive definite matrix by Gauss and Jordan; returns its determinant.
- * Rows are vectors: what is written by parts and read whole would wait for the memory. */
-MPSI_INLINE double invert(int n, double m[4][4]) {
-  double determinant = 1.0;
-  mpsi_quad row[4];
-  for (int i = 0; i < n; i++)
-    for (int j = 0; j < 4; j++) row[i][j] = j >= n ? 0.0 : j < i ? m[j][i] : m[i][j];
-  MPSI_UNROLL for (int p = 0; p < n; p++) {
-    const double pivot = row[p][p];
-    determinant *= pivot;
-    row[p][p] = 1.0;
-    row[p] *= 1.0 / pivot;
-    MPSI_UNROLL for (int i = 0; i < n; i++) {
-      if (i == p) continue;
-      const double factor = row[i][p];
-      row[i][p] = 0.0;
-      row[i] -= factor * row[p];
-    }
-  }
-  for (int i = 0; i < n; i++) mpsi_put(m[i], row[i]);
-  return determinant;
-}
-
 /* The standard scheme's fit: the spline and its derivatives, whatever lies in the support. */
 MPSI_INLINE uint32_t take_splines(const mps_mpm *mpm, const mpsi_cell_block *cells,
                                   const mpsi_worker *worker, int dim, int spline,
@@ -208,7 +185,7 @@ MPSI_INLINE uint32_t fit(const mps_mpm *mpm, const mpsi_cell_block *cells,
   moments(dim, spline, at, out->w, q);
   const double mass = q[0][0];
   out->determinant =
-      invert(dim + 1, q) / (dim == 3 ? mass * mass * mass * mass : mass * mass * mass);
+      mpsi_invert(dim + 1, q) / (dim == 3 ? mass * mass * mass * mass : mass * mass * mass);
   const mpsi_quad x = mpsi_get(at->s[0]);
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
     for (int j = 0; j <= spline; j++) {
@@ -241,6 +218,8 @@ typedef struct source {
   mpsi_quad v, L[3];   /* 1, v; 0, h dv/ds */
   mpsi_quad body;      /* 0, force by phi */
   mpsi_quad stress[3]; /* 0, -V sigma by the derivative along each axis */
+  mpsi_quad turn[3];   /* 0, velocity times length by the derivative: see spin.h */
+  bool turns;
 } source;
 
 MPSI_INLINE source source_of(const mps_mpm *mpm, int dim, int64_t p) {
@@ -261,12 +240,18 @@ MPSI_INLINE source source_of(const mps_mpm *mpm, int dim, int64_t p) {
 }
 
 /* Momentum to the tile, force and excess mass to the tile of forces, as all particles of the block.
- */
-MPSI_INLINE void scatter(const mps_mpm *mpm, const mpsi_worker *worker, int dim, int spline,
-                         int64_t p, const support *at, const mpsi_shape_values *f) {
+ * `bodies` hold nodes of the support. */
+MPSI_INLINE void scatter(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                         const mpsi_worker *worker, int dim, int spline, int64_t p,
+                         const support *at, const mpsi_shape_values *f, uint32_t bodies) {
   const bool by_weight = mpm->by_weight;
   const double m = mpm->p.m[p];
-  const source s = source_of(mpm, dim, p);
+  source s = source_of(mpm, dim, p);
+  if (mpm->run.moments && mpsi_keeps_spin(mpm, cells, bodies)) {
+    double second[4][4];
+    moments(dim, spline, &at->at, f->phi, second);
+    s.turns = !mpsi_give_spin(dim, spline, mpm->def.cell, second, s.L, s.turn);
+  }
   FOR_NODES(dim, spline) {
     const double w = f->w[n], phi = f->phi[n];
     if (w == 0.0) continue;
@@ -279,6 +264,7 @@ MPSI_INLINE void scatter(const mps_mpm *mpm, const mpsi_worker *worker, int dim,
       force += s.stress[2] * f->gradient[2][n];
     }
     mpsi_quad sum = v * (m * (by_weight ? w : phi));
+    for (int d = 0; d < dim && s.turns; d++) sum += s.turn[d] * (m * f->gradient[d][n]);
     if (by_weight) sum[MPSI_MASS] = m * phi;
     force[MPSI_EXCESS] = m * (w - phi);
     mpsi_put(worker->tile[t], mpsi_get(worker->tile[t]) + sum);
@@ -365,7 +351,7 @@ MPSI_INLINE void scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells, const 
   mpsi_shape_values f;
   make_support(mpm, cells, dim, spline, particle, &at);
   const uint32_t bodies = fit(mpm, cells, worker, dim, spline, &at, &f);
-  scatter(mpm, worker, dim, spline, particle, &at, &f);
+  scatter(mpm, cells, worker, dim, spline, particle, &at, &f, bodies);
   for (int32_t q = 0; bodies && q < cells->pairs; q++) {
     mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
     if (bodies >> pair->body & 1) scatter_contact(mpm, cells, dim, spline, particle, &at, &f, pair);
@@ -417,17 +403,22 @@ MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const m
   mpsi_shape_values f;
   make_support(mpm, cells, dim, spline, particle, &at);
   const uint32_t bodies = fit(mpm, cells, worker, dim, spline, &at, &f);
-  mpsi_quad sum = {0.0}, by[3] = {sum, sum, sum};
+  mpsi_quad sum = {0.0}, by[3] = {sum, sum, sum}, moment[3] = {sum, sum, sum};
   FOR_NODES(dim, spline) {
     const double *from =
         worker->tile[mpsi_tile_index(at.at.at[0] + i, at.at.at[1] + j, at.at.at[2] + k)];
-    const mpsi_quad node = mpsi_get(from);
-    sum += f.phi[n] * node;
+    const mpsi_quad node = mpsi_get(from), share = f.phi[n] * node;
+    sum += share;
     for (int d = 0; d < dim; d++) by[d] += f.gradient[d][n] * node;
+    moment[0] += at.at.s[0][i] * share;
+    moment[1] += at.at.s[1][j] * share;
+    if (dim == 3) moment[2] += at.at.s[2][k] * share;
   }
   mpsi_put(v, sum);
   for (int d = 0; d < dim; d++) mpsi_put(L[d], by[d]), mpsi_put(L[d] + 4, by[d]);
   if (!bodies && !mpm->standard) find_strain(mpm, cells, worker, dim, spline, &at, &f, L);
+  if (mpsi_keeps_spin(mpm, cells, bodies))
+    mpsi_take_spin(dim, spline, mpm->grid.inverse, moment, L);
   if (mpm->flip > 0.0) keep_own(mpm, cells, dim, spline, particle, &at, &f, L);
   for (int32_t q = 0; bodies && q < cells->pairs; q++) {
     mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];

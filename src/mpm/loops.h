@@ -103,6 +103,29 @@ MPSI_INLINE void mpsi_fold_two(mpsi_vec a, mpsi_vec b, double *out) {
 #endif
 }
 
+/* Inverse of a symmetric positive definite matrix by Gauss and Jordan; returns its determinant.
+ * Rows are vectors: what is written by parts and read whole would wait for the memory. */
+MPSI_INLINE double mpsi_invert(int n, double m[4][4]) {
+  double determinant = 1.0;
+  mpsi_quad row[4];
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < 4; j++) row[i][j] = j >= n ? 0.0 : j < i ? m[j][i] : m[i][j];
+  MPSI_UNROLL for (int p = 0; p < n; p++) {
+    const double pivot = row[p][p];
+    determinant *= pivot;
+    row[p][p] = 1.0;
+    row[p] *= 1.0 / pivot;
+    MPSI_UNROLL for (int i = 0; i < n; i++) {
+      if (i == p) continue;
+      const double factor = row[i][p];
+      row[i][p] = 0.0;
+      row[i] -= factor * row[p];
+    }
+  }
+  for (int i = 0; i < n; i++) mpsi_put(m[i], row[i]);
+  return determinant;
+}
+
 /* c[i], and c[i + 1], ..., for all values of the nodes from i in a vector. */
 MPSI_INLINE mpsi_vec mpsi_by_node(const double *c, int i) {
 #if MPSI_WIDE == 2

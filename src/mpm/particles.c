@@ -208,6 +208,7 @@ mps_status mpsi_mpm_note_edit(void *self, const char *function, const char *fiel
   if (status != MPS_OK) return status;
   mpm->run.edited = true;
   mpm->run.stale = mpm->run.stale || moved;
+  if (strcmp(field, "velocity_gradient") == 0) mpm->run.moments = false;
   return MPS_OK;
 }
 

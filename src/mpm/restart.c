@@ -225,6 +225,7 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_i64(s, "steps", &mpm->run.steps, 1);
   mpsi_state_f64(s, "speed", &mpm->run.speed, 1);
   mpsi_state_bool(s, "stale", &mpm->run.stale);
+  mpsi_state_bool(s, "moments", &mpm->run.moments);
   mpsi_state_f64(s, "energies", &mpm->energy.sum.kinetic, MPSI_ENERGY_SUMS);
   for (int32_t b = 0; b < mpm->contact.bodies; b++) {
     mpsi_state_enter(s, "body%d", b);

@@ -15,6 +15,8 @@ typedef struct mpsi_run {
   bool calling;         /* in a callback of the caller's: only questions are allowed */
   bool stale;           /* particles must be sorted before the next step */
   bool edited;          /* the caller has written fields since the last step */
+  bool moments;         /* beside bodies the spin of L is that of a moment (spin.h), as steps leave
+                           it; false: the caller has written the slope */
   bool broken;          /* a step has given values that are no numbers */
   bool lost;            /* a particle has left the domain in the last step, which is whole */
   bool warned_about_dt; /* the log knows that dt is above the Courant limit */

@@ -159,6 +159,7 @@ mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
   }
   if (mpm->contact.bodies > 0) mpsi_mpm_update_bodies(mpm); /* contact --> reactions, poses */
   mpsi_energy_end(mpm);
+  mpm->run.moments = true;
   mpm->run.time += dt;
   mpm->run.steps++;
   status = mpsi_mpm_collect_block_results(mpm, function); /* bad particles, c + |v|, stale or not */
