@@ -42,11 +42,13 @@ static contender contender_create(int64_t columns, int64_t rows, int threads, do
   check(c.context, mps_particles_set(c.particles, "pressure_velocity", 0, 200.0), "Vp");
   check(c.context, mps_particles_set(c.particles, "damping", 0, damping), "damping");
   check(c.context, mps_particles_set(c.particles, "velocity", 0, 0.0), "velocity");
-  mps_view x, v;
+  mps_view x;
+  mps_edit v;
   check(c.context, mps_particles_view(c.particles, "position", &x), "position");
-  check(c.context, mps_particles_view(c.particles, "velocity", &v), "velocity");
+  check(c.context, mps_particles_edit(c.particles, "velocity", &v), "velocity");
   for (int64_t k = 0; k < x.shape[0]; k++)
-    *mps_view_f64(&v, k, 0) = 1e-3 * sin(0.1 * *mps_view_f64(&x, k, 1));
+    *mps_edit_f64(&v, k, 0) = 1e-3 * sin(0.1 * *mps_view_f64(&x, k, 1));
+  check(c.context, mps_particles_commit(c.particles, &v), "velocity");
   mps_dynamics_def def = mps_dynamics_defaults();
   def.dt = 1e-4;
   check(c.context, mps_dynamics_create(c.context, c.particles, &def, &c.dynamics), "solver");

@@ -128,12 +128,14 @@ static void fill(contender *c, int dim, kind k, int64_t side) {
     check(c->context, mps_particles_fill_box(c->particles, lo, hi, NULL), "fill");
   check(c->context, mps_particles_set(c->particles, "density", 0, DENSITY), "density");
   check(c->context, mps_particles_add_field(c->particles, "velocity", 0), "velocity");
-  mps_view x, v;
+  mps_view x;
+  mps_edit v;
   check(c->context, mps_particles_view(c->particles, "position", &x), "position");
-  check(c->context, mps_particles_view(c->particles, "velocity", &v), "velocity");
+  check(c->context, mps_particles_edit(c->particles, "velocity", &v), "velocity");
   for (int d = 0; d < dim; d++)
     for (int64_t p = 0; p < x.shape[0]; p++)
-      *mps_view_f64(&v, p, d) = SPEED * sin(WAVE * *mps_view_f64(&x, p, (d + 1) % dim));
+      *mps_edit_f64(&v, p, d) = SPEED * sin(WAVE * *mps_view_f64(&x, p, (d + 1) % dim));
+  check(c->context, mps_particles_commit(c->particles, &v), "velocity");
 }
 
 /* A box in the hole of the block, a trifle too large: all around it particles are in contact. */

@@ -80,15 +80,17 @@ static mps_status fill(mps_context *context, const settings *s, const column_cas
   if (status == MPS_OK) status = mps_particles_fill_box(m->particles, lo, hi, NULL);
   if (status == MPS_OK) status = mps_particles_set(m->particles, "density", 0, s->density);
   if (status == MPS_OK) status = mps_particles_set(m->particles, "stress", 0, 0.0);
-  mps_view x, stress;
+  mps_view x;
+  mps_edit stress;
   if (status == MPS_OK) status = mps_particles_view(m->particles, "position", &x);
-  if (status == MPS_OK) status = mps_particles_view(m->particles, "stress", &stress);
+  if (status == MPS_OK) status = mps_particles_edit(m->particles, "stress", &stress);
   const double k0 = s->poisson / (1.0 - s->poisson);
   for (int64_t k = 0; status == MPS_OK && k < x.shape[0]; k++) {
     const double vertical = -s->density * G * (hi[1] - *mps_view_f64(&x, k, 1));
-    *mps_view_f64(&stress, k, 0) = *mps_view_f64(&stress, k, 2) = k0 * vertical;
-    *mps_view_f64(&stress, k, 1) = vertical;
+    *mps_edit_f64(&stress, k, 0) = *mps_edit_f64(&stress, k, 2) = k0 * vertical;
+    *mps_edit_f64(&stress, k, 1) = vertical;
   }
+  if (status == MPS_OK) status = mps_particles_commit(m->particles, &stress);
   return status;
 }
 

@@ -86,17 +86,20 @@ static mps_status fill(mps_context *context, const settings *s, simulation *sim)
   if (status == MPS_OK) status = mps_particles_set(water, "density", 0, DENSITY);
   if (status == MPS_OK) status = mps_particles_set(water, "stress", 0, 0.0);
   if (status == MPS_OK) status = mps_particles_set(water, "volume_ratio", 0, 1.0);
-  mps_view x, stress, ratio;
+  mps_view x;
+  mps_edit stress, ratio;
   if (status == MPS_OK) status = mps_particles_view(water, "position", &x);
-  if (status == MPS_OK) status = mps_particles_view(water, "stress", &stress);
-  if (status == MPS_OK) status = mps_particles_view(water, "volume_ratio", &ratio);
+  if (status == MPS_OK) status = mps_particles_edit(water, "stress", &stress);
+  if (status == MPS_OK) status = mps_particles_edit(water, "volume_ratio", &ratio);
   for (int64_t k = 0; status == MPS_OK && k < x.shape[0]; k++) {
     const double p = pressure_at(s, *mps_view_f64(&x, k, 0), *mps_view_f64(&x, k, 1));
-    for (int c = 0; c < 3; c++) *mps_view_f64(&stress, k, c) = -p;
-    *mps_view_f64(&ratio, k, 0) = s->state == MPS_MATERIAL_STATE_TAIT
+    for (int c = 0; c < 3; c++) *mps_edit_f64(&stress, k, c) = -p;
+    *mps_edit_f64(&ratio, k, 0) = s->state == MPS_MATERIAL_STATE_TAIT
                                       ? pow(1.0 + 7.0 * p / K, -1.0 / 7.0)
                                       : 1.0 / (1.0 + p / K);
   }
+  if (status == MPS_OK) status = mps_particles_commit(water, &stress);
+  if (status == MPS_OK) status = mps_particles_commit(water, &ratio);
   return status;
 }
 

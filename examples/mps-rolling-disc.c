@@ -61,10 +61,11 @@ static mps_status fill_rings(simulation *sim, double spacing) {
       const double x[] = {sim->start[0] + radius * cos(a), sim->start[1] + radius * sin(a)};
       status = mps_particles_append(sim->m.particles, 1, x);
     }
-    mps_view volume;
-    if (status == MPS_OK) status = mps_particles_view(sim->m.particles, "volume", &volume);
+    mps_edit volume;
+    if (status == MPS_OK) status = mps_particles_edit(sim->m.particles, "volume", &volume);
     for (int64_t k = first; status == MPS_OK && k < first + count; k++)
-      *mps_view_f64(&volume, k, 0) = 2.0 * PI * radius * spacing / count;
+      *mps_edit_f64(&volume, k, 0) = 2.0 * PI * radius * spacing / count;
+    if (status == MPS_OK) status = mps_particles_commit(sim->m.particles, &volume);
   }
   return status;
 }

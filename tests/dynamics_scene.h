@@ -41,7 +41,8 @@ static inline double noise(uint64_t k) {
 /* Wave velocities that grow with depth, more damping at the top; a start in motion. */
 static inline mps_status give_ground(mps_particles *set, bool even) {
   mps_status status = MPS_OK;
-  mps_view x, vs, vp, h, v;
+  mps_view x;
+  mps_edit vs, vp, h, v;
   TRY(mps_particles_set(set, "density", 0, 1900.0));
   TRY(mps_particles_set(set, "shear_velocity", 0, 200.0));
   TRY(mps_particles_set(set, "pressure_velocity", 0, 400.0));
@@ -55,10 +56,10 @@ static inline mps_status give_ground(mps_particles *set, bool even) {
   TRY(mps_particles_edit(set, "velocity", &v));
   for (int64_t k = 0; status == MPS_OK && k < mps_particles_count(set); k++) {
     const double depth = 30.0 - *mps_view_f64(&x, k, 1);
-    *mps_view_f64(&vs, k, 0) = even ? 200.0 : 100.0 + 10.0 * floor(depth / 5.0);
-    *mps_view_f64(&vp, k, 0) = 2.2 * *mps_view_f64(&vs, k, 0);
-    *mps_view_f64(&h, k, 0) = even ? 0.02 : depth < 10.0 ? 0.05 : 0.02;
-    *mps_view_f64(&v, k, 0) = 1e-2 * sin(0.3 * *mps_view_f64(&x, k, 0) + 0.1 * depth);
+    *mps_edit_f64(&vs, k, 0) = even ? 200.0 : 100.0 + 10.0 * floor(depth / 5.0);
+    *mps_edit_f64(&vp, k, 0) = 2.2 * *mps_view_f64(&vs.view, k, 0);
+    *mps_edit_f64(&h, k, 0) = even ? 0.02 : depth < 10.0 ? 0.05 : 0.02;
+    *mps_edit_f64(&v, k, 0) = 1e-2 * sin(0.3 * *mps_view_f64(&x, k, 0) + 0.1 * depth);
   }
   TRY(mps_particles_commit(set, &vs));
   TRY(mps_particles_commit(set, &vp));
@@ -74,10 +75,10 @@ static inline mps_status make_set(mps_context *own, int what, mps_particles **ou
   const double lo[2] = {0.0, 0.0}, hi[2] = {what == STRIP ? 400.0 : 45.0, what == STRIP ? 2.5 : 30};
   TRY(mps_particles_fill_box(*out, lo, hi, NULL));
   if (what == SCATTERED && status == MPS_OK) {
-    mps_view x;
+    mps_edit x;
     TRY(mps_particles_edit(*out, "position", &x));
     for (int64_t k = 0; status == MPS_OK && k < mps_particles_count(*out); k++)
-      for (int c = 0; c < 2; c++) *mps_view_f64(&x, k, c) += 0.1 * noise((uint64_t)(2 * k + c));
+      for (int c = 0; c < 2; c++) *mps_edit_f64(&x, k, c) += 0.1 * noise((uint64_t)(2 * k + c));
     TRY(mps_particles_commit(*out, &x));
   }
   TRY(give_ground(*out, what == PERIODIC));

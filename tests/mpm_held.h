@@ -49,9 +49,11 @@ static inline mpm_scene held_begin_with(mps_context *context, const mps_mpm_def 
   mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
   mpm_scene_affine(&s, v0, dim == 3 ? space : plane);
   mps_assert_ok(context, mps_particles_add_field(s.particles, "body_acceleration", 0));
-  mps_view x = mpm_scene_view(&s, "position"), a = mpm_scene_view(&s, "body_acceleration");
+  mps_view x = mpm_scene_view(&s, "position");
+  mps_edit a = mpm_scene_edit(&s, "body_acceleration");
   for (int64_t k = 0; k < x.shape[0]; k++)
-    for (int c = 0; c < dim; c++) *mps_view_f64(&a, k, c) = 5.0 * *mps_view_f64(&x, k, 1 - c % 2);
+    for (int c = 0; c < dim; c++) *mps_edit_f64(&a, k, c) = 5.0 * *mps_view_f64(&x, k, 1 - c % 2);
+  mpm_scene_commit(&s, &a);
   mps_mpm_def def = *from;
   def.cell = 0.02;
   for (int c = 0; c < dim; c++) {

@@ -116,22 +116,35 @@ static inline mps_view mpm_scene_view(mpm_scene *s, const char *name) {
   return view;
 }
 
+static inline mps_edit mpm_scene_edit(mpm_scene *s, const char *name) {
+  mps_edit edit;
+  mps_assert_ok(s->context, mps_particles_edit(s->particles, name, &edit));
+  return edit;
+}
+
+static inline void mpm_scene_commit(mpm_scene *s, mps_edit *edit) {
+  mps_assert_ok(s->context, mps_particles_commit(s->particles, edit));
+}
+
 /* Gives all particles the velocity v0 + L x with its gradient. `L` by rows of dim values. */
 static inline void mpm_scene_affine(mpm_scene *s, const double *v0, const double *L) {
   mps_assert_ok(s->context, mps_particles_add_field(s->particles, "velocity", 0));
   mps_assert_ok(s->context, mps_particles_add_field(s->particles, "velocity_gradient", 0));
-  mps_view x = mpm_scene_view(s, "position"), v = mpm_scene_view(s, "velocity");
-  mps_view g = mpm_scene_view(s, "velocity_gradient");
+  mps_view x = mpm_scene_view(s, "position");
+  mps_edit v = mpm_scene_edit(s, "velocity");
+  mps_edit g = mpm_scene_edit(s, "velocity_gradient");
   const int dim = mps_particles_dim(s->particles);
   for (int64_t k = 0; k < x.shape[0]; k++)
     for (int c = 0; c < dim; c++) {
       double value = v0[c];
       for (int d = 0; d < dim; d++) {
         value += L[dim * c + d] * *mps_view_f64(&x, k, d);
-        *mps_view_f64(&g, k, dim * c + d) = L[dim * c + d];
+        *mps_edit_f64(&g, k, dim * c + d) = L[dim * c + d];
       }
-      *mps_view_f64(&v, k, c) = value;
+      *mps_edit_f64(&v, k, c) = value;
     }
+  mpm_scene_commit(s, &v);
+  mpm_scene_commit(s, &g);
 }
 
 static inline mps_totals mpm_scene_totals(mpm_scene *s) {

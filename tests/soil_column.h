@@ -21,21 +21,23 @@ static inline mps_particles *soil_particles(mps_context *context, double spacing
   mps_assert_ok(context, mps_particles_create(context, &def, &particles));
   mps_assert_ok(context, mps_particles_fill_box(particles, lo, hi, NULL));
   const char *const names[4] = {"density", "shear_velocity", "pressure_velocity", "damping"};
-  mps_view x, field[4];
+  mps_view x;
+  mps_edit field[4];
   for (int f = 0; f < 4; f++) {
     mps_assert_ok(context, mps_particles_set(particles, names[f], 0, 0.0));
-    mps_assert_ok(context, mps_particles_view(particles, names[f], &field[f]));
+    mps_assert_ok(context, mps_particles_edit(particles, names[f], &field[f]));
   }
   mps_assert_ok(context, mps_particles_view(particles, "position", &x));
   for (int64_t k = 0; k < x.shape[0]; k++) {
     double depth = height - *mps_view_f64(&x, k, 1);
     int m = 0;
     while (m < layers - 1 && depth > layer[m].thickness) depth -= layer[m++].thickness;
-    *mps_view_f64(&field[0], k, 0) = layer[m].density;
-    *mps_view_f64(&field[1], k, 0) = layer[m].vs;
-    *mps_view_f64(&field[2], k, 0) = layer[m].vp;
-    *mps_view_f64(&field[3], k, 0) = layer[m].damping;
+    *mps_edit_f64(&field[0], k, 0) = layer[m].density;
+    *mps_edit_f64(&field[1], k, 0) = layer[m].vs;
+    *mps_edit_f64(&field[2], k, 0) = layer[m].vp;
+    *mps_edit_f64(&field[3], k, 0) = layer[m].damping;
   }
+  for (int f = 0; f < 4; f++) mps_assert_ok(context, mps_particles_commit(particles, &field[f]));
   return particles;
 }
 

@@ -18,21 +18,24 @@ static mps_status fill(const column *c) {
 
 static mps_status set_materials(const column *c) {
   static const char *const names[] = {"density", "shear_velocity", "pressure_velocity", "damping"};
-  mps_view position, field[4];
+  mps_view position;
+  mps_edit field[4];
   for (int k = 0; k < 4; k++) {
     const mps_status status = mps_particles_add_field(c->particles, names[k], 0);
     if (status != MPS_OK) return status;
   }
   mps_status status = mps_particles_view(c->particles, "position", &position);
   for (int k = 0; k < 4 && status == MPS_OK; k++)
-    status = mps_particles_view(c->particles, names[k], &field[k]);
+    status = mps_particles_edit(c->particles, names[k], &field[k]);
   for (int64_t i = 0; i < position.shape[0] && status == MPS_OK; i++) {
     const layer *l = layers_at(c->def.ground, c->height - *mps_view_f64(&position, i, 1));
-    *mps_view_f64(&field[0], i, 0) = layers_density(l);
-    *mps_view_f64(&field[1], i, 0) = l->vs;
-    *mps_view_f64(&field[2], i, 0) = l->vp;
-    *mps_view_f64(&field[3], i, 0) = l->damping;
+    *mps_edit_f64(&field[0], i, 0) = layers_density(l);
+    *mps_edit_f64(&field[1], i, 0) = l->vs;
+    *mps_edit_f64(&field[2], i, 0) = l->vp;
+    *mps_edit_f64(&field[3], i, 0) = l->damping;
   }
+  for (int k = 0; k < 4 && status == MPS_OK; k++)
+    status = mps_particles_commit(c->particles, &field[k]);
   return status;
 }
 

@@ -30,11 +30,11 @@ static mps_status add_wall(mps_fluid *fluid, double x, double nx, double ny) {
  * none is pushed aside, as all is symmetric. */
 static mps_status disturb(const settings *s, mps_particles *water) {
   uint64_t state = 1;
-  mps_view x;
+  mps_edit x;
   mps_status status = mps_particles_edit(water, "position", &x);
   if (status != MPS_OK) return status;
-  for (int64_t i = 0; i < x.shape[0]; i++)
-    for (int c = 0; c < 2; c++) *mps_view_f64(&x, i, c) += s->disturb * s->h * waves_noise(&state);
+  for (int64_t i = 0; i < x.view.shape[0]; i++)
+    for (int c = 0; c < 2; c++) *mps_edit_f64(&x, i, c) += s->disturb * s->h * waves_noise(&state);
   return mps_particles_commit(water, &x);
 }
 

@@ -99,12 +99,14 @@ static mps_status set_stress(const penetrometer *p, pen_run *r) {
 
 /* The places at the start, for the displacements at the end. */
 static mps_status keep_places(pen_run *r) {
-  mps_view x, start;
+  mps_view x;
+  mps_edit start;
   mps_status status = mps_particles_add_field(r->m.particles, "start", dim_of(r));
   if (status == MPS_OK) status = mps_particles_view(r->m.particles, "position", &x);
-  if (status == MPS_OK) status = mps_particles_view(r->m.particles, "start", &start);
+  if (status == MPS_OK) status = mps_particles_edit(r->m.particles, "start", &start);
   for (int64_t k = 0; status == MPS_OK && k < x.shape[0]; k++)
-    for (int c = 0; c < dim_of(r); c++) *mps_view_f64(&start, k, c) = *mps_view_f64(&x, k, c);
+    for (int c = 0; c < dim_of(r); c++) *mps_edit_f64(&start, k, c) = *mps_view_f64(&x, k, c);
+  if (status == MPS_OK) status = mps_particles_commit(r->m.particles, &start);
   return status;
 }
 

@@ -125,12 +125,13 @@ static bool in_section(const penetrometer *p, double thick, double x, double y) 
 
 /* Displacements, and the particles in the section. */
 static mps_status take_section(const penetrometer *p, pen_run *r) {
-  mps_view x, start, moved, strain;
+  mps_view x, start, strain;
+  mps_edit moved;
   const int up = up_of(r);
   mps_status status = mps_particles_add_field(r->m.particles, "displacement", 0);
   if (status == MPS_OK) status = mps_particles_view(r->m.particles, "position", &x);
   if (status == MPS_OK) status = mps_particles_view(r->m.particles, "start", &start);
-  if (status == MPS_OK) status = mps_particles_view(r->m.particles, "displacement", &moved);
+  if (status == MPS_OK) status = mps_particles_edit(r->m.particles, "displacement", &moved);
   if (status != MPS_OK) return status;
   const bool plastic = mps_particles_view(r->m.particles, "plastic_strain", &strain) == MPS_OK;
   const double thick = mps_particles_spacing(r->m.particles);
@@ -138,7 +139,7 @@ static mps_status take_section(const penetrometer *p, pen_run *r) {
     double square = 0.0;
     for (int c = 0; c <= up; c++) {
       const double d = *mps_view_f64(&x, k, c) - *mps_view_f64(&start, k, c);
-      *mps_view_f64(&moved, k, c) = d;
+      *mps_edit_f64(&moved, k, c) = d;
       square += d * d;
     }
     const double X = *mps_view_f64(&x, k, 0), Y = up == 2 ? *mps_view_f64(&x, k, 1) : 0.0;
@@ -148,7 +149,7 @@ static mps_status take_section(const penetrometer *p, pen_run *r) {
         (pen_point){up == 2 ? from_axis : -X, *mps_view_f64(&x, k, up) - r->size[up], sqrt(square),
                     plastic ? *mps_view_f64(&strain, k, 0) : 0.0};
   }
-  return MPS_OK;
+  return mps_particles_commit(r->m.particles, &moved);
 }
 
 /* ---- the run --------------------------------------------------------------------------------- */

@@ -61,7 +61,8 @@ static mps_status pull(mps_context *context, mps_material *law, double *length, 
   mps_particles_def of_set = mps_particles_defaults();
   mps_particles *set = NULL;
   mps_mpm *mpm = NULL;
-  mps_view v, x;
+  mps_view x, kept;
+  mps_edit v;
   mps_mpm_def def = mps_mpm_defaults();
   of_set.spacing = 0.05;
   def.cell = 0.1;
@@ -71,17 +72,17 @@ static mps_status pull(mps_context *context, mps_material *law, double *length, 
   if (status == MPS_OK) status = mps_particles_set(set, "velocity", 0, 0.0);
   if (status == MPS_OK) status = mps_particles_edit(set, "velocity", &v);
   if (status == MPS_OK) status = mps_particles_view(set, "position", &x);
-  for (int64_t k = 0; status == MPS_OK && k < v.shape[0]; k++)
-    *mps_view_f64(&v, k, 0) = 20.0 * (*mps_view_f64(&x, k, 0) - 0.5); /* m/s */
+  for (int64_t k = 0; status == MPS_OK && k < v.view.shape[0]; k++)
+    *mps_edit_f64(&v, k, 0) = 20.0 * (*mps_view_f64(&x, k, 0) - 0.5); /* m/s */
   if (status == MPS_OK) status = mps_particles_commit(set, &v);
   if (status == MPS_OK) status = mps_mpm_create(context, set, law, &def, &mpm);
   if (status == MPS_OK) status = mps_mpm_run(mpm, 5e-3, 1, NULL, NULL);
   if (status == MPS_OK) status = mps_particles_view(set, "position", &x);
-  if (status == MPS_OK) status = mps_particles_view(set, mps_material_history_field(law, 0), &v);
+  if (status == MPS_OK) status = mps_particles_view(set, mps_material_history_field(law, 0), &kept);
   *length = *plastic = 0.0;
-  for (int64_t k = 0; status == MPS_OK && k < v.shape[0]; k++) {
+  for (int64_t k = 0; status == MPS_OK && k < kept.shape[0]; k++) {
     *length = fmax(*length, *mps_view_f64(&x, k, 0));
-    *plastic = fmax(*plastic, *mps_view_f64(&v, k, 0));
+    *plastic = fmax(*plastic, *mps_view_f64(&kept, k, 0));
   }
   printf("%-12s the bar ends at %.9f m, largest plastic strain %.9f\n", mps_material_name(law),
          *length, *plastic);

@@ -30,12 +30,16 @@ static mps_status copy_state(const search *s, bool back) {
                         {"velocity", 0},     {"velocity", 1},     {"spin", 0}};
   mps_particles *particles = mps_dynamics_particles(s->dynamics);
   for (int c = 0; c < COLUMNS; c++) {
-    mps_view view;
-    const mps_status status = mps_particles_view(particles, columns[c].field, &view);
+    mps_edit field;
+    mps_status status = mps_particles_edit(particles, columns[c].field, &field);
     if (status != MPS_OK) return status;
-    double *kept = s->initial + c * view.shape[0];
-    double *field = mps_view_f64(&view, 0, columns[c].component);
-    memcpy(back ? field : kept, back ? kept : field, (size_t)view.shape[0] * sizeof(double));
+    const int64_t count = field.view.shape[0];
+    double *kept = s->initial + c * count;
+    double *now = mps_edit_f64(&field, 0, columns[c].component);
+    memcpy(back ? now : kept, back ? kept : now, (size_t)count * sizeof(double));
+    status =
+        back ? mps_particles_commit(particles, &field) : mps_particles_abandon(particles, &field);
+    if (status != MPS_OK) return status;
   }
   return MPS_OK;
 }

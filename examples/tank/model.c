@@ -39,15 +39,17 @@ static mps_status fill_tank(const tank_settings *s, mps_particles *water) {
 /* A disc whose velocity is (-x, y)/s. */
 static mps_status fill_drop(const tank_settings *s, mps_particles *water) {
   const double middle[2] = {0.0, 0.0};
-  mps_view x, u;
+  mps_view x;
+  mps_edit u;
   mps_status status = mps_particles_fill_ball(water, middle, s->depth, NULL);
   if (status == MPS_OK) status = mps_particles_add_field(water, "velocity", 0);
   if (status == MPS_OK) status = mps_particles_view(water, "position", &x);
-  if (status == MPS_OK) status = mps_particles_view(water, "velocity", &u);
+  if (status == MPS_OK) status = mps_particles_edit(water, "velocity", &u);
   for (int64_t i = 0; status == MPS_OK && i < x.shape[0]; i++) {
-    *mps_view_f64(&u, i, 0) = -*mps_view_f64(&x, i, 0);
-    *mps_view_f64(&u, i, 1) = *mps_view_f64(&x, i, 1);
+    *mps_edit_f64(&u, i, 0) = -*mps_view_f64(&x, i, 0);
+    *mps_edit_f64(&u, i, 1) = *mps_view_f64(&x, i, 1);
   }
+  if (status == MPS_OK) status = mps_particles_commit(water, &u);
   return status;
 }
 

@@ -101,11 +101,11 @@ typedef struct mps_dtype {
 
 #define MPS_VIEW_READONLY 1u /* flag: the caller may read but not write */
 
-/** A borrowed array: nothing is copied. Element (i, c) lies at
+/** A borrowed array, for reading: nothing is copied. Element (i, c) lies at
  *  data + (i * stride[0] + c * stride[1]) elements. Valid until the owner is destroyed or its
  *  epoch differs from `epoch` (particles inserted, removed or sorted). Frozen layout. */
 typedef struct mps_view {
-  void *data;
+  const void *data;
   int64_t shape[3];  /* shape[0] particles, shape[1] components, shape[2] = 1 */
   int64_t stride[3]; /* in elements, not bytes */
   mps_dtype dtype;
@@ -116,14 +116,31 @@ typedef struct mps_view {
   int32_t device_id;   /* 0 */
 } mps_view;
 
+/** A borrowed array that is open for writing (mps_particles_edit). Frozen layout. */
+typedef struct mps_edit {
+  void *data; /* NULL once the edit has ended */
+  mps_view
+      view; /* of the same elements, for reading; its flags lack MPS_VIEW_READONLY while open */
+} mps_edit;
+
 /** Address of element (i, c) of a float64 view; no range check. */
-static inline double *mps_view_f64(const mps_view *view, int64_t i, int64_t c) {
-  return (double *)view->data + i * view->stride[0] + c * view->stride[1];
+static inline const double *mps_view_f64(const mps_view *view, int64_t i, int64_t c) {
+  return (const double *)view->data + i * view->stride[0] + c * view->stride[1];
 }
 
 /** Address of element (i, c) of an int64 view; no range check. */
-static inline int64_t *mps_view_i64(const mps_view *view, int64_t i, int64_t c) {
-  return (int64_t *)view->data + i * view->stride[0] + c * view->stride[1];
+static inline const int64_t *mps_view_i64(const mps_view *view, int64_t i, int64_t c) {
+  return (const int64_t *)view->data + i * view->stride[0] + c * view->stride[1];
+}
+
+/** Address of element (i, c) of an open float64 field; no range check. */
+static inline double *mps_edit_f64(const mps_edit *edit, int64_t i, int64_t c) {
+  return (double *)edit->data + i * edit->view.stride[0] + c * edit->view.stride[1];
+}
+
+/** Address of element (i, c) of an open int64 field; no range check. */
+static inline int64_t *mps_edit_i64(const mps_edit *edit, int64_t i, int64_t c) {
+  return (int64_t *)edit->data + i * edit->view.stride[0] + c * edit->view.stride[1];
 }
 
 MPS_EXTERN_C_END

@@ -218,8 +218,8 @@ public:
 
 protected:
   array() noexcept = default;
-  V *at(int64_t i, int64_t c) const noexcept {
-    return static_cast<V *>(view_.data) + i * view_.stride[0] + c * view_.stride[1];
+  const V *at(int64_t i, int64_t c) const noexcept {
+    return static_cast<const V *>(view_.data) + i * view_.stride[0] + c * view_.stride[1];
   }
   mps_particles *set_ = nullptr;
   mps_view view_ = {};
@@ -235,22 +235,23 @@ class edit : public array<double> {
 public:
   edit(const particles &set, const char *name) : context_(set.error_context()) {
     set_ = set.get();
-    check(context_, mps_particles_edit(set_, name, &view_));
+    check(context_, mps_particles_edit(set_, name, &edit_));
+    view_ = edit_.view;
   }
   edit(const edit &) = delete;
   edit &operator=(const edit &) = delete;
   ~edit() {
-    if (open_ && mps_particles_abandon(set_, &view_) != MPS_OK) mps_context_clear_error(context_);
+    if (edit_.data && mps_particles_abandon(set_, &edit_) != MPS_OK)
+      mps_context_clear_error(context_);
   }
-  double &operator()(int64_t i, int64_t c = 0) const noexcept { return *at(i, c); }
-  void commit() {
-    check(context_, mps_particles_commit(set_, &view_));
-    open_ = false;
+  double &operator()(int64_t i, int64_t c = 0) const noexcept {
+    return *mps_edit_f64(&edit_, i, c);
   }
+  void commit() { check(context_, mps_particles_commit(set_, &edit_)); }
 
 private:
   mps_context *context_;
-  bool open_ = true;
+  mps_edit edit_ = {};
 };
 
 } // namespace mps

@@ -116,16 +116,16 @@ MPS_API MPS_NODISCARD mps_status mps_particles_view(mps_particles *particles, co
  *  once, each once. The set keeps memory for the former values. MPS_ERROR_FIELD: no such field, or
  * one that only the library writes. */
 MPS_API MPS_NODISCARD mps_status mps_particles_edit(mps_particles *particles, const char *name,
-                                                    mps_view *out);
+                                                    mps_edit *out);
 /** Ends the editing of a field. Its values must be finite and in the field's range
  * (docs/fields.md), and the solver that holds the set may ask for more: positions inside its
  * domain. It reads them before its next step, and finds neighbours and blocks of particles anew
  * only where that is `position`. On MPS_ERROR_ARGUMENT, which names the particle, the field stays
- * open with what was written: mend it and commit again. Then the view is for reading.
- */
-MPS_API MPS_NODISCARD mps_status mps_particles_commit(mps_particles *particles, mps_view *view);
+ * open with what was written: mend it and commit again. Then `edit->data` is NULL, and the view
+ *  is for reading as any other. */
+MPS_API MPS_NODISCARD mps_status mps_particles_commit(mps_particles *particles, mps_edit *edit);
 /** Ends it with the values from before mps_particles_edit: no solver takes notice. */
-MPS_API MPS_NODISCARD mps_status mps_particles_abandon(mps_particles *particles, mps_view *view);
+MPS_API MPS_NODISCARD mps_status mps_particles_abandon(mps_particles *particles, mps_edit *edit);
 /** Sets component `component` of a float64 field to `value` (in the field's range) for every
  * particle there is, adding the field if the table knows it and the set lacks it; edit and commit
  * in one. */

@@ -204,16 +204,16 @@ class Edit:
     commit() raises and the field stays open: mend it and commit again, or abandon()."""
 
     def __init__(self, owner, name):
-        self._owner, self._view = owner, ffi.new("mps_view *")
-        owner._invoke("particles_edit", (name, self._view), {})
-        self.array = _array(owner, self._view[0])
+        self._owner, self._edit = owner, ffi.new("mps_edit *")
+        owner._invoke("particles_edit", (name, self._edit), {})
+        self.array = _array(owner, self._edit.view)
 
     def commit(self):
-        self._owner._invoke("particles_commit", (self._view,), {})
+        self._owner._invoke("particles_commit", (self._edit,), {})
         self.array.flags.writeable = False
 
     def abandon(self):
-        self._owner._invoke("particles_abandon", (self._view,), {})
+        self._owner._invoke("particles_abandon", (self._edit,), {})
         self.array.flags.writeable = False
 
     def __enter__(self):

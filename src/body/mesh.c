@@ -287,17 +287,6 @@ static mps_status check_arrays(mps_context *context, const char *function, int64
   return MPS_OK;
 }
 
-void mpsi_mesh_destroy(mps_context *context, mpsi_mesh *mesh) {
-  if (!mesh) return;
-  mpsi_mesh_unindex(mesh);
-  mpsi_free(context, mesh->xyz);
-  mpsi_free(context, mesh->corner);
-  mpsi_free(context, mesh->across);
-  mpsi_free(context, mesh->normal);
-  mpsi_free(context, mesh->vertex_normal);
-  mpsi_free(context, mesh);
-}
-
 static mps_status allocate(mps_context *context, const char *function, int64_t vertices,
                            int64_t triangles, mpsi_mesh **out) {
   mpsi_mesh *mesh = mpsi_alloc(context, 1, sizeof *mesh);

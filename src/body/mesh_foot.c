@@ -215,3 +215,14 @@ double mpsi_mesh_wall(const mpsi_mesh *mesh, int64_t t) {
   const double to[3] = {centre[0] - a[0], centre[1] - a[1], centre[2] - a[2]};
   return mpsi_dot3(to, m) / facing;
 }
+
+void mpsi_mesh_destroy(mps_context *context, mpsi_mesh *mesh) {
+  if (!mesh) return;
+  mpsi_mesh_unindex(mesh);
+  mpsi_free(context, mesh->xyz);
+  mpsi_free(context, mesh->corner);
+  mpsi_free(context, mesh->across);
+  mpsi_free(context, mesh->normal);
+  mpsi_free(context, mesh->vertex_normal);
+  mpsi_free(context, mesh);
+}

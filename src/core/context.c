@@ -1,4 +1,4 @@
-/* context.c - the context object: error record, memory hooks, log, progress and cancel.
+/* context.c - the context object: its life, and the hooks for log, progress and cancel.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "context_private.h"
 
@@ -6,85 +6,8 @@
 
 #include <mps/context.h>
 
-#include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-
-static void *system_alloc(void *user, size_t size, size_t alignment) {
-  (void)user;
-  return aligned_alloc(alignment, size); /* size is a multiple of alignment: see mpsi_alloc */
-}
-
-static void system_free(void *user, void *memory) {
-  (void)user;
-  free(memory);
-}
-
-/* ---- status --------------------------------------------------------------------- */
-
-const char *mps_status_text(mps_status status) {
-  switch (status) {
-#define STATUS_CASE(name, value, text)                                                             \
-  case MPS_##name:                                                                                 \
-    return text;
-    MPS_STATUS_TABLE(STATUS_CASE)
-#undef STATUS_CASE
-  default:
-    return "unknown status code";
-  }
-}
-
-/* ---- definition structs ---------------------------------------------------------------------- */
-
-mps_status mpsi_def_init(void *def, size_t size, size_t minimum, const void *defaults,
-                         size_t defaults_size) {
-  if (!def || size < minimum || size > UINT32_MAX) return MPS_ERROR_ARGUMENT;
-  memset(def, 0, size);
-  memcpy(def, defaults, size < defaults_size ? size : defaults_size);
-  const uint32_t stored = (uint32_t)size;
-  memcpy(def, &stored, sizeof stored); /* struct_size is the first member of every definition */
-  return MPS_OK;
-}
-
-mps_status mpsi_def_read(mps_context *context, const char *function, const void *def,
-                         size_t minimum, void *known, size_t known_size) {
-  if (!def) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "def is NULL");
-  uint32_t size;
-  memcpy(&size, def, sizeof size);
-  if (size < minimum)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "def.struct_size is %u, at least %zu is required: start from the _defaults() "
-                     "or _def_init function",
-                     size, minimum);
-  for (size_t i = known_size; i < size; i++)
-    if (((const unsigned char *)def)[i] != 0)
-      return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
-                       "def has a non-zero member at byte %zu that this library (version %s) does "
-                       "not know",
-                       i, mps_version());
-  memcpy(known, def, size < known_size ? size : known_size);
-  return MPS_OK;
-}
-
-mps_status mpsi_out_write(mps_context *context, const char *function, void *out, size_t size,
-                          const void *known, size_t known_size) {
-  if (!out) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "out is NULL");
-  if (size == 0)
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "size is 0 bytes: it must be sizeof of the struct that out points to");
-  memcpy(out, known, size < known_size ? size : known_size);
-  if (size > known_size) memset((char *)out + known_size, 0, size - known_size);
-  return MPS_OK;
-}
-
-mps_status mpsi_def_write(mps_context *context, const char *function, void *out, size_t size,
-                          const void *known, size_t known_size) {
-  const uint32_t written = (uint32_t)(size < known_size ? size : known_size);
-  const mps_status status = mpsi_out_write(context, function, out, size, known, known_size);
-  if (status == MPS_OK && size >= sizeof written) memcpy(out, &written, sizeof written);
-  return status;
-}
 
 static const mps_context_def context_defaults = {
     .struct_size = sizeof(mps_context_def),
@@ -154,10 +77,7 @@ mps_status mps_context_create(const mps_context_def *user_def, mps_context **out
                   "def.struct_size is not one this library knows: start from "
                   "mps_context_defaults()");
   if ((status = check_def(&def, error_text, error_size)) != MPS_OK) return status;
-  if (!def.alloc) {
-    def.alloc = system_alloc;
-    def.free = system_free;
-  }
+  if (!def.alloc) mpsi_use_system_memory(&def);
   const int32_t threads = mpsi_executor_threads(&def);
   size_t bytes = sizeof(mps_context) + mpsi_pool_bytes(threads);
   bytes = (bytes + MPSI_ALIGNMENT - 1) / MPSI_ALIGNMENT * MPSI_ALIGNMENT;
@@ -201,107 +121,6 @@ void mps_context_destroy(mps_context **context) {
   if (!context || !*context) return;
   mpsi_context_release(*context);
   *context = NULL;
-}
-
-/* ---- errors and log -------------------------------------------------------------------------- */
-
-/* The kind of object that a function belongs to: "mpm" of mps_mpm_step. */
-static void name_kind(mps_error *error, const char *function) {
-  const char *kind = strncmp(function, "mps_", 4) == 0 ? function + 4 : function;
-  snprintf(error->object, sizeof error->object, "%.*s", (int)strcspn(kind, "_"), kind);
-}
-
-mps_status mpsi_fail(mps_context *context, const char *function, mps_status status,
-                     const char *format, ...) {
-  if (!context) return status;
-  mps_error *error = &context->error;
-  error->status = status;
-  error->step = error->particle = -1;
-  snprintf(error->function, sizeof error->function, "%s", function);
-  name_kind(error, function);
-  va_list args;
-  va_start(args, format);
-  vsnprintf(error->message, sizeof error->message, format, args);
-  va_end(args);
-  context->failures++;
-  return status;
-}
-
-void mpsi_fail_where(mps_context *context, int64_t step, int64_t particle) {
-  context->error.step = step;
-  context->error.particle = particle;
-}
-
-void mpsi_fail_object(mps_context *context, const char *format, ...) {
-  if (!context) return;
-  va_list args;
-  va_start(args, format);
-  vsnprintf(context->error.object, sizeof context->error.object, format, args);
-  va_end(args);
-}
-
-mps_status mpsi_fail_memory(mps_context *context, const char *function, size_t bytes) {
-  return mpsi_fail(context, function, MPS_ERROR_MEMORY, "could not allocate %zu bytes", bytes);
-}
-
-int64_t mpsi_failures(const mps_context *context) { return context->failures; }
-
-size_t mpsi_identifier(const char *name, size_t room) {
-  size_t length = 0;
-  for (;; length++) {
-    const char c = name[length];
-    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
-    if (!letter && !(length > 0 && c >= '0' && c <= '9')) return length;
-    if (length + 1 >= room) return 0;
-  }
-}
-
-const mps_error *mps_context_error(const mps_context *context) {
-  return context ? &context->error : NULL;
-}
-
-void mps_context_clear_error(mps_context *context) {
-  if (!context) return;
-  memset(&context->error, 0, sizeof context->error);
-  context->error.step = context->error.particle = -1;
-}
-
-void mpsi_log(mps_context *context, int32_t level, const char *format, ...) {
-  if (!context->def.log) return;
-  char message[512];
-  va_list args;
-  va_start(args, format);
-  vsnprintf(message, sizeof message, format, args);
-  va_end(args);
-  context->def.log(context->def.log_user, level, message);
-}
-
-/* ---- memory ---------------------------------------------------------------------------------- */
-
-void *mpsi_alloc(mps_context *context, int64_t count, size_t size) {
-  size_t bytes;
-  if (count < 0 || __builtin_mul_overflow((size_t)count, size, &bytes) ||
-      bytes > (size_t)PTRDIFF_MAX - MPSI_ALIGNMENT)
-    return NULL;
-  bytes = (bytes + MPSI_ALIGNMENT - 1) / MPSI_ALIGNMENT * MPSI_ALIGNMENT;
-  if (bytes == 0) bytes = MPSI_ALIGNMENT;
-  void *memory = context->def.alloc(context->def.memory_user, bytes, MPSI_ALIGNMENT);
-  if (memory) memset(memory, 0, bytes);
-  return memory;
-}
-
-void mpsi_free(mps_context *context, void *memory) {
-  if (memory) context->def.free(context->def.memory_user, memory);
-}
-
-bool mpsi_grow(mps_context *context, void **array, int64_t old_count, int64_t new_count,
-               size_t size) {
-  void *grown = mpsi_alloc(context, new_count, size);
-  if (!grown) return false;
-  if (old_count > 0) memcpy(grown, *array, (size_t)old_count * size);
-  mpsi_free(context, *array);
-  *array = grown;
-  return true;
 }
 
 /* ---- hooks ----------------------------------------------------------------------------------- */

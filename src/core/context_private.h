@@ -1,5 +1,5 @@
-/* context_private.h - the members of a context, for context.c and executor.c only.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* context_private.h - the members of a context, for the files of its errors, memory and threads
+ * only. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_CONTEXT_PRIVATE_H
 #define MPSI_CONTEXT_PRIVATE_H
 
@@ -18,6 +18,9 @@ struct mps_context {
   atomic_int references; /* the caller's one, and one for each living object */
   mpsi_pool pool;        /* of MPS_EXECUTOR_THREADS; its members lie behind the context */
 };
+
+/* memory.c: memory of the system where the caller gives no hooks. */
+void mpsi_use_system_memory(mps_context_def *def);
 
 /* Number of workers that the definition asks for (0 resolved to the processors available). */
 int32_t mpsi_executor_threads(const mps_context_def *def);

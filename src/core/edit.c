@@ -53,20 +53,6 @@ void mpsi_particles_release(mps_particles *p, mpsi_holder *holder) {
   mpsi_particles_free_if_unused(p);
 }
 
-/* ---- ready ----------------------------------------------------------------------------------- */
-
-mps_status mpsi_particles_ready(const mps_particles *p, const char *function) {
-  for (int32_t f = 0; p->open_edits > 0 && f < p->field_count; f++) {
-    if (!p->fields[f]->open) continue;
-    (void)mpsi_fail(p->context, function, MPS_ERROR_STATE,
-                    "field '%s' is being edited: mps_particles_commit ends that",
-                    p->fields[f]->name);
-    mpsi_fail_object(p->context, "field '%s'", p->fields[f]->name);
-    return MPS_ERROR_STATE;
-  }
-  return mpsi_executor_check(p->context, function);
-}
-
 /* ---- checks of values ------------------------------------------------------------------------ */
 
 typedef struct range {
@@ -151,10 +137,11 @@ static mps_status keep_former(mps_particles *p, const char *function, mpsi_field
   return MPS_OK;
 }
 
-mps_status mps_particles_edit(mps_particles *particles, const char *name, mps_view *out) {
+mps_status mps_particles_edit(mps_particles *particles, const char *name, mps_edit *out) {
   if (!particles) return MPS_ERROR_ARGUMENT;
   mps_context *context = particles->context;
-  mps_status status = mps_particles_view(particles, name, out);
+  if (out) out->data = NULL;
+  mps_status status = mps_particles_view(particles, name, out ? &out->view : NULL);
   if (status != MPS_OK) return status;
   mpsi_field *field = mpsi_field_find(particles, name);
   const char *reason = NULL;
@@ -174,45 +161,89 @@ mps_status mps_particles_edit(mps_particles *particles, const char *name, mps_vi
   }
   field->open = true;
   particles->open_edits++;
-  out->flags &= ~MPS_VIEW_READONLY;
+  out->data = field->data;
+  out->view.flags &= ~MPS_VIEW_READONLY;
   return MPS_OK;
 }
 
-/* The open field that the view is of; NULL with an error recorded. */
-static mpsi_field *find_open(const mps_particles *p, const char *function, const mps_view *view) {
-  if (!view) {
-    (void)mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT, "view is NULL");
+/* The open field that `edit` is of; NULL with an error recorded. */
+static mpsi_field *find_open(const mps_particles *p, const char *function, const mps_edit *edit) {
+  if (!edit) {
+    (void)mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT, "edit is NULL");
     return NULL;
   }
   for (int32_t f = 0; f < p->field_count; f++)
-    if (p->fields[f]->open && p->fields[f]->data == view->data) return p->fields[f];
+    if (p->fields[f]->open && p->fields[f]->data == edit->data) return p->fields[f];
   (void)mpsi_fail(p->context, function, MPS_ERROR_STATE,
-                  "the view is not of a field that is being edited: mps_particles_edit gives it");
+                  "edit is not of a field that is being edited: mps_particles_edit gives it");
   return NULL;
 }
 
-static void close_field(mps_particles *p, mpsi_field *field, mps_view *view) {
+static void close_field(mps_particles *p, mpsi_field *field, mps_edit *edit) {
   field->open = false;
   p->open_edits--;
-  view->flags |= MPS_VIEW_READONLY;
+  edit->data = NULL;
+  edit->view.flags |= MPS_VIEW_READONLY;
 }
 
-mps_status mps_particles_commit(mps_particles *particles, mps_view *view) {
+mps_status mps_particles_commit(mps_particles *particles, mps_edit *edit) {
   if (!particles) return MPS_ERROR_ARGUMENT;
-  mpsi_field *field = find_open(particles, __func__, view);
+  mpsi_field *field = find_open(particles, __func__, edit);
   if (!field) return mps_context_error(particles->context)->status;
   mps_status status = check_field(particles, __func__, field);
   if (status == MPS_OK)
     status = mpsi_particles_tell(particles, __func__, field->name, field->former);
-  if (status == MPS_OK) close_field(particles, field, view);
+  if (status == MPS_OK) close_field(particles, field, edit);
   return status;
 }
 
-mps_status mps_particles_abandon(mps_particles *particles, mps_view *view) {
+mps_status mps_particles_abandon(mps_particles *particles, mps_edit *edit) {
   if (!particles) return MPS_ERROR_ARGUMENT;
-  mpsi_field *field = find_open(particles, __func__, view);
+  mpsi_field *field = find_open(particles, __func__, edit);
   if (!field) return mps_context_error(particles->context)->status;
   copy_former(particles, field, true);
-  close_field(particles, field, view);
+  close_field(particles, field, edit);
   return MPS_OK;
+}
+
+/* ---- one value for all -------------------------------------------------------------------- */
+
+/* Fills a column; where a holder refuses that, the column is as before. */
+static mps_status set_column(mps_particles *p, const char *function, const char *name,
+                             int32_t component, double value) {
+  double *column = mpsi_particles_column(p, name, component), *former = NULL;
+  if (p->holders) {
+    former = mpsi_alloc(p->context, p->count, sizeof *former);
+    if (!former) return mpsi_fail_memory(p->context, function, (size_t)p->count * sizeof *former);
+    memcpy(former, column, (size_t)p->count * sizeof *former);
+  }
+  for (int64_t i = 0; i < p->count; i++) column[i] = value;
+  const mpsi_field *field = mpsi_field_find(p, name);
+  const mps_status status =
+      mpsi_particles_tell(p, function, name, field->components == 1 ? former : NULL);
+  if (status != MPS_OK) memcpy(column, former, (size_t)p->count * sizeof *former);
+  mpsi_free(p->context, former);
+  return status;
+}
+
+mps_status mps_particles_set(mps_particles *particles, const char *name, int32_t component,
+                             double value) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  if (!name) return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT, "name is NULL");
+  mpsi_field shape;
+  mps_status status = mpsi_field_look_up(particles, __func__, name, &shape);
+  if (status != MPS_OK) return status;
+  if (shape.dtype.code != 2)
+    return mpsi_fail(
+        particles->context, __func__, MPS_ERROR_FIELD,
+        "field '%s' is of int64, only float64 fields can be set: use mps_particles_edit", name);
+  if (component < 0 || component >= shape.components)
+    return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT,
+                     "component of field '%s' is %d, allowed are 0 to %d", name, component,
+                     shape.components - 1);
+  const bool present = mpsi_field_find(particles, name) != NULL;
+  if (present && shape.open) return mpsi_particles_ready(particles, __func__);
+  status = mpsi_field_check_value(particles, __func__, &shape, value);
+  if (status == MPS_OK && !present) status = mps_particles_add_field(particles, name, 0);
+  return status == MPS_OK ? set_column(particles, __func__, name, component, value) : status;
 }

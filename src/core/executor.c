@@ -107,14 +107,6 @@ bool mpsi_executor_is_own(const mps_context *context) {
   return context->def.executor != MPS_EXECUTOR_CALLER;
 }
 
-void mpsi_pause(void) {
-#if defined(__x86_64__) || defined(__i386__)
-  __builtin_ia32_pause();
-#elif defined(__aarch64__)
-  __asm__ volatile("yield");
-#endif
-}
-
 bool mpsi_wait_a_little(int32_t look, bool may_sleep) {
   if (look >= LOOKS && !may_sleep) return false;
   if (look < LOOKS)

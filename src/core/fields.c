@@ -26,6 +26,9 @@ _Static_assert(offsetof(mps_view, data) == 0 && offsetof(mps_view, shape) == 8 &
                    offsetof(mps_view, device_type) == 72 && offsetof(mps_view, device_id) == 76 &&
                    sizeof(mps_view) == 80,
                "mps_view has a frozen layout");
+_Static_assert(offsetof(mps_edit, data) == 0 && offsetof(mps_edit, view) == 8 &&
+                   sizeof(mps_edit) == 88,
+               "mps_edit has a frozen layout");
 
 /* ---- the table ------------------------------------------------------------------------------- */
 
@@ -101,6 +104,20 @@ int64_t *mpsi_particles_integers(mps_particles *particles, const char *name) {
   return field && field->dtype.code == 0 ? mpsi_field_column(field, 0) : NULL;
 }
 
+/* ---- ready ----------------------------------------------------------------------------------- */
+
+mps_status mpsi_particles_ready(const mps_particles *p, const char *function) {
+  for (int32_t f = 0; p->open_edits > 0 && f < p->field_count; f++) {
+    if (!p->fields[f]->open) continue;
+    (void)mpsi_fail(p->context, function, MPS_ERROR_STATE,
+                    "field '%s' is being edited: mps_particles_commit ends that",
+                    p->fields[f]->name);
+    mpsi_fail_object(p->context, "field '%s'", p->fields[f]->name);
+    return MPS_ERROR_STATE;
+  }
+  return mpsi_executor_check(p->context, function);
+}
+
 /* ---- adding ---------------------------------------------------------------------------------- */
 
 static mps_status insert_field(mps_particles *p, const char *function, const mpsi_field *like) {
@@ -135,7 +152,7 @@ static bool good_name(const char *name) {
   return name[length] == '.' && rest > 0 && column[rest] == '\0';
 }
 
-static mps_status describe_user_field(mps_particles *p, const char *function, const char *name,
+static mps_status describe_user_field(const mps_particles *p, const char *function, const char *name,
                                       int32_t components, mpsi_field *out) {
   if (!good_name(name))
     return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
@@ -152,7 +169,7 @@ static mps_status describe_user_field(mps_particles *p, const char *function, co
 }
 
 /* What a field of this name and number of components (0: the table's) is. */
-static mps_status describe_field(mps_particles *p, const char *function, const char *name,
+static mps_status describe_field(const mps_particles *p, const char *function, const char *name,
                                  int32_t components, mpsi_field *out) {
   const table_row *row = table_find(name);
   if (row) {
@@ -226,48 +243,13 @@ mps_status mps_particles_view(mps_particles *particles, const char *name, mps_vi
   return MPS_OK;
 }
 
-/* Fills a column; where a holder refuses that, the column is as before. */
-static mps_status set_column(mps_particles *p, const char *function, const char *name,
-                             int32_t component, double value) {
-  double *column = mpsi_particles_column(p, name, component), *former = NULL;
-  if (p->holders) {
-    former = mpsi_alloc(p->context, p->count, sizeof *former);
-    if (!former) return mpsi_fail_memory(p->context, function, (size_t)p->count * sizeof *former);
-    memcpy(former, column, (size_t)p->count * sizeof *former);
-  }
-  for (int64_t i = 0; i < p->count; i++) column[i] = value;
+mps_status mpsi_field_look_up(const mps_particles *p, const char *function, const char *name,
+                              mpsi_field *out) {
   const mpsi_field *field = mpsi_field_find(p, name);
-  const mps_status status =
-      mpsi_particles_tell(p, function, name, field->components == 1 ? former : NULL);
-  if (status != MPS_OK) memcpy(column, former, (size_t)p->count * sizeof *former);
-  mpsi_free(p->context, former);
-  return status;
-}
-
-mps_status mps_particles_set(mps_particles *particles, const char *name, int32_t component,
-                             double value) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
-  if (!name) return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT, "name is NULL");
-  mpsi_field *field = mpsi_field_find(particles, name), shape;
-  if (field)
-    shape = *field;
-  else if (!table_find(name))
-    return fail_unknown(particles, __func__, name);
-  else
-    (void)describe_field(particles, __func__, name, 0, &shape); /* a name of the table: no error */
-  if (!is_f64(shape.dtype))
-    return mpsi_fail(particles->context, __func__, MPS_ERROR_FIELD,
-                     "field '%s' is of int64, only float64 fields can be set: write to its view",
-                     name);
-  if (component < 0 || component >= shape.components)
-    return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT,
-                     "component of field '%s' is %d, allowed are 0 to %d", name, component,
-                     shape.components - 1);
-  if (field && field->open) return mpsi_particles_ready(particles, __func__);
-  snprintf(shape.name, sizeof shape.name, "%s", name);
-  mps_status status = mpsi_field_check_value(particles, __func__, &shape, value);
-  if (status == MPS_OK && !field) status = insert_field(particles, __func__, &shape);
-  return status == MPS_OK ? set_column(particles, __func__, name, component, value) : status;
+  if (!field && !table_find(name)) return fail_unknown(p, function, name);
+  if (!field) return describe_field(p, function, name, 0, out);
+  *out = *field;
+  return MPS_OK;
 }
 
 int32_t mps_particles_field_count(const mps_particles *particles) {

@@ -1,5 +1,5 @@
 /* particles_private.h - the members of a particle set, for particles.c, edit.c, fields.c, fill.c
- * and remove.c only. SPDX-License-Identifier: BSD-3-Clause */
+ * and population.c only. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_PARTICLES_PRIVATE_H
 #define MPSI_PARTICLES_PRIVATE_H
 
@@ -60,6 +60,9 @@ struct mps_particles {
 #define MPSI_FIELD_POSITION 1
 
 mpsi_field *mpsi_field_find(const mps_particles *particles, const char *name); /* or NULL */
+/* The field of that name, or what it would be by the table of fields; MPS_ERROR_FIELD otherwise. */
+mps_status mpsi_field_look_up(const mps_particles *particles, const char *function,
+                              const char *name, mpsi_field *out);
 /* Address of a column of 8-byte items. */
 static inline void *mpsi_field_column(const mpsi_field *field, int32_t component) {
   return (char *)field->data + (size_t)component * (size_t)field->stride * 8;
@@ -78,7 +81,7 @@ void mpsi_field_move(mps_context *context, mpsi_field *field, void *block, int64
 mps_status mpsi_field_check_value(const mps_particles *particles, const char *function,
                                   const mpsi_field *field, double value);
 
-/* ---- remove.c -------------------------------------------------------------------------------- */
+/* ---- population.c ---------------------------------------------------------------------------- */
 
 /* Tells the holders of the particles from index `first` on, which have been added with their
  * positions; where one refuses they are gone again. */

@@ -13,6 +13,14 @@
 #include <signal.h>
 #include <unistd.h>
 
+void mpsi_pause(void) {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_ia32_pause();
+#elif defined(__aarch64__)
+  __asm__ volatile("yield");
+#endif
+}
+
 #define LOOKS 400 /* before a thread sleeps: 5 to 20 microseconds */
 
 /* ---- workers --------------------------------------------------------------------------------- */

@@ -30,3 +30,13 @@ mps_status mpsi_check_range_or_0(mps_context *context, const char *function, con
                                  double value, mpsi_range range) {
   return check(context, function, name, value, range, "0 or ");
 }
+
+size_t mpsi_identifier(const char *name, size_t room) {
+  size_t length = 0;
+  for (;; length++) {
+    const char c = name[length];
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    if (!letter && !(length > 0 && c >= '0' && c <= '9')) return length;
+    if (length + 1 >= room) return 0;
+  }
+}

@@ -40,30 +40,24 @@ static mps_status find_edge(mps_context *context, mps_particles *particles, int3
 }
 
 /* Copies every field but id, position and the mark from the edge to the new particles. */
-static mps_status copy_fields(mps_context *context, mps_particles *particles, const edge *e,
-                              int64_t first, int32_t side, double shift) {
-  mps_status status = MPS_OK;
-  for (int32_t f = 0; status == MPS_OK && f < mps_particles_field_count(particles); f++) {
+static mps_status copy_fields(mps_particles *particles, const edge *e, int64_t first, int32_t side,
+                              double shift) {
+  for (int32_t f = 0; f < mps_particles_field_count(particles); f++) {
     mps_field_info info;
-    mps_view view;
-    status = mps_particles_field(particles, f, &info);
-    if (status == MPS_OK) status = mps_particles_view(particles, info.name, &view);
-    if (status != MPS_OK || strcmp(info.name, "id") == 0 || strcmp(info.name, "position") == 0)
-      continue;
-    for (int64_t k = 0; k < e->count; k++)
-      for (int64_t c = 0; c < view.shape[1]; c++) {
-        if (view.dtype.code == 2)
-          *mps_view_f64(&view, first + k, c) =
-              *mps_view_f64(&view, e->index[k], c) +
-              (strcmp(info.name, "reference") == 0 && c == 0 ? shift : 0.0);
-        else if (strcmp(info.name, "free_field") == 0)
-          *mps_view_i64(&view, first + k, c) = (int64_t)side;
-        else
-          *mps_view_i64(&view, first + k, c) = *mps_view_i64(&view, e->index[k], c);
-      }
+    const mps_status status = mps_particles_field(particles, f, &info);
+    if (status != MPS_OK) return status;
+    if (strcmp(info.name, "id") == 0 || strcmp(info.name, "position") == 0) continue;
+    for (int32_t c = 0; c < info.components; c++) {
+      double *value = mpsi_particles_column(particles, info.name, c);
+      const double more = strcmp(info.name, "reference") == 0 && c == 0 ? shift : 0.0;
+      for (int64_t k = 0; value && k < e->count; k++) value[first + k] = value[e->index[k]] + more;
+    }
+    int64_t *number = mpsi_particles_integers(particles, info.name);
+    const bool mark = strcmp(info.name, "free_field") == 0;
+    for (int64_t k = 0; number && k < e->count; k++)
+      number[first + k] = mark ? side : number[e->index[k]];
   }
-  (void)context;
-  return status;
+  return MPS_OK;
 }
 
 static mps_status append_column(mps_context *context, mps_particles *particles, int32_t side,
@@ -81,7 +75,7 @@ static mps_status append_column(mps_context *context, mps_particles *particles, 
   const int64_t first = mps_particles_count(particles);
   mps_status status = mps_particles_add_field(particles, "free_field", 0);
   if (status == MPS_OK) status = mps_particles_append(particles, e->count, at);
-  if (status == MPS_OK) status = copy_fields(context, particles, e, first, side, shift);
+  if (status == MPS_OK) status = copy_fields(particles, e, first, side, shift);
   mpsi_free(context, at);
   return status;
 }

@@ -101,6 +101,11 @@ double mpsi_dynamics_lattice_omega2(const mps_kernel *kernel, double spacing, do
   return most * vs * vs / (spacing * spacing);
 }
 
+double mpsi_dynamics_damped_limit(double omega2, double alpha, double beta) {
+  const double b = beta + alpha / omega2;
+  return 4.0 / omega2 / (b + sqrt(b * b + 4.0 / omega2)); /* without cancellation */
+}
+
 static mps_status check(mps_context *context, const mps_dynamics_predict_def *def) {
   static const char *const function = "mps_dynamics_predict";
   const struct {

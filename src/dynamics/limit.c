@@ -19,11 +19,6 @@
 #define LANCZOS_BOUND 1e-7
 #define UNEVEN_BOUND 1e-5 /* for the rounds of uneven_limit */
 
-double mpsi_dynamics_damped_limit(double omega2, double alpha, double beta) {
-  const double b = beta + alpha / omega2;
-  return 4.0 / omega2 / (b + sqrt(b * b + 4.0 / omega2)); /* without cancellation */
-}
-
 #define FUNCTION "mps_dynamics_find_limit"
 
 /* ---- Lanczos -----------------------------------------------------------------------------------

@@ -32,8 +32,6 @@ static const mpsi_h5_row header_table[] = {{"version", true, 1, offsetof(header,
                                            {"dt", false, 1, offsetof(header, dt)}};
 #define HEADER_ROWS (sizeof header_table / sizeof *header_table)
 
-static hid_t number_type(bool integer) { return integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE; }
-
 static mps_status check_path(mps_context *context, const char *function, const char *path) {
   if (path && path[0]) return MPS_OK;
   return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "path is %s, must name a file",
@@ -55,53 +53,11 @@ static mps_status read_info(mps_context *context, const char *function, const mp
   return status;
 }
 
-/* ---- attributes ------------------------------------------------------------------------------ */
-
-bool mpsi_h5_write_rows(hid_t object, const mpsi_h5_row *row, size_t rows, const void *from) {
-  bool good = true;
-  for (const mpsi_h5_row *end = row + rows; good && row < end; row++)
-    good = mpsi_h5_attribute(object, row->name, number_type(row->integer),
-                             row->count > 1 ? (hsize_t)row->count : 0,
-                             (const char *)from + row->offset);
-  return good;
-}
-
-bool mpsi_h5_read_attribute(hid_t object, const char *name, H5T_class_t kind, hid_t type,
-                            int64_t count, size_t size, void *out) {
-  if (H5Aexists(object, name) <= 0) return false;
-  const hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
-  const hid_t stored = attribute < 0 ? -1 : H5Aget_type(attribute);
-  const hid_t space = attribute < 0 ? -1 : H5Aget_space(attribute);
-  const bool text = kind == H5T_STRING;
-  bool good = stored >= 0 && space >= 0 && H5Tget_class(stored) == kind &&
-              H5Sget_simple_extent_npoints(space) == count && H5Tis_variable_str(stored) <= 0 &&
-              H5Tget_size(stored) <= size;
-  good = good && H5Aread(attribute, text ? stored : type, out) >= 0;
-  if (space >= 0) H5Sclose(space);
-  if (stored >= 0) H5Tclose(stored);
-  if (attribute >= 0) H5Aclose(attribute);
-  return good;
-}
-
-mps_status mpsi_h5_read_rows(const mpsi_reading *r, hid_t object, const mpsi_h5_row *row,
-                             size_t rows, void *to) {
-  for (const mpsi_h5_row *end = row + rows; row < end; row++)
-    if (!mpsi_h5_read_attribute(object, row->name, row->integer ? H5T_INTEGER : H5T_FLOAT,
-                                number_type(row->integer), row->count, 8, (char *)to + row->offset))
-      return mpsi_checkpoint_malformed(r, row->name);
-  return MPS_OK;
-}
-
-bool mpsi_h5_read_text(hid_t object, const char *name, size_t size, char *out) {
-  memset(out, 0, size);
-  return mpsi_h5_read_attribute(object, name, H5T_STRING, -1, 1, size - 1, out);
-}
-
 /* ---- writing --------------------------------------------------------------------------------- */
 
 static bool write_field(hid_t group, const mps_field_info *info, const mps_view *view) {
   const hsize_t size[2] = {(hsize_t)view->shape[1], (hsize_t)view->shape[0]};
-  const hid_t type = number_type(info->dtype.code == 0);
+  const hid_t type = mpsi_h5_number_type(info->dtype.code == 0);
   const hid_t target = H5Screate_simple(2, size, NULL),
               source = H5Screate_simple(1, size + 1, NULL);
   hid_t dataset = -1;
@@ -229,13 +185,6 @@ mps_status mpsi_checkpoint_save(const mpsi_state_of *of, const char *function, c
 
 /* ---- reading: the file into memory ----------------------------------------------------------- */
 
-mps_status mpsi_checkpoint_malformed(const mpsi_reading *r, const char *what) {
-  if (r->file.error) return mpsi_fail_io(r->context, r->function, "read", r->path, r->file.error);
-  return mpsi_fail(r->context, r->function, MPS_ERROR_FORMAT,
-                   "'%.200s' is not a checkpoint of libmps: %s%s%s", r->path, what,
-                   r->stay.text[0] ? "; HDF5 says: " : "", r->stay.text);
-}
-
 static mps_status read_header(reading *r) {
   char format[sizeof FORMAT_NAME];
   const hid_t root = r->file.id;
@@ -325,8 +274,8 @@ static mps_status stage_dataset(reading *r, hid_t dataset, hid_t type, hid_t spa
   field->rows = r->header.count;
   if (!mpsi_value_reserve(r->context, field, field->type, field->rows, field->columns))
     return mpsi_fail_memory(r->context, r->function, (size_t)(field->columns * field->rows) * 8);
-  if (field->rows > 0 && H5Dread(dataset, number_type(kind == H5T_INTEGER), H5S_ALL, H5S_ALL,
-                                 H5P_DEFAULT, field->data) < 0)
+  if (field->rows > 0 && H5Dread(dataset, mpsi_h5_number_type(kind == H5T_INTEGER), H5S_ALL,
+                                 H5S_ALL, H5P_DEFAULT, field->data) < 0)
     return mpsi_checkpoint_malformed(r, field->name);
   return MPS_OK;
 }
@@ -466,14 +415,14 @@ static mps_status add_missing(const reading *r) {
 }
 
 static void put_field(const reading *r, const mpsi_value *field) {
-  mps_view view;
-  if (strcmp(field->name, "id") == 0 || /* the order of the set stays */
-      mps_particles_view(r->particles, field->name, &view) != MPS_OK)
-    return;
-  for (int64_t c = 0; c < view.shape[1]; c++) {
-    char *to = (char *)view.data + 8 * c * view.stride[1];
-    const char *from = (const char *)field->data + 8 * c * view.shape[0];
-    for (int64_t i = 0; i < view.shape[0]; i++) memcpy(to + 8 * i, from + 8 * r->source[i], 8);
+  if (strcmp(field->name, "id") == 0) return; /* the order of the set stays */
+  const int64_t count = mps_particles_count(r->particles);
+  for (int32_t c = 0; c < field->columns; c++) {
+    void *number = mpsi_particles_column(r->particles, field->name, c);
+    if (!number) number = mpsi_particles_integers(r->particles, field->name);
+    char *to = number;
+    const char *from = (const char *)field->data + 8 * c * count;
+    for (int64_t i = 0; to && i < count; i++) memcpy(to + 8 * i, from + 8 * r->source[i], 8);
   }
 }
 

@@ -1,4 +1,4 @@
-/* checkpoint_private.h - what checkpoint.c and state_file.c share.
+/* checkpoint_private.h - what checkpoint.c, attributes.c and state_file.c share.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_IO_CHECKPOINT_PRIVATE_H
 #define MPSI_IO_CHECKPOINT_PRIVATE_H
@@ -29,10 +29,14 @@ typedef struct mpsi_reading {
   int64_t *source;     /* source[i]: place in the file of the particle at index i of the set */
 } mpsi_reading;
 
+/* ---- attributes.c ---------------------------------------------------------------------------- */
+
 /* MPS_ERROR_FORMAT. The file is sealed, so it is not one of ours, or not of this version. */
 mps_status mpsi_checkpoint_malformed(const mpsi_reading *r, const char *what);
 
-/* ---- attributes ------------------------------------------------------------------------------ */
+static inline hid_t mpsi_h5_number_type(bool integer) {
+  return integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE;
+}
 
 /* A number of a structure, or `count` > 1 of them, kept as an attribute. */
 typedef struct mpsi_h5_row {

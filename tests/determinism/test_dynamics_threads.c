@@ -39,12 +39,14 @@ static mps_status run(const setting *s, uint64_t *hash) {
   mps_assert_ok(context, mps_particles_set(particles, "density", 0, 1800.0));
   mps_assert_ok(context, mps_particles_set(particles, "shear_velocity", 0, 150.0));
   mps_assert_ok(context, mps_particles_set(particles, "pressure_velocity", 0, 330.0));
-  mps_view x, h;
+  mps_view x;
+  mps_edit h;
   mps_assert_ok(context, mps_particles_set(particles, "damping", 0, 0.0));
   mps_assert_ok(context, mps_particles_view(particles, "position", &x));
-  mps_assert_ok(context, mps_particles_view(particles, "damping", &h));
+  mps_assert_ok(context, mps_particles_edit(particles, "damping", &h));
   for (int64_t k = 0; s->damped && k < x.shape[0]; k++)
-    *mps_view_f64(&h, k, 0) = *mps_view_f64(&x, k, 1) > 60.0 ? 0.05 : 0.02;
+    *mps_edit_f64(&h, k, 0) = *mps_view_f64(&x, k, 1) > 60.0 ? 0.05 : 0.02;
+  mps_assert_ok(context, mps_particles_commit(particles, &h));
   mps_assert_ok(context, mps_dynamics_add_free_field(particles, MPS_DYNAMICS_SIDE_LEFT, 2));
   mps_assert_ok(context, mps_dynamics_add_free_field(particles, MPS_DYNAMICS_SIDE_RIGHT, 2));
   mps_dynamics_def dynamics_def = mps_dynamics_defaults();

@@ -218,22 +218,22 @@ enum { STATE_FIELDS = 5, STATE_VALUES = 2 + 2 + 5 + 4 + 1 };
 /* Fields of a particle, from the set or (to) into it. */
 static void exchange(mpm_scene *s, double (*values)[STATE_VALUES], bool to) {
   const int64_t count = mps_particles_count(s->particles);
-  mps_view field[STATE_FIELDS], id = mpm_scene_view(s, "id");
+  mps_view id = mpm_scene_view(s, "id");
+  mps_edit field[STATE_FIELDS];
   for (int f = 0; f < STATE_FIELDS; f++) {
-    field[f] = mpm_scene_view(s, state_fields[f]);
-    if (to) mps_assert_ok(s->context, mps_particles_edit(s->particles, state_fields[f], &field[f]));
+    field[f].view = mpm_scene_view(s, state_fields[f]);
+    if (to) field[f] = mpm_scene_edit(s, state_fields[f]);
   }
   for (int64_t k = 0; k < count; k++) {
     double *value = values[*mps_view_i64(&id, k, 0)];
     for (int f = 0; f < STATE_FIELDS; f++)
-      for (int64_t c = 0; c < field[f].shape[1]; c++, value++)
+      for (int64_t c = 0; c < field[f].view.shape[1]; c++, value++)
         if (to)
-          *mps_view_f64(&field[f], k, c) = *value;
+          *mps_edit_f64(&field[f], k, c) = *value;
         else
-          *value = *mps_view_f64(&field[f], k, c);
+          *value = *mps_view_f64(&field[f].view, k, c);
   }
-  for (int f = 0; to && f < STATE_FIELDS; f++)
-    mps_assert_ok(s->context, mps_particles_commit(s->particles, &field[f]));
+  for (int f = 0; to && f < STATE_FIELDS; f++) mpm_scene_commit(s, &field[f]);
 }
 
 /* A lump that shakes at random at a wall is put back to its first state after many sorts: what then
@@ -247,14 +247,15 @@ static void any_history_of_sorts(void **state) {
   mpm_scene s = mpm_scene_begin(context, 0.01, 0.003, 0.001, 1e6);
   mps_assert_ok(context, mps_particles_fill_ball(s.particles, centre, 0.1, NULL));
   mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity", 0));
-  mps_view v = mpm_scene_view(&s, "velocity");
+  mps_edit v = mpm_scene_edit(&s, "velocity");
   uint64_t seed = 1;
-  assert_in_range(v.shape[0], 200, MOST);
-  for (int64_t k = 0; k < v.shape[0]; k++)
+  assert_in_range(v.view.shape[0], 200, MOST);
+  for (int64_t k = 0; k < v.view.shape[0]; k++)
     for (int c = 0; c < 2; c++) {
       seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-      *mps_view_f64(&v, k, c) = 20.0 * (double)(seed >> 11) * 0x1p-53 - 8.0;
+      *mps_edit_f64(&v, k, c) = 20.0 * (double)(seed >> 11) * 0x1p-53 - 8.0;
     }
+  mpm_scene_commit(&s, &v);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 0.02, def.dt = 1e-4, def.lower[1] = 0.0;
   mpm_scene_solve(&s, &def);
@@ -268,7 +269,7 @@ static void any_history_of_sorts(void **state) {
     mps_assert_ok(context, mps_mpm_step(s.mpm, 200));
     exchange(&s, start, true);
   }
-  for (int64_t id = 0; id < v.shape[0]; id++)
+  for (int64_t id = 0; id < v.view.shape[0]; id++)
     assert_memory_equal(end[0][id], end[1][id], sizeof end[0][id]);
   mpm_scene_end(&s);
   mps_context_destroy(&context);

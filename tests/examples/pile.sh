@@ -82,7 +82,7 @@ mv "$work/disk" "$work/gone"
 status=0
 wait "$pid" || status=$?
 [ "$status" -eq 1 ] || fail "checkpoint lost on the way: exit code $status"
-[ "$(grep -c "no checkpoint at .* the run goes on: .*disk/pile.h5" "$work/log")" -eq 1 ] ||
+[ "$(grep -c "no checkpoint is written, the run goes on: .*disk/pile.h5" "$work/log")" -eq 1 ] ||
   fail "lost checkpoint: $(cat "$work/log")"
 in_range "$work/g/summary.json" depth 0.19999 0.20001
 [ -s "$work/g/load.csv" ] || fail "no load.csv"

@@ -9,14 +9,16 @@
 static mps_dynamics *block(mps_particles **set, int integrator, double damping, bool watch) {
   const soil_layer soil = {1e9, 1700.0, 120.0, 260.0, damping};
   *set = soil_particles(context, 0.5, 5.0, 6.0, 1, &soil);
-  mps_view x, v;
+  mps_view x;
+  mps_edit v;
   mps_assert_ok(context, mps_particles_set(*set, "velocity", 0, 0.0));
   mps_assert_ok(context, mps_particles_view(*set, "position", &x));
-  mps_assert_ok(context, mps_particles_view(*set, "velocity", &v));
+  mps_assert_ok(context, mps_particles_edit(*set, "velocity", &v));
   for (int64_t k = 0; k < x.shape[0]; k++) {
-    *mps_view_f64(&v, k, 0) = 1e-9 * sin(1.0 + *mps_view_f64(&x, k, 1));
-    *mps_view_f64(&v, k, 1) = 1e-9 * cos(2.0 * *mps_view_f64(&x, k, 0));
+    *mps_edit_f64(&v, k, 0) = 1e-9 * sin(1.0 + *mps_view_f64(&x, k, 1));
+    *mps_edit_f64(&v, k, 1) = 1e-9 * cos(2.0 * *mps_view_f64(&x, k, 0));
   }
+  mps_assert_ok(context, mps_particles_commit(*set, &v));
   mps_dynamics_def def = mps_dynamics_defaults();
   mps_dynamics *d = NULL;
   def.integrator = integrator;

@@ -33,19 +33,21 @@ static mps_dynamics *random_body(mps_context *context, int64_t count, double spe
   }
   const char *const names[] = {"density", "shear_velocity", "pressure_velocity",
                                "damping", "velocity",       "spin"};
-  mps_view view[6];
+  mps_edit view[6];
   for (int f = 0; f < 6; f++) {
     mps_assert_ok(context, mps_particles_add_field(*particles, names[f], 0));
-    mps_assert_ok(context, mps_particles_view(*particles, names[f], &view[f]));
+    mps_assert_ok(context, mps_particles_edit(*particles, names[f], &view[f]));
   }
   for (int64_t k = 0; k < count; k++) {
-    *mps_view_f64(&view[0], k, 0) = 1500.0 + 500.0 * uniform(&seed);
-    *mps_view_f64(&view[1], k, 0) = 100.0 + 40.0 * uniform(&seed);
-    *mps_view_f64(&view[2], k, 0) = *mps_view_f64(&view[1], k, 0) * (1.8 + 0.3 * uniform(&seed));
-    *mps_view_f64(&view[3], k, 0) = damped ? 0.05 + 0.04 * uniform(&seed) : 0.0;
-    for (int c = 0; c < 2; c++) *mps_view_f64(&view[4], k, c) = speed * uniform(&seed);
-    *mps_view_f64(&view[5], k, 0) = speed * uniform(&seed);
+    *mps_edit_f64(&view[0], k, 0) = 1500.0 + 500.0 * uniform(&seed);
+    *mps_edit_f64(&view[1], k, 0) = 100.0 + 40.0 * uniform(&seed);
+    *mps_edit_f64(&view[2], k, 0) =
+        *mps_view_f64(&view[1].view, k, 0) * (1.8 + 0.3 * uniform(&seed));
+    *mps_edit_f64(&view[3], k, 0) = damped ? 0.05 + 0.04 * uniform(&seed) : 0.0;
+    for (int c = 0; c < 2; c++) *mps_edit_f64(&view[4], k, c) = speed * uniform(&seed);
+    *mps_edit_f64(&view[5], k, 0) = speed * uniform(&seed);
   }
+  for (int f = 0; f < 6; f++) mps_assert_ok(context, mps_particles_commit(*particles, &view[f]));
   mps_dynamics *dynamics = NULL;
   mps_assert_ok(context, mps_dynamics_create(context, *particles, def, &dynamics));
   return dynamics;
@@ -137,13 +139,15 @@ static void energy_stays_bounded_over_1e5_steps(void **state) {
   const soil_layer soil = {16.0, 1500.0, 100.0, 200.0, 0.0};
   mps_particles *particles = soil_particles(context, 1.0, 12.0, 16.0, 1, &soil);
   mps_assert_ok(context, mps_particles_add_field(particles, "velocity", 0));
-  mps_view x, v;
+  mps_view x;
+  mps_edit v;
   mps_assert_ok(context, mps_particles_view(particles, "position", &x));
-  mps_assert_ok(context, mps_particles_view(particles, "velocity", &v));
+  mps_assert_ok(context, mps_particles_edit(particles, "velocity", &v));
   for (int64_t k = 0; k < x.shape[0]; k++) {
-    *mps_view_f64(&v, k, 0) = 1e-3 * sin(0.3 * *mps_view_f64(&x, k, 1));
-    *mps_view_f64(&v, k, 1) = 1e-3 * cos(0.4 * *mps_view_f64(&x, k, 0));
+    *mps_edit_f64(&v, k, 0) = 1e-3 * sin(0.3 * *mps_view_f64(&x, k, 1));
+    *mps_edit_f64(&v, k, 1) = 1e-3 * cos(0.4 * *mps_view_f64(&x, k, 0));
   }
+  mps_assert_ok(context, mps_particles_commit(particles, &v));
   mps_dynamics_def def = mps_dynamics_defaults();
   def.courant = 0.8;
   mps_dynamics *dynamics = NULL;
@@ -172,17 +176,20 @@ static void rigid_motion_makes_no_force(void **state) {
     def.dt = 1e-3;
     mps_dynamics *dynamics = NULL;
     mps_assert_ok(context, mps_dynamics_create(context, particles, &def, &dynamics));
-    mps_view reference, d, th, a;
+    mps_view reference, a;
+    mps_edit d, th;
     mps_assert_ok(context, mps_particles_view(particles, "reference", &reference));
-    mps_assert_ok(context, mps_particles_view(particles, "displacement", &d));
-    mps_assert_ok(context, mps_particles_view(particles, "rotation", &th));
+    mps_assert_ok(context, mps_particles_edit(particles, "displacement", &d));
+    mps_assert_ok(context, mps_particles_edit(particles, "rotation", &th));
     const double angle = 2.5, c = cos(angle), s = sin(angle);
-    for (int64_t k = 0; k < d.shape[0]; k++) {
+    for (int64_t k = 0; k < d.view.shape[0]; k++) {
       const double x = *mps_view_f64(&reference, k, 0), y = *mps_view_f64(&reference, k, 1);
-      *mps_view_f64(&d, k, 0) = c * x - s * y - x + 3.0;
-      *mps_view_f64(&d, k, 1) = s * x + c * y - y - 2.0;
-      *mps_view_f64(&th, k, 0) = angle;
+      *mps_edit_f64(&d, k, 0) = c * x - s * y - x + 3.0;
+      *mps_edit_f64(&d, k, 1) = s * x + c * y - y - 2.0;
+      *mps_edit_f64(&th, k, 0) = angle;
     }
+    mps_assert_ok(context, mps_particles_commit(particles, &th));
+    mps_assert_ok(context, mps_particles_commit(particles, &d));
     mps_assert_ok(context, mps_dynamics_restart(dynamics, 0.0));
     mps_assert_ok(context, mps_dynamics_step(dynamics, 1));
     mps_assert_ok(context, mps_particles_view(particles, "acceleration", &a));

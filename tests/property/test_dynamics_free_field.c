@@ -85,15 +85,17 @@ static double energy_left(bool absorbing) {
   mps_dynamics_def def = mps_dynamics_defaults();
   mps_dynamics *dynamics = NULL;
   mps_assert_ok(context, mps_particles_add_field(particles, "velocity", 0));
-  mps_view x, v;
+  mps_view x;
+  mps_edit v;
   mps_assert_ok(context, mps_particles_view(particles, "position", &x));
-  mps_assert_ok(context, mps_particles_view(particles, "velocity", &v));
+  mps_assert_ok(context, mps_particles_edit(particles, "velocity", &v));
   for (int64_t k = 0; k < x.shape[0]; k++) {
     const double r2 =
         pow(*mps_view_f64(&x, k, 0) - 15.0, 2) + pow(*mps_view_f64(&x, k, 1) - 7.0, 2);
-    *mps_view_f64(&v, k, 0) = 0.01 * exp(-r2 / 8.0);
-    *mps_view_f64(&v, k, 1) = 0.007 * exp(-r2 / 8.0);
+    *mps_edit_f64(&v, k, 0) = 0.01 * exp(-r2 / 8.0);
+    *mps_edit_f64(&v, k, 1) = 0.007 * exp(-r2 / 8.0);
   }
+  mps_assert_ok(context, mps_particles_commit(particles, &v));
   if (absorbing) {
     mps_assert_ok(context, mps_dynamics_add_free_field(particles, MPS_DYNAMICS_SIDE_LEFT, 2));
     mps_assert_ok(context, mps_dynamics_add_free_field(particles, MPS_DYNAMICS_SIDE_RIGHT, 2));

@@ -244,9 +244,10 @@ static void the_assembled_matrix_is_the_operator(void **state) {
     def.radius_ratio = ratio[k / 2];
     b = l_shape_by(context, &def, 0.3, k % 2 ? TEST_PUBLISHED : TEST_CONSERVATIVE);
     /* A material that varies, and cells cut in half. */
-    mps_view young;
-    mps_assert_ok(context, mps_particles_view(b.particles, "young", &young));
-    for (int64_t i = 0; i < b.n; i++) *mps_view_f64(&young, i, 0) = 1.0 + 0.1 * (double)(i % 7);
+    mps_edit young;
+    mps_assert_ok(context, mps_particles_edit(b.particles, "young", &young));
+    for (int64_t i = 0; i < b.n; i++) *mps_edit_f64(&young, i, 0) = 1.0 + 0.1 * (double)(i % 7);
+    mps_assert_ok(context, mps_particles_commit(b.particles, &young));
     mps_assert_ok(context, mps_elastic_update_material(b.elastic));
     int64_t count, *ids = test_select(&b, 0, -1, 0.2, &count);
     mps_assert_ok(context, mps_elastic_cut(b.elastic, 0, -1, count, ids));

@@ -242,12 +242,15 @@ static void vibrating_bar(void **state) {
   mpm_scene_box(&s, 0.0, 0.0, 1.0, 0.04);
   mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity", 0));
   mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity_gradient", 0));
-  mps_view x = mpm_scene_view(&s, "position"), v = mpm_scene_view(&s, "velocity");
-  mps_view L = mpm_scene_view(&s, "velocity_gradient");
+  mps_view x = mpm_scene_view(&s, "position");
+  mps_edit v = mpm_scene_edit(&s, "velocity");
+  mps_edit L = mpm_scene_edit(&s, "velocity_gradient");
   for (int64_t k = 0; k < x.shape[0]; k++) {
-    *mps_view_f64(&v, k, 0) = -0.01 * cos(pi * *mps_view_f64(&x, k, 0));
-    *mps_view_f64(&L, k, 0) = 0.01 * pi * sin(pi * *mps_view_f64(&x, k, 0));
+    *mps_edit_f64(&v, k, 0) = -0.01 * cos(pi * *mps_view_f64(&x, k, 0));
+    *mps_edit_f64(&L, k, 0) = 0.01 * pi * sin(pi * *mps_view_f64(&x, k, 0));
   }
+  mpm_scene_commit(&s, &L);
+  mpm_scene_commit(&s, &v);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 0.02, def.budget = 1;
   mpm_scene_solve(&s, &def);

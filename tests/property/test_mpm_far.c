@@ -14,10 +14,12 @@ static mpm_scene swing(int32_t geometry, int far, const double (*at)[3]) {
   mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
   for (int k = 0; k < far; k++) mps_assert_ok(context, mps_particles_append(s.particles, 1, at[k]));
   mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity", 0));
-  const mps_view x = mpm_scene_view(&s, "position"), v = mpm_scene_view(&s, "velocity");
+  const mps_view x = mpm_scene_view(&s, "position");
+  mps_edit v = mpm_scene_edit(&s, "velocity");
   for (int64_t k = 0; k < mps_particles_count(s.particles) - far; k++)
     for (int c = 0; c < dim; c++)
-      *mps_view_f64(&v, k, c) = 2.0 * sin(7.0 * *mps_view_f64(&x, k, (c + 1) % dim));
+      *mps_edit_f64(&v, k, c) = 2.0 * sin(7.0 * *mps_view_f64(&x, k, (c + 1) % dim));
+  mpm_scene_commit(&s, &v);
   mps_mpm_def def = mps_mpm_defaults();
   def.geometry = geometry;
   def.cell = 0.2;

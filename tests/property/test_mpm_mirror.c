@@ -32,15 +32,17 @@ static mpm_scene part_of_box(int32_t geometry, int32_t spline, uint32_t cut, dou
     lo[c] = c == 1 || cut >> c & 1 ? 0.0 : -half, hi[c] = c == 1 ? 2.0 * half : half;
   mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
   mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity", 0));
-  mps_view x = mpm_scene_view(&s, "position"), v = mpm_scene_view(&s, "velocity");
+  mps_view x = mpm_scene_view(&s, "position");
+  mps_edit v = mpm_scene_edit(&s, "velocity");
   for (int64_t k = 0; k < x.shape[0]; k++) { /* what all the mirrors have */
     double at[3] = {0.0};
     for (int c = 0; c < dim; c++) at[c] = *mps_view_f64(&x, k, c);
     for (int c = 0; c < dim; c++)
-      *mps_view_f64(&v, k, c) =
+      *mps_edit_f64(&v, k, c) =
           c == 1 ? cos(20.0 * at[0]) * sin(9.0 * at[1]) * cos(15.0 * at[2])
                  : sin(12.0 * at[c]) * cos(7.0 * at[1]) * (c == 0 ? cos(8.0 * at[2]) : 1.0);
   }
+  mpm_scene_commit(&s, &v);
   mps_mpm_def def = mps_mpm_defaults();
   def.geometry = geometry;
   def.spline = spline;
@@ -158,9 +160,10 @@ static mpm_scene turmoil(int32_t geometry, int32_t spline, bool moves, int body,
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.0, 0.0, 1e5);
   mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
   mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity", 0));
-  mps_view v = mpm_scene_view(&s, "velocity");
-  for (int64_t k = 0; k < v.shape[0]; k++)
-    for (int c = 0; c < dim; c++) *mps_view_f64(&v, k, c) = uniform(-0.5, 0.5);
+  mps_edit v = mpm_scene_edit(&s, "velocity");
+  for (int64_t k = 0; k < v.view.shape[0]; k++)
+    for (int c = 0; c < dim; c++) *mps_edit_f64(&v, k, c) = uniform(-0.5, 0.5);
+  mpm_scene_commit(&s, &v);
   mps_mpm_def def = mps_mpm_defaults();
   def.geometry = geometry;
   def.spline = spline;
@@ -294,21 +297,22 @@ static void nothing_passes(void **state) {
   (void)state;
   for (int32_t spline = 2; spline <= 3; spline++) {
     mpm_scene s = turmoil(MPS_MPM_PLANE_STRAIN, spline, false, 0, 0);
-    mps_view x = mpm_scene_view(&s, "position");
-    for (int k = 0; k < 40; k++) *mps_view_f64(&x, k, k % 2) = k % 2 ? -0.1 : k % 4 ? 0.4 : 0.1;
+    mps_edit x = mpm_scene_edit(&s, "position");
+    for (int k = 0; k < 40; k++) *mps_edit_f64(&x, k, k % 2) = k % 2 ? -0.1 : k % 4 ? 0.4 : 0.1;
+    mpm_scene_commit(&s, &x);
     double on[40][2];
     int64_t ids[40];
     mps_view id = mpm_scene_view(&s, "id");
     for (int k = 0; k < 40; k++) {
       ids[k] = *mps_view_i64(&id, k, 0);
-      for (int c = 0; c < 2; c++) on[k][c] = *mps_view_f64(&x, k, c);
+      for (int c = 0; c < 2; c++) on[k][c] = *mps_view_f64(&x.view, k, c);
     }
     mps_assert_ok(context, mpsi_mpm_sort(s.mpm, "test"));
     s.mpm->boundaries.outdated = true;
     mps_assert_ok(context, mps_mpm_step(s.mpm, 100));
-    x = mpm_scene_view(&s, "position");
+    x.view = mpm_scene_view(&s, "position");
     for (int k = 0; k < 40; k++)
-      mps_assert_near(*mps_view_f64(&x, mps_particles_index(s.particles, ids[k]), k % 2),
+      mps_assert_near(*mps_view_f64(&x.view, mps_particles_index(s.particles, ids[k]), k % 2),
                       on[k][k % 2], 1e-15);
     mpm_scene_end(&s);
   }

@@ -2,6 +2,7 @@
  * range, and nothing changes.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "soil_column.h"
+#include "core/particles_internal.h"
 #include "test_fixture.h"
 
 static const soil_layer soil = {1e9, 1500.0, 100.0, 200.0, 0.05};
@@ -145,21 +146,36 @@ static void bad_definitions_are_refused(void **state) {
   mps_particles_destroy(&set);
 }
 
+/* Writes one coordinate of a particle, told by its id: the set may have been sorted. */
+static void move(mps_particles *set, int64_t id, int component, double x) {
+  mps_edit edit;
+  mps_assert_ok(context, mps_particles_edit(set, "position", &edit));
+  *mps_edit_f64(&edit, mps_particles_index(set, id), component) = x;
+  mps_assert_ok(context, mps_particles_commit(set, &edit));
+}
+
+/* Writes the mark of the free-field column to which a particle belongs. */
+static void mark(mps_particles *set, int64_t id, int64_t column) {
+  mps_edit edit;
+  mps_assert_ok(context, mps_particles_edit(set, "free_field", &edit));
+  *mps_edit_i64(&edit, mps_particles_index(set, id), 0) = column;
+  mps_assert_ok(context, mps_particles_commit(set, &edit));
+}
+
 /* Puts a value into a field of particle 4 and expects a refusal that leaves no trace. */
 static void refuse_value(const char *field, int component, double value, const char *text) {
   mps_particles *set = block(3, 3);
-  mps_view view;
   mps_dynamics *dynamics = NULL;
   mps_assert_ok(context, mps_particles_add_field(set, field, 0));
-  mps_assert_ok(context, mps_particles_view(set, field, &view));
-  const double former = *mps_view_f64(&view, 4, component);
+  double *column = mpsi_particles_column(set, field, component); /* past the set's own check */
+  const double former = column[4];
   const uint64_t epoch = mps_particles_epoch(set);
-  *mps_view_f64(&view, 4, component) = value;
+  column[4] = value;
   mps_assert_fails(context, mps_dynamics_create(context, set, NULL, &dynamics), MPS_ERROR_ARGUMENT,
                    text);
   assert_null(dynamics);
   assert_int_equal(mps_particles_epoch(set), epoch);
-  *mps_view_f64(&view, 4, component) = former; /* mended: as if nothing had been */
+  column[4] = former; /* mended: as if nothing had been */
   mps_assert_ok(context, mps_dynamics_create(context, set, NULL, &dynamics));
   mps_dynamics_destroy(&dynamics);
   mps_particles_destroy(&set);
@@ -188,12 +204,10 @@ static void particles_at_one_point_are_refused(void **state) {
   (void)state;
   mps_particles *set = block(3, 3);
   mps_dynamics *dynamics = NULL;
-  mps_view x;
-  mps_assert_ok(context, mps_particles_view(set, "position", &x));
-  *mps_view_f64(&x, 4, 0) = 0.5;
+  move(set, 4, 0, 0.5);
   mps_assert_fails(context, mps_dynamics_create(context, set, NULL, &dynamics), MPS_ERROR_ARGUMENT,
                    "two particles lie at the same point (0.5, 1.5)");
-  *mps_view_f64(&x, mps_particles_index(set, 4), 0) = 1.5; /* the set may have been sorted */
+  move(set, 4, 0, 1.5);
   mps_assert_ok(context, mps_dynamics_create(context, set, NULL, &dynamics));
   assert_int_equal(mps_dynamics_pairs(dynamics), 6 + 6 + 8);
   mps_dynamics_destroy(&dynamics);
@@ -224,26 +238,22 @@ static void a_set_needs_material_a_plane_and_particles(void **state) {
 static void marks_of_columns_must_make_sense(void **state) {
   (void)state;
   mps_particles *set = block(3, 3);
-  mps_view mark;
   mps_dynamics *dynamics = NULL;
   mps_assert_ok(context, mps_particles_add_field(set, "free_field", 0));
-  mps_assert_ok(context, mps_particles_view(set, "free_field", &mark));
-  *mps_view_i64(&mark, 2, 0) = 3;
+  mark(set, 2, 3);
   mps_assert_fails(context, mps_dynamics_create(context, set, NULL, &dynamics), MPS_ERROR_ARGUMENT,
                    "free_field of particle 2 is 3, allowed are 0, 1 (left), 2 (right)");
-  *mps_view_i64(&mark, 2, 0) = -1;
+  mark(set, 2, -1);
   mps_assert_fails(context, mps_dynamics_create(context, set, NULL, &dynamics), MPS_ERROR_ARGUMENT,
                    "free_field of particle 2 is -1");
-  for (int64_t k = 0; k < 9; k++) *mps_view_i64(&mark, k, 0) = 1;
+  for (int64_t k = 0; k < 9; k++) mark(set, k, 1);
   mps_assert_fails(context, mps_dynamics_create(context, set, NULL, &dynamics), MPS_ERROR_ARGUMENT,
                    "all 9 particles belong to free-field columns");
-  for (int64_t k = 0; k < 9; k++) *mps_view_i64(&mark, k, 0) = k % 3 == 2 ? 2 : 0;
-  mps_view x;
-  mps_assert_ok(context, mps_particles_view(set, "position", &x));
-  *mps_view_f64(&x, 5, 1) += 0.1;
+  for (int64_t k = 0; k < 9; k++) mark(set, k, k % 3 == 2 ? 2 : 0);
+  move(set, 5, 1, 1.6);
   mps_assert_fails(context, mps_dynamics_create(context, set, NULL, &dynamics), MPS_ERROR_ARGUMENT,
                    "the right free-field column is not a straight stack");
-  *mps_view_f64(&x, mps_particles_index(set, 5), 1) -= 0.1; /* the set may have been sorted */
+  move(set, 5, 1, 1.5);
   mps_dynamics_def def = mps_dynamics_defaults();
   def.period_x = 10.0;
   mps_assert_fails(context, mps_dynamics_create(context, set, &def, &dynamics), MPS_ERROR_ARGUMENT,

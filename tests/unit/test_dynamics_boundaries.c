@@ -152,13 +152,13 @@ static void what_a_support_bears_is_no_divergence(void **state) {
     mps_particles *set = soil_particles(context, 1.0, 4.0, 4.0, 1, &damped);
     mps_dynamics_def def = mps_dynamics_defaults();
     mps_dynamics *d = NULL;
-    mps_view u;
+    mps_edit u;
     def.integrator = integrator;
     def.dt = 1e-3;
     def.divergence = 1.0;
     mps_assert_ok(context, mps_particles_add_field(set, "displacement", 0));
     mps_assert_ok(context, mps_particles_edit(set, "displacement", &u));
-    *mps_view_f64(&u, 5, 0) = 0.05; /* some 1e3 m/s2 */
+    *mps_edit_f64(&u, 5, 0) = 0.05; /* some 1e3 m/s2 */
     mps_assert_ok(context, mps_particles_commit(set, &u));
     mps_assert_ok(context, mps_dynamics_create(context, set, &def, &d));
     soil_hold(context, set, d, MPS_DOF_X | MPS_DOF_Y | MPS_DOF_ROTATION, -1.0, -1.0, 9.0, 9.0);
@@ -299,13 +299,15 @@ static double reflected(int wave, int integrator, double width) {
   mps_dynamics_def def = mps_dynamics_defaults();
   mps_dynamics *d = NULL;
   mps_totals first, last;
-  mps_view x, v;
+  mps_view x;
+  mps_edit v;
   mps_assert_ok(context, mps_particles_add_field(set, "velocity", 0));
   mps_assert_ok(context, mps_particles_view(set, "position", &x));
-  mps_assert_ok(context, mps_particles_view(set, "velocity", &v));
+  mps_assert_ok(context, mps_particles_edit(set, "velocity", &v));
   for (int64_t k = 0; k < x.shape[0]; k++)
-    *mps_view_f64(&v, k, wave) =
+    *mps_edit_f64(&v, k, wave) =
         1e-3 * exp(-pow((*mps_view_f64(&x, k, 1) - 0.5 * height) / width, 2));
+  mps_assert_ok(context, mps_particles_commit(set, &v));
   def.integrator = integrator;
   def.period_x = 3.0;
   mps_assert_ok(context, mps_dynamics_create(context, set, &def, &d));
@@ -439,7 +441,8 @@ static mps_particles *shape(int which, bool turned) {
       const double x[2] = {fmod(k * 7.31, 23.0) + 0.31 * sin(k), floor(k / 20.0) + 0.3 * cos(k)};
       mps_assert_ok(context, mps_particles_append(upright, 1, x));
     }
-  mps_view x, v, w;
+  mps_view x;
+  mps_edit v, w;
   mps_assert_ok(context, mps_particles_view(upright, "position", &x));
   for (int64_t k = 0; k < x.shape[0]; k++) {
     const double at[2] = {*mps_view_f64(&x, k, turned), *mps_view_f64(&x, k, !turned)};
@@ -450,13 +453,15 @@ static mps_particles *shape(int which, bool turned) {
   mps_assert_ok(context, mps_particles_set(set, "pressure_velocity", 0, 200.0));
   mps_assert_ok(context, mps_particles_set(set, "spin", 0, 0.0));
   mps_assert_ok(context, mps_particles_add_field(set, "velocity", 0));
-  mps_assert_ok(context, mps_particles_view(set, "velocity", &v));
-  mps_assert_ok(context, mps_particles_view(set, "spin", &w));
+  mps_assert_ok(context, mps_particles_edit(set, "velocity", &v));
+  mps_assert_ok(context, mps_particles_edit(set, "spin", &w));
   for (int64_t k = 0; k < x.shape[0]; k++) {
-    *mps_view_f64(&v, k, turned) = sin(0.3 * *mps_view_f64(&x, k, 1));
-    *mps_view_f64(&v, k, !turned) = cos(0.2 * *mps_view_f64(&x, k, 0));
-    *mps_view_f64(&w, k, 0) = (turned ? -1.0 : 1.0) * sin((double)k);
+    *mps_edit_f64(&v, k, turned) = sin(0.3 * *mps_view_f64(&x, k, 1));
+    *mps_edit_f64(&v, k, !turned) = cos(0.2 * *mps_view_f64(&x, k, 0));
+    *mps_edit_f64(&w, k, 0) = (turned ? -1.0 : 1.0) * sin((double)k);
   }
+  mps_assert_ok(context, mps_particles_commit(set, &w));
+  mps_assert_ok(context, mps_particles_commit(set, &v));
   mps_particles_destroy(&upright);
   return set;
 }

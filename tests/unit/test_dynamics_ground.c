@@ -33,24 +33,24 @@ static double value_of(mps_particles *set, const char *name, int64_t id, int64_t
 }
 
 /* Writes one value of a field and commits. */
-static mps_status write_one(mps_particles *set, const char *name, int64_t id, double value,
-                            mps_view *v) {
-  mps_assert_ok(context, mps_particles_edit(set, name, v));
-  *mps_view_f64(v, mps_particles_index(set, id), 0) = value;
-  return mps_particles_commit(set, v);
+static mps_status write_one(mps_particles *set, const char *name, int64_t id, double value) {
+  mps_edit v;
+  mps_assert_ok(context, mps_particles_edit(set, name, &v));
+  *mps_edit_f64(&v, mps_particles_index(set, id), 0) = value;
+  return mps_particles_commit(set, &v);
 }
 
 /* A push that is not the same for any two particles. */
 static void push(mps_particles *set, double speed) {
-  mps_view v;
+  mps_edit v;
   mps_assert_ok(context, mps_particles_add_field(set, "velocity", 0));
   mps_assert_ok(context, mps_particles_edit(set, "velocity", &v));
-  for (int64_t k = 0; k < v.shape[0]; k++) {
+  for (int64_t k = 0; k < v.view.shape[0]; k++) {
     mps_view id;
     mps_assert_ok(context, mps_particles_view(set, "id", &id));
     const double i = (double)*mps_view_i64(&id, k, 0);
-    *mps_view_f64(&v, k, 0) = speed * sin(0.7 * i);
-    *mps_view_f64(&v, k, 1) = speed * cos(1.3 * i);
+    *mps_edit_f64(&v, k, 0) = speed * sin(0.7 * i);
+    *mps_edit_f64(&v, k, 1) = speed * cos(1.3 * i);
   }
   mps_assert_ok(context, mps_particles_commit(set, &v));
 }
@@ -83,10 +83,9 @@ static void a_material_is_what_its_fields_would_be(void **state) {
   mps_assert_ok(context,
                 mps_particles_set(by_field, "pressure_velocity", 0, m[0].pressure_velocity));
   for (int k = 0; k < 3; k++) {
-    mps_view v;
     mps_assert_ok(context,
-                  write_one(by_field, "pressure_velocity", ids[k], m[1].pressure_velocity, &v));
-    mps_assert_ok(context, write_one(by_field, "shear_velocity", ids[k], m[1].shear_velocity, &v));
+                  write_one(by_field, "pressure_velocity", ids[k], m[1].pressure_velocity));
+    mps_assert_ok(context, write_one(by_field, "shear_velocity", ids[k], m[1].shear_velocity));
   }
   push(by_law, 1e-3);
   push(by_field, 1e-3);
@@ -216,12 +215,13 @@ static void uniform_strain_is_exact_inside_for_every_weight(void **state) {
     mps_assert_ok(context, mps_kernel_create(context, weights[k].kind, weights[k].radius, &w));
     mps_particles *set = block(context, 15, 15);
     mps_dynamics *d = solver_of(set, NULL, w);
-    mps_view u, x;
+    mps_view x;
+    mps_edit u;
     mps_assert_ok(context, mps_particles_view(set, "reference", &x));
     mps_assert_ok(context, mps_particles_edit(set, "displacement", &u));
-    for (int64_t i = 0; i < u.shape[0]; i++) {
-      *mps_view_f64(&u, i, 0) = 1e-6 * *mps_view_f64(&x, i, 0);
-      *mps_view_f64(&u, i, 1) = 3e-6 * *mps_view_f64(&x, i, 1);
+    for (int64_t i = 0; i < u.view.shape[0]; i++) {
+      *mps_edit_f64(&u, i, 0) = 1e-6 * *mps_view_f64(&x, i, 0);
+      *mps_edit_f64(&u, i, 1) = 3e-6 * *mps_view_f64(&x, i, 1);
     }
     mps_assert_ok(context, mps_particles_commit(set, &u));
     mps_assert_ok(context, mps_dynamics_refresh(d));
@@ -281,24 +281,23 @@ static void weights_that_reach_too_far_are_refused(void **state) {
 static void edited_ground_is_taken_up(void **state) {
   (void)state;
   mps_particles *a = block(context, 5, 5), *b = block(context, 5, 5);
-  mps_view v;
   push(a, 1e-3);
   push(b, 1e-3);
   mps_dynamics *edited = solver_of(a, NULL, NULL);
   const double limit = mps_dynamics_limit(edited);
-  mps_assert_ok(context, write_one(a, "shear_velocity", 7, 150.0, &v)); /* too much for Vp */
+  mps_assert_ok(context, write_one(a, "shear_velocity", 7, 150.0)); /* too much for Vp */
   mps_assert_fails(context, mps_dynamics_step(edited, 1), MPS_ERROR_ARGUMENT,
                    "pressure_velocity of particle 7 is 200 m/s");
   assert_int_equal(mps_context_error(context)->particle, 7);
   assert_int_equal(mps_dynamics_steps(edited), 0);
-  mps_assert_ok(context, write_one(a, "pressure_velocity", 7, 300.0, &v));
-  mps_assert_ok(context, write_one(a, "density", 8, 900.0, &v));
-  mps_assert_ok(context, write_one(a, "damping", 9, 0.1, &v));
+  mps_assert_ok(context, write_one(a, "pressure_velocity", 7, 300.0));
+  mps_assert_ok(context, write_one(a, "density", 8, 900.0));
+  mps_assert_ok(context, write_one(a, "damping", 9, 0.1));
   assert_true(mps_dynamics_limit(edited) < 0.9 * limit);
-  mps_assert_ok(context, write_one(b, "shear_velocity", 7, 150.0, &v));
-  mps_assert_ok(context, write_one(b, "pressure_velocity", 7, 300.0, &v));
-  mps_assert_ok(context, write_one(b, "density", 8, 900.0, &v));
-  mps_assert_ok(context, write_one(b, "damping", 9, 0.1, &v));
+  mps_assert_ok(context, write_one(b, "shear_velocity", 7, 150.0));
+  mps_assert_ok(context, write_one(b, "pressure_velocity", 7, 300.0));
+  mps_assert_ok(context, write_one(b, "density", 8, 900.0));
+  mps_assert_ok(context, write_one(b, "damping", 9, 0.1));
   mps_dynamics *made = solver_of(b, NULL, NULL);
   mps_assert_ok(context, mps_dynamics_step(edited, 20));
   mps_assert_ok(context, mps_dynamics_step(made, 20));
@@ -316,8 +315,7 @@ static void a_jump_of_the_ground_is_not_damped(void **state) {
   mps_assert_ok(context, mps_particles_set(set, "damping", 0, 0.05));
   mps_assert_ok(context, mps_particles_set(set, "displacement", 0, 0.0));
   mps_dynamics *d = solver_of(set, NULL, NULL);
-  mps_view v;
-  mps_assert_ok(context, write_one(set, "displacement", 5, 1e-5, &v));
+  mps_assert_ok(context, write_one(set, "displacement", 5, 1e-5));
   mps_assert_ok(context, mps_dynamics_step(d, 1));
   mps_assert_ok(context, mps_particles_set(set, "density", 0, 750.0)); /* half the mass */
   const double former = value_of(set, "acceleration", 5, 0);
@@ -335,20 +333,19 @@ static void an_edited_motion_needs_a_restart(void **state) {
   mps_particles *set = block(context, 4, 4), *twin = block(context, 4, 4);
   mps_dynamics *d = solver_of(set, NULL, NULL), *fresh = NULL;
   mps_snapshot *kept = NULL;
-  mps_view v;
   mps_assert_ok(context, mps_dynamics_step(d, 3));
   mps_assert_ok(context, mps_dynamics_snapshot(d, &kept));
-  mps_assert_ok(context, write_one(set, "velocity", 5, 0.25, &v));
+  mps_assert_ok(context, write_one(set, "velocity", 5, 0.25));
   mps_assert_fails(context, mps_dynamics_step(d, 1), MPS_ERROR_STATE,
                    "field 'velocity' has been written: mps_dynamics_restart begins");
   mps_assert_fails(context, mps_dynamics_snapshot(d, &kept), MPS_ERROR_STATE, "'velocity'");
   mps_assert_ok(context, mps_dynamics_rollback(d, kept));
   mps_assert_near(value_of(set, "velocity", 5, 0), 0.0, 0.0);
   mps_assert_ok(context, mps_dynamics_step(d, 1));
-  mps_assert_ok(context, write_one(set, "velocity", 5, 0.25, &v));
+  mps_assert_ok(context, write_one(set, "velocity", 5, 0.25));
   mps_assert_ok(context, mps_dynamics_restart(d, 0.0));
   mps_assert_ok(context, mps_particles_set(twin, "velocity", 0, 0.0));
-  mps_assert_ok(context, write_one(twin, "velocity", 5, 0.25, &v));
+  mps_assert_ok(context, write_one(twin, "velocity", 5, 0.25));
   fresh = solver_of(twin, NULL, NULL);
   mps_assert_ok(context, mps_dynamics_step(d, 10));
   mps_assert_ok(context, mps_dynamics_step(fresh, 10));
@@ -365,15 +362,17 @@ static void what_the_solver_relies_on_stays(void **state) {
   mps_particles *set = block(context, 4, 4);
   mps_dynamics *d = solver_of(set, NULL, NULL);
   mps_snapshot *kept = NULL;
-  mps_view v;
+  mps_edit v;
   mps_assert_ok(context, mps_dynamics_snapshot(d, &kept));
   const double x = value_of(set, "position", 5, 0);
-  mps_assert_fails(context, write_one(set, "position", 5, x + 0.1, &v), MPS_ERROR_STATE,
+  mps_assert_ok(context, mps_particles_edit(set, "position", &v));
+  *mps_edit_f64(&v, mps_particles_index(set, 5), 0) = x + 0.1;
+  mps_assert_fails(context, mps_particles_commit(set, &v), MPS_ERROR_STATE,
                    "write the former ones back");
-  *mps_view_f64(&v, mps_particles_index(set, 5), 0) = x;
+  *mps_edit_f64(&v, mps_particles_index(set, 5), 0) = x;
   mps_assert_ok(context, mps_particles_commit(set, &v));
   mps_assert_ok(context, mps_dynamics_step(d, 1));
-  mps_assert_ok(context, write_one(set, "reference", 5, 0.0, &v));
+  mps_assert_ok(context, write_one(set, "reference", 5, 0.0));
   mps_assert_fails(context, mps_dynamics_step(d, 1), MPS_ERROR_STATE,
                    "field 'reference' has been written, which the solver relies on");
   mps_assert_fails(context, mps_dynamics_run(d, 1.0, 1, NULL, NULL), MPS_ERROR_STATE, "reference");
@@ -439,14 +438,14 @@ static void a_failed_creation_changes_nothing(void **state) {
     mps_particles *set = hard_set(context);
     mps_dynamics_def def = mps_dynamics_defaults();
     mps_dynamics *d = NULL;
-    mps_view x;
+    mps_edit x;
     mps_assert_ok(context, mps_material_linear_elastic(context, 1e7, 0.3, &def.material));
     mps_assert_ok(context, mps_particles_edit(set, "position", &x));
     const int64_t last = mps_particles_count(set) - 1; /* of the column */
     if (late)
-      *mps_view_f64(&x, last, 1) += 0.5;
+      *mps_edit_f64(&x, last, 1) += 0.5;
     else
-      for (int c = 0; c < 2; c++) *mps_view_f64(&x, 0, c) = *mps_view_f64(&x, 1, c);
+      for (int c = 0; c < 2; c++) *mps_edit_f64(&x, 0, c) = *mps_view_f64(&x.view, 1, c);
     mps_assert_ok(context, mps_particles_commit(set, &x));
     const picture before = picture_of(context, set);
     mps_assert_fails(context, mps_dynamics_create(context, set, &def, &d), MPS_ERROR_ARGUMENT,
@@ -516,18 +515,19 @@ static void load_block(mps_dynamics *d, bool top) {
 static void copy_motion(mps_particles *from, mps_particles *to) {
   static const char *const names[] = {"displacement", "velocity", "rotation", "spin"};
   for (int f = 0; f < 4; f++) {
-    mps_view a, b, ref, at;
+    mps_view a, ref, at;
+    mps_edit b;
     mps_assert_ok(context, mps_particles_add_field(to, names[f], 0));
     mps_assert_ok(context, mps_particles_view(from, names[f], &a));
     mps_assert_ok(context, mps_particles_view(from, "reference", &ref));
     mps_assert_ok(context, mps_particles_view(to, "reference", &at));
     mps_assert_ok(context, mps_particles_edit(to, names[f], &b));
-    for (int64_t j = 0; j < b.shape[0]; j++)
+    for (int64_t j = 0; j < b.view.shape[0]; j++)
       for (int64_t i = 0; i < a.shape[0]; i++)
         if (*mps_view_f64(&ref, i, 0) == *mps_view_f64(&at, j, 0) &&
             *mps_view_f64(&ref, i, 1) == *mps_view_f64(&at, j, 1))
-          for (int64_t c = 0; c < b.shape[1]; c++)
-            *mps_view_f64(&b, j, c) = *mps_view_f64(&a, i, c);
+          for (int64_t c = 0; c < b.view.shape[1]; c++)
+            *mps_edit_f64(&b, j, c) = *mps_view_f64(&a, i, c);
     mps_assert_ok(context, mps_particles_commit(to, &b));
   }
 }

@@ -45,9 +45,10 @@ static void added_and_moved_particles_get_new_references(void **state) {
   mps_assert_ok(context, mps_particles_set(set, "density", 0, 1500.0));
   mps_assert_ok(context, mps_particles_set(set, "shear_velocity", 0, 100.0));
   mps_assert_ok(context, mps_particles_set(set, "pressure_velocity", 0, 200.0));
-  mps_view at;
-  mps_assert_ok(context, mps_particles_view(set, "position", &at));
-  *mps_view_f64(&at, mps_particles_index(set, 8), 1) = 3.0; /* moved by hand */
+  mps_edit at;
+  mps_assert_ok(context, mps_particles_edit(set, "position", &at));
+  *mps_edit_f64(&at, mps_particles_index(set, 8), 1) = 3.0; /* moved by hand */
+  mps_assert_ok(context, mps_particles_commit(set, &at));
   d = solver(set);
   mps_assert_near(soil_value(context, set, "position", 9, 0), 3.5, 0.0);
   mps_assert_near(soil_value(context, set, "position", 9, 1), 0.5, 0.0);
@@ -100,9 +101,10 @@ static mps_status everything(mps_context *own, int integrator) {
   if (status == MPS_OK) status = mps_particles_set(set, "pressure_velocity", 0, 200.0);
   if (status == MPS_OK) status = mps_particles_set(set, "damping", 0, 0.05);
   if (status == MPS_OK) {
-    mps_view h;
-    status = mps_particles_view(set, "damping", &h);
-    if (status == MPS_OK) *mps_view_f64(&h, 5, 0) = 0.2; /* uneven */
+    mps_edit h;
+    status = mps_particles_edit(set, "damping", &h);
+    if (status == MPS_OK) *mps_edit_f64(&h, 5, 0) = 0.2; /* uneven */
+    if (status == MPS_OK) status = mps_particles_commit(set, &h);
   }
   if (status == MPS_OK) status = mps_dynamics_add_free_field(set, MPS_DYNAMICS_SIDE_LEFT, 2);
   mps_dynamics_def def = mps_dynamics_defaults();

@@ -142,30 +142,37 @@ static double random_part(uint64_t *seed) { /* in [-1, 1) */
 static mps_particles *two_materials(uint64_t seed, double damping, bool uneven) {
   const soil_layer soil = {1e9, 1500.0, 100.0, 200.0, damping};
   mps_particles *set = soil_particles(context, 1.0, 8.0, 8.0, 1, &soil);
-  mps_view x, u, th, rho, vs, vp, h;
+  mps_edit x, u, th, rho, vs, vp, h;
   mps_assert_ok(context, mps_particles_add_field(set, "displacement", 0));
   mps_assert_ok(context, mps_particles_add_field(set, "rotation", 0));
-  mps_assert_ok(context, mps_particles_view(set, "displacement", &u));
-  mps_assert_ok(context, mps_particles_view(set, "rotation", &th));
-  mps_assert_ok(context, mps_particles_view(set, "position", &x));
-  mps_assert_ok(context, mps_particles_view(set, "density", &rho));
-  mps_assert_ok(context, mps_particles_view(set, "shear_velocity", &vs));
-  mps_assert_ok(context, mps_particles_view(set, "pressure_velocity", &vp));
-  mps_assert_ok(context, mps_particles_view(set, "damping", &h));
-  for (int64_t k = 0; k < x.shape[0]; k++) {
+  mps_assert_ok(context, mps_particles_edit(set, "displacement", &u));
+  mps_assert_ok(context, mps_particles_edit(set, "rotation", &th));
+  mps_assert_ok(context, mps_particles_edit(set, "position", &x));
+  mps_assert_ok(context, mps_particles_edit(set, "density", &rho));
+  mps_assert_ok(context, mps_particles_edit(set, "shear_velocity", &vs));
+  mps_assert_ok(context, mps_particles_edit(set, "pressure_velocity", &vp));
+  mps_assert_ok(context, mps_particles_edit(set, "damping", &h));
+  for (int64_t k = 0; k < x.view.shape[0]; k++) {
     if (random_part(&seed) > 0.3) {
-      *mps_view_f64(&rho, k, 0) = 2000.0;
-      *mps_view_f64(&vs, k, 0) = 170.0;
-      *mps_view_f64(&vp, k, 0) = 600.0;
+      *mps_edit_f64(&rho, k, 0) = 2000.0;
+      *mps_edit_f64(&vs, k, 0) = 170.0;
+      *mps_edit_f64(&vp, k, 0) = 600.0;
     }
-    if (uneven) *mps_view_f64(&h, k, 0) *= 1.0 + random_part(&seed);
-    *mps_view_f64(&th, k, 0) = 1e-20 * random_part(&seed);
+    if (uneven) *mps_edit_f64(&h, k, 0) *= 1.0 + random_part(&seed);
+    *mps_edit_f64(&th, k, 0) = 1e-20 * random_part(&seed);
     for (int c = 0; c < 2; c++) {
-      if (random_part(&seed) > 0.5) *mps_view_f64(&x, k, c) += 0.2 * random_part(&seed);
-      *mps_view_f64(&u, k, c) = 1e-20 * random_part(&seed);
-      *mps_view_f64(&x, k, c) += *mps_view_f64(&u, k, c);
+      if (random_part(&seed) > 0.5) *mps_edit_f64(&x, k, c) += 0.2 * random_part(&seed);
+      *mps_edit_f64(&u, k, c) = 1e-20 * random_part(&seed);
+      *mps_edit_f64(&x, k, c) += *mps_view_f64(&u.view, k, c);
     }
   }
+  mps_assert_ok(context, mps_particles_commit(set, &vp));
+  mps_assert_ok(context, mps_particles_commit(set, &vs));
+  mps_assert_ok(context, mps_particles_commit(set, &rho));
+  mps_assert_ok(context, mps_particles_commit(set, &u));
+  mps_assert_ok(context, mps_particles_commit(set, &x));
+  mps_assert_ok(context, mps_particles_commit(set, &th));
+  mps_assert_ok(context, mps_particles_commit(set, &h));
   return set;
 }
 

@@ -1,5 +1,6 @@
 /* test_dynamics_run.c - running the explicit MPS solver: hooks, restart, rollback, change of the
  * time step, divergence, warnings. SPDX-License-Identifier: BSD-3-Clause */
+#include "core/particles_internal.h"
 #include "soil_column.h"
 #include "test_fixture.h"
 
@@ -56,19 +57,23 @@ static mps_dynamics *shaken(mps_context *own, const mps_dynamics_def *def, doubl
   soil_layer damped = soil;
   damped.damping = h;
   *set = soil_particles(own, 1.0, 6.0, 6.0, 1, &damped);
-  mps_view v, x, w, ratio;
+  mps_view x;
+  mps_edit v, w, ratio;
   mps_assert_ok(own, mps_particles_set(*set, "velocity", 0, 0.0));
   mps_assert_ok(own, mps_particles_set(*set, "spin", 0, 0.0));
-  mps_assert_ok(own, mps_particles_view(*set, "velocity", &v));
+  mps_assert_ok(own, mps_particles_edit(*set, "velocity", &v));
   mps_assert_ok(own, mps_particles_view(*set, "position", &x));
-  mps_assert_ok(own, mps_particles_view(*set, "spin", &w));
-  mps_assert_ok(own, mps_particles_view(*set, "damping", &ratio));
-  for (int64_t k = 0; k < v.shape[0]; k++) {
-    *mps_view_f64(&v, k, 0) = 1e-3 * sin(1.0 + *mps_view_f64(&x, k, 1));
-    *mps_view_f64(&v, k, 1) = 1e-3 * cos(2.0 * *mps_view_f64(&x, k, 0));
-    *mps_view_f64(&w, k, 0) = 1e-3 * sin(3.0 * *mps_view_f64(&x, k, 0));
-    *mps_view_f64(&ratio, k, 0) *= 1.0 + 0.5 * sin((double)k);
+  mps_assert_ok(own, mps_particles_edit(*set, "spin", &w));
+  mps_assert_ok(own, mps_particles_edit(*set, "damping", &ratio));
+  for (int64_t k = 0; k < v.view.shape[0]; k++) {
+    *mps_edit_f64(&v, k, 0) = 1e-3 * sin(1.0 + *mps_view_f64(&x, k, 1));
+    *mps_edit_f64(&v, k, 1) = 1e-3 * cos(2.0 * *mps_view_f64(&x, k, 0));
+    *mps_edit_f64(&w, k, 0) = 1e-3 * sin(3.0 * *mps_view_f64(&x, k, 0));
+    *mps_edit_f64(&ratio, k, 0) *= 1.0 + 0.5 * sin((double)k);
   }
+  mps_assert_ok(own, mps_particles_commit(*set, &ratio));
+  mps_assert_ok(own, mps_particles_commit(*set, &w));
+  mps_assert_ok(own, mps_particles_commit(*set, &v));
   mps_dynamics *dynamics = NULL;
   mps_assert_ok(own, mps_dynamics_create(own, *set, def, &dynamics));
   return dynamics;
@@ -290,14 +295,16 @@ static void a_restart_repeats_the_run_at_another_time(void **state) {
     mps_assert_ok(context, mps_dynamics_step(d, 40));
     copy(context, set, "displacement", 1, first);
     for (int64_t id = 0; id < 36; id++) {
-      mps_view view;
+      mps_edit view;
       const int64_t k = mps_particles_index(set, id);
       for (int f = 0; f < 5; f++) {
-        mps_assert_ok(context, mps_particles_view(set, fields[f], &view));
-        *mps_view_f64(&view, k, component[f]) = start[f][id];
+        mps_assert_ok(context, mps_particles_edit(set, fields[f], &view));
+        *mps_edit_f64(&view, k, component[f]) = start[f][id];
+        mps_assert_ok(context, mps_particles_commit(set, &view));
       }
-      mps_assert_ok(context, mps_particles_view(set, "spin", &view));
-      *mps_view_f64(&view, k, 0) = spin[id];
+      mps_assert_ok(context, mps_particles_edit(set, "spin", &view));
+      *mps_edit_f64(&view, k, 0) = spin[id];
+      mps_assert_ok(context, mps_particles_commit(set, &view));
     }
     mps_assert_ok(context, mps_dynamics_restart(d, 7.0));
     assert_int_equal(mps_dynamics_steps(d), 0);
@@ -316,10 +323,8 @@ static void a_bad_state_cannot_be_restarted_from(void **state) {
   mps_particles *set;
   const mps_dynamics_def def = def_of(MPS_DYNAMICS_INTEGRATOR_VERLET, DT);
   mps_dynamics *d = shaken(context, &def, 0.0, &set);
-  mps_view spin;
   mps_assert_ok(context, mps_dynamics_step(d, 4));
-  mps_assert_ok(context, mps_particles_view(set, "spin", &spin));
-  *mps_view_f64(&spin, mps_particles_index(set, 11), 0) = NAN;
+  mpsi_particles_column(set, "spin", 0)[mps_particles_index(set, 11)] = NAN;
   mps_assert_fails(context, mps_dynamics_restart(d, 0.0), MPS_ERROR_ARGUMENT, "particle 11");
   assert_int_equal(mps_dynamics_steps(d), 4);
   mps_dynamics_destroy(&d);
@@ -565,9 +570,8 @@ static void an_infinite_acceleration_passes_no_limit(void **state) {
   mps_dynamics_def def = def_of(MPS_DYNAMICS_INTEGRATOR_VERLET, 1e-3);
   def.divergence = 1e300; /* its square is not finite */
   mps_dynamics *d = shaken(context, &def, 0.0, &set);
-  mps_view x;
-  mps_assert_ok(context, mps_particles_view(set, "displacement", &x));
-  *mps_view_f64(&x, 14, 0) = 1e200; /* a = 1e205 or so: its square is not finite either */
+  double *x = mpsi_particles_column(set, "displacement", 0);
+  x[14] = 1e200; /* a = 1e205 or so: its square is not finite either */
   mps_assert_ok(context, mps_dynamics_restart(d, 0.0));
   assert_int_equal(mps_dynamics_step(d, 1), MPS_ERROR_DIVERGED);
   mps_dynamics_destroy(&d);

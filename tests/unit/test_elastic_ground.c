@@ -108,12 +108,12 @@ static void a_material_is_what_its_fields_would_be(void **state) {
   mps_material_destroy(&clay); /* the solver has its share */
   int64_t *ids = between(by_law, 1, 0.0, 1.0, &count);
   mps_assert_ok(context, mps_elastic_set_material(a, rock, count, ids));
-  mps_view young, poisson;
+  mps_edit young, poisson;
   mps_assert_ok(context, mps_particles_edit(by_field, "young", &young));
   mps_assert_ok(context, mps_particles_edit(by_field, "poisson", &poisson));
   for (int64_t k = 0; k < count; k++) {
-    *mps_view_f64(&young, mps_particles_index(by_field, ids[k]), 0) = 9e7;
-    *mps_view_f64(&poisson, mps_particles_index(by_field, ids[k]), 0) = 0.1;
+    *mps_edit_f64(&young, mps_particles_index(by_field, ids[k]), 0) = 9e7;
+    *mps_edit_f64(&poisson, mps_particles_index(by_field, ids[k]), 0) = 0.1;
   }
   mps_assert_ok(context, mps_particles_commit(by_field, &young));
   mps_assert_ok(context, mps_particles_commit(by_field, &poisson));

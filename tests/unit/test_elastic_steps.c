@@ -1,6 +1,7 @@
 /* test_elastic_steps.c - steps of implicit elasticity among callers: whole or not at all, repeated
  * after a rollback, runs and their callbacks, numbers of boundaries and loads, arrays of facets.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/particles_internal.h"
 #include "elastic_common.h"
 
 typedef struct hook {
@@ -293,9 +294,10 @@ static void external_forces_act_as_loads(void **state) {
   const int64_t id = 50;
   const double force[2] = {0.3, -0.7};
   mps_assert_ok(context, mps_particles_add_field(b.particles, "external_force", 0));
-  mps_view f;
-  mps_assert_ok(context, mps_particles_view(b.particles, "external_force", &f));
-  for (int c = 0; c < 2; c++) *mps_view_f64(&f, id, c) = force[c];
+  mps_edit f;
+  mps_assert_ok(context, mps_particles_edit(b.particles, "external_force", &f));
+  for (int c = 0; c < 2; c++) *mps_edit_f64(&f, id, c) = force[c];
+  mps_assert_ok(context, mps_particles_commit(b.particles, &f));
   mps_assert_ok(context, test_forces(twin.elastic, 1, &id, force));
   mps_assert_ok(context, mps_elastic_solve(b.elastic));
   mps_assert_ok(context, mps_elastic_solve(twin.elastic));
@@ -310,7 +312,7 @@ static void external_forces_act_as_loads(void **state) {
   for (int c = 0; c < 2; c++) mps_assert_near((r.force[c] + load[c]) / fabs(load[1]), 0.0, 1e-10);
   mps_assert_ok(context, mps_elastic_get_totals(b.elastic, &t));
   mps_assert_near((t.strain - t.work_loads - t.work_boundaries) / t.strain, 0.0, 1e-10);
-  *mps_view_f64(&f, id, 1) = NAN;
+  mpsi_particles_column(b.particles, "external_force", 1)[id] = NAN;
   mps_assert_fails(context, mps_elastic_solve(b.elastic), MPS_ERROR_ARGUMENT,
                    "external_force y of particle 50 is nan");
   test_body_end(&b);

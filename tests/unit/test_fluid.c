@@ -348,12 +348,12 @@ static void bodies_come_and_go(void **state) {
 static void forces_on_particles_push(void **state) {
   (void)state;
   tank t = tank_make(context, 0.6, 0.3, 0.02, NULL, 1e-3);
-  mps_view force;
+  mps_edit force;
   const double a = 0.5, share = 1000.0 * a * 0.3 * 0.3, still = 0.5 * 1000.0 * TANK_G * 0.09;
   mps_assert_ok(context, mps_particles_add_field(t.water, "external_force", 0));
   mps_assert_ok(context, mps_particles_edit(t.water, "external_force", &force));
   for (int64_t i = 0; i < mps_particles_count(t.water); i++)
-    *mps_view_f64(&force, i, 0) = a * 1000.0 * 0.02 * 0.02;
+    *mps_edit_f64(&force, i, 0) = a * 1000.0 * 0.02 * 0.02;
   mps_assert_ok(context, mps_particles_commit(t.water, &force));
   mps_reaction left, right;
   mps_totals sum;

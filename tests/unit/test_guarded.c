@@ -36,15 +36,15 @@ static mps_mpm *make_mpm(mps_particles *set) {
 
 /* Writes one value and commits; what was there before is written back after a refusal. */
 static mps_status write_one(mps_particles *set, const char *field, int64_t id, double value) {
-  mps_view v;
+  mps_edit v;
   mps_assert_ok(context, mps_particles_edit(set, field, &v));
-  double *at = mps_view_f64(&v, mps_particles_index(set, id), 0);
+  double *at = mps_edit_f64(&v, mps_particles_index(set, id), 0);
   const double former = *at;
   *at = value;
   const mps_status status = mps_particles_commit(set, &v);
   if (status == MPS_OK) return status;
   *at = former;
-  mps_view again = v; /* the field has stayed open */
+  mps_edit again = v; /* the field has stayed open */
   const mps_error keep = *mps_context_error(context);
   mps_assert_ok(context, mps_particles_commit(set, &again));
   (void)mpsi_fail(context, keep.function, keep.status, "%s", keep.message);
@@ -59,12 +59,13 @@ static mps_status write_one(mps_particles *set, const char *field, int64_t id, d
 static void views_are_for_reading_and_edits_for_writing(void **state) {
   (void)state;
   mps_particles *set = make_set(context, 2.0);
-  mps_view v, e, other;
+  mps_view v;
+  mps_edit e, other;
   mps_assert_ok(context, mps_particles_view(set, "density", &v));
   assert_true(v.flags & MPS_VIEW_READONLY);
   assert_int_equal(v.device_type, 0);
   mps_assert_ok(context, mps_particles_edit(set, "density", &e));
-  assert_false(e.flags & MPS_VIEW_READONLY);
+  assert_false(e.view.flags & MPS_VIEW_READONLY);
   assert_ptr_equal(e.data, v.data);
   mps_assert_fails(context, mps_particles_edit(set, "density", &other), MPS_ERROR_STATE,
                    "is being edited already");
@@ -78,7 +79,7 @@ static void views_are_for_reading_and_edits_for_writing(void **state) {
   assert_string_equal(mps_context_error(context)->object, "field 'density'");
   mps_assert_fails(context, mps_particles_commit(set, NULL), MPS_ERROR_ARGUMENT, "NULL");
   mps_assert_ok(context, mps_particles_commit(set, &e));
-  assert_true(e.flags & MPS_VIEW_READONLY);
+  assert_true(e.view.flags & MPS_VIEW_READONLY);
   mps_assert_fails(context, mps_particles_commit(set, &e), MPS_ERROR_STATE, "not of a field");
   mps_assert_fails(context, mps_particles_edit(set, "id", &e), MPS_ERROR_FIELD, "library only");
   mps_assert_fails(context, mps_particles_edit(set, "nothing", &e), MPS_ERROR_FIELD, "no field");
@@ -120,7 +121,7 @@ static void a_step_waits_for_the_commit(void **state) {
   (void)state;
   mps_particles *set = make_set(context, 2.0);
   mps_mpm *mpm = make_mpm(set);
-  mps_view v;
+  mps_edit v;
   mps_assert_ok(context, mps_particles_edit(set, "velocity", &v));
   mps_assert_fails(context, mps_mpm_step(mpm, 1), MPS_ERROR_STATE, "'velocity' is being edited");
   mps_assert_fails(context, mps_mpm_run(mpm, 1e-3, 1, NULL, NULL), MPS_ERROR_STATE, "'velocity'");
@@ -154,21 +155,21 @@ static void a_move_between_steps_is_a_translation(void **state) {
   for (int far = 0; far < 2; far++) {
     mps_particles *set = make_set(context, 2.0);
     mps_mpm *mpm = make_mpm(set);
-    mps_view x, v;
+    mps_edit x, v;
     mps_assert_ok(context, mps_particles_edit(set, "position", &x));
     mps_assert_ok(context, mps_particles_edit(set, "velocity", &v));
-    for (int64_t k = 0; k < x.shape[0]; k++) {
-      *mps_view_f64(&x, k, 0) += far ? 4.0 : 2.0;
-      *mps_view_f64(&x, k, 1) += far ? 4.0 : 3.0;
-      *mps_view_f64(&v, k, 0) = *mps_view_f64(&x, k, 1) - (far ? 4.0 : 3.0);
+    for (int64_t k = 0; k < x.view.shape[0]; k++) {
+      *mps_edit_f64(&x, k, 0) += far ? 4.0 : 2.0;
+      *mps_edit_f64(&x, k, 1) += far ? 4.0 : 3.0;
+      *mps_edit_f64(&v, k, 0) = *mps_view_f64(&x.view, k, 1) - (far ? 4.0 : 3.0);
     }
     mps_assert_ok(context, mps_particles_commit(set, &x));
     mps_assert_ok(context, mps_particles_commit(set, &v));
     mps_assert_ok(context, mps_mpm_run(mpm, 0.05, 1, NULL, NULL));
-    mps_assert_ok(context, mps_particles_view(set, "position", &x));
+    mps_assert_ok(context, mps_particles_view(set, "position", &x.view));
     for (int c = 0; c < 2; c++) {
       const double start = c == 0 ? (far ? 4.25 : 2.25) : (far ? 4.25 : 3.25);
-      moved[far][c] = *mps_view_f64(&x, mps_particles_index(set, 0), c) - start;
+      moved[far][c] = *mps_view_f64(&x.view, mps_particles_index(set, 0), c) - start;
     }
     mps_mpm_destroy(&mpm);
     mps_particles_destroy(&set);
@@ -209,14 +210,15 @@ static mps_particles *free_set(void) {
 /* What each step reads anew moves nobody in memory, and no other field but positions does. */
 static void only_positions_make_a_solver_sort(void **state) {
   (void)state;
-  static const char *const fields[] = {"external_force", "velocity", "stress", "density", "position"};
+  static const char *const fields[] = {"external_force", "velocity", "stress", "density",
+                                       "position"};
   mps_particles *set = free_set();
   mps_mpm *mpm = make_mpm(set);
   const uint64_t first = mps_particles_epoch(set);
   mps_assert_ok(context, mps_mpm_run(mpm, 0.3, 1, NULL, NULL)); /* 0.6 m */
   assert_int_equal(mps_particles_epoch(set), first);
   for (int f = 0; f < 5; f++) {
-    mps_view view;
+    mps_edit view;
     mps_assert_ok(context, mps_particles_edit(set, fields[f], &view));
     mps_assert_ok(context, mps_particles_commit(set, &view));
     mps_assert_ok(context, mps_mpm_step(mpm, 1));
@@ -230,15 +232,16 @@ static void only_positions_make_a_solver_sort(void **state) {
 static void an_edited_force_acts_at_once(void **state) {
   (void)state;
   mps_particles *set = free_set();
-  mps_view f, v;
+  mps_view v;
+  mps_edit f;
   mps_mpm *mpm = make_mpm(set);
   double speed = 2.0;
   for (int step = 1; step <= 3; step++) {
     mps_view m;
     mps_assert_ok(context, mps_particles_view(set, "mass", &m));
     mps_assert_ok(context, mps_particles_edit(set, "external_force", &f));
-    for (int64_t k = 0; k < f.shape[0]; k++)
-      *mps_view_f64(&f, k, 0) = 3.0 * step * *mps_view_f64(&m, k, 0);
+    for (int64_t k = 0; k < f.view.shape[0]; k++)
+      *mps_edit_f64(&f, k, 0) = 3.0 * step * *mps_view_f64(&m, k, 0);
     mps_assert_ok(context, mps_particles_commit(set, &f));
     const double before = mps_mpm_time(mpm);
     mps_assert_ok(context, mps_mpm_step(mpm, 1));
@@ -255,24 +258,25 @@ static void an_abandoned_edit_was_none(void **state) {
   (void)state;
   mps_particles *set = make_set(context, 2.0);
   mps_mpm *mpm = make_mpm(set);
-  mps_view x, other;
+  mps_view other;
+  mps_edit x;
   mps_assert_ok(context, mps_mpm_step(mpm, 1));
   const double limit = mps_mpm_limit(mpm);
   for (int f = 0; f < 2; f++) {
     const char *name = f == 0 ? "position" : "velocity";
     mps_assert_ok(context, mps_particles_edit(set, name, &x));
-    const double kept[2] = {*mps_view_f64(&x, 3, 0), *mps_view_f64(&x, 3, 1)};
-    for (int c = 0; c < 2; c++) *mps_view_f64(&x, 3, c) = f == 0 ? 1e9 : 1e3;
+    const double kept[2] = {*mps_view_f64(&x.view, 3, 0), *mps_view_f64(&x.view, 3, 1)};
+    for (int c = 0; c < 2; c++) *mps_edit_f64(&x, 3, c) = f == 0 ? 1e9 : 1e3;
     if (f == 0)
       mps_assert_fails(context, mps_particles_commit(set, &x), MPS_ERROR_ARGUMENT, "outside");
     mps_assert_ok(context, mps_particles_abandon(set, &x));
-    assert_true(x.flags & MPS_VIEW_READONLY);
-    for (int c = 0; c < 2; c++) assert_true(*mps_view_f64(&x, 3, c) == kept[c]);
+    assert_true(x.view.flags & MPS_VIEW_READONLY);
+    for (int c = 0; c < 2; c++) assert_true(*mps_view_f64(&x.view, 3, c) == kept[c]);
     mps_assert_fails(context, mps_particles_abandon(set, &x), MPS_ERROR_STATE, "being edited");
     mps_assert_ok(context, mps_mpm_step(mpm, 0));
     assert_true(mps_mpm_limit(mpm) == limit);
   }
-  mps_assert_fails(context, mps_particles_abandon(set, NULL), MPS_ERROR_ARGUMENT, "view is NULL");
+  mps_assert_fails(context, mps_particles_abandon(set, NULL), MPS_ERROR_ARGUMENT, "edit is NULL");
   assert_int_equal(mps_particles_abandon(NULL, &x), MPS_ERROR_ARGUMENT);
   mps_assert_ok(context, mps_particles_view(set, "position", &other));
   mps_mpm_destroy(&mpm);
@@ -332,10 +336,11 @@ static void particles_are_removed_and_keep_their_ids(void **state) {
   (void)state;
   mps_particles *set = make_set(context, 2.0);
   mps_assert_ok(context, mps_particles_add_field(set, "mine", 2));
-  mps_view mine, x;
+  mps_view x;
+  mps_edit mine;
   mps_assert_ok(context, mps_particles_edit(set, "mine", &mine));
   for (int64_t k = 0; k < 16; k++)
-    for (int c = 0; c < 2; c++) *mps_view_f64(&mine, k, c) = 10.0 * (double)k + c;
+    for (int c = 0; c < 2; c++) *mps_edit_f64(&mine, k, c) = 10.0 * (double)k + c;
   mps_assert_ok(context, mps_particles_commit(set, &mine));
   const int64_t ids[] = {15, 0, 7}, twice[] = {3, 3}, unknown[] = {3, 16};
   const uint64_t epoch = mps_particles_epoch(set);
@@ -351,12 +356,12 @@ static void particles_are_removed_and_keep_their_ids(void **state) {
   assert_int_equal(mps_particles_count(set), 13);
   assert_true(mps_particles_epoch(set) != epoch);
   for (int k = 0; k < 3; k++) assert_int_equal(mps_particles_index(set, ids[k]), -1);
-  mps_assert_ok(context, mps_particles_view(set, "mine", &mine));
+  mps_assert_ok(context, mps_particles_view(set, "mine", &mine.view));
   for (int64_t id = 0; id < 16; id++) {
     const int64_t at = mps_particles_index(set, id);
     if (at < 0) continue;
     for (int c = 0; c < 2; c++)
-      mps_assert_near(*mps_view_f64(&mine, at, c), 10.0 * (double)id + c, 0.0);
+      mps_assert_near(*mps_view_f64(&mine.view, at, c), 10.0 * (double)id + c, 0.0);
   }
   /* Vector loops read zeros behind the last particle. */
   const double *column = mpsi_particles_column(set, "mine", 1);

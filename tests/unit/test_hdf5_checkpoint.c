@@ -59,7 +59,8 @@ static void field_bits(mps_particles *set, const char *name, bool write) {
   for (int64_t i = 0; i < view.shape[0]; i++)
     for (int64_t c = 0; c < view.shape[1]; c++) {
       const uint64_t want = bits(name, c, *mps_view_i64(&id, i, 0));
-      void *at = mps_view_f64(&view, i, c);
+      /* bits that no edit would let in */
+      void *at = (void *)(uintptr_t)mps_view_f64(&view, i, c);
       if (write)
         memcpy(at, &want, 8);
       else if (memcmp(at, &want, 8) != 0)

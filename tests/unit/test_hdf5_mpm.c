@@ -1,6 +1,7 @@
 /* test_hdf5_mpm.c - a WLS-MPM run that goes on from a checkpoint in a new solver is, bit for bit,
  * the run that never stopped, on any number of threads; a solver built otherwise is refused by
  * name. SPDX-License-Identifier: BSD-3-Clause */
+#include "core/particles_internal.h"
 #include "mpm_twins.h"
 #include "test_allocator.h"
 #include "test_hdf5.h"
@@ -253,8 +254,7 @@ static void a_broken_run_goes_back(void **state) {
   scene x = build(context, MPS_MPM_PLANE_STRAIN, &none),
         y = build(context, MPS_MPM_PLANE_STRAIN, &none);
   mps_assert_ok(context, mps_mpm_save(x.s.mpm, path, NULL));
-  mps_view v = mpm_scene_view(&x.s, "velocity");
-  *mps_view_f64(&v, 7, 0) = NAN;
+  mpsi_particles_column(x.s.particles, "velocity", 0)[7] = NAN;
   FAILS(mps_mpm_step(x.s.mpm, 1), MPS_ERROR_DIVERGED, "not finite");
   FAILS(mps_mpm_save(x.s.mpm, path, NULL), MPS_ERROR_STATE, "has failed");
   mps_assert_ok(context, mps_mpm_restore(x.s.mpm, path, NULL));

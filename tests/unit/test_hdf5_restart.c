@@ -44,11 +44,13 @@ static body build(const run *r, double dt) {
   set_field(b.set, "pressure_velocity", 200.0);
   set_field(b.set, "damping", r->damping);
   set_field(b.set, "velocity", 0.0);
-  mps_view x, v;
+  mps_view x;
+  mps_edit v;
   mps_assert_ok(context, mps_particles_view(b.set, "position", &x));
-  mps_assert_ok(context, mps_particles_view(b.set, "velocity", &v));
+  mps_assert_ok(context, mps_particles_edit(b.set, "velocity", &v));
   for (int64_t k = 0; k < x.shape[0]; k++)
-    *mps_view_f64(&v, k, 0) = 0.01 * sin(*mps_view_f64(&x, k, 1)) * cos(*mps_view_f64(&x, k, 0));
+    *mps_edit_f64(&v, k, 0) = 0.01 * sin(*mps_view_f64(&x, k, 1)) * cos(*mps_view_f64(&x, k, 0));
+  mps_assert_ok(context, mps_particles_commit(b.set, &v));
   if (!r->driven)
     mps_assert_ok(context, mps_dynamics_add_free_field(b.set, MPS_DYNAMICS_SIDE_LEFT, 3));
   mps_dynamics_def def = mps_dynamics_defaults();

@@ -173,15 +173,16 @@ static void make_water(host *h) {
 
 /* Forces (N) on the particles above `level`, shared evenly, times a factor by place. */
 static void push(mps_particles *set, double level, double fx, double fy) {
-  mps_view f, x;
+  mps_view x;
+  mps_edit f;
   int64_t met = 0;
   mps_assert_ok(context, mps_particles_view(set, "position", &x));
   for (int64_t k = 0; k < x.shape[0]; k++) met += *mps_view_f64(&x, k, 1) > level;
   mps_assert_ok(context, mps_particles_edit(set, "external_force", &f));
   for (int64_t k = 0; k < x.shape[0]; k++) {
     const double part = *mps_view_f64(&x, k, 1) > level ? 1.0 / (double)met : 0.0;
-    *mps_view_f64(&f, k, 0) = fx * part;
-    *mps_view_f64(&f, k, 1) = fy * part;
+    *mps_edit_f64(&f, k, 0) = fx * part;
+    *mps_edit_f64(&f, k, 1) = fy * part;
   }
   mps_assert_ok(context, mps_particles_commit(set, &f));
 }

@@ -1,5 +1,6 @@
 /* test_mpm.c - the WLS-MPM solver: arguments, errors, memory, ownership.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/particles_internal.h"
 #include "mpm_scene.h"
 #include "test_allocator.h"
 #include "test_fixture.h"
@@ -68,12 +69,15 @@ static void refuses_bad_definitions(void **state) {
   def.geometry = MPS_MPM_AXISYMMETRIC;
   def.lower[0] = -0.02;
   refuses(&s, &def, "radius begins at 0");
-  mps_view x = mpm_scene_view(&s, "position");
-  *mps_view_f64(&x, 3, 1) = 1e12;
+  mps_edit x = mpm_scene_edit(&s, "position");
+  *mps_edit_f64(&x, 3, 1) = 1e12;
+  mpm_scene_commit(&s, &x);
   def = mps_mpm_defaults();
   def.cell = 0.02;
   refuses(&s, &def, "more than 2^30 cells");
-  *mps_view_f64(&x, 3, 1) = 0.005;
+  x = mpm_scene_edit(&s, "position");
+  *mps_edit_f64(&x, 3, 1) = 0.005;
+  mpm_scene_commit(&s, &x);
   mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 0.0));
   def = small_def();
   refuses(&s, &def, "density 0 kg/m3");
@@ -91,8 +95,7 @@ static void refuses_bad_sets(void **state) {
                    MPS_ERROR_FIELD, "no field 'density'");
   mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 1000.0));
   mps_assert_ok(context, mps_particles_set(s.particles, "stress", 2, 1.0));
-  mps_view stress = mpm_scene_view(&s, "stress");
-  *mps_view_f64(&stress, 5, 3) = NAN;
+  mpsi_particles_column(s.particles, "stress", 3)[5] = NAN;
   refuses(&s, &def, "'stress' of particle 5 is nan");
   mpm_scene_end(&s);
 }
@@ -219,7 +222,7 @@ static void sets_materials(void **state) {
   mps_assert_ok(context, mps_material_linear_elastic(context, 1e5, 0.3, &last));
   mps_assert_fails(context, mps_mpm_set_material(s.mpm, last, 1, ids), MPS_ERROR_ARGUMENT,
                    "has 16 materials");
-  mps_assert_ok(context, mps_mpm_set_material(s.mpm, law, 1, ids)); /* known: no new one */
+  mps_assert_ok(context, mps_mpm_set_material(s.mpm, law, 1, ids));  /* known: no new one */
   mps_assert_ok(context, mps_mpm_set_material(s.mpm, law, 0, NULL)); /* all */
   of = mpm_scene_view(&s, "material");
   for (int64_t k = 0; k < 100; k++) assert_int_equal(*mps_view_i64(&of, k, 0), 1);
@@ -257,7 +260,8 @@ static void viscosity_limits_the_step(void **state) {
   mps_particles *particles = NULL;
   mps_material *material = NULL;
   mps_mpm *mpm = NULL;
-  mps_view x, v;
+  mps_view x;
+  mps_edit v;
   mps_totals before, after;
   const double lo[] = {0.0, 0.0}, hi[] = {0.2, 0.2}, viscosity = 2000.0;
   mps_newtonian_def law = mps_newtonian_defaults();
@@ -267,9 +271,10 @@ static void viscosity_limits_the_step(void **state) {
   mps_assert_ok(context, mps_particles_set(particles, "density", 0, 1000.0));
   mps_assert_ok(context, mps_particles_add_field(particles, "velocity", 0));
   mps_assert_ok(context, mps_particles_view(particles, "position", &x));
-  mps_assert_ok(context, mps_particles_view(particles, "velocity", &v));
+  mps_assert_ok(context, mps_particles_edit(particles, "velocity", &v));
   for (int64_t k = 0; k < x.shape[0]; k++)
-    *mps_view_f64(&v, k, 0) = sin(100.0 * *mps_view_f64(&x, k, 1));
+    *mps_edit_f64(&v, k, 0) = sin(100.0 * *mps_view_f64(&x, k, 1));
+  mps_assert_ok(context, mps_particles_commit(particles, &v));
   mps_assert_ok(context, mps_material_newtonian(context, &law, &material));
   mps_mpm_def def = small_def();
   mps_assert_ok(context, mps_mpm_create(context, particles, material, &def, &mpm));
@@ -287,35 +292,37 @@ static void viscosity_limits_the_step(void **state) {
   mps_particles_destroy(&particles);
 }
 
-/* The velocity that a particle on a wall finds by the fit is not quite that of the wall: it does not
- * pass it. At a mirror it is. */
+/* The velocity that a particle on a wall finds by the fit is not quite that of the wall: it does
+ * not pass it. At a mirror it is. */
 static void keep_on_the_wall(int32_t walls) {
   mps_particles_def set = mps_particles_defaults();
   set.spacing = 0.01;
   mps_particles *particles = NULL;
   mps_material *material = NULL;
   mps_mpm *mpm = NULL;
-  mps_view x, v;
+  mps_view v;
+  mps_edit x;
   const double lo[] = {0.0, 0.0}, hi[] = {0.01, 0.01};
   mps_assert_ok(context, mps_particles_create(context, &set, &particles));
   mps_assert_ok(context, mps_particles_fill_box(particles, lo, hi, NULL));
   mps_assert_ok(context, mps_particles_set(particles, "density", 0, 1000.0));
   mps_assert_ok(context, mps_particles_set(particles, "velocity", 0, -1.0));
-  mps_assert_ok(context, mps_particles_view(particles, "position", &x));
-  *mps_view_f64(&x, 0, 0) = 0.0;
+  mps_assert_ok(context, mps_particles_edit(particles, "position", &x));
+  *mps_edit_f64(&x, 0, 0) = 0.0;
+  mps_assert_ok(context, mps_particles_commit(particles, &x));
   mps_assert_ok(context, mps_material_linear_elastic(context, 1e5, 0.3, &material));
   mps_mpm_def def = small_def();
   def.lower[0] = 0.0;
   def.walls = walls;
   mps_assert_ok(context, mps_mpm_create(context, particles, material, &def, &mpm));
   mps_assert_ok(context, mps_mpm_step(mpm, 1));
-  mps_assert_ok(context, mps_particles_view(particles, "position", &x));
+  mps_assert_ok(context, mps_particles_view(particles, "position", &x.view));
   mps_assert_ok(context, mps_particles_view(particles, "velocity", &v));
   if (walls == MPS_MPM_WALLS_FIT)
     assert_true(*mps_view_f64(&v, 0, 0) < -0.1); /* it would have passed */
   else
     mps_assert_near(*mps_view_f64(&v, 0, 0), 0.0, 1e-15);
-  mps_assert_near(*mps_view_f64(&x, 0, 0), 0.0, walls == MPS_MPM_WALLS_FIT ? 0.0 : 1e-15);
+  mps_assert_near(*mps_view_f64(&x.view, 0, 0), 0.0, walls == MPS_MPM_WALLS_FIT ? 0.0 : 1e-15);
   mps_mpm_destroy(&mpm);
   mps_material_destroy(&material);
   mps_particles_destroy(&particles);

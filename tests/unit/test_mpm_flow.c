@@ -17,7 +17,7 @@ static int64_t above(mps_particles *set, double y, int64_t *ids) {
   return count;
 }
 
-static double *column(mps_particles *set, const char *name, int32_t component, mps_view *v) {
+static const double *column(mps_particles *set, const char *name, int32_t component, mps_view *v) {
   assert_int_equal(mps_particles_view(set, name, v), MPS_OK);
   return mps_view_f64(v, 0, component);
 }
@@ -78,11 +78,11 @@ static mpm_scene soil(mps_context *context, double height) {
 /* Steps, and now and then takes a part of the velocities away. */
 static void settle(mpm_scene *s, int times) {
   for (int k = 0; k < times; k++) {
-    mps_view v;
+    mps_edit v;
     mps_assert_ok(s->context, mps_mpm_step(s->mpm, 10));
     mps_assert_ok(s->context, mps_particles_edit(s->particles, "velocity", &v));
-    for (int64_t i = 0; i < v.shape[0]; i++)
-      for (int c = 0; c < 2; c++) *mps_view_f64(&v, i, c) *= 0.7;
+    for (int64_t i = 0; i < v.view.shape[0]; i++)
+      for (int c = 0; c < 2; c++) *mps_edit_f64(&v, i, c) *= 0.7;
     mps_assert_ok(s->context, mps_particles_commit(s->particles, &v));
   }
 }
@@ -137,9 +137,9 @@ static void change_some(scene *x) {
   mps_assert_ok(context, mps_particles_fill_box(set, lo, hi, &added));
   mps_assert_ok(context, mps_particles_set(set, "density", 0, 1500.0));
   assert_true(added >= 100 && some > 20);
-  mps_view v;
+  mps_edit v;
   mps_assert_ok(context, mps_particles_edit(set, "velocity", &v));
-  for (int64_t k = first - some; k < v.shape[0]; k++) *mps_view_f64(&v, k, 0) = -1.0;
+  for (int64_t k = first - some; k < v.view.shape[0]; k++) *mps_edit_f64(&v, k, 0) = -1.0;
   mps_assert_ok(context, mps_particles_commit(set, &v));
 }
 
@@ -261,26 +261,27 @@ static void new_particles_take_material_volume_and_mass(void **state) {
   const int64_t last[1] = {161};
   mps_assert_ok(context, mps_mpm_set_material(s.mpm, clay, 1, last));
   mps_material_destroy(&clay);
-  mps_view rho, volume, mass;
+  mps_view mass;
+  mps_edit rho, volume;
   const double heavy = column(s.particles, "mass", 0, &mass)[3];
   mps_assert_ok(context, mps_particles_edit(s.particles, "density", &rho));
   const int64_t a = mps_particles_index(s.particles, 160),
                 b = mps_particles_index(s.particles, 161);
-  *mps_view_f64(&rho, a, 0) = 2000.0;
-  *mps_view_f64(&rho, b, 0) = 1e13;
+  *mps_edit_f64(&rho, a, 0) = 2000.0;
+  *mps_edit_f64(&rho, b, 0) = 1e13;
   FAILS(mps_particles_commit(s.particles, &rho), MPS_ERROR_ARGUMENT, "of particle 161");
-  *mps_view_f64(&rho, b, 0) = 3000.0;
+  *mps_edit_f64(&rho, b, 0) = 3000.0;
   mps_assert_ok(context, mps_particles_commit(s.particles, &rho));
   mps_assert_near(*mps_view_f64(&mass, a, 0), 2000.0 * 0.025 * 0.025, 1e-15);
   mps_assert_ok(context, mps_particles_edit(s.particles, "volume", &volume));
-  *mps_view_f64(&volume, b, 0) = 1e-3;
+  *mps_edit_f64(&volume, b, 0) = 1e-3;
   mps_assert_ok(context, mps_particles_commit(s.particles, &volume));
   mps_assert_near(*mps_view_f64(&mass, b, 0), 3.0, 1e-15);
   assert_true(*mps_view_f64(&mass, 3, 0) == heavy); /* deformed, and not written to */
   mps_assert_ok(context, mps_particles_edit(s.particles, "volume", &volume));
-  *mps_view_f64(&volume, b, 0) = -1.0;
+  *mps_edit_f64(&volume, b, 0) = -1.0;
   FAILS(mps_particles_commit(s.particles, &volume), MPS_ERROR_ARGUMENT, "of particle 161 is -1 m3");
-  *mps_view_f64(&volume, b, 0) = 0.0; /* the lattice's */
+  *mps_edit_f64(&volume, b, 0) = 0.0; /* the lattice's */
   mps_assert_ok(context, mps_particles_commit(s.particles, &volume));
   mps_assert_near(*mps_view_f64(&mass, b, 0), 3000.0 * 0.025 * 0.025, 1e-15);
   mps_assert_ok(context, mps_mpm_step(s.mpm, 5));

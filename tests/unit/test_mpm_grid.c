@@ -112,13 +112,14 @@ static void linear_fields_are_reproduced(void **state) {
       mps_mpm_destroy(&s.mpm);
       mps_assert_ok(context, mps_mpm_create(context, s.particles, s.material, &def, &s.mpm));
       mps_assert_ok(context, mps_particles_add_field(s.particles, "tracer", 2));
-      mps_view x = mpm_scene_view(&s, "position"), tracer;
+      mps_view x = mpm_scene_view(&s, "position");
+      mps_edit tracer;
       mps_assert_ok(context, mps_particles_edit(s.particles, "tracer", &tracer));
       for (int64_t k = 0; k < x.shape[0]; k++)
         for (int c = 0; c < 2; c++) {
           double value = 3.0 + c;
           for (int d = 0; d < dim; d++) value += (1.0 + d - 2.0 * c) * *mps_view_f64(&x, k, d);
-          *mps_view_f64(&tracer, k, c) = value;
+          *mps_edit_f64(&tracer, k, c) = value;
         }
       mps_assert_ok(context, mps_particles_commit(s.particles, &tracer));
       enum { POINTS = 200 };

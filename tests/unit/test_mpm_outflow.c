@@ -64,9 +64,9 @@ static void a_jet_leaves_the_channel(void **state) {
     const int64_t first = mps_particles_count(s.particles);
     mps_assert_ok(context, mps_particles_append(s.particles, 8, place));
     mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 1024.0));
-    mps_view v;
+    mps_edit v;
     mps_assert_ok(context, mps_particles_edit(s.particles, "velocity", &v));
-    for (int64_t p = first; p < first + 8; p++) *mps_view_f64(&v, p, 0) = 2.0;
+    for (int64_t p = first; p < first + 8; p++) *mps_edit_f64(&v, p, 0) = 2.0;
     mps_assert_ok(context, mps_particles_commit(s.particles, &v));
     came += 8, momentum += 2.0 * MASS * 8;
     for (int i = 0; i < 8; i++) angular -= MASS * 2.0 * place[2 * i + 1];

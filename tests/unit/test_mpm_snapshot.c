@@ -2,6 +2,7 @@
  * that followed the snapshot, bit for bit, on any number of threads; whose snapshot it is; refused
  * memory changes nothing.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "core/particles_internal.h"
 #include "mpm_twins.h"
 #include "test_allocator.h"
 
@@ -79,8 +80,7 @@ static void mends_a_failed_step(void **state) {
         twin = build(context, MPS_MPM_PLANE_STRAIN, &none);
   mps_snapshot *snapshot = NULL;
   mps_assert_ok(context, mps_mpm_snapshot(x.s.mpm, &snapshot));
-  mps_view v = mpm_scene_view(&x.s, "velocity");
-  *mps_view_f64(&v, 7, 0) = NAN;
+  mpsi_particles_column(x.s.particles, "velocity", 0)[7] = NAN;
   mps_assert_fails(context, mps_mpm_step(x.s.mpm, 1), MPS_ERROR_DIVERGED, "not finite");
   mps_assert_fails(context, mps_mpm_snapshot(x.s.mpm, &snapshot), MPS_ERROR_STATE, "has failed");
   mps_assert_ok(context, roll(&x, snapshot));

@@ -1,5 +1,6 @@
 /* test_mpm_walls.c - walls, moving nodes and loads of the WLS-MPM solver: arguments, memory; what
  * it says of bodies and steps that do not suit it. SPDX-License-Identifier: BSD-3-Clause */
+#include "core/particles_internal.h"
 #include "mpm_held.h"
 #include "test_allocator.h"
 #include "test_fixture.h"
@@ -276,8 +277,9 @@ static void tells_of_steps(void **state) {
   mps_assert_ok(own, mps_mpm_create(own, s.particles, s.material, &def, &s.mpm));
   mps_assert_ok(own, mps_mpm_step(s.mpm, 3));
   assert_int_equal(h.warnings, 0);
-  mps_view v = mpm_scene_view(&s, "velocity");
-  for (int64_t k = 0; k < v.shape[0]; k++) *mps_view_f64(&v, k, 0) = 3.0; /* c = 11.6 m/s */
+  mps_edit v = mpm_scene_edit(&s, "velocity");
+  for (int64_t k = 0; k < v.view.shape[0]; k++) *mps_edit_f64(&v, k, 0) = 3.0; /* c = 11.6 m/s */
+  mpm_scene_commit(&s, &v);
   mps_assert_ok(own, mps_mpm_step(s.mpm, 3));
   expect_warning(&h, 1, "above the fraction courant = 0.5");
   mpm_scene_end(&s);
@@ -289,10 +291,10 @@ static void tells_of_nan(void **state) {
   (void)state;
   mpm_scene s = small_scene(context, NULL);
   mps_assert_ok(context, mps_mpm_step(s.mpm, 2));
-  mps_view v = mpm_scene_view(&s, "velocity"), id = mpm_scene_view(&s, "id");
-  mps_view x = mpm_scene_view(&s, "position");
+  mps_view id = mpm_scene_view(&s, "id");
+  mps_view v = mpm_scene_view(&s, "velocity"), x = mpm_scene_view(&s, "position");
   double far = -1.0;
-  *mps_view_f64(&v, 17, 1) = NAN;
+  mpsi_particles_column(s.particles, "velocity", 1)[17] = NAN;
   const double at = *mps_view_f64(&x, 17, 0);
   mps_assert_fails(context, mps_mpm_step(s.mpm, 5), MPS_ERROR_DIVERGED, "is not finite");
   assert_int_equal(mps_context_error(context)->step, 3);

@@ -213,10 +213,10 @@ static void a_step_that_loses_a_particle_is_whole(void **state) {
     mps_assert_ok(context, mps_mpm_get_totals(s.mpm, &t));
     mps_assert_near(t.linear[0], 180 * 0.1 * 3.0, 1e-12 * 54.0); /* free flight: all have it */
     no_step_until_it_is_mended(&s);
-    mps_view x;
+    mps_edit x;
     mps_assert_ok(context, mps_particles_edit(s.particles, "position", &x));
-    for (int64_t k = 0; k < x.shape[0]; k++)
-      if (*mps_view_f64(&x, k, 0) > 0.3) *mps_view_f64(&x, k, 0) = 0.2999;
+    for (int64_t k = 0; k < x.view.shape[0]; k++)
+      if (*mps_view_f64(&x.view, k, 0) > 0.3) *mps_edit_f64(&x, k, 0) = 0.2999;
     mps_assert_ok(context, mps_particles_commit(s.particles, &x));
     mps_assert_ok(context, mps_mpm_step(s.mpm, 1)); /* put back by hand */
     for (int round = 0; round < 3; round++) {       /* taken away */

@@ -275,20 +275,24 @@ static void sorting_takes_every_field_along(void **state) {
   int64_t ids[5], count;
   mps_assert_ok(context, mps_particles_add_field(set, "mine", 2));
   mps_assert_ok(context, mps_particles_add_field(set, "group", 0));
-  mps_view mine = view_of(set, "mine"), group = view_of(set, "group");
+  mps_edit mine, group;
+  mps_assert_ok(context, mps_particles_edit(set, "mine", &mine));
+  mps_assert_ok(context, mps_particles_edit(set, "group", &group));
   for (int i = 0; i < 5; i++) {
-    *mps_view_f64(&mine, i, 1) = 10.0 * i;
-    *mps_view_i64(&group, i, 0) = 100 + i;
+    *mps_edit_f64(&mine, i, 1) = 10.0 * i;
+    *mps_edit_i64(&group, i, 0) = 100 + i;
   }
+  mps_assert_ok(context, mps_particles_commit(set, &mine));
+  mps_assert_ok(context, mps_particles_commit(set, &group));
   const uint64_t epoch = mps_particles_epoch(set);
   mps_assert_ok(context, mpsi_particles_permute(set, __func__, order));
   assert_true(mps_particles_epoch(set) != epoch);
   const mps_view id = view_of(set, "id"), x = view_of(set, "position");
   for (int k = 0; k < 5; k++) {
     assert_int_equal(*mps_view_i64(&id, k, 0), order[k]);
-    assert_int_equal(*mps_view_i64(&group, k, 0), 100 + order[k]);
+    assert_int_equal(*mps_view_i64(&group.view, k, 0), 100 + order[k]);
     mps_assert_near(*mps_view_f64(&x, k, 0), (double)order[k], 0.0);
-    mps_assert_near(*mps_view_f64(&mine, k, 1), 10.0 * (double)order[k], 0.0);
+    mps_assert_near(*mps_view_f64(&mine.view, k, 1), 10.0 * (double)order[k], 0.0);
     assert_int_equal(mps_particles_index(set, order[k]), k);
   }
   assert_int_equal(mps_particles_nearest(set, x2), 2);
@@ -342,10 +346,10 @@ static void a_set_in_use_does_not_grow_and_outlives_its_destruction(void **state
   mps_particles *pinned = mpsi_particles_pin(set);
   assert_ptr_equal(pinned, set);
   assert_ptr_equal(mpsi_particles_context(set), context);
-  mps_assert_fails(context, mps_particles_append(set, 1, lo), MPS_ERROR_STATE,
-                   "held by a solver");
+  mps_assert_fails(context, mps_particles_append(set, 1, lo), MPS_ERROR_STATE, "held by a solver");
   mps_assert_fails(context, mps_particles_fill_box(set, lo, hi, NULL), MPS_ERROR_STATE, "held by");
-  mps_assert_fails(context, mps_particles_fill_ball(set, lo, 1.0, NULL), MPS_ERROR_STATE, "held by");
+  mps_assert_fails(context, mps_particles_fill_ball(set, lo, 1.0, NULL), MPS_ERROR_STATE,
+                   "held by");
   mps_assert_fails(context, mps_particles_fill_polygon(set, 3, triangle, NULL), MPS_ERROR_STATE,
                    "held by");
   mps_assert_ok(context, mps_particles_set(set, "density", 0, 1.0)); /* fields may be added */

@@ -65,9 +65,11 @@ static mpm_scene begin(mps_context *context, mps_material *law, bool warm) {
   mpm_scene_affine(&s, v0, L);
   if (warm) {
     mps_assert_ok(context, mps_particles_add_field(s.particles, "temperature", 0));
-    mps_view T = mpm_scene_view(&s, "temperature"), id = mpm_scene_view(&s, "id");
-    for (int64_t k = 0; k < T.shape[0]; k++)
-      *mps_view_f64(&T, k, 0) = 280.0 + (double)*mps_view_i64(&id, k, 0);
+    mps_view id = mpm_scene_view(&s, "id");
+    mps_edit T = mpm_scene_edit(&s, "temperature");
+    for (int64_t k = 0; k < T.view.shape[0]; k++)
+      *mps_edit_f64(&T, k, 0) = 280.0 + (double)*mps_view_i64(&id, k, 0);
+    mpm_scene_commit(&s, &T);
   }
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 0.02;

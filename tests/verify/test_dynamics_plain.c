@@ -77,20 +77,21 @@ static mps_dynamics *solver_from(mps_context *context, const sample *s, int inte
   mps_assert_ok(context, mps_particles_append(*particles, COUNT, s->xy));
   const char *const names[] = {"density", "shear_velocity", "pressure_velocity",
                                "damping", "velocity",       "spin"};
-  mps_view view[6];
+  mps_edit view[6];
   for (int f = 0; f < 6; f++) {
     mps_assert_ok(context, mps_particles_add_field(*particles, names[f], 0));
-    mps_assert_ok(context, mps_particles_view(*particles, names[f], &view[f]));
+    mps_assert_ok(context, mps_particles_edit(*particles, names[f], &view[f]));
   }
   for (int64_t k = 0; k < COUNT; k++) {
-    *mps_view_f64(&view[0], k, 0) = s->rho[k];
-    *mps_view_f64(&view[1], k, 0) = s->vs[k];
-    *mps_view_f64(&view[2], k, 0) = s->vp[k];
-    *mps_view_f64(&view[3], k, 0) = damping;
-    *mps_view_f64(&view[4], k, 0) = s->v[3 * k];
-    *mps_view_f64(&view[4], k, 1) = s->v[3 * k + 1];
-    *mps_view_f64(&view[5], k, 0) = s->v[3 * k + 2];
+    *mps_edit_f64(&view[0], k, 0) = s->rho[k];
+    *mps_edit_f64(&view[1], k, 0) = s->vs[k];
+    *mps_edit_f64(&view[2], k, 0) = s->vp[k];
+    *mps_edit_f64(&view[3], k, 0) = damping;
+    *mps_edit_f64(&view[4], k, 0) = s->v[3 * k];
+    *mps_edit_f64(&view[4], k, 1) = s->v[3 * k + 1];
+    *mps_edit_f64(&view[5], k, 0) = s->v[3 * k + 2];
   }
+  for (int f = 0; f < 6; f++) mps_assert_ok(context, mps_particles_commit(*particles, &view[f]));
   mps_dynamics_def def = mps_dynamics_defaults();
   def.integrator = integrator;
   def.rotation =

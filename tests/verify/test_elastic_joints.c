@@ -64,14 +64,16 @@ static mps_status laminate_traction(void *user, const double *x, const double *n
 }
 
 static void fill(test_body *b, const laminate *l) {
-  mps_view young, poisson;
-  mps_assert_ok(b->context, mps_particles_view(b->particles, "young", &young));
-  mps_assert_ok(b->context, mps_particles_view(b->particles, "poisson", &poisson));
+  mps_edit young, poisson;
+  mps_assert_ok(b->context, mps_particles_edit(b->particles, "young", &young));
+  mps_assert_ok(b->context, mps_particles_edit(b->particles, "poisson", &poisson));
   for (int64_t i = 0; i < b->n; i++) {
     const int kind = kind_at(l, test_value(b, "position", i, l->axis));
-    *mps_view_f64(&young, i, 0) = l->young[kind];
-    *mps_view_f64(&poisson, i, 0) = l->nu[kind];
+    *mps_edit_f64(&young, i, 0) = l->young[kind];
+    *mps_edit_f64(&poisson, i, 0) = l->nu[kind];
   }
+  mps_assert_ok(b->context, mps_particles_commit(b->particles, &poisson));
+  mps_assert_ok(b->context, mps_particles_commit(b->particles, &young));
   mps_assert_ok(b->context, mps_elastic_update_material(b->elastic));
 }
 
@@ -263,13 +265,14 @@ static double beam_error(mps_context *context, const beam *q, int cells) {
   test_body b = test_body_begin(context, 2, h);
   test_body_box(&b, 0, 0, 0, q->length + wall, q->depth, 0);
   test_body_finish(&b, 1.0, q->nu, NULL);
-  mps_view young;
-  mps_assert_ok(context, mps_particles_view(b.particles, "young", &young));
+  mps_edit young;
+  mps_assert_ok(context, mps_particles_edit(b.particles, "young", &young));
   for (int64_t i = 0; i < b.n; i++) {
     const double x = test_value(&b, "position", i, 0) - wall, y = test_value(&b, "position", i, 1);
     const bool second = q->along_length ? x > q->joint : y > 0.5 * q->depth;
-    *mps_view_f64(&young, i, 0) = q->young[second];
+    *mps_edit_f64(&young, i, 0) = q->young[second];
   }
+  mps_assert_ok(context, mps_particles_commit(b.particles, &young));
   mps_assert_ok(context, mps_elastic_update_material(b.elastic));
   int64_t count, *ids = test_select(&b, 0, -1, 0.6 * h, &count);
   for (int c = 0; c < 2; c++)
@@ -331,13 +334,15 @@ static void only_rigid_motions_are_free_whatever_the_materials(void **state) {
     test_body_box(&b, 0, 0, 0, 2, 1, 0.5);
     test_body_box(&b, 0, 0, 0, 1, 1.5, 0.75);
     test_body_finish(&b, 1.0, 0.2, NULL);
-    mps_view young, poisson;
-    mps_assert_ok(context, mps_particles_view(b.particles, "young", &young));
-    mps_assert_ok(context, mps_particles_view(b.particles, "poisson", &poisson));
+    mps_edit young, poisson;
+    mps_assert_ok(context, mps_particles_edit(b.particles, "young", &young));
+    mps_assert_ok(context, mps_particles_edit(b.particles, "poisson", &poisson));
     for (int64_t i = 0; i < b.n; i++) {
-      *mps_view_f64(&young, i, 0) = 1.0 + (double)(i * 7919 % 13) * 8.0;
-      *mps_view_f64(&poisson, i, 0) = 0.4 * (double)(i * 31 % 5) / 5.0;
+      *mps_edit_f64(&young, i, 0) = 1.0 + (double)(i * 7919 % 13) * 8.0;
+      *mps_edit_f64(&poisson, i, 0) = 0.4 * (double)(i * 31 % 5) / 5.0;
     }
+    mps_assert_ok(context, mps_particles_commit(b.particles, &poisson));
+    mps_assert_ok(context, mps_particles_commit(b.particles, &young));
     mps_assert_ok(context, mps_elastic_update_material(b.elastic));
     const int64_t all = b.n * dim, rigid = dim == 2 ? 3 : 6;
     double *k = malloc((size_t)(all * all) * sizeof *k), *u = calloc((size_t)all, sizeof *u);
@@ -418,12 +423,13 @@ static void inclusion_error(mps_context *context, inclusion *q, int cells, doubl
   const double side = (4 * cells + 0.5) * h;
   test_body_box(&b, -0.5 * h, -0.5 * h, 0, side, side, 0);
   test_body_finish(&b, young, q->nu, &def);
-  mps_view stiffness;
-  mps_assert_ok(context, mps_particles_view(b.particles, "young", &stiffness));
+  mps_edit stiffness;
+  mps_assert_ok(context, mps_particles_edit(b.particles, "young", &stiffness));
   for (int64_t i = 0; i < b.n; i++) {
     const double x = test_value(&b, "position", i, 0), y = test_value(&b, "position", i, 1);
-    if (x * x + y * y < 1) *mps_view_f64(&stiffness, i, 0) = q->m * young;
+    if (x * x + y * y < 1) *mps_edit_f64(&stiffness, i, 0) = q->m * young;
   }
+  mps_assert_ok(context, mps_particles_commit(b.particles, &stiffness));
   mps_assert_ok(context, mps_elastic_update_material(b.elastic));
   for (int c = 0; c < 2; c++) {
     int64_t count, *ids = test_select(&b, c, -1, 0.1 * h, &count);

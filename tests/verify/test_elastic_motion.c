@@ -136,10 +136,11 @@ static void modes_decay_with_the_damping_ratios_asked_for(void **state) {
     double *shape = malloc((size_t)b.n * 6 * sizeof *shape);
     mps_assert_ok(context, mps_elastic_modes(b.elastic, 2, omega, shape));
     mps_assert_ok(context, mps_particles_add_field(b.particles, "velocity", 0));
-    mps_view v;
-    mps_assert_ok(context, mps_particles_view(b.particles, "velocity", &v));
+    mps_edit v;
+    mps_assert_ok(context, mps_particles_edit(b.particles, "velocity", &v));
     for (int64_t i = 0; i < b.n; i++)
-      for (int c = 0; c < 2; c++) *mps_view_f64(&v, i, c) = shape[(mode * b.n + i) * 3 + c];
+      for (int c = 0; c < 2; c++) *mps_edit_f64(&v, i, c) = shape[(mode * b.n + i) * 3 + c];
+    mps_assert_ok(context, mps_particles_commit(b.particles, &v));
     mps_elastic_motion_def def = mps_elastic_motion_defaults();
     const double period = 2 * PI / omega[mode];
     def.dt = period / 200;
@@ -213,10 +214,11 @@ static void every_member_is_of_second_order(void **state) {
       double omega, *shape = malloc((size_t)b.n * 3 * sizeof *shape);
       mps_assert_ok(context, mps_elastic_modes(b.elastic, 1, &omega, shape));
       mps_assert_ok(context, mps_particles_add_field(b.particles, "displacement", 0));
-      mps_view u;
-      mps_assert_ok(context, mps_particles_view(b.particles, "displacement", &u));
+      mps_edit u;
+      mps_assert_ok(context, mps_particles_edit(b.particles, "displacement", &u));
       for (int64_t i = 0; i < b.n; i++)
-        for (int c = 0; c < 2; c++) *mps_view_f64(&u, i, c) = shape[i * 3 + c];
+        for (int c = 0; c < 2; c++) *mps_edit_f64(&u, i, c) = shape[i * 3 + c];
+      mps_assert_ok(context, mps_particles_commit(b.particles, &u));
       mps_assert_ok(context, start(&b, 2 * PI / omega / (fine ? 80 : 40), rho[k], NAN, NAN));
       mps_assert_ok(context, mps_elastic_run(b.elastic, 2.25 * 2 * PI / omega, 1, NULL, NULL));
       error[fine] = test_value(&b, "displacement", b.n - 1, 1) / shape[3 * (b.n - 1) + 1];

@@ -80,11 +80,12 @@ static void a_released_mode_keeps_its_period_and_energy(void **state) {
   double *shape = malloc((size_t)b.n * 3 * sizeof *shape);
   mps_assert_ok(context, mps_elastic_modes(b.elastic, 1, omega, shape));
   mps_assert_ok(context, mps_particles_add_field(b.particles, "displacement", 0));
-  mps_view u;
-  mps_assert_ok(context, mps_particles_view(b.particles, "displacement", &u));
+  mps_edit u;
+  mps_assert_ok(context, mps_particles_edit(b.particles, "displacement", &u));
   double modal_mass = 0.0;
   for (int64_t i = 0; i < b.n; i++)
-    for (int c = 0; c < 2; c++) *mps_view_f64(&u, i, c) = shape[3 * i + c];
+    for (int c = 0; c < 2; c++) *mps_edit_f64(&u, i, c) = shape[3 * i + c];
+  mps_assert_ok(context, mps_particles_commit(b.particles, &u));
   for (int64_t i = 0; i < b.n * 3; i++)
     modal_mass += shape[i] * shape[i] / 64.0; /* wall particles do not move */
   mps_assert_near(modal_mass, 1.0, 1e-10);

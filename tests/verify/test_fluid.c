@@ -131,13 +131,15 @@ static void a_drop_becomes_the_ellipse_of_theory(void **state) {
   mps_assert_ok(context, mps_particles_create(context, &set, &p));
   mps_assert_ok(context, mps_particles_fill_where(p, lo, hi, in_circle, NULL, NULL));
   mps_assert_ok(context, mps_particles_add_field(p, "velocity", 0));
-  mps_view x, u;
+  mps_view x;
+  mps_edit u;
   mps_assert_ok(context, mps_particles_view(p, "position", &x));
-  mps_assert_ok(context, mps_particles_view(p, "velocity", &u));
+  mps_assert_ok(context, mps_particles_edit(p, "velocity", &u));
   for (int64_t i = 0; i < mps_particles_count(p); i++) {
-    *mps_view_f64(&u, i, 0) = -*mps_view_f64(&x, i, 0);
-    *mps_view_f64(&u, i, 1) = *mps_view_f64(&x, i, 1);
+    *mps_edit_f64(&u, i, 0) = -*mps_view_f64(&x, i, 0);
+    *mps_edit_f64(&u, i, 1) = *mps_view_f64(&x, i, 1);
   }
+  mps_assert_ok(context, mps_particles_commit(p, &u));
   mps_assert_ok(context, mps_fluid_create(context, p, &def, &f));
   mps_totals before, after;
   mps_assert_ok(context, mps_fluid_get_totals(f, &before));

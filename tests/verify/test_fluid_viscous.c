@@ -9,14 +9,15 @@
 
 /* Velocities of the stream function sin(pi x) sin(pi y)/pi, or its square. */
 static void add_swirl(mps_particles *water, bool square, double size) {
-  mps_view x, u;
+  mps_view x;
+  mps_edit u;
   mps_assert_ok(context, mps_particles_add_field(water, "velocity", 0));
   mps_assert_ok(context, mps_particles_view(water, "position", &x));
   mps_assert_ok(context, mps_particles_edit(water, "velocity", &u));
   for (int64_t i = 0; i < mps_particles_count(water); i++) {
     const double a = TANK_PI * *mps_view_f64(&x, i, 0), b = TANK_PI * *mps_view_f64(&x, i, 1);
-    *mps_view_f64(&u, i, 0) = size * (square ? sin(a) * sin(a) * sin(2.0 * b) : sin(a) * cos(b));
-    *mps_view_f64(&u, i, 1) = -size * (square ? sin(b) * sin(b) * sin(2.0 * a) : cos(a) * sin(b));
+    *mps_edit_f64(&u, i, 0) = size * (square ? sin(a) * sin(a) * sin(2.0 * b) : sin(a) * cos(b));
+    *mps_edit_f64(&u, i, 1) = -size * (square ? sin(b) * sin(b) * sin(2.0 * a) : cos(a) * sin(b));
   }
   mps_assert_ok(context, mps_particles_commit(water, &u));
 }

@@ -38,20 +38,21 @@ static double deflection(void) {
  * `along` receives the place of each on the beam. */
 static void lay_out(mpm_scene *s, double moves, double *along) {
   static const char *const name[3] = {"position", "velocity", "body_acceleration"};
-  mps_view field[3];
+  mps_edit field[3];
   for (int f = 1; f < 3; f++)
     mps_assert_ok(s->context, mps_particles_add_field(s->particles, name[f], 0));
   for (int f = 0; f < 3; f++)
     mps_assert_ok(s->context, mps_particles_edit(s->particles, name[f], &field[f]));
-  for (int64_t k = 0; k < field[0].shape[0]; k++) {
-    const double r = *mps_view_f64(&field[0], k, 0) - 0.5, y = *mps_view_f64(&field[0], k, 1);
+  for (int64_t k = 0; k < field[0].view.shape[0]; k++) {
+    const double r = *mps_view_f64(&field[0].view, k, 0) - 0.5,
+                 y = *mps_view_f64(&field[0].view, k, 1);
     const double b = peak * cos(2.0 * PI * (r + 0.5));
     along[k] = r + 0.5;
-    *mps_view_f64(&field[0], k, 0) = 0.5 + cos(ANGLE) * r - sin(ANGLE) * y;
-    *mps_view_f64(&field[0], k, 1) = sin(ANGLE) * r + cos(ANGLE) * y;
-    for (int c = 0; c < 2; c++) *mps_view_f64(&field[1], k, c) = moves * speed[c];
-    *mps_view_f64(&field[2], k, 0) = -sin(ANGLE) * b;
-    *mps_view_f64(&field[2], k, 1) = cos(ANGLE) * b;
+    *mps_edit_f64(&field[0], k, 0) = 0.5 + cos(ANGLE) * r - sin(ANGLE) * y;
+    *mps_edit_f64(&field[0], k, 1) = sin(ANGLE) * r + cos(ANGLE) * y;
+    for (int c = 0; c < 2; c++) *mps_edit_f64(&field[1], k, c) = moves * speed[c];
+    *mps_edit_f64(&field[2], k, 0) = -sin(ANGLE) * b;
+    *mps_edit_f64(&field[2], k, 1) = cos(ANGLE) * b;
   }
   for (int f = 0; f < 3; f++)
     mps_assert_ok(s->context, mps_particles_commit(s->particles, &field[f]));
@@ -59,12 +60,15 @@ static void lay_out(mpm_scene *s, double moves, double *along) {
 
 /* Takes a share of all velocities away but that of the whole. */
 static void damp(mpm_scene *s, double share, double moves) {
-  mps_view v = mpm_scene_view(s, "velocity"), L = mpm_scene_view(s, "velocity_gradient");
-  for (int64_t k = 0; k < v.shape[0]; k++) {
+  mps_edit v = mpm_scene_edit(s, "velocity");
+  mps_edit L = mpm_scene_edit(s, "velocity_gradient");
+  for (int64_t k = 0; k < v.view.shape[0]; k++) {
     for (int c = 0; c < 2; c++)
-      *mps_view_f64(&v, k, c) -= share * (*mps_view_f64(&v, k, c) - moves * speed[c]);
-    for (int c = 0; c < 4; c++) *mps_view_f64(&L, k, c) *= 1.0 - share;
+      *mps_edit_f64(&v, k, c) -= share * (*mps_view_f64(&v.view, k, c) - moves * speed[c]);
+    for (int c = 0; c < 4; c++) *mps_edit_f64(&L, k, c) *= 1.0 - share;
   }
+  mpm_scene_commit(s, &L);
+  mpm_scene_commit(s, &v);
 }
 
 /* By how much the ends lie above the middle, across the beam. */

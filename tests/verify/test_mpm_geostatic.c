@@ -23,9 +23,11 @@ static part_changes rest(int32_t geometry, int32_t spline, int32_t walls, int32_
   mpm_scene s = mpm_scene_begin(context, 0.05, 0.0, 0.0, 2e7);
   mpm_scene_box(&s, 0.0, 0.0, 0.4, HEIGHT);
   mps_assert_ok(context, mps_particles_set(s.particles, "density", 0, 2000.0));
-  mps_view x = mpm_scene_view(&s, "position"), rho = mpm_scene_view(&s, "density");
+  mps_view x = mpm_scene_view(&s, "position");
+  mps_edit rho = mpm_scene_edit(&s, "density");
   for (int64_t k = 0; k < x.shape[0]; k++)
-    if (*mps_view_f64(&x, k, 1) > HEIGHT - 0.8) *mps_view_f64(&rho, k, 0) = 1500.0;
+    if (*mps_view_f64(&x, k, 1) > HEIGHT - 0.8) *mps_edit_f64(&rho, k, 0) = 1500.0;
+  mpm_scene_commit(&s, &rho);
   mps_geostatic_def ground = mps_geostatic_defaults();
   ground.layers = layers;
   ground.layer_count = 2;

@@ -19,9 +19,11 @@ static void lay(mpm_scene *s, mps_material *material, double y) {
 
 static void set_density(mpm_scene *s, double below, double above, double y) {
   mps_assert_ok(context, mps_particles_set(s->particles, "density", 0, below));
-  mps_view x = mpm_scene_view(s, "position"), rho = mpm_scene_view(s, "density");
+  mps_view x = mpm_scene_view(s, "position");
+  mps_edit rho = mpm_scene_edit(s, "density");
   for (int64_t k = 0; k < x.shape[0]; k++)
-    if (*mps_view_f64(&x, k, 1) > y) *mps_view_f64(&rho, k, 0) = above;
+    if (*mps_view_f64(&x, k, 1) > y) *mps_edit_f64(&rho, k, 0) = above;
+  mpm_scene_commit(s, &rho);
 }
 
 static double confined(double young, double poisson) { /* K + 4G/3 */
@@ -45,13 +47,15 @@ static void two_layers_at_rest(void **state) {
   mpm_scene_box(&s, 0.0, 0.0, 0.2, 1.0);
   set_density(&s, lower, upper, 0.52);
   mps_assert_ok(context, mps_particles_add_field(s.particles, "stress", 0));
-  mps_view x = mpm_scene_view(&s, "position"), stress = mpm_scene_view(&s, "stress");
+  mps_view x = mpm_scene_view(&s, "position");
+  mps_edit stress = mpm_scene_edit(&s, "stress");
   for (int64_t k = 0; k < x.shape[0]; k++) {
     const double y = *mps_view_f64(&x, k, 1);
     const double yy = -g * (upper * (1.0 - fmax(y, 0.52)) + lower * fmax(0.52 - y, 0.0));
-    *mps_view_f64(&stress, k, 0) = *mps_view_f64(&stress, k, 2) = K0 * yy;
-    *mps_view_f64(&stress, k, 1) = yy;
+    *mps_edit_f64(&stress, k, 0) = *mps_edit_f64(&stress, k, 2) = K0 * yy;
+    *mps_edit_f64(&stress, k, 1) = yy;
   }
+  mpm_scene_commit(&s, &stress);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 0.04;
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.2;
@@ -62,13 +66,13 @@ static void two_layers_at_rest(void **state) {
   mps_material_destroy(&soft);
   mps_assert_near(mps_mpm_limit(s.mpm), 0.04 / sqrt(confined(4e7, 0.3) / lower), 1e-12);
   mps_assert_ok(context, mps_mpm_run(s.mpm, 0.2, 1000000, NULL, NULL));
-  x = mpm_scene_view(&s, "position"), stress = mpm_scene_view(&s, "stress");
+  x = mpm_scene_view(&s, "position"), stress.view = mpm_scene_view(&s, "stress");
   double worst = 0.0;
   for (int64_t k = 0; k < x.shape[0]; k++) {
     const double y = *mps_view_f64(&x, k, 1);
     if (y < 0.15 || y > 0.85 || fabs(y - 0.52) < 0.08) continue; /* ends and the joint's cells */
     const double yy = -g * (upper * (1.0 - fmax(y, 0.52)) + lower * fmax(0.52 - y, 0.0));
-    worst = fmax(worst, fabs(*mps_view_f64(&stress, k, 1) / yy - 1.0));
+    worst = fmax(worst, fabs(*mps_view_f64(&stress.view, k, 1) / yy - 1.0));
   }
   print_message("two layers: stress within %.2g\n", worst);
   assert_true(worst < 0.02);
@@ -87,15 +91,18 @@ static void joint_reflects(void **state) {
   set_density(&s, rho1, rho2, 1.0);
   mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity", 0));
   mps_assert_ok(context, mps_particles_add_field(s.particles, "stress", 0));
-  mps_view x = mpm_scene_view(&s, "position"), v = mpm_scene_view(&s, "velocity");
-  mps_view stress = mpm_scene_view(&s, "stress");
+  mps_view x = mpm_scene_view(&s, "position");
+  mps_edit v = mpm_scene_edit(&s, "velocity");
+  mps_edit stress = mpm_scene_edit(&s, "stress");
   for (int64_t k = 0; k < x.shape[0]; k++) {
     const double at = (*mps_view_f64(&x, k, 1) - from) / width;
     const double pulse = fabs(at) < 1.0 ? 0.005 * (1.0 + cos(PI * at)) : 0.0;
-    *mps_view_f64(&v, k, 1) = pulse;
-    *mps_view_f64(&stress, k, 1) = -rho1 * c1 * pulse;
-    *mps_view_f64(&stress, k, 0) = *mps_view_f64(&stress, k, 2) = -rho1 * c1 * pulse * 0.3 / 0.7;
+    *mps_edit_f64(&v, k, 1) = pulse;
+    *mps_edit_f64(&stress, k, 1) = -rho1 * c1 * pulse;
+    *mps_edit_f64(&stress, k, 0) = *mps_edit_f64(&stress, k, 2) = -rho1 * c1 * pulse * 0.3 / 0.7;
   }
+  mpm_scene_commit(&s, &v);
+  mpm_scene_commit(&s, &stress);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 0.01;
   def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.02;
@@ -106,11 +113,11 @@ static void joint_reflects(void **state) {
   mps_material_destroy(&stiff);
   const double before = mpm_scene_totals(&s).linear[1], t = 0.85 / c1;
   mps_assert_ok(context, mps_mpm_run(s.mpm, t, 1000000, NULL, NULL));
-  x = mpm_scene_view(&s, "position"), v = mpm_scene_view(&s, "velocity");
+  x = mpm_scene_view(&s, "position"), v.view = mpm_scene_view(&s, "velocity");
   mps_view m = mpm_scene_view(&s, "mass"), law = mpm_scene_view(&s, "material");
   double low = 0.0, high = 0.0, moment = 0.0;
   for (int64_t k = 0; k < x.shape[0]; k++) {
-    const double p = *mps_view_f64(&m, k, 0) * *mps_view_f64(&v, k, 1);
+    const double p = *mps_view_f64(&m, k, 0) * *mps_view_f64(&v.view, k, 1);
     const bool upper = *mps_view_f64(&x, k, 1) > 1.0;
     assert_int_equal(*mps_view_i64(&law, k, 0), upper);
     if (upper) high += p, moment += p * *mps_view_f64(&x, k, 1);

@@ -24,13 +24,16 @@ static mpm_scene water(int32_t spline, int32_t volumetric, int cells, double sid
   mpm_scene_box(&s, 0.0, 0.0, WIDTH, height);
   mps_assert_ok(context, mps_particles_add_field(s.particles, "volume_ratio", 0));
   mps_assert_ok(context, mps_particles_add_field(s.particles, "stress", 0));
-  mps_view x = mpm_scene_view(&s, "position"), J = mpm_scene_view(&s, "volume_ratio");
-  mps_view stress = mpm_scene_view(&s, "stress");
+  mps_view x = mpm_scene_view(&s, "position");
+  mps_edit J = mpm_scene_edit(&s, "volume_ratio");
+  mps_edit stress = mpm_scene_edit(&s, "stress");
   for (int64_t k = 0; k < x.shape[0]; k++) {
     const double p = at_rest ? RHO * GRAVITY * (height - *mps_view_f64(&x, k, 1)) : 0.0;
-    *mps_view_f64(&J, k, 0) = 1.0 / (1.0 + p / K);
-    for (int a = 0; a < 3; a++) *mps_view_f64(&stress, k, a) = -p;
+    *mps_edit_f64(&J, k, 0) = 1.0 / (1.0 + p / K);
+    for (int a = 0; a < 3; a++) *mps_edit_f64(&stress, k, a) = -p;
   }
+  mpm_scene_commit(&s, &J);
+  mpm_scene_commit(&s, &stress);
   mps_mpm_def def = mps_mpm_defaults();
   def.spline = spline;
   def.volumetric = volumetric;

@@ -31,8 +31,9 @@ static void fill_tube(mpm_scene *s, const tube *t, bool space) {
         const double at[] = {space ? r * cos(angle) : r, space ? r * sin(angle) : z, z};
         const int64_t last = mps_particles_count(s->particles);
         mps_assert_ok(context, mps_particles_append(s->particles, 1, at));
-        mps_view volume = mpm_scene_view(s, "volume");
-        *mps_view_f64(&volume, last, 0) = r * d * d * (space ? 0.5 * PI / count : 1.0);
+        mps_edit volume = mpm_scene_edit(s, "volume");
+        *mps_edit_f64(&volume, last, 0) = r * d * d * (space ? 0.5 * PI / count : 1.0);
+        mpm_scene_commit(s, &volume);
       }
     }
   mps_assert_ok(context, mps_particles_add_field(s->particles, "velocity", 0));
@@ -80,12 +81,14 @@ static void mean_velocity(mpm_scene *s, double *out, double *upward) {
  * Returns the period (s), from the first and the third change of sign. */
 static double breathe(mpm_scene *s, const tube *ring, int steps, double *v) {
   const int up = mps_particles_dim(s->particles) - 1;
-  const mps_view x = mpm_scene_view(s, "position"), start = mpm_scene_view(s, "velocity");
+  const mps_view x = mpm_scene_view(s, "position");
+  mps_edit start = mpm_scene_edit(s, "velocity");
   for (int64_t k = 0; k < x.shape[0]; k++) {
     const double X = *mps_view_f64(&x, k, 0), Y = up == 2 ? *mps_view_f64(&x, k, 1) : 0.0;
-    *mps_view_f64(&start, k, 0) = 0.01 * X / hypot(X, Y);
-    if (up == 2) *mps_view_f64(&start, k, 1) = 0.01 * Y / hypot(X, Y);
+    *mps_edit_f64(&start, k, 0) = 0.01 * X / hypot(X, Y);
+    if (up == 2) *mps_edit_f64(&start, k, 1) = 0.01 * Y / hypot(X, Y);
   }
+  mpm_scene_commit(s, &start);
   solve(s, ring, 0.0, 0.5);
   const double dt = mps_mpm_dt(s->mpm);
   double before = 0.01, crossing[3] = {0.0}, unused;

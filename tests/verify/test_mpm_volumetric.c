@@ -89,13 +89,14 @@ static void takes_the_mean(int32_t geometry) {
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.003, 0.001, E);
   mps_assert_ok(context, mps_particles_fill_ball(s.particles, centre, 0.1, NULL));
   mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity", 0));
-  mps_view v = mpm_scene_view(&s, "velocity");
+  mps_edit v = mpm_scene_edit(&s, "velocity");
   uint64_t seed = 1;
-  for (int64_t k = 0; k < v.shape[0]; k++)
+  for (int64_t k = 0; k < v.view.shape[0]; k++)
     for (int c = 0; c < dim; c++) {
       seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-      *mps_view_f64(&v, k, c) = (c == 1 ? 8.0 : 0.0) + 4.0 * (double)(seed >> 11) * 0x1p-53;
+      *mps_edit_f64(&v, k, c) = (c == 1 ? 8.0 : 0.0) + 4.0 * (double)(seed >> 11) * 0x1p-53;
     }
+  mpm_scene_commit(&s, &v);
   mps_mpm_def def = mps_mpm_defaults();
   def.geometry = geometry, def.cell = h, def.dt = dt;
   def.volumetric = MPS_MPM_VOLUMETRIC_CELL;
@@ -104,15 +105,17 @@ static void takes_the_mean(int32_t geometry) {
                 mps_experimental_mpm_strain(s.mpm, MPS_EXPERIMENTAL_STRAIN_FIT));
   mps_assert_ok(context, mps_mpm_step(s.mpm, 15)); /* 12 to 18 mm: within a cell of the blocks */
   mps_view x = mpm_scene_view(&s, "position"), L = mpm_scene_view(&s, "velocity_gradient");
-  mps_view stress = mpm_scene_view(&s, "stress"), V = mpm_scene_view(&s, "volume");
+  mps_view V = mpm_scene_view(&s, "volume");
+  mps_edit stress = mpm_scene_edit(&s, "stress");
   memset(volume, 0, sizeof volume), memset(change, 0, sizeof change);
   const int64_t count = x.shape[0];
   assert_in_range(count, 200, 20000);
   for (int64_t k = 0; k < count; k++) {
     cell[k] = cell_of(&x, k, dim, h);
     held[k] = *mps_view_f64(&V, k, 0);
-    for (int c = 0; c < stress.shape[1]; c++) *mps_view_f64(&stress, k, c) = 0.0;
+    for (int c = 0; c < stress.view.shape[1]; c++) *mps_edit_f64(&stress, k, c) = 0.0;
   }
+  mpm_scene_commit(&s, &stress);
   const uint64_t epoch = mps_particles_epoch(s.particles);
   mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
   assert_true(mps_particles_epoch(s.particles) == epoch); /* not sorted: some are off their block */
@@ -123,7 +126,7 @@ static void takes_the_mean(int32_t geometry) {
   double worst = 0.0, largest = 0.0, apart = 0.0;
   for (int64_t k = 0; k < count; k++) {
     double p = 0.0;
-    for (int c = 0; c < 3; c++) p += *mps_view_f64(&stress, k, c) / 3.0;
+    for (int c = 0; c < 3; c++) p += *mps_view_f64(&stress.view, k, c) / 3.0;
     const double exact = bulk * dt * change[cell[k]] / volume[cell[k]];
     worst = fmax(worst, fabs(p - exact));
     largest = fmax(largest, fabs(exact));

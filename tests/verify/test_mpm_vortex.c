@@ -151,11 +151,12 @@ static double *fill_ring(mpm_scene *s, double spacing, int64_t *count) {
   }
   mps_assert_ok(context, mps_particles_append(s->particles, *count, X));
   mps_assert_ok(context, mps_particles_add_field(s->particles, "volume", 0));
-  mps_view volume = mpm_scene_view(s, "volume");
+  mps_edit volume = mpm_scene_edit(s, "volume");
   for (int64_t k = 0; k < *count; k++) {
     const double R = hypot(X[2 * k], X[2 * k + 1]);
-    *mps_view_f64(&volume, k, 0) = 2.0 * PI * R * spacing / round(2.0 * PI * R / spacing);
+    *mps_edit_f64(&volume, k, 0) = 2.0 * PI * R * spacing / round(2.0 * PI * R / spacing);
   }
+  mpm_scene_commit(s, &volume);
   return X;
 }
 
@@ -163,8 +164,9 @@ static double *fill_ring(mpm_scene *s, double spacing, int64_t *count) {
 static void start(mpm_scene *s, const vortex *v, const double *X, double t) {
   mps_assert_ok(context, mps_particles_add_field(s->particles, "velocity", 0));
   mps_assert_ok(context, mps_particles_add_field(s->particles, "velocity_gradient", 0));
-  mps_view velocity = mpm_scene_view(s, "velocity"), L = mpm_scene_view(s, "velocity_gradient");
-  for (int64_t k = 0; k < velocity.shape[0]; k++) {
+  mps_edit velocity = mpm_scene_edit(s, "velocity");
+  mps_edit L = mpm_scene_edit(s, "velocity_gradient");
+  for (int64_t k = 0; k < velocity.view.shape[0]; k++) {
     const double R = hypot(X[2 * k], X[2 * k + 1]);
     double h[3], g[3], u[2], r[2];
     profile(R, h);
@@ -172,23 +174,27 @@ static void start(mpm_scene *s, const vortex *v, const double *X, double t) {
     velocity_at(v, &X[2 * k], t, u);
     turn(v, &X[2 * k], t, 1.0, 0.0, r);
     const double rate = g[1] * h[0], slope = R * g[1] * h[1]; /* spin, and shear e_t e_r */
-    *mps_view_f64(&velocity, k, 0) = u[0];
-    *mps_view_f64(&velocity, k, 1) = u[1];
-    *mps_view_f64(&L, k, 0) = -slope * r[1] * r[0];
-    *mps_view_f64(&L, k, 1) = -slope * r[1] * r[1] - rate;
-    *mps_view_f64(&L, k, 2) = slope * r[0] * r[0] + rate;
-    *mps_view_f64(&L, k, 3) = slope * r[0] * r[1];
+    *mps_edit_f64(&velocity, k, 0) = u[0];
+    *mps_edit_f64(&velocity, k, 1) = u[1];
+    *mps_edit_f64(&L, k, 0) = -slope * r[1] * r[0];
+    *mps_edit_f64(&L, k, 1) = -slope * r[1] * r[1] - rate;
+    *mps_edit_f64(&L, k, 2) = slope * r[0] * r[0] + rate;
+    *mps_edit_f64(&L, k, 3) = slope * r[0] * r[1];
   }
+  mpm_scene_commit(s, &L);
+  mpm_scene_commit(s, &velocity);
 }
 
 /* The body force as a kick before each step. */
 static void kick(mpm_scene *s, const vortex *v, const double *X, double dt) {
-  mps_view velocity = mpm_scene_view(s, "velocity"), id = mpm_scene_view(s, "id");
-  for (int64_t k = 0; k < velocity.shape[0]; k++) {
+  mps_view id = mpm_scene_view(s, "id");
+  mps_edit velocity = mpm_scene_edit(s, "velocity");
+  for (int64_t k = 0; k < velocity.view.shape[0]; k++) {
     double b[2];
     body_force_at(v, &X[2 * *mps_view_i64(&id, k, 0)], mps_mpm_time(s->mpm), b);
-    for (int c = 0; c < 2; c++) *mps_view_f64(&velocity, k, c) += dt * b[c];
+    for (int c = 0; c < 2; c++) *mps_edit_f64(&velocity, k, c) += dt * b[c];
   }
+  mpm_scene_commit(s, &velocity);
 }
 
 /* Root mean square of the distance from the exact place (m). */

@@ -43,15 +43,18 @@ static double reflected(int shear, int32_t wall, int32_t spline) {
   mpm_scene_box(&s, -half, 0.0, half, height);
   mps_assert_ok(context, mps_particles_add_field(s.particles, "velocity", 0));
   mps_assert_ok(context, mps_particles_add_field(s.particles, "stress", 0));
-  mps_view x = mpm_scene_view(&s, "position"), v = mpm_scene_view(&s, "velocity");
-  mps_view stress = mpm_scene_view(&s, "stress");
+  mps_view x = mpm_scene_view(&s, "position");
+  mps_edit v = mpm_scene_edit(&s, "velocity");
+  mps_edit stress = mpm_scene_edit(&s, "stress");
   for (int64_t k = 0; k < x.shape[0]; k++) {
     const double r = (*mps_view_f64(&x, k, 1) - middle) / width, f = 1e-3 * exp(-r * r);
-    *mps_view_f64(&v, k, shear ? 0 : 1) = f;
-    *mps_view_f64(&stress, k, shear ? 3 : 1) = RHO * c * f;
+    *mps_edit_f64(&v, k, shear ? 0 : 1) = f;
+    *mps_edit_f64(&stress, k, shear ? 3 : 1) = RHO * c * f;
     if (!shear)
-      *mps_view_f64(&stress, k, 0) = *mps_view_f64(&stress, k, 2) = RHO * c * f * NU / (1.0 - NU);
+      *mps_edit_f64(&stress, k, 0) = *mps_edit_f64(&stress, k, 2) = RHO * c * f * NU / (1.0 - NU);
   }
+  mpm_scene_commit(&s, &stress);
+  mpm_scene_commit(&s, &v);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = 0.02;
   def.spline = spline;
@@ -87,12 +90,14 @@ static void absorbing_wall_carries(void **state) {
     mpm_scene s = mpm_scene_begin(context, 0.02, 0.0, 0.0, E);
     mpm_scene_box(&s, 0.0, 0.0, 0.2, height);
     mps_assert_ok(context, mps_particles_add_field(s.particles, "stress", 0));
-    mps_view x = mpm_scene_view(&s, "position"), stress = mpm_scene_view(&s, "stress");
+    mps_view x = mpm_scene_view(&s, "position");
+    mps_edit stress = mpm_scene_edit(&s, "stress");
     for (int64_t k = 0; k < x.shape[0]; k++) {
       const double yy = -RHO * g * (height - *mps_view_f64(&x, k, 1));
-      *mps_view_f64(&stress, k, 1) = yy;
-      *mps_view_f64(&stress, k, 0) = *mps_view_f64(&stress, k, 2) = yy * NU / (1.0 - NU);
+      *mps_edit_f64(&stress, k, 1) = yy;
+      *mps_edit_f64(&stress, k, 0) = *mps_edit_f64(&stress, k, 2) = yy * NU / (1.0 - NU);
     }
+    mpm_scene_commit(&s, &stress);
     mps_mpm_def def = mps_mpm_defaults();
     def.cell = 0.04;
     def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.2;
@@ -144,9 +149,11 @@ static double slide(int dim, double mu, double degrees, double belt, double *rat
   mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.0, 0.0, 1e6);
   mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
   mps_assert_ok(context, mps_particles_add_field(s.particles, "stress", 0));
-  mps_view x = mpm_scene_view(&s, "position"), stress = mpm_scene_view(&s, "stress");
+  mps_view x = mpm_scene_view(&s, "position");
+  mps_edit stress = mpm_scene_edit(&s, "stress");
   for (int64_t k = 0; k < x.shape[0]; k++) /* of its weight */
-    *mps_view_f64(&stress, k, 1) = -RHO * g * cos(slope) * (hi[1] - *mps_view_f64(&x, k, 1));
+    *mps_edit_f64(&stress, k, 1) = -RHO * g * cos(slope) * (hi[1] - *mps_view_f64(&x, k, 1));
+  mpm_scene_commit(&s, &stress);
   mps_mpm_def def = mps_mpm_defaults();
   def.geometry = dim == 3 ? MPS_MPM_SPACE : MPS_MPM_PLANE_STRAIN;
   def.cell = 0.02;

@@ -1,5 +1,5 @@
-/* remove.c - particles that come and go while solvers hold the set, and the way back when the
- * creation of a solver fails. SPDX-License-Identifier: BSD-3-Clause */
+/* population.c - particles that come and go, also while solvers hold the set, and the way back when
+ * the creation of a solver fails. SPDX-License-Identifier: BSD-3-Clause */
 #include "particles_private.h"
 
 #include <string.h>
@@ -18,6 +18,79 @@ static void clear_tail(mps_particles *p, int64_t count) {
       memset((char *)mpsi_field_column(p->fields[f], c) + 8 * p->count, 0, (size_t)count * 8);
 }
 
+/* ---- coming ---------------------------------------------------------------------------------- */
+
+mps_status mpsi_particles_check_free(const mps_particles *p, const char *function) {
+  const mps_status status = mpsi_particles_ready(p, function);
+  if (status != MPS_OK) return status;
+  const char *who = p->pins > 0 ? "a solver" : NULL;
+  for (const mpsi_holder *h = p->holders; h && !who; h = h->next)
+    if (!h->insert && h->kind != MPSI_USE_LOOK) who = h->name;
+  if (!who) return MPS_OK;
+  return mpsi_fail(
+      p->context, function, MPS_ERROR_STATE,
+      "the particle set is held by %s, which takes no more particles: destroy it first", who);
+}
+
+/* Makes room for `capacity` particles: first all the memory, then the moves, so that a failure
+ * leaves every borrowed view valid. */
+static bool reserve(mps_particles *p, int64_t capacity) {
+  mps_context *context = p->context;
+  void **blocks = mpsi_alloc(context, p->field_count, sizeof *blocks);
+  bool good = blocks != NULL;
+  for (int32_t f = 0; good && f < p->field_count; f++)
+    good = (blocks[f] = mpsi_field_allocate(context, p->fields[f], capacity)) != NULL;
+  if (good) p->capacity = capacity;
+  for (int32_t f = 0; blocks && f < p->field_count; f++) {
+    if (good)
+      mpsi_field_move(context, p->fields[f], blocks[f], p->count, capacity);
+    else
+      mpsi_free(context, blocks[f]);
+  }
+  mpsi_free(context, blocks);
+  return good;
+}
+
+/* Room in the map for `count` more ids. */
+static bool reserve_ids(mps_particles *p, int64_t count) {
+  const int64_t needed = p->next_id + count, half_more = p->id_capacity + p->id_capacity / 2;
+  if (needed <= p->id_capacity) return true;
+  const int64_t capacity = needed > half_more ? needed : half_more;
+  void *index_of = p->index_of;
+  if (!mpsi_grow(p->context, &index_of, p->next_id, capacity, sizeof *p->index_of)) return false;
+  p->index_of = index_of;
+  p->id_capacity = capacity;
+  return true;
+}
+
+mps_status mpsi_particles_extend(mps_particles *p, const char *function, int64_t count) {
+  if (count > MPSI_MAX_PARTICLES - p->count)
+    return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
+                     "%lld particles to add to %lld, a set holds at most 2^40", (long long)count,
+                     (long long)p->count);
+  const int64_t needed = p->count + count;
+  if (needed > p->capacity) {
+    /* The first fill gets exactly its size; later growth is by half at least. */
+    const int64_t half_more = p->capacity + p->capacity / 2;
+    if (!reserve(p, needed > half_more ? needed : half_more))
+      return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
+                       "could not allocate %d fields of %lld particles", p->field_count,
+                       (long long)needed);
+  }
+  if (!reserve_ids(p, count))
+    return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
+                     "could not allocate the numbers of %lld particles", (long long)count);
+  if (count == 0) return MPS_OK;
+  int64_t *id = p->fields[MPSI_FIELD_ID]->data;
+  for (int64_t i = p->count; i < needed; i++) {
+    id[i] = p->next_id++;
+    p->index_of[id[i]] = i;
+  }
+  p->count = needed;
+  p->epoch++;
+  return MPS_OK;
+}
+
 mps_status mpsi_particles_arrive(mps_particles *p, const char *function, int64_t first) {
   const int64_t count = p->count - first;
   mps_status status = MPS_OK;
@@ -31,6 +104,32 @@ mps_status mpsi_particles_arrive(mps_particles *p, const char *function, int64_t
   }
   renew_holders(p);
   return status;
+}
+
+mps_status mps_particles_append(mps_particles *particles, int64_t count, const double *positions) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  mps_context *context = particles->context;
+  const int32_t dim = particles->def.dim;
+  mps_status status = mpsi_particles_check_free(particles, __func__);
+  if (status != MPS_OK) return status;
+  if (count < 0 || count > MPSI_MAX_PARTICLES)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, allowed are 0 to 2^40",
+                     (long long)count);
+  if (count > 0 && !positions)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "positions is NULL");
+  for (int64_t i = 0; i < count; i++)
+    for (int32_t c = 0; c < dim; c++)
+      if (!(fabs(positions[i * dim + c]) <= MPSI_FARTHEST))
+        return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+                         "position %lld has %c = %g m, allowed are %g to %g m", (long long)i,
+                         "xyz"[c], positions[i * dim + c], -MPSI_FARTHEST, MPSI_FARTHEST);
+  const int64_t first = particles->count;
+  if ((status = mpsi_particles_extend(particles, __func__, count)) != MPS_OK) return status;
+  for (int32_t c = 0; c < dim; c++) {
+    double *x = mpsi_field_column(particles->fields[MPSI_FIELD_POSITION], c);
+    for (int64_t i = 0; i < count; i++) x[first + i] = positions[i * dim + c];
+  }
+  return mpsi_particles_arrive(particles, __func__, first);
 }
 
 /* ---- removal --------------------------------------------------------------------------------- */

@@ -1,0 +1,49 @@
+/* state_private.h - an item of the list of a solver's state, for the files that make lists and go
+ * along them. SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_STATE_PRIVATE_H
+#define MPSI_STATE_PRIVATE_H
+
+#include "state.h"
+
+#define MPSI_STATE_DEPTH 3
+
+/* Where a value is and how it is kept there. */
+typedef enum mpsi_state_width { /* WIDE: as in mpsi_value */
+                                MPSI_STATE_WIDE,
+                                MPSI_STATE_INT32,
+                                MPSI_STATE_BOOL
+} mpsi_state_width;
+
+typedef struct mpsi_state_item {
+  char name[MPSI_STATE_NAME];
+  mpsi_state_type type;
+  mpsi_state_width width;
+  bool agrees, text;
+  int32_t columns;
+  int64_t rows;
+  void *data;                    /* NULL: in `own`, or behind `table` */
+  const mpsi_state_table *table; /* or NULL */
+  void *owner;                   /* of the table */
+  union {
+    int64_t integer;
+    double number;
+    char text[MPSI_STATE_NAME];
+  } own;
+} mpsi_state_item;
+
+struct mpsi_state {
+  mps_context *context;
+  void *solver;
+  mpsi_state_item *item;
+  int32_t count, capacity;
+  bool refused; /* memory */
+  char prefix[MPSI_STATE_NAME];
+  size_t cut[MPSI_STATE_DEPTH]; /* length of the prefix outside */
+  int depth;
+};
+
+/* state_list.c: copies the values of an item out, to memory with room for them, and back in. */
+void mpsi_state_read_item(const mpsi_state_item *from, void *to);
+void mpsi_state_write_item(const mpsi_state_item *to, const mpsi_value *from);
+
+#endif
