@@ -17,6 +17,7 @@
 #define MPSI_FLUID_PRIVATE_H
 
 #include "body/body.h"
+#include "core/guard.h"
 #include "core/internal.h"
 #include "core/particles_internal.h"
 #include "core/retain.h"
@@ -203,7 +204,7 @@ struct mps_fluid {
   mpsi_fluid_stage stage;
   mpsi_fluid_classical classical;
   mpsi_fluid_outside *outside; /* NULL: none */
-  bool in_callback;
+  mpsi_guard guard;            /* of the callbacks of the run and of the solver */
   bool changing; /* energy_before is that of before a change of the set that is under way */
   bool stale;    /* what is known of the surroundings is not that of the fields */
   mpsi_identity *identity;

@@ -106,16 +106,6 @@ static mps_status make_room(mps_fluid *f, const char *function) {
   return MPS_OK;
 }
 
-static mps_status answered(mps_fluid *f, const char *function, const char *callback,
-                           mps_status status) {
-  if (status != MPS_OK && mps_context_error(f->context)->status == MPS_OK)
-    return mpsi_fail(f->context, function, status,
-                     "step %lld, t = %g s: the callback %s of mps_fluid_set_solver returned %d; "
-                     "the step is not made",
-                     (long long)f->steps, f->time, callback, (int)status);
-  return status;
-}
-
 mps_status mpsi_fluid_hand_matrix(mps_fluid *f, const char *function) {
   mpsi_fluid_outside *o = f->outside;
   mps_status status = make_room(f, function);
@@ -133,11 +123,9 @@ mps_status mpsi_fluid_hand_matrix(mps_fluid *f, const char *function) {
     at += length, from += length;
     o->start[i + 1] = at;
   }
-  mps_context_clear_error(f->context);
-  f->in_callback = true;
+  mpsi_guard_enter(&f->guard, f->context, "the callback matrix of mps_fluid_set_solver");
   status = o->matrix(o->user, f->count, o->start, column, value);
-  f->in_callback = false;
-  return answered(f, function, "matrix", status);
+  return mpsi_guard_leave(&f->guard, f->context, function, status);
 }
 
 /* ---- solution -------------------------------------------------------------------------------- */
@@ -157,11 +145,9 @@ mps_status mpsi_fluid_solve_outside(mps_fluid *f, const char *function) {
   mpsi_fluid_outside *o = f->outside;
   mpsi_fluid_system *s = &f->system;
   int64_t iterations = 0;
-  mps_context_clear_error(f->context);
-  f->in_callback = true;
+  mpsi_guard_enter(&f->guard, f->context, "the callback solve of mps_fluid_set_solver");
   mps_status status = o->solve(o->user, s->right, f->def.tolerance, s->x, &iterations);
-  f->in_callback = false;
-  status = answered(f, function, "solve", status);
+  status = mpsi_guard_leave(&f->guard, f->context, function, status);
   if (status != MPS_OK) return status;
   for (int64_t g = 0; g < f->ghosts; g++) s->x[f->count + g] = s->x[f->parent[g]];
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, residual);

@@ -245,9 +245,7 @@ double mps_fluid_time(const mps_fluid *f) { return f ? f->time : 0.0; }
 int64_t mps_fluid_steps(const mps_fluid *f) { return f ? f->steps : 0; }
 
 mps_status mpsi_fluid_free(mps_fluid *f, const char *function) {
-  if (!f->in_callback) return MPS_OK;
-  return mpsi_fail(f->context, function, MPS_ERROR_STATE,
-                   "the fluid's own callback may only read it");
+  return mpsi_guard_check(&f->guard, f->context, function);
 }
 
 mps_status mpsi_fluid_ready(mps_fluid *f, const char *function) {
@@ -354,15 +352,8 @@ mps_status mps_fluid_abandon_step(mps_fluid *f) {
 
 static mps_status call_back(mps_fluid *f, mps_fluid_fn callback, void *user) {
   if (!callback) return MPS_OK;
-  mps_context_clear_error(f->context);
-  f->in_callback = true;
-  const mps_status status = callback(user, f);
-  f->in_callback = false;
-  if (status != MPS_OK && mps_context_error(f->context)->status == MPS_OK)
-    return mpsi_fail(f->context, "mps_fluid_run", status,
-                     "the callback of mps_fluid_run returned %d at step %lld, t = %g s",
-                     (int)status, (long long)f->steps, f->time);
-  return status;
+  mpsi_guard_enter(&f->guard, f->context, "the callback of mps_fluid_run");
+  return mpsi_guard_leave(&f->guard, f->context, "mps_fluid_run", callback(user, f));
 }
 
 /* A step of at most `full` of which whole ones fill the rest; far from its end just `full`, as a

@@ -3,13 +3,8 @@
 #include "kernels.h"
 #include "particles.h"
 
-#include <stdio.h>
-
 mps_status mpsi_mpm_between_steps(mps_mpm *mpm, const char *function) {
-  if (!mpm->run.calling) return MPS_OK;
-  return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
-                   "a callback of this solver is running: it may ask, but not step, change or "
-                   "destroy it");
+  return mpsi_guard_check(&mpm->run.guard, mpm->context, function);
 }
 
 /* Not after a step that gave no numbers, nor while a field is being edited. */
@@ -106,20 +101,9 @@ mps_status mps_mpm_step(mps_mpm *mpm, int64_t count) {
   return status;
 }
 
-/* The caller's callback; a status that it returns leaves a record. */
 static mps_status call(mps_mpm *mpm, const char *function, mps_mpm_fn callback, void *user) {
-  mpm->run.calling = true;
-  const mps_status status = callback(user, mpm);
-  mpm->run.calling = false;
-  if (status == MPS_OK) return MPS_OK;
-  const mps_error *inner = mps_context_error(mpm->context);
-  char reason[sizeof inner->message + 2] = "";
-  if (inner->status == status) /* of what the callback called */
-    snprintf(reason, sizeof reason, ": %s", inner->message);
-  return mpsi_fail(
-      mpm->context, function, status,
-      "the callback of mps_mpm_run returned status %d (%s) at step %lld, t = %g s%.300s",
-      (int)status, mps_status_text(status), (long long)mpm->run.steps, mpm->run.time, reason);
+  mpsi_guard_enter(&mpm->run.guard, mpm->context, "the callback of mps_mpm_run");
+  return mpsi_guard_leave(&mpm->run.guard, mpm->context, function, callback(user, mpm));
 }
 
 mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every, mps_mpm_fn callback, void *user) {

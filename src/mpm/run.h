@@ -3,6 +3,8 @@
 #ifndef MPSI_MPM_RUN_H
 #define MPSI_MPM_RUN_H
 
+#include "core/guard.h"
+
 #include <mps/mpm.h>
 
 #define MPSI_MPM_LEAST_DT 1e-18 /* s */
@@ -12,7 +14,7 @@ typedef struct mpsi_run {
   double dt;    /* s, of the step being made */
   double speed; /* largest c + |v| of the particles, m/s */
   int64_t steps;
-  bool calling;         /* in a callback of the caller's: only questions are allowed */
+  mpsi_guard guard;     /* in a callback of the caller's: only questions are allowed */
   bool stale;           /* particles must be sorted before the next step */
   bool edited;          /* the caller has written fields since the last step */
   bool moments;         /* beside bodies the spin of L is that of a moment (spin.h), as steps leave
