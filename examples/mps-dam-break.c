@@ -444,14 +444,8 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("duration", "s", OPTION_DURATION, &s->duration, "of the run (default T = 6)"),
       OPTION_INTEGER("frames", "N", OPTION_FROM_TO(0.0, 100000.0), &s->frames,
                      "of the series for ParaView; 0: none"),
-      OPTION_TEXT("checkpoint", "FILE", &s->checkpoint,
-                  "written on the way and at Ctrl-C, to go on from (default OUT/checkpoint.h5)"),
-      OPTION_NUMBER("every-checkpoint", "s", OPTION_DURATION, &s->every_checkpoint,
-                    "between checkpoints (default: a fifth of the run)"),
-      OPTION_TEXT("restart", "FILE", &s->restart,
-                  "go on from a checkpoint made with the same options (but --out, --threads and "
-                  "those of checkpoints); the results are those of the whole run, the frames for "
-                  "ParaView those from here on"),
+      RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint,
+                     "between checkpoints (default: a fifth of the run)", &s->restart),
       OPTION_OUT(&s->out),
       OPTION_THREADS(&s->threads),
       {0}};

@@ -51,10 +51,7 @@ static mps_status prepare(app *a, seawall *w) {
 static int run(app *a, seawall *w) {
   static char path[1200];
   if (!output_directory(a, w->s.out)) return APP_FAILED;
-  if (!w->s.checkpoint) {
-    snprintf(path, sizeof path, "%s/checkpoint.h5", w->s.out);
-    w->s.checkpoint = path;
-  }
+  resume_default_path(&w->s.checkpoint, w->s.out, path, sizeof path);
   w->saves = (resume_schedule){
       .path = w->s.checkpoint, .every = w->s.every_checkpoint, .save = seawall_save, .user = w};
   mps_status status = prepare(a, w);
@@ -117,14 +114,7 @@ int main(int argc, char **argv) {
                     "between rows of the table; then the wall is solved too"),
       OPTION_INTEGER("frames", "N", OPTION_FROM_TO(0.0, 10000.0), &s->frames,
                      "of the animation and of the series for ParaView; 0: none"),
-      OPTION_TEXT("checkpoint", "FILE", &s->checkpoint,
-                  "written on the way and at Ctrl-C, to go on from (default OUT/checkpoint.h5)"),
-      OPTION_NUMBER("every-checkpoint", "s", OPTION_DURATION, &s->every_checkpoint,
-                    "between checkpoints"),
-      OPTION_TEXT("restart", "FILE", &s->restart,
-                  "go on from a checkpoint made with the same options (but --out, --threads and "
-                  "those of checkpoints); the results are those of the whole run, the frames for "
-                  "ParaView those from here on"),
+      RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint, "between checkpoints", &s->restart),
       OPTION_OUT(&s->out),
       OPTION_THREADS(&s->threads),
       {0}};

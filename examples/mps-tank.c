@@ -96,10 +96,7 @@ static mps_status prepare(app *a, tank_model *m) {
 static int run(app *a, tank_model *m) {
   static char path[1200];
   if (!output_directory(a, m->s.out)) return APP_FAILED;
-  if (!m->s.checkpoint) {
-    snprintf(path, sizeof path, "%s/checkpoint.h5", m->s.out);
-    m->s.checkpoint = path;
-  }
+  resume_default_path(&m->s.checkpoint, m->s.out, path, sizeof path);
   m->saves = (resume_schedule){
       .path = m->s.checkpoint, .every = m->s.every_checkpoint, .save = tank_save, .user = m};
   mps_status status = prepare(a, m);
@@ -204,14 +201,7 @@ int main(int argc, char **argv) {
                "at rest, else all)"},
       OPTION_INTEGER("frames", "N", OPTION_FROM_TO(0.0, 100000.0), &s->frames,
                      "of the series for ParaView; 0: none"),
-      OPTION_TEXT("checkpoint", "FILE", &s->checkpoint,
-                  "written on the way and at Ctrl-C, to go on from (default OUT/checkpoint.h5)"),
-      OPTION_NUMBER("every-checkpoint", "s", OPTION_DURATION, &s->every_checkpoint,
-                    "between checkpoints"),
-      OPTION_TEXT("restart", "FILE", &s->restart,
-                  "go on from a checkpoint made with the same options (but --out, --threads and "
-                  "those of checkpoints); the results are those of the whole run, the frames for "
-                  "ParaView those from here on"),
+      RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint, "between checkpoints", &s->restart),
       OPTION_OUT(&s->out),
       OPTION_THREADS(&s->threads),
       {0}};

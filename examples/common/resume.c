@@ -29,7 +29,8 @@ bool resume_wrong(resume_bytes *b, bool wrong) {
   return b->status != MPS_OK;
 }
 
-mps_status resume_pack(const resume *r, mps_checkpoint *info) {
+/* Options and bytes into `info`, whose user_data is to be freed also after an error. */
+static mps_status pack(const resume *r, mps_checkpoint *info) {
   char text[OPTIONS] = "";
   *info = mps_checkpoint_defaults();
   resume_bytes count = {0};
@@ -45,8 +46,18 @@ mps_status resume_pack(const resume *r, mps_checkpoint *info) {
   return MPS_OK;
 }
 
-mps_status resume_read(mps_context *context, const resume *r, const char *path,
-                       mps_checkpoint *info) {
+mps_status resume_save(const resume *r, const char *path) {
+  mps_checkpoint info;
+  mps_status status = pack(r, &info);
+  if (status == MPS_OK)
+    status = r->fluid ? mps_fluid_save(r->fluid, path, &info) : mps_mpm_save(r->mpm, path, &info);
+  free(info.user_data);
+  return status;
+}
+
+/* The bytes into `info`, whose user_data is to be freed. */
+static mps_status read_bytes(mps_context *context, const resume *r, const char *path,
+                             mps_checkpoint *info) {
   *info = mps_checkpoint_defaults();
   snprintf(info->user_key, sizeof info->user_key, "%s", r->key); /* the library compares it */
   mps_status status = mps_checkpoint_info(context, path, info);
@@ -59,7 +70,7 @@ mps_status resume_peek(mps_context *context, const resume *r, const char *path, 
                        size_t size) {
   mps_checkpoint info;
   char differs[600] = "";
-  mps_status status = resume_read(context, r, path, &info);
+  mps_status status = read_bytes(context, r, path, &info);
   why[0] = '\0';
   if (status == MPS_OK &&
       (!memchr(info.user_data, '\0', OPTIONS) ||
@@ -71,7 +82,7 @@ mps_status resume_peek(mps_context *context, const resume *r, const char *path, 
   return status;
 }
 
-mps_status resume_unpack(const resume *r, const mps_checkpoint *info) {
+static mps_status unpack(const resume *r, const mps_checkpoint *info) {
   resume_bytes b = {
       .at = (char *)info->user_data + OPTIONS, .size = info->user_bytes - OPTIONS, .reads = true};
   r->pass(r->user, &b);
@@ -79,25 +90,46 @@ mps_status resume_unpack(const resume *r, const mps_checkpoint *info) {
   return b.status;
 }
 
-/* ---- on the way ------------------------------------------------------------------------------ */
-
-static int64_t due(const resume_schedule *s, double time) {
-  return (int64_t)floor(time / s->every + 1e-9);
+mps_status resume_restore(mps_context *context, const resume *r, const char *path) {
+  mps_checkpoint info;
+  mps_status status = read_bytes(context, r, path, &info);
+  if (status == MPS_OK)
+    status =
+        r->fluid ? mps_fluid_restore(r->fluid, path, &info) : mps_mpm_restore(r->mpm, path, &info);
+  if (status == MPS_OK) status = unpack(r, &info);
+  free(info.user_data);
+  return status;
 }
 
-void resume_schedule_at(resume_schedule *s, double time) { s->count = due(s, time); }
+/* ---- on the way ------------------------------------------------------------------------------ */
+
+void resume_default_path(const char **checkpoint, const char *out, char *path, size_t size) {
+  if (*checkpoint) return;
+  snprintf(path, size, "%s/checkpoint.h5", out);
+  *checkpoint = path;
+}
+
+static int64_t due(const resume_schedule *s, double now) {
+  return (int64_t)floor(now / s->every + 1e-9);
+}
+
+void resume_schedule_at(resume_schedule *s, double now) { s->count = due(s, now); }
 
 /* A libmps without HDF5 writes none. */
 void resume_save_now(app *a, resume_schedule *s) {
   if (!s->path) return;
   const mps_status status = s->save(s->user);
   const bool lost = status != MPS_OK && status != MPS_ERROR_UNSUPPORTED;
-  if (lost && !s->lost) app_check(a, status);
+  if (lost && !s->lost) {
+    const mps_error *error = mps_context_error(a->context);
+    app_error(a, "no checkpoint is written, the run goes on: %s",
+              error->status == status ? error->message : mps_status_text(status));
+  }
   s->lost = lost, s->saved = status == MPS_OK;
 }
 
-void resume_save_when_due(app *a, resume_schedule *s, double time) {
-  if (due(s, time) <= s->count) return;
-  resume_schedule_at(s, time);
+void resume_save_when_due(app *a, resume_schedule *s, double now) {
+  if (due(s, now) <= s->count) return;
+  resume_schedule_at(s, now);
   resume_save_now(a, s);
 }

@@ -8,15 +8,17 @@
  *     if (resume_wrong(b, rows < 0 || rows > capacity)) return;
  *     resume_pass(b, row, rows * sizeof *row);
  *   }
- * and saves between steps by resume_pack and mps_S_save, to go on by resume_read, mps_S_restore and
- * resume_unpack. SPDX-License-Identifier: BSD-3-Clause */
+ * and saves between steps by resume_save, to go on by resume_peek and resume_restore.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_RESUME_H
 #define EXAMPLES_RESUME_H
 
 #include "app.h"
 #include "options.h"
 
+#include <mps/fluid.h>
 #include <mps/io.h>
+#include <mps/mpm.h>
 
 /* Goes along bytes, copying to or from them; only counting where there are none. */
 typedef struct resume_bytes {
@@ -35,25 +37,36 @@ typedef struct resume {
   const char *key; /* names the program and the layout of the bytes */
   const option *table;
   void (*pass)(void *user, resume_bytes *b);
-  void *user; /* of pass */
+  void *user;       /* of pass */
+  mps_mpm *mpm;     /* the solver: this one */
+  mps_fluid *fluid; /* or this */
 } resume;
 
-/* Fills `info` for mps_S_save. Free its user_data afterwards, also after an error. */
-mps_status resume_pack(const resume *r, mps_checkpoint *info);
+mps_status resume_save(const resume *r, const char *path);
 /* Compares the options of the file with these, but for those that a run may go on with others of
  * (--out, --threads and those of checkpoints): before a model is built. MPS_ERROR_ARGUMENT: in
  * `why` the first that differs; `why` is "" where the library says what is wrong. */
 mps_status resume_peek(mps_context *context, const resume *r, const char *path, char *why,
                        size_t size);
-/* Reads the bytes into `info`, for mps_S_restore and resume_unpack. Free its user_data. */
-mps_status resume_read(mps_context *context, const resume *r, const char *path,
-                       mps_checkpoint *info);
-mps_status resume_unpack(const resume *r, const mps_checkpoint *info);
+/* After resume_peek, once the model is built: the solver and what the run had seen. */
+mps_status resume_restore(mps_context *context, const resume *r, const char *path);
+
+/* Rows of a program's table of options; `between` tells what --every-checkpoint is. */
+#define RESUME_OPTIONS(checkpoint, every, between, restart)                                        \
+  OPTION_TEXT("checkpoint", "FILE", checkpoint,                                                    \
+              "written on the way and at Ctrl-C, to go on from (default OUT/checkpoint.h5)"),      \
+      OPTION_NUMBER("every-checkpoint", "s", OPTION_DURATION, every, between),                     \
+      OPTION_TEXT("restart", "FILE", restart,                                                      \
+                  "go on from a checkpoint made with the same options (but --out, --threads and "  \
+                  "those of checkpoints); the results are those of the whole run, the frames for " \
+                  "ParaView those from here on")
+/* Makes *checkpoint OUT/checkpoint.h5 where it is NULL; it lies in `path`. */
+void resume_default_path(const char **checkpoint, const char *out, char *path, size_t size);
 
 /* Checkpoints on the way. One that fails is told, once, and does not end the run. */
 typedef struct resume_schedule {
   const char *path;               /* NULL: none are written */
-  double every;                   /* s */
+  double every;                   /* s, or m of path */
   mps_status (*save)(void *user); /* writes `path` */
   void *user;
   int64_t count; /* times `every` that the run has gone: resume_schedule_at */
@@ -61,9 +74,9 @@ typedef struct resume_schedule {
   bool saved;    /* the last one was written */
 } resume_schedule;
 
-/* Where a run begins or goes on: what was due until then is not due again. */
-void resume_schedule_at(resume_schedule *s, double time);
-void resume_save_when_due(app *a, resume_schedule *s, double time);
+/* Where a run begins or goes on (`now` as `every`): what was due until then is not due again. */
+void resume_schedule_at(resume_schedule *s, double now);
+void resume_save_when_due(app *a, resume_schedule *s, double now);
 void resume_save_now(app *a, resume_schedule *s);
 
 #endif

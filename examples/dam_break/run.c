@@ -49,31 +49,24 @@ static void pass(void *user, resume_bytes *b) {
   for (int k = 0; k < FRAMES; k++) pass_shot(b, &sim->shot[k]);
 }
 
-static resume parts(simulation *sim) { return (resume){"mps-dam-break 1", sim->table, pass, sim}; }
+static resume parts(simulation *sim) {
+  return (resume){.key = "mps-dam-break 1",
+                  .table = sim->table,
+                  .pass = pass,
+                  .user = sim,
+                  .mpm = sim->m.mpm,
+                  .fluid = sim->m.fluid};
+}
 
 static mps_status save(void *user) {
   simulation *sim = user;
   const resume r = parts(sim);
-  const char *path = sim->s.checkpoint;
-  mps_checkpoint info;
-  mps_status status = resume_pack(&r, &info);
-  if (status == MPS_OK)
-    status = sim->s.method == METHOD_MPS ? mps_fluid_save(sim->m.fluid, path, &info)
-                                         : mps_mpm_save(sim->m.mpm, path, &info);
-  free(info.user_data);
-  return status;
+  return resume_save(&r, sim->s.checkpoint);
 }
 
 static mps_status restore(mps_context *context, simulation *sim) {
   const resume r = parts(sim);
-  const char *path = sim->s.restart;
-  mps_checkpoint info;
-  mps_status status = resume_read(context, &r, path, &info);
-  if (status == MPS_OK)
-    status = sim->s.method == METHOD_MPS ? mps_fluid_restore(sim->m.fluid, path, &info)
-                                         : mps_mpm_restore(sim->m.mpm, path, &info);
-  if (status == MPS_OK) status = resume_unpack(&r, &info);
-  free(info.user_data);
+  const mps_status status = resume_restore(context, &r, sim->s.restart);
   sim->m.samples = sim->rows;
   sim->restarted = time_now(sim);
   resume_schedule_at(&sim->saves, sim->restarted);
@@ -88,8 +81,7 @@ mps_status dam_build(mps_context *context, void *user) {
   const resume r = parts(sim);
   mps_status status = MPS_OK;
   static char path[1200];
-  snprintf(path, sizeof path, "%s/checkpoint.h5", s->out);
-  if (!s->checkpoint) sim->s.checkpoint = path;
+  resume_default_path(&sim->s.checkpoint, s->out, path, sizeof path);
   sim->restarted = NAN;
   sim->saves = (resume_schedule){
       .path = s->checkpoint, .every = s->every_checkpoint, .save = save, .user = sim};

@@ -2,8 +2,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "footing.h"
 
-#include <stdlib.h>
-
 static void pass(void *user, resume_bytes *b) {
   simulation *sim = user;
   resume_pass(b, &sim->rows, sizeof sim->rows);
@@ -17,16 +15,14 @@ static void pass(void *user, resume_bytes *b) {
   resume_pass(b, sim->q, (size_t)sim->rows * sizeof *sim->q);
 }
 
-static resume parts(simulation *sim) { return (resume){"mps-footing 1", sim->table, pass, sim}; }
+static resume parts(simulation *sim) {
+  return (resume){"mps-footing 1", sim->table, pass, sim, .mpm = sim->m.mpm};
+}
 
 mps_status footing_save(void *user) {
   simulation *sim = user;
   const resume r = parts(sim);
-  mps_checkpoint info;
-  mps_status status = resume_pack(&r, &info);
-  if (status == MPS_OK) status = mps_mpm_save(sim->m.mpm, sim->s.checkpoint, &info);
-  free(info.user_data);
-  return status;
+  return resume_save(&r, sim->s.checkpoint);
 }
 
 mps_status footing_peek(mps_context *context, simulation *sim) {
@@ -36,11 +32,7 @@ mps_status footing_peek(mps_context *context, simulation *sim) {
 
 mps_status footing_restore(mps_context *context, simulation *sim) {
   const resume r = parts(sim);
-  mps_checkpoint info;
-  mps_status status = resume_read(context, &r, sim->s.restart, &info);
-  if (status == MPS_OK) status = mps_mpm_restore(sim->m.mpm, sim->s.restart, &info);
-  if (status == MPS_OK) status = resume_unpack(&r, &info);
-  free(info.user_data);
+  const mps_status status = resume_restore(context, &r, sim->s.restart);
   sim->m.samples = sim->rows;
   return status;
 }

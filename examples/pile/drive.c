@@ -149,14 +149,6 @@ static mps_status watch(pile *p, double t, double depth) {
   return status;
 }
 
-/* Last of what follows a step: what the file holds is then all of that step. */
-static void save_when_due(pile *p, double depth) {
-  const int64_t due = (int64_t)floor((depth + p->s.h) / p->s.every_checkpoint);
-  if (!p->s.checkpoint || due <= p->checkpoints) return;
-  p->checkpoints = due;
-  pile_try_save(p);
-}
-
 static mps_status after_step(void *user, mps_mpm *mpm) {
   pile *p = user;
   mps_reaction r;
@@ -173,7 +165,8 @@ static mps_status after_step(void *user, mps_mpm *mpm) {
   if (status == MPS_OK && p->frames < p->s.frames &&
       depth >= step * (double)(p->frames + 1) * (1.0 - 1e-9))
     status = pile_take_frame(p);
-  if (status == MPS_OK) save_when_due(p, depth);
+  /* last of what follows a step: what the file holds is then all of that step */
+  if (status == MPS_OK) resume_save_when_due(p->m.a, &p->saves, depth + p->s.h);
   return status;
 }
 
@@ -193,7 +186,8 @@ mps_status pile_drive(void *user) {
   if (status != MPS_OK) return status;
   p->m.samples = p->rows; /* after a restart */
   status = mps_mpm_run(p->m.mpm, p->t_end, 1, after_step, p);
-  if (status == MPS_ERROR_CANCELLED && p->s.checkpoint) pile_try_save(p);
+  if (status == MPS_ERROR_CANCELLED) resume_save_now(p->m.a, &p->saves);
+  p->m.failed = p->saves.lost;
   smooth(p);
   return status;
 }

@@ -130,6 +130,8 @@ mps_status pile_build(mps_context *context, void *user) {
   const pile_settings *s = &p->s;
   p->inner = 0.5 * s->inner_diameter, p->outer = p->inner + s->wall;
   p->t_start = s->rest, p->t_end = s->rest + (s->h + s->depth) / s->speed;
+  p->saves = (resume_schedule){
+      .path = s->checkpoint, .every = s->every_checkpoint, .save = pile_save, .user = p};
   mps_status status = s->restart ? pile_peek(context, p) : MPS_OK;
   if (status == MPS_OK) status = make_soil(context, p);
   mps_mpm_def def = mps_mpm_defaults();

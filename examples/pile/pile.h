@@ -7,8 +7,7 @@
 #define EXAMPLES_PILE_H
 
 #include "common/mpm_model.h"
-
-#include <mps/io.h>
+#include "common/resume.h"
 
 #define PILE_GRAVITY 9.81 /* m/s2 */
 #define PILE_PI 3.14159265358979323846
@@ -73,8 +72,7 @@ typedef struct pile {
   int64_t frames, frames_kept;
   mps_recorder *recorder; /* NULL in a libmps without HDF5 */
   char vtk[40];           /* its file, "": there has been none */
-  int64_t checkpoints;    /* times `every_checkpoint` that the pile has gone */
-  bool checkpoint_lost;   /* the last one could not be written */
+  resume_schedule saves;  /* by the path of the tip */
 } pile;
 
 /* ---- model.c --------------------------------------------------------------------------------- */
@@ -108,10 +106,8 @@ int64_t pile_pictures(const pile *p, int64_t frames);
 
 /* Refuses a file `restart` that was made with other options, and says which. */
 mps_status pile_peek(mps_context *context, pile *p);
-/* Writes `checkpoint`: the solver, and all that the run has seen. */
-mps_status pile_save(pile *p);
-/* The same on the way: a failure is told, once, and does not end the run. */
-void pile_try_save(pile *p);
+/* Writes `checkpoint`: the solver, and all that the run of the pile `user` has seen. */
+mps_status pile_save(void *user);
 /* Goes back to where the file `restart` was written. */
 mps_status pile_restore(mps_context *context, pile *p);
 

@@ -2,9 +2,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "pile.h"
 
-#include "common/resume.h"
-
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -52,25 +49,12 @@ static void pass(void *user, resume_bytes *b) {
   }
 }
 
-static resume parts(pile *p) { return (resume){"mps-pile 3", p->table, pass, p}; }
+static resume parts(pile *p) { return (resume){"mps-pile 3", p->table, pass, p, .mpm = p->m.mpm}; }
 
-mps_status pile_save(pile *p) {
+mps_status pile_save(void *user) {
+  pile *p = user;
   const resume r = parts(p);
-  mps_checkpoint info;
-  mps_status status = resume_pack(&r, &info);
-  if (status == MPS_OK) status = mps_mpm_save(p->m.mpm, p->s.checkpoint, &info);
-  free(info.user_data);
-  return status;
-}
-
-void pile_try_save(pile *p) {
-  const mps_status status = pile_save(p);
-  if (status != MPS_OK && !p->checkpoint_lost) {
-    app_error(p->m.a, "no checkpoint at %.4g m, the run goes on: %s", pile_depth(p),
-              status == MPS_ERROR_MEMORY ? "out of memory"
-                                         : mps_context_error(p->m.a->context)->message);
-  }
-  p->checkpoint_lost = p->m.failed = status != MPS_OK;
+  return resume_save(&r, p->s.checkpoint);
 }
 
 mps_status pile_peek(mps_context *context, pile *p) {
@@ -80,12 +64,7 @@ mps_status pile_peek(mps_context *context, pile *p) {
 
 mps_status pile_restore(mps_context *context, pile *p) {
   const resume r = parts(p);
-  mps_checkpoint info;
-  mps_status status = resume_read(context, &r, p->s.restart, &info);
-  if (status == MPS_OK) status = mps_mpm_restore(p->m.mpm, p->s.restart, &info);
-  if (status == MPS_OK) status = resume_unpack(&r, &info);
-  free(info.user_data);
-  if (status == MPS_OK)
-    p->checkpoints = (int64_t)((pile_depth(p) + p->s.h) / p->s.every_checkpoint);
+  const mps_status status = resume_restore(context, &r, p->s.restart);
+  if (status == MPS_OK) resume_schedule_at(&p->saves, pile_depth(p) + p->s.h);
   return status;
 }

@@ -55,7 +55,9 @@ static void pass(void *user, resume_bytes *b) {
   pass_frames(b, w, n.frames);
 }
 
-static resume parts(seawall *w) { return (resume){"mps-seawall 2", w->table, pass, w}; }
+static resume parts(seawall *w) {
+  return (resume){"mps-seawall 2", w->table, pass, w, .fluid = w->fluid};
+}
 
 /* ---- to the file and back -------------------------------------------------------------------- */
 
@@ -90,16 +92,9 @@ static mps_status restore_wall(seawall *w) {
 
 mps_status seawall_save(void *user) {
   seawall *w = user;
-  if (w->s.coupled) {
-    const mps_status saved = save_wall(w);
-    if (saved != MPS_OK) return saved;
-  }
   const resume r = parts(w);
-  mps_checkpoint info;
-  mps_status status = resume_pack(&r, &info);
-  if (status == MPS_OK) status = mps_fluid_save(w->fluid, w->s.checkpoint, &info);
-  free(info.user_data);
-  return status;
+  const mps_status status = w->s.coupled ? save_wall(w) : MPS_OK;
+  return status == MPS_OK ? resume_save(&r, w->s.checkpoint) : status;
 }
 
 mps_status seawall_peek(mps_context *context, seawall *w) {
@@ -109,11 +104,7 @@ mps_status seawall_peek(mps_context *context, seawall *w) {
 
 mps_status seawall_restore(mps_context *context, seawall *w) {
   const resume r = parts(w);
-  mps_checkpoint info;
-  mps_status status = resume_read(context, &r, w->s.restart, &info);
-  if (status == MPS_OK) status = mps_fluid_restore(w->fluid, w->s.restart, &info);
-  if (status == MPS_OK) status = resume_unpack(&r, &info);
-  free(info.user_data);
+  const mps_status status = resume_restore(context, &r, w->s.restart);
   w->restarted = mps_fluid_time(w->fluid);
   return status == MPS_OK && w->s.coupled ? restore_wall(w) : status;
 }

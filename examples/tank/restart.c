@@ -2,8 +2,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "tank.h"
 
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* What comes first; then the samples and what the coupling has learnt. */
@@ -30,18 +28,15 @@ static void pass(void *user, resume_bytes *b) {
   resume_pass(b, p->memory, (size_t)p->learnt * sizeof *p->memory);
 }
 
-static resume parts(tank_model *m) { return (resume){"mps-tank 1", m->table, pass, m}; }
+static resume parts(tank_model *m) {
+  return (resume){"mps-tank 1", m->table, pass, m, .fluid = m->fluid};
+}
 
 mps_status tank_save(void *user) {
   tank_model *m = user;
   const resume r = parts(m);
-  mps_checkpoint info;
-  mps_status status = tank_remember(&m->structure);
-  if (status != MPS_OK) return status;
-  status = resume_pack(&r, &info);
-  if (status == MPS_OK) status = mps_fluid_save(m->fluid, m->s.checkpoint, &info);
-  free(info.user_data);
-  return status;
+  const mps_status status = tank_remember(&m->structure);
+  return status == MPS_OK ? resume_save(&r, m->s.checkpoint) : status;
 }
 
 mps_status tank_peek(mps_context *context, tank_model *m) {
@@ -51,11 +46,7 @@ mps_status tank_peek(mps_context *context, tank_model *m) {
 
 mps_status tank_restore(mps_context *context, tank_model *m) {
   const resume r = parts(m);
-  mps_checkpoint info;
-  mps_status status = resume_read(context, &r, m->s.restart, &info);
-  if (status == MPS_OK) status = mps_fluid_restore(m->fluid, m->s.restart, &info);
-  if (status == MPS_OK) status = resume_unpack(&r, &info);
-  free(info.user_data);
+  const mps_status status = resume_restore(context, &r, m->s.restart);
   m->restarted = mps_fluid_time(m->fluid);
   resume_schedule_at(&m->saves, m->restarted);
   return status == MPS_OK ? tank_recall(&m->structure) : status;
