@@ -81,12 +81,7 @@ static mps_status make(mps_dynamics *dynamics, const char *function, mps_status 
     mpsi_free(dynamics->context, b);
     return status;
   }
-  const mpsi_dynamics_selection selection = {.ids = def.ids,
-                                             .id_count = def.id_count,
-                                             .lower = def.lower,
-                                             .upper = def.upper,
-                                             .signal = def.signal,
-                                             .factor = def.factor};
+  const mpsi_dynamics_selection selection = MPSI_DYNAMICS_SELECTION(def, false);
   status = mpsi_dynamics_select(dynamics, function, status, &selection, &b->part);
   b->kind = def.kind;
   b->normal = def.normal;

@@ -156,20 +156,6 @@ static mps_status check_geometry(mps_context *context, mps_particles *particles,
 
 /* ---- life ------------------------------------------------------------------------------------ */
 
-bool mpsi_dynamics_reserve_accounts(mps_dynamics *dynamics) {
-  if (!dynamics->before)
-    dynamics->before = mpsi_alloc(dynamics->context, 3 * dynamics->count, sizeof(double));
-  return dynamics->before != NULL;
-}
-
-mps_status mpsi_dynamics_reserve_watch(mps_dynamics *dynamics, const char *function) {
-  if (!dynamics->def.watch_damping || dynamics->damping == MPSI_DYN_UNDAMPED) return MPS_OK;
-  if (!dynamics->drag)
-    dynamics->drag = mpsi_alloc(dynamics->context, 3 * dynamics->count, sizeof *dynamics->drag);
-  if (dynamics->drag && mpsi_dynamics_reserve_accounts(dynamics)) return MPS_OK;
-  return mpsi_fail_memory(dynamics->context, function, (size_t)dynamics->count * 24);
-}
-
 /* The weight function, and n0: the interior value for every particle, no dummies. */
 static mps_status choose_kernel(mps_dynamics *dynamics) {
   mps_status status = MPS_OK;

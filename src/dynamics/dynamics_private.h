@@ -1,10 +1,14 @@
 /* dynamics_private.h - the members of the explicit MPS solver, and who does what in a step:
  *
  *   structure.c   order, pairs, mesh and arrays: what follows from which particles there are
+ *   present.c     the present state as every part reads it: time, velocity, mass
+ *   coefficients.c  what forces need of the ground, particle by particle
  *   ground.c      what the body is made of; fields that the caller edits
  *   share.c       the share of one rank in a body that lies on several
  *   change.c      other particles: what must be made anew when some leave, or come back
  *   removal.c     particles that leave between two steps
+ *   begin.c       the initial state, and what the fields show of the present one
+ *   dt.c          the length of the time step
  *   step.c        the step: forces (kernels.c), loads, dashpots, what is held or driven, budget
  *   constrain.c   dashpots and held or driven degrees of freedom around a step
  *   selection.c   which particles a boundary or load is on
@@ -195,12 +199,29 @@ struct mps_dynamics {
   mps_snapshot *present;               /* of mps_dynamics_refresh, NULL before the first */
 };
 
+/* ---- present.c ---- */
+
+/* MPS_ERROR_STATE when a call of the solver is under way. */
+mps_status mpsi_dynamics_enter(mps_dynamics *dynamics, const char *function);
 /* Column of a field that the solver has added itself: never NULL. */
 double *mpsi_dynamics_column(const mps_dynamics *dynamics, const char *name, int32_t component);
+/* Velocity of a degree of freedom (component 0, 1, 2) half a step before the present state (Euler:
+ * of it). */
+double mpsi_dynamics_velocity(const mps_dynamics *dynamics, int32_t component, int64_t k);
+/* Mass (kg) or moment of inertia (kg m2) of a degree of freedom. */
+double mpsi_dynamics_mass(const mps_dynamics *dynamics, int32_t component, int64_t k);
+/* The body or what it is made of is another: so are the limit and the dt that followed from it. */
+void mpsi_dynamics_forget_limit(mps_dynamics *dynamics);
 /* Room for what is accounted for in each step, made once. False: out of memory. */
 bool mpsi_dynamics_reserve_accounts(mps_dynamics *dynamics);
 /* What Rayleigh damping that is watched needs. */
 mps_status mpsi_dynamics_reserve_watch(mps_dynamics *dynamics, const char *function);
+
+/* ---- coefficients.c ---- */
+
+/* Coefficients of each particle, from its fields; whether one is another than before. */
+bool mpsi_dynamics_set_coefficients(mps_dynamics *dynamics);
+void mpsi_dynamics_choose_damping(mps_dynamics *dynamics); /* from the extremes */
 
 /* ---- structure.c ---- */
 
@@ -285,9 +306,6 @@ mps_status mpsi_dynamics_check_ground(mps_particles *particles, const char *func
 mps_status mpsi_dynamics_write_material(mps_particles *particles, const char *function,
                                         const mps_material *material, int64_t count,
                                         const int64_t *ids);
-/* Coefficients of each particle, from its fields; whether one is another than before. */
-bool mpsi_dynamics_set_coefficients(mps_dynamics *dynamics);
-void mpsi_dynamics_choose_damping(mps_dynamics *dynamics); /* from the extremes */
 /* Kinetic and strain energy that the budget knows of: 0 where it has not begun. What changes the
  * body between steps moves the budget's start by the difference. Fails with a domain only. */
 mps_status mpsi_dynamics_present_energy(mps_dynamics *dynamics, const char *function,
@@ -300,30 +318,24 @@ mps_status mpsi_dynamics_commit(void *self, const char *function, const char *fi
 /* Before a step or a look at the state: takes up what has been edited, or says why it cannot. */
 mps_status mpsi_dynamics_take_edits(mps_dynamics *dynamics, const char *function);
 
-/* MPS_ERROR_STATE when a call of the solver is under way. */
-mps_status mpsi_dynamics_enter(mps_dynamics *dynamics, const char *function);
-/* That, or when the run has diverged; then finds dt if need be. */
+/* ---- begin.c, dt.c, run.c ---- */
+
+/* Begins a new history from displacement, rotation, velocity and spin. */
+mps_status mpsi_dynamics_begin(mps_dynamics *dynamics, const char *function, double time);
+/* Brings position, velocity, spin and reaction up to date. */
+void mpsi_dynamics_publish(mps_dynamics *dynamics);
+/* Chooses dt where the definition left it open, and warns of one above the limit. */
+mps_status mpsi_dynamics_settle_dt(mps_dynamics *dynamics, const char *function);
+/* run.c: MPS_ERROR_STATE when a call is under way or the run has diverged; takes up edits and finds
+ * dt if need be. */
 mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function);
 
 /* ---- step.c ---- */
 
-/* Begins a new history from displacement, rotation, velocity and spin. */
-mps_status mpsi_dynamics_begin(mps_dynamics *dynamics, const char *function, double time);
 /* Takes `count` steps of `length`; the last writes accelerations when `output`. On an error of a
  * signal the step has not happened. */
 mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, int64_t count,
                                  double length, bool output);
-/* Brings position, velocity, spin and reaction up to date. */
-void mpsi_dynamics_publish(mps_dynamics *dynamics);
-/* The body or what it is made of is another: so are the limit and the dt that followed from it. */
-void mpsi_dynamics_forget_limit(mps_dynamics *dynamics);
-/* Chooses dt where the definition left it open, and warns of one above the limit. */
-mps_status mpsi_dynamics_settle_dt(mps_dynamics *dynamics, const char *function);
-/* Velocity of a degree of freedom (component 0, 1, 2) half a step before the present state (Euler:
- * of it). */
-double mpsi_dynamics_velocity(const mps_dynamics *dynamics, int32_t component, int64_t k);
-/* Mass (kg) or moment of inertia (kg m2) of a degree of freedom. */
-double mpsi_dynamics_mass(const mps_dynamics *dynamics, int32_t component, int64_t k);
 
 /* ---- selection.c ---- */
 
@@ -336,6 +348,12 @@ typedef struct mpsi_dynamics_selection {
   const double *factor;
   bool all;
 } mpsi_dynamics_selection;
+/* Those of the members that the definitions of boundaries and loads share. */
+#define MPSI_DYNAMICS_SELECTION(def, everything)                                                   \
+  {                                                                                                \
+    .ids = (def).ids, .id_count = (def).id_count, .lower = (def).lower, .upper = (def).upper,      \
+    .signal = (def).signal, .factor = (def).factor, .all = (everything)                            \
+  }
 /* Collective, as everything that defines boundaries and loads; `status` is what has become of this
  * rank so far. */
 mps_status mpsi_dynamics_select(mps_dynamics *dynamics, const char *function, mps_status status,
@@ -343,6 +361,7 @@ mps_status mpsi_dynamics_select(mps_dynamics *dynamics, const char *function, mp
 /* Finds its particles in the set as it is now. */
 void mpsi_dynamics_find_part(const mps_dynamics *dynamics, mpsi_dynamics_part *part);
 void mpsi_dynamics_release_part(mps_dynamics *dynamics, mpsi_dynamics_part *part);
+
 /* ---- boundary.c ---- */
 
 /* Lists what is held or driven and the dashpots, without changes of the state. */

@@ -67,13 +67,7 @@ static mps_status make(mps_dynamics *dynamics, const char *function, mps_status 
     mpsi_free(dynamics->context, load);
     return status;
   }
-  const mpsi_dynamics_selection selection = {.ids = def.ids,
-                                             .id_count = def.id_count,
-                                             .lower = def.lower,
-                                             .upper = def.upper,
-                                             .signal = def.signal,
-                                             .factor = def.factor,
-                                             .all = def.kind == MPS_DYNAMICS_LOAD_BODY};
+  const mpsi_dynamics_selection selection = MPSI_DYNAMICS_SELECTION(def, def.kind == MPS_DYNAMICS_LOAD_BODY);
   status = mpsi_dynamics_select(dynamics, function, status, &selection, &load->part);
   const double spacing = mps_particles_spacing(dynamics->particles);
   const double area = isnan(def.area) ? spacing * dynamics->def.measure : def.area;

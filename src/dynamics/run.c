@@ -8,10 +8,6 @@
 
 #define PROMPT_WORK 5000000 /* particle-steps between looks at the cancel hook: some 0.1 s */
 
-mps_status mpsi_dynamics_enter(mps_dynamics *dynamics, const char *function) {
-  return mpsi_guard_check(&dynamics->guard, dynamics->context, function);
-}
-
 mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function) {
   mps_status status = mpsi_dynamics_enter(dynamics, function);
   if (status != MPS_OK) return status;

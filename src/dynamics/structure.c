@@ -10,10 +10,6 @@
 
 /* ---- fields ---------------------------------------------------------------------------------- */
 
-double *mpsi_dynamics_column(const mps_dynamics *dynamics, const char *name, int32_t component) {
-  return mpsi_particles_column(dynamics->particles, name, component);
-}
-
 /* Takes the reference position from position and displacement, but keeps one that differs from it
  * by round-off alone: a second solver on a set finds the pairs of the first. */
 static void set_reference(mps_dynamics *dynamics) {
