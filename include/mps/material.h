@@ -20,7 +20,7 @@ typedef struct mps_material mps_material;
 
 /** What a law did to a particle in this step: bits of the column `flags`. */
 #define MPS_MATERIAL_PLASTIC 1 /* the trial stress was outside the yield surface */
-#define MPS_MATERIAL_APEX 2    /* at the limit of tension: the volume is kept */
+#define MPS_MATERIAL_APEX 2    /* at the limit of tension, or a gap between grains is open */
 
 /** A block of particles as a law sees it: columns of `count` doubles, each contiguous. */
 typedef struct mps_material_block {
@@ -34,8 +34,8 @@ typedef struct mps_material_block {
   /** In, out: deformation gradient, updated by Nakamura (44). All the components of `dim` (in 2D
    * also zz), or all NULL where the law does not need it (mps_material_needs_deformation). */
   double *deformation[9];
-  /** In, out: V/V0, multiplied by 1 + dt tr(d), or det F with a deformation gradient; kept by
-   *  particles at the limit of tension. */
+  /** In, out: V/V0, multiplied by 1 + dt tr(d), or det F with a deformation gradient; of frictional
+   *  laws that of the grains, without the gaps between them. */
   double *volume_ratio;
   double *stress[6]; /* In, out: Cauchy stress, Pa. */
   /** In, out: history_count columns, at least mps_material_history_count; NULL for none. */
@@ -259,12 +259,12 @@ MPS_API double mps_material_wave_modulus(const mps_material *material);
 MPS_API int32_t mps_material_needs_deformation(const mps_material *material);
 MPS_API int32_t mps_material_history_count(const mps_material *material);
 /** Name of a history column, NULL outside 0..count-1: `plastic_strain` is the sum of
- *  sqrt(2/3 de:de) over the plastic, deviatoric strain increments. */
+ *  sqrt(2/3 de:de) over the plastic, deviatoric strain increments, `opening` (frictional laws) the
+ *  volume strain of the gap that compression closes before the mean stress falls below 0. */
 MPS_API const char *mps_material_history_name(const mps_material *material, int32_t index);
-/** Name of the field of a particle set that holds the column: `plastic_strain` of the library's
- * laws,
- *  "<material>.<column>" of a user's law or UMAT, which no other field can be called. Laws of the
- * same name share fields: a particle obeys one law. */
+/** Name of the field of a particle set that holds the column: the column's own of the library's
+ *  laws, "<material>.<column>" of a user's law or UMAT, which no other field can be called. Laws of
+ * the same name share fields: a particle obeys one law. */
 MPS_API const char *mps_material_history_field(const mps_material *material, int32_t index);
 /** Value of a history column before the first step. */
 MPS_API double mps_material_history_initial(const mps_material *material, int32_t index);

@@ -95,6 +95,8 @@
     "the caller", "as written; the laws of WLS-MPM read it in each step if it is there at creation") \
   X(plastic_strain, F64, 1, "-", "sum of sqrt(2/3 de:de) over the plastic deviatoric strain increments", \
     "WLS-MPM with a plastic law of the library", "after a step or a run")                            \
+  X(opening, F64, 1, "-", "volume strain of the gap between grains that were drawn apart", \
+    "WLS-MPM with a frictional law of the library", "after a step or a run")                         \
   X(material, I64, 1, "-", "number of the law: 0 that of creation, then as mps_mpm_set_material met them", \
     "WLS-MPM (the caller only reads)", "after mps_mpm_set_material")
 /* clang-format on */

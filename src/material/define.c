@@ -18,17 +18,19 @@ DEF_INIT(drucker_prager)
 DEF_INIT(mohr_coulomb)
 DEF_INIT(newtonian)
 
-/* A material of the library's own, with the one history column where it is plastic. */
+/* A material of the library's own, with the first `history` of its columns, which are fields of the
+ * table: one for all laws. */
 static mps_status finish(mps_context *context, const char *function, mpsi_law_kind kind,
-                         const char *name, const mpsi_law *law, bool plastic, mps_material **out) {
-  mps_material *material = mpsi_material_new(context, function, kind, name, plastic ? 1 : 0);
+                         const char *name, const mpsi_law *law, int32_t history,
+                         mps_material **out) {
+  static const char *const columns[] = {"plastic_strain", "opening"};
+  mps_material *material = mpsi_material_new(context, function, kind, name, history);
   if (!material) return MPS_ERROR_MEMORY;
   material->law = *law;
   material->wave_modulus = mpsi_law_wave_modulus(law);
-  if (plastic) {
-    strcpy(material->history_names[0], "plastic_strain");
-    strcpy(material->history_fields[0],
-           "plastic_strain"); /* of the field table: one for all laws */
+  for (int32_t c = 0; c < history; c++) {
+    strcpy(material->history_names[c], columns[c]);
+    strcpy(material->history_fields[c], columns[c]);
   }
   *out = material;
   return MPS_OK;
@@ -47,7 +49,7 @@ mps_status mps_material_linear_elastic(mps_context *context, double young, doubl
   if (status == MPS_OK) status = mpsi_check_elastic(context, __func__, young, poisson);
   if (status != MPS_OK) return status;
   const mpsi_law law = mpsi_law_elastic(young, poisson);
-  return finish(context, __func__, MPSI_LAW_LINEAR_ELASTIC, "linear_elastic", &law, false, out);
+  return finish(context, __func__, MPSI_LAW_LINEAR_ELASTIC, "linear_elastic", &law, 0, out);
 }
 
 mps_status mps_material_neo_hookean(mps_context *context, double young, double poisson,
@@ -57,7 +59,7 @@ mps_status mps_material_neo_hookean(mps_context *context, double young, double p
   if (status != MPS_OK) return status;
   mpsi_law law = mpsi_law_elastic(young, poisson);
   law.needs_deformation = true;
-  return finish(context, __func__, MPSI_LAW_NEO_HOOKEAN, "neo_hookean", &law, false, out);
+  return finish(context, __func__, MPSI_LAW_NEO_HOOKEAN, "neo_hookean", &law, 0, out);
 }
 
 mps_status mps_material_von_mises(mps_context *context, const mps_von_mises_def *user_def,
@@ -77,7 +79,7 @@ mps_status mps_material_von_mises(mps_context *context, const mps_von_mises_def 
   mpsi_law law = mpsi_law_elastic(def.young, def.poisson);
   law.yield = def.yield_stress;
   law.hardening = def.hardening;
-  return finish(context, __func__, MPSI_LAW_VON_MISES, "von_mises", &law, true, out);
+  return finish(context, __func__, MPSI_LAW_VON_MISES, "von_mises", &law, 1, out);
 }
 
 static mps_status check_tension(mps_context *context, const char *function, double tension) {
@@ -110,7 +112,7 @@ mps_status mps_material_drucker_prager(mps_context *context, const mps_drucker_p
   mpsi_law law = mpsi_law_elastic(def.young, def.poisson);
   mpsi_law_add_cone(&law, (mps_cone)def.cone, def.friction, def.dilation, def.cohesion,
                     def.tension);
-  return finish(context, __func__, MPSI_LAW_DRUCKER_PRAGER, "drucker_prager", &law, true, out);
+  return finish(context, __func__, MPSI_LAW_DRUCKER_PRAGER, "drucker_prager", &law, 2, out);
 }
 
 mps_status mps_material_mohr_coulomb(mps_context *context, const mps_mohr_coulomb_def *user_def,
@@ -132,7 +134,7 @@ mps_status mps_material_mohr_coulomb(mps_context *context, const mps_mohr_coulom
   law.c_cos_phi = def.cohesion * cos(def.friction);
   law.apex = def.friction > 0.0 ? law.c_cos_phi / law.sin_phi : INFINITY;
   law.cut = def.tension < law.apex ? def.tension : INFINITY;
-  return finish(context, __func__, MPSI_LAW_MOHR_COULOMB, "mohr_coulomb", &law, true, out);
+  return finish(context, __func__, MPSI_LAW_MOHR_COULOMB, "mohr_coulomb", &law, 2, out);
 }
 
 static mps_status check_newtonian(mps_context *context, const char *function,
@@ -162,5 +164,5 @@ mps_status mps_material_newtonian(mps_context *context, const mps_newtonian_def 
                         .viscosity = def.viscosity,
                         .tait = def.state == MPS_MATERIAL_STATE_TAIT,
                         .no_tension = def.no_tension == 1};
-  return finish(context, __func__, MPSI_LAW_NEWTONIAN, "newtonian", &law, false, out);
+  return finish(context, __func__, MPSI_LAW_NEWTONIAN, "newtonian", &law, 0, out);
 }

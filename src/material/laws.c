@@ -16,6 +16,7 @@
 #define THIRD (1.0 / 3.0)
 #define NOTHING 1e-300 /* Pa: keeps 0/0 away */
 #define PER_ROOT3 0.57735026918962576
+#define CHUNK 64 /* particles whose openings are kept at a time */
 
 /* ---- return maps ------------------------------------------------------------------------------
  * In the plane of mean stress p and q = sqrt(J2): the deviator keeps its direction. All selections
@@ -24,6 +25,7 @@
 typedef struct meridian {
   double p, q;
   double plastic; /* increment of plastic strain */
+  double opened;  /* volume strain that went into the gap between grains; closing is negative */
   int64_t flags;
 } meridian;
 
@@ -44,30 +46,50 @@ MPSI_INLINE meridian return_von_mises(const mpsi_law *law, double p, double q, d
  * q_tension: 0 at the apex. A trial that the cone's return (which is itself, if elastic) leaves
  * beyond the limit goes to the limit: with its own q if that is smaller than the radius there, else
  * to the circle where cone and limit meet. On the cone before the limit q is never below q_tension,
- * so that one line says it for all. */
-MPSI_INLINE meridian return_drucker_prager(const mpsi_law *law, double p, double q) {
-  const double f = q + 3.0 * law->alpha * p - law->kappa;
+ * so that one line says it for all.
+ *
+ * What the volume grows by at the limit is a gap between grains, the volume strain `gap`.
+ * Compression closes it before the mean stress falls below 0; meanwhile the grains do not dilate.
+ */
+MPSI_INLINE meridian return_drucker_prager(const mpsi_law *law, double p, double q, double gap) {
+  const double closed = p + law->bulk * gap;
+  const double f = q + 3.0 * law->alpha * closed - law->kappa;
   const double multiplier = at_least(f, 0.0) * law->cone;
-  const double p_cone = p - 3.0 * law->bulk * law->alpha_flow * multiplier;
+  const double p_cone = closed - 3.0 * law->bulk * law->alpha_flow * multiplier;
   const double q_cone = q - law->shear * multiplier;
-  const double q_new = at_most(q, at_least(q_cone, law->q_tension));
+  const double p_open = at_most(at_least(p, 0.0), law->tension);
+  const double radius = at_least(law->kappa - 3.0 * law->alpha * p_open, law->q_tension);
+  const bool open = gap > 0.0 && closed > 0.0, tears = p_cone > law->tension;
+  const double p_new = open ? p_open : at_most(p_cone, law->tension);
+  const double q_new = at_most(q, open ? radius : at_least(q_cone, law->q_tension));
   const int64_t yields = f > 0.0 ? MPS_MATERIAL_PLASTIC : 0;
-  return (meridian){.p = at_most(p_cone, law->tension),
+  return (meridian){.p = p_new,
                     .q = q_new,
                     .plastic = (q - q_new) * (PER_ROOT3 / law->shear),
+                    .opened = open || tears ? (p - p_new) * law->per_bulk : -gap,
                     .flags =
-                        p_cone > law->tension ? MPS_MATERIAL_PLASTIC | MPS_MATERIAL_APEX : yields};
+                        tears || gap > 0.0 ? MPS_MATERIAL_PLASTIC | MPS_MATERIAL_APEX : yields};
 }
 
 /* ---- laws of the Jaumann rate -----------------------------------------------------------------
  */
+
+/* A volume after the volume strain `growth`. Single grains beside a wall may tremble by a hundredth
+ * for as long as a pile is driven. The stress keeps the sum of such strains; (1 + x)(1 - x) loses x
+ * squared in each turn. So frictional laws take exp(growth), to the third order. */
+MPSI_INLINE double grown(const bool frictional, double volume, double growth) {
+  const double half = 0.5 * at_least(at_most(growth, 1.0), -1.0);
+  return frictional ? volume * ((1.0 + half) / (1.0 - half)) : volume + volume * growth;
+}
 
 MPSI_INLINE void rate_loop(const int geometry, const int kind, const mpsi_law *constants,
                            const mps_material_block *block) {
   const mpsi_law law = *constants; /* a copy: nothing that the loop writes can alias it */
   const mpsi_columns columns = mpsi_columns_of(block);
   double *volume = block->volume_ratio,
-         *strain = kind == MPSI_LAW_LINEAR_ELASTIC ? NULL : block->history[0];
+         *strain = kind == MPSI_LAW_LINEAR_ELASTIC ? NULL : block->history[0],
+         *gap = kind == MPSI_LAW_DRUCKER_PRAGER || kind == MPSI_LAW_MOHR_COULOMB ? block->history[1]
+                                                                                 : NULL;
   int64_t *flags = block->flags;
   const double dt = block->dt;
   SIMD for (int64_t k = 0; k < block->count; k++) {
@@ -76,6 +98,7 @@ MPSI_INLINE void rate_loop(const int geometry, const int kind, const mpsi_law *c
     mpsi_sym s = mpsi_turn(geometry, mpsi_stress(geometry, &columns, k), w);
     s = mpsi_hooke(&law, s, d);
     int64_t flag = 0;
+    double opened = 0.0;
     if (kind != MPSI_LAW_LINEAR_ELASTIC) {
       const double p = (s.xx + s.yy + s.zz) * THIRD, dx = s.xx - p, dy = s.yy - p, dz = s.zz - p;
       const double q =
@@ -84,10 +107,10 @@ MPSI_INLINE void rate_loop(const int geometry, const int kind, const mpsi_law *c
                                               a candidate. No stress exceeds p + 2 q/sqrt(3). */
         const double over =
             at_least(q + 3.0 * law.alpha * p - law.kappa, p + (2.0 * PER_ROOT3) * q - law.cut);
-        flag = over > 0.0 ? MPS_MATERIAL_PLASTIC : 0;
+        flag = (over > 0.0) | (gap[k] > 0.0) ? MPS_MATERIAL_PLASTIC : 0;
       } else {
         const meridian m = kind == MPSI_LAW_VON_MISES ? return_von_mises(&law, p, q, strain[k])
-                                                      : return_drucker_prager(&law, p, q);
+                                                      : return_drucker_prager(&law, p, q, gap[k]);
         const double scale = m.q / (q + NOTHING); /* 1 if elastic */
         flag = m.flags;
         s.xx = m.p + scale * dx;
@@ -97,27 +120,32 @@ MPSI_INLINE void rate_loop(const int geometry, const int kind, const mpsi_law *c
         s.yz *= scale;
         s.zx *= scale;
         strain[k] += m.plastic;
+        if (kind == MPSI_LAW_DRUCKER_PRAGER) {
+          opened = m.opened;
+          gap[k] = at_least(gap[k] + opened, 0.0);
+        }
       }
     }
     mpsi_put_stress(geometry, &columns, k, s);
     flags[k] = flag;
     if (kind != MPSI_LAW_MOHR_COULOMB) {
-      const double growth = (flag & MPS_MATERIAL_APEX) != 0 ? 0.0 : d.xx + d.yy + d.zz;
-      volume[k] += volume[k] * growth;
+      const double growth = (d.xx + d.yy + d.zz) - opened;
+      volume[k] = grown(kind == MPSI_LAW_DRUCKER_PRAGER, volume[k], growth);
     }
   }
 }
 
-/* V/V0 of a block whose flags are known. */
-MPSI_INLINE void volume_loop(const int geometry, const mps_material_block *block) {
+/* V/V0 of particles [begin, end) of a block; `opened`, of these, is what goes into gaps, NULL for
+ * laws without. */
+MPSI_INLINE void volume_loop(const int geometry, const mps_material_block *block, int64_t begin,
+                             int64_t end, const double *opened) {
   const mpsi_columns columns = mpsi_columns_of(block);
   double *volume = block->volume_ratio;
-  const int64_t *flags = block->flags;
   const double dt = block->dt;
-  SIMD for (int64_t k = 0; k < block->count; k++) {
+  SIMD for (int64_t k = begin; k < end; k++) {
     const mpsi_sym d = mpsi_strain(geometry, &columns, k, dt);
-    const double growth = (flags[k] & MPS_MATERIAL_APEX) != 0 ? 0.0 : d.xx + d.yy + d.zz;
-    volume[k] += volume[k] * growth;
+    const double growth = (d.xx + d.yy + d.zz) - (opened ? opened[k - begin] : 0.0);
+    volume[k] = grown(opened != NULL, volume[k], growth);
   }
 }
 
@@ -126,15 +154,21 @@ MPSI_INLINE void mohr_coulomb_loop(const int geometry, const mpsi_law *law,
                                    const mps_material_block *block) {
   rate_loop(geometry, MPSI_LAW_MOHR_COULOMB, law, block);
   const int32_t dim = geometry == MPSI_SPACE ? 3 : 2, components = dim == 3 ? 6 : 4;
-  for (int64_t k = 0; k < block->count; k++) {
-    if (block->flags[k] == 0) continue;
-    double s[6];
-    for (int32_t c = 0; c < components; c++) s[c] = block->stress[c][k];
-    block->flags[k] = mpsi_mohr_coulomb_return(law, dim, s, &block->history[0][k]);
-    if (block->flags[k] == 0) continue;
-    for (int32_t c = 0; c < components; c++) block->stress[c][k] = s[c];
+  double *strain = block->history[0], *gap = block->history[1], opened[CHUNK];
+  for (int64_t begin = 0, end; begin < block->count; begin = end) {
+    end = begin + CHUNK < block->count ? begin + CHUNK : block->count;
+    for (int64_t k = begin; k < end; k++) {
+      opened[k - begin] = 0.0;
+      if (block->flags[k] == 0) continue;
+      double s[6];
+      for (int32_t c = 0; c < components; c++) s[c] = block->stress[c][k];
+      block->flags[k] =
+          mpsi_mohr_coulomb_return(law, dim, s, &strain[k], &gap[k], &opened[k - begin]);
+      if (block->flags[k] == 0) continue;
+      for (int32_t c = 0; c < components; c++) block->stress[c][k] = s[c];
+    }
+    volume_loop(geometry, block, begin, end, opened);
   }
-  volume_loop(geometry, block);
 }
 
 /* ---- laws of the deformation gradient ---------------------------------------------------------
@@ -249,7 +283,7 @@ MPSI_INLINE mps_status user_law(const int geometry, const mpsi_law *law,
   if (law->needs_deformation)
     deform_loop(geometry, block);
   else
-    volume_loop(geometry, block);
+    volume_loop(geometry, block, 0, block->count, NULL);
   if (law->turns_stress) turn_loop(geometry, block);
   return law->update(law->user, block);
 }

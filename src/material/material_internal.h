@@ -8,8 +8,8 @@
  *      fastest. They are contiguous: a particle is an index, not a stride. Particles of several
  *      materials: one call for each run of equal ones.
  *   2. mpsi_material_apply(). It does everything of Nakamura step 12 and 13: spin, trial stress,
- *      return map, and the new volume ratio (J *= 1 + dt tr(d), or det F). The particles at the
- *      limit of tension keep their volume (flag MPS_MATERIAL_APEX), else V drifts and dt shrinks.
+ *      return map, and the new volume ratio (J *= 1 + dt tr(d), or det F). Of frictional
+ *      laws that is the volume of the grains, without gaps, else V drifts and dt shrinks.
  *      Laws that do not say mpsi_material_reads_volume() only multiply the column: the volume
  * itself may stand there instead of the ratio.
  *   3. The stable step (49)-(50): M = mps_material_wave_modulus() for every particle, unless

@@ -31,6 +31,7 @@ typedef enum mpsi_geometry_kind {
 /* The constants of a law, as its loop wants them. */
 typedef struct mpsi_law {
   double shear, bulk, lambda; /* Pa */
+  double per_bulk;            /* 1/K */
   double yield, hardening;    /* von Mises, Pa */
   /* Drucker-Prager: the cone, the flow cone's slope, 1/(G + 9 K alpha alpha_flow), and the limit of
    * tension: mean stress and sqrt(J2) of the cone there. Mohr-Coulomb uses the inscribed cone to
@@ -84,8 +85,9 @@ mps_status mpsi_material_make_user(mps_context *context, const char *function,
                                    const mps_user_law_def *def, mps_material **out);
 
 /* Maps a trial stress (xx yy zz xy [zx yz]) back to the pyramid of Mohr and Coulomb. Returns its
- * flags; adds to *plastic_strain. */
+ * flags; adds to *plastic_strain, opens and closes the gap, and tells where it has flags how much
+ * of the step's volume strain is none of the grains' own. */
 int64_t mpsi_mohr_coulomb_return(const mpsi_law *law, int32_t dim, double *stress,
-                                 double *plastic_strain);
+                                 double *plastic_strain, double *gap, double *opened);
 
 #endif

@@ -1,6 +1,7 @@
 /* mohr_coulomb.c - return map of Mohr-Coulomb in principal stresses: main plane, the two edges and
  * the apex, with a flow potential of the same shape for the angle of dilation; and the cut-off of
- * tension, that no principal stress exceeds T, with its own normal flow.
+ * tension, that no principal stress exceeds T, with its own normal flow. Around it the gap between
+ * grains that were drawn apart.
  *
  * The yield functions are linear and the flow directions are constant, so each return is one step:
  * solved exactly, without iteration.
@@ -179,14 +180,60 @@ static void order(const double *value, int *rank) {
   }
 }
 
+/* ---- gaps -------------------------------------------------------------------------------------
+ */
+
+/* Largest share of the deviator of s that the pyramid and the cut-off allow at the mean stress p.
+ */
+static double share_at(const mpsi_law *law, const double *s, double mean, double p) {
+  const double d1 = s[0] - mean, d3 = s[2] - mean;
+  const double need = (d1 - d3) + (d1 + d3) * law->sin_phi;
+  const double room = 2.0 * (law->c_cos_phi - p * law->sin_phi);
+  double share = need > room ? room / need : 1.0;
+  if (share * d1 > law->cut - p) share = (law->cut - p) / d1;
+  return share;
+}
+
+/* While there is a gap between the grains the mean stress is what an elastic unloading leaves, at
+ * least 0, and the deviator shrinks to what is allowed there: no dilation. */
+static void hold_open(const mpsi_law *law, double mean, double *s) {
+  const double p = fmax(0.0, fmin(mean, fmin(law->apex, law->cut)));
+  const double share = share_at(law, s, mean, p);
+  for (int i = 0; i < 3; i++) s[i] = p + share * (s[i] - mean);
+}
+
+/* The return with the gap: compression closes it before the mean stress falls below 0; what the
+ * return to the apex, or to the cut-off along all axes, takes from the volume opens it. Of a crack
+ * along one or two axes no gap is kept. *opened: volume strain that is none of the grains'. */
+static int64_t return_with_gap(const mpsi_law *law, double *s, double *gap, double *opened) {
+  const double mean = (s[0] + s[1] + s[2]) / 3.0, closed = mean + law->bulk * *gap;
+  const bool open = *gap > 0.0 && closed > 0.0;
+  int64_t flags = MPS_MATERIAL_PLASTIC | MPS_MATERIAL_APEX;
+  if (open) {
+    hold_open(law, mean, s);
+  } else {
+    for (int i = 0; i < 3; i++) s[i] += law->bulk * *gap;
+    const int64_t yields = return_principal(law, s);
+    *opened = -*gap;
+    if (!(yields & MPS_MATERIAL_APEX)) {
+      if (*gap == 0.0) return yields;
+      *gap = 0.0;
+      return flags;
+    }
+  }
+  *opened = (mean - (s[0] + s[1] + s[2]) / 3.0) * law->per_bulk;
+  *gap = open || s[0] == s[2] ? fmax(0.0, *gap + *opened) : 0.0;
+  return flags;
+}
+
 int64_t mpsi_mohr_coulomb_return(const mpsi_law *law, int32_t dim, double *stress,
-                                 double *plastic_strain) {
+                                 double *plastic_strain, double *gap, double *opened) {
   const principal trial = dim == 3 ? split_space(stress) : split_plane(stress);
   int rank[3];
   double s[3], before[3], value[3];
   order(trial.value, rank);
   for (int i = 0; i < 3; i++) before[i] = s[i] = trial.value[rank[i]];
-  const int64_t flags = return_principal(law, s);
+  const int64_t flags = return_with_gap(law, s, gap, opened);
   if (flags == 0) return 0;
   for (int i = 0; i < 3; i++) value[rank[i]] = s[i];
   *plastic_strain += plastic_increment(law, before, s);

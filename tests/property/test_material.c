@@ -51,9 +51,10 @@ static mps_material *make_law(int which) {
 /* A block with its columns. */
 typedef struct columns {
   double gradient[9][COUNT], deformation[9][COUNT], stress[6][COUNT], history[COUNT];
+  double opening[COUNT];
   double volume[COUNT];
   int64_t flags[COUNT];
-  double *first[1]; /* of the history of the block made last */
+  double *first[2]; /* of the history of the block made last */
 } columns;
 
 /* Reproducible values; only in-plane ones, and with `hoop` a rate of zz, unless `space`. */
@@ -72,6 +73,7 @@ static void fill(columns *c, bool hoop, bool space) {
       if (space || i < 4) c->stress[i][k] = 1e4 * x - (i < 3 ? 1e4 : 0.0);
     }
     c->history[k] = 0.01 * (1.0 + random_number(&seed));
+    c->opening[k] = k % 3 == 0 ? 0.01 * (1.0 + random_number(&seed)) : 0.0;
     c->volume[k] = 1.0 + 0.02 * random_number(&seed);
   }
 }
@@ -90,8 +92,8 @@ static mps_material_block block_of(columns *c, int32_t dim, bool hoop, int begin
     if (dim == 3 || plane) block.deformation[i] = c->deformation[i] + begin;
   }
   for (int i = 0; i < (dim == 3 ? 6 : 4); i++) block.stress[i] = c->stress[i] + begin;
-  c->first[0] = c->history + begin;
-  block.history = c->first, block.history_count = 1;
+  c->first[0] = c->history + begin, c->first[1] = c->opening + begin;
+  block.history = c->first, block.history_count = 2;
   return block;
 }
 
@@ -119,6 +121,7 @@ static void plane_and_axisymmetric_are_three_dimensional(void **state) {
           mps_assert_near(flat.deformation[i][k], space.deformation[i][k], 0.0);
         mps_assert_near(flat.volume[k], space.volume[k], 1e-14);
         mps_assert_near(flat.history[k], space.history[k], 1e-13);
+        mps_assert_near(flat.opening[k], space.opening[k], 1e-14);
         assert_int_equal(flat.flags[k], space.flags[k]);
         plastic += flat.flags[k] != 0;
       }

@@ -122,9 +122,11 @@ static void materials_answer_questions(void **state) {
   const mps_drucker_prager_def def = sand();
   mps_assert_ok(context, mps_material_drucker_prager(context, &def, &m));
   assert_string_equal(mps_material_name(m), "drucker_prager");
-  assert_int_equal(mps_material_history_count(m), 1);
+  assert_int_equal(mps_material_history_count(m), 2);
   assert_string_equal(mps_material_history_name(m, 0), "plastic_strain");
-  assert_null(mps_material_history_name(m, 1));
+  assert_string_equal(mps_material_history_name(m, 1), "opening");
+  assert_string_equal(mps_material_history_field(m, 1), "opening");
+  assert_null(mps_material_history_name(m, 2));
   assert_null(mps_material_history_name(m, -1));
   assert_true(mps_material_history_initial(m, 0) == 0.0);
   assert_int_equal(mps_material_needs_deformation(m), 0);

@@ -164,7 +164,8 @@ static void mohr_coulomb_goes_to_the_closest_point(void **state) {
       assert_int_equal(point.flags, where == 0 ? 0
                                     : cut      ? MPS_MATERIAL_PLASTIC | MPS_MATERIAL_APEX
                                                : MPS_MATERIAL_PLASTIC);
-      if (cut) mps_assert_near(point.volume_ratio, 1.0, 0.0);
+      if (cut) /* the elastic part of the strain is the grains' own */
+        mps_assert_near(point.volume_ratio, exp(mean_stress(s) / bulk), 1e-7);
     }
     for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) assert_true(seen[kinds[k]] > 20);
     mps_material_destroy(&material);
