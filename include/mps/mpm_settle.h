@@ -34,7 +34,8 @@ static inline mps_mpm_settle_def mps_mpm_settle_defaults(void) {
 
 /** Where it ended. */
 typedef struct mps_mpm_settled {
-  int64_t steps, peaks; /* steps taken; how often the particles were stopped */
+  int64_t steps, peaks; /* steps taken, in all calls that went on from one another; how often the
+                           particles were stopped */
   double unbalanced;    /* sum over the nodes of the size of the force that nothing balances, over
                            `applied`; components that a boundary prescribes do not count */
   double applied;       /* N, sum of the sizes of gravity and loads on the particles, and of the
@@ -45,10 +46,13 @@ typedef struct mps_mpm_settled {
 /** Stops the particles and takes steps until two things are true of one that starts from rest:
  *  `unbalanced` is within the tolerance, and it was so in the step before. Then all velocities and
  *  their gradients are 0. Progress is told every 100 steps, the cancel hook asked after each.
- *  `def` NULL: the defaults; `out` may be NULL. MPS_ERROR_NUMERIC: not within `max_steps`, as where
- *  ground flows; MPS_ERROR_CANCELLED; in both cases the particles stay where they are, at rest, and
- *  `out` is written: another call goes on. MPS_ERROR_UNSUPPORTED: a body in contact moves freely.
- *  MPS_ERROR_DIVERGED as of mps_mpm_step. */
+ *  `def` NULL: the defaults; `out` may be NULL. MPS_ERROR_CANCELLED: the particles are left as they
+ *  swing, `out` is written, and another call goes on, as does one after a rollback or a restore to
+ *  this state: in the end all is as if nothing had cut it, the counts of `out` too. Where a step of
+ *  mps_mpm_step or mps_mpm_run comes first, the particles stop before it. MPS_ERROR_NUMERIC: not
+ *  within `max_steps`, as where ground flows; the particles stay where they are, at rest, and `out`
+ *  is written: another call goes on from there. MPS_ERROR_UNSUPPORTED: a body in contact moves
+ *  freely. MPS_ERROR_DIVERGED as of mps_mpm_step. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *def,
                                                       mps_mpm_settled *out, size_t size);
 static inline mps_status mps_mpm_settle(mps_mpm *mpm, const mps_mpm_settle_def *def,

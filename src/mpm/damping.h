@@ -13,11 +13,18 @@ typedef struct mpsi_node_balance {
 } mpsi_node_balance;
 
 typedef struct mpsi_settling {
-  bool on; /* in mps_mpm_settle: bodies and boundaries are at rest */
+  bool on;  /* in mps_mpm_settle: bodies and boundaries are at rest */
+  bool cut; /* a call was cancelled, and no step has been taken since */
+  /* Of the call that was cut, for the one that goes on: */
+  bool from_rest;
+  double before;        /* J, kinetic energy of the last step; 0 from rest */
+  int64_t steps, peaks; /* so far */
   mpsi_node_balance *nodes;
   mpsi_room nodes_room;
 } mpsi_settling;
 
+/* settle.c: before a step of another kind the particles of a cut mps_mpm_settle stop. */
+void mpsi_mpm_leave_settling(mps_mpm *mpm);
 /* Room for the step, where settling. */
 mps_status mpsi_mpm_begin_balance(mps_mpm *mpm, const char *function);
 /* Block g, bit c of `fixed`: component c is prescribed. `held` has the velocities before the

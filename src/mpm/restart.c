@@ -201,6 +201,17 @@ static void list_setting(mpsi_state *s, const mps_mpm *mpm) {
   mpsi_state_agree_integer(s, "bodies", mpm->contact.bodies);
 }
 
+/* A call of mps_mpm_settle that was cut. */
+static void list_settling(mpsi_state *s, mpsi_settling *settling) {
+  mpsi_state_enter(s, "settling");
+  mpsi_state_bool(s, "cut", &settling->cut);
+  mpsi_state_bool(s, "from_rest", &settling->from_rest);
+  mpsi_state_f64(s, "before", &settling->before, 1);
+  mpsi_state_i64(s, "steps", &settling->steps, 1);
+  mpsi_state_i64(s, "peaks", &settling->peaks, 1);
+  mpsi_state_leave(s);
+}
+
 static void list_state(mpsi_state *s, void *solver) {
   mps_mpm *mpm = solver;
   list_setting(s, mpm);
@@ -226,6 +237,7 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_f64(s, "speed", &mpm->run.speed, 1);
   mpsi_state_bool(s, "stale", &mpm->run.stale);
   mpsi_state_bool(s, "moments", &mpm->run.moments);
+  list_settling(s, &mpm->settling);
   mpsi_state_f64(s, "energies", &mpm->energy.sum.kinetic, MPSI_ENERGY_SUMS);
   for (int32_t b = 0; b < mpm->contact.bodies; b++) {
     mpsi_state_enter(s, "body%d", b);

@@ -95,6 +95,7 @@ mps_status mps_mpm_step(mps_mpm *mpm, int64_t count) {
   for (int64_t k = 0; k < count && status == MPS_OK; k++) {
     if (mpm->run.edited) status = mpsi_mpm_tidy(mpm, __func__); /* some have left */
     if (status == MPS_OK) status = check_bounded(mpm, __func__);
+    if (status == MPS_OK) mpsi_mpm_leave_settling(mpm);
     if (status == MPS_OK) status = mpsi_mpm_take_step(mpm, __func__, mps_mpm_dt(mpm));
     if (status == MPS_OK && k + 1 < count) status = ask_cancel(mpm, __func__);
   }
@@ -123,6 +124,7 @@ mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every, mps_mpm_fn cal
   while (status == MPS_OK && mpm->run.time < t_end) {
     if ((status = mpsi_mpm_ready(mpm, __func__)) != MPS_OK)
       break; /* the callback may have edited */
+    mpsi_mpm_leave_settling(mpm);
     double dt = mps_mpm_dt(mpm);
     const double rest = t_end - mpm->run.time;
     const bool last = rest <= dt * (1.0 + 1e-9);

@@ -90,6 +90,12 @@ static double applied_to_particles(const mps_mpm *mpm) {
 
 /* ---- settling -------------------------------------------------------------------------------- */
 
+void mpsi_mpm_leave_settling(mps_mpm *mpm) {
+  if (!mpm->settling.cut) return;
+  mpm->settling.cut = false;
+  stop_particles(mpm);
+}
+
 /* One step; the time of the run stands still. */
 static mps_status relax(mps_mpm *mpm, const char *function, mps_mpm_settled *now) {
   const double time = mpm->run.time;
@@ -106,31 +112,31 @@ static mps_status relax(mps_mpm *mpm, const char *function, mps_mpm_settled *now
     now->kinetic += n->kinetic;
   }
   now->unbalanced = unbalanced > 0.0 ? unbalanced / now->applied : 0.0;
-  now->steps++;
+  now->steps = ++mpm->settling.steps;
   return MPS_OK;
 }
 
 static mps_status relax_until(mps_mpm *mpm, const char *function, const mps_mpm_settle_def *def,
                               mps_mpm_settled *now) {
-  double before = 0.0;
-  bool from_rest = true;
-  while (now->steps < def->max_steps) {
+  mpsi_settling *settling = &mpm->settling;
+  while (settling->steps < def->max_steps) {
     const mps_status status = relax(mpm, function, now);
     if (status != MPS_OK) return status;
     const bool balanced = now->unbalanced <= def->tolerance;
-    if (balanced && from_rest) return MPS_OK;
-    from_rest = balanced || now->kinetic < before;
-    before = from_rest ? 0.0 : now->kinetic;
-    now->peaks += from_rest;
-    if (from_rest) stop_particles(mpm);
+    if (balanced && settling->from_rest) return MPS_OK;
+    settling->from_rest = balanced || now->kinetic < settling->before;
+    settling->before = settling->from_rest ? 0.0 : now->kinetic;
+    now->peaks = settling->peaks += settling->from_rest;
+    if (settling->from_rest) stop_particles(mpm);
     if (now->steps % 100 == 0)
       mpsi_progress(mpm->context, "mpm settle", mpm->run.steps, (double)now->steps,
                     (double)def->max_steps);
-    if (mpsi_cancelled(mpm->context))
-      return mpsi_fail(mpm->context, function, MPS_ERROR_CANCELLED,
-                       "stopped by the cancel hook after %lld steps, the unbalanced force being "
-                       "%.3g of the applied",
-                       (long long)now->steps, now->unbalanced);
+    if (!mpsi_cancelled(mpm->context)) continue;
+    settling->cut = true;
+    return mpsi_fail(mpm->context, function, MPS_ERROR_CANCELLED,
+                     "stopped by the cancel hook after %lld steps, the unbalanced force being "
+                     "%.3g of the applied",
+                     (long long)now->steps, now->unbalanced);
   }
   return mpsi_fail(mpm->context, function, MPS_ERROR_NUMERIC,
                    "no equilibrium after %lld steps: the unbalanced force is %.3g of the applied "
@@ -167,13 +173,21 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
   if (status == MPS_OK) status = read_def(mpm, function, user, &def);
   if (status == MPS_OK) status = check_bodies(mpm, function);
   if (status != MPS_OK) return status;
-  mpm->settling.on = true;
+  mpsi_settling *settling = &mpm->settling;
   stop_bodies(mpm, &kept);
-  stop_particles(mpm);
+  if (!settling->cut) { /* else all goes on from where it was cut */
+    stop_particles(mpm);
+    settling->from_rest = true;
+    settling->before = 0.0;
+    settling->steps = settling->peaks = 0;
+  }
+  now.peaks = settling->peaks;
+  settling->on = true;
+  settling->cut = false;
   status = relax_until(mpm, function, &def, &now);
-  if (!mpm->run.broken) stop_particles(mpm);
+  if (!mpm->run.broken && !settling->cut) stop_particles(mpm);
   let_bodies_go(mpm, &kept);
-  mpm->settling.on = false;
+  settling->on = false;
   if (!out) return status;
   const mps_status written = mpsi_out_write(mpm->context, function, out, size, &now, sizeof now);
   return status == MPS_OK ? written : status;
