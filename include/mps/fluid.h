@@ -189,6 +189,48 @@ static inline mps_status mps_fluid_get_body_reaction(mps_fluid *fluid, int32_t n
   return mps_fluid_get_body_reaction_sized(fluid, number, out, sizeof *out);
 }
 
+/* ---- loads ----------------------------------------------------------------------------------- */
+
+typedef enum mps_fluid_load_kind {
+  MPS_FLUID_LOAD_BODY = 0,    /* `acceleration` on the particles chosen: a shaken tank, wind */
+  MPS_FLUID_LOAD_PRESSURE = 1 /* `pressure` on the free surface that the chosen particles make: a
+                                 squall, the air in a chamber. Not with the classical scheme */
+} mps_fluid_load_kind;
+
+/** A load, times factor times signal in each component, on the particles of a list, those that are
+ * in a box as a step begins, or all where neither is given. Loads add up. Forces that another code
+ * computes go into the field `external_force` instead. */
+typedef struct mps_fluid_load_def {
+  uint32_t struct_size;
+  int32_t kind;              /* mps_fluid_load_kind, default BODY */
+  const int64_t *ids;        /* copied; those that are not in the set count for nothing. NULL
+                                (default): the box */
+  int64_t id_count;          /* 0 (default): the box */
+  double lower[3], upper[3]; /* m; +-infinity is allowed; NaN (default): no bound */
+  double acceleration[3];    /* m/s2, |a| at most 1e6; [2] must be 0; default 0 */
+  double pressure;           /* Pa, |p| at most 1e12, above the air's elsewhere; default 0. Where it
+                                is negative the water below may have as much suction: let the box
+                                reach three spacings into it */
+  mps_signal *signal[3];     /* of PRESSURE [0]: its displacement is read as a number, at the time
+                                that a step begins with; NULL (default): 1. Kept alive */
+  double factor[3];          /* finite; of PRESSURE [0]; default 1 */
+} mps_fluid_load_def;
+
+MPS_API mps_status mps_fluid_load_def_init(mps_fluid_load_def *def, size_t size);
+static inline mps_fluid_load_def mps_fluid_load_defaults(void) {
+  mps_fluid_load_def def;
+  memset(&def, 0, sizeof def);
+  if (mps_fluid_load_def_init(&def, sizeof def) != MPS_OK) def.struct_size = 0;
+  return def;
+}
+
+/** Adds a load, between steps; `number` (may be NULL) receives the lowest free number, from 0. */
+MPS_API MPS_NODISCARD mps_status mps_fluid_add_load(mps_fluid *fluid, const mps_fluid_load_def *def,
+                                                    int32_t *number);
+MPS_API MPS_NODISCARD mps_status mps_fluid_set_load(mps_fluid *fluid, int32_t number,
+                                                    const mps_fluid_load_def *def);
+MPS_API MPS_NODISCARD mps_status mps_fluid_remove_load(mps_fluid *fluid, int32_t number);
+
 /* ---- running --------------------------------------------------------------------------------- */
 
 /** Takes `count` (>= 0) steps. A step that fails has not happened: MPS_ERROR_NUMERIC, the pressure
@@ -245,8 +287,8 @@ MPS_API mps_particles *mps_fluid_particles(const mps_fluid *fluid);
 MPS_API mps_context *mps_fluid_context(const mps_fluid *fluid);
 
 /** Sums over the fluid. `strain` is the potential energy in the field of gravity, above the level
- *  of the definition; `dissipated` (all of it by the scheme and the viscosity) is what is missing.
- */
+ *  of the definition; `work_loads` that of loads and `external_force`, with the mean velocity of
+ * each step; `dissipated` (all of it by the scheme and the viscosity) is what is missing. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_totals_sized(mps_fluid *fluid, mps_totals *out,
                                                             size_t size);
 static inline mps_status mps_fluid_get_totals(mps_fluid *fluid, mps_totals *out) {

@@ -26,6 +26,9 @@ mps_status mps_experimental_fluid_classical(mps_fluid *f, double gamma) {
   if (f->steps > 0)
     return mpsi_fail(f->context, __func__, MPS_ERROR_STATE, "the fluid has made %lld steps",
                      (long long)f->steps);
+  if (f->given_room > 0)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_STATE,
+                     "the fluid has had loads: choose the scheme first");
   mpsi_fluid_classical c = {.gamma = gamma};
   double square = 0.0;
   for (int a = -3; a <= 3; a++)

@@ -124,6 +124,7 @@ double mpsi_fluid_energy(const mps_fluid *f, double *kinetic) {
 static void release(mps_fluid *f) {
   mps_context *context = f->context;
   mpsi_fluid_drop_solver(f);
+  mpsi_fluid_drop_loads(f);
   void *const parts[] = {f->slab,
                          f->local,
                          f->state,
@@ -267,7 +268,8 @@ static int64_t bytes_of(const mps_fluid *f) {
   const int64_t n = (f->count + 7) / 8 * 8 + 24, chunks = f->count / MPSI_FLUID_CHUNK + 2;
   return 8 * (14 * n + 2 * chunks) + f->count * ((int64_t)sizeof *f->local + 3) +
          f->cloud_capacity * (11 * 8 + 8) + f->index_room.capacity * 4 + f->w_room.capacity * 8 +
-         f->cell_room.capacity * 4 + f->lower_col_room.capacity * 4 + f->lower_room.capacity * 4;
+         f->cell_room.capacity * 4 + f->push_room.capacity * 8 + f->lower_col_room.capacity * 4 +
+         f->lower_room.capacity * 4;
 }
 
 mps_status mps_fluid_get_report_sized(const mps_fluid *f, mps_fluid_report *out, size_t size) {

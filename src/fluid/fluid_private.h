@@ -7,6 +7,7 @@
  *   pressure.c  rows of the pressure equation; pcg.c solves it, or solver.c has it solved
  *   classical.c the classical scheme's own parts of these
  *   move.c      pressure gradient, velocity, guards, positions
+ *   loads.c     forces on particles and pressures on the surface
  *   probe.c     pressure at walls, level of the surface
  *   step.c      the order of all this
  *
@@ -98,6 +99,7 @@ typedef struct mpsi_fluid_weight {
   double n0;          /* sum w over the lattice */
   double half;        /* ... over the rows at and below a particle of a level surface */
   double slope;       /* growth of sum w with a surface that rises by l0 */
+  double square;      /* sum w r^2/4 over the lattice, m2 */
 } mpsi_fluid_weight;
 
 /* What a particle knows of its surroundings; tensors xx, xy, yx, yy, symmetric ones xx, xy, yy. */
@@ -157,6 +159,7 @@ typedef enum mpsi_fluid_stage {
 } mpsi_fluid_stage;
 
 typedef struct mpsi_fluid_loops mpsi_fluid_loops; /* loops.h */
+typedef struct mpsi_fluid_given mpsi_fluid_given; /* a load of the caller, loads.c */
 
 struct mps_fluid {
   mps_context *context;
@@ -193,6 +196,13 @@ struct mps_fluid {
   mpsi_fluid_room near_wall_room;      /* of a wall, see probe.c */
   int32_t *slot;                       /* cloud sorted by cells */
   double *slot_x[2];
+  mpsi_fluid_given **given; /* loads by number, NULL: none */
+  int32_t given_room;
+  mpsi_fluid_room push_room; /* of the following */
+  double *push[2], *over; /* of each particle: acceleration by loads and forces, m/s2; pressure on
+                             its surface, Pa; NULL: none has any */
+  bool driven;            /* u of the cloud has dt times push already */
+  double load_time;       /* s: when the loads were read */
   mpsi_fluid_system system;
   mpsi_fluid_room lower_col_room, lower_room;
   int64_t most_lower; /* room for entries of L, a row on average */
@@ -274,6 +284,16 @@ static inline double mpsi_fluid_distance(const mpsi_fluid_wall *w, const double 
                                          double y) {
   const double across = (x - w->at[0]) * w->normal[0] + (y - w->at[1]) * w->normal[1];
   return across - mpsi_fluid_of_wall(w, s, x, y);
+}
+
+/* loads.c */
+void mpsi_fluid_drop_loads(mps_fluid *fluid);
+/* push and over as of time t, of the particles in their present order. */
+mps_status mpsi_fluid_find_loads(mps_fluid *fluid, const char *function, double t);
+double mpsi_fluid_work_of_loads(const mps_fluid *fluid); /* J, of the step being made */
+/* Pressure below which particle i has none: 0, or the suction on its surface, Pa. */
+static inline double mpsi_fluid_least(const mps_fluid *f, int64_t i) {
+  return f->over && f->over[i] < 0.0 ? f->over[i] : 0.0;
 }
 
 /* bodies.c */

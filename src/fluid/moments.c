@@ -61,6 +61,7 @@ static void place_surface(const mps_fluid *f, int64_t i, const double *M, double
   local->h = fmin(fmax(h, 0.1 * l0), 2.0 * l0);
   local->c = length / local->h;
   local->qs = mpsi_fluid_head(f, f->x[0][i] + local->h * e[0], f->x[1][i] + local->h * e[1]);
+  if (f->over) local->qs += f->over[i];
   const double c = local->c;
   const double with[3] = {M[0] + c * e[0] * e[0], M[1] + c * e[0] * e[1], M[2] + c * e[1] * e[1]};
   invert(with, local->with_surface);

@@ -37,6 +37,7 @@ mpsi_fluid_weight mpsi_fluid_make_weight(double l0, double re) {
       const double r = l0 * sqrt((double)(a * a + b * b));
       if ((a == 0 && b == 0) || r >= re) continue;
       w.n0 += mpsi_fluid_w(&w, r);
+      w.square += 0.25 * r * r * mpsi_fluid_w(&w, r);
       if (b <= 0) w.half += mpsi_fluid_w(&w, r);
     }
   /* integral of w over a row half a spacing above, by midpoints */

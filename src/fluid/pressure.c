@@ -61,12 +61,15 @@ static void make_right(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
   }
 }
 
-/* No suction: where p would be below 0 it is 0. Particles apart have p = 0. */
+/* No suction that the surface has not: where p would be below 0 it is 0. Particles apart have p =
+ * 0.
+ */
 static void take_solution(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   (void)chunk;
   for (int64_t i = begin; i < end; i++) {
     const double none = mpsi_fluid_head(f, f->x[0][i], f->x[1][i]);
-    f->q[i] = f->state[i] == MPSI_FLUID_APART ? none : fmax(f->system.x[i], none);
+    f->q[i] = f->state[i] == MPSI_FLUID_APART ? none
+                                              : fmax(f->system.x[i], none + mpsi_fluid_least(f, i));
   }
 }
 

@@ -3,7 +3,8 @@
  *
  * The pressure at a point of a wall is a weighted least-squares fit, linear ALONG the wall, with
  * the weight (1 - r/(2.1 l0))^2, of q - rho (a . N)(distance from the wall), N out of the fluid;
- * then p = q - rho g (height - level), and 0 where that is suction. SPDX-License-Identifier:
+ * then p = q - rho g (height - level), and 0 where that is less than the air's at a surface near,
+ * or suction. What loads do to a particle counts like -a of the wall. SPDX-License-Identifier:
  * BSD-3-Clause */
 #include "fluid_private.h"
 
@@ -11,14 +12,32 @@
 #define LEAST_SUM 0.05    /* of weights: below, there is no water */
 #define LEAST_SPREAD 0.02 /* l0^2: below, the mean is taken */
 
+/* A particle near a wall. */
+typedef struct neighbour {
+  double d, s, q; /* distance; place along the wall; q carried over to it */
+  double air;     /* pressure on its surface, Pa; -infinity where it is inside */
+  double least;   /* pressure that it has at least, Pa */
+  int64_t i;
+} neighbour;
+
 /* Sums of a fit. */
 typedef struct fit {
   double w, ws, wss, wq, wsq;
+  double air;   /* Pa, the largest of surfaces near; -infinity where none is */
+  double least; /* Pa, <= 0 */
 } fit;
 
-static void fit_add(fit *sum, double w, double s, double q) {
-  sum->w += w, sum->ws += w * s, sum->wss += w * s * s, sum->wq += w * q, sum->wsq += w * s * q;
+static const fit no_fit = {.air = -INFINITY};
+
+static void fit_add(fit *sum, double w, double s, const neighbour *n) {
+  sum->air = fmax(sum->air, n->air);
+  sum->least = fmin(sum->least, n->least);
+  sum->w += w, sum->ws += w * s, sum->wss += w * s * s;
+  sum->wq += w * n->q, sum->wsq += w * s * n->q;
 }
+
+/* A point has water where its pressure is more than this: than that of the air at a surface. */
+static double driest(const fit *sum) { return sum->air > -INFINITY ? sum->air : sum->least; }
 
 /* Reduced pressure at s = 0. */
 static double fit_value(const mps_fluid *f, const fit *sum) {
@@ -40,12 +59,6 @@ static void place(const mps_fluid *f, const mpsi_fluid_wall *w, double along, do
   x[1] = w->at[1] + s * w->normal[1] + along * w->normal[0];
 }
 
-/* A particle near a wall. */
-typedef struct neighbour {
-  double d, s, q; /* distance; place along the wall; q carried over to it */
-  int64_t i;
-} neighbour;
-
 /* What a particle contributes: false where it is too far from the wall. Its acceleration is along
  * the normal into the fluid, -N. */
 static bool near_wall(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t i, neighbour *out) {
@@ -53,9 +66,12 @@ static bool near_wall(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t i, n
   out->d = mpsi_fluid_distance(w, mpsi_fluid_places(f, w), x, y);
   if (fabs(out->d) >= REACH * f->l0 || f->state[i] == MPSI_FLUID_APART) return false;
   if (w->of_body && out->d < 0.0) return false;
-  const double a = mpsi_fluid_of_wall(w, mpsi_fluid_accelerations(f, w), x, y);
+  double a = mpsi_fluid_of_wall(w, mpsi_fluid_accelerations(f, w), x, y);
+  if (f->push[0]) a -= f->push[0][i] * w->normal[0] + f->push[1][i] * w->normal[1];
   out->s = mpsi_fluid_along(w, x, y);
   out->q = f->q[i] + f->def.density * a * out->d;
+  out->air = f->state[i] != MPSI_FLUID_SURFACE ? -INFINITY : f->over ? f->over[i] : 0.0;
+  out->least = mpsi_fluid_least(f, i);
   out->i = i;
   return true;
 }
@@ -140,7 +156,7 @@ static mps_status for_points(mps_fluid *f, int32_t b, const char *function, poin
     if (!mpsi_fluid_room_ensure(f->context, &f->fit_room, high - low, sizeof *sum))
       return mpsi_fail_memory(f->context, function, (size_t)(high - low) * sizeof *sum);
     sum = f->fit_room.item;
-    for (int64_t k = 0; k < high - low; k++) sum[k] = (fit){0};
+    for (int64_t k = 0; k < high - low; k++) sum[k] = no_fit;
   }
   const neighbour *list = f->near_wall_room.item;
   for (int64_t n = 0; n < near && high > low; n++) {
@@ -149,7 +165,7 @@ static mps_status for_points(mps_fluid *f, int32_t b, const char *function, poin
     for (int64_t k = first > low ? first : low; k <= last && k < high; k++) {
       const double at = ((double)k + 0.5) * step, weight = weight_of(f, list[n].d, s - at);
       if (weight > 0.0 && (!f->faces || sees_point(f, b, at, list[n].i)))
-        fit_add(&sum[k - low], weight, s - at, list[n].q);
+        fit_add(&sum[k - low], weight, s - at, &list[n]);
     }
   }
   for (int64_t k = low; k < high; k++) {
@@ -157,7 +173,7 @@ static mps_status for_points(mps_fluid *f, int32_t b, const char *function, poin
     place(f, w, ((double)k + 0.5) * step, x);
     if (sum[k - low].w <= LEAST_SUM || !among_walls(f, b, x)) continue;
     const double p = fit_value(f, &sum[k - low]) - mpsi_fluid_head(f, x[0], x[1]);
-    if (p > 0.0) point(user, x, p);
+    if (p > driest(&sum[k - low])) point(user, x, p);
   }
   return MPS_OK;
 }
@@ -284,14 +300,15 @@ mps_status mps_fluid_get_pressure(mps_fluid *f, int32_t number, int64_t count, c
     const double at = mpsi_fluid_along(&f->wall[number], x[3 * k], x[3 * k + 1]);
     const neighbour *list = f->near_wall_room.item;
     double to[2];
-    fit sum = {0};
+    fit sum = no_fit;
     for (int64_t i = 0; i < near; i++) {
       const double s = list[i].s - at, weight = weight_of(f, list[i].d, s);
-      if (weight > 0.0) fit_add(&sum, weight, s, list[i].q);
+      if (weight > 0.0) fit_add(&sum, weight, s, &list[i]);
     }
     place(f, &f->wall[number], at, to);
     const double head = mpsi_fluid_head(f, to[0], to[1]);
-    pressure[k] = sum.w > LEAST_SUM ? fmax(fit_value(f, &sum) - head, 0.0) : 0.0;
+    const double p = sum.w > LEAST_SUM ? fit_value(f, &sum) - head : 0.0;
+    pressure[k] = p > driest(&sum) ? p : 0.0;
   }
   return MPS_OK;
 }

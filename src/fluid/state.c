@@ -37,6 +37,7 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_f64(s, "time", &f->time, 1);
   mpsi_state_i64(s, "steps", &f->steps, 1);
   mpsi_state_f64(s, "last_dt", &f->last_dt, 1);
+  mpsi_state_f64(s, "load_time", &f->load_time, 1);
   mpsi_state_f64(s, "speed", &f->speed, 1);
   mpsi_state_f64(s, "energy", &f->energy, 1);
   mpsi_state_f64(s, "work_boundaries", &f->work_boundaries, 1);

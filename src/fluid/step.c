@@ -39,6 +39,7 @@ static void load_cloud(mps_fluid *f) {
     memcpy(f->u[c], column(f, "velocity", c), bytes);
   }
   memcpy(f->q, column(f, "reduced_pressure", 0), bytes);
+  f->driven = false;
 }
 
 static void store_cloud(mps_fluid *f) {
@@ -108,7 +109,8 @@ static mps_status look_around(mps_fluid *f, const char *function) {
 
 mps_status mpsi_fluid_look(mps_fluid *f, const char *function) {
   load_cloud(f);
-  return look_around(f, function);
+  const mps_status status = mpsi_fluid_find_loads(f, function, f->load_time);
+  return status == MPS_OK ? look_around(f, function) : status;
 }
 
 mps_status mpsi_fluid_refresh(mps_fluid *f, const char *function) {
@@ -131,26 +133,19 @@ static mps_status went_wrong(mps_fluid *f, const char *function, int64_t i) {
 static void find_pressures(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   (void)chunk;
   for (int64_t i = begin; i < end; i++)
-    f->pressure[i] = fmax(f->q[i] - mpsi_fluid_head(f, f->x[0][i], f->x[1][i]), 0.0);
+    f->pressure[i] =
+        fmax(f->q[i] - mpsi_fluid_head(f, f->x[0][i], f->x[1][i]), mpsi_fluid_least(f, i));
 }
 
-/* The caller's forces on particles, over the step: the pressure then answers to them. */
-static void add_forces(mps_fluid *f) {
-  const double mass = f->def.density * f->l0 * f->l0 * f->def.measure;
-  for (int c = 0; c < 2; c++) {
-    const double *force = column(f, "external_force", c);
-    for (int64_t i = 0; force && i < f->count; i++) f->u[c][i] += f->dt / mass * force[i];
-  }
-}
-
-/* Work of the same, with the velocity that they have led to. */
-static double work_of_forces(const mps_fluid *f) {
-  double sum = 0.0;
-  for (int c = 0; c < 2; c++) {
-    const double *force = column(f, "external_force", c);
-    for (int64_t i = 0; force && i < f->count; i++) sum += f->dt * force[i] * f->u[c][i];
-  }
-  return sum;
+/* Loads and the caller's forces on particles, over the step: the pressure then answers to them. */
+static mps_status add_loads(mps_fluid *f, const char *function) {
+  const mps_status status = mpsi_fluid_find_loads(f, function, f->time);
+  if (status != MPS_OK) return status;
+  f->load_time = f->time;
+  f->driven = f->push[0] != NULL;
+  for (int c = 0; f->driven && c < 2; c++)
+    for (int64_t i = 0; i < f->count; i++) f->u[c][i] += f->dt * f->push[c][i];
+  return MPS_OK;
 }
 
 /* A step is made in three parts. They read and write the cloud; the fields change when all is
@@ -163,9 +158,10 @@ static mps_status begin(mps_fluid *f, const char *function, double dt) {
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].before = f->wall[b].load;
   mpsi_fluid_begin_walls(f, dt);
   load_cloud(f);
-  add_forces(f);
+  status = add_loads(f, function);
   const bool classical = f->classical.gamma > 0.0;
-  status = classical ? mpsi_fluid_classical_look(f, function) : look_around(f, function);
+  if (status == MPS_OK)
+    status = classical ? mpsi_fluid_classical_look(f, function) : look_around(f, function);
   if (status == MPS_OK) status = mpsi_fluid_prepare_pressure(f, function);
   f->stage = MPSI_FLUID_BEGUN;
   return status;
@@ -190,7 +186,7 @@ static mps_status keep(mps_fluid *f, const char *function) {
   mpsi_fluid_end_walls(f);
   f->stage = MPSI_FLUID_BETWEEN;
   mpsi_fluid_add_impulses(f);
-  f->work_loads += work_of_forces(f);
+  f->work_loads += mpsi_fluid_work_of_loads(f);
   store_cloud(f);
   f->time += f->dt;
   f->steps++;

@@ -243,10 +243,15 @@ void mpsi_fluid_mirror_point(const mps_fluid *f, uint32_t flips, double *x) {
   }
 }
 
+/* A load acts on an image as on its parent: so it presses the water against the wall. */
 void mpsi_fluid_move_ghosts(mps_fluid *f) {
   for (int64_t g = 0; g < f->ghosts; g++) {
     const int64_t j = f->count + g, own = f->parent[g];
-    double v[2] = {f->u[0][own], f->u[1][own]};
+    double v[2], kick[2] = {0.0, 0.0};
+    for (int c = 0; c < 2; c++) {
+      if (f->driven) kick[c] = f->dt * f->push[c][own];
+      v[c] = f->u[c][own] - kick[c];
+    }
     for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
       if (!(f->flips[g] >> b & 1)) continue;
       const mpsi_fluid_wall *w = &f->wall[b];
@@ -254,7 +259,7 @@ void mpsi_fluid_move_ghosts(mps_fluid *f) {
       const double across = v[0] * w->normal[0] + v[1] * w->normal[1] - u;
       v[0] -= 2.0 * across * w->normal[0], v[1] -= 2.0 * across * w->normal[1];
     }
-    f->u[0][j] = v[0], f->u[1][j] = v[1];
+    for (int c = 0; c < 2; c++) f->u[c][j] = v[c] + kick[c];
   }
 }
 
@@ -263,7 +268,8 @@ void mpsi_fluid_press_ghosts(mps_fluid *f) {
   for (int64_t g = 0; g < f->ghosts; g++) {
     const int64_t j = f->count + g, own = f->parent[g];
     const double apart[2] = {f->x[0][j] - f->x[0][own], f->x[1][j] - f->x[1][own]};
-    f->offset[g] = 0.0;
+    f->offset[g] =
+        f->push[0] ? rho * (f->push[0][own] * apart[0] + f->push[1][own] * apart[1]) : 0.0;
     for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
       if (!(f->flips[g] >> b & 1)) continue;
       const mpsi_fluid_wall *w = &f->wall[b];

@@ -454,6 +454,16 @@ static mps_status use_record(const void *def) {
   return status;
 }
 
+static mps_status use_fluid_load(const void *def) {
+  mps_particles *set = square();
+  mps_fluid *fluid = NULL;
+  mps_assert_ok(context, mps_fluid_create(context, set, NULL, &fluid));
+  const mps_status status = mps_fluid_add_load(fluid, def, NULL);
+  mps_fluid_destroy(&fluid);
+  mps_particles_destroy(&set);
+  return status;
+}
+
 static mps_status no_matrix(void *user, int64_t rows, const int64_t *start, const int32_t *column,
                             const double *value) {
   (void)user, (void)rows, (void)start, (void)column, (void)value;
@@ -512,6 +522,7 @@ static const user users[] = {
     {"mps_dynamics_def", need_nothing, use_dynamics},
     {"mps_elastic_def", need_nothing, use_elastic},
     {"mps_fluid_def", need_nothing, use_fluid},
+    {"mps_fluid_load_def", need_nothing, use_fluid_load},
     {"mps_fluid_solver_def", need_fluid_solver, use_fluid_solver},
     {"mps_geostatic_def", need_geostatic, use_geostatic},
     {"mps_mohr_coulomb_def", need_mohr_coulomb, use_mohr_coulomb},
