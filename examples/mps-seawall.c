@@ -86,6 +86,8 @@ int main(int argc, char **argv) {
                             .wall_density = 7850.0,
                             .every_checkpoint = 1.0,
                             .frames = 55,
+                            .disturb = 0.1,
+                            .seed = 1,
                             .out = "out/seawall"}};
   seawall_settings *s = &w.s;
   option table[] = {
@@ -93,6 +95,11 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("length", "m", OPTION_LENGTH, &s->length, "from the piston to the wall"),
       OPTION_NUMBER("depth", "m", OPTION_LENGTH, &s->depth, "of the water"),
       OPTION_NUMBER("spacing", "m", OPTION_LENGTH, &s->spacing, "of the particles, water and wall"),
+      OPTION_NUMBER("disturb", "spacings", OPTION_FROM_TO(0.0, 0.2), &s->disturb,
+                    "random displacement of the water's particles at the start, at most: a perfect "
+                    "lattice keeps its columns when it is stretched, and collides"),
+      OPTION_INTEGER("seed", "N", OPTION_FROM_TO(0.0, 1e9), &s->seed,
+                     "another disturbance each: behind a breaking wave the force differs"),
       OPTION_HEADING("Wave maker: amplitude sin(2 pi t/period)"),
       OPTION_NUMBER("amplitude", "m", OPTION_FROM_TO(0.0, 1e3), &s->amplitude, "of the piston"),
       OPTION_NUMBER("period", "s", OPTION_DURATION, &s->period, "of the piston"),

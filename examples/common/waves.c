@@ -35,6 +35,16 @@ double waves_noise(uint64_t *state) {
   return (double)(*state >> 11) * 0x1p-52 - 1.0;
 }
 
+mps_status waves_disturb(mps_particles *water, double by, uint64_t seed) {
+  uint64_t state = seed;
+  mps_edit x;
+  mps_status status = mps_particles_edit(water, "position", &x);
+  if (status != MPS_OK) return status;
+  for (int64_t i = 0; i < x.view.shape[0]; i++)
+    for (int c = 0; c < 2; c++) *mps_edit_f64(&x, i, c) += by * waves_noise(&state);
+  return mps_particles_commit(water, &x);
+}
+
 mps_status waves_add_wall(mps_fluid *fluid, const double *point, double nx, double ny,
                           mps_signal *signal, int32_t *number) {
   mps_fluid_boundary_def def = mps_fluid_boundary_defaults();

@@ -24,6 +24,8 @@ mps_status waves_fill(mps_context *context, double length, double depth, double 
                       mps_particles **out);
 /* The next of a row of random numbers in [-1, 1), the same in every run; begin with any state. */
 double waves_noise(uint64_t *state);
+/* Moves each particle by up to `by` (m) along x and y; every seed is another disturbance. */
+mps_status waves_disturb(mps_particles *water, double by, uint64_t seed);
 /* A plane wall through (x, y) with the normal (nx, ny) into the water. `signal` may be NULL. */
 mps_status waves_add_wall(mps_fluid *fluid, const double *point, double nx, double ny,
                           mps_signal *signal, int32_t *number);

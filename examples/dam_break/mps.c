@@ -26,18 +26,6 @@ static mps_status add_wall(mps_fluid *fluid, double x, double nx, double ny) {
   return mps_fluid_add_boundary(fluid, &def, NULL);
 }
 
-/* A lattice stays one when it is stretched along the bed: particles in columns ever closer, and
- * none is pushed aside, as all is symmetric. */
-static mps_status disturb(const settings *s, mps_particles *water) {
-  uint64_t state = 1;
-  mps_edit x;
-  mps_status status = mps_particles_edit(water, "position", &x);
-  if (status != MPS_OK) return status;
-  for (int64_t i = 0; i < x.view.shape[0]; i++)
-    for (int c = 0; c < 2; c++) *mps_edit_f64(&x, i, c) += s->disturb * s->h * waves_noise(&state);
-  return mps_particles_commit(water, &x);
-}
-
 /* Mass and volume stay what they are: the heap is measured by them. */
 mps_status dam_mps_build(mps_context *context, simulation *sim) {
   const settings *s = &sim->s;
@@ -50,7 +38,9 @@ mps_status dam_mps_build(mps_context *context, simulation *sim) {
   mps_status status = mps_particles_create(context, &set, &sim->m.particles);
   mps_particles *water = sim->m.particles;
   if (status == MPS_OK) status = mps_particles_fill_box(water, lo, hi, NULL);
-  if (status == MPS_OK) status = disturb(s, water);
+  /* A lattice stays one when it is stretched along the bed: particles in columns ever closer, and
+   * none is pushed aside, as all is symmetric. */
+  if (status == MPS_OK) status = waves_disturb(water, s->disturb * s->h, 1);
   if (status == MPS_OK) status = mps_particles_set(water, "mass", 0, DENSITY * s->h * s->h);
   if (status == MPS_OK) status = mps_particles_set(water, "volume", 0, s->h * s->h);
   if (status == MPS_OK) status = mps_fluid_create(context, water, &def, &sim->m.fluid);

@@ -2,8 +2,9 @@
  * facets are found at which the structure answers to the pressures as the water was told.
  *
  * The water keeps its step open and solves again for each guess; the structure goes back to where
- * the step began. The pressures act at the middle of the step, which the generalised-alpha method
- * of the structure sees as (1 - alpha) of the load at the end and alpha of that before.
+ * the step began. The pressures are those of the middle of the step; the generalised-alpha method
+ * of the structure balances (1 - alpha) of the load at the end and alpha of that before, which is
+ * the load 1/2 - alpha later, so the pressures are taken there in a straight line.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "seawall.h"
 
@@ -31,8 +32,9 @@ static mps_status look_at_facets(seawall *w, double *displacement, double *veloc
 /* ---- start ----------------------------------------------------------------------------------- */
 
 static bool allocate(seawall_both *b, size_t n) {
-  double **const arrays[] = {&b->rest,  &b->displacement, &b->velocity, &b->mean,  &b->answer,
-                             &b->moved, &b->speed,        &b->before,   &b->given, &b->vector};
+  double **const arrays[] = {&b->rest,   &b->displacement, &b->velocity, &b->mean,
+                             &b->answer, &b->moved,        &b->speed,    &b->before,
+                             &b->given,  &b->middle,       &b->vector};
   enum { ARRAYS = sizeof arrays / sizeof *arrays };
   b->block = calloc((ARRAYS + 5) * n, sizeof *b->block); /* the last one has 6 a facet */
   for (size_t k = 0; b->block && k < ARRAYS; k++) *arrays[k] = b->block + k * n;
@@ -44,7 +46,8 @@ static mps_status rest(seawall *w) {
   strip *wall = &w->wall;
   seawall_both *b = &w->both;
   for (int64_t k = 0; k < wall->count; k++)
-    b->before[k] = WAVES_DENSITY * WAVES_G * fmax(w->s.depth - wall->centre[3 * k + 1], 0.0);
+    b->before[k] = b->middle[k] =
+        WAVES_DENSITY * WAVES_G * fmax(w->s.depth - wall->centre[3 * k + 1], 0.0);
   mps_elastic_motion_def motion = mps_elastic_motion_defaults();
   motion.dt = w->s.dt;
   motion.rho_inf = RHO_INF;
@@ -94,8 +97,10 @@ static mps_status ask_water(seawall *w, double dt) {
 static mps_status ask_wall(seawall *w, double dt) {
   strip *wall = &w->wall;
   seawall_both *b = &w->both;
-  for (int64_t k = 0; k < wall->count; k++)
-    b->given[k] = (w->pressure[k] - ALPHA * b->before[k]) / (1.0 - ALPHA);
+  for (int64_t k = 0; k < wall->count; k++) {
+    const double p = w->pressure[k] + (0.5 - ALPHA) * (w->pressure[k] - b->middle[k]);
+    b->given[k] = (p - ALPHA * b->before[k]) / (1.0 - ALPHA);
+  }
   mps_status status = mps_elastic_rollback(wall->solver, b->start);
   if (status == MPS_OK) status = strip_load(wall, b->given);
   if (status == MPS_OK) status = mps_elastic_step(wall->solver, 1);
@@ -138,5 +143,6 @@ mps_status seawall_coupled_step(seawall *w) {
   status = agree(w, dt);
   if (status != MPS_OK) return go_back(w, status);
   memcpy(b->before, b->given, (size_t)w->wall.count * sizeof *b->before);
+  memcpy(b->middle, w->pressure, (size_t)w->wall.count * sizeof *b->middle);
   return mps_fluid_end_step(w->fluid);
 }

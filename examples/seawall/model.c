@@ -19,6 +19,8 @@ static mps_status make_fluid(mps_context *context, seawall *w) {
   def.dt = s->dt, def.level = s->depth, def.density = WAVES_DENSITY;
   w->motion = (waves_piston){s->amplitude, s->period, s->ramp};
   mps_status status = waves_fill(context, s->length, s->depth, s->spacing, &w->water);
+  if (status == MPS_OK && s->disturb > 0.0)
+    status = waves_disturb(w->water, s->disturb * s->spacing, (uint64_t)s->seed);
   if (status == MPS_OK) status = mps_fluid_create(context, w->water, &def, &w->fluid);
   if (status == MPS_OK)
     status = mps_signal_user(context, waves_move_piston, &w->motion, &w->piston);

@@ -50,13 +50,14 @@ static void pass(void *user, resume_bytes *b) {
               2 * (size_t)mps_particles_count(w->wall.set) * sizeof(double));
   if (w->s.coupled) {
     resume_pass(b, w->both.before, (size_t)w->wall.count * sizeof(double));
+    resume_pass(b, w->both.middle, (size_t)w->wall.count * sizeof(double));
     resume_pass(b, w->both.memory, (size_t)w->both.learnt * sizeof(double));
   }
   pass_frames(b, w, n.frames);
 }
 
 static resume parts(seawall *w) {
-  return (resume){"mps-seawall 2", w->table, pass, w, .fluid = w->fluid};
+  return (resume){"mps-seawall 3", w->table, pass, w, .fluid = w->fluid};
 }
 
 /* ---- to the file and back -------------------------------------------------------------------- */

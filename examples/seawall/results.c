@@ -73,11 +73,12 @@ static bool write_frames(app *a, const seawall *w) {
 
 /* ---- summary --------------------------------------------------------------------------------- */
 
-/* The largest force after the piston's jerk, less all that is faster than 10 Hz, and when. */
-static double find_peak(const seawall *w, double *at) {
+/* The largest force from one time (s) to another, less all that is faster than 10 Hz, and when. */
+static double find_peak(const seawall *w, double from, double to, double *at) {
+  const int64_t end = to < (double)w->forces * w->s.dt ? (int64_t)(to / w->s.dt) : w->forces;
   double most = NAN;
   *at = NAN;
-  for (int64_t k = (int64_t)(SEAWALL_IMPULSE / w->s.dt); k < w->forces; k++) {
+  for (int64_t k = (int64_t)(from / w->s.dt); k < end; k++) {
     const double force = seawall_smooth(w, k);
     if (!(force <= most)) most = force, *at = (double)(k + 1) * w->s.dt;
   }
@@ -94,8 +95,12 @@ static void summarise(output *f, const seawall *w, double H) {
   json_optional(f, "moment_at_516", crest ? at->moment : NAN);
   json_optional(f, "deflection_at_516", crest ? at->deflection : NAN);
   json_optional(f, "level_at_516", crest ? at->level : NAN);
-  double peak_at;
-  const double peak = find_peak(w, &peak_at);
+  double peak_at, crest_at;
+  const double peak = find_peak(w, SEAWALL_IMPULSE, INFINITY, &peak_at); /* after the jerk */
+  const double most =
+      find_peak(w, SEAWALL_LOOK - 0.25 * s->period, SEAWALL_LOOK + 0.25 * s->period, &crest_at);
+  json_optional(f, "force_crest", crest ? most : NAN);
+  json_optional(f, "force_crest_time", crest ? crest_at : NAN);
   json_optional(f, "force_peak", peak);
   json_optional(f, "force_peak_time", peak_at);
   json_optional(f, "sainflou_force", isnan(H) ? NAN : waves_sainflou(k, s->depth, H, 1));

@@ -22,8 +22,9 @@ enum { SEAWALL_BED = 0, SEAWALL_PISTON, SEAWALL_WALL };
 typedef struct seawall_settings {
   double length, depth, spacing, amplitude, period, ramp, dt, duration, sample;
   double wall_thickness, wall_height, young, poisson, wall_density;
+  double disturb; /* spacings */
   double every_checkpoint;
-  int64_t frames, threads;
+  int64_t frames, threads, seed;
   bool coupled;
   const char *out, *checkpoint, *restart;
 } seawall_settings;
@@ -56,6 +57,7 @@ typedef struct seawall_both {
   double *mean, *answer;                  /* m/s2: accelerations over the step */
   double *moved, *speed;                  /* m, m/s: at its end */
   double *before, *given, *vector;        /* Pa: loads at its beginning and end; room */
+  double *middle;                         /* Pa, of the water in the middle of the step before */
   double *memory;                         /* of the coupling, before the step */
   int64_t room, learnt;
 } seawall_both;

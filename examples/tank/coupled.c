@@ -4,7 +4,9 @@
  *
  * In a step the water is asked for its pressures under a guess of the accelerations, and the
  * structure for the accelerations under these pressures; mps/couple.h finds where both agree. The
- * pressures act in the middle of the step. SPDX-License-Identifier: BSD-3-Clause */
+ * pressures are those of the middle of the step; the structure's balance is that of alpha_f before
+ * its end, and its forces are taken there in a straight line. SPDX-License-Identifier: BSD-3-Clause
+ */
 #include "tank.h"
 
 #include <math.h>
@@ -16,6 +18,7 @@
 /* ---- structure ------------------------------------------------------------------------------- */
 
 static void set_method(tank_structure *p, double rho_inf) {
+  for (int k = 0; k < TANK_SHAPES; k++) p->force[k] = NAN;
   p->alpha_m = (2.0 * rho_inf - 1.0) / (rho_inf + 1.0);
   p->alpha_f = rho_inf / (rho_inf + 1.0);
   p->gamma = 0.5 - p->alpha_m + p->alpha_f;
@@ -32,9 +35,11 @@ static tank_motion go_on(const tank_structure *p, int k, double mean, double dt)
   return next;
 }
 
-/* Mean acceleration of shape k over a step under the force (N) at its middle. */
-static double respond(const tank_structure *p, int k, double force, double dt) {
+/* Mean acceleration of shape k over a step with the force (N) at its middle. */
+static double respond(const tank_structure *p, int k, double middle, double dt) {
   const tank_motion *m = &p->at[k];
+  const double change = isnan(p->force[k]) ? 0.0 : middle - p->force[k];
+  const double force = middle + (0.5 - p->alpha_f) * change;
   const double early = m->d + dt * m->v + dt * dt * (0.5 - p->beta) * m->a;
   const double spring = p->stiffness[k] * ((1.0 - p->alpha_f) * early + p->alpha_f * m->d);
   const double heavy =
@@ -151,9 +156,10 @@ static mps_status find_forces(tank_model *m, double *force) {
   return status;
 }
 
-static mps_status agree(tank_model *m, double dt, double *mean) {
+/* `force` receives what acts in the middle of the step. */
+static mps_status agree(tank_model *m, double dt, double *mean, double *force) {
   tank_structure *p = &m->structure;
-  double force[TANK_SHAPES], answer[TANK_SHAPES];
+  double answer[TANK_SHAPES];
   int32_t done = 0;
   mps_status status = mps_coupling_begin(p->coupling, NULL, mean);
   while (status == MPS_OK && !done) {
@@ -169,18 +175,21 @@ static mps_status agree(tank_model *m, double dt, double *mean) {
 mps_status tank_coupled_step(tank_model *m) {
   tank_structure *p = &m->structure;
   const double dt = mps_fluid_dt(m->fluid);
-  double mean[TANK_SHAPES];
+  double mean[TANK_SHAPES], force[TANK_SHAPES];
   mps_status status = mps_fluid_begin_step(m->fluid, dt);
   if (status != MPS_OK) return status;
   status = tank_remember(p);
-  if (status == MPS_OK) status = agree(m, dt, mean);
+  if (status == MPS_OK) status = agree(m, dt, mean, force);
   if (status != MPS_OK) { /* all as before the step */
     mps_status given_up = mps_fluid_abandon_step(m->fluid);
     if (given_up == MPS_OK) given_up = tank_recall(p);
     return given_up == MPS_OK ? status : given_up;
   }
   status = mps_fluid_end_step(m->fluid);
-  for (int k = 0; status == MPS_OK && k < p->shapes; k++) p->at[k] = go_on(p, k, mean[k], dt);
+  for (int k = 0; status == MPS_OK && k < p->shapes; k++) {
+    p->at[k] = go_on(p, k, mean[k], dt);
+    p->force[k] = force[k];
+  }
   return status;
 }
 

@@ -9,6 +9,7 @@ typedef struct notes {
   int64_t samples, learnt;
   mps_fluid_report report;
   tank_motion at[TANK_SHAPES];
+  double force[TANK_SHAPES];
 } notes;
 
 static void pass(void *user, resume_bytes *b) {
@@ -18,18 +19,20 @@ static void pass(void *user, resume_bytes *b) {
   memset(&n, 0, sizeof n);
   n.samples = m->samples, n.learnt = p->learnt, n.report = m->report;
   memcpy(n.at, p->at, sizeof n.at);
+  memcpy(n.force, p->force, sizeof n.force);
   resume_pass(b, &n, sizeof n);
   if (resume_wrong(b,
                    n.samples < 0 || n.samples > m->capacity || n.learnt < 0 || n.learnt > p->room))
     return;
   m->samples = n.samples, p->learnt = n.learnt, m->report = n.report;
   memcpy(p->at, n.at, sizeof n.at);
+  memcpy(p->force, n.force, sizeof n.force);
   resume_pass(b, m->sample, (size_t)m->samples * sizeof *m->sample);
   resume_pass(b, p->memory, (size_t)p->learnt * sizeof *p->memory);
 }
 
 static resume parts(tank_model *m) {
-  return (resume){"mps-tank 1", m->table, pass, m, .fluid = m->fluid};
+  return (resume){"mps-tank 2", m->table, pass, m, .fluid = m->fluid};
 }
 
 mps_status tank_save(void *user) {

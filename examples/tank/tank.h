@@ -58,6 +58,7 @@ typedef struct tank_structure {
   double start;                         /* m: the spring's first displacement */
   double alpha_m, alpha_f, beta, gamma; /* of the generalised-alpha method */
   tank_motion at[TANK_SHAPES];
+  double force[TANK_SHAPES]; /* N, at the middle of the last step; NaN before the first */
   int64_t points;                             /* of the plate; 0: the wall stays plane */
   double *x, *shape, each;                    /* m; values of each shape; m between them */
   double *pressure, *displacement, *velocity; /* at the points */
