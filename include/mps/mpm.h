@@ -29,6 +29,7 @@
 #define LIBMPS_MPM_H
 
 #include "contact.h"
+#include "domain.h"
 #include "io.h"
 #include "kernel.h"
 #include "material.h"
@@ -107,6 +108,7 @@ typedef struct mps_mpm_def {
                          kept alive */
   int32_t walls;      /* mps_mpm_walls, default MIRROR */
   int32_t reserved;
+  mps_domain *domain; /* ranks that share the body; NULL (default): none. Kept alive */
 } mps_mpm_def;
 
 MPS_API mps_status mps_mpm_def_init(mps_mpm_def *def, size_t size);

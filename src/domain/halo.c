@@ -137,23 +137,37 @@ void mpsi_halo_destroy(mps_context *context, mpsi_halo **pointer) {
   mpsi_free(context, halo);
 }
 
-mps_status mpsi_halo_begin(mpsi_halo *halo, const char *function, int32_t columns,
-                           double *const *column) {
+int64_t mpsi_halo_items(const mpsi_halo *halo, const int64_t **index) {
+  *index = halo->item;
+  return halo->items;
+}
+
+mps_status mpsi_halo_begin_bytes(mpsi_halo *halo, const char *function, int32_t item_bytes,
+                                 const void *own, void *guests) {
   const mps_domain_def *def = &halo->domain->def;
   const mps_status status = mpsi_domain_alive(halo->domain, function);
   if (status != MPS_OK) return status;
+  return mpsi_domain_note(halo->domain, function, "star_begin",
+                          def->star_begin(def->user, halo->star, item_bytes, own, guests));
+}
+
+mps_status mpsi_halo_end_bytes(mpsi_halo *halo, const char *function) {
+  const mps_domain_def *def = &halo->domain->def;
+  return mpsi_domain_note(halo->domain, function, "star_end",
+                          def->star_end(def->user, halo->star));
+}
+
+mps_status mpsi_halo_begin(mpsi_halo *halo, const char *function, int32_t columns,
+                           double *const *column) {
   halo->columns = columns;
   for (int32_t c = 0; c < columns; c++)
     for (int64_t k = 0; k < halo->items; k++) halo->out[k * columns + c] = column[c][halo->item[k]];
-  return mpsi_domain_note(halo->domain, function, "star_begin",
-                          def->star_begin(def->user, halo->star, columns * (int32_t)sizeof(double),
-                                          halo->out, halo->in));
+  return mpsi_halo_begin_bytes(halo, function, columns * (int32_t)sizeof(double), halo->out,
+                               halo->in);
 }
 
 mps_status mpsi_halo_end(mpsi_halo *halo, const char *function, double *const *column) {
-  const mps_domain_def *def = &halo->domain->def;
-  const mps_status status =
-      mpsi_domain_note(halo->domain, function, "star_end", def->star_end(def->user, halo->star));
+  const mps_status status = mpsi_halo_end_bytes(halo, function);
   if (status != MPS_OK) return status;
   for (int32_t c = 0; c < halo->columns; c++)
     for (int64_t k = 0; k < halo->guests; k++)

@@ -25,4 +25,12 @@ mps_status mpsi_halo_begin(mpsi_halo *halo, const char *function, int32_t column
                            double *const *column);
 mps_status mpsi_halo_end(mpsi_halo *halo, const char *function, double *const *column);
 
+/* How many items others have copies of, and which of this rank's they are, ascending. */
+int64_t mpsi_halo_items(const mpsi_halo *halo, const int64_t **index);
+/* The same with items of the caller's own form, item_bytes each, one behind the other: `own` of
+ * mpsi_halo_items, `guests` in order of their owners. Neither is touched before the end. */
+mps_status mpsi_halo_begin_bytes(mpsi_halo *halo, const char *function, int32_t item_bytes,
+                                 const void *own, void *guests);
+mps_status mpsi_halo_end_bytes(mpsi_halo *halo, const char *function);
+
 #endif

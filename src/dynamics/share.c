@@ -336,15 +336,8 @@ static mps_status make_structure(plan *p, mpsi_dynamics_structure *out) {
 
 /* ---- all of it ------------------------------------------------------------------------------- */
 
-static uint64_t mix(uint64_t hash, const void *data, size_t bytes) {
-  const unsigned char *at = data;
-  for (size_t k = 0; k < bytes; k++) hash = (hash ^ at[k]) * UINT64_C(0x100000001b3);
-  return hash;
-}
-
-/* A number that tells apart sets and definitions; kept below 2^52, where doubles are exact. */
-static double fingerprint(mps_dynamics *dynamics, bool set) {
-  uint64_t hash = UINT64_C(0xcbf29ce484222325);
+/* Are all ranks given the same? */
+static mps_status compare_ranks(mps_dynamics *dynamics, const char *function, mps_status status) {
   const mps_dynamics_def *d = &dynamics->def;
   const double numbers[] = {d->integrator,
                             d->rotation,
@@ -359,18 +352,11 @@ static double fingerprint(mps_dynamics *dynamics, bool set) {
                             d->measure,
                             d->watch_damping,
                             mps_kernel_get_kind(dynamics->kernel)};
-  if (!set) hash = mix(hash, numbers, sizeof numbers);
-  for (int32_t f = 0; set && f < mps_particles_field_count(dynamics->particles); f++) {
-    mps_field_info info;
-    mps_view view;
-    if (mps_particles_field(dynamics->particles, f, &info) != MPS_OK ||
-        mps_particles_view(dynamics->particles, info.name, &view) != MPS_OK)
-      continue;
-    hash = mix(hash, info.name, strlen(info.name));
-    for (int32_t c = 0; c < info.components; c++)
-      hash = mix(hash, (const char *)view.data + 8 * c * view.stride[1], (size_t)view.shape[0] * 8);
-  }
-  return (double)(hash >> 12);
+  status = mpsi_domain_settle_numbers(dynamics->domain, function, status,
+                                      "a hash of the solver's definition",
+                                      (int32_t)(sizeof numbers / sizeof *numbers), numbers);
+  if (status != MPS_OK) return status;
+  return mpsi_domain_settle_particles(dynamics->domain, function, status, dynamics->particles);
 }
 
 /* Sums and extremes over the ranks; and the halo, now that ghosts have their places. */
@@ -395,11 +381,7 @@ mps_status mpsi_dynamics_take_share(mps_dynamics *dynamics, const char *function
   mps_domain *domain = dynamics->domain;
   const int64_t rank = mps_domain_rank(domain), ranks = mps_domain_size(domain);
   *out = (mpsi_dynamics_structure){0};
-  status = mpsi_domain_settle_same(domain, function, status, "a hash of the solver's definition",
-                                   fingerprint(dynamics, false));
-  if (status == MPS_OK)
-    status = mpsi_domain_settle_same(domain, function, status, "a hash of the set's particles",
-                                     fingerprint(dynamics, true));
+  status = compare_ranks(dynamics, function, status);
   if (status != MPS_OK) return status;
   status = mpsi_dynamics_add_reference(dynamics);
   if (status == MPS_OK) status = sort_whole(&p);

@@ -55,6 +55,10 @@ typedef struct mpsi_cell_block {
   int64_t bad;                /* first particle not finite or outside the domain, or -1 */
   bool lost;                  /* that one, and no other, is outside: all are finite */
   double speed;               /* largest c + |v|, m/s */
+  /* On several ranks (share.h): */
+  bool ghost;     /* another rank's: it has no particles here */
+  bool late;      /* it, or one that gives before it, is a ghost */
+  int64_t parcel; /* where its tile is among those that come (ghosts) or go; -1: nowhere */
 } mpsi_cell_block;
 
 /* A block of nodes. Its nodes are node[mpsi_first_node(g)] and on, x fastest. */
@@ -166,6 +170,11 @@ static inline int64_t mpsi_block_of(int64_t base) {
 mpsi_radix *mpsi_mpm_find_order(mps_mpm *mpm, int32_t *own_bits);
 /* layout.c: sorts the particles by blocks and builds the lists of blocks. */
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function);
+/* layout.c: its parts: the particles in order, by blocks of cells; room for such; and, once
+ * they are in grid.cells in their order, what follows from them. */
+mps_status mpsi_mpm_sort_cells(mps_mpm *mpm, const char *function);
+bool mpsi_mpm_ensure_cells(mps_mpm *mpm, int64_t cells);
+bool mpsi_mpm_build_nodes(mps_mpm *mpm, int64_t cells);
 /* layout.c: builds the lists of blocks for particles that are in order, as at an earlier sort. */
 mps_status mpsi_mpm_place_blocks(mps_mpm *mpm, const char *function, int64_t count,
                                  const mpsi_block *block);

@@ -203,7 +203,7 @@ static void sort_colours(mps_mpm *mpm) {
   mpm->grid.colour[MPSI_CORNERS] = count;
 }
 
-static bool ensure_cells(mps_mpm *mpm, int64_t cells) {
+bool mpsi_mpm_ensure_cells(mps_mpm *mpm, int64_t cells) {
   const bool good =
       mpsi_room_ensure(mpm->context, &mpm->grid.cells_room, cells, sizeof *mpm->grid.cells) &&
       mpsi_room_ensure(mpm->context, &mpm->grid.coloured_room, cells, sizeof *mpm->grid.coloured);
@@ -214,7 +214,7 @@ static bool ensure_cells(mps_mpm *mpm, int64_t cells) {
 }
 
 /* What follows from the blocks of cells. */
-static bool build_nodes(mps_mpm *mpm, int64_t cells) {
+bool mpsi_mpm_build_nodes(mps_mpm *mpm, int64_t cells) {
   mpm->grid.cell_count = cells;
   sort_colours(mpm);
   const int64_t nodes = make_nodes(mpm, NULL);
@@ -237,19 +237,21 @@ static mps_status no_room(mps_mpm *mpm, const char *function, int64_t cells) {
                           (size_t)(cells * mpm->grid.block_nodes) * sizeof *mpm->grid.node);
 }
 
-static mps_status build_blocks(mps_mpm *mpm, const char *function) {
+static mps_status find_cells(mps_mpm *mpm, const char *function) {
   key_chunks chunks = {.mpm = mpm};
+  mpm->grid.sorted = mpsi_mpm_find_order(mpm, &mpm->grid.own_bits);
+  if (!mpm->grid.sorted) return no_room(mpm, function, mpm->p.count / mpm->grid.block_nodes + 1);
   const int64_t cells = count_cells(&chunks);
-  if (!ensure_cells(mpm, cells)) return no_room(mpm, function, cells);
+  if (!mpsi_mpm_ensure_cells(mpm, cells)) return no_room(mpm, function, cells);
   make_cells(&chunks, cells, mpm->grid.cells);
   mpm->grid.cell_count = cells;
   mpsi_mpm_for_cells(mpm, place_block);
-  return build_nodes(mpm, cells) ? MPS_OK : no_room(mpm, function, cells);
+  return MPS_OK;
 }
 
 mps_status mpsi_mpm_place_blocks(mps_mpm *mpm, const char *function, int64_t count,
                                  const mpsi_block *block) {
-  if (!ensure_cells(mpm, count)) return no_room(mpm, function, count);
+  if (!mpsi_mpm_ensure_cells(mpm, count)) return no_room(mpm, function, count);
   for (int64_t k = 0; k < count; k++) {
     const int64_t end = k + 1 < count ? block[k + 1][0] : mpm->p.count;
     mpm->grid.cells[k] = (mpsi_cell_block){.begin = block[k][0], .end = end, .bad = -1};
@@ -259,20 +261,18 @@ mps_status mpsi_mpm_place_blocks(mps_mpm *mpm, const char *function, int64_t cou
       mpm->grid.cells[k].high[c] = (int32_t)block[k][MPSI_BLOCK_HIGH + c];
     }
   }
-  return build_nodes(mpm, count) ? MPS_OK : no_room(mpm, function, count);
+  if (mpm->share) { /* its ghosts follow before the next step */
+    mpm->grid.cell_count = count;
+    mpm->share->outdated = true;
+    return MPS_OK;
+  }
+  return mpsi_mpm_build_nodes(mpm, count) ? MPS_OK : no_room(mpm, function, count);
 }
 
-mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
+/* The particles in the order of the sorted keys. */
+static mps_status put_in_order(mps_mpm *mpm, const char *function) {
   const int64_t count = mpm->p.count;
   mpsi_radix *lower = mpm->grid.radix, *upper = lower + count;
-  if (count == 0) {
-    mpm->run.stale = false;
-    return ensure_cells(mpm, 0) && build_nodes(mpm, 0) ? MPS_OK : no_room(mpm, function, 0);
-  }
-  mpm->grid.sorted = mpsi_mpm_find_order(mpm, &mpm->grid.own_bits);
-  if (!mpm->grid.sorted) return no_room(mpm, function, count / mpm->grid.block_nodes + 1);
-  const mps_status status = build_blocks(mpm, function);
-  if (status != MPS_OK) return status;
   /* The half that is not sorted is free now for the order, and the other one after that. */
   int64_t *other = (int64_t *)(mpm->grid.sorted == lower ? upper : lower), *order = other;
   int64_t *own = (int64_t *)(mpm->grid.sorted == lower ? lower : upper);
@@ -280,4 +280,26 @@ mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
   if (list_order(mpm, order)) return MPS_OK;
   void *const scratch[MPSI_PERMUTE_COLUMNS] = {other + count, own, own + count};
   return mpsi_particles_permute_in(mpm->particles, function, order, scratch, MPSI_PERMUTE_COLUMNS);
+}
+
+mps_status mpsi_mpm_sort_cells(mps_mpm *mpm, const char *function) {
+  mpm->run.stale = false;
+  if (mpm->p.count == 0)
+    return mpsi_mpm_ensure_cells(mpm, 0) ? MPS_OK : no_room(mpm, function, 0);
+  const mps_status status = find_cells(mpm, function);
+  return status == MPS_OK ? put_in_order(mpm, function) : status;
+}
+
+mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
+  if (mpm->share) return mpsi_share_sort(mpm, function);
+  if (mpm->p.count == 0) {
+    mpm->run.stale = false;
+    const bool good = mpsi_mpm_ensure_cells(mpm, 0) && mpsi_mpm_build_nodes(mpm, 0);
+    return good ? MPS_OK : no_room(mpm, function, 0);
+  }
+  mps_status status = find_cells(mpm, function);
+  if (status != MPS_OK) return status;
+  const int64_t cells = mpm->grid.cell_count;
+  if (!mpsi_mpm_build_nodes(mpm, cells)) return no_room(mpm, function, cells);
+  return put_in_order(mpm, function);
 }

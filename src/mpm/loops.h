@@ -289,5 +289,6 @@ void MPSI_LEVELLED(mpsi_fit)(const mps_mpm *mpm, const mpsi_cell_block *cells,
                              const mpsi_worker *worker, int64_t particle, mpsi_stencil *stencil,
                              mpsi_shape_values *out);
 void MPSI_LEVELLED(mpsi_speed)(mps_mpm *mpm, int64_t b, int32_t worker);
+void MPSI_LEVELLED(mpsi_flush)(mps_mpm *mpm, int64_t b, int32_t worker);
 
 #endif

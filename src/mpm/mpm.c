@@ -183,6 +183,17 @@ static mps_status check_set(mps_context *context, mps_particles *set) {
   return MPS_OK;
 }
 
+/* ---- several ranks --------------------------------------------------------------------------- */
+
+static bool is_shared(const mps_mpm_def *d) { return mpsi_domain_many(d->domain); }
+
+static mps_status check_shared(mps_context *context, const mps_mpm_def *d) {
+  if (!is_shared(d) || (d->volumetric == MPS_MPM_VOLUMETRIC_POINT && !d->budget)) return MPS_OK;
+  return mpsi_fail(context, create, MPS_ERROR_UNSUPPORTED,
+                   "volumetric is %d and budget %d, on several ranks (there are %d) both must be 0",
+                   d->volumetric, d->budget, mps_domain_size(d->domain));
+}
+
 /* ---- fields ---------------------------------------------------------------------------------- */
 
 static mps_status add_fields(mps_mpm *mpm) {
@@ -280,25 +291,35 @@ static mps_status make_memory(mps_mpm *mpm) {
   return make_workers(mpm);
 }
 
-/* All that can fail comes before the sort, whose last act is to order the set. */
-static mps_status build(mps_mpm *mpm, mps_material *material) {
+/* The state in which the particles begin, and their order. */
+static mps_status begin(mps_mpm *mpm) {
+  mpsi_mpm_begin_particles(mpm);
+  mps_status status = check_step(mpm);
+  if (status == MPS_OK) status = make_memory(mpm);
+  if (status != MPS_OK) return status;
+  return is_shared(&mpm->def) ? mpsi_mpm_sort_cells(mpm, create) : mpsi_mpm_sort(mpm, create);
+}
+
+/* All that can fail comes before the sort, whose last act is to order the set. On several ranks the
+ * caller takes back what an error leaves. */
+static mps_status build(mps_mpm *mpm, mps_material *material, mps_status status,
+                        mpsi_storage **former) {
   const int32_t fields = mps_particles_field_count(mpm->particles);
+  const bool shared = is_shared(&mpm->def);
   double *copy = NULL;
-  mps_status status = add_fields(mpm);
+  if (status == MPS_OK) status = add_fields(mpm);
   if (status == MPS_OK) status = mpsi_mpm_add_law(mpm, create, material);
   if (status == MPS_OK) {
     mpsi_mpm_bind(mpm);
     status = mpsi_mpm_check_start(mpm, create);
     if (status == MPS_OK) status = mpsi_mpm_check_amounts(mpm, create);
-    if (status == MPS_OK) status = save_columns(mpm, &copy);
-    if (status == MPS_OK) mpsi_mpm_begin_particles(mpm);
-    if (status == MPS_OK) status = check_step(mpm);
-    if (status == MPS_OK) status = make_memory(mpm);
-    if (status == MPS_OK) status = mpsi_mpm_sort(mpm, create);
+    if (status == MPS_OK && !shared) status = save_columns(mpm, &copy);
+    if (status == MPS_OK) status = begin(mpm);
     if (status != MPS_OK && copy) put_columns_back(mpm, copy);
     mpsi_free(mpm->context, copy);
   }
-  if (status != MPS_OK) mpsi_particles_drop_fields(mpm->particles, fields);
+  if (shared) status = mpsi_share_take(mpm, create, status, former);
+  if (status != MPS_OK && !shared) mpsi_particles_drop_fields(mpm->particles, fields);
   mpm->boundaries.outdated = true; /* listed with the first step */
   return status;
 }
@@ -311,9 +332,12 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   if (!material) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "material is NULL");
   mps_mpm_def def = mpm_defaults;
   int64_t low[3], high[3];
-  mps_status status = check_set(context, particles);
-  if (status == MPS_OK && user_def)
+  mps_status status = MPS_OK;
+  if (user_def)
     status = MPSI_DEF_READ(context, __func__, mps_mpm_def, user_def, &def);
+  if (status == MPS_OK) status = mpsi_domain_check(context, __func__, def.domain);
+  if (status != MPS_OK) return status;
+  status = check_set(context, particles);
   if (status == MPS_OK) status = check_choices(context, &def);
   if (status == MPS_OK && mps_particles_dim(particles) != dim_of(&def))
     status = mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
@@ -326,9 +350,19 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   if (status == MPS_OK) status = check_cell(context, &def, particles);
   if (status == MPS_OK) status = read_domain(context, &def, low, high);
   if (status == MPS_OK) status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
-  if (status != MPS_OK) return status;
-  mps_mpm *mpm = mpsi_alloc(context, 1, sizeof *mpm);
-  if (!mpm) return mpsi_fail_memory(context, __func__, sizeof *mpm);
+  if (status == MPS_OK) status = check_shared(context, &def);
+  mpsi_backup backup = {0};
+  mpsi_storage *former = NULL;
+  mps_mpm *mpm = status == MPS_OK ? mpsi_alloc(context, 1, sizeof *mpm) : NULL;
+  if (status == MPS_OK && !mpm) status = mpsi_fail_memory(context, __func__, sizeof *mpm);
+  if (status == MPS_OK && is_shared(&def))
+    status = mpsi_particles_back_up(particles, __func__, &backup);
+  status = mpsi_domain_settle(def.domain, __func__, status);
+  if (status != MPS_OK) {
+    mpsi_backup_drop(particles, &backup);
+    mpsi_free(context, mpm);
+    return status;
+  }
   mpm->reader.mpm = mpm;
   mpm->context = mpsi_context_retain(context);
   mpm->particles = particles;
@@ -342,6 +376,7 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
                               .renew = mpsi_mpm_renew};
   (void)mpsi_particles_hold(particles, __func__, &mpm->holder); /* checked above */
   mpm->def = def;
+  mpm->def.domain = mpsi_domain_retain(def.domain);
   mpm->dim = dim_of(&def);
   mpm->grid.block_nodes = mpm->dim == 3 ? MPSI_SIDE * MPSI_SIDE * MPSI_SIDE : MPSI_SIDE * MPSI_SIDE;
   mpm->grid.tile_nodes = mpm->dim == 3 ? MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE
@@ -358,10 +393,15 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   else
     status = mps_kernel_create(context, def.spline == 2 ? MPS_KERNEL_SPLINE2 : MPS_KERNEL_SPLINE3,
                                radius_of(&def), &mpm->weights);
-  if (status != MPS_OK || (status = build(mpm, material)) != MPS_OK) {
+  status = build(mpm, material, status, &former);
+  if (status != MPS_OK) {
+    mpsi_particles_take_back(particles, &former);
+    if (is_shared(&def)) mpsi_particles_go_back(particles, &backup);
     mps_mpm_destroy(&mpm);
     return status;
   }
+  mpsi_backup_drop(particles, &backup);
+  mpsi_storage_drop(particles, &former);
   *out = mpm;
   return MPS_OK;
 }
@@ -415,6 +455,8 @@ void mps_mpm_destroy(mps_mpm **pointer) {
     mpsi_free(context, mpm->laws.law[k].history);
   }
   mps_kernel_destroy(&mpm->weights);
+  mpsi_share_free(mpm);
+  mps_domain_destroy(&mpm->def.domain);
   mpsi_state_forget(&mpm->identity);
   mpsi_particles_release(mpm->particles, &mpm->holder);
   mpsi_free(context, mpm);

@@ -14,6 +14,7 @@
 #include "mirror.h"
 #include "pairs.h"
 #include "run.h"
+#include "share.h"
 #include "undo.h"
 
 struct mpsi_kernels;
@@ -58,6 +59,7 @@ struct mps_mpm {
   mpsi_energy energy;
   mpsi_settling settling;
   mpsi_identity *identity; /* of its snapshots */
+  mpsi_share *share;       /* of several ranks; NULL: there is but one */
 };
 
 /* Whether each node needs its velocity before the forces: all blocks are split then. */

@@ -207,7 +207,8 @@ MPSI_INLINE void prefetch_chunk(const mpsi_columns *p, int64_t begin, int64_t en
   }
 }
 
-MPSI_INLINE void p2g_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {
+/* What the particles of a block give, into the tile. */
+MPSI_INLINE void tile_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   mpsi_worker *worker = &mpm->grid.workers[number];
   const int dim = mpsi_dim_of(geometry);
@@ -229,14 +230,29 @@ MPSI_INLINE void p2g_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry,
     p2g_chunk(mpm, cells, worker, geometry, spline, k, rest < MPSI_CHUNK ? (int)rest : MPSI_CHUNK);
   }
   if (cells->mirrors) mpsi_mpm_fold(mpm, cells, worker);
-  for (int q = 0; q < 1 << dim; q++) flush(mpm, cells, q, worker);
+}
+
+MPSI_INLINE void flush_body(mps_mpm *mpm, int64_t b, int32_t number, int dim) {
+  for (int q = 0; q < 1 << dim; q++)
+    flush(mpm, &mpm->grid.cells[b], q, &mpm->grid.workers[number]);
+}
+
+void MPSI_LEVELLED(mpsi_flush)(mps_mpm *mpm, int64_t b, int32_t worker) {
+  flush_body(mpm, b, worker, mpm->dim);
 }
 
 #define DEFINE(g, s, geometry, spline)                                                             \
+  static void tile_##g##_##s(mps_mpm *mpm, int64_t b, int32_t worker) {                            \
+    tile_body(mpm, b, worker, geometry, spline);                                                   \
+  }                                                                                                \
   static void p2g_##g##_##s(mps_mpm *mpm, int64_t b, int32_t worker) {                             \
-    p2g_body(mpm, b, worker, geometry, spline);                                                    \
+    tile_##g##_##s(mpm, b, worker);                                                                \
+    flush_body(mpm, b, worker, mpsi_dim_of(geometry));                                             \
   }
 MPSI_VARIANTS(DEFINE)
+
+#define TILE_ENTRY(g, s, geometry, spline) [geometry][spline - 2] = tile_##g##_##s,
+const mpsi_mpm_task MPSI_LEVELLED(mpsi_tile)[3][2] = {MPSI_VARIANTS(TILE_ENTRY)};
 
 #define ENTRY(g, s, geometry, spline) [geometry][spline - 2] = p2g_##g##_##s,
 const mpsi_mpm_task MPSI_LEVELLED(mpsi_p2g)[3][2] = {MPSI_VARIANTS(ENTRY)};

@@ -69,6 +69,16 @@ bool mpsi_mpm_make_room(void *solver, int64_t particles) {
   return good;
 }
 
+bool mpsi_mpm_shrink_room(mps_mpm *mpm, int64_t particles) {
+  mpsi_room *const rooms[] = {&mpm->rooms.radix, &mpm->rooms.flags, &mpm->rooms.stencil,
+                              &mpm->rooms.strain};
+  for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) {
+    mpsi_free(mpm->context, rooms[k]->item);
+    *rooms[k] = (mpsi_room){0};
+  }
+  return mpsi_mpm_make_room(mpm, particles);
+}
+
 /* ---- checks ---------------------------------------------------------------------------------- */
 
 static mps_status check_places(const mps_mpm *mpm, const char *function, int64_t first,

@@ -12,6 +12,8 @@ void mpsi_mpm_bind(mps_mpm *mpm);
 /* Room for what the solver keeps for each particle; false: refused. Of the forces of loads only
  * where there are such, or by the second. */
 bool mpsi_mpm_make_room(void *mpm, int64_t particles);
+/* The same, giving up what there is. */
+bool mpsi_mpm_shrink_room(mps_mpm *mpm, int64_t particles);
 bool mpsi_mpm_force_room(mps_mpm *mpm, int64_t particles);
 
 /* Fields are finite and places inside the domain; density, volume and volume ratio are positive;

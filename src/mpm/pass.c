@@ -25,8 +25,12 @@ static void clear_and_scatter(mps_mpm *mpm, const mpsi_pass *pass, int64_t b, in
 
 static void run_alone(mps_mpm *mpm, const mpsi_pass *pass) {
   const mpsi_grid *grid = &mpm->grid;
-  for (int64_t k = 0; pass->scatter && k < grid->cell_count; k++)
-    clear_and_scatter(mpm, pass, grid->coloured[k], 0);
+  const int32_t *order = pass->arrive ? mpm->share->order : grid->coloured;
+  const int64_t early = pass->arrive ? mpm->share->early : grid->cell_count;
+  for (int64_t k = 0; pass->scatter && k < early; k++) clear_and_scatter(mpm, pass, order[k], 0);
+  if (pass->arrive) pass->arrive(mpm);
+  for (int64_t k = early; pass->scatter && k < grid->cell_count; k++)
+    clear_and_scatter(mpm, pass, order[k], 0);
   for (int64_t g = 0; pass->update && g < grid->node_count; g++) pass->update(mpm, g, 0);
   if (pass->between) pass->between(mpm);
   for (int64_t g = 0; pass->finish && g < grid->node_count; g++) pass->finish(mpm, g, 0);
@@ -170,6 +174,7 @@ void mpsi_mpm_run_pass(mps_mpm *mpm, const mpsi_pass *pass) {
             .scatter_waits = room,
             .gather_waits = room + grid->cell_count,
             .queue = room + 2 * grid->cell_count};
+  if (pass->arrive) pass->arrive(mpm);
   const int64_t visits = mpsi_executor_is_own(mpm->context) ? 1 : VISITS;
   fill(&f);
   mpsi_parallel_for(mpm->context, visits * grid->worker_count, visit, &f);

@@ -27,6 +27,7 @@ typedef struct mpsi_pass {
                                     `wait` are updated and before any of these is finished */
   mpsi_mpm_task finish;          /* of nodes; NULL: none */
   mpsi_mpm_task gather;          /* of cells; NULL: none */
+  void (*arrive)(mps_mpm *mpm);  /* NULL: nothing; else brings what ghosts give (share.h) */
 } mpsi_pass;
 
 /* Returns when all is done. */

@@ -24,10 +24,13 @@ mps_status mpsi_mpm_usable(mps_mpm *mpm, const char *function) {
 mps_status mpsi_mpm_tidy(mps_mpm *mpm, const char *function) {
   mps_status status = check_whole(mpm, function);
   if (status == MPS_OK) status = mpsi_mpm_check_lost(mpm, function);
+  if (mpm->share) status = mpsi_share_agree(mpm, function, status);
   if (status != MPS_OK || !mpm->run.edited) return status;
   status = mpsi_mpm_check_masses(mpm, function);
+  if (mpm->share) status = mpsi_share_tidy(mpm, function, status);
   if (status == MPS_OK && mpm->run.stale) status = mpsi_mpm_sort(mpm, function);
   if (status == MPS_OK) status = mpsi_mpm_list_holds(mpm, function);
+  if (mpm->share) status = mpsi_domain_settle(mpm->share->domain, function, status);
   if (status != MPS_OK) return status;
   mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
   mpm->run.edited = mpm->energy.springs_known = false;
@@ -37,6 +40,13 @@ mps_status mpsi_mpm_tidy(mps_mpm *mpm, const char *function) {
 mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function) {
   const mps_status status = mpsi_mpm_between_steps(mpm, function);
   return status == MPS_OK ? mpsi_mpm_tidy(mpm, function) : status;
+}
+
+/* All ranks are asked for the same. */
+static mps_status same_on_ranks(mps_mpm *mpm, const char *function, mps_status status,
+                                const char *name, double value) {
+  if (!mpm->share) return status;
+  return mpsi_domain_settle_same(mpm->share->domain, function, status, name, value);
 }
 
 /* ---- the size of a step ---------------------------------------------------------------------- */
@@ -63,6 +73,7 @@ mps_status mps_mpm_set_dt(mps_mpm *mpm, double dt) {
                        "dt is %g s, must be %g s to the Courant limit of the present state, %g s, "
                        "or NaN for a step that follows the limit",
                        dt, MPSI_MPM_LEAST_DT, limit);
+  status = same_on_ranks(mpm, __func__, status, "dt", dt);
   if (status == MPS_OK) mpm->def.dt = dt;
   return status;
 }
@@ -74,7 +85,7 @@ int64_t mps_mpm_steps(const mps_mpm *mpm) { return mpm ? mpm->run.steps : 0; }
 /* ---- many steps ------------------------------------------------------------------------------ */
 
 static mps_status ask_cancel(mps_mpm *mpm, const char *function) {
-  if (!mpsi_cancelled(mpm->context)) return MPS_OK;
+  if (mpm->share ? !mpm->share->cancel : !mpsi_cancelled(mpm->context)) return MPS_OK;
   return mpsi_fail(mpm->context, function, MPS_ERROR_CANCELLED,
                    "stopped by the cancel hook at step %lld, t = %g s", (long long)mpm->run.steps,
                    mpm->run.time);
@@ -88,10 +99,12 @@ static mps_status check_bounded(mps_mpm *mpm, const char *function) {
 
 mps_status mps_mpm_step(mps_mpm *mpm, int64_t count) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_status status = MPS_OK;
   if (count < 0)
-    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
-                     (long long)count);
-  mps_status status = mpsi_mpm_ready(mpm, __func__);
+    status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
+                       (long long)count);
+  status = same_on_ranks(mpm, __func__, status, "count", (double)count);
+  if (status == MPS_OK) status = mpsi_mpm_ready(mpm, __func__);
   for (int64_t k = 0; k < count && status == MPS_OK; k++) {
     if (mpm->run.edited) status = mpsi_mpm_tidy(mpm, __func__); /* some have left */
     if (status == MPS_OK) status = check_bounded(mpm, __func__);
@@ -104,26 +117,34 @@ mps_status mps_mpm_step(mps_mpm *mpm, int64_t count) {
 
 static mps_status call(mps_mpm *mpm, const char *function, mps_mpm_fn callback, void *user) {
   mpsi_guard_enter(&mpm->run.guard, mpm->context, "the callback of mps_mpm_run");
-  return mpsi_guard_leave(&mpm->run.guard, mpm->context, function, callback(user, mpm));
+  const mps_status status =
+      mpsi_guard_leave(&mpm->run.guard, mpm->context, function, callback(user, mpm));
+  return mpm->share ? mpsi_domain_settle(mpm->share->domain, function, status) : status;
 }
 
 mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every, mps_mpm_fn callback, void *user) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
+  mps_status status = MPS_OK;
   if (!isfinite(t_end) || every < 1)
-    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                     "t_end is %g s and every %lld: must be finite and >= 1", t_end,
-                     (long long)every);
-  if (t_end < mpm->run.time)
-    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                     "t_end is %.9g s, must not be before the solver's time %.9g s", t_end,
-                     mpm->run.time);
-  mps_status status = mpsi_mpm_ready(mpm, __func__);
+    status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                       "t_end is %g s and every %lld: must be finite and >= 1", t_end,
+                       (long long)every);
+  else if (t_end < mpm->run.time)
+    status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                       "t_end is %.9g s, must not be before the solver's time %.9g s", t_end,
+                       mpm->run.time);
+  status = same_on_ranks(mpm, __func__, status, "t_end", t_end);
+  if (status == MPS_OK) status = same_on_ranks(mpm, __func__, status, "every", (double)every);
+  if (status == MPS_OK)
+    status = same_on_ranks(mpm, __func__, status, "having a callback", callback != NULL);
+  if (status == MPS_OK) status = mpsi_mpm_ready(mpm, __func__);
   const double start = mpm->run.time, slice = 0.01 * (t_end - start);
   int64_t done = 0, reported = 0;
   if (status == MPS_OK && callback) status = call(mpm, __func__, callback, user);
+  bool called = callback != NULL;
   while (status == MPS_OK && mpm->run.time < t_end) {
-    if ((status = mpsi_mpm_ready(mpm, __func__)) != MPS_OK)
-      break; /* the callback may have edited */
+    if (called || mpm->run.edited) status = mpsi_mpm_ready(mpm, __func__);
+    if (status != MPS_OK) break; /* the callback may have edited */
     mpsi_mpm_leave_settling(mpm);
     double dt = mps_mpm_dt(mpm);
     const double rest = t_end - mpm->run.time;
@@ -132,8 +153,8 @@ mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every, mps_mpm_fn cal
     status = mpsi_mpm_take_step(mpm, __func__, dt);
     if (last) mpm->run.time = t_end;
     done++;
-    if (status == MPS_OK && callback && (done % every == 0 || last))
-      status = call(mpm, __func__, callback, user);
+    called = callback && (done % every == 0 || last);
+    if (status == MPS_OK && called) status = call(mpm, __func__, callback, user);
     if (last || mpm->run.time >= start + slice * (double)(reported + 1)) {
       reported = last ? 100 : (int64_t)((mpm->run.time - start) / slice);
       mpsi_progress(mpm->context, "mpm", mpm->run.steps, mpm->run.time - start, t_end - start);

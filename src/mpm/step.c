@@ -33,6 +33,34 @@ static mps_status report_refusal(mps_mpm *mpm, const char *function) {
                                r->particle >= 0 ? mpm->laws.ids[r->particle] : -1, mpm->run.steps);
 }
 
+/* On several ranks: what has been found anywhere. An error of one is that of all. */
+static mps_status collect_ranks(mps_mpm *mpm, const char *function, double speed, int64_t bad,
+                                int64_t lost) {
+  mpsi_share *share = mpm->share;
+  enum { SPEED, STALE, BAD, LOST, EDITED, CANCEL, FOUND };
+  mps_status own = MPS_OK, status = share->lost;
+  if (bad >= 0)
+    own = report_bad(mpm, function, bad, "is not finite or has no volume");
+  else if (lost >= 0)
+    own = report_bad(mpm, function, lost, "has left the domain");
+  if (bad < 0) mpsi_mpm_let_go(mpm);
+  double found[FOUND] = {
+      speed,     mpm->run.stale,  bad >= 0,
+      lost >= 0, mpm->run.edited, mpsi_cancelled(mpm->context)};
+  status = mpsi_domain_settle_max(share->domain, function, status, FOUND, found);
+  mpm->run.broken = status != MPS_OK || found[BAD] > 0.0;
+  if (status != MPS_OK) return status;
+  mpm->run.stale = found[STALE] > 0.0;
+  mpm->run.edited = found[EDITED] > 0.0;
+  share->cancel = found[CANCEL] > 0.0;
+  if (!mpm->run.broken) mpm->run.speed = found[SPEED];
+  mpm->run.lost = mpm->run.lost || (!mpm->run.broken && found[LOST] > 0.0);
+  if (mpm->run.lost) mpm->run.stale = true;
+  if (!mpm->run.broken && found[LOST] == 0.0) return MPS_OK;
+  if (mpm->run.broken && bad < 0) own = MPS_OK; /* the others have worse */
+  return mpsi_domain_settle(share->domain, function, own);
+}
+
 mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function) {
   double speed = 0.0;
   int64_t bad = -1, lost = -1;
@@ -43,6 +71,7 @@ mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function) {
     if (cells->left) mpm->run.stale = true;
     if (cells->speed > speed) speed = cells->speed;
   }
+  if (mpm->share) return collect_ranks(mpm, function, speed, bad, lost);
   mpm->run.broken = bad >= 0;
   if (bad >= 0) return report_bad(mpm, function, bad, "is not finite or has no volume");
   mpm->run.speed = speed;
@@ -83,6 +112,7 @@ static void warn_about_step(mps_mpm *mpm, double dt) {
  * them. An error loses nothing but the tractions at rest of absorbing sides. */
 static mps_status prepare(mps_mpm *mpm, const char *function) {
   mps_status status = mpsi_mpm_prepare_outflow(mpm, function);
+  if (mpm->share) status = mpsi_share_tidy(mpm, function, status);
   if (status == MPS_OK && mpm->run.stale) {
     status = mpsi_mpm_sort(mpm, function);
     mpm->boundaries.outdated = true;
@@ -102,8 +132,12 @@ static mps_status prepare(mps_mpm *mpm, const char *function) {
 }
 
 static void keep_and_gather(mps_mpm *mpm, int64_t b, int32_t worker) {
-  mpsi_mpm_keep_block(mpm, b);
+  if (mpm->undo.on) mpsi_mpm_keep_block(mpm, b);
   mpm->kernels->g2p[mpm->def.geometry][mpm->def.spline - 2](mpm, b, worker);
+}
+
+static void gather_own(mps_mpm *mpm, int64_t b, int32_t worker) {
+  if (!mpm->grid.cells[b].ghost) keep_and_gather(mpm, b, worker);
 }
 
 /* From the particles to the nodes and back (pass.h), Nakamura 6 and Table 2:
@@ -123,6 +157,12 @@ static mps_status move(mps_mpm *mpm, const char *function, double dt) {
                     .update = mpsi_mpm_update_nodes,
                     .between = mpm->contact.bodies > 0 ? mpsi_mpm_find_contact_mass : NULL};
   mpsi_mpm_move_holds(mpm, dt); /* signals --> velocities of walls, boxes */
+  if (mpm->share) {
+    const mps_status status = mpsi_share_send(mpm, function);
+    if (status != MPS_OK) return status;
+    pass.scatter = mpsi_share_scatter;
+    pass.arrive = mpsi_share_receive;
+  }
   if (mpm->contact.cell_pair_count > 0) { /* no particle moves before all depths are known */
     mpsi_mpm_run_pass(mpm, &pass);
     mpsi_mpm_fit_touches(mpm);
@@ -134,7 +174,9 @@ static mps_status move(mps_mpm *mpm, const char *function, double dt) {
     mpm->contact.impulses.kept_count = 0;
   }
   pass.finish = mpsi_mpm_finish_nodes;
-  pass.gather = mpm->undo.on ? keep_and_gather : mpm->kernels->g2p[geometry][spline];
+  pass.gather = mpm->share     ? gather_own
+                : mpm->undo.on ? keep_and_gather
+                               : mpm->kernels->g2p[geometry][spline];
   mpsi_mpm_begin_holds(mpm, dt);
   mpsi_mpm_run_pass(mpm, &pass);
   return MPS_OK;
@@ -143,6 +185,7 @@ static mps_status move(mps_mpm *mpm, const char *function, double dt) {
 mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
   mps_status status = prepare(mpm, function);
   if (status == MPS_OK) status = mpsi_mpm_prepare_undo(mpm, function);
+  if (mpm->share) status = mpsi_share_ready(mpm, function, status);
   if (status != MPS_OK) return status;
   mpm->run.dt = dt;
   warn_about_step(mpm, dt);
@@ -153,9 +196,13 @@ mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
   mpsi_mpm_sum_holds(mpm);                              /* impulses of nodes --> forces of walls */
   mpsi_mpm_drive_particles(mpm);                        /* held particles: v, x */
   if (mpm->p.stencil) mpsi_mpm_apply_laws_by_cell(mpm); /* L, V --> sigma by means of cells */
-  if (mpm->laws.refusal.cells) {                        /* a law of the caller's refuses */
+  bool refused = mpm->laws.refusal.cells != NULL;       /* by a law of the caller's */
+  if (mpm->share && mpm->undo.on && (status = mpsi_share_any(mpm, function, &refused)) != MPS_OK)
+    return status;
+  if (refused) {
     mpsi_mpm_undo(mpm);
-    return report_refusal(mpm, function);
+    status = mpm->laws.refusal.cells ? report_refusal(mpm, function) : MPS_OK;
+    return mpm->share ? mpsi_domain_settle(mpm->share->domain, function, status) : status;
   }
   if (mpm->contact.bodies > 0) mpsi_mpm_update_bodies(mpm); /* contact --> reactions, poses */
   mpsi_energy_end(mpm);
@@ -163,6 +210,6 @@ mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
   mpm->run.time += dt;
   mpm->run.steps++;
   status = mpsi_mpm_collect_block_results(mpm, function); /* bad particles, c + |v|, stale or not */
-  if (!mpm->run.broken) mpsi_mpm_let_go(mpm);             /* through open sides */
+  if (!mpm->run.broken && !mpm->share) mpsi_mpm_let_go(mpm); /* through open sides */
   return status;
 }

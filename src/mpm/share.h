@@ -1,0 +1,70 @@
+/* share.h - the share that one rank has of a body whose particles lie on several ranks.
+ *
+ * A rank has whole blocks of cells with their particles, and besides a list of ghosts: blocks of
+ * other ranks beside its own, whose tiles cover nodes that its own ones cover. In each step a rank
+ * sums its own particles into tiles and sends those of its border, the blocks that are ghosts
+ * elsewhere; whoever shares a block of nodes adds the same tiles to it in the same order, that of
+ * the colours (blocks.h), and updates it by itself. So one message a step is enough, and every node
+ * has the bits that it has on one rank. Blocks of nodes that only ghosts cover have part of their
+ * sums, which nobody reads.
+ *
+ * Sums over blocks of nodes count each where the first block of cells that covers it is.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_SHARE_H
+#define MPSI_MPM_SHARE_H
+
+#include "core/particles_internal.h"
+#include "domain/halo.h"
+#include "room.h"
+
+#include <mps/mpm.h>
+
+typedef struct mpsi_share {
+  mps_domain *domain;
+  mpsi_halo *halo;         /* of tiles; NULL: none yet */
+  bool outdated;           /* the ghosts are not those of the present blocks */
+  int64_t borders, ghosts; /* own blocks that others have copies of; copies here */
+  int32_t *border;         /* numbers of the blocks of cells */
+  int32_t *order;          /* all of them, colour by colour: first those that no ghost goes before, */
+  int64_t early;           /* so many */
+  int32_t most;            /* nodes of the widest part of a tile in use, on all ranks */
+  bool apart;              /* some tile that is sent has forces, in the step being made */
+  int32_t item;            /* bytes of a parcel: a tile on its way */
+  double *out, *in;        /* parcels */
+  bool cancel;             /* a hook has asked to stop, on whatever rank */
+  mps_status lost;         /* of a message in the step being made */
+  mpsi_room border_room, order_room, out_room, in_room;
+} mpsi_share;
+
+/* share.c: leaves a solver that is made, with the whole set on each rank, this rank's share.
+ * `status`: what has become of it so far here. Collective, as all of the following but where they
+ * say so. */
+mps_status mpsi_share_take(mps_mpm *mpm, const char *function, mps_status status,
+                           mpsi_storage **former);
+/* Not collective. */
+void mpsi_share_free(mps_mpm *mpm);
+/* share.c: sorts, and finds the ghosts; the latter alone, where they are outdated. */
+mps_status mpsi_share_sort(mps_mpm *mpm, const char *function);
+mps_status mpsi_share_join(mps_mpm *mpm, const char *function);
+/* share.c: MPS_ERROR_UNSUPPORTED for `what` on several ranks. Not collective. */
+mps_status mpsi_share_refuse(const mps_mpm *mpm, const char *function, const char *what);
+/* Whether a sum over blocks of nodes counts g here. Not collective. */
+bool mpsi_share_counts(const mps_mpm *mpm, int64_t g);
+
+/* share.c: before the blocks are used: sorted or not, ghosts are those of the present ones. */
+mps_status mpsi_share_tidy(mps_mpm *mpm, const char *function, mps_status status);
+/* share.c: whether some rank has it. */
+mps_status mpsi_share_any(mps_mpm *mpm, const char *function, bool *any);
+/* share.c: what the callers of all ranks have edited. */
+mps_status mpsi_share_agree(mps_mpm *mpm, const char *function, mps_status status);
+/* tiles.c: bytes of a parcel at most. Not collective. */
+size_t mpsi_share_parcel(const mps_mpm *mpm);
+/* tiles.c: before a step, all that can fail has been done: the worst of all ranks. */
+mps_status mpsi_share_ready(mps_mpm *mpm, const char *function, mps_status status);
+/* tiles.c: sums the border into tiles and sends them; what has come is there (in a pass). */
+mps_status mpsi_share_send(mps_mpm *mpm, const char *function);
+void mpsi_share_receive(mps_mpm *mpm);
+/* tiles.c: a block of cells to its nodes, whoever has summed it. Not collective. */
+void mpsi_share_scatter(mps_mpm *mpm, int64_t b, int32_t worker);
+
+#endif
