@@ -8,9 +8,9 @@
  * 64 near bodies and walls.
  *
  * The solver works in the fields of the particle set itself (zero copy), and sorts the set when a
- * particle has gone a cell beyond its block: views taken before are then stale (their epoch).
- * It reads `density` (kg/m3, > 0) at creation, and `volume` (of the measure; where 0, the spacing
- * to the power of the dimension times the measure, in axisymmetry times the radius), `velocity`,
+ * particle has gone a cell beyond its block: views taken before are then stale (their epoch). It
+ * reads `density` (kg/m3, > 0) at creation, and `volume` (of the measure; where 0, the spacing to
+ * the power of the dimension times the measure, in axisymmetry times the radius), `velocity`,
  * `velocity_gradient` and `stress` where the set has them; it writes these and `mass` and
  * `position`. Committing `density` or `volume` gives those particles whose value has changed the
  * mass density * volume; the density is that of the present volume. The fields `body_acceleration`
@@ -22,9 +22,10 @@
  * bodies with contact by impulses the spin of `velocity_gradient` is that by which the particle
  * carries the moment of its nodes' momenta (not in axisymmetry).
  *
- * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
- * its results are the same bit for bit for every number of threads.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * Ranks (mps/domain.h; docs/cluster.md) each make the same whole set, of which they keep a share
+ * that changes as particles move; all functions but those that only tell are collective. Thread
+ * rule: one thread at a time per context; a step runs on its executor, with the same bits for every
+ * number of threads and ranks. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_MPM_H
 #define LIBMPS_MPM_H
 
@@ -33,14 +34,12 @@
 #include "io.h"
 #include "kernel.h"
 #include "material.h"
-#include "particles.h"
 #include "signal.h"
 #include "solver.h"
 
 MPS_EXTERN_C_BEGIN
 
 typedef struct mps_mpm mps_mpm;
-
 typedef enum mps_mpm_geometry {
   MPS_MPM_PLANE_STRAIN = 0,
   MPS_MPM_AXISYMMETRIC = 1, /* x = r >= 0, y = z */
@@ -121,13 +120,12 @@ static inline mps_mpm_def mps_mpm_defaults(void) {
 
 /** Creates a solver for the set `particles` (at least one, inside the domain) and sorts it. A set
  *  has at most one solver that moves it. Between steps particles may be added to the set, inside
- * the domain and outside the bodies, and removed from it; a callback is not between steps. New ones
- *  have the lattice's volume, no stress, and the material of creation; the next step is
+ *  the domain and outside the bodies, and removed from it; a callback is not between steps. New
+ *  ones have the lattice's volume, no stress, and the material of creation; the next step is
  *  MPS_ERROR_STATE until their density is committed. Lists of ids pass over particles that are no
- *  more. On an error the set is as before. All particles are of the one
- *  `material`, which is kept alive, until mps_mpm_set_material; its history columns become fields
- * of the set, by their names.
- */
+ *  more. On an error the set is as before. All particles are of the one `material`, which is kept
+ *  alive, until mps_mpm_set_material; its history columns become fields of the set, by their
+ *  names. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_create(mps_context *context, mps_particles *particles,
                                                 mps_material *material, const mps_mpm_def *def,
                                                 mps_mpm **out);
@@ -136,24 +134,24 @@ MPS_API void mps_mpm_destroy(mps_mpm **mpm);
 #define MPS_MPM_MAX_MATERIALS 16
 
 /** Gives the `count` (>= 0) particles of `ids` (NULL with count 0: all) another law, before the
- * first step or between steps; at most 16 different materials in a solver, that of creation with
- * them. The material is kept alive. Its history begins anew in these particles, by the law's
- * initial values; stress, volume, `volume_ratio` and `deformation_gradient` stay as they are (0: 1,
- * and all 0: no deformation). Fields that only this law needs are added, so the set's number of
- * fields grows; `material` tells each particle's law. The Courant limit follows at once; bodies
- * without a penalty of their own press each particle by the modulus of its law. */
+ *  first step or between steps; at most 16 different materials in a solver, that of creation with
+ *  them. The material is kept alive. Its history begins anew in these particles, by the law's
+ *  initial values; stress, volume, `volume_ratio` and `deformation_gradient` stay as they are (0:
+ *  1, and all 0: no deformation). Fields that only this law needs are added, so the set's number
+ *  of fields grows; `material` tells each particle's law. The Courant limit follows at once;
+ *  bodies without a penalty of their own press each particle by the modulus of its law. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material,
                                                       int64_t count, const int64_t *ids);
 
 #define MPS_MPM_MAX_CONTACTS 32
 
 /** Lets the particles touch `body` (`def` NULL: the defaults) until mps_contact_destroy or the end
- * of the solver. `contact`, which may be NULL, receives the caller's handle. The body's own clock
- * goes on from where it is. At most 32 contacts, each with another body, and bodies may not overlap
- * by more than 0.1 cells. MPS_ERROR_ARGUMENT also where the body is thinner than two cells or
- *  particles lie inside it, unless `def` allows. A moving body shortens the steps: its surface goes
- *  at most `courant` cells in one. With MPS_CONTACT_METHOD_PENALTY the log hook is warned of a
- *  contact stiffness k dt^2/m > 6, which chatters. */
+ *  of the solver. `contact`, which may be NULL, receives the caller's handle. The body's own clock
+ *  goes on from where it is. At most 32 contacts, each with another body, and bodies may not
+ *  overlap by more than 0.1 cells. MPS_ERROR_ARGUMENT also where the body is thinner than two
+ *  cells or particles lie inside it, unless `def` allows. A moving body shortens the steps: its
+ *  surface goes at most `courant` cells in one. With MPS_CONTACT_METHOD_PENALTY the log hook is
+ *  warned of a contact stiffness k dt^2/m > 6, which chatters. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body,
                                                      const mps_contact_def *def,
                                                      mps_contact **contact);
@@ -163,7 +161,7 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_get_def_sized(mps_mpm *mpm, mps_mpm_def
 static inline mps_status mps_mpm_get_def(mps_mpm *mpm, mps_mpm_def *out) {
   return mps_mpm_get_def_sized(mpm, out, sizeof *out);
 }
-/** The set and the context; NULL for NULL. Lent: they live at least as long as the solver. */
+/** The set, the context; NULL for NULL. Lent: they live at least as long as the solver. */
 MPS_API mps_particles *mps_mpm_particles(const mps_mpm *mpm);
 MPS_API mps_context *mps_mpm_context(const mps_mpm *mpm);
 /** The weights along each axis, to ask for values, derivatives and moments; lent, NULL for NULL. */
@@ -245,9 +243,9 @@ static inline mps_mpm_boundary_def mps_mpm_boundary_defaults(void) {
 /** Adds a box of nodes or a list of particles; `number` receives the lowest free number from 6. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mpm_boundary_def *def,
                                                       int32_t *number);
-/** Gives boundary `number` another definition, from the next step on; its impulse and work go on. A
- *  side (0 to 5) that the domain does not have is MPS_ERROR_ARGUMENT; an absorbing one finds its R
- *  anew. */
+/** Gives boundary `number` another definition, from the next step on; its impulse and work go on.
+ *  A side (0 to 5) that the domain does not have is MPS_ERROR_ARGUMENT; an absorbing one finds its
+ *  R anew. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t number,
                                                       const mps_mpm_boundary_def *def);
 /** Lets the nodes or particles go; a side becomes FREE. */
@@ -303,15 +301,14 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_set_load(mps_mpm *mpm, int32_t number,
 MPS_API MPS_NODISCARD mps_status mps_mpm_remove_load(mps_mpm *mpm, int32_t number);
 
 /* ---- running --------------------------------------------------------------------------------- */
-
 /** Takes `count` (>= 0) steps, asking the cancel hook after each. A particle that passes a side of
  *  the domain by less than 0.1 cells is put back on it. A step that finds a particle too deep in a
  *  body (MPS_ERROR_DIVERGED), no memory, or that a user's law refuses has not happened: all is as
  *  before it, but perhaps the order of the particles. A step in which a particle leaves the domain
  *  (MPS_ERROR_DIVERGED) is whole and counted; no other is made until the particle is put back
  *  (mps_particles_edit of `position`) or removed, or the solver goes back. One that gives a
- * velocity or a volume that is not finite (MPS_ERROR_DIVERGED) leaves it to be looked at: only
- * mps_mpm_rollback or mps_mpm_restore goes on from there. The record names step and particle. */
+ *  velocity or a volume that is not finite (MPS_ERROR_DIVERGED) leaves it to be looked at: only
+ *  mps_mpm_rollback or mps_mpm_restore goes on from there. The record names step and particle. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_step(mps_mpm *mpm, int64_t count);
 
 /** Called at the start of a run, then every `every` steps and at the end. Return MPS_OK to go on;
@@ -320,8 +317,8 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_step(mps_mpm *mpm, int64_t count);
 typedef mps_status (*mps_mpm_fn)(void *user, mps_mpm *mpm);
 
 /** Steps to t_end (s, not before mps_mpm_time), the last step shortened to end exactly there;
- * `callback` may be NULL, `every` >= 1. The context's progress hook is told about 100 times, the
- * cancel hook asked after each step. */
+ *  `callback` may be NULL, `every` >= 1. The context's progress hook is told about 100 times, the
+ *  cancel hook asked after each step. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every,
                                              mps_mpm_fn callback, void *user);
 
@@ -330,13 +327,12 @@ MPS_API int64_t mps_mpm_steps(const mps_mpm *mpm);
 /** The step (s) that would come next. */
 MPS_API double mps_mpm_dt(const mps_mpm *mpm);
 /** The Courant limit h/(c + v), Nakamura (49), that of viscosity, or h over the speed of the
- * fastest body in contact, of the present state (s), the fraction `courant` not applied. Cheap. */
+ *  fastest body in contact, of the present state (s), the fraction `courant` not applied. Cheap. */
 MPS_API double mps_mpm_limit(const mps_mpm *mpm);
 /** Sets `dt` of the definition: s, > 0, at most the limit; NaN: it follows the limit. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_set_dt(mps_mpm *mpm, double dt);
 
 /* ---- sums ------------------------------------------------------------------------------------ */
-
 /** Sums over the particles (bodies not counted), of the measure. `angular` has the spin that the
  *  velocity gradients carry, m h^2/3 (cubic; quadratic: /4) curl v; it is conserved with full
  *  supports. `kinetic` is that of the particles' velocities alone. `work_boundaries` and
@@ -362,15 +358,15 @@ static inline mps_status mps_mpm_get_usage(mps_mpm *mpm, mps_mpm_usage *out) {
 /* ---- state ----------------------------------------------------------------------------------- */
 
 /** Keeps the state of the solver, its set (fields, order) and its bodies in memory. *snapshot is
- * NULL at first and receives a new one, or one of this solver to be filled again, whose memory is
- * then reused. Needs as much memory as the fields. Between steps only, as in the callback of
+ *  NULL at first and receives a new one, or one of this solver to be filled again, whose memory is
+ *  then reused. Needs as much memory as the fields. Between steps only, as in the callback of
  *  mps_mpm_run. On an error *snapshot is as before. MPS_ERROR_ARGUMENT: a snapshot of another
  *  solver; MPS_ERROR_STATE: a step has failed. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_snapshot(mps_mpm *mpm, mps_snapshot **snapshot);
 /** Goes back to a snapshot, bit for bit; a step that failed is forgotten, particles that came or
  *  went since then go or come back, and ids given since are given again. Not in the snapshot, and
  *  so as they are now: gravity, dt, courant, constants of materials and bodies, signals, loads. On
- * an error nothing has changed. MPS_ERROR_ARGUMENT: of another solver; MPS_ERROR_STATE: bodies,
+ *  an error nothing has changed. MPS_ERROR_ARGUMENT: of another solver; MPS_ERROR_STATE: bodies,
  *  boundaries, loads or materials are not those of the snapshot, the message says which. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot);
 

@@ -117,6 +117,13 @@ mps_status mpsi_particles_keep(mps_particles *particles, const char *function, i
 void mpsi_particles_take_back(mps_particles *particles, mpsi_storage **former);
 void mpsi_storage_drop(mps_particles *particles, mpsi_storage **former);
 
+/* Particles go to other ranks and come from there: room for so many, which may move the columns;
+ * those with a mark leave; and, once the caller has written all columns of the rows from the count
+ * on, others are there. */
+mps_status mpsi_particles_hold_room(mps_particles *particles, const char *function, int64_t count);
+void mpsi_particles_make_way(mps_particles *particles, const uint8_t *gone);
+void mpsi_particles_admit(mps_particles *particles, int64_t arriving);
+
 /* Takes back the fields added since there were `keep` of them; nobody may have borrowed them yet.
  */
 void mpsi_particles_drop_fields(mps_particles *particles, int32_t keep);

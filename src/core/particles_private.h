@@ -72,6 +72,8 @@ void *mpsi_field_allocate(mps_context *context, const mpsi_field *field, int64_t
 /* The field lies in a block of mpsi_field_allocate from now on; nothing is copied or freed. */
 void mpsi_field_place(mpsi_field *field, void *block, int64_t capacity);
 /* Moves a field of `count` particles into a block of mpsi_field_allocate. */
+/* Makes room for so many particles; false: refused, and nothing has changed. */
+bool mpsi_particles_reserve(mps_particles *p, int64_t capacity);
 void mpsi_field_move(mps_context *context, mpsi_field *field, void *block, int64_t count,
                      int64_t capacity);
 

@@ -32,9 +32,8 @@ mps_status mpsi_particles_check_free(const mps_particles *p, const char *functio
       "the particle set is held by %s, which takes no more particles: destroy it first", who);
 }
 
-/* Makes room for `capacity` particles: first all the memory, then the moves, so that a failure
- * leaves every borrowed view valid. */
-static bool reserve(mps_particles *p, int64_t capacity) {
+/* First all the memory, then the moves, so that a failure leaves every borrowed view valid. */
+bool mpsi_particles_reserve(mps_particles *p, int64_t capacity) {
   mps_context *context = p->context;
   void **blocks = mpsi_alloc(context, p->field_count, sizeof *blocks);
   bool good = blocks != NULL;
@@ -72,7 +71,7 @@ mps_status mpsi_particles_extend(mps_particles *p, const char *function, int64_t
   if (needed > p->capacity) {
     /* The first fill gets exactly its size; later growth is by half at least. */
     const int64_t half_more = p->capacity + p->capacity / 2;
-    if (!reserve(p, needed > half_more ? needed : half_more))
+    if (!mpsi_particles_reserve(p, needed > half_more ? needed : half_more))
       return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
                        "could not allocate %d fields of %lld particles", p->field_count,
                        (long long)needed);
@@ -175,6 +174,29 @@ void mpsi_particles_take_out(mps_particles *p, const uint8_t *gone) {
     if (gone[k]) p->index_of[id[k]] = -1;
   close_gaps(p, gone);
   renew_holders(p);
+}
+
+mps_status mpsi_particles_hold_room(mps_particles *p, const char *function, int64_t count) {
+  if (count <= p->capacity || mpsi_particles_reserve(p, count + count / 8)) return MPS_OK;
+  return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
+                   "could not allocate %d fields of %lld particles", p->field_count,
+                   (long long)count);
+}
+
+void mpsi_particles_make_way(mps_particles *p, const uint8_t *gone) {
+  const int64_t *id = p->fields[MPSI_FIELD_ID]->data;
+  for (int64_t k = 0; k < p->count; k++)
+    if (gone[k]) p->index_of[id[k]] = -1;
+  close_gaps(p, gone);
+}
+
+void mpsi_particles_admit(mps_particles *p, int64_t arriving) {
+  const int64_t *id = p->fields[MPSI_FIELD_ID]->data;
+  for (int64_t k = p->count; k < p->count + arriving; k++) p->index_of[id[k]] = k;
+  p->count += arriving;
+  p->epoch++;
+  for (const mpsi_holder *h = p->holders; h; h = h->next)
+    if (h->renew && h->kind == MPSI_USE_LOOK) h->renew(h->self);
 }
 
 static mps_status ask_holders(const mps_particles *p, const char *function, int64_t count,

@@ -1,7 +1,7 @@
 /* boundaries.c - which boundaries the caller has: the sides of the domain, boxes of nodes, lists of
  * particles; their definitions and reactions. At work: walls.c, absorb.c.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm_private.h"
+#include "particles.h"
 
 #include "core/retain.h"
 
@@ -76,6 +76,8 @@ static mps_status check_side(mps_mpm *mpm, const char *function, int32_t number,
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "ids, id_count (%lld) and dofs (%u) are not for sides of the domain",
                      (long long)def->id_count, def->dofs);
+  if (mpm->share && def->kind == MPS_MPM_BOUNDARY_ABSORBING)
+    return mpsi_share_refuse(mpm, function, "an absorbing side");
   if (mpm->standard && def->kind == MPS_MPM_BOUNDARY_ABSORBING)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "kind is 3 (absorbing), which the standard method does not allow: its splines "
@@ -117,13 +119,14 @@ static mps_status find_box(mps_mpm *mpm, const char *function, const mps_mpm_bou
 }
 
 static mps_status check_ids(mps_mpm *mpm, const char *function, const mps_mpm_boundary_def *def) {
+  const int64_t most = mpm->share ? MPSI_MPM_MOST_PARTICLES : mpm->p.count;
   if ((def->id_count > 0) != (def->ids != NULL) || def->id_count < 0 ||
-      def->id_count > mpm->p.count)
+      def->id_count > most)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "id_count is %lld with ids %s, allowed are 1 to %lld particles, or 0 and NULL",
                      (long long)def->id_count, def->ids ? "given" : "NULL",
-                     (long long)mpm->p.count);
-  return mpsi_particles_check_ids(mpm->particles, function, def->id_count, def->ids);
+                     (long long)most);
+  return MPS_OK;
 }
 
 static mps_status check_prescribed(mps_mpm *mpm, const char *function,
@@ -139,7 +142,7 @@ static mps_status check_prescribed(mps_mpm *mpm, const char *function,
   mps_status status = check_numbers(mpm, function, def);
   if (status == MPS_OK) status = check_ids(mpm, function, def);
   if (status == MPS_OK && !def->ids) status = find_box(mpm, function, def, out);
-  return status;
+  return mpsi_share_check_ids(mpm, function, status, def->id_count, def->ids);
 }
 
 /* ---- putting in place ------------------------------------------------------------------------ */
@@ -209,12 +212,18 @@ static mps_status take_prescribed(mps_mpm *mpm, const char *function,
                                   const mps_mpm_boundary_def *def, mpsi_hold *hold) {
   mpsi_hold made = {.kind = MPS_MPM_BOUNDARY_PRESCRIBED,
                     .dofs = def->dofs ? def->dofs : MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z};
-  const mps_status status = check_prescribed(mpm, function, def, &made);
-  if (status != MPS_OK) return status;
-  if (def->ids) {
+  mps_status status = check_prescribed(mpm, function, def, &made);
+  if (status == MPS_OK && def->ids) {
     made.ids = mpsi_alloc(mpm->context, def->id_count, sizeof *made.ids);
     if (!made.ids)
-      return mpsi_fail_memory(mpm->context, function, (size_t)def->id_count * sizeof *made.ids);
+      status = mpsi_fail_memory(mpm->context, function, (size_t)def->id_count * sizeof *made.ids);
+  }
+  status = mpsi_share_settle(mpm, function, status);
+  if (status != MPS_OK) {
+    mpsi_free(mpm->context, made.ids);
+    return status;
+  }
+  if (def->ids) {
     memcpy(made.ids, def->ids, (size_t)def->id_count * sizeof *made.ids);
     made.id_count = def->id_count;
   }
@@ -314,7 +323,8 @@ mps_status mps_mpm_get_reaction_sized(mps_mpm *mpm, int32_t number, mps_reaction
                                       size_t size) {
   static const char function[] = "mps_mpm_get_reaction";
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_status status = find(mpm, function, number);
+  mps_status status = find(mpm, function, number);
+  if (status == MPS_OK) status = mpsi_share_refuse(mpm, function, "a boundary's reaction");
   if (status != MPS_OK) return status;
   const mps_reaction *r = &mpm->boundaries.hold[number].reaction;
   return mpsi_out_write(mpm->context, function, out, size, r, sizeof *r);

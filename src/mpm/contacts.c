@@ -186,6 +186,7 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
   mps_contact *contact = NULL;
   if (out) *out = NULL;
   mps_status status = mpsi_mpm_between_steps(mpm, __func__);
+  if (status == MPS_OK) status = mpsi_share_refuse(mpm, __func__, "contact with bodies");
   if (status == MPS_OK) status = mpsi_particles_ready(mpm->particles, __func__);
   if (status == MPS_OK) status = check_body(mpm, __func__, body);
   if (status == MPS_OK) status = check_overlap(mpm, __func__, body);

@@ -84,17 +84,23 @@ void mpsi_mpm_drop_loads(mps_mpm *mpm) {
   mpsi_free(mpm->context, mpm->loads.traction);
 }
 
-static mps_status check_list(mps_mpm *mpm, const char *function, const mps_mpm_load_def *def) {
-  if (def->id_count < 1 || def->id_count > mpm->p.count || !def->ids)
+static mps_status check_numbers(mps_mpm *mpm, const char *function, const mps_mpm_load_def *def) {
+  const int64_t most = mpm->share ? MPSI_MPM_MOST_PARTICLES : mpm->p.count;
+  if (def->id_count < 1 || def->id_count > most || !def->ids)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "id_count is %lld and ids %s, allowed are 1 to %lld particles",
-                     (long long)def->id_count, def->ids ? "given" : "NULL",
-                     (long long)mpm->p.count);
+                     (long long)def->id_count, def->ids ? "given" : "NULL", (long long)most);
   for (int64_t k = 0; def->area && k < def->id_count; k++)
     if (!isfinite(def->area[k]))
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "area[%lld] is %g m2, must be finite", (long long)k, def->area[k]);
-  return mpsi_particles_check_ids(mpm->particles, function, def->id_count, def->ids);
+  return MPS_OK;
+}
+
+static mps_status check_list(mps_mpm *mpm, const char *function, mps_status status,
+                             const mps_mpm_load_def *def) {
+  if (status == MPS_OK) status = check_numbers(mpm, function, def);
+  return mpsi_share_check_ids(mpm, function, status, def->id_count, def->ids);
 }
 
 static mps_status read_def(mps_mpm *mpm, const char *function, const mps_mpm_load_def *user,
@@ -137,28 +143,38 @@ static mps_status copy_list(mps_mpm *mpm, const char *function, const mps_mpm_lo
   return MPS_OK;
 }
 
+/* The lowest free number, with a place in the list. */
+static mps_status find_number(mps_mpm *mpm, const char *function, int32_t *number) {
+  int32_t at = 0;
+  while (at < mpm->loads.count && mpm->loads.traction[at].count > 0) at++;
+  *number = at;
+  if (at < mpm->loads.count) return MPS_OK;
+  void *list = mpm->loads.traction;
+  if (!mpsi_grow(mpm->context, &list, at, at + 1, sizeof *mpm->loads.traction))
+    return mpsi_fail_memory(mpm->context, function, sizeof *mpm->loads.traction);
+  mpm->loads.traction = list;
+  mpm->loads.count++;
+  return MPS_OK;
+}
+
 mps_status mps_mpm_add_load(mps_mpm *mpm, const mps_mpm_load_def *user, int32_t *number) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_mpm_load_def def;
+  mpsi_traction made = {.count = 0};
+  int32_t at = 0;
   mps_status status = mpsi_mpm_between_steps(mpm, __func__);
   if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
   if (status == MPS_OK && !number)
     status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "number is NULL");
-  if (status == MPS_OK) status = check_list(mpm, __func__, &def);
+  status = check_list(mpm, __func__, status, &def);
   if (status == MPS_OK) status = mpsi_mpm_make_forces(mpm, __func__);
-  if (status != MPS_OK) return status;
-  mpsi_traction made = {.count = 0};
-  int32_t at = 0;
-  while (at < mpm->loads.count && mpm->loads.traction[at].count > 0) at++;
-  if (at == mpm->loads.count) {
-    void *list = mpm->loads.traction;
-    if (!mpsi_grow(mpm->context, &list, at, at + 1, sizeof *mpm->loads.traction))
-      return mpsi_fail_memory(mpm->context, __func__, sizeof *mpm->loads.traction);
-    mpm->loads.traction = list;
-    mpm->loads.count++;
+  if (status == MPS_OK) status = copy_list(mpm, __func__, &def, &made);
+  if (status == MPS_OK) status = find_number(mpm, __func__, &at);
+  status = mpsi_share_settle(mpm, __func__, status);
+  if (status != MPS_OK) {
+    drop(mpm, &made);
+    return status;
   }
-  status = copy_list(mpm, __func__, &def, &made);
-  if (status != MPS_OK) return status;
   take_traction(&made, &def);
   mpm->loads.traction[at] = made;
   *number = at;
@@ -183,9 +199,13 @@ mps_status mps_mpm_set_load(mps_mpm *mpm, int32_t number, const mps_mpm_load_def
   mpsi_traction *load = &mpm->loads.traction[number];
   if (def.ids || def.id_count != 0 || def.area) {
     mpsi_traction list = {.count = 0};
-    status = check_list(mpm, __func__, &def);
+    status = check_list(mpm, __func__, status, &def);
     if (status == MPS_OK) status = copy_list(mpm, __func__, &def, &list);
-    if (status != MPS_OK) return status;
+    status = mpsi_share_settle(mpm, __func__, status);
+    if (status != MPS_OK) {
+      drop(mpm, &list);
+      return status;
+    }
     mpsi_free(mpm->context, load->id);
     mpsi_free(mpm->context, load->area);
     load->count = list.count, load->id = list.id, load->area = list.area;

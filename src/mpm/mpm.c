@@ -359,7 +359,7 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
     status = mpsi_particles_back_up(particles, __func__, &backup);
   status = mpsi_domain_settle(def.domain, __func__, status);
   if (status != MPS_OK) {
-    mpsi_backup_drop(particles, &backup);
+    if (backup.memory) mpsi_backup_drop(particles, &backup);
     mpsi_free(context, mpm);
     return status;
   }

@@ -387,7 +387,8 @@ static mpsi_state_of state_of(mps_mpm *mpm) {
 
 /* The lists that are kept must be of the present boundaries. */
 static mps_status make_whole(mps_mpm *mpm, const char *function) {
-  const mps_status status = mpm->run.broken ? MPS_OK : mpsi_mpm_tidy(mpm, function);
+  mps_status status = mpsi_share_refuse(mpm, function, "a copy of the state");
+  if (status == MPS_OK && !mpm->run.broken) status = mpsi_mpm_tidy(mpm, function);
   if (status != MPS_OK) return status;
   if (!mpm->run.broken) return mpsi_mpm_update_holds(mpm, function);
   return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
@@ -417,6 +418,8 @@ mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *in
 
 mps_status mps_mpm_restore(mps_mpm *mpm, const char *path, mps_checkpoint *info) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
+  const mps_status refused = mpsi_share_refuse(mpm, __func__, "a copy of the state");
+  if (refused != MPS_OK) return refused;
   const mpsi_state_of of = state_of(mpm);
   return mpsi_checkpoint_restore(&of, __func__, path, info);
 }

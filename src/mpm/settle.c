@@ -169,7 +169,8 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
   mps_mpm_settle_def def;
   mps_mpm_settled now = {0};
   motions kept;
-  mps_status status = mpsi_mpm_ready(mpm, function);
+  mps_status status = mpsi_share_refuse(mpm, function, "settling");
+  if (status == MPS_OK) status = mpsi_mpm_ready(mpm, function);
   if (status == MPS_OK) status = read_def(mpm, function, user, &def);
   if (status == MPS_OK) status = check_bodies(mpm, function);
   if (status != MPS_OK) return status;

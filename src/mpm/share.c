@@ -1,6 +1,6 @@
 /* share.c - which blocks of cells a rank has, and which are its ghosts: see share.h.
  *
- * All ranks begin with the same set, sort it in the same way and cut it between blocks. Ghosts
+ * All ranks begin with the same set, sort it in the same way and keep their blocks of it. Ghosts
  * follow from the blocks that there are: each rank tells those ranks whose blocks may be beside its
  * own of these. SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
@@ -315,49 +315,50 @@ mps_status mpsi_share_join(mps_mpm *mpm, const char *function) {
 }
 
 mps_status mpsi_share_sort(mps_mpm *mpm, const char *function) {
+  bool moved = false;
   mpm->share->outdated = true;
-  const mps_status status =
-      mpsi_domain_settle(mpm->share->domain, function, mpsi_mpm_sort_cells(mpm, function));
+  mps_status status = mpsi_mpm_sort_cells(mpm, function);
+  status = mpsi_share_migrate(mpm, function, status, &moved);
+  if (status != MPS_OK) {
+    mpm->run.stale = true;
+    return status;
+  }
+  if (moved) status = mpsi_mpm_sort_cells(mpm, function);
+  status = mpsi_domain_settle(mpm->share->domain, function, status);
+  if (status != MPS_OK) mpm->run.stale = true;
   return status == MPS_OK ? mpsi_share_join(mpm, function) : status;
 }
 
 /* ---- the first cut --------------------------------------------------------------------------- */
 
-/* The block that rank `rank` begins with: ranks have about as many particles each. */
-static int64_t first_block(const mps_mpm *mpm, int64_t rank, int64_t ranks) {
-  const int64_t particles = mpm->p.count * rank / ranks;
-  int64_t low = 0, high = mpm->grid.cell_count;
-  while (low < high) {
-    const int64_t middle = low + (high - low) / 2;
-    if (mpm->grid.cells[middle].begin < particles)
-      low = middle + 1;
-    else
-      high = middle;
+/* The rows of own blocks, which come to lie one behind the other. */
+static int64_t take_blocks(mps_mpm *mpm, int64_t *rows) {
+  mpsi_cell_block *cells = mpm->grid.cells;
+  const int32_t rank = mps_domain_rank(mpm->share->domain);
+  int64_t blocks = 0, count = 0;
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
+    if (mpsi_share_owner(mpm, cells[b].at) != rank) continue;
+    const int64_t begin = count;
+    for (int64_t k = cells[b].begin; k < cells[b].end; k++) rows[count++] = k;
+    cells[blocks] = cells[b];
+    cells[blocks].begin = begin;
+    cells[blocks++].end = count;
   }
-  return low;
+  mpm->grid.cell_count = blocks;
+  return count;
 }
 
 static mps_status keep_own(mps_mpm *mpm, const char *function, mpsi_storage **former) {
-  const int64_t rank = mps_domain_rank(mpm->share->domain);
-  const int64_t ranks = mps_domain_size(mpm->share->domain), whole = mpm->p.count;
-  const int64_t first = first_block(mpm, rank, ranks), last = first_block(mpm, rank + 1, ranks);
-  mpsi_cell_block *cells = mpm->grid.cells;
-  const int64_t begin = first < mpm->grid.cell_count ? cells[first].begin : whole;
-  const int64_t end = last < mpm->grid.cell_count ? cells[last].begin : whole;
-  int64_t *rows = mpsi_alloc(mpm->context, end - begin, sizeof *rows);
-  if (!rows) return mpsi_fail_memory(mpm->context, function, (size_t)(end - begin) * sizeof *rows);
-  for (int64_t k = begin; k < end; k++) rows[k - begin] = k;
-  const mps_status status = mpsi_particles_keep(mpm->particles, function, end - begin, rows,
-                                                end - begin, former);
+  int64_t *rows = mpsi_alloc(mpm->context, mpm->p.count, sizeof *rows);
+  if (!rows) return mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count * sizeof *rows);
+  const int64_t count = take_blocks(mpm, rows);
+  const mps_status status =
+      mpsi_particles_keep(mpm->particles, function, count, rows, count, former);
   mpsi_free(mpm->context, rows);
   if (status != MPS_OK) return status;
-  mpm->grid.cell_count = last - first;
-  memmove(cells, cells + first, (size_t)(last - first) * sizeof *cells);
-  for (int64_t b = 0; b < last - first; b++) cells[b].begin -= begin, cells[b].end -= begin;
-  mpm->run.edited = mpm->run.stale = false; /* the order is that of the sort */
-  if (mpsi_mpm_shrink_room(mpm, end - begin)) return MPS_OK;
-  return mpsi_fail_memory(mpm->context, function,
-                          (size_t)(end - begin) * 2 * sizeof *mpm->grid.radix);
+  mpsi_mpm_bind(mpm);
+  if (mpsi_mpm_shrink_room(mpm, count)) return MPS_OK;
+  return mpsi_fail_memory(mpm->context, function, (size_t)count * 2 * sizeof *mpm->grid.radix);
 }
 
 /* Are all ranks given the same? */
@@ -388,7 +389,9 @@ mps_status mpsi_share_take(mps_mpm *mpm, const char *function, mps_status status
   status = compare_ranks(mpm, function, status);
   if (status != MPS_OK) return status;
   *mpm->share = (mpsi_share){.domain = mpsi_domain_retain(domain), .outdated = true};
-  status = mpsi_domain_settle(domain, function, keep_own(mpm, function, former));
+  status = mpsi_share_cut(mpm, function, true);
+  if (status == MPS_OK)
+    status = mpsi_domain_settle(domain, function, keep_own(mpm, function, former));
   return status == MPS_OK ? mpsi_share_join(mpm, function) : status;
 }
 
@@ -397,6 +400,7 @@ void mpsi_share_free(mps_mpm *mpm) {
   mpm->share = NULL;
   if (!share) return;
   mpsi_halo_destroy(mpm->context, &share->halo);
+  mpsi_free(mpm->context, share->first);
   mpsi_free(mpm->context, share->border_room.item);
   mpsi_free(mpm->context, share->order_room.item);
   mpsi_free(mpm->context, share->out_room.item);
@@ -430,4 +434,22 @@ mps_status mpsi_share_tidy(mps_mpm *mpm, const char *function, mps_status status
   if (status != MPS_OK || mpm->run.stale) return status;
   mpm->boundaries.outdated = true;
   return mpsi_share_join(mpm, function);
+}
+
+mps_status mpsi_share_settle(mps_mpm *mpm, const char *function, mps_status status) {
+  return mpm->share ? mpsi_domain_settle(mpm->share->domain, function, status) : status;
+}
+
+mps_status mpsi_share_check_ids(mps_mpm *mpm, const char *function, mps_status status,
+                                int64_t count, const int64_t *ids) {
+  int64_t known = 0;
+  status = mpsi_share_settle(mpm, function, status);
+  if (status != MPS_OK) return status;
+  if (!mpm->share) return mpsi_particles_check_ids(mpm->particles, function, count, ids);
+  for (int64_t k = 0; k < count; k++) known += mps_particles_index(mpm->particles, ids[k]) >= 0;
+  status = mpsi_domain_sum(mpm->share->domain, function, 1, &known);
+  if (status != MPS_OK || known == count) return status;
+  return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                   "of %lld ids %lld are of particles of the set on any rank", (long long)count,
+                   (long long)known);
 }

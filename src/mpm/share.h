@@ -31,6 +31,9 @@ typedef struct mpsi_share {
   bool apart;              /* some tile that is sent has forces, in the step being made */
   int32_t item;            /* bytes of a parcel: a tile on its way */
   double *out, *in;        /* parcels */
+  int64_t *first;          /* of each rank: the first key on the curve of its blocks (curve.h) */
+  int32_t corner[3];       /* block at the curve's lowest corner */
+  double heaviest;         /* particles of the rank that had most, after the last cut */
   bool cancel;             /* a hook has asked to stop, on whatever rank */
   mps_status lost;         /* of a message in the step being made */
   mpsi_room border_room, order_room, out_room, in_room;
@@ -43,9 +46,22 @@ mps_status mpsi_share_take(mps_mpm *mpm, const char *function, mps_status status
                            mpsi_storage **former);
 /* Not collective. */
 void mpsi_share_free(mps_mpm *mpm);
+/* owners.c: cuts the curve anew for blocks in grid.cells, which all ranks or (`whole`) each has all
+ * of; the owner of a block (not collective). */
+mps_status mpsi_share_cut(mps_mpm *mpm, const char *function, bool whole);
+int32_t mpsi_share_owner(const mps_mpm *mpm, const int32_t *at);
+/* owners.c: particles of blocks of cells that are not this rank's go to their owners; `moved`
+ * where some have gone or come. */
+mps_status mpsi_share_migrate(mps_mpm *mpm, const char *function, mps_status status, bool *moved);
 /* share.c: sorts, and finds the ghosts; the latter alone, where they are outdated. */
 mps_status mpsi_share_sort(mps_mpm *mpm, const char *function);
 mps_status mpsi_share_join(mps_mpm *mpm, const char *function);
+/* share.c: what has become of all ranks, or of the only one. */
+mps_status mpsi_share_settle(mps_mpm *mpm, const char *function, mps_status status);
+/* share.c: MPS_ERROR_ARGUMENT unless these are particles of the set, on whatever rank; what has
+ * become of all before, `status` here, comes first. */
+mps_status mpsi_share_check_ids(mps_mpm *mpm, const char *function, mps_status status,
+                                int64_t count, const int64_t *ids);
 /* share.c: MPS_ERROR_UNSUPPORTED for `what` on several ranks. Not collective. */
 mps_status mpsi_share_refuse(const mps_mpm *mpm, const char *function, const char *what);
 /* Whether a sum over blocks of nodes counts g here. Not collective. */

@@ -63,6 +63,8 @@ static void sum_particles(const mps_mpm *mpm, mps_totals *t) {
 
 mps_status mps_mpm_get_totals_sized(mps_mpm *mpm, mps_totals *out, size_t size) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
+  const mps_status refused = mpsi_share_refuse(mpm, "mps_mpm_get_totals", "the totals");
+  if (refused != MPS_OK) return refused;
   const mpsi_energy_sums *e = &mpm->energy.sum;
   mps_totals t = {.work_boundaries = e->boundaries, .work_bodies = e->bodies};
   sum_particles(mpm, &t);
