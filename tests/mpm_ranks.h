@@ -45,12 +45,13 @@ static inline mps_status make_set(mps_context *own, int what, mps_particles **ou
   TRY(mps_particles_fill_box(*out, lo, hi, NULL));
   TRY(mps_particles_set(*out, "density", 0, 1800.0));
   TRY(mps_particles_set(*out, "velocity", 0, 0.0));
-  mps_view x, v;
+  mps_view x;
+  mps_edit v;
   TRY(mps_particles_view(*out, "position", &x));
   TRY(mps_particles_edit(*out, "velocity", &v));
   for (int64_t k = 0; status == MPS_OK && k < mps_particles_count(*out); k++)
     for (int c = 0; c < 2; c++)
-      *mps_view_f64(&v, k, c) = c == 0 ? 6.0 + 2.0 * sin(5.0 * *mps_view_f64(&x, k, 1))
+      *mps_edit_f64(&v, k, c) = c == 0 ? 6.0 + 2.0 * sin(5.0 * *mps_view_f64(&x, k, 1))
                                        : 1.0 + 2.0 * cos(4.0 * *mps_view_f64(&x, k, 0));
   TRY(mps_particles_commit(*out, &v));
   return status;
