@@ -33,7 +33,7 @@
   X(mps_material_block, mps_material_block_init, "0.2", 312) \
   X(mps_mohr_coulomb_def, mps_mohr_coulomb_def_init, "0.2", 56) \
   X(mps_mpm_boundary_def, mps_mpm_boundary_def_init, "0.2", 144) \
-  X(mps_mpm_def, mps_mpm_def_init, "0.2", 184) \
+  X(mps_mpm_def, mps_mpm_def_init, "0.2", 192) \
   X(mps_mpm_load_def, mps_mpm_load_def_init, "0.2", 104) \
   X(mps_mpm_settle_def, mps_mpm_settle_def_init, "0.2", 24) \
   X(mps_neighbours_def, mps_neighbours_def_init, "0.2", 24) \
