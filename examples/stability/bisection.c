@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define WIDENINGS 40 /* tries to move a first bound outwards */
-enum { COLUMNS = 6 };
+#define WIDENINGS 40  /* tries to move a first bound outwards */
+enum { COLUMNS = 6 }; /* of the initial state */
 
 typedef struct search {
   mps_dynamics *dynamics;
@@ -23,22 +23,19 @@ typedef struct search {
 
 /* Copies the initial state from the fields, or back to them. */
 static mps_status copy_state(const search *s, bool back) {
-  static const struct {
-    const char *field;
-    int64_t component;
-  } columns[COLUMNS] = {{"displacement", 0}, {"displacement", 1}, {"rotation", 0},
-                        {"velocity", 0},     {"velocity", 1},     {"spin", 0}};
-  mps_particles *particles = mps_dynamics_particles(s->dynamics);
-  for (int c = 0; c < COLUMNS; c++) {
+  static const char *const names[] = {"displacement", "rotation", "velocity", "spin"};
+  mps_particles *set = mps_dynamics_particles(s->dynamics);
+  const size_t column = (size_t)mps_particles_count(set) * sizeof(double);
+  char *kept = (char *)s->initial;
+  for (int f = 0; f < 4; f++) {
     mps_edit field;
-    mps_status status = mps_particles_edit(particles, columns[c].field, &field);
+    mps_status status = mps_particles_edit(set, names[f], &field);
     if (status != MPS_OK) return status;
-    const int64_t count = field.view.shape[0];
-    double *kept = s->initial + c * count;
-    double *now = mps_edit_f64(&field, 0, columns[c].component);
-    memcpy(back ? now : kept, back ? kept : now, (size_t)count * sizeof(double));
-    status =
-        back ? mps_particles_commit(particles, &field) : mps_particles_abandon(particles, &field);
+    for (int64_t c = 0; c < field.view.shape[1]; c++, kept += column) {
+      void *now = mps_edit_f64(&field, 0, c);
+      memcpy(back ? now : kept, back ? kept : now, column);
+    }
+    status = back ? mps_particles_commit(set, &field) : mps_particles_abandon(set, &field);
     if (status != MPS_OK) return status;
   }
   return MPS_OK;

@@ -147,6 +147,7 @@ typedef struct mps_body_motion {
   double velocity[3]; /* m/s, default 0 */
   double spin[3];     /* rad/s, in space, default 0 */
 } mps_body_motion;
+/** Fills `motion` (of `size` bytes) with the defaults. */
 MPS_API mps_status mps_body_motion_init(mps_body_motion *motion, size_t size);
 static inline mps_body_motion mps_body_motion_defaults(void) {
   mps_body_motion motion;
@@ -178,6 +179,7 @@ typedef struct mps_body_state {
   double velocity[3];    /* m/s, of the reference point */
   double spin[3];        /* rad/s, in space */
 } mps_body_state;
+/** Where the body is now and how it moves. */
 MPS_API MPS_NODISCARD mps_status mps_body_get_state_sized(mps_body *body, mps_body_state *out,
                                                           size_t size);
 static inline mps_status mps_body_get_state(mps_body *body, mps_body_state *out) {
@@ -196,6 +198,7 @@ typedef struct mps_body_totals {
   double dissipated;    /* J, since creation: damping, and in 3D the small error of the rotation's
                            splitting, of either sign */
 } mps_body_totals;
+/** The sums of the present state and since creation. */
 MPS_API MPS_NODISCARD mps_status mps_body_get_totals_sized(mps_body *body, mps_body_totals *out,
                                                            size_t size);
 static inline mps_status mps_body_get_totals(mps_body *body, mps_body_totals *out) {
@@ -222,7 +225,8 @@ MPS_API MPS_NODISCARD mps_status mps_body_distance(mps_body *body, int64_t count
  * the part that named it last. At most 15 parts; names are as of fields. */
 MPS_API MPS_NODISCARD mps_status mps_body_name_part(mps_body *body, const char *name, int64_t first,
                                                     int64_t count, int32_t *part);
-MPS_API int32_t mps_body_part_count(const mps_body *body); /* "rest" included */
+/** How many parts the surface has, "rest" included; 0 for NULL. */
+MPS_API int32_t mps_body_part_count(const mps_body *body);
 /** Number of the part `name`, or -1. */
 MPS_API int32_t mps_body_part(const mps_body *body, const char *name);
 

@@ -114,6 +114,7 @@ MPS_API void mps_context_destroy(mps_context **context);
 /** The record of the last failed call; never NULL for a valid context. Owned by the context,
  *  overwritten by the next failure. */
 MPS_API const mps_error *mps_context_error(const mps_context *context);
+/** Empties the record: status MPS_OK, no message. */
 MPS_API void mps_context_clear_error(mps_context *context);
 
 /** Replace a hook and its `user`; NULL: none. Not while a function of the context or of its objects

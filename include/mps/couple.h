@@ -56,6 +56,8 @@ static inline mps_coupling_def mps_coupling_defaults(void) {
   return def;
 }
 
+/** Creates the coupling of one pair of codes, which keeps the context alive. MPS_ERROR_ARGUMENT
+ * names the member of `def` that is out of range. */
 MPS_API MPS_NODISCARD mps_status mps_coupling_create(mps_context *context,
                                                      const mps_coupling_def *def,
                                                      mps_coupling **out);
@@ -84,6 +86,7 @@ typedef struct mps_coupling_report {
   int32_t columns;     /* differences kept */
   double residual;     /* |H - x|/|H| of the last answer */
 } mps_coupling_report;
+/** What the steps so far have taken. */
 MPS_API MPS_NODISCARD mps_status mps_coupling_get_report_sized(const mps_coupling *coupling,
                                                                mps_coupling_report *out,
                                                                size_t size);

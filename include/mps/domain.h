@@ -83,8 +83,10 @@ MPS_API MPS_NODISCARD mps_status mps_domain_create(mps_context *context, const m
  *  goes with the last of them. */
 MPS_API void mps_domain_destroy(mps_domain **domain);
 
-MPS_API int32_t mps_domain_rank(const mps_domain *domain); /* -1 of NULL */
-MPS_API int32_t mps_domain_size(const mps_domain *domain); /* 0 of NULL */
+/** This rank, 0 to size - 1; -1 for NULL. */
+MPS_API int32_t mps_domain_rank(const mps_domain *domain);
+/** How many ranks compute the model; 0 for NULL. */
+MPS_API int32_t mps_domain_size(const mps_domain *domain);
 
 /** Makes the error of one rank that of all: a program calls it where ranks go different ways, such
  *  as after rank 0 has written a file. Collective: returns MPS_OK where every rank gives that, and

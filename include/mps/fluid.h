@@ -63,6 +63,7 @@ static inline mps_fluid_def mps_fluid_defaults(void) {
  *  is out of range; then nothing has changed. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
                                                   const mps_fluid_def *def, mps_fluid **out);
+/** Destroys and nulls; accepts NULL. Lets go of the set, bodies and signals. */
 MPS_API void mps_fluid_destroy(mps_fluid **fluid);
 
 /** What the solver was made from, with the level that it found and the present dt. */
@@ -172,6 +173,7 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_get_levels(mps_fluid *fluid, int64_t 
  * another shape; a particle inside or closer than .3 l0. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_add_body(mps_fluid *fluid, mps_body *body, int32_t kind,
                                                     int32_t *number);
+/** Takes body `number` out of the water, between steps; MPS_ERROR_ARGUMENT: there is none. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_remove_body(mps_fluid *fluid, int32_t number);
 /** `floats` 1: from now on the fluid moves the body in each of its steps, as the water's pressure
  *  and the body's own mass, gravity and load (mps_body_load) do; mps_body_get_reaction then has
@@ -275,6 +277,8 @@ typedef mps_status (*mps_fluid_fn)(void *user, mps_fluid *fluid);
 MPS_API MPS_NODISCARD mps_status mps_fluid_run(mps_fluid *fluid, double t_end, int64_t every,
                                                mps_fluid_fn callback, void *user);
 
+/* Questions; 0 or NULL for NULL. */
+
 MPS_API double mps_fluid_time(const mps_fluid *fluid); /* s */
 MPS_API int64_t mps_fluid_steps(const mps_fluid *fluid);
 MPS_API double mps_fluid_dt(const mps_fluid *fluid); /* s, of the next step */
@@ -306,6 +310,7 @@ typedef struct mps_fluid_report {
   int64_t pushed;         /* particles put back on a wall's inner side (within .1 l0) */
   int64_t bytes;          /* memory besides the fields */
 } mps_fluid_report;
+/** What the last step has done and what all have taken. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_report_sized(const mps_fluid *fluid,
                                                             mps_fluid_report *out, size_t size);
 static inline mps_status mps_fluid_get_report(const mps_fluid *fluid, mps_fluid_report *out) {

@@ -24,6 +24,7 @@ typedef struct mps_grid_info {
   int32_t dim;      /* 2 or 3 */
   int32_t spline;   /* degree of the weights, 2 or 3 */
 } mps_grid_info;
+/** Where the nodes lie. */
 MPS_API MPS_NODISCARD mps_status mps_grid_get_info_sized(mps_grid *grid, mps_grid_info *out,
                                                          size_t size);
 static inline mps_status mps_grid_get_info(mps_grid *grid, mps_grid_info *out) {

@@ -59,7 +59,7 @@ MPS_API int64_t mps_recorder_frames(const mps_recorder *recorder);
 /** Closes the file, has the disk confirm it, destroys and nulls, even on error; accepts NULL.
  *  MPS_ERROR_IO: something of the series did not reach the disk. */
 MPS_API MPS_NODISCARD mps_status mps_recorder_close(mps_recorder **recorder);
-/** The same for who does not want to know of errors. */
+/** Closes and destroys, ignoring errors; accepts NULL. */
 MPS_API void mps_recorder_destroy(mps_recorder **recorder);
 
 /* ---- checkpoints -----------------------------------------------------------------------------
@@ -81,6 +81,7 @@ typedef struct mps_checkpoint {
   int64_t user_bytes; /* >= 0; reading writes how many the file has */
 } mps_checkpoint;
 
+/** Fills `info` (of `size` bytes) with the defaults. */
 MPS_API mps_status mps_checkpoint_init(mps_checkpoint *info, size_t size);
 static inline mps_checkpoint mps_checkpoint_defaults(void) {
   mps_checkpoint info;

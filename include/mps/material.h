@@ -52,6 +52,7 @@ typedef struct mps_material_block {
   int64_t *refused; /* index within the block of the particle that is why; -1 on entry */
 } mps_material_block;
 
+/** Fills `block` (of `size` bytes) with NULL, 0 and dim 2. */
 MPS_API mps_status mps_material_block_init(mps_material_block *block, size_t size);
 static inline mps_material_block mps_material_block_defaults(void) {
   mps_material_block block;
@@ -222,6 +223,8 @@ MPS_MATERIAL_DEFAULTS(newtonian)
 MPS_MATERIAL_DEFAULTS(user_law)
 MPS_MATERIAL_DEFAULTS(umat)
 
+/** The laws of the definitions above. Constants are copied. MPS_ERROR_ARGUMENT names the constant
+ * that is out of range. */
 MPS_API MPS_NODISCARD mps_status mps_material_von_mises(mps_context *context,
                                                         const mps_von_mises_def *def,
                                                         mps_material **out);
@@ -257,6 +260,7 @@ MPS_API const char *mps_material_name(const mps_material *material);
 MPS_API double mps_material_wave_modulus(const mps_material *material);
 /** Non-zero: the law works on the deformation gradient, not on the rate. */
 MPS_API int32_t mps_material_needs_deformation(const mps_material *material);
+/** How many history columns the law has; 0 for NULL. */
 MPS_API int32_t mps_material_history_count(const mps_material *material);
 /** Name of a history column, NULL outside 0..count-1: `plastic_strain` is the sum of
  *  sqrt(2/3 de:de) over the plastic, deviatoric strain increments, `opening` (frictional laws) the

@@ -124,8 +124,7 @@ static inline mps_mpm_def mps_mpm_defaults(void) {
  *  ones have the lattice's volume, no stress, and the material of creation; the next step is
  *  MPS_ERROR_STATE until their density is committed. Lists of ids pass over particles that are no
  *  more. On an error the set is as before. All particles are of the one `material`, which is kept
- *  alive, until mps_mpm_set_material; its history columns become fields of the set, by their
- *  names. */
+ *  alive, until mps_mpm_set_material; its history columns become fields of the set. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_create(mps_context *context, mps_particles *particles,
                                                 mps_material *material, const mps_mpm_def *def,
                                                 mps_mpm **out);
@@ -138,8 +137,8 @@ MPS_API void mps_mpm_destroy(mps_mpm **mpm);
  *  them. The material is kept alive. Its history begins anew in these particles, by the law's
  *  initial values; stress, volume, `volume_ratio` and `deformation_gradient` stay as they are (0:
  *  1, and all 0: no deformation). Fields that only this law needs are added, so the set's number
- *  of fields grows; `material` tells each particle's law. The Courant limit follows at once;
- *  bodies without a penalty of their own press each particle by the modulus of its law. */
+ *  of fields grows; `material` tells each particle's law. The Courant limit follows at once, and
+ *  so does the stiffness of contacts by penalty that have no `penalty` of their own. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material,
                                                       int64_t count, const int64_t *ids);
 
@@ -168,11 +167,11 @@ MPS_API mps_context *mps_mpm_context(const mps_mpm *mpm);
 MPS_API mps_kernel *mps_mpm_kernel(const mps_mpm *mpm);
 
 /* ---- boundaries ------------------------------------------------------------------------------
- * A boundary holds, drives or rubs the nodes of a side of the domain or of a box, or particles. A
- * solver is born with a boundary on each finite side of its domain, whose number is that side's
- * below: a roller. They are set, or removed, as all others; those that are added have numbers from
- * 6 on. Nodes keep their place; what moves is their velocity: `factor` times that of the signal at
- * the middle of the step, NULL being rest.
+ * A boundary holds, drives or slows by friction nodes of a side of the domain or of a box, or
+ * particles. A solver is born with a boundary on each finite side of its domain, whose number is
+ * that side's below: a roller. They are set, or removed, as all others; those that are added have
+ * numbers from 6 on. Nodes keep their place; what moves is their velocity: `factor` times that of
+ * the signal at the middle of the step, NULL being rest.
  *
  * A side acts on its nodes, and so on particles nearer than the spline reaches (1.5 or 2 cells).
  * Where several boundaries hold one node, fixed sides come after the others, then boxes in the
@@ -201,7 +200,7 @@ typedef enum mps_mpm_boundary_kind {
                                       constant R is the traction at rest: see `settle`. Nodes that
                                       become active later carry no R. Stable for every dt. Particles
                                       move with the waves: one that passes the side has left the
-                                      domain. A velocity that drives it sends half of it in */
+                                      domain. A signal's velocity v enters as a wave of v/2 */
   MPS_MPM_BOUNDARY_FREE = 4,       /* an edge where nodes end and nothing is held */
   MPS_MPM_BOUNDARY_PRESCRIBED = 5, /* the components `dofs`, of a box of nodes or of particles */
   MPS_MPM_BOUNDARY_OPEN = 6 /* an edge as FREE; particles that pass it leave the set at the end of
@@ -225,9 +224,9 @@ typedef struct mps_mpm_boundary_def {
   double friction;  /* Coulomb's mu of FRICTIONAL, >= 0; default 0 */
   double settle;    /* s, >= 0: so long an ABSORBING side is held as a fixed one, and R is the
                        mean traction then. 0 (default): R balances the other forces at the nodes
-                       in the first step. A stress that balances gravity on paper does so on the
-                       grid within a percent: without settling the side yields to the rest, as
-                       a dashpot does */
+                       in the first step. On the grid, stress and gravity that balance in theory
+                       leave up to a percent unbalanced; without settling, the dashpots
+                       move under that */
 } mps_mpm_boundary_def;
 
 MPS_API mps_status mps_mpm_boundary_def_init(mps_mpm_boundary_def *def, size_t size);

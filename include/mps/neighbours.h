@@ -1,4 +1,5 @@
 /* mps/neighbours.h - fixed-radius neighbour lists by a cell list, for arbitrary positions.
+ * Thread rule: one thread at a time per context.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_NEIGHBOURS_H
 #define LIBMPS_NEIGHBOURS_H
@@ -26,10 +27,12 @@ static inline mps_neighbours_def mps_neighbours_defaults(void) {
   return def;
 }
 
-/** Creates an empty list. */
+/** Creates an object without lists, which keeps the context alive. MPS_ERROR_ARGUMENT: NULL, `dim`
+ * or `radius` out of range. */
 MPS_API MPS_NODISCARD mps_status mps_neighbours_create(mps_context *context,
                                                        const mps_neighbours_def *def,
                                                        mps_neighbours **out);
+/** Destroys and nulls; accepts NULL. The lists are gone with it. */
 MPS_API void mps_neighbours_destroy(mps_neighbours **neighbours);
 
 /** Builds the lists of all pairs closer than the radius. `position` is a float64 view of shape

@@ -30,7 +30,9 @@ static inline mps_particles_def mps_particles_defaults(void) {
   return def;
 }
 
-/** Creates an empty set. It has the fields `id` and `position`; others are added by name. */
+/** Creates an empty set, which keeps the context alive. It has the fields `id` and `position`;
+ * others are added by name. MPS_ERROR_ARGUMENT: NULL, `dim` or `spacing` out of range, a place
+ * beyond 1e15 m; MPS_ERROR_MEMORY. */
 MPS_API MPS_NODISCARD mps_status mps_particles_create(mps_context *context,
                                                       const mps_particles_def *def,
                                                       mps_particles **out);
@@ -38,8 +40,13 @@ MPS_API MPS_NODISCARD mps_status mps_particles_create(mps_context *context,
  *  and goes with the last such solver. */
 MPS_API void mps_particles_destroy(mps_particles **particles);
 
+/* Questions; 0 for NULL. */
+
+/** How many particles there are now. */
 MPS_API int64_t mps_particles_count(const mps_particles *particles);
+/** 2 or 3. */
 MPS_API int32_t mps_particles_dim(const mps_particles *particles);
+/** D, m. */
 MPS_API double mps_particles_spacing(const mps_particles *particles);
 /** Changes whenever the order or number of particles does. */
 MPS_API uint64_t mps_particles_epoch(const mps_particles *particles);
@@ -48,12 +55,11 @@ MPS_API uint64_t mps_particles_epoch(const mps_particles *particles);
  * Every fill appends and may be repeated; `added` (may be NULL) receives the number of particles
  * appended, other fields of the new particles are zero. On any error nothing is appended. A solver
  * that holds the set is asked first: it may refuse places outside its domain, or (MPS_ERROR_STATE)
- * all. Lattice fills
- * never put a second particle on a lattice site that an earlier lattice fill occupied. They go
- * through a shape x fastest, then y, then z, and may look at up to 2^31 sites. A site's centre
- * within 1e-9 spacings of a bound counts as on it: in at `lo` and at the left and lower edges of a
- * polygon, out at `hi`, at the right and upper edges and on the surface of a ball. So shapes that
- * share an edge share no site. */
+ * all. Lattice fills never put a second particle on a lattice site that an earlier lattice fill
+ * occupied. They go through a shape x fastest, then y, then z, and may look at up to 2^31 sites. A
+ * site's centre within 1e-9 spacings of a bound counts as on it: in at `lo` and at the left and
+ * lower edges of a polygon, out at `hi`, at the right and upper edges and on the surface of a ball.
+ * So shapes that share an edge share no site. */
 
 /** Appends `count` particles at given positions: positions[i * dim + c] in m, within 1e15 m. */
 MPS_API MPS_NODISCARD mps_status mps_particles_append(mps_particles *particles, int64_t count,
@@ -131,6 +137,7 @@ MPS_API MPS_NODISCARD mps_status mps_particles_abandon(mps_particles *particles,
  * in one. */
 MPS_API MPS_NODISCARD mps_status mps_particles_set(mps_particles *particles, const char *name,
                                                    int32_t component, double value);
+/** How many fields the set has, `id` and `position` counted. */
 MPS_API int32_t mps_particles_field_count(const mps_particles *particles);
 /** Describes field `index` (0 to the count - 1, in order of addition). */
 MPS_API MPS_NODISCARD mps_status mps_particles_field_sized(const mps_particles *particles,

@@ -1,14 +1,26 @@
 /* mps/solver.h - the words that all solvers share: degrees of freedom, reactions, totals,
  * snapshots.
  *
- * Every solver mps_S (mpm, dynamics, elastic) answers to the same verbs:
+ * Every solver mps_S (mpm, dynamics, elastic, fluid) answers to the same verbs, and its own header
+ * says only what is more or other:
  *
- *   mps_S_create, mps_S_destroy, mps_S_get_def, mps_S_particles, mps_S_context
- *   mps_S_add_boundary, mps_S_set_boundary, mps_S_remove_boundary, mps_S_get_reaction
- *   mps_S_add_load, mps_S_set_load, mps_S_remove_load, and the field `external_force`
- *   mps_S_step, mps_S_run, mps_S_time, mps_S_steps, mps_S_dt, mps_S_limit, mps_S_set_dt
- *   mps_S_get_totals
+ *   mps_S_create           the set, and what else it is given, are kept alive; a definition NULL is
+ *                          the defaults where there is one for all; on an error nothing has changed
+ *   mps_S_destroy          destroys and nulls; accepts NULL
+ *   mps_S_particles, mps_S_context   lent, as long as the solver lives; NULL for NULL
+ *   mps_S_get_def          the definition as the solver has completed it
+ *   mps_S_add_boundary, mps_S_add_load   copies lists, keeps signals alive, gives a number
+ *   mps_S_set_boundary, mps_S_set_load, mps_S_remove_boundary, mps_S_remove_load
+ *                          by that number; MPS_ERROR_ARGUMENT where there is none of it
+ *   mps_S_get_reaction     what a boundary exerts (mps_reaction)
+ *   mps_S_step, mps_S_run  ask the cancel hook: MPS_ERROR_CANCELLED, between two steps
+ *   mps_S_time, mps_S_dt, mps_S_limit   s, 0 for NULL; mps_S_steps: taken so far, 0 for NULL
+ *   mps_S_get_totals       sums over the particles (mps_totals)
  *   mps_S_save, mps_S_restore (files); mps_S_snapshot, mps_S_rollback (memory)
+ *
+ * A field `external_force` (N) of the set acts in each step. Thread rule of all: one thread at a
+ * time per context. From a callback of a solver only its functions that read may be called; the
+ * others are MPS_ERROR_STATE.
  *
  * Vectors have three components in 2D too; those that leave the plane are then 0. All forces that a
  * 2D solver takes and reports are those of its `measure`: the thickness (m, default 1) in the
