@@ -113,7 +113,7 @@ static void coast(mps_body *body, double dt) {
 
 /* Velocity of a free body after dt of force, and the work done: of a force F that takes v to v',
  * the work is dt F (v + v')/2. Damping at the end of the step: stable for every dt. */
-static void push(mps_body *body, const mpsi_load *contact, double dt) {
+static void advance_velocity(mps_body *body, const mpsi_load *contact, double dt) {
   const mps_body_def *def = &body->def;
   mpsi_pose *pose = &body->pose;
   for (int c = 0; c < 3; c++) {
@@ -167,7 +167,7 @@ void mpsi_body_advance(mps_body *body, double dt) {
   mpsi_load contact = body->pending;
   for (int c = 0; c < 3; c++) contact.force[c] /= dt, contact.moment[c] /= dt;
   memset(&body->pending, 0, sizeof body->pending);
-  push(body, &contact, dt);
+  advance_velocity(body, &contact, dt);
   if (body->dim == 2)
     spin_in_plane(body, &contact, dt);
   else

@@ -2,9 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "contact.h"
 
-static double dot(const double *a, const double *b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
+#include "body/rotation.h"
 
 /* The part of a stick force that a body leaves: 1 for a prescribed one. A free one moves too: two
  * masses m (all nodes in contact) and M (the body's, at this point and along the unit vector
@@ -27,16 +25,16 @@ static double stick_share(const mps_body *body, int dim, double contact_mass, co
 bool mpsi_contact_friction(const mps_contact *contact, int dim, const mpsi_contact_node *at,
                            double contact_mass, const double *x, const double *v,
                            const double *before, double m, double dt, double *force) {
-  const double fn = sqrt(dot(at->force, at->force));
+  const double fn = sqrt(mpsi_dot3(at->force, at->force));
   if (!(at->mass > 0.0) || !(m > 0.0) || !(fn > 0.0)) return false;
   double n[3], s[3];
   for (int c = 0; c < 3; c++) {
     n[c] = at->force[c] / fn;
     s[c] = v[c] - before[c] - at->slip[c] / at->mass;
   }
-  const double across = dot(s, n);
+  const double across = mpsi_dot3(s, n);
   for (int c = 0; c < 3; c++) s[c] -= across * n[c];
-  const double slip = sqrt(dot(s, s));
+  const double slip = sqrt(mpsi_dot3(s, s));
   if (!(slip > 0.0)) return false;
   for (int c = 0; c < 3; c++) s[c] /= slip;
   const double stick = m * slip / dt * stick_share(contact->body, dim, contact_mass, x, s);

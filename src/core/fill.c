@@ -24,9 +24,9 @@
 /* ---- runs ------------------------------------------------------------------------------------ */
 
 /* Adds a run behind all others; false when out of memory. */
-static bool runs_push(mps_context *context, mpsi_runs *runs, mpsi_run run) {
+static bool runs_push(mps_context *context, mpsi_site_runs *runs, mpsi_site_run run) {
   if (runs->count > 0) {
-    mpsi_run *last = &runs->item[runs->count - 1];
+    mpsi_site_run *last = &runs->item[runs->count - 1];
     if (last->k == run.k && last->j == run.j && last->end == run.begin) {
       last->end = run.end;
       return true;
@@ -43,25 +43,25 @@ static bool runs_push(mps_context *context, mpsi_runs *runs, mpsi_run run) {
   return true;
 }
 
-static bool row_before(const mpsi_run *a, const mpsi_run *b) {
+static bool row_before(const mpsi_site_run *a, const mpsi_site_run *b) {
   return a->k != b->k ? a->k < b->k : a->j < b->j;
 }
 
 /* a before b, with no site in common. */
-static bool run_before(const mpsi_run *a, const mpsi_run *b) {
+static bool run_before(const mpsi_site_run *a, const mpsi_site_run *b) {
   return row_before(a, b) || (!row_before(b, a) && a->end <= b->begin);
 }
 
 /* out = a less b */
-static bool runs_subtract(mps_context *context, const mpsi_runs *a, const mpsi_runs *b,
-                          mpsi_runs *out) {
+static bool runs_subtract(mps_context *context, const mpsi_site_runs *a, const mpsi_site_runs *b,
+                          mpsi_site_runs *out) {
   int64_t n = 0;
   for (int64_t m = 0; m < a->count; m++) {
-    mpsi_run rest = a->item[m];
+    mpsi_site_run rest = a->item[m];
     while (n < b->count && run_before(&b->item[n], &rest)) n++;
     /* The last run of b that meets `rest` may meet the next one too: n stays at it. */
     for (int64_t q = n; q < b->count && !run_before(&rest, &b->item[q]); q++) {
-      mpsi_run head = rest;
+      mpsi_site_run head = rest;
       head.end = b->item[q].begin;
       if (head.begin < head.end && !runs_push(context, out, head)) return false;
       rest.begin = b->item[q].end;
@@ -73,8 +73,8 @@ static bool runs_subtract(mps_context *context, const mpsi_runs *a, const mpsi_r
 }
 
 /* out = a and b together, which have no site in common */
-static bool runs_unite(mps_context *context, const mpsi_runs *a, const mpsi_runs *b,
-                       mpsi_runs *out) {
+static bool runs_unite(mps_context *context, const mpsi_site_runs *a, const mpsi_site_runs *b,
+                       mpsi_site_runs *out) {
   int64_t m = 0, n = 0;
   while (m < a->count || n < b->count) {
     const bool from_a = n == b->count || (m < a->count && run_before(&a->item[m], &b->item[n]));
@@ -83,7 +83,7 @@ static bool runs_unite(mps_context *context, const mpsi_runs *a, const mpsi_runs
   return true;
 }
 
-static double runs_sites(const mpsi_runs *runs) {
+static double runs_sites(const mpsi_site_runs *runs) {
   double sites = 0.0;
   for (int64_t m = 0; m < runs->count; m++)
     sites += (double)(runs->item[m].end - runs->item[m].begin);
@@ -117,10 +117,10 @@ static mps_status check_bound(const mps_particles *p, const char *function, cons
 
 /* Puts particles at the sites of `runs` that are free, and takes the runs' memory in any case.
  * `complete` false: memory for them ran out. */
-static mps_status put_runs(mps_particles *p, const char *function, mpsi_runs *runs, bool complete,
-                           int64_t *added) {
+static mps_status put_runs(mps_particles *p, const char *function, mpsi_site_runs *runs,
+                           bool complete, int64_t *added) {
   mps_context *context = p->context;
-  mpsi_runs fresh = {0}, sites = {0};
+  mpsi_site_runs fresh = {0}, sites = {0};
   const int64_t first = p->count;
   const bool good = complete && runs_subtract(context, runs, &p->sites, &fresh) &&
                     runs_unite(context, &p->sites, &fresh, &sites);
@@ -134,7 +134,7 @@ static mps_status put_runs(mps_particles *p, const char *function, mpsi_runs *ru
       x[c] = mpsi_field_column(p->fields[MPSI_FIELD_POSITION], c);
     int64_t n = first;
     for (int64_t m = 0; m < fresh.count; m++) {
-      const mpsi_run run = fresh.item[m];
+      const mpsi_site_run run = fresh.item[m];
       for (int64_t i = run.begin; i < run.end; i++, n++) {
         x[0][n] = centre(p, 0, i);
         x[1][n] = centre(p, 1, run.j);
@@ -144,7 +144,7 @@ static mps_status put_runs(mps_particles *p, const char *function, mpsi_runs *ru
     status = mpsi_particles_arrive(p, function, first);
   }
   if (status == MPS_OK) {
-    const mpsi_runs former = p->sites;
+    const mpsi_site_runs former = p->sites;
     p->sites = sites;
     sites = former;
     if (added) *added = count;
@@ -188,18 +188,18 @@ static mps_status read_box(const mps_particles *p, const char *function, const d
 
 /* A row of a box. */
 static bool push_row(const mps_particles *p, const site_box *box, int64_t j, int64_t k,
-                     mpsi_runs *out) {
-  const mpsi_run row = {.begin = box->begin[0], .end = box->end[0], .j = j, .k = k};
+                     mpsi_site_runs *out) {
+  const mpsi_site_run row = {.begin = box->begin[0], .end = box->end[0], .j = j, .k = k};
   return row.begin >= row.end || runs_push(p->context, out, row);
 }
 
 /* Of a row, the sites that `inside` wants. `*complete` is false where memory was refused. */
 static mps_status push_wanted(const mps_particles *p, const char *function, const site_box *box,
                               int64_t j, int64_t k, mps_predicate_fn inside, void *user,
-                              mpsi_runs *out, bool *complete) {
+                              mpsi_site_runs *out, bool *complete) {
   for (int64_t i = box->begin[0]; i < box->end[0] && *complete; i++) {
     const double x[3] = {centre(p, 0, i), centre(p, 1, j), centre(p, 2, k)};
-    const mpsi_run site = {.begin = i, .end = i + 1, .j = j, .k = k};
+    const mpsi_site_run site = {.begin = i, .end = i + 1, .j = j, .k = k};
     int32_t wanted = 0;
     mpsi_guard guard = {0};
     mpsi_guard_enter(&guard, p->context, "the predicate of the fill");
@@ -213,7 +213,8 @@ static mps_status push_wanted(const mps_particles *p, const char *function, cons
 
 /* The runs of a box, cut to where `inside` wants a particle (NULL: everywhere). */
 static mps_status box_runs(const mps_particles *p, const char *function, const site_box *box,
-                           mps_predicate_fn inside, void *user, mpsi_runs *out, bool *complete) {
+                           mps_predicate_fn inside, void *user, mpsi_site_runs *out,
+                           bool *complete) {
   mps_status status = MPS_OK;
   *complete = true;
   for (int64_t k = box->begin[2]; k < box->end[2]; k++)
@@ -228,7 +229,7 @@ static mps_status box_runs(const mps_particles *p, const char *function, const s
 static mps_status fill_box(mps_particles *p, const char *function, const double *lo,
                            const double *hi, mps_predicate_fn inside, void *user, int64_t *added) {
   site_box box;
-  mpsi_runs runs = {0};
+  mpsi_site_runs runs = {0};
   mps_status status = mpsi_particles_check_free(p, function);
   if (status == MPS_OK) status = read_box(p, function, lo, hi, &box);
   if (status != MPS_OK) return status;
@@ -331,7 +332,7 @@ static int64_t cross_row(const mps_particles *p, const polygon *s, const int64_t
 
 /* Even-odd rule along each row. `more` is set when there are more sites than allowed. */
 static bool polygon_runs(const mps_particles *p, const polygon *s, const int64_t *row_of,
-                         int64_t *sites, mpsi_runs *out, bool *more) {
+                         int64_t *sites, mpsi_site_runs *out, bool *more) {
   int64_t first = row_of[0], last = row_of[0];
   for (int64_t k = 1; k < s->n; k++) {
     if (row_of[k] < first) first = row_of[k];
@@ -342,7 +343,7 @@ static bool polygon_runs(const mps_particles *p, const polygon *s, const int64_t
   for (int64_t j = first; j < last && !*more; j++) {
     const int64_t crossings = cross_row(p, s, row_of, j, sites);
     for (int64_t m = 0; m + 1 < crossings; m += 2) {
-      const mpsi_run run = {.begin = sites[m], .end = sites[m + 1], .j = j};
+      const mpsi_site_run run = {.begin = sites[m], .end = sites[m + 1], .j = j};
       total += (double)(run.end - run.begin);
       if (run.begin < run.end && !runs_push(p->context, out, run)) return false;
     }
@@ -361,7 +362,7 @@ mps_status mps_particles_fill_polygon(mps_particles *particles, int64_t vertices
   if (status != MPS_OK) return status;
   int64_t *row_of = mpsi_alloc(context, vertices, sizeof *row_of);
   int64_t *sites = mpsi_alloc(context, vertices, sizeof *sites);
-  mpsi_runs runs = {0};
+  mpsi_site_runs runs = {0};
   bool more = false, complete = row_of && sites;
   for (int64_t k = 0; complete && k < vertices; k++)
     row_of[k] = first_site(particles, 1, xy[2 * k + 1]);

@@ -26,15 +26,15 @@ typedef struct mpsi_field {
 } mpsi_field;
 
 /* Occupied lattice sites begin <= i < end of the row (j, k). */
-typedef struct mpsi_run {
+typedef struct mpsi_site_run {
   int64_t begin, end, j, k;
-} mpsi_run;
+} mpsi_site_run;
 
 /* Rows ascend in k, then j; runs of a row ascend and neither overlap nor touch. */
-typedef struct mpsi_runs {
-  mpsi_run *item;
+typedef struct mpsi_site_runs {
+  mpsi_site_run *item;
   int64_t count, capacity;
-} mpsi_runs;
+} mpsi_site_runs;
 
 struct mps_particles {
   mps_context *context;
@@ -51,7 +51,7 @@ struct mps_particles {
   int64_t next_id;   /* ids are given once: 0, 1, 2, ... */
   int64_t *index_of; /* id -> index, -1 of a particle that was removed */
   int64_t id_capacity;
-  mpsi_runs sites; /* what the lattice fills have put */
+  mpsi_site_runs sites; /* what the lattice fills have put */
 };
 
 /* ---- fields.c -------------------------------------------------------------------------------- */

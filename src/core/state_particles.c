@@ -45,12 +45,12 @@ void mpsi_particles_get_state(const mps_particles *p, mps_snapshot *out) {
  */
 
 enum { SITES = 4 };
-_Static_assert(sizeof(mpsi_run) == SITES * sizeof(int64_t), "kept as numbers");
+_Static_assert(sizeof(mpsi_site_run) == SITES * sizeof(int64_t), "kept as numbers");
 
 static int64_t count_sites(const void *set) { return ((const mps_particles *)set)->sites.count; }
 
 static void get_sites(const void *set, void *values) {
-  const mpsi_runs *sites = &((const mps_particles *)set)->sites;
+  const mpsi_site_runs *sites = &((const mps_particles *)set)->sites;
   memcpy(values, sites->item, (size_t)sites->count * sizeof *sites->item);
 }
 
@@ -66,7 +66,7 @@ static bool reserve_sites(void *set, int64_t rows, const void *values) {
 }
 
 static void set_sites(void *set, int64_t rows, const void *values) {
-  mpsi_runs *sites = &((mps_particles *)set)->sites;
+  mpsi_site_runs *sites = &((mps_particles *)set)->sites;
   if (rows > 0) memcpy(sites->item, values, (size_t)rows * sizeof *sites->item);
   sites->count = rows;
 }
@@ -142,7 +142,7 @@ static mps_status check_ids(const mps_particles *p, const char *function, const 
   return good ? MPS_OK : malformed(p, function, "an id is there twice, or above the next one");
 }
 
-static bool follows(const mpsi_run *a, const mpsi_run *b) {
+static bool follows(const mpsi_site_run *a, const mpsi_site_run *b) {
   if (a->k != b->k) return a->k < b->k;
   return a->j != b->j ? a->j < b->j : a->end < b->begin;
 }
@@ -150,7 +150,7 @@ static bool follows(const mpsi_run *a, const mpsi_run *b) {
 static mps_status check_sites(const mps_particles *p, const char *function,
                               const mps_snapshot *from) {
   const mpsi_value *value = mpsi_values_find(&from->state, OCCUPIED);
-  const mpsi_run *run = value ? value->data : NULL;
+  const mpsi_site_run *run = value ? value->data : NULL;
   for (int64_t k = 0; value && k < value->rows; k++)
     if (run[k].begin >= run[k].end || (k > 0 && !follows(&run[k - 1], &run[k])))
       return malformed(p, function, "its lattice sites");

@@ -85,7 +85,7 @@ MPSI_INLINE double grown(const bool frictional, double volume, double growth) {
 MPSI_INLINE void rate_loop(const int geometry, const int kind, const mpsi_law *constants,
                            const mps_material_block *block) {
   const mpsi_law law = *constants; /* a copy: nothing that the loop writes can alias it */
-  const mpsi_columns columns = mpsi_columns_of(block);
+  const mpsi_law_columns columns = mpsi_columns_of(block);
   double *volume = block->volume_ratio,
          *strain = kind == MPSI_LAW_LINEAR_ELASTIC ? NULL : block->history[0],
          *gap = kind == MPSI_LAW_DRUCKER_PRAGER || kind == MPSI_LAW_MOHR_COULOMB ? block->history[1]
@@ -139,7 +139,7 @@ MPSI_INLINE void rate_loop(const int geometry, const int kind, const mpsi_law *c
  * laws without. */
 MPSI_INLINE void volume_loop(const int geometry, const mps_material_block *block, int64_t begin,
                              int64_t end, const double *opened) {
-  const mpsi_columns columns = mpsi_columns_of(block);
+  const mpsi_law_columns columns = mpsi_columns_of(block);
   double *volume = block->volume_ratio;
   const double dt = block->dt;
   SIMD for (int64_t k = begin; k < end; k++) {
@@ -176,7 +176,7 @@ MPSI_INLINE void mohr_coulomb_loop(const int geometry, const mpsi_law *law,
 
 /* F = (1 + dt L) F, Nakamura (44), and V/V0 = det F. In 2D xz, yz, zx, zy are zero. */
 MPSI_INLINE void deform_loop(const int geometry, const mps_material_block *block) {
-  const mpsi_columns columns = mpsi_columns_of(block);
+  const mpsi_law_columns columns = mpsi_columns_of(block);
   double *f[9], *volume = block->volume_ratio;
   for (int c = 0; c < 9; c++) f[c] = block->deformation[c];
   const double dt = block->dt;
@@ -206,7 +206,7 @@ MPSI_INLINE void deform_loop(const int geometry, const mps_material_block *block
 MPSI_INLINE void neo_hookean_loop(const int geometry, const mpsi_law *law,
                                   const mps_material_block *block) {
   deform_loop(geometry, block);
-  const mpsi_columns columns = mpsi_columns_of(block);
+  const mpsi_law_columns columns = mpsi_columns_of(block);
   const double *f[9], *volume = block->volume_ratio;
   for (int c = 0; c < 9; c++) f[c] = block->deformation[c];
   const double shear = law->shear, half_lambda = 0.5 * law->lambda;
@@ -238,7 +238,7 @@ MPSI_INLINE void neo_hookean_loop(const int geometry, const mpsi_law *law,
 /* sigma = -p 1 + 2 eta dev(d); p = K (r - 1), or K/7 (r^7 - 1), r = V0/V. */
 MPSI_INLINE void newtonian_loop(const int geometry, const bool tait, const mpsi_law *law,
                                 const mps_material_block *block) {
-  const mpsi_columns columns = mpsi_columns_of(block);
+  const mpsi_law_columns columns = mpsi_columns_of(block);
   double *volume = block->volume_ratio;
   int64_t *flags = block->flags;
   const double dt = block->dt, bulk = law->bulk, drag = 2.0 * law->viscosity / dt;
@@ -267,7 +267,7 @@ MPSI_INLINE void newtonian_loop(const int geometry, const bool tait, const mpsi_
  */
 
 MPSI_INLINE void turn_loop(const int geometry, const mps_material_block *block) {
-  const mpsi_columns columns = mpsi_columns_of(block);
+  const mpsi_law_columns columns = mpsi_columns_of(block);
   const double dt = block->dt;
   SIMD for (int64_t k = 0; k < block->count; k++) {
     const mpsi_spin w = mpsi_spin_of(geometry, &columns, k, dt);

@@ -17,20 +17,20 @@ typedef struct mpsi_spin {
 } mpsi_spin;
 
 /* Columns of a block, looked up once. */
-typedef struct mpsi_columns {
+typedef struct mpsi_law_columns {
   const double *l[9];
   double *s[6];
-} mpsi_columns;
+} mpsi_law_columns;
 
-MPSI_INLINE mpsi_columns mpsi_columns_of(const mps_material_block *block) {
-  mpsi_columns columns;
+MPSI_INLINE mpsi_law_columns mpsi_columns_of(const mps_material_block *block) {
+  mpsi_law_columns columns;
   for (int c = 0; c < 9; c++) columns.l[c] = block->gradient[c];
   for (int c = 0; c < 6; c++) columns.s[c] = block->stress[c];
   return columns;
 }
 
 /* Strain increment (46). */
-MPSI_INLINE mpsi_sym mpsi_strain(const int geometry, const mpsi_columns *c, int64_t k, double dt) {
+MPSI_INLINE mpsi_sym mpsi_strain(const int geometry, const mpsi_law_columns *c, int64_t k, double dt) {
   mpsi_sym d = {
       .xx = dt * c->l[0][k], .yy = dt * c->l[4][k], .xy = 0.5 * dt * (c->l[1][k] + c->l[3][k])};
   if (geometry != MPSI_PLANE) d.zz = dt * c->l[8][k];
@@ -41,7 +41,7 @@ MPSI_INLINE mpsi_sym mpsi_strain(const int geometry, const mpsi_columns *c, int6
   return d;
 }
 
-MPSI_INLINE mpsi_spin mpsi_spin_of(const int geometry, const mpsi_columns *c, int64_t k,
+MPSI_INLINE mpsi_spin mpsi_spin_of(const int geometry, const mpsi_law_columns *c, int64_t k,
                                    double dt) {
   mpsi_spin w = {.xy = 0.5 * dt * (c->l[1][k] - c->l[3][k])};
   if (geometry == MPSI_SPACE) {
@@ -51,7 +51,7 @@ MPSI_INLINE mpsi_spin mpsi_spin_of(const int geometry, const mpsi_columns *c, in
   return w;
 }
 
-MPSI_INLINE mpsi_sym mpsi_stress(const int geometry, const mpsi_columns *c, int64_t k) {
+MPSI_INLINE mpsi_sym mpsi_stress(const int geometry, const mpsi_law_columns *c, int64_t k) {
   mpsi_sym s = {.xx = c->s[0][k], .yy = c->s[1][k], .zz = c->s[2][k], .xy = c->s[3][k]};
   if (geometry == MPSI_SPACE) {
     s.yz = c->s[5][k];
@@ -60,7 +60,7 @@ MPSI_INLINE mpsi_sym mpsi_stress(const int geometry, const mpsi_columns *c, int6
   return s;
 }
 
-MPSI_INLINE void mpsi_put_stress(const int geometry, const mpsi_columns *c, int64_t k, mpsi_sym s) {
+MPSI_INLINE void mpsi_put_stress(const int geometry, const mpsi_law_columns *c, int64_t k, mpsi_sym s) {
   c->s[0][k] = s.xx;
   c->s[1][k] = s.yy;
   c->s[2][k] = s.zz;

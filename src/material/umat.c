@@ -94,7 +94,7 @@ static void turned_strain(int geometry, double *const *column, int64_t k, mpsi_s
 }
 
 static void gather(const umat_law *law, const mps_material_block *block,
-                   const mpsi_columns *columns, int64_t k, umat_point *point) {
+                   const mpsi_law_columns *columns, int64_t k, umat_point *point) {
   const int geometry = block->dim == 3 ? MPSI_SPACE : block->gradient[8] ? MPSI_AXIAL : MPSI_PLANE;
   const mpsi_sym d = mpsi_strain(geometry, columns, k, block->dt);
   const mpsi_spin w = mpsi_spin_of(geometry, columns, k, block->dt);
@@ -150,7 +150,7 @@ static const char *call_umat(const umat_law *law, const mps_material_block *bloc
 
 static mps_status update(void *user, const mps_material_block *block) {
   const umat_law *law = user;
-  const mpsi_columns columns = mpsi_columns_of(block);
+  const mpsi_law_columns columns = mpsi_columns_of(block);
   umat_point point;
   memset(point.strain, 0, sizeof point.strain);
   unit_matrix(point.before);

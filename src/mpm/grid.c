@@ -57,7 +57,7 @@ void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
 
 /* Friction with bodies, mirrors having acted. `held` receives the velocities that the nodes would
  * have without boundaries. */
-static void rub(mps_mpm *mpm, int64_t g, mpsi_node *held) {
+static void apply_body_friction(mps_mpm *mpm, int64_t g, mpsi_node *held) {
   const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(mpm, g));
   const size_t bytes = (size_t)mpm->grid.block_nodes * sizeof *held;
   mpsi_mpm_begin_held(mpm, g);
@@ -81,7 +81,7 @@ static void finish_and_damp(mps_mpm *mpm, int64_t g) {
   uint8_t fixed[MOST] = {0};
   const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(mpm, g));
   const size_t bytes = (size_t)mpm->grid.block_nodes * sizeof *held;
-  rub(mpm, g, held);
+  apply_body_friction(mpm, g, held);
   mpsi_mpm_hold_nodes(mpm, g, fixed);
   memcpy(damped, node, bytes);
   if (mpm->settling.on) mpsi_mpm_measure_balance(mpm, g, fixed, (const mpsi_node *)held);
