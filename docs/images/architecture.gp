@@ -16,83 +16,63 @@ set yrange [0:64]
 eval box(1, 2, 56, 116, 6.5, '#eef2f7')
 eval head(60, 60.6, 'programs')
 eval text(60, 57.8, 'examples/, and yours: they see include/mps/ only, and link one library')
-k = 2
-do for [i = 1:4] {
-  x = 2 + (i - 1)*29.5
-  eval box(k, x, 42, 27.5, 9.5, '#cfe2f3')
-  eval arrow(x + 13.75, 56, x + 13.75, 51.6)
-  eval arrow(x + 13.75, 42, x + 13.75, 38.1)
-  k = k + 1
+array upper[5] = ["mpm", "dynamics", "implicit", "fluid", "couple"]
+array upper1[5] = ["soil on a grid that", "explicit: waves through", "elastic structures:", "water with a", "two codes that act on"]
+array upper2[5] = ["follows the particles", "ground, step by step", "statics, steps, modes", "free surface", "one another in a step"]
+array lower[5] = ["material", "contact, body", "signal", "io", "domain"]
+array lower1[5] = ["laws on blocks of par-", "rigid bodies, forces", "functions of time,", "frames for ParaView,", "one model on several"]
+array lower2[5] = ["ticles, ground at rest", "at their surface", "recorded motions", "checkpoint files", "ranks, by a transport"]
+do for [i = 1:5] {
+  x = 2 + (i - 1)*23.6
+  m = x + 10.8
+  eval box(2*i, x, 42, 21.6, 9.5, '#cfe2f3')
+  eval box(2*i + 1, x, 28, 21.6, 10, '#d9ead3')
+  eval arrow(m, 56, m, 51.6); eval arrow(m, 42, m, 38.1); eval arrow(m, 28, m, 23.6)
+  eval head(m, 49, upper[i]); eval text(m, 46.3, upper1[i]); eval text(m, 44, upper2[i])
+  eval head(m, 35.6, lower[i]); eval text(m, 33, lower1[i]); eval text(m, 30.7, lower2[i])
 }
-eval head(15.75, 49, 'mpm')
-eval text(15.75, 46.3, 'soil on a grid that follows')
-eval text(15.75, 44, 'the particles')
-eval head(45.25, 49, 'dynamics')
-eval text(45.25, 46.3, 'explicit: waves through')
-eval text(45.25, 44, 'ground, step by step')
-eval head(74.75, 49, 'implicit')
-eval text(74.75, 46.3, 'elastic structures: one')
-eval text(74.75, 44, 'matrix, statics to modes')
-eval head(104.25, 49, 'fluid')
-eval text(104.25, 46.3, 'water with a free')
-eval text(104.25, 44, 'surface')
-eval box(k, 2, 28, 27.5, 10, '#d9ead3'); k = k + 1
-eval head(15.75, 35.6, 'material')
-eval text(15.75, 33, 'laws on blocks of particles,')
-eval text(15.75, 30.7, 'stress of ground at rest')
-eval box(k, 31.5, 28, 27.5, 10, '#d9ead3'); k = k + 1
-eval head(45.25, 35.6, 'contact, body')
-eval text(45.25, 33, 'rigid bodies: shape, motion;')
-eval text(45.25, 30.7, 'forces at their surface')
-eval box(k, 61, 28, 27.5, 10, '#d9ead3'); k = k + 1
-eval head(74.75, 35.6, 'signal')
-eval text(74.75, 33, 'functions of time,')
-eval text(74.75, 30.7, 'recorded motions')
-eval box(k, 90.5, 28, 27.5, 10, '#d9ead3'); k = k + 1
-eval head(104.25, 35.6, 'io')
-eval text(104.25, 33, 'frames for ParaView,')
-eval text(104.25, 30.7, 'checkpoint files')
-do for [i = 1:4] { eval arrow(15.75 + (i - 1)*29.5, 28, 15.75 + (i - 1)*29.5, 23.6) }
+k = 12
 eval box(k, 2, 12, 116, 11.5, '#fff2cc'); k = k + 1
 eval head(60, 21, 'core')
 eval text(60, 18.2, 'context: errors, memory, threads, log, cancel  •  particles: named fields, fills, order')
 eval text(60, 15, 'state: snapshots  •  weight functions, neighbours  •  definition structs, instruction levels')
-eval text(15.75, 7.6, 'Embree: meshes (body)')
-eval text(45.25, 7.6, 'HDF5: files (io)')
-eval text(79, 7.6, 'CHOLMOD, LAPACK, ARPACK (implicit)')
-eval text(108, 7.6, 'OpenMP (core)')
-eval text(60, 3.2, "Each of them stays behind its layer, and no public header names it. Calls go down the arrows only.")
+eval text(13, 7.6, 'Embree: meshes (body)')
+eval text(34.5, 7.6, 'HDF5: files (io)')
+eval text(61, 7.6, 'CHOLMOD, LAPACK, ARPACK (implicit)')
+eval text(89, 7.6, 'OpenMP (core)')
+eval text(108, 7.6, 'MPI, PETSc (petsc)')
+eval text(60, 3.2, "Each stays behind its layer, and no public header names it. MPI and PETSc are of a library of their own. Calls go down only.")
 plot NaN
 
 # ---- one step ---------------------------------------------------------------------------------
 reset
 unset border; unset tics; unset key
 set lmargin 0; set rmargin 0; set tmargin 0; set bmargin 0
-set terminal pngcairo size 1200,900 enhanced font 'DejaVu Sans'
+set terminal pngcairo size 1200,1100 enhanced font 'DejaVu Sans'
 set output 'architecture-step.png'
 set xrange [0:120]
-set yrange [0:90]
-eval box(1, 1, 5, 25, 83, '#fff2cc')
-eval head(13.5, 85.3, 'particles')
-eval text(13.5, 82.4, 'owned by the set: fields')
-eval text(13.5, 80.1, 'that the caller may read')
-eval box(2, 84, 5, 35, 83, '#d9ead3')
-eval head(101.5, 85.3, 'nodes, bodies, boundaries')
-eval text(101.5, 82.4, 'nodes and boundaries owned by the')
-eval text(101.5, 80.1, 'solver; bodies shared with the caller')
-eval head(55, 86, 'one step of WLS-MPM')
-array stage[8] = ["order and blocks", "pairs of blocks and bodies", "forces on particles", "particles to nodes", "motion of the nodes", "nodes to particles", "laws", "bodies, results of the step"]
-array how[8] = ["only when a particle has left its block", "and which nodes lie inside a body", "loads; motions of walls and boxes by their signals", "splines, or their fit near a body; contact (28)", "forces, friction (31)-(34), walls", "velocity, its gradient, place (41)-(43)", "stress from strain and spin (44)-(48)", "reactions, free bodies move; speed for dt (49)"]
-array split[8] = ["chunks of particles", "blocks", "chunks of particles", "blocks of cells, so that no two write the same node", "blocks of nodes", "blocks of cells", "blocks of cells, while they are in the cache", "sums in a fixed order"]
-do for [i = 1:8] {
-  y = 84 - 9.7*i
-  eval box(2 + i, 31, y, 48, 8.1, i >= 4 && i <= 7 ? '#cfe2f3' : '#eef2f7')
+set yrange [0:110]
+eval box(1, 1, 5, 25, 103, '#fff2cc')
+eval head(13.5, 105.3, 'particles')
+eval text(13.5, 102.4, 'owned by the set: fields')
+eval text(13.5, 100.1, 'that the caller may read')
+eval box(2, 84, 5, 35, 103, '#d9ead3')
+eval head(101.5, 105.3, 'nodes, bodies, boundaries')
+eval text(101.5, 102.4, 'nodes and boundaries owned by the')
+eval text(101.5, 100.1, 'solver; bodies shared with the caller')
+eval head(55, 106, 'one step of WLS-MPM')
+array stage[10] = ["order and blocks", "what is near bodies", "forces on particles", "particles to nodes", "motion of the nodes", "impulses of contacts", "walls, boxes, friction", "nodes to particles", "laws", "bodies, results of the step"]
+array how[10] = ["only when a particle has left its block", "pairs of blocks and bodies, nodes inside, touches", "loads; motions of walls and boxes by their signals", "splines; mirrors at walls, fit at bodies; springs (28)", "velocities before and after the forces (26)", "where particles touch: until nothing approaches", "prescribed nodes; friction of the springs (31)-(34)", "velocity, its gradient, place (41)-(43)", "stress from strain and spin (44)-(48)", "reactions, free bodies move; speed for dt (49)"]
+array split[10] = ["chunks of particles", "blocks", "chunks of particles", "blocks of cells, so that no two write the same node", "blocks of nodes", "blocks of one colour; beside a free body, one thread", "blocks of nodes", "blocks of cells", "blocks of cells, while they are in the cache", "sums in a fixed order"]
+do for [i = 1:10] {
+  y = 104 - 9.7*i
+  eval box(2 + i, 31, y, 48, 8.1, i >= 4 && i <= 9 && i != 6 ? '#cfe2f3' : '#eef2f7')
   eval head(55, y + 6.5, sprintf("%d  %s", i, stage[i]))
   eval text(55, y + 4.1, how[i])
   eval sprintf("set label \"{/:Italic %s}\" at 55,%g center font ',12' textcolor rgb '#9c3d10'", split[i], y + 1.7)
-  if (i < 8) { eval arrow(55, y, 55, y - 1.6) }
+  if (i < 10) { eval arrow(55, y, 55, y - 1.6) }
 }
-mid(i) = 88 - 9.7*i
+mid(i) = 108 - 9.7*i
 in(i) = arrow(26, mid(i), 30.8, mid(i))
 out(i) = arrow(30.8, mid(i), 26, mid(i))
 to(i) = arrow(79.2, mid(i), 83.8, mid(i))
@@ -106,10 +86,12 @@ eval out(3); eval L(3, 0, 'force')
 eval from(3); eval R(3, 0, 'signals')
 eval in(4); eval L(4, 1.3, 'mass, velocity, gradient,'); eval L(4, -1.3, 'stress, force')
 eval to(4); eval R(4, 0, 'mass, momentum, force')
-eval to(5); eval R(5, 1.3, 'velocity; impulses of walls,'); eval R(5, -1.3, 'boxes and bodies')
-eval out(6); eval L(6, 1.3, 'position, velocity,'); eval L(6, -1.3, 'gradient')
-eval from(6); eval R(6, 0, 'velocity')
-eval out(7); eval L(7, 1.3, 'stress, volume,'); eval L(7, -1.3, 'history of the law')
-eval to(8); eval R(8, 1.3, 'reactions by part, pose,'); eval R(8, -1.3, 'spin; time, steps')
-eval text(60, 2.2, "Blue: one pass over the blocks. Results leave between steps: views, reactions, totals, frames, snapshots, checkpoints.")
+eval to(5); eval R(5, 0, 'velocity')
+eval to(6); eval R(6, 1.3, 'impulses on nodes and bodies,'); eval R(6, -1.3, 'kept for the next step')
+eval to(7); eval R(7, 0, 'velocity; impulses of walls, boxes')
+eval out(8); eval L(8, 1.3, 'position, velocity,'); eval L(8, -1.3, 'gradient')
+eval from(8); eval R(8, 0, 'velocity')
+eval out(9); eval L(9, 1.3, 'stress, volume,'); eval L(9, -1.3, 'history of the law')
+eval to(10); eval R(10, 1.3, 'reactions by part, pose,'); eval R(10, -1.3, 'spin; time, steps')
+eval text(60, 2.2, "Blue: one pass over the blocks, in two parts where particles touch. Results leave between steps: views, reactions, totals, files.")
 plot NaN
