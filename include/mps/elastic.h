@@ -15,8 +15,7 @@
  * `acceleration`, and when asked the stresses. Vectors have three components in 2D too; the third
  * is not read, and written as 0. In 2D all forces, masses and energies are those of the `measure`.
  *
- * A libmps built without CHOLMOD has these functions too; mps_elastic_create then returns
- * MPS_ERROR_UNSUPPORTED.
+ * In a libmps built without CHOLMOD mps_elastic_create returns MPS_ERROR_UNSUPPORTED.
  *
  * The set may be sorted while a solver uses it, and particles may be removed (mps_particles_remove:
  * excavation): what is left must be a body still, boundaries and loads lose what has gone, facets
@@ -72,10 +71,11 @@ typedef struct mps_elastic_def {
   int32_t refinements; /* steps of iterative refinement after a direct solution, 0..10; default 1 */
   int32_t blas_threads;   /* most threads of BLAS, up to 1024; 0 (default): the context's. LLT gives
                              the same bits for the same number only; all else does for every number */
-  mps_material *material; /* linear elastic, of all particles; NULL (default): what the fields say.
-                             Kept alive, as the kernel */
+  mps_material *material; /* linear elastic, of all; NULL (default): the fields'. Kept alive */
   mps_kernel *kernel;     /* weight of the pairs, its radius in (1, 4] spacings, in place of
-                             radius_ratio;     NULL (default): re/r - 1 */
+                             radius_ratio; kept alive; NULL (default): re/r - 1 */
+  double bending; /* [0, 1], of a cell's own stiffness against bending, without which n cells lack
+                     1/n^2; NaN (default): 1 in bodies of several materials, 0 of a single one */
 } mps_elastic_def;
 
 MPS_API mps_status mps_elastic_def_init(mps_elastic_def *def, size_t size);

@@ -310,6 +310,14 @@ static void gather_conservative(const mps_elastic *e, const int64_t *list, int32
   }
 }
 
+static void gather_bending(const mps_elastic *e, int64_t p, gather *g) {
+  mpsi_bending_term term[MPSI_BENDING_MAX];
+  const int32_t count = mpsi_elastic_bending_row(e, p, term);
+  for (int32_t k = 0; k < count; k++)
+    for (int c = 0; c < e->dim && term[k].site >= p; c++)
+      add(block_of(g, term[k].site), c, c, term[k].value[c]);
+}
+
 static void gather_row(const mps_elastic *e, int64_t p, gather *g) {
   const mpsi_links *l = &e->links;
   int64_t list[MPSI_STENCIL_MAX];
@@ -319,6 +327,7 @@ static void gather_row(const mps_elastic *e, int64_t p, gather *g) {
   for (int32_t a = 0; a < count; a++) gather_gradient(e, list[a], g);
   if (e->conservative) {
     gather_conservative(e, list, count, g);
+    gather_bending(e, p, g);
     return;
   }
   for (int32_t k = 0; k < l->count; k++) {

@@ -12,6 +12,7 @@ const mps_elastic_def mpsi_elastic_defaults = {
     .memory_limit = NAN,
     .tolerance = 1e-10,
     .refinements = 1,
+    .bending = NAN,
 };
 
 const mps_elastic_boundary_def mpsi_elastic_boundary_defaults = {

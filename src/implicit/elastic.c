@@ -47,6 +47,8 @@ static mps_status check_numbers(mps_context *context, const char *function,
                      "iterations is %lld, must be >= 0 (0: default)", (long long)def->iterations);
   status = check_range(context, function, "measure", def->measure, LEAST, MOST);
   if (status == MPS_OK) status = check_range(context, function, "alpha", def->alpha, 0.03, 100.0);
+  if (status == MPS_OK && !isnan(def->bending))
+    status = check_range(context, function, "bending", def->bending, 0.0, 1.0);
   if (status == MPS_OK)
     status = check_range(context, function, "tolerance", def->tolerance, 1e-14, 1e-2);
   return status;
@@ -192,6 +194,7 @@ void mpsi_elastic_measure(mps_elastic *e) {
     e->kappa[i] = e->conservative ? 2.0 * e->def.alpha * e->mu[i] * d * e->volume[i] / e->density[i]
                                   : 2.0 * e->mu[i] * d * e->volume[i] / e->density0;
   }
+  mpsi_elastic_measure_bending(e);
   e->values_valid = false;
 }
 
@@ -391,12 +394,12 @@ void mpsi_elastic_free_body(mps_elastic *e) {
   mpsi_cholesky_destroy(&e->cholesky);
   mpsi_elastic_disconnect(e);
   mpsi_elastic_drop_joints(e);
-  void *arrays[] = {e->id,           e->x,         e->density,     e->cut,   e->volume,
-                    e->lambda,       e->mu,        e->poisson,     e->kappa, e->facets,
-                    e->load,         e->reaction,  e->gradient,    e->work,  e->dof,
-                    e->displacement, e->column,    e->stress_work, e->row,   e->value,
-                    e->faces,        e->rhs,       e->solution,    e->mass,  e->cg_work,
-                    e->supports,     e->support_of};
+  void *arrays[] = {e->id,           e->x,          e->density,     e->cut,   e->volume,
+                    e->lambda,       e->mu,         e->poisson,     e->kappa, e->facets,
+                    e->load,         e->reaction,   e->gradient,    e->work,  e->dof,
+                    e->displacement, e->column,     e->stress_work, e->row,   e->value,
+                    e->faces,        e->rhs,        e->solution,    e->mass,  e->cg_work,
+                    e->supports,     e->support_of, e->bending};
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) mpsi_free(context, arrays[k]);
 }
 

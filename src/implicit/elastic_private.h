@@ -1,7 +1,7 @@
 /* elastic_private.h - the members of mps_elastic and what its source files offer one another.
  *
  * lattice.c   sites, neighbours, n_i           operator.c  gradient and K u, matrix free
- * joints.c    faces between two materials
+ * joints.c    faces between two materials   bending.c  bending within a cell
  * supports.c  fixed directions, free unknowns  rigid.c     which rigid motions are left free
  * boundaries.c  what is prescribed, reactions  facets.c    the surface
  * loads.c     nodal forces                     assemble.c  the sparse matrix of free unknowns
@@ -141,6 +141,8 @@ struct mps_elastic {
   double *lambda, *mu, *poisson;
   double *kappa; /* pair stiffness of particle i: a pair has (kappa_i + kappa_j) w / r^2 */
 
+  double *bending; /* N/m: [(i * planes + plane) * dim + c], see bending.c; NULL: without */
+
   mpsi_joint *joints; /* ascending in `low`, then axis */
   int64_t joint_count;
   int64_t *joint_at;     /* [i * 2 dim + 2 axis + up], or -1; NULL without joints */
@@ -244,6 +246,22 @@ static inline double mpsi_elastic_bond(const mps_elastic *e, int64_t i, int64_t 
 }
 /* Relative displacement of pair (i, k) that its stiffness works on, from u and the gradients. */
 void mpsi_elastic_stretch(const mps_elastic *e, const double *u, int64_t i, int32_t k, double *out);
+/* ---- bending.c --------------------------------------------------------------------------------
+ */
+#define MPSI_BENDING_MAX 48 /* terms of a row: 12 squares of 4 corners */
+typedef struct mpsi_bending_term {
+  int64_t site;
+  double value[3]; /* couples equal components */
+} mpsi_bending_term;
+/* Is there any, with so many joints? Its array is made with them (joints.c), of this size. */
+bool mpsi_elastic_has_bending(const mps_elastic *e, int64_t joints);
+int64_t mpsi_elastic_bending_size(const mps_elastic *e);
+/* Stiffnesses of squares, from volumes and material. */
+void mpsi_elastic_measure_bending(mps_elastic *e);
+/* f += the forces of squares on particle p under the displacements u. */
+void mpsi_elastic_bending_force(const mps_elastic *e, const double *u, int64_t p, double *f);
+/* The row of particle p; the number of terms, of which several may have the same site. */
+int32_t mpsi_elastic_bending_row(const mps_elastic *e, int64_t p, mpsi_bending_term *terms);
 /* Particles of chunk `chunk`: [*first, *last). */
 static inline void mpsi_elastic_chunk(const mps_elastic *e, int64_t chunk, int64_t *first,
                                       int64_t *last) {

@@ -61,12 +61,18 @@ mps_status mpsi_elastic_find_joints(mps_elastic *e, const char *function) {
   const int64_t count = e->conservative ? count_joints(e) : 0, places = e->n * 2 * e->dim;
   mpsi_joint *joints = NULL;
   int64_t *at = NULL;
-  double *scratch = NULL;
+  double *scratch = NULL, *bending = NULL;
+  if (mpsi_elastic_has_bending(e, count)) {
+    const int64_t size = mpsi_elastic_bending_size(e);
+    if (!(bending = mpsi_alloc(e->context, size, sizeof *bending)))
+      return mpsi_fail_memory(e->context, function, (size_t)size * sizeof *bending);
+  }
   if (count > 0 && (!(joints = mpsi_alloc(e->context, count, sizeof *joints)) ||
                     !(at = mpsi_alloc(e->context, places, sizeof *at)) ||
                     !(scratch = mpsi_alloc(e->context, count * e->dim, sizeof *scratch)))) {
     mpsi_free(e->context, joints);
     mpsi_free(e->context, at);
+    mpsi_free(e->context, bending);
     return mpsi_fail_memory(e->context, function, (size_t)places * sizeof *at);
   }
   for (int64_t k = 0; at && k < places; k++) at[k] = -1;
@@ -79,6 +85,8 @@ mps_status mpsi_elastic_find_joints(mps_elastic *e, const char *function) {
     }
   if (!same_joints(e, joints, count)) e->pattern_valid = false;
   mpsi_elastic_drop_joints(e);
+  mpsi_free(e->context, e->bending);
+  e->bending = bending;
   e->joints = joints;
   e->joint_at = at;
   e->joint_scratch = scratch;

@@ -6,7 +6,8 @@
  * conservative: G_i from shared cell faces (central where both face neighbours exist, one sided at
  *   surfaces), W = mu eps:eps + lambda/2 (tr eps)^2, e_ij = u_j - u_i - (G_i + G_j)/2 (x_j - x_i),
  *   kappa = 2 alpha mu d V / n_i;
- *   joints.c has the face values between two materials;
+ *   joints.c has the face values between two materials, bending.c a third sum, of bending within
+ *   cells;
  * published: G_i = (d/n*) sum_j (u_j - u_i) (x) t w/r, so that (7) R = curl and (8) D = trace,
  *   W = n*_i/n0 (lambda/2 D^2 - mu/2 R^2), e_ij = u_j - u_i, kappa = 2 mu d V / n0: Chikazawa (10)
  *   with R and D eliminated, corrected as docs/verification/implicit-elastic.md says.
@@ -187,6 +188,7 @@ static void stress_chunk(void *data, int64_t chunk, int32_t worker) {
     double *P = t->stress + i * d * d, *f = t->f + i * d;
     local_stress(e, i, t->gradient + i * d * d, P);
     for (int c = 0; c < d; c++) f[c] = 0.0;
+    mpsi_elastic_bending_force(e, t->u, i, f);
     for (int32_t k = 0; k < l->count; k++) {
       const int64_t j = l->to[i * l->count + k];
       if (j < 0) continue;

@@ -24,14 +24,15 @@ static test_body l_shape(mps_context *context, const mps_elastic_def *def, doubl
 }
 
 /* A block with a step on top of it and a slot of one cell through it. */
-static test_body stepped(mps_context *context, double nu) {
+static test_body stepped_by(mps_context *context, const mps_elastic_def *def, double nu) {
   test_body b = test_body_begin(context, 3, 0.5);
   test_body_box(&b, 0, 0, 0, 3, 2, 1);
   test_body_box(&b, 0, 0, 0, 1.5, 2, 2);
   test_body_box(&b, 2, 0, 0, 3, 1, 2);
-  test_body_finish(&b, 3.0, nu, NULL);
+  test_body_finish(&b, 3.0, nu, def);
   return b;
 }
+static test_body stepped(mps_context *context, double nu) { return stepped_by(context, NULL, nu); }
 
 /* ---- constant stress ------------------------------------------------------------------------- */
 
@@ -184,6 +185,11 @@ static void rigid_motions_and_no_others_are_free(void **state) {
   b = stepped(context, 0.3);
   check_modes(&b, 6, 1e-3);
   test_body_end(&b);
+  def = mps_elastic_defaults();
+  def.bending = 1.0;
+  b = l_shape(context, &def, 0.3);
+  check_modes(&b, 3, 1e-3);
+  test_body_end(&b);
   def = mps_elastic_defaults(); /* the weakest stabilisation that is allowed */
   def.alpha = 0.03;
   b = l_shape(context, &def, 0.0);
@@ -247,6 +253,24 @@ static void the_assembled_matrix_is_the_operator(void **state) {
     mps_edit young;
     mps_assert_ok(context, mps_particles_edit(b.particles, "young", &young));
     for (int64_t i = 0; i < b.n; i++) *mps_edit_f64(&young, i, 0) = 1.0 + 0.1 * (double)(i % 7);
+    mps_assert_ok(context, mps_particles_commit(b.particles, &young));
+    mps_assert_ok(context, mps_elastic_update_material(b.elastic));
+    int64_t count, *ids = test_select(&b, 0, -1, 0.2, &count);
+    mps_assert_ok(context, mps_elastic_cut(b.elastic, 0, -1, count, ids));
+    free(ids);
+    check_matrix(&b);
+    test_body_end(&b);
+  }
+  /* Bending within cells: one material, then layers, joints and their corners. */
+  def = mps_elastic_defaults();
+  def.bending = 0.7;
+  for (int k = 0; k < 4; k++) {
+    b = k % 2 ? stepped_by(context, &def, 0.2) : l_shape(context, &def, 0.3);
+    mps_edit young;
+    mps_assert_ok(context, mps_particles_edit(b.particles, "young", &young));
+    for (int64_t i = 0; i < b.n; i++)
+      if (k / 2 && test_value(&b, "position", i, 1) < 0.6 && test_value(&b, "position", i, 0) > 0.4)
+        *mps_edit_f64(&young, i, 0) = 8.0;
     mps_assert_ok(context, mps_particles_commit(b.particles, &young));
     mps_assert_ok(context, mps_elastic_update_material(b.elastic));
     int64_t count, *ids = test_select(&b, 0, -1, 0.2, &count);

@@ -123,6 +123,9 @@ static void bad_definitions_are_refused(void **state) {
   REFUSE(radius_ratio, 1.0, "radius_ratio is 1");
   REFUSE(radius_ratio, 0.0, "radius_ratio is 0");
   REFUSE(radius_ratio, 4.5, "radius_ratio is 4.5");
+  REFUSE(bending, -0.1, "bending is -0.1");
+  REFUSE(bending, 1.1, "bending is 1.1");
+  REFUSE(bending, INFINITY, "bending is inf");
   REFUSE(alpha, 0.0, "alpha is 0");
   REFUSE(alpha, INFINITY, "alpha is inf");
   REFUSE(measure, -1.0, "measure is -1");
