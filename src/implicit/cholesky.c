@@ -67,6 +67,9 @@ mps_status mpsi_cholesky_create(mps_context *context, const char *function, mpsi
   c->common.error_handler = quiet;
   c->common.supernodal = ldlt ? CHOLMOD_SIMPLICIAL : CHOLMOD_SUPERNODAL;
   c->common.final_ll = !ldlt;
+  /* METIS prints where it finds no memory. CHOLMOD tries first whether twice what METIS is known to
+   * take is there, and else orders by AMD. */
+  c->common.metis_memory = 2.0;
   c->common.quick_return_if_not_posdef = 1;
   *out = c;
   return MPS_OK;
@@ -153,8 +156,7 @@ static mps_status order_groups(mpsi_cholesky *c, const char *function, const mps
     cholmod_l_free_factor(&small, &c->common);
     return status;
   }
-  *chosen = c->common.method[c->common.selected].ordering == CHOLMOD_METIS ? MPSI_ORDER_METIS
-                                                                           : MPSI_ORDER_AMD;
+  *chosen = small->ordering == CHOLMOD_METIS ? MPSI_ORDER_METIS : MPSI_ORDER_AMD;
   for (int64_t g = 0, unknown = 0; g < groups; g++) { /* column becomes: first unknown of g */
     column[g] = unknown;
     while (unknown < a->n && group[unknown] == g) unknown++;

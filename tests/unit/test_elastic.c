@@ -483,9 +483,10 @@ static void a_step_of_a_motion_allocates_nothing(void **state) {
 
 /* SuiteSparse's process-wide hooks belong to the host program: here, that is this test. */
 static int64_t suite_calls, suite_refuse, suite_live;
+static size_t suite_most; /* bytes at once; 0: any number */
 
 static void *suite_malloc(size_t size) {
-  if (++suite_calls == suite_refuse) return NULL;
+  if (++suite_calls == suite_refuse || (suite_most && size > suite_most)) return NULL;
   suite_live++;
   return malloc(size);
 }
@@ -505,12 +506,23 @@ static void suite_free(void *memory) {
 }
 
 /* What refusing call after call inside CHOLMOD does; METIS has a memory of its own, so AMD. */
-static void failures_inside_cholmod_are_reported_and_leak_nothing(void **state) {
-  (void)state;
+static void use_suite_hooks(void) {
   SuiteSparse_config.malloc_func = suite_malloc;
   SuiteSparse_config.calloc_func = suite_calloc;
   SuiteSparse_config.realloc_func = suite_realloc;
   SuiteSparse_config.free_func = suite_free;
+}
+
+static void drop_suite_hooks(void) {
+  SuiteSparse_config.malloc_func = malloc;
+  SuiteSparse_config.calloc_func = calloc;
+  SuiteSparse_config.realloc_func = realloc;
+  SuiteSparse_config.free_func = free;
+}
+
+static void failures_inside_cholmod_are_reported_and_leak_nothing(void **state) {
+  (void)state;
+  use_suite_hooks();
   int64_t failed = 0;
   for (int32_t solver = MPS_ELASTIC_LLT; solver <= MPS_ELASTIC_LDLT; solver++) {
     mps_status status = MPS_ERROR_MEMORY;
@@ -541,10 +553,34 @@ static void failures_inside_cholmod_are_reported_and_leak_nothing(void **state) 
   print_message("%d calls refused inside CHOLMOD were reported\n", (int)failed);
   assert_true(failed > 10);
   suite_refuse = 0;
-  SuiteSparse_config.malloc_func = malloc;
-  SuiteSparse_config.calloc_func = calloc;
-  SuiteSparse_config.realloc_func = realloc;
-  SuiteSparse_config.free_func = free;
+  drop_suite_hooks();
+}
+
+/* METIS, which would print and take memory from elsewhere, is not called where what it may want is
+ * not there: 0.3 MB for this graph, more than anything else here takes at once. */
+static void without_memory_for_metis_the_ordering_is_amd(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  int32_t chosen[2];
+  use_suite_hooks();
+  for (int k = 0; k < 2; k++) {
+    mps_elastic_def def = mps_elastic_defaults();
+    mps_elastic_report report;
+    def.solver = MPS_ELASTIC_LLT;
+    def.ordering = MPS_ELASTIC_ORDER_METIS;
+    test_body b = square(context, 12, &def);
+    suite_most = k ? 250000 : 0;
+    clamp(&b);
+    mps_assert_ok(context, mps_elastic_solve(b.elastic));
+    mps_assert_ok(context, mps_elastic_get_report(b.elastic, &report));
+    chosen[k] = report.ordering;
+    test_body_end(&b);
+  }
+  suite_most = 0;
+  drop_suite_hooks();
+  assert_int_equal(chosen[0], MPS_ELASTIC_ORDER_METIS);
+  assert_int_equal(chosen[1], MPS_ELASTIC_ORDER_AMD);
+  mps_context_destroy(&context);
 }
 
 static void the_particles_outlive_their_owner_and_may_be_used_by_two_solvers(void **state) {
@@ -575,6 +611,7 @@ int main(void) {
       cmocka_unit_test(every_refused_allocation_is_reported_and_leaks_nothing),
       cmocka_unit_test(a_step_of_a_motion_allocates_nothing),
       cmocka_unit_test(failures_inside_cholmod_are_reported_and_leak_nothing),
+      cmocka_unit_test(without_memory_for_metis_the_ordering_is_amd),
       cmocka_unit_test(the_particles_outlive_their_owner_and_may_be_used_by_two_solvers),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
