@@ -52,6 +52,9 @@ const char *pen_check(penetrometer *p) {
   if (edge * edge * edge != (double)s->ppc) return "--ppc must be a cube: 1, 8, 27 or 64";
   if (s->psi > s->phi) return "--psi must be at most --phi";
   if (s->law == PEN_CLAY && s->cohesion == 0.0) return "--cohesion must be > 0 with --law clay";
+  if (s->alpha > 0.0 && s->contact == MPS_CONTACT_METHOD_PENALTY)
+    return "--alpha asks for --contact impulse";
+  if (s->alpha > 0.0 && s->cohesion == 0.0) return "--alpha asks for a --cohesion > 0";
   if (isnan(s->gravity)) s->gravity = s->law == PEN_SAND ? 9.81 : 0.0;
   if (s->density * s->gravity * s->height * s->diameter > 0.5 * s->young * 1e3)
     return "--young must be at least twice the stress at the bottom of the soil, density g depth";
@@ -243,6 +246,7 @@ static mps_status make_tip(penetrometer *p, pen_run *r) {
   def.position[up] = r->size[up] + pen_gap(p);
   mps_contact_def contact = mps_contact_defaults();
   contact.friction = p->s.friction;
+  if (p->s.alpha > 0.0) contact.strength = 1e3 * p->s.alpha * p->s.cohesion;
   r->penalty = penalty_of(p, r);
   contact.method = p->s.contact;
   if (p->s.contact == MPS_CONTACT_METHOD_PENALTY) contact.penalty = r->penalty;

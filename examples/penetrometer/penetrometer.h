@@ -23,6 +23,7 @@ typedef struct pen_settings {
   double scale;                            /* m per unit of the mesh */
   double diameter, angle;                  /* m, degrees */
   double depth, speed, friction;           /* m, m/s, 1 */
+  double alpha;                            /* of the cohesion; NaN: no bound */
   const char *soil;                        /* "WxWxD" in diameters */
   double width, breadth, height;           /* what `soil` says */
   double cohesion, phi, psi;               /* kPa, degrees */

@@ -66,6 +66,11 @@ typedef struct mps_contact_def {
   int32_t thin;   /* 0 (default): a body thinner than two cells somewhere, through which momentum
                      can pass, is refused; 1: it is allowed, and the log is warned */
   int32_t inside; /* mps_contact_inside, default REFUSE */
+  double adhesion; /* Pa, >= 0: shear stress that the surface bears besides friction times the
+                      pressure, wherever soil is pressed on it; default 0 */
+  double strength; /* Pa, > 0: the most shear stress that it bears, such as alpha times the
+                      undrained strength of clay; NaN (default): no bound. Both by METHOD_IMPULSE,
+                      over the area that soil covers */
 } mps_contact_def;
 
 MPS_API mps_status mps_contact_def_init(mps_contact_def *def, size_t size);

@@ -11,7 +11,7 @@
 #define SWEEPS 10 /* usual */
 
 static const mps_contact_def contact_defaults = {
-    .struct_size = sizeof(mps_contact_def), .penalty = NAN, .xi = NAN, .offset = NAN, .depth = NAN};
+    .struct_size = sizeof(mps_contact_def), .penalty = NAN, .xi = NAN, .offset = NAN, .depth = NAN, .strength = NAN};
 
 mps_status mps_contact_def_init(mps_contact_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_contact_def, def, size, &contact_defaults);
@@ -32,6 +32,23 @@ static mps_status check_choices(mps_context *context, const char *function,
     if (list[k].value < 0 || list[k].value > (k == 3 ? 2 : 1))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is %d, allowed are %s",
                        list[k].name, list[k].value, list[k].allowed);
+  return MPS_OK;
+}
+
+static mps_status check_shear(mps_context *context, const char *function,
+                              const mps_contact_def *d) {
+  if (!(d->adhesion >= 0.0 && d->adhesion <= MPSI_BODY_HEAVY))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "adhesion is %g Pa, must be in 0 to %g", d->adhesion, MPSI_BODY_HEAVY);
+  if (!isnan(d->strength) && !(d->strength > 0.0 && d->strength <= MPSI_BODY_HEAVY))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "strength is %g Pa, must be > 0 and at most %g, or NaN", d->strength,
+                     MPSI_BODY_HEAVY);
+  if (d->method == MPS_CONTACT_METHOD_PENALTY && (d->adhesion > 0.0 || !isnan(d->strength)))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "%s is given, and method is 1 (penalty), which has Coulomb friction alone: "
+                     "choose method 0 (impulse)",
+                     d->adhesion > 0.0 ? "adhesion" : "strength");
   return MPS_OK;
 }
 
@@ -65,7 +82,7 @@ static mps_status check_numbers(mps_context *context, const char *function,
   if (!isnan(d->depth) && !(d->depth > 0.0))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "depth is %g m, must be > 0, or NaN",
                      d->depth);
-  return MPS_OK;
+  return check_shear(context, function, d);
 }
 
 /* ---- life ------------------------------------------------------------------------------------ */

@@ -88,9 +88,11 @@ void mpsi_impulse_kick(mpsi_impulse_body *b, const double *x, const double *by) 
 
 /* ---- a contact ------------------------------------------------------------------------------- */
 
-/* Takes T back into the cone |T| <= mu P. */
+/* Takes T back to what the surface bears: the cone |T| <= mu P, with adhesion and up to a strength.
+ */
 static void into_cone(const mpsi_impulse *c, double *rub) {
-  const double size = sqrt(mpsi_dot3(rub, rub)), most = c->friction * c->push;
+  const double cone = c->push > 0.0 ? c->friction * c->push + c->adhesion : 0.0;
+  const double size = sqrt(mpsi_dot3(rub, rub)), most = fmin(cone, c->strength);
   for (int a = 0; a < 3 && size > most; a++) rub[a] *= most / size;
 }
 
@@ -117,7 +119,7 @@ double mpsi_impulse_visit(mpsi_impulse *c, const mpsi_impulse_body *b, const dou
   const double across = mpsi_dot3(u, c->normal), before = c->push;
   c->push = fmax(0.0, before + (c->aim - across) / mobility_along(c, b, c->normal));
   for (int a = 0; a < 3; a++) by[a] = (c->push - before) * c->normal[a];
-  if (c->friction > 0.0) {
+  if (c->friction > 0.0 || c->adhesion > 0.0) {
     double slip[3], rub[3];
     for (int a = 0; a < 3; a++) slip[a] = u[a] - across * c->normal[a];
     const double speed = sqrt(mpsi_dot3(slip, slip));

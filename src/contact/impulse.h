@@ -33,8 +33,8 @@ static inline double mpsi_impulse_lever(double distance, double half) {
   return fmin(1.0, fmax(0.0, 2.0 * distance / half - 0.5));
 }
 
-/* w (m/s): a gap may close within dt, no more; a twentieth of an overlap opens again, by at most 0.02
- * of `speed` (m/s, of waves and particles). */
+/* w (m/s): a gap may close within dt, no more; a twentieth of an overlap opens again, by at most
+ * 0.02 of `speed` (m/s, of waves and particles). */
 double mpsi_impulse_aim(double gap, double dt, double speed);
 
 /* ---- the body's side ------------------------------------------------------------------------- */
@@ -64,6 +64,8 @@ typedef struct mpsi_impulse {
   double aim;              /* m/s, w */
   double mobility[3];      /* 1/kg, 1/m_c of the solver's side along x, y, z */
   double friction;         /* mu */
+  double adhesion;         /* N s, what |T| may be besides mu P where P > 0, */
+  double strength;         /* and at all; INFINITY: no bound */
   double push, rub[3];     /* N s: P; T */
 } mpsi_impulse;
 

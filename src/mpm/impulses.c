@@ -139,7 +139,10 @@ void mpsi_mpm_apply_impulses(mps_mpm *mpm) {
     if (mpsi_by_impulses(mpm->contact.handle[b]) && mpm->contact.handle[b]->def.sweeps > sweeps)
       sweeps = mpm->contact.handle[b]->def.sweeps;
   if (all->touch_count > 0) sweep_all(mpm, true, false);
-  for (int32_t s = 0; s < sweeps && all->touch_count > 0; s++) sweep_all(mpm, false, s % 2 != 0);
+  for (int32_t s = 0; s < sweeps && all->touch_count > 0; s++) {
+    if (s % 2 == 0) mpsi_mpm_share_areas(mpm);
+    sweep_all(mpm, false, s % 2 != 0);
+  }
   mpsi_mpm_mirror_touches(mpm);
   take_over(mpm);
 }
@@ -166,6 +169,6 @@ void mpsi_mpm_free_impulses(mps_mpm *mpm) {
   mpsi_impulses *all = &mpm->contact.impulses;
   void *rooms[] = {all->touch_room.item, all->block_room.item,     all->weight_room.item,
                    all->node_room.item,  all->candidate_room.item, all->kept_room.item,
-                   all->next_room.item,  all->lookup_room.item};
+                   all->next_room.item,  all->lookup_room.item,   all->area_room.item};
   for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(mpm->context, rooms[k]);
 }

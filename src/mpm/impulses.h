@@ -35,6 +35,13 @@ typedef struct mpsi_kept_impulse {
   double by[3]; /* N s */
 } mpsi_kept_impulse;
 
+/* At a node, for one body: the surface that soil covers, and the touches that share it (areas.c).
+ */
+typedef struct mpsi_area {
+  double area; /* m2, of the measure */
+  double touches;
+} mpsi_area;
+
 typedef struct mpsi_impulses {
   mpsi_touch *touch;
   mpsi_touch_block *block; /* colour by colour */
@@ -51,16 +58,24 @@ typedef struct mpsi_impulses {
   double kept_dt;  /* s, of that step */
   int32_t *lookup; /* by particle and body: index into `kept`, or -1; lookup_mask + 1 of them */
   uint64_t lookup_mask;
-  double surface; /* J, of the step: work of the surfaces, */
-  double loss;    /* and that less what the nodes received */
+  mpsi_area *area;    /* as contact.node; */
+  int64_t area_count; /* 0 where no contact has a strength or an adhesion */
+  int64_t area_first; /* block of the colour in work */
+  double surface;     /* J, of the step: work of the surfaces, */
+  double loss;        /* and that less what the nodes received */
   mpsi_room touch_room, block_room, weight_room, node_room, candidate_room, kept_room, next_room,
-      lookup_room;
+      lookup_room, area_room;
 } mpsi_impulses;
 
 /* touches.c: before anything moves, what may touch in a step of mpm->run.dt, and room for it; then,
  * the masses of the nodes known, the touches with their weights, and how deep particles are. */
 mps_status mpsi_mpm_find_touches(mps_mpm *mpm, const char *function);
 void mpsi_mpm_fit_touches(mps_mpm *mpm);
+/* areas.c: room for the areas of the step; these; and what each touch may bear in shear by its
+ * share of them, touches being pressed as they now are. */
+bool mpsi_mpm_area_room(mps_mpm *mpm);
+void mpsi_mpm_find_areas(mps_mpm *mpm);
+void mpsi_mpm_share_areas(mps_mpm *mpm);
 /* touches.c: what mirrors give with the impulses of a step. */
 void mpsi_mpm_mirror_touches(mps_mpm *mpm);
 /* touches.c: prepares `lookup` (false: memory refused), by which the next finds the impulse of the
@@ -76,6 +91,10 @@ void mpsi_mpm_forget_impulses(mps_mpm *mpm, int32_t body);
 void mpsi_mpm_apply_impulses(mps_mpm *mpm);
 void mpsi_mpm_find_impulse_loss(mps_mpm *mpm);
 void mpsi_mpm_free_impulses(mps_mpm *mpm);
+
+static inline bool mpsi_has_strength(const mps_contact *contact) {
+  return contact->def.adhesion > 0.0 || !isnan(contact->def.strength);
+}
 
 static inline bool mpsi_by_impulses(const mps_contact *contact) {
   return contact->def.method == MPS_CONTACT_METHOD_IMPULSE;

@@ -177,7 +177,7 @@ mps_status mpsi_mpm_find_touches(mps_mpm *mpm, const char *function) {
          mpsi_room_ensure(context, &all->weight_room, n * all->stride, sizeof *all->weight) &&
          mpsi_room_ensure(context, &all->node_room, n * all->stride, sizeof *all->node) &&
          mpsi_room_ensure(context, &all->next_room, n, sizeof *all->kept) &&
-         mpsi_mpm_index_impulses(mpm);
+         mpsi_mpm_index_impulses(mpm) && mpsi_mpm_area_room(mpm);
   if (!good) {
     all->touch_count = all->block_count = 0;
     return mpsi_fail_memory(context, function,
@@ -220,6 +220,7 @@ static void begin_touch(mps_mpm *mpm, int64_t t, int64_t k, const int64_t *id, m
   for (int a = 0; a < mpm->dim; a++) c->at[a] = out->x[a] + lever * (foot.at[a] - out->x[a]);
   c->aim = mpsi_impulse_aim(foot.distance - half, mpm->run.dt, mpm->run.speed);
   c->friction = contact->def.friction;
+  c->strength = INFINITY;
   if (-foot.distance > pair->deepest) {
     pair->touched = true;
     pair->deepest = -foot.distance, pair->deep = k;
@@ -332,4 +333,5 @@ static void fit_block(void *data, int64_t unit, int32_t worker) {
 
 void mpsi_mpm_fit_touches(mps_mpm *mpm) {
   mpsi_parallel_for(mpm->context, mpm->contact.impulses.block_count, fit_block, mpm);
+  mpsi_mpm_find_areas(mpm);
 }

@@ -46,6 +46,7 @@ static mpm_scene fall(mps_context *context, int32_t geometry, int options, bool 
   mps_assert_ok(context, mps_body_create_half_plane(context, &body, up, &floor));
   mps_contact_def rough = mps_contact_defaults();
   rough.friction = 0.4;
+  rough.adhesion = 50.0, rough.strength = 2000.0;
   rough.inside = MPS_CONTACT_INSIDE_PUSH; /* some begin below the slope */
   mps_assert_ok(context, mps_mpm_add_contact(s.mpm, floor, &rough, NULL));
   body.motion = MPS_BODY_MOTION_FREE;
@@ -78,6 +79,7 @@ static mpm_scene fall_in_space(mps_context *context, int options) {
   mps_assert_ok(context, mps_body_create_sphere(context, &body, 0.03, &ball));
   mps_contact_def rough = mps_contact_defaults();
   rough.friction = 0.4;
+  rough.strength = 500.0;
   rough.inside = MPS_CONTACT_INSIDE_PUSH; /* some begin in it */
   mps_assert_ok(context, mps_mpm_add_contact(s.mpm, ball, &rough, NULL));
   mps_assert_ok(context, mps_mpm_step(s.mpm, 25));

@@ -135,16 +135,14 @@ static void shapes_are_a_partition(void **state) {
 /* To the nodes and back; nothing else acts. */
 static void there_and_back(mps_mpm *mpm, int geometry, int spline) {
   for (int64_t g = 0; g < mpm->grid.node_count; g++) mpsi_mpm_clear_nodes(mpm, g, 0);
-  for (int64_t b = 0; b < mpm->grid.cell_count; b++)
-    mpm->kernels->p2g[geometry][spline](mpm, b, 0);
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) mpm->kernels->p2g[geometry][spline](mpm, b, 0);
   for (int64_t g = 0; g < mpm->grid.node_count; g++) mpsi_mpm_update_nodes(mpm, g, 0);
-  for (int64_t b = 0; b < mpm->grid.cell_count; b++)
-    mpm->kernels->g2p[geometry][spline](mpm, b, 0);
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++) mpm->kernels->g2p[geometry][spline](mpm, b, 0);
 }
 
 /* A linear velocity field goes to the nodes and back unchanged, twice: first as written, then with
- * the spin beside bodies that the nodes' moment has left (mpm/spin.h). The bodies and the walls must
- * not act: particles keep off the ones, and the step ends before the others. */
+ * the spin beside bodies that the nodes' moment has left (mpm/spin.h). The bodies and the walls
+ * must not act: particles keep off the ones, and the step ends before the others. */
 static void affine_round_trip(void **state) {
   (void)state;
   const double v0[] = {0.3, -0.2, 0.1};
@@ -473,8 +471,8 @@ static void contact_in_space_keeps_momentum(void **state) {
     spin += length(at.spin);
     mps_body_destroy(&bodies[b]);
   }
-  print_message("in space: linear %.2g of %.2g, angular %.2g\n", length(lost),
-                length(start.linear), length(turned));
+  print_message("in space: linear %.2g of %.2g, angular %.2g\n", length(lost), length(start.linear),
+                length(turned));
   assert_true(length(lost) <= 1e-12 * length(start.linear));
   assert_true(length(turned) <= 1e-12 * length(start.linear));
   assert_true(spin > 0.1); /* friction */

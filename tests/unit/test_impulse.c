@@ -72,8 +72,10 @@ static void one_visit_solves_one_contact(void **state) {
   mpsi_impulse_begin_body(&b, floor, 1e-3);
   const double m = 2.0, slides[] = {0.1, 5.0};
   for (int k = 0; k < 2; k++) {
-    mpsi_impulse c = {
-        .normal = {0.0, 1.0, 0.0}, .mobility = {1.0 / m, 1.0 / m, 1.0 / m}, .friction = 0.3};
+    mpsi_impulse c = {.normal = {0.0, 1.0, 0.0},
+                      .mobility = {1.0 / m, 1.0 / m, 1.0 / m},
+                      .friction = 0.3,
+                      .strength = INFINITY};
     double u[3] = {slides[k], -1.0, 0.0}, by[3];
     mps_assert_near(mpsi_impulse_visit(&c, &b, u, by), sqrt(by[0] * by[0] + by[1] * by[1]), 1e-15);
     mps_assert_near(c.push, m * 1.0, 1e-15);
@@ -90,6 +92,33 @@ static void one_visit_solves_one_contact(void **state) {
     mps_assert_near(by[0], -0.6, 1e-15); /* cut to mu P */
     mpsi_impulse_warm(&c, pulls, 2.0, by);
     mps_assert_near(fabs(by[0]) + fabs(by[1]), 0.0, 0.0);
+  }
+  mps_body_destroy(&floor);
+}
+
+/* Adhesion adds to mu P where P > 0, the strength bounds both. */
+static void shear_has_adhesion_and_strength(void **state) {
+  (void)state;
+  mps_body *floor = NULL;
+  const double up[] = {0.0, 1.0};
+  mps_assert_ok(context, mps_body_create_half_plane(context, NULL, up, &floor));
+  mpsi_impulse_body b;
+  mpsi_impulse_begin_body(&b, floor, 1e-3);
+  const double adhesion[] = {0.2, 0.2, 0.2}, strength[] = {INFINITY, 0.5, 0.5};
+  const double friction[] = {0.3, 0.3, 0.0}, bears[] = {0.8, 0.5, 0.2};
+  for (int k = 0; k < 3; k++) {
+    mpsi_impulse c = {.normal = {0.0, 1.0, 0.0},
+                      .mobility = {0.5, 0.5, 0.5},
+                      .friction = friction[k],
+                      .adhesion = adhesion[k],
+                      .strength = strength[k]};
+    double u[3] = {5.0, -1.0, 0.0}, by[3];
+    (void)mpsi_impulse_visit(&c, &b, u, by);
+    mps_assert_near(c.push, 2.0, 1e-15);
+    mps_assert_near(c.rub[0], -bears[k], 1e-15);
+    u[1] = 3.0; /* lifted off: nothing adheres */
+    (void)mpsi_impulse_visit(&c, &b, u, by);
+    mps_assert_near(c.rub[0], 0.0, 0.0);
   }
   mps_body_destroy(&floor);
 }
@@ -240,6 +269,51 @@ static void thin_plates_press(void **state) {
   mps_assert_near(force[0], force[1], 0.02 * force[1]);
 }
 
+/* A plate slides over a block that it presses, in the plane and in space: what it bears in shear is
+ * its strength, or its adhesion, times the block's top, wherever the grid lies. */
+static void shear_is_by_area(void **state) {
+  (void)state;
+  const double tau = 2000.0, dt = 0.004, shift[] = {0.0, 0.007, 0.013};
+  for (int k = 0; k < 9; k++) {
+    const int dim = k < 6 ? 2 : 3;
+    const double top = dim == 2 ? 0.2 : 0.2 * 0.1, low[] = {0.0, 0.0, 0.0},
+                 high[] = {0.2, 0.1, 0.1};
+    mpm_scene s = mpm_scene_begin_in(context, dim, 0.01, 0.0, 0.0, 1e6);
+    mps_assert_ok(context, mps_particles_fill_box(s.particles, low, high, NULL));
+    mps_mpm_def def = mps_mpm_defaults();
+    def.geometry = dim == 3 ? MPS_MPM_SPACE : MPS_MPM_PLANE_STRAIN;
+    def.cell = 0.02;
+    def.lower[1] = 0.0, def.origin[0] = -shift[k % 3], def.origin[1] = -shift[k % 3];
+    def.lower[1] = def.origin[1] + ceil(shift[k % 3] / 0.02) * 0.02 - 0.02;
+    mpm_scene_solve(&s, &def);
+    mps_body *plate = NULL;
+    mps_body_def body = mps_body_defaults();
+    const double down[] = {0.0, -1.0, 0.0};
+    body.position[1] = 0.1;
+    mps_assert_ok(context, dim == 2 ? mps_body_create_half_plane(context, &body, down, &plate)
+                                    : mps_body_create_half_space(context, &body, down, &plate));
+    mps_contact_def contact = mps_contact_defaults();
+    mps_contact *handle = NULL;
+    contact.friction = k % 6 < 3 ? 10.0 : 0.0;
+    contact.strength = k % 6 < 3 ? tau : NAN;
+    contact.adhesion = k % 6 < 3 ? 0.0 : tau;
+    mps_assert_ok(context, mps_mpm_add_contact(s.mpm, plate, &contact, &handle));
+    drive(plate, 5.0, -1.0);
+    mps_assert_ok(context, mps_mpm_run(s.mpm, 0.001, 1, NULL, NULL));
+    mps_reaction before, after;
+    mps_assert_ok(context, mps_contact_get_reaction(handle, -1, &before));
+    mps_assert_ok(context, mps_mpm_run(s.mpm, 0.001 + dt, 1, NULL, NULL));
+    mps_assert_ok(context, mps_contact_get_reaction(handle, -1, &after));
+    const double shear = -(after.impulse[0] - before.impulse[0]) / dt;
+    print_message("%dD, %s, grid %g: shear %.5g N of %g\n", dim,
+                  k % 6 < 3 ? "strength" : "adhesion", shift[k % 3], shear, tau * top);
+    mps_assert_near(shear, tau * top, 0.02 * tau * top);
+    mps_contact_destroy(&handle);
+    mps_body_destroy(&plate);
+    mpm_scene_end(&s);
+  }
+}
+
 /* The step of a plate that is as fast as it may be; the plate takes the block along, and no
  * particle is inside it after any step; or an error says how deep one is. */
 static void fast_plates_are_met(void **state) {
@@ -278,9 +352,11 @@ int main(void) {
                                      cmocka_unit_test(aims_at_the_surface),
                                      cmocka_unit_test(mobility_is_what_a_kick_does),
                                      cmocka_unit_test(one_visit_solves_one_contact),
+                                     cmocka_unit_test(shear_has_adhesion_and_strength),
                                      cmocka_unit_test(gives_force_and_moment),
                                      cmocka_unit_test(bodies_end_and_materials_differ),
                                      cmocka_unit_test(thin_plates_press),
+                                     cmocka_unit_test(shear_is_by_area),
                                      cmocka_unit_test(fast_plates_are_met)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
