@@ -15,6 +15,11 @@
  * already; so, after the laws, p_i = sum w V p/sum w V and p~ = sum w p_i, which takes the place of
  * the mean stress of a fluid (its state J stays as it is, so nothing is smoothed twice), and to
  * which that of other laws tends by beta c dt/h. Ghosts of mirrors fold as mass does (mirror.h).
+ *
+ * At a wall or a surface all particles of a node lie on one side of it, and the mean of a pressure that
+ * grows with depth is off by its slope times their distance. So a fluid's pressure goes to the node and
+ * back along the slope that it has at rest, p_i = sum w V (p + rho g.(x_i - x))/sum w V and p~ = sum w
+ * (p_i - rho g.(x_i - x)): at rest it is kept as it is.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
 
@@ -37,6 +42,8 @@ static double *sums_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t
   return mpm->grid.node[mpsi_node_under(mpm, cells, at[0], at[1], at[2])];
 }
 
+static const double level[3] = {0.0, 0.0, 0.0}; /* no slope */
+
 /* ---- by node --------------------------------------------------------------------------------- */
 
 static bool by_nodes(const mps_mpm *mpm) { return mpm->def.volumetric == MPS_MPM_VOLUMETRIC_NODES; }
@@ -45,6 +52,7 @@ static bool by_nodes(const mps_mpm *mpm) { return mpm->def.volumetric == MPS_MPM
 typedef struct support {
   int at[3][4];
   double w[3][4];
+  double x[3]; /* place of the particle in the tile, in cells */
 } support;
 
 static int partner_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int c, int node) {
@@ -65,6 +73,7 @@ static support support_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int6
     const double x = mpm->p.x[c][k] - mpm->run.dt * mpm->p.v[c][k];
     const double t =
         mpsi_grid_coordinate(mpm, c, x) - (double)cells->at[c] * MPSI_SIDE - (double)base[c];
+    out.x[c] = (double)base[c] + t;
     mpsi_weights(mpm->def.spline, fmin(fmax(t, least), least + 1.0), out.w[c]);
     for (int i = 0; i <= mpm->def.spline; i++)
       out.at[c][i] = partner_of(mpm, cells, c, base[c] + i);
@@ -72,9 +81,15 @@ static support support_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int6
   return out;
 }
 
+/* What a value with the slope (3, per cell) at the particle is further on at a node of its support. */
+static double further(const support *s, const double *slope, int i, int j, int k) {
+  return slope[0] * (s->at[0][i] - s->x[0]) + slope[1] * (s->at[1][j] - s->x[1]) +
+         slope[2] * (s->at[2][k] - s->x[2]);
+}
+
 /* Adds {V, V value} by the weights; or the mean of the nodes' means. */
 static void give(const mps_mpm *mpm, const mpsi_cell_block *cells, const support *s, double V,
-                 double value) {
+                 double value, const double *slope) {
   const int n = mpm->def.spline, depth = mpm->dim == 3 ? n : 0;
   for (int k = 0; k <= depth; k++)
     for (int j = 0; j <= n; j++)
@@ -83,11 +98,12 @@ static void give(const mps_mpm *mpm, const mpsi_cell_block *cells, const support
         double *to =
             mpm->grid.node[mpsi_node_under(mpm, cells, s->at[0][i], s->at[1][j], s->at[2][k])];
         to[SUM_VOLUME] += w;
-        to[SUM_TRACE] += w * value;
+        to[SUM_TRACE] += w * (value + further(s, slope, i, j, k));
       }
 }
 
-static double take(const mps_mpm *mpm, const mpsi_cell_block *cells, const support *s) {
+static double take(const mps_mpm *mpm, const mpsi_cell_block *cells, const support *s,
+                   const double *slope) {
   const int n = mpm->def.spline, depth = mpm->dim == 3 ? n : 0;
   double sum = 0.0, weight = 0.0;
   for (int k = 0; k <= depth; k++)
@@ -97,7 +113,7 @@ static double take(const mps_mpm *mpm, const mpsi_cell_block *cells, const suppo
         const double *from =
             mpm->grid.node[mpsi_node_under(mpm, cells, s->at[0][i], s->at[1][j], s->at[2][k])];
         if (!(from[SUM_VOLUME] > 0.0) || w == 0.0) continue;
-        sum += w * (from[SUM_TRACE] / from[SUM_VOLUME]);
+        sum += w * (from[SUM_TRACE] / from[SUM_VOLUME] - further(s, slope, i, j, k));
         weight += w;
       }
   return sum / weight;
@@ -107,12 +123,22 @@ static double mean_stress(const mps_mpm *mpm, int64_t k) {
   return (mpm->p.s[0][k] + mpm->p.s[1][k] + mpm->p.s[2][k]) / 3.0;
 }
 
+/* How the mean stress of a fluid at rest grows along each axis, in a cell: means over the nodes near
+ * then leave it as it is, at walls and surfaces too, where the nodes lie on one side. */
+static void slope_at_rest(const mps_mpm *mpm, int64_t k, double *slope) {
+  const bool fluid = mpsi_material_kept(mpsi_law_of(mpm, k)->material) == MPSI_KEPT_PRESSURE;
+  const double weight = fluid ? mpm->p.m[k] / (mpm->p.V[k] * mpm->grid.inverse) : 0.0;
+  for (int c = 0; c < 3; c++) slope[c] = c < mpm->dim ? -weight * mpm->def.gravity[c] : 0.0;
+}
+
 static void add_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
   (void)worker;
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   for (int64_t k = cells->begin; k < cells->end; k++) {
     const support s = support_of(mpm, cells, k);
-    give(mpm, cells, &s, mpm->p.V[k], mean_stress(mpm, k));
+    double slope[3];
+    slope_at_rest(mpm, k, slope);
+    give(mpm, cells, &s, mpm->p.V[k], mean_stress(mpm, k), slope);
   }
 }
 
@@ -121,12 +147,13 @@ static void smooth_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
   const mpsi_columns *p = &mpm->p;
   for (int64_t k = cells->begin; k < cells->end; k++) {
     const support s = support_of(mpm, cells, k);
-    double share = 1.0, wave, shear;
+    double share = 1.0, wave, shear, slope[3];
+    slope_at_rest(mpm, k, slope);
     if (mpsi_material_kept(mpsi_law_of(mpm, k)->material) != MPSI_KEPT_PRESSURE) {
       mpsi_mpm_elastic(mpm, k, &wave, &shear);
       share = fmin(1.0, BETA * sqrt(wave * p->V[k] / p->m[k]) * mpm->run.dt * mpm->grid.inverse);
     }
-    const double change = share * (take(mpm, cells, &s) - mean_stress(mpm, k));
+    const double change = share * (take(mpm, cells, &s, slope) - mean_stress(mpm, k));
     for (int c = 0; c < 3; c++) p->s[c][k] += change;
   }
   mpm->kernels->speed(mpm, b, worker);
@@ -144,7 +171,7 @@ static void add_cells(mps_mpm *mpm, int64_t b, int32_t worker) {
     const double trace = L[0][k] + L[1][k] + (L[2] ? L[2][k] : 0.0);
     if (by_nodes(mpm)) {
       const support s = support_of(mpm, cells, k);
-      give(mpm, cells, &s, V[k], trace);
+      give(mpm, cells, &s, V[k], trace, level);
       continue;
     }
     double *sums = sums_of(mpm, cells, k);
@@ -162,7 +189,7 @@ void mpsi_mpm_mean_diagonals(const mps_mpm *mpm, const mpsi_cell_block *cells, i
     double mean;
     if (by_nodes(mpm)) {
       const support s = support_of(mpm, cells, k);
-      mean = take(mpm, cells, &s);
+      mean = take(mpm, cells, &s, level);
     } else {
       const double *sums = sums_of(mpm, cells, k);
       mean = sums[SUM_TRACE] / sums[SUM_VOLUME];

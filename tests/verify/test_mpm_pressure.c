@@ -63,7 +63,7 @@ static void water_rests(void **state) {
       const double off = sqrt(square / (double)x.shape[0]) / (RHO * GRAVITY * 2.0 * WIDTH);
       print_message("water at rest, spline %d, %s: off by %.3g %% of the bottom's pressure\n",
                     spline, nodes ? "nodes" : "point", 100.0 * off);
-      assert_true(off < (nodes ? 3e-3 : 1e-3));
+      assert_true(off < 1e-3);
       mpm_scene_end(&s);
     }
 }
