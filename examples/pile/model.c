@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#define FOOT 0.5      /* of the wall's thickness */
 #define STIFFNESS 4.0 /* of the contact, over K + 4G/3 and at most over m/dt^2 */
 #define CHATTER 6.0   /* over m/dt^2: a stiffer contact throws particles back and forth */
 
@@ -86,16 +87,20 @@ static mps_status make_soil(mps_context *context, pile *p) {
 
 /* ---- pile ------------------------------------------------------------------------------------ */
 
-/* The section of the wall, its tip at the body's own z = 0; driven at constant speed. Corners
- * belong to the tip: its edge comes first. */
+/* The section of the wall, its tip at the body's own z = 0; driven at constant speed. The tip's
+ * part goes up both faces by FOOT of the wall, at least a cell: particles on either side of a
+ * corner share their nodes, so that tip and face may push there against one another by any force.
+ */
 static mps_status make_pile(mps_context *context, pile *p) {
   const pile_settings *s = &p->s;
   const double length = 2.0 * s->depth + 2.0 * p->outer; /* beyond all soil that it may lift */
-  const double corner[8] = {p->inner, 0.0, p->outer, 0.0, p->outer, length, p->inner, length};
+  const double foot = FOOT * s->wall;
+  const double corner[12] = {p->inner, foot, p->inner, 0.0,    p->outer, 0.0,
+                             p->outer, foot, p->outer, length, p->inner, length};
   static const struct {
     const char *name;
-    int64_t edge;
-  } part[PILE_PARTS] = {{"tip", 0}, {"inside", 3}, {"outside", 1}};
+    int64_t edge, edges;
+  } part[PILE_PARTS] = {{"tip", 0, 3}, {"inside", 5, 1}, {"outside", 3, 1}};
   const double t[] = {p->t_start, p->t_end + 1.0}, v[] = {s->speed, s->speed};
   mps_signal *down = NULL;
   mps_body_def def = mps_body_defaults();
@@ -105,9 +110,9 @@ static mps_status make_pile(mps_context *context, pile *p) {
   contact.method = s->contact;
   if (s->contact == MPS_CONTACT_METHOD_PENALTY) contact.penalty = p->penalty;
   mps_status status = mps_signal_table(context, MPS_SIGNAL_VELOCITY, 2, t, v, &down);
-  if (status == MPS_OK) status = mps_body_create_polygon(context, &def, 4, corner, &p->m.body[0]);
+  if (status == MPS_OK) status = mps_body_create_polygon(context, &def, 6, corner, &p->m.body[0]);
   for (int k = 0; k < PILE_PARTS && status == MPS_OK; k++)
-    status = mps_body_name_part(p->m.body[0], part[k].name, part[k].edge, 1, NULL);
+    status = mps_body_name_part(p->m.body[0], part[k].name, part[k].edge, part[k].edges, NULL);
   if (status == MPS_OK) status = mps_body_drive(p->m.body[0], 1, down, -1.0);
   mps_signal_destroy(&down);
   return status == MPS_OK ? mps_mpm_add_contact(p->m.mpm, p->m.body[0], &contact, NULL) : status;

@@ -16,11 +16,11 @@
  * the mean stress of a fluid (its state J stays as it is, so nothing is smoothed twice), and to
  * which that of other laws tends by beta c dt/h. Ghosts of mirrors fold as mass does (mirror.h).
  *
- * At a wall or a surface all particles of a node lie on one side of it, and the mean of a pressure that
- * grows with depth is off by its slope times their distance. So a fluid's pressure goes to the node and
- * back along the slope that it has at rest, p_i = sum w V (p + rho g.(x_i - x))/sum w V and p~ = sum w
- * (p_i - rho g.(x_i - x)): at rest it is kept as it is.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * At a wall or a surface all particles of a node lie on one side of it, and the mean of a pressure
+ * that grows with depth is off by its slope times their distance. So a fluid's pressure goes to the
+ * node and back along the slope that it has at rest, p_i = sum w V (p + rho g.(x_i - x))/sum w V
+ * and p~ = sum w (p_i - rho g.(x_i - x)): at rest it is kept as it is. SPDX-License-Identifier:
+ * BSD-3-Clause */
 #include "kernels.h"
 
 #define BETA 0.03 /* larger ones spread pressure at free surfaces */
@@ -81,7 +81,8 @@ static support support_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int6
   return out;
 }
 
-/* What a value with the slope (3, per cell) at the particle is further on at a node of its support. */
+/* What a value with the slope (3, per cell) at the particle is further on at a node of its support.
+ */
 static double further(const support *s, const double *slope, int i, int j, int k) {
   return slope[0] * (s->at[0][i] - s->x[0]) + slope[1] * (s->at[1][j] - s->x[1]) +
          slope[2] * (s->at[2][k] - s->x[2]);
@@ -123,8 +124,8 @@ static double mean_stress(const mps_mpm *mpm, int64_t k) {
   return (mpm->p.s[0][k] + mpm->p.s[1][k] + mpm->p.s[2][k]) / 3.0;
 }
 
-/* How the mean stress of a fluid at rest grows along each axis, in a cell: means over the nodes near
- * then leave it as it is, at walls and surfaces too, where the nodes lie on one side. */
+/* How the mean stress of a fluid at rest grows along each axis, in a cell: means over the nodes
+ * near then leave it as it is, at walls and surfaces too, where the nodes lie on one side. */
 static void slope_at_rest(const mps_mpm *mpm, int64_t k, double *slope) {
   const bool fluid = mpsi_material_kept(mpsi_law_of(mpm, k)->material) == MPSI_KEPT_PRESSURE;
   const double weight = fluid ? mpm->p.m[k] / (mpm->p.V[k] * mpm->grid.inverse) : 0.0;
