@@ -295,6 +295,8 @@ static void footing_does_not_lock(void **state) {
     assert_true(cell < point);
     assert_true(rough < 0.2 * COHESION);
     assert_true(rough < 0.2 * wild);
+    assert_true(nodes < 1.35 * (2.0 + PI) && nodes > 2.0 + PI && nodes < point);
+    assert_true(smooth < 0.05 * COHESION);
   }
 }
 
