@@ -359,17 +359,16 @@ MPSI_INLINE void scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells, const 
 }
 
 /* FLIP: what the particle keeps of its own, flip times its velocity less that of the nodes before
- * the forces, in the lanes of the mass; add_own() in g2p.c adds it. */
+ * the forces. */
 MPSI_INLINE void keep_own(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
-                          int64_t p, const support *at, const mpsi_shape_values *f, mpsi_two *L) {
+                          int64_t p, const support *at, const mpsi_shape_values *f, double *own) {
   mpsi_quad before = {0.0};
   FOR_NODES(dim, spline) {
     const int32_t side = mpm->grid.nodes[block_under(cells, at, i, j, k)].side;
     const mpsi_node *node = (const mpsi_node *)(mpm->grid.side + mpsi_first_node(mpm, side));
     before += f->phi[n] * mpsi_get(node[local_of(at, i, j, k)]);
   }
-  for (int c = 0; c < dim; c++)
-    L[c][MPSI_MASS] = mpm->flip * (mpm->p.v[c][p] - before[MPSI_VECTOR + c]);
+  for (int c = 0; c < dim; c++) own[c] = mpm->flip * (mpm->p.v[c][p] - before[MPSI_VECTOR + c]);
 }
 
 /* Derivatives along the axes whose stencil is full, where nothing but sides of the domain cuts the
@@ -378,7 +377,7 @@ MPSI_INLINE void keep_own(const mps_mpm *mpm, const mpsi_cell_block *cells, int 
  */
 MPSI_INLINE void find_strain(const mps_mpm *mpm, const mpsi_cell_block *cells,
                              const mpsi_worker *worker, int dim, int spline, const support *at,
-                             const mpsi_shape_values *f, mpsi_two *L) {
+                             const mpsi_shape_values *f, double (*derivative)[4]) {
   for (int d = 0; d < dim; d++) {
     const int64_t low = (int64_t)cells->at[d] * MPSI_SIDE + at->at.at[d];
     if (low < mpm->grid.low[d] || low + spline > mpm->grid.high[d]) continue;
@@ -393,12 +392,12 @@ MPSI_INLINE void find_strain(const mps_mpm *mpm, const mpsi_cell_block *cells,
       const int t = mpsi_tile_index(at->at.at[0] + i, at->at.at[1] + j, at->at.at[2] + k);
       sum += ratio[own] * f->phi[n] * mpsi_get(worker->tile[t]);
     }
-    mpsi_put(L[d] + 4, sum);
+    mpsi_put(derivative[d], sum);
   }
 }
 
 MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                             int dim, int spline, int64_t particle, double *v, mpsi_two *L) {
+                             int dim, int spline, int64_t particle, mpsi_fitted *out) {
   support at;
   mpsi_shape_values f;
   make_support(mpm, cells, dim, spline, particle, &at);
@@ -414,12 +413,13 @@ MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const m
     moment[1] += at.at.s[1][j] * share;
     if (dim == 3) moment[2] += at.at.s[2][k] * share;
   }
-  mpsi_put(v, sum);
-  for (int d = 0; d < dim; d++) mpsi_put(L[d], by[d]), mpsi_put(L[d] + 4, by[d]);
-  if (!bodies && !mpm->standard) find_strain(mpm, cells, worker, dim, spline, &at, &f, L);
+  mpsi_put(out->v, sum);
+  for (int d = 0; d < dim; d++) mpsi_put(out->slope[d], by[d]), mpsi_put(out->derivative[d], by[d]);
+  if (!bodies && !mpm->standard)
+    find_strain(mpm, cells, worker, dim, spline, &at, &f, out->derivative);
   if (mpsi_keeps_spin(mpm, cells, bodies))
-    mpsi_take_spin(dim, spline, mpm->grid.inverse, moment, L);
-  if (mpm->flip > 0.0) keep_own(mpm, cells, dim, spline, particle, &at, &f, L);
+    mpsi_take_spin(dim, spline, mpm->grid.inverse, moment, out->slope);
+  if (mpm->flip > 0.0) keep_own(mpm, cells, dim, spline, particle, &at, &f, out->own);
   for (int32_t q = 0; bodies && q < cells->pairs; q++) {
     mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
     if (bodies >> pair->body & 1) share_friction(mpm, cells, dim, spline, particle, &at, &f, pair);
@@ -448,9 +448,9 @@ void MPSI_LEVELLED(mpsi_scatter_fitted)(mps_mpm *mpm, const mpsi_cell_block *cel
 }
 
 void MPSI_LEVELLED(mpsi_gather_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                       const mpsi_worker *worker, int64_t particle, double *v,
-                                       mpsi_two *L) {
-  CHOOSE(mpm->dim, mpm->def.spline, gather_body, particle, v, L);
+                                       const mpsi_worker *worker, int64_t particle,
+                                       mpsi_fitted *out) {
+  CHOOSE(mpm->dim, mpm->def.spline, gather_body, particle, out);
 }
 
 void MPSI_LEVELLED(mpsi_fit)(const mps_mpm *mpm, const mpsi_cell_block *cells,

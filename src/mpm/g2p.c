@@ -21,92 +21,130 @@ MPSI_INLINE void gather_tile(const mps_mpm *mpm, const mpsi_cell_block *cells, m
 /* Differences along y of a stencil, node by node along x, in each of its planes across z. */
 typedef struct differences {
   int32_t first; /* lowest node of the stencil */
-  mpsi_vec along_y[4][MPSI_ROW];
+  mpsi_node along_y[4][4];
 } differences;
 
 MPSI_INLINE void find_differences(int dim, int spline, int32_t first, const mpsi_node *tile,
                                   differences *out) {
   out->first = first;
   for (int plane = 0; plane <= (dim == 3 ? spline : 0); plane++)
-    MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
-      const double *node = tile[first + mpsi_tile_index(0, 0, plane)] + 4 * MPSI_WIDE * v;
-      mpsi_vec sum = {0.0};
+    MPSI_UNROLL for (int i = 0; i <= spline; i++) {
+      mpsi_quad sum = {0.0};
       MPSI_UNROLL for (int j = 0; j <= spline; j++) sum +=
-          mpsi_difference(spline, j) * mpsi_get_row(node + 4 * mpsi_tile_index(0, j, 0));
-      out->along_y[plane][v] = sum;
+          mpsi_difference(spline, j) * mpsi_get(tile[first + mpsi_tile_index(i, j, plane)]);
+      mpsi_put(out->along_y[plane][i], sum);
     }
 }
 
-/* A particle's velocity (lanes 1 to 3), its slopes by x, y, z, which the transfer takes, and its
- * derivatives, which the laws see. */
+/* What the nodes give to the particles of a chunk: columns. A velocity's derivative of component c
+ * by axis d is number dim c + d, as in the columns L of the set. */
 typedef struct gathered {
-  mpsi_two v;    /* velocity, 0 */
-  mpsi_two L[3]; /* slope and derivative by each axis */
+  double v[3][MPSI_COLUMN], own[3][MPSI_COLUMN]; /* m/s; FLIP: what a particle keeps of its own */
+  double slope[9][MPSI_COLUMN];                  /* 1/s, of the fit, which the transfer takes */
+  double derivative[9][MPSI_COLUMN];             /* 1/s, which the laws see */
 } gathered;
 
-/* By factors: sums of the rows by their weights across, w and w s, node by node, and at last along
- * x. `excess` (1/m) of each axis: see mpsi_excess. */
-MPSI_INLINE void gather_full(int dim, int spline, double scale, const mpsi_places *places,
-                             const mpsi_rows *rows, int k, const mpsi_node *tile,
-                             const differences *difference, const double *excess, gathered *out) {
-  /* by w of y and z, by w s of y, by w s of z, by differences of y, of z */
-  mpsi_vec sum[5][MPSI_ROW] = {{{0.0}}};
-  tile += places->first[k];
+/* Sums over the nodes across x, for one component at one place along x: by w of y and z, by w s of
+ * y, of z, and by the differences of y, of z. */
+typedef struct across {
+  mpsi_lanes value, slope[2], rise[2];
+} across;
+
+MPSI_INLINE across sum_across(int dim, int spline, const mpsi_places *places, int k,
+                              const mpsi_node *node, int lane, const differences *difference,
+                              int i) {
+  across out = {{0.0}, {{0.0}}, {{0.0}}};
   for (int plane = 0; plane <= (dim == 3 ? spline : 0); plane++) {
-    MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
-      mpsi_vec value = {0.0}, slope = {0.0};
-      MPSI_UNROLL for (int j = 0; j <= spline; j++) {
-        const mpsi_vec node = mpsi_get_row(tile[mpsi_tile_index(0, j, plane)] + 4 * MPSI_WIDE * v);
-        value += places->w[0][j][k] * node;
-        slope += places->ws[0][j][k] * node;
-      }
-      if (dim == 2) {
-        sum[0][v] = value, sum[1][v] = slope, sum[3][v] = difference->along_y[0][v];
-        continue;
-      }
-      const double wz = places->w[1][plane][k], wzs = places->ws[1][plane][k];
-      sum[0][v] += wz * value;
-      sum[1][v] += wz * slope;
-      sum[2][v] += wzs * value;
-      sum[3][v] += wz * difference->along_y[plane][v];
-      sum[4][v] += mpsi_difference(spline, plane) * value;
+    const double rise = difference->along_y[plane][i][lane];
+    mpsi_lanes value = {0.0}, slope = {0.0};
+    MPSI_UNROLL for (int j = 0; j <= spline; j++) {
+      const double v = node[mpsi_tile_index(i, j, plane)][lane];
+      value += mpsi_get_lanes(places->w[1][j] + k) * v;
+      slope += mpsi_get_lanes(places->ws[1][j] + k) * v;
     }
-  }
-  mpsi_vec w[MPSI_ROW], ws[MPSI_ROW], all[4] = {{0.0}}, rise[3] = {{0.0}};
-  mpsi_weights_along(spline, places, rows, k, w, ws);
-  MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
-    double by_x[4];
-    for (int i = 0; i < 4; i++) by_x[i] = mpsi_difference(spline, i);
-    all[0] += w[v] * sum[0][v];
-    all[1] += ws[v] * sum[0][v];
-    rise[0] += mpsi_by_node(by_x, v * MPSI_WIDE) * sum[0][v];
-    for (int d = 2; d <= dim; d++) {
-      all[d] += w[v] * sum[d - 1][v];
-      rise[d - 1] += w[v] * sum[d + 1][v];
+    if (dim == 2) {
+      out = (across){value, {slope}, {rise + out.rise[0]}};
+      continue;
     }
+    const mpsi_lanes w = mpsi_get_lanes(places->w[2][plane] + k);
+    out.value += w * value;
+    out.slope[0] += w * slope;
+    out.slope[1] += mpsi_get_lanes(places->ws[2][plane] + k) * value;
+    out.rise[0] += w * rise;
+    out.rise[1] += mpsi_difference(spline, plane) * value;
   }
-  mpsi_put(out->v, mpsi_fold(all[0]));
-  for (int d = 0; d < dim; d++) {
-    const mpsi_vec slope = scale * all[1 + d];
-    mpsi_fold_two(slope, slope + excess[d] * rise[d], out->L[d]);
+  return out;
+}
+
+/* Particles from `k` of `places`, all of one stencil (what is behind them comes to nothing),
+ * to `out` from `to` on: sums of the rows by their weights across, w and w s, and at last along x.
+ * The derivative along `plain` is the slope. */
+MPSI_INLINE void gather_lanes(const mps_mpm *mpm, int dim, int spline, const mpsi_places *places,
+                              int k, const mpsi_node *tile, const differences *difference,
+                              int plain, gathered *out, int to) {
+  const double scale = mpsi_inverse_moment(spline) * mpm->grid.inverse;
+  const mpsi_node *node = tile + difference->first;
+  mpsi_lanes excess[3] = {{0.0}}; /* see mpsi_excess */
+  MPSI_UNROLL for (int d = 0; d < dim; d++) {
+    if (d != plain)
+      excess[d] = mpm->grid.inverse * mpsi_excess(spline, mpsi_get_lanes(places->t[d] + k));
+  }
+  MPSI_UNROLL for (int c = 0; c < dim; c++) {
+    mpsi_lanes v = {0.0}, slope[3] = {{0.0}}, rise[3] = {{0.0}};
+    MPSI_UNROLL for (int i = 0; i <= spline; i++) {
+      const across sum = sum_across(dim, spline, places, k, node, MPSI_VECTOR + c, difference, i);
+      const mpsi_lanes w = mpsi_get_lanes(places->w[0][i] + k);
+      v += w * sum.value;
+      slope[0] += mpsi_get_lanes(places->ws[0][i] + k) * sum.value;
+      rise[0] += mpsi_difference(spline, i) * sum.value;
+      MPSI_UNROLL for (int d = 1; d < dim; d++) {
+        slope[d] += w * sum.slope[d - 1];
+        rise[d] += w * sum.rise[d - 1];
+      }
+    }
+    mpsi_put_lanes(out->v[c] + to, v);
+    MPSI_UNROLL for (int d = 0; d < dim; d++) {
+      slope[d] *= scale;
+      mpsi_put_lanes(out->slope[dim * c + d] + to, slope[d]);
+      mpsi_put_lanes(out->derivative[dim * c + d] + to, slope[d] + excess[d] * rise[d]);
+    }
   }
 }
 
-/* The same at the wall across `axis`, where the laws see the slope across it. */
+/* The same at the wall across `axis`, where the laws see the slope across it; `n` particles. */
 MPSI_INLINE void gather_at_wall(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
-                                int spline, double scale, const mpsi_places *places, int axis,
-                                int k, const mpsi_node *tile, const differences *difference,
-                                const double *excess, gathered *out) {
+                                int spline, const mpsi_places *places, int axis, int k, int n,
+                                const mpsi_node *tile, const differences *difference,
+                                gathered *out) {
   mpsi_wall wall;
-  double along[3] = {excess[0], excess[1], excess[2]};
-  gathered slopes;
-  along[axis] = 0.0;
-  mpsi_wall_places(mpm, cells, dim, spline, places, k, k + 1, axis, MPSI_WALL_ALONG, &wall);
-  gather_full(dim, spline, scale, &wall.places, &wall.rows, 0, tile, difference, along, &slopes);
-  mpsi_wall_places(mpm, cells, dim, spline, places, k, k + 1, axis, MPSI_WALL_SLOPE, &wall);
-  gather_full(dim, spline, scale, &wall.places, &wall.rows, 0, tile, difference, along, out);
-  for (int d = 0; d < dim; d++)
-    if (d != axis) memcpy(out->L[d], slopes.L[d], sizeof(mpsi_node));
+  gathered along;
+  mpsi_wall_places(mpm, cells, dim, spline, places, k, k + n, axis, MPSI_WALL_ALONG, &wall);
+  gather_lanes(mpm, dim, spline, &wall.places, 0, tile, difference, axis, &along, 0);
+  mpsi_wall_places(mpm, cells, dim, spline, places, k, k + n, axis, MPSI_WALL_SLOPE, &wall);
+  gather_lanes(mpm, dim, spline, &wall.places, 0, tile, difference, axis, out, k);
+  for (int c = 0; c < dim; c++)
+    for (int d = 0; d < dim; d++) {
+      const size_t bytes = (size_t)n * sizeof(double);
+      if (d == axis) continue;
+      memcpy(out->slope[dim * c + d] + k, along.slope[dim * c + d], bytes);
+      memcpy(out->derivative[dim * c + d] + k, along.derivative[dim * c + d], bytes);
+    }
+}
+
+/* One particle near bodies or corners. */
+static void gather_fitted(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                          int64_t particle, gathered *out, int to) {
+  const int dim = mpm->dim;
+  mpsi_fitted one = {.own = {0.0}};
+  MPSI_LEVELLED(mpsi_gather_fitted)(mpm, cells, worker, particle, &one);
+  for (int c = 0; c < dim; c++) {
+    out->v[c][to] = one.v[MPSI_VECTOR + c];
+    out->own[c][to] = one.own[c];
+    for (int d = 0; d < dim; d++) {
+      out->slope[dim * c + d][to] = one.slope[d][MPSI_VECTOR + c];
+      out->derivative[dim * c + d][to] = one.derivative[d][MPSI_VECTOR + c];
+    }
+  }
 }
 
 /* The first `n` (at most 4) values of a vector. */
@@ -125,70 +163,49 @@ typedef struct moved {
   bool outside, left;
 } moved;
 
-/* Slopes, or (second 4) derivatives, of four particles to columns from `at`; `n` of them are there.
- */
-MPSI_INLINE void store_gradients(int dim, int n, const gathered *from, int second,
-                                 double *const *to, int64_t at) {
-  MPSI_UNROLL for (int d = 0; d < dim; d++) {
-    mpsi_quad a[4];
-    MPSI_UNROLL for (int i = 0; i < 4; i++) a[i] = mpsi_get(from[i].L[d] + second);
-    mpsi_transpose(a);
-    MPSI_UNROLL for (int c = 0; c < dim; c++) store_some(to[dim * c + d] + at, a[1 + c], n);
-  }
-}
-
-/* Four particles from `at`, of which `n` are there. */
+/* Four particles from `at`, of which `n` are there; `from` number k on. */
 MPSI_INLINE void move_four(mps_mpm *mpm, const mpsi_cell_block *cells, int geometry, int spline,
-                           int64_t at, int n, const gathered *from, mpsi_mask *outside,
+                           int64_t at, int n, const gathered *from, int k, mpsi_mask *outside,
                            mpsi_mask *left) {
   const int dim = mpsi_dim_of(geometry);
   const double first = spline == 3 ? 1.0 : 0.5; /* of the block: see mpsi_find_places */
   const mpsi_columns *p = &mpm->p;
   const mpsi_mask there = (mpsi_mask){0, 1, 2, 3} < n;
-  mpsi_quad v[4];
-  MPSI_UNROLL for (int i = 0; i < 4; i++) v[i] = mpsi_get(from[i].v);
-  mpsi_transpose(v);
   MPSI_UNROLL for (int c = 0; c < dim; c++) {
     const int reach = c == 0 ? 3 : spline; /* see widen_use in layout.c */
-    const mpsi_quad x = mpsi_get_some(p->x[c] + at, n), to = x + mpm->run.dt * v[1 + c];
-    const mpsi_quad X = mpsi_from_block(mpm, cells, c, to);
+    const mpsi_quad v = mpsi_get(from->v[c] + k), x = mpsi_get_some(p->x[c] + at, n);
+    const mpsi_quad to = x + mpm->run.dt * v, X = mpsi_from_block(mpm, cells, c, to);
     const double corner = (double)cells->at[c] * MPSI_SIDE;
     const mpsi_mask good =
         (X >= (double)mpm->grid.low[c] - corner) & (X <= (double)mpm->grid.high[c] - corner);
     const mpsi_mask here = (X >= first + cells->low[c]) & (X < first + (cells->high[c] - reach));
     *outside |= there & ~good;
     *left |= there & ~here;
-    store_some(p->v[c] + at, v[1 + c], n);
-    if (geometry == MPS_MPM_AXISYMMETRIC && c == 0) store_some(p->L[4] + at, v[1] / x, n);
+    store_some(p->v[c] + at, v, n);
+    if (geometry == MPS_MPM_AXISYMMETRIC && c == 0) store_some(p->L[4] + at, v / x, n);
     store_some(p->x[c] + at, to, n);
   }
+  MPSI_UNROLL for (int a = 0; a < dim * dim; a++)
+      store_some(p->L[a] + at, mpsi_get(from->slope[a] + k), n);
 }
 
 MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cell_block *cells, int geometry, int spline,
-                       int64_t begin, int n, const gathered *from, double *const *D) {
-  const int dim = mpsi_dim_of(geometry);
-  double *const *L = mpm->p.L;
+                       int64_t begin, int n, const gathered *from) {
   mpsi_mask outside = {0}, left = {0};
   for (int k = 0; k < n; k += 4) {
-    const int64_t at = begin + k;
-    if (n - k >= 4) { /* apart: without questions */
-      move_four(mpm, cells, geometry, spline, at, 4, from + k, &outside, &left);
-      store_gradients(dim, 4, from + k, 0, L, at);
-      store_gradients(dim, 4, from + k, 4, D, k);
-    } else {
-      move_four(mpm, cells, geometry, spline, at, n - k, from + k, &outside, &left);
-      store_gradients(dim, n - k, from + k, 0, L, at);
-      store_gradients(dim, n - k, from + k, 4, D, k);
-    }
+    if (n - k >= 4) /* apart: without questions */
+      move_four(mpm, cells, geometry, spline, begin + k, 4, from, k, &outside, &left);
+    else
+      move_four(mpm, cells, geometry, spline, begin + k, n - k, from, k, &outside, &left);
   }
   return (moved){(outside[0] | outside[1] | outside[2] | outside[3]) != 0,
                  (left[0] | left[1] | left[2] | left[3]) != 0};
 }
 
-/* FLIP: what the particles keep of their own velocities, where fitted.c has put it. */
+/* FLIP: what the particles keep of their own velocities. */
 static void add_own(mps_mpm *mpm, int64_t begin, int n, const gathered *from) {
   for (int c = 0; c < mpm->dim; c++)
-    for (int k = 0; k < n; k++) mpm->p.v[c][begin + k] += from[k].L[c][MPSI_MASS];
+    for (int k = 0; k < n; k++) mpm->p.v[c][begin + k] += from->own[c][k];
 }
 
 /* The nodes of a wall stand still, but a velocity fitted over them need not at the wall itself: a
@@ -223,30 +240,41 @@ static int64_t keep_inside(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, 
   return bad;
 }
 
-/* c + |v| of particles [begin, begin + n), at most a chunk. A NaN or infinity is a bad particle. */
+/* The largest (c + |v|)^2 of some, at most a chunk, with room for three more; false where one is
+ * not a number or infinite. */
+MPSI_INLINE bool find_largest(int n, double *square, double *out) {
+  mpsi_quad largest = {0.0};
+  mpsi_mask good = {-1, -1, -1, -1};
+  for (int i = 0; i < 3; i++) square[n + i] = 0.0;
+  for (int k = 0; k < n; k += 4) {
+    const mpsi_quad own = mpsi_get(square + k);
+    const mpsi_mask larger = own > largest;
+    largest = (mpsi_quad)(((mpsi_mask)own & larger) | ((mpsi_mask)largest & ~larger));
+    good &= own <= 1.7e308; /* not of a NaN */
+  }
+  *out = fmax(fmax(largest[0], largest[1]), fmax(largest[2], largest[3]));
+  return (good[0] & good[1] & good[2] & good[3]) != 0;
+}
+
+/* c + |v| of particles [begin, begin + n), at most a chunk, as c^2 + v^2 + 2 c |v|: a root less. A
+ * NaN or infinity, and a negative volume, is a bad particle. */
 MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cell_block *cells, int dim, int64_t begin,
                             int n, const double *moduli) {
   const mpsi_columns *p = &mpm->p;
   const double *v0 = p->v[0] + begin, *v1 = p->v[1] + begin, *v2 = dim == 3 ? p->v[2] + begin : v1;
   const double *V = p->V + begin, *m = p->m + begin;
   const double moving = mpm->def.step_from == MPS_MPM_STEP_FROM_SPEED ? 1.0 : 0.0;
-  double speed[MPSI_CHUNK];
+  double square[MPSI_COLUMN], largest;
   MPSI_SIMD for (int k = 0; k < n; k++) {
-    double square = v0[k] * v0[k] + v1[k] * v1[k];
-    if (dim == 3) square += v2[k] * v2[k];
-    speed[k] =
-        sqrt((moduli ? moduli[k] : mpm->laws.law[0].modulus) * V[k] / m[k]) + moving * sqrt(square);
+    double v = v0[k] * v0[k] + v1[k] * v1[k];
+    if (dim == 3) v += v2[k] * v2[k];
+    const double c = (moduli ? moduli[k] : mpm->laws.law[0].modulus) * V[k] / m[k];
+    square[k] = c < 0.0 ? NAN : c + moving * (v + 2.0 * sqrt(c * v));
   }
-  double largest[4] = {0.0};
-  int64_t good = 1;
-  for (int k = 0; k < n; k++) {
-    largest[k % 4] = speed[k] > largest[k % 4] ? speed[k] : largest[k % 4];
-    good &= speed[k] <= 1.7e308; /* not of a NaN */
-  }
-  for (int k = 0; k < 4; k++)
-    if (largest[k] > cells->speed) cells->speed = largest[k];
+  const bool good = find_largest(n, square, &largest);
+  if (largest > cells->speed * cells->speed) cells->speed = sqrt(largest);
   for (int k = 0; k < n && !good && (cells->bad < 0 || cells->lost); k++)
-    if (!isfinite(speed[k])) cells->bad = begin + k, cells->lost = false;
+    if (!isfinite(square[k])) cells->bad = begin + k, cells->lost = false;
 }
 
 MPSI_INLINE void speed_chunk(const mps_mpm *mpm, mpsi_cell_block *cells, int dim, int64_t begin,
@@ -260,61 +288,61 @@ MPSI_INLINE void speed_chunk(const mps_mpm *mpm, mpsi_cell_block *cells, int dim
   find_speed(mpm, cells, dim, begin, n, moduli);
 }
 
-/* What the nodes give to particles [begin, begin + n). */
+/* What the nodes give to particles [begin, begin + n). Those of a stencil are neighbours. */
 MPSI_INLINE void gather_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                               int dim, int spline, int64_t begin, int n, gathered *out) {
-  const double scale = mpsi_inverse_moment(spline) * mpm->grid.inverse;
   const mpsi_node *tile = (const mpsi_node *)worker->tile;
   mpsi_places places;
-  differences difference = {.first = -1};
-  double excess[3][MPSI_CHUNK];
+  differences difference;
   mpsi_find_places(mpm, cells, dim, spline, begin, n, &places);
-  for (int c = 0; c < dim; c++)
-    for (int k = 0; k < n; k += 4)
-      mpsi_put(excess[c] + k, mpm->grid.inverse * mpsi_excess(spline, mpsi_get(places.t[c] + k)));
   if (mpm->p.stencil)
     memcpy(mpm->p.stencil + begin, places.first, (size_t)n * sizeof *mpm->p.stencil);
-  uint32_t state = 0;
-  for (int k = 0; k < n; k++) {
+  for (int k = 0, end; k < n; k = end) {
     const int32_t first = places.first[k];
-    const double e[3] = {excess[0][k], excess[1][k], dim == 3 ? excess[2][k] : 0.0};
-    if (first != difference.first) {
-      find_differences(dim, spline, first, tile, &difference);
-      if (cells->cut) state = mpsi_support_state(worker, dim, spline, first);
-    }
+    for (end = k + 1; end < n && places.first[end] == first;) end++;
+    find_differences(dim, spline, first, tile, &difference);
+    const uint32_t state = cells->cut ? mpsi_support_state(worker, dim, spline, first) : 0;
     const int axis = state ? mpsi_wall_axis(mpm, cells, dim, spline, state, first) : -1;
     if (!state)
-      gather_full(dim, spline, scale, &places, NULL, k, tile, &difference, e, &out[k]);
+      for (int q = k; q < end; q += MPSI_LANES)
+        gather_lanes(mpm, dim, spline, &places, q, tile, &difference, -1, out, q);
     else if (axis >= 0)
-      gather_at_wall(mpm, cells, dim, spline, scale, &places, axis, k, tile, &difference, e,
-                     &out[k]);
+      for (int q = k; q < end; q += MPSI_LANES)
+        gather_at_wall(mpm, cells, dim, spline, &places, axis, q,
+                       end - q < MPSI_LANES ? end - q : MPSI_LANES, tile, &difference, out);
     else
-      MPSI_LEVELLED(mpsi_gather_fitted)(mpm, cells, worker, begin + k, out[k].v, out[k].L);
-    for (int d = 0; d < dim && mpm->strain_by_fit; d++)
-      memcpy(out[k].L[d] + 4, out[k].L[d], sizeof(mpsi_node));
+      for (int q = k; q < end; q++) gather_fitted(mpm, cells, worker, begin + q, out, q);
   }
+  if (mpm->strain_by_fit) memcpy(out->derivative, out->slope, sizeof out->slope);
 }
 
-/* `D`: columns of the derivatives of these particles, as those of L, for the laws. */
 MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cell_block *cells, const mpsi_worker *worker,
-                           int geometry, int spline, int64_t begin, int n, double *const *D) {
+                           int geometry, int spline, int64_t begin, int n) {
   const int dim = mpsi_dim_of(geometry);
-  gathered from[MPSI_CHUNK] __attribute__((aligned(64)));
-  gather_chunk(mpm, cells, worker, dim, spline, begin, n, from);
+  gathered from;
+  double *D[9];
+  gather_chunk(mpm, cells, worker, dim, spline, begin, n, &from);
+  for (int a = 0; a < dim * dim; a++) {
+    D[a] = from.derivative[a];
+    if (mpm->p.D[a]) memcpy(mpm->p.D[a] + begin, D[a], (size_t)n * sizeof *D[a]);
+  }
   if (mpm->energy.counts) mpsi_energy_before(mpm, cells, begin, begin + n);
-  const moved m = move(mpm, cells, geometry, spline, begin, n, from, D);
+  const moved m = move(mpm, cells, geometry, spline, begin, n, &from);
   if (mpm->energy.counts) mpsi_energy_moved(mpm, cells, begin, begin + n);
-  if (mpm->flip > 0.0) add_own(mpm, begin, n, from);
+  if (mpm->flip > 0.0) add_own(mpm, begin, n, &from);
   if (m.left) cells->left = true;
-  if (!m.outside) return;
-  const int64_t bad = keep_inside(mpm, cells, begin, begin + n);
-  if (cells->bad < 0 && bad >= 0) cells->bad = bad, cells->lost = true;
+  if (m.outside) {
+    const int64_t bad = keep_inside(mpm, cells, begin, begin + n);
+    if (cells->bad < 0 && bad >= 0) cells->bad = bad, cells->lost = true;
+  }
+  if (mpm->p.stencil) return; /* the laws wait for the cells' means */
+  mpsi_mpm_apply_law(mpm, cells, begin, begin + n, D);
+  speed_chunk(mpm, cells, dim, begin, n);
 }
 
 MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {
   mpsi_cell_block *cells = &mpm->grid.cells[b];
   mpsi_worker *worker = &mpm->grid.workers[number];
-  const int dim = mpsi_dim_of(geometry);
   cells->left = cells->gone = cells->lost = false;
   cells->bad = -1;
   cells->speed = 0.0;
@@ -323,12 +351,7 @@ MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry,
   if (cells->cut) mpsi_mpm_find_states(mpm, cells, worker);
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
-    double own[9][MPSI_CHUNK], *D[9];
-    for (int c = 0; c < dim * dim; c++) D[c] = mpm->p.D[c] ? mpm->p.D[c] + k : own[c];
-    g2p_chunk(mpm, cells, worker, geometry, spline, k, n, D);
-    if (mpm->p.stencil) continue; /* the laws wait for the cells' means */
-    mpsi_mpm_apply_law(mpm, cells, k, k + n, D);
-    speed_chunk(mpm, cells, dim, k, n);
+    g2p_chunk(mpm, cells, worker, geometry, spline, k, n);
   }
 }
 

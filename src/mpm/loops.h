@@ -73,33 +73,12 @@ MPSI_INLINE void mpsi_transpose(mpsi_quad *a) {
   a[3] = MPSI_SHUFFLE(q, s, 2, 3, 6, 7);
 }
 
-typedef double mpsi_two[8]; /* two rows of four side by side */
-
-/* The same node values for every node of a vector; the sum over its nodes; two such sums. */
+/* The same node values for every node of a vector. */
 MPSI_INLINE mpsi_vec mpsi_spread(mpsi_quad a) {
 #if MPSI_WIDE == 2
   return (mpsi_vec){a[0], a[1], a[2], a[3], a[0], a[1], a[2], a[3]};
 #else
   return a;
-#endif
-}
-
-MPSI_INLINE mpsi_quad mpsi_fold(mpsi_vec a) {
-#if MPSI_WIDE == 2
-  return (mpsi_quad){a[0], a[1], a[2], a[3]} + (mpsi_quad){a[4], a[5], a[6], a[7]};
-#else
-  return a;
-#endif
-}
-
-MPSI_INLINE void mpsi_fold_two(mpsi_vec a, mpsi_vec b, double *out) {
-#if MPSI_WIDE == 2
-  const mpsi_vec sum = MPSI_SHUFFLE_WIDE(a, b, 0, 1, 2, 3, 8, 9, 10, 11) +
-                       MPSI_SHUFFLE_WIDE(a, b, 4, 5, 6, 7, 12, 13, 14, 15);
-  mpsi_put_row(out, sum);
-#else
-  mpsi_put(out, a);
-  mpsi_put(out + 4, b);
 #endif
 }
 
@@ -135,34 +114,22 @@ MPSI_INLINE mpsi_vec mpsi_by_node(const double *c, int i) {
 #endif
 }
 
-/* Weights w and w s along a row, t as of mpsi_weights: the same polynomials, in factors that are
- * never negative. */
-MPSI_INLINE void mpsi_row_weights(int spline, double t, mpsi_vec *w, mpsi_vec *ws) {
-  static const double at[4] = {0.0, 1.0, 2.0, 3.0};
-  const double f = t - 1.0;
-  for (int v = 0; v < MPSI_ROW; v++) {
-    const int i = v * MPSI_WIDE;
-    if (spline == 3) { /* u = 1 - f, f, 1 - f, f */
-      static const double u0[4] = {1.0, 0.0, 1.0, 0.0}, u1[4] = {-1.0, 1.0, -1.0, 1.0};
-      static const double c0[4] = {0.0, 2.0 / 3.0, 2.0 / 3.0, 0.0}, c2[4] = {0.0, -1.0, -1.0, 0.0};
-      static const double c3[4] = {1.0 / 6.0, 0.5, 0.5, 1.0 / 6.0};
-      const mpsi_vec u = mpsi_by_node(u0, i) + mpsi_by_node(u1, i) * f;
-      w[v] = mpsi_by_node(c0, i) + u * u * (mpsi_by_node(c2, i) + mpsi_by_node(c3, i) * u);
-    } else {
-      static const double u0[4] = {0.5, 0.0, -0.5, 0.0};
-      static const double c0[4] = {0.0, 0.75, 0.0, 0.0}, c2[4] = {0.5, -1.0, 0.5, 0.0};
-      const mpsi_vec u = mpsi_by_node(u0, i) - f;
-      w[v] = mpsi_by_node(c0, i) + mpsi_by_node(c2, i) * (u * u);
-    }
-    ws[v] = w[v] * (mpsi_by_node(at, i) - t);
-  }
-}
+/* As many particles of a stencil at once. */
+#if MPSI_LEVEL == 4
+#define MPSI_LANES 8
+#else
+#define MPSI_LANES 4
+#endif
+typedef double mpsi_lanes __attribute__((vector_size(8 * MPSI_LANES)));
+typedef double mpsi_lanes_any __attribute__((vector_size(8 * MPSI_LANES), aligned(8), may_alias));
+MPSI_INLINE mpsi_lanes mpsi_get_lanes(const double *from) { return *(const mpsi_lanes_any *)from; }
+MPSI_INLINE void mpsi_put_lanes(double *to, mpsi_lanes v) { *(mpsi_lanes_any *)to = v; }
 
 /* The derivative of a B-spline is the fit's slope w s/m2 and, times `excess`, the difference of
  * second (quadratic) or third order (cubic) of the nodes of its stencil: sums of differences serve
  * all particles of a stencil. t as of mpsi_weights. */
-MPSI_INLINE mpsi_quad mpsi_excess(int spline, mpsi_quad t) {
-  const mpsi_quad f = t - 1.0, g = 2.0 - t;
+MPSI_INLINE mpsi_lanes mpsi_excess(int spline, mpsi_lanes t) {
+  const mpsi_lanes f = t - 1.0, g = 2.0 - t;
   return spline == 3 ? 0.5 * (f * f) * (g * g) : 2.0 * f * (f * f - 0.25);
 }
 
@@ -175,30 +142,19 @@ MPSI_INLINE double mpsi_difference(int spline, int i) {
 
 #define MPSI_SEGMENT 16 /* particles of one stencil at most that are summed at once */
 
+#define MPSI_COLUMN (MPSI_CHUNK + 8) /* some from any particle of a chunk on are there */
+
 /* Where the particles of a chunk are in the tile. */
 typedef struct mpsi_places {
-  double t[3][MPSI_CHUNK];                          /* from the lowest node */
-  double w[2][4][MPSI_CHUNK], ws[2][4][MPSI_CHUNK]; /* along y, z: w, w s */
-  int32_t first[MPSI_CHUNK];                        /* lowest node */
+  double t[3][MPSI_COLUMN];                           /* from the lowest node */
+  double w[3][4][MPSI_COLUMN], ws[3][4][MPSI_COLUMN]; /* w, w s of each axis */
+  int32_t first[MPSI_CHUNK];                          /* lowest node */
 } mpsi_places;
 
-/* Weights w and w s along x, where they are not those of t. */
+/* The weights along x of each particle, of the four nodes of a row side by side. */
 typedef struct mpsi_rows {
-  double w[MPSI_SEGMENT][4], ws[MPSI_SEGMENT][4];
+  double w[MPSI_CHUNK][4], ws[MPSI_CHUNK][4];
 } mpsi_rows;
-
-/* The weights of particle k along x. */
-MPSI_INLINE void mpsi_weights_along(int spline, const mpsi_places *places, const mpsi_rows *rows,
-                                    int k, mpsi_vec *w, mpsi_vec *ws) {
-  if (!rows) {
-    mpsi_row_weights(spline, places->t[0][k], w, ws);
-    return;
-  }
-  for (int v = 0; v < MPSI_ROW; v++) {
-    w[v] = mpsi_by_node(rows->w[k], v * MPSI_WIDE);
-    ws[v] = mpsi_by_node(rows->ws[k], v * MPSI_WIDE);
-  }
-}
 
 /* The first `n` values (at least 1), if fewer than four with the first again: what comes after may
  * be at work elsewhere, and 0 may be far from the block. */
@@ -216,8 +172,8 @@ MPSI_INLINE mpsi_quad mpsi_from_block(const mps_mpm *mpm, const mpsi_cell_block 
 }
 
 /* Weights of four particles along one axis, each times s too. */
-MPSI_INLINE void mpsi_axis_weights(int spline, mpsi_quad t, double (*w)[MPSI_CHUNK],
-                                   double (*ws)[MPSI_CHUNK]) {
+MPSI_INLINE void mpsi_axis_weights(int spline, mpsi_quad t, double (*w)[MPSI_COLUMN],
+                                   double (*ws)[MPSI_COLUMN]) {
   const mpsi_quad f = t - 1.0, g = 2.0 - t;
   mpsi_quad a[4];
   if (spline == 3) {
@@ -250,9 +206,8 @@ MPSI_INLINE void mpsi_find_places(const mps_mpm *mpm, const mpsi_cell_block *cel
       const mpsi_quad t = X - __builtin_convertvector(base, mpsi_quad);
       first += base * stride;
       mpsi_put(out->t[c] + k, t);
-      if (c > 0)
-        mpsi_axis_weights(spline, t, (double(*)[MPSI_CHUNK])(out->w[c - 1][0] + k),
-                          (double(*)[MPSI_CHUNK])(out->ws[c - 1][0] + k));
+      mpsi_axis_weights(spline, t, (double(*)[MPSI_COLUMN])(out->w[c][0] + k),
+                        (double(*)[MPSI_COLUMN])(out->ws[c][0] + k));
     }
     memcpy(out->first + k, &first, sizeof first);
   }
@@ -278,11 +233,16 @@ MPSI_INLINE uint32_t mpsi_support_state(const mpsi_worker *worker, int dim, int 
 /* Gives a particle to the tiles; at bodies also what contact needs to the nodes, straight. */
 void MPSI_LEVELLED(mpsi_scatter_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
                                         const mpsi_worker *worker, int64_t particle);
-/* Velocity (lanes 1 to 3 of v), its slopes by x, y, z and, behind each, its derivatives, which are
- * others along axes with a full stencil. */
+/* What the nodes give to a particle: lanes 1 to 3 of each are components of the velocity. */
+typedef struct mpsi_fitted {
+  double v[4];
+  double slope[3][4];      /* 1/s, of the fit, by x, y, z, which the transfer takes */
+  double derivative[3][4]; /* 1/s, which the laws see: others along axes with a full stencil */
+  double own[3];           /* m/s, FLIP: what the particle keeps of its own */
+} mpsi_fitted;
 void MPSI_LEVELLED(mpsi_gather_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                       const mpsi_worker *worker, int64_t particle, double *v,
-                                       mpsi_two *L);
+                                       const mpsi_worker *worker, int64_t particle,
+                                       mpsi_fitted *out);
 
 /* The fit by itself; the largest speed of a block: see mpsi_kernels. */
 void MPSI_LEVELLED(mpsi_fit)(const mps_mpm *mpm, const mpsi_cell_block *cells,

@@ -7,19 +7,13 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "wall.h"
 
-/* What a particle gives to its nodes: w (part[0] + part[1] s_x + part[2] s_y + part[3] s_z). */
+/* What particles give to their nodes, w (part 0 + part 1 s_x + part 2 s_y + part 3 s_z): columns
+ * of the four values of a node. */
+typedef double columns[4][4][MPSI_CHUNK]; /* part, value, particle */
 typedef struct parts {
-  double sum[MPSI_CHUNK][4][4] __attribute__((aligned(64)));   /* mass, momentum */
-  double force[MPSI_CHUNK][4][4] __attribute__((aligned(64))); /* 0, force: of split blocks */
+  columns sum;   /* mass, momentum */
+  columns force; /* 0, force: of split blocks */
 } parts;
-
-/* Rows of four columns to part `d` of particles k to k + 3. */
-MPSI_INLINE void put(double (*part)[4][4], int k, int d, mpsi_quad m, mpsi_quad x, mpsi_quad y,
-                     mpsi_quad z) {
-  mpsi_quad a[4] = {m, x, y, z};
-  mpsi_transpose(a);
-  for (int i = 0; i < 4; i++) mpsi_put(part[k + i][d], a[i]);
-}
 
 /* With dt > 0 `sum` has dt times the force with the momentum; else (split) they are apart. */
 MPSI_INLINE void find_parts(const mps_mpm *mpm, int geometry, int spline, bool split, int64_t begin,
@@ -33,59 +27,128 @@ MPSI_INLINE void find_parts(const mps_mpm *mpm, int geometry, int spline, bool s
   for (int k = 0; k < n; k += 4) {
     const int64_t at = begin + k;
     const mpsi_quad m = mpsi_get(p->m + at), V = dt * mpsi_get(p->V + at);
-    mpsi_quad momentum[3] = {zero, zero, zero}, force[3] = {zero, zero, zero};
-    for (int c = 0; c < dim; c++) {
-      momentum[c] = m * mpsi_get(p->v[c] + at);
-      force[c] = m * (dt * mpm->def.gravity[c]);
-    }
-    if (p->f[0])
-      for (int c = 0; c < dim; c++) force[c] += dt * mpsi_get(p->f[c] + at);
-    if (geometry == MPS_MPM_AXISYMMETRIC)
-      force[0] -= V * mpsi_get(p->s[2] + at) / mpsi_get(p->x[0] + at);
-    for (int c = 0; c < dim && !split; c++) momentum[c] += force[c];
-    put(out->sum, k, 0, m, momentum[0], momentum[1], momentum[2]);
-    if (split) put(out->force, k, 0, zero, force[0], force[1], force[2]);
     const mpsi_quad mh = m * h, Vs = V * stiff;
-    for (int d = 0; d < dim; d++) {
-      for (int c = 0; c < dim; c++) {
-        momentum[c] = mh * mpsi_get(p->L[dim * c + d] + at);
-        force[c] = Vs * mpsi_get(p->s[symmetric[c][d]] + at);
-        if (!split) momentum[c] += force[c];
+    mpsi_put(out->sum[0][MPSI_MASS] + k, m);
+    if (split) mpsi_put(out->force[0][MPSI_EXCESS] + k, zero);
+    MPSI_UNROLL for (int c = 0; c < dim; c++) {
+      const int to = MPSI_VECTOR + c;
+      mpsi_quad momentum = m * mpsi_get(p->v[c] + at), force = m * (dt * mpm->def.gravity[c]);
+      if (p->f[0]) force += dt * mpsi_get(p->f[c] + at);
+      if (geometry == MPS_MPM_AXISYMMETRIC && c == 0)
+        force -= V * mpsi_get(p->s[2] + at) / mpsi_get(p->x[0] + at);
+      mpsi_put(out->sum[0][to] + k, split ? momentum : momentum + force);
+      if (split) mpsi_put(out->force[0][to] + k, force);
+      MPSI_UNROLL for (int d = 0; d < dim; d++) {
+        momentum = mh * mpsi_get(p->L[dim * c + d] + at);
+        force = Vs * mpsi_get(p->s[symmetric[c][d]] + at);
+        mpsi_put(out->sum[1 + d][to] + k, split ? momentum : momentum + force);
+        if (split) mpsi_put(out->force[1 + d][to] + k, force);
       }
-      put(out->sum, k, 1 + d, zero, momentum[0], momentum[1], momentum[2]);
-      if (split) put(out->force, k, 1 + d, zero, force[0], force[1], force[2]);
     }
   }
 }
 
-/* Adds particles [begin, end) of a chunk, all of one stencil, to a tile. What they give is spread
- * along x once, and from there to each row by that row's weights alone. */
-MPSI_INLINE void add_segment(int dim, int spline, const mpsi_places *places, const mpsi_rows *rows,
-                             int begin, int end, double (*part)[4][4], mpsi_node *tile) {
+/* The weights along x, the four nodes of a row side by side. */
+MPSI_INLINE void find_rows(int spline, const mpsi_places *places, int n, mpsi_rows *out) {
+  for (int k = 0; k < n; k += 4) {
+    mpsi_quad w[4] = {{0.0}}, ws[4] = {{0.0}};
+    MPSI_UNROLL for (int i = 0; i <= spline; i++) {
+      w[i] = mpsi_get(places->w[0][i] + k);
+      ws[i] = mpsi_get(places->ws[0][i] + k);
+    }
+    mpsi_transpose(w);
+    mpsi_transpose(ws);
+    MPSI_UNROLL for (int i = 0; i < 4; i++) {
+      mpsi_put(out->w[k + i], w[i]);
+      mpsi_put(out->ws[k + i], ws[i]);
+    }
+  }
+}
+
+/* Particles in the plane: what each gives to its rows along x, w (value + slope s_x). */
+typedef struct row_parts {
+  double mass[4][MPSI_CHUNK]; /* by row; it has no slope */
+  double value[4][2][MPSI_CHUNK], slope[4][2][MPSI_CHUNK];
+} row_parts;
+
+MPSI_INLINE void find_row_parts(int spline, const mpsi_places *places, int n, columns part,
+                                row_parts *out) {
+  for (int k = 0; k < n; k += 4) MPSI_UNROLL for (int j = 0; j <= spline; j++) {
+      const mpsi_quad w = mpsi_get(places->w[1][j] + k), ws = mpsi_get(places->ws[1][j] + k);
+      mpsi_put(out->mass[j] + k, w * mpsi_get(part[0][MPSI_MASS] + k));
+      MPSI_UNROLL for (int c = 0; c < 2; c++) {
+        const int from = MPSI_VECTOR + c;
+        mpsi_put(out->value[j][c] + k,
+                 w * mpsi_get(part[0][from] + k) + ws * mpsi_get(part[2][from] + k));
+        mpsi_put(out->slope[j][c] + k, w * mpsi_get(part[1][from] + k));
+      }
+    }
+}
+
+/* Adds particles [begin, end) of a chunk, all of one stencil, to a tile. */
+MPSI_INLINE void add_in_plane(int spline, const mpsi_places *places, const mpsi_rows *rows,
+                              int begin, int end, const row_parts *part, mpsi_node *tile) {
+  mpsi_quad sum[4][4] = {{{0.0}}}; /* row, value of a node: the four nodes */
+  for (int k = begin; k < end; k++) {
+    const mpsi_quad w = mpsi_get(rows->w[k]), ws = mpsi_get(rows->ws[k]);
+    MPSI_UNROLL for (int j = 0; j <= spline; j++) {
+      sum[j][MPSI_MASS] += part->mass[j][k] * w;
+      MPSI_UNROLL for (int c = 0; c < 2; c++) {
+        sum[j][MPSI_VECTOR + c] += part->value[j][c][k] * w;
+        sum[j][MPSI_VECTOR + c] += part->slope[j][c][k] * ws;
+      }
+    }
+  }
+  MPSI_UNROLL for (int j = 0; j <= spline; j++) {
+    mpsi_node *to = tile + places->first[begin] + mpsi_tile_index(0, j, 0);
+    mpsi_transpose(sum[j]);
+    MPSI_UNROLL for (int i = 0; i <= spline; i++) mpsi_put(to[i], mpsi_get(to[i]) + sum[j][i]);
+  }
+}
+
+/* Particles in space: the four values of a node side by side. */
+typedef struct node_parts {
+  double of[MPSI_CHUNK][4][4] __attribute__((aligned(64)));
+} node_parts;
+
+MPSI_INLINE void find_node_parts(int n, columns part, node_parts *out) {
+  for (int k = 0; k < n; k += 4) MPSI_UNROLL for (int d = 0; d < 4; d++) {
+      mpsi_quad a[4];
+      MPSI_UNROLL for (int c = 0; c < 4; c++) a[c] =
+          d > 0 && c == MPSI_MASS ? (mpsi_quad){0.0} : mpsi_get(part[d][c] + k);
+      mpsi_transpose(a);
+      MPSI_UNROLL for (int i = 0; i < 4; i++) mpsi_put(out->of[k + i][d], a[i]);
+    }
+}
+
+/* The same. What they give is spread along x once, and from there to each row by that row's
+ * weights alone. */
+MPSI_INLINE void add_in_space(int spline, const mpsi_places *places, const mpsi_rows *rows,
+                              int begin, int end, const node_parts *part, mpsi_node *tile) {
   mpsi_vec along[MPSI_SEGMENT][3][MPSI_ROW]; /* by w of y and z, by w s of y, by w s of z */
   for (int k = begin; k < end; k++) {
     mpsi_vec w[MPSI_ROW], ws[MPSI_ROW], a[4];
-    mpsi_weights_along(spline, places, rows, k, w, ws);
-    for (int d = 0; d <= dim; d++) a[d] = mpsi_spread(mpsi_get(part[k][d]));
+    for (int v = 0; v < MPSI_ROW; v++) {
+      w[v] = mpsi_by_node(rows->w[k], v * MPSI_WIDE);
+      ws[v] = mpsi_by_node(rows->ws[k], v * MPSI_WIDE);
+    }
+    for (int d = 0; d < 4; d++) a[d] = mpsi_spread(mpsi_get(part->of[k][d]));
     MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
       along[k - begin][0][v] = w[v] * a[0] + ws[v] * a[1];
-      for (int d = 2; d <= dim; d++) along[k - begin][d - 1][v] = w[v] * a[d];
+      for (int d = 2; d < 4; d++) along[k - begin][d - 1][v] = w[v] * a[d];
     }
   }
   tile += places->first[begin];
-  for (int plane = 0; plane <= (dim == 3 ? spline : 0); plane++) {
+  for (int plane = 0; plane <= spline; plane++) {
     mpsi_vec sum[4][MPSI_ROW] = {{{0.0}}};
     for (int k = begin; k < end; k++) {
+      const double wz = places->w[2][plane][k], wzs = places->ws[2][plane][k];
       MPSI_UNROLL for (int v = 0; v < MPSI_ROW; v++) {
-        mpsi_vec value = along[k - begin][0][v], slope = along[k - begin][1][v];
-        if (dim == 3) {
-          const double wz = places->w[1][plane][k], wzs = places->ws[1][plane][k];
-          value = wz * value + wzs * along[k - begin][2][v];
-          slope *= wz;
-        }
+        const mpsi_vec value = wz * along[k - begin][0][v] + wzs * along[k - begin][2][v];
+        const mpsi_vec slope = wz * along[k - begin][1][v];
         MPSI_UNROLL for (int j = 0; j <= spline; j++) {
-          sum[j][v] += places->w[0][j][k] * value; /* apart: each is one fused operation */
-          sum[j][v] += places->ws[0][j][k] * slope;
+          sum[j][v] += places->w[1][j][k] * value; /* apart: each is one fused operation */
+          sum[j][v] += places->ws[1][j][k] * slope;
         }
       }
     }
@@ -99,6 +162,28 @@ MPSI_INLINE void add_segment(int dim, int spline, const mpsi_places *places, con
   }
 }
 
+/* The parts as they are added: of either kind. */
+typedef union added_parts {
+  row_parts row;
+  node_parts node;
+} added_parts;
+
+MPSI_INLINE void find_added(int dim, int spline, const mpsi_places *places, int n, columns part,
+                            added_parts *out) {
+  if (dim == 2)
+    find_row_parts(spline, places, n, part, &out->row);
+  else
+    find_node_parts(n, part, &out->node);
+}
+
+MPSI_INLINE void add_segment(int dim, int spline, const mpsi_places *places, const mpsi_rows *rows,
+                             int begin, int end, const added_parts *part, mpsi_node *tile) {
+  if (dim == 2)
+    add_in_plane(spline, places, rows, begin, end, &part->row, tile);
+  else
+    add_in_space(spline, places, rows, begin, end, &part->node, tile);
+}
+
 /* The same where a wall across `axis` cuts the stencil: momentum to the tile, force and excess mass
  * (see mpsi_node) to the tile of forces. Weights of the derivatives differ across and along it. */
 MPSI_INLINE void add_at_wall(const mps_mpm *mpm, const mpsi_cell_block *cells,
@@ -106,25 +191,30 @@ MPSI_INLINE void add_at_wall(const mps_mpm *mpm, const mpsi_cell_block *cells,
                              const mpsi_places *places, int axis, int64_t chunk, int begin,
                              int end) {
   const int dim = mpsi_dim_of(geometry), n = end - begin;
+  const size_t bytes = sizeof(double[4][MPSI_CHUNK]);
   mpsi_wall wall;
-  parts part, other;
+  parts part;
+  columns other = {{{0.0}}};
+  added_parts added;
   find_parts(mpm, geometry, spline, true, chunk + begin, n, &part);
   mpsi_wall_places(mpm, cells, dim, spline, places, begin, end, axis, MPSI_WALL_VALUE, &wall);
-  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, part.sum, worker->tile);
-  memset(other.force, 0, (size_t)n * sizeof *other.force);
+  find_added(dim, spline, &wall.places, n, part.sum, &added);
+  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, &added, worker->tile);
   for (int k = 0; k < n; k++) {
-    const double m = mpm->p.m[chunk + begin + k];
-    other.force[k][0][MPSI_EXCESS] = m * wall.mass[k];
-    for (int d = 0; d < dim; d++)
-      if (d != axis) memcpy(other.force[k][1 + d], part.force[k][1 + d], sizeof(mpsi_node));
-    for (int d = 0; d < dim; d++)
-      if (d != axis) memset(part.force[k][1 + d], 0, sizeof(mpsi_node));
-    part.force[k][0][MPSI_EXCESS] = -m;
+    other[0][MPSI_EXCESS][k] = part.sum[0][MPSI_MASS][k] * wall.mass[k];
+    part.force[0][MPSI_EXCESS][k] = -part.sum[0][MPSI_MASS][k];
+  }
+  for (int d = 0; d < dim; d++) {
+    if (d == axis) continue;
+    memcpy(other[1 + d], part.force[1 + d], bytes);
+    memset(part.force[1 + d], 0, bytes);
   }
   mpsi_wall_places(mpm, cells, dim, spline, places, begin, end, axis, MPSI_WALL_SLOPE, &wall);
-  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, part.force, worker->force);
+  find_added(dim, spline, &wall.places, n, part.force, &added);
+  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, &added, worker->force);
   mpsi_wall_places(mpm, cells, dim, spline, places, begin, end, axis, MPSI_WALL_ALONG, &wall);
-  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, other.force, worker->force);
+  find_added(dim, spline, &wall.places, n, other, &added);
+  add_segment(dim, spline, &wall.places, &wall.rows, 0, n, &added, worker->force);
 }
 
 MPSI_INLINE void clear(const mpsi_cell_block *cells, mpsi_node *tile) {
@@ -172,12 +262,17 @@ MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mps
                            int geometry, int spline, int64_t begin, int n) {
   const int dim = mpsi_dim_of(geometry);
   mpsi_places places;
+  mpsi_rows rows;
   parts part;
+  added_parts sum, force;
   mpsi_find_places(mpm, cells, dim, spline, begin, n, &places);
+  find_rows(spline, &places, n, &rows);
   if (cells->split)
     find_parts(mpm, geometry, spline, true, begin, n, &part);
   else
     find_parts(mpm, geometry, spline, false, begin, n, &part);
+  find_added(dim, spline, &places, n, part.sum, &sum);
+  if (cells->split) find_added(dim, spline, &places, n, part.force, &force);
   for (int k = 0, end; k < n; k = end) {
     for (end = k + 1; end < n && end < k + MPSI_SEGMENT && places.first[end] == places.first[k];)
       end++;
@@ -191,8 +286,8 @@ MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mps
         MPSI_LEVELLED(mpsi_scatter_fitted)(mpm, cells, worker, begin + f);
       continue;
     }
-    add_segment(dim, spline, &places, NULL, k, end, part.sum, worker->tile);
-    if (cells->split) add_segment(dim, spline, &places, NULL, k, end, part.force, worker->force);
+    add_segment(dim, spline, &places, &rows, k, end, &sum, worker->tile);
+    if (cells->split) add_segment(dim, spline, &places, &rows, k, end, &force, worker->force);
   }
 }
 

@@ -35,7 +35,7 @@ MPSI_INLINE bool mpsi_keeps_spin(const mps_mpm *mpm, const mpsi_cell_block *cell
 
 /* Sets the spin of the slopes L (1/s) by sum phi s_a v of the nodes, one for each axis a. */
 MPSI_INLINE void mpsi_take_spin(int dim, int spline, double inverse, const mpsi_quad *moment,
-                                mpsi_two *L) {
+                                double (*L)[4]) {
   const double scale = mpsi_inverse_moment(spline) * inverse;
   for (int a = 0; a < dim; a++)
     for (int b = a + 1; b < dim; b++) {

@@ -93,10 +93,11 @@ MPSI_INLINE void mpsi_wall_places(const mps_mpm *mpm, const mpsi_cell_block *cel
     out->places.first[k - begin] = from->first[k];
     memcpy(out->rows.w[k - begin], value[0], sizeof value[0]);
     memcpy(out->rows.ws[k - begin], slope[0], sizeof slope[0]);
-    for (int c = 1; c < dim; c++)
+    for (int c = 0; c < dim; c++) out->places.t[c][k - begin] = from->t[c][k];
+    for (int c = 0; c < dim; c++)
       for (int i = 0; i <= spline; i++) {
-        out->places.w[c - 1][i][k - begin] = value[c][i];
-        out->places.ws[c - 1][i][k - begin] = slope[c][i];
+        out->places.w[c][i][k - begin] = value[c][i];
+        out->places.ws[c][i][k - begin] = slope[c][i];
       }
   }
 }
