@@ -11,6 +11,17 @@ typedef struct soil_layer {
   double thickness, density, vs, vp, damping; /* m, kg/m3, m/s, m/s, - */
 } soil_layer;
 
+/* Ground that will do, to any depth. */
+static const soil_layer soil_plain = {1e9, 1500.0, 100.0, 200.0, 0.05};
+
+static inline mps_dynamics *soil_solver(mps_context *context, mps_particles *particles) {
+  mps_dynamics_def def = mps_dynamics_defaults();
+  mps_dynamics *dynamics = NULL;
+  def.dt = 1e-3;
+  mps_assert_ok(context, mps_dynamics_create(context, particles, &def, &dynamics));
+  return dynamics;
+}
+
 /* A set of width x height (m) filled with layers from the top down; the lowest goes to the end. */
 static inline mps_particles *soil_particles(mps_context *context, double spacing, double width,
                                             double height, int layers, const soil_layer *layer) {

@@ -5,18 +5,8 @@
 #include "core/particles_internal.h"
 #include "test_fixture.h"
 
-static const soil_layer soil = {1e9, 1500.0, 100.0, 200.0, 0.05};
-
 static mps_particles *block(double width, double height) {
-  return soil_particles(context, 1.0, width, height, 1, &soil);
-}
-
-static mps_dynamics *solver(mps_particles *particles) {
-  mps_dynamics_def def = mps_dynamics_defaults();
-  mps_dynamics *dynamics = NULL;
-  def.dt = 1e-3;
-  mps_assert_ok(context, mps_dynamics_create(context, particles, &def, &dynamics));
-  return dynamics;
+  return soil_particles(context, 1.0, width, height, 1, &soil_plain);
 }
 
 /* ---- definitions ----------------------------------------------------------------------------- */
@@ -306,7 +296,7 @@ static void calls_without_a_solver_are_refused(void **state) {
 static void bad_calls_are_refused(void **state) {
   (void)state;
   mps_particles *set = block(3, 3);
-  mps_dynamics *d = solver(set);
+  mps_dynamics *d = soil_solver(context, set);
   mps_dynamics_linear_limit limit = {.dt = -7.0};
   mps_assert_fails(context, mps_dynamics_step(d, -1), MPS_ERROR_ARGUMENT, "count is -1");
   mps_assert_fails(context, mps_dynamics_run(d, NAN, 1, NULL, NULL), MPS_ERROR_ARGUMENT, "nan");

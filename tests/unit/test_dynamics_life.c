@@ -5,22 +5,12 @@
 #include "test_allocator.h"
 #include "test_fixture.h"
 
-static const soil_layer soil = {1e9, 1500.0, 100.0, 200.0, 0.05};
-
-static mps_dynamics *solver(mps_particles *particles) {
-  mps_dynamics_def def = mps_dynamics_defaults();
-  mps_dynamics *dynamics = NULL;
-  def.dt = 1e-3;
-  mps_assert_ok(context, mps_dynamics_create(context, particles, &def, &dynamics));
-  return dynamics;
-}
-
 /* ---- life ------------------------------------------------------------------------------------ */
 
 static void a_set_is_pinned_while_a_solver_lives(void **state) {
   (void)state;
-  mps_particles *set = soil_particles(context, 1.0, 3.0, 3.0, 1, &soil);
-  mps_dynamics *d = solver(set), *second = NULL;
+  mps_particles *set = soil_particles(context, 1.0, 3.0, 3.0, 1, &soil_plain);
+  mps_dynamics *d = soil_solver(context, set), *second = NULL;
   const double x[2] = {9.5, 0.5};
   const int32_t fields = mps_particles_field_count(set);
   mps_assert_fails(context, mps_particles_append(set, 1, x), MPS_ERROR_STATE, "held by");
@@ -37,8 +27,8 @@ static void a_set_is_pinned_while_a_solver_lives(void **state) {
 
 static void added_and_moved_particles_get_new_references(void **state) {
   (void)state;
-  mps_particles *set = soil_particles(context, 1.0, 3.0, 3.0, 1, &soil);
-  mps_dynamics *d = solver(set);
+  mps_particles *set = soil_particles(context, 1.0, 3.0, 3.0, 1, &soil_plain);
+  mps_dynamics *d = soil_solver(context, set);
   mps_dynamics_destroy(&d);
   const double x[2] = {3.5, 0.5};
   mps_assert_ok(context, mps_particles_append(set, 1, x)); /* its reference is (0, 0) */
@@ -49,7 +39,7 @@ static void added_and_moved_particles_get_new_references(void **state) {
   mps_assert_ok(context, mps_particles_edit(set, "position", &at));
   *mps_edit_f64(&at, mps_particles_index(set, 8), 1) = 3.0; /* moved by hand */
   mps_assert_ok(context, mps_particles_commit(set, &at));
-  d = solver(set);
+  d = soil_solver(context, set);
   mps_assert_near(soil_value(context, set, "position", 9, 0), 3.5, 0.0);
   mps_assert_near(soil_value(context, set, "position", 9, 1), 0.5, 0.0);
   mps_assert_near(soil_value(context, set, "reference", 8, 1), 3.0, 0.0);
@@ -62,7 +52,7 @@ static void parts_may_go_in_any_order(void **state) {
   (void)state;
   for (int order = 0; order < 24; order++) {
     mps_context *own = test_context(MPS_EXECUTOR_SERIAL, 1);
-    mps_particles *set = soil_particles(own, 1.0, 3.0, 3.0, 1, &soil);
+    mps_particles *set = soil_particles(own, 1.0, 3.0, 3.0, 1, &soil_plain);
     mps_dynamics *d = NULL;
     mps_signal *signal = NULL;
     const int64_t id = 0;
@@ -161,7 +151,7 @@ static void steps_allocate_nothing(void **state) {
   (void)state;
   test_allocator allocator = {0};
   mps_context *own = test_allocator_context(&allocator);
-  mps_particles *set = soil_particles(own, 1.0, 10.0, 20.0, 1, &soil);
+  mps_particles *set = soil_particles(own, 1.0, 10.0, 20.0, 1, &soil_plain);
   mps_dynamics *d = NULL;
   mps_signal *signal = NULL;
   const int64_t ids[2] = {0, 199};

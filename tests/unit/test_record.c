@@ -2,6 +2,7 @@
  * taper, baseline correction, the host's locale, every error with its line, memory.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_allocator.h"
+#include "test_fixture.h"
 
 #include "signal/record_private.h"
 
@@ -14,19 +15,9 @@
 #define G 9.80665
 #define FILE_TMP TEST_TMP "/record.tmp"
 
-static mps_context *context;
-
-static int set_up(void **state) {
-  (void)state;
-  context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  return 0;
-}
-
 static int tear_down(void **state) {
-  (void)state;
-  mps_context_destroy(&context);
   remove(FILE_TMP);
-  return 0;
+  return drop_context(state);
 }
 
 static void write_file(const char *content, size_t size) {
@@ -585,5 +576,5 @@ int main(void) {
       cmocka_unit_test(bad_definitions_are_refused),
       cmocka_unit_test(a_refused_allocation_leaks_nothing),
   };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, make_context, tear_down);
 }

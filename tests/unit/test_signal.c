@@ -2,26 +2,13 @@
  * peaks, errors, sharing and memory.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_allocator.h"
+#include "test_fixture.h"
 
 #include "core/retain.h"
 
 #include <mps/signal.h>
 
 #define PI 3.14159265358979323846
-
-static mps_context *context;
-
-static int set_up(void **state) {
-  (void)state;
-  context = test_context(MPS_EXECUTOR_SERIAL, 1);
-  return 0;
-}
-
-static int tear_down(void **state) {
-  (void)state;
-  mps_context_destroy(&context);
-  return 0;
-}
 
 typedef double (*function_of_time)(const mps_signal *signal, double t);
 
@@ -453,5 +440,5 @@ int main(void) {
       cmocka_unit_test(what_lies_before_zero_displaces_nothing_at_the_start),
       cmocka_unit_test(the_callers_function_is_a_signal),
   };
-  return cmocka_run_group_tests(tests, set_up, tear_down);
+  return cmocka_run_group_tests(tests, make_context, drop_context);
 }
