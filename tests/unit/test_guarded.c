@@ -53,6 +53,12 @@ static mps_status write_one(mps_particles *set, const char *field, int64_t id, d
   return status;
 }
 
+/* What a view gives cannot be written through. */
+_Static_assert(_Generic(mps_view_f64(NULL, 0, 0), const double * : 1, default : 0) &&
+                   _Generic(mps_view_i64(NULL, 0, 0), const int64_t * : 1, default : 0) &&
+                   _Generic(((mps_view *)0)->data, const void * : 1, default : 0),
+               "views are for reading");
+
 /* ---- editing ----------------------------------------------------------------------------------
  */
 
@@ -79,6 +85,8 @@ static void views_are_for_reading_and_edits_for_writing(void **state) {
   assert_string_equal(mps_context_error(context)->object, "field 'density'");
   mps_assert_fails(context, mps_particles_commit(set, NULL), MPS_ERROR_ARGUMENT, "NULL");
   mps_assert_ok(context, mps_particles_commit(set, &e));
+  assert_null(e.data);
+  assert_ptr_equal(e.view.data, v.data);
   assert_true(e.view.flags & MPS_VIEW_READONLY);
   mps_assert_fails(context, mps_particles_commit(set, &e), MPS_ERROR_STATE, "not of a field");
   mps_assert_fails(context, mps_particles_edit(set, "id", &e), MPS_ERROR_FIELD, "library only");
