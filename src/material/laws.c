@@ -107,7 +107,7 @@ MPSI_INLINE void rate_loop(const int geometry, const int kind, const mpsi_law *c
                                               a candidate. No stress exceeds p + 2 q/sqrt(3). */
         const double over =
             at_least(q + 3.0 * law.alpha * p - law.kappa, p + (2.0 * PER_ROOT3) * q - law.cut);
-        flag = (over > 0.0) | (gap[k] > 0.0) ? MPS_MATERIAL_PLASTIC : 0;
+        flag = ((over > 0.0) | (gap[k] > 0.0)) ? MPS_MATERIAL_PLASTIC : 0;
       } else {
         const meridian m = kind == MPSI_LAW_VON_MISES ? return_von_mises(&law, p, q, strain[k])
                                                       : return_drucker_prager(&law, p, q, gap[k]);
