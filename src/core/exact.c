@@ -42,6 +42,11 @@ void mpsi_exact_add(mpsi_exact *sum, double term) {
   if (++sum->limb[TERMS] >= MOST_TERMS) mpsi_exact_carry(sum);
 }
 
+void mpsi_exact_merge(mpsi_exact *to, const mpsi_exact *from) {
+  if (to->limb[TERMS] + from->limb[TERMS] >= MOST_TERMS) mpsi_exact_carry(to);
+  for (int k = 0; k < MPSI_EXACT_LIMBS; k++) to->limb[k] += from->limb[k];
+}
+
 /* 53 bits from bit `lowest` on, of limbs that have been carried. */
 static uint64_t bits_from(const mpsi_exact *sum, int lowest) {
   const int k = lowest / 32, shift = lowest % 32;

@@ -16,6 +16,8 @@ typedef struct mpsi_exact {
 } mpsi_exact;
 
 void mpsi_exact_add(mpsi_exact *sum, double term);
+/* Adds a sum to another. */
+void mpsi_exact_merge(mpsi_exact *to, const mpsi_exact *from);
 /* Before the limbs of several sums are added as integers: at most 2^30 of them. */
 void mpsi_exact_carry(mpsi_exact *sum);
 /* The double nearest to the sum. */

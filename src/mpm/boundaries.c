@@ -165,10 +165,21 @@ static void place_side(mps_mpm *mpm, int32_t number, int32_t kind) {
   hold->kind = kind == MPS_MPM_BOUNDARY_FREE ? MPSI_HOLD_NONE : kind;
 }
 
-void mpsi_mpm_begin_sides(mps_mpm *mpm) {
+/* Sums of a new boundary, from 0; memory of a number stays. */
+static bool make_sums(mps_mpm *mpm, mpsi_hold *hold) {
+  if (!hold->sums) hold->sums = mpsi_alloc(mpm->context, 1, sizeof *hold->sums);
+  return hold->sums != NULL;
+}
+
+bool mpsi_mpm_begin_sides(mps_mpm *mpm) {
+  bool good = true;
   for (int32_t k = 0; k < MPSI_HOLDS; k++) mpm->boundaries.hold[k].kind = MPSI_HOLD_NONE;
-  for (int32_t k = 0; k < MPSI_SIDES; k++)
-    if (has_side(mpm, k)) place_side(mpm, k, MPS_MPM_BOUNDARY_ROLLER);
+  for (int32_t k = 0; k < MPSI_SIDES && good; k++) {
+    if (!has_side(mpm, k)) continue;
+    place_side(mpm, k, MPS_MPM_BOUNDARY_ROLLER);
+    good = make_sums(mpm, &mpm->boundaries.hold[k]);
+  }
+  return good;
 }
 
 mps_status mpsi_mpm_widen_sides(mps_mpm *mpm, const char *function) {
@@ -204,7 +215,10 @@ static void drop(mps_mpm *mpm, mpsi_hold *hold) {
 }
 
 void mpsi_mpm_drop_boundaries(mps_mpm *mpm) {
-  for (int32_t k = 0; k < MPSI_HOLDS; k++) drop(mpm, &mpm->boundaries.hold[k]);
+  for (int32_t k = 0; k < MPSI_HOLDS; k++) {
+    drop(mpm, &mpm->boundaries.hold[k]);
+    mpsi_free(mpm->context, mpm->boundaries.hold[k].sums);
+  }
 }
 
 /* A box or list, in place of what `hold` was. */
@@ -213,6 +227,8 @@ static mps_status take_prescribed(mps_mpm *mpm, const char *function,
   mpsi_hold made = {.kind = MPS_MPM_BOUNDARY_PRESCRIBED,
                     .dofs = def->dofs ? def->dofs : MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z};
   mps_status status = check_prescribed(mpm, function, def, &made);
+  if (status == MPS_OK && !make_sums(mpm, hold))
+    status = mpsi_fail_memory(mpm->context, function, sizeof *hold->sums);
   if (status == MPS_OK && def->ids) {
     made.ids = mpsi_alloc(mpm->context, def->id_count, sizeof *made.ids);
     if (!made.ids)
@@ -266,7 +282,11 @@ mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mpm_boundary_def *user, 
                      MPSI_HOLDS - MPSI_SIDES);
   status = take_prescribed(mpm, __func__, &def, &mpm->boundaries.hold[at]);
   if (status != MPS_OK) return status;
-  memset(&mpm->boundaries.hold[at].reaction, 0, sizeof mpm->boundaries.hold[at].reaction);
+  mpsi_hold *hold = &mpm->boundaries.hold[at];
+  mpsi_exact_merge(&mpm->boundaries.work, &hold->sums->all[MPSI_HOLD_WORK]); /* of a former one */
+  mpsi_exact_merge(&mpm->boundaries.work, &hold->sums->step[MPSI_HOLD_WORK]);
+  memset(hold->sums, 0, sizeof *hold->sums);
+  hold->count = hold->removed = 0;
   *number = at;
   return MPS_OK;
 }
@@ -319,13 +339,48 @@ mps_status mps_mpm_remove_boundary(mps_mpm *mpm, int32_t number) {
   return MPS_OK;
 }
 
+void mpsi_hold_add_works(const mps_mpm *mpm, mpsi_exact *sum) {
+  mpsi_exact_merge(sum, &mpm->boundaries.work);
+  for (int32_t k = 0; k < MPSI_HOLDS; k++) {
+    const mpsi_hold_sums *sums = mpm->boundaries.hold[k].sums;
+    if (!sums) continue;
+    mpsi_exact_merge(sum, &sums->all[MPSI_HOLD_WORK]);
+    mpsi_exact_merge(sum, &sums->step[MPSI_HOLD_WORK]);
+  }
+}
+
+/* All ranks together: the last step, and since it was made. */
+static mps_status sum_ranks(mps_mpm *mpm, const char *function, const mpsi_hold *hold,
+                            mpsi_hold_sums *out, int64_t *counts) {
+  *out = *hold->sums;
+  for (int k = 0; k < MPSI_HOLD_MASS; k++) mpsi_exact_merge(&out->all[k], &out->step[k]);
+  counts[0] = hold->count, counts[1] = hold->removed;
+  if (!mpm->share) return MPS_OK;
+  const mps_status status = mpsi_domain_sum(mpm->share->domain, function, 2, counts);
+  if (status != MPS_OK) return status;
+  return mpsi_domain_sum_exact(mpm->share->domain, function, 2 * MPSI_HOLD_MASS + 1, out->step);
+}
+
 mps_status mps_mpm_get_reaction_sized(mps_mpm *mpm, int32_t number, mps_reaction *out,
                                       size_t size) {
   static const char function[] = "mps_mpm_get_reaction";
   if (!mpm) return MPS_ERROR_ARGUMENT;
+  mpsi_hold_sums sums;
+  int64_t counts[2];
   mps_status status = find(mpm, function, number);
-  if (status == MPS_OK) status = mpsi_share_refuse(mpm, function, "a boundary's reaction");
   if (status != MPS_OK) return status;
-  const mps_reaction *r = &mpm->boundaries.hold[number].reaction;
-  return mpsi_out_write(mpm->context, function, out, size, r, sizeof *r);
+  status = sum_ranks(mpm, function, &mpm->boundaries.hold[number], &sums, counts);
+  if (status != MPS_OK) return status;
+  const double rate = mpm->boundaries.dt > 0.0 ? 1.0 / mpm->boundaries.dt : 0.0;
+  mps_reaction r = {.count = counts[0],
+                    .removed = counts[1],
+                    .work = mpsi_exact_value(&sums.all[MPSI_HOLD_WORK]),
+                    .removed_mass = mpsi_exact_value(&sums.all[MPSI_HOLD_MASS])};
+  for (int c = 0; c < 3; c++) {
+    r.force[c] = rate * mpsi_exact_value(&sums.step[MPSI_HOLD_IMPULSE + c]);
+    r.moment[c] = rate * mpsi_exact_value(&sums.step[MPSI_HOLD_MOMENT + c]);
+    r.impulse[c] = mpsi_exact_value(&sums.all[MPSI_HOLD_IMPULSE + c]);
+    r.moment_impulse[c] = mpsi_exact_value(&sums.all[MPSI_HOLD_MOMENT + c]);
+  }
+  return mpsi_out_write(mpm->context, function, out, size, &r, sizeof r);
 }

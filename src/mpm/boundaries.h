@@ -3,10 +3,18 @@
 #ifndef MPSI_MPM_BOUNDARIES_H
 #define MPSI_MPM_BOUNDARIES_H
 
+#include "core/exact.h"
 #include "restart.h"
 #include "room.h"
 
 enum { MPSI_HOLD_NONE = -1 }; /* besides mps_mpm_boundary_kind */
+
+/* What a boundary has given, of this rank's share, exactly: no sum depends on order or ranks. */
+enum { MPSI_HOLD_IMPULSE = 0, MPSI_HOLD_MOMENT = 3, MPSI_HOLD_WORK = 6, MPSI_HOLD_MASS = 7 };
+typedef struct mpsi_hold_sums {
+  mpsi_exact step[MPSI_HOLD_MASS];     /* N s, N m s, J, in the last step; */
+  mpsi_exact all[MPSI_HOLD_MASS + 1];  /* before it; and kg, of particles that it has taken out */
+} mpsi_hold_sums;
 
 /* A boundary: nodes first to last, or the particles `ids`. */
 typedef struct mpsi_hold {
@@ -20,7 +28,8 @@ typedef struct mpsi_hold {
   mps_signal *signal[3];
   double factor[3];
   double v[3]; /* m/s, of the step being made */
-  mps_reaction reaction;
+  mpsi_hold_sums *sums;   /* there with every boundary, and as long as its number */
+  int64_t count, removed; /* as in mps_reaction, of this rank's share */
   bool finds;   /* absorbing: still looks for the forces at rest */
   double found; /* s, how long it has looked, with the step being made */
 } mpsi_hold;
@@ -32,6 +41,7 @@ typedef struct mpsi_held {
   double impulse[3], moment[3]; /* N s, N m s, of the step being made */
   double work;                  /* J, likewise */
   int64_t count;                /* nodes with mass */
+  bool counted;                 /* in sums: on other ranks it may be there too, but not counted */
 } mpsi_held;
 
 typedef struct mpsi_boundaries {
@@ -41,6 +51,8 @@ typedef struct mpsi_boundaries {
   int64_t held_count, dash_count;
   uint32_t open; /* bit k: side k is open, in the step being made */
   bool outdated; /* the lists are not of the present boundaries and laws */
+  double dt;     /* s, of the step whose sums are kept */
+  mpsi_exact work; /* J, of boundaries that are no more */
   mpsi_room held_room, dash_room, old_held_room, old_dash_room;
 } mpsi_boundaries;
 
@@ -56,8 +68,10 @@ mps_status mpsi_mpm_put_dashes(mps_mpm *mpm, const char *function, int64_t count
 void mpsi_mpm_move_holds(mps_mpm *mpm, double dt);
 /* walls.c: absorbing walls at rest have looked for dt longer. */
 void mpsi_mpm_begin_holds(mps_mpm *mpm, double dt);
-void mpsi_hold_add_impulse(mps_reaction *r, double dt, const double *impulse, const double *moment,
+void mpsi_hold_add_impulse(mpsi_hold *hold, const double *impulse, const double *moment,
                            double work, int64_t count);
+/* boundaries.c: J, all that boundaries have done. */
+void mpsi_hold_add_works(const mps_mpm *mpm, mpsi_exact *sum);
 /* walls.c: before all others: no impulses yet on the held nodes of a block. */
 void mpsi_mpm_begin_held(mps_mpm *mpm, int64_t g);
 /* walls.c: mirrored sides alone, also before the forces: for friction with bodies, which must see
@@ -69,7 +83,7 @@ void mpsi_mpm_sum_holds(mps_mpm *mpm);
 /* walls.c: after G2P, the particles of the lists. */
 void mpsi_mpm_drive_particles(mps_mpm *mpm);
 /* boundaries.c: rollers on the sides of a new solver; frees all. */
-void mpsi_mpm_begin_sides(mps_mpm *mpm);
+bool mpsi_mpm_begin_sides(mps_mpm *mpm); /* false: no memory */
 void mpsi_mpm_drop_boundaries(mps_mpm *mpm);
 /* boundaries.c: sides hold the nodes beyond them too, where the standard method has some. */
 mps_status mpsi_mpm_widen_sides(mps_mpm *mpm, const char *function);

@@ -293,12 +293,12 @@ void mpsi_mpm_sum_mirrors(mps_mpm *mpm) {
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     const mpsi_cell_block *cells = &mpm->grid.cells[b];
     int64_t number = cells->first_mirror;
-    for (int32_t k = 0; k < MPSI_SIDES; k++) {
+    for (int32_t k = 0; k < MPSI_SIDES && !cells->ghost; k++) {
       if (!(cells->mirrors >> k & 1)) continue;
       const mpsi_mirror *m = &mpm->mirrors.mirror[number++];
       mpsi_hold *hold = &mpm->boundaries.hold[k];
       const double work = mpsi_dot3(m->impulse, hold->v);
-      mpsi_hold_add_impulse(&hold->reaction, mpm->run.dt, m->impulse, m->moment, work, 0);
+      mpsi_hold_add_impulse(hold, m->impulse, m->moment, work, 0);
       mpm->energy.boundaries += work;
       mpm->energy.mirrored += m->passed;
     }

@@ -387,10 +387,11 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   mpm->grid.inverse = 1.0 / def.cell;
   memcpy(mpm->grid.low, low, sizeof low);
   memcpy(mpm->grid.high, high, sizeof high);
-  mpsi_mpm_begin_sides(mpm);
+  if (!mpsi_mpm_begin_sides(mpm))
+    status = mpsi_fail_memory(context, __func__, MPSI_SIDES * sizeof(mpsi_hold_sums));
   if (def.kernel)
     mpm->weights = mpsi_kernel_retain(def.kernel);
-  else
+  else if (status == MPS_OK)
     status = mps_kernel_create(context, def.spline == 2 ? MPS_KERNEL_SPLINE2 : MPS_KERNEL_SPLINE3,
                                radius_of(&def), &mpm->weights);
   status = build(mpm, material, status, &former);
@@ -445,7 +446,8 @@ void mps_mpm_destroy(mps_mpm **pointer) {
                    mpm->rooms.gone.item,
                    mpm->undo.list_room.item,
                    mpm->undo.room.item,
-                   mpm->undo.dash_room.item};
+                   mpm->undo.dash_room.item,
+                   mpm->undo.sums_room.item};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
   mpsi_mpm_free_impulses(mpm);
   mpsi_mpm_drop_loads(mpm);

@@ -31,11 +31,12 @@ static int32_t passed(const mps_mpm *mpm, int64_t k) {
 }
 
 /* What a particle carries out is taken from those that stay, as by an impulse. */
-static void carry_out(mps_mpm *mpm, int64_t k, mps_reaction *r) {
+static void carry_out(mps_mpm *mpm, int64_t k, mpsi_hold *hold) {
   const mpsi_columns *p = &mpm->p;
   const double m = p->m[k], h = mpm->def.cell;
   const double second = mpm->standard ? 0.0 : h * h / (mpm->def.spline == 3 ? 3.0 : 4.0);
   double x[3] = {0.0}, v[3] = {0.0}, L[3][3] = {{0.0}}, kinetic = 0.0;
+  double impulse[3], moment[3];
   for (int c = 0; c < mpm->dim; c++) {
     x[c] = p->x[c][k], v[c] = p->v[c][k];
     for (int d = 0; d < mpm->dim; d++) L[c][d] = p->L[mpm->dim * c + d][k];
@@ -43,14 +44,11 @@ static void carry_out(mps_mpm *mpm, int64_t k, mps_reaction *r) {
   for (int c = 0; c < 3; c++) {
     const int a = (c + 1) % 3, b = (c + 2) % 3;
     const double spin = m * (x[a] * v[b] - x[b] * v[a] + second * (L[b][a] - L[a][b]));
-    r->impulse[c] -= m * v[c];
-    r->force[c] -= m * v[c] / mpm->run.dt;
-    r->moment_impulse[c] -= spin;
-    r->moment[c] -= spin / mpm->run.dt;
+    impulse[c] = -m * v[c];
+    moment[c] = -spin;
     kinetic += 0.5 * m * v[c] * v[c];
   }
-  r->work -= kinetic;
-  r->count++;
+  mpsi_hold_add_impulse(hold, impulse, moment, -kinetic, 1);
   mpm->energy.sum.boundaries -= kinetic;
   mpm->energy.sum.kinetic -= kinetic;
 }
@@ -68,8 +66,11 @@ static int64_t through_sides(mps_mpm *mpm, uint8_t *gone) {
     for (int64_t k = cells->begin; k < cells->end && cells->gone; k++) {
       const int32_t side = passed(mpm, k);
       if (side < 0) continue;
-      carry_out(mpm, k, &mpm->boundaries.hold[side].reaction);
-      count_out(mpm, k, &mpm->boundaries.hold[side].reaction, gone);
+      mpsi_hold *hold = &mpm->boundaries.hold[side];
+      carry_out(mpm, k, hold);
+      hold->removed++;
+      mpsi_exact_add(&hold->sums->all[MPSI_HOLD_MASS], mpm->p.m[k]);
+      gone[k] = 1;
       count++;
     }
   }

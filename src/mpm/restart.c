@@ -220,7 +220,10 @@ static void list_state(mpsi_state *s, void *solver) {
     mpsi_state_enter(s, "boundary%d", k);
     mpsi_state_agree_integer(s, "kind", hold->kind);
     if (hold->kind != MPSI_HOLD_NONE) {
-      mpsi_state_reaction(s, &hold->reaction);
+      mpsi_state_i64(s, "step", hold->sums->step[0].limb, MPSI_HOLD_MASS * MPSI_EXACT_LIMBS);
+      mpsi_state_i64(s, "all", hold->sums->all[0].limb, (MPSI_HOLD_MASS + 1) * MPSI_EXACT_LIMBS);
+      mpsi_state_i64(s, "count", &hold->count, 1);
+      mpsi_state_i64(s, "removed", &hold->removed, 1);
       mpsi_state_bool(s, "finds", &hold->finds);
       mpsi_state_f64(s, "found", &hold->found, 1);
     }
@@ -233,6 +236,8 @@ static void list_state(mpsi_state *s, void *solver) {
     mpsi_state_leave(s);
   }
   mpsi_state_f64(s, "time", &mpm->run.time, 1);
+  mpsi_state_f64(s, "boundaries_dt", &mpm->boundaries.dt, 1);
+  mpsi_state_i64(s, "boundaries_work", mpm->boundaries.work.limb, MPSI_EXACT_LIMBS);
   mpsi_state_i64(s, "steps", &mpm->run.steps, 1);
   mpsi_state_f64(s, "speed", &mpm->run.speed, 1);
   mpsi_state_bool(s, "stale", &mpm->run.stale);

@@ -37,13 +37,13 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
   return bytes;
 }
 
-/* Mass, volume, momenta and kinetic energy of the particles. */
-static void sum_particles(const mps_mpm *mpm, mps_totals *t) {
+/* Mass, volume, momenta and kinetic energy of particles [begin, end). */
+static void sum_particles(const mps_mpm *mpm, int64_t begin, int64_t end, mps_totals *t) {
   const mpsi_columns *p = &mpm->p;
   const int dim = mpm->dim;
   const double h = mpm->def.cell, full = h * h / (mpm->def.spline == 3 ? 3.0 : 4.0);
   const double moment = mpm->standard ? 0.0 : full; /* particles without L carry no spin */
-  for (int64_t k = 0; k < mpm->p.count; k++) {
+  for (int64_t k = begin; k < end; k++) {
     const double m = p->m[k];
     double x[3] = {0}, v[3] = {0}, L[3][3] = {{0}};
     for (int c = 0; c < dim; c++) {
@@ -61,19 +61,61 @@ static void sum_particles(const mps_mpm *mpm, mps_totals *t) {
   }
 }
 
+enum { LINEAR = 0, ANGULAR = 3, MASS = 6, VOLUME, KINETIC, WORK, SUMS };
+
+static void add_part(mpsi_exact *sum, const mps_totals *t) {
+  for (int c = 0; c < 3; c++) {
+    mpsi_exact_add(&sum[LINEAR + c], t->linear[c]);
+    mpsi_exact_add(&sum[ANGULAR + c], t->angular[c]);
+  }
+  mpsi_exact_add(&sum[MASS], t->mass);
+  mpsi_exact_add(&sum[VOLUME], t->volume);
+  mpsi_exact_add(&sum[KINETIC], t->kinetic);
+}
+
+/* Within blocks in their order, and exactly over blocks; where the caller has written or removed
+ * particles since, exactly over these. */
+static void sum_share(const mps_mpm *mpm, mpsi_exact *sum) {
+  for (int64_t b = 0; !mpm->run.edited && b < mpm->grid.cell_count; b++) {
+    mps_totals part = {0};
+    if (mpm->grid.cells[b].ghost) continue;
+    sum_particles(mpm, mpm->grid.cells[b].begin, mpm->grid.cells[b].end, &part);
+    add_part(sum, &part);
+  }
+  for (int64_t k = 0; mpm->run.edited && k < mpm->p.count; k++) {
+    mps_totals part = {0};
+    sum_particles(mpm, k, k + 1, &part);
+    add_part(sum, &part);
+  }
+  mpsi_hold_add_works(mpm, &sum[WORK]);
+}
+
 mps_status mps_mpm_get_totals_sized(mps_mpm *mpm, mps_totals *out, size_t size) {
+  static const char function[] = "mps_mpm_get_totals";
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_status refused = mpsi_share_refuse(mpm, "mps_mpm_get_totals", "the totals");
-  if (refused != MPS_OK) return refused;
   const mpsi_energy_sums *e = &mpm->energy.sum;
-  mps_totals t = {.work_boundaries = e->boundaries, .work_bodies = e->bodies};
-  sum_particles(mpm, &t);
+  mpsi_exact sum[SUMS] = {{{0}}};
+  mps_status status = MPS_OK;
+  if (mpm->share) status = mpsi_share_agree(mpm, function, status);
+  if (status != MPS_OK) return status;
+  sum_share(mpm, sum);
+  if (mpm->share) status = mpsi_domain_sum_exact(mpm->share->domain, function, SUMS, sum);
+  if (status != MPS_OK) return status;
+  mps_totals t = {.mass = mpsi_exact_value(&sum[MASS]),
+                  .volume = mpsi_exact_value(&sum[VOLUME]),
+                  .kinetic = mpsi_exact_value(&sum[KINETIC]),
+                  .work_boundaries = mpsi_exact_value(&sum[WORK]),
+                  .work_bodies = e->bodies};
+  for (int c = 0; c < 3; c++) {
+    t.linear[c] = mpsi_exact_value(&sum[LINEAR + c]);
+    t.angular[c] = mpsi_exact_value(&sum[ANGULAR + c]);
+  }
   t.strain = e->kept + e->springs;
   t.scheme = e->transfer + e->stepping + e->strain;
   t.dissipated = e->spent + e->boundary_loss + e->friction_loss + e->damping_loss + t.scheme;
   t.work_loads = e->loads;
   if (!mpm->energy.counts) t.strain = t.scheme = t.dissipated = t.work_loads = NAN;
-  return mpsi_out_write(mpm->context, "mps_mpm_get_totals", out, size, &t, sizeof t);
+  return mpsi_out_write(mpm->context, function, out, size, &t, sizeof t);
 }
 
 mps_status mps_mpm_get_losses_sized(mps_mpm *mpm, mps_mpm_losses *out, size_t size) {

@@ -52,14 +52,29 @@ static void put_impulses_back(mps_mpm *mpm) {
   all->kept_dt = mpm->undo.kept_dt;
 }
 
+/* The sums of boundaries, to their copies or back. */
+static void copy_sums(mps_mpm *mpm, bool back) {
+  mpsi_hold_sums *kept = mpm->undo.sums_room.item;
+  for (int32_t k = 0; k < MPSI_HOLDS; k++) {
+    mpsi_hold_sums *sums = mpm->boundaries.hold[k].sums;
+    if (!sums) continue;
+    if (back)
+      *sums = *kept++;
+    else
+      *kept++ = *sums;
+  }
+}
+
 mps_status mpsi_mpm_prepare_undo(mps_mpm *mpm, const char *function) {
   mpsi_undo *u = &mpm->undo;
   const mpsi_boundaries *b = &mpm->boundaries;
   u->on = some_law_may_refuse(mpm);
   if (!u->on) return MPS_OK;
-  int64_t most = MPSI_UNDO_COLUMNS;
+  int64_t most = MPSI_UNDO_COLUMNS, holds = 0;
+  for (int32_t k = 0; k < MPSI_HOLDS; k++) holds += b->hold[k].sums != NULL;
   for (int32_t k = 0; k < mpm->laws.count; k++) most += mpm->laws.law[k].columns;
   bool good = mpsi_room_ensure(mpm->context, &u->list_room, most, sizeof *u->column) &&
+              mpsi_room_ensure(mpm->context, &u->sums_room, holds, sizeof(mpsi_hold_sums)) &&
               mpsi_room_ensure(mpm->context, &u->dash_room, b->dash_count, sizeof *b->dash);
   u->column = u->list_room.item;
   if (good) list_columns(mpm);
@@ -69,6 +84,7 @@ mps_status mpsi_mpm_prepare_undo(mps_mpm *mpm, const char *function) {
     return mpsi_fail_memory(mpm->context, function,
                             (size_t)(u->columns * mpm->p.count) * sizeof(double));
   memcpy(u->hold, b->hold, sizeof u->hold);
+  copy_sums(mpm, false);
   keep_impulses(mpm);
   if (b->dash_count > 0)
     memcpy(u->dash_room.item, b->dash, (size_t)b->dash_count * sizeof *b->dash);
@@ -89,6 +105,7 @@ void mpsi_mpm_undo(mps_mpm *mpm) {
   for (int32_t c = 0; c < u->columns; c++)
     memcpy(u->column[c], kept(u, c, mpm->p.count), (size_t)mpm->p.count * sizeof(double));
   memcpy(b->hold, u->hold, sizeof u->hold);
+  copy_sums(mpm, true);
   put_impulses_back(mpm);
   if (b->dash_count > 0)
     memcpy(b->dash, u->dash_room.item, (size_t)b->dash_count * sizeof *b->dash);

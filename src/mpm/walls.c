@@ -42,7 +42,9 @@ static bool list(mps_mpm *mpm, int64_t *count, int64_t *dashes) {
         continue;
       const bool absorbs = kind == MPS_MPM_BOUNDARY_ABSORBING;
       if (*count < mpm->boundaries.held_room.capacity) {
-        held[*count] = (mpsi_held){.hold = k, .dash = absorbs ? *dashes : -1};
+        held[*count] = (mpsi_held){.hold = k,
+                                   .dash = absorbs ? *dashes : -1,
+                                   .counted = !mpm->share || mpsi_share_counts(mpm, g)};
         memcpy(held[*count].at, nodes->at, sizeof nodes->at);
       }
       if (absorbs) *dashes += mpm->grid.block_nodes / MPSI_SIDE;
@@ -286,31 +288,37 @@ void mpsi_mpm_move_holds(mps_mpm *mpm, double dt) {
   }
 }
 
-void mpsi_hold_add_impulse(mps_reaction *r, double dt, const double *impulse, const double *moment,
+void mpsi_hold_add_impulse(mpsi_hold *hold, const double *impulse, const double *moment,
                            double work, int64_t count) {
   for (int c = 0; c < 3; c++) {
-    r->force[c] += impulse[c] / dt;
-    r->moment[c] += moment[c] / dt;
-    r->impulse[c] += impulse[c];
-    r->moment_impulse[c] += moment[c];
+    mpsi_exact_add(&hold->sums->step[MPSI_HOLD_IMPULSE + c], impulse[c]);
+    mpsi_exact_add(&hold->sums->step[MPSI_HOLD_MOMENT + c], moment[c]);
   }
-  r->work += work;
-  r->count += count;
+  mpsi_exact_add(&hold->sums->step[MPSI_HOLD_WORK], work);
+  hold->count += count;
+}
+
+/* What the step before has added is part of all. */
+static void begin_sums(mpsi_hold *hold) {
+  if (!hold->sums) return;
+  for (int k = 0; k < MPSI_HOLD_MASS; k++)
+    mpsi_exact_merge(&hold->sums->all[k], &hold->sums->step[k]);
+  memset(hold->sums->step, 0, sizeof hold->sums->step);
+  hold->count = 0;
 }
 
 void mpsi_mpm_sum_holds(mps_mpm *mpm) {
   mpsi_hold *hold = mpm->boundaries.hold;
   mpm->energy.boundaries = mpm->energy.driven = mpm->energy.driven_work = 0.0;
+  mpm->boundaries.dt = mpm->run.dt;
   for (int32_t k = 0; k < MPSI_HOLDS; k++) {
-    mps_reaction *r = &hold[k].reaction;
-    for (int c = 0; c < 3; c++) r->force[c] = r->moment[c] = 0.0;
-    r->count = 0;
+    begin_sums(&hold[k]);
     if (hold[k].found >= hold[k].settle) hold[k].finds = false;
   }
   for (int64_t t = 0; t < mpm->boundaries.held_count; t++) {
     const mpsi_held *held = &mpm->boundaries.held[t];
-    mpsi_hold_add_impulse(&hold[held->hold].reaction, mpm->run.dt, held->impulse, held->moment,
-                          held->work, held->count);
+    if (!held->counted) continue;
+    mpsi_hold_add_impulse(&hold[held->hold], held->impulse, held->moment, held->work, held->count);
     mpm->energy.boundaries += held->work;
   }
   mpsi_mpm_sum_mirrors(mpm);
@@ -367,7 +375,7 @@ static void drive_particle(mps_mpm *mpm, mpsi_hold *hold, int64_t k) {
     const int a = (c + 1) % 3, b = (c + 2) % 3;
     moment[c] = x[a] * impulse[b] - x[b] * impulse[a];
   }
-  mpsi_hold_add_impulse(&hold->reaction, mpm->run.dt, impulse, moment, work, 1);
+  mpsi_hold_add_impulse(hold, impulse, moment, work, 1);
   mpm->energy.boundaries += work;
   mpm->energy.driven_work += work;
   check_place(mpm, k);
