@@ -7,7 +7,7 @@
 
 #include <mps/mpm.h>
 
-enum { SLIDE, SCENES };
+enum { SLIDE, SPREAD, RING, ROOM, SCENES };
 
 #define MOST_FIELDS 24
 
@@ -35,13 +35,16 @@ typedef struct scene {
   mps_mpm *mpm;
 } scene;
 
+static inline int dim_of(int what) { return what == ROOM ? 3 : 2; }
+
 static inline mps_status make_set(mps_context *own, int what, mps_particles **out) {
-  (void)what;
+  const bool space = what == ROOM;
   mps_particles_def def = mps_particles_defaults();
-  def.spacing = 0.02;
-  def.origin[0] = def.origin[1] = 0.01;
+  def.dim = dim_of(what);
+  def.spacing = space ? 0.04 : 0.02;
+  def.origin[0] = def.origin[1] = def.origin[2] = 0.5 * def.spacing;
   mps_status status = mps_particles_create(own, &def, out);
-  const double lo[3] = {0.0, 0.0}, hi[3] = {1.2, 0.8};
+  const double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {1.2, space ? 0.6 : 0.8, 0.8};
   TRY(mps_particles_fill_box(*out, lo, hi, NULL));
   TRY(mps_particles_set(*out, "density", 0, 1800.0));
   TRY(mps_particles_set(*out, "velocity", 0, 0.0));
@@ -50,25 +53,90 @@ static inline mps_status make_set(mps_context *own, int what, mps_particles **ou
   TRY(mps_particles_view(*out, "position", &x));
   TRY(mps_particles_edit(*out, "velocity", &v));
   for (int64_t k = 0; status == MPS_OK && k < mps_particles_count(*out); k++)
-    for (int c = 0; c < 2; c++)
-      *mps_edit_f64(&v, k, c) = c == 0 ? 6.0 + 2.0 * sin(5.0 * *mps_view_f64(&x, k, 1))
-                                       : 1.0 + 2.0 * cos(4.0 * *mps_view_f64(&x, k, 0));
+    for (int c = 0; c < dim_of(what); c++) {
+      const double first = what == RING ? 0.0 : 6.0; /* r = 0 stays */
+      *mps_edit_f64(&v, k, c) =
+          c == 0 ? first + 2.0 * *mps_view_f64(&x, k, 0) * cos(5.0 * *mps_view_f64(&x, k, 1))
+                 : 1.0 + 2.0 * cos(4.0 * *mps_view_f64(&x, k, 0));
+    }
   TRY(mps_particles_commit(*out, &v));
   return status;
 }
 
-static inline mps_status make_scene(mps_context *own, mps_domain *domain, int what, scene *s) {
+/* Plastic in part of it. */
+static inline mps_status add_soil(mps_context *own, mps_domain *domain, scene *s) {
+  mps_drucker_prager_def law = mps_drucker_prager_defaults();
+  law.young = 2e6, law.poisson = 0.25, law.friction = 0.5, law.cohesion = 2e3;
+  mps_status status = mps_material_drucker_prager(own, &law, &s->material[1]);
+  int64_t ids[900];
+  for (int64_t k = 0; k < 900; k++) ids[k] = 100 + k;
+  if (domain) status = mps_domain_agree(domain, status);
+  TRY(mps_mpm_set_material(s->mpm, s->material[1], 900, ids));
+  return status;
+}
+
+static inline mps_status swing(void *user, double t, double motion[3]) {
+  (void)user;
+  motion[0] = 1e-2 * sin(50.0 * t);
+  motion[1] = 0.5 * cos(50.0 * t);
+  motion[2] = -25.0 * sin(50.0 * t);
+  return MPS_OK;
+}
+
+/* A frictional floor, an open or fixed end, a box and particles that are driven, a load. */
+static inline mps_status add_conditions(mps_context *own, mps_domain *domain, int what, scene *s) {
+  const int64_t ids[5] = {7, 1203, 44, 900, 1101}, loaded[4] = {350, 351, 352, 1190};
+  mps_signal *signal = NULL;
+  int32_t number;
+  mps_status status = mps_signal_user(own, swing, NULL, &signal);
+  if (domain) status = mps_domain_agree(domain, status);
+  TRY(mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FRICTIONAL, 0.3));
+  TRY(mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_X_UPPER,
+                       what == SPREAD ? MPS_MPM_BOUNDARY_OPEN : MPS_MPM_BOUNDARY_FIXED, 0.0));
+  mps_mpm_boundary_def box = mps_mpm_boundary_defaults();
+  box.lower[0] = 0.55, box.upper[0] = 0.66;
+  box.lower[1] = 0.3, box.upper[1] = 0.5;
+  box.dofs = MPS_DOF_Y;
+  box.signal[1] = signal;
+  TRY(mps_mpm_add_boundary(s->mpm, &box, &number));
+  mps_mpm_boundary_def driven = mps_mpm_boundary_defaults();
+  driven.ids = ids, driven.id_count = 5;
+  driven.signal[0] = signal;
+  TRY(mps_mpm_add_boundary(s->mpm, &driven, &number));
+  mps_mpm_load_def load = mps_mpm_load_defaults();
+  load.ids = loaded, load.id_count = 4;
+  load.traction[0] = 3e4, load.traction[1] = -1e4;
+  load.signal[1] = signal;
+  TRY(mps_mpm_add_load(s->mpm, &load, &number));
+  mps_signal_destroy(&signal);
+  return status;
+}
+
+static inline mps_mpm_def scene_def(mps_domain *domain, int what) {
   mps_mpm_def def = mps_mpm_defaults();
   def.domain = domain;
-  def.cell = 0.04;
-  def.lower[0] = def.lower[1] = 0.0;
-  def.upper[0] = 2.4;
+  def.geometry = what == RING   ? MPS_MPM_AXISYMMETRIC
+                 : what == ROOM ? MPS_MPM_SPACE
+                                : MPS_MPM_PLANE_STRAIN;
+  def.spline = what == ROOM ? 2 : 3;
+  def.cell = what == ROOM ? 0.08 : 0.04;
+  for (int c = 0; c < 3; c++) def.lower[c] = 0.0;
+  def.upper[0] = what == SPREAD ? 1.28 : 2.4;
   def.gravity[1] = -9.81;
-  def.dt = 1e-4;
+  if (what == SLIDE) def.dt = 1e-4;
+  if (what == SPREAD) def.walls = MPS_MPM_WALLS_FIT, def.viscous_damping = 0.5;
+  if (what == RING) def.local_damping = 0.1;
+  return def;
+}
+
+static inline mps_status make_scene(mps_context *own, mps_domain *domain, int what, scene *s) {
+  const mps_mpm_def def = scene_def(domain, what);
   mps_status status = make_set(own, what, &s->set);
   TRY(mps_material_linear_elastic(own, 1e6, 0.3, &s->material[0]));
   if (domain) status = mps_domain_agree(domain, status);
   TRY(mps_mpm_create(own, s->set, s->material[0], &def, &s->mpm));
+  if (status == MPS_OK && what != SLIDE) status = add_conditions(own, domain, what, s);
+  if (status == MPS_OK && what != SLIDE) status = add_soil(own, domain, s);
   return status;
 }
 
@@ -113,6 +181,12 @@ static inline mps_status compute(mps_context *own, mps_domain *domain, int what,
   r->first = s.set ? mps_particles_count(s.set) : 0;
   TRY(mps_mpm_step(s.mpm, steps / 2));
   TRY(mps_mpm_run(s.mpm, mps_mpm_time(s.mpm) + (double)(steps - steps / 2) * 1e-4, 10, NULL, NULL));
+  TRY(mps_mpm_get_totals(s.mpm, &r->totals));
+  for (int32_t b = 0; b < 8; b++) {
+    if (b == MPS_MPM_SIDE_Y_UPPER || b > MPS_MPM_SIDE_Z_LOWER - (what == ROOM ? 0 : 1))
+      if (b < 6 || what == SLIDE) continue;
+    TRY(mps_mpm_get_reaction(s.mpm, b, &r->reaction[b]));
+  }
   r->dt = mps_mpm_dt(s.mpm), r->limit = mps_mpm_limit(s.mpm), r->time = mps_mpm_time(s.mpm);
   TRY(keep(s.set, r));
   end_scene(&s);

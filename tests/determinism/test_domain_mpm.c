@@ -67,7 +67,12 @@ static void compare_scene(int what, int64_t steps) {
 
 static void test_slide(void **state) { (void)state, compare_scene(SLIDE, 200); }
 
+static void test_spread(void **state) { (void)state, compare_scene(SPREAD, 120); }
+static void test_ring(void **state) { (void)state, compare_scene(RING, 80); }
+static void test_room(void **state) { (void)state, compare_scene(ROOM, 60); }
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_slide)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_slide), cmocka_unit_test(test_spread),
+                                     cmocka_unit_test(test_ring), cmocka_unit_test(test_room)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
