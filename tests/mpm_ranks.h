@@ -42,7 +42,6 @@ static inline mps_status make_set(mps_context *own, int what, mps_particles **ou
   mps_particles_def def = mps_particles_defaults();
   def.dim = dim_of(what);
   def.spacing = space ? 0.04 : 0.02;
-  def.origin[0] = def.origin[1] = def.origin[2] = 0.5 * def.spacing;
   mps_status status = mps_particles_create(own, &def, out);
   const double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {1.2, space ? 0.6 : 0.8, 0.8};
   TRY(mps_particles_fill_box(*out, lo, hi, NULL));
@@ -182,11 +181,11 @@ static inline mps_status compute(mps_context *own, mps_domain *domain, int what,
   TRY(mps_mpm_step(s.mpm, steps / 2));
   TRY(mps_mpm_run(s.mpm, mps_mpm_time(s.mpm) + (double)(steps - steps / 2) * 1e-4, 10, NULL, NULL));
   TRY(mps_mpm_get_totals(s.mpm, &r->totals));
-  for (int32_t b = 0; b < 8; b++) {
-    if (b == MPS_MPM_SIDE_Y_UPPER || b > MPS_MPM_SIDE_Z_LOWER - (what == ROOM ? 0 : 1))
-      if (b < 6 || what == SLIDE) continue;
-    TRY(mps_mpm_get_reaction(s.mpm, b, &r->reaction[b]));
-  }
+  static const int32_t asked[] = {MPS_MPM_SIDE_X_LOWER, MPS_MPM_SIDE_X_UPPER, MPS_MPM_SIDE_Y_LOWER,
+                                  MPS_MPM_SIDE_Z_LOWER, 6, 7};
+  for (int k = 0; k < 6; k++)
+    if (k < 3 || (k > 3 ? what != SLIDE : what == ROOM))
+      TRY(mps_mpm_get_reaction(s.mpm, asked[k], &r->reaction[asked[k]]));
   r->dt = mps_mpm_dt(s.mpm), r->limit = mps_mpm_limit(s.mpm), r->time = mps_mpm_time(s.mpm);
   TRY(keep(s.set, r));
   end_scene(&s);

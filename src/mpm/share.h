@@ -74,7 +74,7 @@ mps_status mpsi_share_any(mps_mpm *mpm, const char *function, bool *any);
 /* share.c: what the callers of all ranks have edited. */
 mps_status mpsi_share_agree(mps_mpm *mpm, const char *function, mps_status status);
 /* tiles.c: bytes of a parcel at most. Not collective. */
-size_t mpsi_share_parcel(const mps_mpm *mpm);
+int64_t mpsi_share_parcel(const mps_mpm *mpm);
 /* tiles.c: before a step, all that can fail has been done: the worst of all ranks. */
 mps_status mpsi_share_ready(mps_mpm *mpm, const char *function, mps_status status);
 /* tiles.c: sums the border into tiles and sends them; what has come is there (in a pass). */

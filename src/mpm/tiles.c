@@ -14,8 +14,8 @@ static int64_t parcel_doubles(const mpsi_share *share, bool apart) {
   return HEAD + (int64_t)share->most * (int64_t)(sizeof(mpsi_node) / sizeof(double)) * (1 + apart);
 }
 
-size_t mpsi_share_parcel(const mps_mpm *mpm) {
-  return (size_t)parcel_doubles(mpm->share, true) * sizeof(double);
+int64_t mpsi_share_parcel(const mps_mpm *mpm) {
+  return parcel_doubles(mpm->share, true) * (int64_t)sizeof(double);
 }
 
 mps_status mpsi_share_ready(mps_mpm *mpm, const char *function, mps_status status) {

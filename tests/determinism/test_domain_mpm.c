@@ -71,8 +71,32 @@ static void test_spread(void **state) { (void)state, compare_scene(SPREAD, 120);
 static void test_ring(void **state) { (void)state, compare_scene(RING, 80); }
 static void test_room(void **state) { (void)state, compare_scene(ROOM, 60); }
 
+/* ---- what goes wrong on one rank --------------------------------------------------------------
+ */
+
+/* Rank 1 is refused one allocation after the other: all ranks report it, and none hangs. */
+static void test_refused_memory(void **state) {
+  (void)state;
+  mps_status worst = MPS_ERROR_MEMORY;
+  for (int64_t refuse = 3; worst != MPS_OK; refuse += refuse < 60 ? 1 : 7) {
+    ranks s = {.what = SPREAD, .threads = 1, .steps = 30, .refuse = refuse};
+    run_team(&s, 3, 10.0);
+    worst = s.rank[1].status;
+    for (int32_t r = 0; r < 3; r++) {
+      if (s.rank[r].status != worst || (worst && !strstr(s.rank[r].message, "rank 1: ")))
+        fail_msg("allocation %d, rank %d: %d %s", (int)refuse, (int)r, (int)s.rank[r].status,
+                 s.rank[r].message);
+      assert_int_equal(s.allocator[r].live, 0);
+      drop(&s.rank[r]);
+    }
+    assert_true(worst == MPS_OK || worst == MPS_ERROR_MEMORY);
+    assert_true(refuse < 5000);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_slide), cmocka_unit_test(test_spread),
-                                     cmocka_unit_test(test_ring), cmocka_unit_test(test_room)};
+                                     cmocka_unit_test(test_ring), cmocka_unit_test(test_room),
+                                     cmocka_unit_test(test_refused_memory)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
