@@ -37,7 +37,7 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
   return bytes;
 }
 
-/* Mass, volume, momenta and kinetic energy of particles [begin, end). */
+/* Volume, momenta and kinetic energy of particles [begin, end). */
 static void sum_particles(const mps_mpm *mpm, int64_t begin, int64_t end, mps_totals *t) {
   const mpsi_columns *p = &mpm->p;
   const int dim = mpm->dim;
@@ -56,7 +56,6 @@ static void sum_particles(const mps_mpm *mpm, int64_t begin, int64_t end, mps_to
       const int a = (c + 1) % 3, b = (c + 2) % 3;
       t->angular[c] += m * (x[a] * v[b] - x[b] * v[a] + moment * (L[b][a] - L[a][b]));
     }
-    t->mass += m;
     t->volume += p->V[k];
   }
 }
@@ -68,7 +67,6 @@ static void add_part(mpsi_exact *sum, const mps_totals *t) {
     mpsi_exact_add(&sum[LINEAR + c], t->linear[c]);
     mpsi_exact_add(&sum[ANGULAR + c], t->angular[c]);
   }
-  mpsi_exact_add(&sum[MASS], t->mass);
   mpsi_exact_add(&sum[VOLUME], t->volume);
   mpsi_exact_add(&sum[KINETIC], t->kinetic);
 }
@@ -87,6 +85,8 @@ static void sum_share(const mps_mpm *mpm, mpsi_exact *sum) {
     sum_particles(mpm, k, k + 1, &part);
     add_part(sum, &part);
   }
+  for (int64_t k = 0; k < mpm->p.count; k++) /* whatever the blocks: it must not change */
+    mpsi_exact_add(&sum[MASS], mpm->p.m[k]);
   mpsi_hold_add_works(mpm, &sum[WORK]);
 }
 

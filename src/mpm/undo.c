@@ -84,6 +84,7 @@ mps_status mpsi_mpm_prepare_undo(mps_mpm *mpm, const char *function) {
     return mpsi_fail_memory(mpm->context, function,
                             (size_t)(u->columns * mpm->p.count) * sizeof(double));
   memcpy(u->hold, b->hold, sizeof u->hold);
+  u->holds_dt = b->dt;
   copy_sums(mpm, false);
   keep_impulses(mpm);
   if (b->dash_count > 0)
@@ -105,6 +106,7 @@ void mpsi_mpm_undo(mps_mpm *mpm) {
   for (int32_t c = 0; c < u->columns; c++)
     memcpy(u->column[c], kept(u, c, mpm->p.count), (size_t)mpm->p.count * sizeof(double));
   memcpy(b->hold, u->hold, sizeof u->hold);
+  b->dt = u->holds_dt;
   copy_sums(mpm, true);
   put_impulses_back(mpm);
   if (b->dash_count > 0)

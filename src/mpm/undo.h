@@ -14,6 +14,7 @@ typedef struct mpsi_undo {
   int32_t columns;
   mpsi_room list_room, room, dash_room;
   mpsi_hold hold[MPSI_HOLDS];
+  double holds_dt;
   mpsi_room sums_room; /* mpsi_hold_sums, of each boundary that has some */
   void *kept_impulses; /* of contacts, in the step before */
   int64_t kept_count;
