@@ -22,7 +22,9 @@ typedef struct simulation {
   files files;
   field peaks;
   results_so_far so_far;
-  double duration; /* s */
+  mps_domain *domain; /* borrowed; NULL: one process */
+  int64_t particles;  /* of all ranks */
+  double duration;    /* s */
 } simulation;
 
 /* ---- building -------------------------------------------------------------------------------- */
@@ -39,7 +41,8 @@ static mps_status build_boundaries(const settings *s, simulation *sim) {
   return status;
 }
 
-static bool build(app *a, const settings *s, simulation *sim) {
+/* What each rank makes for itself: the whole ground, and what is to be seen of it. */
+static bool build_ground(app *a, const settings *s, simulation *sim) {
   const column_def def = {.width = s->width,
                           .height = s->height,
                           .radius = s->radius,
@@ -54,12 +57,20 @@ static bool build(app *a, const settings *s, simulation *sim) {
   for (int32_t side = MPS_DYNAMICS_SIDE_LEFT;
        side <= MPS_DYNAMICS_SIDE_RIGHT && s->sides == SIDES_FREEFIELD; side++)
     if (!app_check(a, mps_dynamics_add_free_field(particles, side, 2))) return false;
+  sim->particles = mps_particles_count(particles);
   sim->so_far = (results_so_far){.s = s, .record = &sim->record, .peaks = &sim->peaks};
-  const mps_dynamics_def dynamics = settings_dynamics(s, sim->ground.width);
-  return app_check(a, mps_dynamics_create(a->context, particles, &dynamics, &sim->dynamics)) &&
+  return field_create(a, s, particles, &sim->peaks);
+}
+
+/* The solver, of all ranks together, which leaves each its share of the ground. */
+static bool build_solver(app *a, const settings *s, simulation *sim) {
+  mps_dynamics_def dynamics = settings_dynamics(s, sim->ground.width);
+  dynamics.domain = sim->domain = a->domain;
+  return app_check(a, mps_dynamics_create(a->context, sim->ground.particles, &dynamics,
+                                          &sim->dynamics)) &&
          (s->torque == 0 ||
           app_check(a, mps_experimental_dynamics_printed_torque(sim->dynamics))) &&
-         app_check(a, build_boundaries(s, sim)) && field_create(a, s, particles, &sim->peaks) &&
+         app_check(a, build_boundaries(s, sim)) &&
          files_open(a, s, &sim->so_far, sim->dynamics, &sim->files);
 }
 
@@ -105,9 +116,8 @@ static void explain_divergence(app *a, const results *x) {
 
 static mps_status record(void *user, mps_dynamics *dynamics) {
   simulation *sim = user;
-  mps_status status = receivers_record(&sim->record, dynamics);
-  if (status == MPS_OK) status = field_record(&sim->peaks);
-  return status == MPS_OK ? files_record(&sim->files, dynamics) : status;
+  mps_status status = receivers_record(&sim->record, dynamics, sim->domain);
+  return status == MPS_OK ? files_record(&sim->files, dynamics, field_record(&sim->peaks)) : status;
 }
 
 /* A run that goes on records at the steps of the first: to the next of them. */
@@ -121,7 +131,7 @@ static bool align_rows(app *a, simulation *sim) {
 /* Exit code; the results are filled as far as the run came. */
 static int march(app *a, const settings *s, simulation *sim, results *x) {
   mps_dynamics_linear_limit limit;
-  x->particles = mps_particles_count(sim->ground.particles);
+  x->particles = sim->particles;
   x->dt_limit = NAN;
   if (!app_check(a, mps_dynamics_find_limit(sim->dynamics, sim->duration, &limit)))
     return APP_FAILED;
@@ -157,30 +167,44 @@ static int march(app *a, const settings *s, simulation *sim, results *x) {
   return app_check(a, status) ? APP_OK : APP_FAILED;
 }
 
-/* Writes what was recorded, also of a run that ended early. */
-static bool finish(app *a, const settings *s, simulation *sim, results *x) {
+/* Writes what was recorded, also of a run that ended early: rank 0 does. */
+static bool write_results(app *a, const settings *s, simulation *sim, results *x,
+                          mps_particles *whole) {
   if (!results_find(a, s, &sim->ground, &sim->record, sim->signal, x) ||
       !receivers_write(a, &sim->record, s->out) || !results_write(a, s, x))
     return false;
-  if (x->end != OUTCOME_DIVERGED &&
-      (!results_draw(a, s, &sim->ground, &sim->record, x) || !field_write(a, s, &sim->peaks)))
+  if (x->end != OUTCOME_DIVERGED && (!results_draw(a, s, &sim->ground, &sim->record, x) ||
+                                     !field_write(a, s, &sim->peaks, whole)))
     return false;
   results_print(a, s, x);
   return true;
+}
+
+static bool finish(app *a, const settings *s, simulation *sim, results *x) {
+  mps_particles *whole = sim->ground.particles;
+  bool ok = true;
+  if (sim->peaks.count > 0 && sim->domain)
+    ok = app_check(a, field_join(&sim->peaks, sim->domain)) &&
+         app_check(a, files_gather(&sim->files, &whole));
+  if (ok && a->rank == 0) ok = write_results(a, s, sim, x, whole);
+  return app_agree(a, ok);
 }
 
 static int run(app *a, settings *s) {
   simulation sim = {0};
   results x = {0};
   int code = APP_FAILED;
-  if (settings_ground(a, s) && output_directory(a, s->out) && files_peek(a, s) &&
-      build(a, s, &sim)) {
+  const bool ready =
+      app_agree(a, settings_ground(a, s) && (a->rank > 0 || output_directory(a, s->out)) &&
+                       files_peek(a, s) && build_ground(a, s, &sim));
+  if (ready && app_agree(a, build_solver(a, s, &sim))) {
     sim.duration = find_duration(s, &sim);
     code = march(a, s, &sim, &x);
     if (!files_close(a, &sim.files, sim.dynamics, x.end == OUTCOME_DIVERGED)) code = APP_FAILED;
     if (sim.record.rows > 1 && !finish(a, s, &sim, &x) && code == APP_OK) code = APP_FAILED;
+    if (code == APP_FAILED) app_agree(a, false); /* all ranks know */
   }
-  files_close(a, &sim.files, NULL, false); /* of a run that was not built */
+  files_close(a, &sim.files, NULL, false);
   destroy(&sim);
   return code;
 }
@@ -190,6 +214,6 @@ int main(int argc, char **argv) {
   app a;
   const int code = settings_parse(&s, argc, argv);
   if (code >= 0) return code;
-  if (!app_start(&a, "mps-wave", s.threads)) return app_finish(&a, APP_FAILED);
+  if (!app_start_ranks(&a, "mps-wave", s.threads)) return app_finish(&a, APP_FAILED);
   return app_finish(&a, run(&a, &s));
 }

@@ -2,21 +2,22 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "app.h"
 
+#include "ranks.h"
+
 #include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 static void print_warning(void *user, int32_t level, const char *message) {
   app *a = user;
-  if (level != MPS_LOG_WARNING) return;
+  if (level != MPS_LOG_WARNING || a->rank > 0) return;
   progress_clear(&a->bar);
   fprintf(stderr, "%s: warning: %s\n", a->program, message);
 }
 
-bool app_start(app *a, const char *program, int64_t threads) {
-  *a = (app){.program = program, .outcome = "complete"};
-  progress_start(&a->bar);
+static bool make_context(app *a, int64_t threads) {
   mps_context_def def = mps_context_defaults();
   def.threads = (int32_t)threads;
   def.log = print_warning;
@@ -30,8 +31,72 @@ bool app_start(app *a, const char *program, int64_t threads) {
   return true;
 }
 
+bool app_start(app *a, const char *program, int64_t threads) {
+  *a = (app){.program = program, .outcome = "complete", .rank = ranks_number()};
+  if (ranks_launched() > 1)
+    return app_error(a, "started as %d processes: this program computes in one, with threads",
+                     (int)ranks_launched());
+  progress_start(&a->bar);
+  return make_context(a, threads);
+}
+
+/* The number of threads belongs to the context and the ranks agree upon it: by a domain of its own,
+ * which goes again. */
+static bool join(app *a, int64_t threads) {
+  mps_context_def def = mps_context_defaults();
+  mps_context *early = NULL;
+  mps_domain *first = NULL;
+  char why[512];
+  def.executor = MPS_EXECUTOR_SERIAL;
+  bool ok = mps_context_create(&def, &early, why, sizeof why) == MPS_OK &&
+            ranks_join(early, &first, why, sizeof why);
+  if (!ok) app_error(a, "%s", why);
+  int64_t share = 1;
+  if (ok) ok = ranks_threads(first, &share) == MPS_OK;
+  if (ok) { /* all are here: from now on what fails on one is told to all */
+    double failed = !make_context(a, threads > 0 ? threads : share);
+    const bool own = failed == 0.0;
+    ok = mps_domain_max(first, 1, &failed) == MPS_OK && failed == 0.0 && own;
+  }
+  if (ok && !ranks_join(a->context, &a->domain, why, sizeof why)) ok = app_error(a, "%s", why);
+  mps_domain_destroy(&first);
+  mps_context_destroy(&early);
+  return ok;
+}
+
+bool app_start_ranks(app *a, const char *program, int64_t threads) {
+  if (ranks_launched() == 1) return app_start(a, program, threads);
+  *a = (app){.program = program, .outcome = "complete", .rank = ranks_number()};
+  progress_start(&a->bar);
+  progress_heed_launcher();
+  a->bar.terminal = a->bar.terminal && a->rank == 0;
+  return join(a, threads);
+}
+
+bool app_agree(app *a, bool ok) {
+  if (!a->domain) return ok;
+  const int32_t ranks = mps_domain_size(a->domain);
+  double worst = ok ? 0.0 : ranks - a->rank; /* the lowest rank that has failed tells */
+  const mps_status status = mps_domain_max(a->domain, 1, &worst);
+  if (status != MPS_OK) return app_check(a, status);
+  if (worst == 0.0) return true;
+  a->agreed = true;
+  if (a->rank > 0 && worst == ranks - a->rank) {
+    fprintf(stderr, "%s: rank %d: %s\n", a->program, (int)a->rank, a->line);
+    fflush(stderr);
+  }
+  return false;
+}
+
 int app_finish(app *a, int code) {
   progress_clear(&a->bar);
+  if (a->domain && code == APP_FAILED && !a->agreed) {
+    /* the other ranks may wait for this one: leaving without a farewell ends them all */
+    if (a->rank > 0) fprintf(stderr, "%s: rank %d: %s\n", a->program, (int)a->rank, a->line);
+    fflush(NULL);
+    _exit(code);
+  }
+  mps_domain_destroy(&a->domain);
   mps_context_destroy(&a->context);
   if (code == APP_OK && progress_interrupted()) {
     app_error(a, "interrupted: the results were complete");
@@ -46,13 +111,17 @@ int app_finish(app *a, int code) {
 }
 
 bool app_error(app *a, const char *format, ...) {
-  progress_clear(&a->bar);
-  fprintf(stderr, "%s: ", a->program);
   va_list args;
   va_start(args, format);
-  vfprintf(stderr, format, args);
+  if (a->rank > 0) {
+    vsnprintf(a->line, sizeof a->line, format, args);
+  } else {
+    progress_clear(&a->bar);
+    fprintf(stderr, "%s: ", a->program);
+    vfprintf(stderr, format, args);
+    fputc('\n', stderr);
+  }
   va_end(args);
-  fputc('\n', stderr);
   return false;
 }
 

@@ -6,7 +6,7 @@
 
 #include "progress.h"
 
-#include <mps/context.h>
+#include <mps/domain.h>
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -27,17 +27,31 @@ typedef struct app {
   bool no_gnuplot;     /* the note about it has been printed */
   const char *outcome; /* of the run: "complete", "interrupted" or "failed" */
   char results[1024];  /* names of the files written, for app_tell_results */
+  /* of several ranks */
+  mps_domain *domain; /* NULL: one process */
+  int32_t rank;       /* rank 0 speaks and writes; 0 of one process */
+  bool agreed;        /* what has gone wrong is known to all ranks */
+  char line[700];     /* what this rank would have said */
 } app;
 
 /* Creates the context on `threads` threads (0: all processors), its warnings and progress going to
  * stderr and Ctrl-C to its cancel hook. False, with an error line, when that fails. */
 bool app_start(app *a, const char *program, int64_t threads);
+/* The same of a program that can share its model among the ranks that mpirun has started: then with
+ * the domain that its solvers are given, and `threads` of each rank (0: its part of the node). The
+ * other programs are refused there. Ctrl-C, or SIGTERM or SIGUSR1 to any rank, stops all. */
+bool app_start_ranks(app *a, const char *program, int64_t threads);
+/* Where ranks go different ways: true where all ranks say `ok`. Else one rank tells what has gone
+ * wrong, and all return false. Collective; what the library does on all ranks is agreed upon by
+ * itself, but a rank that fails alone must come here before the next collective call. */
+bool app_agree(app *a, bool ok);
 /* Destroys the context and closes stdout. Returns `code`; where it was APP_OK, APP_FAILED when what
  * was printed could not be written, and APP_INTERRUPTED, with a line that says so, when Ctrl-C came
  * too late to stop anything. */
 int app_finish(app *a, int code);
 
-/* One line "program: ..." to stderr. Returns false, for `return app_error(...)`. */
+/* One line "program: ..." to stderr; of several ranks rank 0 prints it, the others keep theirs for
+ * app_agree. Returns false, for `return app_error(...)`. */
 bool app_error(app *a, const char *format, ...) APP_PRINTF(2, 3);
 /* As app_error, out of memory. */
 bool app_no_memory(app *a);

@@ -2,14 +2,28 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "options.h"
 
+#include "app.h"
+#include "ranks.h"
+
 #include <mps/base.h>
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { USAGE = 2, HELP_COLUMN = 34, HELP_END = 98, MAX_NAME = 40 };
+
+/* To stderr, from the first of several ranks alone: all were given the same options. */
+static void complain(const char *format, ...) APP_PRINTF(1, 2);
+static void complain(const char *format, ...) {
+  va_list args;
+  if (ranks_number() > 0) return;
+  va_start(args, format);
+  vfprintf(stderr, format, args);
+  va_end(args);
+}
 
 /* The programs never call setlocale, so strtod reads the C locale's decimal point. */
 bool options_number(const char *text, double *out) {
@@ -131,7 +145,7 @@ static int print_help(const options_program *program) {
 /* What was printed must have arrived: a full disk is an error. */
 static int close_output(const options_program *program) {
   if (fflush(stdout) == 0 && !ferror(stdout)) return 0;
-  fprintf(stderr, "%s: standard output could not be written\n", program->name);
+  complain("%s: standard output could not be written\n", program->name);
   return 1;
 }
 
@@ -171,9 +185,9 @@ static int refuse_unknown(const options_program *program, const char *name) {
     nearest = o->name;
   }
   if (nearest)
-    fprintf(stderr, "%s: unknown option --%s, did you mean --%s?\n", program->name, name, nearest);
+    complain("%s: unknown option --%s, did you mean --%s?\n", program->name, name, nearest);
   else
-    fprintf(stderr, "%s: unknown option --%s, see %s --help\n", program->name, name, program->name);
+    complain("%s: unknown option --%s, see %s --help\n", program->name, name, program->name);
   return USAGE;
 }
 
@@ -182,8 +196,8 @@ static int refuse_unknown(const options_program *program, const char *name) {
 static int refuse_value(const options_program *program, const option *o, const char *value,
                         const char *allowed) {
   const bool unit = (o->number || o->integer) && o->unit && strcmp(o->unit, "1") != 0;
-  fprintf(stderr, "%s: --%s is %s%s%s, must be %s\n", program->name, o->name,
-          *value ? value : "empty", unit ? " " : "", unit ? o->unit : "", allowed);
+  complain("%s: --%s is %s%s%s, must be %s\n", program->name, o->name, *value ? value : "empty",
+           unit ? " " : "", unit ? o->unit : "", allowed);
   return USAGE;
 }
 
@@ -258,6 +272,7 @@ static option *find(option *table, const char *name) {
 }
 
 int options_parse(const options_program *program, int argc, char **argv) {
+  ranks_hush();
   for (int i = 1; i < argc; i++) {
     const char *argument = argv[i];
     if (strcmp(argument, "--help") == 0 || strcmp(argument, "-h") == 0) {
@@ -269,8 +284,8 @@ int options_parse(const options_program *program, int argc, char **argv) {
       return close_output(program);
     }
     if (strncmp(argument, "--", 2) != 0) {
-      fprintf(stderr, "%s: unexpected argument \"%s\", see %s --help\n", program->name, argument,
-              program->name);
+      complain("%s: unexpected argument \"%s\", see %s --help\n", program->name, argument,
+               program->name);
       return USAGE;
     }
     char name[MAX_NAME + 1];
@@ -285,8 +300,7 @@ int options_parse(const options_program *program, int argc, char **argv) {
       continue;
     }
     if (!value && (i + 1 >= argc || strncmp(argv[i + 1], "--", 2) == 0)) {
-      fprintf(stderr, "%s: --%s needs a value: %s\n", program->name, name,
-              o->unit ? o->unit : "a number");
+      complain("%s: --%s needs a value: %s\n", program->name, name, o->unit ? o->unit : "a number");
       return USAGE;
     }
     const int code = read_value(program, o, value ? value : argv[++i]);
@@ -302,7 +316,7 @@ bool options_given(const option *table, const char *name) {
 }
 
 int options_refuse(const options_program *program, const char *reason) {
-  fprintf(stderr, "%s: %s\n", program->name, reason);
+  complain("%s: %s\n", program->name, reason);
   return USAGE;
 }
 

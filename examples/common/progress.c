@@ -46,6 +46,13 @@ void progress_start(progress *bar) {
   sigaction(SIGXFSZ, &action, NULL);
 }
 
+void progress_heed_launcher(void) {
+  struct sigaction action = {.sa_handler = on_interrupt};
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGTERM, &action, NULL);
+  sigaction(SIGUSR1, &action, NULL);
+}
+
 void progress_draw(progress *bar, double fraction, const char *text) {
   enum { WIDTH = 30 };
   if (!bar->terminal) return;

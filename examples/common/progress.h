@@ -19,6 +19,8 @@ enum { PROGRESS_LAST_LINE = 1400 };
  * kills the program as usual. A write beyond a limit on the size of files fails like one to a full
  * disk, instead of killing the program. */
 void progress_start(progress *bar);
+/* From now on SIGTERM and SIGUSR1 are requests to stop too: mpirun and srun send them to ranks. */
+void progress_heed_launcher(void);
 /* Draws the bar: `fraction` in 0..1, `text` a few words. */
 void progress_draw(progress *bar, double fraction, const char *text);
 /* Takes the bar off the terminal, before a line is printed. */

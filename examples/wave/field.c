@@ -25,21 +25,25 @@ mps_status field_record(field *f) {
   if (f->count == 0) return MPS_OK;
   mps_status status = mps_particles_view(f->particles, "acceleration", &a);
   if (status == MPS_OK) status = mps_particles_view(f->particles, "id", &id);
-  for (int64_t k = 0; status == MPS_OK && k < f->count; k++) {
+  for (int64_t k = 0; status == MPS_OK && k < mps_particles_count(f->particles); k++) {
     double *peak = &f->peak[*mps_view_i64(&id, k, 0)];
     *peak = fmax(*peak, hypot(*mps_view_f64(&a, k, 0), *mps_view_f64(&a, k, 1)));
   }
   return status;
 }
 
-static bool write_table(app *a, const settings *s, const field *f) {
+mps_status field_join(field *f, mps_domain *domain) {
+  return domain && f->count > 0 ? mps_domain_max(domain, (int32_t)f->count, f->peak) : MPS_OK;
+}
+
+static bool write_table(app *a, const settings *s, const field *f, mps_particles *whole) {
   output file;
   mps_view x, id, mark = {0};
-  if (!app_check(a, mps_particles_view(f->particles, "reference", &x)) ||
-      !app_check(a, mps_particles_view(f->particles, "id", &id)))
+  if (!app_check(a, mps_particles_view(whole, "reference", &x)) ||
+      !app_check(a, mps_particles_view(whole, "id", &id)))
     return false;
   const bool columns = s->sides == SIDES_FREEFIELD;
-  if (columns && !app_check(a, mps_particles_view(f->particles, "free_field", &mark))) return false;
+  if (columns && !app_check(a, mps_particles_view(whole, "free_field", &mark))) return false;
   if (!output_open(&file, a, s->out, "peaks.csv")) return false;
   csv_header(&file, "x_m,y_m,peak_m_s2");
   for (int64_t k = 0; k < f->count; k++) {
@@ -51,10 +55,10 @@ static bool write_table(app *a, const settings *s, const field *f) {
   return output_close(&file);
 }
 
-bool field_write(app *a, const settings *s, const field *f) {
+bool field_write(app *a, const settings *s, const field *f, mps_particles *whole) {
   output g;
   if (f->count == 0) return true;
-  if (!write_table(a, s, f) || !plot_open(&g, a, s->out, "peaks", 1200, 600)) return false;
+  if (!write_table(a, s, f, whole) || !plot_open(&g, a, s->out, "peaks", 1200, 600)) return false;
   const double D = 2.0 * s->radius;
   char input[48] = ", recorded motion";
   if (s->ricker) snprintf(input, sizeof input, " of %.3g m/s^2", s->amplitude);

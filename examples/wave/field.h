@@ -6,16 +6,19 @@
 #include "settings.h"
 
 typedef struct field {
-  mps_particles *particles; /* borrowed */
-  int64_t count;            /* 0: no map wanted */
-  double *peak;             /* |acceleration|, m/s2, by particle id */
+  mps_particles *particles; /* borrowed; of several ranks this one's share */
+  int64_t count;            /* of all ranks; 0: no map wanted */
+  double *peak;             /* |acceleration|, m/s2, by particle id; of others' particles 0 */
 } field;
 
+/* Of the whole set, before a solver shares it among ranks. */
 bool field_create(app *a, const settings *s, mps_particles *particles, field *out);
 void field_destroy(field *f);
 /* Raises the peaks to the present accelerations. */
 mps_status field_record(field *f);
-/* peaks.csv: x, y, peak of each particle of the slope; peaks.png. */
-bool field_write(app *a, const settings *s, const field *f);
+/* Brings the peaks of all ranks together. Collective. */
+mps_status field_join(field *f, mps_domain *domain);
+/* peaks.csv: x, y, peak of each particle of the slope, which `whole` has all; peaks.png. */
+bool field_write(app *a, const settings *s, const field *f, mps_particles *whole);
 
 #endif

@@ -22,17 +22,23 @@ bool files_peek(app *a, settings *s) {
   return true;
 }
 
+mps_status files_gather(files *f, mps_particles **whole) {
+  mps_status status = MPS_OK;
+  if (f->domain) status = mps_domain_gather(f->domain, f->particles, &f->whole);
+  *whole = f->domain ? f->whole : f->particles;
+  return status;
+}
+
 static bool put_back(app *a, const settings *s, mps_dynamics *dynamics, const files *f) {
   mps_checkpoint info = mps_checkpoint_defaults();
-  if (!app_check(a, mps_checkpoint_info(a->context, s->restart, &info))) return false;
+  if (!app_agree(a, app_check(a, mps_checkpoint_info(a->context, s->restart, &info)))) return false;
   const int64_t size = info.user_bytes;
   info.user_data = malloc(size > 0 ? (size_t)size : 1);
-  if (!info.user_data) return app_no_memory(a);
-  const bool ok = app_check(a, mps_checkpoint_info(a->context, s->restart, &info)) &&
-                  restart_unpack(a, f->so_far, info.user_data, size) &&
-                  app_check(a, mps_dynamics_restore(dynamics, s->restart, NULL));
+  bool ok = info.user_data ? true : app_no_memory(a);
+  ok = ok && app_check(a, mps_checkpoint_info(a->context, s->restart, &info)) &&
+       restart_unpack(a, f->so_far, info.user_data, size);
   free(info.user_data);
-  return ok;
+  return app_agree(a, ok) && app_check(a, mps_dynamics_restore(dynamics, s->restart, NULL));
 }
 
 /* Of a run that goes on, a name that leaves the frames of the first half alone. */
@@ -45,23 +51,27 @@ static void name_series(const settings *s, double now, char name[48]) {
 
 static bool open_recorder(app *a, const settings *s, double now, files *f) {
   char name[48];
+  mps_particles *whole;
+  if (!app_check(a, files_gather(f, &whole))) return false;
+  if (!whole) return app_agree(a, true); /* rank 0 writes */
   name_series(s, now, name);
   char *path = join(s->out, name);
-  if (!path) return app_no_memory(a);
+  if (!path) return app_agree(a, app_no_memory(a));
   mps_recorder_def def = mps_recorder_defaults();
   static const char *const fields[] = {"displacement", "rotation", "velocity",
                                        "acceleration", "pressure", "shear_velocity"};
   def.path = path;
   def.fields = fields;
   def.field_count = 6;
-  const bool ok = app_check(a, mps_recorder_create(a->context, f->particles, &def, &f->recorder));
+  const bool ok = app_check(a, mps_recorder_create(a->context, whole, &def, &f->recorder));
   free(path);
-  return ok;
+  return app_agree(a, ok);
 }
 
 bool files_open(app *a, const settings *s, results_so_far *so_far, mps_dynamics *dynamics,
                 files *out) {
   *out = (files){.particles = mps_dynamics_particles(dynamics),
+                 .domain = a->domain,
                  .so_far = so_far,
                  .frame_every = s->vtk,
                  .checkpoint_every = s->checkpoint};
@@ -69,36 +79,53 @@ bool files_open(app *a, const settings *s, results_so_far *so_far, mps_dynamics 
   const double now = mps_dynamics_time(dynamics);
   out->next_frame = now;
   out->next_checkpoint = now + s->checkpoint;
-  if (s->checkpoint > 0.0 && !(out->checkpoint = join(s->out, "checkpoint.h5")))
-    return app_no_memory(a);
+  if (s->checkpoint > 0.0) {
+    out->checkpoint = join(s->out, "checkpoint.h5");
+    if (!app_agree(a, out->checkpoint || app_no_memory(a))) return false;
+  }
   return s->vtk > 0.0 ? open_recorder(a, s, now, out) : true;
 }
 
 static mps_status write_checkpoint(const files *f, mps_dynamics *dynamics) {
   mps_checkpoint info = mps_checkpoint_defaults();
+  mps_status status = field_join(f->so_far->peaks, f->domain);
+  if (status != MPS_OK) return status;
   info.user_data = restart_pack(f->so_far, &info.user_bytes);
-  if (!info.user_data) return MPS_ERROR_MEMORY;
-  const mps_status status = mps_dynamics_save(dynamics, f->checkpoint, &info);
+  if (!info.user_data) status = MPS_ERROR_MEMORY;
+  if (f->domain) status = mps_domain_agree(f->domain, status);
+  if (status == MPS_OK) status = mps_dynamics_save(dynamics, f->checkpoint, &info);
   free(info.user_data);
   return status;
 }
 
-static mps_status record(files *f, mps_dynamics *dynamics) {
+/* The present frame, by rank 0; what becomes of it is known to all. */
+static mps_status write_frame(files *f, double now) {
+  mps_particles *whole;
+  mps_status status = files_gather(f, &whole);
+  if (status != MPS_OK) return status;
+  if (f->recorder) status = mps_recorder_write(f->recorder, now);
+  return f->domain ? mps_domain_agree(f->domain, status) : status;
+}
+
+static mps_status record(files *f, mps_dynamics *dynamics, mps_status status) {
   const double now = mps_dynamics_time(dynamics);
-  mps_status status = MPS_OK;
-  if (f->recorder && now >= f->next_frame * (1.0 - 1e-12)) {
-    status = mps_recorder_write(f->recorder, now);
+  const bool frame = f->frame_every > 0.0 && now >= f->next_frame * (1.0 - 1e-12);
+  const bool state = f->checkpoint && now >= f->next_checkpoint * (1.0 - 1e-12);
+  if (!frame && !state) return status;
+  if (f->domain) status = mps_domain_agree(f->domain, status);
+  if (status == MPS_OK && frame) {
+    status = write_frame(f, now);
     while (f->next_frame <= now) f->next_frame += f->frame_every;
   }
-  if (status == MPS_OK && f->checkpoint && now >= f->next_checkpoint * (1.0 - 1e-12)) {
+  if (status == MPS_OK && state) {
     status = write_checkpoint(f, dynamics);
     while (f->next_checkpoint <= now) f->next_checkpoint += f->checkpoint_every;
   }
   return status;
 }
 
-mps_status files_record(files *f, mps_dynamics *dynamics) {
-  const mps_status status = record(f, dynamics);
+mps_status files_record(files *f, mps_dynamics *dynamics, mps_status status) {
+  status = record(f, dynamics, status);
   f->failed = status != MPS_OK;
   return status;
 }
@@ -113,7 +140,9 @@ bool files_close(app *a, files *f, mps_dynamics *dynamics, bool diverged) {
     ok = app_check(a, mps_recorder_close(&f->recorder));
     if (ok) app_wrote(a, "wave.vtkhdf");
   }
+  if (dynamics) ok = app_agree(a, ok);
   mps_recorder_destroy(&f->recorder);
+  if (!dynamics) mps_particles_destroy(&f->whole);
   free(f->checkpoint);
   f->checkpoint = NULL;
   return ok;

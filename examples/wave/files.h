@@ -8,7 +8,9 @@
 #include <mps/io.h>
 
 typedef struct files {
-  mps_particles *particles;                 /* borrowed */
+  mps_particles *particles;                 /* borrowed; of several ranks this one's share */
+  mps_domain *domain;                       /* borrowed; NULL: one process */
+  mps_particles *whole;                     /* rank 0 of several: all ranks' particles, to write */
   mps_recorder *recorder;                   /* NULL: no frames wanted */
   double frame_every, next_frame;           /* s */
   double checkpoint_every, next_checkpoint; /* s; 0: none wanted */
@@ -22,9 +24,13 @@ bool files_peek(app *a, settings *s);
 /* Puts the checkpoint back, if any, and opens what the options ask for. */
 bool files_open(app *a, const settings *s, results_so_far *so_far, mps_dynamics *dynamics,
                 files *out);
-/* Writes what is due; call it with fields up to date. */
-mps_status files_record(files *f, mps_dynamics *dynamics);
-/* The last frame and checkpoint, wherever the run ended; false with an error line. */
+/* Writes what is due; call it with fields up to date. `status` is what has become of this rank so
+ * far. As the others with a solver: on all ranks, of which rank 0 writes. */
+mps_status files_record(files *f, mps_dynamics *dynamics, mps_status status);
+/* The particles of all ranks, brought up to date on rank 0; NULL on the others, or on an error. */
+mps_status files_gather(files *f, mps_particles **whole);
+/* The last frame and checkpoint, wherever the run ended; false with an error line. At last, or of a
+ * run that was not built, with `dynamics` NULL: releases what is left. */
 bool files_close(app *a, files *f, mps_dynamics *dynamics, bool diverged);
 
 #endif

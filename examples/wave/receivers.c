@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* ---- choice of the particles ----------------------------------------------------------------- */
 
@@ -27,7 +28,8 @@ static void add(receivers *r, const column *c, double x, double depth, int32_t c
 bool receivers_create(app *a, const column *c, char wave, int64_t n, receivers *out) {
   *out = (receivers){.particles = c->particles, .column = n};
   out->list = calloc((size_t)n + 5, sizeof *out->list);
-  if (!out->list) return app_no_memory(a);
+  out->now = calloc((size_t)n + 6, sizeof *out->now);
+  if (!out->list || !out->now) return app_no_memory(a);
   const double half = 0.5 * c->spacing;
   const double middle = ((double)(c->nx / 2) + 0.5) * c->spacing;
   const double deepest = column_surface(c, middle) - half;
@@ -47,6 +49,7 @@ bool receivers_create(app *a, const column *c, char wave, int64_t n, receivers *
 void receivers_destroy(receivers *r) {
   free(r->list);
   free(r->row);
+  free(r->now);
   *r = (receivers){0};
 }
 
@@ -76,23 +79,29 @@ static mps_status record_energy(receivers *r, mps_dynamics *dynamics) {
   return MPS_OK;
 }
 
-mps_status receivers_record(void *user, mps_dynamics *dynamics) {
-  receivers *r = user;
+mps_status receivers_record(receivers *r, mps_dynamics *dynamics, mps_domain *domain) {
   mps_view acceleration;
   /* The accelerations are those that the last step began with. */
   if (mps_dynamics_steps(dynamics) == 0) return MPS_OK;
   const double t = mps_dynamics_time(dynamics) - mps_dynamics_dt(dynamics);
   if (r->rows > 0 && receivers_time(r, r->rows - 1) == t) return MPS_OK; /* the end of the run */
   mps_status status = mps_particles_view(r->particles, "acceleration", &acceleration);
-  if (status != MPS_OK) return status;
   double *row = next_row(r);
-  if (!row) return MPS_ERROR_MEMORY;
-  row[0] = t;
+  if (status == MPS_OK && !row) status = MPS_ERROR_MEMORY;
   for (int64_t k = 0; k < r->count; k++) {
     const receiver *q = &r->list[k];
     const int64_t i = mps_particles_index(r->particles, q->id);
-    row[1 + k] = *mps_view_f64(&acceleration, i, q->component);
+    r->now[k] = status == MPS_OK && i >= 0 ? *mps_view_f64(&acceleration, i, q->component)
+                                           : -INFINITY; /* another rank's */
   }
+  r->now[r->count] = status; /* of the rank that fares worst */
+  if (domain) {
+    const mps_status lost = mps_domain_max(domain, (int32_t)r->count + 1, r->now);
+    if (lost != MPS_OK) return lost;
+  }
+  if (r->now[r->count] != 0.0) return (mps_status)r->now[r->count];
+  row[0] = t;
+  memcpy(row + 1, r->now, (size_t)r->count * sizeof *row);
   r->rows++;
   /* The energy needs a pass over all particles: every tenth row is enough for its drift. */
   if (r->energy && t > r->energy_from && r->rows % 10 == 0) status = record_energy(r, dynamics);

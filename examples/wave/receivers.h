@@ -25,13 +25,14 @@ typedef struct receivers {
   int64_t energies;
   int64_t rows, capacity;
   double *row; /* rows x (1 + count): time (s), accelerations (m/s2) */
+  double *now; /* a row under way: each rank has the accelerations of its own particles */
 } receivers;
 
 /* Chooses `n` receivers along the middle column and those beside it. */
 bool receivers_create(app *a, const column *c, char wave, int64_t n, receivers *out);
 void receivers_destroy(receivers *r);
-/* Callback of mps_dynamics_run; `user` is the receivers. */
-mps_status receivers_record(void *user, mps_dynamics *dynamics);
+/* In a callback of mps_dynamics_run; `domain` NULL: one process. On all ranks the same rows. */
+mps_status receivers_record(receivers *r, mps_dynamics *dynamics, mps_domain *domain);
 double receivers_time(const receivers *r, int64_t row);
 double receivers_value(const receivers *r, int64_t row, int64_t k);
 /* Largest |acceleration| (m/s2) of receiver k. */

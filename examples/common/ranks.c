@@ -1,0 +1,103 @@
+/* ranks.c - see ranks.h.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "ranks.h"
+
+#include <dlfcn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* ---- what the launcher says ------------------------------------------------------------------ */
+
+/* Open MPI, MPICH and its kin, Slurm with PMIx: the first that is there. */
+static int32_t ask(const char *const names[], int32_t otherwise) {
+  for (; *names; names++) {
+    const char *value = getenv(*names);
+    if (value && *value) return (int32_t)strtol(value, NULL, 10);
+  }
+  return otherwise;
+}
+
+int32_t ranks_launched(void) {
+  static const char *const names[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "MV2_COMM_WORLD_SIZE",
+                                      NULL};
+  static const char *const steps[] = {"SLURM_STEP_NUM_TASKS", NULL};
+  const int32_t count = ask(names, getenv("PMIX_RANK") ? ask(steps, 1) : 1);
+  return count > 1 ? count : 1;
+}
+
+int32_t ranks_number(void) {
+  static const char *const names[] = {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "MV2_COMM_WORLD_RANK",
+                                      "PMIX_RANK", NULL};
+  return ranks_launched() > 1 ? ask(names, 0) : 0;
+}
+
+static int32_t ranks_of_node(void) {
+  static const char *const names[] = {"OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS",
+                                      "MV2_COMM_WORLD_LOCAL_SIZE", "SLURM_NTASKS_PER_NODE", NULL};
+  const int32_t count = ask(names, ranks_launched());
+  return count > 1 ? count : 1;
+}
+
+void ranks_hush(void) {
+  if (ranks_number() > 0 && !freopen("/dev/null", "w", stdout)) fclose(stdout);
+}
+
+/* ---- the domain ------------------------------------------------------------------------------ */
+
+typedef mps_status (*join_fn)(mps_context *context, mps_domain **out);
+
+bool ranks_join(mps_context *context, mps_domain **out, char *why, size_t size) {
+  join_fn join = NULL;
+  *out = NULL;
+  /* MPI loads parts of itself, which look for its symbols among those of all */
+  void *library = dlopen(RANKS_LIBRARY, RTLD_NOW | RTLD_GLOBAL);
+  void *symbol = library ? dlsym(library, "mps_petsc_domain_create_world") : NULL;
+  if (!symbol) {
+    const char *reason = dlerror();
+    snprintf(why, size, "several ranks need libmps-petsc, which cannot be loaded: %s",
+             reason ? reason : RANKS_LIBRARY);
+    return false;
+  }
+  memcpy(&join, &symbol, sizeof join);
+  const mps_status status = join(context, out);
+  if (status != MPS_OK)
+    snprintf(why, size, "the ranks cannot be joined: %s",
+             mps_context_error(context)->status == status ? mps_context_error(context)->message
+                                                          : mps_status_text(status));
+  return status == MPS_OK && mps_domain_size(*out) == ranks_launched();
+}
+
+/* ---- threads --------------------------------------------------------------------------------- */
+
+/* Processors that this process may use, and a number that tells sets of them apart. */
+static int64_t processors(double *which) {
+  char line[1024];
+  int64_t count = 0;
+  *which = 0.0;
+  FILE *file = fopen("/proc/self/status", "r");
+  while (file && fgets(line, sizeof line, file)) {
+    if (strncmp(line, "Cpus_allowed:", 13) != 0) continue;
+    uint32_t hash = 5381;
+    for (const char *at = line + 13; *at; at++) {
+      const char digit[2] = {*at, '\0'};
+      for (long bits = strtol(digit, NULL, 16); bits > 0; bits >>= 1) count += bits & 1;
+      hash = hash * 33 + (unsigned char)*at;
+    }
+    *which = hash;
+  }
+  if (file) fclose(file);
+  if (count == 0) count = sysconf(_SC_NPROCESSORS_ONLN);
+  return count > 0 ? count : 1;
+}
+
+mps_status ranks_threads(mps_domain *domain, int64_t *threads) {
+  double which, range[2];
+  const int64_t count = processors(&which), ranks = ranks_of_node();
+  range[0] = which, range[1] = -which;
+  const mps_status status = mps_domain_max(domain, 2, range);
+  const bool shared = range[0] == -range[1]; /* not bound to processors of their own */
+  *threads = !shared ? count : count > ranks ? count / ranks : 1;
+  return status;
+}
