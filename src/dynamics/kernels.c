@@ -165,7 +165,8 @@ MPSI_INLINE void pass1(const int removal, const int by_pairs, const mpsi_dynamic
   const pair_terms sums = seven_rows(scratch, MPSI_DYN_BLOCK);
   const pair_terms terms = seven_rows(scratch + 7 * MPSI_DYN_BLOCK, MPSI_DYN_CHUNK);
   double *room = scratch + 7 * (MPSI_DYN_BLOCK + MPSI_DYN_CHUNK);
-  for (int64_t k = 0; k < rows * MPSI_DYN_BLOCK; k++) scratch[k] = 0.0;
+  for (int64_t row = 0; row < rows; row++) /* of another rank's block few particles are here */
+    for (int32_t t = 0; t < n; t++) scratch[row * MPSI_DYN_BLOCK + t] = 0.0;
 
   int64_t slot = block->slot;
   for (int64_t r = block->run_begin; r < block->run_end; slot += mesh->run[r++].count)
