@@ -17,7 +17,7 @@
  *   mpm_energy.h  where the energy of a run of WLS-MPM goes
  *   mpm_settle.h  static equilibrium of WLS-MPM
  *   dynamics.h    explicit elastodynamics
- *   elastic.h     implicit elasticity
+ *   elastic.h     implicit elasticity;  elastic_solver.h  another solver of its equations
  *   fluid.h       free-surface flow
  *   couple.h      implicit coupling of two codes
  *   io.h          series of results, restart files
@@ -36,6 +36,7 @@
 #include "domain.h"
 #include "dynamics.h"
 #include "elastic.h"
+#include "elastic_solver.h"
 #include "fluid.h"
 #include "fluid_solver.h"
 #include "geostatic.h"

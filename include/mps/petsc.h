@@ -16,6 +16,7 @@
 #define LIBMPS_PETSC_H
 
 #include "domain.h"
+#include "elastic_solver.h"
 #include "fluid_solver.h"
 
 #define MPS_PETSC_API MPS_API
@@ -49,19 +50,34 @@ typedef enum mps_petsc_method {
   MPS_PETSC_DIRECT = 1     /* a Cholesky factor by MUMPS for every equation */
 } mps_petsc_method;
 
-/** Makes a solver (mps_petsc_method) of one process, for one fluid at a time. PETSc's
- *  options that begin with mps_ change it: PETSC_OPTIONS="-mps_pc_type hypre".
+/** Makes a solver (mps_petsc_method) of this process alone, for one fluid or one body at a time.
+ *  PETSc's options that begin with mps_ change it: PETSC_OPTIONS="-mps_pc_type hypre".
  *  MPS_ERROR_UNSUPPORTED: PETSc was built without the part, or does not know an option. */
 MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solver_create(int32_t method,
                                                                mps_petsc_solver **out);
+/** The same of all processes that mpirun has started, or of a communicator by MPI_Comm_c2f, which
+ *  is duplicated: they solve the equations of one body together. Collective. */
+MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solver_create_world(int32_t method,
+                                                                     mps_petsc_solver **out);
+MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solver_create_c2f(int32_t method,
+                                                                   int32_t communicator,
+                                                                   mps_petsc_solver **out);
 /** Releases and nulls; accepts NULL. What it solves for must have gone, or have another solver. */
 MPS_PETSC_API void mps_petsc_solver_destroy(mps_petsc_solver **solver);
 
 /** Has the pressure of a fluid of at least `least` (>= 0) particles solved by `solver`, as
  *  mps_fluid_set_solver: until that function puts in another one, or none. The multigrid pays from
- *  some fifty thousand particles on (docs/fluid.md). */
+ *  some fifty thousand particles on (docs/fluid.md). Of one process only: else
+ *  MPS_ERROR_UNSUPPORTED. */
 MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solve_fluid(mps_petsc_solver *solver,
                                                              mps_fluid *fluid, int64_t least);
+
+/** Has the equations of implicit elasticity solved by `solver`, as mps_elastic_set_solver. With a
+ *  solver of several processes each has the whole body, made in the same way, and calls the same
+ *  functions of `elastic` in the same order; each assembles its part of the matrix, and all receive
+ *  the same displacements, which depend on the number of processes within the tolerance. */
+MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solve_elastic(mps_petsc_solver *solver,
+                                                               mps_elastic *elastic);
 
 MPS_EXTERN_C_END
 #endif

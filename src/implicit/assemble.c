@@ -37,6 +37,7 @@ typedef struct gather {
   int32_t *slot; /* of site, or -1; n of them */
   int32_t count;
   int64_t particle;
+  int64_t least; /* sites below it are left out: the particle, or 0 for whole rows */
   block blocks[ROW_MAX];
   pair_form forms[FORMS];
 } gather;
@@ -47,6 +48,14 @@ typedef struct assembly {
   int64_t *length; /* of each column, in the counting pass */
   bool fill;
 } assembly;
+
+typedef struct row_assembly {
+  const mps_elastic *e;
+  gather *gathers;
+  mpsi_elastic_rows *out;
+  double shift;
+  bool fill;
+} row_assembly;
 
 static block *block_of(gather *g, int64_t site) {
   if (g->slot[site] < 0) {
@@ -110,7 +119,7 @@ static void gather_gradient_at_joint(const mps_elastic *e, int64_t i, gather *g)
   const int32_t mine = find_site(w.site, w.count, g->particle);
   if (mine < 0) return;
   for (int32_t s = 0; s < w.count; s++) {
-    if (w.site[s] < g->particle) continue;
+    if (w.site[s] < g->least) continue;
     block *out = block_of(g, w.site[s]);
     for (int f = 0; f < d; f++) { /* stress of unit displacement f of the site */
       double P[9], trace = 0.0;
@@ -163,7 +172,7 @@ static void gather_pair_at_joint(const mps_elastic *e, int64_t i, int64_t j, int
   add_end(e, j, k, 1.0, &q);
   const int32_t mine = find_site(q.site, q.count, g->particle);
   for (int32_t s = 0; mine >= 0 && s < q.count; s++) {
-    if (q.site[s] < g->particle) continue;
+    if (q.site[s] < g->least) continue;
     block *out = block_of(g, q.site[s]);
     for (int c = 0; c < d; c++)
       for (int f = 0; f < d; f++) {
@@ -176,7 +185,7 @@ static void gather_pair_at_joint(const mps_elastic *e, int64_t i, int64_t j, int
 
 /* ---- gradients ------------------------------------------------------------------------------- */
 
-/* Only sites from the particle on are gathered: K is symmetric. */
+/* Only sites from `least` on are gathered: K is symmetric. */
 static void gather_gradient(const mps_elastic *e, int64_t i, gather *g) {
   if (mpsi_elastic_at_joint(e, i)) {
     gather_gradient_at_joint(e, i, g);
@@ -188,7 +197,7 @@ static void gather_gradient(const mps_elastic *e, int64_t i, gather *g) {
   int32_t mine = 0;
   while (sites[mine] != g->particle) mine++;
   for (int32_t b = 0; b < m; b++) {
-    if (sites[b] < g->particle) continue;
+    if (sites[b] < g->least) continue;
     block *out = block_of(g, sites[b]);
     if (e->conservative)
       couple_conservative(e, i, coefficient[mine], coefficient[b], out);
@@ -266,7 +275,7 @@ static void gather_pair(const mps_elastic *e, int64_t i, int64_t j, int32_t k, g
   if (mine < 0 || f->c[mine] == 0.0) return;
   const double s = mpsi_elastic_bond(e, i, j, k) * f->c[mine];
   for (int32_t b = 0; b < f->count; b++) {
-    if (f->c[b] == 0.0 || sites[b] < g->particle) continue;
+    if (f->c[b] == 0.0 || sites[b] < g->least) continue;
     block *out = block_of(g, sites[b]);
     for (int x = 0; x < e->dim; x++) add(out, x, x, s * f->c[b]);
   }
@@ -314,16 +323,17 @@ static void gather_bending(const mps_elastic *e, int64_t p, gather *g) {
   mpsi_bending_term term[MPSI_BENDING_MAX];
   const int32_t count = mpsi_elastic_bending_row(e, p, term);
   for (int32_t k = 0; k < count; k++)
-    for (int c = 0; c < e->dim && term[k].site >= p; c++)
+    for (int c = 0; c < e->dim && term[k].site >= g->least; c++)
       add(block_of(g, term[k].site), c, c, term[k].value[c]);
 }
 
-static void gather_row(const mps_elastic *e, int64_t p, gather *g) {
+static void gather_row(const mps_elastic *e, int64_t p, bool whole, gather *g) {
   const mpsi_links *l = &e->links;
   int64_t list[MPSI_STENCIL_MAX];
   const int32_t count = users(e, p, list);
   g->count = 0;
   g->particle = p;
+  g->least = whole ? 0 : p;
   for (int32_t a = 0; a < count; a++) gather_gradient(e, list[a], g);
   if (e->conservative) {
     gather_conservative(e, list, count, g);
@@ -335,7 +345,7 @@ static void gather_row(const mps_elastic *e, int64_t p, gather *g) {
     if (j < 0) continue;
     const double s = mpsi_elastic_bond(e, p, j, k);
     for (int c = 0; c < 2; c++) add(block_of(g, p), c, c, s);
-    for (int c = 0; c < 2 && j > p; c++) add(block_of(g, j), c, c, -s);
+    for (int c = 0; c < 2 && j >= g->least; c++) add(block_of(g, j), c, c, -s);
   }
 }
 
@@ -361,19 +371,24 @@ static void turn(const mps_elastic *e, int64_t p, block *b) {
     }
 }
 
-/* Column block p: the gathered blocks by ascending site. K is symmetric: row = column. */
-static void emit(assembly *t, gather *g) {
-  const mps_elastic *e = t->e;
-  const int d = e->dim;
-  const int64_t p = g->particle;
-  const block *order[ROW_MAX];
+/* The gathered blocks by ascending site, in local directions. */
+static void sort_blocks(const mps_elastic *e, gather *g, const block **order) {
   for (int32_t a = 0; a < g->count; a++) {
-    turn(e, p, &g->blocks[a]);
+    turn(e, g->particle, &g->blocks[a]);
     int32_t place = a;
     for (; place > 0 && order[place - 1]->site > g->blocks[a].site; place--)
       order[place] = order[place - 1];
     order[place] = &g->blocks[a];
   }
+}
+
+/* Column block p. K is symmetric: row = column. */
+static void emit(assembly *t, gather *g) {
+  const mps_elastic *e = t->e;
+  const int d = e->dim;
+  const int64_t p = g->particle;
+  const block *order[ROW_MAX];
+  sort_blocks(e, g, order);
   for (int c = 0; c < d; c++) {
     const int64_t column = e->dof[p * d + c];
     if (column < 0) continue;
@@ -398,8 +413,49 @@ static void assemble_chunk(void *data, int64_t chunk, int32_t worker) {
   int64_t first, last;
   mpsi_elastic_chunk(t->e, chunk, &first, &last);
   for (int64_t p = first; p < last; p++) {
-    gather_row(t->e, p, g);
+    gather_row(t->e, p, false, g);
     emit(t, g);
+    for (int32_t a = 0; a < g->count; a++) g->slot[g->blocks[a].site] = -1;
+  }
+}
+
+/* Whole rows of particle p. */
+static void emit_rows(row_assembly *t, gather *g) {
+  const mps_elastic *e = t->e;
+  mpsi_elastic_rows *out = t->out;
+  const int d = e->dim;
+  const int64_t p = g->particle;
+  const block *order[ROW_MAX];
+  sort_blocks(e, g, order);
+  for (int c = 0; c < d; c++) {
+    const int64_t row = (p - out->from) * d + c;
+    int64_t at = t->fill ? out->start[row] : 0;
+    for (int32_t a = 0; a < g->count; a++)
+      for (int f = 0; f < d; f++) {
+        const int64_t site = order[a]->site;
+        const bool diagonal = site == p && f == c;
+        const bool both = e->dof[p * d + c] >= 0 && e->dof[site * d + f] >= 0;
+        if (!diagonal && !(both && (order[a]->used >> (3 * c + f) & 1))) continue;
+        if (t->fill) {
+          out->column[at] = (int32_t)(site * d + f);
+          out->value[at] = order[a]->value[c][f];
+          if (diagonal && both && t->shift != 0.0) out->value[at] += t->shift * e->mass[p];
+        }
+        at++;
+      }
+    if (!t->fill) out->start[row + 1] = at;
+  }
+}
+
+static void rows_chunk(void *data, int64_t chunk, int32_t worker) {
+  row_assembly *t = data;
+  gather *g = &t->gathers[worker];
+  const int64_t first = t->out->from + chunk * MPSI_ELASTIC_CHUNK;
+  const int64_t last =
+      first + MPSI_ELASTIC_CHUNK < t->out->to ? first + MPSI_ELASTIC_CHUNK : t->out->to;
+  for (int64_t p = first; p < last; p++) {
+    gather_row(t->e, p, true, g);
+    emit_rows(t, g);
     for (int32_t a = 0; a < g->count; a++) g->slot[g->blocks[a].site] = -1;
   }
 }
@@ -419,15 +475,22 @@ static void drop_matrix(mps_elastic *e) {
   e->pattern_valid = e->values_valid = e->analysed = e->factored = false;
 }
 
-/* Counts the entries of each column and allocates the matrix. */
-static mps_status make_pattern(mps_elastic *e, const char *function, assembly *t) {
+mps_status mpsi_elastic_make_vectors(mps_elastic *e, const char *function) {
   drop_matrix(e);
   mpsi_elastic_number(e);
+  if ((e->rhs = mpsi_alloc(e->context, e->unknowns, sizeof *e->rhs)) &&
+      (e->solution = mpsi_alloc(e->context, e->unknowns, sizeof *e->solution)))
+    return MPS_OK;
+  return mpsi_fail_memory(e->context, function, (size_t)e->unknowns * sizeof *e->rhs);
+}
+
+/* Counts the entries of each column and allocates the matrix. */
+static mps_status make_pattern(mps_elastic *e, const char *function, assembly *t) {
+  const mps_status status = mpsi_elastic_make_vectors(e, function);
+  if (status != MPS_OK) return status;
   const int64_t n = e->unknowns;
-  if (!(e->column = mpsi_alloc(e->context, n + 1, sizeof *e->column)) ||
-      !(e->rhs = mpsi_alloc(e->context, n, sizeof *e->rhs)) ||
-      !(e->solution = mpsi_alloc(e->context, n, sizeof *e->solution)))
-    return mpsi_fail_memory(e->context, function, (size_t)n * sizeof *e->rhs);
+  if (!(e->column = mpsi_alloc(e->context, n + 1, sizeof *e->column)))
+    return mpsi_fail_memory(e->context, function, (size_t)n * sizeof *e->column);
   t->length = e->column + 1;
   t->fill = false;
   mpsi_parallel_for(e->context, mpsi_elastic_chunks(e), assemble_chunk, t);
@@ -439,25 +502,62 @@ static mps_status make_pattern(mps_elastic *e, const char *function, assembly *t
   return MPS_OK;
 }
 
+/* Accumulators of all workers; *slots goes with them. */
+static mps_status make_gathers(mps_elastic *e, const char *function, gather **gathers,
+                               int32_t **slots) {
+  const int32_t workers = mps_context_threads(e->context);
+  *gathers = mpsi_alloc(e->context, workers, sizeof **gathers);
+  *slots = mpsi_alloc(e->context, workers * e->n, sizeof **slots);
+  if (!*gathers || !*slots)
+    return mpsi_fail_memory(e->context, function, (size_t)(workers * e->n) * sizeof **slots);
+  for (int64_t k = 0; k < workers * e->n; k++) (*slots)[k] = -1;
+  for (int32_t w = 0; w < workers; w++) (*gathers)[w].slot = *slots + w * e->n;
+  return MPS_OK;
+}
+
 mps_status mpsi_elastic_assemble(mps_elastic *e, const char *function) {
   if (e->pattern_valid && e->values_valid) return MPS_OK;
-  const int32_t workers = mps_context_threads(e->context);
   assembly t = {.e = e, .fill = true};
   int32_t *slots = NULL;
-  mps_status status = MPS_OK;
-  if (!(t.gathers = mpsi_alloc(e->context, workers, sizeof *t.gathers)) ||
-      !(slots = mpsi_alloc(e->context, workers * e->n, sizeof *slots)))
-    status = mpsi_fail_memory(e->context, function, (size_t)(workers * e->n) * sizeof *slots);
-  else {
-    for (int64_t k = 0; k < workers * e->n; k++) slots[k] = -1;
-    for (int32_t w = 0; w < workers; w++) t.gathers[w].slot = slots + w * e->n;
-    if (!e->pattern_valid) status = make_pattern(e, function, &t);
-  }
+  mps_status status = make_gathers(e, function, &t.gathers, &slots);
+  if (status == MPS_OK && !e->pattern_valid) status = make_pattern(e, function, &t);
   if (status == MPS_OK) {
     t.fill = true;
     mpsi_parallel_for(e->context, mpsi_elastic_chunks(e), assemble_chunk, &t);
     e->pattern_valid = e->values_valid = true;
     e->factored = false;
+  }
+  mpsi_free(e->context, t.gathers);
+  mpsi_free(e->context, slots);
+  return status;
+}
+
+mps_status mpsi_elastic_assemble_rows(mps_elastic *e, const char *function, double shift,
+                                      mpsi_elastic_rows *out) {
+  row_assembly t = {.e = e, .out = out, .shift = shift};
+  int32_t *slots = NULL;
+  const int64_t rows = (out->to - out->from) * e->dim;
+  const int64_t chunks = (out->to - out->from + MPSI_ELASTIC_CHUNK - 1) / MPSI_ELASTIC_CHUNK;
+  mps_status status = MPS_OK;
+  if (e->n * e->dim > INT32_MAX)
+    return mpsi_fail(e->context, function, MPS_ERROR_UNSUPPORTED,
+                     "%lld rows are too many for a solver of mps_elastic_set_solver",
+                     (long long)(e->n * e->dim));
+  if (!(out->start = mpsi_alloc(e->context, rows + 1, sizeof *out->start)))
+    return mpsi_fail_memory(e->context, function, (size_t)rows * sizeof *out->start);
+  status = make_gathers(e, function, &t.gathers, &slots);
+  if (status == MPS_OK) {
+    mpsi_parallel_for(e->context, chunks, rows_chunk, &t);
+    for (int64_t r = 0; r < rows; r++) out->start[r + 1] += out->start[r];
+    const int64_t count = out->start[rows];
+    out->column = mpsi_alloc(e->context, count, sizeof *out->column);
+    out->value = mpsi_alloc(e->context, count, sizeof *out->value);
+    if (!out->column || !out->value)
+      status = mpsi_fail_memory(e->context, function, (size_t)count * sizeof *out->value);
+  }
+  if (status == MPS_OK) {
+    t.fill = true;
+    mpsi_parallel_for(e->context, chunks, rows_chunk, &t);
   }
   mpsi_free(e->context, t.gathers);
   mpsi_free(e->context, slots);

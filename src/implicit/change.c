@@ -77,6 +77,7 @@ static void use(mps_elastic *e) {
   e->loads = former.loads, e->load_count = former.load_count;
   e->spare = former.spare, e->spare_capacity = former.spare_capacity;
   e->report = former.report;
+  e->outside = former.outside;
   e->motion = former.motion, e->ended = former.ended;
   e->change = c;
   c->next = former;

@@ -34,6 +34,9 @@ const mps_elastic_motion_def mpsi_elastic_motion_defaults = {
     .frequency = {NAN, NAN},
 };
 
+const mps_elastic_solver_def mpsi_elastic_solver_defaults = {
+    .struct_size = sizeof(mps_elastic_solver_def), .parts = 1};
+
 mps_status mps_elastic_def_init(mps_elastic_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_elastic_def, def, size, &mpsi_elastic_defaults);
 }
@@ -48,4 +51,8 @@ mps_status mps_elastic_load_def_init(mps_elastic_load_def *def, size_t size) {
 
 mps_status mps_elastic_motion_def_init(mps_elastic_motion_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_elastic_motion_def, def, size, &mpsi_elastic_motion_defaults);
+}
+
+mps_status mps_elastic_solver_def_init(mps_elastic_solver_def *def, size_t size) {
+  return MPSI_DEF_INIT(mps_elastic_solver_def, def, size, &mpsi_elastic_solver_defaults);
 }

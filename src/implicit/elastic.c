@@ -381,6 +381,7 @@ void mps_elastic_destroy(mps_elastic **elastic) {
   mpsi_elastic_drop_boundaries(e);
   mpsi_state_forget(&e->identity);
   mpsi_elastic_drop_loads(e);
+  mpsi_elastic_drop_outside(e);
   mpsi_elastic_free_body(e);
   mps_kernel_destroy(&e->def.kernel);
   mps_material_destroy(&e->def.material);

@@ -6,6 +6,7 @@
  * boundaries.c  what is prescribed, reactions  facets.c    the surface
  * loads.c     nodal forces                     assemble.c  the sparse matrix of free unknowns
  * system.c    factor, solve, refine            cholesky.c  CHOLMOD;  cg.c  conjugate gradients
+ * outside.c   a solver of the caller
  * stress.c    stresses, sections, energy       motion.c, budget.c, modes.c  dynamics
  * change.c    particles that leave, or come back with a former state;  restart.c  that state
  *
@@ -21,7 +22,7 @@
 #include "core/internal.h"
 #include "core/state.h"
 
-#include <mps/elastic.h>
+#include <mps/elastic_solver.h>
 
 #define MPSI_STENCIL_MAX 64     /* sites of one gradient: a disc of radius < 4 has 45 */
 #define MPSI_ELASTIC_CHUNK 2048 /* particles of one unit of parallel work */
@@ -117,6 +118,22 @@ typedef struct mpsi_facet {
   int8_t axis, side;
 } mpsi_facet;
 
+/* A solver of the caller. */
+typedef struct mpsi_elastic_outside {
+  mps_elastic_solver_def def;
+  bool valid;   /* it has the present matrix, K + shift M */
+  double shift; /* 1/s2 */
+  int64_t nonzeros;
+} mpsi_elastic_outside;
+
+/* Rows of the particles [from, to): all directions of each. */
+typedef struct mpsi_elastic_rows {
+  int64_t from, to;
+  int64_t *start;
+  int32_t *column;
+  double *value;
+} mpsi_elastic_rows;
+
 struct mps_elastic {
   mps_context *context;
   mps_particles *particles;
@@ -183,6 +200,8 @@ struct mps_elastic {
   double *cg_work;        /* 5 * unknowns, or NULL */
   double *mass;           /* n, or NULL until dynamics asks for it */
   mps_elastic_report report;
+
+  mpsi_elastic_outside *outside; /* NULL: the library's own solvers */
 
   mpsi_identity *identity; /* of its snapshots */
   mpsi_ledger ledger;
@@ -378,6 +397,19 @@ mps_status mpsi_elastic_read(mps_elastic *e, const char *function, const char *n
 /* ---- assemble.c -------------------------------------------------------------------------------
  */
 mps_status mpsi_elastic_assemble(mps_elastic *e, const char *function);
+/* Whole rows of K + shift M with numbered unknowns, whose arrays become the caller's (also on an
+ * error); held directions have a diagonal alone. */
+mps_status mpsi_elastic_assemble_rows(mps_elastic *e, const char *function, double shift,
+                                      mpsi_elastic_rows *rows);
+/* Without a matrix: numbers the unknowns, and room for their vectors. */
+mps_status mpsi_elastic_make_vectors(mps_elastic *e, const char *function);
+
+/* ---- outside.c --------------------------------------------------------------------------------
+ */
+void mpsi_elastic_drop_outside(mps_elastic *e);
+/* solution = (K + shift M)^-1 rhs. */
+mps_status mpsi_elastic_solve_outside(mps_elastic *e, const char *function, double shift,
+                                      const double *rhs, double *solution);
 
 /* ---- system.c ---------------------------------------------------------------------------------
  */

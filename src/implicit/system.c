@@ -73,11 +73,24 @@ static mps_status analyse(mps_elastic *e, const char *function) {
   return MPS_OK;
 }
 
+/* A solver of the caller takes the matrix when it is to solve. */
+static mps_status prepare_outside(mps_elastic *e, const char *function) {
+  if (e->pattern_valid && e->values_valid) return MPS_OK;
+  e->outside->valid = false;
+  const mps_status status = e->pattern_valid ? MPS_OK : mpsi_elastic_make_vectors(e, function);
+  if (status != MPS_OK) return status;
+  memset(&e->symbolic, 0, sizeof e->symbolic);
+  mpsi_cholesky_destroy(&e->cholesky);
+  e->pattern_valid = e->values_valid = e->analysed = e->use_cg = true;
+  return MPS_OK;
+}
+
 mps_status mpsi_elastic_prepare(mps_elastic *e, const char *function) {
   mps_status status = MPS_OK;
   double start = now();
   const bool assemble = !e->pattern_valid || !e->values_valid;
   if (!e->pattern_valid) status = mpsi_elastic_check_supported(e, function);
+  if (status == MPS_OK && e->outside) return prepare_outside(e, function);
   if (status == MPS_OK) status = mpsi_elastic_assemble(e, function);
   if (status != MPS_OK) return status;
   if (assemble) e->report.seconds_assemble = now() - start;
@@ -157,8 +170,8 @@ mps_status mpsi_elastic_backsolve(mps_elastic *e, const char *function, int64_t 
   mps_status status = MPS_OK;
   if (!e->use_cg) return mpsi_cholesky_solve(e->cholesky, function, count, rhs, solution);
   for (int64_t k = 0; k < count && status == MPS_OK; k++)
-    status = mpsi_elastic_cg(e, function, e->factored_shift, rhs + k * e->unknowns,
-                             solution + k * e->unknowns);
+    status = (e->outside ? mpsi_elastic_solve_outside : mpsi_elastic_cg)(
+        e, function, e->factored_shift, rhs + k * e->unknowns, solution + k * e->unknowns);
   return status;
 }
 
@@ -201,7 +214,13 @@ static mps_status solve_block(mps_elastic *e, const char *function, int64_t coun
   return MPS_OK;
 }
 
+static int64_t nonzeros(const mps_elastic *e) {
+  if (e->outside) return e->outside->nonzeros;
+  return e->column ? e->column[e->unknowns] : 0;
+}
+
 static int32_t solver_used(const mps_elastic *e) {
+  if (e->outside) return MPS_ELASTIC_OUTSIDE;
   if (e->use_cg) return MPS_ELASTIC_CG;
   return e->def.solver == MPS_ELASTIC_AUTO ? MPS_ELASTIC_LLT : e->def.solver;
 }
@@ -213,7 +232,7 @@ mps_status mps_elastic_analyse_sized(mps_elastic *e, mps_elastic_estimate *out, 
   status = mpsi_elastic_prepare(e, __func__);
   if (status != MPS_OK) return mpsi_elastic_leave(e, status);
   const mps_elastic_estimate found = {.unknowns = e->unknowns,
-                                      .matrix_nonzeros = e->column[e->unknowns],
+                                      .matrix_nonzeros = nonzeros(e),
                                       .factor_nonzeros = e->symbolic.nonzeros,
                                       .factor_flops = e->symbolic.flops,
                                       .factor_bytes = e->symbolic.bytes,
@@ -333,7 +352,7 @@ mps_status mps_elastic_get_report_sized(const mps_elastic *e, mps_elastic_report
   if (!e) return MPS_ERROR_ARGUMENT;
   mps_elastic_report r = e->report;
   r.unknowns = e->unknowns;
-  r.matrix_nonzeros = e->column ? e->column[e->unknowns] : 0;
+  r.matrix_nonzeros = nonzeros(e);
   r.factor_nonzeros = e->symbolic.nonzeros;
   r.factor_flops = e->symbolic.flops;
   r.ordering = (int32_t)e->symbolic.ordering;

@@ -2,7 +2,7 @@
  * created, so the others have nothing to work on. SPDX-License-Identifier: BSD-3-Clause */
 #include "core/internal.h"
 
-#include <mps/elastic.h>
+#include <mps/elastic_solver.h>
 #include <mps/experimental.h>
 
 static mps_status refuse(mps_context *context, const char *function, mps_elastic **out) {
@@ -301,5 +301,11 @@ mps_status mps_elastic_restore(mps_elastic *elastic, const char *path, mps_check
   (void)elastic;
   (void)path;
   (void)info;
+  return MPS_ERROR_UNSUPPORTED;
+}
+
+mps_status mps_elastic_set_solver(mps_elastic *elastic, const mps_elastic_solver_def *def) {
+  (void)elastic;
+  (void)def;
   return MPS_ERROR_UNSUPPORTED;
 }

@@ -1,5 +1,5 @@
-/* equation.c - symmetric positive definite systems of one process: conjugate gradients with an
- * algebraic multigrid by smoothed aggregation (GAMG), or a Cholesky factor by MUMPS.
+/* equation.c - symmetric positive definite systems: conjugate gradients with an algebraic multigrid
+ * by smoothed aggregation (GAMG), or a Cholesky factor by MUMPS.
  *
  * A multigrid costs as much to make as several iterations, and equations that follow one another
  * (steps of a fluid) differ little: that of a former equation serves until a solution takes half as
@@ -17,7 +17,7 @@
 static bool configure(mps_petsc_solver *s) {
   PC pc;
   PetscReal weak = WEAK;
-  bool good = KSPCreate(PETSC_COMM_SELF, &s->ksp) == 0 && KSPGetPC(s->ksp, &pc) == 0;
+  bool good = KSPCreate(s->comm, &s->ksp) == 0 && KSPGetPC(s->ksp, &pc) == 0;
   if (s->method == MPS_PETSC_DIRECT)
     good = good && KSPSetType(s->ksp, KSPPREONLY) == 0 && PCSetType(pc, PCCHOLESKY) == 0 &&
            PCFactorSetMatSolverType(pc, MATSOLVERMUMPS) == 0;
@@ -29,22 +29,51 @@ static bool configure(mps_petsc_solver *s) {
   return good && KSPSetOptionsPrefix(s->ksp, "mps_") == 0 && KSPSetFromOptions(s->ksp) == 0;
 }
 
-mps_status mps_petsc_solver_create(int32_t method, mps_petsc_solver **out) {
-  if (!out) return MPS_ERROR_ARGUMENT;
-  *out = NULL;
-  if (method != MPS_PETSC_MULTIGRID && method != MPS_PETSC_DIRECT) return MPS_ERROR_ARGUMENT;
+static mps_status create(int32_t method, MPI_Comm communicator, mps_petsc_solver **out) {
   mps_petsc_solver *s = calloc(1, sizeof *s);
-  if (!s) return MPS_ERROR_MEMORY;
-  const mps_status status = mpsi_petsc_enter();
+  mps_status status = s ? MPS_OK : MPS_ERROR_MEMORY;
+  if (status == MPS_OK && MPI_Comm_dup(communicator, &s->comm) != 0) status = MPS_ERROR_IO;
   if (status != MPS_OK) {
     free(s);
+    mpsi_petsc_leave();
     return status;
   }
+  (void)MPI_Comm_set_errhandler(s->comm, MPI_ERRORS_RETURN);
+  (void)MPI_Comm_rank(s->comm, &s->rank);
+  (void)MPI_Comm_size(s->comm, &s->size);
   s->method = method;
+  s->counts = calloc(2 * (size_t)s->size, sizeof *s->counts);
+  s->places = s->counts ? s->counts + s->size : NULL;
   *out = s;
-  if (configure(s)) return MPS_OK;
-  mps_petsc_solver_destroy(out);
-  return MPS_ERROR_UNSUPPORTED;
+  if (!s->counts)
+    status = MPS_ERROR_MEMORY;
+  else if (!configure(s))
+    status = MPS_ERROR_UNSUPPORTED;
+  if (status != MPS_OK) mps_petsc_solver_destroy(out);
+  return status;
+}
+
+static mps_status check(int32_t method, mps_petsc_solver **out) {
+  if (!out) return MPS_ERROR_ARGUMENT;
+  *out = NULL;
+  return method == MPS_PETSC_MULTIGRID || method == MPS_PETSC_DIRECT ? mpsi_petsc_enter()
+                                                                     : MPS_ERROR_ARGUMENT;
+}
+
+mps_status mps_petsc_solver_create(int32_t method, mps_petsc_solver **out) {
+  const mps_status status = check(method, out);
+  return status == MPS_OK ? create(method, PETSC_COMM_SELF, out) : status;
+}
+
+mps_status mps_petsc_solver_create_world(int32_t method, mps_petsc_solver **out) {
+  const mps_status status = check(method, out);
+  return status == MPS_OK ? create(method, MPI_COMM_WORLD, out) : status;
+}
+
+mps_status mps_petsc_solver_create_c2f(int32_t method, int32_t communicator,
+                                       mps_petsc_solver **out) {
+  const mps_status status = check(method, out);
+  return status == MPS_OK ? create(method, MPI_Comm_f2c((MPI_Fint)communicator), out) : status;
 }
 
 static void drop(mps_petsc_solver *s) {
@@ -59,13 +88,15 @@ void mps_petsc_solver_destroy(mps_petsc_solver **solver) {
   *solver = NULL;
   (void)KSPDestroy(&s->ksp);
   drop(s);
+  (void)MPI_Comm_free(&s->comm);
+  free(s->counts);
   free(s);
   mpsi_petsc_leave();
 }
 
 /* ---- matrix ---------------------------------------------------------------------------------- */
 
-/* PETSc copies the three arrays; where its integers are not ours they are copied twice. */
+/* PETSc copies the three arrays; its integers may not be ours. */
 static bool fill(Mat matrix, const mpsi_petsc_matrix *a) {
   const int64_t entries = a->start[a->rows];
   PetscInt *start = malloc((size_t)(a->rows + 1) * sizeof *start);
@@ -74,47 +105,80 @@ static bool fill(Mat matrix, const mpsi_petsc_matrix *a) {
     for (int64_t i = 0; i <= a->rows; i++) start[i] = (PetscInt)a->start[i];
     for (int64_t k = 0; k < entries; k++) column[k] = (PetscInt)a->column[k];
   }
-  const bool good =
-      start && column && MatSeqAIJSetPreallocationCSR(matrix, start, column, a->value) == 0;
+  /* Of the two the one that is not of the matrix's type does nothing. */
+  const bool good = start && column &&
+                    MatSeqAIJSetPreallocationCSR(matrix, start, column, a->value) == 0 &&
+                    MatMPIAIJSetPreallocationCSR(matrix, start, column, a->value) == 0;
   free(start);
   free(column);
   return good;
 }
 
-static bool add_modes(Mat matrix, const mpsi_petsc_matrix *a) {
+/* Orthonormal, as PETSc wants null spaces; motions that supports leave nothing of are left out. */
+static bool add_modes(const mps_petsc_solver *s, const mpsi_petsc_matrix *a) {
   Vec mode[6] = {NULL};
+  PetscInt found = 0;
   MatNullSpace space = NULL;
   bool good = a->modes <= 6;
-  for (int32_t m = 0; good && m < a->modes; m++)
-    good = VecCreateSeqWithArray(PETSC_COMM_SELF, (PetscInt)a->block, (PetscInt)a->rows,
-                                 a->mode + m * a->rows, &mode[m]) == 0;
-  good = good && MatNullSpaceCreate(PETSC_COMM_SELF, PETSC_FALSE, a->modes, mode, &space) == 0 &&
-         MatSetNearNullSpace(matrix, space) == 0;
+  for (int32_t m = 0; good && m < a->modes; m++) {
+    PetscScalar *values = NULL;
+    PetscReal size = 0.0, left = 0.0;
+    good =
+        MatCreateVecs(s->matrix, NULL, &mode[found]) == 0 && VecGetArray(mode[found], &values) == 0;
+    for (int64_t i = 0; good && i < a->rows; i++) values[i] = a->mode[m * a->rows + i];
+    good = good && VecRestoreArray(mode[found], &values) == 0 &&
+           VecNorm(mode[found], NORM_2, &size) == 0;
+    for (PetscInt k = 0; good && k < found; k++) {
+      PetscScalar along = 0.0;
+      good =
+          VecDot(mode[found], mode[k], &along) == 0 && VecAXPY(mode[found], -along, mode[k]) == 0;
+    }
+    good = good && VecNormalize(mode[found], &left) == 0;
+    if (left > 1e-6 * size)
+      found++;
+    else
+      good = VecDestroy(&mode[found]) == 0 && good;
+  }
+  good = good && MatNullSpaceCreate(s->comm, PETSC_FALSE, found, mode, &space) == 0 &&
+         MatSetNearNullSpace(s->matrix, space) == 0;
   (void)MatNullSpaceDestroy(&space);
   for (int32_t m = 0; m < 6; m++) (void)VecDestroy(&mode[m]);
   return good;
 }
 
+static bool make_vector(const mps_petsc_solver *s, const mpsi_petsc_matrix *a, Vec *v) {
+  const PetscInt block = (PetscInt)a->block, rows = (PetscInt)a->rows, all = (PetscInt)a->all;
+  if (s->size > 1) return VecCreateMPIWithArray(s->comm, block, rows, all, NULL, v) == 0;
+  return VecCreateSeqWithArray(s->comm, block, rows, NULL, v) == 0;
+}
+
+/* Where the parts of the ranks lie in a whole vector. */
+static bool share_places(mps_petsc_solver *s, const mpsi_petsc_matrix *a) {
+  const int own[2] = {(int)a->rows, (int)a->first};
+  return MPI_Allgather(&own[0], 1, MPI_INT, s->counts, 1, MPI_INT, s->comm) == 0 &&
+         MPI_Allgather(&own[1], 1, MPI_INT, s->places, 1, MPI_INT, s->comm) == 0;
+}
+
 mps_status mpsi_petsc_take(mps_petsc_solver *s, const mpsi_petsc_matrix *a) {
   if (a->start[a->rows] > PETSC_MAX_INT) return MPS_ERROR_UNSUPPORTED;
-  const PetscInt rows = (PetscInt)a->rows, former = s->rows, block = (PetscInt)a->block;
+  const PetscInt rows = (PetscInt)a->rows, all = (PetscInt)a->all, block = (PetscInt)a->block;
+  const int64_t former = s->all;
   drop(s);
-  s->rows = 0;
-  bool good = MatCreate(PETSC_COMM_SELF, &s->matrix) == 0 &&
-              MatSetSizes(s->matrix, rows, rows, rows, rows) == 0 &&
-              MatSetType(s->matrix, MATSEQAIJ) == 0 && MatSetBlockSize(s->matrix, block) == 0 &&
-              fill(s->matrix, a) && MatSetOption(s->matrix, MAT_SPD, PETSC_TRUE) == 0 &&
-              (a->modes == 0 || add_modes(s->matrix, a)) &&
-              VecCreateSeqWithArray(PETSC_COMM_SELF, block, rows, NULL, &s->x) == 0 &&
-              VecCreateSeqWithArray(PETSC_COMM_SELF, block, rows, NULL, &s->b) == 0;
-  if (good && rows != former) {
-    s->first = 0; /* no preconditioner yet: what GAMG keeps after a reset is of the former size */
+  s->all = 0;
+  bool good =
+      MatCreate(s->comm, &s->matrix) == 0 && MatSetSizes(s->matrix, rows, rows, all, all) == 0 &&
+      MatSetType(s->matrix, s->size > 1 ? MATMPIAIJ : MATSEQAIJ) == 0 &&
+      MatSetBlockSize(s->matrix, block) == 0 && fill(s->matrix, a) &&
+      MatSetOption(s->matrix, MAT_SPD, PETSC_TRUE) == 0 && (a->modes == 0 || add_modes(s, a)) &&
+      make_vector(s, a, &s->x) && make_vector(s, a, &s->b) && share_places(s, a);
+  if (good && (a->all != former || a->rows != s->rows)) {
+    s->first_count = 0; /* what GAMG keeps after a reset is of the former size */
     good = KSPDestroy(&s->ksp) == 0 && configure(s);
   }
   good = good && KSPSetOperators(s->ksp, s->matrix, s->matrix) == 0;
   if (!good) return MPS_ERROR_MEMORY;
   s->fresh = false;
-  s->rows = rows;
+  s->all = a->all, s->first = a->first, s->rows = a->rows;
   return MPS_OK;
 }
 
@@ -134,11 +198,11 @@ static mps_status iterate(mps_petsc_solver *s, bool keep, double tolerance, Pets
 }
 
 static mps_status solve(mps_petsc_solver *s, double tolerance, int64_t *iterations) {
-  const PetscInt patience = s->first + s->first / 2 + 2;
+  const PetscInt patience = s->first_count + s->first_count / 2 + 2;
   PetscInt count = 0;
   bool converged = false;
   mps_status status = MPS_OK;
-  if (s->fresh || (s->method == MPS_PETSC_MULTIGRID && s->first > 0)) {
+  if (s->fresh || (s->method == MPS_PETSC_MULTIGRID && s->first_count > 0)) {
     status = iterate(s, true, tolerance, s->fresh ? MOST : patience, &count, &converged);
     *iterations += count;
     if (status != MPS_OK || converged) return status;
@@ -147,23 +211,26 @@ static mps_status solve(mps_petsc_solver *s, double tolerance, int64_t *iteratio
   status = iterate(s, false, tolerance, MOST, &count, &converged);
   *iterations += count;
   s->fresh = status == MPS_OK;
-  if (s->fresh) s->first = count > 1 ? count : 1;
+  if (s->fresh) s->first_count = count > 1 ? count : 1;
   return status == MPS_OK && !converged ? MPS_ERROR_NUMERIC : status;
 }
 
 mps_status mpsi_petsc_solve(mps_petsc_solver *s, const double *b, double tolerance, double *x,
                             int64_t *iterations) {
   double size = 0.0;
-  if (s->rows == 0) return MPS_ERROR_STATE;
-  for (PetscInt i = 0; i < s->rows; i++) size += b[i] * b[i];
+  if (s->all == 0) return MPS_ERROR_STATE;
+  for (int64_t i = 0; i < s->all; i++) size += b[i] * b[i];
   if (size == 0.0) {
-    for (PetscInt i = 0; i < s->rows; i++) x[i] = 0.0;
+    for (int64_t i = 0; i < s->all; i++) x[i] = 0.0;
     return MPS_OK;
   }
-  if (VecPlaceArray(s->b, b) != 0 || VecPlaceArray(s->x, x) != 0) return MPS_ERROR_INTERNAL;
+  if (VecPlaceArray(s->b, b + s->first) != 0 || VecPlaceArray(s->x, x + s->first) != 0)
+    return MPS_ERROR_INTERNAL;
   /* A little closer than asked for: the norm that the iteration carries on drifts. */
   const mps_status status = solve(s, 0.9 * tolerance, iterations);
   (void)VecResetArray(s->b);
   (void)VecResetArray(s->x);
-  return status;
+  if (status != MPS_OK || s->size == 1) return status;
+  return MPSI_PETSC_STATUS(MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, x, s->counts,
+                                          s->places, MPI_DOUBLE, s->comm));
 }

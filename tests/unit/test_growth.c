@@ -13,6 +13,7 @@
 #include <mps/dynamics.h>
 #include <mps/elastic.h>
 #include <mps/fluid.h>
+#include <mps/elastic_solver.h>
 #include <mps/fluid_solver.h>
 #include <mps/geostatic.h>
 #include <mps/io.h>
@@ -341,6 +342,13 @@ static mps_status use_elastic_load(const void *def) {
   return status;
 }
 
+static mps_status use_elastic_solver(const void *def) {
+  mps_elastic *elastic = make_elastic();
+  const mps_status status = mps_elastic_set_solver(elastic, def);
+  mps_elastic_destroy(&elastic);
+  return status;
+}
+
 static void need_elastic_motion(void *def) { ((mps_elastic_motion_def *)def)->dt = 1e-3; }
 static mps_status use_elastic_motion(const void *def) {
   static const int64_t held[2] = {0, 1};
@@ -476,6 +484,16 @@ static mps_status no_solution(void *user, const double *b, double tolerance, dou
   return MPS_OK;
 }
 
+static mps_status no_elastic_matrix(void *user, const mps_elastic_matrix *matrix, size_t size) {
+  (void)user, (void)matrix, (void)size;
+  return MPS_OK;
+}
+
+static void need_elastic_solver(void *def) {
+  mps_elastic_solver_def *d = def;
+  d->matrix = no_elastic_matrix, d->solve = no_solution;
+}
+
 static void need_fluid_solver(void *def) {
   mps_fluid_solver_def *d = def;
   d->matrix = no_matrix, d->solve = no_solution;
@@ -507,6 +525,7 @@ static const user users[] = {
     {"mps_elastic_boundary_def", need_elastic_boundary, use_elastic_boundary},
     {"mps_elastic_load_def", need_nothing, use_elastic_load},
     {"mps_elastic_motion_def", need_elastic_motion, use_elastic_motion},
+    {"mps_elastic_solver_def", need_elastic_solver, use_elastic_solver},
     {"mps_fluid_boundary_def", need_fluid_boundary, use_fluid_boundary},
     {"mps_material_block", need_block, use_block},
     {"mps_mpm_boundary_def", need_mpm_boundary, use_mpm_boundary},

@@ -1,0 +1,32 @@
+/* elastic.c - equations of implicit elasticity solved by PETSc, each process with its part of the
+ * rows. SPDX-License-Identifier: BSD-3-Clause */
+#include "equation.h"
+
+static mps_status take(void *user, const mps_elastic_matrix *m, size_t size) {
+  if (size < sizeof *m) return MPS_ERROR_UNSUPPORTED; /* an older libmps */
+  const mpsi_petsc_matrix a = {.all = m->all,
+                               .first = m->first,
+                               .rows = m->rows,
+                               .block = m->block,
+                               .start = m->start,
+                               .column = m->column,
+                               .value = m->value,
+                               .modes = m->modes,
+                               .mode = m->mode};
+  return mpsi_petsc_take(user, &a);
+}
+
+static mps_status solve(void *user, const double *b, double tolerance, double *x,
+                        int64_t *iterations) {
+  return mpsi_petsc_solve(user, b, tolerance, x, iterations);
+}
+
+mps_status mps_petsc_solve_elastic(mps_petsc_solver *solver, mps_elastic *elastic) {
+  mps_elastic_solver_def def = mps_elastic_solver_defaults();
+  if (!solver || !elastic) return MPS_ERROR_ARGUMENT;
+  def.part = solver->rank, def.parts = solver->size;
+  def.user = solver;
+  def.matrix = take;
+  def.solve = solve;
+  return mps_elastic_set_solver(elastic, &def);
+}

@@ -1,0 +1,124 @@
+/* test_elastic.c - implicit elasticity on the ranks that mpirun starts: each rank solves alone by
+ * CHOLMOD, then all of them together by PETSc, and compares. SPDX-License-Identifier: BSD-3-Clause
+ */
+#include "elastic_common.h"
+
+#include <mps/petsc.h>
+
+static mps_context *own;
+static mps_petsc_solver *solvers[2]; /* by method */
+
+/* A stepped block of two materials, held below, sliding along an inclined plane on one side. */
+static test_body block(int dim, mps_petsc_solver *solver) {
+  test_body b = test_body_begin(own, dim, 0.25);
+  test_body_box(&b, 0, 0, 0, 3, 1, 1);
+  test_body_box(&b, 0, 1, 0, 1.5, 2, 1);
+  mps_elastic_def def = mps_elastic_defaults();
+  def.tolerance = 1e-11;
+  test_body_finish(&b, 1.0, 0.3, &def);
+  mps_edit young;
+  mps_assert_ok(own, mps_particles_edit(b.particles, "young", &young));
+  for (int64_t i = 0; i < b.n; i++)
+    if (test_value(&b, "position", i, 1) < 0.5) *mps_edit_f64(&young, i, 0) = 10.0;
+  mps_assert_ok(own, mps_particles_commit(b.particles, &young));
+  mps_assert_ok(own, mps_elastic_update_material(b.elastic));
+  int64_t count, *ids = test_select(&b, 1, -1, 0.2, &count);
+  for (int c = 0; c < dim; c++) mps_assert_ok(own, test_prescribe(b.elastic, c, count, ids, NULL));
+  mps_assert_ok(own, mps_elastic_cut(b.elastic, 1, -1, count, ids));
+  free(ids);
+  const double slope[3] = {0.8, 0.6, 0.0}, values[] = {1e-3};
+  int64_t top = b.n - 1;
+  mps_assert_ok(own, test_roller(b.elastic, slope, 1, &top, values));
+  const double force[3] = {0.1, -0.3, 0.05};
+  mps_assert_ok(own, test_body_force(b.elastic, force));
+  if (solver) mps_assert_ok(own, mps_petsc_solve_elastic(solver, b.elastic));
+  return b;
+}
+
+static void compare(const test_body *a, const test_body *b, const char *field, double tolerance) {
+  double largest = 0.0, away = 0.0;
+  for (int64_t i = 0; i < a->n; i++)
+    for (int c = 0; c < a->dim; c++) {
+      largest = fmax(largest, fabs(test_value(a, field, i, c)));
+      away = fmax(away, fabs(test_value(a, field, i, c) - test_value(b, field, i, c)));
+    }
+  assert_true(largest > 0.0);
+  mps_assert_near(away / largest, 0.0, tolerance);
+}
+
+static void static_solutions_are_cholmods(void **state) {
+  (void)state;
+  for (int dim = 2; dim <= 3; dim++)
+    for (int method = 0; method < 2; method++) {
+      mps_elastic_report report;
+      test_body alone = block(dim, NULL), together = block(dim, solvers[method]);
+      mps_assert_ok(own, mps_elastic_solve(alone.elastic));
+      mps_assert_ok(own, mps_elastic_solve(together.elastic));
+      compare(&alone, &together, "displacement", 1e-9);
+      compare(&alone, &together, "reaction", 1e-9);
+      mps_assert_ok(own, mps_elastic_get_report(together.elastic, &report));
+      assert_int_equal(report.solver, MPS_ELASTIC_OUTSIDE);
+      assert_true(report.residual < 1e-10);
+      assert_true(report.iterations <= (method == MPS_PETSC_DIRECT ? 2 : 60));
+      /* Another load, the same matrix. */
+      const double force[3] = {-0.2, 0.1, 0.3};
+      mps_assert_ok(own, test_body_force(alone.elastic, force));
+      mps_assert_ok(own, test_body_force(together.elastic, force));
+      mps_assert_ok(own, mps_elastic_solve(alone.elastic));
+      mps_assert_ok(own, mps_elastic_solve(together.elastic));
+      compare(&alone, &together, "displacement", 1e-9);
+      test_body_end(&alone);
+      test_body_end(&together);
+    }
+}
+
+static void motions_are_cholmods(void **state) {
+  (void)state;
+  mps_elastic_motion_def motion = mps_elastic_motion_defaults();
+  test_body both[2] = {block(2, NULL), block(2, solvers[MPS_PETSC_MULTIGRID])};
+  motion.dt = 0.2;
+  for (int k = 0; k < 2; k++) {
+    mps_assert_ok(own, mps_particles_set(both[k].particles, "density", 0, 2.0));
+    mps_assert_ok(own, mps_elastic_start(both[k].elastic, &motion));
+    mps_assert_ok(own, mps_elastic_step(both[k].elastic, 8));
+    mps_assert_ok(own, mps_elastic_set_dt(both[k].elastic, 0.1)); /* another matrix */
+    mps_assert_ok(own, mps_elastic_step(both[k].elastic, 8));
+  }
+  compare(&both[0], &both[1], "displacement", 1e-8);
+  compare(&both[0], &both[1], "velocity", 1e-8);
+  test_body_end(&both[0]);
+  test_body_end(&both[1]);
+}
+
+/* What was solved by all ranks is solved by each alone when the solver is taken out. */
+static void a_solver_is_taken_out_again(void **state) {
+  (void)state;
+  test_body b = block(2, solvers[MPS_PETSC_MULTIGRID]), alone = block(2, NULL);
+  mps_elastic_report report;
+  mps_assert_ok(own, mps_elastic_solve(b.elastic));
+  mps_assert_ok(own, mps_elastic_set_solver(b.elastic, NULL));
+  mps_assert_ok(own, mps_elastic_solve(b.elastic));
+  mps_assert_ok(own, mps_elastic_solve(alone.elastic));
+  mps_assert_ok(own, mps_elastic_get_report(b.elastic, &report));
+  assert_int_equal(report.solver, MPS_ELASTIC_LLT);
+  compare(&alone, &b, "displacement", 1e-13);
+  assert_int_equal(mps_petsc_solve_elastic(NULL, b.elastic), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_petsc_solve_elastic(solvers[0], NULL), MPS_ERROR_ARGUMENT);
+  test_body_end(&b);
+  test_body_end(&alone);
+}
+
+int main(void) {
+  own = test_context(MPS_EXECUTOR_SERIAL, 1);
+  for (int32_t k = 0; k < 2; k++)
+    if (mps_petsc_solver_create_world(k, &solvers[k]) != MPS_OK) return 1;
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(static_solutions_are_cholmods),
+      cmocka_unit_test(motions_are_cholmods),
+      cmocka_unit_test(a_solver_is_taken_out_again),
+  };
+  const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+  for (int k = 0; k < 2; k++) mps_petsc_solver_destroy(&solvers[k]);
+  mps_context_destroy(&own);
+  return failed;
+}
