@@ -25,6 +25,7 @@
   X(mps_elastic_def, mps_elastic_def_init, "0.2", 96) \
   X(mps_elastic_load_def, mps_elastic_load_def_init, "0.2", 120) \
   X(mps_elastic_motion_def, mps_elastic_motion_def_init, "0.2", 96) \
+  X(mps_elastic_solver_def, mps_elastic_solver_def_init, "0.2", 40) \
   X(mps_fluid_boundary_def, mps_fluid_boundary_def_init, "0.2", 88) \
   X(mps_fluid_def, mps_fluid_def_init, "0.2", 88) \
   X(mps_fluid_load_def, mps_fluid_load_def_init, "0.2", 152) \
