@@ -10,6 +10,9 @@
 #define LEAST_MOBILE 1e-3  /* of the direction that gives most */
 #define FASTEST 0.02       /* of the waves, at which an overlap opens: it must not throw */
 
+/* As fmax, without a call. */
+static inline double larger(double a, double b) { return b > a ? b : a; }
+
 /* ---- geometry -------------------------------------------------------------------------------- */
 
 double mpsi_impulse_half_size(double half, double wave, double shear, const double *stress,
@@ -98,7 +101,7 @@ static void into_cone(const mpsi_impulse *c, double *rub) {
 
 void mpsi_impulse_warm(mpsi_impulse *c, const double *last, double share, double *by) {
   const double across = mpsi_dot3(last, c->normal);
-  c->push = fmax(0.0, share * across);
+  c->push = larger(0.0, share * across);
   for (int a = 0; a < 3; a++)
     c->rub[a] = c->push > 0.0 ? share * (last[a] - across * c->normal[a]) : 0.0;
   into_cone(c, c->rub);
@@ -108,16 +111,16 @@ void mpsi_impulse_warm(mpsi_impulse *c, const double *last, double share, double
 /* 1/m_c along the unit vector d, > 0: that of the weakest direction counts for a thousandth at
  * least, where walls hold the nodes. */
 static double mobility_along(const mpsi_impulse *c, const mpsi_impulse_body *b, const double *d) {
-  const double *m = c->mobility, most = fmax(m[0], fmax(m[1], m[2]));
+  const double *m = c->mobility, most = larger(m[0], larger(m[1], m[2]));
   const double own = m[0] * d[0] * d[0] + m[1] * d[1] * d[1] + m[2] * d[2] * d[2];
-  return fmax(own, LEAST_MOBILE * most) +
+  return larger(own, LEAST_MOBILE * most) +
          (b->free ? mpsi_impulse_mobility(b->body, c->at, d) : 0.0);
 }
 
 double mpsi_impulse_visit(mpsi_impulse *c, const mpsi_impulse_body *b, const double *u,
                           double *by) {
   const double across = mpsi_dot3(u, c->normal), before = c->push;
-  c->push = fmax(0.0, before + (c->aim - across) / mobility_along(c, b, c->normal));
+  c->push = larger(0.0, before + (c->aim - across) / mobility_along(c, b, c->normal));
   for (int a = 0; a < 3; a++) by[a] = (c->push - before) * c->normal[a];
   if (c->friction > 0.0 || c->adhesion > 0.0) {
     double slip[3], rub[3];

@@ -43,9 +43,20 @@ void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
   }
 }
 
-static bool some_inside(const mps_mpm *mpm, const mpsi_cell_block *cells) {
+/* Cells low to high - 1 of the block along each axis with corners inside bodies; false where there
+ * are none. */
+static bool cells_near(const mps_mpm *mpm, const mpsi_cell_block *cells, int *low, int *high) {
   bool any = false;
-  for (int q = 0; q < 1 << mpm->dim; q++) any = any || mpm->grid.nodes[cells->to[q]].inside;
+  for (int c = 0; c < 3; c++) low[c] = MPSI_TILE_SIDE, high[c] = 0;
+  for (int q = 0; q < 1 << mpm->dim; q++) {
+    const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
+    any = any || nodes->inside;
+    for (int c = 0; c < 3 && nodes->inside; c++) {
+      const int first = q >> c & 1 ? MPSI_SIDE : 0;
+      if (first + nodes->low[c] - 1 < low[c]) low[c] = first + nodes->low[c] - 1;
+      if (first + nodes->high[c] > high[c]) high[c] = first + nodes->high[c];
+    }
+  }
   return any;
 }
 
@@ -53,17 +64,21 @@ static bool some_inside(const mps_mpm *mpm, const mpsi_cell_block *cells) {
 void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker) {
   (void)worker;
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
-  if (cells->pairs == 0 || !some_inside(mpm, cells)) return;
+  int low[3], high[3];
+  if (cells->pairs == 0 || !cells_near(mpm, cells, low, high)) return;
   bool seen[MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE];
   memset(seen, 0, (size_t)mpm->grid.tile_nodes * sizeof *seen);
   for (int64_t k = cells->begin; k < cells->end; k++) {
     int at[3] = {0};
-    for (int c = 0; c < mpm->dim; c++) {
+    bool near = true;
+    for (int c = 0; c < mpm->dim && near; c++) {
       /* counted from the block: not negative, so that truncation is floor */
       const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE, last = mpm->grid.high[c] - 1 - first;
       const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k]) - (double)first;
       at[c] = X < (double)last ? (int)X : (int)last;
+      near = at[c] >= low[c] && at[c] < high[c];
     }
+    if (!near) continue;
     bool *here = &seen[mpsi_tile_index(at[0], at[1], at[2])];
     if (*here) continue;
     *here = true;

@@ -76,12 +76,17 @@ static void place_of(const mps_mpm *mpm, int64_t k, double *x) {
   for (int c = 0; c < 3; c++) x[c] = c < mpm->dim ? mpm->p.x[c][k] : 0.0;
 }
 
-/* No particle touches that is further away than this (m). */
-static double longest_reach(const mps_mpm *mpm, const mps_contact *contact, int64_t k) {
-  double square = 0.0;
-  for (int c = 0; c < mpm->dim; c++) square += mpm->p.v[c][k] * mpm->p.v[c][k];
+/* No particle of the block touches that is further away than this (m). */
+static double longest_reach(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                            const mps_contact *contact) {
+  double largest = 0.0;
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    double square = 0.0;
+    for (int c = 0; c < mpm->dim; c++) square += mpm->p.v[c][k] * mpm->p.v[c][k];
+    largest = square > largest ? square : largest;
+  }
   return 1.4 * contact->def.offset +
-         mpm->run.dt * (mpsi_contact_speed(contact) + sqrt(square)) * (1.0 + 1e-9);
+         mpm->run.dt * (mpsi_contact_speed(contact) + sqrt(largest)) * (1.0 + 1e-9);
 }
 
 static bool may_touch(const mps_mpm *mpm, const mps_contact *contact, int64_t k, const double *x,
@@ -98,6 +103,7 @@ static bool may_touch(const mps_mpm *mpm, const mps_contact *contact, int64_t k,
  * was found tells of most particles that they are too far. */
 static void find_candidates(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_cell_pair *pair) {
   const mps_contact *contact = mpm->contact.handle[pair->body];
+  const double reach = longest_reach(mpm, cells, contact);
   int32_t *out = mpm->contact.impulses.candidate + pair->first_candidate;
   double known[3] = {0.0}, distance = -1.0;
   pair->candidates = 0;
@@ -105,7 +111,7 @@ static void find_candidates(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_cel
     double x[3], square = 0.0;
     place_of(mpm, k, x);
     for (int c = 0; c < 3; c++) square += (x[c] - known[c]) * (x[c] - known[c]);
-    const double reach = longest_reach(mpm, contact, k), slack = distance - reach;
+    const double slack = distance - reach;
     if (slack > 0.0 && square < slack * slack) continue;
     const mpsi_foot foot = mpsi_body_foot(contact->body, x);
     memcpy(known, x, sizeof known);
