@@ -27,8 +27,8 @@ double mpsi_impulse_half_size(double half, double wave, double shear, const doub
   return half * (1.0 + fmin(LARGEST_STRAIN, fmax(-LARGEST_STRAIN, strain)));
 }
 
-double mpsi_impulse_aim(double gap, double dt, double speed) {
-  return gap > 0.0 ? -gap / dt : fmin(-RECOVERED * gap / dt, FASTEST * speed);
+double mpsi_impulse_aim(double gap, double dt, double usual, double speed) {
+  return gap > 0.0 ? -gap / dt : fmin(-RECOVERED * gap / usual, FASTEST * speed);
 }
 
 /* ---- the body's side ------------------------------------------------------------------------- */

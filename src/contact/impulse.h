@@ -33,9 +33,10 @@ static inline double mpsi_impulse_lever(double distance, double half) {
   return fmin(1.0, fmax(0.0, 2.0 * distance / half - 0.5));
 }
 
-/* w (m/s): a gap may close within dt, no more; a twentieth of an overlap opens again, by at most
- * 0.02 of `speed` (m/s, of waves and particles). */
-double mpsi_impulse_aim(double gap, double dt, double speed);
+/* w (m/s): a gap may close within dt, no more; a twentieth of an overlap opens again in a step of
+ * the `usual` size (s, at least dt), by at most 0.02 of `speed` (m/s, of waves and particles). A
+ * shorter step, as at the end of a run, opens no faster: else its force would grow as 1/dt^2. */
+double mpsi_impulse_aim(double gap, double dt, double usual, double speed);
 
 /* ---- the body's side ------------------------------------------------------------------------- */
 

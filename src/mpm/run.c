@@ -149,7 +149,10 @@ mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every, mps_mpm_fn cal
     double dt = mps_mpm_dt(mpm);
     const double rest = t_end - mpm->run.time;
     const bool last = rest <= dt * (1.0 + 1e-9);
-    if (last) dt = rest;
+    if (last)
+      dt = rest;
+    else if (rest < 2.0 * dt * (1.0 - 1e-9))
+      dt = 0.5 * rest; /* the last two are equal: forces of a very short step would be rough */
     status = mpsi_mpm_take_step(mpm, __func__, dt);
     if (last) mpm->run.time = t_end;
     done++;

@@ -224,7 +224,8 @@ static void begin_touch(mps_mpm *mpm, int64_t t, int64_t k, const int64_t *id, m
   const double half = mpsi_mpm_half_size(mpm, contact, k, c->normal);
   const double lever = mpsi_impulse_lever(foot.distance, half);
   for (int a = 0; a < mpm->dim; a++) c->at[a] = out->x[a] + lever * (foot.at[a] - out->x[a]);
-  c->aim = mpsi_impulse_aim(foot.distance - half, mpm->run.dt, mpm->run.speed);
+  c->aim = mpsi_impulse_aim(foot.distance - half, mpm->run.dt, fmax(mpm->run.dt, mps_mpm_dt(mpm)),
+                            mpm->run.speed);
   c->friction = contact->def.friction;
   c->strength = INFINITY;
   if (-foot.distance > pair->deepest) {

@@ -30,9 +30,10 @@ static void half_size_follows_elastic_strain(void **state) {
 
 static void aims_at_the_surface(void **state) {
   (void)state;
-  mps_assert_near(mpsi_impulse_aim(1e-3, 1e-4, 50.0), -10.0, 1e-14);
-  mps_assert_near(mpsi_impulse_aim(-1e-4, 1e-4, 50.0), 0.05, 1e-15);
-  mps_assert_near(mpsi_impulse_aim(-1.0, 1e-4, 50.0), 1.0, 1e-14);
+  mps_assert_near(mpsi_impulse_aim(1e-3, 1e-4, 2e-4, 50.0), -10.0, 1e-14);
+  mps_assert_near(mpsi_impulse_aim(-1e-4, 1e-4, 1e-4, 50.0), 0.05, 1e-15);
+  mps_assert_near(mpsi_impulse_aim(-1e-4, 1e-6, 1e-4, 50.0), 0.05, 1e-15);
+  mps_assert_near(mpsi_impulse_aim(-1.0, 1e-4, 1e-4, 50.0), 1.0, 1e-14);
   assert_true(mpsi_impulse_near(0.5e-3, 1e-2, 0.0, 1e-4));
   assert_false(mpsi_impulse_near(2.5e-3, 1e-2, -50.0, 1e-4));
   assert_true(mpsi_impulse_near(2.5e-3, 1e-2, 6.0, 1e-4));
@@ -314,6 +315,33 @@ static void shear_is_by_area(void **state) {
   }
 }
 
+/* A shortened step, as the last one of a run may be, feels what the usual ones do; and a run ends
+ * without a very short one. */
+static void short_steps_feel_no_more(void **state) {
+  (void)state;
+  mps_body *plate = NULL;
+  mpm_scene s = block_and_plate(true, 0.1, 0.0, &plate);
+  mps_contact *contact = NULL;
+  mps_assert_ok(context, mps_mpm_add_contact(s.mpm, plate, NULL, &contact));
+  drive(plate, 0.0, -0.02);
+  mps_assert_ok(context, mps_mpm_run(s.mpm, 0.05, 1, NULL, NULL));
+  const double parts[] = {0.5, 0.1, 3.001};
+  for (int k = 0; k < 3; k++) {
+    mps_reaction usual, cut;
+    mps_assert_ok(context, mps_mpm_step(s.mpm, 3));
+    mps_assert_ok(context, mps_contact_get_reaction(contact, -1, &usual));
+    mps_assert_ok(context, mps_mpm_run(s.mpm, mps_mpm_time(s.mpm) + parts[k] * mps_mpm_dt(s.mpm), 1,
+                                       NULL, NULL));
+    mps_assert_ok(context, mps_contact_get_reaction(contact, -1, &cut));
+    print_message("%g N in a step, %g N in one after %g of it\n", usual.force[1], cut.force[1],
+                  parts[k]);
+    mps_assert_near(cut.force[1], usual.force[1], 0.05 * usual.force[1]);
+  }
+  mps_contact_destroy(&contact);
+  mps_body_destroy(&plate);
+  mpm_scene_end(&s);
+}
+
 /* The step of a plate that is as fast as it may be; the plate takes the block along, and no
  * particle is inside it after any step; or an error says how deep one is. */
 static void fast_plates_are_met(void **state) {
@@ -357,6 +385,7 @@ int main(void) {
                                      cmocka_unit_test(bodies_end_and_materials_differ),
                                      cmocka_unit_test(thin_plates_press),
                                      cmocka_unit_test(shear_is_by_area),
+                                     cmocka_unit_test(short_steps_feel_no_more),
                                      cmocka_unit_test(fast_plates_are_met)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
