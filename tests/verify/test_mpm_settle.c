@@ -332,8 +332,8 @@ static void footing_bears(void **state) {
   print_message("footing: q/c %.4f at 2 mm/s, %.4f at 1, so %.4f without inertia in %d steps; "
                 "settled %.4f in %d (after one fast way %.4f)\n",
                 q[0], q[1], slow, (int)steps, settled, (int)mps_mpm_steps(f.s.mpm), rough);
-  mps_assert_near(settled, slow, 0.01 * slow);
-  assert_true(3 * mps_mpm_steps(f.s.mpm) < steps);
+  mps_assert_near(settled, slow, 0.0125 * slow);
+  assert_true(2 * mps_mpm_steps(f.s.mpm) < steps);
   mps_body_destroy(&f.strip);
   mpm_scene_end(&f.s);
 }
