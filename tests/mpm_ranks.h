@@ -1,5 +1,5 @@
-/* mpm_ranks.h - WLS-MPM on several ranks: bodies that move through the grid, and what each rank ends
- * with. SPDX-License-Identifier: BSD-3-Clause */
+/* mpm_ranks.h - WLS-MPM on several ranks: bodies that move through the grid, and what each rank
+ * ends with. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPS_TEST_MPM_RANKS_H
 #define MPS_TEST_MPM_RANKS_H
 
@@ -178,11 +178,17 @@ static inline mps_status compute(mps_context *own, mps_domain *domain, int what,
   scene s = {.set = NULL};
   mps_status status = make_scene(own, domain, what, &s);
   r->first = s.set ? mps_particles_count(s.set) : 0;
+  mps_snapshot *then = NULL;
+  TRY(mps_mpm_step(s.mpm, steps / 4));
+  TRY(mps_mpm_snapshot(s.mpm, &then));
   TRY(mps_mpm_step(s.mpm, steps / 2));
+  TRY(mps_mpm_rollback(s.mpm, then));
+  TRY(mps_mpm_step(s.mpm, steps / 2 - steps / 4));
+  mps_snapshot_destroy(&then);
   TRY(mps_mpm_run(s.mpm, mps_mpm_time(s.mpm) + (double)(steps - steps / 2) * 1e-4, 10, NULL, NULL));
   TRY(mps_mpm_get_totals(s.mpm, &r->totals));
-  static const int32_t asked[] = {MPS_MPM_SIDE_X_LOWER, MPS_MPM_SIDE_X_UPPER, MPS_MPM_SIDE_Y_LOWER,
-                                  MPS_MPM_SIDE_Z_LOWER, 6, 7};
+  static const int32_t asked[] = {
+      MPS_MPM_SIDE_X_LOWER, MPS_MPM_SIDE_X_UPPER, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_SIDE_Z_LOWER, 6, 7};
   for (int k = 0; k < 6; k++)
     if (k < 3 || (k > 3 ? what != SLIDE : what == ROOM))
       TRY(mps_mpm_get_reaction(s.mpm, asked[k], &r->reaction[asked[k]]));

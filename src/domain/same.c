@@ -25,8 +25,8 @@ mps_status mpsi_domain_settle_numbers(mps_domain *domain, const char *function, 
   return mpsi_domain_settle_same(domain, function, status, name, shorten(hash));
 }
 
-mps_status mpsi_domain_settle_particles(mps_domain *domain, const char *function,
-                                        mps_status status, mps_particles *particles) {
+mps_status mpsi_domain_settle_particles(mps_domain *domain, const char *function, mps_status status,
+                                        mps_particles *particles) {
   uint64_t hash = basis;
   for (int32_t f = 0; status == MPS_OK && f < mps_particles_field_count(particles); f++) {
     mps_field_info info;

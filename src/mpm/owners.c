@@ -1,6 +1,6 @@
-/* owners.c - which rank has which block of cells, by Hilbert's curve (domain/curve.h), and particles
- * that go to the ranks of their blocks. The curve is cut anew where some rank has come to have more
- * particles than any had after the last cut. Results do not depend on who has what.
+/* owners.c - which rank has which block of cells, by Hilbert's curve (domain/curve.h), and
+ * particles that go to the ranks of their blocks. The curve is cut anew where some rank has come to
+ * have more particles than any had after the last cut. Results do not depend on who has what.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "domain/curve.h"
 #include "domain/migrate.h"
@@ -186,8 +186,7 @@ static mps_status rebalance(mps_mpm *mpm, const char *function, mps_status statu
   return mpsi_share_cut(mpm, function, false);
 }
 
-mps_status mpsi_share_migrate(mps_mpm *mpm, const char *function, mps_status status,
-                              bool *moved) {
+mps_status mpsi_share_migrate(mps_mpm *mpm, const char *function, mps_status status, bool *moved) {
   mpsi_share *share = mpm->share;
   departure d = {.mpm = mpm};
   status = rebalance(mpm, function, status);

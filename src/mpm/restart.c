@@ -22,21 +22,27 @@ static bool keep_room(mps_context *context, mpsi_room *room, int64_t count, size
   return true;
 }
 
+/* On several ranks those of this one: ghosts follow. */
 static int64_t count_blocks(const void *solver) {
-  return ((const mps_mpm *)solver)->grid.cell_count;
+  const mpsi_grid *grid = &((const mps_mpm *)solver)->grid;
+  int64_t count = 0;
+  for (int64_t b = 0; b < grid->cell_count; b++) count += !grid->cells[b].ghost;
+  return count;
 }
 
 static void get_blocks(const void *solver, void *values) {
   const mps_mpm *mpm = solver;
   mpsi_block *block = values;
-  for (int64_t k = 0; k < mpm->grid.cell_count; k++) {
-    const mpsi_cell_block *cells = &mpm->grid.cells[k];
+  for (int64_t b = 0, k = 0; b < mpm->grid.cell_count; b++) {
+    const mpsi_cell_block *cells = &mpm->grid.cells[b];
+    if (cells->ghost) continue;
     block[k][0] = cells->begin;
     for (int c = 0; c < 3; c++) {
       block[k][MPSI_BLOCK_AT + c] = cells->at[c];
       block[k][MPSI_BLOCK_LOW + c] = cells->low[c];
       block[k][MPSI_BLOCK_HIGH + c] = cells->high[c];
     }
+    k++;
   }
 }
 
@@ -374,6 +380,10 @@ static void bind(void *solver) { mpsi_mpm_bind(solver); }
 /* Snapshots are of a state that has taken up what the caller wrote. */
 static void forget_edits(void *solver) { ((mps_mpm *)solver)->run.edited = false; }
 
+static mps_status settle(void *solver, const char *function, mps_status status) {
+  return mpsi_share_settle(solver, function, status);
+}
+
 static mpsi_state_of state_of(mps_mpm *mpm) {
   return (mpsi_state_of){.solver = mpm,
                          .name = "WLS-MPM",
@@ -383,6 +393,7 @@ static mpsi_state_of state_of(mps_mpm *mpm) {
                          .list = list_state,
                          .fits = fits,
                          .make_room = mpsi_mpm_make_room,
+                         .settle = settle,
                          .bind = bind,
                          .after = forget_edits,
                          .time = mpm->run.time,
@@ -392,8 +403,7 @@ static mpsi_state_of state_of(mps_mpm *mpm) {
 
 /* The lists that are kept must be of the present boundaries. */
 static mps_status make_whole(mps_mpm *mpm, const char *function) {
-  mps_status status = mpsi_share_refuse(mpm, function, "a copy of the state");
-  if (status == MPS_OK && !mpm->run.broken) status = mpsi_mpm_tidy(mpm, function);
+  const mps_status status = mpm->run.broken ? MPS_OK : mpsi_mpm_tidy(mpm, function);
   if (status != MPS_OK) return status;
   if (!mpm->run.broken) return mpsi_mpm_update_holds(mpm, function);
   return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
@@ -405,7 +415,8 @@ mps_status mps_mpm_snapshot(mps_mpm *mpm, mps_snapshot **snapshot) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   const mps_status status = make_whole(mpm, __func__);
   const mpsi_state_of of = state_of(mpm);
-  return status == MPS_OK ? mpsi_state_snapshot(&of, __func__, snapshot) : status;
+  return mpsi_share_settle(
+      mpm, __func__, status == MPS_OK ? mpsi_state_snapshot(&of, __func__, snapshot) : status);
 }
 
 mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot) {
@@ -416,14 +427,15 @@ mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot) {
 
 mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *info) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_status status = make_whole(mpm, __func__);
+  mps_status status = mpsi_share_refuse(mpm, __func__, "a checkpoint");
+  if (status == MPS_OK) status = make_whole(mpm, __func__);
   const mpsi_state_of of = state_of(mpm);
   return status == MPS_OK ? mpsi_checkpoint_save(&of, __func__, path, info) : status;
 }
 
 mps_status mps_mpm_restore(mps_mpm *mpm, const char *path, mps_checkpoint *info) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_status refused = mpsi_share_refuse(mpm, __func__, "a copy of the state");
+  const mps_status refused = mpsi_share_refuse(mpm, __func__, "a checkpoint");
   if (refused != MPS_OK) return refused;
   const mpsi_state_of of = state_of(mpm);
   return mpsi_checkpoint_restore(&of, __func__, path, info);

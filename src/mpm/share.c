@@ -302,8 +302,8 @@ mps_status mpsi_share_join(mps_mpm *mpm, const char *function) {
   search s = {.mpm = mpm, .function = function, .box.context = mpm->context};
   mps_status status = mpsi_domain_settle(share->domain, function, take_own(&s));
   if (status == MPS_OK)
-    status = mpsi_domain_sum(share->domain, function, RANGE * mps_domain_size(share->domain),
-                             s.range);
+    status =
+        mpsi_domain_sum(share->domain, function, RANGE * mps_domain_size(share->domain), s.range);
   if (status == MPS_OK) status = tell(&s);
   if (status == MPS_OK) status = join(&s);
   mpsi_domain_free_mail(&s.box);
@@ -364,11 +364,20 @@ static mps_status keep_own(mps_mpm *mpm, const char *function, mpsi_storage **fo
 /* Are all ranks given the same? */
 static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status status) {
   const mps_mpm_def *d = &mpm->def;
-  double numbers[32] = {d->geometry,    d->spline,          d->volumetric,
-                        d->step_from,   d->budget,          d->walls,
-                        d->measure,     d->local_damping,   d->viscous_damping,
-                        d->cell,        d->dt,              d->courant,
-                        mpm->def.kernel ? 1.0 : 0.0, mpm->laws.law[0].modulus};
+  double numbers[32] = {d->geometry,
+                        d->spline,
+                        d->volumetric,
+                        d->step_from,
+                        d->budget,
+                        d->walls,
+                        d->measure,
+                        d->local_damping,
+                        d->viscous_damping,
+                        d->cell,
+                        d->dt,
+                        d->courant,
+                        mpm->def.kernel ? 1.0 : 0.0,
+                        mpm->laws.law[0].modulus};
   int32_t count = 14;
   for (int c = 0; c < mpm->dim; c++) {
     numbers[count++] = d->origin[c], numbers[count++] = d->gravity[c];

@@ -25,17 +25,17 @@ typedef struct mpsi_share {
   bool outdated;           /* the ghosts are not those of the present blocks */
   int64_t borders, ghosts; /* own blocks that others have copies of; copies here */
   int32_t *border;         /* numbers of the blocks of cells */
-  int32_t *order;          /* all of them, colour by colour: first those that no ghost goes before, */
-  int64_t early;           /* so many */
-  int32_t most;            /* nodes of the widest part of a tile in use, on all ranks */
-  bool apart;              /* some tile that is sent has forces, in the step being made */
-  int32_t item;            /* bytes of a parcel: a tile on its way */
-  double *out, *in;        /* parcels */
-  int64_t *first;          /* of each rank: the first key on the curve of its blocks (curve.h) */
-  int32_t corner[3];       /* block at the curve's lowest corner */
-  double heaviest;         /* particles of the rank that had most, after the last cut */
-  bool cancel;             /* a hook has asked to stop, on whatever rank */
-  mps_status lost;         /* of a message in the step being made */
+  int32_t *order;    /* all of them, colour by colour: first those that no ghost goes before, */
+  int64_t early;     /* so many */
+  int32_t most;      /* nodes of the widest part of a tile in use, on all ranks */
+  bool apart;        /* some tile that is sent has forces, in the step being made */
+  int32_t item;      /* bytes of a parcel: a tile on its way */
+  double *out, *in;  /* parcels */
+  int64_t *first;    /* of each rank: the first key on the curve of its blocks (curve.h) */
+  int32_t corner[3]; /* block at the curve's lowest corner */
+  double heaviest;   /* particles of the rank that had most, after the last cut */
+  bool cancel;       /* a hook has asked to stop, on whatever rank */
+  mps_status lost;   /* of a message in the step being made */
   mpsi_room border_room, order_room, out_room, in_room;
 } mpsi_share;
 
