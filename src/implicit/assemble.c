@@ -506,9 +506,8 @@ static mps_status make_pattern(mps_elastic *e, const char *function, assembly *t
 static mps_status make_gathers(mps_elastic *e, const char *function, gather **gathers,
                                int32_t **slots) {
   const int32_t workers = mps_context_threads(e->context);
-  *gathers = mpsi_alloc(e->context, workers, sizeof **gathers);
-  *slots = mpsi_alloc(e->context, workers * e->n, sizeof **slots);
-  if (!*gathers || !*slots)
+  if (!(*gathers = mpsi_alloc(e->context, workers, sizeof **gathers)) ||
+      !(*slots = mpsi_alloc(e->context, workers * e->n, sizeof **slots)))
     return mpsi_fail_memory(e->context, function, (size_t)(workers * e->n) * sizeof **slots);
   for (int64_t k = 0; k < workers * e->n; k++) (*slots)[k] = -1;
   for (int32_t w = 0; w < workers; w++) (*gathers)[w].slot = *slots + w * e->n;
@@ -550,9 +549,8 @@ mps_status mpsi_elastic_assemble_rows(mps_elastic *e, const char *function, doub
     mpsi_parallel_for(e->context, chunks, rows_chunk, &t);
     for (int64_t r = 0; r < rows; r++) out->start[r + 1] += out->start[r];
     const int64_t count = out->start[rows];
-    out->column = mpsi_alloc(e->context, count, sizeof *out->column);
-    out->value = mpsi_alloc(e->context, count, sizeof *out->value);
-    if (!out->column || !out->value)
+    if (!(out->column = mpsi_alloc(e->context, count, sizeof *out->column)) ||
+        !(out->value = mpsi_alloc(e->context, count, sizeof *out->value)))
       status = mpsi_fail_memory(e->context, function, (size_t)count * sizeof *out->value);
   }
   if (status == MPS_OK) {
