@@ -64,6 +64,7 @@ static mps_status solve(void *user, const double *b, double tolerance, double *x
   const int64_t n = p->all;
   p->solutions++;
   if (p->inside) return mps_elastic_solve(p->inside);
+  if (p->rows < p->all) return MPS_OK; /* a part alone solves nothing */
   double *r = copy(b, (size_t)n, sizeof *r), *q = malloc((size_t)n * sizeof *q);
   double *d = copy(b, (size_t)n, sizeof *d), rr = dot(n, r, r);
   const double enough = 0.5 * tolerance * sqrt(rr);
