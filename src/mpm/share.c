@@ -221,7 +221,7 @@ static bool put_lists(search *s) {
     share->border = share->border_room.item;
     sort_ghosts(s, order, order + s->ghosts);
     merge(s, order, place);
-    memcpy(share->border, place, (size_t)s->count * sizeof *place);
+    for (int64_t k = 0; k < s->count; k++) share->border[k] = place[k];
     share->ghosts = s->ghosts;
     good = mpsi_mpm_build_nodes(mpm, all);
   }
