@@ -120,11 +120,16 @@ static mps_status record(void *user, mps_dynamics *dynamics) {
   return status == MPS_OK ? files_record(&sim->files, dynamics, field_record(&sim->peaks)) : status;
 }
 
-/* A run that goes on records at the steps of the first: to the next of them. */
+/* A run that goes on records at the steps of the first: to the next of them. The last row of one
+ * that was whole may lie between them, and goes. */
 static bool align_rows(app *a, simulation *sim) {
   const int64_t every = sim->so_far.every, past = mps_dynamics_steps(sim->dynamics) % every;
+  receivers *r = &sim->record;
   if (past == 0) return true;
-  if (sim->record.rows > 0) sim->record.rows--; /* the row of where it stopped */
+  if (r->rows > 0) { /* a row is of the beginning of its step */
+    const double begun = receivers_time(r, r->rows - 1) / mps_dynamics_dt(sim->dynamics);
+    if ((llround(begun) + 1) % every != 0) r->rows--;
+  }
   return app_check(a, mps_dynamics_step(sim->dynamics, every - past));
 }
 

@@ -16,7 +16,7 @@ on() {
 }
 # one FILE PROGRAM TEXT: the program has written one line there (mpirun writes more), with the text.
 one() {
-  [ "$(grep -c "^$2: " "$1")" -eq 1 ] || fail "not one line: $(cat "$1")"
+  [ "$(grep -c "^$2: " "$1")" -eq 1 ] || fail "not one line with \"$3\": $(cat "$1")"
   grep "^$2: " "$1" | grep -qF -- "$3" || fail "no \"$3\" in $(cat "$1")"
 }
 
@@ -60,43 +60,45 @@ on 2 "$wave" --radius 1 --duration 0.3 --courant 0.5 --out "$work/f" >/dev/null 
   fail "full disk"
 one "$work/log" mps-wave "receivers.csv: No space left on device"
 
-# Ctrl-C, as mpirun passes it on: one line, the results so far, and the state.
-# Open MPI waits so long (s) between its request to stop and its end, whether or not ranks are left.
+# Ctrl-C, as mpirun passes it on: one line, the results so far, and the state. Open MPI waits so long (s)
+# before it asks the ranks to stop, and again before it ends them: the run must still be under way then.
+long=400 # s of the model
 export OMPI_MCA_odls_base_sigkill_timeout=3
 # begin DIRECTORY OPTION...: starts three ranks, and waits until they compute; sets pid.
 begin() {
   directory=$1
   shift
   # shellcheck disable=SC2086
-  $mpirun -n 3 "$wave" $model --checkpoint 0.1 --out "$directory" "$@" >"$work/out" 2>"$work/log" &
+  $mpirun -n 3 "$wave" $model --checkpoint 1 --out "$directory" "$@" >"$work/out" 2>"$work/log" &
   pid=$!
   tries=0
-  until [ -s "$work/out" ] && [ -e "$directory/checkpoint.h5" ]; do
-    sleep 0.1
+  until [ -e "$directory/checkpoint.h5" ]; do
+    sleep 0.05
     tries=$((tries + 1))
-    [ $tries -lt 400 ] && kill -0 $pid 2>/dev/null || fail "no checkpoint: $(cat "$work/log")"
+    [ $tries -lt 800 ] && kill -0 $pid 2>/dev/null || fail "no checkpoint: $(cat "$work/log")"
   done
 }
 # end: waits for it, a minute at most, and sets code.
 end() {
-  (sleep 60 && kill -KILL $pid) 2>/dev/null &
+  (sleep 60 && ps -ef >"$work/late" && kill -KILL $pid) 2>/dev/null &
   watchdog=$!
   code=0
   wait $pid || code=$?
-  kill $watchdog 2>/dev/null || fail "the ranks went on"
+  kill $watchdog 2>/dev/null || true
+  [ ! -e "$work/late" ] || fail "mpirun went on: $(cat "$work/log"; grep "mpirun\|mps-wave" "$work/late")"
 }
 # goes_on DIRECTORY: from its checkpoint, two ranks come to the results of one process in one go.
 # shellcheck disable=SC2086
-"$wave" $model --duration 9 --out "$work/whole" >/dev/null
+"$wave" $model --duration $long --out "$work/whole" >/dev/null
 goes_on() {
   rm -rf "$work/on"
   # shellcheck disable=SC2086
-  on 2 "$wave" $model --duration 9 --restart "$1/checkpoint.h5" --out "$work/on" >/dev/null
+  on 2 "$wave" $model --duration $long --restart "$1/checkpoint.h5" --out "$work/on" >/dev/null
   for file in receivers.csv slope.csv peaks.csv; do
     cmp "$work/whole/$file" "$work/on/$file" || fail "$file after a restart"
   done
 }
-begin "$work/cut" --duration 9
+begin "$work/cut" --duration $long
 kill -TERM $pid
 end
 one "$work/log" mps-wave "interrupted"
@@ -106,7 +108,7 @@ goes_on "$work/cut"
 unset OMPI_MCA_odls_base_sigkill_timeout
 
 # A rank that dies ends the run; the last checkpoint goes on.
-begin "$work/dead" --duration 9
+begin "$work/dead" --duration $long
 victim=$(pgrep -f "$work/dead" | tail -n 1)
 kill -KILL "$victim"
 end
