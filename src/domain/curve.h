@@ -2,10 +2,9 @@
  * has an interval of these numbers (keys), so that its blocks lie together and whatever follows the
  * curve has the same order for every number of ranks.
  *
- *   mpsi_curve_key(dim, block)                      key of a block, by its place in the grid of
- * blocks mpsi_curve_cut(domain, f, n, key, weight, first) the intervals, weighed: the same on all
- * ranks mpsi_curve_owner(ranks, first, key)             owner of any key, also of a block that has
- * nothing
+ *   mpsi_curve_key     key of a block, by its place in the grid of blocks
+ *   mpsi_curve_cut     the intervals, weighed: the same on all ranks
+ *   mpsi_curve_owner   owner of any key, also of a block that has nothing
  *
  * Owners go by keys, not by lists of blocks: a particle that enters a block where none was before
  * has an owner at once, without a message. SPDX-License-Identifier: BSD-3-Clause */

@@ -33,8 +33,8 @@ mps_status mpsi_domain_settle_same(mps_domain *domain, const char *function, mps
 /* same.c: the same for many numbers at once, by a hash, and for the fields of a set. */
 mps_status mpsi_domain_settle_numbers(mps_domain *domain, const char *function, mps_status status,
                                       const char *name, int32_t count, const double *numbers);
-mps_status mpsi_domain_settle_particles(mps_domain *domain, const char *function,
-                                        mps_status status, mps_particles *particles);
+mps_status mpsi_domain_settle_particles(mps_domain *domain, const char *function, mps_status status,
+                                        mps_particles *particles);
 
 mps_status mpsi_domain_max(mps_domain *domain, const char *function, int32_t count, double *values);
 mps_status mpsi_domain_sum(mps_domain *domain, const char *function, int32_t count,

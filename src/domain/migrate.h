@@ -3,7 +3,7 @@
  * A sender gives its columns, of 8 bytes a particle, and the rows that leave; a receiver makes room
  * for `arriving` rows and puts them there:
  *
- *   mpsi_census before, after;
+ *   mpsi_census before;
  *   status = mpsi_census_take(domain, f, count, id, &before);           in debug builds
  *   status = mpsi_migrate(domain, f, &leaving, &box, &arriving);
  *   close the gaps of the rows that left, make room for `arriving` more behind, then

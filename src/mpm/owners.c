@@ -10,6 +10,11 @@
 #include <string.h>
 
 #define GROWTH 1.05 /* of the heaviest rank, from which on it is worth a new cut */
+#ifdef NDEBUG
+#define COUNT_IDS false
+#else
+#define COUNT_IDS true /* that no particle is lost or doubled, each time */
+#endif
 
 /* ---- the curve ------------------------------------------------------------------------------- */
 
@@ -156,20 +161,30 @@ static mps_status take_in(departure *d, const char *function, const mpsi_mailbox
   return MPS_OK;
 }
 
+static const int64_t *ids_of(const mps_mpm *mpm) {
+  return mpsi_particles_integers(mpm->particles, "id");
+}
+
 static mps_status send(departure *d, const char *function, mps_status status, bool *moved) {
   mps_mpm *mpm = d->mpm;
+  mps_domain *domain = mpm->share->domain;
   mpsi_mailbox box = {.context = mpm->context};
+  mpsi_census before;
   int64_t arriving = 0;
   if (status == MPS_OK) status = list_leaving(d, function);
-  status = mpsi_domain_settle(mpm->share->domain, function, status);
+  status = mpsi_domain_settle(domain, function, status);
+  if (COUNT_IDS && status == MPS_OK)
+    status = mpsi_census_take(domain, function, mpm->p.count, ids_of(mpm), &before);
   if (status != MPS_OK) return status;
   const mpsi_leaving leaving = {.count = d->count,
                                 .row = d->row,
                                 .to = d->to,
                                 .columns = d->columns,
                                 .column = (const void *const *)d->column};
-  status = mpsi_migrate(mpm->share->domain, function, &leaving, &box, &arriving);
+  status = mpsi_migrate(domain, function, &leaving, &box, &arriving);
   if (status == MPS_OK) status = take_in(d, function, &box, arriving);
+  if (COUNT_IDS && status == MPS_OK)
+    status = mpsi_census_check(domain, function, mpm->p.count, ids_of(mpm), &before);
   *moved = status == MPS_OK && (d->count > 0 || arriving > 0);
   mpsi_domain_free_mail(&box);
   return status;
