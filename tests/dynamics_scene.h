@@ -3,34 +3,11 @@
 #ifndef MPS_TEST_DYNAMICS_SCENE_H
 #define MPS_TEST_DYNAMICS_SCENE_H
 
-#include "test_common.h"
+#include "ranks_result.h"
 
 #include <mps/dynamics.h>
 
 enum { LAYERS, SCATTERED, PERIODIC, STRIP, SCENES };
-
-#define FIELDS 8
-static const struct {
-  const char *name;
-  int columns;
-} fields[FIELDS] = {{"position", 2},     {"displacement", 2}, {"velocity", 2}, {"rotation", 1},
-                    {"acceleration", 2}, {"pressure", 1},     {"spin", 1},     {"reaction", 2}};
-
-/* What a run ends with: of one rank, or without a domain. */
-typedef struct result {
-  mps_status status;
-  char message[512];
-  int64_t count, pairs, *id;
-  double *value[FIELDS];
-  mps_totals totals;
-  mps_reaction reaction;
-  double dt, limit, omega;
-} result;
-
-#define TRY(call)                                                                                  \
-  do {                                                                                             \
-    if (status == MPS_OK) status = (call);                                                         \
-  } while (0)
 
 static inline double noise(uint64_t k) {
   k = (k + 1) * UINT64_C(0x9e3779b97f4a7c15);
@@ -129,10 +106,13 @@ static inline mps_status add_conditions(mps_context *own, mps_domain *domain,
   return status;
 }
 
-static inline mps_status march(mps_dynamics *dynamics, bool short_run) {
+/* Lengths of a run: three steps, or all that a solver can do with its state. */
+enum { WHOLE_RUN, SHORT_RUN };
+
+static inline mps_status march(mps_dynamics *dynamics, int64_t length) {
   mps_status status = mps_dynamics_step(dynamics, 3);
   mps_snapshot *then = NULL;
-  if (short_run) return status;
+  if (length == SHORT_RUN) return status;
   TRY(mps_dynamics_snapshot(dynamics, &then));
   TRY(mps_dynamics_step(dynamics, 20));
   TRY(mps_dynamics_rollback(dynamics, then));
@@ -140,28 +120,6 @@ static inline mps_status march(mps_dynamics *dynamics, bool short_run) {
   TRY(mps_dynamics_refresh(dynamics));
   mps_snapshot_destroy(&then);
   return status;
-}
-
-static inline mps_status keep(mps_particles *set, result *r) {
-  mps_status status = MPS_OK;
-  mps_view view;
-  r->count = mps_particles_count(set);
-  r->id = malloc((size_t)r->count * sizeof *r->id + 8);
-  TRY(mps_particles_view(set, "id", &view));
-  for (int64_t k = 0; status == MPS_OK && k < r->count; k++) r->id[k] = *mps_view_i64(&view, k, 0);
-  for (int f = 0; f < FIELDS; f++) {
-    r->value[f] = calloc((size_t)r->count * (size_t)fields[f].columns + 1, sizeof(double));
-    TRY(mps_particles_view(set, fields[f].name, &view));
-    for (int64_t k = 0; status == MPS_OK && k < r->count; k++)
-      for (int c = 0; c < fields[f].columns; c++)
-        r->value[f][k * fields[f].columns + c] = *mps_view_f64(&view, k, c);
-  }
-  return status;
-}
-
-static inline void drop(result *r) {
-  free(r->id);
-  for (int f = 0; f < FIELDS; f++) free(r->value[f]);
 }
 
 /* What a scene's solver is made with. */
@@ -193,14 +151,14 @@ static inline mps_status compute_halves(mps_context *own, mps_domain *domain, in
   if ((halves & SECOND_HALF) && path) TRY(mps_dynamics_restore(dynamics, path, NULL));
   if (halves & SECOND_HALF) TRY(mps_dynamics_step(dynamics, 14));
   TRY(mps_dynamics_get_totals(dynamics, &r->totals));
-  TRY(mps_dynamics_get_reaction(dynamics, base, &r->reaction));
+  TRY(mps_dynamics_get_reaction(dynamics, base, &r->reaction[0]));
   TRY(keep(set, r));
   mps_dynamics_destroy(&dynamics);
   mps_particles_destroy(&set);
   return status;
 }
 
-static inline mps_status compute(mps_context *own, mps_domain *domain, int what, bool short_run,
+static inline mps_status compute(mps_context *own, mps_domain *domain, int what, int64_t length,
                                  result *r) {
   mps_particles *set = NULL;
   mps_dynamics *dynamics = NULL;
@@ -210,9 +168,9 @@ static inline mps_status compute(mps_context *own, mps_domain *domain, int what,
   if (domain) status = mps_domain_agree(domain, status);
   TRY(mps_dynamics_create(own, set, &def, &dynamics));
   if (status == MPS_OK) status = add_conditions(own, domain, dynamics, what, &base);
-  TRY(march(dynamics, short_run));
+  TRY(march(dynamics, length));
   TRY(mps_dynamics_get_totals(dynamics, &r->totals));
-  TRY(mps_dynamics_get_reaction(dynamics, base, &r->reaction));
+  TRY(mps_dynamics_get_reaction(dynamics, base, &r->reaction[0]));
   mps_dynamics_linear_limit limit = {0};
   TRY(mps_dynamics_find_limit(dynamics, 0.0, &limit));
   r->dt = mps_dynamics_dt(dynamics);
@@ -222,28 +180,6 @@ static inline mps_status compute(mps_context *own, mps_domain *domain, int what,
   mps_dynamics_destroy(&dynamics);
   mps_particles_destroy(&set);
   return status;
-}
-
-static inline void compare(const result *alone, const result *rank, int64_t *seen) {
-  mps_assert_near(rank->dt, alone->dt, 0.0);
-  mps_assert_near(rank->limit, alone->limit, 0.0);
-  mps_assert_near(rank->omega, alone->omega, 0.0);
-  assert_int_equal(rank->pairs, alone->pairs);
-  int64_t *at = malloc((size_t)alone->count * sizeof *at);
-  for (int64_t k = 0; k < alone->count; k++) at[alone->id[k]] = k;
-  for (int64_t k = 0; k < rank->count; k++)
-    for (int f = 0; f < FIELDS; f++) {
-      const size_t bytes = (size_t)fields[f].columns * sizeof(double);
-      seen[rank->id[k]] = 1;
-      const double *a = alone->value[f] + at[rank->id[k]] * fields[f].columns;
-      const double *b = rank->value[f] + k * fields[f].columns;
-      if (memcmp(a, b, bytes) != 0)
-        fail_msg("%s of particle %lld: %.17g, expected %.17g", fields[f].name,
-                 (long long)rank->id[k], b[0], a[0]);
-    }
-  free(at);
-  assert_memory_equal(&rank->totals, &alone->totals, sizeof alone->totals);
-  assert_memory_equal(&rank->reaction, &alone->reaction, sizeof alone->reaction);
 }
 
 #endif

@@ -3,31 +3,11 @@
 #ifndef MPS_TEST_MPM_RANKS_H
 #define MPS_TEST_MPM_RANKS_H
 
-#include "test_common.h"
+#include "ranks_result.h"
 
 #include <mps/mpm.h>
 
 enum { SLIDE, SPREAD, RING, ROOM, SCENES };
-
-#define MOST_FIELDS 24
-
-/* What a run ends with: of one rank, or without a domain. */
-typedef struct result {
-  mps_status status;
-  char message[512];
-  int64_t count, first, *id; /* first: particles at the beginning */
-  int32_t fields;
-  mps_field_info field[MOST_FIELDS];
-  double *value[MOST_FIELDS];
-  mps_totals totals;
-  mps_reaction reaction[8];
-  double dt, limit, time;
-} result;
-
-#define TRY(call)                                                                                  \
-  do {                                                                                             \
-    if (status == MPS_OK) status = (call);                                                         \
-  } while (0)
 
 typedef struct scene {
   mps_particles *set;
@@ -145,34 +125,6 @@ static inline void end_scene(scene *s) {
   for (int k = 0; k < 2; k++) mps_material_destroy(&s->material[k]);
 }
 
-static inline mps_status keep(mps_particles *set, result *r) {
-  mps_status status = MPS_OK;
-  mps_view view;
-  r->count = mps_particles_count(set);
-  r->id = malloc((size_t)r->count * sizeof *r->id + 8);
-  TRY(mps_particles_view(set, "id", &view));
-  for (int64_t k = 0; status == MPS_OK && k < r->count; k++) r->id[k] = *mps_view_i64(&view, k, 0);
-  const int32_t fields = mps_particles_field_count(set);
-  for (int32_t f = 0; f < fields && f < MOST_FIELDS; f++) {
-    mps_field_info *info = &r->field[f];
-    TRY(mps_particles_field(set, f, info));
-    if (status != MPS_OK) break;
-    r->value[f] = calloc((size_t)(r->count * info->components) + 1, sizeof(double));
-    TRY(mps_particles_view(set, info->name, &view));
-    for (int32_t c = 0; status == MPS_OK && c < info->components; c++)
-      for (int64_t k = 0; k < r->count; k++)
-        memcpy(&r->value[f][k * info->components + c],
-               (const char *)view.data + 8 * (c * view.stride[1] + k), 8);
-    r->fields = f + 1;
-  }
-  return status;
-}
-
-static inline void drop(result *r) {
-  free(r->id);
-  for (int f = 0; f < MOST_FIELDS; f++) free(r->value[f]);
-}
-
 static inline mps_status compute(mps_context *own, mps_domain *domain, int what, int64_t steps,
                                  result *r) {
   scene s = {.set = NULL};
@@ -196,34 +148,6 @@ static inline mps_status compute(mps_context *own, mps_domain *domain, int what,
   TRY(keep(s.set, r));
   end_scene(&s);
   return status;
-}
-
-static inline void compare(const result *alone, const result *rank, int64_t *seen) {
-  mps_assert_near(rank->dt, alone->dt, 0.0);
-  mps_assert_near(rank->limit, alone->limit, 0.0);
-  mps_assert_near(rank->time, alone->time, 0.0);
-  assert_int_equal(rank->fields, alone->fields);
-  int64_t most = 0;
-  for (int64_t k = 0; k < alone->count; k++) most = alone->id[k] > most ? alone->id[k] : most;
-  int64_t *at = malloc((size_t)(most + 1) * sizeof *at);
-  for (int64_t k = 0; k <= most; k++) at[k] = -1;
-  for (int64_t k = 0; k < alone->count; k++) at[alone->id[k]] = k;
-  for (int64_t k = 0; k < rank->count; k++) {
-    if (rank->id[k] > most || at[rank->id[k]] < 0)
-      fail_msg("particle %lld is on a rank only", (long long)rank->id[k]);
-    seen[at[rank->id[k]]]++;
-    for (int f = 0; f < alone->fields; f++) {
-      const size_t n = (size_t)alone->field[f].components;
-      const double *a = alone->value[f] + (size_t)at[rank->id[k]] * n;
-      const double *b = rank->value[f] + (size_t)k * n;
-      if (memcmp(a, b, n * sizeof(double)) != 0)
-        fail_msg("%s of particle %lld: %.17g, expected %.17g", alone->field[f].name,
-                 (long long)rank->id[k], b[0], a[0]);
-    }
-  }
-  free(at);
-  assert_memory_equal(&rank->totals, &alone->totals, sizeof alone->totals);
-  assert_memory_equal(rank->reaction, alone->reaction, sizeof alone->reaction);
 }
 
 #endif

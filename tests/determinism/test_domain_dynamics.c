@@ -2,78 +2,23 @@
  * has the bits of the run without a domain, on whatever number of ranks and threads; and an error
  * of one rank is an error of all.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "test_allocator.h"
 #include "test_fixture.h"
 
-#include "domain_threads.h"
 #include "dynamics_scene.h"
+#include "ranks_team.h"
 
-typedef struct scene {
-  int what;
-  int32_t threads;
-  int64_t refuse; /* allocation that rank 1 is refused, from 1; 0 none */
-  bool short_run;
-  result rank[TEAM_MOST];
-  test_allocator allocator[TEAM_MOST];
-} scene;
-
-static void run_rank(void *user, team *t, int32_t rank) {
-  scene *s = user;
-  result *r = &s->rank[rank];
-  mps_context_def def = test_context_defaults();
-  mps_context *own = NULL;
-  mps_domain *domain = NULL;
-  def.executor = s->threads > 1 ? MPS_EXECUTOR_THREADS : MPS_EXECUTOR_SERIAL;
-  def.threads = s->threads;
-  s->allocator[rank].refuse_at = rank == 1 ? s->refuse : 0;
-  if (s->threads == 1) test_allocator_use(&def, &s->allocator[rank]);
-  r->status = mps_context_create(&def, &own, NULL, 0);
-  const mps_domain_def domain_def = team_domain_def(t, rank);
-  if (r->status == MPS_OK) r->status = mps_domain_create(own, &domain_def, &domain);
-  if (r->status == MPS_OK) r->status = compute(own, domain, s->what, s->short_run, r);
-  if (own) snprintf(r->message, sizeof r->message, "%s", mps_context_error(own)->message);
-  mps_domain_destroy(&domain);
-  mps_context_destroy(&own);
+static void test_layers(void **state) {
+  (void)state, compare_teams(compute, LAYERS, WHOLE_RUN, false);
 }
-
-static void run_team(scene *s, int32_t size, double limit) {
-  team t;
-  team_begin(&t, size);
-  t.limit = limit;
-  team_run(&t, run_rank, s);
-  team_end(&t);
+static void test_scattered(void **state) {
+  (void)state, compare_teams(compute, SCATTERED, WHOLE_RUN, true);
 }
-
-static void compare_scene(int what) {
-  static const struct {
-    int32_t ranks, threads;
-  } teams[] = {{1, 1}, {2, 1}, {3, 2}, {4, 1}, {7, 3}, {15, 1}};
-  scene alone = {.what = what, .threads = 1};
-  mps_context *serial = test_context(MPS_EXECUTOR_SERIAL, 1);
-  mps_assert_ok(serial, compute(serial, NULL, what, false, &alone.rank[0]));
-  mps_context_destroy(&serial);
-  for (size_t k = 0; k < sizeof teams / sizeof *teams; k++) {
-    if (what != LAYERS && (teams[k].ranks == 1 || teams[k].ranks == 4)) continue;
-    scene s = {.what = what, .threads = teams[k].threads};
-    int64_t *seen = calloc((size_t)alone.rank[0].count, sizeof *seen), all = 0;
-    run_team(&s, teams[k].ranks, 60.0);
-    for (int32_t r = 0; r < teams[k].ranks; r++) {
-      if (s.rank[r].status != MPS_OK) fail_msg("rank %d: %s", (int)r, s.rank[r].message);
-      compare(&alone.rank[0], &s.rank[r], seen);
-      drop(&s.rank[r]);
-      assert_int_equal(s.allocator[r].live, 0);
-    }
-    for (int64_t i = 0; i < alone.rank[0].count; i++) all += seen[i];
-    assert_int_equal(all, alone.rank[0].count); /* nobody is lost */
-    free(seen);
-  }
-  drop(&alone.rank[0]);
+static void test_periodic(void **state) {
+  (void)state, compare_teams(compute, PERIODIC, WHOLE_RUN, true);
 }
-
-static void test_layers(void **state) { (void)state, compare_scene(LAYERS); }
-static void test_scattered(void **state) { (void)state, compare_scene(SCATTERED); }
-static void test_periodic(void **state) { (void)state, compare_scene(PERIODIC); }
-static void test_strip(void **state) { (void)state, compare_scene(STRIP); }
+static void test_strip(void **state) {
+  (void)state, compare_teams(compute, STRIP, WHOLE_RUN, true);
+}
 
 /* ---- cut in two -------------------------------------------------------------------------------
  */
@@ -99,17 +44,17 @@ static void run_half(void *user, team *t, int32_t rank) {
   mps_context_destroy(&own);
 }
 
-static void run_halves(cut_run *c, int32_t ranks) {
+static void run_halves(cut_run *c, int32_t size) {
   team t;
-  team_begin(&t, ranks);
+  team_begin(&t, size);
   team_run(&t, run_half, c);
   team_end(&t);
-  for (int32_t r = 0; r < ranks; r++)
+  for (int32_t r = 0; r < size; r++)
     if (c->rank[r].status != MPS_OK) fail_msg("rank %d: %s", (int)r, c->rank[r].message);
 }
 
-static void drop_halves(cut_run *c, int32_t ranks) {
-  for (int32_t r = 0; r < ranks; r++) drop(&c->rank[r]);
+static void drop_halves(cut_run *c, int32_t size) {
+  for (int32_t r = 0; r < size; r++) drop(&c->rank[r]);
 }
 
 /* Written on 4 ranks, a run goes on with the bits of one that was not cut: on 3, and on one without
@@ -146,24 +91,8 @@ static void test_cut_scattered(void **state) { (void)state, compare_cut(SCATTERE
 /* ---- what goes wrong on one rank --------------------------------------------------------------
  */
 
-/* Rank 1 is refused one allocation after the other: all ranks report it, and none hangs. */
 static void test_refused_memory(void **state) {
-  (void)state;
-  mps_status worst = MPS_ERROR_MEMORY;
-  for (int64_t refuse = 3; worst != MPS_OK; refuse++) { /* then the domain is there */
-    scene s = {.what = STRIP, .threads = 1, .short_run = true, .refuse = refuse};
-    run_team(&s, 3, 10.0);
-    worst = s.rank[1].status;
-    for (int32_t r = 0; r < 3; r++) {
-      if (s.rank[r].status != worst || (worst && !strstr(s.rank[r].message, "rank 1: ")))
-        fail_msg("allocation %d, rank %d: %d %s", (int)refuse, (int)r, (int)s.rank[r].status,
-                 s.rank[r].message);
-      assert_int_equal(s.allocator[r].live, 0);
-      drop(&s.rank[r]);
-    }
-    assert_true(worst == MPS_OK || worst == MPS_ERROR_MEMORY);
-    assert_true(refuse < 2000);
-  }
+  (void)state, refuse_memory(compute, STRIP, SHORT_RUN, 1);
 }
 
 /* One after the other, what ranks do not agree upon, or what fails on one of them. */
@@ -264,7 +193,7 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what) {
 }
 
 static void run_trouble_rank(void *user, team *t, int32_t rank) {
-  scene *s = user;
+  ranks *s = user;
   result *r = &s->rank[rank];
   mps_domain *domain = NULL;
   mps_context *own = test_allocator_context(&s->allocator[rank]);
@@ -279,7 +208,7 @@ static void run_trouble_rank(void *user, team *t, int32_t rank) {
 static void test_troubles(void **state) {
   (void)state;
   for (int what = 0; what < TROUBLES; what++) {
-    scene s = {.what = what};
+    ranks s = {.what = what};
     team t;
     team_begin(&t, 3);
     team_run(&t, run_trouble_rank, &s);
@@ -299,13 +228,13 @@ static void test_troubles(void **state) {
 
 /* A rank that falls silent at some call of the transport: the others end with an error. */
 static void run_lost_rank(void *user, team *t, int32_t rank) {
-  scene *s = user;
+  ranks *s = user;
   result *r = &s->rank[rank];
   mps_domain *domain = NULL;
   mps_context *own = test_allocator_context(&s->allocator[rank]);
   const mps_domain_def def = team_domain_def(t, rank);
   r->status = mps_domain_create(own, &def, &domain);
-  if (r->status == MPS_OK) r->status = compute(own, domain, s->what, s->short_run, r);
+  if (r->status == MPS_OK) r->status = compute(own, domain, s->what, s->length, r);
   mps_domain_destroy(&domain);
   mps_context_destroy(&own);
 }
@@ -313,7 +242,7 @@ static void run_lost_rank(void *user, team *t, int32_t rank) {
 static void test_lost_partner(void **state) {
   (void)state;
   for (int64_t deaf = 5; deaf < 80; deaf += 7) {
-    scene s = {.what = STRIP, .short_run = true};
+    ranks s = {.what = STRIP, .length = SHORT_RUN};
     team t;
     team_begin(&t, 3);
     t.limit = 0.5;

@@ -9,15 +9,7 @@ static mps_context *own;
 static mps_domain *domain;
 
 static void compare_scene(void **state) {
-  const int what = *(const int *)*state;
-  result alone = {0}, share = {0};
-  mps_assert_ok(own, compute(own, NULL, what, false, &alone));
-  mps_assert_ok(own, compute(own, domain, what, false, &share));
-  int64_t *seen = calloc((size_t)alone.count, sizeof *seen);
-  compare(&alone, &share, seen);
-  free(seen);
-  drop(&alone);
-  drop(&share);
+  compare_shares(own, domain, compute, *(const int *)*state, WHOLE_RUN);
 }
 
 /* A second domain in the same process; an error of the last rank is an error of all. */

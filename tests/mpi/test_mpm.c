@@ -9,24 +9,7 @@ static mps_context *own;
 static mps_domain *domain;
 
 static void compare_scene(void **state) {
-  const int what = *(const int *)*state;
-  const int64_t steps = 60;
-  result alone = {0}, share = {0};
-  mps_assert_ok(own, compute(own, NULL, what, steps, &alone));
-  mps_assert_ok(own, compute(own, domain, what, steps, &share));
-  int64_t *seen = calloc((size_t)alone.count, sizeof *seen);
-  compare(&alone, &share, seen);
-  for (int64_t first = 0; first < alone.count;
-       first += 64) { /* none is lost; totals tell doubles */
-    double most[64] = {0.0};
-    const int64_t count = alone.count - first < 64 ? alone.count - first : 64;
-    for (int64_t k = 0; k < count; k++) most[k] = (double)seen[first + k];
-    mps_assert_ok(own, mps_domain_max(domain, 64, most));
-    for (int64_t k = 0; k < count; k++) mps_assert_near(most[k], 1.0, 0.0);
-  }
-  free(seen);
-  drop(&alone);
-  drop(&share);
+  compare_shares(own, domain, compute, *(const int *)*state, 60);
 }
 
 int main(void) {

@@ -1,0 +1,94 @@
+/* ranks_team.h - a scene computed by teams of ranks that are threads, compared with the run without
+ * a domain, and with one rank that is refused its memory. SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPS_TEST_RANKS_TEAM_H
+#define MPS_TEST_RANKS_TEAM_H
+
+#include "test_allocator.h"
+
+#include "domain_threads.h"
+#include "ranks_result.h"
+
+typedef struct ranks {
+  result_fn *compute;
+  int what;
+  int32_t threads;        /* of each rank */
+  int64_t length, refuse; /* refuse: allocation that rank 1 is refused, from 1; 0 none */
+  result rank[TEAM_MOST];
+  test_allocator allocator[TEAM_MOST];
+} ranks;
+
+static inline void run_rank(void *user, team *t, int32_t rank) {
+  ranks *s = user;
+  result *r = &s->rank[rank];
+  mps_context_def def = test_context_defaults();
+  mps_context *own = NULL;
+  mps_domain *domain = NULL;
+  def.executor = s->threads > 1 ? MPS_EXECUTOR_THREADS : MPS_EXECUTOR_SERIAL;
+  def.threads = s->threads;
+  s->allocator[rank].refuse_at = rank == 1 ? s->refuse : 0;
+  if (s->threads == 1) test_allocator_use(&def, &s->allocator[rank]);
+  r->status = mps_context_create(&def, &own, NULL, 0);
+  const mps_domain_def domain_def = team_domain_def(t, rank);
+  if (r->status == MPS_OK) r->status = mps_domain_create(own, &domain_def, &domain);
+  if (r->status == MPS_OK) r->status = s->compute(own, domain, s->what, s->length, r);
+  if (own) snprintf(r->message, sizeof r->message, "%s", mps_context_error(own)->message);
+  mps_domain_destroy(&domain);
+  mps_context_destroy(&own);
+}
+
+static inline void run_team(ranks *s, int32_t size, double limit) {
+  team t;
+  team_begin(&t, size);
+  t.limit = limit;
+  team_run(&t, run_rank, s);
+  team_end(&t);
+}
+
+/* On teams of several sizes and numbers of threads; `few`: not on one and on four ranks. */
+static inline void compare_teams(result_fn *run, int what, int64_t length, bool few) {
+  static const struct {
+    int32_t ranks, threads;
+  } teams[] = {{2, 1}, {3, 2}, {7, 3}, {15, 1}, {1, 1}, {4, 1}};
+  result alone = {.count = 0};
+  mps_context *serial = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_assert_ok(serial, run(serial, NULL, what, length, &alone));
+  mps_context_destroy(&serial);
+  for (int k = 0; k < (few ? 4 : 6); k++) {
+    ranks s = {.compute = run, .what = what, .threads = teams[k].threads, .length = length};
+    int64_t *seen = calloc((size_t)alone.count + 1, sizeof *seen);
+    run_team(&s, teams[k].ranks, 60.0);
+    for (int32_t r = 0; r < teams[k].ranks; r++) {
+      if (s.rank[r].status != MPS_OK) fail_msg("rank %d: %s", (int)r, s.rank[r].message);
+      compare(&alone, &s.rank[r], seen);
+      drop(&s.rank[r]);
+      assert_int_equal(s.allocator[r].live, 0);
+    }
+    for (int64_t i = 0; i < alone.count; i++) /* every rank has the columns of a free field */
+      if (seen[i] != 1 && seen[i] != teams[k].ranks)
+        fail_msg("particle %lld is on %lld ranks", (long long)alone.id[i], (long long)seen[i]);
+    free(seen);
+  }
+  drop(&alone);
+}
+
+/* Rank 1 of three is refused one allocation after the other, `stride` apart after the first 60: all
+ * ranks report it, and none hangs. The first two are those before there is a domain. */
+static inline void refuse_memory(result_fn *run, int what, int64_t length, int64_t stride) {
+  mps_status worst = MPS_ERROR_MEMORY;
+  for (int64_t refuse = 3; worst != MPS_OK; refuse += refuse < 60 ? 1 : stride) {
+    ranks s = {.compute = run, .what = what, .threads = 1, .length = length, .refuse = refuse};
+    run_team(&s, 3, 10.0);
+    worst = s.rank[1].status;
+    for (int32_t r = 0; r < 3; r++) {
+      if (s.rank[r].status != worst || (worst && !strstr(s.rank[r].message, "rank 1: ")))
+        fail_msg("allocation %d, rank %d: %d %s", (int)refuse, (int)r, (int)s.rank[r].status,
+                 s.rank[r].message);
+      assert_int_equal(s.allocator[r].live, 0);
+      drop(&s.rank[r]);
+    }
+    assert_true(worst == MPS_OK || worst == MPS_ERROR_MEMORY);
+    assert_true(refuse < 5000);
+  }
+}
+
+#endif
