@@ -133,11 +133,6 @@ static const mpsi_value *find_value(const mpsi_values *values, const char *name,
   return value && value->rows == rows ? value : NULL;
 }
 
-static int compare_ids(const void *a, const void *b) {
-  const int64_t x = *(const int64_t *)a, y = *(const int64_t *)b;
-  return (x > y) - (x < y);
-}
-
 /* Where each particle of the state was, its cut and mass, by rank. */
 typedef struct former {
   int64_t count;
@@ -203,7 +198,7 @@ static mps_status prepare_body(mps_elastic *e, const char *function, const forme
   if (status != MPS_OK) return status;
   mps_elastic *next = &e->change->next;
   memcpy(next->id, f->id, (size_t)f->count * sizeof *next->id);
-  qsort(next->id, (size_t)f->count, sizeof *next->id, compare_ids);
+  mpsi_elastic_sort_ids(f->count, next->id);
   status = carry_all(e, function, f, source, disagreement);
   if (status == MPS_OK) status = finish(next, function);
   next->mass = mpsi_alloc(e->context, next->n, sizeof *next->mass);

@@ -1,13 +1,16 @@
 /* elastic_private.h - the members of mps_elastic and what its source files offer one another.
  *
- * lattice.c   sites, neighbours, n_i           operator.c  gradient and K u, matrix free
- * joints.c    faces between two materials   bending.c  bending within a cell
+ * access.c    guard, ids, fields as vectors   body.c      material, cuts, what follows from them
+ * lattice.c   sites, neighbours, n_i, plain    operator.c  gradient and K u, matrix free
+ *             gradients
+ * joints.c    faces between two materials      bending.c   bending within a cell
  * supports.c  fixed directions, free unknowns  rigid.c     which rigid motions are left free
  * boundaries.c  what is prescribed, reactions  facets.c    the surface
  * loads.c     nodal forces                     assemble.c  the sparse matrix of free unknowns
  * system.c    factor, solve, refine            cholesky.c  CHOLMOD;  cg.c  conjugate gradients
  * outside.c   a solver of the caller
- * stress.c    stresses, sections, energy       motion.c, budget.c, modes.c  dynamics
+ * stress.c    stresses, sections, energy       motion.c, motion_state.c, budget.c,
+ *                                              modes.c     dynamics
  * change.c    particles that leave, or come back with a former state;  restart.c  that state
  *
  * Vectors over all particles are indexed [i * dim + c], i being the rank of the particle's id:
@@ -24,7 +27,9 @@
 
 #include <mps/elastic_solver.h>
 
-#define MPSI_STENCIL_MAX 64     /* sites of one gradient: a disc of radius < 4 has 45 */
+#define MPSI_STENCIL_MAX 64      /* sites of one gradient: a disc of radius < 4 has 45 */
+#define MPSI_ELASTIC_LEAST 1e-30 /* of a positive quantity in SI units */
+#define MPSI_ELASTIC_MOST 1e30
 #define MPSI_ELASTIC_CHUNK 2048 /* particles of one unit of parallel work */
 
 /* Neighbours on the lattice, by offset. */
@@ -215,14 +220,16 @@ struct mps_elastic {
 /* Fills links, density and density0 from x; every fault is reported for `function`. */
 mps_status mpsi_elastic_connect(mps_elastic *e, const char *function);
 void mpsi_elastic_disconnect(mps_elastic *e);
-
-/* ---- operator.c -------------------------------------------------------------------------------
- */
+/* n*_i of the published method: n_i, or n0. */
+double mpsi_elastic_divisor(const mps_elastic *e, int64_t i);
 /* Coefficient (a vector of dim values, 1/m) of neighbour k in the gradient at i. */
 void mpsi_elastic_coefficient(const mps_elastic *e, int64_t i, int32_t k, double *g);
 /* All sites of the plain gradient at i: G_i u = sum_a u[site a] (x) g[a]; site 0 is i itself. Face
  * values are means: joints come on top. */
 int32_t mpsi_elastic_stencil(const mps_elastic *e, int64_t i, int64_t *sites, double (*g)[3]);
+
+/* ---- operator.c -------------------------------------------------------------------------------
+ */
 /* f += G_i^T moment, moment[c][b] (N m): a load's first moment about particle i. */
 void mpsi_elastic_spread(const mps_elastic *e, int64_t i, const double (*moment)[3], double *f);
 /* Displacement gradients G[(i * dim + c) * dim + b] = d u_c / d x_b. */
@@ -369,30 +376,40 @@ void mpsi_elastic_resultant(const mps_elastic *e, const double *f, const double 
 mps_status mpsi_elastic_create(mps_context *context, const char *function, mps_particles *particles,
                                const mps_elastic_def *def, bool published, bool constant,
                                mps_elastic **out);
+
+/* ---- access.c ---- */
 /* MPS_ERROR_STATE when called back from the solver; from then to `leave` it is busy. */
 mps_status mpsi_elastic_enter(mps_elastic *e, const char *function);
 mps_status mpsi_elastic_leave(mps_elastic *e, mps_status status);
 /* For what only reads, but needs the scratch arrays: refused within a step. */
 mps_status mpsi_elastic_check_between(const mps_elastic *e, const char *function);
-/* The arrays of e->n particles; what follows from ids, positions, cuts and material in them; and
- * the end of both. */
-mps_status mpsi_elastic_allocate(mps_elastic *e, const char *function);
-mps_status mpsi_elastic_make_body(mps_elastic *e, const char *function, bool moduli_known);
-/* Moduli of particle i; MPS_ERROR_ARGUMENT naming one that is out of range. */
-mps_status mpsi_elastic_set_moduli(mps_elastic *e, const char *function, int64_t i, double young,
-                                   double poisson);
-void mpsi_elastic_free_body(mps_elastic *e);
-/* The rank of an id, or -1. */
+/* The rank of an id, or -1; and ids in their order. */
 int64_t mpsi_elastic_find(const mps_elastic *e, int64_t id);
-/* Reads `density` into mass. */
-mps_status mpsi_elastic_read_mass(mps_elastic *e, const char *function);
-/* Volumes and pair stiffnesses from cuts and material. */
-void mpsi_elastic_measure(mps_elastic *e);
+void mpsi_elastic_sort_ids(int64_t count, int64_t *ids);
 /* Writes components [0, components) of field `name` from values[i * components + c]. */
 mps_status mpsi_elastic_write(mps_elastic *e, const char *function, const char *name,
                               const double *values, int32_t components);
 mps_status mpsi_elastic_read(mps_elastic *e, const char *function, const char *name, double *values,
                              int32_t components);
+/* Reads `density` into mass. */
+mps_status mpsi_elastic_read_mass(mps_elastic *e, const char *function);
+/* MPS_ERROR_ARGUMENT that names the field, the particle and what is allowed. */
+mps_status mpsi_elastic_bad_value(mps_elastic *e, const char *function, const char *name, int64_t i,
+                                  double value, const char *allowed);
+
+/* ---- body.c ---- */
+/* The arrays of e->n particles; what follows from ids, positions, cuts and material in them; and
+ * the end of both. */
+mps_status mpsi_elastic_allocate(mps_elastic *e, const char *function);
+mps_status mpsi_elastic_make_body(mps_elastic *e, const char *function, bool moduli_known);
+void mpsi_elastic_free_body(mps_elastic *e);
+/* The definition's material to the fields, at creation. */
+mps_status mpsi_elastic_add_material(mps_elastic *e, const char *function);
+/* Moduli of particle i; MPS_ERROR_ARGUMENT naming one that is out of range. */
+mps_status mpsi_elastic_set_moduli(mps_elastic *e, const char *function, int64_t i, double young,
+                                   double poisson);
+/* Volumes and pair stiffnesses from cuts and material. */
+void mpsi_elastic_measure(mps_elastic *e);
 
 /* ---- assemble.c -------------------------------------------------------------------------------
  */
@@ -443,6 +460,8 @@ typedef struct mpsi_elastic_motion {
   double *next[5];                      /* u, v, a, inner, held of the step being made */
   double *scratch;
 } mpsi_elastic_motion;
+
+/* ---- motion_state.c ---- */
 void mpsi_elastic_end_motion(mps_elastic *e);
 /* Ends it but for its numbers, which a rollback may need. */
 void mpsi_elastic_suspend_motion(mps_elastic *e);

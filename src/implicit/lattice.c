@@ -1,6 +1,6 @@
 /* lattice.c - from reference positions to integer lattice sites, neighbours within the radius of
- * influence, and the particle number densities n_i and n0 (Chikazawa (6), (7)).
- * SPDX-License-Identifier: BSD-3-Clause */
+ * influence, the particle number densities n_i and n0, Chikazawa (6), (7), and the plain
+ * displacement gradient (operator.c) on them. SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_private.h"
 
 #include <stdlib.h>
@@ -201,4 +201,69 @@ mps_status mpsi_elastic_connect(mps_elastic *e, const char *function) {
   mpsi_free(context, table.particle);
   mpsi_free(context, sites);
   return status;
+}
+
+/* ---- the plain gradient ---- */
+
+double mpsi_elastic_divisor(const mps_elastic *e, int64_t i) {
+  return e->constant ? e->density0 : e->density[i];
+}
+
+static void conservative_coefficient(const mps_elastic *e, int64_t i, int32_t k, double *g) {
+  const mpsi_links *l = &e->links;
+  for (int axis = 0; axis < e->dim; axis++) {
+    g[axis] = 0.0;
+    if (k != l->face[axis][0] && k != l->face[axis][1]) continue;
+    const bool both = (e->faces[i] >> 2 * axis & 3) == 3;
+    g[axis] = (double)l->step[k][axis] * (both ? 0.5 : 1.0) / e->spacing;
+  }
+}
+
+void mpsi_elastic_coefficient(const mps_elastic *e, int64_t i, int32_t k, double *g) {
+  if (e->conservative) {
+    conservative_coefficient(e, i, k, g);
+    return;
+  }
+  const mpsi_links *l = &e->links;
+  const double scale = e->dim / mpsi_elastic_divisor(e, i) * l->weight[k] / l->r2[k] * e->spacing;
+  for (int c = 0; c < e->dim; c++) g[c] = scale * l->step[k][c];
+}
+
+/* The conservative stencil, without a search: two face neighbours an axis. */
+static int32_t conservative_stencil(const mps_elastic *e, int64_t i, int64_t *sites,
+                                    double (*g)[3]) {
+  const mpsi_links *l = &e->links;
+  int32_t m = 1;
+  for (int axis = 0; axis < e->dim; axis++) {
+    const uint32_t faces = e->faces[i] >> 2 * axis & 3;
+    const double c = (faces == 3 ? 0.5 : 1.0) / e->spacing;
+    for (int up = 0; up < 2; up++) {
+      if (!(faces >> up & 1)) continue;
+      sites[m] = l->to[i * l->count + l->face[axis][up]];
+      g[m][0] = g[m][1] = g[m][2] = 0.0;
+      g[m++][axis] = up ? c : -c;
+    }
+    if (faces != 3) g[0][axis] = faces == 2 ? -c : c;
+  }
+  return m;
+}
+
+int32_t mpsi_elastic_stencil(const mps_elastic *e, int64_t i, int64_t *sites, double (*g)[3]) {
+  const mpsi_links *l = &e->links;
+  sites[0] = i;
+  g[0][0] = g[0][1] = g[0][2] = 0.0;
+  if (e->conservative) return conservative_stencil(e, i, sites, g);
+  int32_t m = 1;
+  for (int32_t k = 0; k < l->count; k++) {
+    const int64_t j = l->to[i * l->count + k];
+    if (j < 0) continue;
+    sites[m] = j;
+    g[m][2] = 0.0;
+    mpsi_elastic_coefficient(e, i, k, g[m]);
+    /* Opposite neighbours cancel exactly: i itself has no coefficient inside the body. */
+    if (l->to[i * l->count + l->count - 1 - k] < 0)
+      for (int c = 0; c < e->dim; c++) g[0][c] -= g[m][c];
+    m++;
+  }
+  return m;
 }

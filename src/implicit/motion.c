@@ -17,71 +17,13 @@
 
 enum { NEXT_U, NEXT_V, NEXT_A, NEXT_INNER, NEXT_HELD };
 
-/* ---- its memory -------------------------------------------------------------------------------
- */
-
-#define ARRAYS 11
-static void list_arrays(mpsi_elastic_motion *m, double **list[ARRAYS]) {
-  double **const all[ARRAYS] = {&m->velocity, &m->acceleration, &m->force,   &m->inner,
-                                &m->held,     &m->scratch,      &m->next[0], &m->next[1],
-                                &m->next[2],  &m->next[3],      &m->next[4]};
-  memcpy(list, all, sizeof all);
-}
-
-void mpsi_elastic_free_arrays(mps_elastic *e, mpsi_elastic_motion *m) {
-  double **array[ARRAYS];
-  list_arrays(m, array);
-  for (int k = 0; k < ARRAYS; k++) {
-    mpsi_free(e->context, *array[k]);
-    *array[k] = NULL;
-  }
-}
-
-mps_status mpsi_elastic_allocate_motion(mps_elastic *e, const char *function,
-                                        mpsi_elastic_motion *m) {
-  const int64_t all = e->n * e->dim;
-  double **array[ARRAYS];
-  list_arrays(m, array);
-  for (int k = 0; k < ARRAYS; k++)
-    if (!(*array[k] = mpsi_alloc(e->context, all, sizeof(double))))
-      return mpsi_fail_memory(e->context, function, (size_t)all * sizeof(double));
-  return MPS_OK;
-}
-
-void mpsi_elastic_move_arrays(mpsi_elastic_motion *from, mpsi_elastic_motion *to) {
-  double **source[ARRAYS], **target[ARRAYS];
-  list_arrays(from, source), list_arrays(to, target);
-  for (int k = 0; k < ARRAYS; k++) {
-    *target[k] = *source[k];
-    *source[k] = NULL;
-  }
-}
-
-void mpsi_elastic_end_motion(mps_elastic *e) {
-  if (e->motion) mpsi_elastic_free_arrays(e, e->motion);
-  mpsi_free(e->context, e->motion);
-  mpsi_free(e->context, e->ended);
-  e->motion = e->ended = NULL;
-}
-
-void mpsi_elastic_suspend_motion(mps_elastic *e) {
-  if (!e->motion) return;
-  mpsi_elastic_free_arrays(e, e->motion);
-  mpsi_free(e->context, e->ended);
-  e->ended = e->motion;
-  e->motion = NULL;
-}
-
 /* ---- definition -------------------------------------------------------------------------------
  */
 
-#define LEAST 1e-30
-#define MOST 1e30
-
 static mps_status check_dt(mps_context *context, const char *function, double dt) {
-  if (dt >= LEAST && dt <= MOST) return MPS_OK;
+  if (dt >= MPSI_ELASTIC_LEAST && dt <= MPSI_ELASTIC_MOST) return MPS_OK;
   return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "dt is %g s, allowed is %g to %g", dt,
-                   LEAST, MOST);
+                   MPSI_ELASTIC_LEAST, MPSI_ELASTIC_MOST);
 }
 
 static mps_status read_family(mps_context *context, const char *function,
@@ -122,7 +64,7 @@ static mps_status read_damping(mps_context *context, const char *function,
                                const mps_elastic_motion_def *def, mpsi_elastic_motion *m) {
   m->a0 = def->mass_damping;
   m->a1 = def->stiffness_damping;
-  if (!(m->a0 >= 0.0 && m->a1 >= 0.0 && m->a0 <= MOST && m->a1 <= MOST))
+  if (!(m->a0 >= 0.0 && m->a1 >= 0.0 && m->a0 <= MPSI_ELASTIC_MOST && m->a1 <= MPSI_ELASTIC_MOST))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "mass_damping is %g 1/s and stiffness_damping %g s, must be >= 0", m->a0,
                      m->a1);
@@ -132,7 +74,8 @@ static mps_status read_damping(mps_context *context, const char *function,
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "both damping ratios and mass_damping or stiffness_damping are given");
   for (int k = 0; k < 2; k++)
-    if (!(h[k] >= 0.0 && h[k] < 1.0 && f[k] >= LEAST && f[k] <= MOST && f[0] != f[1]))
+    if (!(h[k] >= 0.0 && h[k] < 1.0 && f[k] >= MPSI_ELASTIC_LEAST && f[k] <= MPSI_ELASTIC_MOST &&
+          f[0] != f[1]))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "damping ratio %d is %g at %g Hz: ratios must be in [0, 1), the two "
                        "frequencies > 0 and different",
@@ -453,9 +396,6 @@ mps_status mps_elastic_run(mps_elastic *e, double t_end, int64_t every, mps_elas
   return mpsi_elastic_leave(e, finish(e, __func__, status));
 }
 
-double mps_elastic_time(const mps_elastic *e) { return e && e->motion ? e->motion->time : 0.0; }
-int64_t mps_elastic_steps(const mps_elastic *e) { return e && e->motion ? e->motion->steps : 0; }
-double mps_elastic_dt(const mps_elastic *e) { return e && e->motion ? e->motion->dt : 0.0; }
 double mps_elastic_limit(const mps_elastic *e) {
   (void)e;
   return INFINITY;

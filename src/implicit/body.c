@@ -1,0 +1,216 @@
+/* body.c - the body that a solver computes: its material, its cuts, and what follows from them.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "elastic_private.h"
+
+#include "material/material_internal.h"
+
+/* ---- material and cuts ----------------------------------------------------------------------- */
+
+void mpsi_elastic_measure(mps_elastic *e) {
+  const int d = e->dim;
+  for (int64_t i = 0; i < e->n; i++) {
+    e->volume[i] =
+        d == 2 ? e->spacing * e->spacing * e->def.measure : e->spacing * e->spacing * e->spacing;
+    for (int bit = 0; bit < 2 * d; bit++)
+      if (e->cut[i] & 1 << bit) e->volume[i] *= 0.5;
+    e->kappa[i] = e->conservative ? 2.0 * e->def.alpha * e->mu[i] * d * e->volume[i] / e->density[i]
+                                  : 2.0 * e->mu[i] * d * e->volume[i] / e->density0;
+  }
+  mpsi_elastic_measure_bending(e);
+  e->values_valid = false;
+}
+
+/* Writes `young` and `poisson` of `count` particles, or of all (0, NULL). */
+static mps_status write_material(mps_elastic *e, const mps_material *material, int64_t count,
+                                 const int64_t *ids) {
+  mps_moduli m = {0};
+  mps_status status = mps_material_get_moduli(material, 1.0, &m);
+  double *young = mpsi_particles_column(e->particles, "young", 0);
+  double *poisson = mpsi_particles_column(e->particles, "poisson", 0);
+  if (status != MPS_OK || !young || !poisson) return status;
+  const int64_t most = ids ? count : mps_particles_count(e->particles);
+  for (int64_t k = 0; k < most; k++) {
+    const int64_t at = ids ? mps_particles_index(e->particles, ids[k]) : k;
+    young[at] = m.young, poisson[at] = m.poisson;
+  }
+  return MPS_OK;
+}
+
+/* The definition's material, at creation. */
+mps_status mpsi_elastic_add_material(mps_elastic *e, const char *function) {
+  mps_status status = mpsi_material_check_elastic(e->context, function, e->def.material);
+  if (status == MPS_OK) status = mps_particles_add_field(e->particles, "young", 0);
+  if (status == MPS_OK) status = mps_particles_add_field(e->particles, "poisson", 0);
+  return status == MPS_OK ? write_material(e, e->def.material, 0, NULL) : status;
+}
+
+static mps_status check_moduli(mps_elastic *e, const char *function, int64_t i, double young,
+                               double poisson) {
+  const double least = !e->conservative ? 0.0 : -0.99;
+  if (!(young >= MPSI_ELASTIC_LEAST && young <= MPSI_ELASTIC_MOST))
+    return mpsi_elastic_bad_value(e, function, "young", i, young, "allowed is 1e-30 to 1e30 (Pa)");
+  if (poisson >= least && poisson < 0.5) return MPS_OK;
+  return mpsi_elastic_bad_value(e, function, "poisson", i, poisson,
+                                least < 0.0
+                                    ? "must be at least -0.99 and below 0.5"
+                                    : "must be at least 0 and below 0.5 (published method)");
+}
+
+mps_status mpsi_elastic_set_moduli(mps_elastic *e, const char *function, int64_t i, double young,
+                                   double poisson) {
+  const mps_status status = check_moduli(e, function, i, young, poisson);
+  if (status != MPS_OK) return status;
+  const double two_mu = young / (1.0 + poisson);
+  const bool plane_stress = e->dim == 2 && e->def.state == MPS_ELASTIC_PLANE_STRESS;
+  e->mu[i] = 0.5 * two_mu;
+  e->lambda[i] = two_mu * poisson / (plane_stress ? 1.0 - poisson : 1.0 - 2.0 * poisson);
+  e->poisson[i] = poisson;
+  return MPS_OK;
+}
+
+/* lambda and mu of every particle; nothing has changed on an error. */
+static mps_status read_material(mps_elastic *e, const char *function) {
+  double *young = mpsi_alloc(e->context, 2 * e->n, sizeof *young);
+  if (!young) return mpsi_fail_memory(e->context, function, (size_t)(2 * e->n) * sizeof *young);
+  double *poisson = young + e->n;
+  mps_status status = mpsi_elastic_read(e, function, "young", young, 1);
+  if (status == MPS_OK) status = mpsi_elastic_read(e, function, "poisson", poisson, 1);
+  for (int64_t i = 0; i < e->n && status == MPS_OK; i++)
+    status = check_moduli(e, function, i, young[i], poisson[i]);
+  for (int64_t i = 0; i < e->n && status == MPS_OK; i++)
+    status = mpsi_elastic_set_moduli(e, function, i, young[i], poisson[i]);
+  mpsi_free(e->context, young);
+  return status;
+}
+
+mps_status mps_elastic_update_material(mps_elastic *e) {
+  if (!e) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_elastic_enter(e, __func__);
+  if (status != MPS_OK) return status;
+  status = read_material(e, __func__);
+  if (status == MPS_OK) status = mpsi_elastic_find_joints(e, __func__);
+  if (status == MPS_OK) mpsi_elastic_measure(e);
+  return mpsi_elastic_leave(e, status);
+}
+
+mps_status mps_elastic_set_material(mps_elastic *e, const mps_material *material, int64_t count,
+                                    const int64_t *ids) {
+  if (!e) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_elastic_enter(e, __func__);
+  if (status != MPS_OK) return status;
+  double *former = mpsi_alloc(e->context, 2 * e->n, sizeof *former);
+  if (!former) status = mpsi_fail_memory(e->context, __func__, (size_t)e->n * 16);
+  if (status == MPS_OK) status = mpsi_material_check_elastic(e->context, __func__, material);
+  if (status == MPS_OK)
+    status = mpsi_particles_check_ids_or_all(e->particles, __func__, count, ids);
+  if (status == MPS_OK) status = mpsi_elastic_read(e, __func__, "young", former, 1);
+  if (status == MPS_OK) status = mpsi_elastic_read(e, __func__, "poisson", former + e->n, 1);
+  if (status == MPS_OK) {
+    status = write_material(e, material, count, ids);
+    if (status == MPS_OK) status = read_material(e, __func__);
+    if (status == MPS_OK) status = mpsi_elastic_find_joints(e, __func__);
+    if (status == MPS_OK) mpsi_elastic_measure(e);
+    for (int k = 0; k < 2 && status != MPS_OK; k++) { /* the fields are there: it cannot fail */
+      const mps_status back =
+          mpsi_elastic_write(e, __func__, k ? "poisson" : "young", former + k * e->n, 1);
+      (void)back;
+    }
+  }
+  mpsi_free(e->context, former);
+  return mpsi_elastic_leave(e, status);
+}
+
+mps_status mps_elastic_cut(mps_elastic *e, int32_t axis, int32_t side, int64_t count,
+                           const int64_t *ids) {
+  if (!e) return MPS_ERROR_ARGUMENT;
+  if (axis < 0 || axis >= e->dim || (side != -1 && side != 1))
+    return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
+                     "axis is %d and side %d, allowed are 0..%d and -1 or 1", axis, side,
+                     e->dim - 1);
+  if (count < 0 || (count > 0 && !ids))
+    return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
+                     "count is %lld (must be >= 0) or ids is NULL", (long long)count);
+  mps_status status = mpsi_elastic_enter(e, __func__);
+  if (status != MPS_OK) return status;
+  (void)mpsi_elastic_leave(e, status);
+  const int32_t k = e->links.face[axis][side > 0];
+  for (int64_t i = 0; i < count; i++) {
+    const int64_t found = mpsi_elastic_find(e, ids[i]);
+    if (found < 0)
+      return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
+                       "ids[%lld] is %lld: no particle of the solver has that id", (long long)i,
+                       (long long)ids[i]);
+    if (e->links.to[found * e->links.count + k] >= 0)
+      return mpsi_fail(e->context, __func__, MPS_ERROR_STATE,
+                       "particle %lld has a neighbour on side %d of %c: no surface can pass "
+                       "through it there",
+                       (long long)ids[i], side, "xyz"[axis]);
+  }
+  mpsi_elastic_end_motion(e); /* its masses are no longer those of the cells */
+  mpsi_free(e->context, e->mass);
+  e->mass = NULL;
+  for (int64_t i = 0; i < count; i++)
+    e->cut[mpsi_elastic_find(e, ids[i])] |= (uint8_t)(1 << (2 * axis + (side > 0)));
+  mpsi_elastic_measure(e);
+  return MPS_OK;
+}
+
+/* ---- its arrays ---- */
+
+mps_status mpsi_elastic_allocate(mps_elastic *e, const char *function) {
+  const int64_t n = e->n, all = n * e->dim;
+  const struct {
+    void **array;
+    int64_t count;
+    size_t size;
+  } arrays[] = {
+      {(void **)&e->id, n, sizeof(int64_t)},
+      {(void **)&e->x, all, sizeof(double)},
+      {(void **)&e->density, n, sizeof(double)},
+      {(void **)&e->faces, n, sizeof(uint8_t)},
+      {(void **)&e->cut, n, sizeof(uint8_t)},
+      {(void **)&e->volume, n, sizeof(double)},
+      {(void **)&e->lambda, n, sizeof(double)},
+      {(void **)&e->mu, n, sizeof(double)},
+      {(void **)&e->poisson, n, sizeof(double)},
+      {(void **)&e->kappa, n, sizeof(double)},
+      {(void **)&e->support_of, n, sizeof(int64_t)},
+      {(void **)&e->load, all, sizeof(double)},
+      {(void **)&e->displacement, all, sizeof(double)},
+      {(void **)&e->reaction, all, sizeof(double)},
+      {(void **)&e->gradient, all * e->dim, sizeof(double)},
+      {(void **)&e->stress_work, all * e->dim, sizeof(double)},
+      {(void **)&e->work, all, sizeof(double)},
+      {(void **)&e->dof, all, sizeof(int64_t)},
+  };
+  for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) {
+    *arrays[k].array = mpsi_alloc(e->context, arrays[k].count, arrays[k].size);
+    if (!*arrays[k].array)
+      return mpsi_fail_memory(e->context, function, (size_t)arrays[k].count * arrays[k].size);
+  }
+  for (int64_t i = 0; i < n; i++) e->support_of[i] = -1;
+  return MPS_OK;
+}
+
+void mpsi_elastic_free_body(mps_elastic *e) {
+  mps_context *context = e->context;
+  mpsi_cholesky_destroy(&e->cholesky);
+  mpsi_elastic_disconnect(e);
+  mpsi_elastic_drop_joints(e);
+  void *arrays[] = {e->id,           e->x,          e->density,     e->cut,   e->volume,
+                    e->lambda,       e->mu,         e->poisson,     e->kappa, e->facets,
+                    e->load,         e->reaction,   e->gradient,    e->work,  e->dof,
+                    e->displacement, e->column,     e->stress_work, e->row,   e->value,
+                    e->faces,        e->rhs,        e->solution,    e->mass,  e->cg_work,
+                    e->supports,     e->support_of, e->bending};
+  for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) mpsi_free(context, arrays[k]);
+}
+
+mps_status mpsi_elastic_make_body(mps_elastic *e, const char *function, bool moduli_known) {
+  mps_status status = mpsi_elastic_connect(e, function);
+  if (status == MPS_OK && !moduli_known) status = read_material(e, function);
+  if (status == MPS_OK) status = mpsi_elastic_find_joints(e, function);
+  if (status == MPS_OK) status = mpsi_elastic_find_facets(e, function);
+  if (status == MPS_OK) mpsi_elastic_measure(e);
+  return status;
+}
