@@ -110,16 +110,16 @@ static mps_status build_case(simulation *sim, const column_case *c) {
   def.gravity[1] = -G;
   mps_status status = fill(sim->context, s, c, m);
   if (status == MPS_OK) status = mps_material_drucker_prager(sim->context, &law, &m->material);
-  if (status == MPS_OK)
-    status = mps_mpm_create(sim->context, m->particles, m->material, &def, &m->mpm);
-  if (status == MPS_OK && isnan(s->bed_friction))
-    status = mps_mpm_set_side(m->mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
-  if (status != MPS_OK || isnan(s->bed_friction)) return status;
   const double up[2] = {0.0, 1.0};
+  if (status == MPS_OK && !isnan(s->bed_friction))
+    status = mps_body_create_half_plane(sim->context, NULL, up, &m->body[0]);
+  status = mpm_model_create(m, sim->context, status, &def);
+  if (status != MPS_OK) return status;
+  if (isnan(s->bed_friction))
+    return mps_mpm_set_side(m->mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
   mps_contact_def bed = mps_contact_defaults();
   bed.friction = s->bed_friction;
-  status = mps_body_create_half_plane(sim->context, NULL, up, &m->body[0]);
-  return status == MPS_OK ? mps_mpm_add_contact(m->mpm, m->body[0], &bed, NULL) : status;
+  return mps_mpm_add_contact(m->mpm, m->body[0], &bed, NULL);
 }
 
 static mps_status build(mps_context *context, void *user) {
@@ -135,8 +135,8 @@ static mps_status build(mps_context *context, void *user) {
 static mps_status sample(simulation *sim, column_case *c, double *peak) {
   mpm_heap heap;
   const int k = c->rows;
-  mps_status status =
-      mpm_heap_measure(sim->m.particles, G, fmax(0.1 * sim->s.width, 2.0 * sim->s.h), &heap);
+  const mps_status status =
+      mpm_heap_measure(&sim->m, G, fmax(0.1 * sim->s.width, 2.0 * sim->s.h), &heap);
   if (status != MPS_OK) return status;
   c->t[k] = mps_mpm_time(sim->m.mpm);
   c->front[k] = heap.front;
@@ -163,8 +163,7 @@ static mps_status march_case(simulation *sim, column_case *c) {
   c->time_at_rest = NAN;
   for (int k = 1; k <= SAMPLES && status == MPS_OK; k++) {
     if (shots < FRAMES - 1 && c->t[c->rows - 1] >= frames[shots] * fall - 1e-12) {
-      status =
-          mpm_snapshot_take(sim->m.particles, c->t[c->rows - 1], "plastic_strain", &c->shot[shots]);
+      status = mpm_snapshot_take(&sim->m, c->t[c->rows - 1], "plastic_strain", &c->shot[shots]);
       shots++;
     }
     if (status == MPS_OK)
@@ -175,7 +174,7 @@ static mps_status march_case(simulation *sim, column_case *c) {
     break;
   }
   /* the last one is also that of an interrupted run */
-  const mps_status taken = c->rows > 0 ? mpm_snapshot_take(sim->m.particles, c->t[c->rows - 1],
+  const mps_status taken = c->rows > 0 ? mpm_snapshot_take(&sim->m, c->t[c->rows - 1],
                                                            "plastic_strain", &c->shot[FRAMES - 1])
                                        : MPS_OK;
   return status == MPS_OK ? taken : status;
@@ -440,7 +439,7 @@ int main(int argc, char **argv) {
   int code = options_parse(&program, argc, argv);
   if (code < 0) code = complete(&program, &sim);
   if (code >= 0) return code;
-  static const mpm_model_parts parts = {build, march, finish};
+  static const mpm_model_parts parts = {build, march, finish, .shared = true};
   code = mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
   for (int k = 0; k < sim.count; k++)
     for (int shot = 0; shot < FRAMES; shot++) mpm_snapshot_free(&sim.column[k].shot[shot]);

@@ -119,8 +119,7 @@ mps_status dam_mpm_build(mps_context *context, simulation *sim) {
   def.gravity[1] = -G;
   mps_status status = fill(context, s, sim);
   if (status == MPS_OK) status = mps_material_newtonian(context, &law, &sim->m.material);
-  if (status == MPS_OK)
-    status = mps_mpm_create(context, sim->m.particles, sim->m.material, &def, &sim->m.mpm);
+  status = mpm_model_create(&sim->m, context, status, &def);
   if (status == MPS_OK) status = mps_experimental_mpm_transfer(sim->m.mpm, s->transfer);
   if (status == MPS_OK && s->bed == NO_SLIP)
     status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
@@ -457,7 +456,7 @@ int main(int argc, char **argv) {
   int code = options_parse(&program, argc, argv);
   if (code < 0) code = complete(&program, s);
   if (code >= 0) return code;
-  static const mpm_model_parts parts = {dam_build, dam_march, finish};
+  const mpm_model_parts parts = {dam_build, dam_march, finish, .shared = s->method == METHOD_MPM};
   sim.table = table;
   code = mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
   mps_recorder_destroy(&sim.series);

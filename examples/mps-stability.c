@@ -165,7 +165,8 @@ static int run_case(app *a, const settings *s) {
                       .damping = s->damping};
   /* Two first bounds some 20 % apart, then each run halves the logarithm of their ratio. */
   bisection_bar b = {&a->bar, 2.0 + ceil(fmax(0.0, log2(log(1.25) / log(s->m.accuracy))))};
-  case_find(&s->m, &x, draw_bisection, &b);
+  a->no_warnings = true; /* of steps beyond the limit, which is what is looked for */
+  case_find_together(a, &s->m, &x, draw_bisection, &b);
   progress_clear(&a->bar);
   if (x.status == MPS_ERROR_CANCELLED) {
     app_error(a, "interrupted: a single case has no partial result, nothing is written");
@@ -175,7 +176,7 @@ static int run_case(app *a, const settings *s) {
     app_error(a, "%s", x.why);
     return APP_FAILED;
   }
-  if (!write_case(a, s, &x)) return APP_FAILED;
+  if (!app_agree(a, a->rank > 0 || write_case(a, s, &x))) return APP_FAILED;
   app_tell_results(a, s->out);
   printf("%c wave, R = %g m, Vs = %g m/s, Vp = %g m/s, h = %g, %lld particles\n", x.wave, x.radius,
          case_vs(&x), case_vp(&x), x.damping, (long long)x.particles);
@@ -193,19 +194,20 @@ static int run_case(app *a, const settings *s) {
 
 static int run_study(app *a, const settings *s) {
   study *all = malloc(sizeof *all);
-  if (!all) {
-    app_no_memory(a);
+  if (!app_agree(a, all || app_no_memory(a))) {
+    free(all);
     return APP_FAILED;
   }
   int code = study_run(a, &s->m, all) ? APP_OK : APP_FAILED;
   if (code == APP_OK && all->done < STUDY_CASES) {
     app_error(a, "interrupted: limits.csv and integrators.csv have %lld of %d cases",
               (long long)all->done, STUDY_CASES);
-    code = study_write_limits(a, all, s->out) ? APP_INTERRUPTED : APP_FAILED;
+    const bool ok = app_agree(a, a->rank > 0 || study_write_limits(a, all, s->out));
+    code = ok ? APP_INTERRUPTED : APP_FAILED;
   } else if (code == APP_OK) {
-    const bool ok = study_fit(a, all) && study_write(a, all, s->out) &&
-                    study_draw(a, all, s->out) && study_summary(a, all, s->out);
-    code = ok ? APP_OK : APP_FAILED;
+    const bool ok = a->rank > 0 || (study_fit(a, all) && study_write(a, all, s->out) &&
+                                    study_draw(a, all, s->out) && study_summary(a, all, s->out));
+    code = app_agree(a, ok) ? APP_OK : APP_FAILED;
   }
   free(all);
   return code;
@@ -217,7 +219,10 @@ int main(int argc, char **argv) {
   int code = parse(&s, argc, argv);
   if (code >= 0) return code;
   code = APP_FAILED;
-  if (app_start(&a, "mps-stability", s.threads) && output_directory(&a, s.out))
+  if (app_start_ranks(&a, "mps-stability", s.threads) &&
+      app_agree(&a, a.rank > 0 || output_directory(&a, s.out))) {
     code = s.study ? run_study(&a, &s) : run_case(&a, &s);
+    if (code == APP_FAILED) app_agree(&a, false); /* all ranks know */
+  }
   return app_finish(&a, code);
 }

@@ -5,14 +5,16 @@
 #include "ranks.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 static void print_warning(void *user, int32_t level, const char *message) {
   app *a = user;
-  if (level != MPS_LOG_WARNING || a->rank > 0) return;
+  if (level != MPS_LOG_WARNING || a->rank > 0 || a->no_warnings) return;
   progress_clear(&a->bar);
   fprintf(stderr, "%s: warning: %s\n", a->program, message);
 }
@@ -34,7 +36,7 @@ static bool make_context(app *a, int64_t threads) {
 bool app_start(app *a, const char *program, int64_t threads) {
   *a = (app){.program = program, .outcome = "complete", .rank = ranks_number()};
   if (ranks_launched() > 1)
-    return app_error(a, "started as %d processes: this program computes in one, with threads",
+    return app_error(a, "started as %d processes: this computes in one, with threads",
                      (int)ranks_launched());
   progress_start(&a->bar);
   return make_context(a, threads);
@@ -86,6 +88,23 @@ bool app_agree(app *a, bool ok) {
     fflush(stderr);
   }
   return false;
+}
+
+/* Two numbers for each value, since no NaN may be among them. */
+mps_status app_share(app *a, bool mine, int count, double *values) {
+  if (!a->domain) return MPS_OK;
+  double *both = calloc(2 * (size_t)count + 1, sizeof *both);
+  mps_status status = mps_domain_agree(a->domain, both ? MPS_OK : MPS_ERROR_MEMORY);
+  for (int k = 0; status == MPS_OK && k < count; k++) {
+    const bool none = isnan(values[k]);
+    both[2 * k] = !mine ? -INFINITY : none ? 0.0 : values[k];
+    both[2 * k + 1] = mine && none;
+  }
+  if (status == MPS_OK) status = mps_domain_max(a->domain, 2 * count, both);
+  for (int k = 0; status == MPS_OK && k < count; k++)
+    values[k] = both[2 * k + 1] == 1.0 ? NAN : both[2 * k];
+  free(both);
+  return status;
 }
 
 int app_finish(app *a, int code) {

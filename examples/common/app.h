@@ -25,6 +25,7 @@ typedef struct app {
   mps_context *context;
   progress bar;
   bool no_gnuplot;     /* the note about it has been printed */
+  bool no_warnings;    /* the library's are not printed: the program expects them */
   const char *outcome; /* of the run: "complete", "interrupted" or "failed" */
   char results[1024];  /* names of the files written, for app_tell_results */
   /* of several ranks */
@@ -45,6 +46,9 @@ bool app_start_ranks(app *a, const char *program, int64_t threads);
  * wrong, and all return false. Collective; what the library does on all ranks is agreed upon by
  * itself, but a rank that fails alone must come here before the next collective call. */
 bool app_agree(app *a, bool ok);
+/* `values` of the one rank where they are `mine` become those of all, bit for bit but for the kind
+ * of a NaN. Nothing to do in one process. Collective. */
+mps_status app_share(app *a, bool mine, int count, double *values);
 /* Destroys the context and closes stdout. Returns `code`; where it was APP_OK, APP_FAILED when what
  * was printed could not be written, and APP_INTERRUPTED, with a line that says so, when Ctrl-C came
  * too late to stop anything. */

@@ -25,7 +25,38 @@ static double end_of_heap(int64_t count, double *x, double gap) {
   return x[last];
 }
 
-mps_status mpm_heap_measure(mps_particles *particles, double g, double band, mpm_heap *out) {
+/* ---- rows by id: the present order of particles shows in no sum and no table ----------------- */
+
+typedef struct named_row {
+  int64_t id, row;
+} named_row;
+
+static int by_id(const void *a, const void *b) {
+  const int64_t x = ((const named_row *)a)->id, y = ((const named_row *)b)->id;
+  return (x > y) - (x < y);
+}
+
+/* To be freed; NULL: no memory, or no ids. */
+static named_row *rows_by_id(mps_particles *particles) {
+  const int64_t count = mps_particles_count(particles);
+  named_row *rows = malloc((size_t)count * sizeof *rows + 1);
+  mps_view id;
+  if (!rows || mps_particles_view(particles, "id", &id) != MPS_OK) {
+    free(rows);
+    return NULL;
+  }
+  bool sorted = true;
+  for (int64_t k = 0; k < count; k++) {
+    rows[k] = (named_row){*mps_view_i64(&id, k, 0), k};
+    sorted = sorted && (k == 0 || rows[k].id > rows[k - 1].id);
+  }
+  if (!sorted) qsort(rows, (size_t)count, sizeof *rows, by_id);
+  return rows;
+}
+
+/* ---- the heap -------------------------------------------------------------------------------- */
+
+static mps_status measure(mps_particles *particles, double g, double band, mpm_heap *out) {
   mps_view x, v, m, volume;
   mps_status status = mps_particles_view(particles, "position", &x);
   if (status == MPS_OK) status = mps_particles_view(particles, "velocity", &v);
@@ -35,11 +66,16 @@ mps_status mpm_heap_measure(mps_particles *particles, double g, double band, mpm
   const int64_t count = x.shape[0];
   const double spacing = mps_particles_spacing(particles);
   double *place = malloc((size_t)count * sizeof *place);
-  if (!place) return MPS_ERROR_MEMORY;
-
+  named_row *rows = rows_by_id(particles);
+  if (!place || !rows) {
+    free(place);
+    free(rows);
+    return MPS_ERROR_MEMORY;
+  }
   *out = (mpm_heap){0};
   int64_t beside = 0;
-  for (int64_t k = 0; k < count; k++) {
+  for (int64_t i = 0; i < count; i++) {
+    const int64_t k = rows[i].row;
     const double mass = *mps_view_f64(&m, k, 0), vx = *mps_view_f64(&v, k, 0);
     const double vy = *mps_view_f64(&v, k, 1), V = *mps_view_f64(&volume, k, 0);
     out->mass += mass;
@@ -56,33 +92,57 @@ mps_status mpm_heap_measure(mps_particles *particles, double g, double band, mpm
   const double last = end_of_heap(count, place, 2.0 * spacing);
   out->front = last + 0.5 * spacing;
   out->reach = place[(int64_t)(0.98 * (double)(count - 1))];
-  for (int64_t k = 0; k < count; k++)
-    if (*mps_view_f64(&x, k, 0) > last) out->detached += *mps_view_f64(&m, k, 0) / out->mass;
+  for (int64_t i = 0; i < count; i++)
+    if (*mps_view_f64(&x, rows[i].row, 0) > last)
+      out->detached += *mps_view_f64(&m, rows[i].row, 0) / out->mass;
   free(place);
+  free(rows);
   return MPS_OK;
 }
 
-mps_status mpm_snapshot_take(mps_particles *particles, double time, const char *field,
-                             mpm_snapshot *shot) {
+mps_status mpm_heap_measure(mpm_model *m, double g, double band, mpm_heap *out) {
+  mps_particles *whole;
+  mps_status status = mpm_model_whole(m, &whole);
+  if (status == MPS_OK && whole) status = measure(whole, g, band, out);
+  return mpm_model_tell(m, status, sizeof *out / sizeof(double), &out->front);
+}
+
+/* ---- pictures -------------------------------------------------------------------------------- */
+
+static mps_status take(mps_particles *particles, double time, const char *field,
+                       mpm_snapshot *shot) {
   mps_view x, value;
   mps_status status = mps_particles_view(particles, "position", &x);
   if (status == MPS_OK) status = mps_particles_view(particles, field, &value);
   if (status != MPS_OK) return status;
   mpm_snapshot_free(shot);
+  named_row *rows = rows_by_id(particles);
   shot->row = malloc((size_t)x.shape[0] * 3 * sizeof *shot->row);
-  if (!shot->row) return MPS_ERROR_MEMORY;
+  if (!shot->row || !rows) {
+    free(rows);
+    return MPS_ERROR_MEMORY;
+  }
   shot->time = time;
   shot->count = x.shape[0];
   const bool pressure = strcmp(field, "stress") == 0;
-  for (int64_t k = 0; k < shot->count; k++) {
-    double *row = shot->row + 3 * k;
+  for (int64_t i = 0; i < shot->count; i++) {
+    const int64_t k = rows[i].row;
+    double *row = shot->row + 3 * i;
     row[0] = *mps_view_f64(&x, k, 0);
     row[1] = *mps_view_f64(&x, k, 1);
     row[2] = *mps_view_f64(&value, k, 0);
     if (pressure)
       row[2] = -(row[2] + *mps_view_f64(&value, k, 1) + *mps_view_f64(&value, k, 2)) / 3.0;
   }
+  free(rows);
   return MPS_OK;
+}
+
+mps_status mpm_snapshot_take(mpm_model *m, double time, const char *field, mpm_snapshot *shot) {
+  mps_particles *whole;
+  mps_status status = mpm_model_whole(m, &whole);
+  if (status == MPS_OK && whole) status = take(whole, time, field, shot);
+  return mpm_model_tell(m, status, 0, NULL);
 }
 
 void mpm_snapshot_free(mpm_snapshot *shot) {

@@ -4,9 +4,8 @@
 #ifndef EXAMPLES_MPM_HEAP_H
 #define EXAMPLES_MPM_HEAP_H
 
+#include "mpm_model.h"
 #include "output.h"
-
-#include <mps/particles.h>
 
 typedef struct mpm_heap {
   double front;        /* m: farthest x of the heap, half a spacing beyond the last particle */
@@ -22,10 +21,10 @@ typedef struct mpm_heap {
 } mpm_heap;
 
 /* Drops do not count: particles ahead of a gap of 2 spacings (for `top`: above it) that are less
- * than 1 % of all. Beside the wall is x < `band` (m). */
-mps_status mpm_heap_measure(mps_particles *particles, double g, double band, mpm_heap *out);
+ * than 1 % of all. Beside the wall is x < `band` (m). Collective: all ranks receive it. */
+mps_status mpm_heap_measure(mpm_model *m, double g, double band, mpm_heap *out);
 
-/* Positions and one value of all particles at one time. */
+/* Positions and one value of all particles at one time, in ascending order of ids. */
 typedef struct mpm_snapshot {
   double time; /* s */
   int64_t count;
@@ -33,9 +32,9 @@ typedef struct mpm_snapshot {
 } mpm_snapshot;
 
 /* The value is the pressure (Pa) for `field` "stress", else the first component of the field.
- * Replaces what `shot` had; free with mpm_snapshot_free. */
-mps_status mpm_snapshot_take(mps_particles *particles, double time, const char *field,
-                             mpm_snapshot *shot);
+ * Replaces what `shot` had; free with mpm_snapshot_free. Collective: of several ranks rank 0
+ * receives it. */
+mps_status mpm_snapshot_take(mpm_model *m, double time, const char *field, mpm_snapshot *shot);
 void mpm_snapshot_free(mpm_snapshot *shot);
 /* DIR/NAME: a line frame,t_s,x_m,y_m,VALUE for each particle of each shot. */
 bool mpm_snapshots_write(app *a, const char *directory, const char *name, const char *value,

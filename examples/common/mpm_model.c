@@ -2,6 +2,9 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_model.h"
 
+#include "frame.h"
+
+#include <stdlib.h>
 #include <string.h>
 
 void mpm_model_destroy(mpm_model *model) {
@@ -10,6 +13,7 @@ void mpm_model_destroy(mpm_model *model) {
   for (int b = 0; b < MPM_MODEL_BODIES; b++) mps_body_destroy(&model->body[b]);
   mps_material_destroy(&model->material);
   mps_particles_destroy(&model->particles);
+  mps_particles_destroy(&model->whole);
 }
 
 const char *mpm_model_refuse_stiffness(const option *table, int contact) {
@@ -30,6 +34,68 @@ static double time_of(const mpm_model *model) {
   return model->mpm ? mps_mpm_time(model->mpm) : 0.0;
 }
 
+/* ---- several ranks --------------------------------------------------------------------------- */
+
+static mps_status agree(const mpm_model *m, mps_status status) {
+  return m->a->domain ? mps_domain_agree(m->a->domain, status) : status;
+}
+
+mps_status mpm_model_create(mpm_model *m, mps_context *context, mps_status status,
+                            mps_mpm_def *def) {
+  status = agree(m, status);
+  def->domain = m->a->domain;
+  return status == MPS_OK ? mps_mpm_create(context, m->particles, m->material, def, &m->mpm)
+                          : status;
+}
+
+mps_status mpm_model_whole(mpm_model *m, mps_particles **whole) {
+  *whole = m->particles;
+  if (!m->a->domain) return MPS_OK;
+  *whole = NULL;
+  const mps_status status = mps_domain_gather(m->a->domain, m->particles, &m->whole);
+  if (status == MPS_OK) *whole = m->whole;
+  return status;
+}
+
+mps_status mpm_model_tell(mpm_model *m, mps_status status, int count, double *values) {
+  status = agree(m, status);
+  return status == MPS_OK && count > 0 ? app_share(m->a, m->a->rank == 0, count, values) : status;
+}
+
+mps_status mpm_model_series(mpm_model *m, const char *directory, const char *what, double from,
+                            mps_recorder **out) {
+  mps_particles *whole;
+  mps_status status = mpm_model_whole(m, &whole);
+  if (status == MPS_OK && whole) status = frame_series(m->a, whole, directory, what, from, out);
+  return mpm_model_tell(m, status, 0, NULL);
+}
+
+mps_status mpm_model_frame(mpm_model *m, mps_recorder *series) {
+  mps_particles *whole;
+  mps_status status = mpm_model_whole(m, &whole);
+  if (status == MPS_OK && series) status = mps_recorder_write(series, time_of(m));
+  return mpm_model_tell(m, status, 0, NULL);
+}
+
+/* Particles of all ranks. */
+static mps_status count_all(const mpm_model *m, int64_t *count) {
+  *count = mps_particles_count(m->particles);
+  if (!m->a->domain) return MPS_OK;
+  const int32_t ranks = mps_domain_size(m->a->domain);
+  double *each = calloc((size_t)ranks, sizeof *each);
+  mps_status status = agree(m, each ? MPS_OK : MPS_ERROR_MEMORY);
+  if (status == MPS_OK) {
+    each[m->a->rank] = (double)*count;
+    status = mps_domain_max(m->a->domain, ranks, each);
+  }
+  *count = 0;
+  for (int32_t k = 0; status == MPS_OK && k < ranks; k++) *count += (int64_t)each[k];
+  free(each);
+  return status;
+}
+
+/* ---- the course of a run --------------------------------------------------------------------- */
+
 /* Prints the one line on how the run ended; returns the exit code. */
 static int end_run(app *a, mps_status status, const mpm_model *model, bool any) {
   if (status == MPS_OK || status == MPS_ERROR_CANCELLED || !model->why[0])
@@ -43,26 +109,31 @@ static int end_run(app *a, mps_status status, const mpm_model *model, bool any) 
  * samples are those of complete steps. */
 static int build_and_march(app *a, const char *out, mpm_model *model, const mpm_model_parts *parts,
                            void *user) {
-  if (!output_directory(a, out)) return APP_FAILED;
-  const mps_status built = parts->build(a->context, user);
+  if (!app_agree(a, a->rank > 0 || output_directory(a, out))) return APP_FAILED;
+  mps_status built = agree(model, parts->build(a->context, user));
+  if (built == MPS_OK) built = count_all(model, &model->count);
   if (built != MPS_OK) return end_run(a, built, model, false);
-  printf("%lld particles, dt %.4g s\n", (long long)mps_particles_count(model->particles),
+  printf("%lld particles, dt %.4g s\n", (long long)model->count,
          model->fluid ? mps_fluid_dt(model->fluid) : mps_mpm_dt(model->mpm));
   fflush(stdout);
-  const mps_status status = parts->march(user);
+  mps_status status = agree(model, parts->march(user));
+  const mps_status counted = count_all(model, &model->count);
+  if (status == MPS_OK) status = counted;
   const bool any = model->samples >= MPM_MODEL_SAMPLES;
   const int code = end_run(a, status, model, any);
   if (code != APP_OK && !any) return code;
-  if (!parts->finish(a, user)) return APP_FAILED;
+  if (!app_agree(a, a->rank > 0 || parts->finish(a, user))) return APP_FAILED;
   return code == APP_OK && model->failed ? APP_FAILED : code;
 }
 
 int mpm_model_run(const options_program *program, int64_t threads, const char *out,
                   mpm_model *model, const mpm_model_parts *parts, void *user) {
   app a;
-  if (!app_start(&a, program->name, threads)) return app_finish(&a, APP_FAILED);
+  if (!(parts->shared ? app_start_ranks : app_start)(&a, program->name, threads))
+    return app_finish(&a, APP_FAILED);
   model->a = &a;
   const int code = build_and_march(&a, out, model, parts, user);
+  if (code == APP_FAILED) app_agree(&a, false); /* all ranks know: what fails here is agreed upon */
   mpm_model_destroy(model);
   return app_finish(&a, code);
 }
@@ -73,7 +144,7 @@ bool mpm_model_summary(app *a, const mpm_model *model, const char *directory, ou
   json_text(file, "program", a->program);
   json_text(file, "version", mps_version());
   json_text(file, "outcome", a->outcome);
-  json_integer(file, "particles", mps_particles_count(model->particles));
+  json_integer(file, "particles", model->count);
   json_integer(file, "steps",
                model->fluid ? mps_fluid_steps(model->fluid) : mps_mpm_steps(model->mpm));
   return true;

@@ -7,7 +7,9 @@
 #include "options.h"
 #include "output.h"
 
+#include <mps/domain.h>
 #include <mps/fluid.h>
+#include <mps/io.h>
 #include <mps/mpm.h>
 
 enum { MPM_MODEL_BODIES = 8, MPM_MODEL_SAMPLES = 3 };
@@ -22,13 +24,16 @@ typedef struct mpm_model {
   bool failed;   /* `march` sets it where something is missing that was asked for: exit code 1 */
   char why[400]; /* reason of an error of `build` or `march` that the library does not know; "" */
   app *a;        /* of the run */
+  int64_t count; /* particles of all ranks, when `march` begins and when `finish` does */
+  mps_particles *whole; /* of several ranks, on rank 0: what mpm_model_whole has filled last */
 } mpm_model;
 
 /* The parts of a run; `user` is that of mpm_model_run. */
 typedef struct mpm_model_parts {
   mps_status (*build)(mps_context *context, void *user);
   mps_status (*march)(void *user);
-  bool (*finish)(app *a, void *user); /* results; false after an error line */
+  bool (*finish)(app *a, void *user); /* results; false after an error line; rank 0 only */
+  bool shared; /* the ranks of mpirun can share the model; false: started by it, one line says no */
 } mpm_model_parts;
 
 /* Starts the library, makes the directory `out`, builds, marches, finishes, and destroys the model.
@@ -36,6 +41,27 @@ typedef struct mpm_model_parts {
  * MPM_MODEL_SAMPLES samples. Returns the exit code. */
 int mpm_model_run(const options_program *program, int64_t threads, const char *out,
                   mpm_model *model, const mpm_model_parts *parts, void *user);
+
+/* ---- several ranks ---------------------------------------------------------------------------
+ * Each builds the whole model and keeps its share of it. `build` and `march` are called on all of
+ * them; what they return must be the same on all. */
+
+/* mps_mpm_create with m->particles and m->material, after `status`, which is that of what a rank
+ * makes for itself, such as the particles and bodies: a failure on one rank is one on all, and the
+ * solver is not made. Sets `domain` of the definition. */
+mps_status mpm_model_create(mpm_model *m, mps_context *context, mps_status status,
+                            mps_mpm_def *def);
+/* The particles of all ranks, to be looked at: *whole is NULL on all but rank 0. Collective. */
+mps_status mpm_model_whole(mpm_model *m, mps_particles **whole);
+/* After rank 0 has looked: a failure of one rank becomes that of all, and else `values`, which rank
+ * 0 has found, those of all. Collective. */
+mps_status mpm_model_tell(mpm_model *m, mps_status status, int count, double *values);
+
+/* A series for ParaView, as frame_series, and a frame of it at the present time. Collective: rank 0
+ * has the series, the others NULL. */
+mps_status mpm_model_series(mpm_model *m, const char *directory, const char *what, double from,
+                            mps_recorder **out);
+mps_status mpm_model_frame(mpm_model *m, mps_recorder *series);
 
 /* The row of a program's table that chooses the contact's method, an mps_contact_method. */
 #define MPM_MODEL_CONTACT(value)                                                                   \

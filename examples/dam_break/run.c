@@ -2,8 +2,6 @@
  * (common/resume.h). SPDX-License-Identifier: BSD-3-Clause */
 #include "dam_break.h"
 
-#include "common/frame.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -89,22 +87,20 @@ mps_status dam_build(mps_context *context, void *user) {
   if (status == MPS_OK)
     status = s->method == METHOD_MPS ? dam_mps_build(context, sim) : dam_mpm_build(context, sim);
   if (status == MPS_OK && s->restart) status = restore(context, sim);
-  return status == MPS_OK && s->frames > 0 ? frame_series(sim->m.a, sim->m.particles, s->out,
-                                                          "water", sim->restarted, &sim->series)
-                                           : status;
+  if (status != MPS_OK || s->frames == 0) return status;
+  return mpm_model_series(&sim->m, s->out, "water", sim->restarted, &sim->series);
 }
 
 static mps_status take_sample(simulation *sim, int k) {
   const settings *s = &sim->s;
   const char *pressure = s->method == METHOD_MPS ? "pressure" : "stress";
   mpm_heap *heap = &sim->heap[k];
-  mps_status status = mpm_heap_measure(sim->m.particles, G, 2.0 * s->h, heap);
+  mps_status status = mpm_heap_measure(&sim->m, G, 2.0 * s->h, heap);
   if (status == MPS_OK && k % SHOT_EVERY == 0)
-    status =
-        mpm_snapshot_take(sim->m.particles, time_now(sim), pressure, &sim->shot[k / SHOT_EVERY]);
-  if (status == MPS_OK && sim->series &&
+    status = mpm_snapshot_take(&sim->m, time_now(sim), pressure, &sim->shot[k / SHOT_EVERY]);
+  if (status == MPS_OK && s->frames > 0 &&
       (k == 0 || k * s->frames / SAMPLES > (k - 1) * s->frames / SAMPLES))
-    status = mps_recorder_write(sim->series, time_now(sim));
+    status = mpm_model_frame(&sim->m, sim->series);
   sim->t[k] = time_now(sim);
   sim->Z[k] = heap->front / s->base;
   sim->H[k] = heap->top / column_height(s);

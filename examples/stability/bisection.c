@@ -21,6 +21,11 @@ typedef struct search {
 /* ---- the initial state -------------------------------------------------------------------------
  */
 
+/* What a rank does by itself fails on all where it fails on one. */
+static mps_status agree(const search *s, mps_status status) {
+  return s->def->domain ? mps_domain_agree(s->def->domain, status) : status;
+}
+
 /* Copies the initial state from the fields, or back to them. */
 static mps_status copy_state(const search *s, bool back) {
   static const char *const names[] = {"displacement", "rotation", "velocity", "spin"};
@@ -42,7 +47,7 @@ static mps_status copy_state(const search *s, bool back) {
 }
 
 static mps_status go_back(const search *s) {
-  const mps_status status = copy_state(s, true);
+  const mps_status status = agree(s, copy_state(s, true));
   return status == MPS_OK ? mps_dynamics_restart(s->dynamics, s->start) : status;
 }
 
@@ -153,9 +158,12 @@ mps_status bisection_find(mps_dynamics *dynamics, const bisection_def *def, bise
   double lower, upper;
   why[0] = '\0';
   s.initial = malloc((size_t)n * COLUMNS * sizeof *s.initial);
-  if (!s.initial) return MPS_ERROR_MEMORY;
-  mps_status status = copy_state(&s, false);
-  if (status == MPS_OK) status = choose_bounds(&s, &lower, &upper);
+  mps_status status = agree(&s, s.initial ? copy_state(&s, false) : MPS_ERROR_MEMORY);
+  if (status != MPS_OK) {
+    free(s.initial);
+    return status;
+  }
+  status = choose_bounds(&s, &lower, &upper);
   if (status == MPS_OK) status = bisect(&s, lower, upper);
   const mps_status end = go_back(&s);
   free(s.initial);

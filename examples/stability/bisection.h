@@ -3,6 +3,7 @@
 #ifndef EXAMPLES_STABILITY_BISECTION_H
 #define EXAMPLES_STABILITY_BISECTION_H
 
+#include <mps/domain.h>
 #include <mps/dynamics.h>
 
 #include <math.h>
@@ -13,6 +14,7 @@ typedef struct bisection_def {
   double duration;     /* s of each run, > 0 */
   double lower, upper; /* s: first bounds, lower < upper; NaN: from the linear limit. They are tried
                           and moved apart until one is stable and the other not */
+  mps_domain *domain;  /* of the solver; NULL: one process */
   mps_progress_fn hook; /* told of each run, may be NULL */
   void *user;
 } bisection_def;

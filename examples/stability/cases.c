@@ -33,8 +33,15 @@ double case_vp(const stability_case *x) {
   return x->other > 0.0 ? x->other : 2.0 * x->velocity;
 }
 
-static mps_status build(mps_context *context, const method *m, const stability_case *x, column *c,
+/* What computes a case; the domain NULL: one process. */
+typedef struct machine {
+  mps_context *context;
+  mps_domain *domain;
+} machine;
+
+static mps_status build(const machine *with, const method *m, const stability_case *x, column *c,
                         mps_dynamics **dynamics) {
+  mps_context *context = with->context;
   layers ground = {.count = 1};
   ground.layer[0] = (layer){.thickness = HEIGHT,
                             .vs = case_vs(x),
@@ -48,9 +55,11 @@ static mps_status build(mps_context *context, const method *m, const stability_c
   solver.divergence = m->criterion;
   solver.f1 = m->f1;
   solver.f2 = m->f2;
+  solver.domain = with->domain;
   mps_signal *pulse = NULL;
   mps_status status = column_create(context, &def, c);
   if (status == MPS_OK) status = mps_signal_ricker(context, FREQUENCY, PEAK_TIME, 1.0, &pulse);
+  if (with->domain) status = mps_domain_agree(with->domain, status);
   if (status == MPS_OK) status = mps_dynamics_create(context, c->particles, &solver, dynamics);
   if (status == MPS_OK && m->torque == 1)
     status = mps_experimental_dynamics_printed_torque(*dynamics);
@@ -68,13 +77,14 @@ static mps_status find_linear(const method *m, mps_dynamics *dynamics, stability
   return status;
 }
 
-static mps_status find_stepping(const method *m, mps_dynamics *dynamics, stability_case *x,
-                                mps_progress_fn hook, void *user) {
+static mps_status find_stepping(const machine *with, const method *m, mps_dynamics *dynamics,
+                                stability_case *x, mps_progress_fn hook, void *user) {
   bisection_def def = bisection_defaults();
   bisection found;
   char why[160];
   def.accuracy = m->accuracy;
   def.duration = method_duration(m, x->velocity);
+  def.domain = with->domain;
   def.hook = hook;
   def.user = user;
   const mps_status status = bisection_find(dynamics, &def, &found, why);
@@ -94,32 +104,44 @@ static void find_printed(stability_case *x) {
     x->table2 = limit_fit_dt(&printed, x->radius, x->velocity, x->damping);
 }
 
-void case_find(const method *m, stability_case *x, mps_progress_fn hook, void *user) {
-  mps_context_def def = mps_context_defaults();
-  mps_context *context = NULL;
+static void find(const machine *with, const method *m, stability_case *x, mps_progress_fn hook,
+                 void *user) {
   mps_dynamics *dynamics = NULL;
   column c = {0};
   x->linear = x->stepping = x->unstable = x->table2 = NAN;
   x->steps = 0;
   x->why[0] = '\0';
-  def.executor = MPS_EXECUTOR_SERIAL;
-  def.threads = 1;
-  def.cancel = progress_cancel_hook;
-  x->status = mps_context_create(&def, &context, x->why, sizeof x->why);
-  if (x->status != MPS_OK) return;
-  x->status = build(context, m, x, &c, &dynamics);
-  if (x->status == MPS_OK) x->particles = mps_particles_count(c.particles);
+  x->particles = case_particles(x->radius);
+  x->status = build(with, m, x, &c, &dynamics);
   find_printed(x);
   if (x->status == MPS_OK && m->kind != METHOD_STEPPING) x->status = find_linear(m, dynamics, x);
   if (x->status == MPS_OK && m->kind != METHOD_LINEAR)
-    x->status = find_stepping(m, dynamics, x, hook, user);
+    x->status = find_stepping(with, m, dynamics, x, hook, user);
   if (x->status != MPS_OK) {
     char why[160];
-    snprintf(why, sizeof why, "%.150s", x->why[0] ? x->why : mps_context_error(context)->message);
+    snprintf(why, sizeof why, "%.150s",
+             x->why[0] ? x->why : mps_context_error(with->context)->message);
     snprintf(x->why, sizeof x->why, "%c wave, R = %g m, V = %g m/s, h = %g: %s", x->wave, x->radius,
              x->velocity, x->damping, why);
   }
   mps_dynamics_destroy(&dynamics);
   column_destroy(&c);
-  mps_context_destroy(&context);
+}
+
+void case_find(const method *m, stability_case *x) {
+  mps_context_def def = mps_context_defaults();
+  machine alone = {NULL, NULL};
+  def.executor = MPS_EXECUTOR_SERIAL;
+  def.threads = 1;
+  def.cancel = progress_cancel_hook;
+  x->status = mps_context_create(&def, &alone.context, x->why, sizeof x->why);
+  if (x->status != MPS_OK) return;
+  find(&alone, m, x, NULL, NULL);
+  mps_context_destroy(&alone.context);
+}
+
+void case_find_together(app *a, const method *m, stability_case *x, mps_progress_fn hook,
+                        void *user) {
+  const machine all = {a->context, a->domain};
+  find(&all, m, x, hook, user);
 }

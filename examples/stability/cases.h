@@ -41,8 +41,11 @@ double method_duration(const method *m, double velocity);
 int64_t case_particles(double radius);
 double case_vs(const stability_case *x);
 double case_vp(const stability_case *x);
-/* Finds what `m` asks for, on a serial context of its own: may run in parallel with others. `hook`
- * (may be NULL) is told of each run of the bisection. */
-void case_find(const method *m, stability_case *out, mps_progress_fn hook, void *user);
+/* Finds what `m` asks for, on a serial context of its own: may run in parallel with others. */
+void case_find(const method *m, stability_case *out);
+/* The same with the threads and ranks of the program, which compute the case together. `hook` is
+ * told of each run of the bisection. */
+void case_find_together(app *a, const method *m, stability_case *out, mps_progress_fn hook,
+                        void *user);
 
 #endif

@@ -45,6 +45,7 @@ typedef struct work {
   study *s;
   int64_t order[STUDY_CASES]; /* largest first, so that no worker ends long after the others */
   int64_t cost[STUDY_CASES];  /* particle steps */
+  int64_t count;              /* of this rank */
   int64_t total;
   atomic_int_fast64_t done;
   atomic_int cases_done;
@@ -77,6 +78,41 @@ static void sort_by_cost(work *w) {
   }
 }
 
+/* Of several ranks each takes whole cases: the largest that is left goes to who has least. Keeps
+ * those of this rank in `order`; `owner` tells the rank of each case. */
+static bool deal(work *w, int32_t *owner) {
+  const int32_t ranks = w->a->domain ? mps_domain_size(w->a->domain) : 1;
+  int64_t *load = calloc((size_t)ranks, sizeof *load);
+  if (!load) return app_no_memory(w->a);
+  for (int64_t k = 0; k < STUDY_CASES; k++) {
+    const int64_t i = w->order[k];
+    int32_t least = 0;
+    for (int32_t rank = 1; rank < ranks; rank++)
+      if (load[rank] < load[least]) least = rank;
+    load[least] += w->cost[i];
+    owner[i] = least;
+    if (least == w->a->rank) w->order[w->count++] = i;
+  }
+  w->total = load[w->a->rank];
+  free(load);
+  return true;
+}
+
+/* What each rank has found becomes known to all. */
+static bool share_cases(app *a, study *s, const int32_t *owner) {
+  bool ok = true;
+  for (int64_t i = 0; i < STUDY_CASES && ok; i++) {
+    stability_case *x = &s->cases[i];
+    double values[] = {x->linear,        x->stepping, x->unstable, x->table2, (double)x->particles,
+                       (double)x->steps, x->status};
+    ok = app_check(a, app_share(a, owner[i] == a->rank, sizeof values / sizeof *values, values));
+    x->linear = values[0], x->stepping = values[1], x->unstable = values[2], x->table2 = values[3];
+    x->particles = (int64_t)values[4], x->steps = (int64_t)values[5];
+    x->status = (mps_status)values[6];
+  }
+  return ok;
+}
+
 static void run_one(void *data, int64_t index, int32_t worker) {
   work *w = data;
   (void)worker;
@@ -84,13 +120,13 @@ static void run_one(void *data, int64_t index, int32_t worker) {
   const int64_t i = w->order[index];
   method m = w->s->m;
   if (i >= STUDY_GRID) m.criterion = STUDY_INTEGRATOR_CRITERION;
-  case_find(&m, &w->s->cases[i], NULL, NULL);
+  case_find(&m, &w->s->cases[i]);
   if (w->s->cases[i].status != MPS_OK) atomic_store(&w->failed, true);
   const int64_t done = atomic_fetch_add(&w->done, w->cost[i]) + w->cost[i];
   const int count = atomic_fetch_add(&w->cases_done, 1) + 1;
   if (atomic_flag_test_and_set(&w->drawing)) return;
   char text[64];
-  snprintf(text, sizeof text, "%d of %d cases", count, STUDY_CASES);
+  snprintf(text, sizeof text, "%d of %d cases", count, (int)w->count);
   progress_draw(&w->a->bar, (double)done / (double)w->total, text);
   atomic_flag_clear(&w->drawing);
 }
@@ -108,16 +144,16 @@ bool study_run(app *a, const method *m, study *s) {
   w->a = a;
   w->s = s;
   atomic_flag_clear(&w->drawing);
-  for (int64_t i = 0; i < STUDY_CASES; i++) {
-    w->cost[i] = estimate_cost(a->context, m, &s->cases[i]);
-    w->total += w->cost[i];
-  }
+  for (int64_t i = 0; i < STUDY_CASES; i++) w->cost[i] = estimate_cost(a->context, m, &s->cases[i]);
   sort_by_cost(w);
-  bool ok = app_check(a, mps_context_parallel_for(a->context, STUDY_CASES, run_one, w));
+  int32_t owner[STUDY_CASES];
+  bool ok =
+      deal(w, owner) && app_check(a, mps_context_parallel_for(a->context, w->count, run_one, w));
   progress_clear(&a->bar);
   for (int64_t i = 0; ok && i < STUDY_CASES; i++)
     if (s->cases[i].status != MPS_OK && s->cases[i].status != MPS_ERROR_CANCELLED)
       ok = app_error(a, "%s", s->cases[i].why);
+  ok = app_agree(a, ok) && share_cases(a, s, owner);
   s->done = 0;
   for (int64_t i = 0; i < STUDY_CASES; i++) s->done += s->cases[i].status == MPS_OK;
   free(w);

@@ -1,0 +1,50 @@
+#!/bin/sh
+# same_files.sh DIRECTORY MPIRUN...: programs on 3 ranks print and write what they do in one process,
+# to the bit; a program that computes in one process says so, in one line, and writes nothing.
+. "$(dirname "$0")/../examples/checks.sh"
+programs=$1
+shift
+mpirun=$*
+python=$(command -v /usr/bin/python3 || command -v python3 || echo false)
+
+# same NAME FRAMES PROGRAM OPTION...: all files but FRAMES, which are compared by their ids ("": none).
+same() {
+  name=$1 frames=$2 program=$programs/$3
+  shift 3
+  "$program" "$@" --out "$work/$name-1" >"$work/$name.1"
+  # shellcheck disable=SC2086
+  timeout 100 $mpirun -n 3 "$program" "$@" --out "$work/$name-3" >"$work/$name.3"
+  sed "s:$name-1:$name-3:" "$work/$name.1" | cmp - "$work/$name.3" || fail "what $name prints"
+  [ "$(ls "$work/$name-1")" = "$(ls "$work/$name-3")" ] || fail "files of $name: $(ls "$work/$name-3")"
+  for file in "$work/$name-1"/*; do
+    file=$(basename "$file")
+    case $file in checkpoint.h5 | *.png) continue ;; esac
+    if [ "$file" != "$frames" ]; then
+      cmp "$work/$name-1/$file" "$work/$name-3/$file" || fail "$file of $name"
+      continue
+    fi
+    code=0
+    "$python" "$(dirname "$0")/../vtk/same-frames" --by-id "$work/$name-1/$file" \
+      "$work/$name-3/$file" || code=$?
+    [ $code -eq 0 ] || [ $code -eq 77 ] || fail "frames of $name"
+  done
+}
+
+same collapse "" mps-column-collapse --aspect 1 --width 0.02 --h 0.005 --ppc 4
+same dam water.vtkhdf mps-dam-break --h 0.005715 --duration 0.1 --frames 4 --every-checkpoint 10
+same limit "" mps-stability --radius 1.6
+same study "" mps-stability --study --method linear --duration 0.1
+
+# alone NAME OPTION...
+alone() {
+  name=$1
+  shift
+  # shellcheck disable=SC2086
+  timeout 100 $mpirun -n 2 "$programs/$name" "$@" --out "$work/none" >/dev/null 2>"$work/log" &&
+    fail "$name on ranks"
+  [ "$(grep -c "^$name: " "$work/log")" -eq 1 ] || fail "not one line of $name: $(cat "$work/log")"
+  has "$work/log" "started as 2 processes: this computes in one"
+  [ ! -e "$work/none" ] || fail "$name wrote"
+}
+alone mps-dam-break --method mps
+alone mps-tank
