@@ -36,8 +36,9 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("angle", "degrees", OPTION_FROM_TO(20.0, 160.0), &s->angle,
                     "of the cone's apex"),
       OPTION_NUMBER("friction", "1", OPTION_FROM_TO(0.0, 10.0), &s->friction, "mu of its surface"),
-      OPTION_NUMBER("alpha", "1", OPTION_FROM_TO(0.001, 10.0), &s->alpha,
-                    "shear stress on the tip at most alpha times the cohesion; no bound if not given"),
+      OPTION_NUMBER(
+          "alpha", "1", OPTION_FROM_TO(0.001, 10.0), &s->alpha,
+          "shear stress on the tip at most alpha times the cohesion; no bound if not given"),
       MPM_MODEL_CONTACT(&s->contact),
       OPTION_NUMBER("depth", "m", OPTION_LENGTH, &s->depth,
                     "of the lowest point, where the run ends"),
@@ -82,7 +83,7 @@ int main(int argc, char **argv) {
   if (s->law == PEN_SAND && !options_given(table, "cohesion")) s->cohesion = 0.0;
   const char *reason = pen_check(&p);
   if (reason) return options_refuse(&program, reason);
-  static const mpm_model_parts parts = {pen_build, pen_push, pen_finish};
+  static const mpm_model_parts parts = {pen_build, pen_push, pen_finish, .shared = false};
   const int result = mpm_model_run(&program, s->threads, s->out, &p.run[0].m, &parts, &p);
   pen_free(&p);
   return result;

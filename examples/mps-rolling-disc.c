@@ -301,6 +301,6 @@ int main(int argc, char **argv) {
   if (code >= 0) return code;
   const char *refused = mpm_model_refuse_stiffness(table, s->contact);
   if (refused) return options_refuse(&program, refused);
-  static const mpm_model_parts parts = {build, march, finish};
+  static const mpm_model_parts parts = {build, march, finish, .shared = false};
   return mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
 }
