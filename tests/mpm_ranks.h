@@ -7,23 +7,27 @@
 
 #include <mps/mpm.h>
 
-enum { SLIDE, SPREAD, RING, ROOM, SCENES };
+enum { SLIDE, SPREAD, RING, ROOM, PRESS, CONE, BALLS, SCENES };
+enum { BODIES = 3 }; /* at most, of PRESS, CONE and BALLS */
 
 typedef struct scene {
   mps_particles *set;
   mps_material *material[2];
   mps_mpm *mpm;
+  mps_body *body[BODIES];
+  mps_contact *contact[BODIES];
 } scene;
 
-static inline int dim_of(int what) { return what == ROOM ? 3 : 2; }
+static inline int dim_of(int what) { return what == ROOM || what == BALLS ? 3 : 2; }
+
 
 static inline mps_status make_set(mps_context *own, int what, mps_particles **out) {
-  const bool space = what == ROOM;
+  const bool space = dim_of(what) == 3, touched = what >= PRESS;
   mps_particles_def def = mps_particles_defaults();
   def.dim = dim_of(what);
   def.spacing = space ? 0.04 : 0.02;
   mps_status status = mps_particles_create(own, &def, out);
-  const double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {1.2, space ? 0.6 : 0.8, 0.8};
+  const double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {1.2, touched ? 0.4 : space ? 0.6 : 0.8, 0.8};
   TRY(mps_particles_fill_box(*out, lo, hi, NULL));
   TRY(mps_particles_set(*out, "density", 0, 1800.0));
   TRY(mps_particles_set(*out, "velocity", 0, 0.0));
@@ -33,10 +37,11 @@ static inline mps_status make_set(mps_context *own, int what, mps_particles **ou
   TRY(mps_particles_edit(*out, "velocity", &v));
   for (int64_t k = 0; status == MPS_OK && k < mps_particles_count(*out); k++)
     for (int c = 0; c < dim_of(what); c++) {
-      const double first = what == RING ? 0.0 : 6.0; /* r = 0 stays */
+      const bool ring = what == RING || what == CONE; /* r = 0 stays */
+      const double first = ring ? 0.0 : touched ? 3.0 : 6.0;
       *mps_edit_f64(&v, k, c) =
           c == 0 ? first + 2.0 * *mps_view_f64(&x, k, 0) * cos(5.0 * *mps_view_f64(&x, k, 1))
-                 : 1.0 + 2.0 * cos(4.0 * *mps_view_f64(&x, k, 0));
+                 : (touched ? 0.5 : 1.0) * (1.0 + 2.0 * cos(4.0 * *mps_view_f64(&x, k, 0)));
     }
   TRY(mps_particles_commit(*out, &v));
   return status;
@@ -94,11 +99,12 @@ static inline mps_status add_conditions(mps_context *own, mps_domain *domain, in
 static inline mps_mpm_def scene_def(mps_domain *domain, int what) {
   mps_mpm_def def = mps_mpm_defaults();
   def.domain = domain;
-  def.geometry = what == RING   ? MPS_MPM_AXISYMMETRIC
-                 : what == ROOM ? MPS_MPM_SPACE
-                                : MPS_MPM_PLANE_STRAIN;
-  def.spline = what == ROOM ? 2 : 3;
-  def.cell = what == ROOM ? 0.08 : 0.04;
+  const bool space = dim_of(what) == 3;
+  def.geometry = what == RING || what == CONE ? MPS_MPM_AXISYMMETRIC
+                 : space                      ? MPS_MPM_SPACE
+                                              : MPS_MPM_PLANE_STRAIN;
+  def.spline = space ? 2 : 3;
+  def.cell = space ? 0.08 : 0.04;
   for (int c = 0; c < 3; c++) def.lower[c] = 0.0;
   def.upper[0] = what == SPREAD ? 1.28 : 2.4;
   def.gravity[1] = -9.81;
@@ -108,21 +114,89 @@ static inline mps_mpm_def scene_def(mps_domain *domain, int what) {
   return def;
 }
 
+/* A free one that spins and rolls, and two that are driven into the soil. */
+static inline mps_body_def body_def(int what, int number) {
+  static const double place[SCENES][BODIES][3] = {
+      [PRESS] = {{0.5, 0.531}, {0.95, 0.51}, {1.22, 0.0}},
+      [CONE] = {{0.0, 0.42}, {0.6, 0.51}},
+      [BALLS] = {{0.4, 0.541, 0.4}, {0.9, 0.52, 0.2}, {0.85, 0.56, 0.62}}};
+  mps_body_def def = mps_body_defaults();
+  memcpy(def.position, place[what][number], sizeof def.position);
+  if (number > 0 || what == CONE) return def;
+  def.motion = MPS_BODY_MOTION_FREE;
+  def.mass = 40.0;
+  for (int c = dim_of(what) == 2 ? 2 : 0; c < 3; c++) def.inertia[c] = 0.3;
+  def.velocity[0] = 1.0, def.velocity[1] = -2.0;
+  def.spin[2] = 20.0;
+  def.gravity[1] = -9.81;
+  return def;
+}
+
+static inline mps_status make_body(mps_context *own, int what, int number, mps_body **out) {
+  static const double cone[6] = {0.0, 0.0, 0.15, 0.25, 0.0, 0.25}, wall[2] = {-1.0, 0.2};
+  static const double pile[8] = {0.0, -0.2, 0.1, -0.1, 0.1, 0.2, 0.0, 0.2};
+  const mps_body_def def = body_def(what, number);
+  if (what == BALLS)
+    return number == 0   ? mps_body_create_sphere(own, &def, 0.12, out)
+           : number == 1 ? mps_body_create_revolution(own, &def, 4, pile, out)
+                         : mps_body_create_sphere(own, &def, 0.15, out);
+  if (number == 1) return mps_body_create_box(own, &def, 0.2, 0.2, out);
+  if (what == CONE) return mps_body_create_polygon(own, &def, 3, cone, out);
+  return number == 0 ? mps_body_create_disc(own, &def, 0.12, out)
+                     : mps_body_create_half_plane(own, &def, wall, out);
+}
+
+static inline mps_status add_bodies(mps_context *own, mps_domain *domain, int what, scene *s) {
+  mps_body_motion motion = mps_body_motion_defaults();
+  mps_status status = MPS_OK;
+  for (int k = 0; k < (what == CONE ? 2 : BODIES); k++) {
+    mps_contact_def def = mps_contact_defaults();
+    def.friction = 0.2 + 0.2 * k;
+    if (status == MPS_OK) status = make_body(own, what, k, &s->body[k]);
+    motion.velocity[1] = k == 0 ? -4.0 : -2.0;
+    if (k > 0 || what == CONE) TRY(mps_body_set_motion(s->body[k], &motion));
+    if (k == 1) TRY(mps_body_name_part(s->body[k], "side", 1, 1, NULL));
+    if (domain) status = mps_domain_agree(domain, status);
+    TRY(mps_mpm_add_contact(s->mpm, s->body[k], &def, &s->contact[k]));
+  }
+  return status;
+}
+
 static inline mps_status make_scene(mps_context *own, mps_domain *domain, int what, scene *s) {
   const mps_mpm_def def = scene_def(domain, what);
   mps_status status = make_set(own, what, &s->set);
   TRY(mps_material_linear_elastic(own, 1e6, 0.3, &s->material[0]));
   if (domain) status = mps_domain_agree(domain, status);
   TRY(mps_mpm_create(own, s->set, s->material[0], &def, &s->mpm));
-  if (status == MPS_OK && what != SLIDE) status = add_conditions(own, domain, what, s);
+  if (status == MPS_OK && what != SLIDE && what < PRESS)
+    status = add_conditions(own, domain, what, s);
   if (status == MPS_OK && what != SLIDE) status = add_soil(own, domain, s);
+  if (status == MPS_OK && what >= PRESS) status = add_bodies(own, domain, what, s);
   return status;
 }
 
 static inline void end_scene(scene *s) {
+  for (int k = 0; k < BODIES; k++) {
+    mps_contact_destroy(&s->contact[k]);
+    mps_body_destroy(&s->body[k]);
+  }
   mps_mpm_destroy(&s->mpm);
   mps_particles_destroy(&s->set);
   for (int k = 0; k < 2; k++) mps_material_destroy(&s->material[k]);
+}
+
+/* Where a body is and what it bears, which is something. */
+static inline mps_status keep_body(scene *s, int k, result *r) {
+  enum { STATE = (int)(sizeof(mps_body_state) / 8), EACH = STATE + (int)(sizeof(mps_reaction) / 8) };
+  _Static_assert(BODIES * EACH <= RESULT_OTHERS, "room");
+  mps_body_state state;
+  mps_reaction touch;
+  mps_status status = mps_contact_get_reaction(s->contact[k], k == 1 ? 0 : -1, &touch);
+  TRY(mps_body_get_state(s->body[k], &state));
+  if (status != MPS_OK) return status;
+  memcpy(r->other + k * EACH, &state, sizeof state);
+  memcpy(r->other + k * EACH + STATE, &touch, sizeof touch);
+  return touch.impulse[1] != 0.0 ? MPS_OK : MPS_ERROR_INTERNAL;
 }
 
 static inline mps_status compute(mps_context *own, mps_domain *domain, int what, int64_t steps,
@@ -142,8 +216,9 @@ static inline mps_status compute(mps_context *own, mps_domain *domain, int what,
   static const int32_t asked[] = {
       MPS_MPM_SIDE_X_LOWER, MPS_MPM_SIDE_X_UPPER, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_SIDE_Z_LOWER, 6, 7};
   for (int k = 0; k < 6; k++)
-    if (k < 3 || (k > 3 ? what != SLIDE : what == ROOM))
+    if (k < 3 || (k > 3 ? what != SLIDE && what < PRESS : dim_of(what) == 3))
       TRY(mps_mpm_get_reaction(s.mpm, asked[k], &r->reaction[asked[k]]));
+  for (int k = 0; k < BODIES && s.contact[k]; k++) TRY(keep_body(&s, k, r));
   r->dt = mps_mpm_dt(s.mpm), r->limit = mps_mpm_limit(s.mpm), r->time = mps_mpm_time(s.mpm);
   TRY(keep(s.set, r));
   end_scene(&s);

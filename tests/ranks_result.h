@@ -9,6 +9,7 @@
 #include <mps/solver.h>
 
 #define RESULT_FIELDS 32
+#define RESULT_OTHERS 160
 
 typedef struct result {
   mps_status status;
@@ -22,6 +23,7 @@ typedef struct result {
   double *value[RESULT_FIELDS];
   mps_totals totals;
   mps_reaction reaction[8];
+  double other[RESULT_OTHERS]; /* the scene's own */
   double dt, limit, omega, time;
 } result;
 
@@ -106,6 +108,7 @@ static inline void compare(const result *alone, const result *rank, int64_t *see
   free(at);
   assert_memory_equal(&rank->totals, &alone->totals, sizeof alone->totals);
   assert_memory_equal(rank->reaction, alone->reaction, sizeof alone->reaction);
+  assert_memory_equal(rank->other, alone->other, sizeof alone->other);
 }
 
 /* On the ranks of mpirun: each computes the body alone, then all of them together, and compares; no

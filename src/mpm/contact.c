@@ -49,22 +49,44 @@ void mpsi_mpm_apply_friction(mps_mpm *mpm, int64_t g) {
   }
 }
 
-/* Reactions of all blocks, in their order, to the bodies; then the bodies move. */
+/* ---- what the bodies feel -------------------------------------------------------------------- */
+
+enum { FORCE = 0, MOMENT = 3, CONTACTS = 6, SUMS };
+
+/* Of all blocks, on all ranks: exact, as who has which block must not matter. */
+static void sum_loads(mps_mpm *mpm, int32_t b, mpsi_load *load, int64_t *contacts) {
+  mpsi_exact sum[MPS_BODY_MAX_PARTS][SUMS];
+  const int32_t parts = mpm->contact.body[b]->parts;
+  memset(sum, 0, (size_t)parts * sizeof *sum);
+  for (int64_t k = 0; k < mpm->contact.cell_pair_count; k++) {
+    const mpsi_cell_pair *pair = &mpm->contact.cell_pair[k];
+    if (pair->body != b || !pair->touched || mpm->grid.cells[pair->cells].ghost) continue;
+    for (int32_t part = 0; part < parts; part++) {
+      for (int c = 0; c < 3; c++) {
+        mpsi_exact_add(&sum[part][FORCE + c], pair->load[part].force[c]);
+        mpsi_exact_add(&sum[part][MOMENT + c], pair->load[part].moment[c]);
+      }
+      mpsi_exact_add(&sum[part][CONTACTS], (double)pair->contacts[part]);
+    }
+  }
+  if (mpm->share && mpm->share->lost == MPS_OK)
+    mpm->share->lost =
+        mpsi_domain_sum_exact(mpm->share->domain, "mps_mpm_step", parts * SUMS, sum[0]);
+  for (int32_t part = 0; part < parts; part++) {
+    for (int c = 0; c < 3; c++) {
+      load[part].force[c] = mpsi_exact_value(&sum[part][FORCE + c]);
+      load[part].moment[c] = mpsi_exact_value(&sum[part][MOMENT + c]);
+    }
+    contacts[part] = (int64_t)mpsi_exact_value(&sum[part][CONTACTS]);
+  }
+}
+
+/* Reactions to the bodies; then the bodies move. */
 void mpsi_mpm_update_bodies(mps_mpm *mpm) {
   for (int32_t b = 0; b < mpm->contact.bodies; b++) {
     mpsi_load load[MPS_BODY_MAX_PARTS] = {{{0}, {0}}};
     int64_t contacts[MPS_BODY_MAX_PARTS] = {0};
-    for (int64_t k = 0; k < mpm->contact.cell_pair_count; k++) {
-      const mpsi_cell_pair *pair = &mpm->contact.cell_pair[k];
-      if (pair->body != b || !pair->touched) continue;
-      for (int32_t part = 0; part < mpm->contact.body[b]->parts; part++) {
-        for (int c = 0; c < 3; c++) {
-          load[part].force[c] += pair->load[part].force[c];
-          load[part].moment[c] += pair->load[part].moment[c];
-        }
-        contacts[part] += pair->contacts[part];
-      }
-    }
+    sum_loads(mpm, b, load, contacts);
     const mpsi_pose *pose = &mpm->contact.body[b]->pose;
     for (int32_t part = 0; part < mpm->contact.body[b]->parts; part++)
       mpm->energy.bodies -= mpm->run.dt * (mpsi_dot3(load[part].force, pose->v) +

@@ -89,6 +89,34 @@ mps_status mpsi_mpm_check_inside(mps_mpm *mpm, const char *function, const mps_c
   return status;
 }
 
+/* All ranks make the same contact with the same body. */
+static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status status,
+                                const mps_contact *contact) {
+  if (!mpm->share) return status;
+  double numbers[40] = {0.0};
+  int32_t count = 0;
+  if (status == MPS_OK) {
+    const mps_contact_def *d = &contact->def;
+    const mps_body *body = contact->body;
+    const double list[] = {d->mover,         d->method,       d->sweeps,  d->friction,
+                           d->penalty,       d->xi,           d->offset,  d->depth,
+                           d->thin,          d->inside,       d->adhesion, d->strength,
+                           body->shape,      body->parts,     contact->extent, body->def.motion,
+                           body->def.mass};
+    count = (int32_t)(sizeof list / sizeof *list);
+    memcpy(numbers, list, sizeof list);
+    for (int c = 0; c < 3; c++) {
+      numbers[count++] = body->pose.x[c];
+      numbers[count++] = body->pose.v[c];
+      numbers[count++] = body->pose.spin[c];
+    }
+    for (int c = 0; c < 9; c++) numbers[count++] = body->pose.R[c];
+  }
+  return mpsi_domain_settle_numbers(mpm->share->domain, function, status,
+                                    "a hash of the contact's definition and of its body", count,
+                                    numbers);
+}
+
 /* ---- the handle's questions ------------------------------------------------------------------ */
 
 static mps_status check_owner(void *owner, const char *function) {
@@ -180,19 +208,33 @@ static const mpsi_contact_owner owner_of_contacts = {check_owner, end, list_part
 
 /* ---- making and ending ----------------------------------------------------------------------- */
 
+/* Both shares of a contact that is not made. */
+static void give_up(mps_contact *contact) {
+  if (!contact) return;
+  mpsi_contact_release(contact);
+  mpsi_contact_release(contact);
+}
+
 mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_def *def,
                                mps_contact **out) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_contact *contact = NULL;
   if (out) *out = NULL;
   mps_status status = mpsi_mpm_between_steps(mpm, __func__);
-  if (status == MPS_OK) status = mpsi_share_refuse(mpm, __func__, "contact with bodies");
   if (status == MPS_OK) status = mpsi_particles_ready(mpm->particles, __func__);
   if (status == MPS_OK) status = check_body(mpm, __func__, body);
   if (status == MPS_OK) status = check_overlap(mpm, __func__, body);
   if (status == MPS_OK)
     status = mpsi_contact_new(mpm->context, __func__, body, def, &owner_of_contacts, mpm, &contact);
-  if (status != MPS_OK) return status;
+  if (status == MPS_OK && contact->def.method == MPS_CONTACT_METHOD_PENALTY)
+    status = mpsi_share_refuse(mpm, __func__, "contact by the penalty (method 1)");
+  if (status == MPS_OK && mpsi_has_strength(contact))
+    status = mpsi_share_refuse(mpm, __func__, "adhesion or strength of a contact");
+  status = compare_ranks(mpm, __func__, status, contact);
+  if (status != MPS_OK) {
+    give_up(contact);
+    return status;
+  }
   mps_contact_def *d = &contact->def;
   if (isnan(d->offset)) d->offset = 0.5 * mps_particles_spacing(mpm->particles);
   if (isnan(d->depth))
@@ -204,10 +246,9 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
   if (status == MPS_OK && d->inside == MPS_CONTACT_INSIDE_REMOVE)
     status = mpsi_mpm_clear_body(mpm, __func__, contact);
   else if (status == MPS_OK)
-    status = mpsi_mpm_check_inside(mpm, __func__, contact, 0);
+    status = mpsi_share_settle(mpm, __func__, mpsi_mpm_check_inside(mpm, __func__, contact, 0));
   if (status != MPS_OK) {
-    mpsi_contact_release(contact);
-    mpsi_contact_release(contact);
+    give_up(contact);
     return status;
   }
   mpsi_contact_join(contact);

@@ -108,12 +108,15 @@ static mps_status find_cut(mps_mpm *mpm, const char *function) {
   return MPS_OK;
 }
 
-mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function) {
+mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status status) {
   static const mpsi_pass pass = {.update = mpsi_mpm_find_inside, .gather = mpsi_mpm_mark_reached};
   if (mpm->contact.bodies > 0) {
-    const mps_status status = mpsi_mpm_list_pairs(mpm, function);
-    if (status != MPS_OK) return status;
-    if (mpm->contact.cell_pair_count > 0) mpsi_mpm_run_pass(mpm, &pass);
+    if (status == MPS_OK) status = mpsi_mpm_list_pairs(mpm, function);
+    if (status == MPS_OK && mpm->contact.cell_pair_count > 0) mpsi_mpm_run_pass(mpm, &pass);
+    if (mpm->share) { /* all ranks, whatever has become of this one */
+      const mps_status lost = mpsi_share_reached(mpm, function, status == MPS_OK);
+      if (lost != MPS_OK) status = lost;
+    }
   }
-  return find_cut(mpm, function);
+  return status == MPS_OK ? find_cut(mpm, function) : status;
 }

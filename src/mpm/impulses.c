@@ -101,6 +101,20 @@ static void sweep_all(mps_mpm *mpm, bool warm, bool back) {
 
 /* ---- a step ---------------------------------------------------------------------------------- */
 
+/* The impulse `by` on the particle, to what its block and the body feel. */
+static void add_reaction(mps_mpm *mpm, const mpsi_touch *touch, const double *by) {
+  mpsi_cell_pair *pair = &mpm->contact.cell_pair[touch->pair];
+  const double *x = mpm->contact.body[touch->body]->pose.x;
+  double arm[3], force[3];
+  for (int a = 0; a < 3; a++) {
+    force[a] = -by[a] / mpm->run.dt;
+    arm[a] = touch->impulse.at[a] - x[a];
+  }
+  pair->touched = true;
+  pair->contacts[touch->part]++;
+  mpsi_contact_add_load(&pair->load[touch->part], arm, force);
+}
+
 /* What the bodies feel, and what the next step begins with. */
 static void take_over(mps_mpm *mpm) {
   mpsi_impulses *all = &mpm->contact.impulses;
@@ -110,19 +124,10 @@ static void take_over(mps_mpm *mpm) {
     const mpsi_touch *touch = &all->touch[n];
     const mpsi_impulse *c = &touch->impulse;
     if (!(c->push > 0.0)) continue;
-    mpsi_cell_pair *pair = &mpm->contact.cell_pair[touch->pair];
-    const double *x = mpm->contact.body[touch->body]->pose.x;
-    double arm[3], force[3];
     next[count] = (mpsi_kept_impulse){.id = touch->id, .body = touch->body};
-    for (int a = 0; a < 3; a++) {
-      next[count].by[a] = c->push * c->normal[a] + c->rub[a];
-      force[a] = -next[count].by[a] / mpm->run.dt;
-      arm[a] = c->at[a] - x[a];
-    }
+    for (int a = 0; a < 3; a++) next[count].by[a] = c->push * c->normal[a] + c->rub[a];
+    if (touch->pair >= 0) add_reaction(mpm, touch, next[count].by);
     count++;
-    pair->touched = true;
-    pair->contacts[touch->part]++;
-    mpsi_contact_add_load(&pair->load[touch->part], arm, force);
   }
   const mpsi_room old = all->kept_room;
   all->kept_room = all->next_room;
@@ -154,7 +159,7 @@ void mpsi_mpm_find_impulse_loss(mps_mpm *mpm) {
     const mpsi_touch *touch = &all->touch[n];
     const mpsi_impulse *c = &touch->impulse;
     double v[3], surface[3];
-    if (!(c->push > 0.0)) continue;
+    if (!(c->push > 0.0) || touch->pair < 0) continue;
     velocity_at(mpm, all, n, v);
     mpsi_body_velocity(&mpm->contact.body[touch->body]->pose, c->at, surface);
     for (int a = 0; a < mpm->dim; a++) {

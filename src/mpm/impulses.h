@@ -18,14 +18,14 @@ typedef struct mpsi_touch {
   double carried[3]; /* m/s, velocity at the foot that moving mirrors give besides the nodes */
   int64_t particle;  /* index, */
   int64_t id;        /* and what it keeps when the particles are sorted */
-  int64_t pair;      /* of contact.cell_pair */
+  int64_t pair;      /* of contact.cell_pair; -1: of another rank (meet.h), as its particle */
   int32_t body, part, nodes;
 } mpsi_touch;
 
 /* The touches of a block of cells: neighbours in the list. */
 typedef struct mpsi_touch_block {
   int64_t first, count;
-  int32_t cells;
+  int32_t cells; /* -1: of another rank */
   double impulse, change; /* N s: sums of P and of what the last sweep has changed */
 } mpsi_touch_block;
 

@@ -60,10 +60,12 @@ static bool cells_near(const mps_mpm *mpm, const mpsi_cell_block *cells, int *lo
   return any;
 }
 
-/* Corners of the cells that hold particles. Several blocks may mark one node at once. */
-void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker) {
-  (void)worker;
-  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+typedef void (*corner_fn)(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *at,
+                          void *data);
+
+/* Corners of the cells that hold particles, some of them more than once. */
+static void for_corners(const mps_mpm *mpm, const mpsi_cell_block *cells, corner_fn work,
+                        void *data) {
   int low[3], high[3];
   if (cells->pairs == 0 || !cells_near(mpm, cells, low, high)) return;
   bool seen[MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE];
@@ -83,12 +85,42 @@ void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker) {
     if (*here) continue;
     *here = true;
     for (int q = 0; q < 1 << mpm->dim; q++) {
-      const int64_t node =
-          mpsi_node_under(mpm, cells, at[0] + (q & 1), at[1] + (q >> 1 & 1), at[2] + (q >> 2));
-      const mpsi_node_block *nodes = &mpm->grid.nodes[node / mpm->grid.block_nodes];
-      const int64_t at_node = mpsi_first_node(mpm, nodes->near) + node % mpm->grid.block_nodes;
-      atomic_store_explicit(&mpm->contact.reached[at_node], 1, memory_order_relaxed);
+      const int corner[3] = {at[0] + (q & 1), at[1] + (q >> 1 & 1), at[2] + (q >> 2)};
+      work(mpm, cells, corner, data);
     }
+  }
+}
+
+/* Several blocks may mark one node at once. */
+static void mark_node(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *at, void *data) {
+  _Atomic uint8_t *reached = data;
+  const int64_t node = mpsi_node_under(mpm, cells, at[0], at[1], at[2]);
+  const mpsi_node_block *nodes = &mpm->grid.nodes[node / mpm->grid.block_nodes];
+  const int64_t at_node = mpsi_first_node(mpm, nodes->near) + node % mpm->grid.block_nodes;
+  atomic_store_explicit(&reached[at_node], 1, memory_order_relaxed);
+}
+
+void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker) {
+  (void)worker;
+  for_corners(mpm, &mpm->grid.cells[b], mark_node, mpm->contact.reached);
+}
+
+static void list_node(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *at, void *data) {
+  const int t = mpsi_tile_index(at[0], at[1], at[2]);
+  (void)mpm, (void)cells;
+  ((uint64_t *)data)[t / 64] |= UINT64_C(1) << t % 64;
+}
+
+void mpsi_mpm_list_reached(const mps_mpm *mpm, int64_t b, uint64_t *bits) {
+  for_corners(mpm, &mpm->grid.cells[b], list_node, bits);
+}
+
+void mpsi_mpm_take_reached(mps_mpm *mpm, int64_t b, const uint64_t *bits) {
+  for (int t = 0; t < mpm->grid.tile_nodes; t++) {
+    int at[3];
+    if (!(bits[t / 64] >> t % 64 & 1)) continue;
+    mpsi_unravel(t, MPSI_TILE_SIDE, at);
+    mark_node(mpm, &mpm->grid.cells[b], at, mpm->contact.reached);
   }
 }
 

@@ -28,7 +28,7 @@ static mps_status make_sums(mps_mpm *mpm, const char *function) {
   }
   if (status == MPS_OK) status = mpsi_mpm_update_holds(mpm, function);
   mpm->grid.apart = true;
-  if (status == MPS_OK) status = mpsi_mpm_find_near(mpm, function);
+  if (status == MPS_OK) status = mpsi_mpm_find_near(mpm, function, status);
   if (status == MPS_OK) status = mpsi_mpm_find_forces(mpm, function);
   if (status != MPS_OK) {
     mpm->grid.apart = false;

@@ -53,12 +53,6 @@ static void carry_out(mps_mpm *mpm, int64_t k, mpsi_hold *hold) {
   mpm->energy.sum.kinetic -= kinetic;
 }
 
-static void count_out(const mps_mpm *mpm, int64_t k, mps_reaction *r, uint8_t *gone) {
-  r->removed++;
-  r->removed_mass += mpm->p.m[k];
-  gone[k] = 1;
-}
-
 static int64_t through_sides(mps_mpm *mpm, uint8_t *gone) {
   int64_t count = 0;
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
@@ -77,20 +71,49 @@ static int64_t through_sides(mps_mpm *mpm, uint8_t *gone) {
   return count;
 }
 
-/* Particles [begin, end) that lie deeper than `depth` below the surface. */
-static int64_t into_body(const mps_mpm *mpm, mps_contact *contact, double depth, int64_t begin,
-                         int64_t end, uint8_t *gone) {
+static double *place_of(const mps_mpm *mpm, int64_t k, double *x) {
+  for (int c = 0; c < 3; c++) x[c] = c < mpm->dim ? mpm->p.x[c][k] : 0.0;
+  return x;
+}
+
+/* Marks particles [begin, end) that lie deeper than `depth` below the surface. */
+static int64_t into_body(const mps_mpm *mpm, const mps_contact *contact, double depth, int64_t begin,
+                         int64_t end, uint8_t *gone, uint8_t mark) {
   int64_t count = 0;
   for (int64_t k = begin; k < end; k++) {
-    double x[3] = {0.0};
-    for (int c = 0; c < mpm->dim; c++) x[c] = mpm->p.x[c][k];
-    if (gone[k] || !mpsi_body_reaches(contact->body, x, 0.0)) continue;
-    const mpsi_foot foot = mpsi_body_foot(contact->body, x);
-    if (!(foot.distance < -depth)) continue;
-    count_out(mpm, k, &contact->reaction[contact->body->part_of[foot.face]], gone);
+    double x[3];
+    if (gone[k] || !mpsi_body_reaches(contact->body, place_of(mpm, k, x), 0.0)) continue;
+    if (!(mpsi_body_foot(contact->body, x).distance < -depth)) continue;
+    gone[k] = mark;
     count++;
   }
   return count;
+}
+
+/* What the body has taken away, on all ranks. */
+static mps_status count_out(mps_mpm *mpm, const char *function, mps_contact *contact,
+                            const uint8_t *gone, uint8_t mark) {
+  mpsi_exact mass[MPS_BODY_MAX_PARTS];
+  int64_t count[MPS_BODY_MAX_PARTS] = {0};
+  const int32_t parts = contact->body->parts;
+  mps_status status = MPS_OK;
+  memset(mass, 0, sizeof mass);
+  for (int64_t k = 0; k < mpm->p.count; k++) {
+    double x[3];
+    if (gone[k] != mark) continue;
+    const mpsi_foot foot = mpsi_body_foot(contact->body, place_of(mpm, k, x));
+    const int32_t part = contact->body->part_of[foot.face];
+    mpsi_exact_add(&mass[part], mpm->p.m[k]);
+    count[part]++;
+  }
+  if (mpm->share) status = mpsi_domain_sum(mpm->share->domain, function, parts, count);
+  if (mpm->share && status == MPS_OK)
+    status = mpsi_domain_sum_exact(mpm->share->domain, function, parts, mass);
+  for (int32_t part = 0; status == MPS_OK && part < parts; part++) {
+    contact->reaction[part].removed += count[part];
+    contact->reaction[part].removed_mass += mpsi_exact_value(&mass[part]);
+  }
+  return status;
 }
 
 static void begin_marks(const mps_mpm *mpm) {
@@ -107,29 +130,55 @@ void mpsi_mpm_let_go(mps_mpm *mpm) {
     mpsi_particles_take_out(mpm->particles, mpm->rooms.gone.item);
 }
 
-bool mpsi_mpm_clear_bodies(mps_mpm *mpm) {
+/* Marks of what lies in bodies: the number of the contact and 1. */
+static int64_t mark_inside(mps_mpm *mpm) {
+  uint8_t *gone = mpm->rooms.gone.item;
   int64_t count = 0;
-  bool begun = false;
+  begin_marks(mpm);
   for (int64_t t = 0; t < mpm->contact.cell_pair_count; t++) {
     const mpsi_cell_pair *pair = &mpm->contact.cell_pair[t];
-    mps_contact *contact = mpm->contact.handle[pair->body];
+    const mps_contact *contact = mpm->contact.handle[pair->body];
     const mpsi_cell_block *cells = &mpm->grid.cells[pair->cells];
     if (!takes_away(contact)) continue;
-    if (!begun) begin_marks(mpm);
-    begun = true;
-    count +=
-        into_body(mpm, contact, contact->def.depth, cells->begin, cells->end, mpm->rooms.gone.item);
+    count += into_body(mpm, contact, contact->def.depth, cells->begin, cells->end, gone,
+                       (uint8_t)(pair->body + 1));
   }
-  if (count > 0) mpsi_particles_take_out(mpm->particles, mpm->rooms.gone.item);
-  return count > 0;
+  return count;
+}
+
+mps_status mpsi_mpm_clear_bodies(mps_mpm *mpm, const char *function, mps_status status,
+                                 bool *cleared) {
+  bool wanted = false;
+  for (int32_t b = 0; b < mpm->contact.bodies; b++)
+    wanted = wanted || takes_away(mpm->contact.handle[b]);
+  if (!wanted) return status;
+  const int64_t count = status == MPS_OK ? mark_inside(mpm) : 0;
+  double any = (double)count;
+  if (mpm->share)
+    status = mpsi_domain_settle_max(mpm->share->domain, function, status, 1, &any);
+  if (status != MPS_OK || any == 0.0) return status;
+  for (int32_t b = 0; b < mpm->contact.bodies && status == MPS_OK; b++)
+    if (takes_away(mpm->contact.handle[b]))
+      status = count_out(mpm, function, mpm->contact.handle[b], mpm->rooms.gone.item,
+                         (uint8_t)(b + 1));
+  if (status == MPS_OK && count > 0)
+    mpsi_particles_take_out(mpm->particles, mpm->rooms.gone.item);
+  *cleared = status == MPS_OK;
+  return status;
 }
 
 mps_status mpsi_mpm_clear_body(mps_mpm *mpm, const char *function, mps_contact *contact) {
   if (!takes_away(contact)) return MPS_OK;
   uint8_t *gone = mpsi_alloc(mpm->context, mpm->p.count, 1);
-  if (!gone) return mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count);
-  const int64_t count = into_body(mpm, contact, 0.0, 0, mpm->p.count, gone);
-  if (count > 0) mpsi_particles_take_out(mpm->particles, gone);
+  mps_status status = MPS_OK;
+  if (!gone) status = mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count);
+  status = mpsi_share_settle(mpm, function, status);
+  int64_t count = 0;
+  if (status == MPS_OK) {
+    count = into_body(mpm, contact, 0.0, 0, mpm->p.count, gone, 1);
+    status = count_out(mpm, function, contact, gone, 1);
+  }
+  if (status == MPS_OK && count > 0) mpsi_particles_take_out(mpm->particles, gone);
   mpsi_free(mpm->context, gone);
-  return MPS_OK;
+  return status;
 }

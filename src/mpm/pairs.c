@@ -16,11 +16,19 @@ bool mpsi_mpm_body_reaches(const mps_mpm *mpm, int32_t body, const int32_t *at, 
   return mpsi_body_reaches(mpm->contact.body[body], x, half_diagonal(mpm, side) * mpm->def.cell);
 }
 
+/* By the place of the block alone: so all ranks that have it know the same nodes to be inside, and
+ * the same supports to be cut. */
+static void find_bodies(const mps_mpm *mpm, mpsi_node_block *nodes) {
+  nodes->bodies = 0;
+  for (int32_t k = 0; k < mpm->contact.bodies; k++)
+    if (mpsi_mpm_body_reaches(mpm, k, nodes->at, MPSI_SIDE)) nodes->bodies |= UINT32_C(1) << k;
+}
+
 /* Lists the pairs of blocks of cells and bodies; false where there is no room for them all, `count`
  * says how many there are. */
 static bool list_cell_pairs(mps_mpm *mpm, int64_t *count) {
   *count = 0;
-  for (int64_t g = 0; g < mpm->grid.node_count; g++) mpm->grid.nodes[g].bodies = 0;
+  for (int64_t g = 0; g < mpm->grid.node_count; g++) find_bodies(mpm, &mpm->grid.nodes[g]);
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     mpsi_cell_block *cells = &mpm->grid.cells[b];
     cells->first_pair = (int32_t)*count;

@@ -46,8 +46,9 @@ typedef struct mpsi_contacts {
 } mpsi_contacts;
 
 /* cut.c: all that is to be known of bodies near particles before a step; which blocks are cut and
- * split. It calls the next ones. */
-mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function);
+ * split. It calls the next ones. `status`: what has become of the step so far here; collective
+ * where there are bodies. */
+mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status status);
 /* pairs.c: lists the pairs; whether a body may have a node inside of the tile or block at `at` of
  * `side` nodes an axis; the masses that friction with free bodies asks for, when those of the node
  * pairs are known. */
@@ -57,6 +58,9 @@ void mpsi_mpm_find_contact_mass(mps_mpm *mpm);
 /* inside.c: nodes of a block inside bodies; corners of the cells of a block that hold particles. */
 void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker);
 void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker);
+/* The same on their way between ranks: to bits of the tile, from which they are marked. */
+void mpsi_mpm_list_reached(const mps_mpm *mpm, int64_t b, uint64_t *bits);
+void mpsi_mpm_take_reached(mps_mpm *mpm, int64_t b, const uint64_t *bits);
 /* contact.c: normal forces of all bodies on a block of nodes; friction; what the bodies feel, and
  * their motion. */
 void mpsi_mpm_apply_contact(mps_mpm *mpm, int64_t g);

@@ -406,8 +406,9 @@ mps_status mpsi_share_take(mps_mpm *mpm, const char *function, mps_status status
 
 void mpsi_share_free(mps_mpm *mpm) {
   mpsi_share *share = mpm->share;
-  mpm->share = NULL;
   if (!share) return;
+  mpsi_meet_free(mpm);
+  mpm->share = NULL;
   mpsi_halo_destroy(mpm->context, &share->halo);
   mpsi_free(mpm->context, share->first);
   mpsi_free(mpm->context, share->border_room.item);

@@ -15,6 +15,7 @@
 
 #include "core/particles_internal.h"
 #include "domain/halo.h"
+#include "meet.h"
 #include "room.h"
 
 #include <mps/mpm.h>
@@ -36,6 +37,7 @@ typedef struct mpsi_share {
   double heaviest;   /* particles of the rank that had most, after the last cut */
   bool cancel;       /* a hook has asked to stop, on whatever rank */
   mps_status lost;   /* of a message in the step being made */
+  mpsi_meeting meeting; /* touches of all ranks: see meet.h */
   mpsi_room border_room, order_room, out_room, in_room;
 } mpsi_share;
 
@@ -75,6 +77,8 @@ mps_status mpsi_share_any(mps_mpm *mpm, const char *function, bool *any);
 mps_status mpsi_share_agree(mps_mpm *mpm, const char *function, mps_status status);
 /* tiles.c: bytes of a parcel at most. Not collective. */
 int64_t mpsi_share_parcel(const mps_mpm *mpm);
+/* tiles.c: corners of cells with particles (pairs.h), of ghosts too: while bodies are looked for. */
+mps_status mpsi_share_reached(mps_mpm *mpm, const char *function, bool known);
 /* tiles.c: before a step, all that can fail has been done: the worst of all ranks. */
 mps_status mpsi_share_ready(mps_mpm *mpm, const char *function, mps_status status);
 /* tiles.c: sums the border into tiles and sends them; what has come is there (in a pass). */

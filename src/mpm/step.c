@@ -112,16 +112,20 @@ static void warn_about_step(mps_mpm *mpm, double dt) {
  * them. An error loses nothing but the tractions at rest of absorbing sides. */
 static mps_status prepare(mps_mpm *mpm, const char *function) {
   mps_status status = mpsi_mpm_prepare_outflow(mpm, function);
+  const bool renewed = mpm->run.stale || (mpm->share && mpm->share->outdated);
   if (mpm->share) status = mpsi_share_tidy(mpm, function, status);
   if (status == MPS_OK && mpm->run.stale) {
     status = mpsi_mpm_sort(mpm, function);
     mpm->boundaries.outdated = true;
   }
+  if (status != MPS_OK && renewed) return status; /* on all ranks */
   const bool dashes = mpm->boundaries.dash_count > 0;
   if (status == MPS_OK && (status = mpsi_mpm_update_holds(mpm, function)) != MPS_OK)
     mpm->run.broken = dashes;
-  if (status == MPS_OK) status = mpsi_mpm_find_near(mpm, function);
-  if (status == MPS_OK && mpsi_mpm_clear_bodies(mpm)) {
+  status = mpsi_mpm_find_near(mpm, function, status);
+  bool cleared = false;
+  status = mpsi_mpm_clear_bodies(mpm, function, status, &cleared);
+  if (cleared) {
     status = mpsi_mpm_tidy(mpm, function);
     return status == MPS_OK ? prepare(mpm, function) : status;
   }
@@ -149,8 +153,11 @@ static void gather_own(mps_mpm *mpm, int64_t b, int32_t worker) {
  *            then the impulses of contacts, where there are any: touches.c, impulses.c
  *   finish   friction with bodies (31)-(34); walls and prescribed nodes
  *   gather   velocities of the nodes --> v, L, x (41)-(44); then the laws, L --> sigma, V and their
- *            histories (45)-(48), and c + |v| for the next step (49), (50): g2p.c, law.c */
-static mps_status move(mps_mpm *mpm, const char *function, double dt) {
+ *            histories (45)-(48), and c + |v| for the next step (49), (50): g2p.c, law.c
+ * `found`: what has become of the search for touches here, of which all ranks are told on the way.
+ */
+static mps_status move(mps_mpm *mpm, const char *function, double dt, mps_status found) {
+  const bool contacts = mpm->contact.cell_pair_count > 0 || (mpm->share && mpm->contact.bodies > 0);
   const int32_t geometry = mpm->def.geometry, spline = mpm->def.spline - 2;
   mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes,
                     .scatter = mpm->kernels->p2g[geometry][spline],
@@ -163,12 +170,15 @@ static mps_status move(mps_mpm *mpm, const char *function, double dt) {
     pass.scatter = mpsi_share_scatter;
     pass.arrive = mpsi_share_receive;
   }
-  if (mpm->contact.cell_pair_count > 0) { /* no particle moves before all depths are known */
+  if (contacts) { /* no particle moves before all depths are known */
     mpsi_mpm_run_pass(mpm, &pass);
     mpsi_mpm_fit_touches(mpm);
-    const mps_status status = mpsi_mpm_check_depth(mpm, function);
+    mps_status status = found;
+    if (status == MPS_OK) status = mpsi_mpm_check_depth(mpm, function);
+    if (mpm->share) status = mpsi_meet(mpm, function, status);
     if (status != MPS_OK) return status;
     mpsi_mpm_apply_impulses(mpm);
+    if (mpm->share) mpsi_meet_end(mpm);
     pass = (mpsi_pass){.clear = NULL};
   } else {
     mpm->contact.impulses.kept_count = 0;
@@ -190,8 +200,8 @@ mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
   mpm->run.dt = dt;
   warn_about_step(mpm, dt);
   status = mpsi_mpm_find_touches(mpm, function);
-  if (status != MPS_OK) return status;
-  status = move(mpm, function, dt); /* particles --> nodes --> particles */
+  if (status != MPS_OK && !mpm->share) return status;
+  status = move(mpm, function, dt, status); /* particles --> nodes --> particles */
   if (status != MPS_OK) return status;
   mpsi_mpm_sum_holds(mpm);                              /* impulses of nodes --> forces of walls */
   mpsi_mpm_drive_particles(mpm);                        /* held particles: v, x */

@@ -29,6 +29,24 @@ mps_status mpsi_share_ready(mps_mpm *mpm, const char *function, mps_status statu
   return status;
 }
 
+/* ---- corners of cells with particles, where bodies are near ----------------------------------- */
+
+mps_status mpsi_share_reached(mps_mpm *mpm, const char *function, bool known) {
+  mpsi_share *share = mpm->share;
+  const int64_t words = (mpm->grid.tile_nodes + 63) / 64; /* less than a parcel has */
+  uint64_t *out = (uint64_t *)share->out, *in = (uint64_t *)share->in;
+  if (share->borders > 0) memset(out, 0, (size_t)(share->borders * words) * sizeof *out);
+  for (int64_t k = 0; known && k < share->borders; k++)
+    mpsi_mpm_list_reached(mpm, share->border[k], out + k * words);
+  const int32_t item = (int32_t)(words * (int64_t)sizeof *out);
+  mps_status status = mpsi_halo_begin_bytes(share->halo, function, item, out, in);
+  if (status == MPS_OK) status = mpsi_halo_end_bytes(share->halo, function);
+  for (int64_t b = 0; known && status == MPS_OK && b < mpm->grid.cell_count; b++)
+    if (mpm->grid.cells[b].ghost)
+      mpsi_mpm_take_reached(mpm, b, in + mpm->grid.cells[b].parcel * words);
+  return status;
+}
+
 /* ---- packing --------------------------------------------------------------------------------- */
 
 /* The part of a tile in use to or from a parcel, which it ends behind. */

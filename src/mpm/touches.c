@@ -288,6 +288,7 @@ static void mirror_block(void *data, int64_t unit, int32_t number) {
   mps_mpm *mpm = data;
   mpsi_impulses *all = &mpm->contact.impulses;
   const mpsi_touch_block *block = &all->block[unit];
+  if (block->cells < 0) return;
   const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
   mpsi_worker *worker = &mpm->grid.workers[number];
   if (!cells->mirrors) return;

@@ -9,11 +9,19 @@ static void test_spread(void **state) { (void)state, compare_teams(compute, SPRE
 static void test_ring(void **state) { (void)state, compare_teams(compute, RING, 80, false); }
 static void test_room(void **state) { (void)state, compare_teams(compute, ROOM, 60, false); }
 
+static void test_press(void **state) { (void)state, compare_teams(compute, PRESS, 120, false); }
+static void test_cone(void **state) { (void)state, compare_teams(compute, CONE, 120, true); }
+static void test_balls(void **state) { (void)state, compare_teams(compute, BALLS, 40, true); }
+
 /* ---- what goes wrong on one rank --------------------------------------------------------------
  */
 
 static void test_refused_memory(void **state) {
   (void)state, refuse_memory(compute, SPREAD, 30, 7);
+}
+
+static void test_refused_contact(void **state) {
+  (void)state, refuse_memory(compute, PRESS, 24, 11);
 }
 
 /* One after the other, what ranks do not agree upon, what fails on one of them, what is refused. */
@@ -24,7 +32,8 @@ enum {
   CANCELLED,
   CALLBACK_FAILS,
   UNKNOWN_ID,
-  CONTACT,
+  OTHER_CONTACT,
+  DEPTH,
   CELLS,
   TROUBLES
 };
@@ -38,7 +47,8 @@ static const struct {
     [CANCELLED] = {MPS_ERROR_CANCELLED, "stopped by the cancel hook at step 1"},
     [CALLBACK_FAILS] = {MPS_ERROR_IO, "rank 2: "},
     [UNKNOWN_ID] = {MPS_ERROR_ARGUMENT, "of 2 ids 1 are of particles of the set on any rank"},
-    [CONTACT] = {MPS_ERROR_UNSUPPORTED, "contact with bodies cannot be had on several ranks"},
+    [OTHER_CONTACT] = {MPS_ERROR_ARGUMENT, "a hash of the contact's definition"},
+    [DEPTH] = {MPS_ERROR_DIVERGED, "m below the surface of body 0, at most 1e-09 m"},
     [CELLS] = {MPS_ERROR_UNSUPPORTED, "volumetric is 1"},
 };
 
@@ -57,9 +67,10 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
   mps_status status = make_set(own, SLIDE, &s.set);
   if (what == OTHER_SET && rank == 1) TRY(mps_particles_set(s.set, "density", 0, 2000.0));
   TRY(mps_material_linear_elastic(own, 1e6, 0.3, &s.material[0]));
-  const double up[3] = {0.0, 1.0, 0.0};
-  const mps_body_def body_def = mps_body_defaults();
-  TRY(mps_body_create_half_space(own, &body_def, up, &body));
+  mps_contact_def contact = mps_contact_defaults();
+  mps_body_def box = mps_body_defaults(); /* the soil runs into it */
+  box.position[0] = 1.32, box.position[1] = 0.6;
+  TRY(mps_body_create_box(own, &box, 0.2, 0.4, &body));
   status = mps_domain_agree(domain, status);
   const int64_t before = mps_particles_count(s.set);
   TRY(mps_mpm_create(own, s.set, s.material[0], &def, &s.mpm));
@@ -77,7 +88,11 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
     boundary.ids = ids, boundary.id_count = 2;
     TRY(mps_mpm_add_boundary(s.mpm, &boundary, &number));
   }
-  if (what == CONTACT) TRY(mps_mpm_add_contact(s.mpm, body, NULL, NULL));
+  if (what == OTHER_CONTACT) contact.friction = 0.1 * rank;
+  if (what == DEPTH) contact.depth = 1e-9, contact.offset = 0.0;
+  if (what == OTHER_CONTACT || what == DEPTH)
+    TRY(mps_mpm_add_contact(s.mpm, body, &contact, NULL));
+  if (what == DEPTH) TRY(mps_mpm_step(s.mpm, 1000));
   end_scene(&s);
   mps_body_destroy(&body);
   return status;
@@ -116,6 +131,9 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_slide),          cmocka_unit_test(test_spread),
       cmocka_unit_test(test_ring),           cmocka_unit_test(test_room),
-      cmocka_unit_test(test_refused_memory), cmocka_unit_test(test_troubles)};
+      cmocka_unit_test(test_press),          cmocka_unit_test(test_cone),
+      cmocka_unit_test(test_balls),
+      cmocka_unit_test(test_refused_memory), cmocka_unit_test(test_refused_contact),
+      cmocka_unit_test(test_troubles)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,347 @@
+/* meet.c - see meet.h. A message has one entry for each block of cells with touches: its head, the
+ * nodes that they use, each once, and the touches, each followed by the numbers of its nodes in that
+ * list and by its weights, one or (in blocks at mirrors) three a node.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "meet.h"
+
+#include "mpm_private.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define UNDER (2 * MPSI_SIDE) /* nodes an axis under a tile, in whole blocks */
+
+typedef struct head {
+  int32_t at[3];  /* of the block of cells */
+  int32_t colour; /* in whose turn it is swept */
+  int64_t cells;  /* its number, on its own rank */
+  int64_t bytes;  /* of the entry */
+  int64_t nodes, touches;
+  int64_t components; /* of a weight: 1, 3 */
+} head;
+
+typedef struct named_node {
+  int64_t place; /* under the tile */
+  double value[4];
+} named_node;
+
+/* ---- to the others --------------------------------------------------------------------------- */
+
+static int under_index(int i, int j, int k) { return (k * UNDER + j) * UNDER + i; }
+
+/* The node of the grid, one of those under the tile of `cells`. */
+static int place_under(const mps_mpm *mpm, const mpsi_cell_block *cells, const double *node) {
+  const int64_t number = (node - (const double *)mpm->grid.node) / 4;
+  const int64_t block = number / mpm->grid.block_nodes;
+  int q = 0, at[3];
+  while (cells->to[q] != block) q++;
+  mpsi_unravel((int)(number % mpm->grid.block_nodes), MPSI_SIDE, at);
+  return under_index(at[0] + MPSI_SIDE * (q & 1), at[1] + MPSI_SIDE * (q >> 1 & 1),
+                     at[2] + MPSI_SIDE * (q >> 2));
+}
+
+static int64_t index_bytes(int64_t nodes) { return (nodes + 1) / 2 * 8; }
+
+static int64_t entry_bytes(const mps_mpm *mpm, const mpsi_touch_block *block) {
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  int64_t bytes = (int64_t)sizeof(head), nodes = 0;
+  for (int64_t n = block->first; n < block->first + block->count; n++) {
+    nodes += all->touch[n].nodes;
+    bytes += (int64_t)sizeof(mpsi_touch) + index_bytes(all->touch[n].nodes);
+  }
+  return bytes + nodes * (int64_t)(3 * sizeof(double) + sizeof(named_node));
+}
+
+/* The nodes of the block's touches, each once; `number` of each place in that list. */
+static int64_t name_nodes(const mps_mpm *mpm, const mpsi_touch_block *block, int32_t *number,
+                          named_node *out) {
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
+  int64_t count = 0;
+  memset(number, -1, UNDER * UNDER * UNDER * sizeof *number);
+  for (int64_t n = block->first; n < block->first + block->count; n++)
+    for (int32_t i = 0; i < all->touch[n].nodes; i++) {
+      const double *node = all->node[n * all->stride + i];
+      const int place = place_under(mpm, cells, node);
+      if (number[place] >= 0) continue;
+      out[count].place = place;
+      memcpy(out[count].value, node, sizeof out->value);
+      number[place] = (int32_t)count++;
+    }
+  return count;
+}
+
+static char *write_touch(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t n,
+                         const int32_t *number, int64_t components, char *to) {
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  const mpsi_touch *touch = &all->touch[n];
+  memcpy(to, touch, sizeof *touch);
+  to += sizeof *touch;
+  int32_t *index = (int32_t *)to;
+  for (int32_t i = 0; i < touch->nodes; i++)
+    index[i] = number[place_under(mpm, cells, all->node[n * all->stride + i])];
+  to += index_bytes(touch->nodes);
+  for (int32_t i = 0; i < touch->nodes; i++, to += components * (int64_t)sizeof(double))
+    memcpy(to, all->weight[n * all->stride + i], (size_t)components * sizeof(double));
+  return to;
+}
+
+static char *write_block(const mps_mpm *mpm, const mpsi_touch_block *block, char *to) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
+  const int32_t *at = cells->at;
+  int32_t number[UNDER * UNDER * UNDER];
+  head h = {.colour = (at[0] & 1) | (at[1] & 1) << 1 | (at[2] & 1) << 2,
+            .cells = block->cells,
+            .touches = block->count,
+            .components = cells->mirrors ? 3 : 1};
+  memcpy(h.at, at, sizeof h.at);
+  char *end = to + sizeof h;
+  h.nodes = name_nodes(mpm, block, number, (named_node *)end);
+  end += h.nodes * (int64_t)sizeof(named_node);
+  for (int64_t n = block->first; n < block->first + block->count; n++)
+    end = write_touch(mpm, cells, n, number, h.components, end);
+  h.bytes = end - to;
+  memcpy(to, &h, sizeof h);
+  return end;
+}
+
+/* ---- from all -------------------------------------------------------------------------------- */
+
+/* An entry of a message. */
+typedef struct entry {
+  head h;
+  const char *data; /* behind the head */
+  bool own;
+} entry;
+
+typedef struct meeting {
+  mps_mpm *mpm;
+  const char *function;
+  mpsi_mailbox box;
+  const char *own;
+  int64_t own_bytes;
+  entry *entry;
+  int64_t entries, touches, nodes; /* nodes: of all entries */
+} meeting;
+
+static const char *message_of(const meeting *m, int32_t k, int64_t *bytes) {
+  *bytes = k < m->box.count ? m->box.mail[k].bytes : m->own_bytes;
+  return k < m->box.count ? m->box.mail[k].data : m->own;
+}
+
+/* Counts the entries, or lists them. */
+static void read_entries(meeting *m) {
+  m->entries = m->touches = m->nodes = 0;
+  for (int32_t k = 0; k <= m->box.count; k++) {
+    int64_t bytes;
+    const char *at = message_of(m, k, &bytes), *end = at + bytes;
+    while (at < end) {
+      entry e = {.data = at + sizeof e.h, .own = k == m->box.count};
+      memcpy(&e.h, at, sizeof e.h);
+      if (m->entry) m->entry[m->entries] = e;
+      m->entries++;
+      m->touches += e.h.touches;
+      m->nodes += e.h.nodes;
+      at += e.h.bytes;
+    }
+  }
+}
+
+/* The order of one rank: colour by colour, as sort_colours. */
+static int by_turn(const void *left, const void *right) {
+  const head *a = &((const entry *)left)->h, *b = &((const entry *)right)->h;
+  if (a->colour != b->colour) return a->colour < b->colour ? -1 : 1;
+  for (int c = 2; c >= 0; c--)
+    if (a->at[c] != b->at[c]) return a->at[c] < b->at[c] ? -1 : 1;
+  return 0;
+}
+
+static bool make_room(meeting *m, int64_t slots) {
+  mps_context *context = m->mpm->context;
+  mpsi_impulses *all = &m->mpm->contact.impulses;
+  mpsi_meeting *r = &m->mpm->share->meeting;
+  return mpsi_room_ensure(context, &r->touch, m->touches, sizeof *all->touch) &&
+         mpsi_room_ensure(context, &r->block, m->entries, sizeof *all->block) &&
+         mpsi_room_ensure(context, &r->weight, m->touches * all->stride, sizeof *all->weight) &&
+         mpsi_room_ensure(context, &r->node, m->touches * all->stride, sizeof *all->node) &&
+         mpsi_room_ensure(context, &r->met, m->nodes, sizeof(mpsi_met_node)) &&
+         mpsi_room_ensure(context, &r->lookup, slots, sizeof(int32_t)) &&
+         mpsi_room_ensure(context, &all->next_room, m->touches, sizeof *all->kept);
+}
+
+/* The node here, or NULL. */
+static double *find_home(const mps_mpm *mpm, const int32_t *at) {
+  const mpsi_grid *grid = &mpm->grid;
+  int32_t block[3], local = 0;
+  for (int c = 2; c >= 0; c--) {
+    block[c] = c < mpm->dim ? at[c] >= 0 ? at[c] / MPSI_SIDE : -((MPSI_SIDE - 1 - at[c]) / MPSI_SIDE)
+                            : 0;
+    local = local * MPSI_SIDE + (at[c] - block[c] * MPSI_SIDE);
+  }
+  int64_t low = 0, high = grid->node_count;
+  while (low < high) {
+    const int64_t middle = low + (high - low) / 2;
+    const int32_t *there = grid->nodes[middle].at;
+    int c = 2;
+    while (c > 0 && there[c] == block[c]) c--;
+    if (there[c] < block[c])
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  if (low == grid->node_count || memcmp(grid->nodes[low].at, block, sizeof block) != 0) return NULL;
+  return grid->node[mpsi_first_node(mpm, low) + local];
+}
+
+/* The node of all ranks at `at`; where none is yet, one with these values. */
+static mpsi_met_node *meet_node(meeting *m, const int32_t *at, const double *value, int64_t slots) {
+  mpsi_meeting *r = &m->mpm->share->meeting;
+  mpsi_met_node *met = r->met.item;
+  int32_t *lookup = r->lookup.item;
+  uint64_t key = 0;
+  for (int c = 0; c < 3; c++) key = (key ^ (uint32_t)at[c]) * UINT64_C(0x9E3779B97F4A7C15);
+  int64_t slot = (int64_t)(key >> 20) & (slots - 1);
+  while (lookup[slot] >= 0 && memcmp(met[lookup[slot]].at, at, sizeof met->at) != 0)
+    slot = (slot + 1) & (slots - 1);
+  if (lookup[slot] >= 0) return &met[lookup[slot]];
+  mpsi_met_node *node = &met[r->nodes];
+  memcpy(node->at, at, sizeof node->at);
+  memcpy(node->value, value, sizeof node->value);
+  node->home = find_home(m->mpm, at);
+  lookup[slot] = (int32_t)r->nodes++;
+  return node;
+}
+
+/* The touches of an entry behind those that are there. */
+static void take_entry(meeting *m, const entry *e, int64_t slots, int64_t first) {
+  mpsi_impulses *all = &m->mpm->contact.impulses;
+  const named_node *named = (const named_node *)e->data;
+  const char *from = e->data + e->h.nodes * (int64_t)sizeof *named;
+  const size_t components = (size_t)e->h.components;
+  for (int64_t n = first; n < first + e->h.touches; n++) {
+    mpsi_touch *touch = &all->touch[n];
+    memcpy(touch, from, sizeof *touch);
+    from += sizeof *touch;
+    if (!e->own) touch->pair = touch->particle = -1;
+    const int32_t *index = (const int32_t *)from;
+    from += index_bytes(touch->nodes);
+    for (int32_t i = 0; i < touch->nodes; i++, from += components * sizeof(double)) {
+      const int place = (int)named[index[i]].place;
+      const int32_t at[3] = {e->h.at[0] * MPSI_SIDE + place % UNDER,
+                             e->h.at[1] * MPSI_SIDE + place / UNDER % UNDER,
+                             e->h.at[2] * MPSI_SIDE + place / UNDER / UNDER};
+      double *weight = all->weight[n * all->stride + i];
+      all->node[n * all->stride + i] = meet_node(m, at, named[index[i]].value, slots)->value;
+      memcpy(weight, from, components * sizeof(double));
+      for (size_t c = components; c < 3; c++) weight[c] = weight[0];
+    }
+  }
+}
+
+static void join_touches(meeting *m, int64_t slots) {
+  mps_mpm *mpm = m->mpm;
+  mpsi_impulses *all = &mpm->contact.impulses;
+  mpsi_meeting *r = &mpm->share->meeting;
+  memset(r->lookup.item, -1, (size_t)slots * sizeof(int32_t));
+  r->nodes = 0;
+  all->touch = r->touch.item;
+  all->block = r->block.item;
+  all->weight = r->weight.item;
+  all->node = r->node.item;
+  all->touch_count = all->block_count = 0;
+  int32_t colour = 0;
+  for (int64_t k = 0; k < m->entries; k++) {
+    const entry *e = &m->entry[k];
+    while (colour <= e->h.colour) all->colour[colour++] = all->block_count;
+    all->block[all->block_count++] =
+        (mpsi_touch_block){.first = all->touch_count,
+                           .count = e->h.touches,
+                           .cells = e->own ? (int32_t)e->h.cells : -1};
+    take_entry(m, e, slots, all->touch_count);
+    all->touch_count += e->h.touches;
+  }
+  while (colour <= MPSI_CORNERS) all->colour[colour++] = all->block_count;
+}
+
+static mps_status join(meeting *m) {
+  mps_context *context = m->mpm->context;
+  mpsi_meeting *r = &m->mpm->share->meeting;
+  int64_t slots = 16;
+  m->entry = NULL;
+  read_entries(m);
+  while (slots < 2 * m->nodes) slots *= 2;
+  if (!mpsi_room_ensure(context, &r->list, m->entries, sizeof *m->entry) || !make_room(m, slots))
+    return mpsi_fail_memory(context, m->function,
+                            (size_t)(m->touches + 1) * sizeof(mpsi_touch) +
+                                (size_t)m->nodes * sizeof(mpsi_met_node));
+  m->entry = r->list.item;
+  read_entries(m);
+  qsort(m->entry, (size_t)m->entries, sizeof *m->entry, by_turn);
+  join_touches(m, slots);
+  return MPS_OK;
+}
+
+/* ---- a step ---------------------------------------------------------------------------------- */
+
+/* This rank's message, the same to each of the others, which `list` names. */
+static mps_status write_message(meeting *m, mps_domain_message **list, int32_t *count) {
+  mps_mpm *mpm = m->mpm;
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  mps_domain *domain = mpm->share->domain;
+  mpsi_room *mail = &mpm->share->meeting.mail;
+  int64_t bytes = 0;
+  *count = 0;
+  for (int64_t k = 0; k < all->block_count; k++) bytes += entry_bytes(mpm, &all->block[k]);
+  if (all->block_count == 0) return MPS_OK;
+  *list = mpsi_alloc(mpm->context, mps_domain_size(domain), sizeof **list);
+  if (!*list || !mpsi_room_ensure(mpm->context, mail, bytes, 1))
+    return mpsi_fail_memory(mpm->context, m->function, (size_t)bytes);
+  char *end = mail->item;
+  for (int64_t k = 0; k < all->block_count; k++) end = write_block(mpm, &all->block[k], end);
+  m->own = mail->item;
+  m->own_bytes = end - m->own;
+  for (int32_t r = 0; r < mps_domain_size(domain); r++)
+    if (r != mps_domain_rank(domain))
+      (*list)[(*count)++] =
+          (mps_domain_message){.rank = r, .bytes = m->own_bytes, .data = m->own};
+  return MPS_OK;
+}
+
+mps_status mpsi_meet(mps_mpm *mpm, const char *function, mps_status status) {
+  mps_domain *domain = mpm->share->domain;
+  meeting m = {.mpm = mpm, .function = function, .box.context = mpm->context};
+  mps_domain_message *list = NULL;
+  int32_t count = 0;
+  double any = (double)mpm->contact.impulses.touch_count;
+  if (status == MPS_OK) status = write_message(&m, &list, &count);
+  status = mpsi_domain_settle_max(domain, function, status, 1, &any);
+  mpm->share->meeting.nodes = 0;
+  if (status == MPS_OK && any > 0.0) {
+    status = mpsi_domain_exchange(domain, function, count, list, &m.box);
+    if (status == MPS_OK) status = mpsi_domain_settle(domain, function, join(&m));
+  }
+  mpsi_domain_free_mail(&m.box);
+  mpsi_free(mpm->context, list);
+  return status;
+}
+
+void mpsi_meet_end(mps_mpm *mpm) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  mpsi_meeting *r = &mpm->share->meeting;
+  mpsi_met_node *met = r->met.item;
+  for (int64_t k = 0; k < r->nodes; k++)
+    if (met[k].home)
+      memcpy(met[k].home + MPSI_VECTOR, met[k].value + MPSI_VECTOR, 3 * sizeof(double));
+  for (int64_t n = 0; n < all->touch_count; n++) /* what is read of them later is at home */
+    for (int32_t i = 0; i < all->touch[n].nodes && all->touch[n].pair >= 0; i++) {
+      double **node = &all->node[n * all->stride + i];
+      *node = ((mpsi_met_node *)((char *)*node - offsetof(mpsi_met_node, value)))->home;
+    }
+}
+
+void mpsi_meet_free(mps_mpm *mpm) {
+  mpsi_meeting *r = &mpm->share->meeting;
+  mpsi_room *const rooms[] = {&r->touch, &r->block, &r->weight, &r->node,
+                              &r->met,   &r->lookup, &r->mail,  &r->list};
+  for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(mpm->context, rooms[k]->item);
+}

@@ -1,0 +1,35 @@
+/* meet.h - contact by impulses on several ranks. Touches of one rank move nodes that touches of
+ * others read, visit by visit (impulses.c): a message each would cost more than the visits. So each
+ * rank tells all others of its touches and of the nodes that they use, and sweeps over all of them
+ * as one rank would: the same arithmetic on every rank, and no message between sweeps. A step costs
+ * a message of each rank that has touches to each other rank, and the sweeps that one rank would
+ * make. What contacts keep for the next step is then on all ranks, wherever particles go.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_MEET_H
+#define MPSI_MPM_MEET_H
+
+#include "room.h"
+
+#include <mps/mpm.h>
+
+/* A node that some touch uses: its values, as all ranks move them, and where it is here. */
+typedef struct mpsi_met_node {
+  int32_t at[3]; /* of the whole grid */
+  double value[4];
+  double *home; /* of grid.node, or NULL: of another rank */
+} mpsi_met_node;
+
+typedef struct mpsi_meeting {
+  int64_t nodes;
+  mpsi_room touch, block, weight, node, met, lookup, kept, mail, list;
+} mpsi_meeting;
+
+/* The touches of all ranks take the place of this rank's in contact.impulses, in the order of one
+ * rank, until the next step finds its own. What has become of all ranks before, `status` here,
+ * comes first. Collective. */
+mps_status mpsi_meet(mps_mpm *mpm, const char *function, mps_status status);
+/* After the sweeps: velocities to the nodes that are here. Not collective. */
+void mpsi_meet_end(mps_mpm *mpm);
+void mpsi_meet_free(mps_mpm *mpm);
+
+#endif
