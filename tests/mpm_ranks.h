@@ -20,7 +20,6 @@ typedef struct scene {
 
 static inline int dim_of(int what) { return what == ROOM || what == BALLS ? 3 : 2; }
 
-
 static inline mps_status make_set(mps_context *own, int what, mps_particles **out) {
   const bool space = dim_of(what) == 3, touched = what >= PRESS;
   mps_particles_def def = mps_particles_defaults();

@@ -1,6 +1,6 @@
 /* meet.c - see meet.h. A message has one entry for each block of cells with touches: its head, the
- * nodes that they use, each once, and the touches, each followed by the numbers of its nodes in that
- * list and by its weights, one or (in blocks at mirrors) three a node.
+ * nodes that they use, each once, and the touches, each followed by the numbers of its nodes in
+ * that list and by its weights, one or (in blocks at mirrors) three a node.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "meet.h"
 
@@ -174,8 +174,8 @@ static double *find_home(const mps_mpm *mpm, const int32_t *at) {
   const mpsi_grid *grid = &mpm->grid;
   int32_t block[3], local = 0;
   for (int c = 2; c >= 0; c--) {
-    block[c] = c < mpm->dim ? at[c] >= 0 ? at[c] / MPSI_SIDE : -((MPSI_SIDE - 1 - at[c]) / MPSI_SIDE)
-                            : 0;
+    block[c] =
+        c < mpm->dim ? at[c] >= 0 ? at[c] / MPSI_SIDE : -((MPSI_SIDE - 1 - at[c]) / MPSI_SIDE) : 0;
     local = local * MPSI_SIDE + (at[c] - block[c] * MPSI_SIDE);
   }
   int64_t low = 0, high = grid->node_count;
@@ -253,10 +253,9 @@ static void join_touches(meeting *m, int64_t slots) {
   for (int64_t k = 0; k < m->entries; k++) {
     const entry *e = &m->entry[k];
     while (colour <= e->h.colour) all->colour[colour++] = all->block_count;
-    all->block[all->block_count++] =
-        (mpsi_touch_block){.first = all->touch_count,
-                           .count = e->h.touches,
-                           .cells = e->own ? (int32_t)e->h.cells : -1};
+    all->block[all->block_count++] = (mpsi_touch_block){.first = all->touch_count,
+                                                        .count = e->h.touches,
+                                                        .cells = e->own ? (int32_t)e->h.cells : -1};
     take_entry(m, e, slots, all->touch_count);
     all->touch_count += e->h.touches;
   }
@@ -302,8 +301,7 @@ static mps_status write_message(meeting *m, mps_domain_message **list, int32_t *
   m->own_bytes = end - m->own;
   for (int32_t r = 0; r < mps_domain_size(domain); r++)
     if (r != mps_domain_rank(domain))
-      (*list)[(*count)++] =
-          (mps_domain_message){.rank = r, .bytes = m->own_bytes, .data = m->own};
+      (*list)[(*count)++] = (mps_domain_message){.rank = r, .bytes = m->own_bytes, .data = m->own};
   return MPS_OK;
 }
 
@@ -341,7 +339,7 @@ void mpsi_meet_end(mps_mpm *mpm) {
 
 void mpsi_meet_free(mps_mpm *mpm) {
   mpsi_meeting *r = &mpm->share->meeting;
-  mpsi_room *const rooms[] = {&r->touch, &r->block, &r->weight, &r->node,
-                              &r->met,   &r->lookup, &r->mail,  &r->list};
+  mpsi_room *const rooms[] = {&r->touch, &r->block,  &r->weight, &r->node,
+                              &r->met,   &r->lookup, &r->mail,   &r->list};
   for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(mpm->context, rooms[k]->item);
 }

@@ -77,8 +77,8 @@ static double *place_of(const mps_mpm *mpm, int64_t k, double *x) {
 }
 
 /* Marks particles [begin, end) that lie deeper than `depth` below the surface. */
-static int64_t into_body(const mps_mpm *mpm, const mps_contact *contact, double depth, int64_t begin,
-                         int64_t end, uint8_t *gone, uint8_t mark) {
+static int64_t into_body(const mps_mpm *mpm, const mps_contact *contact, double depth,
+                         int64_t begin, int64_t end, uint8_t *gone, uint8_t mark) {
   int64_t count = 0;
   for (int64_t k = begin; k < end; k++) {
     double x[3];
@@ -154,15 +154,13 @@ mps_status mpsi_mpm_clear_bodies(mps_mpm *mpm, const char *function, mps_status 
   if (!wanted) return status;
   const int64_t count = status == MPS_OK ? mark_inside(mpm) : 0;
   double any = (double)count;
-  if (mpm->share)
-    status = mpsi_domain_settle_max(mpm->share->domain, function, status, 1, &any);
+  if (mpm->share) status = mpsi_domain_settle_max(mpm->share->domain, function, status, 1, &any);
   if (status != MPS_OK || any == 0.0) return status;
   for (int32_t b = 0; b < mpm->contact.bodies && status == MPS_OK; b++)
     if (takes_away(mpm->contact.handle[b]))
-      status = count_out(mpm, function, mpm->contact.handle[b], mpm->rooms.gone.item,
-                         (uint8_t)(b + 1));
-  if (status == MPS_OK && count > 0)
-    mpsi_particles_take_out(mpm->particles, mpm->rooms.gone.item);
+      status =
+          count_out(mpm, function, mpm->contact.handle[b], mpm->rooms.gone.item, (uint8_t)(b + 1));
+  if (status == MPS_OK && count > 0) mpsi_particles_take_out(mpm->particles, mpm->rooms.gone.item);
   *cleared = status == MPS_OK;
   return status;
 }

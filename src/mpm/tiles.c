@@ -29,7 +29,8 @@ mps_status mpsi_share_ready(mps_mpm *mpm, const char *function, mps_status statu
   return status;
 }
 
-/* ---- corners of cells with particles, where bodies are near ----------------------------------- */
+/* ---- corners of cells with particles, where bodies are near -----------------------------------
+ */
 
 mps_status mpsi_share_reached(mps_mpm *mpm, const char *function, bool known) {
   mpsi_share *share = mpm->share;

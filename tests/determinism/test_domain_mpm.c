@@ -90,8 +90,7 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
   }
   if (what == OTHER_CONTACT) contact.friction = 0.1 * rank;
   if (what == DEPTH) contact.depth = 1e-9, contact.offset = 0.0;
-  if (what == OTHER_CONTACT || what == DEPTH)
-    TRY(mps_mpm_add_contact(s.mpm, body, &contact, NULL));
+  if (what == OTHER_CONTACT || what == DEPTH) TRY(mps_mpm_add_contact(s.mpm, body, &contact, NULL));
   if (what == DEPTH) TRY(mps_mpm_step(s.mpm, 1000));
   end_scene(&s);
   mps_body_destroy(&body);
@@ -128,12 +127,15 @@ static void test_troubles(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_slide),          cmocka_unit_test(test_spread),
-      cmocka_unit_test(test_ring),           cmocka_unit_test(test_room),
-      cmocka_unit_test(test_press),          cmocka_unit_test(test_cone),
-      cmocka_unit_test(test_balls),
-      cmocka_unit_test(test_refused_memory), cmocka_unit_test(test_refused_contact),
-      cmocka_unit_test(test_troubles)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_slide),
+                                     cmocka_unit_test(test_spread),
+                                     cmocka_unit_test(test_ring),
+                                     cmocka_unit_test(test_room),
+                                     cmocka_unit_test(test_press),
+                                     cmocka_unit_test(test_cone),
+                                     cmocka_unit_test(test_balls),
+                                     cmocka_unit_test(test_refused_memory),
+                                     cmocka_unit_test(test_refused_contact),
+                                     cmocka_unit_test(test_troubles)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -125,7 +125,7 @@ static void shapes_are_a_partition(void **state) {
     mpm_scene s =
         crowded(variant < 2 ? MPS_MPM_PLANE_STRAIN : MPS_MPM_SPACE, 2 + variant % 2, false);
     int64_t fitted = 0;
-    mps_assert_ok(context, mpsi_mpm_find_near(s.mpm, "test"));
+    mps_assert_ok(context, mpsi_mpm_find_near(s.mpm, "test", MPS_OK));
     check_shapes(s.mpm, &fitted);
     assert_true(fitted > COUNT / 10);
     mpm_scene_end(&s);
@@ -154,7 +154,7 @@ static void affine_round_trip(void **state) {
     mpm_scene s = crowded(geometry, 2 + spline, true);
     mps_mpm *mpm = s.mpm;
     mpm_scene_affine(&s, v0, L);
-    mps_assert_ok(context, mpsi_mpm_find_near(mpm, "test"));
+    mps_assert_ok(context, mpsi_mpm_find_near(mpm, "test", MPS_OK));
     mpm->run.dt = 1e-30;
     assert_false(mpm->run.moments);
     int64_t turned = 0;
@@ -298,7 +298,7 @@ static void transfers_agree_with_the_fit(void **state) {
       for (int c = 0; c < 2 * dim; c++) mpm->p.s[c][k] = uniform(-1e3, 1e3);
     }
     mpm->def.gravity[1] = -9.81;
-    mps_assert_ok(context, mpsi_mpm_find_near(mpm, "test"));
+    mps_assert_ok(context, mpsi_mpm_find_near(mpm, "test", MPS_OK));
     mpm->run.dt = 1e-4;
     node_sums *sums =
         test_calloc((size_t)(mpm->grid.node_count * mpm->grid.block_nodes), sizeof *sums);
