@@ -186,7 +186,10 @@ static inline void end_scene(scene *s) {
 
 /* Where a body is and what it bears, which is something. */
 static inline mps_status keep_body(scene *s, int k, result *r) {
-  enum { STATE = (int)(sizeof(mps_body_state) / 8), EACH = STATE + (int)(sizeof(mps_reaction) / 8) };
+  enum {
+    STATE = (int)(sizeof(mps_body_state) / 8),
+    EACH = STATE + (int)(sizeof(mps_reaction) / 8)
+  };
   _Static_assert(BODIES * EACH <= RESULT_OTHERS, "room");
   mps_body_state state;
   mps_reaction touch;
