@@ -266,8 +266,8 @@ mps_status mps_fluid_get_totals_sized(mps_fluid *f, mps_totals *out, size_t size
 
 static int64_t bytes_of(const mps_fluid *f) {
   const int64_t n = (f->count + 7) / 8 * 8 + 24, chunks = f->count / MPSI_FLUID_CHUNK + 2;
-  return 8 * (14 * n + 2 * chunks) + f->count * ((int64_t)sizeof *f->local + 3) +
-         f->cloud_capacity * (11 * 8 + 8) + f->index_room.capacity * 4 + f->w_room.capacity * 8 +
+  return 8 * (15 * n + 2 * chunks) + f->count * ((int64_t)sizeof *f->local + 3) +
+         f->cloud_capacity * (11 * 8) + f->index_room.capacity * 4 + f->w_room.capacity * 8 +
          f->cell_room.capacity * 4 + f->push_room.capacity * 8 + f->lower_col_room.capacity * 4 +
          f->lower_room.capacity * 4;
 }

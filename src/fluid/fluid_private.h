@@ -114,9 +114,14 @@ typedef struct mpsi_fluid_local {
   double qs;              /* reduced pressure of the surface there, Pa */
 } mpsi_fluid_local;
 
-/* Whether a particle has images among its neighbours, neighbours within l0/2, and a body's corner
- * within 1.5 l0. */
-enum { MPSI_FLUID_NEAR_IMAGES = 1, MPSI_FLUID_NEAR_CLOSE = 2, MPSI_FLUID_NEAR_CORNER = 4 };
+/* Whether a particle has images among its neighbours, neighbours within l0/2, a body's corner
+ * within 1.5 l0, and neighbours in other blocks of the matrix. */
+enum {
+  MPSI_FLUID_NEAR_IMAGES = 1,
+  MPSI_FLUID_NEAR_CLOSE = 2,
+  MPSI_FLUID_NEAR_CORNER = 4,
+  MPSI_FLUID_NEAR_OTHERS = 8
+};
 #define MPSI_FLUID_CLOSE 0.5 /* l0 */
 
 enum { MPSI_FLUID_INSIDE = 0, MPSI_FLUID_SURFACE = 1, MPSI_FLUID_APART = 2 };
@@ -124,8 +129,8 @@ enum { MPSI_FLUID_INSIDE = 0, MPSI_FLUID_SURFACE = 1, MPSI_FLUID_APART = 2 };
 /* Rows of the pressure equation and what its solution needs; see pcg.c. */
 typedef struct mpsi_fluid_system {
   double *diagonal, *right;         /* count */
-  double *x, *p;                    /* count + ghosts */
-  double *r, *z, *q;                /* count */
+  double *x;                        /* count + ghosts */
+  double *p, *r, *z, *q;            /* count */
   int32_t *lower_start, *lower_end; /* of row i, in its block's stretch of lower_col and lower */
   int32_t *lower_col;
   float *lower;    /* of L */
@@ -181,7 +186,8 @@ struct mps_fluid {
   int64_t cloud_capacity;
   double *u_new[2], *pressure; /* count */
   uint8_t *state;              /* MPSI_FLUID_..., count */
-  uint8_t *zone;               /* at the surface or within 1.6 l0 of it */
+  bool any_apart;              /* some are MPSI_FLUID_APART */
+  atomic_uchar *zone;          /* at the surface or within 1.6 l0 of it */
   uint8_t *company;            /* MPSI_FLUID_NEAR_..., bits */
   double *zone_normal[2];
   mpsi_fluid_local *local;

@@ -16,8 +16,9 @@ static int64_t search(const mps_fluid *f, int64_t i, int64_t begin, int64_t end,
     const int32_t count = (int32_t)(end - first < PART ? end - first : PART);
     const double *sx = f->slot_x[0] + first, *sy = f->slot_x[1] + first;
     const int32_t *slot = f->slot + first;
+    /* whole vectors: the sorted cloud goes on far enough (mpsi_fluid_grow_cloud) */
 #pragma omp simd
-    for (int32_t k = 0; k < count; k++)
+    for (int32_t k = 0; k < mpsi_fluid_padded(count); k++)
       square[k] = (sx[k] - x) * (sx[k] - x) + (sy[k] - y) * (sy[k] - y);
     for (int32_t k = 0; k < count; k++) {
       index[found] = slot[k];
@@ -28,9 +29,10 @@ static int64_t search(const mps_fluid *f, int64_t i, int64_t begin, int64_t end,
   return found;
 }
 
-static double weigh(const mps_fluid *f, int64_t i, int64_t count, int32_t *index, double *w) {
+static int32_t weigh(const mps_fluid *f, int64_t i, int64_t count, int32_t *index, double *w) {
   const double inverse = f->weight.inverse, least = LEAST * f->l0 * f->l0, re = f->weight.re;
-  const int32_t all = mpsi_fluid_padded((int32_t)count);
+  const int32_t all = mpsi_fluid_padded((int32_t)count), particles = (int32_t)f->count;
+  int32_t images = 0;
   for (int32_t k = (int32_t)count; k < all; k++) index[k] = (int32_t)i, w[k] = re * re;
   double closest[MPSI_FLUID_WIDE]; /* clang has no reduction to a minimum */
   for (int c = 0; c < MPSI_FLUID_WIDE; c++) closest[c] = re * re;
@@ -38,6 +40,8 @@ static double weigh(const mps_fluid *f, int64_t i, int64_t count, int32_t *index
 #pragma omp simd
     for (int c = 0; c < MPSI_FLUID_WIDE; c++)
       closest[c] = w[k + c] < closest[c] ? w[k + c] : closest[c];
+#pragma omp simd reduction(+ : images)
+  for (int32_t k = 0; k < all; k++) images += index[k] >= particles;
 #pragma omp simd
   for (int32_t k = 0; k < all; k++) {
     const double r2 = w[k] > least ? w[k] : least, a = 1.0 - sqrt(r2) * inverse;
@@ -46,7 +50,9 @@ static double weigh(const mps_fluid *f, int64_t i, int64_t count, int32_t *index
   for (int32_t k = (int32_t)count; k < all; k++) w[k] = 0.0;
   double closest2 = closest[0];
   for (int c = 1; c < MPSI_FLUID_WIDE; c++) closest2 = fmin(closest2, closest[c]);
-  return closest2;
+  const double close = MPSI_FLUID_CLOSE * f->l0;
+  return (images > 0 ? MPSI_FLUID_NEAR_IMAGES : 0) |
+         (closest2 < close * close ? MPSI_FLUID_NEAR_CLOSE : 0);
 }
 
 static void add_up(const mps_fluid *f, int64_t i, mpsi_fluid_sums *out) {
@@ -107,56 +113,97 @@ static void slope(const mps_fluid *f, int64_t i, double *out) {
   out[0] = sx, out[1] = sy;
 }
 
-/* Where z[i - 1] is needed it is the last of a row's entries (near.c finds neighbours in the order
+/* Where v[i - 1] is needed it is the last of a row's entries (near.c finds neighbours in the order
  * of the cells that particles are sorted by), so that a row hardly waits for the one before. */
-static void forward(const mps_fluid *f, int64_t first, int64_t end, int64_t offset) {
+static void forward(const mps_fluid *f, int64_t first, int64_t end, int64_t offset, double *v) {
   const mpsi_fluid_system *s = &f->system;
   const int32_t *start = s->lower_start, *stop = s->lower_end, *column = s->lower_col + offset;
   const float *lower = s->lower + offset;
-  const double *r = s->r;
-  double *z = s->z;
   for (int64_t i = first; i < end; i++) {
     const int32_t last = stop[i];
     int32_t e = start[i];
-    double a = r[i], b = 0.0, c = 0.0, d = 0.0; /* chains of additions */
-    if ((last - e) & 1) b = (double)lower[e] * z[column[e]], e++;
+    double a = v[i], b = 0.0, c = 0.0, d = 0.0; /* chains of additions */
+    if ((last - e) & 1) b = (double)lower[e] * v[column[e]], e++;
     if ((last - e) & 2) {
-      c = (double)lower[e] * z[column[e]], d = (double)lower[e + 1] * z[column[e + 1]];
+      c = (double)lower[e] * v[column[e]], d = (double)lower[e + 1] * v[column[e + 1]];
       e += 2;
     }
     for (; e < last; e += 4) {
-      a -= (double)lower[e] * z[column[e]];
-      b += (double)lower[e + 1] * z[column[e + 1]];
-      c += (double)lower[e + 2] * z[column[e + 2]];
-      d += (double)lower[e + 3] * z[column[e + 3]];
+      a -= (double)lower[e] * v[column[e]];
+      b += (double)lower[e + 1] * v[column[e + 1]];
+      c += (double)lower[e + 2] * v[column[e + 2]];
+      d += (double)lower[e + 3] * v[column[e + 3]];
     }
-    z[i] = a - ((b + c) + d);
+    v[i] = a - ((b + c) + d);
   }
 }
 
-static void precondition(const mps_fluid *f, int64_t first, int64_t end, int64_t offset,
-                         double alpha, double *sums) {
-  const mpsi_fluid_system *s = &f->system;
-  double rr = 0.0, rz = 0.0, *x = s->x, *r = s->r, *z = s->z;
-  const double *p = s->p, *q = s->q, *inverse = s->inverse;
-#pragma omp simd reduction(+ : rr)
+static double descend(const mps_fluid *f, int64_t first, int64_t end, int64_t offset, double alpha,
+                      double beta) {
+  const mpsi_fluid_system *y = &f->system;
+  double rz = 0.0, *x = y->x, *r = y->r, *z = y->z, *p = y->p, *s = f->u_new[0];
+  const double *q = y->q, *inverse = y->inverse;
+#pragma omp simd reduction(+ : rz)
   for (int64_t i = first; i < end; i++) {
+    p[i] = z[i] + beta * p[i];
+    s[i] = q[i] + beta * s[i];
     x[i] += alpha * p[i];
-    r[i] -= alpha * q[i];
-    rr += r[i] * r[i];
+    r[i] -= alpha * s[i];
+    z[i] = inverse[i] * r[i];
+    rz += r[i] * z[i];
   }
-  forward(f, first, end, offset);
-  const int32_t *start = s->lower_start, *stop = s->lower_end, *column = s->lower_col + offset;
-  const float *lower = s->lower + offset;
-#pragma omp simd
-  for (int64_t i = first; i < end; i++) z[i] *= inverse[i];
+  const int32_t *start = y->lower_start, *stop = y->lower_end, *column = y->lower_col + offset;
+  const float *lower = y->lower + offset;
   for (int64_t i = end - 1; i >= first; i--) {
     const double here = z[i];
     for (int32_t e = start[i]; e < stop[i]; e++) z[column[e]] -= (double)lower[e] * here;
-    rz += r[i] * here;
   }
-  sums[0] = rr, sums[1] = rz;
+  return rz;
 }
 
-const mpsi_fluid_loops JOIN(mpsi_fluid_loops_v, MPSI_LEVEL) = {search, weigh,        add_up,
-                                                               times,  precondition, slope};
+/* What the matrix has outside of the block in row i, times z. */
+static double outside_block(const mps_fluid *f, int64_t first, int64_t end, int64_t i) {
+  const int32_t *index = f->index + f->start[i];
+  const double *w = f->w + f->start[i];
+  double sum = 0.0;
+  for (int32_t k = 0; k < f->near[i]; k++) {
+    const int32_t j = index[k] < f->count ? index[k] : f->parent[index[k] - f->count];
+    if ((j < first || j >= end) && f->state[j] != MPSI_FLUID_APART) sum -= w[k] * f->system.z[j];
+  }
+  return sum;
+}
+
+static double rise(const mps_fluid *f, int64_t first, int64_t end, int64_t offset) {
+  const mpsi_fluid_system *y = &f->system;
+  const double *z = y->z, *r = y->r, *middle = f->u_new[1], *inverse = y->inverse;
+  double zq = 0.0, *q = y->q;
+#pragma omp simd
+  for (int64_t i = first; i < end; i++) q[i] = r[i] + middle[i] * z[i];
+  for (int64_t i = first; i < end; i++)
+    if (f->company[i] & MPSI_FLUID_NEAR_OTHERS) q[i] += outside_block(f, first, end, i);
+  forward(f, first, end, offset, q);
+#pragma omp simd reduction(+ : zq)
+  for (int64_t i = first; i < end; i++) {
+    q[i] += z[i] / inverse[i];
+    zq += q[i] * inverse[i] * r[i];
+  }
+  return zq;
+}
+
+static double norm(const mps_fluid *f, int64_t first, int64_t end, int64_t offset,
+                   const double *v) {
+  const mpsi_fluid_system *s = &f->system;
+  const int32_t *column = s->lower_col + offset;
+  const float *lower = s->lower + offset;
+  double square = 0.0;
+  for (int64_t i = first; i < end; i++) {
+    double sum = v[i];
+    for (int32_t e = s->lower_start[i]; e < s->lower_end[i]; e++)
+      sum += (double)lower[e] * v[column[e]];
+    square += sum * sum;
+  }
+  return square;
+}
+
+const mpsi_fluid_loops JOIN(mpsi_fluid_loops_v, MPSI_LEVEL) = {
+    search, weigh, add_up, times, forward, descend, rise, norm, slope};

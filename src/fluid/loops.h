@@ -23,15 +23,20 @@ struct mpsi_fluid_loops {
    * `index` and `r2` have room for these and one more. Returns how many there are then. */
   int64_t (*search)(const mps_fluid *f, int64_t i, int64_t begin, int64_t end, int64_t found,
                     int32_t *index, double *r2);
-  /* Squares of distances to weights, and fills up the list; the smallest square. */
-  double (*weigh)(const mps_fluid *f, int64_t i, int64_t count, int32_t *index, double *w);
+  /* Squares of distances to weights, and fills up the list; MPSI_FLUID_NEAR_IMAGES and _CLOSE. */
+  int32_t (*weigh)(const mps_fluid *f, int64_t i, int64_t count, int32_t *index, double *w);
   void (*add_up)(const mps_fluid *f, int64_t i, mpsi_fluid_sums *out);
   /* Rows [begin, end) of the pressure's matrix times v, to `out`; v . out over these rows. */
   double (*times)(const mps_fluid *f, int64_t begin, int64_t end, const double *v, double *out);
-  /* For the rows [first, end) of a block, whose entries of L begin at `offset`: x += alpha p,
-   * r -= alpha q, z = ((L + D) D^-1 (L + D)^T)^-1 r; sums: r . r and r . z. */
-  void (*precondition)(const mps_fluid *f, int64_t first, int64_t end, int64_t offset, double alpha,
-                       double *sums);
+  /* Parts of an iteration of pcg.c for the rows [first, end) of a block, whose entries of L begin
+   * at `offset`. forward: v = U^-T v. descend: p, x, s, r go on, then z = U^-1 D^-1 r; r . D^-1 r.
+   * rise: q = U^-T A U^-1 D^-1 r; q . D^-1 r. */
+  void (*forward)(const mps_fluid *f, int64_t first, int64_t end, int64_t offset, double *v);
+  double (*descend)(const mps_fluid *f, int64_t first, int64_t end, int64_t offset, double alpha,
+                    double beta);
+  double (*rise)(const mps_fluid *f, int64_t first, int64_t end, int64_t offset);
+  /* |U^T v|^2 over these rows. */
+  double (*norm)(const mps_fluid *f, int64_t first, int64_t end, int64_t offset, const double *v);
   /* sum w (q_j - q_i) dx/r^2 */
   void (*slope)(const mps_fluid *f, int64_t i, double *sum);
 };

@@ -67,9 +67,22 @@ static void place_surface(const mps_fluid *f, int64_t i, const double *M, double
   invert(with, local->with_surface);
 }
 
+/* Says to all within 1.6 l0 of a surface particle, own images included, that they may be in its
+ * zone. At a bent wall two particles may be at different distances from each other's images. */
+static void tell_zone(mps_fluid *f, int64_t i) {
+  const double reach2 = 1.2 * ZONE * ZONE * f->l0 * f->l0;
+  const int32_t *index = f->index + f->start[i];
+  atomic_store_explicit(&f->zone[i], 1, memory_order_relaxed);
+  for (int32_t k = 0; k < f->near[i]; k++) {
+    const int32_t j = index[k], own = j < f->count ? j : f->parent[j - f->count];
+    const double dx = f->x[0][j] - f->x[0][i], dy = f->x[1][j] - f->x[1][i];
+    if (dx * dx + dy * dy < reach2) atomic_store_explicit(&f->zone[own], 1, memory_order_relaxed);
+  }
+}
+
 static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
   const double n0 = f->weight.n0;
+  int64_t apart = 0;
   for (int64_t i = begin; i < end; i++) {
     mpsi_fluid_sums s;
     f->loops->add_up(f, i, &s);
@@ -94,7 +107,10 @@ static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
       if (f->state[i] == MPSI_FLUID_SURFACE) place_surface(f, i, M, length, &local);
     }
     f->local[i] = local;
+    apart += f->state[i] == MPSI_FLUID_APART;
+    if (f->state[i] != MPSI_FLUID_INSIDE) tell_zone(f, i);
   }
+  f->system.sums[2 * chunk] = (double)apart;
 }
 
 /* The vector m of a particle's image. */
@@ -113,6 +129,7 @@ static void find_zone(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   (void)chunk;
   const double reach2 = ZONE * ZONE * f->l0 * f->l0;
   for (int64_t i = begin; i < end; i++) {
+    if (!f->zone[i]) continue;
     const int32_t *index = f->index + f->start[i];
     const double *w = f->w + f->start[i];
     bool near = f->state[i] != MPSI_FLUID_INSIDE;
@@ -135,6 +152,10 @@ static void find_zone(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
 }
 
 void mpsi_fluid_find_moments(mps_fluid *f) {
+  const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
+  for (int64_t i = 0; i < f->count; i++) atomic_init(&f->zone[i], 0);
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, look_around);
+  f->any_apart = false;
+  for (int64_t k = 0; k < chunks; k++) f->any_apart |= f->system.sums[2 * k] > 0.0;
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, find_zone);
 }

@@ -76,8 +76,7 @@ static void viscous_rest(const mps_fluid *f, int64_t i, double *v) {
   }
 }
 
-static void accelerate(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
+static void find_accelerated(mps_fluid *f, int64_t begin, int64_t end) {
   const double rho = f->def.density, dt = f->dt, nu = f->def.viscosity / rho;
   for (int64_t i = begin; i < end; i++) {
     const mpsi_fluid_local *local = &f->local[i];
@@ -123,6 +122,11 @@ static void limit_speed(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
   f->system.sums[2 * chunk] = (double)cuts;
 }
 
+static void accelerate(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  find_accelerated(f, begin, end);
+  limit_speed(f, begin, end, chunk);
+}
+
 /* The velocity that image j has after the step. */
 static void image_velocity(const mps_fluid *f, int64_t ghost, double *v) {
   const int64_t own = f->parent[ghost];
@@ -166,21 +170,20 @@ static void collide(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   f->system.sums[2 * chunk + 1] = (double)collisions;
 }
 
-static void take_velocities(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
-  for (int64_t i = begin; i < end; i++)
-    f->u_new[0][i] = f->system.r[i], f->u_new[1][i] = f->system.z[i];
+static void swap(double **a, double **b) {
+  double *const other = *a;
+  *a = *b, *b = other;
 }
 
 void mpsi_fluid_find_velocities(mps_fluid *f) {
   const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
   const bool classical = f->classical.gamma > 0.0;
+  for (int64_t k = 0; k < chunks; k++) f->system.sums[2 * k] = 0.0;
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK,
                  classical ? mpsi_fluid_classical_accelerate : accelerate);
-  for (int64_t k = 0; k < chunks; k++) f->system.sums[2 * k] = 0.0;
-  if (!classical) mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, limit_speed);
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, collide);
-  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, take_velocities);
+  swap(&f->u_new[0], &f->system.r);
+  swap(&f->u_new[1], &f->system.z);
   for (int64_t k = 0; k < chunks; k++) {
     f->report.limited += (int64_t)f->system.sums[2 * k];
     f->report.collisions += (int64_t)f->system.sums[2 * k + 1];

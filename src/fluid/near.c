@@ -158,7 +158,7 @@ static void average_weights(const mps_fluid *f, int64_t i, int64_t count, const 
 typedef struct pass {
   mps_fluid *fluid;
   const cells *cells;
-  int64_t per_chunk; /* room for pairs */
+  int64_t per_chunk, pairs; /* room for pairs; the last chunk may have less */
   atomic_bool full;
 } pass;
 
@@ -167,12 +167,12 @@ static void find_chunk(void *data, int64_t chunk, int32_t worker) {
   (void)worker;
   pass *p = data;
   mps_fluid *f = p->fluid;
-  const double close2 = MPSI_FLUID_CLOSE * MPSI_FLUID_CLOSE * f->l0 * f->l0;
-  const int64_t last = (chunk + 1) * MPSI_FLUID_CHUNK, limit = (chunk + 1) * p->per_chunk;
+  const int64_t last = (chunk + 1) * MPSI_FLUID_CHUNK, full = (chunk + 1) * p->per_chunk;
+  const int64_t limit = full < p->pairs ? full : p->pairs;
   int64_t at = chunk * p->per_chunk;
   for (int64_t i = chunk * MPSI_FLUID_CHUNK; i < last && i < f->count; i++) {
     const int64_t room = limit - at - MPSI_FLUID_WIDE;
-    int32_t *index = f->index + at, most = 0;
+    int32_t *index = f->index + at;
     double *w = f->w + at;
     int64_t found = room > 0 ? search(f, p->cells, i, room, index, w) : room;
     if (found >= room) {
@@ -180,12 +180,10 @@ static void find_chunk(void *data, int64_t chunk, int32_t worker) {
       return;
     }
     if (f->limited) found = mpsi_fluid_keep_seen(f, i, found, index, w);
-    const double closest2 = f->loops->weigh(f, i, found, index, w);
+    const int32_t company = f->loops->weigh(f, i, found, index, w);
     if (f->bent) average_weights(f, i, found, index, w);
-    for (int64_t k = 0; k < found; k++) most = index[k] > most ? index[k] : most;
-    f->company[i] = (uint8_t)((most >= f->count ? MPSI_FLUID_NEAR_IMAGES : 0) |
-                              (closest2 < close2 ? MPSI_FLUID_NEAR_CLOSE : 0) |
-                              (mpsi_fluid_near_corner(f, i) ? MPSI_FLUID_NEAR_CORNER : 0));
+    f->company[i] =
+        (uint8_t)(company | (mpsi_fluid_near_corner(f, i) ? MPSI_FLUID_NEAR_CORNER : 0));
     f->start[i] = at;
     f->near[i] = (int32_t)found;
     at += mpsi_fluid_padded((int32_t)found);
@@ -200,14 +198,14 @@ mps_status mpsi_fluid_find_neighbours(mps_fluid *f, const char *function) {
   const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
   for (;;) {
     const int64_t per_chunk = f->most_near * MPSI_FLUID_CHUNK + SEARCHED,
-                  pairs = chunks * per_chunk;
+                  pairs = f->most_near * f->count + chunks * SEARCHED;
     if (!mpsi_fluid_room_fit(f->context, &f->index_room, pairs, sizeof *f->index) ||
         !mpsi_fluid_room_fit(f->context, &f->w_room, pairs, sizeof *f->w))
       return mpsi_fail_memory(f->context, function,
                               (size_t)pairs * (sizeof *f->index + sizeof *f->w));
     f->index = f->index_room.item;
     f->w = f->w_room.item;
-    pass p = {.fluid = f, .cells = &c, .per_chunk = per_chunk};
+    pass p = {.fluid = f, .cells = &c, .per_chunk = per_chunk, .pairs = pairs};
     mpsi_parallel_for(f->context, chunks, find_chunk, &p);
     if (!atomic_load(&p.full)) return MPS_OK;
     if (f->most_near > MOST_NEAR)

@@ -12,9 +12,18 @@ bool mpsi_fluid_reserve(mps_fluid *f, int64_t count) {
   if (count <= f->capacity) return true;
   mpsi_fluid_system *s = &f->system;
   const int64_t n = (count + 7) / 8 * 8 + 24, chunks = count / MPSI_FLUID_CHUNK + 2;
-  double **doubles[] = {&f->u_new[0], &f->u_new[1], &f->zone_normal[0], &f->zone_normal[1],
-                        &f->pressure, &s->diagonal, &s->right,          &s->r,
-                        &s->z,        &s->q,        &s->inverse};
+  double **doubles[] = {&f->u_new[0],
+                        &f->u_new[1],
+                        &f->zone_normal[0],
+                        &f->zone_normal[1],
+                        &f->pressure,
+                        &s->diagonal,
+                        &s->right,
+                        &s->r,
+                        &s->z,
+                        &s->q,
+                        &s->p,
+                        &s->inverse};
   enum { DOUBLES = sizeof doubles / sizeof *doubles };
   double *block = mpsi_alloc(f->context, n * (DOUBLES + 1 + 2) + 2 * chunks, sizeof *block);
   mpsi_fluid_local *local = mpsi_alloc(f->context, count, sizeof *local);
@@ -35,8 +44,8 @@ bool mpsi_fluid_reserve(mps_fluid *f, int64_t count) {
   s->lower_start = f->near + n;
   s->lower_end = s->lower_start + n;
   s->sums = block + (DOUBLES + 3) * n;
-  f->zone = f->state + count;
-  f->company = f->zone + count;
+  f->company = f->state + count;
+  f->zone = (atomic_uchar *)(f->company + count);
   f->capacity = count;
   f->stale = true;
   return true;
@@ -142,7 +151,7 @@ static void carry_out(const mps_fluid *f, mpsi_fluid_wall *w, const double *x, c
 }
 
 void mpsi_fluid_let_go(mps_fluid *f) {
-  uint8_t *const gone = f->zone; /* free between steps; found again when it is asked for */
+  uint8_t *const gone = f->company; /* free between steps; found again when it is asked for */
   uint32_t open = 0;
   int64_t count = 0;
   for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {

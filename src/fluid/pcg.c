@@ -1,13 +1,24 @@
 /* pcg.c - conjugate gradients for the pressure, preconditioned by a modified incomplete Cholesky
- * factorisation (L + D) D^-1 (L + D)^T of diagonal blocks of the matrix: L is the matrix's own
- * lower part, and what elimination would fill in goes to the pivots D, most of it (Gustafsson
- * 1978).
+ * factorisation U^T D U of diagonal blocks of the matrix A: U^T is unit lower triangular, U^T D - D
+ * is the matrix's own lower part, and what elimination would fill in goes to the pivots D, most of
+ * it (Gustafsson 1978).
  *
- * The matrix is not stored: a row is the weights of the particle's neighbours, and vectors that are
- * multiplied have the values of the ghosts' parents appended. The start vector is extrapolated from
- * the last two steps (pressure.c), which more than halves the iterations in waves. The blocks
- * depend on the number of particles alone, and sums are made chunk by chunk, so the result does not
- * depend on the threads. SPDX-License-Identifier: BSD-3-Clause */
+ * As the factors have the matrix's own entries, no product with A is needed (Eisenstat 1981): for
+ * z = U^-1 v, and A = U^T D + D U + (diag A - 2 D) + C, C what A has between blocks,
+ *
+ *   U^-T A z = D z + U^-T (D v + (diag A - 2 D) z + C z).
+ *
+ * So an iteration is a solution with U (descend), then one with U^T (rise), for all rows of a
+ * block; blocks wait for each other twice. The sums of both are all that an iteration needs
+ * (Chronopoulos and Gear 1989): r is the residual times U^-T, p the direction, s = U^-T A p.
+ *
+ * The factors are kept in single precision: below a tolerance of 1e-6 the residual is found anew
+ * with A itself and what is left is solved for again. A is not stored: a row is the weights of the
+ * particle's neighbours, and vectors that it multiplies have the values of the ghosts' parents
+ * appended. The start vector is extrapolated from the last two steps (pressure.c), which more than
+ * halves the iterations in waves. The blocks depend on the number of particles alone, and sums are
+ * made chunk by chunk, so the result does not depend on the threads.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "loops.h"
 
 #include <string.h>
@@ -16,7 +27,9 @@
 #define MOST_BLOCKS 32   /* larger blocks instead */
 #define MODIFIED 0.95    /* share of the fill that goes to the pivots */
 #define LEAST_PIVOT 1e-3 /* of the diagonal */
-#define TURN_CHUNK 4096
+#define LOOK_FROM 4.0    /* of the rz where the residual would be small enough if both fell alike */
+#define LOOK_AGAIN 0.25  /* of rz, at the soonest */
+#define SINGLE 1e-6      /* tolerance that factors in single precision allow */
 
 /* ---- preconditioner -------------------------------------------------------------------------- */
 
@@ -32,36 +45,47 @@ static blocks cut(const mps_fluid *f) {
   return (blocks){(chunks + each - 1) / each, each * MPSI_FLUID_CHUNK};
 }
 
-/* Row i of L, scaled by the pivots' inverses; the pivot of row i, and what is right of it. A
- * neighbour and its image are two entries. */
-static int32_t lower_row(const mps_fluid *f, int64_t first, int64_t end, int64_t i, int32_t *column,
+/* Row i of U^T but its 1; the pivot of row i, and what is right of it; diag A - 2 D, in the place
+ * of u_new[1], which has no other use before the pressure is known. A neighbour and its image are
+ * two entries. What single precision takes off an entry goes to the diagonals, so that the sums of
+ * rows stay exact: without a free surface little else keeps the matrix from being indefinite. */
+static int32_t lower_row(mps_fluid *f, int64_t first, int64_t end, int64_t i, int32_t *column,
                          float *lower) {
   const mpsi_fluid_system *s = &f->system;
   const int32_t *index = f->index + f->start[i];
   const double *w = f->w + f->start[i], *inverse = s->inverse, *upper = s->z;
-  double pivot = s->diagonal[i], right = 0.0;
+  double own = s->diagonal[i], pivot = 0.0, right = 0.0;
   int32_t count = 0;
+  bool others = false;
   for (int32_t k = 0; k < f->near[i]; k++) {
     const int64_t ghost = index[k] - f->count;
     const int32_t j = ghost < 0 ? index[k] : f->parent[ghost];
-    if (j < first || j >= end || f->state[j] == MPSI_FLUID_APART) continue;
-    if (j == i) pivot -= w[k];
+    if (f->state[j] == MPSI_FLUID_APART) continue;
+    others = others || j < first || j >= end;
+    if (j < first || j >= end) continue;
+    if (j == i) own -= w[k];
     if (j > i) right += w[k];
     if (j >= i) continue;
     const double l = w[k] * inverse[j];
     pivot -= l * (w[k] + MODIFIED * (upper[j] - w[k]));
     column[count] = j, lower[count] = (float)-l;
+    const double missed = w[k] + (double)lower[count] * s->r[j];
+    own -= missed, f->u_new[1][j] -= missed;
     count++;
   }
-  s->z[i] = right;
-  s->inverse[i] = 1.0 / fmax(pivot, LEAST_PIVOT * s->diagonal[i]);
+  pivot = fmax(own + pivot, LEAST_PIVOT * s->diagonal[i]);
+  s->z[i] = right, s->r[i] = pivot;
+  s->inverse[i] = 1.0 / pivot;
+  f->u_new[1][i] = own - 2.0 * pivot;
+  f->company[i] =
+      (uint8_t)((f->company[i] & ~MPSI_FLUID_NEAR_OTHERS) | (others ? MPSI_FLUID_NEAR_OTHERS : 0));
   return count;
 }
 
 typedef struct factor_pass {
   mps_fluid *fluid;
   blocks blocks;
-  int64_t room; /* entries for each block */
+  int64_t room, all; /* entries for each block but the last, and for all */
   atomic_bool full;
 } factor_pass;
 
@@ -72,15 +96,16 @@ static void factor_block(void *data, int64_t b, int32_t worker) {
   mpsi_fluid_system *s = &f->system;
   const int64_t first = b * p->blocks.size;
   const int64_t end = first + p->blocks.size < f->count ? first + p->blocks.size : f->count;
+  const int64_t limit = (b + 1) * p->room < p->all ? (b + 1) * p->room : p->all;
   int64_t at = b * p->room;
   for (int64_t i = first; i < end; i++) {
-    if (at + f->near[i] > (b + 1) * p->room) {
+    if (at + f->near[i] > limit) {
       atomic_store(&p->full, true);
       return;
     }
     s->lower_start[i] = (int32_t)(at - b * p->room);
     if (f->state[i] == MPSI_FLUID_APART)
-      s->inverse[i] = 1.0;
+      s->inverse[i] = 1.0, f->u_new[1][i] = -1.0;
     else
       at += lower_row(f, first, end, i, s->lower_col + at, s->lower + at);
     s->lower_end[i] = (int32_t)(at - b * p->room);
@@ -92,10 +117,10 @@ mps_status mpsi_fluid_factor(mps_fluid *f, const char *function) {
   factor_pass p = {.fluid = f, .blocks = cut(f)};
   for (;;) {
     p.room = f->most_lower * p.blocks.size;
-    const int64_t all = p.room * p.blocks.count;
-    if (!mpsi_fluid_room_fit(f->context, &f->lower_col_room, all, sizeof *s->lower_col) ||
-        !mpsi_fluid_room_fit(f->context, &f->lower_room, all, sizeof *s->lower))
-      return mpsi_fail_memory(f->context, function, (size_t)all * 8);
+    p.all = f->most_lower * f->count + p.blocks.size;
+    if (!mpsi_fluid_room_fit(f->context, &f->lower_col_room, p.all, sizeof *s->lower_col) ||
+        !mpsi_fluid_room_fit(f->context, &f->lower_room, p.all, sizeof *s->lower))
+      return mpsi_fail_memory(f->context, function, (size_t)p.all * 8);
     s->lower_col = f->lower_col_room.item;
     s->lower = f->lower_room.item;
     atomic_store(&p.full, false);
@@ -121,69 +146,102 @@ static double total(const mps_fluid *f, int64_t count, int which) {
   return sum;
 }
 
-static void append_ghosts(const mps_fluid *f, double *v) {
-  for (int64_t g = 0; g < f->ghosts; g++) v[f->count + g] = v[f->parent[g]];
-}
-
-/* r = b - A x, and the square of b. */
+/* r = b - A x, and the squares of r and b; nothing of an iteration before. */
 static void first_residual(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   mpsi_fluid_system *s = &f->system;
-  double bb = 0.0;
+  double rr = 0.0, bb = 0.0;
   f->loops->times(f, begin, end, s->x, s->q);
   for (int64_t i = begin; i < end; i++) {
     s->r[i] = s->right[i] - s->q[i];
-    s->q[i] = 0.0;
+    s->p[i] = s->q[i] = s->z[i] = f->u_new[0][i] = 0.0;
+    rr += s->r[i] * s->r[i];
     bb += s->right[i] * s->right[i];
   }
-  s->sums[2 * chunk] = bb;
+  s->sums[2 * chunk] = rr, s->sums[2 * chunk + 1] = bb;
 }
 
-/* q = A p and p . q. */
-static void multiply(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  mpsi_fluid_system *s = &f->system;
-  s->sums[2 * chunk] = f->loops->times(f, begin, end, s->p, s->q);
+static int64_t end_of(const iteration *it, int64_t b) {
+  const int64_t last = (b + 1) * it->blocks.size;
+  return last < it->fluid->count ? last : it->fluid->count;
 }
 
-/* x += alpha p, r -= alpha q and z from r in a block. */
-static void precondition(void *data, int64_t b, int32_t worker) {
+static void start_block(void *data, int64_t b, int32_t worker) {
   (void)worker;
   const iteration *it = data;
   mps_fluid *f = it->fluid;
-  const int64_t first = b * it->blocks.size, last = first + it->blocks.size;
-  f->loops->precondition(f, first, last < f->count ? last : f->count, b * it->room, it->alpha,
-                         f->system.sums + 2 * b);
+  const int64_t first = b * it->blocks.size, end = end_of(it, b);
+  f->loops->forward(f, first, end, b * it->room, f->system.r);
+  f->system.sums[2 * b] = f->loops->descend(f, first, end, b * it->room, 0.0, 0.0);
 }
 
-/* p = z + beta p */
-static void turn(void *data, int64_t unit, int32_t worker) {
+static void descend(void *data, int64_t b, int32_t worker) {
   (void)worker;
   const iteration *it = data;
-  const mpsi_fluid_system *s = &it->fluid->system;
-  const int64_t begin = unit * TURN_CHUNK, last = begin + TURN_CHUNK;
-  const int64_t end = last < it->fluid->count ? last : it->fluid->count;
-  for (int64_t i = begin; i < end; i++) s->p[i] = s->z[i] + it->beta * s->p[i];
+  mps_fluid *f = it->fluid;
+  f->system.sums[2 * b] =
+      f->loops->descend(f, b * it->blocks.size, end_of(it, b), b * it->room, it->alpha, it->beta);
+}
+
+static void rise(void *data, int64_t b, int32_t worker) {
+  (void)worker;
+  const iteration *it = data;
+  mps_fluid *f = it->fluid;
+  f->system.sums[2 * b + 1] = f->loops->rise(f, b * it->blocks.size, end_of(it, b), b * it->room);
+}
+
+static void norm(void *data, int64_t b, int32_t worker) {
+  (void)worker;
+  const iteration *it = data;
+  mps_fluid *f = it->fluid;
+  f->system.sums[2 * b + 1] =
+      f->loops->norm(f, b * it->blocks.size, end_of(it, b), b * it->room, f->system.r);
+}
+
+/* Iterates from the residual r, whose square is rr, until that is `enough`; counts in *done. The
+ * norm of the preconditioner, which each iteration knows, says when to look at the residual's own.
+ */
+static bool iterate(iteration *it, double rr, double enough, int64_t *done) {
+  mps_fluid *f = it->fluid;
+  const int64_t number = it->blocks.count;
+  it->beta = 0.0;
+  mpsi_parallel_for(f->context, number, start_block, it);
+  double rz = total(f, number, 0), look_at = LOOK_FROM * rz * enough / rr;
+  for (int64_t k = 0;; k++) {
+    if (rz <= look_at) {
+      mpsi_parallel_for(f->context, number, norm, it);
+      rr = total(f, number, 1);
+      if (rr <= enough) return true;
+      look_at = rz * fmax(LOOK_AGAIN, enough / rr);
+    }
+    if (!isfinite(rz) || *done == f->def.iterations) return false;
+    mpsi_parallel_for(f->context, number, rise, it);
+    const double before = it->alpha, qz = total(f, number, 1);
+    it->alpha = k == 0 ? rz / qz : rz / (qz - it->beta * rz / before);
+    mpsi_parallel_for(f->context, number, descend, it);
+    (*done)++;
+    const double next = total(f, number, 0);
+    it->beta = next / rz;
+    rz = next;
+  }
 }
 
 int64_t mpsi_fluid_pcg(mps_fluid *f) {
   mpsi_fluid_system *s = &f->system;
   const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
+  const double tolerance = f->def.tolerance;
   iteration it = {.fluid = f, .blocks = cut(f)};
   it.room = f->most_lower * it.blocks.size;
-  append_ghosts(f, s->x);
-  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, first_residual);
-  const double enough = f->def.tolerance * f->def.tolerance * total(f, chunks, 0);
-  memset(s->p, 0, (size_t)(f->count + f->ghosts) * sizeof *s->p);
-  double rz = 0.0;
-  for (int64_t k = 0;; k++) {
-    mpsi_parallel_for(f->context, it.blocks.count, precondition, &it);
-    const double rr = total(f, it.blocks.count, 0), next = total(f, it.blocks.count, 1);
-    if (rr <= enough) return k;
-    if (!isfinite(rr) || k == f->def.iterations) return -1;
-    it.beta = k == 0 ? 0.0 : next / rz;
-    mpsi_parallel_for(f->context, (f->count + TURN_CHUNK - 1) / TURN_CHUNK, turn, &it);
-    append_ghosts(f, s->p);
-    rz = next;
-    mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, multiply);
-    it.alpha = rz / total(f, chunks, 0);
+  int64_t done = 0;
+  for (double left = INFINITY;;) {
+    for (int64_t g = 0; g < f->ghosts; g++) s->x[f->count + g] = s->x[f->parent[g]];
+    mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, first_residual);
+    const double rr = total(f, chunks, 0), bb = total(f, chunks, 1);
+    const double enough = tolerance * tolerance * bb;
+    if (bb == 0.0) memset(s->x, 0, (size_t)(f->count + f->ghosts) * sizeof *s->x);
+    if (bb == 0.0) return 0;
+    if (rr <= enough || !(rr < 0.25 * left)) return isfinite(rr) ? done : -1;
+    if (!iterate(&it, rr, enough, &done)) return -1;
+    if (tolerance >= SINGLE) return done;
+    left = rr;
   }
 }

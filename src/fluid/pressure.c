@@ -29,8 +29,8 @@ static void make_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
     if (f->state[i] == MPSI_FLUID_APART) continue;
     const int32_t *index = f->index + f->start[i];
     const double *w = f->w + f->start[i];
-    double sum = f->local[i].c;
-    for (int32_t k = 0; k < f->near[i]; k++) {
+    double sum = f->local[i].c + (f->any_apart ? 0.0 : f->local[i].n);
+    for (int32_t k = 0; f->any_apart && k < f->near[i]; k++) {
       const int64_t j = index[k], ghost = j - f->count;
       if (f->state[ghost < 0 ? j : f->parent[ghost]] != MPSI_FLUID_APART) sum += w[k];
     }
@@ -68,6 +68,8 @@ static void take_solution(mps_fluid *f, int64_t begin, int64_t end, int64_t chun
   (void)chunk;
   for (int64_t i = begin; i < end; i++) {
     const double none = mpsi_fluid_head(f, f->x[0][i], f->x[1][i]);
+    const double p = f->state[i] == MPSI_FLUID_APART ? 0.0 : f->system.x[i] - none;
+    f->pressure[i] = fmax(p, mpsi_fluid_least(f, i));
     f->q[i] = f->state[i] == MPSI_FLUID_APART ? none
                                               : fmax(f->system.x[i], none + mpsi_fluid_least(f, i));
   }

@@ -129,14 +129,6 @@ static mps_status went_wrong(mps_fluid *f, const char *function, int64_t i) {
   return status;
 }
 
-/* Pressures where they belong: at the positions that the equation was solved for. */
-static void find_pressures(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  (void)chunk;
-  for (int64_t i = begin; i < end; i++)
-    f->pressure[i] =
-        fmax(f->q[i] - mpsi_fluid_head(f, f->x[0][i], f->x[1][i]), mpsi_fluid_least(f, i));
-}
-
 /* Loads and the caller's forces on particles, over the step: the pressure then answers to them. */
 static mps_status add_loads(mps_fluid *f, const char *function) {
   const mps_status status = mpsi_fluid_find_loads(f, function, f->time);
@@ -173,7 +165,6 @@ static mps_status solve(mps_fluid *f, const char *function) {
 }
 
 static mps_status finish(mps_fluid *f, const char *function) {
-  if (!(f->classical.gamma > 0.0)) mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, find_pressures);
   mpsi_fluid_find_velocities(f);
   const int64_t bad = mpsi_fluid_advance(f);
   if (bad >= 0) return went_wrong(f, function, bad);

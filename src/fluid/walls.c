@@ -192,9 +192,9 @@ static bool mirror(mps_fluid *f, int wall) {
 
 /* Arrays over the cloud; keeps the particles' part. */
 bool mpsi_fluid_grow_cloud(mps_fluid *f, int64_t capacity) {
-  enum { COLUMNS = 9 };
-  double **column[COLUMNS] = {&f->x[0],      &f->x[1],      &f->u[0],     &f->u[1],    &f->q,
-                              &f->slot_x[0], &f->slot_x[1], &f->system.x, &f->system.p};
+  enum { COLUMNS = 8 };
+  double **column[COLUMNS] = {&f->x[0], &f->x[1],      &f->u[0],      &f->u[1],
+                              &f->q,    &f->slot_x[0], &f->slot_x[1], &f->system.x};
   const int64_t padded = (capacity + 7) / 8 * 8 + 24;
   double *block = mpsi_alloc(f->context, padded * (COLUMNS + 3), sizeof *block);
   if (!block) return false;
