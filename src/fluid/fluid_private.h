@@ -22,17 +22,12 @@
 #include "core/internal.h"
 #include "core/particles_internal.h"
 #include "core/retain.h"
+#include "core/room.h"
 #include "core/state.h"
 
 #include <mps/fluid.h>
 
 #define MPSI_FLUID_CHUNK 256 /* particles in a unit of work: sums are made in this order */
-
-/* A growing array. */
-typedef struct mpsi_fluid_room {
-  void *item;
-  int64_t capacity;
-} mpsi_fluid_room;
 
 /* How a wall moves along its normal, at its nodes: linear between them, constant beyond the ends.
  * A wall that stays plane has one node. */
@@ -147,7 +142,7 @@ typedef struct mpsi_fluid_outside {
                       int64_t *iterations);
   int64_t least, rows; /* rows: room of start */
   int64_t *start;
-  mpsi_fluid_room column_room, value_room; /* int32_t, double */
+  mpsi_room column_room, value_room; /* int32_t, double */
 } mpsi_fluid_outside;
 
 /* The classical scheme, see classical.c; gamma 0: the library's own. */
@@ -192,25 +187,25 @@ struct mps_fluid {
   double *zone_normal[2];
   mpsi_fluid_local *local;
   /* neighbours */
-  int64_t *start;                      /* first pair of each particle */
-  int32_t *near;                       /* pairs of each particle */
-  int64_t most_near;                   /* room for pairs, a particle on average over a chunk */
-  mpsi_fluid_room index_room, w_room;  /* int32_t, double: pairs */
-  int32_t *index;                      /* of the pairs' other ends, ghosts too */
-  double *w;                           /* of the pairs */
-  mpsi_fluid_room cell_room, fit_room; /* int32_t; sums of fits, see probe.c */
-  mpsi_fluid_room near_wall_room;      /* of a wall, see probe.c */
-  int32_t *slot;                       /* cloud sorted by cells */
+  int64_t *start;                /* first pair of each particle */
+  int32_t *near;                 /* pairs of each particle */
+  int64_t most_near;             /* room for pairs, a particle on average over a chunk */
+  mpsi_room index_room, w_room;  /* int32_t, double: pairs */
+  int32_t *index;                /* of the pairs' other ends, ghosts too */
+  double *w;                     /* of the pairs */
+  mpsi_room cell_room, fit_room; /* int32_t; sums of fits, see probe.c */
+  mpsi_room near_wall_room;      /* of a wall, see probe.c */
+  int32_t *slot;                 /* cloud sorted by cells */
   double *slot_x[2];
   mpsi_fluid_given **given; /* loads by number, NULL: none */
   int32_t given_room;
-  mpsi_fluid_room push_room; /* of the following */
+  mpsi_room push_room;    /* of the following */
   double *push[2], *over; /* of each particle: acceleration by loads and forces, m/s2; pressure on
                              its surface, Pa; NULL: none has any */
   bool driven;            /* u of the cloud has dt times push already */
   double load_time;       /* s: when the loads were read */
   mpsi_fluid_system system;
-  mpsi_fluid_room lower_col_room, lower_room;
+  mpsi_room lower_col_room, lower_room;
   int64_t most_lower; /* room for entries of L, a row on average */
   void *slab;         /* of all arrays of fixed size */
   void *cloud;
@@ -229,11 +224,6 @@ struct mps_fluid {
   double energy;                      /* J, kinetic and potential at creation */
   double work_boundaries, work_loads; /* J, since creation */
 };
-
-/* Makes room for a quarter more than `count`; or, fit, for just as many. */
-bool mpsi_fluid_room_fit(mps_context *context, mpsi_fluid_room *room, int64_t count, size_t size);
-bool mpsi_fluid_room_ensure(mps_context *context, mpsi_fluid_room *room, int64_t count,
-                            size_t size);
 
 /* Runs task(fluid, chunk) for the chunks of `items` items on the executor. */
 typedef void (*mpsi_fluid_task)(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);

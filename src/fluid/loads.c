@@ -218,7 +218,7 @@ mps_status mpsi_fluid_find_loads(mps_fluid *f, const char *function, double t) {
   f->push[0] = f->push[1] = f->over = NULL;
   const mps_status status = ask_signals(f, function, t, &any);
   if (status != MPS_OK || !any) return status;
-  if (!mpsi_fluid_room_ensure(f->context, &f->push_room, 3 * f->count, sizeof(double)))
+  if (!mpsi_room_ensure(f->context, &f->push_room, 3 * f->count, sizeof(double)))
     return mpsi_fail_memory(f->context, function, (size_t)f->count * 24);
   double *const room = f->push_room.item;
   for (int64_t k = 0; k < 3 * f->count; k++) room[k] = 0.0;

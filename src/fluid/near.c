@@ -14,21 +14,6 @@
 #define SEARCHED 512   /* candidates that a search may write before it sorts them out */
 #define MOST_NEAR 2000 /* neighbours a particle, on average over a chunk */
 
-bool mpsi_fluid_room_fit(mps_context *context, mpsi_fluid_room *room, int64_t count, size_t size) {
-  if (count <= room->capacity) return true;
-  void *item = mpsi_alloc(context, count, size);
-  if (!item) return false;
-  mpsi_free(context, room->item);
-  *room = (mpsi_fluid_room){item, count};
-  return true;
-}
-
-bool mpsi_fluid_room_ensure(mps_context *context, mpsi_fluid_room *room, int64_t count,
-                            size_t size) {
-  return count <= room->capacity ||
-         mpsi_fluid_room_fit(context, room, count + count / 4 + 64, size);
-}
-
 mpsi_fluid_weight mpsi_fluid_make_weight(double l0, double re) {
   mpsi_fluid_weight w = {.re = re, .inverse = 1.0 / re};
   const int reach = (int)(re / l0) + 1, samples = 2000;
@@ -83,7 +68,7 @@ static mps_status make_cells(mps_fluid *f, const char *function, cells *c) {
                      "the fluid is strewn over %lld x %lld cells of %g m", (long long)c->n[0],
                      (long long)c->n[1], 1.0 / c->inverse);
   const int64_t number = c->n[0] * c->n[1];
-  if (!mpsi_fluid_room_ensure(f->context, &f->cell_room, number + 1 + all, sizeof(int32_t)))
+  if (!mpsi_room_ensure(f->context, &f->cell_room, number + 1 + all, sizeof(int32_t)))
     return mpsi_fail_memory(f->context, function, (size_t)(number + all) * sizeof(int32_t));
   return MPS_OK;
 }
@@ -199,8 +184,8 @@ mps_status mpsi_fluid_find_neighbours(mps_fluid *f, const char *function) {
   for (;;) {
     const int64_t per_chunk = f->most_near * MPSI_FLUID_CHUNK + SEARCHED,
                   pairs = f->most_near * f->count + chunks * SEARCHED;
-    if (!mpsi_fluid_room_fit(f->context, &f->index_room, pairs, sizeof *f->index) ||
-        !mpsi_fluid_room_fit(f->context, &f->w_room, pairs, sizeof *f->w))
+    if (!mpsi_room_fit(f->context, &f->index_room, pairs, sizeof *f->index) ||
+        !mpsi_room_fit(f->context, &f->w_room, pairs, sizeof *f->w))
       return mpsi_fail_memory(f->context, function,
                               (size_t)pairs * (sizeof *f->index + sizeof *f->w));
     f->index = f->index_room.item;

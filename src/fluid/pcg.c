@@ -118,8 +118,8 @@ mps_status mpsi_fluid_factor(mps_fluid *f, const char *function) {
   for (;;) {
     p.room = f->most_lower * p.blocks.size;
     p.all = f->most_lower * f->count + p.blocks.size;
-    if (!mpsi_fluid_room_fit(f->context, &f->lower_col_room, p.all, sizeof *s->lower_col) ||
-        !mpsi_fluid_room_fit(f->context, &f->lower_room, p.all, sizeof *s->lower))
+    if (!mpsi_room_fit(f->context, &f->lower_col_room, p.all, sizeof *s->lower_col) ||
+        !mpsi_room_fit(f->context, &f->lower_room, p.all, sizeof *s->lower))
       return mpsi_fail_memory(f->context, function, (size_t)p.all * 8);
     s->lower_col = f->lower_col_room.item;
     s->lower = f->lower_room.item;

@@ -93,8 +93,7 @@ static mps_status gather(mps_fluid *f, const mpsi_fluid_wall *w, const char *fun
       maybe++;
       if (pass == 1 && near_wall(f, w, i, &list[found])) found++;
     }
-    if (pass == 0 &&
-        !mpsi_fluid_room_ensure(f->context, &f->near_wall_room, maybe + 1, sizeof *list))
+    if (pass == 0 && !mpsi_room_ensure(f->context, &f->near_wall_room, maybe + 1, sizeof *list))
       return mpsi_fail_memory(f->context, function, (size_t)maybe * sizeof *list);
     *count = found;
   }
@@ -153,7 +152,7 @@ static mps_status for_points(mps_fluid *f, int32_t b, const char *function, poin
   wetted_range(f, w, near, &low, &high);
   fit *sum = NULL;
   if (high > low) {
-    if (!mpsi_fluid_room_ensure(f->context, &f->fit_room, high - low, sizeof *sum))
+    if (!mpsi_room_ensure(f->context, &f->fit_room, high - low, sizeof *sum))
       return mpsi_fail_memory(f->context, function, (size_t)(high - low) * sizeof *sum);
     sum = f->fit_room.item;
     for (int64_t k = 0; k < high - low; k++) sum[k] = no_fit;

@@ -100,8 +100,8 @@ static mps_status make_room(mps_fluid *f, const char *function) {
     if (!o->start) return mpsi_fail_memory(f->context, function, (size_t)f->count * 8);
     o->rows = f->count;
   }
-  if (!mpsi_fluid_room_ensure(f->context, &o->column_room, entries, sizeof(int32_t)) ||
-      !mpsi_fluid_room_ensure(f->context, &o->value_room, entries, sizeof(double)))
+  if (!mpsi_room_ensure(f->context, &o->column_room, entries, sizeof(int32_t)) ||
+      !mpsi_room_ensure(f->context, &o->value_room, entries, sizeof(double)))
     return mpsi_fail_memory(f->context, function, (size_t)entries * 12);
   return MPS_OK;
 }

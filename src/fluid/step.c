@@ -76,8 +76,7 @@ mps_status mpsi_fluid_sort(mps_fluid *f, const char *function) {
   const double cells = (floor((high[0] - low[0]) * inverse) + 1.0) * rows;
   if (!(cells < 4.0 * (double)n + 4096.0)) return MPS_OK;
   const int64_t number = (int64_t)cells;
-  if (!mpsi_fluid_room_ensure(f->context, &f->cell_room, number + 1 + n, sizeof(int32_t)))
-    return MPS_OK;
+  if (!mpsi_room_ensure(f->context, &f->cell_room, number + 1 + n, sizeof(int32_t))) return MPS_OK;
   int32_t *first = f->cell_room.item, *cell = first + number + 1;
   int64_t *order = (int64_t *)f->system.r; /* free between steps, as z is */
   memset(first, 0, (size_t)(number + 1) * sizeof *first);

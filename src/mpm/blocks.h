@@ -21,7 +21,7 @@
 
 #include "pass.h"
 #include "restart.h"
-#include "room.h"
+#include "core/room.h"
 
 #define MPSI_SIDE 8
 #define MPSI_TILE_SIDE (MPSI_SIDE + 5)
@@ -168,8 +168,10 @@ static inline int64_t mpsi_block_of(int64_t base) {
 /* order.c: keys and indices of the particles in their order, the block above `own_bits` bits; NULL
  * when out of memory. */
 mpsi_radix *mpsi_mpm_find_order(mps_mpm *mpm, int32_t *own_bits);
-/* layout.c: sorts the particles by blocks and builds the lists of blocks. */
+/* ready.c: sorts the particles by blocks and builds the lists of blocks; layout.c: where there are
+ * no other ranks. */
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_sort_alone(mps_mpm *mpm, const char *function);
 /* layout.c: its parts: the particles in order, by blocks of cells; room for such; and, once
  * they are in grid.cells in their order, what follows from them. */
 mps_status mpsi_mpm_sort_cells(mps_mpm *mpm, const char *function);

@@ -339,6 +339,16 @@ mps_status mps_mpm_remove_boundary(mps_mpm *mpm, int32_t number) {
   return MPS_OK;
 }
 
+void mpsi_hold_add_impulse(mpsi_hold *hold, const double *impulse, const double *moment,
+                           double work, int64_t count) {
+  for (int c = 0; c < 3; c++) {
+    mpsi_exact_add(&hold->sums->step[MPSI_HOLD_IMPULSE + c], impulse[c]);
+    mpsi_exact_add(&hold->sums->step[MPSI_HOLD_MOMENT + c], moment[c]);
+  }
+  mpsi_exact_add(&hold->sums->step[MPSI_HOLD_WORK], work);
+  hold->count += count;
+}
+
 void mpsi_hold_add_works(const mps_mpm *mpm, mpsi_exact *sum) {
   mpsi_exact_merge(sum, &mpm->boundaries.work);
   for (int32_t k = 0; k < MPSI_HOLDS; k++) {

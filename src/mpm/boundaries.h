@@ -5,7 +5,7 @@
 
 #include "core/exact.h"
 #include "restart.h"
-#include "room.h"
+#include "core/room.h"
 
 enum { MPSI_HOLD_NONE = -1 }; /* besides mps_mpm_boundary_kind */
 

@@ -15,7 +15,7 @@
 
 #include "blocks.h"
 #include "laws.h"
-#include "room.h"
+#include "core/room.h"
 
 /* J, of the step being made, of the particles of a block of cells. */
 typedef struct mpsi_cell_energy {

@@ -336,7 +336,7 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cell_block *cells, const mpsi_work
     if (cells->bad < 0 && bad >= 0) cells->bad = bad, cells->lost = true;
   }
   if (mpm->p.stencil) return; /* the laws wait for the cells' means */
-  mpsi_mpm_apply_law(mpm, cells, begin, begin + n, D);
+  mpsi_mpm_apply_law(mpm, cells, begin, begin + n, D, NULL);
   speed_chunk(mpm, cells, dim, begin, n);
 }
 

@@ -5,7 +5,7 @@
 #define MPSI_MPM_IMPULSES_H
 
 #include "contact/impulse.h"
-#include "room.h"
+#include "core/room.h"
 
 #include <mps/mpm.h>
 

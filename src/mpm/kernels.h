@@ -6,8 +6,6 @@
 
 #include "shape.h"
 
-#define MPSI_CHUNK 64 /* particles: what is prepared for them stays in the first-level cache */
-
 /* The stencil and the fitted shape functions of a particle of a block whose states are known. */
 typedef void (*mpsi_fit_fn)(const mps_mpm *mpm, const mpsi_cell_block *cells,
                             const mpsi_worker *worker, int64_t particle, mpsi_stencil *stencil,
@@ -28,9 +26,5 @@ const mpsi_kernels *mpsi_mpm_kernels(int32_t isa);
 
 /* inside.c: states of the nodes under a cut block's tile, to worker->state and worker->inside. */
 void mpsi_mpm_find_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker);
-/* volumetric.c: the diagonals of the velocity gradients of particles [begin, end), at most a chunk,
- * with the mean trace of their cells. */
-void mpsi_mpm_mean_diagonals(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin,
-                             int64_t end, double (*diagonal)[MPSI_CHUNK]);
 
 #endif

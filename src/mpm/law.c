@@ -78,18 +78,14 @@ static void take_strains(const mps_mpm *mpm, double *const *D, int64_t first,
     for (int b = 0; b < mpm->dim; b++) block->gradient[3 * a + b] = D[mpm->dim * a + b] + first;
 }
 
-/* The particles from `begin` on; `first` is its place in the columns D. */
+/* The particles from `begin` on; `first` is its place in the columns D and the means. */
 static void apply_run(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end,
-                      double *const *D, int64_t first) {
+                      double *const *D, double (*mean)[MPSI_CHUNK], int64_t first) {
   mpsi_columns *p = &mpm->p;
   const mpsi_law_use *law = mpsi_law_of(mpm, begin);
   mps_material_block block = columns_of(mpm, law, begin, end);
-  double diagonal[3][MPSI_CHUNK];
   take_strains(mpm, D, first, &block);
-  if (mpm->p.stencil) {
-    mpsi_mpm_mean_diagonals(mpm, cells, begin, end, diagonal);
-    for (int c = 0; c < 3; c++) block.gradient[4 * c] = diagonal[c];
-  }
+  for (int c = 0; mean && c < 3; c++) block.gradient[4 * c] = mean[c] + first;
   mpsi_before_law before;
   if (mpm->energy.counts) mpsi_energy_keep(mpm, begin, end, &before);
   /* Where the law works on J, V stands for V0 meanwhile. */
@@ -100,17 +96,11 @@ static void apply_run(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64
 }
 
 void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end,
-                        double *const *D) {
+                        double *const *D, double (*mean)[MPSI_CHUNK]) {
   for (int64_t k = begin, next; k < end; k = next) {
     next = end_of_run(mpm->p.law, k, end);
-    apply_run(mpm, cells, k, next, D, k - begin);
+    apply_run(mpm, cells, k, next, D, mean, k - begin);
   }
-}
-
-void mpsi_mpm_elastic(const mps_mpm *mpm, int64_t particle, double *wave, double *shear) {
-  const mpsi_law_use *law = mpsi_law_of(mpm, particle);
-  *wave = law->modulus;
-  *shear = mpsi_material_shear(law->material);
 }
 
 /* A viscous law asks for dt <= rho h^2/(4 dim viscosity) too: the modulus whose wave gives that. */

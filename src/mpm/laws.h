@@ -8,6 +8,8 @@
 
 #include <mps/mpm.h>
 
+#define MPSI_CHUNK 64 /* particles: what is prepared for them stays in the first-level cache */
+
 typedef struct mpsi_law_use {
   mps_material *material;
   double modulus; /* K + 4G/3 at zero strain, Pa */
@@ -37,12 +39,12 @@ typedef struct mpsi_laws {
 } mpsi_laws;
 
 /* law.c: their laws on particles [begin, end) of a block, with the velocity gradients of the columns
- * `D` of these particles, as mpsi_columns.D. */
+ * `D` of these particles, as mpsi_columns.D; `mean`: their diagonals by volumetric.c, or NULL. */
 void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end,
-                        double *const *D);
+                        double *const *D, double (*mean)[MPSI_CHUNK]);
 /* law.c: the present wave moduli of particles [begin, end), raised where viscosity limits dt. */
 void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli);
-/* law.c: K + 4G/3 and G (Pa) of a particle's material at zero strain. */
+/* materials.c: K + 4G/3 and G (Pa) of a particle's material at zero strain. */
 void mpsi_mpm_elastic(const mps_mpm *mpm, int64_t particle, double *wave, double *shear);
 /* volumetric.c: the laws after the step's G2P, where they wait for the means of the cells. */
 void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm);

@@ -7,21 +7,6 @@
 
 #include <string.h>
 
-#define LEAST_ROOM 16 /* items */
-
-bool mpsi_room_ensure(mps_context *context, mpsi_room *room, int64_t count, size_t size) {
-  if (count <= room->capacity) return true;
-  /* exact at first, then a little more than asked for: a body that moves needs no more */
-  int64_t capacity = room->capacity > 0 ? count + count / 4 : count;
-  if (capacity < LEAST_ROOM) capacity = LEAST_ROOM;
-  void *item = mpsi_alloc(context, capacity, size);
-  if (!item) return false;
-  mpsi_free(context, room->item);
-  room->item = item;
-  room->capacity = capacity;
-  return true;
-}
-
 /* ---- blocks ---------------------------------------------------------------------------------- */
 
 /* Widens the part of the tile in use by a stencil, and by a cell to either side. */
@@ -284,14 +269,12 @@ static mps_status put_in_order(mps_mpm *mpm, const char *function) {
 
 mps_status mpsi_mpm_sort_cells(mps_mpm *mpm, const char *function) {
   mpm->run.stale = false;
-  if (mpm->p.count == 0)
-    return mpsi_mpm_ensure_cells(mpm, 0) ? MPS_OK : no_room(mpm, function, 0);
+  if (mpm->p.count == 0) return mpsi_mpm_ensure_cells(mpm, 0) ? MPS_OK : no_room(mpm, function, 0);
   const mps_status status = find_cells(mpm, function);
   return status == MPS_OK ? put_in_order(mpm, function) : status;
 }
 
-mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
-  if (mpm->share) return mpsi_share_sort(mpm, function);
+mps_status mpsi_mpm_sort_alone(mps_mpm *mpm, const char *function) {
   if (mpm->p.count == 0) {
     mpm->run.stale = false;
     const bool good = mpsi_mpm_ensure_cells(mpm, 0) && mpsi_mpm_build_nodes(mpm, 0);

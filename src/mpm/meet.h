@@ -8,7 +8,7 @@
 #ifndef MPSI_MPM_MEET_H
 #define MPSI_MPM_MEET_H
 
-#include "room.h"
+#include "core/room.h"
 
 #include <mps/mpm.h>
 

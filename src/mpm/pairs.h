@@ -6,7 +6,7 @@
 
 #include "contact/contact.h"
 #include "impulses.h"
-#include "room.h"
+#include "core/room.h"
 
 #include <mps/mpm.h>
 

@@ -12,7 +12,7 @@
 #ifndef MPSI_MPM_PASS_H
 #define MPSI_MPM_PASS_H
 
-#include "room.h"
+#include "core/room.h"
 
 #include <mps/mpm.h>
 

@@ -3,45 +3,6 @@
 #include "kernels.h"
 #include "particles.h"
 
-mps_status mpsi_mpm_between_steps(mps_mpm *mpm, const char *function) {
-  return mpsi_guard_check(&mpm->run.guard, mpm->context, function);
-}
-
-/* Not after a step that gave no numbers, nor while a field is being edited. */
-static mps_status check_whole(mps_mpm *mpm, const char *function) {
-  if (mpm->run.broken)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
-                     "an earlier step has left no state to go on from: roll back, restore a "
-                     "checkpoint or make a new solver");
-  return mpsi_particles_ready(mpm->particles, function);
-}
-
-mps_status mpsi_mpm_usable(mps_mpm *mpm, const char *function) {
-  const mps_status status = mpsi_mpm_between_steps(mpm, function);
-  return status == MPS_OK ? check_whole(mpm, function) : status;
-}
-
-mps_status mpsi_mpm_tidy(mps_mpm *mpm, const char *function) {
-  mps_status status = check_whole(mpm, function);
-  if (status == MPS_OK) status = mpsi_mpm_check_lost(mpm, function);
-  if (mpm->share) status = mpsi_share_agree(mpm, function, status);
-  if (status != MPS_OK || !mpm->run.edited) return status;
-  status = mpsi_mpm_check_masses(mpm, function);
-  if (mpm->share) status = mpsi_share_tidy(mpm, function, status);
-  if (status == MPS_OK && mpm->run.stale) status = mpsi_mpm_sort(mpm, function);
-  if (status == MPS_OK) status = mpsi_mpm_list_holds(mpm, function);
-  if (mpm->share) status = mpsi_domain_settle(mpm->share->domain, function, status);
-  if (status != MPS_OK) return status;
-  mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
-  mpm->run.edited = mpm->energy.springs_known = false;
-  return mpsi_mpm_collect_block_results(mpm, function);
-}
-
-mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function) {
-  const mps_status status = mpsi_mpm_between_steps(mpm, function);
-  return status == MPS_OK ? mpsi_mpm_tidy(mpm, function) : status;
-}
-
 /* All ranks are asked for the same. */
 static mps_status same_on_ranks(mps_mpm *mpm, const char *function, mps_status status,
                                 const char *name, double value) {
@@ -50,19 +11,6 @@ static mps_status same_on_ranks(mps_mpm *mpm, const char *function, mps_status s
 }
 
 /* ---- the size of a step ---------------------------------------------------------------------- */
-
-double mps_mpm_limit(const mps_mpm *mpm) {
-  if (!mpm) return 0.0;
-  double speed = mpm->run.speed;
-  for (int32_t b = 0; b < mpm->contact.bodies; b++)
-    speed = fmax(speed, mpsi_contact_speed(mpm->contact.handle[b]));
-  return speed > 0.0 ? mpm->def.cell / speed : INFINITY; /* there are no particles */
-}
-
-double mps_mpm_dt(const mps_mpm *mpm) {
-  if (!mpm) return 0.0;
-  return mpm->def.dt > 0.0 ? mpm->def.dt : mpm->def.courant * mps_mpm_limit(mpm);
-}
 
 mps_status mps_mpm_set_dt(mps_mpm *mpm, double dt) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
@@ -77,10 +25,6 @@ mps_status mps_mpm_set_dt(mps_mpm *mpm, double dt) {
   if (status == MPS_OK) mpm->def.dt = dt;
   return status;
 }
-
-double mps_mpm_time(const mps_mpm *mpm) { return mpm ? mpm->run.time : 0.0; }
-
-int64_t mps_mpm_steps(const mps_mpm *mpm) { return mpm ? mpm->run.steps : 0; }
 
 /* ---- many steps ------------------------------------------------------------------------------ */
 

@@ -28,16 +28,17 @@ typedef struct mpsi_run {
 /* step.c: one step of dt. On an error nothing has moved, but where a particle has left the domain
  * (run.lost: the step is whole) or got values that are no numbers (run.broken). */
 mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt);
-/* run.c: MPS_ERROR_STATE in a callback of the solver. */
+/* access.c: MPS_ERROR_STATE in a callback of the solver; or after a step that has failed or while a
+ * field is edited; or any of these. */
 mps_status mpsi_mpm_between_steps(mps_mpm *mpm, const char *function);
-/* run.c: that, and MPS_ERROR_STATE after a step that has failed or while a field is edited. */
+mps_status mpsi_mpm_check_whole(mps_mpm *mpm, const char *function);
 mps_status mpsi_mpm_usable(mps_mpm *mpm, const char *function);
-/* run.c: what the caller has written, added or removed is taken up: masses, blocks of the present
+/* ready.c: what the caller has written, added or removed is taken up: masses, blocks of the present
  * positions, the Courant limit of the present velocities. */
 mps_status mpsi_mpm_tidy(mps_mpm *mpm, const char *function);
-/* run.c: both: ready for a step. */
+/* ready.c: that, but not in a callback of the solver. */
 mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function);
-/* step.c: what the blocks have found: the largest speed, or the error of a bad particle. */
+/* collect.c: what the blocks have found: the largest speed, or the error of a bad particle. */
 mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function);
 
 #endif

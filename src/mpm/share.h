@@ -15,8 +15,8 @@
 
 #include "core/particles_internal.h"
 #include "domain/halo.h"
+#include "core/room.h"
 #include "meet.h"
-#include "room.h"
 
 #include <mps/mpm.h>
 
@@ -58,22 +58,22 @@ mps_status mpsi_share_migrate(mps_mpm *mpm, const char *function, mps_status sta
 /* share.c: sorts, and finds the ghosts; the latter alone, where they are outdated. */
 mps_status mpsi_share_sort(mps_mpm *mpm, const char *function);
 mps_status mpsi_share_join(mps_mpm *mpm, const char *function);
-/* share.c: what has become of all ranks, or of the only one. */
+/* agree.c: what has become of all ranks, or of the only one. */
 mps_status mpsi_share_settle(mps_mpm *mpm, const char *function, mps_status status);
-/* share.c: MPS_ERROR_ARGUMENT unless these are particles of the set, on whatever rank; what has
+/* agree.c: MPS_ERROR_ARGUMENT unless these are particles of the set, on whatever rank; what has
  * become of all before, `status` here, comes first. */
 mps_status mpsi_share_check_ids(mps_mpm *mpm, const char *function, mps_status status,
                                 int64_t count, const int64_t *ids);
-/* share.c: MPS_ERROR_UNSUPPORTED for `what` on several ranks. Not collective. */
+/* agree.c: MPS_ERROR_UNSUPPORTED for `what` on several ranks. Not collective. */
 mps_status mpsi_share_refuse(const mps_mpm *mpm, const char *function, const char *what);
-/* Whether a sum over blocks of nodes counts g here. Not collective. */
+/* agree.c: whether a sum over blocks of nodes counts g here. Not collective. */
 bool mpsi_share_counts(const mps_mpm *mpm, int64_t g);
 
 /* share.c: before the blocks are used: sorted or not, ghosts are those of the present ones. */
 mps_status mpsi_share_tidy(mps_mpm *mpm, const char *function, mps_status status);
-/* share.c: whether some rank has it. */
+/* agree.c: whether some rank has it. */
 mps_status mpsi_share_any(mps_mpm *mpm, const char *function, bool *any);
-/* share.c: what the callers of all ranks have edited. */
+/* agree.c: what the callers of all ranks have edited. */
 mps_status mpsi_share_agree(mps_mpm *mpm, const char *function, mps_status status);
 /* tiles.c: bytes of a parcel at most. Not collective. */
 int64_t mpsi_share_parcel(const mps_mpm *mpm);

@@ -181,8 +181,8 @@ static void add_cells(mps_mpm *mpm, int64_t b, int32_t worker) {
   }
 }
 
-void mpsi_mpm_mean_diagonals(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin,
-                             int64_t end, double (*diagonal)[MPSI_CHUNK]) {
+static void mean_diagonals(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin,
+                           int64_t end, double (*diagonal)[MPSI_CHUNK]) {
   const double *L[3];
   find_diagonal(mpm, L);
   for (int64_t k = begin; k < end; k++) {
@@ -203,9 +203,11 @@ void mpsi_mpm_mean_diagonals(const mps_mpm *mpm, const mpsi_cell_block *cells, i
 static void apply_laws(mps_mpm *mpm, int64_t b, int32_t worker) {
   mpsi_cell_block *cells = &mpm->grid.cells[b];
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
-    double *D[9];
+    const int64_t end = k + MPSI_CHUNK < cells->end ? k + MPSI_CHUNK : cells->end;
+    double *D[9], mean[3][MPSI_CHUNK];
     for (int c = 0; c < mpm->dim * mpm->dim; c++) D[c] = mpm->p.D[c] + k;
-    mpsi_mpm_apply_law(mpm, cells, k, k + MPSI_CHUNK < cells->end ? k + MPSI_CHUNK : cells->end, D);
+    mean_diagonals(mpm, cells, k, end, mean);
+    mpsi_mpm_apply_law(mpm, cells, k, end, D, mean);
   }
   if (!by_nodes(mpm)) mpm->kernels->speed(mpm, b, worker);
 }

@@ -288,16 +288,6 @@ void mpsi_mpm_move_holds(mps_mpm *mpm, double dt) {
   }
 }
 
-void mpsi_hold_add_impulse(mpsi_hold *hold, const double *impulse, const double *moment,
-                           double work, int64_t count) {
-  for (int c = 0; c < 3; c++) {
-    mpsi_exact_add(&hold->sums->step[MPSI_HOLD_IMPULSE + c], impulse[c]);
-    mpsi_exact_add(&hold->sums->step[MPSI_HOLD_MOMENT + c], moment[c]);
-  }
-  mpsi_exact_add(&hold->sums->step[MPSI_HOLD_WORK], work);
-  hold->count += count;
-}
-
 /* What the step before has added is part of all. */
 static void begin_sums(mpsi_hold *hold) {
   if (!hold->sums) return;

@@ -1,0 +1,30 @@
+/* ready.c - what comes before a step where the caller, the ranks or the particles have changed
+ * something: blocks of the present positions, masses, boundaries, the Courant limit.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "kernels.h"
+#include "particles.h"
+
+mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
+  return mpm->share ? mpsi_share_sort(mpm, function) : mpsi_mpm_sort_alone(mpm, function);
+}
+
+mps_status mpsi_mpm_tidy(mps_mpm *mpm, const char *function) {
+  mps_status status = mpsi_mpm_check_whole(mpm, function);
+  if (status == MPS_OK) status = mpsi_mpm_check_lost(mpm, function);
+  if (mpm->share) status = mpsi_share_agree(mpm, function, status);
+  if (status != MPS_OK || !mpm->run.edited) return status;
+  status = mpsi_mpm_check_masses(mpm, function);
+  if (mpm->share) status = mpsi_share_tidy(mpm, function, status);
+  if (status == MPS_OK && mpm->run.stale) status = mpsi_mpm_sort(mpm, function);
+  if (status == MPS_OK) status = mpsi_mpm_list_holds(mpm, function);
+  if (mpm->share) status = mpsi_domain_settle(mpm->share->domain, function, status);
+  if (status != MPS_OK) return status;
+  mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
+  mpm->run.edited = mpm->energy.springs_known = false;
+  return mpsi_mpm_collect_block_results(mpm, function);
+}
+
+mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function) {
+  const mps_status status = mpsi_mpm_between_steps(mpm, function);
+  return status == MPS_OK ? mpsi_mpm_tidy(mpm, function) : status;
+}
