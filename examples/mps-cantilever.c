@@ -85,22 +85,21 @@ static int run(app *a, const settings *s) {
   const elastic_method method = elastic_settings_method(&s->method);
   int64_t elements = (int64_t)ceil(48.0 * problem->length / problem->height);
   if (elements > 1000) elements = 1000;
-  bool done = output_directory(a, s->out);
+  bool done = app_agree(a, a->rank > 0 || output_directory(a, s->out));
   if (done && problem->clamped)
     done = q4_solve(problem, elements + 1, 49, &reference) || app_no_memory(a);
   printf("%s method, %lld x %lld particles, beam %.6g m x %.6g m\n",
          elastic_method_name(&s->method), (long long)s->nx, (long long)s->ny, problem->length,
          problem->height);
   app_leave_at_once(a, true); /* no hook reaches into the factorisation */
-  done = done &&
-         model_solve(a, problem, problem->clamped ? &reference : NULL, s->nx, s->ny, &method, &m);
+  done = app_agree(a, done && model_solve(a, problem, problem->clamped ? &reference : NULL, s->nx,
+                                          s->ny, &method, &m));
   app_leave_at_once(a, false);
-  done = done && results_write(&m, &method, s->out);
+  done = done && app_agree(a, a->rank > 0 || results_write(&m, &method, s->out));
   if (done) {
-    printf("%lld unknowns, %lld entries in the factor, factorised in %.3f s; reactions balance "
-           "the load to %.1e\n",
-           (long long)m.report.unknowns, (long long)m.report.factor_nonzeros,
-           m.report.seconds_factor, m.equilibrium);
+    printf("reactions balance the load to %.1e; %lld unknowns, ", m.equilibrium,
+           (long long)m.report.unknowns);
+    elastic_tell(a, &m.report);
     if (s->convergence) done = convergence_run(a, problem, s->nx, s->ny, s->out);
   }
   if (done) app_tell_results(a, s->out);
@@ -118,6 +117,6 @@ int main(int argc, char **argv) {
   app a;
   const int code = parse(&s, argc, argv);
   if (code >= 0) return code;
-  if (!app_start(&a, "mps-cantilever", s.threads)) return app_finish(&a, APP_FAILED);
+  if (!app_start_ranks(&a, "mps-cantilever", s.threads)) return app_finish(&a, APP_FAILED);
   return app_finish(&a, run(&a, &s));
 }

@@ -69,15 +69,15 @@ static int parse(settings *s, int argc, char **argv) {
 static int run(app *a, const settings *s) {
   plate p = {0};
   const elastic_method method = elastic_settings_method(&s->method);
-  bool done = output_directory(a, s->out);
+  bool done = app_agree(a, a->rank > 0 || output_directory(a, s->out));
   app_leave_at_once(a, true); /* no hook reaches into the factorisation */
-  done = done && plate_solve(a, &s->plate, &method, &p);
+  done = done && app_agree(a, plate_solve(a, &s->plate, &method, &p));
   app_leave_at_once(a, false);
-  done = done && plate_write(&p, &method, s->out);
+  done = done && app_agree(a, a->rank > 0 || plate_write(&p, &method, s->out));
   if (done) {
-    printf("%s method, %lld particles, %lld entries in the factor, factorised in %.3f s\n",
-           elastic_method_name(&s->method), (long long)mps_particles_count(p.particles),
-           (long long)p.report.factor_nonzeros, p.report.seconds_factor);
+    printf("%s method, %lld particles, ", elastic_method_name(&s->method),
+           (long long)mps_particles_count(p.particles));
+    elastic_tell(a, &p.report);
     app_tell_results(a, s->out);
     if (s->plate.hole)
       printf("stress concentration %.3f, theory 3: error %+.2f %% (stress error over the plate "
@@ -96,6 +96,6 @@ int main(int argc, char **argv) {
   app a;
   const int code = parse(&s, argc, argv);
   if (code >= 0) return code;
-  if (!app_start(&a, "mps-plate", s.threads)) return app_finish(&a, APP_FAILED);
+  if (!app_start_ranks(&a, "mps-plate", s.threads)) return app_finish(&a, APP_FAILED);
   return app_finish(&a, run(&a, &s));
 }

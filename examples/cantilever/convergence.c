@@ -102,7 +102,7 @@ bool convergence_run(app *a, const beam *problem, int64_t nx, int64_t ny, const 
     app_leave_at_once(a, true); /* no hook reaches into the factorisation */
     done = run_size(a, problem, ((nx - 1) << k) + 1, ((ny - 1) << k) + 1, row[k]);
     app_leave_at_once(a, false);
-    done = done && write_table(a, directory, k + 1, row);
+    done = app_agree(a, done && (a->rank > 0 || write_table(a, directory, k + 1, row)));
   }
-  return done && draw(a, directory);
+  return done && app_agree(a, a->rank > 0 || draw(a, directory));
 }

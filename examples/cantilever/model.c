@@ -59,7 +59,8 @@ static bool support_and_load(model *m, const elastic_method *method) {
   int64_t *list = malloc((size_t)m->ny * sizeof *list), count;
   double *values = malloc((size_t)m->ny * sizeof *values);
   beam problem = *m->problem;
-  bool done = list && values ? support_wall(m, method, list, values) : app_no_memory(m->a);
+  bool done = app_agree(m->a, (list && values) || app_no_memory(m->a)) &&
+              support_wall(m, method, list, values);
   done = done && app_check(m->a, mps_elastic_select_facets(m->elastic, 0, -1, NULL, NULL, m->ny,
                                                            list, &count));
   done = done && elastic_pull(m->a, m->elastic, count, list, end_traction, &problem);
@@ -128,8 +129,9 @@ bool model_solve(app *a, const beam *problem, const q4 *reference, int64_t nx, i
                  .nx = nx,
                  .ny = ny,
                  .spacing = problem->height / (double)ny};
-  return make_particles(out) && elastic_make(a, out->particles, method, &out->elastic) &&
-         support_and_load(out, method) && app_check(a, mps_elastic_solve(out->elastic)) &&
+  return app_agree(a, make_particles(out)) &&
+         elastic_make(a, out->particles, method, &out->elastic) && support_and_load(out, method) &&
+         app_check(a, mps_elastic_solve(out->elastic)) &&
          app_check(a, mps_elastic_stress(out->elastic)) &&
          app_check(a, mps_elastic_get_report(out->elastic, &out->report)) && find_errors(out);
 }

@@ -115,6 +115,7 @@ int app_finish(app *a, int code) {
     fflush(NULL);
     _exit(code);
   }
+  ranks_drop_solver(&a->equations);
   mps_domain_destroy(&a->domain);
   mps_context_destroy(&a->context);
   if (code == APP_OK && progress_interrupted()) {
@@ -169,7 +170,7 @@ void app_leave_at_once(const app *a, bool on) {
     snprintf(line, sizeof line, "%s: interrupted, written so far: %s", a->program, a->results);
   else
     snprintf(line, sizeof line, "%s: interrupted, nothing is written", a->program);
-  progress_leave_at_once(on ? line : NULL);
+  progress_leave_at_once(on && a->rank == 0 ? line : NULL); /* of several ranks, mpirun ends all */
 }
 
 /* ---- what was written ------------------------------------------------------------------------ */

@@ -48,25 +48,57 @@ void ranks_hush(void) {
 
 typedef mps_status (*join_fn)(mps_context *context, mps_domain **out);
 
-bool ranks_join(mps_context *context, mps_domain **out, char *why, size_t size) {
-  join_fn join = NULL;
-  *out = NULL;
+/* Puts the function of that name into *function. */
+static bool load(const char *name, void *function, char *why, size_t size) {
   /* MPI loads parts of itself, which look for its symbols among those of all */
   void *library = dlopen(RANKS_LIBRARY, RTLD_NOW | RTLD_GLOBAL);
-  void *symbol = library ? dlsym(library, "mps_petsc_domain_create_world") : NULL;
+  void *symbol = library ? dlsym(library, name) : NULL;
   if (!symbol) {
     const char *reason = dlerror();
     snprintf(why, size, "several ranks need libmps-petsc, which cannot be loaded: %s",
              reason ? reason : RANKS_LIBRARY);
     return false;
   }
-  memcpy(&join, &symbol, sizeof join);
+  memcpy(function, &symbol, sizeof symbol);
+  return true;
+}
+
+bool ranks_join(mps_context *context, mps_domain **out, char *why, size_t size) {
+  join_fn join = NULL;
+  *out = NULL;
+  if (!load("mps_petsc_domain_create_world", &join, why, size)) return false;
   const mps_status status = join(context, out);
   if (status != MPS_OK)
     snprintf(why, size, "the ranks cannot be joined: %s",
              mps_context_error(context)->status == status ? mps_context_error(context)->message
                                                           : mps_status_text(status));
   return status == MPS_OK && mps_domain_size(*out) == ranks_launched();
+}
+
+/* ---- equations ------------------------------------------------------------------------------- */
+
+typedef mps_status (*create_fn)(int32_t method, void **solver);
+typedef mps_status (*solve_fn)(void *solver, mps_elastic *elastic);
+typedef void (*destroy_fn)(void **solver);
+
+bool ranks_solve_elastic(mps_elastic *elastic, void **solver, char *why, size_t size) {
+  create_fn create = NULL;
+  solve_fn solve = NULL;
+  if (!load("mps_petsc_solver_create_world", &create, why, size) ||
+      !load("mps_petsc_solve_elastic", &solve, why, size))
+    return false;
+  const int32_t multigrid = 0; /* MPS_PETSC_MULTIGRID */
+  mps_status status = *solver ? MPS_OK : create(multigrid, solver);
+  if (status == MPS_OK) status = solve(*solver, elastic);
+  if (status != MPS_OK)
+    snprintf(why, size, "the ranks cannot solve together: %s", mps_status_text(status));
+  return status == MPS_OK;
+}
+
+void ranks_drop_solver(void **solver) {
+  destroy_fn destroy = NULL;
+  char why[300];
+  if (*solver && load("mps_petsc_solver_destroy", &destroy, why, sizeof why)) destroy(solver);
 }
 
 /* ---- threads --------------------------------------------------------------------------------- */

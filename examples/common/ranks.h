@@ -6,6 +6,7 @@
 #define EXAMPLES_RANKS_H
 
 #include <mps/domain.h>
+#include <mps/elastic.h>
 
 #include <stdbool.h>
 
@@ -17,6 +18,11 @@ void ranks_hush(void);
 
 /* Makes the domain of all ranks in `context`. False: in `why` what is in the way. */
 bool ranks_join(mps_context *context, mps_domain **out, char *why, size_t size);
+/* Has `elastic` solved by all ranks of its domain, by PETSc's multigrid; *solver is made at the
+ * first call, and goes with ranks_drop_solver after all that it solves for. False as above.
+ * Collective. */
+bool ranks_solve_elastic(mps_elastic *elastic, void **solver, char *why, size_t size);
+void ranks_drop_solver(void **solver);
 /* Threads for this rank: the processors that it may use, where others of its node may use the same
  * ones over their number. Collective. */
 mps_status ranks_threads(mps_domain *domain, int64_t *threads);

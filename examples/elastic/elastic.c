@@ -2,7 +2,10 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic.h"
 
+#include "common/ranks.h"
+
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 elastic_settings elastic_settings_defaults(void) {
@@ -19,10 +22,24 @@ elastic_method elastic_settings_method(const elastic_settings *s) {
 
 bool elastic_make(app *a, mps_particles *particles, const elastic_method *method,
                   mps_elastic **out) {
-  if (!method->published)
-    return app_check(a, mps_elastic_create(a->context, particles, &method->def, out));
-  return app_check(a, mps_experimental_elastic_published(a->context, particles, &method->def,
-                                                         method->constant, out));
+  mps_elastic_def def = method->def;
+  char why[300];
+  def.domain = a->domain;
+  const bool made = method->published
+                        ? app_check(a, mps_experimental_elastic_published(
+                                           a->context, particles, &def, method->constant, out))
+                        : app_check(a, mps_elastic_create(a->context, particles, &def, out));
+  if (!made || !a->domain) return made;
+  return ranks_solve_elastic(*out, &a->equations, why, sizeof why) || app_error(a, "%s", why);
+}
+
+void elastic_tell(const app *a, const mps_elastic_report *report) {
+  if (a->domain)
+    printf("%lld iterations of %d ranks, %.3f s\n", (long long)report->iterations,
+           (int)mps_domain_size(a->domain), report->seconds_solve);
+  else
+    printf("%lld entries in the factor, factorised in %.3f s\n", (long long)report->factor_nonzeros,
+           report->seconds_factor);
 }
 
 bool elastic_hold(app *a, mps_elastic *elastic, int32_t component, int64_t count,

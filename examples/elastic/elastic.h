@@ -26,6 +26,8 @@ elastic_method elastic_settings_method(const elastic_settings *s);
 /* The functions below are false after an error line. */
 bool elastic_make(app *a, mps_particles *particles, const elastic_method *method,
                   mps_elastic **out);
+/* Ends a line on what was solved with how. */
+void elastic_tell(const app *a, const mps_elastic_report *report);
 /* Prescribes component `component` of `count` particles: values[i], m, or 0 (values NULL). */
 bool elastic_hold(app *a, mps_elastic *elastic, int32_t component, int64_t count,
                   const int64_t *ids, const double *values);

@@ -93,7 +93,10 @@ static bool support_and_load(plate *p, const elastic_method *method) {
   const int64_t room =
       n > mps_elastic_facet_count(p->elastic) ? n : mps_elastic_facet_count(p->elastic);
   int64_t *list = malloc((size_t)room * sizeof *list);
-  if (!list) return app_no_memory(p->a);
+  if (!app_agree(p->a, list || app_no_memory(p->a))) {
+    free(list);
+    return false;
+  }
   bool done = slide(p, method, 0, p->wall, list, room) && pull(p, 0, list, room);
   if (p->def->hole) {
     done = done && slide(p, method, 1, 0.0, list, room) && pull(p, 1, list, room);
@@ -190,8 +193,9 @@ static bool find_errors(plate *p) {
 
 bool plate_solve(app *a, const plate_def *def, const elastic_method *method, plate *out) {
   *out = (plate){.a = a, .def = def};
-  return make_particles(out) && elastic_make(a, out->particles, method, &out->elastic) &&
-         support_and_load(out, method) && app_check(a, mps_elastic_solve(out->elastic)) &&
+  return app_agree(a, make_particles(out)) &&
+         elastic_make(a, out->particles, method, &out->elastic) && support_and_load(out, method) &&
+         app_check(a, mps_elastic_solve(out->elastic)) &&
          app_check(a, mps_elastic_stress(out->elastic)) &&
          app_check(a, mps_elastic_get_report(out->elastic, &out->report)) && find_errors(out);
 }

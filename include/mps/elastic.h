@@ -29,6 +29,7 @@
 #ifndef LIBMPS_ELASTIC_H
 #define LIBMPS_ELASTIC_H
 
+#include "domain.h"
 #include "io.h"
 #include "kernel.h"
 #include "material.h"
@@ -76,6 +77,7 @@ typedef struct mps_elastic_def {
                              radius_ratio; kept alive; NULL (default): re/r - 1 */
   double bending; /* [0, 1], of a cell's own stiffness against bending, without which n cells lack
                      1/n^2; NaN (default): 1 in bodies of several materials, 0 of a single one */
+  mps_domain *domain; /* ranks that solve together: mps/elastic_solver.h; NULL (default): none */
 } mps_elastic_def;
 
 MPS_API mps_status mps_elastic_def_init(mps_elastic_def *def, size_t size);
@@ -138,8 +140,7 @@ typedef struct mps_elastic_boundary_def {
   int32_t reserved;
   double normal[3];      /* ROLLER: any length > 0 */
   const double *values;  /* m, copied: PRESCRIBED 3 a particle of `ids`, ROLLER 1; NULL: 0 */
-  mps_signal *signal[3]; /* by component; ROLLER: signal[0], along `normal`; NULL: holds. Kept
-                            alive */
+  mps_signal *signal[3]; /* kept alive; by component; ROLLER: [0], along `normal`; NULL: holds */
   double factor[3];      /* finite, default 1 */
 } mps_elastic_boundary_def;
 
@@ -171,8 +172,7 @@ static inline mps_status mps_elastic_get_reaction(mps_elastic *e, int32_t number
 }
 
 /* ---- facets ---------------------------------------------------------------------------------- */
-/** The body's surface is made of facets, faces of cells that no neighbour shares, numbered from 0,
- *  anew when particles are removed. */
+/** The surface is made of facets, faces that no neighbour shares, from 0, anew after a removal. */
 MPS_API int64_t mps_elastic_facet_count(const mps_elastic *e);
 /** Facets with outward normal `side` * `axis` (side 0: every facet) whose centre lies in the box
  *  [lo, hi] (dim values, infinities allowed; NULL: everywhere), ascending. Writes at most

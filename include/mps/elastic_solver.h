@@ -7,8 +7,11 @@
  * ones. A is K, in motions K plus a multiple of the masses; it changes with supports, material and
  * step.
  *
- * Several processes may solve one equation together: each has the whole body and calls the same
- * functions in the same order, but assembles and hands out only its part of the rows.
+ * The ranks of a domain (mps_elastic_def.domain) may solve one equation together: each has the
+ * whole body, but assembles and hands out only its part of the rows. Before each call of a callback
+ * they agree that all are well: where one of them fails, none calls it. With a domain all functions
+ * of mps/elastic.h are collective but those that get, select, count or add up, and
+ * mps_elastic_stress; mps_elastic_save writes one file, by rank 0. The domain is kept alive.
  *
  * Thread rule: as mps/elastic.h; the callbacks are called by the thread that solves, outside of the
  * context's executor. SPDX-License-Identifier: BSD-3-Clause */

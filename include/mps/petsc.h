@@ -73,9 +73,9 @@ MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solve_fluid(mps_petsc_solver *s
                                                              mps_fluid *fluid, int64_t least);
 
 /** Has the equations of implicit elasticity solved by `solver`, as mps_elastic_set_solver. With a
- *  solver of several processes each has the whole body, made in the same way, and calls the same
- *  functions of `elastic` in the same order; each assembles its part of the matrix, and all receive
- *  the same displacements, which depend on the number of processes within the tolerance. */
+ *  solver of several processes these must be the ranks of the body's domain, in the same order
+ *  (MPS_ERROR_ARGUMENT): each has the whole body and assembles its part of the matrix, and all
+ *  receive the same displacements, which depend on their number within the tolerance. */
 MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solve_elastic(mps_petsc_solver *solver,
                                                                mps_elastic *elastic);
 

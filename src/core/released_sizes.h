@@ -22,7 +22,7 @@
   X(mps_dynamics_load_def, mps_dynamics_load_def_init, "0.2", 176) \
   X(mps_dynamics_predict_def, mps_dynamics_predict_def_init, "0.2", 64) \
   X(mps_elastic_boundary_def, mps_elastic_boundary_def_init, "0.2", 160) \
-  X(mps_elastic_def, mps_elastic_def_init, "0.2", 96) \
+  X(mps_elastic_def, mps_elastic_def_init, "0.2", 104) \
   X(mps_elastic_load_def, mps_elastic_load_def_init, "0.2", 120) \
   X(mps_elastic_motion_def, mps_elastic_motion_def_init, "0.2", 96) \
   X(mps_elastic_solver_def, mps_elastic_solver_def_init, "0.2", 40) \

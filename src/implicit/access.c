@@ -11,13 +11,21 @@ mps_status mpsi_elastic_enter(mps_elastic *e, const char *function) {
   mps_status status = mpsi_guard_check(&e->guard, e->context, function);
   if (status == MPS_OK) status = mpsi_particles_ready(e->particles, function);
   if (status == MPS_OK) mpsi_guard_enter(&e->guard, e->context, function);
+  e->agreed = false;
+  return status;
+}
+
+mps_status mpsi_elastic_settle(mps_elastic *e, const char *function, mps_status status) {
+  if (e->agreed || !mpsi_domain_many(e->def.domain)) return status;
+  status = mpsi_domain_settle(e->def.domain, function, status);
+  e->agreed = status != MPS_OK;
   return status;
 }
 
 mps_status mpsi_elastic_leave(mps_elastic *e, mps_status status) {
   mpsi_guard_end(&e->guard);
   e->within = false;
-  return status;
+  return mpsi_elastic_settle(e, "mps_elastic", status);
 }
 
 mps_status mpsi_elastic_check_between(const mps_elastic *e, const char *function) {

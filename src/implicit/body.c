@@ -120,32 +120,39 @@ mps_status mps_elastic_set_material(mps_elastic *e, const mps_material *material
   return mpsi_elastic_leave(e, status);
 }
 
-mps_status mps_elastic_cut(mps_elastic *e, int32_t axis, int32_t side, int64_t count,
-                           const int64_t *ids) {
-  if (!e) return MPS_ERROR_ARGUMENT;
+/* Can the surface pass through these particles? */
+static mps_status check_cut(const mps_elastic *e, const char *function, int32_t axis, int32_t side,
+                            int64_t count, const int64_t *ids) {
   if (axis < 0 || axis >= e->dim || (side != -1 && side != 1))
-    return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
                      "axis is %d and side %d, allowed are 0..%d and -1 or 1", axis, side,
                      e->dim - 1);
   if (count < 0 || (count > 0 && !ids))
-    return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
                      "count is %lld (must be >= 0) or ids is NULL", (long long)count);
-  mps_status status = mpsi_elastic_enter(e, __func__);
-  if (status != MPS_OK) return status;
-  (void)mpsi_elastic_leave(e, status);
   const int32_t k = e->links.face[axis][side > 0];
   for (int64_t i = 0; i < count; i++) {
     const int64_t found = mpsi_elastic_find(e, ids[i]);
     if (found < 0)
-      return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
+      return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
                        "ids[%lld] is %lld: no particle of the solver has that id", (long long)i,
                        (long long)ids[i]);
     if (e->links.to[found * e->links.count + k] >= 0)
-      return mpsi_fail(e->context, __func__, MPS_ERROR_STATE,
+      return mpsi_fail(e->context, function, MPS_ERROR_STATE,
                        "particle %lld has a neighbour on side %d of %c: no surface can pass "
                        "through it there",
                        (long long)ids[i], side, "xyz"[axis]);
   }
+  return MPS_OK;
+}
+
+mps_status mps_elastic_cut(mps_elastic *e, int32_t axis, int32_t side, int64_t count,
+                           const int64_t *ids) {
+  if (!e) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_elastic_enter(e, __func__);
+  if (status != MPS_OK) return status;
+  status = mpsi_elastic_leave(e, check_cut(e, __func__, axis, side, count, ids));
+  if (status != MPS_OK) return status;
   mpsi_elastic_end_motion(e); /* its masses are no longer those of the cells */
   mpsi_free(e->context, e->mass);
   e->mass = NULL;

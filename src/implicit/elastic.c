@@ -44,6 +44,7 @@ static mps_status check_numbers(mps_context *context, const char *function,
                      "iterations is %lld, must be >= 0 (0: default)", (long long)def->iterations);
   status = check_range(context, function, "measure", def->measure, MPSI_ELASTIC_LEAST,
                        MPSI_ELASTIC_MOST);
+  if (status == MPS_OK) status = mpsi_domain_check(context, function, def->domain);
   if (status == MPS_OK) status = check_range(context, function, "alpha", def->alpha, 0.03, 100.0);
   if (status == MPS_OK && !isnan(def->bending))
     status = check_range(context, function, "bending", def->bending, 0.0, 1.0);
@@ -107,6 +108,7 @@ void mps_elastic_destroy(mps_elastic **elastic) {
   mpsi_elastic_free_body(e);
   mps_kernel_destroy(&e->def.kernel);
   mps_material_destroy(&e->def.material);
+  mps_domain_destroy(&e->def.domain);
   mpsi_particles_release(e->particles, &e->holder);
   mpsi_free(context, e);
   mpsi_context_release(context);
@@ -148,6 +150,20 @@ static mps_status refuse_positions(void *self, const char *function, const char 
       "positions: write the former ones back, or destroy it first");
 }
 
+/* Do ranks that solve together have the same body and definition? */
+static mps_status agree_on_body(const mps_elastic_def *def, const char *function, mps_status status,
+                                mps_particles *particles) {
+  const double numbers[] = {def->state,   def->solver,      def->radius_ratio,
+                            def->alpha,   def->measure,     def->tolerance,
+                            def->bending, def->refinements, def->kernel ? 1.0 : 0.0};
+  if (!mpsi_domain_many(def->domain)) return status;
+  status =
+      mpsi_domain_settle_numbers(def->domain, function, status, "a hash of the solver's definition",
+                                 sizeof numbers / sizeof *numbers, numbers);
+  return status == MPS_OK ? mpsi_domain_settle_particles(def->domain, function, status, particles)
+                          : status;
+}
+
 mps_status mpsi_elastic_create(mps_context *context, const char *function, mps_particles *particles,
                                const mps_elastic_def *user_def, bool published, bool constant,
                                mps_elastic **out) {
@@ -164,14 +180,16 @@ mps_status mpsi_elastic_create(mps_context *context, const char *function, mps_p
   mps_status status = read_def(context, function, user_def, mps_particles_dim(particles),
                                mps_particles_spacing(particles), published, &def);
   if (status == MPS_OK) status = mpsi_particles_check_hold(particles, function, MPSI_USE_FIX);
-  if (status != MPS_OK) return status;
-  mpsi_backup backup;
-  status = mpsi_particles_back_up(particles, function, &backup);
-  if (status != MPS_OK) return status;
-  mps_elastic *e = mpsi_alloc(context, 1, sizeof *e);
-  if (!e) {
+  mpsi_backup backup = {0};
+  mps_elastic *e = NULL;
+  if (status == MPS_OK) status = mpsi_particles_back_up(particles, function, &backup);
+  if (status == MPS_OK && !(e = mpsi_alloc(context, 1, sizeof *e)))
+    status = mpsi_fail_memory(context, function, sizeof *e);
+  status = agree_on_body(&def, function, status, particles);
+  if (status != MPS_OK) {
     mpsi_backup_drop(particles, &backup);
-    return mpsi_fail_memory(context, function, sizeof *e);
+    mpsi_free(context, e);
+    return status;
   }
   e->context = mpsi_context_retain(context);
   e->particles = particles;
@@ -185,13 +203,14 @@ mps_status mpsi_elastic_create(mps_context *context, const char *function, mps_p
   e->def = def;
   if (def.kernel) e->def.kernel = mpsi_kernel_retain(def.kernel);
   if (def.material) e->def.material = mpsi_material_retain(def.material);
+  e->def.domain = mpsi_domain_retain(def.domain);
   e->conservative = !published;
   e->constant = constant;
   e->dim = mps_particles_dim(particles);
   e->modes = e->dim == 2 ? 3 : 6;
   e->n = mps_particles_count(particles);
   e->spacing = mps_particles_spacing(particles);
-  status = build(e, function);
+  status = mpsi_domain_settle(def.domain, function, build(e, function));
   if (status != MPS_OK) {
     mpsi_particles_go_back(particles, &backup);
     mps_elastic_destroy(&e);

@@ -24,6 +24,7 @@
 #include "core/guard.h"
 #include "core/internal.h"
 #include "core/state.h"
+#include "domain/domain_internal.h"
 
 #include <mps/elastic_solver.h>
 
@@ -149,6 +150,7 @@ struct mps_elastic {
   bool constant;      /* published: divided by n0, else by n_i */
   mpsi_guard guard;   /* of the public function that is at work */
   bool within;        /* it is not between steps */
+  bool agreed;        /* of several ranks: the error of this function is that of all */
   int64_t *id;        /* of each particle, ascending */
   int64_t n;
   double spacing;
@@ -381,6 +383,9 @@ mps_status mpsi_elastic_create(mps_context *context, const char *function, mps_p
 /* MPS_ERROR_STATE when called back from the solver; from then to `leave` it is busy. */
 mps_status mpsi_elastic_enter(mps_elastic *e, const char *function);
 mps_status mpsi_elastic_leave(mps_elastic *e, mps_status status);
+/* Of several ranks: an error of one is that of all. A rank comes to the same calls as the others,
+ * up to the first that returns an error; leaving is the last of them. */
+mps_status mpsi_elastic_settle(mps_elastic *e, const char *function, mps_status status);
 /* For what only reads, but needs the scratch arrays: refused within a step. */
 mps_status mpsi_elastic_check_between(const mps_elastic *e, const char *function);
 /* The rank of an id, or -1; and ids in their order. */

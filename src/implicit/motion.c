@@ -356,7 +356,7 @@ mps_status mps_elastic_step(mps_elastic *e, int64_t count) {
   if (status != MPS_OK) return mpsi_elastic_leave(e, status);
   const int64_t before = e->motion->steps;
   for (int64_t k = 0; k < count && status == MPS_OK; k++) {
-    status = ask_cancel(e, __func__);
+    status = mpsi_elastic_settle(e, __func__, ask_cancel(e, __func__));
     if (status == MPS_OK)
       status = advance(e, __func__, e->motion->dt, e->motion->time + e->motion->dt);
   }
@@ -382,7 +382,7 @@ mps_status mps_elastic_run(mps_elastic *e, double t_end, int64_t every, mps_elas
   for (int64_t k = 0; k <= steps && status == MPS_OK; k++) {
     if (k > 0) {
       const double time = k == steps ? t_end : begin + (t_end - begin) * (double)k / (double)steps;
-      status = ask_cancel(e, __func__);
+      status = mpsi_elastic_settle(e, __func__, ask_cancel(e, __func__));
       if (status == MPS_OK) status = advance(e, __func__, (t_end - begin) / (double)steps, time);
     }
     if (status == MPS_OK && k % (1 + steps / 100) == 0)

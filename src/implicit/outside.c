@@ -81,6 +81,7 @@ static mps_status hand_matrix(mps_elastic *e, const char *function, double shift
   double *mode = mpsi_alloc(e->context, e->modes * rows, sizeof *mode);
   mps_status status = mode ? MPS_OK : mpsi_fail_memory(e->context, function, (size_t)rows * 48);
   if (status == MPS_OK) status = mpsi_elastic_assemble_rows(e, function, shift, &a);
+  status = mpsi_elastic_settle(e, function, status); /* before ranks wait for one another */
   if (status == MPS_OK) {
     fill_modes(e, from, to, mode);
     const mps_elastic_matrix matrix = {.all = e->n * d,
@@ -97,6 +98,7 @@ static mps_status hand_matrix(mps_elastic *e, const char *function, double shift
     if (status != MPS_OK)
       status = mpsi_fail(e->context, function, status,
                          "the callback matrix of mps_elastic_set_solver returned %d", (int)status);
+    status = mpsi_elastic_settle(e, function, status);
   }
   mpsi_free(e->context, mode);
   mpsi_free(e->context, a.start);
@@ -148,7 +150,9 @@ mps_status mpsi_elastic_solve_outside(mps_elastic *e, const char *function, doub
   const int64_t words = 3 * e->n * e->dim;
   mps_status status = MPS_OK;
   if (mpsi_cancelled(e->context))
-    return mpsi_fail(e->context, function, MPS_ERROR_CANCELLED, "cancelled before the solution");
+    status = mpsi_fail(e->context, function, MPS_ERROR_CANCELLED, "cancelled before the solution");
+  status = mpsi_elastic_settle(e, function, status);
+  if (status != MPS_OK) return status;
   if (!o->valid || o->shift != shift) {
     o->valid = false;
     status = hand_matrix(e, function, shift);
@@ -156,8 +160,10 @@ mps_status mpsi_elastic_solve_outside(mps_elastic *e, const char *function, doub
     o->valid = true, o->shift = shift;
   }
   double *work = mpsi_alloc(e->context, words, sizeof *work);
-  if (!work) return mpsi_fail_memory(e->context, function, (size_t)words * sizeof *work);
-  status = solve(e, function, rhs, solution, work);
+  if (!work) status = mpsi_fail_memory(e->context, function, (size_t)words * sizeof *work);
+  status = mpsi_elastic_settle(e, function, status);
+  if (status == MPS_OK)
+    status = mpsi_elastic_settle(e, function, solve(e, function, rhs, solution, work));
   if (status == MPS_OK) {
     const double left = residual(e, shift, rhs, solution, work);
     if (!(left <= 1.01 * e->def.tolerance + ROUNDING))

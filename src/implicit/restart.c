@@ -101,6 +101,16 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_add_table(s, "held", &table_of_held);
 }
 
+static mps_status settle(void *solver, const char *function, mps_status status) {
+  return mpsi_domain_settle(((mps_elastic *)solver)->def.domain, function, status);
+}
+
+static mps_status have_read(void *solver, const char *function, mps_status status,
+                            mps_snapshot *values) {
+  (void)values; /* every rank keeps all of them */
+  return settle(solver, function, status);
+}
+
 static mpsi_state_of state_of(mps_elastic *e) {
   return (mpsi_state_of){.solver = e,
                          .name = "implicit elasticity",
@@ -109,6 +119,8 @@ static mpsi_state_of state_of(mps_elastic *e) {
                          .identity = &e->identity,
                          .list = list_state,
                          .prepare = mpsi_elastic_prepare_state,
+                         .settle = settle,
+                         .take_share = have_read,
                          .bind = mpsi_elastic_bind,
                          .time = mps_elastic_time(e),
                          .dt = mps_elastic_dt(e),
@@ -132,7 +144,8 @@ mps_status mps_elastic_snapshot(mps_elastic *e, mps_snapshot **snapshot) {
   if (!e) return MPS_ERROR_ARGUMENT;
   const mpsi_state_of of = state_of(e);
   const mps_status status = check(e, __func__, false);
-  return status == MPS_OK ? mpsi_state_snapshot(&of, __func__, snapshot) : status;
+  return settle(e, __func__,
+                status == MPS_OK ? mpsi_state_snapshot(&of, __func__, snapshot) : status);
 }
 
 mps_status mps_elastic_rollback(mps_elastic *e, const mps_snapshot *snapshot) {
@@ -145,8 +158,10 @@ mps_status mps_elastic_rollback(mps_elastic *e, const mps_snapshot *snapshot) {
 mps_status mps_elastic_save(mps_elastic *e, const char *path, const mps_checkpoint *info) {
   if (!e) return MPS_ERROR_ARGUMENT;
   const mpsi_state_of of = state_of(e);
-  const mps_status status = check(e, __func__, false);
-  return status == MPS_OK ? mpsi_checkpoint_save(&of, __func__, path, info) : status;
+  mps_status status = check(e, __func__, false);
+  if (status == MPS_OK && mps_domain_rank(e->def.domain) <= 0) /* all ranks have the same */
+    status = mpsi_checkpoint_save(&of, __func__, path, info);
+  return settle(e, __func__, status);
 }
 
 mps_status mps_elastic_restore(mps_elastic *e, const char *path, mps_checkpoint *info) {

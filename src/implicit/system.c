@@ -331,20 +331,27 @@ static mps_status solve_cases(mps_elastic *e, const char *function, int64_t coun
   return status;
 }
 
-mps_status mps_elastic_solve_cases(mps_elastic *e, int64_t count, const double *loads,
-                                   double *displacements) {
-  if (!e) return MPS_ERROR_ARGUMENT;
+static mps_status check_cases(const mps_elastic *e, const char *function, int64_t count,
+                              const double *loads, const double *displacements) {
   if (count < 0 || (count > 0 && (!loads || !displacements)))
-    return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
                      "count is %lld (must be >= 0) or an array is NULL", (long long)count);
   for (int64_t k = 0; k < count * e->n * 3; k++)
     if (k % 3 < e->dim && !isfinite(loads[k]))
-      return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
+      return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
                        "loads[%lld] is %g, must be finite (N)", (long long)k, loads[k]);
+  return MPS_OK;
+}
+
+mps_status mps_elastic_solve_cases(mps_elastic *e, int64_t count, const double *loads,
+                                   double *displacements) {
+  if (!e) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;
   e->within = true;
-  return mpsi_elastic_leave(e, solve_cases(e, __func__, count, loads, displacements));
+  status = check_cases(e, __func__, count, loads, displacements);
+  if (status == MPS_OK) status = solve_cases(e, __func__, count, loads, displacements);
+  return mpsi_elastic_leave(e, status);
 }
 
 mps_status mps_elastic_get_report_sized(const mps_elastic *e, mps_elastic_report *out,

@@ -12,6 +12,13 @@
 #define MOST 1000 /* iterations */
 #define WEAK 0.05 /* entries below this part of their diagonals bind no unknowns together */
 
+/* The worst status of all processes: before what they do together. */
+static mps_status agree(MPI_Comm communicator, mps_status status) {
+  int worst = (int)status;
+  const int lost = MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_INT, MPI_MAX, communicator);
+  return lost ? MPS_ERROR_IO : (mps_status)worst;
+}
+
 /* ---- life ------------------------------------------------------------------------------------ */
 
 static bool configure(mps_petsc_solver *s) {
@@ -45,10 +52,8 @@ static mps_status create(int32_t method, MPI_Comm communicator, mps_petsc_solver
   s->counts = calloc(2 * (size_t)s->size, sizeof *s->counts);
   s->places = s->counts ? s->counts + s->size : NULL;
   *out = s;
-  if (!s->counts)
-    status = MPS_ERROR_MEMORY;
-  else if (!configure(s))
-    status = MPS_ERROR_UNSUPPORTED;
+  status = agree(s->comm, s->counts ? MPS_OK : MPS_ERROR_MEMORY);
+  if (status == MPS_OK) status = agree(s->comm, configure(s) ? MPS_OK : MPS_ERROR_UNSUPPORTED);
   if (status != MPS_OK) mps_petsc_solver_destroy(out);
   return status;
 }
@@ -96,22 +101,27 @@ void mps_petsc_solver_destroy(mps_petsc_solver **solver) {
 
 /* ---- matrix ---------------------------------------------------------------------------------- */
 
-/* PETSc copies the three arrays; its integers may not be ours. */
-static bool fill(Mat matrix, const mpsi_petsc_matrix *a) {
+/* The rows with PETSc's integers, which may not be ours. */
+typedef struct indices {
+  PetscInt *start, *column;
+} indices;
+
+static mps_status convert(const mpsi_petsc_matrix *a, indices *x) {
   const int64_t entries = a->start[a->rows];
-  PetscInt *start = malloc((size_t)(a->rows + 1) * sizeof *start);
-  PetscInt *column = malloc((size_t)(entries + 1) * sizeof *column);
-  if (start && column) {
-    for (int64_t i = 0; i <= a->rows; i++) start[i] = (PetscInt)a->start[i];
-    for (int64_t k = 0; k < entries; k++) column[k] = (PetscInt)a->column[k];
-  }
-  /* Of the two the one that is not of the matrix's type does nothing. */
-  const bool good = start && column &&
-                    MatSeqAIJSetPreallocationCSR(matrix, start, column, a->value) == 0 &&
-                    MatMPIAIJSetPreallocationCSR(matrix, start, column, a->value) == 0;
-  free(start);
-  free(column);
-  return good;
+  if (entries > PETSC_MAX_INT) return MPS_ERROR_UNSUPPORTED;
+  x->start = malloc((size_t)(a->rows + 1) * sizeof *x->start);
+  x->column = malloc((size_t)(entries + 1) * sizeof *x->column);
+  if (!x->start || !x->column) return MPS_ERROR_MEMORY;
+  for (int64_t i = 0; i <= a->rows; i++) x->start[i] = (PetscInt)a->start[i];
+  for (int64_t k = 0; k < entries; k++) x->column[k] = (PetscInt)a->column[k];
+  return MPS_OK;
+}
+
+/* PETSc copies the three arrays. Of the two the one that is not of the matrix's type does nothing.
+ */
+static bool fill(Mat matrix, const indices *x, const double *value) {
+  return MatSeqAIJSetPreallocationCSR(matrix, x->start, x->column, value) == 0 &&
+         MatMPIAIJSetPreallocationCSR(matrix, x->start, x->column, value) == 0;
 }
 
 /* Orthonormal, as PETSc wants null spaces; motions that supports leave nothing of are left out. */
@@ -159,8 +169,7 @@ static bool share_places(mps_petsc_solver *s, const mpsi_petsc_matrix *a) {
          MPI_Allgather(&own[1], 1, MPI_INT, s->places, 1, MPI_INT, s->comm) == 0;
 }
 
-mps_status mpsi_petsc_take(mps_petsc_solver *s, const mpsi_petsc_matrix *a) {
-  if (a->start[a->rows] > PETSC_MAX_INT) return MPS_ERROR_UNSUPPORTED;
+static bool make_matrix(mps_petsc_solver *s, const mpsi_petsc_matrix *a, const indices *x) {
   const PetscInt rows = (PetscInt)a->rows, all = (PetscInt)a->all, block = (PetscInt)a->block;
   const int64_t former = s->all;
   drop(s);
@@ -168,15 +177,23 @@ mps_status mpsi_petsc_take(mps_petsc_solver *s, const mpsi_petsc_matrix *a) {
   bool good =
       MatCreate(s->comm, &s->matrix) == 0 && MatSetSizes(s->matrix, rows, rows, all, all) == 0 &&
       MatSetType(s->matrix, s->size > 1 ? MATMPIAIJ : MATSEQAIJ) == 0 &&
-      MatSetBlockSize(s->matrix, block) == 0 && fill(s->matrix, a) &&
+      MatSetBlockSize(s->matrix, block) == 0 && fill(s->matrix, x, a->value) &&
       MatSetOption(s->matrix, MAT_SPD, PETSC_TRUE) == 0 && (a->modes == 0 || add_modes(s, a)) &&
       make_vector(s, a, &s->x) && make_vector(s, a, &s->b) && share_places(s, a);
   if (good && (a->all != former || a->rows != s->rows)) {
     s->first_count = 0; /* what GAMG keeps after a reset is of the former size */
     good = KSPDestroy(&s->ksp) == 0 && configure(s);
   }
-  good = good && KSPSetOperators(s->ksp, s->matrix, s->matrix) == 0;
-  if (!good) return MPS_ERROR_MEMORY;
+  return good && KSPSetOperators(s->ksp, s->matrix, s->matrix) == 0;
+}
+
+mps_status mpsi_petsc_take(mps_petsc_solver *s, const mpsi_petsc_matrix *a) {
+  indices x = {NULL, NULL};
+  mps_status status = agree(s->comm, convert(a, &x));
+  if (status == MPS_OK) status = agree(s->comm, make_matrix(s, a, &x) ? MPS_OK : MPS_ERROR_MEMORY);
+  free(x.start);
+  free(x.column);
+  if (status != MPS_OK) return status;
   s->fresh = false;
   s->all = a->all, s->first = a->first, s->rows = a->rows;
   return MPS_OK;

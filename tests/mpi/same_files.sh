@@ -35,6 +35,19 @@ same dam water.vtkhdf mps-dam-break --h 0.005715 --duration 0.1 --frames 4 --eve
 same limit "" mps-stability --radius 1.6
 same study "" mps-stability --study --method linear --duration 0.1
 
+# Implicit elasticity comes as close as its tolerance: the deflection of every particle to 1e-8.
+if [ -x "$programs/mps-cantilever" ]; then
+  "$programs/mps-cantilever" --nx 65 --ny 33 --out "$work/beam-1" >/dev/null
+  # shellcheck disable=SC2086
+  timeout 100 $mpirun -n 2 "$programs/mps-cantilever" --nx 65 --ny 33 --out "$work/beam-2" >"$work/beam"
+  has "$work/beam" "iterations of 2 ranks"
+  [ "$(ls "$work/beam-1")" = "$(ls "$work/beam-2")" ] || fail "files of the beam"
+  paste -d, "$work/beam-1/deflection.csv" "$work/beam-2/deflection.csv" | awk -F, '
+    NR > 1 { d = $3 - $8; if (d < 0) d = -d; if (d > most) most = d; if ($3 < least) least = $3 }
+    END { print "deflections apart by", most, "of", -least; exit !(NR > 60 && most < -1e-8 * least) }' ||
+    fail "deflections of the beam"
+fi
+
 # alone NAME OPTION...
 alone() {
   name=$1

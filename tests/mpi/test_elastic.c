@@ -6,6 +6,7 @@
 #include <mps/petsc.h>
 
 static mps_context *own;
+static mps_domain *domain;
 static mps_petsc_solver *solvers[2]; /* by method */
 
 /* A stepped block of two materials, held below, sliding along an inclined plane on one side. */
@@ -15,6 +16,7 @@ static test_body block(int dim, mps_petsc_solver *solver) {
   test_body_box(&b, 0, 1, 0, 1.5, 2, 1);
   mps_elastic_def def = mps_elastic_defaults();
   def.tolerance = 1e-11;
+  if (solver) def.domain = domain;
   test_body_finish(&b, 1.0, 0.3, &def);
   mps_edit young;
   mps_assert_ok(own, mps_particles_edit(b.particles, "young", &young));
@@ -110,6 +112,7 @@ static void a_solver_is_taken_out_again(void **state) {
 
 int main(void) {
   own = test_context(MPS_EXECUTOR_SERIAL, 1);
+  if (mps_petsc_domain_create_world(own, &domain) != MPS_OK) return 1;
   for (int32_t k = 0; k < 2; k++)
     if (mps_petsc_solver_create_world(k, &solvers[k]) != MPS_OK) return 1;
   const struct CMUnitTest tests[] = {
@@ -119,6 +122,7 @@ int main(void) {
   };
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   for (int k = 0; k < 2; k++) mps_petsc_solver_destroy(&solvers[k]);
+  mps_domain_destroy(&domain);
   mps_context_destroy(&own);
   return failed;
 }

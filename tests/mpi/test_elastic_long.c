@@ -8,6 +8,7 @@
 #define ROWS 500
 
 static mps_context *own;
+static mps_domain *domain;
 static mps_petsc_solver *solver;
 
 static void a_plate_of_a_million_unknowns(void **state) {
@@ -16,7 +17,9 @@ static void a_plate_of_a_million_unknowns(void **state) {
   test_body b = test_body_begin(own, 2, 1.0);
   mps_elastic_report report;
   test_body_box(&b, 0, 0, 0, COLUMNS, ROWS, 0);
-  test_body_finish(&b, young, nu, NULL);
+  mps_elastic_def def = mps_elastic_defaults();
+  def.domain = domain;
+  test_body_finish(&b, young, nu, &def);
   int64_t count, corner, *ids = test_select(&b, 0, -1, 0.6, &count);
   corner = ids[0];
   mps_assert_ok(own, test_prescribe(b.elastic, 0, count, ids, NULL));
@@ -56,10 +59,12 @@ static void a_plate_of_a_million_unknowns(void **state) {
 
 int main(void) {
   own = test_context(MPS_EXECUTOR_SERIAL, 1);
+  if (mps_petsc_domain_create_world(own, &domain) != MPS_OK) return 1;
   if (mps_petsc_solver_create_world(MPS_PETSC_MULTIGRID, &solver) != MPS_OK) return 1;
   const struct CMUnitTest tests[] = {cmocka_unit_test(a_plate_of_a_million_unknowns)};
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   mps_petsc_solver_destroy(&solver);
+  mps_domain_destroy(&domain);
   mps_context_destroy(&own);
   return failed;
 }
