@@ -50,32 +50,10 @@ bool mpsi_fluid_any_afloat(const mps_fluid *f) {
 
 /* ---- one body -------------------------------------------------------------------------------- */
 
-/* m: half its circumference over pi. */
-static double length_of(const mpsi_fluid_body *body, const mps_fluid *f) {
-  double sum = 0.0;
-  for (int k = 0; k < body->faces; k++) sum += f->wall[body->first + k].length;
-  return sum / 6.283185307179586;
-}
-
 /* Masses by component, kg a metre of thickness. */
 static void masses(const mpsi_fluid_body *body, double length, double *mass) {
   mass[0] = mass[1] = body->body->def.mass;
   mass[2] = body->body->def.inertia[2] / (length * length);
-}
-
-/* Where the body is at the end of a step with the accelerations `rate`. */
-void mpsi_fluid_drift(const mps_fluid *f, mpsi_fluid_body *body, double dt) {
-  const mps_body_def *def = &body->body->def;
-  mpsi_fluid_pose *p = &body->next;
-  for (int c = 0; c < 2; c++) {
-    p->v[c] = (p->v[c] + dt * body->rate[c]) / (1.0 + dt * def->damping[0]);
-    p->x[c] += dt * p->v[c];
-  }
-  p->spin = (p->spin + dt * body->rate[2] / length_of(body, f)) / (1.0 + dt * def->damping[1]);
-  const double angle = dt * p->spin, C = cos(angle), S = sin(angle);
-  const double R[4] = {p->R[0], p->R[1], p->R[2], p->R[3]};
-  for (int c = 0; c < 2; c++)
-    p->R[c] = C * R[c] - S * R[2 + c], p->R[2 + c] = S * R[c] + C * R[2 + c];
 }
 
 /* What the last solution does to the body, by parts, per metre of thickness. */
@@ -151,7 +129,7 @@ typedef struct trial {
  * try. `before` is the trial before this one, if any. The body then moves with just these
  * accelerations, which the water has answered to: what is left of forces counts as the water's. */
 static bool judge(const mps_fluid *f, mpsi_fluid_body *own, trial *before, bool first) {
-  const double length = length_of(own, f);
+  const double length = mpsi_fluid_body_length(own, f);
   double mass[3], g[3], step[3], largest = 0.0, change = 0.0;
   masses(own, length, mass);
   take_water(f, own);
@@ -202,9 +180,4 @@ mps_status mpsi_fluid_solve_afloat(mps_fluid *f, const char *function) {
                    "step %lld, t = %g s: the bodies afloat and the water have not agreed in %d "
                    "solutions; the step is not made",
                    (long long)f->steps, f->time, REPEATS);
-}
-
-void mpsi_fluid_end_afloat(mps_fluid *f, mpsi_fluid_body *own) {
-  mpsi_body_react(own->body, f->dt, own->water, own->wetted);
-  mpsi_body_advance(own->body, f->dt);
 }

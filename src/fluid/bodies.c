@@ -73,13 +73,36 @@ void mpsi_fluid_place_bodies(mps_fluid *f) {
     if (f->body[k].body) place_faces(f, &f->body[k]);
 }
 
+/* m: half its circumference over pi. */
+double mpsi_fluid_body_length(const mpsi_fluid_body *body, const mps_fluid *f) {
+  double sum = 0.0;
+  for (int k = 0; k < body->faces; k++) sum += f->wall[body->first + k].length;
+  return sum / 6.283185307179586;
+}
+
+/* Where the body is at the end of a step with the accelerations `rate`. */
+static void drift(const mps_fluid *f, mpsi_fluid_body *body, double dt) {
+  const mps_body_def *def = &body->body->def;
+  mpsi_fluid_pose *p = &body->next;
+  for (int c = 0; c < 2; c++) {
+    p->v[c] = (p->v[c] + dt * body->rate[c]) / (1.0 + dt * def->damping[0]);
+    p->x[c] += dt * p->v[c];
+  }
+  p->spin = (p->spin + dt * body->rate[2] / mpsi_fluid_body_length(body, f)) /
+            (1.0 + dt * def->damping[1]);
+  const double angle = dt * p->spin, C = cos(angle), S = sin(angle);
+  const double R[4] = {p->R[0], p->R[1], p->R[2], p->R[3]};
+  for (int c = 0; c < 2; c++)
+    p->R[c] = C * R[c] - S * R[2 + c], p->R[2 + c] = S * R[c] + C * R[2 + c];
+}
+
 /* Where the faces go in the step being made. */
 void mpsi_fluid_drive_bodies(mps_fluid *f, double dt) {
   for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
     mpsi_fluid_body *body = &f->body[b];
     if (!body->body) continue;
     body->next = pose_of(body->body);
-    if (body->floats) mpsi_fluid_drift(f, body, dt);
+    if (body->floats) drift(f, body, dt);
     for (int k = 0; k < body->faces; k++) {
       mpsi_fluid_wall *w = &f->wall[body->first + k];
       for (int n = 0; n < 2; n++) {
@@ -96,11 +119,16 @@ void mpsi_fluid_drive_bodies(mps_fluid *f, double dt) {
   }
 }
 
+static void end_afloat(mps_fluid *f, mpsi_fluid_body *own) {
+  mpsi_body_react(own->body, f->dt, own->water, own->wetted);
+  mpsi_body_advance(own->body, f->dt);
+}
+
 void mpsi_fluid_end_bodies(mps_fluid *f) {
   for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
     mpsi_fluid_body *body = &f->body[b];
     if (!body->body) continue;
-    if (body->floats) mpsi_fluid_end_afloat(f, body);
+    if (body->floats) end_afloat(f, body);
     body->pose = body->floats ? pose_of(body->body) : body->next;
     for (int k = 0; k < body->faces; k++) {
       mpsi_fluid_wall *w = &f->wall[body->first + k];

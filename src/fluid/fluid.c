@@ -106,21 +106,6 @@ static mps_status add_fields(mps_particles *particles) {
   return status;
 }
 
-double mpsi_fluid_energy(const mps_fluid *f, double *kinetic) {
-  const double *x = mpsi_particles_column(f->particles, "position", 0);
-  const double *y = mpsi_particles_column(f->particles, "position", 1);
-  const double *u = mpsi_particles_column(f->particles, "velocity", 0);
-  const double *v = mpsi_particles_column(f->particles, "velocity", 1);
-  const double volume = f->l0 * f->l0 * f->def.measure;
-  double square = 0.0, head = 0.0;
-  for (int64_t i = 0; i < f->count; i++) {
-    square += u[i] * u[i] + v[i] * v[i];
-    head += mpsi_fluid_head(f, x[i], y[i]);
-  }
-  *kinetic = 0.5 * f->def.density * volume * square;
-  return *kinetic + volume * head;
-}
-
 static void release(mps_fluid *f) {
   mps_context *context = f->context;
   mpsi_fluid_drop_solver(f);
@@ -215,14 +200,6 @@ void mps_fluid_destroy(mps_fluid **fluid) {
 }
 
 /* ---- questions ------------------------------------------------------------------------------- */
-
-mps_status mpsi_fluid_check_dt(const mps_fluid *f, const char *function, double dt) {
-  const double longest = f->g > 0.0 ? 0.5 * sqrt(f->l0 / f->g) : INFINITY;
-  if (isnan(dt) || (dt > 0.0 && dt <= longest && isfinite(dt))) return MPS_OK;
-  return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
-                   "dt is %g s, must be NaN or > 0 and at most half of (l0/g)^1/2, %g s", dt,
-                   longest);
-}
 
 mps_status mps_fluid_set_dt(mps_fluid *f, double dt) {
   if (!f) return MPS_ERROR_ARGUMENT;

@@ -1,7 +1,8 @@
 /* fluid_private.h - the members of the incompressible fluid solver, by the stages of its step:
  *
- *   walls.c     where the walls are and go; mirror images (ghosts) of the particles beyond them
+ *   walls.c     where the walls are and go (wall.c: one of them); mirror images (ghosts) of the particles beyond them
  *   bodies.c    rigid bodies, whose faces are walls too; afloat.c moves those that float
+ *   look.c      copies of the particles, their order and surroundings
  *   near.c      who is near whom, and the weights w; sight.c: who sees whom past walls that end
  *   moments.c   sums over the neighbours: density, moments, velocity gradient, free surface
  *   pressure.c  rows of the pressure equation; pcg.c solves it, or solver.c has it solved
@@ -243,7 +244,7 @@ static inline double mpsi_fluid_head(const mps_fluid *f, double x, double y) {
 
 mpsi_fluid_weight mpsi_fluid_make_weight(double l0, double re);
 
-/* walls.c */
+/* wall.c: drop_wall, make_motion, mirror_point, between; walls.c: the rest */
 mps_status mpsi_fluid_make_motion(mps_fluid *fluid, const char *function, mpsi_fluid_wall *wall,
                                   int64_t nodes, const double *points);
 void mpsi_fluid_drop_wall(mps_fluid *fluid, mpsi_fluid_wall *wall);
@@ -296,6 +297,8 @@ static inline double mpsi_fluid_least(const mps_fluid *f, int64_t i) {
 void mpsi_fluid_place_bodies(mps_fluid *fluid);            /* faces as of the pose */
 void mpsi_fluid_drive_bodies(mps_fluid *fluid, double dt); /* next of the faces */
 void mpsi_fluid_end_bodies(mps_fluid *fluid);
+/* m: rotations count as displacements at this radius. */
+double mpsi_fluid_body_length(const mpsi_fluid_body *body, const mps_fluid *fluid);
 void mpsi_fluid_drop_body(mps_fluid *fluid, mpsi_fluid_body *body);
 /* The face nearest to x as the body has it, and the distance, negative inside. */
 int mpsi_fluid_face_of(const mps_fluid *fluid, const mpsi_fluid_body *body, bool moved,
@@ -304,9 +307,7 @@ int mpsi_fluid_face_of(const mps_fluid *fluid, const mpsi_fluid_body *body, bool
 bool mpsi_fluid_inside_body(const mps_fluid *fluid, int besides, const double *x);
 /* afloat.c */
 bool mpsi_fluid_any_afloat(const mps_fluid *fluid);
-void mpsi_fluid_drift(const mps_fluid *fluid, mpsi_fluid_body *body, double dt); /* next, from it */
 mps_status mpsi_fluid_solve_afloat(mps_fluid *fluid, const char *function);
-void mpsi_fluid_end_afloat(mps_fluid *fluid, mpsi_fluid_body *body); /* the body moves on */
 /* sight.c */
 void mpsi_fluid_find_limits(mps_fluid *fluid);
 int64_t mpsi_fluid_keep_seen(const mps_fluid *fluid, int64_t i, int64_t count, int32_t *index,
@@ -348,22 +349,25 @@ mps_status mpsi_fluid_commit(void *fluid, const char *function, const char *fiel
 mps_status mpsi_fluid_insert(void *fluid, const char *function, int64_t first, int64_t count);
 mps_status mpsi_fluid_remove(void *fluid, const char *function, int64_t count, const int64_t *ids);
 void mpsi_fluid_renew(void *fluid);
-/* fluid.c: kinetic energy, and with that of gravity, J */
+/* access.c: kinetic energy, and with that of gravity, J */
 double mpsi_fluid_energy(const mps_fluid *fluid, double *kinetic);
 /* probe.c */
 mps_status mpsi_fluid_load_walls(mps_fluid *fluid, const char *function);
-/* step.c: the surroundings of the particles where the fields have them. */
+/* look.c: copies of positions, velocities and the last reduced pressure; their surroundings; and both
+ * with the loads. */
+void mpsi_fluid_load_cloud(mps_fluid *fluid);
+mps_status mpsi_fluid_look_around(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_look(mps_fluid *fluid, const char *function);
-/* step.c: the same, where a rollback has left it to be done. */
+/* look.c: the same, where a rollback has left it to be done. */
 mps_status mpsi_fluid_refresh(mps_fluid *fluid, const char *function);
-/* step.c: sorts the particles by place. */
+/* look.c: sorts the particles by place. */
 mps_status mpsi_fluid_sort(mps_fluid *fluid, const char *function);
-/* step.c: MPS_ERROR_STATE within a callback of the run (free), while a step is open (closed), or
+/* access.c: MPS_ERROR_STATE within a callback of the run (free), while a step is open (closed), or
  * both (ready). */
 mps_status mpsi_fluid_free(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_closed(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_ready(mps_fluid *fluid, const char *function);
-/* fluid.c: whether `dt` (s; NaN: the library chooses) is a step that the fluid may take. */
+/* access.c: whether `dt` (s; NaN: the library chooses) is a step that the fluid may take. */
 mps_status mpsi_fluid_check_dt(const mps_fluid *f, const char *function, double dt);
 
 #endif

@@ -1,0 +1,72 @@
+/* look.c - the particles as a step finds them: copies of their fields, their order in memory, who
+ * is near them, and the sums over these. SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid_private.h"
+
+#include <string.h>
+
+static double *column(const mps_fluid *f, const char *name, int32_t component) {
+  return mpsi_particles_column(f->particles, name, component);
+}
+
+/* Copies of positions, velocities and the last reduced pressure. */
+void mpsi_fluid_load_cloud(mps_fluid *f) {
+  const size_t bytes = (size_t)f->count * sizeof(double);
+  for (int c = 0; c < 2; c++) {
+    memcpy(f->x[c], column(f, "position", c), bytes);
+    memcpy(f->u[c], column(f, "velocity", c), bytes);
+  }
+  memcpy(f->q, column(f, "reduced_pressure", 0), bytes);
+  f->driven = false;
+}
+
+mps_status mpsi_fluid_look_around(mps_fluid *f, const char *function) {
+  mps_status status = mpsi_fluid_make_ghosts(f, function);
+  if (status == MPS_OK) mpsi_fluid_move_ghosts(f);
+  if (status == MPS_OK) status = mpsi_fluid_find_neighbours(f, function);
+  if (status == MPS_OK) mpsi_fluid_find_moments(f);
+  f->stale = status != MPS_OK;
+  return status;
+}
+
+mps_status mpsi_fluid_look(mps_fluid *f, const char *function) {
+  mpsi_fluid_load_cloud(f);
+  const mps_status status = mpsi_fluid_find_loads(f, function, f->load_time);
+  return status == MPS_OK ? mpsi_fluid_look_around(f, function) : status;
+}
+
+mps_status mpsi_fluid_refresh(mps_fluid *f, const char *function) {
+  return f->stale ? mpsi_fluid_look(f, function) : MPS_OK;
+}
+
+/* Sorts the set by columns of cells half of re wide, so that neighbours lie near each other in
+ * memory. It only serves speed: where the fluid is strewn or memory is short the order stays. */
+mps_status mpsi_fluid_sort(mps_fluid *f, const char *function) {
+  const double *x = column(f, "position", 0), *y = column(f, "position", 1);
+  const int64_t n = f->count;
+  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+  for (int64_t i = 0; i < n; i++) {
+    low[0] = fmin(low[0], x[i]), high[0] = fmax(high[0], x[i]);
+    low[1] = fmin(low[1], y[i]), high[1] = fmax(high[1], y[i]);
+  }
+  const double inverse = 2.0 * f->weight.inverse, rows = floor((high[1] - low[1]) * inverse) + 1.0;
+  const double cells = (floor((high[0] - low[0]) * inverse) + 1.0) * rows;
+  if (!(cells < 4.0 * (double)n + 4096.0)) return MPS_OK;
+  const int64_t number = (int64_t)cells;
+  if (!mpsi_room_ensure(f->context, &f->cell_room, number + 1 + n, sizeof(int32_t))) return MPS_OK;
+  int32_t *first = f->cell_room.item, *cell = first + number + 1;
+  int64_t *order = (int64_t *)f->system.r; /* free between steps, as z is */
+  memset(first, 0, (size_t)(number + 1) * sizeof *first);
+  for (int64_t i = 0; i < n; i++) {
+    cell[i] = (int32_t)((int64_t)((x[i] - low[0]) * inverse) * (int64_t)rows +
+                        (int64_t)((y[i] - low[1]) * inverse));
+    first[cell[i] + 1]++;
+  }
+  for (int64_t k = 0; k < number; k++) first[k + 1] += first[k];
+  bool sorted = true;
+  for (int64_t i = 0; i < n; i++) {
+    sorted = sorted && first[cell[i]] == i;
+    order[first[cell[i]]++] = i;
+  }
+  void *const scratch = f->system.z;
+  return sorted ? MPS_OK : mpsi_particles_permute_in(f->particles, function, order, &scratch, 1);
+}
