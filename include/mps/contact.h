@@ -63,8 +63,10 @@ typedef struct mps_contact_def {
                      before anything moves.
                      NaN (default): one cell; with INSIDE_PUSH no bound; with INSIDE_REMOVE,
                      where such particles are removed instead, half the particles' spacing */
-  int32_t thin;   /* 0 (default): a body thinner than two cells somewhere, through which momentum
-                     can pass, is refused; 1: it is allowed, and the log is warned */
+  int32_t thin;   /* for METHOD_PENALTY, where momentum passes through a body thinner than two cells
+                     somewhere: 0 (default): it is refused; 1: it is allowed, and the log is warned.
+                     By impulses such a body keeps the sides apart, unless the solver has a contact
+                     by the penalty too */
   int32_t inside; /* mps_contact_inside, default REFUSE */
   double adhesion; /* Pa, >= 0: shear stress that the surface bears besides friction times the
                       pressure, wherever soil is pressed on it; default 0 */

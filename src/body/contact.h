@@ -21,6 +21,7 @@ struct mps_contact {
   mps_contact_def def;
   mps_body *body;
   double extent;     /* m: see mpsi_body_extent */
+  bool thin;         /* the solver keeps what is on both sides of a thin wall apart */
   mps_contact *next; /* of the body's contacts */
   const mpsi_contact_owner *kind;
   void *owner; /* the solver; NULL: the contact has ended */

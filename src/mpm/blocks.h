@@ -39,10 +39,11 @@ typedef struct mpsi_cell_block {
    * full supports only.
    *   edge    some node of the tile is outside the domain, beyond a side that is no mirror
    *   inside  some node that its stencils may use is in a body
-   *   cut     edge or inside, or the standard scheme: some support may be cut, states are found
+   *   cut     edge, inside or thin, or the standard scheme: some support may be cut, states are found
    *   split   some block of nodes under it is split: forces are summed apart from momenta there
-   *   apart   cut or split: the tile of forces is in use */
-  bool edge, inside, cut, split, apart;
+   *   thin    a thin body may part nodes of its stencils from particles (across.h)
+ *   apart   cut or split: the tile of forces is in use */
+  bool edge, inside, cut, split, thin, apart;
   uint8_t mirrors;      /* bit k: its stencils may have nodes beyond side k, a mirror (mirror.h) */
   int32_t first_mirror; /* of these in the list */
   bool gone;                  /* a particle has passed an open side */
@@ -67,6 +68,9 @@ typedef struct mpsi_node_block {
   int32_t side; /* slot of its side sums, or -1: only particles with full supports reach it */
   int32_t near; /* slot of its inside masks, or -1: no body near */
   bool split;   /* side has the forces: the velocity before them is needed */
+  int32_t across; /* block of nodes with the sums of particles that a thin body parts from these
+                     nodes, or -1 (across.h) */
+  bool thin;    /* some node is beside a thin body */
   bool inside;  /* some node is in a body: */
   int32_t low[3], high[3];    /* they are within low to high - 1 */
   uint32_t bodies;            /* bit b: a block of cells whose tile covers it may meet body b */
@@ -87,6 +91,7 @@ enum { MPSI_MASS = 0, MPSI_EXCESS = 0, MPSI_VECTOR = 1 };
 typedef struct mpsi_worker {
   void *memory;
   mpsi_node *tile, *force; /* force, and excess mass: where they are apart */
+  mpsi_node *across_tile, *across_force; /* the same of what thin bodies part (across.h) */
   uint32_t *inside;        /* bit b: in body b */
   uint8_t *state;          /* MPSI_... bits, 0: free */
 } mpsi_worker;
@@ -98,6 +103,7 @@ typedef struct mpsi_worker {
 #define MPSI_PLAIN                                                                                 \
   8u /* any node with the standard method: no particle takes the closed form                       \
       */
+#define MPSI_THIN 16u /* beside or in a thin body, which parts particles (across.h) */
 
 /* A particle by its key, as it is sorted. */
 typedef struct mpsi_radix {
@@ -128,6 +134,7 @@ typedef struct mpsi_grid {
   mpsi_node_block *nodes;
   mpsi_node *node, *side;
   int64_t cell_count, node_count, side_count; /* of blocks; of slots of `side` */
+  int64_t across_count; /* blocks of nodes behind the `node_count` that have a place of their own */
   int32_t *coloured;                          /* numbers of blocks of cells, colour by colour */
   int64_t colour[MPSI_CORNERS + 1];           /* first of each in `coloured` */
   mpsi_room cells_room, nodes_room, node_room, side_room, coloured_room;
@@ -136,12 +143,18 @@ typedef struct mpsi_grid {
   int32_t own_bits;         /* lower bits of a sorted key: the stencil's place within its block */
   mpsi_room digits_room, pass_room;
   mpsi_worker *workers;
+  mpsi_room across_room; /* of their second tiles */
   int32_t worker_count;
 } mpsi_grid;
 
 /* Coordinates within a block or tile of `side` nodes an axis. */
 static inline void mpsi_unravel(int k, int side, int *at) {
   at[0] = k % side, at[1] = k / side % side, at[2] = k / side / side;
+}
+
+/* All blocks of nodes, with those across thin bodies. */
+static inline int64_t mpsi_all_nodes(const mpsi_grid *grid) {
+  return grid->node_count + grid->across_count;
 }
 
 static inline int mpsi_tile_index(int i, int j, int k) {

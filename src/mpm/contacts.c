@@ -8,7 +8,6 @@
 #include <string.h>
 
 #define OVERLAP 0.1 /* cells: bodies may by so much */
-#define THIN 2.0    /* cells: walls below let momentum through */
 #define SHARP 1e-3  /* cells: walls below are the edge where two faces meet */
 
 /* ---- checks ---------------------------------------------------------------------------------- */
@@ -44,24 +43,28 @@ static mps_status check_overlap(mps_mpm *mpm, const char *function, const mps_bo
   return MPS_OK;
 }
 
-static mps_status check_thickness(mps_mpm *mpm, const char *function, const mps_contact *contact) {
+/* Impulses keep what is on the sides of a thin wall apart (across.h), springs do not. */
+static mps_status check_thickness(mps_mpm *mpm, const char *function, mps_contact *contact) {
   const double wall = mpsi_body_thickness(contact->body), cells = wall * mpm->grid.inverse;
-  if (!(cells < THIN * (1.0 - 1e-9))) return MPS_OK;
+  contact->thin = cells < MPSI_THIN_CELLS * (1.0 - 1e-9);
+  if (contact->thin && mpsi_by_impulses(contact))
+    return mpsi_share_refuse(mpm, function, "a body thinner than two cells");
+  if (!contact->thin) return MPS_OK;
   if (!contact->def.thin && cells < SHARP)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "two faces of the body meet at less than 20 degrees: momentum passes through "
                      "such an edge where it is thinner than %g cells; blunt it, or allow it with "
                      "thin = 1",
-                     THIN);
+                     MPSI_THIN_CELLS);
   if (!contact->def.thin)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "the body has a wall %.4g m thin, %.3g cells: below %g cells momentum passes "
                      "through it; use a cell of at most %.4g m, a thicker wall, or allow it with "
                      "thin = 1",
-                     wall, cells, THIN, wall / THIN);
+                     wall, cells, MPSI_THIN_CELLS, wall / MPSI_THIN_CELLS);
   mpsi_log(mpm->context, MPS_LOG_WARNING,
            "body %d has a wall %.4g m thin, %.3g cells: below %g cells momentum leaks through it",
-           mpm->contact.bodies, wall, cells, THIN);
+           mpm->contact.bodies, wall, cells, MPSI_THIN_CELLS);
   return MPS_OK;
 }
 
@@ -126,11 +129,13 @@ static mps_status check_owner(void *owner, const char *function) {
 /* Without bodies the lists of pairs are not made any more: they must be empty. */
 static void forget_pairs(mps_mpm *mpm) {
   mpm->contact.cell_pair_count = mpm->contact.node_pair_count = mpm->contact.mask_count = 0;
+  mpm->contact.thin = 0;
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) mpm->grid.cells[b].pairs = 0;
   for (int64_t g = 0; g < mpm->grid.node_count; g++) {
     mpsi_node_block *nodes = &mpm->grid.nodes[g];
     nodes->near = -1;
-    nodes->inside = false;
+    nodes->inside = nodes->thin = false;
+    nodes->across = -1;
     nodes->bodies = 0;
     nodes->pairs = 0;
   }

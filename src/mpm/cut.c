@@ -48,6 +48,13 @@ static box near_bodies(const mps_mpm *mpm, const mpsi_cell_block *cells) {
   return out;
 }
 
+/* Whether the stencils may have nodes beside a thin body. */
+static bool near_thin(const mps_mpm *mpm, const mpsi_cell_block *cells) {
+  bool any = false;
+  for (int q = 0; q < 1 << mpm->dim; q++) any = any || mpm->grid.nodes[cells->to[q]].thin;
+  return any && mpm->contact.thin && !cells->ghost;
+}
+
 /* Forces are wanted apart from the momenta at all nodes. */
 static bool all_apart(const mps_mpm *mpm) { return mpsi_forces_apart(mpm) || mpm->grid.apart; }
 
@@ -89,7 +96,8 @@ static mps_status find_cut(mps_mpm *mpm, const char *function) {
     mpsi_cell_block *cells = &mpm->grid.cells[b];
     const box near = near_bodies(mpm, cells);
     cells->inside = !is_empty(&near);
-    cells->cut = cells->edge || cells->inside || mpm->standard;
+    cells->thin = near_thin(mpm, cells);
+    cells->cut = cells->edge || cells->inside || cells->thin || mpm->standard;
     if (cells->cut || all_apart(mpm)) mark_cut(mpm, cells, &near, finds);
   }
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
@@ -99,7 +107,8 @@ static mps_status find_cut(mps_mpm *mpm, const char *function) {
       cells->split = cells->split || mpm->grid.nodes[cells->to[q]].split;
     cells->apart = cells->split || cells->cut;
   }
-  if (!mpsi_room_ensure(mpm->context, &mpm->grid.side_room,
+  if (!mpsi_mpm_list_across(mpm) ||
+      !mpsi_room_ensure(mpm->context, &mpm->grid.side_room,
                         mpm->grid.side_count * mpm->grid.block_nodes, sizeof *mpm->grid.side))
     return mpsi_fail_memory(mpm->context, function,
                             (size_t)(mpm->grid.side_count * mpm->grid.block_nodes) *
@@ -112,6 +121,10 @@ mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status sta
   static const mpsi_pass pass = {.update = mpsi_mpm_find_inside, .gather = mpsi_mpm_mark_reached};
   if (mpm->contact.bodies > 0) {
     if (status == MPS_OK) status = mpsi_mpm_list_pairs(mpm, function);
+    if (status == MPS_OK && !mpsi_mpm_begin_across(mpm))
+      status = mpsi_fail_memory(mpm->context, function,
+                                (size_t)(mpm->contact.node_pair_count * mpm->grid.block_nodes) *
+                                    sizeof *mpm->contact.sight);
     if (status == MPS_OK && mpm->contact.cell_pair_count > 0) mpsi_mpm_run_pass(mpm, &pass);
     if (mpm->share) { /* all ranks, whatever has become of this one */
       const mps_status lost = mpsi_share_reached(mpm, function, status == MPS_OK);

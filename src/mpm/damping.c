@@ -33,9 +33,9 @@ void mpsi_mpm_damp_nodes(mps_mpm *mpm, int64_t g, const uint8_t *fixed) {
 mps_status mpsi_mpm_begin_balance(mps_mpm *mpm, const char *function) {
   mpsi_settling *s = &mpm->settling;
   if (!s->on) return MPS_OK;
-  if (!mpsi_room_ensure(mpm->context, &s->nodes_room, mpm->grid.node_count, sizeof *s->nodes))
+  if (!mpsi_room_ensure(mpm->context, &s->nodes_room, mpsi_all_nodes(&mpm->grid), sizeof *s->nodes))
     return mpsi_fail_memory(mpm->context, function,
-                            (size_t)mpm->grid.node_count * sizeof *s->nodes);
+                            (size_t)mpsi_all_nodes(&mpm->grid) * sizeof *s->nodes);
   s->nodes = s->nodes_room.item;
   return MPS_OK;
 }

@@ -173,7 +173,7 @@ static double spring_energy(const mps_mpm *mpm) {
 mps_status mpsi_energy_begin(mps_mpm *mpm, const char *function) {
   mpsi_energy *e = &mpm->energy;
   if (!e->counts) return MPS_OK;
-  const int64_t cells = mpm->grid.cell_count, nodes = mpm->grid.node_count;
+  const int64_t cells = mpm->grid.cell_count, nodes = mpsi_all_nodes(&mpm->grid);
   if (!mpsi_room_ensure(mpm->context, &e->cells_room, cells, sizeof *e->cells) ||
       !mpsi_room_ensure(mpm->context, &e->nodes_room, nodes, sizeof *e->nodes))
     return mpsi_fail_memory(mpm->context, function,
@@ -202,7 +202,7 @@ static mpsi_cell_energy sum_cells(const mps_mpm *mpm) {
 
 static mpsi_node_energy sum_nodes(const mps_mpm *mpm) {
   mpsi_node_energy out = {0};
-  for (int64_t g = 0; g < mpm->grid.node_count; g++) {
+  for (int64_t g = 0; g < mpsi_all_nodes(&mpm->grid); g++) {
     const mpsi_node_energy *e = &mpm->energy.nodes[g];
     out.kinetic_before += e->kinetic_before, out.kinetic += e->kinetic;
     out.jump += e->jump;

@@ -116,7 +116,9 @@ MPSI_INLINE uint32_t active_weights(const mps_mpm *mpm, const mpsi_cell_block *c
         MPSI_UNROLL for (int i = 0; i <= spline; i++) {
           if (state[i] == 0) continue;
           bodies |= worker->inside[t + i];
-          if (state[i] & MPSI_OUTSIDE || !active(mpm, cells, state[i], s, i, j, k)) there[i] = 0;
+          const bool in = (state[i] & MPSI_INSIDE) != 0;
+          if (state[i] & MPSI_OUTSIDE || (in && !active(mpm, cells, state[i], s, i, j, k)))
+            there[i] = 0;
         }
         row = (mpsi_quad)((mpsi_mask)row & there);
       }
@@ -239,6 +241,9 @@ MPSI_INLINE source source_of(const mps_mpm *mpm, int dim, int64_t p) {
   return out;
 }
 
+/* Whether node n is one of those across a thin body (across.h). */
+MPSI_INLINE bool is_across(const mpsi_shape_values *f, int n) { return f->across >> n & 1; }
+
 /* Momentum to the tile, force and excess mass to the tile of forces, as all particles of the block.
  * `bodies` hold nodes of the support. */
 MPSI_INLINE void scatter(const mps_mpm *mpm, const mpsi_cell_block *cells,
@@ -267,8 +272,10 @@ MPSI_INLINE void scatter(const mps_mpm *mpm, const mpsi_cell_block *cells,
     for (int d = 0; d < dim && s.turns; d++) sum += s.turn[d] * (m * f->gradient[d][n]);
     if (by_weight) sum[MPSI_MASS] = m * phi;
     force[MPSI_EXCESS] = m * (w - phi);
-    mpsi_put(worker->tile[t], mpsi_get(worker->tile[t]) + sum);
-    mpsi_put(worker->force[t], mpsi_get(worker->force[t]) + force);
+    double *to = (is_across(f, n) ? worker->across_tile : worker->tile)[t];
+    double *force_to = (is_across(f, n) ? worker->across_force : worker->force)[t];
+    mpsi_put(to, mpsi_get(to) + sum);
+    mpsi_put(force_to, mpsi_get(force_to) + force);
   }
 }
 
@@ -345,12 +352,20 @@ MPSI_INLINE void share_friction(mps_mpm *mpm, const mpsi_cell_block *cells, int 
 /* ---- one particle -----------------------------------------------------------------------------
  */
 
+static uint64_t find_across(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t particle,
+                            const mpsi_stencil *at) {
+  double x[3] = {0.0};
+  for (int c = 0; c < mpm->dim && cells->thin; c++) x[c] = mpm->p.x[c][particle];
+  return cells->thin ? mpsi_mpm_find_across(mpm, cells, at->at, x) : 0;
+}
+
 MPSI_INLINE void scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                               int dim, int spline, int64_t particle) {
   support at;
   mpsi_shape_values f;
   make_support(mpm, cells, dim, spline, particle, &at);
   const uint32_t bodies = fit(mpm, cells, worker, dim, spline, &at, &f);
+  f.across = find_across(mpm, cells, particle, &at.at);
   scatter(mpm, cells, worker, dim, spline, particle, &at, &f, bodies);
   for (int32_t q = 0; bodies && q < cells->pairs; q++) {
     mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
@@ -390,7 +405,8 @@ MPSI_INLINE void find_strain(const mps_mpm *mpm, const mpsi_cell_block *cells,
     FOR_NODES(dim, spline) {
       const int own = d == 0 ? i : d == 1 ? j : k;
       const int t = mpsi_tile_index(at->at.at[0] + i, at->at.at[1] + j, at->at.at[2] + k);
-      sum += ratio[own] * f->phi[n] * mpsi_get(worker->tile[t]);
+      const double *node = (is_across(f, n) ? worker->across_tile : worker->tile)[t];
+      sum += ratio[own] * f->phi[n] * mpsi_get(node);
     }
     mpsi_put(derivative[d], sum);
   }
@@ -402,10 +418,11 @@ MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const m
   mpsi_shape_values f;
   make_support(mpm, cells, dim, spline, particle, &at);
   const uint32_t bodies = fit(mpm, cells, worker, dim, spline, &at, &f);
+  f.across = find_across(mpm, cells, particle, &at.at);
   mpsi_quad sum = {0.0}, by[3] = {sum, sum, sum}, moment[3] = {sum, sum, sum};
   FOR_NODES(dim, spline) {
-    const double *from =
-        worker->tile[mpsi_tile_index(at.at.at[0] + i, at.at.at[1] + j, at.at.at[2] + k)];
+    const int t = mpsi_tile_index(at.at.at[0] + i, at.at.at[1] + j, at.at.at[2] + k);
+    const double *from = (is_across(&f, n) ? worker->across_tile : worker->tile)[t];
     const mpsi_quad node = mpsi_get(from), share = f.phi[n] * node;
     sum += share;
     for (int d = 0; d < dim; d++) by[d] += f.gradient[d][n] * node;
@@ -461,4 +478,5 @@ void MPSI_LEVELLED(mpsi_fit)(const mps_mpm *mpm, const mpsi_cell_block *cells,
   make_support(mpm, cells, mpm->dim, mpm->def.spline, particle, &s);
   CHOOSE(mpm->dim, mpm->def.spline, fit, &s, out);
   *at = s.at;
+  out->across = find_across(mpm, cells, particle, at);
 }

@@ -4,14 +4,20 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "wall.h"
 
-/* Copies the nodes under a tile. */
-MPSI_INLINE void gather_tile(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_node *tile) {
+MPSI_INLINE int64_t find_node(const mps_mpm *mpm, const mpsi_cell_block *cells, bool across, int i,
+                              int j, int k) {
+  return across ? mpsi_node_across(mpm, cells, i, j, k) : mpsi_node_under(mpm, cells, i, j, k);
+}
+
+/* Copies the nodes under a tile, or those across thin bodies under the second one. */
+MPSI_INLINE void gather_tile(const mps_mpm *mpm, const mpsi_cell_block *cells, bool across,
+                             mpsi_node *tile) {
   const int low = cells->low[0], high = cells->high[0];
   const int middle = high < MPSI_SIDE ? high : low > MPSI_SIDE ? low : MPSI_SIDE;
   for (int k = cells->low[2]; k < cells->high[2]; k++)
     for (int j = cells->low[1]; j < cells->high[1]; j++) {
-      mpsi_node *own = mpm->grid.node + mpsi_node_under(mpm, cells, 0, j, k);
-      mpsi_node *next = mpm->grid.node + mpsi_node_under(mpm, cells, MPSI_SIDE, j, k);
+      mpsi_node *own = mpm->grid.node + find_node(mpm, cells, across, 0, j, k);
+      mpsi_node *next = mpm->grid.node + find_node(mpm, cells, across, MPSI_SIDE, j, k);
       mpsi_node *to = tile + mpsi_tile_index(0, j, k);
       for (int i = low; i < middle; i++) mpsi_put(to[i], mpsi_get(own[i]));
       for (int i = middle; i < high; i++) mpsi_put(to[i], mpsi_get(next[i - MPSI_SIDE]));
@@ -346,8 +352,9 @@ MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry,
   cells->left = cells->gone = cells->lost = false;
   cells->bad = -1;
   cells->speed = 0.0;
-  gather_tile(mpm, cells, worker->tile);
-  if (cells->mirrors) mpsi_mpm_unfold(mpm, cells, worker->tile);
+  gather_tile(mpm, cells, false, worker->tile);
+  if (cells->thin) gather_tile(mpm, cells, true, worker->across_tile);
+  if (cells->mirrors) mpsi_mpm_unfold(mpm, cells, worker);
   if (cells->cut) mpsi_mpm_find_states(mpm, cells, worker);
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;

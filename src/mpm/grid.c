@@ -8,11 +8,11 @@
 enum { MOST = MPSI_SIDE * MPSI_SIDE * MPSI_SIDE }; /* nodes of a block */
 
 void mpsi_mpm_clear_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
-  (void)worker;
   const mpsi_node_block *nodes = &mpm->grid.nodes[g];
   const size_t bytes = (size_t)mpm->grid.block_nodes * sizeof *mpm->grid.node;
   memset(mpm->grid.node + mpsi_first_node(mpm, g), 0, bytes);
   if (nodes->side >= 0) memset(mpm->grid.side + mpsi_first_node(mpm, nodes->side), 0, bytes);
+  if (nodes->across >= 0) mpsi_mpm_clear_nodes(mpm, nodes->across, worker);
 }
 
 /* Nodes that only particles with full supports reach: the force is in the momentum. */
@@ -45,7 +45,6 @@ static void update_cut(mps_mpm *mpm, bool split, mpsi_node *node, mpsi_node *sid
 }
 
 void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
-  (void)worker;
   const mpsi_node_block *nodes = &mpm->grid.nodes[g];
   mpsi_node *node = mpm->grid.node + mpsi_first_node(mpm, g);
   if (nodes->side < 0)
@@ -53,6 +52,7 @@ void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
   else
     update_cut(mpm, nodes->split, node, mpm->grid.side + mpsi_first_node(mpm, nodes->side));
   if (nodes->pairs > 0) mpsi_mpm_apply_contact(mpm, g);
+  if (nodes->across >= 0) mpsi_mpm_update_nodes(mpm, nodes->across, worker);
 }
 
 /* Friction with bodies, mirrors having acted. `held` receives the velocities that the nodes would
@@ -60,7 +60,6 @@ void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
 static void apply_body_friction(mps_mpm *mpm, int64_t g, mpsi_node *held) {
   const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(mpm, g));
   const size_t bytes = (size_t)mpm->grid.block_nodes * sizeof *held;
-  mpsi_mpm_begin_held(mpm, g);
   memcpy(held, node, bytes);
   if (mpm->grid.nodes[g].pairs == 0 || mpm->grid.nodes[g].side < 0) return;
   mpsi_node before[MOST], old[MOST];
@@ -90,17 +89,23 @@ static void finish_and_damp(mps_mpm *mpm, int64_t g) {
     mpsi_energy_nodes(mpm, g, (const mpsi_node *)held, (const mpsi_node *)damped);
 }
 
-void mpsi_mpm_finish_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
-  (void)worker;
+static void finish(mps_mpm *mpm, int64_t g) {
   uint8_t fixed[MOST];
   if (mpsi_forces_apart(mpm) || mpm->def.viscous_damping > 0.0) {
     finish_and_damp(mpm, g);
     return;
   }
-  mpsi_mpm_begin_held(mpm, g);
   if (mpm->grid.nodes[g].pairs > 0) {
     mpsi_mpm_hold_mirrors(mpm, g);
     mpsi_mpm_apply_friction(mpm, g);
   }
   mpsi_mpm_hold_nodes(mpm, g, fixed);
+}
+
+void mpsi_mpm_finish_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
+  (void)worker;
+  const int32_t across = mpm->grid.nodes[g].across;
+  mpsi_mpm_begin_held(mpm, g);
+  finish(mpm, g);
+  if (across >= 0) finish(mpm, across);
 }

@@ -11,9 +11,10 @@
 void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
   (void)worker;
   mpsi_node_block *nodes = &mpm->grid.nodes[g];
-  nodes->inside = false;
+  nodes->inside = nodes->thin = false;
   for (int c = 0; c < 3; c++) nodes->low[c] = MPSI_SIDE, nodes->high[c] = 0;
   if (nodes->near < 0) return;
+  mpsi_mpm_find_sight(mpm, g);
   uint32_t *inside = mpm->contact.inside + mpsi_first_node(mpm, nodes->near);
   memset(inside, 0, (size_t)mpm->grid.block_nodes * sizeof *inside);
   _Atomic uint8_t *reached = mpm->contact.reached + mpsi_first_node(mpm, nodes->near);
@@ -23,6 +24,7 @@ void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
     mpsi_contact_node *node = mpm->contact.node + (int64_t)t * mpm->grid.block_nodes;
     const int32_t b = mpm->contact.node_pair[t].body;
     memset(node, 0, (size_t)mpm->grid.block_nodes * sizeof *node);
+    if (mpm->contact.thin >> b & 1) continue; /* cuts no support: across.h */
     if (!mpsi_mpm_body_reaches(mpm, b, nodes->at, MPSI_SIDE)) continue;
     for (int k = 0; k < mpm->grid.block_nodes; k++) {
       int place[3];
@@ -146,8 +148,8 @@ static void mark_outside(const mps_mpm *mpm, const mpsi_cell_block *cells, uint8
              (size_t)(high[0] - low[0]));
 }
 
-/* Of the nodes of a block under the corner q of the tile. */
-static void mark_inside(const mps_mpm *mpm, const mpsi_node_block *nodes, int q,
+/* Of the nodes of a block under the corner q of the tile, in bodies or beside thin ones. */
+static void mark_near(const mps_mpm *mpm, const mpsi_node_block *nodes, int q,
                         mpsi_worker *worker) {
   int low[3] = {0}, size[3] = {1, 1, 1};
   for (int c = 0; c < mpm->dim; c++) {
@@ -160,6 +162,7 @@ static void mark_inside(const mps_mpm *mpm, const mpsi_node_block *nodes, int q,
       for (int i = 0; i < size[0]; i++) {
         const int64_t at = first + (k * MPSI_SIDE + j) * MPSI_SIDE + i;
         const int t = mpsi_tile_index(low[0] + i, low[1] + j, low[2] + k);
+        if (nodes->thin && mpm->contact.beside[at]) worker->state[t] |= MPSI_THIN;
         if (!mpm->contact.inside[at]) continue;
         worker->inside[t] = mpm->contact.inside[at];
         const bool reached =
@@ -173,7 +176,7 @@ void mpsi_mpm_find_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi
   memset(worker->inside, 0, (size_t)mpm->grid.tile_nodes * sizeof *worker->inside);
   for (int q = 0; q < 1 << mpm->dim; q++) {
     const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
-    if (nodes->inside) mark_inside(mpm, nodes, q, worker);
+    if (nodes->inside || nodes->thin) mark_near(mpm, nodes, q, worker);
   }
   if (cells->mirrors) mpsi_mpm_mirror_states(mpm, cells, worker);
 }

@@ -160,7 +160,7 @@ static int64_t make_nodes(mps_mpm *mpm, mpsi_node_block *nodes) {
     }
     if (!any) return count;
     if (nodes) {
-      nodes[count] = (mpsi_node_block){.side = -1, .near = -1};
+      nodes[count] = (mpsi_node_block){.side = -1, .near = -1, .across = -1};
       for (int q = 0; q < MPSI_CORNERS; q++) nodes[count].from[q] = -1;
       memcpy(nodes[count].at, least, sizeof least);
     }
@@ -192,7 +192,7 @@ bool mpsi_mpm_ensure_cells(mps_mpm *mpm, int64_t cells) {
   const bool good =
       mpsi_room_ensure(mpm->context, &mpm->grid.cells_room, cells, sizeof *mpm->grid.cells) &&
       mpsi_room_ensure(mpm->context, &mpm->grid.coloured_room, cells, sizeof *mpm->grid.coloured);
-  mpm->grid.cell_count = mpm->grid.node_count = 0;
+  mpm->grid.cell_count = mpm->grid.node_count = mpm->grid.across_count = 0;
   mpm->grid.cells = mpm->grid.cells_room.item;
   mpm->grid.coloured = mpm->grid.coloured_room.item;
   return good;
@@ -210,6 +210,7 @@ bool mpsi_mpm_build_nodes(mps_mpm *mpm, int64_t cells) {
     return false;
   }
   mpm->grid.node_count = nodes;
+  mpm->grid.across_count = 0;
   mpm->grid.nodes = mpm->grid.nodes_room.item;
   mpm->grid.node = mpm->grid.node_room.item;
   make_nodes(mpm, mpm->grid.nodes);

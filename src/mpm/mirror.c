@@ -61,6 +61,14 @@ mps_status mpsi_mpm_list_mirrors(mps_mpm *mpm, const char *function) {
   return MPS_OK;
 }
 
+int mpsi_mirror_partner(const mps_mpm *mpm, const mpsi_cell_block *cells, int c, int node) {
+  const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
+  const int64_t low = mpm->grid.low[c] - first, high = mpm->grid.high[c] - first;
+  if (cells->mirrors >> (2 * c) & 1 && node < low) return (int)(2 * low - node);
+  if (cells->mirrors >> (2 * c + 1) & 1 && node > high) return (int)(2 * high - node);
+  return node;
+}
+
 /* ---- one side under a tile ------------------------------------------------------------------- */
 
 typedef struct side {
@@ -73,7 +81,7 @@ typedef struct side {
   double *mass;
 } side;
 
-static side side_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t k) {
+static side side_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t k, bool across) {
   const mpsi_hold *hold = &mpm->boundaries.hold[k];
   const int c = k / 2;
   const int64_t node = k % 2 ? mpm->grid.high[c] : mpm->grid.low[c];
@@ -89,6 +97,7 @@ static side side_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t k)
   int64_t number = cells->first_mirror;
   for (uint32_t lower = cells->mirrors & ((1u << k) - 1); lower; lower &= lower - 1) number++;
   out.mirror = &mpm->mirrors.mirror[number];
+  if (across) number += mpm->mirrors.count;
   out.mass = mpm->mirrors.mass + number * mpsi_mirror_plane(mpm->grid.tile_nodes);
   return out;
 }
@@ -138,13 +147,19 @@ static void add_change(mpsi_mirror *to, const double *x_after, const double *aft
   }
 }
 
+/* What is folded and mirrored back: a block's tile, or its second one (across.h). */
+typedef struct tiles {
+  mpsi_node *tile, *force;
+  bool across;
+} tiles;
+
 /* ---- folding --------------------------------------------------------------------------------- */
 
 static void fold_node(const mps_mpm *mpm, const side *s, const couple *at, int layer, void *data) {
-  mpsi_worker *worker = data;
-  double *ghost = worker->tile[at->ghost], *partner = worker->tile[at->partner];
+  const tiles *of = data;
+  double *ghost = of->tile[at->ghost], *partner = of->tile[at->partner];
   const bool apart = s->cells->apart;
-  double *force = worker->force[at->ghost], *to = worker->force[at->partner];
+  double *force = of->force[at->ghost], *to = of->force[at->partner];
   double before[3], after[3];
   const double m = ghost[MPSI_MASS];
   if (layer == 1) s->mass[at->place] = m;
@@ -165,21 +180,28 @@ static void fold_node(const mps_mpm *mpm, const side *s, const couple *at, int l
   memset(force, 0, sizeof(mpsi_node));
 }
 
-void mpsi_mpm_fold(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
+static void fold_tiles(const mps_mpm *mpm, const mpsi_cell_block *cells, tiles *of) {
   for (int32_t k = 0; k < MPSI_SIDES; k++) {
     if (!(cells->mirrors >> k & 1)) continue;
-    const side s = side_of(mpm, cells, k);
-    for_couples(mpm, &s, fold_node, worker);
+    const side s = side_of(mpm, cells, k, of->across);
+    for_couples(mpm, &s, fold_node, of);
   }
+}
+
+void mpsi_mpm_fold(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
+  tiles own = {worker->tile, worker->force, false};
+  tiles across = {worker->across_tile, worker->across_force, true};
+  fold_tiles(mpm, cells, &own);
+  if (cells->thin) fold_tiles(mpm, cells, &across);
 }
 
 /* ---- mirroring back -------------------------------------------------------------------------- */
 
 static void mirror_node(const mps_mpm *mpm, const side *s, const couple *at, int layer,
                         void *data) {
-  mpsi_node *tile = data;
-  double *ghost = tile[at->ghost], m = layer == 1 ? s->mass[at->place] : 0.0;
-  const double *partner = tile[at->partner];
+  const tiles *of = data;
+  double *ghost = of->tile[at->ghost], m = layer == 1 ? s->mass[at->place] : 0.0;
+  const double *partner = of->tile[at->partner];
   double before[3], after[3];
   (void)mpm;
   ghost[MPSI_MASS] = partner[MPSI_MASS];
@@ -191,12 +213,18 @@ static void mirror_node(const mps_mpm *mpm, const side *s, const couple *at, int
   if (m != 0.0) add_change(s->mirror, at->x_ghost, after, at->x_partner, before);
 }
 
-void mpsi_mpm_unfold(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_node *tile) {
+static void unfold_tiles(const mps_mpm *mpm, const mpsi_cell_block *cells, tiles *of) {
   for (int32_t k = MPSI_SIDES - 1; k >= 0; k--) {
     if (!(cells->mirrors >> k & 1)) continue;
-    const side s = side_of(mpm, cells, k);
-    for_couples(mpm, &s, mirror_node, tile);
+    const side s = side_of(mpm, cells, k, of->across);
+    for_couples(mpm, &s, mirror_node, of);
   }
+}
+
+void mpsi_mpm_unfold(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
+  tiles own = {worker->tile, NULL, false}, across = {worker->across_tile, NULL, true};
+  unfold_tiles(mpm, cells, &own);
+  if (cells->thin) unfold_tiles(mpm, cells, &across);
 }
 
 /* ---- bodies near a mirror -------------------------------------------------------------------- */
@@ -211,7 +239,7 @@ static void copy_state(const mps_mpm *mpm, const side *s, const couple *at, int 
 void mpsi_mpm_mirror_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
   for (int32_t k = 0; k < MPSI_SIDES; k++) {
     if (!(cells->mirrors >> k & 1)) continue;
-    const side s = side_of(mpm, cells, k);
+    const side s = side_of(mpm, cells, k, false);
     for_couples(mpm, &s, copy_state, worker);
   }
 }
@@ -244,7 +272,7 @@ void mpsi_mpm_reflect(const mps_mpm *mpm, const mpsi_cell_block *cells, int *at,
                       double impulse) {
   for (int32_t k = 0; k < MPSI_SIDES; k++) {
     if (!(cells->mirrors >> k & 1)) continue;
-    const side s = side_of(mpm, cells, k);
+    const side s = side_of(mpm, cells, k, false);
     if (is_folded(&s, at)) reflect_by(mpm, &s, at, vector, impulse);
   }
 }
@@ -254,7 +282,7 @@ void mpsi_mpm_reflect_impulse(const mps_mpm *mpm, const mpsi_cell_block *cells, 
   double vector[3] = {impulse[0], impulse[1], impulse[2]};
   for (int32_t k = 0; k < MPSI_SIDES; k++) {
     if (!(cells->mirrors >> k & 1)) continue;
-    const side s = side_of(mpm, cells, k);
+    const side s = side_of(mpm, cells, k, false);
     if (!is_folded(&s, at)) continue;
     const double before[3] = {vector[0], vector[1], vector[2]};
     reflect_by(mpm, &s, at, vector, 1.0);
@@ -268,7 +296,7 @@ bool mpsi_mpm_find_image(const mps_mpm *mpm, const mpsi_cell_block *cells, int *
   for (int c = 0; c < 3; c++) keeps[c] = 1.0, carried[c] = 0.0;
   for (int32_t k = 0; k < MPSI_SIDES; k++) {
     if (!(cells->mirrors >> k & 1)) continue;
-    const side s = side_of(mpm, cells, k);
+    const side s = side_of(mpm, cells, k, false);
     if (!is_folded(&s, at)) continue;
     any = true;
     for (int c = 0; c < 3; c++) {

@@ -26,7 +26,8 @@ typedef struct mpsi_mirror {
 typedef struct mpsi_mirrors {
   uint32_t sides; /* bit k: side k is a mirror */
   mpsi_mirror *mirror;
-  double *mass; /* kg, of the ghosts next to the wall: a plane of a tile for each mirror */
+  double *mass; /* kg, of the ghosts next to the wall: a plane of a tile for each mirror, and those
+                   of the second tiles (across.h) behind all these */
   int64_t count;
   mpsi_room mirror_room, mass_room;
 } mpsi_mirrors;
@@ -42,12 +43,14 @@ mps_status mpsi_mpm_list_mirrors(mps_mpm *mpm, const char *function);
 void mpsi_mpm_begin_mirrors(mps_mpm *mpm, const mpsi_cell_block *cells);
 /* The tile of a block, after its particles have given; before they take. */
 void mpsi_mpm_fold(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker);
-void mpsi_mpm_unfold(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_node *tile);
+void mpsi_mpm_unfold(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker);
 /* Ghosts are in the bodies that their partners are in. */
 void mpsi_mpm_mirror_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker);
 /* After the step: the impulses of the mirrors to the reactions of their sides. */
 void mpsi_mpm_sum_mirrors(mps_mpm *mpm);
 
+/* Node of the tile along axis c, or its partner where it is beyond a mirror. */
+int mpsi_mirror_partner(const mps_mpm *mpm, const mpsi_cell_block *cells, int c, int node);
 /* A momentum or force that a block's particle has at tile node `at`, a ghost or on a wall, as its
  * partner gets it; `at` becomes that. `impulse` times what changes is the wall's. */
 void mpsi_mpm_reflect(const mps_mpm *mpm, const mpsi_cell_block *cells, int *at, double *vector,

@@ -5,6 +5,7 @@
 
 #include "core/particles_internal.h"
 #include "blocks.h"
+#include "across.h"
 #include "boundaries.h"
 #include "columns.h"
 #include "damping.h"
@@ -112,12 +113,26 @@ static inline void mpsi_node_position(const mps_mpm *mpm, const int32_t *at, con
                : 0.0;
 }
 
+/* Block of nodes under the node (i, j, k) of a tile, and the node's number in it. */
+static inline int32_t mpsi_block_under(const mpsi_cell_block *cells, int i, int j, int k) {
+  return cells->to[(i >= MPSI_SIDE) + 2 * (j >= MPSI_SIDE) + 4 * (k >= MPSI_SIDE)];
+}
+
+static inline int mpsi_local_under(int i, int j, int k) {
+  return ((k % MPSI_SIDE) * MPSI_SIDE + j % MPSI_SIDE) * MPSI_SIDE + i % MPSI_SIDE;
+}
+
 /* Node of the grid under the node (i, j, k) of a tile. */
 static inline int64_t mpsi_node_under(const mps_mpm *mpm, const mpsi_cell_block *cells, int i,
                                       int j, int k) {
-  const int q = (i >= MPSI_SIDE) + 2 * (j >= MPSI_SIDE) + 4 * (k >= MPSI_SIDE);
-  return mpsi_first_node(mpm, cells->to[q]) +
-         ((k % MPSI_SIDE) * MPSI_SIDE + j % MPSI_SIDE) * MPSI_SIDE + i % MPSI_SIDE;
+  return mpsi_first_node(mpm, mpsi_block_under(cells, i, j, k)) + mpsi_local_under(i, j, k);
+}
+
+/* The same of the tile for what thin bodies part from the nodes. */
+static inline int64_t mpsi_node_across(const mps_mpm *mpm, const mpsi_cell_block *cells, int i,
+                                       int j, int k) {
+  const int32_t across = mpm->grid.nodes[mpsi_block_under(cells, i, j, k)].across;
+  return mpsi_first_node(mpm, across) + mpsi_local_under(i, j, k);
 }
 
 #endif

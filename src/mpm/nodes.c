@@ -84,7 +84,7 @@ mps_status mps_grid_get_nodes(mps_grid *grid, int64_t capacity, int64_t *count, 
   const mps_status status = make_sums(mpm, __func__);
   if (status != MPS_OK) return status;
   int64_t n = 0;
-  for (int64_t g = 0; g < mpm->grid.node_count; g++)
+  for (int64_t g = 0; g < mpsi_all_nodes(&mpm->grid); g++)
     for (int k = 0; k < mpm->grid.block_nodes; k++) {
       node at;
       if (!read_node(mpm, g, k, &at)) continue;

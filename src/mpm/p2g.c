@@ -224,11 +224,11 @@ MPSI_INLINE void clear(const mpsi_cell_block *cells, mpsi_node *tile) {
         mpsi_put(tile[mpsi_tile_index(i, j, k)], (mpsi_quad){0.0});
 }
 
-/* Adds the tile to one of the blocks of nodes under it. */
-MPSI_INLINE void flush(const mps_mpm *mpm, const mpsi_cell_block *cells, int q,
-                       const mpsi_worker *from) {
-  const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
-  mpsi_node *node = mpm->grid.node + mpsi_first_node(mpm, cells->to[q]);
+/* Adds a tile, and that of forces, to the block of nodes g under its corner q. */
+MPSI_INLINE void flush(const mps_mpm *mpm, const mpsi_cell_block *cells, int q, int32_t g,
+                       const mpsi_node *tile, const mpsi_node *forces) {
+  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  mpsi_node *node = mpm->grid.node + mpsi_first_node(mpm, g);
   mpsi_node *side = nodes->side >= 0 ? mpm->grid.side + mpsi_first_node(mpm, nodes->side) : NULL;
   int low[3], high[3];
   for (int c = 0; c < 3; c++) { /* of the tile */
@@ -242,9 +242,9 @@ MPSI_INLINE void flush(const mps_mpm *mpm, const mpsi_cell_block *cells, int q,
       const int to =
           ((k % MPSI_SIDE) * MPSI_SIDE + j % MPSI_SIDE) * MPSI_SIDE - (q & 1) * MPSI_SIDE;
       for (int i = low[0]; i < high[0]; i++) {
-        mpsi_quad sum = mpsi_get(from->tile[t + i]);
+        mpsi_quad sum = mpsi_get(tile[t + i]);
         if (cells->apart) {
-          mpsi_quad force = mpsi_get(from->force[t + i]);
+          mpsi_quad force = mpsi_get(forces[t + i]);
           if (nodes->split) {
             mpsi_put(side[to + i], mpsi_get(side[to + i]) + force);
           } else {
@@ -318,6 +318,7 @@ MPSI_INLINE void tile_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry
   if (cells->mirrors) mpsi_mpm_begin_mirrors(mpm, cells);
   clear(cells, worker->tile);
   if (cells->apart) clear(cells, worker->force);
+  if (cells->thin) clear(cells, worker->across_tile), clear(cells, worker->across_force);
   const mpsi_cell_block *next = dim == 2 && b + 2 < mpm->grid.cell_count ? cells + 2 : NULL;
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int64_t rest = cells->end - k;
@@ -328,8 +329,14 @@ MPSI_INLINE void tile_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry
 }
 
 MPSI_INLINE void flush_body(mps_mpm *mpm, int64_t b, int32_t number, int dim) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  const mpsi_worker *from = &mpm->grid.workers[number];
   for (int q = 0; q < 1 << dim; q++)
-    flush(mpm, &mpm->grid.cells[b], q, &mpm->grid.workers[number]);
+    flush(mpm, cells, q, cells->to[q], (const mpsi_node *)from->tile,
+          (const mpsi_node *)from->force);
+  for (int q = 0; q < 1 << dim && cells->thin; q++)
+    flush(mpm, cells, q, mpm->grid.nodes[cells->to[q]].across,
+          (const mpsi_node *)from->across_tile, (const mpsi_node *)from->across_force);
 }
 
 void MPSI_LEVELLED(mpsi_flush)(mps_mpm *mpm, int64_t b, int32_t worker) {

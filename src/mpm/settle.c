@@ -105,7 +105,7 @@ static mps_status relax(mps_mpm *mpm, const char *function, mps_mpm_settled *now
   double unbalanced = 0.0;
   now->kinetic = 0.0;
   now->applied = applied_to_particles(mpm);
-  for (int64_t g = 0; g < mpm->grid.node_count; g++) {
+  for (int64_t g = 0; g < mpsi_all_nodes(&mpm->grid); g++) {
     const mpsi_node_balance *n = &mpm->settling.nodes[g];
     unbalanced += n->unbalanced;
     now->applied += n->applied;

@@ -26,6 +26,7 @@ typedef struct mpsi_shape_values {
   double w[MPSI_STENCIL], phi[MPSI_STENCIL]; /* 0 where a node does not take part */
   double gradient[3][MPSI_STENCIL];          /* of phi, 1/m */
   double determinant;                        /* det M / M00^(dim + 1) */
+  uint64_t across;                           /* nodes whose values across take part: across.h */
 } mpsi_shape_values;
 
 /* Inverse of the second moment of a full stencil. */

@@ -275,7 +275,9 @@ static void fit_touch(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker
       psis[a] *= keeps[a];
       touch->carried[a] += psi * carried[a];
     }
-    const int64_t g = mpsi_node_under(mpm, cells, place[0], place[1], place[2]);
+    const int64_t g = f.across >> s & 1
+                          ? mpsi_node_across(mpm, cells, place[0], place[1], place[2])
+                          : mpsi_node_under(mpm, cells, place[0], place[1], place[2]);
     if (mpm->grid.node[g][MPSI_MASS] > 0.0)
       add_node(touch, node, weight, mpm->grid.node[g], psis, cells->mirrors != 0);
   }

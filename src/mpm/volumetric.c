@@ -36,9 +36,22 @@ static void find_diagonal(const mps_mpm *mpm, const double **diagonal) {
   diagonal[2] = space ? p->D[8] : mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? p->L[4] : NULL;
 }
 
+/* Place of a particle when G2P found its stencil. */
+static void former_place(const mps_mpm *mpm, int64_t k, double *x) {
+  for (int c = 0; c < 3; c++)
+    x[c] = c < mpm->dim ? mpm->p.x[c][k] - mpm->run.dt * mpm->p.v[c][k] : 0.0;
+}
+
+/* Those of a cell that a thin body parts (across.h) are two cells. */
 static double *sums_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t particle) {
   int at[3];
   mpsi_unravel(mpm->p.stencil[particle], MPSI_TILE_SIDE, at);
+  if (cells->thin) {
+    double x[3];
+    former_place(mpm, particle, x);
+    if (mpsi_mpm_find_across(mpm, cells, at, x) & 1)
+      return mpm->grid.node[mpsi_node_across(mpm, cells, at[0], at[1], at[2])];
+  }
   return mpm->grid.node[mpsi_node_under(mpm, cells, at[0], at[1], at[2])];
 }
 
@@ -52,31 +65,26 @@ static bool by_nodes(const mps_mpm *mpm) { return mpm->def.volumetric == MPS_MPM
 typedef struct support {
   int at[3][4];
   double w[3][4];
-  double x[3]; /* place of the particle in the tile, in cells */
+  double x[3];     /* place of the particle in the tile, in cells */
+  uint64_t across; /* see across.h */
 } support;
-
-static int partner_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int c, int node) {
-  const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
-  const int64_t low = mpm->grid.low[c] - first, high = mpm->grid.high[c] - first;
-  if (cells->mirrors >> (2 * c) & 1 && node < low) return (int)(2 * low - node);
-  if (cells->mirrors >> (2 * c + 1) & 1 && node > high) return (int)(2 * high - node);
-  return node;
-}
 
 /* The particle has moved by dt v since G2P found its stencil, or was put back on a wall. */
 static support support_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t k) {
   const double least = mpm->def.spline == 3 ? 1.0 : 0.5;
   support out = {.w = {{1.0}, {1.0}, {1.0}}};
   int base[3];
+  double x[3];
   mpsi_unravel(mpm->p.stencil[k], MPSI_TILE_SIDE, base);
+  former_place(mpm, k, x);
+  if (cells->thin) out.across = mpsi_mpm_find_across(mpm, cells, base, x);
   for (int c = 0; c < mpm->dim; c++) {
-    const double x = mpm->p.x[c][k] - mpm->run.dt * mpm->p.v[c][k];
     const double t =
-        mpsi_grid_coordinate(mpm, c, x) - (double)cells->at[c] * MPSI_SIDE - (double)base[c];
+        mpsi_grid_coordinate(mpm, c, x[c]) - (double)cells->at[c] * MPSI_SIDE - (double)base[c];
     out.x[c] = (double)base[c] + t;
     mpsi_weights(mpm->def.spline, fmin(fmax(t, least), least + 1.0), out.w[c]);
     for (int i = 0; i <= mpm->def.spline; i++)
-      out.at[c][i] = partner_of(mpm, cells, c, base[c] + i);
+      out.at[c][i] = mpsi_mirror_partner(mpm, cells, c, base[c] + i);
   }
   return out;
 }
@@ -88,6 +96,15 @@ static double further(const support *s, const double *slope, int i, int j, int k
          slope[2] * (s->at[2][k] - s->x[2]);
 }
 
+/* The sums of node (i, j, k) of a support. */
+static double *node_of(const mps_mpm *mpm, const mpsi_cell_block *cells, const support *s, int i,
+                       int j, int k) {
+  const int x = s->at[0][i], y = s->at[1][j], z = s->at[2][k];
+  const bool across = s->across >> (16 * k + 4 * j + i) & 1;
+  return mpm->grid.node[across ? mpsi_node_across(mpm, cells, x, y, z)
+                               : mpsi_node_under(mpm, cells, x, y, z)];
+}
+
 /* Adds {V, V value} by the weights; or the mean of the nodes' means. */
 static void give(const mps_mpm *mpm, const mpsi_cell_block *cells, const support *s, double V,
                  double value, const double *slope) {
@@ -96,8 +113,7 @@ static void give(const mps_mpm *mpm, const mpsi_cell_block *cells, const support
     for (int j = 0; j <= n; j++)
       for (int i = 0; i <= n; i++) {
         const double w = s->w[0][i] * s->w[1][j] * s->w[2][k] * V;
-        double *to =
-            mpm->grid.node[mpsi_node_under(mpm, cells, s->at[0][i], s->at[1][j], s->at[2][k])];
+        double *to = node_of(mpm, cells, s, i, j, k);
         to[SUM_VOLUME] += w;
         to[SUM_TRACE] += w * (value + further(s, slope, i, j, k));
       }
@@ -111,8 +127,7 @@ static double take(const mps_mpm *mpm, const mpsi_cell_block *cells, const suppo
     for (int j = 0; j <= n; j++)
       for (int i = 0; i <= n; i++) {
         const double w = s->w[0][i] * s->w[1][j] * s->w[2][k];
-        const double *from =
-            mpm->grid.node[mpsi_node_under(mpm, cells, s->at[0][i], s->at[1][j], s->at[2][k])];
+        const double *from = node_of(mpm, cells, s, i, j, k);
         if (!(from[SUM_VOLUME] > 0.0) || w == 0.0) continue;
         sum += w * (from[SUM_TRACE] / from[SUM_VOLUME] - further(s, slope, i, j, k));
         weight += w;

@@ -125,6 +125,7 @@ typedef struct block {
   mps_mpm *mpm;
   mpsi_node *node, *side;         /* side: NULL where the block has none */
   uint8_t *held;                  /* bit c: nothing else moves component c */
+  bool again;                     /* across thin bodies: nodes that have been counted already */
   double push[MPSI_SIDES][BLOCK]; /* N s, of frictional sides at their nodes */
 } block;
 
@@ -200,6 +201,7 @@ static void prescribe(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
 static void for_range(block *b, const mpsi_hold *hold, mpsi_held *held, hold_fn work) {
   range r;
   if (!find_range(b->mpm, held->at, hold, &r)) return;
+  const int64_t counted = b->again ? held->count : 0;
   held->count = 0;
   for (int z = r.low[2]; z <= r.high[2]; z++)
     for (int y = r.low[1]; y <= r.high[1]; y++)
@@ -208,6 +210,7 @@ static void for_range(block *b, const mpsi_hold *hold, mpsi_held *held, hold_fn 
         held->count += b->node[k][MPSI_MASS] > 0.0;
         work(b, hold, held, k);
       }
+  if (b->again) held->count = counted;
 }
 
 static void begin_block(mps_mpm *mpm, int64_t g, uint8_t *fixed, block *b) {
@@ -216,6 +219,7 @@ static void begin_block(mps_mpm *mpm, int64_t g, uint8_t *fixed, block *b) {
   b->node = mpm->grid.node + mpsi_first_node(mpm, g);
   b->side = nodes->side >= 0 ? mpm->grid.side + mpsi_first_node(mpm, nodes->side) : NULL;
   b->held = fixed;
+  b->again = g >= mpm->grid.node_count;
   memset(fixed, 0, (size_t)mpm->grid.block_nodes);
 }
 

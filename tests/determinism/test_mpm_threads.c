@@ -10,13 +10,23 @@
 static const char *const names[] = {"id",     "position", "velocity", "velocity_gradient",
                                     "stress", "volume",   NULL};
 
-enum { BY_CELL = 1, STANDARD = 2, BY_NODES = 64 };
+enum { BY_CELL = 1, STANDARD = 2, BY_NODES = 64, FIN = 4096 };
 
 static void solve(mpm_scene *s, mps_mpm_def *def, int options) {
   if (options & BY_CELL) def->volumetric = MPS_MPM_VOLUMETRIC_CELL;
   if (options & BY_NODES) def->volumetric = MPS_MPM_VOLUMETRIC_NODES;
   mpm_scene_solve(s, def);
   if (options & STANDARD) mps_assert_ok(s->context, mps_experimental_mpm_standard(s->mpm, 0.9));
+}
+
+/* A plate of a fifth of a cell in the block, up to its middle. */
+static void add_fin(mpm_scene *s) {
+  mps_body *fin = NULL;
+  mps_body_def body = mps_body_defaults();
+  body.position[0] = 0.505, body.position[1] = 0.5;
+  mps_assert_ok(s->context, mps_body_create_box(s->context, &body, 0.004, 0.4, &fin));
+  mpm_scene_contact(s, fin, 0.4);
+  mps_body_destroy(&fin);
 }
 
 /* A block that falls on a rough floor while a free rough disc hits its side: many blocks of cells,
@@ -54,6 +64,7 @@ static mpm_scene fall(mps_context *context, int32_t geometry, int options, bool 
   body.position[0] = 0.93, body.position[1] = 0.3;
   body.velocity[0] = -3.0;
   mps_assert_ok(context, mps_body_create_disc(context, &body, 0.07, disc));
+  if (options & FIN) add_fin(&s);
   mpm_scene_contact(&s, *disc, 0.4);
   mps_body_destroy(&floor);
   mps_assert_ok(context, mps_mpm_step(s.mpm, 100));
@@ -187,6 +198,8 @@ static void options_too(void **state) {
   same_bits(MPS_MPM_AXISYMMETRIC, BY_CELL, 1, threads);
   same_bits(MPS_MPM_PLANE_STRAIN, BY_NODES, 1, threads);
   same_bits(MPS_MPM_SPACE, BY_NODES, 1, threads);
+  for (int32_t geometry = 0; geometry < MPS_MPM_SPACE; geometry++)
+    same_bits(geometry, FIN, numbers(4), threads);
   same_bits(MPS_MPM_PLANE_STRAIN, STANDARD, 1, threads);
   same_bits(MPS_MPM_SPACE, STANDARD | BY_CELL, 1, threads);
   same_bits(MPS_MPM_PLANE_STRAIN, HELD, numbers(4), threads);

@@ -65,8 +65,8 @@ static mpm_scene crowded(int32_t geometry, int32_t spline, bool keep_out) {
   for (int b = 0; b < count; b++) {
     mps_contact_def contact = mps_contact_defaults();
     contact.inside = MPS_CONTACT_INSIDE_PUSH;
-    contact.thin = 1;
     mps_assert_ok(context, mps_mpm_add_contact(s.mpm, bodies[b], &contact, NULL));
+    s.mpm->contact.handle[b]->thin = false; /* all cut supports here: unit/across */
     mps_body_destroy(&bodies[b]);
   }
   return s;

@@ -181,7 +181,7 @@ static void servo_keeps_a_force(void **state) {
 
 /* A wedge of 30 degrees has a tip and no thin wall: driven a cell and a half into the block it
  * splits the particles, evenly to both sides, and keeps them out. One of 15 degrees is an edge that
- * leaks. */
+ * leaks by springs. */
 static void wedges_are_no_walls(void **state) {
   (void)state;
   mpm_scene s = block_at(0.0);
@@ -195,7 +195,10 @@ static void wedges_are_no_walls(void **state) {
     const double xy[] = {0.0, 0.0, half, 0.2, -half, 0.2};
     mps_body_destroy(&wedge);
     mps_assert_ok(context, mps_body_create_polygon(context, &def, 3, xy, &wedge));
-    if (!k) REFUSES("meet at less than 20 degrees", mps_mpm_add_contact(s.mpm, wedge, NULL, NULL));
+    mps_contact_def springs = mps_contact_defaults();
+    springs.method = MPS_CONTACT_METHOD_PENALTY;
+    if (!k)
+      REFUSES("meet at less than 20 degrees", mps_mpm_add_contact(s.mpm, wedge, &springs, NULL));
   }
   mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_DISPLACEMENT, 2, t, way, &down));
   mps_assert_ok(context, mps_body_drive(wedge, 1, down, 1.0));
@@ -217,15 +220,16 @@ static void wedges_are_no_walls(void **state) {
   mpm_scene_end(&s);
 }
 
-/* Plates of 0.6 and 0.9 cells, between nodes or not: all momentum would pass. */
+/* Plates of 0.6 and 0.9 cells, between nodes or not: by springs all momentum would pass. */
 static void thin_plates_are_refused(void **state) {
   (void)state;
   mpm_scene s = block_at(0.0);
   const double cells[] = {0.6, 0.9};
   for (int k = 0; k < 2; k++) {
     mps_body *plate = box_at(0.3, 0.05, cells[k] * 0.02, 0.5);
-    REFUSES("below 2 cells momentum passes", mps_mpm_add_contact(s.mpm, plate, NULL, NULL));
     mps_contact_def def = mps_contact_defaults();
+    def.method = MPS_CONTACT_METHOD_PENALTY;
+    REFUSES("below 2 cells momentum passes", mps_mpm_add_contact(s.mpm, plate, &def, NULL));
     def.thin = 1;
     mps_assert_ok(context, mps_mpm_add_contact(s.mpm, plate, &def, NULL));
     mps_body_destroy(&plate);

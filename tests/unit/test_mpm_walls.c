@@ -242,16 +242,17 @@ static void tells_of_bodies(void **state) {
   assert_int_equal(h.warnings, 0); /* two cells are enough */
   mps_assert_fails(own, mpm_scene_try_contact(s.mpm, bodies[1], 0.0), MPS_ERROR_ARGUMENT,
                    "overlaps body 0 of the solver by more than 0.002 m");
-  mps_assert_fails(own, mpm_scene_try_contact(s.mpm, bodies[2], 0.0), MPS_ERROR_ARGUMENT,
-                   "0.03 m thin, 1.5 cells");
   mps_contact_def contact = mps_contact_defaults();
+  contact.method = MPS_CONTACT_METHOD_PENALTY;
+  mps_assert_fails(own, mps_mpm_add_contact(s.mpm, bodies[2], &contact, NULL), MPS_ERROR_ARGUMENT,
+                   "0.03 m thin, 1.5 cells");
   contact.thin = 1;
   mps_assert_ok(own, mps_mpm_add_contact(s.mpm, bodies[2], &contact, NULL)); /* they touch */
   expect_warning(&h, 1, "0.03 m thin, 1.5 cells");
   mps_assert_ok(own, mps_mpm_step(s.mpm, 2));
   assert_int_equal(h.warnings, 1);
   def.position[0] = -0.3;
-  contact.method = MPS_CONTACT_METHOD_PENALTY, contact.penalty = 1e8;
+  contact.penalty = 1e8;
   mps_assert_ok(own, mps_body_create_box(own, &def, 0.1, 0.1, &bodies[3]));
   mps_assert_ok(own, mps_mpm_add_contact(s.mpm, bodies[3], &contact, NULL));
   mps_assert_ok(own, mps_mpm_step(s.mpm, 2));
