@@ -1,8 +1,6 @@
 /* impulse.c - see impulse.h. SPDX-License-Identifier: BSD-3-Clause */
 #include "impulse.h"
 
-#include "body/rotation.h"
-
 #include <string.h>
 
 #define LARGEST_STRAIN 0.2 /* elastic: beyond it the law's own answer is not a size any more */
@@ -61,20 +59,13 @@ void mpsi_impulse_begin_body(mpsi_impulse_body *b, const mps_body *body, double 
   }
 }
 
-void mpsi_impulse_surface(const mpsi_impulse_body *b, const double *x, double *v) {
-  double r[3];
-  for (int c = 0; c < 3; c++) r[c] = x[c] - b->body->pose.x[c];
-  mpsi_cross3(b->spin, r, v);
-  for (int c = 0; c < 3; c++) v[c] += b->v[c];
-}
-
 double mpsi_impulse_mobility(const mps_body *body, const double *x, const double *along) {
   if (body->def.motion == MPS_BODY_MOTION_PRESCRIBED) return 0.0;
   double r[3], arm[3], spin[3];
   for (int c = 0; c < 3; c++) r[c] = x[c] - body->pose.x[c];
   mpsi_cross3(r, along, arm);
   spin_by(body, arm, spin);
-  return 1.0 / body->def.mass + mpsi_dot3(arm, spin);
+  return mpsi_dot3(along, along) / body->def.mass + mpsi_dot3(arm, spin);
 }
 
 void mpsi_impulse_kick(mpsi_impulse_body *b, const double *x, const double *by) {
@@ -95,12 +86,27 @@ void mpsi_impulse_kick(mpsi_impulse_body *b, const double *x, const double *by) 
  */
 static void into_cone(const mpsi_impulse *c, double *rub) {
   const double cone = c->push > 0.0 ? c->friction * c->push + c->adhesion : 0.0;
-  const double size = sqrt(mpsi_dot3(rub, rub)), most = fmin(cone, c->strength);
-  for (int a = 0; a < 3 && size > most; a++) rub[a] *= most / size;
+  const double square = mpsi_dot3(rub, rub), most = cone < c->strength ? cone : c->strength;
+  if (!(square > most * most)) return; /* most contacts stick: no root */
+  const double share = most / sqrt(square);
+  for (int a = 0; a < 3; a++) rub[a] *= share;
 }
 
-void mpsi_impulse_warm(mpsi_impulse *c, const double *last, double share, double *by) {
+/* 1/m_c along the unit vector d, > 0: that of the weakest direction counts for a thousandth at
+ * least, where walls hold the nodes. Of a vector of another length, whose square is `square`: times
+ * that. */
+static double mobility_along(const mpsi_impulse *c, const mpsi_impulse_body *b, const double *d,
+                             double square) {
+  const double *m = c->mobility, most = larger(m[0], larger(m[1], m[2]));
+  const double own = m[0] * d[0] * d[0] + m[1] * d[1] * d[1] + m[2] * d[2] * d[2];
+  return larger(own, LEAST_MOBILE * most * square) +
+         (b->free ? mpsi_impulse_mobility(b->body, c->at, d) : 0.0);
+}
+
+void mpsi_impulse_warm(mpsi_impulse *c, const mpsi_impulse_body *b, const double *last,
+                       double share, double *by) {
   const double across = mpsi_dot3(last, c->normal);
+  c->inertia = 1.0 / mobility_along(c, b, c->normal, 1.0);
   c->push = larger(0.0, share * across);
   for (int a = 0; a < 3; a++)
     c->rub[a] = c->push > 0.0 ? share * (last[a] - across * c->normal[a]) : 0.0;
@@ -108,26 +114,17 @@ void mpsi_impulse_warm(mpsi_impulse *c, const double *last, double share, double
   for (int a = 0; a < 3; a++) by[a] = c->push * c->normal[a] + c->rub[a];
 }
 
-/* 1/m_c along the unit vector d, > 0: that of the weakest direction counts for a thousandth at
- * least, where walls hold the nodes. */
-static double mobility_along(const mpsi_impulse *c, const mpsi_impulse_body *b, const double *d) {
-  const double *m = c->mobility, most = larger(m[0], larger(m[1], m[2]));
-  const double own = m[0] * d[0] * d[0] + m[1] * d[1] * d[1] + m[2] * d[2] * d[2];
-  return larger(own, LEAST_MOBILE * most) +
-         (b->free ? mpsi_impulse_mobility(b->body, c->at, d) : 0.0);
-}
-
-double mpsi_impulse_visit(mpsi_impulse *c, const mpsi_impulse_body *b, const double *u,
-                          double *by) {
+/* Visits are many and each waits for the one before: the slip is not brought to unit length, which
+ * saves a root and three divisions. */
+bool mpsi_impulse_visit(mpsi_impulse *c, const mpsi_impulse_body *b, const double *u, double *by) {
   const double across = mpsi_dot3(u, c->normal), before = c->push;
-  c->push = larger(0.0, before + (c->aim - across) / mobility_along(c, b, c->normal));
+  c->push = larger(0.0, before + (c->aim - across) * c->inertia);
   for (int a = 0; a < 3; a++) by[a] = (c->push - before) * c->normal[a];
   if (c->friction > 0.0 || c->adhesion > 0.0) {
     double slip[3], rub[3];
     for (int a = 0; a < 3; a++) slip[a] = u[a] - across * c->normal[a];
-    const double speed = sqrt(mpsi_dot3(slip, slip));
-    for (int a = 0; a < 3 && speed > 0.0; a++) slip[a] /= speed;
-    const double stop = speed > 0.0 ? speed / mobility_along(c, b, slip) : 0.0;
+    const double square = mpsi_dot3(slip, slip);
+    const double stop = square > 0.0 ? square / mobility_along(c, b, slip, square) : 0.0;
     for (int a = 0; a < 3; a++) rub[a] = c->rub[a] - stop * slip[a];
     into_cone(c, rub);
     for (int a = 0; a < 3; a++) {
@@ -135,5 +132,5 @@ double mpsi_impulse_visit(mpsi_impulse *c, const mpsi_impulse_body *b, const dou
       c->rub[a] = rub[a];
     }
   }
-  return sqrt(mpsi_dot3(by, by));
+  return by[0] != 0.0 || by[1] != 0.0 || by[2] != 0.0;
 }

@@ -10,6 +10,7 @@
 #define MPSI_IMPULSE_H
 
 #include "body/contact.h"
+#include "body/rotation.h"
 
 /* ---- geometry -------------------------------------------------------------------------------- */
 
@@ -52,8 +53,14 @@ typedef struct mpsi_impulse_body {
  * will bring it in dt. */
 void mpsi_impulse_begin_body(mpsi_impulse_body *b, const mps_body *body, double dt);
 /* Velocity v (m/s) of its surface at x. */
-void mpsi_impulse_surface(const mpsi_impulse_body *b, const double *x, double *v);
-/* 1/kg: velocity at x along the unit vector `along` by a unit impulse there; 0 of a driven body. */
+static inline void mpsi_impulse_surface(const mpsi_impulse_body *b, const double *x, double *v) {
+  const double *center = b->body->pose.x;
+  const double r[3] = {x[0] - center[0], x[1] - center[1], x[2] - center[2]};
+  mpsi_cross3(b->spin, r, v);
+  for (int c = 0; c < 3; c++) v[c] += b->v[c];
+}
+/* 1/kg: velocity at x along the unit vector `along` by a unit impulse there; 0 of a driven body. Of
+ * a vector of another length: times its square. */
 double mpsi_impulse_mobility(const mps_body *body, const double *x, const double *along);
 /* The impulse `by` (N s) on the particle at x takes its opposite to the body. */
 void mpsi_impulse_kick(mpsi_impulse_body *b, const double *x, const double *by);
@@ -68,14 +75,16 @@ typedef struct mpsi_impulse {
   double adhesion;         /* N s, what |T| may be besides mu P where P > 0, */
   double strength;         /* and at all; INFINITY: no bound */
   double push, rub[3];     /* N s: P; T */
+  double inertia;          /* kg: 1 over the mobility of both sides along n; mpsi_impulse_warm */
 } mpsi_impulse;
 
 /* Begins with `share` of the last step's impulse `last` (N s), split on the present normal, or with
- * none where that pulled; `by` (N s) is what acts on the particle. */
-void mpsi_impulse_warm(mpsi_impulse *c, const double *last, double share, double *by);
+ * none where that pulled; `by` (N s) is what acts on the particle. Before all visits of a step. */
+void mpsi_impulse_warm(mpsi_impulse *c, const mpsi_impulse_body *b, const double *last,
+                       double share, double *by);
 /* One visit of a sweep: P and T such that the contact alone, all others as they are, is satisfied
  * from the relative velocity u (m/s, of the particle's side less the body's, at the foot). `by` (N
- * s) is the change on the particle. Returns the size of that change. */
-double mpsi_impulse_visit(mpsi_impulse *c, const mpsi_impulse_body *b, const double *u, double *by);
+ * s) is the change on the particle. Returns whether there is any. */
+bool mpsi_impulse_visit(mpsi_impulse *c, const mpsi_impulse_body *b, const double *u, double *by);
 
 #endif

@@ -13,12 +13,17 @@
 
 #define SHARED 512 /* touches: below, sharing the work costs more than it gains */
 
+/* x and y side by side; z by itself, in space. */
+typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
+
 static void kick(const mps_mpm *mpm, mpsi_impulses *all, int64_t n, const double *by) {
   double(*weight)[3] = all->weight + n * all->stride;
   double **node = all->node + n * all->stride;
+  const pair xy = {by[0], by[1]};
   for (int32_t i = 0; i < all->touch[n].nodes; i++) {
     const double f = 1.0 / node[i][MPSI_MASS];
-    for (int a = 0; a < mpm->dim; a++) node[i][MPSI_VECTOR + a] += f * weight[i][a] * by[a];
+    *(pair *)(node[i] + MPSI_VECTOR) += f * *(const pair *)weight[i] * xy;
+    if (mpm->dim == 3) node[i][MPSI_VECTOR + 2] += f * weight[i][2] * by[2];
   }
   mpsi_impulse_kick(&all->body[all->touch[n].body], all->touch[n].impulse.at, by);
 }
@@ -27,9 +32,14 @@ static void kick(const mps_mpm *mpm, mpsi_impulses *all, int64_t n, const double
 static void velocity_at(const mps_mpm *mpm, const mpsi_impulses *all, int64_t n, double *v) {
   double(*weight)[3] = all->weight + n * all->stride;
   double *const *node = all->node + n * all->stride;
+  const int32_t nodes = all->touch[n].nodes;
   memcpy(v, all->touch[n].carried, sizeof all->touch[n].carried);
-  for (int32_t i = 0; i < all->touch[n].nodes; i++)
-    for (int a = 0; a < mpm->dim; a++) v[a] += weight[i][a] * node[i][MPSI_VECTOR + a];
+  pair xy = {v[0], v[1]};
+  for (int32_t i = 0; i < nodes; i++)
+    xy += *(const pair *)weight[i] * *(const pair *)(node[i] + MPSI_VECTOR);
+  v[0] = xy[0], v[1] = xy[1];
+  for (int32_t i = 0; i < nodes && mpm->dim == 3; i++)
+    v[2] += weight[i][2] * node[i][MPSI_VECTOR + 2];
 }
 
 /* ---- a block --------------------------------------------------------------------------------- */
@@ -42,14 +52,13 @@ static void warm_block(mps_mpm *mpm, mpsi_touch_block *block) {
     mpsi_impulse *c = &all->touch[n].impulse;
     const double last[3] = {c->rub[0], c->rub[1], c->rub[2]};
     double by[3];
-    mpsi_impulse_warm(c, last, share, by);
+    mpsi_impulse_warm(c, &all->body[all->touch[n].body], last, share, by);
     if (c->push > 0.0) kick(mpm, all, n, by);
   }
 }
 
 static void sweep_block(mps_mpm *mpm, mpsi_touch_block *block, bool back) {
   mpsi_impulses *all = &mpm->contact.impulses;
-  block->change = block->impulse = 0.0;
   for (int64_t i = 0; i < block->count; i++) {
     const int64_t n = back ? block->first + block->count - 1 - i : block->first + i;
     const mpsi_impulse_body *body = &all->body[all->touch[n].body];
@@ -58,10 +67,7 @@ static void sweep_block(mps_mpm *mpm, mpsi_touch_block *block, bool back) {
     velocity_at(mpm, all, n, u);
     mpsi_impulse_surface(body, c->at, surface);
     for (int a = 0; a < 3; a++) u[a] = a < mpm->dim ? u[a] - surface[a] : 0.0;
-    const double change = mpsi_impulse_visit(c, body, u, by);
-    block->change += change;
-    block->impulse += c->push;
-    if (change > 0.0) kick(mpm, all, n, by);
+    if (mpsi_impulse_visit(c, body, u, by)) kick(mpm, all, n, by);
   }
 }
 
@@ -174,6 +180,6 @@ void mpsi_mpm_free_impulses(mps_mpm *mpm) {
   mpsi_impulses *all = &mpm->contact.impulses;
   void *rooms[] = {all->touch_room.item, all->block_room.item,     all->weight_room.item,
                    all->node_room.item,  all->candidate_room.item, all->kept_room.item,
-                   all->next_room.item,  all->lookup_room.item,   all->area_room.item};
+                   all->next_room.item,  all->lookup_room.item,    all->area_room.item};
   for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(mpm->context, rooms[k]);
 }

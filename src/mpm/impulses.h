@@ -26,7 +26,6 @@ typedef struct mpsi_touch {
 typedef struct mpsi_touch_block {
   int64_t first, count;
   int32_t cells; /* -1: of another rank */
-  double impulse, change; /* N s: sums of P and of what the last sweep has changed */
 } mpsi_touch_block;
 
 /* What a body gave to a particle in the last step. */

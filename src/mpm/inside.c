@@ -7,6 +7,43 @@
 
 /* ---- before a step --------------------------------------------------------------------------- */
 
+/* The node `place` of the block is inside body b, with the surface's normal there. */
+static void note_inside(mpsi_node_block *nodes, const int *place, uint32_t *inside, int32_t b) {
+  *inside |= UINT32_C(1) << b;
+  nodes->inside = true;
+  for (int c = 0; c < 3; c++) {
+    if (place[c] < nodes->low[c]) nodes->low[c] = place[c];
+    if (place[c] >= nodes->high[c]) nodes->high[c] = place[c] + 1;
+  }
+}
+
+/* Distances change no faster than places: from a node at the distance d outside, the next d/h of
+ * its row are outside too. */
+static int outside_behind(const mps_mpm *mpm, double distance) {
+  const double cells = distance * mpm->grid.inverse * (1.0 - 1e-9);
+  return cells < MPSI_SIDE ? (int)cells : MPSI_SIDE;
+}
+
+/* Normals at the nodes of a block that lie inside the body of a pair. */
+static void find_inside_body(mps_mpm *mpm, mpsi_node_block *nodes, int32_t b,
+                             mpsi_contact_node *node, uint32_t *inside) {
+  for (int k = 0; k < mpm->grid.block_nodes; k++) {
+    int place[3];
+    double x[3];
+    mpsi_unravel(k, MPSI_SIDE, place);
+    const double local[3] = {place[0], place[1], place[2]};
+    mpsi_node_position(mpm, nodes->at, local, x);
+    const mpsi_foot foot = mpsi_body_foot(mpm->contact.body[b], x);
+    if (foot.distance < 0.0) {
+      for (int c = 0; c < mpm->dim; c++) node[k].normal[c] = foot.normal[c];
+      note_inside(nodes, place, &inside[k], b);
+      continue;
+    }
+    const int skip = outside_behind(mpm, foot.distance), row = MPSI_SIDE - 1 - place[0];
+    k += skip < row ? skip : row;
+  }
+}
+
 /* Normals at the nodes of a block that lie inside bodies. */
 void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
   (void)worker;
@@ -25,23 +62,8 @@ void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
     const int32_t b = mpm->contact.node_pair[t].body;
     memset(node, 0, (size_t)mpm->grid.block_nodes * sizeof *node);
     if (mpm->contact.thin >> b & 1) continue; /* cuts no support: across.h */
-    if (!mpsi_mpm_body_reaches(mpm, b, nodes->at, MPSI_SIDE)) continue;
-    for (int k = 0; k < mpm->grid.block_nodes; k++) {
-      int place[3];
-      double x[3];
-      mpsi_unravel(k, MPSI_SIDE, place);
-      const double local[3] = {place[0], place[1], place[2]};
-      mpsi_node_position(mpm, nodes->at, local, x);
-      const mpsi_foot foot = mpsi_body_foot(mpm->contact.body[b], x);
-      if (!(foot.distance < 0.0)) continue;
-      for (int c = 0; c < mpm->dim; c++) node[k].normal[c] = foot.normal[c];
-      inside[k] |= UINT32_C(1) << b;
-      nodes->inside = true;
-      for (int c = 0; c < 3; c++) {
-        if (place[c] < nodes->low[c]) nodes->low[c] = place[c];
-        if (place[c] >= nodes->high[c]) nodes->high[c] = place[c] + 1;
-      }
-    }
+    if (mpsi_mpm_body_reaches(mpm, b, nodes->at, MPSI_SIDE))
+      find_inside_body(mpm, nodes, b, node, inside);
   }
 }
 
