@@ -21,7 +21,7 @@ typedef struct nearest {
 /* Unit normal of edge k of the anticlockwise corners: the direction turned right. */
 static void edge_normal(const mps_body *body, int64_t k, double *n) {
   const double *a = body->xy + 2 * k, *b = a + 2;
-  const double dx = b[0] - a[0], dy = b[1] - a[1], length = hypot(dx, dy);
+  const double dx = b[0] - a[0], dy = b[1] - a[1], length = sqrt(dx * dx + dy * dy);
   n[0] = dy / length;
   n[1] = -dx / length;
 }
@@ -83,8 +83,8 @@ MPSI_INLINE mpsi_foot polygon_foot(const mps_body *body, const double *x, bool r
   }
   const double *corner = body->xy + 2 * (best.where < 0 ? k : k + 1);
   neighbour_normal(body, k, best.where, revolved, one, two);
-  const double mx = one[0] + two[0], my = one[1] + two[1], mean = hypot(mx, my);
-  const double dx = x[0] - corner[0], dy = x[1] - corner[1], d = hypot(dx, dy);
+  const double mx = one[0] + two[0], my = one[1] + two[1], mean = sqrt(mx * mx + my * my);
+  const double dx = x[0] - corner[0], dy = x[1] - corner[1], d = sqrt(dx * dx + dy * dy);
   const double sign = dx * mx + dy * my < 0.0 ? -1.0 : 1.0;
   f.at[0] = corner[0], f.at[1] = corner[1];
   f.distance = sign * d;

@@ -1,15 +1,11 @@
 /* impulse.c - see impulse.h. SPDX-License-Identifier: BSD-3-Clause */
-#include "impulse.h"
+#include "visit.h"
 
 #include <string.h>
 
 #define LARGEST_STRAIN 0.2 /* elastic: beyond it the law's own answer is not a size any more */
 #define RECOVERED 0.05     /* of an overlap, in a step: more is rougher */
-#define LEAST_MOBILE 1e-3  /* of the direction that gives most */
 #define FASTEST 0.02       /* of the waves, at which an overlap opens: it must not throw */
-
-/* As fmax, without a call. */
-static inline double larger(double a, double b) { return b > a ? b : a; }
 
 /* ---- geometry -------------------------------------------------------------------------------- */
 
@@ -82,55 +78,13 @@ void mpsi_impulse_kick(mpsi_impulse_body *b, const double *x, const double *by) 
 
 /* ---- a contact ------------------------------------------------------------------------------- */
 
-/* Takes T back to what the surface bears: the cone |T| <= mu P, with adhesion and up to a strength.
- */
-static void into_cone(const mpsi_impulse *c, double *rub) {
-  const double cone = c->push > 0.0 ? c->friction * c->push + c->adhesion : 0.0;
-  const double square = mpsi_dot3(rub, rub), most = cone < c->strength ? cone : c->strength;
-  if (!(square > most * most)) return; /* most contacts stick: no root */
-  const double share = most / sqrt(square);
-  for (int a = 0; a < 3; a++) rub[a] *= share;
-}
-
-/* 1/m_c along the unit vector d, > 0: that of the weakest direction counts for a thousandth at
- * least, where walls hold the nodes. Of a vector of another length, whose square is `square`: times
- * that. */
-static double mobility_along(const mpsi_impulse *c, const mpsi_impulse_body *b, const double *d,
-                             double square) {
-  const double *m = c->mobility, most = larger(m[0], larger(m[1], m[2]));
-  const double own = m[0] * d[0] * d[0] + m[1] * d[1] * d[1] + m[2] * d[2] * d[2];
-  return larger(own, LEAST_MOBILE * most * square) +
-         (b->free ? mpsi_impulse_mobility(b->body, c->at, d) : 0.0);
-}
-
 void mpsi_impulse_warm(mpsi_impulse *c, const mpsi_impulse_body *b, const double *last,
                        double share, double *by) {
   const double across = mpsi_dot3(last, c->normal);
-  c->inertia = 1.0 / mobility_along(c, b, c->normal, 1.0);
-  c->push = larger(0.0, share * across);
+  c->inertia = 1.0 / mpsi_impulse_mobility_along(c, b, c->normal, 1.0);
+  c->push = mpsi_larger(0.0, share * across);
   for (int a = 0; a < 3; a++)
     c->rub[a] = c->push > 0.0 ? share * (last[a] - across * c->normal[a]) : 0.0;
-  into_cone(c, c->rub);
+  mpsi_impulse_into_cone(c, c->rub);
   for (int a = 0; a < 3; a++) by[a] = c->push * c->normal[a] + c->rub[a];
-}
-
-/* Visits are many and each waits for the one before: the slip is not brought to unit length, which
- * saves a root and three divisions. */
-bool mpsi_impulse_visit(mpsi_impulse *c, const mpsi_impulse_body *b, const double *u, double *by) {
-  const double across = mpsi_dot3(u, c->normal), before = c->push;
-  c->push = larger(0.0, before + (c->aim - across) * c->inertia);
-  for (int a = 0; a < 3; a++) by[a] = (c->push - before) * c->normal[a];
-  if (c->friction > 0.0 || c->adhesion > 0.0) {
-    double slip[3], rub[3];
-    for (int a = 0; a < 3; a++) slip[a] = u[a] - across * c->normal[a];
-    const double square = mpsi_dot3(slip, slip);
-    const double stop = square > 0.0 ? square / mobility_along(c, b, slip, square) : 0.0;
-    for (int a = 0; a < 3; a++) rub[a] = c->rub[a] - stop * slip[a];
-    into_cone(c, rub);
-    for (int a = 0; a < 3; a++) {
-      by[a] += rub[a] - c->rub[a];
-      c->rub[a] = rub[a];
-    }
-  }
-  return by[0] != 0.0 || by[1] != 0.0 || by[2] != 0.0;
 }

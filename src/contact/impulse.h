@@ -5,7 +5,7 @@
  * relative velocity there, u, is at least w along n (P > 0: just w) and does not slide unless |T|
  * is at its bound. Who owns the mass on the other side (nodes of a grid, ...) is the solver's:
  * it tells u and the mobility 1/m_c of its side. Vectors have three components, of which the last
- * is 0 in 2D. SPDX-License-Identifier: BSD-3-Clause */
+ * is 0 in 2D. A visit of a sweep is in visit.h. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_IMPULSE_H
 #define MPSI_IMPULSE_H
 
@@ -82,9 +82,5 @@ typedef struct mpsi_impulse {
  * none where that pulled; `by` (N s) is what acts on the particle. Before all visits of a step. */
 void mpsi_impulse_warm(mpsi_impulse *c, const mpsi_impulse_body *b, const double *last,
                        double share, double *by);
-/* One visit of a sweep: P and T such that the contact alone, all others as they are, is satisfied
- * from the relative velocity u (m/s, of the particle's side less the body's, at the foot). `by` (N
- * s) is the change on the particle. Returns whether there is any. */
-bool mpsi_impulse_visit(mpsi_impulse *c, const mpsi_impulse_body *b, const double *u, double *by);
 
 #endif

@@ -10,58 +10,26 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "contact_particle.h"
 #include "spin.h"
+#include "support.h"
 
 /* ---- active nodes -----------------------------------------------------------------------------
  */
 
-/* A stencil, and where in the blocks of nodes its nodes are. */
+/* A particle's stencil and its nodes. */
 typedef struct support {
   mpsi_stencil at;
-  int corner[3][4], local[3][4]; /* which block under the tile, and the node's number in it: sums;
-                                    of a ghost beyond a mirror those of its partner (mirror.h) */
-  bool ghost[3][4];              /* which are, along each axis; */
-  bool folds[3][4], any_folds;   /* and which are folded, on the mirror or beyond */
+  mpsi_support nodes;
 } support;
-
-/* The partner of tile node t along axis c, or -1: t is inside. */
-MPSI_INLINE int partner_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int c, int t) {
-  const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
-  if (cells->mirrors >> (2 * c) & 1 && t <= mpm->grid.low[c] - first)
-    return 2 * (int)(mpm->grid.low[c] - first) - t;
-  if (cells->mirrors >> (2 * c + 1) & 1 && t >= mpm->grid.high[c] - first)
-    return 2 * (int)(mpm->grid.high[c] - first) - t;
-  return -1;
-}
 
 MPSI_INLINE void make_support(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
                               int64_t particle, support *out) {
   mpsi_make_stencil(mpm, cells, dim, spline, particle, &out->at);
-  out->any_folds = false;
-  for (int c = 0, stride = 1; c < 3; c++, stride *= MPSI_SIDE)
-    for (int i = 0; i < 4; i++) {
-      const int node = out->at.at[c] + i;
-      const int partner = cells->mirrors && c < dim ? partner_of(mpm, cells, c, node) : -1;
-      const int t = partner >= 0 ? partner : node;
-      out->ghost[c][i] = t != node;
-      out->folds[c][i] = partner >= 0;
-      out->any_folds = out->any_folds || partner >= 0;
-      out->corner[c][i] = c < dim && t >= MPSI_SIDE ? 1 << c : 0;
-      out->local[c][i] = c < dim ? (t & (MPSI_SIDE - 1)) * stride : 0;
-    }
-}
-
-/* Block of nodes of a node of the stencil, and the node in it. */
-MPSI_INLINE int32_t block_under(const mpsi_cell_block *cells, const support *s, int i, int j,
-                                int k) {
-  return cells->to[s->corner[0][i] | s->corner[1][j] | s->corner[2][k]];
-}
-
-MPSI_INLINE int local_of(const support *s, int i, int j, int k) {
-  return s->local[0][i] + s->local[1][j] + s->local[2][k];
+  mpsi_make_support(mpm, cells, dim, out->at.at, &out->nodes);
 }
 
 MPSI_INLINE bool is_folded(const support *s, int i, int j, int k) {
-  return s->any_folds && (s->folds[0][i] || s->folds[1][j] || s->folds[2][k]);
+  const mpsi_support *n = &s->nodes;
+  return n->any_folds && (n->folds[0][i] || n->folds[1][j] || n->folds[2][k]);
 }
 
 /* The force of a contact on a node that is folded, or its slip; `impulse` times what that
@@ -91,10 +59,11 @@ static bool active(const mps_mpm *mpm, const mpsi_cell_block *cells, uint8_t sta
   const unsigned dk = (unsigned)(k - at->own[2]);
   if (di <= 1 && dj <= 1 && dk <= 1) return true;
   if (!(state & MPSI_REACHED)) return false;
-  const double from[3] = {s->ghost[0][i] ? -at->s[0][i] : at->s[0][i],
-                          s->ghost[1][j] ? -at->s[1][j] : at->s[1][j],
-                          s->ghost[2][k] ? -at->s[2][k] : at->s[2][k]};
-  return same_side(mpm, block_under(cells, s, i, j, k), local_of(s, i, j, k), from);
+  const double from[3] = {s->nodes.ghost[0][i] ? -at->s[0][i] : at->s[0][i],
+                          s->nodes.ghost[1][j] ? -at->s[1][j] : at->s[1][j],
+                          s->nodes.ghost[2][k] ? -at->s[2][k] : at->s[2][k]};
+  return same_side(mpm, mpsi_support_block(cells, &s->nodes, i, j, k),
+                   mpsi_support_local(&s->nodes, i, j, k), from);
 }
 
 /* Weights of the active nodes; returns the bodies that hold any of the stencil's, bit by bit. */
@@ -209,12 +178,6 @@ MPSI_INLINE uint32_t fit(const mps_mpm *mpm, const mpsi_cell_block *cells,
 /* ---- transfers --------------------------------------------------------------------------------
  */
 
-/* All nodes n of a stencil, with their indices i, j, k. */
-#define FOR_NODES(dim, spline)                                                                     \
-  for (int k = 0; k <= ((dim) == 3 ? (spline) : 0); k++)                                           \
-    for (int j = 0; j <= (spline); j++)                                                            \
-      for (int i = 0, n = 16 * k + 4 * j; i <= (spline); i++, n++)
-
 /* What a particle gives besides mass: momentum m (v + L dx), force by phi and by its gradient. */
 typedef struct source {
   mpsi_quad v, L[3];   /* 1, v; 0, h dv/ds */
@@ -257,7 +220,7 @@ MPSI_INLINE void scatter(const mps_mpm *mpm, const mpsi_cell_block *cells,
     moments(dim, spline, &at->at, f->phi, second);
     s.turns = !mpsi_give_spin(dim, spline, mpm->def.cell, second, s.L, s.turn);
   }
-  FOR_NODES(dim, spline) {
+  MPSI_FOR_NODES(dim, spline) {
     const double w = f->w[n], phi = f->phi[n];
     if (w == 0.0) continue;
     const int t = mpsi_tile_index(at->at.at[0] + i, at->at.at[1] + j, at->at.at[2] + k);
@@ -304,10 +267,10 @@ MPSI_INLINE void scatter_contact(mps_mpm *mpm, const mpsi_cell_block *cells, int
   double arm[3], reaction[3];
   for (int a = 0; a < 3; a++) arm[a] = c.x[a] - body->pose.x[a], reaction[a] = -c.force[a];
   mpsi_contact_add_load(&pair->load[c.part], arm, reaction);
-  FOR_NODES(dim, spline) {
+  MPSI_FOR_NODES(dim, spline) {
     if (f->w[n] == 0.0) continue;
-    mpsi_contact_node *to =
-        contact_node_of(mpm, block_under(cells, at, i, j, k), local_of(at, i, j, k), pair->body);
+    mpsi_contact_node *to = contact_node_of(mpm, mpsi_support_block(cells, &at->nodes, i, j, k),
+                                            mpsi_support_local(&at->nodes, i, j, k), pair->body);
     const double mass = mpm->p.m[p] * f->phi[n];
     double slip[3] = {0.0}, force[3] = {0.0};
     for (int a = 0; a < dim; a++) slip[a] = mass * c.slip[a], force[a] = f->phi[n] * c.force[a];
@@ -331,10 +294,11 @@ MPSI_INLINE void share_friction(mps_mpm *mpm, const mpsi_cell_block *cells, int 
       mpm->contact.handle[pair->body]->def.friction == 0.0 ||
       !mpsi_find_contact(mpm, mpm->contact.handle[pair->body], dim, p, &c))
     return;
-  FOR_NODES(dim, spline) {
+  MPSI_FOR_NODES(dim, spline) {
     if (f->w[n] == 0.0) continue;
     const mpsi_contact_node *from =
-        contact_node_of(mpm, block_under(cells, at, i, j, k), local_of(at, i, j, k), pair->body);
+        contact_node_of(mpm, mpsi_support_block(cells, &at->nodes, i, j, k),
+                        mpsi_support_local(&at->nodes, i, j, k), pair->body);
     const double local[3] = {at->at.at[0] + i, at->at.at[1] + j, at->at.at[2] + k};
     const double mass = mpm->p.m[p] * f->phi[n];
     double arm[3], reaction[3], slip[3] = {from->slip[0], from->slip[1], from->slip[2]};
@@ -378,10 +342,10 @@ MPSI_INLINE void scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells, const 
 MPSI_INLINE void keep_own(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
                           int64_t p, const support *at, const mpsi_shape_values *f, double *own) {
   mpsi_quad before = {0.0};
-  FOR_NODES(dim, spline) {
-    const int32_t side = mpm->grid.nodes[block_under(cells, at, i, j, k)].side;
+  MPSI_FOR_NODES(dim, spline) {
+    const int32_t side = mpm->grid.nodes[mpsi_support_block(cells, &at->nodes, i, j, k)].side;
     const mpsi_node *node = (const mpsi_node *)(mpm->grid.side + mpsi_first_node(mpm, side));
-    before += f->phi[n] * mpsi_get(node[local_of(at, i, j, k)]);
+    before += f->phi[n] * mpsi_get(node[mpsi_support_local(&at->nodes, i, j, k)]);
   }
   for (int c = 0; c < dim; c++) own[c] = mpm->flip * (mpm->p.v[c][p] - before[MPSI_VECTOR + c]);
 }
@@ -402,7 +366,7 @@ MPSI_INLINE void find_strain(const mps_mpm *mpm, const mpsi_cell_block *cells,
     for (int i = 0; i <= spline; i++)
       ratio[i] = w[i] > 0.0 ? mpm->grid.inverse * slope[i] / w[i] : 0.0;
     mpsi_quad sum = {0.0};
-    FOR_NODES(dim, spline) {
+    MPSI_FOR_NODES(dim, spline) {
       const int own = d == 0 ? i : d == 1 ? j : k;
       const int t = mpsi_tile_index(at->at.at[0] + i, at->at.at[1] + j, at->at.at[2] + k);
       const double *node = (is_across(f, n) ? worker->across_tile : worker->tile)[t];
@@ -420,7 +384,7 @@ MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const m
   const uint32_t bodies = fit(mpm, cells, worker, dim, spline, &at, &f);
   f.across = find_across(mpm, cells, particle, &at.at);
   mpsi_quad sum = {0.0}, by[3] = {sum, sum, sum}, moment[3] = {sum, sum, sum};
-  FOR_NODES(dim, spline) {
+  MPSI_FOR_NODES(dim, spline) {
     const int t = mpsi_tile_index(at.at.at[0] + i, at.at.at[1] + j, at.at.at[2] + k);
     const double *from = (is_across(&f, n) ? worker->across_tile : worker->tile)[t];
     const mpsi_quad node = mpsi_get(from), share = f.phi[n] * node;

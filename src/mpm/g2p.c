@@ -42,14 +42,6 @@ MPSI_INLINE void find_differences(int dim, int spline, int32_t first, const mpsi
     }
 }
 
-/* What the nodes give to the particles of a chunk: columns. A velocity's derivative of component c
- * by axis d is number dim c + d, as in the columns L of the set. */
-typedef struct gathered {
-  double v[3][MPSI_COLUMN], own[3][MPSI_COLUMN]; /* m/s; FLIP: what a particle keeps of its own */
-  double slope[9][MPSI_COLUMN];                  /* 1/s, of the fit, which the transfer takes */
-  double derivative[9][MPSI_COLUMN];             /* 1/s, which the laws see */
-} gathered;
-
 /* Sums over the nodes across x, for one component at one place along x: by w of y and z, by w s of
  * y, of z, and by the differences of y, of z. */
 typedef struct across {
@@ -87,7 +79,7 @@ MPSI_INLINE across sum_across(int dim, int spline, const mpsi_places *places, in
  * The derivative along `plain` is the slope. */
 MPSI_INLINE void gather_lanes(const mps_mpm *mpm, int dim, int spline, const mpsi_places *places,
                               int k, const mpsi_node *tile, const differences *difference,
-                              int plain, gathered *out, int to) {
+                              int plain, mpsi_gathered *out, int to) {
   const double scale = mpsi_inverse_moment(spline) * mpm->grid.inverse;
   const mpsi_node *node = tile + difference->first;
   mpsi_lanes excess[3] = {{0.0}}; /* see mpsi_excess */
@@ -121,9 +113,9 @@ MPSI_INLINE void gather_lanes(const mps_mpm *mpm, int dim, int spline, const mps
 MPSI_INLINE void gather_at_wall(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
                                 int spline, const mpsi_places *places, int axis, int k, int n,
                                 const mpsi_node *tile, const differences *difference,
-                                gathered *out) {
+                                mpsi_gathered *out) {
   mpsi_wall wall;
-  gathered along;
+  mpsi_gathered along;
   mpsi_wall_places(mpm, cells, dim, spline, places, k, k + n, axis, MPSI_WALL_ALONG, &wall);
   gather_lanes(mpm, dim, spline, &wall.places, 0, tile, difference, axis, &along, 0);
   mpsi_wall_places(mpm, cells, dim, spline, places, k, k + n, axis, MPSI_WALL_SLOPE, &wall);
@@ -139,7 +131,7 @@ MPSI_INLINE void gather_at_wall(const mps_mpm *mpm, const mpsi_cell_block *cells
 
 /* One particle near bodies or corners. */
 static void gather_fitted(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                          int64_t particle, gathered *out, int to) {
+                          int64_t particle, mpsi_gathered *out, int to) {
   const int dim = mpm->dim;
   mpsi_fitted one = {.own = {0.0}};
   MPSI_LEVELLED(mpsi_gather_fitted)(mpm, cells, worker, particle, &one);
@@ -171,7 +163,7 @@ typedef struct moved {
 
 /* Four particles from `at`, of which `n` are there; `from` number k on. */
 MPSI_INLINE void move_four(mps_mpm *mpm, const mpsi_cell_block *cells, int geometry, int spline,
-                           int64_t at, int n, const gathered *from, int k, mpsi_mask *outside,
+                           int64_t at, int n, const mpsi_gathered *from, int k, mpsi_mask *outside,
                            mpsi_mask *left) {
   const int dim = mpsi_dim_of(geometry);
   const double first = spline == 3 ? 1.0 : 0.5; /* of the block: see mpsi_find_places */
@@ -196,7 +188,7 @@ MPSI_INLINE void move_four(mps_mpm *mpm, const mpsi_cell_block *cells, int geome
 }
 
 MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cell_block *cells, int geometry, int spline,
-                       int64_t begin, int n, const gathered *from) {
+                       int64_t begin, int n, const mpsi_gathered *from) {
   mpsi_mask outside = {0}, left = {0};
   for (int k = 0; k < n; k += 4) {
     if (n - k >= 4) /* apart: without questions */
@@ -209,7 +201,7 @@ MPSI_INLINE moved move(mps_mpm *mpm, const mpsi_cell_block *cells, int geometry,
 }
 
 /* FLIP: what the particles keep of their own velocities. */
-static void add_own(mps_mpm *mpm, int64_t begin, int n, const gathered *from) {
+static void add_own(mps_mpm *mpm, int64_t begin, int n, const mpsi_gathered *from) {
   for (int c = 0; c < mpm->dim; c++)
     for (int k = 0; k < n; k++) mpm->p.v[c][begin + k] += from->own[c][k];
 }
@@ -296,7 +288,7 @@ MPSI_INLINE void speed_chunk(const mps_mpm *mpm, mpsi_cell_block *cells, int dim
 
 /* What the nodes give to particles [begin, begin + n). Those of a stencil are neighbours. */
 MPSI_INLINE void gather_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                              int dim, int spline, int64_t begin, int n, gathered *out) {
+                              int dim, int spline, int64_t begin, int n, mpsi_gathered *out) {
   const mpsi_node *tile = (const mpsi_node *)worker->tile;
   mpsi_places places;
   differences difference;
@@ -316,16 +308,18 @@ MPSI_INLINE void gather_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const 
       for (int q = k; q < end; q += MPSI_LANES)
         gather_at_wall(mpm, cells, dim, spline, &places, axis, q,
                        end - q < MPSI_LANES ? end - q : MPSI_LANES, tile, &difference, out);
-    else
+    else if (mpm->flip > 0.0 ||
+             !MPSI_LEVELLED(mpsi_gather_batches)(mpm, cells, worker, &places, k, end, out))
       for (int q = k; q < end; q++) gather_fitted(mpm, cells, worker, begin + q, out, q);
   }
   if (mpm->strain_by_fit) memcpy(out->derivative, out->slope, sizeof out->slope);
 }
 
 MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cell_block *cells, const mpsi_worker *worker,
-                           int geometry, int spline, int64_t begin, int n) {
+                           int geometry, int spline, int64_t begin, int n,
+                           mps_material_block *law) {
   const int dim = mpsi_dim_of(geometry);
-  gathered from;
+  mpsi_gathered from;
   double *D[9];
   gather_chunk(mpm, cells, worker, dim, spline, begin, n, &from);
   for (int a = 0; a < dim * dim; a++) {
@@ -342,13 +336,15 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cell_block *cells, const mpsi_work
     if (cells->bad < 0 && bad >= 0) cells->bad = bad, cells->lost = true;
   }
   if (mpm->p.stencil) return; /* the laws wait for the cells' means */
-  mpsi_mpm_apply_law(mpm, cells, begin, begin + n, D, NULL);
+  mpsi_mpm_apply_law(mpm, cells, begin, begin + n, D, NULL, law);
   speed_chunk(mpm, cells, dim, begin, n);
 }
 
 MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {
   mpsi_cell_block *cells = &mpm->grid.cells[b];
   mpsi_worker *worker = &mpm->grid.workers[number];
+  mps_material_block law;
+  mpsi_mpm_begin_block(&law);
   cells->left = cells->gone = cells->lost = false;
   cells->bad = -1;
   cells->speed = 0.0;
@@ -358,7 +354,7 @@ MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry,
   if (cells->cut) mpsi_mpm_find_states(mpm, cells, worker);
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
-    g2p_chunk(mpm, cells, worker, geometry, spline, k, n);
+    g2p_chunk(mpm, cells, worker, geometry, spline, k, n, &law);
   }
 }
 

@@ -6,7 +6,7 @@
  * Blocks of one colour share no node: where no body moves freely, their sweeps are independent and
  * shared out among the threads, with the same bits. A free body is in contact with all blocks at
  * once; then one thread takes them in their order. SPDX-License-Identifier: BSD-3-Clause */
-#include "body/rotation.h"
+#include "contact/visit.h"
 #include "kernels.h"
 
 #include <string.h>
@@ -14,15 +14,15 @@
 #define SHARED 512 /* touches: below, sharing the work costs more than it gains */
 
 /* x and y side by side; z by itself, in space. */
-typedef double pair __attribute__((vector_size(16), aligned(8), may_alias));
+typedef double two __attribute__((vector_size(16), aligned(8), may_alias));
 
 static void kick(const mps_mpm *mpm, mpsi_impulses *all, int64_t n, const double *by) {
   double(*weight)[3] = all->weight + n * all->stride;
   double **node = all->node + n * all->stride;
-  const pair xy = {by[0], by[1]};
+  const two xy = {by[0], by[1]};
   for (int32_t i = 0; i < all->touch[n].nodes; i++) {
     const double f = 1.0 / node[i][MPSI_MASS];
-    *(pair *)(node[i] + MPSI_VECTOR) += f * *(const pair *)weight[i] * xy;
+    *(two *)(node[i] + MPSI_VECTOR) += f * *(const two *)weight[i] * xy;
     if (mpm->dim == 3) node[i][MPSI_VECTOR + 2] += f * weight[i][2] * by[2];
   }
   mpsi_impulse_kick(&all->body[all->touch[n].body], all->touch[n].impulse.at, by);
@@ -34,9 +34,9 @@ static void velocity_at(const mps_mpm *mpm, const mpsi_impulses *all, int64_t n,
   double *const *node = all->node + n * all->stride;
   const int32_t nodes = all->touch[n].nodes;
   memcpy(v, all->touch[n].carried, sizeof all->touch[n].carried);
-  pair xy = {v[0], v[1]};
+  two xy = {v[0], v[1]};
   for (int32_t i = 0; i < nodes; i++)
-    xy += *(const pair *)weight[i] * *(const pair *)(node[i] + MPSI_VECTOR);
+    xy += *(const two *)weight[i] * *(const two *)(node[i] + MPSI_VECTOR);
   v[0] = xy[0], v[1] = xy[1];
   for (int32_t i = 0; i < nodes && mpm->dim == 3; i++)
     v[2] += weight[i][2] * node[i][MPSI_VECTOR + 2];

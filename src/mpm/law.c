@@ -5,29 +5,31 @@
 
 #include <stdio.h>
 
-/* Columns of particles [begin, end) as the law sees them. */
-static mps_material_block columns_of(const mps_mpm *mpm, const mpsi_law_use *law, int64_t begin,
-                                     int64_t end) {
+void mpsi_mpm_begin_block(mps_material_block *block) {
+  *block = (mps_material_block){.struct_size = sizeof *block};
+}
+
+/* Columns of particles [begin, end) as the law sees them: all members but those of its answers. */
+static void find_columns(const mps_mpm *mpm, const mpsi_law_use *law, int64_t begin, int64_t end,
+                         mps_material_block *block) {
   static const int planar[5] = {0, 1, 3, 4, 8};
   const mpsi_columns *p = &mpm->p;
-  mps_material_block block = {.struct_size = sizeof block,
-                              .dim = mpm->dim,
-                              .count = end - begin,
-                              .dt = mpm->run.dt,
-                              .time = mpm->run.time + mpm->run.dt,
-                              .ids = mpm->laws.ids + begin,
-                              .volume_ratio = (law->reads_volume ? p->J : p->V) + begin,
-                              .flags = mpm->laws.flags + begin};
+  block->dim = mpm->dim;
+  block->count = end - begin;
+  block->dt = mpm->run.dt;
+  block->time = mpm->run.time + mpm->run.dt;
+  block->ids = mpm->laws.ids + begin;
+  block->volume_ratio = (law->reads_volume ? p->J : p->V) + begin;
+  block->flags = mpm->laws.flags + begin;
   const int tensors = mpm->dim == 3 ? 9 : 5;
   for (int c = 0; c < tensors; c++) {
     const int to = mpm->dim == 3 ? c : planar[c];
-    if (mpm->def.geometry != MPS_MPM_PLANE_STRAIN || c < 4) block.gradient[to] = p->L[c] + begin;
-    if (law->needs_deformation) block.deformation[to] = p->F[c] + begin;
+    if (mpm->def.geometry != MPS_MPM_PLANE_STRAIN || c < 4) block->gradient[to] = p->L[c] + begin;
+    block->deformation[to] = law->needs_deformation ? p->F[c] + begin : NULL;
   }
-  for (int c = 0; c < 2 * mpm->dim; c++) block.stress[c] = p->s[c] + begin;
-  for (int c = 0; c < mpm->dim; c++) block.position[c] = p->x[c] + begin;
-  if (mpm->laws.temperature) block.temperature = mpm->laws.temperature + begin;
-  return block;
+  for (int c = 0; c < 2 * mpm->dim; c++) block->stress[c] = p->s[c] + begin;
+  for (int c = 0; c < mpm->dim; c++) block->position[c] = p->x[c] + begin;
+  if (mpm->laws.temperature) block->temperature = mpm->laws.temperature + begin;
 }
 
 /* The end of the particles from `begin` that obey its law, at most `end`. */
@@ -80,26 +82,27 @@ static void take_strains(const mps_mpm *mpm, double *const *D, int64_t first,
 
 /* The particles from `begin` on; `first` is its place in the columns D and the means. */
 static void apply_run(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end,
-                      double *const *D, double (*mean)[MPSI_CHUNK], int64_t first) {
+                      double *const *D, double (*mean)[MPSI_CHUNK], int64_t first,
+                      mps_material_block *block) {
   mpsi_columns *p = &mpm->p;
   const mpsi_law_use *law = mpsi_law_of(mpm, begin);
-  mps_material_block block = columns_of(mpm, law, begin, end);
-  take_strains(mpm, D, first, &block);
-  for (int c = 0; mean && c < 3; c++) block.gradient[4 * c] = mean[c] + first;
+  find_columns(mpm, law, begin, end, block);
+  take_strains(mpm, D, first, block);
+  for (int c = 0; mean && c < 3; c++) block->gradient[4 * c] = mean[c] + first;
   mpsi_before_law before;
   if (mpm->energy.counts) mpsi_energy_keep(mpm, begin, end, &before);
   /* Where the law works on J, V stands for V0 meanwhile. */
   for (int64_t k = begin; law->reads_volume && k < end; k++) p->V[k] /= p->J[k];
-  apply_law(mpm, cells, law, &block, begin);
+  apply_law(mpm, cells, law, block, begin);
   for (int64_t k = begin; law->reads_volume && k < end; k++) p->V[k] *= p->J[k];
-  if (mpm->energy.counts) mpsi_energy_law(mpm, cells, law, &block, &before, begin);
+  if (mpm->energy.counts) mpsi_energy_law(mpm, cells, law, block, &before, begin);
 }
 
 void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end,
-                        double *const *D, double (*mean)[MPSI_CHUNK]) {
+                        double *const *D, double (*mean)[MPSI_CHUNK], mps_material_block *block) {
   for (int64_t k = begin, next; k < end; k = next) {
     next = end_of_run(mpm->p.law, k, end);
-    apply_run(mpm, cells, k, next, D, mean, k - begin);
+    apply_run(mpm, cells, k, next, D, mean, k - begin, block);
   }
 }
 
@@ -116,7 +119,9 @@ void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double
     next = end_of_run(mpm->p.law, k, end);
     const mpsi_law_use *law = mpsi_law_of(mpm, k);
     if (mpsi_material_stiffens(law->material)) {
-      const mps_material_block block = columns_of(mpm, law, k, next);
+      mps_material_block block;
+      mpsi_mpm_begin_block(&block);
+      find_columns(mpm, law, k, next, &block);
       mpsi_material_wave_moduli(law->material, &block, moduli + (k - begin));
     } else {
       for (int64_t q = k; q < next; q++) moduli[q - begin] = law->modulus;

@@ -38,10 +38,13 @@ typedef struct mpsi_laws {
   mpsi_refusal refusal;
 } mpsi_laws;
 
-/* law.c: their laws on particles [begin, end) of a block, with the velocity gradients of the columns
- * `D` of these particles, as mpsi_columns.D; `mean`: their diagonals by volumetric.c, or NULL. */
+/* law.c: their laws on particles [begin, end) of a block, with the velocity gradients of the
+ * columns `D` of these particles, as mpsi_columns.D; `mean`: their diagonals by volumetric.c, or
+ * NULL. `block` was begun, once for all particles of the block of cells: emptying it takes as long
+ * as telling the law of a chunk. */
+void mpsi_mpm_begin_block(mps_material_block *block);
 void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end,
-                        double *const *D, double (*mean)[MPSI_CHUNK]);
+                        double *const *D, double (*mean)[MPSI_CHUNK], mps_material_block *block);
 /* law.c: the present wave moduli of particles [begin, end), raised where viscosity limits dt. */
 void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli);
 /* materials.c: K + 4G/3 and G (Pa) of a particle's material at zero strain. */

@@ -86,7 +86,7 @@ MPSI_INLINE mpsi_vec mpsi_spread(mpsi_quad a) {
  * Rows are vectors: what is written by parts and read whole would wait for the memory. */
 MPSI_INLINE double mpsi_invert(int n, double m[4][4]) {
   double determinant = 1.0;
-  mpsi_quad row[4];
+  mpsi_quad row[4] = {{0.0}};
   for (int i = 0; i < n; i++)
     for (int j = 0; j < 4; j++) row[i][j] = j >= n ? 0.0 : j < i ? m[j][i] : m[i][j];
   MPSI_UNROLL for (int p = 0; p < n; p++) {
@@ -227,6 +227,14 @@ MPSI_INLINE uint32_t mpsi_support_state(const mpsi_worker *worker, int dim, int 
   return (any | any >> 8 | any >> 16 | (spline == 3 ? any >> 24 : 0)) & 0xff;
 }
 
+/* What the nodes give to the particles of a chunk: columns. A velocity's derivative of component c
+ * by axis d is number dim c + d, as in the columns L of the set. */
+typedef struct mpsi_gathered {
+  double v[3][MPSI_COLUMN], own[3][MPSI_COLUMN]; /* m/s; FLIP: what a particle keeps of its own */
+  double slope[9][MPSI_COLUMN];                  /* 1/s, of the fit, which the transfer takes */
+  double derivative[9][MPSI_COLUMN];             /* 1/s, which the laws see */
+} mpsi_gathered;
+
 /* ---- fitted.c: particles whose support is cut -------------------------------------------------
  */
 
@@ -243,6 +251,19 @@ typedef struct mpsi_fitted {
 void MPSI_LEVELLED(mpsi_gather_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
                                        const mpsi_worker *worker, int64_t particle,
                                        mpsi_fitted *out);
+
+/* ---- batch.c: particles beside bodies that act by impulses -----------------------------------
+ */
+
+/* Give particles [begin, end) of a chunk (that begins with particle `chunk`), all of one stencil,
+ * to the tiles, and take what the nodes give them; false, and nothing done, where they are for
+ * fitted.c. */
+bool MPSI_LEVELLED(mpsi_scatter_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                         const mpsi_worker *worker, const mpsi_places *places,
+                                         int64_t chunk, int begin, int end);
+bool MPSI_LEVELLED(mpsi_gather_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                        const mpsi_worker *worker, const mpsi_places *places,
+                                        int begin, int end, mpsi_gathered *out);
 
 /* The fit by itself; the largest speed of a block: see mpsi_kernels. */
 void MPSI_LEVELLED(mpsi_fit)(const mps_mpm *mpm, const mpsi_cell_block *cells,

@@ -282,7 +282,9 @@ MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mps
       const int axis = mpsi_wall_axis(mpm, cells, dim, spline, state, places.first[k]);
       if (axis >= 0)
         add_at_wall(mpm, cells, worker, geometry, spline, &places, axis, begin, k, end);
-      for (int f = k; f < end && axis < 0; f++)
+      const bool done = axis >= 0 || MPSI_LEVELLED(mpsi_scatter_batches)(mpm, cells, worker,
+                                                                         &places, begin, k, end);
+      for (int f = k; f < end && !done; f++)
         MPSI_LEVELLED(mpsi_scatter_fitted)(mpm, cells, worker, begin + f);
       continue;
     }
@@ -335,8 +337,8 @@ MPSI_INLINE void flush_body(mps_mpm *mpm, int64_t b, int32_t number, int dim) {
     flush(mpm, cells, q, cells->to[q], (const mpsi_node *)from->tile,
           (const mpsi_node *)from->force);
   for (int q = 0; q < 1 << dim && cells->thin; q++)
-    flush(mpm, cells, q, mpm->grid.nodes[cells->to[q]].across,
-          (const mpsi_node *)from->across_tile, (const mpsi_node *)from->across_force);
+    flush(mpm, cells, q, mpm->grid.nodes[cells->to[q]].across, (const mpsi_node *)from->across_tile,
+          (const mpsi_node *)from->across_force);
 }
 
 void MPSI_LEVELLED(mpsi_flush)(mps_mpm *mpm, int64_t b, int32_t worker) {

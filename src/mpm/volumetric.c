@@ -217,12 +217,14 @@ static void mean_diagonals(const mps_mpm *mpm, const mpsi_cell_block *cells, int
 
 static void apply_laws(mps_mpm *mpm, int64_t b, int32_t worker) {
   mpsi_cell_block *cells = &mpm->grid.cells[b];
+  mps_material_block law;
+  mpsi_mpm_begin_block(&law);
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int64_t end = k + MPSI_CHUNK < cells->end ? k + MPSI_CHUNK : cells->end;
     double *D[9], mean[3][MPSI_CHUNK];
     for (int c = 0; c < mpm->dim * mpm->dim; c++) D[c] = mpm->p.D[c] + k;
     mean_diagonals(mpm, cells, k, end, mean);
-    mpsi_mpm_apply_law(mpm, cells, k, end, D, mean);
+    mpsi_mpm_apply_law(mpm, cells, k, end, D, mean, &law);
   }
   if (!by_nodes(mpm)) mpm->kernels->speed(mpm, b, worker);
 }

@@ -5,7 +5,7 @@
 #include "mpm_scene.h"
 #include "test_fixture.h"
 
-#include "contact/impulse.h"
+#include "contact/visit.h"
 
 #include <mps/mpm_energy.h>
 

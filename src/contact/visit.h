@@ -1,0 +1,61 @@
+/* visit.h - one visit of a sweep to a contact (impulse.h), for the loops that make them: visits are
+ * many, and each waits for the one before. SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_VISIT_H
+#define MPSI_VISIT_H
+
+#include "impulse.h"
+
+#include <math.h>
+
+#define MPSI_LEAST_MOBILE 1e-3 /* of the direction that gives most */
+
+/* As fmax, without a call. */
+static inline double mpsi_larger(double a, double b) { return b > a ? b : a; }
+
+/* Takes T back to what the surface bears: the cone |T| <= mu P, with adhesion and up to a strength.
+ */
+static inline void mpsi_impulse_into_cone(const mpsi_impulse *c, double *rub) {
+  const double cone = c->push > 0.0 ? c->friction * c->push + c->adhesion : 0.0;
+  const double square = mpsi_dot3(rub, rub), most = cone < c->strength ? cone : c->strength;
+  if (!(square > most * most)) return; /* most contacts stick: no root */
+  const double share = most / sqrt(square);
+  for (int a = 0; a < 3; a++) rub[a] *= share;
+}
+
+/* 1/m_c along the unit vector d, > 0: that of the weakest direction counts for a thousandth at
+ * least, where walls hold the nodes. Of a vector of another length, whose square is `square`: times
+ * that. */
+static inline double mpsi_impulse_mobility_along(const mpsi_impulse *c, const mpsi_impulse_body *b,
+                                                 const double *d, double square) {
+  const double *m = c->mobility, most = mpsi_larger(m[0], mpsi_larger(m[1], m[2]));
+  const double own = m[0] * d[0] * d[0] + m[1] * d[1] * d[1] + m[2] * d[2] * d[2];
+  return mpsi_larger(own, MPSI_LEAST_MOBILE * most * square) +
+         (b->free ? mpsi_impulse_mobility(b->body, c->at, d) : 0.0);
+}
+
+/* One visit of a sweep: P and T such that the contact alone, all others as they are, is satisfied
+ * from the relative velocity u (m/s, of the particle's side less the body's, at the foot). `by` (N
+ * s) is the change on the particle. Returns whether there is any. The slip is not brought to unit
+ * length, which saves a root and three divisions. */
+static inline bool mpsi_impulse_visit(mpsi_impulse *c, const mpsi_impulse_body *b, const double *u,
+                                      double *by) {
+  const double across = mpsi_dot3(u, c->normal), before = c->push;
+  c->push = mpsi_larger(0.0, before + (c->aim - across) * c->inertia);
+  for (int a = 0; a < 3; a++) by[a] = (c->push - before) * c->normal[a];
+  if (c->friction > 0.0 || c->adhesion > 0.0) {
+    double slip[3], rub[3];
+    for (int a = 0; a < 3; a++) slip[a] = u[a] - across * c->normal[a];
+    const double square = mpsi_dot3(slip, slip);
+    const double stop =
+        square > 0.0 ? square / mpsi_impulse_mobility_along(c, b, slip, square) : 0.0;
+    for (int a = 0; a < 3; a++) rub[a] = c->rub[a] - stop * slip[a];
+    mpsi_impulse_into_cone(c, rub);
+    for (int a = 0; a < 3; a++) {
+      by[a] += rub[a] - c->rub[a];
+      c->rub[a] = rub[a];
+    }
+  }
+  return by[0] != 0.0 || by[1] != 0.0 || by[2] != 0.0;
+}
+
+#endif
