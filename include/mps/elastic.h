@@ -106,7 +106,8 @@ MPS_API mps_particles *mps_elastic_particles(const mps_elastic *e);
 MPS_API mps_context *mps_elastic_context(const mps_elastic *e);
 
 /** Reads `young` and `poisson` again after the caller has changed them. The symbolic factorisation
- *  is kept where joints of different materials are still on the same faces. */
+ *  is kept where joints of different materials are still on the same faces. On an error the solver
+ *  goes on with the former ones. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_update_material(mps_elastic *e);
 
 /** Says what the particles `ids` (NULL with count 0: all) are made of: writes `young` and

@@ -4,6 +4,8 @@
 
 #include "material/material_internal.h"
 
+#include <string.h>
+
 /* ---- material and cuts ----------------------------------------------------------------------- */
 
 void mpsi_elastic_measure(mps_elastic *e) {
@@ -83,14 +85,26 @@ static mps_status read_material(mps_elastic *e, const char *function) {
   return status;
 }
 
+/* What follows from the fields `young` and `poisson`; nothing has changed on an error. */
+static mps_status renew_material(mps_elastic *e, const char *function) {
+  const size_t bytes = (size_t)e->n * sizeof(double);
+  double *const moduli[3] = {e->lambda, e->mu, e->poisson};
+  double *former = mpsi_alloc(e->context, 3 * e->n, sizeof *former);
+  if (!former) return mpsi_fail_memory(e->context, function, 3 * bytes);
+  for (int k = 0; k < 3; k++) memcpy(former + k * e->n, moduli[k], bytes);
+  mps_status status = read_material(e, function);
+  if (status == MPS_OK) status = mpsi_elastic_find_joints(e, function);
+  if (status == MPS_OK) mpsi_elastic_measure(e);
+  for (int k = 0; k < 3 && status != MPS_OK; k++) memcpy(moduli[k], former + k * e->n, bytes);
+  mpsi_free(e->context, former);
+  return status;
+}
+
 mps_status mps_elastic_update_material(mps_elastic *e) {
   if (!e) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;
-  status = read_material(e, __func__);
-  if (status == MPS_OK) status = mpsi_elastic_find_joints(e, __func__);
-  if (status == MPS_OK) mpsi_elastic_measure(e);
-  return mpsi_elastic_leave(e, status);
+  return mpsi_elastic_leave(e, renew_material(e, __func__));
 }
 
 mps_status mps_elastic_set_material(mps_elastic *e, const mps_material *material, int64_t count,
@@ -107,9 +121,7 @@ mps_status mps_elastic_set_material(mps_elastic *e, const mps_material *material
   if (status == MPS_OK) status = mpsi_elastic_read(e, __func__, "poisson", former + e->n, 1);
   if (status == MPS_OK) {
     status = write_material(e, material, count, ids);
-    if (status == MPS_OK) status = read_material(e, __func__);
-    if (status == MPS_OK) status = mpsi_elastic_find_joints(e, __func__);
-    if (status == MPS_OK) mpsi_elastic_measure(e);
+    if (status == MPS_OK) status = renew_material(e, __func__);
     for (int k = 0; k < 2 && status != MPS_OK; k++) { /* the fields are there: it cannot fail */
       const mps_status back =
           mpsi_elastic_write(e, __func__, k ? "poisson" : "young", former + k * e->n, 1);

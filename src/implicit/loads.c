@@ -1,8 +1,10 @@
 /* loads.c - loads as nodal forces.
  *
  * The virtual work of a traction t on a facet of cell i is int t . (u_i + G_i u (x - x_i)) dA: its
- * resultant acts on particle i, its first moment on the sites of the gradient G_i. The same holds
- * for a body force on a cell that is cut in half. The published method takes resultants only.
+ * resultant acts on particle i, its first moment on the sites of the gradient G_i. But beside an
+ * axis along which the cell is cut in half, a facet's traction acts at the height of the particle:
+ * so does the stress of the half cell in K u (the trapezoidal rule), which it must balance. A body
+ * force on a half cell acts at its middle. The published method takes resultants only.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "defs.h"
 #include "elastic_private.h"
@@ -75,7 +77,7 @@ static void make_uniform(const mps_elastic *e, const mpsi_facet *f, const double
     if (c != f->axis) area *= high[c] - low[c];
   for (int c = 0; c < e->dim; c++) {
     out->force[c] = traction[c] * area;
-    for (int b = 0; b < e->dim; b++) out->moment[c][b] = out->force[c] * 0.5 * (low[b] + high[b]);
+    out->moment[c][f->axis] = out->force[c] * low[f->axis];
   }
 }
 
@@ -111,7 +113,8 @@ static mps_status integrate(const mps_elastic *e, const char *function, int64_t 
                            "xyz"[c]);
       for (int c = 0; c < e->dim; c++) {
         force[c] += t[c] * dA;
-        for (int m = 0; m < e->dim; m++) moment[c][m] += t[c] * dA * r[m];
+        for (int m = 0; m < e->dim; m++)
+          if (m == f->axis || low[m] == -high[m]) moment[c][m] += t[c] * dA * r[m];
       }
     }
   return MPS_OK;

@@ -139,6 +139,28 @@ static void constant_stress_is_exact_on_a_stepped_block(void **state) {
   mps_context_destroy(&context);
 }
 
+/* Layers of half cells along one axis, two, three: tractions on their facets balance the stress. */
+static void constant_stress_is_exact_where_layers_are_cut(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  for (int dim = 2; dim <= 3; dim++)
+    for (int axes = 1; axes <= dim; axes++) {
+      mps_elastic_def def = mps_elastic_defaults();
+      def.state = MPS_ELASTIC_PLANE_STRAIN;
+      test_body b = test_body_begin(context, dim, 0.25);
+      test_body_box(&b, 0, 0, 0, 1.5, 1.25, dim == 3 ? 1 : 0);
+      test_body_finish(&b, 3.0, 0.3, &def);
+      for (int axis = 0; axis < axes; axis++) {
+        int64_t count, *ids = test_select(&b, axis, -1, 0.2, &count);
+        mps_assert_ok(context, mps_elastic_cut(b.elastic, axis, -1, count, ids));
+        free(ids);
+      }
+      check_patch(&b, 3.0, 0.3, 0);
+      test_body_end(&b);
+    }
+  mps_context_destroy(&context);
+}
+
 /* ---- free motions ---------------------------------------------------------------------------- */
 
 /* Dense K of all displacements, by the matrix-free operator. */
@@ -361,6 +383,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(constant_stress_is_exact_on_an_l_shape),
       cmocka_unit_test(constant_stress_is_exact_on_a_stepped_block),
+      cmocka_unit_test(constant_stress_is_exact_where_layers_are_cut),
       cmocka_unit_test(rigid_motions_and_no_others_are_free),
       cmocka_unit_test(the_assembled_matrix_is_the_operator),
       cmocka_unit_test(loads_and_reactions_are_in_equilibrium),

@@ -456,6 +456,57 @@ static void without_memory_nothing_changes(void **state) {
   }
 }
 
+/* Other materials where memory is refused: the solver goes on with the former ones, as its energy
+ * says, which is found from the moduli. */
+static void without_memory_the_material_stays(void **state) {
+  (void)state;
+  for (int call = 0; call < 2; call++) { /* by fields, by a material */
+    test_allocator allocator = {0};
+    mps_context *own = test_allocator_context(&allocator);
+    mps_particles *set = block(own, 2, 4, 4, true);
+    mps_elastic_def def = mps_elastic_defaults();
+    mps_elastic *e = NULL;
+    mps_material *hard = NULL;
+    mps_assert_ok(own, mps_material_linear_elastic(own, 1e7, 0.25, &def.material));
+    mps_assert_ok(own, mps_material_linear_elastic(own, 1e8, 0.3, &hard));
+    mps_assert_ok(own, mps_elastic_create(own, set, &def, &e));
+    const int64_t foot[4] = {0, 1, 2, 3};
+    const double down[2] = {0.0, -1e3};
+    for (int c = 0; c < 2; c++) mps_assert_ok(own, test_prescribe(e, c, 4, foot, NULL));
+    mps_assert_ok(own, test_body_force(e, down));
+    mps_assert_ok(own, mps_elastic_solve(e));
+    double former, now;
+    mps_assert_ok(own, mps_elastic_energy(e, &former, NULL));
+    if (call == 0) { /* a joint appears */
+      mps_edit young;
+      mps_assert_ok(own, mps_particles_edit(set, "young", &young));
+      for (int64_t k = 0; k < 8; k++) *mps_edit_f64(&young, k, 0) = 1e8;
+      mps_assert_ok(own, mps_particles_commit(set, &young));
+    }
+    bool done = false;
+    int64_t refused = 0;
+    for (int64_t at = 1; !done; at++) {
+      allocator.refuse_at = allocator.calls + at;
+      const mps_status status =
+          call == 0 ? mps_elastic_update_material(e) : mps_elastic_set_material(e, hard, 4, foot);
+      allocator.refuse_at = 0;
+      done = status == MPS_OK;
+      refused += !done;
+      mps_assert_ok(own, mps_elastic_energy(e, &now, NULL));
+      if (!done) assert_int_equal(status, MPS_ERROR_MEMORY);
+      if (!done) mps_assert_near(now / former, 1.0, 0.0);
+    }
+    assert_true(refused >= 5);
+    assert_true(now > 1.1 * former); /* of the same displacements */
+    mps_elastic_destroy(&e);
+    mps_particles_destroy(&set);
+    mps_material_destroy(&def.material);
+    mps_material_destroy(&hard);
+    mps_context_destroy(&own);
+    assert_int_equal(allocator.live, 0);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_material_is_what_its_fields_would_be),
@@ -467,6 +518,7 @@ int main(void) {
       cmocka_unit_test(a_rollback_brings_back_what_was_dug_away),
       cmocka_unit_test(removals_that_cannot_be_are_refused),
       cmocka_unit_test(without_memory_nothing_changes),
+      cmocka_unit_test(without_memory_the_material_stays),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
