@@ -201,6 +201,38 @@ static inline mps_status keep_body(scene *s, int k, result *r) {
   return touch.impulse[1] != 0.0 ? MPS_OK : MPS_ERROR_INTERNAL;
 }
 
+/* The order of the particles, of all ranks too, as a number that ranks can agree upon. */
+static inline mps_status keep_order(mps_domain *domain, mps_particles *set, result *r) {
+  mps_particles *whole = NULL;
+  mps_view id;
+  double hash = 0.0;
+  mps_status status = domain ? mps_domain_gather(domain, set, &whole) : MPS_OK;
+  if (status == MPS_OK && (whole || !domain)) {
+    status = mps_particles_view(whole ? whole : set, "id", &id);
+    for (int64_t k = 0; status == MPS_OK && k < id.shape[0]; k++)
+      hash = fmod(31.0 * hash + (double)*mps_view_i64(&id, k, 0), 1e12);
+  }
+  if (domain) status = mps_domain_agree(domain, status);
+  if (domain) TRY(mps_domain_max(domain, 1, &hash));
+  r->other[RESULT_OTHERS - 1] = hash;
+  mps_particles_destroy(&whole);
+  return status;
+}
+
+static inline mps_status keep_scene(mps_domain *domain, int what, scene *s, result *r) {
+  mps_status status = mps_mpm_get_totals(s->mpm, &r->totals);
+  static const int32_t asked[] = {
+      MPS_MPM_SIDE_X_LOWER, MPS_MPM_SIDE_X_UPPER, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_SIDE_Z_LOWER, 6, 7};
+  for (int k = 0; k < 6; k++)
+    if (k < 3 || (k > 3 ? what != SLIDE && what < PRESS : dim_of(what) == 3))
+      TRY(mps_mpm_get_reaction(s->mpm, asked[k], &r->reaction[asked[k]]));
+  for (int k = 0; k < BODIES && s->contact[k]; k++) TRY(keep_body(s, k, r));
+  TRY(keep_order(domain, s->set, r));
+  r->dt = mps_mpm_dt(s->mpm), r->limit = mps_mpm_limit(s->mpm), r->time = mps_mpm_time(s->mpm);
+  TRY(keep(s->set, r));
+  return status;
+}
+
 static inline mps_status compute(mps_context *own, mps_domain *domain, int what, int64_t steps,
                                  result *r) {
   scene s = {.set = NULL};
@@ -214,15 +246,20 @@ static inline mps_status compute(mps_context *own, mps_domain *domain, int what,
   TRY(mps_mpm_step(s.mpm, steps / 2 - steps / 4));
   mps_snapshot_destroy(&then);
   TRY(mps_mpm_run(s.mpm, mps_mpm_time(s.mpm) + (double)(steps - steps / 2) * 1e-4, 10, NULL, NULL));
-  TRY(mps_mpm_get_totals(s.mpm, &r->totals));
-  static const int32_t asked[] = {
-      MPS_MPM_SIDE_X_LOWER, MPS_MPM_SIDE_X_UPPER, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_SIDE_Z_LOWER, 6, 7};
-  for (int k = 0; k < 6; k++)
-    if (k < 3 || (k > 3 ? what != SLIDE && what < PRESS : dim_of(what) == 3))
-      TRY(mps_mpm_get_reaction(s.mpm, asked[k], &r->reaction[asked[k]]));
-  for (int k = 0; k < BODIES && s.contact[k]; k++) TRY(keep_body(&s, k, r));
-  r->dt = mps_mpm_dt(s.mpm), r->limit = mps_mpm_limit(s.mpm), r->time = mps_mpm_time(s.mpm);
-  TRY(keep(s.set, r));
+  TRY(keep_scene(domain, what, &s, r));
+  end_scene(&s);
+  return status;
+}
+
+/* Half of a run that is cut in two: to a checkpoint, or on from it; `steps` are those of a half. */
+static inline mps_status compute_half(mps_context *own, mps_domain *domain, int what, int64_t steps,
+                                      const char *from, const char *to, result *r) {
+  scene s = {.set = NULL};
+  mps_status status = make_scene(own, domain, what, &s);
+  if (from) TRY(mps_mpm_restore(s.mpm, from, NULL));
+  TRY(mps_mpm_step(s.mpm, steps));
+  if (to) TRY(mps_mpm_save(s.mpm, to, NULL));
+  TRY(keep_scene(domain, what, &s, r));
   end_scene(&s);
   return status;
 }

@@ -44,6 +44,13 @@ mps_status mpsi_particles_hold(mps_particles *p, const char *function, mpsi_hold
   return MPS_OK;
 }
 
+int64_t mpsi_particles_runs(const mps_particles *p, int32_t rank, mpsi_row_run *out) {
+  for (const mpsi_holder *h = p->holders; h; h = h->next)
+    if (h->runs) return h->runs(h->self, out);
+  if (out) *out = (mpsi_row_run){.at = {0, 0, rank}, .rows = p->count};
+  return 1;
+}
+
 void mpsi_particles_release(mps_particles *p, mpsi_holder *holder) {
   if (!p) return;
   mpsi_holder **link = &p->holders;

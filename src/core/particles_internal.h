@@ -54,6 +54,12 @@ typedef enum mpsi_use {
   MPSI_USE_MOVE  /* moves or sorts the particles: the only one besides those that look */
 } mpsi_use;
 
+/* Rows of a set that lie on several ranks, and their place in the whole. */
+typedef struct mpsi_row_run {
+  int32_t at[3], reserved; /* z counts first, then y, then x */
+  int64_t rows;
+} mpsi_row_run;
+
 typedef struct mpsi_holder mpsi_holder;
 struct mpsi_holder {
   const char *name; /* "a WLS-MPM solver (mps_mpm)" */
@@ -74,8 +80,14 @@ struct mpsi_holder {
   /* After both, also where another holder refused: columns, count and order may have changed.
    * May be NULL. A holder that only looks is told too when the set goes back in time. */
   void (*renew)(void *self);
+  /* Of a set that lies on several ranks: its rows in runs, whose places tell the order of the whole
+   * (`out` NULL: how many). NULL: rank after rank. */
+  int64_t (*runs)(const void *self, mpsi_row_run *out);
   mpsi_holder *next;
 };
+
+/* The runs that a holder tells of, or one of all rows, at `rank` along z. `out` NULL: how many. */
+int64_t mpsi_particles_runs(const mps_particles *particles, int32_t rank, mpsi_row_run *out);
 
 /* MPS_ERROR_STATE where another holder is in the way, or a field is being edited. */
 mps_status mpsi_particles_check_hold(const mps_particles *particles, const char *function,

@@ -5,13 +5,14 @@
 #include "domain_private.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-/* ---- a share as a message: head, then for each field its column heads and columns -------------
+/* ---- a share as a message: head, runs of rows, then for each field its head and columns -------
  */
 
 typedef struct head {
-  int64_t particles, fields, dim;
+  int64_t particles, fields, dim, runs;
   double spacing;
 } head;
 
@@ -25,11 +26,12 @@ static mps_status pack(mps_domain *domain, const char *function, mps_particles *
   const head h = {.particles = mps_particles_count(particles),
                   .fields = mps_particles_field_count(particles),
                   .dim = mps_particles_dim(particles),
+                  .runs = mpsi_particles_runs(particles, domain->def.rank, NULL),
                   .spacing = mps_particles_spacing(particles)};
   mps_field_info info;
   mps_view view;
   mps_status status = MPS_OK;
-  *bytes = (int64_t)sizeof h;
+  *bytes = (int64_t)sizeof h + h.runs * (int64_t)sizeof(mpsi_row_run);
   for (int32_t f = 0; status == MPS_OK && f < h.fields; f++) {
     status = mps_particles_field(particles, f, &info);
     *bytes += (int64_t)sizeof(field_head) + info.components * h.particles * 8;
@@ -38,6 +40,8 @@ static mps_status pack(mps_domain *domain, const char *function, mps_particles *
   if (!at) return mpsi_fail_memory(domain->context, function, (size_t)*bytes);
   memcpy(at, &h, sizeof h);
   at += sizeof h;
+  mpsi_particles_runs(particles, domain->def.rank, (mpsi_row_run *)at);
+  at += h.runs * (int64_t)sizeof(mpsi_row_run);
   for (int32_t f = 0; status == MPS_OK && f < h.fields; f++) {
     status = mps_particles_field(particles, f, &info);
     if (status == MPS_OK) status = mps_particles_view(particles, info.name, &view);
@@ -57,8 +61,17 @@ static mps_status pack(mps_domain *domain, const char *function, mps_particles *
 /* Where a message has the columns of each field. */
 typedef struct share {
   head h;
+  const mpsi_row_run *run;
+  const int64_t *id;
   const char *field; /* the next field's head */
 } share;
+
+/* Rows of a rank, as they come in the whole. */
+typedef struct piece {
+  mpsi_row_run run;
+  int32_t rank, number; /* of a piece in the order of ranks */
+  int64_t first;        /* its first row there */
+} piece;
 
 /* What rank 0 puts together. */
 typedef struct assembly {
@@ -66,14 +79,12 @@ typedef struct assembly {
   const char *function;
   const mpsi_mailbox *box;
   share *share;
+  piece *piece;
+  int64_t pieces;
   int32_t *owner; /* by id: the rank whose copy counts, -1: nobody has it */
   int64_t ids, count;
   mps_snapshot whole;
 } assembly;
-
-static const int64_t *ids_of(const share *s) { /* the first field of every set */
-  return (const int64_t *)(s->field + sizeof(field_head));
-}
 
 static bool open_shares(assembly *a) {
   a->share = mpsi_alloc(a->domain->context, a->box->count, sizeof *a->share);
@@ -81,10 +92,37 @@ static bool open_shares(assembly *a) {
   for (int32_t r = 0; r < a->box->count; r++) {
     share *s = &a->share[r];
     memcpy(&s->h, a->box->mail[r].data, sizeof s->h);
-    s->field = (const char *)a->box->mail[r].data + sizeof s->h;
+    s->run = (const mpsi_row_run *)((const char *)a->box->mail[r].data + sizeof s->h);
+    s->field = (const char *)(s->run + s->h.runs);
+    s->id = (const int64_t *)(s->field + sizeof(field_head)); /* the first field of every set */
+    a->pieces += s->h.runs;
     for (int64_t k = 0; k < s->h.particles; k++)
-      if (ids_of(s)[k] >= a->ids) a->ids = ids_of(s)[k] + 1;
+      if (s->id[k] >= a->ids) a->ids = s->id[k] + 1;
   }
+  return true;
+}
+
+static int by_place(const void *left, const void *right) {
+  const piece *a = left, *b = right;
+  for (int c = 2; c >= 0; c--)
+    if (a->run.at[c] != b->run.at[c]) return a->run.at[c] < b->run.at[c] ? -1 : 1;
+  return a->number < b->number ? -1 : a->number > b->number;
+}
+
+static bool list_pieces(assembly *a) {
+  a->piece = mpsi_alloc(a->domain->context, a->pieces, sizeof *a->piece);
+  if (!a->piece) return false;
+  int32_t number = 0;
+  for (int32_t r = 0; r < a->box->count; r++) {
+    int64_t first = 0;
+    for (int64_t k = 0; k < a->share[r].h.runs; k++) {
+      const mpsi_row_run run = a->share[r].run[k];
+      a->piece[number] = (piece){.run = run, .rank = r, .number = number, .first = first};
+      number++;
+      first += run.rows;
+    }
+  }
+  qsort(a->piece, (size_t)a->pieces, sizeof *a->piece, by_place);
   return true;
 }
 
@@ -94,11 +132,26 @@ static bool find_owners(assembly *a) {
   for (int64_t id = 0; id < a->ids; id++) a->owner[id] = -1;
   for (int32_t r = 0; r < a->box->count; r++)
     for (int64_t k = 0; k < a->share[r].h.particles; k++) {
-      int32_t *owner = &a->owner[ids_of(&a->share[r])[k]];
+      int32_t *owner = &a->owner[a->share[r].id[k]];
       a->count += *owner < 0;
       *owner = r;
     }
   return true;
+}
+
+/* Columns of a piece to the rows from `row` on; returns how many. */
+static int64_t put_piece(const assembly *a, const piece *p, mpsi_value *to, int64_t row) {
+  const share *s = &a->share[p->rank];
+  const char *data = s->field + sizeof(field_head);
+  int64_t kept = 0;
+  for (int64_t k = p->first; k < p->first + p->run.rows; k++) {
+    if (a->owner[s->id[k]] != p->rank) continue;
+    for (int32_t c = 0; c < to->columns; c++)
+      memcpy((char *)to->data + 8 * (c * a->count + row + kept),
+             data + 8 * (c * s->h.particles + k), 8);
+    kept++;
+  }
+  return kept;
 }
 
 /* Puts the columns of field `f` of all ranks together. */
@@ -113,11 +166,8 @@ static mps_status assemble_field(assembly *a, int32_t f) {
   to->rows = a->count;
   if (!mpsi_value_reserve(context, to, to->type, a->count, to->columns))
     return mpsi_fail_memory(context, a->function, (size_t)(a->count * to->columns) * 8);
-  int64_t row = 0;
   for (int32_t r = 0; r < a->box->count; r++) {
-    share *s = &a->share[r];
-    const int64_t n = s->h.particles, *id = (const int64_t *)((const char *)a->box->mail[r].data +
-                                                              sizeof(head) + sizeof(field_head));
+    const share *s = &a->share[r];
     field_head own;
     memcpy(&own, s->field, sizeof own);
     if (memcmp(&own, &first, sizeof own) != 0)
@@ -125,16 +175,12 @@ static mps_status assemble_field(assembly *a, int32_t f) {
                        "field %d is '%.90s' on rank 0 and '%.90s' on rank %d: all ranks must have "
                        "the same fields",
                        f, first.name, own.name, (int)r);
-    const char *data = s->field + sizeof own;
-    int64_t kept = 0;
-    for (int64_t k = 0; k < n; k++) {
-      if (a->owner[id[k]] != r) continue;
-      for (int32_t c = 0; c < to->columns; c++)
-        memcpy((char *)to->data + 8 * (c * a->count + row + kept), data + 8 * (c * n + k), 8);
-      kept++;
-    }
-    row += kept;
-    s->field = data + 8 * n * to->columns;
+  }
+  int64_t row = 0;
+  for (int64_t p = 0; p < a->pieces; p++) row += put_piece(a, &a->piece[p], to, row);
+  for (int32_t r = 0; r < a->box->count; r++) {
+    share *s = &a->share[r];
+    s->field += (int64_t)sizeof first + 8 * s->h.particles * to->columns;
   }
   return MPS_OK;
 }
@@ -190,13 +236,14 @@ static mps_status make_whole(mps_domain *domain, const char *function, const mps
   mps_context *context = domain->context;
   assembly a = {.domain = domain, .function = function, .box = box, .whole.context = context};
   mps_status status = MPS_OK;
-  if (!open_shares(&a) || !find_owners(&a))
+  if (!open_shares(&a) || !list_pieces(&a) || !find_owners(&a))
     status = mpsi_fail_memory(context, function, (size_t)a.ids * sizeof *a.owner);
   if (status == MPS_OK) status = assemble(&a);
   if (status == MPS_OK) status = put(&a, whole);
   mpsi_values_free(context, &a.whole.fields);
   mpsi_values_free(context, &a.whole.state);
   mpsi_free(context, a.owner);
+  mpsi_free(context, a.piece);
   mpsi_free(context, a.share);
   return status;
 }

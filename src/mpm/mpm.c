@@ -373,7 +373,8 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
                               .compares = mpsi_mpm_compares,
                               .insert = mpsi_mpm_insert,
                               .remove = mpsi_mpm_remove,
-                              .renew = mpsi_mpm_renew};
+                              .renew = mpsi_mpm_renew,
+                              .runs = is_shared(&def) ? mpsi_share_runs : NULL};
   (void)mpsi_particles_hold(particles, __func__, &mpm->holder); /* checked above */
   mpm->def = def;
   mpm->def.domain = mpsi_domain_retain(def.domain);

@@ -3,7 +3,7 @@
  * both as they were at the last sort. SPDX-License-Identifier: BSD-3-Clause */
 #include "restart.h"
 
-#include "io/checkpoint.h"
+#include "files.h"
 #include "particles.h"
 
 #include <stdio.h>
@@ -393,6 +393,7 @@ static mpsi_state_of state_of(mps_mpm *mpm) {
                          .list = list_state,
                          .fits = fits,
                          .make_room = mpsi_mpm_make_room,
+                         .take_share = mpsi_share_take_values,
                          .settle = settle,
                          .bind = bind,
                          .after = forget_edits,
@@ -427,16 +428,15 @@ mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot) {
 
 mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *info) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_share_refuse(mpm, __func__, "a checkpoint");
-  if (status == MPS_OK) status = make_whole(mpm, __func__);
+  const mps_status status = mpsi_share_settle(mpm, __func__, make_whole(mpm, __func__));
   const mpsi_state_of of = state_of(mpm);
-  return status == MPS_OK ? mpsi_checkpoint_save(&of, __func__, path, info) : status;
+  if (status != MPS_OK) return status;
+  return mpm->share ? mpsi_share_save(mpm, &of, __func__, path, info)
+                    : mpsi_checkpoint_save(&of, __func__, path, info);
 }
 
 mps_status mps_mpm_restore(mps_mpm *mpm, const char *path, mps_checkpoint *info) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_status refused = mpsi_share_refuse(mpm, __func__, "a checkpoint");
-  if (refused != MPS_OK) return refused;
   const mpsi_state_of of = state_of(mpm);
   return mpsi_checkpoint_restore(&of, __func__, path, info);
 }

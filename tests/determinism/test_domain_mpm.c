@@ -13,6 +13,58 @@ static void test_press(void **state) { (void)state, compare_teams(compute, PRESS
 static void test_cone(void **state) { (void)state, compare_teams(compute, CONE, 120, true); }
 static void test_balls(void **state) { (void)state, compare_teams(compute, BALLS, 40, true); }
 
+/* ---- cut in two --------------------------------------------------------------------------------
+ */
+
+#define CHECKPOINT "test_domain_mpm.h5"
+
+static mps_status begin(mps_context *own, mps_domain *domain, int what, int64_t steps, result *r) {
+  return compute_half(own, domain, what, steps, NULL, CHECKPOINT, r);
+}
+
+static mps_status go_on(mps_context *own, mps_domain *domain, int what, int64_t steps, result *r) {
+  return compute_half(own, domain, what, steps, CHECKPOINT, NULL, r);
+}
+
+static void run_half(result_fn *half, int32_t size, int what, int64_t steps,
+                     const result *expected) {
+  ranks s = {.compute = half, .what = what, .threads = 1, .length = steps};
+  int64_t *seen = calloc((size_t)expected->count + 1, sizeof *seen);
+  run_team(&s, size, 60.0);
+  for (int32_t r = 0; r < size; r++) {
+    if (s.rank[r].status != MPS_OK) fail_msg("rank %d: %s", (int)r, s.rank[r].message);
+    compare(expected, &s.rank[r], seen);
+    drop(&s.rank[r]);
+  }
+  for (int64_t i = 0; i < expected->count; i++) assert_int_equal(seen[i], 1);
+  free(seen);
+}
+
+/* Written on 4 ranks, a run goes on with the bits of one that was not cut: on 3, and on one without
+ * a domain; written without a domain, on 3. */
+static void compare_cut(int what, int64_t steps) {
+  if (!mps_library_has(MPS_FEATURE_HDF5)) skip();
+  result half = {0}, whole = {0}, on = {0};
+  mps_context *own = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_assert_ok(own, compute_half(own, NULL, what, steps, NULL, CHECKPOINT, &half));
+  mps_assert_ok(own, go_on(own, NULL, what, steps, &whole));
+  run_half(go_on, 3, what, steps, &whole);
+  remove(CHECKPOINT);
+  run_half(begin, 4, what, steps, &half);
+  run_half(go_on, 3, what, steps, &whole);
+  mps_assert_ok(own, go_on(own, NULL, what, steps, &on));
+  int64_t *seen = calloc((size_t)whole.count + 1, sizeof *seen);
+  compare(&whole, &on, seen);
+  assert_memory_equal(on.id, whole.id, (size_t)whole.count * sizeof *whole.id);
+  free(seen);
+  drop(&half), drop(&whole), drop(&on);
+  mps_context_destroy(&own);
+  remove(CHECKPOINT);
+}
+
+static void test_cut_press(void **state) { (void)state, compare_cut(PRESS, 45); }
+static void test_cut_spread(void **state) { (void)state, compare_cut(SPREAD, 70); }
+
 /* ---- what goes wrong on one rank --------------------------------------------------------------
  */
 
@@ -134,6 +186,8 @@ int main(void) {
                                      cmocka_unit_test(test_press),
                                      cmocka_unit_test(test_cone),
                                      cmocka_unit_test(test_balls),
+                                     cmocka_unit_test(test_cut_press),
+                                     cmocka_unit_test(test_cut_spread),
                                      cmocka_unit_test(test_refused_memory),
                                      cmocka_unit_test(test_refused_contact),
                                      cmocka_unit_test(test_troubles)};
