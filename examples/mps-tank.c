@@ -20,7 +20,7 @@ static int complete(const options_program *program, tank_settings *s) {
   } usual[TANK_KINDS] = {{0.6, 0.3, 0.0, 4.0, NAN},   {0.7, 0.3, 0.01, 5.2, NAN},
                          {1.6, 0.3, 0.02, 6.0, NAN},  {0.6, 0.3, 0.001, 1.0, 5e-4},
                          {1.0, 2.0, 0.0, 0.25, 2e-4}, {0.0, 1.0, 0.0, 1.0, NAN},
-                         {3.0, 0.3, 0.01, 9.0, NAN}};
+                         {3.0, 0.3, 0.01, 9.0, NAN},  {0.8, 0.4, 0.005, 4.0, NAN}};
   const int kind = s->kind;
   const bool given_amplitude = !isnan(s->amplitude);
   if (kind == TANK_PLATE) s->length = s->plate_length;
@@ -62,6 +62,18 @@ static int complete(const options_program *program, tank_settings *s) {
                                          "else the water does not fill the tank");
   if (s->kind != TANK_DROP && 4.0 * fabs(s->amplitude) > s->length)
     return options_refuse(program, "--amplitude must be at most a quarter of the length");
+  if (kind == TANK_FLOAT) {
+    const double gap = 0.5 * (s->length - s->width), h = s->spacing;
+    if (!(gap > 4.999 * h && s->draft > 1.999 * h && s->depth - s->draft > 4.999 * h))
+      return options_refuse(program, "--width and --draft must leave at least 5 spacings of water "
+                                     "beside and below the box, and --draft be at least 2");
+    if (!(is_whole(s->width, h) && is_whole(s->draft, h) && is_whole(gap, h)))
+      return options_refuse(program, "--width, --draft and the gaps beside the box must be whole "
+                                     "numbers of --spacing: else the water does not touch it");
+    if (4.0 * fabs(s->amplitude) > s->draft)
+      return options_refuse(program, "--amplitude must be at most a quarter of --draft");
+    if (s->scheme == 1) return options_refuse(program, "--scheme classical has no bodies");
+  }
   if (s->sample > s->duration || s->duration / s->sample > 1e6)
     return options_refuse(program,
                           "--sample must be between a millionth of --duration and all of it");
@@ -127,6 +139,8 @@ int main(int argc, char **argv) {
                                .mass = NAN,
                                .stiffness = NAN,
                                .ratio = 1.0,
+                               .width = 0.4,
+                               .draft = 0.1,
                                .plate_length = 1.0,
                                .plate_thickness = 0.05,
                                .young = 67.5e9,
@@ -142,21 +156,24 @@ int main(int argc, char **argv) {
   const char *gauges = NULL;
   option table[] = {
       OPTION_HEADING("Case"),
-      OPTION_CHOICE("case", "still|sloshing|piston|spring|plate|drop|resonance", &s->kind,
-                    "water at rest; first mode of sloshing; waves of a piston in a closed tank; an "
-                    "end wall on a spring, let go --amplitude off its rest; a column of water on a "
-                    "clamped plate; an elliptic drop of radius --depth without gravity; an end "
-                    "wall on a spring "
-                    "that waves of a piston swing"),
+      OPTION_CHOICE(
+          "case", "still|sloshing|piston|spring|plate|drop|resonance|float", &s->kind,
+          "water at rest; first mode of sloshing; waves of a piston in a closed tank; an "
+          "end wall on a spring, let go --amplitude off its rest; a column of water on a "
+          "clamped plate; an elliptic drop of radius --depth without gravity; an end "
+          "wall on a spring that waves of a piston swing; a box that floats in the middle, "
+          "and heaves from the moment that a weight is put on it"),
+      OPTION_NUMBER("length", "m", OPTION_LENGTH, &s->length,
+                    "of the tank (default .6, .7, 1.6, .6, of resonance 3, of float .8; on a "
+                    "plate, the plate's)"),
       OPTION_NUMBER(
-          "length", "m", OPTION_LENGTH, &s->length,
-          "of the tank (default .6, .7, 1.6, .6, of resonance 3; on a plate, the plate's)"),
-      OPTION_NUMBER("depth", "m", OPTION_LENGTH, &s->depth,
-                    "of the water (default .3, on a plate 2), or the drop's radius (default 1)"),
+          "depth", "m", OPTION_LENGTH, &s->depth,
+          "of the water (default .3, on a plate 2, of float .4), or the drop's radius (default 1)"),
       OPTION_NUMBER("amplitude", "m", OPTION_FROM_TO(0.0, 1e3), &s->amplitude,
                     "of the sloshing at the walls (default .01), of the piston (.02, of resonance "
                     ".01), of the "
-                    "wall on the spring (.001, less where its acceleration would exceed .4 g)"),
+                    "wall on the spring (.001, less where its acceleration would exceed .4 g), "
+                    "of the box (.005)"),
       OPTION_NUMBER("period", "s", OPTION_DURATION, &s->period, "of the piston"),
       OPTION_NUMBER("ramp", "s", OPTION_FROM_TO(0.0, 1e6), &s->ramp,
                     "in which the piston's amplitude rises"),
@@ -169,6 +186,9 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("ratio", "1", OPTION_FROM_TO(0.05, 20.0), &s->ratio,
                     "resonance: frequency of the waves over that of the wall in water, which gives "
                     "its spring"),
+      OPTION_NUMBER("width", "m", OPTION_LENGTH, &s->width, "of the box that floats"),
+      OPTION_NUMBER("draft", "m", OPTION_LENGTH, &s->draft,
+                    "of the box, half its height: its mass is that of the water there"),
       OPTION_NUMBER("plate-length", "m", OPTION_LENGTH, &s->plate_length, "of the plate"),
       OPTION_NUMBER("plate-thickness", "m", OPTION_LENGTH, &s->plate_thickness, "of the plate"),
       OPTION_NUMBER("young", "Pa", OPTION_FROM_TO(1e-3, 1e16), &s->young,
@@ -186,7 +206,7 @@ int main(int argc, char **argv) {
           "the library's; the first one of MPS, for comparison: noisy pressures, no levels"),
       OPTION_HEADING("Run"),
       OPTION_NUMBER("duration", "s", OPTION_DURATION, &s->duration,
-                    "of the run (default 4, 5.2, 6, 1, .25, 1, 9)"),
+                    "of the run (default 4, 5.2, 6, 1, .25, 1, 9, 4)"),
       OPTION_NUMBER("dt", "s", OPTION_DURATION, &s->dt,
                     "step (default: the library's; spring 5e-4, plate 2e-4)"),
       OPTION_NUMBER("sample", "s", OPTION_DURATION, &s->sample,

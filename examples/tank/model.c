@@ -22,16 +22,19 @@ static void displace(const tank_settings *s, double *x) {
 static mps_status fill_tank(const tank_settings *s, mps_particles *water) {
   const int64_t columns = llround(s->length / s->spacing), rows = llround(s->depth / s->spacing);
   double *x = malloc((size_t)(columns * rows) * 2 * sizeof *x);
+  int64_t count = 0;
   uint64_t state = 1;
   if (!x) return MPS_ERROR_MEMORY;
   for (int64_t j = 0; j < rows; j++)
     for (int64_t i = 0; i < columns; i++) {
-      double *at = x + 2 * (j * columns + i);
+      double *at = x + 2 * count;
       at[0] = ((double)i + 0.5) * s->spacing, at[1] = ((double)j + 0.5) * s->spacing;
+      if (tank_in_box(s, at[0], at[1])) continue;
+      count++;
       if (s->kind == TANK_SLOSHING) displace(s, at);
       for (int c = 0; c < 2; c++) at[c] += s->disturb * s->spacing * waves_noise(&state);
     }
-  const mps_status status = mps_particles_append(water, columns * rows, x);
+  const mps_status status = mps_particles_append(water, count, x);
   free(x);
   return status;
 }
@@ -95,6 +98,8 @@ mps_status tank_build(mps_context *context, tank_model *m) {
   if (status == MPS_OK && s->scheme == 1)
     status = mps_experimental_fluid_classical(m->fluid, CLASSICAL_SHARE);
   if (status == MPS_OK && s->kind != TANK_DROP) status = add_walls(context, m);
+  if (status == MPS_OK && s->kind == TANK_FLOAT) status = tank_make_box(context, m);
+  if (status == MPS_OK && s->kind == TANK_FLOAT) status = tank_launch(m);
   m->restarted = NAN;
   m->capacity = (int64_t)ceil(s->duration / s->sample - 1e-9);
   m->sample = calloc((size_t)m->capacity + 1, sizeof *m->sample);
@@ -137,6 +142,12 @@ static mps_status measure_tank(tank_model *m, tank_sample *sample) {
   if (status != MPS_OK) return status;
   for (int k = 0; k <= TANK_GAUGES; k++) sample->level[k] -= s->depth;
   sample->deflection = tank_is_coupled(s) ? tank_deflection(m) : 0.0;
+  if (s->kind == TANK_FLOAT) {
+    mps_body_state box;
+    status = mps_body_get_state(m->box, &box);
+    if (status != MPS_OK) return status;
+    sample->deflection = box.position[1] - s->depth;
+  }
   sample->left = left.force[0]; /* the walls push inwards, the water outwards */
   sample->right = -right.force[0];
   return MPS_OK;
@@ -186,6 +197,7 @@ void tank_free(tank_model *m) {
   mps_recorder_destroy(&m->series);
   tank_free_structure(&m->structure);
   mps_fluid_destroy(&m->fluid);
+  mps_body_destroy(&m->box);
   mps_signal_destroy(&m->piston);
   mps_particles_destroy(&m->water);
   free(m->sample);

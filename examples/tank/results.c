@@ -51,7 +51,7 @@ typedef struct figures {
 
 /* What swings: the force on the right wall, or the structure. */
 static double swings(const tank_model *m, int64_t k) {
-  return tank_is_coupled(&m->s) ? m->sample[k].deflection : m->sample[k].right;
+  return tank_swings(&m->s) ? m->sample[k].deflection : m->sample[k].right;
 }
 
 /* Mean over the whole periods between two times (trapezium rule). */
@@ -119,7 +119,7 @@ static figures find_figures(const tank_model *m) {
   if (n == 0.0) return (figures){NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN, NAN};
   f.mean = sum / n;
   f.deviation = sqrt(fmax(square / n - f.mean * f.mean, 0.0));
-  if (tank_is_coupled(&m->s))
+  if (tank_swings(&m->s))
     find_motion(m, &f);
   else
     find_swing(m, f.mean, &f);
@@ -226,18 +226,36 @@ static bool write_particles(app *a, tank_model *m) {
 
 /* ---- pictures -------------------------------------------------------------------------------- */
 
+/* Outline of the box where it is now. */
+static void draw_box(output *f, const tank_model *m) {
+  const double x = 0.5 * m->s.width, y = m->s.draft;
+  const double corner[4][2] = {{-x, -y}, {x, -y}, {x, y}, {-x, y}};
+  mps_body_state box;
+  if (mps_body_get_state(m->box, &box) != MPS_OK) return;
+  const double C = cos(box.rotation[2]), S = sin(box.rotation[2]);
+  output_text(f, "set object 1 polygon from ");
+  for (int k = 0; k <= 4; k++) {
+    const double *c = corner[k % 4];
+    output_text(f, "%s%.6g,%.6g", k ? " to " : "", box.position[0] + C * c[0] - S * c[1],
+                box.position[1] + S * c[0] + C * c[1]);
+  }
+  output_text(f, " fillstyle solid 0.6 border linecolor rgb '#444444' fillcolor rgb '#c9b79c'\n");
+}
+
 static bool draw_water(app *a, const tank_model *m) {
   const tank_settings *s = &m->s;
   const bool drop = s->kind == TANK_DROP;
   const double width =
       drop ? 5.0 * s->depth : s->length + 2.0 * fabs(s->amplitude) + 2.0 * s->spacing;
-  const double rise = tank_is_coupled(s) ? 1.1 : 1.6;
-  const double height = drop ? 5.0 * s->depth : rise * s->depth + 4.0 * fabs(s->amplitude);
+  const double rise = tank_swings(s) ? 1.1 : 1.6;
+  const double over = s->kind == TANK_FLOAT ? 1.2 * s->draft : 0.0;
+  const double height = drop ? 5.0 * s->depth : rise * s->depth + over + 4.0 * fabs(s->amplitude);
   const double least = drop ? -2.5 * s->depth : -fabs(s->amplitude) - s->spacing;
   const int across = 1000, down = (int)fmin(fmax(820.0 * height / width, 160.0), 1000.0) + 130;
   const double last = m->samples ? m->sample[m->samples - 1].t : 0.0;
   output f;
   if (!plot_open(&f, a, s->out, "water", across, down)) return false;
+  if (s->kind == TANK_FLOAT) draw_box(&f, m);
   output_text(
       &f,
       "set title 'water at t = %.3f s, %lld particles'\nset size ratio -1\nunset grid\n"
@@ -282,20 +300,28 @@ static bool draw_force(app *a, const tank_model *m) {
 }
 
 static bool draw_structure(app *a, const tank_model *m) {
-  const bool plate = m->s.kind == TANK_PLATE;
+  const bool plate = m->s.kind == TANK_PLATE, box = m->s.kind == TANK_FLOAT;
   const double unit = plate ? 1e6 : 1e3;
   output f;
   if (!plot_open(&f, a, m->s.out, "structure", 1000, 460)) return false;
   output_text(&f,
               "set title '%s'\nset xlabel 't (s)'\nset ylabel '%s'\nset xrange [0:%.9g]\n"
-              "set key outside bottom center horizontal\nplot ",
-              plate ? "Middle of the plate" : "Wall on a spring",
+              "set key outside bottom center horizontal\nset samples 1000\nplot ",
+              plate ? "Middle of the plate"
+              : box ? "Heave of the box"
+                    : "Wall on a spring",
               plate ? "deflection (10^{-6} m)" : "displacement (mm)", m->s.duration);
   if (m->linear)
     output_text(&f,
                 "'structure.csv' every ::1 using 1:($3*%g) with lines linewidth 3 linecolor rgb "
                 "'#f0b27a' title 'linear potential flow'",
                 unit);
+  else if (box)
+    output_text(
+        &f,
+        "[t=0:%.9g] %.9g*(cos(%.9g*t)-1) with lines linewidth 3 linecolor rgb '#f0b27a' title "
+        "'first mode of potential flow'",
+        m->s.duration, unit * m->s.amplitude, 2.0 * WAVES_PI / tank_float_period(&m->s));
   else
     output_text(&f, "%.9g with lines dashtype '--' linecolor rgb '#c0392b' title 'at rest'",
                 plate ? unit * tank_plate_deflection(&m->s) : 0.0);
@@ -391,6 +417,21 @@ static void summarise_structure(output *f, const tank_model *m, const figures *g
            tank_plate_deflection(s), 100.0 * (g->deflection / tank_plate_deflection(s) - 1.0));
 }
 
+static void summarise_box(output *f, const tank_model *m, const figures *g) {
+  const double exact = tank_float_period(&m->s);
+  json_optional(f, "period", g->period);
+  json_number(f, "period_exact", exact);
+  json_optional(f, "decay", g->decay);
+  json_optional(f, "deflection", g->deflection);
+  json_number(f, "deflection_exact", -m->s.amplitude);
+  if (!isnan(g->period))
+    printf(
+        "heave: period %.4f s, potential flow %.4f s (%+.2f %%), decay %.3f 1/s; mean %.3f mm, at "
+        "rest %.3f mm\n",
+        g->period, exact, 100.0 * (g->period / exact - 1.0), g->decay, 1e3 * g->deflection,
+        -1e3 * m->s.amplitude);
+}
+
 static void summarise_drop(output *f, const tank_model *m) {
   const tank_sample *last = &m->sample[m->samples - 1];
   double a, b, centre;
@@ -424,6 +465,7 @@ static void summarise_tank(output *f, const tank_model *m) {
       printf("period %.5f s, theory %.5f s (%+.2f %%)\n", g.period, exact,
              100.0 * (g.period / exact - 1.0));
   }
+  if (s->kind == TANK_FLOAT) summarise_box(f, m, &g);
   if (s->kind == TANK_PISTON) summarise_waves(f, m, &g);
   if (s->kind == TANK_RESONANCE)
     summarise_resonance(f, m);
@@ -465,11 +507,11 @@ bool tank_write(app *a, tank_model *m) {
   const bool drop = m->s.kind == TANK_DROP;
   if (!find_linear(a, m)) return false;
   if (drop ? !write_drop(a, m) : !write_force(a, m) || !write_gauges(a, m)) return false;
-  if (tank_is_coupled(&m->s) && !write_structure(a, m)) return false;
+  if (tank_swings(&m->s) && !write_structure(a, m)) return false;
   if (m->linear && !write_linear(a, m)) return false;
   if (m->series && !app_check(a, mps_recorder_close(&m->series))) return false;
   if (!write_particles(a, m) || !write_summary(a, m) || !draw_water(a, m) ||
-      (!drop && !draw_force(a, m)) || (tank_is_coupled(&m->s) && !draw_structure(a, m)))
+      (!drop && !draw_force(a, m)) || (tank_swings(&m->s) && !draw_structure(a, m)))
     return false;
   app_tell_results(a, m->s.out);
   return true;

@@ -7,6 +7,7 @@
 #include "common/resume.h"
 #include "common/waves.h"
 
+#include <mps/body.h>
 #include <mps/couple.h>
 #include <mps/fluid.h>
 #include <mps/io.h>
@@ -19,6 +20,7 @@ enum {
   TANK_PLATE,
   TANK_DROP,
   TANK_RESONANCE,
+  TANK_FLOAT,
   TANK_KINDS
 };
 enum { TANK_SHAPES = 6, TANK_GAUGES = 8, TANK_BED = 0, TANK_LEFT = 1, TANK_RIGHT = 2 };
@@ -29,6 +31,7 @@ typedef struct tank_settings {
   double length, depth, spacing, amplitude, period, ramp, duration, sample, dt, viscosity, disturb;
   double mass, stiffness; /* kg and N/m, of a wall of 1 m */
   double ratio;           /* of the waves' frequency to that of the wall in water */
+  double width, draft;    /* m, of the box that floats */
   double plate_length, plate_thickness, young, poisson, plate_density;
   double gauge[TANK_GAUGES]; /* m, NaN where there is none */
   double window[2];          /* s: of the harmonics and means */
@@ -43,7 +46,7 @@ typedef struct tank_sample {
                                                     gauge stands at the right wall */
   double a, b, centre;                           /* m, m, Pa */
   double kinetic, potential;                     /* J */
-  double deflection; /* m: of the wall into the water, of the plate downwards */
+  double deflection; /* m: of the wall into the water, of the plate downwards, of the box upwards */
 } tank_sample;
 
 typedef struct tank_motion {
@@ -59,8 +62,8 @@ typedef struct tank_structure {
   double alpha_m, alpha_f, beta, gamma; /* of the generalised-alpha method */
   tank_motion at[TANK_SHAPES];
   double force[TANK_SHAPES]; /* N, at the middle of the last step; NaN before the first */
-  int64_t points;                             /* of the plate; 0: the wall stays plane */
-  double *x, *shape, each;                    /* m; values of each shape; m between them */
+  int64_t points;            /* of the plate; 0: the wall stays plane */
+  double *x, *shape, each;   /* m; values of each shape; m between them */
   double *pressure, *displacement, *velocity; /* at the points */
   mps_coupling *coupling;
   double *memory; /* of the coupling: between steps, before the step under way */
@@ -73,6 +76,7 @@ typedef struct tank_model {
   waves_piston motion;
   mps_signal *piston;
   mps_fluid *fluid;
+  mps_body *box;
   tank_structure structure;
   mps_recorder *series;
   tank_sample *sample;
@@ -87,6 +91,11 @@ typedef struct tank_model {
 
 static inline bool tank_is_coupled(const tank_settings *s) {
   return s->kind == TANK_SPRING || s->kind == TANK_PLATE || s->kind == TANK_RESONANCE;
+}
+
+/* Whether something moves with the water. */
+static inline bool tank_swings(const tank_settings *s) {
+  return tank_is_coupled(s) || s->kind == TANK_FLOAT;
 }
 
 /* model.c: water, walls, fluid; a run that fills `sample`. */
@@ -124,6 +133,13 @@ double tank_plate_omega(const tank_settings *s);
 double tank_added_mass(double w, double length, double depth);
 /* Semi-axes (m) and pressure in the middle (Pa) of the drop of radius R at time t. */
 void tank_drop(double radius, double t, double *a, double *b, double *centre);
+
+/* afloat.c: the box; its place in the water; stiffness (N/m) and period (s) of its heave. */
+mps_status tank_make_box(mps_context *context, tank_model *m);
+mps_status tank_launch(tank_model *m);
+bool tank_in_box(const tank_settings *s, double x, double y);
+double tank_float_stiffness(const tank_settings *s);
+double tank_float_period(const tank_settings *s);
 
 /* linear.c: waves of a piston before a wall. */
 typedef struct tank_response {

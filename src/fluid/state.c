@@ -63,7 +63,9 @@ static void list_state(mpsi_state *s, void *solver) {
     if (f->body[b].floats) {
       mpsi_state_f64(s, "rate", f->body[b].rate, 3);
       mpsi_state_f64(s, "mass", f->body[b].mass, 9);
+      mpsi_state_enter(s, "afloat"); /* it has a position and a velocity too */
       mpsi_body_list_state(s, f->body[b].body);
+      mpsi_state_leave(s);
     }
     mpsi_state_leave(s);
   }

@@ -1,6 +1,6 @@
-/* test_hdf5_fluid.c - a fluid that goes on from a checkpoint in a new solver is, bit for bit, the one
- * that never stopped, on any number of threads; a tank built otherwise, or a damaged file,
- * is refused and changes nothing. SPDX-License-Identifier: BSD-3-Clause */
+/* test_hdf5_fluid.c - a fluid that goes on from a checkpoint in a new solver is, bit for bit, the
+ * one that never stopped, on any number of threads; a tank built otherwise, or a damaged file, is
+ * refused and changes nothing. SPDX-License-Identifier: BSD-3-Clause */
 #include "digest.h"
 #include "fluid_tank.h"
 #include <mps/io.h>
@@ -56,6 +56,54 @@ static void goes_on_from_a_file(void **state) {
   mps_context_destroy(&a);
 }
 
+/* A box that floats and heaves: its place is the file's too. */
+static tank make_afloat(mps_context *c, mps_body **box) {
+  mps_body_def def = mps_body_defaults();
+  const double load[3] = {1.0, -10.0, 0.0};
+  tank t = make(c, 0.3);
+  int32_t number;
+  int64_t ids[4 * 4], count = 0;
+  mps_view id, x;
+  mps_assert_ok(c, mps_particles_view(t.water, "id", &id));
+  mps_assert_ok(c, mps_particles_view(t.water, "position", &x));
+  for (int64_t i = 0; i < id.shape[0]; i++)
+    if (fabs(*mps_view_f64(&x, i, 0) - 0.3) < 0.05 && *mps_view_f64(&x, i, 1) > 0.2)
+      ids[count++] = *mps_view_i64(&id, i, 0);
+  assert_int_equal(count, 16);
+  mps_assert_ok(c, mps_particles_remove(t.water, count, ids));
+  def.motion = MPS_BODY_MOTION_FREE, def.gravity[1] = -TANK_G;
+  def.position[0] = 0.3, def.position[1] = 0.3;
+  def.mass = 10.0, def.inertia[2] = 0.04;
+  mps_assert_ok(c, mps_body_create_box(c, &def, 0.1, 0.2, box));
+  mps_assert_ok(c, mps_body_load(*box, load, NULL));
+  mps_assert_ok(c, mps_fluid_add_body(t.fluid, *box, MPS_FLUID_BOUNDARY_SLIP, &number));
+  mps_assert_ok(c, mps_fluid_float_body(t.fluid, number, 1));
+  return t;
+}
+
+static void a_body_afloat_goes_on_from_a_file(void **state) {
+  (void)state;
+  mps_context *a = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_body *box = NULL, *other = NULL;
+  mps_body_state p, q;
+  tank whole = make_afloat(a, &box), next = make_afloat(a, &other);
+  mps_assert_ok(a, mps_fluid_step(whole.fluid, 10));
+  mps_assert_ok(a, mps_fluid_save(whole.fluid, path, NULL));
+  mps_assert_ok(a, mps_fluid_restore(next.fluid, path, NULL));
+  mps_assert_ok(a, mps_fluid_step(whole.fluid, 10));
+  mps_assert_ok(a, mps_fluid_step(next.fluid, 10));
+  same(a, &whole, a, &next);
+  mps_assert_ok(a, mps_body_get_state(box, &p));
+  mps_assert_ok(a, mps_body_get_state(other, &q));
+  assert_true(p.position[1] < 0.3 && p.velocity[0] > 0.0);
+  assert_memory_equal(&p, &q, sizeof p);
+  mps_body_destroy(&box);
+  mps_body_destroy(&other);
+  tank_free(&whole);
+  tank_free(&next);
+  mps_context_destroy(&a);
+}
+
 static void other_tanks_and_damaged_files_are_refused(void **state) {
   (void)state;
   mps_context *c = test_context(MPS_EXECUTOR_SERIAL, 1);
@@ -95,6 +143,7 @@ static void other_tanks_and_damaged_files_are_refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(goes_on_from_a_file),
+      cmocka_unit_test(a_body_afloat_goes_on_from_a_file),
       cmocka_unit_test(other_tanks_and_damaged_files_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
