@@ -1,26 +1,27 @@
 /* move.c - from the pressure to the new velocities and positions:
  *
  *   grad q = (M + c e e^T)^-1 (sum w (q_j - q_i) dx/r^2 + c (q_s - q_i) e/h),
- *   u += -(dt/rho) grad q + a v,  a = .6 dt s0 + 2 |v|^2/(l0^2 |G|^2 + 1e-4 g l0) <=
- * .5,
+ *   u += -(dt/rho) grad q + a v,  a = .6 dt s0 + 2 |v|^2/(l0^2 |G|^2 + 1e-4 g l0) <= .5,
  *
- * where v is what a linear velocity field leaves over (moments.c) and s0 = sqrt(g/l0). The
- * Laplacian of u is n v/S: a viscosity nu takes the share nu dt n/S of v, and a only what that
- * leaves. Guards: pairs that approach within l0/2 share their momentum, |u| <= 1.1 of the
- * neighbours' largest plus a free fall's share, and nobody comes nearer than .1 l0 to a wall; the
- * report counts them. Then
+ * the first part of a .15 dt s0 near the surface, where v is what a linear velocity field leaves
+ * over (moments.c) and s0 = sqrt(g/l0). The Laplacian of u is n v/S: a viscosity nu takes the share
+ * nu dt n/S of v, and a only what that leaves. Guards: pairs that approach within l0/2 share their
+ * momentum, |u| <= 1.1 of the neighbours' largest plus a free fall's share, and nobody comes nearer
+ * than .1 l0 to a wall; the report counts them. Then
  *
  *   x += dt u + f,  u += G f,  f = -2.5 dt s0 l0 sum w dx/(r n0), |f| <= .05 l0,
  *
- * without its part across the surface near it, keeps the particles evenly apart (Lind 2012,
- * Khayyer 2017).
+ * near the surface .3 of its part along it, keeps the particles evenly apart (Lind 2012, Khayyer
+ * 2017).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "loops.h"
 
 #define SMOOTH 0.6
+#define ZONE_SMOOTH 0.15 /* within 1.6 l0 of the surface */
 #define MOST_SMOOTH 0.5
 #define SHIFT 2.5
 #define MOST_SHIFT 0.05 /* l0 */
+#define ZONE_SHIFT 0.3  /* of the shift, within 1.6 l0 of the surface */
 #define OFF_WALL 0.1    /* l0 */
 
 /* The rate (g/l0)^1/2 of smoothing and shifting, 1/s; without gravity by the largest velocity. */
@@ -42,7 +43,8 @@ static void pressure_gradient(const mps_fluid *f, int64_t i, double *gradient) {
 }
 
 /* Part of v that is taken over: of a rough velocity field more, but not where the flow turns around
- * a corner, which is no linear field however smooth it is. */
+ * a corner, which is no linear field however smooth it is. Near the surface less: among neighbours
+ * on one side v is not 0 for the curved field of a wave, which it would damp. */
 static double smoothing(const mps_fluid *f, int64_t i) {
   const mpsi_fluid_local *local = &f->local[i];
   double steep = 1e-4 * f->g * f->l0, v2 = 0.0;
@@ -50,7 +52,7 @@ static double smoothing(const mps_fluid *f, int64_t i) {
   for (int c = 0; c < 2; c++) v2 += local->rest[c] * local->rest[c];
   const bool corner = f->company[i] & MPSI_FLUID_NEAR_CORNER;
   const double rough = steep > 0.0 && !corner ? 2.0 * v2 / steep : 0.0;
-  const double a = SMOOTH * f->dt * rate(f) + rough;
+  const double a = (f->zone[i] ? ZONE_SMOOTH : SMOOTH) * f->dt * rate(f) + rough;
   return fmin(a, MOST_SMOOTH);
 }
 
@@ -192,7 +194,8 @@ void mpsi_fluid_find_velocities(mps_fluid *f) {
 
 /* ---- positions ------------------------------------------------------------------------------- */
 
-/* The shift that keeps the particles evenly apart. */
+/* The shift that keeps the particles evenly apart. Along the surface it takes water from crests to
+ * troughs, so it is less there. */
 static void find_shift(const mps_fluid *f, int64_t i, double *shift) {
   shift[0] = shift[1] = 0.0;
   if (f->state[i] == MPSI_FLUID_APART) return;
@@ -201,7 +204,7 @@ static void find_shift(const mps_fluid *f, int64_t i, double *shift) {
   if (f->zone[i]) {
     const double e[2] = {f->zone_normal[0][i], f->zone_normal[1][i]};
     const double across = shift[0] * e[0] + shift[1] * e[1];
-    for (int c = 0; c < 2; c++) shift[c] -= across * e[c];
+    for (int c = 0; c < 2; c++) shift[c] = ZONE_SHIFT * (shift[c] - across * e[c]);
   }
   const double length = sqrt(shift[0] * shift[0] + shift[1] * shift[1]), most = MOST_SHIFT * f->l0;
   if (length > most)
