@@ -2,8 +2,8 @@
  * a time; who does the last that a block waits for puts that block there. A thread that finds
  * nothing ready looks again for some microseconds and then sleeps for a moment; under a caller's
  * executor, which may run the units one after the other, it leaves. All is done when all have left,
- * since who makes a block ready looks at the queue after that. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * since who makes a block ready looks at the queue after that. One thread alone goes over the blocks
+ * in their order and does for each what it waits for. SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_private.h"
 
 #include <stdatomic.h>
@@ -11,6 +11,11 @@
 #define SMALL_SET 2048 /* particles: below, sharing the work costs more than it gains */
 #define VISITS 4       /* of a thread of a caller's executor: it may leave and come back so often */
 #define MOST_CLAIMED 8
+
+/* Which coordinates of a block of nodes are odd, bit by bit. */
+static int parity_of(const mpsi_node_block *nodes) {
+  return (nodes->at[0] & 1) | (nodes->at[1] & 1) << 1 | (nodes->at[2] & 1) << 2;
+}
 
 /* ---- one thread ------------------------------------------------------------------------------ */
 
@@ -23,7 +28,8 @@ static void clear_and_scatter(mps_mpm *mpm, const mpsi_pass *pass, int64_t b, in
   pass->scatter(mpm, b, worker);
 }
 
-static void run_alone(mps_mpm *mpm, const mpsi_pass *pass) {
+/* Stage by stage: where all blocks have to give before any node is finished. */
+static void run_stages(mps_mpm *mpm, const mpsi_pass *pass) {
   const mpsi_grid *grid = &mpm->grid;
   const int32_t *order = pass->arrive ? mpm->share->order : grid->coloured;
   const int64_t early = pass->arrive ? mpm->share->early : grid->cell_count;
@@ -35,6 +41,63 @@ static void run_alone(mps_mpm *mpm, const mpsi_pass *pass) {
   if (pass->between) pass->between(mpm);
   for (int64_t g = 0; pass->finish && g < grid->node_count; g++) pass->finish(mpm, g, 0);
   for (int64_t b = 0; pass->gather && b < grid->cell_count; b++) pass->gather(mpm, b, 0);
+}
+
+/* What has been done. */
+typedef struct wave {
+  mps_mpm *mpm;
+  const mpsi_pass *pass;
+  _Atomic int32_t *given, *finished; /* by blocks of cells, of nodes */
+} wave;
+
+static bool mark(_Atomic int32_t *done) {
+  const bool was = atomic_load_explicit(done, memory_order_relaxed) != 0;
+  atomic_store_explicit(done, 1, memory_order_relaxed);
+  return !was;
+}
+
+/* The block that gives to the block of nodes g just before the one at its corner q, or -1. */
+static int32_t giver_before(const mps_mpm *mpm, int32_t g, int q) {
+  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  const int parity = parity_of(nodes);
+  for (int colour = (q ^ parity) - 1; colour >= 0; colour--)
+    if (nodes->from[colour ^ parity] >= 0) return nodes->from[colour ^ parity];
+  return -1;
+}
+
+/* Lets block b give, and before it those that have to: it calls itself as often as there are
+ * colours, at most. */
+static void give_in_turn(wave *w, int32_t b) {
+  const mpsi_cell_block *cells = &w->mpm->grid.cells[b];
+  if (!mark(&w->given[b])) return;
+  for (int q = 0; q < 1 << w->mpm->dim; q++) {
+    const int32_t before = giver_before(w->mpm, cells->to[q], q);
+    if (before >= 0) give_in_turn(w, before);
+  }
+  clear_and_scatter(w->mpm, w->pass, b, 0);
+}
+
+static void finish_in_turn(wave *w, int32_t g) {
+  const mpsi_node_block *nodes = &w->mpm->grid.nodes[g];
+  if (!mark(&w->finished[g])) return;
+  for (int q = 0; q < 1 << w->mpm->dim && w->pass->scatter; q++)
+    if (nodes->from[q] >= 0) give_in_turn(w, nodes->from[q]);
+  if (w->pass->update) w->pass->update(w->mpm, g, 0);
+  if (w->pass->finish) w->pass->finish(w->mpm, g, 0);
+}
+
+/* Each block gathers as soon as its nodes are done, while its particles are in the cache since they
+ * gave: of a large set they would have to come from the memory twice. */
+static void run_wave(mps_mpm *mpm, const mpsi_pass *pass) {
+  const mpsi_grid *grid = &mpm->grid;
+  _Atomic int32_t *room = grid->pass_room.item;
+  wave w = {mpm, pass, room, room + grid->cell_count};
+  for (int64_t k = 0; k < grid->cell_count + grid->node_count; k++)
+    atomic_store_explicit(&room[k], 0, memory_order_relaxed);
+  for (int64_t b = 0; b < grid->cell_count; b++) {
+    for (int q = 0; q < 1 << mpm->dim; q++) finish_in_turn(&w, grid->cells[b].to[q]);
+    if (pass->gather) pass->gather(mpm, b, 0);
+  }
 }
 
 /* ---- several --------------------------------------------------------------------------------- */
@@ -163,7 +226,10 @@ static void fill(flow *f) {
 void mpsi_mpm_run_pass(mps_mpm *mpm, const mpsi_pass *pass) {
   mpsi_grid *grid = &mpm->grid;
   if (grid->worker_count == 1 || mpm->p.count < SMALL_SET) {
-    run_alone(mpm, pass);
+    if (pass->between || pass->arrive)
+      run_stages(mpm, pass);
+    else
+      run_wave(mpm, pass);
     return;
   }
   _Atomic int32_t *room = grid->pass_room.item;
@@ -193,7 +259,7 @@ void mpsi_mpm_link_blocks(mps_mpm *mpm) {
   mpsi_cell_block *cells = mpm->grid.cells;
   for (int64_t g = 0; g < mpm->grid.node_count; g++) {
     const mpsi_node_block *nodes = &mpm->grid.nodes[g];
-    const int parity = (nodes->at[0] & 1) | (nodes->at[1] & 1) << 1 | (nodes->at[2] & 1) << 2;
+    const int parity = parity_of(nodes);
     int32_t last = -1;
     int last_q = 0;
     for (int colour = 0; colour < 1 << mpm->dim; colour++) {
