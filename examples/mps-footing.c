@@ -82,6 +82,6 @@ int main(int argc, char **argv) {
   const char *refused = mpm_model_refuse_stiffness(table, s->contact);
   if (refused) return options_refuse(&program, refused);
   static const mpm_model_parts parts = {footing_build, footing_march, footing_finish,
-                                        .shared = false};
+                                        .shared = true};
   return mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
 }

@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #define PI 3.14159265358979323846
 #define G 9.81      /* m/s2 */
@@ -92,24 +93,24 @@ static mps_status make_particles(mps_context *context, const settings *s, simula
 
 static mps_status make_rigid(mps_context *context, const settings *s, simulation *sim) {
   mps_body_def def = mps_body_defaults();
-  mps_status status;
+  if (s->body == BODY_SLOPE) {
+    const double normal[] = {-sim->along[1], sim->along[0]};
+    return mps_body_create_half_plane(context, &def, normal, &sim->m.body[0]);
+  }
+  def.motion = MPS_BODY_MOTION_FREE;
+  def.mass = DENSITY * PI * RADIUS * RADIUS;
+  def.inertia[2] = 0.5 * def.mass * RADIUS * RADIUS;
+  def.position[0] = sim->start[0], def.position[1] = sim->start[1];
+  def.gravity[0] = G * sin(s->angle * PI / 180.0);
+  def.gravity[1] = -G * cos(s->angle * PI / 180.0);
+  return mps_body_create_disc(context, &def, RADIUS, &sim->m.body[0]);
+}
+
+static mps_status add_contact(const settings *s, simulation *sim) {
   mps_contact_def contact = mps_contact_defaults();
   contact.friction = s->mu;
   contact.method = s->contact;
   if (s->contact == MPS_CONTACT_METHOD_PENALTY) contact.penalty = s->k * 1e3;
-  if (s->body == BODY_SLOPE) {
-    const double normal[] = {-sim->along[1], sim->along[0]};
-    status = mps_body_create_half_plane(context, &def, normal, &sim->m.body[0]);
-  } else {
-    def.motion = MPS_BODY_MOTION_FREE;
-    def.mass = DENSITY * PI * RADIUS * RADIUS;
-    def.inertia[2] = 0.5 * def.mass * RADIUS * RADIUS;
-    def.position[0] = sim->start[0], def.position[1] = sim->start[1];
-    def.gravity[0] = G * sin(s->angle * PI / 180.0);
-    def.gravity[1] = -G * cos(s->angle * PI / 180.0);
-    status = mps_body_create_disc(context, &def, RADIUS, &sim->m.body[0]);
-  }
-  if (status != MPS_OK) return status;
   return mps_mpm_add_contact(sim->m.mpm, sim->m.body[0], &contact, NULL);
 }
 
@@ -133,24 +134,26 @@ static mps_status build(mps_context *context, void *user) {
   mps_status status = make_particles(context, s, sim);
   if (status == MPS_OK)
     status = mps_material_linear_elastic(context, s->young * 1e3, s->poisson, &sim->m.material);
-  if (status == MPS_OK)
-    status = mps_mpm_create(context, sim->m.particles, sim->m.material, &def, &sim->m.mpm);
+  if (status == MPS_OK) status = make_rigid(context, s, sim);
+  status = mpm_model_create(&sim->m, context, status, &def);
   if (status == MPS_OK && s->body != BODY_SLOPE)
     status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
-  return status == MPS_OK ? make_rigid(context, s, sim) : status;
+  return status == MPS_OK ? add_contact(s, sim) : status;
 }
 
 /* ---- running --------------------------------------------------------------------------------- */
 
 /* Centre of mass, its velocity, and angular momentum over moment of inertia. */
-static mps_status look_at_particles(simulation *sim, double *x, double *v, double *omega) {
+static mps_status measure(mps_particles *set, double *x, double *v, double *omega) {
   mps_view px, pv, pm;
   double m = 0.0, inertia = 0.0, angular = 0.0;
-  mps_status status = mps_particles_view(sim->m.particles, "position", &px);
-  if (status == MPS_OK) status = mps_particles_view(sim->m.particles, "velocity", &pv);
-  if (status == MPS_OK) status = mps_particles_view(sim->m.particles, "mass", &pm);
-  if (status != MPS_OK) return status;
-  for (int64_t k = 0; k < px.shape[0]; k++) {
+  mps_status status = mps_particles_view(set, "position", &px);
+  if (status == MPS_OK) status = mps_particles_view(set, "velocity", &pv);
+  if (status == MPS_OK) status = mps_particles_view(set, "mass", &pm);
+  int64_t *row = status == MPS_OK ? mpm_rows_by_id(set) : NULL;
+  if (!row) return status == MPS_OK ? MPS_ERROR_MEMORY : status;
+  for (int64_t i = 0; i < px.shape[0]; i++) {
+    const int64_t k = row[i];
     const double mass = *mps_view_f64(&pm, k, 0);
     m += mass;
     for (int c = 0; c < 2; c++) {
@@ -159,14 +162,27 @@ static mps_status look_at_particles(simulation *sim, double *x, double *v, doubl
     }
   }
   for (int c = 0; c < 2; c++) x[c] /= m, v[c] /= m;
-  for (int64_t k = 0; k < px.shape[0]; k++) {
+  for (int64_t i = 0; i < px.shape[0]; i++) {
+    const int64_t k = row[i];
     const double mass = *mps_view_f64(&pm, k, 0);
     const double dx = *mps_view_f64(&px, k, 0) - x[0], dy = *mps_view_f64(&px, k, 1) - x[1];
     inertia += mass * (dx * dx + dy * dy);
     angular += mass * (dx * *mps_view_f64(&pv, k, 1) - dy * *mps_view_f64(&pv, k, 0));
   }
   *omega = -angular / inertia;
+  free(row);
   return MPS_OK;
+}
+
+static mps_status look_at_particles(simulation *sim, double *x, double *v, double *omega) {
+  mps_particles *whole;
+  double found[5] = {0.0};
+  mps_status status = mpm_model_whole(&sim->m, &whole);
+  if (status == MPS_OK && whole) status = measure(whole, found, found + 2, found + 4);
+  status = mpm_model_tell(&sim->m, status, 5, found);
+  for (int c = 0; c < 2; c++) x[c] = found[c], v[c] = found[2 + c];
+  *omega = found[4];
+  return status;
 }
 
 static mps_status look_at_body(simulation *sim, double *x, double *v, double *omega) {
@@ -301,6 +317,6 @@ int main(int argc, char **argv) {
   if (code >= 0) return code;
   const char *refused = mpm_model_refuse_stiffness(table, s->contact);
   if (refused) return options_refuse(&program, refused);
-  static const mpm_model_parts parts = {build, march, finish, .shared = false};
+  static const mpm_model_parts parts = {build, march, finish, .shared = true};
   return mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
 }

@@ -47,7 +47,7 @@ static mps_status stroke(mps_context *context, double start, mps_signal **out) {
   return mps_signal_table(context, MPS_SIGNAL_VELOCITY, 4, t, v, out);
 }
 
-static mps_status make_plates(mps_context *context, const settings *s, simulation *sim) {
+static mps_status make_plates(mps_context *context, simulation *sim) {
   static const double normal[PLATES][2] = {{0.0, 1.0}, {-1.0, 0.0}, {0.0, -1.0}, {1.0, 0.0}};
   static const double at[PLATES][2] = {{0.0, 0.0}, {SIDE, 0.0}, {0.0, SIDE}, {0.0, 0.0}};
   mps_signal *down = NULL, *aside = NULL;
@@ -56,17 +56,24 @@ static mps_status make_plates(mps_context *context, const settings *s, simulatio
   for (int p = 0; p < PLATES && status == MPS_OK; p++) {
     mps_body_def def = mps_body_defaults();
     def.position[0] = at[p][0], def.position[1] = at[p][1];
+    status = mps_body_create_half_plane(context, &def, normal[p], &sim->m.body[p]);
+    if (status == MPS_OK && p == TOP) status = mps_body_drive(sim->m.body[p], 1, down, -1.0);
+    if (status == MPS_OK && p == BOTTOM) status = mps_body_drive(sim->m.body[p], 0, aside, 1.0);
+  }
+  mps_signal_destroy(&down);
+  mps_signal_destroy(&aside);
+  return status;
+}
+
+static mps_status add_contacts(const settings *s, simulation *sim) {
+  mps_status status = MPS_OK;
+  for (int p = 0; p < PLATES && status == MPS_OK; p++) {
     mps_contact_def contact = mps_contact_defaults();
     contact.method = s->contact;
     if (s->contact == MPS_CONTACT_METHOD_PENALTY && s->k > 0.0) contact.penalty = s->k * 1e3;
     contact.friction = p == BOTTOM ? s->mu : 0.0;
-    status = mps_body_create_half_plane(context, &def, normal[p], &sim->m.body[p]);
-    if (status == MPS_OK && p == TOP) status = mps_body_drive(sim->m.body[p], 1, down, -1.0);
-    if (status == MPS_OK && p == BOTTOM) status = mps_body_drive(sim->m.body[p], 0, aside, 1.0);
-    if (status == MPS_OK) status = mps_mpm_add_contact(sim->m.mpm, sim->m.body[p], &contact, NULL);
+    status = mps_mpm_add_contact(sim->m.mpm, sim->m.body[p], &contact, NULL);
   }
-  mps_signal_destroy(&down);
-  mps_signal_destroy(&aside);
   return status;
 }
 
@@ -85,9 +92,9 @@ static mps_status build(mps_context *context, void *user) {
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
   def.origin[0] = def.origin[1] = s->offset * s->h;
-  if (status == MPS_OK)
-    status = mps_mpm_create(context, sim->m.particles, sim->m.material, &def, &sim->m.mpm);
-  return status == MPS_OK ? make_plates(context, s, sim) : status;
+  if (status == MPS_OK) status = make_plates(context, sim);
+  status = mpm_model_create(&sim->m, context, status, &def);
+  return status == MPS_OK ? add_contacts(s, sim) : status;
 }
 
 /* ---- running --------------------------------------------------------------------------------- */
@@ -231,6 +238,6 @@ int main(int argc, char **argv) {
     return options_refuse(&program,
                           "--young over --density is too small for a block in equilibrium: "
                           "sound must cross it 5 times in the 0.1 s of a start");
-  static const mpm_model_parts parts = {build, march, finish, .shared = false};
+  static const mpm_model_parts parts = {build, march, finish, .shared = true};
   return mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
 }

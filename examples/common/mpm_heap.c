@@ -25,35 +25,6 @@ static double end_of_heap(int64_t count, double *x, double gap) {
   return x[last];
 }
 
-/* ---- rows by id: the present order of particles shows in no sum and no table ----------------- */
-
-typedef struct named_row {
-  int64_t id, row;
-} named_row;
-
-static int by_id(const void *a, const void *b) {
-  const int64_t x = ((const named_row *)a)->id, y = ((const named_row *)b)->id;
-  return (x > y) - (x < y);
-}
-
-/* To be freed; NULL: no memory, or no ids. */
-static named_row *rows_by_id(mps_particles *particles) {
-  const int64_t count = mps_particles_count(particles);
-  named_row *rows = malloc((size_t)count * sizeof *rows + 1);
-  mps_view id;
-  if (!rows || mps_particles_view(particles, "id", &id) != MPS_OK) {
-    free(rows);
-    return NULL;
-  }
-  bool sorted = true;
-  for (int64_t k = 0; k < count; k++) {
-    rows[k] = (named_row){*mps_view_i64(&id, k, 0), k};
-    sorted = sorted && (k == 0 || rows[k].id > rows[k - 1].id);
-  }
-  if (!sorted) qsort(rows, (size_t)count, sizeof *rows, by_id);
-  return rows;
-}
-
 /* ---- the heap -------------------------------------------------------------------------------- */
 
 static mps_status measure(mps_particles *particles, double g, double band, mpm_heap *out) {
@@ -66,7 +37,7 @@ static mps_status measure(mps_particles *particles, double g, double band, mpm_h
   const int64_t count = x.shape[0];
   const double spacing = mps_particles_spacing(particles);
   double *place = malloc((size_t)count * sizeof *place);
-  named_row *rows = rows_by_id(particles);
+  int64_t *rows = mpm_rows_by_id(particles);
   if (!place || !rows) {
     free(place);
     free(rows);
@@ -75,7 +46,7 @@ static mps_status measure(mps_particles *particles, double g, double band, mpm_h
   *out = (mpm_heap){0};
   int64_t beside = 0;
   for (int64_t i = 0; i < count; i++) {
-    const int64_t k = rows[i].row;
+    const int64_t k = rows[i];
     const double mass = *mps_view_f64(&m, k, 0), vx = *mps_view_f64(&v, k, 0);
     const double vy = *mps_view_f64(&v, k, 1), V = *mps_view_f64(&volume, k, 0);
     out->mass += mass;
@@ -93,8 +64,8 @@ static mps_status measure(mps_particles *particles, double g, double band, mpm_h
   out->front = last + 0.5 * spacing;
   out->reach = place[(int64_t)(0.98 * (double)(count - 1))];
   for (int64_t i = 0; i < count; i++)
-    if (*mps_view_f64(&x, rows[i].row, 0) > last)
-      out->detached += *mps_view_f64(&m, rows[i].row, 0) / out->mass;
+    if (*mps_view_f64(&x, rows[i], 0) > last)
+      out->detached += *mps_view_f64(&m, rows[i], 0) / out->mass;
   free(place);
   free(rows);
   return MPS_OK;
@@ -116,7 +87,7 @@ static mps_status take(mps_particles *particles, double time, const char *field,
   if (status == MPS_OK) status = mps_particles_view(particles, field, &value);
   if (status != MPS_OK) return status;
   mpm_snapshot_free(shot);
-  named_row *rows = rows_by_id(particles);
+  int64_t *rows = mpm_rows_by_id(particles);
   shot->row = malloc((size_t)x.shape[0] * 3 * sizeof *shot->row);
   if (!shot->row || !rows) {
     free(rows);
@@ -126,7 +97,7 @@ static mps_status take(mps_particles *particles, double time, const char *field,
   shot->count = x.shape[0];
   const bool pressure = strcmp(field, "stress") == 0;
   for (int64_t i = 0; i < shot->count; i++) {
-    const int64_t k = rows[i].row;
+    const int64_t k = rows[i];
     double *row = shot->row + 3 * i;
     row[0] = *mps_view_f64(&x, k, 0);
     row[1] = *mps_view_f64(&x, k, 1);

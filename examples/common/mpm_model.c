@@ -57,6 +57,36 @@ mps_status mpm_model_whole(mpm_model *m, mps_particles **whole) {
   return status;
 }
 
+typedef struct named_row {
+  int64_t id, row;
+} named_row;
+
+static int by_id(const void *a, const void *b) {
+  const int64_t x = ((const named_row *)a)->id, y = ((const named_row *)b)->id;
+  return (x > y) - (x < y);
+}
+
+int64_t *mpm_rows_by_id(mps_particles *particles) {
+  const int64_t count = mps_particles_count(particles);
+  named_row *named = malloc((size_t)count * sizeof *named + 1);
+  int64_t *rows = malloc((size_t)count * sizeof *rows + 1);
+  mps_view id;
+  if (!named || !rows || mps_particles_view(particles, "id", &id) != MPS_OK) {
+    free(named);
+    free(rows);
+    return NULL;
+  }
+  bool sorted = true;
+  for (int64_t k = 0; k < count; k++) {
+    named[k] = (named_row){*mps_view_i64(&id, k, 0), k};
+    sorted = sorted && (k == 0 || named[k].id > named[k - 1].id);
+  }
+  if (!sorted) qsort(named, (size_t)count, sizeof *named, by_id);
+  for (int64_t k = 0; k < count; k++) rows[k] = named[k].row;
+  free(named);
+  return rows;
+}
+
 mps_status mpm_model_tell(mpm_model *m, mps_status status, int count, double *values) {
   status = agree(m, status);
   return status == MPS_OK && count > 0 ? app_share(m->a, m->a->rank == 0, count, values) : status;
@@ -77,21 +107,24 @@ mps_status mpm_model_frame(mpm_model *m, mps_recorder *series) {
   return mpm_model_tell(m, status, 0, NULL);
 }
 
-/* Particles of all ranks. */
-static mps_status count_all(const mpm_model *m, int64_t *count) {
-  *count = mps_particles_count(m->particles);
+mps_status mpm_model_sum(mpm_model *m, int64_t *value) {
   if (!m->a->domain) return MPS_OK;
   const int32_t ranks = mps_domain_size(m->a->domain);
   double *each = calloc((size_t)ranks, sizeof *each);
   mps_status status = agree(m, each ? MPS_OK : MPS_ERROR_MEMORY);
   if (status == MPS_OK) {
-    each[m->a->rank] = (double)*count;
+    each[m->a->rank] = (double)*value;
     status = mps_domain_max(m->a->domain, ranks, each);
   }
-  *count = 0;
-  for (int32_t k = 0; status == MPS_OK && k < ranks; k++) *count += (int64_t)each[k];
+  *value = 0;
+  for (int32_t k = 0; status == MPS_OK && k < ranks; k++) *value += (int64_t)each[k];
   free(each);
   return status;
+}
+
+static mps_status count_all(mpm_model *m) {
+  m->count = mps_particles_count(m->particles);
+  return mpm_model_sum(m, &m->count);
 }
 
 /* ---- the course of a run --------------------------------------------------------------------- */
@@ -111,19 +144,21 @@ static int build_and_march(app *a, const char *out, mpm_model *model, const mpm_
                            void *user) {
   if (!app_agree(a, a->rank > 0 || output_directory(a, out))) return APP_FAILED;
   mps_status built = agree(model, parts->build(a->context, user));
-  if (built == MPS_OK) built = count_all(model, &model->count);
+  if (built == MPS_OK) built = count_all(model);
   if (built != MPS_OK) return end_run(a, built, model, false);
   printf("%lld particles, dt %.4g s\n", (long long)model->count,
          model->fluid ? mps_fluid_dt(model->fluid) : mps_mpm_dt(model->mpm));
   fflush(stdout);
   mps_status status = agree(model, parts->march(user));
-  const mps_status counted = count_all(model, &model->count);
+  const mps_status counted = count_all(model);
   if (status == MPS_OK) status = counted;
   const bool any = model->samples >= MPM_MODEL_SAMPLES;
   const int code = end_run(a, status, model, any);
   if (code != APP_OK && !any) return code;
   if (!app_agree(a, a->rank > 0 || parts->finish(a, user))) return APP_FAILED;
-  return code == APP_OK && model->failed ? APP_FAILED : code;
+  double failed = model->failed; /* on any rank */
+  if (a->domain && mps_domain_max(a->domain, 1, &failed) != MPS_OK) return APP_FAILED;
+  return code == APP_OK && failed != 0.0 ? APP_FAILED : code;
 }
 
 int mpm_model_run(const options_program *program, int64_t threads, const char *out,

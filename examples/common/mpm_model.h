@@ -53,6 +53,11 @@ mps_status mpm_model_create(mpm_model *m, mps_context *context, mps_status statu
                             mps_mpm_def *def);
 /* The particles of all ranks, to be looked at: *whole is NULL on all but rank 0. Collective. */
 mps_status mpm_model_whole(mpm_model *m, mps_particles **whole);
+/* *value becomes the sum of those of all ranks, which are below 2^53. Collective. */
+mps_status mpm_model_sum(mpm_model *m, int64_t *value);
+/* The rows of a set in ascending order of their ids, to be freed: what is summed up or written in
+ * this order does not depend on the order that particles have. NULL: no memory. */
+int64_t *mpm_rows_by_id(mps_particles *particles);
 /* After rank 0 has looked: a failure of one rank becomes that of all, and else `values`, which rank
  * 0 has found, those of all. Collective. */
 mps_status mpm_model_tell(mpm_model *m, mps_status status, int count, double *values);

@@ -46,9 +46,13 @@ static mps_status pack(const resume *r, mps_checkpoint *info) {
   return MPS_OK;
 }
 
+static mps_status agree(const resume *r, mps_status status) {
+  return r->domain ? mps_domain_agree(r->domain, status) : status;
+}
+
 mps_status resume_save(const resume *r, const char *path) {
   mps_checkpoint info;
-  mps_status status = pack(r, &info);
+  mps_status status = agree(r, pack(r, &info));
   if (status == MPS_OK)
     status = r->fluid ? mps_fluid_save(r->fluid, path, &info) : mps_mpm_save(r->mpm, path, &info);
   free(info.user_data);
@@ -79,7 +83,7 @@ mps_status resume_peek(mps_context *context, const resume *r, const char *path, 
     status = MPS_ERROR_ARGUMENT;
   }
   free(info.user_data);
-  return status;
+  return agree(r, status);
 }
 
 static mps_status unpack(const resume *r, const mps_checkpoint *info) {
@@ -92,13 +96,13 @@ static mps_status unpack(const resume *r, const mps_checkpoint *info) {
 
 mps_status resume_restore(mps_context *context, const resume *r, const char *path) {
   mps_checkpoint info;
-  mps_status status = read_bytes(context, r, path, &info);
+  mps_status status = agree(r, read_bytes(context, r, path, &info));
   if (status == MPS_OK)
     status =
         r->fluid ? mps_fluid_restore(r->fluid, path, &info) : mps_mpm_restore(r->mpm, path, &info);
   if (status == MPS_OK) status = unpack(r, &info);
   free(info.user_data);
-  return status;
+  return agree(r, status);
 }
 
 /* ---- on the way ------------------------------------------------------------------------------ */
@@ -128,8 +132,10 @@ void resume_save_now(app *a, resume_schedule *s) {
   s->lost = lost, s->saved = status == MPS_OK;
 }
 
+bool resume_is_due(const resume_schedule *s, double now) { return due(s, now) > s->count; }
+
 void resume_save_when_due(app *a, resume_schedule *s, double now) {
-  if (due(s, now) <= s->count) return;
+  if (!resume_is_due(s, now)) return;
   resume_schedule_at(s, now);
   resume_save_now(a, s);
 }

@@ -16,6 +16,7 @@
 #include "app.h"
 #include "options.h"
 
+#include <mps/domain.h>
 #include <mps/fluid.h>
 #include <mps/io.h>
 #include <mps/mpm.h>
@@ -37,9 +38,10 @@ typedef struct resume {
   const char *key; /* names the program and the layout of the bytes */
   const option *table;
   void (*pass)(void *user, resume_bytes *b);
-  void *user;       /* of pass */
-  mps_mpm *mpm;     /* the solver: this one */
-  mps_fluid *fluid; /* or this */
+  void *user;         /* of pass */
+  mps_mpm *mpm;       /* the solver: this one */
+  mps_fluid *fluid;   /* or this */
+  mps_domain *domain; /* of several ranks: saving, peeking and restoring are collective */
 } resume;
 
 mps_status resume_save(const resume *r, const char *path);
@@ -76,6 +78,7 @@ typedef struct resume_schedule {
 
 /* Where a run begins or goes on (`now` as `every`): what was due until then is not due again. */
 void resume_schedule_at(resume_schedule *s, double now);
+bool resume_is_due(const resume_schedule *s, double now);
 void resume_save_when_due(app *a, resume_schedule *s, double now);
 void resume_save_now(app *a, resume_schedule *s);
 

@@ -53,7 +53,8 @@ static resume parts(simulation *sim) {
                   .pass = pass,
                   .user = sim,
                   .mpm = sim->m.mpm,
-                  .fluid = sim->m.fluid};
+                  .fluid = sim->m.fluid,
+                  .domain = sim->m.a->domain};
 }
 
 static mps_status save(void *user) {

@@ -51,15 +51,18 @@ static mps_status make_footing(mps_context *context, const settings *s, simulati
   mps_body_def def = mps_body_defaults();
   const double height = s->half_width;
   def.position[1] = s->depth + 0.5 * height;
-  mps_contact_def contact = mps_contact_defaults();
-  contact.friction = s->mu;
-  contact.method = s->contact;
-  if (s->contact == MPS_CONTACT_METHOD_PENALTY && s->k > 0.0) contact.penalty = s->k * 1e3;
   if (status == MPS_OK)
     status = mps_body_create_box(context, &def, 2.0 * s->half_width, height, &sim->m.body[0]);
   if (status == MPS_OK) status = mps_body_drive(sim->m.body[0], 1, down, -1.0);
   mps_signal_destroy(&down);
-  if (status != MPS_OK) return status;
+  return status;
+}
+
+static mps_status add_contact(const settings *s, simulation *sim) {
+  mps_contact_def contact = mps_contact_defaults();
+  contact.friction = s->mu;
+  contact.method = s->contact;
+  if (s->contact == MPS_CONTACT_METHOD_PENALTY && s->k > 0.0) contact.penalty = s->k * 1e3;
   return mps_mpm_add_contact(sim->m.mpm, sim->m.body[0], &contact, NULL);
 }
 
@@ -109,11 +112,11 @@ mps_status footing_build(mps_context *context, void *user) {
   def.lower[0] = def.lower[1] = 0.0;
   def.upper[0] = s->width;
   def.gravity[1] = -s->gravity;
-  if (status == MPS_OK)
-    status = mps_mpm_create(context, sim->m.particles, sim->m.material, &def, &sim->m.mpm);
+  if (status == MPS_OK) status = make_footing(context, s, sim);
+  status = mpm_model_create(&sim->m, context, status, &def);
   if (status == MPS_OK)
     status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
-  if (status == MPS_OK) status = make_footing(context, s, sim);
+  if (status == MPS_OK) status = add_contact(s, sim);
   return status == MPS_OK && s->restart ? footing_restore(context, sim) : status;
 }
 
@@ -151,6 +154,7 @@ static mps_status come_to_rest(simulation *sim) {
  * quasi-static run is asked for: what inertia has carried too far then no longer counts. */
 mps_status footing_march(void *user) {
   simulation *sim = user;
+  mps_particles *whole;
   mps_status status = MPS_OK;
   sim->saves = (resume_schedule){
       .path = sim->s.checkpoint, .every = sim->t_end / 10.0, .save = footing_save, .user = sim};
@@ -164,5 +168,6 @@ mps_status footing_march(void *user) {
   }
   if (status == MPS_ERROR_CANCELLED) resume_save_now(sim->m.a, &sim->saves);
   sim->m.failed = sim->saves.lost;
-  return status;
+  const mps_status brought = mpm_model_whole(&sim->m, &whole); /* for footing_finish */
+  return status == MPS_OK ? brought : status;
 }

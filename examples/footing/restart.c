@@ -16,7 +16,8 @@ static void pass(void *user, resume_bytes *b) {
 }
 
 static resume parts(simulation *sim) {
-  return (resume){"mps-footing 1", sim->table, pass, sim, .mpm = sim->m.mpm};
+  return (resume){"mps-footing 1",           sim->table, pass, sim, .mpm = sim->m.mpm,
+                  .domain = sim->m.a->domain};
 }
 
 mps_status footing_save(void *user) {

@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #define PI 3.14159265358979323846
 
@@ -73,19 +74,27 @@ static bool write_pressure(app *a, const settings *s, const simulation *sim) {
 }
 
 static bool write_particles(app *a, const settings *s, simulation *sim) {
+  mps_particles *set = sim->m.whole ? sim->m.whole : sim->m.particles;
   mps_view x, strain;
   output f;
-  if (!app_check(a, mps_particles_view(sim->m.particles, "position", &x)) ||
-      !app_check(a, mps_particles_view(sim->m.particles, "plastic_strain", &strain)) ||
-      !output_open(&f, a, s->out, "particles.csv"))
+  if (!app_check(a, mps_particles_view(set, "position", &x)) ||
+      !app_check(a, mps_particles_view(set, "plastic_strain", &strain)))
     return false;
+  int64_t *rows = mpm_rows_by_id(set);
+  if (!rows) return app_no_memory(a);
+  if (!output_open(&f, a, s->out, "particles.csv")) {
+    free(rows);
+    return false;
+  }
   csv_header(&f, "x_m,y_m,plastic_strain");
-  for (int64_t k = 0; k < x.shape[0]; k++) {
+  for (int64_t i = 0; i < x.shape[0]; i++) {
+    const int64_t k = rows[i];
     const double row[] = {*mps_view_f64(&x, k, 0), *mps_view_f64(&x, k, 1),
                           *mps_view_f64(&strain, k, 0)};
     sim->strain = fmax(sim->strain, row[2]);
     csv_row(&f, 3, row);
   }
+  free(rows);
   return output_close(&f);
 }
 

@@ -35,6 +35,46 @@ static mps_status look_at_volumes(pile *p) {
   return MPS_OK;
 }
 
+static mps_status look_at_speeds(pile *p) {
+  mps_view v;
+  const mps_status status = mps_particles_view(p->m.particles, "velocity", &v);
+  for (int64_t k = 0; status == MPS_OK && k < v.shape[0]; k++)
+    p->seen.rest_speed =
+        fmax(p->seen.rest_speed, hypot(*mps_view_f64(&v, k, 0), *mps_view_f64(&v, k, 1)));
+  return status;
+}
+
+/* The ranks tell one another the numbers of many steps at once, and only where there are any. */
+static mps_status join_looks(pile *p, mps_status status) {
+  pile_seen *s = &p->seen;
+  pile_untold *u = &p->untold;
+  double most[] = {s->ratio_max, -s->ratio_min, s->deepest, s->rest_speed, 0.0};
+  mps_domain *domain = p->m.a->domain;
+  if (!domain) return status;
+  for (int64_t k = 0; k < u->steps; k++) most[4] = fmax(most[4], (double)u->inside[k]);
+  status = mps_domain_agree(domain, status);
+  if (status == MPS_OK) status = mps_domain_max(domain, 5, most);
+  if (status != MPS_OK) return status;
+  s->ratio_max = most[0], s->ratio_min = -most[1], s->deepest = most[2], s->rest_speed = most[3];
+  for (int64_t k = 0; k < u->steps && status == MPS_OK && most[4] > 0.0; k++) {
+    status = mpm_model_sum(&p->m, &u->inside[k]);
+    if (status == MPS_OK && u->inside[k] > s->inside) s->inside = u->inside[k];
+  }
+  u->steps = 0;
+  return status;
+}
+
+static mps_status keep_untold(pile_untold *u, int64_t inside) {
+  if (u->steps == u->capacity) {
+    const int64_t capacity = 2 * u->capacity + 256;
+    int64_t *grown = realloc(u->inside, (size_t)capacity * sizeof *grown);
+    if (!grown) return MPS_ERROR_MEMORY;
+    u->inside = grown, u->capacity = capacity;
+  }
+  u->inside[u->steps++] = inside;
+  return MPS_OK;
+}
+
 /* The body is asked about those only that lie in its bounds. */
 static mps_status look_for_intruders(pile *p) {
   mps_view x;
@@ -49,16 +89,8 @@ static mps_status look_for_intruders(pile *p) {
     p->seen.deepest = fmax(p->seen.deepest, -distance);
     if (distance < -INSIDE * p->s.h) inside++;
   }
+  if (status == MPS_OK && p->m.a->domain) return keep_untold(&p->untold, inside);
   if (inside > p->seen.inside) p->seen.inside = inside;
-  return status;
-}
-
-static mps_status look_at_speeds(pile *p) {
-  mps_view v;
-  const mps_status status = mps_particles_view(p->m.particles, "velocity", &v);
-  for (int64_t k = 0; status == MPS_OK && k < v.shape[0]; k++)
-    p->seen.rest_speed =
-        fmax(p->seen.rest_speed, hypot(*mps_view_f64(&v, k, 0), *mps_view_f64(&v, k, 1)));
   return status;
 }
 
@@ -68,7 +100,7 @@ static mps_status look_at_speeds(pile *p) {
 static mps_status find_plug(pile *p, double *plug) {
   mps_view x;
   double top[MOST_COLUMNS], sum = 0.0, area = 0.0;
-  const mps_status status = mps_particles_view(p->m.particles, "position", &x);
+  mps_status status = mps_particles_view(p->m.particles, "position", &x);
   if (status != MPS_OK) return status;
   const int columns = (int)fmin(MOST_COLUMNS, nearbyint(p->inner / p->s.h));
   for (int c = 0; c < columns; c++) top[c] = -INFINITY;
@@ -76,6 +108,8 @@ static mps_status find_plug(pile *p, double *plug) {
     const double c = *mps_view_f64(&x, k, 0) / p->inner * columns;
     if (c < columns) top[(int)c] = fmax(top[(int)c], *mps_view_f64(&x, k, 1));
   }
+  if (p->m.a->domain) status = mps_domain_max(p->m.a->domain, columns, top);
+  if (status != MPS_OK) return status;
   for (int c = 0; c < columns; c++) {
     sum += (c + 0.5) * top[c];
     area += c + 0.5;
@@ -155,16 +189,16 @@ static mps_status after_step(void *user, mps_mpm *mpm) {
   const double t = mps_mpm_time(mpm), depth = pile_depth(p);
   mps_status status = watch(p, t, depth);
   if (status == MPS_OK) status = mps_body_get_reaction(p->m.body[0], -1, &r);
-  if (status != MPS_OK) return status;
-  const double force = r.force[1];
-  p->squares += (t - p->last_step) * force * force;
+  if (status == MPS_OK) p->squares += (t - p->last_step) * r.force[1] * r.force[1];
   p->last_step = t;
   const double next = p->stride * (double)(p->rows + 1) - p->s.h;
-  if (depth >= next || t >= p->t_end) status = end_row(p, t);
   const double step = p->s.depth / (double)p->s.frames;
-  if (status == MPS_OK && p->frames < p->s.frames &&
-      depth >= step * (double)(p->frames + 1) * (1.0 - 1e-9))
-    status = pile_take_frame(p);
+  const bool row = depth >= next || t >= p->t_end;
+  const bool frame =
+      p->frames < p->s.frames && depth >= step * (double)(p->frames + 1) * (1.0 - 1e-9);
+  if (row || frame || resume_is_due(&p->saves, depth + p->s.h)) status = join_looks(p, status);
+  if (status == MPS_OK && row) status = end_row(p, t);
+  if (status == MPS_OK && frame) status = pile_take_frame(p);
   /* last of what follows a step: what the file holds is then all of that step */
   if (status == MPS_OK) resume_save_when_due(p->m.a, &p->saves, depth + p->s.h);
   return status;
@@ -186,8 +220,10 @@ mps_status pile_drive(void *user) {
   if (status != MPS_OK) return status;
   p->m.samples = p->rows; /* after a restart */
   status = mps_mpm_run(p->m.mpm, p->t_end, 1, after_step, p);
-  if (status == MPS_ERROR_CANCELLED) resume_save_now(p->m.a, &p->saves);
-  p->m.failed = p->saves.lost;
+  const mps_status joined = join_looks(p, MPS_OK);
+  if (status == MPS_ERROR_CANCELLED && joined == MPS_OK) resume_save_now(p->m.a, &p->saves);
+  if (status == MPS_OK) status = joined;
+  p->m.failed = p->m.failed || p->saves.lost;
   smooth(p);
   return status;
 }

@@ -18,9 +18,11 @@ mps_status pile_open_frames(mps_context *context, pile *p) {
   def.path = path;
   def.fields = fields;
   def.field_count = sizeof fields / sizeof *fields;
-  const mps_status status = mps_recorder_create(context, p->m.particles, &def, &p->recorder);
-  if (status == MPS_OK) memcpy(p->vtk, name, sizeof name);
-  return status == MPS_ERROR_UNSUPPORTED ? MPS_OK : status;
+  mps_particles *whole;
+  mps_status status = mpm_model_whole(&p->m, &whole);
+  if (status == MPS_OK && whole) status = mps_recorder_create(context, whole, &def, &p->recorder);
+  if (p->recorder) memcpy(p->vtk, name, sizeof name);
+  return mpm_model_tell(&p->m, status == MPS_ERROR_UNSUPPORTED ? MPS_OK : status, 0, NULL);
 }
 
 /* Pictures show frames evenly among all, the last one always. */
@@ -29,16 +31,22 @@ int64_t pile_pictures(const pile *p, int64_t frames) {
   return frames * shown / all;
 }
 
-static mps_status keep(pile *p) {
+static mps_status keep(pile *p, mps_particles *set) {
   mps_view x, stress, strain;
-  mps_status status = mps_particles_view(p->m.particles, "position", &x);
-  if (status == MPS_OK) status = mps_particles_view(p->m.particles, "stress", &stress);
-  if (status == MPS_OK) status = mps_particles_view(p->m.particles, "plastic_strain", &strain);
+  mps_status status = mps_particles_view(set, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(set, "stress", &stress);
+  if (status == MPS_OK) status = mps_particles_view(set, "plastic_strain", &strain);
   if (status != MPS_OK) return status;
   float *value = malloc((size_t)x.shape[0] * FIELDS * sizeof *value);
-  if (!value) return MPS_ERROR_MEMORY;
+  int64_t *rows = mpm_rows_by_id(set);
+  if (!value || !rows) {
+    free(value);
+    free(rows);
+    return MPS_ERROR_MEMORY;
+  }
   p->frame[p->frames_kept++] = (pile_frame){pile_depth(p), value};
-  for (int64_t k = 0; k < x.shape[0]; k++, value += FIELDS) {
+  for (int64_t i = 0; i < x.shape[0]; i++, value += FIELDS) {
+    const int64_t k = rows[i];
     double s[4];
     for (int c = 0; c < 4; c++) s[c] = *mps_view_f64(&stress, k, c);
     const double mean = (s[0] + s[1] + s[2]) / 3.0;
@@ -50,6 +58,7 @@ static mps_status keep(pile *p) {
     value[FIELD_DEVIATOR] = (float)sqrt(3.0 * j2);
     value[FIELD_STRAIN] = (float)*mps_view_f64(&strain, k, 0);
   }
+  free(rows);
   return MPS_OK;
 }
 
@@ -61,11 +70,13 @@ static void write_frame(pile *p) {
 }
 
 mps_status pile_take_frame(pile *p) {
-  mps_status status = MPS_OK;
-  if (pile_pictures(p, p->frames + 1) > p->frames_kept) status = keep(p);
+  mps_particles *whole;
+  mps_status status = mpm_model_whole(&p->m, &whole);
+  if (status == MPS_OK && whole && pile_pictures(p, p->frames + 1) > p->frames_kept)
+    status = keep(p, whole);
   if (status == MPS_OK && p->recorder) write_frame(p);
   p->frames++;
-  return status;
+  return mpm_model_tell(&p->m, status, 0, NULL);
 }
 
 bool pile_write_frames(app *a, pile *p) {
@@ -78,7 +89,7 @@ bool pile_write_frames(app *a, pile *p) {
     snprintf(name, sizeof name, "fields-%d.csv", (int)f + 1);
     if (!output_open(&file, a, p->s.out, name)) return false;
     output_text(&file, "r_m,z_m,mean_stress_kPa,deviatoric_stress_kPa,plastic_strain\n");
-    for (int64_t k = 0; k < mps_particles_count(p->m.particles); k++) {
+    for (int64_t k = 0; k < p->particles; k++) {
       const float *v = p->frame[f].value + k * FIELDS;
       output_text(&file, "%.5g,%.5g,%.4g,%.4g,%.4g\n", (double)v[FIELD_R], (double)v[FIELD_Z],
                   1e-3 * (double)v[FIELD_MEAN], 1e-3 * (double)v[FIELD_DEVIATOR],

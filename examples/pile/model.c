@@ -105,17 +105,13 @@ static mps_status make_pile(mps_context *context, pile *p) {
   mps_signal *down = NULL;
   mps_body_def def = mps_body_defaults();
   def.position[1] = s->height + s->h;
-  mps_contact_def contact = mps_contact_defaults();
-  contact.friction = s->friction;
-  contact.method = s->contact;
-  if (s->contact == MPS_CONTACT_METHOD_PENALTY) contact.penalty = p->penalty;
   mps_status status = mps_signal_table(context, MPS_SIGNAL_VELOCITY, 2, t, v, &down);
   if (status == MPS_OK) status = mps_body_create_polygon(context, &def, 6, corner, &p->m.body[0]);
   for (int k = 0; k < PILE_PARTS && status == MPS_OK; k++)
     status = mps_body_name_part(p->m.body[0], part[k].name, part[k].edge, part[k].edges, NULL);
   if (status == MPS_OK) status = mps_body_drive(p->m.body[0], 1, down, -1.0);
   mps_signal_destroy(&down);
-  return status == MPS_OK ? mps_mpm_add_contact(p->m.mpm, p->m.body[0], &contact, NULL) : status;
+  return status;
 }
 
 /* Contact stiffness (N/m per unit thickness). Nakamura (58) with the particle's mass and the step
@@ -128,6 +124,15 @@ static double penalty_of(const pile *p) {
   if (!isnan(s->k)) return s->k * 1e3;
   if (!isnan(s->xi)) return 2.0 * (1.0 - s->xi) * limit;
   return STIFFNESS * fmin(mps_material_wave_modulus(p->m.material), limit);
+}
+
+static mps_status add_contact(pile *p) {
+  mps_contact_def contact = mps_contact_defaults();
+  p->penalty = penalty_of(p);
+  contact.friction = p->s.friction;
+  contact.method = p->s.contact;
+  if (p->s.contact == MPS_CONTACT_METHOD_PENALTY) contact.penalty = p->penalty;
+  return mps_mpm_add_contact(p->m.mpm, p->m.body[0], &contact, NULL);
 }
 
 mps_status pile_build(mps_context *context, void *user) {
@@ -146,13 +151,13 @@ mps_status pile_build(mps_context *context, void *user) {
   def.lower[0] = def.lower[1] = 0.0;
   def.upper[0] = s->width;
   def.gravity[1] = -PILE_GRAVITY;
-  if (status == MPS_OK)
-    status = mps_mpm_create(context, p->m.particles, p->m.material, &def, &p->m.mpm);
+  if (status == MPS_OK) status = make_pile(context, p);
+  if (status == MPS_OK) status = pile_begin(p);
+  p->particles = mps_particles_count(p->m.particles);
+  status = mpm_model_create(&p->m, context, status, &def);
   if (status != MPS_OK) return status;
   p->dt = mps_mpm_dt(p->m.mpm);
-  p->penalty = penalty_of(p);
-  status = make_pile(context, p);
-  if (status == MPS_OK) status = pile_begin(p);
+  status = add_contact(p);
   if (status == MPS_OK && s->restart) status = pile_restore(context, p);
   return status == MPS_OK ? pile_open_frames(context, p) : status;
 }
@@ -160,5 +165,6 @@ mps_status pile_build(mps_context *context, void *user) {
 void pile_free(pile *p) {
   pile_free_frames(p);
   free(p->row);
-  p->row = NULL;
+  free(p->untold.inside);
+  p->row = NULL, p->untold.inside = NULL;
 }

@@ -1,5 +1,5 @@
-/* pictures.c - pile.png: load and plug along the path (Nakamura, Figure 23) and the soil at the end;
- * and the soil around the pile at some depths, one picture a quantity (Figures 24 and 25).
+/* pictures.c - pile.png: load and plug along the path (Nakamura, Figure 23) and the soil at the
+ * end; and the soil around the pile at some depths, one picture a quantity (Figures 24 and 25).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "pile.h"
 
@@ -16,7 +16,7 @@ static int ascending(const void *a, const void *b) {
 }
 
 static double most_of(const pile *p, const pile_frame *frame, int field, double share) {
-  const int64_t count = mps_particles_count(p->m.particles);
+  const int64_t count = p->particles;
   float *value = malloc((size_t)count * sizeof *value);
   if (!value) return NAN;
   for (int64_t k = 0; k < count; k++) value[k] = fabsf(frame->value[k * FIELDS + field]);
@@ -163,8 +163,7 @@ static bool draw_overview(app *a, const pile *p) {
       "m/s\\n{/*0.8 h = %g mm, %lld particles, {/Symbol f} = %g degrees (%s cone), "
       "{/Symbol m} = %g}\" font ',18'\n",
       p->s.inner_diameter, 1e3 * p->s.wall, p->s.depth, p->s.speed, 1e3 * p->s.h,
-      (long long)mps_particles_count(p->m.particles), p->s.phi, pile_cone_name(&p->s),
-      p->s.friction);
+      (long long)p->particles, p->s.phi, pile_cone_name(&p->s), p->s.friction);
   place(&f, 90.0 / width, 520.0 / width);
   plot_load(&f, p, width);
   place(&f, 600.0 / width, 1000.0 / width);

@@ -56,21 +56,29 @@ typedef struct pile_seen {
   double rest_speed; /* m/s, fastest particle in the second half of the time before contact */
 } pile_seen;
 
+/* Of several ranks each looks at its own particles: particles inside the wall after each step that
+ * the ranks have not told one another yet. */
+typedef struct pile_untold {
+  int64_t *inside, steps, capacity;
+} pile_untold;
+
 typedef struct pile {
   pile_settings s;
   const option *table; /* of the options */
   mpm_model m;
   double k0, inner, outer;   /* 1; m: radii of the wall */
   double penalty;            /* N/m per unit thickness */
+  int64_t particles;         /* of all ranks */
   double dt, t_start, t_end; /* s: first step, start and end of the pile's motion */
   pile_row *row;
   int64_t rows, capacity;
   double stride;                                                   /* m of path between rows */
   double last_time, last_impulse[PILE_FORCES], last_step, squares; /* since the last row */
-  pile_seen seen;
+  pile_seen seen; /* of all ranks where they have told one another */
+  pile_untold untold;
   pile_frame frame[PILE_PICTURES];
   int64_t frames, frames_kept;
-  mps_recorder *recorder; /* NULL in a libmps without HDF5 */
+  mps_recorder *recorder; /* NULL in a libmps without HDF5, and on all ranks but the first */
   char vtk[40];           /* its file, "": there has been none */
   resume_schedule saves;  /* by the path of the tip */
 } pile;

@@ -12,9 +12,7 @@ typedef struct notes {
   pile_seen seen;
 } notes;
 
-static size_t frame_bytes(const pile *p) {
-  return (size_t)mps_particles_count(p->m.particles) * FIELDS * sizeof(float);
-}
+static size_t frame_bytes(const pile *p) { return (size_t)p->particles * FIELDS * sizeof(float); }
 
 static void take_notes(pile *p, resume_bytes *b, const notes *n) {
   if (resume_wrong(b, n->rows < 0 || n->rows > p->capacity || n->frames < 0 ||
@@ -49,7 +47,9 @@ static void pass(void *user, resume_bytes *b) {
   }
 }
 
-static resume parts(pile *p) { return (resume){"mps-pile 3", p->table, pass, p, .mpm = p->m.mpm}; }
+static resume parts(pile *p) {
+  return (resume){"mps-pile 3", p->table, pass, p, .mpm = p->m.mpm, .domain = p->m.a->domain};
+}
 
 mps_status pile_save(void *user) {
   pile *p = user;

@@ -32,6 +32,12 @@ same() {
 
 same collapse "" mps-column-collapse --aspect 1 --width 0.02 --h 0.005 --ppc 4
 same dam water.vtkhdf mps-dam-break --h 0.005715 --duration 0.1 --frames 4 --every-checkpoint 10
+same box "" mps-sliding-box --h 0.02
+same disc "" mps-rolling-disc --h 0.02 --duration 0.1
+same free_disc "" mps-rolling-disc --h 0.02 --body disc --duration 0.1
+same footing "" mps-footing --h 0.25 --domain 2x1 --settlement 0.05 --rate 100 --young 1e5
+same pile pile.vtkhdf mps-pile --soil 0.6x0.6 --h 0.04 --wall 0.08 --inner-diameter 0.32 --depth 0.06 \
+  --frames 2 --speed 0.5
 same limit "" mps-stability --radius 1.6
 same study "" mps-stability --study --method linear --duration 0.1
 
