@@ -196,6 +196,40 @@ static inline double test_value(const test_body *b, const char *field, int64_t i
   return *mps_view_f64(&view, i, c);
 }
 
+/* A field of two bodies, relative to its largest value in the first. */
+static inline void test_compare(const test_body *a, const test_body *b, const char *field,
+                                double tolerance) {
+  double largest = 0.0, away = 0.0;
+  for (int64_t i = 0; i < a->n; i++)
+    for (int c = 0; c < a->dim; c++) {
+      largest = fmax(largest, fabs(test_value(a, field, i, c)));
+      away = fmax(away, fabs(test_value(a, field, i, c) - test_value(b, field, i, c)));
+    }
+  assert_true(largest > 0.0);
+  mps_assert_near(away / largest, 0.0, tolerance);
+}
+
+/* Held below; elsewhere, where stiff() says so, ten times as stiff; a particle slides along a plane
+ * at an angle; a body force. */
+static inline void test_inclined(test_body *b, bool (*stiff)(double x, double y), double slide,
+                                 bool cut) {
+  mps_edit young;
+  mps_assert_ok(b->context, mps_particles_edit(b->particles, "young", &young));
+  for (int64_t i = 0; i < b->n; i++)
+    if (stiff(test_value(b, "position", i, 0), test_value(b, "position", i, 1)))
+      *mps_edit_f64(&young, i, 0) = 10.0;
+  mps_assert_ok(b->context, mps_particles_commit(b->particles, &young));
+  mps_assert_ok(b->context, mps_elastic_update_material(b->elastic));
+  int64_t count, top = b->n - 1, *ids = test_select(b, 1, -1, 0.2, &count);
+  for (int c = 0; c < b->dim; c++)
+    mps_assert_ok(b->context, test_prescribe(b->elastic, c, count, ids, NULL));
+  if (cut) mps_assert_ok(b->context, mps_elastic_cut(b->elastic, 1, -1, count, ids));
+  free(ids);
+  const double slope[3] = {0.8, 0.6, 0.0}, force[3] = {0.1, -0.3, 0.05};
+  mps_assert_ok(b->context, test_roller(b->elastic, slope, 1, &top, &slide));
+  mps_assert_ok(b->context, test_body_force(b->elastic, force));
+}
+
 /* ---- the paper's cantilever --------------------------------------------------------------------
  */
 

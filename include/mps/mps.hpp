@@ -230,10 +230,11 @@ template <class V = double> array<V> view(const particles &set, const char *name
 }
 
 /** A field of numbers for writing, until commit(), which throws where a value is out of range: mend
- *  it and commit again. Left without it, the values are those from before. */
+ *  it and commit again. Left without it, the values are those from before. Once committed, to write
+ *  throws an error of MPS_ERROR_STATE. */
 class edit : public array<double> {
 public:
-  edit(const particles &set, const char *name) : context_(set.error_context()) {
+  edit(const particles &set, const char *name) : context_(set.error_context()), name_(name) {
     set_ = set.get();
     check(context_, mps_particles_edit(set_, name, &edit_));
     view_ = edit_.view;
@@ -244,13 +245,15 @@ public:
     if (edit_.data && mps_particles_abandon(set_, &edit_) != MPS_OK)
       mps_context_clear_error(context_);
   }
-  double &operator()(int64_t i, int64_t c = 0) const noexcept {
+  double &operator()(int64_t i, int64_t c = 0) const {
+    if (!edit_.data) throw error(MPS_ERROR_STATE, "the edit of '" + name_ + "' has been committed");
     return *mps_edit_f64(&edit_, i, c);
   }
   void commit() { check(context_, mps_particles_commit(set_, &edit_)); }
 
 private:
   mps_context *context_;
+  std::string name_;
   mps_edit edit_ = {};
 };
 

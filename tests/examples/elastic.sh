@@ -11,13 +11,15 @@ for program in mps-cantilever mps-plate; do
   [ "$(awk 'length > 100' "$work/help" | wc -l)" -eq 0 ] || fail "$program --help has long lines"
 done
 
-# The paper's 153 particles, and the comparison of its Figure 6.
+# The paper's 153 particles, and the comparison of its Figure 6. References are of a prototype apart
+# from this library (docs/verification/implicit-elastic.md): +0.79 and 4.3 %. The factor has as many
+# entries as the lower triangle of K at least, as a full one of that order at most.
 "$1/mps-cantilever" --convergence --out "$work/beam" >"$work/log"
 in_range "$work/beam/summary.json" tip_error 0.0074 0.0084
-in_range "$work/beam/summary.json" stress_l2_error 0.0427 0.0437
+in_range "$work/beam/summary.json" stress_l2_error 0.0425 0.0435
 in_range "$work/beam/summary.json" equilibrium_error 0 1e-10
-in_range "$work/beam/summary.json" nnz_factor 1e4 3e4
-tail -n 1 "$work/log" | grep -q "theory (11) .*: error +0.80 %" || fail "last line"
+in_range "$work/beam/summary.json" nnz_factor 4790 41616
+tail -n 1 "$work/log" | grep -q "theory (11) .*: error +0\.[78][0-9] %" || fail "last line"
 has "$work/beam/deflection.csv" "x_m,y_m,v_m,v_reference_m,error_percent"
 [ "$(wc -l <"$work/beam/stress.csv")" -eq 154 ] || fail "stress.csv"
 # Columns: conservative, published re = 3 and 2.1, bilinear finite elements; in %.
@@ -27,7 +29,8 @@ awk -F, 'NR == 2 { a = $4 - 0.79; b = $5 - 3.6; c = $6 + 1.26; d = $7 + 0.657 }
                e^2 < 2.5e-3 && f^2 < 2.5e-3 && g^2 < 2.5e-3 && h^2 < 1e-6) }' \
   "$work/beam/convergence.csv" || fail "convergence.csv: $(cat "$work/beam/convergence.csv")"
 
-# A clamped wall is stiffer than (11): its reference is finite elements.
+# A clamped wall is stiffer than (11): its reference is finite elements. Nearly incompressible, the
+# method may be 2 % off, where bilinear elements lock (-46 %).
 "$1/mps-cantilever" --wall clamp --length 8 --method published --re 2.1 --out "$work/clamp" >/dev/null
 in_range "$work/clamp/summary.json" tip_error -0.02 0.02
 "$1/mps-cantilever" --nu 0.4999 --state strain --out "$work/wet" >/dev/null

@@ -29,17 +29,20 @@ picture "$work/a/section.png" 0x800 555555 e6ebf1 6baed6
 "$1/mps-penetrometer" $coarse --threads 3 --depth 0.1 --friction 0.2 --out "$work/b" >/dev/null
 cmp "$work/a/force.csv" "$work/b/force.csv" || fail "three threads give another force.csv"
 
-# A sphere presses elastic ground as Hertz says, and more in so small a box. The whole model is four
-# quarters within what the sweeps over the contacts leave: rollers are mirrors.
+# A sphere presses elastic ground as Hertz says, and more in so small a box: on a layer of that depth
+# 1.135 times on a smooth floor, 1.159 on a rough one (Dimitriadis et al., 2002); the sides are as near
+# again, and on five cells the sphere is half a cell larger, 1.05. The whole model is four quarters
+# within what the sweeps over the contacts leave: rollers are mirrors.
 sphere="--tip sphere --law elastic --poisson 0.3 --diameter 1 --h 0.1 --soil 1.6x1.6x1 --depth 0.05"
 "$1/mps-penetrometer" $sphere --speed 0.5 --threads 1 --out "$work/q" >/dev/null
 "$1/mps-penetrometer" $sphere --speed 0.5 --threads 3 --model whole --out "$work/w" >/dev/null
-in_range "$work/q/summary.json" hertz_error 0 0.4
+in_range "$work/q/summary.json" hertz_error 0.134 0.366
 force=$(sed -n 's/^ *"force_total": \([^,]*\),*$/\1/p' "$work/q/summary.json")
 in_range "$work/w/summary.json" force_total \
   "$(awk "BEGIN { printf \"%.17g\", $force * (1 - 4e-3) }")" "$(awk "BEGIN { printf \"%.17g\", $force * (1 + 4e-3) }")"
 
-# A mesh: an octahedron, tip down, by its STL file.
+# A mesh: an octahedron, tip down, by its STL file. Its widest section is 0.637 of the circle that N is
+# reckoned with: 5.14 at least, and the deep cavity's 9.2 at most with corners a cell further out.
 awk -v a=50 -v b=-50 'function facet(p, q, r) { printf "facet normal 0 0 0\nouter loop\nvertex %s\nvertex %s\nvertex %s\nendloop\nendfacet\n", p, q, r }
   BEGIN { v[0] = a " 0 " a; v[1] = "0 " a " " a; v[2] = b " 0 " a; v[3] = "0 " b " " a
     print "solid o"
@@ -51,7 +54,7 @@ status=0
 if ! grep -q "MPS_EMBREE" "$work/log"; then
   [ "$status" -eq 0 ] || fail "mesh: $(cat "$work/log")"
   in_range "$work/m/summary.json" particles_inside 0 0
-  in_range "$work/m/summary.json" n_factor 2 15
+  in_range "$work/m/summary.json" n_factor 3.27 13.2
   # of other sizes: too small for the cells, larger than the soil
   for try in "1e-6:at least 4 cells of --h" "0.01:the soil of 0.3 m x 0.3 m must be"; do
     status=0

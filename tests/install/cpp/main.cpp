@@ -81,6 +81,14 @@ static void writing(const mps::context &context) {
     }
     v(7, 1) = 0.0;
     v.commit();
+    EXPECT(v.data()[5] == double(ids(5))); // to be read still
+    try {
+      v(7, 1) = 1.0;
+      EXPECT(!"written after the commit");
+    } catch (const mps::error &e) {
+      EXPECT(e.status() == MPS_ERROR_STATE);
+      EXPECT(std::strstr(e.what(), "'velocity' has been committed") != nullptr);
+    }
   }
   EXPECT(mps::view(sand, "velocity")(99, 0) == double(ids(99)));
   const int64_t gone[1] = {ids(3)};
