@@ -6,7 +6,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 /* ---- what the launcher says ------------------------------------------------------------------ */
 
@@ -103,31 +102,33 @@ void ranks_drop_solver(void **solver) {
 
 /* ---- threads --------------------------------------------------------------------------------- */
 
-/* Processors that this process may use, and a number that tells sets of them apart. */
-static int64_t processors(double *which) {
+/* A number that tells sets of processors apart: those that the system lets this process use. 0
+ * where it does not say; sets are then taken to be the same. */
+static double bound_to(void) {
   char line[1024];
-  int64_t count = 0;
-  *which = 0.0;
+  uint32_t hash = 0;
   FILE *file = fopen("/proc/self/status", "r");
-  while (file && fgets(line, sizeof line, file)) {
-    if (strncmp(line, "Cpus_allowed:", 13) != 0) continue;
-    uint32_t hash = 5381;
-    for (const char *at = line + 13; *at; at++) {
-      const char digit[2] = {*at, '\0'};
-      for (long bits = strtol(digit, NULL, 16); bits > 0; bits >>= 1) count += bits & 1;
+  while (file && fgets(line, sizeof line, file))
+    for (const char *at = line; strncmp(line, "Cpus_allowed:", 13) == 0 && *at; at++)
       hash = hash * 33 + (unsigned char)*at;
-    }
-    *which = hash;
-  }
   if (file) fclose(file);
-  if (count == 0) count = sysconf(_SC_NPROCESSORS_ONLN);
-  return count > 0 ? count : 1;
+  return hash;
+}
+
+/* Threads that a context takes by itself: all processors that this process may use. */
+static int64_t processors(void) {
+  const mps_context_def def = mps_context_defaults();
+  mps_context *probe = NULL;
+  const mps_status status = mps_context_create(&def, &probe, NULL, 0);
+  const int64_t count = status == MPS_OK ? mps_context_threads(probe) : 1;
+  mps_context_destroy(&probe);
+  return count;
 }
 
 mps_status ranks_threads(mps_domain *domain, int64_t *threads) {
-  double which, range[2];
-  const int64_t count = processors(&which), ranks = ranks_of_node();
-  range[0] = which, range[1] = -which;
+  const int64_t count = processors(), ranks = ranks_of_node();
+  double range[2] = {bound_to()};
+  range[1] = -range[0];
   const mps_status status = mps_domain_max(domain, 2, range);
   const bool shared = range[0] == -range[1]; /* not bound to processors of their own */
   *threads = !shared ? count : count > ranks ? count / ranks : 1;
