@@ -31,14 +31,21 @@ typedef mps_status (*mps_fluid_matrix_fn)(void *user, int64_t rows, const int64_
 typedef mps_status (*mps_fluid_solve_fn)(void *user, const double *b, double tolerance, double *x,
                                          int64_t *iterations);
 
+/** Forgets what the solver keeps from former equations (a preconditioner), so that its answers from
+ *  here on follow from the equations to come alone. Snapshot, rollback, save and restore call it
+ *  first: a run that goes on after them has the bits of one that goes on from the snapshot or the
+ *  file. */
+typedef mps_status (*mps_fluid_forget_fn)(void *user);
+
 typedef struct mps_fluid_solver_def {
   uint32_t struct_size;
   int32_t reserved;
-  void *user;                 /* handed to both; the caller's own */
+  void *user;                 /* handed to all; the caller's own */
   mps_fluid_matrix_fn matrix; /* no default */
   mps_fluid_solve_fn solve;   /* no default */
   int64_t least;              /* particles; a smaller fluid is solved by the library, >= 0;
                                  default 0 */
+  mps_fluid_forget_fn forget; /* default NULL: it keeps nothing */
 } mps_fluid_solver_def;
 
 MPS_API mps_status mps_fluid_solver_def_init(mps_fluid_solver_def *def, size_t size);

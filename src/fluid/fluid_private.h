@@ -141,6 +141,7 @@ typedef struct mpsi_fluid_outside {
                        const double *value);
   mps_status (*solve)(void *user, const double *b, double tolerance, double *x,
                       int64_t *iterations);
+  mps_status (*forget)(void *user);
   int64_t least, rows; /* rows: room of start */
   int64_t *start;
   mpsi_room column_room, value_room; /* int32_t, double */
@@ -331,6 +332,8 @@ bool mpsi_fluid_solved_outside(const mps_fluid *fluid);
 mps_status mpsi_fluid_hand_matrix(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_solve_outside(mps_fluid *fluid, const char *function);
 void mpsi_fluid_drop_solver(mps_fluid *fluid);
+/* Has a solver of the caller forget what it keeps from step to step. */
+mps_status mpsi_fluid_forget(mps_fluid *fluid, const char *function);
 /* move.c */
 void mpsi_fluid_find_velocities(mps_fluid *fluid);
 int64_t mpsi_fluid_advance(mps_fluid *fluid); /* first particle that went wrong, or -1 */

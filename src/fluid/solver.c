@@ -39,12 +39,22 @@ mps_status mps_fluid_set_solver(mps_fluid *f, const mps_fluid_solver_def *user_d
   if (user_def) {
     outside = mpsi_alloc(f->context, 1, sizeof *outside);
     if (!outside) return mpsi_fail_memory(f->context, __func__, sizeof *outside);
-    *outside = (mpsi_fluid_outside){
-        .user = def.user, .matrix = def.matrix, .solve = def.solve, .least = def.least};
+    *outside = (mpsi_fluid_outside){.user = def.user,
+                                    .matrix = def.matrix,
+                                    .solve = def.solve,
+                                    .forget = def.forget,
+                                    .least = def.least};
   }
   mpsi_fluid_drop_solver(f);
   f->outside = outside;
   return MPS_OK;
+}
+
+mps_status mpsi_fluid_forget(mps_fluid *f, const char *function) {
+  if (!f->outside || !f->outside->forget) return MPS_OK;
+  mpsi_guard_enter(&f->guard, f->context, "the callback forget of mps_fluid_set_solver");
+  const mps_status status = f->outside->forget(f->outside->user);
+  return mpsi_guard_leave(&f->guard, f->context, function, status);
 }
 
 bool mpsi_fluid_solved_outside(const mps_fluid *f) {

@@ -114,30 +114,35 @@ static mpsi_state_of state_of(mps_fluid *f) {
                          .steps = f->steps};
 }
 
+/* What a solver of the caller keeps from step to step belongs to no state. */
+static mps_status forget(mps_fluid *f, const char *function, mps_status status) {
+  return status == MPS_OK ? mpsi_fluid_forget(f, function) : status;
+}
+
 mps_status mps_fluid_snapshot(mps_fluid *f, mps_snapshot **snapshot) {
   if (!f) return MPS_ERROR_ARGUMENT;
   const mpsi_state_of of = state_of(f);
-  const mps_status status = mpsi_fluid_closed(f, __func__);
+  const mps_status status = forget(f, __func__, mpsi_fluid_closed(f, __func__));
   return status == MPS_OK ? mpsi_state_snapshot(&of, __func__, snapshot) : status;
 }
 
 mps_status mps_fluid_rollback(mps_fluid *f, const mps_snapshot *snapshot) {
   if (!f) return MPS_ERROR_ARGUMENT;
   const mpsi_state_of of = state_of(f);
-  const mps_status status = mpsi_fluid_ready(f, __func__);
+  const mps_status status = forget(f, __func__, mpsi_fluid_ready(f, __func__));
   return status == MPS_OK ? mpsi_state_rollback(&of, __func__, snapshot) : status;
 }
 
 mps_status mps_fluid_save(mps_fluid *f, const char *path, const mps_checkpoint *info) {
   if (!f) return MPS_ERROR_ARGUMENT;
   const mpsi_state_of of = state_of(f);
-  const mps_status status = mpsi_fluid_closed(f, __func__);
+  const mps_status status = forget(f, __func__, mpsi_fluid_closed(f, __func__));
   return status == MPS_OK ? mpsi_checkpoint_save(&of, __func__, path, info) : status;
 }
 
 mps_status mps_fluid_restore(mps_fluid *f, const char *path, mps_checkpoint *info) {
   if (!f) return MPS_ERROR_ARGUMENT;
   const mpsi_state_of of = state_of(f);
-  const mps_status status = mpsi_fluid_ready(f, __func__);
+  const mps_status status = forget(f, __func__, mpsi_fluid_ready(f, __func__));
   return status == MPS_OK ? mpsi_checkpoint_restore(&of, __func__, path, info) : status;
 }

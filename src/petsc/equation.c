@@ -180,12 +180,15 @@ static bool make_matrix(mps_petsc_solver *s, const mpsi_petsc_matrix *a, const i
       MatSetBlockSize(s->matrix, block) == 0 && fill(s->matrix, x, a->value) &&
       MatSetOption(s->matrix, MAT_SPD, PETSC_TRUE) == 0 && (a->modes == 0 || add_modes(s, a)) &&
       make_vector(s, a, &s->x) && make_vector(s, a, &s->b) && share_places(s, a);
-  if (good && (a->all != former || a->rows != s->rows)) {
+  if (good && (s->forgets || a->all != former || a->rows != s->rows)) {
+    s->forgets = false;
     s->first_count = 0; /* what GAMG keeps after a reset is of the former size */
     good = KSPDestroy(&s->ksp) == 0 && configure(s);
   }
   return good && KSPSetOperators(s->ksp, s->matrix, s->matrix) == 0;
 }
+
+void mpsi_petsc_forget(mps_petsc_solver *s) { s->forgets = true; }
 
 mps_status mpsi_petsc_take(mps_petsc_solver *s, const mpsi_petsc_matrix *a) {
   indices x = {NULL, NULL};

@@ -16,6 +16,7 @@ struct mps_petsc_solver {
   Vec x, b;   /* without values of their own */
   int64_t all, first, rows;
   int *counts, *places; /* of the parts of all ranks */
+  bool forgets;         /* the next matrix is as the first one */
   bool fresh;           /* the preconditioner is of the last matrix */
   PetscInt first_count; /* iterations of its first solution, when it was fresh */
 };
@@ -32,6 +33,8 @@ typedef struct mpsi_petsc_matrix {
 } mpsi_petsc_matrix;
 
 mps_status mpsi_petsc_take(mps_petsc_solver *s, const mpsi_petsc_matrix *a);
+/* Nothing of former equations serves any more. */
+void mpsi_petsc_forget(mps_petsc_solver *s);
 /* x holds a start and receives the solution, both of all rows: |b - A x| <= tolerance |b|. */
 mps_status mpsi_petsc_solve(mps_petsc_solver *s, const double *b, double tolerance, double *x,
                             int64_t *iterations);

@@ -13,6 +13,11 @@ static mps_status solve(void *user, const double *b, double tolerance, double *x
   return mpsi_petsc_solve(user, b, tolerance, x, iterations);
 }
 
+static mps_status forget(void *user) {
+  mpsi_petsc_forget(user);
+  return MPS_OK;
+}
+
 mps_status mps_petsc_solve_fluid(mps_petsc_solver *solver, mps_fluid *fluid, int64_t least) {
   mps_fluid_solver_def def = mps_fluid_solver_defaults();
   if (!solver || !fluid) return MPS_ERROR_ARGUMENT;
@@ -20,6 +25,7 @@ mps_status mps_petsc_solve_fluid(mps_petsc_solver *solver, mps_fluid *fluid, int
   def.user = solver;
   def.matrix = take;
   def.solve = solve;
+  def.forget = forget;
   def.least = least;
   return mps_fluid_set_solver(fluid, &def);
 }

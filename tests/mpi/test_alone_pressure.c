@@ -88,6 +88,32 @@ static void a_larger_fluid_takes_hardly_more_iterations(void **state) {
   mps_petsc_solver_destroy(&solver);
 }
 
+/* The preconditioner of former steps is no part of the state, so a snapshot ends its life. */
+static void going_back_is_exact(void **state) {
+  (void)state;
+  mps_petsc_solver *solver = NULL, *fresh = NULL;
+  mps_snapshot *start = NULL;
+  tank t = waves(20, 1e-8);
+  assert_int_equal(mps_petsc_solver_create(MPS_PETSC_MULTIGRID, &solver), MPS_OK);
+  assert_int_equal(mps_petsc_solver_create(MPS_PETSC_MULTIGRID, &fresh), MPS_OK);
+  mps_assert_ok(context, mps_petsc_solve_fluid(solver, t.fluid, 0));
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 5));
+  mps_assert_ok(context, mps_fluid_snapshot(t.fluid, &start));
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 5));
+  const double force = force_on_the_wall(&t);
+  mps_assert_ok(context, mps_fluid_rollback(t.fluid, start));
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 5));
+  assert_true(force_on_the_wall(&t) == force);
+  mps_assert_ok(context, mps_fluid_rollback(t.fluid, start));
+  mps_assert_ok(context, mps_petsc_solve_fluid(fresh, t.fluid, 0)); /* as after a restart */
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 5));
+  assert_true(force_on_the_wall(&t) == force);
+  mps_snapshot_destroy(&start);
+  tank_free(&t);
+  mps_petsc_solver_destroy(&solver);
+  mps_petsc_solver_destroy(&fresh);
+}
+
 static void bad_calls_are_refused(void **state) {
   (void)state;
   mps_petsc_solver *solver = NULL;
@@ -114,6 +140,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(moves_the_water_as_the_library_does),
       cmocka_unit_test(a_larger_fluid_takes_hardly_more_iterations),
+      cmocka_unit_test(going_back_is_exact),
       cmocka_unit_test(bad_calls_are_refused),
   };
   mps_petsc_solver *first = NULL; /* MPI can be started once in a process: it lives as long */
