@@ -44,7 +44,7 @@ static inline void run_team(ranks *s, int32_t size, double limit) {
   team_end(&t);
 }
 
-/* On teams of several sizes and numbers of threads; `few`: not on one and on four ranks. */
+/* On teams of several sizes and numbers of threads; `few`: not on one and on four ranks; quick: two. */
 static inline void compare_teams(result_fn *run, int what, int64_t length, bool few) {
   static const struct {
     int32_t ranks, threads;
@@ -53,7 +53,7 @@ static inline void compare_teams(result_fn *run, int what, int64_t length, bool 
   mps_context *serial = test_context(MPS_EXECUTOR_SERIAL, 1);
   mps_assert_ok(serial, run(serial, NULL, what, length, &alone));
   mps_context_destroy(&serial);
-  for (int k = 0; k < (few ? 4 : 6); k++) {
+  for (int k = 0; k < (test_quick() ? 2 : few ? 4 : 6); k++) {
     ranks s = {.compute = run, .what = what, .threads = teams[k].threads, .length = length};
     int64_t *seen = calloc((size_t)alone.count + 1, sizeof *seen);
     run_team(&s, teams[k].ranks, 60.0);
@@ -75,7 +75,7 @@ static inline void compare_teams(result_fn *run, int what, int64_t length, bool 
  * ranks report it, and none hangs. The first two are those before there is a domain. */
 static inline void refuse_memory(result_fn *run, int what, int64_t length, int64_t stride) {
   mps_status worst = MPS_ERROR_MEMORY;
-  for (int64_t refuse = 3; worst != MPS_OK; refuse += refuse < 60 ? 1 : stride) {
+  for (int64_t refuse = 3; worst != MPS_OK; refuse += refuse < 60 ? 1 : stride * (test_quick() ? 5 : 1)) {
     ranks s = {.compute = run, .what = what, .threads = 1, .length = length, .refuse = refuse};
     run_team(&s, 3, 10.0);
     worst = s.rank[1].status;

@@ -185,7 +185,7 @@ static void same_bits(int32_t geometry, int options, int count, const int32_t *t
 static const int32_t threads[] = {3, 2, 1, 8};
 
 /* How many of these: at the lower instruction levels the same code shares the work out. */
-static int numbers(int most) { return getenv("MPS_TEST_LEVEL") ? 1 : most; }
+static int numbers(int most) { return getenv("MPS_TEST_LEVEL") || test_quick() ? 1 : most; }
 
 static void every_number_of_threads(void **state) {
   (void)state;
