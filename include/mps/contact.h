@@ -50,9 +50,9 @@ typedef struct mps_contact_def {
                       takes the most that one of its contacts asks for */
   double friction; /* Coulomb's mu, 0 to 1e3; default 0 */
   double penalty;  /* for METHOD_PENALTY: contact stiffness k of Nakamura (28), N/m (2D: per m of
-                      thickness; in  axisymmetry per m of radius and rad, times the particle's
-                      radius), > 0; NaN  (default): from xi, or where that is NaN too 1.33 (K + 4G/3)
-                      of the particle's  material, in 3D times the particles' spacing */
+                      thickness; in axisymmetry per m of radius and rad, times the particle's
+                      radius), > 0; NaN (default): from xi, or where that is NaN too 1.33 (K + 4G/3)
+                      of the particle's material, in 3D times the particles' spacing */
   double xi;       /* in (0, 1): k from Nakamura (58), 2 (1 - xi) (K + 4G/3)/(n CFL^2) with n
                       particles a cell, in 3D times the cell's size; n and CFL are those of the
                       solver's definition. NaN (default): not used. Giving both is an error */

@@ -105,9 +105,8 @@ static inline mps_status mps_elastic_get_def(const mps_elastic *e, mps_elastic_d
 MPS_API mps_particles *mps_elastic_particles(const mps_elastic *e);
 MPS_API mps_context *mps_elastic_context(const mps_elastic *e);
 
-/** Reads `young` and `poisson` again after the caller has changed them. The symbolic factorisation
- *  is kept where joints of different materials are still on the same faces. On an error the solver
- *  goes on with the former ones. */
+/** Reads `young` and `poisson` again after the caller has changed them; on an error it goes on with
+ *  the former ones. The symbolic factorisation is kept where joints are still on the same faces. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_update_material(mps_elastic *e);
 
 /** Says what the particles `ids` (NULL with count 0: all) are made of: writes `young` and
