@@ -422,8 +422,9 @@ mps_status mps_mpm_snapshot(mps_mpm *mpm, mps_snapshot **snapshot) {
 
 mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
+  const mps_status status = mpsi_mpm_between_steps(mpm, __func__);
   const mpsi_state_of of = state_of(mpm);
-  return mpsi_state_rollback(&of, __func__, snapshot);
+  return status == MPS_OK ? mpsi_state_rollback(&of, __func__, snapshot) : status;
 }
 
 mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *info) {
@@ -437,6 +438,7 @@ mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *in
 
 mps_status mps_mpm_restore(mps_mpm *mpm, const char *path, mps_checkpoint *info) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
+  const mps_status status = mpsi_mpm_between_steps(mpm, __func__);
   const mpsi_state_of of = state_of(mpm);
-  return mpsi_checkpoint_restore(&of, __func__, path, info);
+  return status == MPS_OK ? mpsi_checkpoint_restore(&of, __func__, path, info) : status;
 }

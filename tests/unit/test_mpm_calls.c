@@ -78,6 +78,7 @@ static void insane_numbers_are_refused(void **state) {
 
 typedef struct probe {
   mps_mpm *mpm;
+  mps_snapshot *start;
   mps_status seen[8];
   int count;
   bool alive;
@@ -93,6 +94,8 @@ static mps_status tries_everything(void *user, mps_mpm *mpm) {
   p->seen[p->count++] = mps_mpm_set_side(mpm, 0, MPS_MPM_BOUNDARY_FIXED, 0.0);
   p->seen[p->count++] = mps_mpm_remove_boundary(mpm, 0);
   p->seen[p->count++] = mps_mpm_remove_load(mpm, 0);
+  p->seen[p->count++] = mps_mpm_rollback(mpm, p->start);
+  p->seen[p->count++] = mps_mpm_restore(mpm, "no_such_file.h5", NULL);
   mps_mpm_destroy(&same);
   p->alive = same == mpm && mps_context_error(context)->status == MPS_ERROR_STATE;
   return MPS_OK;
@@ -109,8 +112,10 @@ static void callbacks_may_only_ask(void **state) {
   const mps_mpm_def def = small_def();
   mpm_scene_solve(&s, &def);
   probe p = {.mpm = s.mpm};
+  mps_assert_ok(context, mps_mpm_snapshot(s.mpm, &p.start));
   mps_assert_ok(context, mps_mpm_run(s.mpm, 5.5 * mps_mpm_dt(s.mpm), 1, tries_everything, &p));
-  assert_int_equal(p.count, 6);
+  mps_snapshot_destroy(&p.start);
+  assert_int_equal(p.count, 8);
   for (int k = 0; k < p.count; k++) assert_int_equal(p.seen[k], MPS_ERROR_STATE);
   assert_true(p.alive);
   assert_int_equal(mps_mpm_steps(s.mpm), 6);
