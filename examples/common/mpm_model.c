@@ -122,6 +122,34 @@ mps_status mpm_model_sum(mpm_model *m, int64_t *value) {
   return status;
 }
 
+mps_status mpm_counts_note(mpm_model *m, mpm_counts *c, int64_t count, int64_t *most) {
+  if (!m->a->domain) {
+    if (count > *most) *most = count;
+    return MPS_OK;
+  }
+  if (c->steps == c->room) {
+    const int64_t room = 2 * c->room + 256;
+    int64_t *grown = realloc(c->untold, (size_t)room * sizeof *grown);
+    if (!grown) return MPS_ERROR_MEMORY;
+    c->untold = grown, c->room = room;
+  }
+  c->untold[c->steps++] = count;
+  return MPS_OK;
+}
+
+mps_status mpm_counts_join(mpm_model *m, mpm_counts *c, int64_t *most) {
+  double any = 0.0;
+  if (!m->a->domain) return MPS_OK;
+  for (int64_t k = 0; k < c->steps; k++) any = c->untold[k] > 0 ? 1.0 : any;
+  mps_status status = mps_domain_max(m->a->domain, 1, &any);
+  for (int64_t k = 0; k < c->steps && status == MPS_OK && any > 0.0; k++) {
+    status = mpm_model_sum(m, &c->untold[k]);
+    if (status == MPS_OK && c->untold[k] > *most) *most = c->untold[k];
+  }
+  c->steps = 0;
+  return status;
+}
+
 static mps_status count_all(mpm_model *m) {
   m->count = mps_particles_count(m->particles);
   return mpm_model_sum(m, &m->count);

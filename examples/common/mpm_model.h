@@ -55,6 +55,14 @@ mps_status mpm_model_create(mpm_model *m, mps_context *context, mps_status statu
 mps_status mpm_model_whole(mpm_model *m, mps_particles **whole);
 /* *value becomes the sum of those of all ranks, which are below 2^53. Collective. */
 mps_status mpm_model_sum(mpm_model *m, int64_t *value);
+/* Of a number that each rank counts among its own particles after every step, the greatest sum of
+ * all ranks. They tell one another the numbers of many steps at once, and only where there are any.
+ */
+typedef struct mpm_counts {
+  int64_t *untold, steps, room;
+} mpm_counts;
+mps_status mpm_counts_note(mpm_model *m, mpm_counts *c, int64_t count, int64_t *most);
+mps_status mpm_counts_join(mpm_model *m, mpm_counts *c, int64_t *most); /* collective */
 /* The rows of a set in ascending order of their ids, to be freed: what is summed up or written in
  * this order does not depend on the order that particles have. NULL: no memory. */
 int64_t *mpm_rows_by_id(mps_particles *particles);

@@ -145,7 +145,8 @@ static mps_status make_soil(penetrometer *p, pen_run *r) {
   return status == MPS_OK ? make_law(p->context, s, &r->m.material) : status;
 }
 
-static mps_status make_solver(penetrometer *p, pen_run *r) {
+/* After `status`, that of what a rank makes for itself. */
+static mps_status make_solver(penetrometer *p, pen_run *r, mps_status status) {
   const pen_settings *s = &p->s;
   const int up = dim_of(r) - 1;
   mps_mpm_def def = mps_mpm_defaults();
@@ -158,8 +159,7 @@ static mps_status make_solver(penetrometer *p, pen_run *r) {
     if (c < up) def.upper[c] = r->size[c];
   }
   def.gravity[up] = -s->gravity;
-  const mps_status status =
-      mps_mpm_create(p->context, r->m.particles, r->m.material, &def, &r->m.mpm);
+  status = mpm_model_create(&r->m, p->context, status, &def);
   if (status != MPS_OK) return status;
   return mps_mpm_set_side(r->m.mpm, 2 * up, MPS_MPM_BOUNDARY_FIXED, 0.0);
 }
@@ -244,12 +244,6 @@ static mps_status make_tip(penetrometer *p, pen_run *r) {
   mps_body **body = &r->m.body[0];
   mps_body_def def = mps_body_defaults();
   def.position[up] = r->size[up] + pen_gap(p);
-  mps_contact_def contact = mps_contact_defaults();
-  contact.friction = p->s.friction;
-  if (p->s.alpha > 0.0) contact.strength = 1e3 * p->s.alpha * p->s.cohesion;
-  r->penalty = penalty_of(p, r);
-  contact.method = p->s.contact;
-  if (p->s.contact == MPS_CONTACT_METHOD_PENALTY) contact.penalty = r->penalty;
   mps_status status = mps_signal_table(p->context, MPS_SIGNAL_VELOCITY, 2, t, v, &down);
   if (status == MPS_OK && p->s.tip == PEN_CONE) status = make_cone(p, r, &def, body);
   if (status == MPS_OK && p->s.tip == PEN_SPHERE) status = make_sphere(p, r, &def, body);
@@ -258,19 +252,23 @@ static mps_status make_tip(penetrometer *p, pen_run *r) {
   if (status == MPS_OK && p->s.tip == PEN_STL) status = check_mesh(p, r);
   if (status == MPS_OK) status = mps_body_drive(*body, up, down, -1.0);
   mps_signal_destroy(&down);
-  return status == MPS_OK ? mps_mpm_add_contact(r->m.mpm, *body, &contact, NULL) : status;
+  return status;
+}
+
+static mps_status add_contact(const penetrometer *p, pen_run *r) {
+  mps_contact_def contact = mps_contact_defaults();
+  contact.friction = p->s.friction;
+  if (p->s.alpha > 0.0) contact.strength = 1e3 * p->s.alpha * p->s.cohesion;
+  r->penalty = penalty_of(p, r);
+  contact.method = p->s.contact;
+  if (p->s.contact == MPS_CONTACT_METHOD_PENALTY) contact.penalty = r->penalty;
+  return mps_mpm_add_contact(r->m.mpm, r->m.body[0], &contact, NULL);
 }
 
 /* ---- all ------------------------------------------------------------------------------------- */
 
-mps_status pen_build_run(penetrometer *p, pen_run *r) {
-  find_size(p, r);
-  mps_status status = make_soil(p, r);
-  if (status == MPS_OK) status = make_solver(p, r);
-  if (status == MPS_OK) status = make_tip(p, r);
-  if (status != MPS_OK) return status;
+static mps_status make_room(const penetrometer *p, pen_run *r) {
   r->particles = mps_particles_count(r->m.particles);
-  r->dt = mps_mpm_dt(r->m.mpm);
   r->capacity = (int64_t)((p->s.depth + pen_gap(p)) / p->stride) + 2;
   r->row = calloc((size_t)r->capacity, sizeof *r->row);
   r->near = calloc((size_t)r->particles * 3, sizeof *r->near);
@@ -280,9 +278,21 @@ mps_status pen_build_run(penetrometer *p, pen_run *r) {
   return r->row && r->near && r->distance && r->point ? MPS_OK : MPS_ERROR_MEMORY;
 }
 
+mps_status pen_build_run(penetrometer *p, pen_run *r) {
+  find_size(p, r);
+  mps_status status = make_soil(p, r);
+  if (status == MPS_OK) status = make_tip(p, r);
+  if (status == MPS_OK) status = make_room(p, r);
+  status = make_solver(p, r, status);
+  if (status == MPS_OK) status = add_contact(p, r);
+  if (status == MPS_OK) r->dt = mps_mpm_dt(r->m.mpm);
+  return status;
+}
+
 mps_status pen_build(mps_context *context, void *user) {
   penetrometer *p = user;
   p->context = context;
+  p->run[1].m.a = p->run[0].m.a;
   return pen_build_run(p, &p->run[0]);
 }
 
@@ -291,6 +301,7 @@ void pen_free(penetrometer *p) {
     free(p->run[k].row);
     free(p->run[k].near);
     free(p->run[k].distance);
+    free(p->run[k].counts.untold);
     free(p->run[k].point);
   }
 }

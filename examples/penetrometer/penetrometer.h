@@ -57,6 +57,7 @@ typedef struct pen_run {
   int64_t rows, capacity;
   double last_time, last_impulse[PEN_FORCES]; /* since the last row */
   int64_t inside;                             /* most particles inside the tip at once */
+  mpm_counts counts;                          /* of them */
   double deepest;                             /* m, the furthest that one was below its surface */
   double ratio_max, ratio_min;                /* of V/V0 */
   int64_t particles, steps;

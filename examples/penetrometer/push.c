@@ -59,8 +59,19 @@ static mps_status look_for_intruders(const penetrometer *p, pen_run *r) {
     r->deepest = fmax(r->deepest, -r->distance[k]);
     if (r->distance[k] < -INSIDE * p->s.h) inside++;
   }
-  if (inside > r->inside) r->inside = inside;
-  return status;
+  return status == MPS_OK ? mpm_counts_note(&r->m, &r->counts, inside, &r->inside) : status;
+}
+
+/* Every rank has looked at its own particles: what all have seen. Collective. */
+static mps_status join_looks(pen_run *r, mps_status status) {
+  double most[] = {r->ratio_max, -r->ratio_min, r->deepest};
+  mps_domain *domain = r->m.a->domain;
+  if (!domain) return status;
+  status = mps_domain_agree(domain, status);
+  if (status == MPS_OK) status = mps_domain_max(domain, 3, most);
+  if (status != MPS_OK) return status;
+  r->ratio_max = most[0], r->ratio_min = -most[1], r->deepest = most[2];
+  return mpm_counts_join(&r->m, &r->counts, &r->inside);
 }
 
 /* ---- rows ------------------------------------------------------------------------------------ */
@@ -124,18 +135,23 @@ static bool in_section(const penetrometer *p, double thick, double x, double y) 
 }
 
 /* Displacements, and the particles in the section. */
-static mps_status take_section(const penetrometer *p, pen_run *r) {
+static mps_status look_at_section(const penetrometer *p, pen_run *r, mps_particles *set) {
   mps_view x, start, strain;
   mps_edit moved;
   const int up = up_of(r);
-  mps_status status = mps_particles_add_field(r->m.particles, "displacement", 0);
-  if (status == MPS_OK) status = mps_particles_view(r->m.particles, "position", &x);
-  if (status == MPS_OK) status = mps_particles_view(r->m.particles, "start", &start);
-  if (status == MPS_OK) status = mps_particles_edit(r->m.particles, "displacement", &moved);
-  if (status != MPS_OK) return status;
-  const bool plastic = mps_particles_view(r->m.particles, "plastic_strain", &strain) == MPS_OK;
-  const double thick = mps_particles_spacing(r->m.particles);
-  for (int64_t k = 0; k < x.shape[0]; k++) {
+  int64_t *rows = mpm_rows_by_id(set);
+  mps_status status = rows ? mps_particles_add_field(set, "displacement", 0) : MPS_ERROR_MEMORY;
+  if (status == MPS_OK) status = mps_particles_view(set, "position", &x);
+  if (status == MPS_OK) status = mps_particles_view(set, "start", &start);
+  if (status == MPS_OK) status = mps_particles_edit(set, "displacement", &moved);
+  if (status != MPS_OK) {
+    free(rows);
+    return status;
+  }
+  const bool plastic = mps_particles_view(set, "plastic_strain", &strain) == MPS_OK;
+  const double thick = mps_particles_spacing(set);
+  for (int64_t i = 0; i < x.shape[0]; i++) {
+    const int64_t k = rows[i];
     double square = 0.0;
     for (int c = 0; c <= up; c++) {
       const double d = *mps_view_f64(&x, k, c) - *mps_view_f64(&start, k, c);
@@ -149,7 +165,15 @@ static mps_status take_section(const penetrometer *p, pen_run *r) {
         (pen_point){up == 2 ? from_axis : -X, *mps_view_f64(&x, k, up) - r->size[up], sqrt(square),
                     plastic ? *mps_view_f64(&strain, k, 0) : 0.0};
   }
-  return mps_particles_commit(r->m.particles, &moved);
+  free(rows);
+  return mps_particles_commit(set, &moved);
+}
+
+static mps_status take_section(const penetrometer *p, pen_run *r) {
+  mps_particles *whole;
+  mps_status status = mpm_model_whole(&r->m, &whole);
+  if (status == MPS_OK && whole) status = look_at_section(p, r, whole);
+  return mpm_model_tell(&r->m, status, 0, NULL);
 }
 
 /* ---- the run --------------------------------------------------------------------------------- */
@@ -176,6 +200,8 @@ static mps_status after_step(void *user, mps_mpm *mpm) {
 static mps_status march(penetrometer *p, pen_run *r) {
   push now = {p, r};
   mps_status status = mps_mpm_run(r->m.mpm, p->t_end, 1, after_step, &now);
+  const mps_status joined = join_looks(r, MPS_OK);
+  if (status == MPS_OK) status = joined;
   r->steps = mps_mpm_steps(r->m.mpm);
   smooth(p, r);
   const bool ended = status == MPS_OK || status == MPS_ERROR_CANCELLED;

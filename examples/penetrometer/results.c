@@ -138,12 +138,13 @@ static void tell_run(const penetrometer *p, const pen_run *r, const mean *m) {
 
 bool pen_finish(app *a, void *user) {
   penetrometer *p = user;
+  mpm_model *model = &p->run[0].m;
+  mps_particles *soil = model->whole ? model->whole : model->particles;
   const mean m[2] = {mean_of(p, &p->run[0]), mean_of(p, &p->run[1])};
   if (p->runs == 2 && p->run[1].rows < MPM_MODEL_SAMPLES) p->runs = 1; /* interrupted before */
   if (!write_force(a, p, &p->run[0], "force.csv") || !write_section(a, p) ||
       (p->runs == 2 && !write_force(a, p, &p->run[1], "force-axisymmetric.csv")) ||
-      !write_summary(a, p, m) || !frame_write(a, p->run[0].m.particles, p->s.out, "soil.vtkhdf") ||
-      !pen_draw(a, p))
+      !write_summary(a, p, m) || !frame_write(a, soil, p->s.out, "soil.vtkhdf") || !pen_draw(a, p))
     return false;
   app_tell_results(a, p->s.out);
   for (int k = 0; k < p->runs; k++) tell_run(p, &p->run[k], &m[k]);

@@ -44,35 +44,17 @@ static mps_status look_at_speeds(pile *p) {
   return status;
 }
 
-/* The ranks tell one another the numbers of many steps at once, and only where there are any. */
+/* Every rank has looked at its own particles: what all have seen. Collective. */
 static mps_status join_looks(pile *p, mps_status status) {
   pile_seen *s = &p->seen;
-  pile_untold *u = &p->untold;
-  double most[] = {s->ratio_max, -s->ratio_min, s->deepest, s->rest_speed, 0.0};
+  double most[] = {s->ratio_max, -s->ratio_min, s->deepest, s->rest_speed};
   mps_domain *domain = p->m.a->domain;
   if (!domain) return status;
-  for (int64_t k = 0; k < u->steps; k++) most[4] = fmax(most[4], (double)u->inside[k]);
   status = mps_domain_agree(domain, status);
-  if (status == MPS_OK) status = mps_domain_max(domain, 5, most);
+  if (status == MPS_OK) status = mps_domain_max(domain, 4, most);
   if (status != MPS_OK) return status;
   s->ratio_max = most[0], s->ratio_min = -most[1], s->deepest = most[2], s->rest_speed = most[3];
-  for (int64_t k = 0; k < u->steps && status == MPS_OK && most[4] > 0.0; k++) {
-    status = mpm_model_sum(&p->m, &u->inside[k]);
-    if (status == MPS_OK && u->inside[k] > s->inside) s->inside = u->inside[k];
-  }
-  u->steps = 0;
-  return status;
-}
-
-static mps_status keep_untold(pile_untold *u, int64_t inside) {
-  if (u->steps == u->capacity) {
-    const int64_t capacity = 2 * u->capacity + 256;
-    int64_t *grown = realloc(u->inside, (size_t)capacity * sizeof *grown);
-    if (!grown) return MPS_ERROR_MEMORY;
-    u->inside = grown, u->capacity = capacity;
-  }
-  u->inside[u->steps++] = inside;
-  return MPS_OK;
+  return mpm_counts_join(&p->m, &p->inside, &s->inside);
 }
 
 /* The body is asked about those only that lie in its bounds. */
@@ -89,9 +71,7 @@ static mps_status look_for_intruders(pile *p) {
     p->seen.deepest = fmax(p->seen.deepest, -distance);
     if (distance < -INSIDE * p->s.h) inside++;
   }
-  if (status == MPS_OK && p->m.a->domain) return keep_untold(&p->untold, inside);
-  if (inside > p->seen.inside) p->seen.inside = inside;
-  return status;
+  return status == MPS_OK ? mpm_counts_note(&p->m, &p->inside, inside, &p->seen.inside) : status;
 }
 
 /* Top of the soil inside the pile above the tip (m): the highest particles of columns one cell

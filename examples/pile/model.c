@@ -165,6 +165,6 @@ mps_status pile_build(mps_context *context, void *user) {
 void pile_free(pile *p) {
   pile_free_frames(p);
   free(p->row);
-  free(p->untold.inside);
-  p->row = NULL, p->untold.inside = NULL;
+  free(p->inside.untold);
+  p->row = NULL, p->inside.untold = NULL;
 }

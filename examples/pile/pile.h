@@ -56,12 +56,6 @@ typedef struct pile_seen {
   double rest_speed; /* m/s, fastest particle in the second half of the time before contact */
 } pile_seen;
 
-/* Of several ranks each looks at its own particles: particles inside the wall after each step that
- * the ranks have not told one another yet. */
-typedef struct pile_untold {
-  int64_t *inside, steps, capacity;
-} pile_untold;
-
 typedef struct pile {
   pile_settings s;
   const option *table; /* of the options */
@@ -75,7 +69,7 @@ typedef struct pile {
   double stride;                                                   /* m of path between rows */
   double last_time, last_impulse[PILE_FORCES], last_step, squares; /* since the last row */
   pile_seen seen; /* of all ranks where they have told one another */
-  pile_untold untold;
+  mpm_counts inside;
   pile_frame frame[PILE_PICTURES];
   int64_t frames, frames_kept;
   mps_recorder *recorder; /* NULL in a libmps without HDF5, and on all ranks but the first */
