@@ -33,7 +33,7 @@ int main(int argc, char **argv) {
       OPTION_HEADING("Pile"),
       OPTION_NUMBER("inner-diameter", "m", OPTION_LENGTH, &s->inner_diameter, "of the pile"),
       OPTION_NUMBER("wall", "m", OPTION_LENGTH, &s->wall,
-                    "thickness of the pile, at least 2 cells of --h"),
+                    "thickness of the pile; by --contact penalty at least 2 cells of --h"),
       OPTION_NUMBER("friction", "1", OPTION_FROM_TO(0.0, 10.0), &s->friction,
                     "mu of its surface, tan(delta)"),
       OPTION_NUMBER("depth", "m", OPTION_LENGTH, &s->depth, "of the tip, where the run ends"),

@@ -34,8 +34,9 @@ const char *pile_check(pile_settings *s) {
     return "--soil must be two lengths in m, WxH, such as 0.4x3";
   if (!whole_cells(s->width, s->h) || !whole_cells(s->height, s->h))
     return "--soil must be whole cells of --h wide and high";
-  if (s->wall < s->h * (2.0 - 1e-9))
-    return "--wall must be at least 2 cells of --h: particles on both its sides would share nodes";
+  if (s->contact == MPS_CONTACT_METHOD_PENALTY && s->wall < s->h * (2.0 - 1e-9))
+    return "--wall must be at least 2 cells of --h by --contact penalty: particles on both its "
+           "sides would share nodes";
   if (s->inner_diameter < 4.0 * s->h) return "--inner-diameter must be at least 4 cells of --h";
   if (0.5 * s->inner_diameter + s->wall > s->width - 4.0 * s->h)
     return "--soil must be at least 4 cells of --h wider than the pile's radius";

@@ -191,3 +191,13 @@ double mpsi_body_thickness(const mps_body *body) {
     return polygon_thickness(body);
   }
 }
+
+bool mpsi_body_is_convex(const mps_body *body) {
+  if (body->shape == MPSI_BALL || body->shape == MPSI_HALF) return true;
+  if (body->shape != MPSI_POLYGON) return false;
+  for (int64_t k = 0; k < body->edges; k++) {
+    const double *a = body->xy + 2 * k, *b = a + 2, *c = body->xy + 2 * ((k + 1) % body->edges) + 2;
+    if ((b[0] - a[0]) * (c[1] - b[1]) < (b[1] - a[1]) * (c[0] - b[0])) return false;
+  }
+  return true;
+}

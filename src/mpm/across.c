@@ -29,12 +29,12 @@ bool mpsi_mpm_begin_across(mps_mpm *mpm) {
 }
 
 /* Where x looks from, and how far that is from the surface. */
-static mpsi_sight stand(const mps_mpm *mpm, const mps_body *body, const double *x) {
-  const mpsi_foot foot = mpsi_body_foot(body, x);
+static mpsi_sight stand(const mps_mpm *mpm, const mpsi_foot *foot, const double *x) {
   const double clear = CLEAR * mpm->def.cell;
-  mpsi_sight out = {.distance = fmax(foot.distance, clear)};
+  mpsi_sight out = {.distance = fmax(foot->distance, clear)};
   for (int c = 0; c < mpm->dim; c++)
-    out.at[c] = foot.distance < clear ? foot.at[c] + clear * foot.normal[c] : x[c];
+    out.at[c] = foot->distance < clear ? foot->at[c] + clear * foot->normal[c] : x[c];
+  memcpy(out.normal, foot->normal, sizeof out.normal);
   return out;
 }
 
@@ -56,7 +56,8 @@ void mpsi_mpm_find_sight(mps_mpm *mpm, int64_t g) {
       mpsi_unravel(k, MPSI_SIDE, place);
       const double local[3] = {place[0], place[1], place[2]};
       mpsi_node_position(mpm, nodes->at, local, x);
-      sight[k] = stand(mpm, mpm->contact.body[b], x);
+      const mpsi_foot foot = mpsi_body_foot(mpm->contact.body[b], x);
+      sight[k] = stand(mpm, &foot, x);
       if (sight[k].distance > half) continue;
       beside[k] = 1;
       nodes->thin = true;
@@ -201,10 +202,27 @@ static mpsi_sight sight_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int
   return out;
 }
 
+/* Whether the place of tile node `at`, not beyond a mirror, lies before the tangent plane at the
+ * particle's foot: then it is seen past a convex body, as is one in whose own plane's front the
+ * particle lies. */
+static bool is_before(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *at,
+                      const mpsi_foot *foot) {
+  const double local[3] = {at[0], at[1], at[2]};
+  double x[3], across = 0.0;
+  mpsi_node_position(mpm, cells->at, local, x);
+  for (int c = 0; c < mpm->dim; c++) {
+    if (cells->mirrors && mpsi_mirror_partner(mpm, cells, c, at[c]) != at[c]) return false;
+    across += (x[c] - foot->at[c]) * foot->normal[c];
+  }
+  return across > 0.0;
+}
+
 static uint64_t parted_by(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t b,
                           const int *base, const double *x) {
   const mps_body *body = mpm->contact.body[b];
-  const mpsi_sight own = stand(mpm, body, x);
+  const bool convex = mpm->contact.handle[b]->convex;
+  const mpsi_foot foot = mpsi_body_foot(body, x);
+  const mpsi_sight own = stand(mpm, &foot, x);
   const int n = mpm->def.spline;
   uint64_t out = 0;
   if (own.distance > 2.0 * sqrt((double)mpm->dim) * mpm->def.cell) return 0;
@@ -212,11 +230,13 @@ static uint64_t parted_by(const mps_mpm *mpm, const mpsi_cell_block *cells, int3
     for (int j = 0; j <= n; j++)
       for (int i = 0; i <= n; i++) {
         const int at[3] = {base[0] + i, base[1] + j, base[2] + k};
+        if (convex && is_before(mpm, cells, at, &foot)) continue;
         bool ghost;
         const mpsi_sight node = sight_of(mpm, cells, b, at, &ghost);
         double way[3];
         for (int c = 0; c < 3; c++) way[c] = node.at[c] - own.at[c];
         const double reach = own.distance + (ghost ? 0.0 : node.distance);
+        if (convex && !ghost && mpsi_dot3(way, node.normal) < node.distance) continue;
         if (mpsi_dot3(way, way) < reach * reach) continue; /* two balls without the body */
         if (!is_free(mpm, cells, body, &own, node.at)) out |= UINT64_C(1) << (16 * k + 4 * j + i);
       }

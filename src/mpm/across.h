@@ -26,6 +26,7 @@ struct mpsi_node_block;
 typedef struct mpsi_sight {
   double at[3];    /* m, where it stands: itself, or in the body the surface nearest to it */
   double distance; /* m, from there to the body */
+  double normal[3]; /* of the surface at its foot */
 } mpsi_sight;
 
 /* Which bodies part particles in the step being made; room for what is known of nodes. */
