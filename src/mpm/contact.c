@@ -13,6 +13,7 @@ void mpsi_mpm_apply_contact(mps_mpm *mpm, int64_t g) {
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
     const mpsi_contact_node *at = mpm->contact.node + (int64_t)t * mpm->grid.block_nodes;
     mpm->contact.node_pair[t].mass = 0.0;
+    if (mpsi_by_impulses(mpm->contact.handle[mpm->contact.node_pair[t].body])) continue;
     for (int k = 0; k < mpm->grid.block_nodes; k++) {
       const double m = node[k][MPSI_MASS];
       if (!(m > 0.0) || at[k].mass == 0.0) continue;

@@ -17,16 +17,23 @@ static void note_inside(mpsi_node_block *nodes, const int *place, uint32_t *insi
   }
 }
 
-/* Distances change no faster than places: from a node at the distance d outside, the next d/h of
- * its row are outside too. */
-static int outside_behind(const mps_mpm *mpm, double distance) {
-  const double cells = distance * mpm->grid.inverse * (1.0 - 1e-9);
-  return cells < MPSI_SIDE ? (int)cells : MPSI_SIDE;
+/* Distances change no faster than places: where a node is `far` (m) from what would change its
+ * state, the next nodes of its row have that state too, as many as this. */
+static int same_behind(const mps_mpm *mpm, double far) {
+  const double cells = far * mpm->grid.inverse * (1.0 - 1e-9);
+  return cells < 0.0 ? 0 : cells < MPSI_SIDE ? (int)cells : MPSI_SIDE;
 }
 
-/* Normals at the nodes of a block that lie inside the body of a pair. */
+/* No stencil reaches a node so far (m) below the surface: a particle is no deeper than its contact
+ * allows, and the nodes of its stencil no further from it than two cells along each axis. */
+static double deep_below(const mps_mpm *mpm, int32_t b) {
+  return mpm->contact.handle[b]->def.depth + 2.0 * mpm->def.cell * sqrt((double)mpm->dim);
+}
+
+/* Nodes of a block that lie inside body b, with normals where a stencil may have them. */
 static void find_inside_body(mps_mpm *mpm, mpsi_node_block *nodes, int32_t b,
                              mpsi_contact_node *node, uint32_t *inside) {
+  const double deep = deep_below(mpm, b);
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     int place[3];
     double x[3];
@@ -34,13 +41,14 @@ static void find_inside_body(mps_mpm *mpm, mpsi_node_block *nodes, int32_t b,
     const double local[3] = {place[0], place[1], place[2]};
     mpsi_node_position(mpm, nodes->at, local, x);
     const mpsi_foot foot = mpsi_body_foot(mpm->contact.body[b], x);
-    if (foot.distance < 0.0) {
-      for (int c = 0; c < mpm->dim; c++) node[k].normal[c] = foot.normal[c];
-      note_inside(nodes, place, &inside[k], b);
-      continue;
-    }
-    const int skip = outside_behind(mpm, foot.distance), row = MPSI_SIDE - 1 - place[0];
-    k += skip < row ? skip : row;
+    const int row = MPSI_SIDE - 1 - place[0]; /* nodes behind this one */
+    int same = foot.distance < 0.0 ? same_behind(mpm, -foot.distance - deep)
+                                   : same_behind(mpm, foot.distance);
+    if (same > row) same = row;
+    if (foot.distance < 0.0)
+      for (int i = 0; i <= same; i++, place[0]++) note_inside(nodes, place, &inside[k + i], b);
+    for (int c = 0; c < mpm->dim && foot.distance < 0.0; c++) node[k].normal[c] = foot.normal[c];
+    k += same;
   }
 }
 
@@ -94,14 +102,19 @@ static void for_corners(const mps_mpm *mpm, const mpsi_cell_block *cells, corner
   if (cells->pairs == 0 || !cells_near(mpm, cells, low, high)) return;
   bool seen[MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE];
   memset(seen, 0, (size_t)mpm->grid.tile_nodes * sizeof *seen);
+  double first[3], last[3];
+  const int dim = mpm->dim;
+  for (int c = 0; c < dim; c++) {
+    first[c] = (double)cells->at[c] * MPSI_SIDE;
+    last[c] = (double)(mpm->grid.high[c] - 1) - first[c];
+  }
   for (int64_t k = cells->begin; k < cells->end; k++) {
     int at[3] = {0};
     bool near = true;
-    for (int c = 0; c < mpm->dim && near; c++) {
+    for (int c = 0; c < dim && near; c++) {
       /* counted from the block: not negative, so that truncation is floor */
-      const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE, last = mpm->grid.high[c] - 1 - first;
-      const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k]) - (double)first;
-      at[c] = X < (double)last ? (int)X : (int)last;
+      const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k]) - first[c];
+      at[c] = (int)(X < last[c] ? X : last[c]);
       near = at[c] >= low[c] && at[c] < high[c];
     }
     if (!near) continue;
@@ -172,7 +185,7 @@ static void mark_outside(const mps_mpm *mpm, const mpsi_cell_block *cells, uint8
 
 /* Of the nodes of a block under the corner q of the tile, in bodies or beside thin ones. */
 static void mark_near(const mps_mpm *mpm, const mpsi_node_block *nodes, int q,
-                        mpsi_worker *worker) {
+                      mpsi_worker *worker) {
   int low[3] = {0}, size[3] = {1, 1, 1};
   for (int c = 0; c < mpm->dim; c++) {
     low[c] = q >> c & 1 ? MPSI_SIDE : 0;

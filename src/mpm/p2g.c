@@ -28,7 +28,7 @@ MPSI_INLINE void find_parts(const mps_mpm *mpm, int geometry, int spline, bool s
     const int64_t at = begin + k;
     const mpsi_quad m = mpsi_get(p->m + at), V = dt * mpsi_get(p->V + at);
     const mpsi_quad mh = m * h, Vs = V * stiff;
-    mpsi_put(out->sum[0][MPSI_MASS] + k, m);
+    mpsi_put(out->sum[0][MPSI_MASS] + k, m + zero); /* of a mere copy gcc makes a slow `rep movs` */
     if (split) mpsi_put(out->force[0][MPSI_EXCESS] + k, zero);
     MPSI_UNROLL for (int c = 0; c < dim; c++) {
       const int to = MPSI_VECTOR + c;

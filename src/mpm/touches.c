@@ -79,10 +79,11 @@ static void place_of(const mps_mpm *mpm, int64_t k, double *x) {
 /* No particle of the block touches that is further away than this (m). */
 static double longest_reach(const mps_mpm *mpm, const mpsi_cell_block *cells,
                             const mps_contact *contact) {
+  const bool space = mpm->dim == 3;
+  const double *x = mpm->p.v[0], *y = mpm->p.v[1], *z = space ? mpm->p.v[2] : y;
   double largest = 0.0;
   for (int64_t k = cells->begin; k < cells->end; k++) {
-    double square = 0.0;
-    for (int c = 0; c < mpm->dim; c++) square += mpm->p.v[c][k] * mpm->p.v[c][k];
+    const double square = x[k] * x[k] + y[k] * y[k] + (space ? z[k] * z[k] : 0.0);
     largest = square > largest ? square : largest;
   }
   return 1.4 * contact->def.offset +
@@ -109,9 +110,9 @@ static void find_candidates(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_cel
   pair->candidates = 0;
   for (int64_t k = cells->begin; k < cells->end; k++) {
     double x[3], square = 0.0;
+    const double slack = distance - reach;
     place_of(mpm, k, x);
     for (int c = 0; c < 3; c++) square += (x[c] - known[c]) * (x[c] - known[c]);
-    const double slack = distance - reach;
     if (slack > 0.0 && square < slack * slack) continue;
     const mpsi_foot foot = mpsi_body_foot(contact->body, x);
     memcpy(known, x, sizeof known);
@@ -275,15 +276,15 @@ static void fit_touch(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker
       psis[a] *= keeps[a];
       touch->carried[a] += psi * carried[a];
     }
-    const int64_t g = f.across >> s & 1
-                          ? mpsi_node_across(mpm, cells, place[0], place[1], place[2])
-                          : mpsi_node_under(mpm, cells, place[0], place[1], place[2]);
+    const int64_t g = f.across >> s & 1 ? mpsi_node_across(mpm, cells, place[0], place[1], place[2])
+                                        : mpsi_node_under(mpm, cells, place[0], place[1], place[2]);
     if (mpm->grid.node[g][MPSI_MASS] > 0.0)
       add_node(touch, node, weight, mpm->grid.node[g], psis, cells->mirrors != 0);
   }
-  for (int32_t i = 0; i < touch->nodes; i++)
-    for (int a = 0; a < 3; a++)
-      touch->impulse.mobility[a] += weight[i][a] * weight[i][a] / node[i][MPSI_MASS];
+  for (int32_t i = 0; i < touch->nodes; i++) {
+    const double inverse = 1.0 / node[i][MPSI_MASS];
+    for (int a = 0; a < 3; a++) touch->impulse.mobility[a] += weight[i][a] * weight[i][a] * inverse;
+  }
 }
 
 static void mirror_block(void *data, int64_t unit, int32_t number) {
