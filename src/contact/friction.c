@@ -30,13 +30,14 @@ bool mpsi_contact_friction(const mps_contact *contact, int dim, const mpsi_conta
   double n[3], s[3];
   for (int c = 0; c < 3; c++) {
     n[c] = at->force[c] / fn;
-    s[c] = v[c] - before[c] - at->slip[c] / at->mass;
+    s[c] = v[c] - before[c] - at->slip[c] / at->mass; /* velocity of slip, (31) */
   }
-  const double across = mpsi_dot3(s, n);
+  const double across = mpsi_dot3(s, n); /* its tangential part, (32) */
   for (int c = 0; c < 3; c++) s[c] -= across * n[c];
   const double slip = sqrt(mpsi_dot3(s, s));
   if (!(slip > 0.0)) return false;
   for (int c = 0; c < 3; c++) s[c] /= slip;
+  /* the force that would end the slip, (33), and Coulomb's bound on it, (34) */
   const double stick = m * slip / dt * stick_share(contact->body, dim, contact_mass, x, s);
   const double f = fmin(stick, contact->def.friction * fn);
   for (int c = 0; c < 3; c++) force[c] = -f * s[c];

@@ -1,6 +1,7 @@
 /* contact.c - contact at the nodes of a block: the normal forces of all bodies first, then Coulomb
- * friction body by body, Nakamura (31)-(34); then what the bodies feel. The contact itself, of one
- * particle or node, is in src/contact.
+ * friction body by body, Nakamura (31)-(34), by contacts of springs; then what the bodies feel, by
+ * whatever contact. The equations themselves, of one particle or node, are in src/contact:
+ * friction.c has (31)-(34).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "body/rotation.h"
 #include "mpm_private.h"

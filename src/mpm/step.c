@@ -84,10 +84,10 @@ static void gather_own(mps_mpm *mpm, int64_t b, int32_t worker) {
  *   clear    the nodes of a block
  *   scatter  x, v, L, sigma, V, m --> mass, momentum, forces and contact at the nodes: p2g.c
  *            (23)-(25), (39), fitted.c (28)-(30)
- *   update   velocities before and after the forces, normal contact: grid.c (26), contact (31)
+ *   update   velocities before and after the forces: grid.c (26); normal forces of springs: contact.c
  *   between  masses in contact with each free rough body
  *            then the impulses of contacts, where there are any: touches.c, impulses.c
- *   finish   friction with bodies (31)-(34); walls and prescribed nodes
+ *   finish   friction with bodies by springs: contact.c, contact/friction.c (31)-(34); walls, boxes
  *   gather   velocities of the nodes --> v, L, x (41)-(44); then the laws, L --> sigma, V and their
  *            histories (45)-(48), and c + |v| for the next step (49), (50): g2p.c, law.c
  * `found`: what has become of the search for touches here, of which all ranks are told on the way.
