@@ -84,7 +84,8 @@ static void gather_own(mps_mpm *mpm, int64_t b, int32_t worker) {
  *   clear    the nodes of a block
  *   scatter  x, v, L, sigma, V, m --> mass, momentum, forces and contact at the nodes: p2g.c
  *            (23)-(25), (39), fitted.c (28)-(30)
- *   update   velocities before and after the forces: grid.c (26); normal forces of springs: contact.c
+ *   update   velocities before and after the forces: grid.c (26); the springs' normal forces:
+ *            contact.c
  *   between  masses in contact with each free rough body
  *            then the impulses of contacts, where there are any: touches.c, impulses.c
  *   finish   friction with bodies by springs: contact.c, contact/friction.c (31)-(34); walls, boxes
