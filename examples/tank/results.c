@@ -423,7 +423,7 @@ static void summarise_box(output *f, const tank_model *m, const figures *g) {
   json_number(f, "period_exact", exact);
   json_optional(f, "decay", g->decay);
   json_optional(f, "deflection", g->deflection);
-  json_number(f, "deflection_exact", -m->s.amplitude);
+  json_number(f, "deflection_exact", 0.0 - m->s.amplitude);
   if (!isnan(g->period))
     printf(
         "heave: period %.4f s, potential flow %.4f s (%+.2f %%), decay %.3f 1/s; mean %.3f mm, at "
