@@ -1,6 +1,6 @@
 #!/bin/sh
 # resonance_long.sh DIRECTORY: a wall on a spring in waves at .8 to 1.2 of its own frequency: amplitude
-# and phase of linear potential flow in the same tank. The waves lose 3.5 % on their way.
+# and phase of linear potential flow in the same tank. The waves lose 2 % on their way.
 # SPDX-License-Identifier: BSD-3-Clause
 . "$(dirname "$0")/checks.sh"
 value() { sed -n "s/^ *\"$1\": \([^,]*\),*$/\1/p" "$work/$ratio/summary.json"; }
