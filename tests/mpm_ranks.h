@@ -7,8 +7,8 @@
 
 #include <mps/mpm.h>
 
-enum { SLIDE, SPREAD, RING, ROOM, PRESS, CONE, BALLS, SCENES };
-enum { BODIES = 3 }; /* at most, of PRESS, CONE and BALLS */
+enum { SLIDE, SPREAD, RING, ROOM, PRESS, CONE, BALLS, PLATES, SCENES };
+enum { BODIES = 3 }; /* at most, of PRESS and what follows */
 
 typedef struct scene {
   mps_particles *set;
@@ -118,6 +118,7 @@ static inline mps_body_def body_def(int what, int number) {
   static const double place[SCENES][BODIES][3] = {
       [PRESS] = {{0.5, 0.531}, {0.95, 0.51}, {1.22, 0.0}},
       [CONE] = {{0.0, 0.42}, {0.6, 0.51}},
+      [PLATES] = {{0.35, 0.43}, {0.8, 0.41}, {1.22, 0.0}},
       [BALLS] = {{0.4, 0.541, 0.4}, {0.9, 0.52, 0.2}, {0.85, 0.56, 0.62}}};
   mps_body_def def = mps_body_defaults();
   memcpy(def.position, place[what][number], sizeof def.position);
@@ -139,8 +140,11 @@ static inline mps_status make_body(mps_context *own, int what, int number, mps_b
     return number == 0   ? mps_body_create_sphere(own, &def, 0.12, out)
            : number == 1 ? mps_body_create_revolution(own, &def, 4, pile, out)
                          : mps_body_create_sphere(own, &def, 0.15, out);
-  if (number == 1) return mps_body_create_box(own, &def, 0.2, 0.2, out);
+  if (number == 1)
+    return mps_body_create_box(own, &def, what == PLATES ? 0.06 : 0.2, what == PLATES ? 0.4 : 0.2,
+                               out);
   if (what == CONE) return mps_body_create_polygon(own, &def, 3, cone, out);
+  if (what == PLATES && number == 0) return mps_body_create_box(own, &def, 0.05, 0.5, out);
   return number == 0 ? mps_body_create_disc(own, &def, 0.12, out)
                      : mps_body_create_half_plane(own, &def, wall, out);
 }
@@ -151,6 +155,7 @@ static inline mps_status add_bodies(mps_context *own, mps_domain *domain, int wh
   for (int k = 0; k < (what == CONE ? 2 : BODIES); k++) {
     mps_contact_def def = mps_contact_defaults();
     def.friction = 0.2 + 0.2 * k;
+    if (what == PLATES) def.inside = MPS_CONTACT_INSIDE_REMOVE, def.thin = k < 2;
     if (status == MPS_OK) status = make_body(own, what, k, &s->body[k]);
     motion.velocity[1] = k == 0 ? -4.0 : -2.0;
     if (k > 0 || what == CONE) TRY(mps_body_set_motion(s->body[k], &motion));

@@ -52,7 +52,7 @@ static box near_bodies(const mps_mpm *mpm, const mpsi_cell_block *cells) {
 static bool near_thin(const mps_mpm *mpm, const mpsi_cell_block *cells) {
   bool any = false;
   for (int q = 0; q < 1 << mpm->dim; q++) any = any || mpm->grid.nodes[cells->to[q]].thin;
-  return any && mpm->contact.thin && !cells->ghost;
+  return any && mpm->contact.thin;
 }
 
 /* Forces are wanted apart from the momenta at all nodes. */
@@ -96,7 +96,7 @@ static mps_status find_cut(mps_mpm *mpm, const char *function) {
     mpsi_cell_block *cells = &mpm->grid.cells[b];
     const box near = near_bodies(mpm, cells);
     cells->inside = !is_empty(&near);
-    cells->thin = near_thin(mpm, cells);
+    cells->thin = cells->ghost ? cells->thin && mpm->contact.thin : near_thin(mpm, cells);
     cells->cut = cells->edge || cells->inside || cells->thin || mpm->standard;
     if (cells->cut || all_apart(mpm)) mark_cut(mpm, cells, &near, finds);
   }
@@ -127,6 +127,8 @@ mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status sta
                                     sizeof *mpm->contact.sight);
     if (status == MPS_OK && mpm->contact.cell_pair_count > 0) mpsi_mpm_run_pass(mpm, &pass);
     if (mpm->share) { /* all ranks, whatever has become of this one */
+      for (int64_t b = 0; status == MPS_OK && b < mpm->grid.cell_count; b++)
+        mpm->grid.cells[b].thin = near_thin(mpm, &mpm->grid.cells[b]);
       const mps_status lost = mpsi_share_reached(mpm, function, status == MPS_OK);
       if (lost != MPS_OK) status = lost;
     }

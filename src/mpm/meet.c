@@ -9,7 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define UNDER (2 * MPSI_SIDE) /* nodes an axis under a tile, in whole blocks */
+#define UNDER (2 * MPSI_SIDE)          /* nodes an axis under a tile, in whole blocks */
+#define PLACES (UNDER * UNDER * UNDER) /* from here on those across thin bodies */
 
 typedef struct head {
   int32_t at[3];  /* of the block of cells */
@@ -21,7 +22,7 @@ typedef struct head {
 } head;
 
 typedef struct named_node {
-  int64_t place; /* under the tile */
+  int64_t place; /* under the tile; see PLACES */
   double value[4];
 } named_node;
 
@@ -33,11 +34,13 @@ static int under_index(int i, int j, int k) { return (k * UNDER + j) * UNDER + i
 static int place_under(const mps_mpm *mpm, const mpsi_cell_block *cells, const double *node) {
   const int64_t number = (node - (const double *)mpm->grid.node) / 4;
   const int64_t block = number / mpm->grid.block_nodes;
+  const bool across = block >= mpm->grid.node_count;
   int q = 0, at[3];
-  while (cells->to[q] != block) q++;
+  while ((across ? mpm->grid.nodes[cells->to[q]].across : cells->to[q]) != block) q++;
   mpsi_unravel((int)(number % mpm->grid.block_nodes), MPSI_SIDE, at);
-  return under_index(at[0] + MPSI_SIDE * (q & 1), at[1] + MPSI_SIDE * (q >> 1 & 1),
-                     at[2] + MPSI_SIDE * (q >> 2));
+  return (across ? PLACES : 0) + under_index(at[0] + MPSI_SIDE * (q & 1),
+                                             at[1] + MPSI_SIDE * (q >> 1 & 1),
+                                             at[2] + MPSI_SIDE * (q >> 2));
 }
 
 static int64_t index_bytes(int64_t nodes) { return (nodes + 1) / 2 * 8; }
@@ -58,7 +61,7 @@ static int64_t name_nodes(const mps_mpm *mpm, const mpsi_touch_block *block, int
   const mpsi_impulses *all = &mpm->contact.impulses;
   const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
   int64_t count = 0;
-  memset(number, -1, UNDER * UNDER * UNDER * sizeof *number);
+  memset(number, -1, 2 * PLACES * sizeof *number);
   for (int64_t n = block->first; n < block->first + block->count; n++)
     for (int32_t i = 0; i < all->touch[n].nodes; i++) {
       const double *node = all->node[n * all->stride + i];
@@ -89,7 +92,7 @@ static char *write_touch(const mps_mpm *mpm, const mpsi_cell_block *cells, int64
 static char *write_block(const mps_mpm *mpm, const mpsi_touch_block *block, char *to) {
   const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
   const int32_t *at = cells->at;
-  int32_t number[UNDER * UNDER * UNDER];
+  int32_t number[2 * PLACES];
   head h = {.colour = (at[0] & 1) | (at[1] & 1) << 1 | (at[2] & 1) << 2,
             .cells = block->cells,
             .touches = block->count,
@@ -170,7 +173,7 @@ static bool make_room(meeting *m, int64_t slots) {
 }
 
 /* The node here, or NULL. */
-static double *find_home(const mps_mpm *mpm, const int32_t *at) {
+static double *find_home(const mps_mpm *mpm, const int32_t *at, bool across) {
   const mpsi_grid *grid = &mpm->grid;
   int32_t block[3], local = 0;
   for (int c = 2; c >= 0; c--) {
@@ -190,24 +193,28 @@ static double *find_home(const mps_mpm *mpm, const int32_t *at) {
       high = middle;
   }
   if (low == grid->node_count || memcmp(grid->nodes[low].at, block, sizeof block) != 0) return NULL;
-  return grid->node[mpsi_first_node(mpm, low) + local];
+  if (across && grid->nodes[low].across < 0) return NULL;
+  return grid->node[mpsi_first_node(mpm, across ? grid->nodes[low].across : low) + local];
 }
 
 /* The node of all ranks at `at`; where none is yet, one with these values. */
-static mpsi_met_node *meet_node(meeting *m, const int32_t *at, const double *value, int64_t slots) {
+static mpsi_met_node *meet_node(meeting *m, const int32_t *at, int32_t across, const double *value,
+                                int64_t slots) {
   mpsi_meeting *r = &m->mpm->share->meeting;
   mpsi_met_node *met = r->met.item;
   int32_t *lookup = r->lookup.item;
-  uint64_t key = 0;
+  uint64_t key = (uint64_t)across;
   for (int c = 0; c < 3; c++) key = (key ^ (uint32_t)at[c]) * UINT64_C(0x9E3779B97F4A7C15);
   int64_t slot = (int64_t)(key >> 20) & (slots - 1);
-  while (lookup[slot] >= 0 && memcmp(met[lookup[slot]].at, at, sizeof met->at) != 0)
+  while (lookup[slot] >= 0 && (memcmp(met[lookup[slot]].at, at, sizeof met->at) != 0 ||
+                               met[lookup[slot]].across != across))
     slot = (slot + 1) & (slots - 1);
   if (lookup[slot] >= 0) return &met[lookup[slot]];
   mpsi_met_node *node = &met[r->nodes];
   memcpy(node->at, at, sizeof node->at);
   memcpy(node->value, value, sizeof node->value);
-  node->home = find_home(m->mpm, at);
+  node->across = across;
+  node->home = find_home(m->mpm, at, across != 0);
   lookup[slot] = (int32_t)r->nodes++;
   return node;
 }
@@ -226,12 +233,14 @@ static void take_entry(meeting *m, const entry *e, int64_t slots, int64_t first)
     const int32_t *index = (const int32_t *)from;
     from += index_bytes(touch->nodes);
     for (int32_t i = 0; i < touch->nodes; i++, from += components * sizeof(double)) {
-      const int place = (int)named[index[i]].place;
+      const int place = (int)named[index[i]].place % PLACES;
+      const int32_t across = (int32_t)(named[index[i]].place / PLACES);
       const int32_t at[3] = {e->h.at[0] * MPSI_SIDE + place % UNDER,
                              e->h.at[1] * MPSI_SIDE + place / UNDER % UNDER,
                              e->h.at[2] * MPSI_SIDE + place / UNDER / UNDER};
       double *weight = all->weight[n * all->stride + i];
-      all->node[n * all->stride + i] = meet_node(m, at, named[index[i]].value, slots)->value;
+      all->node[n * all->stride + i] =
+          meet_node(m, at, across, named[index[i]].value, slots)->value;
       memcpy(weight, from, components * sizeof(double));
       for (size_t c = components; c < 3; c++) weight[c] = weight[0];
     }

@@ -14,7 +14,8 @@
 
 /* A node that some touch uses: its values, as all ranks move them, and where it is here. */
 typedef struct mpsi_met_node {
-  int32_t at[3]; /* of the whole grid */
+  int32_t at[3];  /* of the whole grid */
+  int32_t across; /* 1: its values across a thin body (across.h) */
   double value[4];
   double *home; /* of grid.node, or NULL: of another rank */
 } mpsi_met_node;

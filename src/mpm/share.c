@@ -243,14 +243,7 @@ static mps_status find_border(mps_mpm *mpm, const char *function) {
     share->border[k] = share->border[item[k]];
     mpm->grid.cells[share->border[k]].parcel = k;
   }
-  const int64_t parcel = mpsi_share_parcel(mpm);
-  const bool good = mpsi_room_ensure(mpm->context, &share->out_room, share->borders * parcel, 1) &&
-                    mpsi_room_ensure(mpm->context, &share->in_room, share->ghosts * parcel, 1);
-  share->out = share->out_room.item;
-  share->in = share->in_room.item;
-  return good ? MPS_OK
-              : mpsi_fail_memory(mpm->context, function,
-                                 (size_t)((share->borders + share->ghosts) * parcel));
+  return mpsi_share_parcels(mpm, function);
 }
 
 static double widest(const search *s) {

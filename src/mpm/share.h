@@ -80,8 +80,8 @@ mps_status mpsi_share_tidy(mps_mpm *mpm, const char *function, mps_status status
 mps_status mpsi_share_any(mps_mpm *mpm, const char *function, bool *any);
 /* agree.c: what the callers of all ranks have edited. */
 mps_status mpsi_share_agree(mps_mpm *mpm, const char *function, mps_status status);
-/* tiles.c: bytes of a parcel at most. Not collective. */
-int64_t mpsi_share_parcel(const mps_mpm *mpm);
+/* tiles.c: room for parcels, whatever the step. Not collective. */
+mps_status mpsi_share_parcels(mps_mpm *mpm, const char *function);
 /* tiles.c: corners of cells with particles (pairs.h), of ghosts too: while bodies are looked for. */
 mps_status mpsi_share_reached(mps_mpm *mpm, const char *function, bool known);
 /* tiles.c: before a step, all that can fail has been done: the worst of all ranks. */

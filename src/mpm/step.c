@@ -47,14 +47,15 @@ static void warn_about_step(mps_mpm *mpm, double dt) {
 /* Before anything moves: the particles in order where some have left their blocks, and what is near
  * them. An error loses nothing but the tractions at rest of absorbing sides. */
 static mps_status prepare(mps_mpm *mpm, const char *function) {
-  mps_status status = mpsi_mpm_prepare_outflow(mpm, function);
+  mps_status status = MPS_OK;
   const bool renewed = mpm->run.stale || (mpm->share && mpm->share->outdated);
   if (mpm->share) status = mpsi_share_tidy(mpm, function, status);
   if (status == MPS_OK && mpm->run.stale) {
     status = mpsi_mpm_sort(mpm, function);
     mpm->boundaries.outdated = true;
   }
-  if (status != MPS_OK && renewed) return status; /* on all ranks */
+  if (status != MPS_OK && renewed) return status;                         /* on all ranks */
+  if (status == MPS_OK) status = mpsi_mpm_prepare_outflow(mpm, function); /* for those here now */
   const bool dashes = mpm->boundaries.dash_count > 0;
   if (status == MPS_OK && (status = mpsi_mpm_update_holds(mpm, function)) != MPS_OK)
     mpm->run.broken = dashes;

@@ -1,31 +1,48 @@
 /* tiles.c - tiles on their way between ranks (share.h): the border is summed and sent, the interior
  * is summed meanwhile, and then what has come is added to the nodes.
  *
- * A parcel has two numbers, whether its forces are apart and whether they are split, and then the
- * part of the tile that is in use, and that of the forces where some tile of the step has them.
+ * A parcel has three numbers, whether its forces are apart, whether they are split and whether thin
+ * bodies part it, and then the part of the tile that is in use, that of the forces where some tile
+ * of the step has them, and both across thin bodies (across.h) where some tile has these.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
 
 #include <string.h>
 
-enum { HEAD = 2 }; /* doubles */
+enum { HEAD = 3 }; /* doubles */
 
-static int64_t parcel_doubles(const mpsi_share *share, bool apart) {
-  return HEAD + (int64_t)share->most * (int64_t)(sizeof(mpsi_node) / sizeof(double)) * (1 + apart);
+static int64_t parcel_doubles(const mpsi_share *share, bool apart, bool thin) {
+  const int64_t tiles = (1 + apart) * (1 + thin);
+  return HEAD + (int64_t)share->most * (int64_t)(sizeof(mpsi_node) / sizeof(double)) * tiles;
 }
 
-int64_t mpsi_share_parcel(const mps_mpm *mpm) {
-  return parcel_doubles(mpm->share, true) * (int64_t)sizeof(double);
+mps_status mpsi_share_parcels(mps_mpm *mpm, const char *function) {
+  mpsi_share *share = mpm->share;
+  const int64_t parcel =
+      parcel_doubles(share, true, mpm->contact.thin != 0) * (int64_t)sizeof(double);
+  const bool good = mpsi_room_ensure(mpm->context, &share->out_room, share->borders * parcel, 1) &&
+                    mpsi_room_ensure(mpm->context, &share->in_room, share->ghosts * parcel, 1);
+  share->out = share->out_room.item;
+  share->in = share->in_room.item;
+  return good ? MPS_OK
+              : mpsi_fail_memory(mpm->context, function,
+                                 (size_t)((share->borders + share->ghosts) * parcel));
 }
 
 mps_status mpsi_share_ready(mps_mpm *mpm, const char *function, mps_status status) {
   mpsi_share *share = mpm->share;
-  double apart = 0.0;
-  for (int64_t k = 0; status == MPS_OK && k < share->borders; k++)
-    if (mpm->grid.cells[share->border[k]].apart) apart = 1.0;
-  status = mpsi_domain_settle_max(share->domain, function, status, 1, &apart);
-  share->apart = apart > 0.0;
-  share->item = (int32_t)(parcel_doubles(share, share->apart) * (int64_t)sizeof(double));
+  enum { APART, THIN, FOUND };
+  double found[FOUND] = {0.0};
+  if (status == MPS_OK) status = mpsi_share_parcels(mpm, function);
+  for (int64_t k = 0; status == MPS_OK && k < share->borders; k++) {
+    const mpsi_cell_block *cells = &mpm->grid.cells[share->border[k]];
+    if (cells->apart) found[APART] = 1.0;
+    if (cells->thin) found[THIN] = 1.0;
+  }
+  status = mpsi_domain_settle_max(share->domain, function, status, FOUND, found);
+  share->apart = found[APART] > 0.0;
+  share->item =
+      (int32_t)(parcel_doubles(share, share->apart, found[THIN] > 0.0) * (int64_t)sizeof(double));
   return status;
 }
 
@@ -34,17 +51,23 @@ mps_status mpsi_share_ready(mps_mpm *mpm, const char *function, mps_status statu
 
 mps_status mpsi_share_reached(mps_mpm *mpm, const char *function, bool known) {
   mpsi_share *share = mpm->share;
-  const int64_t words = (mpm->grid.tile_nodes + 63) / 64; /* less than a parcel has */
+  const int64_t nodes = (mpm->grid.tile_nodes + 63) / 64;
+  const int64_t words = nodes + 1; /* whether thin bodies part it; less than a parcel has */
   uint64_t *out = (uint64_t *)share->out, *in = (uint64_t *)share->in;
   if (share->borders > 0) memset(out, 0, (size_t)(share->borders * words) * sizeof *out);
-  for (int64_t k = 0; known && k < share->borders; k++)
+  for (int64_t k = 0; known && k < share->borders; k++) {
     mpsi_mpm_list_reached(mpm, share->border[k], out + k * words);
+    out[k * words + nodes] = mpm->grid.cells[share->border[k]].thin;
+  }
   const int32_t item = (int32_t)(words * (int64_t)sizeof *out);
   mps_status status = mpsi_halo_begin_bytes(share->halo, function, item, out, in);
   if (status == MPS_OK) status = mpsi_halo_end_bytes(share->halo, function);
-  for (int64_t b = 0; known && status == MPS_OK && b < mpm->grid.cell_count; b++)
-    if (mpm->grid.cells[b].ghost)
-      mpsi_mpm_take_reached(mpm, b, in + mpm->grid.cells[b].parcel * words);
+  for (int64_t b = 0; known && status == MPS_OK && b < mpm->grid.cell_count; b++) {
+    mpsi_cell_block *cells = &mpm->grid.cells[b];
+    if (!cells->ghost) continue;
+    mpsi_mpm_take_reached(mpm, b, in + cells->parcel * words);
+    cells->thin = in[cells->parcel * words + nodes] != 0;
+  }
   return status;
 }
 
@@ -62,6 +85,15 @@ static double *copy_tile(const mpsi_cell_block *cells, mpsi_node *tile, double *
   return parcel;
 }
 
+static void copy_tiles(const mpsi_cell_block *cells, const mpsi_worker *worker, double *parcel,
+                       bool pack) {
+  parcel = copy_tile(cells, worker->tile, parcel, pack);
+  if (cells->apart) parcel = copy_tile(cells, worker->force, parcel, pack);
+  if (!cells->thin) return;
+  parcel = copy_tile(cells, worker->across_tile, parcel, pack);
+  if (cells->apart) copy_tile(cells, worker->across_force, parcel, pack);
+}
+
 static void pack(void *data, int64_t k, int32_t number) {
   mps_mpm *mpm = data;
   mpsi_share *share = mpm->share;
@@ -71,8 +103,8 @@ static void pack(void *data, int64_t k, int32_t number) {
   mpm->kernels->tile[mpm->def.geometry][mpm->def.spline - 2](mpm, share->border[k], number);
   parcel[0] = cells->apart;
   parcel[1] = cells->split;
-  parcel = copy_tile(cells, worker->tile, parcel + HEAD, true);
-  if (cells->apart) copy_tile(cells, worker->force, parcel, true);
+  parcel[2] = cells->thin;
+  copy_tiles(cells, worker, parcel + HEAD, true);
 }
 
 mps_status mpsi_share_send(mps_mpm *mpm, const char *function) {
@@ -102,7 +134,7 @@ void mpsi_share_scatter(mps_mpm *mpm, int64_t b, int32_t number) {
                    cells->parcel * (share->item / (int64_t)sizeof *share->out);
   cells->apart = parcel[0] != 0.0;
   cells->split = parcel[1] != 0.0;
-  parcel = copy_tile(cells, worker->tile, parcel + HEAD, false);
-  if (cells->apart) copy_tile(cells, worker->force, parcel, false);
+  cells->thin = parcel[2] != 0.0;
+  copy_tiles(cells, worker, parcel + HEAD, false);
   mpm->kernels->flush(mpm, b, number);
 }

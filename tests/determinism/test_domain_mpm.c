@@ -11,6 +11,7 @@ static void test_room(void **state) { (void)state, compare_teams(compute, ROOM, 
 
 static void test_press(void **state) { (void)state, compare_teams(compute, PRESS, 120, false); }
 static void test_cone(void **state) { (void)state, compare_teams(compute, CONE, 120, true); }
+static void test_plates(void **state) { (void)state, compare_teams(compute, PLATES, 120, true); }
 static void test_balls(void **state) { (void)state, compare_teams(compute, BALLS, 40, true); }
 
 /* ---- cut in two --------------------------------------------------------------------------------
@@ -179,17 +180,13 @@ static void test_troubles(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_slide),
-                                     cmocka_unit_test(test_spread),
-                                     cmocka_unit_test(test_ring),
-                                     cmocka_unit_test(test_room),
-                                     cmocka_unit_test(test_press),
-                                     cmocka_unit_test(test_cone),
-                                     cmocka_unit_test(test_balls),
-                                     cmocka_unit_test(test_cut_press),
-                                     cmocka_unit_test(test_cut_spread),
-                                     cmocka_unit_test(test_refused_memory),
-                                     cmocka_unit_test(test_refused_contact),
-                                     cmocka_unit_test(test_troubles)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_slide),          cmocka_unit_test(test_spread),
+      cmocka_unit_test(test_ring),           cmocka_unit_test(test_room),
+      cmocka_unit_test(test_press),          cmocka_unit_test(test_cone),
+      cmocka_unit_test(test_balls),          cmocka_unit_test(test_plates),
+      cmocka_unit_test(test_cut_press),      cmocka_unit_test(test_cut_spread),
+      cmocka_unit_test(test_refused_memory), cmocka_unit_test(test_refused_contact),
+      cmocka_unit_test(test_troubles)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
