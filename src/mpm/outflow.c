@@ -72,7 +72,7 @@ static int64_t through_sides(mps_mpm *mpm, uint8_t *gone) {
 }
 
 static void take_out(mps_mpm *mpm, const uint8_t *gone) {
-  if (mpm->share) mpsi_share_thin_out(mpm, gone);
+  mpsi_share_thin_out(mpm, gone); /* the blocks follow */
   mpsi_particles_take_out(mpm->particles, gone);
   mpm->run.edited = mpm->run.stale = true;
   mpm->energy.springs_known = false;

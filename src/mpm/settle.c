@@ -73,11 +73,11 @@ static void stop_particles(mps_mpm *mpm) {
   mpsi_mpm_for_cells(mpm, stop_block);
 }
 
-/* N, the sum of the sizes of gravity and loads. */
-static double applied_to_particles(const mps_mpm *mpm) {
+/* N, the sum of the sizes of gravity and loads on the particles of a block. */
+static double applied_to_particles(const mps_mpm *mpm, const mpsi_cell_block *cells) {
   const mpsi_columns *p = &mpm->p;
   double sum = 0.0;
-  for (int64_t k = 0; k < p->count; k++) {
+  for (int64_t k = cells->begin; k < cells->end; k++) {
     double square = 0.0;
     for (int c = 0; c < mpm->dim; c++) {
       const double f = p->m[k] * mpm->def.gravity[c] + (p->f[c] ? p->f[c][k] : 0.0);
@@ -96,22 +96,39 @@ void mpsi_mpm_leave_settling(mps_mpm *mpm) {
   stop_particles(mpm);
 }
 
+enum { UNBALANCED, APPLIED, KINETIC, SUMS };
+
+/* Of all blocks, on all ranks: exact, as who has which block must not matter. */
+static mps_status sum_balance(mps_mpm *mpm, const char *function, double *sums) {
+  mpsi_exact sum[SUMS];
+  mps_status status = MPS_OK;
+  memset(sum, 0, sizeof sum);
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++)
+    if (!mpm->grid.cells[b].ghost)
+      mpsi_exact_add(&sum[APPLIED], applied_to_particles(mpm, &mpm->grid.cells[b]));
+  for (int64_t g = 0; g < mpsi_all_nodes(&mpm->grid); g++) {
+    const mpsi_node_balance *n = &mpm->settling.nodes[g];
+    if (mpm->share && !mpsi_share_counts(mpm, g)) continue;
+    mpsi_exact_add(&sum[UNBALANCED], n->unbalanced);
+    mpsi_exact_add(&sum[APPLIED], n->applied);
+    mpsi_exact_add(&sum[KINETIC], n->kinetic);
+  }
+  if (mpm->share) status = mpsi_domain_sum_exact(mpm->share->domain, function, SUMS, sum);
+  for (int k = 0; k < SUMS; k++) sums[k] = mpsi_exact_value(&sum[k]);
+  return status;
+}
+
 /* One step; the time of the run stands still. */
 static mps_status relax(mps_mpm *mpm, const char *function, mps_mpm_settled *now) {
   const double time = mpm->run.time;
-  const mps_status status = mpsi_mpm_take_step(mpm, function, mps_mpm_dt(mpm));
+  mps_status status = mpsi_mpm_take_step(mpm, function, mps_mpm_dt(mpm));
   mpm->run.time = time;
+  double sums[SUMS];
+  if (status == MPS_OK) status = sum_balance(mpm, function, sums);
   if (status != MPS_OK) return status;
-  double unbalanced = 0.0;
-  now->kinetic = 0.0;
-  now->applied = applied_to_particles(mpm);
-  for (int64_t g = 0; g < mpsi_all_nodes(&mpm->grid); g++) {
-    const mpsi_node_balance *n = &mpm->settling.nodes[g];
-    unbalanced += n->unbalanced;
-    now->applied += n->applied;
-    now->kinetic += n->kinetic;
-  }
-  now->unbalanced = unbalanced > 0.0 ? unbalanced / now->applied : 0.0;
+  now->kinetic = sums[KINETIC];
+  now->applied = sums[APPLIED];
+  now->unbalanced = sums[UNBALANCED] > 0.0 ? sums[UNBALANCED] / now->applied : 0.0;
   now->steps = ++mpm->settling.steps;
   return MPS_OK;
 }
@@ -131,7 +148,7 @@ static mps_status relax_until(mps_mpm *mpm, const char *function, const mps_mpm_
     if (now->steps % 100 == 0)
       mpsi_progress(mpm->context, "mpm settle", mpm->run.steps, (double)now->steps,
                     (double)def->max_steps);
-    if (!mpsi_cancelled(mpm->context)) continue;
+    if (mpm->share ? !mpm->share->cancel : !mpsi_cancelled(mpm->context)) continue;
     settling->cut = true;
     return mpsi_fail(mpm->context, function, MPS_ERROR_CANCELLED,
                      "stopped by the cancel hook after %lld steps, the unbalanced force being "
@@ -166,13 +183,17 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
                                 size_t size) {
   static const char function[] = "mps_mpm_settle";
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  mps_mpm_settle_def def;
+  mps_mpm_settle_def def = settle_defaults;
   mps_mpm_settled now = {0};
   motions kept;
-  mps_status status = mpsi_share_refuse(mpm, function, "settling");
-  if (status == MPS_OK) status = mpsi_mpm_ready(mpm, function);
+  mps_status status = mpsi_mpm_ready(mpm, function);
   if (status == MPS_OK) status = read_def(mpm, function, user, &def);
   if (status == MPS_OK) status = check_bodies(mpm, function);
+  if (mpm->share) {
+    const double numbers[2] = {def.tolerance, (double)def.max_steps};
+    status = mpsi_domain_settle_numbers(mpm->share->domain, function, status,
+                                        "a hash of the definition of settling", 2, numbers);
+  }
   if (status != MPS_OK) return status;
   mpsi_settling *settling = &mpm->settling;
   stop_bodies(mpm, &kept);

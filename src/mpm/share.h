@@ -70,7 +70,7 @@ mps_status mpsi_share_refuse(const mps_mpm *mpm, const char *function, const cha
 bool mpsi_share_counts(const mps_mpm *mpm, int64_t g);
 
 /* rows.c: as the holder of the set (mpsi_holder): rows by blocks, in the order of one rank. Not
- * collective; after particles have been taken out of the set, the blocks follow. */
+ * collective; after particles have been taken out of the set, on one rank too, the blocks follow. */
 int64_t mpsi_share_runs(const void *mpm, mpsi_row_run *out);
 void mpsi_share_thin_out(mps_mpm *mpm, const uint8_t *gone);
 
