@@ -9,11 +9,12 @@ static mps_context *own;
 static mps_domain *domain;
 
 static void compare_scene(void **state) {
-  compare_shares(own, domain, compute, *(const int *)*state, 60);
+  const int what = *(const int *)*state;
+  compare_shares(own, domain, compute, what, what < PRESS ? 60 : 120);
 }
 
 int main(void) {
-  static int which[SCENES] = {SLIDE, SPREAD, RING, ROOM};
+  static int which[] = {SLIDE, SPREAD, RING, ROOM, PRESS, PLATES};
   own = test_context(MPS_EXECUTOR_SERIAL, 1);
   const mps_status status = mps_petsc_domain_create_world(own, &domain);
   if (status != MPS_OK) {
@@ -25,6 +26,8 @@ int main(void) {
       cmocka_unit_test_prestate(compare_scene, &which[SPREAD]),
       cmocka_unit_test_prestate(compare_scene, &which[RING]),
       cmocka_unit_test_prestate(compare_scene, &which[ROOM]),
+      cmocka_unit_test_prestate(compare_scene, &which[4]),
+      cmocka_unit_test_prestate(compare_scene, &which[5]),
   };
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   mps_domain_destroy(&domain);
