@@ -81,3 +81,4 @@ alone() {
 }
 alone mps-dam-break --method mps
 alone mps-tank
+[ ! -x "$programs/mps-seawall" ] || alone mps-seawall
