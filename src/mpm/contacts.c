@@ -48,7 +48,7 @@ static mps_status check_thickness(mps_mpm *mpm, const char *function, mps_contac
   const double wall = mpsi_body_thickness(contact->body), cells = wall * mpm->grid.inverse;
   contact->thin = cells < MPSI_THIN_CELLS * (1.0 - 1e-9);
   contact->convex = contact->thin && mpsi_body_is_convex(contact->body);
-  if (!contact->thin) return MPS_OK;
+  if (!contact->thin || mpsi_by_impulses(contact)) return MPS_OK;
   if (!contact->def.thin && cells < SHARP)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "two faces of the body meet at less than 20 degrees: momentum passes through "
