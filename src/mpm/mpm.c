@@ -188,10 +188,10 @@ static mps_status check_set(mps_context *context, mps_particles *set) {
 static bool is_shared(const mps_mpm_def *d) { return mpsi_domain_many(d->domain); }
 
 static mps_status check_shared(mps_context *context, const mps_mpm_def *d) {
-  if (!is_shared(d) || (d->volumetric == MPS_MPM_VOLUMETRIC_POINT && !d->budget)) return MPS_OK;
+  if (!is_shared(d) || !d->budget) return MPS_OK;
   return mpsi_fail(context, create, MPS_ERROR_UNSUPPORTED,
-                   "volumetric is %d and budget %d, on several ranks (there are %d) both must be 0",
-                   d->volumetric, d->budget, mps_domain_size(d->domain));
+                   "budget is %d, on several ranks (there are %d) it must be 0", d->budget,
+                   mps_domain_size(d->domain));
 }
 
 /* ---- fields ---------------------------------------------------------------------------------- */

@@ -29,7 +29,7 @@ typedef struct mpsi_share {
   int32_t *order;    /* all of them, colour by colour: first those that no ghost goes before, */
   int64_t early;     /* so many */
   int32_t most;      /* nodes of the widest part of a tile in use, on all ranks */
-  bool apart;        /* some tile that is sent has forces, in the step being made */
+  bool apart, thin;  /* some tile that is sent has forces, is parted, in the step being made */
   int32_t item;      /* bytes of a parcel: a tile on its way */
   double *out, *in;  /* parcels */
   int64_t *first;    /* of each rank: the first key on the curve of its blocks (curve.h) */
@@ -89,6 +89,11 @@ mps_status mpsi_share_ready(mps_mpm *mpm, const char *function, mps_status statu
 /* tiles.c: sums the border into tiles and sends them; what has come is there (in a pass). */
 mps_status mpsi_share_send(mps_mpm *mpm, const char *function);
 void mpsi_share_receive(mps_mpm *mpm);
+/* tiles.c: the same for other sums, which `sum` puts into a worker's tile, without forces; then such
+ * a tile of block b (not collective), false where messages are lost. */
+void mpsi_share_send_sums(mps_mpm *mpm, void (*sum)(mps_mpm *, int64_t, int32_t));
+bool mpsi_share_take_sums(mps_mpm *mpm, int64_t b, int32_t worker,
+                          void (*sum)(mps_mpm *, int64_t, int32_t));
 /* tiles.c: a block of cells to its nodes, whoever has summed it. Not collective. */
 void mpsi_share_scatter(mps_mpm *mpm, int64_t b, int32_t worker);
 

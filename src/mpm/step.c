@@ -143,7 +143,7 @@ mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
   if (status != MPS_OK) return status;
   mpsi_mpm_sum_holds(mpm);                              /* impulses of nodes --> forces of walls */
   mpsi_mpm_drive_particles(mpm);                        /* held particles: v, x */
-  if (mpm->p.stencil) mpsi_mpm_apply_laws_by_cell(mpm); /* L, V --> sigma by means of cells */
+  if (mpm->def.volumetric != MPS_MPM_VOLUMETRIC_POINT) mpsi_mpm_apply_laws_by_cell(mpm); /* L, V --> sigma by means of cells */
   bool refused = mpm->laws.refusal.cells != NULL;       /* by a law of the caller's */
   if (mpm->share && mpm->undo.on && (status = mpsi_share_any(mpm, function, &refused)) != MPS_OK)
     return status;

@@ -41,8 +41,9 @@ mps_status mpsi_share_ready(mps_mpm *mpm, const char *function, mps_status statu
   }
   status = mpsi_domain_settle_max(share->domain, function, status, FOUND, found);
   share->apart = found[APART] > 0.0;
+  share->thin = found[THIN] > 0.0;
   share->item =
-      (int32_t)(parcel_doubles(share, share->apart, found[THIN] > 0.0) * (int64_t)sizeof(double));
+      (int32_t)(parcel_doubles(share, share->apart, share->thin) * (int64_t)sizeof(double));
   return status;
 }
 
@@ -85,6 +86,7 @@ static double *copy_tile(const mpsi_cell_block *cells, mpsi_node *tile, double *
   return parcel;
 }
 
+/* Tiles and those across; those of forces where they are apart. */
 static void copy_tiles(const mpsi_cell_block *cells, const mpsi_worker *worker, double *parcel,
                        bool pack) {
   parcel = copy_tile(cells, worker->tile, parcel, pack);
@@ -112,6 +114,53 @@ mps_status mpsi_share_send(mps_mpm *mpm, const char *function) {
   mpsi_parallel_for(mpm->context, share->borders, pack, mpm);
   share->lost = mpsi_halo_begin_bytes(share->halo, function, share->item, share->out, share->in);
   return share->lost;
+}
+
+/* Sums of another kind, that `sum` puts into the tiles of a worker. */
+typedef struct sums {
+  mps_mpm *mpm;
+  mpsi_mpm_task sum;
+} sums;
+
+static double *parcel_of(const mpsi_share *share, bool ghost, int64_t number) {
+  return (ghost ? share->in : share->out) + number * (share->item / (int64_t)sizeof *share->out);
+}
+
+static void copy_sums(const mpsi_cell_block *cells, const mpsi_worker *worker, double *parcel,
+                      bool pack) {
+  parcel = copy_tile(cells, worker->tile, parcel + HEAD, pack);
+  if (cells->thin) copy_tile(cells, worker->across_tile, parcel, pack);
+}
+
+static void pack_sums(void *data, int64_t k, int32_t number) {
+  const sums *s = data;
+  const mpsi_share *share = s->mpm->share;
+  s->sum(s->mpm, share->border[k], number);
+  copy_sums(&s->mpm->grid.cells[share->border[k]], &s->mpm->grid.workers[number],
+            parcel_of(share, false, k), true);
+}
+
+void mpsi_share_send_sums(mps_mpm *mpm, mpsi_mpm_task sum) {
+  mpsi_share *share = mpm->share;
+  sums s = {mpm, sum};
+  share->item = (int32_t)(parcel_doubles(share, false, share->thin) * (int64_t)sizeof(double));
+  mpsi_parallel_for(mpm->context, share->borders, pack_sums, &s);
+  if (share->lost == MPS_OK)
+    share->lost =
+        mpsi_halo_begin_bytes(share->halo, "mps_mpm_step", share->item, share->out, share->in);
+}
+
+bool mpsi_share_take_sums(mps_mpm *mpm, int64_t b, int32_t number, mpsi_mpm_task sum) {
+  const mpsi_share *share = mpm->share;
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  if (cells->parcel < 0) {
+    sum(mpm, b, number);
+    return true;
+  }
+  if (cells->ghost && share->lost != MPS_OK) return false; /* the step has failed */
+  copy_sums(cells, &mpm->grid.workers[number], parcel_of(share, cells->ghost, cells->parcel),
+            false);
+  return true;
 }
 
 void mpsi_share_receive(mps_mpm *mpm) {

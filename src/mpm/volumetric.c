@@ -23,6 +23,8 @@
  * BSD-3-Clause */
 #include "kernels.h"
 
+#include <string.h>
+
 #define BETA 0.03 /* larger ones spread pressure at free surfaces */
 
 enum { SUM_VOLUME = 0, SUM_TRACE = 1 };
@@ -42,20 +44,40 @@ static void former_place(const mps_mpm *mpm, int64_t k, double *x) {
     x[c] = c < mpm->dim ? mpm->p.x[c][k] - mpm->run.dt * mpm->p.v[c][k] : 0.0;
 }
 
+/* The sums of tile node (i, j, k): those that a block gives, in the tile of a worker, or (NULL)
+ * those of all blocks, at the node. */
+static double *sums_at(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                       bool across, int i, int j, int k) {
+  if (worker) return (across ? worker->across_tile : worker->tile)[mpsi_tile_index(i, j, k)];
+  return mpm->grid
+      .node[across ? mpsi_node_across(mpm, cells, i, j, k) : mpsi_node_under(mpm, cells, i, j, k)];
+}
+
 /* Those of a cell that a thin body parts (across.h) are two cells. */
-static double *sums_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t particle) {
+static double *sums_of(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                       int64_t particle) {
+  bool across = false;
   int at[3];
   mpsi_unravel(mpm->p.stencil[particle], MPSI_TILE_SIDE, at);
   if (cells->thin) {
     double x[3];
     former_place(mpm, particle, x);
-    if (mpsi_mpm_find_across(mpm, cells, at, x) & 1)
-      return mpm->grid.node[mpsi_node_across(mpm, cells, at[0], at[1], at[2])];
+    across = mpsi_mpm_find_across(mpm, cells, at, x) & 1;
   }
-  return mpm->grid.node[mpsi_node_under(mpm, cells, at[0], at[1], at[2])];
+  return sums_at(mpm, cells, worker, across, at[0], at[1], at[2]);
 }
 
 static const double level[3] = {0.0, 0.0, 0.0}; /* no slope */
+
+static void clear_tile(mps_mpm *mpm, int64_t b, int32_t number) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  const size_t bytes = (size_t)(cells->high[0] - cells->low[0]) * sizeof(mpsi_node);
+  for (int across = 0; across <= cells->thin; across++)
+    for (int k = cells->low[2]; k < cells->high[2]; k++)
+      for (int j = cells->low[1]; j < cells->high[1]; j++)
+        memset(sums_at(mpm, cells, &mpm->grid.workers[number], across != 0, cells->low[0], j, k), 0,
+               bytes);
+}
 
 /* ---- by node --------------------------------------------------------------------------------- */
 
@@ -97,23 +119,21 @@ static double further(const support *s, const double *slope, int i, int j, int k
 }
 
 /* The sums of node (i, j, k) of a support. */
-static double *node_of(const mps_mpm *mpm, const mpsi_cell_block *cells, const support *s, int i,
-                       int j, int k) {
-  const int x = s->at[0][i], y = s->at[1][j], z = s->at[2][k];
+static double *node_of(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                       const support *s, int i, int j, int k) {
   const bool across = s->across >> (16 * k + 4 * j + i) & 1;
-  return mpm->grid.node[across ? mpsi_node_across(mpm, cells, x, y, z)
-                               : mpsi_node_under(mpm, cells, x, y, z)];
+  return sums_at(mpm, cells, worker, across, s->at[0][i], s->at[1][j], s->at[2][k]);
 }
 
 /* Adds {V, V value} by the weights; or the mean of the nodes' means. */
-static void give(const mps_mpm *mpm, const mpsi_cell_block *cells, const support *s, double V,
-                 double value, const double *slope) {
+static void give(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                 const support *s, double V, double value, const double *slope) {
   const int n = mpm->def.spline, depth = mpm->dim == 3 ? n : 0;
   for (int k = 0; k <= depth; k++)
     for (int j = 0; j <= n; j++)
       for (int i = 0; i <= n; i++) {
         const double w = s->w[0][i] * s->w[1][j] * s->w[2][k] * V;
-        double *to = node_of(mpm, cells, s, i, j, k);
+        double *to = node_of(mpm, cells, worker, s, i, j, k);
         to[SUM_VOLUME] += w;
         to[SUM_TRACE] += w * (value + further(s, slope, i, j, k));
       }
@@ -127,7 +147,7 @@ static double take(const mps_mpm *mpm, const mpsi_cell_block *cells, const suppo
     for (int j = 0; j <= n; j++)
       for (int i = 0; i <= n; i++) {
         const double w = s->w[0][i] * s->w[1][j] * s->w[2][k];
-        const double *from = node_of(mpm, cells, s, i, j, k);
+        const double *from = node_of(mpm, cells, NULL, s, i, j, k);
         if (!(from[SUM_VOLUME] > 0.0) || w == 0.0) continue;
         sum += w * (from[SUM_TRACE] / from[SUM_VOLUME] - further(s, slope, i, j, k));
         weight += w;
@@ -147,14 +167,15 @@ static void slope_at_rest(const mps_mpm *mpm, int64_t k, double *slope) {
   for (int c = 0; c < 3; c++) slope[c] = c < mpm->dim ? -weight * mpm->def.gravity[c] : 0.0;
 }
 
-static void add_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
-  (void)worker;
+static void sum_pressures(mps_mpm *mpm, int64_t b, int32_t number) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  const mpsi_worker *worker = &mpm->grid.workers[number];
+  clear_tile(mpm, b, number);
   for (int64_t k = cells->begin; k < cells->end; k++) {
     const support s = support_of(mpm, cells, k);
     double slope[3];
     slope_at_rest(mpm, k, slope);
-    give(mpm, cells, &s, mpm->p.V[k], mean_stress(mpm, k), slope);
+    give(mpm, cells, worker, &s, mpm->p.V[k], mean_stress(mpm, k), slope);
   }
 }
 
@@ -177,20 +198,20 @@ static void smooth_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
 
 /* ---- both ------------------------------------------------------------------------------------ */
 
-/* Blocks of one colour have no node in common. */
-static void add_cells(mps_mpm *mpm, int64_t b, int32_t worker) {
-  (void)worker;
+static void sum_rates(mps_mpm *mpm, int64_t b, int32_t number) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  const mpsi_worker *worker = &mpm->grid.workers[number];
   const double *L[3], *V = mpm->p.V;
+  clear_tile(mpm, b, number);
   find_diagonal(mpm, L);
   for (int64_t k = cells->begin; k < cells->end; k++) {
     const double trace = L[0][k] + L[1][k] + (L[2] ? L[2][k] : 0.0);
     if (by_nodes(mpm)) {
       const support s = support_of(mpm, cells, k);
-      give(mpm, cells, &s, V[k], trace, level);
+      give(mpm, cells, worker, &s, V[k], trace, level);
       continue;
     }
-    double *sums = sums_of(mpm, cells, k);
+    double *sums = sums_of(mpm, cells, worker, k);
     sums[SUM_VOLUME] += V[k];
     sums[SUM_TRACE] += V[k] * trace;
   }
@@ -207,7 +228,7 @@ static void mean_diagonals(const mps_mpm *mpm, const mpsi_cell_block *cells, int
       const support s = support_of(mpm, cells, k);
       mean = take(mpm, cells, &s, level);
     } else {
-      const double *sums = sums_of(mpm, cells, k);
+      const double *sums = sums_of(mpm, cells, NULL, k);
       mean = sums[SUM_TRACE] / sums[SUM_VOLUME];
     }
     const double change = (mean - own) / 3.0;
@@ -229,14 +250,65 @@ static void apply_laws(mps_mpm *mpm, int64_t b, int32_t worker) {
   if (!by_nodes(mpm)) mpm->kernels->speed(mpm, b, worker);
 }
 
-void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm) {
-  static const mpsi_pass pass = {
-      .clear = mpsi_mpm_clear_nodes, .scatter = add_cells, .gather = apply_laws};
-  static const mpsi_pass pressures = {
-      .clear = mpsi_mpm_clear_nodes, .scatter = add_pressures, .gather = smooth_pressures};
-  for (int64_t b = 0; b < mpm->grid.cell_count; b++)
-    if (mpm->grid.cells[b].bad >= 0 && !mpm->grid.cells[b].lost)
-      return; /* the step has failed; its places may be no places */
+/* A tile to the nodes; blocks of one colour have none in common. */
+static void add_tile(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                     bool across) {
+  for (int k = cells->low[2]; k < cells->high[2]; k++)
+    for (int j = cells->low[1]; j < cells->high[1]; j++)
+      for (int i = cells->low[0]; i < cells->high[0]; i++) {
+        const double *from = sums_at(mpm, cells, worker, across, i, j, k);
+        if (from[SUM_VOLUME] == 0.0) continue;
+        double *to = sums_at(mpm, cells, NULL, across, i, j, k);
+        to[SUM_VOLUME] += from[SUM_VOLUME];
+        to[SUM_TRACE] += from[SUM_TRACE];
+      }
+}
+
+/* What a block gives, summed here or by its own rank. */
+static void add_block(mps_mpm *mpm, int64_t b, int32_t number, mpsi_mpm_task sum) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  if (!mpm->share)
+    sum(mpm, b, number);
+  else if (!mpsi_share_take_sums(mpm, b, number, sum))
+    return;
+  for (int across = 0; across <= cells->thin; across++)
+    add_tile(mpm, cells, &mpm->grid.workers[number], across != 0);
+}
+
+static void add_rates(mps_mpm *mpm, int64_t b, int32_t worker) {
+  add_block(mpm, b, worker, sum_rates);
+}
+
+static void add_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
+  add_block(mpm, b, worker, sum_pressures);
+}
+
+static void run_sums(mps_mpm *mpm, mpsi_mpm_task sum, mpsi_mpm_task add, mpsi_mpm_task gather) {
+  const mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes,
+                          .scatter = add,
+                          .gather = gather,
+                          .arrive = mpm->share ? mpsi_share_receive : NULL};
+  if (mpm->share) mpsi_share_send_sums(mpm, sum);
   mpsi_mpm_run_pass(mpm, &pass);
-  if (by_nodes(mpm) && !mpm->laws.refusal.cells) mpsi_mpm_run_pass(mpm, &pressures);
+}
+
+/* The step has failed; its places may be no places. */
+static bool has_failed(const mps_mpm *mpm) {
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++)
+    if (mpm->grid.cells[b].bad >= 0 && !mpm->grid.cells[b].lost) return true;
+  return false;
+}
+
+/* Whether some rank, or the only one, has. */
+static bool on_any(mps_mpm *mpm, bool failed) {
+  if (!mpm->share || mpm->share->lost != MPS_OK) return failed;
+  mpm->share->lost = mpsi_share_any(mpm, "mps_mpm_step", &failed);
+  return failed || mpm->share->lost != MPS_OK;
+}
+
+void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm) {
+  if (on_any(mpm, has_failed(mpm))) return;
+  run_sums(mpm, sum_rates, add_rates, apply_laws);
+  if (by_nodes(mpm) && !on_any(mpm, mpm->laws.refusal.cells != NULL))
+    run_sums(mpm, sum_pressures, add_pressures, smooth_pressures);
 }

@@ -87,7 +87,7 @@ enum {
   UNKNOWN_ID,
   OTHER_CONTACT,
   DEPTH,
-  CELLS,
+  BUDGET,
   TROUBLES
 };
 static const struct {
@@ -102,7 +102,7 @@ static const struct {
     [UNKNOWN_ID] = {MPS_ERROR_ARGUMENT, "of 2 ids 1 are of particles of the set on any rank"},
     [OTHER_CONTACT] = {MPS_ERROR_ARGUMENT, "a hash of the contact's definition"},
     [DEPTH] = {MPS_ERROR_DIVERGED, "m below the surface of body 0, at most 1e-09 m"},
-    [CELLS] = {MPS_ERROR_UNSUPPORTED, "volumetric is 1"},
+    [BUDGET] = {MPS_ERROR_UNSUPPORTED, "budget is 1"},
 };
 
 static mps_status refuse_callback(void *user, mps_mpm *mpm) {
@@ -116,7 +116,7 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
   mps_body *body = NULL;
   mps_mpm_def def = scene_def(domain, SLIDE);
   if (what == OTHER_DT) def.dt = 1e-5 * (1.0 + rank);
-  if (what == CELLS) def.volumetric = MPS_MPM_VOLUMETRIC_CELL;
+  if (what == BUDGET) def.budget = 1;
   mps_status status = make_set(own, SLIDE, &s.set);
   if (what == OTHER_SET && rank == 1) TRY(mps_particles_set(s.set, "density", 0, 2000.0));
   TRY(mps_material_linear_elastic(own, 1e6, 0.3, &s.material[0]));
