@@ -3,11 +3,11 @@
  *   grad q = (M + c e e^T)^-1 (sum w (q_j - q_i) dx/r^2 + c (q_s - q_i) e/h),
  *   u += -(dt/rho) grad q + a v,  a = .6 dt s0 + 2 |v|^2/(l0^2 |G|^2 + 1e-4 g l0) <= .5,
  *
- * the first part of a .15 dt s0 near the surface, where v is what a linear velocity field leaves
- * over (moments.c) and s0 = sqrt(g/l0). The Laplacian of u is n v/S: a viscosity nu takes the share
- * nu dt n/S of v, and a only what that leaves. Guards: pairs that approach within l0/2 share their
- * momentum, |u| <= 1.1 of the neighbours' largest plus a free fall's share, and nobody comes nearer
- * than .1 l0 to a wall; the report counts them. Then
+ * the first part of a .15 dt s0 near the surface but in breakers, where v is what a linear velocity
+ * field leaves over (moments.c) and s0 = sqrt(g/l0). The Laplacian of u is n v/S: a viscosity nu
+ * takes the share nu dt n/S of v, and a only what that leaves. Guards: pairs that approach within
+ * l0/2 share their momentum, |u| <= 1.1 of the neighbours' largest plus a free fall's share, and
+ * nobody comes nearer than .1 l0 to a wall; the report counts them. Then
  *
  *   x += dt u + f,  u += G f,  f = -2.5 dt s0 l0 sum w dx/(r n0), |f| <= .05 l0,
  *
@@ -17,7 +17,8 @@
 #include "loops.h"
 
 #define SMOOTH 0.6
-#define ZONE_SMOOTH 0.15 /* within 1.6 l0 of the surface */
+#define ZONE_SMOOTH 0.25 /* of it, within 1.6 l0 of the surface */
+#define BREAKING 0.05    /* g/l0: |G|^2 where all of smoothing and shift is left there */
 #define MOST_SMOOTH 0.5
 #define SHIFT 2.5
 #define MOST_SHIFT 0.05 /* l0 */
@@ -42,6 +43,15 @@ static void pressure_gradient(const mps_fluid *f, int64_t i, double *gradient) {
   gradient[1] = I[1] * sum[0] + I[2] * sum[1];
 }
 
+/* Share of smoothing and shift: less near the surface, `least` of them in gentle waves, all where
+ * the flow is as steep as in breakers. */
+static double near_surface(const mps_fluid *f, int64_t i, double least) {
+  const double *G = f->local[i].gradient, s0 = rate(f);
+  if (!f->zone[i] || !(s0 > 0.0)) return 1.0;
+  const double steep = (G[0] * G[0] + G[1] * G[1] + G[2] * G[2] + G[3] * G[3]) / (s0 * s0);
+  return fmin(1.0, least + steep / BREAKING);
+}
+
 /* Part of v that is taken over: of a rough velocity field more, but not where the flow turns around
  * a corner, which is no linear field however smooth it is. Near the surface less: among neighbours
  * on one side v is not 0 for the curved field of a wave, which it would damp. */
@@ -52,7 +62,7 @@ static double smoothing(const mps_fluid *f, int64_t i) {
   for (int c = 0; c < 2; c++) v2 += local->rest[c] * local->rest[c];
   const bool corner = f->company[i] & MPSI_FLUID_NEAR_CORNER;
   const double rough = steep > 0.0 && !corner ? 2.0 * v2 / steep : 0.0;
-  const double a = (f->zone[i] ? ZONE_SMOOTH : SMOOTH) * f->dt * rate(f) + rough;
+  const double a = SMOOTH * near_surface(f, i, ZONE_SMOOTH) * f->dt * rate(f) + rough;
   return fmin(a, MOST_SMOOTH);
 }
 
@@ -204,7 +214,8 @@ static void find_shift(const mps_fluid *f, int64_t i, double *shift) {
   if (f->zone[i]) {
     const double e[2] = {f->zone_normal[0][i], f->zone_normal[1][i]};
     const double across = shift[0] * e[0] + shift[1] * e[1];
-    for (int c = 0; c < 2; c++) shift[c] = ZONE_SHIFT * (shift[c] - across * e[c]);
+    const double least = near_surface(f, i, ZONE_SHIFT);
+    for (int c = 0; c < 2; c++) shift[c] = least * (shift[c] - across * e[c]);
   }
   const double length = sqrt(shift[0] * shift[0] + shift[1] * shift[1]), most = MOST_SHIFT * f->l0;
   if (length > most)
