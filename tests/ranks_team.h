@@ -44,7 +44,8 @@ static inline void run_team(ranks *s, int32_t size, double limit) {
   team_end(&t);
 }
 
-/* On teams of several sizes and numbers of threads; `few`: not on one and on four ranks; quick: two. */
+/* On teams of several sizes and numbers of threads; `few`: not on one and on four ranks; quick:
+ * two. */
 static inline void compare_teams(result_fn *run, int what, int64_t length, bool few) {
   static const struct {
     int32_t ranks, threads;
@@ -75,7 +76,8 @@ static inline void compare_teams(result_fn *run, int what, int64_t length, bool 
  * ranks report it, and none hangs. The first two are those before there is a domain. */
 static inline void refuse_memory(result_fn *run, int what, int64_t length, int64_t stride) {
   mps_status worst = MPS_ERROR_MEMORY;
-  for (int64_t refuse = 3; worst != MPS_OK; refuse += refuse < 60 ? 1 : stride * (test_quick() ? 5 : 1)) {
+  for (int64_t refuse = 3; worst != MPS_OK;
+       refuse += refuse < 60 ? 1 : stride * (test_quick() ? 5 : 1)) {
     ranks s = {.compute = run, .what = what, .threads = 1, .length = length, .refuse = refuse};
     run_team(&s, 3, 10.0);
     worst = s.rank[1].status;

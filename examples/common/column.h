@@ -1,7 +1,6 @@
-/* column.h - the paper's soil column (Yoshida, Figure 1): a lattice of particles between two vertical
- * sides on a shaken base, in layers, level or with a slope. x to the right from the left side,
- * y upwards from the base.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* column.h - the paper's soil column (Yoshida, Figure 1): a lattice of particles between two
+ * vertical sides on a shaken base, in layers, level or with a slope. x to the right from the left
+ * side, y upwards from the base. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_COLUMN_H
 #define EXAMPLES_COLUMN_H
 

@@ -10,8 +10,12 @@
 #define MOST_SWEEPS 1000
 #define SWEEPS 10 /* usual */
 
-static const mps_contact_def contact_defaults = {
-    .struct_size = sizeof(mps_contact_def), .penalty = NAN, .xi = NAN, .offset = NAN, .depth = NAN, .strength = NAN};
+static const mps_contact_def contact_defaults = {.struct_size = sizeof(mps_contact_def),
+                                                 .penalty = NAN,
+                                                 .xi = NAN,
+                                                 .offset = NAN,
+                                                 .depth = NAN,
+                                                 .strength = NAN};
 
 mps_status mps_contact_def_init(mps_contact_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_contact_def, def, size, &contact_defaults);
@@ -38,8 +42,8 @@ static mps_status check_choices(mps_context *context, const char *function,
 static mps_status check_shear(mps_context *context, const char *function,
                               const mps_contact_def *d) {
   if (!(d->adhesion >= 0.0 && d->adhesion <= MPSI_BODY_HEAVY))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "adhesion is %g Pa, must be in 0 to %g", d->adhesion, MPSI_BODY_HEAVY);
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "adhesion is %g Pa, must be in 0 to %g",
+                     d->adhesion, MPSI_BODY_HEAVY);
   if (!isnan(d->strength) && !(d->strength > 0.0 && d->strength <= MPSI_BODY_HEAVY))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "strength is %g Pa, must be > 0 and at most %g, or NaN", d->strength,

@@ -152,8 +152,8 @@ static bool good_name(const char *name) {
   return name[length] == '.' && rest > 0 && column[rest] == '\0';
 }
 
-static mps_status describe_user_field(const mps_particles *p, const char *function, const char *name,
-                                      int32_t components, mpsi_field *out) {
+static mps_status describe_user_field(const mps_particles *p, const char *function,
+                                      const char *name, int32_t components, mpsi_field *out) {
   if (!good_name(name))
     return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
                      "name is '%.60s', must be letters, digits and _, not begin with a digit, and "

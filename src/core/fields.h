@@ -106,9 +106,9 @@
  * given yet" where a solver asks for more. */
 #define MPSI_LARGEST 1e100
 #define MPSI_FIELD_RANGES(X)                                                                       \
-  X(position, -MPSI_FARTHEST, MPSI_FARTHEST)                                                                         \
-  X(reference, -MPSI_FARTHEST, MPSI_FARTHEST)                                                                        \
-  X(displacement, -MPSI_FARTHEST, MPSI_FARTHEST)                                                                     \
+  X(position, -MPSI_FARTHEST, MPSI_FARTHEST)                                                       \
+  X(reference, -MPSI_FARTHEST, MPSI_FARTHEST)                                                      \
+  X(displacement, -MPSI_FARTHEST, MPSI_FARTHEST)                                                   \
   X(velocity, -3e8, 3e8)                                                                           \
   X(density, 0.0, 1e12)                                                                            \
   X(shear_velocity, 0.0, 3e8)                                                                      \

@@ -153,8 +153,7 @@ mps_status mpsi_halo_begin_bytes(mpsi_halo *halo, const char *function, int32_t 
 
 mps_status mpsi_halo_end_bytes(mpsi_halo *halo, const char *function) {
   const mps_domain_def *def = &halo->domain->def;
-  return mpsi_domain_note(halo->domain, function, "star_end",
-                          def->star_end(def->user, halo->star));
+  return mpsi_domain_note(halo->domain, function, "star_end", def->star_end(def->user, halo->star));
 }
 
 mps_status mpsi_halo_begin(mpsi_halo *halo, const char *function, int32_t columns,

@@ -67,7 +67,8 @@ static mps_status make(mps_dynamics *dynamics, const char *function, mps_status 
     mpsi_free(dynamics->context, load);
     return status;
   }
-  const mpsi_dynamics_selection selection = MPSI_DYNAMICS_SELECTION(def, def.kind == MPS_DYNAMICS_LOAD_BODY);
+  const mpsi_dynamics_selection selection =
+      MPSI_DYNAMICS_SELECTION(def, def.kind == MPS_DYNAMICS_LOAD_BODY);
   status = mpsi_dynamics_select(dynamics, function, status, &selection, &load->part);
   const double spacing = mps_particles_spacing(dynamics->particles);
   const double area = isnan(def.area) ? spacing * dynamics->def.measure : def.area;

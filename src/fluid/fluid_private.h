@@ -1,6 +1,6 @@
 /* fluid_private.h - the members of the incompressible fluid solver, by the stages of its step:
  *
- *   walls.c     where the walls are and go (wall.c: one of them); mirror images (ghosts) of the particles beyond them
+ *   walls.c     where the walls are and go (wall.c: one); the particles' images (ghosts) there
  *   bodies.c    rigid bodies, whose faces are walls too; afloat.c moves those that float
  *   look.c      copies of the particles, their order and surroundings
  *   near.c      who is near whom, and the weights w; sight.c: who sees whom past walls that end
@@ -356,8 +356,8 @@ void mpsi_fluid_renew(void *fluid);
 double mpsi_fluid_energy(const mps_fluid *fluid, double *kinetic);
 /* probe.c */
 mps_status mpsi_fluid_load_walls(mps_fluid *fluid, const char *function);
-/* look.c: copies of positions, velocities and the last reduced pressure; their surroundings; and both
- * with the loads. */
+/* look.c: copies of positions, velocities and the last reduced pressure; their surroundings; and
+ * both with the loads. */
 void mpsi_fluid_load_cloud(mps_fluid *fluid);
 mps_status mpsi_fluid_look_around(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_look(mps_fluid *fluid, const char *function);

@@ -30,7 +30,8 @@ MPSI_INLINE mpsi_law_columns mpsi_columns_of(const mps_material_block *block) {
 }
 
 /* Strain increment (46). */
-MPSI_INLINE mpsi_sym mpsi_strain(const int geometry, const mpsi_law_columns *c, int64_t k, double dt) {
+MPSI_INLINE mpsi_sym mpsi_strain(const int geometry, const mpsi_law_columns *c, int64_t k,
+                                 double dt) {
   mpsi_sym d = {
       .xx = dt * c->l[0][k], .yy = dt * c->l[4][k], .xy = 0.5 * dt * (c->l[1][k] + c->l[3][k])};
   if (geometry != MPSI_PLANE) d.zz = dt * c->l[8][k];
@@ -60,7 +61,8 @@ MPSI_INLINE mpsi_sym mpsi_stress(const int geometry, const mpsi_law_columns *c, 
   return s;
 }
 
-MPSI_INLINE void mpsi_put_stress(const int geometry, const mpsi_law_columns *c, int64_t k, mpsi_sym s) {
+MPSI_INLINE void mpsi_put_stress(const int geometry, const mpsi_law_columns *c, int64_t k,
+                                 mpsi_sym s) {
   c->s[0][k] = s.xx;
   c->s[1][k] = s.yy;
   c->s[2][k] = s.zz;

@@ -188,7 +188,7 @@ static mpsi_sight sight_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int
   int place[3];
   *ghost = false;
   for (int c = 0; c < 3; c++) {
-    place[c] = c < mpm->dim ? mpsi_mirror_partner(mpm, cells, c, at[c]) : 0;
+    place[c] = c < mpm->dim ? mpsi_mpm_mirror_partner(mpm, cells, c, at[c]) : 0;
     *ghost = *ghost || (c < mpm->dim && place[c] != at[c]);
   }
   const int32_t g = mpsi_block_under(cells, place[0], place[1], place[2]);
@@ -197,8 +197,7 @@ static mpsi_sight sight_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int
   mpsi_sight out = mpm->contact.sight[(int64_t)t * mpm->grid.block_nodes +
                                       mpsi_local_under(place[0], place[1], place[2])];
   for (int c = 0; c < mpm->dim; c++)
-    if (place[c] != at[c])
-      out.at[c] = 2.0 * mirror_at(mpm, c, place[c] < at[c]) - out.at[c];
+    if (place[c] != at[c]) out.at[c] = 2.0 * mirror_at(mpm, c, place[c] < at[c]) - out.at[c];
   return out;
 }
 
@@ -211,7 +210,7 @@ static bool is_before(const mps_mpm *mpm, const mpsi_cell_block *cells, const in
   double x[3], across = 0.0;
   mpsi_node_position(mpm, cells->at, local, x);
   for (int c = 0; c < mpm->dim; c++) {
-    if (cells->mirrors && mpsi_mirror_partner(mpm, cells, c, at[c]) != at[c]) return false;
+    if (cells->mirrors && mpsi_mpm_mirror_partner(mpm, cells, c, at[c]) != at[c]) return false;
     across += (x[c] - foot->at[c]) * foot->normal[c];
   }
   return across > 0.0;

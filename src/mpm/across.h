@@ -1,9 +1,9 @@
 /* across.h - thin bodies: those with a wall below two cells. Such a wall has nodes of the grid on
  * its one side within the stencils of particles on the other, and must not pass momentum on through
- * them. So a node has two sets of values: its own, of the particles that see it, and those across, of the
- * particles from which a thin body parts it: the straight way from particle to node leads through
- * the body. A node in such a body stands where its nearest point of the surface is. No support is
- * cut there: the nodes in the body take part as all others.
+ * them. So a node has two sets of values: its own, of the particles that see it, and those across,
+ * of the particles from which a thin body parts it: the straight way from particle to node leads
+ * through the body. A node in such a body stands where its nearest point of the surface is. No
+ * support is cut there: the nodes in the body take part as all others.
  *
  * Which is asked for each particle and node, not for the whole body: so it holds beside the ends
  * and edges of plates and piles, where the ground is connected, and of meshes. Three sides that
@@ -24,8 +24,8 @@ struct mpsi_node_block;
 
 /* A node, for a thin body near it. */
 typedef struct mpsi_sight {
-  double at[3];    /* m, where it stands: itself, or in the body the surface nearest to it */
-  double distance; /* m, from there to the body */
+  double at[3];     /* m, where it stands: itself, or in the body the surface nearest to it */
+  double distance;  /* m, from there to the body */
   double normal[3]; /* of the surface at its foot */
 } mpsi_sight;
 

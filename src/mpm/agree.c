@@ -2,28 +2,28 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
 
-mps_status mpsi_share_refuse(const mps_mpm *mpm, const char *function, const char *what) {
+mps_status mpsi_mpm_share_refuse(const mps_mpm *mpm, const char *function, const char *what) {
   if (!mpm->share) return MPS_OK;
   return mpsi_fail(mpm->context, function, MPS_ERROR_UNSUPPORTED,
                    "%s cannot be had on several ranks (there are %d): use one rank", what,
                    mps_domain_size(mpm->share->domain));
 }
 
-bool mpsi_share_counts(const mps_mpm *mpm, int64_t g) {
+bool mpsi_mpm_share_counts(const mps_mpm *mpm, int64_t g) {
   const mpsi_node_block *nodes = &mpm->grid.nodes[g];
   int q = 0;
   while (nodes->from[q] < 0) q++;
   return !mpm->grid.cells[nodes->from[q]].ghost;
 }
 
-mps_status mpsi_share_any(mps_mpm *mpm, const char *function, bool *any) {
+mps_status mpsi_mpm_share_any(mps_mpm *mpm, const char *function, bool *any) {
   double one = *any;
   const mps_status status = mpsi_domain_max(mpm->share->domain, function, 1, &one);
   *any = one > 0.0;
   return status;
 }
 
-mps_status mpsi_share_agree(mps_mpm *mpm, const char *function, mps_status status) {
+mps_status mpsi_mpm_share_agree(mps_mpm *mpm, const char *function, mps_status status) {
   double found[3] = {mpm->run.edited, mpm->run.stale, mpm->run.lost};
   status = mpsi_domain_settle_max(mpm->share->domain, function, status, 3, found);
   if (status != MPS_OK) return status;
@@ -33,14 +33,14 @@ mps_status mpsi_share_agree(mps_mpm *mpm, const char *function, mps_status statu
   return MPS_OK;
 }
 
-mps_status mpsi_share_settle(mps_mpm *mpm, const char *function, mps_status status) {
+mps_status mpsi_mpm_share_settle(mps_mpm *mpm, const char *function, mps_status status) {
   return mpm->share ? mpsi_domain_settle(mpm->share->domain, function, status) : status;
 }
 
-mps_status mpsi_share_check_ids(mps_mpm *mpm, const char *function, mps_status status,
-                                int64_t count, const int64_t *ids) {
+mps_status mpsi_mpm_share_check_ids(mps_mpm *mpm, const char *function, mps_status status,
+                                    int64_t count, const int64_t *ids) {
   int64_t known = 0;
-  status = mpsi_share_settle(mpm, function, status);
+  status = mpsi_mpm_share_settle(mpm, function, status);
   if (status != MPS_OK) return status;
   if (!mpm->share) return mpsi_particles_check_ids(mpm->particles, function, count, ids);
   for (int64_t k = 0; k < count; k++) known += mps_particles_index(mpm->particles, ids[k]) >= 0;

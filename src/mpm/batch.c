@@ -395,14 +395,14 @@ MPSI_INLINE bool gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const m
             : mpm->def.spline == 2 ? body(mpm, cells, worker, 3, 2, __VA_ARGS__)                   \
                           : body(mpm, cells, worker, 3, 3, __VA_ARGS__))
 
-bool MPSI_LEVELLED(mpsi_scatter_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                         const mpsi_worker *worker, const mpsi_places *places,
-                                         int64_t chunk, int begin, int end) {
+bool MPSI_LEVELLED(mpsi_mpm_scatter_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                             const mpsi_worker *worker, const mpsi_places *places,
+                                             int64_t chunk, int begin, int end) {
   return CHOOSE(scatter_body, places, chunk, begin, end);
 }
 
-bool MPSI_LEVELLED(mpsi_gather_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                        const mpsi_worker *worker, const mpsi_places *places,
-                                        int begin, int end, mpsi_gathered *out) {
+bool MPSI_LEVELLED(mpsi_mpm_gather_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                            const mpsi_worker *worker, const mpsi_places *places,
+                                            int begin, int end, mpsi_gathered *out) {
   return CHOOSE(gather_body, places, begin, end, out);
 }

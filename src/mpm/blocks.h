@@ -39,15 +39,15 @@ typedef struct mpsi_cell_block {
    * full supports only.
    *   edge    some node of the tile is outside the domain, beyond a side that is no mirror
    *   inside  some node that its stencils may use is in a body
-   *   cut     edge, inside or thin, or the standard scheme: some support may be cut, states are found
+   *   cut     edge, inside, thin, or the standard scheme: support may be cut, states are found
    *   split   some block of nodes under it is split: forces are summed apart from momenta there
    *   thin    a thin body may part nodes of its stencils from particles (across.h)
- *   apart   cut or split: the tile of forces is in use */
+   *   apart   cut or split: the tile of forces is in use */
   bool edge, inside, cut, split, thin, apart;
   uint8_t mirrors;      /* bit k: its stencils may have nodes beyond side k, a mirror (mirror.h) */
   int32_t first_mirror; /* of these in the list */
-  bool gone;                  /* a particle has passed an open side */
-  bool left;                  /* a particle is more than a cell outside the block */
+  bool gone;            /* a particle has passed an open side */
+  bool left;            /* a particle is more than a cell outside the block */
   int32_t first_pair, pairs;  /* bodies that it may meet: of the list of mpsi_cell_pair */
   int32_t next[MPSI_CORNERS]; /* the block of cells that gives to the block of nodes to[q] after
                                  this one, in the order of colours; -1: this is the last */
@@ -65,13 +65,13 @@ typedef struct mpsi_cell_block {
 /* A block of nodes. Its nodes are node[mpsi_first_node(g)] and on, x fastest. */
 typedef struct mpsi_node_block {
   int32_t at[3];
-  int32_t side; /* slot of its side sums, or -1: only particles with full supports reach it */
-  int32_t near; /* slot of its inside masks, or -1: no body near */
-  bool split;   /* side has the forces: the velocity before them is needed */
+  int32_t side;   /* slot of its side sums, or -1: only particles with full supports reach it */
+  int32_t near;   /* slot of its inside masks, or -1: no body near */
+  bool split;     /* side has the forces: the velocity before them is needed */
   int32_t across; /* block of nodes with the sums of particles that a thin body parts from these
                      nodes, or -1 (across.h) */
-  bool thin;    /* some node is beside a thin body */
-  bool inside;  /* some node is in a body: */
+  bool thin;      /* some node is beside a thin body */
+  bool inside;    /* some node is in a body: */
   int32_t low[3], high[3];    /* they are within low to high - 1 */
   uint32_t bodies;            /* bit b: a block of cells whose tile covers it may meet body b */
   int32_t first_pair, pairs;  /* bodies that may touch it: of the list of mpsi_node_pair */
@@ -90,20 +90,18 @@ enum { MPSI_MASS = 0, MPSI_EXCESS = 0, MPSI_VECTOR = 1 };
 /* What a worker needs for the block it works on: tiles of MPSI_TILE_SIDE^dim. */
 typedef struct mpsi_worker {
   void *memory;
-  mpsi_node *tile, *force; /* force, and excess mass: where they are apart */
+  mpsi_node *tile, *force;               /* force, and excess mass: where they are apart */
   mpsi_node *across_tile, *across_force; /* the same of what thin bodies part (across.h) */
-  uint32_t *inside;        /* bit b: in body b */
-  uint8_t *state;          /* MPSI_... bits, 0: free */
+  uint32_t *inside;                      /* bit b: in body b */
+  uint8_t *state;                        /* MPSI_... bits, 0: free */
 } mpsi_worker;
 
 /* Bits of a state. */
 #define MPSI_OUTSIDE 1u /* not in the domain */
 #define MPSI_INSIDE 2u  /* in a body */
 #define MPSI_REACHED 4u /* in a body, and corner of a cell that holds a particle */
-#define MPSI_PLAIN                                                                                 \
-  8u /* any node with the standard method: no particle takes the closed form                       \
-      */
-#define MPSI_THIN 16u /* beside or in a thin body, which parts particles (across.h) */
+#define MPSI_PLAIN 8u   /* any node with the standard method, whose supports are cut everywhere */
+#define MPSI_THIN 16u   /* beside or in a thin body, which parts particles (across.h) */
 
 /* A particle by its key, as it is sorted. */
 typedef struct mpsi_radix {
@@ -135,12 +133,12 @@ typedef struct mpsi_grid {
   mpsi_node *node, *side;
   int64_t cell_count, node_count, side_count; /* of blocks; of slots of `side` */
   int64_t across_count; /* blocks of nodes behind the `node_count` that have a place of their own */
-  int32_t *coloured;                          /* numbers of blocks of cells, colour by colour */
-  int64_t colour[MPSI_CORNERS + 1];           /* first of each in `coloured` */
+  int32_t *coloured;    /* numbers of blocks of cells, colour by colour */
+  int64_t colour[MPSI_CORNERS + 1]; /* first of each in `coloured` */
   mpsi_room cells_room, nodes_room, node_room, side_room, coloured_room;
-  mpsi_radix *radix;        /* 2 items a particle */
-  mpsi_radix *sorted;       /* the half of `radix` with the order, while the blocks are made */
-  int32_t own_bits;         /* lower bits of a sorted key: the stencil's place within its block */
+  mpsi_radix *radix;  /* 2 items a particle */
+  mpsi_radix *sorted; /* the half of `radix` with the order, while the blocks are made */
+  int32_t own_bits;   /* lower bits of a sorted key: the stencil's place within its block */
   mpsi_room digits_room, pass_room;
   mpsi_worker *workers;
   mpsi_room across_room; /* of their second tiles */

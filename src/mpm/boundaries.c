@@ -77,7 +77,7 @@ static mps_status check_side(mps_mpm *mpm, const char *function, int32_t number,
                      "ids, id_count (%lld) and dofs (%u) are not for sides of the domain",
                      (long long)def->id_count, def->dofs);
   if (mpm->share && def->kind == MPS_MPM_BOUNDARY_ABSORBING)
-    return mpsi_share_refuse(mpm, function, "an absorbing side");
+    return mpsi_mpm_share_refuse(mpm, function, "an absorbing side");
   if (mpm->standard && def->kind == MPS_MPM_BOUNDARY_ABSORBING)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "kind is 3 (absorbing), which the standard method does not allow: its splines "
@@ -120,12 +120,10 @@ static mps_status find_box(mps_mpm *mpm, const char *function, const mps_mpm_bou
 
 static mps_status check_ids(mps_mpm *mpm, const char *function, const mps_mpm_boundary_def *def) {
   const int64_t most = mpm->share ? MPSI_MPM_MOST_PARTICLES : mpm->p.count;
-  if ((def->id_count > 0) != (def->ids != NULL) || def->id_count < 0 ||
-      def->id_count > most)
+  if ((def->id_count > 0) != (def->ids != NULL) || def->id_count < 0 || def->id_count > most)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "id_count is %lld with ids %s, allowed are 1 to %lld particles, or 0 and NULL",
-                     (long long)def->id_count, def->ids ? "given" : "NULL",
-                     (long long)most);
+                     (long long)def->id_count, def->ids ? "given" : "NULL", (long long)most);
   return MPS_OK;
 }
 
@@ -142,7 +140,7 @@ static mps_status check_prescribed(mps_mpm *mpm, const char *function,
   mps_status status = check_numbers(mpm, function, def);
   if (status == MPS_OK) status = check_ids(mpm, function, def);
   if (status == MPS_OK && !def->ids) status = find_box(mpm, function, def, out);
-  return mpsi_share_check_ids(mpm, function, status, def->id_count, def->ids);
+  return mpsi_mpm_share_check_ids(mpm, function, status, def->id_count, def->ids);
 }
 
 /* ---- putting in place ------------------------------------------------------------------------ */
@@ -234,7 +232,7 @@ static mps_status take_prescribed(mps_mpm *mpm, const char *function,
     if (!made.ids)
       status = mpsi_fail_memory(mpm->context, function, (size_t)def->id_count * sizeof *made.ids);
   }
-  status = mpsi_share_settle(mpm, function, status);
+  status = mpsi_mpm_share_settle(mpm, function, status);
   if (status != MPS_OK) {
     mpsi_free(mpm->context, made.ids);
     return status;
@@ -339,8 +337,8 @@ mps_status mps_mpm_remove_boundary(mps_mpm *mpm, int32_t number) {
   return MPS_OK;
 }
 
-void mpsi_hold_add_impulse(mpsi_hold *hold, const double *impulse, const double *moment,
-                           double work, int64_t count) {
+void mpsi_mpm_hold_add_impulse(mpsi_hold *hold, const double *impulse, const double *moment,
+                               double work, int64_t count) {
   for (int c = 0; c < 3; c++) {
     mpsi_exact_add(&hold->sums->step[MPSI_HOLD_IMPULSE + c], impulse[c]);
     mpsi_exact_add(&hold->sums->step[MPSI_HOLD_MOMENT + c], moment[c]);
@@ -349,7 +347,7 @@ void mpsi_hold_add_impulse(mpsi_hold *hold, const double *impulse, const double 
   hold->count += count;
 }
 
-void mpsi_hold_add_works(const mps_mpm *mpm, mpsi_exact *sum) {
+void mpsi_mpm_hold_add_works(const mps_mpm *mpm, mpsi_exact *sum) {
   mpsi_exact_merge(sum, &mpm->boundaries.work);
   for (int32_t k = 0; k < MPSI_HOLDS; k++) {
     const mpsi_hold_sums *sums = mpm->boundaries.hold[k].sums;

@@ -12,8 +12,8 @@ enum { MPSI_HOLD_NONE = -1 }; /* besides mps_mpm_boundary_kind */
 /* What a boundary has given, of this rank's share, exactly: no sum depends on order or ranks. */
 enum { MPSI_HOLD_IMPULSE = 0, MPSI_HOLD_MOMENT = 3, MPSI_HOLD_WORK = 6, MPSI_HOLD_MASS = 7 };
 typedef struct mpsi_hold_sums {
-  mpsi_exact step[MPSI_HOLD_MASS];     /* N s, N m s, J, in the last step; */
-  mpsi_exact all[MPSI_HOLD_MASS + 1];  /* before it; and kg, of particles that it has taken out */
+  mpsi_exact step[MPSI_HOLD_MASS];    /* N s, N m s, J, in the last step; */
+  mpsi_exact all[MPSI_HOLD_MASS + 1]; /* before it; and kg, of particles that it has taken out */
 } mpsi_hold_sums;
 
 /* A boundary: nodes first to last, or the particles `ids`. */
@@ -27,11 +27,11 @@ typedef struct mpsi_hold {
   double friction, settle;
   mps_signal *signal[3];
   double factor[3];
-  double v[3]; /* m/s, of the step being made */
+  double v[3];            /* m/s, of the step being made */
   mpsi_hold_sums *sums;   /* there with every boundary, and as long as its number */
   int64_t count, removed; /* as in mps_reaction, of this rank's share */
-  bool finds;   /* absorbing: still looks for the forces at rest */
-  double found; /* s, how long it has looked, with the step being made */
+  bool finds;             /* absorbing: still looks for the forces at rest */
+  double found;           /* s, how long it has looked, with the step being made */
 } mpsi_hold;
 
 /* The nodes of a block that a hold holds. */
@@ -49,9 +49,9 @@ typedef struct mpsi_boundaries {
   mpsi_held *held;
   mpsi_dash *dash;
   int64_t held_count, dash_count;
-  uint32_t open; /* bit k: side k is open, in the step being made */
-  bool outdated; /* the lists are not of the present boundaries and laws */
-  double dt;     /* s, of the step whose sums are kept */
+  uint32_t open;   /* bit k: side k is open, in the step being made */
+  bool outdated;   /* the lists are not of the present boundaries and laws */
+  double dt;       /* s, of the step whose sums are kept */
   mpsi_exact work; /* J, of boundaries that are no more */
   mpsi_room held_room, dash_room, old_held_room, old_dash_room;
 } mpsi_boundaries;
@@ -68,10 +68,10 @@ mps_status mpsi_mpm_put_dashes(mps_mpm *mpm, const char *function, int64_t count
 void mpsi_mpm_move_holds(mps_mpm *mpm, double dt);
 /* walls.c: absorbing walls at rest have looked for dt longer. */
 void mpsi_mpm_begin_holds(mps_mpm *mpm, double dt);
-void mpsi_hold_add_impulse(mpsi_hold *hold, const double *impulse, const double *moment,
-                           double work, int64_t count);
+void mpsi_mpm_hold_add_impulse(mpsi_hold *hold, const double *impulse, const double *moment,
+                               double work, int64_t count);
 /* boundaries.c: J, all that boundaries have done. */
-void mpsi_hold_add_works(const mps_mpm *mpm, mpsi_exact *sum);
+void mpsi_mpm_hold_add_works(const mps_mpm *mpm, mpsi_exact *sum);
 /* walls.c: before all others: no impulses yet on the held nodes of a block. */
 void mpsi_mpm_begin_held(mps_mpm *mpm, int64_t g);
 /* walls.c: mirrored sides alone, also before the forces: for friction with bodies, which must see

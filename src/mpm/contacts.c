@@ -100,11 +100,10 @@ static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status s
   if (status == MPS_OK) {
     const mps_contact_def *d = &contact->def;
     const mps_body *body = contact->body;
-    const double list[] = {d->mover,         d->method,       d->sweeps,  d->friction,
-                           d->penalty,       d->xi,           d->offset,  d->depth,
-                           d->thin,          d->inside,       d->adhesion, d->strength,
-                           body->shape,      body->parts,     contact->extent, body->def.motion,
-                           body->def.mass};
+    const double list[] = {
+        d->mover,    d->method,   d->sweeps,       d->friction,      d->penalty,    d->xi,
+        d->offset,   d->depth,    d->thin,         d->inside,        d->adhesion,   d->strength,
+        body->shape, body->parts, contact->extent, body->def.motion, body->def.mass};
     count = (int32_t)(sizeof list / sizeof *list);
     memcpy(numbers, list, sizeof list);
     for (int c = 0; c < 3; c++) {
@@ -231,9 +230,9 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
   if (status == MPS_OK)
     status = mpsi_contact_new(mpm->context, __func__, body, def, &owner_of_contacts, mpm, &contact);
   if (status == MPS_OK && contact->def.method == MPS_CONTACT_METHOD_PENALTY)
-    status = mpsi_share_refuse(mpm, __func__, "contact by the penalty (method 1)");
+    status = mpsi_mpm_share_refuse(mpm, __func__, "contact by the penalty (method 1)");
   if (status == MPS_OK && mpsi_has_strength(contact))
-    status = mpsi_share_refuse(mpm, __func__, "adhesion or strength of a contact");
+    status = mpsi_mpm_share_refuse(mpm, __func__, "adhesion or strength of a contact");
   status = compare_ranks(mpm, __func__, status, contact);
   if (status != MPS_OK) {
     give_up(contact);
@@ -250,7 +249,7 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
   if (status == MPS_OK && d->inside == MPS_CONTACT_INSIDE_REMOVE)
     status = mpsi_mpm_clear_body(mpm, __func__, contact);
   else if (status == MPS_OK)
-    status = mpsi_share_settle(mpm, __func__, mpsi_mpm_check_inside(mpm, __func__, contact, 0));
+    status = mpsi_mpm_share_settle(mpm, __func__, mpsi_mpm_check_inside(mpm, __func__, contact, 0));
   if (status != MPS_OK) {
     give_up(contact);
     return status;

@@ -129,7 +129,7 @@ mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status sta
     if (mpm->share) { /* all ranks, whatever has become of this one */
       for (int64_t b = 0; status == MPS_OK && b < mpm->grid.cell_count; b++)
         mpm->grid.cells[b].thin = near_thin(mpm, &mpm->grid.cells[b]);
-      const mps_status lost = mpsi_share_reached(mpm, function, status == MPS_OK);
+      const mps_status lost = mpsi_mpm_share_reached(mpm, function, status == MPS_OK);
       if (lost != MPS_OK) status = lost;
     }
   }

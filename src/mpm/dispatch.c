@@ -5,17 +5,17 @@
 #include "core/levels.h"
 
 #define DECLARE(level)                                                                             \
-  extern const mpsi_mpm_task mpsi_p2g_v##level[3][2], mpsi_tile_v##level[3][2],                    \
-      mpsi_g2p_v##level[3][2];                                                                     \
-  void mpsi_flush_v##level(mps_mpm *mpm, int64_t b, int32_t worker);                               \
-  void mpsi_speed_v##level(mps_mpm *mpm, int64_t b, int32_t worker);                               \
-  void mpsi_fit_v##level(const mps_mpm *mpm, const mpsi_cell_block *cells,                         \
-                         const mpsi_worker *worker, int64_t particle, mpsi_stencil *stencil,       \
-                         mpsi_shape_values *out);
+  extern const mpsi_mpm_task mpsi_mpm_p2g_v##level[3][2], mpsi_mpm_tile_v##level[3][2],            \
+      mpsi_mpm_g2p_v##level[3][2];                                                                 \
+  void mpsi_mpm_flush_v##level(mps_mpm *mpm, int64_t b, int32_t worker);                           \
+  void mpsi_mpm_speed_v##level(mps_mpm *mpm, int64_t b, int32_t worker);                           \
+  void mpsi_mpm_fit_v##level(const mps_mpm *mpm, const mpsi_cell_block *cells,                     \
+                             const mpsi_worker *worker, int64_t particle, mpsi_stencil *stencil,   \
+                             mpsi_shape_values *out);
 #define KERNELS(level)                                                                             \
   {                                                                                                \
-    mpsi_p2g_v##level, mpsi_tile_v##level, mpsi_flush_v##level, mpsi_g2p_v##level,                 \
-        mpsi_speed_v##level, mpsi_fit_v##level                                                     \
+    mpsi_mpm_p2g_v##level, mpsi_mpm_tile_v##level, mpsi_mpm_flush_v##level, mpsi_mpm_g2p_v##level, \
+        mpsi_mpm_speed_v##level, mpsi_mpm_fit_v##level                                             \
   }
 
 DECLARE(1)

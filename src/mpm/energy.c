@@ -20,7 +20,8 @@ static double kinetic_of(const mps_mpm *mpm, int64_t begin, int64_t end) {
   return sum;
 }
 
-void mpsi_energy_before(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end) {
+void mpsi_mpm_energy_before(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin,
+                            int64_t end) {
   of_cells(mpm, cells)->kinetic_before += kinetic_of(mpm, begin, end);
 }
 
@@ -31,7 +32,7 @@ static int stress_column(int a, int b) {
   return symmetric[a][b];
 }
 
-void mpsi_energy_moved(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end) {
+void mpsi_mpm_energy_moved(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end) {
   const mpsi_columns *p = &mpm->p;
   const int dim = mpm->dim;
   double loads = 0.0, stresses = 0.0;
@@ -49,7 +50,7 @@ void mpsi_energy_moved(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin
   of_cells(mpm, cells)->stresses += mpm->run.dt * stresses;
 }
 
-void mpsi_energy_keep(const mps_mpm *mpm, int64_t begin, int64_t end, mpsi_before_law *out) {
+void mpsi_mpm_energy_keep(const mps_mpm *mpm, int64_t begin, int64_t end, mpsi_before_law *out) {
   const size_t bytes = (size_t)(end - begin) * sizeof(double);
   for (int c = 0; c < 2 * mpm->dim; c++) memcpy(out->stress[c], mpm->p.s[c] + begin, bytes);
   memcpy(out->volume, mpm->p.V + begin, bytes);
@@ -79,9 +80,9 @@ static double stress_work(const mps_material_block *block, int64_t k, const doub
   return block->dt * work;
 }
 
-void mpsi_energy_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_law_use *law,
-                     const mps_material_block *block, const mpsi_before_law *before,
-                     int64_t begin) {
+void mpsi_mpm_energy_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_law_use *law,
+                         const mps_material_block *block, const mpsi_before_law *before,
+                         int64_t begin) {
   const mpsi_columns *p = &mpm->p;
   const mpsi_kept kept = mpsi_material_kept(law->material);
   const double shear = mpsi_material_shear(law->material), bulk = law->modulus - 4.0 / 3.0 * shear;
@@ -126,7 +127,8 @@ static void count_contact(const mps_mpm *mpm, const mpsi_node_block *nodes, int 
   }
 }
 
-void mpsi_energy_nodes(mps_mpm *mpm, int64_t g, const mpsi_node *held, const mpsi_node *damped) {
+void mpsi_mpm_energy_nodes(mps_mpm *mpm, int64_t g, const mpsi_node *held,
+                           const mpsi_node *damped) {
   const mpsi_node_block *nodes = &mpm->grid.nodes[g];
   const mpsi_node *node = (const mpsi_node *)(mpm->grid.node + mpsi_first_node(mpm, g));
   const mpsi_node *side = (const mpsi_node *)(mpm->grid.side + mpsi_first_node(mpm, nodes->side));
@@ -170,7 +172,7 @@ static double spring_energy(const mps_mpm *mpm) {
 
 /* ---- a step ---------------------------------------------------------------------------------- */
 
-mps_status mpsi_energy_begin(mps_mpm *mpm, const char *function) {
+mps_status mpsi_mpm_energy_begin(mps_mpm *mpm, const char *function) {
   mpsi_energy *e = &mpm->energy;
   if (!e->counts) return MPS_OK;
   const int64_t cells = mpm->grid.cell_count, nodes = mpsi_all_nodes(&mpm->grid);
@@ -212,7 +214,7 @@ static mpsi_node_energy sum_nodes(const mps_mpm *mpm) {
   return out;
 }
 
-void mpsi_energy_end(mps_mpm *mpm) {
+void mpsi_mpm_energy_end(mps_mpm *mpm) {
   mpsi_energy *e = &mpm->energy;
   mpsi_energy_sums *sum = &e->sum;
   sum->boundaries += e->boundaries;

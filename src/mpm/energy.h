@@ -62,24 +62,25 @@ typedef struct mpsi_energy {
   mpsi_room cells_room, nodes_room;
 } mpsi_energy;
 
-/* What mpsi_energy_law needs of a run of particles from before their law. */
+/* What mpsi_mpm_energy_law needs of a run of particles from before their law. */
 typedef struct mpsi_before_law {
   double stress[6][64], volume[64];
 } mpsi_before_law;
 
 /* Before the step: room, and the springs where contacts or places have changed. */
-mps_status mpsi_energy_begin(mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_energy_begin(mps_mpm *mpm, const char *function);
 /* Particles [begin, end) of a block: before and after G2P. */
-void mpsi_energy_before(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end);
-void mpsi_energy_moved(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end);
+void mpsi_mpm_energy_before(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end);
+void mpsi_mpm_energy_moved(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end);
 /* Particles of one law, at most 64 of them: before it, and after. */
-void mpsi_energy_keep(const mps_mpm *mpm, int64_t begin, int64_t end, mpsi_before_law *out);
-void mpsi_energy_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_law_use *law,
-                     const mps_material_block *block, const mpsi_before_law *before, int64_t begin);
+void mpsi_mpm_energy_keep(const mps_mpm *mpm, int64_t begin, int64_t end, mpsi_before_law *out);
+void mpsi_mpm_energy_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_law_use *law,
+                         const mps_material_block *block, const mpsi_before_law *before,
+                         int64_t begin);
 /* Nodes of block g, all forces known: `held` has their velocities before the boundaries, `damped`
  * those before damping. */
-void mpsi_energy_nodes(mps_mpm *mpm, int64_t g, const mpsi_node *held, const mpsi_node *damped);
+void mpsi_mpm_energy_nodes(mps_mpm *mpm, int64_t g, const mpsi_node *held, const mpsi_node *damped);
 /* After the step: adds it to the sums. */
-void mpsi_energy_end(mps_mpm *mpm);
+void mpsi_mpm_energy_end(mps_mpm *mpm);
 
 #endif

@@ -111,8 +111,8 @@ static mps_status merge(mps_mpm *mpm, const char *function, mpsi_values *state) 
   return status;
 }
 
-mps_status mpsi_share_save(mps_mpm *mpm, const mpsi_state_of *of, const char *function,
-                           const char *path, const mps_checkpoint *info) {
+mps_status mpsi_mpm_share_save(mps_mpm *mpm, const mpsi_state_of *of, const char *function,
+                               const char *path, const mps_checkpoint *info) {
   mps_domain *domain = mpm->share->domain;
   mps_snapshot state = {.context = mpm->context};
   mps_particles *whole = NULL;
@@ -142,7 +142,7 @@ static int64_t take_blocks(const mps_mpm *mpm, mpsi_value *blocks, int64_t parti
     const int64_t begin = block[b][0], end = b + 1 < blocks->rows ? block[b + 1][0] : particles;
     int32_t at[3];
     for (int c = 0; c < 3; c++) at[c] = (int32_t)block[b][MPSI_BLOCK_AT + c];
-    if (mpsi_share_owner(mpm, at) != rank) continue;
+    if (mpsi_mpm_share_owner(mpm, at) != rank) continue;
     memmove(block[kept], block[b], sizeof *block); /* kept <= b */
     block[kept++][0] = count;
     for (int64_t k = begin; k < end; k++) rows[count++] = k;
@@ -175,8 +175,8 @@ static void take_values(const mps_mpm *mpm, mpsi_values *state) {
   }
 }
 
-mps_status mpsi_share_take_values(void *solver, const char *function, mps_status status,
-                                  mps_snapshot *values) {
+mps_status mpsi_mpm_share_take_values(void *solver, const char *function, mps_status status,
+                                      mps_snapshot *values) {
   mps_mpm *mpm = solver;
   if (!mpm->share) return status;
   int64_t *rows = NULL;

@@ -423,20 +423,20 @@ MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const m
       body(mpm, cells, worker, 3, 3, __VA_ARGS__);                                                 \
   } while (0)
 
-void MPSI_LEVELLED(mpsi_scatter_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                        const mpsi_worker *worker, int64_t particle) {
+void MPSI_LEVELLED(mpsi_mpm_scatter_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                            const mpsi_worker *worker, int64_t particle) {
   CHOOSE(mpm->dim, mpm->def.spline, scatter_body, particle);
 }
 
-void MPSI_LEVELLED(mpsi_gather_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                       const mpsi_worker *worker, int64_t particle,
-                                       mpsi_fitted *out) {
+void MPSI_LEVELLED(mpsi_mpm_gather_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                           const mpsi_worker *worker, int64_t particle,
+                                           mpsi_fitted *out) {
   CHOOSE(mpm->dim, mpm->def.spline, gather_body, particle, out);
 }
 
-void MPSI_LEVELLED(mpsi_fit)(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                             const mpsi_worker *worker, int64_t particle, mpsi_stencil *at,
-                             mpsi_shape_values *out) {
+void MPSI_LEVELLED(mpsi_mpm_fit)(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                                 const mpsi_worker *worker, int64_t particle, mpsi_stencil *at,
+                                 mpsi_shape_values *out) {
   support s;
   memset(out, 0, sizeof *out);
   make_support(mpm, cells, mpm->dim, mpm->def.spline, particle, &s);

@@ -134,7 +134,7 @@ static void gather_fitted(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi
                           int64_t particle, mpsi_gathered *out, int to) {
   const int dim = mpm->dim;
   mpsi_fitted one = {.own = {0.0}};
-  MPSI_LEVELLED(mpsi_gather_fitted)(mpm, cells, worker, particle, &one);
+  MPSI_LEVELLED(mpsi_mpm_gather_fitted)(mpm, cells, worker, particle, &one);
   for (int c = 0; c < dim; c++) {
     out->v[c][to] = one.v[MPSI_VECTOR + c];
     out->own[c][to] = one.own[c];
@@ -309,7 +309,7 @@ MPSI_INLINE void gather_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const 
         gather_at_wall(mpm, cells, dim, spline, &places, axis, q,
                        end - q < MPSI_LANES ? end - q : MPSI_LANES, tile, &difference, out);
     else if (mpm->flip > 0.0 ||
-             !MPSI_LEVELLED(mpsi_gather_batches)(mpm, cells, worker, &places, k, end, out))
+             !MPSI_LEVELLED(mpsi_mpm_gather_batches)(mpm, cells, worker, &places, k, end, out))
       for (int q = k; q < end; q++) gather_fitted(mpm, cells, worker, begin + q, out, q);
   }
   if (mpm->strain_by_fit) memcpy(out->derivative, out->slope, sizeof out->slope);
@@ -326,9 +326,9 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cell_block *cells, const mpsi_work
     D[a] = from.derivative[a];
     if (mpm->p.D[a]) memcpy(mpm->p.D[a] + begin, D[a], (size_t)n * sizeof *D[a]);
   }
-  if (mpm->energy.counts) mpsi_energy_before(mpm, cells, begin, begin + n);
+  if (mpm->energy.counts) mpsi_mpm_energy_before(mpm, cells, begin, begin + n);
   const moved m = move(mpm, cells, geometry, spline, begin, n, &from);
-  if (mpm->energy.counts) mpsi_energy_moved(mpm, cells, begin, begin + n);
+  if (mpm->energy.counts) mpsi_mpm_energy_moved(mpm, cells, begin, begin + n);
   if (mpm->flip > 0.0) add_own(mpm, begin, n, &from);
   if (m.left) cells->left = true;
   if (m.outside) {
@@ -367,9 +367,9 @@ MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry,
 MPSI_VARIANTS(DEFINE)
 
 #define ENTRY(g, s, geometry, spline) [geometry][spline - 2] = g2p_##g##_##s,
-const mpsi_mpm_task MPSI_LEVELLED(mpsi_g2p)[3][2] = {MPSI_VARIANTS(ENTRY)};
+const mpsi_mpm_task MPSI_LEVELLED(mpsi_mpm_g2p)[3][2] = {MPSI_VARIANTS(ENTRY)};
 
-void MPSI_LEVELLED(mpsi_speed)(mps_mpm *mpm, int64_t b, int32_t worker) {
+void MPSI_LEVELLED(mpsi_mpm_speed)(mps_mpm *mpm, int64_t b, int32_t worker) {
   (void)worker;
   mpsi_cell_block *cells = &mpm->grid.cells[b];
   if (!cells->lost) cells->bad = -1;

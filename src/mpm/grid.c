@@ -86,7 +86,7 @@ static void finish_and_damp(mps_mpm *mpm, int64_t g) {
   if (mpm->settling.on) mpsi_mpm_measure_balance(mpm, g, fixed, (const mpsi_node *)held);
   mpsi_mpm_damp_nodes(mpm, g, fixed);
   if (mpm->energy.counts)
-    mpsi_energy_nodes(mpm, g, (const mpsi_node *)held, (const mpsi_node *)damped);
+    mpsi_mpm_energy_nodes(mpm, g, (const mpsi_node *)held, (const mpsi_node *)damped);
 }
 
 static void finish(mps_mpm *mpm, int64_t g) {

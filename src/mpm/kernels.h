@@ -13,11 +13,11 @@ typedef void (*mpsi_fit_fn)(const mps_mpm *mpm, const mpsi_cell_block *cells,
 
 typedef struct mpsi_kernels {
   /* By geometry (mps_mpm_geometry) and degree of the spline less 2. */
-  const mpsi_mpm_task (*p2g)[2]; /* a block of cells, of the colour in work, to its nodes */
+  const mpsi_mpm_task (*p2g)[2];  /* a block of cells, of the colour in work, to its nodes */
   const mpsi_mpm_task (*tile)[2]; /* the first half of that: into the worker's tile; */
   mpsi_mpm_task flush;            /* and the second: from there to the nodes */
-  const mpsi_mpm_task (*g2p)[2]; /* from the nodes: velocities, places; then law and speed */
-  mpsi_mpm_task speed;           /* largest speed of a block, by itself */
+  const mpsi_mpm_task (*g2p)[2];  /* from the nodes: velocities, places; then law and speed */
+  mpsi_mpm_task speed;            /* largest speed of a block, by itself */
   mpsi_fit_fn fit;
 } mpsi_kernels;
 

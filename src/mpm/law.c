@@ -90,12 +90,12 @@ static void apply_run(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64
   take_strains(mpm, D, first, block);
   for (int c = 0; mean && c < 3; c++) block->gradient[4 * c] = mean[c] + first;
   mpsi_before_law before;
-  if (mpm->energy.counts) mpsi_energy_keep(mpm, begin, end, &before);
+  if (mpm->energy.counts) mpsi_mpm_energy_keep(mpm, begin, end, &before);
   /* Where the law works on J, V stands for V0 meanwhile. */
   for (int64_t k = begin; law->reads_volume && k < end; k++) p->V[k] /= p->J[k];
   apply_law(mpm, cells, law, block, begin);
   for (int64_t k = begin; law->reads_volume && k < end; k++) p->V[k] *= p->J[k];
-  if (mpm->energy.counts) mpsi_energy_law(mpm, cells, law, block, &before, begin);
+  if (mpm->energy.counts) mpsi_mpm_energy_law(mpm, cells, law, block, &before, begin);
 }
 
 void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end,

@@ -100,7 +100,7 @@ static mps_status check_numbers(mps_mpm *mpm, const char *function, const mps_mp
 static mps_status check_list(mps_mpm *mpm, const char *function, mps_status status,
                              const mps_mpm_load_def *def) {
   if (status == MPS_OK) status = check_numbers(mpm, function, def);
-  return mpsi_share_check_ids(mpm, function, status, def->id_count, def->ids);
+  return mpsi_mpm_share_check_ids(mpm, function, status, def->id_count, def->ids);
 }
 
 static mps_status read_def(mps_mpm *mpm, const char *function, const mps_mpm_load_def *user,
@@ -170,7 +170,7 @@ mps_status mps_mpm_add_load(mps_mpm *mpm, const mps_mpm_load_def *user, int32_t 
   if (status == MPS_OK) status = mpsi_mpm_make_forces(mpm, __func__);
   if (status == MPS_OK) status = copy_list(mpm, __func__, &def, &made);
   if (status == MPS_OK) status = find_number(mpm, __func__, &at);
-  status = mpsi_share_settle(mpm, __func__, status);
+  status = mpsi_mpm_share_settle(mpm, __func__, status);
   if (status != MPS_OK) {
     drop(mpm, &made);
     return status;
@@ -201,7 +201,7 @@ mps_status mps_mpm_set_load(mps_mpm *mpm, int32_t number, const mps_mpm_load_def
     mpsi_traction list = {.count = 0};
     status = check_list(mpm, __func__, status, &def);
     if (status == MPS_OK) status = copy_list(mpm, __func__, &def, &list);
-    status = mpsi_share_settle(mpm, __func__, status);
+    status = mpsi_mpm_share_settle(mpm, __func__, status);
     if (status != MPS_OK) {
       drop(mpm, &list);
       return status;

@@ -239,8 +239,8 @@ typedef struct mpsi_gathered {
  */
 
 /* Gives a particle to the tiles; at bodies also what contact needs to the nodes, straight. */
-void MPSI_LEVELLED(mpsi_scatter_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                        const mpsi_worker *worker, int64_t particle);
+void MPSI_LEVELLED(mpsi_mpm_scatter_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                            const mpsi_worker *worker, int64_t particle);
 /* What the nodes give to a particle: lanes 1 to 3 of each are components of the velocity. */
 typedef struct mpsi_fitted {
   double v[4];
@@ -248,9 +248,9 @@ typedef struct mpsi_fitted {
   double derivative[3][4]; /* 1/s, which the laws see: others along axes with a full stencil */
   double own[3];           /* m/s, FLIP: what the particle keeps of its own */
 } mpsi_fitted;
-void MPSI_LEVELLED(mpsi_gather_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                       const mpsi_worker *worker, int64_t particle,
-                                       mpsi_fitted *out);
+void MPSI_LEVELLED(mpsi_mpm_gather_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                           const mpsi_worker *worker, int64_t particle,
+                                           mpsi_fitted *out);
 
 /* ---- batch.c: particles beside bodies that act by impulses -----------------------------------
  */
@@ -258,18 +258,18 @@ void MPSI_LEVELLED(mpsi_gather_fitted)(mps_mpm *mpm, const mpsi_cell_block *cell
 /* Give particles [begin, end) of a chunk (that begins with particle `chunk`), all of one stencil,
  * to the tiles, and take what the nodes give them; false, and nothing done, where they are for
  * fitted.c. */
-bool MPSI_LEVELLED(mpsi_scatter_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                         const mpsi_worker *worker, const mpsi_places *places,
-                                         int64_t chunk, int begin, int end);
-bool MPSI_LEVELLED(mpsi_gather_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                        const mpsi_worker *worker, const mpsi_places *places,
-                                        int begin, int end, mpsi_gathered *out);
+bool MPSI_LEVELLED(mpsi_mpm_scatter_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                             const mpsi_worker *worker, const mpsi_places *places,
+                                             int64_t chunk, int begin, int end);
+bool MPSI_LEVELLED(mpsi_mpm_gather_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                            const mpsi_worker *worker, const mpsi_places *places,
+                                            int begin, int end, mpsi_gathered *out);
 
 /* The fit by itself; the largest speed of a block: see mpsi_kernels. */
-void MPSI_LEVELLED(mpsi_fit)(const mps_mpm *mpm, const mpsi_cell_block *cells,
-                             const mpsi_worker *worker, int64_t particle, mpsi_stencil *stencil,
-                             mpsi_shape_values *out);
-void MPSI_LEVELLED(mpsi_speed)(mps_mpm *mpm, int64_t b, int32_t worker);
-void MPSI_LEVELLED(mpsi_flush)(mps_mpm *mpm, int64_t b, int32_t worker);
+void MPSI_LEVELLED(mpsi_mpm_fit)(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                                 const mpsi_worker *worker, int64_t particle, mpsi_stencil *stencil,
+                                 mpsi_shape_values *out);
+void MPSI_LEVELLED(mpsi_mpm_speed)(mps_mpm *mpm, int64_t b, int32_t worker);
+void MPSI_LEVELLED(mpsi_mpm_flush)(mps_mpm *mpm, int64_t b, int32_t worker);
 
 #endif

@@ -88,10 +88,9 @@ static int64_t place(const mps_mpm *mpm, const int64_t *ids, int64_t i) {
 static mps_status check(mps_mpm *mpm, const char *function, const mps_material *material,
                         int64_t count, const int64_t *ids) {
   mps_status status = MPS_OK;
-  if (!material)
-    status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "material is NULL");
+  if (!material) status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "material is NULL");
   if (ids && count >= 0)
-    status = mpsi_share_check_ids(mpm, function, status, count, ids);
+    status = mpsi_mpm_share_check_ids(mpm, function, status, count, ids);
   else if (status == MPS_OK)
     status = mpsi_particles_check_ids_or_all(mpm->particles, function, count, ids);
   if (status != MPS_OK) return status;
@@ -138,15 +137,15 @@ mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material, int64_t co
   if (!mpm) return MPS_ERROR_ARGUMENT;
   int32_t number = 0;
   mps_status status = mpsi_mpm_usable(mpm, __func__);
-  if (mpm->share) status = mpsi_share_agree(mpm, __func__, status);
+  if (mpm->share) status = mpsi_mpm_share_agree(mpm, __func__, status);
   if (status == MPS_OK) status = check(mpm, __func__, material, count, ids);
-  status = mpsi_share_settle(mpm, __func__, status);
+  status = mpsi_mpm_share_settle(mpm, __func__, status);
   if (status == MPS_OK) status = list_law(mpm, __func__, material, &number);
-  status = mpsi_share_settle(mpm, __func__, status);
+  status = mpsi_mpm_share_settle(mpm, __func__, status);
   if (status != MPS_OK) return status;
   for (int64_t i = 0; i < listed(mpm, count, ids); i++) {
     const int64_t k = place(mpm, ids, i);
-    if (k < 0) continue; /* another rank's */
+    if (k < 0) continue;                    /* another rank's */
     if (mpm->p.law) mpm->p.law[k] = number; /* else there is but the one */
     mpsi_mpm_begin_law(mpm, &mpm->laws.law[number], k);
   }

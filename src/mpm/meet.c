@@ -314,7 +314,7 @@ static mps_status write_message(meeting *m, mps_domain_message **list, int32_t *
   return MPS_OK;
 }
 
-mps_status mpsi_meet(mps_mpm *mpm, const char *function, mps_status status) {
+mps_status mpsi_mpm_meet(mps_mpm *mpm, const char *function, mps_status status) {
   mps_domain *domain = mpm->share->domain;
   meeting m = {.mpm = mpm, .function = function, .box.context = mpm->context};
   mps_domain_message *list = NULL;
@@ -332,7 +332,7 @@ mps_status mpsi_meet(mps_mpm *mpm, const char *function, mps_status status) {
   return status;
 }
 
-void mpsi_meet_end(mps_mpm *mpm) {
+void mpsi_mpm_meet_end(mps_mpm *mpm) {
   mpsi_impulses *all = &mpm->contact.impulses;
   mpsi_meeting *r = &mpm->share->meeting;
   mpsi_met_node *met = r->met.item;
@@ -346,7 +346,7 @@ void mpsi_meet_end(mps_mpm *mpm) {
     }
 }
 
-void mpsi_meet_free(mps_mpm *mpm) {
+void mpsi_mpm_meet_free(mps_mpm *mpm) {
   mpsi_meeting *r = &mpm->share->meeting;
   mpsi_room *const rooms[] = {&r->touch, &r->block,  &r->weight, &r->node,
                               &r->met,   &r->lookup, &r->mail,   &r->list};

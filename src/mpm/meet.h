@@ -28,9 +28,9 @@ typedef struct mpsi_meeting {
 /* The touches of all ranks take the place of this rank's in contact.impulses, in the order of one
  * rank, until the next step finds its own. What has become of all ranks before, `status` here,
  * comes first. Collective. */
-mps_status mpsi_meet(mps_mpm *mpm, const char *function, mps_status status);
+mps_status mpsi_mpm_meet(mps_mpm *mpm, const char *function, mps_status status);
 /* After the sweeps: velocities to the nodes that are here. Not collective. */
-void mpsi_meet_end(mps_mpm *mpm);
-void mpsi_meet_free(mps_mpm *mpm);
+void mpsi_mpm_meet_end(mps_mpm *mpm);
+void mpsi_mpm_meet_free(mps_mpm *mpm);
 
 #endif

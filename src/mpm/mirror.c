@@ -61,7 +61,7 @@ mps_status mpsi_mpm_list_mirrors(mps_mpm *mpm, const char *function) {
   return MPS_OK;
 }
 
-int mpsi_mirror_partner(const mps_mpm *mpm, const mpsi_cell_block *cells, int c, int node) {
+int mpsi_mpm_mirror_partner(const mps_mpm *mpm, const mpsi_cell_block *cells, int c, int node) {
   const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
   const int64_t low = mpm->grid.low[c] - first, high = mpm->grid.high[c] - first;
   if (cells->mirrors >> (2 * c) & 1 && node < low) return (int)(2 * low - node);
@@ -326,7 +326,7 @@ void mpsi_mpm_sum_mirrors(mps_mpm *mpm) {
       const mpsi_mirror *m = &mpm->mirrors.mirror[number++];
       mpsi_hold *hold = &mpm->boundaries.hold[k];
       const double work = mpsi_dot3(m->impulse, hold->v);
-      mpsi_hold_add_impulse(hold, m->impulse, m->moment, work, 0);
+      mpsi_mpm_hold_add_impulse(hold, m->impulse, m->moment, work, 0);
       mpm->energy.boundaries += work;
       mpm->energy.mirrored += m->passed;
     }

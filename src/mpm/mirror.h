@@ -50,7 +50,7 @@ void mpsi_mpm_mirror_states(const mps_mpm *mpm, const mpsi_cell_block *cells, mp
 void mpsi_mpm_sum_mirrors(mps_mpm *mpm);
 
 /* Node of the tile along axis c, or its partner where it is beyond a mirror. */
-int mpsi_mirror_partner(const mps_mpm *mpm, const mpsi_cell_block *cells, int c, int node);
+int mpsi_mpm_mirror_partner(const mps_mpm *mpm, const mpsi_cell_block *cells, int c, int node);
 /* A momentum or force that a block's particle has at tile node `at`, a ghost or on a wall, as its
  * partner gets it; `at` becomes that. `impulse` times what changes is the wall's. */
 void mpsi_mpm_reflect(const mps_mpm *mpm, const mpsi_cell_block *cells, int *at, double *vector,

@@ -47,7 +47,8 @@ static mps_status check_choices(mps_context *context, const mps_mpm_def *d) {
                      d->spline);
   if (d->volumetric < MPS_MPM_VOLUMETRIC_POINT || d->volumetric > MPS_MPM_VOLUMETRIC_NODES)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
-                     "volumetric is %d, allowed are 0 (point), 1 (cell) and 2 (nodes)", d->volumetric);
+                     "volumetric is %d, allowed are 0 (point), 1 (cell) and 2 (nodes)",
+                     d->volumetric);
   if (d->budget != 0 && d->budget != 1)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "budget is %d, allowed are 0 (no energies) and 1 (the energy budget)",
@@ -318,7 +319,7 @@ static mps_status build(mps_mpm *mpm, mps_material *material, mps_status status,
     if (status != MPS_OK && copy) put_columns_back(mpm, copy);
     mpsi_free(mpm->context, copy);
   }
-  if (shared) status = mpsi_share_take(mpm, create, status, former);
+  if (shared) status = mpsi_mpm_share_take(mpm, create, status, former);
   if (status != MPS_OK && !shared) mpsi_particles_drop_fields(mpm->particles, fields);
   mpm->boundaries.outdated = true; /* listed with the first step */
   return status;
@@ -333,8 +334,7 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   mps_mpm_def def = mpm_defaults;
   int64_t low[3], high[3];
   mps_status status = MPS_OK;
-  if (user_def)
-    status = MPSI_DEF_READ(context, __func__, mps_mpm_def, user_def, &def);
+  if (user_def) status = MPSI_DEF_READ(context, __func__, mps_mpm_def, user_def, &def);
   if (status == MPS_OK) status = mpsi_domain_check(context, __func__, def.domain);
   if (status != MPS_OK) return status;
   status = check_set(context, particles);
@@ -374,7 +374,7 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
                               .insert = mpsi_mpm_insert,
                               .remove = mpsi_mpm_remove,
                               .renew = mpsi_mpm_renew,
-                              .runs = is_shared(&def) ? mpsi_share_runs : NULL};
+                              .runs = is_shared(&def) ? mpsi_mpm_share_runs : NULL};
   (void)mpsi_particles_hold(particles, __func__, &mpm->holder); /* checked above */
   mpm->def = def;
   mpm->def.domain = mpsi_domain_retain(def.domain);
@@ -461,7 +461,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
     mpsi_free(context, mpm->laws.law[k].history);
   }
   mps_kernel_destroy(&mpm->weights);
-  mpsi_share_free(mpm);
+  mpsi_mpm_share_free(mpm);
   mps_domain_destroy(&mpm->def.domain);
   mpsi_state_forget(&mpm->identity);
   mpsi_particles_release(mpm->particles, &mpm->holder);

@@ -24,8 +24,8 @@ struct mpsi_kernels;
 typedef struct mpsi_rooms {
   mpsi_room radix, flags, stencil;
   mpsi_room strain; /* of the columns D */
-  mpsi_room gone;  /* marks of what leaves at the end of a step; none where nothing can */
-  mpsi_room force; /* of the columns f; none without loads */
+  mpsi_room gone;   /* marks of what leaves at the end of a step; none where nothing can */
+  mpsi_room force;  /* of the columns f; none without loads */
 } mpsi_rooms;
 
 /* The handle of mps/grid.h: lent, a part of the solver. */
@@ -41,9 +41,9 @@ struct mps_mpm {
   mps_mpm_def def;
   int32_t dim;
   /* For comparison (mps/experimental.h): */
-  bool by_weight; /* velocities go to the nodes by the weights */
+  bool by_weight;     /* velocities go to the nodes by the weights */
   bool strain_by_fit; /* the laws see the slopes of the fit */
-  bool standard;  /* the original material point method, with `flip`; else that is 0 */
+  bool standard;      /* the original material point method, with `flip`; else that is 0 */
   double flip;
   const struct mpsi_kernels *kernels;
   mps_kernel *weights; /* for the caller to ask */

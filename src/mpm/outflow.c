@@ -48,7 +48,7 @@ static void carry_out(mps_mpm *mpm, int64_t k, mpsi_hold *hold) {
     moment[c] = -spin;
     kinetic += 0.5 * m * v[c] * v[c];
   }
-  mpsi_hold_add_impulse(hold, impulse, moment, -kinetic, 1);
+  mpsi_mpm_hold_add_impulse(hold, impulse, moment, -kinetic, 1);
   mpm->energy.sum.boundaries -= kinetic;
   mpm->energy.sum.kinetic -= kinetic;
 }
@@ -72,7 +72,7 @@ static int64_t through_sides(mps_mpm *mpm, uint8_t *gone) {
 }
 
 static void take_out(mps_mpm *mpm, const uint8_t *gone) {
-  mpsi_share_thin_out(mpm, gone); /* the blocks follow */
+  mpsi_mpm_share_thin_out(mpm, gone); /* the blocks follow */
   mpsi_particles_take_out(mpm->particles, gone);
   mpm->run.edited = mpm->run.stale = true;
   mpm->energy.springs_known = false;
@@ -176,7 +176,7 @@ mps_status mpsi_mpm_clear_body(mps_mpm *mpm, const char *function, mps_contact *
   uint8_t *gone = mpsi_alloc(mpm->context, mpm->p.count, 1);
   mps_status status = MPS_OK;
   if (!gone) status = mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count);
-  status = mpsi_share_settle(mpm, function, status);
+  status = mpsi_mpm_share_settle(mpm, function, status);
   int64_t count = 0;
   if (status == MPS_OK) {
     count = into_body(mpm, contact, 0.0, 0, mpm->p.count, gone, 1);

@@ -29,7 +29,7 @@ static int64_t key_of(const mps_mpm *mpm, const int32_t *at) {
   return mpsi_curve_key(mpm->dim, block);
 }
 
-int32_t mpsi_share_owner(const mps_mpm *mpm, const int32_t *at) {
+int32_t mpsi_mpm_share_owner(const mps_mpm *mpm, const int32_t *at) {
   return mpsi_curve_owner(mps_domain_size(mpm->share->domain), mpm->share->first, key_of(mpm, at));
 }
 
@@ -55,7 +55,7 @@ static void place_curve(mps_mpm *mpm) {
   }
 }
 
-mps_status mpsi_share_cut(mps_mpm *mpm, const char *function, bool whole) {
+mps_status mpsi_mpm_share_cut(mps_mpm *mpm, const char *function, bool whole) {
   mpsi_share *share = mpm->share;
   const int32_t ranks = mps_domain_size(share->domain);
   const int64_t all = mpm->grid.cell_count,
@@ -127,7 +127,7 @@ static mps_status list_leaving(departure *d, const char *function) {
   memset(d->gone, 0, (size_t)count);
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     const mpsi_cell_block *cells = &mpm->grid.cells[b];
-    const int32_t owner = mpsi_share_owner(mpm, cells->at);
+    const int32_t owner = mpsi_mpm_share_owner(mpm, cells->at);
     for (int64_t k = cells->begin; owner != rank && k < cells->end; k++) {
       d->gone[k] = 1;
       d->row[d->count] = k;
@@ -198,10 +198,11 @@ static mps_status rebalance(mps_mpm *mpm, const char *function, mps_status statu
   if (status != MPS_OK || (share->heaviest > 0.0 && most <= GROWTH * share->heaviest))
     return status;
   share->heaviest = 0.0;
-  return mpsi_share_cut(mpm, function, false);
+  return mpsi_mpm_share_cut(mpm, function, false);
 }
 
-mps_status mpsi_share_migrate(mps_mpm *mpm, const char *function, mps_status status, bool *moved) {
+mps_status mpsi_mpm_share_migrate(mps_mpm *mpm, const char *function, mps_status status,
+                                  bool *moved) {
   mpsi_share *share = mpm->share;
   departure d = {.mpm = mpm};
   status = rebalance(mpm, function, status);

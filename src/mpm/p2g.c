@@ -282,10 +282,10 @@ MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mps
       const int axis = mpsi_wall_axis(mpm, cells, dim, spline, state, places.first[k]);
       if (axis >= 0)
         add_at_wall(mpm, cells, worker, geometry, spline, &places, axis, begin, k, end);
-      const bool done = axis >= 0 || MPSI_LEVELLED(mpsi_scatter_batches)(mpm, cells, worker,
-                                                                         &places, begin, k, end);
+      const bool done = axis >= 0 || MPSI_LEVELLED(mpsi_mpm_scatter_batches)(
+                                         mpm, cells, worker, &places, begin, k, end);
       for (int f = k; f < end && !done; f++)
-        MPSI_LEVELLED(mpsi_scatter_fitted)(mpm, cells, worker, begin + f);
+        MPSI_LEVELLED(mpsi_mpm_scatter_fitted)(mpm, cells, worker, begin + f);
       continue;
     }
     add_segment(dim, spline, &places, &rows, k, end, &sum, worker->tile);
@@ -341,7 +341,7 @@ MPSI_INLINE void flush_body(mps_mpm *mpm, int64_t b, int32_t number, int dim) {
           (const mpsi_node *)from->across_force);
 }
 
-void MPSI_LEVELLED(mpsi_flush)(mps_mpm *mpm, int64_t b, int32_t worker) {
+void MPSI_LEVELLED(mpsi_mpm_flush)(mps_mpm *mpm, int64_t b, int32_t worker) {
   flush_body(mpm, b, worker, mpm->dim);
 }
 
@@ -356,7 +356,7 @@ void MPSI_LEVELLED(mpsi_flush)(mps_mpm *mpm, int64_t b, int32_t worker) {
 MPSI_VARIANTS(DEFINE)
 
 #define TILE_ENTRY(g, s, geometry, spline) [geometry][spline - 2] = tile_##g##_##s,
-const mpsi_mpm_task MPSI_LEVELLED(mpsi_tile)[3][2] = {MPSI_VARIANTS(TILE_ENTRY)};
+const mpsi_mpm_task MPSI_LEVELLED(mpsi_mpm_tile)[3][2] = {MPSI_VARIANTS(TILE_ENTRY)};
 
 #define ENTRY(g, s, geometry, spline) [geometry][spline - 2] = p2g_##g##_##s,
-const mpsi_mpm_task MPSI_LEVELLED(mpsi_p2g)[3][2] = {MPSI_VARIANTS(ENTRY)};
+const mpsi_mpm_task MPSI_LEVELLED(mpsi_mpm_p2g)[3][2] = {MPSI_VARIANTS(ENTRY)};

@@ -46,7 +46,8 @@ typedef struct mpsi_contacts {
   _Atomic uint8_t *reached; /* corner of a cell that holds a particle; likewise */
   int64_t cell_pair_count, node_pair_count, mask_count;
   mpsi_impulses impulses;
-  mpsi_room cell_pair_room, node_pair_room, node_room, inside_room, reached_room, sight_room, beside_room;
+  mpsi_room cell_pair_room, node_pair_room, node_room, inside_room, reached_room, sight_room,
+      beside_room;
 } mpsi_contacts;
 
 /* cut.c: all that is to be known of bodies near particles before a step; which blocks are cut and

@@ -241,7 +241,7 @@ mps_status mpsi_mpm_check_masses(const mps_mpm *mpm, const char *function) {
 mps_status mpsi_mpm_insert(void *self, const char *function, int64_t first, int64_t count) {
   mps_mpm *mpm = self;
   mps_status status = mpsi_mpm_usable(mpm, function);
-  if (status == MPS_OK) status = mpsi_share_refuse(mpm, function, "adding particles");
+  if (status == MPS_OK) status = mpsi_mpm_share_refuse(mpm, function, "adding particles");
   if (status != MPS_OK) return status;
   if (first + count > MPSI_MPM_MOST_PARTICLES)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
@@ -264,7 +264,7 @@ mps_status mpsi_mpm_insert(void *self, const char *function, int64_t first, int6
 mps_status mpsi_mpm_remove(void *self, const char *function, int64_t count, const int64_t *ids) {
   (void)count, (void)ids; /* lists of ids pass over those that are no more */
   const mps_status status = mpsi_mpm_usable(self, function);
-  return status == MPS_OK ? mpsi_share_refuse(self, function, "removing particles") : status;
+  return status == MPS_OK ? mpsi_mpm_share_refuse(self, function, "removing particles") : status;
 }
 
 void mpsi_mpm_renew(void *self) {

@@ -29,8 +29,9 @@ void mpsi_mpm_begin_particles(mps_mpm *mpm);
 double mpsi_mpm_lattice_volume(const mps_mpm *mpm, int64_t particle);
 
 /* outflow.c: room for the marks of a step that may take particles out; what bodies take before it,
- * `cleared` where they do, on whatever rank (`status`: what has become of the step so far); those that have passed open sides in it; and those inside a body that takes away
- * what it finds, when its contact is made. */
+ * `cleared` where they do, on whatever rank (`status`: what has become of the step so far); those
+ * that have passed open sides in it; and those inside a body that takes away what it finds, when
+ * its contact is made. */
 mps_status mpsi_mpm_prepare_outflow(mps_mpm *mpm, const char *function);
 mps_status mpsi_mpm_clear_bodies(mps_mpm *mpm, const char *function, mps_status status,
                                  bool *cleared);

@@ -2,8 +2,9 @@
  * a time; who does the last that a block waits for puts that block there. A thread that finds
  * nothing ready looks again for some microseconds and then sleeps for a moment; under a caller's
  * executor, which may run the units one after the other, it leaves. All is done when all have left,
- * since who makes a block ready looks at the queue after that. One thread alone goes over the blocks
- * in their order and does for each what it waits for. SPDX-License-Identifier: BSD-3-Clause */
+ * since who makes a block ready looks at the queue after that. One thread alone goes over the
+ * blocks in their order and does for each what it waits for. SPDX-License-Identifier: BSD-3-Clause
+ */
 #include "mpm_private.h"
 
 #include <stdatomic.h>

@@ -5,16 +5,16 @@
 #include "particles.h"
 
 mps_status mpsi_mpm_sort(mps_mpm *mpm, const char *function) {
-  return mpm->share ? mpsi_share_sort(mpm, function) : mpsi_mpm_sort_alone(mpm, function);
+  return mpm->share ? mpsi_mpm_share_sort(mpm, function) : mpsi_mpm_sort_alone(mpm, function);
 }
 
 mps_status mpsi_mpm_tidy(mps_mpm *mpm, const char *function) {
   mps_status status = mpsi_mpm_check_whole(mpm, function);
   if (status == MPS_OK) status = mpsi_mpm_check_lost(mpm, function);
-  if (mpm->share) status = mpsi_share_agree(mpm, function, status);
+  if (mpm->share) status = mpsi_mpm_share_agree(mpm, function, status);
   if (status != MPS_OK || !mpm->run.edited) return status;
   status = mpsi_mpm_check_masses(mpm, function);
-  if (mpm->share) status = mpsi_share_tidy(mpm, function, status);
+  if (mpm->share) status = mpsi_mpm_share_tidy(mpm, function, status);
   if (status == MPS_OK && mpm->run.stale) status = mpsi_mpm_sort(mpm, function);
   if (status == MPS_OK) status = mpsi_mpm_list_holds(mpm, function);
   if (mpm->share) status = mpsi_domain_settle(mpm->share->domain, function, status);

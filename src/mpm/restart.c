@@ -381,7 +381,7 @@ static void bind(void *solver) { mpsi_mpm_bind(solver); }
 static void forget_edits(void *solver) { ((mps_mpm *)solver)->run.edited = false; }
 
 static mps_status settle(void *solver, const char *function, mps_status status) {
-  return mpsi_share_settle(solver, function, status);
+  return mpsi_mpm_share_settle(solver, function, status);
 }
 
 static mpsi_state_of state_of(mps_mpm *mpm) {
@@ -393,7 +393,7 @@ static mpsi_state_of state_of(mps_mpm *mpm) {
                          .list = list_state,
                          .fits = fits,
                          .make_room = mpsi_mpm_make_room,
-                         .take_share = mpsi_share_take_values,
+                         .take_share = mpsi_mpm_share_take_values,
                          .settle = settle,
                          .bind = bind,
                          .after = forget_edits,
@@ -416,7 +416,7 @@ mps_status mps_mpm_snapshot(mps_mpm *mpm, mps_snapshot **snapshot) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   const mps_status status = make_whole(mpm, __func__);
   const mpsi_state_of of = state_of(mpm);
-  return mpsi_share_settle(
+  return mpsi_mpm_share_settle(
       mpm, __func__, status == MPS_OK ? mpsi_state_snapshot(&of, __func__, snapshot) : status);
 }
 
@@ -429,10 +429,10 @@ mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot) {
 
 mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *info) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_status status = mpsi_share_settle(mpm, __func__, make_whole(mpm, __func__));
+  const mps_status status = mpsi_mpm_share_settle(mpm, __func__, make_whole(mpm, __func__));
   const mpsi_state_of of = state_of(mpm);
   if (status != MPS_OK) return status;
-  return mpm->share ? mpsi_share_save(mpm, &of, __func__, path, info)
+  return mpm->share ? mpsi_mpm_share_save(mpm, &of, __func__, path, info)
                     : mpsi_checkpoint_save(&of, __func__, path, info);
 }
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* Rows that no block has are behind the others: particles that the caller has added. */
-int64_t mpsi_share_runs(const void *self, mpsi_row_run *out) {
+int64_t mpsi_mpm_share_runs(const void *self, mpsi_row_run *out) {
   const mps_mpm *mpm = self;
   int64_t count = 0, rows = 0;
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
@@ -22,7 +22,7 @@ int64_t mpsi_share_runs(const void *self, mpsi_row_run *out) {
   return count + 1;
 }
 
-void mpsi_share_thin_out(mps_mpm *mpm, const uint8_t *gone) {
+void mpsi_mpm_share_thin_out(mps_mpm *mpm, const uint8_t *gone) {
   int64_t out = 0;
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     mpsi_cell_block *cells = &mpm->grid.cells[b];

@@ -70,9 +70,9 @@ mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every, mps_mpm_fn cal
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_status status = MPS_OK;
   if (!isfinite(t_end) || every < 1)
-    status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                       "t_end is %g s and every %lld: must be finite and >= 1", t_end,
-                       (long long)every);
+    status =
+        mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                  "t_end is %g s and every %lld: must be finite and >= 1", t_end, (long long)every);
   else if (t_end < mpm->run.time)
     status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                        "t_end is %.9g s, must not be before the solver's time %.9g s", t_end,

@@ -108,7 +108,7 @@ static mps_status sum_balance(mps_mpm *mpm, const char *function, double *sums) 
       mpsi_exact_add(&sum[APPLIED], applied_to_particles(mpm, &mpm->grid.cells[b]));
   for (int64_t g = 0; g < mpsi_all_nodes(&mpm->grid); g++) {
     const mpsi_node_balance *n = &mpm->settling.nodes[g];
-    if (mpm->share && !mpsi_share_counts(mpm, g)) continue;
+    if (mpm->share && !mpsi_mpm_share_counts(mpm, g)) continue;
     mpsi_exact_add(&sum[UNBALANCED], n->unbalanced);
     mpsi_exact_add(&sum[APPLIED], n->applied);
     mpsi_exact_add(&sum[KINETIC], n->kinetic);

@@ -243,7 +243,7 @@ static mps_status find_border(mps_mpm *mpm, const char *function) {
     share->border[k] = share->border[item[k]];
     mpm->grid.cells[share->border[k]].parcel = k;
   }
-  return mpsi_share_parcels(mpm, function);
+  return mpsi_mpm_share_parcels(mpm, function);
 }
 
 static double widest(const search *s) {
@@ -275,7 +275,7 @@ static mps_status join(search *s) {
   return mpsi_domain_settle(share->domain, s->function, find_border(mpm, s->function));
 }
 
-mps_status mpsi_share_join(mps_mpm *mpm, const char *function) {
+mps_status mpsi_mpm_share_join(mps_mpm *mpm, const char *function) {
   mpsi_share *share = mpm->share;
   if (!share->outdated) return MPS_OK;
   search s = {.mpm = mpm, .function = function, .box.context = mpm->context};
@@ -293,11 +293,11 @@ mps_status mpsi_share_join(mps_mpm *mpm, const char *function) {
   return status;
 }
 
-mps_status mpsi_share_sort(mps_mpm *mpm, const char *function) {
+mps_status mpsi_mpm_share_sort(mps_mpm *mpm, const char *function) {
   bool moved = false;
   mpm->share->outdated = true;
   mps_status status = mpsi_mpm_sort_cells(mpm, function);
-  status = mpsi_share_migrate(mpm, function, status, &moved);
+  status = mpsi_mpm_share_migrate(mpm, function, status, &moved);
   if (status != MPS_OK) {
     mpm->run.stale = true;
     return status;
@@ -305,7 +305,7 @@ mps_status mpsi_share_sort(mps_mpm *mpm, const char *function) {
   if (moved) status = mpsi_mpm_sort_cells(mpm, function);
   status = mpsi_domain_settle(mpm->share->domain, function, status);
   if (status != MPS_OK) mpm->run.stale = true;
-  return status == MPS_OK ? mpsi_share_join(mpm, function) : status;
+  return status == MPS_OK ? mpsi_mpm_share_join(mpm, function) : status;
 }
 
 /* ---- the first cut --------------------------------------------------------------------------- */
@@ -316,7 +316,7 @@ static int64_t take_blocks(mps_mpm *mpm, int64_t *rows) {
   const int32_t rank = mps_domain_rank(mpm->share->domain);
   int64_t blocks = 0, count = 0;
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
-    if (mpsi_share_owner(mpm, cells[b].at) != rank) continue;
+    if (mpsi_mpm_share_owner(mpm, cells[b].at) != rank) continue;
     const int64_t begin = count;
     for (int64_t k = cells[b].begin; k < cells[b].end; k++) rows[count++] = k;
     cells[blocks] = cells[b];
@@ -368,8 +368,8 @@ static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status s
   return mpsi_domain_settle_particles(d->domain, function, status, mpm->particles);
 }
 
-mps_status mpsi_share_take(mps_mpm *mpm, const char *function, mps_status status,
-                           mpsi_storage **former) {
+mps_status mpsi_mpm_share_take(mps_mpm *mpm, const char *function, mps_status status,
+                               mpsi_storage **former) {
   mps_domain *domain = mpm->def.domain;
   if (status == MPS_OK) mpm->share = mpsi_alloc(mpm->context, 1, sizeof *mpm->share);
   if (status == MPS_OK && !mpm->share)
@@ -377,16 +377,16 @@ mps_status mpsi_share_take(mps_mpm *mpm, const char *function, mps_status status
   status = compare_ranks(mpm, function, status);
   if (status != MPS_OK) return status;
   *mpm->share = (mpsi_share){.domain = mpsi_domain_retain(domain), .outdated = true};
-  status = mpsi_share_cut(mpm, function, true);
+  status = mpsi_mpm_share_cut(mpm, function, true);
   if (status == MPS_OK)
     status = mpsi_domain_settle(domain, function, keep_own(mpm, function, former));
-  return status == MPS_OK ? mpsi_share_join(mpm, function) : status;
+  return status == MPS_OK ? mpsi_mpm_share_join(mpm, function) : status;
 }
 
-void mpsi_share_free(mps_mpm *mpm) {
+void mpsi_mpm_share_free(mps_mpm *mpm) {
   mpsi_share *share = mpm->share;
   if (!share) return;
-  mpsi_meet_free(mpm);
+  mpsi_mpm_meet_free(mpm);
   mpm->share = NULL;
   mpsi_halo_destroy(mpm->context, &share->halo);
   mpsi_free(mpm->context, share->first);
@@ -398,12 +398,13 @@ void mpsi_share_free(mps_mpm *mpm) {
   mpsi_free(mpm->context, share);
 }
 
-/* ---- before a step ------------------------------------------------------------------------------- */
+/* ---- before a step
+ * ------------------------------------------------------------------------------- */
 
-mps_status mpsi_share_tidy(mps_mpm *mpm, const char *function, mps_status status) {
+mps_status mpsi_mpm_share_tidy(mps_mpm *mpm, const char *function, mps_status status) {
   if (!mpm->run.stale && !mpm->share->outdated) return status;
   status = mpsi_domain_settle(mpm->share->domain, function, status);
   if (status != MPS_OK || mpm->run.stale) return status;
   mpm->boundaries.outdated = true;
-  return mpsi_share_join(mpm, function);
+  return mpsi_mpm_share_join(mpm, function);
 }

@@ -26,17 +26,17 @@ typedef struct mpsi_share {
   bool outdated;           /* the ghosts are not those of the present blocks */
   int64_t borders, ghosts; /* own blocks that others have copies of; copies here */
   int32_t *border;         /* numbers of the blocks of cells */
-  int32_t *order;    /* all of them, colour by colour: first those that no ghost goes before, */
-  int64_t early;     /* so many */
-  int32_t most;      /* nodes of the widest part of a tile in use, on all ranks */
-  bool apart, thin;  /* some tile that is sent has forces, is parted, in the step being made */
-  int32_t item;      /* bytes of a parcel: a tile on its way */
-  double *out, *in;  /* parcels */
-  int64_t *first;    /* of each rank: the first key on the curve of its blocks (curve.h) */
-  int32_t corner[3]; /* block at the curve's lowest corner */
-  double heaviest;   /* particles of the rank that had most, after the last cut */
-  bool cancel;       /* a hook has asked to stop, on whatever rank */
-  mps_status lost;   /* of a message in the step being made */
+  int32_t *order;       /* all of them, colour by colour: first those that no ghost goes before, */
+  int64_t early;        /* so many */
+  int32_t most;         /* nodes of the widest part of a tile in use, on all ranks */
+  bool apart, thin;     /* some tile that is sent has forces, is parted, in the step being made */
+  int32_t item;         /* bytes of a parcel: a tile on its way */
+  double *out, *in;     /* parcels */
+  int64_t *first;       /* of each rank: the first key on the curve of its blocks (curve.h) */
+  int32_t corner[3];    /* block at the curve's lowest corner */
+  double heaviest;      /* particles of the rank that had most, after the last cut */
+  bool cancel;          /* a hook has asked to stop, on whatever rank */
+  mps_status lost;      /* of a message in the step being made */
   mpsi_meeting meeting; /* touches of all ranks: see meet.h */
   mpsi_room border_room, order_room, out_room, in_room;
 } mpsi_share;
@@ -44,57 +44,60 @@ typedef struct mpsi_share {
 /* share.c: leaves a solver that is made, with the whole set on each rank, this rank's share.
  * `status`: what has become of it so far here. Collective, as all of the following but where they
  * say so. */
-mps_status mpsi_share_take(mps_mpm *mpm, const char *function, mps_status status,
-                           mpsi_storage **former);
+mps_status mpsi_mpm_share_take(mps_mpm *mpm, const char *function, mps_status status,
+                               mpsi_storage **former);
 /* Not collective. */
-void mpsi_share_free(mps_mpm *mpm);
+void mpsi_mpm_share_free(mps_mpm *mpm);
 /* owners.c: cuts the curve anew for blocks in grid.cells, which all ranks or (`whole`) each has all
  * of; the owner of a block (not collective). */
-mps_status mpsi_share_cut(mps_mpm *mpm, const char *function, bool whole);
-int32_t mpsi_share_owner(const mps_mpm *mpm, const int32_t *at);
+mps_status mpsi_mpm_share_cut(mps_mpm *mpm, const char *function, bool whole);
+int32_t mpsi_mpm_share_owner(const mps_mpm *mpm, const int32_t *at);
 /* owners.c: particles of blocks of cells that are not this rank's go to their owners; `moved`
  * where some have gone or come. */
-mps_status mpsi_share_migrate(mps_mpm *mpm, const char *function, mps_status status, bool *moved);
+mps_status mpsi_mpm_share_migrate(mps_mpm *mpm, const char *function, mps_status status,
+                                  bool *moved);
 /* share.c: sorts, and finds the ghosts; the latter alone, where they are outdated. */
-mps_status mpsi_share_sort(mps_mpm *mpm, const char *function);
-mps_status mpsi_share_join(mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_share_sort(mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_share_join(mps_mpm *mpm, const char *function);
 /* agree.c: what has become of all ranks, or of the only one. */
-mps_status mpsi_share_settle(mps_mpm *mpm, const char *function, mps_status status);
+mps_status mpsi_mpm_share_settle(mps_mpm *mpm, const char *function, mps_status status);
 /* agree.c: MPS_ERROR_ARGUMENT unless these are particles of the set, on whatever rank; what has
  * become of all before, `status` here, comes first. */
-mps_status mpsi_share_check_ids(mps_mpm *mpm, const char *function, mps_status status,
-                                int64_t count, const int64_t *ids);
+mps_status mpsi_mpm_share_check_ids(mps_mpm *mpm, const char *function, mps_status status,
+                                    int64_t count, const int64_t *ids);
 /* agree.c: MPS_ERROR_UNSUPPORTED for `what` on several ranks. Not collective. */
-mps_status mpsi_share_refuse(const mps_mpm *mpm, const char *function, const char *what);
+mps_status mpsi_mpm_share_refuse(const mps_mpm *mpm, const char *function, const char *what);
 /* agree.c: whether a sum over blocks of nodes counts g here. Not collective. */
-bool mpsi_share_counts(const mps_mpm *mpm, int64_t g);
+bool mpsi_mpm_share_counts(const mps_mpm *mpm, int64_t g);
 
 /* rows.c: as the holder of the set (mpsi_holder): rows by blocks, in the order of one rank. Not
- * collective; after particles have been taken out of the set, on one rank too, the blocks follow. */
-int64_t mpsi_share_runs(const void *mpm, mpsi_row_run *out);
-void mpsi_share_thin_out(mps_mpm *mpm, const uint8_t *gone);
+ * collective; after particles have been taken out of the set, on one rank too, the blocks follow.
+ */
+int64_t mpsi_mpm_share_runs(const void *mpm, mpsi_row_run *out);
+void mpsi_mpm_share_thin_out(mps_mpm *mpm, const uint8_t *gone);
 
 /* share.c: before the blocks are used: sorted or not, ghosts are those of the present ones. */
-mps_status mpsi_share_tidy(mps_mpm *mpm, const char *function, mps_status status);
+mps_status mpsi_mpm_share_tidy(mps_mpm *mpm, const char *function, mps_status status);
 /* agree.c: whether some rank has it. */
-mps_status mpsi_share_any(mps_mpm *mpm, const char *function, bool *any);
+mps_status mpsi_mpm_share_any(mps_mpm *mpm, const char *function, bool *any);
 /* agree.c: what the callers of all ranks have edited. */
-mps_status mpsi_share_agree(mps_mpm *mpm, const char *function, mps_status status);
+mps_status mpsi_mpm_share_agree(mps_mpm *mpm, const char *function, mps_status status);
 /* tiles.c: room for parcels, whatever the step. Not collective. */
-mps_status mpsi_share_parcels(mps_mpm *mpm, const char *function);
-/* tiles.c: corners of cells with particles (pairs.h), of ghosts too: while bodies are looked for. */
-mps_status mpsi_share_reached(mps_mpm *mpm, const char *function, bool known);
+mps_status mpsi_mpm_share_parcels(mps_mpm *mpm, const char *function);
+/* tiles.c: corners of cells with particles (pairs.h), of ghosts too: while bodies are looked for.
+ */
+mps_status mpsi_mpm_share_reached(mps_mpm *mpm, const char *function, bool known);
 /* tiles.c: before a step, all that can fail has been done: the worst of all ranks. */
-mps_status mpsi_share_ready(mps_mpm *mpm, const char *function, mps_status status);
+mps_status mpsi_mpm_share_ready(mps_mpm *mpm, const char *function, mps_status status);
 /* tiles.c: sums the border into tiles and sends them; what has come is there (in a pass). */
-mps_status mpsi_share_send(mps_mpm *mpm, const char *function);
-void mpsi_share_receive(mps_mpm *mpm);
-/* tiles.c: the same for other sums, which `sum` puts into a worker's tile, without forces; then such
- * a tile of block b (not collective), false where messages are lost. */
-void mpsi_share_send_sums(mps_mpm *mpm, void (*sum)(mps_mpm *, int64_t, int32_t));
-bool mpsi_share_take_sums(mps_mpm *mpm, int64_t b, int32_t worker,
-                          void (*sum)(mps_mpm *, int64_t, int32_t));
+mps_status mpsi_mpm_share_send(mps_mpm *mpm, const char *function);
+void mpsi_mpm_share_receive(mps_mpm *mpm);
+/* tiles.c: the same for other sums, which `sum` puts into a worker's tile, without forces; then
+ * such a tile of block b (not collective), false where messages are lost. */
+void mpsi_mpm_share_send_sums(mps_mpm *mpm, void (*sum)(mps_mpm *, int64_t, int32_t));
+bool mpsi_mpm_share_take_sums(mps_mpm *mpm, int64_t b, int32_t worker,
+                              void (*sum)(mps_mpm *, int64_t, int32_t));
 /* tiles.c: a block of cells to its nodes, whoever has summed it. Not collective. */
-void mpsi_share_scatter(mps_mpm *mpm, int64_t b, int32_t worker);
+void mpsi_mpm_share_scatter(mps_mpm *mpm, int64_t b, int32_t worker);
 
 #endif

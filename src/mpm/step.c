@@ -49,7 +49,7 @@ static void warn_about_step(mps_mpm *mpm, double dt) {
 static mps_status prepare(mps_mpm *mpm, const char *function) {
   mps_status status = MPS_OK;
   const bool renewed = mpm->run.stale || (mpm->share && mpm->share->outdated);
-  if (mpm->share) status = mpsi_share_tidy(mpm, function, status);
+  if (mpm->share) status = mpsi_mpm_share_tidy(mpm, function, status);
   if (status == MPS_OK && mpm->run.stale) {
     status = mpsi_mpm_sort(mpm, function);
     mpm->boundaries.outdated = true;
@@ -67,7 +67,7 @@ static mps_status prepare(mps_mpm *mpm, const char *function) {
     return status == MPS_OK ? prepare(mpm, function) : status;
   }
   if (status == MPS_OK) status = mpsi_mpm_find_forces(mpm, function);
-  if (status == MPS_OK) status = mpsi_energy_begin(mpm, function);
+  if (status == MPS_OK) status = mpsi_mpm_energy_begin(mpm, function);
   if (status == MPS_OK) status = mpsi_mpm_begin_balance(mpm, function);
   return status;
 }
@@ -103,20 +103,20 @@ static mps_status move(mps_mpm *mpm, const char *function, double dt, mps_status
                     .between = mpm->contact.bodies > 0 ? mpsi_mpm_find_contact_mass : NULL};
   mpsi_mpm_move_holds(mpm, dt); /* signals --> velocities of walls, boxes */
   if (mpm->share) {
-    const mps_status status = mpsi_share_send(mpm, function);
+    const mps_status status = mpsi_mpm_share_send(mpm, function);
     if (status != MPS_OK) return status;
-    pass.scatter = mpsi_share_scatter;
-    pass.arrive = mpsi_share_receive;
+    pass.scatter = mpsi_mpm_share_scatter;
+    pass.arrive = mpsi_mpm_share_receive;
   }
   if (contacts) { /* no particle moves before all depths are known */
     mpsi_mpm_run_pass(mpm, &pass);
     mpsi_mpm_fit_touches(mpm);
     mps_status status = found;
     if (status == MPS_OK) status = mpsi_mpm_check_depth(mpm, function);
-    if (mpm->share) status = mpsi_meet(mpm, function, status);
+    if (mpm->share) status = mpsi_mpm_meet(mpm, function, status);
     if (status != MPS_OK) return status;
     mpsi_mpm_apply_impulses(mpm);
-    if (mpm->share) mpsi_meet_end(mpm);
+    if (mpm->share) mpsi_mpm_meet_end(mpm);
     pass = (mpsi_pass){.clear = NULL};
   } else {
     mpm->contact.impulses.kept_count = 0;
@@ -133,7 +133,7 @@ static mps_status move(mps_mpm *mpm, const char *function, double dt, mps_status
 mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
   mps_status status = prepare(mpm, function);
   if (status == MPS_OK) status = mpsi_mpm_prepare_undo(mpm, function);
-  if (mpm->share) status = mpsi_share_ready(mpm, function, status);
+  if (mpm->share) status = mpsi_mpm_share_ready(mpm, function, status);
   if (status != MPS_OK) return status;
   mpm->run.dt = dt;
   warn_about_step(mpm, dt);
@@ -141,11 +141,13 @@ mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
   if (status != MPS_OK && !mpm->share) return status;
   status = move(mpm, function, dt, status); /* particles --> nodes --> particles */
   if (status != MPS_OK) return status;
-  mpsi_mpm_sum_holds(mpm);                              /* impulses of nodes --> forces of walls */
-  mpsi_mpm_drive_particles(mpm);                        /* held particles: v, x */
-  if (mpm->def.volumetric != MPS_MPM_VOLUMETRIC_POINT) mpsi_mpm_apply_laws_by_cell(mpm); /* L, V --> sigma by means of cells */
-  bool refused = mpm->laws.refusal.cells != NULL;       /* by a law of the caller's */
-  if (mpm->share && mpm->undo.on && (status = mpsi_share_any(mpm, function, &refused)) != MPS_OK)
+  mpsi_mpm_sum_holds(mpm);       /* impulses of nodes --> forces of walls */
+  mpsi_mpm_drive_particles(mpm); /* held particles: v, x */
+  if (mpm->def.volumetric != MPS_MPM_VOLUMETRIC_POINT)
+    mpsi_mpm_apply_laws_by_cell(mpm);             /* L, V --> sigma by means of cells */
+  bool refused = mpm->laws.refusal.cells != NULL; /* by a law of the caller's */
+  if (mpm->share && mpm->undo.on &&
+      (status = mpsi_mpm_share_any(mpm, function, &refused)) != MPS_OK)
     return status;
   if (refused) {
     mpsi_mpm_undo(mpm);
@@ -153,7 +155,7 @@ mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
     return mpm->share ? mpsi_domain_settle(mpm->share->domain, function, status) : status;
   }
   if (mpm->contact.bodies > 0) mpsi_mpm_update_bodies(mpm); /* contact --> reactions, poses */
-  mpsi_energy_end(mpm);
+  mpsi_mpm_energy_end(mpm);
   mpm->run.moments = true;
   mpm->run.time += dt;
   mpm->run.steps++;

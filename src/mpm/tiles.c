@@ -16,7 +16,7 @@ static int64_t parcel_doubles(const mpsi_share *share, bool apart, bool thin) {
   return HEAD + (int64_t)share->most * (int64_t)(sizeof(mpsi_node) / sizeof(double)) * tiles;
 }
 
-mps_status mpsi_share_parcels(mps_mpm *mpm, const char *function) {
+mps_status mpsi_mpm_share_parcels(mps_mpm *mpm, const char *function) {
   mpsi_share *share = mpm->share;
   const int64_t parcel =
       parcel_doubles(share, true, mpm->contact.thin != 0) * (int64_t)sizeof(double);
@@ -29,11 +29,11 @@ mps_status mpsi_share_parcels(mps_mpm *mpm, const char *function) {
                                  (size_t)((share->borders + share->ghosts) * parcel));
 }
 
-mps_status mpsi_share_ready(mps_mpm *mpm, const char *function, mps_status status) {
+mps_status mpsi_mpm_share_ready(mps_mpm *mpm, const char *function, mps_status status) {
   mpsi_share *share = mpm->share;
   enum { APART, THIN, FOUND };
   double found[FOUND] = {0.0};
-  if (status == MPS_OK) status = mpsi_share_parcels(mpm, function);
+  if (status == MPS_OK) status = mpsi_mpm_share_parcels(mpm, function);
   for (int64_t k = 0; status == MPS_OK && k < share->borders; k++) {
     const mpsi_cell_block *cells = &mpm->grid.cells[share->border[k]];
     if (cells->apart) found[APART] = 1.0;
@@ -50,7 +50,7 @@ mps_status mpsi_share_ready(mps_mpm *mpm, const char *function, mps_status statu
 /* ---- corners of cells with particles, where bodies are near -----------------------------------
  */
 
-mps_status mpsi_share_reached(mps_mpm *mpm, const char *function, bool known) {
+mps_status mpsi_mpm_share_reached(mps_mpm *mpm, const char *function, bool known) {
   mpsi_share *share = mpm->share;
   const int64_t nodes = (mpm->grid.tile_nodes + 63) / 64;
   const int64_t words = nodes + 1; /* whether thin bodies part it; less than a parcel has */
@@ -109,7 +109,7 @@ static void pack(void *data, int64_t k, int32_t number) {
   copy_tiles(cells, worker, parcel + HEAD, true);
 }
 
-mps_status mpsi_share_send(mps_mpm *mpm, const char *function) {
+mps_status mpsi_mpm_share_send(mps_mpm *mpm, const char *function) {
   mpsi_share *share = mpm->share;
   mpsi_parallel_for(mpm->context, share->borders, pack, mpm);
   share->lost = mpsi_halo_begin_bytes(share->halo, function, share->item, share->out, share->in);
@@ -140,7 +140,7 @@ static void pack_sums(void *data, int64_t k, int32_t number) {
             parcel_of(share, false, k), true);
 }
 
-void mpsi_share_send_sums(mps_mpm *mpm, mpsi_mpm_task sum) {
+void mpsi_mpm_share_send_sums(mps_mpm *mpm, mpsi_mpm_task sum) {
   mpsi_share *share = mpm->share;
   sums s = {mpm, sum};
   share->item = (int32_t)(parcel_doubles(share, false, share->thin) * (int64_t)sizeof(double));
@@ -150,7 +150,7 @@ void mpsi_share_send_sums(mps_mpm *mpm, mpsi_mpm_task sum) {
         mpsi_halo_begin_bytes(share->halo, "mps_mpm_step", share->item, share->out, share->in);
 }
 
-bool mpsi_share_take_sums(mps_mpm *mpm, int64_t b, int32_t number, mpsi_mpm_task sum) {
+bool mpsi_mpm_share_take_sums(mps_mpm *mpm, int64_t b, int32_t number, mpsi_mpm_task sum) {
   const mpsi_share *share = mpm->share;
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   if (cells->parcel < 0) {
@@ -163,14 +163,14 @@ bool mpsi_share_take_sums(mps_mpm *mpm, int64_t b, int32_t number, mpsi_mpm_task
   return true;
 }
 
-void mpsi_share_receive(mps_mpm *mpm) {
+void mpsi_mpm_share_receive(mps_mpm *mpm) {
   mpsi_share *share = mpm->share;
   if (share->lost == MPS_OK) share->lost = mpsi_halo_end_bytes(share->halo, "mps_mpm_step");
 }
 
 /* ---- to the nodes ---------------------------------------------------------------------------- */
 
-void mpsi_share_scatter(mps_mpm *mpm, int64_t b, int32_t number) {
+void mpsi_mpm_share_scatter(mps_mpm *mpm, int64_t b, int32_t number) {
   mpsi_share *share = mpm->share;
   mpsi_cell_block *cells = &mpm->grid.cells[b];
   mpsi_worker *worker = &mpm->grid.workers[number];

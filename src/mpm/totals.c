@@ -90,7 +90,7 @@ static void sum_share(const mps_mpm *mpm, mpsi_exact *sum) {
   }
   for (int64_t k = 0; k < mpm->p.count; k++) /* whatever the blocks: it must not change */
     mpsi_exact_add(&sum[MASS], mpm->p.m[k]);
-  mpsi_hold_add_works(mpm, &sum[WORK]);
+  mpsi_mpm_hold_add_works(mpm, &sum[WORK]);
 }
 
 mps_status mps_mpm_get_totals_sized(mps_mpm *mpm, mps_totals *out, size_t size) {
@@ -99,7 +99,7 @@ mps_status mps_mpm_get_totals_sized(mps_mpm *mpm, mps_totals *out, size_t size) 
   const mpsi_energy_sums *e = &mpm->energy.sum;
   mpsi_exact sum[SUMS] = {{{0}}};
   mps_status status = MPS_OK;
-  if (mpm->share) status = mpsi_share_agree(mpm, function, status);
+  if (mpm->share) status = mpsi_mpm_share_agree(mpm, function, status);
   if (status != MPS_OK) return status;
   sum_share(mpm, sum);
   if (mpm->share) status = mpsi_domain_sum_exact(mpm->share->domain, function, SUMS, sum);

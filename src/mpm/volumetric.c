@@ -106,7 +106,7 @@ static support support_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int6
     out.x[c] = (double)base[c] + t;
     mpsi_weights(mpm->def.spline, fmin(fmax(t, least), least + 1.0), out.w[c]);
     for (int i = 0; i <= mpm->def.spline; i++)
-      out.at[c][i] = mpsi_mirror_partner(mpm, cells, c, base[c] + i);
+      out.at[c][i] = mpsi_mpm_mirror_partner(mpm, cells, c, base[c] + i);
   }
   return out;
 }
@@ -269,7 +269,7 @@ static void add_block(mps_mpm *mpm, int64_t b, int32_t number, mpsi_mpm_task sum
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   if (!mpm->share)
     sum(mpm, b, number);
-  else if (!mpsi_share_take_sums(mpm, b, number, sum))
+  else if (!mpsi_mpm_share_take_sums(mpm, b, number, sum))
     return;
   for (int across = 0; across <= cells->thin; across++)
     add_tile(mpm, cells, &mpm->grid.workers[number], across != 0);
@@ -287,8 +287,8 @@ static void run_sums(mps_mpm *mpm, mpsi_mpm_task sum, mpsi_mpm_task add, mpsi_mp
   const mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes,
                           .scatter = add,
                           .gather = gather,
-                          .arrive = mpm->share ? mpsi_share_receive : NULL};
-  if (mpm->share) mpsi_share_send_sums(mpm, sum);
+                          .arrive = mpm->share ? mpsi_mpm_share_receive : NULL};
+  if (mpm->share) mpsi_mpm_share_send_sums(mpm, sum);
   mpsi_mpm_run_pass(mpm, &pass);
 }
 
@@ -302,7 +302,7 @@ static bool has_failed(const mps_mpm *mpm) {
 /* Whether some rank, or the only one, has. */
 static bool on_any(mps_mpm *mpm, bool failed) {
   if (!mpm->share || mpm->share->lost != MPS_OK) return failed;
-  mpm->share->lost = mpsi_share_any(mpm, "mps_mpm_step", &failed);
+  mpm->share->lost = mpsi_mpm_share_any(mpm, "mps_mpm_step", &failed);
   return failed || mpm->share->lost != MPS_OK;
 }
 

@@ -44,7 +44,7 @@ static bool list(mps_mpm *mpm, int64_t *count, int64_t *dashes) {
       if (*count < mpm->boundaries.held_room.capacity) {
         held[*count] = (mpsi_held){.hold = k,
                                    .dash = absorbs ? *dashes : -1,
-                                   .counted = !mpm->share || mpsi_share_counts(mpm, g)};
+                                   .counted = !mpm->share || mpsi_mpm_share_counts(mpm, g)};
         memcpy(held[*count].at, nodes->at, sizeof nodes->at);
       }
       if (absorbs) *dashes += mpm->grid.block_nodes / MPSI_SIDE;
@@ -312,7 +312,8 @@ void mpsi_mpm_sum_holds(mps_mpm *mpm) {
   for (int64_t t = 0; t < mpm->boundaries.held_count; t++) {
     const mpsi_held *held = &mpm->boundaries.held[t];
     if (!held->counted) continue;
-    mpsi_hold_add_impulse(&hold[held->hold], held->impulse, held->moment, held->work, held->count);
+    mpsi_mpm_hold_add_impulse(&hold[held->hold], held->impulse, held->moment, held->work,
+                              held->count);
     mpm->energy.boundaries += held->work;
   }
   mpsi_mpm_sum_mirrors(mpm);
@@ -369,7 +370,7 @@ static void drive_particle(mps_mpm *mpm, mpsi_hold *hold, int64_t k) {
     const int a = (c + 1) % 3, b = (c + 2) % 3;
     moment[c] = x[a] * impulse[b] - x[b] * impulse[a];
   }
-  mpsi_hold_add_impulse(hold, impulse, moment, work, 1);
+  mpsi_mpm_hold_add_impulse(hold, impulse, moment, work, 1);
   mpm->energy.boundaries += work;
   mpm->energy.driven_work += work;
   check_place(mpm, k);

@@ -4,8 +4,8 @@
 #include "fluid_tank.h"
 #include "pthread_executor.h"
 
-/* Positions, velocities, pressures and forces after 80 steps (20 if quick); 5000 particles, two blocks of the
- * preconditioner. */
+/* Positions, velocities, pressures and forces after 80 steps (20 if quick); 5000 particles, two
+ * blocks of the preconditioner. */
 static uint64_t run(const mps_context_def *def) {
   static const char *const names[] = {"id", "position", "velocity", "pressure", NULL};
   mps_context *context = NULL;

@@ -1,6 +1,5 @@
-/* race.c - a race in a parallel loop, on purpose: the thread sanitizer must see it, or its silence about
- * the other tests says nothing. Argument: the executor, "openmp",
- * "threads" or "caller".
+/* race.c - a race in a parallel loop, on purpose: the thread sanitizer must see it, or its silence
+ * about the other tests says nothing. Argument: the executor, "openmp", "threads" or "caller".
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "pthread_executor.h"
 
@@ -11,8 +10,8 @@ typedef struct meeting {
   int64_t count; /* what both threads add to */
 } meeting;
 
-/* Each unit waits for the other, so that each has a thread of its own. Relaxed: the meeting must not
- * order what follows. */
+/* Each unit waits for the other, so that each has a thread of its own. Relaxed: the meeting must
+ * not order what follows. */
 static void add(void *data, int64_t i, int32_t worker) {
   meeting *m = data;
   (void)i, (void)worker;

@@ -230,9 +230,8 @@ static void ground_is_whole_past_an_end(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(columns_press_their_sides),
-                                     cmocka_unit_test(plates_press_one_side),
-                                     cmocka_unit_test(nothing_passes),
-                                     cmocka_unit_test(ground_is_whole_past_an_end)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(columns_press_their_sides), cmocka_unit_test(plates_press_one_side),
+      cmocka_unit_test(nothing_passes), cmocka_unit_test(ground_is_whole_past_an_end)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

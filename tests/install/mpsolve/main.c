@@ -1,6 +1,6 @@
-/* main.c - one source that uses MPSolve and libmps. Both have <mps/context.h>: the compiler searches
- * MPSolve's directory first, and the headers of libmps name one another relatively to themselves.
- * SPDX-License-Identifier: BSD-3-Clause */
+/* main.c - one source that uses MPSolve and libmps. Both have <mps/context.h>: the compiler
+ * searches MPSolve's directory first, and the headers of libmps name one another relatively to
+ * themselves. SPDX-License-Identifier: BSD-3-Clause */
 #include <mps/mps.h> /* MPSolve's */
 
 #include <mps/dynamics.h>
