@@ -1,10 +1,11 @@
 /* pass.c - see pass.h. Blocks that are ready stand in a queue, from which the threads claim some at
- * a time; who does the last that a block waits for puts that block there. A thread that finds
- * nothing ready looks again for some microseconds and then sleeps for a moment; under a caller's
- * executor, which may run the units one after the other, it leaves. All is done when all have left,
- * since who makes a block ready looks at the queue after that. One thread alone goes over the
- * blocks in their order and does for each what it waits for. SPDX-License-Identifier: BSD-3-Clause
- */
+ * a time; who does the last that a block waits for puts that block there. Those that became ready
+ * go before those that were so from the start: their particles and nodes are still in the cache. A
+ * thread that finds nothing ready looks again for some microseconds and then sleeps for a moment;
+ * under a caller's executor, which may run the units one after the other, it leaves. All is done
+ * when all have left, since who makes a block ready looks at the queue after that. One thread alone
+ * goes over the blocks in their order and does for each what it waits for.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_private.h"
 
 #include <stdatomic.h>
@@ -110,10 +111,11 @@ typedef struct flow {
   const mpsi_pass *pass;
   int32_t cells, nodes;
   _Atomic int32_t *scatter_waits, *gather_waits; /* of each block of cells: for how many nodes */
-  _Atomic int32_t *queue;                        /* EMPTY where there is no entry yet */
-  int64_t entries;                               /* that there will be, all in all */
-  _Atomic int64_t head, tail;                    /* of the queue: next to claim, next to fill */
-  _Atomic int32_t held;                          /* blocks of nodes to update before `between` */
+  _Atomic int32_t *queue;     /* first those ready from the start; EMPTY where there is none yet */
+  int64_t starts, entries;    /* ready from the start; that there will be, all in all */
+  _Atomic int64_t begun;      /* of the former, claimed or more */
+  _Atomic int64_t head, tail; /* of the others: next to claim, next to fill */
+  _Atomic int32_t held;       /* blocks of nodes to update before `between` */
 } flow;
 enum { EMPTY = -1 };
 
@@ -171,13 +173,17 @@ static void work_on(flow *f, int32_t entry, int32_t worker) {
     update_nodes(f, entry - 2 * f->cells, worker);
 }
 
-/* Claims some entries that stand one behind the other; returns how many. */
-static int32_t claim(flow *f, int32_t *entry) {
+/* How many to claim of so many. */
+static int64_t portion(const flow *f, int64_t waiting) {
+  const int64_t most = waiting / (4 * f->mpm->grid.worker_count);
+  return most < 1 ? 1 : most > MOST_CLAIMED ? MOST_CLAIMED : most;
+}
+
+/* Claims some entries that became ready one behind the other; returns how many. */
+static int32_t claim_next(flow *f, int32_t *entry) {
   int64_t head = atomic_load_explicit(&f->head, memory_order_relaxed);
   for (;;) {
-    const int64_t waiting = atomic_load_explicit(&f->tail, memory_order_relaxed) - head;
-    int64_t most = waiting / (4 * f->mpm->grid.worker_count);
-    most = most < 1 ? 1 : most > MOST_CLAIMED ? MOST_CLAIMED : most;
+    const int64_t most = portion(f, atomic_load_explicit(&f->tail, memory_order_relaxed) - head);
     int32_t n = 0;
     for (; n < most && head + n < f->entries; n++) {
       entry[n] = atomic_load_explicit(&f->queue[head + n], memory_order_acquire);
@@ -190,14 +196,31 @@ static int32_t claim(flow *f, int32_t *entry) {
   }
 }
 
+/* The same of those that were ready from the start. */
+static int32_t claim_start(flow *f, int32_t *entry) {
+  const int64_t left = f->starts - atomic_load_explicit(&f->begun, memory_order_relaxed);
+  if (left <= 0) return 0;
+  const int64_t most = portion(f, left);
+  const int64_t at = atomic_fetch_add_explicit(&f->begun, most, memory_order_relaxed);
+  int32_t n = 0;
+  for (; n < most && at + n < f->starts; n++)
+    entry[n] = atomic_load_explicit(&f->queue[at + n], memory_order_relaxed);
+  return n;
+}
+
+static bool is_all_claimed(flow *f) {
+  return atomic_load_explicit(&f->head, memory_order_relaxed) == f->entries &&
+         atomic_load_explicit(&f->begun, memory_order_relaxed) >= f->starts;
+}
+
 static void visit(void *data, int64_t unit, int32_t worker) {
   flow *f = data;
   const bool own = mpsi_executor_is_own(f->mpm->context);
   (void)unit;
-  for (int32_t look = 0; atomic_load_explicit(&f->head, memory_order_relaxed) < f->entries;
-       look++) {
+  for (int32_t look = 0; !is_all_claimed(f); look++) {
     int32_t entry[MOST_CLAIMED];
-    const int32_t n = claim(f, entry);
+    int32_t n = claim_next(f, entry);
+    if (n == 0) n = claim_start(f, entry);
     for (int32_t k = 0; k < n; k++) work_on(f, entry[k], worker);
     if (n > 0)
       look = -1;
@@ -222,6 +245,8 @@ static void fill(flow *f) {
   for (int32_t k = 0; f->pass->scatter && k < f->cells; k++)
     if (grid->cells[grid->coloured[k]].waits == 0) put(f, grid->coloured[k]);
   for (int32_t g = 0; !f->pass->scatter && g < f->nodes; g++) put(f, 2 * f->cells + g);
+  f->starts = atomic_load_explicit(&f->tail, memory_order_relaxed);
+  atomic_store_explicit(&f->head, f->starts, memory_order_relaxed);
 }
 
 void mpsi_mpm_run_pass(mps_mpm *mpm, const mpsi_pass *pass) {
