@@ -44,10 +44,11 @@ static void pressure_gradient(const mps_fluid *f, int64_t i, double *gradient) {
 }
 
 /* Share of smoothing and shift: less near the surface, `least` of them in gentle waves, all where
- * the flow is as steep as in breakers. */
+ * the flow is as steep as in breakers; round a body's corner it is as steep without breaking. */
 static double near_surface(const mps_fluid *f, int64_t i, double least) {
   const double *G = f->local[i].gradient, s0 = rate(f);
   if (!f->zone[i] || !(s0 > 0.0)) return 1.0;
+  if (f->company[i] & MPSI_FLUID_NEAR_CORNER) return least;
   const double steep = (G[0] * G[0] + G[1] * G[1] + G[2] * G[2] + G[3] * G[3]) / (s0 * s0);
   return fmin(1.0, least + steep / BREAKING);
 }
