@@ -63,8 +63,9 @@ static inline mps_context_def test_context_defaults(void) {
   return def;
 }
 
-/* Sanitizers, counters and the emulator run some ten times slower, and see in a few steps what they would see
- * in many: there the tests that compare results take fewer steps, and fewer numbers of threads. */
+/* Sanitizers, counters and the emulator run some ten times slower, and see in a few steps what they
+ * would see in many: there the tests that compare results take fewer steps, and fewer numbers of
+ * threads. */
 static inline bool test_quick(void) { return getenv("MPS_TEST_QUICK") != NULL; }
 
 static inline mps_context *test_context(int32_t executor, int32_t threads) {
