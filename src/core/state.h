@@ -43,6 +43,8 @@
 #include <mps/particles.h>
 #include <mps/solver.h>
 
+#include <string.h>
+
 #define MPSI_STATE_NAME 96 /* bytes of an item's name, with the terminating zero */
 
 typedef struct mpsi_state mpsi_state; /* a list */
@@ -176,6 +178,10 @@ struct mps_snapshot {
 
 static inline int64_t mpsi_state_size(mpsi_state_type type) {
   return type == MPSI_STATE_BYTES ? 1 : 8;
+}
+static inline bool mpsi_state_name_ends(const char *name, const char *end) {
+  const size_t n = strlen(name), m = strlen(end);
+  return n >= m && strcmp(name + n - m, end) == 0;
 }
 /* Room for `count` items, and in one of them for rows of a type; contents stay; false: refused. */
 bool mpsi_values_reserve(mps_context *context, mpsi_values *values, int32_t count);

@@ -7,6 +7,7 @@
 
 #include "core/exact.h"
 #include "core/internal.h"
+#include "core/state.h"
 
 #include <mps/domain.h>
 
@@ -58,5 +59,9 @@ typedef struct mpsi_mailbox {
 mps_status mpsi_domain_exchange(mps_domain *domain, const char *function, int32_t count,
                                 const mps_domain_message *messages, mpsi_mailbox *box);
 void mpsi_domain_free_mail(mpsi_mailbox *box); /* not collective */
+
+/* gather.c: the first `rows` of a value's rows on each rank, one behind the other, on rank 0. */
+mps_status mpsi_domain_gather_rows(mps_domain *domain, const char *function, int64_t rows,
+                                   mpsi_value *value);
 
 #endif

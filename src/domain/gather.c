@@ -280,3 +280,25 @@ mps_status mps_domain_gather(mps_domain *domain, mps_particles *particles, mps_p
   mpsi_domain_free_mail(&box);
   return mpsi_domain_settle(domain, __func__, status);
 }
+
+/* ---- rows of a solver's state ---------------------------------------------------------------- */
+
+mps_status mpsi_domain_gather_rows(mps_domain *domain, const char *function, int64_t rows,
+                                   mpsi_value *value) {
+  const int64_t row = value->columns * mpsi_state_size(value->type);
+  const mps_domain_message message = {.rank = 0, .bytes = rows * row, .data = value->data};
+  mpsi_mailbox box;
+  mps_status status = mpsi_domain_exchange(domain, function, 1, &message, &box);
+  if (status == MPS_OK && mps_domain_rank(domain) == 0) {
+    int64_t all = 0;
+    for (int32_t k = 0; k < box.count; k++) all += box.mail[k].bytes / row;
+    if (!mpsi_value_reserve(domain->context, value, value->type, all, value->columns))
+      status = mpsi_fail_memory(domain->context, function, (size_t)(all * row));
+    char *to = value->data;
+    for (int32_t k = 0; status == MPS_OK && k < box.count; to += box.mail[k++].bytes)
+      memcpy(to, box.mail[k].data, (size_t)box.mail[k].bytes);
+    if (status == MPS_OK) value->rows = all;
+  }
+  mpsi_domain_free_mail(&box);
+  return mpsi_domain_settle(domain, function, status);
+}

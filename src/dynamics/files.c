@@ -17,18 +17,13 @@ typedef enum merging {
   ROWS /* of lists in the order of particles; of columns the last rank's */
 } merging;
 
-static bool ends_with(const char *name, const char *end) {
-  const size_t n = strlen(name), m = strlen(end);
-  return n >= m && strcmp(name + n - m, end) == 0;
-}
-
 static merging merging_of(const mpsi_value *value) {
   if (value->agrees) return SAME;
-  if (value->table) return ends_with(value->name, "sites") ? SAME : ROWS;
-  if (strncmp(value->name, "work_", 5) == 0 || ends_with(value->name, "/pushed") ||
-      ends_with(value->name, "/impulse") || ends_with(value->name, "/work"))
+  if (value->table) return mpsi_state_name_ends(value->name, "sites") ? SAME : ROWS;
+  if (strncmp(value->name, "work_", 5) == 0 || mpsi_state_name_ends(value->name, "/pushed") ||
+      mpsi_state_name_ends(value->name, "/impulse") || mpsi_state_name_ends(value->name, "/work"))
     return SUM;
-  return ends_with(value->name, "/particles") ? COUNT : SAME;
+  return mpsi_state_name_ends(value->name, "/particles") ? COUNT : SAME;
 }
 
 /* ---- numbers of list rows that belong to the body ----------------------------------------------
@@ -64,27 +59,6 @@ static const mpsi_dynamics_part *part_of(const mps_dynamics *dynamics, const cha
 
 /* ---- writing --------------------------------------------------------------------------------- */
 
-/* The rows of all ranks, one behind the other, on rank 0. */
-static mps_status gather_rows(mps_dynamics *dynamics, const char *function, mpsi_value *value) {
-  mps_context *context = dynamics->context;
-  const int64_t row = value->columns * mpsi_state_size(value->type);
-  const int64_t rows = dynamics->lead ? value->rows : body_rows(dynamics, value);
-  const mps_domain_message message = {.rank = 0, .bytes = rows * row, .data = value->data};
-  mpsi_mailbox box;
-  mps_status status = mpsi_domain_exchange(dynamics->domain, function, 1, &message, &box);
-  if (status == MPS_OK && mps_domain_rank(dynamics->domain) == 0) {
-    int64_t all = 0, bytes = 0;
-    for (int32_t k = 0; k < box.count; k++) all += box.mail[k].bytes / row;
-    if (!mpsi_value_reserve(context, value, value->type, all, value->columns))
-      status = mpsi_fail_memory(context, function, (size_t)(all * row));
-    for (int32_t k = 0; status == MPS_OK && k < box.count; bytes += box.mail[k++].bytes)
-      memcpy((char *)value->data + bytes, box.mail[k].data, (size_t)box.mail[k].bytes);
-    value->rows = all;
-  }
-  mpsi_domain_free_mail(&box);
-  return mpsi_domain_settle(dynamics->domain, function, status);
-}
-
 static mps_status merge(mps_dynamics *dynamics, const char *function, mpsi_values *state) {
   mps_status status = MPS_OK;
   for (int32_t k = 0; k < state->count && status == MPS_OK; k++) {
@@ -93,7 +67,10 @@ static mps_status merge(mps_dynamics *dynamics, const char *function, mpsi_value
     if (how == SUM)
       status = mpsi_domain_sum_exact(dynamics->domain, function,
                                      (int32_t)(value->rows / MPSI_EXACT_LIMBS), value->data);
-    if (how == ROWS) status = gather_rows(dynamics, function, value);
+    if (how == ROWS)
+      status =
+          mpsi_domain_gather_rows(dynamics->domain, function,
+                                  dynamics->lead ? value->rows : body_rows(dynamics, value), value);
     if (how != COUNT) continue;
     *(int64_t *)value->data = counted(dynamics, part_of(dynamics, value->name));
     status = mpsi_domain_sum(dynamics->domain, function, 1, value->data);

@@ -51,11 +51,8 @@ void mpsi_mpm_find_sight(mps_mpm *mpm, int64_t g) {
     const int32_t b = mpm->contact.node_pair[t].body;
     mpsi_sight *sight = mpm->contact.sight + (int64_t)t * mpm->grid.block_nodes;
     for (int k = 0; k < mpm->grid.block_nodes && mpm->contact.thin >> b & 1; k++) {
-      int place[3];
       double x[3];
-      mpsi_unravel(k, MPSI_SIDE, place);
-      const double local[3] = {place[0], place[1], place[2]};
-      mpsi_node_position(mpm, nodes->at, local, x);
+      mpsi_node_place(mpm, nodes->at, k, x);
       const mpsi_foot foot = mpsi_body_foot(mpm->contact.body[b], x);
       sight[k] = stand(mpm, &foot, x);
       if (sight[k].distance > half) continue;

@@ -18,27 +18,13 @@ typedef struct batch {
 /* ---- active nodes -----------------------------------------------------------------------------
  */
 
-MPSI_INLINE void lane_weights(int spline, mpsi_quad t, mpsi_quad *w) {
-  const mpsi_quad f = t - 1.0, g = 2.0 - t;
-  if (spline == 3) {
-    w[0] = g * g * g * (1.0 / 6.0);
-    w[1] = 2.0 / 3.0 + f * f * (0.5 * f - 1.0);
-    w[2] = 2.0 / 3.0 + g * g * (0.5 * g - 1.0);
-    w[3] = f * f * f * (1.0 / 6.0);
-  } else {
-    w[0] = 0.5 * (0.5 - f) * (0.5 - f);
-    w[1] = 0.75 - f * f;
-    w[2] = 0.5 * (0.5 + f) * (0.5 + f);
-  }
-}
-
 /* Particles [k, k + n) of the chunk, n at most 4. */
 MPSI_INLINE void place_batch(int dim, int spline, const mpsi_places *places, int k, int n,
                              batch *out) {
   mpsi_unravel(places->first[k], MPSI_TILE_SIDE, out->at);
   for (int c = 0; c < dim; c++) {
     const mpsi_quad t = mpsi_get_some(places->t[c] + k, n);
-    lane_weights(spline, t, out->along[c]);
+    mpsi_lane_weights(spline, t, out->along[c]);
     for (int i = 0; i <= spline; i++) out->s[c][i] = (double)i - t;
   }
 }

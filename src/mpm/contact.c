@@ -35,11 +35,9 @@ void mpsi_mpm_apply_friction(mps_mpm *mpm, int64_t g) {
     if (mpm->contact.handle[b]->def.friction == 0.0 || mpm->contact.node_pair[t].mass == 0.0)
       continue;
     for (int k = 0; k < mpm->grid.block_nodes; k++) {
-      int place[3];
+      const double m = node[k][MPSI_MASS];
       double x[3], f[3];
-      mpsi_unravel(k, MPSI_SIDE, place);
-      const double local[3] = {place[0], place[1], place[2]}, m = node[k][MPSI_MASS];
-      mpsi_node_position(mpm, nodes->at, local, x);
+      mpsi_node_place(mpm, nodes->at, k, x);
       const bool rubs =
           mpsi_contact_friction(mpm->contact.handle[b], mpm->dim, &at[k], mpm->contact.mass[b], x,
                                 node[k] + MPSI_VECTOR, side[k] + MPSI_VECTOR, m, mpm->run.dt, f);

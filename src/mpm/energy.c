@@ -115,11 +115,8 @@ static void count_contact(const mps_mpm *mpm, const mpsi_node_block *nodes, int 
     if (at->mass == 0.0) continue;
     out->normal += mpm->run.dt * mpsi_dot3(at->force, v);
     if (mpm->contact.handle[pair->body]->def.friction == 0.0 || pair->mass == 0.0) continue;
-    int place[3];
     double x[3], surface[3], f[3];
-    mpsi_unravel(k, MPSI_SIDE, place);
-    const double local[3] = {place[0], place[1], place[2]};
-    mpsi_node_position(mpm, nodes->at, local, x);
+    mpsi_node_place(mpm, nodes->at, k, x);
     mpsi_body_velocity(&mpm->contact.body[pair->body]->pose, x, surface);
     for (int c = 0; c < 3; c++) f[c] = mpm->run.dt * at->mass * at->slip[c];
     out->friction += mpsi_dot3(f, v);

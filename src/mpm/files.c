@@ -17,11 +17,6 @@ typedef enum merging {
   ROWS    /* of tables that lie on one rank or another */
 } merging;
 
-static bool ends_with(const char *name, const char *end) {
-  const size_t n = strlen(name), m = strlen(end);
-  return n >= m && strcmp(name + n - m, end) == 0;
-}
-
 static merging merging_of(const mpsi_value *value) {
   const char *name = value->name;
   if (value->agrees) return SAME;
@@ -30,32 +25,12 @@ static merging merging_of(const mpsi_value *value) {
   if (strcmp(name, "dashpots") == 0) return ROWS;
   if (strcmp(name, "boundaries_work") == 0) return EXACT;
   if (strncmp(name, "boundary", 8) != 0) return SAME;
-  if (ends_with(name, "/step") || ends_with(name, "/all")) return EXACT;
-  return ends_with(name, "/count") || ends_with(name, "/removed") ? COUNT : SAME;
+  if (mpsi_state_name_ends(name, "/step") || mpsi_state_name_ends(name, "/all")) return EXACT;
+  return mpsi_state_name_ends(name, "/count") || mpsi_state_name_ends(name, "/removed") ? COUNT
+                                                                                        : SAME;
 }
 
 /* ---- writing --------------------------------------------------------------------------------- */
-
-/* Rows of all ranks, one behind the other, on rank 0. */
-static mps_status gather_rows(mps_mpm *mpm, const char *function, mpsi_value *value) {
-  mps_domain *domain = mpm->share->domain;
-  const int64_t row = value->columns * mpsi_state_size(value->type);
-  const mps_domain_message message = {.rank = 0, .bytes = value->rows * row, .data = value->data};
-  mpsi_mailbox box;
-  mps_status status = mpsi_domain_exchange(domain, function, 1, &message, &box);
-  if (status == MPS_OK && mps_domain_rank(domain) == 0) {
-    int64_t all = 0;
-    for (int32_t k = 0; k < box.count; k++) all += box.mail[k].bytes / row;
-    if (!mpsi_value_reserve(mpm->context, value, value->type, all, value->columns))
-      status = mpsi_fail_memory(mpm->context, function, (size_t)(all * row));
-    char *to = value->data;
-    for (int32_t k = 0; status == MPS_OK && k < box.count; to += box.mail[k++].bytes)
-      memcpy(to, box.mail[k].data, (size_t)box.mail[k].bytes);
-    value->rows = all;
-  }
-  mpsi_domain_free_mail(&box);
-  return mpsi_domain_settle(domain, function, status);
-}
 
 static int by_place(const void *left, const void *right) {
   const int64_t *a = left, *b = right;
@@ -71,7 +46,8 @@ static mps_status gather_blocks(mps_mpm *mpm, const char *function, mpsi_value *
   mpsi_block *block = value->data;
   for (int64_t k = 0; k < value->rows; k++)
     block[k][0] = (k + 1 < value->rows ? block[k + 1][0] : mpm->p.count) - block[k][0];
-  const mps_status status = gather_rows(mpm, function, value);
+  const mps_status status =
+      mpsi_domain_gather_rows(mpm->share->domain, function, value->rows, value);
   if (status != MPS_OK || mps_domain_rank(mpm->share->domain) > 0) return status;
   block = value->data;
   qsort(block, (size_t)value->rows, sizeof *block, by_place);
@@ -104,7 +80,7 @@ static mps_status merge(mps_mpm *mpm, const char *function, mpsi_values *state) 
       status = gather_blocks(mpm, function, value);
       break;
     case ROWS:
-      status = gather_rows(mpm, function, value);
+      status = mpsi_domain_gather_rows(domain, function, value->rows, value);
       break;
     }
   }

@@ -38,8 +38,7 @@ static void find_inside_body(mps_mpm *mpm, mpsi_node_block *nodes, int32_t b,
     int place[3];
     double x[3];
     mpsi_unravel(k, MPSI_SIDE, place);
-    const double local[3] = {place[0], place[1], place[2]};
-    mpsi_node_position(mpm, nodes->at, local, x);
+    mpsi_node_place(mpm, nodes->at, k, x);
     const mpsi_foot foot = mpsi_body_foot(mpm->contact.body[b], x);
     const int row = MPSI_SIDE - 1 - place[0]; /* nodes behind this one */
     int same = foot.distance < 0.0 ? same_behind(mpm, -foot.distance - deep)

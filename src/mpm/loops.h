@@ -171,21 +171,26 @@ MPSI_INLINE mpsi_quad mpsi_from_block(const mps_mpm *mpm, const mpsi_cell_block 
   return (x - mpm->def.origin[c]) * mpm->grid.inverse - (double)cells->at[c] * MPSI_SIDE;
 }
 
-/* Weights of four particles along one axis, each times s too. */
+/* Weights of four particles along one axis. */
+MPSI_INLINE void mpsi_lane_weights(int spline, mpsi_quad t, mpsi_quad *w) {
+  const mpsi_quad f = t - 1.0, g = 2.0 - t;
+  if (spline == 3) {
+    w[0] = g * g * g * (1.0 / 6.0);
+    w[1] = 2.0 / 3.0 + f * f * (0.5 * f - 1.0);
+    w[2] = 2.0 / 3.0 + g * g * (0.5 * g - 1.0);
+    w[3] = f * f * f * (1.0 / 6.0);
+  } else {
+    w[0] = 0.5 * (0.5 - f) * (0.5 - f);
+    w[1] = 0.75 - f * f;
+    w[2] = 0.5 * (0.5 + f) * (0.5 + f);
+  }
+}
+
+/* The same, each times s too, for particles of a chunk. */
 MPSI_INLINE void mpsi_axis_weights(int spline, mpsi_quad t, double (*w)[MPSI_COLUMN],
                                    double (*ws)[MPSI_COLUMN]) {
-  const mpsi_quad f = t - 1.0, g = 2.0 - t;
   mpsi_quad a[4];
-  if (spline == 3) {
-    a[0] = g * g * g * (1.0 / 6.0);
-    a[1] = 2.0 / 3.0 + f * f * (0.5 * f - 1.0);
-    a[2] = 2.0 / 3.0 + g * g * (0.5 * g - 1.0);
-    a[3] = f * f * f * (1.0 / 6.0);
-  } else {
-    a[0] = 0.5 * (0.5 - f) * (0.5 - f);
-    a[1] = 0.75 - f * f;
-    a[2] = 0.5 * (0.5 + f) * (0.5 + f);
-  }
+  mpsi_lane_weights(spline, t, a);
   for (int i = 0; i <= spline; i++) {
     mpsi_put(w[i], a[i]);
     mpsi_put(ws[i], a[i] * ((double)i - t));

@@ -113,6 +113,14 @@ static inline void mpsi_node_position(const mps_mpm *mpm, const int32_t *at, con
                : 0.0;
 }
 
+/* The same of node k of the block of nodes at `at`. */
+static inline void mpsi_node_place(const mps_mpm *mpm, const int32_t *at, int k, double *x) {
+  int place[3];
+  mpsi_unravel(k, MPSI_SIDE, place);
+  const double local[3] = {place[0], place[1], place[2]};
+  mpsi_node_position(mpm, at, local, x);
+}
+
 /* Block of nodes under the node (i, j, k) of a tile, and the node's number in it. */
 static inline int32_t mpsi_block_under(const mpsi_cell_block *cells, int i, int j, int k) {
   return cells->to[(i >= MPSI_SIDE) + 2 * (j >= MPSI_SIDE) + 4 * (k >= MPSI_SIDE)];

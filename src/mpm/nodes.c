@@ -53,10 +53,7 @@ static bool read_node(const mps_mpm *mpm, int64_t g, int k, node *out) {
   const double weight = sum[MPSI_MASS] + side[MPSI_EXCESS];
   if (!(weight > 0.0)) return false;
   const double carried = mpm->by_weight ? weight : mpsi_carried_mass(sum[MPSI_MASS], weight);
-  int place[3];
-  mpsi_unravel(k, MPSI_SIDE, place);
-  const double local[3] = {place[0], place[1], place[2]};
-  mpsi_node_position(mpm, nodes->at, local, out->x);
+  mpsi_node_place(mpm, nodes->at, k, out->x);
   out->mass = sum[MPSI_MASS];
   for (int c = 0; c < 3; c++) {
     out->v[c] = c < mpm->dim ? sum[MPSI_VECTOR + c] / carried : 0.0;

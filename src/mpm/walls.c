@@ -136,11 +136,8 @@ typedef void (*hold_fn)(block *b, const mpsi_hold *hold, mpsi_held *held, int k)
 static void set(block *b, const mpsi_hold *hold, mpsi_held *held, int k, int c, double v) {
   double *at = &b->node[k][MPSI_VECTOR + c];
   const double impulse = b->node[k][MPSI_MASS] * (v - *at);
-  int place[3];
   double x[3];
-  mpsi_unravel(k, MPSI_SIDE, place);
-  const double local[3] = {place[0], place[1], place[2]};
-  mpsi_node_position(b->mpm, held->at, local, x);
+  mpsi_node_place(b->mpm, held->at, k, x);
   held->impulse[c] += impulse;
   held->moment[(c + 2) % 3] -= x[(c + 1) % 3] * impulse; /* x cross impulse */
   held->moment[(c + 1) % 3] += x[(c + 2) % 3] * impulse;

@@ -1,6 +1,7 @@
 /* test_domain_elastic.c - implicit elasticity on several ranks, each with its part of the rows:
  * what all of them solve has the bits of one, and an error of one rank is an error of all, before
  * any waits for the others in the solver that they share. SPDX-License-Identifier: BSD-3-Clause */
+#include "conjugate.h"
 #include "ranks_team.h"
 
 #include <mps/elastic_solver.h>
@@ -35,7 +36,8 @@ static mps_status take(void *user, const mps_elastic_matrix *m, size_t size) {
   return s->domain ? mps_domain_agree(s->domain, MPS_OK) : MPS_OK;
 }
 
-static mps_status multiply(const shared *s, const double *x, double *y) {
+static mps_status multiply(const void *matrix, const double *x, double *y) {
+  const shared *s = matrix;
   for (int64_t i = 0; i < s->all; i++) y[i] = -INFINITY;
   for (int64_t i = 0; i < s->rows; i++) {
     double sum = 0.0;
@@ -45,31 +47,9 @@ static mps_status multiply(const shared *s, const double *x, double *y) {
   return s->domain ? mps_domain_max(s->domain, (int32_t)s->all, y) : MPS_OK;
 }
 
-static double dot(int64_t n, const double *a, const double *b) {
-  double sum = 0.0;
-  for (int64_t i = 0; i < n; i++) sum += a[i] * b[i];
-  return sum;
-}
-
 static mps_status solve(void *user, const double *b, double tolerance, double *x,
                         int64_t *iterations) {
-  const shared *s = user;
-  const size_t bytes = (size_t)s->all * sizeof(double);
-  double *r = memcpy(malloc(bytes), b, bytes), *d = memcpy(malloc(bytes), b, bytes);
-  double *q = malloc(bytes), rr = dot(s->all, r, r);
-  const double enough = 0.5 * tolerance * sqrt(rr);
-  mps_status status = MPS_OK;
-  for (; status == MPS_OK && sqrt(rr) > enough && *iterations < 20 * s->all; ++*iterations) {
-    status = multiply(s, d, q);
-    const double step = rr / dot(s->all, d, q), former = rr;
-    for (int64_t i = 0; i < s->all; i++) x[i] += step * d[i], r[i] -= step * q[i];
-    rr = dot(s->all, r, r);
-    for (int64_t i = 0; i < s->all; i++) d[i] = r[i] + rr / former * d[i];
-  }
-  free(r);
-  free(d);
-  free(q);
-  return status;
+  return test_conjugate(((const shared *)user)->all, multiply, user, b, tolerance, x, iterations);
 }
 
 /* ---- a strip, held on the left, under its weight: at rest, then in motion -----------------------

@@ -1,6 +1,7 @@
 /* test_elastic_outside.c - equations of implicit elasticity solved from outside: conjugate
  * gradients of this test in place of the library's solvers, the matrix in parts, answers that are
  * none. SPDX-License-Identifier: BSD-3-Clause */
+#include "conjugate.h"
 #include "elastic_common.h"
 
 #include <mps/elastic_solver.h>
@@ -45,17 +46,13 @@ static mps_status take(void *user, const mps_elastic_matrix *m, size_t size) {
   return MPS_OK;
 }
 
-static void multiply(const plug *p, const double *x, double *y) {
+static mps_status multiply(const void *matrix, const double *x, double *y) {
+  const plug *p = matrix;
   for (int64_t i = 0; i < p->rows; i++) {
     y[i] = 0.0;
     for (int64_t k = p->start[i]; k < p->start[i + 1]; k++) y[i] += p->value[k] * x[p->column[k]];
   }
-}
-
-static double dot(int64_t n, const double *a, const double *b) {
-  double sum = 0.0;
-  for (int64_t i = 0; i < n; i++) sum += a[i] * b[i];
-  return sum;
+  return MPS_OK;
 }
 
 static mps_status solve(void *user, const double *b, double tolerance, double *x,
@@ -65,21 +62,9 @@ static mps_status solve(void *user, const double *b, double tolerance, double *x
   p->solutions++;
   if (p->inside) return mps_elastic_solve(p->inside);
   if (p->rows < p->all) return MPS_OK; /* a part alone solves nothing */
-  double *r = copy(b, (size_t)n, sizeof *r), *q = malloc((size_t)n * sizeof *q);
-  double *d = copy(b, (size_t)n, sizeof *d), rr = dot(n, r, r);
-  const double enough = 0.5 * tolerance * sqrt(rr);
-  for (*iterations = 0; sqrt(rr) > enough && *iterations < 20 * n; ++*iterations) {
-    multiply(p, d, q);
-    const double step = rr / dot(n, d, q), former = rr;
-    for (int64_t i = 0; i < n; i++) x[i] += step * d[i], r[i] -= step * q[i];
-    rr = dot(n, r, r);
-    for (int64_t i = 0; i < n; i++) d[i] = r[i] + rr / former * d[i];
-  }
+  const mps_status status = test_conjugate(n, multiply, p, b, tolerance, x, iterations);
   for (int64_t i = 0; i < n; i++) x[i] *= p->factor_of_answer;
-  free(r);
-  free(q);
-  free(d);
-  return MPS_OK;
+  return status;
 }
 
 static bool stiff(double x, double y) {
