@@ -102,8 +102,8 @@ MPS_API MPS_NODISCARD mps_status mps_domain_max(mps_domain *domain, int32_t coun
  *  0's context with all fields that `particles` has, each id once, in the order that explicit
  *  dynamics and WLS-MPM have without a domain (without a solver: rank after rank). Of an id on
  *  several ranks the highest one's copy counts. *whole NULL: made; else one that this function has
- * filled before, to be filled again: with the same fields and particles, views of it stay good. On
- * other ranks *whole stays NULL. Collective. All ranks have the same fields. */
+ *  filled before, to be filled again: with the same fields and particles, views of it stay good.
+ *  On other ranks *whole stays NULL. Collective. All ranks have the same fields. */
 MPS_API MPS_NODISCARD mps_status mps_domain_gather(mps_domain *domain, mps_particles *particles,
                                                    mps_particles **whole);
 
