@@ -1,0 +1,242 @@
+/* test_mpm_batch.c - particles beside bodies, four of one stencil at once (src/mpm/batch.c), give
+ * to the nodes and take from them what fitted.c gives and takes one by one: to round-off, in all
+ * geometries, with both kernels, at fitted and mirrored walls, beside thin walls and in corners,
+ * and with one to four particles a stencil. SPDX-License-Identifier: BSD-3-Clause */
+#define MPSI_LEVEL                                                                                 \
+  1 /* of what is inline in the headers; nothing in them depends on it for memory */
+#include "mpm_scene.h"
+#include "test_fixture.h"
+
+#include "mpm/loops.h"
+
+/* ---- the functions of the level that the context has ----------------------------------------- */
+
+typedef bool (*scatter_batches_fn)(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *,
+                                   const mpsi_places *, int64_t, int, int);
+typedef bool (*gather_batches_fn)(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *,
+                                  const mpsi_places *, int, int, mpsi_gathered *);
+typedef void (*scatter_fitted_fn)(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *, int64_t);
+typedef void (*gather_fitted_fn)(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *, int64_t,
+                                 mpsi_fitted *);
+typedef struct functions {
+  scatter_batches_fn scatter_batches;
+  gather_batches_fn gather_batches;
+  scatter_fitted_fn scatter_fitted;
+  gather_fitted_fn gather_fitted;
+} functions;
+
+/* Weak: those of a level that this library does not have are NULL. */
+#define DECLARE(level)                                                                             \
+  bool mpsi_mpm_scatter_batches_v##level(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *,  \
+                                         const mpsi_places *, int64_t, int, int)                   \
+      __attribute__((weak));                                                                       \
+  bool mpsi_mpm_gather_batches_v##level(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *,   \
+                                        const mpsi_places *, int, int, mpsi_gathered *)            \
+      __attribute__((weak));                                                                       \
+  void mpsi_mpm_scatter_fitted_v##level(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *,   \
+                                        int64_t) __attribute__((weak));                            \
+  void mpsi_mpm_gather_fitted_v##level(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *,    \
+                                       int64_t, mpsi_fitted *) __attribute__((weak));
+DECLARE(3)
+DECLARE(4)
+#define FUNCTIONS(level)                                                                           \
+  (functions) {                                                                                    \
+    mpsi_mpm_scatter_batches_v##level, mpsi_mpm_gather_batches_v##level,                           \
+        mpsi_mpm_scatter_fitted_v##level, mpsi_mpm_gather_fitted_v##level                          \
+  }
+
+static functions functions_of(const mps_mpm *mpm) {
+  if (mpm->kernels == mpsi_mpm_kernels(1)) return FUNCTIONS(1);
+  return mpm->kernels == mpsi_mpm_kernels(3) ? FUNCTIONS(3) : FUNCTIONS(4);
+}
+
+/* ---- scenes ---------------------------------------------------------------------------------- */
+
+static uint64_t seed = 7;
+
+static double uniform(double low, double high) { /* Knuth's MMIX generator, the upper 53 bits */
+  seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+  return low + (high - low) * (double)(seed >> 11) * 0x1p-53;
+}
+
+#define CELL 0x1p-6 /* m: places on edges of cells are exact */
+enum { CELLS = 20 };
+
+/* A tooth of less than a cell between two gaps in which few nodes are active, and a ball; both cut
+ * by the left wall or close to it. */
+static void add_bodies(mps_mpm *mpm, int dim) {
+  static const double comb[] = {0.02, 0.02, 0.20, 0.02, 0.20, 0.05, 0.13,
+                                0.05, 0.12, 0.16, 0.11, 0.05, 0.02, 0.05};
+  mps_body_def def = mps_body_defaults();
+  mps_body *bodies[2] = {NULL};
+  if (dim == 3) {
+    for (int c = 0; c < 3; c++) def.position[c] = 0.07;
+    def.rotation[0] = 0.4;
+    mps_assert_ok(context, mps_body_create_cylinder(context, &def, 0.012, 0.12, &bodies[0]));
+    def.position[0] = 0.01, def.position[1] = 0.17;
+    mps_assert_ok(context, mps_body_create_sphere(context, &def, 0.05, &bodies[1]));
+  } else {
+    mps_assert_ok(context, mps_body_create_polygon(context, &def, 7, comb, &bodies[0]));
+    def.position[0] = 0.05, def.position[1] = 0.22;
+    mps_assert_ok(context, mps_body_create_disc(context, &def, 0.06, &bodies[1]));
+  }
+  for (int b = 0; b < 2; b++) {
+    mps_contact_def contact = mps_contact_defaults();
+    contact.inside = MPS_CONTACT_INSIDE_PUSH;
+    mps_assert_ok(context, mps_mpm_add_contact(mpm, bodies[b], &contact, NULL));
+    mpm->contact.handle[b]->thin = false; /* cuts supports, as thick bodies do */
+    mps_body_destroy(&bodies[b]);
+  }
+}
+
+/* A third at random places, a third on edges of cells or in their corners, a third where others
+ * are, so that stencils have up to some four. Some are inside the bodies, as after a hard blow. */
+static void add_particles(mpm_scene *s, int dim, int count) {
+  double last[3] = {0.1, 0.1, 0.1};
+  for (int k = 0; k < count; k++) {
+    double x[3];
+    for (int c = 0; c < 3; c++) {
+      x[c] = uniform(0.01, 0.99) * CELLS * CELL;
+      if (k % 3 == 1 && (c == k % dim || k % 2 == 0))
+        x[c] = fmax(round(x[c] / CELL), c == 0) * CELL; /* off the axis */
+      if (k % 3 == 2) x[c] = last[c] + (last[c] < 0.15 ? 0.1 : -0.1) * CELL;
+      last[c] = x[c];
+    }
+    mps_assert_ok(context, mps_particles_append(s->particles, 1, x));
+  }
+}
+
+static mpm_scene scene_of(int32_t geometry, int32_t spline, int32_t walls) {
+  const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
+  mpm_scene s = mpm_scene_begin_in(context, dim, 0.5 * CELL, 0.0, 0.0, 1e6);
+  add_particles(&s, dim, dim == 2 ? 700 : 8000);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.geometry = geometry;
+  def.spline = spline;
+  def.cell = CELL;
+  def.walls = walls;
+  for (int c = 0; c < dim; c++) def.lower[c] = 0.0, def.upper[c] = CELLS * CELL;
+  mpm_scene_solve(&s, &def);
+  mps_assert_ok(context, mpsi_mpm_update_holds(s.mpm, "test"));
+  add_bodies(s.mpm, dim);
+  const int64_t n = s.mpm->p.count;
+  for (int64_t k = 0; k < n; k++) {
+    s.mpm->p.m[k] *= uniform(0.5, 1.5);
+    for (int c = 0; c < dim; c++) s.mpm->p.v[c][k] = uniform(-1.0, 1.0);
+    for (int c = 0; c < dim * dim; c++) s.mpm->p.L[c][k] = uniform(-9.0, 9.0);
+    for (int c = 0; c < 2 * dim; c++) s.mpm->p.s[c][k] = uniform(-1e3, 1e3);
+  }
+  s.mpm->def.gravity[1] = -9.81;
+  mps_assert_ok(context, mpsi_mpm_find_near(s.mpm, "test", MPS_OK));
+  s.mpm->run.dt = 1e-4;
+  return s;
+}
+
+/* ---- a stencil ------------------------------------------------------------------------------- */
+
+typedef struct compared {
+  int64_t batches[5]; /* by the number of their particles */
+  double scatter, gather, at_least;
+} compared;
+
+static void clear_tiles(const mps_mpm *mpm, const mpsi_worker *worker) {
+  memset(worker->tile, 0, (size_t)mpm->grid.tile_nodes * sizeof *worker->tile);
+  memset(worker->force, 0, (size_t)mpm->grid.tile_nodes * sizeof *worker->force);
+}
+
+/* Largest difference of two tiles, of masses (kg) over that of a particle, and of the rest over the
+ * largest value. */
+static double difference(const mps_mpm *mpm, double (*one)[4], double (*other)[4]) {
+  double mass = 0.0, rest = 0.0, size = 0.0;
+  for (int64_t n = 0; n < mpm->grid.tile_nodes; n++) {
+    mass = fmax(mass, fabs(one[n][0] - other[n][0]));
+    for (int c = 1; c < 4; c++) {
+      rest = fmax(rest, fabs(one[n][c] - other[n][c]));
+      size = fmax(size, fabs(one[n][c]));
+    }
+  }
+  return fmax(mass / mpm->p.m[0], size > 0.0 ? rest / size : rest);
+}
+
+static void compare_scatter(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_places *places,
+                            int64_t chunk, int begin, int end, compared *out) {
+  static double batch[2][MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE][4];
+  const functions by = functions_of(mpm);
+  const mpsi_worker *worker = &mpm->grid.workers[0];
+  const int64_t nodes = mpm->grid.tile_nodes;
+  clear_tiles(mpm, worker);
+  if (!by.scatter_batches(mpm, cells, worker, places, chunk, begin, end)) return;
+  memcpy(batch[0], worker->tile, (size_t)nodes * sizeof *worker->tile);
+  memcpy(batch[1], worker->force, (size_t)nodes * sizeof *worker->force);
+  clear_tiles(mpm, worker);
+  for (int k = begin; k < end; k++) by.scatter_fitted(mpm, cells, worker, chunk + k);
+  out->scatter = fmax(out->scatter, difference(mpm, worker->tile, batch[0]));
+  out->scatter = fmax(out->scatter, difference(mpm, worker->force, batch[1]));
+  out->batches[end - begin < 4 ? end - begin : 4]++;
+}
+
+static void compare_gather(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_places *places,
+                           int64_t chunk, int begin, int end, compared *out) {
+  const functions by = functions_of(mpm);
+  const mpsi_worker *worker = &mpm->grid.workers[0];
+  mpsi_gathered batch;
+  for (int64_t n = 0; n < mpm->grid.tile_nodes; n++)
+    for (int c = 0; c < 4; c++) worker->tile[n][c] = uniform(-1.0, 1.0);
+  if (!by.gather_batches(mpm, cells, worker, places, begin, end, &batch)) return;
+  for (int k = begin; k < end; k++) {
+    mpsi_fitted one = {.own = {0.0}};
+    by.gather_fitted(mpm, cells, worker, chunk + k, &one);
+    for (int c = 0; c < mpm->dim; c++) {
+      out->gather = fmax(out->gather, fabs(batch.v[c][k] - one.v[MPSI_VECTOR + c]));
+      for (int d = 0; d < mpm->dim; d++) {
+        const int at = mpm->dim * c + d;
+        const double slope = fabs(batch.slope[at][k] - one.slope[d][MPSI_VECTOR + c]);
+        const double rise = fabs(batch.derivative[at][k] - one.derivative[d][MPSI_VECTOR + c]);
+        out->gather = fmax(out->gather, CELL * fmax(slope, rise));
+      }
+    }
+  }
+}
+
+static void compare_block(mps_mpm *mpm, const mpsi_cell_block *cells, compared *out) {
+  mpsi_mpm_find_states(mpm, cells, &mpm->grid.workers[0]);
+  for (int64_t chunk = cells->begin; chunk < cells->end; chunk += MPSI_CHUNK) {
+    const int n = cells->end - chunk < MPSI_CHUNK ? (int)(cells->end - chunk) : MPSI_CHUNK;
+    mpsi_places places;
+    mpsi_find_places(mpm, cells, mpm->dim, mpm->def.spline, chunk, n, &places);
+    for (int k = 0, end; k < n; k = end) {
+      for (end = k + 1; end < n && places.first[end] == places.first[k];) end++;
+      compare_scatter(mpm, cells, &places, chunk, k, end, out);
+      compare_gather(mpm, cells, &places, chunk, k, end, out);
+    }
+  }
+}
+
+/* ---- tests ----------------------------------------------------------------------------------- */
+
+static void batches_do_as_the_fit(void **state) {
+  (void)state;
+  for (int variant = 0; variant < 24; variant++) {
+    const int32_t geometry = variant / 8, spline = 2 + variant % 2;
+    mpm_scene s =
+        scene_of(geometry, spline, variant & 2 ? MPS_MPM_WALLS_MIRROR : MPS_MPM_WALLS_FIT);
+    compared c = {.scatter = 0.0};
+    s.mpm->run.moments = (variant & 4) != 0; /* spins of particles beside bodies */
+    for (int64_t b = 0; b < s.mpm->grid.cell_count; b++)
+      if (s.mpm->grid.cells[b].cut) compare_block(s.mpm, &s.mpm->grid.cells[b], &c);
+    print_message("%d, spline %d, walls %d, moments %d: %lld %lld %lld %lld batches, scatter %.2g, "
+                  "gather %.2g\n",
+                  geometry, spline, s.mpm->def.walls, s.mpm->run.moments, (long long)c.batches[1],
+                  (long long)c.batches[2], (long long)c.batches[3], (long long)c.batches[4],
+                  c.scatter, c.gather);
+    for (int n = 1; n <= 4; n++) assert_true(c.batches[n] >= 7);
+    assert_true(c.scatter <= 1e-12);
+    assert_true(c.gather <= 1e-13);
+    mpm_scene_end(&s);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(batches_do_as_the_fit)};
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
