@@ -231,8 +231,6 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
     status = mpsi_contact_new(mpm->context, __func__, body, def, &owner_of_contacts, mpm, &contact);
   if (status == MPS_OK && contact->def.method == MPS_CONTACT_METHOD_PENALTY)
     status = mpsi_mpm_share_refuse(mpm, __func__, "contact by the penalty (method 1)");
-  if (status == MPS_OK && mpsi_has_strength(contact))
-    status = mpsi_mpm_share_refuse(mpm, __func__, "adhesion or strength of a contact");
   status = compare_ranks(mpm, __func__, status, contact);
   if (status != MPS_OK) {
     give_up(contact);

@@ -180,6 +180,7 @@ void mpsi_mpm_free_impulses(mps_mpm *mpm) {
   mpsi_impulses *all = &mpm->contact.impulses;
   void *rooms[] = {all->touch_room.item, all->block_room.item,     all->weight_room.item,
                    all->node_room.item,  all->candidate_room.item, all->kept_room.item,
-                   all->next_room.item,  all->lookup_room.item,    all->area_room.item};
+                   all->next_room.item,  all->lookup_room.item,    all->area_room.item,
+                   all->around_room.item};
   for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(mpm->context, rooms[k]);
 }

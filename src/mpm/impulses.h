@@ -20,12 +20,14 @@ typedef struct mpsi_touch {
   int64_t id;        /* and what it keeps when the particles are sorted */
   int64_t pair;      /* of contact.cell_pair; -1: of another rank (meet.h), as its particle */
   int32_t body, part, nodes;
+  int32_t areas; /* nodes whose areas it shares, around[k * stride] and on (areas.c) */
 } mpsi_touch;
 
 /* The touches of a block of cells: neighbours in the list. */
 typedef struct mpsi_touch_block {
   int64_t first, count;
   int32_t cells; /* -1: of another rank */
+  int32_t at[3]; /* of the cells */
 } mpsi_touch_block;
 
 /* What a body gave to a particle in the last step. */
@@ -40,6 +42,10 @@ typedef struct mpsi_area {
   double area; /* m2, of the measure */
   double touches;
 } mpsi_area;
+typedef struct mpsi_area_share {
+  mpsi_area *node;
+  double weight;
+} mpsi_area_share;
 
 typedef struct mpsi_impulses {
   mpsi_touch *touch;
@@ -57,22 +63,24 @@ typedef struct mpsi_impulses {
   double kept_dt;  /* s, of that step */
   int32_t *lookup; /* by particle and body: index into `kept`, or -1; lookup_mask + 1 of them */
   uint64_t lookup_mask;
-  mpsi_area *area;    /* as contact.node; */
-  int64_t area_count; /* 0 where no contact has a strength or an adhesion */
+  bool areas;      /* some contact has a strength or an adhesion */
+  mpsi_area *area; /* as contact.node; on several ranks see meet.h */
+  int64_t area_count;
   int64_t area_first; /* block of the colour in work */
-  double surface;     /* J, of the step: work of the surfaces, */
-  double loss;        /* and that less what the nodes received */
+  mpsi_area_share *around;
+  double surface; /* J, of the step: work of the surfaces, */
+  double loss;    /* and that less what the nodes received */
   mpsi_room touch_room, block_room, weight_room, node_room, candidate_room, kept_room, next_room,
-      lookup_room, area_room;
+      lookup_room, area_room, around_room;
 } mpsi_impulses;
 
 /* touches.c: before anything moves, what may touch in a step of mpm->run.dt, and room for it; then,
  * the masses of the nodes known, the touches with their weights, and how deep particles are. */
 mps_status mpsi_mpm_find_touches(mps_mpm *mpm, const char *function);
 void mpsi_mpm_fit_touches(mps_mpm *mpm);
-/* areas.c: room for the areas of the step; these; and what each touch may bear in shear by its
- * share of them, touches being pressed as they now are. */
-bool mpsi_mpm_area_room(mps_mpm *mpm);
+/* areas.c: room for the areas of the step and for those of so many touches; these; and what each
+ * touch may bear in shear by its share of them, touches being pressed as they now are. */
+bool mpsi_mpm_area_room(mps_mpm *mpm, int64_t touches);
 void mpsi_mpm_find_areas(mps_mpm *mpm);
 void mpsi_mpm_share_areas(mps_mpm *mpm);
 /* touches.c: what mirrors give with the impulses of a step. */

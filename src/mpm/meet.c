@@ -1,6 +1,7 @@
-/* meet.c - see meet.h. A message has one entry for each block of cells with touches: its head, the
- * nodes that they use, each once, and the touches, each followed by the numbers of its nodes in
- * that list and by its weights, one or (in blocks at mirrors) three a node.
+/* meet.c - see meet.h. A message has one entry for each block of cells with touches or areas: its
+ * head, the nodes that the touches use, each once, the touches, each followed by the numbers of its
+ * nodes in that list and by its weights, one or (in blocks at mirrors) three a node, and the areas
+ * that its particles stand for (areas.c).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "meet.h"
 
@@ -19,7 +20,13 @@ typedef struct head {
   int64_t bytes;  /* of the entry */
   int64_t nodes, touches;
   int64_t components; /* of a weight: 1, 3 */
+  int64_t areas;
 } head;
+
+typedef struct named_area {
+  int32_t place, body;
+  double area;
+} named_area;
 
 typedef struct named_node {
   int64_t place; /* under the tile; see PLACES */
@@ -45,9 +52,15 @@ static int place_under(const mps_mpm *mpm, const mpsi_cell_block *cells, const d
 
 static int64_t index_bytes(int64_t nodes) { return (nodes + 1) / 2 * 8; }
 
-static int64_t entry_bytes(const mps_mpm *mpm, const mpsi_touch_block *block) {
+/* At most. `block`: NULL where there are areas alone. */
+static int64_t entry_bytes(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                           const mpsi_touch_block *block) {
   const mpsi_impulses *all = &mpm->contact.impulses;
   int64_t bytes = (int64_t)sizeof(head), nodes = 0;
+  for (int32_t q = 0; q < cells->pairs && all->areas; q++)
+    if (mpsi_has_strength(mpm->contact.handle[mpm->contact.cell_pair[cells->first_pair + q].body]))
+      bytes += mpm->grid.tile_nodes * (int64_t)sizeof(named_area);
+  if (!block) return bytes;
   for (int64_t n = block->first; n < block->first + block->count; n++) {
     nodes += all->touch[n].nodes;
     bytes += (int64_t)sizeof(mpsi_touch) + index_bytes(all->touch[n].nodes);
@@ -89,20 +102,45 @@ static char *write_touch(const mps_mpm *mpm, const mpsi_cell_block *cells, int64
   return to;
 }
 
-static char *write_block(const mps_mpm *mpm, const mpsi_touch_block *block, char *to) {
+static char *write_touches(const mps_mpm *mpm, const mpsi_touch_block *block, head *h, char *to) {
   const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
-  const int32_t *at = cells->at;
   int32_t number[2 * PLACES];
+  h->nodes = name_nodes(mpm, block, number, (named_node *)to);
+  h->touches = block->count;
+  to += h->nodes * (int64_t)sizeof(named_node);
+  for (int64_t n = block->first; n < block->first + block->count; n++)
+    to = write_touch(mpm, cells, n, number, h->components, to);
+  return to;
+}
+
+static char *write_areas(const mps_mpm *mpm, const mpsi_cell_block *cells, head *h, char *to) {
+  double tile[MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE];
+  named_area *out = (named_area *)to;
+  for (int32_t q = 0; q < cells->pairs && mpm->contact.impulses.areas; q++) {
+    const mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
+    if (!mpsi_mpm_sum_areas(mpm, pair, tile)) continue;
+    for (int k = 0; k < mpm->grid.tile_nodes; k++) {
+      int at[3];
+      if (!(tile[k] > 0.0)) continue;
+      mpsi_unravel(k, MPSI_TILE_SIDE, at);
+      out[h->areas++] = (named_area){under_index(at[0], at[1], at[2]), pair->body, tile[k]};
+    }
+  }
+  return to + h->areas * (int64_t)sizeof *out;
+}
+
+/* `block`: NULL where there are areas alone. Returns `to` where there are none either. */
+static char *write_block(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                         const mpsi_touch_block *block, char *to) {
+  const int32_t *at = cells->at;
   head h = {.colour = (at[0] & 1) | (at[1] & 1) << 1 | (at[2] & 1) << 2,
-            .cells = block->cells,
-            .touches = block->count,
+            .cells = cells - mpm->grid.cells,
             .components = cells->mirrors ? 3 : 1};
   memcpy(h.at, at, sizeof h.at);
   char *end = to + sizeof h;
-  h.nodes = name_nodes(mpm, block, number, (named_node *)end);
-  end += h.nodes * (int64_t)sizeof(named_node);
-  for (int64_t n = block->first; n < block->first + block->count; n++)
-    end = write_touch(mpm, cells, n, number, h.components, end);
+  if (block) end = write_touches(mpm, block, &h, end);
+  end = write_areas(mpm, cells, &h, end);
+  if (h.touches == 0 && h.areas == 0) return to;
   h.bytes = end - to;
   memcpy(to, &h, sizeof h);
   return end;
@@ -124,7 +162,7 @@ typedef struct meeting {
   const char *own;
   int64_t own_bytes;
   entry *entry;
-  int64_t entries, touches, nodes; /* nodes: of all entries */
+  int64_t entries, touches, nodes; /* nodes: of all entries, and their areas */
 } meeting;
 
 static const char *message_of(const meeting *m, int32_t k, int64_t *bytes) {
@@ -144,7 +182,7 @@ static void read_entries(meeting *m) {
       if (m->entry) m->entry[m->entries] = e;
       m->entries++;
       m->touches += e.h.touches;
-      m->nodes += e.h.nodes;
+      m->nodes += e.h.nodes + e.h.areas;
       at += e.h.bytes;
     }
   }
@@ -169,7 +207,8 @@ static bool make_room(meeting *m, int64_t slots) {
          mpsi_room_ensure(context, &r->node, m->touches * all->stride, sizeof *all->node) &&
          mpsi_room_ensure(context, &r->met, m->nodes, sizeof(mpsi_met_node)) &&
          mpsi_room_ensure(context, &r->lookup, slots, sizeof(int32_t)) &&
-         mpsi_room_ensure(context, &all->next_room, m->touches, sizeof *all->kept);
+         mpsi_room_ensure(context, &all->next_room, m->touches, sizeof *all->kept) &&
+         mpsi_mpm_area_room(m->mpm, m->touches);
 }
 
 /* The node here, or NULL. */
@@ -197,30 +236,64 @@ static double *find_home(const mps_mpm *mpm, const int32_t *at, bool across) {
   return grid->node[mpsi_first_node(mpm, across ? grid->nodes[low].across : low) + local];
 }
 
+/* Where in the lookup the node is, or would be. */
+static int64_t slot_of(const mpsi_meeting *r, const int32_t *at, int32_t kind) {
+  const mpsi_met_node *met = r->met.item;
+  const int32_t *lookup = r->lookup.item;
+  uint64_t key = (uint64_t)kind;
+  for (int c = 0; c < 3; c++) key = (key ^ (uint32_t)at[c]) * UINT64_C(0x9E3779B97F4A7C15);
+  int64_t slot = (int64_t)(key >> 20) & (r->slots - 1);
+  while (lookup[slot] >= 0 &&
+         (memcmp(met[lookup[slot]].at, at, sizeof met->at) != 0 || met[lookup[slot]].kind != kind))
+    slot = (slot + 1) & (r->slots - 1);
+  return slot;
+}
+
 /* The node of all ranks at `at`; where none is yet, one with these values. */
-static mpsi_met_node *meet_node(meeting *m, const int32_t *at, int32_t across, const double *value,
-                                int64_t slots) {
+static mpsi_met_node *meet_node(meeting *m, const int32_t *at, int32_t kind, const double *value) {
   mpsi_meeting *r = &m->mpm->share->meeting;
   mpsi_met_node *met = r->met.item;
   int32_t *lookup = r->lookup.item;
-  uint64_t key = (uint64_t)across;
-  for (int c = 0; c < 3; c++) key = (key ^ (uint32_t)at[c]) * UINT64_C(0x9E3779B97F4A7C15);
-  int64_t slot = (int64_t)(key >> 20) & (slots - 1);
-  while (lookup[slot] >= 0 && (memcmp(met[lookup[slot]].at, at, sizeof met->at) != 0 ||
-                               met[lookup[slot]].across != across))
-    slot = (slot + 1) & (slots - 1);
+  const int64_t slot = slot_of(r, at, kind);
   if (lookup[slot] >= 0) return &met[lookup[slot]];
   mpsi_met_node *node = &met[r->nodes];
   memcpy(node->at, at, sizeof node->at);
   memcpy(node->value, value, sizeof node->value);
-  node->across = across;
-  node->home = find_home(m->mpm, at, across != 0);
+  node->kind = kind;
+  node->home = kind < MPSI_MET_AREA ? find_home(m->mpm, at, kind == MPSI_MET_ACROSS) : NULL;
   lookup[slot] = (int32_t)r->nodes++;
   return node;
 }
 
+static void place_of(const int32_t *block, int place, int32_t *at) {
+  at[0] = block[0] * MPSI_SIDE + place % UNDER;
+  at[1] = block[1] * MPSI_SIDE + place / UNDER % UNDER;
+  at[2] = block[2] * MPSI_SIDE + place / UNDER / UNDER;
+}
+
+mpsi_area *mpsi_mpm_met_area(const mps_mpm *mpm, const int32_t *block, const int *at,
+                             int32_t body) {
+  const mpsi_meeting *r = &mpm->share->meeting;
+  int32_t place[3];
+  place_of(block, under_index(at[0], at[1], at[2]), place);
+  const int32_t found = ((const int32_t *)r->lookup.item)[slot_of(r, place, MPSI_MET_AREA + body)];
+  return found < 0 ? NULL : &((mpsi_met_node *)r->met.item)[found].area;
+}
+
+/* The areas of an entry, to those of others. */
+static void take_areas(meeting *m, const head *h, const char *from) {
+  static const double none[4] = {0.0};
+  for (int64_t k = 0; k < h->areas; k++, from += sizeof(named_area)) {
+    named_area named;
+    int32_t at[3];
+    memcpy(&named, from, sizeof named);
+    place_of(h->at, named.place, at);
+    meet_node(m, at, MPSI_MET_AREA + named.body, none)->area.area += named.area;
+  }
+}
+
 /* The touches of an entry behind those that are there. */
-static void take_entry(meeting *m, const entry *e, int64_t slots, int64_t first) {
+static void take_entry(meeting *m, const entry *e, int64_t first) {
   mpsi_impulses *all = &m->mpm->contact.impulses;
   const named_node *named = (const named_node *)e->data;
   const char *from = e->data + e->h.nodes * (int64_t)sizeof *named;
@@ -235,16 +308,16 @@ static void take_entry(meeting *m, const entry *e, int64_t slots, int64_t first)
     for (int32_t i = 0; i < touch->nodes; i++, from += components * sizeof(double)) {
       const int place = (int)named[index[i]].place % PLACES;
       const int32_t across = (int32_t)(named[index[i]].place / PLACES);
-      const int32_t at[3] = {e->h.at[0] * MPSI_SIDE + place % UNDER,
-                             e->h.at[1] * MPSI_SIDE + place / UNDER % UNDER,
-                             e->h.at[2] * MPSI_SIDE + place / UNDER / UNDER};
+      int32_t at[3];
+      place_of(e->h.at, place, at);
       double *weight = all->weight[n * all->stride + i];
       all->node[n * all->stride + i] =
-          meet_node(m, at, across, named[index[i]].value, slots)->value;
+          meet_node(m, at, across ? MPSI_MET_ACROSS : MPSI_MET_NODE, named[index[i]].value)->value;
       memcpy(weight, from, components * sizeof(double));
       for (size_t c = components; c < 3; c++) weight[c] = weight[0];
     }
   }
+  take_areas(m, &e->h, from);
 }
 
 static void join_touches(meeting *m, int64_t slots) {
@@ -252,6 +325,7 @@ static void join_touches(meeting *m, int64_t slots) {
   mpsi_impulses *all = &mpm->contact.impulses;
   mpsi_meeting *r = &mpm->share->meeting;
   memset(r->lookup.item, -1, (size_t)slots * sizeof(int32_t));
+  r->slots = slots;
   r->nodes = 0;
   all->touch = r->touch.item;
   all->block = r->block.item;
@@ -265,10 +339,12 @@ static void join_touches(meeting *m, int64_t slots) {
     all->block[all->block_count++] = (mpsi_touch_block){.first = all->touch_count,
                                                         .count = e->h.touches,
                                                         .cells = e->own ? (int32_t)e->h.cells : -1};
-    take_entry(m, e, slots, all->touch_count);
+    memcpy(all->block[all->block_count - 1].at, e->h.at, sizeof e->h.at);
+    take_entry(m, e, all->touch_count);
     all->touch_count += e->h.touches;
   }
   while (colour <= MPSI_CORNERS) all->colour[colour++] = all->block_count;
+  mpsi_mpm_find_areas(mpm);
 }
 
 static mps_status join(meeting *m) {
@@ -291,24 +367,53 @@ static mps_status join(meeting *m) {
 
 /* ---- a step ---------------------------------------------------------------------------------- */
 
+/* Blocks of cells in the order of the colours that have touches, which `next` is the first of, or
+ * may have areas. */
+static const mpsi_touch_block *touches_of(const mpsi_impulses *all, int32_t cells, int64_t *next) {
+  if (*next == all->block_count || all->block[*next].cells != cells) return NULL;
+  return &all->block[(*next)++];
+}
+
+static int64_t message_bytes(const mps_mpm *mpm) {
+  const mpsi_grid *grid = &mpm->grid;
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  int64_t bytes = 0, next = 0;
+  for (int64_t i = 0; i < grid->cell_count; i++) {
+    const mpsi_touch_block *block = touches_of(all, grid->coloured[i], &next);
+    const mpsi_cell_block *cells = &grid->cells[grid->coloured[i]];
+    if (block || (all->areas && cells->pairs > 0 && !cells->ghost))
+      bytes += entry_bytes(mpm, cells, block);
+  }
+  return bytes;
+}
+
+static char *write_blocks(const mps_mpm *mpm, char *to) {
+  const mpsi_grid *grid = &mpm->grid;
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  int64_t next = 0;
+  for (int64_t i = 0; i < grid->cell_count; i++) {
+    const mpsi_touch_block *block = touches_of(all, grid->coloured[i], &next);
+    const mpsi_cell_block *cells = &grid->cells[grid->coloured[i]];
+    if (block || (all->areas && cells->pairs > 0 && !cells->ghost))
+      to = write_block(mpm, cells, block, to);
+  }
+  return to;
+}
+
 /* This rank's message, the same to each of the others, which `list` names. */
 static mps_status write_message(meeting *m, mps_domain_message **list, int32_t *count) {
   mps_mpm *mpm = m->mpm;
-  const mpsi_impulses *all = &mpm->contact.impulses;
   mps_domain *domain = mpm->share->domain;
   mpsi_room *mail = &mpm->share->meeting.mail;
-  int64_t bytes = 0;
+  const int64_t bytes = message_bytes(mpm);
   *count = 0;
-  for (int64_t k = 0; k < all->block_count; k++) bytes += entry_bytes(mpm, &all->block[k]);
-  if (all->block_count == 0) return MPS_OK;
+  if (bytes == 0) return MPS_OK;
   *list = mpsi_alloc(mpm->context, mps_domain_size(domain), sizeof **list);
   if (!*list || !mpsi_room_ensure(mpm->context, mail, bytes, 1))
     return mpsi_fail_memory(mpm->context, m->function, (size_t)bytes);
-  char *end = mail->item;
-  for (int64_t k = 0; k < all->block_count; k++) end = write_block(mpm, &all->block[k], end);
   m->own = mail->item;
-  m->own_bytes = end - m->own;
-  for (int32_t r = 0; r < mps_domain_size(domain); r++)
+  m->own_bytes = write_blocks(mpm, mail->item) - m->own;
+  for (int32_t r = 0; r < mps_domain_size(domain) && m->own_bytes > 0; r++)
     if (r != mps_domain_rank(domain))
       (*list)[(*count)++] = (mps_domain_message){.rank = r, .bytes = m->own_bytes, .data = m->own};
   return MPS_OK;

@@ -8,20 +8,25 @@
 #ifndef MPSI_MPM_MEET_H
 #define MPSI_MPM_MEET_H
 
-#include "core/room.h"
+#include "impulses.h"
 
 #include <mps/mpm.h>
 
-/* A node that some touch uses: its values, as all ranks move them, and where it is here. */
+/* A node that some touch uses: its values, as all ranks move them, and where it is here; or the
+ * surface that soil covers there (areas.c). */
+enum { MPSI_MET_NODE, MPSI_MET_ACROSS, MPSI_MET_AREA }; /* and on, of each body */
 typedef struct mpsi_met_node {
-  int32_t at[3];  /* of the whole grid */
-  int32_t across; /* 1: its values across a thin body (across.h) */
-  double value[4];
+  int32_t at[3]; /* of the whole grid */
+  int32_t kind;  /* MPSI_MET_..., ACROSS: its values across a thin body (across.h) */
+  union {
+    double value[4];
+    mpsi_area area;
+  };
   double *home; /* of grid.node, or NULL: of another rank */
 } mpsi_met_node;
 
 typedef struct mpsi_meeting {
-  int64_t nodes;
+  int64_t nodes, slots; /* of `met`, of `lookup` */
   mpsi_room touch, block, weight, node, met, lookup, kept, mail, list;
 } mpsi_meeting;
 
@@ -31,6 +36,9 @@ typedef struct mpsi_meeting {
 mps_status mpsi_mpm_meet(mps_mpm *mpm, const char *function, mps_status status);
 /* After the sweeps: velocities to the nodes that are here. Not collective. */
 void mpsi_mpm_meet_end(mps_mpm *mpm);
+/* The area at the node `at` under the tile of a block of cells, or NULL: soil covers nothing there.
+ * Not collective. */
+mpsi_area *mpsi_mpm_met_area(const mps_mpm *mpm, const int32_t *block, const int *at, int32_t body);
 void mpsi_mpm_meet_free(mps_mpm *mpm);
 
 #endif

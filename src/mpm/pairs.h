@@ -66,6 +66,8 @@ void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker);
 /* The same on their way between ranks: to bits of the tile, from which they are marked. */
 void mpsi_mpm_list_reached(const mps_mpm *mpm, int64_t b, uint64_t *bits);
 void mpsi_mpm_take_reached(mps_mpm *mpm, int64_t b, const uint64_t *bits);
+/* areas.c: the areas that particles of the pair stand for, to nodes of the tile; false: none. */
+bool mpsi_mpm_sum_areas(const mps_mpm *mpm, const mpsi_cell_pair *pair, double *tile);
 /* contact.c: normal forces of all bodies on a block of nodes; friction; what the bodies feel, and
  * their motion. */
 void mpsi_mpm_apply_contact(mps_mpm *mpm, int64_t g);

@@ -156,8 +156,11 @@ static void list_blocks(mps_mpm *mpm) {
       for (int32_t q = 0; q < cells->pairs; q++)
         count += mpm->contact.cell_pair[cells->first_pair + q].candidates;
       if (count == 0) continue;
-      all->block[all->block_count++] = (mpsi_touch_block){
-          .first = all->touch_count, .count = count, .cells = mpm->grid.coloured[i]};
+      all->block[all->block_count++] =
+          (mpsi_touch_block){.first = all->touch_count,
+                             .count = count,
+                             .cells = mpm->grid.coloured[i],
+                             .at = {cells->at[0], cells->at[1], cells->at[2]}};
       all->touch_count += count;
     }
   }
@@ -184,7 +187,7 @@ mps_status mpsi_mpm_find_touches(mps_mpm *mpm, const char *function) {
          mpsi_room_ensure(context, &all->weight_room, n * all->stride, sizeof *all->weight) &&
          mpsi_room_ensure(context, &all->node_room, n * all->stride, sizeof *all->node) &&
          mpsi_room_ensure(context, &all->next_room, n, sizeof *all->kept) &&
-         mpsi_mpm_index_impulses(mpm) && mpsi_mpm_area_room(mpm);
+         mpsi_mpm_index_impulses(mpm) && mpsi_mpm_area_room(mpm, n);
   if (!good) {
     all->touch_count = all->block_count = 0;
     return mpsi_fail_memory(context, function,
@@ -344,5 +347,5 @@ static void fit_block(void *data, int64_t unit, int32_t worker) {
 
 void mpsi_mpm_fit_touches(mps_mpm *mpm) {
   mpsi_parallel_for(mpm->context, mpm->contact.impulses.block_count, fit_block, mpm);
-  mpsi_mpm_find_areas(mpm);
+  if (!mpm->share) mpsi_mpm_find_areas(mpm);
 }
