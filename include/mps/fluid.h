@@ -305,7 +305,8 @@ typedef struct mps_fluid_report {
   int64_t surface, apart; /* particles at the surface; isolated ones, in free fall */
   int64_t iterations;     /* of the last pressure solution */
   int64_t all_iterations; /* of all */
-  int64_t collisions;     /* pairs that came closer than l0/2 and shared their momentum */
+  int64_t collisions;     /* pairs that came closer than l0/2 and shared their momentum, and
+                             particles that struck a wall */
   int64_t limited;        /* velocities cut to what the neighbours have */
   int64_t pushed;         /* particles put back on a wall's inner side (within .1 l0) */
   int64_t bytes;          /* memory besides the fields */

@@ -110,7 +110,7 @@ typedef struct mpsi_fluid_local {
   double qs;              /* reduced pressure of the surface there, Pa */
 } mpsi_fluid_local;
 
-/* Whether a particle has images among its neighbours, neighbours within l0/2, a body's corner
+/* Whether a particle has images among its neighbours, neighbours within .7 l0, a body's corner
  * within 1.5 l0, and neighbours in other blocks of the matrix. */
 enum {
   MPSI_FLUID_NEAR_IMAGES = 1,
@@ -118,7 +118,7 @@ enum {
   MPSI_FLUID_NEAR_CORNER = 4,
   MPSI_FLUID_NEAR_OTHERS = 8
 };
-#define MPSI_FLUID_CLOSE 0.5 /* l0 */
+#define MPSI_FLUID_CLOSE 0.7 /* l0 */
 
 enum { MPSI_FLUID_INSIDE = 0, MPSI_FLUID_SURFACE = 1, MPSI_FLUID_APART = 2 };
 

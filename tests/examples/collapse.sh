@@ -25,6 +25,11 @@ picture "$work/moving/front.png" 1200x560 1f4e8c c0392b
 in_range "$work/impact/summary.json" impact_mean 0.5014 0.5886
 in_range "$work/impact/summary.json" impact_rise 2.4 2.7
 in_range "$work/impact/summary.json" impact_second_time 6 6.8
+# Of a thin jet the first maximum must not be a collision (Buchner .69, water at rest .8).
+"$1/mps-dam-break" --method mps --impact --h 0.04 --threads 1 --frames 0 --out "$work/jet" >"$work/log"
+in_range "$work/jet/summary.json" impact_mean 0.5014 0.5886
+in_range "$work/jet/summary.json" impact_first 0.3 1
+in_range "$work/jet/summary.json" impact_second_time 6 6.8
 picture "$work/impact/pressure.png" 1000x520 1f4e8c
 head -n 1 "$work/dam/front.csv" | grep -q '^t_s,T,Z,Z_experiment,tau,H,H_experiment,' ||
   fail "header of front.csv"
