@@ -158,6 +158,7 @@ static inline mps_status add_bodies(mps_context *own, mps_domain *domain, int wh
   for (int k = 0; k < (what == CONE ? 2 : BODIES); k++) {
     mps_contact_def def = mps_contact_defaults();
     def.friction = 0.2 + 0.2 * k;
+    if (what == (k == 0 ? PRESS : CONE)) def.method = MPS_CONTACT_METHOD_PENALTY;
     if (k == 1 && what != CONE) def.adhesion = 500.0, def.strength = 4e3;
     if (what == PLATES) def.inside = MPS_CONTACT_INSIDE_REMOVE, def.thin = k < 2;
     if (status == MPS_OK) status = make_body(own, what, k, &s->body[k]);

@@ -92,6 +92,7 @@ typedef struct mpsi_worker {
   void *memory;
   mpsi_node *tile, *force;               /* force, and excess mass: where they are apart */
   mpsi_node *across_tile, *across_force; /* the same of what thin bodies part (across.h) */
+  struct mpsi_spring_node *springs;      /* of each body: see springs.c */
   uint32_t *inside;                      /* bit b: in body b */
   uint8_t *state;                        /* MPSI_... bits, 0: free */
 } mpsi_worker;

@@ -229,8 +229,6 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
   if (status == MPS_OK) status = check_overlap(mpm, __func__, body);
   if (status == MPS_OK)
     status = mpsi_contact_new(mpm->context, __func__, body, def, &owner_of_contacts, mpm, &contact);
-  if (status == MPS_OK && contact->def.method == MPS_CONTACT_METHOD_PENALTY)
-    status = mpsi_mpm_share_refuse(mpm, __func__, "contact by the penalty (method 1)");
   status = compare_ranks(mpm, __func__, status, contact);
   if (status != MPS_OK) {
     give_up(contact);

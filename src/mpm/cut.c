@@ -118,6 +118,10 @@ static mps_status find_cut(mps_mpm *mpm, const char *function) {
 }
 
 mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status status) {
+  if (!mpsi_mpm_spring_room(mpm) && status == MPS_OK)
+    status = mpsi_fail_memory(mpm->context, function,
+                              (size_t)(mpm->contact.bodies * mpm->grid.tile_nodes) *
+                                  sizeof(mpsi_spring_node));
   static const mpsi_pass pass = {.update = mpsi_mpm_find_inside, .gather = mpsi_mpm_mark_reached};
   if (mpm->contact.bodies > 0) {
     if (status == MPS_OK) status = mpsi_mpm_list_pairs(mpm, function);

@@ -252,9 +252,18 @@ static mpsi_contact_node *contact_node_of(const mps_mpm *mpm, int32_t g, int loc
   return &mpm->contact.node[(int64_t)t * mpm->grid.block_nodes + local];
 }
 
+/* The node of the tile whose sums a node of the stencil takes part in. */
+static int tile_node_of(const mpsi_support *s, int i, int j, int k) {
+  const int side = MPSI_SIDE, plane = side * side;
+  return mpsi_tile_index((s->corner[0][i] ? side : 0) + s->local[0][i],
+                         (s->corner[1][j] ? side : 0) + s->local[1][j] / side,
+                         (s->corner[2][k] ? side : 0) + s->local[2][k] / plane);
+}
+
 /* Normal force and slip of a particle against one body, Nakamura (28)-(30). */
-MPSI_INLINE void scatter_contact(mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
-                                 int64_t p, const support *at, const mpsi_shape_values *f,
+MPSI_INLINE void scatter_contact(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                 const mpsi_worker *worker, int dim, int spline, int64_t p,
+                                 const support *at, const mpsi_shape_values *f,
                                  mpsi_cell_pair *pair) {
   const mps_body *body = mpm->contact.body[pair->body];
   mpsi_contact_particle c;
@@ -269,8 +278,8 @@ MPSI_INLINE void scatter_contact(mps_mpm *mpm, const mpsi_cell_block *cells, int
   mpsi_contact_add_load(&pair->load[c.part], arm, reaction);
   MPSI_FOR_NODES(dim, spline) {
     if (f->w[n] == 0.0) continue;
-    mpsi_contact_node *to = contact_node_of(mpm, mpsi_support_block(cells, &at->nodes, i, j, k),
-                                            mpsi_support_local(&at->nodes, i, j, k), pair->body);
+    mpsi_spring_node *to =
+        mpsi_mpm_spring_tile(mpm, worker, pair->body) + tile_node_of(&at->nodes, i, j, k);
     const double mass = mpm->p.m[p] * f->phi[n];
     double slip[3] = {0.0}, force[3] = {0.0};
     for (int a = 0; a < dim; a++) slip[a] = mass * c.slip[a], force[a] = f->phi[n] * c.force[a];
@@ -333,7 +342,8 @@ MPSI_INLINE void scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells, const 
   scatter(mpm, cells, worker, dim, spline, particle, &at, &f, bodies);
   for (int32_t q = 0; bodies && q < cells->pairs; q++) {
     mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
-    if (bodies >> pair->body & 1) scatter_contact(mpm, cells, dim, spline, particle, &at, &f, pair);
+    if (bodies >> pair->body & 1)
+      scatter_contact(mpm, cells, worker, dim, spline, particle, &at, &f, pair);
   }
 }
 

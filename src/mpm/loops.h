@@ -243,7 +243,7 @@ typedef struct mpsi_gathered {
 /* ---- fitted.c: particles whose support is cut -------------------------------------------------
  */
 
-/* Gives a particle to the tiles; at bodies also what contact needs to the nodes, straight. */
+/* Gives a particle to the tiles; at bodies also what contact needs to those of springs. */
 void MPSI_LEVELLED(mpsi_mpm_scatter_fitted)(mps_mpm *mpm, const mpsi_cell_block *cells,
                                             const mpsi_worker *worker, int64_t particle);
 /* What the nodes give to a particle: lanes 1 to 3 of each are components of the velocity. */

@@ -18,8 +18,7 @@ mps_status mps_grid_get_info_sized(mps_grid *grid, mps_grid_info *out, size_t si
 
 /* Sums of mass, momentum and force at the nodes. */
 static mps_status make_sums(mps_mpm *mpm, const char *function) {
-  const mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes,
-                          .scatter = mpm->kernels->p2g[mpm->def.geometry][mpm->def.spline - 2]};
+  const mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes, .scatter = mpsi_mpm_scatter_springs};
   mps_status status = mpsi_mpm_share_refuse(mpm, function, "nodes of the grid");
   if (status == MPS_OK) status = mpsi_mpm_tidy(mpm, function);
   if (status == MPS_OK && mpm->run.stale) {

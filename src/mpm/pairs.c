@@ -3,6 +3,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_private.h"
 
+#include <string.h>
+
 /* Half the diagonal of a tile or block of `side` nodes an axis, in cells, and a little for
  * round-off: a body that has a node of it inside is no further than that from its centre. */
 static double half_diagonal(const mps_mpm *mpm, int side) {
@@ -109,10 +111,19 @@ mps_status mpsi_mpm_list_pairs(mps_mpm *mpm, const char *function) {
 }
 
 void mpsi_mpm_find_contact_mass(mps_mpm *mpm) {
-  double *mass = mpm->contact.mass;
-  for (int32_t b = 0; b < mpm->contact.bodies; b++) mass[b] = 0.0;
+  mpsi_exact sum[MPS_MPM_MAX_CONTACTS];
+  bool any = false;
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) any = any || asks_for_mass(mpm, b);
+  if (!any) return;
+  memset(sum, 0, sizeof sum);
   for (int64_t t = 0; t < mpm->contact.node_pair_count; t++) {
     const mpsi_node_pair *pair = &mpm->contact.node_pair[t];
-    if (asks_for_mass(mpm, pair->body)) mass[pair->body] += pair->mass;
+    if (asks_for_mass(mpm, pair->body) && (!mpm->share || mpsi_mpm_share_counts(mpm, pair->nodes)))
+      mpsi_exact_add(&sum[pair->body], pair->mass);
   }
+  if (mpm->share && mpm->share->lost == MPS_OK)
+    mpm->share->lost =
+        mpsi_domain_sum_exact(mpm->share->domain, "mps_mpm_step", mpm->contact.bodies, sum);
+  for (int32_t b = 0; b < mpm->contact.bodies; b++)
+    mpm->contact.mass[b] = mpsi_exact_value(&sum[b]);
 }

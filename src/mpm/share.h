@@ -29,7 +29,8 @@ typedef struct mpsi_share {
   int32_t *order;       /* all of them, colour by colour: first those that no ghost goes before, */
   int64_t early;        /* so many */
   int32_t most;         /* nodes of the widest part of a tile in use, on all ranks */
-  bool apart, thin;     /* some tile that is sent has forces, is parted, in the step being made */
+  bool apart, thin;     /* some tile that is sent has forces, is parted, in the step being made; */
+  int32_t springs;      /* of so many bodies are there tiles of springs with one, at most */
   int32_t item;         /* bytes of a parcel: a tile on its way */
   double *out, *in;     /* parcels */
   int64_t *first;       /* of each rank: the first key on the curve of its blocks (curve.h) */

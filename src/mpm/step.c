@@ -98,9 +98,11 @@ static mps_status move(mps_mpm *mpm, const char *function, double dt, mps_status
   const bool contacts = mpm->contact.cell_pair_count > 0 || (mpm->share && mpm->contact.bodies > 0);
   const int32_t geometry = mpm->def.geometry, spline = mpm->def.spline - 2;
   mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes,
-                    .scatter = mpm->kernels->p2g[geometry][spline],
+                    .scatter = mpm->contact.springs > 0 ? mpsi_mpm_scatter_springs
+                                                        : mpm->kernels->p2g[geometry][spline],
                     .update = mpsi_mpm_update_nodes,
-                    .between = mpm->contact.bodies > 0 ? mpsi_mpm_find_contact_mass : NULL};
+                    .between =
+                        mpm->contact.bodies > 0 && !mpm->share ? mpsi_mpm_find_contact_mass : NULL};
   mpsi_mpm_move_holds(mpm, dt); /* signals --> velocities of walls, boxes */
   if (mpm->share) {
     const mps_status status = mpsi_mpm_share_send(mpm, function);
@@ -110,6 +112,7 @@ static mps_status move(mps_mpm *mpm, const char *function, double dt, mps_status
   }
   if (contacts) { /* no particle moves before all depths are known */
     mpsi_mpm_run_pass(mpm, &pass);
+    if (mpm->share) mpsi_mpm_find_contact_mass(mpm); /* of all ranks */
     mpsi_mpm_fit_touches(mpm);
     mps_status status = found;
     if (status == MPS_OK) status = mpsi_mpm_check_depth(mpm, function);

@@ -3,7 +3,8 @@
  *
  * A parcel has three numbers, whether its forces are apart, whether they are split and whether thin
  * bodies part it, and then the part of the tile that is in use, that of the forces where some tile
- * of the step has them, and both across thin bodies (across.h) where some tile has these.
+ * of the step has them, both across thin bodies (across.h) where some tile has these, and those of
+ * springs, body by body (springs.c).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
 
@@ -11,15 +12,16 @@
 
 enum { HEAD = 3 }; /* doubles */
 
-static int64_t parcel_doubles(const mpsi_share *share, bool apart, bool thin) {
-  const int64_t tiles = (1 + apart) * (1 + thin);
-  return HEAD + (int64_t)share->most * (int64_t)(sizeof(mpsi_node) / sizeof(double)) * tiles;
+static int64_t parcel_doubles(const mpsi_share *share, bool apart, bool thin, int32_t springs) {
+  const int64_t bytes = (1 + apart) * (1 + thin) * (int64_t)sizeof(mpsi_node) +
+                        springs * (int64_t)sizeof(mpsi_spring_node);
+  return HEAD + (int64_t)share->most * (bytes / (int64_t)sizeof(double));
 }
 
 mps_status mpsi_mpm_share_parcels(mps_mpm *mpm, const char *function) {
   mpsi_share *share = mpm->share;
-  const int64_t parcel =
-      parcel_doubles(share, true, mpm->contact.thin != 0) * (int64_t)sizeof(double);
+  const int64_t parcel = parcel_doubles(share, true, mpm->contact.thin != 0, mpm->contact.springs) *
+                         (int64_t)sizeof(double);
   const bool good = mpsi_room_ensure(mpm->context, &share->out_room, share->borders * parcel, 1) &&
                     mpsi_room_ensure(mpm->context, &share->in_room, share->ghosts * parcel, 1);
   share->out = share->out_room.item;
@@ -31,19 +33,23 @@ mps_status mpsi_mpm_share_parcels(mps_mpm *mpm, const char *function) {
 
 mps_status mpsi_mpm_share_ready(mps_mpm *mpm, const char *function, mps_status status) {
   mpsi_share *share = mpm->share;
-  enum { APART, THIN, FOUND };
+  enum { APART, THIN, SPRINGS, FOUND };
   double found[FOUND] = {0.0};
   if (status == MPS_OK) status = mpsi_mpm_share_parcels(mpm, function);
   for (int64_t k = 0; status == MPS_OK && k < share->borders; k++) {
     const mpsi_cell_block *cells = &mpm->grid.cells[share->border[k]];
     if (cells->apart) found[APART] = 1.0;
     if (cells->thin) found[THIN] = 1.0;
+    double springs = 0.0;
+    for (int32_t q = 0; q < cells->pairs; q++) springs += mpsi_mpm_has_springs(mpm, cells, q);
+    found[SPRINGS] = fmax(found[SPRINGS], springs);
   }
   status = mpsi_domain_settle_max(share->domain, function, status, FOUND, found);
   share->apart = found[APART] > 0.0;
   share->thin = found[THIN] > 0.0;
-  share->item =
-      (int32_t)(parcel_doubles(share, share->apart, share->thin) * (int64_t)sizeof(double));
+  share->springs = (int32_t)found[SPRINGS];
+  share->item = (int32_t)(parcel_doubles(share, share->apart, share->thin, share->springs) *
+                          (int64_t)sizeof(double));
   return status;
 }
 
@@ -74,26 +80,42 @@ mps_status mpsi_mpm_share_reached(mps_mpm *mpm, const char *function, bool known
 
 /* ---- packing --------------------------------------------------------------------------------- */
 
-/* The part of a tile in use to or from a parcel, which it ends behind. */
-static double *copy_tile(const mpsi_cell_block *cells, mpsi_node *tile, double *parcel, bool pack) {
-  const size_t bytes = (size_t)(cells->high[0] - cells->low[0]) * sizeof *tile;
+/* The part of a tile in use, nodes of `size` bytes, to or from a parcel, which it ends behind. */
+static double *copy_nodes(const mpsi_cell_block *cells, void *tile, size_t size, double *parcel,
+                          bool pack) {
+  const size_t bytes = (size_t)(cells->high[0] - cells->low[0]) * size;
   for (int k = cells->low[2]; k < cells->high[2]; k++)
     for (int j = cells->low[1]; j < cells->high[1]; j++) {
-      mpsi_node *row = tile + mpsi_tile_index(cells->low[0], j, k);
+      char *row = (char *)tile + (size_t)mpsi_tile_index(cells->low[0], j, k) * size;
       memcpy(pack ? (void *)parcel : (void *)row, pack ? (void *)row : (void *)parcel, bytes);
       parcel += bytes / sizeof *parcel;
     }
   return parcel;
 }
 
+static double *copy_tile(const mpsi_cell_block *cells, mpsi_node *tile, double *parcel, bool pack) {
+  return copy_nodes(cells, tile, sizeof *tile, parcel, pack);
+}
+
 /* Tiles and those across; those of forces where they are apart. */
-static void copy_tiles(const mpsi_cell_block *cells, const mpsi_worker *worker, double *parcel,
-                       bool pack) {
+static double *copy_tiles(const mpsi_cell_block *cells, const mpsi_worker *worker, double *parcel,
+                          bool pack) {
   parcel = copy_tile(cells, worker->tile, parcel, pack);
   if (cells->apart) parcel = copy_tile(cells, worker->force, parcel, pack);
-  if (!cells->thin) return;
+  if (!cells->thin) return parcel;
   parcel = copy_tile(cells, worker->across_tile, parcel, pack);
-  if (cells->apart) copy_tile(cells, worker->across_force, parcel, pack);
+  if (cells->apart) parcel = copy_tile(cells, worker->across_force, parcel, pack);
+  return parcel;
+}
+
+static void copy_springs(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                         const mpsi_worker *worker, double *parcel, bool pack) {
+  for (int32_t q = 0; q < cells->pairs; q++)
+    if (mpsi_mpm_has_springs(mpm, cells, q))
+      parcel = copy_nodes(
+          cells,
+          mpsi_mpm_spring_tile(mpm, worker, mpm->contact.cell_pair[cells->first_pair + q].body),
+          sizeof(mpsi_spring_node), parcel, pack);
 }
 
 static void pack(void *data, int64_t k, int32_t number) {
@@ -102,11 +124,13 @@ static void pack(void *data, int64_t k, int32_t number) {
   mpsi_worker *worker = &mpm->grid.workers[number];
   const mpsi_cell_block *cells = &mpm->grid.cells[share->border[k]];
   double *parcel = share->out + k * (share->item / (int64_t)sizeof *share->out);
+  mpsi_mpm_clear_springs(mpm, cells, worker);
   mpm->kernels->tile[mpm->def.geometry][mpm->def.spline - 2](mpm, share->border[k], number);
   parcel[0] = cells->apart;
   parcel[1] = cells->split;
   parcel[2] = cells->thin;
-  copy_tiles(cells, worker, parcel + HEAD, true);
+  parcel = copy_tiles(cells, worker, parcel + HEAD, true);
+  copy_springs(mpm, cells, worker, parcel, true);
 }
 
 mps_status mpsi_mpm_share_send(mps_mpm *mpm, const char *function) {
@@ -143,7 +167,7 @@ static void pack_sums(void *data, int64_t k, int32_t number) {
 void mpsi_mpm_share_send_sums(mps_mpm *mpm, mpsi_mpm_task sum) {
   mpsi_share *share = mpm->share;
   sums s = {mpm, sum};
-  share->item = (int32_t)(parcel_doubles(share, false, share->thin) * (int64_t)sizeof(double));
+  share->item = (int32_t)(parcel_doubles(share, false, share->thin, 0) * (int64_t)sizeof(double));
   mpsi_parallel_for(mpm->context, share->borders, pack_sums, &s);
   if (share->lost == MPS_OK)
     share->lost =
@@ -175,7 +199,7 @@ void mpsi_mpm_share_scatter(mps_mpm *mpm, int64_t b, int32_t number) {
   mpsi_cell_block *cells = &mpm->grid.cells[b];
   mpsi_worker *worker = &mpm->grid.workers[number];
   if (cells->parcel < 0) {
-    mpm->kernels->p2g[mpm->def.geometry][mpm->def.spline - 2](mpm, b, number);
+    mpsi_mpm_scatter_springs(mpm, b, number);
     return;
   }
   if (cells->ghost && share->lost != MPS_OK) return; /* the step has failed */
@@ -184,6 +208,8 @@ void mpsi_mpm_share_scatter(mps_mpm *mpm, int64_t b, int32_t number) {
   cells->apart = parcel[0] != 0.0;
   cells->split = parcel[1] != 0.0;
   cells->thin = parcel[2] != 0.0;
-  copy_tiles(cells, worker, parcel + HEAD, false);
+  parcel = copy_tiles(cells, worker, parcel + HEAD, false);
+  copy_springs(mpm, cells, worker, parcel, false);
   mpm->kernels->flush(mpm, b, number);
+  mpsi_mpm_add_springs(mpm, cells, worker);
 }
