@@ -17,13 +17,19 @@
  * Between steps particles may be edited, added (at rest, at least .3 l0 inside of all walls) and
  * removed (not the last one), and pass open sides; what they bring or take of energy is no work.
  *
+ * Ranks (mps/domain.h; docs/cluster.md) each make the same whole fluid, with the same boundaries,
+ * bodies, loads and edits, and keep all of it; what a step finds for each particle they share. All
+ * functions are collective but those that only tell numbers: limit, dt, time, steps, particles,
+ * definition, totals, report and reactions. mps_fluid_save writes one file, by rank 0.
+ *
  * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
- * its results are the same bit for bit for every number of threads.
+ * its results are the same bit for bit for every number of threads and ranks.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_FLUID_H
 #define LIBMPS_FLUID_H
 
 #include "body.h"
+#include "domain.h"
 #include "io.h"
 #include "particles.h"
 #include "signal.h"
@@ -48,6 +54,7 @@ typedef struct mps_fluid_def {
   double radius_ratio; /* re/l0, in [2.6, 4]; default 3.1 */
   double tolerance;    /* of the pressure solution, |residual|/|right side|, in [1e-14, 1e-2];
                           default 1e-5 */
+  mps_domain *domain;  /* ranks that share the work; NULL (default): none. Kept alive */
 } mps_fluid_def;
 
 MPS_API mps_status mps_fluid_def_init(mps_fluid_def *def, size_t size);

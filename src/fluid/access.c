@@ -1,7 +1,7 @@
 /* access.c - what the other files ask of the solver object: whether it may be used, whether a step
  * may have a size, its energy; and loops over its particles by all threads.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid_private.h"
+#include "share.h"
 
 mps_status mpsi_fluid_free(mps_fluid *f, const char *function) {
   return mpsi_guard_check(&f->guard, f->context, function);
@@ -56,5 +56,5 @@ static void unit_of_work(void *data, int64_t unit, int32_t worker) {
 
 void mpsi_fluid_for(mps_fluid *f, int64_t items, int64_t chunk, mpsi_fluid_task task) {
   work w = {f, task, items, chunk};
-  mpsi_parallel_for(f->context, (items + chunk - 1) / chunk, unit_of_work, &w);
+  mpsi_fluid_units(f, chunk, unit_of_work, &w);
 }

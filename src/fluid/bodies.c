@@ -3,7 +3,7 @@
  * normal is linear between them. The body is moved by its caller between steps; the fluid keeps the
  * pose that it had at the last step, and takes the present one as that of the end of the next.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid_private.h"
+#include "share.h"
 
 #include "body/body.h"
 
@@ -244,6 +244,7 @@ mps_status mps_fluid_add_body(mps_fluid *f, mps_body *body, int32_t kind, int32_
     place_faces(f, own);
     status = check_place(f, __func__, own);
   }
+  status = mpsi_fluid_settle(f, __func__, status);
   if (status != MPS_OK) {
     mpsi_fluid_drop_body(f, own);
     return status;

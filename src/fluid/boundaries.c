@@ -1,7 +1,7 @@
 /* boundaries.c - plane walls as the caller gives them: their definitions, what is refused, how they
  * come, change and go.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid_private.h"
+#include "share.h"
 
 #define LEAST_WALL 0.3 /* l0: distance of a particle from a wall */
 
@@ -119,6 +119,20 @@ static mps_status make_wall(mps_fluid *f, const char *function,
   return MPS_OK;
 }
 
+/* The wall made on all ranks, or on none. */
+static mps_status make_alike(mps_fluid *f, const char *function, const mps_fluid_boundary_def *def,
+                             int32_t number, mpsi_fluid_wall *w) {
+  *w = (mpsi_fluid_wall){0};
+  mps_status status = make_wall(f, function, def, number, w);
+  const double numbers[] = {w->kind,   w->at[0],  w->at[1],         w->normal[0], w->normal[1],
+                            w->factor, w->origin, (double)w->nodes, number};
+  if (f->share)
+    status = mpsi_domain_settle_numbers(f->def.domain, function, status, "a hash of the boundary",
+                                        sizeof numbers / sizeof *numbers, numbers);
+  if (status != MPS_OK) mpsi_fluid_drop_wall(f, w);
+  return status;
+}
+
 mps_status mps_fluid_add_boundary(mps_fluid *f, const mps_fluid_boundary_def *def,
                                   int32_t *number) {
   if (!f) return MPS_ERROR_ARGUMENT;
@@ -130,7 +144,7 @@ mps_status mps_fluid_add_boundary(mps_fluid *f, const mps_fluid_boundary_def *de
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                      "the fluid has %d boundaries, the most there can be", b);
   mpsi_fluid_wall wall;
-  status = make_wall(f, __func__, def, b, &wall);
+  status = make_alike(f, __func__, def, b, &wall);
   if (status != MPS_OK) return status;
   f->wall[b] = wall;
   f->stale = true;
@@ -151,7 +165,7 @@ mps_status mps_fluid_set_boundary(mps_fluid *f, int32_t number, const mps_fluid_
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_status status = check_number(f, __func__, number);
   mpsi_fluid_wall wall;
-  if (status == MPS_OK) status = make_wall(f, __func__, def, number, &wall);
+  if (status == MPS_OK) status = make_alike(f, __func__, def, number, &wall);
   if (status != MPS_OK) return status;
   mpsi_fluid_wall *old = &f->wall[number];
   if (wall.nodes == old->nodes)

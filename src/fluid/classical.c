@@ -29,6 +29,9 @@ mps_status mps_experimental_fluid_classical(mps_fluid *f, double gamma) {
   if (f->given_room > 0)
     return mpsi_fail(f->context, __func__, MPS_ERROR_STATE,
                      "the fluid has had loads: choose the scheme first");
+  if (f->share)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_UNSUPPORTED,
+                     "the classical scheme computes on one rank");
   mpsi_fluid_classical c = {.gamma = gamma};
   double square = 0.0;
   for (int a = -3; a <= 3; a++)

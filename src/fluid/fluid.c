@@ -1,6 +1,7 @@
 /* fluid.c - the fluid solver as an object: definition, creation, boundaries, questions.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "loops.h"
+#include "share.h"
 
 #include <mps/body.h>
 
@@ -110,6 +111,7 @@ static void release(mps_fluid *f) {
   mps_context *context = f->context;
   mpsi_fluid_drop_solver(f);
   mpsi_fluid_drop_loads(f);
+  mpsi_fluid_share_destroy(f);
   void *const parts[] = {f->slab,
                          f->local,
                          f->state,
@@ -125,6 +127,7 @@ static void release(mps_fluid *f) {
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) mpsi_fluid_drop_wall(f, &f->wall[b]);
   for (int b = 0; b < MPSI_FLUID_BODIES; b++) mps_body_destroy(&f->body[b].body);
   mpsi_state_forget(&f->identity);
+  mps_domain_destroy(&f->def.domain);
   mpsi_free(context, f);
 }
 
@@ -135,9 +138,11 @@ static mps_status start(mps_fluid *f, const char *function) {
   f->most_near = 32, f->most_lower = 16;
   f->loops = mpsi_fluid_choose_loops(mpsi_context_level(f->context));
   set_gravity(f);
-  if (!mpsi_fluid_reserve(f, f->count))
-    return mpsi_fail_memory(f->context, function, (size_t)f->count * sizeof *f->local);
-  mps_status status = mpsi_fluid_look(f, function);
+  mps_status status = mpsi_fluid_share_create(f, function);
+  if (status == MPS_OK && !mpsi_fluid_reserve(f, f->count))
+    status = mpsi_fail_memory(f->context, function, (size_t)f->count * sizeof *f->local);
+  status = mpsi_fluid_settle(f, function, status);
+  if (status == MPS_OK) status = mpsi_fluid_look(f, function);
   if (status == MPS_OK) status = mpsi_fluid_sort(f, function);
   if (status == MPS_OK) status = mpsi_fluid_look(f, function);
   if (status != MPS_OK) return status;
@@ -145,6 +150,19 @@ static mps_status start(mps_fluid *f, const char *function) {
   double kinetic;
   f->energy = mpsi_fluid_energy(f, &kinetic);
   return MPS_OK;
+}
+
+/* Do all ranks make the same fluid? */
+static mps_status agree_on_fluid(const mps_fluid_def *d, const char *function, mps_status status,
+                                 mps_particles *particles) {
+  const double numbers[] = {d->iterations, d->density, d->viscosity, d->gravity[0],   d->gravity[1],
+                            d->level,      d->measure, d->dt,        d->radius_ratio, d->tolerance};
+  if (!mpsi_domain_many(d->domain)) return status;
+  status =
+      mpsi_domain_settle_numbers(d->domain, function, status, "a hash of the solver's definition",
+                                 sizeof numbers / sizeof *numbers, numbers);
+  return status == MPS_OK ? mpsi_domain_settle_particles(d->domain, function, status, particles)
+                          : status;
 }
 
 mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
@@ -159,15 +177,22 @@ mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
   if (user_def) status = MPSI_DEF_READ(context, __func__, mps_fluid_def, user_def, &def);
   if (status == MPS_OK) status = check_particles(context, particles);
   if (status == MPS_OK) status = check_def(context, &def, mps_particles_spacing(particles));
+  if (status == MPS_OK) status = mpsi_domain_check(context, __func__, def.domain);
   if (status == MPS_OK) status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
-  if (status != MPS_OK) return status;
-  mps_fluid *f = mpsi_alloc(context, 1, sizeof *f);
-  if (!f) return mpsi_fail_memory(context, __func__, sizeof *f);
+  mps_fluid *f = NULL;
+  if (status == MPS_OK && !(f = mpsi_alloc(context, 1, sizeof *f)))
+    status = mpsi_fail_memory(context, __func__, sizeof *f);
+  status = agree_on_fluid(&def, __func__, status, particles);
+  if (status != MPS_OK) {
+    mpsi_free(context, f);
+    return status;
+  }
   const int32_t fields = mps_particles_field_count(particles);
   f->context = context;
   f->particles = particles;
   f->def = def;
-  status = add_fields(particles);
+  f->def.domain = mpsi_domain_retain(def.domain);
+  status = mpsi_fluid_settle(f, __func__, add_fields(particles));
   if (status == MPS_OK) status = start(f, __func__);
   if (status != MPS_OK) {
     mpsi_particles_drop_fields(particles, fields);

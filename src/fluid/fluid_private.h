@@ -11,6 +11,7 @@
  *   loads.c     forces on particles and pressures on the surface
  *   probe.c     pressure at walls, level of the surface
  *   step.c      the order of all this
+ *   share.c     ranks of a domain that do it together
  *
  * Indices below `count` are particles, those from `count` on are ghosts. A step works on copies of
  * positions and velocities and writes the particles' fields only when all has gone well.
@@ -162,6 +163,7 @@ typedef enum mpsi_fluid_stage {
 
 typedef struct mpsi_fluid_loops mpsi_fluid_loops; /* loops.h */
 typedef struct mpsi_fluid_given mpsi_fluid_given; /* a load of the caller, loads.c */
+typedef struct mpsi_fluid_share mpsi_fluid_share; /* share.h */
 
 struct mps_fluid {
   mps_context *context;
@@ -174,6 +176,8 @@ struct mps_fluid {
   mpsi_fluid_wall wall[MPSI_FLUID_WALLS];
   mpsi_fluid_body body[MPSI_FLUID_BODIES];
   int64_t count, ghosts, capacity; /* capacity: of the arrays over particles */
+  int64_t own[2];                  /* first, end: the particles that this rank computes */
+  mpsi_fluid_share *share;         /* NULL: all */
   /* positions, velocities: particles, then ghosts */
   double *x[2], *u[2], *q, *offset; /* offset: of a ghost's q from its parent's, Pa */
   int32_t *parent;                  /* of a ghost, by index - count */
@@ -227,7 +231,8 @@ struct mps_fluid {
   double work_boundaries, work_loads; /* J, since creation */
 };
 
-/* Runs task(fluid, chunk) for the chunks of `items` items on the executor. */
+/* Runs task(fluid, chunk) for the chunks of `items` items on the executor, of those that are this
+ * rank's. */
 typedef void (*mpsi_fluid_task)(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
 void mpsi_fluid_for(mps_fluid *fluid, int64_t items, int64_t chunk, mpsi_fluid_task task);
 
@@ -324,7 +329,9 @@ void mpsi_fluid_find_moments(mps_fluid *fluid);
 /* pressure.c */
 mps_status mpsi_fluid_prepare_pressure(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_solve_pressure(mps_fluid *fluid, const char *function);
-/* pcg.c: solves for system.x, starting from what it holds; the number of iterations, or -1. */
+/* pcg.c: particles in a block of the preconditioner. */
+int64_t mpsi_fluid_block(const mps_fluid *fluid);
+/* Solves for system.x, starting from what it holds; the number of iterations, or -1. */
 mps_status mpsi_fluid_factor(mps_fluid *fluid, const char *function);
 int64_t mpsi_fluid_pcg(mps_fluid *fluid);
 /* solver.c */
@@ -359,7 +366,7 @@ mps_status mpsi_fluid_load_walls(mps_fluid *fluid, const char *function);
 /* look.c: copies of positions, velocities and the last reduced pressure; their surroundings; and
  * both with the loads. */
 void mpsi_fluid_load_cloud(mps_fluid *fluid);
-mps_status mpsi_fluid_look_around(mps_fluid *fluid, const char *function);
+mps_status mpsi_fluid_look_around(mps_fluid *fluid, const char *function, mps_status status);
 mps_status mpsi_fluid_look(mps_fluid *fluid, const char *function);
 /* look.c: the same, where a rollback has left it to be done. */
 mps_status mpsi_fluid_refresh(mps_fluid *fluid, const char *function);

@@ -7,7 +7,7 @@
  * pressure adds to that of the surface point. Its work is taken with the area vector of each
  * particle, -V m/S0: sum w dx adds up to the area of a plane surface exactly, and vanishes inside.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid_private.h"
+#include "share.h"
 #include "signal/signal_internal.h"
 
 #include <stdlib.h>
@@ -119,14 +119,17 @@ mps_status mps_fluid_add_load(mps_fluid *f, const mps_fluid_load_def *def, int32
                      "the fluid has %d loads, the most there can be", at);
   mpsi_fluid_given *g = NULL;
   status = make_load(f, __func__, def, &g);
-  if (status != MPS_OK) return status;
-  if (at == f->given_room) {
+  if (status == MPS_OK && at == f->given_room) {
     void *array = f->given;
-    if (!mpsi_grow(f->context, &array, at, at + 8, sizeof *f->given)) {
-      drop(f, g);
-      return mpsi_fail_memory(f->context, __func__, (size_t)(at + 8) * sizeof *f->given);
-    }
-    f->given = array, f->given_room = at + 8;
+    if (mpsi_grow(f->context, &array, at, at + 8, sizeof *f->given))
+      f->given = array, f->given_room = at + 8;
+    else
+      status = mpsi_fail_memory(f->context, __func__, (size_t)(at + 8) * sizeof *f->given);
+  }
+  status = mpsi_fluid_settle(f, __func__, status);
+  if (status != MPS_OK) {
+    drop(f, g);
+    return status;
   }
   f->given[at] = g;
   if (number) *number = at;
@@ -147,7 +150,11 @@ mps_status mps_fluid_set_load(mps_fluid *f, int32_t number, const mps_fluid_load
   mps_status status = check_number(f, __func__, number);
   mpsi_fluid_given *g = NULL;
   if (status == MPS_OK) status = make_load(f, __func__, def, &g);
-  if (status != MPS_OK) return status;
+  status = mpsi_fluid_settle(f, __func__, status);
+  if (status != MPS_OK) {
+    drop(f, g);
+    return status;
+  }
   drop(f, f->given[number]);
   f->given[number] = g;
   return MPS_OK;

@@ -1,6 +1,6 @@
 /* look.c - the particles as a step finds them: copies of their fields, their order in memory, who
  * is near them, and the sums over these. SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid_private.h"
+#include "share.h"
 
 #include <string.h>
 
@@ -17,21 +17,36 @@ void mpsi_fluid_load_cloud(mps_fluid *f) {
   }
   memcpy(f->q, column(f, "reduced_pressure", 0), bytes);
   f->driven = false;
+  mpsi_fluid_deal(f, mpsi_fluid_block(f));
 }
 
-mps_status mpsi_fluid_look_around(mps_fluid *f, const char *function) {
-  mps_status status = mpsi_fluid_make_ghosts(f, function);
+/* Do all ranks have as many particles? `status` is this one's so far. */
+static mps_status settle_count(mps_fluid *f, const char *function, mps_status status) {
+  double range[2] = {(double)f->count, -(double)f->count};
+  status = mpsi_fluid_settle_max(f, function, status, 2, range);
+  if (status != MPS_OK || range[0] == -range[1]) return status;
+  status = mpsi_fail(f->context, function, MPS_ERROR_STATE,
+                     "the fluid has %lld particles here, %.0f to %.0f elsewhere: all ranks must "
+                     "add and remove the same",
+                     (long long)f->count, -range[1], range[0]);
+  return mpsi_fluid_settle(f, function, status);
+}
+
+mps_status mpsi_fluid_look_around(mps_fluid *f, const char *function, mps_status status) {
+  if (status == MPS_OK) status = mpsi_fluid_make_ghosts(f, function);
   if (status == MPS_OK) mpsi_fluid_move_ghosts(f);
+  status = settle_count(f, function, status);
   if (status == MPS_OK) status = mpsi_fluid_find_neighbours(f, function);
+  if (status == MPS_OK) status = mpsi_fluid_meet(f, function);
   if (status == MPS_OK) mpsi_fluid_find_moments(f);
+  if (status == MPS_OK) status = mpsi_fluid_lost(f, function);
   f->stale = status != MPS_OK;
   return status;
 }
 
 mps_status mpsi_fluid_look(mps_fluid *f, const char *function) {
   mpsi_fluid_load_cloud(f);
-  const mps_status status = mpsi_fluid_find_loads(f, function, f->load_time);
-  return status == MPS_OK ? mpsi_fluid_look_around(f, function) : status;
+  return mpsi_fluid_look_around(f, function, mpsi_fluid_find_loads(f, function, f->load_time));
 }
 
 mps_status mpsi_fluid_refresh(mps_fluid *f, const char *function) {
@@ -52,7 +67,9 @@ mps_status mpsi_fluid_sort(mps_fluid *f, const char *function) {
   const double cells = (floor((high[0] - low[0]) * inverse) + 1.0) * rows;
   if (!(cells < 4.0 * (double)n + 4096.0)) return MPS_OK;
   const int64_t number = (int64_t)cells;
-  if (!mpsi_room_ensure(f->context, &f->cell_room, number + 1 + n, sizeof(int32_t))) return MPS_OK;
+  double none = !mpsi_room_ensure(f->context, &f->cell_room, number + 1 + n, sizeof(int32_t));
+  const mps_status lost = mpsi_fluid_settle_max(f, function, MPS_OK, 1, &none); /* all or nobody */
+  if (lost != MPS_OK || none > 0.0) return lost;
   int32_t *first = f->cell_room.item, *cell = first + number + 1;
   int64_t *order = (int64_t *)f->system.r; /* free between steps, as z is */
   memset(first, 0, (size_t)(number + 1) * sizeof *first);
@@ -68,5 +85,7 @@ mps_status mpsi_fluid_sort(mps_fluid *f, const char *function) {
     order[first[cell[i]]++] = i;
   }
   void *const scratch = f->system.z;
-  return sorted ? MPS_OK : mpsi_particles_permute_in(f->particles, function, order, &scratch, 1);
+  if (sorted) return MPS_OK;
+  return mpsi_fluid_settle(f, function,
+                           mpsi_particles_permute_in(f->particles, function, order, &scratch, 1));
 }

@@ -10,6 +10,7 @@
  * a spacing outside. A particle with n < .12 n0 is apart from the rest and falls freely.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "loops.h"
+#include "share.h"
 
 #define APART 0.12     /* n/n0 */
 #define FEW 0.72       /* n/n0 */
@@ -155,6 +156,8 @@ void mpsi_fluid_find_moments(mps_fluid *f) {
   const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
   for (int64_t i = 0; i < f->count; i++) atomic_init(&f->zone[i], 0);
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, look_around);
+  mpsi_fluid_tell_sums(f, MPSI_FLUID_CHUNK);
+  mpsi_fluid_tell_looks(f);
   f->any_apart = false;
   for (int64_t k = 0; k < chunks; k++) f->any_apart |= f->system.sums[2 * k] > 0.0;
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, find_zone);

@@ -16,6 +16,7 @@
  * 2017).
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "loops.h"
+#include "share.h"
 
 #define SMOOTH 0.6
 #define ZONE_SMOOTH 0.25 /* of it, within 1.6 l0 of the surface */
@@ -203,7 +204,9 @@ void mpsi_fluid_find_velocities(mps_fluid *f) {
   for (int64_t k = 0; k < chunks; k++) f->system.sums[2 * k] = 0.0;
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK,
                  classical ? mpsi_fluid_classical_accelerate : accelerate);
+  mpsi_fluid_tell_near(f, 2, f->u_new);
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, collide);
+  mpsi_fluid_tell_sums(f, MPSI_FLUID_CHUNK);
   swap(&f->u_new[0], &f->system.r);
   swap(&f->u_new[1], &f->system.z);
   for (int64_t k = 0; k < chunks; k++) {
@@ -281,6 +284,8 @@ static void move_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
 
 int64_t mpsi_fluid_advance(mps_fluid *f) {
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, move_chunk);
+  mpsi_fluid_tell_sums(f, MPSI_FLUID_CHUNK);
+  mpsi_fluid_tell_all(f, 5, (double *const[]){f->x[0], f->x[1], f->u[0], f->u[1], f->pressure});
   const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
   for (int64_t k = 0; k < chunks; k++) {
     f->report.pushed += (int64_t)f->system.sums[2 * k];

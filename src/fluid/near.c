@@ -6,6 +6,7 @@
  * neighbours are near each other too.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "loops.h"
+#include "share.h"
 
 #include <string.h>
 
@@ -178,21 +179,23 @@ static void find_chunk(void *data, int64_t chunk, int32_t worker) {
 mps_status mpsi_fluid_find_neighbours(mps_fluid *f, const char *function) {
   cells c;
   mps_status status = make_cells(f, function, &c);
-  if (status != MPS_OK) return status;
-  sort_cloud(f, &c);
+  if (status == MPS_OK) sort_cloud(f, &c);
   const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
   for (;;) {
     const int64_t per_chunk = f->most_near * MPSI_FLUID_CHUNK + SEARCHED,
                   pairs = f->most_near * f->count + chunks * SEARCHED;
-    if (!mpsi_room_fit(f->context, &f->index_room, pairs, sizeof *f->index) ||
-        !mpsi_room_fit(f->context, &f->w_room, pairs, sizeof *f->w))
-      return mpsi_fail_memory(f->context, function,
-                              (size_t)pairs * (sizeof *f->index + sizeof *f->w));
+    const bool room = mpsi_room_fit(f->context, &f->index_room, pairs, sizeof *f->index) &&
+                      mpsi_room_fit(f->context, &f->w_room, pairs, sizeof *f->w);
+    if (status == MPS_OK && !room)
+      status =
+          mpsi_fail_memory(f->context, function, (size_t)pairs * (sizeof *f->index + sizeof *f->w));
     f->index = f->index_room.item;
     f->w = f->w_room.item;
     pass p = {.fluid = f, .cells = &c, .per_chunk = per_chunk, .pairs = pairs};
-    mpsi_parallel_for(f->context, chunks, find_chunk, &p);
-    if (!atomic_load(&p.full)) return MPS_OK;
+    if (status == MPS_OK) mpsi_fluid_units(f, MPSI_FLUID_CHUNK, find_chunk, &p);
+    double full = atomic_load(&p.full);
+    status = mpsi_fluid_settle_max(f, function, status, 1, &full);
+    if (status != MPS_OK || full == 0.0) return status;
     if (f->most_near > MOST_NEAR)
       return mpsi_fail(f->context, function, MPS_ERROR_DIVERGED,
                        "more than %d neighbours a particle: the fluid has collapsed", MOST_NEAR);

@@ -20,6 +20,7 @@
  * made chunk by chunk, so the result does not depend on the threads.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "loops.h"
+#include "share.h"
 
 #include <string.h>
 
@@ -44,6 +45,8 @@ static blocks cut(const mps_fluid *f) {
   const int64_t each = (chunks + wanted - 1) / wanted; /* whole chunks */
   return (blocks){(chunks + each - 1) / each, each * MPSI_FLUID_CHUNK};
 }
+
+int64_t mpsi_fluid_block(const mps_fluid *f) { return f->count > 0 ? cut(f).size : 1; }
 
 /* Row i of U^T but its 1; the pivot of row i, and what is right of it; diag A - 2 D, in the place
  * of u_new[1], which has no other use before the pressure is known. A neighbour and its image are
@@ -118,14 +121,17 @@ mps_status mpsi_fluid_factor(mps_fluid *f, const char *function) {
   for (;;) {
     p.room = f->most_lower * p.blocks.size;
     p.all = f->most_lower * f->count + p.blocks.size;
+    mps_status status = MPS_OK;
     if (!mpsi_room_fit(f->context, &f->lower_col_room, p.all, sizeof *s->lower_col) ||
         !mpsi_room_fit(f->context, &f->lower_room, p.all, sizeof *s->lower))
-      return mpsi_fail_memory(f->context, function, (size_t)p.all * 8);
+      status = mpsi_fail_memory(f->context, function, (size_t)p.all * 8);
     s->lower_col = f->lower_col_room.item;
     s->lower = f->lower_room.item;
     atomic_store(&p.full, false);
-    mpsi_parallel_for(f->context, p.blocks.count, factor_block, &p);
-    if (!atomic_load(&p.full)) return MPS_OK;
+    if (status == MPS_OK) mpsi_fluid_units(f, p.blocks.size, factor_block, &p);
+    double full = atomic_load(&p.full);
+    status = mpsi_fluid_settle_max(f, function, status, 1, &full);
+    if (status != MPS_OK || full == 0.0) return status;
     f->most_lower += f->most_lower / 8;
   }
 }
@@ -204,20 +210,25 @@ static bool iterate(iteration *it, double rr, double enough, int64_t *done) {
   mps_fluid *f = it->fluid;
   const int64_t number = it->blocks.count;
   it->beta = 0.0;
-  mpsi_parallel_for(f->context, number, start_block, it);
+  mpsi_fluid_units(f, it->blocks.size, start_block, it);
+  mpsi_fluid_tell_sums(f, it->blocks.size);
   double rz = total(f, number, 0), look_at = LOOK_FROM * rz * enough / rr;
   for (int64_t k = 0;; k++) {
     if (rz <= look_at) {
-      mpsi_parallel_for(f->context, number, norm, it);
+      mpsi_fluid_units(f, it->blocks.size, norm, it);
+      mpsi_fluid_tell_sums(f, it->blocks.size);
       rr = total(f, number, 1);
       if (rr <= enough) return true;
       look_at = rz * fmax(LOOK_AGAIN, enough / rr);
     }
     if (!isfinite(rz) || *done == f->def.iterations) return false;
-    mpsi_parallel_for(f->context, number, rise, it);
+    mpsi_fluid_tell_near(f, 1, &f->system.z);
+    mpsi_fluid_units(f, it->blocks.size, rise, it);
+    mpsi_fluid_tell_sums(f, it->blocks.size);
     const double before = it->alpha, qz = total(f, number, 1);
     it->alpha = k == 0 ? rz / qz : rz / (qz - it->beta * rz / before);
-    mpsi_parallel_for(f->context, number, descend, it);
+    mpsi_fluid_units(f, it->blocks.size, descend, it);
+    mpsi_fluid_tell_sums(f, it->blocks.size);
     (*done)++;
     const double next = total(f, number, 0);
     it->beta = next / rz;
@@ -233,8 +244,10 @@ int64_t mpsi_fluid_pcg(mps_fluid *f) {
   it.room = f->most_lower * it.blocks.size;
   int64_t done = 0;
   for (double left = INFINITY;;) {
+    mpsi_fluid_tell_near(f, 1, &s->x);
     for (int64_t g = 0; g < f->ghosts; g++) s->x[f->count + g] = s->x[f->parent[g]];
     mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, first_residual);
+    mpsi_fluid_tell_sums(f, MPSI_FLUID_CHUNK);
     const double rr = total(f, chunks, 0), bb = total(f, chunks, 1);
     const double enough = tolerance * tolerance * bb;
     if (bb == 0.0) memset(s->x, 0, (size_t)(f->count + f->ghosts) * sizeof *s->x);

@@ -8,7 +8,7 @@
  * that the wall's acceleration a gives, -rho (a . N) times their distance, so they bring no
  * unknowns; particles apart from the rest have no row and no column.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid_private.h"
+#include "share.h"
 
 #define DENSITY 0.003       /* k over the excess of n/n0 */
 #define LEAST_DENSITY -3e-4 /* k */
@@ -84,6 +84,8 @@ mps_status mpsi_fluid_prepare_pressure(mps_fluid *f, const char *function) {
 
 static mps_status solve_inside(mps_fluid *f, const char *function) {
   const int64_t iterations = mpsi_fluid_pcg(f);
+  const mps_status lost = mpsi_fluid_lost(f, function);
+  if (lost != MPS_OK) return lost;
   if (iterations < 0)
     return mpsi_fail(f->context, function, MPS_ERROR_NUMERIC,
                      "step %lld, t = %g s: the pressure has not converged to %g in %d iterations; "
@@ -106,6 +108,7 @@ mps_status mpsi_fluid_solve_pressure(mps_fluid *f, const char *function) {
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK,
                  classical ? mpsi_fluid_classical_solution : take_solution);
   if (classical) return MPS_OK;
+  mpsi_fluid_tell_all(f, 1, &f->q);
   for (int64_t g = 0; g < f->ghosts; g++) f->q[f->count + g] = f->q[f->parent[g]] + f->offset[g];
   return MPS_OK;
 }

@@ -6,7 +6,7 @@
  * then p = q - rho g (height - level), and 0 where that is less than the air's at a surface near,
  * or suction. What loads do to a particle counts like -a of the wall. SPDX-License-Identifier:
  * BSD-3-Clause */
-#include "fluid_private.h"
+#include "share.h"
 
 #define REACH 2.1         /* l0 */
 #define LEAST_SUM 0.05    /* of weights: below, there is no water */
@@ -195,15 +195,15 @@ static void add_force(void *user, const double *x, double p) {
 }
 
 mps_status mpsi_fluid_load_walls(mps_fluid *f, const char *function) {
-  for (int32_t b = 0; b < MPSI_FLUID_WALLS; b++) {
+  mps_status status = MPS_OK;
+  for (int32_t b = 0; status == MPS_OK && b < MPSI_FLUID_WALLS; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
     if (!w->used) continue;
     w->load = (mpsi_fluid_load){0};
     resultant r = {w, pitch(f, w) * f->def.measure};
-    const mps_status status = for_points(f, b, function, add_force, &r);
-    if (status != MPS_OK) return status;
+    status = for_points(f, b, function, add_force, &r);
   }
-  return MPS_OK;
+  return mpsi_fluid_settle(f, function, status);
 }
 
 static mps_status check_wall(mps_fluid *f, const char *function, int32_t number) {
@@ -265,6 +265,7 @@ mps_status mps_fluid_get_wall(mps_fluid *f, int32_t number, int64_t capacity, do
   listing list = {.capacity = capacity, .x = x, .pressure = pressure};
   status = check_pressure(f, __func__);
   if (status == MPS_OK) status = for_points(f, number, __func__, list_point, &list);
+  status = mpsi_fluid_settle(f, __func__, status);
   if (status == MPS_OK) *count = list.count;
   return status;
 }
@@ -294,6 +295,7 @@ mps_status mps_fluid_get_pressure(mps_fluid *f, int32_t number, int64_t count, c
   int64_t near = 0;
   if (status == MPS_OK) status = check_points(f, __func__, &f->wall[number], count, x);
   if (status == MPS_OK) status = gather(f, &f->wall[number], __func__, &near);
+  status = mpsi_fluid_settle(f, __func__, status);
   if (status != MPS_OK) return status;
   for (int64_t k = 0; k < count; k++) {
     const double at = mpsi_fluid_along(&f->wall[number], x[3 * k], x[3 * k + 1]);
@@ -319,7 +321,9 @@ mps_status mps_fluid_get_levels(mps_fluid *f, int64_t count, const double *stati
   if (count < 0 || (count > 0 && (!station || !level)))
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                      "count is %lld, station and level must be given", (long long)count);
-  const mps_status status = mpsi_fluid_refresh(f, __func__);
+  mps_status status = mpsi_fluid_refresh(f, __func__);
+  if (status == MPS_OK) mpsi_fluid_tell_local(f);
+  if (status == MPS_OK) status = mpsi_fluid_lost(f, __func__);
   if (status != MPS_OK) return status;
   for (int64_t k = 0; k < count; k++) {
     double sum = 0.0, height = 0.0;

@@ -30,6 +30,9 @@ mps_status mps_fluid_set_solver(mps_fluid *f, const mps_fluid_solver_def *user_d
   if (status == MPS_OK && user_def)
     status = MPSI_DEF_READ(f->context, __func__, mps_fluid_solver_def, user_def, &def);
   if (status != MPS_OK) return status;
+  if (user_def && f->share)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_UNSUPPORTED,
+                     "a fluid of several ranks has its pressure solved by the library");
   if (user_def && (!def.matrix || !def.solve || def.least < 0))
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                      "matrix is %s, solve %s, least %lld: both must be given, and least >= 0",

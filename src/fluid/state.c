@@ -1,7 +1,7 @@
 /* state.c - the state of the fluid (core/state.h): snapshots, rollback, checkpoints. What follows
  * from the particles' places, their neighbours and the surface, is found again when it is asked
  * for. SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid_private.h"
+#include "share.h"
 
 #include "core/state.h"
 #include "io/checkpoint.h"
@@ -99,6 +99,16 @@ static void after(void *solver) {
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].given = f->wall[b].placed = false;
 }
 
+static mps_status settle(void *fluid, const char *function, mps_status status) {
+  return mpsi_fluid_settle(fluid, function, status);
+}
+
+static mps_status have_read(void *fluid, const char *function, mps_status status,
+                            mps_snapshot *values) {
+  (void)values; /* every rank keeps all of them */
+  return settle(fluid, function, status);
+}
+
 static mpsi_state_of state_of(mps_fluid *f) {
   return (mpsi_state_of){.solver = f,
                          .name = "fluid",
@@ -108,6 +118,8 @@ static mpsi_state_of state_of(mps_fluid *f) {
                          .list = list_state,
                          .fits = fits,
                          .make_room = make_room,
+                         .settle = settle,
+                         .take_share = have_read,
                          .after = after,
                          .time = f->time,
                          .dt = f->dt,
@@ -123,7 +135,8 @@ mps_status mps_fluid_snapshot(mps_fluid *f, mps_snapshot **snapshot) {
   if (!f) return MPS_ERROR_ARGUMENT;
   const mpsi_state_of of = state_of(f);
   const mps_status status = forget(f, __func__, mpsi_fluid_closed(f, __func__));
-  return status == MPS_OK ? mpsi_state_snapshot(&of, __func__, snapshot) : status;
+  return settle(f, __func__,
+                status == MPS_OK ? mpsi_state_snapshot(&of, __func__, snapshot) : status);
 }
 
 mps_status mps_fluid_rollback(mps_fluid *f, const mps_snapshot *snapshot) {
@@ -136,8 +149,10 @@ mps_status mps_fluid_rollback(mps_fluid *f, const mps_snapshot *snapshot) {
 mps_status mps_fluid_save(mps_fluid *f, const char *path, const mps_checkpoint *info) {
   if (!f) return MPS_ERROR_ARGUMENT;
   const mpsi_state_of of = state_of(f);
-  const mps_status status = forget(f, __func__, mpsi_fluid_closed(f, __func__));
-  return status == MPS_OK ? mpsi_checkpoint_save(&of, __func__, path, info) : status;
+  mps_status status = forget(f, __func__, mpsi_fluid_closed(f, __func__));
+  if (status == MPS_OK && mps_domain_rank(f->def.domain) <= 0) /* all ranks have the same */
+    status = mpsi_checkpoint_save(&of, __func__, path, info);
+  return settle(f, __func__, status);
 }
 
 mps_status mps_fluid_restore(mps_fluid *f, const char *path, mps_checkpoint *info) {

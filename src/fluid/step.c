@@ -1,6 +1,6 @@
 /* step.c - the order of a step, its size, and what goes wrong.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid_private.h"
+#include "share.h"
 
 #include <string.h>
 
@@ -61,7 +61,7 @@ static mps_status add_loads(mps_fluid *f, const char *function) {
 /* A step is made in three parts. They read and write the cloud; the fields change when all is
  * done. Where one fails, the surroundings are found again when they are asked for. */
 static mps_status begin(mps_fluid *f, const char *function, double dt) {
-  mps_status status = mpsi_particles_ready(f->particles, function);
+  mps_status status = mpsi_fluid_settle(f, function, mpsi_particles_ready(f->particles, function));
   if (status != MPS_OK) return status;
   f->dt = dt;
   f->before = f->report;
@@ -70,9 +70,10 @@ static mps_status begin(mps_fluid *f, const char *function, double dt) {
   mpsi_fluid_load_cloud(f);
   status = add_loads(f, function);
   const bool classical = f->classical.gamma > 0.0;
-  if (status == MPS_OK)
-    status =
-        classical ? mpsi_fluid_classical_look(f, function) : mpsi_fluid_look_around(f, function);
+  if (!classical)
+    status = mpsi_fluid_look_around(f, function, status);
+  else if (status == MPS_OK)
+    status = mpsi_fluid_classical_look(f, function);
   if (status == MPS_OK) status = mpsi_fluid_prepare_pressure(f, function);
   f->stage = MPSI_FLUID_BEGUN;
   return status;
@@ -84,8 +85,11 @@ static mps_status solve(mps_fluid *f, const char *function) {
 }
 
 static mps_status finish(mps_fluid *f, const char *function) {
+  if (f->push[0]) mpsi_fluid_tell_local(f); /* whose work is added up */
   mpsi_fluid_find_velocities(f);
   const int64_t bad = mpsi_fluid_advance(f);
+  const mps_status lost = mpsi_fluid_lost(f, function);
+  if (lost != MPS_OK) return lost;
   if (bad >= 0) return went_wrong(f, function, bad);
   f->stage = MPSI_FLUID_MOVED;
   return mpsi_fluid_load_walls(f, function);
@@ -156,10 +160,14 @@ static mps_status check_dt(mps_fluid *f, const char *function) {
                    "nothing limits the step: without gravity and motion, give dt");
 }
 
-static mps_status cancelled(mps_fluid *f, const char *function) {
-  return mpsi_fail(f->context, function, MPS_ERROR_CANCELLED,
-                   "stopped by the cancel hook at step %lld, t = %g s", (long long)f->steps,
-                   f->time);
+/* On one rank, on all. */
+static mps_status ask_cancel(mps_fluid *f, const char *function) {
+  mps_status status = MPS_OK;
+  if (mpsi_cancelled(f->context))
+    status = mpsi_fail(f->context, function, MPS_ERROR_CANCELLED,
+                       "stopped by the cancel hook at step %lld, t = %g s", (long long)f->steps,
+                       f->time);
+  return mpsi_fluid_settle(f, function, status);
 }
 
 mps_status mps_fluid_step(mps_fluid *f, int64_t count) {
@@ -167,10 +175,11 @@ mps_status mps_fluid_step(mps_fluid *f, int64_t count) {
   if (count < 0)
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
                      (long long)count);
-  mps_status status = mpsi_fluid_ready(f, __func__);
+  mps_status status = mpsi_domain_settle_same(
+      f->def.domain, __func__, mpsi_fluid_ready(f, __func__), "count", (double)count);
   for (int64_t k = 0; k < count && status == MPS_OK; k++) {
-    if (mpsi_cancelled(f->context)) return cancelled(f, __func__);
-    status = check_dt(f, __func__);
+    status = ask_cancel(f, __func__);
+    if (status == MPS_OK) status = check_dt(f, __func__);
     if (status == MPS_OK) status = take_step(f, __func__, mps_fluid_dt(f));
   }
   return status;
@@ -186,8 +195,8 @@ mps_status mps_fluid_begin_step(mps_fluid *f, double dt) {
   if (f->classical.gamma > 0.0)
     return mpsi_fail(f->context, __func__, MPS_ERROR_STATE,
                      "the classical scheme's steps cannot be made in parts");
-  if (mpsi_cancelled(f->context)) return cancelled(f, __func__);
-  if (isnan(dt)) status = check_dt(f, __func__);
+  status = ask_cancel(f, __func__);
+  if (status == MPS_OK && isnan(dt)) status = check_dt(f, __func__);
   if (status != MPS_OK) return status;
   status = begin(f, __func__, isnan(dt) ? mps_fluid_dt(f) : dt);
   if (status != MPS_OK) abandon(f);
@@ -244,7 +253,9 @@ mps_status mps_fluid_abandon_step(mps_fluid *f) {
 static mps_status call_back(mps_fluid *f, mps_fluid_fn callback, void *user) {
   if (!callback) return MPS_OK;
   mpsi_guard_enter(&f->guard, f->context, "the callback of mps_fluid_run");
-  return mpsi_guard_leave(&f->guard, f->context, "mps_fluid_run", callback(user, f));
+  return mpsi_fluid_settle(
+      f, "mps_fluid_run",
+      mpsi_guard_leave(&f->guard, f->context, "mps_fluid_run", callback(user, f)));
 }
 
 /* A step of at most `full` of which whole ones fill the rest; far from its end just `full`, as a
@@ -261,7 +272,8 @@ mps_status mps_fluid_run(mps_fluid *f, double t_end, int64_t every, mps_fluid_fn
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                      "t_end is %g s and every %lld: allowed are times from now, %g s, on, and >= 1",
                      t_end, (long long)every, f->time);
-  mps_status status = mpsi_fluid_ready(f, __func__);
+  mps_status status = mpsi_domain_settle_same(f->def.domain, __func__,
+                                              mpsi_fluid_ready(f, __func__), "t_end", t_end);
   if (status == MPS_OK) status = call_back(f, callback, user);
   const double start = f->time, slice = 0.01 * (t_end - start);
   int64_t done = 0, reported = 0;
@@ -280,7 +292,7 @@ mps_status mps_fluid_run(mps_fluid *f, double t_end, int64_t every, mps_fluid_fn
       reported = last ? 100 : (int64_t)((f->time - start) / slice);
       mpsi_progress(f->context, "fluid", f->steps, f->time - start, t_end - start);
     }
-    if (status == MPS_OK && !last && mpsi_cancelled(f->context)) status = cancelled(f, __func__);
+    if (status == MPS_OK && !last) status = ask_cancel(f, __func__);
   }
   return status;
 }

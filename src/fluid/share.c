@@ -1,0 +1,367 @@
+/* share.c - see share.h.
+ *
+ * Who is near whom changes with every step, and with it what ranks need of each other. A rank that
+ * needs a particle goes on getting it until the set is sorted again: after a few steps hardly any
+ * is new, and the way of the messages stays. SPDX-License-Identifier: BSD-3-Clause */
+#include "share.h"
+
+#include "domain/halo.h"
+
+#include <string.h>
+
+/* Copies of values, by the particles that they are of. */
+typedef struct link {
+  mpsi_halo *halo;
+  int64_t guests;
+  int32_t *guest; /* particle of each copy here */
+  double *in;     /* MPSI_FLUID_SHARED columns of the guests */
+} link;
+
+struct mpsi_fluid_share {
+  mps_domain *domain;
+  mps_status lost;
+  int64_t block, blocks;  /* particles a block of the deal */
+  int64_t count;          /* of particles: what `all` is of; -1: nothing yet */
+  uint64_t epoch;         /* order that `near` is of */
+  link all, near, back;   /* back: of marks, from those who have copies to the owners */
+  atomic_uchar *is_guest; /* count */
+  double *mark;           /* of the guests of `near`, or of own particles */
+  bool knows_local;
+};
+
+static bool is_own(const mps_fluid *f, int64_t i) { return i >= f->own[0] && i < f->own[1]; }
+
+/* ---- life ------------------------------------------------------------------------------------ */
+
+mps_status mpsi_fluid_share_create(mps_fluid *f, const char *function) {
+  if (!mpsi_domain_many(f->def.domain)) return MPS_OK;
+  f->share = mpsi_alloc(f->context, 1, sizeof *f->share);
+  const mps_status status =
+      f->share ? MPS_OK : mpsi_fail_memory(f->context, function, sizeof *f->share);
+  if (f->share) *f->share = (mpsi_fluid_share){.domain = f->def.domain, .count = -1};
+  return status;
+}
+
+static void drop_link(mps_fluid *f, link *l) {
+  mpsi_halo_destroy(f->context, &l->halo);
+  mpsi_free(f->context, l->guest);
+  mpsi_free(f->context, l->in);
+  *l = (link){0};
+}
+
+static void forget(mps_fluid *f) {
+  mpsi_fluid_share *s = f->share;
+  drop_link(f, &s->all);
+  drop_link(f, &s->near);
+  drop_link(f, &s->back);
+  mpsi_free(f->context, s->is_guest);
+  mpsi_free(f->context, s->mark);
+  s->is_guest = NULL, s->mark = NULL;
+  s->count = -1;
+}
+
+void mpsi_fluid_share_destroy(mps_fluid *f) {
+  if (!f->share) return;
+  forget(f);
+  mpsi_free(f->context, f->share);
+  f->share = NULL;
+}
+
+/* ---- errors ---------------------------------------------------------------------------------- */
+
+mps_status mpsi_fluid_settle(mps_fluid *f, const char *function, mps_status status) {
+  return mpsi_domain_settle(f->def.domain, function, status);
+}
+
+mps_status mpsi_fluid_settle_max(mps_fluid *f, const char *function, mps_status status,
+                                 int32_t count, double *values) {
+  return mpsi_domain_settle_max(f->def.domain, function, status, count, values);
+}
+
+static void note(mpsi_fluid_share *s, mps_status status) {
+  if (s->lost == MPS_OK) s->lost = status;
+}
+
+mps_status mpsi_fluid_lost(mps_fluid *f, const char *function) {
+  if (!f->share || f->share->lost == MPS_OK) return MPS_OK;
+  return mpsi_fluid_settle(f, function, f->share->lost);
+}
+
+/* ---- the deal -------------------------------------------------------------------------------- */
+
+void mpsi_fluid_deal(mps_fluid *f, int64_t block) {
+  mpsi_fluid_share *s = f->share;
+  f->own[0] = 0, f->own[1] = f->count;
+  if (!s) return;
+  const int64_t ranks = mps_domain_size(s->domain), rank = mps_domain_rank(s->domain);
+  s->block = block;
+  s->blocks = (f->count + block - 1) / block;
+  for (int64_t k = 0; k < 2; k++) {
+    const int64_t at = (rank + k) * s->blocks / ranks * block;
+    f->own[k] = at < f->count ? at : f->count;
+  }
+}
+
+static int32_t owner(const mpsi_fluid_share *s, int64_t particle) {
+  const int64_t ranks = mps_domain_size(s->domain);
+  return (int32_t)(((particle / s->block + 1) * ranks - 1) / s->blocks);
+}
+
+typedef struct shifted {
+  int64_t first;
+  void (*task)(void *, int64_t, int32_t);
+  void *data;
+} shifted;
+
+static void run_shifted(void *data, int64_t unit, int32_t worker) {
+  const shifted *s = data;
+  s->task(s->data, s->first + unit, worker);
+}
+
+void mpsi_fluid_units(mps_fluid *f, int64_t size, void (*task)(void *, int64_t, int32_t),
+                      void *data) {
+  shifted s = {f->own[0] / size, task, data};
+  const int64_t count = (f->own[1] + size - 1) / size - s.first;
+  if (s.first == 0)
+    mpsi_parallel_for(f->context, count, task, data);
+  else if (count > 0)
+    mpsi_parallel_for(f->context, count, run_shifted, &s);
+}
+
+/* ---- links ----------------------------------------------------------------------------------- */
+
+/* Copies here of the guests, which are in l->guest. Collective. */
+static mps_status make_link(mps_fluid *f, const char *function, mps_status status, link *l,
+                            const int32_t *rank, const int64_t *index) {
+  l->in = mpsi_alloc(f->context, l->guests * MPSI_FLUID_SHARED, sizeof *l->in);
+  if (status == MPS_OK && !l->in)
+    status = mpsi_fail_memory(f->context, function, (size_t)l->guests * sizeof *l->in);
+  status = mpsi_fluid_settle(f, function, status);
+  const mpsi_halo_def def = {
+      .guests = l->guests, .rank = rank, .index = index, .columns = MPSI_FLUID_SHARED};
+  return status == MPS_OK ? mpsi_halo_create(f->share->domain, function, &def, &l->halo) : status;
+}
+
+/* `first` is 0: the halo's own column `in`, from which values go to their places. */
+static void copy(mps_fluid *f, link *l, int32_t columns, double *const *column,
+                 double *const *into) {
+  mpsi_fluid_share *s = f->share;
+  double *in[MPSI_FLUID_SHARED];
+  if (s->lost != MPS_OK) return;
+  for (int32_t c = 0; c < columns; c++) in[c] = l->in + c * l->guests;
+  mps_status status = mpsi_halo_begin(l->halo, "mps_fluid", columns, column);
+  if (status == MPS_OK) status = mpsi_halo_end(l->halo, "mps_fluid", in);
+  note(s, status);
+  for (int32_t c = 0; status == MPS_OK && c < columns; c++)
+    for (int64_t k = 0; k < l->guests; k++) into[c][l->guest[k]] = in[c][k];
+}
+
+/* The particles that `wanted` picks as guests of a link. */
+static mps_status join(mps_fluid *f, const char *function, link *l,
+                       bool (*wanted)(const mps_fluid *, int64_t)) {
+  drop_link(f, l);
+  for (int64_t i = 0; i < f->count; i++) l->guests += wanted(f, i);
+  l->guest = mpsi_alloc(f->context, l->guests, sizeof *l->guest);
+  int64_t *index = mpsi_alloc(f->context, l->guests, sizeof *index), at = 0;
+  int32_t *rank = mpsi_alloc(f->context, l->guests, sizeof *rank);
+  const bool room = l->guest && index && rank;
+  mps_status status =
+      room ? MPS_OK : mpsi_fail_memory(f->context, function, (size_t)l->guests * sizeof *index);
+  for (int64_t i = 0; room && i < f->count; i++) {
+    if (!wanted(f, i)) continue;
+    l->guest[at] = (int32_t)i, index[at] = i, rank[at] = owner(f->share, i);
+    at++;
+  }
+  status = make_link(f, function, status, l, rank, index);
+  mpsi_free(f->context, index);
+  mpsi_free(f->context, rank);
+  return status;
+}
+
+/* ---- the way back ---------------------------------------------------------------------------- */
+
+/* To each owner the number of the first of its guests here, and who they are. */
+static mps_status ask_owners(mps_fluid *f, const char *function, mpsi_mailbox *box) {
+  const mpsi_fluid_share *s = f->share;
+  const link *l = &s->near;
+  const int64_t ranks = mps_domain_size(s->domain);
+  mps_domain_message *message = mpsi_alloc(f->context, ranks, sizeof *message);
+  int64_t *words = mpsi_alloc(f->context, l->guests + ranks, sizeof *words), at = 0;
+  const bool room = message && words;
+  mps_status status =
+      room ? MPS_OK : mpsi_fail_memory(f->context, function, (size_t)(l->guests + ranks) * 8);
+  int32_t count = 0;
+  for (int64_t k = 0; room && k < l->guests;) {
+    const int32_t rank = owner(s, l->guest[k]);
+    mps_domain_message *m = &message[count++];
+    *m = (mps_domain_message){.rank = rank, .data = words + at};
+    words[at++] = k;
+    for (; k < l->guests && owner(s, l->guest[k]) == rank; k++) words[at++] = l->guest[k];
+    m->bytes = (const char *)(words + at) - (const char *)m->data;
+  }
+  status = mpsi_fluid_settle(f, function, status);
+  if (status == MPS_OK) status = mpsi_domain_exchange(s->domain, function, count, message, box);
+  mpsi_free(f->context, message);
+  mpsi_free(f->context, words);
+  return status;
+}
+
+static mps_status join_back(mps_fluid *f, const char *function) {
+  link *l = &f->share->back;
+  mpsi_mailbox box = {.context = f->context};
+  drop_link(f, l);
+  mps_status status = ask_owners(f, function, &box);
+  if (status != MPS_OK) return status;
+  for (int32_t m = 0; m < box.count; m++) l->guests += box.mail[m].bytes / 8 - 1;
+  l->guest = mpsi_alloc(f->context, l->guests, sizeof *l->guest);
+  int64_t *index = mpsi_alloc(f->context, l->guests, sizeof *index), at = 0;
+  int32_t *rank = mpsi_alloc(f->context, l->guests, sizeof *rank);
+  const bool room = l->guest && index && rank;
+  if (!room) status = mpsi_fail_memory(f->context, function, (size_t)l->guests * sizeof *index);
+  for (int32_t m = 0; room && m < box.count; m++) {
+    const int64_t *words = box.mail[m].data;
+    for (int64_t k = 1; k < box.mail[m].bytes / 8; k++, at++) {
+      l->guest[at] = (int32_t)words[k];
+      index[at] = words[0] + k - 1, rank[at] = box.mail[m].rank;
+    }
+  }
+  mpsi_domain_free_mail(&box);
+  status = make_link(f, function, status, l, rank, index);
+  mpsi_free(f->context, index);
+  mpsi_free(f->context, rank);
+  return status;
+}
+
+/* ---- who meets whom -------------------------------------------------------------------------- */
+
+static bool is_foreign(const mps_fluid *f, int64_t i) { return !is_own(f, i); }
+
+static bool is_guest(const mps_fluid *f, int64_t i) {
+  return atomic_load_explicit(&f->share->is_guest[i], memory_order_relaxed);
+}
+
+static mps_status begin_anew(mps_fluid *f, const char *function) {
+  mpsi_fluid_share *s = f->share;
+  forget(f);
+  s->is_guest = mpsi_alloc(f->context, f->count, sizeof *s->is_guest);
+  s->mark = mpsi_alloc(f->context, f->count, sizeof *s->mark);
+  mps_status status = s->is_guest && s->mark
+                          ? MPS_OK
+                          : mpsi_fail_memory(f->context, function, (size_t)f->count * 9);
+  status = mpsi_fluid_settle(f, function, status);
+  if (status == MPS_OK) status = join(f, function, &s->all, is_foreign);
+  if (status != MPS_OK) return status;
+  s->count = f->count;
+  s->epoch = mps_particles_epoch(f->particles) + 1; /* another one */
+  return MPS_OK;
+}
+
+typedef struct search {
+  mps_fluid *fluid;
+  atomic_bool more;
+} search;
+
+static void find_guests(void *data, int64_t chunk, int32_t worker) {
+  (void)worker;
+  search *s = data;
+  mps_fluid *f = s->fluid;
+  const int64_t end = (chunk + 1) * MPSI_FLUID_CHUNK;
+  for (int64_t i = chunk * MPSI_FLUID_CHUNK; i < end && i < f->count; i++) {
+    const int32_t *index = f->index + f->start[i];
+    for (int32_t k = 0; k < f->near[i]; k++) {
+      const int32_t j = index[k] < f->count ? index[k] : f->parent[index[k] - f->count];
+      if (is_own(f, j) || is_guest(f, j)) continue;
+      atomic_store_explicit(&f->share->is_guest[j], 1, memory_order_relaxed);
+      atomic_store_explicit(&s->more, true, memory_order_relaxed);
+    }
+  }
+}
+
+mps_status mpsi_fluid_meet(mps_fluid *f, const char *function) {
+  mpsi_fluid_share *s = f->share;
+  mps_status status = MPS_OK;
+  if (!s) return MPS_OK;
+  s->knows_local = false;
+  if (s->count != f->count) status = begin_anew(f, function);
+  if (status != MPS_OK) return status;
+  const uint64_t epoch = mps_particles_epoch(f->particles);
+  search found = {.fluid = f};
+  if (s->epoch != epoch) memset((void *)s->is_guest, 0, (size_t)f->count);
+  atomic_store(&found.more, s->epoch != epoch);
+  s->epoch = epoch;
+  mpsi_fluid_units(f, MPSI_FLUID_CHUNK, find_guests, &found);
+  double more = atomic_load(&found.more);
+  status = mpsi_fluid_settle_max(f, function, status, 1, &more);
+  if (status == MPS_OK && more > 0.0) status = join(f, function, &s->near, is_guest);
+  if (status == MPS_OK && more > 0.0) status = join_back(f, function);
+  if (status != MPS_OK) s->count = -1; /* begins anew */
+  return status;
+}
+
+/* ---- what they tell one another -------------------------------------------------------------- */
+
+void mpsi_fluid_tell_near(mps_fluid *f, int32_t columns, double *const *column) {
+  if (f->share) copy(f, &f->share->near, columns, column, column);
+}
+
+void mpsi_fluid_tell_all(mps_fluid *f, int32_t columns, double *const *column) {
+  if (f->share) copy(f, &f->share->all, columns, column, column);
+}
+
+/* A sum is on its rank, and less than any number on others; what is none must not be sent. */
+void mpsi_fluid_tell_sums(mps_fluid *f, int64_t unit) {
+  if (!f->share) return;
+  const int64_t units = (f->count + unit - 1) / unit;
+  double *sums = f->system.sums;
+  for (int64_t k = 0; k < 2 * units; k++) {
+    if (!is_own(f, k / 2 * unit)) sums[k] = -INFINITY;
+    if (isnan(sums[k])) sums[k] = INFINITY;
+  }
+  note(f->share, mpsi_domain_max(f->share->domain, "mps_fluid", (int32_t)(2 * units), sums));
+  if (f->share->lost != MPS_OK) memset(sums, 0, 2 * (size_t)units * sizeof *sums);
+}
+
+/* In scratch columns, which the pressure has not begun to use: z states and numbers, p and q m. */
+void mpsi_fluid_tell_looks(mps_fluid *f) {
+  mpsi_fluid_share *s = f->share;
+  if (!s) return;
+  mpsi_fluid_system *y = &f->system;
+  for (int64_t i = f->own[0]; i < f->own[1]; i++) {
+    y->z[i] = f->state[i] + 4.0 * f->near[i];
+    y->p[i] = f->local[i].m[0], y->q[i] = f->local[i].m[1];
+  }
+  mpsi_fluid_tell_all(f, 1, &y->z);
+  mpsi_fluid_tell_near(f, 2, (double *const[]){y->p, y->q});
+  for (int64_t k = 0; s->lost == MPS_OK && k < s->all.guests; k++) {
+    const int64_t i = s->all.guest[k], word = (int64_t)y->z[i];
+    f->state[i] = (uint8_t)(word % 4), f->near[i] = (int32_t)(word / 4);
+  }
+  for (int64_t k = 0; k < s->near.guests; k++) {
+    const int64_t i = s->near.guest[k];
+    f->local[i].m[0] = y->p[i], f->local[i].m[1] = y->q[i];
+    s->mark[k] = atomic_load_explicit(&f->zone[i], memory_order_relaxed);
+  }
+  /* several ranks may have copies of a particle: one after the other */
+  double *in = s->back.in;
+  if (s->lost == MPS_OK) note(s, mpsi_halo_begin(s->back.halo, "mps_fluid", 1, &s->mark));
+  if (s->lost == MPS_OK) note(s, mpsi_halo_end(s->back.halo, "mps_fluid", &in));
+  for (int64_t k = 0; s->lost == MPS_OK && k < s->back.guests; k++)
+    if (in[k] > 0.0) atomic_store_explicit(&f->zone[s->back.guest[k]], 1, memory_order_relaxed);
+}
+
+void mpsi_fluid_tell_local(mps_fluid *f) {
+  mpsi_fluid_share *s = f->share;
+  if (!s || s->knows_local) return;
+  mpsi_fluid_system *y = &f->system; /* free after the pressure */
+  double *const column[] = {y->p, y->q, y->r, y->z};
+  for (int64_t i = f->own[0]; i < f->own[1]; i++) {
+    const mpsi_fluid_local *l = &f->local[i];
+    y->p[i] = l->n, y->q[i] = l->m[0], y->r[i] = l->m[1], y->z[i] = l->h;
+  }
+  mpsi_fluid_tell_all(f, 4, column);
+  for (int64_t k = 0; s->lost == MPS_OK && k < s->all.guests; k++) {
+    const int64_t i = s->all.guest[k];
+    f->local[i] = (mpsi_fluid_local){.n = y->p[i], .m = {y->q[i], y->r[i]}, .h = y->z[i]};
+  }
+  s->knows_local = s->lost == MPS_OK;
+}

@@ -1,0 +1,180 @@
+/* test_domain_fluid.c - the fluid on several ranks: every particle, force and number has the bits
+ * of the run without a domain, on whatever number of ranks and threads; and an error of one rank is
+ * an error of all. SPDX-License-Identifier: BSD-3-Clause */
+#include "fluid_ranks.h"
+#include "ranks_team.h"
+
+#include <mps/fluid_solver.h>
+
+static int64_t steps(int64_t full) { return test_quick() ? full / 6 : full; }
+
+static void test_collapse(void **state) {
+  (void)state, compare_teams(compute, COLLAPSE, steps(18), true);
+}
+static void test_afloat(void **state) {
+  (void)state, compare_teams(compute, AFLOAT, steps(6), true);
+}
+static void test_spill(void **state) {
+  (void)state, compare_teams(compute, SPILL, steps(24), true);
+}
+static void test_puddle(void **state) { (void)state, compare_teams(compute, PUDDLE, 20, true); }
+
+/* ---- cut in two --------------------------------------------------------------------------------
+ */
+
+#define CHECKPOINT "test_domain_fluid.h5"
+
+static mps_status begin(mps_context *own, mps_domain *domain, int what, int64_t count, result *r) {
+  return compute_half(own, domain, what, count, NULL, CHECKPOINT, r);
+}
+
+static mps_status go_on(mps_context *own, mps_domain *domain, int what, int64_t count, result *r) {
+  return compute_half(own, domain, what, count, CHECKPOINT, NULL, r);
+}
+
+static void run_half(result_fn *half, int32_t size, int64_t count, const result *expected) {
+  ranks s = {.compute = half, .what = COLLAPSE, .threads = 1, .length = count};
+  int64_t *seen = calloc((size_t)expected->count + 1, sizeof *seen);
+  run_team(&s, size, 60.0);
+  for (int32_t r = 0; r < size; r++) {
+    if (s.rank[r].status != MPS_OK) fail_msg("rank %d: %s", (int)r, s.rank[r].message);
+    compare(expected, &s.rank[r], seen);
+    drop(&s.rank[r]);
+  }
+  free(seen);
+}
+
+/* Written by 3 ranks, it goes on with 2, and without a domain, as a run without one does. */
+static void test_checkpoint(void **state) {
+  (void)state;
+  if (!mps_library_has(MPS_FEATURE_HDF5)) skip();
+  const int64_t count = steps(12);
+  result half = {0}, whole = {0}, on = {0};
+  mps_context *own = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_assert_ok(own, begin(own, NULL, COLLAPSE, count, &half));
+  mps_assert_ok(own, go_on(own, NULL, COLLAPSE, count, &whole));
+  remove(CHECKPOINT);
+  run_half(begin, 3, count, &half);
+  run_half(go_on, 2, count, &whole);
+  mps_assert_ok(own, go_on(own, NULL, COLLAPSE, count, &on));
+  int64_t *seen = calloc((size_t)whole.count + 1, sizeof *seen);
+  compare(&whole, &on, seen);
+  free(seen);
+  drop(&half), drop(&whole), drop(&on);
+  mps_context_destroy(&own);
+  remove(CHECKPOINT);
+}
+
+/* ---- what goes wrong on one rank --------------------------------------------------------------
+ */
+
+static void test_refused_memory(void **state) { (void)state, refuse_memory(compute, SPILL, 4, 9); }
+
+/* One after the other, what ranks do not agree upon, what fails on one of them, what is refused. */
+enum {
+  OTHER_SET,
+  OTHER_DENSITY,
+  OTHER_WALL,
+  OTHER_COUNT,
+  OTHER_ADDED,
+  CANCELLED,
+  CALLBACK_FAILS,
+  SOLVER,
+  TROUBLES
+};
+static const struct {
+  mps_status status;
+  const char *text;
+} trouble[TROUBLES] = {
+    [OTHER_SET] = {MPS_ERROR_ARGUMENT, "a hash of the set's particles"},
+    [OTHER_DENSITY] = {MPS_ERROR_ARGUMENT, "a hash of the solver's definition"},
+    [OTHER_WALL] = {MPS_ERROR_ARGUMENT, "a hash of the boundary"},
+    [OTHER_COUNT] = {MPS_ERROR_ARGUMENT, "count is "},
+    [OTHER_ADDED] = {MPS_ERROR_STATE, "must add and remove the same"},
+    [CANCELLED] = {MPS_ERROR_CANCELLED, "stopped by the cancel hook at step 0"},
+    [CALLBACK_FAILS] = {MPS_ERROR_IO, "rank 2: "},
+    [SOLVER] = {MPS_ERROR_UNSUPPORTED, "solved by the library"},
+};
+
+static mps_status refuse_callback(void *user, mps_fluid *fluid) {
+  return *(const int32_t *)user == 2 && mps_fluid_steps(fluid) > 0 ? MPS_ERROR_IO : MPS_OK;
+}
+
+static int32_t cancel(void *user) { return *(const int32_t *)user == 1; }
+
+static mps_status no_matrix(void *user, int64_t rows, const int64_t *start, const int32_t *column,
+                            const double *value) {
+  (void)user, (void)rows, (void)start, (void)column, (void)value;
+  return MPS_OK;
+}
+
+static mps_status no_solve(void *user, const double *b, double tolerance, double *x,
+                           int64_t *iterations) {
+  (void)user, (void)b, (void)tolerance, (void)x, (void)iterations;
+  return MPS_OK;
+}
+
+static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, int32_t rank) {
+  scene s = {.set = NULL};
+  mps_particles_def set = mps_particles_defaults();
+  mps_fluid_def def = mps_fluid_defaults();
+  const double lower[2] = {0.0, 0.0}, upper[2] = {0.6, 0.4}, extra[2] = {0.3, 0.7};
+  set.spacing = 0.02;
+  def.domain = domain;
+  if (what == OTHER_DENSITY) def.density += rank;
+  mps_status status = mps_particles_create(own, &set, &s.set);
+  TRY(mps_particles_fill_box(s.set, lower, upper, NULL));
+  if (what == OTHER_SET && rank == 1) TRY(mps_particles_append(s.set, 1, extra));
+  TRY(mps_fluid_create(own, s.set, &def, &s.fluid));
+  TRY(wall(&s, MPS_FLUID_BOUNDARY_SLIP, 0.0, 0.0, 0.0, 1.0, NULL));
+  TRY(wall(&s, MPS_FLUID_BOUNDARY_SLIP, what == OTHER_WALL ? -0.1 * rank : 0.0, 0.0, 1.0, 0.0,
+           NULL));
+  const mps_fluid_solver_def solver = {
+      .struct_size = sizeof solver, .matrix = no_matrix, .solve = no_solve};
+  if (what == SOLVER) TRY(mps_fluid_set_solver(s.fluid, &solver));
+  if (what == OTHER_ADDED && rank == 1) TRY(mps_particles_append(s.set, 1, extra));
+  if (what == CALLBACK_FAILS) TRY(mps_fluid_run(s.fluid, 0.1, 1, refuse_callback, &rank));
+  if (what == CANCELLED) mps_context_set_cancel(own, cancel, &rank);
+  TRY(mps_fluid_step(s.fluid, what == OTHER_COUNT ? 1 + rank : 2));
+  drop_scene(&s);
+  return status;
+}
+
+static void run_troubled(void *user, team *t, int32_t rank) {
+  ranks *s = user;
+  result *r = &s->rank[rank];
+  mps_domain *domain = NULL;
+  mps_context *own = team_context(MPS_EXECUTOR_SERIAL, 1);
+  const mps_domain_def def = team_domain_def(t, rank);
+  r->status = mps_domain_create(own, &def, &domain);
+  if (r->status == MPS_OK) r->status = run_trouble(own, domain, s->what, rank);
+  snprintf(r->message, sizeof r->message, "%s", mps_context_error(own)->message);
+  mps_domain_destroy(&domain);
+  mps_context_destroy(&own);
+}
+
+static void test_troubles(void **state) {
+  (void)state;
+  for (int what = 0; what < TROUBLES; what++) {
+    ranks s = {.what = what};
+    team t;
+    team_begin(&t, 3);
+    team_run(&t, run_troubled, &s);
+    team_end(&t);
+    for (int32_t r = 0; r < 3; r++)
+      if (s.rank[r].status != trouble[what].status ||
+          !strstr(s.rank[r].message, trouble[what].text))
+        fail_msg("trouble %d, rank %d: %d %s", what, (int)r, (int)s.rank[r].status,
+                 s.rank[r].message);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_puddle),     cmocka_unit_test(test_collapse),
+      cmocka_unit_test(test_afloat),     cmocka_unit_test(test_spill),
+      cmocka_unit_test(test_checkpoint), cmocka_unit_test(test_refused_memory),
+      cmocka_unit_test(test_troubles),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

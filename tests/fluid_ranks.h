@@ -1,0 +1,161 @@
+/* fluid_ranks.h - scenes of the fluid, computed by one process or by the ranks of a domain.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPS_TEST_FLUID_RANKS_H
+#define MPS_TEST_FLUID_RANKS_H
+
+#include "ranks_result.h"
+
+#include <mps/fluid.h>
+
+/* A column that falls against a wall that does not slip; a tank with a piston, a load and a body
+ * afloat, made in parts; water that runs out of an open side, and is added to; all of two to three
+ * blocks. PUDDLE is less than one. */
+enum { COLLAPSE, AFLOAT, SPILL, PUDDLE, SCENES };
+
+typedef struct scene {
+  mps_particles *set;
+  mps_fluid *fluid;
+  mps_body *body;
+  mps_signal *piston;
+} scene;
+
+static inline void drop_scene(scene *s) {
+  mps_fluid_destroy(&s->fluid);
+  mps_body_destroy(&s->body);
+  mps_signal_destroy(&s->piston);
+  mps_particles_destroy(&s->set);
+}
+
+static inline mps_status wall(scene *s, int32_t kind, double x, double y, double nx, double ny,
+                              mps_signal *signal) {
+  mps_fluid_boundary_def def = mps_fluid_boundary_defaults();
+  def.kind = kind;
+  def.point[0] = x, def.point[1] = y, def.normal[0] = nx, def.normal[1] = ny;
+  def.signal = signal;
+  return mps_fluid_add_boundary(s->fluid, &def, NULL);
+}
+
+/* What fails on one rank while it makes what the fluid is made of is told to all. */
+static inline mps_domain *def_domain(const scene *s) {
+  mps_fluid_def def = {0};
+  return mps_fluid_get_def(s->fluid, &def) == MPS_OK ? def.domain : NULL;
+}
+
+static inline mps_status add_float(mps_context *own, scene *s) {
+  mps_status status = mps_signal_sine(own, 1.0, 0.3, 0.0, &s->piston);
+  mps_domain *domain = def_domain(s);
+  mps_body_def body = mps_body_defaults();
+  const double xy[] = {-0.2, -0.1, 0.2, -0.1, 0.2, 0.1, -0.2, 0.1};
+  int32_t number = 0;
+  body.motion = MPS_BODY_MOTION_FREE;
+  body.position[0] = 1.6, body.position[1] = 0.9;
+  body.mass = 40.0, body.inertia[2] = 1.0;
+  body.gravity[1] = -9.81;
+  TRY(mps_body_create_polygon(own, &body, 4, xy, &s->body));
+  if (domain) status = mps_domain_agree(domain, status);
+  TRY(wall(s, MPS_FLUID_BOUNDARY_SLIP, 0.0, 0.0, 0.0, 1.0, NULL));
+  TRY(wall(s, MPS_FLUID_BOUNDARY_SLIP, 0.0, 0.0, 1.0, 0.0, s->piston));
+  TRY(wall(s, MPS_FLUID_BOUNDARY_SLIP, 4.0, 0.0, -1.0, 0.0, NULL));
+  TRY(mps_fluid_add_body(s->fluid, s->body, MPS_FLUID_BOUNDARY_SLIP, &number));
+  TRY(mps_fluid_float_body(s->fluid, number, 1));
+  mps_fluid_load_def load = mps_fluid_load_defaults();
+  load.kind = MPS_FLUID_LOAD_PRESSURE;
+  load.pressure = 200.0;
+  load.lower[0] = 3.0;
+  TRY(mps_fluid_add_load(s->fluid, &load, NULL));
+  return status;
+}
+
+static inline mps_status make_scene(mps_context *own, mps_domain *domain, int what, scene *s) {
+  mps_particles_def set = mps_particles_defaults();
+  mps_fluid_def def = mps_fluid_defaults();
+  const double lower[2] = {0.0, 0.0}, small[2] = {0.6, 0.4}, large[2] = {2.0, 1.6};
+  set.spacing = 0.02;
+  def.domain = domain;
+  def.viscosity = what == COLLAPSE ? 0.5 : 0.0;
+  mps_status status = mps_particles_create(own, &set, &s->set);
+  if (what == AFLOAT) { /* below the body, and beside it */
+    const double parts[3][4] = {
+        {0.0, 0.0, 4.0, 0.78}, {0.0, 0.78, 1.38, 0.9}, {1.82, 0.78, 4.0, 0.9}};
+    for (int k = 0; k < 3; k++)
+      TRY(mps_particles_fill_box(s->set, &parts[k][0], &parts[k][2], NULL));
+  } else {
+    TRY(mps_particles_fill_box(s->set, lower, what == PUDDLE ? small : large, NULL));
+  }
+  if (domain) status = mps_domain_agree(domain, status);
+  TRY(mps_fluid_create(own, s->set, &def, &s->fluid));
+  if (status != MPS_OK || what == AFLOAT) return status == MPS_OK ? add_float(own, s) : status;
+  TRY(wall(s, MPS_FLUID_BOUNDARY_SLIP, 0.0, 0.0, 0.0, 1.0, NULL));
+  TRY(wall(s, MPS_FLUID_BOUNDARY_NO_SLIP, 0.0, 0.0, 1.0, 0.0, NULL));
+  if (what == SPILL) TRY(wall(s, MPS_FLUID_BOUNDARY_OPEN, 2.02, 0.0, -1.0, 0.0, NULL));
+  if (what != SPILL) TRY(wall(s, MPS_FLUID_BOUNDARY_SLIP, 2.5, 0.0, -1.0, 0.0, NULL));
+  return status;
+}
+
+static inline mps_status step_in_parts(scene *s) {
+  mps_status status = mps_fluid_begin_step(s->fluid, NAN);
+  TRY(mps_fluid_solve_pressure(s->fluid));
+  TRY(mps_fluid_solve_pressure(s->fluid));
+  TRY(mps_fluid_end_step(s->fluid));
+  return status;
+}
+
+/* Steps; in the middle what the scene has of its own. */
+static inline mps_status take_steps(scene *s, int what, int64_t steps) {
+  mps_snapshot *kept = NULL;
+  mps_status status = mps_fluid_step(s->fluid, steps / 2);
+  if (what == AFLOAT) TRY(step_in_parts(s));
+  if (what == SPILL) {
+    const double x[4] = {0.5, 1.9, 0.54, 1.9};
+    TRY(mps_particles_append(s->set, 2, x));
+    if (def_domain(s)) status = mps_domain_agree(def_domain(s), status);
+  }
+  if (what == COLLAPSE) {
+    TRY(mps_fluid_snapshot(s->fluid, &kept));
+    TRY(mps_fluid_step(s->fluid, 3));
+    TRY(mps_fluid_rollback(s->fluid, kept));
+    mps_snapshot_destroy(&kept);
+  }
+  TRY(mps_fluid_step(s->fluid, steps - steps / 2));
+  return status;
+}
+
+static inline mps_status tell(scene *s, result *r) {
+  const double station[4] = {0.1, 0.7, 1.4, 2.2};
+  mps_fluid_report report;
+  mps_status status = mps_fluid_get_totals(s->fluid, &r->totals);
+  for (int b = 0; b < 3; b++) TRY(mps_fluid_get_reaction(s->fluid, b, &r->reaction[b]));
+  TRY(mps_fluid_get_levels(s->fluid, 4, station, r->other));
+  double points[12] = {0.1, 0.0, 0.0, 0.5, 0.0, 0.0, 1.1, 0.0, 0.0, 1.7, 0.0, 0.0};
+  TRY(mps_fluid_get_pressure(s->fluid, 0, 4, points, r->other + 4));
+  TRY(mps_fluid_get_report(s->fluid, &report));
+  if (status != MPS_OK) return status;
+  const int64_t counts[] = {report.ghosts,     report.surface,       report.apart,
+                            report.iterations, report.collisions,    report.limited,
+                            report.pushed,     report.all_iterations};
+  for (int k = 0; k < 8; k++) r->other[8 + k] = (double)counts[k];
+  r->pairs = report.pairs;
+  r->dt = mps_fluid_dt(s->fluid), r->limit = mps_fluid_limit(s->fluid);
+  r->time = mps_fluid_time(s->fluid);
+  return keep(s->set, r);
+}
+
+/* `from`, `to`: checkpoints, or NULL. */
+static inline mps_status compute_half(mps_context *own, mps_domain *domain, int what, int64_t steps,
+                                      const char *from, const char *to, result *r) {
+  scene s = {.set = NULL};
+  mps_status status = make_scene(own, domain, what, &s);
+  if (from) TRY(mps_fluid_restore(s.fluid, from, NULL));
+  TRY(take_steps(&s, what, steps));
+  if (to) TRY(mps_fluid_save(s.fluid, to, NULL));
+  TRY(tell(&s, r));
+  drop_scene(&s);
+  return status;
+}
+
+static inline mps_status compute(mps_context *own, mps_domain *domain, int what, int64_t steps,
+                                 result *r) {
+  return compute_half(own, domain, what, steps, NULL, NULL, r);
+}
+
+#endif
