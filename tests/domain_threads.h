@@ -1,6 +1,7 @@
 /* domain_threads.h - a transport for domains whose ranks are threads of one process, each with a
  * context of its own: for tests with sanitizers, allocations that are refused and partners that
- * are lost. Every wait ends after a time limit, with an error on all ranks.
+ * are lost. Every wait ends after a time limit, with an error on all ranks. Ranks read one another's
+ * memory; one that goes away early waits until nobody reads.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPS_TEST_DOMAIN_THREADS_H
 #define MPS_TEST_DOMAIN_THREADS_H
@@ -41,6 +42,8 @@ struct team {
   int64_t turn;    /* meetings that have ended */
   int32_t arrived; /* at the present one */
   bool lost;       /* a wait has ended by the limit */
+  bool silent;     /* a rank takes no part any more: its memory must not be read */
+  int32_t readers; /* ranks that read others' memory now */
   bool posted[TEAM_STARS][TEAM_MOST];
   int32_t copied[TEAM_STARS];
   team_member member[TEAM_MOST];
@@ -57,7 +60,7 @@ typedef struct team_star {
 static inline void team_begin(team *t, int32_t size) {
   memset(t, 0, sizeof *t);
   t->size = size;
-  t->limit = 20.0;
+  t->limit = 60.0;
   pthread_mutex_init(&t->lock, NULL);
   pthread_cond_init(&t->change, NULL);
   for (int32_t r = 0; r < size; r++) {
@@ -93,6 +96,34 @@ static inline bool team_listens(team_member *m) {
   return m->deaf_at == 0 || m->calls < m->deaf_at;
 }
 
+/* From here to team_read_end the others' memory stays; false where the team falls apart first. */
+static inline bool team_read_begin(team *t) {
+  const struct timespec until = team_limit(t);
+  pthread_mutex_lock(&t->lock);
+  while (t->silent && team_wait(t, &until)) {
+  }
+  const bool good = !t->lost;
+  if (good) t->readers++;
+  pthread_mutex_unlock(&t->lock);
+  return good;
+}
+
+static inline void team_read_end(team *t) {
+  pthread_mutex_lock(&t->lock);
+  t->readers--;
+  pthread_cond_broadcast(&t->change);
+  pthread_mutex_unlock(&t->lock);
+}
+
+/* This rank goes away, and its memory with it: once nobody reads. */
+static inline mps_status team_leave(team *t) {
+  pthread_mutex_lock(&t->lock);
+  t->silent = true;
+  while (t->readers > 0) pthread_cond_wait(&t->change, &t->lock);
+  pthread_mutex_unlock(&t->lock);
+  return MPS_ERROR_IO;
+}
+
 /* All ranks are here. */
 static inline mps_status team_meet(team_member *m) {
   team *t = m->team;
@@ -116,10 +147,10 @@ static inline mps_status team_rendezvous(void *user, int32_t count,
                                          void *room_user) {
   team_member *m = user;
   bool refused = false;
-  if (!team_listens(m)) return MPS_ERROR_IO;
+  if (!team_listens(m)) return team_leave(m->team);
   m->message = message;
   m->messages = count;
-  if (team_meet(m) != MPS_OK) return MPS_ERROR_IO;
+  if (team_meet(m) != MPS_OK || !team_read_begin(m->team)) return team_leave(m->team);
   for (int32_t r = 0; r < m->team->size; r++) {
     const team_member *from = &m->team->member[r];
     for (int32_t k = 0; k < from->messages; k++) {
@@ -130,45 +161,48 @@ static inline mps_status team_rendezvous(void *user, int32_t count,
       refused = refused || !to;
     }
   }
-  if (team_meet(m) != MPS_OK) return MPS_ERROR_IO;
+  team_read_end(m->team);
+  if (team_meet(m) != MPS_OK) return team_leave(m->team);
   return refused ? MPS_ERROR_MEMORY : MPS_OK;
 }
 
 static inline mps_status team_max(void *user, int32_t count, double *values) {
   team_member *m = user;
-  if (!team_listens(m)) return MPS_ERROR_IO;
-  double *most = malloc((size_t)count * sizeof *most + 8);
+  if (!team_listens(m)) return team_leave(m->team);
   m->max = values;
-  mps_status status = team_meet(m);
-  for (int32_t k = 0; status == MPS_OK && k < count; k++) {
+  if (team_meet(m) != MPS_OK || !team_read_begin(m->team)) return team_leave(m->team);
+  double *most = malloc((size_t)count * sizeof *most + 8);
+  for (int32_t k = 0; k < count; k++) {
     most[k] = values[k];
     for (int32_t r = 0; r < m->team->size; r++) most[k] = fmax(most[k], m->team->member[r].max[k]);
   }
-  if (status == MPS_OK) status = team_meet(m);
+  team_read_end(m->team);
+  const mps_status status = team_meet(m);
   if (status == MPS_OK && count > 0) memcpy(values, most, (size_t)count * sizeof *most);
   free(most);
-  return status;
+  return status == MPS_OK ? MPS_OK : team_leave(m->team);
 }
 
 static inline mps_status team_sum(void *user, int32_t count, int64_t *values) {
   team_member *m = user;
-  if (!team_listens(m)) return MPS_ERROR_IO;
-  uint64_t *sum = calloc((size_t)count + 1, sizeof *sum);
+  if (!team_listens(m)) return team_leave(m->team);
   m->sum = values;
-  mps_status status = team_meet(m);
-  for (int32_t k = 0; status == MPS_OK && k < count; k++)
+  if (team_meet(m) != MPS_OK || !team_read_begin(m->team)) return team_leave(m->team);
+  uint64_t *sum = calloc((size_t)count + 1, sizeof *sum);
+  for (int32_t k = 0; k < count; k++)
     for (int32_t r = 0; r < m->team->size; r++) sum[k] += (uint64_t)m->team->member[r].sum[k];
-  if (status == MPS_OK) status = team_meet(m);
+  team_read_end(m->team);
+  const mps_status status = team_meet(m);
   if (status == MPS_OK && count > 0) memcpy(values, sum, (size_t)count * sizeof *sum);
   free(sum);
-  return status;
+  return status == MPS_OK ? MPS_OK : team_leave(m->team);
 }
 
 static inline mps_status team_star_create(void *user, int64_t own, int64_t guests,
                                           const int32_t *rank, const int64_t *index, void **out) {
   team_member *m = user;
   (void)own;
-  if (!team_listens(m) || m->stars == TEAM_STARS) return MPS_ERROR_IO;
+  if (!team_listens(m) || m->stars == TEAM_STARS) return team_leave(m->team);
   team_star *star = calloc(1, sizeof *star);
   star->number = m->stars++;
   star->guests = guests;
@@ -187,7 +221,7 @@ static inline mps_status team_star_begin(void *user, void *handle, int32_t item_
   team_member *m = user;
   team *t = m->team;
   team_star *star = handle;
-  if (!team_listens(m)) return MPS_ERROR_IO;
+  if (!team_listens(m)) return team_leave(t);
   star->item_bytes = item_bytes;
   star->to = guests;
   pthread_mutex_lock(&t->lock);
@@ -209,10 +243,12 @@ static inline mps_status team_star_end(void *user, void *handle) {
   for (int32_t r = 0; good && r < t->size; r++)
     while (good && !t->posted[star->number][r]) good = team_wait(t, &until);
   pthread_mutex_unlock(&t->lock);
+  good = good && team_read_begin(t);
   for (int64_t k = 0; good && k < star->guests; k++)
     memcpy(star->to + k * star->item_bytes,
            t->member[star->rank[k]].own[star->number] + star->index[k] * star->item_bytes,
            (size_t)star->item_bytes);
+  if (good) team_read_end(t);
   pthread_mutex_lock(&t->lock);
   if (good && ++t->copied[star->number] == t->size) {
     t->copied[star->number] = 0;
@@ -221,7 +257,7 @@ static inline mps_status team_star_end(void *user, void *handle) {
   }
   while (good && t->posted[star->number][m->rank]) good = team_wait(t, &until);
   pthread_mutex_unlock(&t->lock);
-  return good ? MPS_OK : MPS_ERROR_IO;
+  return good ? MPS_OK : team_leave(t);
 }
 
 static inline void team_star_destroy(void *user, void *handle) {
