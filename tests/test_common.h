@@ -68,6 +68,9 @@ static inline mps_context_def test_context_defaults(void) {
  * threads. */
 static inline bool test_quick(void) { return getenv("MPS_TEST_QUICK") != NULL; }
 
+/* Of so many steps a quarter where it is to be quick. */
+static inline int64_t test_steps(int64_t steps) { return test_quick() ? (steps + 3) / 4 : steps; }
+
 static inline mps_context *test_context(int32_t executor, int32_t threads) {
   mps_context_def def = test_context_defaults();
   mps_context *context = NULL;

@@ -53,7 +53,7 @@ static void closes_with_boundaries(void **state) {
       def.volumetric = choice == 2 ? MPS_MPM_VOLUMETRIC_CELL : MPS_MPM_VOLUMETRIC_POINT;
       mpm_scene s = held_begin_with(context, &def, &box, loads);
       const double start = mpm_scene_totals(&s).kinetic;
-      mps_assert_ok(context, mps_mpm_step(s.mpm, 60));
+      mps_assert_ok(context, mps_mpm_step(s.mpm, test_steps(60)));
       assert_closes(&s, start, "boundaries", 1e-12);
       mpm_scene_end(&s);
     }
@@ -74,7 +74,7 @@ static void closes_with_bodies(void **state) {
     int32_t number;
     mps_assert_ok(context, mps_mpm_add_boundary(x.s.mpm, &held, &number));
     const double start = mpm_scene_totals(&x.s).kinetic;
-    mps_assert_ok(context, mps_mpm_step(x.s.mpm, 150));
+    mps_assert_ok(context, mps_mpm_step(x.s.mpm, test_steps(150)));
     const mps_mpm_losses l = losses(&x.s);
     assert_closes(&x.s, start, "bodies", 1e-12);
     assert_true(l.bodies > 0.0 && l.laws > 0.0);

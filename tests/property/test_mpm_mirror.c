@@ -92,8 +92,8 @@ static void compare_part(int32_t geometry, int32_t spline, uint32_t cut, double 
   mpm_scene whole = part_of_box(geometry, spline, 0, friction, method);
   mpm_scene part = part_of_box(geometry, spline, cut, friction, method);
   const int dim = part.mpm->dim;
-  mps_assert_ok(context, mps_mpm_step(whole.mpm, STEPS));
-  mps_assert_ok(context, mps_mpm_step(part.mpm, STEPS));
+  mps_assert_ok(context, mps_mpm_step(whole.mpm, test_steps(STEPS)));
+  mps_assert_ok(context, mps_mpm_step(part.mpm, test_steps(STEPS)));
   double force = 0.0;
   if (friction >= 0.0) { /* the body feels the part */
     mps_assert_ok(context, mps_body_get_reaction(whole.mpm->contact.body[0], -1, &r));
@@ -221,7 +221,7 @@ static void check_balance(int32_t geometry, int32_t spline, bool moves, int body
   double worst = 0.0, size = 0.0;
   double before[3], after[3], moment[3];
   given(&s, before, moment);
-  for (int step = 0; step < 40; step++) {
+  for (int step = 0; step < test_steps(40); step++) {
     const mps_totals a = mpm_scene_totals(&s);
     mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
     const mps_totals b = mpm_scene_totals(&s);
@@ -280,7 +280,7 @@ static void energy_is_balanced(void **state) {
   for (int variant = 0; variant < 18; variant++) {
     mpm_scene s = turmoil(variant / 6, 2 + variant % 2, variant / 3 % 2, variant % 3, 1);
     mps_mpm_losses l;
-    mps_assert_ok(context, mps_mpm_step(s.mpm, 60));
+    mps_assert_ok(context, mps_mpm_step(s.mpm, test_steps(60)));
     mps_assert_ok(context, mps_mpm_get_losses(s.mpm, &l));
     const mps_totals t = mpm_scene_totals(&s);
     const double size = t.kinetic + fabs(t.work_boundaries) + fabs(l.transfer) + fabs(l.stepping);

@@ -173,7 +173,7 @@ static void nothing_passes(void **state) {
     mps_assert_ok(context, dim == 3 ? mps_body_create_cylinder(context, &body, 0.5, t, &plate)
                                     : mps_body_create_box(context, &body, t, 1.0, &plate));
     mps_contact *contact = touch(&s, plate);
-    mps_assert_ok(context, mps_mpm_step(s.mpm, 40));
+    mps_assert_ok(context, mps_mpm_step(s.mpm, test_steps(40)));
     const mps_view now = mpm_scene_view(&s, "velocity");
     x = mpm_scene_view(&s, "position");
     for (int64_t i = 0; i < x.shape[0]; i++)
