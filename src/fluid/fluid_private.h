@@ -29,7 +29,8 @@
 
 #include <mps/fluid.h>
 
-#define MPSI_FLUID_CHUNK 256 /* particles in a unit of work: sums are made in this order */
+#define MPSI_FLUID_CHUNK 256   /* particles in a unit of work: sums are made in this order */
+#define MPSI_FLUID_COPIED 1024 /* in one that only copies */
 
 /* How a wall moves along its normal, at its nodes: linear between them, constant beyond the ends.
  * A wall that stays plane has one node. */
@@ -60,6 +61,7 @@ typedef struct mpsi_fluid_wall {
   mpsi_fluid_motion now, next;  /* at the beginning and at the end of the step being made */
   double *mean;                 /* m/s, over the step being made */
   double *motion;               /* the memory of all these */
+  int64_t first_image, images;  /* ghosts: images of particles here alone, in their order */
   mpsi_fluid_load load, before; /* of the last step or solution; before the step being made */
   double impulse[2], moment_impulse, work;
   int64_t removed; /* particles through an open side */
@@ -216,6 +218,7 @@ struct mps_fluid {
   void *slab;         /* of all arrays of fixed size */
   void *cloud;
   double time, dt, speed; /* s; s, of the step being made; largest |u|, m/s */
+  double travel;          /* m: of particles, and of walls, since the images were made, at most */
   double last_dt;         /* s, of the last step; 0 before the first */
   int64_t steps;
   mpsi_fluid_stage stage;

@@ -8,14 +8,19 @@ static double *column(const mps_fluid *f, const char *name, int32_t component) {
   return mpsi_particles_column(f->particles, name, component);
 }
 
+static void load_part(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  (void)chunk;
+  const size_t bytes = (size_t)(end - begin) * sizeof(double);
+  for (int c = 0; c < 2; c++) {
+    memcpy(f->x[c] + begin, column(f, "position", c) + begin, bytes);
+    memcpy(f->u[c] + begin, column(f, "velocity", c) + begin, bytes);
+  }
+  memcpy(f->q + begin, column(f, "reduced_pressure", 0) + begin, bytes);
+}
+
 /* Copies of positions, velocities and the last reduced pressure. */
 void mpsi_fluid_load_cloud(mps_fluid *f) {
-  const size_t bytes = (size_t)f->count * sizeof(double);
-  for (int c = 0; c < 2; c++) {
-    memcpy(f->x[c], column(f, "position", c), bytes);
-    memcpy(f->u[c], column(f, "velocity", c), bytes);
-  }
-  memcpy(f->q, column(f, "reduced_pressure", 0), bytes);
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_COPIED, load_part);
   f->driven = false;
   mpsi_fluid_deal(f, mpsi_fluid_block(f));
 }

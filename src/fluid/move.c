@@ -262,8 +262,13 @@ static int64_t keep_off_walls(const mps_fluid *f, double *x, double *u) {
   return pushed;
 }
 
+static bool finite(const double *x, const double *u) {
+  return isfinite(x[0]) && isfinite(x[1]) && isfinite(u[0]) && isfinite(u[1]);
+}
+
 static void move_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
-  int64_t pushed = 0, bad = -1;
+  int64_t pushed = 0;
+  double far2 = 0.0;
   for (int64_t i = begin; i < end; i++) {
     double shift[2], x[2], u[2];
     find_shift(f, i, shift);
@@ -275,11 +280,24 @@ static void move_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
       u[c] = f->u_new[c][i] + G[2 * c] * shift[0] + G[2 * c + 1] * shift[1];
     }
     pushed += keep_off_walls(f, x, u);
-    if (bad < 0 && !(isfinite(x[0]) && isfinite(x[1]) && isfinite(u[0]) && isfinite(u[1]))) bad = i;
+    const double way[2] = {x[0] - f->x[0][i], x[1] - f->x[1][i]};
+    const double way2 = way[0] * way[0] + way[1] * way[1];
+    far2 = finite(x, u) ? mpsi_fluid_larger(way2, far2) : (double)INFINITY;
     for (int c = 0; c < 2; c++) f->x[c][i] = x[c], f->u[c][i] = u[c];
   }
   f->system.sums[2 * chunk] = (double)pushed;
-  f->system.sums[2 * chunk + 1] = (double)bad;
+  f->system.sums[2 * chunk + 1] = far2;
+}
+
+/* m: the farthest that a wall goes in the step. */
+static double wall_travel(const mps_fluid *f) {
+  double most = 0.0;
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+    const mpsi_fluid_wall *w = &f->wall[b];
+    for (int64_t k = 0; w->used && k < w->nodes; k++)
+      most = fmax(most, fabs(w->next.s[k] - w->now.s[k]));
+  }
+  return most;
 }
 
 int64_t mpsi_fluid_advance(mps_fluid *f) {
@@ -287,9 +305,15 @@ int64_t mpsi_fluid_advance(mps_fluid *f) {
   mpsi_fluid_tell_sums(f, MPSI_FLUID_CHUNK);
   mpsi_fluid_tell_all(f, 5, (double *const[]){f->x[0], f->x[1], f->u[0], f->u[1], f->pressure});
   const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
+  double far2 = 0.0;
   for (int64_t k = 0; k < chunks; k++) {
     f->report.pushed += (int64_t)f->system.sums[2 * k];
-    if (f->system.sums[2 * k + 1] >= 0.0) return (int64_t)f->system.sums[2 * k + 1];
+    far2 = fmax(far2, f->system.sums[2 * k + 1]);
+  }
+  f->travel = sqrt(far2) + wall_travel(f);
+  for (int64_t i = 0; far2 == (double)INFINITY && i < f->count; i++) {
+    const double x[2] = {f->x[0][i], f->x[1][i]}, u[2] = {f->u[0][i], f->u[1][i]};
+    if (!finite(x, u)) return i;
   }
   return -1;
 }

@@ -30,8 +30,8 @@ typedef struct fit {
 static const fit no_fit = {.air = -INFINITY};
 
 static void fit_add(fit *sum, double w, double s, const neighbour *n) {
-  sum->air = fmax(sum->air, n->air);
-  sum->least = fmin(sum->least, n->least);
+  sum->air = mpsi_fluid_larger(sum->air, n->air);
+  sum->least = -mpsi_fluid_larger(-sum->least, -n->least);
   sum->w += w, sum->ws += w * s, sum->wss += w * s * s;
   sum->wq += w * n->q, sum->wsq += w * s * n->q;
 }
@@ -76,27 +76,21 @@ static bool near_wall(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t i, n
   return true;
 }
 
-/* The particles near a wall, in the order of the set, to near_wall_room. */
+/* The particles near a wall, in the order of the set, to near_wall_room: all that are have had an
+ * image there, unless something has gone further since than images reach beyond the fit. */
 static mps_status gather(mps_fluid *f, const mpsi_fluid_wall *w, const char *function,
                          int64_t *count) {
-  const double *moved = mpsi_fluid_places(f, w), *N = w->normal, *at = w->at;
-  double low = moved[0], high = moved[0];
-  for (int64_t k = 1; k < w->nodes; k++) low = fmin(low, moved[k]), high = fmax(high, moved[k]);
-  low -= REACH * f->l0, high += REACH * f->l0;
-  const double *x = f->x[0], *y = f->x[1], offset = at[0] * N[0] + at[1] * N[1];
-  for (int pass = 0; pass < 2; pass++) {
-    neighbour *list = f->near_wall_room.item;
-    int64_t found = 0, maybe = 0;
-    for (int64_t i = 0; i < f->count; i++) {
-      const double across = x[i] * N[0] + y[i] * N[1] - offset;
-      if (!(across > low && across < high)) continue;
-      maybe++;
-      if (pass == 1 && near_wall(f, w, i, &list[found])) found++;
-    }
-    if (pass == 0 && !mpsi_room_ensure(f->context, &f->near_wall_room, maybe + 1, sizeof *list))
-      return mpsi_fail_memory(f->context, function, (size_t)maybe * sizeof *list);
-    *count = found;
+  const bool imaged = f->travel < f->weight.re - REACH * f->l0;
+  const int64_t candidates = imaged ? w->images : f->count;
+  if (!mpsi_room_ensure(f->context, &f->near_wall_room, candidates + 1, sizeof(neighbour)))
+    return mpsi_fail_memory(f->context, function, (size_t)candidates * sizeof(neighbour));
+  neighbour *list = f->near_wall_room.item;
+  int64_t found = 0;
+  for (int64_t k = 0; k < candidates; k++) {
+    const int64_t i = imaged ? f->parent[w->first_image + k] : k;
+    if (near_wall(f, w, i, &list[found])) found++;
   }
+  *count = found;
   return MPS_OK;
 }
 
@@ -160,7 +154,8 @@ static mps_status for_points(mps_fluid *f, int32_t b, const char *function, poin
   const neighbour *list = f->near_wall_room.item;
   for (int64_t n = 0; n < near && high > low; n++) {
     const double s = list[n].s;
-    const int64_t first = (int64_t)floor(s / step - 1.5 * REACH - 0.5), last = first + 8;
+    const double reach = REACH * f->l0 / step;
+    const int64_t first = (int64_t)floor(s / step - reach), last = (int64_t)(s / step + reach);
     for (int64_t k = first > low ? first : low; k <= last && k < high; k++) {
       const double at = ((double)k + 0.5) * step, weight = weight_of(f, list[n].d, s - at);
       if (weight > 0.0 && (!f->faces || sees_point(f, b, at, list[n].i)))

@@ -13,23 +13,30 @@ static double *column(const mps_fluid *f, const char *name, int32_t component) {
   return mpsi_particles_column(f->particles, name, component);
 }
 
-static void store_cloud(mps_fluid *f) {
-  const size_t bytes = (size_t)f->count * sizeof(double);
-  double *p = column(f, "pressure", 0);
+static void store_part(mps_fluid *f, int64_t begin, int64_t end, int64_t part) {
+  const size_t bytes = (size_t)(end - begin) * sizeof(double);
+  double *q = column(f, "reduced_pressure", 0), most = 0.0;
   int64_t *surface = mpsi_particles_integers(f->particles, "free_surface");
   for (int c = 0; c < 2; c++) {
-    memcpy(column(f, "position", c), f->x[c], bytes);
-    memcpy(column(f, "velocity", c), f->u[c], bytes);
+    memcpy(column(f, "position", c) + begin, f->x[c] + begin, bytes);
+    memcpy(column(f, "velocity", c) + begin, f->u[c] + begin, bytes);
   }
-  memcpy(column(f, "reduced_pressure_old", 0), column(f, "reduced_pressure", 0), bytes);
-  memcpy(column(f, "reduced_pressure", 0), f->q, bytes);
+  memcpy(column(f, "reduced_pressure_old", 0) + begin, q + begin, bytes);
+  memcpy(q + begin, f->q + begin, bytes);
+  memcpy(column(f, "pressure", 0) + begin, f->pressure + begin, bytes);
+  for (int64_t i = begin; i < end; i++) {
+    surface[i] = f->state[i];
+    most = mpsi_fluid_larger(f->u[0][i] * f->u[0][i] + f->u[1][i] * f->u[1][i], most);
+  }
+  f->system.sums[part] = most;
+}
+
+static void store_cloud(mps_fluid *f) {
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_COPIED, store_part);
   f->last_dt = f->dt;
   double most = 0.0;
-  for (int64_t i = 0; i < f->count; i++) {
-    p[i] = f->pressure[i];
-    surface[i] = f->state[i];
-    most = fmax(most, f->u[0][i] * f->u[0][i] + f->u[1][i] * f->u[1][i]);
-  }
+  for (int64_t k = 0; k * MPSI_FLUID_COPIED < f->count; k++)
+    most = mpsi_fluid_larger(f->system.sums[k], most);
   f->speed = sqrt(most);
 }
 

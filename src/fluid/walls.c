@@ -114,12 +114,12 @@ static bool beyond_the_ends(const mps_fluid *f, const mpsi_fluid_wall *w, double
   return along < w->from - re || along > w->to + re;
 }
 
-/* Images of the cloud at one wall; false where there is no room. A bent wall mirrors at its local
- * position, and goes on beyond other walls as their mirror image: where an image's parent is. */
-static bool mirror(mps_fluid *f, int wall) {
+/* Images of [begin, end) of the cloud at one wall; false where there is no room. A bent wall
+ * mirrors at its local position, and goes on beyond other walls as their mirror image: where an
+ * image's parent is. */
+static bool mirror(mps_fluid *f, int wall, int64_t begin, int64_t end) {
   const mpsi_fluid_wall *w = &f->wall[wall];
-  const int64_t all = f->count + f->ghosts;
-  for (int64_t i = 0; i < all; i++) {
+  for (int64_t i = begin; i < end; i++) {
     const int64_t ghost = i - f->count, own = ghost < 0 ? i : f->parent[ghost];
     const double x = f->x[0][i], y = f->x[1][i];
     const double s = mpsi_fluid_of_wall(w, mpsi_fluid_places(f, w), f->x[0][own], f->x[1][own]);
@@ -135,6 +135,35 @@ static bool mirror(mps_fluid *f, int wall) {
     f->flips[g] = (ghost < 0 ? 0u : f->flips[ghost]) | UINT32_C(1) << wall;
   }
   return true;
+}
+
+/* For each chunk of particles the walls that some are within re of: bits, in sums. */
+static void find_walls(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  uint32_t near = 0;
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+    const mpsi_fluid_wall *w = &f->wall[b];
+    if (!w->used) continue;
+    const double *s = mpsi_fluid_places(f, w);
+    bool any = false;
+    for (int64_t i = begin; i < end && !any; i++)
+      any = mpsi_fluid_distance(w, s, f->x[0][i], f->x[1][i]) < f->weight.re;
+    near |= (uint32_t)any << b;
+  }
+  f->system.sums[2 * chunk] = (double)near;
+}
+
+/* Images of the particles, then of the images so far. */
+static bool mirror_all(mps_fluid *f, int wall) {
+  mpsi_fluid_wall *w = &f->wall[wall];
+  const int64_t all = f->count + f->ghosts;
+  w->first_image = f->ghosts;
+  for (int64_t begin = 0; begin < f->count; begin += MPSI_FLUID_CHUNK) {
+    const int64_t end = begin + MPSI_FLUID_CHUNK < f->count ? begin + MPSI_FLUID_CHUNK : f->count;
+    const uint32_t near = (uint32_t)f->system.sums[2 * (begin / MPSI_FLUID_CHUNK)];
+    if ((near >> wall & 1) && !mirror(f, wall, begin, end)) return false;
+  }
+  w->images = f->ghosts - w->first_image;
+  return mirror(f, wall, f->count, all);
 }
 
 /* Arrays over the cloud; keeps the particles' part. */
@@ -160,6 +189,8 @@ bool mpsi_fluid_grow_cloud(mps_fluid *f, int64_t capacity) {
 }
 
 mps_status mpsi_fluid_make_ghosts(mps_fluid *f, const char *function) {
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, find_walls);
+  f->travel = 0.0;
   for (bool room = false; !room;) {
     f->ghosts = 0;
     f->bent = f->sticky = 0;
@@ -170,7 +201,7 @@ mps_status mpsi_fluid_make_ghosts(mps_fluid *f, const char *function) {
           f->sticky |= (uint32_t)(f->wall[b].used && f->wall[b].kind == MPS_FLUID_BOUNDARY_NO_SLIP)
                        << b;
     for (int b = 0; room && b < MPSI_FLUID_WALLS; b++)
-      if (f->wall[b].used) room = mirror(f, b);
+      if (f->wall[b].used) room = mirror_all(f, b);
     const int64_t capacity = f->cloud_capacity + f->cloud_capacity / 2;
     if (!room && !mpsi_fluid_grow_cloud(f, capacity))
       return mpsi_fail_memory(f->context, function, (size_t)capacity * 12 * sizeof(double));
@@ -180,8 +211,9 @@ mps_status mpsi_fluid_make_ghosts(mps_fluid *f, const char *function) {
 }
 
 /* A load acts on an image as on its parent: so it presses the water against the wall. */
-void mpsi_fluid_move_ghosts(mps_fluid *f) {
-  for (int64_t g = 0; g < f->ghosts; g++) {
+static void move_images(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  (void)chunk;
+  for (int64_t g = begin; g < end; g++) {
     const int64_t j = f->count + g, own = f->parent[g];
     double v[2], kick[2] = {0.0, 0.0};
     for (int c = 0; c < 2; c++) {
@@ -199,9 +231,14 @@ void mpsi_fluid_move_ghosts(mps_fluid *f) {
   }
 }
 
-void mpsi_fluid_press_ghosts(mps_fluid *f) {
+void mpsi_fluid_move_ghosts(mps_fluid *f) {
+  mpsi_fluid_for(f, f->ghosts, MPSI_FLUID_CHUNK, move_images);
+}
+
+static void press_images(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
+  (void)chunk;
   const double rho = f->def.density;
-  for (int64_t g = 0; g < f->ghosts; g++) {
+  for (int64_t g = begin; g < end; g++) {
     const int64_t j = f->count + g, own = f->parent[g];
     const double apart[2] = {f->x[0][j] - f->x[0][own], f->x[1][j] - f->x[1][own]};
     f->offset[g] =
@@ -213,4 +250,8 @@ void mpsi_fluid_press_ghosts(mps_fluid *f) {
       f->offset[g] -= rho * a * (apart[0] * w->normal[0] + apart[1] * w->normal[1]);
     }
   }
+}
+
+void mpsi_fluid_press_ghosts(mps_fluid *f) {
+  mpsi_fluid_for(f, f->ghosts, MPSI_FLUID_CHUNK, press_images);
 }
