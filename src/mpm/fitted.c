@@ -360,16 +360,17 @@ MPSI_INLINE void keep_own(const mps_mpm *mpm, const mpsi_cell_block *cells, int 
   for (int c = 0; c < dim; c++) own[c] = mpm->flip * (mpm->p.v[c][p] - before[MPSI_VECTOR + c]);
 }
 
-/* Derivatives along the axes whose stencil is full, where nothing but sides of the domain cuts the
- * support: there the fit falls apart into one along each axis (wall.h), so that phi/w along such an
- * axis is constant and d phi = phi dw/w. Along the other axes, and near bodies, the slopes serve.
+/* Derivatives along the axes whose stencil is full, ghosts of mirrors included, where nothing but
+ * sides of the domain cuts the support: there the fit falls apart into one along each axis
+ * (wall.h), so that phi/w along such an axis is constant and d phi = phi dw/w. Along the other
+ * axes, and near bodies, the slopes serve.
  */
 MPSI_INLINE void find_strain(const mps_mpm *mpm, const mpsi_cell_block *cells,
                              const mpsi_worker *worker, int dim, int spline, const support *at,
                              const mpsi_shape_values *f, double (*derivative)[4]) {
   for (int d = 0; d < dim; d++) {
     const int64_t low = (int64_t)cells->at[d] * MPSI_SIDE + at->at.at[d];
-    if (low < mpm->grid.low[d] || low + spline > mpm->grid.high[d]) continue;
+    if (low < mpm->grid.use_low[d] || low + spline > mpm->grid.use_high[d]) continue;
     const double *w = at->at.w[d];
     double slope[4], ratio[4];
     mpsi_slopes(spline, -at->at.s[d][0], slope);

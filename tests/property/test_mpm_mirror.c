@@ -17,13 +17,17 @@ static double uniform(double low, double high) { /* Knuth's MMIX generator, the 
 
 /* ---- half and whole -------------------------------------------------------------------------- */
 
-enum { STEPS = 150 };
 static int32_t volumetric; /* of these scenes */
 
+/* A ball that falls on the top of the box; radius 0: none. */
+typedef struct ball_of {
+  double radius, friction;
+  int32_t method, sweeps;
+} ball_of;
+
 /* The part of a box of 0.2 m, centred on x = z = 0 and standing on y = 0, in which bit c of `cut`
- * says that only c > 0 is there, beyond a roller. A smooth or rough ball falls on its top. */
-static mpm_scene part_of_box(int32_t geometry, int32_t spline, uint32_t cut, double friction,
-                             int32_t method) {
+ * says that only c > 0 is there, beyond a roller. */
+static mpm_scene part_of_box(int32_t geometry, int32_t spline, uint32_t cut, const ball_of *b) {
   const int dim = geometry == MPS_MPM_SPACE ? 3 : 2;
   const double spacing = dim == 3 ? 0.02 : 0.01, half = 0.1;
   mpm_scene s = mpm_scene_begin_in(context, dim, spacing, 0.0, 0.0, 1e5);
@@ -53,20 +57,20 @@ static mpm_scene part_of_box(int32_t geometry, int32_t spline, uint32_t cut, dou
     if (c == 1 || cut >> c & 1) def.lower[c] = 0.0;
   def.gravity[1] = -9.81;
   mpm_scene_solve(&s, &def);
-  if (friction < 0.0) return s;
+  if (b->radius == 0.0) return s;
   mps_body *ball = NULL;
   mps_body_def body = mps_body_defaults();
   mps_signal *down = NULL;
   const double t[] = {0.0, 1.0}, way[] = {0.0, -0.5}; /* s, m */
-  body.position[1] = 0.2 + 0.08 + 0.5 * spacing;
+  body.position[1] = 0.2 + b->radius + 0.5 * spacing;
   mps_assert_ok(context, mps_signal_table(context, MPS_SIGNAL_DISPLACEMENT, 2, t, way, &down));
-  mps_assert_ok(context, dim == 3 ? mps_body_create_sphere(context, &body, 0.08, &ball)
-                                  : mps_body_create_disc(context, &body, 0.08, &ball));
+  mps_assert_ok(context, dim == 3 ? mps_body_create_sphere(context, &body, b->radius, &ball)
+                                  : mps_body_create_disc(context, &body, b->radius, &ball));
   mps_assert_ok(context, mps_body_drive(ball, 1, down, 1.0));
   mps_contact_def contact = mps_contact_defaults();
-  contact.friction = friction;
-  contact.method = method;
-  contact.sweeps = 400; /* until nothing changes */
+  contact.friction = b->friction;
+  contact.method = b->method;
+  contact.sweeps = b->sweeps;
   mps_assert_ok(context, mps_mpm_add_contact(s.mpm, ball, &contact, NULL));
   mps_signal_destroy(&down);
   mps_body_destroy(&ball);
@@ -85,22 +89,24 @@ static int64_t nearest_of(const mps_view *x, int dim, const double *at) {
   return best;
 }
 
-/* They differ by round-off; with contact by impulses by what its sweeps leave, `rest`. */
-static void compare_part(int32_t geometry, int32_t spline, uint32_t cut, double friction,
-                         int32_t method, double rest) {
+/* After `steps` they differ by round-off; with contact by impulses by what its sweeps leave,
+ * `rest`.
+ */
+static void compare_part(int32_t geometry, int32_t spline, uint32_t cut, const ball_of *ball,
+                         int64_t steps, double rest) {
   mps_reaction r = {0};
-  mpm_scene whole = part_of_box(geometry, spline, 0, friction, method);
-  mpm_scene part = part_of_box(geometry, spline, cut, friction, method);
+  mpm_scene whole = part_of_box(geometry, spline, 0, ball);
+  mpm_scene part = part_of_box(geometry, spline, cut, ball);
   const int dim = part.mpm->dim;
-  mps_assert_ok(context, mps_mpm_step(whole.mpm, test_steps(STEPS)));
-  mps_assert_ok(context, mps_mpm_step(part.mpm, test_steps(STEPS)));
-  double force = 0.0;
-  if (friction >= 0.0) { /* the body feels the part */
+  mps_assert_ok(context, mps_mpm_step(whole.mpm, steps));
+  mps_assert_ok(context, mps_mpm_step(part.mpm, steps));
+  double force = 0.0, off = 0.0;
+  if (ball->radius > 0.0) { /* the body feels the part */
     mps_assert_ok(context, mps_body_get_reaction(whole.mpm->contact.body[0], -1, &r));
     force = r.impulse[1] / (cut == 5 ? 4.0 : 2.0);
     mps_assert_ok(context, mps_body_get_reaction(part.mpm->contact.body[0], -1, &r));
+    off = r.impulse[1] / force - 1.0;
     assert_true(force > 0.0);
-    mps_assert_near(r.impulse[1], force, (1e-11 + rest) * force);
   }
   mps_view x = mpm_scene_view(&part, "position"), X = mpm_scene_view(&whole, "position");
   mps_view stress = mpm_scene_view(&part, "stress"), S = mpm_scene_view(&whole, "stress");
@@ -116,9 +122,11 @@ static void compare_part(int32_t geometry, int32_t spline, uint32_t cut, double 
     }
   }
   print_message(
-      "geometry %d, spline %d, cut %u, friction %g: places apart %.2g m, stresses %.2g of "
-      "the largest\n",
-      (int)geometry, (int)spline, (unsigned)cut, friction, apart, stresses / largest);
+      "geometry %d, spline %d, cut %u, ball %g, friction %g: impulse %.2g, places %.2g m, "
+      "stresses %.2g of the largest\n",
+      (int)geometry, (int)spline, (unsigned)cut, ball->radius, ball->friction, off, apart,
+      stresses / largest);
+  mps_assert_near(off, 0.0, 1e-11 + rest);
   assert_true(apart < 1e-12 + 0.01 * rest);
   assert_true(stresses < (1e-10 + rest) * largest);
   mpm_scene_end(&whole);
@@ -127,10 +135,11 @@ static void compare_part(int32_t geometry, int32_t spline, uint32_t cut, double 
 
 static void roller_is_a_mirror(void **state) {
   (void)state;
+  const ball_of none = {0};
   for (volumetric = 0; volumetric <= MPS_MPM_VOLUMETRIC_NODES; volumetric += 2)
     for (int32_t spline = 2; spline <= 3; spline++) {
-      compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, -1.0, 0, 0.0);
-      compare_part(MPS_MPM_SPACE, spline, 5, -1.0, 0, 0.0);
+      compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, &none, test_steps(150), 0.0);
+      compare_part(MPS_MPM_SPACE, spline, 5, &none, test_steps(150), 0.0);
     }
   volumetric = 0;
 }
@@ -138,15 +147,40 @@ static void roller_is_a_mirror(void **state) {
 /* A body that crosses the wall cuts the supports of ghosts as it does those of their partners. */
 static void bodies_cross_a_mirror(void **state) {
   (void)state;
-  for (int32_t spline = 2; spline <= 3; spline++)
+  for (int32_t spline = 2; spline <= 3; spline++) {
     for (int rough = 0; rough < 2; rough++) {
-      const int32_t penalty = MPS_CONTACT_METHOD_PENALTY, impulse = MPS_CONTACT_METHOD_IMPULSE;
-      compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, 0.3 * rough, penalty, 0.0);
-      compare_part(MPS_MPM_SPACE, spline, 5, 0.3 * rough, penalty, 0.0);
-      if (rough) continue; /* sweeps over sliding contacts are not symmetric */
-      compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, 0.0, impulse, 1e-4);
-      compare_part(MPS_MPM_SPACE, spline, 5, 0.0, impulse, 1e-4);
+      const ball_of springs = {0.08, 0.3 * rough, MPS_CONTACT_METHOD_PENALTY, 1};
+      compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, &springs, test_steps(150), 0.0);
+      compare_part(MPS_MPM_SPACE, spline, 5, &springs, test_steps(150), 0.0);
     }
+    const ball_of smooth = {0.08, 0.0, MPS_CONTACT_METHOD_IMPULSE, 400};
+    compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, &smooth, test_steps(150), 1e-4);
+    compare_part(MPS_MPM_SPACE, spline, 5, &smooth, test_steps(150), 1e-4);
+  }
+}
+
+/* Sweeps go through the whole from one side to the other, and what they leave is not symmetric;
+ * where contacts slide, some of it falls by a tenth in several hundred sweeps. So for as long as a
+ * thousand bring it to round-off. (Much rougher bodies have several answers, of which the whole
+ * takes one that is not symmetric: docs/theory/contact.md.) */
+static void rough_bodies_cross_a_mirror(void **state) {
+  (void)state;
+  const ball_of rough = {0.08, 0.3, MPS_CONTACT_METHOD_IMPULSE, 1000};
+  for (int32_t spline = 2; spline <= 3; spline++) {
+    compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, &rough, 60, 1e-10);
+    compare_part(MPS_MPM_SPACE, spline, 5, &rough, 60, 1e-5);
+  }
+}
+
+/* A ball of one and a half cells: it parts the ground (mpm/across.h), and so do its images. */
+static void thin_bodies_cross_a_mirror(void **state) {
+  (void)state;
+  for (int32_t spline = 2; spline <= 3; spline++) {
+    const ball_of disc = {0.015, 0.0, MPS_CONTACT_METHOD_IMPULSE, 1000};
+    const ball_of ball = {0.03, 0.0, MPS_CONTACT_METHOD_IMPULSE, 1000};
+    compare_part(MPS_MPM_PLANE_STRAIN, spline, 1, &disc, 60, 1e-6);
+    compare_part(MPS_MPM_SPACE, spline, 5, &ball, 60, 1e-6);
+  }
 }
 
 /* ---- balances -------------------------------------------------------------------------------- */
@@ -320,8 +354,9 @@ static void nothing_passes(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(roller_is_a_mirror),   cmocka_unit_test(bodies_cross_a_mirror),
-      cmocka_unit_test(momentum_is_balanced), cmocka_unit_test(moments_are_balanced),
-      cmocka_unit_test(energy_is_balanced),   cmocka_unit_test(nothing_passes)};
+      cmocka_unit_test(roller_is_a_mirror),          cmocka_unit_test(bodies_cross_a_mirror),
+      cmocka_unit_test(rough_bodies_cross_a_mirror), cmocka_unit_test(thin_bodies_cross_a_mirror),
+      cmocka_unit_test(momentum_is_balanced),        cmocka_unit_test(moments_are_balanced),
+      cmocka_unit_test(energy_is_balanced),          cmocka_unit_test(nothing_passes)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
