@@ -120,7 +120,8 @@ MPS_API MPS_NODISCARD mps_status mps_particles_view(mps_particles *particles, co
 /** Borrows a field for writing, until mps_particles_commit or _abandon: meanwhile solvers refuse
  *  their steps (MPS_ERROR_STATE), and particles neither come nor go. Several fields may be open at
  *  once, each once. The set keeps memory for the former values. MPS_ERROR_FIELD: no such field, or
- * one that only the library writes. */
+ * one that only the library writes. MPS_ERROR_STATE: it is open already, or a solver that holds the
+ * set is running this callback (mps/solver.h). */
 MPS_API MPS_NODISCARD mps_status mps_particles_edit(mps_particles *particles, const char *name,
                                                     mps_edit *out);
 /** Ends the editing of a field. Its values must be finite and in the field's range

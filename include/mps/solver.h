@@ -9,7 +9,8 @@
  *   mps_S_destroy          destroys and nulls; accepts NULL
  *   mps_S_particles, mps_S_context   lent, as long as the solver lives; NULL for NULL
  *   mps_S_get_def          the definition as the solver has completed it
- *   mps_S_add_boundary, mps_S_add_load   copies lists, keeps signals alive, gives a number
+ *   mps_S_add_boundary, mps_S_add_load   copies lists, keeps signals alive, gives a number (into
+ *                          `number`, which may be NULL)
  *   mps_S_set_boundary, mps_S_set_load, mps_S_remove_boundary, mps_S_remove_load
  *                          by that number; MPS_ERROR_ARGUMENT where there is none of it
  *   mps_S_get_reaction     what a boundary exerts (mps_reaction)
@@ -19,8 +20,13 @@
  *   mps_S_save, mps_S_restore (files); mps_S_snapshot, mps_S_rollback (memory)
  *
  * A field `external_force` (N) of the set acts in each step. Thread rule of all: one thread at a
- * time per context. From a callback of a solver only its functions that read may be called; the
- * others are MPS_ERROR_STATE.
+ * time per context.
+ *
+ * While a call of a solver runs, nothing that it calls back (the callback of a run, signals, laws,
+ * hooks of the context) may do more than read the solver and its set: to step, change, go back or
+ * destroy, and to edit, fill or empty the set is MPS_ERROR_STATE. Snapshots and files may be made
+ * in the callback of a run, which comes between two steps, and not within a step. Who wants to write
+ * after each step calls mps_S_step in a loop of its own.
  *
  * Vectors have three components in 2D too; those that leave the plane are then 0. All forces that a
  * 2D solver takes and reports are those of its `measure`: the thickness (m, default 1) in the

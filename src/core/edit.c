@@ -51,6 +51,21 @@ int64_t mpsi_particles_runs(const mps_particles *p, int32_t rank, mpsi_row_run *
   return 1;
 }
 
+mps_status mpsi_particles_outside_callbacks(const mps_particles *p, const char *function) {
+  for (const mpsi_holder *h = p->holders; h; h = h->next)
+    if (h->guard && h->guard->callback)
+      return mpsi_fail(
+          p->context, function, MPS_ERROR_STATE,
+          "the particle set is held by %s, which is in %s: a callback may only read it", h->name,
+          h->guard->callback);
+  return MPS_OK;
+}
+
+mps_status mpsi_particles_writable(const mps_particles *p, const char *function) {
+  const mps_status status = mpsi_particles_outside_callbacks(p, function);
+  return status == MPS_OK ? mpsi_particles_ready(p, function) : status;
+}
+
 void mpsi_particles_release(mps_particles *p, mpsi_holder *holder) {
   if (!p) return;
   mpsi_holder **link = &p->holders;
@@ -161,7 +176,8 @@ mps_status mps_particles_edit(mps_particles *particles, const char *name, mps_ed
     mpsi_fail_object(context, "field '%s'", name);
     return field->open ? MPS_ERROR_STATE : MPS_ERROR_FIELD;
   }
-  status = keep_former(particles, __func__, field);
+  status = mpsi_particles_outside_callbacks(particles, __func__);
+  if (status == MPS_OK) status = keep_former(particles, __func__, field);
   if (status != MPS_OK) {
     memset(out, 0, sizeof *out);
     return status;
@@ -238,7 +254,8 @@ mps_status mps_particles_set(mps_particles *particles, const char *name, int32_t
   if (!particles) return MPS_ERROR_ARGUMENT;
   if (!name) return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT, "name is NULL");
   mpsi_field shape;
-  mps_status status = mpsi_field_look_up(particles, __func__, name, &shape);
+  mps_status status = mpsi_particles_outside_callbacks(particles, __func__);
+  if (status == MPS_OK) status = mpsi_field_look_up(particles, __func__, name, &shape);
   if (status != MPS_OK) return status;
   if (shape.dtype.code != 2)
     return mpsi_fail(

@@ -13,6 +13,13 @@ mps_status mpsi_guard_check(const mpsi_guard *guard, mps_context *context, const
                    guard->callback);
 }
 
+mps_status mpsi_guard_check_between(const mpsi_guard *guard, mps_context *context,
+                                    const char *function) {
+  if (!guard->callback || guard->outer) return MPS_OK;
+  return mpsi_fail(context, function, MPS_ERROR_STATE,
+                   "called back from within %s: the state is between two steps", guard->callback);
+}
+
 void mpsi_guard_enter(mpsi_guard *guard, mps_context *context, const char *callback) {
   guard->outer = guard->callback;
   guard->callback = callback;

@@ -3,6 +3,7 @@
 #ifndef MPSI_PARTICLES_INTERNAL_H
 #define MPSI_PARTICLES_INTERNAL_H
 
+#include "guard.h"
 #include "internal.h"
 
 #include <mps/particles.h>
@@ -65,6 +66,8 @@ struct mpsi_holder {
   const char *name; /* "a WLS-MPM solver (mps_mpm)" */
   void *self;
   mpsi_use kind;
+  const mpsi_guard *guard; /* while a callback of the holder runs, the caller may only read the set;
+                              NULL: it has none */
   /* The caller has written `field`. Refuses with an error recorded for `function` (the edit then
    * stays open), or notes what it must read or sort before the next step. NULL: all the same to it.
    * `former`, [component][particle], is what it was, of the fields that it compares; else NULL. */
@@ -100,6 +103,11 @@ mps_status mpsi_particles_tell(mps_particles *particles, const char *function, c
                                const double *former);
 /* At the beginning of each step: MPS_ERROR_STATE while the caller edits a field. */
 mps_status mpsi_particles_ready(const mps_particles *particles, const char *function);
+
+/* Before the caller changes values or number of the particles: MPS_ERROR_STATE in a callback of a
+ * solver that holds the set; the second also while another field is edited. */
+mps_status mpsi_particles_outside_callbacks(const mps_particles *particles, const char *function);
+mps_status mpsi_particles_writable(const mps_particles *particles, const char *function);
 
 /* As MPSI_USE_FIX without a name: no particle can be added or removed. Each pin needs its unpin.
  */

@@ -21,7 +21,7 @@ static void clear_tail(mps_particles *p, int64_t count) {
 /* ---- coming ---------------------------------------------------------------------------------- */
 
 mps_status mpsi_particles_check_free(const mps_particles *p, const char *function) {
-  const mps_status status = mpsi_particles_ready(p, function);
+  const mps_status status = mpsi_particles_writable(p, function);
   if (status != MPS_OK) return status;
   const char *who = p->pins > 0 ? "a solver" : NULL;
   for (const mpsi_holder *h = p->holders; h && !who; h = h->next)
@@ -218,7 +218,7 @@ static mps_status ask_holders(const mps_particles *p, const char *function, int6
 mps_status mps_particles_remove(mps_particles *particles, int64_t count, const int64_t *ids) {
   if (!particles) return MPS_ERROR_ARGUMENT;
   mps_context *context = particles->context;
-  mps_status status = mpsi_particles_ready(particles, __func__);
+  mps_status status = mpsi_particles_writable(particles, __func__);
   if (status != MPS_OK) return status;
   if (count < 0 || count > particles->count)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,

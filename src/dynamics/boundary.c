@@ -357,8 +357,7 @@ mps_status mps_dynamics_add_boundary(mps_dynamics *dynamics, const mps_dynamics_
   mps_context *context = dynamics->context;
   mps_status status = mpsi_dynamics_enter(dynamics, __func__);
   if (status != MPS_OK) return status;
-  if (!def || !number)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL", def ? "number" : "def");
+  if (!def) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "def is NULL");
   int32_t at = 0;
   while (at < dynamics->boundary_room && dynamics->boundary[at]) at++;
   if (at == dynamics->boundary_room) {
@@ -373,7 +372,7 @@ mps_status mps_dynamics_add_boundary(mps_dynamics *dynamics, const mps_dynamics_
   status = make(dynamics, __func__, status, def, &boundary);
   if (status == MPS_OK) status = exchange(dynamics, __func__, at, &boundary);
   release(dynamics, &boundary);
-  if (status == MPS_OK) *number = at;
+  if (status == MPS_OK && number) *number = at;
   return status;
 }
 

@@ -235,6 +235,7 @@ mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
   dynamics->holder = (mpsi_holder){.name = "a solver of elastodynamics (mps_dynamics)",
                                    .self = dynamics,
                                    .kind = MPSI_USE_MOVE,
+                                   .guard = &dynamics->guard,
                                    .commit = mpsi_dynamics_commit,
                                    .remove = mpsi_dynamics_remove,
                                    .renew = mpsi_dynamics_renew};

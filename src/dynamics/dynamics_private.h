@@ -186,7 +186,6 @@ struct mps_dynamics {
   bool diverged;
   bool begun;    /* works.start is known */
   bool no_rate;  /* restoring_old is not of the present ground: damping has no rate yet */
-  bool stepping; /* within a step, not between two */
   mpsi_guard guard;
   bool unread;           /* fields of the ground have been edited, and do not go together so far */
   const char *rewritten; /* field of the motion that the caller has written, or NULL */

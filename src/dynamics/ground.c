@@ -218,10 +218,6 @@ mps_status mpsi_dynamics_commit(void *self, const char *function, const char *fi
   const bool of_ground = ONE_OF(field, ground, &which), of_motion = ONE_OF(field, motion, &which);
   const bool of_fabric = ONE_OF(field, fabric, &which), position = strcmp(field, "position") == 0;
   if (!of_ground && !of_motion && !of_fabric && !position) return MPS_OK;
-  if (dynamics->stepping)
-    return mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
-                     "field '%s' is committed within a step of the solver that holds the set",
-                     field);
   if (position) status = check_positions(dynamics, function);
   if (of_ground && !mpsi_domain_many(dynamics->domain) &&
       mpsi_dynamics_check_ground(dynamics->particles, function) == MPS_OK)

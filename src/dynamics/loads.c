@@ -107,8 +107,7 @@ mps_status mps_dynamics_add_load(mps_dynamics *dynamics, const mps_dynamics_load
   mps_context *context = dynamics->context;
   mps_status status = mpsi_dynamics_enter(dynamics, __func__);
   if (status != MPS_OK) return status;
-  if (!def || !number)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL", def ? "number" : "def");
+  if (!def) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "def is NULL");
   int32_t at = 0;
   while (at < dynamics->load_room && dynamics->load[at]) at++;
   if (at == dynamics->load_room) {
@@ -125,7 +124,7 @@ mps_status mps_dynamics_add_load(mps_dynamics *dynamics, const mps_dynamics_load
   if (status != MPS_OK) return status;
   dynamics->load[at] = load;
   dynamics->forces_stale = true;
-  *number = at;
+  if (number) *number = at;
   return MPS_OK;
 }
 

@@ -257,7 +257,6 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
   if (dynamics->fresh) start_history(dynamics, length);
   status = begin_budget(dynamics, function);
   if (status != MPS_OK) return status;
-  dynamics->stepping = true;
   bool diverged = false; /* the step before */
   w.step.drag = watch ? dynamics->drag : NULL;
   for (int64_t k = 0; status == MPS_OK && k < count; k++) {
@@ -274,6 +273,5 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
     if (status == MPS_OK && (k == count - 1 || !mpsi_domain_many(dynamics->domain)))
       status = settle_step(dynamics, function, MPS_OK, &diverged);
   }
-  dynamics->stepping = false;
   return status;
 }

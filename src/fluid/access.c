@@ -13,7 +13,8 @@ mps_status mpsi_fluid_ready(mps_fluid *f, const char *function) {
 }
 
 mps_status mpsi_fluid_closed(mps_fluid *f, const char *function) {
-  if (f->stage == MPSI_FLUID_BETWEEN) return MPS_OK;
+  const mps_status status = mpsi_guard_check_between(&f->guard, f->context, function);
+  if (status != MPS_OK || f->stage == MPSI_FLUID_BETWEEN) return status;
   return mpsi_fail(f->context, function, MPS_ERROR_STATE,
                    "a step is open: end or abandon it first");
 }

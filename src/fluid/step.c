@@ -70,6 +70,7 @@ static mps_status add_loads(mps_fluid *f, const char *function) {
 static mps_status begin(mps_fluid *f, const char *function, double dt) {
   mps_status status = mpsi_fluid_settle(f, function, mpsi_particles_ready(f->particles, function));
   if (status != MPS_OK) return status;
+  f->stage = MPSI_FLUID_BEGUN;
   f->dt = dt;
   f->before = f->report;
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].before = f->wall[b].load;
@@ -81,9 +82,7 @@ static mps_status begin(mps_fluid *f, const char *function, double dt) {
     status = mpsi_fluid_look_around(f, function, status);
   else if (status == MPS_OK)
     status = mpsi_fluid_classical_look(f, function);
-  if (status == MPS_OK) status = mpsi_fluid_prepare_pressure(f, function);
-  f->stage = MPSI_FLUID_BEGUN;
-  return status;
+  return status == MPS_OK ? mpsi_fluid_prepare_pressure(f, function) : status;
 }
 
 static mps_status solve(mps_fluid *f, const char *function) {
@@ -184,11 +183,14 @@ mps_status mps_fluid_step(mps_fluid *f, int64_t count) {
                      (long long)count);
   mps_status status = mpsi_domain_settle_same(
       f->def.domain, __func__, mpsi_fluid_ready(f, __func__), "count", (double)count);
+  if (status != MPS_OK) return status;
+  mpsi_guard_enter(&f->guard, f->context, __func__);
   for (int64_t k = 0; k < count && status == MPS_OK; k++) {
     status = ask_cancel(f, __func__);
     if (status == MPS_OK) status = check_dt(f, __func__);
     if (status == MPS_OK) status = take_step(f, __func__, mps_fluid_dt(f));
   }
+  mpsi_guard_end(&f->guard);
   return status;
 }
 
@@ -202,11 +204,14 @@ mps_status mps_fluid_begin_step(mps_fluid *f, double dt) {
   if (f->classical.gamma > 0.0)
     return mpsi_fail(f->context, __func__, MPS_ERROR_STATE,
                      "the classical scheme's steps cannot be made in parts");
+  mpsi_guard_enter(&f->guard, f->context, __func__);
   status = ask_cancel(f, __func__);
   if (status == MPS_OK && isnan(dt)) status = check_dt(f, __func__);
-  if (status != MPS_OK) return status;
-  status = begin(f, __func__, isnan(dt) ? mps_fluid_dt(f) : dt);
-  if (status != MPS_OK) abandon(f);
+  if (status == MPS_OK) {
+    status = begin(f, __func__, isnan(dt) ? mps_fluid_dt(f) : dt);
+    if (status != MPS_OK) abandon(f);
+  }
+  mpsi_guard_end(&f->guard);
   return status;
 }
 
@@ -223,8 +228,10 @@ mps_status mps_fluid_solve_pressure(mps_fluid *f) {
   mps_status status = check_stage(f, __func__, MPSI_FLUID_BEGUN);
   if (status != MPS_OK) return status;
   f->stage = MPSI_FLUID_BEGUN;
+  mpsi_guard_enter(&f->guard, f->context, __func__);
   mpsi_fluid_begin_walls(f, f->dt);
   status = solve(f, __func__);
+  mpsi_guard_end(&f->guard);
   if (status != MPS_OK) {
     f->stage = MPSI_FLUID_BEGUN;
     return status;
@@ -272,6 +279,37 @@ static double even_step(double rest, double full) {
   return steps > EVEN_STEPS ? full : rest / steps;
 }
 
+/* A run under way. */
+typedef struct run {
+  double start, t_end;
+  int64_t every;
+  mps_fluid_fn callback;
+  void *user;
+} run;
+
+static mps_status march(mps_fluid *f, const char *function, const run *r) {
+  const double slice = 0.01 * (r->t_end - r->start);
+  int64_t done = 0, reported = 0;
+  mps_status status = call_back(f, r->callback, r->user);
+  while (status == MPS_OK && f->time < r->t_end) {
+    status = check_dt(f, function);
+    if (status != MPS_OK) break;
+    const double rest = r->t_end - f->time, full = mps_fluid_dt(f);
+    const bool last = rest <= full * (1.0 + 1e-9);
+    status = take_step(f, function, last ? rest : even_step(rest, full));
+    if (status != MPS_OK) break;
+    if (last) f->time = r->t_end;
+    done++;
+    if (done % r->every == 0 || last) status = call_back(f, r->callback, r->user);
+    if (last || f->time >= r->start + slice * (double)(reported + 1)) {
+      reported = last ? 100 : (int64_t)((f->time - r->start) / slice);
+      mpsi_progress(f->context, "fluid", f->steps, f->time - r->start, r->t_end - r->start);
+    }
+    if (status == MPS_OK && !last) status = ask_cancel(f, function);
+  }
+  return status;
+}
+
 mps_status mps_fluid_run(mps_fluid *f, double t_end, int64_t every, mps_fluid_fn callback,
                          void *user) {
   if (!f) return MPS_ERROR_ARGUMENT;
@@ -281,25 +319,10 @@ mps_status mps_fluid_run(mps_fluid *f, double t_end, int64_t every, mps_fluid_fn
                      t_end, (long long)every, f->time);
   mps_status status = mpsi_domain_settle_same(f->def.domain, __func__,
                                               mpsi_fluid_ready(f, __func__), "t_end", t_end);
-  if (status == MPS_OK) status = call_back(f, callback, user);
-  const double start = f->time, slice = 0.01 * (t_end - start);
-  int64_t done = 0, reported = 0;
-  while (status == MPS_OK && f->time < t_end) {
-    status = check_dt(f, __func__);
-    if (status != MPS_OK) break;
-    const double rest = t_end - f->time, full = mps_fluid_dt(f);
-    const bool last = rest <= full * (1.0 + 1e-9);
-    const double dt = last ? rest : even_step(rest, full);
-    status = take_step(f, __func__, dt);
-    if (status != MPS_OK) break;
-    if (last) f->time = t_end;
-    done++;
-    if (done % every == 0 || last) status = call_back(f, callback, user);
-    if (last || f->time >= start + slice * (double)(reported + 1)) {
-      reported = last ? 100 : (int64_t)((f->time - start) / slice);
-      mpsi_progress(f->context, "fluid", f->steps, f->time - start, t_end - start);
-    }
-    if (status == MPS_OK && !last) status = ask_cancel(f, __func__);
-  }
+  if (status != MPS_OK) return status;
+  const run r = {f->time, t_end, every, callback, user};
+  mpsi_guard_enter(&f->guard, f->context, __func__);
+  status = march(f, __func__, &r);
+  mpsi_guard_end(&f->guard);
   return status;
 }

@@ -196,6 +196,7 @@ mps_status mpsi_elastic_create(mps_context *context, const char *function, mps_p
   e->holder = (mpsi_holder){.name = "a solver of implicit elasticity (mps_elastic)",
                             .self = e,
                             .kind = MPSI_USE_FIX,
+                            .guard = &e->guard,
                             .commit = refuse_positions,
                             .remove = mpsi_elastic_remove,
                             .renew = mpsi_elastic_renew};

@@ -129,7 +129,7 @@ static mpsi_state_of state_of(mps_elastic *e) {
 
 /* Between steps, and to change the state not from a callback either. */
 static mps_status check(mps_elastic *e, const char *function, bool changes) {
-  mps_status status = mpsi_elastic_check_between(e, function);
+  mps_status status = mpsi_guard_check_between(&e->guard, e->context, function);
   if (status == MPS_OK && changes) {
     status = mpsi_elastic_enter(e, function);
     if (status == MPS_OK) (void)mpsi_elastic_leave(e, status);

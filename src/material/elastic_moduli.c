@@ -104,7 +104,7 @@ mps_status mps_particles_set_material(mps_particles *particles, const mps_materi
   if (status == MPS_OK)
     status = mpsi_particles_check_ids_or_all(particles, set_material, count, ids);
   if (status == MPS_OK) status = mps_material_get_moduli(material, density, &m);
-  if (status == MPS_OK) status = mpsi_particles_ready(particles, set_material);
+  if (status == MPS_OK) status = mpsi_particles_writable(particles, set_material);
   const int32_t before = mps_particles_field_count(particles);
   for (int k = 0; k < 5 && status == MPS_OK; k++)
     status = mps_particles_add_field(particles, names[k], 0);

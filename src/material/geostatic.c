@@ -234,6 +234,7 @@ mps_status mps_particles_set_geostatic(mps_particles *particles, const mps_geost
   geostatic g = {
       .set = particles, .context = mpsi_particles_context(particles), .def = geostatic_defaults};
   mps_status status = MPSI_DEF_READ(g.context, set_geostatic, mps_geostatic_def, def, &g.def);
+  if (status == MPS_OK) status = mpsi_particles_writable(particles, set_geostatic);
   if (status != MPS_OK) return status;
   look_at_set(&g);
   g.up = g.def.vertical == -1 ? g.dim - 1 : g.def.vertical;
@@ -247,6 +248,7 @@ mps_status mps_particles_set_geostatic(mps_particles *particles, const mps_geost
   g.top = g.depth + g.count, g.burden = g.top + n, g.weight = g.burden + n;
   status = weigh(&g);
   if (status == MPS_OK) status = mps_particles_add_field(particles, "stress", 0);
+  if (status == MPS_OK) status = mpsi_particles_tell(particles, set_geostatic, "stress", NULL);
   if (status == MPS_OK) write_stress(&g);
   mpsi_free(g.context, g.depth);
   return status;
@@ -275,11 +277,14 @@ mps_status mps_particles_set_stress(mps_particles *particles, mps_stress_fn fn, 
   if (!particles) return MPS_ERROR_ARGUMENT;
   geostatic g = {.set = particles, .context = mpsi_particles_context(particles)};
   if (!fn) return mpsi_fail(g.context, __func__, MPS_ERROR_ARGUMENT, "stress is NULL");
+  mps_status status = mpsi_particles_writable(particles, __func__);
+  if (status != MPS_OK) return status;
   look_at_set(&g);
   double *s = mpsi_alloc(g.context, 6 * g.count, sizeof *s);
   if (!s) return mpsi_fail_memory(g.context, __func__, (size_t)g.count * 6 * sizeof *s);
-  mps_status status = ask_stress(&g, fn, user, s);
+  status = ask_stress(&g, fn, user, s);
   if (status == MPS_OK) status = mps_particles_add_field(particles, "stress", 0);
+  if (status == MPS_OK) status = mpsi_particles_tell(particles, __func__, "stress", NULL);
   for (int32_t c = 0; c < 2 * g.dim && status == MPS_OK; c++) {
     double *column = mpsi_particles_column(particles, "stress", c);
     for (int64_t k = 0; k < g.count; k++) column[k] = s[6 * k + c];

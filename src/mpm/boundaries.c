@@ -271,7 +271,6 @@ mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mpm_boundary_def *user, 
   mps_status status = mpsi_mpm_between_steps(mpm, __func__);
   if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
   if (status != MPS_OK) return status;
-  if (!number) return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "number is NULL");
   int32_t at = MPSI_SIDES;
   while (at < MPSI_HOLDS && mpm->boundaries.hold[at].kind != MPSI_HOLD_NONE) at++;
   if (at == MPSI_HOLDS)
@@ -285,7 +284,7 @@ mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mpm_boundary_def *user, 
   mpsi_exact_merge(&mpm->boundaries.work, &hold->sums->step[MPSI_HOLD_WORK]);
   memset(hold->sums, 0, sizeof *hold->sums);
   hold->count = hold->removed = 0;
-  *number = at;
+  if (number) *number = at;
   return MPS_OK;
 }
 

@@ -147,7 +147,7 @@ static mps_status copy_list(mps_mpm *mpm, const char *function, const mps_mpm_lo
 static mps_status find_number(mps_mpm *mpm, const char *function, int32_t *number) {
   int32_t at = 0;
   while (at < mpm->loads.count && mpm->loads.traction[at].count > 0) at++;
-  *number = at;
+  if (number) *number = at;
   if (at < mpm->loads.count) return MPS_OK;
   void *list = mpm->loads.traction;
   if (!mpsi_grow(mpm->context, &list, at, at + 1, sizeof *mpm->loads.traction))
@@ -164,8 +164,6 @@ mps_status mps_mpm_add_load(mps_mpm *mpm, const mps_mpm_load_def *user, int32_t 
   int32_t at = 0;
   mps_status status = mpsi_mpm_between_steps(mpm, __func__);
   if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
-  if (status == MPS_OK && !number)
-    status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "number is NULL");
   status = check_list(mpm, __func__, status, &def);
   if (status == MPS_OK) status = mpsi_mpm_make_forces(mpm, __func__);
   if (status == MPS_OK) status = copy_list(mpm, __func__, &def, &made);

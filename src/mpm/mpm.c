@@ -369,6 +369,7 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   mpm->holder = (mpsi_holder){.name = "a WLS-MPM solver (mps_mpm)",
                               .self = mpm,
                               .kind = MPSI_USE_MOVE,
+                              .guard = &mpm->run.guard,
                               .commit = mpsi_mpm_note_edit,
                               .compares = mpsi_mpm_compares,
                               .insert = mpsi_mpm_insert,

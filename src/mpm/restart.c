@@ -404,7 +404,8 @@ static mpsi_state_of state_of(mps_mpm *mpm) {
 
 /* The lists that are kept must be of the present boundaries. */
 static mps_status make_whole(mps_mpm *mpm, const char *function) {
-  const mps_status status = mpm->run.broken ? MPS_OK : mpsi_mpm_tidy(mpm, function);
+  mps_status status = mpsi_guard_check_between(&mpm->run.guard, mpm->context, function);
+  if (status == MPS_OK && !mpm->run.broken) status = mpsi_mpm_tidy(mpm, function);
   if (status != MPS_OK) return status;
   if (!mpm->run.broken) return mpsi_mpm_update_holds(mpm, function);
   return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,

@@ -49,6 +49,8 @@ mps_status mps_mpm_step(mps_mpm *mpm, int64_t count) {
                        (long long)count);
   status = same_on_ranks(mpm, __func__, status, "count", (double)count);
   if (status == MPS_OK) status = mpsi_mpm_ready(mpm, __func__);
+  if (status != MPS_OK) return status;
+  mpsi_guard_enter(&mpm->run.guard, mpm->context, __func__);
   for (int64_t k = 0; k < count && status == MPS_OK; k++) {
     if (mpm->run.edited) status = mpsi_mpm_tidy(mpm, __func__); /* some have left */
     if (status == MPS_OK) status = check_bounded(mpm, __func__);
@@ -56,6 +58,7 @@ mps_status mps_mpm_step(mps_mpm *mpm, int64_t count) {
     if (status == MPS_OK) status = mpsi_mpm_take_step(mpm, __func__, mps_mpm_dt(mpm));
     if (status == MPS_OK && k + 1 < count) status = ask_cancel(mpm, __func__);
   }
+  mpsi_guard_end(&mpm->run.guard);
   return status;
 }
 
@@ -64,6 +67,48 @@ static mps_status call(mps_mpm *mpm, const char *function, mps_mpm_fn callback, 
   const mps_status status =
       mpsi_guard_leave(&mpm->run.guard, mpm->context, function, callback(user, mpm));
   return mpm->share ? mpsi_domain_settle(mpm->share->domain, function, status) : status;
+}
+
+/* A run under way. */
+typedef struct run {
+  double start, t_end;
+  int64_t every;
+  mps_mpm_fn callback;
+  void *user;
+} run;
+
+/* The next step goes there at most; the last two are equal: forces of a very short one would be
+ * rough. */
+static double next_step(const mps_mpm *mpm, double t_end, bool *last) {
+  const double dt = mps_mpm_dt(mpm), rest = t_end - mpm->run.time;
+  *last = rest <= dt * (1.0 + 1e-9);
+  if (*last) return rest;
+  return rest < 2.0 * dt * (1.0 - 1e-9) ? 0.5 * rest : dt;
+}
+
+static mps_status march(mps_mpm *mpm, const char *function, const run *r) {
+  const double slice = 0.01 * (r->t_end - r->start);
+  int64_t done = 0, reported = 0;
+  mps_status status = MPS_OK;
+  bool called = r->callback != NULL, last = false;
+  if (called) status = call(mpm, function, r->callback, r->user);
+  while (status == MPS_OK && mpm->run.time < r->t_end) {
+    if (called || mpm->run.edited) status = mpsi_mpm_tidy(mpm, function); /* some have left */
+    if (status != MPS_OK) break;
+    mpsi_mpm_leave_settling(mpm);
+    status = mpsi_mpm_take_step(mpm, function, next_step(mpm, r->t_end, &last));
+    if (last) mpm->run.time = r->t_end;
+    done++;
+    called = r->callback && (done % r->every == 0 || last);
+    if (status == MPS_OK && called) status = call(mpm, function, r->callback, r->user);
+    if (last || mpm->run.time >= r->start + slice * (double)(reported + 1)) {
+      reported = last ? 100 : (int64_t)((mpm->run.time - r->start) / slice);
+      mpsi_progress(mpm->context, "mpm", mpm->run.steps, mpm->run.time - r->start,
+                    r->t_end - r->start);
+    }
+    if (status == MPS_OK && !last) status = ask_cancel(mpm, function);
+  }
+  return status;
 }
 
 mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every, mps_mpm_fn callback, void *user) {
@@ -82,31 +127,10 @@ mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every, mps_mpm_fn cal
   if (status == MPS_OK)
     status = same_on_ranks(mpm, __func__, status, "having a callback", callback != NULL);
   if (status == MPS_OK) status = mpsi_mpm_ready(mpm, __func__);
-  const double start = mpm->run.time, slice = 0.01 * (t_end - start);
-  int64_t done = 0, reported = 0;
-  if (status == MPS_OK && callback) status = call(mpm, __func__, callback, user);
-  bool called = callback != NULL;
-  while (status == MPS_OK && mpm->run.time < t_end) {
-    if (called || mpm->run.edited) status = mpsi_mpm_ready(mpm, __func__);
-    if (status != MPS_OK) break; /* the callback may have edited */
-    mpsi_mpm_leave_settling(mpm);
-    double dt = mps_mpm_dt(mpm);
-    const double rest = t_end - mpm->run.time;
-    const bool last = rest <= dt * (1.0 + 1e-9);
-    if (last)
-      dt = rest;
-    else if (rest < 2.0 * dt * (1.0 - 1e-9))
-      dt = 0.5 * rest; /* the last two are equal: forces of a very short step would be rough */
-    status = mpsi_mpm_take_step(mpm, __func__, dt);
-    if (last) mpm->run.time = t_end;
-    done++;
-    called = callback && (done % every == 0 || last);
-    if (status == MPS_OK && called) status = call(mpm, __func__, callback, user);
-    if (last || mpm->run.time >= start + slice * (double)(reported + 1)) {
-      reported = last ? 100 : (int64_t)((mpm->run.time - start) / slice);
-      mpsi_progress(mpm->context, "mpm", mpm->run.steps, mpm->run.time - start, t_end - start);
-    }
-    if (status == MPS_OK && !last) status = ask_cancel(mpm, __func__);
-  }
+  if (status != MPS_OK) return status;
+  const run r = {mpm->run.time, t_end, every, callback, user};
+  mpsi_guard_enter(&mpm->run.guard, mpm->context, __func__);
+  status = march(mpm, __func__, &r);
+  mpsi_guard_end(&mpm->run.guard);
   return status;
 }

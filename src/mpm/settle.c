@@ -206,7 +206,9 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
   now.peaks = settling->peaks;
   settling->on = true;
   settling->cut = false;
+  mpsi_guard_enter(&mpm->run.guard, mpm->context, function);
   status = relax_until(mpm, function, &def, &now);
+  mpsi_guard_end(&mpm->run.guard);
   if (!mpm->run.broken && !settling->cut) stop_particles(mpm);
   let_bodies_go(mpm, &kept);
   settling->on = false;

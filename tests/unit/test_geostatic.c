@@ -223,6 +223,25 @@ static void a_function_sets_the_stress(void **state) {
 /* ---- memory -----------------------------------------------------------------------------------
  */
 
+/* The stress that somebody is editing is not written. */
+static void an_open_edit_is_respected(void **state) {
+  (void)state;
+  mps_particles *set = ground(context, 2, 2.0);
+  const mps_geostatic_def def = two_layers();
+  double limit = 10.0;
+  mps_edit edit;
+  mps_assert_ok(context, mps_particles_add_field(set, "stress", 0));
+  mps_assert_ok(context, mps_particles_edit(set, "stress", &edit));
+  *mps_edit_f64(&edit, 3, 0) = -7.0;
+  mps_assert_fails(context, mps_particles_set_geostatic(set, &def), MPS_ERROR_STATE, "being edited");
+  mps_assert_fails(context, mps_particles_set_stress(set, radial, &limit), MPS_ERROR_STATE,
+                   "being edited");
+  assert_true(*mps_edit_f64(&edit, 3, 0) == -7.0);
+  mps_assert_ok(context, mps_particles_commit(set, &edit));
+  mps_assert_ok(context, mps_particles_set_geostatic(set, &def));
+  mps_particles_destroy(&set);
+}
+
 static mps_status set_and_destroy(mps_context *own, int what) {
   double limit = 10.0;
   mps_particles_def def = mps_particles_defaults();
@@ -251,6 +270,7 @@ int main(void) {
       cmocka_unit_test(layers_take_their_particles_density),
       cmocka_unit_test(bad_layers_are_refused_and_nothing_is_changed),
       cmocka_unit_test(a_function_sets_the_stress),
+      cmocka_unit_test(an_open_edit_is_respected),
       cmocka_unit_test(refused_memory_leaves_nothing_behind),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);

@@ -332,8 +332,8 @@ static mps_status meddle(void *user, mps_mpm *mpm) {
   const double there[2] = {0.5, 0.5};
   const int64_t ids[1] = {5};
   ++*(int *)user;
-  FAILS(mps_particles_append(set, 1, there), MPS_ERROR_STATE, "from the callback of mps_mpm_run");
-  FAILS(mps_particles_remove(set, 1, ids), MPS_ERROR_STATE, "from the callback of mps_mpm_run");
+  FAILS(mps_particles_append(set, 1, there), MPS_ERROR_STATE, "in the callback of mps_mpm_run");
+  FAILS(mps_particles_remove(set, 1, ids), MPS_ERROR_STATE, "in the callback of mps_mpm_run");
   return MPS_OK;
 }
 
