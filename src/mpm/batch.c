@@ -8,11 +8,11 @@
 
 /* Particles of one stencil; lanes without one have the place of the first, and no mass. */
 typedef struct batch {
-  int at[3];                                    /* lowest node in the tile */
-  uint32_t bodies;                              /* that hold any of them */
-  mpsi_quad s[3][4], along[3][4];               /* cells, to the nodes of each axis; weights */
-  mpsi_quad w[MPSI_STENCIL], phi[MPSI_STENCIL]; /* of the active nodes, else 0 */
-  mpsi_quad q[4][4];                            /* inverse of M; rows from 1 on over h */
+  int at[3];                      /* lowest node in the tile */
+  uint32_t bodies;                /* that hold any of them */
+  mpsi_quad s[3][4], along[3][4]; /* cells, to the nodes of each axis; weights */
+  mpsi_quad w[MPSI_STENCIL];      /* of the active nodes, else 0 */
+  mpsi_quad q[4][4];              /* inverse of M; rows from 1 on over h */
 } batch;
 
 /* ---- active nodes -----------------------------------------------------------------------------
@@ -45,31 +45,39 @@ MPSI_INLINE void find_corners(const mps_mpm *mpm, const mpsi_cell_block *cells, 
   }
 }
 
-/* As same_side of fitted.c. A ghost beyond a mirror has the normals of its partner, the other way
- * across the mirror. */
+/* mpsi_contact_same_side for all bodies that hold the node. A ghost beyond a mirror has the normals
+ * of its partner, the other way across the mirror. */
 MPSI_INLINE mpsi_mask same_side(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
                                 const batch *b, int i, int j, int k) {
   const int place[3] = {i, j, k};
-  double sign[3] = {1.0, 1.0, 1.0};
+  mpsi_quad s[3];
   int t[3] = {0};
   for (int c = 0; c < dim; c++) {
     const int node = b->at[c] + place[c];
     const int partner = cells->mirrors ? mpsi_partner_of(mpm, cells, c, node) : -1;
     t[c] = partner >= 0 ? partner : node;
-    if (t[c] != node) sign[c] = -1.0;
+    s[c] = t[c] != node ? -b->s[c][place[c]] : b->s[c][place[c]];
   }
-  const int64_t under = mpsi_node_under(mpm, cells, t[0], t[1], t[2]);
-  const mpsi_node_block *block = &mpm->grid.nodes[under / mpm->grid.block_nodes];
-  const int64_t local = under % mpm->grid.block_nodes;
+  const mpsi_node_block *nodes = &mpm->grid.nodes[mpsi_block_under(cells, t[0], t[1], t[2])];
+  const int local = mpsi_local_under(t[0], t[1], t[2]);
   mpsi_mask same = {-1, -1, -1, -1};
-  for (int32_t q = block->first_pair; q < block->first_pair + block->pairs; q++) {
-    const double *n = mpm->contact.node[(int64_t)q * mpm->grid.block_nodes + local].normal;
-    if (n[0] == 0.0 && n[1] == 0.0 && n[2] == 0.0) continue;
-    mpsi_quad across = {0.0};
-    for (int c = 0; c < dim; c++) across += sign[c] * n[c] * b->s[c][place[c]];
-    same &= across < 0.0;
+  int32_t pair = nodes->first_pair;
+  for (const double *n; (n = mpsi_next_normal(mpm, nodes, local, &pair)) != NULL;) {
+    const mpsi_quad across = n[0] * s[0] + n[1] * s[1];
+    same &= (dim == 3 ? across + n[2] * s[2] : across) < 0.0;
   }
   return same;
+}
+
+/* Whether particles may use a node that lies in a body. */
+MPSI_INLINE mpsi_mask is_active(const mps_mpm *mpm, const mpsi_cell_block *cells, uint8_t state,
+                                int dim, const batch *b, mpsi_mask (*corner)[4], int i, int j,
+                                int k) {
+  mpsi_mask active = corner[0][i] & corner[1][j];
+  if (dim == 3) active &= corner[2][k];
+  if ((active[0] & active[1] & active[2] & active[3]) != 0 || !(state & MPSI_REACHED))
+    return active;
+  return active | same_side(mpm, cells, dim, b, i, j, k);
 }
 
 /* Weights of the active nodes. */
@@ -77,19 +85,22 @@ MPSI_INLINE void find_active(const mps_mpm *mpm, const mpsi_cell_block *cells,
                              const mpsi_worker *worker, int dim, int spline, batch *b) {
   mpsi_mask corner[3][4];
   find_corners(mpm, cells, dim, spline, b, corner);
-  MPSI_FOR_NODES(dim, spline) {
-    const int t = mpsi_tile_index(b->at[0] + i, b->at[1] + j, b->at[2] + k);
-    const uint8_t state = worker->state[t];
-    mpsi_quad w = b->along[0][i] * b->along[1][j];
-    if (dim == 3) w *= b->along[2][k];
-    if (state & MPSI_INSIDE) {
-      mpsi_mask active = corner[0][i] & corner[1][j];
-      if (dim == 3) active &= corner[2][k];
-      if (state & MPSI_REACHED) active |= same_side(mpm, cells, dim, b, i, j, k);
-      w = (mpsi_quad)((mpsi_mask)w & active);
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++) {
+      const uint8_t *state = worker->state + mpsi_tile_index(b->at[0], b->at[1] + j, b->at[2] + k);
+      mpsi_quad *w = b->w + 16 * k + 4 * j, across = b->along[1][j];
+      if (dim == 3) across *= b->along[2][k];
+      for (int i = 0; i <= spline; i++) w[i] = b->along[0][i] * across;
+      uint32_t any;
+      memcpy(&any, state, sizeof any);
+      for (int i = 0; i <= spline && any != 0; i++) {
+        if (state[i] & MPSI_OUTSIDE)
+          w[i] = (mpsi_quad){0.0};
+        else if (state[i] & MPSI_INSIDE)
+          w[i] = (mpsi_quad)((mpsi_mask)w[i] &
+                             is_active(mpm, cells, state[i], dim, b, corner, i, j, k));
+      }
     }
-    b->w[n] = state & MPSI_OUTSIDE ? (mpsi_quad){0.0} : w;
-  }
 }
 
 /* ---- the fit ----------------------------------------------------------------------------------
@@ -119,11 +130,13 @@ MPSI_INLINE void moments(int dim, int spline, const batch *b, const mpsi_quad *w
 
 /* Inverses of symmetric positive definite matrices, given by their upper halves: see mpsi_invert.
  */
-MPSI_INLINE void invert(int n, mpsi_quad m[4][4]) {
+MPSI_INLINE mpsi_quad invert(int n, mpsi_quad m[4][4]) {
+  mpsi_quad determinant = {1.0, 1.0, 1.0, 1.0};
   for (int i = 0; i < n; i++)
     for (int j = 0; j < i; j++) m[i][j] = m[j][i];
   MPSI_UNROLL for (int p = 0; p < n; p++) {
     const mpsi_quad scale = 1.0 / m[p][p];
+    determinant *= m[p][p];
     m[p][p] = (mpsi_quad){1.0, 1.0, 1.0, 1.0};
     for (int j = 0; j < n; j++) m[p][j] *= scale;
     MPSI_UNROLL for (int i = 0; i < n; i++) {
@@ -133,12 +146,14 @@ MPSI_INLINE void invert(int n, mpsi_quad m[4][4]) {
       for (int j = 0; j < n; j++) m[i][j] -= factor * m[p][j];
     }
   }
+  return determinant;
 }
 
-/* Row r of the fit at a row of nodes along x, but for what is by s_x. */
-MPSI_INLINE mpsi_quad across(int dim, const batch *b, int r, int j, int k) {
-  const mpsi_quad sum = b->q[r][0] + b->q[r][2] * b->s[1][j];
-  return dim == 3 ? sum + b->q[r][3] * b->s[2][k] : sum;
+/* A linear function of s, q[0] + q[1] s_x + ..., at a row of nodes along x, but for what is by s_x.
+ */
+MPSI_INLINE mpsi_quad across(int dim, const batch *b, const mpsi_quad *q, int j, int k) {
+  const mpsi_quad sum = q[0] + q[2] * b->s[1][j];
+  return dim == 3 ? sum + q[3] * b->s[2][k] : sum;
 }
 
 MPSI_INLINE void fit(const mps_mpm *mpm, int dim, int spline, batch *b) {
@@ -146,12 +161,6 @@ MPSI_INLINE void fit(const mps_mpm *mpm, int dim, int spline, batch *b) {
   invert(dim + 1, b->q);
   for (int r = 1; r <= dim; r++)
     for (int c = 0; c <= dim; c++) b->q[r][c] *= mpm->grid.inverse;
-  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
-    for (int j = 0; j <= spline; j++) {
-      const mpsi_quad value = across(dim, b, 0, j, k);
-      for (int i = 0, n = 16 * k + 4 * j; i <= spline; i++, n++)
-        b->phi[n] = b->w[n] * (value + b->q[0][1] * b->s[0][i]);
-    }
 }
 
 MPSI_INLINE void make_batch(const mps_mpm *mpm, const mpsi_cell_block *cells,
@@ -179,124 +188,190 @@ MPSI_INLINE uint32_t bodies_of(const mps_mpm *mpm, const mpsi_cell_block *cells,
 /* ---- particles to nodes -----------------------------------------------------------------------
  */
 
-/* What the particles give: see source of fitted.c. By component, and by axis. */
+/* What the particles give to node i: its share w P_0 = phi of mass and momentum, and force by w:
+ * all of these are linear functions of s, 1, s_x, s_y, s_z side by side. */
 typedef struct source {
   mpsi_quad m;
-  mpsi_quad v[3], L[3][3];         /* kg m/s; the same a cell */
-  mpsi_quad body[3], stress[3][3]; /* N, N m */
-  mpsi_quad turn[3][3];            /* kg m2/s, by the derivative: see spin.h */
+  mpsi_quad momentum[3][4];  /* kg m/s, by phi; by component */
+  mpsi_quad turn[3][3];      /* kg m2/s, by the derivative along each axis: see spin.h */
+  mpsi_quad by_weight[3][4]; /* kg m/s, what `turn` gives, by w */
+  mpsi_quad force[3][4];     /* N, by w */
 } source;
 
-/* Particles [p, p + n). */
-MPSI_INLINE void find_source(const mps_mpm *mpm, int dim, int64_t p, int n, source *out) {
+/* V sigma and the forces by phi of particles [p, p + n), to what they give by w: grad phi of axis d
+ * is w q[1 + d]. */
+MPSI_INLINE void find_force(const mps_mpm *mpm, int dim, const batch *b, int64_t p, int n,
+                            source *out) {
   static const int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
   const mpsi_columns *from = &mpm->p;
   const mpsi_mask there = (mpsi_mask){0, 1, 2, 3} < n;
-  const mpsi_quad m = (mpsi_quad)((mpsi_mask)mpsi_get_some(from->m + p, n) & there);
   const mpsi_quad V = (mpsi_quad)((mpsi_mask)mpsi_get_some(from->V + p, n) & there);
-  out->m = m;
   for (int a = 0; a < dim; a++) {
-    out->v[a] = m * mpsi_get_some(from->v[a] + p, n);
-    out->body[a] = m * mpm->def.gravity[a];
-    if (from->f[a])
-      out->body[a] += (mpsi_quad)((mpsi_mask)mpsi_get_some(from->f[a] + p, n) & there);
+    mpsi_quad body = out->m * mpm->def.gravity[a];
+    if (from->f[a]) body += (mpsi_quad)((mpsi_mask)mpsi_get_some(from->f[a] + p, n) & there);
+    if (mpm->def.geometry == MPS_MPM_AXISYMMETRIC && a == 0)
+      body -= V * mpsi_get_some(from->s[2] + p, n) / mpsi_get_some(from->x[0] + p, n);
+    for (int c = 0; c <= dim; c++) out->force[a][c] = body * b->q[0][c];
     for (int d = 0; d < dim; d++) {
-      out->L[a][d] = m * mpm->def.cell * mpsi_get_some(from->L[dim * a + d] + p, n);
-      out->stress[a][d] = -V * mpsi_get_some(from->s[symmetric[a][d]] + p, n);
+      const mpsi_quad stress = V * mpsi_get_some(from->s[symmetric[a][d]] + p, n);
+      for (int c = 0; c <= dim; c++) out->force[a][c] -= stress * b->q[1 + d][c];
+    }
+  }
+}
+
+/* Lanes without a particle have no mass and no volume. */
+MPSI_INLINE void find_source(const mps_mpm *mpm, int dim, const batch *b, int64_t p, int n,
+                             source *out) {
+  const mpsi_columns *from = &mpm->p;
+  const mpsi_mask there = (mpsi_mask){0, 1, 2, 3} < n;
+  out->m = (mpsi_quad)((mpsi_mask)mpsi_get_some(from->m + p, n) & there);
+  const mpsi_quad mh = out->m * mpm->def.cell;
+  for (int a = 0; a < dim; a++) {
+    out->momentum[a][0] = out->m * mpsi_get_some(from->v[a] + p, n);
+    for (int d = 0; d < dim; d++) {
+      out->momentum[a][1 + d] = mh * mpsi_get_some(from->L[dim * a + d] + p, n);
       out->turn[a][d] = (mpsi_quad){0.0};
     }
   }
-  if (mpm->def.geometry == MPS_MPM_AXISYMMETRIC)
-    out->body[0] -= V * mpsi_get_some(from->s[2] + p, n) / mpsi_get_some(from->x[0] + p, n);
+  find_force(mpm, dim, b, p, n, out);
 }
 
-/* The rotation by which the particles give their moments: mpsi_give_spin, in the plane. Returns
- * whether some give it by the derivative. */
-MPSI_INLINE bool give_spin_in_plane(const mps_mpm *mpm, int spline, mpsi_quad (*m)[4], source *s) {
-  const double full = 1.0 / mpsi_inverse_moment(spline);
-  const mpsi_quad trace = m[1][1] + m[2][2];
-  const mpsi_quad lack = (full - m[1][1]) * s->L[1][0] - (full - m[2][2]) * s->L[0][1] -
-                         m[1][2] * (s->L[1][1] - s->L[0][0]);
-  const mpsi_mask turns = trace > MPSI_LEAST_INERTIA * 2.0 * full;
-  const mpsi_quad spin = (mpsi_quad)((mpsi_mask)(lack / trace) & turns);
-  const mpsi_quad turn = (mpsi_quad)((mpsi_mask)(0.5 * mpm->def.cell * lack) & ~turns);
-  s->L[1][0] += spin, s->L[0][1] -= spin;
-  s->turn[1][0] = turn, s->turn[0][1] = -turn;
-  return (turns[0] & turns[1] & turns[2] & turns[3]) == 0;
+/* sum phi s s^T. */
+MPSI_INLINE void find_second(int dim, int spline, const batch *b, mpsi_quad K[3][3]) {
+  for (int r = 0; r < 3; r++)
+    for (int c = 0; c < 3; c++) K[r][c] = (mpsi_quad){0.0};
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++) {
+      const mpsi_quad value = across(dim, b, b->q[0], j, k), y = b->s[1][j];
+      mpsi_quad one = {0.0}, by_x = {0.0};
+      for (int i = 0, n = 16 * k + 4 * j; i <= spline; i++, n++) {
+        const mpsi_quad x = b->s[0][i], phi = b->w[n] * (value + b->q[0][1] * x);
+        one += phi, by_x += phi * x, K[0][0] += phi * x * x;
+      }
+      K[0][1] += by_x * y, K[1][1] += one * y * y;
+      if (dim == 2) continue;
+      const mpsi_quad z = b->s[2][k];
+      K[0][2] += by_x * z, K[1][2] += one * y * z, K[2][2] += one * z * z;
+    }
+  for (int r = 0; r < dim; r++)
+    for (int c = 0; c < r; c++) K[r][c] = K[c][r];
 }
 
-/* The same in space, particle by particle. */
-MPSI_INLINE bool give_spin_in_space(const mps_mpm *mpm, int spline, mpsi_quad (*second)[4], int n,
-                                    source *s) {
-  bool turns = false;
-  for (int l = 0; l < n; l++) {
-    double m[4][4] = {{0.0}};
-    mpsi_quad L[3] = {{0.0}}, turn[3] = {{0.0}};
-    for (int r = 1; r < 4; r++)
-      for (int c = r; c < 4; c++) m[r][c] = second[r][c][l];
-    for (int d = 0; d < 3; d++)
-      for (int a = 0; a < 3; a++) L[d][1 + a] = s->L[a][d][l];
-    if (!mpsi_give_spin(3, spline, mpm->def.cell, m, L, turn)) turns = true;
-    for (int d = 0; d < 3; d++)
-      for (int a = 0; a < 3; a++) s->L[a][d][l] = L[d][1 + a], s->turn[a][d][l] = turn[d][1 + a];
+/* Which lanes turn without giving by the derivative, and by how much about each axis: see
+ * mpsi_give_spin. `lack` is what is missing of their moments. */
+MPSI_INLINE mpsi_mask find_spin(int dim, double full, mpsi_quad K[3][3], const mpsi_quad *lack,
+                                mpsi_quad *spin) {
+  const mpsi_quad trace = dim == 2 ? K[0][0] + K[1][1] : K[0][0] + K[1][1] + K[2][2];
+  mpsi_mask turns = trace > MPSI_LEAST_INERTIA * 2.0 * full;
+  if (dim == 2) {
+    spin[2] = lack[2] / trace;
+    return turns;
   }
+  mpsi_quad inertia[4][4];
+  for (int a = 0; a < 3; a++)
+    for (int c = a; c < 3; c++) inertia[a][c] = (a == c ? trace : (mpsi_quad){0.0}) - K[a][c];
+  const mpsi_quad determinant = invert(3, inertia);
+  turns &= determinant * 9.0 > MPSI_LEAST_INERTIA * 8.0 * full * trace * trace;
+  for (int a = 0; a < 3; a++)
+    spin[a] = inertia[a][0] * lack[0] + inertia[a][1] * lack[1] + inertia[a][2] * lack[2];
   return turns;
 }
 
-MPSI_INLINE bool give_spin(const mps_mpm *mpm, int dim, int spline, const batch *b, int n,
-                           source *s) {
-  mpsi_quad second[4][4];
-  moments(dim, spline, b, b->phi, second);
-  return dim == 2 ? give_spin_in_plane(mpm, spline, second, s)
-                  : give_spin_in_space(mpm, spline, second, n, s);
-}
-
-/* The sums of four vectors, side by side. */
-MPSI_INLINE mpsi_quad sums(mpsi_quad a, mpsi_quad b, mpsi_quad c, mpsi_quad d) {
-  mpsi_quad all[4] = {a, b, c, d};
-  mpsi_transpose(all);
-  return (all[0] + all[2]) + (all[1] + all[3]);
-}
-
-/* To one node: momentum to the tile, force and excess mass to the tile of forces. */
-MPSI_INLINE void give(int dim, const batch *b, const source *s, bool turns, int n,
-                      const mpsi_quad *to, const mpsi_quad *gradient, double *tile, double *force) {
-  const mpsi_quad phi = b->phi[n], zero = {0.0};
-  mpsi_quad momentum[3] = {zero, zero, zero}, push[3] = {zero, zero, zero};
+/* The rotation by which the particles give their moments. Returns whether some give it by the
+ * derivative. */
+MPSI_INLINE bool give_spin(const mps_mpm *mpm, int dim, int spline, const batch *b, source *s) {
+  const double full = 1.0 / mpsi_inverse_moment(spline);
+  mpsi_quad K[3][3], lack[3] = {{0.0}}, spin[3] = {{0.0}};
+  find_second(dim, spline, b, K);
   for (int a = 0; a < dim; a++) {
-    mpsi_quad v = s->v[a];
-    push[a] = s->body[a] * phi;
-    for (int d = 0; d < dim; d++) {
-      v += s->L[a][d] * to[d];
-      push[a] += s->stress[a][d] * gradient[d];
-    }
-    momentum[a] = v * phi;
-    for (int d = 0; d < dim && turns; d++) momentum[a] += s->turn[a][d] * gradient[d];
+    const int o = (a + 1) % 3, axis = (a + 2) % 3;
+    if (o >= dim) continue;
+    lack[axis] = full * (s->momentum[o][1 + a] - s->momentum[a][1 + o]);
+    for (int d = 0; d < dim; d++)
+      lack[axis] -= K[a][d] * s->momentum[o][1 + d] - K[o][d] * s->momentum[a][1 + d];
   }
-  mpsi_put(tile, mpsi_get(tile) + sums(s->m * phi, momentum[0], momentum[1], momentum[2]));
-  mpsi_put(force, mpsi_get(force) + sums(s->m * (b->w[n] - phi), push[0], push[1], push[2]));
+  const mpsi_mask turns = find_spin(dim, full, K, lack, spin);
+  for (int a = 0; a < dim; a++) {
+    const int o = (a + 1) % 3, axis = (a + 2) % 3;
+    if (o >= dim) continue;
+    const mpsi_quad more = (mpsi_quad)((mpsi_mask)spin[axis] & turns);
+    const mpsi_quad turn = (mpsi_quad)((mpsi_mask)(0.5 * mpm->def.cell * lack[axis]) & ~turns);
+    s->momentum[o][1 + a] += more, s->momentum[a][1 + o] -= more;
+    s->turn[o][a] = turn, s->turn[a][o] = -turn;
+  }
+  for (int a = 0; a < dim; a++)
+    for (int c = 0; c <= dim; c++) {
+      s->by_weight[a][c] = (mpsi_quad){0.0};
+      for (int d = 0; d < dim; d++) s->by_weight[a][c] += s->turn[a][d] * b->q[1 + d][c];
+    }
+  return (turns[0] & turns[1] & turns[2] & turns[3]) == 0;
+}
+
+/* The same of one row of nodes along x, by particle: at s_x = 0, and by s_x. */
+typedef struct row_source {
+  mpsi_quad phi, momentum[3], by_weight[3], force[3];
+} row_source;
+
+MPSI_INLINE void find_row(int dim, const batch *b, const source *s, bool turns, int j, int k,
+                          row_source *out) {
+  out->phi = across(dim, b, b->q[0], j, k);
+  for (int a = 0; a < dim; a++) {
+    out->momentum[a] = across(dim, b, s->momentum[a], j, k);
+    out->force[a] = across(dim, b, s->force[a], j, k);
+    if (turns) out->by_weight[a] = across(dim, b, s->by_weight[a], j, k);
+  }
+}
+
+/* Sums of a row: mass, momentum; mass by weights, force. The nodes side by side. */
+MPSI_INLINE void add_row(int dim, const batch *b, const source *s, const row_source *row,
+                         bool turns, int lanes, const mpsi_quad *w, mpsi_quad *sum,
+                         mpsi_quad *force) {
+  const mpsi_quad nodes = {0.0, 1.0, 2.0, 3.0};
+  for (int l = 0; l < lanes; l++) {
+    const mpsi_quad x = nodes + b->s[0][0][l];
+    const mpsi_quad phi = w[l] * (row->phi[l] + b->q[0][1][l] * x);
+    sum[0] += s->m[l] * phi;
+    force[0] += s->m[l] * w[l];
+    for (int a = 0; a < dim; a++) {
+      sum[1 + a] += phi * (row->momentum[a][l] + s->momentum[a][1][l] * x);
+      force[1 + a] += w[l] * (row->force[a][l] + s->force[a][1][l] * x);
+      if (turns) sum[1 + a] += w[l] * (row->by_weight[a][l] + s->by_weight[a][1][l] * x);
+    }
+  }
+  force[0] -= sum[0];
+}
+
+/* To the nodes: momentum to the tile, force and excess mass to the tile of forces. */
+MPSI_INLINE void give_rows(const mpsi_worker *worker, int dim, int spline, const batch *b,
+                           const source *s, bool turns, int lanes) {
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++) {
+      const int t = mpsi_tile_index(b->at[0], b->at[1] + j, b->at[2] + k);
+      mpsi_quad w[4] = {{0.0}}, sum[4] = {{0.0}}, force[4] = {{0.0}};
+      row_source row;
+      find_row(dim, b, s, turns, j, k, &row);
+      for (int i = 0; i <= spline; i++) w[i] = b->w[16 * k + 4 * j + i];
+      mpsi_transpose(w);
+      add_row(dim, b, s, &row, turns, lanes, w, sum, force);
+      mpsi_transpose(sum);
+      mpsi_transpose(force);
+      for (int i = 0; i <= spline; i++) {
+        mpsi_put(worker->tile[t + i], mpsi_get(worker->tile[t + i]) + sum[i]);
+        mpsi_put(worker->force[t + i], mpsi_get(worker->force[t + i]) + force[i]);
+      }
+    }
 }
 
 MPSI_INLINE void scatter(const mps_mpm *mpm, const mpsi_cell_block *cells,
                          const mpsi_worker *worker, int dim, int spline, const batch *b, int64_t p,
                          int lanes) {
   source s;
-  find_source(mpm, dim, p, lanes, &s);
-  const bool turns = mpm->run.moments && mpsi_keeps_spin(mpm, cells, b->bodies) &&
-                     give_spin(mpm, dim, spline, b, lanes, &s);
-  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
-    for (int j = 0; j <= spline; j++) {
-      mpsi_quad slope[3];
-      for (int d = 0; d < dim; d++) slope[d] = across(dim, b, 1 + d, j, k);
-      for (int i = 0, n = 16 * k + 4 * j; i <= spline; i++, n++) {
-        const int t = mpsi_tile_index(b->at[0] + i, b->at[1] + j, b->at[2] + k);
-        const mpsi_quad to[3] = {b->s[0][i], b->s[1][j], b->s[2][k]};
-        mpsi_quad gradient[3];
-        if (worker->state[t] & MPSI_OUTSIDE) continue;
-        for (int d = 0; d < dim; d++) gradient[d] = b->w[n] * (slope[d] + b->q[1 + d][1] * to[0]);
-        give(dim, b, &s, turns, n, to, gradient, worker->tile[t], worker->force[t]);
-      }
-    }
+  find_source(mpm, dim, b, p, lanes, &s);
+  if (mpm->run.moments && mpsi_keeps_spin(mpm, cells, b->bodies) &&
+      give_spin(mpm, dim, spline, b, &s))
+    give_rows(worker, dim, spline, b, &s, true, lanes);
+  else
+    give_rows(worker, dim, spline, b, &s, false, lanes);
 }
 
 /* ---- nodes to particles -----------------------------------------------------------------------
@@ -315,32 +390,59 @@ MPSI_INLINE void take_spin(int dim, int spline, double inverse, mpsi_quad (*mome
     }
 }
 
+/* Sums over the nodes, by component of their velocities. */
+typedef struct node_sums {
+  mpsi_quad by[3][4];     /* w by 1, s_x, s_y, s_z */
+  mpsi_quad v[3];         /* phi, */
+  mpsi_quad moment[3][3]; /* and that by s of the other axes */
+} node_sums;
+
+MPSI_INLINE void sum_row(int dim, int spline, const batch *b, const mpsi_node *node, int j, int k,
+                         node_sums *out) {
+  const mpsi_quad value = across(dim, b, b->q[0], j, k);
+  mpsi_quad one[3] = {{0.0}}, by_x[3] = {{0.0}}, share[3] = {{0.0}};
+  for (int i = 0, n = 16 * k + 4 * j; i <= spline; i++, n++) {
+    const mpsi_quad x = b->s[0][i], phi = value + b->q[0][1] * x;
+    for (int a = 0; a < dim; a++) {
+      const mpsi_quad v = b->w[n] * node[i][MPSI_VECTOR + a], by_phi = phi * v;
+      one[a] += v;
+      by_x[a] += v * x;
+      share[a] += by_phi;
+      if (a != 0) out->moment[a][0] += by_phi * x;
+    }
+  }
+  for (int a = 0; a < dim; a++) {
+    out->v[a] += share[a];
+    out->by[a][0] += one[a];
+    out->by[a][1] += by_x[a];
+    for (int d = 1; d < dim; d++) {
+      const mpsi_quad s = d == 1 ? b->s[1][j] : b->s[2][k];
+      out->by[a][1 + d] += one[a] * s;
+      if (a != d) out->moment[a][d] += share[a] * s;
+    }
+  }
+}
+
 MPSI_INLINE void gather(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                         int dim, int spline, const batch *b, mpsi_gathered *out, int at) {
-  mpsi_quad v[3] = {{0.0}}, L[3][3] = {{{0.0}}}, moment[3][3] = {{{0.0}}};
+  node_sums sum = {.v = {{0.0}}};
+  mpsi_quad L[3][3];
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
-    for (int j = 0; j <= spline; j++) {
-      mpsi_quad slope[3];
-      for (int d = 0; d < dim; d++) slope[d] = across(dim, b, 1 + d, j, k);
-      for (int i = 0, n = 16 * k + 4 * j; i <= spline; i++, n++) {
-        const double *node =
-            worker->tile[mpsi_tile_index(b->at[0] + i, b->at[1] + j, b->at[2] + k)];
-        const mpsi_quad to[3] = {b->s[0][i], b->s[1][j], b->s[2][k]};
-        for (int a = 0; a < dim; a++) {
-          const mpsi_quad share = b->phi[n] * node[MPSI_VECTOR + a];
-          v[a] += share;
-          for (int d = 0; d < dim; d++) {
-            if (d != a) moment[a][d] += share * to[d];
-            L[a][d] += b->w[n] * (slope[d] + b->q[1 + d][1] * to[0]) * node[MPSI_VECTOR + a];
-          }
-        }
-      }
-    }
+    for (int j = 0; j <= spline; j++)
+      sum_row(dim, spline, b,
+              (const mpsi_node *)worker->tile +
+                  mpsi_tile_index(b->at[0], b->at[1] + j, b->at[2] + k),
+              j, k, &sum);
   for (int a = 0; a < dim; a++)
-    for (int d = 0; d < dim; d++) mpsi_put(out->derivative[dim * a + d] + at, L[a][d]);
-  if (mpsi_keeps_spin(mpm, cells, b->bodies)) take_spin(dim, spline, mpm->grid.inverse, moment, L);
+    for (int d = 0; d < dim; d++) {
+      L[a][d] = b->q[1 + d][0] * sum.by[a][0];
+      for (int c = 1; c <= dim; c++) L[a][d] += b->q[1 + d][c] * sum.by[a][c];
+      mpsi_put(out->derivative[dim * a + d] + at, L[a][d]);
+    }
+  if (mpsi_keeps_spin(mpm, cells, b->bodies))
+    take_spin(dim, spline, mpm->grid.inverse, sum.moment, L);
   for (int a = 0; a < dim; a++) {
-    mpsi_put(out->v[a] + at, v[a]);
+    mpsi_put(out->v[a] + at, sum.v[a]);
     for (int d = 0; d < dim; d++) mpsi_put(out->slope[dim * a + d] + at, L[a][d]);
   }
 }

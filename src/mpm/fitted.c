@@ -43,11 +43,9 @@ static void reflect(const mps_mpm *mpm, const mpsi_cell_block *cells, const supp
 /* Outside every body that holds the node, seen from the node along the surface's normal. */
 static bool same_side(const mps_mpm *mpm, int32_t g, int local, const double *s) {
   const mpsi_node_block *nodes = &mpm->grid.nodes[g];
-  for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
-    const double *n = mpm->contact.node[(int64_t)t * mpm->grid.block_nodes + local].normal;
-    if (n[0] == 0.0 && n[1] == 0.0 && n[2] == 0.0) continue;
+  int32_t pair = nodes->first_pair;
+  for (const double *n; (n = mpsi_next_normal(mpm, nodes, local, &pair)) != NULL;)
     if (!mpsi_contact_same_side(n, s)) return false;
-  }
   return true;
 }
 

@@ -50,6 +50,18 @@ MPSI_INLINE int mpsi_support_local(const mpsi_support *s, int i, int j, int k) {
   return s->local[0][i] + s->local[1][j] + s->local[2][k];
 }
 
+/* The normal of the next body that holds the node `local` of a block, from its pair *pair on, which
+ * begins as nodes->first_pair; NULL behind the last. */
+MPSI_INLINE const double *mpsi_next_normal(const mps_mpm *mpm, const mpsi_node_block *nodes,
+                                           int local, int32_t *pair) {
+  while (*pair < nodes->first_pair + nodes->pairs) {
+    const int64_t at = (int64_t)(*pair)++ * mpm->grid.block_nodes + local;
+    const double *n = mpm->contact.node[at].normal;
+    if (n[0] != 0.0 || n[1] != 0.0 || n[2] != 0.0) return n;
+  }
+  return NULL;
+}
+
 /* All nodes n of a stencil, with their indices i, j, k. */
 #define MPSI_FOR_NODES(dim, spline)                                                                \
   for (int k = 0; k <= ((dim) == 3 ? (spline) : 0); k++)                                           \
