@@ -156,27 +156,94 @@ MPSI_INLINE mpsi_quad across(int dim, const batch *b, const mpsi_quad *q, int j,
   return dim == 3 ? sum + q[3] * b->s[2][k] : sum;
 }
 
-MPSI_INLINE void fit(const mps_mpm *mpm, int dim, int spline, batch *b) {
-  moments(dim, spline, b, b->w, b->q);
-  invert(dim + 1, b->q);
-  for (int r = 1; r <= dim; r++)
-    for (int c = 0; c <= dim; c++) b->q[r][c] *= mpm->grid.inverse;
+/* From the inverse of M, whose upper half is that of `upper`. */
+MPSI_INLINE void finish_fit(const mps_mpm *mpm, int dim, mpsi_quad upper[4][4], batch *b) {
+  for (int r = 0; r <= dim; r++)
+    for (int c = 0; c <= dim; c++) {
+      const mpsi_quad q = r <= c ? upper[r][c] : upper[c][r];
+      b->q[r][c] = r == 0 ? q : q * mpm->grid.inverse;
+    }
+}
+
+/* ---- kept from the scatter to the gather ------------------------------------------------------
+ */
+
+/* Of particles p, p + 1, ... of the block. */
+MPSI_INLINE void keep_fit(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
+                          const batch *b, mpsi_quad q[4][4], int64_t p, int n) {
+  const int64_t slot = cells->first_fit + (p - cells->begin);
+  mpsi_quad all[12] = {{0.0}};
+  mpsi_mask active = {0};
+  int count = 0;
+  for (int r = 0; r <= dim; r++)
+    for (int c = r; c <= dim; c++) all[count++] = q[r][c];
+  for (int part = 0; part < count; part += 4) {
+    mpsi_transpose(all + part);
+    for (int l = 0; l < n; l++) mpsi_put(mpm->grid.fit[slot + l].q + part, all[part + l]);
+  }
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++)
+      for (int i = 0; i <= spline; i++) {
+        const int node = 16 * k + 4 * j + i;
+        active |= (b->w[node] != 0.0) & (INT64_C(1) << node);
+      }
+  for (int l = 0; l < n; l++) {
+    mpm->grid.fit[slot + l].active = (uint64_t)active[l];
+    mpm->grid.fitted[slot + l] = 1;
+  }
+}
+
+/* Particles from number k of the chunk on, `n` of them, the first of which is particle p: as
+ * make_batch has made them for the scatter. */
+MPSI_INLINE void take_batch(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
+                            const mpsi_places *places, int k, int64_t p, int n, uint32_t bodies,
+                            batch *out) {
+  const int64_t slot = cells->first_fit + (p - cells->begin);
+  mpsi_quad all[12], upper[4][4];
+  mpsi_mask active = {0};
+  int count = 0;
+  out->bodies = bodies;
+  place_batch(dim, spline, places, k, n, out);
+  for (int part = 0; part < (dim == 2 ? 8 : 12); part += 4) {
+    for (int l = 0; l < 4; l++)
+      all[part + l] = mpsi_get(mpm->grid.fit[slot + (l < n ? l : 0)].q + part);
+    mpsi_transpose(all + part);
+  }
+  for (int r = 0; r <= dim; r++)
+    for (int c = r; c <= dim; c++) upper[r][c] = all[count++];
+  finish_fit(mpm, dim, upper, out);
+  for (int l = 0; l < 4; l++) active[l] = (int64_t)mpm->grid.fit[slot + (l < n ? l : 0)].active;
+  for (int z = 0; z <= (dim == 3 ? spline : 0); z++)
+    for (int j = 0; j <= spline; j++) {
+      mpsi_quad across = out->along[1][j];
+      if (dim == 3) across *= out->along[2][z];
+      for (int i = 0; i <= spline; i++) {
+        const int node = 16 * z + 4 * j + i;
+        const mpsi_mask there = (active & (INT64_C(1) << node)) != 0;
+        out->w[node] = (mpsi_quad)((mpsi_mask)(out->along[0][i] * across) & there);
+      }
+    }
 }
 
 MPSI_INLINE void make_batch(const mps_mpm *mpm, const mpsi_cell_block *cells,
                             const mpsi_worker *worker, int dim, int spline,
-                            const mpsi_places *places, int k, int n, uint32_t bodies, batch *out) {
+                            const mpsi_places *places, int k, int64_t p, int n, uint32_t bodies,
+                            batch *out) {
+  mpsi_quad upper[4][4];
   out->bodies = bodies;
   place_batch(dim, spline, places, k, n, out);
   find_active(mpm, cells, worker, dim, spline, out);
-  fit(mpm, dim, spline, out);
+  moments(dim, spline, out, out->w, upper);
+  invert(dim + 1, upper);
+  keep_fit(mpm, cells, dim, spline, out, upper, p, n);
+  finish_fit(mpm, dim, upper, out);
 }
 
 /* Bodies that hold nodes of a stencil, bit by bit; 0 where its particles are fitted.c's. */
 MPSI_INLINE uint32_t bodies_of(const mps_mpm *mpm, const mpsi_cell_block *cells,
                                const mpsi_worker *worker, int dim, int spline, int32_t first) {
   uint32_t bodies = 0;
-  if (mpm->standard || mpm->by_weight || cells->thin) return 0;
+  if (mpm->standard || mpm->by_weight || cells->thin || cells->first_fit < 0) return 0;
   MPSI_FOR_NODES(dim, spline) bodies |= worker->inside[first + mpsi_tile_index(i, j, k)], (void)n;
   for (int32_t q = 0; q < cells->pairs; q++) {
     const int32_t body = mpm->contact.cell_pair[cells->first_pair + q].body;
@@ -457,20 +524,20 @@ MPSI_INLINE bool scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells, const 
   for (int k = begin; k < end && bodies; k += 4) {
     const int n = end - k < 4 ? end - k : 4;
     batch b;
-    make_batch(mpm, cells, worker, dim, spline, places, k, n, bodies, &b);
+    make_batch(mpm, cells, worker, dim, spline, places, k, chunk + k, n, bodies, &b);
     scatter(mpm, cells, worker, dim, spline, &b, chunk + k, n);
   }
   return bodies != 0;
 }
 
 MPSI_INLINE bool gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                             int dim, int spline, const mpsi_places *places, int begin, int end,
-                             mpsi_gathered *out) {
+                             int dim, int spline, const mpsi_places *places, int64_t chunk,
+                             int begin, int end, mpsi_gathered *out) {
   const uint32_t bodies = bodies_of(mpm, cells, worker, dim, spline, places->first[begin]);
   for (int k = begin; k < end && bodies; k += 4) {
     const int n = end - k < 4 ? end - k : 4;
     batch b;
-    make_batch(mpm, cells, worker, dim, spline, places, k, n, bodies, &b);
+    take_batch(mpm, cells, dim, spline, places, k, chunk + k, n, bodies, &b);
     gather(mpm, cells, worker, dim, spline, &b, out, k);
   }
   return bodies != 0;
@@ -491,6 +558,6 @@ bool MPSI_LEVELLED(mpsi_mpm_scatter_batches)(mps_mpm *mpm, const mpsi_cell_block
 
 bool MPSI_LEVELLED(mpsi_mpm_gather_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
                                             const mpsi_worker *worker, const mpsi_places *places,
-                                            int begin, int end, mpsi_gathered *out) {
-  return CHOOSE(gather_body, places, begin, end, out);
+                                            int64_t chunk, int begin, int end, mpsi_gathered *out) {
+  return CHOOSE(gather_body, places, chunk, begin, end, out);
 }

@@ -49,6 +49,7 @@ typedef struct mpsi_cell_block {
   bool gone;            /* a particle has passed an open side */
   bool left;            /* a particle is more than a cell outside the block */
   int32_t first_pair, pairs;  /* bodies that it may meet: of the list of mpsi_cell_pair */
+  int64_t first_fit;          /* of its particles in the list of kept fits; -1: none are kept */
   int32_t next[MPSI_CORNERS]; /* the block of cells that gives to the block of nodes to[q] after
                                  this one, in the order of colours; -1: this is the last */
   int32_t waits;              /* number of to[q] that others give to before */
@@ -97,6 +98,12 @@ typedef struct mpsi_worker {
   uint8_t *state;                        /* MPSI_... bits, 0: free */
 } mpsi_worker;
 
+/* The fit of a particle beside bodies, from the scatter of a step to its gather (batch.c). */
+typedef struct mpsi_kept_fit {
+  double q[12];    /* the upper half of the inverse of M by rows, q00, q01, q02, ... (shape.h) */
+  uint64_t active; /* bit 16 k + 4 j + i: node of the stencil that takes part */
+} mpsi_kept_fit;
+
 /* Bits of a state. */
 #define MPSI_OUTSIDE 1u /* not in the domain */
 #define MPSI_INSIDE 2u  /* in a body */
@@ -144,6 +151,9 @@ typedef struct mpsi_grid {
   mpsi_worker *workers;
   mpsi_room across_room; /* of their second tiles */
   int32_t worker_count;
+  mpsi_kept_fit *fit; /* of particles of blocks beside bodies: see mpsi_cell_block.first_fit */
+  uint8_t *fitted;    /* whether it was kept in the present step */
+  mpsi_room fit_room, fitted_room;
 } mpsi_grid;
 
 /* Coordinates within a block or tile of `side` nodes an axis. */

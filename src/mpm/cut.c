@@ -79,6 +79,23 @@ static void mark_cut(mps_mpm *mpm, const mpsi_cell_block *cells, const box *near
   }
 }
 
+/* Which blocks keep the fits of their particles; false: memory refused. */
+static bool list_fits(mps_mpm *mpm) {
+  mpsi_grid *grid = &mpm->grid;
+  int64_t count = 0;
+  for (int64_t b = 0; b < grid->cell_count; b++) {
+    mpsi_cell_block *cells = &grid->cells[b];
+    cells->first_fit = cells->inside ? count : -1;
+    if (cells->inside) count += cells->end - cells->begin;
+  }
+  if (!mpsi_room_ensure(mpm->context, &grid->fit_room, count, sizeof *grid->fit) ||
+      !mpsi_room_ensure(mpm->context, &grid->fitted_room, count, sizeof *grid->fitted))
+    return false;
+  grid->fit = grid->fit_room.item;
+  grid->fitted = grid->fitted_room.item;
+  return true;
+}
+
 /* Cut: some particle may have a cut support, or, with the standard scheme, one without a fit.
  * Split: friction at nodes needs the velocity before the forces; so do the energy budget, damping
  * by forces, FLIP, and the transfer by weights, which divides momentum and force by different
@@ -107,7 +124,7 @@ static mps_status find_cut(mps_mpm *mpm, const char *function) {
       cells->split = cells->split || mpm->grid.nodes[cells->to[q]].split;
     cells->apart = cells->split || cells->cut;
   }
-  if (!mpsi_mpm_list_across(mpm) ||
+  if (!mpsi_mpm_list_across(mpm) || !list_fits(mpm) ||
       !mpsi_room_ensure(mpm->context, &mpm->grid.side_room,
                         mpm->grid.side_count * mpm->grid.block_nodes, sizeof *mpm->grid.side))
     return mpsi_fail_memory(mpm->context, function,

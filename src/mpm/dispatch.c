@@ -11,11 +11,14 @@
   void mpsi_mpm_speed_v##level(mps_mpm *mpm, int64_t b, int32_t worker);                           \
   void mpsi_mpm_fit_v##level(const mps_mpm *mpm, const mpsi_cell_block *cells,                     \
                              const mpsi_worker *worker, int64_t particle, mpsi_stencil *stencil,   \
-                             mpsi_shape_values *out);
+                             mpsi_shape_values *out);                                              \
+  void mpsi_mpm_foot_v##level(const mps_mpm *mpm, const mpsi_cell_block *cells,                    \
+                              const mpsi_worker *worker, int64_t particle, const double *d,        \
+                              mpsi_foot_weights *out);
 #define KERNELS(level)                                                                             \
   {                                                                                                \
     mpsi_mpm_p2g_v##level, mpsi_mpm_tile_v##level, mpsi_mpm_flush_v##level, mpsi_mpm_g2p_v##level, \
-        mpsi_mpm_speed_v##level, mpsi_mpm_fit_v##level                                             \
+        mpsi_mpm_speed_v##level, mpsi_mpm_fit_v##level, mpsi_mpm_foot_v##level                     \
   }
 
 DECLARE(1)

@@ -453,3 +453,61 @@ void MPSI_LEVELLED(mpsi_mpm_fit)(const mps_mpm *mpm, const mpsi_cell_block *cell
   *at = s.at;
   out->across = find_across(mpm, cells, particle, at);
 }
+
+/* ---- weights at a foot ------------------------------------------------------------------------
+ */
+
+/* By the fit that batch.c has kept for the particle in this step. */
+MPSI_INLINE void foot_body(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                           const mpsi_worker *worker, int dim, int spline, const double *q,
+                           const mpsi_stencil *at, const double *d, double *psi) {
+  double r[4] = {0.0};
+  (void)cells, (void)worker;
+  for (int row = 0, n = 0; row <= dim; row++)
+    for (int c = row; c <= dim; c++, n++) {
+      const double by_row = row == 0 ? 1.0 : d[row - 1] * mpm->grid.inverse;
+      const double by_column = c == 0 ? 1.0 : d[c - 1] * mpm->grid.inverse;
+      r[c] += by_row * q[n];
+      if (c != row) r[row] += by_column * q[n];
+    }
+  const mpsi_quad x = mpsi_get(at->s[0]), w = mpsi_get(at->w[0]);
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++) {
+      double across = r[0] + r[2] * at->s[1][j], weight = at->w[1][j];
+      if (dim == 3) across += r[3] * at->s[2][k], weight *= at->w[2][k];
+      mpsi_put(psi + 16 * k + 4 * j, w * weight * (across + r[1] * x));
+    }
+}
+
+/* By a fit of its own. */
+static void foot_by_fit(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                        int64_t particle, const double *d, mpsi_foot_weights *out) {
+  mpsi_stencil at;
+  mpsi_shape_values f;
+  MPSI_LEVELLED(mpsi_mpm_fit)(mpm, cells, worker, particle, &at, &f);
+  memcpy(out->at, at.at, sizeof out->at);
+  out->active = 0;
+  out->across = f.across;
+  for (int n = 0; n < MPSI_STENCIL; n++) {
+    if (f.w[n] == 0.0) continue;
+    out->active |= UINT64_C(1) << n;
+    out->psi[n] = f.phi[n];
+    for (int a = 0; a < mpm->dim; a++) out->psi[n] += f.gradient[a][n] * d[a];
+  }
+}
+
+void MPSI_LEVELLED(mpsi_mpm_foot)(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                                  const mpsi_worker *worker, int64_t particle, const double *d,
+                                  mpsi_foot_weights *out) {
+  const int64_t slot = cells->first_fit + (particle - cells->begin);
+  mpsi_stencil at;
+  if (cells->first_fit < 0 || !mpm->grid.fitted[slot]) {
+    foot_by_fit(mpm, cells, worker, particle, d, out);
+    return;
+  }
+  mpsi_make_stencil(mpm, cells, mpm->dim, mpm->def.spline, particle, &at);
+  memcpy(out->at, at.at, sizeof out->at);
+  out->active = mpm->grid.fit[slot].active;
+  out->across = 0;
+  CHOOSE(mpm->dim, mpm->def.spline, foot_body, mpm->grid.fit[slot].q, &at, d, out->psi);
+}

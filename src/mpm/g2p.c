@@ -308,8 +308,8 @@ MPSI_INLINE void gather_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const 
       for (int q = k; q < end; q += MPSI_LANES)
         gather_at_wall(mpm, cells, dim, spline, &places, axis, q,
                        end - q < MPSI_LANES ? end - q : MPSI_LANES, tile, &difference, out);
-    else if (mpm->flip > 0.0 ||
-             !MPSI_LEVELLED(mpsi_mpm_gather_batches)(mpm, cells, worker, &places, k, end, out))
+    else if (mpm->flip > 0.0 || !MPSI_LEVELLED(mpsi_mpm_gather_batches)(mpm, cells, worker, &places,
+                                                                        begin, k, end, out))
       for (int q = k; q < end; q++) gather_fitted(mpm, cells, worker, begin + q, out, q);
   }
   if (mpm->strain_by_fit) memcpy(out->derivative, out->slope, sizeof out->slope);

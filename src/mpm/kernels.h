@@ -11,6 +11,11 @@ typedef void (*mpsi_fit_fn)(const mps_mpm *mpm, const mpsi_cell_block *cells,
                             const mpsi_worker *worker, int64_t particle, mpsi_stencil *stencil,
                             mpsi_shape_values *out);
 
+/* The same at the distance d[3] from it, in the step whose scatter has been. */
+typedef void (*mpsi_foot_fn)(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                             const mpsi_worker *worker, int64_t particle, const double *d,
+                             mpsi_foot_weights *out);
+
 typedef struct mpsi_kernels {
   /* By geometry (mps_mpm_geometry) and degree of the spline less 2. */
   const mpsi_mpm_task (*p2g)[2];  /* a block of cells, of the colour in work, to its nodes */
@@ -19,6 +24,7 @@ typedef struct mpsi_kernels {
   const mpsi_mpm_task (*g2p)[2];  /* from the nodes: velocities, places; then law and speed */
   mpsi_mpm_task speed;            /* largest speed of a block, by itself */
   mpsi_fit_fn fit;
+  mpsi_foot_fn foot;
 } mpsi_kernels;
 
 /* dispatch.c: the kernels of an x86-64 level; 0: the best that processor and build have. */

@@ -261,19 +261,22 @@ void MPSI_LEVELLED(mpsi_mpm_gather_fitted)(mps_mpm *mpm, const mpsi_cell_block *
  */
 
 /* Give particles [begin, end) of a chunk (that begins with particle `chunk`), all of one stencil,
- * to the tiles, and take what the nodes give them; false, and nothing done, where they are for
- * fitted.c. */
+ * to the tiles, and keep their fits; then take what the nodes give them, by the fits kept in the
+ * same step. False, and nothing done, where they are for fitted.c. */
 bool MPSI_LEVELLED(mpsi_mpm_scatter_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
                                              const mpsi_worker *worker, const mpsi_places *places,
                                              int64_t chunk, int begin, int end);
 bool MPSI_LEVELLED(mpsi_mpm_gather_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
                                             const mpsi_worker *worker, const mpsi_places *places,
-                                            int begin, int end, mpsi_gathered *out);
+                                            int64_t chunk, int begin, int end, mpsi_gathered *out);
 
 /* The fit by itself; the largest speed of a block: see mpsi_kernels. */
 void MPSI_LEVELLED(mpsi_mpm_fit)(const mps_mpm *mpm, const mpsi_cell_block *cells,
                                  const mpsi_worker *worker, int64_t particle, mpsi_stencil *stencil,
                                  mpsi_shape_values *out);
+void MPSI_LEVELLED(mpsi_mpm_foot)(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                                  const mpsi_worker *worker, int64_t particle, const double *d,
+                                  mpsi_foot_weights *out);
 void MPSI_LEVELLED(mpsi_mpm_speed)(mps_mpm *mpm, int64_t b, int32_t worker);
 void MPSI_LEVELLED(mpsi_mpm_flush)(mps_mpm *mpm, int64_t b, int32_t worker);
 

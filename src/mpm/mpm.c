@@ -426,6 +426,8 @@ void mps_mpm_destroy(mps_mpm **pointer) {
                    mpm->grid.nodes_room.item,
                    mpm->grid.node_room.item,
                    mpm->grid.side_room.item,
+                   mpm->grid.fit_room.item,
+                   mpm->grid.fitted_room.item,
                    mpm->contact.cell_pair_room.item,
                    mpm->contact.node_pair_room.item,
                    mpm->contact.node_room.item,

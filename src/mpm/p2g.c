@@ -317,6 +317,8 @@ MPSI_INLINE void tile_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry
     memset(pair->contacts, 0, sizeof pair->contacts);
   }
   if (cells->cut) mpsi_mpm_find_states(mpm, cells, worker);
+  if (cells->first_fit >= 0)
+    memset(mpm->grid.fitted + cells->first_fit, 0, (size_t)(cells->end - cells->begin));
   if (cells->mirrors) mpsi_mpm_begin_mirrors(mpm, cells);
   clear(cells, worker->tile);
   if (cells->apart) clear(cells, worker->force);

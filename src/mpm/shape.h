@@ -29,6 +29,14 @@ typedef struct mpsi_shape_values {
   uint64_t across;                           /* nodes whose values across take part: across.h */
 } mpsi_shape_values;
 
+/* phi + grad phi . d at the nodes of a stencil whose lowest is tile node `at`: what a particle's
+ * shape functions are, prolonged linearly, at the distance d (m) from it. */
+typedef struct mpsi_foot_weights {
+  int at[3];
+  uint64_t active, across;  /* bit n: node n takes part, and with its value across (across.h) */
+  double psi[MPSI_STENCIL]; /* of the former */
+} mpsi_foot_weights;
+
 /* Inverse of the second moment of a full stencil. */
 MPSI_INLINE double mpsi_inverse_moment(int spline) { return spline == 3 ? 3.0 : 4.0; }
 

@@ -15,6 +15,8 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
               {mpm->grid.pass_room.capacity, sizeof(int32_t)},
               {mpm->grid.node_room.capacity, sizeof *mpm->grid.node},
               {mpm->grid.side_room.capacity, sizeof *mpm->grid.side},
+              {mpm->grid.fit_room.capacity, sizeof *mpm->grid.fit},
+              {mpm->grid.fitted_room.capacity, sizeof *mpm->grid.fitted},
               {mpm->contact.cell_pair_room.capacity, sizeof *mpm->contact.cell_pair},
               {mpm->contact.node_pair_room.capacity, sizeof *mpm->contact.node_pair},
               {mpm->contact.node_room.capacity, sizeof *mpm->contact.node},

@@ -238,13 +238,17 @@ static void begin_touch(mps_mpm *mpm, int64_t t, int64_t k, const int64_t *id, m
   }
 }
 
-/* psi at node s of the touch's stencil. */
-static double psi_at(const mps_mpm *mpm, const mpsi_touch *touch, const mpsi_shape_values *f,
-                     int s) {
-  double psi = f->phi[s];
-  for (int a = 0; a < mpm->dim; a++)
-    psi += f->gradient[a][s] * (touch->impulse.at[a] - touch->x[a]);
-  return psi;
+/* psi at the nodes of the touch's stencil. */
+static void weigh(const mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                  const mpsi_touch *touch, mpsi_foot_weights *out) {
+  double d[3];
+  for (int a = 0; a < 3; a++) d[a] = touch->impulse.at[a] - touch->x[a];
+  mpm->kernels->foot(mpm, cells, worker, touch->particle, d, out);
+}
+
+/* Tile node of number s of the stencil. */
+static void find_place(const mpsi_foot_weights *f, int s, int *place) {
+  place[0] = f->at[0] + s % 4, place[1] = f->at[1] + s / 4 % 4, place[2] = f->at[2] + s / 16;
 }
 
 /* Adds `weight` to those of a node of the touch, which may be there already, for a ghost. */
@@ -265,14 +269,14 @@ static void fit_touch(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker
   mpsi_impulses *all = &mpm->contact.impulses;
   mpsi_touch *touch = &all->touch[n];
   double(*weight)[3] = all->weight + n * all->stride, **node = all->node + n * all->stride;
-  mpsi_stencil at;
-  mpsi_shape_values f;
-  mpm->kernels->fit(mpm, cells, &mpm->grid.workers[worker], touch->particle, &at, &f);
+  mpsi_foot_weights f;
+  weigh(mpm, cells, &mpm->grid.workers[worker], touch, &f);
   touch->nodes = 0;
-  for (int s = 0; s < all->stride; s++) {
-    if (f.w[s] == 0.0) continue;
-    int place[3] = {at.at[0] + s % 4, at.at[1] + s / 4 % 4, at.at[2] + s / 16};
-    const double psi = psi_at(mpm, touch, &f, s);
+  for (uint64_t left = f.active; left != 0; left &= left - 1) {
+    const int s = __builtin_ctzll(left);
+    int place[3];
+    find_place(&f, s, place);
+    const double psi = f.psi[s];
     double psis[3] = {psi, psi, psi}, keeps[3], carried[3];
     const bool image = cells->mirrors && mpsi_mpm_find_image(mpm, cells, place, keeps, carried);
     for (int a = 0; a < 3 && image; a++) {
@@ -290,6 +294,16 @@ static void fit_touch(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker
   }
 }
 
+/* States of nodes for the touches whose fits were not kept. */
+static void find_states(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                        const mpsi_touch_block *block, mpsi_worker *worker) {
+  const mpsi_touch *touch = mpm->contact.impulses.touch + block->first;
+  bool all = cells->first_fit >= 0;
+  for (int64_t n = 0; n < block->count && all; n++)
+    all = mpm->grid.fitted[cells->first_fit + (touch[n].particle - cells->begin)] != 0;
+  if (!all) mpsi_mpm_find_states(mpm, cells, worker);
+}
+
 static void mirror_block(void *data, int64_t unit, int32_t number) {
   mps_mpm *mpm = data;
   mpsi_impulses *all = &mpm->contact.impulses;
@@ -298,20 +312,20 @@ static void mirror_block(void *data, int64_t unit, int32_t number) {
   const mpsi_cell_block *cells = &mpm->grid.cells[block->cells];
   mpsi_worker *worker = &mpm->grid.workers[number];
   if (!cells->mirrors) return;
-  mpsi_mpm_find_states(mpm, cells, worker);
+  find_states(mpm, cells, block, worker);
   for (int64_t n = block->first; n < block->first + block->count; n++) {
     const mpsi_touch *touch = &all->touch[n];
     const mpsi_impulse *c = &touch->impulse;
-    mpsi_stencil at;
-    mpsi_shape_values f;
+    mpsi_foot_weights f;
     if (!(c->push > 0.0)) continue;
-    mpm->kernels->fit(mpm, cells, worker, touch->particle, &at, &f);
-    for (int s = 0; s < all->stride; s++) {
-      int place[3] = {at.at[0] + s % 4, at.at[1] + s / 4 % 4, at.at[2] + s / 16};
-      const double psi = f.w[s] == 0.0 ? 0.0 : psi_at(mpm, touch, &f, s);
+    weigh(mpm, cells, worker, touch, &f);
+    for (uint64_t left = f.active; left != 0; left &= left - 1) {
+      const int s = __builtin_ctzll(left);
+      int place[3];
       double by[3];
-      for (int a = 0; a < 3; a++) by[a] = psi * (c->push * c->normal[a] + c->rub[a]);
-      if (psi != 0.0) mpsi_mpm_reflect_impulse(mpm, cells, place, by);
+      find_place(&f, s, place);
+      for (int a = 0; a < 3; a++) by[a] = f.psi[s] * (c->push * c->normal[a] + c->rub[a]);
+      if (f.psi[s] != 0.0) mpsi_mpm_reflect_impulse(mpm, cells, place, by);
     }
   }
 }
@@ -336,7 +350,7 @@ static void fit_block(void *data, int64_t unit, int32_t worker) {
       begin_touch(mpm, t, cells->begin + candidate[i], id, &all->touch[n++]);
   }
   qsort(all->touch + block->first, (size_t)block->count, sizeof *all->touch, by_place);
-  mpsi_mpm_find_states(mpm, cells, &mpm->grid.workers[worker]);
+  find_states(mpm, cells, block, &mpm->grid.workers[worker]);
   for (n = block->first; n < block->first + block->count; n++) {
     fit_touch(mpm, cells, worker, n);
     mpsi_touch *touch = &all->touch[n];

@@ -14,7 +14,7 @@
 typedef bool (*scatter_batches_fn)(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *,
                                    const mpsi_places *, int64_t, int, int);
 typedef bool (*gather_batches_fn)(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *,
-                                  const mpsi_places *, int, int, mpsi_gathered *);
+                                  const mpsi_places *, int64_t, int, int, mpsi_gathered *);
 typedef void (*scatter_fitted_fn)(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *, int64_t);
 typedef void (*gather_fitted_fn)(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *, int64_t,
                                  mpsi_fitted *);
@@ -31,7 +31,7 @@ typedef struct functions {
                                          const mpsi_places *, int64_t, int, int)                   \
       __attribute__((weak));                                                                       \
   bool mpsi_mpm_gather_batches_v##level(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *,   \
-                                        const mpsi_places *, int, int, mpsi_gathered *)            \
+                                        const mpsi_places *, int64_t, int, int, mpsi_gathered *)   \
       __attribute__((weak));                                                                       \
   void mpsi_mpm_scatter_fitted_v##level(mps_mpm *, const mpsi_cell_block *, const mpsi_worker *,   \
                                         int64_t) __attribute__((weak));                            \
@@ -136,7 +136,7 @@ static mpm_scene scene_of(int32_t geometry, int32_t spline, int32_t walls) {
 
 typedef struct compared {
   int64_t batches[5]; /* by the number of their particles */
-  double scatter, gather, at_least;
+  double scatter, gather, feet;
 } compared;
 
 static void clear_tiles(const mps_mpm *mpm, const mpsi_worker *worker) {
@@ -158,6 +158,28 @@ static double difference(const mps_mpm *mpm, double (*one)[4], double (*other)[4
   return fmax(mass / mpm->p.m[0], size > 0.0 ? rest / size : rest);
 }
 
+/* The weights at a foot, by the fits that the scatter has kept. */
+static void compare_feet(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end,
+                         compared *out) {
+  const mpsi_worker *worker = &mpm->grid.workers[0];
+  for (int64_t p = begin; p < end; p++) {
+    const double d[3] = {uniform(-CELL, CELL), uniform(-CELL, CELL), uniform(-CELL, CELL)};
+    mpsi_foot_weights foot;
+    mpsi_stencil at;
+    mpsi_shape_values f;
+    assert_true(mpm->grid.fitted[cells->first_fit + p - cells->begin] != 0);
+    mpm->kernels->foot(mpm, cells, worker, p, d, &foot);
+    mpm->kernels->fit(mpm, cells, worker, p, &at, &f);
+    for (int n = 0; n < MPSI_STENCIL; n++) {
+      double psi = f.phi[n];
+      for (int a = 0; a < mpm->dim; a++) psi += f.gradient[a][n] * d[a];
+      assert_true((foot.active >> n & 1) == (f.w[n] != 0.0));
+      if (f.w[n] != 0.0) out->feet = fmax(out->feet, fabs(foot.psi[n] - psi));
+    }
+    assert_memory_equal(foot.at, at.at, sizeof at.at);
+  }
+}
+
 static void compare_scatter(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_places *places,
                             int64_t chunk, int begin, int end, compared *out) {
   static double batch[2][MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE][4];
@@ -172,6 +194,7 @@ static void compare_scatter(mps_mpm *mpm, const mpsi_cell_block *cells, const mp
   for (int k = begin; k < end; k++) by.scatter_fitted(mpm, cells, worker, chunk + k);
   out->scatter = fmax(out->scatter, difference(mpm, worker->tile, batch[0]));
   out->scatter = fmax(out->scatter, difference(mpm, worker->force, batch[1]));
+  compare_feet(mpm, cells, chunk + begin, chunk + end, out);
   out->batches[end - begin < 4 ? end - begin : 4]++;
 }
 
@@ -182,7 +205,7 @@ static void compare_gather(mps_mpm *mpm, const mpsi_cell_block *cells, const mps
   mpsi_gathered batch;
   for (int64_t n = 0; n < mpm->grid.tile_nodes; n++)
     for (int c = 0; c < 4; c++) worker->tile[n][c] = uniform(-1.0, 1.0);
-  if (!by.gather_batches(mpm, cells, worker, places, begin, end, &batch)) return;
+  if (!by.gather_batches(mpm, cells, worker, places, chunk, begin, end, &batch)) return;
   for (int k = begin; k < end; k++) {
     mpsi_fitted one = {.own = {0.0}};
     by.gather_fitted(mpm, cells, worker, chunk + k, &one);
@@ -225,13 +248,13 @@ static void batches_do_as_the_fit(void **state) {
     for (int64_t b = 0; b < s.mpm->grid.cell_count; b++)
       if (s.mpm->grid.cells[b].cut) compare_block(s.mpm, &s.mpm->grid.cells[b], &c);
     print_message("%d, spline %d, walls %d, moments %d: %lld %lld %lld %lld batches, scatter %.2g, "
-                  "gather %.2g\n",
+                  "gather %.2g, feet %.2g\n",
                   geometry, spline, s.mpm->def.walls, s.mpm->run.moments, (long long)c.batches[1],
                   (long long)c.batches[2], (long long)c.batches[3], (long long)c.batches[4],
-                  c.scatter, c.gather);
+                  c.scatter, c.gather, c.feet);
     for (int n = 1; n <= 4; n++) assert_true(c.batches[n] >= 7);
     assert_true(c.scatter <= 1e-12);
-    assert_true(c.gather <= 1e-13);
+    assert_true(c.gather <= 1e-13 && c.feet <= 1e-13);
     mpm_scene_end(&s);
   }
 }
