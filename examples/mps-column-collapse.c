@@ -439,7 +439,7 @@ int main(int argc, char **argv) {
   int code = options_parse(&program, argc, argv);
   if (code < 0) code = complete(&program, &sim);
   if (code >= 0) return code;
-  static const mpm_model_parts parts = {build, march, finish, .shared = true};
+  static const mpm_model_parts parts = {build, march, finish};
   code = mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
   for (int k = 0; k < sim.count; k++)
     for (int shot = 0; shot < FRAMES; shot++) mpm_snapshot_free(&sim.column[k].shot[shot]);

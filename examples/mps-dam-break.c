@@ -456,7 +456,7 @@ int main(int argc, char **argv) {
   int code = options_parse(&program, argc, argv);
   if (code < 0) code = complete(&program, s);
   if (code >= 0) return code;
-  const mpm_model_parts parts = {dam_build, dam_march, finish, .shared = s->method == METHOD_MPM};
+  const mpm_model_parts parts = {dam_build, dam_march, finish};
   sim.table = table;
   code = mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
   mps_recorder_destroy(&sim.series);

@@ -81,7 +81,6 @@ int main(int argc, char **argv) {
   if (reason) return options_refuse(&program, reason);
   const char *refused = mpm_model_refuse_stiffness(table, s->contact);
   if (refused) return options_refuse(&program, refused);
-  static const mpm_model_parts parts = {footing_build, footing_march, footing_finish,
-                                        .shared = true};
+  static const mpm_model_parts parts = {footing_build, footing_march, footing_finish};
   return mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
 }

@@ -83,7 +83,7 @@ int main(int argc, char **argv) {
   if (s->law == PEN_SAND && !options_given(table, "cohesion")) s->cohesion = 0.0;
   const char *reason = pen_check(&p);
   if (reason) return options_refuse(&program, reason);
-  static const mpm_model_parts parts = {pen_build, pen_push, pen_finish, .shared = true};
+  static const mpm_model_parts parts = {pen_build, pen_push, pen_finish};
   const int result = mpm_model_run(&program, s->threads, s->out, &p.run[0].m, &parts, &p);
   pen_free(&p);
   return result;

@@ -95,7 +95,7 @@ int main(int argc, char **argv) {
     return options_refuse(&program, "--every-checkpoint needs --checkpoint FILE");
   const char *reason = pile_check(s);
   if (reason) return options_refuse(&program, reason);
-  static const mpm_model_parts parts = {pile_build, pile_drive, pile_finish, .shared = true};
+  static const mpm_model_parts parts = {pile_build, pile_drive, pile_finish};
   p.table = table;
   const int result = mpm_model_run(&program, s->threads, s->out, &p.m, &parts, &p);
   pile_free(&p);

@@ -96,6 +96,6 @@ int main(int argc, char **argv) {
   app a;
   const int code = parse(&s, argc, argv);
   if (code >= 0) return code;
-  if (!app_start_ranks(&a, "mps-plate", s.threads)) return app_finish(&a, APP_FAILED);
+  if (!app_start(&a, "mps-plate", s.threads)) return app_finish(&a, APP_FAILED);
   return app_finish(&a, run(&a, &s));
 }

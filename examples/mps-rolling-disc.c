@@ -317,6 +317,6 @@ int main(int argc, char **argv) {
   if (code >= 0) return code;
   const char *refused = mpm_model_refuse_stiffness(table, s->contact);
   if (refused) return options_refuse(&program, refused);
-  static const mpm_model_parts parts = {build, march, finish, .shared = true};
+  static const mpm_model_parts parts = {build, march, finish};
   return mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
 }

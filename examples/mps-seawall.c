@@ -34,23 +34,25 @@ static const char *check(const seawall_settings *s) {
 static mps_status prepare(app *a, seawall *w) {
   mps_status status = MPS_OK;
   if (w->s.restart) status = seawall_peek(a->context, w);
-  if (status == MPS_OK) status = seawall_build(a, w);
+  if (status == MPS_OK) status = app_settle(a, seawall_build(a, w));
   if (status == MPS_OK && w->s.restart) status = seawall_restore(a->context, w);
   if (status == MPS_OK) resume_schedule_at(&w->saves, mps_fluid_time(w->fluid));
-  if (status == MPS_OK && w->s.frames > 0)
+  if (status == MPS_OK && w->s.frames > 0 && a->rank == 0)
     status = frame_series(a, w->water, w->s.out, "water", w->restarted, &w->series);
+  status = app_settle(a, status);
   if (status == MPS_OK && w->s.frames > 0) {
     if (!w->s.coupled)
       status = mps_elastic_solve(w->wall.solver); /* so that its fields are there */
-    if (status == MPS_OK)
+    if (status == MPS_OK && a->rank == 0)
       status = frame_series(a, w->wall.set, w->s.out, "wall", w->restarted, &w->wall_series);
   }
-  return status;
+  return app_settle(a, status);
 }
 
 static int run(app *a, seawall *w) {
   static char path[1200];
-  if (!output_directory(a, w->s.out)) return APP_FAILED;
+  if (!app_agree(a, a->rank > 0 || output_directory(a, w->s.out))) return APP_FAILED;
+  w->a = a;
   resume_default_path(&w->s.checkpoint, w->s.out, path, sizeof path);
   w->saves = (resume_schedule){
       .path = w->s.checkpoint, .every = w->s.every_checkpoint, .save = seawall_save, .user = w};
@@ -61,12 +63,12 @@ static int run(app *a, seawall *w) {
          (long long)seawall_paper_particles(&w->s), (long long)mps_particles_count(w->water),
          (long long)mps_particles_count(w->wall.set));
   fflush(stdout);
-  status = seawall_run(a, w);
+  status = app_settle(a, seawall_run(a, w));
   const int code = app_end_run(a, status, mps_fluid_time(w->fluid), w->samples > 0);
   if (status == MPS_ERROR_CANCELLED && w->saves.saved)
     printf("To go on: the same command with --restart %s\n", w->s.checkpoint);
   if (w->samples == 0) return code;
-  if (!seawall_write(a, w)) return APP_FAILED;
+  if (!app_agree(a, a->rank > 0 || seawall_write(a, w))) return APP_FAILED;
   return w->saves.lost && code == APP_OK ? APP_FAILED : code;
 }
 
@@ -146,6 +148,7 @@ int main(int argc, char **argv) {
   w.table = table;
   if (!app_start(&a, program.name, s->threads)) return app_finish(&a, APP_FAILED);
   const int result = run(&a, &w);
+  if (result == APP_FAILED) app_agree(&a, false); /* all ranks know */
   seawall_free(&w);
   return app_finish(&a, result);
 }

@@ -238,6 +238,6 @@ int main(int argc, char **argv) {
     return options_refuse(&program,
                           "--young over --density is too small for a block in equilibrium: "
                           "sound must cross it 5 times in the 0.1 s of a start");
-  static const mpm_model_parts parts = {build, march, finish, .shared = true};
+  static const mpm_model_parts parts = {build, march, finish};
   return mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
 }

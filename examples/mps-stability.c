@@ -219,7 +219,7 @@ int main(int argc, char **argv) {
   int code = parse(&s, argc, argv);
   if (code >= 0) return code;
   code = APP_FAILED;
-  if (app_start_ranks(&a, "mps-stability", s.threads) &&
+  if (app_start(&a, "mps-stability", s.threads) &&
       app_agree(&a, a.rank > 0 || output_directory(&a, s.out))) {
     code = s.study ? run_study(&a, &s) : run_case(&a, &s);
     if (code == APP_FAILED) app_agree(&a, false); /* all ranks know */

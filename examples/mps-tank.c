@@ -98,16 +98,17 @@ static bool read_gauges(const char *text, double *gauge) {
 static mps_status prepare(app *a, tank_model *m) {
   const tank_settings *s = &m->s;
   mps_status status = s->restart ? tank_peek(a->context, m) : MPS_OK;
-  if (status == MPS_OK) status = tank_build(a->context, m);
+  if (status == MPS_OK) status = app_settle(a, tank_build(a, m));
   if (status == MPS_OK && s->restart) status = tank_restore(a->context, m);
-  if (status == MPS_OK && s->frames > 0)
+  if (status == MPS_OK && s->frames > 0 && a->rank == 0)
     status = frame_series(a, m->water, s->out, "water", m->restarted, &m->series);
-  return status;
+  return app_settle(a, status);
 }
 
 static int run(app *a, tank_model *m) {
   static char path[1200];
-  if (!output_directory(a, m->s.out)) return APP_FAILED;
+  if (!app_agree(a, a->rank > 0 || output_directory(a, m->s.out))) return APP_FAILED;
+  m->a = a;
   resume_default_path(&m->s.checkpoint, m->s.out, path, sizeof path);
   m->saves = (resume_schedule){
       .path = m->s.checkpoint, .every = m->s.every_checkpoint, .save = tank_save, .user = m};
@@ -117,12 +118,12 @@ static int run(app *a, tank_model *m) {
   printf("%lld particles, dt %.4g s\n", (long long)mps_particles_count(m->water),
          mps_fluid_dt(m->fluid));
   fflush(stdout);
-  status = tank_run(a, m);
+  status = app_settle(a, tank_run(a, m));
   const int code = app_end_run(a, status, mps_fluid_time(m->fluid), m->samples > 0);
   if (status == MPS_ERROR_CANCELLED && m->saves.saved)
     printf("To go on: the same command with --restart %s\n", m->s.checkpoint);
   if (m->samples == 0) return code;
-  if (!tank_write(a, m)) return APP_FAILED;
+  if (!app_agree(a, a->rank > 0 || tank_write(a, m))) return APP_FAILED;
   return m->saves.lost && code == APP_OK ? APP_FAILED : code;
 }
 
@@ -238,6 +239,7 @@ int main(int argc, char **argv) {
   if (!app_start(&a, program.name, s->threads)) return app_finish(&a, APP_FAILED);
   m.table = table;
   code = run(&a, &m);
+  if (code == APP_FAILED) app_agree(&a, false); /* all ranks know */
   tank_free(&m);
   return app_finish(&a, code);
 }

@@ -219,6 +219,6 @@ int main(int argc, char **argv) {
   app a;
   const int code = settings_parse(&s, argc, argv);
   if (code >= 0) return code;
-  if (!app_start_ranks(&a, "mps-wave", s.threads)) return app_finish(&a, APP_FAILED);
+  if (!app_start(&a, "mps-wave", s.threads)) return app_finish(&a, APP_FAILED);
   return app_finish(&a, run(&a, &s));
 }

@@ -33,15 +33,6 @@ static bool make_context(app *a, int64_t threads) {
   return true;
 }
 
-bool app_start(app *a, const char *program, int64_t threads) {
-  *a = (app){.program = program, .outcome = "complete", .rank = ranks_number()};
-  if (ranks_launched() > 1)
-    return app_error(a, "started as %d processes: this computes in one, with threads",
-                     (int)ranks_launched());
-  progress_start(&a->bar);
-  return make_context(a, threads);
-}
-
 /* The number of threads belongs to the context and the ranks agree upon it: by a domain of its own,
  * which goes again. */
 static bool join(app *a, int64_t threads) {
@@ -66,10 +57,10 @@ static bool join(app *a, int64_t threads) {
   return ok;
 }
 
-bool app_start_ranks(app *a, const char *program, int64_t threads) {
-  if (ranks_launched() == 1) return app_start(a, program, threads);
+bool app_start(app *a, const char *program, int64_t threads) {
   *a = (app){.program = program, .outcome = "complete", .rank = ranks_number()};
   progress_start(&a->bar);
+  if (ranks_launched() == 1) return make_context(a, threads);
   progress_heed_launcher();
   a->bar.terminal = a->bar.terminal && a->rank == 0;
   return join(a, threads);
@@ -88,6 +79,10 @@ bool app_agree(app *a, bool ok) {
     fflush(stderr);
   }
   return false;
+}
+
+mps_status app_settle(app *a, mps_status status) {
+  return a->domain ? mps_domain_agree(a->domain, status) : status;
 }
 
 /* Two numbers for each value, since no NaN may be among them. */

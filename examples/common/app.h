@@ -37,12 +37,10 @@ typedef struct app {
 } app;
 
 /* Creates the context on `threads` threads (0: all processors), its warnings and progress going to
- * stderr and Ctrl-C to its cancel hook. False, with an error line, when that fails. */
+ * stderr and Ctrl-C to its cancel hook. False, with an error line, when that fails. Where mpirun
+ * has started several ranks, with the domain that the solvers are given, and `threads` of each rank
+ * (0: its part of the node); Ctrl-C, or SIGTERM or SIGUSR1 to any rank, then stops all. */
 bool app_start(app *a, const char *program, int64_t threads);
-/* The same of a program that can share its model among the ranks that mpirun has started: then with
- * the domain that its solvers are given, and `threads` of each rank (0: its part of the node). The
- * other programs are refused there. Ctrl-C, or SIGTERM or SIGUSR1 to any rank, stops all. */
-bool app_start_ranks(app *a, const char *program, int64_t threads);
 /* Where ranks go different ways: true where all ranks say `ok`. Else one rank tells what has gone
  * wrong, and all return false. Collective; what the library does on all ranks is agreed upon by
  * itself, but a rank that fails alone must come here before the next collective call. */
@@ -50,6 +48,9 @@ bool app_agree(app *a, bool ok);
 /* `values` of the one rank where they are `mine` become those of all, bit for bit but for the kind
  * of a NaN. Nothing to do in one process. Collective. */
 mps_status app_share(app *a, bool mine, int count, double *values);
+/* mps_domain_agree of the ranks; `status` in one process. */
+mps_status app_settle(app *a, mps_status status);
+
 /* Destroys the context and closes stdout. Returns `code`; where it was APP_OK, APP_FAILED when what
  * was printed could not be written, and APP_INTERRUPTED, with a line that says so, when Ctrl-C came
  * too late to stop anything. */

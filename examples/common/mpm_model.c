@@ -36,9 +36,7 @@ static double time_of(const mpm_model *model) {
 
 /* ---- several ranks --------------------------------------------------------------------------- */
 
-static mps_status agree(const mpm_model *m, mps_status status) {
-  return m->a->domain ? mps_domain_agree(m->a->domain, status) : status;
-}
+static mps_status agree(const mpm_model *m, mps_status status) { return app_settle(m->a, status); }
 
 mps_status mpm_model_create(mpm_model *m, mps_context *context, mps_status status,
                             mps_mpm_def *def) {
@@ -49,8 +47,8 @@ mps_status mpm_model_create(mpm_model *m, mps_context *context, mps_status statu
 }
 
 mps_status mpm_model_whole(mpm_model *m, mps_particles **whole) {
-  *whole = m->particles;
-  if (!m->a->domain) return MPS_OK;
+  *whole = m->fluid && m->a->rank > 0 ? NULL : m->particles; /* a fluid is whole on each rank */
+  if (!m->a->domain || m->fluid) return MPS_OK;
   *whole = NULL;
   const mps_status status = mps_domain_gather(m->a->domain, m->particles, &m->whole);
   if (status == MPS_OK) *whole = m->whole;
@@ -152,7 +150,7 @@ mps_status mpm_counts_join(mpm_model *m, mpm_counts *c, int64_t *most) {
 
 static mps_status count_all(mpm_model *m) {
   m->count = mps_particles_count(m->particles);
-  return mpm_model_sum(m, &m->count);
+  return m->fluid ? MPS_OK : mpm_model_sum(m, &m->count);
 }
 
 /* ---- the course of a run --------------------------------------------------------------------- */
@@ -192,8 +190,7 @@ static int build_and_march(app *a, const char *out, mpm_model *model, const mpm_
 int mpm_model_run(const options_program *program, int64_t threads, const char *out,
                   mpm_model *model, const mpm_model_parts *parts, void *user) {
   app a;
-  if (!(parts->shared ? app_start_ranks : app_start)(&a, program->name, threads))
-    return app_finish(&a, APP_FAILED);
+  if (!app_start(&a, program->name, threads)) return app_finish(&a, APP_FAILED);
   model->a = &a;
   const int code = build_and_march(&a, out, model, parts, user);
   if (code == APP_FAILED) app_agree(&a, false); /* all ranks know: what fails here is agreed upon */

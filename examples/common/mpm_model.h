@@ -33,7 +33,6 @@ typedef struct mpm_model_parts {
   mps_status (*build)(mps_context *context, void *user);
   mps_status (*march)(void *user);
   bool (*finish)(app *a, void *user); /* results; false after an error line; rank 0 only */
-  bool shared; /* the ranks of mpirun can share the model; false: started by it, one line says no */
 } mpm_model_parts;
 
 /* Starts the library, makes the directory `out`, builds, marches, finishes, and destroys the model.

@@ -51,9 +51,11 @@ static mps_status find_facets(strip *s) {
   s->centre = calloc(3 * all, sizeof *s->centre);
   s->area = calloc(all, sizeof *s->area);
   s->given = calloc(3 * all, sizeof *s->given);
-  if (!s->facet || !s->centre || !s->area || !s->given) return MPS_ERROR_MEMORY;
-  mps_status status = mps_elastic_select_facets(s->solver, axis, side, NULL, NULL, (int64_t)all,
-                                                s->facet, &s->count);
+  mps_status status = s->facet && s->centre && s->area && s->given ? MPS_OK : MPS_ERROR_MEMORY;
+  if (status == MPS_OK)
+    status = mps_elastic_select_facets(s->solver, axis, side, NULL, NULL, (int64_t)all, s->facet,
+                                       &s->count);
+  if (s->def.domain) status = mps_domain_agree(s->def.domain, status);
   const mps_elastic_facet_arrays arrays = {.centre = s->centre, .area = s->area};
   return status == MPS_OK ? mps_elastic_get_facets(s->solver, s->count, s->facet, &arrays) : status;
 }
@@ -72,10 +74,12 @@ mps_status strip_make(mps_context *context, const strip_def *def, strip *out) {
   mps_elastic_def elastic = mps_elastic_defaults();
   elastic.state = MPS_ELASTIC_PLANE_STRAIN;
   elastic.blas_threads = 1; /* the same bits for every number of threads */
+  elastic.domain = def->domain;
   mps_status status = fill(context, def, &out->set);
+  int64_t *ids = malloc((size_t)mps_particles_count(out->set) * sizeof *ids + 8);
+  if (!ids) status = MPS_ERROR_MEMORY;
+  if (def->domain) status = mps_domain_agree(def->domain, status);
   if (status == MPS_OK) status = mps_elastic_create(context, out->set, &elastic, &out->solver);
-  int64_t *ids = malloc((size_t)mps_particles_count(out->set) * sizeof *ids);
-  if (!ids) return MPS_ERROR_MEMORY;
   for (int edge = STRIP_LEFT; status == MPS_OK && edge <= STRIP_TOP; edge *= 2)
     if ((def->clamped | def->level) & edge) status = make_edge(out, edge, ids);
   free(ids);

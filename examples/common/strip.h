@@ -17,6 +17,7 @@ typedef struct strip_def {
                 */
   int level;   /* STRIP_...: particles stand on these edges and are cut, but free */
   int wet;     /* STRIP_...: one */
+  mps_domain *domain; /* ranks that all make it, borrowed; NULL: one process */
 } strip_def;
 
 typedef struct strip {

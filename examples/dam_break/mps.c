@@ -43,6 +43,8 @@ mps_status dam_mps_build(mps_context *context, simulation *sim) {
   if (status == MPS_OK) status = waves_disturb(water, s->disturb * s->h, 1);
   if (status == MPS_OK) status = mps_particles_set(water, "mass", 0, DENSITY * s->h * s->h);
   if (status == MPS_OK) status = mps_particles_set(water, "volume", 0, s->h * s->h);
+  def.domain = sim->m.a->domain;
+  status = app_settle(sim->m.a, status);
   if (status == MPS_OK) status = mps_fluid_create(context, water, &def, &sim->m.fluid);
   if (status == MPS_OK) status = add_wall(sim->m.fluid, 0.0, 0.0, 1.0);
   if (status == MPS_OK) status = add_wall(sim->m.fluid, 0.0, 1.0, 0.0);
@@ -65,10 +67,12 @@ bool dam_grow_gauge(simulation *sim) {
 static mps_status read_gauge(simulation *sim) {
   const settings *s = &sim->s;
   const double at[3] = {far_wall(s), GAUGE * column_height(s), 0.0};
-  if (sim->gauges == sim->gauge_room && !dam_grow_gauge(sim)) return MPS_ERROR_MEMORY;
+  mps_status status = MPS_OK;
+  if (sim->gauges == sim->gauge_room)
+    status = app_settle(sim->m.a, dam_grow_gauge(sim) ? MPS_OK : MPS_ERROR_MEMORY);
+  if (status != MPS_OK) return status;
   sim->gauge_t[sim->gauges] = mps_fluid_time(sim->m.fluid);
-  const mps_status status =
-      mps_fluid_get_pressure(sim->m.fluid, FAR_WALL, 1, at, &sim->gauge_p[sim->gauges]);
+  status = mps_fluid_get_pressure(sim->m.fluid, FAR_WALL, 1, at, &sim->gauge_p[sim->gauges]);
   if (status == MPS_OK) sim->gauges++;
   return status;
 }

@@ -64,8 +64,10 @@ mps_status seawall_couple(mps_context *context, seawall *w) {
   def.floor = 1e-4 * WAVES_G; /* what the solution of the pressures leaves open */
   b->room = (def.columns + 4) * (1 + 2 * def.size);
   b->memory = calloc((size_t)b->room, sizeof *b->memory);
-  if (!b->memory || !allocate(b, (size_t)w->wall.count)) return MPS_ERROR_MEMORY;
-  const mps_status status = mps_coupling_create(context, &def, &b->coupling);
+  const bool room = b->memory && allocate(b, (size_t)w->wall.count);
+  mps_status status = room ? MPS_OK : MPS_ERROR_MEMORY;
+  if (room) status = mps_coupling_create(context, &def, &b->coupling);
+  status = app_settle(w->a, status);
   return status == MPS_OK ? rest(w) : status;
 }
 

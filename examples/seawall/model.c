@@ -12,7 +12,8 @@ int64_t seawall_paper_particles(const seawall_settings *s) {
   return columns * (rows + SEAWALL_LAYERS) + (SEAWALL_LAYERS + thick) * high;
 }
 
-static mps_status make_fluid(mps_context *context, seawall *w) {
+static mps_status make_fluid(app *a, seawall *w) {
+  mps_context *context = a->context;
   const seawall_settings *s = &w->s;
   const double corner[2] = {0.0, 0.0};
   mps_fluid_def def = mps_fluid_defaults();
@@ -21,9 +22,11 @@ static mps_status make_fluid(mps_context *context, seawall *w) {
   mps_status status = waves_fill(context, s->length, s->depth, s->spacing, &w->water);
   if (status == MPS_OK && s->disturb > 0.0)
     status = waves_disturb(w->water, s->disturb * s->spacing, (uint64_t)s->seed);
-  if (status == MPS_OK) status = mps_fluid_create(context, w->water, &def, &w->fluid);
   if (status == MPS_OK)
     status = mps_signal_user(context, waves_move_piston, &w->motion, &w->piston);
+  def.domain = a->domain;
+  status = app_settle(a, status);
+  if (status == MPS_OK) status = mps_fluid_create(context, w->water, &def, &w->fluid);
   if (status == MPS_OK) status = waves_add_wall(w->fluid, corner, 0.0, 1.0, NULL, NULL);
   if (status == MPS_OK) status = waves_add_wall(w->fluid, corner, 1.0, 0.0, w->piston, NULL);
   if (status != MPS_OK) return status;
@@ -36,7 +39,7 @@ static mps_status make_fluid(mps_context *context, seawall *w) {
 
 /* Its face is the plane of the fluid's wall; its particles begin half a spacing behind. It holds in
  * the layer at the bed. */
-static mps_status make_wall(mps_context *context, seawall *w) {
+static mps_status make_wall(app *a, seawall *w) {
   const seawall_settings *s = &w->s;
   const strip_def def = {.lower = {s->length, 0.0},
                          .upper = {s->length + s->wall_thickness, s->wall_height},
@@ -46,8 +49,9 @@ static mps_status make_wall(mps_context *context, seawall *w) {
                          .density = s->wall_density,
                          .clamped = STRIP_BOTTOM,
                          .level = STRIP_TOP,
-                         .wet = STRIP_LEFT};
-  mps_status status = strip_make(context, &def, &w->wall);
+                         .wet = STRIP_LEFT,
+                         .domain = a->domain};
+  mps_status status = strip_make(a->context, &def, &w->wall);
   if (status != MPS_OK) return status;
   w->pressure = calloc((size_t)w->wall.count, sizeof *w->pressure);
   return w->pressure ? MPS_OK : MPS_ERROR_MEMORY;
@@ -72,8 +76,8 @@ static mps_status make_records(seawall *w) {
 }
 
 mps_status seawall_build(app *a, seawall *w) {
-  mps_status status = make_wall(a->context, w);
-  if (status == MPS_OK) status = make_fluid(a->context, w);
+  mps_status status = app_settle(a, make_wall(a, w));
+  if (status == MPS_OK) status = make_fluid(a, w);
   if (status == MPS_OK && w->s.coupled) status = seawall_couple(a->context, w);
   return status == MPS_OK ? make_records(w) : status;
 }

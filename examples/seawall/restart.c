@@ -57,7 +57,7 @@ static void pass(void *user, resume_bytes *b) {
 }
 
 static resume parts(seawall *w) {
-  return (resume){"mps-seawall 3", w->table, pass, w, .fluid = w->fluid};
+  return (resume){"mps-seawall 3", w->table, pass, w, .fluid = w->fluid, .domain = w->a->domain};
 }
 
 /* ---- to the file and back -------------------------------------------------------------------- */
@@ -72,7 +72,8 @@ static mps_status save_wall(seawall *w) {
   mps_checkpoint info = mps_checkpoint_defaults();
   name_wall(path, sizeof path, w->s.checkpoint);
   const mps_status status =
-      mps_coupling_get_memory(w->both.coupling, w->both.room, w->both.memory, &w->both.learnt);
+      app_settle(w->a, mps_coupling_get_memory(w->both.coupling, w->both.room, w->both.memory,
+                                               &w->both.learnt));
   return status == MPS_OK ? mps_elastic_save(w->wall.solver, path, &info) : status;
 }
 

@@ -26,9 +26,9 @@ static mps_status take_look(seawall *w, const seawall_sample *sample) {
   seawall_look *look = &w->look;
   double *x = malloc(3 * (size_t)w->room * sizeof *x);
   mps_view u;
-  if (!x) return MPS_ERROR_MEMORY;
-  mps_status status =
-      mps_fluid_get_wall(w->fluid, SEAWALL_WALL, w->room, x, look->pressure, &look->points);
+  mps_status status = app_settle(w->a, x ? MPS_OK : MPS_ERROR_MEMORY);
+  if (status == MPS_OK)
+    status = mps_fluid_get_wall(w->fluid, SEAWALL_WALL, w->room, x, look->pressure, &look->points);
   if (look->points > w->room) look->points = w->room;
   for (int64_t k = 0; status == MPS_OK && k < look->points; k++) look->y[k] = x[3 * k + 1];
   if (status == MPS_OK) status = mps_particles_view(w->wall.set, "displacement", &u);
@@ -71,7 +71,8 @@ static mps_status take_frame(seawall *w) {
   f->piston = motion[0];
   f->count = x.shape[0];
   f->value = malloc(3 * (size_t)f->count * sizeof *f->value);
-  if (!f->value) return MPS_ERROR_MEMORY;
+  status = app_settle(w->a, f->value ? MPS_OK : MPS_ERROR_MEMORY);
+  if (status != MPS_OK) return status;
   for (int64_t i = 0; i < f->count; i++) {
     float *at = f->value + 3 * i;
     for (int c = 0; c < 2; c++) at[c] = (float)*mps_view_f64(&x, i, c);
@@ -82,7 +83,7 @@ static mps_status take_frame(seawall *w) {
   w->frames++;
   if (w->series) status = mps_recorder_write(w->series, f->t);
   if (status == MPS_OK && w->wall_series) status = mps_recorder_write(w->wall_series, f->t);
-  return status;
+  return app_settle(w->a, status);
 }
 
 /* Frames are spread over the samples; the first is the start. */

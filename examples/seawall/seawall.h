@@ -81,6 +81,7 @@ typedef struct seawall {
   int64_t forces, steps; /* how many there are, and will be at the end */
   seawall_look look;
   double restarted; /* s, NaN: from the start */
+  app *a;           /* borrowed */
   char why[400];    /* why a restart is refused; "": the library says it */
 } seawall;
 

@@ -73,17 +73,20 @@ static mps_status add_walls(mps_context *context, tank_model *m) {
   if (m->s.kind == TANK_PISTON || m->s.kind == TANK_RESONANCE)
     status = mps_signal_user(context, waves_move_piston, &m->motion, &m->piston);
   if (tank_is_coupled(&m->s)) status = tank_make_structure(context, m);
+  status = app_settle(m->a, status);
   if (status == MPS_OK) status = add_bed(m);
   if (status == MPS_OK) status = waves_add_wall(m->fluid, corner, 1.0, 0.0, m->piston, NULL);
   if (status == MPS_OK) status = waves_add_wall(m->fluid, right, -1.0, 0.0, NULL, NULL);
   return status;
 }
 
-mps_status tank_build(mps_context *context, tank_model *m) {
+mps_status tank_build(app *a, tank_model *m) {
+  mps_context *context = a->context;
   const tank_settings *s = &m->s;
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
   set.spacing = s->spacing;
+  def.domain = a->domain;
   def.dt = s->dt;
   def.viscosity = s->viscosity;
   def.density = WAVES_DENSITY;
@@ -94,6 +97,7 @@ mps_status tank_build(mps_context *context, tank_model *m) {
   mps_status status = mps_particles_create(context, &set, &m->water);
   if (status == MPS_OK)
     status = s->kind == TANK_DROP ? fill_drop(s, m->water) : fill_tank(s, m->water);
+  status = app_settle(a, status);
   if (status == MPS_OK) status = mps_fluid_create(context, m->water, &def, &m->fluid);
   if (status == MPS_OK && s->scheme == 1)
     status = mps_experimental_fluid_classical(m->fluid, CLASSICAL_SHARE);
@@ -167,9 +171,9 @@ static mps_status take_sample(tank_model *m) {
 
 /* Frames are spread over the samples; the first is the start. */
 static mps_status write_frame(tank_model *m, int64_t k, int64_t count) {
-  if (!m->series) return MPS_OK;
-  const bool due = k == 0 || k * m->s.frames / count > (k - 1) * m->s.frames / count;
-  return due ? mps_recorder_write(m->series, mps_fluid_time(m->fluid)) : MPS_OK;
+  if (k > 0 && k * m->s.frames / count == (k - 1) * m->s.frames / count) return MPS_OK;
+  return app_settle(m->a,
+                    m->series ? mps_recorder_write(m->series, mps_fluid_time(m->fluid)) : MPS_OK);
 }
 
 /* Samples are taken after the first step that reaches their time: no step is shortened for them. */

@@ -32,13 +32,13 @@ static void pass(void *user, resume_bytes *b) {
 }
 
 static resume parts(tank_model *m) {
-  return (resume){"mps-tank 2", m->table, pass, m, .fluid = m->fluid};
+  return (resume){"mps-tank 2", m->table, pass, m, .fluid = m->fluid, .domain = m->a->domain};
 }
 
 mps_status tank_save(void *user) {
   tank_model *m = user;
   const resume r = parts(m);
-  const mps_status status = tank_remember(&m->structure);
+  const mps_status status = app_settle(m->a, tank_remember(&m->structure));
   return status == MPS_OK ? resume_save(&r, m->s.checkpoint) : status;
 }
 

@@ -86,6 +86,7 @@ typedef struct tank_model {
   const option *table;
   resume_schedule saves;
   double restarted; /* s, NaN: from the start */
+  app *a;           /* borrowed */
   char why[400];    /* why a restart is refused; "": the library says it */
 } tank_model;
 
@@ -99,7 +100,7 @@ static inline bool tank_swings(const tank_settings *s) {
 }
 
 /* model.c: water, walls, fluid; a run that fills `sample`. */
-mps_status tank_build(mps_context *context, tank_model *m);
+mps_status tank_build(app *a, tank_model *m);
 mps_status tank_run(app *a, tank_model *m);
 void tank_free(tank_model *m);
 

@@ -41,13 +41,10 @@ code=0
   code=$?
 [ $code -eq 0 ] || [ $code -eq 77 ] || fail "frames"
 
-# Options, and a program that knows no ranks: one line.
+# Options: one line.
 on 2 "$wave" --raduis 1 2>"$work/log" && fail "an unknown option was taken"
 one "$work/log" mps-wave "did you mean --radius"
 [ "$(on 2 "$wave" --help | grep -c "^Usage")" -eq 1 ] || fail "--help of two ranks"
-on 2 "$programs/mps-tank" --out "$work/s" 2>"$work/log" && fail "mps-tank on ranks"
-one "$work/log" mps-tank "started as 2 processes"
-[ ! -e "$work/s" ] || fail "mps-tank wrote"
 
 # Divergence; no directory; a full disk of rank 0, which writes: the same error on all.
 on 3 "$wave" --radius 1 --dt 0.02 --out "$work/d" >/dev/null 2>"$work/log" && fail "divergence"
