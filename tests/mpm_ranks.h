@@ -77,6 +77,13 @@ static inline mps_status add_conditions(mps_context *own, mps_domain *domain, in
   TRY(mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FRICTIONAL, 0.3));
   TRY(mps_mpm_set_side(s->mpm, MPS_MPM_SIDE_X_UPPER,
                        what == SPREAD ? MPS_MPM_BOUNDARY_OPEN : MPS_MPM_BOUNDARY_FIXED, 0.0));
+  if (what == SPREAD || what == ROOM) {
+    mps_mpm_boundary_def side = mps_mpm_boundary_defaults();
+    side.kind = MPS_MPM_BOUNDARY_ABSORBING;
+    side.settle = what == SPREAD ? 2e-3 : 0.0;
+    TRY(mps_mpm_set_boundary(s->mpm, MPS_MPM_SIDE_X_LOWER, &side));
+    if (what == ROOM) TRY(mps_mpm_set_boundary(s->mpm, MPS_MPM_SIDE_Z_LOWER, &side));
+  }
   mps_mpm_boundary_def box = mps_mpm_boundary_defaults();
   box.lower[0] = 0.55, box.upper[0] = 0.66;
   box.lower[1] = 0.3, box.upper[1] = 0.5;

@@ -5,7 +5,8 @@
  * in the cells at the wall: each stands for the area V/h and gives rho c V/h = c m/h to the wall's
  * nodes by the least-squares shape functions of that plane, which are those of the masses there
  * (Nakamura (5), (6) with one axis less). So a wall covered in part has the right force in sum, and
- * its nodes the right ratio of damping to mass.
+ * its nodes the right ratio of damping to mass. The particles of a block are summed by themselves:
+ * on several ranks such sums come from others (dashes.c).
  *
  * R carries the stress at rest. It is the mean of the force that holds the node while the wall
  * settles, or what balances the first step's forces.
@@ -66,8 +67,14 @@ static mpsi_dash *dash_of(const mps_mpm *mpm, int32_t number, int64_t node) {
                                                 (int)(node % mpm->grid.block_nodes))];
 }
 
+/* Node of the plane across `axis`, of those under the tile. */
+static int tile_plane_index(int axis, const int *at) {
+  return at[axis == 2 ? 1 : 2] * MPSI_TILE_SIDE + at[axis == 0 ? 1 : 0];
+}
+
 /* A particle in a cell at the wall. */
-static void add_particle(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t number, int64_t k) {
+static void add_particle(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t number,
+                         int64_t k, double (*tile)[2]) {
   const mpsi_columns *p = &mpm->p;
   const int axis = mpm->boundaries.hold[number].axis;
   const double per_area = p->m[k] * mpm->grid.inverse, density = p->m[k] / p->V[k];
@@ -87,39 +94,64 @@ static void add_particle(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t num
     if (share == 0.0) continue;
     int at[3];
     for (int c = 0; c < 3; c++) at[c] = (int)(base[c] + i[c] - (int64_t)cells->at[c] * MPSI_SIDE);
-    mpsi_dash *dash = dash_of(mpm, number, mpsi_node_under(mpm, cells, at[0], at[1], at[2]));
-    dash->across += share * across;
-    dash->along += share * along;
+    double *to = tile[tile_plane_index(axis, at)];
+    to[0] += share * across;
+    to[1] += share * along;
   }
 }
 
-static void add_wall(mps_mpm *mpm, int32_t number) {
+bool mpsi_mpm_sum_dashes(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t number,
+                         double (*tile)[2]) {
   const int c = mpm->boundaries.hold[number].axis;
   const int64_t layer = mpm->boundaries.hold[number].first[c] - number % 2; /* of cells */
+  const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
+  if (layer < first || layer >= first + MPSI_TILE_SIDE) return false;
+  memset(tile, 0, MPSI_DASH_PLANE * sizeof *tile);
+  for (int64_t k = cells->begin; k < cells->end; k++)
+    if (mpsi_own_cell(mpm, c, mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k])) == layer)
+      add_particle(mpm, cells, number, k, tile);
+  return true;
+}
+
+static void add_tile(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t number,
+                     const double *tile) {
+  const mpsi_hold *hold = &mpm->boundaries.hold[number];
+  const int axis = hold->axis, planes = mpm->dim == 3 ? MPSI_TILE_SIDE : 1;
+  for (int k = 0; k < planes * MPSI_TILE_SIDE; k++) {
+    const int u = k % MPSI_TILE_SIDE, v = k / MPSI_TILE_SIDE;
+    int at[3] = {axis == 0 ? 0 : u, axis == 0 ? u : axis == 2 ? v : 0, axis == 2 ? 0 : v};
+    at[axis] = (int)(hold->first[axis] - (int64_t)cells->at[axis] * MPSI_SIDE);
+    if (tile[2 * k] == 0.0 && tile[2 * k + 1] == 0.0) continue;
+    mpsi_dash *dash = dash_of(mpm, number, mpsi_node_under(mpm, cells, at[0], at[1], at[2]));
+    dash->across += tile[2 * k];
+    dash->along += tile[2 * k + 1];
+  }
+}
+
+static void add_wall(mps_mpm *mpm, const mpsi_dash_parcels *parcels, int32_t number) {
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     const mpsi_cell_block *cells = &mpm->grid.cells[b];
-    const int64_t first = (int64_t)cells->at[c] * MPSI_SIDE;
-    if (layer < first || layer >= first + MPSI_TILE_SIDE) continue;
-    for (int64_t k = cells->begin; k < cells->end; k++)
-      if (mpsi_own_cell(mpm, c, mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k])) == layer)
-        add_particle(mpm, cells, number, k);
+    double own[MPSI_DASH_PLANE][2];
+    const double *tile = mpsi_mpm_dash_parcel(mpm, parcels, cells, number);
+    if (!tile && mpsi_mpm_sum_dashes(mpm, cells, number, own)) tile = own[0];
+    if (tile) add_tile(mpm, cells, number, tile);
   }
 }
 
 /* ---- forces at rest -------------------------------------------------------------------------- */
 
 /* Order of the list: blocks ascend in z, y, x, then come the holds. */
-static int compare(const mpsi_held *a, const mpsi_held *b) {
+int mpsi_mpm_compare_held(const mpsi_held *a, const mpsi_held *b) {
   for (int c = 2; c >= 0; c--)
     if (a->at[c] != b->at[c]) return a->at[c] < b->at[c] ? -1 : 1;
   return (a->hold > b->hold) - (a->hold < b->hold);
 }
 
-void mpsi_mpm_place_dashes(mps_mpm *mpm, const mpsi_held *old, int64_t old_count,
-                           const mpsi_dash *old_dash) {
+void mpsi_mpm_place_dashes(mps_mpm *mpm, const mpsi_dash_parcels *parcels, const mpsi_held *old,
+                           int64_t old_count, const mpsi_dash *old_dash) {
   const int plane = mpm->grid.block_nodes / MPSI_SIDE;
   for (int32_t k = 0; k < MPSI_SIDES; k++)
-    if (mpm->boundaries.hold[k].kind == MPS_MPM_BOUNDARY_ABSORBING) add_wall(mpm, k);
+    if (mpm->boundaries.hold[k].kind == MPS_MPM_BOUNDARY_ABSORBING) add_wall(mpm, parcels, k);
   int64_t from = 0;
   for (int64_t t = 0; t < mpm->boundaries.held_count; t++) {
     const mpsi_held *held = &mpm->boundaries.held[t];
@@ -129,8 +161,10 @@ void mpsi_mpm_place_dashes(mps_mpm *mpm, const mpsi_held *old, int64_t old_count
       dash[k].across = fmax(dash[k].across, 0.0);
       dash[k].along = fmax(dash[k].along, 0.0);
     }
-    while (from < old_count && compare(&old[from], held) < 0) from++;
-    if (from == old_count || compare(&old[from], held) != 0 || old[from].dash < 0) continue;
+    while (from < old_count && mpsi_mpm_compare_held(&old[from], held) < 0) from++;
+    if (from == old_count || mpsi_mpm_compare_held(&old[from], held) != 0 || old[from].dash < 0 ||
+        !old[from].whole)
+      continue;
     for (int k = 0; k < plane; k++)
       memcpy(dash[k].rest, old_dash[old[from].dash + k].rest, sizeof dash[k].rest);
   }

@@ -16,6 +16,14 @@ bool mpsi_mpm_share_counts(const mps_mpm *mpm, int64_t g) {
   return !mpm->grid.cells[nodes->from[q]].ghost;
 }
 
+bool mpsi_mpm_share_knows(const mps_mpm *mpm, int64_t g) {
+  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  bool own = false;
+  for (int q = 0; q < 1 << mpm->dim; q++)
+    own = own || (nodes->from[q] >= 0 && !mpm->grid.cells[nodes->from[q]].ghost);
+  return own;
+}
+
 mps_status mpsi_mpm_share_any(mps_mpm *mpm, const char *function, bool *any) {
   double one = *any;
   const mps_status status = mpsi_domain_max(mpm->share->domain, function, 1, &one);

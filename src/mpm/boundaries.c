@@ -76,8 +76,6 @@ static mps_status check_side(mps_mpm *mpm, const char *function, int32_t number,
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "ids, id_count (%lld) and dofs (%u) are not for sides of the domain",
                      (long long)def->id_count, def->dofs);
-  if (mpm->share && def->kind == MPS_MPM_BOUNDARY_ABSORBING)
-    return mpsi_mpm_share_refuse(mpm, function, "an absorbing side");
   if (mpm->standard && def->kind == MPS_MPM_BOUNDARY_ABSORBING)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "kind is 3 (absorbing), which the standard method does not allow: its splines "

@@ -4,6 +4,7 @@
 #define MPSI_MPM_BOUNDARIES_H
 
 #include "core/exact.h"
+#include "core/state.h"
 #include "restart.h"
 #include "core/room.h"
 
@@ -42,6 +43,7 @@ typedef struct mpsi_held {
   double work;                  /* J, likewise */
   int64_t count;                /* nodes with mass */
   bool counted;                 /* in sums: on other ranks it may be there too, but not counted */
+  bool whole;                   /* all particles that reach the nodes are known to this rank */
 } mpsi_held;
 
 typedef struct mpsi_boundaries {
@@ -54,16 +56,28 @@ typedef struct mpsi_boundaries {
   double dt;       /* s, of the step whose sums are kept */
   mpsi_exact work; /* J, of boundaries that are no more */
   mpsi_room held_room, dash_room, old_held_room, old_dash_room;
+  mpsi_room kept_room; /* dashpots of a state that ranks go back to, until they share its blocks */
+  int64_t kept;
 } mpsi_boundaries;
 
-/* walls.c: which blocks of nodes are held, after a sort; what holds them in a step of dt; the held
- * nodes of a block; the forces of the step. */
-mps_status mpsi_mpm_list_holds(mps_mpm *mpm, const char *function);
+/* Sums of the dashpots of blocks, of each side a plane of the tile: across and along. */
+#define MPSI_DASH_PLANE (MPSI_TILE_SIDE * MPSI_TILE_SIDE)
+typedef struct mpsi_dash_parcels {
+  double *out, *in;
+} mpsi_dash_parcels;
+
+/* walls.c: which blocks of nodes are held, after a sort. `status`: what has become of the call so
+ * far here; collective where sides absorb. */
+mps_status mpsi_mpm_list_holds(mps_mpm *mpm, const char *function, mps_status status);
 /* walls.c: the same where they are outdated. */
-mps_status mpsi_mpm_update_holds(mps_mpm *mpm, const char *function);
+mps_status mpsi_mpm_update_holds(mps_mpm *mpm, const char *function, mps_status status);
 /* walls.c: the same with dashpots as they were at an earlier sort. */
 mps_status mpsi_mpm_put_dashes(mps_mpm *mpm, const char *function, int64_t count,
                                const mpsi_dash *dash);
+/* walls.c: on several ranks the ghosts must be found before: the dashpots are kept till then, in
+ * kept_room, which has room for them; then, collective, both. */
+void mpsi_mpm_keep_dashes(mps_mpm *mpm, int64_t count, const mpsi_dash *dash);
+mps_status mpsi_mpm_regain_share(mps_mpm *mpm, const char *function);
 /* walls.c: their velocities in the next step of dt. */
 void mpsi_mpm_move_holds(mps_mpm *mpm, double dt);
 /* walls.c: absorbing walls at rest have looked for dt longer. */
@@ -88,9 +102,27 @@ void mpsi_mpm_drop_boundaries(mps_mpm *mpm);
 /* boundaries.c: sides hold the nodes beyond them too, where the standard method has some. */
 mps_status mpsi_mpm_widen_sides(mps_mpm *mpm, const char *function);
 /* absorb.c: dashpots of the absorbing sides, after a sort, taking over the forces at rest from the
- * list before; one of them at work: the velocity of its node across and along. */
-void mpsi_mpm_place_dashes(mps_mpm *mpm, const mpsi_held *old, int64_t old_count,
-                           const mpsi_dash *old_dash);
+ * list before (`parcels`: of other ranks, or NULL); one of them at work: the velocity of its node
+ * across and along; what a block gives to those of a side, false: nothing; order of the list. */
+void mpsi_mpm_place_dashes(mps_mpm *mpm, const mpsi_dash_parcels *parcels, const mpsi_held *old,
+                           int64_t old_count, const mpsi_dash *old_dash);
+bool mpsi_mpm_sum_dashes(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t side,
+                         double (*tile)[2]);
+int mpsi_mpm_compare_held(const mpsi_held *a, const mpsi_held *b);
+/* dashes.c: whether a side absorbs; the same for all ranks, collective; what has come of a block
+ * for a side, or NULL. */
+bool mpsi_mpm_absorbs(const mps_mpm *mpm);
+mps_status mpsi_mpm_share_dashes(mps_mpm *mpm, const char *function, const mpsi_held *old,
+                                 int64_t old_count, const mpsi_dash *old_dash);
+/* The dashpots of a file: those of all ranks in its order, on rank 0; and back, those of the blocks
+ * of nodes that this rank knows, of a file with these blocks of cells. `status` as ever. */
+mps_status mpsi_mpm_gather_dashes(mps_mpm *mpm, const char *function, mpsi_value *dashes);
+mps_status mpsi_mpm_take_dashes(mps_mpm *mpm, const char *function, const mpsi_value *blocks,
+                                mpsi_value *dashes);
+/* walls.c: whether a side or box holds nodes of the block at `at`. */
+bool mpsi_mpm_holds_block(const mps_mpm *mpm, const mpsi_hold *hold, const int32_t *at);
+const double *mpsi_mpm_dash_parcel(const mps_mpm *mpm, const mpsi_dash_parcels *parcels,
+                                   const mpsi_cell_block *cells, int32_t side);
 void mpsi_mpm_dash(const mps_mpm *mpm, const mpsi_hold *hold, mpsi_dash *dash, const double *node,
                    const double *before, double *velocity);
 

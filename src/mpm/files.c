@@ -14,7 +14,7 @@ typedef enum merging {
   COUNT,  /* likewise whole numbers */
   SIZES,  /* room, which a rank finds by itself */
   BLOCKS, /* of cells */
-  ROWS    /* of tables that lie on one rank or another */
+  DASHES  /* dashpots of blocks of nodes */
 } merging;
 
 static merging merging_of(const mpsi_value *value) {
@@ -22,7 +22,7 @@ static merging merging_of(const mpsi_value *value) {
   if (value->agrees) return SAME;
   if (strcmp(name, "sizes") == 0) return SIZES;
   if (strcmp(name, "blocks") == 0) return BLOCKS;
-  if (strcmp(name, "dashpots") == 0) return ROWS;
+  if (strcmp(name, "dashpots") == 0) return DASHES;
   if (strcmp(name, "boundaries_work") == 0) return EXACT;
   if (strncmp(name, "boundary", 8) != 0) return SAME;
   if (mpsi_state_name_ends(name, "/step") || mpsi_state_name_ends(name, "/all")) return EXACT;
@@ -79,8 +79,8 @@ static mps_status merge(mps_mpm *mpm, const char *function, mpsi_values *state) 
     case BLOCKS:
       status = gather_blocks(mpm, function, value);
       break;
-    case ROWS:
-      status = mpsi_domain_gather_rows(domain, function, value->rows, value);
+    case DASHES:
+      status = mpsi_mpm_gather_dashes(mpm, function, value);
       break;
     }
   }
@@ -161,6 +161,9 @@ mps_status mpsi_mpm_share_take_values(void *solver, const char *function, mps_st
     if (!rows)
       status = mpsi_fail_memory(mpm->context, function, (size_t)values->particles * sizeof *rows);
   }
+  if (status == MPS_OK)
+    status = mpsi_mpm_take_dashes(mpm, function, mpsi_values_find(&values->state, "blocks"),
+                                  (mpsi_value *)mpsi_values_find(&values->state, "dashpots"));
   status = mpsi_domain_settle(mpm->share->domain, function, status);
   if (status == MPS_OK) {
     mpsi_value *blocks = (mpsi_value *)mpsi_values_find(&values->state, "blocks");

@@ -443,6 +443,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
                    mpm->boundaries.dash_room.item,
                    mpm->boundaries.old_held_room.item,
                    mpm->boundaries.old_dash_room.item,
+                   mpm->boundaries.kept_room.item,
                    mpm->energy.cells_room.item,
                    mpm->energy.nodes_room.item,
                    mpm->settling.nodes_room.item,

@@ -25,7 +25,7 @@ static mps_status make_sums(mps_mpm *mpm, const char *function) {
     status = mpsi_mpm_sort(mpm, function);
     mpm->boundaries.outdated = true;
   }
-  if (status == MPS_OK) status = mpsi_mpm_update_holds(mpm, function);
+  status = mpsi_mpm_update_holds(mpm, function, status);
   mpm->grid.apart = true;
   if (status == MPS_OK) status = mpsi_mpm_find_near(mpm, function, status);
   if (status == MPS_OK) status = mpsi_mpm_find_forces(mpm, function);

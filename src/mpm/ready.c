@@ -16,7 +16,7 @@ mps_status mpsi_mpm_tidy(mps_mpm *mpm, const char *function) {
   status = mpsi_mpm_check_masses(mpm, function);
   if (mpm->share) status = mpsi_mpm_share_tidy(mpm, function, status);
   if (status == MPS_OK && mpm->run.stale) status = mpsi_mpm_sort(mpm, function);
-  if (status == MPS_OK) status = mpsi_mpm_list_holds(mpm, function);
+  status = mpsi_mpm_list_holds(mpm, function, status);
   if (mpm->share) status = mpsi_domain_settle(mpm->share->domain, function, status);
   if (status != MPS_OK) return status;
   mpsi_mpm_for_cells(mpm, mpm->kernels->speed);

@@ -114,18 +114,41 @@ static void set_sizes(void *solver, int64_t rows, const void *values) {
   (void)solver, (void)rows, (void)values;
 }
 
+/* Those of which this rank knows all. */
 static int64_t count_dashes(const void *solver) {
-  return ((const mps_mpm *)solver)->boundaries.dash_count;
+  const mps_mpm *mpm = solver;
+  int64_t count = 0;
+  for (int64_t t = 0; t < mpm->boundaries.held_count; t++)
+    if (mpm->boundaries.held[t].dash >= 0 && mpm->boundaries.held[t].whole)
+      count += mpm->grid.block_nodes / MPSI_SIDE;
+  return count;
 }
 
 static void get_dashes(const void *solver, void *values) {
-  const mpsi_boundaries *b = &((const mps_mpm *)solver)->boundaries;
-  memcpy(values, b->dash, (size_t)b->dash_count * sizeof *b->dash);
+  const mps_mpm *mpm = solver;
+  const mpsi_boundaries *b = &mpm->boundaries;
+  const int64_t plane = mpm->grid.block_nodes / MPSI_SIDE;
+  mpsi_dash *to = values;
+  for (int64_t t = 0; t < b->held_count; t++) {
+    if (b->held[t].dash < 0 || !b->held[t].whole) continue;
+    memcpy(to, b->dash + b->held[t].dash, (size_t)plane * sizeof *to);
+    to += plane;
+  }
+}
+
+/* On several ranks they wait for the ghosts: mpsi_mpm_regain_share. */
+static bool reserve_dashes(void *solver, int64_t rows, const void *values) {
+  mps_mpm *mpm = solver;
+  (void)values;
+  return !mpm->share ||
+         mpsi_room_ensure(mpm->context, &mpm->boundaries.kept_room, rows, sizeof(mpsi_dash));
 }
 
 static void set_dashes(void *solver, int64_t rows, const void *values) {
   mps_mpm *mpm = solver;
-  if (!mpm->run.broken)
+  if (mpm->share)
+    mpsi_mpm_keep_dashes(mpm, rows, values);
+  else if (!mpm->run.broken)
     mpm->run.broken = mpsi_mpm_put_dashes(mpm, "restore", rows, values) != MPS_OK;
 }
 
@@ -179,8 +202,8 @@ static const mpsi_state_table blocks_table = {MPSI_STATE_I64, MPSI_BLOCK,     co
                                               get_blocks,     reserve_blocks, set_blocks};
 static const mpsi_state_table sizes_table = {MPSI_STATE_I64, SIZES,         one_row,
                                              get_sizes,      reserve_sizes, set_sizes};
-static const mpsi_state_table dashes_table = {MPSI_STATE_F64, MPSI_DASH, count_dashes,
-                                              get_dashes,     NULL,      set_dashes};
+static const mpsi_state_table dashes_table = {MPSI_STATE_F64, MPSI_DASH,      count_dashes,
+                                              get_dashes,     reserve_dashes, set_dashes};
 
 static const mpsi_state_table kept_owners_table = {
     MPSI_STATE_I64, 2, count_kept, get_kept_owners, reserve_kept, set_kept_owners};
@@ -407,7 +430,7 @@ static mps_status make_whole(mps_mpm *mpm, const char *function) {
   mps_status status = mpsi_guard_check_between(&mpm->run.guard, mpm->context, function);
   if (status == MPS_OK && !mpm->run.broken) status = mpsi_mpm_tidy(mpm, function);
   if (status != MPS_OK) return status;
-  if (!mpm->run.broken) return mpsi_mpm_update_holds(mpm, function);
+  if (!mpm->run.broken) return mpsi_mpm_update_holds(mpm, function, MPS_OK);
   return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                    "step %lld has failed: there is no state to go on from",
                    (long long)mpm->run.steps);
@@ -423,9 +446,10 @@ mps_status mps_mpm_snapshot(mps_mpm *mpm, mps_snapshot **snapshot) {
 
 mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_status status = mpsi_mpm_between_steps(mpm, __func__);
+  mps_status status = mpsi_mpm_between_steps(mpm, __func__);
   const mpsi_state_of of = state_of(mpm);
-  return status == MPS_OK ? mpsi_state_rollback(&of, __func__, snapshot) : status;
+  if (status == MPS_OK) status = mpsi_state_rollback(&of, __func__, snapshot);
+  return status == MPS_OK ? mpsi_mpm_regain_share(mpm, __func__) : status;
 }
 
 mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *info) {
@@ -439,7 +463,8 @@ mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *in
 
 mps_status mps_mpm_restore(mps_mpm *mpm, const char *path, mps_checkpoint *info) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_status status = mpsi_mpm_between_steps(mpm, __func__);
+  mps_status status = mpsi_mpm_between_steps(mpm, __func__);
   const mpsi_state_of of = state_of(mpm);
-  return status == MPS_OK ? mpsi_checkpoint_restore(&of, __func__, path, info) : status;
+  if (status == MPS_OK) status = mpsi_checkpoint_restore(&of, __func__, path, info);
+  return status == MPS_OK ? mpsi_mpm_regain_share(mpm, __func__) : status;
 }

@@ -70,6 +70,8 @@ mps_status mpsi_mpm_share_check_ids(mps_mpm *mpm, const char *function, mps_stat
 mps_status mpsi_mpm_share_refuse(const mps_mpm *mpm, const char *function, const char *what);
 /* agree.c: whether a sum over blocks of nodes counts g here. Not collective. */
 bool mpsi_mpm_share_counts(const mps_mpm *mpm, int64_t g);
+/* agree.c: whether all that reaches g is known here, its own or as a ghost. Not collective. */
+bool mpsi_mpm_share_knows(const mps_mpm *mpm, int64_t g);
 
 /* rows.c: as the holder of the set (mpsi_holder): rows by blocks, in the order of one rank. Not
  * collective; after particles have been taken out of the set, on one rank too, the blocks follow.

@@ -57,8 +57,9 @@ static mps_status prepare(mps_mpm *mpm, const char *function) {
   if (status != MPS_OK && renewed) return status;                         /* on all ranks */
   if (status == MPS_OK) status = mpsi_mpm_prepare_outflow(mpm, function); /* for those here now */
   const bool dashes = mpm->boundaries.dash_count > 0;
-  if (status == MPS_OK && (status = mpsi_mpm_update_holds(mpm, function)) != MPS_OK)
-    mpm->run.broken = dashes;
+  const mps_status before = status;
+  status = mpsi_mpm_update_holds(mpm, function, status);
+  if (before == MPS_OK && status != MPS_OK) mpm->run.broken = dashes;
   status = mpsi_mpm_find_near(mpm, function, status);
   bool cleared = false;
   status = mpsi_mpm_clear_bodies(mpm, function, status, &cleared);

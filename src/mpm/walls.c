@@ -27,6 +27,11 @@ static bool find_range(const mps_mpm *mpm, const int32_t *at, const mpsi_hold *h
   return true;
 }
 
+bool mpsi_mpm_holds_block(const mps_mpm *mpm, const mpsi_hold *hold, const int32_t *at) {
+  range r;
+  return find_range(mpm, at, hold, &r);
+}
+
 /* Lists what holds which block; false where there is no room, `count` says how much is needed. */
 static bool list(mps_mpm *mpm, int64_t *count, int64_t *dashes) {
   mpsi_held *held = mpm->boundaries.held_room.item;
@@ -44,7 +49,8 @@ static bool list(mps_mpm *mpm, int64_t *count, int64_t *dashes) {
       if (*count < mpm->boundaries.held_room.capacity) {
         held[*count] = (mpsi_held){.hold = k,
                                    .dash = absorbs ? *dashes : -1,
-                                   .counted = !mpm->share || mpsi_mpm_share_counts(mpm, g)};
+                                   .counted = !mpm->share || mpsi_mpm_share_counts(mpm, g),
+                                   .whole = !mpm->share || mpsi_mpm_share_knows(mpm, g)};
         memcpy(held[*count].at, nodes->at, sizeof nodes->at);
       }
       if (absorbs) *dashes += mpm->grid.block_nodes / MPSI_SIDE;
@@ -90,30 +96,61 @@ static mps_status make_list(mps_mpm *mpm, const char *function) {
   return MPS_OK;
 }
 
-mps_status mpsi_mpm_list_holds(mps_mpm *mpm, const char *function) {
+mps_status mpsi_mpm_list_holds(mps_mpm *mpm, const char *function, mps_status status) {
   const mpsi_held *old = mpm->boundaries.held;
   const mpsi_dash *old_dash = mpm->boundaries.dash;
   const int64_t old_count = mpm->boundaries.held_count;
-  const mps_status status = make_list(mpm, function);
-  if (status == MPS_OK && mpm->boundaries.dash_count > 0)
-    mpsi_mpm_place_dashes(mpm, old, old_count, old_dash);
+  if (status == MPS_OK) status = make_list(mpm, function);
+  if (!mpsi_mpm_absorbs(mpm)) return status;
+  if (!mpm->share) {
+    if (status == MPS_OK) mpsi_mpm_place_dashes(mpm, NULL, old, old_count, old_dash);
+    return status;
+  }
+  status = mpsi_domain_settle(mpm->share->domain, function, status);
+  if (status == MPS_OK) status = mpsi_mpm_share_dashes(mpm, function, old, old_count, old_dash);
+  mpm->boundaries.outdated = status != MPS_OK;
   return status;
 }
 
-mps_status mpsi_mpm_update_holds(mps_mpm *mpm, const char *function) {
-  return mpm->boundaries.outdated ? mpsi_mpm_list_holds(mpm, function) : MPS_OK;
+mps_status mpsi_mpm_update_holds(mps_mpm *mpm, const char *function, mps_status status) {
+  return mpm->boundaries.outdated ? mpsi_mpm_list_holds(mpm, function, status) : status;
 }
 
 mps_status mpsi_mpm_put_dashes(mps_mpm *mpm, const char *function, int64_t count,
                                const mpsi_dash *dash) {
   const mps_status status = make_list(mpm, function);
   if (status != MPS_OK) return status;
-  if (count != mpm->boundaries.dash_count)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_FORMAT,
-                     "there are %lld dashpots of absorbing walls, must be %lld", (long long)count,
-                     (long long)mpm->boundaries.dash_count);
-  if (count > 0) memcpy(mpm->boundaries.dash, dash, (size_t)count * sizeof *dash);
-  return MPS_OK;
+  const int64_t plane = mpm->grid.block_nodes / MPSI_SIDE;
+  int64_t expected = 0;
+  for (int64_t t = 0; t < mpm->boundaries.held_count; t++) {
+    const mpsi_held *held = &mpm->boundaries.held[t];
+    if (held->dash < 0 || !held->whole) continue;
+    if (expected + plane <= count)
+      memcpy(mpm->boundaries.dash + held->dash, dash + expected, (size_t)plane * sizeof *dash);
+    expected += plane;
+  }
+  if (count == expected) return MPS_OK;
+  return mpsi_fail(mpm->context, function, MPS_ERROR_FORMAT,
+                   "there are %lld dashpots of absorbing walls, must be %lld", (long long)count,
+                   (long long)expected);
+}
+
+void mpsi_mpm_keep_dashes(mps_mpm *mpm, int64_t count, const mpsi_dash *dash) {
+  if (count > 0) memcpy(mpm->boundaries.kept_room.item, dash, (size_t)count * sizeof *dash);
+  mpm->boundaries.kept = count;
+}
+
+mps_status mpsi_mpm_regain_share(mps_mpm *mpm, const char *function) {
+  if (!mpm->share || !mpm->share->outdated) return MPS_OK;
+  const bool stale = mpm->run.stale;
+  mps_status status = mpsi_mpm_share_join(mpm, function);
+  if (status == MPS_OK)
+    status = mpsi_domain_settle(
+        mpm->share->domain, function,
+        mpsi_mpm_put_dashes(mpm, function, mpm->boundaries.kept, mpm->boundaries.kept_room.item));
+  mpm->run.stale = mpm->run.stale || stale;
+  mpm->run.broken = mpm->run.broken || status != MPS_OK;
+  return status;
 }
 
 /* ---- a node ---------------------------------------------------------------------------------- */

@@ -64,7 +64,7 @@ static void compare_cut(int what, int64_t steps) {
 }
 
 static void test_cut_press(void **state) { (void)state, compare_cut(PRESS, 45); }
-static void test_cut_spread(void **state) { (void)state, compare_cut(SPREAD, 70); }
+static void test_cut_spread(void **state) { (void)state, compare_cut(SPREAD, 50); }
 
 /* ---- what goes wrong on one rank --------------------------------------------------------------
  */
