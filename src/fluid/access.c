@@ -59,3 +59,8 @@ void mpsi_fluid_for(mps_fluid *f, int64_t items, int64_t chunk, mpsi_fluid_task 
   work w = {f, task, items, chunk};
   mpsi_fluid_units(f, chunk, unit_of_work, &w);
 }
+
+void mpsi_fluid_for_all(mps_fluid *f, int64_t items, int64_t chunk, mpsi_fluid_task task) {
+  work w = {f, task, items, chunk};
+  mpsi_parallel_for(f->context, (items + chunk - 1) / chunk, unit_of_work, &w);
+}

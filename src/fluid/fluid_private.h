@@ -238,6 +238,8 @@ struct mps_fluid {
  * rank's. */
 typedef void (*mpsi_fluid_task)(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
 void mpsi_fluid_for(mps_fluid *fluid, int64_t items, int64_t chunk, mpsi_fluid_task task);
+/* The same of all, on every rank. */
+void mpsi_fluid_for_all(mps_fluid *fluid, int64_t items, int64_t chunk, mpsi_fluid_task task);
 
 static inline double mpsi_fluid_larger(double a, double b) { return a > b ? a : b; }
 

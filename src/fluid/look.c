@@ -20,7 +20,7 @@ static void load_part(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
 
 /* Copies of positions, velocities and the last reduced pressure. */
 void mpsi_fluid_load_cloud(mps_fluid *f) {
-  mpsi_fluid_for(f, f->count, MPSI_FLUID_COPIED, load_part);
+  mpsi_fluid_for_all(f, f->count, MPSI_FLUID_COPIED, load_part);
   f->driven = false;
   mpsi_fluid_deal(f, mpsi_fluid_block(f));
 }

@@ -39,11 +39,12 @@ typedef struct blocks {
 } blocks;
 
 static blocks cut(const mps_fluid *f) {
+  const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
   int64_t wanted = (f->count + BLOCK - 1) / BLOCK;
   wanted += wanted > 1 && wanted % 2; /* two threads, equal shares */
   if (wanted > MOST_BLOCKS) wanted = MOST_BLOCKS;
-  const int64_t each = ((f->count + wanted - 1) / wanted + 7) / 8 * 8; /* no shared cache lines */
-  return (blocks){(f->count + each - 1) / each, each};
+  const int64_t each = (chunks + wanted - 1) / wanted; /* whole chunks: ranks have whole blocks */
+  return (blocks){(chunks + each - 1) / each, each * MPSI_FLUID_CHUNK};
 }
 
 int64_t mpsi_fluid_block(const mps_fluid *f) { return f->count > 0 ? cut(f).size : 1; }

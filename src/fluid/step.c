@@ -32,7 +32,7 @@ static void store_part(mps_fluid *f, int64_t begin, int64_t end, int64_t part) {
 }
 
 static void store_cloud(mps_fluid *f) {
-  mpsi_fluid_for(f, f->count, MPSI_FLUID_COPIED, store_part);
+  mpsi_fluid_for_all(f, f->count, MPSI_FLUID_COPIED, store_part);
   f->last_dt = f->dt;
   double most = 0.0;
   for (int64_t k = 0; k * MPSI_FLUID_COPIED < f->count; k++)

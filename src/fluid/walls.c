@@ -189,7 +189,7 @@ bool mpsi_fluid_grow_cloud(mps_fluid *f, int64_t capacity) {
 }
 
 mps_status mpsi_fluid_make_ghosts(mps_fluid *f, const char *function) {
-  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, find_walls);
+  mpsi_fluid_for_all(f, f->count, MPSI_FLUID_CHUNK, find_walls);
   f->travel = 0.0;
   for (bool room = false; !room;) {
     f->ghosts = 0;
@@ -232,7 +232,7 @@ static void move_images(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
 }
 
 void mpsi_fluid_move_ghosts(mps_fluid *f) {
-  mpsi_fluid_for(f, f->ghosts, MPSI_FLUID_CHUNK, move_images);
+  mpsi_fluid_for_all(f, f->ghosts, MPSI_FLUID_CHUNK, move_images);
 }
 
 static void press_images(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
@@ -253,5 +253,5 @@ static void press_images(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk
 }
 
 void mpsi_fluid_press_ghosts(mps_fluid *f) {
-  mpsi_fluid_for(f, f->ghosts, MPSI_FLUID_CHUNK, press_images);
+  mpsi_fluid_for_all(f, f->ghosts, MPSI_FLUID_CHUNK, press_images);
 }
