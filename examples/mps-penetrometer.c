@@ -22,6 +22,7 @@ int main(int argc, char **argv) {
                                  .h = 0.0125,
                                  .courant = 0.5,
                                  .ppc = 8,
+                                 .spline = 1,
                                  .out = "out/penetrometer"}};
   pen_settings *s = &p.s;
   option table[] = {
@@ -63,6 +64,7 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("h", "m", OPTION_LENGTH, &s->h, "grid spacing"),
       OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 64.0), &s->ppc,
                      "particles a cell in space, a cube: 1, 8, 27 or 64"),
+      OPTION_CHOICE("spline", "2|3", &s->spline, "degree of the weights"),
       OPTION_CHOICE("volumetric", "point|cell", &s->volumetric, "change of volume: F-bar by cell"),
       OPTION_NUMBER("courant", "1", OPTION_FROM_TO(1e-3, 1.0), &s->courant,
                     "step over its limit, Nakamura (49)"),

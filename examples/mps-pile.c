@@ -25,6 +25,7 @@ int main(int argc, char **argv) {
                          .h = 0.005,
                          .courant = 0.5,
                          .ppc = 4,
+                         .spline = 1,
                          .frames = 4,
                          .every_checkpoint = 0.05,
                          .out = "out/pile"}};
@@ -60,6 +61,7 @@ int main(int argc, char **argv) {
       OPTION_HEADING("Grid"),
       OPTION_NUMBER("h", "m", OPTION_LENGTH, &s->h, "grid spacing"),
       OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
+      OPTION_CHOICE("spline", "2|3", &s->spline, "degree of the weights"),
       OPTION_NUMBER("courant", "1", OPTION_FROM_TO(1e-3, 1.0), &s->courant,
                     "step over its limit, Nakamura (49)"),
       OPTION_HEADING("Run"),

@@ -152,6 +152,7 @@ static mps_status make_solver(penetrometer *p, pen_run *r, mps_status status) {
   mps_mpm_def def = mps_mpm_defaults();
   def.geometry = r->geometry;
   def.cell = s->h;
+  def.spline = s->spline + 2;
   def.volumetric = s->volumetric;
   def.courant = s->courant;
   for (int c = 0; c <= up; c++) {

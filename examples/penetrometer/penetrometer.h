@@ -18,6 +18,7 @@ enum { PEN_TIP, PEN_SHAFT, PEN_TOTAL, PEN_FORCES };
 
 typedef struct pen_settings {
   int tip, law, model, volumetric;
+  int spline;  /* degree of the weights less 2 */
   int contact; /* mps_contact_method */
   const char *mesh;
   double scale;                            /* m per unit of the mesh */

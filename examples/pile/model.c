@@ -148,6 +148,7 @@ mps_status pile_build(mps_context *context, void *user) {
   mps_mpm_def def = mps_mpm_defaults();
   def.geometry = MPS_MPM_AXISYMMETRIC;
   def.cell = s->h;
+  def.spline = s->spline + 2;
   def.courant = s->courant;
   def.lower[0] = def.lower[1] = 0.0;
   def.upper[0] = s->width;

@@ -24,6 +24,7 @@ typedef struct pile_settings {
   int cone;                       /* see pile_cone */
   double h, courant;
   int64_t ppc, frames, threads;
+  int spline;                       /* degree of the weights less 2 */
   const char *checkpoint, *restart; /* files, NULL: none */
   double every_checkpoint;          /* m of path */
   const char *out;

@@ -44,6 +44,18 @@ static void find_roughness(const pile *p, double *rows, double *steps) {
   *steps = count ? sqrt(jitter * (double)count) / sum : NAN;
 }
 
+/* Mean forces over the last fifth of the path (N): the same path whatever the grid, to compare. */
+static void find_means(const pile *p, double *mean) {
+  int64_t count = 0;
+  for (int k = 0; k < PILE_FORCES; k++) mean[k] = 0.0;
+  for (int64_t i = 0; i < p->rows; i++) {
+    if (!(p->row[i].depth > 0.8 * p->s.depth)) continue;
+    for (int k = 0; k < PILE_FORCES; k++) mean[k] += p->row[i].force[k];
+    count++;
+  }
+  for (int k = 0; k < PILE_FORCES; k++) mean[k] /= (double)count;
+}
+
 /* ---- files ----------------------------------------------------------------------------------- */
 
 static bool write_load(app *a, const pile *p) {
@@ -83,9 +95,10 @@ static void write_settings(output *f, const pile *p) {
 }
 
 static bool write_summary(app *a, const pile *p, const pile_row *end) {
-  double rows, steps;
+  double rows, steps, mean[PILE_FORCES];
   output f;
   find_roughness(p, &rows, &steps);
+  find_means(p, mean);
   if (!mpm_model_summary(a, &p->m, p->s.out, &f)) return false;
   write_settings(&f, p);
   json_number(&f, "depth", end->depth);
@@ -93,6 +106,10 @@ static bool write_summary(app *a, const pile *p, const pile_row *end) {
   json_number(&f, "force_tip", end->smooth[PILE_TIP]);
   json_number(&f, "force_inside", end->smooth[PILE_INSIDE]);
   json_number(&f, "force_outside", end->smooth[PILE_OUTSIDE]);
+  json_number(&f, "mean_total", mean[PILE_TOTAL]);
+  json_number(&f, "mean_tip", mean[PILE_TIP]);
+  json_number(&f, "mean_inside", mean[PILE_INSIDE]);
+  json_number(&f, "mean_outside", mean[PILE_OUTSIDE]);
   json_optional(&f, "roughness", rows);
   json_optional(&f, "roughness_steps", steps);
   json_optional(&f, "plug_height", end->plug);
@@ -116,6 +133,10 @@ static void tell(const pile *p, const pile_row *end) {
   if (isfinite(end->plug))
     printf("; plug %.4g m high, %+.3g m against the ground", end->plug, end->plug - end->depth);
   printf("\n");
+  double mean[PILE_FORCES];
+  find_means(p, mean);
+  printf("mean of the last fifth: %.5g N = tip %.5g + inside %.5g + outside %.5g N\n",
+         mean[PILE_TOTAL], mean[PILE_TIP], mean[PILE_INSIDE], mean[PILE_OUTSIDE]);
   printf("V/V0 %.4g to %.4g, particles inside the wall: %lld\n", p->seen.ratio_min,
          p->seen.ratio_max, (long long)p->seen.inside);
 }
