@@ -19,12 +19,15 @@ bool mpsi_mpm_begin_across(mps_mpm *mpm) {
     if (!mpsi_by_impulses(contact->handle[b]) || mpm->standard) contact->thin = 0;
   if (!contact->thin) return true;
   const int64_t block = mpm->grid.block_nodes;
-  const bool good = mpsi_room_ensure(mpm->context, &contact->sight_room,
-                                     contact->node_pair_count * block, sizeof *contact->sight) &&
-                    mpsi_room_ensure(mpm->context, &contact->beside_room,
-                                     contact->mask_count * block, sizeof *contact->beside);
+  const bool good =
+      mpsi_room_ensure(mpm->context, &contact->sight_room, contact->node_pair_count * block,
+                       sizeof *contact->sight) &&
+      mpsi_room_ensure(mpm->context, &contact->beside_room, contact->mask_count * block,
+                       sizeof *contact->beside) &&
+      mpsi_room_ensure(mpm->context, &contact->across_room, mpm->p.count, sizeof *contact->across);
   contact->sight = contact->sight_room.item;
   contact->beside = contact->beside_room.item;
+  contact->across = contact->across_room.item;
   return good;
 }
 

@@ -337,6 +337,7 @@ MPSI_INLINE void scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells, const 
   make_support(mpm, cells, dim, spline, particle, &at);
   const uint32_t bodies = fit(mpm, cells, worker, dim, spline, &at, &f);
   f.across = find_across(mpm, cells, particle, &at.at);
+  if (cells->thin) mpm->contact.across[particle] = f.across; /* for the way back */
   scatter(mpm, cells, worker, dim, spline, particle, &at, &f, bodies);
   for (int32_t q = 0; bodies && q < cells->pairs; q++) {
     mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
@@ -391,7 +392,7 @@ MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const m
   mpsi_shape_values f;
   make_support(mpm, cells, dim, spline, particle, &at);
   const uint32_t bodies = fit(mpm, cells, worker, dim, spline, &at, &f);
-  f.across = find_across(mpm, cells, particle, &at.at);
+  f.across = cells->thin ? mpm->contact.across[particle] : 0;
   mpsi_quad sum = {0.0}, by[3] = {sum, sum, sum}, moment[3] = {sum, sum, sum};
   MPSI_FOR_NODES(dim, spline) {
     const int t = mpsi_tile_index(at.at.at[0] + i, at.at.at[1] + j, at.at.at[2] + k);

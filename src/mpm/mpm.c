@@ -434,6 +434,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
                    mpm->contact.inside_room.item,
                    mpm->contact.reached_room.item,
                    mpm->contact.sight_room.item,
+                   mpm->contact.across_room.item,
                    mpm->contact.beside_room.item,
                    mpm->contact.spring_room.item,
                    mpm->grid.across_room.item,

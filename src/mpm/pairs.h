@@ -47,12 +47,13 @@ typedef struct mpsi_contacts {
   uint32_t *inside;         /* bit b: in body b; mask_count * block_nodes */
   uint32_t thin;            /* bit b: body b parts particles (across.h) */
   mpsi_sight *sight;        /* as node, where there are such bodies; */
+  uint64_t *across;         /* of each particle that has been asked: mpsi_mpm_find_across */
   uint8_t *beside;          /* as inside: beside or in one of them */
   _Atomic uint8_t *reached; /* corner of a cell that holds a particle; likewise */
   int64_t cell_pair_count, node_pair_count, mask_count;
   mpsi_impulses impulses;
   mpsi_room cell_pair_room, node_pair_room, node_room, inside_room, reached_room, sight_room,
-      beside_room, spring_room;
+      beside_room, across_room, spring_room;
 } mpsi_contacts;
 
 /* cut.c: all that is to be known of bodies near particles before a step; which blocks are cut and

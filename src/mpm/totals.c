@@ -23,6 +23,7 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
               {mpm->contact.inside_room.capacity, sizeof *mpm->contact.inside},
               {mpm->contact.reached_room.capacity, sizeof *mpm->contact.reached},
               {mpm->contact.sight_room.capacity, sizeof *mpm->contact.sight},
+              {mpm->contact.across_room.capacity, sizeof *mpm->contact.across},
               {mpm->contact.beside_room.capacity, sizeof *mpm->contact.beside},
               {mpm->contact.spring_room.capacity, sizeof(mpsi_spring_node)},
               {mpm->grid.across_room.capacity, sizeof(mpsi_node)},
