@@ -103,7 +103,8 @@ bool mpsi_body_overlap(const mps_body *a, const mps_body *b, double depth);
 /* Smallest wall (m): way through the body from samples of its surface, straight inwards, to its
  * other side. INFINITY of a half space. */
 double mpsi_body_thickness(const mps_body *body);
-/* Whether it is known to be convex: balls, half spaces, polygons that are. */
+/* Whether it is known to be convex: balls, half spaces, polygons and solids of revolution that are.
+ */
 bool mpsi_body_is_convex(const mps_body *body);
 
 /* A new body of `faces` faces without its shape, at its first position; checks `def`, NULL means

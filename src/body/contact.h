@@ -21,8 +21,8 @@ struct mps_contact {
   mps_contact_def def;
   mps_body *body;
   double extent;     /* m: see mpsi_body_extent */
-  bool thin;         /* the solver keeps what is on both sides of a thin wall apart; */
-  bool convex;       /* and then, whether the body is */
+  bool thin;         /* the solver keeps what is on both sides of a thin wall apart */
+  bool convex;       /* whether the body is known to be */
   mps_contact *next; /* of the body's contacts */
   const mpsi_contact_owner *kind;
   void *owner; /* the solver; NULL: the contact has ended */

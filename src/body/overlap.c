@@ -192,9 +192,22 @@ double mpsi_body_thickness(const mps_body *body) {
   }
 }
 
+/* Whether a convex polygon (r, z) stays so with its image beyond the axis: it has an edge there,
+ * from whose ends it does not lead beyond them. */
+static bool is_convex_about_axis(const mps_body *body) {
+  bool closed = false;
+  for (int64_t k = 0; k < body->edges; k++) {
+    const double *a = body->xy + 2 * k, *b = a + 2;
+    closed = closed || (a[0] == 0.0 && b[0] == 0.0);
+    if ((a[0] == 0.0) != (b[0] == 0.0) && b[1] < a[1]) return false;
+  }
+  return closed;
+}
+
 bool mpsi_body_is_convex(const mps_body *body) {
   if (body->shape == MPSI_BALL || body->shape == MPSI_HALF) return true;
-  if (body->shape != MPSI_POLYGON) return false;
+  if (body->shape == MPSI_MESH) return false;
+  if (body->shape == MPSI_REVOLUTION && !is_convex_about_axis(body)) return false;
   for (int64_t k = 0; k < body->edges; k++) {
     const double *a = body->xy + 2 * k, *b = a + 2, *c = body->xy + 2 * ((k + 1) % body->edges) + 2;
     if ((b[0] - a[0]) * (c[1] - b[1]) < (b[1] - a[1]) * (c[0] - b[0])) return false;

@@ -147,7 +147,7 @@ static void surround_block(void *data, int64_t unit, int32_t worker) {
                             ? mpsi_mpm_met_area(mpm, block->at, at, touch->body)
                             : area_under(mpm, &mpm->grid.cells[block->cells], at, touch->body);
       if (area && area->area > 0.0 && weight > 0.0)
-        all->around[n * all->stride + touch->areas++] = (mpsi_area_share){area, weight};
+        all->around[n * nodes_around(mpm, 4) + touch->areas++] = (mpsi_area_share){area, weight};
     }
   }
 }
@@ -158,7 +158,7 @@ static void count_block(void *data, int64_t unit, int32_t worker) {
   const mpsi_touch_block *block = &all->block[all->area_first + unit];
   (void)worker;
   for (int64_t n = block->first; n < block->first + block->count; n++) {
-    const mpsi_area_share *at = all->around + n * all->stride;
+    const mpsi_area_share *at = all->around + n * nodes_around(mpm, 4);
     if (!is_pressed(&all->touch[n])) continue;
     for (int q = 0; q < all->touch[n].areas; q++) at[q].node->touches += at[q].weight;
   }
@@ -172,7 +172,7 @@ static void share_block(void *data, int64_t unit, int32_t worker) {
   (void)worker;
   for (int64_t n = block->first; n < block->first + block->count; n++) {
     mpsi_touch *touch = &all->touch[n];
-    const mpsi_area_share *at = all->around + n * all->stride;
+    const mpsi_area_share *at = all->around + n * nodes_around(mpm, 4);
     const mps_contact_def *def = &mpm->contact.handle[touch->body]->def;
     double area = 0.0;
     if (!mpsi_has_strength(mpm->contact.handle[touch->body])) continue;
@@ -195,7 +195,7 @@ bool mpsi_mpm_area_room(mps_mpm *mpm, int64_t touches) {
   if (!wanted) return true;
   const int64_t nodes = mpm->share ? 0 : mpm->contact.node_pair_count * mpm->grid.block_nodes;
   if (!mpsi_room_ensure(mpm->context, &all->area_room, nodes, sizeof *all->area) ||
-      !mpsi_room_ensure(mpm->context, &all->around_room, touches * all->stride,
+      !mpsi_room_ensure(mpm->context, &all->around_room, touches * nodes_around(mpm, 4),
                         sizeof *all->around))
     return false;
   all->area = all->area_room.item;
@@ -222,7 +222,7 @@ void mpsi_mpm_share_areas(mps_mpm *mpm) {
   if (!all->areas) return;
   for (int64_t n = 0; n < all->touch_count; n++)
     for (int32_t q = 0; q < all->touch[n].areas; q++)
-      all->around[n * all->stride + q].node->touches = 0.0;
+      all->around[n * nodes_around(mpm, 4) + q].node->touches = 0.0;
   for (int k = 0; k < MPSI_CORNERS; k++) {
     all->area_first = all->colour[k];
     mpsi_parallel_for(mpm->context, all->colour[k + 1] - all->area_first, count_block, mpm);

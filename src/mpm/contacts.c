@@ -47,7 +47,7 @@ static mps_status check_overlap(mps_mpm *mpm, const char *function, const mps_bo
 static mps_status check_thickness(mps_mpm *mpm, const char *function, mps_contact *contact) {
   const double wall = mpsi_body_thickness(contact->body), cells = wall * mpm->grid.inverse;
   contact->thin = cells < MPSI_THIN_CELLS * (1.0 - 1e-9);
-  contact->convex = contact->thin && mpsi_body_is_convex(contact->body);
+  contact->convex = mpsi_body_is_convex(contact->body);
   if (!contact->thin || mpsi_by_impulses(contact)) return MPS_OK;
   if (!contact->def.thin && cells < SHARP)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,

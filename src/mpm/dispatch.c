@@ -14,11 +14,15 @@
                              mpsi_shape_values *out);                                              \
   void mpsi_mpm_foot_v##level(const mps_mpm *mpm, const mpsi_cell_block *cells,                    \
                               const mpsi_worker *worker, int64_t particle, const double *d,        \
-                              mpsi_foot_weights *out);
+                              mpsi_foot_weights *out);                                             \
+  double mpsi_mpm_fastest_v##level(const mps_mpm *mpm, int64_t begin, int64_t end);                \
+  int64_t mpsi_mpm_next_near_v##level(const mps_mpm *mpm, const mpsi_far *far, int64_t begin,      \
+                                      int64_t end);
 #define KERNELS(level)                                                                             \
   {                                                                                                \
     mpsi_mpm_p2g_v##level, mpsi_mpm_tile_v##level, mpsi_mpm_flush_v##level, mpsi_mpm_g2p_v##level, \
-        mpsi_mpm_speed_v##level, mpsi_mpm_fit_v##level, mpsi_mpm_foot_v##level                     \
+        mpsi_mpm_speed_v##level, mpsi_mpm_fit_v##level, mpsi_mpm_foot_v##level,                    \
+        mpsi_mpm_fastest_v##level, mpsi_mpm_next_near_v##level                                     \
   }
 
 DECLARE(1)

@@ -34,12 +34,17 @@ static void velocity_at(const mps_mpm *mpm, const mpsi_impulses *all, int64_t n,
   double *const *node = all->node + n * all->stride;
   const int32_t nodes = all->touch[n].nodes;
   memcpy(v, all->touch[n].carried, sizeof all->touch[n].carried);
-  two xy = {v[0], v[1]};
-  for (int32_t i = 0; i < nodes; i++)
-    xy += *(const two *)weight[i] * *(const two *)(node[i] + MPSI_VECTOR);
-  v[0] = xy[0], v[1] = xy[1];
-  for (int32_t i = 0; i < nodes && mpm->dim == 3; i++)
-    v[2] += weight[i][2] * node[i][MPSI_VECTOR + 2];
+  const bool space = mpm->dim == 3;
+  two even = {v[0], v[1]}, odd = {0.0}; /* apart: neither waits for the other */
+  double even_z = v[2], odd_z = 0.0;
+  for (int32_t i = 0; i < nodes; i++) {
+    even += *(const two *)weight[i] * *(const two *)(node[i] + MPSI_VECTOR);
+    if (space) even_z += weight[i][2] * node[i][MPSI_VECTOR + 2];
+    if (++i == nodes) break;
+    odd += *(const two *)weight[i] * *(const two *)(node[i] + MPSI_VECTOR);
+    if (space) odd_z += weight[i][2] * node[i][MPSI_VECTOR + 2];
+  }
+  v[0] = even[0] + odd[0], v[1] = even[1] + odd[1], v[2] = even_z + odd_z;
 }
 
 /* ---- a block --------------------------------------------------------------------------------- */

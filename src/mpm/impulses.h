@@ -20,7 +20,7 @@ typedef struct mpsi_touch {
   int64_t id;        /* and what it keeps when the particles are sorted */
   int64_t pair;      /* of contact.cell_pair; -1: of another rank (meet.h), as its particle */
   int32_t body, part, nodes;
-  int32_t areas; /* nodes whose areas it shares, around[k * stride] and on (areas.c) */
+  int32_t areas; /* nodes whose areas it shares, of around[] (areas.c) */
 } mpsi_touch;
 
 /* The touches of a block of cells: neighbours in the list. */

@@ -30,23 +30,35 @@ static double deep_below(const mps_mpm *mpm, int32_t b) {
   return mpm->contact.handle[b]->def.depth + 2.0 * mpm->def.cell * sqrt((double)mpm->dim);
 }
 
+/* Whether x lies before the tangent plane at the foot of a point outside: no convex body holds it.
+ */
+static bool lies_before(const mps_mpm *mpm, const mpsi_foot *foot, const double *x) {
+  double before = 0.0;
+  for (int c = 0; c < mpm->dim; c++) before += (x[c] - foot->at[c]) * foot->normal[c];
+  return foot->distance > 0.0 && before > 1e-9 * mpm->def.cell;
+}
+
 /* Nodes of a block that lie inside body b, with normals where a stencil may have them. */
 static void find_inside_body(mps_mpm *mpm, mpsi_node_block *nodes, int32_t b,
                              mpsi_contact_node *node, uint32_t *inside) {
   const double deep = deep_below(mpm, b);
+  mpsi_foot foot = {.distance = 0.0};
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     int place[3];
     double x[3];
     mpsi_unravel(k, MPSI_SIDE, place);
     mpsi_node_place(mpm, nodes->at, k, x);
-    const mpsi_foot foot = mpsi_body_foot(mpm->contact.body[b], x);
+    if (mpm->contact.handle[b]->convex && lies_before(mpm, &foot, x)) continue;
+    foot = mpsi_body_foot(mpm->contact.body[b], x);
     const int row = MPSI_SIDE - 1 - place[0]; /* nodes behind this one */
     int same = foot.distance < 0.0 ? same_behind(mpm, -foot.distance - deep)
                                    : same_behind(mpm, foot.distance);
     if (same > row) same = row;
-    if (foot.distance < 0.0)
-      for (int i = 0; i <= same; i++, place[0]++) note_inside(nodes, place, &inside[k + i], b);
-    for (int c = 0; c < mpm->dim && foot.distance < 0.0; c++) node[k].normal[c] = foot.normal[c];
+    for (int i = 0; i <= same && foot.distance < 0.0; i++, place[0]++) {
+      note_inside(nodes, place, &inside[k + i], b);
+      for (int c = 0; c < 3; c++)
+        node[k + i].normal[c] = c < mpm->dim && i == 0 ? foot.normal[c] : 0.0;
+    }
     k += same;
   }
 }
@@ -67,7 +79,7 @@ void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
     mpsi_contact_node *node = mpm->contact.node + (int64_t)t * mpm->grid.block_nodes;
     const int32_t b = mpm->contact.node_pair[t].body;
-    memset(node, 0, (size_t)mpm->grid.block_nodes * sizeof *node);
+    if (mpm->contact.sums) memset(node, 0, (size_t)mpm->grid.block_nodes * sizeof *node);
     if (mpm->contact.thin >> b & 1) continue; /* cuts no support: across.h */
     if (mpsi_mpm_body_reaches(mpm, b, nodes->at, MPSI_SIDE))
       find_inside_body(mpm, nodes, b, node, inside);
@@ -103,14 +115,17 @@ static void for_corners(const mps_mpm *mpm, const mpsi_cell_block *cells, corner
   memset(seen, 0, (size_t)mpm->grid.tile_nodes * sizeof *seen);
   double first[3], last[3];
   const int dim = mpm->dim;
+  int slim = 0; /* the axis along which most are not near */
   for (int c = 0; c < dim; c++) {
+    if (high[c] - low[c] < high[slim] - low[slim]) slim = c;
     first[c] = (double)cells->at[c] * MPSI_SIDE;
     last[c] = (double)(mpm->grid.high[c] - 1) - first[c];
   }
   for (int64_t k = cells->begin; k < cells->end; k++) {
     int at[3] = {0};
     bool near = true;
-    for (int c = 0; c < dim && near; c++) {
+    for (int n = 0; n < dim && near; n++) {
+      const int c = slim + n < dim ? slim + n : slim + n - dim;
       /* counted from the block: not negative, so that truncation is floor */
       const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k]) - first[c];
       at[c] = (int)(X < last[c] ? X : last[c]);

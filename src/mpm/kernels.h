@@ -1,5 +1,5 @@
 /* kernels.h - the inner loops of the solver, compiled once for each instruction set: p2g.c, g2p.c,
- * fitted.c, and loops.h for what they share.
+ * fitted.c, near.c, and loops.h for what they share.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_KERNELS_H
 #define MPSI_MPM_KERNELS_H
@@ -16,6 +16,13 @@ typedef void (*mpsi_foot_fn)(const mps_mpm *mpm, const mpsi_cell_block *cells,
                              const mpsi_worker *worker, int64_t particle, const double *d,
                              mpsi_foot_weights *out);
 
+/* What is known to be far from a body: the ball about x and, of a convex body, what is before the
+ * tangent plane at `at` by more than `before` (m; else INFINITY). */
+typedef struct mpsi_far {
+  double x[3], square; /* m, m2 */
+  double at[3], normal[3], before;
+} mpsi_far;
+
 typedef struct mpsi_kernels {
   /* By geometry (mps_mpm_geometry) and degree of the spline less 2. */
   const mpsi_mpm_task (*p2g)[2];  /* a block of cells, of the colour in work, to its nodes */
@@ -25,6 +32,10 @@ typedef struct mpsi_kernels {
   mpsi_mpm_task speed;            /* largest speed of a block, by itself */
   mpsi_fit_fn fit;
   mpsi_foot_fn foot;
+  /* near.c, of particles [begin, end): the largest speed (m/s); and the first that is not far, or
+   * `end`. */
+  double (*fastest)(const mps_mpm *mpm, int64_t begin, int64_t end);
+  int64_t (*next_near)(const mps_mpm *mpm, const mpsi_far *far, int64_t begin, int64_t end);
 } mpsi_kernels;
 
 /* dispatch.c: the kernels of an x86-64 level; 0: the best that processor and build have. */

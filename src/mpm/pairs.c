@@ -78,6 +78,23 @@ static bool list_node_pairs(mps_mpm *mpm, int64_t *count, int64_t *near) {
   return *count <= mpm->contact.node_pair_room.capacity;
 }
 
+/* Contacts by springs have sums at the nodes; of those by impulses these stay 0. */
+static bool ensure_nodes(mps_mpm *mpm, int64_t nodes) {
+  mpsi_contacts *contact = &mpm->contact;
+  const int64_t before = contact->node_room.capacity;
+  contact->sums = false;
+  for (int32_t b = 0; b < contact->bodies; b++)
+    contact->sums = contact->sums || !mpsi_by_impulses(contact->handle[b]);
+  if (!mpsi_room_ensure(mpm->context, &contact->node_room, nodes, sizeof *contact->node))
+    return false;
+  contact->node = contact->node_room.item;
+  contact->clean = contact->clean && !contact->sums && contact->node_room.capacity == before;
+  if (contact->sums || contact->clean) return true;
+  memset(contact->node, 0, (size_t)contact->node_room.capacity * sizeof *contact->node);
+  contact->clean = true;
+  return true;
+}
+
 mps_status mpsi_mpm_list_pairs(mps_mpm *mpm, const char *function) {
   mps_context *context = mpm->context;
   mpsi_contacts *contact = &mpm->contact;
@@ -92,7 +109,7 @@ mps_status mpsi_mpm_list_pairs(mps_mpm *mpm, const char *function) {
     if (good) list_node_pairs(mpm, &node_pairs, &near);
   }
   const int64_t nodes = node_pairs * mpm->grid.block_nodes, masks = near * mpm->grid.block_nodes;
-  good = good && mpsi_room_ensure(context, &contact->node_room, nodes, sizeof *contact->node) &&
+  good = good && ensure_nodes(mpm, nodes) &&
          mpsi_room_ensure(context, &contact->inside_room, masks, sizeof *contact->inside) &&
          mpsi_room_ensure(context, &contact->reached_room, masks, sizeof *contact->reached);
   if (!good)
@@ -101,7 +118,6 @@ mps_status mpsi_mpm_list_pairs(mps_mpm *mpm, const char *function) {
                                 (size_t)nodes * sizeof *contact->node);
   contact->cell_pair = contact->cell_pair_room.item;
   contact->node_pair = contact->node_pair_room.item;
-  contact->node = contact->node_room.item;
   contact->inside = contact->inside_room.item;
   contact->reached = contact->reached_room.item;
   contact->cell_pair_count = cell_pairs;

@@ -43,7 +43,9 @@ typedef struct mpsi_contacts {
   double mass[MPS_MPM_MAX_CONTACTS]; /* kg, of the nodes in contact with each body */
   mpsi_cell_pair *cell_pair;
   mpsi_node_pair *node_pair;
-  mpsi_contact_node *node;
+  mpsi_contact_node *node;  /* normals where `inside`; else 0 where no springs act */
+  bool sums;                /* springs act: its sums are in use, */
+  bool clean;               /* and else, that they are 0 all over its room */
   uint32_t *inside;         /* bit b: in body b; mask_count * block_nodes */
   uint32_t thin;            /* bit b: body b parts particles (across.h) */
   mpsi_sight *sight;        /* as node, where there are such bodies; */

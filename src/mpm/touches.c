@@ -79,15 +79,22 @@ static void place_of(const mps_mpm *mpm, int64_t k, double *x) {
 /* No particle of the block touches that is further away than this (m). */
 static double longest_reach(const mps_mpm *mpm, const mpsi_cell_block *cells,
                             const mps_contact *contact) {
-  const bool space = mpm->dim == 3;
-  const double *x = mpm->p.v[0], *y = mpm->p.v[1], *z = space ? mpm->p.v[2] : y;
-  double largest = 0.0;
-  for (int64_t k = cells->begin; k < cells->end; k++) {
-    const double square = x[k] * x[k] + y[k] * y[k] + (space ? z[k] * z[k] : 0.0);
-    largest = square > largest ? square : largest;
-  }
-  return 1.4 * contact->def.offset +
-         mpm->run.dt * (mpsi_contact_speed(contact) + sqrt(largest)) * (1.0 + 1e-9);
+  const double fastest = mpm->kernels->fastest(mpm, cells->begin, cells->end);
+  return (1.4 * contact->def.offset + mpm->run.dt * (mpsi_contact_speed(contact) + fastest)) *
+         (1.0 + 1e-9);
+}
+
+/* What the foot of x tells: distances change no faster than places, and a convex body lies behind
+ * the tangent plane. */
+static mpsi_far far_by(const mps_contact *contact, const mpsi_foot *foot, const double *x,
+                       double reach) {
+  const double slack = fmax(foot->distance - reach, 0.0);
+  mpsi_far out = {.square = slack * slack, .before = INFINITY};
+  if (contact->convex && foot->distance > 0.0) out.before = reach * (1.0 + 1e-9);
+  memcpy(out.x, x, sizeof out.x);
+  memcpy(out.at, foot->at, sizeof out.at);
+  memcpy(out.normal, foot->normal, sizeof out.normal);
+  return out;
 }
 
 static bool may_touch(const mps_mpm *mpm, const mps_contact *contact, int64_t k, const double *x,
@@ -100,24 +107,21 @@ static bool may_touch(const mps_mpm *mpm, const mps_contact *contact, int64_t k,
   return mpsi_impulse_near(foot->distance - half, half, closing, mpm->run.dt);
 }
 
-/* Those of a pair of a block and a body. Distances change no faster than places: the last one that
- * was found tells of most particles that they are too far. */
+/* Those of a pair of a block and a body: the last foot that was found tells of most particles that
+ * they are too far. */
 static void find_candidates(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_cell_pair *pair) {
   const mps_contact *contact = mpm->contact.handle[pair->body];
   const double reach = longest_reach(mpm, cells, contact);
   int32_t *out = mpm->contact.impulses.candidate + pair->first_candidate;
-  double known[3] = {0.0}, distance = -1.0;
+  mpsi_far far = {.before = INFINITY};
   pair->candidates = 0;
-  for (int64_t k = cells->begin; k < cells->end; k++) {
-    double x[3], square = 0.0;
-    const double slack = distance - reach;
+  for (int64_t k = cells->begin;
+       (k = mpm->kernels->next_near(mpm, &far, k, cells->end)) < cells->end; k++) {
+    double x[3];
     place_of(mpm, k, x);
-    for (int c = 0; c < 3; c++) square += (x[c] - known[c]) * (x[c] - known[c]);
-    if (slack > 0.0 && square < slack * slack) continue;
     const mpsi_foot foot = mpsi_body_foot(contact->body, x);
-    memcpy(known, x, sizeof known);
-    distance = foot.distance;
-    if (distance <= reach && may_touch(mpm, contact, k, x, &foot))
+    far = far_by(contact, &foot, x, reach);
+    if (foot.distance <= reach && may_touch(mpm, contact, k, x, &foot))
       out[pair->candidates++] = (int32_t)(k - cells->begin);
   }
 }
@@ -173,7 +177,8 @@ mps_status mpsi_mpm_find_touches(mps_mpm *mpm, const char *function) {
   all->touch_count = all->block_count = 0;
   if (mpm->contact.bodies == 0) return MPS_OK;
   const int64_t candidates = share_candidates(mpm);
-  all->stride = mpm->dim == 3 ? MPSI_STENCIL : MPSI_STENCIL / 4;
+  const int32_t side = mpm->def.spline + 1;
+  all->stride = mpm->dim == 3 ? side * side * side : side * side;
   bool good = mpsi_room_ensure(context, &all->candidate_room, candidates, sizeof *all->candidate) &&
               mpsi_room_ensure(context, &all->block_room, mpm->grid.cell_count, sizeof *all->block);
   all->candidate = all->candidate_room.item;

@@ -259,7 +259,73 @@ static void batches_do_as_the_fit(void **state) {
   }
 }
 
+/* A block of ground under a heavy body that comes down tilted. */
+static mpm_scene pressed(int dim, bool plane) {
+  mpm_scene s = mpm_scene_begin_in(context, dim, 0.5 * CELL, 0.0, 0.0, 1e6);
+  const double lo[3] = {0.0}, hi[3] = {10 * CELL, 10 * CELL, dim == 3 ? 6 * CELL : 0.0};
+  mps_assert_ok(context, mps_particles_fill_box(s.particles, lo, hi, NULL));
+  mps_mpm_def def = mps_mpm_defaults();
+  def.geometry = dim == 3 ? MPS_MPM_SPACE : MPS_MPM_PLANE_STRAIN;
+  def.cell = CELL;
+  mpm_scene_solve(&s, &def);
+  mps_body_def body = mps_body_defaults();
+  mps_body *made = NULL;
+  body.position[0] = body.position[1] = 5 * CELL;
+  body.position[dim - 1] = (dim == 3 ? 9.0 : 13.5) * CELL;
+  body.rotation[dim == 3 ? 0 : 2] = 0.2;
+  body.motion = MPS_BODY_MOTION_FREE;
+  body.mass = 1e6;
+  for (int c = dim == 2 ? 2 : 0; c < 3; c++) body.inertia[c] = 1e6;
+  body.velocity[dim - 1] = -3.0;
+  if (dim == 3)
+    mps_assert_ok(context, mps_body_create_cylinder(context, &body, 3 * CELL, 4 * CELL, &made));
+  else
+    mps_assert_ok(context, mps_body_create_box(context, &body, 5 * CELL, 5 * CELL, &made));
+  mpm_scene_contact(&s, made, 0.3);
+  assert_true(s.mpm->contact.handle[0]->convex);
+  s.mpm->contact.handle[0]->convex = plane;
+  mps_body_destroy(&made);
+  return s;
+}
+
+/* Nothing changes by what the tangent planes of a convex body leave out of the search. */
+static void tangent_planes_leave_out_nothing_near(void **state) {
+  (void)state;
+  for (int dim = 2; dim <= 3; dim++) {
+    mpm_scene s = pressed(dim, true), other = pressed(dim, false);
+    mps_assert_ok(context, mps_mpm_step(s.mpm, 60));
+    mps_assert_ok(context, mps_mpm_step(other.mpm, 60));
+    assert_true(s.mpm->contact.impulses.kept_count > 3);
+    assert_int_equal(s.mpm->contact.impulses.kept_count, other.mpm->contact.impulses.kept_count);
+    for (int c = 0; c < dim; c++)
+      assert_memory_equal(s.mpm->p.v[c], other.mpm->p.v[c], (size_t)s.mpm->p.count * 8);
+    mpm_scene_end(&s);
+    mpm_scene_end(&other);
+  }
+}
+
+/* A cone with a hollow base, a ring: solids whose meridian is convex, but not they. */
+static void solids_of_revolution_are_convex_or_not(void **state) {
+  (void)state;
+  static const double cylinder[] = {0, 0, 1, 0, 1, 2, 0, 2}, cone[] = {0, 0, 1, 2, 0, 2};
+  static const double hollow[] = {0, 1, 1, 0, 1, 2, 0, 2}, ring[] = {1, 0, 2, 0, 2, 1, 1, 1};
+  static const struct {
+    const double *rz;
+    int64_t corners;
+    bool convex;
+  } cases[] = {{cylinder, 4, true}, {cone, 3, true}, {hollow, 4, false}, {ring, 4, false}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    mps_body *body = NULL;
+    mps_assert_ok(context,
+                  mps_body_create_revolution(context, NULL, cases[k].corners, cases[k].rz, &body));
+    assert_true(mpsi_body_is_convex(body) == cases[k].convex);
+    mps_body_destroy(&body);
+  }
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(batches_do_as_the_fit)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(batches_do_as_the_fit),
+                                     cmocka_unit_test(tangent_planes_leave_out_nothing_near),
+                                     cmocka_unit_test(solids_of_revolution_are_convex_or_not)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
