@@ -568,6 +568,18 @@ static void a_run_ends_with_even_steps(void **state) {
 
 /* Water that flows off the end of its bed is taken out and counted, and its momentum too; a
  * rollback brings it back. */
+/* Creation looks at all particles where they are. */
+static void thousands_are_where_they_are_put(void **state) {
+  (void)state;
+  tank t = tank_make(context, 0.6, 0.4, 0.01, NULL, 1e-3);
+  const double at[3] = {0.1, 0.3, 0.5};
+  double level[3];
+  assert_int_equal(mps_particles_count(t.water), 2400);
+  mps_assert_ok(context, mps_fluid_get_levels(t.fluid, 3, at, level));
+  for (int k = 0; k < 3; k++) mps_assert_near(level[k], 0.4, 1e-12);
+  tank_free(&t);
+}
+
 static void water_leaves_by_an_open_side(void **state) {
   (void)state;
   mps_particles_def set = mps_particles_defaults();
@@ -651,6 +663,7 @@ int main(void) {
       cmocka_unit_test(a_step_in_parts_is_the_step),
       cmocka_unit_test(parts_of_a_step_have_their_order),
       cmocka_unit_test(a_run_ends_with_even_steps),
+      cmocka_unit_test(thousands_are_where_they_are_put),
       cmocka_unit_test(water_leaves_by_an_open_side),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);

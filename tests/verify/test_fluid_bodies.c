@@ -111,29 +111,31 @@ static void water_stays_still_around_a_box(void **state) {
 
 /* ---- a box that starts to move --------------------------------------------------------------- */
 
-enum { NX = 240, NY = 80 }; /* cells of l0/4 */
+enum { NX = 240, NY = 80 }; /* cells, at most: of l0/4 */
 
 /* Force by area and density on a box that accelerates by 1 along `axis`: Laplace's equation for p
- * by finite differences in cells, p = 0 at .4 m, by Gauss-Seidel with over-relaxation. */
-static double laplace(const place *p, int axis) {
+ * by finite differences in cells of l0/fine, p = 0 at .4 m, by Gauss-Seidel with over-relaxation.
+ */
+static double laplace(const place *p, int axis, int fine) {
+  const int nx = 60 * fine, ny = 20 * fine;
   static double q[NX][NY];
   static unsigned char solid[NX][NY];
-  const double h = 1.2 / NX;
+  const double h = 1.2 / nx;
   memset(q, 0, sizeof q);
-  for (int i = 0; i < NX; i++)
-    for (int j = 0; j < NY; j++)
+  for (int i = 0; i < nx; i++)
+    for (int j = 0; j < ny; j++)
       solid[i][j] = fabs((i + 0.5) * h - p->x) < 0.5 * p->width &&
                     fabs((j + 0.5) * h - p->y) < 0.5 * p->height;
   for (int sweep = 0; sweep < 3000; sweep++)
-    for (int i = 0; i < NX; i++)
-      for (int j = 0; j < NY; j++) {
+    for (int i = 0; i < nx; i++)
+      for (int j = 0; j < ny; j++) {
         if (solid[i][j]) continue;
         double sum = 0.0, count = 0.0;
         for (int k = 0; k < 4; k++) {
           const int di = k == 0 ? 1 : k == 1 ? -1 : 0, dj = k == 2 ? 1 : k == 3 ? -1 : 0;
           const int a = i + di, b = j + dj;
-          if (a < 0 || a >= NX || b < 0) continue;
-          if (b == NY)
+          if (a < 0 || a >= nx || b < 0) continue;
+          if (b == ny)
             count += 2.0; /* p = 0 half a cell away */
           else if (solid[a][b])
             sum -= h * (axis == 0 ? di : dj); /* dp/dn = -a.n, n from here into the box */
@@ -143,10 +145,10 @@ static double laplace(const place *p, int axis) {
         q[i][j] += 1.9 * (sum / count - q[i][j]);
       }
   double force = 0.0;
-  for (int i = 0; i < NX; i++)
-    for (int j = 0; j < NY; j++) {
+  for (int i = 0; i < nx; i++)
+    for (int j = 0; j < ny; j++) {
       const int a = i + (axis == 0), b = j + (axis == 1);
-      if (a >= NX || b >= NY) continue;
+      if (a >= nx || b >= ny) continue;
       if (!solid[i][j] && solid[a][b]) force += q[i][j] * h;
       if (solid[i][j] && !solid[a][b]) force -= q[a][b] * h;
     }
@@ -182,8 +184,8 @@ static int ascending(const void *a, const void *b) {
 
 /* The force on a box whose acceleration is a is -m_a a besides the one at rest. A first step from
  * rest has more: the divergence that it leaves is taken away in the next ones, whose median counts:
- * one step may have a jolt, most likely where a lattice line passes a corner and the pair of
- * particles there loses sight of each other. */
+ * one may have a jolt, where the lines from many particles of a lattice to images in a face pass
+ * its end at once and these are lost. */
 static void a_box_that_starts_feels_its_added_mass(void **state) {
   (void)state;
   const place places[] = {
@@ -200,7 +202,10 @@ static void a_box_that_starts_feels_its_added_mass(void **state) {
       for (int n = 0; n < STARTS; n++) added[n] = 0.5 * (fro[n] - to[n]) / a;
       qsort(added + 1, STARTS - 1, sizeof *added, ascending);
       const double median = added[STARTS / 2];
-      const double exact = -1000.0 * laplace(&places[k], axis);
+      /* on cells of l0/4 to l0/32 each halving brings .58 of the change of the one before, but for
+       * the box on the bed (.52) */
+      const double coarse = laplace(&places[k], axis, 2), fine = laplace(&places[k], axis, 4);
+      const double exact = -1000.0 * (fine + 1.38 * (fine - coarse));
       print_message(
           "%-28s added mass along %c %.2f kg (first step %.2f), finite differences %.2f kg "
           "(%+.2f %%)\n",
@@ -208,7 +213,7 @@ static void a_box_that_starts_feels_its_added_mass(void **state) {
           100.0 * (median / exact - 1.0));
       /* four spacings of draft: the pressure's slope is infinite where a side ends in the surface
        */
-      mps_assert_near(median, exact, (k == 1 && axis == 0 ? 0.2 : 0.08) * exact);
+      mps_assert_near(median, exact, (k == 1 && axis == 0 ? 0.14 : 0.06) * exact);
     }
 }
 
