@@ -6,6 +6,7 @@
 #include "ranks_result.h"
 
 #include <mps/mpm.h>
+#include <mps/mpm_energy.h>
 #include <mps/mpm_settle.h>
 
 enum { SLIDE, SPREAD, RING, ROOM, PRESS, CONE, BALLS, PLATES, SCENES };
@@ -118,6 +119,7 @@ static inline mps_mpm_def scene_def(mps_domain *domain, int what) {
   if (what == SLIDE) def.dt = 1e-4;
   if (what == SPREAD) def.walls = MPS_MPM_WALLS_FIT, def.viscous_damping = 0.5;
   if (what == RING) def.local_damping = 0.1;
+  def.budget = what == RING || what == PRESS || what == PLATES;
   if (what == PRESS || what == ROOM) def.volumetric = MPS_MPM_VOLUMETRIC_CELL;
   if (what == PLATES) def.volumetric = MPS_MPM_VOLUMETRIC_NODES;
   return def;
@@ -207,7 +209,7 @@ static inline mps_status keep_body(scene *s, int k, result *r) {
     STATE = (int)(sizeof(mps_body_state) / 8),
     EACH = STATE + (int)(sizeof(mps_reaction) / 8)
   };
-  _Static_assert(BODIES * EACH <= RESULT_OTHERS, "room");
+  _Static_assert(BODIES * EACH + 1 + sizeof(mps_mpm_losses) / 8 <= RESULT_OTHERS, "room");
   mps_body_state state;
   mps_reaction touch;
   mps_status status = mps_contact_get_reaction(s->contact[k], k == 1 ? 0 : -1, &touch);
@@ -244,6 +246,9 @@ static inline mps_status keep_scene(mps_domain *domain, int what, scene *s, resu
     if (k < 3 || (k > 3 ? what != SLIDE && what < PRESS : dim_of(what) == 3))
       TRY(mps_mpm_get_reaction(s->mpm, asked[k], &r->reaction[asked[k]]));
   for (int k = 0; k < BODIES && s->contact[k]; k++) TRY(keep_body(s, k, r));
+  mps_mpm_losses losses = {0};
+  if (r->totals.work_loads == r->totals.work_loads) TRY(mps_mpm_get_losses(s->mpm, &losses));
+  memcpy(r->other + RESULT_OTHERS - 1 - (int)(sizeof losses / 8), &losses, sizeof losses);
   TRY(keep_order(domain, s->set, r));
   r->dt = mps_mpm_dt(s->mpm), r->limit = mps_mpm_limit(s->mpm), r->time = mps_mpm_time(s->mpm);
   TRY(keep(s->set, r));

@@ -154,7 +154,6 @@ static void end(void *owner, mps_contact *contact) {
   all->bodies = to;
   mpsi_mpm_forget_impulses(mpm, ended);
   mpm->run.warned_about_chatter = 0;
-  mpm->energy.springs_known = false;
   forget_pairs(mpm);
   mpsi_contact_leave(contact);
 }
@@ -251,7 +250,6 @@ mps_status mps_mpm_add_contact(mps_mpm *mpm, mps_body *body, const mps_contact_d
     return status;
   }
   mpsi_contact_join(contact);
-  mpm->energy.springs_known = false;
   mpm->contact.handle[mpm->contact.bodies] = contact;
   mpm->contact.body[mpm->contact.bodies++] = body;
   if (out)

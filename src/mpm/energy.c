@@ -1,10 +1,18 @@
-/* energy.c - see energy.h. Sums go block by block in their order: they do not depend on the number
- * of threads. SPDX-License-Identifier: BSD-3-Clause */
+/* energy.c - see energy.h. Within a block sums go in their order, over blocks they are exact.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "body/rotation.h"
 #include "contact_particle.h"
 #include "kernels.h"
 
 #include <string.h>
+
+void mpsi_mpm_energy_add(mps_mpm *mpm, mpsi_energy_sum which, double energy) {
+  if (mpm->energy.counts) mpsi_exact_add(&mpm->energy.step[which], energy);
+}
+
+void mpsi_mpm_energy_add_at_once(mps_mpm *mpm, mpsi_energy_sum which, double energy) {
+  if (mpm->energy.counts) mpsi_exact_add(&mpm->energy.sum[which], energy);
+}
 
 /* ---- particles ------------------------------------------------------------------------------- */
 
@@ -149,9 +157,9 @@ void mpsi_mpm_energy_nodes(mps_mpm *mpm, int64_t g, const mpsi_node *held,
 /* ---- springs of contacts ----------------------------------------------------------------------
  */
 
-/* Half the normal force times the depth that it comes from, summed over what touches. */
-static double spring_energy(const mps_mpm *mpm) {
-  double sum = 0.0;
+/* Half the normal force times the depth that it comes from, of all that touches: `sign` times that
+ * is what the springs have now, and the bodies' work on them less. */
+static void add_springs(mps_mpm *mpm, double sign) {
   for (int32_t b = 0; b < mpm->contact.bodies; b++) {
     const mps_contact *contact = mpm->contact.handle[b];
     if (mpsi_by_impulses(contact)) continue;
@@ -159,12 +167,15 @@ static double spring_energy(const mps_mpm *mpm) {
       mpsi_contact_particle c;
       double x[3] = {0.0};
       for (int a = 0; a < mpm->dim; a++) x[a] = mpm->p.x[a][k];
-      if (mpsi_body_reaches(contact->body, x, contact->def.offset) &&
-          mpsi_find_contact(mpm, contact, mpm->dim, k, &c))
-        sum += 0.5 * sqrt(mpsi_dot3(c.force, c.force)) * (c.depth + contact->def.offset);
+      if (!mpsi_body_reaches(contact->body, x, contact->def.offset) ||
+          !mpsi_find_contact(mpm, contact, mpm->dim, k, &c))
+        continue;
+      const double energy =
+          sign * 0.5 * sqrt(mpsi_dot3(c.force, c.force)) * (c.depth + contact->def.offset);
+      mpsi_mpm_energy_add(mpm, MPSI_ENERGY_SPRINGS, energy);
+      mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STEPPING, -energy);
     }
   }
-  return sum;
 }
 
 /* ---- a step ---------------------------------------------------------------------------------- */
@@ -181,61 +192,49 @@ mps_status mpsi_mpm_energy_begin(mps_mpm *mpm, const char *function) {
   e->nodes = e->nodes_room.item;
   memset(e->cells, 0, (size_t)cells * sizeof *e->cells);
   memset(e->nodes, 0, (size_t)nodes * sizeof *e->nodes);
-  for (int32_t b = 0; b < mpm->contact.bodies; b++) /* it may have moved meanwhile */
-    if (mpm->contact.handle[b]->def.mover != MPS_CONTACT_MOVER_SOLVER) e->springs_known = false;
-  if (!e->springs_known) e->springs = spring_energy(mpm);
-  e->springs_known = true;
+  memset(e->step, 0, sizeof e->step);
+  add_springs(mpm, -1.0);
   return MPS_OK;
 }
 
-static mpsi_cell_energy sum_cells(const mps_mpm *mpm) {
-  mpsi_cell_energy out = {0};
+static void add_cells(mps_mpm *mpm) {
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     const mpsi_cell_energy *e = &mpm->energy.cells[b];
-    out.kinetic_before += e->kinetic_before, out.kinetic += e->kinetic;
-    out.loads += e->loads, out.stresses += e->stresses, out.seen += e->seen;
-    out.kept += e->kept, out.spent += e->spent;
+    if (mpm->grid.cells[b].ghost) continue;
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_KINETIC, e->kinetic - e->kinetic_before);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_TRANSFER, e->kinetic_before - e->kinetic);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_KEPT, e->kept);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_SPENT, e->spent);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_LOADS, e->loads);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STEPPING, e->seen - e->kept - e->spent);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STRAIN, e->stresses - e->seen);
   }
-  return out;
 }
 
-static mpsi_node_energy sum_nodes(const mps_mpm *mpm) {
-  mpsi_node_energy out = {0};
+/* Of the bodies' work that is not by friction or on nodes, the springs have some. */
+static void add_nodes(mps_mpm *mpm) {
   for (int64_t g = 0; g < mpsi_all_nodes(&mpm->grid); g++) {
     const mpsi_node_energy *e = &mpm->energy.nodes[g];
-    out.kinetic_before += e->kinetic_before, out.kinetic += e->kinetic;
-    out.jump += e->jump;
-    out.normal += e->normal, out.friction += e->friction, out.surface += e->surface;
-    out.holds += e->holds, out.damping += e->damping;
+    if (mpm->share && !mpsi_mpm_share_counts(mpm, g)) continue;
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_TRANSFER, e->kinetic - e->kinetic_before);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STEPPING, e->jump - e->surface - e->normal);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARY_LOSS, -e->holds);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_FRICTION_LOSS, e->surface - e->friction);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_DAMPING_LOSS, -e->damping);
   }
-  return out;
 }
 
 void mpsi_mpm_energy_end(mps_mpm *mpm) {
   mpsi_energy *e = &mpm->energy;
-  mpsi_energy_sums *sum = &e->sum;
-  sum->boundaries += e->boundaries;
-  sum->bodies += e->bodies;
-  const double bodies = e->bodies;
+  const double bodies = e->bodies; /* all ranks know it: one counts it */
+  e->work_bodies += bodies;
   e->bodies = 0.0;
   if (!e->counts) return;
-  const mpsi_cell_energy p = sum_cells(mpm);
-  const mpsi_node_energy n = sum_nodes(mpm);
-  const double before = e->springs;
-  e->springs = mpm->contact.bodies > 0 ? spring_energy(mpm) : 0.0;
+  add_cells(mpm);
+  add_nodes(mpm);
+  add_springs(mpm, 1.0);
   if (mpm->contact.bodies > 0) mpsi_mpm_find_impulse_loss(mpm);
-  /* work of the bodies on the springs: the rest is that by friction and by impulses */
-  const double pushed = bodies - n.surface - n.normal - mpm->contact.impulses.surface;
-  sum->kinetic += p.kinetic + e->driven - p.kinetic_before;
-  sum->kept += p.kept;
-  sum->spent += p.spent;
-  sum->springs += e->springs - before;
-  sum->loads += p.loads;
-  sum->boundary_loss += e->boundaries - e->driven_work - n.holds + e->mirrored;
-  sum->friction_loss += n.surface - n.friction + mpm->contact.impulses.loss;
-  sum->damping_loss -= n.damping;
-  sum->transfer += (p.kinetic_before - n.kinetic_before) + (n.kinetic - p.kinetic) +
-                   (e->driven_work - e->driven);
-  sum->stepping += n.jump - (p.kept + p.spent - p.seen) + (pushed - (e->springs - before));
-  sum->strain += p.stresses - p.seen;
+  if (!mpm->share || mps_domain_rank(mpm->share->domain) == 0)
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STEPPING, bodies);
+  for (int k = 0; k < MPSI_ENERGY_SUMS; k++) mpsi_exact_merge(&e->sum[k], &e->step[k]);
 }

@@ -9,12 +9,16 @@
  * loses. On the right the works of stresses and loads are found at the particles (G2P is the
  * adjoint of P2G), those of contacts and boundaries at the nodes. What the transfers take is the
  * kinetic energy of the particles less that of the nodes, before and after.
+ *
+ * Sums over blocks, particles and ranks are exact: they do not depend on who has what. On several
+ * ranks each has its part of them.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_ENERGY_H
 #define MPSI_MPM_ENERGY_H
 
 #include "blocks.h"
 #include "laws.h"
+#include "core/exact.h"
 #include "core/room.h"
 
 /* J, of the step being made, of the particles of a block of cells. */
@@ -39,26 +43,30 @@ typedef struct mpsi_node_energy {
 } mpsi_node_energy;
 
 /* J, since creation. */
-typedef struct mpsi_energy_sums {
-  double kinetic; /* change */
-  double kept, spent, springs;
-  double loads, boundaries, bodies; /* works */
-  double boundary_loss, friction_loss, damping_loss;
-  double transfer, stepping, strain;
-} mpsi_energy_sums;
-enum { MPSI_ENERGY_SUMS = 13 };
+typedef enum mpsi_energy_sum {
+  MPSI_ENERGY_KINETIC, /* change */
+  MPSI_ENERGY_KEPT,
+  MPSI_ENERGY_SPENT,
+  MPSI_ENERGY_SPRINGS,
+  MPSI_ENERGY_LOADS, /* works */
+  MPSI_ENERGY_BOUNDARIES,
+  MPSI_ENERGY_BOUNDARY_LOSS,
+  MPSI_ENERGY_FRICTION_LOSS,
+  MPSI_ENERGY_DAMPING_LOSS,
+  MPSI_ENERGY_TRANSFER,
+  MPSI_ENERGY_STEPPING,
+  MPSI_ENERGY_STRAIN,
+  MPSI_ENERGY_SUMS
+} mpsi_energy_sum;
 
 typedef struct mpsi_energy {
   bool counts; /* the definition asks for the budget */
   mpsi_cell_energy *cells;
   mpsi_node_energy *nodes;
-  mpsi_energy_sums sum;
-  /* Of the step being made: */
-  double boundaries, bodies;  /* works */
-  double mirrored;            /* work of the particles' forces on what moving mirrors add */
-  double driven, driven_work; /* held particles: change of kinetic energy, work */
-  double springs;             /* of contacts, at the end of the last step that was counted */
-  bool springs_known;
+  mpsi_exact sum[MPSI_ENERGY_SUMS];
+  mpsi_exact step[MPSI_ENERGY_SUMS]; /* of the step being made, which may fail */
+  double work_bodies;                /* J, since creation, the same on all ranks; */
+  double bodies;                     /* and of the step being made */
   mpsi_room cells_room, nodes_room;
 } mpsi_energy;
 
@@ -67,7 +75,10 @@ typedef struct mpsi_before_law {
   double stress[6][64], volume[64];
 } mpsi_before_law;
 
-/* Before the step: room, and the springs where contacts or places have changed. */
+/* Where the budget is wanted: to the step being made, or (at once) to what has been. */
+void mpsi_mpm_energy_add(mps_mpm *mpm, mpsi_energy_sum which, double energy);
+void mpsi_mpm_energy_add_at_once(mps_mpm *mpm, mpsi_energy_sum which, double energy);
+/* Before the step: room, and the springs. */
 mps_status mpsi_mpm_energy_begin(mps_mpm *mpm, const char *function);
 /* Particles [begin, end) of a block: before and after G2P. */
 void mpsi_mpm_energy_before(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end);

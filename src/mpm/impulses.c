@@ -164,8 +164,7 @@ void mpsi_mpm_apply_impulses(mps_mpm *mpm) {
 }
 
 void mpsi_mpm_find_impulse_loss(mps_mpm *mpm) {
-  mpsi_impulses *all = &mpm->contact.impulses;
-  all->loss = all->surface = 0.0;
+  const mpsi_impulses *all = &mpm->contact.impulses;
   for (int64_t n = 0; n < all->touch_count; n++) {
     const mpsi_touch *touch = &all->touch[n];
     const mpsi_impulse *c = &touch->impulse;
@@ -173,11 +172,14 @@ void mpsi_mpm_find_impulse_loss(mps_mpm *mpm) {
     if (!(c->push > 0.0) || touch->pair < 0) continue;
     velocity_at(mpm, all, n, v);
     mpsi_body_velocity(&mpm->contact.body[touch->body]->pose, c->at, surface);
+    double work = 0.0, loss = 0.0;
     for (int a = 0; a < mpm->dim; a++) {
       const double by = c->push * c->normal[a] + c->rub[a];
-      all->surface += by * surface[a];
-      all->loss += by * (surface[a] - v[a]);
+      work += by * surface[a];
+      loss += by * (surface[a] - v[a]);
     }
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_FRICTION_LOSS, loss);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STEPPING, -work);
   }
 }
 

@@ -68,8 +68,6 @@ typedef struct mpsi_impulses {
   int64_t area_count;
   int64_t area_first; /* block of the colour in work */
   mpsi_area_share *around;
-  double surface; /* J, of the step: work of the surfaces, */
-  double loss;    /* and that less what the nodes received */
   mpsi_room touch_room, block_room, weight_room, node_room, candidate_room, kept_room, next_room,
       lookup_room, area_room, around_room;
 } mpsi_impulses;

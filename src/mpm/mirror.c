@@ -317,7 +317,6 @@ void mpsi_mpm_begin_mirrors(mps_mpm *mpm, const mpsi_cell_block *cells) {
 }
 
 void mpsi_mpm_sum_mirrors(mps_mpm *mpm) {
-  mpm->energy.mirrored = 0.0;
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     const mpsi_cell_block *cells = &mpm->grid.cells[b];
     int64_t number = cells->first_mirror;
@@ -327,8 +326,8 @@ void mpsi_mpm_sum_mirrors(mps_mpm *mpm) {
       mpsi_hold *hold = &mpm->boundaries.hold[k];
       const double work = mpsi_dot3(m->impulse, hold->v);
       mpsi_mpm_hold_add_impulse(hold, m->impulse, m->moment, work, 0);
-      mpm->energy.boundaries += work;
-      mpm->energy.mirrored += m->passed;
+      mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARIES, work);
+      mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARY_LOSS, work + m->passed);
     }
   }
 }

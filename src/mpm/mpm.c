@@ -188,13 +188,6 @@ static mps_status check_set(mps_context *context, mps_particles *set) {
 
 static bool is_shared(const mps_mpm_def *d) { return mpsi_domain_many(d->domain); }
 
-static mps_status check_shared(mps_context *context, const mps_mpm_def *d) {
-  if (!is_shared(d) || !d->budget) return MPS_OK;
-  return mpsi_fail(context, create, MPS_ERROR_UNSUPPORTED,
-                   "budget is %d, on several ranks (there are %d) it must be 0", d->budget,
-                   mps_domain_size(d->domain));
-}
-
 /* ---- fields ---------------------------------------------------------------------------------- */
 
 static mps_status add_fields(mps_mpm *mpm) {
@@ -350,7 +343,6 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   if (status == MPS_OK) status = check_cell(context, &def, particles);
   if (status == MPS_OK) status = read_domain(context, &def, low, high);
   if (status == MPS_OK) status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
-  if (status == MPS_OK) status = check_shared(context, &def);
   mpsi_backup backup = {0};
   mpsi_storage *former = NULL;
   mps_mpm *mpm = status == MPS_OK ? mpsi_alloc(context, 1, sizeof *mpm) : NULL;

@@ -49,8 +49,8 @@ static void carry_out(mps_mpm *mpm, int64_t k, mpsi_hold *hold) {
     kinetic += 0.5 * m * v[c] * v[c];
   }
   mpsi_mpm_hold_add_impulse(hold, impulse, moment, -kinetic, 1);
-  mpm->energy.sum.boundaries -= kinetic;
-  mpm->energy.sum.kinetic -= kinetic;
+  mpsi_mpm_energy_add_at_once(mpm, MPSI_ENERGY_BOUNDARIES, -kinetic);
+  mpsi_mpm_energy_add_at_once(mpm, MPSI_ENERGY_KINETIC, -kinetic);
 }
 
 static int64_t through_sides(mps_mpm *mpm, uint8_t *gone) {
@@ -75,7 +75,6 @@ static void take_out(mps_mpm *mpm, const uint8_t *gone) {
   mpsi_mpm_share_thin_out(mpm, gone); /* the blocks follow */
   mpsi_particles_take_out(mpm->particles, gone);
   mpm->run.edited = mpm->run.stale = true;
-  mpm->energy.springs_known = false;
 }
 
 static double *place_of(const mps_mpm *mpm, int64_t k, double *x) {

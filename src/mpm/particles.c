@@ -273,6 +273,5 @@ void mpsi_mpm_renew(void *self) {
   const int64_t sorted = grid->cell_count > 0 ? grid->cells[grid->cell_count - 1].end : 0;
   mpsi_mpm_bind(mpm);
   if (mpm->p.count == sorted && !mpm->run.edited) return; /* another holder has refused */
-  mpm->energy.springs_known = false;
   mpm->run.edited = mpm->run.stale = true;
 }

@@ -20,7 +20,7 @@ mps_status mpsi_mpm_tidy(mps_mpm *mpm, const char *function) {
   if (mpm->share) status = mpsi_domain_settle(mpm->share->domain, function, status);
   if (status != MPS_OK) return status;
   mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
-  mpm->run.edited = mpm->energy.springs_known = false;
+  mpm->run.edited = false;
   return mpsi_mpm_collect_block_results(mpm, function);
 }
 

@@ -9,7 +9,6 @@
 #include <stdio.h>
 #include <string.h>
 
-_Static_assert(sizeof(mpsi_energy_sums) == MPSI_ENERGY_SUMS * sizeof(double), "kept as numbers");
 _Static_assert(sizeof(mpsi_dash) == MPSI_DASH * sizeof(double), "kept as numbers");
 
 /* ---- tables: blocks, their nodes, dashpots --------------------------------------------------- */
@@ -62,7 +61,7 @@ static bool reserve_blocks(void *solver, int64_t rows, const void *values) {
 /* The room is there: but where a file lies about it, the solver takes no step. */
 static void set_blocks(void *solver, int64_t rows, const void *values) {
   mps_mpm *mpm = solver;
-  mpm->energy.springs_known = mpm->run.lost = false;
+  mpm->run.lost = false;
   mpm->run.broken =
       mpsi_mpm_place_blocks(mpm, "restore", rows, (const mpsi_block *)values) != MPS_OK;
 }
@@ -272,7 +271,8 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_bool(s, "stale", &mpm->run.stale);
   mpsi_state_bool(s, "moments", &mpm->run.moments);
   list_settling(s, &mpm->settling);
-  mpsi_state_f64(s, "energies", &mpm->energy.sum.kinetic, MPSI_ENERGY_SUMS);
+  mpsi_state_i64(s, "energies", mpm->energy.sum[0].limb, MPSI_ENERGY_SUMS * MPSI_EXACT_LIMBS);
+  mpsi_state_f64(s, "work_bodies", &mpm->energy.work_bodies, 1);
   for (int32_t b = 0; b < mpm->contact.bodies; b++) {
     mpsi_state_enter(s, "body%d", b);
     mpsi_body_list_state(s, mpm->contact.body[b]);

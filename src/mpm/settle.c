@@ -65,11 +65,12 @@ static void stop_block(mps_mpm *mpm, int64_t b, int32_t worker) {
 /* All particles stop; the budget counts their kinetic energy as damped. */
 static void stop_particles(mps_mpm *mpm) {
   const mpsi_columns *p = &mpm->p;
-  double kinetic = 0.0;
   for (int64_t k = 0; mpm->energy.counts && k < p->count; k++)
-    for (int c = 0; c < mpm->dim; c++) kinetic += 0.5 * p->m[k] * p->v[c][k] * p->v[c][k];
-  mpm->energy.sum.kinetic -= kinetic;
-  mpm->energy.sum.damping_loss += kinetic;
+    for (int c = 0; c < mpm->dim; c++) {
+      const double kinetic = 0.5 * p->m[k] * p->v[c][k] * p->v[c][k];
+      mpsi_mpm_energy_add_at_once(mpm, MPSI_ENERGY_KINETIC, -kinetic);
+      mpsi_mpm_energy_add_at_once(mpm, MPSI_ENERGY_DAMPING_LOSS, kinetic);
+    }
   mpsi_mpm_for_cells(mpm, stop_block);
 }
 

@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_private.h"
 
+#include <string.h>
+
 #include <mps/mpm_energy.h>
 
 static int64_t grid_bytes(const mps_mpm *mpm) {
@@ -97,30 +99,43 @@ static void sum_share(const mps_mpm *mpm, mpsi_exact *sum) {
   mpsi_mpm_hold_add_works(mpm, &sum[WORK]);
 }
 
+/* Of all ranks. */
+static mps_status sum_energies(mps_mpm *mpm, const char *function, double *out) {
+  mpsi_exact sum[MPSI_ENERGY_SUMS];
+  mps_status status = MPS_OK;
+  memcpy(sum, mpm->energy.sum, sizeof sum);
+  if (mpm->share && mpm->energy.counts)
+    status = mpsi_domain_sum_exact(mpm->share->domain, function, MPSI_ENERGY_SUMS, sum);
+  for (int k = 0; k < MPSI_ENERGY_SUMS; k++) out[k] = mpsi_exact_value(&sum[k]);
+  return status;
+}
+
 mps_status mps_mpm_get_totals_sized(mps_mpm *mpm, mps_totals *out, size_t size) {
   static const char function[] = "mps_mpm_get_totals";
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mpsi_energy_sums *e = &mpm->energy.sum;
   mpsi_exact sum[SUMS] = {{{0}}};
+  double e[MPSI_ENERGY_SUMS];
   mps_status status = MPS_OK;
   if (mpm->share) status = mpsi_mpm_share_agree(mpm, function, status);
   if (status != MPS_OK) return status;
   sum_share(mpm, sum);
   if (mpm->share) status = mpsi_domain_sum_exact(mpm->share->domain, function, SUMS, sum);
+  if (status == MPS_OK) status = sum_energies(mpm, function, e);
   if (status != MPS_OK) return status;
   mps_totals t = {.mass = mpsi_exact_value(&sum[MASS]),
                   .volume = mpsi_exact_value(&sum[VOLUME]),
                   .kinetic = mpsi_exact_value(&sum[KINETIC]),
                   .work_boundaries = mpsi_exact_value(&sum[WORK]),
-                  .work_bodies = e->bodies};
+                  .work_bodies = mpm->energy.work_bodies};
   for (int c = 0; c < 3; c++) {
     t.linear[c] = mpsi_exact_value(&sum[LINEAR + c]);
     t.angular[c] = mpsi_exact_value(&sum[ANGULAR + c]);
   }
-  t.strain = e->kept + e->springs;
-  t.scheme = e->transfer + e->stepping + e->strain;
-  t.dissipated = e->spent + e->boundary_loss + e->friction_loss + e->damping_loss + t.scheme;
-  t.work_loads = e->loads;
+  t.strain = e[MPSI_ENERGY_KEPT] + e[MPSI_ENERGY_SPRINGS];
+  t.scheme = e[MPSI_ENERGY_TRANSFER] + e[MPSI_ENERGY_STEPPING] + e[MPSI_ENERGY_STRAIN];
+  t.dissipated = e[MPSI_ENERGY_SPENT] + e[MPSI_ENERGY_BOUNDARY_LOSS] +
+                 e[MPSI_ENERGY_FRICTION_LOSS] + e[MPSI_ENERGY_DAMPING_LOSS] + t.scheme;
+  t.work_loads = e[MPSI_ENERGY_LOADS];
   if (!mpm->energy.counts) t.strain = t.scheme = t.dissipated = t.work_loads = NAN;
   return mpsi_out_write(mpm->context, function, out, size, &t, sizeof t);
 }
@@ -131,15 +146,18 @@ mps_status mps_mpm_get_losses_sized(mps_mpm *mpm, mps_mpm_losses *out, size_t si
   if (!mpm->energy.counts)
     return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                      "budget is 0 in the solver's definition: the losses are not known");
-  const mpsi_energy_sums *e = &mpm->energy.sum;
-  mps_mpm_losses l = {.laws = e->spent,
-                      .boundaries = e->boundary_loss,
-                      .bodies = e->friction_loss,
-                      .damping = e->damping_loss,
-                      .transfer = e->transfer,
-                      .stepping = e->stepping,
-                      .strain = e->strain};
-  l.residual = e->loads + e->boundaries + e->bodies - e->kinetic - e->kept - e->springs - l.laws -
+  double e[MPSI_ENERGY_SUMS];
+  const mps_status status = sum_energies(mpm, function, e);
+  if (status != MPS_OK) return status;
+  mps_mpm_losses l = {.laws = e[MPSI_ENERGY_SPENT],
+                      .boundaries = e[MPSI_ENERGY_BOUNDARY_LOSS],
+                      .bodies = e[MPSI_ENERGY_FRICTION_LOSS],
+                      .damping = e[MPSI_ENERGY_DAMPING_LOSS],
+                      .transfer = e[MPSI_ENERGY_TRANSFER],
+                      .stepping = e[MPSI_ENERGY_STEPPING],
+                      .strain = e[MPSI_ENERGY_STRAIN]};
+  l.residual = e[MPSI_ENERGY_LOADS] + e[MPSI_ENERGY_BOUNDARIES] + mpm->energy.work_bodies -
+               e[MPSI_ENERGY_KINETIC] - e[MPSI_ENERGY_KEPT] - e[MPSI_ENERGY_SPRINGS] - l.laws -
                l.boundaries - l.bodies - l.damping - l.transfer - l.stepping - l.strain;
   return mpsi_out_write(mpm->context, function, out, size, &l, sizeof l);
 }

@@ -337,7 +337,6 @@ static void begin_sums(mpsi_hold *hold) {
 
 void mpsi_mpm_sum_holds(mps_mpm *mpm) {
   mpsi_hold *hold = mpm->boundaries.hold;
-  mpm->energy.boundaries = mpm->energy.driven = mpm->energy.driven_work = 0.0;
   mpm->boundaries.dt = mpm->run.dt;
   for (int32_t k = 0; k < MPSI_HOLDS; k++) {
     begin_sums(&hold[k]);
@@ -348,7 +347,8 @@ void mpsi_mpm_sum_holds(mps_mpm *mpm) {
     if (!held->counted) continue;
     mpsi_mpm_hold_add_impulse(&hold[held->hold], held->impulse, held->moment, held->work,
                               held->count);
-    mpm->energy.boundaries += held->work;
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARIES, held->work);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARY_LOSS, held->work);
   }
   mpsi_mpm_sum_mirrors(mpm);
 }
@@ -388,14 +388,14 @@ static void check_place(mps_mpm *mpm, int64_t k) {
 /* A particle moves as it is told: what its velocity changes by is an impulse. */
 static void drive_particle(mps_mpm *mpm, mpsi_hold *hold, int64_t k) {
   const mpsi_columns *p = &mpm->p;
-  double x[3] = {0.0}, impulse[3] = {0.0}, work = 0.0;
+  double x[3] = {0.0}, impulse[3] = {0.0}, work = 0.0, kinetic = 0.0;
   for (int c = 0; c < mpm->dim; c++) x[c] = p->x[c][k];
   for (int c = 0; c < mpm->dim; c++) {
     if (!(hold->dofs >> c & 1)) continue;
     const double change = hold->v[c] - p->v[c][k];
     impulse[c] = p->m[k] * change;
     work += impulse[c] * hold->v[c];
-    mpm->energy.driven += 0.5 * impulse[c] * (hold->v[c] + p->v[c][k]);
+    kinetic += 0.5 * impulse[c] * (hold->v[c] + p->v[c][k]);
     p->v[c][k] = hold->v[c];
     p->x[c][k] += mpm->run.dt * change;
   }
@@ -405,8 +405,9 @@ static void drive_particle(mps_mpm *mpm, mpsi_hold *hold, int64_t k) {
     moment[c] = x[a] * impulse[b] - x[b] * impulse[a];
   }
   mpsi_mpm_hold_add_impulse(hold, impulse, moment, work, 1);
-  mpm->energy.boundaries += work;
-  mpm->energy.driven_work += work;
+  mpsi_mpm_energy_add(mpm, MPSI_ENERGY_BOUNDARIES, work);
+  mpsi_mpm_energy_add(mpm, MPSI_ENERGY_KINETIC, kinetic);
+  mpsi_mpm_energy_add(mpm, MPSI_ENERGY_TRANSFER, work - kinetic);
   check_place(mpm, k);
 }
 
