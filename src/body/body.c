@@ -1,6 +1,6 @@
 /* body.c - life of a rigid body: definition, checks, owners.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "body.h"
+#include "body_internal.h"
 
 #include "mesh.h"
 

@@ -1,6 +1,6 @@
 /* contact.c - life of a contact: definition, the shares of solver and caller, what it tells the
  * body. SPDX-License-Identifier: BSD-3-Clause */
-#include "contact.h"
+#include "contact_internal.h"
 
 #include "rotation.h"
 

@@ -6,7 +6,7 @@
  * sign, normal and foot always belong to the same feature. A solid of revolution is its profile, a
  * polygon in the half plane r >= 0, seen in the plane through the axis and the point.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "body.h"
+#include "body_internal.h"
 
 #include "mesh.h"
 #include "rotation.h"

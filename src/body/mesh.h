@@ -3,7 +3,7 @@
 #ifndef MPSI_MESH_H
 #define MPSI_MESH_H
 
-#include "body.h"
+#include "body_internal.h"
 
 #define MPSI_MESH_MAX_TRIANGLES 20000000
 

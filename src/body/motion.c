@@ -1,8 +1,8 @@
 /* motion.c - how a rigid body moves: by signals, from outside, or by forces; its energies.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "body.h"
+#include "body_internal.h"
 
-#include "contact.h"
+#include "contact_internal.h"
 #include "core/retain.h"
 #include "rotation.h"
 

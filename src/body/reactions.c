@@ -1,6 +1,6 @@
 /* reactions.c - what particles do to a rigid body, by the parts of its surface.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "body.h"
+#include "body_internal.h"
 
 #include "rotation.h"
 

@@ -1,6 +1,6 @@
 /* shapes.c - creation of the bodies that are given by a few numbers or by a polygon.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "body.h"
+#include "body_internal.h"
 
 #include "core/polygon.h"
 

@@ -1,6 +1,6 @@
 /* state.c - what changes of a body as it moves: see core/state.h.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "contact.h"
+#include "contact_internal.h"
 
 void mpsi_body_list_state(mpsi_state *state, mps_body *body) {
   mpsi_pose *p = &body->pose;

@@ -7,7 +7,7 @@
 #ifndef MPSI_CONTACT_H
 #define MPSI_CONTACT_H
 
-#include "body/contact.h"
+#include "body/contact_internal.h"
 
 /* ---- a particle at a surface ----------------------------------------------------------------- */
 

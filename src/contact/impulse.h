@@ -9,7 +9,7 @@
 #ifndef MPSI_IMPULSE_H
 #define MPSI_IMPULSE_H
 
-#include "body/contact.h"
+#include "body/contact_internal.h"
 #include "body/rotation.h"
 
 /* ---- geometry -------------------------------------------------------------------------------- */

@@ -12,7 +12,7 @@
  * (mpsi_body_advance). SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid_private.h"
 
-#include "body/body.h"
+#include "body/body_internal.h"
 
 #include <string.h>
 

@@ -5,7 +5,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "share.h"
 
-#include "body/body.h"
+#include "body/body_internal.h"
 
 #define LEAST_BODY 0.3 /* l0: distance of a particle from a face */
 #define FLUSH 0.1      /* l0: a corner that near a boundary stands on it */

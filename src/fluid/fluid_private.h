@@ -19,7 +19,7 @@
 #ifndef MPSI_FLUID_PRIVATE_H
 #define MPSI_FLUID_PRIVATE_H
 
-#include "body/body.h"
+#include "body/body_internal.h"
 #include "core/guard.h"
 #include "core/internal.h"
 #include "core/particles_internal.h"

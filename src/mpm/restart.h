@@ -3,7 +3,7 @@
 #ifndef MPSI_MPM_RESTART_H
 #define MPSI_MPM_RESTART_H
 
-#include "body/body.h"
+#include "body/body_internal.h"
 
 #include <mps/mpm.h>
 

@@ -1,6 +1,6 @@
 /* test_mesh_threads.c - the nearest point of a mesh, asked for by many threads at once: the same
  * bits as by one, and from another copy of the mesh. SPDX-License-Identifier: BSD-3-Clause */
-#include "body/body.h"
+#include "body/body_internal.h"
 #include "mesh_shapes.h"
 #include "pthread_executor.h"
 #include "test_common.h"

@@ -1,7 +1,7 @@
 /* test_mesh.c - distance to meshes against a walk over all triangles, the sign against the solid
  * angle, and a fine mesh of a sphere against the sphere.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "body/body.h"
+#include "body/body_internal.h"
 #include "mesh_shapes.h"
 #include "test_fixture.h"
 

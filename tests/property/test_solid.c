@@ -1,7 +1,7 @@
 /* test_solid.c - rigid bodies in space: distance to spheres, half spaces and solids of revolution,
  * driven rotations, and what a free body keeps.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "body/body.h"
+#include "body/body_internal.h"
 #include "test_fixture.h"
 
 static uint64_t seed = 1;

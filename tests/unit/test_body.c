@@ -1,6 +1,6 @@
 /* test_body.c - rigid bodies: arguments, motion by signals and by forces, parts, ownership.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "body/body.h"
+#include "body/body_internal.h"
 #include "test_allocator.h"
 #include "test_fixture.h"
 

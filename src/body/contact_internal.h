@@ -1,9 +1,9 @@
-/* contact.h - the contact of one solver with one body: what the caller's handle is, and what the
- * solvers use of it. SPDX-License-Identifier: BSD-3-Clause */
+/* contact_internal.h - the contact of one solver with one body: what the caller's handle is, and
+ * what the solvers use of it. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_BODY_CONTACT_H
 #define MPSI_BODY_CONTACT_H
 
-#include "body.h"
+#include "body_internal.h"
 
 /* What a kind of solver does for the handles of its contacts. */
 typedef struct mpsi_contact_owner {

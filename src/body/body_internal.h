@@ -1,4 +1,4 @@
-/* body.h - what the solvers use of a rigid body besides the public functions.
+/* body_internal.h - what the solvers use of a rigid body besides the public functions.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_BODY_H
 #define MPSI_BODY_H
