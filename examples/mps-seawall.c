@@ -62,6 +62,7 @@ static int run(app *a, seawall *w) {
   printf("%lld particles as the paper counts: %lld of water, %lld of the wall above the bed\n",
          (long long)seawall_paper_particles(&w->s), (long long)mps_particles_count(w->water),
          (long long)mps_particles_count(w->wall.set));
+  waves_warn(a, w->s.period, w->s.depth, w->s.amplitude, w->s.spacing);
   fflush(stdout);
   status = app_settle(a, seawall_run(a, w));
   const int code = app_end_run(a, status, mps_fluid_time(w->fluid), w->samples > 0);

@@ -62,6 +62,9 @@ static int complete(const options_program *program, tank_settings *s) {
                                          "else the water does not fill the tank");
   if (s->kind != TANK_DROP && 4.0 * fabs(s->amplitude) > s->length)
     return options_refuse(program, "--amplitude must be at most a quarter of the length");
+  for (int k = 0; k < TANK_GAUGES && kind != TANK_DROP; k++)
+    if (s->gauge[k] < 0.0 || s->gauge[k] > s->length)
+      return options_refuse(program, "--gauge must be in the tank, 0 to --length");
   if (kind == TANK_FLOAT) {
     const double gap = 0.5 * (s->length - s->width), h = s->spacing;
     if (!(gap > 4.999 * h && s->draft > 1.999 * h && s->depth - s->draft > 4.999 * h))
@@ -118,6 +121,8 @@ static int run(app *a, tank_model *m) {
   printf("%lld particles, dt %.4g s\n", (long long)mps_particles_count(m->water),
          mps_fluid_dt(m->fluid));
   fflush(stdout);
+  if (m->s.kind == TANK_PISTON || m->s.kind == TANK_RESONANCE)
+    waves_warn(a, m->s.period, m->s.depth, m->s.amplitude, m->s.spacing);
   status = app_settle(a, tank_run(a, m));
   const int code = app_end_run(a, status, mps_fluid_time(m->fluid), m->samples > 0);
   if (status == MPS_ERROR_CANCELLED && m->saves.saved)

@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
 
 /* ---- tank ------------------------------------------------------------------------------------ */
 
@@ -69,6 +70,22 @@ double waves_number(double period, double depth) {
 double waves_havelock(double k, double depth) {
   const double a = 2.0 * k * depth;
   return 2.0 * (cosh(a) - 1.0) / (sinh(a) + a);
+}
+
+void waves_warn(const app *a, double period, double depth, double amplitude, double spacing) {
+  const double k = waves_number(period, depth), most = 0.142 * 2.0 * WAVES_PI / k * tanh(k * depth);
+  const double height = 2.0 * fabs(amplitude) * waves_havelock(k, depth);
+  if (a->rank > 0) return;
+  if (height > 0.0 && height < 2.0 * spacing)
+    fprintf(stderr,
+            "%s: warning: the piston's waves, %.2g m high, are lower than 2 spacings of %g m: they "
+            "will lose height\n",
+            a->program, height, spacing);
+  if (height > 0.8 * most)
+    fprintf(stderr,
+            "%s: warning: the piston's waves, %.2g m high, are more than .8 of those that break, "
+            "%.2g m\n",
+            a->program, height, most);
 }
 
 double waves_sainflou_rise(double k, double depth, double H) { /* pi H^2 coth(kd)/L */

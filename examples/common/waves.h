@@ -4,6 +4,8 @@
 #ifndef EXAMPLES_WAVES_H
 #define EXAMPLES_WAVES_H
 
+#include "app.h"
+
 #include <mps/fluid.h>
 #include <mps/signal.h>
 
@@ -34,6 +36,9 @@ mps_status waves_add_wall(mps_fluid *fluid, const double *point, double nx, doub
 double waves_number(double period, double depth);
 /* Wave height over stroke of a piston (Havelock): 2 (cosh 2kd - 1)/(sinh 2kd + 2kd). */
 double waves_havelock(double k, double depth);
+/* A line to stderr where the waves of a piston are lower than 2 spacings, and one where they are
+ * higher than .8 of those that break, .142 L tanh(kd) (Miche). */
+void waves_warn(const app *a, double period, double depth, double amplitude, double spacing);
 /* Sainflou's standing wave at a vertical wall, the incident height H: rise of the mean level (m),
  * swing of the pressure at the bed (Pa), and force (N/m) under the crest (sign 1) or the trough
  * (-1). The pressure is linear from the crest to the bed. */

@@ -227,6 +227,7 @@ struct mps_fluid {
   mpsi_guard guard;            /* of the callbacks of the run and of the solver */
   bool changing; /* energy_before is that of before a change of the set that is under way */
   bool stale;    /* what is known of the surroundings is not that of the fields */
+  bool warned;   /* that the guards act often */
   mpsi_identity *identity;
   mps_fluid_report report, before;    /* before: as the step being made began */
   double energy_before;               /* J, before particles come or go */

@@ -4,8 +4,10 @@
 
 #include <string.h>
 
-#define SORT_EVERY 32 /* steps */
-#define EVEN_STEPS 32 /* at the end of a run */
+#define SORT_EVERY 32     /* steps */
+#define EVEN_STEPS 32     /* at the end of a run */
+#define WARN_FROM 50      /* steps */
+#define MOST_GUARDED 0.01 /* of the particles, in a step on average */
 
 /* ---- fields and cloud ------------------------------------------------------------------------ */
 
@@ -101,6 +103,19 @@ static mps_status finish(mps_fluid *f, const char *function) {
   return mpsi_fluid_load_walls(f, function);
 }
 
+/* Tells the log, once, that the particles are too coarse for the flow. */
+static void warn_of_guards(mps_fluid *f) {
+  const mps_fluid_report *r = &f->report;
+  const double acted = (double)(r->collisions + r->limited + r->pushed);
+  const double share = acted / ((double)f->steps * (double)f->count + 1.0);
+  if (f->warned || f->steps < WARN_FROM || !(share > MOST_GUARDED)) return;
+  f->warned = true;
+  mpsi_log(f->context, MPS_LOG_WARNING,
+           "step %lld of the fluid: collisions, cut velocities and particles pushed off walls are "
+           "%.1f %% of the particles a step, above %g %%: the flow wants a smaller spacing or step",
+           (long long)f->steps, 100.0 * share, 100.0 * MOST_GUARDED);
+}
+
 /* After all parts: keeps the new state and sorts it now and then. */
 static mps_status keep(mps_fluid *f, const char *function) {
   mpsi_fluid_end_walls(f);
@@ -110,6 +125,7 @@ static mps_status keep(mps_fluid *f, const char *function) {
   store_cloud(f);
   f->time += f->dt;
   f->steps++;
+  warn_of_guards(f);
   mpsi_fluid_let_go(f);
   if (f->steps % SORT_EVERY != 0) return MPS_OK;
   f->stale = true;
