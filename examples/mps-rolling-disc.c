@@ -23,6 +23,7 @@ typedef struct settings {
   double h, mu, angle, k, young, poisson, duration;
   int64_t ppc, threads;
   int fill, body, contact; /* contact: mps_contact_method */
+  int spline;              /* degree of the weights less 2 */
   const char *out;
 } settings;
 
@@ -120,6 +121,7 @@ static mps_status build(mps_context *context, void *user) {
   const double a = s->angle * PI / 180.0;
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
+  def.spline = s->spline + 2;
   if (s->body == BODY_SLOPE) {
     sim->along[0] = cos(a), sim->along[1] = -sin(a);
     sim->start[0] = RADIUS * sin(a), sim->start[1] = RADIUS * cos(a);
@@ -283,6 +285,7 @@ int main(int argc, char **argv) {
                                  .poisson = 0.3,
                                  .duration = 0.5,
                                  .ppc = 4,
+                                 .spline = 1,
                                  .out = "out/rolling-disc"}};
   settings *s = &sim.s;
   option table[] = {
@@ -301,6 +304,7 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("h", "m", OPTION_FROM_TO(1e-4, 0.05), &s->h,
                     "grid spacing; the radius R is 0.05 m"),
       OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
+      OPTION_CHOICE("spline", "2|3", &s->spline, "degree of the weights"),
       OPTION_CHOICE("fill", "lattice|rings", &s->fill, "how particles fill an elastic disc"),
       OPTION_HEADING("Run"),
       OPTION_NUMBER("duration", "s", OPTION_FROM_TO(0.01, 0.55), &s->duration,
