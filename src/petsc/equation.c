@@ -7,16 +7,40 @@
  * the preconditioned one. SPDX-License-Identifier: BSD-3-Clause */
 #include "equation.h"
 
+#include <stdio.h>
 #include <stdlib.h>
+#include <time.h>
 
-#define MOST 1000 /* iterations */
-#define WEAK 0.05 /* entries below this part of their diagonals bind no unknowns together */
+#define MOST 1000     /* iterations */
+#define PATIENCE 60.0 /* s, unless PETSc's option -mps_patience says otherwise */
+#define WEAK 0.05     /* entries below this part of their diagonals bind no unknowns together */
 
-/* The worst status of all processes: before what they do together. */
-static mps_status agree(MPI_Comm communicator, mps_status status) {
-  int worst = (int)status;
-  const int lost = MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_INT, MPI_MAX, communicator);
-  return lost ? MPS_ERROR_IO : (mps_status)worst;
+/* Others do not come: they wait for this one within PETSc, where nothing reaches them. */
+static void end_all(const mps_petsc_solver *s, mps_status status) {
+  fprintf(stderr,
+          "libmps-petsc: rank %d: PETSc has failed here (%s) and the other ranks wait for it: all "
+          "are ended\n",
+          s->rank, mps_status_text(status));
+  fflush(stderr);
+  (void)MPI_Abort(s->comm, 1);
+}
+
+/* The worst status of all processes: after what they have done together, and before. Where all have
+ * failed they all come here; who has failed alone does not wait for ever. */
+static mps_status agree(const mps_petsc_solver *s, mps_status status) {
+  int worst = (int)status, here = 0;
+  MPI_Request request;
+  const double began = MPI_Wtime();
+  if (MPI_Iallreduce(MPI_IN_PLACE, &worst, 1, MPI_INT, MPI_MAX, s->comm, &request) != 0)
+    return MPS_ERROR_IO;
+  while (status != MPS_OK && !here) {
+    const struct timespec nap = {.tv_nsec = 1000000};
+    if (MPI_Test(&request, &here, MPI_STATUS_IGNORE) != 0) return MPS_ERROR_IO;
+    if (!here) (void)nanosleep(&nap, NULL);
+    if (!here && MPI_Wtime() - began > s->patience) end_all(s, status);
+  }
+  if (!here && MPI_Wait(&request, MPI_STATUS_IGNORE) != 0) return MPS_ERROR_IO;
+  return (mps_status)worst;
 }
 
 /* ---- life ------------------------------------------------------------------------------------ */
@@ -49,11 +73,13 @@ static mps_status create(int32_t method, MPI_Comm communicator, mps_petsc_solver
   (void)MPI_Comm_rank(s->comm, &s->rank);
   (void)MPI_Comm_size(s->comm, &s->size);
   s->method = method;
+  s->patience = PATIENCE;
+  (void)PetscOptionsGetReal(NULL, "mps_", "-patience", &s->patience, NULL);
   s->counts = calloc(2 * (size_t)s->size, sizeof *s->counts);
   s->places = s->counts ? s->counts + s->size : NULL;
   *out = s;
-  status = agree(s->comm, s->counts ? MPS_OK : MPS_ERROR_MEMORY);
-  if (status == MPS_OK) status = agree(s->comm, configure(s) ? MPS_OK : MPS_ERROR_UNSUPPORTED);
+  status = agree(s, s->counts ? MPS_OK : MPS_ERROR_MEMORY);
+  if (status == MPS_OK) status = agree(s, configure(s) ? MPS_OK : MPS_ERROR_UNSUPPORTED);
   if (status != MPS_OK) mps_petsc_solver_destroy(out);
   return status;
 }
@@ -192,8 +218,8 @@ void mpsi_petsc_forget(mps_petsc_solver *s) { s->forgets = true; }
 
 mps_status mpsi_petsc_take(mps_petsc_solver *s, const mpsi_petsc_matrix *a) {
   indices x = {NULL, NULL};
-  mps_status status = agree(s->comm, convert(a, &x));
-  if (status == MPS_OK) status = agree(s->comm, make_matrix(s, a, &x) ? MPS_OK : MPS_ERROR_MEMORY);
+  mps_status status = agree(s, convert(a, &x));
+  if (status == MPS_OK) status = agree(s, make_matrix(s, a, &x) ? MPS_OK : MPS_ERROR_MEMORY);
   free(x.start);
   free(x.column);
   if (status != MPS_OK) return status;
@@ -247,7 +273,7 @@ mps_status mpsi_petsc_solve(mps_petsc_solver *s, const double *b, double toleran
   if (VecPlaceArray(s->b, b + s->first) != 0 || VecPlaceArray(s->x, x + s->first) != 0)
     return MPS_ERROR_INTERNAL;
   /* A little closer than asked for: the norm that the iteration carries on drifts. */
-  const mps_status status = solve(s, 0.9 * tolerance, iterations);
+  const mps_status status = agree(s, solve(s, 0.9 * tolerance, iterations));
   (void)VecResetArray(s->b);
   (void)VecResetArray(s->x);
   if (status != MPS_OK || s->size == 1) return status;

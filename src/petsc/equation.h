@@ -11,6 +11,7 @@ struct mps_petsc_solver {
   int32_t method; /* mps_petsc_method */
   MPI_Comm comm;
   int rank, size;
+  PetscReal patience; /* s: how long one that has failed waits for the others */
   KSP ksp;
   Mat matrix; /* the last one */
   Vec x, b;   /* without values of their own */

@@ -1,0 +1,92 @@
+#!/bin/sh
+# failures.sh DIRECTORY MPIRUN...: what ends early on several ranks, of a program of each solver but that
+# of mps-wave (programs.sh): a full disk, no directory, ranks that were given different things, one that
+# dies, one that is asked to stop. One message, an exit status, and the state kept; every wait has a limit.
+. "$(dirname "$0")/../examples/checks.sh"
+programs=$1
+shift
+mpirun=$*
+pile="--soil 0.6x0.6 --wall 0.08 --inner-diameter 0.32 --frames 0"
+
+# one PROGRAM TEXT: of the program there is one line, with the text.
+one() {
+  [ "$(grep -c "^$1: " "$work/log")" -eq 1 ] || fail "not one line with \"$2\": $(cat "$work/log")"
+  grep "^$1: " "$work/log" | grep -qF -- "$2" || fail "no \"$2\" in $(cat "$work/log")"
+}
+# wrong WHAT COMMAND...: mpirun must fail, in time.
+wrong() {
+  what=$1 code=0
+  shift
+  # shellcheck disable=SC2086
+  timeout 60 $mpirun "$@" >/dev/null 2>"$work/log" || code=$?
+  [ $code -ne 0 ] && [ $code -ne 124 ] || fail "$what: exit status $code"
+}
+# ends NAME TABLE OPTION VALUE OTHER OPTION...: a run of the program that is short.
+ends() {
+  name=$1 table=$2 option=$3 value=$4 other=$5
+  shift 5
+  program=$programs/$name
+  mkdir "$work/$name"
+  ln -s /dev/full "$work/$name/$table.part"
+  wrong "full disk" -n 2 "$program" $option $value "$@" --out "$work/$name"
+  one "$name" "$table: No space left on device"
+  wrong "no directory" -n 2 "$program" $option $value "$@" --out /dev/full/x
+  one "$name" "Not a directory"
+  wrong "different ranks" -n 1 "$program" $option $value "$@" --out "$work/$name-d" : \
+    -n 1 "$program" $option $other "$@" --out "$work/$name-d"
+  one "$name" "all ranks must give the same"
+  # shellcheck disable=SC2016
+  wrong "dead at once" -n 1 "$program" $option $value "$@" --out "$work/$name-k" : \
+    -n 1 sh -c 'kill -KILL $$'
+}
+ends mps-tank force.csv --spacing 0.01 0.02 --duration 0.02 --frames 0
+# shellcheck disable=SC2086
+ends mps-pile load.csv --h 0.04 0.05 $pile --depth 0.01 --speed 0.5
+[ ! -x "$programs/mps-cantilever" ] || ends mps-cantilever deflection.csv --nx 33 17 --ny 9
+
+# begin RANKS PROGRAM OPTION...: starts a run that does not end by itself, and waits for its first
+# checkpoint; sets pid.
+begin() {
+  ranks=$1 program=$2
+  shift 2
+  # shellcheck disable=SC2086
+  $mpirun -n "$ranks" "$programs/$program" "$@" >"$work/out" 2>"$work/log" &
+  pid=$! tries=0
+  until [ -e "$checkpoint" ]; do
+    sleep 0.05
+    tries=$((tries + 1))
+    [ $tries -lt 1200 ] && kill -0 $pid 2>/dev/null || fail "no checkpoint: $(cat "$work/log")"
+  done
+}
+# end SIGNAL: sends it to the last rank, waits for the run, a minute at most, and sets code.
+end() {
+  kill "-$1" "$(pgrep -f "$checkpoint" | tail -n 1)"
+  (sleep 60 && touch "$work/late" && kill -KILL $pid) 2>/dev/null &
+  watchdog=$!
+  code=0
+  wait $pid || code=$?
+  kill $watchdog 2>/dev/null || true
+  [ ! -e "$work/late" ] || fail "mpirun went on: $(cat "$work/log")"
+  [ $code -ne 0 ] || fail "exit status 0 after $1"
+}
+# stops PROGRAM OPTION...: asked to stop, it keeps its results and its state, with which others go on; a
+# rank that dies ends the run, and the last state goes on too.
+stops() {
+  name=$1 directory=$work/$1-long
+  shift
+  checkpoint=$work/$name.h5
+  begin 2 "$name" "$@" --checkpoint "$checkpoint" --out "$directory"
+  end TERM
+  one "$name" "interrupted at t"
+  has "$directory/summary.json" '"outcome": "interrupted"'
+  for signal in KILL TERM; do
+    before=$checkpoint
+    checkpoint=$work/$name-$signal.h5
+    begin 3 "$name" "$@" --checkpoint "$checkpoint" --restart "$before" --out "$directory"
+    end $signal
+  done
+  one "$name" "interrupted at t"
+}
+stops mps-tank --spacing 0.01 --duration 1000 --sample 0.01 --every-checkpoint 0.01 --frames 0
+# shellcheck disable=SC2086
+stops mps-pile $pile --h 0.04 --depth 0.06 --speed 1e-4 --every-checkpoint 1e-7
