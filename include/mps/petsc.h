@@ -52,7 +52,9 @@ typedef enum mps_petsc_method {
 
 /** Makes a solver (mps_petsc_method) of this process alone, for one fluid or one body at a time.
  *  PETSc's options that begin with mps_ change it: PETSC_OPTIONS="-mps_pc_type hypre".
- *  MPS_ERROR_UNSUPPORTED: PETSc was built without the part, or does not know an option. */
+ *  MPS_ERROR_UNSUPPORTED: PETSc was built without the part, or does not know an option. Where PETSc
+ *  fails on one of several processes and the others wait for it, all are ended, with a line on
+ *  stderr, after -mps_patience seconds (default 60). */
 MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solver_create(int32_t method,
                                                                mps_petsc_solver **out);
 /** The same of all processes that mpirun has started, or of a communicator by MPI_Comm_c2f, which
@@ -68,7 +70,7 @@ MPS_PETSC_API void mps_petsc_solver_destroy(mps_petsc_solver **solver);
 /** Has the pressure of a fluid of at least `least` (>= 0) particles solved by `solver`, as
  *  mps_fluid_set_solver: until that function puts in another one, or none. The multigrid pays from
  *  some fifty thousand particles on (docs/fluid.md). Of one process only: else
- *  MPS_ERROR_UNSUPPORTED. */
+ *  MPS_ERROR_UNSUPPORTED, also of a fluid on several ranks. */
 MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solve_fluid(mps_petsc_solver *solver,
                                                              mps_fluid *fluid, int64_t least);
 
