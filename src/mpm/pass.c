@@ -40,7 +40,7 @@ static void run_stages(mps_mpm *mpm, const mpsi_pass *pass) {
   for (int64_t k = early; pass->scatter && k < grid->cell_count; k++)
     clear_and_scatter(mpm, pass, order[k], 0);
   for (int64_t g = 0; pass->update && g < grid->node_count; g++) pass->update(mpm, g, 0);
-  if (pass->between) pass->between(mpm);
+  if (pass->between && !pass->between(mpm, pass->data)) return;
   for (int64_t g = 0; pass->finish && g < grid->node_count; g++) pass->finish(mpm, g, 0);
   for (int64_t b = 0; pass->gather && b < grid->cell_count; b++) pass->gather(mpm, b, 0);
 }
@@ -49,13 +49,15 @@ static void run_stages(mps_mpm *mpm, const mpsi_pass *pass) {
 typedef struct wave {
   mps_mpm *mpm;
   const mpsi_pass *pass;
-  _Atomic int32_t *given, *finished; /* by blocks of cells, of nodes */
+  _Atomic int32_t *given, *done; /* by blocks of cells; of nodes: UPDATED or FINISHED */
 } wave;
+enum { UPDATED = 1, FINISHED = 2 };
 
-static bool mark(_Atomic int32_t *done) {
-  const bool was = atomic_load_explicit(done, memory_order_relaxed) != 0;
-  atomic_store_explicit(done, 1, memory_order_relaxed);
-  return !was;
+/* Whether it was not yet so far. */
+static bool mark(_Atomic int32_t *done, int32_t stage) {
+  const bool before = atomic_load_explicit(done, memory_order_relaxed) < stage;
+  if (before) atomic_store_explicit(done, stage, memory_order_relaxed);
+  return before;
 }
 
 /* The block that gives to the block of nodes g just before the one at its corner q, or -1. */
@@ -71,7 +73,7 @@ static int32_t giver_before(const mps_mpm *mpm, int32_t g, int q) {
  * colours, at most. */
 static void give_in_turn(wave *w, int32_t b) {
   const mpsi_cell_block *cells = &w->mpm->grid.cells[b];
-  if (!mark(&w->given[b])) return;
+  if (!mark(&w->given[b], 1)) return;
   for (int q = 0; q < 1 << w->mpm->dim; q++) {
     const int32_t before = giver_before(w->mpm, cells->to[q], q);
     if (before >= 0) give_in_turn(w, before);
@@ -79,13 +81,17 @@ static void give_in_turn(wave *w, int32_t b) {
   clear_and_scatter(w->mpm, w->pass, b, 0);
 }
 
-static void finish_in_turn(wave *w, int32_t g) {
+static void update_in_turn(wave *w, int32_t g) {
   const mpsi_node_block *nodes = &w->mpm->grid.nodes[g];
-  if (!mark(&w->finished[g])) return;
+  if (!mark(&w->done[g], UPDATED)) return;
   for (int q = 0; q < 1 << w->mpm->dim && w->pass->scatter; q++)
     if (nodes->from[q] >= 0) give_in_turn(w, nodes->from[q]);
   if (w->pass->update) w->pass->update(w->mpm, g, 0);
-  if (w->pass->finish) w->pass->finish(w->mpm, g, 0);
+}
+
+static void finish_in_turn(wave *w, int32_t g) {
+  update_in_turn(w, g);
+  if (mark(&w->done[g], FINISHED) && w->pass->finish) w->pass->finish(w->mpm, g, 0);
 }
 
 /* Each block gathers as soon as its nodes are done, while its particles are in the cache since they
@@ -96,6 +102,9 @@ static void run_wave(mps_mpm *mpm, const mpsi_pass *pass) {
   wave w = {mpm, pass, room, room + grid->cell_count};
   for (int64_t k = 0; k < grid->cell_count + grid->node_count; k++)
     atomic_store_explicit(&room[k], 0, memory_order_relaxed);
+  for (int32_t g = 0; pass->between && g < grid->node_count; g++)
+    if (grid->nodes[g].waits) update_in_turn(&w, g);
+  if (pass->between && !pass->between(mpm, pass->data)) return;
   for (int64_t b = 0; b < grid->cell_count; b++) {
     for (int q = 0; q < 1 << mpm->dim; q++) finish_in_turn(&w, grid->cells[b].to[q]);
     if (pass->gather) pass->gather(mpm, b, 0);
@@ -145,7 +154,7 @@ static void update_nodes(flow *f, int32_t g, int32_t worker) {
     return;
   }
   if (!count_down(&f->held)) return;
-  f->pass->between(f->mpm);
+  f->pass->between(f->mpm, f->pass->data);
   for (int32_t k = 0; k < f->nodes; k++)
     if (f->mpm->grid.nodes[k].waits) put(f, 2 * f->cells + k);
 }
@@ -249,10 +258,14 @@ static void fill(flow *f) {
   atomic_store_explicit(&f->head, f->starts, memory_order_relaxed);
 }
 
+bool mpsi_mpm_passes_alone(const mps_mpm *mpm) {
+  return mpm->grid.worker_count == 1 || mpm->p.count < SMALL_SET;
+}
+
 void mpsi_mpm_run_pass(mps_mpm *mpm, const mpsi_pass *pass) {
   mpsi_grid *grid = &mpm->grid;
-  if (grid->worker_count == 1 || mpm->p.count < SMALL_SET) {
-    if (pass->between || pass->arrive)
+  if (mpsi_mpm_passes_alone(mpm)) {
+    if (pass->arrive)
       run_stages(mpm, pass);
     else
       run_wave(mpm, pass);

@@ -20,16 +20,21 @@
 typedef void (*mpsi_mpm_task)(mps_mpm *mpm, int64_t index, int32_t worker);
 
 typedef struct mpsi_pass {
-  mpsi_mpm_task clear;           /* of nodes, before the first gives to them */
-  mpsi_mpm_task scatter;         /* of cells; NULL: none, and nothing is cleared */
-  mpsi_mpm_task update;          /* of nodes, all having given; NULL: none */
-  void (*between)(mps_mpm *mpm); /* NULL: nothing; else runs once, when all blocks of nodes that
-                                    `wait` are updated and before any of these is finished */
-  mpsi_mpm_task finish;          /* of nodes; NULL: none */
-  mpsi_mpm_task gather;          /* of cells; NULL: none */
-  void (*arrive)(mps_mpm *mpm);  /* NULL: nothing; else brings what ghosts give (share.h) */
+  mpsi_mpm_task clear;                       /* of nodes, before the first gives to them */
+  mpsi_mpm_task scatter;                     /* of cells; NULL: none, and nothing is cleared */
+  mpsi_mpm_task update;                      /* of nodes, all having given; NULL: none */
+  bool (*between)(mps_mpm *mpm, void *data); /* NULL: nothing; else runs once, when all blocks of
+                                    nodes that `wait` are updated and before any of these is
+                                    finished; with one thread before anything is finished, and false
+                                    ends the pass */
+  void *data;
+  mpsi_mpm_task finish;         /* of nodes; NULL: none */
+  mpsi_mpm_task gather;         /* of cells; NULL: none */
+  void (*arrive)(mps_mpm *mpm); /* NULL: nothing; else brings what ghosts give (share.h) */
 } mpsi_pass;
 
+/* Whether one thread makes the passes. */
+bool mpsi_mpm_passes_alone(const mps_mpm *mpm);
 /* Returns when all is done. */
 void mpsi_mpm_run_pass(mps_mpm *mpm, const mpsi_pass *pass);
 

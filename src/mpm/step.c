@@ -82,6 +82,50 @@ static void gather_own(mps_mpm *mpm, int64_t b, int32_t worker) {
   if (!mpm->grid.cells[b].ghost) keep_and_gather(mpm, b, worker);
 }
 
+/* What happens between the nodes and the bodies in a step, on the way of its pass or by itself. */
+typedef struct meeting {
+  const char *function;
+  mps_status status; /* of the search for touches, and then of all */
+  double dt;
+} meeting;
+
+static bool find_masses(mps_mpm *mpm, void *data) {
+  (void)data;
+  mpsi_mpm_find_contact_mass(mpm);
+  return true;
+}
+
+/* No particle moves before all depths are known. */
+static bool meet_bodies(mps_mpm *mpm, void *data) {
+  meeting *m = data;
+  mpsi_mpm_fit_touches(mpm);
+  if (m->status == MPS_OK) m->status = mpsi_mpm_check_depth(mpm, m->function);
+  if (mpm->share) m->status = mpsi_mpm_meet(mpm, m->function, m->status);
+  if (m->status != MPS_OK) return false;
+  mpsi_mpm_apply_impulses(mpm);
+  if (mpm->share) mpsi_mpm_meet_end(mpm);
+  mpsi_mpm_begin_holds(mpm, m->dt);
+  return true;
+}
+
+/* One thread can let the blocks near bodies give first, and then go over all in one wave. Springs
+ * and areas of contact ask for nodes anywhere near a body. */
+static bool can_meet_on_the_way(const mps_mpm *mpm) {
+  bool can = !mpm->share && mpsi_mpm_passes_alone(mpm) && mpm->contact.springs == 0;
+  for (int32_t b = 0; b < mpm->contact.bodies; b++)
+    can = can && mpsi_by_impulses(mpm->contact.handle[b]) &&
+          !mpsi_has_strength(mpm->contact.handle[b]);
+  return can;
+}
+
+/* The nodes of all touches are to be updated before the bodies are met. */
+static void wait_for_touches(mps_mpm *mpm) {
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  for (int64_t k = 0; k < all->block_count; k++)
+    for (int q = 0; q < 1 << mpm->dim; q++)
+      mpm->grid.nodes[mpm->grid.cells[all->block[k].cells].to[q]].waits = true;
+}
+
 /* From the particles to the nodes and back (pass.h), Nakamura 6 and Table 2:
  *   clear    the nodes of a block
  *   scatter  x, v, L, sigma, V, m --> mass, momentum, forces and contact at the nodes: p2g.c
@@ -98,12 +142,13 @@ static void gather_own(mps_mpm *mpm, int64_t b, int32_t worker) {
 static mps_status move(mps_mpm *mpm, const char *function, double dt, mps_status found) {
   const bool contacts = mpm->contact.cell_pair_count > 0 || (mpm->share && mpm->contact.bodies > 0);
   const int32_t geometry = mpm->def.geometry, spline = mpm->def.spline - 2;
+  meeting met = {function, found, dt};
   mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes,
                     .scatter = mpm->contact.springs > 0 ? mpsi_mpm_scatter_springs
                                                         : mpm->kernels->p2g[geometry][spline],
                     .update = mpsi_mpm_update_nodes,
-                    .between =
-                        mpm->contact.bodies > 0 && !mpm->share ? mpsi_mpm_find_contact_mass : NULL};
+                    .between = mpm->contact.bodies > 0 && !mpm->share ? find_masses : NULL,
+                    .data = &met};
   mpsi_mpm_move_holds(mpm, dt); /* signals --> velocities of walls, boxes */
   if (mpm->share) {
     const mps_status status = mpsi_mpm_share_send(mpm, function);
@@ -111,27 +156,24 @@ static mps_status move(mps_mpm *mpm, const char *function, double dt, mps_status
     pass.scatter = mpsi_mpm_share_scatter;
     pass.arrive = mpsi_mpm_share_receive;
   }
-  if (contacts) { /* no particle moves before all depths are known */
+  if (contacts && can_meet_on_the_way(mpm)) {
+    wait_for_touches(mpm);
+    pass.between = meet_bodies;
+  } else if (contacts) {
     mpsi_mpm_run_pass(mpm, &pass);
     if (mpm->share) mpsi_mpm_find_contact_mass(mpm); /* of all ranks */
-    mpsi_mpm_fit_touches(mpm);
-    mps_status status = found;
-    if (status == MPS_OK) status = mpsi_mpm_check_depth(mpm, function);
-    if (mpm->share) status = mpsi_mpm_meet(mpm, function, status);
-    if (status != MPS_OK) return status;
-    mpsi_mpm_apply_impulses(mpm);
-    if (mpm->share) mpsi_mpm_meet_end(mpm);
+    if (!meet_bodies(mpm, &met)) return met.status;
     pass = (mpsi_pass){.clear = NULL};
   } else {
     mpm->contact.impulses.kept_count = 0;
+    mpsi_mpm_begin_holds(mpm, dt);
   }
   pass.finish = mpsi_mpm_finish_nodes;
   pass.gather = mpm->share     ? gather_own
                 : mpm->undo.on ? keep_and_gather
                                : mpm->kernels->g2p[geometry][spline];
-  mpsi_mpm_begin_holds(mpm, dt);
   mpsi_mpm_run_pass(mpm, &pass);
-  return MPS_OK;
+  return met.status;
 }
 
 mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {

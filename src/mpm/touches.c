@@ -143,6 +143,8 @@ static int64_t share_candidates(mps_mpm *mpm) {
     const mpsi_cell_block *cells = &mpm->grid.cells[pair->cells];
     pair->first_candidate = count;
     pair->candidates = 0;
+    pair->touched = false; /* also of blocks that give after the bodies are met (step.c) */
+    pair->deepest = 0.0;
     if (mpsi_by_impulses(mpm->contact.handle[pair->body])) count += cells->end - cells->begin;
   }
   return count;
