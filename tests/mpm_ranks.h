@@ -5,6 +5,7 @@
 
 #include "ranks_result.h"
 
+#include <mps/grid.h>
 #include <mps/mpm.h>
 #include <mps/mpm_energy.h>
 #include <mps/mpm_settle.h>
@@ -238,6 +239,39 @@ static inline mps_status keep_order(mps_domain *domain, mps_particles *set, resu
   return status;
 }
 
+/* What a reader of the grid gets: of nodes, by places, the largest hash of their bits on any rank,
+ * and how many there are on all; values at points. */
+static inline mps_status keep_grid(mps_domain *domain, scene *s, double *out) {
+  enum { BUCKETS = 16, RANKS = 16, NODES = 8192 };
+  static const double points[9] = {0.31, 0.2, 0.3, 0.62, 0.33, 0.41, 1.1, 0.1, 0.2};
+  double *node = calloc(10 * NODES, sizeof *node), *v = node + 3 * NODES, *f = v + 3 * NODES;
+  double *mass = f + 3 * NODES, most[BUCKETS + RANKS] = {0.0}, value[9] = {0.0};
+  int64_t count = 0, all = 0;
+  mps_grid *grid = mps_mpm_grid(s->mpm);
+  mps_status status = mps_grid_get_nodes(grid, NODES, &count, node, mass, v, f);
+  for (int64_t k = 0; status == MPS_OK && k < count; k++) {
+    uint64_t hash = 0, bits;
+    for (int c = 0; c < 10; c++) {
+      const double number = (c < 9 ? node[c / 3 * 3 * NODES + 3 * k + c % 3] : mass[k]) + 0.0;
+      memcpy(&bits, &number, sizeof bits);
+      hash = (hash ^ bits) * UINT64_C(0x9E3779B97F4A7C15), hash ^= hash >> 29;
+    }
+    const int bucket = (int)(llround(100.0 * (node[3 * k] + 7.0 * node[3 * k + 1])) & 15);
+    most[bucket] = fmax(most[bucket], (double)(hash >> 12));
+  }
+  most[BUCKETS + (domain ? mps_domain_rank(domain) : 0)] = (double)count;
+  if (domain) TRY(mps_domain_max(domain, BUCKETS + RANKS, most));
+  for (int k = 0; k < RANKS; k++) all += (int64_t)most[BUCKETS + k];
+  TRY(mps_grid_evaluate(grid, "velocity", -1, 3, points, value, NULL));
+  for (int k = 0; k < 9; k++) value[k] = value[k] == value[k] ? value[k] : 0.0; /* none there */
+  if (count > NODES) status = MPS_ERROR_INTERNAL;
+  memcpy(out, most, BUCKETS * sizeof *out);
+  memcpy(out + BUCKETS, value, sizeof value);
+  out[BUCKETS + 9] = (double)all;
+  free(node);
+  return status;
+}
+
 static inline mps_status keep_scene(mps_domain *domain, int what, scene *s, result *r) {
   mps_status status = mps_mpm_get_totals(s->mpm, &r->totals);
   static const int32_t asked[] = {
@@ -249,6 +283,7 @@ static inline mps_status keep_scene(mps_domain *domain, int what, scene *s, resu
   mps_mpm_losses losses = {0};
   if (r->totals.work_loads == r->totals.work_loads) TRY(mps_mpm_get_losses(s->mpm, &losses));
   memcpy(r->other + RESULT_OTHERS - 1 - (int)(sizeof losses / 8), &losses, sizeof losses);
+  if (what == SLIDE || what == ROOM || what == CONE) TRY(keep_grid(domain, s, r->other + 120));
   TRY(keep_order(domain, s->set, r));
   r->dt = mps_mpm_dt(s->mpm), r->limit = mps_mpm_limit(s->mpm), r->time = mps_mpm_time(s->mpm);
   TRY(keep(s->set, r));

@@ -39,7 +39,8 @@ static inline mps_status mps_grid_get_info(mps_grid *grid, mps_grid_info *out) {
  *  supports a node's mass can be a little below 0. Nodes near a mirrored side (mps_mpm_walls) have
  *  what the images beyond it give too: their masses add up as before, momenta and forces across it
  *  do not. It costs about half a step. The particles are sorted if the next step would sort them:
- *  views are then stale. MPS_ERROR_STATE: a step has failed, a field is being edited, or new
+ *  views are then stale. On several ranks (collective) each gets nodes of its own blocks, every node
+ *  on one rank; all together they are those of one rank. MPS_ERROR_STATE: a step has failed, a field is being edited, or new
  *  particles have no density. */
 MPS_API MPS_NODISCARD mps_status mps_grid_get_nodes(mps_grid *grid, int64_t capacity,
                                                     int64_t *count, double *position, double *mass,
@@ -64,7 +65,8 @@ typedef enum mps_grid_point {
  *  point, or as many as the field has components; NaN where `states` (int32_t, an mps_grid_point
  *  each; may be NULL) is not INSIDE. The value is that of the linear function which fits the
  *  particles best in the solver's weights about the point: linear fields are reproduced. Particles
- *  on both sides of a thin body count. MPS_ERROR_FIELD: the set has no such field of float64;
+ *  on both sides of a thin body count. On several ranks (collective, the same points on all) each
+ *  gets the values of one rank. MPS_ERROR_FIELD: the set has no such field of float64;
  *  MPS_ERROR_STATE: a step has failed. */
 MPS_API MPS_NODISCARD mps_status mps_grid_evaluate(mps_grid *grid, const char *field,
                                                    int32_t component, int64_t count,

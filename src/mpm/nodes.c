@@ -16,25 +16,37 @@ mps_status mps_grid_get_info_sized(mps_grid *grid, mps_grid_info *out, size_t si
   return mpsi_out_write(mpm->context, "mps_grid_get_info", out, size, &info, sizeof info);
 }
 
-/* Sums of mass, momentum and force at the nodes. */
-static mps_status make_sums(mps_mpm *mpm, const char *function) {
-  const mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes, .scatter = mpsi_mpm_scatter_springs};
-  mps_status status = mpsi_mpm_share_refuse(mpm, function, "nodes of the grid");
+/* The sums themselves, when all is known. */
+static mps_status sum_nodes(mps_mpm *mpm, const char *function) {
+  mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes, .scatter = mpsi_mpm_scatter_springs};
+  mpsi_mpm_move_holds(mpm, mps_mpm_dt(mpm));
+  if (mpm->share) {
+    pass.scatter = mpsi_mpm_share_scatter;
+    pass.arrive = mpsi_mpm_share_receive;
+    const mps_status status = mpsi_mpm_share_send(mpm, function);
+    if (status != MPS_OK) return status;
+  }
+  mpsi_mpm_run_pass(mpm, &pass);
+  return mpm->share ? mpm->share->lost : MPS_OK;
+}
+
+/* Sums of mass, momentum and force at the nodes. `status`: what has become of the call so far here;
+ * collective. */
+static mps_status make_sums(mps_mpm *mpm, const char *function, mps_status status) {
+  status = mpsi_mpm_share_settle(mpm, function, status);
   if (status == MPS_OK) status = mpsi_mpm_tidy(mpm, function);
+  if (status == MPS_OK && mpm->share) status = mpsi_mpm_share_tidy(mpm, function, status);
   if (status == MPS_OK && mpm->run.stale) {
     status = mpsi_mpm_sort(mpm, function);
     mpm->boundaries.outdated = true;
   }
-  status = mpsi_mpm_update_holds(mpm, function, status);
+  if (status != MPS_OK) return status; /* on all ranks */
   mpm->grid.apart = true;
-  if (status == MPS_OK) status = mpsi_mpm_find_near(mpm, function, status);
+  status = mpsi_mpm_update_holds(mpm, function, status);
+  status = mpsi_mpm_find_near(mpm, function, status);
   if (status == MPS_OK) status = mpsi_mpm_find_forces(mpm, function);
-  if (status != MPS_OK) {
-    mpm->grid.apart = false;
-    return status;
-  }
-  mpsi_mpm_move_holds(mpm, mps_mpm_dt(mpm));
-  mpsi_mpm_run_pass(mpm, &pass);
+  if (mpm->share) status = mpsi_mpm_share_ready(mpm, function, status);
+  if (status == MPS_OK) status = sum_nodes(mpm, function);
   mpm->grid.apart = false;
   return status;
 }
@@ -73,15 +85,17 @@ mps_status mps_grid_get_nodes(mps_grid *grid, int64_t capacity, int64_t *count, 
                               double *mass, double *velocity, double *force) {
   if (!grid) return MPS_ERROR_ARGUMENT;
   mps_mpm *mpm = grid->mpm;
+  mps_status status = MPS_OK;
   if (capacity < 0 || !count)
-    return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
-                     "capacity is %lld and count %s, must be >= 0 and given", (long long)capacity,
-                     count ? "given" : "NULL");
-  const mps_status status = make_sums(mpm, __func__);
+    status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
+                       "capacity is %lld and count %s, must be >= 0 and given", (long long)capacity,
+                       count ? "given" : "NULL");
+  status = make_sums(mpm, __func__, status);
   if (status != MPS_OK) return status;
   int64_t n = 0;
   for (int64_t g = 0; g < mpsi_all_nodes(&mpm->grid); g++)
     for (int k = 0; k < mpm->grid.block_nodes; k++) {
+      if (mpm->share && !mpsi_mpm_share_counts(mpm, g)) break;
       node at;
       if (!read_node(mpm, g, k, &at)) continue;
       if (n < capacity) {
@@ -135,11 +149,16 @@ mps_status mps_grid_fill(mps_grid *grid, mps_particles *set) {
   if (!grid) return MPS_ERROR_ARGUMENT;
   mps_mpm *mpm = grid->mpm;
   int64_t count = 0;
-  mps_status status = check_set(mpm, __func__, set);
+  mps_status status = mpsi_mpm_share_settle(mpm, __func__, check_set(mpm, __func__, set));
   if (status == MPS_OK) status = mps_grid_get_nodes(grid, 0, &count, NULL, NULL, NULL, NULL);
   if (status != MPS_OK) return status;
   double *memory = mpsi_alloc(mpm->context, count * 10, sizeof *memory);
-  if (!memory) return mpsi_fail_memory(mpm->context, __func__, (size_t)count * 80);
+  if (!memory) status = mpsi_fail_memory(mpm->context, __func__, (size_t)count * 80);
+  status = mpsi_mpm_share_settle(mpm, __func__, status);
+  if (status != MPS_OK) {
+    mpsi_free(mpm->context, memory);
+    return status;
+  }
   double *x = memory, *v = x + 3 * count, *f = v + 3 * count, *mass = f + 3 * count;
   status = mps_grid_get_nodes(grid, count, &count, x, mass, v, f);
   if (status == MPS_OK) status = mps_particles_add_field(set, "mass", 0);
@@ -153,5 +172,5 @@ mps_status mps_grid_fill(mps_grid *grid, mps_particles *set) {
     write_columns(set, "mass", count, 1, mass);
   }
   mpsi_free(mpm->context, memory);
-  return status;
+  return mpsi_mpm_share_settle(mpm, __func__, status);
 }

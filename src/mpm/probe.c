@@ -1,6 +1,7 @@
 /* probe.c - fields of the particles at any points (mps/grid.h): at each a weighted least-squares
  * fit of a linear function, Nakamura (5), (6), with the roles of nodes and particles exchanged. The
- * fit is about the weighted mean of the particles' places, so that it keeps its digits.
+ * fit is about the weighted mean of the particles' places, so that it keeps its digits. On several
+ * ranks all are told of the particles near the points. Sums go by cells and in them by ids.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "particles.h"
 #include "shape.h"
@@ -8,6 +9,7 @@
 #include <mps/grid.h>
 
 #include <stdlib.h>
+#include <string.h>
 
 #define LEAST_FILLED 0.2
 #define SINGULAR 1e-9 /* cells squared: spread of the particles, below which there is no slope */
@@ -15,7 +17,7 @@
 
 /* A particle by its cell. */
 typedef struct item {
-  int64_t cell[3], index;
+  int64_t cell[3], id, index; /* index: of the rows below */
 } item;
 
 static int compare_cells(const int64_t *a, const int64_t *b) {
@@ -27,17 +29,39 @@ static int compare_cells(const int64_t *a, const int64_t *b) {
 static int compare(const void *a, const void *b) {
   const item *p = a, *q = b;
   const int order = compare_cells(p->cell, q->cell);
-  return order != 0 ? order : p->index < q->index ? -1 : p->index > q->index;
+  return order != 0 ? order : p->id < q->id ? -1 : p->id > q->id;
 }
+
+/* A particle's row: x, V, and the field's columns, as many as a field may have. */
+enum { MOST_COLUMNS = 16, ROW_V = 3, ROW_FIELD, MOST_ROW = ROW_FIELD + MOST_COLUMNS };
+typedef struct row {
+  item at;
+  double value[MOST_ROW];
+} row;
 
 /* Particles near the points, sorted by their cells. */
 typedef struct near {
-  const mps_mpm *mpm;
+  mps_mpm *mpm;
+  const double *column[MOST_COLUMNS]; /* of the field */
+  int32_t columns;
   item *item;
+  row *row;
   int64_t count;
 } near;
 
-static bool list_near(near *list, int64_t count, const double *points) {
+static void fill_row(const near *list, int64_t k, row *out) {
+  const mpsi_columns *p = &list->mpm->p;
+  *out = (row){.at.id = mpsi_particles_integers(list->mpm->particles, "id")[k]};
+  for (int c = 0; c < list->mpm->dim; c++) {
+    out->value[c] = p->x[c][k];
+    out->at.cell[c] = (int64_t)floor(mpsi_grid_coordinate(list->mpm, c, p->x[c][k]));
+  }
+  out->value[ROW_V] = p->V[k];
+  for (int32_t c = 0; c < list->columns; c++) out->value[ROW_FIELD + c] = list->column[c][k];
+}
+
+/* This rank's; false: no memory. */
+static bool list_own(near *list, int64_t count, const double *points) {
   const mps_mpm *mpm = list->mpm;
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   for (int64_t i = 0; i < count; i++)
@@ -45,20 +69,78 @@ static bool list_near(near *list, int64_t count, const double *points) {
       const double X = mpsi_grid_coordinate(mpm, c, points[3 * i + c]);
       low[c] = fmin(low[c], X - REACH), high[c] = fmax(high[c], X + REACH);
     }
-  list->item = mpsi_alloc(mpm->context, mpm->p.count, sizeof *list->item);
-  if (!list->item) return false;
-  for (int64_t k = 0; k < mpm->p.count; k++) {
-    item at = {.index = k};
-    bool inside = true;
-    for (int c = 0; c < mpm->dim && inside; c++) {
-      const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k]);
-      inside = X >= low[c] && X <= high[c];
-      if (inside) at.cell[c] = (int64_t)floor(X);
+  for (int pass = 0; pass < 2; pass++) {
+    if (pass == 1) list->row = mpsi_alloc(mpm->context, list->count, sizeof *list->row);
+    if (pass == 1 && !list->row) return false;
+    list->count = 0;
+    for (int64_t k = 0; k < mpm->p.count; k++) {
+      bool inside = true;
+      for (int c = 0; c < mpm->dim && inside; c++) {
+        const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k]);
+        inside = X >= low[c] && X <= high[c];
+      }
+      if (inside && pass == 1) fill_row(list, k, &list->row[list->count]);
+      list->count += inside;
     }
-    if (inside) list->item[list->count++] = at;
   }
-  qsort(list->item, (size_t)list->count, sizeof *list->item, compare);
   return true;
+}
+
+/* Those of all ranks in place of this one's. */
+static mps_status join_rows(near *list, const char *function, const mpsi_mailbox *box) {
+  mps_context *context = list->mpm->context;
+  int64_t count = list->count;
+  for (int32_t m = 0; m < box->count; m++) count += box->mail[m].bytes / (int64_t)sizeof(row);
+  row *all = mpsi_alloc(context, count, sizeof *all);
+  if (!all) return mpsi_fail_memory(context, function, (size_t)count * sizeof *all);
+  if (list->count > 0) memcpy(all, list->row, (size_t)list->count * sizeof *all);
+  char *to = (char *)(all + list->count);
+  for (int32_t m = 0; m < box->count; to += box->mail[m++].bytes)
+    memcpy(to, box->mail[m].data, (size_t)box->mail[m].bytes);
+  mpsi_free(context, list->row);
+  list->row = all;
+  list->count = count;
+  return MPS_OK;
+}
+
+static mps_status tell_all(near *list, const char *function, mps_status status) {
+  mps_domain *domain = list->mpm->share->domain;
+  mps_context *context = list->mpm->context;
+  mpsi_mailbox box = {.context = context};
+  int32_t count = 0;
+  mps_domain_message *message = mpsi_alloc(context, mps_domain_size(domain), sizeof *message);
+  if (!message && status == MPS_OK)
+    status = mpsi_fail_memory(context, function, (size_t)mps_domain_size(domain) * 24);
+  status = mpsi_domain_settle(domain, function, status);
+  for (int32_t r = 0; status == MPS_OK && r < mps_domain_size(domain) && list->count > 0; r++)
+    if (r != mps_domain_rank(domain))
+      message[count++] = (mps_domain_message){
+          .rank = r, .bytes = list->count * (int64_t)sizeof(row), .data = list->row};
+  if (status == MPS_OK) status = mpsi_domain_exchange(domain, function, count, message, &box);
+  if (status == MPS_OK)
+    status = mpsi_domain_settle(domain, function, join_rows(list, function, &box));
+  mpsi_domain_free_mail(&box);
+  mpsi_free(context, message);
+  return status;
+}
+
+static mps_status list_near(near *list, const char *function, int64_t count, const double *points) {
+  mps_context *context = list->mpm->context;
+  mps_status status = MPS_OK;
+  if (!list_own(list, count, points))
+    status = mpsi_fail_memory(context, function, (size_t)list->count * sizeof *list->row);
+  if (list->mpm->share) status = tell_all(list, function, status);
+  if (status != MPS_OK) return status;
+  list->item = mpsi_alloc(context, list->count, sizeof *list->item);
+  if (!list->item)
+    status = mpsi_fail_memory(context, function, (size_t)list->count * sizeof *list->item);
+  status = mpsi_mpm_share_settle(list->mpm, function, status);
+  for (int64_t k = 0; status == MPS_OK && k < list->count; k++) {
+    list->item[k] = list->row[k].at;
+    list->item[k].index = k;
+  }
+  if (status == MPS_OK) qsort(list->item, (size_t)list->count, sizeof *list->item, compare);
+  return status;
 }
 
 /* The first item that is not before `cell`. */
@@ -110,7 +192,7 @@ static void for_particles(fit *f, visit_fn visit, void *data) {
         if (at->cell[2] != cell[2] || at->cell[1] != cell[1] || at->cell[0] > own[0] + REACH) break;
         double w = 1.0, s[3] = {0.0};
         for (int c = 0; c < mpm->dim; c++) {
-          s[c] = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][at->index]) - f->X[c];
+          s[c] = mpsi_grid_coordinate(mpm, c, list->row[at->index].value[c]) - f->X[c];
           w *= spline_at(mpm->def.spline, s[c]);
         }
         if (w > 0.0) visit(f, at->index, w, s, data);
@@ -121,10 +203,11 @@ static void for_particles(fit *f, visit_fn visit, void *data) {
 static void add_weight(fit *f, int64_t k, double w, const double *s, void *data) {
   const mps_mpm *mpm = f->list->mpm;
   const double across =
-      mpm->def.measure * (mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? mpm->p.x[0][k] : 1.0);
+      mpm->def.measure *
+      (mpm->def.geometry == MPS_MPM_AXISYMMETRIC ? f->list->row[k].value[0] : 1.0);
   (void)data;
   f->weight += w;
-  f->filled += w * mpm->p.V[k] / across;
+  f->filled += w * f->list->row[k].value[ROW_V] / across;
   for (int c = 0; c < 3; c++) f->mean[c] += w * s[c];
 }
 
@@ -169,18 +252,19 @@ static int32_t begin_fit(fit *f) {
 
 /* A column's weighted mean, and its first moment about the mean place. */
 typedef struct sums {
-  const double *column;
+  int32_t column; /* of the rows */
   double value, slope[3];
 } sums;
 
 static void add_value(fit *f, int64_t k, double w, const double *s, void *data) {
   sums *sum = data;
-  sum->value += w * sum->column[k];
-  for (int c = 0; c < 3; c++) sum->slope[c] += w * (s[c] - f->mean[c]) * sum->column[k];
+  const double value = f->list->row[k].value[sum->column];
+  sum->value += w * value;
+  for (int c = 0; c < 3; c++) sum->slope[c] += w * (s[c] - f->mean[c]) * value;
 }
 
-static double value_of(fit *f, const double *column) {
-  sums sum = {.column = column};
+static double value_of(fit *f, int32_t column) {
+  sums sum = {.column = ROW_FIELD + column};
   for_particles(f, add_value, &sum);
   double value = sum.value / f->weight;
   for (int a = 0; a < 3; a++)
@@ -225,26 +309,31 @@ static mps_status check(const mps_mpm *mpm, const char *function, const char *fi
 mps_status mps_grid_evaluate(mps_grid *grid, const char *field, int32_t component, int64_t count,
                              const double *points, double *values, int32_t *states) {
   if (!grid) return MPS_ERROR_ARGUMENT;
-  const mps_mpm *mpm = grid->mpm;
+  mps_mpm *mpm = grid->mpm;
   near list = {.mpm = mpm};
   int32_t components = 0;
-  const mps_status status =
-      check(mpm, __func__, field, component, count, points, values, &components);
+  mps_status status = check(mpm, __func__, field, component, count, points, values, &components);
+  status = mpsi_mpm_share_settle(mpm, __func__, status);
   if (status != MPS_OK || count == 0) return status;
-  if (!list_near(&list, count, points))
-    return mpsi_fail_memory(mpm->context, __func__, (size_t)mpm->p.count * sizeof(item));
   const int32_t first = component < 0 ? 0 : component, width = component < 0 ? components : 1;
+  list.columns = width;
+  for (int32_t c = 0; c < width; c++)
+    list.column[c] = mpsi_particles_column(mpm->particles, field, first + c);
+  status = list_near(&list, __func__, count, points);
+  if (status != MPS_OK) {
+    mpsi_free(mpm->context, list.row);
+    mpsi_free(mpm->context, list.item);
+    return status;
+  }
   for (int64_t i = 0; i < count; i++) {
     fit f = {.list = &list};
     for (int c = 0; c < mpm->dim; c++) f.X[c] = mpsi_grid_coordinate(mpm, c, points[3 * i + c]);
     const int32_t state = begin_fit(&f);
     for (int32_t c = 0; c < width; c++)
-      values[width * i + c] =
-          state == MPS_GRID_POINT_INSIDE
-              ? value_of(&f, mpsi_particles_column(mpm->particles, field, first + c))
-              : NAN;
+      values[width * i + c] = state == MPS_GRID_POINT_INSIDE ? value_of(&f, c) : NAN;
     if (states) states[i] = state;
   }
+  mpsi_free(mpm->context, list.row);
   mpsi_free(mpm->context, list.item);
   return MPS_OK;
 }
