@@ -155,7 +155,7 @@ int app_end_run(app *a, mps_status status, double time, bool any) {
                                                : "failed";
   if (status != MPS_ERROR_CANCELLED) return app_check(a, status) ? APP_OK : APP_FAILED;
   app_error(a, "interrupted at t = %.4g s: %s", time,
-            any ? "the results end there" : "there are no results yet, nothing is written");
+            any ? "the results end there" : "there are no results yet");
   return APP_INTERRUPTED;
 }
 

@@ -39,8 +39,9 @@ static box near_bodies(const mps_mpm *mpm, const mpsi_cell_block *cells) {
   box out = {{MPSI_TILE_SIDE, MPSI_TILE_SIDE, MPSI_TILE_SIDE}, {0}};
   for (int q = 0; q < 1 << mpm->dim; q++) {
     const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
+    if (!nodes->inside) continue;
     const box in = box_under(cells, q, nodes->low, nodes->high);
-    for (int c = 0; c < 3 && nodes->inside && !is_empty(&in); c++) {
+    for (int c = 0; c < 3 && !is_empty(&in); c++) {
       if (in.low[c] - reach < out.low[c]) out.low[c] = in.low[c] - reach;
       if (in.high[c] + reach > out.high[c]) out.high[c] = in.high[c] + reach;
     }
