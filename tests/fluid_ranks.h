@@ -9,8 +9,8 @@
 
 /* A column that falls against a wall that does not slip; a tank with a piston, a load and a body
  * afloat, made in parts; water that runs out of an open side, and is added to; all of two to three
- * blocks. PUDDLE is less than one. */
-enum { COLLAPSE, AFLOAT, SPILL, PUDDLE, SCENES };
+ * blocks. PUDDLE is less than one, POND little more. */
+enum { COLLAPSE, AFLOAT, SPILL, PUDDLE, POND };
 
 typedef struct scene {
   mps_particles *set;
@@ -69,7 +69,8 @@ static inline mps_status add_float(mps_context *own, scene *s) {
 static inline mps_status make_scene(mps_context *own, mps_domain *domain, int what, scene *s) {
   mps_particles_def set = mps_particles_defaults();
   mps_fluid_def def = mps_fluid_defaults();
-  const double lower[2] = {0.0, 0.0}, small[2] = {0.6, 0.4}, large[2] = {2.0, 1.6};
+  const double lower[2] = {0.0, 0.0}, small[2] = {0.6, 0.4}, middle[2] = {1.12, 1.0},
+               large[2] = {2.0, 1.6};
   set.spacing = 0.02;
   def.domain = domain;
   def.viscosity = what == COLLAPSE ? 0.5 : 0.0;
@@ -80,7 +81,8 @@ static inline mps_status make_scene(mps_context *own, mps_domain *domain, int wh
     for (int k = 0; k < 3; k++)
       TRY(mps_particles_fill_box(s->set, &parts[k][0], &parts[k][2], NULL));
   } else {
-    TRY(mps_particles_fill_box(s->set, lower, what == PUDDLE ? small : large, NULL));
+    const double *upper = what == PUDDLE ? small : what == POND ? middle : large;
+    TRY(mps_particles_fill_box(s->set, lower, upper, NULL));
   }
   if (domain) status = mps_domain_agree(domain, status);
   TRY(mps_fluid_create(own, s->set, &def, &s->fluid));

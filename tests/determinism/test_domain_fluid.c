@@ -68,7 +68,7 @@ static void test_checkpoint(void **state) {
 /* ---- what goes wrong on one rank --------------------------------------------------------------
  */
 
-static void test_refused_memory(void **state) { (void)state, refuse_memory(compute, SPILL, 4, 9); }
+static void test_refused_memory(void **state) { (void)state, refuse_memory(compute, POND, 2, 9); }
 
 /* One after the other, what ranks do not agree upon, what fails on one of them, what is refused. */
 enum {
