@@ -185,19 +185,22 @@ bool mpsi_h5_open(mpsi_h5_file *file, int fd, const char *name, bool create) {
   }
   file->end_of_file = (haddr_t)status.st_size;
   const driver_info info = {file};
-  const hid_t driver = H5FDregister(&driver_class), access = H5Pcreate(H5P_FILE_ACCESS);
-  if (driver >= 0 && access >= 0 && H5Pset_driver(access, driver, &info) >= 0 &&
+  const hid_t driver = file->driver_id = H5FDregister(&driver_class);
+  const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+  if (driver > 0 && access >= 0 && H5Pset_driver(access, driver, &info) >= 0 &&
       H5Pset_fclose_degree(access, H5F_CLOSE_STRONG) >= 0)
     file->id = create ? H5Fcreate(name, H5F_ACC_TRUNC, H5P_DEFAULT, access)
                       : H5Fopen(name, H5F_ACC_RDONLY, access);
   if (access >= 0) H5Pclose(access);
-  if (driver >= 0) H5FDunregister(driver); /* the open file holds it */
+  if (file->id < 0) mpsi_h5_close(file);
   return file->id >= 0;
 }
 
 bool mpsi_h5_close(mpsi_h5_file *file) {
   const bool good = file->id < 0 || H5Fclose(file->id) >= 0;
   file->id = -1;
+  if (file->driver_id > 0) H5FDunregister(file->driver_id);
+  file->driver_id = 0;
   return good;
 }
 

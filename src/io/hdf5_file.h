@@ -37,6 +37,9 @@ typedef struct mpsi_h5_file {
   int error; /* errno of the first system call that failed; 0: none */
   haddr_t end_of_allocation, end_of_file, reserved;
   hid_t id; /* < 0: not open */
+  /* 0: none; registered while the file is open, as HDF5 1.10 still reads the driver's class after
+   * it has given back its own hold on it */
+  hid_t driver_id;
 } mpsi_h5_file;
 
 /* Opens what `fd` refers to as an HDF5 file: a new one (an empty file, open for reading and
