@@ -1,8 +1,8 @@
 /* domain_threads.h - a transport for domains whose ranks are threads of one process, each with a
  * context of its own: for tests with sanitizers, allocations that are refused and partners that
- * are lost. Every wait ends after a time limit, with an error on all ranks. Ranks read one another's
- * memory; one that goes away early waits until nobody reads.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * are lost. Every wait ends after a time limit, with an error on all ranks. Ranks read one
+ * another's memory; one that goes away early waits until nobody reads. SPDX-License-Identifier:
+ * BSD-3-Clause */
 #ifndef MPS_TEST_DOMAIN_THREADS_H
 #define MPS_TEST_DOMAIN_THREADS_H
 

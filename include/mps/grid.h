@@ -39,9 +39,9 @@ static inline mps_status mps_grid_get_info(mps_grid *grid, mps_grid_info *out) {
  *  supports a node's mass can be a little below 0. Nodes near a mirrored side (mps_mpm_walls) have
  *  what the images beyond it give too: their masses add up as before, momenta and forces across it
  *  do not. It costs about half a step. The particles are sorted if the next step would sort them:
- *  views are then stale. On several ranks (collective) each gets nodes of its own blocks, every node
- *  on one rank; all together they are those of one rank. MPS_ERROR_STATE: a step has failed, a field is being edited, or new
- *  particles have no density. */
+ *  views are then stale. On several ranks (collective) each gets nodes of its own blocks, every
+ *  node on one rank; all together they are those of one rank. MPS_ERROR_STATE: a step has failed, a
+ *  field is being edited, or new particles have no density. */
 MPS_API MPS_NODISCARD mps_status mps_grid_get_nodes(mps_grid *grid, int64_t capacity,
                                                     int64_t *count, double *position, double *mass,
                                                     double *velocity, double *force);

@@ -25,8 +25,8 @@
  * While a call of a solver runs, nothing that it calls back (the callback of a run, signals, laws,
  * hooks of the context) may do more than read the solver and its set: to step, change, go back or
  * destroy, and to edit, fill or empty the set is MPS_ERROR_STATE. Snapshots and files may be made
- * in the callback of a run, which comes between two steps, and not within a step. Who wants to write
- * after each step calls mps_S_step in a loop of its own.
+ * in the callback of a run, which comes between two steps, and not within a step. Who wants to
+ * write after each step calls mps_S_step in a loop of its own.
  *
  * Vectors have three components in 2D too; those that leave the plane are then 0. All forces that a
  * 2D solver takes and reports are those of its `measure`: the thickness (m, default 1) in the

@@ -184,8 +184,8 @@ struct mps_dynamics {
   bool fresh;   /* no step since creation or restart: no history */
   bool checked; /* dt has been compared with the linear limit */
   bool diverged;
-  bool begun;    /* works.start is known */
-  bool no_rate;  /* restoring_old is not of the present ground: damping has no rate yet */
+  bool begun;   /* works.start is known */
+  bool no_rate; /* restoring_old is not of the present ground: damping has no rate yet */
   mpsi_guard guard;
   bool unread;           /* fields of the ground have been edited, and do not go together so far */
   const char *rewritten; /* field of the motion that the caller has written, or NULL */

@@ -34,6 +34,13 @@ void mpsi_mpm_dash(const mps_mpm *mpm, const mpsi_hold *hold, mpsi_dash *dash, c
   }
 }
 
+bool mpsi_mpm_absorbs(const mps_mpm *mpm) {
+  bool any = false;
+  for (int32_t k = 0; k < MPSI_SIDES; k++)
+    any = any || mpm->boundaries.hold[k].kind == MPS_MPM_BOUNDARY_ABSORBING;
+  return any;
+}
+
 /* ---- coefficients ---------------------------------------------------------------------------- */
 
 /* Shape functions along one axis, fitted over the nodes of the domain. */
@@ -128,11 +135,19 @@ static void add_tile(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t number,
   }
 }
 
+/* What has come of a block for a side, or NULL. */
+static const double *parcel_of(const mpsi_dash_parcels *parcels, const mpsi_cell_block *cells,
+                               int32_t side) {
+  if (!parcels || cells->parcel < 0) return NULL;
+  return (cells->ghost ? parcels->in : parcels->out) +
+         (cells->parcel * MPSI_SIDES + side) * parcels->doubles;
+}
+
 static void add_wall(mps_mpm *mpm, const mpsi_dash_parcels *parcels, int32_t number) {
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     const mpsi_cell_block *cells = &mpm->grid.cells[b];
     double own[MPSI_DASH_PLANE][2];
-    const double *tile = mpsi_mpm_dash_parcel(mpm, parcels, cells, number);
+    const double *tile = parcel_of(parcels, cells, number);
     if (!tile && mpsi_mpm_sum_dashes(mpm, cells, number, own)) tile = own[0];
     if (tile) add_tile(mpm, cells, number, tile);
   }

@@ -35,7 +35,25 @@ typedef struct mpsi_hold {
   double found;           /* s, how long it has looked, with the step being made */
 } mpsi_hold;
 
-/* The nodes of a block that a hold holds. */
+/* Nodes of a block that a side or box holds, from low to high. */
+typedef struct mpsi_range {
+  int low[3], high[3];
+} mpsi_range;
+
+/* Of the block at `at`; false: none. */
+static inline bool mpsi_find_range(int dim, const int32_t *at, const mpsi_hold *hold,
+                                   mpsi_range *out) {
+  for (int c = 0; c < 3; c++) {
+    const int64_t first = (int64_t)at[c] * MPSI_SIDE;
+    const int64_t last = first + (c < dim ? MPSI_SIDE - 1 : 0);
+    if (hold->first[c] > last || hold->last[c] < first) return false;
+    out->low[c] = hold->first[c] > first ? (int)(hold->first[c] - first) : 0;
+    out->high[c] = (int)((hold->last[c] < last ? hold->last[c] : last) - first);
+  }
+  return true;
+}
+
+/* What a hold holds of a block. */
 typedef struct mpsi_held {
   int32_t hold, at[3];          /* at: of the block */
   int64_t dash;                 /* absorbing: first of its plane's dashpots, else -1 */
@@ -64,6 +82,7 @@ typedef struct mpsi_boundaries {
 #define MPSI_DASH_PLANE (MPSI_TILE_SIDE * MPSI_TILE_SIDE)
 typedef struct mpsi_dash_parcels {
   double *out, *in;
+  int64_t doubles; /* of a plane */
 } mpsi_dash_parcels;
 
 /* walls.c: which blocks of nodes are held, after a sort. `status`: what has become of the call so
@@ -103,15 +122,15 @@ void mpsi_mpm_drop_boundaries(mps_mpm *mpm);
 mps_status mpsi_mpm_widen_sides(mps_mpm *mpm, const char *function);
 /* absorb.c: dashpots of the absorbing sides, after a sort, taking over the forces at rest from the
  * list before (`parcels`: of other ranks, or NULL); one of them at work: the velocity of its node
- * across and along; what a block gives to those of a side, false: nothing; order of the list. */
+ * across and along; what a block gives to those of a side, false: nothing; order of the list;
+ * whether a side absorbs. */
 void mpsi_mpm_place_dashes(mps_mpm *mpm, const mpsi_dash_parcels *parcels, const mpsi_held *old,
                            int64_t old_count, const mpsi_dash *old_dash);
 bool mpsi_mpm_sum_dashes(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t side,
                          double (*tile)[2]);
 int mpsi_mpm_compare_held(const mpsi_held *a, const mpsi_held *b);
-/* dashes.c: whether a side absorbs; the same for all ranks, collective; what has come of a block
- * for a side, or NULL. */
 bool mpsi_mpm_absorbs(const mps_mpm *mpm);
+/* dashes.c: the same for all ranks, collective. */
 mps_status mpsi_mpm_share_dashes(mps_mpm *mpm, const char *function, const mpsi_held *old,
                                  int64_t old_count, const mpsi_dash *old_dash);
 /* The dashpots of a file: those of all ranks in its order, on rank 0; and back, those of the blocks
@@ -119,10 +138,6 @@ mps_status mpsi_mpm_share_dashes(mps_mpm *mpm, const char *function, const mpsi_
 mps_status mpsi_mpm_gather_dashes(mps_mpm *mpm, const char *function, mpsi_value *dashes);
 mps_status mpsi_mpm_take_dashes(mps_mpm *mpm, const char *function, const mpsi_value *blocks,
                                 mpsi_value *dashes);
-/* walls.c: whether a side or box holds nodes of the block at `at`. */
-bool mpsi_mpm_holds_block(const mps_mpm *mpm, const mpsi_hold *hold, const int32_t *at);
-const double *mpsi_mpm_dash_parcel(const mps_mpm *mpm, const mpsi_dash_parcels *parcels,
-                                   const mpsi_cell_block *cells, int32_t side);
 void mpsi_mpm_dash(const mps_mpm *mpm, const mpsi_hold *hold, mpsi_dash *dash, const double *node,
                    const double *before, double *velocity);
 

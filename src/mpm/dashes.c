@@ -7,24 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool mpsi_mpm_absorbs(const mps_mpm *mpm) {
-  bool any = false;
-  for (int32_t k = 0; k < MPSI_SIDES; k++)
-    any = any || mpm->boundaries.hold[k].kind == MPS_MPM_BOUNDARY_ABSORBING;
-  return any;
-}
-
 /* ---- coefficients ---------------------------------------------------------------------------- */
 
 static int64_t plane_doubles(const mps_mpm *mpm) {
   return 2 * (mpm->dim == 3 ? MPSI_DASH_PLANE : MPSI_TILE_SIDE);
-}
-
-const double *mpsi_mpm_dash_parcel(const mps_mpm *mpm, const mpsi_dash_parcels *parcels,
-                                   const mpsi_cell_block *cells, int32_t side) {
-  if (!parcels || cells->parcel < 0) return NULL;
-  return (cells->ghost ? parcels->in : parcels->out) +
-         (cells->parcel * MPSI_SIDES + side) * plane_doubles(mpm);
 }
 
 static void sum_border(mps_mpm *mpm, double *out) {
@@ -182,7 +168,7 @@ static mps_status send_rests(mps_mpm *mpm, const char *function, const mpsi_held
 
 mps_status mpsi_mpm_share_dashes(mps_mpm *mpm, const char *function, const mpsi_held *old,
                                  int64_t old_count, const mpsi_dash *old_dash) {
-  mpsi_dash_parcels parcels = {NULL, NULL};
+  mpsi_dash_parcels parcels = {.doubles = plane_doubles(mpm)};
   mps_status status = swap_sums(mpm, function, &parcels);
   if (status == MPS_OK) mpsi_mpm_place_dashes(mpm, &parcels, old, old_count, old_dash);
   mpsi_free(mpm->context, parcels.out);
@@ -296,7 +282,9 @@ mps_status mpsi_mpm_take_dashes(mps_mpm *mpm, const char *function, const mpsi_v
   for (int64_t g = 0; g < count; g++)
     for (int32_t side = 0; side < MPSI_SIDES; side++) {
       const mpsi_hold *hold = &mpm->boundaries.hold[side];
-      if (hold->kind != MPS_MPM_BOUNDARY_ABSORBING || !mpsi_mpm_holds_block(mpm, hold, nodes[g].at))
+      mpsi_range r;
+      if (hold->kind != MPS_MPM_BOUNDARY_ABSORBING ||
+          !mpsi_find_range(mpm->dim, nodes[g].at, hold, &r))
         continue;
       if (nodes[g].own && from + plane <= dashes->rows) {
         memmove(dash + to, dash + from, bytes);

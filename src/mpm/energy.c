@@ -233,7 +233,6 @@ void mpsi_mpm_energy_end(mps_mpm *mpm) {
   add_cells(mpm);
   add_nodes(mpm);
   add_springs(mpm, 1.0);
-  if (mpm->contact.bodies > 0) mpsi_mpm_find_impulse_loss(mpm);
   if (!mpm->share || mps_domain_rank(mpm->share->domain) == 0)
     mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STEPPING, bodies);
   for (int k = 0; k < MPSI_ENERGY_SUMS; k++) mpsi_exact_merge(&e->sum[k], &e->step[k]);

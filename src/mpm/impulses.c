@@ -165,6 +165,7 @@ void mpsi_mpm_apply_impulses(mps_mpm *mpm) {
 
 void mpsi_mpm_find_impulse_loss(mps_mpm *mpm) {
   const mpsi_impulses *all = &mpm->contact.impulses;
+  if (!mpm->energy.counts) return;
   for (int64_t n = 0; n < all->touch_count; n++) {
     const mpsi_touch *touch = &all->touch[n];
     const mpsi_impulse *c = &touch->impulse;

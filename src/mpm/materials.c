@@ -149,7 +149,7 @@ mps_status mps_mpm_set_material(mps_mpm *mpm, mps_material *material, int64_t co
     if (mpm->p.law) mpm->p.law[k] = number; /* else there is but the one */
     mpsi_mpm_begin_law(mpm, &mpm->laws.law[number], k);
   }
-  mpm->boundaries.outdated = true;   /* the dashpots of absorbing walls follow the laws */
+  mpm->boundaries.outdated = true; /* the dashpots of absorbing walls follow the laws */
   if (mpm->run.edited || mpm->run.lost) return MPS_OK; /* waits for what else is new */
   mpsi_mpm_for_cells(mpm, mpm->kernels->speed);
   return mpsi_mpm_collect_block_results(mpm, __func__);

@@ -36,8 +36,12 @@ typedef struct mpsi_meeting {
 mps_status mpsi_mpm_meet(mps_mpm *mpm, const char *function, mps_status status);
 /* After the sweeps: velocities to the nodes that are here. Not collective. */
 void mpsi_mpm_meet_end(mps_mpm *mpm);
-/* The area at the node `at` under the tile of a block of cells, or NULL: soil covers nothing there.
- * Not collective. */
+/* met.c: the node of all ranks at `at`; where none is yet, one with these values, for which there
+ * is room. Not collective. */
+mpsi_met_node *mpsi_mpm_meet_node(mps_mpm *mpm, const int32_t *at, int32_t kind,
+                                  const double *value);
+/* met.c: the area at the node `at` under the tile of a block of cells, or NULL: soil covers nothing
+ * there. Not collective. */
 mpsi_area *mpsi_mpm_met_area(const mps_mpm *mpm, const int32_t *block, const int *at, int32_t body);
 void mpsi_mpm_meet_free(mps_mpm *mpm);
 

@@ -201,6 +201,7 @@ mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
     return mpm->share ? mpsi_domain_settle(mpm->share->domain, function, status) : status;
   }
   if (mpm->contact.bodies > 0) mpsi_mpm_update_bodies(mpm); /* contact --> reactions, poses */
+  mpsi_mpm_find_impulse_loss(mpm);
   mpsi_mpm_energy_end(mpm);
   mpm->run.moments = true;
   mpm->run.time += dt;

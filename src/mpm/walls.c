@@ -11,27 +11,6 @@
 
 /* ---- which nodes ----------------------------------------------------------------------------- */
 
-/* Nodes of a block that a hold holds, from low to high. */
-typedef struct range {
-  int low[3], high[3];
-} range;
-
-static bool find_range(const mps_mpm *mpm, const int32_t *at, const mpsi_hold *hold, range *out) {
-  for (int c = 0; c < 3; c++) {
-    const int64_t first = (int64_t)at[c] * MPSI_SIDE;
-    const int64_t last = first + (c < mpm->dim ? MPSI_SIDE - 1 : 0);
-    if (hold->first[c] > last || hold->last[c] < first) return false;
-    out->low[c] = hold->first[c] > first ? (int)(hold->first[c] - first) : 0;
-    out->high[c] = (int)((hold->last[c] < last ? hold->last[c] : last) - first);
-  }
-  return true;
-}
-
-bool mpsi_mpm_holds_block(const mps_mpm *mpm, const mpsi_hold *hold, const int32_t *at) {
-  range r;
-  return find_range(mpm, at, hold, &r);
-}
-
 /* Lists what holds which block; false where there is no room, `count` says how much is needed. */
 static bool list(mps_mpm *mpm, int64_t *count, int64_t *dashes) {
   mpsi_held *held = mpm->boundaries.held_room.item;
@@ -40,10 +19,10 @@ static bool list(mps_mpm *mpm, int64_t *count, int64_t *dashes) {
     mpsi_node_block *nodes = &mpm->grid.nodes[g];
     nodes->first_held = (int32_t)*count;
     for (int32_t k = 0; k < MPSI_HOLDS; k++) {
-      range r;
+      mpsi_range r;
       const int32_t kind = mpm->boundaries.hold[k].kind;
       if (kind == MPSI_HOLD_NONE || kind == MPS_MPM_BOUNDARY_OPEN || mpm->boundaries.hold[k].ids ||
-          !find_range(mpm, nodes->at, &mpm->boundaries.hold[k], &r))
+          !mpsi_find_range(mpm->dim, nodes->at, &mpm->boundaries.hold[k], &r))
         continue;
       const bool absorbs = kind == MPS_MPM_BOUNDARY_ABSORBING;
       if (*count < mpm->boundaries.held_room.capacity) {
@@ -233,8 +212,8 @@ static void prescribe(block *b, const mpsi_hold *hold, mpsi_held *held, int k) {
 /* ---- a block --------------------------------------------------------------------------------- */
 
 static void for_range(block *b, const mpsi_hold *hold, mpsi_held *held, hold_fn work) {
-  range r;
-  if (!find_range(b->mpm, held->at, hold, &r)) return;
+  mpsi_range r;
+  if (!mpsi_find_range(b->mpm->dim, held->at, hold, &r)) return;
   const int64_t counted = b->again ? held->count : 0;
   held->count = 0;
   for (int z = r.low[2]; z <= r.high[2]; z++)

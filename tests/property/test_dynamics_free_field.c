@@ -56,7 +56,8 @@ static void level_ground_moves_as_endless_ground(void **state) {
     mps_dynamics *solver[2];
     for (int k = 0; k < 2; k++) {
       solver[k] = level_ground(context, k == 0, viscous, ratio, integrator, &ground[k]);
-      mps_assert_ok(context, mps_dynamics_run(solver[k], test_quick() ? 0.2 : 0.4, 1000000, NULL, NULL));
+      mps_assert_ok(context,
+                    mps_dynamics_run(solver[k], test_quick() ? 0.2 : 0.4, 1000000, NULL, NULL));
     }
     double worst = 0.0, most = 0.0;
     const int64_t body = mps_particles_count(ground[1]); /* the columns have the last ids */

@@ -233,7 +233,8 @@ static void an_open_edit_is_respected(void **state) {
   mps_assert_ok(context, mps_particles_add_field(set, "stress", 0));
   mps_assert_ok(context, mps_particles_edit(set, "stress", &edit));
   *mps_edit_f64(&edit, 3, 0) = -7.0;
-  mps_assert_fails(context, mps_particles_set_geostatic(set, &def), MPS_ERROR_STATE, "being edited");
+  mps_assert_fails(context, mps_particles_set_geostatic(set, &def), MPS_ERROR_STATE,
+                   "being edited");
   mps_assert_fails(context, mps_particles_set_stress(set, radial, &limit), MPS_ERROR_STATE,
                    "being edited");
   assert_true(*mps_edit_f64(&edit, 3, 0) == -7.0);

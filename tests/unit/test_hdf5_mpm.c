@@ -97,7 +97,8 @@ static void with_walls_loads_and_materials(void **state) {
   for (int32_t geometry = 0; geometry <= MPS_MPM_SPACE; geometry++) {
     mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
     scene whole = build_held(context, geometry);
-    for (int k = 0; k < (test_quick() ? 3 : 4); k++) { /* at first before the walls have found their forces at rest */
+    for (int k = 0; k < (test_quick() ? 3 : 4);
+         k++) { /* at first before the walls have found their forces at rest */
       int32_t threads = 3;
       mps_context *other = on_threads(&threads);
       mps_assert_ok(context, mps_mpm_save(whole.s.mpm, path, NULL));
