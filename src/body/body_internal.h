@@ -82,6 +82,13 @@ void mpsi_body_list_state(mpsi_state *state, mps_body *body);
 mpsi_foot mpsi_body_foot(const mps_body *body, const double *x);
 /* Whether the body or its inside is within `reach` (m, >= 0) of x; cheap far from a mesh. */
 bool mpsi_body_reaches(const mps_body *body, const double *x, double reach);
+/* The same on a walk over places: a distance changes no faster than the place, so that the last one
+ * found leaves out what lies near it and well beyond the reach. Begins with {.distance = 0}. */
+typedef struct mpsi_last_distance {
+  double x[3], distance;
+} mpsi_last_distance;
+bool mpsi_body_reaches_next(const mps_body *body, const double *x, double reach,
+                            mpsi_last_distance *last);
 
 /* Velocity v[3] (m/s) of the body's material at x[3]. */
 static inline void mpsi_body_velocity(const mpsi_pose *pose, const double *x, double *v) {

@@ -176,6 +176,18 @@ bool mpsi_body_reaches(const mps_body *body, const double *x, double reach) {
   return mpsi_body_foot(body, x).distance <= reach;
 }
 
+bool mpsi_body_reaches_next(const mps_body *body, const double *x, double reach,
+                            mpsi_last_distance *last) {
+  const double slack = last->distance * (1.0 - 1e-9) - reach; /* more than round-off */
+  double square = 0.0;
+  for (int c = 0; c < 3; c++) square += (x[c] - last->x[c]) * (x[c] - last->x[c]);
+  if (slack > 0.0 && square < slack * slack) return false;
+  if (body->shape == MPSI_MESH && beyond_cube(body, x, reach)) return false;
+  memcpy(last->x, x, sizeof last->x);
+  last->distance = mpsi_body_foot(body, x).distance;
+  return last->distance <= reach;
+}
+
 #define MAX_POINTS (INT64_C(1) << 40)
 
 mps_status mps_body_distance(mps_body *body, int64_t count, const double *x, double *distance,

@@ -11,31 +11,53 @@ static double half_diagonal(const mps_mpm *mpm, int side) {
   return 0.5 * (side - 1) * sqrt((double)mpm->dim) * (1.0 + 1e-9);
 }
 
-bool mpsi_mpm_body_reaches(const mps_mpm *mpm, int32_t body, const int32_t *at, int side) {
+static void find_middle(const mps_mpm *mpm, const int32_t *at, int side, double *x) {
   const double middle = 0.5 * (side - 1), local[3] = {middle, middle, middle};
-  double x[3];
   mpsi_node_position(mpm, at, local, x);
+}
+
+bool mpsi_mpm_body_reaches(const mps_mpm *mpm, int32_t body, const int32_t *at, int side) {
+  double x[3];
+  find_middle(mpm, at, side, x);
   return mpsi_body_reaches(mpm->contact.body[body], x, half_diagonal(mpm, side) * mpm->def.cell);
+}
+
+/* The same in a loop over blocks; `last` of each body. */
+static uint32_t find_bodies(const mps_mpm *mpm, const int32_t *at, int side, double reach,
+                            mpsi_last_distance *last) {
+  uint32_t bodies = 0;
+  double x[3];
+  find_middle(mpm, at, side, x);
+  for (int32_t k = 0; k < mpm->contact.bodies; k++)
+    if (mpsi_body_reaches_next(mpm->contact.body[k], x, reach, &last[k]))
+      bodies |= UINT32_C(1) << k;
+  return bodies;
 }
 
 /* By the place of the block alone: so all ranks that have it know the same nodes to be inside, and
  * the same supports to be cut. */
-static void find_bodies(const mps_mpm *mpm, mpsi_node_block *nodes) {
-  nodes->bodies = 0;
-  for (int32_t k = 0; k < mpm->contact.bodies; k++)
-    if (mpsi_mpm_body_reaches(mpm, k, nodes->at, MPSI_SIDE)) nodes->bodies |= UINT32_C(1) << k;
+static void find_bodies_of_nodes(mps_mpm *mpm) {
+  const double reach = half_diagonal(mpm, MPSI_SIDE) * mpm->def.cell;
+  mpsi_last_distance last[MPS_MPM_MAX_CONTACTS] = {{.distance = 0.0}};
+  for (int64_t g = 0; g < mpm->grid.node_count; g++) {
+    mpsi_node_block *nodes = &mpm->grid.nodes[g];
+    nodes->bodies = find_bodies(mpm, nodes->at, MPSI_SIDE, reach, last);
+  }
 }
 
 /* Lists the pairs of blocks of cells and bodies; false where there is no room for them all, `count`
  * says how many there are. */
 static bool list_cell_pairs(mps_mpm *mpm, int64_t *count) {
+  const double reach = half_diagonal(mpm, MPSI_TILE_SIDE) * mpm->def.cell;
+  mpsi_last_distance last[MPS_MPM_MAX_CONTACTS] = {{.distance = 0.0}};
   *count = 0;
-  for (int64_t g = 0; g < mpm->grid.node_count; g++) find_bodies(mpm, &mpm->grid.nodes[g]);
+  find_bodies_of_nodes(mpm);
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     mpsi_cell_block *cells = &mpm->grid.cells[b];
+    const uint32_t near = find_bodies(mpm, cells->at, MPSI_TILE_SIDE, reach, last);
     cells->first_pair = (int32_t)*count;
-    for (int32_t k = 0; k < mpm->contact.bodies; k++) {
-      if (!mpsi_mpm_body_reaches(mpm, k, cells->at, MPSI_TILE_SIDE)) continue;
+    for (int32_t k = 0; near && k < mpm->contact.bodies; k++) {
+      if (!(near >> k & 1)) continue;
       for (int q = 0; q < 1 << mpm->dim; q++)
         mpm->grid.nodes[cells->to[q]].bodies |= UINT32_C(1) << k;
       if (*count < mpm->contact.cell_pair_room.capacity) {

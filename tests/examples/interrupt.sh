@@ -24,7 +24,7 @@ interrupt() {
     [ "$status" -eq 130 ] || fail "$program: exit code $status: $(cat "$work/log")"
     [ "$(wc -l <"$work/log")" -eq 1 ] || fail "$program: more than one line: $(cat "$work/log")"
     has "$work/log" "$program: interrupted"
-    grep -q "nothing is written" "$work/log" || return 0
+    grep -q "no results yet" "$work/log" || return 0
     wait=$(awk "BEGIN { print 2 * $wait }")
   done
   fail "$program: no results after $wait s"
