@@ -185,7 +185,7 @@ MPSI_INLINE void keep_fit(const mps_mpm *mpm, const mpsi_cell_block *cells, int 
     for (int j = 0; j <= spline; j++)
       for (int i = 0; i <= spline; i++) {
         const int node = 16 * k + 4 * j + i;
-        active |= (b->w[node] != 0.0) & (INT64_C(1) << node);
+        active |= (b->w[node] != 0.0) & (int64_t)(UINT64_C(1) << node);
       }
   for (int l = 0; l < n; l++) {
     mpm->grid.fit[slot + l].active = (uint64_t)active[l];
@@ -219,7 +219,7 @@ MPSI_INLINE void take_batch(const mps_mpm *mpm, const mpsi_cell_block *cells, in
       if (dim == 3) across *= out->along[2][z];
       for (int i = 0; i <= spline; i++) {
         const int node = 16 * z + 4 * j + i;
-        const mpsi_mask there = (active & (INT64_C(1) << node)) != 0;
+        const mpsi_mask there = (active & (int64_t)(UINT64_C(1) << node)) != 0;
         out->w[node] = (mpsi_quad)((mpsi_mask)(out->along[0][i] * across) & there);
       }
     }
