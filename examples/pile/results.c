@@ -106,10 +106,10 @@ static bool write_summary(app *a, const pile *p, const pile_row *end) {
   json_number(&f, "force_tip", end->smooth[PILE_TIP]);
   json_number(&f, "force_inside", end->smooth[PILE_INSIDE]);
   json_number(&f, "force_outside", end->smooth[PILE_OUTSIDE]);
-  json_number(&f, "mean_total", mean[PILE_TOTAL]);
-  json_number(&f, "mean_tip", mean[PILE_TIP]);
-  json_number(&f, "mean_inside", mean[PILE_INSIDE]);
-  json_number(&f, "mean_outside", mean[PILE_OUTSIDE]);
+  json_optional(&f, "mean_total", mean[PILE_TOTAL]);
+  json_optional(&f, "mean_tip", mean[PILE_TIP]);
+  json_optional(&f, "mean_inside", mean[PILE_INSIDE]);
+  json_optional(&f, "mean_outside", mean[PILE_OUTSIDE]);
   json_optional(&f, "roughness", rows);
   json_optional(&f, "roughness_steps", steps);
   json_optional(&f, "plug_height", end->plug);
