@@ -1,5 +1,6 @@
 /* ranks_team.h - a scene computed by teams of ranks that are threads, compared with the run without
- * a domain, and with one rank that is refused its memory. SPDX-License-Identifier: BSD-3-Clause */
+ * a domain, with one rank that is refused its memory, and in other troubles.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPS_TEST_RANKS_TEAM_H
 #define MPS_TEST_RANKS_TEAM_H
 
@@ -90,6 +91,48 @@ static inline void refuse_memory(result_fn *run, int what, int64_t length, int64
     }
     assert_true(worst == MPS_OK || worst == MPS_ERROR_MEMORY);
     assert_true(refuse < 5000);
+  }
+}
+
+/* What ranks do not agree upon, what fails on one of them, what is refused: `run` makes the
+ * trouble. */
+typedef mps_status trouble_fn(mps_context *context, mps_domain *domain, int what, int32_t rank);
+
+typedef struct trouble_case {
+  mps_status status;
+  const char *text; /* in the message of every rank */
+} trouble_case;
+
+typedef struct troubled {
+  trouble_fn *run;
+  int what;
+  mps_status status[3];
+  char message[3][sizeof(((mps_error *)0)->message)];
+} troubled;
+
+static inline void run_troubled(void *user, team *t, int32_t rank) {
+  troubled *s = user;
+  mps_domain *domain = NULL;
+  mps_context *own = team_context(MPS_EXECUTOR_SERIAL, 1);
+  const mps_domain_def def = team_domain_def(t, rank);
+  s->status[rank] = mps_domain_create(own, &def, &domain);
+  if (s->status[rank] == MPS_OK) s->status[rank] = s->run(own, domain, s->what, rank);
+  snprintf(s->message[rank], sizeof s->message[rank], "%s", mps_context_error(own)->message);
+  mps_domain_destroy(&domain);
+  mps_context_destroy(&own);
+}
+
+/* Each of them is the same error on all of three ranks. */
+static inline void meet_troubles(trouble_fn *run, const trouble_case *list, int count) {
+  for (int what = 0; what < count; what++) {
+    troubled s = {.run = run, .what = what};
+    team t;
+    team_begin(&t, 3);
+    team_run(&t, run_troubled, &s);
+    team_end(&t);
+    for (int32_t r = 0; r < 3; r++)
+      if (s.status[r] != list[what].status || !strstr(s.message[r], list[what].text))
+        fail_msg("trouble %d, rank %d: %d %s", what, (int)r, (int)s.status[r], s.message[r]);
   }
 }
 

@@ -82,10 +82,7 @@ enum {
   SOLVER,
   TROUBLES
 };
-static const struct {
-  mps_status status;
-  const char *text;
-} trouble[TROUBLES] = {
+static const trouble_case trouble[TROUBLES] = {
     [OTHER_SET] = {MPS_ERROR_ARGUMENT, "a hash of the set's particles"},
     [OTHER_DENSITY] = {MPS_ERROR_ARGUMENT, "a hash of the solver's definition"},
     [OTHER_WALL] = {MPS_ERROR_ARGUMENT, "a hash of the boundary"},
@@ -140,33 +137,8 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
   return status;
 }
 
-static void run_troubled(void *user, team *t, int32_t rank) {
-  ranks *s = user;
-  result *r = &s->rank[rank];
-  mps_domain *domain = NULL;
-  mps_context *own = team_context(MPS_EXECUTOR_SERIAL, 1);
-  const mps_domain_def def = team_domain_def(t, rank);
-  r->status = mps_domain_create(own, &def, &domain);
-  if (r->status == MPS_OK) r->status = run_trouble(own, domain, s->what, rank);
-  snprintf(r->message, sizeof r->message, "%s", mps_context_error(own)->message);
-  mps_domain_destroy(&domain);
-  mps_context_destroy(&own);
-}
-
 static void test_troubles(void **state) {
-  (void)state;
-  for (int what = 0; what < TROUBLES; what++) {
-    ranks s = {.what = what};
-    team t;
-    team_begin(&t, 3);
-    team_run(&t, run_troubled, &s);
-    team_end(&t);
-    for (int32_t r = 0; r < 3; r++)
-      if (s.rank[r].status != trouble[what].status ||
-          !strstr(s.rank[r].message, trouble[what].text))
-        fail_msg("trouble %d, rank %d: %d %s", what, (int)r, (int)s.rank[r].status,
-                 s.rank[r].message);
-  }
+  (void)state, meet_troubles(run_trouble, trouble, TROUBLES);
 }
 
 int main(void) {
