@@ -270,31 +270,38 @@ static bool draw_water(app *a, const tank_model *m) {
   return plot_close(&f, s->out, "water");
 }
 
+static void draw_levels(output *f, const tank_model *m) {
+  output_text(f, "set ylabel 'level (m)'\nplot ");
+  for (int k = 0; k <= gauges_of(m); k++) {
+    char where[48] = "at the right wall";
+    if (k < gauges_of(m)) snprintf(where, sizeof where, "x = %g m", m->s.gauge[k]);
+    output_text(f, "%s'gauges.csv' every ::1 using 1:%d with lines title '%s'", k ? ", " : "",
+                k + 2, where);
+  }
+}
+
+/* The classical scheme has no levels. */
 static bool draw_force(app *a, const tank_model *m) {
   const tank_settings *s = &m->s;
+  const bool classical = s->scheme == 1;
   const double still = 0.5 * WAVES_DENSITY * WAVES_G * s->depth * s->depth;
   output f;
-  if (!plot_open(&f, a, s->out, "force", 1000, 700)) return false;
+  if (!plot_open(&f, a, s->out, "force", 1000, classical ? 400 : 700)) return false;
   output_text(
       &f,
-      "set multiplot layout 2,1\nset xrange [0:%.6g]\nset xlabel 't (s)'\nset ylabel 'force on the "
+      "set multiplot layout %d,1\nset xrange [0:%.6g]\nset xlabel 't (s)'\nset ylabel 'force on "
+      "the "
       "wall (N)'\n"
       "set lmargin 10\nset key outside top center horizontal\n"
       "plot %s'force.csv' every ::1 using 1:3 with lines linewidth 1.5 linecolor rgb '#1f4e8c' "
       "title 'right wall', %.9g with lines dashtype '--' linecolor rgb '#888888' title 'water "
-      "at rest'\n"
-      "set ylabel 'level (m)'\nplot ",
-      s->duration,
+      "at rest'\n",
+      classical ? 1 : 2, s->duration,
       m->linear ? "'linear.csv' every ::1 using 1:2 with lines linewidth 3 linecolor rgb '#f0b27a' "
                   "title 'linear potential flow', "
                 : "",
       still);
-  for (int k = 0; k <= gauges_of(m); k++) {
-    char where[48] = "at the right wall";
-    if (k < gauges_of(m)) snprintf(where, sizeof where, "x = %g m", s->gauge[k]);
-    output_text(&f, "%s'gauges.csv' every ::1 using 1:%d with lines title '%s'", k ? ", " : "",
-                k + 2, where);
-  }
+  if (!classical) draw_levels(&f, m);
   output_text(&f, "\nunset multiplot\n");
   return plot_close(&f, s->out, "force");
 }

@@ -11,8 +11,8 @@
  * The solver works in the fields of the set (zero copy) and sorts it now and then: views taken
  * before are then stale (their epoch). It reads `velocity` at creation where the set has it,
  * `external_force` (N) at every step if the set has it by then, and
- * writes `position`, `velocity`, `pressure`, `reduced_pressure`, `reduced_pressure_old` and
- * `free_surface`.
+ * writes `position`, `velocity`, `pressure`, `reduced_pressure`, `reduced_pressure_old`,
+ * `free_surface` and `surface_rise`.
  *
  * Between steps particles may be edited, added (at rest, at least .3 l0 inside of all walls) and
  * removed (not the last one), and pass open sides; what they bring or take of energy is no work.
@@ -166,7 +166,8 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_get_pressure(mps_fluid *fluid, int32_
                                                         double *pressure);
 /** Level of the surface (m, height against gravity from the origin) at `count` stations: `station`
  *  is the distance (m) from the origin along the horizontal (x where gravity is along -y). NaN
- * where there is no surface. */
+ *  where there is no surface. It is that of the fields position and surface_rise; in an open step
+ *  these are of its beginning. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_get_levels(mps_fluid *fluid, int64_t count,
                                                       const double *station, double *level);
 
@@ -328,8 +329,8 @@ static inline mps_status mps_fluid_get_report(const mps_fluid *fluid, mps_fluid_
 /* ---- state ----------------------------------------------------------------------------------- */
 
 /** Keeps the state of the solver and its set in memory, and goes back to it bit for bit, as
- *  mps_mpm_snapshot and mps_mpm_rollback. Walls must be those of the snapshot; dt, viscosity and
- *  signals are as they are now. */
+ *  mps_mpm_snapshot and mps_mpm_rollback: steps, and what functions read without one. Walls must be
+ *  those of the snapshot; dt, viscosity, loads and signals are as they are now. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_snapshot(mps_fluid *fluid, mps_snapshot **snapshot);
 MPS_API MPS_NODISCARD mps_status mps_fluid_rollback(mps_fluid *fluid, const mps_snapshot *snapshot);
 /** The same with a file, as mps_mpm_save and mps_mpm_restore, also for errors: into a fluid with

@@ -70,6 +70,9 @@
     "fluid", "after a step or a run; part of a checkpoint")                                        \
   X(free_surface, I64, 1, "-", "0 inside the fluid, 1 at its free surface, 2 apart from the rest",  \
     "fluid", "after a step or a run")                                                              \
+  X(surface_rise, F64, 1, "m",                                                                     \
+    "height of the free surface above the particle; 0 where it has none", "fluid",               \
+    "after a step or a run; part of a checkpoint")                                                 \
   X(displacement_old, F64, MPSI_PER_DIM, "m", "displacement of the previous step",                 \
     "explicit dynamics", "after a step or a run; part of a checkpoint")                            \
   X(rotation_old, F64, MPSI_PER_ROTATION, "rad", "rotation of the previous step",                  \

@@ -249,7 +249,7 @@ mps_status mps_fluid_add_body(mps_fluid *f, mps_body *body, int32_t kind, int32_
     mpsi_fluid_drop_body(f, own);
     return status;
   }
-  f->stale = true;
+  f->stale = true, f->unknown = 1;
   if (number) *number = b;
   return MPS_OK;
 }
@@ -266,7 +266,7 @@ mps_status mps_fluid_remove_body(mps_fluid *f, int32_t number) {
   if (status == MPS_OK) status = check_number(f, __func__, number);
   if (status != MPS_OK) return status;
   mpsi_fluid_drop_body(f, &f->body[number]);
-  f->stale = true;
+  f->stale = true, f->unknown = 1;
   return MPS_OK;
 }
 

@@ -147,7 +147,7 @@ mps_status mps_fluid_add_boundary(mps_fluid *f, const mps_fluid_boundary_def *de
   status = make_alike(f, __func__, def, b, &wall);
   if (status != MPS_OK) return status;
   f->wall[b] = wall;
-  f->stale = true;
+  f->stale = true, f->unknown = 1;
   if (number) *number = b;
   return MPS_OK;
 }
@@ -178,7 +178,7 @@ mps_status mps_fluid_set_boundary(mps_fluid *f, int32_t number, const mps_fluid_
   wall.removed_mass = old->removed_mass;
   mpsi_fluid_drop_wall(f, old);
   *old = wall;
-  f->stale = true;
+  f->stale = true, f->unknown = 1;
   return MPS_OK;
 }
 
@@ -187,6 +187,6 @@ mps_status mps_fluid_remove_boundary(mps_fluid *f, int32_t number) {
   const mps_status status = check_number(f, __func__, number);
   if (status != MPS_OK) return status;
   mpsi_fluid_drop_wall(f, &f->wall[number]);
-  f->stale = true;
+  f->stale = true, f->unknown = 1;
   return MPS_OK;
 }

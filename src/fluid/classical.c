@@ -83,6 +83,7 @@ mps_status mpsi_fluid_classical_look(mps_fluid *f, const char *function) {
   if (status == MPS_OK) mpsi_fluid_move_ghosts(f);
   if (status == MPS_OK) status = mpsi_fluid_find_neighbours(f, function);
   if (status == MPS_OK) mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, weigh);
+  if (status == MPS_OK) mpsi_fluid_count(f);
   return status;
 }
 

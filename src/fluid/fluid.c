@@ -100,7 +100,7 @@ static void set_gravity(mps_fluid *f) {
 
 static mps_status add_fields(mps_particles *particles) {
   static const char *const names[] = {"velocity", "pressure", "reduced_pressure",
-                                      "reduced_pressure_old", "free_surface"};
+                                      "reduced_pressure_old", "free_surface", "surface_rise"};
   mps_status status = MPS_OK;
   for (size_t k = 0; status == MPS_OK && k < sizeof names / sizeof *names; k++)
     status = mps_particles_add_field(particles, names[k], 0);
@@ -146,6 +146,7 @@ static mps_status start(mps_fluid *f, const char *function) {
   if (status == MPS_OK) status = mpsi_fluid_sort(f, function);
   if (status == MPS_OK) status = mpsi_fluid_look(f, function);
   if (status != MPS_OK) return status;
+  f->unknown = 1;
   mpsi_fluid_find_speed(f);
   double kinetic;
   f->energy = mpsi_fluid_energy(f, &kinetic);
@@ -278,11 +279,6 @@ static int64_t bytes_of(const mps_fluid *f) {
 mps_status mps_fluid_get_report_sized(const mps_fluid *f, mps_fluid_report *out, size_t size) {
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_fluid_report report = f->report;
-  for (int64_t i = 0; i < f->count; i++) {
-    report.surface += f->state[i] == MPSI_FLUID_SURFACE;
-    report.apart += f->state[i] == MPSI_FLUID_APART;
-    report.pairs += f->near[i];
-  }
   report.bytes = bytes_of(f);
   return mpsi_out_write(f->context, "mps_fluid_get_report", out, size, &report, sizeof report);
 }

@@ -226,7 +226,8 @@ struct mps_fluid {
   mpsi_fluid_outside *outside; /* NULL: none */
   mpsi_guard guard;            /* of the callbacks of the run and of the solver */
   bool changing; /* energy_before is that of before a change of the set that is under way */
-  bool stale;    /* what is known of the surroundings is not that of the fields */
+  bool stale;      /* the cloud is not that of the fields */
+  int64_t unknown; /* 1: free_surface and surface_rise are not of the present set and walls */
   bool warned;   /* that the guards act often */
   mpsi_identity *identity;
   mps_fluid_report report, before;    /* before: as the step being made began */
@@ -330,8 +331,10 @@ bool mpsi_fluid_near_corner(const mps_fluid *fluid, int64_t i);
 bool mpsi_fluid_hidden(const mps_fluid *fluid, int wall, const double *a, const double *b);
 /* near.c */
 mps_status mpsi_fluid_find_neighbours(mps_fluid *fluid, const char *function);
-/* moments.c */
+/* moments.c; rise: height of the surface above particle i against gravity, m; 0: none. */
 void mpsi_fluid_find_moments(mps_fluid *fluid);
+void mpsi_fluid_count(mps_fluid *fluid); /* to the report: neighbours, particles at the surface */
+double mpsi_fluid_rise(const mps_fluid *fluid, int64_t i);
 /* pressure.c */
 mps_status mpsi_fluid_prepare_pressure(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_solve_pressure(mps_fluid *fluid, const char *function);
@@ -374,7 +377,9 @@ mps_status mpsi_fluid_load_walls(mps_fluid *fluid, const char *function);
 void mpsi_fluid_load_cloud(mps_fluid *fluid);
 mps_status mpsi_fluid_look_around(mps_fluid *fluid, const char *function, mps_status status);
 mps_status mpsi_fluid_look(mps_fluid *fluid, const char *function);
-/* look.c: the same, where a rollback has left it to be done. */
+/* look.c: what readings rely on between steps, so that it follows from the state alone: the fields
+ * of the surface (know); and with them the cloud, its loads and walls (refresh). */
+mps_status mpsi_fluid_know(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_refresh(mps_fluid *fluid, const char *function);
 /* look.c: sorts the particles by place. */
 mps_status mpsi_fluid_sort(mps_fluid *fluid, const char *function);

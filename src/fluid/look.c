@@ -54,8 +54,35 @@ mps_status mpsi_fluid_look(mps_fluid *f, const char *function) {
   return mpsi_fluid_look_around(f, function, mpsi_fluid_find_loads(f, function, f->load_time));
 }
 
+/* A step has written what it knew of the surface; otherwise it is found now. In an open step the
+ * cloud has the fields' particles and their surroundings. */
+mps_status mpsi_fluid_know(mps_fluid *f, const char *function) {
+  if (!f->unknown) return MPS_OK;
+  mps_status status = f->stage == MPSI_FLUID_BETWEEN ? mpsi_fluid_look(f, function) : MPS_OK;
+  if (status == MPS_OK) mpsi_fluid_tell_local(f);
+  if (status == MPS_OK) status = mpsi_fluid_lost(f, function);
+  if (status != MPS_OK) return status;
+  int64_t *surface = mpsi_particles_integers(f->particles, "free_surface");
+  double *rise = column(f, "surface_rise", 0);
+  for (int64_t i = 0; i < f->count; i++)
+    surface[i] = f->state[i], rise[i] = mpsi_fluid_rise(f, i);
+  f->unknown = 0;
+  return MPS_OK;
+}
+
+/* Loads are read as of the last step's time, of the particles where they are now. */
 mps_status mpsi_fluid_refresh(mps_fluid *f, const char *function) {
-  return f->stale ? mpsi_fluid_look(f, function) : MPS_OK;
+  const mps_status status = mpsi_fluid_know(f, function);
+  if (status != MPS_OK || f->stage != MPSI_FLUID_BETWEEN) return status;
+  if (f->stale) {
+    const int64_t *surface = mpsi_particles_integers(f->particles, "free_surface");
+    mpsi_fluid_load_cloud(f);
+    for (int64_t i = 0; i < f->count; i++) f->state[i] = (uint8_t)surface[i];
+    f->ghosts = 0, f->travel = INFINITY; /* images are not looked at */
+    f->stale = false;
+  }
+  mpsi_fluid_find_limits(f);
+  return mpsi_fluid_find_loads(f, function, f->load_time);
 }
 
 /* Sorts the set by columns of cells half of re wide, so that neighbours lie near each other in

@@ -14,6 +14,7 @@
 
 #define APART 0.12     /* n/n0 */
 #define FEW 0.72       /* n/n0 */
+#define LEVEL 0.35     /* n/n0: below, spray, which tells no level */
 #define ONE_SIDED 0.15 /* |m|/(n0 l0) */
 #define CONE_REACH 2.1 /* l0 */
 #define CONE 0.70710678118654752
@@ -83,7 +84,7 @@ static void tell_zone(mps_fluid *f, int64_t i) {
 
 static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   const double n0 = f->weight.n0;
-  int64_t apart = 0;
+  (void)chunk;
   for (int64_t i = begin; i < end; i++) {
     mpsi_fluid_sums s;
     f->loops->add_up(f, i, &s);
@@ -108,10 +109,8 @@ static void look_around(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk)
       if (f->state[i] == MPSI_FLUID_SURFACE) place_surface(f, i, M, length, &local);
     }
     f->local[i] = local;
-    apart += f->state[i] == MPSI_FLUID_APART;
     if (f->state[i] != MPSI_FLUID_INSIDE) tell_zone(f, i);
   }
-  f->system.sums[2 * chunk] = (double)apart;
 }
 
 /* The vector m of a particle's image. */
@@ -152,13 +151,28 @@ static void find_zone(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   }
 }
 
+void mpsi_fluid_count(mps_fluid *f) {
+  int64_t surface = 0, apart = 0, pairs = 0;
+  for (int64_t i = 0; i < f->count; i++) {
+    surface += f->state[i] == MPSI_FLUID_SURFACE;
+    apart += f->state[i] == MPSI_FLUID_APART;
+    pairs += f->near[i];
+  }
+  f->report.surface = surface, f->report.apart = apart, f->report.pairs = pairs;
+}
+
+double mpsi_fluid_rise(const mps_fluid *f, int64_t i) {
+  const mpsi_fluid_local *local = &f->local[i];
+  if (f->state[i] != MPSI_FLUID_SURFACE || local->n < LEVEL * f->weight.n0) return 0.0;
+  const double length = sqrt(local->m[0] * local->m[0] + local->m[1] * local->m[1]);
+  return -(local->m[0] * f->up[0] + local->m[1] * f->up[1]) / length * local->h;
+}
+
 void mpsi_fluid_find_moments(mps_fluid *f) {
-  const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
   for (int64_t i = 0; i < f->count; i++) atomic_init(&f->zone[i], 0);
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, look_around);
-  mpsi_fluid_tell_sums(f, MPSI_FLUID_CHUNK);
   mpsi_fluid_tell_looks(f);
-  f->any_apart = false;
-  for (int64_t k = 0; k < chunks; k++) f->any_apart |= f->system.sums[2 * k] > 0.0;
+  mpsi_fluid_count(f);
+  f->any_apart = f->report.apart > 0;
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, find_zone);
 }

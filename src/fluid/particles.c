@@ -89,6 +89,7 @@ mps_status mpsi_fluid_commit(void *self, const char *function, const char *field
   const mps_status status = mpsi_fluid_ready(f, function);
   if (status != MPS_OK || strcmp(field, "external_force") == 0) return status; /* steps read it */
   if (strcmp(field, "velocity") != 0) f->stale = true;
+  if (strcmp(field, "position") == 0) f->unknown = 1;
   mpsi_fluid_find_speed(f);
   return MPS_OK;
 }
@@ -105,6 +106,7 @@ mps_status mpsi_fluid_insert(void *self, const char *function, int64_t first, in
   double kinetic;
   f->energy_before = mpsi_fluid_energy(f, &kinetic);
   f->changing = true;
+  f->unknown = 1;
   if (mpsi_fluid_reserve(f, first + count)) return MPS_OK;
   return mpsi_fail_memory(f->context, function, (size_t)(first + count) * sizeof *f->local);
 }
@@ -120,6 +122,7 @@ mps_status mpsi_fluid_remove(void *self, const char *function, int64_t count, co
   double kinetic;
   f->energy_before = mpsi_fluid_energy(f, &kinetic);
   f->changing = true;
+  f->unknown = 1;
   return MPS_OK;
 }
 

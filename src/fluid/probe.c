@@ -316,22 +316,20 @@ mps_status mps_fluid_get_levels(mps_fluid *f, int64_t count, const double *stati
   if (count < 0 || (count > 0 && (!station || !level)))
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                      "count is %lld, station and level must be given", (long long)count);
-  mps_status status = mpsi_fluid_refresh(f, __func__);
-  if (status == MPS_OK) mpsi_fluid_tell_local(f);
-  if (status == MPS_OK) status = mpsi_fluid_lost(f, __func__);
+  const mps_status status = mpsi_fluid_know(f, __func__);
   if (status != MPS_OK) return status;
+  const double *x = mpsi_particles_column(f->particles, "position", 0);
+  const double *y = mpsi_particles_column(f->particles, "position", 1);
+  const double *rise = mpsi_particles_column(f->particles, "surface_rise", 0);
   for (int64_t k = 0; k < count; k++) {
     double sum = 0.0, height = 0.0;
     for (int64_t i = 0; i < f->count; i++) {
-      const mpsi_fluid_local *local = &f->local[i];
-      if (f->state[i] != MPSI_FLUID_SURFACE || local->n < 0.35 * f->weight.n0) continue;
-      const double x = f->x[0][i], y = f->x[1][i], across = f->up[1] * x - f->up[0] * y;
+      if (rise[i] == 0.0) continue;
+      const double across = f->up[1] * x[i] - f->up[0] * y[i];
       const double weight = 1.0 - fabs(across - station[k]) / (2.0 * f->l0);
       if (!(weight > 0.0)) continue;
-      const double length = sqrt(local->m[0] * local->m[0] + local->m[1] * local->m[1]);
-      const double rise = -(local->m[0] * f->up[0] + local->m[1] * f->up[1]) / length * local->h;
       sum += weight;
-      height += weight * (f->up[0] * x + f->up[1] * y + rise);
+      height += weight * (f->up[0] * x[i] + f->up[1] * y[i] + rise[i]);
     }
     level[k] = sum > 0.0 ? height / sum : (double)NAN;
   }

@@ -42,6 +42,12 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_f64(s, "energy", &f->energy, 1);
   mpsi_state_f64(s, "work_boundaries", &f->work_boundaries, 1);
   mpsi_state_f64(s, "work_loads", &f->work_loads, 1);
+  mpsi_state_i64(s, "unknown", &f->unknown, 1);
+  mpsi_state_i64(s, "ghosts", &f->report.ghosts, 1);
+  mpsi_state_i64(s, "pairs", &f->report.pairs, 1);
+  mpsi_state_i64(s, "surface", &f->report.surface, 1);
+  mpsi_state_i64(s, "apart", &f->report.apart, 1);
+  mpsi_state_i64(s, "last_iterations", &f->report.iterations, 1);
   mpsi_state_i64(s, "iterations", &f->report.all_iterations, 1);
   mpsi_state_i64(s, "collisions", &f->report.collisions, 1);
   mpsi_state_i64(s, "limited", &f->report.limited, 1);

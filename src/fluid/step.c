@@ -18,6 +18,7 @@ static double *column(const mps_fluid *f, const char *name, int32_t component) {
 static void store_part(mps_fluid *f, int64_t begin, int64_t end, int64_t part) {
   const size_t bytes = (size_t)(end - begin) * sizeof(double);
   double *q = column(f, "reduced_pressure", 0), most = 0.0;
+  memcpy(column(f, "surface_rise", 0) + begin, f->system.p + begin, bytes);
   int64_t *surface = mpsi_particles_integers(f->particles, "free_surface");
   for (int c = 0; c < 2; c++) {
     memcpy(column(f, "position", c) + begin, f->x[c] + begin, bytes);
@@ -36,6 +37,7 @@ static void store_part(mps_fluid *f, int64_t begin, int64_t end, int64_t part) {
 static void store_cloud(mps_fluid *f) {
   mpsi_fluid_for_all(f, f->count, MPSI_FLUID_COPIED, store_part);
   f->last_dt = f->dt;
+  f->unknown = 0;
   double most = 0.0;
   for (int64_t k = 0; k * MPSI_FLUID_COPIED < f->count; k++)
     most = mpsi_fluid_larger(f->system.sums[k], most);

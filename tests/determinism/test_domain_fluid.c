@@ -44,7 +44,8 @@ static void run_half(result_fn *half, int32_t size, int64_t count, const result 
   free(seen);
 }
 
-/* Written by 3 ranks, it goes on with 2, and without a domain, as a run without one does. */
+/* Written by 3 ranks, it goes on with 2, and without a domain, as a run without one does; and before
+ * it does, it tells what was told. */
 static void test_checkpoint(void **state) {
   (void)state;
   if (!mps_library_has(MPS_FEATURE_HDF5)) skip();
@@ -55,6 +56,7 @@ static void test_checkpoint(void **state) {
   mps_assert_ok(own, go_on(own, NULL, COLLAPSE, count, &whole));
   remove(CHECKPOINT);
   run_half(begin, 3, count, &half);
+  run_half(go_on, 2, 0, &half);
   run_half(go_on, 2, count, &whole);
   mps_assert_ok(own, go_on(own, NULL, COLLAPSE, count, &on));
   int64_t *seen = calloc((size_t)whole.count + 1, sizeof *seen);

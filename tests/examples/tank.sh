@@ -72,7 +72,7 @@ again() { # CASE OPTION...
   done
 }
 programs=$1
-again piston --duration 0.5 --every-checkpoint 0.3
+again piston --duration 0.5 --every-checkpoint 0.3 --sample 0.001
 again spring --duration 0.05 --every-checkpoint 0.03
 again plate --duration 0.02 --every-checkpoint 0.012
 again float --duration 0.3 --every-checkpoint 0.2

@@ -2,7 +2,7 @@
  * one that never stopped, on any number of threads; a tank built otherwise, or a damaged file, is
  * refused and changes nothing. SPDX-License-Identifier: BSD-3-Clause */
 #include "digest.h"
-#include "fluid_tank.h"
+#include "fluid_readings.h"
 #include <mps/io.h>
 
 static const char path[] = TEST_TMP "/fluid.h5";
@@ -29,6 +29,10 @@ static void same(mps_context *a, const tank *x, mps_context *b, const tank *y) {
   assert_int_equal(mps_fluid_steps(x->fluid), mps_fluid_steps(y->fluid));
   const mps_reaction p = on_left(a, x), q = on_left(b, y);
   assert_true(p.force[0] == q.force[0] && p.impulse[0] == q.impulse[0] && p.work == q.work);
+  static readings told, again;
+  read_all(a, x->fluid, 0.6, 0, &told);
+  read_all(b, y->fluid, 0.6, 0, &again);
+  same_readings(&told, &again);
 }
 
 static void goes_on_from_a_file(void **state) {
