@@ -15,7 +15,7 @@
 
 static void first_pass(void *data, int64_t b, int32_t worker) {
   mps_dynamics *dynamics = data;
-  dynamics->kernels->pass1[dynamics->def.rotation][0](
+  dynamics->kernels->pass1[dynamics->def.rotation][MPSI_DYN_FORCES](
       &dynamics->state, &dynamics->mesh, b, dynamics->scratch + worker * MPSI_DYN_SCRATCH);
 }
 

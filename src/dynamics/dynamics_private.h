@@ -188,6 +188,7 @@ struct mps_dynamics {
   bool no_rate; /* restoring_old is not of the present ground: damping has no rate yet */
   mpsi_guard guard;
   bool unread;           /* fields of the ground have been edited, and do not go together so far */
+  bool cautious;         /* a rank has a signal that may refuse: ranks agree before each step */
   const char *rewritten; /* field of the motion that the caller has written, or NULL */
   const char *broken;    /* field that nobody may write and somebody has, or NULL */
   bool have_limit;
@@ -314,8 +315,10 @@ mps_status mpsi_dynamics_read_ground(mps_dynamics *dynamics, const char *functio
 /* The holder's commit: a field has been edited. */
 mps_status mpsi_dynamics_commit(void *self, const char *function, const char *field,
                                 const double *former);
-/* Before a step or a look at the state: takes up what has been edited, or says why it cannot. */
-mps_status mpsi_dynamics_take_edits(mps_dynamics *dynamics, const char *function);
+/* Before a step or a look at the state: takes up what has been edited, or says why it cannot.
+ * `status` is this rank's so far. */
+mps_status mpsi_dynamics_take_edits(mps_dynamics *dynamics, const char *function,
+                                    mps_status status);
 
 /* ---- begin.c, dt.c, run.c ---- */
 
@@ -325,6 +328,8 @@ mps_status mpsi_dynamics_begin(mps_dynamics *dynamics, const char *function, dou
 void mpsi_dynamics_publish(mps_dynamics *dynamics);
 /* Chooses dt where the definition left it open, and warns of one above the limit. */
 mps_status mpsi_dynamics_settle_dt(mps_dynamics *dynamics, const char *function);
+/* run.c: before steps: takes up edits and makes room for what they count. */
+mps_status mpsi_dynamics_take_up(mps_dynamics *dynamics, const char *function);
 /* run.c: MPS_ERROR_STATE when a call is under way or the run has diverged; takes up edits and finds
  * dt if need be. */
 mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function);

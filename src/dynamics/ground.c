@@ -4,6 +4,7 @@
 #include "core/particles_internal.h"
 #include "dynamics_private.h"
 #include "material/material_internal.h"
+#include "signal/signal_internal.h"
 
 #include <string.h>
 
@@ -229,10 +230,24 @@ mps_status mpsi_dynamics_commit(void *self, const char *function, const char *fi
   return status;
 }
 
-mps_status mpsi_dynamics_take_edits(mps_dynamics *dynamics, const char *function) {
-  mps_status status = MPS_OK;
-  double edited[2] = {dynamics->unread, dynamics->rewritten != NULL};
-  if (dynamics->broken)
+/* Whether a boundary's or load's signal may refuse. */
+static bool has_refusing_signal(const mps_dynamics *dynamics) {
+  for (int c = 0; c < 2; c++) {
+    for (int32_t k = 0; k < dynamics->boundary_room; k++)
+      if (dynamics->boundary[k] && mpsi_signal_may_fail(dynamics->boundary[k]->part.signal[c]))
+        return true;
+    for (int32_t k = 0; k < dynamics->load_room; k++)
+      if (dynamics->load[k] && mpsi_signal_may_fail(dynamics->load[k]->part.signal[c])) return true;
+  }
+  return false;
+}
+
+mps_status mpsi_dynamics_take_edits(mps_dynamics *dynamics, const char *function,
+                                    mps_status status) {
+  double edited[3] = {dynamics->unread, dynamics->rewritten != NULL, has_refusing_signal(dynamics)};
+  if (status != MPS_OK)
+    ; /* as the caller has found it */
+  else if (dynamics->broken)
     status =
         mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
                   "field '%s' has been written, which the solver relies on: "
@@ -243,7 +258,8 @@ mps_status mpsi_dynamics_take_edits(mps_dynamics *dynamics, const char *function
                        "field '%s' has been written: mps_dynamics_restart begins a motion from "
                        "it, mps_dynamics_rollback leads back",
                        dynamics->rewritten);
-  status = mpsi_domain_settle_max(dynamics->domain, function, status, 2, edited);
+  status = mpsi_domain_settle_max(dynamics->domain, function, status, 3, edited);
+  if (status == MPS_OK) dynamics->cautious = edited[2] != 0.0;
   if (status == MPS_OK && edited[0] != 0.0) status = mpsi_dynamics_read_ground(dynamics, function);
   if (status == MPS_OK) dynamics->unread = false;
   if (status == MPS_OK && edited[1] != 0.0)

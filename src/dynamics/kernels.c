@@ -15,6 +15,11 @@
 enum { MEAN_MATRIX, MEAN_ANGLE };
 enum { VERLET, LEAPFROG, EULER };
 enum { UNDAMPED, BY_PARTICLES, BY_PAIRS };
+enum {
+  PRESSURES = MPSI_DYN_PRESSURES,
+  FORCES = MPSI_DYN_FORCES,
+  DAMPED_FORCES = MPSI_DYN_DAMPED_FORCES
+};
 
 /* ---- pairs ----------------------------------------------------------------------------------- */
 
@@ -43,7 +48,7 @@ MPSI_INLINE pair_terms seven_rows(double *room, int64_t length) {
 }
 
 /* Pair terms of a chunk. PER = 0: one offset for the chunk; 1: one a pair. */
-MPSI_INLINE void pair_chunk(const int removal, const int by_pairs, const int PER, int32_t n, ends e,
+MPSI_INLINE void pair_chunk(const int removal, const int want, const int PER, int32_t n, ends e,
                             const double *r0x, const double *r0y, const double *kf,
                             const double *kc, pair_terms out, double *restrict ex,
                             double *restrict ey) {
@@ -68,13 +73,15 @@ MPSI_INLINE void pair_chunk(const int removal, const int by_pairs, const int PER
     const double kex = kinv * rx, key = kinv * ry;
     const double stiff = kf[k] * (e.mi[t] + e.mj[t]);
     const double px = stiff * ux, py = stiff * uy; /* normal and shear together: un + us = u */
-    fx[t] = px;
-    fy[t] = py;
-    torque[t] = rx * py - ry * px; /* r x un = 0, so r x us = r x u: (A13) */
     div[t] = kex * ux + key * uy;
-    ex[t] = kex;
-    ey[t] = key;
-    if (by_pairs) {
+    if (want >= FORCES) {
+      fx[t] = px;
+      fy[t] = py;
+      torque[t] = rx * py - ry * px; /* r x un = 0, so r x us = r x u: (A13) */
+      ex[t] = kex;
+      ey[t] = key;
+    }
+    if (want == DAMPED_FORCES) {
       const double beta = 0.5 * (e.bi[t] + e.bj[t]);
       sx[t] = beta * px;
       sy[t] = beta * py;
@@ -89,19 +96,20 @@ MPSI_INLINE void add(double *restrict target, const double *restrict term, doubl
 }
 
 /* Adds the terms of a chunk to one side's sums, which begin at `at`. */
-MPSI_INLINE void add_terms(const int by_pairs, pair_terms sums, pair_terms terms, int64_t at,
+MPSI_INLINE void add_terms(const int want, pair_terms sums, pair_terms terms, int64_t at,
                            double sign, int32_t n) {
+  add(sums.div + at, terms.div, 1.0, n);
+  if (want == PRESSURES) return;
   add(sums.fx + at, terms.fx, sign, n);
   add(sums.fy + at, terms.fy, sign, n);
   add(sums.torque + at, terms.torque, 1.0, n);
-  add(sums.div + at, terms.div, 1.0, n);
-  if (!by_pairs) return;
+  if (want == FORCES) return;
   add(sums.sx + at, terms.sx, sign, n);
   add(sums.sy + at, terms.sy, sign, n);
   add(sums.st + at, terms.st, 1.0, n);
 }
 
-MPSI_INLINE void pass1_run(const int removal, const int by_pairs, const mpsi_dynamics_state *s,
+MPSI_INLINE void pass1_run(const int removal, const int want, const mpsi_dynamics_state *s,
                            const mpsi_dynamics_pair_run *run, int32_t begin, pair_terms sums,
                            pair_terms terms, double *ex, double *ey) {
   for (int32_t t0 = 0; t0 < run->count; t0 += MPSI_DYN_CHUNK) {
@@ -109,12 +117,12 @@ MPSI_INLINE void pass1_run(const int removal, const int by_pairs, const mpsi_dyn
     const int64_t i = run->i0 + t0, j = run->j0 + t0;
     const ends e = {s->dx + i, s->dy + i, s->c + i, s->s + i, s->mu + i, s->beta + i,
                     s->dx + j, s->dy + j, s->c + j, s->s + j, s->mu + j, s->beta + j};
-    pair_chunk(removal, by_pairs, 0, n, e, &run->r0x, &run->r0y, &run->kf, &run->kc, terms, ex + t0,
+    pair_chunk(removal, want, 0, n, e, &run->r0x, &run->r0y, &run->kf, &run->kc, terms, ex + t0,
                ey + t0);
     /* j > i, so that a particle is j of an earlier pair than that of which it is i: in this order
      * its sums do not show where chunks end, nor where a run does that another rank has whole. */
-    if (run->own_j) add_terms(by_pairs, sums, terms, j - begin, -1.0, n);
-    if (run->own_i) add_terms(by_pairs, sums, terms, i - begin, 1.0, n);
+    if (run->own_j) add_terms(want, sums, terms, j - begin, -1.0, n);
+    if (run->own_i) add_terms(want, sums, terms, i - begin, 1.0, n);
   }
 }
 
@@ -124,12 +132,12 @@ MPSI_INLINE void gather(double *restrict to, const double *restrict from,
   for (int32_t t = 0; t < n; t++) to[t] = from[index[t]];
 }
 
-MPSI_INLINE void pass1_scattered(const int removal, const int by_pairs,
-                                 const mpsi_dynamics_state *s, const mpsi_dynamics_scattered *list,
-                                 int64_t k, int32_t n, int32_t begin, pair_terms sums,
-                                 pair_terms terms, double *room, double *ex, double *ey) {
+MPSI_INLINE void pass1_scattered(const int removal, const int want, const mpsi_dynamics_state *s,
+                                 const mpsi_dynamics_scattered *list, int64_t k, int32_t n,
+                                 int32_t begin, pair_terms sums, pair_terms terms, double *room,
+                                 double *ex, double *ey) {
   const double *from[6] = {s->dx, s->dy, s->c, s->s, s->mu, s->beta};
-  for (int f = 0; f < (by_pairs ? 6 : 5); f++) {
+  for (int f = 0; f < 4 + want; f++) {
     gather(room + f * MPSI_DYN_CHUNK, from[f], list->i + k, n);
     gather(room + (6 + f) * MPSI_DYN_CHUNK, from[f], list->j + k, n);
   }
@@ -137,7 +145,7 @@ MPSI_INLINE void pass1_scattered(const int removal, const int by_pairs,
   const ends e = {ROOM(0), ROOM(1), ROOM(2), ROOM(3), ROOM(4),  ROOM(5),
                   ROOM(6), ROOM(7), ROOM(8), ROOM(9), ROOM(10), ROOM(11)};
 #undef ROOM
-  pair_chunk(removal, by_pairs, 1, n, e, list->r0x + k, list->r0y + k, list->kf + k, list->kc + k,
+  pair_chunk(removal, want, 1, n, e, list->r0x + k, list->r0y + k, list->kf + k, list->kc + k,
              terms, ex, ey);
   for (int32_t t = 0; t < n; t++) { /* pair by pair: the order does not show where chunks end */
     const int32_t target[2] = {list->ti[k + t], list->tj[k + t]};
@@ -145,11 +153,12 @@ MPSI_INLINE void pass1_scattered(const int removal, const int by_pairs,
       const double sign = side == 0 ? 1.0 : -1.0;
       const int32_t at = target[side] - begin;
       if (target[side] < 0) continue;
+      sums.div[at] += terms.div[t];
+      if (want == PRESSURES) continue;
       sums.fx[at] += sign * terms.fx[t];
       sums.fy[at] += sign * terms.fy[t];
       sums.torque[at] += terms.torque[t];
-      sums.div[at] += terms.div[t];
-      if (!by_pairs) continue;
+      if (want == FORCES) continue;
       sums.sx[at] += sign * terms.sx[t];
       sums.sy[at] += sign * terms.sy[t];
       sums.st[at] += terms.st[t];
@@ -157,11 +166,11 @@ MPSI_INLINE void pass1_scattered(const int removal, const int by_pairs,
   }
 }
 
-MPSI_INLINE void pass1(const int removal, const int by_pairs, const mpsi_dynamics_state *s,
+MPSI_INLINE void pass1(const int removal, const int want, const mpsi_dynamics_state *s,
                        const mpsi_dynamics_mesh *mesh, int64_t b, double *scratch) {
   const mpsi_dynamics_block *block = &mesh->block[b];
   const int32_t begin = block->begin, n = block->end - begin;
-  const int64_t rows = by_pairs ? 7 : 4;
+  const int64_t rows = want == DAMPED_FORCES ? 7 : 4;
   const pair_terms sums = seven_rows(scratch, MPSI_DYN_BLOCK);
   const pair_terms terms = seven_rows(scratch + 7 * MPSI_DYN_BLOCK, MPSI_DYN_CHUNK);
   double *room = scratch + 7 * (MPSI_DYN_BLOCK + MPSI_DYN_CHUNK);
@@ -170,11 +179,11 @@ MPSI_INLINE void pass1(const int removal, const int by_pairs, const mpsi_dynamic
 
   int64_t slot = block->slot;
   for (int64_t r = block->run_begin; r < block->run_end; slot += mesh->run[r++].count)
-    pass1_run(removal, by_pairs, s, &mesh->run[r], begin, sums, terms, s->ex + slot, s->ey + slot);
+    pass1_run(removal, want, s, &mesh->run[r], begin, sums, terms, s->ex + slot, s->ey + slot);
   for (int64_t k = block->scattered_begin; k < block->scattered_end; k += MPSI_DYN_CHUNK) {
     const int64_t left = block->scattered_end - k;
     const int32_t m = left < MPSI_DYN_CHUNK ? (int32_t)left : MPSI_DYN_CHUNK;
-    pass1_scattered(removal, by_pairs, s, &mesh->scattered, k, m, begin, sums, terms, room,
+    pass1_scattered(removal, want, s, &mesh->scattered, k, m, begin, sums, terms, room,
                     s->ex + slot, s->ey + slot);
     slot += m;
   }
@@ -182,13 +191,14 @@ MPSI_INLINE void pass1(const int removal, const int by_pairs, const mpsi_dynamic
   double *restrict gx = s->gx + begin, *restrict gy = s->gy + begin, *restrict gth = s->gth + begin;
   double *restrict p = s->p + begin;
   const double *restrict lambda = s->lambda + begin;
+  SIMD for (int32_t t = 0; t < n; t++) p[t] = -lambda[t] * sums.div[t]; /* (A11) */
+  if (want == PRESSURES) return;
   SIMD for (int32_t t = 0; t < n; t++) {
     gx[t] = sums.fx[t];
     gy[t] = sums.fy[t];
     gth[t] = sums.torque[t];
-    p[t] = -lambda[t] * sums.div[t]; /* (A11) */
   }
-  if (!by_pairs) return;
+  if (want == FORCES) return;
   double *restrict sx = s->sx + begin, *restrict sy = s->sy + begin, *restrict sth = s->sth + begin;
   SIMD for (int32_t t = 0; t < n; t++) {
     sx[t] = sums.sx[t];
@@ -423,10 +433,10 @@ MPSI_INLINE int pass2(const int removal, const int integrator, const int damping
 
 /* ---- variants -------------------------------------------------------------------------------- */
 
-#define PASS1(removal, by_pairs)                                                                   \
-  static void pass1_##removal##_##by_pairs(                                                        \
+#define PASS1(removal, want)                                                                       \
+  static void pass1_##removal##_##want(                                                            \
       const mpsi_dynamics_state *s, const mpsi_dynamics_mesh *mesh, int64_t b, double *scratch) {  \
-    pass1(removal, by_pairs, s, mesh, b, scratch);                                                 \
+    pass1(removal, want, s, mesh, b, scratch);                                                     \
   }
 #define TRIG(removal)                                                                              \
   static void trig_##removal(const mpsi_dynamics_state *s, int64_t begin, int64_t end) {           \
@@ -448,8 +458,9 @@ MPSI_INLINE int pass2(const int removal, const int integrator, const int damping
     }                                                                                              \
   }
 #define ALL(removal)                                                                               \
-  PASS1(removal, 0)                                                                                \
-  PASS1(removal, 1)                                                                                \
+  PASS1(removal, PRESSURES)                                                                        \
+  PASS1(removal, FORCES)                                                                           \
+  PASS1(removal, DAMPED_FORCES)                                                                    \
   TRIG(removal)                                                                                    \
   INTEGRATORS(PASS2, removal, UNDAMPED)                                                            \
   INTEGRATORS(PASS2, removal, BY_PARTICLES)                                                        \
@@ -459,7 +470,10 @@ ALL(MEAN_MATRIX)
 ALL(MEAN_ANGLE)
 
 const mpsi_dynamics_kernels CONCAT(mpsi_dynamics_kernels_v, MPSI_LEVEL) = {
-    .pass1 = {{pass1_MEAN_MATRIX_0, pass1_MEAN_MATRIX_1}, {pass1_MEAN_ANGLE_0, pass1_MEAN_ANGLE_1}},
+    .pass1 = {{pass1_MEAN_MATRIX_PRESSURES, pass1_MEAN_MATRIX_FORCES,
+               pass1_MEAN_MATRIX_DAMPED_FORCES},
+              {pass1_MEAN_ANGLE_PRESSURES, pass1_MEAN_ANGLE_FORCES,
+               pass1_MEAN_ANGLE_DAMPED_FORCES}},
     .pass2 = {PASS2_TABLE(MEAN_MATRIX), PASS2_TABLE(MEAN_ANGLE)},
     .trig = {trig_MEAN_MATRIX, trig_MEAN_ANGLE},
 };

@@ -51,6 +51,13 @@ typedef struct mpsi_dynamics_step {
 /* Doubles of scratch memory a worker needs. */
 #define MPSI_DYN_SCRATCH (7 * MPSI_DYN_BLOCK + 32 * MPSI_DYN_CHUNK)
 
+/* What the first pass sums: each also what comes before it. */
+typedef enum mpsi_dynamics_sums {
+  MPSI_DYN_PRESSURES = 0, /* all that is wanted of other ranks' blocks */
+  MPSI_DYN_FORCES = 1,
+  MPSI_DYN_DAMPED_FORCES = 2 /* of damping by pairs */
+} mpsi_dynamics_sums;
+
 /* First pass over one block: shear and normal forces, torques, divergence, pressure. */
 typedef void (*mpsi_dynamics_pass1_fn)(const mpsi_dynamics_state *state,
                                        const mpsi_dynamics_mesh *mesh, int64_t block,
@@ -64,7 +71,7 @@ typedef int (*mpsi_dynamics_pass2_fn)(const mpsi_dynamics_state *state,
 typedef void (*mpsi_dynamics_trig_fn)(const mpsi_dynamics_state *state, int64_t begin, int64_t end);
 
 typedef struct mpsi_dynamics_kernels {
-  mpsi_dynamics_pass1_fn pass1[2][2]; /* MPS_DYNAMICS_ROTATION_...; damping by pairs */
+  mpsi_dynamics_pass1_fn pass1[2][3]; /* MPS_DYNAMICS_ROTATION_..., mpsi_dynamics_sums */
   mpsi_dynamics_pass2_fn pass2[2][3]
                               [3]; /* removal, mpsi_dynamics_damping, MPS_DYNAMICS_INTEGRATOR_... */
   mpsi_dynamics_trig_fn trig[2];

@@ -73,7 +73,7 @@ mps_status mpsi_dynamics_remove(void *self, const char *function, int64_t count,
     return mpsi_fail(dynamics->context, function, MPS_ERROR_UNSUPPORTED,
                      "the particles lie on %d ranks: none can be removed there",
                      mps_domain_size(dynamics->domain));
-  if (status == MPS_OK) status = mpsi_dynamics_take_edits(dynamics, function);
+  if (status == MPS_OK) status = mpsi_dynamics_take_edits(dynamics, function, MPS_OK);
   return status == MPS_OK ? prepare(dynamics, function, count, ids) : status;
 }
 

@@ -8,6 +8,14 @@
 
 #define PROMPT_WORK 5000000 /* particle-steps between looks at the cancel hook: some 0.1 s */
 
+mps_status mpsi_dynamics_take_up(mps_dynamics *dynamics, const char *function) {
+  mps_status status = mpsi_particles_ready(dynamics->particles, function);
+  if (status == MPS_OK && mpsi_particles_column(dynamics->particles, "external_force", 0) &&
+      !mpsi_dynamics_reserve_accounts(dynamics))
+    status = mpsi_fail_memory(dynamics->context, function, (size_t)dynamics->count * 24);
+  return mpsi_dynamics_take_edits(dynamics, function, status);
+}
+
 mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function) {
   mps_status status = mpsi_dynamics_enter(dynamics, function);
   if (status != MPS_OK) return status;
@@ -15,7 +23,7 @@ mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function) {
     return mpsi_fail(dynamics->context, function, MPS_ERROR_STATE,
                      "the run has diverged: mps_dynamics_rollback or mps_dynamics_restore leads "
                      "back, mps_dynamics_restart begins a new one");
-  status = mpsi_dynamics_take_edits(dynamics, function);
+  status = mpsi_dynamics_take_up(dynamics, function);
   if (status != MPS_OK) return status;
   return mpsi_dynamics_settle_dt(dynamics, function);
 }
@@ -26,29 +34,41 @@ static int64_t prompt_steps(const mps_dynamics *dynamics) {
   return PROMPT_WORK / (dynamics->whole / (ranks > 0 ? ranks : 1) + 1) + 1;
 }
 
-static mps_status cancelled(mps_dynamics *dynamics, const char *function) {
-  double asked = mpsi_cancelled(dynamics->context);
-  const mps_status status = mpsi_domain_max(dynamics->domain, function, 1, &asked);
-  if (status != MPS_OK || asked == 0.0) return status;
+static mps_status stop(mps_dynamics *dynamics, const char *function) {
   return mpsi_fail(dynamics->context, function, MPS_ERROR_CANCELLED,
                    "stopped by the cancel hook at step %lld, t = %g s", (long long)dynamics->steps,
                    mps_dynamics_time(dynamics));
+}
+
+static mps_status cancelled(mps_dynamics *dynamics, const char *function) {
+  double asked = mpsi_cancelled(dynamics->context);
+  const mps_status status = mpsi_domain_max(dynamics->domain, function, 1, &asked);
+  return status == MPS_OK && asked != 0.0 ? stop(dynamics, function) : status;
+}
+
+/* Ranks agree upon the number of steps and whether one is asked to stop. */
+static mps_status begin_steps(mps_dynamics *dynamics, const char *function, int64_t count) {
+  double all[3] = {(double)count, -(double)count, count > 0 && mpsi_cancelled(dynamics->context)};
+  mps_status status = MPS_OK;
+  if (count < 0)
+    status = mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
+                       "count is %lld, must be >= 0", (long long)count);
+  status = mpsi_domain_settle_max(dynamics->domain, function, status, 3, all);
+  if (status == MPS_OK && all[0] != -all[1])
+    status = mpsi_domain_settle_same(dynamics->domain, function, status, "count", (double)count);
+  return status == MPS_OK && all[2] != 0.0 ? stop(dynamics, function) : status;
 }
 
 mps_status mps_dynamics_step(mps_dynamics *dynamics, int64_t count) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_dynamics_ready(dynamics, __func__);
   if (status != MPS_OK) return status;
-  if (count < 0)
-    return mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
-                     (long long)count);
-  status = mpsi_domain_settle_same(dynamics->domain, __func__, status, "count", (double)count);
-  if (status != MPS_OK) return status;
   const int64_t prompt = prompt_steps(dynamics);
   mpsi_guard_enter(&dynamics->guard, dynamics->context, "mps_dynamics_step");
+  status = begin_steps(dynamics, __func__, count);
   for (int64_t done = 0; status == MPS_OK && done < count;) {
     const int64_t n = count - done < prompt ? count - done : prompt;
-    status = cancelled(dynamics, __func__);
+    if (done > 0) status = cancelled(dynamics, __func__);
     if (status == MPS_OK) status = mpsi_dynamics_advance(dynamics, __func__, n, dynamics->dt, true);
     done += n;
   }
@@ -102,7 +122,9 @@ static mps_status march(const run *r) {
                call = r->callback && (last || !((done + n) % r->every));
     const bool look = last || (done + n) % r->report == 0;
     done += n;
-    status = mpsi_dynamics_advance(dynamics, function, n, r->length, call || last);
+    if (r->callback) status = mpsi_dynamics_take_up(dynamics, function); /* it may have edited */
+    if (status == MPS_OK)
+      status = mpsi_dynamics_advance(dynamics, function, n, r->length, call || last);
     if (last && status == MPS_OK) {
       dynamics->base_time = r->t_end; /* to the last bit */
       dynamics->base_step = dynamics->steps;
@@ -120,6 +142,22 @@ static mps_status march(const run *r) {
   return status;
 }
 
+static mps_status check_run(const run *r, const char *function) {
+  mps_context *context = r->dynamics->context;
+  if (!isfinite(r->t_end) || r->t_end < r->start)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "t_end is %.17g s, must be finite and not before the present time %.17g s",
+                     r->t_end, r->start);
+  if (r->every < 1)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "every is %lld, must be >= 1",
+                     (long long)r->every);
+  if ((r->t_end - r->start) / r->dynamics->dt > 1e15)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "a run to %g s takes %g steps of dt = %g s: must be at most 1e15", r->t_end,
+                     (r->t_end - r->start) / r->dynamics->dt, r->dynamics->dt);
+  return MPS_OK;
+}
+
 mps_status mps_dynamics_run(mps_dynamics *dynamics, double t_end, int64_t every,
                             mps_dynamics_fn callback, void *user) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
@@ -132,17 +170,7 @@ mps_status mps_dynamics_run(mps_dynamics *dynamics, double t_end, int64_t every,
            .every = every,
            .callback = callback,
            .user = user};
-  if (!isfinite(t_end) || t_end < r.start)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                     "t_end is %.17g s, must be finite and not before the present time %.17g s",
-                     t_end, r.start);
-  if (every < 1)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "every is %lld, must be >= 1",
-                     (long long)every);
-  if ((t_end - r.start) / dynamics->dt > 1e15)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                     "a run to %g s takes %g steps of dt = %g s: must be at most 1e15", t_end,
-                     (t_end - r.start) / dynamics->dt, dynamics->dt);
+  status = check_run(&r, __func__);
   status = mpsi_domain_settle_same(dynamics->domain, __func__, status, "t_end", t_end);
   if (status == MPS_OK)
     status = mpsi_domain_settle_same(dynamics->domain, __func__, status, "every", (double)every);

@@ -196,7 +196,7 @@ static mpsi_state_of state_of(mps_dynamics *dynamics) {
 /* A state is kept between steps only, with what has been edited taken up. */
 static mps_status check_whole(mps_dynamics *dynamics, const char *function) {
   const mps_status status = mpsi_guard_check_between(&dynamics->guard, dynamics->context, function);
-  return status == MPS_OK ? mpsi_dynamics_take_edits(dynamics, function) : status;
+  return status == MPS_OK ? mpsi_dynamics_take_edits(dynamics, function, MPS_OK) : status;
 }
 
 mps_status mps_dynamics_snapshot(mps_dynamics *dynamics, mps_snapshot **snapshot) {

@@ -37,7 +37,7 @@ static void set_length(mps_dynamics *dynamics, double length) {
 typedef struct work {
   mps_dynamics *dynamics;
   mpsi_dynamics_step step;
-  mpsi_dynamics_pass1_fn pass1;
+  mpsi_dynamics_pass1_fn pass1, ghost_pass1;
   mpsi_dynamics_pass2_fn pass2;
   mpsi_dynamics_forces forces;
   bool account;       /* works of loads or damping are counted */
@@ -50,34 +50,16 @@ static void first_pass(void *data, int64_t unit, int32_t worker) {
   mps_dynamics *dynamics = w->dynamics;
   const int32_t *turn = dynamics->mesh.turn;
   const int64_t first = w->begin + unit * w->grain, last = first + w->grain;
-  for (int64_t b = first; b < last && b < w->end; b++)
-    w->pass1(&dynamics->state, &dynamics->mesh, turn ? turn[b] : b,
-             dynamics->scratch + worker * MPSI_DYN_SCRATCH);
+  for (int64_t t = first; t < last && t < w->end; t++) {
+    const int64_t b = turn ? turn[t] : t;
+    (b < dynamics->mesh.blocks ? w->pass1 : w->ghost_pass1)(
+        &dynamics->state, &dynamics->mesh, b, dynamics->scratch + worker * MPSI_DYN_SCRATCH);
+  }
 }
 
 static void pass_turns(work *w, int64_t begin, int64_t end) {
   w->begin = begin, w->end = end;
   mpsi_parallel_for(w->dynamics->context, (end - begin + w->grain - 1) / w->grain, first_pass, w);
-}
-
-/* The first pass of all blocks. What lies on other ranks arrives while those blocks are at work
- * that do not need it. */
-static mps_status pass_all(work *w) {
-  mps_dynamics *dynamics = w->dynamics;
-  const mpsi_dynamics_mesh *mesh = &dynamics->mesh;
-  mpsi_dynamics_state *s = &dynamics->state;
-  double *const column[3] = {s->dx, s->dy, s->th};
-  mps_status status = MPS_OK;
-  if (dynamics->halo) status = mpsi_halo_begin(dynamics->halo, "mps_dynamics_step", 3, column);
-  if (status != MPS_OK) return status;
-  pass_turns(w, 0, mesh->interior);
-  if (!dynamics->halo) return MPS_OK;
-  status = mpsi_halo_end(dynamics->halo, "mps_dynamics_step", column);
-  if (status != MPS_OK) return status;
-  dynamics->kernels->trig[dynamics->def.rotation](s, dynamics->count,
-                                                  dynamics->count + dynamics->ghosts);
-  pass_turns(w, mesh->interior, mesh->blocks + mesh->ghosts);
-  return MPS_OK;
 }
 
 static void second_pass(void *data, int64_t unit, int32_t worker) {
@@ -189,8 +171,40 @@ static bool diverges(mps_dynamics *dynamics, double limit2) {
   return any;
 }
 
-/* All of a step but asking the signals, which can fail, as can other ranks. */
-static mps_status take_step(work *w, bool output, bool *diverged) {
+/* What has become of the ranks: `status` of this one, and whether its last step has diverged. */
+static mps_status settle_step(mps_dynamics *dynamics, const char *function, mps_status status,
+                              bool *diverged) {
+  double any = *diverged;
+  status = mpsi_domain_settle_max(dynamics->domain, function, status, 1, &any);
+  if (status != MPS_OK || any == 0.0) return status;
+  return report_divergence(dynamics, function);
+}
+
+/* The first pass of all blocks, and what has become of the ranks. What lies on other ranks arrives
+ * while those blocks are at work that do not need it, and right after it has come ranks wait for
+ * one another: once a step. Where a signal may refuse, they do so before the step. */
+static mps_status pass_all(work *w, const char *function, mps_status status, bool *diverged) {
+  mps_dynamics *dynamics = w->dynamics;
+  const mpsi_dynamics_mesh *mesh = &dynamics->mesh;
+  mpsi_dynamics_state *s = &dynamics->state;
+  double *const column[3] = {s->dx, s->dy, s->th};
+  if (dynamics->cautious) status = settle_step(dynamics, function, status, diverged);
+  if (status != MPS_OK) return status;
+  if (dynamics->halo) status = mpsi_halo_begin(dynamics->halo, function, 3, column);
+  if (status != MPS_OK) return status;
+  pass_turns(w, 0, mesh->interior);
+  if (dynamics->halo) status = mpsi_halo_end(dynamics->halo, function, column);
+  if (status == MPS_OK && !dynamics->cautious)
+    status = settle_step(dynamics, function, status, diverged);
+  if (status != MPS_OK || !dynamics->halo) return status;
+  dynamics->kernels->trig[dynamics->def.rotation](s, dynamics->count,
+                                                  dynamics->count + dynamics->ghosts);
+  pass_turns(w, mesh->interior, mesh->blocks + mesh->ghosts);
+  return MPS_OK;
+}
+
+/* What of a step comes after the first pass. */
+static void take_step(work *w, bool output, bool *diverged) {
   mps_dynamics *dynamics = w->dynamics;
   const double kick = dynamics->def.integrator == MPS_DYNAMICS_INTEGRATOR_EULER || dynamics->fresh
                           ? dynamics->length
@@ -203,8 +217,6 @@ static mps_status take_step(work *w, bool output, bool *diverged) {
   mpsi_dynamics_begin_counting(dynamics);
   mpsi_dynamics_dashpots_before(dynamics);
   const int64_t units = (dynamics->mesh.blocks + w->grain - 1) / w->grain;
-  const mps_status status = pass_all(w);
-  if (status != MPS_OK) return status;
   mpsi_parallel_for(dynamics->context, units, second_pass, w);
   dynamics->steps++;
   dynamics->fresh = dynamics->no_rate = false;
@@ -217,16 +229,6 @@ static mps_status take_step(work *w, bool output, bool *diverged) {
     mpsi_dynamics_count_works(&account);
   }
   *diverged = diverges(dynamics, w->step.limit2);
-  return MPS_OK;
-}
-
-/* What has become of the ranks: `status` of this one, and whether its last step has diverged. */
-static mps_status settle_step(mps_dynamics *dynamics, const char *function, mps_status status,
-                              bool *diverged) {
-  double any = *diverged;
-  status = mpsi_domain_settle_max(dynamics->domain, function, status, 1, &any);
-  if (status != MPS_OK || any == 0.0) return status;
-  return report_divergence(dynamics, function);
 }
 
 mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, int64_t count,
@@ -238,40 +240,34 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
   const int64_t blocks = dynamics->mesh.blocks;
   const int64_t units = blocks < SMALL_BODY ? 1 : 8 * mps_context_threads(dynamics->context);
   const int32_t removal = dynamics->def.rotation, integrator = dynamics->def.integrator;
+  const int32_t sums =
+      dynamics->damping == MPSI_DYN_BY_PAIRS ? MPSI_DYN_DAMPED_FORCES : MPSI_DYN_FORCES;
   work w = {.dynamics = dynamics,
             .step = {.dt = length,
                      .limit2 = fmin(limit * limit, DBL_MAX), /* never lets an infinite one pass */
                      .stride = dynamics->count},
-            .pass1 = dynamics->kernels->pass1[removal][dynamics->damping == MPSI_DYN_BY_PAIRS],
+            .pass1 = dynamics->kernels->pass1[removal][sums],
+            .ghost_pass1 = dynamics->kernels->pass1[removal][MPSI_DYN_PRESSURES],
             .pass2 = dynamics->kernels->pass2[removal][dynamics->damping][integrator],
             .grain = blocks > 0 ? (blocks + units - 1) / units : 1};
   if (count == 0) return MPS_OK;
-  mps_status status = mpsi_particles_ready(dynamics->particles, function);
-  if (status == MPS_OK && mpsi_particles_column(dynamics->particles, "external_force", 0) &&
-      !mpsi_dynamics_reserve_accounts(dynamics))
-    status = mpsi_fail_memory(dynamics->context, function, (size_t)dynamics->count * 24);
-  status = mpsi_domain_settle(dynamics->domain, function, status);
-  if (status == MPS_OK) status = mpsi_dynamics_take_edits(dynamics, function);
-  if (status != MPS_OK) return status;
   set_length(dynamics, length);
   if (dynamics->fresh) start_history(dynamics, length);
-  status = begin_budget(dynamics, function);
+  mps_status status = begin_budget(dynamics, function);
   if (status != MPS_OK) return status;
   bool diverged = false; /* the step before */
   w.step.drag = watch ? dynamics->drag : NULL;
-  for (int64_t k = 0; status == MPS_OK && k < count; k++) {
+  for (int64_t k = 0; k < count; k++) {
     const double now = mps_dynamics_time(dynamics);
     const double then =
         dynamics->base_time + (double)(dynamics->steps + 1 - dynamics->base_step) * length;
     status = mpsi_dynamics_ask_signals(dynamics, function, now, then);
     if (status == MPS_OK) status = mpsi_dynamics_ask_loads(dynamics, function, now);
-    status = settle_step(dynamics, function, status, &diverged);
-    if (status != MPS_OK) break;
+    status = pass_all(&w, function, status, &diverged);
+    if (status != MPS_OK) return status;
     w.forces = mpsi_dynamics_find_forces(dynamics);
     w.account = w.forces.any || watch;
-    status = take_step(&w, output && k == count - 1, &diverged);
-    if (status == MPS_OK && (k == count - 1 || !mpsi_domain_many(dynamics->domain)))
-      status = settle_step(dynamics, function, MPS_OK, &diverged);
+    take_step(&w, output && k == count - 1, &diverged);
   }
-  return status;
+  return settle_step(dynamics, function, MPS_OK, &diverged);
 }

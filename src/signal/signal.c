@@ -65,6 +65,8 @@ mps_status mpsi_signal_at(const mps_signal *signal, mps_context *context, const 
   return MPS_OK;
 }
 
+bool mpsi_signal_may_fail(const mps_signal *signal) { return signal && signal->fn; }
+
 static mpsi_signal_motion motion(const mps_signal *signal, double t) {
   mpsi_signal_motion at = {NAN, NAN, NAN};
   if (!signal) return (mpsi_signal_motion){0};

@@ -5,6 +5,8 @@
 
 #include <mps/signal.h>
 
+#include <stdbool.h>
+
 typedef struct mpsi_signal_motion {
   double u, v, a; /* m, m/s, m/s2 */
 } mpsi_signal_motion;
@@ -13,5 +15,7 @@ typedef struct mpsi_signal_motion {
  * refuses or gives what is not finite, that is recorded on `context` for `function`. */
 mps_status mpsi_signal_at(const mps_signal *signal, mps_context *context, const char *function,
                           double t, mpsi_signal_motion *out);
+/* Whether mpsi_signal_at can fail: the signal is a function of the caller. NULL: no. */
+bool mpsi_signal_may_fail(const mps_signal *signal);
 
 #endif
