@@ -319,13 +319,121 @@ static inline mps_status compute(mps_context *own, mps_domain *domain, int what,
   return status;
 }
 
+/* ---- the caller puts particles in and takes some out ----------------------------------------- */
+
+/* Those that have come here have their values by their places. */
+static inline mps_status give_values(mps_particles *set, int64_t first) {
+  mps_view x;
+  mps_edit density, velocity;
+  mps_status status = mps_particles_view(set, "position", &x);
+  TRY(mps_particles_edit(set, "density", &density));
+  TRY(mps_particles_edit(set, "velocity", &velocity));
+  for (int64_t k = first; status == MPS_OK && k < mps_particles_count(set); k++) {
+    *mps_edit_f64(&density, k, 0) = 1700.0 + 100.0 * *mps_view_f64(&x, k, 0);
+    *mps_edit_f64(&velocity, k, 1) = -2.0 - *mps_view_f64(&x, k, 1);
+  }
+  TRY(mps_particles_commit(set, &density));
+  TRY(mps_particles_commit(set, &velocity));
+  return status;
+}
+
+/* Soil for those that have come here, of which each rank lists its own. */
+static inline mps_status make_soil(scene *s, int64_t first) {
+  enum { MOST = 4096 };
+  int64_t ids[MOST], count = 0;
+  mps_view id;
+  mps_status status = mps_particles_view(s->set, "id", &id);
+  for (int64_t k = first; status == MPS_OK && k < mps_particles_count(s->set) && count < MOST; k++)
+    ids[count++] = *mps_view_i64(&id, k, 0);
+  TRY(mps_mpm_set_material(s->mpm, s->material[1], count, ids));
+  return status;
+}
+
+/* Some rain and a block, of which the soil's sites are left out. */
+static inline mps_status put_in(mps_context *own, mps_domain *domain, int what, scene *s,
+                                result *r) {
+  enum { DROPS = 45 };
+  double drop[3 * DROPS];
+  const int dim = dim_of(what);
+  int64_t added = 0;
+  for (int k = 0; k < DROPS; k++) {
+    const double place[3] = {0.03 + 0.0243 * k, 1.1 + 0.31 * sin(7.0 * k),
+                             0.4 + 0.39 * cos(3.0 * k)};
+    memcpy(drop + dim * k, place, (size_t)dim * sizeof *place);
+  }
+  const double lo[3] = {0.3, 1.5, 0.0}, hi[3] = {0.62, 1.7, 0.8};
+  const double here[3] = {0.0, 0.2, 0.3}, there[3] = {0.3, 0.36, 0.5};
+  const int64_t first = mps_particles_count(s->set);
+  mps_status status = mps_particles_append(s->set, DROPS, drop);
+  TRY(mps_particles_fill_box(s->set, lo, hi, &added));
+  r->other[RESULT_OTHERS - 20] = (double)added;
+  TRY(mps_particles_fill_box(s->set, here, there, &added)); /* the soil has been there */
+  if (added != 0) status = MPS_ERROR_INTERNAL;
+  TRY(give_values(s->set, first));
+  TRY(make_soil(s, first));
+  (void)own;
+  TRY(keep_order(domain, s->set, r));
+  r->other[RESULT_OTHERS - 19] = r->other[RESULT_OTHERS - 1];
+  return status;
+}
+
+/* Each rank removes what it has in a box. */
+static inline mps_status clear_box(scene *s, const double *lo, const double *hi) {
+  enum { MOST = 4096 };
+  int64_t ids[MOST], count = 0;
+  mps_status status = mps_particles_select_box(s->set, lo, hi, MOST, ids, &count);
+  TRY(mps_particles_remove(s->set, count, ids));
+  return status;
+}
+
+/* A list that all ranks give, and then what each has in a box. */
+static inline mps_status take_out(mps_domain *domain, scene *s, result *r) {
+  enum { LISTED = 90 };
+  int64_t ids[LISTED];
+  const double lo[3] = {0.7, 0.1, 0.1}, hi[3] = {0.8, 0.25, 0.6};
+  for (int64_t k = 0; k < LISTED; k++) ids[k] = 5 + 13 * k;
+  mps_status status = mps_particles_remove(s->set, LISTED, ids);
+  TRY(clear_box(s, lo, hi));
+  TRY(keep_order(domain, s->set, r));
+  r->other[RESULT_OTHERS - 18] = r->other[RESULT_OTHERS - 1];
+  return status;
+}
+
+/* In, out, back in time to before that, out and in again. */
+static inline mps_status compute_changes(mps_context *own, mps_domain *domain, int what,
+                                         int64_t steps, result *r) {
+  scene s = {.set = NULL};
+  mps_snapshot *then = NULL;
+  mps_status status = make_scene(own, domain, what, &s);
+  r->first = s.set ? mps_particles_count(s.set) : 0;
+  TRY(mps_mpm_step(s.mpm, steps / 4));
+  TRY(put_in(own, domain, what, &s, r));
+  TRY(mps_mpm_snapshot(s.mpm, &then));
+  TRY(mps_mpm_step(s.mpm, steps / 4));
+  TRY(take_out(domain, &s, r));
+  TRY(mps_mpm_step(s.mpm, steps / 4));
+  TRY(mps_mpm_rollback(s.mpm, then));
+  TRY(take_out(domain, &s, r));
+  TRY(mps_mpm_step(s.mpm, steps / 4));
+  TRY(put_in(own, domain, what, &s, r));
+  TRY(mps_mpm_step(s.mpm, steps / 4));
+  mps_snapshot_destroy(&then);
+  TRY(keep_scene(domain, what, &s, r));
+  end_scene(&s);
+  return status;
+}
+
 /* Half of a run that is cut in two: to a checkpoint, or on from it; `steps` are those of a half. */
 static inline mps_status compute_half(mps_context *own, mps_domain *domain, int what, int64_t steps,
                                       const char *from, const char *to, result *r) {
+  const double above[2] = {0.0, 1.4}, far[2] = {1.28, 2.0};
   scene s = {.set = NULL};
   mps_status status = make_scene(own, domain, what, &s);
   if (from) TRY(mps_mpm_restore(s.mpm, from, NULL));
   TRY(mps_mpm_step(s.mpm, steps));
+  if (what == SPREAD) TRY(put_in(own, domain, what, &s, r));
+  if (to && what == SPREAD) TRY(clear_box(&s, above, far)); /* with the last ids */
+  if (from) TRY(mps_mpm_step(s.mpm, 5));
   if (to) TRY(mps_mpm_save(s.mpm, to, NULL));
   TRY(keep_scene(domain, what, &s, r));
   end_scene(&s);

@@ -61,7 +61,9 @@ MPS_API uint64_t mps_particles_epoch(const mps_particles *particles);
  * lower edges of a polygon, out at `hi`, at the right and upper edges and on the surface of a ball.
  * So shapes that share an edge share no site. */
 
-/** Appends `count` particles at given positions: positions[i * dim + c] in m, within 1e15 m. */
+/** Appends `count` particles at given positions: positions[i * dim + c] in m, within 1e15 m. This and
+ *  the fills, of a set that lies on several ranks (mps/domain.h): collective; all ranks give the
+ *  same, and each keeps the particles of its share. */
 MPS_API MPS_NODISCARD mps_status mps_particles_append(mps_particles *particles, int64_t count,
                                                       const double *positions);
 /** Lattice sites whose centre lies in the box [lo, hi) (dim values each, m). */
@@ -90,7 +92,7 @@ MPS_API MPS_NODISCARD mps_status mps_particles_fill_where(mps_particles *particl
 /** Removes `count` particles, by their ids (all different). The others keep their ids and the order
  *  among them; the lattice sites of those removed stay taken. On an error nothing has changed.
  *  MPS_ERROR_STATE: the solver that holds the set lets no particle go, or a field is being edited.
- */
+ *  On several ranks collective: all give the same list, or each ids of particles that it has. */
 MPS_API MPS_NODISCARD mps_status mps_particles_remove(mps_particles *particles, int64_t count,
                                                       const int64_t *ids);
 

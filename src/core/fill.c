@@ -115,34 +115,35 @@ static mps_status check_bound(const mps_particles *p, const char *function, cons
   return MPS_OK;
 }
 
+static void put_sites(const mps_particles *p, const mpsi_site_runs *fresh, int64_t n) {
+  double *x[3] = {0};
+  for (int32_t c = 0; c < p->def.dim; c++)
+    x[c] = mpsi_field_column(p->fields[MPSI_FIELD_POSITION], c);
+  for (int64_t m = 0; m < fresh->count; m++) {
+    const mpsi_site_run run = fresh->item[m];
+    for (int64_t i = run.begin; i < run.end; i++, n++) {
+      x[0][n] = centre(p, 0, i);
+      x[1][n] = centre(p, 1, run.j);
+      if (p->def.dim == 3) x[2][n] = centre(p, 2, run.k);
+    }
+  }
+}
+
 /* Puts particles at the sites of `runs` that are free, and takes the runs' memory in any case.
- * `complete` false: memory for them ran out. */
-static mps_status put_runs(mps_particles *p, const char *function, mpsi_site_runs *runs,
-                           bool complete, int64_t *added) {
+ * `status`: what has become of them; `complete` false: memory for them ran out. */
+static mps_status put_runs(mps_particles *p, const char *function, mps_status status,
+                           mpsi_site_runs *runs, bool complete, int64_t *added) {
   mps_context *context = p->context;
   mpsi_site_runs fresh = {0}, sites = {0};
   const int64_t first = p->count;
-  const bool good = complete && runs_subtract(context, runs, &p->sites, &fresh) &&
-                    runs_unite(context, &p->sites, &fresh, &sites);
-  const int64_t count = good ? (int64_t)runs_sites(&fresh) : 0;
-  mps_status status = good ? mpsi_particles_extend(p, function, count)
-                           : mpsi_fail(context, function, MPS_ERROR_MEMORY,
-                                       "could not allocate the list of lattice sites");
-  if (status == MPS_OK) {
-    double *x[3] = {0};
-    for (int32_t c = 0; c < p->def.dim; c++)
-      x[c] = mpsi_field_column(p->fields[MPSI_FIELD_POSITION], c);
-    int64_t n = first;
-    for (int64_t m = 0; m < fresh.count; m++) {
-      const mpsi_site_run run = fresh.item[m];
-      for (int64_t i = run.begin; i < run.end; i++, n++) {
-        x[0][n] = centre(p, 0, i);
-        x[1][n] = centre(p, 1, run.j);
-        if (p->def.dim == 3) x[2][n] = centre(p, 2, run.k);
-      }
-    }
-    status = mpsi_particles_arrive(p, function, first);
-  }
+  if (status == MPS_OK && !(complete && runs_subtract(context, runs, &p->sites, &fresh) &&
+                            runs_unite(context, &p->sites, &fresh, &sites)))
+    status = mpsi_fail(context, function, MPS_ERROR_MEMORY,
+                       "could not allocate the list of lattice sites");
+  const int64_t count = (int64_t)runs_sites(&fresh);
+  if (status == MPS_OK) status = mpsi_particles_extend(p, function, count);
+  if (status == MPS_OK) put_sites(p, &fresh, first);
+  status = mpsi_particles_arrive(p, function, status, first);
   if (status == MPS_OK) {
     const mpsi_site_runs former = p->sites;
     p->sites = sites;
@@ -226,31 +227,34 @@ static mps_status box_runs(const mps_particles *p, const char *function, const s
   return status;
 }
 
-static mps_status fill_box(mps_particles *p, const char *function, const double *lo,
-                           const double *hi, mps_predicate_fn inside, void *user, int64_t *added) {
+/* Where `status`, of the caller's own arguments, is well. */
+static mps_status fill_box(mps_particles *p, const char *function, mps_status status,
+                           const double *lo, const double *hi, mps_predicate_fn inside, void *user,
+                           int64_t *added) {
   site_box box;
   mpsi_site_runs runs = {0};
-  mps_status status = mpsi_particles_check_free(p, function);
+  bool complete = true;
+  const mps_status busy = mpsi_particles_outside_callbacks(p, function);
+  if (busy != MPS_OK) return busy;
+  if (status == MPS_OK) status = mpsi_particles_check_free(p, function);
   if (status == MPS_OK) status = read_box(p, function, lo, hi, &box);
-  if (status != MPS_OK) return status;
-  bool complete;
-  status = box_runs(p, function, &box, inside, user, &runs, &complete);
-  if (status == MPS_OK) return put_runs(p, function, &runs, complete, added);
-  mpsi_free(p->context, runs.item);
-  return status;
+  if (status == MPS_OK) status = box_runs(p, function, &box, inside, user, &runs, &complete);
+  return put_runs(p, function, status, &runs, complete, added);
 }
 
 mps_status mps_particles_fill_box(mps_particles *particles, const double *lo, const double *hi,
                                   int64_t *added) {
   if (!particles) return MPS_ERROR_ARGUMENT;
-  return fill_box(particles, __func__, lo, hi, NULL, NULL, added);
+  return fill_box(particles, __func__, MPS_OK, lo, hi, NULL, NULL, added);
 }
 
 mps_status mps_particles_fill_where(mps_particles *particles, const double *lo, const double *hi,
                                     mps_predicate_fn inside, void *user, int64_t *added) {
   if (!particles) return MPS_ERROR_ARGUMENT;
-  if (!inside) return mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT, "inside is NULL");
-  return fill_box(particles, __func__, lo, hi, inside, user, added);
+  mps_status status = MPS_OK;
+  if (!inside)
+    status = mpsi_fail(particles->context, __func__, MPS_ERROR_ARGUMENT, "inside is NULL");
+  return fill_box(particles, __func__, status, lo, hi, inside, user, added);
 }
 
 typedef struct ball {
@@ -266,26 +270,34 @@ static mps_status in_ball(void *user, const double *x, int32_t *inside) {
   return MPS_OK;
 }
 
+static mps_status read_ball(const mps_particles *p, const char *function, const double *centre_of,
+                            double radius, ball *out) {
+  if (!centre_of) return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT, "centre is NULL");
+  if (!isfinite(radius) || radius <= 0.0)
+    return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
+                     "radius is %g m, must be finite and > 0", radius);
+  /* A centre on the surface is out on every side alike, so that a symmetric ball stays so. */
+  const double inner = radius - ON_EDGE * p->def.spacing;
+  *out = (ball){.square = inner > 0.0 ? inner * inner : 0.0, .dim = p->def.dim};
+  for (int32_t c = 0; c < out->dim; c++) {
+    const mps_status status = check_bound(p, function, "centre", c, centre_of[c]);
+    if (status != MPS_OK) return status;
+    out->centre[c] = centre_of[c];
+  }
+  return MPS_OK;
+}
+
 mps_status mps_particles_fill_ball(mps_particles *particles, const double *centre_of_ball,
                                    double radius, int64_t *added) {
   if (!particles) return MPS_ERROR_ARGUMENT;
-  mps_context *context = particles->context;
-  if (!centre_of_ball) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "centre is NULL");
-  if (!isfinite(radius) || radius <= 0.0)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                     "radius is %g m, must be finite and > 0", radius);
-  /* A centre on the surface is out on every side alike, so that a symmetric ball stays so. */
-  const double inner = radius - ON_EDGE * particles->def.spacing;
-  ball b = {.square = inner > 0.0 ? inner * inner : 0.0, .dim = particles->def.dim};
-  double lo[3], hi[3];
+  ball b = {.dim = 0};
+  double lo[3] = {0.0}, hi[3] = {0.0};
+  const mps_status status = read_ball(particles, __func__, centre_of_ball, radius, &b);
   for (int32_t c = 0; c < b.dim; c++) {
-    const mps_status status = check_bound(particles, __func__, "centre", c, centre_of_ball[c]);
-    if (status != MPS_OK) return status;
-    b.centre[c] = centre_of_ball[c];
     lo[c] = b.centre[c] - radius;
     hi[c] = b.centre[c] + radius;
   }
-  return fill_box(particles, __func__, lo, hi, in_ball, &b, added);
+  return fill_box(particles, __func__, status, lo, hi, in_ball, &b, added);
 }
 
 /* ---- polygon --------------------------------------------------------------------------------- */
@@ -352,26 +364,34 @@ static bool polygon_runs(const mps_particles *p, const polygon *s, const int64_t
   return true;
 }
 
+/* The runs of a polygon. `*complete` is false where memory was refused. */
+static mps_status fill_shape(const mps_particles *p, const char *function, const polygon *shape,
+                             mpsi_site_runs *runs, bool *complete) {
+  mps_context *context = p->context;
+  int64_t *row_of = mpsi_alloc(context, shape->n, sizeof *row_of);
+  int64_t *sites = mpsi_alloc(context, shape->n, sizeof *sites);
+  bool more = false;
+  *complete = row_of && sites;
+  for (int64_t k = 0; *complete && k < shape->n; k++)
+    row_of[k] = first_site(p, 1, shape->xy[2 * k + 1]);
+  *complete = *complete && polygon_runs(p, shape, row_of, sites, runs, &more);
+  mpsi_free(context, row_of);
+  mpsi_free(context, sites);
+  if (!more) return MPS_OK;
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                   "the polygon holds more than 2^31 sites of spacing %g m", p->def.spacing);
+}
+
 mps_status mps_particles_fill_polygon(mps_particles *particles, int64_t vertices, const double *xy,
                                       int64_t *added) {
   if (!particles) return MPS_ERROR_ARGUMENT;
-  mps_context *context = particles->context;
   const polygon shape = {.xy = xy, .n = vertices};
-  mps_status status = mpsi_particles_check_free(particles, __func__);
-  if (status == MPS_OK) status = check_polygon(particles, __func__, &shape);
-  if (status != MPS_OK) return status;
-  int64_t *row_of = mpsi_alloc(context, vertices, sizeof *row_of);
-  int64_t *sites = mpsi_alloc(context, vertices, sizeof *sites);
   mpsi_site_runs runs = {0};
-  bool more = false, complete = row_of && sites;
-  for (int64_t k = 0; complete && k < vertices; k++)
-    row_of[k] = first_site(particles, 1, xy[2 * k + 1]);
-  complete = complete && polygon_runs(particles, &shape, row_of, sites, &runs, &more);
-  mpsi_free(context, row_of);
-  mpsi_free(context, sites);
-  if (!more) return put_runs(particles, __func__, &runs, complete, added);
-  mpsi_free(context, runs.item);
-  return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                   "the polygon holds more than 2^31 sites of spacing %g m",
-                   particles->def.spacing);
+  bool complete = true;
+  mps_status status = mpsi_particles_outside_callbacks(particles, __func__);
+  if (status != MPS_OK) return status;
+  status = mpsi_particles_check_free(particles, __func__);
+  if (status == MPS_OK) status = check_polygon(particles, __func__, &shape);
+  if (status == MPS_OK) status = fill_shape(particles, __func__, &shape, &runs, &complete);
+  return put_runs(particles, __func__, status, &runs, complete, added);
 }

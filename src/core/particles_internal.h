@@ -80,12 +80,21 @@ struct mpsi_holder {
   /* These particles are to go (ids of the set, all different): refuses, or makes ready. NULL: as
    * above. */
   mps_status (*remove)(void *self, const char *function, int64_t count, const int64_t *ids);
+  /* Particles with a mark, by present index, are about to go: after that, or of the holder's own
+   * accord. May be NULL. */
+  void (*leaving)(void *self, const uint8_t *gone);
   /* After both, also where another holder refused: columns, count and order may have changed.
    * May be NULL. A holder that only looks is told too when the set goes back in time. */
   void (*renew)(void *self);
   /* Of a set that lies on several ranks: its rows in runs, whose places tell the order of the whole
    * (`out` NULL: how many). NULL: rank after rank. */
   int64_t (*runs)(const void *self, mpsi_row_run *out);
+  /* Of such a set (NULL: all of it is here): what has become of adding the particles from `first`
+   * on, on all ranks, which must have been given the same; and of removing those of a list, of
+   * which `known` are here. Both come before insert and remove. */
+  mps_status (*agree)(void *self, const char *function, mps_status status, int64_t first);
+  mps_status (*find)(void *self, const char *function, mps_status status, int64_t count,
+                     const int64_t *ids, int64_t known);
   mpsi_holder *next;
 };
 

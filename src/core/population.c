@@ -90,10 +90,12 @@ mps_status mpsi_particles_extend(mps_particles *p, const char *function, int64_t
   return MPS_OK;
 }
 
-mps_status mpsi_particles_arrive(mps_particles *p, const char *function, int64_t first) {
+mps_status mpsi_particles_arrive(mps_particles *p, const char *function, mps_status status,
+                                 int64_t first) {
   const int64_t count = p->count - first;
-  mps_status status = MPS_OK;
-  if (count == 0) return MPS_OK;
+  for (mpsi_holder *h = p->holders; h; h = h->next)
+    if (h->agree) status = h->agree(h->self, function, status, first);
+  if (count == 0) return status;
   for (mpsi_holder *h = p->holders; h && status == MPS_OK; h = h->next)
     if (h->insert) status = h->insert(h->self, function, first, count);
   if (status != MPS_OK) {
@@ -105,41 +107,58 @@ mps_status mpsi_particles_arrive(mps_particles *p, const char *function, int64_t
   return status;
 }
 
-mps_status mps_particles_append(mps_particles *particles, int64_t count, const double *positions) {
-  if (!particles) return MPS_ERROR_ARGUMENT;
-  mps_context *context = particles->context;
-  const int32_t dim = particles->def.dim;
-  mps_status status = mpsi_particles_check_free(particles, __func__);
-  if (status != MPS_OK) return status;
+static mps_status check_positions(const mps_particles *p, const char *function, int64_t count,
+                                  const double *positions) {
+  const int32_t dim = p->def.dim;
   if (count < 0 || count > MPSI_MAX_PARTICLES)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, allowed are 0 to 2^40",
-                     (long long)count);
+    return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
+                     "count is %lld, allowed are 0 to 2^40", (long long)count);
   if (count > 0 && !positions)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "positions is NULL");
+    return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT, "positions is NULL");
   for (int64_t i = 0; i < count; i++)
     for (int32_t c = 0; c < dim; c++)
       if (!(fabs(positions[i * dim + c]) <= MPSI_FARTHEST))
-        return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+        return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
                          "position %lld has %c = %g m, allowed are %g to %g m", (long long)i,
                          "xyz"[c], positions[i * dim + c], -MPSI_FARTHEST, MPSI_FARTHEST);
+  return MPS_OK;
+}
+
+mps_status mps_particles_append(mps_particles *particles, int64_t count, const double *positions) {
+  if (!particles) return MPS_ERROR_ARGUMENT;
+  const int32_t dim = particles->def.dim;
   const int64_t first = particles->count;
-  if ((status = mpsi_particles_extend(particles, __func__, count)) != MPS_OK) return status;
-  for (int32_t c = 0; c < dim; c++) {
+  mps_status status = mpsi_particles_outside_callbacks(particles, __func__);
+  if (status != MPS_OK) return status;
+  status = mpsi_particles_check_free(particles, __func__);
+  if (status == MPS_OK) status = check_positions(particles, __func__, count, positions);
+  if (status == MPS_OK) status = mpsi_particles_extend(particles, __func__, count);
+  for (int32_t c = 0; status == MPS_OK && c < dim; c++) {
     double *x = mpsi_field_column(particles->fields[MPSI_FIELD_POSITION], c);
     for (int64_t i = 0; i < count; i++) x[first + i] = positions[i * dim + c];
   }
-  return mpsi_particles_arrive(particles, __func__, first);
+  return mpsi_particles_arrive(particles, __func__, status, first);
 }
 
 /* ---- removal --------------------------------------------------------------------------------- */
 
-/* Marks what goes; the marks lie by present index. */
+/* The holder of a set that lies on several ranks, or NULL. */
+static const mpsi_holder *sharer(const mps_particles *p) {
+  const mpsi_holder *h = p->holders;
+  while (h && !h->find) h = h->next;
+  return h;
+}
+
+/* Marks what goes; the marks lie by present index. `known`: where some may be on other ranks, how
+ * many are here. */
 static mps_status mark(const mps_particles *p, const char *function, int64_t count,
-                       const int64_t *ids, uint8_t *gone) {
+                       const int64_t *ids, uint8_t *gone, int64_t *known) {
   for (int64_t k = 0; k < count; k++) {
     const int64_t at = mps_particles_index(p, ids[k]);
+    if (at < 0 && known) continue;
     if (at >= 0 && !gone[at]) {
       gone[at] = 1;
+      if (known) ++*known;
       continue;
     }
     (void)mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
@@ -169,10 +188,9 @@ static void close_gaps(mps_particles *p, const uint8_t *gone) {
 }
 
 void mpsi_particles_take_out(mps_particles *p, const uint8_t *gone) {
-  const int64_t *id = p->fields[MPSI_FIELD_ID]->data;
-  for (int64_t k = 0; k < p->count; k++)
-    if (gone[k]) p->index_of[id[k]] = -1;
-  close_gaps(p, gone);
+  for (const mpsi_holder *h = p->holders; h; h = h->next)
+    if (h->leaving) h->leaving(h->self, gone);
+  mpsi_particles_make_way(p, gone);
   renew_holders(p);
 }
 
@@ -215,22 +233,35 @@ static mps_status ask_holders(const mps_particles *p, const char *function, int6
   return status;
 }
 
+static mps_status check_removal(const mps_particles *p, const char *function, int64_t count,
+                                const int64_t *ids, bool shared) {
+  const mps_status status = mpsi_particles_writable(p, function);
+  if (status != MPS_OK) return status;
+  if (count < 0 || (!shared && count > p->count))
+    return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
+                     "count is %lld, allowed are 0 to the set's %lld particles", (long long)count,
+                     (long long)p->count);
+  if (count > 0 && !ids) return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT, "ids is NULL");
+  return MPS_OK;
+}
+
 mps_status mps_particles_remove(mps_particles *particles, int64_t count, const int64_t *ids) {
   if (!particles) return MPS_ERROR_ARGUMENT;
   mps_context *context = particles->context;
-  mps_status status = mpsi_particles_writable(particles, __func__);
+  const mpsi_holder *shared = sharer(particles);
+  int64_t known = 0;
+  uint8_t *gone = NULL;
+  mps_status status = mpsi_particles_outside_callbacks(particles, __func__);
   if (status != MPS_OK) return status;
-  if (count < 0 || count > particles->count)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                     "count is %lld, allowed are 0 to the set's %lld particles", (long long)count,
-                     (long long)particles->count);
-  if (count == 0) return MPS_OK;
-  if (!ids) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "ids is NULL");
-  uint8_t *gone = mpsi_alloc(context, particles->count, 1);
-  if (!gone) return mpsi_fail_memory(context, __func__, (size_t)particles->count);
-  status = mark(particles, __func__, count, ids, gone);
+  status = check_removal(particles, __func__, count, ids, shared != NULL);
+  if (status == MPS_OK && count == 0 && !shared) return MPS_OK;
+  if (status == MPS_OK && !(gone = mpsi_alloc(context, particles->count, 1)))
+    status = mpsi_fail_memory(context, __func__, (size_t)particles->count);
+  if (status == MPS_OK)
+    status = mark(particles, __func__, count, ids, gone, shared ? &known : NULL);
+  if (shared) status = shared->find(shared->self, __func__, status, count, ids, known);
   if (status == MPS_OK) status = ask_holders(particles, __func__, count, ids);
-  if (status == MPS_OK) mpsi_particles_take_out(particles, gone);
+  if (status == MPS_OK && (known > 0 || !shared)) mpsi_particles_take_out(particles, gone);
   mpsi_free(context, gone);
   return status;
 }

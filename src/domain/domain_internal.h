@@ -31,6 +31,11 @@ mps_status mpsi_domain_settle_max(mps_domain *domain, const char *function, mps_
 mps_status mpsi_domain_settle_same(mps_domain *domain, const char *function, mps_status status,
                                    const char *name, double value);
 
+/* same.c: goes on with a hash, which begins with MPSI_DOMAIN_HASH, over more bytes; what of it a
+ * double tells exactly. Not collective. */
+#define MPSI_DOMAIN_HASH UINT64_C(0xcbf29ce484222325)
+uint64_t mpsi_domain_hash(uint64_t hash, const void *data, size_t bytes);
+double mpsi_domain_short(uint64_t hash);
 /* same.c: the same for many numbers at once, by a hash, and for the fields of a set. */
 mps_status mpsi_domain_settle_numbers(mps_domain *domain, const char *function, mps_status status,
                                       const char *name, int32_t count, const double *numbers);

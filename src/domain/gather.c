@@ -12,7 +12,7 @@
  */
 
 typedef struct head {
-  int64_t particles, fields, dim, runs;
+  int64_t particles, fields, dim, runs, made; /* made: ids lie below it */
   double spacing;
 } head;
 
@@ -27,6 +27,7 @@ static mps_status pack(mps_domain *domain, const char *function, mps_particles *
                   .fields = mps_particles_field_count(particles),
                   .dim = mps_particles_dim(particles),
                   .runs = mpsi_particles_runs(particles, domain->def.rank, NULL),
+                  .made = mpsi_particles_made(particles),
                   .spacing = mps_particles_spacing(particles)};
   mps_field_info info;
   mps_view view;
@@ -96,8 +97,7 @@ static bool open_shares(assembly *a) {
     s->field = (const char *)(s->run + s->h.runs);
     s->id = (const int64_t *)(s->field + sizeof(field_head)); /* the first field of every set */
     a->pieces += s->h.runs;
-    for (int64_t k = 0; k < s->h.particles; k++)
-      if (s->id[k] >= a->ids) a->ids = s->id[k] + 1;
+    if (s->h.made > a->ids) a->ids = s->h.made;
   }
   return true;
 }

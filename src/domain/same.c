@@ -4,40 +4,38 @@
 
 #include <string.h>
 
-static uint64_t mix(uint64_t hash, const void *data, size_t bytes) {
+uint64_t mpsi_domain_hash(uint64_t hash, const void *data, size_t bytes) {
   const unsigned char *at = data;
   for (size_t k = 0; k < bytes; k++) hash = (hash ^ at[k]) * UINT64_C(0x100000001b3);
   return hash;
 }
 
-static const uint64_t basis = UINT64_C(0xcbf29ce484222325);
-
-/* Kept below 2^52, where doubles are exact. */
-static double shorten(uint64_t hash) { return (double)(hash >> 12); }
+double mpsi_domain_short(uint64_t hash) { return (double)(hash >> 12); }
 
 mps_status mpsi_domain_settle_numbers(mps_domain *domain, const char *function, mps_status status,
                                       const char *name, int32_t count, const double *numbers) {
-  uint64_t hash = basis;
+  uint64_t hash = MPSI_DOMAIN_HASH;
   for (int32_t k = 0; k < count; k++) {
     const double none = NAN, *number = isnan(numbers[k]) ? &none : &numbers[k];
-    hash = mix(hash, number, sizeof *number);
+    hash = mpsi_domain_hash(hash, number, sizeof *number);
   }
-  return mpsi_domain_settle_same(domain, function, status, name, shorten(hash));
+  return mpsi_domain_settle_same(domain, function, status, name, mpsi_domain_short(hash));
 }
 
 mps_status mpsi_domain_settle_particles(mps_domain *domain, const char *function, mps_status status,
                                         mps_particles *particles) {
-  uint64_t hash = basis;
+  uint64_t hash = MPSI_DOMAIN_HASH;
   for (int32_t f = 0; status == MPS_OK && f < mps_particles_field_count(particles); f++) {
     mps_field_info info;
     mps_view view;
     if (mps_particles_field(particles, f, &info) != MPS_OK ||
         mps_particles_view(particles, info.name, &view) != MPS_OK)
       continue;
-    hash = mix(hash, info.name, strlen(info.name));
+    hash = mpsi_domain_hash(hash, info.name, strlen(info.name));
     for (int32_t c = 0; c < info.components; c++)
-      hash = mix(hash, (const char *)view.data + 8 * c * view.stride[1], (size_t)view.shape[0] * 8);
+      hash = mpsi_domain_hash(hash, (const char *)view.data + 8 * c * view.stride[1],
+                              (size_t)view.shape[0] * 8);
   }
   return mpsi_domain_settle_same(domain, function, status, "a hash of the set's particles",
-                                 shorten(hash));
+                                 mpsi_domain_short(hash));
 }

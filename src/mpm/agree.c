@@ -2,13 +2,6 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
 
-mps_status mpsi_mpm_share_refuse(const mps_mpm *mpm, const char *function, const char *what) {
-  if (!mpm->share) return MPS_OK;
-  return mpsi_fail(mpm->context, function, MPS_ERROR_UNSUPPORTED,
-                   "%s cannot be had on several ranks (there are %d): use one rank", what,
-                   mps_domain_size(mpm->share->domain));
-}
-
 bool mpsi_mpm_share_counts(const mps_mpm *mpm, int64_t g) {
   const mpsi_node_block *nodes = &mpm->grid.nodes[g];
   int q = 0;
@@ -57,4 +50,48 @@ mps_status mpsi_mpm_share_check_ids(mps_mpm *mpm, const char *function, mps_stat
   return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                    "of %lld ids %lld are of particles of the set on any rank", (long long)count,
                    (long long)known);
+}
+
+/* ---- particles that the caller adds and removes ----------------------------------------------
+ */
+
+mps_status mpsi_mpm_share_agree_added(void *self, const char *function, mps_status status,
+                                      int64_t first) {
+  mps_mpm *mpm = self;
+  const int64_t count = mps_particles_count(mpm->particles) - first;
+  uint64_t hash = mpsi_domain_hash(MPSI_DOMAIN_HASH, &count, sizeof count);
+  for (int c = 0; c < mpm->dim; c++) /* columns may have moved */
+    hash = mpsi_domain_hash(hash, mpsi_particles_column(mpm->particles, "position", c) + first,
+                            (size_t)count * sizeof(double));
+  return mpsi_domain_settle_same(mpm->share->domain, function, status,
+                                 "a hash of the particles to add", mpsi_domain_short(hash));
+}
+
+/* Each rank lists particles that it has itself, or all of them list the same. */
+mps_status mpsi_mpm_share_find(void *self, const char *function, mps_status status, int64_t count,
+                               const int64_t *ids, int64_t known) {
+  mps_mpm *mpm = self;
+  mps_domain *domain = mpm->share->domain;
+  double found[3] = {0.0};
+  if (status == MPS_OK) {
+    found[0] =
+        mpsi_domain_short(mpsi_domain_hash(MPSI_DOMAIN_HASH, ids, (size_t)count * sizeof *ids));
+    found[1] = -found[0];
+    found[2] = (double)(count - known);
+  }
+  status = mpsi_domain_settle_max(domain, function, status, 3, found);
+  if (status != MPS_OK || found[2] == 0.0) return status;
+  status = mpsi_domain_sum(domain, function, 1, &known);
+  if (status != MPS_OK) return status;
+  if (found[0] != -found[1])
+    status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "of %lld ids some are of particles that this rank does not have, and other "
+                       "ranks give other ids: give all ranks the same list, or each one ids of its "
+                       "own particles",
+                       (long long)count);
+  else if (known != count)
+    status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                       "of %lld ids %lld are of particles of the set on any rank", (long long)count,
+                       (long long)known);
+  return mpsi_domain_settle(domain, function, status);
 }

@@ -85,14 +85,25 @@ static int64_t place(const mps_mpm *mpm, const int64_t *ids, int64_t i) {
   return ids ? mps_particles_index(mpm->particles, ids[i]) : i;
 }
 
+/* On several ranks a list is the same on all, or of particles that the rank has. */
+static mps_status check_list(mps_mpm *mpm, const char *function, mps_status status, int64_t count,
+                             const int64_t *ids) {
+  int64_t known = 0;
+  if (status == MPS_OK && (!ids || count < 0 || !mpm->share))
+    status = mpsi_particles_check_ids_or_all(mpm->particles, function, count, ids);
+  if (!mpm->share) return status;
+  status = mpsi_domain_settle_same(mpm->share->domain, function, status, "having a list of ids",
+                                   ids != NULL);
+  if (status != MPS_OK || !ids) return status;
+  for (int64_t k = 0; k < count; k++) known += mps_particles_index(mpm->particles, ids[k]) >= 0;
+  return mpsi_mpm_share_find(mpm, function, status, count, ids, known);
+}
+
 static mps_status check(mps_mpm *mpm, const char *function, const mps_material *material,
                         int64_t count, const int64_t *ids) {
   mps_status status = MPS_OK;
   if (!material) status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "material is NULL");
-  if (ids && count >= 0)
-    status = mpsi_mpm_share_check_ids(mpm, function, status, count, ids);
-  else if (status == MPS_OK)
-    status = mpsi_particles_check_ids_or_all(mpm->particles, function, count, ids);
+  status = check_list(mpm, function, status, count, ids);
   if (status != MPS_OK) return status;
   const double *J = mpsi_material_reads_volume(material)
                         ? mpsi_particles_column(mpm->particles, "volume_ratio", 0)

@@ -366,8 +366,13 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
                               .compares = mpsi_mpm_compares,
                               .insert = mpsi_mpm_insert,
                               .remove = mpsi_mpm_remove,
-                              .renew = mpsi_mpm_renew,
-                              .runs = is_shared(&def) ? mpsi_mpm_share_runs : NULL};
+                              .leaving = mpsi_mpm_thin_out,
+                              .renew = mpsi_mpm_renew};
+  if (is_shared(&def)) {
+    mpm->holder.runs = mpsi_mpm_share_runs;
+    mpm->holder.agree = mpsi_mpm_share_agree_added;
+    mpm->holder.find = mpsi_mpm_share_find;
+  }
   (void)mpsi_particles_hold(particles, __func__, &mpm->holder); /* checked above */
   mpm->def = def;
   mpm->def.domain = mpsi_domain_retain(def.domain);

@@ -71,12 +71,6 @@ static int64_t through_sides(mps_mpm *mpm, uint8_t *gone) {
   return count;
 }
 
-static void take_out(mps_mpm *mpm, const uint8_t *gone) {
-  mpsi_mpm_share_thin_out(mpm, gone); /* the blocks follow */
-  mpsi_particles_take_out(mpm->particles, gone);
-  mpm->run.edited = mpm->run.stale = true;
-}
-
 static double *place_of(const mps_mpm *mpm, int64_t k, double *x) {
   for (int c = 0; c < 3; c++) x[c] = c < mpm->dim ? mpm->p.x[c][k] : 0.0;
   return x;
@@ -132,7 +126,8 @@ void mpsi_mpm_let_go(mps_mpm *mpm) {
     any = mpm->grid.cells[b].gone;
   if (!any) return;
   begin_marks(mpm);
-  if (through_sides(mpm, mpm->rooms.gone.item) > 0) take_out(mpm, mpm->rooms.gone.item);
+  if (through_sides(mpm, mpm->rooms.gone.item) > 0)
+    mpsi_particles_take_out(mpm->particles, mpm->rooms.gone.item);
 }
 
 /* Marks of what lies in bodies: the number of the contact and 1. */
@@ -165,7 +160,7 @@ mps_status mpsi_mpm_clear_bodies(mps_mpm *mpm, const char *function, mps_status 
     if (takes_away(mpm->contact.handle[b]))
       status =
           count_out(mpm, function, mpm->contact.handle[b], mpm->rooms.gone.item, (uint8_t)(b + 1));
-  if (status == MPS_OK && count > 0) take_out(mpm, mpm->rooms.gone.item);
+  if (status == MPS_OK && count > 0) mpsi_particles_take_out(mpm->particles, mpm->rooms.gone.item);
   *cleared = status == MPS_OK;
   return status;
 }
@@ -181,7 +176,7 @@ mps_status mpsi_mpm_clear_body(mps_mpm *mpm, const char *function, mps_contact *
     count = into_body(mpm, contact, 0.0, 0, mpm->p.count, gone, 1);
     status = count_out(mpm, function, contact, gone, 1);
   }
-  if (status == MPS_OK && count > 0) take_out(mpm, gone);
+  if (status == MPS_OK && count > 0) mpsi_particles_take_out(mpm->particles, gone);
   mpsi_free(mpm->context, gone);
   return status;
 }

@@ -217,3 +217,29 @@ mps_status mpsi_mpm_share_migrate(mps_mpm *mpm, const char *function, mps_status
   mpsi_free(mpm->context, d.to);
   return status;
 }
+
+/* ---- particles that the caller adds ---------------------------------------------------------- */
+
+static bool is_own(const mps_mpm *mpm, int64_t k) {
+  int32_t block[3] = {0};
+  for (int c = 0; c < mpm->dim; c++)
+    block[c] = (int32_t)mpsi_block_of(
+        (int64_t)mpsi_base(mpm->def.spline, mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k])));
+  return mpsi_mpm_share_owner(mpm, block) == mps_domain_rank(mpm->share->domain);
+}
+
+mps_status mpsi_mpm_share_keep_added(mps_mpm *mpm, const char *function, mps_status status,
+                                     int64_t first) {
+  uint8_t *gone = NULL;
+  if (status == MPS_OK && !(gone = mpsi_alloc(mpm->context, mpm->p.count, 1)))
+    status = mpsi_fail_memory(mpm->context, function, (size_t)mpm->p.count);
+  status = mpsi_domain_settle(mpm->share->domain, function, status);
+  if (status == MPS_OK) {
+    memset(gone, 0, (size_t)first);
+    for (int64_t k = first; k < mpm->p.count; k++) gone[k] = !is_own(mpm, k);
+    mpsi_particles_make_way(mpm->particles, gone);
+    mpsi_mpm_bind(mpm);
+  }
+  mpsi_free(mpm->context, gone);
+  return status;
+}

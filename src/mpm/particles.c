@@ -238,10 +238,8 @@ mps_status mpsi_mpm_check_masses(const mps_mpm *mpm, const char *function) {
 
 /* ---- coming and going ------------------------------------------------------------------------ */
 
-mps_status mpsi_mpm_insert(void *self, const char *function, int64_t first, int64_t count) {
-  mps_mpm *mpm = self;
+static mps_status take_in(mps_mpm *mpm, const char *function, int64_t first, int64_t count) {
   mps_status status = mpsi_mpm_usable(mpm, function);
-  if (status == MPS_OK) status = mpsi_mpm_share_refuse(mpm, function, "adding particles");
   if (status != MPS_OK) return status;
   if (first + count > MPSI_MPM_MOST_PARTICLES)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
@@ -261,10 +259,15 @@ mps_status mpsi_mpm_insert(void *self, const char *function, int64_t first, int6
   return status;
 }
 
+mps_status mpsi_mpm_insert(void *self, const char *function, int64_t first, int64_t count) {
+  mps_mpm *mpm = self;
+  const mps_status status = take_in(mpm, function, first, count);
+  return mpm->share ? mpsi_mpm_share_keep_added(mpm, function, status, first) : status;
+}
+
 mps_status mpsi_mpm_remove(void *self, const char *function, int64_t count, const int64_t *ids) {
   (void)count, (void)ids; /* lists of ids pass over those that are no more */
-  const mps_status status = mpsi_mpm_usable(self, function);
-  return status == MPS_OK ? mpsi_mpm_share_refuse(self, function, "removing particles") : status;
+  return mpsi_mpm_share_settle(self, function, mpsi_mpm_usable(self, function));
 }
 
 void mpsi_mpm_renew(void *self) {

@@ -4,7 +4,16 @@
 
 #include <string.h>
 
-/* Rows that no block has are behind the others: particles that the caller has added. */
+/* Rows that no block has are behind the others, by their ids: particles that the caller has added.
+ */
+static int64_t list_added(const mps_mpm *mpm, int64_t first, mpsi_row_run *out) {
+  const int64_t *id = mpsi_particles_integers(mpm->particles, "id");
+  for (int64_t k = first; out && k < mpm->p.count; k++)
+    out[k - first] = (mpsi_row_run){
+        .at = {(int32_t)(id[k] & INT32_MAX), (int32_t)(id[k] >> 31), INT32_MAX}, .rows = 1};
+  return mpm->p.count - first;
+}
+
 int64_t mpsi_mpm_share_runs(const void *self, mpsi_row_run *out) {
   const mps_mpm *mpm = self;
   int64_t count = 0, rows = 0;
@@ -18,11 +27,11 @@ int64_t mpsi_mpm_share_runs(const void *self, mpsi_row_run *out) {
     rows += cells->end - cells->begin;
     count++;
   }
-  if (out) out[count] = (mpsi_row_run){.at = {0, 0, INT32_MAX}, .rows = mpm->p.count - rows};
-  return count + 1;
+  return count + list_added(mpm, rows, out ? out + count : NULL);
 }
 
-void mpsi_mpm_share_thin_out(mps_mpm *mpm, const uint8_t *gone) {
+void mpsi_mpm_thin_out(void *self, const uint8_t *gone) {
+  mps_mpm *mpm = self;
   int64_t out = 0;
   for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
     mpsi_cell_block *cells = &mpm->grid.cells[b];
@@ -31,4 +40,5 @@ void mpsi_mpm_share_thin_out(mps_mpm *mpm, const uint8_t *gone) {
     cells->begin = begin;
     cells->end -= out;
   }
+  mpm->run.edited = mpm->run.stale = true;
 }

@@ -66,18 +66,24 @@ mps_status mpsi_mpm_share_settle(mps_mpm *mpm, const char *function, mps_status 
  * become of all before, `status` here, comes first. */
 mps_status mpsi_mpm_share_check_ids(mps_mpm *mpm, const char *function, mps_status status,
                                     int64_t count, const int64_t *ids);
-/* agree.c: MPS_ERROR_UNSUPPORTED for `what` on several ranks. Not collective. */
-mps_status mpsi_mpm_share_refuse(const mps_mpm *mpm, const char *function, const char *what);
 /* agree.c: whether a sum over blocks of nodes counts g here. Not collective. */
 bool mpsi_mpm_share_counts(const mps_mpm *mpm, int64_t g);
 /* agree.c: whether all that reaches g is known here, its own or as a ghost. Not collective. */
 bool mpsi_mpm_share_knows(const mps_mpm *mpm, int64_t g);
 
-/* rows.c: as the holder of the set (mpsi_holder): rows by blocks, in the order of one rank. Not
- * collective; after particles have been taken out of the set, on one rank too, the blocks follow.
- */
+/* rows.c: as the holder of the set (mpsi_holder): rows by blocks, in the order of one rank; before
+ * particles leave the set, on one rank too, the blocks follow. Not collective. */
 int64_t mpsi_mpm_share_runs(const void *mpm, mpsi_row_run *out);
-void mpsi_mpm_share_thin_out(mps_mpm *mpm, const uint8_t *gone);
+void mpsi_mpm_thin_out(void *mpm, const uint8_t *gone);
+/* agree.c: as the holder of the set, what the caller adds and removes. */
+mps_status mpsi_mpm_share_agree_added(void *mpm, const char *function, mps_status status,
+                                      int64_t first);
+mps_status mpsi_mpm_share_find(void *mpm, const char *function, mps_status status, int64_t count,
+                               const int64_t *ids, int64_t known);
+/* owners.c: of the particles from `first` on, which all ranks have, those stay that are this
+ * rank's. */
+mps_status mpsi_mpm_share_keep_added(mps_mpm *mpm, const char *function, mps_status status,
+                                     int64_t first);
 
 /* share.c: before the blocks are used: sorted or not, ghosts are those of the present ones. */
 mps_status mpsi_mpm_share_tidy(mps_mpm *mpm, const char *function, mps_status status);

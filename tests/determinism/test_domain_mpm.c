@@ -14,6 +14,14 @@ static void test_cone(void **state) { (void)state, compare_teams(compute, CONE, 
 static void test_plates(void **state) { (void)state, compare_teams(compute, PLATES, 80, true); }
 static void test_balls(void **state) { (void)state, compare_teams(compute, BALLS, 40, true); }
 
+/* In and out by the caller, between steps. */
+static void test_changes(void **state) {
+  (void)state;
+  compare_teams(compute_changes, SPREAD, 48, true);
+  compare_teams(compute_changes, PRESS, 32, true);
+  compare_teams(compute_changes, ROOM, 16, true);
+}
+
 /* ---- cut in two --------------------------------------------------------------------------------
  */
 
@@ -75,6 +83,10 @@ static void test_refused_memory(void **state) {
 
 static void test_refused_contact(void **state) {
   (void)state, refuse_memory(compute, PRESS, 24, 11);
+}
+
+static void test_refused_changes(void **state) {
+  (void)state, refuse_memory(compute_changes, SPREAD, 12, 13);
 }
 
 /* One after the other, what ranks do not agree upon, what fails on one of them, what is refused. */
@@ -148,14 +160,91 @@ static void test_troubles(void **state) {
   (void)state, meet_troubles(run_trouble, trouble, TROUBLES);
 }
 
+/* ---- what goes wrong while the caller puts particles in or takes them out ----------------------
+ */
+
+enum {
+  OTHER_ADDED,
+  OUTSIDE,
+  FEWER_THAN_NONE,
+  PREDICATE_FAILS,
+  EDITING,
+  NO_DENSITY,
+  NOT_THERE,
+  OTHER_LISTS,
+  TWICE,
+  CHANGES
+};
+static const trouble_case change[CHANGES] = {
+    [OTHER_ADDED] = {MPS_ERROR_ARGUMENT, "a hash of the particles to add"},
+    [OUTSIDE] = {MPS_ERROR_ARGUMENT, "outside the domain"},
+    [FEWER_THAN_NONE] = {MPS_ERROR_ARGUMENT, "rank 1: count is -3"},
+    [PREDICATE_FAILS] = {MPS_ERROR_IO, "rank 2: "},
+    [EDITING] = {MPS_ERROR_STATE, "rank 1: "},
+    [NO_DENSITY] = {MPS_ERROR_STATE, "has come since the last step and has density 0"},
+    [NOT_THERE] = {MPS_ERROR_ARGUMENT, "of 2 ids 1 are of particles of the set on any rank"},
+    [OTHER_LISTS] = {MPS_ERROR_ARGUMENT, "give all ranks the same list"},
+    [TWICE] = {MPS_ERROR_ARGUMENT, "which stands in the list before"},
+};
+
+static mps_status refuse_place(void *user, const double *x, int32_t *inside) {
+  *inside = x[1] > 1.02;
+  return *(const int32_t *)user == 2 && x[0] > 0.9 ? MPS_ERROR_IO : MPS_OK;
+}
+
+static mps_status put_badly(mps_particles *set, int what, int32_t rank) {
+  const double place[4] = {0.5, 1.2, what == OTHER_ADDED ? 0.6 + 0.1 * rank : 0.7,
+                           what == OUTSIDE ? -0.3 : 1.3};
+  const double lo[2] = {0.2, 1.0}, hi[2] = {1.0, 1.1};
+  if (what == PREDICATE_FAILS)
+    return mps_particles_fill_where(set, lo, hi, refuse_place, &rank, NULL);
+  return mps_particles_append(set, what == FEWER_THAN_NONE && rank == 1 ? -3 : 2, place);
+}
+
+static mps_status run_change(mps_context *own, mps_domain *domain, int what, int32_t rank) {
+  scene s = {.set = NULL};
+  mps_edit edit;
+  const int64_t other[3] = {1 + rank, 700 + rank, 2 * rank}, twice[3] = {17, 44, 17},
+                wrong[2] = {17, 123456};
+  mps_status status = make_scene(own, domain, SLIDE, &s);
+  TRY(mps_mpm_step(s.mpm, 2));
+  const int64_t count = mps_particles_count(s.set);
+  if (what == EDITING && rank == 1) TRY(mps_particles_edit(s.set, "density", &edit));
+  if (what == NOT_THERE)
+    TRY(mps_particles_remove(s.set, 2, wrong));
+  else if (what == OTHER_LISTS || what == TWICE)
+    TRY(mps_particles_remove(s.set, 3, what == TWICE ? twice : other));
+  else
+    TRY(put_badly(s.set, what, rank));
+  if (what != NO_DENSITY && mps_particles_count(s.set) != count) status = MPS_ERROR_INTERNAL;
+  if (what == EDITING && rank == 1 && mps_particles_abandon(s.set, &edit) != MPS_OK)
+    status = MPS_ERROR_INTERNAL;
+  TRY(mps_mpm_step(s.mpm, 1));
+  if (what != NO_DENSITY && mps_mpm_step(s.mpm, 1) != MPS_OK) status = MPS_ERROR_INTERNAL;
+  end_scene(&s);
+  return status;
+}
+
+static void test_bad_changes(void **state) {
+  (void)state, meet_troubles(run_change, change, CHANGES);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_slide),          cmocka_unit_test(test_spread),
-      cmocka_unit_test(test_ring),           cmocka_unit_test(test_room),
-      cmocka_unit_test(test_press),          cmocka_unit_test(test_cone),
-      cmocka_unit_test(test_balls),          cmocka_unit_test(test_plates),
-      cmocka_unit_test(test_cut_press),      cmocka_unit_test(test_cut_spread),
-      cmocka_unit_test(test_refused_memory), cmocka_unit_test(test_refused_contact),
-      cmocka_unit_test(test_troubles)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(test_slide),
+                                     cmocka_unit_test(test_spread),
+                                     cmocka_unit_test(test_ring),
+                                     cmocka_unit_test(test_room),
+                                     cmocka_unit_test(test_press),
+                                     cmocka_unit_test(test_cone),
+                                     cmocka_unit_test(test_balls),
+                                     cmocka_unit_test(test_plates),
+                                     cmocka_unit_test(test_changes),
+                                     cmocka_unit_test(test_cut_press),
+                                     cmocka_unit_test(test_cut_spread),
+                                     cmocka_unit_test(test_refused_memory),
+                                     cmocka_unit_test(test_refused_contact),
+                                     cmocka_unit_test(test_refused_changes),
+                                     cmocka_unit_test(test_troubles),
+                                     cmocka_unit_test(test_bad_changes)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
