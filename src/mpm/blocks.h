@@ -46,8 +46,9 @@ typedef struct mpsi_cell_block {
   bool edge, inside, cut, split, thin, apart;
   uint8_t mirrors;      /* bit k: its stencils may have nodes beyond side k, a mirror (mirror.h) */
   int32_t first_mirror; /* of these in the list */
-  bool gone;            /* a particle has passed an open side */
-  bool left;            /* a particle is more than a cell outside the block */
+  bool light; /* some block of nodes under it is: particles get back what its nodes keep */
+  bool gone;  /* a particle has passed an open side */
+  bool left;  /* a particle is more than a cell outside the block */
   int32_t first_pair, pairs;  /* bodies that it may meet: of the list of mpsi_cell_pair */
   int64_t first_fit;          /* of its particles in the list of kept fits; -1: none are kept */
   int32_t next[MPSI_CORNERS]; /* the block of cells that gives to the block of nodes to[q] after
@@ -72,6 +73,7 @@ typedef struct mpsi_node_block {
   int32_t across; /* block of nodes with the sums of particles that a thin body parts from these
                      nodes, or -1 (across.h) */
   bool thin;      /* some node is beside a thin body */
+  bool light;     /* some node's own mass is less than forces see: MPSI_LEAST_MASS */
   bool inside;    /* some node is in a body: */
   int32_t low[3], high[3];    /* they are within low to high - 1 */
   uint32_t bodies;            /* bit b: a block of cells whose tile covers it may meet body b */
@@ -125,9 +127,13 @@ static inline double mpsi_node_mass(double mass, double weight) {
   return fmax(mass, MPSI_LEAST_MASS * weight);
 }
 /* What its momentum is divided by: its own mass, unless that is smaller than the fraction. Else a
- * node of negative mass would move against its particles, and these would lose momentum by it. */
+ * node of negative mass would move against its particles. */
 static inline double mpsi_carried_mass(double mass, double weight) {
   return mass < -MPSI_LEAST_MASS * weight ? mass : mpsi_node_mass(mass, weight);
+}
+/* Its own mass, by what it has after the update and the excess. */
+static inline double mpsi_own_mass(double mass, double excess) {
+  return fmin(mass, mass / MPSI_LEAST_MASS - excess);
 }
 
 typedef struct mpsi_grid {

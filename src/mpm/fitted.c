@@ -386,6 +386,37 @@ MPSI_INLINE void find_strain(const mps_mpm *mpm, const mpsi_cell_block *cells,
   }
 }
 
+/* Momentum that a node has and its particles would not get: all is done with a mass m that is never
+ * less than MPSI_LEAST_MASS of that by weights, and they take with their own, M. */
+static void find_kept(const mps_mpm *mpm, const mpsi_node_block *nodes, int32_t g, int local,
+                      double *weight, double *kept) {
+  const double *node = mpm->grid.node[mpsi_first_node(mpm, g) + local];
+  const double *side = mpm->grid.side[mpsi_first_node(mpm, nodes->side) + local];
+  const double m = node[MPSI_MASS], own = mpsi_own_mass(m, side[MPSI_EXCESS]);
+  *weight = own + side[MPSI_EXCESS];
+  const bool moves = nodes->split && mpsi_carried_mass(own, *weight) < 0.0; /* as they do */
+  for (int c = 0; c < 3; c++)
+    kept[c] =
+        own < m ? (m - own) * (node[MPSI_VECTOR + c] - (moves ? side[MPSI_VECTOR + c] : 0.0)) : 0.0;
+}
+
+/* That momentum, back to the particles by their weights: all of it. */
+static void give_back(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
+                      int64_t particle, const support *at, const mpsi_shape_values *f, double *v) {
+  MPSI_FOR_NODES(dim, spline) {
+    int32_t g = mpsi_support_block(cells, &at->nodes, i, j, k);
+    if (f->w[n] == 0.0) continue;
+    if (is_across(f, n)) g = mpm->grid.nodes[g].across;
+    const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+    double weight, kept[3];
+    if (!nodes->light) continue;
+    find_kept(mpm, nodes, g, mpsi_support_local(&at->nodes, i, j, k), &weight, kept);
+    for (int c = 0; c < 3 && weight > 0.0; c++) kept[c] *= f->w[n] / weight;
+    if (is_folded(at, i, j, k)) reflect(mpm, cells, at, i, j, k, kept, mpm->p.m[particle]);
+    for (int c = 0; c < dim && weight > 0.0; c++) v[MPSI_VECTOR + c] += kept[c];
+  }
+}
+
 MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                              int dim, int spline, int64_t particle, mpsi_fitted *out) {
   support at;
@@ -405,6 +436,7 @@ MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const m
     if (dim == 3) moment[2] += at.at.s[2][k] * share;
   }
   mpsi_put(out->v, sum);
+  if (cells->light) give_back(mpm, cells, dim, spline, particle, &at, &f, out->v);
   for (int d = 0; d < dim; d++) mpsi_put(out->slope[d], by[d]), mpsi_put(out->derivative[d], by[d]);
   if (!bodies && !mpm->standard)
     find_strain(mpm, cells, worker, dim, spline, &at, &f, out->derivative);

@@ -301,7 +301,9 @@ MPSI_INLINE void gather_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const 
     find_differences(dim, spline, first, tile, &difference);
     const uint32_t state = cells->cut ? mpsi_support_state(worker, dim, spline, first) : 0;
     const int axis = state ? mpsi_wall_axis(mpm, cells, dim, spline, state, first) : -1;
-    if (!state)
+    if (cells->light)
+      for (int q = k; q < end; q++) gather_fitted(mpm, cells, worker, begin + q, out, q);
+    else if (!state)
       for (int q = k; q < end; q += MPSI_LANES)
         gather_lanes(mpm, dim, spline, &places, q, tile, &difference, -1, out, q);
     else if (axis >= 0)
@@ -340,18 +342,29 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cell_block *cells, const mpsi_work
   speed_chunk(mpm, cells, dim, begin, n);
 }
 
+/* Whether some node under the block keeps momentum that its particles are to have: blocks.h. */
+static bool is_light(const mps_mpm *mpm, const mpsi_cell_block *cells) {
+  bool any = false;
+  for (int q = 0; q < 1 << mpm->dim; q++) {
+    const mpsi_node_block *nodes = &mpm->grid.nodes[cells->to[q]];
+    any = any || nodes->light || (nodes->across >= 0 && mpm->grid.nodes[nodes->across].light);
+  }
+  return any;
+}
+
 MPSI_INLINE void g2p_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {
   mpsi_cell_block *cells = &mpm->grid.cells[b];
   mpsi_worker *worker = &mpm->grid.workers[number];
   mps_material_block law;
   mpsi_mpm_begin_block(&law);
   cells->left = cells->gone = cells->lost = false;
+  cells->light = is_light(mpm, cells);
   cells->bad = -1;
   cells->speed = 0.0;
   gather_tile(mpm, cells, false, worker->tile);
   if (cells->thin) gather_tile(mpm, cells, true, worker->across_tile);
   if (cells->mirrors) mpsi_mpm_unfold(mpm, cells, worker);
-  if (cells->cut) mpsi_mpm_find_states(mpm, cells, worker);
+  if (cells->cut || cells->light) mpsi_mpm_find_states(mpm, cells, worker);
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int n = cells->end - k < MPSI_CHUNK ? (int)(cells->end - k) : MPSI_CHUNK;
     g2p_chunk(mpm, cells, worker, geometry, spline, k, n, &law);

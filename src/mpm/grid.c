@@ -24,7 +24,9 @@ static void update_free(mps_mpm *mpm, mpsi_node *node) {
   }
 }
 
-static void update_cut(mps_mpm *mpm, bool split, mpsi_node *node, mpsi_node *side) {
+/* Returns whether the own mass of some node is less than the one that forces see. */
+static bool update_cut(mps_mpm *mpm, bool split, mpsi_node *node, mpsi_node *side) {
+  bool light = false;
   for (int k = 0; k < mpm->grid.block_nodes; k++) {
     const double weight = node[k][MPSI_MASS] + side[k][MPSI_EXCESS];
     if (!(weight > 0.0)) {
@@ -35,6 +37,7 @@ static void update_cut(mps_mpm *mpm, bool split, mpsi_node *node, mpsi_node *sid
     const double own = node[k][MPSI_MASS], m = mpsi_node_mass(own, weight);
     const double carried = mpm->by_weight ? weight : split ? mpsi_carried_mass(own, weight) : m;
     node[k][MPSI_MASS] = m;
+    light = light || own < m;
     for (int c = MPSI_VECTOR; c < 4; c++) {
       const double before = node[k][c] / carried;
       node[k][c] = before;
@@ -42,15 +45,18 @@ static void update_cut(mps_mpm *mpm, bool split, mpsi_node *node, mpsi_node *sid
       side[k][c] = before;
     }
   }
+  return light && !mpm->by_weight && !mpm->standard;
 }
 
 void mpsi_mpm_update_nodes(mps_mpm *mpm, int64_t g, int32_t worker) {
-  const mpsi_node_block *nodes = &mpm->grid.nodes[g];
+  mpsi_node_block *nodes = &mpm->grid.nodes[g];
   mpsi_node *node = mpm->grid.node + mpsi_first_node(mpm, g);
+  nodes->light = false;
   if (nodes->side < 0)
     update_free(mpm, node);
   else
-    update_cut(mpm, nodes->split, node, mpm->grid.side + mpsi_first_node(mpm, nodes->side));
+    nodes->light =
+        update_cut(mpm, nodes->split, node, mpm->grid.side + mpsi_first_node(mpm, nodes->side));
   if (nodes->pairs > 0) mpsi_mpm_apply_contact(mpm, g);
   if (nodes->across >= 0) mpsi_mpm_update_nodes(mpm, nodes->across, worker);
 }

@@ -543,33 +543,18 @@ static mpm_scene between_discs(const double *at, const double *angle, const doub
   return s;
 }
 
-/* What the particle's velocity becomes, as a factor: at a node whose mass phi m is less than 0.02 w
- * m in size, the momentum phi m v meets a mass of 0.02 w m, and phi times the quotient comes back.
- */
-static double factor_of(mps_mpm *mpm, bool *small) {
-  const mpsi_cell_block *cells = &mpm->grid.cells[0];
-  mpsi_stencil at;
-  mpsi_shape_values f;
-  double factor = 0.0;
-  *small = false;
-  mpsi_mpm_find_states(mpm, cells, &mpm->grid.workers[0]);
-  mpm->kernels->fit(mpm, cells, &mpm->grid.workers[0], 0, &at, &f);
-  for (int n = 0; n < MPSI_STENCIL; n++) {
-    if (f.w[n] == 0.0) continue;
-    *small = *small || fabs(f.phi[n]) < 0.02 * f.w[n];
-    const double least = 0.02 * f.w[n], mass = f.phi[n] < -least ? f.phi[n] : fmax(f.phi[n], least);
-    factor += f.phi[n] * f.phi[n] / mass;
-  }
-  return factor;
+static bool has_light_nodes(const mps_mpm *mpm) {
+  bool any = false;
+  for (int64_t g = 0; g < mpm->grid.node_count; g++) any = any || mpm->grid.nodes[g].light;
+  return any;
 }
 
-/* Momentum in a gap of 0.6 cells between two bodies: kept, also by nodes of negative mass, but
- * where the shape function gives a node less than 0.02 of its mass by weights, either way. The
- * change is what that bound explains, and small. */
-static void small_masses_cost_momentum(void **state) {
+/* Momentum in a gap of 0.6 cells between two bodies: kept, also by nodes of negative mass and by
+ * those to which the shape functions give hardly any. */
+static void small_masses_keep_momentum(void **state) {
   (void)state;
-  int small_cases = 0, done = 0;
-  double worst = 0.0, unexplained = 0.0;
+  int light = 0;
+  double worst = 0.0;
   for (int k = 0; k < 1000; k++) {
     const double at[] = {uniform(0.5, 0.6), uniform(0.5, 0.6)};
     const double first = uniform(0.0, 6.2831853), apart = uniform(2.4, 3.14159);
@@ -577,20 +562,88 @@ static void small_masses_cost_momentum(void **state) {
     mpm_scene s = between_discs(at, angle, v);
     mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
     mps_view velocity = mpm_scene_view(&s, "velocity");
-    bool small;
-    const double factor = factor_of(s.mpm, &small);
-    const double got = *mps_view_f64(&velocity, 0, 0) / v[0];
-    unexplained = fmax(unexplained, fabs(got - factor));
-    worst = fmax(worst, fabs(got - 1.0));
-    small_cases += small;
-    done++;
-    if (!small) mps_assert_near(got, 1.0, 1e-11);
+    for (int c = 0; c < 2; c++) worst = fmax(worst, fabs(*mps_view_f64(&velocity, 0, c) - v[c]));
+    light += has_light_nodes(s.mpm);
     mpm_scene_end(&s);
   }
-  print_message("momentum between two discs: kept to 1e-11 in %d of %d cases; in the others it "
-                "changes by at most %.2g, all but %.1g of which is the bound of small masses\n",
-                done - small_cases, done, worst, unexplained);
-  assert_true(unexplained < 1e-9 && worst < 0.01);
+  print_message(
+      "one particle between two discs: velocity kept to %.2g, light nodes in %d of 1000\n", worst,
+      light);
+  assert_true(worst <= 1e-13 && light > 10);
+}
+
+/* A few particles at random between two free bodies, each with a velocity of its own, stress and
+ * weight; `steps` of them, with contact. What the weight has given is known, the rest is kept. */
+enum { FEW = 3 };
+static int few_between_bodies(int dim, int spline, double *worst) {
+  mpm_scene s = mpm_scene_begin_in(context, dim, 0.05, 0.0, 0.0, 1e5);
+  const double zero[9] = {0.0}, r = 0.25, first = uniform(0.0, 6.2831853);
+  const double angle[] = {first, first + uniform(2.4, 3.14159)}; /* to the bodies */
+  double middle[3] = {0.0}, total = 0.0;
+  int light = 0;
+  for (int c = 0; c < dim; c++) middle[c] = uniform(0.5, 0.6);
+  for (int k = 0; k < FEW; k++) {
+    double x[3] = {0.0};
+    for (int c = 0; c < dim; c++) x[c] = middle[c] + uniform(-0.01, 0.01);
+    mps_assert_ok(context, mps_particles_append(s.particles, 1, x));
+  }
+  mpm_scene_affine(&s, zero, zero);
+  mps_edit v = mpm_scene_edit(&s, "velocity");
+  for (int k = 0; k < FEW; k++)
+    for (int c = 0; c < dim; c++) *mps_edit_f64(&v, k, c) = uniform(-0.1, 0.1);
+  mpm_scene_commit(&s, &v);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.geometry = dim == 3 ? MPS_MPM_SPACE : MPS_MPM_PLANE_STRAIN;
+  def.spline = spline, def.cell = 0.1, def.dt = 5e-4, def.gravity[1] = -1.0;
+  mpm_scene_solve(&s, &def);
+  mps_body *bodies[2] = {NULL};
+  for (int b = 0; b < 2; b++) {
+    mps_body_def ball = mps_body_defaults();
+    ball.motion = MPS_BODY_MOTION_FREE, ball.mass = 10.0;
+    for (int c = dim == 3 ? 0 : 2; c < 3; c++) ball.inertia[c] = 0.2;
+    for (int c = 0; c < dim; c++) ball.position[c] = middle[c];
+    ball.position[0] += (r + 0.03) * cos(angle[b]);
+    ball.position[1] += (r + 0.03) * sin(angle[b]);
+    mps_assert_ok(context, dim == 3 ? mps_body_create_sphere(context, &ball, r, &bodies[b])
+                                    : mps_body_create_disc(context, &ball, r, &bodies[b]));
+    mpm_scene_contact(&s, bodies[b], 0.3);
+  }
+  for (int k = 0; k < 10; k++) {
+    const double start = mps_mpm_time(s.mpm);
+    double lost[3] = {0.0};
+    for (int side = 1; side >= -1; side -= 2) { /* before, after */
+      const mps_totals all = mpm_scene_totals(&s);
+      total = all.mass;
+      for (int c = 0; c < dim; c++) lost[c] += side * all.linear[c];
+      for (int b = 0; b < 2; b++) {
+        mps_body_totals now;
+        mps_assert_ok(context, mps_body_get_totals(bodies[b], &now));
+        for (int c = 0; c < dim; c++) lost[c] += side * now.linear[c];
+      }
+      if (side > 0) mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+    }
+    lost[1] += total * def.gravity[1] * (mps_mpm_time(s.mpm) - start);
+    *worst = fmax(*worst, length(lost) / total);
+    light += has_light_nodes(s.mpm);
+  }
+  for (int b = 0; b < 2; b++) mps_body_destroy(&bodies[b]);
+  mpm_scene_end(&s);
+  return light;
+}
+
+static void few_particles_keep_momentum(void **state) {
+  (void)state;
+  for (int variant = 0; variant < 4; variant++) {
+    const int dim = 2 + variant / 2, spline = 2 + variant % 2;
+    double worst = 0.0;
+    int light = 0;
+    for (int k = 0; k < 40; k++) light += few_between_bodies(dim, spline, &worst);
+    print_message(
+        "%dD, spline %d, three particles between two free bodies: light nodes in %d of 400 "
+        "steps, velocity of all lost %.2g m/s\n",
+        dim, spline, light, worst);
+    assert_true((light > 4 || spline == 2) && worst <= 1e-13);
+  }
 }
 
 int main(void) {
@@ -601,6 +654,7 @@ int main(void) {
                                      cmocka_unit_test(contact_keeps_momentum),
                                      cmocka_unit_test(contact_in_space_keeps_momentum),
                                      cmocka_unit_test(thin_wall_lets_nothing_pass),
-                                     cmocka_unit_test(small_masses_cost_momentum)};
+                                     cmocka_unit_test(small_masses_keep_momentum),
+                                     cmocka_unit_test(few_particles_keep_momentum)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
