@@ -20,6 +20,7 @@ typedef struct settings {
   double aspect, width, h, phi, psi, cohesion, bed_friction, young, poisson, density, duration;
   int64_t ppc, threads;
   int cone;
+  int spline; /* degree of the weights less 2 */
   bool sweep, compare;
   const char *out;
 } settings;
@@ -105,6 +106,7 @@ static mps_status build_case(simulation *sim, const column_case *c) {
   law.cohesion = c->cohesion;
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
+  def.spline = s->spline + 2;
   def.lower[0] = def.lower[1] = 0.0;
   if (!isnan(s->bed_friction)) def.lower[1] = -4.0 * s->h; /* room below the rigid bed */
   def.gravity[1] = -G;
@@ -425,6 +427,7 @@ int main(int argc, char **argv) {
       OPTION_HEADING("Grid"),
       OPTION_NUMBER("h", "m", OPTION_LENGTH, &s->h, "grid spacing (default width/20)"),
       OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
+      OPTION_CHOICE("spline", "2|3", &s->spline, "degree of the weights"),
       OPTION_HEADING("Run"),
       OPTION_NUMBER("duration", "(H/g)^1/2", OPTION_FROM_TO(1e-3, 1e6), &s->duration,
                     "at most, if it does not come to rest before"),

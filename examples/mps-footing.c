@@ -22,6 +22,7 @@ int main(int argc, char **argv) {
                                  .gravity = NAN,
                                  .k = 2e6,
                                  .settlement = NAN,
+                                 .spline = 1,
                                  .ppc = 4,
                                  .out = "out/footing"}};
   settings *s = &sim.s;
@@ -39,7 +40,7 @@ int main(int argc, char **argv) {
       OPTION_CHOICE("cone", "planestrain|circumscribed|inscribed|extension", &s->cone,
                     "where the cone agrees with Mohr and Coulomb; Drucker-Prager"),
       OPTION_NUMBER("young", "kPa", OPTION_MODULUS, &s->young, "Young's modulus E"),
-      OPTION_NUMBER("poisson", "1", OPTION_FROM_TO(0.0, 0.49), &s->poisson, "Poisson's ratio"),
+      OPTION_NUMBER("poisson", "1", OPTION_FROM_TO(0.0, 0.499), &s->poisson, "Poisson's ratio"),
       OPTION_NUMBER("density", "kg/m3", OPTION_DENSITY, &s->density, "rho"),
       OPTION_NUMBER("gravity", "m/s2", OPTION_GRAVITY, &s->gravity,
                     "g; default 0, Drucker-Prager 9.81"),
@@ -56,6 +57,10 @@ int main(int argc, char **argv) {
       OPTION_HEADING("Grid"),
       OPTION_NUMBER("h", "m", OPTION_LENGTH, &s->h, "grid spacing"),
       OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
+      OPTION_CHOICE("spline", "2|3", &s->spline, "degree of the weights"),
+      OPTION_CHOICE("volumetric", "point|cell|nodes", &s->volumetric,
+                    "change of volume: each particle's own, F-bar by cell, or means by nodes, for "
+                    "ground that hardly changes its volume"),
       OPTION_HEADING("Run"),
       OPTION_FLAG("quasi-static", &s->settled,
                   "the ground comes to rest after each of 30 parts of the path: less inertia in "

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#define PI 3.14159265358979323846
 #define SIDE 0.1   /* m */
 #define SPEED 5e-4 /* m/s */
 #define STROKE 1.0 /* s: each plate's motion */
@@ -19,8 +20,9 @@
 enum { BOTTOM, RIGHT, TOP, LEFT, PLATES, SAMPLES = 400 };
 
 typedef struct settings {
-  double h, k, offset, mu, young, poisson, density;
+  double h, k, offset, turn, mu, young, poisson, density;
   int contact; /* mps_contact_method */
+  int spline;  /* degree of the weights less 2 */
   int64_t ppc, threads;
   const char *out;
 } settings;
@@ -47,18 +49,38 @@ static mps_status stroke(mps_context *context, double start, mps_signal **out) {
   return mps_signal_table(context, MPS_SIGNAL_VELOCITY, 4, t, v, out);
 }
 
+/* A vector of the upright block as it lies in the grid. */
+static void turn(const settings *s, const double *upright, double *out) {
+  const double a = s->turn * PI / 180.0;
+  out[0] = cos(a) * upright[0] - sin(a) * upright[1];
+  out[1] = sin(a) * upright[0] + cos(a) * upright[1];
+}
+
+static mps_status drive(const settings *s, mps_body *plate, const double *upright,
+                        mps_signal *signal) {
+  double along[2];
+  mps_status status = MPS_OK;
+  turn(s, upright, along);
+  for (int c = 0; c < 2 && status == MPS_OK; c++)
+    if (along[c] != 0.0) status = mps_body_drive(plate, c, signal, along[c]);
+  return status;
+}
+
 static mps_status make_plates(mps_context *context, simulation *sim) {
   static const double normal[PLATES][2] = {{0.0, 1.0}, {-1.0, 0.0}, {0.0, -1.0}, {1.0, 0.0}};
+  static const double x_axis[2] = {1.0, 0.0};
   static const double at[PLATES][2] = {{0.0, 0.0}, {SIDE, 0.0}, {0.0, SIDE}, {0.0, 0.0}};
   mps_signal *down = NULL, *aside = NULL;
   mps_status status = stroke(context, 0.0, &down);
   if (status == MPS_OK) status = stroke(context, STROKE, &aside);
   for (int p = 0; p < PLATES && status == MPS_OK; p++) {
     mps_body_def def = mps_body_defaults();
-    def.position[0] = at[p][0], def.position[1] = at[p][1];
-    status = mps_body_create_half_plane(context, &def, normal[p], &sim->m.body[p]);
-    if (status == MPS_OK && p == TOP) status = mps_body_drive(sim->m.body[p], 1, down, -1.0);
-    if (status == MPS_OK && p == BOTTOM) status = mps_body_drive(sim->m.body[p], 0, aside, 1.0);
+    double outwards[2];
+    turn(&sim->s, at[p], def.position);
+    turn(&sim->s, normal[p], outwards);
+    status = mps_body_create_half_plane(context, &def, outwards, &sim->m.body[p]);
+    if (status == MPS_OK && p == TOP) status = drive(&sim->s, sim->m.body[p], normal[p], down);
+    if (status == MPS_OK && p == BOTTOM) status = drive(&sim->s, sim->m.body[p], x_axis, aside);
   }
   mps_signal_destroy(&down);
   mps_signal_destroy(&aside);
@@ -77,20 +99,32 @@ static mps_status add_contacts(const settings *s, simulation *sim) {
   return status;
 }
 
+/* Rows along the plates, of whole particles a side: as near to h / sqrt(ppc) as can be. */
+static mps_status fill(mps_context *context, const settings *s, mps_particles **out) {
+  const int count = (int)fmax(1.0, nearbyint(SIDE * sqrt((double)s->ppc) / s->h));
+  mps_particles_def set = mps_particles_defaults();
+  set.spacing = SIDE / count;
+  mps_status status = mps_particles_create(context, &set, out);
+  for (int row = 0; row < count; row++)
+    for (int k = 0; k < count && status == MPS_OK; k++) {
+      const double upright[2] = {(k + 0.5) * set.spacing, (row + 0.5) * set.spacing};
+      double x[2];
+      turn(s, upright, x);
+      status = mps_particles_append(*out, 1, x);
+    }
+  return status;
+}
+
 static mps_status build(mps_context *context, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
-  const double lo[2] = {0.0, 0.0}, hi[2] = {SIDE, SIDE};
-  mps_particles_def set = mps_particles_defaults();
-  /* whole particles a side: as near to h / sqrt(ppc) as can be */
-  set.spacing = SIDE / fmax(1.0, nearbyint(SIDE * sqrt((double)s->ppc) / s->h));
-  mps_status status = mps_particles_create(context, &set, &sim->m.particles);
-  if (status == MPS_OK) status = mps_particles_fill_box(sim->m.particles, lo, hi, NULL);
+  mps_status status = fill(context, s, &sim->m.particles);
   if (status == MPS_OK) status = mps_particles_set(sim->m.particles, "density", 0, s->density);
   if (status == MPS_OK)
     status = mps_material_linear_elastic(context, s->young * 1e3, s->poisson, &sim->m.material);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
+  def.spline = s->spline + 2;
   def.origin[0] = def.origin[1] = s->offset * s->h;
   if (status == MPS_OK) status = make_plates(context, sim);
   status = mpm_model_create(&sim->m, context, status, &def);
@@ -107,8 +141,11 @@ static mps_status sample(simulation *sim, mps_reaction *last, double *last_time)
   if (status != MPS_OK) return status;
   const double t = mps_mpm_time(sim->m.mpm), span = t - *last_time;
   sim->t[sim->rows] = t;
-  sim->fx[sim->rows] = -(now.impulse[0] - last->impulse[0]) / span;
-  sim->fy[sim->rows] = -(now.impulse[1] - last->impulse[1]) / span;
+  const double force[2] = {-(now.impulse[0] - last->impulse[0]) / span,
+                           -(now.impulse[1] - last->impulse[1]) / span};
+  const double a = sim->s.turn * PI / 180.0;
+  sim->fx[sim->rows] = cos(a) * force[0] + sin(a) * force[1];
+  sim->fy[sim->rows] = cos(a) * force[1] - sin(a) * force[0];
   sim->rows++;
   sim->m.samples = sim->rows;
   *last = now;
@@ -201,6 +238,7 @@ int main(int argc, char **argv) {
                                  .poisson = 0.3,
                                  .density = 1000.0,
                                  .ppc = 4,
+                                 .spline = 1,
                                  .out = "out/sliding-box"}};
   settings *s = &sim.s;
   option table[] = {
@@ -216,8 +254,11 @@ int main(int argc, char **argv) {
       OPTION_HEADING("Grid"),
       OPTION_NUMBER("h", "m", OPTION_FROM_TO(1e-4, 0.1), &s->h, "grid spacing"),
       OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
+      OPTION_CHOICE("spline", "2|3", &s->spline, "degree of the weights"),
       OPTION_NUMBER("offset", "h", OPTION_FROM_TO(-1.0, 1.0), &s->offset,
                     "where the grid lies: its shift along x and y, in cells"),
+      OPTION_NUMBER("turn", "degrees", OPTION_FROM_TO(-180.0, 180.0), &s->turn,
+                    "of block and plates against the grid; forces are along the plates"),
       OPTION_HEADING("Run"),
       OPTION_OUT(&s->out),
       OPTION_THREADS(&s->threads),

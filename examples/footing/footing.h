@@ -16,7 +16,8 @@ typedef struct settings {
   double phi, psi;        /* degrees */
   double cohesion, young; /* kPa */
   double poisson, density, gravity;
-  int contact;                                   /* mps_contact_method */
+  int contact;            /* mps_contact_method */
+  int spline, volumetric; /* degree of the weights less 2; mps_mpm_volumetric */
   double h, mu, rate, half_width, k, settlement; /* m, 1, mm/s, m, kN/m, mm */
   int64_t ppc, threads;
   bool settled; /* --quasi-static */

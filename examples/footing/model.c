@@ -109,6 +109,8 @@ mps_status footing_build(mps_context *context, void *user) {
   if (status == MPS_OK) status = make_material(context, s, &sim->m.material);
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
+  def.spline = s->spline + 2;
+  def.volumetric = s->volumetric;
   def.lower[0] = def.lower[1] = 0.0;
   def.upper[0] = s->width;
   def.gravity[1] = -s->gravity;
