@@ -26,6 +26,7 @@ mps_status mpsi_mpm_share_any(mps_mpm *mpm, const char *function, bool *any) {
 
 mps_status mpsi_mpm_share_agree(mps_mpm *mpm, const char *function, mps_status status) {
   double found[3] = {mpm->run.edited, mpm->run.stale, mpm->run.lost};
+  mpm->share->ready = false;
   status = mpsi_domain_settle_max(mpm->share->domain, function, status, 3, found);
   if (status != MPS_OK) return status;
   mpm->run.edited = found[0] > 0.0;

@@ -1,12 +1,5 @@
 /* particles.c - the particles of the set as the solver has them: where their columns lie, what it
- * keeps for each, the state in which they begin, and how they come and go between steps.
- *
- *   caller                      set                       solver
- *   mps_particles_append, fill  new ones, with places --> insert: inside the domain? volume, law
- *   edit, commit                density, volume       --> commit: mass of those that changed
- *   mps_particles_remove        closes the gaps       --> renew: columns, number
- *   step                                              --> all have a mass? sort, blocks, limit
- *
+ * keeps for each, the state in which they begin, and what follows where the caller writes a field.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "particles.h"
 
@@ -81,8 +74,8 @@ bool mpsi_mpm_shrink_room(mps_mpm *mpm, int64_t particles) {
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
-static mps_status check_places(const mps_mpm *mpm, const char *function, int64_t first,
-                               int64_t end) {
+mps_status mpsi_mpm_check_places(const mps_mpm *mpm, const char *function, int64_t first,
+                                 int64_t end) {
   const int64_t *id = mpsi_particles_integers(mpm->particles, "id");
   for (int64_t k = first; k < end; k++)
     for (int c = 0; c < mpm->dim; c++) {
@@ -113,12 +106,12 @@ mps_status mpsi_mpm_check_start(const mps_mpm *mpm, const char *function) {
                            "'%s' of particle %lld is %g, must be finite", names[f],
                            (long long)mpsi_particles_integers(mpm->particles, "id")[k], value[k]);
     }
-  return check_places(mpm, function, 0, mpm->p.count);
+  return mpsi_mpm_check_places(mpm, function, 0, mpm->p.count);
 }
 
 mps_status mpsi_mpm_check_lost(mps_mpm *mpm, const char *function) {
   if (!mpm->run.lost) return MPS_OK;
-  if (check_places(mpm, function, 0, mpm->p.count) == MPS_OK) {
+  if (mpsi_mpm_check_places(mpm, function, 0, mpm->p.count) == MPS_OK) {
     mpm->run.lost = false;
     mpm->run.edited = true;
     return MPS_OK;
@@ -213,7 +206,7 @@ mps_status mpsi_mpm_note_edit(void *self, const char *function, const char *fiel
   const bool moved = strcmp(field, "position") == 0;
   mps_status status = MPS_OK;
   if (read_by_steps(field)) return MPS_OK;
-  if (moved) status = check_places(mpm, function, 0, mpm->p.count);
+  if (moved) status = mpsi_mpm_check_places(mpm, function, 0, mpm->p.count);
   if (status == MPS_OK && former) status = renew_masses(mpm, function, field, former);
   if (status != MPS_OK) return status;
   mpm->run.edited = true;
@@ -234,47 +227,4 @@ mps_status mpsi_mpm_check_masses(const mps_mpm *mpm, const char *function) {
     return MPS_ERROR_STATE;
   }
   return MPS_OK;
-}
-
-/* ---- coming and going ------------------------------------------------------------------------ */
-
-static mps_status take_in(mps_mpm *mpm, const char *function, int64_t first, int64_t count) {
-  mps_status status = mpsi_mpm_usable(mpm, function);
-  if (status != MPS_OK) return status;
-  if (first + count > MPSI_MPM_MOST_PARTICLES)
-    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                     "%lld particles to add to %lld, a WLS-MPM solver has at most %d",
-                     (long long)count, (long long)first, MPSI_MPM_MOST_PARTICLES);
-  if (!mpsi_mpm_make_room(mpm, first + count))
-    return mpsi_fail_memory(mpm->context, function,
-                            (size_t)(first + count) * 2 * sizeof *mpm->grid.radix);
-  mpsi_mpm_bind(mpm);
-  status = check_places(mpm, function, first, first + count);
-  for (int32_t b = 0; b < mpm->contact.bodies && status == MPS_OK; b++)
-    status = mpsi_mpm_check_inside(mpm, function, mpm->contact.handle[b], first);
-  for (int64_t k = first; k < first + count && status == MPS_OK; k++) {
-    mpm->p.V[k] = mpsi_mpm_lattice_volume(mpm, k);
-    mpsi_mpm_begin_law(mpm, &mpm->laws.law[0], k);
-  }
-  return status;
-}
-
-mps_status mpsi_mpm_insert(void *self, const char *function, int64_t first, int64_t count) {
-  mps_mpm *mpm = self;
-  const mps_status status = take_in(mpm, function, first, count);
-  return mpm->share ? mpsi_mpm_share_keep_added(mpm, function, status, first) : status;
-}
-
-mps_status mpsi_mpm_remove(void *self, const char *function, int64_t count, const int64_t *ids) {
-  (void)count, (void)ids; /* lists of ids pass over those that are no more */
-  return mpsi_mpm_share_settle(self, function, mpsi_mpm_usable(self, function));
-}
-
-void mpsi_mpm_renew(void *self) {
-  mps_mpm *mpm = self;
-  const mpsi_grid *grid = &mpm->grid;
-  const int64_t sorted = grid->cell_count > 0 ? grid->cells[grid->cell_count - 1].end : 0;
-  mpsi_mpm_bind(mpm);
-  if (mpm->p.count == sorted && !mpm->run.edited) return; /* another holder has refused */
-  mpm->run.edited = mpm->run.stale = true;
 }

@@ -16,6 +16,9 @@ bool mpsi_mpm_make_room(void *mpm, int64_t particles);
 bool mpsi_mpm_shrink_room(mps_mpm *mpm, int64_t particles);
 bool mpsi_mpm_force_room(mps_mpm *mpm, int64_t particles);
 
+/* Places inside the domain, of particles [first, end). */
+mps_status mpsi_mpm_check_places(const mps_mpm *mpm, const char *function, int64_t first,
+                                 int64_t end);
 /* Fields are finite and places inside the domain; density, volume and volume ratio are positive;
  * every particle has a mass. */
 mps_status mpsi_mpm_check_start(const mps_mpm *mpm, const char *function);
@@ -38,7 +41,7 @@ mps_status mpsi_mpm_clear_bodies(mps_mpm *mpm, const char *function, mps_status 
 void mpsi_mpm_let_go(mps_mpm *mpm);
 mps_status mpsi_mpm_clear_body(mps_mpm *mpm, const char *function, mps_contact *contact);
 
-/* As the holder of the set: see mpsi_holder. */
+/* As the holder of the set: see mpsi_holder; coming.c from the third on. */
 bool mpsi_mpm_compares(const void *mpm, const char *field);
 mps_status mpsi_mpm_note_edit(void *mpm, const char *function, const char *field,
                               const double *former);

@@ -24,6 +24,7 @@ typedef struct mpsi_share {
   mps_domain *domain;
   mpsi_halo *halo;         /* of tiles; NULL: none yet */
   bool outdated;           /* the ghosts are not those of the present blocks */
+  bool ready;              /* all ranks were for the last step, and nobody has written since */
   int64_t borders, ghosts; /* own blocks that others have copies of; copies here */
   int32_t *border;         /* numbers of the blocks of cells */
   int32_t *order;       /* all of them, colour by colour: first those that no ghost goes before, */
@@ -96,6 +97,9 @@ mps_status mpsi_mpm_share_parcels(mps_mpm *mpm, const char *function);
 /* tiles.c: corners of cells with particles (pairs.h), of ghosts too: while bodies are looked for.
  */
 mps_status mpsi_mpm_share_reached(mps_mpm *mpm, const char *function, bool known);
+/* tiles.c: whether the step to be made needs what the last one needed, so that nothing of it can
+ * fail: then the ranks need not ask one another. Not collective: all know the same. */
+bool mpsi_mpm_share_goes_on(const mps_mpm *mpm);
 /* tiles.c: before a step, all that can fail has been done: the worst of all ranks. */
 mps_status mpsi_mpm_share_ready(mps_mpm *mpm, const char *function, mps_status status);
 /* tiles.c: sums the border into tiles and sends them; what has come is there (in a pass). */

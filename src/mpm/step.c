@@ -177,9 +177,10 @@ static mps_status move(mps_mpm *mpm, const char *function, double dt, mps_status
 }
 
 mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
+  const bool goes_on = mpm->share && mpsi_mpm_share_goes_on(mpm);
   mps_status status = prepare(mpm, function);
   if (status == MPS_OK) status = mpsi_mpm_prepare_undo(mpm, function);
-  if (mpm->share) status = mpsi_mpm_share_ready(mpm, function, status);
+  if (mpm->share && !goes_on) status = mpsi_mpm_share_ready(mpm, function, status);
   if (status != MPS_OK) return status;
   mpm->run.dt = dt;
   warn_about_step(mpm, dt);

@@ -31,6 +31,13 @@ mps_status mpsi_mpm_share_parcels(mps_mpm *mpm, const char *function) {
                                  (size_t)((share->borders + share->ghosts) * parcel));
 }
 
+/* What a tile has follows from bodies, boundaries and blocks, and so does the room of a step. */
+bool mpsi_mpm_share_goes_on(const mps_mpm *mpm) {
+  return mpm->share->ready && !mpm->run.stale && !mpm->run.edited && !mpm->share->outdated &&
+         !mpm->boundaries.outdated && mpm->contact.bodies == 0 && !mpm->settling.on &&
+         !mpsi_mpm_absorbs(mpm);
+}
+
 mps_status mpsi_mpm_share_ready(mps_mpm *mpm, const char *function, mps_status status) {
   mpsi_share *share = mpm->share;
   enum { APART, THIN, SPRINGS, FOUND };
@@ -45,6 +52,7 @@ mps_status mpsi_mpm_share_ready(mps_mpm *mpm, const char *function, mps_status s
     found[SPRINGS] = fmax(found[SPRINGS], springs);
   }
   status = mpsi_domain_settle_max(share->domain, function, status, FOUND, found);
+  share->ready = status == MPS_OK;
   share->apart = found[APART] > 0.0;
   share->thin = found[THIN] > 0.0;
   share->springs = (int32_t)found[SPRINGS];
