@@ -71,10 +71,9 @@ static inline bool mpsi_contact_same_side(const double *normal, const double *s)
 
 /* A node and a body: sums over the particles in contact. */
 typedef struct mpsi_contact_node {
-  double normal[3]; /* of the surface at a node inside the body, else 0 */
-  double mass;      /* W: sum phi m of the particles in contact, Nakamura (30) */
-  double slip[3];   /* S: sum phi m slip; then the tangential force over W */
-  double force[3];  /* N, normal force fn, Nakamura (29) */
+  double mass;     /* W: sum phi m of the particles in contact, Nakamura (30) */
+  double slip[3];  /* S: sum phi m slip; then the tangential force over W */
+  double force[3]; /* N, normal force fn, Nakamura (29) */
 } mpsi_contact_node;
 
 /* Tangential force (N) of the body on the node at x (m) of mass m (kg), whose velocity is `before`

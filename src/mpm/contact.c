@@ -12,9 +12,9 @@ void mpsi_mpm_apply_contact(mps_mpm *mpm, int64_t g) {
   const mpsi_node_block *nodes = &mpm->grid.nodes[g];
   mpsi_node *node = mpm->grid.node + mpsi_first_node(mpm, g);
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
-    const mpsi_contact_node *at = mpm->contact.node + (int64_t)t * mpm->grid.block_nodes;
     mpm->contact.node_pair[t].mass = 0.0;
     if (mpsi_by_impulses(mpm->contact.handle[mpm->contact.node_pair[t].body])) continue;
+    const mpsi_contact_node *at = mpm->contact.node + (int64_t)t * mpm->grid.block_nodes;
     for (int k = 0; k < mpm->grid.block_nodes; k++) {
       const double m = node[k][MPSI_MASS];
       if (!(m > 0.0) || at[k].mass == 0.0) continue;
@@ -31,9 +31,9 @@ void mpsi_mpm_apply_friction(mps_mpm *mpm, int64_t g) {
   mpsi_node *side = nodes->side >= 0 ? mpm->grid.side + mpsi_first_node(mpm, nodes->side) : NULL;
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
     const int32_t b = mpm->contact.node_pair[t].body;
-    mpsi_contact_node *at = mpm->contact.node + (int64_t)t * mpm->grid.block_nodes;
     if (mpm->contact.handle[b]->def.friction == 0.0 || mpm->contact.node_pair[t].mass == 0.0)
       continue;
+    mpsi_contact_node *at = mpm->contact.node + (int64_t)t * mpm->grid.block_nodes;
     for (int k = 0; k < mpm->grid.block_nodes; k++) {
       const double m = node[k][MPSI_MASS];
       double x[3], f[3];

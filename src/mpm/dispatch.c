@@ -17,12 +17,18 @@
                               mpsi_foot_weights *out);                                             \
   double mpsi_mpm_fastest_v##level(const mps_mpm *mpm, int64_t begin, int64_t end);                \
   int64_t mpsi_mpm_next_near_v##level(const mps_mpm *mpm, const mpsi_far *far, int64_t begin,      \
-                                      int64_t end);
+                                      int64_t end);                                                \
+  int64_t mpsi_mpm_next_in_v##level(const mps_mpm *mpm, const mpsi_cell_block *cells,              \
+                                    const int *low, const int *high, int64_t begin);               \
+  void mpsi_mpm_warm_v##level(mps_mpm *mpm, const mpsi_touch_block *block);                        \
+  void mpsi_mpm_sweep_v##level(mps_mpm *mpm, const mpsi_touch_block *block, bool back);            \
+  void mpsi_mpm_foot_velocity_v##level(const mps_mpm *mpm, int64_t touch, double *v);
 #define KERNELS(level)                                                                             \
   {                                                                                                \
     mpsi_mpm_p2g_v##level, mpsi_mpm_tile_v##level, mpsi_mpm_flush_v##level, mpsi_mpm_g2p_v##level, \
         mpsi_mpm_speed_v##level, mpsi_mpm_fit_v##level, mpsi_mpm_foot_v##level,                    \
-        mpsi_mpm_fastest_v##level, mpsi_mpm_next_near_v##level                                     \
+        mpsi_mpm_fastest_v##level, mpsi_mpm_next_near_v##level, mpsi_mpm_next_in_v##level,         \
+        mpsi_mpm_warm_v##level, mpsi_mpm_sweep_v##level, mpsi_mpm_foot_velocity_v##level           \
   }
 
 DECLARE(1)

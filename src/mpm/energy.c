@@ -117,7 +117,8 @@ void mpsi_mpm_energy_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_
 /* Work of all bodies on node k with the velocity v. */
 static void count_contact(const mps_mpm *mpm, const mpsi_node_block *nodes, int k, const double *v,
                           mpsi_node_energy *out) {
-  for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
+  const int32_t pairs = mpm->contact.springs > 0 ? nodes->pairs : 0;
+  for (int32_t t = nodes->first_pair; t < nodes->first_pair + pairs; t++) {
     const mpsi_node_pair *pair = &mpm->contact.node_pair[t];
     const mpsi_contact_node *at = &mpm->contact.node[(int64_t)t * mpm->grid.block_nodes + k];
     if (at->mass == 0.0) continue;

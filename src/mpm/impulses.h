@@ -9,9 +9,10 @@
 
 #include <mps/mpm.h>
 
-/* A particle that may touch a body in the step being made. Its weights psi, one for each component
- * of a node's velocity, and nodes are weight[k * stride] and on, node[k * stride] and on, k its
- * number in the list. The components differ where ghosts of mirrors (mirror.h) stand for nodes. */
+/* A particle that may touch a body in the step being made. Its weights and nodes are
+ * weight[k * stride] and on, node[k * stride] and on, k its number in the list. A weight has 1/m of
+ * the node and then psi for each component of its velocity, in the places that they have in the
+ * node: these differ where ghosts of mirrors (mirror.h) stand for nodes. */
 typedef struct mpsi_touch {
   mpsi_impulse impulse;
   double x[3];       /* m, of the particle */
@@ -50,7 +51,7 @@ typedef struct mpsi_area_share {
 typedef struct mpsi_impulses {
   mpsi_touch *touch;
   mpsi_touch_block *block; /* colour by colour */
-  double (*weight)[3];
+  double (*weight)[4];
   double **node; /* its four values: see mpsi_node */
   int32_t *candidate;
   int64_t touch_count, block_count;

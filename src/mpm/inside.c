@@ -1,13 +1,14 @@
 /* inside.c - which nodes lie inside a body or outside the domain, and which are corners of cells
- * that hold particles. These decide which nodes a particle near a body may use (Nakamura 5.1, with
- * the same-side test of fitted.c). SPDX-License-Identifier: BSD-3-Clause */
+ * that hold particles, with the surface's normals there. These decide which nodes a particle near a
+ * body may use (Nakamura 5.1, with the same-side test of fitted.c). SPDX-License-Identifier:
+ * BSD-3-Clause */
 #include "kernels.h"
 
 #include <string.h>
 
 /* ---- before a step --------------------------------------------------------------------------- */
 
-/* The node `place` of the block is inside body b, with the surface's normal there. */
+/* The node `place` of the block is inside body b. */
 static void note_inside(mpsi_node_block *nodes, const int *place, uint32_t *inside, int32_t b) {
   *inside |= UINT32_C(1) << b;
   nodes->inside = true;
@@ -17,72 +18,67 @@ static void note_inside(mpsi_node_block *nodes, const int *place, uint32_t *insi
   }
 }
 
-/* Distances change no faster than places: where a node is `far` (m) from what would change its
- * state, the next nodes of its row have that state too, as many as this. */
+/* Distances change no faster than places: where a node is `far` (m) from the surface, the next
+ * nodes of its row are on the same side of it, as many as this. */
 static int same_behind(const mps_mpm *mpm, double far) {
   const double cells = far * mpm->grid.inverse * (1.0 - 1e-9);
-  return cells < 0.0 ? 0 : cells < MPSI_SIDE ? (int)cells : MPSI_SIDE;
+  return cells < MPSI_SIDE ? (int)cells : MPSI_SIDE;
 }
 
-/* No stencil reaches a node so far (m) below the surface: a particle is no deeper than its contact
- * allows, and the nodes of its stencil no further from it than two cells along each axis. */
-static double deep_below(const mps_mpm *mpm, int32_t b) {
-  return mpm->contact.handle[b]->def.depth + 2.0 * mpm->def.cell * sqrt((double)mpm->dim);
-}
-
-/* Whether x lies before the tangent plane at the foot of a point outside: no convex body holds it.
+/* How many nodes of the block from the one at `place` on, x, lie before the tangent plane at the
+ * foot of a point outside, where no convex body holds them: itself, its row, its plane, the rest.
  */
-static bool lies_before(const mps_mpm *mpm, const mpsi_foot *foot, const double *x) {
+static int count_before(const mps_mpm *mpm, const mpsi_foot *foot, const int *place,
+                        const double *x) {
+  const double least = 1e-9 * mpm->def.cell;
   double before = 0.0;
+  int count = 1;
   for (int c = 0; c < mpm->dim; c++) before += (x[c] - foot->at[c]) * foot->normal[c];
-  return foot->distance > 0.0 && before > 1e-9 * mpm->def.cell;
+  if (!(foot->distance > 0.0) || !(before > least)) return 0;
+  for (int c = 0; c < mpm->dim && place[c] == 0; c++, count *= MPSI_SIDE) {
+    before += fmin(0.0, (MPSI_SIDE - 1) * mpm->def.cell * foot->normal[c]);
+    if (!(before > least)) break;
+  }
+  return count;
 }
 
-/* Nodes of a block that lie inside body b, with normals where a stencil may have them. */
-static void find_inside_body(mps_mpm *mpm, mpsi_node_block *nodes, int32_t b,
-                             mpsi_contact_node *node, uint32_t *inside) {
-  const double deep = deep_below(mpm, b);
+/* Nodes of a block that lie inside body b. */
+static void find_inside_body(mps_mpm *mpm, mpsi_node_block *nodes, int32_t b, uint32_t *inside) {
+  const bool convex = mpm->contact.handle[b]->convex;
   mpsi_foot foot = {.distance = 0.0};
-  for (int k = 0; k < mpm->grid.block_nodes; k++) {
+  for (int k = 0, done; k < mpm->grid.block_nodes; k += done) {
     int place[3];
     double x[3];
     mpsi_unravel(k, MPSI_SIDE, place);
     mpsi_node_place(mpm, nodes->at, k, x);
-    if (mpm->contact.handle[b]->convex && lies_before(mpm, &foot, x)) continue;
+    if (convex && (done = count_before(mpm, &foot, place, x)) > 0) continue;
     foot = mpsi_body_foot(mpm->contact.body[b], x);
-    const int row = MPSI_SIDE - 1 - place[0]; /* nodes behind this one */
-    int same = foot.distance < 0.0 ? same_behind(mpm, -foot.distance - deep)
-                                   : same_behind(mpm, foot.distance);
-    if (same > row) same = row;
-    for (int i = 0; i <= same && foot.distance < 0.0; i++, place[0]++) {
+    done = 1 + same_behind(mpm, fabs(foot.distance));
+    if (done > MPSI_SIDE - place[0]) done = MPSI_SIDE - place[0];
+    for (int i = 0; i < done && foot.distance < 0.0; i++, place[0]++)
       note_inside(nodes, place, &inside[k + i], b);
-      for (int c = 0; c < 3; c++)
-        node[k + i].normal[c] = c < mpm->dim && i == 0 ? foot.normal[c] : 0.0;
-    }
-    k += same;
   }
 }
 
-/* Normals at the nodes of a block that lie inside bodies. */
 void mpsi_mpm_find_inside(mps_mpm *mpm, int64_t g, int32_t worker) {
   (void)worker;
+  const size_t count = (size_t)mpm->grid.block_nodes;
   mpsi_node_block *nodes = &mpm->grid.nodes[g];
   nodes->inside = nodes->thin = false;
   for (int c = 0; c < 3; c++) nodes->low[c] = MPSI_SIDE, nodes->high[c] = 0;
   if (nodes->near < 0) return;
   mpsi_mpm_find_sight(mpm, g);
   uint32_t *inside = mpm->contact.inside + mpsi_first_node(mpm, nodes->near);
-  memset(inside, 0, (size_t)mpm->grid.block_nodes * sizeof *inside);
-  _Atomic uint8_t *reached = mpm->contact.reached + mpsi_first_node(mpm, nodes->near);
-  for (int k = 0; k < mpm->grid.block_nodes; k++)
-    atomic_store_explicit(&reached[k], 0, memory_order_relaxed);
+  memset(inside, 0, count * sizeof *inside);
+  memset((void *)(mpm->contact.reached + mpsi_first_node(mpm, nodes->near)), 0, count);
   for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
-    mpsi_contact_node *node = mpm->contact.node + (int64_t)t * mpm->grid.block_nodes;
     const int32_t b = mpm->contact.node_pair[t].body;
-    if (mpm->contact.sums) memset(node, 0, (size_t)mpm->grid.block_nodes * sizeof *node);
+    if (mpm->contact.springs > 0)
+      memset(mpm->contact.node + (int64_t)t * mpm->grid.block_nodes, 0,
+             count * sizeof *mpm->contact.node);
     if (mpm->contact.thin >> b & 1) continue; /* cuts no support: across.h */
     if (mpsi_mpm_body_reaches(mpm, b, nodes->at, MPSI_SIDE))
-      find_inside_body(mpm, nodes, b, node, inside);
+      find_inside_body(mpm, nodes, b, inside);
   }
 }
 
@@ -113,23 +109,17 @@ static void for_corners(const mps_mpm *mpm, const mpsi_cell_block *cells, corner
   if (cells->pairs == 0 || !cells_near(mpm, cells, low, high)) return;
   bool seen[MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE];
   memset(seen, 0, (size_t)mpm->grid.tile_nodes * sizeof *seen);
-  double first[3], last[3];
-  const int dim = mpm->dim;
-  int slim = 0; /* the axis along which most are not near */
-  for (int c = 0; c < dim; c++) {
-    if (high[c] - low[c] < high[slim] - low[slim]) slim = c;
-    first[c] = (double)cells->at[c] * MPSI_SIDE;
-    last[c] = (double)(mpm->grid.high[c] - 1) - first[c];
-  }
-  for (int64_t k = cells->begin; k < cells->end; k++) {
+  for (int64_t k = cells->begin; (k = mpm->kernels->next_in(mpm, cells, low, high, k)) < cells->end;
+       k++) {
     int at[3] = {0};
     bool near = true;
-    for (int n = 0; n < dim && near; n++) {
-      const int c = slim + n < dim ? slim + n : slim + n - dim;
+    for (int c = 0; c < mpm->dim; c++) {
       /* counted from the block: not negative, so that truncation is floor */
-      const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k]) - first[c];
-      at[c] = (int)(X < last[c] ? X : last[c]);
-      near = at[c] >= low[c] && at[c] < high[c];
+      const double first = (double)cells->at[c] * MPSI_SIDE;
+      const double last = (double)(mpm->grid.high[c] - 1) - first;
+      const double X = mpsi_grid_coordinate(mpm, c, mpm->p.x[c][k]) - first;
+      at[c] = (int)(X < last ? X : last);
+      near = near && at[c] >= low[c] && at[c] < high[c];
     }
     if (!near) continue;
     bool *here = &seen[mpsi_tile_index(at[0], at[1], at[2])];
@@ -142,13 +132,31 @@ static void for_corners(const mps_mpm *mpm, const mpsi_cell_block *cells, corner
   }
 }
 
-/* Several blocks may mark one node at once. */
+/* Normals of the bodies that hold the node `local` of a block. */
+static void find_normals(const mps_mpm *mpm, const mpsi_node_block *nodes, int local) {
+  const uint32_t inside = mpm->contact.inside[mpsi_first_node(mpm, nodes->near) + local];
+  double x[3];
+  mpsi_node_place(mpm, nodes->at, local, x);
+  for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
+    const int32_t b = mpm->contact.node_pair[t].body;
+    double *normal = mpm->contact.normal[(int64_t)t * mpm->grid.block_nodes + local];
+    if (!(inside >> b & 1)) continue;
+    const mpsi_foot foot = mpsi_body_foot(mpm->contact.body[b], x);
+    for (int c = 0; c < 3; c++) normal[c] = c < mpm->dim ? foot.normal[c] : 0.0;
+  }
+}
+
+/* Several blocks may mark one node at once: the first finds the normals there. */
 static void mark_node(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *at, void *data) {
   _Atomic uint8_t *reached = data;
   const int64_t node = mpsi_node_under(mpm, cells, at[0], at[1], at[2]);
   const mpsi_node_block *nodes = &mpm->grid.nodes[node / mpm->grid.block_nodes];
-  const int64_t at_node = mpsi_first_node(mpm, nodes->near) + node % mpm->grid.block_nodes;
-  atomic_store_explicit(&reached[at_node], 1, memory_order_relaxed);
+  const int local = (int)(node % mpm->grid.block_nodes);
+  reached += mpsi_first_node(mpm, nodes->near) + local;
+  if (atomic_load_explicit(reached, memory_order_relaxed) ||
+      atomic_exchange_explicit(reached, 1, memory_order_relaxed))
+    return;
+  if (nodes->inside) find_normals(mpm, nodes, local);
 }
 
 void mpsi_mpm_mark_reached(mps_mpm *mpm, int64_t b, int32_t worker) {
@@ -200,17 +208,19 @@ static void mark_outside(const mps_mpm *mpm, const mpsi_cell_block *cells, uint8
 /* Of the nodes of a block under the corner q of the tile, in bodies or beside thin ones. */
 static void mark_near(const mps_mpm *mpm, const mpsi_node_block *nodes, int q,
                       mpsi_worker *worker) {
-  int low[3] = {0}, size[3] = {1, 1, 1};
+  int from[3] = {0}, to[3] = {1, 1, 1}, shift[3] = {0};
   for (int c = 0; c < mpm->dim; c++) {
-    low[c] = q >> c & 1 ? MPSI_SIDE : 0;
-    size[c] = low[c] ? MPSI_TILE_SIDE - MPSI_SIDE : MPSI_SIDE;
+    const int size = q >> c & 1 ? MPSI_TILE_SIDE - MPSI_SIDE : MPSI_SIDE;
+    shift[c] = q >> c & 1 ? MPSI_SIDE : 0;
+    from[c] = nodes->thin ? 0 : nodes->low[c];
+    to[c] = nodes->thin || nodes->high[c] > size ? size : nodes->high[c];
   }
   const int64_t first = mpsi_first_node(mpm, nodes->near);
-  for (int k = 0; k < size[2]; k++)
-    for (int j = 0; j < size[1]; j++)
-      for (int i = 0; i < size[0]; i++) {
+  for (int k = from[2]; k < to[2]; k++)
+    for (int j = from[1]; j < to[1]; j++)
+      for (int i = from[0]; i < to[0]; i++) {
         const int64_t at = first + (k * MPSI_SIDE + j) * MPSI_SIDE + i;
-        const int t = mpsi_tile_index(low[0] + i, low[1] + j, low[2] + k);
+        const int t = mpsi_tile_index(shift[0] + i, shift[1] + j, shift[2] + k);
         if (nodes->thin && mpm->contact.beside[at]) worker->state[t] |= MPSI_THIN;
         if (!mpm->contact.inside[at]) continue;
         worker->inside[t] = mpm->contact.inside[at];

@@ -1,5 +1,5 @@
 /* kernels.h - the inner loops of the solver, compiled once for each instruction set: p2g.c, g2p.c,
- * fitted.c, near.c, and loops.h for what they share.
+ * fitted.c, batch.c, near.c, sweep.c, and loops.h for what they share.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_KERNELS_H
 #define MPSI_MPM_KERNELS_H
@@ -33,9 +33,17 @@ typedef struct mpsi_kernels {
   mpsi_fit_fn fit;
   mpsi_foot_fn foot;
   /* near.c, of particles [begin, end): the largest speed (m/s); and the first that is not far, or
-   * `end`. */
+   * `end`. Of a block of cells from `begin` on: the first that may be in its cells low to high - 1
+   * of each axis, or its end. */
   double (*fastest)(const mps_mpm *mpm, int64_t begin, int64_t end);
   int64_t (*next_near)(const mps_mpm *mpm, const mpsi_far *far, int64_t begin, int64_t end);
+  int64_t (*next_in)(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *low,
+                     const int *high, int64_t begin);
+  /* sweep.c: the first impulses of a block's touches; a visit to each; velocity of the particle's
+   * side at the foot of one (m/s). */
+  void (*warm)(mps_mpm *mpm, const mpsi_touch_block *block);
+  void (*sweep)(mps_mpm *mpm, const mpsi_touch_block *block, bool back);
+  void (*foot_velocity)(const mps_mpm *mpm, int64_t touch, double *v);
 } mpsi_kernels;
 
 /* dispatch.c: the kernels of an x86-64 level; 0: the best that processor and build have. */

@@ -98,7 +98,7 @@ static char *write_touch(const mps_mpm *mpm, const mpsi_cell_block *cells, int64
     index[i] = number[place_under(mpm, cells, all->node[n * all->stride + i])];
   to += index_bytes(touch->nodes);
   for (int32_t i = 0; i < touch->nodes; i++, to += components * (int64_t)sizeof(double))
-    memcpy(to, all->weight[n * all->stride + i], (size_t)components * sizeof(double));
+    memcpy(to, all->weight[n * all->stride + i] + MPSI_VECTOR, (size_t)components * sizeof(double));
   return to;
 }
 
@@ -247,11 +247,12 @@ static void take_entry(meeting *m, const entry *e, int64_t first) {
       const int32_t across = (int32_t)(named[index[i]].place / PLACES);
       int32_t at[3];
       place_of(e->h.at, place, at);
-      double *weight = all->weight[n * all->stride + i];
+      double *weight = all->weight[n * all->stride + i] + MPSI_VECTOR;
       all->node[n * all->stride + i] =
           mpsi_mpm_meet_node(m->mpm, at, across ? MPSI_MET_ACROSS : MPSI_MET_NODE,
                              named[index[i]].value)
               ->value;
+      weight[-MPSI_VECTOR] = 1.0 / named[index[i]].value[MPSI_MASS];
       memcpy(weight, from, components * sizeof(double));
       for (size_t c = components; c < 3; c++) weight[c] = weight[0];
     }

@@ -428,6 +428,7 @@ void mps_mpm_destroy(mps_mpm **pointer) {
                    mpm->contact.cell_pair_room.item,
                    mpm->contact.node_pair_room.item,
                    mpm->contact.node_room.item,
+                   mpm->contact.normal_room.item,
                    mpm->contact.inside_room.item,
                    mpm->contact.reached_room.item,
                    mpm->contact.sight_room.item,

@@ -1,6 +1,6 @@
 /* near.c - which particles of a block may be near a body, four at once: what the last foot that was
- * found tells of the others (touches.c). Compiled once for each instruction set.
- * SPDX-License-Identifier: BSD-3-Clause */
+ * found tells of the others (touches.c), and which are in cells with corners in bodies (inside.c).
+ * Compiled once for each instruction set. SPDX-License-Identifier: BSD-3-Clause */
 #include "loops.h"
 
 double MPSI_LEVELLED(mpsi_mpm_fastest)(const mps_mpm *mpm, int64_t begin, int64_t end) {
@@ -44,4 +44,41 @@ MPSI_INLINE int64_t next_near(const mps_mpm *mpm, int dim, const mpsi_far *far, 
 int64_t MPSI_LEVELLED(mpsi_mpm_next_near)(const mps_mpm *mpm, const mpsi_far *far, int64_t begin,
                                           int64_t end) {
   return mpm->dim == 3 ? next_near(mpm, 3, far, begin, end) : next_near(mpm, 2, far, begin, end);
+}
+
+/* Lanes of particles that may be in cells low to high - 1 of each axis, of which the first that is
+ * asked excludes most; on the upper side of the domain, or beyond, one is in the last cell. */
+MPSI_INLINE mpsi_mask may_be_in(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int slim,
+                                const int *low, const int *high, int64_t k, int n) {
+  const double slack = 1e-6; /* of round-off: who asks looks again */
+  mpsi_mask in = (mpsi_mask){0, 1, 2, 3} < n;
+  for (int a = 0; a < dim && (in[0] | in[1] | in[2] | in[3]); a++) {
+    const int c = slim + a < dim ? slim + a : slim + a - dim;
+    const int64_t last = mpm->grid.high[c] - 1 - (int64_t)cells->at[c] * MPSI_SIDE;
+    const mpsi_quad X = mpsi_from_block(mpm, cells, c, mpsi_get_some(mpm->p.x[c] + k, n));
+    in &= (X > (low[c] > last ? (double)last : (double)low[c]) - slack) &
+          (X < (high[c] > last ? INFINITY : high[c] + slack));
+  }
+  return in;
+}
+
+MPSI_INLINE int64_t next_in(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim,
+                            const int *low, const int *high, int64_t begin) {
+  int slim = 0;
+  for (int c = 1; c < dim; c++)
+    if (high[c] - low[c] < high[slim] - low[slim]) slim = c;
+  for (int64_t k = begin; k < cells->end; k += 4) {
+    const int n = cells->end - k < 4 ? (int)(cells->end - k) : 4;
+    const mpsi_mask in = may_be_in(mpm, cells, dim, slim, low, high, k, n);
+    if (!(in[0] | in[1] | in[2] | in[3])) continue;
+    for (int l = 0; l < 4; l++)
+      if (in[l]) return k + l;
+  }
+  return cells->end;
+}
+
+int64_t MPSI_LEVELLED(mpsi_mpm_next_in)(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                                        const int *low, const int *high, int64_t begin) {
+  return mpm->dim == 3 ? next_in(mpm, cells, 3, low, high, begin)
+                       : next_in(mpm, cells, 2, low, high, begin);
 }

@@ -70,7 +70,8 @@ static bool read_node(const mps_mpm *mpm, int64_t g, int k, node *out) {
     out->v[c] = c < mpm->dim ? sum[MPSI_VECTOR + c] / carried : 0.0;
     out->f[c] = c < mpm->dim ? side[MPSI_VECTOR + c] : 0.0;
   }
-  for (int32_t t = nodes->first_pair; t < nodes->first_pair + nodes->pairs; t++) {
+  const int32_t pairs = mpm->contact.springs > 0 ? nodes->pairs : 0;
+  for (int32_t t = nodes->first_pair; t < nodes->first_pair + pairs; t++) {
     const mpsi_contact_node *at = &mpm->contact.node[(int64_t)t * mpm->grid.block_nodes + k];
     for (int c = 0; c < mpm->dim && at->mass != 0.0; c++) out->f[c] += at->force[c];
   }

@@ -100,20 +100,15 @@ static bool list_node_pairs(mps_mpm *mpm, int64_t *count, int64_t *near) {
   return *count <= mpm->contact.node_pair_room.capacity;
 }
 
-/* Contacts by springs have sums at the nodes; of those by impulses these stay 0. */
+/* Contacts by springs have sums at the nodes; all have normals there. */
 static bool ensure_nodes(mps_mpm *mpm, int64_t nodes) {
   mpsi_contacts *contact = &mpm->contact;
-  const int64_t before = contact->node_room.capacity;
-  contact->sums = false;
-  for (int32_t b = 0; b < contact->bodies; b++)
-    contact->sums = contact->sums || !mpsi_by_impulses(contact->handle[b]);
-  if (!mpsi_room_ensure(mpm->context, &contact->node_room, nodes, sizeof *contact->node))
+  if (!mpsi_room_ensure(mpm->context, &contact->normal_room, nodes, sizeof *contact->normal) ||
+      !mpsi_room_ensure(mpm->context, &contact->node_room, contact->springs > 0 ? nodes : 0,
+                        sizeof *contact->node))
     return false;
+  contact->normal = contact->normal_room.item;
   contact->node = contact->node_room.item;
-  contact->clean = contact->clean && !contact->sums && contact->node_room.capacity == before;
-  if (contact->sums || contact->clean) return true;
-  memset(contact->node, 0, (size_t)contact->node_room.capacity * sizeof *contact->node);
-  contact->clean = true;
   return true;
 }
 
@@ -137,7 +132,7 @@ mps_status mpsi_mpm_list_pairs(mps_mpm *mpm, const char *function) {
   if (!good)
     return mpsi_fail_memory(context, function,
                             (size_t)(cell_pairs + 1) * sizeof(mpsi_cell_pair) +
-                                (size_t)nodes * sizeof *contact->node);
+                                (size_t)nodes * (sizeof *contact->normal + sizeof *contact->node));
   contact->cell_pair = contact->cell_pair_room.item;
   contact->node_pair = contact->node_pair_room.item;
   contact->inside = contact->inside_room.item;

@@ -43,9 +43,8 @@ typedef struct mpsi_contacts {
   double mass[MPS_MPM_MAX_CONTACTS]; /* kg, of the nodes in contact with each body */
   mpsi_cell_pair *cell_pair;
   mpsi_node_pair *node_pair;
-  mpsi_contact_node *node;  /* normals where `inside`; else 0 where no springs act */
-  bool sums;                /* springs act: its sums are in use, */
-  bool clean;               /* and else, that they are 0 all over its room */
+  mpsi_contact_node *node;  /* where springs act, of each node of each pair; */
+  double (*normal)[3];      /* of the surface there, where `inside` and `reached` */
   uint32_t *inside;         /* bit b: in body b; mask_count * block_nodes */
   uint32_t thin;            /* bit b: body b parts particles (across.h) */
   mpsi_sight *sight;        /* as node, where there are such bodies; */
@@ -54,8 +53,8 @@ typedef struct mpsi_contacts {
   _Atomic uint8_t *reached; /* corner of a cell that holds a particle; likewise */
   int64_t cell_pair_count, node_pair_count, mask_count;
   mpsi_impulses impulses;
-  mpsi_room cell_pair_room, node_pair_room, node_room, inside_room, reached_room, sight_room,
-      beside_room, across_room, spring_room;
+  mpsi_room cell_pair_room, node_pair_room, node_room, normal_room, inside_room, reached_room,
+      sight_room, beside_room, across_room, spring_room;
 } mpsi_contacts;
 
 /* cut.c: all that is to be known of bodies near particles before a step; which blocks are cut and

@@ -50,17 +50,16 @@ MPSI_INLINE int mpsi_support_local(const mpsi_support *s, int i, int j, int k) {
   return s->local[0][i] + s->local[1][j] + s->local[2][k];
 }
 
-/* The normal of the next body that holds the node `local` of a block, from its pair *pair on, which
- * begins as nodes->first_pair; NULL behind the last. */
+/* The normal of the next body that holds the node `local` of a block, which is MPSI_REACHED, from
+ * its pair *pair on, which begins as nodes->first_pair; NULL behind the last. */
 MPSI_INLINE const double *mpsi_next_normal(const mps_mpm *mpm, const mpsi_node_block *nodes,
                                            int local, int32_t *pair) {
   if (nodes->near < 0) return NULL;
   const uint32_t inside = mpm->contact.inside[mpsi_first_node(mpm, nodes->near) + local];
   while (*pair < nodes->first_pair + nodes->pairs) {
     const int32_t t = (*pair)++;
-    const double *n = mpm->contact.node[(int64_t)t * mpm->grid.block_nodes + local].normal;
-    if (!(inside >> mpm->contact.node_pair[t].body & 1)) continue;
-    if (n[0] != 0.0 || n[1] != 0.0 || n[2] != 0.0) return n; /* not deep below the surface */
+    if (inside >> mpm->contact.node_pair[t].body & 1)
+      return mpm->contact.normal[(int64_t)t * mpm->grid.block_nodes + local];
   }
   return NULL;
 }

@@ -22,6 +22,7 @@ static int64_t grid_bytes(const mps_mpm *mpm) {
               {mpm->contact.cell_pair_room.capacity, sizeof *mpm->contact.cell_pair},
               {mpm->contact.node_pair_room.capacity, sizeof *mpm->contact.node_pair},
               {mpm->contact.node_room.capacity, sizeof *mpm->contact.node},
+              {mpm->contact.normal_room.capacity, sizeof *mpm->contact.normal},
               {mpm->contact.inside_room.capacity, sizeof *mpm->contact.inside},
               {mpm->contact.reached_room.capacity, sizeof *mpm->contact.reached},
               {mpm->contact.sight_room.capacity, sizeof *mpm->contact.sight},

@@ -107,6 +107,27 @@ static bool may_touch(const mps_mpm *mpm, const mps_contact *contact, int64_t k,
   return mpsi_impulse_near(foot->distance - half, half, closing, mpm->run.dt);
 }
 
+/* Whether no particle of the block is within `reach` of the body: all are in the box from which
+ * none has left (mpsi_cell_block.left). */
+static bool is_block_far(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                         const mps_contact *contact, double reach) {
+  const double first = mpm->def.spline == 3 ? 1.0 : 0.5;
+  double middle[3] = {0.0}, half[3] = {0.0}, x[3], square = 0.0, before = 0.0;
+  for (int c = 0; c < mpm->dim; c++) {
+    const double low = first + cells->low[c], high = first + (cells->high[c] - mpsi_reach(mpm, c));
+    middle[c] = 0.5 * (low + high);
+    half[c] = 0.5 * mpm->def.cell * (high - low) * (1.0 + 1e-9);
+    square += half[c] * half[c];
+  }
+  mpsi_node_position(mpm, cells->at, middle, x);
+  const mpsi_foot foot = mpsi_body_foot(contact->body, x);
+  if (foot.distance > reach + sqrt(square)) return true;
+  if (!contact->convex || !(foot.distance > 0.0)) return false;
+  for (int c = 0; c < mpm->dim; c++)
+    before += (x[c] - foot.at[c]) * foot.normal[c] - half[c] * fabs(foot.normal[c]);
+  return before > reach * (1.0 + 1e-9);
+}
+
 /* Those of a pair of a block and a body: the last foot that was found tells of most particles that
  * they are too far. */
 static void find_candidates(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_cell_pair *pair) {
@@ -115,6 +136,7 @@ static void find_candidates(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_cel
   int32_t *out = mpm->contact.impulses.candidate + pair->first_candidate;
   mpsi_far far = {.before = INFINITY};
   pair->candidates = 0;
+  if (is_block_far(mpm, cells, contact, reach)) return;
   for (int64_t k = cells->begin;
        (k = mpm->kernels->next_near(mpm, &far, k, cells->end)) < cells->end; k++) {
     double x[3];
@@ -198,7 +220,7 @@ mps_status mpsi_mpm_find_touches(mps_mpm *mpm, const char *function) {
   if (!good) {
     all->touch_count = all->block_count = 0;
     return mpsi_fail_memory(context, function,
-                            (size_t)(n + 1) * (sizeof *all->touch + (size_t)all->stride * 32) +
+                            (size_t)(n + 1) * (sizeof *all->touch + (size_t)all->stride * 40) +
                                 (size_t)candidates * sizeof *all->candidate);
   }
   all->touch = all->touch_room.item;
@@ -259,23 +281,24 @@ static void find_place(const mpsi_foot_weights *f, int s, int *place) {
 }
 
 /* Adds `weight` to those of a node of the touch, which may be there already, for a ghost. */
-static void add_node(mpsi_touch *touch, double **node, double (*to)[3], double *at,
+static void add_node(mpsi_touch *touch, double **node, double (*to)[4], double *at,
                      const double *weight, bool may_be_there) {
   int32_t i = may_be_there ? 0 : touch->nodes;
   while (i < touch->nodes && node[i] != at) i++;
   if (i == touch->nodes) {
     node[touch->nodes++] = at;
-    memcpy(to[i], weight, sizeof to[i]);
+    to[i][MPSI_MASS] = 1.0 / at[MPSI_MASS];
+    memcpy(to[i] + MPSI_VECTOR, weight, 3 * sizeof *weight);
     return;
   }
-  for (int a = 0; a < 3; a++) to[i][a] += weight[a];
+  for (int a = 0; a < 3; a++) to[i][MPSI_VECTOR + a] += weight[a];
 }
 
 /* psi at the nodes of the touch's stencil that have mass, and its mobility. */
 static void fit_touch(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker, int64_t n) {
   mpsi_impulses *all = &mpm->contact.impulses;
   mpsi_touch *touch = &all->touch[n];
-  double(*weight)[3] = all->weight + n * all->stride, **node = all->node + n * all->stride;
+  double(*weight)[4] = all->weight + n * all->stride, **node = all->node + n * all->stride;
   mpsi_foot_weights f;
   weigh(mpm, cells, &mpm->grid.workers[worker], touch, &f);
   touch->nodes = 0;
@@ -295,10 +318,11 @@ static void fit_touch(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker
     if (mpm->grid.node[g][MPSI_MASS] > 0.0)
       add_node(touch, node, weight, mpm->grid.node[g], psis, cells->mirrors != 0);
   }
-  for (int32_t i = 0; i < touch->nodes; i++) {
-    const double inverse = 1.0 / node[i][MPSI_MASS];
-    for (int a = 0; a < 3; a++) touch->impulse.mobility[a] += weight[i][a] * weight[i][a] * inverse;
-  }
+  for (int32_t i = 0; i < touch->nodes; i++)
+    for (int a = 0; a < 3; a++) {
+      const double psi = weight[i][MPSI_VECTOR + a];
+      touch->impulse.mobility[a] += psi * psi * weight[i][MPSI_MASS];
+    }
 }
 
 /* States of nodes for the touches whose fits were not kept. */
