@@ -5,12 +5,15 @@
 
 #include "ranks_result.h"
 
+#include <mps/experimental.h>
 #include <mps/fluid.h>
 
 /* A column that falls against a wall that does not slip; a tank with a piston, a load and a body
  * afloat, made in parts; water that runs out of an open side, and is added to; all of two to three
- * blocks. PUDDLE is less than one, POND little more. */
-enum { COLLAPSE, AFLOAT, SPILL, PUDDLE, POND };
+ * blocks. PUDDLE is less than one, POND little more, EXACT the same with a closer
+ * pressure. CLASSICAL: the column by the classical scheme.
+ */
+enum { COLLAPSE, AFLOAT, SPILL, PUDDLE, POND, EXACT, CLASSICAL };
 
 typedef struct scene {
   mps_particles *set;
@@ -73,6 +76,7 @@ static inline mps_status make_scene(mps_context *own, mps_domain *domain, int wh
                large[2] = {2.0, 1.6};
   set.spacing = 0.02;
   def.domain = domain;
+  if (what == EXACT) def.tolerance = 1e-11;
   def.viscosity = what == COLLAPSE ? 0.5 : 0.0;
   mps_status status = mps_particles_create(own, &set, &s->set);
   if (what == AFLOAT) { /* below the body, and beside it */
@@ -81,11 +85,12 @@ static inline mps_status make_scene(mps_context *own, mps_domain *domain, int wh
     for (int k = 0; k < 3; k++)
       TRY(mps_particles_fill_box(s->set, &parts[k][0], &parts[k][2], NULL));
   } else {
-    const double *upper = what == PUDDLE ? small : what == POND ? middle : large;
+    const double *upper = what == PUDDLE ? small : what == POND || what == EXACT ? middle : large;
     TRY(mps_particles_fill_box(s->set, lower, upper, NULL));
   }
   if (domain) status = mps_domain_agree(domain, status);
   TRY(mps_fluid_create(own, s->set, &def, &s->fluid));
+  if (what == CLASSICAL) TRY(mps_experimental_fluid_classical(s->fluid, 0.2));
   if (status != MPS_OK || what == AFLOAT) return status == MPS_OK ? add_float(own, s) : status;
   TRY(wall(s, MPS_FLUID_BOUNDARY_SLIP, 0.0, 0.0, 0.0, 1.0, NULL));
   TRY(wall(s, MPS_FLUID_BOUNDARY_NO_SLIP, 0.0, 0.0, 1.0, 0.0, NULL));
@@ -122,12 +127,12 @@ static inline mps_status take_steps(scene *s, int what, int64_t steps) {
   return status;
 }
 
-static inline mps_status tell(scene *s, result *r) {
+static inline mps_status tell(scene *s, int what, result *r) {
   const double station[4] = {0.1, 0.7, 1.4, 2.2};
   mps_fluid_report report;
   mps_status status = mps_fluid_get_totals(s->fluid, &r->totals);
   for (int b = 0; b < 3; b++) TRY(mps_fluid_get_reaction(s->fluid, b, &r->reaction[b]));
-  TRY(mps_fluid_get_levels(s->fluid, 4, station, r->other));
+  if (what != CLASSICAL) TRY(mps_fluid_get_levels(s->fluid, 4, station, r->other));
   double points[12] = {0.1, 0.0, 0.0, 0.5, 0.0, 0.0, 1.1, 0.0, 0.0, 1.7, 0.0, 0.0};
   TRY(mps_fluid_get_pressure(s->fluid, 0, 4, points, r->other + 4));
   TRY(mps_fluid_get_report(s->fluid, &report));
@@ -150,7 +155,7 @@ static inline mps_status compute_half(mps_context *own, mps_domain *domain, int 
   if (from) TRY(mps_fluid_restore(s.fluid, from, NULL));
   TRY(take_steps(&s, what, steps));
   if (to) TRY(mps_fluid_save(s.fluid, to, NULL));
-  TRY(tell(&s, r));
+  TRY(tell(&s, what, r));
   drop_scene(&s);
   return status;
 }

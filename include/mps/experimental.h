@@ -68,7 +68,8 @@ MPS_EXPERIMENTAL_API MPS_NODISCARD mps_status mps_experimental_mpm_standard(mps_
  *  place of the library's own; the part `gamma`, in (0, 1], of the density's error is taken back in
  *  each step. Its pressure is noisy: the force on a wall of still water scatters by its own size
  *  with gamma 1, by some hundredths with .2. No viscosity, no surface is found (levels are NaN),
- * walls have no accelerations, and a step cannot be made in parts. MPS_ERROR_STATE after a step. */
+ * walls have no accelerations, and a step cannot be made in parts. MPS_ERROR_STATE after a step.
+ *  Collective. */
 MPS_EXPERIMENTAL_API MPS_NODISCARD mps_status mps_experimental_fluid_classical(mps_fluid *fluid,
                                                                                double gamma);
 

@@ -31,6 +31,14 @@ typedef mps_status (*mps_fluid_matrix_fn)(void *user, int64_t rows, const int64_
 typedef mps_status (*mps_fluid_solve_fn)(void *user, const double *b, double tolerance, double *x,
                                          int64_t *iterations);
 
+/** A on the ranks of a domain (mps_fluid_def.domain): rows first to first + rows - 1 of `all`,
+ * which may be none, the ranks' one after the other's; otherwise as mps_fluid_matrix_fn.
+ * mps_fluid_solve_fn then has arrays of all rows, of which `b` and the start in `x` are set in this
+ * rank's; `x` receives the solution of all rows on every rank. All ranks call both at once. */
+typedef mps_status (*mps_fluid_rows_fn)(void *user, int64_t all, int64_t first, int64_t rows,
+                                        const int64_t *start, const int32_t *column,
+                                        const double *value);
+
 /** Forgets what the solver keeps from former equations (a preconditioner), so that its answers from
  *  here on follow from the equations to come alone. Snapshot, rollback, save and restore call it
  *  first: a run that goes on after them has the bits of one that goes on from the snapshot or the
@@ -46,6 +54,8 @@ typedef struct mps_fluid_solver_def {
   int64_t least;              /* particles; a smaller fluid is solved by the library, >= 0;
                                  default 0 */
   mps_fluid_forget_fn forget; /* default NULL: it keeps nothing */
+  mps_fluid_rows_fn rows; /* in place of `matrix` on several ranks; default NULL: there the fluid
+                             refuses the solver (MPS_ERROR_UNSUPPORTED) */
 } mps_fluid_solver_def;
 
 MPS_API mps_status mps_fluid_solver_def_init(mps_fluid_solver_def *def, size_t size);
@@ -58,7 +68,8 @@ static inline mps_fluid_solver_def mps_fluid_solver_defaults(void) {
 
 /** Puts a solver in, between steps; `def` NULL takes it out. The callbacks may read the fluid, not
  *  step or destroy it. A status they return ends the step, which has not happened; so does a
- *  residual above the tolerance (MPS_ERROR_NUMERIC). It belongs to no snapshot and no file. */
+ *  residual above the tolerance (MPS_ERROR_NUMERIC). It belongs to no snapshot and no file.
+ *  Collective. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_set_solver(mps_fluid *fluid,
                                                       const mps_fluid_solver_def *def);
 

@@ -9,7 +9,7 @@
  * w = re/r - 1, re 2.1 l0 in n and the gradient, 3.1 l0 in the Laplacian, d = 2, and p = 0 where
  * n* < .97 n0. Walls are mirror images here too, with their parent's p.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "fluid_private.h"
+#include "share.h"
 
 #include <mps/experimental.h>
 
@@ -29,9 +29,8 @@ mps_status mps_experimental_fluid_classical(mps_fluid *f, double gamma) {
   if (f->given_room > 0)
     return mpsi_fail(f->context, __func__, MPS_ERROR_STATE,
                      "the fluid has had loads: choose the scheme first");
-  if (f->share)
-    return mpsi_fail(f->context, __func__, MPS_ERROR_UNSUPPORTED,
-                     "the classical scheme computes on one rank");
+  const mps_status same = mpsi_domain_settle_same(f->def.domain, __func__, MPS_OK, "gamma", gamma);
+  if (same != MPS_OK) return same;
   mpsi_fluid_classical c = {.gamma = gamma};
   double square = 0.0;
   for (int a = -3; a <= 3; a++)
@@ -76,15 +75,19 @@ static void weigh(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   }
 }
 
-mps_status mpsi_fluid_classical_look(mps_fluid *f, const char *function) {
-  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, fall);
+mps_status mpsi_fluid_classical_look(mps_fluid *f, const char *function, mps_status status) {
+  mpsi_fluid_for_all(f, f->count, MPSI_FLUID_CHUNK, fall);
   f->stage = MPSI_FLUID_MOVED; /* walls are where the step ends */
-  mps_status status = mpsi_fluid_make_ghosts(f, function);
+  if (status == MPS_OK) status = mpsi_fluid_make_ghosts(f, function);
   if (status == MPS_OK) mpsi_fluid_move_ghosts(f);
+  status = mpsi_fluid_settle_count(f, function, status);
   if (status == MPS_OK) status = mpsi_fluid_find_neighbours(f, function);
-  if (status == MPS_OK) mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, weigh);
-  if (status == MPS_OK) mpsi_fluid_count(f);
-  return status;
+  if (status == MPS_OK) status = mpsi_fluid_meet(f, function);
+  if (status != MPS_OK) return status;
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, weigh);
+  mpsi_fluid_tell_looks(f);
+  mpsi_fluid_count(f);
+  return mpsi_fluid_lost(f, function);
 }
 
 void mpsi_fluid_classical_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {

@@ -145,6 +145,8 @@ typedef struct mpsi_fluid_outside {
   mps_status (*solve)(void *user, const double *b, double tolerance, double *x,
                       int64_t *iterations);
   mps_status (*forget)(void *user);
+  mps_status (*rows_of_rank)(void *user, int64_t all, int64_t first, int64_t rows,
+                             const int64_t *start, const int32_t *column, const double *value);
   int64_t least, rows; /* rows: room of start */
   int64_t *start;
   mpsi_room column_room, value_room; /* int32_t, double */
@@ -354,7 +356,7 @@ mps_status mpsi_fluid_forget(mps_fluid *fluid, const char *function);
 void mpsi_fluid_find_velocities(mps_fluid *fluid);
 int64_t mpsi_fluid_advance(mps_fluid *fluid); /* first particle that went wrong, or -1 */
 /* classical.c */
-mps_status mpsi_fluid_classical_look(mps_fluid *fluid, const char *function);
+mps_status mpsi_fluid_classical_look(mps_fluid *fluid, const char *function, mps_status status);
 void mpsi_fluid_classical_rows(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
 void mpsi_fluid_classical_solution(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
 void mpsi_fluid_classical_accelerate(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);

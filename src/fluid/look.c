@@ -25,22 +25,10 @@ void mpsi_fluid_load_cloud(mps_fluid *f) {
   mpsi_fluid_deal(f, mpsi_fluid_block(f));
 }
 
-/* Do all ranks have as many particles? `status` is this one's so far. */
-static mps_status settle_count(mps_fluid *f, const char *function, mps_status status) {
-  double range[2] = {(double)f->count, -(double)f->count};
-  status = mpsi_fluid_settle_max(f, function, status, 2, range);
-  if (status != MPS_OK || range[0] == -range[1]) return status;
-  status = mpsi_fail(f->context, function, MPS_ERROR_STATE,
-                     "the fluid has %lld particles here, %.0f to %.0f elsewhere: all ranks must "
-                     "add and remove the same",
-                     (long long)f->count, -range[1], range[0]);
-  return mpsi_fluid_settle(f, function, status);
-}
-
 mps_status mpsi_fluid_look_around(mps_fluid *f, const char *function, mps_status status) {
   if (status == MPS_OK) status = mpsi_fluid_make_ghosts(f, function);
   if (status == MPS_OK) mpsi_fluid_move_ghosts(f);
-  status = settle_count(f, function, status);
+  status = mpsi_fluid_settle_count(f, function, status);
   if (status == MPS_OK) status = mpsi_fluid_find_neighbours(f, function);
   if (status == MPS_OK) status = mpsi_fluid_meet(f, function);
   if (status == MPS_OK) mpsi_fluid_find_moments(f);
@@ -64,8 +52,7 @@ mps_status mpsi_fluid_know(mps_fluid *f, const char *function) {
   if (status != MPS_OK) return status;
   int64_t *surface = mpsi_particles_integers(f->particles, "free_surface");
   double *rise = column(f, "surface_rise", 0);
-  for (int64_t i = 0; i < f->count; i++)
-    surface[i] = f->state[i], rise[i] = mpsi_fluid_rise(f, i);
+  for (int64_t i = 0; i < f->count; i++) surface[i] = f->state[i], rise[i] = mpsi_fluid_rise(f, i);
   f->unknown = 0;
   return MPS_OK;
 }

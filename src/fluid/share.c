@@ -78,6 +78,18 @@ mps_status mpsi_fluid_settle_max(mps_fluid *f, const char *function, mps_status 
   return mpsi_domain_settle_max(f->def.domain, function, status, count, values);
 }
 
+mps_status mpsi_fluid_settle_count(mps_fluid *f, const char *function, mps_status status) {
+  if (!f->share) return status;
+  double range[2] = {(double)f->count, -(double)f->count};
+  status = mpsi_fluid_settle_max(f, function, status, 2, range);
+  if (status != MPS_OK || range[0] == -range[1]) return status;
+  status = mpsi_fail(f->context, function, MPS_ERROR_STATE,
+                     "the fluid has %lld particles here, %.0f to %.0f elsewhere: all ranks must "
+                     "add and remove the same",
+                     (long long)f->count, -range[1], range[0]);
+  return mpsi_fluid_settle(f, function, status);
+}
+
 static void note(mpsi_fluid_share *s, mps_status status) {
   if (s->lost == MPS_OK) s->lost = status;
 }
@@ -130,16 +142,40 @@ void mpsi_fluid_units(mps_fluid *f, int64_t size, void (*task)(void *, int64_t, 
 
 /* ---- links ----------------------------------------------------------------------------------- */
 
-/* Copies here of the guests, which are in l->guest. Collective. */
-static mps_status make_link(mps_fluid *f, const char *function, mps_status status, link *l,
-                            const int32_t *rank, const int64_t *index) {
-  l->in = mpsi_alloc(f->context, l->guests * MPSI_FLUID_SHARED, sizeof *l->in);
-  if (status == MPS_OK && !l->in)
-    status = mpsi_fail_memory(f->context, function, (size_t)l->guests * sizeof *l->in);
+/* Of each guest the particle that it is here, its owner and its index there. */
+typedef struct guests {
+  int64_t count; /* so far */
+  int32_t *particle, *rank;
+  int64_t *index;
+} guests;
+
+static void add_guest(guests *g, int64_t particle, int32_t rank, int64_t index) {
+  g->particle[g->count] = (int32_t)particle;
+  g->rank[g->count] = rank, g->index[g->count++] = index;
+}
+
+/* A link with `count` guests, which list(fluid, from, guests) gives. Collective. */
+static mps_status make_link(mps_fluid *f, const char *function, link *l, int64_t count,
+                            void (*list)(const mps_fluid *, const void *, guests *),
+                            const void *from) {
+  drop_link(f, l);
+  guests g = {.particle = mpsi_alloc(f->context, count, sizeof *g.particle),
+              .rank = mpsi_alloc(f->context, count, sizeof *g.rank),
+              .index = mpsi_alloc(f->context, count, sizeof *g.index)};
+  l->guests = count;
+  l->guest = g.particle;
+  l->in = mpsi_alloc(f->context, count * MPSI_FLUID_SHARED, sizeof *l->in);
+  const bool room = g.particle && g.rank && g.index && l->in;
+  mps_status status =
+      room ? MPS_OK : mpsi_fail_memory(f->context, function, (size_t)count * sizeof *l->in);
+  if (room) list(f, from, &g);
   status = mpsi_fluid_settle(f, function, status);
   const mpsi_halo_def def = {
-      .guests = l->guests, .rank = rank, .index = index, .columns = MPSI_FLUID_SHARED};
-  return status == MPS_OK ? mpsi_halo_create(f->share->domain, function, &def, &l->halo) : status;
+      .guests = count, .rank = g.rank, .index = g.index, .columns = MPSI_FLUID_SHARED};
+  if (status == MPS_OK) status = mpsi_halo_create(f->share->domain, function, &def, &l->halo);
+  mpsi_free(f->context, g.rank);
+  mpsi_free(f->context, g.index);
+  return status;
 }
 
 /* `first` is 0: the halo's own column `in`, from which values go to their places. */
@@ -156,26 +192,19 @@ static void copy(mps_fluid *f, link *l, int32_t columns, double *const *column,
     for (int64_t k = 0; k < l->guests; k++) into[c][l->guest[k]] = in[c][k];
 }
 
+typedef bool (*wanted_fn)(const mps_fluid *, int64_t);
+
+static void list_wanted(const mps_fluid *f, const void *from, guests *g) {
+  const wanted_fn wanted = *(const wanted_fn *)from;
+  for (int64_t i = 0; i < f->count; i++)
+    if (wanted(f, i)) add_guest(g, i, owner(f->share, i), i);
+}
+
 /* The particles that `wanted` picks as guests of a link. */
-static mps_status join(mps_fluid *f, const char *function, link *l,
-                       bool (*wanted)(const mps_fluid *, int64_t)) {
-  drop_link(f, l);
-  for (int64_t i = 0; i < f->count; i++) l->guests += wanted(f, i);
-  l->guest = mpsi_alloc(f->context, l->guests, sizeof *l->guest);
-  int64_t *index = mpsi_alloc(f->context, l->guests, sizeof *index), at = 0;
-  int32_t *rank = mpsi_alloc(f->context, l->guests, sizeof *rank);
-  const bool room = l->guest && index && rank;
-  mps_status status =
-      room ? MPS_OK : mpsi_fail_memory(f->context, function, (size_t)l->guests * sizeof *index);
-  for (int64_t i = 0; room && i < f->count; i++) {
-    if (!wanted(f, i)) continue;
-    l->guest[at] = (int32_t)i, index[at] = i, rank[at] = owner(f->share, i);
-    at++;
-  }
-  status = make_link(f, function, status, l, rank, index);
-  mpsi_free(f->context, index);
-  mpsi_free(f->context, rank);
-  return status;
+static mps_status join(mps_fluid *f, const char *function, link *l, wanted_fn wanted) {
+  int64_t count = 0;
+  for (int64_t i = 0; i < f->count; i++) count += wanted(f, i);
+  return make_link(f, function, l, count, list_wanted, &wanted);
 }
 
 /* ---- the way back ---------------------------------------------------------------------------- */
@@ -206,29 +235,25 @@ static mps_status ask_owners(mps_fluid *f, const char *function, mpsi_mailbox *b
   return status;
 }
 
+/* Its guests are the guests of `near` elsewhere that are this rank's particles. */
+static void list_asked(const mps_fluid *f, const void *from, guests *g) {
+  const mpsi_mailbox *box = from;
+  (void)f;
+  for (int32_t m = 0; m < box->count; m++) {
+    const int64_t *words = box->mail[m].data;
+    for (int64_t k = 1; k < box->mail[m].bytes / 8; k++)
+      add_guest(g, words[k], box->mail[m].rank, words[0] + k - 1);
+  }
+}
+
 static mps_status join_back(mps_fluid *f, const char *function) {
-  link *l = &f->share->back;
   mpsi_mailbox box = {.context = f->context};
-  drop_link(f, l);
+  int64_t count = 0;
   mps_status status = ask_owners(f, function, &box);
   if (status != MPS_OK) return status;
-  for (int32_t m = 0; m < box.count; m++) l->guests += box.mail[m].bytes / 8 - 1;
-  l->guest = mpsi_alloc(f->context, l->guests, sizeof *l->guest);
-  int64_t *index = mpsi_alloc(f->context, l->guests, sizeof *index), at = 0;
-  int32_t *rank = mpsi_alloc(f->context, l->guests, sizeof *rank);
-  const bool room = l->guest && index && rank;
-  if (!room) status = mpsi_fail_memory(f->context, function, (size_t)l->guests * sizeof *index);
-  for (int32_t m = 0; room && m < box.count; m++) {
-    const int64_t *words = box.mail[m].data;
-    for (int64_t k = 1; k < box.mail[m].bytes / 8; k++, at++) {
-      l->guest[at] = (int32_t)words[k];
-      index[at] = words[0] + k - 1, rank[at] = box.mail[m].rank;
-    }
-  }
+  for (int32_t m = 0; m < box.count; m++) count += box.mail[m].bytes / 8 - 1;
+  status = make_link(f, function, &f->share->back, count, list_asked, &box);
   mpsi_domain_free_mail(&box);
-  status = make_link(f, function, status, l, rank, index);
-  mpsi_free(f->context, index);
-  mpsi_free(f->context, rank);
   return status;
 }
 

@@ -2,6 +2,7 @@
  * matrix by rows with the ghosts' columns folded into their parents', and what the solver answers,
  * checked. SPDX-License-Identifier: BSD-3-Clause */
 #include "loops.h"
+#include "share.h"
 
 #include <mps/fluid_solver.h>
 
@@ -30,9 +31,11 @@ mps_status mps_fluid_set_solver(mps_fluid *f, const mps_fluid_solver_def *user_d
   if (status == MPS_OK && user_def)
     status = MPSI_DEF_READ(f->context, __func__, mps_fluid_solver_def, user_def, &def);
   if (status != MPS_OK) return status;
-  if (user_def && f->share)
-    return mpsi_fail(f->context, __func__, MPS_ERROR_UNSUPPORTED,
-                     "a fluid of several ranks has its pressure solved by the library");
+  if (user_def && f->share && !def.rows)
+    return mpsi_fail(
+        f->context, __func__, MPS_ERROR_UNSUPPORTED,
+        "rows is NULL: a fluid of several ranks has its pressure solved by the library, "
+        "or by a solver that takes each rank's rows");
   if (user_def && (!def.matrix || !def.solve || def.least < 0))
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                      "matrix is %s, solve %s, least %lld: both must be given, and least >= 0",
@@ -41,13 +44,20 @@ mps_status mps_fluid_set_solver(mps_fluid *f, const mps_fluid_solver_def *user_d
   mpsi_fluid_outside *outside = NULL;
   if (user_def) {
     outside = mpsi_alloc(f->context, 1, sizeof *outside);
-    if (!outside) return mpsi_fail_memory(f->context, __func__, sizeof *outside);
+    if (!outside) status = mpsi_fail_memory(f->context, __func__, sizeof *outside);
+  }
+  status = mpsi_fluid_settle(f, __func__, status);
+  if (status != MPS_OK) {
+    mpsi_free(f->context, outside);
+    return status;
+  }
+  if (outside)
     *outside = (mpsi_fluid_outside){.user = def.user,
                                     .matrix = def.matrix,
                                     .solve = def.solve,
                                     .forget = def.forget,
+                                    .rows_of_rank = def.rows,
                                     .least = def.least};
-  }
   mpsi_fluid_drop_solver(f);
   f->outside = outside;
   return MPS_OK;
@@ -94,24 +104,26 @@ static int64_t fill_row(const mps_fluid *f, int64_t i, int32_t *column, double *
 static void fill_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   (void)chunk;
   mpsi_fluid_outside *o = f->outside;
-  int64_t at = f->start[begin] + begin;
+  int64_t at = f->start[begin] - f->start[f->own[0]] + begin - f->own[0];
   for (int64_t i = begin; i < end; i++) {
-    o->start[i + 1] =
+    int64_t *const length = &o->start[i - f->own[0] + 1];
+    *length =
         fill_row(f, i, (int32_t *)o->column_room.item + at, (double *)o->value_room.item + at);
-    at += o->start[i + 1];
+    at += *length;
   }
 }
 
 static mps_status make_room(mps_fluid *f, const char *function) {
   mpsi_fluid_outside *o = f->outside;
-  const int64_t last = f->count - 1;
-  const int64_t entries = f->start[last] + f->near[last] + f->count;
-  if (o->rows < f->count) {
+  const int64_t last = f->own[1] - 1, rows = f->own[1] - f->own[0];
+  const int64_t entries =
+      rows > 0 ? f->start[last] + f->near[last] - f->start[f->own[0]] + rows : 0;
+  if (o->rows < rows || !o->start) {
     mpsi_free(f->context, o->start);
     o->rows = 0;
-    o->start = mpsi_alloc(f->context, f->count + 1, sizeof *o->start);
-    if (!o->start) return mpsi_fail_memory(f->context, function, (size_t)f->count * 8);
-    o->rows = f->count;
+    o->start = mpsi_alloc(f->context, rows + 1, sizeof *o->start);
+    if (!o->start) return mpsi_fail_memory(f->context, function, (size_t)rows * 8);
+    o->rows = rows;
   }
   if (!mpsi_room_ensure(f->context, &o->column_room, entries, sizeof(int32_t)) ||
       !mpsi_room_ensure(f->context, &o->value_room, entries, sizeof(double)))
@@ -119,26 +131,36 @@ static mps_status make_room(mps_fluid *f, const char *function) {
   return MPS_OK;
 }
 
-mps_status mpsi_fluid_hand_matrix(mps_fluid *f, const char *function) {
+/* The rows of the chunks, moved together. */
+static void close_gaps(mps_fluid *f) {
   mpsi_fluid_outside *o = f->outside;
-  mps_status status = make_room(f, function);
-  if (status != MPS_OK) return status;
-  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, fill_chunk);
   int32_t *column = o->column_room.item;
   double *value = o->value_room.item;
   int64_t at = 0, from = 0;
   o->start[0] = 0;
-  for (int64_t i = 0; i < f->count; i++) {
-    const int64_t length = o->start[i + 1];
-    if (i % MPSI_FLUID_CHUNK == 0) from = f->start[i] + i;
+  for (int64_t row = 0; row < f->own[1] - f->own[0]; row++) {
+    const int64_t i = f->own[0] + row, length = o->start[row + 1];
+    if (i % MPSI_FLUID_CHUNK == 0) from = f->start[i] - f->start[f->own[0]] + row;
     memmove(column + at, column + from, (size_t)length * sizeof *column);
     memmove(value + at, value + from, (size_t)length * sizeof *value);
     at += length, from += length;
-    o->start[i + 1] = at;
+    o->start[row + 1] = at;
   }
-  mpsi_guard_enter(&f->guard, f->context, "the callback matrix of mps_fluid_set_solver");
-  status = o->matrix(o->user, f->count, o->start, column, value);
-  return mpsi_guard_leave(&f->guard, f->context, function, status);
+}
+
+mps_status mpsi_fluid_hand_matrix(mps_fluid *f, const char *function) {
+  mpsi_fluid_outside *o = f->outside;
+  mps_status status = mpsi_fluid_settle(f, function, make_room(f, function));
+  if (status != MPS_OK) return status;
+  const int32_t *column = o->column_room.item;
+  const double *value = o->value_room.item;
+  const int64_t rows = f->own[1] - f->own[0];
+  mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, fill_chunk);
+  close_gaps(f);
+  mpsi_guard_enter(&f->guard, f->context, "a callback of mps_fluid_set_solver");
+  status = f->share ? o->rows_of_rank(o->user, f->count, f->own[0], rows, o->start, column, value)
+                    : o->matrix(o->user, rows, o->start, column, value);
+  return mpsi_fluid_settle(f, function, mpsi_guard_leave(&f->guard, f->context, function, status));
 }
 
 /* ---- solution -------------------------------------------------------------------------------- */
@@ -160,10 +182,14 @@ mps_status mpsi_fluid_solve_outside(mps_fluid *f, const char *function) {
   int64_t iterations = 0;
   mpsi_guard_enter(&f->guard, f->context, "the callback solve of mps_fluid_set_solver");
   mps_status status = o->solve(o->user, s->right, f->def.tolerance, s->x, &iterations);
-  status = mpsi_guard_leave(&f->guard, f->context, function, status);
+  status =
+      mpsi_fluid_settle(f, function, mpsi_guard_leave(&f->guard, f->context, function, status));
   if (status != MPS_OK) return status;
   for (int64_t g = 0; g < f->ghosts; g++) s->x[f->count + g] = s->x[f->parent[g]];
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, residual);
+  mpsi_fluid_tell_sums(f, MPSI_FLUID_CHUNK);
+  const mps_status lost = mpsi_fluid_lost(f, function);
+  if (lost != MPS_OK) return lost;
   double rr = 0.0, bb = 0.0;
   for (int64_t k = 0; k < (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK; k++)
     rr += s->sums[2 * k], bb += s->sums[2 * k + 1];

@@ -84,8 +84,8 @@ static mps_status begin(mps_fluid *f, const char *function, double dt) {
   const bool classical = f->classical.gamma > 0.0;
   if (!classical)
     status = mpsi_fluid_look_around(f, function, status);
-  else if (status == MPS_OK)
-    status = mpsi_fluid_classical_look(f, function);
+  else
+    status = mpsi_fluid_classical_look(f, function, status);
   return status == MPS_OK ? mpsi_fluid_prepare_pressure(f, function) : status;
 }
 

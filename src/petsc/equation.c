@@ -263,10 +263,11 @@ static mps_status solve(mps_petsc_solver *s, double tolerance, int64_t *iteratio
 
 mps_status mpsi_petsc_solve(mps_petsc_solver *s, const double *b, double tolerance, double *x,
                             int64_t *iterations) {
-  double size = 0.0;
+  int nothing = 1, mine = 1;
   if (s->all == 0) return MPS_ERROR_STATE;
-  for (int64_t i = 0; i < s->all; i++) size += b[i] * b[i];
-  if (size == 0.0) {
+  for (int64_t i = s->first; i < s->first + s->rows; i++) mine = mine && b[i] == 0.0;
+  if (MPI_Allreduce(&mine, &nothing, 1, MPI_INT, MPI_LAND, s->comm) != 0) return MPS_ERROR_IO;
+  if (nothing) {
     for (int64_t i = 0; i < s->all; i++) x[i] = 0.0;
     return MPS_OK;
   }

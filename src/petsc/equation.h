@@ -36,7 +36,8 @@ typedef struct mpsi_petsc_matrix {
 mps_status mpsi_petsc_take(mps_petsc_solver *s, const mpsi_petsc_matrix *a);
 /* Nothing of former equations serves any more. */
 void mpsi_petsc_forget(mps_petsc_solver *s);
-/* x holds a start and receives the solution, both of all rows: |b - A x| <= tolerance |b|. */
+/* x holds a start and receives the solution, both of all rows: |b - A x| <= tolerance |b|. Of b and
+ * of the start only this rank's rows are read. */
 mps_status mpsi_petsc_solve(mps_petsc_solver *s, const double *b, double tolerance, double *x,
                             int64_t *iterations);
 

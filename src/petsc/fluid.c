@@ -8,6 +8,18 @@ static mps_status take(void *user, int64_t rows, const int64_t *start, const int
   return mpsi_petsc_take(user, &a);
 }
 
+static mps_status take_rows(void *user, int64_t all, int64_t first, int64_t rows,
+                            const int64_t *start, const int32_t *column, const double *value) {
+  const mpsi_petsc_matrix a = {.all = all,
+                               .first = first,
+                               .rows = rows,
+                               .block = 1,
+                               .start = start,
+                               .column = column,
+                               .value = value};
+  return mpsi_petsc_take(user, &a);
+}
+
 static mps_status solve(void *user, const double *b, double tolerance, double *x,
                         int64_t *iterations) {
   return mpsi_petsc_solve(user, b, tolerance, x, iterations);
@@ -20,10 +32,14 @@ static mps_status forget(void *user) {
 
 mps_status mps_petsc_solve_fluid(mps_petsc_solver *solver, mps_fluid *fluid, int64_t least) {
   mps_fluid_solver_def def = mps_fluid_solver_defaults();
-  if (!solver || !fluid) return MPS_ERROR_ARGUMENT;
-  if (solver->size > 1) return MPS_ERROR_UNSUPPORTED; /* a fluid is of one process */
+  mps_fluid_def of = {0};
+  if (!solver || !fluid || mps_fluid_get_def(fluid, &of) != MPS_OK) return MPS_ERROR_ARGUMENT;
+  const int32_t ranks = of.domain ? mps_domain_size(of.domain) : 1;
+  if (ranks != solver->size || (ranks > 1 && mps_domain_rank(of.domain) != solver->rank))
+    return MPS_ERROR_ARGUMENT;
   def.user = solver;
   def.matrix = take;
+  def.rows = take_rows;
   def.solve = solve;
   def.forget = forget;
   def.least = least;

@@ -17,6 +17,9 @@ static void test_afloat(void **state) {
 static void test_spill(void **state) {
   (void)state, compare_teams(compute, SPILL, steps(24), true);
 }
+static void test_classical(void **state) {
+  (void)state, compare_teams(compute, CLASSICAL, steps(12), false);
+}
 static void test_puddle(void **state) { (void)state, compare_teams(compute, PUDDLE, 20, true); }
 
 /* ---- cut in two --------------------------------------------------------------------------------
@@ -44,8 +47,8 @@ static void run_half(result_fn *half, int32_t size, int64_t count, const result 
   free(seen);
 }
 
-/* Written by 3 ranks, it goes on with 2, and without a domain, as a run without one does; and before
- * it does, it tells what was told. */
+/* Written by 3 ranks, it goes on with 2, and without a domain, as a run without one does; and
+ * before it does, it tells what was told. */
 static void test_checkpoint(void **state) {
   (void)state;
   if (!mps_library_has(MPS_FEATURE_HDF5)) skip();
@@ -145,10 +148,10 @@ static void test_troubles(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_puddle),     cmocka_unit_test(test_collapse),
-      cmocka_unit_test(test_afloat),     cmocka_unit_test(test_spill),
-      cmocka_unit_test(test_checkpoint), cmocka_unit_test(test_refused_memory),
-      cmocka_unit_test(test_troubles),
+      cmocka_unit_test(test_classical),      cmocka_unit_test(test_puddle),
+      cmocka_unit_test(test_collapse),       cmocka_unit_test(test_afloat),
+      cmocka_unit_test(test_spill),          cmocka_unit_test(test_checkpoint),
+      cmocka_unit_test(test_refused_memory), cmocka_unit_test(test_troubles),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

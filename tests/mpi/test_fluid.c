@@ -16,6 +16,47 @@ static void test_afloat(void **state) {
 static void test_spill(void **state) {
   (void)state, compare_shares(own, domain, compute, SPILL, 24);
 }
+static void test_classical(void **state) {
+  (void)state, compare_shares(own, domain, compute, CLASSICAL, 6);
+}
+
+/* The pressure by PETSc's multigrid, on all ranks, of which a third one has no rows, and on each
+ * alone. */
+static void test_multigrid(void **state) {
+  (void)state;
+  mps_petsc_solver *solvers[2] = {NULL, NULL};
+  scene s[2] = {{NULL}, {NULL}};
+  assert_int_equal(mps_petsc_solver_create(MPS_PETSC_MULTIGRID, &solvers[0]), MPS_OK);
+  assert_int_equal(mps_petsc_solver_create_world(MPS_PETSC_MULTIGRID, &solvers[1]), MPS_OK);
+  for (int k = 0; k < 2; k++) {
+    mps_assert_ok(own, make_scene(own, k ? domain : NULL, EXACT, &s[k]));
+    mps_assert_ok(own, mps_petsc_solve_fluid(solvers[k], s[k].fluid, 0));
+    mps_assert_ok(own, mps_fluid_step(s[k].fluid, 3));
+  }
+  mps_view v[2], p[2];
+  for (int k = 0; k < 2; k++) {
+    mps_assert_ok(own, mps_particles_view(s[k].set, "velocity", &v[k]));
+    mps_assert_ok(own, mps_particles_view(s[k].set, "pressure", &p[k]));
+  }
+  double fastest = 0.0, highest = 0.0;
+  assert_int_equal(v[0].shape[0], v[1].shape[0]);
+  for (int64_t i = 0; i < v[0].shape[0]; i++) {
+    highest = fmax(highest, *mps_view_f64(&p[0], i, 0));
+    for (int c = 0; c < 2; c++) fastest = fmax(fastest, fabs(*mps_view_f64(&v[0], i, c)));
+  }
+  assert_true(fastest > 0.0 && highest > 0.0);
+  for (int64_t i = 0; i < v[0].shape[0]; i++) {
+    mps_assert_near(*mps_view_f64(&p[1], i, 0), *mps_view_f64(&p[0], i, 0), 1e-8 * highest);
+    for (int c = 0; c < 2; c++)
+      mps_assert_near(*mps_view_f64(&v[1], i, c), *mps_view_f64(&v[0], i, c), 1e-8 * fastest);
+  }
+  if (mps_domain_size(domain) > 1) /* those of other processes do not fit */
+    assert_int_equal(mps_petsc_solve_fluid(solvers[0], s[1].fluid, 0), MPS_ERROR_ARGUMENT);
+  for (int k = 0; k < 2; k++) {
+    drop_scene(&s[k]);
+    mps_petsc_solver_destroy(&solvers[k]);
+  }
+}
 
 int main(void) {
   own = test_context(MPS_EXECUTOR_SERIAL, 1);
@@ -25,9 +66,9 @@ int main(void) {
     return 1;
   }
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_collapse),
-      cmocka_unit_test(test_afloat),
-      cmocka_unit_test(test_spill),
+      cmocka_unit_test(test_collapse),  cmocka_unit_test(test_afloat),
+      cmocka_unit_test(test_spill),     cmocka_unit_test(test_classical),
+      cmocka_unit_test(test_multigrid),
   };
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   mps_domain_destroy(&domain);
