@@ -157,7 +157,9 @@ mps_status mpsi_fluid_hand_matrix(mps_fluid *f, const char *function) {
   const int64_t rows = f->own[1] - f->own[0];
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, fill_chunk);
   close_gaps(f);
-  mpsi_guard_enter(&f->guard, f->context, "a callback of mps_fluid_set_solver");
+  mpsi_guard_enter(&f->guard, f->context,
+                   f->share ? "the callback rows of mps_fluid_set_solver"
+                            : "the callback matrix of mps_fluid_set_solver");
   status = f->share ? o->rows_of_rank(o->user, f->count, f->own[0], rows, o->start, column, value)
                     : o->matrix(o->user, rows, o->start, column, value);
   return mpsi_fluid_settle(f, function, mpsi_guard_leave(&f->guard, f->context, function, status));
