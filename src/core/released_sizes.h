@@ -29,7 +29,7 @@
   X(mps_fluid_boundary_def, mps_fluid_boundary_def_init, "0.2", 88) \
   X(mps_fluid_def, mps_fluid_def_init, "0.2", 96) \
   X(mps_fluid_load_def, mps_fluid_load_def_init, "0.2", 152) \
-  X(mps_fluid_solver_def, mps_fluid_solver_def_init, "0.2", 48) \
+  X(mps_fluid_solver_def, mps_fluid_solver_def_init, "0.2", 56) \
   X(mps_geostatic_def, mps_geostatic_def_init, "0.2", 72) \
   X(mps_material_block, mps_material_block_init, "0.2", 312) \
   X(mps_mohr_coulomb_def, mps_mohr_coulomb_def_init, "0.2", 56) \
