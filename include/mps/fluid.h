@@ -31,6 +31,7 @@
 #include "body.h"
 #include "domain.h"
 #include "io.h"
+#include "kernel.h"
 #include "particles.h"
 #include "signal.h"
 #include "solver.h"
@@ -51,10 +52,12 @@ typedef struct mps_fluid_def {
   double measure;      /* m, thickness of the slab, > 0; default 1 */
   double dt;           /* s, > 0: at most the limit at rest, .5 (l0/g)^1/2; NaN (default): each step
                           the largest by mps_fluid_limit */
-  double radius_ratio; /* re/l0, in [2.6, 4]; default 3.1 */
+  double radius_ratio; /* re/l0, in [2.6, 4]; default 3.1. Not read with a kernel */
   double tolerance;    /* of the pressure solution, |residual|/|right side|, in [1e-14, 1e-2];
                           default 1e-5 */
   mps_domain *domain;  /* ranks that share the work; NULL (default): none. Kept alive */
+  mps_kernel *kernel;  /* weight function, MPS_KERNEL_SMOOTH, its radius in [2.6, 4] spacings; NULL
+                          (default): that of radius_ratio. Kept alive */
 } mps_fluid_def;
 
 MPS_API mps_status mps_fluid_def_init(mps_fluid_def *def, size_t size);

@@ -15,8 +15,9 @@ typedef enum mps_kernel_kind {
   MPS_KERNEL_MPS = 0,     /* w(r) = re/r - 1 for 0 < r < re, else 0: Yoshida (A8), Chikazawa (6) */
   MPS_KERNEL_SPLINE2 = 1, /* quadratic B-spline on nodes h = re/1.5 apart: 3/4 - (r/h)^2, then
                              (3/2 - r/h)^2/2 from r = h/2 on */
-  MPS_KERNEL_SPLINE3 = 2  /* cubic B-spline on nodes h = re/2 apart: 2/3 - (r/h)^2 + (r/h)^3/2, then
+  MPS_KERNEL_SPLINE3 = 2, /* cubic B-spline on nodes h = re/2 apart: 2/3 - (r/h)^2 + (r/h)^3/2, then
                              (2 - r/h)^3/6 from r = h on: the weights of a grid, Nakamura (36) */
+  MPS_KERNEL_SMOOTH = 3   /* (1 - r/re)^4 (1 + 4 r/re): twice differentiable, of the fluid */
 } mps_kernel_kind;
 
 /** Creates a kernel with radius of influence `radius` (re, m, 1e-12 to 1e12).

@@ -1,5 +1,6 @@
 /* kernel.c - weight functions: w = re/r - 1, Yoshida (A8), the B-splines of grids, Nakamura (36),
- * and the density of a lattice, Yoshida (A9). SPDX-License-Identifier: BSD-3-Clause */
+ * the smooth one of the fluid, and the density of a lattice, Yoshida (A9). SPDX-License-Identifier:
+ * BSD-3-Clause */
 #include "internal.h"
 
 #include "ranges.h"
@@ -16,10 +17,12 @@ mps_status mps_kernel_create(mps_context *context, int32_t kind, double radius, 
   if (!context) return MPS_ERROR_ARGUMENT;
   if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
   *out = NULL;
-  if (kind < MPS_KERNEL_MPS || kind > MPS_KERNEL_SPLINE3)
-    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                     "kind is %d, allowed are 0 (re/r - 1), 1 and 2 (quadratic and cubic B-spline)",
-                     kind);
+  if (kind < MPS_KERNEL_MPS || kind > MPS_KERNEL_SMOOTH)
+    return mpsi_fail(
+        context, __func__, MPS_ERROR_ARGUMENT,
+        "kind is %d, allowed are 0 (re/r - 1), 1 and 2 (quadratic and cubic B-spline) and "
+        "3 (smooth)",
+        kind);
   const mps_status status =
       mpsi_check_range(context, __func__, "radius of influence", radius, MPSI_RANGE_SPACING);
   if (status != MPS_OK) return status;
@@ -57,9 +60,16 @@ static double node_distance(const mps_kernel *k) {
   return k->radius / (k->kind == MPS_KERNEL_SPLINE2 ? 1.5 : 2.0);
 }
 
+/* (1 - q)^4 (1 + 4 q), q = r/re. */
+static double smooth(double q) {
+  const double a = (1.0 - q) * (1.0 - q);
+  return a * a * (1.0 + 4.0 * q);
+}
+
 double mps_kernel_weight(const mps_kernel *kernel, double r) {
   if (!kernel || !(r >= 0.0) || r >= kernel->radius) return 0.0;
   if (kernel->kind == MPS_KERNEL_MPS) return r > 0.0 ? kernel->radius / r - 1.0 : 0.0;
+  if (kernel->kind == MPS_KERNEL_SMOOTH) return smooth(r / kernel->radius);
   const double s = r / node_distance(kernel);
   if (kernel->kind == MPS_KERNEL_SPLINE2)
     return s < 0.5 ? 0.75 - s * s : 0.5 * (1.5 - s) * (1.5 - s);
@@ -69,6 +79,10 @@ double mps_kernel_weight(const mps_kernel *kernel, double r) {
 double mps_kernel_derivative(const mps_kernel *kernel, double r) {
   if (!kernel || !(r > 0.0) || r >= kernel->radius) return 0.0;
   if (kernel->kind == MPS_KERNEL_MPS) return -kernel->radius / (r * r);
+  if (kernel->kind == MPS_KERNEL_SMOOTH) {
+    const double q = r / kernel->radius, a = 1.0 - q;
+    return -20.0 * q * a * a * a / kernel->radius;
+  }
   const double h = node_distance(kernel), s = r / h;
   if (kernel->kind == MPS_KERNEL_SPLINE2) return (s < 0.5 ? -2.0 * s : s - 1.5) / h;
   return (s < 1.0 ? 1.5 * s * s - 2.0 * s : -0.5 * (2.0 - s) * (2.0 - s)) / h;
@@ -90,6 +104,12 @@ static double spline_moment(const mps_kernel *kernel, int32_t power) {
   return sum;
 }
 
+/* Integral of (1 - q)^4 (1 + 4 q) q^(n - 1) from 0 to 1: B(n, 5) + 4 B(n + 1, 5). */
+static double smooth_moment(int32_t n) {
+  const double beta = 24.0 / ((double)n * (n + 1) * (n + 2) * (n + 3) * (n + 4));
+  return beta * (1.0 + 4.0 * n / (n + 5.0));
+}
+
 mps_status mps_kernel_moment(mps_context *context, const mps_kernel *kernel, int32_t dim,
                              int32_t order, double *out) {
   if (!context) return MPS_ERROR_ARGUMENT;
@@ -104,9 +124,13 @@ mps_status mps_kernel_moment(mps_context *context, const mps_kernel *kernel, int
   if (kernel->kind == MPS_KERNEL_MPS && n == 1)
     return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
                      "the integral of re/r - 1 over a line diverges: dim is 1 and order 0");
-  const double radial = kernel->kind == MPS_KERNEL_MPS
-                            ? pow(kernel->radius, n) / ((double)n * (n - 1))
-                            : spline_moment(kernel, n - 1);
+  double radial;
+  if (kernel->kind == MPS_KERNEL_MPS)
+    radial = pow(kernel->radius, n) / ((double)n * (n - 1));
+  else if (kernel->kind == MPS_KERNEL_SMOOTH)
+    radial = pow(kernel->radius, n) * smooth_moment(n);
+  else
+    radial = spline_moment(kernel, n - 1);
   *out = sphere[dim - 1] * radial;
   return MPS_OK;
 }

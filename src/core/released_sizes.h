@@ -27,7 +27,7 @@
   X(mps_elastic_motion_def, mps_elastic_motion_def_init, "0.2", 96) \
   X(mps_elastic_solver_def, mps_elastic_solver_def_init, "0.2", 40) \
   X(mps_fluid_boundary_def, mps_fluid_boundary_def_init, "0.2", 88) \
-  X(mps_fluid_def, mps_fluid_def_init, "0.2", 96) \
+  X(mps_fluid_def, mps_fluid_def_init, "0.2", 104) \
   X(mps_fluid_load_def, mps_fluid_load_def_init, "0.2", 152) \
   X(mps_fluid_solver_def, mps_fluid_solver_def_init, "0.2", 56) \
   X(mps_geostatic_def, mps_geostatic_def_init, "0.2", 72) \

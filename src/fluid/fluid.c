@@ -55,6 +55,21 @@ static mps_status check_def(mps_context *context, const mps_fluid_def *d, double
   return MPS_OK;
 }
 
+/* The radius is that of the kernel, where there is one. */
+static mps_status read_kernel(mps_context *context, mps_fluid_def *d, double l0) {
+  if (!d->kernel) return MPS_OK;
+  if (mps_kernel_get_kind(d->kernel) != MPS_KERNEL_SMOOTH)
+    return mpsi_fail(context, "mps_fluid_create", MPS_ERROR_ARGUMENT,
+                     "kernel of the fluid is of kind %d, allowed is 3 (MPS_KERNEL_SMOOTH)",
+                     mps_kernel_get_kind(d->kernel));
+  d->radius_ratio = mps_kernel_radius(d->kernel) / l0;
+  if (!within(d->radius_ratio, 2.6, 4.0))
+    return mpsi_fail(context, "mps_fluid_create", MPS_ERROR_ARGUMENT,
+                     "kernel of the fluid has a radius of %g m, must be 2.6 to 4 spacings of %g m",
+                     mps_kernel_radius(d->kernel), l0);
+  return MPS_OK;
+}
+
 static mps_status check_particles(mps_context *context, mps_particles *particles) {
   static const char *const function = "mps_fluid_create";
   const int64_t n = mps_particles_count(particles);
@@ -99,8 +114,9 @@ static void set_gravity(mps_fluid *f) {
 }
 
 static mps_status add_fields(mps_particles *particles) {
-  static const char *const names[] = {"velocity", "pressure", "reduced_pressure",
-                                      "reduced_pressure_old", "free_surface", "surface_rise"};
+  static const char *const names[] = {"velocity",         "pressure",
+                                      "reduced_pressure", "reduced_pressure_old",
+                                      "free_surface",     "surface_rise"};
   mps_status status = MPS_OK;
   for (size_t k = 0; status == MPS_OK && k < sizeof names / sizeof *names; k++)
     status = mps_particles_add_field(particles, names[k], 0);
@@ -128,6 +144,7 @@ static void release(mps_fluid *f) {
   for (int b = 0; b < MPSI_FLUID_BODIES; b++) mps_body_destroy(&f->body[b].body);
   mpsi_state_forget(&f->identity);
   mps_domain_destroy(&f->def.domain);
+  mps_kernel_destroy(&f->def.kernel);
   mpsi_free(context, f);
 }
 
@@ -177,7 +194,9 @@ mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
   mps_status status = MPS_OK;
   if (user_def) status = MPSI_DEF_READ(context, __func__, mps_fluid_def, user_def, &def);
   if (status == MPS_OK) status = check_particles(context, particles);
-  if (status == MPS_OK) status = check_def(context, &def, mps_particles_spacing(particles));
+  const double l0 = mps_particles_spacing(particles);
+  if (status == MPS_OK) status = read_kernel(context, &def, l0);
+  if (status == MPS_OK) status = check_def(context, &def, l0);
   if (status == MPS_OK) status = mpsi_domain_check(context, __func__, def.domain);
   if (status == MPS_OK) status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
   mps_fluid *f = NULL;
@@ -193,6 +212,7 @@ mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
   f->particles = particles;
   f->def = def;
   f->def.domain = mpsi_domain_retain(def.domain);
+  f->def.kernel = def.kernel ? mpsi_kernel_retain(def.kernel) : NULL;
   status = mpsi_fluid_settle(f, __func__, add_fields(particles));
   if (status == MPS_OK) status = start(f, __func__);
   if (status != MPS_OK) {

@@ -72,6 +72,53 @@ static void the_definition_comes_back_completed(void **state) {
   mps_particles_destroy(&p);
 }
 
+/* Highest pressure and velocities after a drop, by a kernel of the caller's or by its radius. */
+static void drop_with(mps_kernel *kernel, double *out) {
+  mps_particles *p = block(0.1);
+  mps_fluid *f = NULL;
+  mps_fluid_def def = mps_fluid_defaults(), now;
+  mps_view v;
+  def.dt = 0.004;
+  def.radius_ratio = kernel ? 3.1 : 2.9;
+  def.kernel = kernel;
+  mps_assert_ok(context, mps_fluid_create(context, p, &def, &f));
+  mps_kernel_destroy(&kernel); /* the fluid has its share */
+  mps_assert_ok(context, mps_fluid_get_def(f, &now));
+  mps_assert_near(now.radius_ratio, 2.9, 1e-14);
+  tank_wall(context, f, 0.0, 0.0, 0.0, 1.0, NULL);
+  mps_assert_ok(context, mps_fluid_step(f, 5));
+  mps_assert_ok(context, mps_particles_view(p, "velocity", &v));
+  for (int64_t k = 0; k < v.shape[0]; k++) out[k] = *mps_view_f64(&v, k, 1);
+  mps_fluid_destroy(&f);
+  mps_particles_destroy(&p);
+}
+
+/* The weight is the kernel that the caller can ask: of another radius, and no other kind. */
+static void takes_a_kernel(void **state) {
+  (void)state;
+  double by_radius[50], by_kernel[50], most = 0.0;
+  mps_particles *p = block(0.1);
+  mps_fluid *f = NULL;
+  mps_fluid_def def = mps_fluid_defaults();
+  mps_assert_ok(context, mps_kernel_create(context, MPS_KERNEL_SMOOTH, 0.29, &def.kernel));
+  drop_with(NULL, by_radius);
+  drop_with(def.kernel, by_kernel);
+  for (int k = 0; k < 50; k++) {
+    mps_assert_near(by_kernel[k], by_radius[k], 1e-12);
+    most = fmax(most, fabs(by_radius[k]));
+  }
+  assert_true(most > 1e-3);
+  mps_assert_ok(context, mps_kernel_create(context, MPS_KERNEL_MPS, 0.29, &def.kernel));
+  mps_assert_fails(context, mps_fluid_create(context, p, &def, &f), MPS_ERROR_ARGUMENT,
+                   "kernel of the fluid is of kind 0, allowed is 3");
+  mps_kernel_destroy(&def.kernel);
+  mps_assert_ok(context, mps_kernel_create(context, MPS_KERNEL_SMOOTH, 0.5, &def.kernel));
+  mps_assert_fails(context, mps_fluid_create(context, p, &def, &f), MPS_ERROR_ARGUMENT,
+                   "kernel of the fluid has a radius of 0.5 m, must be 2.6 to 4 spacings of 0.1 m");
+  mps_kernel_destroy(&def.kernel);
+  mps_particles_destroy(&p);
+}
+
 static void bad_boundaries_are_refused(void **state) {
   (void)state;
   mps_particles *p = block(0.1);
@@ -658,6 +705,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bad_definitions_are_refused),
       cmocka_unit_test(the_definition_comes_back_completed),
+      cmocka_unit_test(takes_a_kernel),
       cmocka_unit_test(bad_boundaries_are_refused),
       cmocka_unit_test(a_run_ends_on_time_and_its_callback_only_reads),
       cmocka_unit_test(a_solution_that_does_not_converge_keeps_the_state),

@@ -4,7 +4,8 @@
 
 #include <mps/kernel.h>
 
-static const int32_t kinds[] = {MPS_KERNEL_MPS, MPS_KERNEL_SPLINE2, MPS_KERNEL_SPLINE3};
+static const int32_t kinds[] = {MPS_KERNEL_MPS, MPS_KERNEL_SPLINE2, MPS_KERNEL_SPLINE3,
+                                MPS_KERNEL_SMOOTH};
 
 static mps_kernel *make(int32_t kind, double radius) {
   mps_kernel *kernel = NULL;
@@ -15,7 +16,7 @@ static mps_kernel *make(int32_t kind, double radius) {
 /* The derivative against central differences, and none where the weight ends. */
 static void derivatives_are_those_of_the_weights(void **state) {
   (void)state;
-  for (int k = 0; k < 3; k++) {
+  for (int k = 0; k < 4; k++) {
     mps_kernel *w = make(kinds[k], 3.0);
     assert_int_equal(mps_kernel_get_kind(w), kinds[k]);
     mps_assert_near(mps_kernel_radius(w), 3.0, 0.0);
@@ -71,7 +72,7 @@ static void moments_are_integrals(void **state) {
   mps_assert_ok(context, mps_kernel_moment(context, w, 3, 0, &m));
   mps_assert_near(m, 18.0 * pi, 1e-13);
   mps_kernel_destroy(&w);
-  for (int k = 0; k < 3; k++)
+  for (int k = 0; k < 4; k++)
     for (int32_t dim = 1; dim <= 3; dim++)
       for (int32_t order = 0; order <= 4; order++) {
         if (k == 0 && dim + order < 3) continue; /* not smooth enough for the rule */
@@ -93,8 +94,8 @@ static void nonsense_is_refused(void **state) {
   (void)state;
   mps_kernel *w = NULL;
   double m;
-  mps_assert_fails(context, mps_kernel_create(context, 3, 1.0, &w), MPS_ERROR_ARGUMENT,
-                   "kind is 3");
+  mps_assert_fails(context, mps_kernel_create(context, 4, 1.0, &w), MPS_ERROR_ARGUMENT,
+                   "kind is 4");
   mps_assert_fails(context, mps_kernel_create(context, -1, 1.0, &w), MPS_ERROR_ARGUMENT, "kind");
   mps_assert_fails(context, mps_kernel_create(context, 0, 1e-320, &w), MPS_ERROR_ARGUMENT,
                    "radius of influence is 9.99989e-321 m, must be 1e-12 to 1e+12");
