@@ -120,15 +120,16 @@ static tank before_a_slope(const slope *s, double l0, mps_signal *piston_motion)
   return t;
 }
 
-/* Height of the highest particle that is not apart, its own half spacing included, above rest. */
-static double highest(const tank *t, double l0) {
+/* Height above rest, in depths, of the end of the tongue on the slope: half a spacing beyond the
+ * highest particle that is not apart, and half a spacing below it. */
+static double highest(const tank *t, const slope *s, double l0) {
   mps_view x, surface;
   double most = 0.0;
   mps_assert_ok(context, mps_particles_view(t->water, "position", &x));
   mps_assert_ok(context, mps_particles_view(t->water, "free_surface", &surface));
   for (int64_t i = 0; i < x.shape[0]; i++)
     if (*mps_view_i64(&surface, i, 0) != 2) most = fmax(most, *mps_view_f64(&x, i, 1));
-  return (most + 0.5 * l0) / DEPTH - 1.0;
+  return (most + 0.5 * l0 * (sin(s->angle) - cos(s->angle))) / DEPTH - 1.0;
 }
 
 static void climb_slope(double e, double l0, double angle) {
@@ -143,7 +144,7 @@ static void climb_slope(double e, double l0, double angle) {
     mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
     mps_assert_ok(context, mps_fluid_get_levels(t.fluid, 1, &station, &level));
     if (mps_fluid_time(t.fluid) < start + LENGTH / w.speed) passing = fmax(passing, level);
-    if (mps_fluid_time(t.fluid) > start) run_up = fmax(run_up, highest(&t, l0));
+    if (mps_fluid_time(t.fluid) > start) run_up = fmax(run_up, highest(&t, &s, l0));
   }
   passing = passing / DEPTH - 1.0;
   const double theory = 2.831 * sqrt(1.0 / tan(s.angle)) * pow(passing, 1.25);
