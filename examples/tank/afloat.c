@@ -10,6 +10,7 @@
  *
  * At x = a both agree below the box, and beside it the normal velocity is 0. The pressure of the
  * slit upon the box gives the added mass, w^2 (M + M_a(w)) = rho g (half its width) the frequency.
+ * d and s are those of the rest that the box heaves about.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "tank.h"
 
@@ -134,20 +135,25 @@ static double half_added_mass(const tank_settings *t, double w) {
   return WAVES_DENSITY * sum;
 }
 
-/* Force of inertia less that of buoyancy on half the box, over its displacement, N/m. */
-static double imbalance(const tank_settings *t, double w) {
-  const double half = 0.5 * t->width, mass = WAVES_DENSITY * half * t->draft;
-  return w * w * (mass + half_added_mass(t, w)) - WAVES_DENSITY * WAVES_G * half;
+/* Force of inertia less that of buoyancy on half the box of mass 2 `mass`, over its displacement,
+ * N/m. */
+static double imbalance(const tank_settings *t, double mass, double w) {
+  return w * w * (mass + half_added_mass(t, w)) - WAVES_DENSITY * WAVES_G * 0.5 * t->width;
 }
 
-/* The slowest: below it buoyancy is the larger force. */
+/* The slowest: below it buoyancy is the larger force. The box heaves about its rest under the
+ * weight, where it lies lower and the water beside it higher than at the start: more water moves.
+ */
 double tank_float_period(const tank_settings *t) {
-  const double fall = sqrt(WAVES_G / t->draft);
+  const double mass = WAVES_DENSITY * 0.5 * t->width * t->draft;
+  const double fall = sqrt(WAVES_G / t->draft), rise = t->width / (t->length - t->width);
+  tank_settings rest = *t;
+  rest.depth += t->amplitude * rise, rest.draft += t->amplitude * (1.0 + rise);
   double low = 0.02 * fall, high = low;
-  while (imbalance(t, high) < 0.0 && high < 10.0 * fall) low = high, high *= 1.02;
+  while (imbalance(&rest, mass, high) < 0.0 && high < 10.0 * fall) low = high, high *= 1.02;
   for (int k = 0; k < 40; k++) {
     const double w = 0.5 * (low + high);
-    if (imbalance(t, w) < 0.0)
+    if (imbalance(&rest, mass, w) < 0.0)
       low = w;
     else
       high = w;
