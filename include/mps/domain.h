@@ -107,5 +107,20 @@ MPS_API MPS_NODISCARD mps_status mps_domain_max(mps_domain *domain, int32_t coun
 MPS_API MPS_NODISCARD mps_status mps_domain_gather(mps_domain *domain, mps_particles *particles,
                                                    mps_particles **whole);
 
+/** The same of `count` fields by name, with id and position: what a picture or a table needs, and
+ *  less to send. MPS_ERROR_FIELD: the set has none of a name, or not all ranks name the same. */
+MPS_API MPS_NODISCARD mps_status mps_domain_gather_fields(mps_domain *domain,
+                                                          mps_particles *particles, int32_t count,
+                                                          const char *const *names,
+                                                          mps_particles **whole);
+
+/** Values of the field `name` for `count` particles, on whatever rank they are, on all ranks:
+ *  values[k * components + c] is that of particle ids[k], whole numbers as they are up to 2^53.
+ *  All ranks give the same list. Collective. MPS_ERROR_ARGUMENT: no rank has an id of the list;
+ *  MPS_ERROR_FIELD. On an error `values` are not to be used. */
+MPS_API MPS_NODISCARD mps_status mps_domain_get_field(mps_domain *domain, mps_particles *particles,
+                                                      const char *name, int64_t count,
+                                                      const int64_t *ids, double *values);
+
 MPS_EXTERN_C_END
 #endif

@@ -21,30 +21,59 @@ typedef struct field_head {
   int64_t columns, integer;
 } field_head;
 
-static mps_status pack(mps_domain *domain, const char *function, mps_particles *particles,
-                       char **out, int64_t *bytes) {
-  const head h = {.particles = mps_particles_count(particles),
-                  .fields = mps_particles_field_count(particles),
-                  .dim = mps_particles_dim(particles),
-                  .runs = mpsi_particles_runs(particles, domain->def.rank, NULL),
-                  .made = mpsi_particles_made(particles),
-                  .spacing = mps_particles_spacing(particles)};
-  mps_field_info info;
+/* Which fields go: those of the list, and what every set has; NULL: all. */
+typedef struct choice {
+  int32_t count;
+  const char *const *names;
+} choice;
+
+static bool is_chosen(const choice *c, int32_t field, const char *name) {
+  bool chosen = !c->names || field < 2; /* id, position */
+  for (int32_t k = 0; k < c->count && !chosen; k++) chosen = strcmp(c->names[k], name) == 0;
+  return chosen;
+}
+
+static mps_status check_choice(const mps_domain *domain, const char *function,
+                               mps_particles *particles, const choice *c) {
   mps_view view;
   mps_status status = MPS_OK;
+  if (c->count < 0 || (c->count > 0 && !c->names))
+    return mpsi_fail(domain->context, function, MPS_ERROR_ARGUMENT,
+                     "count is %d with names %s, must be >= 0, and 0 where names is NULL", c->count,
+                     c->names ? "given" : "NULL");
+  for (int32_t k = 0; k < c->count && status == MPS_OK; k++)
+    status = mps_particles_view(particles, c->names[k], &view);
+  return status;
+}
+
+static mps_status pack(mps_domain *domain, const char *function, mps_particles *particles,
+                       const choice *chosen, char **out, int64_t *bytes) {
+  const int32_t all = mps_particles_field_count(particles);
+  head h = {.particles = mps_particles_count(particles),
+            .dim = mps_particles_dim(particles),
+            .runs = mpsi_particles_runs(particles, domain->def.rank, NULL),
+            .made = mpsi_particles_made(particles),
+            .spacing = mps_particles_spacing(particles)};
+  mps_field_info info;
+  mps_view view;
+  mps_status status = check_choice(domain, function, particles, chosen);
   *bytes = (int64_t)sizeof h + h.runs * (int64_t)sizeof(mpsi_row_run);
-  for (int32_t f = 0; status == MPS_OK && f < h.fields; f++) {
+  for (int32_t f = 0; status == MPS_OK && f < all; f++) {
     status = mps_particles_field(particles, f, &info);
+    if (status != MPS_OK || !is_chosen(chosen, f, info.name)) continue;
+    h.fields++;
     *bytes += (int64_t)sizeof(field_head) + info.components * h.particles * 8;
   }
+  if (status != MPS_OK) return status;
   char *at = *out = mpsi_alloc(domain->context, *bytes, 1);
   if (!at) return mpsi_fail_memory(domain->context, function, (size_t)*bytes);
   memcpy(at, &h, sizeof h);
   at += sizeof h;
   mpsi_particles_runs(particles, domain->def.rank, (mpsi_row_run *)at);
   at += h.runs * (int64_t)sizeof(mpsi_row_run);
-  for (int32_t f = 0; status == MPS_OK && f < h.fields; f++) {
+  for (int32_t f = 0; status == MPS_OK && f < all; f++) {
     status = mps_particles_field(particles, f, &info);
+    if (status == MPS_OK && !is_chosen(chosen, f, info.name)) continue;
     if (status == MPS_OK) status = mps_particles_view(particles, info.name, &view);
     if (status != MPS_OK) return status;
     field_head field = {.columns = info.components, .integer = info.dtype.code == 0};
@@ -255,30 +284,42 @@ static mps_status send_to_first(mps_domain *domain, const char *function, char *
   return mpsi_domain_exchange(domain, function, 1, &message, box);
 }
 
-mps_status mps_domain_gather(mps_domain *domain, mps_particles *particles, mps_particles **whole) {
-  if (!domain) return MPS_ERROR_ARGUMENT;
+static mps_status gather(mps_domain *domain, const char *function, mps_particles *particles,
+                         const choice *chosen, mps_particles **whole) {
   mps_context *context = domain->context;
   mpsi_mailbox box = {.context = context};
   char *data = NULL;
   int64_t bytes = 0;
   mps_status status = MPS_OK;
   if (!particles || !whole)
-    status = mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "%s is NULL",
+    status = mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "%s is NULL",
                        particles ? "whole" : "particles");
   else if (*whole == particles)
-    status = mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+    status = mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "whole is the set that is to be gathered: give another, or NULL");
   else if (mpsi_particles_context(particles) != context)
-    status = mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+    status = mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "the particle set was made from another context than the domain");
   else
-    status = pack(domain, __func__, particles, &data, &bytes);
-  status = mpsi_domain_settle(domain, __func__, status);
-  if (status == MPS_OK) status = send_to_first(domain, __func__, data, bytes, &box);
+    status = pack(domain, function, particles, chosen, &data, &bytes);
+  status = mpsi_domain_settle(domain, function, status);
+  if (status == MPS_OK) status = send_to_first(domain, function, data, bytes, &box);
   mpsi_free(context, data);
-  if (status == MPS_OK && domain->def.rank == 0) status = make_whole(domain, __func__, &box, whole);
+  if (status == MPS_OK && domain->def.rank == 0) status = make_whole(domain, function, &box, whole);
   mpsi_domain_free_mail(&box);
-  return mpsi_domain_settle(domain, __func__, status);
+  return mpsi_domain_settle(domain, function, status);
+}
+
+mps_status mps_domain_gather(mps_domain *domain, mps_particles *particles, mps_particles **whole) {
+  const choice all = {.names = NULL};
+  return domain ? gather(domain, __func__, particles, &all, whole) : MPS_ERROR_ARGUMENT;
+}
+
+mps_status mps_domain_gather_fields(mps_domain *domain, mps_particles *particles, int32_t count,
+                                    const char *const *names, mps_particles **whole) {
+  static const char *const none[1] = {""};
+  const choice chosen = {.count = count, .names = count == 0 ? none : names};
+  return domain ? gather(domain, __func__, particles, &chosen, whole) : MPS_ERROR_ARGUMENT;
 }
 
 /* ---- rows of a solver's state ---------------------------------------------------------------- */

@@ -281,6 +281,65 @@ static void test_gather(void **state) {
   }
 }
 
+/* Named fields alone, and values of a list of particles on all ranks. */
+static void run_fields(void *user, team *t, int32_t rank) {
+  scene *s = user;
+  found *f = &s->rank[rank];
+  static const char *const wanted[] = {"density"}, *const wrong[] = {"density", "density_of"};
+  const int64_t ids[4] = {7, 0, 3, 7}, missing[2] = {3, 99}, other[1] = {rank};
+  double density[4] = {0.0}, place[8] = {0.0}, id[4] = {0.0};
+  mps_domain *domain = NULL;
+  mps_particles *share = NULL, *whole = NULL;
+  mps_context *own = rank_context(s, rank);
+  const mps_domain_def def = team_domain_def(t, rank);
+  f->status[0] = mps_domain_create(own, &def, &domain);
+  f->status[1] = mps_domain_agree(domain, make_share(own, rank, t->size, &share));
+  f->status[2] = mps_domain_agree(domain, mps_particles_set(share, "pressure", 0, 1.0));
+  f->status[3] = mps_domain_gather_fields(domain, share, 1, wanted, &whole);
+  f->status[4] = mps_domain_get_field(domain, share, "density", 4, ids, density);
+  f->status[5] = mps_domain_get_field(domain, share, "position", 4, ids, place);
+  f->status[6] = mps_domain_get_field(domain, share, "id", 4, ids, id);
+  f->count = mps_particles_count(whole);
+  f->good = mps_particles_field_count(whole) == (rank == 0 ? 3 : 0);
+  for (int k = 0; k < 4; k++) {
+    const int32_t from = (int32_t)(ids[k] == 0 ? t->size - 1 : ids[k] % t->size);
+    f->good = f->good && density[k] == 1000.0 + from && id[k] == (double)ids[k] &&
+              place[2 * k] == 0.25 + 0.5 * (double)(ids[k] % 4) &&
+              place[2 * k + 1] == 0.25 + 0.5 * (double)(ids[k] / 4);
+  }
+  f->good = f->good &&
+            mps_domain_get_field(domain, share, "id", 2, missing, id) == MPS_ERROR_ARGUMENT &&
+            mps_domain_get_field(domain, share, "none", 4, ids, id) == MPS_ERROR_FIELD &&
+            mps_domain_gather_fields(domain, share, 2, wrong, &whole) == MPS_ERROR_FIELD &&
+            mps_domain_gather_fields(domain, share, rank == 0, wanted, &whole) ==
+                (t->size > 1 ? MPS_ERROR_FIELD : MPS_OK);
+  if (t->size > 1)
+    f->good =
+        f->good && mps_domain_get_field(domain, share, "id", 1, other, id) == MPS_ERROR_ARGUMENT;
+  f->status[7] = mps_domain_get_field(domain, share, "id", 0, NULL, NULL);
+  mps_particles_destroy(&whole);
+  mps_particles_destroy(&share);
+  mps_domain_destroy(&domain);
+  mps_context_destroy(&own);
+}
+
+static void test_fields(void **state) {
+  (void)state;
+  for (int32_t size = 1; size <= 5; size += 2) {
+    scene s = {.what = 0};
+    team t;
+    team_begin(&t, size);
+    team_run(&t, run_fields, &s);
+    team_end(&t);
+    for (int32_t r = 0; r < size; r++) {
+      for (int k = 0; k < 8; k++) assert_int_equal(s.rank[r].status[k], MPS_OK);
+      assert_int_equal(s.rank[r].count, r == 0 ? 12 : 0);
+      assert_true(s.rank[r].good);
+      assert_int_equal(s.allocator[r].live, 0);
+    }
+  }
+}
+
 /* One rank is refused one allocation after the other: all ranks report it, none hangs. */
 static void test_refused_memory(void **state) {
   (void)state;
@@ -377,10 +436,11 @@ static void test_arguments(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_exact_sums),   cmocka_unit_test(test_exact_sums_have_no_order),
-      cmocka_unit_test(test_reductions),   cmocka_unit_test(test_errors_are_shared),
-      cmocka_unit_test(test_gather),       cmocka_unit_test(test_refused_memory),
-      cmocka_unit_test(test_lost_partner), cmocka_unit_test(test_arguments),
+      cmocka_unit_test(test_exact_sums),     cmocka_unit_test(test_exact_sums_have_no_order),
+      cmocka_unit_test(test_reductions),     cmocka_unit_test(test_errors_are_shared),
+      cmocka_unit_test(test_gather),         cmocka_unit_test(test_fields),
+      cmocka_unit_test(test_refused_memory), cmocka_unit_test(test_lost_partner),
+      cmocka_unit_test(test_arguments),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
