@@ -10,7 +10,7 @@
 #include <mps/mpm_energy.h>
 #include <mps/mpm_settle.h>
 
-enum { SLIDE, SPREAD, RING, ROOM, PRESS, CONE, BALLS, PLATES, SCENES };
+enum { SLIDE, SPREAD, RING, ROOM, PRESS, CONE, BALLS, PLATES, PILES, SCENES };
 enum { BODIES = 3 }; /* at most, of PRESS and what follows */
 
 typedef struct scene {
@@ -126,16 +126,18 @@ static inline mps_mpm_def scene_def(mps_domain *domain, int what) {
   return def;
 }
 
-/* A free one that spins and rolls, and two that are driven into the soil. */
+/* A free one that spins and rolls, and two that are driven into the soil; or (PILES) three driven
+ * ones far apart. */
 static inline mps_body_def body_def(int what, int number) {
   static const double place[SCENES][BODIES][3] = {
       [PRESS] = {{0.5, 0.531}, {0.95, 0.51}, {1.22, 0.0}},
       [CONE] = {{0.0, 0.42}, {0.6, 0.51}},
+      [PILES] = {{0.15, 0.51}, {0.6, 0.52}, {1.05, 0.515}},
       [PLATES] = {{0.35, 0.43}, {0.8, 0.41}, {1.22, 0.0}},
       [BALLS] = {{0.4, 0.541, 0.4}, {0.9, 0.52, 0.2}, {0.85, 0.56, 0.62}}};
   mps_body_def def = mps_body_defaults();
   memcpy(def.position, place[what][number], sizeof def.position);
-  if (number > 0 || what == CONE) return def;
+  if (number > 0 || what == CONE || what == PILES) return def;
   def.motion = MPS_BODY_MOTION_FREE;
   def.mass = 40.0;
   for (int c = dim_of(what) == 2 ? 2 : 0; c < 3; c++) def.inertia[c] = 0.3;
@@ -153,6 +155,7 @@ static inline mps_status make_body(mps_context *own, int what, int number, mps_b
     return number == 0   ? mps_body_create_sphere(own, &def, 0.12, out)
            : number == 1 ? mps_body_create_revolution(own, &def, 4, pile, out)
                          : mps_body_create_sphere(own, &def, 0.15, out);
+  if (what == PILES) return mps_body_create_box(own, &def, 0.12, 0.2, out);
   if (number == 1)
     return mps_body_create_box(own, &def, what == PLATES ? 0.06 : 0.2, what == PLATES ? 0.4 : 0.2,
                                out);
@@ -173,7 +176,7 @@ static inline mps_status add_bodies(mps_context *own, mps_domain *domain, int wh
     if (what == PLATES) def.inside = MPS_CONTACT_INSIDE_REMOVE, def.thin = k < 2;
     if (status == MPS_OK) status = make_body(own, what, k, &s->body[k]);
     motion.velocity[1] = k == 0 ? -4.0 : -2.0;
-    if (k > 0 || what == CONE) TRY(mps_body_set_motion(s->body[k], &motion));
+    if (k > 0 || what == CONE || what == PILES) TRY(mps_body_set_motion(s->body[k], &motion));
     if (k == 1) TRY(mps_body_name_part(s->body[k], "side", 1, 1, NULL));
     if (domain) status = mps_domain_agree(domain, status);
     TRY(mps_mpm_add_contact(s->mpm, s->body[k], &def, &s->contact[k]));

@@ -61,6 +61,8 @@ typedef struct mpsi_cell_block {
   /* On several ranks (share.h): */
   bool ghost;     /* another rank's: it has no particles here */
   bool late;      /* it, or one that gives before it, is a ghost */
+  bool touched;   /* it has touches in the step, or areas (areas.c) */
+  bool told;      /* these touch what other ranks' do: mates.h */
   int64_t parcel; /* where its tile is among those that come (ghosts) or go; -1: nowhere */
 } mpsi_cell_block;
 

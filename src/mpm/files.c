@@ -92,7 +92,10 @@ mps_status mpsi_mpm_share_save(mps_mpm *mpm, const mpsi_state_of *of, const char
   mps_domain *domain = mpm->share->domain;
   mps_snapshot state = {.context = mpm->context};
   mps_particles *whole = NULL;
-  mps_status status = mpsi_domain_settle(domain, function, mpsi_state_get(of, function, &state));
+  mps_status status = mpsi_mpm_share_kept(mpm, function, MPS_OK);
+  mpsi_mpm_order_kept(mpm);
+  if (status == MPS_OK)
+    status = mpsi_domain_settle(domain, function, mpsi_state_get(of, function, &state));
   if (status == MPS_OK) status = merge(mpm, function, &state.state);
   if (status == MPS_OK) status = mps_domain_gather(domain, mpm->particles, &whole);
   if (status == MPS_OK) {

@@ -314,6 +314,10 @@ static const mpsi_touch_block *touches_of(const mpsi_impulses *all, int32_t cell
   return &all->block[(*next)++];
 }
 
+static bool has_entry(const mpsi_cell_block *cells, const mpsi_touch_block *block) {
+  return block || (cells->touched && !cells->ghost);
+}
+
 static int64_t message_bytes(const mps_mpm *mpm) {
   const mpsi_grid *grid = &mpm->grid;
   const mpsi_impulses *all = &mpm->contact.impulses;
@@ -321,55 +325,64 @@ static int64_t message_bytes(const mps_mpm *mpm) {
   for (int64_t i = 0; i < grid->cell_count; i++) {
     const mpsi_touch_block *block = touches_of(all, grid->coloured[i], &next);
     const mpsi_cell_block *cells = &grid->cells[grid->coloured[i]];
-    if (block || (all->areas && cells->pairs > 0 && !cells->ghost))
-      bytes += entry_bytes(mpm, cells, block);
+    if (has_entry(cells, block)) bytes += entry_bytes(mpm, cells, block);
   }
   return bytes;
 }
 
-static char *write_blocks(const mps_mpm *mpm, char *to) {
+/* Those that mates are told of, or the others. */
+static char *write_blocks(const mps_mpm *mpm, bool told, char *to) {
   const mpsi_grid *grid = &mpm->grid;
   const mpsi_impulses *all = &mpm->contact.impulses;
   int64_t next = 0;
   for (int64_t i = 0; i < grid->cell_count; i++) {
     const mpsi_touch_block *block = touches_of(all, grid->coloured[i], &next);
     const mpsi_cell_block *cells = &grid->cells[grid->coloured[i]];
-    if (block || (all->areas && cells->pairs > 0 && !cells->ghost))
-      to = write_block(mpm, cells, block, to);
+    if (has_entry(cells, block) && cells->told == told) to = write_block(mpm, cells, block, to);
   }
   return to;
 }
 
-/* This rank's message, the same to each of the others, which `list` names. */
-static mps_status write_message(meeting *m, mps_domain_message **list, int32_t *count) {
+/* For this rank's entries, of which those that go lie first, and for whom they go to. */
+static mps_status make_room_for_message(meeting *m, mps_domain_message **list) {
   mps_mpm *mpm = m->mpm;
   mps_domain *domain = mpm->share->domain;
   mpsi_room *mail = &mpm->share->meeting.mail;
   const int64_t bytes = message_bytes(mpm);
-  *count = 0;
   if (bytes == 0) return MPS_OK;
   *list = mpsi_alloc(mpm->context, mps_domain_size(domain), sizeof **list);
   if (!*list || !mpsi_room_ensure(mpm->context, mail, bytes, 1))
     return mpsi_fail_memory(mpm->context, m->function, (size_t)bytes);
-  m->own = mail->item;
-  m->own_bytes = write_blocks(mpm, mail->item) - m->own;
-  for (int32_t r = 0; r < mps_domain_size(domain) && m->own_bytes > 0; r++)
-    if (r != mps_domain_rank(domain))
-      (*list)[(*count)++] = (mps_domain_message){.rank = r, .bytes = m->own_bytes, .data = m->own};
   return MPS_OK;
+}
+
+/* The same to each mate. */
+static int32_t address(meeting *m, mps_domain_message *list) {
+  const mps_mpm *mpm = m->mpm;
+  const mps_domain *domain = mpm->share->domain;
+  int32_t count = 0;
+  if (!list) return 0;
+  char *own = mpm->share->meeting.mail.item;
+  const int64_t bytes = write_blocks(mpm, true, own) - own;
+  m->own = own;
+  m->own_bytes = write_blocks(mpm, false, own + bytes) - own;
+  for (int32_t r = 0; r < mps_domain_size(domain) && bytes > 0; r++)
+    if (r != mps_domain_rank(domain) && mpsi_mpm_is_mate(mpm, r))
+      list[count++] = (mps_domain_message){.rank = r, .bytes = bytes, .data = own};
+  return count;
 }
 
 mps_status mpsi_mpm_meet(mps_mpm *mpm, const char *function, mps_status status) {
   mps_domain *domain = mpm->share->domain;
   meeting m = {.mpm = mpm, .function = function, .box.context = mpm->context};
   mps_domain_message *list = NULL;
-  int32_t count = 0;
-  double any = (double)mpm->contact.impulses.touch_count;
-  if (status == MPS_OK) status = write_message(&m, &list, &count);
-  status = mpsi_domain_settle_max(domain, function, status, 1, &any);
+  int64_t touches = 0;
+  if (status == MPS_OK) status = make_room_for_message(&m, &list);
+  status = mpsi_mpm_find_mates(mpm, function, status, &touches);
   mpm->share->meeting.nodes = 0;
-  if (status == MPS_OK && any > 0.0) {
-    status = mpsi_domain_exchange(domain, function, count, list, &m.box);
+  if (status == MPS_OK && touches > 0) {
+    const int32_t count = address(&m, list);
+    if (mpm->share->mates.any) status = mpsi_domain_exchange(domain, function, count, list, &m.box);
     if (status == MPS_OK) status = mpsi_domain_settle(domain, function, join(&m));
   }
   mpsi_domain_free_mail(&m.box);

@@ -1,9 +1,9 @@
 /* meet.h - contact by impulses on several ranks. Touches of one rank move nodes that touches of
  * others read, visit by visit (impulses.c): a message each would cost more than the visits. So each
- * rank tells all others of its touches and of the nodes that they use, and sweeps over all of them
- * as one rank would: the same arithmetic on every rank, and no message between sweeps. A step costs
- * a message of each rank that has touches to each other rank, and the sweeps that one rank would
- * make. What contacts keep for the next step is then on all ranks, wherever particles go.
+ * rank tells its mates (mates.h) of its touches and of the nodes that they use, and sweeps over all
+ * of them as one rank would: the same arithmetic on each, and no message between sweeps. A step
+ * costs a message between any two mates, and the sweeps that one rank would make over their
+ * touches. What contacts keep for the next step goes round before particles change ranks (kept.c).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_MPM_MEET_H
 #define MPSI_MPM_MEET_H
@@ -30,7 +30,12 @@ typedef struct mpsi_meeting {
   mpsi_room touch, block, weight, node, met, lookup, kept, mail, list;
 } mpsi_meeting;
 
-/* The touches of all ranks take the place of this rank's in contact.impulses, in the order of one
+/* kept.c: what contacts keep of the particles of any rank is on all, before particles change ranks
+ * or a checkpoint is written. `status`: what has become of that so far here. Collective. */
+mps_status mpsi_mpm_share_kept(mps_mpm *mpm, const char *function, mps_status status);
+/* kept.c: the same in an order of its own, on any number of ranks. Not collective. */
+void mpsi_mpm_order_kept(mps_mpm *mpm);
+/* The touches of mates take the place of this rank's in contact.impulses, in the order of one
  * rank, until the next step finds its own. What has become of all ranks before, `status` here,
  * comes first. Collective. */
 mps_status mpsi_mpm_meet(mps_mpm *mpm, const char *function, mps_status status);

@@ -457,6 +457,7 @@ mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *in
   const mps_status status = mpsi_mpm_share_settle(mpm, __func__, make_whole(mpm, __func__));
   const mpsi_state_of of = state_of(mpm);
   if (status != MPS_OK) return status;
+  mpsi_mpm_order_kept(mpm);
   return mpm->share ? mpsi_mpm_share_save(mpm, &of, __func__, path, info)
                     : mpsi_checkpoint_save(&of, __func__, path, info);
 }

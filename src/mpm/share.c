@@ -199,12 +199,16 @@ static bool put_lists(search *s) {
   const int64_t all = s->count + s->ghosts;
   int64_t *order = mpsi_alloc(mpm->context, 2 * s->ghosts, sizeof *order);
   int32_t *place = mpsi_alloc(mpm->context, s->count, sizeof *place);
-  bool good = order && place && mpsi_mpm_ensure_cells(mpm, all) &&
-              mpsi_room_ensure(mpm->context, &share->order_room, all, sizeof *share->order) &&
-              mpsi_room_ensure(mpm->context, &share->border_room, s->count, sizeof *share->border);
+  bool good =
+      order && place && mpsi_mpm_ensure_cells(mpm, all) &&
+      mpsi_room_ensure(mpm->context, &share->order_room, all, sizeof *share->order) &&
+      mpsi_room_ensure(mpm->context, &share->border_room, s->count, sizeof *share->border) &&
+      mpsi_room_ensure(mpm->context, &share->rank_room, s->ghosts, sizeof *s->rank);
   if (good) {
     share->order = share->order_room.item;
     share->border = share->border_room.item;
+    share->ghost_rank = share->rank_room.item;
+    if (s->ghosts > 0) memcpy(share->ghost_rank, s->rank, (size_t)s->ghosts * sizeof *s->rank);
     sort_ghosts(s, order, order + s->ghosts);
     merge(s, order, place);
     for (int64_t k = 0; k < s->count; k++) share->border[k] = place[k];
@@ -297,6 +301,7 @@ mps_status mpsi_mpm_share_sort(mps_mpm *mpm, const char *function) {
   bool moved = false;
   mpm->share->outdated = true;
   mps_status status = mpsi_mpm_sort_cells(mpm, function);
+  status = mpsi_mpm_share_kept(mpm, function, status);
   status = mpsi_mpm_share_migrate(mpm, function, status, &moved);
   if (status != MPS_OK) {
     mpm->run.stale = true;
@@ -377,7 +382,10 @@ mps_status mpsi_mpm_share_take(mps_mpm *mpm, const char *function, mps_status st
   status = compare_ranks(mpm, function, status);
   if (status != MPS_OK) return status;
   *mpm->share = (mpsi_share){.domain = mpsi_domain_retain(domain), .outdated = true};
-  status = mpsi_mpm_share_cut(mpm, function, true);
+  if (!mpsi_mpm_begin_mates(mpm))
+    status = mpsi_fail_memory(mpm->context, function, (size_t)mps_domain_size(domain));
+  status = mpsi_domain_settle(domain, function, status);
+  if (status == MPS_OK) status = mpsi_mpm_share_cut(mpm, function, true);
   if (status == MPS_OK)
     status = mpsi_domain_settle(domain, function, keep_own(mpm, function, former));
   return status == MPS_OK ? mpsi_mpm_share_join(mpm, function) : status;
@@ -387,10 +395,12 @@ void mpsi_mpm_share_free(mps_mpm *mpm) {
   mpsi_share *share = mpm->share;
   if (!share) return;
   mpsi_mpm_meet_free(mpm);
+  mpsi_mpm_free_mates(mpm);
   mpm->share = NULL;
   mpsi_halo_destroy(mpm->context, &share->halo);
   mpsi_free(mpm->context, share->first);
   mpsi_free(mpm->context, share->border_room.item);
+  mpsi_free(mpm->context, share->rank_room.item);
   mpsi_free(mpm->context, share->order_room.item);
   mpsi_free(mpm->context, share->out_room.item);
   mpsi_free(mpm->context, share->in_room.item);

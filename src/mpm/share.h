@@ -16,6 +16,7 @@
 #include "core/particles_internal.h"
 #include "domain/halo.h"
 #include "core/room.h"
+#include "mates.h"
 #include "meet.h"
 
 #include <mps/mpm.h>
@@ -27,6 +28,7 @@ typedef struct mpsi_share {
   bool ready;              /* all ranks were for the last step, and nobody has written since */
   int64_t borders, ghosts; /* own blocks that others have copies of; copies here */
   int32_t *border;         /* numbers of the blocks of cells */
+  int32_t *ghost_rank;     /* of each copy */
   int32_t *order;       /* all of them, colour by colour: first those that no ghost goes before, */
   int64_t early;        /* so many */
   int32_t most;         /* nodes of the widest part of a tile in use, on all ranks */
@@ -39,8 +41,9 @@ typedef struct mpsi_share {
   double heaviest;      /* particles of the rank that had most, after the last cut */
   bool cancel;          /* a hook has asked to stop, on whatever rank */
   mps_status lost;      /* of a message in the step being made */
-  mpsi_meeting meeting; /* touches of all ranks: see meet.h */
-  mpsi_room border_room, order_room, out_room, in_room;
+  mpsi_mates mates;     /* who meets: see mates.h */
+  mpsi_meeting meeting; /* touches of mates: see meet.h */
+  mpsi_room border_room, rank_room, order_room, out_room, in_room;
 } mpsi_share;
 
 /* share.c: leaves a solver that is made, with the whole set on each rank, this rank's share.

@@ -186,6 +186,7 @@ mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
   warn_about_step(mpm, dt);
   status = mpsi_mpm_find_touches(mpm, function);
   if (status != MPS_OK && !mpm->share) return status;
+  if (mpm->share && mpm->contact.bodies > 0) mpsi_mpm_mark_touched(mpm);
   status = move(mpm, function, dt, status); /* particles --> nodes --> particles */
   if (status != MPS_OK) return status;
   mpsi_mpm_sum_holds(mpm);       /* impulses of nodes --> forces of walls */

@@ -1,16 +1,16 @@
 /* tiles.c - tiles on their way between ranks (share.h): the border is summed and sent, the interior
  * is summed meanwhile, and then what has come is added to the nodes.
  *
- * A parcel has three numbers, whether its forces are apart, whether they are split and whether thin
- * bodies part it, and then the part of the tile that is in use, that of the forces where some tile
- * of the step has them, both across thin bodies (across.h) where some tile has these, and those of
- * springs, body by body (springs.c).
- * SPDX-License-Identifier: BSD-3-Clause */
+ * A parcel has four numbers, whether its forces are apart, whether they are split, whether thin
+ * bodies part it and whether it has touches, and then the part of the tile that is in use, that of
+ * the forces where some tile of the step has them, both across thin bodies (across.h) where some
+ * tile has these, and those of springs, body by body (springs.c). SPDX-License-Identifier:
+ * BSD-3-Clause */
 #include "kernels.h"
 
 #include <string.h>
 
-enum { HEAD = 3 }; /* doubles */
+enum { HEAD = 4 }; /* doubles */
 
 static int64_t parcel_doubles(const mpsi_share *share, bool apart, bool thin, int32_t springs) {
   const int64_t bytes = (1 + apart) * (1 + thin) * (int64_t)sizeof(mpsi_node) +
@@ -137,6 +137,7 @@ static void pack(void *data, int64_t k, int32_t number) {
   parcel[0] = cells->apart;
   parcel[1] = cells->split;
   parcel[2] = cells->thin;
+  parcel[3] = cells->touched;
   parcel = copy_tiles(cells, worker, parcel + HEAD, true);
   copy_springs(mpm, cells, worker, parcel, true);
 }
@@ -216,6 +217,7 @@ void mpsi_mpm_share_scatter(mps_mpm *mpm, int64_t b, int32_t number) {
   cells->apart = parcel[0] != 0.0;
   cells->split = parcel[1] != 0.0;
   cells->thin = parcel[2] != 0.0;
+  cells->touched = parcel[3] != 0.0;
   parcel = copy_tiles(cells, worker, parcel + HEAD, false);
   copy_springs(mpm, cells, worker, parcel, false);
   mpm->kernels->flush(mpm, b, number);

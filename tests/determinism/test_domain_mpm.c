@@ -12,6 +12,7 @@ static void test_room(void **state) { (void)state, compare_teams(compute, ROOM, 
 static void test_press(void **state) { (void)state, compare_teams(compute, PRESS, 90, false); }
 static void test_cone(void **state) { (void)state, compare_teams(compute, CONE, 80, true); }
 static void test_plates(void **state) { (void)state, compare_teams(compute, PLATES, 80, true); }
+static void test_piles(void **state) { (void)state, compare_teams(compute, PILES, 80, false); }
 static void test_balls(void **state) { (void)state, compare_teams(compute, BALLS, 40, true); }
 
 /* In and out by the caller, between steps. */
@@ -238,6 +239,7 @@ int main(void) {
                                      cmocka_unit_test(test_cone),
                                      cmocka_unit_test(test_balls),
                                      cmocka_unit_test(test_plates),
+                                     cmocka_unit_test(test_piles),
                                      cmocka_unit_test(test_changes),
                                      cmocka_unit_test(test_cut_press),
                                      cmocka_unit_test(test_cut_spread),
