@@ -23,20 +23,23 @@ static double value_of(const tank_sample *p, int what) {
 }
 
 /* Amplitude of the first harmonic of the period in the window, by the trapezium rule over whole
- * periods; NaN where the window has less than one. `phase` (rad, may be NULL): before sin(2 pi
- * t/T).
+ * periods, cut between samples: what they leave out would count the mean, which may be many times
+ * the amplitude. NaN where the window has less than a period. `phase` (rad, may be NULL): before
+ * sin(2 pi t/T).
  */
 static double harmonic(const tank_model *m, const tank_sample *sample, int what, double *phase) {
   const double T = m->s.period, whole = floor((m->s.window[1] - m->s.window[0]) / T + 1e-6) * T;
+  const double from = m->s.window[1] - whole;
   double c = 0.0, s = 0.0;
   if (phase) *phase = NAN;
   if (!(whole >= T)) return NAN;
   for (int64_t k = 1; k < m->samples; k++) {
-    const double early = sample[k - 1].t, late = sample[k].t;
-    if (early < m->s.window[1] - whole - 1e-9 || late > m->s.window[1] + 1e-9) continue;
-    for (int e = 0; e < 2; e++) {
-      const double half = 0.5 * (late - early) * value_of(&sample[k - 1 + e], what);
-      const double w = 2.0 * WAVES_PI * (e ? late : early) / T;
+    const tank_sample *p = &sample[k - 1], *q = &sample[k];
+    const double at[2] = {fmax(p->t, from), fmin(q->t, m->s.window[1])};
+    for (int e = 0; e < 2 && at[0] < at[1]; e++) {
+      const double part = (at[e] - p->t) / (q->t - p->t), w = 2.0 * WAVES_PI * at[e] / T;
+      const double value = (1.0 - part) * value_of(p, what) + part * value_of(q, what);
+      const double half = 0.5 * (at[1] - at[0]) * value;
       c += half * cos(w), s += half * sin(w);
     }
   }
