@@ -26,18 +26,22 @@ static bool differ(const mps_elastic *e, int64_t i, int64_t j) {
   return e->lambda[i] != e->lambda[j] || e->mu[i] != e->mu[j];
 }
 
-static int64_t across(const mps_elastic *e, int64_t i, int axis, int up) {
-  return e->links.to[i * e->links.count + e->links.face[axis][up]];
+/* The cell on the upper side of i along `axis`, where there is a joint between them; else -1. */
+static int64_t beyond_joint(const mps_elastic *e, int64_t i, int axis) {
+  const int64_t j = e->links.to[i * e->links.count + e->links.face[axis][1]];
+  return j >= 0 && differ(e, i, j) ? j : -1;
 }
 
 static int64_t count_joints(const mps_elastic *e) {
   int64_t count = 0;
   for (int64_t i = 0; i < e->n; i++)
-    for (int axis = 0; axis < e->dim; axis++) {
-      const int64_t j = across(e, i, axis, 1);
-      count += j >= 0 && differ(e, i, j);
-    }
+    for (int axis = 0; axis < e->dim; axis++) count += beyond_joint(e, i, axis) >= 0;
   return count;
+}
+
+/* The joint at a face of cell i (lower and upper one of each axis in turn), or -1. */
+static int64_t joint_at(const mps_elastic *e, int64_t i, int face) {
+  return e->joint_at[i * 2 * e->dim + face];
 }
 
 void mpsi_elastic_drop_joints(mps_elastic *e) {
@@ -78,8 +82,8 @@ mps_status mpsi_elastic_find_joints(mps_elastic *e, const char *function) {
   for (int64_t k = 0; at && k < places; k++) at[k] = -1;
   for (int64_t i = 0, k = 0; count > 0 && i < e->n; i++)
     for (int axis = 0; axis < e->dim; axis++) {
-      const int64_t j = across(e, i, axis, 1);
-      if (j < 0 || !differ(e, i, j)) continue;
+      const int64_t j = beyond_joint(e, i, axis);
+      if (j < 0) continue;
       at[i * 2 * e->dim + 2 * axis + 1] = at[j * 2 * e->dim + 2 * axis] = k;
       joints[k++] = (mpsi_joint){.low = i, .high = j, .axis = axis};
     }
@@ -117,9 +121,8 @@ bool mpsi_elastic_pair_crosses(const mps_elastic *e, int64_t i, int64_t j, int32
   if (differ(e, i, j)) return true;
   for (int axis = 0; axis < e->dim; axis++) {
     if (abs(e->links.step[k][axis]) < 2) continue;
-    const int64_t *a = e->joint_at + i * 2 * e->dim + 2 * axis;
-    const int64_t *b = e->joint_at + j * 2 * e->dim + 2 * axis;
-    if (a[0] >= 0 || a[1] >= 0 || b[0] >= 0 || b[1] >= 0) return true;
+    for (int face = 2 * axis; face < 2 * axis + 2; face++)
+      if (joint_at(e, i, face) >= 0 || joint_at(e, j, face) >= 0) return true;
   }
   return false;
 }
@@ -134,111 +137,86 @@ typedef struct joint_task {
   double *f;
 } joint_task;
 
-static void joints_of_chunk(const mps_elastic *e, int64_t chunk, int64_t *first, int64_t *last) {
-  *first = chunk * MPSI_ELASTIC_CHUNK;
-  *last =
-      *first + MPSI_ELASTIC_CHUNK < e->joint_count ? *first + MPSI_ELASTIC_CHUNK : e->joint_count;
-}
-
-/* delta of each joint, from the plain gradients. */
-static void delta_chunk(void *data, int64_t chunk, int32_t worker) {
-  (void)worker;
-  const joint_task *t = data;
+/* delta of joint k, from the plain gradients. */
+static void find_delta(void *task, int64_t k) {
+  const joint_task *t = task;
   const mps_elastic *e = t->e;
   const int d = e->dim;
-  int64_t first, last;
-  joints_of_chunk(e, chunk, &first, &last);
-  for (int64_t k = first; k < last; k++) {
-    const mpsi_joint *q = &e->joints[k];
-    const mpsi_joint_law law = mpsi_elastic_joint_law(e, q);
-    const double *g1 = t->tensor + q->low * d * d, *g2 = t->tensor + q->high * d * d;
-    const double *u1 = t->u + q->low * d, *u2 = t->u + q->high * d;
-    const int a = q->axis;
-    double *delta = e->joint_scratch + k * d;
-    delta[a] = law.normal * (u2[a] - u1[a]) / e->spacing;
-    for (int b = 0; b < d; b++) {
-      if (b == a) continue;
-      delta[a] += law.lateral * 0.5 * (g1[b * d + b] + g2[b * d + b]);
-      delta[b] = law.shear * ((u2[b] - u1[b]) / e->spacing + 0.5 * (g1[a * d + b] + g2[a * d + b]));
-    }
+  const mpsi_joint *q = &e->joints[k];
+  const mpsi_joint_law law = mpsi_elastic_joint_law(e, q);
+  const double *g1 = t->tensor + q->low * d * d, *g2 = t->tensor + q->high * d * d;
+  const double *u1 = t->u + q->low * d, *u2 = t->u + q->high * d;
+  const int a = q->axis;
+  double *delta = e->joint_scratch + k * d;
+  delta[a] = law.normal * (u2[a] - u1[a]) / e->spacing;
+  for (int b = 0; b < d; b++) {
+    if (b == a) continue;
+    delta[a] += law.lateral * 0.5 * (g1[b * d + b] + g2[b * d + b]);
+    delta[b] = law.shear * ((u2[b] - u1[b]) / e->spacing + 0.5 * (g1[a * d + b] + g2[a * d + b]));
   }
 }
 
-static void add_delta_chunk(void *data, int64_t chunk, int32_t worker) {
-  (void)worker;
-  const joint_task *t = data;
+/* What the joints at cell i add to its gradient. */
+static void add_delta(void *task, int64_t i) {
+  const joint_task *t = task;
   const mps_elastic *e = t->e;
   const int d = e->dim;
-  int64_t first, last;
-  mpsi_elastic_chunk(e, chunk, &first, &last);
-  for (int64_t i = first; i < last; i++)
-    for (int face = 0; face < 2 * d; face++) {
-      const int64_t k = e->joint_at[i * 2 * d + face];
-      if (k < 0) continue;
-      const double weight = mpsi_elastic_face_weight(e, i, face / 2, face % 2);
-      for (int c = 0; c < d; c++)
-        t->tensor[(i * d + c) * d + face / 2] += weight * e->joint_scratch[k * d + c];
-    }
+  for (int face = 0; face < 2 * d; face++) {
+    const int64_t k = joint_at(e, i, face);
+    if (k < 0) continue;
+    const double weight = mpsi_elastic_face_weight(e, i, face / 2, face % 2);
+    for (int c = 0; c < d; c++)
+      t->tensor[(i * d + c) * d + face / 2] += weight * e->joint_scratch[k * d + c];
+  }
 }
 
 void mpsi_elastic_joint_gradients(mps_elastic *e, const double *u, double *gradient) {
   if (e->joint_count == 0) return;
   joint_task task = {.e = e, .u = u, .tensor = gradient};
-  const int64_t chunks = (e->joint_count + MPSI_ELASTIC_CHUNK - 1) / MPSI_ELASTIC_CHUNK;
-  mpsi_parallel_for(e->context, chunks, delta_chunk, &task);
-  mpsi_parallel_for(e->context, mpsi_elastic_chunks(e), add_delta_chunk, &task);
+  mpsi_elastic_for_each(e, e->joint_count, find_delta, &task);
+  mpsi_elastic_for_each(e, e->n, add_delta, &task);
 }
 
-/* The force on delta: transpose of add_delta_chunk. */
-static void pull_chunk(void *data, int64_t chunk, int32_t worker) {
-  (void)worker;
-  const joint_task *t = data;
+/* The force on delta of joint k: transpose of add_delta. */
+static void find_pull(void *task, int64_t k) {
+  const joint_task *t = task;
   const mps_elastic *e = t->e;
   const int d = e->dim;
-  int64_t first, last;
-  joints_of_chunk(e, chunk, &first, &last);
-  for (int64_t k = first; k < last; k++) {
-    const mpsi_joint *q = &e->joints[k];
-    const double w1 = mpsi_elastic_face_weight(e, q->low, q->axis, 1);
-    const double w2 = mpsi_elastic_face_weight(e, q->high, q->axis, 0);
-    for (int c = 0; c < d; c++)
-      e->joint_scratch[k * d + c] = w1 * t->tensor[(q->low * d + c) * d + q->axis] +
-                                    w2 * t->tensor[(q->high * d + c) * d + q->axis];
-  }
+  const mpsi_joint *q = &e->joints[k];
+  const double w1 = mpsi_elastic_face_weight(e, q->low, q->axis, 1);
+  const double w2 = mpsi_elastic_face_weight(e, q->high, q->axis, 0);
+  for (int c = 0; c < d; c++)
+    e->joint_scratch[k * d + c] = w1 * t->tensor[(q->low * d + c) * d + q->axis] +
+                                  w2 * t->tensor[(q->high * d + c) * d + q->axis];
 }
 
-/* Transpose of delta_chunk: normal derivatives pull the particles, tangential ones add to P. */
-static void add_pull_chunk(void *data, int64_t chunk, int32_t worker) {
-  (void)worker;
-  const joint_task *t = data;
+/* Transpose of find_delta: normal derivatives pull particle i, tangential ones add to its P. */
+static void add_pull(void *task, int64_t i) {
+  const joint_task *t = task;
   const mps_elastic *e = t->e;
   const int d = e->dim;
-  int64_t first, last;
-  mpsi_elastic_chunk(e, chunk, &first, &last);
-  for (int64_t i = first; i < last; i++)
-    for (int face = 0; face < 2 * d; face++) {
-      const int64_t k = e->joint_at[i * 2 * d + face];
-      if (k < 0) continue;
-      const mpsi_joint_law law = mpsi_elastic_joint_law(e, &e->joints[k]);
-      const double *pull = e->joint_scratch + k * d, side = face % 2 ? -1.0 : 1.0;
-      const int a = face / 2;
-      double *f = t->f + i * d, *P = t->tensor + i * d * d;
-      f[a] += side * law.normal * pull[a] / e->spacing;
-      for (int b = 0; b < d; b++) {
-        if (b == a) continue;
-        f[b] += side * law.shear * pull[b] / e->spacing;
-        P[b * d + b] += 0.5 * law.lateral * pull[a];
-        P[a * d + b] += 0.5 * law.shear * pull[b];
-      }
+  double *f = t->f + i * d, *P = t->tensor + i * d * d;
+  for (int face = 0; face < 2 * d; face++) {
+    const int64_t k = joint_at(e, i, face);
+    if (k < 0) continue;
+    const mpsi_joint_law law = mpsi_elastic_joint_law(e, &e->joints[k]);
+    const double *pull = e->joint_scratch + k * d, side = face % 2 ? -1.0 : 1.0;
+    const int a = face / 2;
+    f[a] += side * law.normal * pull[a] / e->spacing;
+    for (int b = 0; b < d; b++) {
+      if (b == a) continue;
+      f[b] += side * law.shear * pull[b] / e->spacing;
+      P[b * d + b] += 0.5 * law.lateral * pull[a];
+      P[a * d + b] += 0.5 * law.shear * pull[b];
     }
+  }
 }
 
 void mpsi_elastic_joint_forces(mps_elastic *e, double *stress, double *f) {
   if (e->joint_count == 0) return;
   joint_task task = {.e = e, .tensor = stress, .f = f};
-  const int64_t chunks = (e->joint_count + MPSI_ELASTIC_CHUNK - 1) / MPSI_ELASTIC_CHUNK;
-  mpsi_parallel_for(e->context, chunks, pull_chunk, &task);
-  mpsi_parallel_for(e->context, mpsi_elastic_chunks(e), add_pull_chunk, &task);
+  mpsi_elastic_for_each(e, e->joint_count, find_pull, &task);
+  mpsi_elastic_for_each(e, e->n, add_pull, &task);
 }
 
 /* ---- coefficients, for the matrix and for loads ------------------------------------------------
@@ -289,7 +267,7 @@ void mpsi_elastic_wide_gradient(const mps_elastic *e, int64_t i, mpsi_wide *w) {
   for (int c = 0; c < d; c++)
     for (int b = 0; b < d; b++) add_derivative(e, i, b, c, c * d + b, 1.0, w);
   for (int face = 0; e->joint_at && face < 2 * d; face++) {
-    const int64_t k = e->joint_at[i * 2 * d + face];
+    const int64_t k = joint_at(e, i, face);
     if (k < 0) continue;
     add_joint(e, &e->joints[k], mpsi_elastic_face_weight(e, i, face / 2, face % 2), w);
   }

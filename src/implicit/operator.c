@@ -16,6 +16,27 @@
 
 #include <string.h>
 
+/* ---- loops ----------------------------------------------------------------------------------- */
+
+typedef struct loop {
+  mpsi_elastic_work work;
+  void *task;
+  int64_t count;
+} loop;
+
+static void loop_chunk(void *data, int64_t chunk, int32_t worker) {
+  (void)worker;
+  const loop *l = data;
+  const int64_t end = (chunk + 1) * MPSI_ELASTIC_CHUNK;
+  for (int64_t k = chunk * MPSI_ELASTIC_CHUNK; k < end && k < l->count; k++) l->work(l->task, k);
+}
+
+void mpsi_elastic_for_each(mps_elastic *e, int64_t count, mpsi_elastic_work work, void *task) {
+  loop l = {work, task, count};
+  const int64_t chunks = (count + MPSI_ELASTIC_CHUNK - 1) / MPSI_ELASTIC_CHUNK;
+  mpsi_parallel_for(e->context, chunks, loop_chunk, &l);
+}
+
 /* ---- gradient -------------------------------------------------------------------------------- */
 
 typedef struct operator_task {
@@ -24,30 +45,24 @@ typedef struct operator_task {
   double *gradient, *stress, *f;
 } operator_task;
 
-static void gradient_chunk(void *data, int64_t chunk, int32_t worker) {
-  (void)worker;
-  const operator_task *t = data;
-  const mps_elastic *e = t->e;
-  const int d = e->dim;
-  int64_t first, last, sites[MPSI_STENCIL_MAX];
-  double g[MPSI_STENCIL_MAX][3];
-  mpsi_elastic_chunk(e, chunk, &first, &last);
-  for (int64_t i = first; i < last; i++) {
-    const int32_t m = mpsi_elastic_stencil(e, i, sites, g);
-    double *G = t->gradient + i * d * d;
-    memset(G, 0, (size_t)(d * d) * sizeof *G);
-    /* Differences, so that a rigid translation gives exactly zero. */
-    for (int32_t a = 1; a < m; a++)
-      for (int c = 0; c < d; c++) {
-        const double du = t->u[sites[a] * d + c] - t->u[i * d + c];
-        for (int b = 0; b < d; b++) G[c * d + b] += du * g[a][b];
-      }
-  }
+static void gradient_at(void *task, int64_t i) {
+  const operator_task *t = task;
+  const int d = t->e->dim;
+  int64_t sites[MPSI_STENCIL_MAX];
+  double g[MPSI_STENCIL_MAX][3], *G = t->gradient + i * d * d;
+  const int32_t m = mpsi_elastic_stencil(t->e, i, sites, g);
+  memset(G, 0, (size_t)(d * d) * sizeof *G);
+  /* Differences, so that a rigid translation gives exactly zero. */
+  for (int32_t a = 1; a < m; a++)
+    for (int c = 0; c < d; c++) {
+      const double du = t->u[sites[a] * d + c] - t->u[i * d + c];
+      for (int b = 0; b < d; b++) G[c * d + b] += du * g[a][b];
+    }
 }
 
 void mpsi_elastic_gradients(mps_elastic *e, const double *u, double *gradient) {
   operator_task task = {.e = e, .u = u, .gradient = gradient};
-  mpsi_parallel_for(e->context, mpsi_elastic_chunks(e), gradient_chunk, &task);
+  mpsi_elastic_for_each(e, e->n, gradient_at, &task);
   mpsi_elastic_joint_gradients(e, u, gradient);
 }
 
@@ -112,71 +127,60 @@ static void local_stress(const mps_elastic *e, int64_t i, const double *G, doubl
 }
 
 /* P_i = dPi/dG_i, pairs included, and the part of f_i that comes from u_i in pairs. */
-static void stress_chunk(void *data, int64_t chunk, int32_t worker) {
-  (void)worker;
-  const operator_task *t = data;
+static void stress_at(void *task, int64_t i) {
+  const operator_task *t = task;
   const mps_elastic *e = t->e;
   const mpsi_links *l = &e->links;
   const int d = e->dim;
   const bool moment = e->conservative;
-  int64_t first, last;
-  mpsi_elastic_chunk(e, chunk, &first, &last);
-  for (int64_t i = first; i < last; i++) {
-    double *P = t->stress + i * d * d, *f = t->f + i * d;
-    local_stress(e, i, t->gradient + i * d * d, P);
-    for (int c = 0; c < d; c++) f[c] = 0.0;
-    mpsi_elastic_bending_force(e, t->u, i, f);
-    for (int32_t k = 0; k < l->count; k++) {
-      const int64_t j = l->to[i * l->count + k];
-      if (j < 0) continue;
-      double pull[3];
-      const double s = mpsi_elastic_bond(e, i, j, k);
-      stretch(e, t->u, t->gradient, i, k, pull);
-      for (int c = 0; c < d; c++) {
-        pull[c] *= s;
-        f[c] -= pull[c];
-        for (int b = 0; moment && b < d; b++)
-          P[c * d + b] -= 0.5 * pull[c] * e->spacing * l->step[k][b];
-      }
+  double *P = t->stress + i * d * d, *f = t->f + i * d;
+  local_stress(e, i, t->gradient + i * d * d, P);
+  for (int c = 0; c < d; c++) f[c] = 0.0;
+  mpsi_elastic_bending_force(e, t->u, i, f);
+  for (int32_t k = 0; k < l->count; k++) {
+    const int64_t j = l->to[i * l->count + k];
+    if (j < 0) continue;
+    double pull[3];
+    const double s = mpsi_elastic_bond(e, i, j, k);
+    stretch(e, t->u, t->gradient, i, k, pull);
+    for (int c = 0; c < d; c++) {
+      pull[c] *= s;
+      f[c] -= pull[c];
+      for (int b = 0; moment && b < d; b++)
+        P[c * d + b] -= 0.5 * pull[c] * e->spacing * l->step[k][b];
     }
   }
 }
 
 /* f_p += sum over gradients that p is a site of: gathered, so that the order is fixed. */
-static void force_chunk(void *data, int64_t chunk, int32_t worker) {
-  (void)worker;
-  const operator_task *t = data;
+static void force_at(void *task, int64_t p) {
+  const operator_task *t = task;
   const mps_elastic *e = t->e;
+  const mpsi_links *l = &e->links;
   const int d = e->dim;
-  int64_t first, last, sites[MPSI_STENCIL_MAX];
-  double g[MPSI_STENCIL_MAX][3];
-  mpsi_elastic_chunk(e, chunk, &first, &last);
-  for (int64_t p = first; p < last; p++) {
-    double *f = t->f + p * d;
-    /* The neighbours whose gradients use p are the sites of p's own; p sits opposite there. */
-    const int32_t m = mpsi_elastic_stencil(e, p, sites, g);
+  int64_t sites[MPSI_STENCIL_MAX];
+  double g[MPSI_STENCIL_MAX][3], *f = t->f + p * d;
+  /* The neighbours whose gradients use p are the sites of p's own; p sits opposite there. */
+  const int32_t m = mpsi_elastic_stencil(e, p, sites, g);
+  for (int c = 0; c < d; c++)
+    for (int b = 0; b < d; b++) f[c] += t->stress[(p * d + c) * d + b] * g[0][b];
+  const bool conservative = e->conservative;
+  for (int32_t a = 0, used = 1; used < m; a++) {
+    const int32_t k = conservative ? l->face[a / 2][a % 2] : a;
+    const int64_t j = l->to[p * l->count + k];
+    if (j < 0) continue;
+    double back[3];
+    used++;
+    mpsi_elastic_coefficient(e, j, l->count - 1 - k, back);
     for (int c = 0; c < d; c++)
-      for (int b = 0; b < d; b++) f[c] += t->stress[(p * d + c) * d + b] * g[0][b];
-    const mpsi_links *l = &e->links;
-    const bool conservative = e->conservative;
-    for (int32_t a = 0, used = 1; used < m; a++) {
-      const int32_t k = conservative ? l->face[a / 2][a % 2] : a;
-      const int64_t j = l->to[p * l->count + k];
-      if (j < 0) continue;
-      double back[3];
-      used++;
-      mpsi_elastic_coefficient(e, j, l->count - 1 - k, back);
-      for (int c = 0; c < d; c++)
-        for (int b = 0; b < d; b++) f[c] += t->stress[(j * d + c) * d + b] * back[b];
-    }
+      for (int b = 0; b < d; b++) f[c] += t->stress[(j * d + c) * d + b] * back[b];
   }
 }
 
 void mpsi_elastic_apply(mps_elastic *e, const double *u, double *f) {
   operator_task task = {.e = e, .u = u, .gradient = e->gradient, .stress = e->stress_work, .f = f};
-  const int64_t chunks = mpsi_elastic_chunks(e);
   mpsi_elastic_gradients(e, u, e->gradient);
-  mpsi_parallel_for(e->context, chunks, stress_chunk, &task);
+  mpsi_elastic_for_each(e, e->n, stress_at, &task);
   mpsi_elastic_joint_forces(e, e->stress_work, f);
-  mpsi_parallel_for(e->context, chunks, force_chunk, &task);
+  mpsi_elastic_for_each(e, e->n, force_at, &task);
 }
