@@ -10,7 +10,7 @@ int main(int argc, char **argv) {
                                  .diameter = 0.1,
                                  .angle = 60.0,
                                  .depth = 0.15,
-                                 .speed = 0.5,
+                                 .speed = 0.25,
                                  .soil = "6x6x4",
                                  .cohesion = 10.0,
                                  .phi = 35.0,
@@ -20,7 +20,7 @@ int main(int argc, char **argv) {
                                  .alpha = NAN,
                                  .gravity = NAN,
                                  .h = 0.0125,
-                                 .courant = 0.5,
+                                 .courant = 0.9,
                                  .ppc = 8,
                                  .spline = 1,
                                  .out = "out/penetrometer"}};
