@@ -6,13 +6,9 @@
 programs=$1
 shift
 mpirun=$*
+. "$(dirname "$0")/runs.sh"
 pile="--soil 0.6x0.6 --wall 0.08 --inner-diameter 0.32 --frames 1"
 
-# one PROGRAM TEXT: of the program there is one line, with the text.
-one() {
-  [ "$(grep -c "^$1: " "$work/log")" -eq 1 ] || fail "not one line with \"$2\": $(cat "$work/log")"
-  grep "^$1: " "$work/log" | grep -qF -- "$2" || fail "no \"$2\" in $(cat "$work/log")"
-}
 # wrong WHAT COMMAND...: mpirun must fail, in time.
 wrong() {
   what=$1 code=0
@@ -42,29 +38,10 @@ ends mps-tank force.csv --spacing 0.01 0.02 --duration 0.02 --frames 0
 ends mps-pile load.csv --h 0.04 0.05 $pile --depth 0.01 --speed 0.5
 [ ! -x "$programs/mps-cantilever" ] || ends mps-cantilever deflection.csv --nx 33 17 --ny 9
 
-# begin RANKS PROGRAM OPTION...: starts a run that does not end by itself, and waits for its first
-# checkpoint; sets pid.
-begin() {
-  ranks=$1 program=$2
-  shift 2
-  # shellcheck disable=SC2086
-  $mpirun -n "$ranks" "$programs/$program" "$@" >"$work/out" 2>"$work/log" &
-  pid=$! tries=0
-  until [ -e "$checkpoint" ]; do
-    sleep 0.05
-    tries=$((tries + 1))
-    [ $tries -lt 1200 ] && kill -0 $pid 2>/dev/null || fail "no checkpoint: $(cat "$work/log")"
-  done
-}
-# end SIGNAL: sends it to the last rank, waits for the run, a minute at most, and sets code.
-end() {
-  kill "-$1" "$(pgrep -f "$checkpoint" | tail -n 1)"
-  (sleep 60 && touch "$work/late" && kill -KILL $pid) >/dev/null 2>&1 & # ctest waits for who has stdout
-  watchdog=$!
-  code=0
-  wait $pid || code=$?
-  kill $watchdog 2>/dev/null || true
-  [ ! -e "$work/late" ] || fail "mpirun went on: $(cat "$work/log")"
+# signals SIGNAL: sends it to the last rank and waits for the run, which must not end well.
+signals() {
+  kill "-$1" "$(last_rank)"
+  end
   [ $code -ne 0 ] || fail "exit status 0 after $1"
 }
 # stops PROGRAM OPTION...: asked to stop, it keeps its results and its state, with which others go on; a
@@ -72,16 +49,15 @@ end() {
 stops() {
   name=$1 directory=$work/$1-long
   shift
-  checkpoint=$work/$name.h5
-  begin 2 "$name" "$@" --checkpoint "$checkpoint" --out "$directory"
-  end TERM
+  begin 2 "$work/$name.h5" "$programs/$name" "$@" --checkpoint "$work/$name.h5" --out "$directory"
+  signals TERM
   one "$name" "interrupted at t"
   ! grep -q "the results end there" "$work/log" || has "$directory/summary.json" '"outcome": "interrupted"'
   for signal in KILL TERM; do
     before=$checkpoint
-    checkpoint=$work/$name-$signal.h5
-    begin 3 "$name" "$@" --checkpoint "$checkpoint" --restart "$before" --out "$directory"
-    end $signal
+    next=$work/$name-$signal.h5
+    begin 3 "$next" "$programs/$name" "$@" --checkpoint "$next" --restart "$before" --out "$directory"
+    signals $signal
   done
   one "$name" "interrupted at t"
 }

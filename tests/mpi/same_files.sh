@@ -13,7 +13,7 @@ same() {
   shift 3
   "$program" "$@" --out "$work/$name-1" >"$work/$name.1"
   # shellcheck disable=SC2086
-  timeout 100 $mpirun -n 3 "$program" "$@" --out "$work/$name-3" >"$work/$name.3"
+  timeout 280 $mpirun -n 3 "$program" "$@" --out "$work/$name-3" >"$work/$name.3"
   sed "s:$name-1:$name-3:" "$work/$name.1" | cmp - "$work/$name.3" || fail "what $name prints"
   [ "$(ls "$work/$name-1")" = "$(ls "$work/$name-3")" ] || fail "files of $name: $(ls "$work/$name-3")"
   for file in "$work/$name-1"/*; do
@@ -45,7 +45,7 @@ pile="--soil 0.6x0.6 --h 0.04 --wall 0.08 --inner-diameter 0.32 --depth 0.06 --f
 # shellcheck disable=SC2086
 same pile pile.vtkhdf mps-pile $pile --checkpoint "$work/pile.h5" --every-checkpoint 0.03
 # The last checkpoint of the 3 ranks goes on with 2, and without mpirun, to the same results.
-for start in "timeout 100 $mpirun -n 2" ""; do
+for start in "timeout 280 $mpirun -n 2" ""; do
   # shellcheck disable=SC2086
   $start "$programs/mps-pile" $pile --restart "$work/pile.h5" --out "$work/on" >/dev/null
   for file in load.csv summary.json fields-1.csv fields-2.csv; do
@@ -58,7 +58,7 @@ same limit "" mps-stability --radius 1.6
 tank="--spacing 0.01 --duration 0.06 --sample 0.01 --frames 3 --gauge 0.4"
 # shellcheck disable=SC2086
 same tank water.vtkhdf mps-tank $tank --checkpoint "$work/tank.h5" --every-checkpoint 0.04
-for start in "timeout 100 $mpirun -n 2" ""; do
+for start in "timeout 280 $mpirun -n 2" ""; do
   # shellcheck disable=SC2086
   $start "$programs/mps-tank" $tank --restart "$work/tank.h5" --out "$work/on" >/dev/null
   for file in force.csv gauges.csv particles.csv summary.json; do
@@ -78,7 +78,7 @@ fi
 if [ -x "$programs/mps-cantilever" ]; then
   "$programs/mps-cantilever" --nx 65 --ny 33 --out "$work/beam-1" >/dev/null
   # shellcheck disable=SC2086
-  timeout 100 $mpirun -n 2 "$programs/mps-cantilever" --nx 65 --ny 33 --out "$work/beam-2" >"$work/beam"
+  timeout 280 $mpirun -n 2 "$programs/mps-cantilever" --nx 65 --ny 33 --out "$work/beam-2" >"$work/beam"
   has "$work/beam" "iterations of 2 ranks"
   [ "$(ls "$work/beam-1")" = "$(ls "$work/beam-2")" ] || fail "files of the beam"
   paste -d, "$work/beam-1/deflection.csv" "$work/beam-2/deflection.csv" | awk -F, '

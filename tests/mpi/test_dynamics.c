@@ -2,11 +2,7 @@
  * alone, then all of them together, and compares its share bit for bit. SPDX-License-Identifier:
  * BSD-3-Clause */
 #include "dynamics_scene.h"
-
-#include <mps/petsc.h>
-
-static mps_context *own;
-static mps_domain *domain;
+#include "world.h"
 
 static void compare_scene(void **state) {
   compare_shares(own, domain, compute, *(const int *)*state, WHOLE_RUN);
@@ -40,12 +36,7 @@ static void test_errors(void **state) {
 
 int main(void) {
   static int scene[SCENES] = {LAYERS, SCATTERED, PERIODIC, STRIP};
-  own = test_context(MPS_EXECUTOR_SERIAL, 1);
-  const mps_status status = mps_petsc_domain_create_world(own, &domain);
-  if (status != MPS_OK) {
-    fprintf(stderr, "no domain: %s\n", mps_status_text(status));
-    return 1;
-  }
+  if (!begin_world()) return 1;
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_prestate(compare_scene, &scene[0]),
       cmocka_unit_test_prestate(compare_scene, &scene[1]),
@@ -53,8 +44,5 @@ int main(void) {
       cmocka_unit_test_prestate(compare_scene, &scene[3]),
       cmocka_unit_test(test_errors),
   };
-  const int failed = cmocka_run_group_tests(tests, NULL, NULL);
-  mps_domain_destroy(&domain);
-  mps_context_destroy(&own);
-  return failed;
+  return end_world(cmocka_run_group_tests(tests, NULL, NULL));
 }

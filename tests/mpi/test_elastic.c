@@ -2,11 +2,8 @@
  * CHOLMOD, then all of them together by PETSc, and compares. SPDX-License-Identifier: BSD-3-Clause
  */
 #include "elastic_common.h"
+#include "world.h"
 
-#include <mps/petsc.h>
-
-static mps_context *own;
-static mps_domain *domain;
 static mps_petsc_solver *solvers[2]; /* by method */
 
 static bool stiff(double x, double y) {
@@ -91,8 +88,7 @@ static void a_solver_is_taken_out_again(void **state) {
 }
 
 int main(void) {
-  own = test_context(MPS_EXECUTOR_SERIAL, 1);
-  if (mps_petsc_domain_create_world(own, &domain) != MPS_OK) return 1;
+  if (!begin_world()) return 1;
   for (int32_t k = 0; k < 2; k++)
     if (mps_petsc_solver_create_world(k, &solvers[k]) != MPS_OK) return 1;
   const struct CMUnitTest tests[] = {
@@ -102,7 +98,5 @@ int main(void) {
   };
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   for (int k = 0; k < 2; k++) mps_petsc_solver_destroy(&solvers[k]);
-  mps_domain_destroy(&domain);
-  mps_context_destroy(&own);
-  return failed;
+  return end_world(failed);
 }

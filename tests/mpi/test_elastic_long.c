@@ -1,14 +1,11 @@
 /* test_elastic_long.c - a million unknowns of implicit elasticity on the ranks that mpirun starts:
  * a plate in tension, whose exact solution the method has. SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_common.h"
-
-#include <mps/petsc.h>
+#include "world.h"
 
 #define COLUMNS 1000
 #define ROWS 500
 
-static mps_context *own;
-static mps_domain *domain;
 static mps_petsc_solver *solver;
 
 static void a_plate_of_a_million_unknowns(void **state) {
@@ -58,13 +55,10 @@ static void a_plate_of_a_million_unknowns(void **state) {
 }
 
 int main(void) {
-  own = test_context(MPS_EXECUTOR_SERIAL, 1);
-  if (mps_petsc_domain_create_world(own, &domain) != MPS_OK) return 1;
+  if (!begin_world()) return 1;
   if (mps_petsc_solver_create_world(MPS_PETSC_MULTIGRID, &solver) != MPS_OK) return 1;
   const struct CMUnitTest tests[] = {cmocka_unit_test(a_plate_of_a_million_unknowns)};
   const int failed = cmocka_run_group_tests(tests, NULL, NULL);
   mps_petsc_solver_destroy(&solver);
-  mps_domain_destroy(&domain);
-  mps_context_destroy(&own);
-  return failed;
+  return end_world(failed);
 }

@@ -2,11 +2,7 @@
  * of them together, compares its share bit for bit, and all see that no particle is lost.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_ranks.h"
-
-#include <mps/petsc.h>
-
-static mps_context *own;
-static mps_domain *domain;
+#include "world.h"
 
 static void compare_scene(void **state) {
   const int what = *(const int *)*state;
@@ -15,12 +11,7 @@ static void compare_scene(void **state) {
 
 int main(void) {
   static int which[] = {SLIDE, SPREAD, RING, ROOM, PRESS, PLATES};
-  own = test_context(MPS_EXECUTOR_SERIAL, 1);
-  const mps_status status = mps_petsc_domain_create_world(own, &domain);
-  if (status != MPS_OK) {
-    fprintf(stderr, "no domain: %s\n", mps_status_text(status));
-    return 1;
-  }
+  if (!begin_world()) return 1;
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_prestate(compare_scene, &which[SLIDE]),
       cmocka_unit_test_prestate(compare_scene, &which[SPREAD]),
@@ -29,8 +20,5 @@ int main(void) {
       cmocka_unit_test_prestate(compare_scene, &which[4]),
       cmocka_unit_test_prestate(compare_scene, &which[5]),
   };
-  const int failed = cmocka_run_group_tests(tests, NULL, NULL);
-  mps_domain_destroy(&domain);
-  mps_context_destroy(&own);
-  return failed;
+  return end_world(cmocka_run_group_tests(tests, NULL, NULL));
 }
