@@ -378,6 +378,72 @@ static void fast_plates_are_met(void **state) {
   }
 }
 
+/* The particle named by the error of one more step; -1: the step was made. */
+static int64_t too_deep(mpm_scene *s) {
+  const mps_status status = mps_mpm_step(s->mpm, 1);
+  if (status == MPS_OK) return -1;
+  assert_int_equal(status, MPS_ERROR_DIVERGED);
+  assert_non_null(strstr(mps_context_error(s->context)->message, "below the surface of body 0"));
+  return mps_context_error(s->context)->particle;
+}
+
+/* Brings the particle to the height y. */
+static void put_at(mpm_scene *s, int64_t name, double y) {
+  mps_edit x;
+  mps_view id = mpm_scene_view(s, "id");
+  int64_t k = 0;
+  while (*mps_view_i64(&id, k, 0) != name) k++;
+  mps_assert_ok(s->context, mps_particles_edit(s->particles, "position", &x));
+  *mps_edit_f64(&x, k, 1) = y;
+  mps_assert_ok(s->context, mps_particles_commit(s->particles, &x));
+}
+
+/* Particles too deep in a plate over many blocks of the grid: the step is refused as often as it is
+ * tried, names the same particle, and one that is taken out is forgotten at once: errors tell of
+ * the present state alone, whichever blocks the next step comes to. */
+static void depth_is_found_anew(void **state) {
+  (void)state;
+  for (int32_t threads = 1; threads <= 2; threads++) {
+    mps_context *own = test_context(threads == 1 ? MPS_EXECUTOR_SERIAL : 0, threads);
+    mpm_scene s = mpm_scene_begin(own, 0.01, 0.0, 0.0, 1e6);
+    mps_body_def at = mps_body_defaults();
+    mps_body *plate = NULL;
+    mps_mpm_def def = mps_mpm_defaults();
+    def.cell = 0.02;
+    mpm_scene_box(&s, 0.0, 0.0, 1.2, 0.1); /* 60 cells, 8 blocks of them */
+    mpm_scene_solve(&s, &def);
+    at.position[0] = 0.6, at.position[1] = 0.22; /* nothing else touches it */
+    mps_assert_ok(own, mps_body_create_box(own, &at, 1.4, 0.2, &plate));
+    mpm_scene_contact(&s, plate, 0.3);
+    mps_assert_ok(own, mps_mpm_step(s.mpm, 3));
+    const double place[3] = {0.105, 0.605, 1.105};
+    mps_view id = mpm_scene_view(&s, "id");
+    int64_t deep[3] = {-1, -1, -1};
+    mps_view x = mpm_scene_view(&s, "position");
+    for (int64_t k = 0; k < x.shape[0]; k++)
+      for (int n = 0; n < 3; n++)
+        if (fabs(*mps_view_f64(&x, k, 0) - place[n]) < 0.004 && *mps_view_f64(&x, k, 1) > 0.09)
+          deep[n] = *mps_view_i64(&id, k, 0);
+    const int64_t steps = mps_mpm_steps(s.mpm);
+    for (int n = 0; n < 3; n++) put_at(&s, deep[n], 0.15); /* a cell is allowed */
+    for (int left = 3; left > 0; left--) {
+      const int64_t first = too_deep(&s);
+      int n = 0;
+      while (n < 3 && (first < 0 || deep[n] != first)) n++;
+      assert_in_range(n, 0, 2);
+      for (int again = 0; again < 3; again++) assert_int_equal(too_deep(&s), first);
+      assert_int_equal(mps_mpm_steps(s.mpm), steps);
+      put_at(&s, deep[n], 0.095);
+      deep[n] = -1;
+    }
+    assert_int_equal(too_deep(&s), -1);
+    mps_assert_ok(own, mps_mpm_step(s.mpm, 3));
+    mps_body_destroy(&plate);
+    mpm_scene_end(&s);
+    mps_context_destroy(&own);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(half_size_follows_elastic_strain),
                                      cmocka_unit_test(aims_at_the_surface),
@@ -389,6 +455,7 @@ int main(void) {
                                      cmocka_unit_test(thin_plates_press),
                                      cmocka_unit_test(shear_is_by_area),
                                      cmocka_unit_test(short_steps_feel_no_more),
-                                     cmocka_unit_test(fast_plates_are_met)};
+                                     cmocka_unit_test(fast_plates_are_met),
+                                     cmocka_unit_test(depth_is_found_anew)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
