@@ -261,13 +261,37 @@ static mps_status read_def(mps_mpm *mpm, const char *function, const mps_mpm_bou
   return MPSI_DEF_READ(mpm->context, function, mps_mpm_boundary_def, user, def);
 }
 
+/* All ranks give the same boundary (`number` -1: a new one). */
+static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status status,
+                                int32_t number, const mps_mpm_boundary_def *def) {
+  if (!mpm->share) return status;
+  double numbers[24] = {0.0};
+  int32_t count = 0;
+  if (status == MPS_OK) {
+    const double list[] = {number, def->kind, def->dofs, def->friction, def->settle};
+    count = (int32_t)(sizeof list / sizeof *list);
+    memcpy(numbers, list, sizeof list);
+    for (int c = 0; c < mpm->dim; c++) {
+      numbers[count++] = def->lower[c], numbers[count++] = def->upper[c];
+      numbers[count++] = def->factor[c], numbers[count++] = def->signal[c] != NULL;
+    }
+    if (def->ids && def->id_count > 0)
+      numbers[count++] = mpsi_domain_short(
+          mpsi_domain_hash(MPSI_DOMAIN_HASH, def->ids, (size_t)def->id_count * sizeof *def->ids));
+  }
+  return mpsi_domain_settle_numbers(mpm->share->domain, function, status,
+                                    "a hash of the boundary's definition", count, numbers);
+}
+
 /* ---- the calls ------------------------------------------------------------------------------- */
 
 mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mpm_boundary_def *user, int32_t *number) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_mpm_boundary_def def;
   mps_status status = mpsi_mpm_between_steps(mpm, __func__);
-  if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
+  if (status != MPS_OK) return status;
+  status = read_def(mpm, __func__, user, &def);
+  status = compare_ranks(mpm, __func__, status, -1, &def);
   if (status != MPS_OK) return status;
   int32_t at = MPSI_SIDES;
   while (at < MPSI_HOLDS && mpm->boundaries.hold[at].kind != MPSI_HOLD_NONE) at++;
@@ -306,8 +330,10 @@ mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t number, const mps_mpm_boun
   if (!mpm) return MPS_ERROR_ARGUMENT;
   mps_mpm_boundary_def def;
   mps_status status = mpsi_mpm_between_steps(mpm, __func__);
-  if (status == MPS_OK) status = find(mpm, __func__, number);
+  if (status != MPS_OK) return status;
+  status = find(mpm, __func__, number);
   if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
+  status = compare_ranks(mpm, __func__, status, number, &def);
   if (status != MPS_OK) return status;
   mpsi_hold *hold = &mpm->boundaries.hold[number];
   if (number >= MPSI_SIDES) return take_prescribed(mpm, __func__, &def, hold);

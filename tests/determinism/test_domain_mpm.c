@@ -100,6 +100,8 @@ enum {
   UNKNOWN_ID,
   OTHER_CONTACT,
   DEPTH,
+  OTHER_BOUNDARY,
+  BAD_BOUNDARY,
   TROUBLES
 };
 static const trouble_case trouble[TROUBLES] = {
@@ -110,6 +112,8 @@ static const trouble_case trouble[TROUBLES] = {
     [CALLBACK_FAILS] = {MPS_ERROR_IO, "rank 2: "},
     [UNKNOWN_ID] = {MPS_ERROR_ARGUMENT, "of 2 ids 1 are of particles of the set on any rank"},
     [OTHER_CONTACT] = {MPS_ERROR_ARGUMENT, "a hash of the contact's definition"},
+    [OTHER_BOUNDARY] = {MPS_ERROR_ARGUMENT, "a hash of the boundary's definition"},
+    [BAD_BOUNDARY] = {MPS_ERROR_ARGUMENT, "rank 1: boundary is -1"},
     [DEPTH] = {MPS_ERROR_DIVERGED, "m below the surface of body 0, at most 1e-09 m"},
 };
 
@@ -141,6 +145,11 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
     TRY(mps_mpm_step(s.mpm, 10));
   }
   if (what == CALLBACK_FAILS) TRY(mps_mpm_run(s.mpm, 1.0, 5, refuse_callback, &rank));
+  if (what == OTHER_BOUNDARY)
+    TRY(mps_mpm_set_side(s.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FRICTIONAL, 0.1 * rank));
+  if (what == BAD_BOUNDARY)
+    TRY(mps_mpm_set_side(s.mpm, rank == 1 ? -1 : MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED,
+                         0.0));
   if (what == UNKNOWN_ID) {
     mps_mpm_boundary_def boundary = mps_mpm_boundary_defaults();
     const int64_t ids[2] = {17, 123456};
