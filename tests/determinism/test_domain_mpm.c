@@ -86,6 +86,18 @@ static void test_refused_contact(void **state) {
   (void)state, refuse_memory(compute, PRESS, 24, 11);
 }
 
+/* Nodes and values of the grid, at the end of what has been well. */
+static mps_status probe(mps_context *own, mps_domain *domain, int what, int64_t steps, result *r) {
+  scene s = {.set = NULL};
+  mps_status status = make_scene(own, domain, what, &s);
+  TRY(mps_mpm_step(s.mpm, steps));
+  TRY(keep_grid(domain, &s, r->other));
+  end_scene(&s);
+  return status;
+}
+
+static void test_refused_probes(void **state) { (void)state, refuse_memory(probe, SLIDE, 1, 1); }
+
 static void test_refused_changes(void **state) {
   (void)state, refuse_memory(compute_changes, SPREAD, 12, 13);
 }
@@ -255,6 +267,7 @@ int main(void) {
                                      cmocka_unit_test(test_refused_memory),
                                      cmocka_unit_test(test_refused_contact),
                                      cmocka_unit_test(test_refused_changes),
+                                     cmocka_unit_test(test_refused_probes),
                                      cmocka_unit_test(test_troubles),
                                      cmocka_unit_test(test_bad_changes)};
   return cmocka_run_group_tests(tests, NULL, NULL);
