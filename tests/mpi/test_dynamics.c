@@ -34,6 +34,57 @@ static void test_errors(void **state) {
   assert_int_equal(mps_petsc_domain_create_world(own, NULL), MPS_ERROR_ARGUMENT);
 }
 
+/* Ranks at two instruction levels would differ in their last bits: no domain. */
+static void test_levels(void **state) {
+  (void)state;
+  const int32_t rank = mps_domain_rank(domain), ranks = mps_domain_size(domain);
+  mps_context_def def = mps_context_defaults();
+  mps_context *context = NULL;
+  mps_domain *mixed = NULL;
+  def.executor = MPS_EXECUTOR_SERIAL;
+  def.instruction_level = rank == ranks - 1 ? 1 : 3;
+  double none = mps_context_create(&def, &context, NULL, 0) != MPS_OK;
+  mps_assert_ok(own, mps_domain_max(domain, 1, &none));
+  if (none == 0.0) { /* else this machine has one level */
+    const mps_status status = mps_petsc_domain_create_world(context, &mixed);
+    assert_int_equal(status, ranks > 1 ? MPS_ERROR_ARGUMENT : MPS_OK);
+    if (ranks > 1)
+      assert_non_null(strstr(mps_context_error(context)->message, "instruction_level"));
+    mps_domain_destroy(&mixed);
+  }
+  mps_context_destroy(&context);
+}
+
+/* Another number of steps or end of the run on the last rank, allowed or not: an error of all, and
+ * the motion as it was. */
+static void test_other_arguments(void **state) {
+  (void)state;
+  const bool last = mps_domain_rank(domain) == mps_domain_size(domain) - 1;
+  const bool many = mps_domain_size(domain) > 1;
+  mps_particles_def def = mps_particles_defaults();
+  mps_particles *set = NULL;
+  mps_dynamics_def solver = mps_dynamics_defaults();
+  mps_dynamics *dynamics = NULL;
+  const double lo[2] = {0.0, 0.0}, hi[2] = {80.0, 40.0};
+  def.spacing = 1.0;
+  mps_assert_ok(own, mps_particles_create(own, &def, &set));
+  mps_assert_ok(own, mps_particles_fill_box(set, lo, hi, NULL));
+  mps_assert_ok(own, mps_particles_set(set, "density", 0, 1900.0));
+  mps_assert_ok(own, mps_particles_set(set, "shear_velocity", 0, 200.0));
+  mps_assert_ok(own, mps_particles_set(set, "pressure_velocity", 0, 400.0));
+  solver.domain = domain;
+  mps_assert_ok(own, mps_dynamics_create(own, set, &solver, &dynamics));
+  assert_int_equal(mps_dynamics_step(dynamics, last ? -1 : 2), MPS_ERROR_ARGUMENT);
+  assert_non_null(strstr(mps_context_error(own)->message, "count is -1"));
+  if (many) assert_int_equal(mps_dynamics_step(dynamics, last ? 3 : 2), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_run(dynamics, last ? NAN : 0.1, 1, NULL, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_run(dynamics, 0.1, last ? 0 : 1, NULL, NULL), MPS_ERROR_ARGUMENT);
+  assert_int_equal(mps_dynamics_steps(dynamics), 0);
+  mps_assert_ok(own, mps_dynamics_step(dynamics, 2));
+  mps_dynamics_destroy(&dynamics);
+  mps_particles_destroy(&set);
+}
+
 int main(void) {
   static int scene[SCENES] = {LAYERS, SCATTERED, PERIODIC, STRIP};
   if (!begin_world()) return 1;
@@ -43,6 +94,8 @@ int main(void) {
       cmocka_unit_test_prestate(compare_scene, &scene[2]),
       cmocka_unit_test_prestate(compare_scene, &scene[3]),
       cmocka_unit_test(test_errors),
+      cmocka_unit_test(test_levels),
+      cmocka_unit_test(test_other_arguments),
   };
   return end_world(cmocka_run_group_tests(tests, NULL, NULL));
 }
