@@ -81,6 +81,8 @@ enum {
   OTHER_DENSITY,
   OTHER_WALL,
   OTHER_COUNT,
+  NO_COUNT,
+  OTHER_END,
   OTHER_ADDED,
   CANCELLED,
   CALLBACK_FAILS,
@@ -92,6 +94,8 @@ static const trouble_case trouble[TROUBLES] = {
     [OTHER_DENSITY] = {MPS_ERROR_ARGUMENT, "a hash of the solver's definition"},
     [OTHER_WALL] = {MPS_ERROR_ARGUMENT, "a hash of the boundary"},
     [OTHER_COUNT] = {MPS_ERROR_ARGUMENT, "count is "},
+    [NO_COUNT] = {MPS_ERROR_ARGUMENT, "count is -1"},
+    [OTHER_END] = {MPS_ERROR_ARGUMENT, "every 0"},
     [OTHER_ADDED] = {MPS_ERROR_STATE, "must add and remove the same"},
     [CANCELLED] = {MPS_ERROR_CANCELLED, "stopped by the cancel hook at step 0"},
     [CALLBACK_FAILS] = {MPS_ERROR_IO, "rank 2: "},
@@ -137,7 +141,10 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
   if (what == OTHER_ADDED && rank == 1) TRY(mps_particles_append(s.set, 1, extra));
   if (what == CALLBACK_FAILS) TRY(mps_fluid_run(s.fluid, 0.1, 1, refuse_callback, &rank));
   if (what == CANCELLED) mps_context_set_cancel(own, cancel, &rank);
-  TRY(mps_fluid_step(s.fluid, what == OTHER_COUNT ? 1 + rank : 2));
+  if (what == OTHER_END) TRY(mps_fluid_run(s.fluid, 0.1, rank == 1 ? 0 : 1, NULL, NULL));
+  TRY(mps_fluid_step(s.fluid, what == OTHER_COUNT             ? 1 + rank
+                              : what == NO_COUNT && rank == 1 ? -1
+                                                              : 2));
   drop_scene(&s);
   return status;
 }
