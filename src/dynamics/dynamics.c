@@ -198,6 +198,29 @@ static mps_status build(mps_dynamics *dynamics, mpsi_storage **former) {
   if (status == MPS_OK) status = mpsi_dynamics_begin(dynamics, function, 0.0);
   return status;
 }
+/* Holds the set, which may be held, and takes over the definition. */
+static void describe(mps_dynamics *dynamics, const mps_dynamics_def *def) {
+  dynamics->holder = (mpsi_holder){.name = "a solver of elastodynamics (mps_dynamics)",
+                                   .self = dynamics,
+                                   .kind = MPSI_USE_MOVE,
+                                   .guard = &dynamics->guard,
+                                   .commit = mpsi_dynamics_commit,
+                                   .remove = mpsi_dynamics_remove,
+                                   .renew = mpsi_dynamics_renew};
+  (void)mpsi_particles_hold(dynamics->particles, "mps_dynamics_create", &dynamics->holder);
+  dynamics->def = *def;
+  if (def->kernel)
+    dynamics->def.radius_ratio =
+        mps_kernel_radius(def->kernel) / mps_particles_spacing(dynamics->particles);
+  dynamics->count = mps_particles_count(dynamics->particles);
+  dynamics->kernels = mpsi_dynamics_kernels_select(mpsi_context_level(dynamics->context));
+  dynamics->dt = def->dt;
+  dynamics->fresh = true;
+  if (def->material) dynamics->def.material = mpsi_material_retain(def->material);
+  dynamics->domain = mpsi_domain_retain(def->domain);
+  dynamics->lead = true;
+}
+
 mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
                                const mps_dynamics_def *user_def, mps_dynamics **out) {
   if (!context) return MPS_ERROR_ARGUMENT;
@@ -232,24 +255,7 @@ mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
   }
   dynamics->context = mpsi_context_retain(context);
   dynamics->particles = particles;
-  dynamics->holder = (mpsi_holder){.name = "a solver of elastodynamics (mps_dynamics)",
-                                   .self = dynamics,
-                                   .kind = MPSI_USE_MOVE,
-                                   .guard = &dynamics->guard,
-                                   .commit = mpsi_dynamics_commit,
-                                   .remove = mpsi_dynamics_remove,
-                                   .renew = mpsi_dynamics_renew};
-  (void)mpsi_particles_hold(particles, __func__, &dynamics->holder); /* checked above */
-  dynamics->def = def;
-  if (def.kernel)
-    dynamics->def.radius_ratio = mps_kernel_radius(def.kernel) / mps_particles_spacing(particles);
-  dynamics->count = mps_particles_count(particles);
-  dynamics->kernels = mpsi_dynamics_kernels_select(mpsi_context_level(context));
-  dynamics->dt = def.dt;
-  dynamics->fresh = true;
-  if (def.material) dynamics->def.material = mpsi_material_retain(def.material);
-  dynamics->domain = mpsi_domain_retain(def.domain);
-  dynamics->lead = true;
+  describe(dynamics, &def);
   if ((status = build(dynamics, &former)) != MPS_OK) {
     mpsi_particles_take_back(particles, &former);
     mpsi_particles_go_back(particles, &backup);

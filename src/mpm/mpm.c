@@ -318,6 +318,59 @@ static mps_status build(mps_mpm *mpm, mps_material *material, mps_status status,
   return status;
 }
 
+/* Checks the definition for the set and fills in what it leaves open: kernel, measure, domain. */
+static mps_status complete(mps_context *context, mps_particles *particles, mps_mpm_def *def,
+                           int64_t *low, int64_t *high) {
+  mps_status status = check_set(context, particles);
+  if (status == MPS_OK) status = check_choices(context, def);
+  if (status == MPS_OK && mps_particles_dim(particles) != dim_of(def))
+    status = mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
+                       "geometry is %d, and the set has %d dimensions: it needs %s", def->geometry,
+                       mps_particles_dim(particles),
+                       dim_of(def) == 3 ? "0 (plane strain) or 1 (axisymmetric)" : "2 (space)");
+  if (status == MPS_OK) status = check_numbers(context, def);
+  if (status == MPS_OK) status = read_kernel(context, def);
+  if (status == MPS_OK) status = read_measure(context, def);
+  if (status == MPS_OK) status = check_cell(context, def, particles);
+  if (status == MPS_OK) status = read_domain(context, def, low, high);
+  return status == MPS_OK ? mpsi_particles_check_hold(particles, create, MPSI_USE_MOVE) : status;
+}
+
+static void hold(mps_mpm *mpm, const char *function, bool shared) {
+  mpm->holder = (mpsi_holder){.name = "a WLS-MPM solver (mps_mpm)",
+                              .self = mpm,
+                              .kind = MPSI_USE_MOVE,
+                              .guard = &mpm->run.guard,
+                              .commit = mpsi_mpm_note_edit,
+                              .compares = mpsi_mpm_compares,
+                              .insert = mpsi_mpm_insert,
+                              .remove = mpsi_mpm_remove,
+                              .leaving = mpsi_mpm_thin_out,
+                              .renew = mpsi_mpm_renew};
+  if (shared) {
+    mpm->holder.runs = mpsi_mpm_share_runs;
+    mpm->holder.agree = mpsi_mpm_share_agree_added;
+    mpm->holder.find = mpsi_mpm_share_find;
+  }
+  (void)mpsi_particles_hold(mpm->particles, function, &mpm->holder);
+}
+
+/* What follows from the definition alone. */
+static void describe(mps_mpm *mpm, const mps_mpm_def *def, const int64_t *low,
+                     const int64_t *high) {
+  mpm->def = *def;
+  mpm->def.domain = mpsi_domain_retain(def->domain);
+  mpm->dim = dim_of(def);
+  mpm->grid.block_nodes = MPSI_SIDE * MPSI_SIDE * (mpm->dim == 3 ? MPSI_SIDE : 1);
+  mpm->grid.tile_nodes = MPSI_TILE_SIDE * MPSI_TILE_SIDE * (mpm->dim == 3 ? MPSI_TILE_SIDE : 1);
+  mpm->energy.counts = def->budget != 0;
+  mpm->kernels = mpsi_mpm_kernels(mpsi_context_level(mpm->context));
+  mpm->p.count = mps_particles_count(mpm->particles);
+  mpm->grid.inverse = 1.0 / def->cell;
+  memcpy(mpm->grid.low, low, sizeof mpm->grid.low);
+  memcpy(mpm->grid.high, high, sizeof mpm->grid.high);
+}
+
 mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_material *material,
                           const mps_mpm_def *user_def, mps_mpm **out) {
   if (!context) return MPS_ERROR_ARGUMENT;
@@ -330,19 +383,7 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   if (user_def) status = MPSI_DEF_READ(context, __func__, mps_mpm_def, user_def, &def);
   if (status == MPS_OK) status = mpsi_domain_check(context, __func__, def.domain);
   if (status != MPS_OK) return status;
-  status = check_set(context, particles);
-  if (status == MPS_OK) status = check_choices(context, &def);
-  if (status == MPS_OK && mps_particles_dim(particles) != dim_of(&def))
-    status = mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
-                       "geometry is %d, and the set has %d dimensions: it needs %s", def.geometry,
-                       mps_particles_dim(particles),
-                       dim_of(&def) == 3 ? "0 (plane strain) or 1 (axisymmetric)" : "2 (space)");
-  if (status == MPS_OK) status = check_numbers(context, &def);
-  if (status == MPS_OK) status = read_kernel(context, &def);
-  if (status == MPS_OK) status = read_measure(context, &def);
-  if (status == MPS_OK) status = check_cell(context, &def, particles);
-  if (status == MPS_OK) status = read_domain(context, &def, low, high);
-  if (status == MPS_OK) status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
+  status = complete(context, particles, &def, low, high);
   mpsi_backup backup = {0};
   mpsi_storage *former = NULL;
   mps_mpm *mpm = status == MPS_OK ? mpsi_alloc(context, 1, sizeof *mpm) : NULL;
@@ -358,34 +399,8 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   mpm->reader.mpm = mpm;
   mpm->context = mpsi_context_retain(context);
   mpm->particles = particles;
-  mpm->holder = (mpsi_holder){.name = "a WLS-MPM solver (mps_mpm)",
-                              .self = mpm,
-                              .kind = MPSI_USE_MOVE,
-                              .guard = &mpm->run.guard,
-                              .commit = mpsi_mpm_note_edit,
-                              .compares = mpsi_mpm_compares,
-                              .insert = mpsi_mpm_insert,
-                              .remove = mpsi_mpm_remove,
-                              .leaving = mpsi_mpm_thin_out,
-                              .renew = mpsi_mpm_renew};
-  if (is_shared(&def)) {
-    mpm->holder.runs = mpsi_mpm_share_runs;
-    mpm->holder.agree = mpsi_mpm_share_agree_added;
-    mpm->holder.find = mpsi_mpm_share_find;
-  }
-  (void)mpsi_particles_hold(particles, __func__, &mpm->holder); /* checked above */
-  mpm->def = def;
-  mpm->def.domain = mpsi_domain_retain(def.domain);
-  mpm->dim = dim_of(&def);
-  mpm->grid.block_nodes = mpm->dim == 3 ? MPSI_SIDE * MPSI_SIDE * MPSI_SIDE : MPSI_SIDE * MPSI_SIDE;
-  mpm->grid.tile_nodes = mpm->dim == 3 ? MPSI_TILE_SIDE * MPSI_TILE_SIDE * MPSI_TILE_SIDE
-                                       : MPSI_TILE_SIDE * MPSI_TILE_SIDE;
-  mpm->energy.counts = def.budget != 0;
-  mpm->kernels = mpsi_mpm_kernels(mpsi_context_level(context));
-  mpm->p.count = mps_particles_count(particles);
-  mpm->grid.inverse = 1.0 / def.cell;
-  memcpy(mpm->grid.low, low, sizeof low);
-  memcpy(mpm->grid.high, high, sizeof high);
+  hold(mpm, __func__, is_shared(&def)); /* checked above */
+  describe(mpm, &def, low, high);
   if (!mpsi_mpm_begin_sides(mpm))
     status = mpsi_fail_memory(context, __func__, MPSI_SIDES * sizeof(mpsi_hold_sums));
   if (def.kernel)
@@ -406,15 +421,9 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   return MPS_OK;
 }
 
-void mps_mpm_destroy(mps_mpm **pointer) {
-  if (!pointer || !*pointer) return;
-  mps_mpm *mpm = *pointer;
-  mps_context *context = mpm->context;
-  if (mpsi_mpm_between_steps(mpm, __func__) != MPS_OK) return;
-  *pointer = NULL;
-  mpsi_mpm_end_contacts(mpm);
+static void free_rooms(mps_mpm *mpm) {
   for (int32_t k = 0; mpm->grid.workers && k < mpm->grid.worker_count; k++)
-    mpsi_free(context, mpm->grid.workers[k].memory);
+    mpsi_free(mpm->context, mpm->grid.workers[k].memory);
   void *parts[] = {mpm->grid.workers,
                    mpm->grid.cells_room.item,
                    mpm->grid.coloured_room.item,
@@ -456,7 +465,17 @@ void mps_mpm_destroy(mps_mpm **pointer) {
                    mpm->undo.room.item,
                    mpm->undo.dash_room.item,
                    mpm->undo.sums_room.item};
-  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(mpm->context, parts[k]);
+}
+
+void mps_mpm_destroy(mps_mpm **pointer) {
+  if (!pointer || !*pointer) return;
+  mps_mpm *mpm = *pointer;
+  mps_context *context = mpm->context;
+  if (mpsi_mpm_between_steps(mpm, __func__) != MPS_OK) return;
+  *pointer = NULL;
+  mpsi_mpm_end_contacts(mpm);
+  free_rooms(mpm);
   mpsi_mpm_free_impulses(mpm);
   mpsi_mpm_drop_loads(mpm);
   mpsi_mpm_drop_boundaries(mpm);
