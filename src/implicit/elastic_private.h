@@ -299,7 +299,7 @@ static inline void mpsi_elastic_chunk(const mps_elastic *e, int64_t chunk, int64
 static inline int64_t mpsi_elastic_chunks(const mps_elastic *e) {
   return (e->n + MPSI_ELASTIC_CHUNK - 1) / MPSI_ELASTIC_CHUNK;
 }
-/* operator.c: work(task, k) for all k of [0, count), chunk by chunk in parallel. */
+/* lattice.c: work(task, k) for all k of [0, count), chunk by chunk in parallel. */
 typedef void (*mpsi_elastic_work)(void *task, int64_t k);
 void mpsi_elastic_for_each(mps_elastic *e, int64_t count, mpsi_elastic_work work, void *task);
 

@@ -16,27 +16,6 @@
 
 #include <string.h>
 
-/* ---- loops ----------------------------------------------------------------------------------- */
-
-typedef struct loop {
-  mpsi_elastic_work work;
-  void *task;
-  int64_t count;
-} loop;
-
-static void loop_chunk(void *data, int64_t chunk, int32_t worker) {
-  (void)worker;
-  const loop *l = data;
-  const int64_t end = (chunk + 1) * MPSI_ELASTIC_CHUNK;
-  for (int64_t k = chunk * MPSI_ELASTIC_CHUNK; k < end && k < l->count; k++) l->work(l->task, k);
-}
-
-void mpsi_elastic_for_each(mps_elastic *e, int64_t count, mpsi_elastic_work work, void *task) {
-  loop l = {work, task, count};
-  const int64_t chunks = (count + MPSI_ELASTIC_CHUNK - 1) / MPSI_ELASTIC_CHUNK;
-  mpsi_parallel_for(e->context, chunks, loop_chunk, &l);
-}
-
 /* ---- gradient -------------------------------------------------------------------------------- */
 
 typedef struct operator_task {
