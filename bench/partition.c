@@ -13,7 +13,7 @@
 #include <string.h>
 
 enum { SIDE = 8, TILE = SIDE + 3, VALUES = 8, FULL = 8 * SIDE * SIDE * SIDE };
-#define ROUNDING 1.3 /* tiles that are wider, as particles may leave their block by a cell */
+#define ROUNDING 1.5 /* tiles that are wider, as particles may leave their block by a cell */
 
 /* ---- a domain whose other ranks have nothing ------------------------------------------------- */
 
