@@ -46,7 +46,9 @@ typedef enum mps_executor_kind {
   MPS_EXECUTOR_CALLER = 2, /* parallel_for below */
   MPS_EXECUTOR_THREADS = 3 /* `threads`, with the calling thread, of the context's own: they start
                               with the first loop, and sleep when they have waited for some
-                              microseconds. All signals are blocked in them */
+                              microseconds. All signals are blocked in them. They run where the
+                              thread that starts them may: OMP_PROC_BIND in the environment binds
+                              that to one processor, which they then share */
 } mps_executor_kind;
 
 typedef enum mps_log_level {
