@@ -15,11 +15,11 @@ cut() {
   shift 3
   "$program" "$@" --out "$work/$name" >/dev/null
   # shellcheck disable=SC2086
-  begin 4 "$work/$name.h5" "$program" "$@" $often --checkpoint "$work/$name.h5" --out "$work/$name-4"
+  begin 3 "$work/$name.h5" "$program" "$@" $often --checkpoint "$work/$name.h5" --out "$work/$name-cut"
   victim=$(last_rank)
   [ -z "$victim" ] || kill -KILL "$victim" 2>/dev/null || true
   end
-  for ranks in 1 3; do
+  for ranks in 2; do
     # shellcheck disable=SC2086
     timeout 280 $mpirun -n $ranks "$program" "$@" --restart "$work/$name.h5" --out "$work/$name-on" \
       >/dev/null
