@@ -61,8 +61,8 @@ MPS_API uint64_t mps_particles_epoch(const mps_particles *particles);
  * lower edges of a polygon, out at `hi`, at the right and upper edges and on the surface of a ball.
  * So shapes that share an edge share no site. */
 
-/** Appends `count` particles at given positions: positions[i * dim + c] in m, within 1e15 m. This and
- *  the fills, of a set that lies on several ranks (mps/domain.h): collective; all ranks give the
+/** Appends `count` particles at given positions: positions[i * dim + c] in m, within 1e15 m. This
+ * and the fills, of a set that lies on several ranks (mps/domain.h): collective; all ranks give the
  *  same, and each keeps the particles of its share. */
 MPS_API MPS_NODISCARD mps_status mps_particles_append(mps_particles *particles, int64_t count,
                                                       const double *positions);

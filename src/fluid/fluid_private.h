@@ -227,10 +227,10 @@ struct mps_fluid {
   mpsi_fluid_classical classical;
   mpsi_fluid_outside *outside; /* NULL: none */
   mpsi_guard guard;            /* of the callbacks of the run and of the solver */
-  bool changing; /* energy_before is that of before a change of the set that is under way */
+  bool changing;   /* energy_before is that of before a change of the set that is under way */
   bool stale;      /* the cloud is not that of the fields */
   int64_t unknown; /* 1: free_surface and surface_rise are not of the present set and walls */
-  bool warned;   /* that the guards act often */
+  bool warned;     /* that the guards act often */
   mpsi_identity *identity;
   mps_fluid_report report, before;    /* before: as the step being made began */
   double energy_before;               /* J, before particles come or go */

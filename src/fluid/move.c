@@ -304,8 +304,8 @@ static double wall_travel(const mps_fluid *f) {
 int64_t mpsi_fluid_advance(mps_fluid *f) {
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, move_chunk);
   mpsi_fluid_tell_sums(f, MPSI_FLUID_CHUNK);
-  mpsi_fluid_tell_all(f, 6, (double *const[]){f->x[0], f->x[1], f->u[0], f->u[1], f->pressure,
-                                              f->system.p});
+  mpsi_fluid_tell_all(
+      f, 6, (double *const[]){f->x[0], f->x[1], f->u[0], f->u[1], f->pressure, f->system.p});
   const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
   double far2 = 0.0;
   for (int64_t k = 0; k < chunks; k++) {
