@@ -300,7 +300,7 @@ static mps_status join(meeting *m) {
                                 (size_t)m->nodes * sizeof(mpsi_met_node));
   m->entry = r->list.item;
   read_entries(m);
-  qsort(m->entry, (size_t)m->entries, sizeof *m->entry, by_turn);
+  if (m->entries > 0) qsort(m->entry, (size_t)m->entries, sizeof *m->entry, by_turn);
   join_touches(m, slots);
   return MPS_OK;
 }
