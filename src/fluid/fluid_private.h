@@ -252,6 +252,10 @@ static inline double mpsi_fluid_w(const mpsi_fluid_weight *weight, double r) {
   return a * a * a * a * (5.0 - 4.0 * a);
 }
 
+/* Heights of the surface above the particles, from their move to the fields: where the pressure's
+ * search direction was, which nobody needs by then. */
+static inline double *mpsi_fluid_rises(const mps_fluid *f) { return f->system.p; }
+
 /* rho g (height - level), Pa: what the reduced pressure has more than the pressure. */
 static inline double mpsi_fluid_head(const mps_fluid *f, double x, double y) {
   return f->def.density * f->g * (f->up[0] * x + f->up[1] * y - f->level);

@@ -280,7 +280,7 @@ static void move_chunk(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
       u[c] = f->u_new[c][i] + G[2 * c] * shift[0] + G[2 * c + 1] * shift[1];
     }
     pushed += keep_off_walls(f, x, u);
-    f->system.p[i] = mpsi_fluid_rise(f, i); /* free after the pressure */
+    mpsi_fluid_rises(f)[i] = mpsi_fluid_rise(f, i);
     const double way[2] = {x[0] - f->x[0][i], x[1] - f->x[1][i]};
     const double way2 = way[0] * way[0] + way[1] * way[1];
     far2 = finite(x, u) ? mpsi_fluid_larger(way2, far2) : (double)INFINITY;
@@ -305,7 +305,8 @@ int64_t mpsi_fluid_advance(mps_fluid *f) {
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, move_chunk);
   mpsi_fluid_tell_sums(f, MPSI_FLUID_CHUNK);
   mpsi_fluid_tell_all(
-      f, 6, (double *const[]){f->x[0], f->x[1], f->u[0], f->u[1], f->pressure, f->system.p});
+      f, 6,
+      (double *const[]){f->x[0], f->x[1], f->u[0], f->u[1], f->pressure, mpsi_fluid_rises(f)});
   const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
   double far2 = 0.0;
   for (int64_t k = 0; k < chunks; k++) {

@@ -18,7 +18,7 @@ static double *column(const mps_fluid *f, const char *name, int32_t component) {
 static void store_part(mps_fluid *f, int64_t begin, int64_t end, int64_t part) {
   const size_t bytes = (size_t)(end - begin) * sizeof(double);
   double *q = column(f, "reduced_pressure", 0), most = 0.0;
-  memcpy(column(f, "surface_rise", 0) + begin, f->system.p + begin, bytes);
+  memcpy(column(f, "surface_rise", 0) + begin, mpsi_fluid_rises(f) + begin, bytes);
   int64_t *surface = mpsi_particles_integers(f->particles, "free_surface");
   for (int c = 0; c < 2; c++) {
     memcpy(column(f, "position", c) + begin, f->x[c] + begin, bytes);
