@@ -60,9 +60,7 @@ static bool write_field(hid_t group, const mps_field_info *info, const mps_view 
   const hid_t type = mpsi_h5_number_type(info->dtype.code == 0);
   const hid_t target = H5Screate_simple(2, size, NULL),
               source = H5Screate_simple(1, size + 1, NULL);
-  hid_t dataset = -1;
-  if (target >= 0)
-    dataset = H5Dcreate2(group, info->name, type, target, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t dataset = mpsi_h5_dataset(group, info->name, type, target);
   bool good = source >= 0 && dataset >= 0;
   for (int64_t c = 0; good && c < view->shape[1] && view->shape[0] > 0; c++) {
     const hsize_t start[2] = {(hsize_t)c, 0}, count[2] = {1, size[1]};
@@ -94,9 +92,7 @@ static bool write_user_data(hid_t root, const mps_checkpoint *info) {
   const hsize_t size = (hsize_t)info->user_bytes;
   if (size == 0) return true;
   const hid_t space = H5Screate_simple(1, &size, NULL);
-  const hid_t dataset = space < 0 ? -1
-                                  : H5Dcreate2(root, "user_data", H5T_NATIVE_UINT8, space,
-                                               H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t dataset = mpsi_h5_dataset(root, "user_data", H5T_NATIVE_UINT8, space);
   bool good = dataset >= 0 && H5Dwrite(dataset, H5T_NATIVE_UINT8, H5S_ALL, H5S_ALL, H5P_DEFAULT,
                                        info->user_data) >= 0;
   if (dataset >= 0) good = H5Dclose(dataset) >= 0 && good;

@@ -219,7 +219,22 @@ mps_status mpsi_h5_fail(mps_context *context, const char *function, mps_status s
                    stay->text[0] ? stay->text : "nothing");
 }
 
-/* ---- attributes ------------------------------------------------------------------------------ */
+/* ---- datasets and attributes ----------------------------------------------------------------- */
+
+hid_t mpsi_h5_timeless(void) {
+  const hid_t list = H5Pcreate(H5P_DATASET_CREATE);
+  if (list < 0 || H5Pset_obj_track_times(list, false) >= 0) return list;
+  H5Pclose(list);
+  return -1;
+}
+
+hid_t mpsi_h5_dataset(hid_t group, const char *name, hid_t type, hid_t space) {
+  const hid_t list = space < 0 ? -1 : mpsi_h5_timeless();
+  const hid_t dataset =
+      list < 0 ? -1 : H5Dcreate2(group, name, type, space, H5P_DEFAULT, list, H5P_DEFAULT);
+  if (list >= 0) H5Pclose(list);
+  return dataset;
+}
 
 bool mpsi_h5_attribute(hid_t object, const char *name, hid_t type, hsize_t count,
                        const void *values) {

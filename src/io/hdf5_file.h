@@ -55,7 +55,13 @@ mps_status mpsi_h5_fail(mps_context *context, const char *function, mps_status s
                         const mpsi_h5_stay *stay, const mpsi_h5_file *file, const char *verb,
                         const char *path);
 
-/* ---- attributes ------------------------------------------------------------------------------ */
+/* ---- datasets and attributes ----------------------------------------------------------------- */
+
+/* What datasets are created with: without the time at which that happens, so that files of the same
+ * values are the same byte by byte. H5Pclose it; < 0: an error. */
+hid_t mpsi_h5_timeless(void);
+/* A dataset of that kind; `space` < 0 is an error, as the answer is. */
+hid_t mpsi_h5_dataset(hid_t group, const char *name, hid_t type, hid_t space);
 
 /* `count` values, or a scalar for count 0. */
 bool mpsi_h5_attribute(hid_t object, const char *name, hid_t type, hsize_t count,

@@ -12,7 +12,7 @@ bool mpsi_series_create(hid_t group, const char *path, mpsi_item item, int32_t w
   const int rank = width > 0 ? 2 : 1;
   const hsize_t none[2] = {0, (hsize_t)width}, limit[2] = {H5S_UNLIMITED, (hsize_t)width};
   const hsize_t chunk[2] = {(hsize_t)chunk_rows, (hsize_t)width};
-  const hid_t space = H5Screate_simple(rank, none, limit), layout = H5Pcreate(H5P_DATASET_CREATE);
+  const hid_t space = H5Screate_simple(rank, none, limit), layout = mpsi_h5_timeless();
   bool good = space >= 0 && layout >= 0 && H5Pset_chunk(layout, rank, chunk) >= 0;
   if (compression > 0) /* shuffled: bytes of equal weight side by side compress better */
     good =

@@ -64,8 +64,7 @@ static bool write_table(hid_t group, const char *name, const mpsi_value *value) 
   const hid_t type = type_in_memory(value->type);
   if (value->rows == 0) return true;
   const hid_t space = H5Screate_simple(2, size, NULL);
-  const hid_t dataset =
-      space < 0 ? -1 : H5Dcreate2(group, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  const hid_t dataset = mpsi_h5_dataset(group, name, type, space);
   bool good =
       dataset >= 0 && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, value->data) >= 0;
   if (dataset >= 0) good = H5Dclose(dataset) >= 0 && good;
