@@ -6,6 +6,7 @@
 #define MPSI_DOMAIN_INTERNAL_H
 
 #include "core/exact.h"
+#include "core/hash.h"
 #include "core/internal.h"
 #include "core/state.h"
 
@@ -33,8 +34,10 @@ mps_status mpsi_domain_settle_same(mps_domain *domain, const char *function, mps
 
 /* same.c: goes on with a hash, which begins with MPSI_DOMAIN_HASH, over more bytes; what of it a
  * double tells exactly. Not collective. */
-#define MPSI_DOMAIN_HASH UINT64_C(0xcbf29ce484222325)
+#define MPSI_DOMAIN_HASH MPSI_HASH
 uint64_t mpsi_domain_hash(uint64_t hash, const void *data, size_t bytes);
+/* Over numbers, of which NaN is unset, whatever its bits. */
+uint64_t mpsi_domain_hash_numbers(uint64_t hash, int32_t count, const double *numbers);
 double mpsi_domain_short(uint64_t hash);
 /* same.c: the same for many numbers at once, by a hash, and for the fields of a set. */
 mps_status mpsi_domain_settle_numbers(mps_domain *domain, const char *function, mps_status status,

@@ -5,8 +5,14 @@
 #include <string.h>
 
 uint64_t mpsi_domain_hash(uint64_t hash, const void *data, size_t bytes) {
-  const unsigned char *at = data;
-  for (size_t k = 0; k < bytes; k++) hash = (hash ^ at[k]) * UINT64_C(0x100000001b3);
+  return mpsi_hash(hash, data, bytes);
+}
+
+uint64_t mpsi_domain_hash_numbers(uint64_t hash, int32_t count, const double *numbers) {
+  for (int32_t k = 0; k < count; k++) {
+    const double none = NAN, *number = isnan(numbers[k]) ? &none : &numbers[k];
+    hash = mpsi_hash(hash, number, sizeof *number);
+  }
   return hash;
 }
 
@@ -14,11 +20,7 @@ double mpsi_domain_short(uint64_t hash) { return (double)(hash >> 12); }
 
 mps_status mpsi_domain_settle_numbers(mps_domain *domain, const char *function, mps_status status,
                                       const char *name, int32_t count, const double *numbers) {
-  uint64_t hash = MPSI_DOMAIN_HASH;
-  for (int32_t k = 0; k < count; k++) {
-    const double none = NAN, *number = isnan(numbers[k]) ? &none : &numbers[k];
-    hash = mpsi_domain_hash(hash, number, sizeof *number);
-  }
+  const uint64_t hash = mpsi_domain_hash_numbers(MPSI_DOMAIN_HASH, count, numbers);
   return mpsi_domain_settle_same(domain, function, status, name, mpsi_domain_short(hash));
 }
 

@@ -65,23 +65,35 @@ static void release(mps_dynamics *dynamics, mpsi_dynamics_boundary **boundary) {
   *boundary = NULL;
 }
 
-/* A boundary made from the caller's definition. */
+/* A boundary made from the caller's definition, on all ranks or none. */
 static mps_status make(mps_dynamics *dynamics, const char *function, mps_status status,
-                       const mps_dynamics_boundary_def *user_def, mpsi_dynamics_boundary **out) {
+                       int32_t number, const mps_dynamics_boundary_def *user_def,
+                       mpsi_dynamics_boundary **out) {
   mps_dynamics_boundary_def def = boundary_defaults;
   *out = NULL;
+  if (status == MPS_OK && !user_def)
+    status = mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT, "def is NULL");
   if (status == MPS_OK)
     status = MPSI_DEF_READ(dynamics->context, function, mps_dynamics_boundary_def, user_def, &def);
   if (status == MPS_OK) status = check_def(dynamics, function, &def);
   mpsi_dynamics_boundary *b = NULL;
   if (status == MPS_OK && !(b = mpsi_alloc(dynamics->context, 1, sizeof *b)))
     status = mpsi_fail_memory(dynamics->context, function, sizeof *b);
-  status = mpsi_domain_settle(dynamics->domain, function, status);
+  const mpsi_dynamics_selection selection = MPSI_DYNAMICS_SELECTION(def, false);
+  const double numbers[] = {number,
+                            def.kind,
+                            def.dofs,
+                            def.normal,
+                            def.density,
+                            def.shear_velocity,
+                            def.pressure_velocity};
+  status = mpsi_dynamics_settle_definition(dynamics, function, status,
+                                           "a hash of the boundary's definition", &selection,
+                                           (int32_t)(sizeof numbers / sizeof *numbers), numbers);
   if (status != MPS_OK) {
     mpsi_free(dynamics->context, b);
     return status;
   }
-  const mpsi_dynamics_selection selection = MPSI_DYNAMICS_SELECTION(def, false);
   status = mpsi_dynamics_select(dynamics, function, status, &selection, &b->part);
   b->kind = def.kind;
   b->normal = def.normal;
@@ -357,7 +369,6 @@ mps_status mps_dynamics_add_boundary(mps_dynamics *dynamics, const mps_dynamics_
   mps_context *context = dynamics->context;
   mps_status status = mpsi_dynamics_enter(dynamics, __func__);
   if (status != MPS_OK) return status;
-  if (!def) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "def is NULL");
   int32_t at = 0;
   while (at < dynamics->boundary_room && dynamics->boundary[at]) at++;
   if (at == dynamics->boundary_room) {
@@ -369,7 +380,7 @@ mps_status mps_dynamics_add_boundary(mps_dynamics *dynamics, const mps_dynamics_
     dynamics->boundary = array;
   }
   mpsi_dynamics_boundary *boundary = NULL;
-  status = make(dynamics, __func__, status, def, &boundary);
+  status = make(dynamics, __func__, status, at, def, &boundary);
   if (status == MPS_OK) status = exchange(dynamics, __func__, at, &boundary);
   release(dynamics, &boundary);
   if (status == MPS_OK && number) *number = at;
@@ -380,12 +391,10 @@ mps_status mps_dynamics_set_boundary(mps_dynamics *dynamics, int32_t number,
                                      const mps_dynamics_boundary_def *def) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_dynamics_enter(dynamics, __func__);
-  if (status == MPS_OK && !def)
-    status = mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT, "def is NULL");
-  if (status == MPS_OK) status = check_number(dynamics, __func__, number);
   if (status != MPS_OK) return status;
   mpsi_dynamics_boundary *boundary = NULL;
-  status = make(dynamics, __func__, status, def, &boundary);
+  status =
+      make(dynamics, __func__, check_number(dynamics, __func__, number), number, def, &boundary);
   if (status == MPS_OK) {
     const mpsi_dynamics_boundary *former = dynamics->boundary[number];
     memcpy(boundary->pushed, former->pushed, sizeof boundary->pushed);
@@ -401,7 +410,9 @@ mps_status mps_dynamics_set_boundary(mps_dynamics *dynamics, int32_t number,
 mps_status mps_dynamics_remove_boundary(mps_dynamics *dynamics, int32_t number) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_dynamics_enter(dynamics, __func__);
-  if (status == MPS_OK) status = check_number(dynamics, __func__, number);
+  if (status != MPS_OK) return status;
+  status = mpsi_domain_settle_same(dynamics->domain, __func__,
+                                   check_number(dynamics, __func__, number), "number", number);
   mpsi_dynamics_boundary *boundary = NULL;
   if (status == MPS_OK) status = exchange(dynamics, __func__, number, &boundary);
   release(dynamics, &boundary);

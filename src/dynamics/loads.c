@@ -52,23 +52,38 @@ static void release(mps_dynamics *dynamics, mpsi_dynamics_load **load) {
   *load = NULL;
 }
 
+/* The load that is to have `number`, on all ranks or none. */
 static mps_status make(mps_dynamics *dynamics, const char *function, mps_status status,
-                       const mps_dynamics_load_def *user_def, mpsi_dynamics_load **out) {
+                       int32_t number, const mps_dynamics_load_def *user_def,
+                       mpsi_dynamics_load **out) {
   mps_dynamics_load_def def = load_defaults;
   *out = NULL;
+  if (status == MPS_OK && !user_def)
+    status = mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT, "def is NULL");
   if (status == MPS_OK)
     status = MPSI_DEF_READ(dynamics->context, function, mps_dynamics_load_def, user_def, &def);
   if (status == MPS_OK) status = check_def(dynamics, function, &def);
   mpsi_dynamics_load *load = NULL;
   if (status == MPS_OK && !(load = mpsi_alloc(dynamics->context, 1, sizeof *load)))
     status = mpsi_fail_memory(dynamics->context, function, sizeof *load);
-  status = mpsi_domain_settle(dynamics->domain, function, status);
+  const mpsi_dynamics_selection selection =
+      MPSI_DYNAMICS_SELECTION(def, def.kind == MPS_DYNAMICS_LOAD_BODY);
+  const double numbers[] = {
+      number,
+      def.kind,
+      def.traction[0],
+      def.traction[1],
+      def.acceleration[0],
+      def.acceleration[1],
+      def.area,
+  };
+  status = mpsi_dynamics_settle_definition(dynamics, function, status,
+                                           "a hash of the load's definition", &selection,
+                                           (int32_t)(sizeof numbers / sizeof *numbers), numbers);
   if (status != MPS_OK) {
     mpsi_free(dynamics->context, load);
     return status;
   }
-  const mpsi_dynamics_selection selection =
-      MPSI_DYNAMICS_SELECTION(def, def.kind == MPS_DYNAMICS_LOAD_BODY);
   status = mpsi_dynamics_select(dynamics, function, status, &selection, &load->part);
   const double spacing = mps_particles_spacing(dynamics->particles);
   const double area = isnan(def.area) ? spacing * dynamics->def.measure : def.area;
@@ -107,7 +122,6 @@ mps_status mps_dynamics_add_load(mps_dynamics *dynamics, const mps_dynamics_load
   mps_context *context = dynamics->context;
   mps_status status = mpsi_dynamics_enter(dynamics, __func__);
   if (status != MPS_OK) return status;
-  if (!def) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "def is NULL");
   int32_t at = 0;
   while (at < dynamics->load_room && dynamics->load[at]) at++;
   if (at == dynamics->load_room) {
@@ -120,7 +134,7 @@ mps_status mps_dynamics_add_load(mps_dynamics *dynamics, const mps_dynamics_load
   }
   if (status == MPS_OK) status = reserve_forces(dynamics, __func__);
   mpsi_dynamics_load *load = NULL;
-  status = make(dynamics, __func__, status, def, &load);
+  status = make(dynamics, __func__, status, at, def, &load);
   if (status != MPS_OK) return status;
   dynamics->load[at] = load;
   dynamics->forces_stale = true;
@@ -132,12 +146,9 @@ mps_status mps_dynamics_set_load(mps_dynamics *dynamics, int32_t number,
                                  const mps_dynamics_load_def *def) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_dynamics_enter(dynamics, __func__);
-  if (status == MPS_OK && !def)
-    status = mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT, "def is NULL");
-  if (status == MPS_OK) status = check_number(dynamics, __func__, number);
   if (status != MPS_OK) return status;
   mpsi_dynamics_load *load = NULL;
-  status = make(dynamics, __func__, status, def, &load);
+  status = make(dynamics, __func__, check_number(dynamics, __func__, number), number, def, &load);
   if (status != MPS_OK) return status;
   release(dynamics, &dynamics->load[number]);
   dynamics->load[number] = load;
@@ -148,7 +159,9 @@ mps_status mps_dynamics_set_load(mps_dynamics *dynamics, int32_t number,
 mps_status mps_dynamics_remove_load(mps_dynamics *dynamics, int32_t number) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_dynamics_enter(dynamics, __func__);
-  if (status == MPS_OK) status = check_number(dynamics, __func__, number);
+  if (status != MPS_OK) return status;
+  status = mpsi_domain_settle_same(dynamics->domain, __func__,
+                                   check_number(dynamics, __func__, number), "number", number);
   if (status != MPS_OK) return status;
   release(dynamics, &dynamics->load[number]);
   dynamics->forces_stale = true;

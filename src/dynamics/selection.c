@@ -3,8 +3,26 @@
 #include "core/particles_internal.h"
 #include "core/retain.h"
 #include "dynamics_private.h"
+#include "signal/signal_internal.h"
 
 #include <stdlib.h>
+
+mps_status mpsi_dynamics_settle_definition(mps_dynamics *dynamics, const char *function,
+                                           mps_status status, const char *name,
+                                           const mpsi_dynamics_selection *s, int32_t count,
+                                           const double *numbers) {
+  if (!mpsi_domain_many(dynamics->domain)) return status;
+  uint64_t hash = mpsi_domain_hash_numbers(MPSI_DOMAIN_HASH, count, numbers);
+  if (status == MPS_OK) {
+    const double where[] = {s->all,      (double)s->id_count, s->lower[0],  s->lower[1],
+                            s->upper[0], s->upper[1],         s->factor[0], s->factor[1]};
+    hash = mpsi_domain_hash_numbers(hash, (int32_t)(sizeof where / sizeof *where), where);
+    if (s->ids && s->id_count > 0)
+      hash = mpsi_domain_hash(hash, s->ids, (size_t)s->id_count * sizeof *s->ids);
+    for (int c = 0; c < 3; c++) hash = mpsi_signal_hash(s->signal[c], hash);
+  }
+  return mpsi_domain_settle_same(dynamics->domain, function, status, name, mpsi_domain_short(hash));
+}
 
 static int compare_indices(const void *left, const void *right) {
   const int32_t a = *(const int32_t *)left, b = *(const int32_t *)right;

@@ -4,6 +4,7 @@
  * pose that it had at the last step, and takes the present one as that of the end of the next.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "share.h"
+#include "signal/signal_internal.h"
 
 #include "body/body_internal.h"
 
@@ -216,21 +217,37 @@ static int free_faces(const mps_fluid *f, int64_t faces) {
   return -1;
 }
 
-mps_status mps_fluid_add_body(mps_fluid *f, mps_body *body, int32_t kind, int32_t *number) {
-  if (!f) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_fluid_ready(f, __func__);
-  if (status != MPS_OK) return status;
-  if (!body) return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "body is NULL");
-  status = check_body(f, __func__, body, kind);
-  if (status != MPS_OK) return status;
-  int32_t b = 0;
-  while (b < MPSI_FLUID_BODIES && f->body[b].body) b++;
-  const int first = free_faces(f, body->edges);
-  if (b == MPSI_FLUID_BODIES || first < 0)
-    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                     "the body has %lld edges: the fluid has room for %d of all bodies together",
-                     (long long)body->edges, MPSI_FLUID_WALLS - MPS_FLUID_MAX_BOUNDARIES);
+/* What has become of the ranks, and whether all give the same body (NULL: none) this number. */
+static mps_status settle(mps_fluid *f, const char *function, mps_status status, int32_t number,
+                         int32_t kind, const mps_body *body) {
+  if (!f->share) return status;
+  uint64_t hash = MPSI_DOMAIN_HASH;
+  if (status == MPS_OK) {
+    const double numbers[] = {number,
+                              kind,
+                              body->def.motion,
+                              body->def.mass,
+                              body->pose.x[0],
+                              body->pose.x[1],
+                              body->pose.R[0],
+                              body->pose.R[1],
+                              body->pose.v[0],
+                              body->pose.v[1],
+                              body->pose.spin[2],
+                              (double)body->edges};
+    hash = mpsi_domain_hash_numbers(hash, (int32_t)(sizeof numbers / sizeof *numbers), numbers);
+    hash = mpsi_domain_hash(hash, body->xy, 2 * (size_t)body->edges * sizeof *body->xy);
+    for (int k = 0; k < MPSI_MOTIONS; k++) hash = mpsi_signal_hash(body->signal[k], hash);
+  }
+  return mpsi_domain_settle_same(f->def.domain, function, status, "a hash of the body",
+                                 mpsi_domain_short(hash));
+}
+
+/* The walls from `first` on that the faces of body number `b` become. */
+static mps_status make_faces(mps_fluid *f, const char *function, mps_body *body, int32_t kind,
+                             int32_t b, int first) {
   mpsi_fluid_body *own = &f->body[b];
+  mps_status status = MPS_OK;
   body->references++;
   *own = (mpsi_fluid_body){.body = body, .first = first, .faces = (int)body->edges};
   own->pose = own->next = pose_of(body);
@@ -238,15 +255,31 @@ mps_status mps_fluid_add_body(mps_fluid *f, mps_body *body, int32_t kind, int32_
   for (int k = 0; k < own->faces && status == MPS_OK; k++) {
     mpsi_fluid_wall *w = &f->wall[first + k];
     *w = (mpsi_fluid_wall){.of_body = b + 1, .kind = kind, .normal = {0.0, -1.0}};
-    status = mpsi_fluid_make_motion(f, __func__, w, 2, ends);
+    status = mpsi_fluid_make_motion(f, function, w, 2, ends);
   }
-  if (status == MPS_OK) {
-    place_faces(f, own);
-    status = check_place(f, __func__, own);
-  }
-  status = mpsi_fluid_settle(f, __func__, status);
+  if (status != MPS_OK) return status;
+  place_faces(f, own);
+  return check_place(f, function, own);
+}
+
+mps_status mps_fluid_add_body(mps_fluid *f, mps_body *body, int32_t kind, int32_t *number) {
+  if (!f) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_fluid_ready(f, __func__);
+  if (status != MPS_OK) return status;
+  status = body ? check_body(f, __func__, body, kind)
+                : mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "body is NULL");
+  int32_t b = 0;
+  while (b < MPSI_FLUID_BODIES && f->body[b].body) b++;
+  const int first = status == MPS_OK ? free_faces(f, body->edges) : 0;
+  if (status == MPS_OK && (b == MPSI_FLUID_BODIES || first < 0))
+    status = mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                       "the body has %lld edges: the fluid has room for %d of all bodies together",
+                       (long long)body->edges, MPSI_FLUID_WALLS - MPS_FLUID_MAX_BOUNDARIES);
+  const bool begun = status == MPS_OK;
+  if (begun) status = make_faces(f, __func__, body, kind, b, first);
+  status = settle(f, __func__, status, b, kind, body);
   if (status != MPS_OK) {
-    mpsi_fluid_drop_body(f, own);
+    if (begun) mpsi_fluid_drop_body(f, &f->body[b]);
     return status;
   }
   f->stale = true, f->unknown = 1;
@@ -263,7 +296,9 @@ static mps_status check_number(mps_fluid *f, const char *function, int32_t numbe
 mps_status mps_fluid_remove_body(mps_fluid *f, int32_t number) {
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_fluid_ready(f, __func__);
-  if (status == MPS_OK) status = check_number(f, __func__, number);
+  if (status != MPS_OK) return status;
+  status = mpsi_domain_settle_same(f->def.domain, __func__, check_number(f, __func__, number),
+                                   "number", number);
   if (status != MPS_OK) return status;
   mpsi_fluid_drop_body(f, &f->body[number]);
   f->stale = true, f->unknown = 1;

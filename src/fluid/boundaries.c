@@ -2,6 +2,7 @@
  * come, change and go.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "share.h"
+#include "signal/signal_internal.h"
 
 #define LEAST_WALL 0.3 /* l0: distance of a particle from a wall */
 
@@ -119,16 +120,23 @@ static mps_status make_wall(mps_fluid *f, const char *function,
   return MPS_OK;
 }
 
-/* The wall made on all ranks, or on none. */
-static mps_status make_alike(mps_fluid *f, const char *function, const mps_fluid_boundary_def *def,
-                             int32_t number, mpsi_fluid_wall *w) {
+/* The same wall made on all ranks, or on none; `status` is what has become of this rank so far. */
+static mps_status make_alike(mps_fluid *f, const char *function, mps_status status,
+                             const mps_fluid_boundary_def *def, int32_t number,
+                             mpsi_fluid_wall *w) {
   *w = (mpsi_fluid_wall){0};
-  mps_status status = make_wall(f, function, def, number, w);
-  const double numbers[] = {w->kind,   w->at[0],  w->at[1],         w->normal[0], w->normal[1],
-                            w->factor, w->origin, (double)w->nodes, number};
-  if (f->share)
-    status = mpsi_domain_settle_numbers(f->def.domain, function, status, "a hash of the boundary",
-                                        sizeof numbers / sizeof *numbers, numbers);
+  if (status == MPS_OK) status = make_wall(f, function, def, number, w);
+  if (f->share) {
+    const double numbers[] = {w->kind,   w->at[0],  w->at[1],         w->normal[0], w->normal[1],
+                              w->factor, w->origin, (double)w->nodes, number};
+    uint64_t hash = mpsi_domain_hash_numbers(MPSI_DOMAIN_HASH,
+                                             (int32_t)(sizeof numbers / sizeof *numbers), numbers);
+    if (status == MPS_OK) hash = mpsi_domain_hash(hash, w->node, (size_t)w->nodes * 8);
+    hash = mpsi_signal_hash(w->signal, hash);
+    status =
+        mpsi_domain_settle_same(f->def.domain, function, status,
+                                "a hash of the boundary's definition", mpsi_domain_short(hash));
+  }
   if (status != MPS_OK) mpsi_fluid_drop_wall(f, w);
   return status;
 }
@@ -141,10 +149,10 @@ mps_status mps_fluid_add_boundary(mps_fluid *f, const mps_fluid_boundary_def *de
   int32_t b = 0;
   while (MPSI_FLUID_IS_BOUNDARY(f, b)) b++;
   if (b == MPS_FLUID_MAX_BOUNDARIES)
-    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                     "the fluid has %d boundaries, the most there can be", b);
+    status = mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                       "the fluid has %d boundaries, the most there can be", b);
   mpsi_fluid_wall wall;
-  status = make_alike(f, __func__, def, b, &wall);
+  status = make_alike(f, __func__, status, def, b, &wall);
   if (status != MPS_OK) return status;
   f->wall[b] = wall;
   f->stale = true, f->unknown = 1;
@@ -153,8 +161,6 @@ mps_status mps_fluid_add_boundary(mps_fluid *f, const mps_fluid_boundary_def *de
 }
 
 static mps_status check_number(mps_fluid *f, const char *function, int32_t number) {
-  const mps_status status = mpsi_fluid_ready(f, function);
-  if (status != MPS_OK) return status;
   if (!MPSI_FLUID_IS_BOUNDARY(f, number))
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                      "the fluid has no boundary of number %d", number);
@@ -163,9 +169,10 @@ static mps_status check_number(mps_fluid *f, const char *function, int32_t numbe
 
 mps_status mps_fluid_set_boundary(mps_fluid *f, int32_t number, const mps_fluid_boundary_def *def) {
   if (!f) return MPS_ERROR_ARGUMENT;
-  mps_status status = check_number(f, __func__, number);
+  mps_status status = mpsi_fluid_ready(f, __func__);
+  if (status != MPS_OK) return status;
   mpsi_fluid_wall wall;
-  if (status == MPS_OK) status = make_alike(f, __func__, def, number, &wall);
+  status = make_alike(f, __func__, check_number(f, __func__, number), def, number, &wall);
   if (status != MPS_OK) return status;
   mpsi_fluid_wall *old = &f->wall[number];
   if (wall.nodes == old->nodes)
@@ -184,7 +191,10 @@ mps_status mps_fluid_set_boundary(mps_fluid *f, int32_t number, const mps_fluid_
 
 mps_status mps_fluid_remove_boundary(mps_fluid *f, int32_t number) {
   if (!f) return MPS_ERROR_ARGUMENT;
-  const mps_status status = check_number(f, __func__, number);
+  mps_status status = mpsi_fluid_ready(f, __func__);
+  if (status != MPS_OK) return status;
+  status = mpsi_domain_settle_same(f->def.domain, __func__, check_number(f, __func__, number),
+                                   "number", number);
   if (status != MPS_OK) return status;
   mpsi_fluid_drop_wall(f, &f->wall[number]);
   f->stale = true, f->unknown = 1;

@@ -108,6 +108,24 @@ static mps_status make_load(mps_fluid *f, const char *function, const mps_fluid_
   return MPS_OK;
 }
 
+/* What has become of the ranks, and whether all give the same load (`g`, NULL: none) this number.
+ */
+static mps_status settle(mps_fluid *f, const char *function, mps_status status, int32_t number,
+                         const mpsi_fluid_given *g) {
+  if (!f->share) return status;
+  uint64_t hash = MPSI_DOMAIN_HASH;
+  if (status == MPS_OK && g) {
+    const double numbers[] = {number,       g->kind,      g->lower[0],     g->lower[1],
+                              g->upper[0],  g->upper[1],  g->amount[0],    g->amount[1],
+                              g->factor[0], g->factor[1], (double)g->count};
+    hash = mpsi_domain_hash_numbers(hash, (int32_t)(sizeof numbers / sizeof *numbers), numbers);
+    hash = mpsi_domain_hash(hash, g->ids, (size_t)g->count * sizeof *g->ids);
+    for (int c = 0; c < 2; c++) hash = mpsi_signal_hash(g->signal[c], hash);
+  }
+  return mpsi_domain_settle_same(f->def.domain, function, status, "a hash of the load's definition",
+                                 mpsi_domain_short(hash));
+}
+
 mps_status mps_fluid_add_load(mps_fluid *f, const mps_fluid_load_def *def, int32_t *number) {
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_fluid_ready(f, __func__);
@@ -115,10 +133,10 @@ mps_status mps_fluid_add_load(mps_fluid *f, const mps_fluid_load_def *def, int32
   int32_t at = 0;
   while (at < f->given_room && f->given[at]) at++;
   if (at == MOST_LOADS)
-    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                     "the fluid has %d loads, the most there can be", at);
+    status = mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                       "the fluid has %d loads, the most there can be", at);
   mpsi_fluid_given *g = NULL;
-  status = make_load(f, __func__, def, &g);
+  if (status == MPS_OK) status = make_load(f, __func__, def, &g);
   if (status == MPS_OK && at == f->given_room) {
     void *array = f->given;
     if (mpsi_grow(f->context, &array, at, at + 8, sizeof *f->given))
@@ -126,7 +144,7 @@ mps_status mps_fluid_add_load(mps_fluid *f, const mps_fluid_load_def *def, int32
     else
       status = mpsi_fail_memory(f->context, __func__, (size_t)(at + 8) * sizeof *f->given);
   }
-  status = mpsi_fluid_settle(f, __func__, status);
+  status = settle(f, __func__, status, at, g);
   if (status != MPS_OK) {
     drop(f, g);
     return status;
@@ -137,8 +155,6 @@ mps_status mps_fluid_add_load(mps_fluid *f, const mps_fluid_load_def *def, int32
 }
 
 static mps_status check_number(mps_fluid *f, const char *function, int32_t number) {
-  const mps_status status = mpsi_fluid_ready(f, function);
-  if (status != MPS_OK) return status;
   if (number < 0 || number >= f->given_room || !f->given[number])
     return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT, "the fluid has no load of number %d",
                      number);
@@ -147,10 +163,12 @@ static mps_status check_number(mps_fluid *f, const char *function, int32_t numbe
 
 mps_status mps_fluid_set_load(mps_fluid *f, int32_t number, const mps_fluid_load_def *def) {
   if (!f) return MPS_ERROR_ARGUMENT;
-  mps_status status = check_number(f, __func__, number);
+  mps_status status = mpsi_fluid_ready(f, __func__);
+  if (status != MPS_OK) return status;
   mpsi_fluid_given *g = NULL;
+  status = check_number(f, __func__, number);
   if (status == MPS_OK) status = make_load(f, __func__, def, &g);
-  status = mpsi_fluid_settle(f, __func__, status);
+  status = settle(f, __func__, status, number, g);
   if (status != MPS_OK) {
     drop(f, g);
     return status;
@@ -162,7 +180,10 @@ mps_status mps_fluid_set_load(mps_fluid *f, int32_t number, const mps_fluid_load
 
 mps_status mps_fluid_remove_load(mps_fluid *f, int32_t number) {
   if (!f) return MPS_ERROR_ARGUMENT;
-  const mps_status status = check_number(f, __func__, number);
+  mps_status status = mpsi_fluid_ready(f, __func__);
+  if (status != MPS_OK) return status;
+  status = mpsi_domain_settle_same(f->def.domain, __func__, check_number(f, __func__, number),
+                                   "number", number);
   if (status != MPS_OK) return status;
   drop(f, f->given[number]);
   f->given[number] = NULL;

@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "signal_private.h"
 
+#include "core/hash.h"
 #include "core/retain.h"
 
 #define PI 3.14159265358979323846
@@ -66,6 +67,16 @@ mps_status mpsi_signal_at(const mps_signal *signal, mps_context *context, const 
 }
 
 bool mpsi_signal_may_fail(const mps_signal *signal) { return signal && signal->fn; }
+
+uint64_t mpsi_signal_hash(const mps_signal *signal, uint64_t hash) {
+  const double kind = !signal ? 0.0 : signal->fn ? 1.0 : 2.0;
+  hash = mpsi_hash(hash, &kind, sizeof kind);
+  if (kind < 2.0) return hash;
+  const double numbers[] = {signal->start, signal->end,   signal->peak,  signal->amplitude,
+                            signal->rate,  signal->shift, signal->coast, (double)signal->count};
+  hash = mpsi_hash(hash, numbers, sizeof numbers);
+  return mpsi_hash(hash, signal->knots, (size_t)signal->count * sizeof *signal->knots);
+}
 
 static mpsi_signal_motion motion(const mps_signal *signal, double t) {
   mpsi_signal_motion at = {NAN, NAN, NAN};

@@ -17,5 +17,8 @@ mps_status mpsi_signal_at(const mps_signal *signal, mps_context *context, const 
                           double t, mpsi_signal_motion *out);
 /* Whether mpsi_signal_at can fail: the signal is a function of the caller. NULL: no. */
 bool mpsi_signal_may_fail(const mps_signal *signal);
+/* Goes on with a hash (core/hash.h) over what the signal is made of; of a function of the caller,
+ * over that it is one. */
+uint64_t mpsi_signal_hash(const mps_signal *signal, uint64_t hash);
 
 #endif

@@ -106,6 +106,12 @@ enum {
   CALLBACK_FAILS,
   UNKNOWN_ID,
   REMOVAL,
+  OTHER_LOAD,
+  OTHER_SIGNAL,
+  NO_LOAD,
+  OTHER_IDS,
+  OTHER_REMOVED,
+  NO_SUCH_BOUNDARY,
   TROUBLES
 };
 static const struct {
@@ -121,6 +127,12 @@ static const struct {
     [CALLBACK_FAILS] = {MPS_ERROR_IO, "rank 2: "},
     [UNKNOWN_ID] = {MPS_ERROR_ARGUMENT, "of 2 ids 1 are of particles of the set on any rank"},
     [REMOVAL] = {MPS_ERROR_UNSUPPORTED, "the particles lie on 3 ranks"},
+    [OTHER_LOAD] = {MPS_ERROR_ARGUMENT, "a hash of the load's definition"},
+    [OTHER_SIGNAL] = {MPS_ERROR_ARGUMENT, "a hash of the load's definition"},
+    [NO_LOAD] = {MPS_ERROR_ARGUMENT, "rank 1: def is NULL"},
+    [OTHER_IDS] = {MPS_ERROR_ARGUMENT, "a hash of the boundary's definition"},
+    [OTHER_REMOVED] = {MPS_ERROR_ARGUMENT, "number is "},
+    [NO_SUCH_BOUNDARY] = {MPS_ERROR_ARGUMENT, "there is no boundary number 7"},
 };
 
 typedef struct upset {
@@ -140,6 +152,28 @@ static mps_status refuse_callback(void *user, mps_dynamics *dynamics) {
 }
 
 static int32_t cancel(void *user) { return ((upset *)user)->rank == 1; }
+
+/* Loads and boundaries that are not the same on all ranks. */
+static mps_status define_otherwise(mps_context *own, mps_dynamics *dynamics, int what,
+                                   int32_t rank) {
+  mps_dynamics_load_def load = mps_dynamics_load_defaults();
+  mps_dynamics_boundary_def boundary = mps_dynamics_boundary_defaults();
+  const double times[3] = {0.0, 0.1, 0.2}, values[3] = {0.0, 1.0, rank == 1 ? 0.51 : 0.5};
+  const int64_t ids[2] = {17, rank == 1 ? 19 : 18};
+  mps_signal *signal = NULL;
+  mps_status status = mps_signal_table(own, MPS_SIGNAL_DISPLACEMENT, 3, times, values, &signal);
+  load.kind = MPS_DYNAMICS_LOAD_BODY;
+  load.acceleration[0] = what == OTHER_LOAD ? 1.0 + rank : 1.0;
+  if (what == OTHER_SIGNAL) load.signal[0] = signal;
+  boundary.ids = ids, boundary.id_count = what == OTHER_IDS ? 2 : 1, boundary.dofs = MPS_DOF_X;
+  TRY(mps_dynamics_add_boundary(dynamics, &boundary, NULL));
+  if (what == NO_SUCH_BOUNDARY) TRY(mps_dynamics_remove_boundary(dynamics, rank == 2 ? 7 : 0));
+  TRY(mps_dynamics_add_load(dynamics, what == NO_LOAD && rank == 1 ? NULL : &load, NULL));
+  TRY(mps_dynamics_add_load(dynamics, &load, NULL));
+  TRY(mps_dynamics_remove_load(dynamics, rank == 1 ? 1 : 0));
+  mps_signal_destroy(&signal);
+  return status;
+}
 
 static mps_status run_trouble(mps_context *own, mps_domain *domain, int what) {
   mps_particles *set = NULL;
@@ -187,6 +221,8 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what) {
     const int64_t gone[1] = {*mps_view_i64(&id, 0, 0)};
     TRY(mps_particles_remove(set, 1, gone));
   }
+  if (status == MPS_OK && what >= OTHER_LOAD)
+    status = define_otherwise(own, dynamics, what, u.rank);
   mps_dynamics_destroy(&dynamics);
   mps_particles_destroy(&set);
   return status;

@@ -87,6 +87,11 @@ enum {
   CANCELLED,
   CALLBACK_FAILS,
   SOLVER,
+  OTHER_LOAD,
+  OTHER_SIGNAL,
+  OTHER_BODY,
+  OTHER_REMOVED,
+  NO_SUCH_LOAD,
   TROUBLES
 };
 static const trouble_case trouble[TROUBLES] = {
@@ -100,6 +105,11 @@ static const trouble_case trouble[TROUBLES] = {
     [CANCELLED] = {MPS_ERROR_CANCELLED, "stopped by the cancel hook at step 0"},
     [CALLBACK_FAILS] = {MPS_ERROR_IO, "rank 2: "},
     [SOLVER] = {MPS_ERROR_UNSUPPORTED, "solved by the library"},
+    [OTHER_LOAD] = {MPS_ERROR_ARGUMENT, "a hash of the load's definition"},
+    [OTHER_SIGNAL] = {MPS_ERROR_ARGUMENT, "a hash of the boundary's definition"},
+    [OTHER_BODY] = {MPS_ERROR_ARGUMENT, "a hash of the body"},
+    [OTHER_REMOVED] = {MPS_ERROR_ARGUMENT, "number is "},
+    [NO_SUCH_LOAD] = {MPS_ERROR_ARGUMENT, "the fluid has no load of number 5"},
 };
 
 static mps_status refuse_callback(void *user, mps_fluid *fluid) {
@@ -120,6 +130,29 @@ static mps_status no_solve(void *user, const double *b, double tolerance, double
   return MPS_OK;
 }
 
+/* Loads, walls and bodies that are not the same on all ranks. */
+static mps_status define_otherwise(mps_context *own, scene *s, int what, int32_t rank) {
+  mps_fluid_load_def load = mps_fluid_load_defaults();
+  mps_signal *signal = NULL;
+  mps_body *body = NULL;
+  const double right = what == OTHER_BODY && rank == 2 ? 0.41 : 0.4;
+  const double corner[8] = {0.2, 0.6, right, 0.6, right, 0.7, 0.2, 0.7};
+  const mps_body_def def = mps_body_defaults();
+  mps_status status =
+      mps_signal_sine(own, 1.0, what == OTHER_SIGNAL ? 0.01 + 0.001 * rank : 0.01, 0.0, &signal);
+  TRY(wall(s, MPS_FLUID_BOUNDARY_SLIP, 0.6, 0.0, -1.0, 0.0, signal));
+  mps_signal_destroy(&signal);
+  TRY(mps_body_create_polygon(own, &def, 4, corner, &body));
+  TRY(mps_fluid_add_body(s->fluid, body, MPS_FLUID_BOUNDARY_SLIP, NULL));
+  load.acceleration[0] = what == OTHER_LOAD ? 0.1 * rank : 0.1;
+  TRY(mps_fluid_add_load(s->fluid, &load, NULL));
+  TRY(mps_fluid_add_load(s->fluid, &load, NULL));
+  if (what == NO_SUCH_LOAD) TRY(mps_fluid_set_load(s->fluid, rank == 1 ? 5 : 0, &load));
+  TRY(mps_fluid_remove_load(s->fluid, rank == 1 ? 1 : 0));
+  mps_body_destroy(&body);
+  return status;
+}
+
 static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, int32_t rank) {
   scene s = {.set = NULL};
   mps_particles_def set = mps_particles_defaults();
@@ -138,6 +171,7 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
   const mps_fluid_solver_def solver = {
       .struct_size = sizeof solver, .matrix = no_matrix, .solve = no_solve};
   if (what == SOLVER) TRY(mps_fluid_set_solver(s.fluid, &solver));
+  if (what >= OTHER_LOAD) TRY(define_otherwise(own, &s, what, rank));
   if (what == OTHER_ADDED && rank == 1) TRY(mps_particles_append(s.set, 1, extra));
   if (what == CALLBACK_FAILS) TRY(mps_fluid_run(s.fluid, 0.1, 1, refuse_callback, &rank));
   if (what == CANCELLED) mps_context_set_cancel(own, cancel, &rank);
