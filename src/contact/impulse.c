@@ -82,6 +82,7 @@ void mpsi_impulse_warm(mpsi_impulse *c, const mpsi_impulse_body *b, const double
                        double share, double *by) {
   const double across = mpsi_dot3(last, c->normal);
   c->inertia = 1.0 / mpsi_impulse_mobility_along(c, b, c->normal, 1.0);
+  c->even = !b->free && c->mobility[0] == c->mobility[1] && c->mobility[1] == c->mobility[2];
   c->push = mpsi_larger(0.0, share * across);
   for (int a = 0; a < 3; a++)
     c->rub[a] = c->push > 0.0 ? share * (last[a] - across * c->normal[a]) : 0.0;

@@ -76,6 +76,7 @@ typedef struct mpsi_impulse {
   double strength;         /* and at all; INFINITY: no bound */
   double push, rub[3];     /* N s: P; T */
   double inertia;          /* kg: 1 over the mobility of both sides along n; mpsi_impulse_warm */
+  bool even;               /* that mobility is the same in all directions; likewise */
 } mpsi_impulse;
 
 /* Begins with `share` of the last step's impulse `last` (N s), split on the present normal, or with

@@ -36,18 +36,22 @@ static inline double mpsi_impulse_mobility_along(const mpsi_impulse *c, const mp
 /* One visit of a sweep: P and T such that the contact alone, all others as they are, is satisfied
  * from the relative velocity u (m/s, of the particle's side less the body's, at the foot). `by` (N
  * s) is the change on the particle. Returns whether there is any. The slip is not brought to unit
- * length, which saves a root and three divisions. */
+ * length, which saves a root and three divisions. A visit waits for the one before it, so that
+ * every operation in a row counts. */
 static inline bool mpsi_impulse_visit(mpsi_impulse *c, const mpsi_impulse_body *b, const double *u,
                                       double *by) {
   const double across = mpsi_dot3(u, c->normal), before = c->push;
   c->push = mpsi_larger(0.0, before + (c->aim - across) * c->inertia);
+  if (before == 0.0 && c->push == 0.0) return false; /* nor was there a T, nor may there be */
   for (int a = 0; a < 3; a++) by[a] = (c->push - before) * c->normal[a];
   if (c->friction > 0.0 || c->adhesion > 0.0) {
     double slip[3], rub[3];
     for (int a = 0; a < 3; a++) slip[a] = u[a] - across * c->normal[a];
-    const double square = mpsi_dot3(slip, slip);
-    const double stop =
-        square > 0.0 ? square / mpsi_impulse_mobility_along(c, b, slip, square) : 0.0;
+    double stop = c->inertia;
+    if (!c->even) {
+      const double square = mpsi_dot3(slip, slip);
+      stop = square > 0.0 ? square / mpsi_impulse_mobility_along(c, b, slip, square) : 0.0;
+    }
     for (int a = 0; a < 3; a++) rub[a] = c->rub[a] - stop * slip[a];
     mpsi_impulse_into_cone(c, rub);
     for (int a = 0; a < 3; a++) {

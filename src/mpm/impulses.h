@@ -12,7 +12,9 @@
 /* A particle that may touch a body in the step being made. Its weights and nodes are
  * weight[k * stride] and on, node[k * stride] and on, k its number in the list. A weight has 1/m of
  * the node and then psi for each component of its velocity, in the places that they have in the
- * node: these differ where ghosts of mirrors (mirror.h) stand for nodes. */
+ * node: these differ where ghosts of mirrors (mirror.h) stand for nodes. Where none may, the touch
+ * is `even`, and its weights are pairs of 1/m and psi, from the same place on: half the memory to
+ * read in a sweep. */
 typedef struct mpsi_touch {
   mpsi_impulse impulse;
   double x[3];       /* m, of the particle */
@@ -21,6 +23,7 @@ typedef struct mpsi_touch {
   int64_t id;        /* and what it keeps when the particles are sorted */
   int64_t pair;      /* of contact.cell_pair; -1: of another rank (meet.h), as its particle */
   int32_t body, part, nodes;
+  bool even;
   int32_t areas; /* nodes whose areas it shares, of around[] (areas.c) */
 } mpsi_touch;
 
@@ -104,6 +107,11 @@ static inline bool mpsi_has_strength(const mps_contact *contact) {
 
 static inline bool mpsi_by_impulses(const mps_contact *contact) {
   return contact->def.method == MPS_CONTACT_METHOD_IMPULSE;
+}
+
+/* The weights of an even touch. */
+static inline double (*mpsi_even_weights(const mpsi_impulses *all, int64_t touch))[2] {
+  return (double(*)[2])(double *)all->weight[touch * all->stride];
 }
 
 #endif

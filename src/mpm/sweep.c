@@ -1,37 +1,61 @@
 /* sweep.c - a visit of projected Gauss and Seidel to each touch of a block, see impulses.c. Node by
- * node the four values are one vector, and so are the weights, whose first lane has 1/m of the
- * node. Compiled once for each instruction set. SPDX-License-Identifier: BSD-3-Clause */
+ * node the four values are one vector, and so are the weights. Compiled once for each instruction
+ * set. SPDX-License-Identifier: BSD-3-Clause */
 #include "contact/visit.h"
 #include "loops.h"
 
-#define WAYS 4 /* sums side by side: none waits for the one before */
+#define WAYS 8 /* sums side by side: none waits for the one before */
+
+/* psi of number i of the weights of a touch. */
+MPSI_INLINE mpsi_quad psi_of(const double *weight, bool even, int32_t i) {
+  if (!even) return mpsi_get(weight + 4 * i); /* its first lane meets a mass, for nothing */
+  const double psi = weight[2 * i + 1];
+  return (mpsi_quad){psi, psi, psi, psi};
+}
+
+MPSI_INLINE void kick_nodes(double *const *node, const double *weight, bool even, int32_t nodes,
+                            mpsi_quad impulse) {
+  for (int32_t i = 0; i < nodes; i++)
+    mpsi_put(node[i],
+             mpsi_get(node[i]) + psi_of(weight, even, i) * (weight[(even ? 2 : 4) * i] * impulse));
+}
 
 /* What the impulse `by` does to the nodes, and to the body. */
 MPSI_INLINE void kick(mpsi_impulses *all, int64_t n, const double *by) {
   const mpsi_touch *touch = &all->touch[n];
   const mpsi_quad impulse = {0.0, by[0], by[1], by[2]};
   double *const *node = all->node + n * all->stride;
-  double(*weight)[4] = all->weight + n * all->stride;
-  for (int32_t i = 0; i < touch->nodes; i++) {
-    const mpsi_quad w = mpsi_get(weight[i]);
-    mpsi_put(node[i], mpsi_get(node[i]) + w * (w[0] * impulse));
-  }
+  const double *weight = all->weight[n * all->stride];
+  if (touch->even)
+    kick_nodes(node, weight, true, touch->nodes, impulse);
+  else
+    kick_nodes(node, weight, false, touch->nodes, impulse);
   if (all->body[touch->body].free)
     mpsi_impulse_kick(&all->body[touch->body], touch->impulse.at, by);
+}
+
+/* sum psi v, from `first` on. */
+MPSI_INLINE mpsi_quad sum_nodes(double *const *node, const double *weight, bool even, int32_t nodes,
+                                mpsi_quad first) {
+  mpsi_quad sum[WAYS] = {first};
+  int32_t i = 0;
+  for (; i + WAYS <= nodes; i += WAYS)
+    for (int w = 0; w < WAYS; w++) sum[w] += psi_of(weight, even, i + w) * mpsi_get(node[i + w]);
+  for (int w = 0; i < nodes; i++, w++) sum[w] += psi_of(weight, even, i) * mpsi_get(node[i]);
+  for (int half = WAYS / 2; half > 0; half /= 2)
+    for (int w = 0; w < half; w++) sum[w] += sum[w + half];
+  return sum[0];
 }
 
 /* Velocity of the particle's side at the foot. */
 MPSI_INLINE void velocity_at(const mpsi_impulses *all, int64_t n, double *v) {
   const mpsi_touch *touch = &all->touch[n];
   double *const *node = all->node + n * all->stride;
-  double(*weight)[4] = all->weight + n * all->stride;
-  mpsi_quad sum[WAYS] = {{0.0, touch->carried[0], touch->carried[1], touch->carried[2]}};
-  int32_t i = 0;
-  for (; i + WAYS <= touch->nodes; i += WAYS)
-    for (int w = 0; w < WAYS; w++) sum[w] += mpsi_get(weight[i + w]) * mpsi_get(node[i + w]);
-  for (; i < touch->nodes; i++) sum[0] += mpsi_get(weight[i]) * mpsi_get(node[i]);
-  const mpsi_quad all_ways = (sum[0] + sum[1]) + (sum[2] + sum[3]);
-  for (int a = 0; a < 3; a++) v[a] = all_ways[MPSI_VECTOR + a];
+  const double *weight = all->weight[n * all->stride];
+  const mpsi_quad carried = {0.0, touch->carried[0], touch->carried[1], touch->carried[2]};
+  const mpsi_quad sum = touch->even ? sum_nodes(node, weight, true, touch->nodes, carried)
+                                    : sum_nodes(node, weight, false, touch->nodes, carried);
+  for (int a = 0; a < 3; a++) v[a] = sum[MPSI_VECTOR + a];
 }
 
 void MPSI_LEVELLED(mpsi_mpm_foot_velocity)(const mps_mpm *mpm, int64_t touch, double *v) {

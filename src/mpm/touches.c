@@ -294,27 +294,27 @@ static void add_node(mpsi_touch *touch, double **node, double (*to)[4], double *
   for (int a = 0; a < 3; a++) to[i][MPSI_VECTOR + a] += weight[a];
 }
 
-/* psi at the nodes of the touch's stencil that have mass, and its mobility. */
-static void fit_touch(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker, int64_t n) {
+/* psi at the nodes of the touch's stencil that have mass, where these may stand for ghosts or be
+ * other ranks'. */
+static void fit_unevenly(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_foot_weights *f,
+                         int64_t n) {
   mpsi_impulses *all = &mpm->contact.impulses;
   mpsi_touch *touch = &all->touch[n];
   double(*weight)[4] = all->weight + n * all->stride, **node = all->node + n * all->stride;
-  mpsi_foot_weights f;
-  weigh(mpm, cells, &mpm->grid.workers[worker], touch, &f);
-  touch->nodes = 0;
-  for (uint64_t left = f.active; left != 0; left &= left - 1) {
+  for (uint64_t left = f->active; left != 0; left &= left - 1) {
     const int s = __builtin_ctzll(left);
     int place[3];
-    find_place(&f, s, place);
-    const double psi = f.psi[s];
+    find_place(f, s, place);
+    const double psi = f->psi[s];
     double psis[3] = {psi, psi, psi}, keeps[3], carried[3];
     const bool image = cells->mirrors && mpsi_mpm_find_image(mpm, cells, place, keeps, carried);
     for (int a = 0; a < 3 && image; a++) {
       psis[a] *= keeps[a];
       touch->carried[a] += psi * carried[a];
     }
-    const int64_t g = f.across >> s & 1 ? mpsi_node_across(mpm, cells, place[0], place[1], place[2])
-                                        : mpsi_node_under(mpm, cells, place[0], place[1], place[2]);
+    const int64_t g = f->across >> s & 1
+                          ? mpsi_node_across(mpm, cells, place[0], place[1], place[2])
+                          : mpsi_node_under(mpm, cells, place[0], place[1], place[2]);
     if (mpm->grid.node[g][MPSI_MASS] > 0.0)
       add_node(touch, node, weight, mpm->grid.node[g], psis, cells->mirrors != 0);
   }
@@ -323,6 +323,45 @@ static void fit_touch(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker
       const double psi = weight[i][MPSI_VECTOR + a];
       touch->impulse.mobility[a] += psi * psi * weight[i][MPSI_MASS];
     }
+}
+
+/* The same where each stands for itself. */
+static void fit_evenly(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_foot_weights *f,
+                       int64_t n) {
+  mpsi_impulses *all = &mpm->contact.impulses;
+  mpsi_touch *touch = &all->touch[n];
+  double(*weight)[2] = mpsi_even_weights(all, n), **node = all->node + n * all->stride;
+  double mobility = 0.0;
+  int32_t count = 0;
+  for (uint64_t left = f->active; left != 0; left &= left - 1) {
+    const int s = __builtin_ctzll(left);
+    int place[3];
+    find_place(f, s, place);
+    const int64_t g = f->across >> s & 1
+                          ? mpsi_node_across(mpm, cells, place[0], place[1], place[2])
+                          : mpsi_node_under(mpm, cells, place[0], place[1], place[2]);
+    double *at = mpm->grid.node[g];
+    if (!(at[MPSI_MASS] > 0.0)) continue;
+    weight[count][0] = 1.0 / at[MPSI_MASS];
+    weight[count][1] = f->psi[s];
+    mobility += f->psi[s] * f->psi[s] * weight[count][0];
+    node[count++] = at;
+  }
+  touch->nodes = count;
+  for (int a = 0; a < 3; a++) touch->impulse.mobility[a] = mobility;
+}
+
+/* The weights of a touch, and its mobility. */
+static void fit_touch(mps_mpm *mpm, const mpsi_cell_block *cells, int32_t worker, int64_t n) {
+  mpsi_touch *touch = &mpm->contact.impulses.touch[n];
+  mpsi_foot_weights f;
+  weigh(mpm, cells, &mpm->grid.workers[worker], touch, &f);
+  touch->nodes = 0;
+  touch->even = !mpm->share && !cells->mirrors;
+  if (touch->even)
+    fit_evenly(mpm, cells, &f, n);
+  else
+    fit_unevenly(mpm, cells, &f, n);
 }
 
 /* States of nodes for the touches whose fits were not kept. */
