@@ -103,6 +103,39 @@ MPSI_INLINE void find_active(const mps_mpm *mpm, const mpsi_cell_block *cells,
     }
 }
 
+/* Whether particles of the stencil from tile node `first` may all have a full support: nothing but
+ * bodies has any of its nodes, and those are corners of cells with particles. */
+MPSI_INLINE bool may_be_full(const mpsi_worker *worker, int dim, int spline, int32_t first) {
+  const uint32_t in = spline == 3 ? 0x01010101u : 0x00010101u;
+  uint32_t other = 0;
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++) {
+      uint32_t row;
+      memcpy(&row, worker->state + first + mpsi_tile_index(0, j, k), sizeof row);
+      row &= in * 0xffu;
+      other |= row & ~(in * (MPSI_INSIDE | MPSI_REACHED)); /* outside, ... */
+      other |= (row / MPSI_INSIDE ^ row / MPSI_REACHED) & in;
+    }
+  return other == 0;
+}
+
+/* Whether all particles of the batch may use all nodes of their stencil, of which may_be_full. */
+MPSI_INLINE bool is_full(const mps_mpm *mpm, const mpsi_cell_block *cells,
+                         const mpsi_worker *worker, int dim, int spline, const batch *b) {
+  mpsi_mask corner[3][4];
+  find_corners(mpm, cells, dim, spline, b, corner);
+  for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
+    for (int j = 0; j <= spline; j++) {
+      const uint8_t *state = worker->state + mpsi_tile_index(b->at[0], b->at[1] + j, b->at[2] + k);
+      for (int i = 0; i <= spline; i++) {
+        if (state[i] == 0) continue;
+        const mpsi_mask active = is_active(mpm, cells, state[i], dim, b, corner, i, j, k);
+        if ((active[0] & active[1] & active[2] & active[3]) == 0) return false;
+      }
+    }
+  return true;
+}
+
 /* ---- the fit ----------------------------------------------------------------------------------
  */
 
@@ -189,7 +222,7 @@ MPSI_INLINE void keep_fit(const mps_mpm *mpm, const mpsi_cell_block *cells, int 
       }
   for (int l = 0; l < n; l++) {
     mpm->grid.fit[slot + l].active = (uint64_t)active[l];
-    mpm->grid.fitted[slot + l] = 1;
+    mpm->grid.fitted[slot + l] = MPSI_FITTED_CUT;
   }
 }
 
@@ -514,33 +547,81 @@ MPSI_INLINE void gather(const mps_mpm *mpm, const mpsi_cell_block *cells, const 
   }
 }
 
+/* ---- full supports ----------------------------------------------------------------------------
+ */
+
+/* Keeps the fit of particles p, p + 1, ... with a full support: see shape.h. */
+MPSI_INLINE void keep_full(const mps_mpm *mpm, const mpsi_cell_block *cells, int dim, int spline,
+                           int64_t p, int particles) {
+  const int64_t slot = cells->first_fit + (p - cells->begin);
+  mpsi_kept_fit fit = {.q = {1.0}};
+  int count = 0;
+  for (int r = 0; r <= dim; r++)
+    for (int c = r; c <= dim; c++, count++)
+      if (r == c && r > 0) fit.q[count] = mpsi_inverse_moment(spline);
+  MPSI_FOR_NODES(dim, spline) fit.active |= UINT64_C(1) << n;
+  for (int l = 0; l < particles; l++) {
+    mpm->grid.fit[slot + l] = fit;
+    mpm->grid.fitted[slot + l] = MPSI_FITTED_FULL;
+  }
+}
+
+/* Nodes in bodies cut no support where particles may use all of them. */
+MPSI_INLINE bool find_full(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
+                           int dim, int spline, const mpsi_places *places, int64_t chunk, int begin,
+                           int end) {
+  if (!may_be_full(worker, dim, spline, places->first[begin])) return false;
+  for (int k = begin; k < end; k += 4) {
+    batch b;
+    place_batch(dim, spline, places, k, end - k < 4 ? end - k : 4, &b);
+    if (!is_full(mpm, cells, worker, dim, spline, &b)) return false;
+  }
+  keep_full(mpm, cells, dim, spline, chunk + begin, end - begin);
+  return true;
+}
+
+MPSI_INLINE bool are_full(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t chunk,
+                          int begin, int end) {
+  const uint8_t *fitted = mpm->grid.fitted + cells->first_fit + (chunk - cells->begin);
+  bool full = true;
+  for (int k = begin; k < end; k++) full = full && fitted[k] == MPSI_FITTED_FULL;
+  return full;
+}
+
 /* ---- segments ---------------------------------------------------------------------------------
  */
 
-MPSI_INLINE bool scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                              int dim, int spline, const mpsi_places *places, int64_t chunk,
-                              int begin, int end) {
+MPSI_INLINE mpsi_batched scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                      const mpsi_worker *worker, int dim, int spline,
+                                      const mpsi_places *places, int64_t chunk, int begin,
+                                      int end) {
   const uint32_t bodies = bodies_of(mpm, cells, worker, dim, spline, places->first[begin]);
-  for (int k = begin; k < end && bodies; k += 4) {
+  if (!bodies) return MPSI_BATCHED_NOT;
+  if (find_full(mpm, cells, worker, dim, spline, places, chunk, begin, end))
+    return MPSI_BATCHED_FULL;
+  for (int k = begin; k < end; k += 4) {
     const int n = end - k < 4 ? end - k : 4;
     batch b;
     make_batch(mpm, cells, worker, dim, spline, places, k, chunk + k, n, bodies, &b);
     scatter(mpm, cells, worker, dim, spline, &b, chunk + k, n);
   }
-  return bodies != 0;
+  return MPSI_BATCHED;
 }
 
-MPSI_INLINE bool gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
-                             int dim, int spline, const mpsi_places *places, int64_t chunk,
-                             int begin, int end, mpsi_gathered *out) {
+MPSI_INLINE mpsi_batched gather_body(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                     const mpsi_worker *worker, int dim, int spline,
+                                     const mpsi_places *places, int64_t chunk, int begin, int end,
+                                     mpsi_gathered *out) {
   const uint32_t bodies = bodies_of(mpm, cells, worker, dim, spline, places->first[begin]);
-  for (int k = begin; k < end && bodies; k += 4) {
+  if (!bodies) return MPSI_BATCHED_NOT;
+  if (are_full(mpm, cells, chunk, begin, end)) return MPSI_BATCHED_FULL;
+  for (int k = begin; k < end; k += 4) {
     const int n = end - k < 4 ? end - k : 4;
     batch b;
     take_batch(mpm, cells, dim, spline, places, k, chunk + k, n, bodies, &b);
     gather(mpm, cells, worker, dim, spline, &b, out, k);
   }
-  return bodies != 0;
+  return MPSI_BATCHED;
 }
 
 /* The body with dimension and spline as literal arguments. */
@@ -550,14 +631,16 @@ MPSI_INLINE bool gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const m
             : mpm->def.spline == 2 ? body(mpm, cells, worker, 3, 2, __VA_ARGS__)                   \
                           : body(mpm, cells, worker, 3, 3, __VA_ARGS__))
 
-bool MPSI_LEVELLED(mpsi_mpm_scatter_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                             const mpsi_worker *worker, const mpsi_places *places,
-                                             int64_t chunk, int begin, int end) {
+mpsi_batched MPSI_LEVELLED(mpsi_mpm_scatter_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                                     const mpsi_worker *worker,
+                                                     const mpsi_places *places, int64_t chunk,
+                                                     int begin, int end) {
   return CHOOSE(scatter_body, places, chunk, begin, end);
 }
 
-bool MPSI_LEVELLED(mpsi_mpm_gather_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                            const mpsi_worker *worker, const mpsi_places *places,
-                                            int64_t chunk, int begin, int end, mpsi_gathered *out) {
+mpsi_batched MPSI_LEVELLED(mpsi_mpm_gather_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                                    const mpsi_worker *worker,
+                                                    const mpsi_places *places, int64_t chunk,
+                                                    int begin, int end, mpsi_gathered *out) {
   return CHOOSE(gather_body, places, chunk, begin, end, out);
 }

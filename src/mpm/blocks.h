@@ -107,6 +107,7 @@ typedef struct mpsi_kept_fit {
   double q[12];    /* the upper half of the inverse of M by rows, q00, q01, q02, ... (shape.h) */
   uint64_t active; /* bit 16 k + 4 j + i: node of the stencil that takes part */
 } mpsi_kept_fit;
+enum { MPSI_FITTED_CUT = 1, MPSI_FITTED_FULL = 2 };
 
 /* Bits of a state. */
 #define MPSI_OUTSIDE 1u /* not in the domain */
@@ -160,7 +161,7 @@ typedef struct mpsi_grid {
   mpsi_room across_room; /* of their second tiles */
   int32_t worker_count;
   mpsi_kept_fit *fit; /* of particles of blocks beside bodies: see mpsi_cell_block.first_fit */
-  uint8_t *fitted;    /* whether it was kept in the present step */
+  uint8_t *fitted;    /* what was kept in the present step: MPSI_FITTED_... or 0 */
   mpsi_room fit_room, fitted_room;
 } mpsi_grid;
 

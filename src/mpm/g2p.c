@@ -74,9 +74,11 @@ MPSI_INLINE across sum_across(int dim, int spline, const mpsi_places *places, in
   return out;
 }
 
+#define EVERY_AXIS 3
+
 /* Particles from `k` of `places`, all of one stencil (what is behind them comes to nothing),
  * to `out` from `to` on: sums of the rows by their weights across, w and w s, and at last along x.
- * The derivative along `plain` is the slope. */
+ * The derivative along `plain` (-1: none) is the slope. */
 MPSI_INLINE void gather_lanes(const mps_mpm *mpm, int dim, int spline, const mpsi_places *places,
                               int k, const mpsi_node *tile, const differences *difference,
                               int plain, mpsi_gathered *out, int to) {
@@ -84,7 +86,7 @@ MPSI_INLINE void gather_lanes(const mps_mpm *mpm, int dim, int spline, const mps
   const mpsi_node *node = tile + difference->first;
   mpsi_lanes excess[3] = {{0.0}}; /* see mpsi_excess */
   MPSI_UNROLL for (int d = 0; d < dim; d++) {
-    if (d != plain)
+    if (d != plain && plain != EVERY_AXIS)
       excess[d] = mpm->grid.inverse * mpsi_excess(spline, mpsi_get_lanes(places->t[d] + k));
   }
   MPSI_UNROLL for (int c = 0; c < dim; c++) {
@@ -143,6 +145,23 @@ static void gather_fitted(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi
       out->derivative[dim * c + d][to] = one.derivative[d][MPSI_VECTOR + c];
     }
   }
+}
+
+/* Particles [k, end) of a chunk, all of one stencil, beside bodies. */
+MPSI_INLINE void gather_beside(mps_mpm *mpm, const mpsi_cell_block *cells,
+                               const mpsi_worker *worker, int dim, int spline,
+                               const mpsi_places *places, int64_t chunk, int k, int end,
+                               const differences *difference, mpsi_gathered *out) {
+  const mpsi_node *tile = (const mpsi_node *)worker->tile;
+  const mpsi_batched done =
+      mpm->flip > 0.0
+          ? MPSI_BATCHED_NOT
+          : MPSI_LEVELLED(mpsi_mpm_gather_batches)(mpm, cells, worker, places, chunk, k, end, out);
+  if (done == MPSI_BATCHED_NOT)
+    for (int q = k; q < end; q++) gather_fitted(mpm, cells, worker, chunk + q, out, q);
+  else if (done == MPSI_BATCHED_FULL)
+    for (int q = k; q < end; q += MPSI_LANES)
+      gather_lanes(mpm, dim, spline, places, q, tile, difference, EVERY_AXIS, out, q);
 }
 
 /* The first `n` (at most 4) values of a vector. */
@@ -310,9 +329,8 @@ MPSI_INLINE void gather_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const 
       for (int q = k; q < end; q += MPSI_LANES)
         gather_at_wall(mpm, cells, dim, spline, &places, axis, q,
                        end - q < MPSI_LANES ? end - q : MPSI_LANES, tile, &difference, out);
-    else if (mpm->flip > 0.0 || !MPSI_LEVELLED(mpsi_mpm_gather_batches)(mpm, cells, worker, &places,
-                                                                        begin, k, end, out))
-      for (int q = k; q < end; q++) gather_fitted(mpm, cells, worker, begin + q, out, q);
+    else
+      gather_beside(mpm, cells, worker, dim, spline, &places, begin, k, end, &difference, out);
   }
   if (mpm->strain_by_fit) memcpy(out->derivative, out->slope, sizeof out->slope);
 }

@@ -260,15 +260,22 @@ void MPSI_LEVELLED(mpsi_mpm_gather_fitted)(mps_mpm *mpm, const mpsi_cell_block *
 /* ---- batch.c: particles beside bodies that act by impulses -----------------------------------
  */
 
+typedef enum mpsi_batched {
+  MPSI_BATCHED_NOT,  /* nothing is done: they are for fitted.c; */
+  MPSI_BATCHED_FULL, /* their supports are full, they are as all others; the laws see the fit */
+  MPSI_BATCHED
+} mpsi_batched;
 /* Give particles [begin, end) of a chunk (that begins with particle `chunk`), all of one stencil,
  * to the tiles, and keep their fits; then take what the nodes give them, by the fits kept in the
- * same step. False, and nothing done, where they are for fitted.c. */
-bool MPSI_LEVELLED(mpsi_mpm_scatter_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                             const mpsi_worker *worker, const mpsi_places *places,
-                                             int64_t chunk, int begin, int end);
-bool MPSI_LEVELLED(mpsi_mpm_gather_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
-                                            const mpsi_worker *worker, const mpsi_places *places,
-                                            int64_t chunk, int begin, int end, mpsi_gathered *out);
+ * same step. */
+mpsi_batched MPSI_LEVELLED(mpsi_mpm_scatter_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                                     const mpsi_worker *worker,
+                                                     const mpsi_places *places, int64_t chunk,
+                                                     int begin, int end);
+mpsi_batched MPSI_LEVELLED(mpsi_mpm_gather_batches)(mps_mpm *mpm, const mpsi_cell_block *cells,
+                                                    const mpsi_worker *worker,
+                                                    const mpsi_places *places, int64_t chunk,
+                                                    int begin, int end, mpsi_gathered *out);
 
 /* The fit by itself; the largest speed of a block: see mpsi_kernels. */
 void MPSI_LEVELLED(mpsi_mpm_fit)(const mps_mpm *mpm, const mpsi_cell_block *cells,

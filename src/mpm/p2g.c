@@ -282,11 +282,13 @@ MPSI_INLINE void p2g_chunk(mps_mpm *mpm, const mpsi_cell_block *cells, const mps
       const int axis = mpsi_wall_axis(mpm, cells, dim, spline, state, places.first[k]);
       if (axis >= 0)
         add_at_wall(mpm, cells, worker, geometry, spline, &places, axis, begin, k, end);
-      const bool done = axis >= 0 || MPSI_LEVELLED(mpsi_mpm_scatter_batches)(
-                                         mpm, cells, worker, &places, begin, k, end);
-      for (int f = k; f < end && !done; f++)
+      const mpsi_batched done =
+          axis >= 0
+              ? MPSI_BATCHED
+              : MPSI_LEVELLED(mpsi_mpm_scatter_batches)(mpm, cells, worker, &places, begin, k, end);
+      for (int f = k; f < end && done == MPSI_BATCHED_NOT; f++)
         MPSI_LEVELLED(mpsi_mpm_scatter_fitted)(mpm, cells, worker, begin + f);
-      continue;
+      if (done != MPSI_BATCHED_FULL) continue;
     }
     add_segment(dim, spline, &places, &rows, k, end, &sum, worker->tile);
     if (cells->split) add_segment(dim, spline, &places, &rows, k, end, &force, worker->force);
