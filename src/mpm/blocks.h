@@ -82,6 +82,8 @@ typedef struct mpsi_node_block {
   int32_t first_pair, pairs;  /* bodies that may touch it: of the list of mpsi_node_pair */
   int32_t first_held, holds;  /* of the list of mpsi_held */
   int32_t from[MPSI_CORNERS]; /* blocks of cells whose tiles cover it, as corner q; -1: none */
+  bool late;                  /* a ghost, or one that gives after one, gives to it (share.h) */
+  bool foreign;               /* only ghosts cover it: it has part of its sums */
   bool waits;                 /* its friction needs the mass of all nodes in contact with a body */
 } mpsi_node_block;
 

@@ -140,7 +140,8 @@ mps_status mpsi_mpm_find_near(mps_mpm *mpm, const char *function, mps_status sta
     status = mpsi_fail_memory(mpm->context, function,
                               (size_t)(mpm->contact.bodies * mpm->grid.tile_nodes) *
                                   sizeof(mpsi_spring_node));
-  static const mpsi_pass pass = {.update = mpsi_mpm_find_inside, .gather = mpsi_mpm_mark_reached};
+  static const mpsi_pass pass = {
+      .update = mpsi_mpm_find_inside, .gather = mpsi_mpm_mark_reached, .ghosts = true};
   if (mpm->contact.bodies > 0) {
     if (status == MPS_OK) status = mpsi_mpm_list_pairs(mpm, function);
     if (status == MPS_OK && !mpsi_mpm_begin_across(mpm))

@@ -4,7 +4,9 @@
  * thread that finds nothing ready looks again for some microseconds and then sleeps for a moment;
  * under a caller's executor, which may run the units one after the other, it leaves. All is done
  * when all have left, since who makes a block ready looks at the queue after that. One thread alone
- * goes over the blocks in their order and does for each what it waits for.
+ * goes over the blocks in their order and does for each what it waits for. On several ranks the
+ * caller's thread, which alone may call the transport, receives what ghosts give when it finds
+ * nothing else to do, while the others work on.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "mpm_private.h"
 
@@ -19,6 +21,15 @@ static int parity_of(const mpsi_node_block *nodes) {
   return (nodes->at[0] & 1) | (nodes->at[1] & 1) << 1 | (nodes->at[2] & 1) << 2;
 }
 
+/* Whether the nodes, those of cells b, concern this rank: see share.h. */
+static bool has_nodes(const mps_mpm *mpm, const mpsi_pass *pass, int64_t g) {
+  return pass->ghosts || !mpm->grid.nodes[g].foreign;
+}
+
+static bool has_cells(const mps_mpm *mpm, const mpsi_pass *pass, int64_t b) {
+  return pass->ghosts || !mpm->grid.cells[b].ghost;
+}
+
 /* ---- one thread ------------------------------------------------------------------------------ */
 
 static bool is_first(const mpsi_cell_block *cells, int q) { return cells->first >> q & 1; }
@@ -28,21 +39,6 @@ static void clear_and_scatter(mps_mpm *mpm, const mpsi_pass *pass, int64_t b, in
   for (int q = 0; q < 1 << mpm->dim; q++)
     if (is_first(cells, q)) pass->clear(mpm, cells->to[q], worker);
   pass->scatter(mpm, b, worker);
-}
-
-/* Stage by stage: where all blocks have to give before any node is finished. */
-static void run_stages(mps_mpm *mpm, const mpsi_pass *pass) {
-  const mpsi_grid *grid = &mpm->grid;
-  const int32_t *order = pass->arrive ? mpm->share->order : grid->coloured;
-  const int64_t early = pass->arrive ? mpm->share->early : grid->cell_count;
-  for (int64_t k = 0; pass->scatter && k < early; k++) clear_and_scatter(mpm, pass, order[k], 0);
-  if (pass->arrive) pass->arrive(mpm);
-  for (int64_t k = early; pass->scatter && k < grid->cell_count; k++)
-    clear_and_scatter(mpm, pass, order[k], 0);
-  for (int64_t g = 0; pass->update && g < grid->node_count; g++) pass->update(mpm, g, 0);
-  if (pass->between && !pass->between(mpm, pass->data)) return;
-  for (int64_t g = 0; pass->finish && g < grid->node_count; g++) pass->finish(mpm, g, 0);
-  for (int64_t b = 0; pass->gather && b < grid->cell_count; b++) pass->gather(mpm, b, 0);
 }
 
 /* What has been done. */
@@ -94,8 +90,27 @@ static void finish_in_turn(wave *w, int32_t g) {
   if (mark(&w->done[g], FINISHED) && w->pass->finish) w->pass->finish(w->mpm, g, 0);
 }
 
+/* Whether some node under the block waits for ghosts (share.h). */
+static bool is_late(const mps_mpm *mpm, const mpsi_cell_block *cells) {
+  bool late = false;
+  for (int q = 0; q < 1 << mpm->dim; q++) late = late || mpm->grid.nodes[cells->to[q]].late;
+  return late;
+}
+
+/* The blocks that wait for ghosts, or the others. */
+static void gather_in_turn(wave *w, bool late) {
+  const mpsi_grid *grid = &w->mpm->grid;
+  for (int64_t b = 0; b < grid->cell_count; b++) {
+    const mpsi_cell_block *cells = &grid->cells[b];
+    if (!has_cells(w->mpm, w->pass, b) || is_late(w->mpm, cells) != late) continue;
+    for (int q = 0; q < 1 << w->mpm->dim; q++) finish_in_turn(w, cells->to[q]);
+    if (w->pass->gather) w->pass->gather(w->mpm, b, 0);
+  }
+}
+
 /* Each block gathers as soon as its nodes are done, while its particles are in the cache since they
- * gave: of a large set they would have to come from the memory twice. */
+ * gave: of a large set they would have to come from the memory twice. What waits for ghosts comes
+ * last, but gives what it can while their message is on its way. */
 static void run_wave(mps_mpm *mpm, const mpsi_pass *pass) {
   const mpsi_grid *grid = &mpm->grid;
   _Atomic int32_t *room = grid->pass_room.item;
@@ -105,10 +120,12 @@ static void run_wave(mps_mpm *mpm, const mpsi_pass *pass) {
   for (int32_t g = 0; pass->between && g < grid->node_count; g++)
     if (grid->nodes[g].waits) update_in_turn(&w, g);
   if (pass->between && !pass->between(mpm, pass->data)) return;
-  for (int64_t b = 0; b < grid->cell_count; b++) {
-    for (int q = 0; q < 1 << mpm->dim; q++) finish_in_turn(&w, grid->cells[b].to[q]);
-    if (pass->gather) pass->gather(mpm, b, 0);
-  }
+  gather_in_turn(&w, false);
+  if (!mpm->share) return;
+  for (int32_t b = 0; pass->scatter && b < grid->cell_count; b++)
+    if (!grid->cells[b].late) give_in_turn(&w, b);
+  if (pass->arrive) pass->arrive(mpm);
+  gather_in_turn(&w, true);
 }
 
 /* ---- several --------------------------------------------------------------------------------- */
@@ -125,6 +142,7 @@ typedef struct flow {
   _Atomic int64_t begun;      /* of the former, claimed or more */
   _Atomic int64_t head, tail; /* of the others: next to claim, next to fill */
   _Atomic int32_t held;       /* blocks of nodes to update before `between` */
+  _Atomic bool arrived;       /* what ghosts give, or none is waited for */
 } flow;
 enum { EMPTY = -1 };
 
@@ -140,15 +158,17 @@ static bool count_down(_Atomic int32_t *count) {
 
 static void finish_nodes(flow *f, int32_t g, int32_t worker) {
   const mpsi_node_block *nodes = &f->mpm->grid.nodes[g];
-  if (f->pass->finish) f->pass->finish(f->mpm, g, worker);
+  if (f->pass->finish && has_nodes(f->mpm, f->pass, g)) f->pass->finish(f->mpm, g, worker);
   for (int q = 0; q < 1 << f->mpm->dim; q++) {
     const int32_t b = nodes->from[q];
-    if (b >= 0 && count_down(&f->gather_waits[b]) && f->pass->gather) put(f, f->cells + b);
+    if (b >= 0 && count_down(&f->gather_waits[b]) && f->pass->gather &&
+        has_cells(f->mpm, f->pass, b))
+      put(f, f->cells + b);
   }
 }
 
 static void update_nodes(flow *f, int32_t g, int32_t worker) {
-  if (f->pass->update) f->pass->update(f->mpm, g, worker);
+  if (f->pass->update && has_nodes(f->mpm, f->pass, g)) f->pass->update(f->mpm, g, worker);
   if (!f->pass->between || !f->mpm->grid.nodes[g].waits) {
     finish_nodes(f, g, worker);
     return;
@@ -222,16 +242,27 @@ static bool is_all_claimed(flow *f) {
          atomic_load_explicit(&f->begun, memory_order_relaxed) >= f->starts;
 }
 
+/* On the caller's thread: the messages, and then the ghosts may give. */
+static void receive(flow *f) {
+  f->pass->arrive(f->mpm);
+  for (int32_t b = 0; b < f->cells; b++)
+    if (f->mpm->grid.cells[b].ghost && count_down(&f->scatter_waits[b])) put(f, b);
+  atomic_store_explicit(&f->arrived, true, memory_order_release);
+}
+
+/* Worker 0 of the context's own executors is the caller's thread. */
 static void visit(void *data, int64_t unit, int32_t worker) {
   flow *f = data;
-  const bool own = mpsi_executor_is_own(f->mpm->context);
+  const bool own = mpsi_executor_is_own(f->mpm->context), receives = own && worker == 0;
   (void)unit;
   for (int32_t look = 0; !is_all_claimed(f); look++) {
     int32_t entry[MOST_CLAIMED];
     int32_t n = claim_next(f, entry);
     if (n == 0) n = claim_start(f, entry);
     for (int32_t k = 0; k < n; k++) work_on(f, entry[k], worker);
-    if (n > 0)
+    const bool waits = n == 0 && !atomic_load_explicit(&f->arrived, memory_order_relaxed);
+    if (waits && receives) receive(f);
+    if (n > 0 || (waits && receives))
       look = -1;
     else if (!mpsi_wait_a_little(look, own))
       return;
@@ -241,18 +272,24 @@ static void visit(void *data, int64_t unit, int32_t worker) {
 /* What is ready at once. */
 static void fill(flow *f) {
   const mpsi_grid *grid = &f->mpm->grid;
-  int32_t held = 0;
+  int32_t held = 0, gathers = 0;
   for (int64_t k = 0; k < 2 * grid->cell_count + grid->node_count; k++)
     atomic_store_explicit(&f->queue[k], EMPTY, memory_order_relaxed);
   for (int32_t b = 0; b < f->cells; b++) {
-    atomic_store_explicit(&f->scatter_waits[b], grid->cells[b].waits, memory_order_relaxed);
+    const int32_t message = f->pass->arrive && grid->cells[b].ghost;
+    atomic_store_explicit(&f->scatter_waits[b], grid->cells[b].waits + message,
+                          memory_order_relaxed);
+    gathers += f->pass->gather && has_cells(f->mpm, f->pass, b);
     atomic_store_explicit(&f->gather_waits[b], 1 << f->mpm->dim, memory_order_relaxed);
   }
   for (int32_t g = 0; f->pass->between && g < f->nodes; g++) held += grid->nodes[g].waits;
   atomic_init(&f->held, held);
-  f->entries = held + (f->pass->scatter ? f->cells : f->nodes) + (f->pass->gather ? f->cells : 0);
-  for (int32_t k = 0; f->pass->scatter && k < f->cells; k++)
-    if (grid->cells[grid->coloured[k]].waits == 0) put(f, grid->coloured[k]);
+  f->entries = held + (f->pass->scatter ? f->cells : f->nodes) + gathers;
+  for (int32_t k = 0; f->pass->scatter && k < f->cells; k++) {
+    const int32_t b = grid->coloured[k];
+    if (atomic_load_explicit(&f->scatter_waits[b], memory_order_relaxed) == 0) put(f, b);
+  }
+  atomic_init(&f->arrived, f->pass->arrive == NULL);
   for (int32_t g = 0; !f->pass->scatter && g < f->nodes; g++) put(f, 2 * f->cells + g);
   f->starts = atomic_load_explicit(&f->tail, memory_order_relaxed);
   atomic_store_explicit(&f->head, f->starts, memory_order_relaxed);
@@ -265,10 +302,7 @@ bool mpsi_mpm_passes_alone(const mps_mpm *mpm) {
 void mpsi_mpm_run_pass(mps_mpm *mpm, const mpsi_pass *pass) {
   mpsi_grid *grid = &mpm->grid;
   if (mpsi_mpm_passes_alone(mpm)) {
-    if (pass->arrive)
-      run_stages(mpm, pass);
-    else
-      run_wave(mpm, pass);
+    run_wave(mpm, pass);
     return;
   }
   _Atomic int32_t *room = grid->pass_room.item;
@@ -279,9 +313,11 @@ void mpsi_mpm_run_pass(mps_mpm *mpm, const mpsi_pass *pass) {
             .scatter_waits = room,
             .gather_waits = room + grid->cell_count,
             .queue = room + 2 * grid->cell_count};
-  if (pass->arrive) pass->arrive(mpm);
   const int64_t visits = mpsi_executor_is_own(mpm->context) ? 1 : VISITS;
   fill(&f);
+  mpsi_parallel_for(mpm->context, visits * grid->worker_count, visit, &f);
+  if (atomic_load_explicit(&f.arrived, memory_order_relaxed)) return;
+  receive(&f); /* the caller's executor has done what needs no ghosts */
   mpsi_parallel_for(mpm->context, visits * grid->worker_count, visit, &f);
 }
 

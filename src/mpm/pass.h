@@ -30,7 +30,9 @@ typedef struct mpsi_pass {
   void *data;
   mpsi_mpm_task finish;         /* of nodes; NULL: none */
   mpsi_mpm_task gather;         /* of cells; NULL: none */
-  void (*arrive)(mps_mpm *mpm); /* NULL: nothing; else brings what ghosts give (share.h) */
+  void (*arrive)(mps_mpm *mpm); /* NULL: nothing; else brings what ghosts give (share.h), on the
+                                    caller's thread, when little or nothing else is left to do */
+  bool ghosts; /* ghosts gather too, and nodes that only they cover are updated and finished */
 } mpsi_pass;
 
 /* Whether one thread makes the passes. */

@@ -201,11 +201,9 @@ static bool put_lists(search *s) {
   int32_t *place = mpsi_alloc(mpm->context, s->count, sizeof *place);
   bool good =
       order && place && mpsi_mpm_ensure_cells(mpm, all) &&
-      mpsi_room_ensure(mpm->context, &share->order_room, all, sizeof *share->order) &&
       mpsi_room_ensure(mpm->context, &share->border_room, s->count, sizeof *share->border) &&
       mpsi_room_ensure(mpm->context, &share->rank_room, s->ghosts, sizeof *s->rank);
   if (good) {
-    share->order = share->order_room.item;
     share->border = share->border_room.item;
     share->ghost_rank = share->rank_room.item;
     if (s->ghosts > 0) memcpy(share->ghost_rank, s->rank, (size_t)s->ghosts * sizeof *s->rank);
@@ -220,22 +218,20 @@ static bool put_lists(search *s) {
   return good;
 }
 
-/* Blocks that no ghost goes before, directly or not, need not wait for messages. */
-static void list_early(mps_mpm *mpm) {
-  mpsi_share *share = mpm->share;
+/* Blocks that no ghost goes before, directly or not, and nodes to which only such blocks give, need
+ * not wait for messages. */
+static void mark_blocks(mps_mpm *mpm) {
   mpsi_grid *grid = &mpm->grid;
-  int64_t at = 0;
   for (int64_t b = 0; b < grid->cell_count; b++) grid->cells[b].late = grid->cells[b].ghost;
   for (int64_t k = 0; k < grid->cell_count; k++) {
     const mpsi_cell_block *cells = &grid->cells[grid->coloured[k]];
-    for (int q = 0; cells->late && q < 1 << mpm->dim; q++)
+    for (int q = 0; cells->late && q < 1 << mpm->dim; q++) {
+      grid->nodes[cells->to[q]].late = true;
       if (cells->next[q] >= 0) grid->cells[cells->next[q]].late = true;
+    }
   }
-  for (int late = 0; late < 2; late++) {
-    for (int64_t k = 0; k < grid->cell_count; k++)
-      if (grid->cells[grid->coloured[k]].late == late) share->order[at++] = grid->coloured[k];
-    if (!late) share->early = at;
-  }
+  for (int64_t g = 0; g < grid->node_count; g++)
+    grid->nodes[g].foreign = !mpsi_mpm_share_knows(mpm, g);
 }
 
 /* Which own blocks others have asked for; room for parcels. */
@@ -271,7 +267,7 @@ static mps_status join(search *s) {
   status = mpsi_domain_settle_max(share->domain, s->function, status, 1, &most);
   if (status != MPS_OK) return status;
   share->most = (int32_t)most;
-  list_early(mpm);
+  mark_blocks(mpm);
   mpsi_halo_destroy(mpm->context, &share->halo);
   const mpsi_halo_def def = {.guests = s->ghosts, .rank = s->rank, .index = s->index};
   status = mpsi_halo_create(share->domain, s->function, &def, &share->halo);
@@ -401,7 +397,6 @@ void mpsi_mpm_share_free(mps_mpm *mpm) {
   mpsi_free(mpm->context, share->first);
   mpsi_free(mpm->context, share->border_room.item);
   mpsi_free(mpm->context, share->rank_room.item);
-  mpsi_free(mpm->context, share->order_room.item);
   mpsi_free(mpm->context, share->out_room.item);
   mpsi_free(mpm->context, share->in_room.item);
   mps_domain_destroy(&share->domain);

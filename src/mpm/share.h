@@ -5,8 +5,8 @@
  * sums its own particles into tiles and sends those of its border, the blocks that are ghosts
  * elsewhere; whoever shares a block of nodes adds the same tiles to it in the same order, that of
  * the colours (blocks.h), and updates it by itself. So one message a step is enough, and every node
- * has the bits that it has on one rank. Blocks of nodes that only ghosts cover have part of their
- * sums, which nobody reads.
+ * has the bits that it has on one rank. Blocks of nodes that only ghosts cover would have part of
+ * their sums: they are left alone.
  *
  * Sums over blocks of nodes count each where the first block of cells that covers it is.
  * SPDX-License-Identifier: BSD-3-Clause */
@@ -29,9 +29,7 @@ typedef struct mpsi_share {
   int64_t borders, ghosts; /* own blocks that others have copies of; copies here */
   int32_t *border;         /* numbers of the blocks of cells */
   int32_t *ghost_rank;     /* of each copy */
-  int32_t *order;       /* all of them, colour by colour: first those that no ghost goes before, */
-  int64_t early;        /* so many */
-  int32_t most;         /* nodes of the widest part of a tile in use, on all ranks */
+  int32_t most;            /* nodes of the widest part of a tile in use, on all ranks */
   bool apart, thin;     /* some tile that is sent has forces, is parted, in the step being made; */
   int32_t springs;      /* of so many bodies are there tiles of springs with one, at most */
   int32_t item;         /* bytes of a parcel: a tile on its way */
@@ -43,7 +41,7 @@ typedef struct mpsi_share {
   mps_status lost;      /* of a message in the step being made */
   mpsi_mates mates;     /* who meets: see mates.h */
   mpsi_meeting meeting; /* touches of mates: see meet.h */
-  mpsi_room border_room, rank_room, order_room, out_room, in_room;
+  mpsi_room border_room, rank_room, out_room, in_room;
 } mpsi_share;
 
 /* share.c: leaves a solver that is made, with the whole set on each rank, this rank's share.

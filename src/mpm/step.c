@@ -78,10 +78,6 @@ static void keep_and_gather(mps_mpm *mpm, int64_t b, int32_t worker) {
   mpm->kernels->g2p[mpm->def.geometry][mpm->def.spline - 2](mpm, b, worker);
 }
 
-static void gather_own(mps_mpm *mpm, int64_t b, int32_t worker) {
-  if (!mpm->grid.cells[b].ghost) keep_and_gather(mpm, b, worker);
-}
-
 /* What happens between the nodes and the bodies in a step, on the way of its pass or by itself. */
 typedef struct meeting {
   const char *function;
@@ -169,9 +165,7 @@ static mps_status move(mps_mpm *mpm, const char *function, double dt, mps_status
     mpsi_mpm_begin_holds(mpm, dt);
   }
   pass.finish = mpsi_mpm_finish_nodes;
-  pass.gather = mpm->share     ? gather_own
-                : mpm->undo.on ? keep_and_gather
-                               : mpm->kernels->g2p[geometry][spline];
+  pass.gather = mpm->undo.on ? keep_and_gather : mpm->kernels->g2p[geometry][spline];
   mpsi_mpm_run_pass(mpm, &pass);
   return met.status;
 }
