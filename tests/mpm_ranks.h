@@ -373,6 +373,7 @@ static inline mps_status put_in(mps_context *own, mps_domain *domain, int what, 
   TRY(mps_particles_fill_box(s->set, here, there, &added)); /* the soil has been there */
   if (added != 0) status = MPS_ERROR_INTERNAL;
   TRY(give_values(s->set, first));
+  if (domain) status = mps_domain_agree(domain, status); /* edits are a rank's own */
   TRY(make_soil(s, first));
   (void)own;
   TRY(keep_order(domain, s->set, r));

@@ -198,6 +198,13 @@ static inline int64_t mpsi_block_of(int64_t base) {
   return n >= 0 ? n / MPSI_SIDE : -((MPSI_SIDE - 1 - n) / MPSI_SIDE);
 }
 
+/* The order of blocks in lists: in z, then y, then x. */
+static inline bool mpsi_block_before(const int32_t *a, const int32_t *b) {
+  for (int c = 2; c > 0; c--)
+    if (a[c] != b[c]) return a[c] < b[c];
+  return a[0] < b[0];
+}
+
 /* order.c: keys and indices of the particles in their order, the block above `own_bits` bits; NULL
  * when out of memory. */
 mpsi_radix *mpsi_mpm_find_order(mps_mpm *mpm, int32_t *own_bits);

@@ -137,12 +137,6 @@ static void place_block(mps_mpm *mpm, int64_t b, int32_t worker) {
   }
 }
 
-static bool before(const int32_t *a, const int32_t *b) {
-  for (int c = 2; c > 0; c--)
-    if (a[c] != b[c]) return a[c] < b[c];
-  return a[0] < b[0];
-}
-
 /* The sorted list of blocks shifted to each corner of a tile gives sorted lists; merging them gives
  * the blocks of nodes, and tells which tiles cover which. The count alone where `nodes` is NULL. */
 static int64_t make_nodes(mps_mpm *mpm, mpsi_node_block *nodes) {
@@ -155,7 +149,7 @@ static int64_t make_nodes(mps_mpm *mpm, mpsi_node_block *nodes) {
     for (int q = 0; q < corners; q++) {
       if (head[q] == mpm->grid.cell_count) continue;
       for (int c = 0; c < 3; c++) at[q][c] = cells[head[q]].at[c] + (q >> c & 1);
-      if (!any || before(at[q], least)) memcpy(least, at[q], sizeof least);
+      if (!any || mpsi_block_before(at[q], least)) memcpy(least, at[q], sizeof least);
       any = true;
     }
     if (!any) return count;
@@ -165,7 +159,7 @@ static int64_t make_nodes(mps_mpm *mpm, mpsi_node_block *nodes) {
       memcpy(nodes[count].at, least, sizeof least);
     }
     for (int q = 0; q < corners; q++) {
-      if (head[q] == mpm->grid.cell_count || before(least, at[q])) continue;
+      if (head[q] == mpm->grid.cell_count || mpsi_block_before(least, at[q])) continue;
       cells[head[q]].to[q] = (int32_t)count;
       if (nodes) nodes[count].from[q] = (int32_t)head[q];
       head[q]++;

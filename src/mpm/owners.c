@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define GROWTH 1.05 /* of the heaviest rank, from which on it is worth a new cut */
+#define GROWTH 1.02 /* of the heaviest rank, from which on it is worth a new cut */
 #ifdef NDEBUG
 #define COUNT_IDS false
 #else
@@ -18,15 +18,8 @@
 
 /* ---- the curve ------------------------------------------------------------------------------- */
 
-/* Places beyond the curve's ends count as those at its ends. */
 static int64_t key_of(const mps_mpm *mpm, const int32_t *at) {
-  const int64_t last = MPSI_CURVE_SIDE(mpm->dim) - 1;
-  int32_t block[3];
-  for (int c = 0; c < mpm->dim; c++) {
-    const int64_t from = (int64_t)at[c] - mpm->share->corner[c];
-    block[c] = (int32_t)(from < 0 ? 0 : from > last ? last : from);
-  }
-  return mpsi_curve_key(mpm->dim, block);
+  return mpsi_mpm_placing_key(mpm->dim, &mpm->share->placing, at);
 }
 
 int32_t mpsi_mpm_share_owner(const mps_mpm *mpm, const int32_t *at) {
@@ -42,30 +35,17 @@ static int compare(const void *left, const void *right) {
   return a < b ? -1 : a > b;
 }
 
-/* The curve begins as far below the first blocks as these reach: room to move, and short keys. */
-static void place_curve(mps_mpm *mpm) {
-  for (int c = 0; c < 3; c++) {
-    int32_t low = 0, high = 0;
-    for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
-      const int32_t at = mpm->grid.cells[b].at[c];
-      if (b == 0 || at < low) low = at;
-      if (b == 0 || at > high) high = at;
-    }
-    mpm->share->corner[c] = low - (high - low) - 1;
-  }
-}
-
 mps_status mpsi_mpm_share_cut(mps_mpm *mpm, const char *function, bool whole) {
   mpsi_share *share = mpm->share;
   const int32_t ranks = mps_domain_size(share->domain);
   const int64_t all = mpm->grid.cell_count,
                 blocks = whole && mps_domain_rank(share->domain) > 0 ? 0 : all;
-  if (whole) place_curve(mpm);
+  const bool placed = !whole || mpsi_mpm_choose_placing(mpm, ranks, &share->placing);
   weighed *list = mpsi_alloc(mpm->context, blocks, sizeof *list);
   int64_t *key = mpsi_alloc(mpm->context, 2 * blocks, sizeof *key);
   if (!share->first) share->first = mpsi_alloc(mpm->context, ranks + 1, sizeof *share->first);
   mps_status status = MPS_OK;
-  if (!list || !key || !share->first)
+  if (!placed || !list || !key || !share->first)
     status = mpsi_fail_memory(mpm->context, function, (size_t)(blocks + ranks) * sizeof *list);
   status = mpsi_domain_settle(share->domain, function, status);
   for (int64_t b = 0; status == MPS_OK && b < blocks; b++) {

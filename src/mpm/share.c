@@ -34,17 +34,11 @@ typedef struct search {
 
 enum { RANGE = 7 };
 
-static bool before(const int32_t *a, const int32_t *b) {
-  for (int c = 2; c > 0; c--)
-    if (a[c] != b[c]) return a[c] < b[c];
-  return a[0] < b[0];
-}
-
 static bool is_own(const search *s, const int32_t *at) {
   int64_t low = 0, high = s->count;
   while (low < high) {
     const int64_t middle = low + (high - low) / 2;
-    if (before(s->own[middle].at, at))
+    if (mpsi_block_before(s->own[middle].at, at))
       low = middle + 1;
     else
       high = middle;
@@ -163,7 +157,8 @@ static void sort_ghosts(const search *s, int64_t *order, int64_t *other) {
       const int64_t end = middle + width < s->ghosts ? middle + width : s->ghosts;
       int64_t a = begin, b = middle;
       for (int64_t k = begin; k < end; k++)
-        other[k] = b >= end || (a < middle && !before(s->ghost[order[b]].at, s->ghost[order[a]].at))
+        other[k] = b >= end || (a < middle &&
+                                !mpsi_block_before(s->ghost[order[b]].at, s->ghost[order[a]].at))
                        ? order[a++]
                        : order[b++];
     }
@@ -177,7 +172,7 @@ static void merge(const search *s, const int64_t *order, int32_t *place) {
   int64_t own = 0, ghost = 0;
   for (int64_t b = 0; b < s->count + s->ghosts; b++) {
     const notice *next = ghost < s->ghosts ? &s->ghost[order[ghost]] : NULL;
-    if (own < s->count && (!next || before(s->own[own].at, next->at))) {
+    if (own < s->count && (!next || mpsi_block_before(s->own[own].at, next->at))) {
       cells[b] = s->own[own];
       cells[b].parcel = -1;
       cells[b].waits = cells[b].first = 0;

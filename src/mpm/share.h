@@ -18,6 +18,7 @@
 #include "core/room.h"
 #include "mates.h"
 #include "meet.h"
+#include "placing.h"
 
 #include <mps/mpm.h>
 
@@ -35,7 +36,7 @@ typedef struct mpsi_share {
   int32_t item;         /* bytes of a parcel: a tile on its way */
   double *out, *in;     /* parcels */
   int64_t *first;       /* of each rank: the first key on the curve of its blocks (curve.h) */
-  int32_t corner[3];    /* block at the curve's lowest corner */
+  mpsi_placing placing; /* how the curve lies over the blocks */
   double heaviest;      /* particles of the rank that had most, after the last cut */
   bool cancel;          /* a hook has asked to stop, on whatever rank */
   mps_status lost;      /* of a message in the step being made */
