@@ -99,6 +99,21 @@ void mpsi_mpm_leave_settling(mps_mpm *mpm) {
 
 enum { UNBALANCED, APPLIED, KINETIC, SUMS };
 
+/* The sizes of the forces that bodies give by impulses to the particles here (N). */
+static void add_impulses(const mps_mpm *mpm, mpsi_exact *sum) {
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  for (int64_t n = 0; n < all->touch_count; n++) {
+    const mpsi_impulse *c = &all->touch[n].impulse;
+    if (!(c->push > 0.0) || all->touch[n].pair < 0) continue;
+    double square = 0.0;
+    for (int a = 0; a < 3; a++) {
+      const double by = c->push * c->normal[a] + c->rub[a];
+      square += by * by;
+    }
+    mpsi_exact_add(sum, sqrt(square) / mpm->run.dt);
+  }
+}
+
 /* Of all blocks, on all ranks: exact, as who has which block must not matter. */
 static mps_status sum_balance(mps_mpm *mpm, const char *function, double *sums) {
   mpsi_exact sum[SUMS];
@@ -107,6 +122,7 @@ static mps_status sum_balance(mps_mpm *mpm, const char *function, double *sums) 
   for (int64_t b = 0; b < mpm->grid.cell_count; b++)
     if (!mpm->grid.cells[b].ghost)
       mpsi_exact_add(&sum[APPLIED], applied_to_particles(mpm, &mpm->grid.cells[b]));
+  add_impulses(mpm, &sum[APPLIED]);
   for (int64_t g = 0; g < mpsi_all_nodes(&mpm->grid); g++) {
     const mpsi_node_balance *n = &mpm->settling.nodes[g];
     if (mpm->share && !mpsi_mpm_share_counts(mpm, g)) continue;

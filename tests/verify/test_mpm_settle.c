@@ -259,6 +259,62 @@ static void slope_settles(void **state) {
   mpm_scene_end(&fast);
 }
 
+/* ---- between bodies ----------------------------------------------------------------------------
+ */
+
+static mps_body *half_plane(double along, double from, double normal) {
+  const double angle = 17.0 * atan(1.0) / 45.0;
+  const double n[] = {normal * cos(angle), normal * sin(angle)};
+  mps_body_def def = mps_body_defaults();
+  def.position[0] = along * cos(angle) + from * n[0];
+  def.position[1] = along * sin(angle) + from * n[1];
+  mps_body *body = NULL;
+  mps_assert_ok(context, mps_body_create_half_plane(context, &def, n, &body));
+  return body;
+}
+
+/* A block that nothing but two smooth half planes presses, turned by 17 degrees in the grid: it
+ * settles, as their impulses are what is applied, to the force of plane stress sideways, E ln(1 -
+ * u/w)/(1 - nu^2). */
+static void block_between_bodies_settles(void **state) {
+  (void)state;
+  const double width = 0.1, way = 1e-3, angle = 17.0 * atan(1.0) / 45.0;
+  mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e6);
+  for (int k = 0; k < 100; k++) {
+    const double u = (k % 10 + 0.5) * 0.01, v = (k / 10 + 0.5) * 0.01;
+    const double x[] = {u * cos(angle) - v * sin(angle), u * sin(angle) + v * cos(angle)};
+    mps_assert_ok(context, mps_particles_append(s.particles, 1, x));
+  }
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.02, def.spline = 2;
+  mpm_scene_solve(&s, &def);
+  mps_body *body[] = {half_plane(0.0, 0.0, 1.0), half_plane(width, 0.0, -1.0)};
+  mps_contact *contact[2];
+  for (int b = 0; b < 2; b++)
+    mps_assert_ok(context, mps_mpm_add_contact(s.mpm, body[b], NULL, &contact[b]));
+  mps_body_motion press = mps_body_motion_defaults();
+  press.velocity[0] = -0.02 * cos(angle), press.velocity[1] = -0.02 * sin(angle);
+  mps_assert_ok(context, mps_body_set_motion(body[1], &press));
+  mps_assert_ok(context, mps_mpm_run(s.mpm, way / 0.02, 1, NULL, NULL));
+  mps_mpm_settled out;
+  mps_assert_ok(context, mps_mpm_settle(s.mpm, NULL, &out));
+  double force[2];
+  for (int b = 0; b < 2; b++) {
+    mps_reaction r;
+    mps_assert_ok(context, mps_contact_get_reaction(contact[b], -1, &r));
+    force[b] = hypot(r.force[0], r.force[1]);
+    mps_contact_destroy(&contact[b]);
+    mps_body_destroy(&body[b]);
+  }
+  const double strain = -log(1.0 - way / width), nu = 0.3;
+  const double exact = 1e6 / (1.0 - nu * nu) * strain * width * exp(nu / (1.0 - nu) * strain);
+  print_message("block between bodies: %.6g and %.6g of %.6g N, applied %.6g N, in %d steps\n",
+                force[0], force[1], exact, out.applied, (int)out.steps);
+  for (int b = 0; b < 2; b++) mps_assert_near(force[b], exact, 0.015 * exact);
+  mps_assert_near(out.applied, force[0] + force[1], 1e-9 * exact);
+  mpm_scene_end(&s);
+}
+
 /* ---- a footing ------------------------------------------------------------------------------- */
 
 typedef struct footing {
@@ -413,6 +469,7 @@ int main(void) {
                                      cmocka_unit_test(flow_does_not_settle),
                                      cmocka_unit_test(settling_goes_on_where_it_was_cut),
                                      cmocka_unit_test(slope_settles),
+                                     cmocka_unit_test(block_between_bodies_settles),
                                      cmocka_unit_test(footing_bears)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }
