@@ -5,6 +5,7 @@
  * high. --rest keeps the gate: then nothing should move, and p = rho g depth.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "common/plot.h"
+#include "common/waves.h"
 #include "dam_break/dam_break.h"
 
 #include <mps/experimental.h>
@@ -372,6 +373,8 @@ static bool finish(app *a, void *user) {
 static int complete(const options_program *program, settings *s) {
   if (s->impact && (s->method != METHOD_MPS || s->rest || s->n2 != 2))
     return options_refuse(program, "--impact needs --method mps, and has no --rest and --n2");
+  if (s->solver != 0 && s->method != METHOD_MPS)
+    return options_refuse(program, "--solver is for --method mps only");
   if (s->impact) s->tank = 0.5 * 5.366;
   if (isnan(s->base)) s->base = s->impact ? 1.2 : 0.05715;
   if (isnan(s->h)) s->h = s->base / (s->impact ? 60.0 : s->method == METHOD_MPS ? 20.0 : 40.0);
@@ -399,6 +402,7 @@ int main(int argc, char **argv) {
                                  .duration = NAN,
                                  .tank = 6.0,
                                  .disturb = 0.1,
+                                 .tolerance = WAVES_TOLERANCE,
                                  .n2 = 2,
                                  .ppc = 4,
                                  .state = MPS_MATERIAL_STATE_TAIT,
@@ -439,6 +443,7 @@ int main(int argc, char **argv) {
                     "change of volume: F-bar by cell; change and pressure by nodes"),
       OPTION_NUMBER("disturb", "spacings", OPTION_FROM_TO(0.0, 0.2), &s->disturb,
                     "random displacement of the particles of MPS at the start, at most"),
+      WAVES_SOLVER(&s->solver, &s->tolerance),
       OPTION_HEADING("Run"),
       OPTION_NUMBER("duration", "s", OPTION_DURATION, &s->duration, "of the run (default T = 6)"),
       OPTION_INTEGER("frames", "N", OPTION_FROM_TO(0.0, 100000.0), &s->frames,

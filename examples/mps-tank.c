@@ -145,6 +145,7 @@ int main(int argc, char **argv) {
                                .mass = NAN,
                                .stiffness = NAN,
                                .ratio = 1.0,
+                               .tolerance = WAVES_TOLERANCE,
                                .width = 0.4,
                                .draft = 0.1,
                                .plate_length = 1.0,
@@ -210,6 +211,7 @@ int main(int argc, char **argv) {
       OPTION_CHOICE(
           "scheme", "modern|classical", &s->scheme,
           "the library's; the first one of MPS, for comparison: noisy pressures, no levels"),
+      WAVES_SOLVER(&s->solver, &s->tolerance),
       OPTION_HEADING("Run"),
       OPTION_NUMBER("duration", "s", OPTION_DURATION, &s->duration,
                     "of the run (default 4, 5.2, 6, 1, .25, 1, 9, 4)"),

@@ -31,7 +31,7 @@ typedef struct app {
   /* of several ranks */
   mps_domain *domain; /* NULL: one process */
   int32_t rank;       /* rank 0 speaks and writes; 0 of one process */
-  void *equations;    /* ranks_solve_elastic */
+  void *equations;    /* ranks_solve_elastic, ranks_solve_fluid */
   bool agreed;        /* what has gone wrong is known to all ranks */
   char line[700];     /* what this rank would have said */
 } app;

@@ -54,7 +54,8 @@ static bool load(const char *name, void *function, char *why, size_t size) {
   void *symbol = library ? dlsym(library, name) : NULL;
   if (!symbol) {
     const char *reason = dlerror();
-    snprintf(why, size, "several ranks need libmps-petsc, which cannot be loaded: %s",
+    snprintf(why, size,
+             "libmps-petsc, which several ranks and PETSc's solvers need, cannot be loaded: %s",
              reason ? reason : RANKS_LIBRARY);
     return false;
   }
@@ -91,6 +92,22 @@ bool ranks_solve_elastic(mps_elastic *elastic, void **solver, char *why, size_t 
   if (status == MPS_OK) status = solve(*solver, elastic);
   if (status != MPS_OK)
     snprintf(why, size, "the ranks cannot solve together: %s", mps_status_text(status));
+  return status == MPS_OK;
+}
+
+typedef mps_status (*solve_fluid_fn)(void *solver, mps_fluid *fluid, int64_t least);
+
+bool ranks_solve_fluid(mps_fluid *fluid, int32_t method, void **solver, char *why, size_t size) {
+  create_fn create = NULL;
+  solve_fluid_fn solve = NULL;
+  if (!load("mps_petsc_solver_create_world", &create, why, size) ||
+      !load("mps_petsc_solve_fluid", &solve, why, size))
+    return false;
+  mps_status status = *solver ? MPS_OK : create(method, solver);
+  if (status == MPS_OK) status = solve(*solver, fluid, 0);
+  if (status != MPS_OK)
+    snprintf(why, size, "PETSc's solver of the pressure cannot be had: %s",
+             mps_status_text(status));
   return status == MPS_OK;
 }
 

@@ -7,6 +7,7 @@
 
 #include <mps/domain.h>
 #include <mps/elastic.h>
+#include <mps/fluid.h>
 
 #include <stdbool.h>
 
@@ -22,6 +23,9 @@ bool ranks_join(mps_context *context, mps_domain **out, char *why, size_t size);
  * first call, and goes with ranks_drop_solver after all that it solves for. False as above.
  * Collective. */
 bool ranks_solve_elastic(mps_elastic *elastic, void **solver, char *why, size_t size);
+/* Has the pressure of `fluid` solved by PETSc, `method` of mps_petsc_method, of one process too.
+ * False as above. Collective. */
+bool ranks_solve_fluid(mps_fluid *fluid, int32_t method, void **solver, char *why, size_t size);
 void ranks_drop_solver(void **solver);
 /* Threads for this rank: the processors that it may use, where others of its node may use the same
  * ones over their number. Collective. */

@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "waves.h"
 
+#include "ranks.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -110,4 +112,11 @@ double waves_sainflou_height(double k, double depth, double level) {
 double waves_sloshing_period(double length, double depth) {
   const double k = WAVES_PI / length;
   return 2.0 * WAVES_PI / sqrt(WAVES_G * k * tanh(k * depth));
+}
+
+/* ---- the pressure ---------------------------------------------------------------------------- */
+
+bool waves_choose_solver(app *a, int choice, mps_fluid *fluid, char *why, size_t size) {
+  /* choices after the first are those of mps_petsc_method */
+  return choice == 0 || ranks_solve_fluid(fluid, choice - 1, &a->equations, why, size);
 }

@@ -32,6 +32,19 @@ mps_status waves_disturb(mps_particles *water, double by, uint64_t seed);
 mps_status waves_add_wall(mps_fluid *fluid, const double *point, double nx, double ny,
                           mps_signal *signal, int32_t *number);
 
+/* Who solves the pressure equation, and how exactly: rows of a table of options, and what the first
+ * asks for. False: in `why` what is in the way. Collective. */
+#define WAVES_SOLVER(solver, tolerance)                                                            \
+  OPTION_CHOICE(                                                                                   \
+      "solver", "own|multigrid|direct", solver,                                                    \
+      "of the pressure: the library's, the same bit for bit on all numbers of ranks; or "          \
+      "PETSc's algebraic multigrid, for some fifty thousand particles and more, or its "           \
+      "direct solver: they agree within the tolerance"),                                           \
+      OPTION_NUMBER("tolerance", "1", OPTION_FROM_TO(1e-14, 1e-2), tolerance,                      \
+                    "residual of the pressure over its right side")
+#define WAVES_TOLERANCE 1e-5 /* default, as mps_fluid_def */
+bool waves_choose_solver(app *a, int choice, mps_fluid *fluid, char *why, size_t size);
+
 /* Wave number (1/m) of the period (s) in water of the depth (m): (2 pi/T)^2 = g k tanh(k d). */
 double waves_number(double period, double depth);
 /* Wave height over stroke of a piston (Havelock): 2 (cosh 2kd - 1)/(sinh 2kd + 2kd). */

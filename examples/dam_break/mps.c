@@ -35,6 +35,7 @@ mps_status dam_mps_build(mps_context *context, simulation *sim) {
   set.spacing = s->h;
   def.density = DENSITY, def.viscosity = s->viscosity;
   def.gravity[1] = -G;
+  def.tolerance = s->tolerance;
   mps_status status = mps_particles_create(context, &set, &sim->m.particles);
   mps_particles *water = sim->m.particles;
   if (status == MPS_OK) status = mps_particles_fill_box(water, lo, hi, NULL);
@@ -46,6 +47,9 @@ mps_status dam_mps_build(mps_context *context, simulation *sim) {
   def.domain = sim->m.a->domain;
   status = app_settle(sim->m.a, status);
   if (status == MPS_OK) status = mps_fluid_create(context, water, &def, &sim->m.fluid);
+  if (status == MPS_OK &&
+      !waves_choose_solver(sim->m.a, s->solver, sim->m.fluid, sim->m.why, sizeof sim->m.why))
+    return MPS_ERROR_UNSUPPORTED;
   if (status == MPS_OK) status = add_wall(sim->m.fluid, 0.0, 0.0, 1.0);
   if (status == MPS_OK) status = add_wall(sim->m.fluid, 0.0, 1.0, 0.0);
   return status == MPS_OK ? add_wall(sim->m.fluid, far_wall(s), -1.0, 0.0) : status;

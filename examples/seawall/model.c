@@ -18,6 +18,7 @@ static mps_status make_fluid(app *a, seawall *w) {
   const double corner[2] = {0.0, 0.0};
   mps_fluid_def def = mps_fluid_defaults();
   def.dt = s->dt, def.level = s->depth, def.density = WAVES_DENSITY;
+  def.tolerance = s->tolerance;
   w->motion = (waves_piston){s->amplitude, s->period, s->ramp};
   mps_status status = waves_fill(context, s->length, s->depth, s->spacing, &w->water);
   if (status == MPS_OK && s->disturb > 0.0)
@@ -27,6 +28,8 @@ static mps_status make_fluid(app *a, seawall *w) {
   def.domain = a->domain;
   status = app_settle(a, status);
   if (status == MPS_OK) status = mps_fluid_create(context, w->water, &def, &w->fluid);
+  if (status == MPS_OK && !waves_choose_solver(a, s->solver, w->fluid, w->why, sizeof w->why))
+    return MPS_ERROR_UNSUPPORTED;
   if (status == MPS_OK) status = waves_add_wall(w->fluid, corner, 0.0, 1.0, NULL, NULL);
   if (status == MPS_OK) status = waves_add_wall(w->fluid, corner, 1.0, 0.0, w->piston, NULL);
   if (status != MPS_OK) return status;

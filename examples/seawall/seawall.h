@@ -25,6 +25,8 @@ typedef struct seawall_settings {
   double disturb; /* spacings */
   double every_checkpoint;
   int64_t frames, threads, seed;
+  int solver;       /* of the pressure: waves_choose_solver */
+  double tolerance; /* of its residual */
   bool coupled;
   const char *out, *checkpoint, *restart;
 } seawall_settings;

@@ -90,6 +90,7 @@ mps_status tank_build(app *a, tank_model *m) {
   def.dt = s->dt;
   def.viscosity = s->viscosity;
   def.density = WAVES_DENSITY;
+  def.tolerance = s->tolerance;
   if (s->kind == TANK_DROP)
     def.gravity[1] = 0.0;
   else
@@ -101,6 +102,8 @@ mps_status tank_build(app *a, tank_model *m) {
   if (status == MPS_OK) status = mps_fluid_create(context, m->water, &def, &m->fluid);
   if (status == MPS_OK && s->scheme == 1)
     status = mps_experimental_fluid_classical(m->fluid, CLASSICAL_SHARE);
+  if (status == MPS_OK && !waves_choose_solver(a, s->solver, m->fluid, m->why, sizeof m->why))
+    return MPS_ERROR_UNSUPPORTED;
   if (status == MPS_OK && s->kind != TANK_DROP) status = add_walls(context, m);
   if (status == MPS_OK && s->kind == TANK_FLOAT) status = tank_make_box(context, m);
   if (status == MPS_OK && s->kind == TANK_FLOAT) status = tank_launch(m);

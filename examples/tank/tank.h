@@ -26,8 +26,10 @@ enum {
 enum { TANK_SHAPES = 6, TANK_GAUGES = 8, TANK_BED = 0, TANK_LEFT = 1, TANK_RIGHT = 2 };
 
 typedef struct tank_settings {
-  int kind;   /* TANK_... */
-  int scheme; /* 1: classical */
+  int kind;         /* TANK_... */
+  int scheme;       /* 1: classical */
+  int solver;       /* of the pressure: waves_choose_solver */
+  double tolerance; /* of its residual */
   double length, depth, spacing, amplitude, period, ramp, duration, sample, dt, viscosity, disturb;
   double mass, stiffness; /* kg and N/m, of a wall of 1 m */
   double ratio;           /* of the waves' frequency to that of the wall in water */
