@@ -7,11 +7,15 @@
  * ones. A is K, in motions K plus a multiple of the masses; it changes with supports, material and
  * step.
  *
- * The ranks of a domain (mps_elastic_def.domain) may solve one equation together: each has the
- * whole body, but assembles and hands out only its part of the rows. Before each call of a callback
- * they agree that all are well: where one of them fails, none calls it. With a domain all functions
- * of mps/elastic.h are collective but those that get, select, count or add up, and
- * mps_elastic_stress; mps_elastic_save writes one file, by rank 0. The domain is kept alive.
+ * The ranks of a domain (mps_elastic_def.domain) may solve one equation together: `part` is then
+ * the rank and `parts` the number of ranks. Particles are ordered by layers across the body's
+ * longest axis, by ids within a layer, and a rank has the rows, neighbours, joints and stresses of
+ * its part of them alone; positions, moduli, displacements, forces and the set it has of all. Before
+ * each call of a callback ranks agree that all are well: where one of them fails, none calls it.
+ * With a domain all functions of mps/elastic.h are collective, mps_particles_remove too, but those
+ * that select, count, get the definition, report or reactions, and facets without displacement and
+ * velocity; so arguments are the same on all ranks. mps_elastic_save writes one file, by rank 0. The
+ * domain is kept alive.
  *
  * Thread rule: as mps/elastic.h; the callbacks are called by the thread that solves, outside of the
  * context's executor. SPDX-License-Identifier: BSD-3-Clause */
@@ -30,7 +34,8 @@ typedef enum mps_elastic_outside {
  *  column[start[i]] to column[start[i + 1] - 1], ascending, with the diagonal and both halves. */
 typedef struct mps_elastic_matrix {
   int64_t all;          /* rows of the equation */
-  int64_t first, rows;  /* the part; both multiples of `block` */
+  int64_t first, rows;  /* the part; both multiples of `block`; no rows where ranks outnumber
+                           particles */
   int32_t block;        /* rows of a particle, 2 or 3 */
   int32_t modes;        /* 3 or 6: rigid motions */
   const int64_t *start; /* rows + 1, from 0 */

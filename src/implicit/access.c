@@ -28,6 +28,12 @@ mps_status mpsi_elastic_leave(mps_elastic *e, mps_status status) {
   return mpsi_elastic_settle(e, "mps_elastic", status);
 }
 
+bool mpsi_elastic_begin_reading(mps_elastic *e) {
+  const bool agreed = e->agreed;
+  e->agreed = false;
+  return agreed;
+}
+
 mps_status mpsi_elastic_check_between(const mps_elastic *e, const char *function) {
   if (!e->within) return MPS_OK;
   return mpsi_fail(e->context, function, MPS_ERROR_STATE,

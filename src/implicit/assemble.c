@@ -34,7 +34,7 @@ typedef struct pair_form {
 
 /* One worker's sparse accumulator. */
 typedef struct gather {
-  int32_t *slot; /* of site, or -1; n of them */
+  int32_t *slot; /* of each site of the window, or -1 */
   int32_t count;
   int64_t particle;
   int64_t least; /* sites below it are left out: the particle, or 0 for whole rows */
@@ -57,14 +57,19 @@ typedef struct row_assembly {
   bool fill;
 } row_assembly;
 
-static block *block_of(gather *g, int64_t site) {
-  if (g->slot[site] < 0) {
-    g->slot[site] = g->count;
+static block *block_of(const mps_elastic *e, gather *g, int64_t site) {
+  int32_t *slot = &g->slot[mpsi_elastic_slot(e, site)];
+  if (*slot < 0) {
+    *slot = g->count;
     block *b = &g->blocks[g->count++];
     memset(b, 0, sizeof *b);
     b->site = site;
   }
-  return &g->blocks[g->slot[site]];
+  return &g->blocks[*slot];
+}
+
+static void forget_blocks(const mps_elastic *e, gather *g) {
+  for (int32_t a = 0; a < g->count; a++) g->slot[mpsi_elastic_slot(e, g->blocks[a].site)] = -1;
 }
 
 static void add(block *b, int c, int f, double value) {
@@ -120,7 +125,7 @@ static void gather_gradient_at_joint(const mps_elastic *e, int64_t i, gather *g)
   if (mine < 0) return;
   for (int32_t s = 0; s < w.count; s++) {
     if (w.site[s] < g->least) continue;
-    block *out = block_of(g, w.site[s]);
+    block *out = block_of(e, g, w.site[s]);
     for (int f = 0; f < d; f++) { /* stress of unit displacement f of the site */
       double P[9], trace = 0.0;
       for (int c = 0; c < d; c++) trace += w.c[s][c * d + c][f];
@@ -173,7 +178,7 @@ static void gather_pair_at_joint(const mps_elastic *e, int64_t i, int64_t j, int
   const int32_t mine = find_site(q.site, q.count, g->particle);
   for (int32_t s = 0; mine >= 0 && s < q.count; s++) {
     if (q.site[s] < g->least) continue;
-    block *out = block_of(g, q.site[s]);
+    block *out = block_of(e, g, q.site[s]);
     for (int c = 0; c < d; c++)
       for (int f = 0; f < d; f++) {
         double sum = 0.0;
@@ -198,7 +203,7 @@ static void gather_gradient(const mps_elastic *e, int64_t i, gather *g) {
   while (sites[mine] != g->particle) mine++;
   for (int32_t b = 0; b < m; b++) {
     if (sites[b] < g->least) continue;
-    block *out = block_of(g, sites[b]);
+    block *out = block_of(e, g, sites[b]);
     if (e->conservative)
       couple_conservative(e, i, coefficient[mine], coefficient[b], out);
     else
@@ -268,15 +273,16 @@ static void gather_pair(const mps_elastic *e, int64_t i, int64_t j, int32_t k, g
   int32_t mine = -1;
   for (int32_t a = 0; a < f->count; a++) {
     const int64_t end = f->end[a] ? j : i;
-    sites[a] =
-        f->face[a] < 0 ? end : l->to[end * l->count + l->face[f->face[a] / 2][f->face[a] % 2]];
+    sites[a] = f->face[a] < 0
+                   ? end
+                   : mpsi_elastic_neighbours(e, end)[l->face[f->face[a] / 2][f->face[a] % 2]];
     if (sites[a] == g->particle) mine = a;
   }
   if (mine < 0 || f->c[mine] == 0.0) return;
   const double s = mpsi_elastic_bond(e, i, j, k) * f->c[mine];
   for (int32_t b = 0; b < f->count; b++) {
     if (f->c[b] == 0.0 || sites[b] < g->least) continue;
-    block *out = block_of(g, sites[b]);
+    block *out = block_of(e, g, sites[b]);
     for (int x = 0; x < e->dim; x++) add(out, x, x, s * f->c[b]);
   }
 }
@@ -293,11 +299,11 @@ static int32_t users(const mps_elastic *e, int64_t p, int64_t *list) {
   int32_t count = near;
   if (!e->joint_at) return count;
   for (int side = 0; side < 2 * d; side++) {
-    const int64_t q = l->to[p * l->count + l->face[side / 2][side % 2]];
+    const int64_t q = mpsi_elastic_neighbours(e, p)[l->face[side / 2][side % 2]];
     if (q < 0) continue;
     for (int face = 0; face < 2 * d; face++) {
-      if (face / 2 == side / 2 || e->joint_at[q * 2 * d + face] < 0) continue;
-      const int64_t i = l->to[q * l->count + l->face[face / 2][face % 2]];
+      if (face / 2 == side / 2 || e->joint_at[mpsi_elastic_slot(e, q) * 2 * d + face] < 0) continue;
+      const int64_t i = mpsi_elastic_neighbours(e, q)[l->face[face / 2][face % 2]];
       if (find_site(list, count, i) < 0) list[count++] = i;
     }
   }
@@ -308,9 +314,9 @@ static void gather_conservative(const mps_elastic *e, const int64_t *list, int32
                                 gather *g) {
   const mpsi_links *l = &e->links;
   for (int32_t a = 0; a < count; a++) {
-    const int64_t i = list[a];
+    const int64_t i = list[a], *to = mpsi_elastic_neighbours(e, i);
     for (int32_t k = 0; k < l->count; k++) {
-      const int64_t j = l->to[i * l->count + k];
+      const int64_t j = to[k];
       if (j < 0) continue;
       bool twice = false; /* both ends are in the list: taken once, from the smaller */
       for (int32_t b = 0; b < count && !twice; b++) twice = list[b] == j;
@@ -324,7 +330,7 @@ static void gather_bending(const mps_elastic *e, int64_t p, gather *g) {
   const int32_t count = mpsi_elastic_bending_row(e, p, term);
   for (int32_t k = 0; k < count; k++)
     for (int c = 0; c < e->dim && term[k].site >= g->least; c++)
-      add(block_of(g, term[k].site), c, c, term[k].value[c]);
+      add(block_of(e, g, term[k].site), c, c, term[k].value[c]);
 }
 
 static void gather_row(const mps_elastic *e, int64_t p, bool whole, gather *g) {
@@ -341,11 +347,11 @@ static void gather_row(const mps_elastic *e, int64_t p, bool whole, gather *g) {
     return;
   }
   for (int32_t k = 0; k < l->count; k++) {
-    const int64_t j = l->to[p * l->count + k];
+    const int64_t j = mpsi_elastic_neighbours(e, p)[k];
     if (j < 0) continue;
     const double s = mpsi_elastic_bond(e, p, j, k);
-    for (int c = 0; c < 2; c++) add(block_of(g, p), c, c, s);
-    for (int c = 0; c < 2 && j >= g->least; c++) add(block_of(g, j), c, c, -s);
+    for (int c = 0; c < 2; c++) add(block_of(e, g, p), c, c, s);
+    for (int c = 0; c < 2 && j >= g->least; c++) add(block_of(e, g, j), c, c, -s);
   }
 }
 
@@ -371,14 +377,15 @@ static void turn(const mps_elastic *e, int64_t p, block *b) {
     }
 }
 
-/* The gathered blocks by ascending site, in local directions. */
+/* The gathered blocks in the order of columns, in local directions. */
 static void sort_blocks(const mps_elastic *e, gather *g, const block **order) {
   for (int32_t a = 0; a < g->count; a++) {
+    const int64_t column = mpsi_elastic_place(e, g->blocks[a].site);
     turn(e, g->particle, &g->blocks[a]);
-    int32_t place = a;
-    for (; place > 0 && order[place - 1]->site > g->blocks[a].site; place--)
-      order[place] = order[place - 1];
-    order[place] = &g->blocks[a];
+    int32_t at = a;
+    for (; at > 0 && mpsi_elastic_place(e, order[at - 1]->site) > column; at--)
+      order[at] = order[at - 1];
+    order[at] = &g->blocks[a];
   }
 }
 
@@ -415,7 +422,7 @@ static void assemble_chunk(void *data, int64_t chunk, int32_t worker) {
   for (int64_t p = first; p < last; p++) {
     gather_row(t->e, p, false, g);
     emit(t, g);
-    for (int32_t a = 0; a < g->count; a++) g->slot[g->blocks[a].site] = -1;
+    forget_blocks(t->e, g);
   }
 }
 
@@ -428,7 +435,7 @@ static void emit_rows(row_assembly *t, gather *g) {
   const block *order[ROW_MAX];
   sort_blocks(e, g, order);
   for (int c = 0; c < d; c++) {
-    const int64_t row = (p - out->from) * d + c;
+    const int64_t row = (mpsi_elastic_place(e, p) - out->from) * d + c;
     int64_t at = t->fill ? out->start[row] : 0;
     for (int32_t a = 0; a < g->count; a++)
       for (int f = 0; f < d; f++) {
@@ -437,7 +444,7 @@ static void emit_rows(row_assembly *t, gather *g) {
         const bool both = e->dof[p * d + c] >= 0 && e->dof[site * d + f] >= 0;
         if (!diagonal && !(both && (order[a]->used >> (3 * c + f) & 1))) continue;
         if (t->fill) {
-          out->column[at] = (int32_t)(site * d + f);
+          out->column[at] = (int32_t)(mpsi_elastic_place(e, site) * d + f);
           out->value[at] = order[a]->value[c][f];
           if (diagonal && both && t->shift != 0.0) out->value[at] += t->shift * e->mass[p];
         }
@@ -453,10 +460,10 @@ static void rows_chunk(void *data, int64_t chunk, int32_t worker) {
   const int64_t first = t->out->from + chunk * MPSI_ELASTIC_CHUNK;
   const int64_t last =
       first + MPSI_ELASTIC_CHUNK < t->out->to ? first + MPSI_ELASTIC_CHUNK : t->out->to;
-  for (int64_t p = first; p < last; p++) {
-    gather_row(t->e, p, true, g);
+  for (int64_t k = first; k < last; k++) {
+    gather_row(t->e, mpsi_elastic_in_order(t->e, k), true, g);
     emit_rows(t, g);
-    for (int32_t a = 0; a < g->count; a++) g->slot[g->blocks[a].site] = -1;
+    forget_blocks(t->e, g);
   }
 }
 
@@ -506,11 +513,12 @@ static mps_status make_pattern(mps_elastic *e, const char *function, assembly *t
 static mps_status make_gathers(mps_elastic *e, const char *function, gather **gathers,
                                int32_t **slots) {
   const int32_t workers = mps_context_threads(e->context);
+  const int64_t sites = mpsi_elastic_slots(e);
   if (!(*gathers = mpsi_alloc(e->context, workers, sizeof **gathers)) ||
-      !(*slots = mpsi_alloc(e->context, workers * e->n, sizeof **slots)))
-    return mpsi_fail_memory(e->context, function, (size_t)(workers * e->n) * sizeof **slots);
-  for (int64_t k = 0; k < workers * e->n; k++) (*slots)[k] = -1;
-  for (int32_t w = 0; w < workers; w++) (*gathers)[w].slot = *slots + w * e->n;
+      !(*slots = mpsi_alloc(e->context, workers * sites, sizeof **slots)))
+    return mpsi_fail_memory(e->context, function, (size_t)(workers * sites) * sizeof **slots);
+  for (int64_t k = 0; k < workers * sites; k++) (*slots)[k] = -1;
+  for (int32_t w = 0; w < workers; w++) (*gathers)[w].slot = *slots + w * sites;
   return MPS_OK;
 }
 

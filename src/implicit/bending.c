@@ -27,7 +27,7 @@ static const int8_t plane_axes[3][2] = {{0, 1}, {0, 2}, {1, 2}};
 static int planes(const mps_elastic *e) { return e->dim == 2 ? 1 : 3; }
 
 static int64_t beside(const mps_elastic *e, int64_t i, int axis, int up) {
-  return i < 0 ? -1 : e->links.to[i * e->links.count + e->links.face[axis][up]];
+  return i < 0 ? -1 : mpsi_elastic_neighbours(e, i)[e->links.face[axis][up]];
 }
 
 /* The square with lower corner `low`: low, along a, along b, across. False: not all are there. */
@@ -91,20 +91,26 @@ static void stiffness(const mps_elastic *e, const int64_t *corner, int plane, do
                               (part[1] + part[3]) * harmonic(modulus[1], modulus[3]);
 }
 
-bool mpsi_elastic_has_bending(const mps_elastic *e, int64_t joints) {
-  return e->conservative && (isnan(e->def.bending) ? joints > 0 : e->def.bending > 0.0);
+bool mpsi_elastic_has_bending(const mps_elastic *e, bool joints) {
+  return e->conservative && (isnan(e->def.bending) ? joints : e->def.bending > 0.0);
 }
 
-int64_t mpsi_elastic_bending_size(const mps_elastic *e) { return e->n * planes(e) * e->dim; }
+int64_t mpsi_elastic_bending_size(const mps_elastic *e) {
+  return mpsi_elastic_slots(e) * planes(e) * e->dim;
+}
+
+static double *of_square(const mps_elastic *e, int64_t low, int plane) {
+  return e->bending + (mpsi_elastic_slot(e, low) * planes(e) + plane) * e->dim;
+}
 
 void mpsi_elastic_measure_bending(mps_elastic *e) {
-  const int d = e->dim, count = planes(e);
   if (!e->bending) return;
-  for (int64_t i = 0; i < e->n; i++)
-    for (int plane = 0; plane < count; plane++) {
+  for (int64_t k = e->span[3].from; k < e->span[3].to; k++) /* rows reach two layers far */
+    for (int plane = 0; plane < planes(e); plane++) {
+      const int64_t i = mpsi_elastic_in_order(e, k);
       int64_t corner[4];
-      double *out = e->bending + (i * count + plane) * d;
-      for (int c = 0; c < d; c++) out[c] = 0.0;
+      double *out = of_square(e, i, plane);
+      for (int c = 0; c < e->dim; c++) out[c] = 0.0;
       if (square(e, i, plane, corner)) stiffness(e, corner, plane, out);
     }
 }
@@ -115,14 +121,14 @@ void mpsi_elastic_measure_bending(mps_elastic *e) {
 static double sign(int k) { return k == 0 || k == 3 ? 1.0 : -1.0; }
 
 void mpsi_elastic_bending_force(const mps_elastic *e, const double *u, int64_t p, double *f) {
-  const int d = e->dim, count = planes(e);
+  const int d = e->dim;
   if (!e->bending) return;
-  for (int plane = 0; plane < count; plane++)
+  for (int plane = 0; plane < planes(e); plane++)
     for (int k = 0; k < 4; k++) {
       int64_t corner[4];
       const int64_t low = lower_corner(e, p, plane, k);
       if (low < 0 || !square(e, low, plane, corner)) continue;
-      const double *stiff = e->bending + (low * count + plane) * d;
+      const double *stiff = of_square(e, low, plane);
       for (int c = 0; c < d; c++) /* differences, so that a translation gives exactly zero */
         f[c] += sign(k) * stiff[c] *
                 ((u[corner[0] * d + c] - u[corner[1] * d + c]) -
@@ -131,15 +137,15 @@ void mpsi_elastic_bending_force(const mps_elastic *e, const double *u, int64_t p
 }
 
 int32_t mpsi_elastic_bending_row(const mps_elastic *e, int64_t p, mpsi_bending_term *terms) {
-  const int d = e->dim, count = planes(e);
+  const int d = e->dim;
   int32_t found = 0;
   if (!e->bending) return 0;
-  for (int plane = 0; plane < count; plane++)
+  for (int plane = 0; plane < planes(e); plane++)
     for (int k = 0; k < 4; k++) {
       int64_t corner[4];
       const int64_t low = lower_corner(e, p, plane, k);
       if (low < 0 || !square(e, low, plane, corner)) continue;
-      const double *stiff = e->bending + (low * count + plane) * d;
+      const double *stiff = of_square(e, low, plane);
       for (int s = 0; s < 4; s++) {
         mpsi_bending_term *term = &terms[found++];
         term->site = corner[s];

@@ -15,8 +15,12 @@ void mpsi_elastic_measure(mps_elastic *e) {
         d == 2 ? e->spacing * e->spacing * e->def.measure : e->spacing * e->spacing * e->spacing;
     for (int bit = 0; bit < 2 * d; bit++)
       if (e->cut[i] & 1 << bit) e->volume[i] *= 0.5;
-    e->kappa[i] = e->conservative ? 2.0 * e->def.alpha * e->mu[i] * d * e->volume[i] / e->density[i]
-                                  : 2.0 * e->mu[i] * d * e->volume[i] / e->density0;
+  }
+  for (int64_t k = e->window.from; k < e->window.to; k++) {
+    const int64_t i = mpsi_elastic_in_order(e, k), slot = mpsi_elastic_slot(e, i);
+    e->kappa[slot] = e->conservative
+                         ? 2.0 * e->def.alpha * e->mu[i] * d * e->volume[i] / e->density[slot]
+                         : 2.0 * e->mu[i] * d * e->volume[i] / e->density0;
   }
   mpsi_elastic_measure_bending(e);
   e->values_valid = false;
@@ -142,14 +146,13 @@ static mps_status check_cut(const mps_elastic *e, const char *function, int32_t 
   if (count < 0 || (count > 0 && !ids))
     return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
                      "count is %lld (must be >= 0) or ids is NULL", (long long)count);
-  const int32_t k = e->links.face[axis][side > 0];
   for (int64_t i = 0; i < count; i++) {
     const int64_t found = mpsi_elastic_find(e, ids[i]);
     if (found < 0)
       return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
                        "ids[%lld] is %lld: no particle of the solver has that id", (long long)i,
                        (long long)ids[i]);
-    if (e->links.to[found * e->links.count + k] >= 0)
+    if (e->faces[found] >> (2 * axis + (side > 0)) & 1)
       return mpsi_fail(e->context, function, MPS_ERROR_STATE,
                        "particle %lld has a neighbour on side %d of %c: no surface can pass "
                        "through it there",
@@ -185,20 +188,16 @@ mps_status mpsi_elastic_allocate(mps_elastic *e, const char *function) {
   } arrays[] = {
       {(void **)&e->id, n, sizeof(int64_t)},
       {(void **)&e->x, all, sizeof(double)},
-      {(void **)&e->density, n, sizeof(double)},
       {(void **)&e->faces, n, sizeof(uint8_t)},
       {(void **)&e->cut, n, sizeof(uint8_t)},
       {(void **)&e->volume, n, sizeof(double)},
       {(void **)&e->lambda, n, sizeof(double)},
       {(void **)&e->mu, n, sizeof(double)},
       {(void **)&e->poisson, n, sizeof(double)},
-      {(void **)&e->kappa, n, sizeof(double)},
       {(void **)&e->support_of, n, sizeof(int64_t)},
       {(void **)&e->load, all, sizeof(double)},
       {(void **)&e->displacement, all, sizeof(double)},
       {(void **)&e->reaction, all, sizeof(double)},
-      {(void **)&e->gradient, all * e->dim, sizeof(double)},
-      {(void **)&e->stress_work, all * e->dim, sizeof(double)},
       {(void **)&e->work, all, sizeof(double)},
       {(void **)&e->dof, all, sizeof(int64_t)},
   };
@@ -216,12 +215,11 @@ void mpsi_elastic_free_body(mps_elastic *e) {
   mpsi_cholesky_destroy(&e->cholesky);
   mpsi_elastic_disconnect(e);
   mpsi_elastic_drop_joints(e);
-  void *arrays[] = {e->id,           e->x,          e->density,     e->cut,   e->volume,
-                    e->lambda,       e->mu,         e->poisson,     e->kappa, e->facets,
-                    e->load,         e->reaction,   e->gradient,    e->work,  e->dof,
-                    e->displacement, e->column,     e->stress_work, e->row,   e->value,
-                    e->faces,        e->rhs,        e->solution,    e->mass,  e->cg_work,
-                    e->supports,     e->support_of, e->bending};
+  void *arrays[] = {
+      e->id,      e->x,       e->cut,      e->volume,       e->lambda,  e->mu,
+      e->poisson, e->facets,  e->load,     e->reaction,     e->work,    e->dof,
+      e->faces,   e->column,  e->row,      e->value,        e->rhs,     e->solution,
+      e->mass,    e->cg_work, e->supports, e->displacement, e->bending, e->support_of};
   for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) mpsi_free(context, arrays[k]);
 }
 
@@ -232,4 +230,38 @@ mps_status mpsi_elastic_make_body(mps_elastic *e, const char *function, bool mod
   if (status == MPS_OK) status = mpsi_elastic_find_facets(e, function);
   if (status == MPS_OK) mpsi_elastic_measure(e);
   return status;
+}
+
+/* ---- a rank's part, or the whole ---------------------------------------------------------------
+ */
+
+/* Do all ranks of the domain solve together with the present solver? */
+static bool solves_together(const mps_elastic *e) {
+  const mpsi_elastic_outside *o = e->outside;
+  return o && e->conservative && mpsi_domain_many(e->def.domain) &&
+         o->def.parts == mps_domain_size(e->def.domain) &&
+         o->def.part == mps_domain_rank(e->def.domain);
+}
+
+mps_status mpsi_elastic_choose_window(mps_elastic *e, const char *function) {
+  const bool shared = solves_together(e);
+  if (e->shared == shared) return MPS_OK;
+  mps_elastic next = *e, former = *e;
+  next.shared = shared;
+  mpsi_elastic_lose_window(&next);
+  mps_status status = mpsi_elastic_connect(&next, function);
+  if (status == MPS_OK) status = mpsi_elastic_find_joints(&next, function);
+  if (status != MPS_OK) {
+    mpsi_elastic_disconnect(&next);
+    mpsi_elastic_drop_joints(&next);
+    mpsi_free(e->context, next.bending);
+    return status;
+  }
+  *e = next;
+  mpsi_elastic_disconnect(&former);
+  mpsi_elastic_drop_joints(&former);
+  mpsi_free(e->context, former.bending);
+  mpsi_elastic_measure(e);
+  e->pattern_valid = false;
+  return MPS_OK;
 }

@@ -15,16 +15,16 @@ static double kinetic_energy(const mps_elastic *e, const double *v) {
   return sum;
 }
 
-static double strain_energy(mps_elastic *e) {
-  double sum = 0.0;
-  mpsi_elastic_apply(e, e->displacement, e->work);
-  for (int64_t k = 0; k < e->n * e->dim; k++) sum += 0.5 * e->displacement[k] * e->work[k];
-  return sum;
+static mps_status strain_energy(mps_elastic *e, const char *function, double *out) {
+  const mps_status status = mpsi_elastic_apply(e, function, e->displacement, e->work);
+  *out = 0.0;
+  for (int64_t k = 0; k < e->n * e->dim; k++) *out += 0.5 * e->displacement[k] * e->work[k];
+  return status;
 }
 
-void mpsi_elastic_begin_ledger(mps_elastic *e) {
-  e->ledger =
-      (mpsi_ledger){.kinetic = kinetic_energy(e, e->motion->velocity), .strain = strain_energy(e)};
+mps_status mpsi_elastic_begin_ledger(mps_elastic *e, const char *function) {
+  e->ledger = (mpsi_ledger){.kinetic = kinetic_energy(e, e->motion->velocity)};
+  return strain_energy(e, function, &e->ledger.strain);
 }
 
 void mpsi_elastic_count_solution(mps_elastic *e) {
@@ -73,13 +73,16 @@ static void sum_momenta(const mps_elastic *e, mps_totals *t) {
 
 mps_status mps_elastic_get_totals_sized(mps_elastic *e, mps_totals *out, size_t size) {
   if (!e) return MPS_ERROR_ARGUMENT;
-  const mps_status status = mpsi_elastic_check_between(e, __func__);
+  mps_status status = mpsi_elastic_check_between(e, __func__);
   if (status != MPS_OK) return status;
   const mpsi_elastic_motion *m = e->motion;
   const mpsi_ledger *l = &e->ledger;
   mps_totals t = {.work_loads = l->loads, .work_boundaries = l->boundaries};
   sum_momenta(e, &t);
-  t.strain = strain_energy(e);
+  const bool agreed = mpsi_elastic_begin_reading(e);
+  status = strain_energy(e, __func__, &t.strain);
+  e->agreed = agreed;
+  if (status != MPS_OK) return status;
   if (m) {
     t.kinetic = kinetic_energy(e, m->velocity);
     const double kept = t.strain - l->strain;

@@ -36,6 +36,7 @@ static mps_status begin(mps_elastic *e, const char *function, int64_t count) {
                           .modes = e->modes,
                           .conservative = e->conservative,
                           .constant = e->constant,
+                          .shared = e->shared,
                           .n = count,
                           .spacing = e->spacing,
                           .boundaries = e->boundaries,

@@ -207,6 +207,7 @@ mps_status mpsi_elastic_create(mps_context *context, const char *function, mps_p
   e->def.domain = mpsi_domain_retain(def.domain);
   e->conservative = !published;
   e->constant = constant;
+  e->shared = e->conservative && mpsi_domain_many(def.domain); /* until it solves otherwise */
   e->dim = mps_particles_dim(particles);
   e->modes = e->dim == 2 ? 3 : 6;
   e->n = mps_particles_count(particles);

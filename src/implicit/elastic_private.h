@@ -8,14 +8,15 @@
  * boundaries.c  what is prescribed, reactions  facets.c    the surface
  * loads.c     nodal forces                     assemble.c  the sparse matrix of free unknowns
  * system.c    factor, solve, refine            cholesky.c  CHOLMOD;  cg.c  conjugate gradients
- * outside.c   a solver of the caller
+ * outside.c   a solver of the caller           share.c     a rank's part of the operator
  * stress.c    stresses, sections, energy       motion.c, motion_state.c, budget.c,
  *                                              modes.c     dynamics
  * change.c    particles that leave, or come back with a former state;  restart.c  that state
  *
  * Vectors over all particles are indexed [i * dim + c], i being the rank of the particle's id:
  * sorting the set does not matter. Vectors of free unknowns hold the local directions that no
- * support fixes. SPDX-License-Identifier: BSD-3-Clause */
+ * support fixes. What the operator needs of a particle is there for those of the window (share.c)
+ * and indexed by mpsi_elastic_slot(e, i). SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_ELASTIC_PRIVATE_H
 #define MPSI_ELASTIC_PRIVATE_H
 
@@ -41,8 +42,14 @@ typedef struct mpsi_links {
   double *r2;         /* r^2, m2 */
   bool *far;          /* more than one cell along some axis */
   int32_t face[3][2]; /* which offset is one step down (0) or up (1) along an axis */
-  int64_t *to;        /* to[i * count + k]: the neighbour, or -1 */
+  int64_t *to;        /* to[slot * count + k]: the neighbour of the window's particle, or -1 */
 } mpsi_links;
+
+/* An interval of the order of layers (share.c). */
+typedef struct mpsi_span {
+  int64_t from, to;
+} mpsi_span;
+#define MPSI_SPANS 9 /* own particles, and with 1 to 8 layers around them */
 
 /* A boundary of the caller. */
 typedef struct mpsi_elastic_boundary {
@@ -132,7 +139,7 @@ typedef struct mpsi_elastic_outside {
   int64_t nonzeros;
 } mpsi_elastic_outside;
 
-/* Rows of the particles [from, to): all directions of each. */
+/* Rows of the particles [from, to) of the order of layers: all directions of each. */
 typedef struct mpsi_elastic_rows {
   int64_t from, to;
   int64_t *start;
@@ -157,19 +164,24 @@ struct mps_elastic {
 
   double *x; /* reference positions, n * dim */
   mpsi_links links;
-  double *density; /* n_i */
+  double *density; /* n_i, of the window */
   double density0; /* n0 */
   uint8_t *faces;  /* which face neighbours exist: bit 2 * axis + up */
   uint8_t *cut;    /* bit 2 * axis + (side > 0) */
   double *volume;  /* V_i, cuts and thickness included, m3 */
   double *lambda, *mu, *poisson;
-  double *kappa; /* pair stiffness of particle i: a pair has (kappa_i + kappa_j) w / r^2 */
+  double *kappa; /* of the window, pair stiffness: a pair has (kappa_i + kappa_j) w / r^2 */
 
-  double *bending; /* N/m: [(i * planes + plane) * dim + c], see bending.c; NULL: without */
+  double *bending; /* N/m: [(slot * planes + plane) * dim + c], see bending.c; NULL: without */
+
+  bool shared;         /* ranks solve together, and the window is not the whole body */
+  int64_t *at, *place; /* order of layers: particles, and where each is; NULL: that of ids */
+  mpsi_span span[MPSI_SPANS];
+  mpsi_span window;
 
   mpsi_joint *joints; /* ascending in `low`, then axis */
   int64_t joint_count;
-  int64_t *joint_at;     /* [i * 2 dim + 2 axis + up], or -1; NULL without joints */
+  int64_t *joint_at;     /* [slot * 2 dim + 2 axis + up], or -1; NULL without joints */
   double *joint_scratch; /* joints * dim */
 
   mpsi_elastic_boundary *boundaries;
@@ -188,8 +200,8 @@ struct mps_elastic {
   double *load;         /* nodal forces, n * dim */
   double *displacement; /* n * dim */
   double *reaction;     /* n * dim */
-  double *gradient;     /* scratch of the operator: n * dim * dim */
-  double *stress_work;  /* scratch of the operator: n * dim * dim */
+  double *gradient;     /* scratch of the operator: window * dim * dim */
+  double *stress_work;  /* scratch of the operator: window * dim * dim */
   double *work;         /* scratch: n * dim */
 
   /* The system of free unknowns; lower triangle in compressed columns. */
@@ -217,11 +229,53 @@ struct mps_elastic {
   struct mpsi_elastic_change *change; /* change.c: under way, or NULL */
 };
 
+/* ---- share.c ----------------------------------------------------------------------------------
+ */
+/* Where the operator's arrays have particle i of the window. */
+static inline int64_t mpsi_elastic_slot(const mps_elastic *e, int64_t i) {
+  return e->place ? e->place[i] - e->window.from : i;
+}
+static inline int64_t mpsi_elastic_slots(const mps_elastic *e) {
+  return e->window.to - e->window.from;
+}
+/* Particle k in the order of layers, and where i is in it. */
+static inline int64_t mpsi_elastic_in_order(const mps_elastic *e, int64_t k) {
+  return e->at ? e->at[k] : k;
+}
+static inline int64_t mpsi_elastic_place(const mps_elastic *e, int64_t i) {
+  return e->place ? e->place[i] : i;
+}
+static inline bool mpsi_elastic_within(const mps_elastic *e, mpsi_span span, int64_t i) {
+  const int64_t k = mpsi_elastic_place(e, i);
+  return span.from <= k && k < span.to;
+}
+static inline const int64_t *mpsi_elastic_neighbours(const mps_elastic *e, int64_t i) {
+  return e->links.to + mpsi_elastic_slot(e, i) * e->links.count;
+}
+/* Order, spans and window of e->shared, from positions. */
+mps_status mpsi_elastic_open_window(mps_elastic *e, const char *function);
+/* Collective where the body is shared: each value becomes that of the ranks which is not -INFINITY,
+ * and none is NaN. `status` is this rank's so far. */
+MPS_NODISCARD mps_status mpsi_elastic_join(mps_elastic *e, const char *function, mps_status status,
+                                           int64_t count, double *values);
+/* So a vector over all particles takes the rows of others from those who own them. */
+MPS_NODISCARD mps_status mpsi_elastic_complete(mps_elastic *e, const char *function,
+                                               double *values);
+
 /* ---- lattice.c --------------------------------------------------------------------------------
  */
-/* Fills links, density and density0 from x; every fault is reported for `function`. */
+/* Opens the window and fills links, density and density0 from x, with room for what the operator
+ * needs besides; every fault is reported for `function`. */
 mps_status mpsi_elastic_connect(mps_elastic *e, const char *function);
 void mpsi_elastic_disconnect(mps_elastic *e);
+/* The pointers of both windows and of joints forgotten: somebody else has them. */
+void mpsi_elastic_lose_window(mps_elastic *e);
+/* Neighbours across faces of all particles, wherever they are: a table of sites, made for a while.
+ */
+typedef struct mpsi_sites mpsi_sites;
+mps_status mpsi_elastic_open_sites(mps_elastic *e, const char *function, mpsi_sites **out);
+void mpsi_elastic_close_sites(mps_elastic *e, mpsi_sites *sites);
+int64_t mpsi_elastic_beside(const mpsi_sites *sites, int64_t i, int axis, int up);
 /* n*_i of the published method: n_i, or n0. */
 double mpsi_elastic_divisor(const mps_elastic *e, int64_t i);
 /* Coefficient (a vector of dim values, 1/m) of neighbour k in the gradient at i. */
@@ -234,10 +288,12 @@ int32_t mpsi_elastic_stencil(const mps_elastic *e, int64_t i, int64_t *sites, do
  */
 /* f += G_i^T moment, moment[c][b] (N m): a load's first moment about particle i. */
 void mpsi_elastic_spread(const mps_elastic *e, int64_t i, const double (*moment)[3], double *f);
-/* Displacement gradients G[(i * dim + c) * dim + b] = d u_c / d x_b. */
+/* Displacement gradients G[(slot * dim + c) * dim + b] = d u_c / d x_b, of own particles and the
+ * layers that their pairs reach. */
 void mpsi_elastic_gradients(mps_elastic *e, const double *u, double *gradient);
-/* f = K u. */
-void mpsi_elastic_apply(mps_elastic *e, const double *u, double *f);
+/* f = K u. Collective where the body is shared, and fails with the domain alone. */
+MPS_NODISCARD mps_status mpsi_elastic_apply(mps_elastic *e, const char *function, const double *u,
+                                            double *f);
 /* ---- joints.c ---------------------------------------------------------------------------------
  */
 /* Finds the joints of the present material; the pattern of the matrix ends where they changed. */
@@ -254,8 +310,9 @@ void mpsi_elastic_wide_gradient(const mps_elastic *e, int64_t i, mpsi_wide *w);
 /* Has i a face that is a joint? */
 static inline bool mpsi_elastic_at_joint(const mps_elastic *e, int64_t i) {
   if (!e->joint_at) return false;
+  const int64_t *joint = e->joint_at + mpsi_elastic_slot(e, i) * 2 * e->dim;
   for (int face = 0; face < 2 * e->dim; face++)
-    if (e->joint_at[i * 2 * e->dim + face] >= 0) return true;
+    if (joint[face] >= 0) return true;
   return false;
 }
 /* Does the pair of i and its neighbour j at offset k, farther than one cell along some axis, reach
@@ -264,10 +321,11 @@ bool mpsi_elastic_pair_crosses(const mps_elastic *e, int64_t i, int64_t j, int32
 /* Stiffness of the pair of i and its neighbour j at offset k: energy 1/2 s |.|^2. Between two
  * materials with the harmonic mean of their shear moduli. */
 static inline double mpsi_elastic_bond(const mps_elastic *e, int64_t i, int64_t j, int32_t k) {
-  double kappa = e->kappa[i] + e->kappa[j];
+  const double ki = e->kappa[mpsi_elastic_slot(e, i)], kj = e->kappa[mpsi_elastic_slot(e, j)];
+  double kappa = ki + kj;
   if (e->joint_at) {
     const double a = e->mu[i], b = e->mu[j];
-    if (a != b) kappa = 2.0 * (e->kappa[i] * b + e->kappa[j] * a) / (a + b);
+    if (a != b) kappa = 2.0 * (ki * b + kj * a) / (a + b);
     if (e->links.far[k] && mpsi_elastic_pair_crosses(e, i, j, k)) return 0.0;
   }
   return kappa * e->links.weight[k] / e->links.r2[k];
@@ -281,8 +339,9 @@ typedef struct mpsi_bending_term {
   int64_t site;
   double value[3]; /* couples equal components */
 } mpsi_bending_term;
-/* Is there any, with so many joints? Its array is made with them (joints.c), of this size. */
-bool mpsi_elastic_has_bending(const mps_elastic *e, int64_t joints);
+/* Is there any, in a body with joints or without? Its array is made with them (joints.c), of this
+ * size. */
+bool mpsi_elastic_has_bending(const mps_elastic *e, bool joints);
 int64_t mpsi_elastic_bending_size(const mps_elastic *e);
 /* Stiffnesses of squares, from volumes and material. */
 void mpsi_elastic_measure_bending(mps_elastic *e);
@@ -290,7 +349,7 @@ void mpsi_elastic_measure_bending(mps_elastic *e);
 void mpsi_elastic_bending_force(const mps_elastic *e, const double *u, int64_t p, double *f);
 /* The row of particle p; the number of terms, of which several may have the same site. */
 int32_t mpsi_elastic_bending_row(const mps_elastic *e, int64_t p, mpsi_bending_term *terms);
-/* Particles of chunk `chunk`: [*first, *last). */
+/* Particles of chunk `chunk` of the whole body: [*first, *last). */
 static inline void mpsi_elastic_chunk(const mps_elastic *e, int64_t chunk, int64_t *first,
                                       int64_t *last) {
   *first = chunk * MPSI_ELASTIC_CHUNK;
@@ -299,9 +358,11 @@ static inline void mpsi_elastic_chunk(const mps_elastic *e, int64_t chunk, int64
 static inline int64_t mpsi_elastic_chunks(const mps_elastic *e) {
   return (e->n + MPSI_ELASTIC_CHUNK - 1) / MPSI_ELASTIC_CHUNK;
 }
-/* lattice.c: work(task, k) for all k of [0, count), chunk by chunk in parallel. */
+/* lattice.c: work(task, k) for all k of [0, count), chunk by chunk in parallel; and for all
+ * particles of a span. */
 typedef void (*mpsi_elastic_work)(void *task, int64_t k);
 void mpsi_elastic_for_each(mps_elastic *e, int64_t count, mpsi_elastic_work work, void *task);
+void mpsi_elastic_for_span(mps_elastic *e, mpsi_span span, mpsi_elastic_work work, void *task);
 
 /* ---- supports.c -------------------------------------------------------------------------------
  */
@@ -389,6 +450,9 @@ mps_status mpsi_elastic_leave(mps_elastic *e, mps_status status);
 /* Of several ranks: an error of one is that of all. A rank comes to the same calls as the others,
  * up to the first that returns an error; leaving is the last of them. */
 mps_status mpsi_elastic_settle(mps_elastic *e, const char *function, mps_status status);
+/* For what only reads, but with the other ranks, and may be within a callback: e->agreed is as
+ * returned again afterwards. */
+bool mpsi_elastic_begin_reading(mps_elastic *e);
 /* For what only reads, but needs the scratch arrays: refused within a step. */
 mps_status mpsi_elastic_check_between(const mps_elastic *e, const char *function);
 /* The rank of an id, or -1; and ids in their order. */
@@ -418,6 +482,9 @@ mps_status mpsi_elastic_set_moduli(mps_elastic *e, const char *function, int64_t
                                    double poisson);
 /* Volumes and pair stiffnesses from cuts and material. */
 void mpsi_elastic_measure(mps_elastic *e);
+/* A window of the rank where all ranks of the domain solve together with the present solver, else
+ * the whole body. */
+mps_status mpsi_elastic_choose_window(mps_elastic *e, const char *function);
 
 /* ---- assemble.c -------------------------------------------------------------------------------
  */
@@ -481,7 +548,8 @@ void mpsi_elastic_free_arrays(mps_elastic *e, mpsi_elastic_motion *m);
 
 /* ---- budget.c ---------------------------------------------------------------------------------
  */
-void mpsi_elastic_begin_ledger(mps_elastic *e);   /* at the start of a motion */
+/* At the start of a motion. */
+mps_status mpsi_elastic_begin_ledger(mps_elastic *e, const char *function);
 void mpsi_elastic_count_solution(mps_elastic *e); /* statics: loaded in proportion from rest */
 /* Works of a step to displacements u, velocities v and forces inner, held. */
 void mpsi_elastic_count_step(mps_elastic *e, const double *u, const double *v, const double *inner,

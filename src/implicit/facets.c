@@ -5,13 +5,12 @@
 #include <string.h>
 
 mps_status mpsi_elastic_find_facets(mps_elastic *e, const char *function) {
-  const mpsi_links *l = &e->links;
   for (int pass = 0; pass < 2; pass++) {
     e->facet_count = 0;
     for (int64_t i = 0; i < e->n; i++)
       for (int axis = 0; axis < e->dim; axis++)
         for (int up = 0; up < 2; up++) {
-          if (l->to[i * l->count + l->face[axis][up]] >= 0) continue;
+          if (e->faces[i] >> (2 * axis + up) & 1) continue;
           if (pass == 1)
             e->facets[e->facet_count] =
                 (mpsi_facet){.particle = i, .axis = (int8_t)axis, .side = (int8_t)(up ? 1 : -1)};
@@ -79,7 +78,8 @@ static void extrapolate(const mps_elastic *e, int64_t i, const double *u, const 
   const int d = e->dim;
   for (int c = 0; c < 3; c++) {
     out[c] = c < d ? u[i * d + c] : 0.0;
-    for (int b = 0; c < d && b < d; b++) out[c] += gradient[(i * d + c) * d + b] * r[b];
+    for (int b = 0; c < d && b < d; b++)
+      out[c] += gradient[(mpsi_elastic_slot(e, i) * d + c) * d + b] * r[b];
   }
 }
 
@@ -99,17 +99,46 @@ static void write_shape(const mps_elastic *e, const mpsi_facet *f, int64_t k,
   }
 }
 
-/* Displacements (or velocities) at the centres of facets. */
-static void write_motion(mps_elastic *e, int64_t count, const int64_t *facets, const double *u,
-                         double *out) {
-  mpsi_elastic_gradients(e, u, e->gradient);
-  for (int64_t k = 0; k < count; k++) {
-    const mpsi_facet *f = &e->facets[facets ? facets[k] : k];
-    double low[3] = {0.0, 0.0, 0.0}, high[3] = {0.0, 0.0, 0.0};
-    mpsi_elastic_facet_box(e, f, low, high);
-    for (int c = 0; c < 3; c++) low[c] = 0.5 * (low[c] + high[c]);
-    extrapolate(e, f->particle, u, e->gradient, low, out + 3 * k);
+/* The displacement (or velocity) at the centre of a facet, from gradients at its particle. */
+static void find_motion(const mps_elastic *e, const mpsi_facet *f, const double *u, double *out) {
+  double low[3] = {0.0, 0.0, 0.0}, high[3] = {0.0, 0.0, 0.0};
+  mpsi_elastic_facet_box(e, f, low, high);
+  for (int c = 0; c < 3; c++) low[c] = 0.5 * (low[c] + high[c]);
+  extrapolate(e, f->particle, u, e->gradient, low, out);
+}
+
+/* On all ranks that of all facets, of which each knows those of its own particles. */
+static mps_status share_motion(mps_elastic *e, const char *function, const double *u,
+                               double **out) {
+  const int64_t words = 3 * e->facet_count;
+  double *all = *out = mpsi_alloc(e->context, words, sizeof *all);
+  const mps_status status =
+      all ? MPS_OK : mpsi_fail_memory(e->context, function, (size_t)words * sizeof *all);
+  for (int64_t k = 0; all && k < e->facet_count; k++) {
+    for (int c = 0; c < 3; c++) all[3 * k + c] = -INFINITY;
+    if (mpsi_elastic_within(e, e->span[0], e->facets[k].particle))
+      find_motion(e, &e->facets[k], u, all + 3 * k);
   }
+  return mpsi_elastic_join(e, function, status, words, all);
+}
+
+/* Displacements (or velocities) at the centres of facets. */
+static mps_status write_motion(mps_elastic *e, const char *function, int64_t count,
+                               const int64_t *facets, const double *u, double *out) {
+  mpsi_elastic_gradients(e, u, e->gradient);
+  if (!e->shared) {
+    for (int64_t k = 0; k < count; k++)
+      find_motion(e, &e->facets[facets ? facets[k] : k], u, out + 3 * k);
+    return MPS_OK;
+  }
+  double *all = NULL;
+  const bool agreed = mpsi_elastic_begin_reading(e);
+  const mps_status status = share_motion(e, function, u, &all);
+  e->agreed = agreed;
+  for (int64_t k = 0; status == MPS_OK && k < count; k++)
+    memcpy(out + 3 * k, all + 3 * (facets ? facets[k] : k), 3 * sizeof *out);
+  mpsi_free(e->context, all);
+  return status;
 }
 
 mps_status mps_elastic_get_facets_sized(mps_elastic *e, int64_t count, const int64_t *facets,
@@ -129,8 +158,10 @@ mps_status mps_elastic_get_facets_sized(mps_elastic *e, int64_t count, const int
                        "facets[%lld] is %lld, allowed are 0..%lld", (long long)k,
                        (long long)facets[k], (long long)e->facet_count - 1);
   for (int64_t k = 0; k < count; k++) write_shape(e, &e->facets[facets ? facets[k] : k], k, &a);
-  if (a.displacement) write_motion(e, count, facets, e->displacement, a.displacement);
-  if (a.velocity && e->motion) write_motion(e, count, facets, e->motion->velocity, a.velocity);
+  if (a.displacement)
+    status = write_motion(e, __func__, count, facets, e->displacement, a.displacement);
+  if (status == MPS_OK && a.velocity && e->motion)
+    status = write_motion(e, __func__, count, facets, e->motion->velocity, a.velocity);
   if (a.velocity && !e->motion) memset(a.velocity, 0, (size_t)(3 * count) * sizeof *a.velocity);
-  return MPS_OK;
+  return status;
 }

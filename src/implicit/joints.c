@@ -28,20 +28,39 @@ static bool differ(const mps_elastic *e, int64_t i, int64_t j) {
 
 /* The cell on the upper side of i along `axis`, where there is a joint between them; else -1. */
 static int64_t beyond_joint(const mps_elastic *e, int64_t i, int axis) {
-  const int64_t j = e->links.to[i * e->links.count + e->links.face[axis][1]];
-  return j >= 0 && differ(e, i, j) ? j : -1;
+  const int64_t j = mpsi_elastic_neighbours(e, i)[e->links.face[axis][1]];
+  return j >= 0 && mpsi_elastic_within(e, e->window, j) && differ(e, i, j) ? j : -1;
 }
 
+/* Those of the window. */
 static int64_t count_joints(const mps_elastic *e) {
   int64_t count = 0;
-  for (int64_t i = 0; i < e->n; i++)
-    for (int axis = 0; axis < e->dim; axis++) count += beyond_joint(e, i, axis) >= 0;
+  for (int64_t k = e->window.from; k < e->window.to; k++)
+    for (int axis = 0; axis < e->dim; axis++)
+      count += beyond_joint(e, mpsi_elastic_in_order(e, k), axis) >= 0;
   return count;
+}
+
+/* Does the body have joints, wherever they are? */
+static mps_status find_any(mps_elastic *e, const char *function, int64_t count, bool *any) {
+  mpsi_sites *sites = NULL;
+  bool one = true;
+  *any = count > 0;
+  for (int64_t i = 1; i < e->n && one; i++) one = !differ(e, 0, i);
+  if (*any || one || !e->shared) return MPS_OK;
+  const mps_status status = mpsi_elastic_open_sites(e, function, &sites);
+  for (int64_t i = 0; status == MPS_OK && i < e->n; i++)
+    for (int axis = 0; axis < e->dim; axis++) {
+      const int64_t j = mpsi_elastic_beside(sites, i, axis, 1);
+      *any = *any || (j >= 0 && differ(e, i, j));
+    }
+  mpsi_elastic_close_sites(e, sites);
+  return status;
 }
 
 /* The joint at a face of cell i (lower and upper one of each axis in turn), or -1. */
 static int64_t joint_at(const mps_elastic *e, int64_t i, int face) {
-  return e->joint_at[i * 2 * e->dim + face];
+  return e->joint_at[mpsi_elastic_slot(e, i) * 2 * e->dim + face];
 }
 
 void mpsi_elastic_drop_joints(mps_elastic *e) {
@@ -62,11 +81,15 @@ static bool same_joints(const mps_elastic *e, const mpsi_joint *joints, int64_t 
 }
 
 mps_status mpsi_elastic_find_joints(mps_elastic *e, const char *function) {
-  const int64_t count = e->conservative ? count_joints(e) : 0, places = e->n * 2 * e->dim;
+  const int64_t count = e->conservative ? count_joints(e) : 0;
+  const int64_t places = mpsi_elastic_slots(e) * 2 * e->dim;
   mpsi_joint *joints = NULL;
   int64_t *at = NULL;
   double *scratch = NULL, *bending = NULL;
-  if (mpsi_elastic_has_bending(e, count)) {
+  bool any = false;
+  const mps_status status = find_any(e, function, count, &any);
+  if (status != MPS_OK) return status;
+  if (mpsi_elastic_has_bending(e, any)) {
     const int64_t size = mpsi_elastic_bending_size(e);
     if (!(bending = mpsi_alloc(e->context, size, sizeof *bending)))
       return mpsi_fail_memory(e->context, function, (size_t)size * sizeof *bending);
@@ -80,11 +103,12 @@ mps_status mpsi_elastic_find_joints(mps_elastic *e, const char *function) {
     return mpsi_fail_memory(e->context, function, (size_t)places * sizeof *at);
   }
   for (int64_t k = 0; at && k < places; k++) at[k] = -1;
-  for (int64_t i = 0, k = 0; count > 0 && i < e->n; i++)
+  for (int64_t p = e->window.from, k = 0; count > 0 && p < e->window.to; p++)
     for (int axis = 0; axis < e->dim; axis++) {
-      const int64_t j = beyond_joint(e, i, axis);
+      const int64_t i = mpsi_elastic_in_order(e, p), j = beyond_joint(e, i, axis);
       if (j < 0) continue;
-      at[i * 2 * e->dim + 2 * axis + 1] = at[j * 2 * e->dim + 2 * axis] = k;
+      at[mpsi_elastic_slot(e, i) * 2 * e->dim + 2 * axis + 1] = k;
+      at[mpsi_elastic_slot(e, j) * 2 * e->dim + 2 * axis] = k;
       joints[k++] = (mpsi_joint){.low = i, .high = j, .axis = axis};
     }
   if (!same_joints(e, joints, count)) e->pattern_valid = false;
@@ -144,7 +168,8 @@ static void find_delta(void *task, int64_t k) {
   const int d = e->dim;
   const mpsi_joint *q = &e->joints[k];
   const mpsi_joint_law law = mpsi_elastic_joint_law(e, q);
-  const double *g1 = t->tensor + q->low * d * d, *g2 = t->tensor + q->high * d * d;
+  const double *g1 = t->tensor + mpsi_elastic_slot(e, q->low) * d * d;
+  const double *g2 = t->tensor + mpsi_elastic_slot(e, q->high) * d * d;
   const double *u1 = t->u + q->low * d, *u2 = t->u + q->high * d;
   const int a = q->axis;
   double *delta = e->joint_scratch + k * d;
@@ -166,7 +191,8 @@ static void add_delta(void *task, int64_t i) {
     if (k < 0) continue;
     const double weight = mpsi_elastic_face_weight(e, i, face / 2, face % 2);
     for (int c = 0; c < d; c++)
-      t->tensor[(i * d + c) * d + face / 2] += weight * e->joint_scratch[k * d + c];
+      t->tensor[(mpsi_elastic_slot(e, i) * d + c) * d + face / 2] +=
+          weight * e->joint_scratch[k * d + c];
   }
 }
 
@@ -174,7 +200,7 @@ void mpsi_elastic_joint_gradients(mps_elastic *e, const double *u, double *gradi
   if (e->joint_count == 0) return;
   joint_task task = {.e = e, .u = u, .tensor = gradient};
   mpsi_elastic_for_each(e, e->joint_count, find_delta, &task);
-  mpsi_elastic_for_each(e, e->n, add_delta, &task);
+  mpsi_elastic_for_span(e, e->span[(int)e->def.radius_ratio + 2], add_delta, &task);
 }
 
 /* The force on delta of joint k: transpose of add_delta. */
@@ -185,9 +211,10 @@ static void find_pull(void *task, int64_t k) {
   const mpsi_joint *q = &e->joints[k];
   const double w1 = mpsi_elastic_face_weight(e, q->low, q->axis, 1);
   const double w2 = mpsi_elastic_face_weight(e, q->high, q->axis, 0);
+  const double *p1 = t->tensor + mpsi_elastic_slot(e, q->low) * d * d;
+  const double *p2 = t->tensor + mpsi_elastic_slot(e, q->high) * d * d;
   for (int c = 0; c < d; c++)
-    e->joint_scratch[k * d + c] = w1 * t->tensor[(q->low * d + c) * d + q->axis] +
-                                  w2 * t->tensor[(q->high * d + c) * d + q->axis];
+    e->joint_scratch[k * d + c] = w1 * p1[c * d + q->axis] + w2 * p2[c * d + q->axis];
 }
 
 /* Transpose of find_delta: normal derivatives pull particle i, tangential ones add to its P. */
@@ -195,7 +222,7 @@ static void add_pull(void *task, int64_t i) {
   const joint_task *t = task;
   const mps_elastic *e = t->e;
   const int d = e->dim;
-  double *f = t->f + i * d, *P = t->tensor + i * d * d;
+  double *f = t->f + i * d, *P = t->tensor + mpsi_elastic_slot(e, i) * d * d;
   for (int face = 0; face < 2 * d; face++) {
     const int64_t k = joint_at(e, i, face);
     if (k < 0) continue;
@@ -216,7 +243,7 @@ void mpsi_elastic_joint_forces(mps_elastic *e, double *stress, double *f) {
   if (e->joint_count == 0) return;
   joint_task task = {.e = e, .tensor = stress, .f = f};
   mpsi_elastic_for_each(e, e->joint_count, find_pull, &task);
-  mpsi_elastic_for_each(e, e->n, add_pull, &task);
+  mpsi_elastic_for_span(e, e->span[1], add_pull, &task);
 }
 
 /* ---- coefficients, for the matrix and for loads ------------------------------------------------

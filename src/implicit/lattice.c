@@ -33,6 +33,11 @@ static int64_t find(const site_table *t, const int32_t *site) {
   return t->key[slot] ? t->particle[slot] : -1;
 }
 
+struct mpsi_sites {
+  site_table table;
+  int32_t (*site)[3]; /* of each particle */
+};
+
 /* Integer sites relative to particle 0, entered in the table. */
 static mps_status read_sites(const mps_elastic *e, const char *function, int32_t (*sites)[3],
                              site_table *t) {
@@ -109,35 +114,44 @@ static bool reachable(const site_table *t, const int32_t *site, const int32_t *s
 
 typedef struct link_task {
   mps_elastic *e;
-  const site_table *table;
-  const int32_t (*sites)[3];
+  const mpsi_sites *sites;
 } link_task;
 
-static void link_chunk(void *data, int64_t chunk, int32_t worker) {
-  (void)worker;
-  const link_task *t = data;
+static void link_one(void *task, int64_t i) {
+  const link_task *t = task;
   mps_elastic *e = t->e;
   const mpsi_links *l = &e->links;
-  int64_t first, last;
-  mpsi_elastic_chunk(e, chunk, &first, &last);
-  for (int64_t i = first; i < last; i++)
-    for (int32_t k = 0; k < l->count; k++) {
-      int32_t site[3];
-      for (int c = 0; c < 3; c++) site[c] = t->sites[i][c] + l->step[k][c];
-      int64_t j = find(t->table, site);
-      if (j >= 0 && e->conservative && !reachable(t->table, t->sites[i], l->step[k])) j = -1;
-      l->to[i * l->count + k] = j;
-      if (j < 0) continue;
-      e->density[i] += l->weight[k];
-      for (int face = 0; face < 2 * e->dim; face++)
-        if (l->face[face / 2][face % 2] == k) e->faces[i] |= (uint8_t)(1 << face);
-    }
+  const site_table *table = &t->sites->table;
+  const int32_t *own = t->sites->site[i];
+  const int64_t slot = mpsi_elastic_slot(e, i);
+  e->faces[i] = 0;
+  for (int32_t k = 0; k < l->count; k++) {
+    int32_t site[3];
+    for (int c = 0; c < 3; c++) site[c] = own[c] + l->step[k][c];
+    int64_t j = find(table, site);
+    if (j >= 0 && e->conservative && !reachable(table, own, l->step[k])) j = -1;
+    l->to[slot * l->count + k] = j;
+    if (j < 0) continue;
+    e->density[slot] += l->weight[k];
+    for (int face = 0; face < 2 * e->dim; face++)
+      if (l->face[face / 2][face % 2] == k) e->faces[i] |= (uint8_t)(1 << face);
+  }
+}
+
+/* Of a particle outside the window, too. */
+static void find_faces(void *task, int64_t i) {
+  const link_task *t = task;
+  t->e->faces[i] = 0;
+  for (int face = 0; face < 2 * t->e->dim; face++)
+    if (mpsi_elastic_beside(t->sites, i, face / 2, face % 2) >= 0)
+      t->e->faces[i] |= (uint8_t)(1 << face);
 }
 
 /* A cell without a neighbour along some axis has no strain along it. */
 static mps_status check_thickness(const mps_elastic *e, const char *function) {
-  for (int64_t i = 0; i < e->n; i++) {
-    const bool any = e->density[i] > 0.0;
+  for (int64_t k = e->window.from; k < e->window.to; k++) {
+    const int64_t i = mpsi_elastic_in_order(e, k);
+    const bool any = e->density[mpsi_elastic_slot(e, i)] > 0.0;
     for (int axis = 0; axis < e->dim; axis++) {
       if (e->faces[i] >> 2 * axis & 3) continue;
       const mps_status status =
@@ -155,15 +169,22 @@ static mps_status check_thickness(const mps_elastic *e, const char *function) {
   return MPS_OK;
 }
 
-static mps_status allocate_links(mps_elastic *e, const char *function) {
+/* The operator's arrays of the window. */
+static mps_status allocate_window(mps_elastic *e, const char *function) {
   mpsi_links *l = &e->links;
+  const int64_t slots = mpsi_elastic_slots(e), tensor = slots * e->dim * e->dim;
+  l->step = NULL;
   list_offsets(e, l);
   if (!(l->step = mpsi_alloc(e->context, l->count, sizeof *l->step)) ||
       !(l->weight = mpsi_alloc(e->context, l->count, sizeof(double))) ||
       !(l->r2 = mpsi_alloc(e->context, l->count, sizeof(double))) ||
       !(l->far = mpsi_alloc(e->context, l->count, sizeof *l->far)) ||
-      !(l->to = mpsi_alloc(e->context, e->n * l->count, sizeof(int64_t))))
-    return mpsi_fail_memory(e->context, function, (size_t)(e->n * l->count) * sizeof(int64_t));
+      !(l->to = mpsi_alloc(e->context, slots * l->count, sizeof(int64_t))) ||
+      !(e->density = mpsi_alloc(e->context, slots, sizeof *e->density)) ||
+      !(e->kappa = mpsi_alloc(e->context, slots, sizeof *e->kappa)) ||
+      !(e->gradient = mpsi_alloc(e->context, tensor, sizeof *e->gradient)) ||
+      !(e->stress_work = mpsi_alloc(e->context, tensor, sizeof *e->stress_work)))
+    return mpsi_fail_memory(e->context, function, (size_t)(slots * l->count) * sizeof(int64_t));
   list_offsets(e, l);
   e->density0 = 0.0;
   for (int32_t k = 0; k < l->count; k++) e->density0 += l->weight[k];
@@ -176,37 +197,74 @@ void mpsi_elastic_disconnect(mps_elastic *e) {
   mpsi_free(e->context, e->links.r2);
   mpsi_free(e->context, e->links.far);
   mpsi_free(e->context, e->links.to);
+  void *arrays[] = {e->density, e->kappa, e->gradient, e->stress_work, e->at, e->place};
+  for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) mpsi_free(e->context, arrays[k]);
+}
+
+void mpsi_elastic_lose_window(mps_elastic *e) {
+  e->links = (mpsi_links){.count = 0};
+  e->density = e->kappa = e->gradient = e->stress_work = e->bending = NULL;
+  e->at = e->place = e->joint_at = NULL;
+  e->joints = NULL;
+  e->joint_scratch = NULL;
+  e->joint_count = 0;
+}
+
+/* ---- sites of all particles ------------------------------------------------------------------ */
+
+mps_status mpsi_elastic_open_sites(mps_elastic *e, const char *function, mpsi_sites **out) {
+  mps_context *context = e->context;
+  int64_t slots = 64;
+  while (slots < 2 * e->n) slots *= 2;
+  mpsi_sites *s = mpsi_alloc(context, 1, sizeof *s);
+  mps_status status = MPS_OK;
+  if (!s || !(s->table.key = mpsi_alloc(context, slots, sizeof *s->table.key)) ||
+      !(s->table.particle = mpsi_alloc(context, slots, sizeof *s->table.particle)) ||
+      !(s->site = mpsi_alloc(context, e->n, sizeof *s->site)))
+    status = mpsi_fail_memory(context, function, (size_t)slots * sizeof *s->table.key);
+  if (status == MPS_OK) {
+    s->table.mask = (uint64_t)slots - 1;
+    status = read_sites(e, function, s->site, &s->table);
+  }
+  if (status != MPS_OK) mpsi_elastic_close_sites(e, s);
+  *out = status == MPS_OK ? s : NULL;
+  return status;
+}
+
+void mpsi_elastic_close_sites(mps_elastic *e, mpsi_sites *s) {
+  if (!s) return;
+  mpsi_free(e->context, s->table.key);
+  mpsi_free(e->context, s->table.particle);
+  mpsi_free(e->context, s->site);
+  mpsi_free(e->context, s);
+}
+
+int64_t mpsi_elastic_beside(const mpsi_sites *s, int64_t i, int axis, int up) {
+  int32_t site[3];
+  memcpy(site, s->site[i], sizeof site);
+  site[axis] += up ? 1 : -1;
+  return find(&s->table, site);
 }
 
 mps_status mpsi_elastic_connect(mps_elastic *e, const char *function) {
-  mps_context *context = e->context;
-  mps_status status = allocate_links(e, function);
-  if (status != MPS_OK) return status;
-  int64_t slots = 64;
-  while (slots < 2 * e->n) slots *= 2;
-  site_table table = {.mask = (uint64_t)slots - 1};
-  int32_t(*sites)[3] = NULL;
-  if (!(table.key = mpsi_alloc(context, slots, sizeof *table.key)) ||
-      !(table.particle = mpsi_alloc(context, slots, sizeof *table.particle)) ||
-      !(sites = mpsi_alloc(context, e->n, sizeof *sites)))
-    status = mpsi_fail_memory(context, function, (size_t)slots * sizeof *table.key);
-  else
-    status = read_sites(e, function, sites, &table);
+  mpsi_sites *sites = NULL;
+  mps_status status = mpsi_elastic_open_sites(e, function, &sites);
+  if (status == MPS_OK) status = mpsi_elastic_open_window(e, function);
+  if (status == MPS_OK) status = allocate_window(e, function);
   if (status == MPS_OK) {
-    link_task task = {.e = e, .table = &table, .sites = (const int32_t(*)[3])sites};
-    mpsi_parallel_for(context, mpsi_elastic_chunks(e), link_chunk, &task);
+    link_task task = {.e = e, .sites = sites};
+    if (e->shared) mpsi_elastic_for_each(e, e->n, find_faces, &task);
+    mpsi_elastic_for_span(e, e->window, link_one, &task);
     status = check_thickness(e, function);
   }
-  mpsi_free(context, table.key);
-  mpsi_free(context, table.particle);
-  mpsi_free(context, sites);
+  mpsi_elastic_close_sites(e, sites);
   return status;
 }
 
 /* ---- the plain gradient ---- */
 
 double mpsi_elastic_divisor(const mps_elastic *e, int64_t i) {
-  return e->constant ? e->density0 : e->density[i];
+  return e->constant ? e->density0 : e->density[mpsi_elastic_slot(e, i)];
 }
 
 static void conservative_coefficient(const mps_elastic *e, int64_t i, int32_t k, double *g) {
@@ -233,13 +291,14 @@ void mpsi_elastic_coefficient(const mps_elastic *e, int64_t i, int32_t k, double
 static int32_t conservative_stencil(const mps_elastic *e, int64_t i, int64_t *sites,
                                     double (*g)[3]) {
   const mpsi_links *l = &e->links;
+  const int64_t *to = mpsi_elastic_neighbours(e, i);
   int32_t m = 1;
   for (int axis = 0; axis < e->dim; axis++) {
     const uint32_t faces = e->faces[i] >> 2 * axis & 3;
     const double c = (faces == 3 ? 0.5 : 1.0) / e->spacing;
     for (int up = 0; up < 2; up++) {
       if (!(faces >> up & 1)) continue;
-      sites[m] = l->to[i * l->count + l->face[axis][up]];
+      sites[m] = to[l->face[axis][up]];
       g[m][0] = g[m][1] = g[m][2] = 0.0;
       g[m++][axis] = up ? c : -c;
     }
@@ -253,15 +312,16 @@ int32_t mpsi_elastic_stencil(const mps_elastic *e, int64_t i, int64_t *sites, do
   sites[0] = i;
   g[0][0] = g[0][1] = g[0][2] = 0.0;
   if (e->conservative) return conservative_stencil(e, i, sites, g);
+  const int64_t *to = mpsi_elastic_neighbours(e, i);
   int32_t m = 1;
   for (int32_t k = 0; k < l->count; k++) {
-    const int64_t j = l->to[i * l->count + k];
+    const int64_t j = to[k];
     if (j < 0) continue;
     sites[m] = j;
     g[m][2] = 0.0;
     mpsi_elastic_coefficient(e, i, k, g[m]);
     /* Opposite neighbours cancel exactly: i itself has no coefficient inside the body. */
-    if (l->to[i * l->count + l->count - 1 - k] < 0)
+    if (to[l->count - 1 - k] < 0)
       for (int c = 0; c < e->dim; c++) g[0][c] -= g[m][c];
     m++;
   }
@@ -274,17 +334,28 @@ typedef struct loop {
   mpsi_elastic_work work;
   void *task;
   int64_t count;
+  const int64_t *list; /* of what; NULL: 0, 1 ... */
 } loop;
 
 static void loop_chunk(void *data, int64_t chunk, int32_t worker) {
   (void)worker;
   const loop *l = data;
   const int64_t end = (chunk + 1) * MPSI_ELASTIC_CHUNK;
-  for (int64_t k = chunk * MPSI_ELASTIC_CHUNK; k < end && k < l->count; k++) l->work(l->task, k);
+  for (int64_t k = chunk * MPSI_ELASTIC_CHUNK; k < end && k < l->count; k++)
+    l->work(l->task, l->list ? l->list[k] : k);
+}
+
+static void run(mps_elastic *e, loop *l) {
+  const int64_t chunks = (l->count + MPSI_ELASTIC_CHUNK - 1) / MPSI_ELASTIC_CHUNK;
+  mpsi_parallel_for(e->context, chunks, loop_chunk, l);
 }
 
 void mpsi_elastic_for_each(mps_elastic *e, int64_t count, mpsi_elastic_work work, void *task) {
-  loop l = {work, task, count};
-  const int64_t chunks = (count + MPSI_ELASTIC_CHUNK - 1) / MPSI_ELASTIC_CHUNK;
-  mpsi_parallel_for(e->context, chunks, loop_chunk, &l);
+  loop l = {work, task, count, NULL};
+  run(e, &l);
+}
+
+void mpsi_elastic_for_span(mps_elastic *e, mpsi_span span, mpsi_elastic_work work, void *task) {
+  loop l = {work, task, span.to - span.from, e->at ? e->at + span.from : NULL};
+  run(e, &l);
 }

@@ -258,7 +258,9 @@ static void add_patch(mps_elastic *e, int64_t i, const mpsi_patch *patch, const 
       any |= moment[c][b] != 0.0;
     }
   }
-  if (any && e->conservative) mpsi_elastic_spread(e, i, (const double(*)[3])moment, e->load);
+  /* A gradient's sites are two layers from it at most. */
+  if (any && e->conservative && mpsi_elastic_within(e, e->span[2], i))
+    mpsi_elastic_spread(e, i, (const double(*)[3])moment, e->load);
 }
 
 /* The whole body: `force` by volume, or by mass. */
@@ -321,7 +323,8 @@ mps_status mpsi_elastic_gather_loads(mps_elastic *e, const char *function, doubl
       if (i >= 0) add_patch(e, i, &l->patches[p], scale);
     }
   }
-  return add_external(e, function);
+  const mps_status status = add_external(e, function);
+  return status == MPS_OK ? mpsi_elastic_complete(e, function, e->load) : status;
 }
 
 /* ---- resultants ------------------------------------------------------------------------------ */

@@ -118,14 +118,15 @@ static mps_status read_or_zero(mps_elastic *e, const char *function, const char 
 }
 
 /* inner = K (u + a1 v); held = inner + a0 M v - load along fixed directions. */
-static void find_forces(mps_elastic *e, const double *u, const double *v, double *inner,
-                        double *held) {
+static mps_status find_forces(mps_elastic *e, const char *function, const double *u,
+                              const double *v, double *inner, double *held) {
   mpsi_elastic_motion *m = e->motion;
   const int64_t all = e->n * e->dim;
   for (int64_t k = 0; k < all; k++) m->scratch[k] = u[k] + m->a1 * v[k];
-  mpsi_elastic_apply(e, m->scratch, inner);
+  const mps_status status = mpsi_elastic_apply(e, function, m->scratch, inner);
   for (int64_t k = 0; k < all; k++)
     held[k] = inner[k] + m->a0 * e->mass[k / e->dim] * v[k] - e->load[k];
+  return status;
 }
 
 /* a = M^-1 (F - C v - K u) on what is free; the boundaries' own on the rest. */
@@ -189,13 +190,13 @@ mps_status mps_elastic_start(mps_elastic *e, const mps_elastic_motion_def *def) 
     mpsi_elastic_impose(e, 0, e->displacement);
     mpsi_elastic_impose(e, 1, m->velocity);
     memcpy(m->force, e->load, (size_t)(e->n * e->dim) * sizeof *m->force);
-    find_forces(e, e->displacement, m->velocity, m->inner, m->held);
+    status = find_forces(e, __func__, e->displacement, m->velocity, m->inner, m->held);
     balance(e);
     mpsi_elastic_keep_fixed(e, m->held);
     set_reaction(e, m->held, m->acceleration);
     mpsi_elastic_forget_reactions(e);
     mpsi_elastic_count_reactions(e, 0.0);
-    mpsi_elastic_begin_ledger(e);
+    if (status == MPS_OK) status = mpsi_elastic_begin_ledger(e, __func__);
   }
   return mpsi_elastic_leave(e, status);
 }
@@ -204,7 +205,7 @@ mps_status mps_elastic_start(mps_elastic *e, const mps_elastic_motion_def *def) 
  */
 
 /* The equations of the step without w, to e->rhs. */
-static void find_right_side(mps_elastic *e, double factor) {
+static mps_status find_right_side(mps_elastic *e, const char *function, double factor) {
   mpsi_elastic_motion *m = e->motion;
   const double am = m->alpha_m, af = m->alpha_f;
   const double *u1 = m->next[NEXT_U], *v1 = m->next[NEXT_V];
@@ -212,7 +213,7 @@ static void find_right_side(mps_elastic *e, double factor) {
   for (int64_t k = 0; k < all; k++)
     m->scratch[k] = (1.0 - af) * (u1[k] + m->a1 * v1[k]) +
                     (af != 0.0 ? af * (e->displacement[k] + m->a1 * m->velocity[k]) : 0.0);
-  mpsi_elastic_apply(e, m->scratch, e->work);
+  const mps_status status = mpsi_elastic_apply(e, function, m->scratch, e->work);
   for (int64_t k = 0; k < all; k++) {
     const double inertia =
         am * m->acceleration[k] + m->a0 * ((1.0 - af) * v1[k] + af * m->velocity[k]);
@@ -221,6 +222,7 @@ static void find_right_side(mps_elastic *e, double factor) {
   }
   mpsi_elastic_reduce(e, e->work, e->rhs);
   for (int64_t k = 0; k < e->unknowns; k++) e->rhs[k] /= factor;
+  return status;
 }
 
 static mps_status check_finite(const mps_elastic *e, const char *function) {
@@ -280,8 +282,8 @@ static mps_status step_once(mps_elastic *e, const char *function, double dt, dou
   }
   mpsi_elastic_impose(e, 0, u1);
   mpsi_elastic_impose(e, 1, v1);
-  find_right_side(e, factor);
-  status = mpsi_elastic_backsolve(e, function, 1, e->rhs, e->solution);
+  status = find_right_side(e, function, factor);
+  if (status == MPS_OK) status = mpsi_elastic_backsolve(e, function, 1, e->rhs, e->solution);
   if (status != MPS_OK) return status;
   memset(m->scratch, 0, (size_t)all * sizeof *m->scratch);
   mpsi_elastic_expand(e, e->solution, false, m->scratch);
@@ -293,7 +295,8 @@ static mps_status step_once(mps_elastic *e, const char *function, double dt, dou
   }
   mpsi_elastic_impose(e, 2, a1);
   if ((status = check_finite(e, function)) != MPS_OK) return status;
-  find_forces(e, u1, v1, m->next[NEXT_INNER], m->next[NEXT_HELD]);
+  status = find_forces(e, function, u1, v1, m->next[NEXT_INNER], m->next[NEXT_HELD]);
+  if (status != MPS_OK) return status;
   mpsi_elastic_keep_fixed(e, m->next[NEXT_HELD]);
   accept(e, dt, time);
   return MPS_OK;

@@ -11,6 +11,10 @@
  * published: G_i = (d/n*) sum_j (u_j - u_i) (x) t w/r, so that (7) R = curl and (8) D = trace,
  *   W = n*_i/n0 (lambda/2 D^2 - mu/2 R^2), e_ij = u_j - u_i, kappa = 2 mu d V / n0: Chikazawa (10)
  *   with R and D eliminated, corrected as docs/verification/implicit-elastic.md says.
+ *
+ * A rank that shares the body needs, for the forces on its own particles, stresses with those of
+ * joints of one layer around them, stresses without of two, and the gradients that pairs of these
+ * use; joints there use one layer more.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "elastic_private.h"
 
@@ -28,7 +32,7 @@ static void gradient_at(void *task, int64_t i) {
   const operator_task *t = task;
   const int d = t->e->dim;
   int64_t sites[MPSI_STENCIL_MAX];
-  double g[MPSI_STENCIL_MAX][3], *G = t->gradient + i * d * d;
+  double g[MPSI_STENCIL_MAX][3], *G = t->gradient + mpsi_elastic_slot(t->e, i) * d * d;
   const int32_t m = mpsi_elastic_stencil(t->e, i, sites, g);
   memset(G, 0, (size_t)(d * d) * sizeof *G);
   /* Differences, so that a rigid translation gives exactly zero. */
@@ -41,7 +45,7 @@ static void gradient_at(void *task, int64_t i) {
 
 void mpsi_elastic_gradients(mps_elastic *e, const double *u, double *gradient) {
   operator_task task = {.e = e, .u = u, .gradient = gradient};
-  mpsi_elastic_for_each(e, e->n, gradient_at, &task);
+  mpsi_elastic_for_span(e, e->span[(int)e->def.radius_ratio + 3], gradient_at, &task);
   mpsi_elastic_joint_gradients(e, u, gradient);
 }
 
@@ -70,10 +74,11 @@ static void stretch(const mps_elastic *e, const double *u, const double *gradien
                     int32_t k, double *out) {
   const mpsi_links *l = &e->links;
   const int d = e->dim;
-  const int64_t j = l->to[i * l->count + k];
+  const int64_t j = mpsi_elastic_neighbours(e, i)[k];
   for (int c = 0; c < d; c++) out[c] = u[j * d + c] - u[i * d + c];
   if (!e->conservative) return;
-  const double *gi = gradient + i * d * d, *gj = gradient + j * d * d;
+  const double *gi = gradient + mpsi_elastic_slot(e, i) * d * d;
+  const double *gj = gradient + mpsi_elastic_slot(e, j) * d * d;
   for (int c = 0; c < d; c++)
     for (int b = 0; b < d; b++)
       out[c] -= 0.5 * (gi[c * d + b] + gj[c * d + b]) * e->spacing * l->step[k][b];
@@ -112,12 +117,13 @@ static void stress_at(void *task, int64_t i) {
   const mpsi_links *l = &e->links;
   const int d = e->dim;
   const bool moment = e->conservative;
-  double *P = t->stress + i * d * d, *f = t->f + i * d;
-  local_stress(e, i, t->gradient + i * d * d, P);
+  const int64_t slot = mpsi_elastic_slot(e, i), *to = mpsi_elastic_neighbours(e, i);
+  double *P = t->stress + slot * d * d, *f = t->f + i * d;
+  local_stress(e, i, t->gradient + slot * d * d, P);
   for (int c = 0; c < d; c++) f[c] = 0.0;
   mpsi_elastic_bending_force(e, t->u, i, f);
   for (int32_t k = 0; k < l->count; k++) {
-    const int64_t j = l->to[i * l->count + k];
+    const int64_t j = to[k];
     if (j < 0) continue;
     double pull[3];
     const double s = mpsi_elastic_bond(e, i, j, k);
@@ -138,28 +144,32 @@ static void force_at(void *task, int64_t p) {
   const mpsi_links *l = &e->links;
   const int d = e->dim;
   int64_t sites[MPSI_STENCIL_MAX];
+  const int64_t *to = mpsi_elastic_neighbours(e, p);
+  const double *own = t->stress + mpsi_elastic_slot(e, p) * d * d;
   double g[MPSI_STENCIL_MAX][3], *f = t->f + p * d;
   /* The neighbours whose gradients use p are the sites of p's own; p sits opposite there. */
   const int32_t m = mpsi_elastic_stencil(e, p, sites, g);
   for (int c = 0; c < d; c++)
-    for (int b = 0; b < d; b++) f[c] += t->stress[(p * d + c) * d + b] * g[0][b];
+    for (int b = 0; b < d; b++) f[c] += own[c * d + b] * g[0][b];
   const bool conservative = e->conservative;
   for (int32_t a = 0, used = 1; used < m; a++) {
     const int32_t k = conservative ? l->face[a / 2][a % 2] : a;
-    const int64_t j = l->to[p * l->count + k];
+    const int64_t j = to[k];
     if (j < 0) continue;
+    const double *P = t->stress + mpsi_elastic_slot(e, j) * d * d;
     double back[3];
     used++;
     mpsi_elastic_coefficient(e, j, l->count - 1 - k, back);
     for (int c = 0; c < d; c++)
-      for (int b = 0; b < d; b++) f[c] += t->stress[(j * d + c) * d + b] * back[b];
+      for (int b = 0; b < d; b++) f[c] += P[c * d + b] * back[b];
   }
 }
 
-void mpsi_elastic_apply(mps_elastic *e, const double *u, double *f) {
+mps_status mpsi_elastic_apply(mps_elastic *e, const char *function, const double *u, double *f) {
   operator_task task = {.e = e, .u = u, .gradient = e->gradient, .stress = e->stress_work, .f = f};
   mpsi_elastic_gradients(e, u, e->gradient);
-  mpsi_elastic_for_each(e, e->n, stress_at, &task);
+  mpsi_elastic_for_span(e, e->span[2], stress_at, &task);
   mpsi_elastic_joint_forces(e, e->stress_work, f);
-  mpsi_elastic_for_each(e, e->n, force_at, &task);
+  mpsi_elastic_for_span(e, e->span[0], force_at, &task);
+  return mpsi_elastic_complete(e, function, f);
 }

@@ -55,14 +55,15 @@ static void rigid(const mps_elastic *e, int32_t mode, const double *centre, int6
   v[(about + 2) % 3] = r[(about + 1) % 3];
 }
 
-/* The rigid motions in the rows of particles [from, to). */
+/* The rigid motions in the rows of particles [from, to) of the order of layers. */
 static void fill_modes(const mps_elastic *e, int64_t from, int64_t to, double *mode) {
   const int d = e->dim;
   double centre[3] = {0.0, 0.0, 0.0};
   for (int64_t i = 0; i < e->n; i++)
     for (int c = 0; c < d; c++) centre[c] += e->x[i * d + c] / (double)e->n;
   for (int32_t m = 0; m < e->modes; m++)
-    for (int64_t i = from; i < to; i++) {
+    for (int64_t k = from; k < to; k++) {
+      const int64_t i = mpsi_elastic_in_order(e, k);
       double v[3], direction[3];
       rigid(e, m, centre, i, v);
       for (int c = 0; c < d; c++, mode++) {
@@ -109,21 +110,36 @@ static mps_status hand_matrix(mps_elastic *e, const char *function, double shift
 
 /* ---- solution -------------------------------------------------------------------------------- */
 
-/* |rhs - (K + shift M) solution| over |rhs|, by the operator. */
-static double residual(mps_elastic *e, double shift, const double *rhs, const double *solution,
-                       double *work) {
+/* |rhs - (K + shift M) solution| over |rhs|, by the operator; to `work` as many values as two
+ * vectors have. */
+static mps_status residual(mps_elastic *e, const char *function, double shift, const double *rhs,
+                           const double *solution, double *work, double *out) {
   const int64_t all = e->n * e->dim;
-  double *u = work, *f = work + all, *r = work + 2 * all, rr = 0.0, bb = 0.0;
+  double *u = work, *f = e->work, *r = work + all, rr = 0.0, bb = 0.0;
   memset(u, 0, (size_t)all * sizeof *u);
   mpsi_elastic_expand(e, solution, false, u);
-  mpsi_elastic_apply(e, u, f);
+  const mps_status status = mpsi_elastic_apply(e, function, u, f);
   for (int64_t k = 0; shift != 0.0 && k < all; k++) f[k] += shift * e->mass[k / e->dim] * u[k];
   mpsi_elastic_reduce(e, f, r);
   for (int64_t k = 0; k < e->unknowns; k++) {
     rr += (rhs[k] - r[k]) * (rhs[k] - r[k]);
     bb += rhs[k] * rhs[k];
   }
-  return bb > 0.0 ? sqrt(rr / bb) : sqrt(rr);
+  *out = bb > 0.0 ? sqrt(rr / bb) : sqrt(rr);
+  return status;
+}
+
+/* Between a vector of free unknowns and one of all rows, 0 in those that are held. */
+static void copy_rows(const mps_elastic *e, double *unknowns, double *rows, bool to_rows) {
+  for (int64_t i = 0; i < e->n; i++)
+    for (int c = 0; c < e->dim; c++) {
+      const int64_t dof = e->dof[i * e->dim + c];
+      double *row = &rows[mpsi_elastic_place(e, i) * e->dim + c];
+      if (to_rows)
+        *row = dof >= 0 ? unknowns[dof] : 0.0;
+      else if (dof >= 0)
+        unknowns[dof] = *row;
+    }
 }
 
 static mps_status solve(mps_elastic *e, const char *function, const double *rhs, double *solution,
@@ -133,21 +149,20 @@ static mps_status solve(mps_elastic *e, const char *function, const double *rhs,
   double *b = work, *x = work + all;
   int64_t iterations = 0;
   memset(x, 0, (size_t)all * sizeof *x);
-  for (int64_t k = 0; k < all; k++) b[k] = e->dof[k] >= 0 ? rhs[e->dof[k]] : 0.0;
+  copy_rows(e, (double *)rhs, b, true);
   const mps_status status = def->solve(def->user, b, e->def.tolerance, x, &iterations);
   if (status != MPS_OK)
     return mpsi_fail(e->context, function, status,
                      "the callback solve of mps_elastic_set_solver returned %d", (int)status);
   e->report.iterations += iterations;
-  for (int64_t k = 0; k < all; k++)
-    if (e->dof[k] >= 0) solution[e->dof[k]] = x[k];
+  copy_rows(e, solution, x, false);
   return MPS_OK;
 }
 
 mps_status mpsi_elastic_solve_outside(mps_elastic *e, const char *function, double shift,
                                       const double *rhs, double *solution) {
   mpsi_elastic_outside *o = e->outside;
-  const int64_t words = 3 * e->n * e->dim;
+  const int64_t words = 2 * e->n * e->dim;
   mps_status status = MPS_OK;
   if (mpsi_cancelled(e->context))
     status = mpsi_fail(e->context, function, MPS_ERROR_CANCELLED, "cancelled before the solution");
@@ -164,9 +179,10 @@ mps_status mpsi_elastic_solve_outside(mps_elastic *e, const char *function, doub
   status = mpsi_elastic_settle(e, function, status);
   if (status == MPS_OK)
     status = mpsi_elastic_settle(e, function, solve(e, function, rhs, solution, work));
+  double left = 0.0;
   if (status == MPS_OK) {
-    const double left = residual(e, shift, rhs, solution, work);
-    if (!(left <= 1.01 * e->def.tolerance + ROUNDING))
+    status = residual(e, function, shift, rhs, solution, work, &left);
+    if (status == MPS_OK && !(left <= 1.01 * e->def.tolerance + ROUNDING))
       status = mpsi_fail(e->context, function, MPS_ERROR_NUMERIC,
                          "the answer of the callback solve of mps_elastic_set_solver has the "
                          "residual %g of the right side, tolerance is %g",

@@ -31,9 +31,16 @@ static void motion(const mps_elastic *e, const part *p, int32_t mode, const doub
   v[(about + 2) % 3] = r[(about + 1) % 3];
 }
 
+/* Neighbour k of particle i, or -1: across faces where a window has not all neighbours, which
+ * connects the same particles (reachable, lattice.c). */
+static int64_t neighbour(const mps_elastic *e, const mpsi_sites *sites, int64_t i, int32_t k) {
+  return sites ? mpsi_elastic_beside(sites, i, k / 2, k % 2) : mpsi_elastic_neighbours(e, i)[k];
+}
+
 /* Labels connected parts in part_of; the number of parts. */
-static int64_t label(const mps_elastic *e, int64_t *part_of, int64_t *stack) {
-  const mpsi_links *l = &e->links;
+static int64_t label(const mps_elastic *e, const mpsi_sites *sites, int64_t *part_of,
+                     int64_t *stack) {
+  const int32_t around = sites ? 2 * e->dim : e->links.count;
   int64_t parts = 0;
   for (int64_t i = 0; i < e->n; i++) part_of[i] = -1;
   for (int64_t seed = 0; seed < e->n; seed++) {
@@ -43,8 +50,8 @@ static int64_t label(const mps_elastic *e, int64_t *part_of, int64_t *stack) {
     part_of[seed] = parts;
     while (top > 0) {
       const int64_t i = stack[--top];
-      for (int32_t k = 0; k < l->count; k++) {
-        const int64_t j = l->to[i * l->count + k];
+      for (int32_t k = 0; k < around; k++) {
+        const int64_t j = neighbour(e, sites, i, k);
         if (j < 0 || part_of[j] >= 0) continue;
         part_of[j] = parts;
         stack[top++] = j;
@@ -174,13 +181,14 @@ mps_status mpsi_elastic_check_supported(mps_elastic *e, const char *function) {
   mps_context *context = e->context;
   int64_t *part_of = mpsi_alloc(context, 2 * e->n, sizeof *part_of);
   if (!part_of) return mpsi_fail_memory(context, function, (size_t)(2 * e->n) * sizeof *part_of);
-  const int64_t parts = label(e, part_of, part_of + e->n);
+  mpsi_sites *sites = NULL;
+  mps_status status = e->shared ? mpsi_elastic_open_sites(e, function, &sites) : MPS_OK;
+  const int64_t parts = status == MPS_OK ? label(e, sites, part_of, part_of + e->n) : 0;
+  mpsi_elastic_close_sites(e, sites);
   part *p = mpsi_alloc(context, parts, sizeof *p);
-  mps_status status = MPS_OK;
-  if (!p)
+  if (status == MPS_OK && !p)
     status = mpsi_fail_memory(context, function, (size_t)parts * sizeof *p);
-  else
-    measure(e, part_of, parts, p);
+  if (status == MPS_OK) measure(e, part_of, parts, p);
   for (int64_t k = 0; k < parts && status == MPS_OK; k++) status = check_part(e, function, &p[k]);
   mpsi_free(context, p);
   mpsi_free(context, part_of);

@@ -41,7 +41,7 @@ static void hooke(const mps_elastic *e, int64_t i, const double (*strain)[3], do
 
 /* R and D of particle i from its gradient. */
 static void rotation_and_dilatation(const mps_elastic *e, int64_t i, double *r, double *d) {
-  const double *G = e->gradient + i * 4;
+  const double *G = e->gradient + mpsi_elastic_slot(e, i) * 4;
   *r = G[2] - G[1];
   *d = G[0] + G[3];
 }
@@ -52,7 +52,7 @@ static void virial(const mps_elastic *e, int64_t i, double (*stress)[3]) {
   double ri, di, rj, dj;
   rotation_and_dilatation(e, i, &ri, &di);
   for (int32_t k = 0; k < l->count; k++) {
-    const int64_t j = l->to[i * l->count + k];
+    const int64_t j = mpsi_elastic_neighbours(e, i)[k];
     if (j < 0) continue;
     const double r = sqrt(l->r2[k]), mu = 0.5 * (e->mu[i] + e->mu[j]);
     const double t[2] = {l->step[k][0] * e->spacing / r, l->step[k][1] * e->spacing / r};
@@ -63,7 +63,8 @@ static void virial(const mps_elastic *e, int64_t i, double (*stress)[3]) {
       const double p = 2.0 * mu * du / r - 0.5 * (e->mu[i] * ri + e->mu[j] * rj) * s[c] +
                        0.5 * (e->lambda[i] * di + e->lambda[j] * dj) * t[c];
       for (int b = 0; b < 2; b++) {
-        const double part = 0.5 * 2.0 / e->density[i] * l->weight[k] * p * t[b];
+        const double part =
+            0.5 * 2.0 / e->density[mpsi_elastic_slot(e, i)] * l->weight[k] * p * t[b];
         stress[c][b] += part;
         stress[b][c] += part;
       }
@@ -90,36 +91,92 @@ static double von_mises(const double *p) {
   return sqrt(0.5 * (a * a + b * b + c * c));
 }
 
+/* Where the values of a particle go: strain, stress, principal stresses, von Mises stress. */
+typedef struct table {
+  const mps_elastic *e;
+  int32_t columns; /* at most 16 */
+  double *column[16];
+} table;
+
+static mps_status open_table(mps_elastic *e, const char *function, table *t) {
+  const struct {
+    const char *name;
+    int32_t columns;
+  } fields[] = {{"strain", 2 * e->dim}, {"stress", 2 * e->dim}, {"principal", 3}, {"von_mises", 1}};
+  *t = (table){.e = e};
+  for (size_t k = 0; k < sizeof fields / sizeof *fields; k++) {
+    const mps_status status = mps_particles_add_field(e->particles, fields[k].name, 0);
+    if (status != MPS_OK)
+      return mpsi_fail(e->context, function, status, "field '%s' cannot be made", fields[k].name);
+  }
+  for (size_t k = 0; k < sizeof fields / sizeof *fields; k++)
+    for (int32_t c = 0; c < fields[k].columns; c++)
+      t->column[t->columns++] = mpsi_particles_column(e->particles, fields[k].name, c);
+  return MPS_OK;
+}
+
+/* Values of columns first, first + 1 ... of particle i. */
+static void put_row(const table *t, int64_t i, int32_t first, int32_t count, const double *row) {
+  const int64_t at = mps_particles_index(t->e->particles, t->e->id[i]);
+  for (int32_t c = 0; c < count && first + c < t->columns; c++) t->column[first + c][at] = row[c];
+}
+
+static void find_row(const mps_elastic *e, int64_t i, double *row) {
+  double strain[3][3], stress[3][3];
+  const int32_t m = 2 * e->dim; /* components */
+  symmetric_part(e->dim, e->gradient + mpsi_elastic_slot(e, i) * e->dim * e->dim, strain);
+  if (!e->conservative)
+    virial(e, i, stress);
+  else
+    hooke(e, i, (const double(*)[3])strain, stress);
+  complete_plane(e, i, strain, stress);
+  for (int k = 0; k < m; k++) {
+    row[k] = strain[mpsi_symmetric_row[k]][mpsi_symmetric_column[k]];
+    row[m + k] = stress[mpsi_symmetric_row[k]][mpsi_symmetric_column[k]];
+  }
+  principal((const double(*)[3])stress, row + 2 * m);
+  row[2 * m + 3] = von_mises(row + 2 * m);
+}
+
+/* Each rank finds those of its own particles and tells the others, some columns at a time. */
+static mps_status share_table(mps_elastic *e, const char *function, mps_status status,
+                              const table *t) {
+  const int64_t from = e->span[0].from, words = (e->span[0].to - from) * 16;
+  double *own = mpsi_alloc(e->context, words, sizeof *own);
+  if (status == MPS_OK && !own)
+    status = mpsi_fail_memory(e->context, function, (size_t)words * sizeof *own);
+  for (int64_t k = from; status == MPS_OK && k < e->span[0].to; k++)
+    find_row(e, e->at[k], own + (k - from) * 16);
+  status = mpsi_elastic_settle(e, function, status);
+  for (int32_t c = 0; status == MPS_OK && c < t->columns; c += e->dim) {
+    for (int64_t k = from; k < e->span[0].to; k++)
+      memcpy(e->work + e->at[k] * e->dim, own + (k - from) * 16 + c, (size_t)e->dim * sizeof *own);
+    status = mpsi_elastic_complete(e, function, e->work);
+    for (int64_t i = 0; status == MPS_OK && i < e->n; i++)
+      put_row(t, i, c, e->dim, e->work + i * e->dim);
+  }
+  mpsi_free(e->context, own);
+  return status;
+}
+
 mps_status mps_elastic_stress(mps_elastic *e) {
   if (!e) return MPS_ERROR_ARGUMENT;
-  const mps_status within = mpsi_elastic_check_between(e, __func__);
-  if (within != MPS_OK) return within;
-  double *values = mpsi_alloc(e->context, 16 * e->n, sizeof *values);
-  if (!values) return mpsi_fail_memory(e->context, __func__, (size_t)(16 * e->n) * sizeof *values);
-  double *strains = values, *stresses = values + 6 * e->n, *principals = values + 12 * e->n;
-  double *mises = values + 15 * e->n;
-  const int32_t m = 2 * e->dim; /* components */
+  mps_status status = mpsi_elastic_check_between(e, __func__);
+  if (status != MPS_OK) return status;
+  table t;
   mpsi_elastic_gradients(e, e->displacement, e->gradient);
-  for (int64_t i = 0; i < e->n; i++) {
-    double strain[3][3], stress[3][3];
-    symmetric_part(e->dim, e->gradient + i * e->dim * e->dim, strain);
-    if (!e->conservative)
-      virial(e, i, stress);
-    else
-      hooke(e, i, (const double(*)[3])strain, stress);
-    complete_plane(e, i, strain, stress);
-    for (int k = 0; k < m; k++) {
-      strains[i * m + k] = strain[mpsi_symmetric_row[k]][mpsi_symmetric_column[k]];
-      stresses[i * m + k] = stress[mpsi_symmetric_row[k]][mpsi_symmetric_column[k]];
-    }
-    principal((const double(*)[3])stress, principals + i * 3);
-    mises[i] = von_mises(principals + i * 3);
+  status = open_table(e, __func__, &t);
+  if (e->shared) {
+    const bool agreed = mpsi_elastic_begin_reading(e);
+    status = share_table(e, __func__, status, &t);
+    e->agreed = agreed;
+    return status;
   }
-  mps_status status = mpsi_elastic_write(e, __func__, "strain", strains, m);
-  if (status == MPS_OK) status = mpsi_elastic_write(e, __func__, "stress", stresses, m);
-  if (status == MPS_OK) status = mpsi_elastic_write(e, __func__, "principal", principals, 3);
-  if (status == MPS_OK) status = mpsi_elastic_write(e, __func__, "von_mises", mises, 1);
-  mpsi_free(e->context, values);
+  for (int64_t i = 0; status == MPS_OK && i < e->n; i++) {
+    double row[16];
+    find_row(e, i, row);
+    put_row(&t, i, 0, t.columns, row);
+  }
   return status;
 }
 
@@ -132,11 +189,14 @@ mps_status mps_elastic_section(mps_elastic *e, int32_t axis, double position, co
     return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
                      "axis is %d (allowed are 0..%d), position is %g m (must be finite)", axis,
                      e->dim - 1, position);
-  const mps_status status = mpsi_elastic_check_between(e, __func__);
+  mps_status status = mpsi_elastic_check_between(e, __func__);
   if (status != MPS_OK) return status;
+  const bool agreed = mpsi_elastic_begin_reading(e);
   /* K u is what loads and reactions put on each particle. Those on the near side are balanced
    * across the section by minus their sum. */
-  mpsi_elastic_apply(e, e->displacement, e->work);
+  status = mpsi_elastic_apply(e, __func__, e->displacement, e->work);
+  e->agreed = agreed;
+  if (status != MPS_OK) return status;
   for (int64_t i = 0; i < e->n; i++)
     for (int c = 0; c < e->dim; c++)
       e->work[i * e->dim + c] = e->x[i * e->dim + axis] > position ? 0.0 : -e->work[i * e->dim + c];
@@ -144,24 +204,38 @@ mps_status mps_elastic_section(mps_elastic *e, int32_t axis, double position, co
   return MPS_OK;
 }
 
-mps_status mps_elastic_energy(mps_elastic *e, double *strain, double *stabilising) {
-  if (!e) return MPS_ERROR_ARGUMENT;
-  const mps_status status = mpsi_elastic_check_between(e, __func__);
-  if (status != MPS_OK) return status;
-  const int64_t all = e->n * e->dim;
-  double total = 0.0, pairs = 0.0;
-  mpsi_elastic_apply(e, e->displacement, e->work);
-  for (int64_t k = 0; k < all; k++) total += 0.5 * e->displacement[k] * e->work[k];
-  for (int64_t i = 0; i < e->n; i++)
+/* Of the pairs that begin at particles of the rank. */
+static void add_pairs(const mps_elastic *e, mpsi_exact *sum) {
+  for (int64_t p = e->span[0].from; p < e->span[0].to; p++) {
+    const int64_t i = mpsi_elastic_in_order(e, p), *to = mpsi_elastic_neighbours(e, i);
+    double own = 0.0;
     for (int32_t k = 0; k < e->links.count; k++) {
-      const int64_t j = e->links.to[i * e->links.count + k];
       double pull[3];
-      if (j < i) continue;
+      if (to[k] < i) continue;
       mpsi_elastic_stretch(e, e->displacement, i, k, pull);
       for (int c = 0; c < e->dim; c++)
-        pairs += 0.5 * mpsi_elastic_bond(e, i, j, k) * pull[c] * pull[c];
+        own += 0.5 * mpsi_elastic_bond(e, i, to[k], k) * pull[c] * pull[c];
     }
+    mpsi_exact_add(sum, own);
+  }
+}
+
+mps_status mps_elastic_energy(mps_elastic *e, double *strain, double *stabilising) {
+  if (!e) return MPS_ERROR_ARGUMENT;
+  mps_status status = mpsi_elastic_check_between(e, __func__);
+  if (status != MPS_OK) return status;
+  const bool agreed = mpsi_elastic_begin_reading(e);
+  const int64_t all = e->n * e->dim;
+  double total = 0.0;
+  mpsi_exact pairs = {0};
+  status = mpsi_elastic_apply(e, __func__, e->displacement, e->work);
+  for (int64_t k = 0; k < all; k++) total += 0.5 * e->displacement[k] * e->work[k];
+  add_pairs(e, &pairs);
+  if (status == MPS_OK && e->shared)
+    status = mpsi_domain_sum_exact(e->def.domain, __func__, 1, &pairs);
+  e->agreed = agreed;
+  if (status != MPS_OK) return status;
   if (strain) *strain = total;
-  if (stabilising) *stabilising = e->conservative ? pairs : 0.0;
+  if (stabilising) *stabilising = e->conservative ? mpsi_exact_value(&pairs) : 0.0;
   return MPS_OK;
 }

@@ -88,8 +88,9 @@ static mps_status prepare_outside(mps_elastic *e, const char *function) {
 mps_status mpsi_elastic_prepare(mps_elastic *e, const char *function) {
   mps_status status = MPS_OK;
   double start = now();
+  status = mpsi_elastic_choose_window(e, function);
   const bool assemble = !e->pattern_valid || !e->values_valid;
-  if (!e->pattern_valid) status = mpsi_elastic_check_supported(e, function);
+  if (status == MPS_OK && !e->pattern_valid) status = mpsi_elastic_check_supported(e, function);
   if (status == MPS_OK && e->outside) return prepare_outside(e, function);
   if (status == MPS_OK) status = mpsi_elastic_assemble(e, function);
   if (status != MPS_OK) return status;
@@ -184,10 +185,12 @@ static double norm(const double *v, int64_t n) {
 }
 
 /* work = load - K u; its free components to `out`. */
-static void residual(mps_elastic *e, const double *load, const double *u, double *out) {
-  mpsi_elastic_apply(e, u, e->work);
+static mps_status residual(mps_elastic *e, const char *function, const double *load,
+                           const double *u, double *out) {
+  const mps_status status = mpsi_elastic_apply(e, function, u, e->work);
   for (int64_t k = 0; k < e->n * e->dim; k++) e->work[k] = load[k] - e->work[k];
   mpsi_elastic_reduce(e, e->work, out);
+  return status;
 }
 
 /* Displacements u of `count` load cases; rhs and solution have room for them. */
@@ -198,9 +201,10 @@ static mps_status solve_block(mps_elastic *e, const char *function, int64_t coun
   memset(u, 0, (size_t)(count * all) * sizeof *u);
   for (int64_t k = 0; k < count; k++) mpsi_elastic_expand(e, NULL, true, u + k * all);
   for (int32_t pass = 0; pass < passes; pass++) {
-    for (int64_t k = 0; k < count; k++)
-      residual(e, loads + k * all, u + k * all, rhs + k * e->unknowns);
-    const mps_status status = mpsi_elastic_backsolve(e, function, count, rhs, solution);
+    mps_status status = MPS_OK;
+    for (int64_t k = 0; k < count && status == MPS_OK; k++)
+      status = residual(e, function, loads + k * all, u + k * all, rhs + k * e->unknowns);
+    if (status == MPS_OK) status = mpsi_elastic_backsolve(e, function, count, rhs, solution);
     if (status != MPS_OK) return status;
     for (int64_t k = 0; k < count; k++)
       mpsi_elastic_expand(e, solution + k * e->unknowns, false, u + k * all);
@@ -243,11 +247,12 @@ mps_status mps_elastic_analyse_sized(mps_elastic *e, mps_elastic_estimate *out, 
 }
 
 /* Scale of the residual: the load together with what prescribed displacements pull. */
-static double residual_scale(mps_elastic *e, double *u) {
+static mps_status residual_scale(mps_elastic *e, const char *function, double *u, double *scale) {
   memset(u, 0, (size_t)(e->n * e->dim) * sizeof *u);
   mpsi_elastic_expand(e, NULL, true, u);
-  residual(e, e->load, u, e->rhs);
-  return norm(e->rhs, e->unknowns);
+  const mps_status status = residual(e, function, e->load, u, e->rhs);
+  *scale = norm(e->rhs, e->unknowns);
+  return status;
 }
 
 static mps_status solve(mps_elastic *e, const char *function, double *u) {
@@ -259,11 +264,12 @@ static mps_status solve(mps_elastic *e, const char *function, double *u) {
   if (status != MPS_OK) return status;
   const double start = now();
   e->report.iterations = 0;
-  const double scale = residual_scale(e, u);
-  status = solve_block(e, function, 1, e->load, u, e->rhs, e->solution);
+  double scale;
+  status = residual_scale(e, function, u, &scale);
+  if (status == MPS_OK) status = solve_block(e, function, 1, e->load, u, e->rhs, e->solution);
+  if (status == MPS_OK) status = residual(e, function, e->load, u, e->rhs);
   if (status != MPS_OK) return status;
   memcpy(e->displacement, u, (size_t)all * sizeof *u);
-  residual(e, e->load, e->displacement, e->rhs);
   e->report.residual = scale > 0.0 ? norm(e->rhs, e->unknowns) / scale : 0.0;
   for (int64_t k = 0; k < all; k++) e->reaction[k] = -e->work[k];
   mpsi_elastic_keep_fixed(e, e->reaction);

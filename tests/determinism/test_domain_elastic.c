@@ -52,10 +52,23 @@ static mps_status solve(void *user, const double *b, double tolerance, double *x
   return test_conjugate(((const shared *)user)->all, multiply, user, b, tolerance, x, iterations);
 }
 
-/* ---- a strip, held on the left, under its weight: at rest, then in motion -----------------------
+/* ---- a bar of two materials that stands on its end, under its weight and a pressure on one side:
+ * at rest, then in motion. Ids ascend from layer to layer, the order that ranks have too, so that
+ * sums over rows have the same bits with ranks and without. --------------------------------------
  */
 
-enum { HEALTHY, OTHER_BODY, OTHER_TOLERANCE, CANCELLED, SIGNAL_FAILS, SOLVER_FAILS, TROUBLES };
+enum {
+  PLANE,
+  SOLID,
+  TINY, /* six particles: most ranks have none */
+  LONG,
+  OTHER_BODY,
+  OTHER_TOLERANCE,
+  CANCELLED,
+  SIGNAL_FAILS,
+  SOLVER_FAILS,
+  TROUBLES
+};
 
 typedef struct upset {
   mps_domain *domain;
@@ -78,24 +91,41 @@ static mps_status unable(void *user, const mps_elastic_matrix *m, size_t size) {
   return mps_domain_rank(((shared *)user)->domain) == 1 ? MPS_ERROR_IO : status;
 }
 
-static mps_status make_set(mps_context *own, mps_particles **set) {
+static mps_status make_set(mps_context *own, int what, mps_particles **set) {
   mps_particles_def def = mps_particles_defaults();
-  const double lo[2] = {0.0, 0.0}, hi[2] = {3.0, 0.75};
+  const int up = what == SOLID || what == LONG ? 2 : 1;
+  double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {0.75, 0.5, 0.5}, stiff[3] = {0.5, 0.5, 0.5};
+  int64_t ids[512], count = 0;
+  hi[up] = what == TINY ? 0.75 : what == LONG ? 24.0 : 3.0;
+  stiff[up] = 1.75;
+  if (what == TINY) hi[0] = 0.5;
+  if (what == LONG) hi[0] = hi[1] = 1.0;
+  def.dim = up + 1;
   def.spacing = 0.25;
   mps_status status = mps_particles_create(own, &def, set);
   TRY(mps_particles_fill_box(*set, lo, hi, NULL));
-  TRY(mps_particles_set(*set, "young", 0, 50.0));
   TRY(mps_particles_set(*set, "poisson", 0, 0.3));
   TRY(mps_particles_set(*set, "density", 0, 2.0));
-  return status;
+  TRY(mps_particles_set(*set, "young", 0, 50.0));
+  TRY(mps_particles_select_box(*set, lo, stiff, 512, ids, &count));
+  mps_edit edit;
+  TRY(mps_particles_edit(*set, "young", &edit));
+  if (status != MPS_OK) return status;
+  for (int64_t k = 0; what != TINY && k < count; k++)
+    *mps_edit_f64(&edit, mps_particles_index(*set, ids[k]), 0) = 200.0;
+  return mps_particles_commit(*set, &edit);
 }
 
 static mps_status support_and_load(mps_context *own, mps_elastic *elastic, upset *u, int what) {
   mps_elastic_boundary_def held = mps_elastic_boundary_defaults();
-  mps_elastic_load_def weight = mps_elastic_load_defaults();
-  for (int c = 0; c < 3; c++) held.lower[c] = -10.0, held.upper[c] = c == 0 ? 0.2 : 10.0;
+  mps_elastic_load_def weight = mps_elastic_load_defaults(), push = weight;
+  int64_t facets[512], count = 0, ids[512];
+  const int up = what == SOLID || what == LONG ? 2 : 1;
+  const double lo[3] = {-1.0, -1.0, -1.0}, hi[3] = {0.2, 9.0, 9.0};
+  for (int c = 0; c < 3; c++) held.lower[c] = -10.0, held.upper[c] = c == up ? 0.2 : 10.0;
   weight.kind = MPS_ELASTIC_LOAD_BODY;
   weight.force[1] = -0.02;
+  push.kind = MPS_ELASTIC_LOAD_PRESSURE;
   mps_signal *signal = NULL;
   mps_status status = MPS_OK;
   if (what == SIGNAL_FAILS) status = mps_signal_user(own, failing, u, &signal);
@@ -103,7 +133,30 @@ static mps_status support_and_load(mps_context *own, mps_elastic *elastic, upset
   if (u->domain) status = mps_domain_agree(u->domain, status);
   TRY(mps_elastic_add_boundary(elastic, &held, NULL));
   TRY(mps_elastic_add_load(elastic, &weight, NULL));
+  /* The surface passes through the particles of one side: its pressure has moments. */
+  TRY(mps_particles_select_box(mps_elastic_particles(elastic), lo, hi, 512, ids, &count));
+  if (u->domain) status = mps_domain_agree(u->domain, status);
+  TRY(mps_elastic_cut(elastic, 0, -1, count, ids));
+  TRY(mps_elastic_select_facets(elastic, 0, 1, NULL, NULL, 512, facets, &count));
+  push.ids = facets, push.id_count = count, push.force[0] = 0.3;
+  if (u->domain) status = mps_domain_agree(u->domain, status);
+  TRY(mps_elastic_add_load(elastic, &push, NULL));
   mps_signal_destroy(&signal);
+  return status;
+}
+
+/* What is asked of a solution or a motion. */
+static mps_status ask(mps_elastic *elastic, double *out) {
+  const int64_t facets = mps_elastic_facet_count(elastic);
+  double *values = calloc((size_t)facets * 6, sizeof *values);
+  const mps_elastic_facet_arrays arrays = {.displacement = values, .velocity = values + 3 * facets};
+  mps_status status = values ? MPS_OK : MPS_ERROR_MEMORY;
+  TRY(mps_elastic_stress(elastic));
+  TRY(mps_elastic_energy(elastic, &out[0], &out[1]));
+  TRY(mps_elastic_section(elastic, 1, 0.4, NULL, out + 2, out + 5));
+  TRY(mps_elastic_get_facets(elastic, facets, NULL, &arrays));
+  for (int64_t k = 0; status == MPS_OK && k < 6 * facets; k++) out[8 + k % 12] += values[k];
+  free(values);
   return status;
 }
 
@@ -124,16 +177,18 @@ static mps_status compute(mps_context *own, mps_domain *domain, int what, int64_
   solver.solve = solve;
   solver.part = rank, solver.parts = domain ? mps_domain_size(domain) : 1;
   motion.dt = 0.1;
-  mps_status status = make_set(own, &set);
+  mps_status status = make_set(own, what, &set);
   if (what == OTHER_BODY && rank == 1) TRY(mps_particles_set(set, "young", 0, 51.0));
   if (domain) status = mps_domain_agree(domain, status);
   TRY(mps_elastic_create(own, set, &def, &elastic));
   TRY(mps_elastic_set_solver(elastic, &solver));
   TRY(support_and_load(own, elastic, &u, what));
   TRY(mps_elastic_solve(elastic));
+  TRY(ask(elastic, r->other));
   if (what == CANCELLED) mps_context_set_cancel(own, cancel, &u);
   TRY(mps_elastic_start(elastic, &motion));
   TRY(mps_elastic_step(elastic, length));
+  TRY(ask(elastic, r->other + 20));
   r->time = mps_elastic_time(elastic);
   if (status == MPS_OK) status = mps_elastic_get_totals(elastic, &r->totals);
   if (status == MPS_OK) status = mps_elastic_get_reaction(elastic, 0, &r->reaction[0]);
@@ -145,11 +200,14 @@ static mps_status compute(mps_context *own, mps_domain *domain, int what, int64_
   return status;
 }
 
-static void test_bits(void **state) { (void)state, compare_teams(compute, HEALTHY, 5, false); }
-
-static void test_refused_memory(void **state) {
-  (void)state, refuse_memory(compute, HEALTHY, 2, 1);
+static void test_bits(void **state) {
+  (void)state;
+  compare_teams(compute, PLANE, 5, false);
+  compare_teams(compute, SOLID, 3, true);
+  compare_teams(compute, TINY, 2, true);
 }
+
+static void test_refused_memory(void **state) { (void)state, refuse_memory(compute, PLANE, 2, 1); }
 
 static void test_troubles(void **state) {
   static const struct {
@@ -164,7 +222,7 @@ static void test_troubles(void **state) {
       [SOLVER_FAILS] = {MPS_ERROR_IO, "rank 1: the callback matrix", 0.0},
   };
   (void)state;
-  for (int what = HEALTHY + 1; what < TROUBLES; what++) {
+  for (int what = OTHER_BODY; what < TROUBLES; what++) {
     ranks s = {.compute = compute, .what = what, .threads = 1, .length = 5};
     run_team(&s, 3, 10.0);
     for (int32_t r = 0; r < 3; r++) {
@@ -179,11 +237,108 @@ static void test_troubles(void **state) {
   }
 }
 
+/* ---- memory -----------------------------------------------------------------------------------
+ */
+
+/* Bytes that a context holds and has held at most, each block behind its size. */
+typedef struct scales {
+  int64_t now, most;
+} scales;
+
+enum { BEFORE = 64 }; /* the library's alignment, or more */
+
+static void *weigh(void *user, size_t size, size_t alignment) {
+  scales *s = user;
+  char *block =
+      alignment <= BEFORE ? aligned_alloc(BEFORE, (size + 2 * BEFORE - 1) / BEFORE * BEFORE) : NULL;
+  if (!block) return NULL;
+  memcpy(block, &size, sizeof size);
+  s->now += (int64_t)size;
+  s->most = s->now > s->most ? s->now : s->most;
+  return block + BEFORE;
+}
+
+static void unweigh(void *user, void *memory) {
+  char *block = (char *)memory - BEFORE;
+  size_t size;
+  memcpy(&size, block, sizeof size);
+  ((scales *)user)->now -= (int64_t)size;
+  free(block);
+}
+
+static mps_status look_away(void *user, const mps_elastic_matrix *m, size_t size) {
+  (void)user, (void)m, (void)size;
+  return MPS_OK;
+}
+
+static mps_status give_up(void *user, const double *b, double tolerance, double *x,
+                          int64_t *iterations) {
+  (void)user, (void)b, (void)tolerance, (void)x, (void)iterations;
+  return MPS_ERROR_IO;
+}
+
+/* A long bar up to the solution, which is the caller's. */
+static void load_scales(void *user, team *t, int32_t rank) {
+  scales *s = (scales *)user + rank;
+  mps_context_def def = test_context_defaults();
+  mps_elastic_def body = mps_elastic_defaults();
+  mps_elastic_solver_def solver = mps_elastic_solver_defaults();
+  const mps_domain_def domain_def = team_domain_def(t, rank);
+  mps_context *own = NULL;
+  mps_particles *set = NULL;
+  mps_elastic *elastic = NULL;
+  upset u = {.domain = NULL};
+  def.executor = MPS_EXECUTOR_SERIAL;
+  def.alloc = weigh, def.free = unweigh, def.memory_user = s;
+  mps_status status = mps_context_create(&def, &own, NULL, 0);
+  TRY(mps_domain_create(own, &domain_def, &u.domain));
+  TRY(make_set(own, LONG, &set));
+  body.domain = u.domain;
+  TRY(mps_elastic_create(own, set, &body, &elastic));
+  solver.matrix = look_away, solver.solve = give_up;
+  solver.part = rank, solver.parts = mps_domain_size(u.domain);
+  TRY(mps_elastic_set_solver(elastic, &solver));
+  TRY(support_and_load(own, elastic, &u, LONG));
+  TRY(mps_elastic_solve(elastic));
+  if (status != MPS_ERROR_IO) s->most = -1; /* not the way there */
+  mps_elastic_destroy(&elastic);
+  mps_particles_destroy(&set);
+  mps_domain_destroy(&u.domain);
+  mps_context_destroy(&own);
+}
+
+static int64_t heaviest(int32_t size) {
+  scales s[8] = {{0}};
+  int64_t most = 0;
+  team t;
+  team_begin(&t, size);
+  team_run(&t, load_scales, s);
+  team_end(&t);
+  for (int32_t r = 0; r < size; r++) {
+    assert_true(s[r].most > 0);
+    assert_int_equal(s[r].now, 0);
+    most = s[r].most > most ? s[r].most : most;
+  }
+  return most;
+}
+
+/* Rows, neighbours, joints and stresses are of a rank's own particles and a few layers around them.
+ */
+static void test_memory(void **state) {
+  const int64_t one = heaviest(1), two = heaviest(2), eight = heaviest(8);
+  (void)state;
+  print_message("bytes of the heaviest of 1, 2, 8 ranks: %lld, %lld, %lld\n", (long long)one,
+                (long long)two, (long long)eight);
+  assert_true((double)two < 0.67 * (double)one);
+  assert_true((double)eight < 0.4 * (double)one);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_bits),
       cmocka_unit_test(test_refused_memory),
       cmocka_unit_test(test_troubles),
+      cmocka_unit_test(test_memory),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -228,7 +228,7 @@ static double *dense(mps_elastic *e) {
   double *k = malloc((size_t)(all * all) * sizeof *k), *u = calloc((size_t)all, sizeof *u);
   for (int64_t c = 0; c < all; c++) {
     u[c] = 1.0;
-    mpsi_elastic_apply(e, u, k + c * all);
+    mps_assert_ok(e->context, mpsi_elastic_apply(e, __func__, u, k + c * all));
     u[c] = 0.0;
   }
   free(u);
@@ -300,7 +300,7 @@ static void check_matrix(test_body *b) {
     one[c] = 1.0;
     mpsi_elastic_expand(e, one, false, u);
     one[c] = 0.0;
-    mpsi_elastic_apply(e, u, f);
+    mps_assert_ok(e->context, mpsi_elastic_apply(e, __func__, u, f));
     mpsi_elastic_reduce(e, f, column);
     assert_int_equal(e->row[e->column[c]], c);
     for (int64_t k = e->column[c]; k < e->column[c + 1]; k++) {

@@ -375,7 +375,7 @@ static void only_rigid_motions_are_free_whatever_the_materials(void **state) {
     double *w = malloc((size_t)all * sizeof *w), skew = 0.0;
     for (int64_t c = 0; c < all; c++) {
       u[c] = 1.0;
-      mpsi_elastic_apply(b.elastic, u, k + c * all);
+      mps_assert_ok(context, mpsi_elastic_apply(b.elastic, __func__, u, k + c * all));
       u[c] = 0.0;
     }
     for (int64_t r = 0; r < all; r++)
