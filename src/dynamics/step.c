@@ -147,19 +147,24 @@ static mps_status begin_budget(mps_dynamics *dynamics, const char *function) {
   return MPS_OK;
 }
 
-/* Whether an acceleration is beyond the limit, given by its square. What holds or drives a particle
- * gives it its acceleration; the loops have found that of the forces. */
-static bool diverges(mps_dynamics *dynamics, double limit2) {
-  mpsi_dynamics_state *s = &dynamics->state;
-  double *const a[2] = {s->ax, s->ay};
-  bool any = false;
-  for (int64_t b = 0; b < dynamics->mesh.blocks; b++) any = any || dynamics->bad[b];
-  if (!any) return false;
+/* What holds or drives a particle gives it its acceleration; the loops have found that of the
+ * forces. */
+static void drive_accelerations(mps_dynamics *dynamics) {
+  double *const a[2] = {dynamics->state.ax, dynamics->state.ay};
   for (int64_t k = 0; k < dynamics->bounds; k++) {
     const mpsi_dynamics_bound *q = &dynamics->bound[k];
     if (q->component < 2)
       a[q->component][q->particle] = dynamics->boundary[q->boundary]->gain[q->component];
   }
+}
+
+/* Whether an acceleration is beyond the limit, given by its square. */
+static bool diverges(mps_dynamics *dynamics, double limit2) {
+  const mpsi_dynamics_state *s = &dynamics->state;
+  bool any = false;
+  for (int64_t b = 0; b < dynamics->mesh.blocks; b++) any = any || dynamics->bad[b];
+  if (!any) return false;
+  drive_accelerations(dynamics);
   any = false;
   for (int64_t b = 0; b < dynamics->mesh.blocks; b++) {
     if (!dynamics->bad[b]) continue;
@@ -201,6 +206,16 @@ static mps_status pass_all(work *w, const char *function, mps_status status, boo
                                                   dynamics->count + dynamics->ghosts);
   pass_turns(w, mesh->interior, mesh->blocks + mesh->ghosts);
   return MPS_OK;
+}
+
+/* What the fields show of a run that has diverged: the pressures of all particles at the positions
+ * that they have come to, wherever in a call and on however many ranks that was found; and what has
+ * been driven as such. */
+static mps_status show_diverged(work *w, const char *function, mps_status status) {
+  drive_accelerations(w->dynamics);
+  const mps_status lost = mpsi_dynamics_bring_motion(w->dynamics, function);
+  if (lost == MPS_OK) pass_turns(w, 0, w->dynamics->mesh.blocks + w->dynamics->mesh.ghosts);
+  return lost == MPS_OK ? status : lost;
 }
 
 /* What of a step comes after the first pass. */
@@ -264,10 +279,12 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
     status = mpsi_dynamics_ask_signals(dynamics, function, now, then);
     if (status == MPS_OK) status = mpsi_dynamics_ask_loads(dynamics, function, now);
     status = pass_all(&w, function, status, &diverged);
+    if (status == MPS_ERROR_DIVERGED) return show_diverged(&w, function, status);
     if (status != MPS_OK) return status;
     w.forces = mpsi_dynamics_find_forces(dynamics);
     w.account = w.forces.any || watch;
     take_step(&w, output && k == count - 1, &diverged);
   }
-  return settle_step(dynamics, function, MPS_OK, &diverged);
+  status = settle_step(dynamics, function, MPS_OK, &diverged);
+  return status == MPS_ERROR_DIVERGED ? show_diverged(&w, function, status) : status;
 }
