@@ -185,27 +185,43 @@ static mps_status settle_step(mps_dynamics *dynamics, const char *function, mps_
   return report_divergence(dynamics, function);
 }
 
-/* The first pass of all blocks, and what has become of the ranks. What lies on other ranks arrives
- * while those blocks are at work that do not need it, and right after it has come ranks wait for
- * one another: once a step. Where a signal may refuse, they do so before the step. */
-static mps_status pass_all(work *w, const char *function, mps_status status, bool *diverged) {
+/* The first pass of all blocks. What lies on other ranks arrives while those blocks are at work
+ * that do not need it. */
+static mps_status pass_blocks(work *w, const char *function) {
   mps_dynamics *dynamics = w->dynamics;
   const mpsi_dynamics_mesh *mesh = &dynamics->mesh;
   mpsi_dynamics_state *s = &dynamics->state;
   double *const column[3] = {s->dx, s->dy, s->th};
-  if (dynamics->cautious) status = settle_step(dynamics, function, status, diverged);
-  if (status != MPS_OK) return status;
+  mps_status status = MPS_OK;
   if (dynamics->halo) status = mpsi_halo_begin(dynamics->halo, function, 3, column);
   if (status != MPS_OK) return status;
   pass_turns(w, 0, mesh->interior);
-  if (dynamics->halo) status = mpsi_halo_end(dynamics->halo, function, column);
-  if (status == MPS_OK && !dynamics->cautious)
-    status = settle_step(dynamics, function, status, diverged);
-  if (status != MPS_OK || !dynamics->halo) return status;
+  if (!dynamics->halo) return MPS_OK;
+  status = mpsi_halo_end(dynamics->halo, function, column);
+  if (status != MPS_OK) return status;
   dynamics->kernels->trig[dynamics->def.rotation](s, dynamics->count,
                                                   dynamics->count + dynamics->ghosts);
   pass_turns(w, mesh->interior, mesh->blocks + mesh->ghosts);
   return MPS_OK;
+}
+
+/* The first pass, and what has become of the ranks: whether the last step has diverged on one of
+ * them is told at its beginning and heard at its end, so that none waits for one that is less than
+ * a pass behind. Where a signal may refuse, they agree before. */
+static mps_status pass_all(work *w, const char *function, mps_status status, bool *diverged) {
+  mps_dynamics *dynamics = w->dynamics;
+  if (dynamics->cautious) {
+    status = settle_step(dynamics, function, status, diverged);
+    return status == MPS_OK ? pass_blocks(w, function) : status;
+  }
+  double any = *diverged;
+  if (status == MPS_OK)
+    status = mpsi_domain_vote_begin(dynamics->domain, function, status, 1, &any);
+  if (status == MPS_OK && !mpsi_domain_many(dynamics->domain) && any != 0.0)
+    return report_divergence(dynamics, function);
+  if (status == MPS_OK) status = pass_blocks(w, function);
+  if (status == MPS_OK) status = mpsi_domain_vote_end(dynamics->domain, function, 1, &any);
+  return status == MPS_OK && any != 0.0 ? report_divergence(dynamics, function) : status;
 }
 
 /* What the fields show of a run that has diverged: the pressures of all particles at the positions
