@@ -403,6 +403,7 @@ int main(int argc, char **argv) {
                                  .density = 1600.0,
                                  .duration = 8.0,
                                  .ppc = 9,
+                                 .spline = 1,
                                  .out = "out/column-collapse"}};
   settings *s = &sim.s;
   option table[] = {

@@ -31,6 +31,12 @@ for text in "Usage: mps-penetrometer" "--tip cone|sphere|stl" "--h [m]" "(defaul
   has "$work/help" "$text"
 done
 [ "$(awk 'length > 100' "$work/help" | wc -l)" -eq 0 ] || fail "mps-penetrometer: long lines"
+# The same weights as the library, wherever they can be chosen.
+for program in mps-sliding-box mps-rolling-disc mps-footing mps-pile mps-dam-break \
+  mps-column-collapse mps-penetrometer; do
+  "$1/$program" --help >"$work/help"
+  has "$work/help" "degree of the weights (default 3)"
+done
 for program in mps-tank mps-seawall mps-dam-break; do
   [ -x "$1/$program" ] || continue
   "$1/$program" --help >"$work/help" || fail "$program --help"
