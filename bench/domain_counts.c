@@ -29,6 +29,23 @@ int MPI_Allreduce(const void *from, void *to, int count, MPI_Datatype type, MPI_
   return code;
 }
 
+/* One that a rank waits for later. */
+int MPI_Iallreduce(const void *from, void *to, int count, MPI_Datatype type, MPI_Op op,
+                   MPI_Comm comm, MPI_Request *request) {
+  const double start = seconds();
+  const int code = PMPI_Iallreduce(from, to, count, type, op, comm, request);
+  domain_count.reducing += seconds() - start;
+  domain_count.reductions++;
+  return code;
+}
+
+int MPI_Wait(MPI_Request *request, MPI_Status *status) {
+  const double start = seconds();
+  const int code = PMPI_Wait(request, status);
+  domain_count.reducing += seconds() - start;
+  return code;
+}
+
 int MPI_Isend(const void *data, int count, MPI_Datatype type, int to, int tag, MPI_Comm comm,
               MPI_Request *request) {
   const double start = seconds();

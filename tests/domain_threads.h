@@ -31,6 +31,8 @@ typedef struct team_member {
   const mps_domain_message *message;
   const double *max;
   const int64_t *sum;
+  double *vote; /* its own, between team_max_begin and team_max_end */
+  int32_t votes;
   const char *own[TEAM_STARS]; /* items of each star while a copy is under way */
 } team_member;
 
@@ -183,6 +185,17 @@ static inline mps_status team_max(void *user, int32_t count, double *values) {
   return status == MPS_OK ? MPS_OK : team_leave(m->team);
 }
 
+/* In two parts, of which the second does it all; teams of two have no parts. */
+static inline mps_status team_max_begin(void *user, int32_t count, double *values) {
+  team_member *m = user;
+  m->vote = values, m->votes = count;
+  return MPS_OK;
+}
+static inline mps_status team_max_end(void *user) {
+  const team_member *m = user;
+  return team_max(user, m->votes, m->vote);
+}
+
 static inline mps_status team_sum(void *user, int32_t count, int64_t *values) {
   team_member *m = user;
   if (!team_listens(m)) return team_leave(m->team);
@@ -280,6 +293,7 @@ static inline mps_domain_def team_domain_def(team *t, int32_t rank) {
   def.star_destroy = team_star_destroy;
   def.reduce_max = team_max;
   def.reduce_sum = team_sum;
+  if (t->size != 2) def.max_begin = team_max_begin, def.max_end = team_max_end;
   return def;
 }
 

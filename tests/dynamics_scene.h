@@ -7,7 +7,7 @@
 
 #include <mps/dynamics.h>
 
-enum { LAYERS, SCATTERED, PERIODIC, STRIP, SCENES };
+enum { LAYERS, SCATTERED, PERIODIC, STRIP, UNSTABLE, SCENES };
 
 static inline double noise(uint64_t k) {
   k = (k + 1) * UINT64_C(0x9e3779b97f4a7c15);
@@ -49,7 +49,8 @@ static inline mps_status make_set(mps_context *own, int what, mps_particles **ou
   mps_particles_def def = mps_particles_defaults();
   def.spacing = 0.5;
   mps_status status = mps_particles_create(own, &def, out);
-  const double lo[2] = {0.0, 0.0}, hi[2] = {what == STRIP ? 400.0 : 45.0, what == STRIP ? 2.5 : 30};
+  const bool strip = what == STRIP || what == UNSTABLE;
+  const double lo[2] = {0.0, 0.0}, hi[2] = {strip ? 400.0 : 45.0, strip ? 2.5 : 30};
   TRY(mps_particles_fill_box(*out, lo, hi, NULL));
   if (what == SCATTERED && status == MPS_OK) {
     mps_edit x;
@@ -94,7 +95,7 @@ static inline mps_status add_conditions(mps_context *own, mps_domain *domain,
   TRY(mps_dynamics_add_boundary(dynamics, &point, &number));
   mps_dynamics_load_def load = mps_dynamics_load_defaults();
   load.lower[0] = 3.0, load.upper[0] = 30.0;
-  load.lower[1] = what == STRIP ? 2.0 : 29.0, load.upper[1] = INFINITY;
+  load.lower[1] = what == STRIP || what == UNSTABLE ? 2.0 : 29.0, load.upper[1] = INFINITY;
   load.traction[1] = -1e4, load.traction[0] = 2e3;
   load.signal[0] = signal;
   TRY(mps_dynamics_add_load(dynamics, &load, &number));
@@ -106,8 +107,16 @@ static inline mps_status add_conditions(mps_context *own, mps_domain *domain,
   return status;
 }
 
-/* Lengths of a run: three steps, or all that a solver can do with its state. */
+/* Lengths of a run: three steps, or all that a solver can do with its state. A body that falls
+ * apart does so in one call, or step by step. */
 enum { WHOLE_RUN, SHORT_RUN };
+
+static inline mps_status fall_apart(mps_dynamics *dynamics, int64_t length) {
+  mps_status status = MPS_OK;
+  for (int k = 0; status == MPS_OK && k < 300; k++)
+    status = mps_dynamics_step(dynamics, length == SHORT_RUN ? 1 : 300);
+  return status == MPS_ERROR_DIVERGED ? MPS_OK : MPS_ERROR_INTERNAL;
+}
 
 static inline mps_status march(mps_dynamics *dynamics, int64_t length) {
   mps_status status = mps_dynamics_step(dynamics, 3);
@@ -131,6 +140,7 @@ static inline mps_dynamics_def scene_def(mps_domain *domain, int what) {
       what == SCATTERED ? MPS_DYNAMICS_INTEGRATOR_LEAPFROG : MPS_DYNAMICS_INTEGRATOR_VERLET;
   if (what == PERIODIC) def.period_x = 45.0;
   if (what == STRIP) def.radius_ratio = 2.1;
+  if (what == UNSTABLE) def.dt = 5e-3, def.divergence = 1e6;
   return def;
 }
 
@@ -168,11 +178,11 @@ static inline mps_status compute(mps_context *own, mps_domain *domain, int what,
   if (domain) status = mps_domain_agree(domain, status);
   TRY(mps_dynamics_create(own, set, &def, &dynamics));
   if (status == MPS_OK) status = add_conditions(own, domain, dynamics, what, &base);
-  TRY(march(dynamics, length));
+  TRY(what == UNSTABLE ? fall_apart(dynamics, length) : march(dynamics, length));
   TRY(mps_dynamics_get_totals(dynamics, &r->totals));
   TRY(mps_dynamics_get_reaction(dynamics, base, &r->reaction[0]));
   mps_dynamics_linear_limit limit = {0};
-  TRY(mps_dynamics_find_limit(dynamics, 0.0, &limit));
+  if (what != UNSTABLE) TRY(mps_dynamics_find_limit(dynamics, 0.0, &limit));
   r->dt = mps_dynamics_dt(dynamics);
   r->limit = limit.dt, r->omega = limit.omega;
   r->pairs = mps_dynamics_pairs(dynamics);

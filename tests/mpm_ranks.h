@@ -121,7 +121,7 @@ static inline mps_mpm_def scene_def(mps_domain *domain, int what) {
   if (what == SPREAD) def.walls = MPS_MPM_WALLS_FIT, def.viscous_damping = 0.5;
   if (what == RING) def.local_damping = 0.1;
   def.budget = what == RING || what == PRESS || what == PLATES;
-  if (what == PRESS || what == ROOM) def.volumetric = MPS_MPM_VOLUMETRIC_CELL;
+  if (what == PRESS || what == ROOM || what == RING) def.volumetric = MPS_MPM_VOLUMETRIC_CELL;
   if (what == PLATES) def.volumetric = MPS_MPM_VOLUMETRIC_NODES;
   return def;
 }

@@ -99,23 +99,56 @@ static mps_status share_record(mps_domain *domain, const char *function, int32_t
   return status;
 }
 
-mps_status mpsi_domain_settle_max(mps_domain *domain, const char *function, mps_status status,
-                                  int32_t count, double *values) {
-  double all[1 + MPSI_DOMAIN_ALONG];
-  if (!mpsi_domain_many(domain)) return status;
-  if (domain->lost != MPS_OK)
-    return status == domain->lost ? status : mpsi_domain_alive(domain, function);
+/* What a rank tells of itself: its status, and values along with it. */
+static void write_vote(const mps_domain *domain, mps_status status, int32_t count,
+                       const double *values, double *all) {
   const double ranks = (double)domain->def.size;
   all[0] = status == MPS_OK ? 0.0 : (double)status * ranks + (ranks - 1.0 - domain->def.rank);
   for (int32_t k = 0; k < count; k++) all[1 + k] = values[k];
-  const mps_status lost = mpsi_domain_max(domain, function, 1 + count, all);
-  if (lost != MPS_OK) return lost;
+}
+
+/* What the ranks have told. */
+static mps_status read_vote(mps_domain *domain, const char *function, int32_t count, double *values,
+                            const double *all) {
   for (int32_t k = 0; k < count; k++) values[k] = all[1 + k];
   if (all[0] == 0.0) return MPS_OK;
   const int64_t code = (int64_t)all[0], worst = code / domain->def.size;
   return share_record(domain, function,
                       (int32_t)(domain->def.size - 1 - (code - worst * domain->def.size)),
                       (mps_status)worst);
+}
+
+mps_status mpsi_domain_settle_max(mps_domain *domain, const char *function, mps_status status,
+                                  int32_t count, double *values) {
+  double all[1 + MPSI_DOMAIN_ALONG];
+  if (!mpsi_domain_many(domain)) return status;
+  if (domain->lost != MPS_OK)
+    return status == domain->lost ? status : mpsi_domain_alive(domain, function);
+  write_vote(domain, status, count, values, all);
+  const mps_status lost = mpsi_domain_max(domain, function, 1 + count, all);
+  return lost == MPS_OK ? read_vote(domain, function, count, values, all) : lost;
+}
+
+mps_status mpsi_domain_vote_begin(mps_domain *domain, const char *function, mps_status status,
+                                  int32_t count, const double *values) {
+  if (!mpsi_domain_many(domain)) return status;
+  if (domain->lost != MPS_OK)
+    return status == domain->lost ? status : mpsi_domain_alive(domain, function);
+  write_vote(domain, status, count, values, domain->vote);
+  if (!domain->def.max_begin) return MPS_OK;
+  return mpsi_domain_note(domain, function, "max_begin",
+                          domain->def.max_begin(domain->def.user, 1 + count, domain->vote));
+}
+
+mps_status mpsi_domain_vote_end(mps_domain *domain, const char *function, int32_t count,
+                                double *values) {
+  if (!mpsi_domain_many(domain)) return MPS_OK;
+  mps_status status = mpsi_domain_alive(domain, function);
+  if (status == MPS_OK && domain->def.max_begin)
+    status = mpsi_domain_note(domain, function, "max_end", domain->def.max_end(domain->def.user));
+  else if (status == MPS_OK)
+    status = mpsi_domain_max(domain, function, 1 + count, domain->vote);
+  return status == MPS_OK ? read_vote(domain, function, count, values, domain->vote) : status;
 }
 
 mps_status mpsi_domain_settle(mps_domain *domain, const char *function, mps_status status) {
@@ -219,6 +252,8 @@ static mps_status check_def(mps_context *context, const mps_domain_def *def) {
                         : !def->reduce_max   ? "reduce_max"
                         : !def->reduce_sum   ? "reduce_sum"
                                              : NULL;
+  if (!missing && !def->max_begin != !def->max_end)
+    missing = def->max_begin ? "max_end" : "max_begin";
   if (!missing) return MPS_OK;
   return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "the callback %s is NULL", missing);
 }

@@ -28,6 +28,13 @@ mps_status mpsi_domain_settle(mps_domain *domain, const char *function, mps_stat
 #define MPSI_DOMAIN_ALONG 8
 mps_status mpsi_domain_settle_max(mps_domain *domain, const char *function, mps_status status,
                                   int32_t count, double *values);
+/* mpsi_domain_settle_max in two parts, between which ranks may compute and bring halos, but neither
+ * agree nor reduce: no rank waits for one that is a little behind. One is under way at a time. The
+ * first part returns `status` in one process, and of several an error where the transport fails. */
+mps_status mpsi_domain_vote_begin(mps_domain *domain, const char *function, mps_status status,
+                                  int32_t count, const double *values);
+mps_status mpsi_domain_vote_end(mps_domain *domain, const char *function, int32_t count,
+                                double *values);
 /* The same, and MPS_ERROR_ARGUMENT where ranks give different values of `name`. */
 mps_status mpsi_domain_settle_same(mps_domain *domain, const char *function, mps_status status,
                                    const char *name, double value);

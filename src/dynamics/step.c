@@ -147,19 +147,24 @@ static mps_status begin_budget(mps_dynamics *dynamics, const char *function) {
   return MPS_OK;
 }
 
-/* Whether an acceleration is beyond the limit, given by its square. What holds or drives a particle
- * gives it its acceleration; the loops have found that of the forces. */
-static bool diverges(mps_dynamics *dynamics, double limit2) {
-  mpsi_dynamics_state *s = &dynamics->state;
-  double *const a[2] = {s->ax, s->ay};
-  bool any = false;
-  for (int64_t b = 0; b < dynamics->mesh.blocks; b++) any = any || dynamics->bad[b];
-  if (!any) return false;
+/* What holds or drives a particle gives it its acceleration; the loops have found that of the
+ * forces. */
+static void drive_accelerations(mps_dynamics *dynamics) {
+  double *const a[2] = {dynamics->state.ax, dynamics->state.ay};
   for (int64_t k = 0; k < dynamics->bounds; k++) {
     const mpsi_dynamics_bound *q = &dynamics->bound[k];
     if (q->component < 2)
       a[q->component][q->particle] = dynamics->boundary[q->boundary]->gain[q->component];
   }
+}
+
+/* Whether an acceleration is beyond the limit, given by its square. */
+static bool diverges(mps_dynamics *dynamics, double limit2) {
+  const mpsi_dynamics_state *s = &dynamics->state;
+  bool any = false;
+  for (int64_t b = 0; b < dynamics->mesh.blocks; b++) any = any || dynamics->bad[b];
+  if (!any) return false;
+  drive_accelerations(dynamics);
   any = false;
   for (int64_t b = 0; b < dynamics->mesh.blocks; b++) {
     if (!dynamics->bad[b]) continue;
@@ -180,27 +185,53 @@ static mps_status settle_step(mps_dynamics *dynamics, const char *function, mps_
   return report_divergence(dynamics, function);
 }
 
-/* The first pass of all blocks, and what has become of the ranks. What lies on other ranks arrives
- * while those blocks are at work that do not need it, and right after it has come ranks wait for
- * one another: once a step. Where a signal may refuse, they do so before the step. */
-static mps_status pass_all(work *w, const char *function, mps_status status, bool *diverged) {
+/* The first pass of all blocks. What lies on other ranks arrives while those blocks are at work
+ * that do not need it. */
+static mps_status pass_blocks(work *w, const char *function) {
   mps_dynamics *dynamics = w->dynamics;
   const mpsi_dynamics_mesh *mesh = &dynamics->mesh;
   mpsi_dynamics_state *s = &dynamics->state;
   double *const column[3] = {s->dx, s->dy, s->th};
-  if (dynamics->cautious) status = settle_step(dynamics, function, status, diverged);
-  if (status != MPS_OK) return status;
+  mps_status status = MPS_OK;
   if (dynamics->halo) status = mpsi_halo_begin(dynamics->halo, function, 3, column);
   if (status != MPS_OK) return status;
   pass_turns(w, 0, mesh->interior);
-  if (dynamics->halo) status = mpsi_halo_end(dynamics->halo, function, column);
-  if (status == MPS_OK && !dynamics->cautious)
-    status = settle_step(dynamics, function, status, diverged);
-  if (status != MPS_OK || !dynamics->halo) return status;
+  if (!dynamics->halo) return MPS_OK;
+  status = mpsi_halo_end(dynamics->halo, function, column);
+  if (status != MPS_OK) return status;
   dynamics->kernels->trig[dynamics->def.rotation](s, dynamics->count,
                                                   dynamics->count + dynamics->ghosts);
   pass_turns(w, mesh->interior, mesh->blocks + mesh->ghosts);
   return MPS_OK;
+}
+
+/* The first pass, and what has become of the ranks: whether the last step has diverged on one of
+ * them is told at its beginning and heard at its end, so that none waits for one that is less than
+ * a pass behind. Where a signal may refuse, they agree before. */
+static mps_status pass_all(work *w, const char *function, mps_status status, bool *diverged) {
+  mps_dynamics *dynamics = w->dynamics;
+  if (dynamics->cautious) {
+    status = settle_step(dynamics, function, status, diverged);
+    return status == MPS_OK ? pass_blocks(w, function) : status;
+  }
+  double any = *diverged;
+  if (status == MPS_OK)
+    status = mpsi_domain_vote_begin(dynamics->domain, function, status, 1, &any);
+  if (status == MPS_OK && !mpsi_domain_many(dynamics->domain) && any != 0.0)
+    return report_divergence(dynamics, function);
+  if (status == MPS_OK) status = pass_blocks(w, function);
+  if (status == MPS_OK) status = mpsi_domain_vote_end(dynamics->domain, function, 1, &any);
+  return status == MPS_OK && any != 0.0 ? report_divergence(dynamics, function) : status;
+}
+
+/* What the fields show of a run that has diverged: the pressures of all particles at the positions
+ * that they have come to, wherever in a call and on however many ranks that was found; and what has
+ * been driven as such. */
+static mps_status show_diverged(work *w, const char *function, mps_status status) {
+  drive_accelerations(w->dynamics);
+  const mps_status lost = mpsi_dynamics_bring_motion(w->dynamics, function);
+  if (lost == MPS_OK) pass_turns(w, 0, w->dynamics->mesh.blocks + w->dynamics->mesh.ghosts);
+  return lost == MPS_OK ? status : lost;
 }
 
 /* What of a step comes after the first pass. */
@@ -264,10 +295,12 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
     status = mpsi_dynamics_ask_signals(dynamics, function, now, then);
     if (status == MPS_OK) status = mpsi_dynamics_ask_loads(dynamics, function, now);
     status = pass_all(&w, function, status, &diverged);
+    if (status == MPS_ERROR_DIVERGED) return show_diverged(&w, function, status);
     if (status != MPS_OK) return status;
     w.forces = mpsi_dynamics_find_forces(dynamics);
     w.account = w.forces.any || watch;
     take_step(&w, output && k == count - 1, &diverged);
   }
-  return settle_step(dynamics, function, MPS_OK, &diverged);
+  status = settle_step(dynamics, function, MPS_OK, &diverged);
+  return status == MPS_ERROR_DIVERGED ? show_diverged(&w, function, status) : status;
 }

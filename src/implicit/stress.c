@@ -94,9 +94,10 @@ static double von_mises(const double *p) {
 /* Where the values of a particle go: strain, stress, principal stresses, von Mises stress. */
 typedef struct table {
   const mps_elastic *e;
-  int32_t columns; /* at most 16 */
+  int32_t columns;
   double *column[16];
 } table;
+#define ROW 18 /* columns of a row, with room to copy them by two or three */
 
 static mps_status open_table(mps_elastic *e, const char *function, table *t) {
   const struct {
@@ -141,16 +142,16 @@ static void find_row(const mps_elastic *e, int64_t i, double *row) {
 /* Each rank finds those of its own particles and tells the others, some columns at a time. */
 static mps_status share_table(mps_elastic *e, const char *function, mps_status status,
                               const table *t) {
-  const int64_t from = e->span[0].from, words = (e->span[0].to - from) * 16;
+  const int64_t from = e->span[0].from, words = (e->span[0].to - from) * ROW;
   double *own = mpsi_alloc(e->context, words, sizeof *own);
   if (status == MPS_OK && !own)
     status = mpsi_fail_memory(e->context, function, (size_t)words * sizeof *own);
   for (int64_t k = from; status == MPS_OK && k < e->span[0].to; k++)
-    find_row(e, e->at[k], own + (k - from) * 16);
+    find_row(e, e->at[k], own + (k - from) * ROW);
   status = mpsi_elastic_settle(e, function, status);
   for (int32_t c = 0; status == MPS_OK && c < t->columns; c += e->dim) {
     for (int64_t k = from; k < e->span[0].to; k++)
-      memcpy(e->work + e->at[k] * e->dim, own + (k - from) * 16 + c, (size_t)e->dim * sizeof *own);
+      memcpy(e->work + e->at[k] * e->dim, own + (k - from) * ROW + c, (size_t)e->dim * sizeof *own);
     status = mpsi_elastic_complete(e, function, e->work);
     for (int64_t i = 0; status == MPS_OK && i < e->n; i++)
       put_row(t, i, c, e->dim, e->work + i * e->dim);
@@ -173,7 +174,7 @@ mps_status mps_elastic_stress(mps_elastic *e) {
     return status;
   }
   for (int64_t i = 0; status == MPS_OK && i < e->n; i++) {
-    double row[16];
+    double row[ROW];
     find_row(e, i, row);
     put_row(&t, i, 0, t.columns, row);
   }

@@ -256,7 +256,6 @@ static mps_status take_prescribed(mps_mpm *mpm, const char *function,
 
 static mps_status read_def(mps_mpm *mpm, const char *function, const mps_mpm_boundary_def *user,
                            mps_mpm_boundary_def *def) {
-  *def = boundary_defaults;
   if (!user) return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "def is NULL");
   return MPSI_DEF_READ(mpm->context, function, mps_mpm_boundary_def, user, def);
 }
@@ -287,10 +286,9 @@ static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status s
 
 mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mpm_boundary_def *user, int32_t *number) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  mps_mpm_boundary_def def;
+  mps_mpm_boundary_def def = boundary_defaults;
   mps_status status = mpsi_mpm_between_steps(mpm, __func__);
-  if (status != MPS_OK) return status;
-  status = read_def(mpm, __func__, user, &def);
+  if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
   status = compare_ranks(mpm, __func__, status, -1, &def);
   if (status != MPS_OK) return status;
   int32_t at = MPSI_SIDES;
@@ -328,10 +326,9 @@ static mps_status find(mps_mpm *mpm, const char *function, int32_t number) {
 
 mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t number, const mps_mpm_boundary_def *user) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  mps_mpm_boundary_def def;
+  mps_mpm_boundary_def def = boundary_defaults;
   mps_status status = mpsi_mpm_between_steps(mpm, __func__);
-  if (status != MPS_OK) return status;
-  status = find(mpm, __func__, number);
+  if (status == MPS_OK) status = find(mpm, __func__, number);
   if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
   status = compare_ranks(mpm, __func__, status, number, &def);
   if (status != MPS_OK) return status;
@@ -354,6 +351,8 @@ mps_status mps_mpm_remove_boundary(mps_mpm *mpm, int32_t number) {
   if (status == MPS_OK && on_axis(mpm, number))
     status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                        "boundary is 0, the axis r = 0, which cannot be free");
+  if (mpm->share)
+    status = mpsi_domain_settle_same(mpm->share->domain, __func__, status, "boundary", number);
   if (status != MPS_OK) return status;
   drop(mpm, &mpm->boundaries.hold[number]);
   mpm->boundaries.outdated = true;

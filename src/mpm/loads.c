@@ -105,7 +105,6 @@ static mps_status check_list(mps_mpm *mpm, const char *function, mps_status stat
 
 static mps_status read_def(mps_mpm *mpm, const char *function, const mps_mpm_load_def *user,
                            mps_mpm_load_def *def) {
-  *def = load_defaults;
   if (!user) return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "def is NULL");
   const mps_status status = MPSI_DEF_READ(mpm->context, function, mps_mpm_load_def, user, def);
   for (int c = 0; c < mpm->dim && status == MPS_OK; c++)
@@ -143,6 +142,25 @@ static mps_status copy_list(mps_mpm *mpm, const char *function, const mps_mpm_lo
   return MPS_OK;
 }
 
+/* All ranks give the same load (`number` -1: a new one). */
+static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status status,
+                                int32_t number, const mps_mpm_load_def *def) {
+  if (!mpm->share) return status;
+  double numbers[16] = {number, (double)def->id_count, def->ids != NULL, def->area != NULL};
+  int32_t count = 4;
+  for (int c = 0; c < mpm->dim; c++) {
+    numbers[count++] = def->traction[c], numbers[count++] = def->factor[c];
+    numbers[count++] = def->signal[c] != NULL;
+  }
+  const bool listed = status == MPS_OK && def->ids && def->id_count > 0;
+  const size_t bytes = listed ? (size_t)def->id_count * 8 : 0;
+  uint64_t hash = mpsi_domain_hash(MPSI_DOMAIN_HASH, def->ids, bytes);
+  if (def->area) hash = mpsi_domain_hash(hash, def->area, bytes);
+  numbers[count++] = mpsi_domain_short(hash);
+  return mpsi_domain_settle_numbers(mpm->share->domain, function, status,
+                                    "a hash of the load's definition", count, numbers);
+}
+
 /* The lowest free number, with a place in the list. */
 static mps_status find_number(mps_mpm *mpm, const char *function, int32_t *number) {
   int32_t at = 0;
@@ -159,11 +177,12 @@ static mps_status find_number(mps_mpm *mpm, const char *function, int32_t *numbe
 
 mps_status mps_mpm_add_load(mps_mpm *mpm, const mps_mpm_load_def *user, int32_t *number) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  mps_mpm_load_def def;
+  mps_mpm_load_def def = load_defaults;
   mpsi_traction made = {.count = 0};
   int32_t at = 0;
   mps_status status = mpsi_mpm_between_steps(mpm, __func__);
   if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
+  status = compare_ranks(mpm, __func__, status, -1, &def);
   status = check_list(mpm, __func__, status, &def);
   if (status == MPS_OK) status = mpsi_mpm_make_forces(mpm, __func__);
   if (status == MPS_OK) status = copy_list(mpm, __func__, &def, &made);
@@ -175,7 +194,7 @@ mps_status mps_mpm_add_load(mps_mpm *mpm, const mps_mpm_load_def *user, int32_t 
   }
   take_traction(&made, &def);
   mpm->loads.traction[at] = made;
-  *number = at;
+  if (number) *number = at;
   return MPS_OK;
 }
 
@@ -190,9 +209,10 @@ static mps_status find_load(mps_mpm *mpm, const char *function, int32_t number) 
 
 mps_status mps_mpm_set_load(mps_mpm *mpm, int32_t number, const mps_mpm_load_def *user) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  mps_mpm_load_def def;
+  mps_mpm_load_def def = load_defaults;
   mps_status status = find_load(mpm, __func__, number);
   if (status == MPS_OK) status = read_def(mpm, __func__, user, &def);
+  status = compare_ranks(mpm, __func__, status, number, &def);
   if (status != MPS_OK) return status;
   mpsi_traction *load = &mpm->loads.traction[number];
   if (def.ids || def.id_count != 0 || def.area) {
@@ -214,7 +234,9 @@ mps_status mps_mpm_set_load(mps_mpm *mpm, int32_t number, const mps_mpm_load_def
 
 mps_status mps_mpm_remove_load(mps_mpm *mpm, int32_t number) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_status status = find_load(mpm, __func__, number);
+  mps_status status = find_load(mpm, __func__, number);
+  if (mpm->share)
+    status = mpsi_domain_settle_same(mpm->share->domain, __func__, status, "load", number);
   if (status == MPS_OK) drop(mpm, &mpm->loads.traction[number]);
   return status;
 }

@@ -33,7 +33,7 @@ typedef struct mpsi_share {
   int32_t most;            /* nodes of the widest part of a tile in use, on all ranks */
   bool apart, thin;     /* some tile that is sent has forces, is parted, in the step being made; */
   int32_t springs;      /* of so many bodies are there tiles of springs with one, at most */
-  int32_t item;         /* bytes of a parcel: a tile on its way */
+  int32_t item;         /* bytes of a parcel: a tile on its way, or other sums */
   double *out, *in;     /* parcels */
   int64_t *first;       /* of each rank: the first key on the curve of its blocks (curve.h) */
   mpsi_placing placing; /* how the curve lies over the blocks */

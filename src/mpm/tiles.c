@@ -56,8 +56,6 @@ mps_status mpsi_mpm_share_ready(mps_mpm *mpm, const char *function, mps_status s
   share->apart = found[APART] > 0.0;
   share->thin = found[THIN] > 0.0;
   share->springs = (int32_t)found[SPRINGS];
-  share->item = (int32_t)(parcel_doubles(share, share->apart, share->thin, share->springs) *
-                          (int64_t)sizeof(double));
   return status;
 }
 
@@ -144,6 +142,8 @@ static void pack(void *data, int64_t k, int32_t number) {
 
 mps_status mpsi_mpm_share_send(mps_mpm *mpm, const char *function) {
   mpsi_share *share = mpm->share;
+  share->item = (int32_t)(parcel_doubles(share, share->apart, share->thin, share->springs) *
+                          (int64_t)sizeof(double));
   mpsi_parallel_for(mpm->context, share->borders, pack, mpm);
   share->lost = mpsi_halo_begin_bytes(share->halo, function, share->item, share->out, share->in);
   return share->lost;

@@ -10,6 +10,7 @@
 
 typedef struct transport {
   MPI_Comm comm;
+  MPI_Request vote; /* of max_begin */
 } transport;
 
 /* ---- callbacks --------------------------------------------------------------------------------
@@ -19,6 +20,17 @@ static mps_status reduce_max(void *user, int32_t count, double *values) {
   const transport *t = user;
   return MPSI_PETSC_STATUS(
       MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, MPI_MAX, t->comm));
+}
+
+static mps_status max_begin(void *user, int32_t count, double *values) {
+  transport *t = user;
+  return MPSI_PETSC_STATUS(
+      MPI_Iallreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, MPI_MAX, t->comm, &t->vote));
+}
+
+static mps_status max_end(void *user) {
+  transport *t = user;
+  return MPSI_PETSC_STATUS(MPI_Wait(&t->vote, MPI_STATUS_IGNORE));
 }
 
 static mps_status reduce_sum(void *user, int32_t count, int64_t *values) {
@@ -205,6 +217,8 @@ static mps_status create(mps_context *context, MPI_Comm communicator, mps_domain
   def.star_destroy = star_destroy;
   def.reduce_max = reduce_max;
   def.reduce_sum = reduce_sum;
+  def.max_begin = max_begin;
+  def.max_end = max_end;
   def.destroy = destroy;
   const mps_status status = mps_domain_create(context, &def, out);
   if (status != MPS_OK) destroy(t);

@@ -20,6 +20,21 @@ static void test_strip(void **state) {
   (void)state, compare_teams(compute, STRIP, WHOLE_RUN, true);
 }
 
+/* A body that falls apart shows the same on all ranks, and wherever in a call that is found. */
+static void test_unstable(void **state) {
+  (void)state;
+  result one = {0}, steps = {0};
+  mps_context *own = test_context(MPS_EXECUTOR_SERIAL, 1);
+  compare_teams(compute, UNSTABLE, WHOLE_RUN, false);
+  mps_assert_ok(own, compute(own, NULL, UNSTABLE, WHOLE_RUN, &one));
+  mps_assert_ok(own, compute(own, NULL, UNSTABLE, SHORT_RUN, &steps));
+  assert_memory_equal(field_of(&one, "pressure"), field_of(&steps, "pressure"),
+                      (size_t)one.count * sizeof(double));
+  drop(&one);
+  drop(&steps);
+  mps_context_destroy(&own);
+}
+
 /* ---- cut in two -------------------------------------------------------------------------------
  */
 
@@ -299,7 +314,7 @@ int main(void) {
       cmocka_unit_test(test_periodic),       cmocka_unit_test(test_strip),
       cmocka_unit_test(test_cut_layers),     cmocka_unit_test(test_cut_scattered),
       cmocka_unit_test(test_refused_memory), cmocka_unit_test(test_troubles),
-      cmocka_unit_test(test_lost_partner),
+      cmocka_unit_test(test_lost_partner),   cmocka_unit_test(test_unstable),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

@@ -114,6 +114,12 @@ enum {
   DEPTH,
   OTHER_BOUNDARY,
   BAD_BOUNDARY,
+  OTHER_REMOVED,
+  OTHER_TRACTION,
+  OTHER_AREA,
+  OTHER_FACTOR,
+  BAD_LOAD,
+  OTHER_LOAD_REMOVED,
   TROUBLES
 };
 static const trouble_case trouble[TROUBLES] = {
@@ -126,6 +132,12 @@ static const trouble_case trouble[TROUBLES] = {
     [OTHER_CONTACT] = {MPS_ERROR_ARGUMENT, "a hash of the contact's definition"},
     [OTHER_BOUNDARY] = {MPS_ERROR_ARGUMENT, "a hash of the boundary's definition"},
     [BAD_BOUNDARY] = {MPS_ERROR_ARGUMENT, "rank 1: boundary is -1"},
+    [OTHER_REMOVED] = {MPS_ERROR_ARGUMENT, "boundary is 1 on rank 0"},
+    [OTHER_TRACTION] = {MPS_ERROR_ARGUMENT, "a hash of the load's definition"},
+    [OTHER_AREA] = {MPS_ERROR_ARGUMENT, "a hash of the load's definition"},
+    [OTHER_FACTOR] = {MPS_ERROR_ARGUMENT, "a hash of the load's definition"},
+    [BAD_LOAD] = {MPS_ERROR_ARGUMENT, "rank 1: load is 5"},
+    [OTHER_LOAD_REMOVED] = {MPS_ERROR_ARGUMENT, "load is 0 on rank 0"},
     [DEPTH] = {MPS_ERROR_DIVERGED, "m below the surface of body 0, at most 1e-09 m"},
 };
 
@@ -134,6 +146,22 @@ static mps_status refuse_callback(void *user, mps_mpm *mpm) {
 }
 
 static int32_t cancel(void *user) { return *(const int32_t *)user == 1; }
+
+/* Two loads, which ranks make, change or remove in their own ways. */
+static mps_status load_badly(mps_mpm *mpm, int what, int32_t rank) {
+  const int64_t ids[2] = {17, 44};
+  const double area[2] = {1e-2, what == OTHER_AREA && rank == 2 ? 1e-3 : 2e-2};
+  mps_mpm_load_def def = mps_mpm_load_defaults();
+  def.ids = ids, def.id_count = 2, def.area = area;
+  def.traction[0] = what == OTHER_TRACTION ? 10.0 * rank : 10.0;
+  mps_status status = mps_mpm_add_load(mpm, &def, NULL);
+  TRY(mps_mpm_add_load(mpm, &def, NULL));
+  def.ids = NULL, def.id_count = 0, def.area = NULL;
+  if (what == OTHER_FACTOR) def.factor[1] = rank;
+  TRY(mps_mpm_set_load(mpm, what == BAD_LOAD && rank == 1 ? 5 : 1, &def));
+  TRY(mps_mpm_remove_load(mpm, what == OTHER_LOAD_REMOVED && rank == 2 ? 1 : 0));
+  return status;
+}
 
 static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, int32_t rank) {
   scene s = {.set = NULL};
@@ -162,6 +190,9 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
   if (what == BAD_BOUNDARY)
     TRY(mps_mpm_set_side(s.mpm, rank == 1 ? -1 : MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED,
                          0.0));
+  if (what == OTHER_REMOVED)
+    TRY(mps_mpm_remove_boundary(s.mpm, rank == 1 ? MPS_MPM_SIDE_Y_LOWER : MPS_MPM_SIDE_X_UPPER));
+  if (what >= OTHER_TRACTION) TRY(load_badly(s.mpm, what, rank));
   if (what == UNKNOWN_ID) {
     mps_mpm_boundary_def boundary = mps_mpm_boundary_defaults();
     const int64_t ids[2] = {17, 123456};
