@@ -1,6 +1,7 @@
 /* domain_elastic.c - memory and time of implicit elasticity on ranks: mpirun -n N
- * bench-domain-elastic [UNKNOWNS [direct]], of all ranks together (1e5). A block in space, clamped
- * below and pulled sideways above, solved by PETSc's multigrid or by MUMPS. What the process holds
+ * bench-domain-elastic [UNKNOWNS [multigrid|direct [HEIGHT]]], of all ranks together (1e5). A block
+ * in space, HEIGHT (1) times as high as wide, clamped below and pulled sideways above, solved by
+ * PETSc's multigrid or by MUMPS. What the process holds
  * at most is the kernel's number, with the programs' code; PETSc's own memory is in it.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "measure.h"
@@ -30,10 +31,10 @@ typedef struct problem {
   mps_elastic *elastic;
 } problem;
 
-static void make(problem *p, int64_t cells) {
+static void make(problem *p, int64_t cells, double height) {
   mps_particles_def set = mps_particles_defaults();
   mps_elastic_def def = mps_elastic_defaults();
-  const double lo[3] = {0, 0, 0}, hi[3] = {1, 1, 1};
+  const double lo[3] = {0, 0, 0}, hi[3] = {1, 1, height};
   set.dim = 3;
   set.spacing = 1.0 / (double)cells;
   def.domain = p->domain;
@@ -63,7 +64,8 @@ static void make(problem *p, int64_t cells) {
 int main(int argc, char **argv) {
   const double unknowns = argc > 1 ? atof(argv[1]) : 1e5;
   const bool direct = argc > 2 && strcmp(argv[2], "direct") == 0;
-  const int64_t cells = (int64_t)fmax(2.0, rint(cbrt(unknowns / 3.0)));
+  const double height = argc > 3 ? fmax(1.0, atof(argv[3])) : 1.0;
+  const int64_t cells = (int64_t)fmax(2.0, rint(cbrt(unknowns / 3.0 / height)));
   problem p = {.context = NULL};
   mps_petsc_solver *solver = NULL;
   mps_context_def def = mps_context_defaults();
@@ -76,7 +78,7 @@ int main(int argc, char **argv) {
         "solver");
   double most[6] = {peak_memory()};
   double start = seconds();
-  make(&p, cells);
+  make(&p, cells, height);
   most[3] = seconds() - start;
   most[1] = peak_memory();
   check(p.context, mps_petsc_solve_elastic(solver, p.elastic), "solver");

@@ -134,8 +134,9 @@ typedef struct mpsi_facet {
 /* A solver of the caller. */
 typedef struct mpsi_elastic_outside {
   mps_elastic_solver_def def;
-  bool valid;   /* it has the present matrix, K + shift M */
-  double shift; /* 1/s2 */
+  bool valid;      /* it has the present matrix, K + shift M */
+  double shift;    /* 1/s2 */
+  double stiffest; /* the greatest of its values, N/m */
   int64_t nonzeros;
 } mpsi_elastic_outside;
 

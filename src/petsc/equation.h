@@ -18,7 +18,7 @@ struct mps_petsc_solver {
   int64_t all, first, rows;
   int *counts, *places; /* of the parts of all ranks */
   bool forgets;         /* the next matrix is as the first one */
-  bool body;            /* the last one has motions that cost hardly any energy */
+  int32_t modes;        /* of the last one */
   bool fresh;           /* the preconditioner is of the last matrix */
   PetscInt first_count; /* iterations of its first solution, when it was fresh */
 };
