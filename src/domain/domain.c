@@ -215,17 +215,21 @@ static void *make_room(void *user, int32_t rank, int64_t bytes) {
   return data;
 }
 
-mps_status mpsi_domain_exchange(mps_domain *domain, const char *function, int32_t count,
-                                const mps_domain_message *messages, mpsi_mailbox *box) {
+mps_status mpsi_domain_post(mps_domain *domain, const char *function, int32_t count,
+                            const mps_domain_message *messages, mpsi_mailbox *box) {
   *box = (mpsi_mailbox){.context = domain->context};
   mps_status status = mpsi_domain_alive(domain, function);
   if (status != MPS_OK) return status;
   status = domain->def.rendezvous(domain->def.user, count, messages, make_room, box);
   if (status == MPS_ERROR_MEMORY) /* a message had no room: the others are well */
-    status = mpsi_fail(domain->context, function, MPS_ERROR_MEMORY,
-                       "could not allocate what other ranks send");
-  else
-    status = mpsi_domain_note(domain, function, "rendezvous", status);
+    return mpsi_fail(domain->context, function, MPS_ERROR_MEMORY,
+                     "could not allocate what other ranks send");
+  return mpsi_domain_note(domain, function, "rendezvous", status);
+}
+
+mps_status mpsi_domain_exchange(mps_domain *domain, const char *function, int32_t count,
+                                const mps_domain_message *messages, mpsi_mailbox *box) {
+  mps_status status = mpsi_domain_post(domain, function, count, messages, box);
   status = mpsi_domain_settle(domain, function, status);
   if (status != MPS_OK) mpsi_domain_free_mail(box);
   return status;

@@ -73,6 +73,9 @@ typedef struct mpsi_mailbox {
 } mpsi_mailbox;
 mps_status mpsi_domain_exchange(mps_domain *domain, const char *function, int32_t count,
                                 const mps_domain_message *messages, mpsi_mailbox *box);
+/* The same where the caller settles what has become of it, which is to be told by all. */
+mps_status mpsi_domain_post(mps_domain *domain, const char *function, int32_t count,
+                            const mps_domain_message *messages, mpsi_mailbox *box);
 void mpsi_domain_free_mail(mpsi_mailbox *box); /* not collective */
 
 /* gather.c: the first `rows` of a value's rows on each rank, one behind the other, on rank 0. */

@@ -52,16 +52,24 @@ void mpsi_mpm_apply_friction(mps_mpm *mpm, int64_t g) {
 /* ---- what the bodies feel -------------------------------------------------------------------- */
 
 enum { FORCE = 0, MOMENT = 3, CONTACTS = 6, SUMS };
+typedef mpsi_exact load_sums[SUMS];
 
-/* Of all blocks, on all ranks: exact, as who has which block must not matter. */
-static void sum_loads(mps_mpm *mpm, int32_t b, mpsi_load *load, int64_t *contacts) {
-  mpsi_exact sum[MPS_BODY_MAX_PARTS][SUMS];
-  const int32_t parts = mpm->contact.body[b]->parts;
-  memset(sum, 0, (size_t)parts * sizeof *sum);
+static int32_t all_parts(const mps_mpm *mpm) {
+  int32_t parts = 0;
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) parts += mpm->contact.body[b]->parts;
+  return parts;
+}
+
+bool mpsi_mpm_load_room(mps_mpm *mpm) {
+  return mpsi_room_ensure(mpm->context, &mpm->contact.load_room, all_parts(mpm), sizeof(load_sums));
+}
+
+/* Of body b on this rank, to the sums of its parts. */
+static void add_loads(const mps_mpm *mpm, int32_t b, load_sums *sum) {
   for (int64_t k = 0; k < mpm->contact.cell_pair_count; k++) {
     const mpsi_cell_pair *pair = &mpm->contact.cell_pair[k];
     if (pair->body != b || !pair->touched || mpm->grid.cells[pair->cells].ghost) continue;
-    for (int32_t part = 0; part < parts; part++) {
+    for (int32_t part = 0; part < mpm->contact.body[b]->parts; part++) {
       for (int c = 0; c < 3; c++) {
         mpsi_exact_add(&sum[part][FORCE + c], pair->load[part].force[c]);
         mpsi_exact_add(&sum[part][MOMENT + c], pair->load[part].moment[c]);
@@ -69,28 +77,36 @@ static void sum_loads(mps_mpm *mpm, int32_t b, mpsi_load *load, int64_t *contact
       mpsi_exact_add(&sum[part][CONTACTS], (double)pair->contacts[part]);
     }
   }
-  if (mpm->share && mpm->share->lost == MPS_OK)
-    mpm->share->lost =
-        mpsi_domain_sum_exact(mpm->share->domain, "mps_mpm_step", parts * SUMS, sum[0]);
-  for (int32_t part = 0; part < parts; part++) {
+}
+
+static void react(mps_mpm *mpm, int32_t b, load_sums *sum) {
+  mpsi_load load[MPS_BODY_MAX_PARTS] = {{{0}, {0}}};
+  int64_t contacts[MPS_BODY_MAX_PARTS] = {0};
+  const mpsi_pose *pose = &mpm->contact.body[b]->pose;
+  for (int32_t part = 0; part < mpm->contact.body[b]->parts; part++) {
     for (int c = 0; c < 3; c++) {
       load[part].force[c] = mpsi_exact_value(&sum[part][FORCE + c]);
       load[part].moment[c] = mpsi_exact_value(&sum[part][MOMENT + c]);
     }
     contacts[part] = (int64_t)mpsi_exact_value(&sum[part][CONTACTS]);
+    mpm->energy.bodies -= mpm->run.dt * (mpsi_dot3(load[part].force, pose->v) +
+                                         mpsi_dot3(load[part].moment, pose->spin));
   }
+  mpsi_contact_react(mpm->contact.handle[b], mpm->run.dt, load, contacts, !mpm->settling.on);
 }
 
-/* Reactions to the bodies; then the bodies move. */
+/* Reactions to the bodies, by the sums over all blocks on all ranks: exact, as who has which block
+ * must not matter. Then the bodies move. */
 void mpsi_mpm_update_bodies(mps_mpm *mpm) {
-  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
-    mpsi_load load[MPS_BODY_MAX_PARTS] = {{{0}, {0}}};
-    int64_t contacts[MPS_BODY_MAX_PARTS] = {0};
-    sum_loads(mpm, b, load, contacts);
-    const mpsi_pose *pose = &mpm->contact.body[b]->pose;
-    for (int32_t part = 0; part < mpm->contact.body[b]->parts; part++)
-      mpm->energy.bodies -= mpm->run.dt * (mpsi_dot3(load[part].force, pose->v) +
-                                           mpsi_dot3(load[part].moment, pose->spin));
-    mpsi_contact_react(mpm->contact.handle[b], mpm->run.dt, load, contacts, !mpm->settling.on);
-  }
+  load_sums *sum = mpm->contact.load_room.item, *of = sum;
+  const int32_t parts = all_parts(mpm);
+  memset(sum, 0, (size_t)parts * sizeof *sum);
+  for (int32_t b = 0; b < mpm->contact.bodies; of += mpm->contact.body[b++]->parts)
+    add_loads(mpm, b, of);
+  if (mpm->share && mpm->share->lost == MPS_OK)
+    mpm->share->lost =
+        mpsi_domain_sum_exact(mpm->share->domain, "mps_mpm_step", parts * SUMS, sum[0]);
+  of = sum;
+  for (int32_t b = 0; b < mpm->contact.bodies; of += mpm->contact.body[b++]->parts)
+    react(mpm, b, of);
 }

@@ -191,8 +191,8 @@ mps_status mpsi_mpm_energy_begin(mps_mpm *mpm, const char *function) {
                             (size_t)cells * sizeof *e->cells + (size_t)nodes * sizeof *e->nodes);
   e->cells = e->cells_room.item;
   e->nodes = e->nodes_room.item;
-  memset(e->cells, 0, (size_t)cells * sizeof *e->cells);
-  memset(e->nodes, 0, (size_t)nodes * sizeof *e->nodes);
+  if (cells > 0) memset(e->cells, 0, (size_t)cells * sizeof *e->cells);
+  if (nodes > 0) memset(e->nodes, 0, (size_t)nodes * sizeof *e->nodes);
   memset(e->step, 0, sizeof e->step);
   add_springs(mpm, -1.0);
   return MPS_OK;

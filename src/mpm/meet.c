@@ -382,8 +382,9 @@ mps_status mpsi_mpm_meet(mps_mpm *mpm, const char *function, mps_status status) 
   mpm->share->meeting.nodes = 0;
   if (status == MPS_OK && touches > 0) {
     const int32_t count = address(&m, list);
-    if (mpm->share->mates.any) status = mpsi_domain_exchange(domain, function, count, list, &m.box);
-    if (status == MPS_OK) status = mpsi_domain_settle(domain, function, join(&m));
+    if (mpm->share->mates.any) status = mpsi_domain_post(domain, function, count, list, &m.box);
+    if (status == MPS_OK) status = join(&m);
+    status = mpsi_domain_settle(domain, function, status);
   }
   mpsi_domain_free_mail(&m.box);
   mpsi_free(mpm->context, list);

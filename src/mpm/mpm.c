@@ -444,6 +444,7 @@ static void free_rooms(mps_mpm *mpm) {
                    mpm->contact.across_room.item,
                    mpm->contact.beside_room.item,
                    mpm->contact.spring_room.item,
+                   mpm->contact.load_room.item,
                    mpm->grid.across_room.item,
                    mpm->mirrors.mirror_room.item,
                    mpm->mirrors.mass_room.item,

@@ -117,7 +117,7 @@ static mps_status count_out(mps_mpm *mpm, const char *function, mps_contact *con
 }
 
 static void begin_marks(const mps_mpm *mpm) {
-  memset(mpm->rooms.gone.item, 0, (size_t)mpm->p.count);
+  if (mpm->p.count > 0) memset(mpm->rooms.gone.item, 0, (size_t)mpm->p.count);
 }
 
 void mpsi_mpm_let_go(mps_mpm *mpm) {

@@ -126,7 +126,7 @@ mps_status mpsi_mpm_list_pairs(mps_mpm *mpm, const char *function) {
     if (good) list_node_pairs(mpm, &node_pairs, &near);
   }
   const int64_t nodes = node_pairs * mpm->grid.block_nodes, masks = near * mpm->grid.block_nodes;
-  good = good && ensure_nodes(mpm, nodes) &&
+  good = good && ensure_nodes(mpm, nodes) && mpsi_mpm_load_room(mpm) &&
          mpsi_room_ensure(context, &contact->inside_room, masks, sizeof *contact->inside) &&
          mpsi_room_ensure(context, &contact->reached_room, masks, sizeof *contact->reached);
   if (!good)

@@ -54,7 +54,7 @@ typedef struct mpsi_contacts {
   int64_t cell_pair_count, node_pair_count, mask_count;
   mpsi_impulses impulses;
   mpsi_room cell_pair_room, node_pair_room, node_room, normal_room, inside_room, reached_room,
-      sight_room, beside_room, across_room, spring_room;
+      sight_room, beside_room, across_room, spring_room, load_room; /* load_room: sums of parts */
 } mpsi_contacts;
 
 /* cut.c: all that is to be known of bodies near particles before a step; which blocks are cut and
@@ -85,7 +85,8 @@ void mpsi_mpm_take_reached(mps_mpm *mpm, int64_t b, const uint64_t *bits);
 /* areas.c: the areas that particles of the pair stand for, to nodes of the tile; false: none. */
 bool mpsi_mpm_sum_areas(const mps_mpm *mpm, const mpsi_cell_pair *pair, double *tile);
 /* contact.c: normal forces of all bodies on a block of nodes; friction; what the bodies feel, and
- * their motion. */
+ * their motion, for which there is room. */
+bool mpsi_mpm_load_room(mps_mpm *mpm);
 void mpsi_mpm_apply_contact(mps_mpm *mpm, int64_t g);
 void mpsi_mpm_apply_friction(mps_mpm *mpm, int64_t g);
 void mpsi_mpm_update_bodies(mps_mpm *mpm);
