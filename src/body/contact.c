@@ -15,7 +15,8 @@ static const mps_contact_def contact_defaults = {.struct_size = sizeof(mps_conta
                                                  .xi = NAN,
                                                  .offset = NAN,
                                                  .depth = NAN,
-                                                 .strength = NAN};
+                                                 .strength = NAN,
+                                                 .corner = NAN};
 
 mps_status mps_contact_def_init(mps_contact_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_contact_def, def, size, &contact_defaults);
@@ -56,6 +57,19 @@ static mps_status check_shear(mps_context *context, const char *function,
   return MPS_OK;
 }
 
+static mps_status check_corner(mps_context *context, const char *function,
+                               const mps_contact_def *d) {
+  if (!isnan(d->corner) && !(d->corner >= 0.0 && d->corner <= MPSI_BODY_FAR))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "corner is %g m, must be in 0 to %g, or NaN", d->corner, MPSI_BODY_FAR);
+  if (d->method == MPS_CONTACT_METHOD_PENALTY && d->corner > 0.0)
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "corner is %g m, and method is 1 (penalty), which rounds no corners: choose "
+                     "method 0 (impulse), or leave it NaN",
+                     d->corner);
+  return check_shear(context, function, d);
+}
+
 static mps_status check_numbers(mps_context *context, const char *function,
                                 const mps_contact_def *d) {
   if (d->sweeps < 0 || d->sweeps > MOST_SWEEPS)
@@ -86,7 +100,7 @@ static mps_status check_numbers(mps_context *context, const char *function,
   if (!isnan(d->depth) && !(d->depth > 0.0))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "depth is %g m, must be > 0, or NaN",
                      d->depth);
-  return check_shear(context, function, d);
+  return check_corner(context, function, d);
 }
 
 /* ---- life ------------------------------------------------------------------------------------ */

@@ -7,8 +7,10 @@
 
 #include <string.h>
 
-#define OVERLAP 0.1 /* cells: bodies may by so much */
-#define SHARP 1e-3  /* cells: walls below are the edge where two faces meet */
+#define OVERLAP 0.1        /* cells: bodies may by so much */
+#define SHARP 1e-3         /* cells: walls below are the edge where two faces meet */
+#define CORNER_CELLS 0.6   /* radius of corners, cells, */
+#define CORNER_WALLS 0.125 /* at most so much of the thinnest wall */
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
@@ -48,6 +50,9 @@ static mps_status check_thickness(mps_mpm *mpm, const char *function, mps_contac
   const double wall = mpsi_body_thickness(contact->body), cells = wall * mpm->grid.inverse;
   contact->thin = cells < MPSI_THIN_CELLS * (1.0 - 1e-9);
   contact->convex = mpsi_body_is_convex(contact->body);
+  if (isnan(contact->def.corner))
+    contact->def.corner =
+        mpsi_by_impulses(contact) ? fmin(CORNER_CELLS * mpm->def.cell, CORNER_WALLS * wall) : 0.0;
   if (!contact->thin || mpsi_by_impulses(contact)) return MPS_OK;
   if (!contact->def.thin && cells < SHARP)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
@@ -159,18 +164,25 @@ static void end(void *owner, mps_contact *contact) {
 }
 
 /* Whether particle k at x touches the body now, by the method of the contact; `c` receives force
- * and depth, `half` the half size (m) from which its gap counts. By impulses: one that the body
- * has pushed in the last step. */
+ * and depth, `foot` and `half` where and from which half size (m) its gap counts. By impulses: one
+ * that the body has pushed in the last step. */
 static bool touches(const mps_mpm *mpm, const mps_contact *contact, int32_t body, int64_t k,
-                    int64_t id, const double *x, mpsi_contact_particle *c, double *half) {
+                    int64_t id, const double *x, mpsi_contact_particle *c, mpsi_foot *foot,
+                    double *half) {
   *half = contact->def.offset;
-  if (!mpsi_by_impulses(contact))
-    return mpsi_body_reaches(contact->body, x, contact->def.offset) &&
-           mpsi_find_contact(mpm, contact, mpm->dim, k, c);
+  if (!mpsi_by_impulses(contact)) {
+    if (!mpsi_body_reaches(contact->body, x, contact->def.offset) ||
+        !mpsi_find_contact(mpm, contact, mpm->dim, k, c))
+      return false;
+    *foot = mpsi_body_foot(contact->body, x);
+    return true;
+  }
   const mpsi_kept_impulse *kept = mpsi_mpm_kept_impulse(mpm, id, body);
   if (!kept) return false;
   for (int a = 0; a < 3; a++) c->force[a] = kept->by[a] / mpm->contact.impulses.kept_dt;
-  *half = mpsi_mpm_half_size(mpm, contact, k, mpsi_body_foot(contact->body, x).normal);
+  const mpsi_bearing bearing = mpsi_mpm_bearing(mpm, contact, k, x);
+  *foot = bearing.foot;
+  *half = bearing.half;
   return true;
 }
 
@@ -189,8 +201,8 @@ static mps_status list_particles(void *owner, mps_contact *contact, int64_t capa
     mpsi_contact_particle c;
     double x[3] = {0.0}, half;
     for (int a = 0; a < mpm->dim; a++) x[a] = mpm->p.x[a][k];
-    if (!touches(mpm, contact, body, k, id[k], x, &c, &half)) continue;
-    const mpsi_foot at = mpsi_body_foot(contact->body, x);
+    mpsi_foot at;
+    if (!touches(mpm, contact, body, k, id[k], x, &c, &at, &half)) continue;
     if (n < capacity) {
       if (ids) ids[n] = id[k];
       if (gap) gap[n] = at.distance - half;

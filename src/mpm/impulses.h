@@ -4,6 +4,7 @@
 #ifndef MPSI_MPM_IMPULSES_H
 #define MPSI_MPM_IMPULSES_H
 
+#include "contact/corner.h"
 #include "contact/impulse.h"
 #include "core/room.h"
 
@@ -88,12 +89,12 @@ void mpsi_mpm_share_areas(mps_mpm *mpm);
 /* touches.c: what mirrors give with the impulses of a step. */
 void mpsi_mpm_mirror_touches(mps_mpm *mpm);
 /* touches.c: prepares `lookup` (false: memory refused), by which the next finds the impulse of the
- * last step on a particle, or NULL; half its size along n (m); a contact has ended: bodies above it
- * move down by one. */
+ * last step on a particle, or NULL; where a particle meets the contact's body; a contact has ended:
+ * bodies above it move down by one. */
 bool mpsi_mpm_index_impulses(mps_mpm *mpm);
 const mpsi_kept_impulse *mpsi_mpm_kept_impulse(const mps_mpm *mpm, int64_t id, int32_t body);
-double mpsi_mpm_half_size(const mps_mpm *mpm, const mps_contact *contact, int64_t particle,
-                          const double *n);
+mpsi_bearing mpsi_mpm_bearing(const mps_mpm *mpm, const mps_contact *contact, int64_t particle,
+                              const double *x);
 void mpsi_mpm_forget_impulses(mps_mpm *mpm, int32_t body);
 /* impulses.c: the impulses of a step, to nodes and pairs; and, the nodes' last velocities known,
  * what the contacts have lost. */

@@ -64,12 +64,20 @@ void mpsi_mpm_forget_impulses(mps_mpm *mpm, int32_t body) {
 
 /* ---- who may touch --------------------------------------------------------------------------- */
 
-double mpsi_mpm_half_size(const mps_mpm *mpm, const mps_contact *contact, int64_t particle,
-                          const double *n) {
+/* Half the size (m) of a particle along n. */
+static double half_size(const mps_mpm *mpm, const mps_contact *contact, int64_t particle,
+                        const double *n) {
   double wave, shear, stress[6] = {0.0};
   mpsi_mpm_elastic(mpm, particle, &wave, &shear);
   for (int c = 0; c < 2 * mpm->dim; c++) stress[c] = mpm->p.s[c][particle];
   return mpsi_impulse_half_size(contact->def.offset, wave, shear, stress, n);
+}
+
+mpsi_bearing mpsi_mpm_bearing(const mps_mpm *mpm, const mps_contact *contact, int64_t particle,
+                              const double *x) {
+  const mpsi_foot own = mpsi_body_foot(contact->body, x);
+  const double half = half_size(mpm, contact, particle, own.normal);
+  return mpsi_corner_bearing(contact->body, contact->def.corner, x, half, &own);
 }
 
 static void place_of(const mps_mpm *mpm, int64_t k, double *x) {
@@ -99,7 +107,7 @@ static mpsi_far far_by(const mps_contact *contact, const mpsi_foot *foot, const 
 
 static bool may_touch(const mps_mpm *mpm, const mps_contact *contact, int64_t k, const double *x,
                       const mpsi_foot *foot) {
-  const double half = mpsi_mpm_half_size(mpm, contact, k, foot->normal);
+  const double half = half_size(mpm, contact, k, foot->normal);
   double surface[3], closing = 0.0;
   (void)x;
   mpsi_body_velocity(&contact->body->pose, foot->at, surface);
@@ -250,20 +258,20 @@ static void begin_touch(mps_mpm *mpm, int64_t t, int64_t k, const int64_t *id, m
   const mps_contact *contact = mpm->contact.handle[pair->body];
   *out = (mpsi_touch){.particle = k, .id = id[k], .pair = t, .body = pair->body};
   place_of(mpm, k, out->x);
-  const mpsi_foot foot = mpsi_body_foot(contact->body, out->x);
+  const mpsi_bearing bearing = mpsi_mpm_bearing(mpm, contact, k, out->x);
+  const mpsi_foot foot = bearing.foot;
   mpsi_impulse *c = &out->impulse;
   for (int a = 0; a < mpm->dim; a++) c->normal[a] = foot.normal[a];
   out->part = contact->body->part_of[foot.face];
-  const double half = mpsi_mpm_half_size(mpm, contact, k, c->normal);
-  const double lever = mpsi_impulse_lever(foot.distance, half);
+  const double lever = mpsi_impulse_lever(foot.distance, bearing.half);
   for (int a = 0; a < mpm->dim; a++) c->at[a] = out->x[a] + lever * (foot.at[a] - out->x[a]);
-  c->aim = mpsi_impulse_aim(foot.distance - half, mpm->run.dt, fmax(mpm->run.dt, mps_mpm_dt(mpm)),
-                            mpm->run.speed);
+  c->aim = mpsi_impulse_aim(foot.distance - bearing.half, mpm->run.dt,
+                            fmax(mpm->run.dt, mps_mpm_dt(mpm)), mpm->run.speed);
   c->friction = contact->def.friction;
   c->strength = INFINITY;
-  if (-foot.distance > pair->deepest) {
+  if (-bearing.outside > pair->deepest) {
     pair->touched = true;
-    pair->deepest = -foot.distance, pair->deep = k;
+    pair->deepest = -bearing.outside, pair->deep = k;
   }
 }
 
