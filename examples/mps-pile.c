@@ -40,6 +40,8 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("depth", "m", OPTION_LENGTH, &s->depth, "of the tip, where the run ends"),
       OPTION_NUMBER("speed", "m/s", OPTION_FROM_TO(1e-6, 10.0), &s->speed, "of the pile"),
       MPM_MODEL_CONTACT(&s->contact),
+      OPTION_NUMBER("corner", "1", OPTION_FROM_TO(0.0, 2.0), &s->corner,
+                    "radius of its edges for the sand, cells; by impulses"),
       OPTION_NUMBER("k", "kN/m", OPTION_STIFFNESS, &s->k,
                     "contact stiffness of each particle per unit thickness, Nakamura (28); "
                     "4 (K + 4G/3) if not given"),

@@ -262,6 +262,7 @@ static mps_status add_contact(const penetrometer *p, pen_run *r) {
   if (p->s.alpha > 0.0) contact.strength = 1e3 * p->s.alpha * p->s.cohesion;
   r->penalty = penalty_of(p, r);
   contact.method = p->s.contact;
+  if (p->s.contact == MPS_CONTACT_METHOD_IMPULSE) contact.corner = p->s.corner * p->s.h;
   if (p->s.contact == MPS_CONTACT_METHOD_PENALTY) contact.penalty = r->penalty;
   return mps_mpm_add_contact(r->m.mpm, r->m.body[0], &contact, NULL);
 }

@@ -25,6 +25,7 @@ typedef struct pen_settings {
   double diameter, angle;                  /* m, degrees */
   double depth, speed, friction;           /* m, m/s, 1 */
   double alpha;                            /* of the cohesion; NaN: no bound */
+  double corner;                           /* radius of the tip's edges, cells */
   const char *soil;                        /* "WxWxD" in diameters */
   double width, breadth, height;           /* what `soil` says */
   double cohesion, phi, psi;               /* kPa, degrees */

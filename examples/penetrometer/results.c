@@ -85,6 +85,7 @@ static void write_settings(output *f, const penetrometer *p) {
   json_number(f, "speed", s->speed);
   json_number(f, "friction", s->friction);
   if (s->alpha > 0.0) json_number(f, "alpha", s->alpha);
+  if (s->contact == MPS_CONTACT_METHOD_IMPULSE) json_number(f, "corner", s->corner);
   json_number(f, "half_width", p->run[0].size[0]);
   json_number(f, "soil_height", p->run[0].size[p->run[0].geometry == MPS_MPM_SPACE ? 2 : 1]);
   if (p->s.contact == MPS_CONTACT_METHOD_PENALTY) json_number(f, "penalty", p->run[0].penalty);

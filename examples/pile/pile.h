@@ -15,6 +15,7 @@
 typedef struct pile_settings {
   double inner_diameter, wall;         /* m */
   double friction, speed, depth, rest; /* mu; m/s; m; s of waiting before the pile moves */
+  double corner;                       /* radius of its edges, cells */
   int contact;                         /* mps_contact_method */
   double xi, k;                   /* contact stiffness by Nakamura (58), or in kN/m; NaN: not so */
   const char *soil;               /* "WxH" */

@@ -74,9 +74,9 @@ typedef struct mps_contact_def {
                       undrained strength of clay; NaN (default): no bound. Both by METHOD_IMPULSE,
                       over the area that soil covers */
   double corner;   /* m, >= 0: radius by which edges and corners of the body are rounded for the
-                      particles, so that the grid can show how soil flows round them; 0: not at all.
-                      NaN (default): by METHOD_IMPULSE 0.6 cells, at most an eighth of the body's
-                      thinnest wall; by METHOD_PENALTY 0, which is all it may be */
+                      particles, so that the grid can show how soil flows round them; less than
+                      half of the body's thinnest wall. 0 (default): not at all. Not for
+                      METHOD_PENALTY */
 } mps_contact_def;
 
 MPS_API mps_status mps_contact_def_init(mps_contact_def *def, size_t size);

@@ -15,8 +15,7 @@ static const mps_contact_def contact_defaults = {.struct_size = sizeof(mps_conta
                                                  .xi = NAN,
                                                  .offset = NAN,
                                                  .depth = NAN,
-                                                 .strength = NAN,
-                                                 .corner = NAN};
+                                                 .strength = NAN};
 
 mps_status mps_contact_def_init(mps_contact_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_contact_def, def, size, &contact_defaults);
@@ -59,13 +58,13 @@ static mps_status check_shear(mps_context *context, const char *function,
 
 static mps_status check_corner(mps_context *context, const char *function,
                                const mps_contact_def *d) {
-  if (!isnan(d->corner) && !(d->corner >= 0.0 && d->corner <= MPSI_BODY_FAR))
-    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "corner is %g m, must be in 0 to %g, or NaN", d->corner, MPSI_BODY_FAR);
+  if (!(d->corner >= 0.0 && d->corner <= MPSI_BODY_FAR))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "corner is %g m, must be in 0 to %g",
+                     d->corner, MPSI_BODY_FAR);
   if (d->method == MPS_CONTACT_METHOD_PENALTY && d->corner > 0.0)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "corner is %g m, and method is 1 (penalty), which rounds no corners: choose "
-                     "method 0 (impulse), or leave it NaN",
+                     "method 0 (impulse), or 0 m",
                      d->corner);
   return check_shear(context, function, d);
 }

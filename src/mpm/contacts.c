@@ -7,10 +7,8 @@
 
 #include <string.h>
 
-#define OVERLAP 0.1        /* cells: bodies may by so much */
-#define SHARP 1e-3         /* cells: walls below are the edge where two faces meet */
-#define CORNER_CELLS 0.6   /* radius of corners, cells, */
-#define CORNER_WALLS 0.125 /* at most so much of the thinnest wall */
+#define OVERLAP 0.1 /* cells: bodies may by so much */
+#define SHARP 1e-3  /* cells: walls below are the edge where two faces meet */
 
 /* ---- checks ---------------------------------------------------------------------------------- */
 
@@ -50,9 +48,6 @@ static mps_status check_thickness(mps_mpm *mpm, const char *function, mps_contac
   const double wall = mpsi_body_thickness(contact->body), cells = wall * mpm->grid.inverse;
   contact->thin = cells < MPSI_THIN_CELLS * (1.0 - 1e-9);
   contact->convex = mpsi_body_is_convex(contact->body);
-  if (isnan(contact->def.corner))
-    contact->def.corner =
-        mpsi_by_impulses(contact) ? fmin(CORNER_CELLS * mpm->def.cell, CORNER_WALLS * wall) : 0.0;
   if (!contact->thin || mpsi_by_impulses(contact)) return MPS_OK;
   if (!contact->def.thin && cells < SHARP)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
