@@ -2,7 +2,8 @@
 # penetrometer.sh DIRECTORY: mps-penetrometer on coarse grids: space against axisymmetry, the parts'
 # sum, a mesh, a whole model. Finer: docs/verification/wls-mpm.md.
 . "$(dirname "$0")/checks.sh"
-coarse="--h 0.025 --soil 3x3x2.5 --speed 1 --threads 1"
+# On four cells a radius of 0.6 of them is a third of the tip's: its edges stay sharp.
+coarse="--h 0.025 --soil 3x3x2.5 --speed 1 --threads 1 --corner 0"
 
 "$1/mps-penetrometer" $coarse --depth 0.1 --friction 0.2 --axisymmetric --out "$work/a" >"$work/log"
 has "$work/log" "particles inside the tip: 0"
@@ -47,6 +48,8 @@ blunt="--axisymmetric --no-space --soil 6x6x5 --depth 0.2 --angle 120 --threads 
 "$1/mps-penetrometer" $blunt --out "$work/blunt" >/dev/null
 in_range "$work/blunt/summary.json" n_factor 8.7 9.6
 in_range "$work/blunt/summary.json" particles_inside 0 0
+"$1/mps-penetrometer" $blunt --threads 3 --out "$work/blunt3" >/dev/null
+cmp "$work/blunt/force.csv" "$work/blunt3/force.csv" || fail "three threads give another force.csv"
 
 # A mesh: an octahedron, tip down, by its STL file. Its widest section is 0.637 of the circle that N is
 # reckoned with: 5.14 at least, and the deep cavity's 9.2 at most with corners a cell further out.

@@ -51,11 +51,14 @@ static void bad_definitions(void **state) {
   CASE(mover, 2, "mover is 2");
   CASE(thin, -1, "thin is -1");
   CASE(inside, 3, "inside is 3");
+  CASE(corner, -0.01, "corner is -0.01 m, must be in 0 to 1e+09");
 #undef CASE
   mps_contact_def both = mps_contact_defaults();
   both.method = MPS_CONTACT_METHOD_PENALTY;
   both.xi = 0.6, both.penalty = 1e6;
   REFUSES("xi is 0.6 and penalty 1e+06 N/m", mps_mpm_add_contact(s.mpm, body, &both, NULL));
+  both.xi = NAN, both.corner = 0.01;
+  REFUSES("corner is 0.01 m, and method is 1", mps_mpm_add_contact(s.mpm, body, &both, NULL));
   mps_body_destroy(&body);
   mpm_scene_end(&s);
 }
