@@ -41,16 +41,20 @@ mps_status mpsi_mpm_share_settle(mps_mpm *mpm, const char *function, mps_status 
 
 mps_status mpsi_mpm_share_check_ids(mps_mpm *mpm, const char *function, mps_status status,
                                     int64_t count, const int64_t *ids) {
-  int64_t known = 0;
+  int64_t found[2] = {0, mpm->p.count}; /* of the list; particles */
   status = mpsi_mpm_share_settle(mpm, function, status);
   if (status != MPS_OK) return status;
   if (!mpm->share) return mpsi_particles_check_ids(mpm->particles, function, count, ids);
-  for (int64_t k = 0; k < count; k++) known += mps_particles_index(mpm->particles, ids[k]) >= 0;
-  status = mpsi_domain_sum(mpm->share->domain, function, 1, &known);
-  if (status != MPS_OK || known == count) return status;
+  for (int64_t k = 0; k < count; k++) found[0] += mps_particles_index(mpm->particles, ids[k]) >= 0;
+  status = mpsi_domain_sum(mpm->share->domain, function, 2, found);
+  if (status != MPS_OK || (found[0] == count && count <= found[1])) return status;
+  if (count > found[1])
+    return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                     "id_count is %lld, allowed are 1 to %lld particles", (long long)count,
+                     (long long)found[1]);
   return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                    "of %lld ids %lld are of particles of the set on any rank", (long long)count,
-                   (long long)known);
+                   (long long)found[0]);
 }
 
 /* ---- particles that the caller adds and removes ----------------------------------------------

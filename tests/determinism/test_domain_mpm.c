@@ -120,6 +120,7 @@ enum {
   OTHER_FACTOR,
   BAD_LOAD,
   OTHER_LOAD_REMOVED,
+  MANY_IDS,
   TROUBLES
 };
 static const trouble_case trouble[TROUBLES] = {
@@ -137,6 +138,7 @@ static const trouble_case trouble[TROUBLES] = {
     [OTHER_AREA] = {MPS_ERROR_ARGUMENT, "a hash of the load's definition"},
     [OTHER_FACTOR] = {MPS_ERROR_ARGUMENT, "a hash of the load's definition"},
     [BAD_LOAD] = {MPS_ERROR_ARGUMENT, "rank 1: load is 5"},
+    [MANY_IDS] = {MPS_ERROR_ARGUMENT, "id_count is 4000, allowed are 1 to "},
     [OTHER_LOAD_REMOVED] = {MPS_ERROR_ARGUMENT, "load is 0 on rank 0"},
     [DEPTH] = {MPS_ERROR_DIVERGED, "m below the surface of body 0, at most 1e-09 m"},
 };
@@ -146,6 +148,14 @@ static mps_status refuse_callback(void *user, mps_mpm *mpm) {
 }
 
 static int32_t cancel(void *user) { return *(const int32_t *)user == 1; }
+
+/* More particles than there are, each of them there. */
+static mps_status list_many(mps_mpm *mpm) {
+  const int64_t ids[4000] = {17};
+  mps_mpm_load_def def = mps_mpm_load_defaults();
+  def.ids = ids, def.id_count = 4000;
+  return mps_mpm_add_load(mpm, &def, NULL);
+}
 
 /* Two loads, which ranks make, change or remove in their own ways. */
 static mps_status load_badly(mps_mpm *mpm, int what, int32_t rank) {
@@ -192,7 +202,10 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
                          0.0));
   if (what == OTHER_REMOVED)
     TRY(mps_mpm_remove_boundary(s.mpm, rank == 1 ? MPS_MPM_SIDE_Y_LOWER : MPS_MPM_SIDE_X_UPPER));
-  if (what >= OTHER_TRACTION) TRY(load_badly(s.mpm, what, rank));
+  if (what == MANY_IDS)
+    TRY(list_many(s.mpm));
+  else if (what >= OTHER_TRACTION)
+    TRY(load_badly(s.mpm, what, rank));
   if (what == UNKNOWN_ID) {
     mps_mpm_boundary_def boundary = mps_mpm_boundary_defaults();
     const int64_t ids[2] = {17, 123456};
