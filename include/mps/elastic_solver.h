@@ -10,12 +10,12 @@
  * The ranks of a domain (mps_elastic_def.domain) may solve one equation together: `part` is then
  * the rank and `parts` the number of ranks. Particles are ordered by layers across the body's
  * longest axis, by ids within a layer, and a rank has the rows, neighbours, joints and stresses of
- * its part of them alone; positions, moduli, displacements, forces and the set it has of all. Before
- * each call of a callback ranks agree that all are well: where one of them fails, none calls it.
- * With a domain all functions of mps/elastic.h are collective, mps_particles_remove too, but those
- * that select, count, get the definition, report or reactions, and facets without displacement and
- * velocity; so arguments are the same on all ranks. mps_elastic_save writes one file, by rank 0. The
- * domain is kept alive.
+ * its part of them alone; positions, moduli, displacements, forces and the set it has of all.
+ * Before each call of a callback ranks agree that all are well: where one of them fails, none calls
+ * it. With a domain all functions of mps/elastic.h are collective, mps_particles_remove too, but
+ * those that select, count, get the definition, report or reactions, and facets without
+ * displacement and velocity; so arguments are the same on all ranks. mps_elastic_save writes one
+ * file, by rank 0. The domain is kept alive.
  *
  * Thread rule: as mps/elastic.h; the callbacks are called by the thread that solves, outside of the
  * context's executor. SPDX-License-Identifier: BSD-3-Clause */

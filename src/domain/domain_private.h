@@ -8,10 +8,10 @@
 struct mps_domain {
   mps_context *context;
   mps_domain_def def;
-  mps_status lost;    /* what the transport failed with: it is used no more */
-  int64_t settled;    /* number of the record that the ranks have agreed upon last */
+  mps_status lost; /* what the transport failed with: it is used no more */
+  int64_t settled; /* number of the record that the ranks have agreed upon last */
   double vote[1 + MPSI_DOMAIN_ALONG]; /* under way */
-  int32_t references; /* one thread at a time: no atomics */
+  int32_t references;                 /* one thread at a time: no atomics */
 };
 
 /* Records that the transport has failed; returns its status, or MPS_OK. Not collective. */
