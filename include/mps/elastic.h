@@ -257,7 +257,7 @@ MPS_API MPS_NODISCARD mps_status mps_elastic_load_resultant(mps_elastic *e, cons
 /* ---- statics --------------------------------------------------------------------------------- */
 /** What the solution takes, known before it is made. */
 typedef struct mps_elastic_estimate {
-  int64_t unknowns, matrix_nonzeros; /* of the lower triangle, diagonal included */
+  int64_t unknowns, matrix_nonzeros; /* of the lower triangle; on ranks, of this one's rows */
   int64_t factor_nonzeros;           /* of L */
   double factor_flops, factor_bytes;
   int32_t ordering, solver; /* mps_elastic_ordering and mps_elastic_solver that will be used */

@@ -22,6 +22,14 @@ mps_status mpsi_elastic_settle(mps_elastic *e, const char *function, mps_status 
   return status;
 }
 
+mps_status mpsi_elastic_settle_same(mps_elastic *e, const char *function, mps_status status,
+                                    const char *name, uint64_t hash) {
+  if (e->agreed || !mpsi_domain_many(e->def.domain)) return status;
+  status = mpsi_domain_settle_same(e->def.domain, function, status, name, mpsi_domain_short(hash));
+  e->agreed = status != MPS_OK;
+  return status;
+}
+
 mps_status mpsi_elastic_leave(mps_elastic *e, mps_status status) {
   mpsi_guard_end(&e->guard);
   e->within = false;

@@ -220,6 +220,20 @@ static mps_status check_number(const mps_elastic *e, const char *function, int32
 }
 
 /* Puts `now` in the place of boundary `number`, or goes back. */
+/* Of a boundary that could be made: all ranks are to have the same. */
+static uint64_t hash_of(const mpsi_elastic_boundary *b, int32_t number) {
+  const double numbers[] = {number,       b->kind,      b->dofs,      (double)b->count,
+                            b->normal[0], b->normal[1], b->normal[2], b->factor[0],
+                            b->factor[1], b->factor[2]};
+  const size_t each = b->kind == MPS_ELASTIC_BOUNDARY_ROLLER ? 1 : 3, count = (size_t)b->count;
+  uint64_t hash = mpsi_domain_hash_numbers(MPSI_DOMAIN_HASH,
+                                           (int32_t)(sizeof numbers / sizeof *numbers), numbers);
+  hash = mpsi_domain_hash(hash, b->id, count * sizeof *b->id);
+  if (b->values) hash = mpsi_domain_hash(hash, b->values, count * each * sizeof *b->values);
+  for (int c = 0; c < 3; c++) hash = mpsi_signal_hash(b->signal[c], hash);
+  return hash;
+}
+
 static mps_status replace(mps_elastic *e, const char *function, int32_t number,
                           mpsi_elastic_boundary *now) {
   mpsi_elastic_boundary before = e->boundaries[number];
@@ -231,6 +245,21 @@ static mps_status replace(mps_elastic *e, const char *function, int32_t number,
   return status;
 }
 
+/* The boundary `number` becomes that of `def`, on all ranks or on none. */
+static mps_status put(mps_elastic *e, const char *function, mps_status status, int32_t number,
+                      const mps_elastic_boundary_def *def) {
+  mpsi_elastic_boundary b = {.used = false};
+  uint64_t hash = 0;
+  if (status == MPS_OK) status = make(e, function, def, &b);
+  if (status == MPS_OK) hash = hash_of(&b, number);
+  status = mpsi_elastic_settle_same(e, function, status, "a hash of the boundary", hash);
+  if (status != MPS_OK)
+    release(e, &b);
+  else
+    status = replace(e, function, number, &b);
+  return status;
+}
+
 mps_status mps_elastic_add_boundary(mps_elastic *e, const mps_elastic_boundary_def *def,
                                     int32_t *number) {
   if (!e) return MPS_ERROR_ARGUMENT;
@@ -239,14 +268,12 @@ mps_status mps_elastic_add_boundary(mps_elastic *e, const mps_elastic_boundary_d
   int32_t at = 0;
   while (at < e->boundary_count && e->boundaries[at].used) at++;
   if (at == e->boundary_count) {
-    if (!mpsi_grow(e->context, (void **)&e->boundaries, at, at + 8, sizeof *e->boundaries))
-      return mpsi_elastic_leave(e,
-                                mpsi_fail_memory(e->context, __func__, 8 * sizeof *e->boundaries));
-    e->boundary_count = at + 8;
+    if (mpsi_grow(e->context, (void **)&e->boundaries, at, at + 8, sizeof *e->boundaries))
+      e->boundary_count = at + 8;
+    else
+      status = mpsi_fail_memory(e->context, __func__, 8 * sizeof *e->boundaries);
   }
-  mpsi_elastic_boundary b;
-  status = make(e, __func__, def, &b);
-  if (status == MPS_OK) status = replace(e, __func__, at, &b);
+  status = put(e, __func__, status, at, def);
   if (status == MPS_OK && number) *number = at;
   return mpsi_elastic_leave(e, status);
 }
@@ -256,10 +283,7 @@ mps_status mps_elastic_set_boundary(mps_elastic *e, int32_t number,
   if (!e) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;
-  mpsi_elastic_boundary b;
-  status = check_number(e, __func__, number);
-  if (status == MPS_OK) status = make(e, __func__, def, &b);
-  if (status == MPS_OK) status = replace(e, __func__, number, &b);
+  status = put(e, __func__, check_number(e, __func__, number), number, def);
   return mpsi_elastic_leave(e, status);
 }
 
@@ -268,7 +292,8 @@ mps_status mps_elastic_remove_boundary(mps_elastic *e, int32_t number) {
   mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;
   mpsi_elastic_boundary none = {.used = false};
-  status = check_number(e, __func__, number);
+  status = mpsi_elastic_settle_same(e, __func__, check_number(e, __func__, number), "number",
+                                    (uint64_t)(int64_t)number << 12);
   if (status == MPS_OK) status = replace(e, __func__, number, &none);
   if (status == MPS_OK) e->boundaries[number].reaction = (mps_reaction){.count = 0};
   return mpsi_elastic_leave(e, status);

@@ -451,6 +451,9 @@ mps_status mpsi_elastic_leave(mps_elastic *e, mps_status status);
 /* Of several ranks: an error of one is that of all. A rank comes to the same calls as the others,
  * up to the first that returns an error; leaving is the last of them. */
 mps_status mpsi_elastic_settle(mps_elastic *e, const char *function, mps_status status);
+/* The same, and MPS_ERROR_ARGUMENT where ranks were given different ones of `name`. */
+mps_status mpsi_elastic_settle_same(mps_elastic *e, const char *function, mps_status status,
+                                    const char *name, uint64_t hash);
 /* For what only reads, but with the other ranks, and may be within a callback: e->agreed is as
  * returned again afterwards. */
 bool mpsi_elastic_begin_reading(mps_elastic *e);

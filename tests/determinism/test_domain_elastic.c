@@ -64,6 +64,9 @@ enum {
   LONG,
   OTHER_BODY,
   OTHER_TOLERANCE,
+  OTHER_SUPPORT,
+  OTHER_LOAD,
+  OTHER_REMOVED,
   CANCELLED,
   SIGNAL_FAILS,
   SOLVER_FAILS,
@@ -130,9 +133,13 @@ static mps_status support_and_load(mps_context *own, mps_elastic *elastic, upset
   mps_status status = MPS_OK;
   if (what == SIGNAL_FAILS) status = mps_signal_user(own, failing, u, &signal);
   held.signal[0] = signal;
+  const int32_t rank = u->domain ? mps_domain_rank(u->domain) : 0;
+  if (what == OTHER_SUPPORT) held.factor[1] = 1.0 + rank;
+  if (what == OTHER_LOAD) weight.force[1] = rank;
   if (u->domain) status = mps_domain_agree(u->domain, status);
   TRY(mps_elastic_add_boundary(elastic, &held, NULL));
   TRY(mps_elastic_add_load(elastic, &weight, NULL));
+  if (what == OTHER_REMOVED) TRY(mps_elastic_remove_load(elastic, rank));
   /* The surface passes through the particles of one side: its pressure has moments. */
   TRY(mps_particles_select_box(mps_elastic_particles(elastic), lo, hi, 512, ids, &count));
   if (u->domain) status = mps_domain_agree(u->domain, status);
@@ -217,6 +224,9 @@ static void test_troubles(void **state) {
   } expected[TROUBLES] = {
       [OTHER_BODY] = {MPS_ERROR_ARGUMENT, "a hash of the set's particles", 0.0},
       [OTHER_TOLERANCE] = {MPS_ERROR_ARGUMENT, "a hash of the solver's definition", 0.0},
+      [OTHER_SUPPORT] = {MPS_ERROR_ARGUMENT, "a hash of the boundary", 0.0},
+      [OTHER_LOAD] = {MPS_ERROR_ARGUMENT, "a hash of the load", 0.0},
+      [OTHER_REMOVED] = {MPS_ERROR_ARGUMENT, "there is no load 1", 0.0},
       [CANCELLED] = {MPS_ERROR_CANCELLED, "rank 1: cancelled", 0.0},
       [SIGNAL_FAILS] = {MPS_ERROR_NUMERIC, "rank 1: ", 0.1},
       [SOLVER_FAILS] = {MPS_ERROR_IO, "rank 1: the callback matrix", 0.0},
