@@ -10,7 +10,7 @@
 #include <mps/mpm_energy.h>
 #include <mps/mpm_settle.h>
 
-enum { SLIDE, SPREAD, RING, ROOM, PRESS, CONE, BALLS, PLATES, PILES, SCENES };
+enum { SLIDE, SPREAD, RING, ROOM, WIDE, PRESS, CONE, BALLS, PLATES, PILES, SCENES };
 enum { BODIES = 3 }; /* at most, of PRESS and what follows */
 
 typedef struct scene {
@@ -27,7 +27,7 @@ static inline mps_status make_set(mps_context *own, int what, mps_particles **ou
   const bool space = dim_of(what) == 3, touched = what >= PRESS;
   mps_particles_def def = mps_particles_defaults();
   def.dim = dim_of(what);
-  def.spacing = space ? 0.04 : 0.02;
+  def.spacing = space ? 0.04 : what == WIDE ? 0.01 : 0.02;
   mps_status status = mps_particles_create(own, &def, out);
   const double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {1.2, touched ? 0.4 : space ? 0.6 : 0.8, 0.8};
   TRY(mps_particles_fill_box(*out, lo, hi, NULL));
@@ -113,7 +113,7 @@ static inline mps_mpm_def scene_def(mps_domain *domain, int what) {
                  : space                      ? MPS_MPM_SPACE
                                               : MPS_MPM_PLANE_STRAIN;
   def.spline = space ? 2 : 3;
-  def.cell = space ? 0.08 : 0.04;
+  def.cell = space ? 0.08 : what == WIDE ? 0.02 : 0.04;
   for (int c = 0; c < 3; c++) def.lower[c] = 0.0;
   def.upper[0] = what == SPREAD ? 1.28 : 2.4;
   def.gravity[1] = -9.81;

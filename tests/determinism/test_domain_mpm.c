@@ -7,6 +7,8 @@
 static void test_slide(void **state) { (void)state, compare_teams(compute, SLIDE, 120, false); }
 static void test_spread(void **state) { (void)state, compare_teams(compute, SPREAD, 120, false); }
 static void test_ring(void **state) { (void)state, compare_teams(compute, RING, 60, false); }
+/* So many particles that the threads of a rank take blocks as they become ready. */
+static void test_wide(void **state) { (void)state, compare_teams(compute, WIDE, 12, true); }
 static void test_room(void **state) { (void)state, compare_teams(compute, ROOM, 60, false); }
 
 static void test_press(void **state) { (void)state, compare_teams(compute, PRESS, 90, false); }
@@ -299,6 +301,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_slide),
                                      cmocka_unit_test(test_spread),
                                      cmocka_unit_test(test_ring),
+                                     cmocka_unit_test(test_wide),
                                      cmocka_unit_test(test_room),
                                      cmocka_unit_test(test_press),
                                      cmocka_unit_test(test_cone),
