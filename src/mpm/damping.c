@@ -30,6 +30,21 @@ void mpsi_mpm_damp_nodes(mps_mpm *mpm, int64_t g, const uint8_t *fixed) {
 
 /* ---- distance from equilibrium --------------------------------------------------------------- */
 
+/* N, the sum of the sizes of gravity and loads on the particles of a block. */
+static double applied_to_particles(const mps_mpm *mpm, const mpsi_cell_block *cells) {
+  const mpsi_columns *p = &mpm->p;
+  double sum = 0.0;
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    double square = 0.0;
+    for (int c = 0; c < mpm->dim; c++) {
+      const double f = p->m[k] * mpm->def.gravity[c] + (p->f[c] ? p->f[c][k] : 0.0);
+      square += f * f;
+    }
+    sum += sqrt(square);
+  }
+  return sum;
+}
+
 mps_status mpsi_mpm_begin_balance(mps_mpm *mpm, const char *function) {
   mpsi_settling *s = &mpm->settling;
   if (!s->on) return MPS_OK;
@@ -37,6 +52,10 @@ mps_status mpsi_mpm_begin_balance(mps_mpm *mpm, const char *function) {
     return mpsi_fail_memory(mpm->context, function,
                             (size_t)mpsi_all_nodes(&mpm->grid) * sizeof *s->nodes);
   s->nodes = s->nodes_room.item;
+  memset(&s->applied, 0, sizeof s->applied);
+  for (int64_t b = 0; b < mpm->grid.cell_count; b++)
+    if (!mpm->grid.cells[b].ghost)
+      mpsi_exact_add(&s->applied, applied_to_particles(mpm, &mpm->grid.cells[b]));
   return MPS_OK;
 }
 

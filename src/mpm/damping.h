@@ -4,6 +4,7 @@
 #define MPSI_MPM_DAMPING_H
 
 #include "blocks.h"
+#include "core/exact.h"
 
 /* A block of nodes in a step of mps_mpm_settle. */
 typedef struct mpsi_node_balance {
@@ -19,13 +20,15 @@ typedef struct mpsi_settling {
   bool from_rest;
   double before;        /* J, kinetic energy of the last step; 0 from rest */
   int64_t steps, peaks; /* so far */
+  mpsi_exact applied;   /* N, sum of the sizes of gravity and loads on this rank's particles */
   mpsi_node_balance *nodes;
   mpsi_room nodes_room;
 } mpsi_settling;
 
 /* settle.c: before a step of another kind the particles of a cut mps_mpm_settle stop. */
 void mpsi_mpm_leave_settling(mps_mpm *mpm);
-/* Room for the step, where settling. */
+/* Before a step, where settling: room, and what is applied to the particles, of which some may
+ * leave in the step. */
 mps_status mpsi_mpm_begin_balance(mps_mpm *mpm, const char *function);
 /* Block g, bit c of `fixed`: component c is prescribed. `held` has the velocities before the
  * boundaries. */

@@ -74,21 +74,6 @@ static void stop_particles(mps_mpm *mpm) {
   mpsi_mpm_for_cells(mpm, stop_block);
 }
 
-/* N, the sum of the sizes of gravity and loads on the particles of a block. */
-static double applied_to_particles(const mps_mpm *mpm, const mpsi_cell_block *cells) {
-  const mpsi_columns *p = &mpm->p;
-  double sum = 0.0;
-  for (int64_t k = cells->begin; k < cells->end; k++) {
-    double square = 0.0;
-    for (int c = 0; c < mpm->dim; c++) {
-      const double f = p->m[k] * mpm->def.gravity[c] + (p->f[c] ? p->f[c][k] : 0.0);
-      square += f * f;
-    }
-    sum += sqrt(square);
-  }
-  return sum;
-}
-
 /* ---- settling -------------------------------------------------------------------------------- */
 
 void mpsi_mpm_leave_settling(mps_mpm *mpm) {
@@ -119,9 +104,7 @@ static mps_status sum_balance(mps_mpm *mpm, const char *function, double *sums) 
   mpsi_exact sum[SUMS];
   mps_status status = MPS_OK;
   memset(sum, 0, sizeof sum);
-  for (int64_t b = 0; b < mpm->grid.cell_count; b++)
-    if (!mpm->grid.cells[b].ghost)
-      mpsi_exact_add(&sum[APPLIED], applied_to_particles(mpm, &mpm->grid.cells[b]));
+  sum[APPLIED] = mpm->settling.applied;
   add_impulses(mpm, &sum[APPLIED]);
   for (int64_t g = 0; g < mpsi_all_nodes(&mpm->grid); g++) {
     const mpsi_node_balance *n = &mpm->settling.nodes[g];

@@ -25,6 +25,39 @@ static void test_changes(void **state) {
   compare_teams(compute_changes, ROOM, 16, true);
 }
 
+/* Loaded particles go out through a side while the others settle: what is applied to them is that
+ * of the step. */
+static mps_status compute_leaving(mps_context *own, mps_domain *domain, int what, int64_t steps,
+                                  result *r) {
+  enum { LOADED = 40 };
+  int64_t ids[LOADED];
+  double area[LOADED];
+  scene s = {.set = NULL};
+  mps_mpm_load_def load = mps_mpm_load_defaults();
+  for (int64_t k = 0; k < LOADED; k++) ids[k] = 60 * k + 59, area[k] = 1e-4 * (double)(k + 1);
+  load.ids = ids, load.id_count = LOADED, load.area = area;
+  load.traction[0] = 4e6;
+  mps_status status = make_scene(own, domain, what, &s);
+  TRY(mps_mpm_add_load(s.mpm, &load, NULL));
+  TRY(mps_mpm_step(s.mpm, steps));
+  for (int64_t n = 1; status == MPS_OK && n <= 12; n++) {
+    mps_mpm_settle_def def = mps_mpm_settle_defaults();
+    mps_mpm_settled now = {0};
+    def.max_steps = n;
+    status = mps_mpm_settle(s.mpm, &def, &now);
+    if (status == MPS_ERROR_NUMERIC) status = MPS_OK; /* not yet */
+    r->other[n] = now.applied;
+  }
+  TRY(keep_scene(domain, what, &s, r));
+  if (r->reaction[MPS_MPM_SIDE_X_UPPER].removed == 0) status = MPS_ERROR_INTERNAL;
+  end_scene(&s);
+  return status;
+}
+
+static void test_leaving(void **state) {
+  (void)state, compare_teams(compute_leaving, SPREAD, 12, true);
+}
+
 /* ---- cut in two --------------------------------------------------------------------------------
  */
 
@@ -309,6 +342,7 @@ int main(void) {
                                      cmocka_unit_test(test_plates),
                                      cmocka_unit_test(test_piles),
                                      cmocka_unit_test(test_changes),
+                                     cmocka_unit_test(test_leaving),
                                      cmocka_unit_test(test_cut_press),
                                      cmocka_unit_test(test_cut_spread),
                                      cmocka_unit_test(test_refused_memory),
