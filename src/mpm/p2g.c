@@ -306,6 +306,15 @@ MPSI_INLINE void prefetch_chunk(const mpsi_columns *p, int64_t begin, int64_t en
   }
 }
 
+/* What lies across thin bodies. Particles whose supports these do not cut write nothing of it, but
+ * are asked for it on the way back where some node keeps momentum (give_back of fitted.c). */
+static void begin_across(mps_mpm *mpm, const mpsi_cell_block *cells, mpsi_worker *worker) {
+  const size_t count = (size_t)(cells->end - cells->begin);
+  clear(cells, worker->across_tile);
+  clear(cells, worker->across_force);
+  memset(mpm->contact.across + cells->begin, 0, count * sizeof *mpm->contact.across);
+}
+
 /* What the particles of a block give, into the tile. */
 MPSI_INLINE void tile_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry, int spline) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
@@ -324,7 +333,7 @@ MPSI_INLINE void tile_body(mps_mpm *mpm, int64_t b, int32_t number, int geometry
   if (cells->mirrors) mpsi_mpm_begin_mirrors(mpm, cells);
   clear(cells, worker->tile);
   if (cells->apart) clear(cells, worker->force);
-  if (cells->thin) clear(cells, worker->across_tile), clear(cells, worker->across_force);
+  if (cells->thin) begin_across(mpm, cells, worker);
   const mpsi_cell_block *next = dim == 2 && b + 2 < mpm->grid.cell_count ? cells + 2 : NULL;
   for (int64_t k = cells->begin; k < cells->end; k += MPSI_CHUNK) {
     const int64_t rest = cells->end - k;
