@@ -65,7 +65,7 @@ typedef struct mps_domain_def {
   /** Called when the domain goes; NULL (default): nothing to do. */
   void (*destroy)(void *user);
   /** reduce_max in two parts, between which the library computes and copies by stars, so that no
-   * rank waits for one that is a little behind: `values` are the library's until max_end, which has
+   *  rank waits for one a little behind: `values` are the library's until max_end, which has
    *  written the greatest there. One is under way at a time, and no other reduction. Both NULL
    *  (default): reduce_max takes the place of max_end. */
   mps_status (*max_begin)(void *user, int32_t count, double *values);
@@ -82,7 +82,7 @@ static inline mps_domain_def mps_domain_defaults(void) {
 
 /** Makes a domain: collective, and each rank gives its own context. Callbacks have no default but
  *  where they say so. The transport is tried; MPS_ERROR_ARGUMENT where ranks do not agree upon
- * version, instruction level or size. On an error `destroy` is not called. */
+ *  version, instruction level or size. On an error `destroy` is not called. */
 MPS_API MPS_NODISCARD mps_status mps_domain_create(mps_context *context, const mps_domain_def *def,
                                                    mps_domain **out);
 /** Releases and nulls; accepts NULL. Not collective. Solvers keep the domain alive: its transport
