@@ -64,6 +64,20 @@ static mps_status check_def(const mps_context_def *def, char *text, size_t size)
   return MPS_OK;
 }
 
+static mps_status refuse_struct(char *text, size_t size, mps_status status, uint32_t struct_size) {
+  char why[160];
+  if (status == MPS_ERROR_UNSUPPORTED)
+    snprintf(why, sizeof why,
+             "def, of %u bytes, has a non-zero member that this library (version %s) does not know",
+             struct_size, mps_version());
+  else
+    snprintf(why, sizeof why,
+             "def.struct_size is %u bytes, allowed are %zu to %d: start from "
+             "mps_context_defaults()",
+             struct_size, MPSI_RELEASED(mps_context_def), MPSI_STRUCT_MOST);
+  return refuse(text, size, status, why);
+}
+
 mps_status mps_context_create(const mps_context_def *user_def, mps_context **out, char *error_text,
                               size_t error_size) {
   if (error_text && error_size) error_text[0] = '\0';
@@ -72,10 +86,7 @@ mps_status mps_context_create(const mps_context_def *user_def, mps_context **out
   mps_context_def def = context_defaults;
   mps_status status = MPS_OK;
   if (user_def) status = MPSI_DEF_READ(NULL, __func__, mps_context_def, user_def, &def);
-  if (status != MPS_OK)
-    return refuse(error_text, error_size, status,
-                  "def.struct_size is not one this library knows: start from "
-                  "mps_context_defaults()");
+  if (status != MPS_OK) return refuse_struct(error_text, error_size, status, user_def->struct_size);
   if ((status = check_def(&def, error_text, error_size)) != MPS_OK) return status;
   if (!def.alloc) mpsi_use_system_memory(&def);
   const int32_t threads = mpsi_executor_threads(&def);

@@ -71,6 +71,10 @@ bool mpsi_cancelled(mps_context *context);
  * Definitions (in): the released size of each is in released_sizes.h, written by
  * scripts/update-sizes. */
 
+/* Bytes that a definition or a result may have at most. A size beyond is no size: it is refused
+ * before a byte of the tail is read or written. */
+#define MPSI_STRUCT_MOST 4096
+
 /* Reads the caller's definition `def` (any size from the released one on) over *known, a `type`
  * that holds the defaults. A tail that this library does not know must be zero. */
 #define MPSI_DEF_READ(context, function, type, def, known)                                         \
@@ -90,7 +94,7 @@ mps_status mpsi_def_init(void *def, size_t size, size_t minimum, const void *def
 
 /* Results (out): the body of every mps_x_get_y_sized. Writes the first `size` bytes of the result
  * `known` to the caller's struct `out`, and zeros behind what this library knows.
- * MPS_ERROR_ARGUMENT for NULL or a size of 0; then nothing is written. */
+ * MPS_ERROR_ARGUMENT for NULL or a size of 0 or above MPSI_STRUCT_MOST; then nothing is written. */
 mps_status mpsi_out_write(mps_context *context, const char *function, void *out, size_t size,
                           const void *known, size_t known_size);
 /* The same of a definition, the body of mps_x_get_def_sized: its `struct_size`, the first member,

@@ -6,7 +6,7 @@
 
 mps_status mpsi_def_init(void *def, size_t size, size_t minimum, const void *defaults,
                          size_t defaults_size) {
-  if (!def || size < minimum || size > UINT32_MAX) return MPS_ERROR_ARGUMENT;
+  if (!def || size < minimum || size > MPSI_STRUCT_MOST) return MPS_ERROR_ARGUMENT;
   memset(def, 0, size);
   memcpy(def, defaults, size < defaults_size ? size : defaults_size);
   const uint32_t stored = (uint32_t)size;
@@ -19,11 +19,11 @@ mps_status mpsi_def_read(mps_context *context, const char *function, const void 
   if (!def) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "def is NULL");
   uint32_t size;
   memcpy(&size, def, sizeof size);
-  if (size < minimum)
+  if (size < minimum || size > MPSI_STRUCT_MOST)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "def.struct_size is %u, at least %zu is required: start from the _defaults() "
-                     "or _def_init function",
-                     size, minimum);
+                     "def.struct_size is %u bytes, allowed are %zu to %d: start from the "
+                     "_defaults() or _def_init function",
+                     size, minimum, MPSI_STRUCT_MOST);
   for (size_t i = known_size; i < size; i++)
     if (((const unsigned char *)def)[i] != 0)
       return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
@@ -37,9 +37,11 @@ mps_status mpsi_def_read(mps_context *context, const char *function, const void 
 mps_status mpsi_out_write(mps_context *context, const char *function, void *out, size_t size,
                           const void *known, size_t known_size) {
   if (!out) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "out is NULL");
-  if (size == 0)
+  if (size == 0 || size > MPSI_STRUCT_MOST)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
-                     "size is 0 bytes: it must be sizeof of the struct that out points to");
+                     "size is %zu bytes, allowed are 1 to %d: sizeof of the struct that out points "
+                     "to",
+                     size, MPSI_STRUCT_MOST);
   memcpy(out, known, size < known_size ? size : known_size);
   if (size > known_size) memset((char *)out + known_size, 0, size - known_size);
   return MPS_OK;

@@ -656,6 +656,31 @@ static void create_takes_every_size(void **state) {
   }
 }
 
+/* A size that is none, in front of memory that is all zero: nothing behind it is read. */
+static void sizes_beyond_any_struct_are_refused(void **state) {
+  (void)state;
+  const uint32_t wrong[] = {MPSI_STRUCT_MOST + 1, INT32_MAX, UINT32_MAX};
+  for (size_t k = 0; k < ROWS; k++) {
+    const row *r = &rows[k];
+    const user *u = user_of(r->type);
+    unsigned char *def = definition(r, r->now);
+    assert_int_equal(r->init(def, (size_t)MPSI_STRUCT_MOST + 1), MPS_ERROR_ARGUMENT);
+    assert_int_equal(r->init(def, SIZE_MAX), MPS_ERROR_ARGUMENT);
+    free(def);
+    for (size_t w = 0; is_built(r->type) && w < sizeof wrong / sizeof *wrong; w++) {
+      def = good_definition(r, u, r->now);
+      memcpy(def, &wrong[w], sizeof wrong[w]);
+      expect(r, u, def, MPS_ERROR_ARGUMENT, "of a size that no struct has");
+    }
+  }
+  char text[200];
+  mps_context *own = NULL;
+  mps_context_def def = mps_context_defaults();
+  def.struct_size = UINT32_MAX;
+  assert_int_equal(mps_context_create(&def, &own, text, sizeof text), MPS_ERROR_ARGUMENT);
+  assert_non_null(strstr(text, "struct_size is 4294967295 bytes, allowed are 104 to 4096"));
+}
+
 /* ---- results ----------------------------------------------------------------------------------
  */
 
@@ -673,6 +698,8 @@ static void results_stay_within_the_callers_struct(void **state) {
                    MPS_ERROR_ARGUMENT, "NULL");
   mps_assert_fails(context, mpsi_out_write(context, "f", out, 0, known, sizeof known),
                    MPS_ERROR_ARGUMENT, "size is 0");
+  mps_assert_fails(context, mpsi_out_write(context, "f", out, SIZE_MAX, known, sizeof known),
+                   MPS_ERROR_ARGUMENT, "allowed are 1 to 4096");
 }
 
 /* Field by field: the struct of a caller who knows only its first members. */
@@ -734,6 +761,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(init_takes_every_size),
       cmocka_unit_test(create_takes_every_size),
+      cmocka_unit_test(sizes_beyond_any_struct_are_refused),
       cmocka_unit_test(results_stay_within_the_callers_struct),
       cmocka_unit_test(definitions_come_back_with_the_callers_size),
       cmocka_unit_test(descriptions_of_fields_are_sized),

@@ -520,7 +520,7 @@ static void bad_definitions_are_refused(void **state) {
   def.member = value;                                                                              \
   mps_assert_fails(context, mps_signal_record(context, path, &def, &signal), MPS_ERROR_ARGUMENT,   \
                    text)
-  REFUSED(struct_size, 4, "def.struct_size is 4, at least 32");
+  REFUSED(struct_size, 4, "def.struct_size is 4 bytes, allowed are 32 to 4096");
   REFUSED(format, 4, "format is 4");
   REFUSED(quantity, -1, "quantity is -1");
   REFUSED(baseline, 5, "baseline is 5");
