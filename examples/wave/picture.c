@@ -21,7 +21,9 @@ static double round_down(double value) {
 }
 
 static void write_title(output *f, const settings *s, const results *x) {
-  static const char *const names[] = {"Euler", "leapfrog", "Verlet"};
+  static const char *const names[] = {[MPS_DYNAMICS_INTEGRATOR_VERLET] = "Verlet",
+                                      [MPS_DYNAMICS_INTEGRATOR_LEAPFROG] = "leapfrog",
+                                      [MPS_DYNAMICS_INTEGRATOR_EULER] = "Euler"};
   const layer *l = &s->ground.layer[0];
   const char wave = settings_wave(s);
   output_text(f, "set title \"%s wave through ", wave == 'S' ? "Shear" : "Pressure");

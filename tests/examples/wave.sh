@@ -20,6 +20,7 @@ head -n 1 "$out/receivers.csv" |
   grep -q '^t_s,ax_m_s2_GL-0.5m,.*,ax_m_s2_GL-19.5m,ax_m_s2_GL-0.5m_edge$' || fail "header"
 awk -F, 'NF != 7 || /nan|inf/ { exit 1 }' "$out/receivers.csv" || fail "rows of receivers.csv"
 picture "$out/wave.png" 1200x900 1f4e8c c0392b
+has "$out/wave.gp" 'Verlet' # the integrator by its name
 [ "$(find "$out" -name '*.part')" = "" ] || fail "temporary files are left"
 
 # Layers on a half space; the height follows from the file. 4/100 + 6/200 + 9.5/300 s.
@@ -64,5 +65,7 @@ else
 fi
 
 # Without gnuplot: a note, and no error.
-PATH=/nonexistent "$wave" --radius 1 --duration 0.3 --courant 0.5 --out "$work/p" >"$work/log"
+PATH=/nonexistent "$wave" --radius 1 --duration 0.3 --dt 2e-4 --integrator euler --out "$work/p" \
+  >"$work/log"
+has "$work/p/wave.gp" 'Euler'
 has "$work/log" "gnuplot is not installed"
