@@ -8,6 +8,8 @@
 
 #include "body/body_internal.h"
 
+#include <string.h>
+
 #define LEAST_BODY 0.3 /* l0: distance of a particle from a face */
 #define FLUSH 0.1      /* l0: a corner that near a boundary stands on it */
 
@@ -66,6 +68,7 @@ static void place_faces(mps_fluid *f, mpsi_fluid_body *body) {
     w->from = on[0] ? -INFINITY : 0.0;
     w->to = on[1] ? (double)INFINITY : length;
     w->used = (on[0] & on[1]) == 0;
+    memcpy(w->stands_on, on, sizeof on);
   }
 }
 

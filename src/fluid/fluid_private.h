@@ -50,6 +50,7 @@ typedef struct mpsi_fluid_wall {
   bool open;               /* an open side instead */
   int32_t of_body;         /* 0: a boundary; number of the body + 1 */
   double from, to, length; /* of a face, m along it: it ends there, or goes on behind a boundary */
+  uint32_t stands_on[2];   /* boundaries that the ends of a face stand on, bits */
   bool given, placed;      /* the caller wants next.u, and next.s */
   int32_t kind;
   double at[2], normal[2]; /* m, of the wall without displacement; unit, into the fluid */
@@ -91,6 +92,7 @@ typedef struct mpsi_fluid_body {
 
 #define MPSI_FLUID_WALLS 32 /* boundaries, then faces */
 #define MPSI_FLUID_BODIES 4
+#define MPSI_FLUID_WEDGES 16
 
 /* The weight (1-z)^4 (1+4z), z = r/re, and its sums over the full lattice. */
 typedef struct mpsi_fluid_weight {
@@ -114,12 +116,14 @@ typedef struct mpsi_fluid_local {
 } mpsi_fluid_local;
 
 /* Whether a particle has images among its neighbours, neighbours within .7 l0, a body's corner
- * within 1.5 l0, and neighbours in other blocks of the matrix. */
+ * within 1.5 l0, neighbours in other blocks of the matrix, and an acute corner of the water,
+ * between a face and a boundary, within 3.1 l0. */
 enum {
   MPSI_FLUID_NEAR_IMAGES = 1,
   MPSI_FLUID_NEAR_CLOSE = 2,
   MPSI_FLUID_NEAR_CORNER = 4,
-  MPSI_FLUID_NEAR_OTHERS = 8
+  MPSI_FLUID_NEAR_OTHERS = 8,
+  MPSI_FLUID_NEAR_WEDGE = 16
 };
 #define MPSI_FLUID_CLOSE 0.7 /* l0 */
 
@@ -183,11 +187,14 @@ struct mps_fluid {
   int64_t own[2];                  /* first, end: the particles that this rank computes */
   mpsi_fluid_share *share;         /* NULL: all */
   /* positions, velocities: particles, then ghosts */
-  double *x[2], *u[2], *q, *offset; /* offset: of a ghost's q from its parent's, Pa */
-  int32_t *parent;                  /* of a ghost, by index - count */
-  uint32_t *flips;                  /* walls that it is mirrored at, bits */
-  uint32_t limited, faces;          /* walls that end, those of bodies: bits, see sight.c */
-  uint32_t bent, sticky;            /* walls with several nodes; of no slip: bits */
+  double *x[2], *u[2], *q, *offset;   /* offset: of a ghost's q from its parent's, Pa */
+  int32_t *parent;                    /* of a ghost, by index - count */
+  uint32_t *flips;                    /* walls that it is mirrored at, bits */
+  uint32_t limited, faces, stood_on;  /* walls that end, those of bodies, boundaries that bodies
+                                         stand on: bits, see sight.c */
+  double wedge[MPSI_FLUID_WEDGES][2]; /* m, edges of acute corners between faces and boundaries */
+  int wedges;
+  uint32_t bent, sticky; /* walls with several nodes; of no slip: bits */
   int64_t cloud_capacity;
   double *u_new[2], *pressure; /* count */
   uint8_t *state;              /* MPSI_FLUID_..., count */
@@ -333,6 +340,9 @@ int64_t mpsi_fluid_keep_seen(const mps_fluid *fluid, int64_t i, int64_t count, i
                              double *r2);
 /* Whether a corner of a body, in the water, is within 1.5 l0 of particle i. */
 bool mpsi_fluid_near_corner(const mps_fluid *fluid, int64_t i);
+/* Whether an acute corner of the water is within 3.1 l0 of particle i, and within 60 degrees of the
+ * direction e, unless that is NULL. */
+bool mpsi_fluid_near_wedge(const mps_fluid *fluid, int64_t i, const double *e);
 /* Whether a face other than `wall` is between two points. */
 bool mpsi_fluid_hidden(const mps_fluid *fluid, int wall, const double *a, const double *b);
 /* near.c */

@@ -5,9 +5,10 @@
  *   G = grad u = (sum w du dx^T/r^2) M^-1.
  *
  * A particle is at the free surface where |m| > .15 n0 l0 and nobody is within 2.1 l0 inside the
- * cone of 45 degrees about e = -m/|m|, or where n < .72 n0 (Tsukamoto 2016, Marrone 2010). The
- * surface then lies at x + h e, h = l0 (1/2 + (n - n_half)/n_slope): in an undisturbed lattice half
- * a spacing outside. A particle with n < .12 n0 is apart from the rest and falls freely.
+ * cone of 45 degrees about e = -m/|m|, or where n < .72 n0 (Tsukamoto 2016, Marrone 2010), but not
+ * where e points into an acute corner between a body and a boundary (sight.c). The surface then
+ * lies at x + h e, h = l0 (1/2 + (n - n_half)/n_slope): in an undisturbed lattice half a spacing
+ * outside. A particle with n < .12 n0 is apart from the rest and falls freely.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "loops.h"
 #include "share.h"
@@ -49,10 +50,12 @@ static bool sees_out(const mps_fluid *f, int64_t i, const double *e) {
 }
 
 static bool at_surface(const mps_fluid *f, int64_t i, double n, const double *m, double length) {
-  if (n < FEW * f->weight.n0 && length > 0.0) return true;
-  if (!(length > ONE_SIDED * f->weight.n0 * f->l0)) return false;
+  if (!(length > 0.0)) return false;
   const double e[2] = {-m[0] / length, -m[1] / length};
-  return sees_out(f, i, e);
+  const bool few = n < FEW * f->weight.n0;
+  if (!few && !(length > ONE_SIDED * f->weight.n0 * f->l0)) return false;
+  const bool wedge = f->company[i] & MPSI_FLUID_NEAR_WEDGE;
+  return (few || sees_out(f, i, e)) && !(wedge && mpsi_fluid_near_wedge(f, i, e));
 }
 
 /* Where the surface lies, and M with it. */

@@ -218,10 +218,11 @@ void mpsi_fluid_find_velocities(mps_fluid *f) {
 /* ---- positions ------------------------------------------------------------------------------- */
 
 /* The shift that keeps the particles evenly apart. Along the surface it takes water from crests to
- * troughs, so it is less there. */
+ * troughs, so it is less there. In an acute corner it is left out: images of images are missing
+ * there, and it would press the particles into the corner. */
 static void find_shift(const mps_fluid *f, int64_t i, double *shift) {
   shift[0] = shift[1] = 0.0;
-  if (f->state[i] == MPSI_FLUID_APART) return;
+  if (f->state[i] == MPSI_FLUID_APART || (f->company[i] & MPSI_FLUID_NEAR_WEDGE)) return;
   const double size = SHIFT * f->dt * rate(f) * f->l0;
   for (int c = 0; c < 2; c++) shift[c] = -size * f->local[i].shift[c];
   if (f->zone[i]) {

@@ -169,7 +169,8 @@ static void find_chunk(void *data, int64_t chunk, int32_t worker) {
     const int32_t company = f->loops->weigh(f, i, found, index, w);
     if (f->bent) average_weights(f, i, found, index, w);
     f->company[i] =
-        (uint8_t)(company | (mpsi_fluid_near_corner(f, i) ? MPSI_FLUID_NEAR_CORNER : 0));
+        (uint8_t)(company | (mpsi_fluid_near_corner(f, i) ? MPSI_FLUID_NEAR_CORNER : 0) |
+                  (mpsi_fluid_near_wedge(f, i, NULL) ? MPSI_FLUID_NEAR_WEDGE : 0));
     f->start[i] = at;
     f->near[i] = (int32_t)found;
     at += mpsi_fluid_padded((int32_t)found);

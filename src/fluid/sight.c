@@ -6,29 +6,69 @@
  * line from a particle meets one mirror first, so that images neither overlap nor leave gaps, at
  * concave and at convex corners. Around a convex corner particles that do not see each other are
  * neighbours at the length of the way around it: without them the water turns too hard there.
- * SPDX-License-Identifier: BSD-3-Clause */
+ *
+ * A boundary that a body stands on ends at the body: its images are seen like those of a face.
+ * Where the body leans over the water, lines of sight that are reflected several times lead
+ * nowhere, as images at walls at an angle are not mirrored again; what particles lack there is no
+ * free surface. SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid_private.h"
 
 #define EDGE 1e-6  /* l0 */
 #define CORNER 1.5 /* l0 */
+#define WEDGE 3.1  /* l0: to the edge of an acute corner */
+#define TOWARDS 0.5
 
 static bool meet_at_an_angle(const mpsi_fluid_wall *a, const mpsi_fluid_wall *b) {
   const double cosine = a->normal[0] * b->normal[0] + a->normal[1] * b->normal[1];
   return fabs(cosine) > 1e-6 && fabs(cosine) < 1.0 - 1e-9;
 }
 
-/* Which walls end, and which are faces. */
+static bool makes_wedge(const mps_fluid *f, const mpsi_fluid_wall *face, uint32_t boundaries) {
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+    const double *n = f->wall[b].normal;
+    if ((boundaries >> b & 1) && n[0] * face->normal[0] + n[1] * face->normal[1] < -1e-6)
+      return true;
+  }
+  return false;
+}
+
+/* Where faces lean over the water at the boundary that they stand on. */
+static void find_wedges(mps_fluid *f) {
+  f->wedges = 0;
+  for (int b = MPS_FLUID_MAX_BOUNDARIES; b < MPSI_FLUID_WALLS; b++) {
+    const mpsi_fluid_wall *w = &f->wall[b];
+    for (int end = 0; w->used && end < 2; end++) {
+      if (!makes_wedge(f, w, w->stands_on[end]) || f->wedges == MPSI_FLUID_WEDGES) continue;
+      double *at = f->wedge[f->wedges++];
+      const double along = end ? w->length : 0.0;
+      at[0] = w->at[0] - along * w->normal[1], at[1] = w->at[1] + along * w->normal[0];
+    }
+  }
+}
+
+bool mpsi_fluid_near_wedge(const mps_fluid *f, int64_t i, const double *e) {
+  for (int k = 0; k < f->wedges; k++) {
+    const double dx = f->wedge[k][0] - f->x[0][i], dy = f->wedge[k][1] - f->x[1][i];
+    const double r2 = dx * dx + dy * dy;
+    if (!(r2 < WEDGE * WEDGE * f->l0 * f->l0)) continue;
+    if (!e || dx * e[0] + dy * e[1] > TOWARDS * sqrt(r2)) return true;
+  }
+  return false;
+}
+
+/* Which walls end, which are faces, and the acute corners between these and boundaries. */
 void mpsi_fluid_find_limits(mps_fluid *f) {
-  f->limited = f->faces = 0;
+  f->limited = f->faces = f->stood_on = 0;
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
     const mpsi_fluid_wall *w = &f->wall[b];
     if (!w->used) continue;
-    if (w->of_body) f->faces |= UINT32_C(1) << b;
+    if (w->of_body) f->faces |= UINT32_C(1) << b, f->stood_on |= w->stands_on[0] | w->stands_on[1];
     for (int k = 0; k < MPS_FLUID_MAX_BOUNDARIES && !w->of_body; k++)
       if (k != b && f->wall[k].used && meet_at_an_angle(w, &f->wall[k]))
         f->limited |= UINT32_C(1) << b;
   }
   f->limited |= f->faces;
+  find_wedges(f);
 }
 
 static double ahead(const mpsi_fluid_wall *w, const double *x) {
@@ -72,7 +112,7 @@ static bool mirror_is_there(const mps_fluid *f, int wall, const double *at) {
 
 static bool sees(const mps_fluid *f, int64_t i, int64_t j) {
   const double a[2] = {f->x[0][i], f->x[1][i]}, b[2] = {f->x[0][j], f->x[1][j]};
-  const uint32_t flips = j < f->count ? 0 : f->flips[j - f->count] & f->limited;
+  const uint32_t flips = j < f->count ? 0 : f->flips[j - f->count] & (f->limited | f->stood_on);
   if (!flips) return !hidden(f, 0, a, b);
   for (int k = 0; k < MPSI_FLUID_WALLS; k++) {
     const mpsi_fluid_wall *w = &f->wall[k];
