@@ -22,6 +22,11 @@
  * functions are collective but those that only tell numbers: limit, dt, time, steps, particles,
  * definition, totals, report and reactions. mps_fluid_save writes one file, by rank 0.
  *
+ * Fluid that fills a closed space, a box under a lid, has no free surface: its pressure is known up to
+ * a constant, chosen such that the least of all particles is rho g l0/2. Steps whose walls or bodies
+ * change the volume of that space, or leave less of it than there is fluid, are refused
+ * (MPS_ERROR_STATE).
+ *
  * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
  * its results are the same bit for bit for every number of threads and ranks.
  * SPDX-License-Identifier: BSD-3-Clause */

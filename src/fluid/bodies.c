@@ -10,14 +10,19 @@
 
 #include <string.h>
 
-#define LEAST_BODY 0.3 /* l0: distance of a particle from a face */
-#define FLUSH 0.1      /* l0: a corner that near a boundary stands on it */
+#define LEAST_BODY 0.3   /* l0: distance of a particle from a face */
+#define FLUSH 0.1        /* l0: a corner that near a boundary stands on it */
+#define LEAST_ANGLE 15.0 /* degrees of water between a face and the boundary that it stands on */
 
 /* Corner k of the body in a pose. */
 static void corner(const mps_body *body, const mpsi_fluid_pose *pose, int64_t k, double *x) {
   const double *xy = body->xy + 2 * k;
   for (int c = 0; c < 2; c++)
     x[c] = pose->x[c] + pose->R[2 * c] * xy[0] + pose->R[2 * c + 1] * xy[1];
+}
+
+void mpsi_fluid_corner(const mpsi_fluid_body *body, bool next, int64_t k, double *x) {
+  corner(body->body, next ? &body->next : &body->pose, k, x);
 }
 
 static mpsi_fluid_pose pose_of(const mps_body *body) {
@@ -187,6 +192,22 @@ static mps_status check_body(mps_fluid *f, const char *function, const mps_body 
   return MPS_OK;
 }
 
+static mps_status check_angles(mps_fluid *f, const char *function, const mpsi_fluid_body *body) {
+  const double degree = 3.141592653589793 / 180.0;
+  for (int k = 0; k < body->faces; k++)
+    for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+      const mpsi_fluid_wall *w = &f->wall[body->first + k], *on = &f->wall[b];
+      const double cosine = -(w->normal[0] * on->normal[0] + w->normal[1] * on->normal[1]);
+      if (!w->used || !((w->stands_on[0] | w->stands_on[1]) >> b & 1)) continue;
+      if (cosine > cos((LEAST_ANGLE - 1e-6) * degree))
+        return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
+                         "edge %d of the body and boundary %d enclose %g degrees of fluid, allowed "
+                         "are %g and more",
+                         k, b, acos(fmin(cosine, 1.0)) / degree, LEAST_ANGLE);
+    }
+  return MPS_OK;
+}
+
 static mps_status check_place(mps_fluid *f, const char *function, const mpsi_fluid_body *body) {
   const double *x = mpsi_particles_column(f->particles, "position", 0);
   const double *y = mpsi_particles_column(f->particles, "position", 1);
@@ -262,7 +283,8 @@ static mps_status make_faces(mps_fluid *f, const char *function, mps_body *body,
   }
   if (status != MPS_OK) return status;
   place_faces(f, own);
-  return check_place(f, function, own);
+  status = check_angles(f, function, own);
+  return status == MPS_OK ? check_place(f, function, own) : status;
 }
 
 mps_status mps_fluid_add_body(mps_fluid *f, mps_body *body, int32_t kind, int32_t *number) {

@@ -5,6 +5,7 @@
  *   look.c      copies of the particles, their order and surroundings
  *   near.c      who is near whom, and the weights w; sight.c: who sees whom past walls that end
  *   moments.c   sums over the neighbours: density, moments, velocity gradient, free surface
+ *   closed.c    fluid without a free surface
  *   pressure.c  rows of the pressure equation; pcg.c solves it, or solver.c has it solved
  *   classical.c the classical scheme's own parts of these
  *   move.c      pressure gradient, velocity, guards, positions
@@ -139,6 +140,7 @@ typedef struct mpsi_fluid_system {
   float *lower;    /* of L */
   double *inverse; /* of D */
   double *sums;    /* by chunk or block, two values each */
+  double mean;     /* of the right side, or what the solution is shifted by; see closed.c */
 } mpsi_fluid_system;
 
 /* A solver of the caller, and the matrix as it gets it; see solver.c. */
@@ -326,6 +328,8 @@ void mpsi_fluid_end_bodies(mps_fluid *fluid);
 /* m: rotations count as displacements at this radius. */
 double mpsi_fluid_body_length(const mpsi_fluid_body *body, const mps_fluid *fluid);
 void mpsi_fluid_drop_body(mps_fluid *fluid, mpsi_fluid_body *body);
+/* Corner k of a body at the beginning of the step, or at its end (next). */
+void mpsi_fluid_corner(const mpsi_fluid_body *body, bool next, int64_t k, double *x);
 /* The face nearest to x as the body has it, and the distance, negative inside. */
 int mpsi_fluid_face_of(const mps_fluid *fluid, const mpsi_fluid_body *body, bool moved,
                        const double *x, double *distance);
@@ -351,6 +355,12 @@ mps_status mpsi_fluid_find_neighbours(mps_fluid *fluid, const char *function);
 void mpsi_fluid_find_moments(mps_fluid *fluid);
 void mpsi_fluid_count(mps_fluid *fluid); /* to the report: neighbours, particles at the surface */
 double mpsi_fluid_rise(const mps_fluid *fluid, int64_t i);
+/* closed.c: refuses a step that changes the volume of a space that the fluid fills. */
+mps_status mpsi_fluid_check_space(mps_fluid *fluid, const char *function);
+/* Of a fluid without surface: takes the mean off the right side; chooses the solution's constant.
+ */
+void mpsi_fluid_balance(mps_fluid *fluid);
+void mpsi_fluid_set_level(mps_fluid *fluid);
 /* pressure.c */
 mps_status mpsi_fluid_prepare_pressure(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_solve_pressure(mps_fluid *fluid, const char *function);

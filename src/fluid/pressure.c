@@ -98,13 +98,18 @@ static mps_status solve_inside(mps_fluid *f, const char *function) {
 
 mps_status mpsi_fluid_solve_pressure(mps_fluid *f, const char *function) {
   const bool classical = f->classical.gamma > 0.0;
+  mps_status status = MPS_OK;
   if (!classical) {
+    status = mpsi_fluid_check_space(f, function);
+    if (status != MPS_OK) return status;
     mpsi_fluid_press_ghosts(f);
     mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK, make_right);
+    mpsi_fluid_balance(f);
   }
-  const mps_status status = mpsi_fluid_solved_outside(f) ? mpsi_fluid_solve_outside(f, function)
-                                                         : solve_inside(f, function);
+  status = mpsi_fluid_solved_outside(f) ? mpsi_fluid_solve_outside(f, function)
+                                        : solve_inside(f, function);
   if (status != MPS_OK) return status;
+  if (!classical) mpsi_fluid_set_level(f);
   mpsi_fluid_for(f, f->count, MPSI_FLUID_CHUNK,
                  classical ? mpsi_fluid_classical_solution : take_solution);
   mpsi_fluid_tell_all(f, classical ? 2 : 1, (double *const[]){f->q, f->pressure});

@@ -19,10 +19,26 @@ static void water_rests_before_slopes_on_a_vertical_toe(void **state) {
   }
 }
 
+static void a_face_almost_flat_on_the_bed_is_refused(void **state) {
+  (void)state;
+  const double a = tan(14.0 * TANK_PI / 180.0);
+  const double xy[] = {1.0, 0.0, 1.4, 0.0, 1.4, 0.4 * a, 0.6, 0.4 * a};
+  const mps_body_def at = mps_body_defaults();
+  mps_body *body;
+  tank t = tank_make(context, 2.0, 0.1, 0.02, NULL, 2e-3);
+  mps_assert_ok(context, mps_body_create_polygon(context, &at, 4, xy, &body));
+  assert_int_equal(mps_fluid_add_body(t.fluid, body, MPS_FLUID_BOUNDARY_SLIP, NULL),
+                   MPS_ERROR_ARGUMENT);
+  assert_non_null(strstr(mps_context_error(context)->message, "enclose 14 degrees of fluid"));
+  mps_body_destroy(&body);
+  tank_free(&t);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(water_rests_before_faces_of_every_slope),
       cmocka_unit_test(water_rests_before_slopes_on_a_vertical_toe),
+      cmocka_unit_test(a_face_almost_flat_on_the_bed_is_refused),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

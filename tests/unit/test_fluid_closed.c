@@ -1,0 +1,188 @@
+/* test_fluid_closed.c - fluid that fills a closed box: what keeps its volume works, with pressures
+ * up to a constant; what changes it is refused and changes nothing. SPDX-License-Identifier:
+ * BSD-3-Clause */
+#include "test_fixture.h"
+
+#include "fluid_tank.h"
+
+#include <string.h>
+
+#define L0 0.02
+#define LENGTH 0.4
+#define DEPTH 0.2
+
+enum { LID = 3 };
+
+static uint64_t seed;
+
+/* Off the lattice by up to .1 l0. */
+static void rough(void *user, double *x, double *u) {
+  (void)user;
+  (void)u;
+  for (int c = 0; c < 2; c++) {
+    seed = seed * 6364136223846793005u + 1442695040888963407u;
+    x[c] += 0.1 * L0 * ((double)(seed >> 11) * 0x1p-52 - 1.0);
+  }
+}
+
+static tank full_box(bool lattice) {
+  seed = 7;
+  tank t = tank_of(context, LENGTH, DEPTH, L0, 2e-3, NULL, lattice ? NULL : rough, NULL);
+  assert_int_equal(tank_wall(context, t.fluid, 0.0, DEPTH, 0.0, -1.0, NULL), LID);
+  return t;
+}
+
+static void forces(const tank *t, double *bed, double *left, double *right, double *lid) {
+  mps_reaction r[4];
+  for (int32_t b = 0; b < 4; b++)
+    mps_assert_ok(context, mps_fluid_get_reaction(t->fluid, b, &r[b]));
+  *bed = r[TANK_BED].force[1], *left = r[TANK_LEFT].force[0];
+  *right = -r[TANK_RIGHT].force[0], *lid = -r[LID].force[1];
+}
+
+static const double weight = 1000.0 * TANK_G * LENGTH * DEPTH;
+
+/* The least pressure of a particle is rho g l0/2, as half a spacing under a lid without pressure.
+ */
+static void a_full_box_at_rest_has_hydrostatic_pressure(void **state) {
+  (void)state;
+  for (int k = 0; k < 2; k++) {
+    tank t = full_box(k == 0);
+    double bed, left, right, lid;
+    mps_totals sum;
+    mps_assert_ok(context, mps_fluid_step(t.fluid, 300));
+    forces(&t, &bed, &left, &right, &lid);
+    mps_assert_ok(context, mps_fluid_get_totals(t.fluid, &sum));
+    print_message("full box, %s: bed %.3f N less lid %.3f N, weight %.3f N; ends %.3f, %.3f N; "
+                  "kinetic %.1e J\n",
+                  k ? "rough" : "lattice", bed, lid, weight, left, right, sum.kinetic);
+    mps_assert_near(bed - lid, weight, (k ? 0.005 : 1e-6) * weight);
+    mps_assert_near(left, right, (k ? 0.005 : 1e-6) * weight);
+    mps_assert_near(lid, 0.0, (k ? 0.02 : 1e-6) * weight);
+    assert_true(sum.kinetic < 1e-5 * sum.mass * TANK_G * DEPTH);
+    tank_free(&t);
+  }
+}
+
+/* Both ends move with 1 m/s2: the difference of their forces is the mass times that. */
+static void a_full_box_is_carried_along(void **state) {
+  (void)state;
+  tank t = full_box(true);
+  const double a = 1.0, dt = 2e-3;
+  double bed, left, right, lid;
+  for (int k = 1; k <= 100; k++) {
+    const double u = a * dt * k, against = -u;
+    mps_assert_ok(context, mps_fluid_set_wall_motion(t.fluid, TANK_LEFT, NULL, &u));
+    mps_assert_ok(context, mps_fluid_set_wall_motion(t.fluid, TANK_RIGHT, NULL, &against));
+    mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
+    forces(&t, &bed, &left, &right, &lid);
+    mps_assert_near(left - right, a * 1000.0 * LENGTH * DEPTH, 1e-3 * weight);
+    mps_assert_near(bed - lid, weight, 1e-3 * weight);
+  }
+  mps_totals sum;
+  mps_assert_ok(context, mps_fluid_get_totals(t.fluid, &sum));
+  mps_assert_near(sum.linear[0], sum.mass * a * 0.2, 3e-3 * sum.mass * a * 0.2);
+  tank_free(&t);
+}
+
+/* A piston of .05 m/s against a lid, also a slow one of 1 um/s, is refused at the first step;
+ * places, forces and time stay, and without it the run goes on. */
+static void a_piston_against_a_lid_is_refused(void **state) {
+  (void)state;
+  const double speeds[3] = {0.05, -0.05, 1e-6};
+  for (int k = 0; k < 3; k++) {
+    tank t = full_box(false);
+    double before[4], after[4], u = speeds[k];
+    mps_assert_ok(context, mps_fluid_step(t.fluid, 20));
+    forces(&t, &before[0], &before[1], &before[2], &before[3]);
+    mps_assert_ok(context, mps_fluid_set_wall_motion(t.fluid, TANK_LEFT, NULL, &u));
+    assert_int_equal(mps_fluid_step(t.fluid, 1), MPS_ERROR_STATE);
+    assert_non_null(strstr(mps_context_error(context)->message, "no free surface"));
+    assert_int_equal(mps_fluid_steps(t.fluid), 20);
+    forces(&t, &after[0], &after[1], &after[2], &after[3]);
+    assert_memory_equal(before, after, sizeof before);
+    u = 0.0;
+    mps_assert_ok(context, mps_fluid_set_wall_motion(t.fluid, TANK_LEFT, NULL, &u));
+    mps_assert_ok(context, mps_fluid_step(t.fluid, 20));
+    tank_free(&t);
+  }
+}
+
+/* Air under the lid: the piston moves until the water has filled the space, not farther. */
+static void a_piston_stops_where_the_air_ends(void **state) {
+  (void)state;
+  tank t = tank_make(context, LENGTH, DEPTH, L0, NULL, 2e-3);
+  assert_int_equal(tank_wall(context, t.fluid, 0.0, DEPTH + 0.5 * L0, 0.0, -1.0, NULL), LID);
+  const double u = 0.05, room = LENGTH * (1.0 - DEPTH / (DEPTH + 0.5 * L0));
+  mps_status status = MPS_OK;
+  while (status == MPS_OK && mps_fluid_time(t.fluid) < 2.0 * room / u) {
+    mps_assert_ok(context, mps_fluid_set_wall_motion(t.fluid, TANK_LEFT, NULL, &u));
+    status = mps_fluid_step(t.fluid, 1);
+  }
+  print_message("the piston stopped after %.3f of the room: %s\n",
+                u * mps_fluid_time(t.fluid) / room, mps_context_error(context)->message);
+  assert_int_equal(status, MPS_ERROR_STATE);
+  /* l0/4 along all walls may be overfull */
+  const double over = 0.25 * L0 * 2.0 * (LENGTH + DEPTH) / (DEPTH + 0.5 * L0);
+  assert_true(u * mps_fluid_time(t.fluid) < room + over);
+  tank_free(&t);
+}
+
+/* A box in the full box falls freely, heavier than water, until the run ends: its weight less
+ * buoyancy and added mass moves it, and the volume is kept. */
+static void a_body_moves_in_a_full_box(void **state) {
+  (void)state;
+  mps_particles_def set = mps_particles_defaults();
+  mps_fluid_def def = mps_fluid_defaults();
+  mps_body_def at = mps_body_defaults();
+  tank t = {NULL, NULL};
+  mps_body *body;
+  set.spacing = L0;
+  def.dt = 2e-3, def.level = DEPTH;
+  at.position[0] = 0.2, at.position[1] = 0.1;
+  mps_assert_ok(context, mps_particles_create(context, &set, &t.water));
+  for (int j = 0; j < 10; j++)
+    for (int i = 0; i < 20; i++) {
+      const double p[2] = {(i + 0.5) * L0, (j + 0.5) * L0};
+      if (fabs(p[0] - 0.2) < 0.06 && fabs(p[1] - 0.1) < 0.04) continue;
+      mps_assert_ok(context, mps_particles_append(t.water, 1, p));
+    }
+  mps_assert_ok(context, mps_fluid_create(context, t.water, &def, &t.fluid));
+  tank_wall(context, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_wall(context, t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+  tank_wall(context, t.fluid, LENGTH, 0.0, -1.0, 0.0, NULL);
+  tank_wall(context, t.fluid, 0.0, DEPTH, 0.0, -1.0, NULL);
+  mps_assert_ok(context, mps_body_create_box(context, &at, 0.12, 0.08, &body));
+  mps_assert_ok(context, mps_fluid_add_body(t.fluid, body, MPS_FLUID_BOUNDARY_SLIP, NULL));
+  mps_body_motion motion = mps_body_motion_defaults();
+  motion.position[0] = 0.2, motion.position[1] = 0.1;
+  for (int k = 1; k <= 100; k++) {
+    const double time = def.dt * k;
+    motion.velocity[0] = 0.02 * sin(TANK_PI * time / 0.2);
+    motion.position[0] += def.dt * motion.velocity[0];
+    mps_assert_ok(context, mps_body_set_motion(body, &motion));
+    mps_assert_ok(context, mps_fluid_step(t.fluid, 1));
+  }
+  mps_reaction r;
+  double bed, left, right, lid;
+  mps_assert_ok(context, mps_fluid_get_body_reaction(t.fluid, 0, &r));
+  forces(&t, &bed, &left, &right, &lid);
+  print_message(
+      "body in the full box: lift %.3f N (exact %.3f), bed less lid %.3f N (exact %.3f)\n",
+      r.force[1], 9810.0 * 0.12 * 0.08, bed - lid, 9810.0 * LENGTH * DEPTH);
+  mps_assert_near(r.force[1], 9810.0 * 0.12 * 0.08, 0.02 * weight);
+  mps_assert_near(bed - lid, weight, 0.02 * weight);
+  mps_body_destroy(&body);
+  tank_free(&t);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_full_box_at_rest_has_hydrostatic_pressure),
+      cmocka_unit_test(a_full_box_is_carried_along),
+      cmocka_unit_test(a_piston_against_a_lid_is_refused),
+      cmocka_unit_test(a_piston_stops_where_the_air_ends),
+      cmocka_unit_test(a_body_moves_in_a_full_box),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
