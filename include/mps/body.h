@@ -2,12 +2,18 @@
  *
  * A body's shape is given in its own frame, whose origin is the body's reference point: the
  * rotation turns about it, moments refer to it, and a free body has its centre of mass there. In
- * space the reference point is `position` and the frame is turned by `rotation`. In 2D all forces
- * are per unit thickness in plane strain, per radian in axisymmetry.
+ * space the reference point is `position` and the frame is turned by `rotation`.
+ *
+ * Mass, inertia, loads, forces and reactions are those of the whole body (kg, kg m2, N, N m), in 2D
+ * too: of the thickness, or in axisymmetry of the angle, that the solver's `measure` says
+ * (mps/solver.h). A body in a slab of soil 2 m thick feels twice what a slab of 1 m exerts, and
+ * moves as before where its mass and inertia are doubled too. In several solvers it feels the sum
+ * of what each exerts over its own measure.
  *
  * A prescribed body follows signals, or what mps_body_set_motion says; a free body moves by the
- * forces on it. Solvers touch it by contacts (mps/contact.h): each tells its forces, and the body
- * feels their sum. Of them at most one moves the body; else the caller does by mps_body_advance.
+ * forces on it. Solvers exert forces on it by contacts (mps/contact.h) and as a fluid around it
+ * (mps_fluid_add_body). At most one of them moves the body; else the caller does by
+ * mps_body_advance.
  * Thread rule: one thread at a time per body (and context).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_BODY_H
@@ -35,9 +41,10 @@ typedef struct mps_body_def {
                          time 0; 2D: [2] is the angle, anticlockwise */
   double velocity[3]; /* m/s at time 0; free bodies only */
   double spin[3];     /* rad/s, in space, at time 0; free bodies only */
-  double mass;        /* kg, 2D: per unit thickness, 1e-30 to 1e30; free bodies only */
-  double inertia[3];  /* kg m2 about the reference point, 1e-30 to 1e30, principal: the body's axes
-                         are the principal axes. 2D: [2], per unit thickness. Free bodies only */
+  double mass;        /* kg, of the whole body, 1e-30 to 1e30; free bodies only */
+  double inertia[3];  /* kg m2, of the whole body about the reference point, 1e-30 to 1e30,
+                         principal: the body's axes are the principal axes. 2D: [2]. Free bodies
+                         only */
   double gravity[3];  /* m/s2; free bodies only */
   double damping[2];  /* 1/s, >= 0, of velocity and of spin: dv/dt = ... - damping v; free bodies
                          only */
@@ -158,7 +165,8 @@ static inline mps_body_motion mps_body_motion_defaults(void) {
 /** Moves the body from outside, between steps: another code, or a servo that answers to the
  *  reaction. A prescribed body is put there at once, and goes on with this velocity and spin,
  * instead of its signals, until it is set again; NULL gives it back to its signals. A free body is
- * put there too and then goes on by the forces; NULL is an error. */
+ * put there too and then goes on by the forces; impulses that it has been given since it last moved
+ * count as part of that motion. NULL is an error. */
 MPS_API MPS_NODISCARD mps_status mps_body_set_motion(mps_body *body, const mps_body_motion *motion);
 
 /** A load on a free body from now on: force[3] (N) at the reference point, moment[3] (N m), both in
@@ -166,7 +174,7 @@ MPS_API MPS_NODISCARD mps_status mps_body_set_motion(mps_body *body, const mps_b
 MPS_API MPS_NODISCARD mps_status mps_body_load(mps_body *body, const double *force,
                                                const double *moment);
 /** Moves the body on by dt (s, > 0): a prescribed one to where its signals are, a free one under
- *  gravity, load, damping and the impulses that its contacts have told since it last moved
+ *  gravity, load, damping and the impulses that solvers have given to it since it last moved
  *  (velocity first, then position). A body that a solver moves is MPS_ERROR_STATE. */
 MPS_API MPS_NODISCARD mps_status mps_body_advance(mps_body *body, double dt);
 
@@ -230,8 +238,9 @@ MPS_API int32_t mps_body_part_count(const mps_body *body);
 /** Number of the part `name`, or -1. */
 MPS_API int32_t mps_body_part(const mps_body *body, const char *name);
 
-/** What particles do to one part of the body, or to the whole body (`part` -1); `count` is the
- * number of particles in contact. */
+/** What all solvers exert on one part of the body, or on the whole body (`part` -1): the sum of
+ *  their contacts and of the water around it; `count` is the number of particles in contact, and of
+ * wetted points (mps_fluid_get_wall). */
 MPS_API MPS_NODISCARD mps_status mps_body_get_reaction_sized(mps_body *body, int32_t part,
                                                              mps_reaction *out, size_t size);
 static inline mps_status mps_body_get_reaction(mps_body *body, int32_t part, mps_reaction *out) {

@@ -184,18 +184,21 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_get_levels(mps_fluid *fluid, int64_t 
 /** Puts a rigid body into the fluid: a convex polygon (mps_body_create_box, _polygon) with edges of
  *  at least l0, standing on a boundary, through the surface or all in the water; all bodies
  * together may have 16 edges. `kind` is that of its surface, mps_fluid_boundary_kind. The caller
- * moves it (mps_body_advance, mps_body_set_motion): where it is and how fast when a step is made,
- * or solved for in parts, is taken as the end of that step. It is kept alive. MPS_ERROR_ARGUMENT:
- * another shape; a particle inside or closer than .3 l0. */
+ *  moves it (mps_body_advance, mps_body_set_motion), or another solver does: where it is and how
+ *  fast when a step is made, or solved for in parts, is taken as the end of that step. At the end
+ *  of each step it feels the water's forces (mps_body_get_reaction; a free body moves by them). It
+ *  is kept alive. MPS_ERROR_ARGUMENT: another shape; a particle inside or closer than .3 l0. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_add_body(mps_fluid *fluid, mps_body *body, int32_t kind,
                                                     int32_t *number);
 /** Takes body `number` out of the water, between steps; MPS_ERROR_ARGUMENT: there is none. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_remove_body(mps_fluid *fluid, int32_t number);
-/** `floats` 1: from now on the fluid moves the body in each of its steps, as the water's pressure
- *  and the body's own mass, gravity and load (mps_body_load) do; mps_body_get_reaction then has
- * what the water does to it, per unit thickness. It feels no boundary: keep it from the ground. 0
- *  (as after mps_fluid_add_body): the caller moves it. MPS_ERROR_ARGUMENT: the body is not free
- *  (MPS_BODY_MOTION_FREE) or touches another solver's particles. */
+/** `floats` 1: from now on the fluid moves the body in each of its steps, such that the water's
+ *  pressure, the body's mass, gravity and load (mps_body_load), and the impulses of other solvers
+ *  since its last step agree, however light it is. It feels no boundary: keep it from the ground. 0
+ *  (as after mps_fluid_add_body): the caller or another solver moves it, by the forces of the last
+ *  step, which is unstable where it is lighter than the water that it accelerates.
+ *  MPS_ERROR_ARGUMENT: the body is not free (MPS_BODY_MOTION_FREE). MPS_ERROR_STATE: another solver
+ *  moves it. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_float_body(mps_fluid *fluid, int32_t number,
                                                       int32_t floats);
 /** What the fluid exerts on a body; moments about its reference point, moment_impulse about where

@@ -30,7 +30,8 @@
  *
  * Vectors have three components in 2D too; those that leave the plane are then 0. All forces that a
  * 2D solver takes and reports are those of its `measure`: the thickness (m, default 1) in the
- * plane, the angle (rad, default 2 pi: the whole ring) in axisymmetry. So they are in N.
+ * plane, the angle (rad, default 2 pi: the whole ring) in axisymmetry. So they are in N, and so
+ * are those on rigid bodies (mps/body.h).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_SOLVER_H
 #define LIBMPS_SOLVER_H

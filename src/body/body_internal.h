@@ -45,6 +45,14 @@ typedef struct mpsi_pose {
   double v[3], spin[3]; /* m/s, rad/s in space */
 } mpsi_pose;
 
+/* A solver's forces on a body: one of its contacts, or its water. All sources together are what the
+ * body feels. */
+typedef struct mpsi_body_source {
+  mps_reaction reaction[MPS_BODY_MAX_PARTS]; /* by this solver */
+  bool moves;                                /* the body, at the end of each of its steps */
+  struct mpsi_body_source *next;
+} mpsi_body_source;
+
 struct mps_body {
   mps_context *context;
   int32_t references; /* one thread at a time: no atomics */
@@ -70,13 +78,17 @@ struct mps_body {
   bool outside;       /* prescribed: moves as mps_body_set_motion said, not by the signals */
   mpsi_pose pose;
   double work_contacts, work_loads, dissipated; /* J: see mps_body_totals */
-  mps_reaction reaction[MPS_BODY_MAX_PARTS];    /* by all contacts */
-  mpsi_load pending;     /* N s, N m s: impulses by the contacts since the body last moved */
-  mps_contact *contacts; /* list: see contact.h */
+  mps_reaction reaction[MPS_BODY_MAX_PARTS];    /* by all sources */
+  mpsi_load pending; /* N s, N m s: impulses by all sources since the body last moved */
+  mpsi_body_source *sources;
 };
 
 /* Lists what changes of the body as it moves, and what it is. */
 void mpsi_body_list_state(mpsi_state *state, mps_body *body);
+/* Of that only what solvers add to: reactions, and impulses since it last moved. */
+void mpsi_body_list_account(mpsi_state *state, mps_body *body);
+/* The reactions by one source. */
+void mpsi_body_list_source(mpsi_state *state, const mps_body *body, mpsi_body_source *source);
 
 /* Nearest surface point to x (dim values, finite). Reads only: any number of threads. */
 mpsi_foot mpsi_body_foot(const mps_body *body, const double *x);
@@ -135,9 +147,19 @@ double mpsi_body_extent(const mps_body *body);
 /* Puts the force on one part in a step of dt into its account: `count` particles touch it. */
 void mpsi_body_account(const mpsi_pose *pose, double dt, const mpsi_load *load, int64_t count,
                        mps_reaction *r);
-/* Adds the forces of a step of dt by one contact, load[] and number of particles per part; the
- * body's present forces become those. */
-void mpsi_body_react(mps_body *body, double dt, const mpsi_load *load, const int64_t *contacts);
+/* From now on, or no more, one of the body's sources. */
+void mpsi_body_join(mps_body *body, mpsi_body_source *source);
+void mpsi_body_leave(mps_body *body, const mpsi_body_source *source);
+/* The source whose solver moves the body, or NULL. */
+static inline const mpsi_body_source *mpsi_body_mover(const mps_body *body) {
+  const mpsi_body_source *s = body->sources;
+  while (s && !s->moves) s = s->next;
+  return s;
+}
+/* Adds the forces (N, N m, of the whole body) of a step of dt by one source, load[] and number of
+ * particles per part; the body's present forces become the sum over its sources. */
+void mpsi_body_react(mps_body *body, mpsi_body_source *source, double dt, const mpsi_load *load,
+                     const int64_t *count);
 /* The sum of the reactions of all `parts` (part -1), or that of one. */
 mps_status mpsi_body_sum_reaction(mps_context *context, const char *function,
                                   const mps_reaction *reaction, int32_t parts, int32_t part,

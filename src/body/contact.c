@@ -126,22 +126,16 @@ mps_status mpsi_contact_new(mps_context *context, const char *function, mps_body
   contact->extent = mpsi_body_extent(body);
   contact->kind = kind;
   contact->owner = owner;
+  contact->source.moves = def.mover == MPS_CONTACT_MOVER_SOLVER;
   body->references++;
   *out = contact;
   return MPS_OK;
 }
 
-void mpsi_contact_join(mps_contact *contact) {
-  mps_contact **last = &contact->body->contacts;
-  while (*last) last = &(*last)->next;
-  *last = contact;
-}
+void mpsi_contact_join(mps_contact *contact) { mpsi_body_join(contact->body, &contact->source); }
 
 void mpsi_contact_leave(mps_contact *contact) {
-  mps_contact **at = &contact->body->contacts;
-  while (*at && *at != contact) at = &(*at)->next;
-  if (*at) *at = contact->next;
-  contact->next = NULL;
+  mpsi_body_leave(contact->body, &contact->source);
   contact->owner = NULL;
   mpsi_contact_release(contact);
 }
@@ -172,8 +166,8 @@ mps_status mps_contact_get_reaction_sized(mps_contact *contact, int32_t part, mp
   static const char function[] = "mps_contact_get_reaction";
   if (!contact) return MPS_ERROR_ARGUMENT;
   mps_reaction sum;
-  const mps_status status = mpsi_body_sum_reaction(contact->context, function, contact->reaction,
-                                                   contact->body->parts, part, &sum);
+  const mps_status status = mpsi_body_sum_reaction(
+      contact->context, function, contact->source.reaction, contact->body->parts, part, &sum);
   if (status != MPS_OK) return status;
   return mpsi_out_write(contact->context, function, out, size, &sum, sizeof sum);
 }
@@ -194,31 +188,10 @@ mps_status mps_contact_get_particles(mps_contact *contact, int64_t capacity, int
 
 /* ---- for solvers ----------------------------------------------------------------------------- */
 
-/* The body's present forces, by all its contacts. */
-static void sum_forces(mps_body *body) {
-  for (int32_t part = 0; part < body->parts; part++) {
-    mps_reaction *sum = &body->reaction[part];
-    for (int k = 0; k < 3; k++) sum->force[k] = sum->moment[k] = 0.0;
-    sum->count = 0;
-    for (const mps_contact *c = body->contacts; c; c = c->next) {
-      for (int k = 0; k < 3; k++) {
-        sum->force[k] += c->reaction[part].force[k];
-        sum->moment[k] += c->reaction[part].moment[k];
-      }
-      sum->count += c->reaction[part].count;
-    }
-  }
-}
-
 void mpsi_contact_react(mps_contact *contact, double dt, const mpsi_load *load,
                         const int64_t *count, bool moves) {
-  mps_body *body = contact->body;
-  for (int32_t part = 0; part < body->parts; part++) {
-    mpsi_body_account(&body->pose, dt, &load[part], count[part], &contact->reaction[part]);
-  }
-  mpsi_body_react(body, dt, load, count);
-  if (body->contacts->next) sum_forces(body);
-  if (moves && contact->def.mover == MPS_CONTACT_MOVER_SOLVER) mpsi_body_advance(body, dt);
+  mpsi_body_react(contact->body, &contact->source, dt, load, count);
+  if (moves && contact->source.moves) mpsi_body_advance(contact->body, dt);
 }
 
 double mpsi_contact_penalty(const mps_contact *contact, double modulus, double spacing, double cell,

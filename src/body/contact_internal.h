@@ -20,21 +20,13 @@ struct mps_contact {
   int32_t references; /* the solver, and the caller's handle; one thread at a time: no atomics */
   mps_contact_def def;
   mps_body *body;
-  double extent;     /* m: see mpsi_body_extent */
-  bool thin;         /* the solver keeps what is on both sides of a thin wall apart */
-  bool convex;       /* whether the body is known to be */
-  mps_contact *next; /* of the body's contacts */
+  double extent; /* m: see mpsi_body_extent */
+  bool thin;     /* the solver keeps what is on both sides of a thin wall apart */
+  bool convex;   /* whether the body is known to be */
   const mpsi_contact_owner *kind;
   void *owner; /* the solver; NULL: the contact has ended */
-  mps_reaction reaction[MPS_BODY_MAX_PARTS];
+  mpsi_body_source source;
 };
-
-/* The contact whose solver moves the body, or NULL. */
-static inline const mps_contact *mpsi_body_mover(const mps_body *body) {
-  const mps_contact *c = body->contacts;
-  while (c && c->def.mover != MPS_CONTACT_MOVER_SOLVER) c = c->next;
-  return c;
-}
 
 /* A contact of two shares (the solver's and the caller's), not yet one of the body's; checks `def`,
  * NULL means the defaults. */

@@ -181,8 +181,8 @@ mps_status mps_body_advance(mps_body *body, double dt) {
                      "dt is %g s, must be finite and > 0", dt);
   if (mpsi_body_mover(body))
     return mpsi_fail(body->context, __func__, MPS_ERROR_STATE,
-                     "a solver moves this body: end that contact first, or make it with mover 1 "
-                     "(other)");
+                     "a solver moves this body: end that contact first, make it with mover 1 "
+                     "(other), or let the body no longer float");
   mpsi_body_advance(body, dt);
   return MPS_OK;
 }
@@ -267,6 +267,7 @@ mps_status mps_body_set_motion(mps_body *body, const mps_body_motion *user_motio
   if (status != MPS_OK) return status;
   mpsi_pose *pose = &body->pose;
   body->outside = !free_body;
+  memset(&body->pending, 0, sizeof body->pending);
   for (int c = 0; c < 3; c++) {
     if (!isnan(motion.position[c])) pose->x[c] = motion.position[c];
     pose->v[c] = motion.velocity[c], pose->spin[c] = motion.spin[c];

@@ -20,9 +20,39 @@ void mpsi_body_account(const mpsi_pose *pose, double dt, const mpsi_load *load, 
   r->count = count;
 }
 
-void mpsi_body_react(mps_body *body, double dt, const mpsi_load *load, const int64_t *contacts) {
+void mpsi_body_join(mps_body *body, mpsi_body_source *source) {
+  mpsi_body_source **last = &body->sources;
+  while (*last) last = &(*last)->next;
+  source->next = NULL;
+  *last = source;
+}
+
+void mpsi_body_leave(mps_body *body, const mpsi_body_source *source) {
+  mpsi_body_source **at = &body->sources;
+  while (*at && *at != source) at = &(*at)->next;
+  if (*at) *at = source->next;
+}
+
+/* The body's present forces on a part, by all its sources. */
+static void sum_forces(mps_body *body, int32_t part) {
+  mps_reaction *sum = &body->reaction[part];
+  for (int k = 0; k < 3; k++) sum->force[k] = sum->moment[k] = 0.0;
+  sum->count = 0;
+  for (const mpsi_body_source *s = body->sources; s; s = s->next) {
+    for (int k = 0; k < 3; k++) {
+      sum->force[k] += s->reaction[part].force[k];
+      sum->moment[k] += s->reaction[part].moment[k];
+    }
+    sum->count += s->reaction[part].count;
+  }
+}
+
+void mpsi_body_react(mps_body *body, mpsi_body_source *source, double dt, const mpsi_load *load,
+                     const int64_t *count) {
   for (int32_t part = 0; part < body->parts; part++) {
-    mpsi_body_account(&body->pose, dt, &load[part], contacts[part], &body->reaction[part]);
+    mpsi_body_account(&body->pose, dt, &load[part], count[part], &source->reaction[part]);
+    mpsi_body_account(&body->pose, dt, &load[part], count[part], &body->reaction[part]);
+    if (body->sources->next) sum_forces(body, part);
     for (int c = 0; c < 3; c++) {
       body->pending.force[c] += dt * load[part].force[c];
       body->pending.moment[c] += dt * load[part].moment[c];

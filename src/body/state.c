@@ -2,6 +2,24 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "contact_internal.h"
 
+void mpsi_body_list_account(mpsi_state *state, mps_body *body) {
+  mpsi_state_f64(state, "pending_force", body->pending.force, 3);
+  mpsi_state_f64(state, "pending_moment", body->pending.moment, 3);
+  for (int32_t part = 0; part < body->parts; part++) {
+    mpsi_state_enter(state, "part%d", part);
+    mpsi_state_reaction(state, &body->reaction[part]);
+    mpsi_state_leave(state);
+  }
+}
+
+void mpsi_body_list_source(mpsi_state *state, const mps_body *body, mpsi_body_source *source) {
+  for (int32_t part = 0; part < body->parts; part++) {
+    mpsi_state_enter(state, "contact%d", part);
+    mpsi_state_reaction(state, &source->reaction[part]);
+    mpsi_state_leave(state);
+  }
+}
+
 void mpsi_body_list_state(mpsi_state *state, mps_body *body) {
   mpsi_pose *p = &body->pose;
   mpsi_state_agree_integer(state, "shape", body->shape);
@@ -19,21 +37,11 @@ void mpsi_body_list_state(mpsi_state *state, mps_body *body) {
   mpsi_state_f64(state, "work_contacts", &body->work_contacts, 1);
   mpsi_state_f64(state, "work_loads", &body->work_loads, 1);
   mpsi_state_f64(state, "dissipated", &body->dissipated, 1);
-  mpsi_state_f64(state, "pending_force", body->pending.force, 3);
-  mpsi_state_f64(state, "pending_moment", body->pending.moment, 3);
   mpsi_state_f64(state, "load_force", body->load.force, 3);
   mpsi_state_f64(state, "load_moment", body->load.moment, 3);
-  for (int32_t part = 0; part < body->parts; part++) {
-    mpsi_state_enter(state, "part%d", part);
-    mpsi_state_reaction(state, &body->reaction[part]);
-    mpsi_state_leave(state);
-  }
+  mpsi_body_list_account(state, body);
 }
 
 void mpsi_contact_list_state(mpsi_state *state, mps_contact *contact) {
-  for (int32_t part = 0; part < contact->body->parts; part++) {
-    mpsi_state_enter(state, "contact%d", part);
-    mpsi_state_reaction(state, &contact->reaction[part]);
-    mpsi_state_leave(state);
-  }
+  mpsi_body_list_source(state, contact->body, &contact->source);
 }

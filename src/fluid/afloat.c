@@ -31,12 +31,15 @@ mps_status mps_fluid_float_body(mps_fluid *f, int32_t number, int32_t floats) {
                      "body is %d and floats %d: must be one of the fluid's, and 0 or 1", number,
                      floats);
   mpsi_fluid_body *own = &f->body[number];
-  if (floats && (own->body->def.motion != MPS_BODY_MOTION_FREE || own->body->contacts))
+  if (floats && own->body->def.motion != MPS_BODY_MOTION_FREE)
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                     "body %d is prescribed or in contact with another solver's particles: a body "
-                     "that floats must be free",
-                     number);
-  own->floats = floats;
+                     "body %d is prescribed: a body that floats must be free", number);
+  const mpsi_body_source *mover = mpsi_body_mover(own->body);
+  if (floats && mover && mover != &own->source)
+    return mpsi_fail(f->context, __func__, MPS_ERROR_STATE,
+                     "another solver moves body %d: make its contact with mover 1 (other)", number);
+  if (floats && !own->floats) memset(&own->body->pending, 0, sizeof own->body->pending);
+  own->floats = own->source.moves = floats;
   memset(own->mass, 0, sizeof own->mass);
   memset(own->rate, 0, sizeof own->rate);
   return MPS_OK;
@@ -50,35 +53,21 @@ bool mpsi_fluid_any_afloat(const mps_fluid *f) {
 
 /* ---- one body -------------------------------------------------------------------------------- */
 
-/* Masses by component, kg a metre of thickness. */
+/* Masses by component, kg. */
 static void masses(const mpsi_fluid_body *body, double length, double *mass) {
   mass[0] = mass[1] = body->body->def.mass;
   mass[2] = body->body->def.inertia[2] / (length * length);
 }
 
-/* What the last solution does to the body, by parts, per metre of thickness. */
-static void take_water(const mps_fluid *f, mpsi_fluid_body *own) {
+/* Forces in a step of dt that the accelerations do not explain. Those of other solvers are the
+ * impulses that they have given to the body since it last moved. */
+static void imbalance(const mpsi_fluid_body *own, const double *mass, double length, double dt,
+                      double *g) {
   const mps_body *body = own->body;
-  memset(own->water, 0, sizeof own->water);
-  memset(own->wetted, 0, sizeof own->wetted);
-  for (int k = 0; k < own->faces; k++) {
-    const mpsi_fluid_wall *w = &f->wall[own->first + k];
-    if (!w->used) continue;
-    const int32_t part = body->part_of[body->face_of[k]];
-    const double force[2] = {-w->load.force[0] / f->def.measure,
-                             -w->load.force[1] / f->def.measure};
-    for (int c = 0; c < 2; c++) own->water[part].force[c] += force[c];
-    own->water[part].moment[2] +=
-        -w->load.moment / f->def.measure - (own->pose.x[0] * force[1] - own->pose.x[1] * force[0]);
-    own->wetted[part] += w->load.wetted;
-  }
-}
-
-/* Forces that the accelerations do not explain. */
-static void imbalance(const mpsi_fluid_body *own, const double *mass, double length, double *g) {
-  const mps_body *body = own->body;
-  for (int c = 0; c < 2; c++) g[c] = body->load.force[c] + body->def.mass * body->def.gravity[c];
-  g[2] = body->load.moment[2] / length;
+  for (int c = 0; c < 2; c++)
+    g[c] =
+        body->load.force[c] + body->def.mass * body->def.gravity[c] + body->pending.force[c] / dt;
+  g[2] = (body->load.moment[2] + body->pending.moment[2] / dt) / length;
   for (int32_t part = 0; part < body->parts; part++) {
     for (int c = 0; c < 2; c++) g[c] += own->water[part].force[c];
     g[2] += own->water[part].moment[2] / length;
@@ -89,7 +78,8 @@ static void imbalance(const mpsi_fluid_body *own, const double *mass, double len
 /* Masses with the added ones of a body of whose water nothing is known. */
 static void first_guess(const mps_fluid *f, mpsi_fluid_body *own, const double *mass,
                         double length) {
-  const double displaced = FIRST_ADDED * f->def.density * 3.141592653589793 * length * length;
+  const double displaced =
+      FIRST_ADDED * f->def.density * f->def.measure * 3.141592653589793 * length * length;
   memset(own->mass, 0, sizeof own->mass);
   for (int c = 0; c < 3; c++) own->mass[4 * c] = mass[c] + displaced * (c < 2 ? 1.0 : 0.25);
 }
@@ -132,8 +122,8 @@ static bool judge(const mps_fluid *f, mpsi_fluid_body *own, trial *before, bool 
   const double length = mpsi_fluid_body_length(own, f);
   double mass[3], g[3], step[3], largest = 0.0, change = 0.0;
   masses(own, length, mass);
-  take_water(f, own);
-  imbalance(own, mass, length, g);
+  mpsi_fluid_load_body(f, own, own->pose.x);
+  imbalance(own, mass, length, f->dt, g);
   if (!(own->mass[0] > 0.0)) first_guess(f, own, mass, length);
   if (!first) {
     double da[3], dg[3];

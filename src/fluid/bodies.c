@@ -128,17 +128,35 @@ void mpsi_fluid_drive_bodies(mps_fluid *f, double dt) {
   }
 }
 
-static void end_afloat(mps_fluid *f, mpsi_fluid_body *own) {
-  mpsi_body_react(own->body, f->dt, own->water, own->wetted);
-  mpsi_body_advance(own->body, f->dt);
+/* Forces of the water on a body whose reference point is at `about`, by parts. */
+void mpsi_fluid_load_body(const mps_fluid *f, mpsi_fluid_body *own, const double *about) {
+  const mps_body *body = own->body;
+  memset(own->water, 0, sizeof own->water);
+  memset(own->wetted, 0, sizeof own->wetted);
+  for (int k = 0; k < own->faces; k++) {
+    const mpsi_fluid_wall *w = &f->wall[own->first + k];
+    if (!w->used) continue;
+    const int32_t part = body->part_of[body->face_of[k]];
+    const double *force = w->load.force;
+    for (int c = 0; c < 2; c++) own->water[part].force[c] -= force[c];
+    own->water[part].moment[2] -= w->load.moment - (about[0] * force[1] - about[1] * force[0]);
+    own->wetted[part] += w->load.wetted;
+  }
+}
+
+/* The body feels the step's forces: of one that floats those with which its accelerations agree. */
+static void end_body(mps_fluid *f, mpsi_fluid_body *own) {
+  if (!own->floats) mpsi_fluid_load_body(f, own, own->next.x);
+  mpsi_body_react(own->body, &own->source, f->dt, own->water, own->wetted);
+  if (own->floats) mpsi_body_advance(own->body, f->dt);
+  own->pose = own->floats ? pose_of(own->body) : own->next;
 }
 
 void mpsi_fluid_end_bodies(mps_fluid *f) {
   for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
     mpsi_fluid_body *body = &f->body[b];
     if (!body->body) continue;
-    if (body->floats) end_afloat(f, body);
-    body->pose = body->floats ? pose_of(body->body) : body->next;
+    end_body(f, body);
     for (int k = 0; k < body->faces; k++) {
       mpsi_fluid_wall *w = &f->wall[body->first + k];
       for (int n = 0; n < 2; n++) w->now.a[n] = w->next.a[n];
@@ -227,6 +245,7 @@ static mps_status check_place(mps_fluid *f, const char *function, const mpsi_flu
 
 void mpsi_fluid_drop_body(mps_fluid *f, mpsi_fluid_body *body) {
   for (int k = 0; k < body->faces; k++) mpsi_fluid_drop_wall(f, &f->wall[body->first + k]);
+  if (body->body) mpsi_body_leave(body->body, &body->source);
   mps_body_destroy(&body->body);
   *body = (mpsi_fluid_body){0};
 }
@@ -307,6 +326,7 @@ mps_status mps_fluid_add_body(mps_fluid *f, mps_body *body, int32_t kind, int32_
     if (begun) mpsi_fluid_drop_body(f, &f->body[b]);
     return status;
   }
+  mpsi_body_join(body, &f->body[b].source);
   f->stale = true, f->unknown = 1;
   if (number) *number = b;
   return MPS_OK;

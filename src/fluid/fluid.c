@@ -140,8 +140,8 @@ static void release(mps_fluid *f) {
                          f->lower_room.item,
                          f->near_wall_room.item};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  for (int b = 0; b < MPSI_FLUID_BODIES; b++) mpsi_fluid_drop_body(f, &f->body[b]);
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) mpsi_fluid_drop_wall(f, &f->wall[b]);
-  for (int b = 0; b < MPSI_FLUID_BODIES; b++) mps_body_destroy(&f->body[b].body);
   mpsi_state_forget(&f->identity);
   mps_domain_destroy(&f->def.domain);
   mps_kernel_destroy(&f->def.kernel);

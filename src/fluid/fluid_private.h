@@ -79,11 +79,11 @@ typedef struct mpsi_fluid_body {
   struct mps_body *body; /* NULL: none */
   int first, faces;      /* walls */
   mpsi_fluid_pose pose, next;
-  /* of one that floats, see afloat.c; per metre of thickness */
-  bool floats;
-  double rate[3], mass[9]; /* accelerations (m/s2); masses with the added ones (kg), 0: unknown */
-  mpsi_load water[MPS_BODY_MAX_PARTS]; /* forces of the last solution */
+  mpsi_body_source source;
+  mpsi_load water[MPS_BODY_MAX_PARTS]; /* forces of the water, and its points on each part */
   int64_t wetted[MPS_BODY_MAX_PARTS];
+  bool floats;             /* see afloat.c */
+  double rate[3], mass[9]; /* accelerations (m/s2); masses with the added ones (kg), 0: unknown */
 } mpsi_fluid_body;
 
 /* Whether the caller has made boundary `number`. */
@@ -324,6 +324,7 @@ static inline double mpsi_fluid_least(const mps_fluid *f, int64_t i) {
 /* bodies.c */
 void mpsi_fluid_place_bodies(mps_fluid *fluid);            /* faces as of the pose */
 void mpsi_fluid_drive_bodies(mps_fluid *fluid, double dt); /* next of the faces */
+void mpsi_fluid_load_body(const mps_fluid *fluid, mpsi_fluid_body *body, const double *about);
 void mpsi_fluid_end_bodies(mps_fluid *fluid);
 /* m: rotations count as displacements at this radius. */
 double mpsi_fluid_body_length(const mpsi_fluid_body *body, const mps_fluid *fluid);

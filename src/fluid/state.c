@@ -66,7 +66,16 @@ static void list_state(mpsi_state *s, void *solver) {
     mpsi_state_f64(s, "velocity", pose->v, 2);
     mpsi_state_f64(s, "spin", &pose->spin, 1);
     mpsi_state_agree_integer(s, "floats", f->body[b].floats);
-    if (f->body[b].floats) {
+    if (!f->body[b].body) {
+      mpsi_state_leave(s);
+      continue;
+    }
+    mpsi_body_list_source(s, f->body[b].body, &f->body[b].source);
+    if (!f->body[b].floats) {
+      mpsi_state_enter(s, "felt");
+      mpsi_body_list_account(s, f->body[b].body);
+      mpsi_state_leave(s);
+    } else {
       mpsi_state_f64(s, "rate", f->body[b].rate, 3);
       mpsi_state_f64(s, "mass", f->body[b].mass, 9);
       mpsi_state_enter(s, "afloat"); /* it has a position and a velocity too */

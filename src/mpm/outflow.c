@@ -110,8 +110,8 @@ static mps_status count_out(mps_mpm *mpm, const char *function, mps_contact *con
   if (mpm->share && status == MPS_OK)
     status = mpsi_domain_sum_exact(mpm->share->domain, function, parts, mass);
   for (int32_t part = 0; status == MPS_OK && part < parts; part++) {
-    contact->reaction[part].removed += count[part];
-    contact->reaction[part].removed_mass += mpsi_exact_value(&mass[part]);
+    contact->source.reaction[part].removed += count[part];
+    contact->source.reaction[part].removed_mass += mpsi_exact_value(&mass[part]);
   }
   return status;
 }

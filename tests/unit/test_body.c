@@ -293,8 +293,10 @@ static void keeps_its_books(void **state) {
     mps_reaction r;
     mps_assert_ok(context, mps_body_get_totals(body, &start));
     mps_assert_near(start.linear[0], 6.0, 0.0);
+    mpsi_body_source source = {.moves = false};
+    mpsi_body_join(body, &source);
     for (int k = 0; k < 200; k++) {
-      mpsi_body_react(body, 0.01, &touch, &one);
+      mpsi_body_react(body, &source, 0.01, &touch, &one);
       mpsi_body_advance(body, 0.01);
     }
     mps_assert_ok(context, mps_body_get_totals(body, &t));
