@@ -84,6 +84,7 @@ typedef struct mpsi_fluid_body {
   int64_t wetted[MPS_BODY_MAX_PARTS];
   bool floats;             /* see afloat.c */
   double rate[3], mass[9]; /* accelerations (m/s2); masses with the added ones (kg), 0: unknown */
+  double rate_before[3], mass_before[9]; /* before the step being made */
 } mpsi_fluid_body;
 
 /* Whether the caller has made boundary `number`. */
@@ -171,6 +172,13 @@ typedef enum mpsi_fluid_stage {
   MPSI_FLUID_MOVED /* the cloud is at the end of the step, the fields are not */
 } mpsi_fluid_stage;
 
+/* Who adds or removes particles. */
+typedef enum mpsi_fluid_change {
+  MPSI_FLUID_UNCHANGED = 0,
+  MPSI_FLUID_CHANGED_BY_CALLER,
+  MPSI_FLUID_CHANGED_BY_STEP
+} mpsi_fluid_change;
+
 typedef struct mpsi_fluid_loops mpsi_fluid_loops; /* loops.h */
 typedef struct mpsi_fluid_given mpsi_fluid_given; /* a load of the caller, loads.c */
 typedef struct mpsi_fluid_share mpsi_fluid_share; /* share.h */
@@ -222,7 +230,7 @@ struct mps_fluid {
   double *push[2], *over; /* of each particle: acceleration by loads and forces, m/s2; pressure on
                              its surface, Pa; NULL: none has any */
   bool driven;            /* u of the cloud has dt times push already */
-  double load_time;       /* s: when the loads were read */
+  double load_time, load_time_before; /* s: when the loads were read, for this step and before it */
   mpsi_fluid_system system;
   mpsi_room lower_col_room, lower_room;
   int64_t most_lower; /* room for entries of L, a row on average */
@@ -236,8 +244,8 @@ struct mps_fluid {
   mpsi_fluid_classical classical;
   mpsi_fluid_outside *outside; /* NULL: none */
   mpsi_guard guard;            /* of the callbacks of the run and of the solver */
-  bool changing;   /* energy_before is that of before a change of the set that is under way */
-  bool stale;      /* the cloud is not that of the fields */
+  mpsi_fluid_change change;    /* of the set, that is under way; energy_before is that of before */
+  bool stale;                  /* the cloud is not that of the fields */
   int64_t unknown; /* 1: free_surface and surface_rise are not of the present set and walls */
   bool warned;     /* that the guards act often */
   mpsi_identity *identity;

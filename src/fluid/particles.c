@@ -94,6 +94,13 @@ mps_status mpsi_fluid_commit(void *self, const char *function, const char *field
   return MPS_OK;
 }
 
+/* The set may still refuse what it is asked for: the surface is unknown when it has changed. */
+static void expect_change(mps_fluid *f, mpsi_fluid_change by) {
+  double kinetic;
+  f->energy_before = mpsi_fluid_energy(f, &kinetic);
+  f->change = by;
+}
+
 mps_status mpsi_fluid_insert(void *self, const char *function, int64_t first, int64_t count) {
   mps_fluid *f = self;
   mps_status status = mpsi_fluid_ready(f, function);
@@ -103,12 +110,10 @@ mps_status mpsi_fluid_insert(void *self, const char *function, int64_t first, in
                      (long long)first, MPSI_FLUID_MOST_PARTICLES);
   if (status == MPS_OK) status = check_places(f, function, first, first + count);
   if (status != MPS_OK) return status;
-  double kinetic;
-  f->energy_before = mpsi_fluid_energy(f, &kinetic);
-  f->changing = true;
-  f->unknown = 1;
-  if (mpsi_fluid_reserve(f, first + count)) return MPS_OK;
-  return mpsi_fail_memory(f->context, function, (size_t)(first + count) * sizeof *f->local);
+  if (!mpsi_fluid_reserve(f, first + count))
+    return mpsi_fail_memory(f->context, function, (size_t)(first + count) * sizeof *f->local);
+  expect_change(f, MPSI_FLUID_CHANGED_BY_CALLER);
+  return MPS_OK;
 }
 
 mps_status mpsi_fluid_remove(void *self, const char *function, int64_t count, const int64_t *ids) {
@@ -119,10 +124,7 @@ mps_status mpsi_fluid_remove(void *self, const char *function, int64_t count, co
   if (count >= f->count)
     return mpsi_fail(f->context, function, MPS_ERROR_STATE,
                      "all %lld particles are to go, a fluid needs one", (long long)f->count);
-  double kinetic;
-  f->energy_before = mpsi_fluid_energy(f, &kinetic);
-  f->changing = true;
-  f->unknown = 1;
+  expect_change(f, MPSI_FLUID_CHANGED_BY_CALLER);
   return MPS_OK;
 }
 
@@ -171,9 +173,7 @@ void mpsi_fluid_let_go(mps_fluid *f) {
   }
   f->stale = true;
   if (count == 0) return;
-  double kinetic;
-  f->energy_before = mpsi_fluid_energy(f, &kinetic);
-  f->changing = true;
+  expect_change(f, MPSI_FLUID_CHANGED_BY_STEP);
   mpsi_particles_take_out(f->particles, gone);
 }
 
@@ -182,8 +182,10 @@ void mpsi_fluid_renew(void *self) {
   mps_fluid *f = self;
   double kinetic;
   f->count = mps_particles_count(f->particles);
-  if (f->changing) f->energy += mpsi_fluid_energy(f, &kinetic) - f->energy_before;
-  f->changing = false;
+  if (f->change != MPSI_FLUID_UNCHANGED)
+    f->energy += mpsi_fluid_energy(f, &kinetic) - f->energy_before;
+  if (f->change == MPSI_FLUID_CHANGED_BY_CALLER) f->unknown = 1;
+  f->change = MPSI_FLUID_UNCHANGED;
   f->ghosts = 0;
   f->stale = true;
   mpsi_fluid_find_speed(f);

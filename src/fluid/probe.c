@@ -286,9 +286,10 @@ mps_status mps_fluid_get_pressure(mps_fluid *f, int32_t number, int64_t count, c
   if (status == MPS_OK && (count < 0 || (count > 0 && (!x || !pressure))))
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                      "count is %lld, x and pressure must be given", (long long)count);
-  if (status == MPS_OK) status = check_pressure(f, __func__);
   int64_t near = 0;
   if (status == MPS_OK) status = check_points(f, __func__, &f->wall[number], count, x);
+  status = mpsi_fluid_settle(f, __func__, status);
+  if (status == MPS_OK) status = check_pressure(f, __func__);
   if (status == MPS_OK) status = gather(f, &f->wall[number], __func__, &near);
   status = mpsi_fluid_settle(f, __func__, status);
   if (status != MPS_OK) return status;

@@ -69,6 +69,33 @@ static mps_status add_loads(mps_fluid *f, const char *function) {
   return MPS_OK;
 }
 
+/* What a step that fails leaves as it was. */
+static void note_state(mps_fluid *f) {
+  f->before = f->report;
+  f->load_time_before = f->load_time;
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].before = f->wall[b].load;
+  for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
+    mpsi_fluid_body *body = &f->body[b];
+    memcpy(body->rate_before, body->rate, sizeof body->rate);
+    memcpy(body->mass_before, body->mass, sizeof body->mass);
+  }
+}
+
+/* Forgets what was done of a step, if one was begun. */
+static void abandon(mps_fluid *f) {
+  if (f->stage == MPSI_FLUID_BETWEEN) return;
+  f->report = f->before;
+  f->load_time = f->load_time_before;
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].load = f->wall[b].before;
+  for (int b = 0; b < MPSI_FLUID_BODIES; b++) {
+    mpsi_fluid_body *body = &f->body[b];
+    memcpy(body->rate, body->rate_before, sizeof body->rate);
+    memcpy(body->mass, body->mass_before, sizeof body->mass);
+  }
+  f->stage = MPSI_FLUID_BETWEEN;
+  f->stale = true;
+}
+
 /* A step is made in three parts. They read and write the cloud; the fields change when all is
  * done. Where one fails, the surroundings are found again when they are asked for. */
 static mps_status begin(mps_fluid *f, const char *function, double dt) {
@@ -76,8 +103,7 @@ static mps_status begin(mps_fluid *f, const char *function, double dt) {
   if (status != MPS_OK) return status;
   f->stage = MPSI_FLUID_BEGUN;
   f->dt = dt;
-  f->before = f->report;
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].before = f->wall[b].load;
+  note_state(f);
   mpsi_fluid_begin_walls(f, dt);
   mpsi_fluid_load_cloud(f);
   status = add_loads(f, function);
@@ -132,14 +158,6 @@ static mps_status keep(mps_fluid *f, const char *function) {
   if (f->steps % SORT_EVERY != 0) return MPS_OK;
   f->stale = true;
   return mpsi_fluid_sort(f, function);
-}
-
-/* Forgets what was done of a step. */
-static void abandon(mps_fluid *f) {
-  f->report = f->before;
-  for (int b = 0; b < MPSI_FLUID_WALLS; b++) f->wall[b].load = f->wall[b].before;
-  f->stage = MPSI_FLUID_BETWEEN;
-  f->stale = true;
 }
 
 static mps_status take_step(mps_fluid *f, const char *function, double dt) {
