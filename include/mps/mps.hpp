@@ -13,6 +13,9 @@
  *   mps_totals totals = mps::get<mps_totals>(solver, mps_mpm_get_totals);
  *   for (auto v = mps::view(sand, "velocity"); ...) ... v(i, 0) ...
  *
+ * A C++ function, also one that throws, becomes a law, a signal or a hook by mps::callback. A function
+ * that is given to C without it must not throw: C has no way to unwind a step.
+ *
  * Arguments are those of the C function, with a struct in place of a pointer to it and a handle in
  * place of its object. The context must outlive the handles that were made from it, as it does when
  * it is declared first. Thread rules are those of the C functions.
@@ -22,7 +25,11 @@
 
 #include "mps.h"
 
+#include <atomic>
 #include <exception>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -55,8 +62,8 @@ private:
 };
 
 /** Owns an object of the C library, and destroys it; moves, never copies. Converts to the pointer
- *  that C functions take. */
-template <class T> class handle {
+ *  that C functions take. A contact ends with its handle. */
+template <class T> class [[nodiscard]] handle {
 public:
   handle() noexcept = default;
   handle(T *object, mps_context *context) noexcept : object_(object), context_(context) {}
@@ -105,10 +112,103 @@ MPS_CPP_HANDLE(coupling)
 MPS_CPP_HANDLE(domain)
 #undef MPS_CPP_HANDLE
 
-/** Throws where `status` is not MPS_OK. */
+namespace detail {
+/* Exceptions of callbacks on their way through C, the first one of each context: the callback may have
+ * run on another thread than the call that it ends. */
+class thrown {
+public:
+  static void keep(const mps_context *context) noexcept {
+    const std::lock_guard<std::mutex> lock(mutex());
+    try {
+      if (list().emplace(context, std::current_exception()).second) count()++;
+    } catch (...) { // no memory for it: the status of the call remains
+    }
+  }
+  static void rethrow(const mps_context *context) {
+    if (count() == 0) return;
+    std::exception_ptr exception;
+    {
+      const std::lock_guard<std::mutex> lock(mutex());
+      const auto found = list().find(context);
+      if (found == list().end()) return;
+      exception = found->second;
+      list().erase(found);
+      count()--;
+    }
+    std::rethrow_exception(exception);
+  }
+
+private:
+  static std::mutex &mutex() {
+    static std::mutex one;
+    return one;
+  }
+  static std::map<const mps_context *, std::exception_ptr> &list() {
+    static std::map<const mps_context *, std::exception_ptr> one;
+    return one;
+  }
+  static std::atomic<int> &count() {
+    static std::atomic<int> one{0};
+    return one;
+  }
+};
+} // namespace detail
+
+/** Throws what a mps::callback of the context has thrown, or mps::error where `status` is not MPS_OK.
+ */
 inline void check(const mps_context *context, mps_status status) {
+  detail::thrown::rethrow(context);
   if (status != MPS_OK) throw error(context, status);
 }
+
+/** A C++ function as a callback of the library: `C` is its type in the headers (mps_material_fn,
+ *  mps_signal_fn, mps_log_fn ...), `f` takes what stands behind `user` there and returns the same, or
+ *  nothing for MPS_OK. What it throws ends the call of the library and comes out of it, if that is made
+ *  by the functions of this header. The callback must live as long as what calls it.
+ *
+ *   mps::callback<mps_material_fn> update(context, [&](const mps_material_block *block) { ... });
+ *   def.update = update.function();
+ *   def.user = update.user(); */
+template <class C> class callback;
+template <class R, class... A> class callback<R (*)(void *, A...)> {
+public:
+  template <class F>
+  callback(const mps_context *context, F f) : body_(new typed<F>(context, std::move(f))) {}
+  auto function() const noexcept -> R (*)(void *, A...) {
+    return [](void *user, A... arguments) -> R {
+      return static_cast<body *>(user)->answer(arguments...);
+    };
+  }
+  void *user() const noexcept { return body_.get(); }
+
+private:
+  struct body {
+    virtual ~body() = default;
+    virtual R answer(A... arguments) noexcept = 0;
+  };
+  template <class F> struct typed final : body {
+    typed(const mps_context *c, F &&g) : context(c), f(std::move(g)) {}
+    R answer(A... arguments) noexcept override {
+      try {
+        if constexpr (std::is_void_v<std::invoke_result_t<F &, A...>> && !std::is_void_v<R>) {
+          f(arguments...);
+          return R(0);
+        } else {
+          return f(arguments...);
+        }
+      } catch (...) {
+        detail::thrown::keep(context);
+      }
+      if constexpr (std::is_same_v<R, mps_status>)
+        return MPS_ERROR_CANCELLED;
+      else if constexpr (!std::is_void_v<R>)
+        return R(1); /* a cancel hook: stop */
+    }
+    const mps_context *context;
+    F f;
+  };
+  std::unique_ptr<body> body_;
+};
 
 namespace detail {
 /* What a C function takes in place of what a C++ program gives: the object of a handle, the address

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import cffi
 import numpy
 
-from . import _cdef
+from . import _cdef, _shapes
 
 ffi = cffi.FFI()
 ffi.cdef(_cdef.TEXT)
@@ -93,11 +93,14 @@ _DTYPES = {"double": numpy.float64, "int64_t": numpy.int64, "int32_t": numpy.int
 
 
 class Call:
-    """One call: keeps alive what C sees by pointer, and the exception of a callback."""
+    """One call: keeps alive what C sees by pointer, and knows how long arrays are. What callbacks raise
+    goes into `raised`, in this call or a later one that asks them."""
 
-    def __init__(self):
+    def __init__(self, raised=None):
         self.alive = []
-        self.exception = None
+        self.raised = [] if raised is None else raised
+        self.lengths = {}  # numbers by name, of arguments and members
+        self._arrays = []  # (owner of the formula, its shapes, name, length), to be compared
 
     def array(self, value, item, constant):
         """A pointer to the numbers of a list (which C only reads) or NumPy array."""
@@ -118,10 +121,12 @@ class Call:
         def called(_user, *values):
             # The same error for all: the first exception is the one that is raised.
             answer = function(*[self.wrap(value) for value in values])
+            if kind.result.kind == "void":
+                return None
             return 0 if answer is None else answer
 
         def failed(_type, exception, _trace):
-            self.exception = self.exception or exception
+            self.raised.append(exception)
 
         stop = library.MPS_ERROR_CANCELLED
         error = None if kind.result.kind == "void" else stop if kind.result.kind == "enum" else 1
@@ -150,17 +155,44 @@ class Call:
                 known = ", ".join(f for f in fields if f not in ("struct_size", "reserved"))
                 raise TypeError(f"{kind.cname} has no member {name!r}: it has {known}")
             self.assign(made, name, fields[name].type, value)
+            self.measure(kind.cname, name, fields[name].type, value)
+        for name, field in fields.items():
+            if field.type.kind == "primitive":
+                self.lengths[name] = getattr(made, name)
         self.alive.append(made)
         return made
 
+    def measure(self, owner, name, kind, value):
+        """Notes how long an array is that C reads or writes."""
+        plain = not isinstance(value, (ffi.CData, str, bytes, dict)) and not hasattr(type(value), "pointer")
+        if kind.kind == "pointer" and plain and hasattr(value, "__len__"):
+            self._arrays.append((owner, name, numpy.size(value) if kind.item.kind == "primitive"
+                                 else len(value)))
+
+    def compare(self, words):
+        """Refuses arrays that are shorter than C takes them to be."""
+        for owner, name, given in self._arrays:
+            formula = (_shapes.FUNCTIONS.get(owner) or _shapes.STRUCTS.get(owner) or {}).get(name, "1")
+            wanted = _shapes.length(formula, words)
+            if given < wanted:
+                raise ValueError(f"{owner}: {name!r} has {given} values, and must have {wanted}"
+                                 f"{'' if formula.isdigit() else f' ({formula})'}")
+
     def assign(self, made, name, kind, value):
         if kind.kind == "array" and kind.item.kind == "pointer":
+            self.fits(name, kind, value)
             for k, item in enumerate(value):
                 getattr(made, name)[k] = self.to_c(item, kind.item, True)
         elif kind.kind == "array":
+            self.fits(name, kind, value)
             getattr(made, name)[0:len(value)] = [float(x) for x in value]
         else:
             setattr(made, name, self.to_c(value, kind, True))
+
+    @staticmethod
+    def fits(name, kind, value):
+        if len(value) > kind.length:
+            raise ValueError(f"{name!r} has {len(value)} values, and takes at most {kind.length}")
 
     def to_c(self, value, kind, constant):
         if value is None:
@@ -232,7 +264,8 @@ def call(name, owner, values, members):
     full = sized if sized in _cdef.PARAMETERS else f"mps_{name}"
     function = getattr(library, full)
     kinds, names = ffi.typeof(function).args, _cdef.PARAMETERS[full]
-    state, given = Call(), list(([owner] if owner is not None else []) + list(values))
+    state = Call(None if owner is None else owner.context._raised)
+    given = list(([owner] if owner is not None else []) + list(values))
     arguments, outputs = [], []
     members_used = not members
     for kind, parameter in zip(kinds, names):
@@ -246,7 +279,10 @@ def call(name, owner, values, members):
             arguments.append(state.struct(kind.item, members))
             members_used = True
         elif given:
-            arguments.append(state.to_c(given.pop(0), kind, constant))
+            value = given.pop(0)
+            arguments.append(state.to_c(value, kind, constant))
+            state.measure(f"mps_{name}", word, kind, value)
+            state.lengths[word] = value
         else:
             made = None if constant else _output(kind)
             if made is None:
@@ -256,8 +292,55 @@ def call(name, owner, values, members):
     if given or not members_used:
         extra = "too many arguments" if given else f"no definition that has {', '.join(members)}"
         raise TypeError(f"{name}(): {extra}: its arguments are {signature(name)}")
+    state.compare(_Words(owner, state.lengths))
     result = function(*arguments)
     return result, outputs, state
+
+
+class _Words:
+    """What the names in a formula of _shapes stand for."""
+
+    def __init__(self, owner, numbers):
+        self.owner, self.numbers = owner, numbers
+
+    def __getitem__(self, word):
+        found = getattr(self, "_" + word, None)
+        if found:
+            return found()
+        if word.startswith("MPS_"):
+            return getattr(library, word)
+        if word in self.numbers:
+            return self.numbers[word]
+        return self.owner.lengths[word]
+
+    def _set(self):
+        """The set of particles that the call is about."""
+        given = self.numbers.get("particles")
+        if getattr(given, "kind", None) == "particles":
+            return given.pointer
+        owner = self.owner._alive[0] if self.owner.kind == "grid" else self.owner
+        if owner.kind == "particles":
+            return owner.pointer
+        return getattr(library, f"mps_{owner.kind}_particles")(owner.pointer)
+
+    def _dim(self):
+        if self.owner.kind == "body":
+            return library.mps_body_dim(self.owner.pointer)
+        return library.mps_particles_dim(self._set())
+
+    def _particles(self):
+        return library.mps_particles_count(self._set())
+
+    def _components(self):
+        def components(name):
+            view = ffi.new("mps_view *")
+            status = library.mps_particles_view(self._set(), os.fspath(name).encode(), view)
+            return 0 if status else view.shape[1]  # the call itself says that there is none
+
+        return components
+
+    def _nodes(self):
+        return lambda number: self.owner.lengths.get(number, 1)
 
 
 def signature(name):

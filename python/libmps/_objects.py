@@ -1,10 +1,9 @@
-"""Objects of the library: what they own, their methods, fields of particles as arrays."""
-
-import numpy
+"""Objects of the library: what they own and their methods."""
 
 from . import _cdef
-from ._call import (Call, Error, StaleError, call, ffi, functions, library, returns_status,
-                    same, signature, to_python)
+from ._arrays import Edit, lend
+from ._call import (Call, Error, call, ffi, functions, library, returns_status, same, signature,
+                    to_python)
 
 
 class Object:
@@ -12,6 +11,7 @@ class Object:
     header; close(), the end of a `with` block, or the last reference destroys it."""
 
     pointer = None
+    lengths = {}
 
     def __init__(self, pointer, context=None, alive=(), owned=True):
         self.pointer = pointer
@@ -23,6 +23,7 @@ class Object:
         self._holder = ffi.new(f"mps_{self.kind} *[1]", [pointer])
         if context is None:
             self._running, self._late = 0, []  # calls under way; what is destroyed after them
+            self._raised = []  # by callbacks in the call under way
 
     def close(self):
         """Destroys the object; without effect the second time."""
@@ -76,6 +77,8 @@ class Object:
         if self.pointer is None:
             raise ValueError(f"the {self.kind} is closed")
         context = self.context
+        if context.pointer is None:
+            raise ValueError(f"the context of the {self.kind} is closed")
         context._running += 1
         try:
             result, outputs, state = call(name, self, values, members)
@@ -84,16 +87,33 @@ class Object:
             while not context._running and context._late:
                 destroy, holder, _alive = context._late.pop()
                 destroy(holder)
-        if state.exception:
-            raise state.exception
+        if name.startswith("context_set_"):  # a hook stays: before anything may raise
+            self._alive += [held for held in state.alive if _is_callback(held)]
+        if context._raised and not context._running:  # the first of them is the cause
+            exception = context._raised[0]
+            context._raised.clear()
+            raise exception
         if not returns_status(name):
             return self._known(result, state)
         if result != 0:
-            raise Error("mps_" + name, result, library.mps_context_error(self.context.pointer))
+            raise Error("mps_" + name, result, library.mps_context_error(context.pointer))
         made = [self._made(output[0], state) for output in outputs]
-        if name.startswith("context_set_"):
-            self._alive += [held for held in state.alive if _is_callback(held)]  # a hook stays
+        self._remember(name, state, made)
         return None if not made else made[0] if len(made) == 1 else tuple(made)
+
+    def _remember(self, name, state, made):
+        """Contacts belong to their solver, until close(); lengths that only a definition has."""
+        for result in made:
+            if not isinstance(result, Object):
+                continue
+            if result.kind == "contact":
+                result._alive = [held for held in result._alive if held is not self]
+                self._alive.append(result)
+            result.lengths = {word: value for word, value in state.lengths.items()
+                              if isinstance(value, (int, float))}
+        if name in ("fluid_add_boundary", "fluid_set_boundary"):
+            number = made[0] if made else state.lengths["number"]
+            self.lengths[number] = state.lengths["node_count"]
 
     def _made(self, value, state):
         if isinstance(value, ffi.CData) and ffi.typeof(value).kind == "pointer":
@@ -121,11 +141,20 @@ def _is_callback(held):
     return isinstance(held, ffi.CData) and ffi.typeof(held).kind == "function"
 
 
+def _go_on():
+    """The cancel hook where the program has none. Python looks for signals when a function of its own
+    begins: so Ctrl-C ends a run within a step, by KeyboardInterrupt."""
+    return 0
+
+
 class Context(Object):
-    """mps_context: the members of mps_context_def by keyword (threads, executor, log ...)."""
+    """mps_context: the members of mps_context_def by keyword (threads, executor, log ...). Without a
+    hook `cancel` Ctrl-C ends the call under way, as `cancel=lambda: 0` does."""
 
     def __init__(self, **members):
-        state, made, text = Call(), ffi.new("mps_context *[1]"), ffi.new("char[512]")
+        raised = []
+        members = {**members, "cancel": members.get("cancel") or _go_on}
+        state, made, text = Call(raised), ffi.new("mps_context *[1]"), ffi.new("char[512]")
         definition = state.struct(ffi.typeof("mps_context_def"), members)
         status = library.mps_context_create(definition, made, text, 512)
         if status != 0:
@@ -133,101 +162,11 @@ class Context(Object):
             error.args = (f"mps_context_create: {ffi.string(text).decode()}",)
             raise error
         super().__init__(made[0], None, state.alive)
+        self._raised = raised
 
-
-class Field(numpy.ndarray):
-    """A field of particles, without a copy: (particles, components), or (particles,) for one
-    component. Using it after particles have come, gone or been sorted raises StaleError."""
-
-    _owner = _epoch = None
-
-    def __array_finalize__(self, base):
-        self._owner, self._epoch = getattr(base, "_owner", None), getattr(base, "_epoch", None)
-
-    @property
-    def stale(self):
-        """Whether the array must be taken again."""
-        owner = self._owner
-        return owner is not None and (owner.pointer is None or
-                                      library.mps_particles_epoch(owner.pointer) != self._epoch)
-
-    def _plain(self):
-        if self.stale:
-            raise StaleError("particles have come, gone or been sorted: take the field again")
-        return self.view(numpy.ndarray)
-
-    def __getitem__(self, key):
-        self._plain()
-        return super().__getitem__(key)
-
-    def __setitem__(self, key, value):
-        self._plain()
-        super().__setitem__(key, value)
-
-    def __array_ufunc__(self, ufunc, method, *inputs, out=None, **keywords):
-        plain = [x._plain() if isinstance(x, Field) else x for x in inputs]
-        if out is not None:
-            keywords["out"] = tuple(x._plain() if isinstance(x, Field) else x for x in out)
-        return getattr(ufunc, method)(*plain, **keywords)
-
-    def __array_function__(self, function, _types, args, keywords):
-        def plain(x):
-            if isinstance(x, Field):
-                return x._plain()
-            return type(x)(map(plain, x)) if isinstance(x, (list, tuple)) else x
-
-        return function(*plain(args), **{k: plain(v) for k, v in keywords.items()})
-
-    def __repr__(self):
-        return "Field(stale)" if self.stale else repr(self._plain()).replace("array", "Field", 1)
-
-    __str__ = __repr__
-
-
-def _array(owner, view):
-    """The memory that a view lends as an array that knows when it is stale."""
-    dtype = numpy.dtype(numpy.float64 if view.dtype.code == 2 else numpy.int64)
-    count, components = view.shape[0], view.shape[1]
-    strides = [8 * view.stride[0], 8 * view.stride[1]]
-    size = (count - 1) * strides[0] + (components - 1) * strides[1] + 8 if count > 0 else 0
-    buffer = ffi.buffer(view.data, size) if size else b""
-    one = components == 1
-    made = numpy.ndarray((count,) if one else (count, components), dtype, buffer, 0,
-                         strides[:1] if one else strides).view(Field)
-    made._owner, made._epoch = owner, view.epoch
-    return made
-
-
-class Edit:
-    """A field open for writing: `array`, or the value of a `with` block, whose end commits; left by
-    an exception it abandons, and the values are those from before. Where a value is out of range
-    commit() raises and the field stays open: mend it and commit again, or abandon()."""
-
-    def __init__(self, owner, name):
-        self._owner, self._edit = owner, ffi.new("mps_edit *")
-        owner._invoke("particles_edit", (name, self._edit), {})
-        self.array = _array(owner, self._edit.view)
-
-    def commit(self):
-        self._owner._invoke("particles_commit", (self._edit,), {})
-        self.array.flags.writeable = False
-
-    def abandon(self):
-        self._owner._invoke("particles_abandon", (self._edit,), {})
-        self.array.flags.writeable = False
-
-    def __enter__(self):
-        return self.array
-
-    def __exit__(self, kind, *_):
-        if kind is not None:
-            self.abandon()
-            return
-        try:
-            self.commit()
-        except BaseException:
-            self.abandon()
-            raise
+    def set_cancel(self, cancel):
+        """mps_context_set_cancel; None: Ctrl-C alone ends a call."""
+        self._invoke("context_set_cancel", (cancel or _go_on,), {})
 
 
 class Particles(Object):
@@ -239,9 +178,7 @@ class Particles(Object):
     def __getitem__(self, name):
         view = ffi.new("mps_view *")
         self._invoke("particles_view", (name, view), {})
-        made = _array(self, view[0])
-        made.flags.writeable = False
-        return made
+        return lend(self, view[0], False)
 
     def edit(self, name):
         return Edit(self, name)

@@ -1,13 +1,17 @@
 """The Python package: values against theory, errors as exceptions, arrays that know when they are stale,
 callbacks, and that every function and definition of the C headers is reachable."""
 
+import copy
 import gc
+import pickle
+import re
+import signal
 import unittest
 
 import numpy as np
 
 import libmps as mps
-from libmps import _cdef
+from libmps import _cdef, _shapes
 from libmps._call import Call, ffi, signature
 
 
@@ -267,12 +271,194 @@ class Arrays(unittest.TestCase):
         np.testing.assert_array_equal(sand["density"], density)
         solver.step(1)
 
+    def test_no_array_outlives_the_memory(self):
+        """What NumPy makes of a field are copies, or fields; ways to the memory itself are closed."""
+        context = mps.Context()
+        sand = block(context)
+        x = sand["position"]
+        plain = np.asarray(x)
+        kept = x[:, 0]
+        whole = np.array(x)
+        self.assertIs(type(plain), np.ndarray)
+        self.assertFalse(plain.flags.writeable)
+        self.assertTrue(whole.flags.writeable)
+        turned = [x.T, np.transpose(x), kept.reshape(2, -1), np.reshape(kept, (2, -1)), kept[::2],
+                  np.atleast_2d(kept), *x]
+        for part in turned:
+            self.assertIsInstance(part, type(x))
+        for _ in range(20):
+            sand.fill_box([2.0 + 40 * _, 0], [40.0 + 40 * _, 5])
+        for part in [x, kept, *turned]:
+            self.assertTrue(part.stale)
+            for use in (lambda: np.asarray(part), part.__len__, lambda: part.tolist(), lambda: part.copy(),
+                        lambda: part.astype(int), lambda: part.view(np.int64), lambda: list(part),
+                        lambda: part == 1, lambda: copy.deepcopy(part)):
+                with self.assertRaises(mps.StaleError):
+                    use()
+        np.testing.assert_array_equal(plain, whole)
+        fresh = sand["position"]
+        with self.assertRaises(TypeError):
+            memoryview(fresh)
+        for raw in ("data", "ctypes", "base", "flat", "__array_interface__"):
+            with self.assertRaises(AttributeError):
+                getattr(fresh, raw)
+        self.assertEqual(fresh.view(np.int64).dtype, np.int64)
+        self.assertIs(type(pickle.loads(pickle.dumps(kept_of(sand)))), np.ndarray)
+
+    def test_an_edit_ends_for_all_its_parts(self):
+        context = mps.Context()
+        sand = block(context)
+        sand.add_field("velocity", 0)
+        with sand.edit("velocity") as v:
+            v += 1.0
+            part = v[:, 1]
+            part *= 3.0
+            np.copyto(v[0], [5.0, 6.0])
+            v.fill(2.0)
+            np.add(v, 1.0, out=v)
+        np.testing.assert_array_equal(sand["velocity"], 3.0)
+        for late in (v, part):
+            with self.assertRaisesRegex(mps.StaleError, "has been committed"):
+                late[0] = 1.0
+        with self.assertRaises(ValueError):
+            sand["velocity"][0] = 1.0
+
+    def test_arrays_that_are_too_short_are_refused(self):
+        context = mps.Context(threads=1)
+        sand = block(context)
+        solver = falling(context, sand)
+        strip = context.body_create_polygon(3, [0, 0, 1, 0, 0, 1.0])
+        short = [
+            lambda: sand.append(3, [0.5, 0.5]),
+            lambda: sand.remove(2, [0]),
+            lambda: sand.fill_box([0.0], [1.0, 1.0]),
+            lambda: sand.fill_polygon(3, [0, 0, 1, 0, 0]),
+            lambda: sand.nearest([0.5]),
+            lambda: sand.select_box([0, 0], [1, 1], 3, np.zeros(2, np.int64)),
+            lambda: sand.set_geostatic(layer_count=2, layers=[{"thickness": 1.0}]),
+            lambda: context.signal_table(mps.SIGNAL_DISPLACEMENT, 3, [0, 1, 2], [0, 1]),
+            lambda: context.body_create_polygon(4, [0, 0, 1, 0, 0, 1]),
+            lambda: strip.distance(2, [0, 0, 1], np.zeros(2), None, None, None),
+            lambda: strip.distance(2, [0, 0, 1, 1], np.zeros(2), np.zeros(3), None, None),
+            lambda: solver.add_load(id_count=2, ids=[0, 1], area=[1.0], traction=[1, 0, 0]),
+            lambda: solver.grid().evaluate("velocity", -1, 2, np.zeros(6), np.zeros(3), None),
+            lambda: solver.grid().get_nodes(5, np.zeros(1, np.int64), None, np.zeros(4), None, None),
+            lambda: context.coupling_create(size=4).begin(None, np.zeros(3)),
+            lambda: context.material_user(update=print, wave_modulus=1e6, history_count=2,
+                                          history=["one"]),
+        ]
+        for k, call in enumerate(short):
+            with self.assertRaisesRegex(ValueError, r"has \d+ values, and must have \d+", msg=str(k)):
+                call()
+        with self.assertRaisesRegex(ValueError, "'gravity' has 4 values, and takes at most 3"):
+            falling(context, sand, gravity=[0, 0, 0, 0])
+        self.assertEqual(sand.count(), 100)
+
     def test_an_array_keeps_its_set_alive(self):
         context = mps.Context()
         x = block(context)["position"]
         del context
         gc.collect()
         self.assertAlmostEqual(float(x[:, 1].max()), 5.95, delta=1e-12)
+
+
+def kept_of(sand):
+    return sand["position"][:, 0]
+
+
+class Callbacks(unittest.TestCase):
+    def test_hooks_stay_alive(self):
+        context = mps.Context(threads=1)
+        sand = block(context)
+        solver = falling(context, sand)
+        seen = []
+        context.set_progress(lambda progress: seen.append(progress))
+        context.set_cancel(lambda: 0)
+        context.set_log(lambda level, text: seen.append(text))
+        gc.collect()
+        list(range(100000))
+        solver.run(0.05, 10, None)
+        self.assertTrue(seen)
+        context.set_cancel(lambda: 1)
+        gc.collect()
+        with self.assertRaises(mps.Error) as caught:
+            solver.run(0.1, 10, None)
+        self.assertEqual(caught.exception.status, mps.ERROR_CANCELLED)
+        context.set_cancel(None)
+        solver.run(0.1, 10, None)
+
+    def test_exceptions_of_laws_and_signals_come_out(self):
+        for threads in (1, 2):
+            context = mps.Context(threads=threads)
+            sand = block(context)
+
+            def update(block):
+                raise ZeroDivisionError("a law")
+
+            law = context.material_user(update=update, name="bad", wave_modulus=1e7)
+            solver = context.mpm_create(sand, law, cell=0.2, dt=1e-4)
+            with self.assertRaisesRegex(ZeroDivisionError, "a law"):
+                solver.step(1)
+            with self.assertRaisesRegex(ZeroDivisionError, "a law"):
+                solver.step(1)
+            self.assertEqual(solver.steps(), 0)
+
+        def motion(t, out):
+            raise KeyError("a signal")
+
+        context = mps.Context()
+        sand = block(context)
+        solver = falling(context, sand)
+        with self.assertRaisesRegex(KeyError, "a signal"):
+            solver.add_boundary(ids=sand["id"], id_count=100, kind=mps.MPM_BOUNDARY_PRESCRIBED,
+                                signal=[context.signal_user(motion), None, None])
+            solver.step(1)
+        self.assertEqual(solver.steps(), 0)
+
+    def test_a_signal_of_another_arity_is_an_error(self):
+        context = mps.Context()
+        with self.assertRaises(TypeError):
+            context.signal_user(lambda t: 0).displacement(1.0)
+
+    def test_interrupt_ends_a_run_within_a_step(self):
+        context = mps.Context(threads=1)
+        sand = block(context)
+        solver = falling(context, sand)
+        signal.setitimer(signal.ITIMER_REAL, 0.1)
+        handler = signal.signal(signal.SIGALRM, signal.default_int_handler)
+        try:
+            with self.assertRaises(KeyboardInterrupt):
+                solver.step(10**9)
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0)
+            signal.signal(signal.SIGALRM, handler)
+        self.assertLess(solver.steps(), 10**9)
+        solver.step(1)
+
+    def test_a_closed_context_says_so(self):
+        with mps.Context() as context:
+            sand = block(context)
+        with self.assertRaisesRegex(ValueError, "the context of the particles is closed"):
+            sand.count()
+        with self.assertRaisesRegex(ValueError, "the context is closed"):
+            context.particles_create(spacing=1.0)
+
+    def test_a_contact_belongs_to_its_solver(self):
+        """Sand falls on a strip whose contact nobody holds; closed, it ends."""
+        left = []
+        for closed in (False, True):
+            context = mps.Context(threads=1)
+            sand = block(context)
+            solver = falling(context, sand)
+            strip = context.body_create_polygon(4, [-1.0, 4.0, 2.0, 4.0, 2.0, 4.8, -1.0, 4.8])
+            solver.add_contact(strip, friction=0.5)
+            gc.collect()
+            if closed:
+                solver._alive[-1].close()
+            solver.run(0.4, 100, None)
+            left.append(float(sand["position"][:, 1].min()))
+        self.assertGreater(left[0], 4.75)
+        self.assertLess(left[1], 4.4)
 
 
 class Garbage(unittest.TestCase):
@@ -307,6 +493,26 @@ class Whole(unittest.TestCase):
         self.assertEqual(signature("particles_set_geostatic"),
                          "(mps_particles * particles, const mps_geostatic_def * def)")
         self.assertEqual(signature("mpm_step"), "(mps_mpm * mpm, int64_t count)")
+
+    def test_every_array_has_a_length(self):
+        """Pointers to numbers in the headers: one result, or an array whose length is known."""
+        single = {"added", "angle", "apart", "columns", "count", "done", "end", "number", "out", "part",
+                  "strain", "stabilising", "start", "index", "indices", "offsets"}
+        lacking = []
+        for function, listed in re.findall(r"(mps_\w+)\(([^()]*)\);", _cdef.TEXT):
+            for parameter in listed.split(","):
+                name = re.search(r"(\w+)(\[\d*\])?\s*$", parameter)
+                if re.search(r"(double|int64_t|int32_t)\s*\*|\[", parameter) and \
+                        name[1] not in _shapes.FUNCTIONS.get(function.removesuffix("_sized"), {}) and \
+                        name[1] not in single:
+                    lacking.append(f"{function}: {name[1]}")
+        for kind, members in re.findall(r"typedef struct (mps_\w+_def) \{(.*?)\}", _cdef.TEXT, re.S):
+            for name in re.findall(r"(?:double|int64_t|int32_t)\s*\*\s*(\w+);", members):
+                if name not in _shapes.STRUCTS.get(kind, {}):
+                    lacking.append(f"{kind}: {name}")
+        self.assertEqual(lacking, [])
+        for function in _shapes.FUNCTIONS:
+            self.assertTrue(function in _cdef.PARAMETERS or function + "_sized" in _cdef.PARAMETERS, function)
 
     def test_every_definition_has_defaults(self):
         made = 0

@@ -107,7 +107,7 @@ static void errors(const mps::context &context) {
   const mps::particles sand = block(context);
   mps::mpm solver = falling(context, sand);
   try {
-    falling(context, sand);
+    (void)falling(context, sand);
     EXPECT(!"two solvers for a set");
   } catch (const mps::error &e) {
     EXPECT(e.status() == MPS_ERROR_STATE && std::strlen(e.record().function) > 0);
@@ -130,11 +130,68 @@ static void errors(const mps::context &context) {
   mps_context_def def = mps_context_defaults();
   def.threads = -1;
   try {
-    mps::create_context(def);
+    (void)mps::create_context(def);
     EXPECT(!"-1 threads");
   } catch (const mps::error &e) {
     EXPECT(std::strstr(e.what(), "threads is -1") != nullptr);
   }
+}
+
+// Laws, signals and hooks that throw, on one thread and on two: the exception comes out, the solver is
+// as it was and goes on.
+static void callbacks(const mps::context &context) {
+  const mps::particles sand = block(context);
+  bool bad = true;
+  const mps::callback<mps_material_fn> update(context, [&](const mps_material_block *block) {
+    if (bad) throw std::out_of_range("a law");
+    for (int64_t i = 0; i < block->count; i++) block->stress[0][i] = 0.0;
+  });
+  mps_user_law_def law = mps_user_law_defaults();
+  law.update = update.function();
+  law.user = update.user();
+  law.wave_modulus = 1e6;
+  const mps::material material = mps::create(context, mps_material_user, law);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.2;
+  def.dt = 1e-4;
+  const mps::mpm solver = mps::create(context, mps_mpm_create, sand, material, def);
+  for (int repeat = 0; repeat < 2; repeat++) try {
+      mps::call(solver, mps_mpm_step, 1);
+      EXPECT(!"the exception was lost");
+    } catch (const std::out_of_range &e) {
+      EXPECT(std::strcmp(e.what(), "a law") == 0);
+    }
+  EXPECT(mps_mpm_steps(solver) == 0);
+  bad = false;
+  mps::call(solver, mps_mpm_step, 3);
+  EXPECT(mps_mpm_steps(solver) == 3);
+
+  const mps::callback<mps_signal_fn> motion(context, [](double t, double *out) {
+    if (t > 0.5) throw std::runtime_error("a signal");
+    out[0] = out[1] = out[2] = 0.0;
+  });
+  const mps::signal signal =
+      mps::create(context, mps_signal_user, motion.function(), motion.user());
+  try {
+    mps_signal *list[1] = {signal.get()};
+    EXPECT(mps_signal_displacement(list[0], 0.25) == 0.0);
+    (void)mps_signal_displacement(list[0], 1.0);
+    mps::call(sand, mps_particles_set, "density", 0, 1900.0);
+    EXPECT(!"the exception was lost");
+  } catch (const std::runtime_error &e) {
+    EXPECT(std::strcmp(e.what(), "a signal") == 0);
+  }
+
+  const mps::callback<mps_cancel_fn> cancel(context, []() -> int32_t { throw 7; });
+  mps_context_set_cancel(context, cancel.function(), cancel.user());
+  try {
+    mps::call(solver, mps_mpm_step, 1);
+    EXPECT(!"the exception was lost");
+  } catch (int number) {
+    EXPECT(number == 7);
+  }
+  mps_context_set_cancel(context, nullptr, nullptr);
+  mps::call(solver, mps_mpm_step, 1);
 }
 
 int main() {
@@ -143,6 +200,10 @@ int main() {
     free_fall(context);
     writing(context);
     errors(context);
+    callbacks(context);
+    mps_context_def two = mps_context_defaults();
+    two.threads = 2;
+    callbacks(mps::create_context(two));
   } catch (const std::exception &e) {
     std::printf("unexpected: %s\n", e.what());
     return 1;

@@ -1,0 +1,90 @@
+"""How long the arrays are that C reads and writes, as the headers say it: a shorter one is refused before
+C sees it.
+
+A length is a formula of other arguments (members) by name, and of
+
+    dim, particles     of the particle set among the arguments, or of the solver's
+    components(name)   of the field `name` of that set
+    size               of the coupling
+    nodes(number)      of a wall of the fluid
+    MPS_...            a constant
+
+Every array of the headers stands here: tests/python looks for missing ones."""
+
+#: name of the function: {parameter: length}
+FUNCTIONS = {
+    "mps_signal_table": {"times": "count", "values": "count"},
+    "mps_body_create_polygon": {"xy": "2 * vertices"},
+    "mps_body_create_half_plane": {"normal": "2"},
+    "mps_body_create_half_space": {"normal": "3"},
+    "mps_body_create_revolution": {"rz": "2 * vertices"},
+    "mps_body_create_mesh": {"xyz": "3 * vertices", "corner": "3 * triangles"},
+    "mps_body_load": {"force": "3", "moment": "3"},
+    "mps_body_distance": {"x": "dim * count", "distance": "count", "normal": "dim * count",
+                          "foot": "dim * count", "face": "count"},
+    "mps_contact_get_particles": {"ids": "capacity", "gap": "capacity", "normal": "3 * capacity",
+                                  "force": "3 * capacity", "foot": "3 * capacity"},
+    "mps_coupling_begin": {"start": "size", "guess": "size"},
+    "mps_coupling_next": {"answer": "size", "guess": "size"},
+    "mps_coupling_get_memory": {"values": "capacity"},
+    "mps_coupling_set_memory": {"values": "count"},
+    "mps_particles_append": {"positions": "dim * count"},
+    "mps_particles_fill_box": {"lo": "dim", "hi": "dim"},
+    "mps_particles_fill_polygon": {"xy": "2 * vertices"},
+    "mps_particles_fill_ball": {"centre": "dim"},
+    "mps_particles_fill_where": {"lo": "dim", "hi": "dim"},
+    "mps_particles_remove": {"ids": "count"},
+    "mps_particles_select_box": {"lo": "dim", "hi": "dim", "ids": "capacity"},
+    "mps_particles_nearest": {"x": "dim"},
+    "mps_particles_set_material": {"ids": "count"},
+    "mps_domain_max": {"values": "count"},
+    "mps_domain_gather_fields": {"names": "count"},
+    "mps_domain_get_field": {"ids": "count", "values": "count * components(name)"},
+    "mps_material_point_drive": {"gradient": "9"},
+    "mps_dynamics_set_material": {"ids": "count"},
+    "mps_elastic_set_material": {"ids": "count"},
+    "mps_elastic_cut": {"ids": "count"},
+    "mps_elastic_select_facets": {"lo": "dim", "hi": "dim", "facets": "capacity"},
+    "mps_elastic_get_facets": {"facets": "count"},
+    "mps_elastic_load_resultant": {"about": "3", "force": "3", "moment": "3"},
+    "mps_elastic_solve_cases": {"loads": "3 * count * particles",
+                                "displacements": "3 * count * particles"},
+    "mps_elastic_section": {"about": "3", "force": "3", "moment": "3"},
+    "mps_elastic_modes": {"omega": "count", "shapes": "3 * count * particles"},
+    "mps_fluid_set_wall_motion": {"displacement": "max(1, nodes(number))",
+                                  "velocity": "max(1, nodes(number))"},
+    "mps_fluid_get_wall": {"x": "3 * capacity", "pressure": "capacity"},
+    "mps_fluid_get_pressure": {"x": "3 * count", "pressure": "count"},
+    "mps_fluid_get_levels": {"station": "count", "level": "count"},
+    "mps_mpm_set_material": {"ids": "count"},
+    "mps_grid_get_nodes": {"position": "3 * capacity", "mass": "capacity",
+                           "velocity": "3 * capacity", "force": "3 * capacity"},
+    "mps_grid_evaluate": {"points": "3 * count", "states": "count",
+                          "values": "count if component >= 0 else count * components(field)"},
+}
+
+#: name of the struct: {member: length}
+STRUCTS = {
+    "mps_user_law_def": {"history": "history_count", "history_initial": "history_count"},
+    "mps_umat_def": {"props": "props_count", "statev_names": "statev_count",
+                     "statev_initial": "statev_count"},
+    "mps_dynamics_boundary_def": {"ids": "id_count"},
+    "mps_dynamics_load_def": {"ids": "id_count"},
+    "mps_elastic_boundary_def": {"ids": "id_count",
+                                  "values": "id_count if kind == MPS_ELASTIC_BOUNDARY_ROLLER else 3 * id_count"},
+    "mps_elastic_load_def": {"ids": "id_count",
+                             "values": "id_count if kind == MPS_ELASTIC_LOAD_PRESSURE else 3 * id_count"},
+    "mps_elastic_facet_arrays": {"particle": "count", "centre": "3 * count", "normal": "3 * count",
+                                 "extent": "3 * count", "area": "count",
+                                 "displacement": "3 * count", "velocity": "3 * count"},
+    "mps_fluid_boundary_def": {"nodes": "3 * node_count"},
+    "mps_fluid_load_def": {"ids": "id_count"},
+    "mps_geostatic_def": {"layers": "layer_count", "surface_line": "2 * surface_points"},
+    "mps_mpm_boundary_def": {"ids": "id_count"},
+    "mps_mpm_load_def": {"ids": "id_count", "area": "id_count"},
+}
+
+
+def length(formula, words):
+    """The number that a formula gives; `words` finds the value of a name."""
+    return int(eval(formula, {"__builtins__": {}, "max": max}, words))  # formulas of this file alone
