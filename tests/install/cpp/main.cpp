@@ -185,7 +185,7 @@ static void callbacks(const mps::context &context) {
   const mps::callback<mps_cancel_fn> cancel(context, []() -> int32_t { throw 7; });
   mps_context_set_cancel(context, cancel.function(), cancel.user());
   try {
-    mps::call(solver, mps_mpm_step, 1);
+    mps::call(solver, mps_mpm_step, 10);
     EXPECT(!"the exception was lost");
   } catch (int number) {
     EXPECT(number == 7);
