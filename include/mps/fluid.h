@@ -22,9 +22,9 @@
  * functions are collective but those that only tell numbers: limit, dt, time, steps, particles,
  * definition, totals, report and reactions. mps_fluid_save writes one file, by rank 0.
  *
- * Fluid that fills a closed space, a box under a lid, has no free surface: its pressure is known up to
- * a constant, chosen such that the least of all particles is rho g l0/2. Steps whose walls or bodies
- * change the volume of that space, or leave less of it than there is fluid, are refused
+ * Fluid that fills a closed space, a box under a lid, has no free surface: its pressure is known up
+ * to a constant, chosen such that the least of all particles is rho g l0/2. Steps whose walls or
+ * bodies change the volume of that space, or leave less of it than there is fluid, are refused
  * (MPS_ERROR_STATE).
  *
  * Thread rule: one thread at a time per context; a step itself runs on the context's executor, and
@@ -56,7 +56,8 @@ typedef struct mps_fluid_def {
                           particle */
   double measure;      /* m, thickness of the slab, > 0; default 1 */
   double dt;           /* s, > 0: at most the limit at rest, .5 (l0/g)^1/2; NaN (default): each step
-                          the largest by mps_fluid_limit */
+                          the largest by mps_fluid_limit, but MPS_ERROR_DIVERGED below 1e-4 of that
+                          at rest (without gravity: 1e-7 of a run) */
   double radius_ratio; /* re/l0, in [2.6, 4]; default 3.1. Not read with a kernel */
   double tolerance;    /* of the pressure solution, |residual|/|right side|, in [1e-14, 1e-2];
                           default 1e-5 */
@@ -256,7 +257,10 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_remove_load(mps_fluid *fluid, int32_t
 
 /** Takes `count` (>= 0) steps. A step that fails has not happened: MPS_ERROR_NUMERIC, the pressure
  *  solution did not converge; MPS_ERROR_DIVERGED, a particle would pass a wall or its velocity is
- *  not finite; MPS_ERROR_CANCELLED. */
+ *  not finite, a boundary or body goes more than 1.5 l0 in the step or a boundary bends to a slope
+ * of more than 1 (the log is warned from l0/2 and a slope of .1 on, once), or the library's step
+ * would be too short (see dt); MPS_ERROR_STATE, walls change the volume of fluid without a free
+ * surface; MPS_ERROR_CANCELLED. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_step(mps_fluid *fluid, int64_t count);
 
 /* A step in parts, for what the water and something else move together (two-way coupling):

@@ -152,11 +152,17 @@ mps_status mps_kernel_density(mps_context *context, const mps_kernel *kernel, in
                      "radius/spacing is %g, must be at most 1000", ratio);
   const int m = (int)ratio + 1, mz = dim == 3 ? m : 0;
   double sum = 0.0;
-  for (int k = -mz; k <= mz; k++)
-    for (int j = -m; j <= m; j++)
-      for (int i = -m; i <= m; i++)
+  for (int k = -mz; k <= mz; k++) {
+    if (dim == 3 && mpsi_cancelled(context)) /* 1000 spacings take half a minute */
+      return mpsi_fail(context, __func__, MPS_ERROR_CANCELLED, "stopped by the cancel hook");
+    for (int j = -m; j <= m; j++) {
+      const int beside = m * m - j * j - k * k,
+                reach = beside > 0 ? (int)sqrt((double)beside) + 1 : 0;
+      for (int i = -reach; i <= reach; i++)
         if (i != 0 || j != 0 || k != 0)
           sum += mps_kernel_weight(kernel, spacing * sqrt((double)(i * i + j * j + k * k)));
+    }
+  }
   *out = sum;
   return MPS_OK;
 }

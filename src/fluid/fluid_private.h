@@ -11,6 +11,7 @@
  *   move.c      pressure gradient, velocity, guards, positions
  *   loads.c     forces on particles and pressures on the surface
  *   probe.c     pressure at walls, level of the surface
+ *   warn.c      what the model assumes and a step may break
  *   step.c      the order of all this
  *   share.c     ranks of a domain that do it together
  *
@@ -172,6 +173,13 @@ typedef enum mpsi_fluid_stage {
   MPSI_FLUID_MOVED /* the cloud is at the end of the step, the fields are not */
 } mpsi_fluid_stage;
 
+/* Warnings that a solver gives once. */
+typedef enum mpsi_fluid_warning {
+  MPSI_FLUID_WARNED_GUARDS = 1, /* act often */
+  MPSI_FLUID_WARNED_TRAVEL = 2, /* of a wall in a step */
+  MPSI_FLUID_WARNED_SLOPE = 4   /* of a bent wall */
+} mpsi_fluid_warning;
+
 /* Who adds or removes particles. */
 typedef enum mpsi_fluid_change {
   MPSI_FLUID_UNCHANGED = 0,
@@ -247,7 +255,7 @@ struct mps_fluid {
   mpsi_fluid_change change;    /* of the set, that is under way; energy_before is that of before */
   bool stale;                  /* the cloud is not that of the fields */
   int64_t unknown; /* 1: free_surface and surface_rise are not of the present set and walls */
-  bool warned;     /* that the guards act often */
+  uint32_t warned; /* given already: mpsi_fluid_warning, bits */
   mpsi_identity *identity;
   mps_fluid_report report, before;    /* before: as the step being made began */
   double energy_before;               /* J, before particles come or go */
@@ -385,6 +393,9 @@ mps_status mpsi_fluid_solve_outside(mps_fluid *fluid, const char *function);
 void mpsi_fluid_drop_solver(mps_fluid *fluid);
 /* Has a solver of the caller forget what it keeps from step to step. */
 mps_status mpsi_fluid_forget(mps_fluid *fluid, const char *function);
+/* warn.c: refuses a step whose walls go or bend too far; warnings to the log. */
+mps_status mpsi_fluid_check_walls(mps_fluid *fluid, const char *function);
+void mpsi_fluid_warn_of_guards(mps_fluid *fluid);
 /* move.c */
 void mpsi_fluid_find_velocities(mps_fluid *fluid);
 int64_t mpsi_fluid_advance(mps_fluid *fluid); /* first particle that went wrong, or -1 */

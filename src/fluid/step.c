@@ -4,10 +4,9 @@
 
 #include <string.h>
 
-#define SORT_EVERY 32     /* steps */
-#define EVEN_STEPS 32     /* at the end of a run */
-#define WARN_FROM 50      /* steps */
-#define MOST_GUARDED 0.01 /* of the particles, in a step on average */
+#define SORT_EVERY 32   /* steps */
+#define EVEN_STEPS 32   /* at the end of a run */
+#define LEAST_STEP 1e-4 /* of the step at rest */
 
 /* ---- fields and cloud ------------------------------------------------------------------------ */
 
@@ -121,6 +120,8 @@ static mps_status solve(mps_fluid *f, const char *function) {
 }
 
 static mps_status finish(mps_fluid *f, const char *function) {
+  const mps_status walls = mpsi_fluid_check_walls(f, function);
+  if (walls != MPS_OK) return walls;
   if (f->push[0]) mpsi_fluid_tell_local(f); /* whose work is added up */
   mpsi_fluid_find_velocities(f);
   const int64_t bad = mpsi_fluid_advance(f);
@@ -129,19 +130,6 @@ static mps_status finish(mps_fluid *f, const char *function) {
   if (bad >= 0) return went_wrong(f, function, bad);
   f->stage = MPSI_FLUID_MOVED;
   return mpsi_fluid_load_walls(f, function);
-}
-
-/* Tells the log, once, that the particles are too coarse for the flow. */
-static void warn_of_guards(mps_fluid *f) {
-  const mps_fluid_report *r = &f->report;
-  const double acted = (double)(r->collisions + r->limited + r->pushed);
-  const double share = acted / ((double)f->steps * (double)f->count + 1.0);
-  if (f->warned || f->steps < WARN_FROM || !(share > MOST_GUARDED)) return;
-  f->warned = true;
-  mpsi_log(f->context, MPS_LOG_WARNING,
-           "step %lld of the fluid: collisions, cut velocities and particles pushed off walls are "
-           "%.1f %% of the particles a step, above %g %%: the flow wants a smaller spacing or step",
-           (long long)f->steps, 100.0 * share, 100.0 * MOST_GUARDED);
 }
 
 /* After all parts: keeps the new state and sorts it now and then. */
@@ -153,7 +141,7 @@ static mps_status keep(mps_fluid *f, const char *function) {
   store_cloud(f);
   f->time += f->dt;
   f->steps++;
-  warn_of_guards(f);
+  mpsi_fluid_warn_of_guards(f);
   mpsi_fluid_let_go(f);
   if (f->steps % SORT_EVERY != 0) return MPS_OK;
   f->stale = true;
@@ -171,9 +159,17 @@ static mps_status take_step(mps_fluid *f, const char *function, double dt) {
 
 /* ---- running --------------------------------------------------------------------------------- */
 
+/* The step that gravity and viscosity allow a fluid at rest, s. */
+static double limit_at_rest(const mps_fluid *f) {
+  double limit = f->g > 0.0 ? 0.1 * sqrt(f->l0 / f->g) : INFINITY;
+  if (f->def.viscosity > 0.0)
+    limit = fmin(limit, 0.2 * f->l0 * f->l0 * f->def.density / f->def.viscosity);
+  return limit;
+}
+
 double mps_fluid_limit(const mps_fluid *f) {
   if (!f) return 0.0;
-  double limit = f->g > 0.0 ? 0.1 * sqrt(f->l0 / f->g) : INFINITY;
+  double limit = limit_at_rest(f);
   if (f->speed > 0.0) limit = fmin(limit, 0.25 * f->l0 / f->speed);
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
     const mpsi_fluid_wall *w = &f->wall[b];
@@ -182,8 +178,6 @@ double mps_fluid_limit(const mps_fluid *f) {
     for (int64_t k = 0; k < w->nodes; k++) u = fmax(u, fabs(w->now.u[k]));
     if (u > 0.0) limit = fmin(limit, 0.2 * f->l0 / u);
   }
-  if (f->def.viscosity > 0.0)
-    limit = fmin(limit, 0.2 * f->l0 * f->l0 * f->def.density / f->def.viscosity);
   return limit;
 }
 
@@ -196,8 +190,19 @@ double mps_fluid_time(const mps_fluid *f) { return f ? f->time : 0.0; }
 
 int64_t mps_fluid_steps(const mps_fluid *f) { return f ? f->steps : 0; }
 
-static mps_status check_dt(mps_fluid *f, const char *function) {
-  if (isfinite(mps_fluid_dt(f))) return MPS_OK;
+/* The library chooses no step below LEAST_STEP of that at rest, or of a thousandth of the run
+ * (`span`, s) where nothing limits that: the fluid has gone astray, and the run would hardly end.
+ */
+static mps_status check_dt(mps_fluid *f, const char *function, double span) {
+  const double dt = mps_fluid_dt(f), rest = limit_at_rest(f);
+  const double least = LEAST_STEP * (isfinite(rest) ? rest : 1e-3 * span);
+  if (isnan(f->def.dt) && isfinite(least) && dt < least)
+    return mpsi_fail(
+        f->context, function, MPS_ERROR_DIVERGED,
+        "step %lld, t = %g s: velocities of %g m/s limit the step to %g s; below %g s it "
+        "is not chosen: give dt",
+        (long long)f->steps, f->time, f->speed, dt, least);
+  if (isfinite(dt)) return MPS_OK;
   return mpsi_fail(f->context, function, MPS_ERROR_STATE,
                    "nothing limits the step: without gravity and motion, give dt");
 }
@@ -223,7 +228,7 @@ mps_status mps_fluid_step(mps_fluid *f, int64_t count) {
   mpsi_guard_enter(&f->guard, f->context, __func__);
   for (int64_t k = 0; k < count && status == MPS_OK; k++) {
     status = ask_cancel(f, __func__);
-    if (status == MPS_OK) status = check_dt(f, __func__);
+    if (status == MPS_OK) status = check_dt(f, __func__, INFINITY);
     if (status == MPS_OK) status = take_step(f, __func__, mps_fluid_dt(f));
   }
   mpsi_guard_end(&f->guard);
@@ -242,7 +247,7 @@ mps_status mps_fluid_begin_step(mps_fluid *f, double dt) {
                      "the classical scheme's steps cannot be made in parts");
   mpsi_guard_enter(&f->guard, f->context, __func__);
   status = ask_cancel(f, __func__);
-  if (status == MPS_OK && isnan(dt)) status = check_dt(f, __func__);
+  if (status == MPS_OK && isnan(dt)) status = check_dt(f, __func__, INFINITY);
   if (status == MPS_OK) {
     status = begin(f, __func__, isnan(dt) ? mps_fluid_dt(f) : dt);
     if (status != MPS_OK) abandon(f);
@@ -328,7 +333,7 @@ static mps_status march(mps_fluid *f, const char *function, const run *r) {
   int64_t done = 0, reported = 0;
   mps_status status = call_back(f, r->callback, r->user);
   while (status == MPS_OK && f->time < r->t_end) {
-    status = check_dt(f, function);
+    status = check_dt(f, function, r->t_end - r->start);
     if (status != MPS_OK) break;
     const double rest = r->t_end - f->time, full = mps_fluid_dt(f);
     const bool last = rest <= full * (1.0 + 1e-9);

@@ -1,0 +1,154 @@
+/* test_fluid_warnings.c - what the model does not hold for is refused, or the log is warned: walls
+ * that go or bend too far, velocities for which a run would not end.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "test_common.h"
+
+#include "fluid_tank.h"
+
+#include <mps/kernel.h>
+
+#include <string.h>
+
+#define L0 0.02
+
+typedef struct journal {
+  int count, asked; /* warnings; calls of the cancel hook */
+  char last[400];
+} journal;
+
+static void note(void *user, int32_t level, const char *message) {
+  journal *j = user;
+  if (level != MPS_LOG_WARNING) return;
+  j->count++;
+  snprintf(j->last, sizeof j->last, "%s", message);
+}
+
+static int32_t stop_at_the_third(void *user) { return ++((journal *)user)->asked >= 3; }
+
+static mps_context *noting(journal *j, bool cancels) {
+  mps_context_def def = test_context_defaults();
+  mps_context *own;
+  def.executor = MPS_EXECUTOR_SERIAL;
+  def.log = note, def.log_user = j;
+  if (cancels) def.cancel = stop_at_the_third, def.cancel_user = j;
+  assert_int_equal(mps_context_create(&def, &own, NULL, 0), MPS_OK);
+  return own;
+}
+
+/* The left wall goes `part` of l0 in a step of 2 ms. */
+static mps_status go(mps_context *own, double part) {
+  const double dt = 2e-3, s = -part * L0, u = s / dt;
+  tank t = tank_make(own, 0.4, 0.2, L0, NULL, dt);
+  mps_assert_ok(own, mps_fluid_step(t.fluid, 3));
+  mps_assert_ok(own, mps_fluid_set_wall_motion(t.fluid, TANK_LEFT, &s, &u));
+  const mps_status status = mps_fluid_step(t.fluid, 1);
+  assert_int_equal(mps_fluid_steps(t.fluid), status == MPS_OK ? 4 : 3);
+  tank_free(&t);
+  return status;
+}
+
+static void a_wall_that_goes_far_in_a_step(void **state) {
+  (void)state;
+  journal j = {0};
+  mps_context *own = noting(&j, false);
+  assert_int_equal(go(own, 0.4), MPS_OK);
+  assert_int_equal(j.count, 0);
+  assert_int_equal(go(own, 0.8), MPS_OK);
+  assert_int_equal(j.count, 1);
+  assert_non_null(strstr(j.last, "boundary 1 goes 0.016 m"));
+  assert_int_equal(go(own, 2.0), MPS_ERROR_DIVERGED);
+  assert_non_null(strstr(mps_context_error(own)->message, "boundary 1 goes 0.04 m"));
+  mps_context_destroy(&own);
+}
+
+/* A wall with two nodes .4 m apart whose upper one is at `s`, slowly. */
+static mps_status bend(mps_context *own, double slope) {
+  const double dt = 2e-3, nodes[6] = {0.4, 0.0, 0.0, 0.4, 0.4, 0.0};
+  tank t = {NULL, NULL};
+  mps_particles_def set = mps_particles_defaults();
+  mps_fluid_def def = mps_fluid_defaults();
+  mps_fluid_boundary_def wall = mps_fluid_boundary_defaults();
+  int32_t number;
+  set.spacing = L0, def.dt = dt, def.level = 0.2;
+  mps_assert_ok(own, mps_particles_create(own, &set, &t.water));
+  tank_fill(own, t.water, 0.4, 0.2, NULL, NULL);
+  mps_assert_ok(own, mps_fluid_create(own, t.water, &def, &t.fluid));
+  tank_wall(own, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_wall(own, t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+  wall.point[0] = 0.4, wall.normal[0] = -1.0, wall.nodes = nodes, wall.node_count = 2;
+  mps_assert_ok(own, mps_fluid_add_boundary(t.fluid, &wall, &number));
+  mps_status status = MPS_OK;
+  const int steps = (int)ceil(slope * 0.4 / (0.3 * L0));
+  for (int k = 1; k <= steps && status == MPS_OK; k++) {
+    const double s[2] = {0.0, -slope * 0.4 * k / steps}, u[2] = {0.0, -slope * 0.4 / steps / dt};
+    mps_assert_ok(own, mps_fluid_set_wall_motion(t.fluid, number, s, u));
+    status = mps_fluid_step(t.fluid, 1);
+  }
+  tank_free(&t);
+  return status;
+}
+
+static void a_wall_that_bends_far(void **state) {
+  (void)state;
+  journal j = {0};
+  mps_context *own = noting(&j, false);
+  assert_int_equal(bend(own, 0.08), MPS_OK);
+  assert_int_equal(j.count, 0);
+  assert_int_equal(bend(own, 0.2), MPS_OK);
+  assert_int_equal(j.count, 1);
+  assert_non_null(strstr(j.last, "bends to a slope of"));
+  assert_int_equal(bend(own, 1.2), MPS_ERROR_DIVERGED);
+  assert_non_null(strstr(mps_context_error(own)->message, "bends to a slope of"));
+  mps_context_destroy(&own);
+}
+
+/* A particle of 1e6 m/s would ask for steps of 5 ns; without gravity for as many. */
+static void a_run_does_not_choose_endless_steps(void **state) {
+  (void)state;
+  for (int weightless = 0; weightless < 2; weightless++) {
+    journal j = {0};
+    mps_context *own = noting(&j, false);
+    mps_particles_def set = mps_particles_defaults();
+    mps_fluid_def def = mps_fluid_defaults();
+    tank t;
+    mps_edit u;
+    set.spacing = L0;
+    if (weightless) def.gravity[1] = 0.0;
+    mps_assert_ok(own, mps_particles_create(own, &set, &t.water));
+    tank_fill(own, t.water, 0.2, 0.1, NULL, NULL);
+    mps_assert_ok(own, mps_fluid_create(own, t.water, &def, &t.fluid));
+    mps_assert_ok(own, mps_particles_edit(t.water, "velocity", &u));
+    *mps_edit_f64(&u, 0, 1) = weightless ? 1e8 : 1e6;
+    mps_assert_ok(own, mps_particles_commit(t.water, &u));
+    assert_int_equal(mps_fluid_run(t.fluid, 0.02, 1, NULL, NULL), MPS_ERROR_DIVERGED);
+    assert_non_null(strstr(mps_context_error(own)->message, "give dt"));
+    assert_int_equal(mps_fluid_steps(t.fluid), 0);
+    if (!weightless) assert_int_equal(mps_fluid_step(t.fluid, 1), MPS_ERROR_DIVERGED);
+    tank_free(&t);
+    mps_context_destroy(&own);
+  }
+}
+
+static void the_density_of_a_wide_kernel_can_be_cancelled(void **state) {
+  (void)state;
+  journal j = {0};
+  mps_context *own = noting(&j, true);
+  mps_kernel *kernel;
+  double n0 = -1.0;
+  mps_assert_ok(own, mps_kernel_create(own, MPS_KERNEL_SMOOTH, 1.0, &kernel));
+  assert_int_equal(mps_kernel_density(own, kernel, 3, 1e-3, &n0), MPS_ERROR_CANCELLED);
+  assert_int_equal(j.asked, 3);
+  assert_true(n0 == -1.0);
+  mps_kernel_destroy(&kernel);
+  mps_context_destroy(&own);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_wall_that_goes_far_in_a_step),
+      cmocka_unit_test(a_wall_that_bends_far),
+      cmocka_unit_test(a_run_does_not_choose_endless_steps),
+      cmocka_unit_test(the_density_of_a_wide_kernel_can_be_cancelled),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
