@@ -97,6 +97,9 @@ mps_status mpsi_def_init(void *def, size_t size, size_t minimum, const void *def
  * MPS_ERROR_ARGUMENT for NULL or a size of 0 or above MPSI_STRUCT_MOST; then nothing is written. */
 mps_status mpsi_out_write(mps_context *context, const char *function, void *out, size_t size,
                           const void *known, size_t known_size);
+/* The same check alone, for a function that has long work to do first. */
+mps_status mpsi_out_check(mps_context *context, const char *function, const void *out,
+                          size_t size);
 /* The same of a definition, the body of mps_x_get_def_sized: its `struct_size`, the first member,
  * is what of it was written, so that the caller may create another object by it. */
 mps_status mpsi_def_write(mps_context *context, const char *function, void *out, size_t size,

@@ -34,14 +34,21 @@ mps_status mpsi_def_read(mps_context *context, const char *function, const void 
   return MPS_OK;
 }
 
-mps_status mpsi_out_write(mps_context *context, const char *function, void *out, size_t size,
-                          const void *known, size_t known_size) {
+mps_status mpsi_out_check(mps_context *context, const char *function, const void *out,
+                          size_t size) {
   if (!out) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "out is NULL");
   if (size == 0 || size > MPSI_STRUCT_MOST)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "size is %zu bytes, allowed are 1 to %d: sizeof of the struct that out points "
                      "to",
                      size, MPSI_STRUCT_MOST);
+  return MPS_OK;
+}
+
+mps_status mpsi_out_write(mps_context *context, const char *function, void *out, size_t size,
+                          const void *known, size_t known_size) {
+  const mps_status status = mpsi_out_check(context, function, out, size);
+  if (status != MPS_OK) return status;
   memcpy(out, known, size < known_size ? size : known_size);
   if (size > known_size) memset((char *)out + known_size, 0, size - known_size);
   return MPS_OK;

@@ -96,8 +96,9 @@ static mps_status march(mps_mpm *mpm, const char *function, const run *r) {
     if (called || mpm->run.edited) status = mpsi_mpm_tidy(mpm, function); /* some have left */
     if (status != MPS_OK) break;
     mpsi_mpm_leave_settling(mpm);
+    const int64_t steps = mpm->run.steps;
     status = mpsi_mpm_take_step(mpm, function, next_step(mpm, r->t_end, &last));
-    if (last) mpm->run.time = r->t_end;
+    if (last && mpm->run.steps > steps) mpm->run.time = r->t_end; /* a refused step took no time */
     done++;
     called = r->callback && (done % r->every == 0 || last);
     if (status == MPS_OK && called) status = call(mpm, function, r->callback, r->user);

@@ -189,6 +189,7 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
   mps_status status = mpsi_mpm_ready(mpm, function);
   if (status == MPS_OK) status = read_def(mpm, function, user, &def);
   if (status == MPS_OK) status = check_bodies(mpm, function);
+  if (status == MPS_OK && out) status = mpsi_out_check(mpm->context, function, out, size);
   if (mpm->share) {
     const double numbers[2] = {def.tolerance, (double)def.max_steps};
     status = mpsi_domain_settle_numbers(mpm->share->domain, function, status,

@@ -3,6 +3,8 @@
 #include "mpm_scene.h"
 #include "pthread_executor.h"
 
+#include <mps/mpm_settle.h>
+
 #define G 2e4
 #define K 5e4 /* Pa */
 
@@ -214,6 +216,45 @@ static void a_refusal_names_the_particle(void **state) {
   }
 }
 
+/* Time, steps and shortest remainder of a run whose only step is refused are as before it. */
+static void a_run_that_is_refused_takes_no_time(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  static seen told;
+  told = (seen){.bad = 30, .from = -1.0};
+  mpm_scene s = begin(context, make_law(context, "touchy", 0, NULL, &told), false);
+  const double t_end = 0.5 * mps_mpm_dt(s.mpm);
+  mps_assert_fails(context, mps_mpm_run(s.mpm, t_end, 1, NULL, NULL), MPS_ERROR_DIVERGED,
+                   "has refused particle ");
+  assert_int_equal(mps_mpm_steps(s.mpm), 0);
+  mps_assert_near(mps_mpm_time(s.mpm), 0.0, 0.0);
+  told.bad = -1000;
+  mps_assert_ok(context, mps_mpm_run(s.mpm, t_end, 1, NULL, NULL));
+  assert_int_equal(mps_mpm_steps(s.mpm), 1);
+  mps_assert_near(mps_mpm_time(s.mpm), t_end, 0.0);
+  mpm_scene_end(&s);
+  mps_context_destroy(&context);
+}
+
+/* A result of no bytes is refused before anything is settled. */
+static void settling_looks_at_its_result_first(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  static seen told;
+  told = (seen){.bad = -1000};
+  mpm_scene s = begin(context, make_law(context, "mild", 0, NULL, &told), false);
+  mps_mpm_settle_def def = mps_mpm_settle_defaults();
+  mps_mpm_settled out;
+  def.max_steps = 2;
+  const double kinetic = mpm_scene_totals(&s).kinetic;
+  mps_assert_fails(context, mps_mpm_settle_sized(s.mpm, &def, &out, 0), MPS_ERROR_ARGUMENT,
+                   "size is 0");
+  assert_int_equal(mps_mpm_steps(s.mpm), 0);
+  mps_assert_near(mpm_scene_totals(&s).kinetic, kinetic, 0.0);
+  mpm_scene_end(&s);
+  mps_context_destroy(&context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_block_tells_ids_places_time_and_temperature),
@@ -221,6 +262,8 @@ int main(void) {
       cmocka_unit_test(laws_do_not_share_columns),
       cmocka_unit_test(histories_may_be_long),
       cmocka_unit_test(a_refusal_names_the_particle),
+      cmocka_unit_test(a_run_that_is_refused_takes_no_time),
+      cmocka_unit_test(settling_looks_at_its_result_first),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,286 @@
+/* api.h - a random caller of the public interface: what its parts share.
+ *
+ * A seed makes a sequence of calls on all objects and solvers of include/mps. Every call has a
+ * mood: valid arguments, arguments at the edge of what is allowed, or absurd ones. After each call
+ * the caller checks what must hold whatever was called (check.c): a known status, a record of every
+ * error, nothing changed by a call that failed, nothing that is not finite after one that did not.
+ *
+ *   random.c    numbers and arguments by mood; each writes itself to the line of the call
+ *   arena.c     the objects that live, by kind
+ *   state.c     the state of each object, in parts that have names and hashes
+ *   check.c     before and after a call
+ *   hooks.c     memory, hooks of a context, callbacks, and how they misbehave
+ *   calls_*.c   one function for each function of the interface, in tables
+ *   table.c     all tables; names that are deliberately in none
+ *   main.c      seeds, shrinking, the command line
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef TESTS_API_API_H
+#define TESTS_API_API_H
+
+#include <mps/context.h>
+#include <mps/particles.h>
+
+#include <setjmp.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define API_PRINTF(text, first) __attribute__((format(printf, text, first)))
+
+typedef enum api_kind {
+  API_CONTEXT,
+  API_SET,
+  API_SIGNAL,
+  API_MATERIAL,
+  API_KERNEL,
+  API_BODY,
+  API_CONTACT,
+  API_NEIGHBOURS,
+  API_COUPLING,
+  API_DOMAIN,
+  API_RECORDER,
+  API_SNAPSHOT,
+  API_MPM,
+  API_DYNAMICS,
+  API_ELASTIC,
+  API_FLUID,
+  API_KINDS,
+  API_NOTHING = API_KINDS /* a call that needs no object */
+} api_kind;
+
+enum {
+  API_SLOTS = 5,   /* objects of a kind that live at once */
+  API_PARTS = 96,  /* of an object's state */
+  API_EDITS = 3,   /* fields of a set open at once */
+  API_LINES = 20,  /* calls that a report shows */
+  API_LINE = 1500, /* characters of one */
+  API_MOST = 60    /* particles of a set, about */
+};
+
+typedef struct api_part {
+  char name[44];
+  bool finite;
+  uint64_t hash;
+} api_part;
+
+typedef struct api_object {
+  void *handle;    /* NULL: the slot is free */
+  int context;     /* slot of the context that it was made from; -1: that has been destroyed */
+  uint64_t serial; /* of all objects ever made; the latest has the highest */
+  uint64_t owner;  /* of a contact or snapshot: the solver's serial */
+  int part_count;
+  api_part parts[API_PARTS];
+  mps_edit edits[API_EDITS]; /* of a set; data NULL: none */
+  char edited[API_EDITS][48];
+} api_object;
+
+typedef enum api_mood { API_VALID, API_EDGE, API_ABSURD } api_mood;
+
+/* What a call may change although it failed, or although it only reads. */
+typedef enum api_change { API_CHANGES_NOTHING, API_CHANGES_ORDER, API_CHANGES_ALL } api_change;
+
+/* How a callback misbehaves, once, in one call. */
+typedef enum api_fault {
+  API_FAULT_NONE,
+  API_FAULT_STATUS,    /* returns an error */
+  API_FAULT_NO_STATUS, /* returns a number that is no status */
+  API_FAULT_VALUE,     /* writes NaN */
+  API_FAULT_FORBIDDEN, /* calls what a callback may not call */
+  API_FAULTS
+} api_fault;
+
+typedef struct api_memory {
+  atomic_llong live, calls, refused;
+  atomic_llong refuse_from, refuse_to; /* calls by number, from 1; 0: none */
+} api_memory;
+
+typedef struct api {
+  /* the sequence */
+  uint64_t seed, random;
+  int64_t call; /* number of the present call */
+  int32_t threads;
+  int32_t dim;          /* of the scene */
+  bool verbose, steady; /* steady: no refused allocations, whose number depends on the threads */
+  uint64_t digest;      /* of all statuses and states so far */
+  jmp_buf failed;
+  char reason[400]; /* what is broken; "" nothing */
+
+  /* the present call */
+  const char *name;
+  api_mood mood;
+  bool latest; /* objects are the latest ones: a scene is being built */
+  int wrong;   /* arguments that no function may take */
+  const char *wrong_name;
+  bool picked;         /* the first object, whose context gets the record */
+  int context;         /* its slot; -1 none */
+  api_change change;   /* on an error */
+  bool reads, queries; /* changes nothing whatever the outcome; has no status */
+  api_fault fault;
+  int64_t fault_at;        /* call of a callback that misbehaves, from 1 */
+  int64_t callbacks;       /* so far in this call */
+  mps_status fault_status; /* what it returned */
+  bool faulted;
+  api_object *running; /* solver whose call runs */
+  api_kind running_kind;
+  int64_t cancel_at, cancels; /* question of the cancel hook that gets "stop"; how many so far */
+  size_t length;
+  char line[API_LINE];
+
+  char lines[API_LINES][API_LINE];
+  int64_t line_count;
+
+  api_memory memory;
+  uint64_t serials;
+  api_object objects[API_KINDS][API_SLOTS];
+  char folder[256]; /* for files */
+} api;
+
+/* ---- random.c: arguments; `name` as in the header ------------------------------------------- */
+uint64_t api_mix(uint64_t x);
+uint64_t api_bits(api *a);
+uint32_t api_below(api *a, uint32_t n);
+bool api_chance(api *a, int percent);
+double api_unit(api *a); /* in [0, 1) */
+/* An argument that no function may take was drawn. */
+void api_wrong(api *a, const char *name);
+/* In [lo, hi], `typical` being of ordinary size; outside in an absurd mood. */
+double api_real(api *a, const char *name, double lo, double hi, double typical);
+/* The same, or NaN, which stands for the default. */
+double api_optional(api *a, const char *name, double lo, double hi, double typical);
+/* Finite; ordinarily within `width` of `centre`. */
+double api_near(api *a, const char *name, double centre, double width);
+void api_vector(api *a, const char *name, int count, double centre, double width, double *out);
+/* In [lo, hi], both allowed. */
+int64_t api_whole(api *a, const char *name, int64_t lo, int64_t hi);
+/* At least lo, ordinarily at most hi. */
+int64_t api_least(api *a, const char *name, int64_t lo, int64_t hi);
+/* Of an enumeration with values 0 to count - 1. */
+int32_t api_choice(api *a, const char *name, int32_t count);
+/* struct_size of a definition of `size` bytes. */
+uint32_t api_struct_size(api *a, size_t size);
+/* Bytes of a definition that is to be filled, which has room for 4096. */
+size_t api_size_of(api *a, size_t size);
+/* Is this pointer to be NULL although it must not be? */
+bool api_null(api *a, const char *name);
+/* Name of a field: one that the set has, one of the library's table, or none. */
+const char *api_field(api *a, mps_particles *set);
+/* Writes ids: of the set's particles, in an absurd mood others too, or one twice. */
+int64_t api_ids(api *a, mps_particles *set, int64_t most, int64_t *ids);
+/* Adds text to the line of the call. */
+void api_say(api *a, const char *format, ...) API_PRINTF(2, 3);
+
+/* ---- arena.c --------------------------------------------------------------------------------- */
+extern const char *const api_kind_names[API_KINDS];
+/* One that lives, or one whose handle is NULL. */
+api_object *api_any(api *a, api_kind kind);
+/* The same where NULL is allowed. */
+void *api_maybe(api *a, api_kind kind, const char *name);
+int api_alive(const api *a, api_kind kind);
+/* Takes over what a function has made (NULL: nothing). */
+api_object *api_adopt(api *a, api_kind kind, void *handle, int context, const api_object *owner);
+void api_forget(api *a, api_object *object);
+/* Calls the destroy function of the kind. */
+void api_destroy(api_kind kind, void **handle);
+void api_clear(api *a);
+mps_context *api_context(api *a); /* any, with its record to be looked at */
+
+/* ---- state.c --------------------------------------------------------------------------------- */
+/* Reads the state of an object into parts. */
+int api_look(api *a, api_kind kind, api_object *object, api_part *parts);
+
+/* ---- check.c --------------------------------------------------------------------------------- */
+void api_begin(api *a, const char *name);
+bool api_end(api *a, mps_status status);
+/* Bytes that the caller has for a result of `size`. */
+size_t api_size(api *a, size_t size);
+void api_check_room(api *a, const void *room, size_t all, size_t size, size_t most,
+                    mps_status status);
+/* After a function that has no status; the second, where it changes something. */
+void api_end_changed(api *a);
+void api_end_query(api *a);
+/* What is broken, for the report of this call. */
+void api_broken(api *a, const char *format, ...) API_PRINTF(2, 3);
+/* Ends a call that makes an object, and takes that over. */
+bool api_end_made(api *a, mps_status status, api_kind kind, void *made, const api_object *owner);
+void api_count(const char *name, mps_status status);
+void api_settle(api *a); /* ends the sequence where something is broken */
+void api_print_log(const api *a, int descriptor);
+
+/* ---- hooks.c --------------------------------------------------------------------------------- */
+void api_hooks(api *a, mps_context_def *def);
+/* In a callback on the thread of the call: misbehaves if it is its turn. */
+mps_status api_callback(api *a, double *values, int count);
+void api_arm(api *a);
+void api_run_solver(api *a, api_kind kind, api_object *object);
+
+/* ---- table.c --------------------------------------------------------------------------------- */
+typedef struct api_call {
+  const char *name;
+  int weight; /* 0: called by others of the table */
+  api_kind needs;
+  void (*call)(api *a);
+} api_call;
+
+typedef struct api_table {
+  const api_call *calls;
+  int count;
+} api_table;
+
+extern const api_table *const api_tables[];
+extern const int api_table_count;
+/* Compares the tables with the names of a linker map; 0 when none is missing or unknown. */
+int api_check_names(const char *map);
+/* Objects of a scene, by valid calls. */
+void api_scene(api *a);
+void api_do(api *a, const char *name); /* the call of that name */
+void api_print_counts(void);
+
+/* A function that fills a definition. */
+#define API_INIT(type)                                                                             \
+  static void init_##type(api *a) {                                                                \
+    union {                                                                                        \
+      mps_##type def;                                                                              \
+      char room[4096];                                                                             \
+    } u;                                                                                           \
+    api_begin(a, "mps_" #type "_init");                                                            \
+    const size_t size = api_size_of(a, sizeof u.def);                                              \
+    const mps_status status = mps_##type##_init(api_null(a, "def") ? NULL : &u.def, size);         \
+    if (status == MPS_OK && u.def.struct_size != size) api_broken(a, "sets no size");              \
+    (void)api_end(a, status);                                                                      \
+  }
+/* A function that tells a number of one object. */
+#define API_QUERY(function, kind)                                                                  \
+  static void query_##function(api *a) {                                                           \
+    api_begin(a, "mps_" #function);                                                                \
+    (void)mps_##function(api_any(a, kind)->handle);                                                \
+    api_end_query(a);                                                                              \
+  }
+/* Gives up the caller's share. */
+#define API_DESTROY(function, kind)                                                                \
+  static void destroy_##function(api *a) {                                                         \
+    api_begin(a, "mps_" #function);                                                                \
+    api_object *o = api_any(a, kind);                                                              \
+    api_destroy(kind, &o->handle);                                                                 \
+    if (o->handle) api_broken(a, "has not nulled");                                                \
+    api_forget(a, o);                                                                              \
+    api_end_changed(a);                                                                            \
+  }
+/* Writes at most the bytes that the caller has: the call reads `size` and `room`. */
+#define API_SIZED(a, type, size, room)                                                             \
+  type room[4];                                                                                    \
+  memset(room, 0x5a, sizeof room);                                                                 \
+  const size_t size = api_size(a, sizeof(type))
+#define API_SIZED_END(a, status, size, room, reads_only)                                           \
+  do {                                                                                             \
+    api_check_room(a, room, sizeof room, size, sizeof room[0], status);                            \
+    (a)->reads = reads_only;                                                                       \
+    (void)api_end(a, status);                                                                      \
+  } while (0)
+
+#define API_TABLE(calls)                                                                           \
+  { calls, (int)(sizeof calls / sizeof *calls) }
+#define API_COUNT(array) ((int)(sizeof array / sizeof *array))
+
+#endif

@@ -1,0 +1,17 @@
+/* calls.h - what the files of calls share: their tables, and the calls that a scene is made of.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef TESTS_API_CALLS_H
+#define TESTS_API_CALLS_H
+
+#include "api.h"
+
+#include <math.h>
+#include <string.h>
+
+extern const api_table api_context_calls, api_particles_calls, api_signal_calls, api_material_calls,
+    api_body_calls, api_mpm_calls, api_mpm_part_calls;
+
+/* A box of `size` within the scene. */
+void api_box(api *a, double size, double *lo, double *hi);
+
+#endif

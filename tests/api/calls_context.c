@@ -1,0 +1,266 @@
+/* calls_context.c - contexts and what belongs to no other object: versions, features, neighbours,
+ * kernels.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "calls.h"
+
+#include <mps/mps.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- contexts -------------------------------------------------------------------------------- */
+
+API_INIT(context_def)
+
+static void context_create(api *a) {
+  api_begin(a, "mps_context_create");
+  mps_context *made = NULL;
+  char text[64];
+  mps_context_def def = mps_context_defaults();
+  api_hooks(a, &def);
+  def.threads = a->threads;
+  def.executor = a->threads > 1 ? MPS_EXECUTOR_THREADS : MPS_EXECUTOR_SERIAL;
+  def.struct_size = api_struct_size(a, sizeof def);
+  if (a->mood == API_ABSURD) {
+    def.executor = api_chance(a, 70) ? def.executor : api_choice(a, "executor", 4);
+    if (def.executor == MPS_EXECUTOR_CALLER) api_wrong(a, "parallel_for");
+    if (def.executor == MPS_EXECUTOR_OPENMP) def.executor = MPS_EXECUTOR_SERIAL;
+    if (api_chance(a, 20)) def.threads = -1, api_wrong(a, "threads");
+    if (api_chance(a, 10)) def.instruction_level = 2, api_wrong(a, "instruction_level");
+    if (api_chance(a, 10)) def.free = NULL, api_wrong(a, "free");
+  }
+  const mps_status status =
+      mps_context_create(&def, api_null(a, "out") ? NULL : &made, api_chance(a, 80) ? text : NULL,
+                         api_chance(a, 80) ? sizeof text : 0);
+  api_object *o = api_adopt(a, API_CONTEXT, made, 0, NULL);
+  for (int k = 0; o && k < API_SLOTS; k++)
+    if (o == &a->objects[API_CONTEXT][k]) o->context = k;
+  (void)api_end(a, status);
+}
+
+API_DESTROY(context_destroy, API_CONTEXT)
+API_QUERY(context_error, API_CONTEXT)
+API_QUERY(context_instruction_level, API_CONTEXT)
+API_QUERY(context_threads, API_CONTEXT)
+
+static void context_clear_error(api *a) {
+  api_begin(a, "mps_context_clear_error");
+  mps_context *context = api_context(a);
+  mps_context_clear_error(context);
+  if (context && mps_context_error(context)->status != MPS_OK) api_broken(a, "leaves a record");
+  api_end_query(a);
+}
+
+/* Hooks are put in as they were, or taken out. */
+static void context_set_hook(api *a, const char *name, int which) {
+  api_begin(a, name);
+  mps_context *context = api_context(a);
+  mps_context_def def = mps_context_defaults();
+  if (!api_chance(a, 30)) api_hooks(a, &def);
+  api_say(a, def.log ? "hook, " : "NULL, ");
+  if (which == 0) mps_context_set_log(context, def.log, a);
+  if (which == 1) mps_context_set_progress(context, def.progress, a);
+  if (which == 2) mps_context_set_cancel(context, def.cancel, a);
+  api_end_query(a);
+  if (which != 2 || def.cancel) return;
+  mps_context_def hooks = mps_context_defaults(); /* it ends runs that would take for ever */
+  api_hooks(a, &hooks);
+  mps_context_set_cancel(context, hooks.cancel, a);
+}
+
+static void context_set_log(api *a) { context_set_hook(a, "mps_context_set_log", 0); }
+static void context_set_progress(api *a) { context_set_hook(a, "mps_context_set_progress", 1); }
+static void context_set_cancel(api *a) { context_set_hook(a, "mps_context_set_cancel", 2); }
+
+static void count_unit(void *task, int64_t index, int32_t worker) {
+  atomic_llong *sum = task;
+  atomic_fetch_add(sum, index + 1);
+  (void)worker;
+}
+
+static void context_parallel_for(api *a) {
+  api_begin(a, "mps_context_parallel_for");
+  atomic_llong sum = 0;
+  mps_context *context = api_context(a);
+  int64_t count = api_chance(a, 10) ? 0 : (int64_t)api_below(a, 50);
+  if (a->mood == API_ABSURD && api_chance(a, 30)) count = -1, api_wrong(a, "count");
+  api_say(a, "%d, ", (int)count);
+  const mps_task_fn task = api_null(a, "task") ? NULL : count_unit;
+  if (count == 0) a->wrong = a->wrong && !context;
+  const mps_status status = mps_context_parallel_for(context, count, task, &sum);
+  if (status == MPS_OK && count > 0 && atomic_load(&sum) != count * (count + 1) / 2)
+    api_broken(a, "runs other units than %d", (int)count);
+  a->reads = true;
+  (void)api_end(a, status);
+}
+
+/* ---- the library ----------------------------------------------------------------------------- */
+
+static void library(api *a) {
+  static const int32_t numbers[] = {-1, 0, 1, 2, 3, 4, 6, 7, 1000, INT32_MIN, INT32_MAX};
+  const int32_t number = numbers[api_below(a, API_COUNT(numbers))];
+  api_begin(a, "mps_library_has");
+  const int32_t has = mps_library_has(number);
+  const char *name = mps_library_feature_name(number);
+  if ((has != 0 && has != 1) || (has && !name)) api_broken(a, "%d of feature %d", has, number);
+  api_end_query(a);
+  api_begin(a, "mps_library_feature_name");
+  if (name && !name[0]) api_broken(a, "an empty name of %d", number);
+  api_end_query(a);
+  api_begin(a, "mps_library_has_level");
+  if (mps_library_has_level(number) && number != 1 && number != 3 && number != 4)
+    api_broken(a, "level %d", number);
+  api_end_query(a);
+  api_begin(a, "mps_status_text");
+  if (!mps_status_text((mps_status)number)) api_broken(a, "no text");
+  api_end_query(a);
+  api_begin(a, "mps_version");
+  if (strlen(mps_version()) < 5) api_broken(a, "%s", mps_version());
+  api_end_query(a);
+  api_begin(a, "mps_version_number");
+  if (mps_version_number() != MPS_VERSION_NUMBER) api_broken(a, "another");
+  api_end_query(a);
+}
+
+/* ---- kernels --------------------------------------------------------------------------------- */
+
+static void kernel_create(api *a) {
+  api_begin(a, "mps_kernel_create");
+  mps_kernel *made = NULL;
+  mps_context *context = api_context(a);
+  const int32_t kind = api_choice(a, "kind", 4);
+  const double radii[] = {0.15, 0.3, 0.31, 0.4};
+  const double radius = api_real(a, "radius", 1e-12, 1e12, radii[api_below(a, 4)]);
+  const mps_status status =
+      mps_kernel_create(context, kind, radius, api_null(a, "out") ? NULL : &made);
+  (void)api_end_made(a, status, API_KERNEL, made, NULL);
+}
+
+API_DESTROY(kernel_destroy, API_KERNEL)
+API_QUERY(kernel_get_kind, API_KERNEL)
+API_QUERY(kernel_radius, API_KERNEL)
+
+static void kernel_weight(api *a) {
+  api_begin(a, "mps_kernel_weight");
+  const mps_kernel *kernel = api_any(a, API_KERNEL)->handle;
+  const double r = api_real(a, "r", 0.0, INFINITY, 0.1);
+  const double weight = mps_kernel_weight(kernel, r);
+  if (isfinite(r) && !isfinite(weight) && r > 1e-200) api_broken(a, "w(%g) = %g", r, weight);
+  api_end_query(a);
+  api_begin(a, "mps_kernel_derivative");
+  const double slope = mps_kernel_derivative(kernel, r);
+  if (isfinite(r) && !isfinite(slope) && r > 1e-100) api_broken(a, "dw/dr(%g) = %g", r, slope);
+  api_end_query(a);
+}
+
+static void kernel_moment(api *a) {
+  api_begin(a, "mps_kernel_moment");
+  double moment = -1.0;
+  mps_context *context = api_context(a);
+  const mps_kernel *kernel = api_any(a, API_KERNEL)->handle;
+  const int32_t dim = (int32_t)api_whole(a, "dim", 1, 3);
+  const int32_t order = (int32_t)api_whole(a, "order", 0, 4);
+  const mps_status status =
+      mps_kernel_moment(context, kernel, dim, order, api_null(a, "out") ? NULL : &moment);
+  if (status == MPS_OK && !isfinite(moment)) api_broken(a, "moment %g", moment);
+  a->reads = true;
+  (void)api_end(a, status);
+}
+
+/* Spacings of a hundredth of the radius are a sum over 30 000 sites in the plane. */
+static void kernel_density(api *a) {
+  api_begin(a, "mps_kernel_density");
+  double density = -1.0;
+  mps_context *context = api_context(a);
+  const mps_kernel *kernel = api_any(a, API_KERNEL)->handle;
+  const int32_t dim = (int32_t)api_whole(a, "dim", 2, 3);
+  const double radius = mps_kernel_radius(kernel) > 0.0 ? mps_kernel_radius(kernel) : 1.0;
+  double spacing = api_real(a, "spacing", radius / 10.0, 1e12, radius / 2.5);
+  if (spacing > 0.0 && spacing < radius / 10.0) spacing = radius / 10.0, a->wrong = 0;
+  if (spacing > 1e12 && isfinite(spacing)) a->wrong = 0;
+  const mps_status status =
+      mps_kernel_density(context, kernel, dim, spacing, api_null(a, "out") ? NULL : &density);
+  if (status == MPS_OK && !isfinite(density)) api_broken(a, "density %g", density);
+  a->reads = true;
+  (void)api_end(a, status);
+}
+
+/* ---- neighbours ------------------------------------------------------------------------------ */
+
+API_INIT(neighbours_def)
+
+static void neighbours_create(api *a) {
+  api_begin(a, "mps_neighbours_create");
+  mps_neighbours *made = NULL;
+  mps_context *context = api_context(a);
+  mps_neighbours_def def = mps_neighbours_defaults();
+  def.struct_size = api_struct_size(a, sizeof def);
+  def.dim = api_chance(a, 90) ? a->dim : (int32_t)api_whole(a, "dim", 2, 3);
+  def.radius = api_real(a, "radius", 1e-150, 1e150, 0.2);
+  def.half = api_choice(a, "half", 2);
+  if (def.half != 0 && def.half != 1) a->wrong = 0; /* any other may be taken for 1 */
+  const mps_status status = mps_neighbours_create(context, api_null(a, "def") ? NULL : &def,
+                                                  api_null(a, "out") ? NULL : &made);
+  (void)api_end_made(a, status, API_NEIGHBOURS, made, NULL);
+}
+
+API_DESTROY(neighbours_destroy, API_NEIGHBOURS)
+
+static void neighbours_build(api *a) {
+  api_begin(a, "mps_neighbours_build");
+  mps_neighbours *neighbours = api_any(a, API_NEIGHBOURS)->handle;
+  mps_particles *set = api_any(a, API_SET)->handle;
+  mps_view view;
+  memset(&view, 0, sizeof view);
+  const bool position = !(a->mood == API_ABSURD && api_chance(a, 20));
+  const char *name = position ? "position" : "id";
+  if (!position) api_say(a, "\"id\", "), api_wrong(a, "dtype");
+  if (!set || mps_particles_view(set, name, &view) != MPS_OK) memset(&view, 0, sizeof view);
+  (void)api_end(a, mps_neighbours_build(neighbours, api_null(a, "view") ? NULL : &view));
+}
+
+static void neighbours_lists(api *a) {
+  api_begin(a, "mps_neighbours_lists");
+  int64_t count = -1;
+  const int64_t *offsets, *indices;
+  const mps_neighbours *neighbours = api_any(a, API_NEIGHBOURS)->handle;
+  const mps_status status = mps_neighbours_lists(neighbours, api_chance(a, 80) ? &count : NULL,
+                                                 api_chance(a, 80) ? &offsets : NULL,
+                                                 api_chance(a, 80) ? &indices : NULL);
+  a->reads = true;
+  (void)api_end(a, status);
+}
+
+static const api_call calls[] = {
+    {"mps_context_def_init", 1, API_NOTHING, init_context_def},
+    {"mps_context_create", 1, API_NOTHING, context_create},
+    {"mps_context_destroy", 1, API_CONTEXT, destroy_context_destroy},
+    {"mps_context_error", 1, API_CONTEXT, query_context_error},
+    {"mps_context_clear_error", 1, API_CONTEXT, context_clear_error},
+    {"mps_context_set_log", 1, API_CONTEXT, context_set_log},
+    {"mps_context_set_progress", 1, API_CONTEXT, context_set_progress},
+    {"mps_context_set_cancel", 1, API_CONTEXT, context_set_cancel},
+    {"mps_context_instruction_level", 1, API_CONTEXT, query_context_instruction_level},
+    {"mps_context_threads", 1, API_CONTEXT, query_context_threads},
+    {"mps_context_parallel_for", 2, API_CONTEXT, context_parallel_for},
+    {"mps_library_has", 1, API_NOTHING, library},
+    {"mps_library_feature_name", 0, API_NOTHING, library},
+    {"mps_library_has_level", 0, API_NOTHING, library},
+    {"mps_status_text", 0, API_NOTHING, library},
+    {"mps_version", 0, API_NOTHING, library},
+    {"mps_version_number", 0, API_NOTHING, library},
+    {"mps_kernel_create", 4, API_CONTEXT, kernel_create},
+    {"mps_kernel_destroy", 1, API_KERNEL, destroy_kernel_destroy},
+    {"mps_kernel_get_kind", 1, API_KERNEL, query_kernel_get_kind},
+    {"mps_kernel_radius", 1, API_KERNEL, query_kernel_radius},
+    {"mps_kernel_weight", 2, API_KERNEL, kernel_weight},
+    {"mps_kernel_derivative", 0, API_KERNEL, kernel_weight},
+    {"mps_kernel_moment", 3, API_KERNEL, kernel_moment},
+    {"mps_kernel_density", 2, API_KERNEL, kernel_density},
+    {"mps_neighbours_def_init", 1, API_NOTHING, init_neighbours_def},
+    {"mps_neighbours_create", 3, API_CONTEXT, neighbours_create},
+    {"mps_neighbours_destroy", 1, API_NEIGHBOURS, destroy_neighbours_destroy},
+    {"mps_neighbours_build", 5, API_NEIGHBOURS, neighbours_build},
+    {"mps_neighbours_lists", 2, API_NEIGHBOURS, neighbours_lists},
+};
+const api_table api_context_calls = API_TABLE(calls);

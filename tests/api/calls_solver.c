@@ -1,0 +1,75 @@
+/* calls_solver.c - what the calls of all solvers share: ends of runs, files and their damage,
+ * states to be compared. SPDX-License-Identifier: BSD-3-Clause */
+#include "calls_solver.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+void api_stepped(api *a, mps_status status, int64_t before, int64_t after) {
+  if (after != before || status == MPS_ERROR_DIVERGED)
+    a->change = API_CHANGES_ALL;
+  else
+    a->change = API_CHANGES_ORDER;
+}
+
+double api_t_end(api *a, double time, double dt) {
+  if (!(dt > 0.0 && dt < 1e300)) dt = 1e-3;
+  double t_end = time + dt * 4.0 * api_unit(a);
+  if (api_chance(a, 10)) t_end = time;
+  if (a->mood == API_ABSURD && api_chance(a, 30)) {
+    const double values[] = {NAN, INFINITY, -INFINITY, time - 1.0};
+    t_end = values[api_below(a, 4)];
+    api_wrong(a, "t_end");
+  }
+  api_say(a, "t_end = %.17g, ", t_end);
+  return t_end;
+}
+
+void api_path(api *a, char path[300], const char *kind) {
+  snprintf(path, 300, "%s/%s.h5", a->folder, kind);
+  if (a->mood == API_ABSURD && api_chance(a, 10)) {
+    snprintf(path, 300, "%s/no/such", a->folder);
+    api_wrong(a, "path");
+  }
+  api_say(a, "\"%s\", ", kind);
+}
+
+void api_damage(api *a, const char *path) {
+  if (a->mood != API_ABSURD || !api_chance(a, 50)) return;
+  FILE *file = fopen(path, "rb");
+  if (!file) return;
+  char *bytes = malloc(1 << 18);
+  size_t length = bytes ? fread(bytes, 1, 1 << 18, file) : 0;
+  (void)fclose(file);
+  if (length > 0) {
+    const uint32_t at = api_below(a, (uint32_t)length);
+    const bool cut = api_chance(a, 50);
+    if (cut)
+      length = at;
+    else
+      bytes[at] = (char)api_below(a, 256);
+    api_say(a, "/* %s byte %u */ ", cut ? "cut at" : "another", at);
+    file = fopen(path, "wb");
+    if (file) {
+      (void)!fwrite(bytes, 1, length, file);
+      (void)fclose(file);
+    }
+  }
+  free(bytes);
+}
+
+void api_read(api *a, api_kind kind, api_object *o, mps_particles *set, api_state *state) {
+  api_object lent = {.handle = set, .context = -1};
+  state->count[0] = api_look(a, kind, o, state->parts[0]);
+  state->count[1] = api_look(a, API_SET, &lent, state->parts[1]);
+}
+
+void api_same(api *a, const api_state *x, const api_state *y, const char *when) {
+  for (int k = 0; k < 2; k++) {
+    if (x->count[k] != y->count[k])
+      api_broken(a, "%d parts %s, not %d", y->count[k], when, x->count[k]);
+    for (int p = 0; p < x->count[k] && p < y->count[k]; p++)
+      if (x->parts[k][p].hash != y->parts[k][p].hash && !strstr(x->parts[k][p].name, "epoch"))
+        api_broken(a, "another %s %s", x->parts[k][p].name, when);
+  }
+}

@@ -1,0 +1,224 @@
+/* calls_solver.h - the verbs that all solvers share (mps/solver.h), as calls of one of them:
+ *
+ *   API_SOLVER(mpm, API_MPM)    defines them
+ *   API_SOLVER_CALLS(mpm, API_MPM)    their lines of the table
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef TESTS_API_CALLS_SOLVER_H
+#define TESTS_API_CALLS_SOLVER_H
+
+#include "calls.h"
+
+#include <stdio.h>
+
+/* What a step or run may leave when it fails: steps that were made before stay. `steps`: taken
+ * before and after. A step that diverged may have happened. */
+void api_stepped(api *a, mps_status status, int64_t before, int64_t after);
+/* t_end of a run of a few steps. */
+double api_t_end(api *a, double time, double dt);
+/* Path of the file of this solver. */
+void api_path(api *a, char path[300], const char *kind);
+/* In an absurd mood: damages the file. */
+void api_damage(api *a, const char *path);
+/* Parts of a solver, then of its set. */
+typedef struct api_state {
+  int count[2];
+  api_part parts[2][API_PARTS];
+} api_state;
+void api_read(api *a, api_kind kind, api_object *o, mps_particles *set, api_state *state);
+/* Says what differs, but for what a rollback leaves as it is. */
+void api_same(api *a, const api_state *x, const api_state *y, const char *when);
+
+#define API_SOLVER(S, KIND)                                                                        \
+  API_DESTROY(S##_destroy, KIND)                                                                   \
+  API_QUERY(S##_particles, KIND)                                                                   \
+  API_QUERY(S##_context, KIND)                                                                     \
+  API_QUERY(S##_time, KIND)                                                                        \
+  API_QUERY(S##_steps, KIND)                                                                       \
+  API_QUERY(S##_limit, KIND)                                                                       \
+  static void S##_dt(api *a) {                                                                     \
+    api_begin(a, "mps_" #S "_dt");                                                                 \
+    if (isnan(mps_##S##_dt(api_any(a, KIND)->handle))) api_broken(a, "is NaN");                    \
+    api_end_changed(a);                                                                            \
+  }                                                                                                \
+  static void S##_get_totals_sized(api *a) {                                                       \
+    api_begin(a, "mps_" #S "_get_totals_sized");                                                   \
+    mps_##S *s = api_any(a, KIND)->handle;                                                         \
+    API_SIZED(a, mps_totals, size, out);                                                           \
+    const mps_status status =                                                                      \
+        mps_##S##_get_totals_sized(s, api_null(a, "out") ? NULL : out, size);                      \
+    API_SIZED_END(a, status, size, out, true);                                                     \
+  }                                                                                                \
+  static void S##_get_def_sized(api *a) {                                                          \
+    api_begin(a, "mps_" #S "_get_def_sized");                                                      \
+    mps_##S *s = api_any(a, KIND)->handle;                                                         \
+    API_SIZED(a, mps_##S##_def, size, out);                                                        \
+    const mps_status status = mps_##S##_get_def_sized(s, api_null(a, "out") ? NULL : out, size);   \
+    API_SIZED_END(a, status, size, out, true);                                                     \
+  }                                                                                                \
+  static void S##_get_reaction_sized(api *a) {                                                     \
+    api_begin(a, "mps_" #S "_get_reaction_sized");                                                 \
+    mps_##S *s = api_any(a, KIND)->handle;                                                         \
+    const int32_t number = (int32_t)api_whole(a, "number", 0, 9);                                  \
+    API_SIZED(a, mps_reaction, size, out);                                                         \
+    const mps_status status = mps_##S##_get_reaction_sized(s, number, out, size);                  \
+    API_SIZED_END(a, status, size, out, true);                                                     \
+  }                                                                                                \
+  static void S##_remove_boundary(api *a) {                                                        \
+    api_begin(a, "mps_" #S "_remove_boundary");                                                    \
+    mps_##S *s = api_any(a, KIND)->handle;                                                         \
+    (void)api_end(a, mps_##S##_remove_boundary(s, (int32_t)api_whole(a, "number", 0, 8)));         \
+  }                                                                                                \
+  static void S##_remove_load(api *a) {                                                            \
+    api_begin(a, "mps_" #S "_remove_load");                                                        \
+    mps_##S *s = api_any(a, KIND)->handle;                                                         \
+    (void)api_end(a, mps_##S##_remove_load(s, (int32_t)api_whole(a, "number", 0, 3)));             \
+  }                                                                                                \
+  static bool step_by(api *a, api_object *o, int64_t count) {                                      \
+    mps_##S *s = o->handle;                                                                        \
+    api_run_solver(a, KIND, o);                                                                    \
+    const int64_t before = mps_##S##_steps(s);                                                     \
+    const mps_status status = mps_##S##_step(s, count);                                            \
+    api_stepped(a, status, before, mps_##S##_steps(s));                                            \
+    return api_end(a, status);                                                                     \
+  }                                                                                                \
+  static void S##_step(api *a) {                                                                   \
+    api_begin(a, "mps_" #S "_step");                                                               \
+    api_object *o = api_any(a, KIND);                                                              \
+    const int64_t count = api_least(a, "count", 0, 4);                                             \
+    (void)step_by(a, o, count);                                                                    \
+  }                                                                                                \
+  static mps_status S##_in_run(void *user, mps_##S *s) {                                           \
+    (void)s;                                                                                       \
+    return api_callback(user, NULL, 0);                                                            \
+  }                                                                                                \
+  static void S##_run(api *a) {                                                                    \
+    api_begin(a, "mps_" #S "_run");                                                                \
+    api_object *o = api_any(a, KIND);                                                              \
+    mps_##S *s = o->handle;                                                                        \
+    const double t_end = api_t_end(a, mps_##S##_time(s), SOLVER_DT(s));                            \
+    const int64_t every = api_least(a, "every", 1, 3), before = mps_##S##_steps(s);                \
+    api_run_solver(a, KIND, o);                                                                    \
+    const mps_status status =                                                                      \
+        mps_##S##_run(s, t_end, every, api_chance(a, 80) ? S##_in_run : NULL, a);                  \
+    if (status == MPS_OK && mps_##S##_time(s) != t_end) api_broken(a, "ends elsewhere");           \
+    api_stepped(a, status, before, mps_##S##_steps(s));                                            \
+    (void)api_end(a, status);                                                                      \
+  }                                                                                                \
+  static void S##_set_dt(api *a) {                                                                 \
+    api_begin(a, "mps_" #S "_set_dt");                                                             \
+    mps_##S *s = api_any(a, KIND)->handle;                                                         \
+    double dt = mps_##S##_limit(s);                                                                \
+    if (!(dt > 0.0 && dt < 1.0)) dt = 1e-3;                                                        \
+    dt *= 0.2 + api_unit(a);                                                                       \
+    if (a->mood == API_ABSURD && api_chance(a, 40)) {                                              \
+      const double values[] = {0.0, -1.0, INFINITY, -INFINITY};                                    \
+      dt = values[api_below(a, 4)];                                                                \
+      api_wrong(a, "dt");                                                                          \
+    }                                                                                              \
+    api_say(a, "dt = %.17g, ", dt);                                                                \
+    (void)api_end(a, mps_##S##_set_dt(s, dt));                                                     \
+  }                                                                                                \
+  /* Into a new snapshot, or one that may be of another solver. */                                 \
+  static void S##_snapshot(api *a) {                                                               \
+    api_begin(a, "mps_" #S "_snapshot");                                                           \
+    api_object *o = api_any(a, KIND);                                                              \
+    api_object *old =                                                                              \
+        api_chance(a, 50) && api_alive(a, API_SNAPSHOT) ? api_any(a, API_SNAPSHOT) : NULL;         \
+    if (old && !old->handle) old = NULL, a->wrong -= o->handle != NULL;                            \
+    mps_snapshot *made = old ? old->handle : NULL;                                                 \
+    if (old && o->handle && old->owner != o->serial) api_wrong(a, "snapshot");                     \
+    const mps_status status = mps_##S##_snapshot(o->handle, &made);                                \
+    if (old && made != old->handle) api_broken(a, "changes the handle");                           \
+    if (!old) (void)api_adopt(a, API_SNAPSHOT, made, a->context, o);                               \
+    a->reads = true;                                                                               \
+    (void)api_end(a, status);                                                                      \
+  }                                                                                                \
+  static void S##_rollback(api *a) {                                                               \
+    api_begin(a, "mps_" #S "_rollback");                                                           \
+    api_object *o = api_any(a, KIND);                                                              \
+    api_object *old = api_any(a, API_SNAPSHOT);                                                    \
+    if (old->handle && o->handle && old->owner != o->serial) api_wrong(a, "snapshot");             \
+    (void)api_end(a, mps_##S##_rollback(o->handle, old->handle));                                  \
+  }                                                                                                \
+  /* There and back is as if nothing had been, and the same way leads to the same place. */        \
+  static void S##_return(api *a) {                                                                 \
+    static api_state begin, back, first, second;                                                   \
+    api_begin(a, "mps_" #S "_snapshot");                                                           \
+    api_object *o = api_any(a, KIND);                                                              \
+    mps_##S *s = o->handle;                                                                        \
+    mps_snapshot *snapshot = NULL;                                                                 \
+    const mps_status status = mps_##S##_snapshot(s, &snapshot);                                    \
+    (void)api_adopt(a, API_SNAPSHOT, snapshot, a->context, o);                                     \
+    a->reads = true;                                                                               \
+    if (!api_end(a, status)) return;                                                               \
+    a->latest = true;                                                                              \
+    api_read(a, KIND, o, mps_##S##_particles(s), &begin);                                          \
+    const int64_t count = 1 + (int64_t)api_below(a, 3);                                            \
+    bool whole = false;                                                                            \
+    for (int pass = 0; pass < 2; pass++) {                                                         \
+      api_begin(a, "mps_" #S "_step");                                                             \
+      api_say(a, "%s%d, %d", api_kind_names[KIND], (int)(o - a->objects[KIND]), (int)count);       \
+      a->context = o->context;                                                                     \
+      const bool stepped = step_by(a, o, count);                                                   \
+      api_read(a, KIND, o, mps_##S##_particles(s), pass == 0 ? &first : &second);                  \
+      if (pass == 0) whole = stepped;                                                              \
+      if (pass == 1 && stepped != whole) api_broken(a, "fails in one of two passes");              \
+      if (pass == 1 && stepped) api_same(a, &first, &second, "after the same steps again");        \
+      if (pass == 1) break;                                                                        \
+      api_begin(a, "mps_" #S "_rollback");                                                         \
+      api_say(a, "%s%d", api_kind_names[KIND], (int)(o - a->objects[KIND]));                       \
+      a->context = o->context;                                                                     \
+      if (!api_end(a, mps_##S##_rollback(s, snapshot))) api_broken(a, "does not go back");         \
+      api_read(a, KIND, o, mps_##S##_particles(s), &back);                                         \
+      api_same(a, &begin, &back, "after a rollback");                                              \
+      if (a->reason[0]) break;                                                                     \
+    }                                                                                              \
+    a->latest = false;                                                                             \
+    api_settle(a);                                                                                 \
+  }                                                                                                \
+  static void S##_save(api *a) {                                                                   \
+    api_begin(a, "mps_" #S "_save");                                                               \
+    char path[300];                                                                                \
+    mps_checkpoint info = mps_checkpoint_defaults();                                               \
+    mps_##S *s = api_any(a, KIND)->handle;                                                         \
+    api_path(a, path, #S);                                                                         \
+    const bool given = api_chance(a, 50);                                                          \
+    if (given) info.struct_size = api_struct_size(a, sizeof info);                                 \
+    const mps_status status =                                                                      \
+        mps_##S##_save(s, api_null(a, "path") ? NULL : path, given ? &info : NULL);                \
+    a->reads = true;                                                                               \
+    (void)api_end(a, status);                                                                      \
+  }                                                                                                \
+  static void S##_restore(api *a) {                                                                \
+    api_begin(a, "mps_" #S "_restore");                                                            \
+    char path[300];                                                                                \
+    mps_checkpoint info = mps_checkpoint_defaults();                                               \
+    mps_##S *s = api_any(a, KIND)->handle;                                                         \
+    api_path(a, path, api_chance(a, 90) ? #S : "set");                                             \
+    api_damage(a, path);                                                                           \
+    const bool given = api_chance(a, 50);                                                          \
+    (void)api_end(a,                                                                               \
+                  mps_##S##_restore(s, api_null(a, "path") ? NULL : path, given ? &info : NULL));  \
+  }
+
+#define API_SOLVER_CALLS(S, KIND)                                                                  \
+  {"mps_" #S "_destroy", 1, KIND, destroy_##S##_destroy},                                          \
+      {"mps_" #S "_particles", 1, KIND, query_##S##_particles},                                    \
+      {"mps_" #S "_context", 1, KIND, query_##S##_context},                                        \
+      {"mps_" #S "_time", 1, KIND, query_##S##_time},                                              \
+      {"mps_" #S "_steps", 1, KIND, query_##S##_steps}, {"mps_" #S "_dt", 1, KIND, S##_dt},        \
+      {"mps_" #S "_limit", 1, KIND, query_##S##_limit},                                            \
+      {"mps_" #S "_get_totals_sized", 1, KIND, S##_get_totals_sized},                              \
+      {"mps_" #S "_get_def_sized", 1, KIND, S##_get_def_sized},                                    \
+      {"mps_" #S "_get_reaction_sized", 1, KIND, S##_get_reaction_sized},                          \
+      {"mps_" #S "_remove_boundary", 2, KIND, S##_remove_boundary},                                \
+      {"mps_" #S "_remove_load", 1, KIND, S##_remove_load},                                        \
+      {"mps_" #S "_step", 14, KIND, S##_step}, {"mps_" #S "_run", 6, KIND, S##_run},               \
+      {"mps_" #S "_set_dt", 3, KIND, S##_set_dt}, {"mps_" #S "_snapshot", 3, KIND, S##_snapshot},  \
+      {"mps_" #S "_snapshot", 4, KIND, S##_return},                                                \
+      {"mps_" #S "_rollback", 4, KIND, S##_rollback}, {"mps_" #S "_save", 2, KIND, S##_save}, {    \
+    "mps_" #S "_restore", 3, KIND, S##_restore                                                     \
+  }
+
+#endif

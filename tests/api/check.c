@@ -1,0 +1,292 @@
+/* check.c - what must hold before and after each call, whatever was called with what:
+ *
+ *   the status is one of the table;
+ *   an argument that no function may take is refused;
+ *   the record of an error has that status, the function's name and a message;
+ *   a call that failed has changed nothing, nor has one that only reads;
+ *   after one that succeeded all is finite;
+ *   a callback's status comes back, and what a callback may not do is refused.
+ *
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "api.h"
+
+#include <inttypes.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+/* What is known to be broken, until it is mended: function (its beginning) and reason (a part). */
+static const struct {
+  const char *function, *reason;
+} known[] = {
+    /* records that name the function that was called within */
+    {"mps_particles_edit", "names mps_particles_view"},
+    {"mps_grid_fill", "names mps_grid_get_nodes"},
+    {"mps_particles_set", "names mps_particles_add_field"},
+    {"mps_mpm_set_material", "names mps_particles_add_field"},
+    /* refused calls that change something */
+    {"mps_particles_append", "'s epoch"},
+    {"mps_particles_fill_", "'s epoch"},
+    {"mps_mpm_snapshot", "changes"},
+    {"mps_mpm_save", "changes"},
+    {"mps_mpm_settle", "changes"},
+    {"mps_grid_get_nodes", "changes"},
+    /* callbacks that return no status */
+    {"mps_particles_set_stress", "which is no status"},
+    {"mps_particles_set_geostatic", "which is no status"},
+    {"mps_particles_set_material", "names mps_material_get_moduli"},
+    {"mps_particles_set_stress", "names mps_particles_add_field"},
+    /* signals that refuse or write NaN, laws that write NaN */
+    {"mps_mpm_", "a callback returned"},
+    {"mps_mpm_", "is not finite"},
+    {"mps_body_", "is not finite"},
+    {"mps_body_", "a callback returned"},
+    {"mps_body_drive", "a callback wrote NaN"},
+    {"mps_body_advance", "a callback wrote NaN"},
+    {"mps_mpm_", "stress is not finite"},
+    {"mps_mpm_", "a callback wrote NaN"},
+    /* stresses of a law at one point */
+    {"mps_material_point_drive", "succeeds, and stress"},
+};
+
+static bool is_known(const char *function, const char *reason) {
+  for (int k = 0; k < API_COUNT(known); k++)
+    if (strncmp(function, known[k].function, strlen(known[k].function)) == 0 &&
+        strstr(reason, known[k].reason))
+      return true;
+  return false;
+}
+
+void api_broken(api *a, const char *format, ...) {
+  if (a->reason[0]) return;
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(a->reason, sizeof a->reason, format, arguments);
+  va_end(arguments);
+  if (is_known(a->name, a->reason)) a->reason[0] = '\0';
+}
+
+/* Without stdio: it also runs when a signal has come. */
+static void put(int descriptor, const char *text) {
+  size_t length = strlen(text);
+  while (length > 0) {
+    const ssize_t written = write(descriptor, text, length);
+    if (written <= 0) return;
+    text += written;
+    length -= (size_t)written;
+  }
+}
+
+void api_print_log(const api *a, int descriptor) {
+  const int64_t from = a->line_count > API_LINES ? a->line_count - API_LINES : 0;
+  for (int64_t k = from; k < a->line_count; k++) {
+    put(descriptor, "  ");
+    put(descriptor, a->lines[k % API_LINES]);
+    put(descriptor, "\n");
+  }
+  if (a->length > 0) {
+    put(descriptor, "  ");
+    put(descriptor, a->line);
+    put(descriptor, "\n");
+  }
+}
+
+/* ---- before ---------------------------------------------------------------------------------- */
+
+/* One allocation of the call is refused, or all from one on. */
+static void refuse_memory(api *a) {
+  atomic_store(&a->memory.refuse_from, 0);
+  atomic_store(&a->memory.refused, 0);
+  if (a->steady || a->latest || !api_chance(a, 6)) return;
+  const long long from =
+      atomic_load(&a->memory.calls) + 1 + api_below(a, UINT32_C(1) << api_below(a, 7));
+  atomic_store(&a->memory.refuse_to, api_chance(a, 50) ? from : INT64_MAX);
+  atomic_store(&a->memory.refuse_from, from);
+  api_say(a, "/* memory */ ");
+}
+
+void api_begin(api *a, const char *name) {
+  a->name = name;
+  a->wrong = 0;
+  a->wrong_name = "";
+  a->picked = false;
+  a->context = -1;
+  a->change = API_CHANGES_NOTHING;
+  a->reads = a->queries = false;
+  a->fault = API_FAULT_NONE;
+  a->callbacks = 0;
+  a->fault_status = MPS_OK;
+  a->faulted = false;
+  a->running = NULL;
+  a->cancel_at = a->cancels = 0;
+  a->length = 0;
+  for (int k = 0; k < API_SLOTS; k++) mps_context_clear_error(a->objects[API_CONTEXT][k].handle);
+  api_say(a, "%s(", name);
+  refuse_memory(a);
+}
+
+/* ---- after ----------------------------------------------------------------------------------- */
+
+static bool is_status(mps_status status) {
+  return status >= MPS_OK && status <= MPS_ERROR_INTERNAL;
+}
+
+static void finish_line(api *a, mps_status status, const char *message) {
+  if (a->length > 2 && strcmp(a->line + a->length - 2, ", ") == 0) a->length -= 2;
+  api_say(a, ")");
+  if (!a->queries) api_say(a, " = %d", (int)status);
+  if (message && message[0]) api_say(a, ": %s", message);
+  memcpy(a->lines[a->line_count % API_LINES], a->line, sizeof a->line);
+  a->line_count++;
+  if (a->verbose) {
+    printf("%4" PRId64 "  %s\n", a->call, a->line);
+    fflush(stdout);
+  }
+  a->length = 0;
+}
+
+/* The name without "_sized", which an inline function of the shorter name calls. */
+static bool same_name(const char *recorded, const char *called) {
+  size_t length = strlen(called);
+  if (length > 6 && strcmp(called + length - 6, "_sized") == 0) length -= 6;
+  return strcmp(recorded, called) == 0 ||
+         (strncmp(recorded, called, length) == 0 && recorded[length] == '\0');
+}
+
+static void check_record(api *a, mps_status status, const mps_error *record) {
+  if (record->status != status)
+    api_broken(a, "returns %d, its record has %d", (int)status, (int)record->status);
+  else if (!same_name(record->function, a->name))
+    api_broken(a, "the record names %s", record->function);
+  else if (strlen(record->message) < 8)
+    api_broken(a, "the record's message is \"%s\"", record->message);
+}
+
+static void check_status(api *a, mps_status status) {
+  if (!is_status(status)) api_broken(a, "returns %d, which is no status", (int)status);
+  if (status == MPS_ERROR_INTERNAL && a->fault_status != status)
+    api_broken(a, "finds itself broken");
+  if (status == MPS_OK && a->wrong > 0) api_broken(a, "takes an absurd %s", a->wrong_name);
+  if (!a->faulted) return;
+  if (a->fault == API_FAULT_STATUS && status != a->fault_status)
+    api_broken(a, "returns %d where a callback returned %d", (int)status, (int)a->fault_status);
+  else if ((a->fault == API_FAULT_NO_STATUS || a->fault == API_FAULT_VALUE) && status == MPS_OK)
+    api_broken(a, "succeeds where a callback %s",
+               a->fault == API_FAULT_VALUE ? "wrote NaN" : "returned no status");
+}
+
+/* May this part differ after a call that failed or reads? Sums over particles may where their order
+ * may, in the last bits; and fields that have been written since are read first. */
+static bool may_differ(const api *a, const char *part) {
+  static const char *const by_order[] = {
+      "order", "epoch", "mass", "volume", "momentum", "kinetic energy", "energies", "limit", "dt"};
+  if (a->change != API_CHANGES_ORDER) return a->change == API_CHANGES_ALL;
+  for (int k = 0; k < API_COUNT(by_order); k++)
+    if (strstr(part, by_order[k])) return strncmp(part, "set mass", 8) != 0;
+  return false;
+}
+
+static void compare(api *a, const api_object *o, const api_part *parts, int count, api_kind kind,
+                    int slot) {
+  if (count != o->part_count && a->change != API_CHANGES_ALL)
+    api_broken(a, "changes the number of parts of %s%d from %d to %d", api_kind_names[kind], slot,
+               o->part_count, count);
+  for (int k = 0; k < count && k < o->part_count; k++)
+    if (parts[k].hash != o->parts[k].hash && !may_differ(a, parts[k].name))
+      api_broken(a, "changes %s%d's %s", api_kind_names[kind], slot, parts[k].name);
+}
+
+/* What was not finite before, after a step that diverged, is no news. */
+static void check_finite(api *a, const api_object *o, const api_part *parts, int count,
+                         api_kind kind, int slot) {
+  for (int k = 0; k < API_EDITS; k++)
+    for (int set = 0; set < API_SLOTS; set++) /* totals of a field that is being written */
+      if (a->objects[API_SET][set].edits[k].data) return;
+  for (int k = 0; k < count; k++)
+    if (!parts[k].finite && k < o->part_count && o->parts[k].finite)
+      api_broken(a, "succeeds, and %s%d's %s is not finite", api_kind_names[kind], slot,
+                 parts[k].name);
+}
+
+static void look_after(api *a, mps_status status) {
+  static api_part parts[API_PARTS];
+  const bool changes = status == MPS_OK && !a->reads;
+  for (int kind = 0; kind < API_KINDS; kind++)
+    for (int slot = 0; slot < API_SLOTS; slot++) {
+      api_object *o = &a->objects[kind][slot];
+      if (!o->handle) continue;
+      const int count = api_look(a, (api_kind)kind, o, parts);
+      if (!changes) compare(a, o, parts, count, (api_kind)kind, slot);
+      if (status == MPS_OK) check_finite(a, o, parts, count, (api_kind)kind, slot);
+      for (int k = 0; k < count; k++) a->digest = api_mix(a->digest ^ parts[k].hash);
+      memcpy(o->parts, parts, sizeof parts);
+      o->part_count = count;
+    }
+}
+
+void api_settle(api *a) {
+  if (a->reason[0]) longjmp(a->failed, 1);
+}
+
+bool api_end(api *a, mps_status status) {
+  atomic_store(&a->memory.refuse_from, 0);
+  const mps_context *context = a->context >= 0 ? a->objects[API_CONTEXT][a->context].handle : NULL;
+  const mps_error *record = status != MPS_OK ? mps_context_error(context) : NULL;
+  a->running = NULL;
+  finish_line(a, status, record ? record->message : NULL);
+  api_count(a->name, status);
+  check_status(a, status);
+  if (record) check_record(a, status, record);
+  if (status == MPS_ERROR_MEMORY && atomic_load(&a->memory.refused) == 0 && !a->faulted &&
+      a->mood == API_VALID)
+    api_broken(a, "finds no memory where none was refused");
+  a->digest = api_mix(a->digest ^ (uint64_t)status);
+  look_after(a, status);
+  api_settle(a);
+  return status == MPS_OK;
+}
+
+bool api_end_made(api *a, mps_status status, api_kind kind, void *made, const api_object *owner) {
+  if ((status == MPS_OK) != (made != NULL))
+    api_broken(a, "returns %d %s an object", (int)status, made ? "with" : "without");
+  (void)api_adopt(a, kind, made, a->context, owner);
+  return api_end(a, status);
+}
+
+static void end_without(api *a, bool reads) {
+  atomic_store(&a->memory.refuse_from, 0);
+  a->queries = true;
+  a->reads = reads;
+  finish_line(a, MPS_OK, NULL);
+  api_count(a->name, MPS_OK);
+  a->wrong = 0;
+  look_after(a, MPS_OK);
+  api_settle(a);
+}
+
+void api_end_query(api *a) { end_without(a, true); }
+
+void api_end_changed(api *a) { end_without(a, false); }
+
+/* ---- results that may grow ------------------------------------------------------------------- */
+
+size_t api_size(api *a, size_t size) {
+  if (a->mood == API_VALID || !api_chance(a, 25)) return size;
+  const size_t sizes[] = {0, 4, 8, size - 8, size + 8, 2 * size, 3 * size + 1};
+  const size_t chosen = sizes[api_below(a, API_COUNT(sizes))];
+  api_say(a, "size = %zu, ", chosen);
+  return chosen;
+}
+
+/* Nothing is written behind the caller's bytes; those that the library lacks are zero. */
+void api_check_room(api *a, const void *room, size_t all, size_t size, size_t most,
+                    mps_status status) {
+  const unsigned char *bytes = room;
+  for (size_t k = size; k < all; k++)
+    if (bytes[k] != 0x5a) {
+      api_broken(a, "writes byte %zu of a result of %zu", k, size);
+      return;
+    }
+  (void)most, (void)status;
+}
