@@ -53,6 +53,12 @@ typedef struct mpsi_body_source {
   struct mpsi_body_source *next;
 } mpsi_body_source;
 
+/* Where the signals of a prescribed body are: position (m) and rotation vector (rad), and their
+ * rates. */
+typedef struct mpsi_course {
+  double at[MPSI_MOTIONS], rate[MPSI_MOTIONS];
+} mpsi_course;
+
 struct mps_body {
   mps_context *context;
   int32_t references; /* one thread at a time: no atomics */
@@ -75,6 +81,7 @@ struct mps_body {
   double time;        /* s */
   double rotation[3]; /* rad: as of mps_body_state, but of a free body in 3D unused */
   double angular[3];  /* kg m2/s, angular momentum in space: free bodies in 3D */
+  mpsi_course ahead;  /* prescribed: at the end of the step being made */
   bool outside;       /* prescribed: moves as mps_body_set_motion said, not by the signals */
   mpsi_pose pose;
   double work_contacts, work_loads, dissipated; /* J: see mps_body_totals */
@@ -164,7 +171,12 @@ void mpsi_body_react(mps_body *body, mpsi_body_source *source, double dt, const 
 mps_status mpsi_body_sum_reaction(mps_context *context, const char *function,
                                   const mps_reaction *reaction, int32_t parts, int32_t part,
                                   mps_reaction *out);
-/* Moves the body on by dt: see mps_body_advance. */
+/* Evaluates the signals of a prescribed body for the end of a step of dt that has not begun, so
+ * that the body's advance at its end cannot fail. `number` names the body in a record; -1: it has
+ * none.
+ */
+mps_status mpsi_body_look_ahead(mps_body *body, const char *function, int32_t number, double dt);
+/* Moves the body on by dt: see mps_body_advance. Its signals have been evaluated. */
 void mpsi_body_advance(mps_body *body, double dt);
 
 #endif

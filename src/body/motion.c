@@ -5,6 +5,7 @@
 #include "contact_internal.h"
 #include "core/retain.h"
 #include "rotation.h"
+#include "signal/signal_internal.h"
 
 #include <string.h>
 
@@ -18,15 +19,37 @@ static void set_angle(mps_body *body, double angle) {
   memcpy(body->pose.R, R, sizeof R);
 }
 
-/* Where the signals are at the body's time. */
-static void follow(mps_body *body) {
-  double at[MPSI_MOTIONS], rate[MPSI_MOTIONS] = {0};
-  for (int c = 0; c < 3; c++) at[c] = body->def.position[c], at[3 + c] = body->def.rotation[c];
-  for (int c = 0; c < MPSI_MOTIONS; c++) {
-    if (!body->signal[c]) continue;
-    at[c] += body->factor[c] * mps_signal_displacement(body->signal[c], body->time);
-    rate[c] = body->factor[c] * mps_signal_velocity(body->signal[c], body->time);
+/* A component of the motion that a signal (NULL: none) and its factor prescribe at time t. */
+static mps_status find_course(const mps_body *body, mpsi_signal_use use, mps_signal *signal,
+                              double factor, double t, mpsi_course *out) {
+  const int c = use.component;
+  mpsi_signal_motion m;
+  const mps_status status = mpsi_signal_evaluate(signal, use, t, &m);
+  if (status != MPS_OK) return status;
+  const double first = c < 3 ? body->def.position[c] : body->def.rotation[c - 3];
+  out->at[c] = signal ? first + factor * m.u : first;
+  out->rate[c] = signal ? factor * m.v : 0.0;
+  return MPS_OK;
+}
+
+/* All components but `besides` (-1: all). */
+static mps_status find_courses(const mps_body *body, mpsi_signal_use use, int besides, double t,
+                               mpsi_course *out) {
+  mps_status status = MPS_OK;
+  for (int c = 0; c < MPSI_MOTIONS && status == MPS_OK; c++) {
+    use.component = c;
+    if (c != besides) status = find_course(body, use, body->signal[c], body->factor[c], t, out);
   }
+  return status;
+}
+
+static mpsi_signal_use used_by(const mps_body *body, const char *function) {
+  return (mpsi_signal_use){body->context, function, "body", -1, 0};
+}
+
+/* Puts the body where its signals are. */
+static void follow(mps_body *body, const mpsi_course *course) {
+  const double *at = course->at, *rate = course->rate;
   mpsi_pose *pose = &body->pose;
   body->outside = false;
   for (int c = 0; c < 3; c++) pose->x[c] = at[c], pose->v[c] = rate[c];
@@ -59,7 +82,9 @@ static void find_spin(const mps_body *body, double *spin) {
 void mpsi_body_begin(mps_body *body) {
   const mps_body_def *def = &body->def;
   if (def->motion == MPS_BODY_MOTION_PRESCRIBED) {
-    follow(body);
+    mpsi_course rest = {{0}, {0}}; /* without signals */
+    for (int c = 0; c < 3; c++) rest.at[c] = def->position[c], rest.at[3 + c] = def->rotation[c];
+    follow(body, &rest);
     return;
   }
   mpsi_pose *pose = &body->pose;
@@ -155,13 +180,20 @@ static void spin_in_space(mps_body *body, const mpsi_load *contact, double dt) {
   body->dissipated += energy - 0.5 * mpsi_dot3(body->angular, body->pose.spin);
 }
 
+mps_status mpsi_body_look_ahead(mps_body *body, const char *function, int32_t number, double dt) {
+  mpsi_signal_use use = used_by(body, function);
+  use.number = number;
+  if (body->def.motion != MPS_BODY_MOTION_PRESCRIBED || body->outside) return MPS_OK;
+  return find_courses(body, use, -1, body->time + dt, &body->ahead);
+}
+
 void mpsi_body_advance(mps_body *body, double dt) {
   body->time += dt;
   if (body->def.motion == MPS_BODY_MOTION_PRESCRIBED) {
     if (body->outside)
       coast(body, dt);
     else
-      follow(body);
+      follow(body, &body->ahead);
     return;
   }
   mpsi_load contact = body->pending;
@@ -183,8 +215,9 @@ mps_status mps_body_advance(mps_body *body, double dt) {
     return mpsi_fail(body->context, __func__, MPS_ERROR_STATE,
                      "a solver moves this body: end that contact first, make it with mover 1 "
                      "(other), or let the body no longer float");
-  mpsi_body_advance(body, dt);
-  return MPS_OK;
+  const mps_status status = mpsi_body_look_ahead(body, __func__, -1, dt);
+  if (status == MPS_OK) mpsi_body_advance(body, dt);
+  return status;
 }
 
 mps_status mps_body_drive(mps_body *body, int32_t component, mps_signal *signal, double factor) {
@@ -201,11 +234,17 @@ mps_status mps_body_drive(mps_body *body, int32_t component, mps_signal *signal,
   if (body->def.motion != MPS_BODY_MOTION_PRESCRIBED)
     return mpsi_fail(body->context, __func__, MPS_ERROR_STATE,
                      "a free body follows no signal: use mps_body_load");
+  mpsi_signal_use use = used_by(body, __func__);
+  mpsi_course course;
+  mps_status status = find_courses(body, use, component, body->time, &course);
+  use.component = component;
+  if (status == MPS_OK) status = find_course(body, use, signal, factor, body->time, &course);
+  if (status != MPS_OK) return status;
   mps_signal *old = body->signal[component];
   body->signal[component] = signal ? mpsi_signal_retain(signal) : NULL;
   body->factor[component] = factor;
   mps_signal_destroy(&old);
-  follow(body);
+  follow(body, &course);
   return MPS_OK;
 }
 
@@ -259,8 +298,10 @@ mps_status mps_body_set_motion(mps_body *body, const mps_body_motion *user_motio
     return mpsi_fail(body->context, __func__, MPS_ERROR_ARGUMENT,
                      "motion is NULL, and a free body has no signals to go back to");
   if (!user_motion) {
-    follow(body);
-    return MPS_OK;
+    mpsi_course course;
+    const mps_status status = find_courses(body, used_by(body, __func__), -1, body->time, &course);
+    if (status == MPS_OK) follow(body, &course);
+    return status;
   }
   mps_status status = MPSI_DEF_READ(body->context, __func__, mps_body_motion, user_motion, &motion);
   if (status == MPS_OK) status = check_motion(body, __func__, &motion);

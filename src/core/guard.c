@@ -26,22 +26,33 @@ void mpsi_guard_enter(mpsi_guard *guard, mps_context *context, const char *callb
   guard->failures = context->failures;
 }
 
+mpsi_guard mpsi_guard_close(mpsi_guard *guard, mps_context *context, const char *callback) {
+  const mpsi_guard former = *guard;
+  *guard = (mpsi_guard){.callback = callback, .failures = context->failures};
+  return former;
+}
+
 void mpsi_guard_end(mpsi_guard *guard) {
   guard->callback = guard->outer;
   guard->outer = NULL;
+}
+
+mps_status mpsi_callback_status(mps_context *context, const char *function, const char *callback,
+                                int64_t failures, mps_status status) {
+  if (status == MPS_OK) return MPS_OK;
+  const mps_error *error = &context->error;
+  char reason[380] = "";
+  if (context->failures != failures && error->status == status)
+    snprintf(reason, sizeof reason, ": %.63s: %.300s", error->function, error->message);
+  const bool known = status > MPS_OK && status <= MPS_ERROR_INTERNAL;
+  return mpsi_fail(context, function, known ? status : MPS_ERROR_ARGUMENT,
+                   "%s returned status %d (%s)%s", callback, (int)status, mps_status_text(status),
+                   reason);
 }
 
 mps_status mpsi_guard_leave(mpsi_guard *guard, mps_context *context, const char *function,
                             mps_status status) {
   const char *callback = guard->callback;
   mpsi_guard_end(guard);
-  if (status == MPS_OK) return MPS_OK;
-  const mps_error *error = &context->error;
-  char reason[380] = "";
-  if (context->failures != guard->failures && error->status == status)
-    snprintf(reason, sizeof reason, ": %.63s: %.300s", error->function, error->message);
-  const bool known = status > MPS_OK && status <= MPS_ERROR_INTERNAL;
-  return mpsi_fail(context, function, known ? status : MPS_ERROR_ARGUMENT,
-                   "%s returned status %d (%s)%s", callback, (int)status, mps_status_text(status),
-                   reason);
+  return mpsi_callback_status(context, function, callback, guard->failures, status);
 }

@@ -29,10 +29,16 @@ void mpsi_guard_enter(mpsi_guard *guard, mps_context *context, const char *callb
  * Returns `status`, or MPS_ERROR_ARGUMENT where that is no status at all. */
 mps_status mpsi_guard_leave(mpsi_guard *guard, mps_context *context, const char *function,
                             mps_status status);
+/* The same of a callback without a guard, before which mpsi_failures(context) was `failures`. */
+mps_status mpsi_callback_status(mps_context *context, const char *function, const char *callback,
+                                int64_t failures, mps_status status);
 /* The same for what needs a whole state but changes none, such as a snapshot: allowed in a callback
  * that comes between two steps of a run, and not from a hook, signal or law within a step. */
 mps_status mpsi_guard_check_between(const mpsi_guard *guard, mps_context *context,
                                     const char *function);
+/* While something calls back from wherever it may be: returns the guard as it was, to be put back.
+ */
+mpsi_guard mpsi_guard_close(mpsi_guard *guard, mps_context *context, const char *callback);
 /* Ends a guarded call that answers for its status itself. */
 void mpsi_guard_end(mpsi_guard *guard);
 

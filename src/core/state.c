@@ -126,6 +126,11 @@ mps_status mpsi_state_rollback(const mpsi_state_of *of, const char *function,
   return mpsi_state_put(of, function, snapshot, "the snapshot", MPS_ERROR_STATE);
 }
 
+mps_status mpsi_state_ready_back(const mpsi_state_of *of, const char *function,
+                                 const mps_snapshot *snapshot, mpsi_state_prepared *out) {
+  return mpsi_state_prepare(of, function, snapshot, "the snapshot", MPS_ERROR_STATE, out);
+}
+
 /* ---- going back ---------------------------------------------------------------------------- */
 
 /* One call. */
@@ -200,11 +205,12 @@ static bool reserve(const mpsi_state *s, const mps_snapshot *from) {
   return true;
 }
 
-mps_status mpsi_state_put(const mpsi_state_of *of, const char *function, const mps_snapshot *from,
-                          const char *source, mps_status disagreement) {
+mps_status mpsi_state_prepare(const mpsi_state_of *of, const char *function,
+                              const mps_snapshot *from, const char *source, mps_status disagreement,
+                              mpsi_state_prepared *out) {
   const way_back w = {of, function, source, disagreement};
-  void *scratch = NULL;
   mpsi_state s;
+  *out = (mpsi_state_prepared){.from = from};
   mps_status status = list(of, function, &s);
   const bool listed = status == MPS_OK;
   if (listed) status = match(&w, &s, from);
@@ -216,21 +222,37 @@ mps_status mpsi_state_put(const mpsi_state_of *of, const char *function, const m
                        "could not allocate what going back to %s needs", source);
   const int32_t fields = of->particles ? mps_particles_field_count(of->particles) : 0;
   if (status == MPS_OK && of->particles)
-    status = mpsi_particles_prepare_state(of->particles, function, from, &scratch);
+    status = mpsi_particles_prepare_state(of->particles, function, from, &out->scratch);
   const bool prepared = status == MPS_OK;
   if (status == MPS_OK && of->prepare)
     status = of->prepare(of->solver, function, from, source, disagreement);
   if (of->settle) status = of->settle(of->solver, function, status);
   if (prepared && status != MPS_OK && of->particles) {
-    mpsi_particles_drop_prepared(of->particles, scratch);
+    mpsi_particles_drop_prepared(of->particles, out->scratch);
     mpsi_particles_drop_fields(of->particles, fields);
   }
-  if (status == MPS_OK) { /* from here on nothing fails */
-    if (of->particles) mpsi_particles_put_state(of->particles, from, scratch);
-    if (of->bind) of->bind(of->solver);
-    for (int32_t k = 0; k < s.count; k++) mpsi_state_write_item(&s.item[k], value_of(from, &s, k));
-    if (of->after) of->after(of->solver);
-  }
-  if (listed) mpsi_free(of->context, s.item);
+  if (listed && status != MPS_OK) mpsi_free(of->context, s.item);
+  if (status != MPS_OK) return status;
+  out->item = s.item;
+  out->count = s.count;
+  return MPS_OK;
+}
+
+void mpsi_state_go(const mpsi_state_of *of, mpsi_state_prepared *prepared) {
+  const mps_snapshot *from = prepared->from;
+  const mpsi_state s = {.item = prepared->item, .count = prepared->count};
+  if (of->particles) mpsi_particles_put_state(of->particles, from, prepared->scratch);
+  if (of->bind) of->bind(of->solver);
+  for (int32_t k = 0; k < s.count; k++) mpsi_state_write_item(&s.item[k], value_of(from, &s, k));
+  if (of->after) of->after(of->solver);
+  mpsi_free(of->context, prepared->item);
+  *prepared = (mpsi_state_prepared){.item = NULL};
+}
+
+mps_status mpsi_state_put(const mpsi_state_of *of, const char *function, const mps_snapshot *from,
+                          const char *source, mps_status disagreement) {
+  mpsi_state_prepared prepared;
+  const mps_status status = mpsi_state_prepare(of, function, from, source, disagreement, &prepared);
+  if (status == MPS_OK) mpsi_state_go(of, &prepared);
   return status;
 }

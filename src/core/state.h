@@ -144,6 +144,18 @@ mps_status mpsi_state_snapshot(const mpsi_state_of *of, const char *function,
  * MPS_ERROR_STATE: something that must agree is not as it was. On an error nothing has changed. */
 mps_status mpsi_state_rollback(const mpsi_state_of *of, const char *function,
                                const mps_snapshot *snapshot);
+/* The two phases of a rollback, for a solver that looks ahead and goes back: all that can fail
+ * comes before what it does in between. mpsi_state_ready_back: as mpsi_state_rollback, without
+ * going; mpsi_state_go goes, once, and cannot fail. */
+typedef struct mpsi_state_prepared {
+  const mps_snapshot *from;
+  struct mpsi_state_item *item; /* the list */
+  int32_t count;
+  void *scratch;
+} mpsi_state_prepared;
+mps_status mpsi_state_ready_back(const mpsi_state_of *of, const char *function,
+                                 const mps_snapshot *snapshot, mpsi_state_prepared *out);
+void mpsi_state_go(const mpsi_state_of *of, mpsi_state_prepared *prepared);
 /* Whether the solver can go back to other particles than the set has. */
 static inline bool mpsi_state_any_particles(const mpsi_state_of *of) {
   return of->make_room || of->prepare;
@@ -195,8 +207,11 @@ mps_status mpsi_state_get(const mpsi_state_of *of, const char *function, mps_sna
 /* Does what must agree agree? `source` and `status` are those of the following. */
 mps_status mpsi_state_agree(const mpsi_state_of *of, const char *function, const mps_snapshot *from,
                             const char *source, mps_status status);
-/* Both phases. `source` names where the values come from ("'run.h5'", "the snapshot"), `status` is
- * that of a disagreement. Fields that the set lacks are added. */
+/* The first phase, and both. `source` names where the values come from ("'run.h5'", "the
+ * snapshot"), `status` is that of a disagreement. Fields that the set lacks are added. */
+mps_status mpsi_state_prepare(const mpsi_state_of *of, const char *function,
+                              const mps_snapshot *from, const char *source, mps_status status,
+                              mpsi_state_prepared *out);
 mps_status mpsi_state_put(const mpsi_state_of *of, const char *function, const mps_snapshot *from,
                           const char *source, mps_status status);
 

@@ -23,6 +23,7 @@ mps_status mpsi_dynamics_begin(mps_dynamics *dynamics, const char *function, dou
   }
   dynamics->diverged = dynamics->begun = dynamics->no_rate = false;
   dynamics->rewritten = NULL;
+  dynamics->begins = false;
   memset(&dynamics->works, 0, sizeof dynamics->works);
   for (int32_t k = 0; k < dynamics->boundary_room; k++) {
     mpsi_dynamics_boundary *b = dynamics->boundary[k];

@@ -286,13 +286,13 @@ void mpsi_dynamics_use_lists(mps_dynamics *dynamics, lists *room) {
 }
 
 /* Where the signals of a driven boundary are at time t. */
-static mps_status ask(mps_dynamics *dynamics, const char *function, mpsi_dynamics_boundary *b,
-                      double t) {
-  if (b->kind != MPS_DYNAMICS_BOUNDARY_DRIVEN) return MPS_OK;
+static mps_status evaluate(mps_dynamics *dynamics, const char *function, int32_t number,
+                           mpsi_dynamics_boundary *b, double t) {
+  if (!b || b->kind != MPS_DYNAMICS_BOUNDARY_DRIVEN) return MPS_OK;
   for (int c = 0; c < 2; c++) {
     mpsi_signal_motion at;
-    const mps_status status =
-        mpsi_signal_at(b->part.signal[c], dynamics->context, function, t, &at);
+    const mpsi_signal_use use = {dynamics->context, function, "boundary", number, c};
+    const mps_status status = mpsi_signal_evaluate(b->part.signal[c], use, t, &at);
     if (status != MPS_OK) return status;
     b->reach[c] = b->part.factor[c] * at.u;
     b->speed[c] = b->part.factor[c] * at.v;
@@ -310,8 +310,7 @@ mps_status mpsi_dynamics_list_boundaries(mps_dynamics *dynamics, const char *fun
 mps_status mpsi_dynamics_take_bounds(mps_dynamics *dynamics, const char *function) {
   const double now = mps_dynamics_time(dynamics);
   for (int32_t k = 0; k < dynamics->boundary_room; k++) {
-    const mps_status status =
-        dynamics->boundary[k] ? ask(dynamics, function, dynamics->boundary[k], now) : MPS_OK;
+    const mps_status status = evaluate(dynamics, function, k, dynamics->boundary[k], now);
     if (status != MPS_OK) return status;
   }
   const mpsi_dynamics_state *s = &dynamics->state;
@@ -338,9 +337,8 @@ mps_status mpsi_dynamics_take_bounds(mps_dynamics *dynamics, const char *functio
 static mps_status exchange(mps_dynamics *dynamics, const char *function, int32_t number,
                            mpsi_dynamics_boundary **boundary) {
   mpsi_dynamics_boundary *former = dynamics->boundary[number];
-  mps_status status = MPS_OK;
   lists l = {0};
-  if (*boundary) status = ask(dynamics, function, *boundary, mps_dynamics_time(dynamics));
+  mps_status status = evaluate(dynamics, function, number, *boundary, mps_dynamics_time(dynamics));
   if (status == MPS_OK && !mpsi_dynamics_reserve_accounts(dynamics))
     status = mpsi_fail_memory(dynamics->context, function, (size_t)dynamics->count * 24);
   dynamics->boundary[number] = *boundary;

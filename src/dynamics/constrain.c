@@ -32,10 +32,10 @@ mps_status mpsi_dynamics_ask_signals(mps_dynamics *dynamics, const char *functio
       mpsi_signal_motion start, end;
       const double factor = b->part.factor[c];
       if (!b->part.signal[c]) continue;
-      mps_status status =
-          mpsi_signal_at(b->part.signal[c], dynamics->context, function, now, &start);
+      const mpsi_signal_use use = {dynamics->context, function, "boundary", k, c};
+      mps_status status = mpsi_signal_evaluate(b->part.signal[c], use, now, &start);
       if (status == MPS_OK && b->kind == MPS_DYNAMICS_BOUNDARY_DRIVEN) {
-        status = mpsi_signal_at(b->part.signal[c], dynamics->context, function, then, &end);
+        status = mpsi_signal_evaluate(b->part.signal[c], use, then, &end);
         if (status != MPS_OK) return status;
         b->reach[c] = factor * end.u;
         b->speed[c] = factor * end.v;

@@ -189,6 +189,7 @@ struct mps_dynamics {
   mpsi_guard guard;
   bool unread;           /* fields of the ground have been edited, and do not go together so far */
   bool cautious;         /* a rank has a signal that may refuse: ranks agree before each step */
+  bool begins;           /* a rank's motion has been written, which the next step begins from */
   const char *rewritten; /* field of the motion that the caller has written, or NULL */
   const char *broken;    /* field that nobody may write and somebody has, or NULL */
   bool have_limit;
@@ -315,8 +316,11 @@ mps_status mpsi_dynamics_read_ground(mps_dynamics *dynamics, const char *functio
 /* The holder's commit: a field has been edited. */
 mps_status mpsi_dynamics_commit(void *self, const char *function, const char *field,
                                 const double *former);
-/* Before a step or a look at the state: takes up what has been edited, or says why it cannot.
- * `status` is this rank's so far. */
+/* Before a step: takes up the ground that has been edited, and finds whether the motion has been
+ * (begins), or says why neither can be. `status` is this rank's so far. */
+mps_status mpsi_dynamics_take_ground(mps_dynamics *dynamics, const char *function,
+                                     mps_status status);
+/* Before a look at the state: both. */
 mps_status mpsi_dynamics_take_edits(mps_dynamics *dynamics, const char *function,
                                     mps_status status);
 
@@ -328,14 +332,17 @@ mps_status mpsi_dynamics_begin(mps_dynamics *dynamics, const char *function, dou
 void mpsi_dynamics_publish(mps_dynamics *dynamics);
 /* Chooses dt where the definition left it open, and warns of one above the limit. */
 mps_status mpsi_dynamics_settle_dt(mps_dynamics *dynamics, const char *function);
-/* run.c: before steps: takes up edits and makes room for what they count. */
+/* run.c: before steps: takes up the ground and makes room for what the steps count. */
 mps_status mpsi_dynamics_take_up(mps_dynamics *dynamics, const char *function);
-/* run.c: MPS_ERROR_STATE when a call is under way or the run has diverged; takes up edits and finds
- * dt if need be. */
+/* run.c: MPS_ERROR_STATE when a call is under way or the run has diverged; takes up the ground and
+ * finds dt if need be. */
 mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function);
 
 /* ---- step.c ---- */
 
+/* Evaluates all signals for the next step, of `length`: an error has changed nothing, and is that
+ * of all ranks. */
+mps_status mpsi_dynamics_look_ahead(mps_dynamics *dynamics, const char *function, double length);
 /* Takes `count` steps of `length`; the last writes accelerations when `output`. On an error of a
  * signal the step has not happened. */
 mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, int64_t count,

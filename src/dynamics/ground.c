@@ -242,8 +242,8 @@ static bool has_refusing_signal(const mps_dynamics *dynamics) {
   return false;
 }
 
-mps_status mpsi_dynamics_take_edits(mps_dynamics *dynamics, const char *function,
-                                    mps_status status) {
+mps_status mpsi_dynamics_take_ground(mps_dynamics *dynamics, const char *function,
+                                     mps_status status) {
   double edited[3] = {dynamics->unread, dynamics->rewritten != NULL, has_refusing_signal(dynamics)};
   if (status != MPS_OK)
     ; /* as the caller has found it */
@@ -261,8 +261,15 @@ mps_status mpsi_dynamics_take_edits(mps_dynamics *dynamics, const char *function
   status = mpsi_domain_settle_max(dynamics->domain, function, status, 3, edited);
   if (status == MPS_OK) dynamics->cautious = edited[2] != 0.0;
   if (status == MPS_OK && edited[0] != 0.0) status = mpsi_dynamics_read_ground(dynamics, function);
-  if (status == MPS_OK) dynamics->unread = false;
-  if (status == MPS_OK && edited[1] != 0.0)
-    status = mpsi_dynamics_begin(dynamics, function, mps_dynamics_time(dynamics));
-  return status;
+  if (status != MPS_OK) return status;
+  dynamics->unread = false;
+  dynamics->begins = edited[1] != 0.0;
+  return MPS_OK;
+}
+
+mps_status mpsi_dynamics_take_edits(mps_dynamics *dynamics, const char *function,
+                                    mps_status status) {
+  status = mpsi_dynamics_take_ground(dynamics, function, status);
+  if (status != MPS_OK || !dynamics->begins) return status;
+  return mpsi_dynamics_begin(dynamics, function, mps_dynamics_time(dynamics));
 }

@@ -183,8 +183,8 @@ mps_status mpsi_dynamics_ask_loads(mps_dynamics *dynamics, const char *function,
     for (int c = 0; load && c < 2; c++) {
       mpsi_signal_motion at;
       if (!load->part.signal[c]) continue;
-      const mps_status status =
-          mpsi_signal_at(load->part.signal[c], dynamics->context, function, now, &at);
+      const mpsi_signal_use use = {dynamics->context, function, "load", k, c};
+      const mps_status status = mpsi_signal_evaluate(load->part.signal[c], use, now, &at);
       if (status != MPS_OK) return status;
       const double value = load->part.factor[c] * at.u;
       if (value != load->now[c]) dynamics->forces_stale = true;

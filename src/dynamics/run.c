@@ -13,7 +13,16 @@ mps_status mpsi_dynamics_take_up(mps_dynamics *dynamics, const char *function) {
   if (status == MPS_OK && mpsi_particles_column(dynamics->particles, "external_force", 0) &&
       !mpsi_dynamics_reserve_accounts(dynamics))
     status = mpsi_fail_memory(dynamics->context, function, (size_t)dynamics->count * 24);
-  return mpsi_dynamics_take_edits(dynamics, function, status);
+  return mpsi_dynamics_take_ground(dynamics, function, status);
+}
+
+/* Before the first step of `length`: the motion that the caller has written, if the signals let
+ * that step be made. */
+static mps_status take_motion(mps_dynamics *dynamics, const char *function, double length) {
+  if (!dynamics->begins) return MPS_OK;
+  const mps_status status = mpsi_dynamics_look_ahead(dynamics, function, length);
+  if (status != MPS_OK) return status;
+  return mpsi_dynamics_begin(dynamics, function, mps_dynamics_time(dynamics));
 }
 
 mps_status mpsi_dynamics_ready(mps_dynamics *dynamics, const char *function) {
@@ -66,6 +75,7 @@ mps_status mps_dynamics_step(mps_dynamics *dynamics, int64_t count) {
   const int64_t prompt = prompt_steps(dynamics);
   mpsi_guard_enter(&dynamics->guard, dynamics->context, "mps_dynamics_step");
   status = begin_steps(dynamics, __func__, count);
+  if (status == MPS_OK) status = take_motion(dynamics, __func__, dynamics->dt);
   for (int64_t done = 0; status == MPS_OK && done < count;) {
     const int64_t n = count - done < prompt ? count - done : prompt;
     if (done > 0) status = cancelled(dynamics, __func__);
@@ -182,11 +192,12 @@ mps_status mps_dynamics_run(mps_dynamics *dynamics, double t_end, int64_t every,
   r.report = r.total / 100 > 0 ? r.total / 100 : 1;
   if (r.report > prompt_steps(dynamics)) r.report = prompt_steps(dynamics);
   mpsi_guard_enter(&dynamics->guard, context, "mps_dynamics_run");
-  if (r.total == 0) {
+  status = take_motion(dynamics, __func__, r.length);
+  if (status == MPS_OK && r.total == 0) {
     dynamics->base_time = t_end;
     dynamics->base_step = dynamics->steps;
   }
-  if (callback) status = ask(dynamics, __func__, callback, user);
+  if (status == MPS_OK && callback) status = ask(dynamics, __func__, callback, user);
   if (status == MPS_OK) status = march(&r);
   mpsi_guard_end(&dynamics->guard);
   return status;

@@ -160,6 +160,7 @@ static void after(void *solver) {
   }
   dynamics->unread = false;
   dynamics->rewritten = dynamics->broken = NULL;
+  dynamics->begins = false;
   dynamics->kernels->trig[dynamics->def.rotation](s, 0, dynamics->count);
   for (int64_t k = 0; k < dynamics->bounds; k++) {
     mpsi_dynamics_bound *q = &dynamics->bound[k];
@@ -252,8 +253,11 @@ static mps_status look_ahead(mps_dynamics *dynamics, const char *function, doubl
   const size_t bytes = (size_t)dynamics->count * sizeof(double);
   const mpsi_state_of of = state_of(dynamics);
   const double limit = dynamics->def.divergence;
+  mpsi_state_prepared back;
   mps_status status = mpsi_domain_settle(dynamics->domain, function,
                                          mpsi_state_snapshot(&of, function, &dynamics->present));
+  if (status == MPS_OK) /* what going back needs; agreed upon by all ranks */
+    status = mpsi_state_ready_back(&of, function, dynamics->present, &back);
   if (status != MPS_OK) return status;
   dynamics->def.divergence = INFINITY; /* that is for the step itself to find */
   mpsi_guard_enter(&dynamics->guard, dynamics->context, function);
@@ -263,9 +267,9 @@ static mps_status look_ahead(mps_dynamics *dynamics, const char *function, doubl
   memcpy(kept, dynamics->state.ax, bytes);
   memcpy(kept + dynamics->count, dynamics->state.ay, bytes);
   memcpy(kept + 2 * dynamics->count, dynamics->state.p, bytes);
-  const mps_status back =
-      settle_back(dynamics, function, mpsi_state_rollback(&of, function, dynamics->present));
-  return status == MPS_OK || status == MPS_ERROR_DIVERGED ? back : status;
+  mpsi_state_go(&of, &back);
+  const mps_status settled = settle_back(dynamics, function, MPS_OK);
+  return status == MPS_OK || status == MPS_ERROR_DIVERGED ? settled : status;
 }
 
 mps_status mps_dynamics_refresh(mps_dynamics *dynamics) {
@@ -273,7 +277,9 @@ mps_status mps_dynamics_refresh(mps_dynamics *dynamics) {
   mps_status status = mpsi_dynamics_ready(dynamics, __func__);
   if (status != MPS_OK) return status;
   double *kept = mpsi_alloc(dynamics->context, 3 * dynamics->count, sizeof *kept);
-  if (!kept)
+  if (dynamics->begins)
+    status = mpsi_dynamics_begin(dynamics, __func__, mps_dynamics_time(dynamics));
+  if (status == MPS_OK && !kept)
     status =
         mpsi_fail_memory(dynamics->context, __func__, (size_t)dynamics->count * 3 * sizeof *kept);
   status = mpsi_domain_settle(dynamics->domain, __func__, status);

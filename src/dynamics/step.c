@@ -262,6 +262,22 @@ static void take_step(work *w, bool output, bool *diverged) {
   *diverged = diverges(dynamics, w->step.limit2);
 }
 
+/* What the signals say of the next step, of `length`. */
+static mps_status evaluate_signals(mps_dynamics *dynamics, const char *function, double length) {
+  const double now = mps_dynamics_time(dynamics);
+  const double then =
+      length == dynamics->length
+          ? dynamics->base_time + (double)(dynamics->steps + 1 - dynamics->base_step) * length
+          : now + length;
+  const mps_status status = mpsi_dynamics_ask_signals(dynamics, function, now, then);
+  return status == MPS_OK ? mpsi_dynamics_ask_loads(dynamics, function, now) : status;
+}
+
+mps_status mpsi_dynamics_look_ahead(mps_dynamics *dynamics, const char *function, double length) {
+  const mps_status status = evaluate_signals(dynamics, function, length);
+  return dynamics->cautious ? mpsi_domain_settle(dynamics->domain, function, status) : status;
+}
+
 mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, int64_t count,
                                  double length, bool output) {
   const double limit = dynamics->def.divergence;
@@ -282,18 +298,16 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
             .pass2 = dynamics->kernels->pass2[removal][dynamics->damping][integrator],
             .grain = blocks > 0 ? (blocks + units - 1) / units : 1};
   if (count == 0) return MPS_OK;
+  mps_status status = mpsi_dynamics_look_ahead(dynamics, function, length);
+  if (status != MPS_OK) return status;
   set_length(dynamics, length);
   if (dynamics->fresh) start_history(dynamics, length);
-  mps_status status = begin_budget(dynamics, function);
+  status = begin_budget(dynamics, function);
   if (status != MPS_OK) return status;
   bool diverged = false; /* the step before */
   w.step.drag = watch ? dynamics->drag : NULL;
   for (int64_t k = 0; k < count; k++) {
-    const double now = mps_dynamics_time(dynamics);
-    const double then =
-        dynamics->base_time + (double)(dynamics->steps + 1 - dynamics->base_step) * length;
-    status = mpsi_dynamics_ask_signals(dynamics, function, now, then);
-    if (status == MPS_OK) status = mpsi_dynamics_ask_loads(dynamics, function, now);
+    if (k > 0) status = evaluate_signals(dynamics, function, length);
     status = pass_all(&w, function, status, &diverged);
     if (status == MPS_ERROR_DIVERGED) return show_diverged(&w, function, status);
     if (status != MPS_OK) return status;

@@ -93,6 +93,18 @@ static mps_status check_place(mps_fluid *f, const char *function, const mpsi_flu
   return MPS_OK;
 }
 
+/* Where the signal (NULL: none) is now counts as a displacement of 0. */
+static mps_status start_motion(mps_fluid *f, const char *function, const mps_signal *signal,
+                               int32_t number, mpsi_fluid_wall *w) {
+  const mpsi_signal_use use = {f->context, function, "boundary", number, -1};
+  const mpsi_guard outer = mpsi_guard_close(&f->guard, f->context, "a signal of the solver");
+  mpsi_signal_motion m;
+  const mps_status status = mpsi_signal_evaluate(signal, use, f->time, &m);
+  f->guard = outer;
+  if (status == MPS_OK) w->origin = m.u, w->rate = w->factor * m.v;
+  return status;
+}
+
 /* Checks a definition and makes the wall of it that is to have `number`. */
 static mps_status make_wall(mps_fluid *f, const char *function,
                             const mps_fluid_boundary_def *user_def, int32_t number,
@@ -106,16 +118,14 @@ static mps_status make_wall(mps_fluid *f, const char *function,
   const bool open = def.kind == MPS_FLUID_BOUNDARY_OPEN;
   mpsi_fluid_wall w = {.used = !open, .open = open, .kind = def.kind, .factor = def.factor};
   for (int c = 0; c < 2; c++) w.at[c] = def.point[c], w.normal[c] = def.normal[c] / length;
-  status = mpsi_fluid_make_motion(f, function, &w, def.node_count, def.nodes);
+  status = start_motion(f, function, def.signal, number, &w);
+  if (status == MPS_OK) status = mpsi_fluid_make_motion(f, function, &w, def.node_count, def.nodes);
   if (status == MPS_OK && !open) status = check_place(f, function, &w, number);
   if (status != MPS_OK) {
     mpsi_fluid_drop_wall(f, &w);
     return status;
   }
-  if (def.signal) {
-    w.signal = mpsi_signal_retain(def.signal);
-    w.origin = mps_signal_displacement(def.signal, f->time);
-  }
+  if (def.signal) w.signal = mpsi_signal_retain(def.signal);
   *out = w;
   return MPS_OK;
 }

@@ -58,6 +58,8 @@ typedef struct mpsi_fluid_wall {
   double at[2], normal[2]; /* m, of the wall without displacement; unit, into the fluid */
   mps_signal *signal;
   double factor, origin; /* origin: the signal's displacement that counts as 0, m */
+  double rate;           /* m/s: factor times the signal's velocity now */
+  double ahead[2];       /* m, m/s: displacement and rate at the end of the step being made */
   int64_t nodes;
   double *node;                 /* m along the wall from `at`, ascending */
   int64_t *order;               /* order[k]: the caller's number of node k */
@@ -292,6 +294,9 @@ mpsi_fluid_weight mpsi_fluid_make_weight(double l0, double re);
 mps_status mpsi_fluid_make_motion(mps_fluid *fluid, const char *function, mpsi_fluid_wall *wall,
                                   int64_t nodes, const double *points);
 void mpsi_fluid_drop_wall(mps_fluid *fluid, mpsi_fluid_wall *wall);
+/* Evaluates the signals of walls for the end of a step of dt; not collective, and nothing has
+ * changed where one refuses. */
+mps_status mpsi_fluid_look_ahead(mps_fluid *fluid, const char *function, double dt);
 void mpsi_fluid_begin_walls(mps_fluid *fluid, double dt); /* next, from signals and callers */
 void mpsi_fluid_end_walls(mps_fluid *fluid);              /* now = next */
 void mpsi_fluid_add_impulses(mps_fluid *fluid);

@@ -232,8 +232,9 @@ static mps_status ask_signals(mps_fluid *f, const char *function, double t, bool
     *any = true;
     for (int c = 0; c < 2; c++) {
       mpsi_signal_motion at = {.u = 1.0};
+      const mpsi_signal_use use = {f->context, function, "load", k, c};
       const mps_status status =
-          g->signal[c] ? mpsi_signal_at(g->signal[c], f->context, function, t, &at) : MPS_OK;
+          g->signal[c] ? mpsi_signal_evaluate(g->signal[c], use, t, &at) : MPS_OK;
       if (status != MPS_OK) return status;
       g->now[c] = g->factor[c] * at.u;
     }

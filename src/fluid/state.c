@@ -14,6 +14,7 @@ static void list_wall(mpsi_state *s, mpsi_fluid_wall *w) {
     mpsi_state_agree_number(s, c ? "normal_y" : "normal_x", w->normal[c]);
   }
   mpsi_state_f64(s, "origin", &w->origin, 1);
+  mpsi_state_f64(s, "rate", &w->rate, 1);
   mpsi_state_agree_integer(s, "nodes", w->nodes);
   mpsi_state_f64(s, "displacement", w->now.s, w->nodes);
   mpsi_state_f64(s, "velocity", w->now.u, w->nodes);

@@ -98,7 +98,9 @@ static void abandon(mps_fluid *f) {
 /* A step is made in three parts. They read and write the cloud; the fields change when all is
  * done. Where one fails, the surroundings are found again when they are asked for. */
 static mps_status begin(mps_fluid *f, const char *function, double dt) {
-  mps_status status = mpsi_fluid_settle(f, function, mpsi_particles_ready(f->particles, function));
+  mps_status status = mpsi_particles_ready(f->particles, function);
+  if (status == MPS_OK) status = mpsi_fluid_look_ahead(f, function, dt);
+  status = mpsi_fluid_settle(f, function, status);
   if (status != MPS_OK) return status;
   f->stage = MPSI_FLUID_BEGUN;
   f->dt = dt;
@@ -174,7 +176,7 @@ double mps_fluid_limit(const mps_fluid *f) {
   for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
     const mpsi_fluid_wall *w = &f->wall[b];
     if (!w->used) continue;
-    double u = w->signal ? fabs(w->factor * mps_signal_velocity(w->signal, f->time)) : 0.0;
+    double u = fabs(w->rate);
     for (int64_t k = 0; k < w->nodes; k++) u = fmax(u, fabs(w->now.u[k]));
     if (u > 0.0) limit = fmin(limit, 0.2 * f->l0 / u);
   }
@@ -268,16 +270,16 @@ mps_status mps_fluid_solve_pressure(mps_fluid *f) {
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_status status = check_stage(f, __func__, MPSI_FLUID_BEGUN);
   if (status != MPS_OK) return status;
-  f->stage = MPSI_FLUID_BEGUN;
   mpsi_guard_enter(&f->guard, f->context, __func__);
-  mpsi_fluid_begin_walls(f, f->dt);
-  status = solve(f, __func__);
-  mpsi_guard_end(&f->guard);
-  if (status != MPS_OK) {
+  status = mpsi_fluid_settle(f, __func__, mpsi_fluid_look_ahead(f, __func__, f->dt));
+  if (status == MPS_OK) {
     f->stage = MPSI_FLUID_BEGUN;
-    return status;
+    mpsi_fluid_begin_walls(f, f->dt);
+    status = solve(f, __func__);
+    f->stage = status == MPS_OK ? MPSI_FLUID_SOLVED : MPSI_FLUID_BEGUN;
   }
-  f->stage = MPSI_FLUID_SOLVED;
+  mpsi_guard_end(&f->guard);
+  if (status != MPS_OK) return status;
   status = mpsi_fluid_load_walls(f, __func__);
   if (status != MPS_OK) f->stage = MPSI_FLUID_BEGUN;
   return status;

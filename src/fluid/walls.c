@@ -9,6 +9,7 @@
  * enters.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "fluid_private.h"
+#include "signal/signal_internal.h"
 
 #include <string.h>
 
@@ -16,8 +17,21 @@
 
 /* ---- motion ---------------------------------------------------------------------------------- */
 
-static double displacement(const mpsi_fluid_wall *w, double t) {
-  return w->signal ? w->factor * (mps_signal_displacement(w->signal, t) - w->origin) : 0.0;
+mps_status mpsi_fluid_look_ahead(mps_fluid *f, const char *function, double dt) {
+  const mpsi_guard outer = mpsi_guard_close(&f->guard, f->context, "a signal of the solver");
+  mps_status status = MPS_OK;
+  for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES && status == MPS_OK; b++) {
+    mpsi_fluid_wall *w = &f->wall[b];
+    const mpsi_signal_use use = {f->context, function, "boundary", b, -1};
+    mpsi_signal_motion m;
+    if (!w->used || !w->signal) continue;
+    status = mpsi_signal_evaluate(w->signal, use, f->time + dt, &m);
+    if (status != MPS_OK) break;
+    w->ahead[0] = w->factor * (m.u - w->origin);
+    w->ahead[1] = w->factor * m.v;
+  }
+  f->guard = outer;
+  return status;
 }
 
 /* Walls that nobody moves go on as they are. */
@@ -27,7 +41,7 @@ void mpsi_fluid_begin_walls(mps_fluid *f, double dt) {
     if (!w->used || w->of_body) continue;
     for (int64_t k = 0; k < w->nodes; k++) {
       if (w->signal) {
-        w->next.s[k] = displacement(w, f->time + dt);
+        w->next.s[k] = w->ahead[0];
         w->next.u[k] = (w->next.s[k] - w->now.s[k]) / dt;
       } else if (!w->given) {
         w->next.u[k] = w->now.u[k];
@@ -47,6 +61,7 @@ void mpsi_fluid_end_walls(mps_fluid *f) {
     mpsi_fluid_wall *w = &f->wall[b];
     if (!w->used || w->of_body) continue;
     memcpy(w->now.s, w->next.s, 3 * (size_t)w->nodes * sizeof *w->now.s);
+    w->rate = w->ahead[1];
     w->given = w->placed = false;
   }
   mpsi_fluid_end_bodies(f);

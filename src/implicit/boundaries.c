@@ -321,7 +321,8 @@ static mps_status ask_signals(mps_elastic *e, const char *function, double t) {
     mpsi_elastic_boundary *b = &e->boundaries[k];
     for (int c = 0; b->used && c < 3; c++) {
       mpsi_signal_motion m;
-      const mps_status status = mpsi_signal_at(b->signal[c], e->context, function, t, &m);
+      const mpsi_signal_use use = {e->context, function, "boundary", k, c};
+      const mps_status status = mpsi_signal_evaluate(b->signal[c], use, t, &m);
       if (status != MPS_OK) return status;
       b->motion[0][c] = b->factor[c] * m.u;
       b->motion[1][c] = b->factor[c] * m.v;

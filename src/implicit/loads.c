@@ -330,7 +330,8 @@ mps_status mpsi_elastic_gather_loads(mps_elastic *e, const char *function, doubl
     for (int c = 0; c < 3; c++) {
       const int s = l->kind == MPS_ELASTIC_LOAD_PRESSURE ? 0 : c;
       mpsi_signal_motion m = {.u = 1.0};
-      if (l->signal[s]) status = mpsi_signal_at(l->signal[s], e->context, function, t, &m);
+      const mpsi_signal_use use = {e->context, function, "load", k, s};
+      if (l->signal[s]) status = mpsi_signal_evaluate(l->signal[s], use, t, &m);
       if (status != MPS_OK) return status;
       scale[c] = l->factor[s] * m.u;
     }

@@ -381,7 +381,7 @@ mps_status mps_elastic_run(mps_elastic *e, double t_end, int64_t every, mps_elas
                        "every is %lld (must be >= 1)",
                        t_end, begin, (long long)every);
   if (status != MPS_OK) return mpsi_elastic_leave(e, status);
-  const int64_t steps = (int64_t)wanted;
+  const int64_t steps = (int64_t)wanted, before = e->motion->steps;
   for (int64_t k = 0; k <= steps && status == MPS_OK; k++) {
     if (k > 0) {
       const double time = k == steps ? t_end : begin + (t_end - begin) * (double)k / (double)steps;
@@ -396,7 +396,8 @@ mps_status mps_elastic_run(mps_elastic *e, double t_end, int64_t every, mps_elas
     status = mpsi_guard_leave(&e->guard, e->context, __func__, callback(user, e));
     if (status != MPS_OK) mpsi_fail_where(e->context, e->motion->steps, -1);
   }
-  return mpsi_elastic_leave(e, finish(e, __func__, status));
+  if (status == MPS_OK || e->motion->steps > before) status = finish(e, __func__, status);
+  return mpsi_elastic_leave(e, status);
 }
 
 double mps_elastic_limit(const mps_elastic *e) {

@@ -4,6 +4,7 @@
 #include "particles.h"
 
 #include "core/retain.h"
+#include "signal/signal_internal.h"
 
 #include <string.h>
 
@@ -33,20 +34,26 @@ static bool has_side(const mps_mpm *mpm, int32_t number) {
   return at > -MPSI_NO_WALL && at < MPSI_NO_WALL;
 }
 
-static mps_status check_motion(mps_mpm *mpm, const char *function,
+static mps_status check_motion(mps_mpm *mpm, const char *function, int32_t number,
                                const mps_mpm_boundary_def *def) {
-  for (int c = 0; c < mpm->dim; c++) {
+  const mpsi_guard outer =
+      mpsi_guard_close(&mpm->run.guard, mpm->context, "a signal of the solver");
+  mps_status status = MPS_OK;
+  for (int c = 0; c < mpm->dim && status == MPS_OK; c++) {
+    const mpsi_signal_use use = {mpm->context, function, "boundary", number, c};
+    mpsi_signal_motion m;
     const double factor = def->factor[c];
-    const double v = def->signal[c] ? mps_signal_velocity(def->signal[c], mpm->run.time) : 0.0;
-    if (!isfinite(factor) || !isfinite(factor * v))
-      return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
-                       "factor[%d] is %g, it and the velocity that it makes must be finite", c,
-                       factor);
+    status = mpsi_signal_evaluate(def->signal[c], use, mpm->run.time, &m);
+    if (status == MPS_OK && (!isfinite(factor) || !isfinite(factor * m.v)))
+      status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                         "factor[%d] is %g, it and the velocity that it makes must be finite", c,
+                         factor);
   }
-  return MPS_OK;
+  mpm->run.guard = outer;
+  return status;
 }
 
-static mps_status check_numbers(mps_mpm *mpm, const char *function,
+static mps_status check_numbers(mps_mpm *mpm, const char *function, int32_t number,
                                 const mps_mpm_boundary_def *def) {
   const bool rubs = def->kind == MPS_MPM_BOUNDARY_FRICTIONAL;
   if (!(def->friction >= 0.0 && def->friction <= ROUGHEST) || (def->friction > 0.0 && !rubs))
@@ -57,7 +64,7 @@ static mps_status check_numbers(mps_mpm *mpm, const char *function,
   if (!isfinite(def->settle) || def->settle < 0.0)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "settle is %g s, must be finite and >= 0", def->settle);
-  return check_motion(mpm, function, def);
+  return check_motion(mpm, function, number, def);
 }
 
 static mps_status check_side(mps_mpm *mpm, const char *function, int32_t number,
@@ -91,7 +98,7 @@ static mps_status check_side(mps_mpm *mpm, const char *function, int32_t number,
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "signal[%d] is given, and a side of kind %d does not hold that component", c,
                        def->kind);
-  return check_numbers(mpm, function, def);
+  return check_numbers(mpm, function, number, def);
 }
 
 /* First or last node of a box that begins or ends at x. */
@@ -125,7 +132,7 @@ static mps_status check_ids(mps_mpm *mpm, const char *function, const mps_mpm_bo
   return MPS_OK;
 }
 
-static mps_status check_prescribed(mps_mpm *mpm, const char *function,
+static mps_status check_prescribed(mps_mpm *mpm, const char *function, int32_t number,
                                    const mps_mpm_boundary_def *def, mpsi_hold *out) {
   const uint32_t all = mpm->dim == 3 ? MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z : MPS_DOF_X | MPS_DOF_Y;
   if (def->kind != MPS_MPM_BOUNDARY_PRESCRIBED)
@@ -135,7 +142,7 @@ static mps_status check_prescribed(mps_mpm *mpm, const char *function,
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                      "dofs is %u, allowed are those or-ed from MPS_DOF_X, MPS_DOF_Y%s", def->dofs,
                      mpm->dim == 3 ? ", MPS_DOF_Z" : "");
-  mps_status status = check_numbers(mpm, function, def);
+  mps_status status = check_numbers(mpm, function, number, def);
   if (status == MPS_OK) status = check_ids(mpm, function, def);
   if (status == MPS_OK && !def->ids) status = find_box(mpm, function, def, out);
   return mpsi_mpm_share_check_ids(mpm, function, status, def->id_count, def->ids);
@@ -217,12 +224,13 @@ void mpsi_mpm_drop_boundaries(mps_mpm *mpm) {
   }
 }
 
-/* A box or list, in place of what `hold` was. */
-static mps_status take_prescribed(mps_mpm *mpm, const char *function,
-                                  const mps_mpm_boundary_def *def, mpsi_hold *hold) {
+/* A box or list, in place of what the boundary was. */
+static mps_status take_prescribed(mps_mpm *mpm, const char *function, int32_t number,
+                                  const mps_mpm_boundary_def *def) {
+  mpsi_hold *hold = &mpm->boundaries.hold[number];
   mpsi_hold made = {.kind = MPS_MPM_BOUNDARY_PRESCRIBED,
                     .dofs = def->dofs ? def->dofs : MPS_DOF_X | MPS_DOF_Y | MPS_DOF_Z};
-  mps_status status = check_prescribed(mpm, function, def, &made);
+  mps_status status = check_prescribed(mpm, function, number, def, &made);
   if (status == MPS_OK && !make_sums(mpm, hold))
     status = mpsi_fail_memory(mpm->context, function, sizeof *hold->sums);
   if (status == MPS_OK && def->ids) {
@@ -272,7 +280,8 @@ static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status s
     memcpy(numbers, list, sizeof list);
     for (int c = 0; c < mpm->dim; c++) {
       numbers[count++] = def->lower[c], numbers[count++] = def->upper[c];
-      numbers[count++] = def->factor[c], numbers[count++] = def->signal[c] != NULL;
+      numbers[count++] = def->factor[c];
+      numbers[count++] = mpsi_mpm_signal_kind(def->signal[c]);
     }
     if (def->ids && def->id_count > 0)
       numbers[count++] = mpsi_domain_short(
@@ -297,7 +306,7 @@ mps_status mps_mpm_add_boundary(mps_mpm *mpm, const mps_mpm_boundary_def *user, 
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
                      "the solver has %d boundaries, the most there can be besides the sides",
                      MPSI_HOLDS - MPSI_SIDES);
-  status = take_prescribed(mpm, __func__, &def, &mpm->boundaries.hold[at]);
+  status = take_prescribed(mpm, __func__, at, &def);
   if (status != MPS_OK) return status;
   mpsi_hold *hold = &mpm->boundaries.hold[at];
   mpsi_exact_merge(&mpm->boundaries.work, &hold->sums->all[MPSI_HOLD_WORK]); /* of a former one */
@@ -333,8 +342,8 @@ mps_status mps_mpm_set_boundary(mps_mpm *mpm, int32_t number, const mps_mpm_boun
   status = compare_ranks(mpm, __func__, status, number, &def);
   if (status != MPS_OK) return status;
   mpsi_hold *hold = &mpm->boundaries.hold[number];
-  if (number >= MPSI_SIDES) return take_prescribed(mpm, __func__, &def, hold);
-  status = check_side(mpm, __func__, number, &def);
+  if (number >= MPSI_SIDES) return take_prescribed(mpm, __func__, number, &def);
+  status = mpsi_mpm_share_settle(mpm, __func__, check_side(mpm, __func__, number, &def));
   if (status != MPS_OK) return status;
   if (hold->kind != def.kind || def.kind == MPS_MPM_BOUNDARY_ABSORBING) {
     place_side(mpm, number, def.kind);

@@ -97,8 +97,6 @@ mps_status mpsi_mpm_put_dashes(mps_mpm *mpm, const char *function, int64_t count
  * kept_room, which has room for them; then, collective, both. */
 void mpsi_mpm_keep_dashes(mps_mpm *mpm, int64_t count, const mpsi_dash *dash);
 mps_status mpsi_mpm_regain_share(mps_mpm *mpm, const char *function);
-/* walls.c: their velocities in the next step of dt. */
-void mpsi_mpm_move_holds(mps_mpm *mpm, double dt);
 /* walls.c: absorbing walls at rest have looked for dt longer. */
 void mpsi_mpm_begin_holds(mps_mpm *mpm, double dt);
 void mpsi_mpm_hold_add_impulse(mpsi_hold *hold, const double *impulse, const double *moment,

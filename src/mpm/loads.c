@@ -35,9 +35,7 @@ static double area_by_spacing(const mps_mpm *mpm, int64_t particle) {
 static void add_traction(mps_mpm *mpm, const mpsi_traction *load) {
   double traction[3] = {0.0};
   for (int c = 0; c < mpm->dim; c++) {
-    const mps_signal *signal = load->signal[c];
-    const double value = signal ? mps_signal_displacement(signal, mpm->run.time) : 1.0;
-    traction[c] = load->factor[c] * value * load->traction[c];
+    traction[c] = load->factor[c] * load->now[c] * load->traction[c];
   }
   for (int64_t k = 0; k < load->count; k++) {
     const int64_t particle = mps_particles_index(mpm->particles, load->id[k]);
@@ -150,7 +148,7 @@ static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status s
   int32_t count = 4;
   for (int c = 0; c < mpm->dim; c++) {
     numbers[count++] = def->traction[c], numbers[count++] = def->factor[c];
-    numbers[count++] = def->signal[c] != NULL;
+    numbers[count++] = mpsi_mpm_signal_kind(def->signal[c]);
   }
   const bool listed = status == MPS_OK && def->ids && def->id_count > 0;
   const size_t bytes = listed ? (size_t)def->id_count * 8 : 0;

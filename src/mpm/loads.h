@@ -12,6 +12,7 @@ typedef struct mpsi_traction {
   double *area; /* NULL: by the spacing */
   double traction[3], factor[3];
   mps_signal *signal[3];
+  double now[3]; /* of the signals, at the beginning of the step being made; 1 without */
 } mpsi_traction;
 
 typedef struct mpsi_loads {

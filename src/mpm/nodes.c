@@ -19,7 +19,6 @@ mps_status mps_grid_get_info_sized(mps_grid *grid, mps_grid_info *out, size_t si
 /* The sums themselves, when all is known. */
 static mps_status sum_nodes(mps_mpm *mpm, const char *function) {
   mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes, .scatter = mpsi_mpm_scatter_springs};
-  mpsi_mpm_move_holds(mpm, mps_mpm_dt(mpm));
   if (mpm->share) {
     pass.scatter = mpsi_mpm_share_scatter;
     pass.arrive = mpsi_mpm_share_receive;
@@ -42,6 +41,7 @@ static mps_status make_sums(mps_mpm *mpm, const char *function, mps_status statu
   }
   if (status != MPS_OK) return status; /* on all ranks */
   mpm->grid.apart = true;
+  status = mpsi_mpm_evaluate_signals(mpm, function, mps_mpm_dt(mpm), false);
   status = mpsi_mpm_update_holds(mpm, function, status);
   status = mpsi_mpm_find_near(mpm, function, status);
   if (status == MPS_OK) status = mpsi_mpm_find_forces(mpm, function);

@@ -45,9 +45,9 @@ static void warn_about_step(mps_mpm *mpm, double dt) {
 }
 
 /* Before anything moves: the particles in order where some have left their blocks, and what is near
- * them. An error loses nothing but the tractions at rest of absorbing sides. */
-static mps_status prepare(mps_mpm *mpm, const char *function) {
-  mps_status status = MPS_OK;
+ * them. An error loses nothing but the tractions at rest of absorbing sides. `status`: what has
+ * become of the call so far here; collective. */
+static mps_status prepare(mps_mpm *mpm, const char *function, mps_status status) {
   const bool renewed = mpm->run.stale || (mpm->share && mpm->share->outdated);
   if (mpm->share) status = mpsi_mpm_share_tidy(mpm, function, status);
   if (status == MPS_OK && mpm->run.stale) {
@@ -65,7 +65,7 @@ static mps_status prepare(mps_mpm *mpm, const char *function) {
   status = mpsi_mpm_clear_bodies(mpm, function, status, &cleared);
   if (cleared) {
     status = mpsi_mpm_tidy(mpm, function);
-    return status == MPS_OK ? prepare(mpm, function) : status;
+    return status == MPS_OK ? prepare(mpm, function, status) : status;
   }
   if (status == MPS_OK) status = mpsi_mpm_find_forces(mpm, function);
   if (status == MPS_OK) status = mpsi_mpm_energy_begin(mpm, function);
@@ -145,7 +145,6 @@ static mps_status move(mps_mpm *mpm, const char *function, double dt, mps_status
                     .update = mpsi_mpm_update_nodes,
                     .between = mpm->contact.bodies > 0 && !mpm->share ? find_masses : NULL,
                     .data = &met};
-  mpsi_mpm_move_holds(mpm, dt); /* signals --> velocities of walls, boxes */
   if (mpm->share) {
     const mps_status status = mpsi_mpm_share_send(mpm, function);
     if (status != MPS_OK) return status;
@@ -172,7 +171,11 @@ static mps_status move(mps_mpm *mpm, const char *function, double dt, mps_status
 
 mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
   const bool goes_on = mpm->share && mpsi_mpm_share_goes_on(mpm);
-  mps_status status = prepare(mpm, function);
+  mps_status status = mpsi_mpm_evaluate_signals(mpm, function, dt, true);
+  if (mpm->share && mpsi_mpm_signals_may_refuse(mpm))
+    status = mpsi_domain_settle(mpm->share->domain, function, status);
+  if (status != MPS_OK && !(mpm->share && mpm->contact.bodies > 0)) return status;
+  status = prepare(mpm, function, status); /* where ranks agree on the signals of bodies */
   if (status == MPS_OK) status = mpsi_mpm_prepare_undo(mpm, function);
   if (mpm->share && !goes_on) status = mpsi_mpm_share_ready(mpm, function, status);
   if (status != MPS_OK) return status;

@@ -294,17 +294,6 @@ void mpsi_mpm_begin_holds(mps_mpm *mpm, double dt) {
     if (mpm->boundaries.hold[k].finds) mpm->boundaries.hold[k].found += dt;
 }
 
-void mpsi_mpm_move_holds(mps_mpm *mpm, double dt) {
-  for (int32_t k = 0; k < MPSI_HOLDS; k++) {
-    mpsi_hold *hold = &mpm->boundaries.hold[k];
-    for (int c = 0; c < mpm->dim; c++)
-      hold->v[c] =
-          hold->signal[c] && !mpm->settling.on
-              ? hold->factor[c] * mps_signal_velocity(hold->signal[c], mpm->run.time + 0.5 * dt)
-              : 0.0;
-  }
-}
-
 /* What the step before has added is part of all. */
 static void begin_sums(mpsi_hold *hold) {
   if (!hold->sums) return;

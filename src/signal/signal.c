@@ -3,8 +3,11 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "signal_private.h"
 
+#include "core/guard.h"
 #include "core/hash.h"
 #include "core/retain.h"
+
+#include <stdio.h>
 
 #define PI 3.14159265358979323846
 #define FREQUENCY_MIN 1e-9 /* Hz: squares and their reciprocals stay far from overflow */
@@ -41,28 +44,51 @@ void mps_signal_destroy(mps_signal **signal) {
 
 /* ---- evaluation ------------------------------------------------------------------------------ */
 
-static mps_status ask_user(const mps_signal *signal, mps_context *context, const char *function,
-                           double t, mpsi_signal_motion *out) {
-  double motion[3] = {NAN, NAN, NAN};
-  const mps_status status = signal->fn(signal->user, t, motion);
-  if (status != MPS_OK)
-    return mpsi_fail(context, function, status,
-                     "the function of a signal (mps_signal_user) refused the motion at t = %g s "
-                     "with status %d",
-                     t, (int)status);
-  if (!isfinite(motion[0]) || !isfinite(motion[1]) || !isfinite(motion[2]))
-    return mpsi_fail(context, function, MPS_ERROR_NUMERIC,
-                     "the function of a signal (mps_signal_user) gave u = %g m, v = %g m/s, "
-                     "a = %g m/s2 at t = %g s: must be finite",
-                     motion[0], motion[1], motion[2], t);
-  *out = (mpsi_signal_motion){motion[0], motion[1], motion[2]};
-  return MPS_OK;
+/* "signal[1] of boundary 3 at t = 2 s" */
+static void describe(mpsi_signal_use use, double t, size_t size, char *out) {
+  char component[24] = "", number[24] = "";
+  if (use.component >= 0) (void)snprintf(component, sizeof component, "[%d]", use.component);
+  if (use.number >= 0) (void)snprintf(number, sizeof number, " %d", use.number);
+  (void)snprintf(out, size, "signal%s of %s%s%s at t = %g s", component,
+                 use.number < 0 ? "the " : "", use.owner, number, t);
 }
 
-mps_status mpsi_signal_at(const mps_signal *signal, mps_context *context, const char *function,
-                          double t, mpsi_signal_motion *out) {
-  if (signal && signal->fn) return ask_user(signal, context, function, t, out);
-  *out = signal ? signal->at(signal, t) : (mpsi_signal_motion){0};
+/* Completes the record of a failure of the signal. */
+static mps_status fail_use(mpsi_signal_use use, mps_status status) {
+  if (use.number >= 0) mpsi_fail_object(use.context, "%s %d", use.owner, use.number);
+  return status;
+}
+
+static mps_status call_user(const mps_signal *signal, mpsi_signal_use use, double t,
+                            mpsi_signal_motion *out) {
+  const int64_t failures = use.context ? mpsi_failures(use.context) : 0;
+  double motion[3] = {NAN, NAN, NAN};
+  const mps_status status = signal->fn(signal->user, t, motion);
+  *out = (mpsi_signal_motion){motion[0], motion[1], motion[2]};
+  if (status == MPS_OK || !use.context) return status;
+  char what[160];
+  describe(use, t, sizeof what, what);
+  return fail_use(use, mpsi_callback_status(use.context, use.function, what, failures, status));
+}
+
+mps_status mpsi_signal_evaluate(const mps_signal *signal, mpsi_signal_use use, double t,
+                                mpsi_signal_motion *out) {
+  mpsi_signal_motion at = {0};
+  mps_status status = MPS_OK;
+  if (signal && signal->fn)
+    status = call_user(signal, use, t, &at);
+  else if (signal)
+    at = signal->at(signal, t);
+  if (status != MPS_OK) return status;
+  if (!isfinite(at.u) || !isfinite(at.v) || !isfinite(at.a)) {
+    char what[160];
+    describe(use, t, sizeof what, what);
+    status = mpsi_fail(use.context, use.function, MPS_ERROR_NUMERIC,
+                       "%s is u = %g m, v = %g m/s, a = %g m/s2: must be finite", what, at.u, at.v,
+                       at.a);
+    return fail_use(use, status);
+  }
+  *out = at;
   return MPS_OK;
 }
 
@@ -78,10 +104,12 @@ uint64_t mpsi_signal_hash(const mps_signal *signal, uint64_t hash) {
   return mpsi_hash(hash, signal->knots, (size_t)signal->count * sizeof *signal->knots);
 }
 
+/* For the caller: NaN is the answer of a signal that has none. */
 static mpsi_signal_motion motion(const mps_signal *signal, double t) {
+  const mpsi_signal_use use = {.owner = "caller", .number = -1, .component = -1};
   mpsi_signal_motion at = {NAN, NAN, NAN};
   if (!signal) return (mpsi_signal_motion){0};
-  if (isfinite(t)) (void)mpsi_signal_at(signal, NULL, NULL, t, &at);
+  if (isfinite(t)) (void)mpsi_signal_evaluate(signal, use, t, &at);
   return at;
 }
 

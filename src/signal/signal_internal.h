@@ -11,11 +11,22 @@ typedef struct mpsi_signal_motion {
   double u, v, a; /* m, m/s, m/s2 */
 } mpsi_signal_motion;
 
-/* Motion at the finite time t (s); of a NULL signal: at rest at 0. When the caller's function
- * refuses or gives what is not finite, that is recorded on `context` for `function`. */
-mps_status mpsi_signal_at(const mps_signal *signal, mps_context *context, const char *function,
-                          double t, mpsi_signal_motion *out);
-/* Whether mpsi_signal_at can fail: the signal is a function of the caller. NULL: no. */
+/* Who evaluates a signal, for the record of a failure: signal[1] of boundary 3. */
+typedef struct mpsi_signal_use {
+  mps_context *context; /* NULL: nothing is recorded */
+  const char *function;
+  const char *owner; /* "boundary" */
+  int32_t number;    /* of the owner; -1: it has none (yet) */
+  int32_t component; /* of the owner's signals; -1: it has but one */
+} mpsi_signal_use;
+
+/* Motion at the finite time t (s); of a NULL signal: at rest at 0. All of the library evaluates
+ * signals here, before the call in which it does has changed anything. The caller's function may
+ * refuse, and a signal may give what is not finite (MPS_ERROR_NUMERIC): both are recorded with the
+ * signal, its owner and the time, and *out stays. */
+mps_status mpsi_signal_evaluate(const mps_signal *signal, mpsi_signal_use use, double t,
+                                mpsi_signal_motion *out);
+/* Whether the caller may refuse: the signal is a function of the caller. NULL: no. */
 bool mpsi_signal_may_fail(const mps_signal *signal);
 /* Goes on with a hash (core/hash.h) over what the signal is made of; of a function of the caller,
  * over that it is one. */
