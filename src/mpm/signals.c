@@ -40,7 +40,7 @@ static mps_status evaluate_boundaries(mps_mpm *mpm, const char *function, double
 
 static mps_status evaluate_bodies(mps_mpm *mpm, const char *function, double dt) {
   for (int32_t b = 0; b < mpm->contact.bodies && !mpm->settling.on; b++) {
-    if (mpm->contact.handle[b]->def.mover != MPS_CONTACT_MOVER_SOLVER) continue;
+    if (!mpm->contact.handle[b]->source.moves) continue;
     const mps_status status = mpsi_body_look_ahead(mpm->contact.body[b], function, b, dt);
     if (status != MPS_OK) return status;
   }
