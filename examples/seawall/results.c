@@ -2,14 +2,29 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "seawall.h"
 
+#include "common/series.h"
+
 #include <math.h>
 #include <stdio.h>
 
-/* The incident height of the Sainflou wave whose crest is at the level of the look. */
-static double sainflou_height(const seawall *w) {
-  const double k = waves_number(w->s.period, w->s.depth);
-  if (w->samples == 0 || !(w->look.at.level > 0.02 * w->s.spacing)) return NAN;
-  return waves_sainflou_height(k, w->s.depth, w->look.at.level);
+/* Heights (m) of the Sainflou wave of the look. */
+typedef struct sainflou {
+  double harmonic; /* twice the incident amplitude: the level's first harmonic at the wall, in the
+                      period before */
+  double level;    /* of a wave whose crest is where the level is: a breaking wave's jet counts */
+  double paddle;   /* of an endless flume behind this piston (Havelock) */
+} sainflou;
+
+static sainflou find_heights(const seawall *w) {
+  const double k = waves_number(w->s.period, w->s.depth), to = w->look.at.t;
+  sainflou h = {NAN, NAN, 2.0 * fabs(w->s.amplitude) * waves_havelock(k, w->s.depth)};
+  if (w->samples == 0) return h;
+  const series level = {w->samples, sizeof *w->sample, &w->sample->t, &w->sample->level};
+  const double least = 0.02 * w->s.spacing;
+  h.harmonic = series_harmonic(&level, w->s.period, to - w->s.period, to, NULL);
+  if (!(h.harmonic > least)) h.harmonic = NAN;
+  if (w->look.at.level > least) h.level = waves_sainflou_height(k, w->s.depth, w->look.at.level);
+  return h;
 }
 
 /* ---- tables ---------------------------------------------------------------------------------- */
@@ -85,12 +100,15 @@ static double find_peak(const seawall *w, double from, double to, double *at) {
   return most;
 }
 
-static void summarise(output *f, const seawall *w, double H) {
+static double crest_force(const seawall *w, double H) {
+  const double k = waves_number(w->s.period, w->s.depth);
+  return isnan(H) ? NAN : waves_sainflou(k, w->s.depth, H, 1);
+}
+
+static void summarise(output *f, const seawall *w, const sainflou *h) {
   const seawall_settings *s = &w->s;
   const seawall_sample *at = &w->look.at;
-  const double k = waves_number(s->period, s->depth);
   const bool crest = at->t >= SEAWALL_LOOK - 0.5 * s->sample;
-  const double paddle = 2.0 * fabs(s->amplitude) * waves_havelock(k, s->depth);
   json_optional(f, "force_at_516", crest ? at->force : NAN);
   json_optional(f, "moment_at_516", crest ? at->moment : NAN);
   json_optional(f, "deflection_at_516", crest ? at->deflection : NAN);
@@ -103,10 +121,12 @@ static void summarise(output *f, const seawall *w, double H) {
   json_optional(f, "force_crest_time", crest ? crest_at : NAN);
   json_optional(f, "force_peak", peak);
   json_optional(f, "force_peak_time", peak_at);
-  json_optional(f, "sainflou_force", isnan(H) ? NAN : waves_sainflou(k, s->depth, H, 1));
-  json_optional(f, "sainflou_height", H);
-  json_number(f, "havelock_height", paddle);
-  json_number(f, "sainflou_force_havelock", waves_sainflou(k, s->depth, paddle, 1));
+  json_optional(f, "sainflou_height", h->harmonic);
+  json_optional(f, "sainflou_force", crest_force(w, h->harmonic));
+  json_optional(f, "sainflou_height_level", h->level);
+  json_optional(f, "sainflou_force_level", crest_force(w, h->level));
+  json_number(f, "havelock_height", h->paddle);
+  json_number(f, "sainflou_force_havelock", crest_force(w, h->paddle));
   json_number(f, "force_still", 0.5 * WAVES_DENSITY * WAVES_G * s->depth * s->depth);
   const seawall_sample *last = &w->sample[w->samples - 1];
   json_number(f, "force_end", last->force);
@@ -115,13 +135,18 @@ static void summarise(output *f, const seawall *w, double H) {
   if (crest)
     printf("t = %.2f s: force %.1f N, moment %.1f N m about the bed, wall moves by %.4g m\n", at->t,
            at->force, at->moment, at->deflection);
-  if (!isnan(H))
-    printf("Sainflou for the level at the wall at t = %.2f s (H = %.3f m): %.1f N\n", at->t, H,
-           waves_sainflou(k, s->depth, H, 1));
+  if (!isnan(h->harmonic))
+    printf("Sainflou for the first harmonic of the level at the wall, the period before t = %.2f s "
+           "(H = %.3f m): %.1f N\n",
+           at->t, h->harmonic, crest_force(w, h->harmonic));
+  if (!isnan(h->level))
+    printf(
+        "Sainflou for the level itself, the jet of a breaking wave included (H = %.3f m): %.1f N\n",
+        h->level, crest_force(w, h->level));
   if (!isnan(peak)) printf("largest force below 10 Hz %.1f N at %.3f s\n", peak, peak_at);
 }
 
-static bool write_summary(app *a, const seawall *w, double H) {
+static bool write_summary(app *a, const seawall *w, const sainflou *h) {
   output f;
   mps_fluid_report report;
   mps_elastic_report factor;
@@ -138,7 +163,7 @@ static bool write_summary(app *a, const seawall *w, double H) {
   json_integer(&f, "particles_structure", mps_particles_count(w->wall.set));
   json_integer(&f, "steps", mps_fluid_steps(w->fluid));
   json_number(&f, "time", mps_fluid_time(w->fluid));
-  summarise(&f, w, H);
+  summarise(&f, w, h);
   json_integer(&f, "collisions", report.collisions);
   json_integer(&f, "limited", report.limited);
   json_integer(&f, "pushed", report.pushed);
@@ -155,9 +180,10 @@ static bool close_series(app *a, seawall *w) {
 }
 
 bool seawall_write(app *a, seawall *w) {
-  const double H = sainflou_height(w);
-  if (!write_force(a, w) || !write_pressure(a, w, H) || !write_wall(a, w) || !write_frames(a, w) ||
-      !close_series(a, w) || !write_summary(a, w, H) || !seawall_draw(a, w, H))
+  const sainflou h = find_heights(w);
+  if (!write_force(a, w) || !write_pressure(a, w, h.harmonic) || !write_wall(a, w) ||
+      !write_frames(a, w) || !close_series(a, w) || !write_summary(a, w, &h) ||
+      !seawall_draw(a, w, h.harmonic))
     return false;
   app_tell_results(a, w->s.out);
   return true;

@@ -3,6 +3,7 @@
 #include "tank.h"
 
 #include "common/plot.h"
+#include "common/series.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -18,33 +19,19 @@ static bool in_window(const tank_model *m, int64_t k) {
 /* What a harmonic is taken of, besides the gauges. */
 enum { FORCE = -1, WALL = -2 };
 
-static double value_of(const tank_sample *p, int what) {
-  return what >= 0 ? p->level[what] : what == FORCE ? p->right : p->deflection;
+static series series_of(const tank_model *m, const tank_sample *sample, int what) {
+  const double *value = what >= 0       ? &sample->level[what]
+                        : what == FORCE ? &sample->right
+                                        : &sample->deflection;
+  return (series){m->samples, sizeof *sample, &sample->t, value};
 }
 
-/* Amplitude of the first harmonic of the period in the window, by the trapezium rule over whole
- * periods, cut between samples: what they leave out would count the mean, which may be many times
- * the amplitude. NaN where the window has less than a period. `phase` (rad, may be NULL): before
- * sin(2 pi t/T).
- */
+/* Amplitude of the first harmonic of the period in the window; NaN where that has less than one.
+ * `phase` (rad, may be NULL): before sin(2 pi t/T). */
 static double harmonic(const tank_model *m, const tank_sample *sample, int what, double *phase) {
-  const double T = m->s.period, whole = floor((m->s.window[1] - m->s.window[0]) / T + 1e-6) * T;
-  const double from = m->s.window[1] - whole;
-  double c = 0.0, s = 0.0;
-  if (phase) *phase = NAN;
-  if (!(whole >= T)) return NAN;
-  for (int64_t k = 1; k < m->samples; k++) {
-    const tank_sample *p = &sample[k - 1], *q = &sample[k];
-    const double at[2] = {fmax(p->t, from), fmin(q->t, m->s.window[1])};
-    for (int e = 0; e < 2 && at[0] < at[1]; e++) {
-      const double part = (at[e] - p->t) / (q->t - p->t), w = 2.0 * WAVES_PI * at[e] / T;
-      const double value = (1.0 - part) * value_of(p, what) + part * value_of(q, what);
-      const double half = 0.5 * (at[1] - at[0]) * value;
-      c += half * cos(w), s += half * sin(w);
-    }
-  }
-  if (phase) *phase = atan2(c, s);
-  return 2.0 * hypot(c, s) / whole;
+  const series s = series_of(m, sample, what);
+  const double from = fmax(m->s.window[0], sample->t);
+  return series_harmonic(&s, m->s.period, from, m->s.window[1], phase);
 }
 
 typedef struct figures {
@@ -455,6 +442,15 @@ static void summarise_drop(output *f, const tank_model *m) {
   printf("semi-axes %.4f and %.4f m, theory %.4f and %.4f m\n", last->a, last->b, a, b);
 }
 
+/* 1/s. Crests of the force also hold its second harmonic, which swings with another mode: two of
+ * them may differ by ten times what a few periods take off. */
+static double sloshing_decay(const tank_model *m, double period) {
+  const series kinetic = {m->samples, sizeof *m->sample, &m->sample->t, &m->sample->kinetic};
+  const double from = fmax(m->s.window[0], m->sample[0].t);
+  const double to = fmin(m->s.window[1], m->sample[m->samples - 1].t);
+  return isnan(period) ? NAN : series_wave_decay(&kinetic, period, from, to);
+}
+
 static void summarise_tank(output *f, const tank_model *m) {
   const tank_settings *s = &m->s;
   const figures g = find_figures(m);
@@ -468,12 +464,14 @@ static void summarise_tank(output *f, const tank_model *m) {
         g.mean, still, g.deviation);
   if (s->kind == TANK_SLOSHING) {
     const double exact = waves_sloshing_period(s->length, s->depth);
+    const double decay = sloshing_decay(m, g.period);
     json_optional(f, "period", g.period);
     json_number(f, "period_exact", exact);
-    json_optional(f, "decay", g.decay);
+    json_optional(f, "decay", decay);
     if (!isnan(g.period))
       printf("period %.5f s, theory %.5f s (%+.2f %%)\n", g.period, exact,
              100.0 * (g.period / exact - 1.0));
+    if (!isnan(decay)) printf("the amplitude decays with %.4f 1/s\n", decay);
   }
   if (s->kind == TANK_FLOAT) summarise_box(f, m, &g);
   if (s->kind == TANK_PISTON) summarise_waves(f, m, &g);

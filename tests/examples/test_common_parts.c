@@ -6,6 +6,7 @@
 #include "common/mpm_heap.h"
 #include "common/options.h"
 #include "common/output.h"
+#include "common/series.h"
 
 #include <unistd.h>
 
@@ -209,6 +210,38 @@ static void the_front_leaves_drops_behind(void **state) {
   mps_context_destroy(&context);
 }
 
+enum { SAMPLES = 400 };
+
+typedef struct moment {
+  double t, force, kinetic;
+} moment;
+
+/* A standing wave of amplitude exp(-c t): a force with a second harmonic that swings with the
+ * second mode, whose crests tell another decay, and the kinetic energy. */
+static void a_decay_is_that_of_the_energy(void **state) {
+  (void)state;
+  const double c = 0.0067, w = 6.2, other = 9.9;
+  static moment at[SAMPLES];
+  for (int k = 0; k < SAMPLES; k++) {
+    const double t = 0.01 * k, a = exp(-c * t);
+    at[k].t = t;
+    at[k].force = 441.0 + a * cos(w * t) + 0.03 * cos(other * t);
+    at[k].kinetic = 1e-6 + a * a * sin(w * t) * sin(w * t);
+  }
+  const series force = {SAMPLES, sizeof *at, &at->t, &at->force};
+  const series kinetic = {SAMPLES, sizeof *at, &at->t, &at->kinetic};
+  const double T = 6.283185307179586 / w;
+  mps_assert_near(series_wave_decay(&kinetic, T, 0.0, 3.99), c, 0.02 * c);
+  mps_assert_near(series_wave_decay(&kinetic, T, 0.3, 3.2), c, 0.05 * c);
+  assert_true(isnan(series_wave_decay(&kinetic, T, 0.0, 1.9 * T)));
+  assert_true(isnan(series_wave_decay(&kinetic, T, 0.0, 5.0)));
+  double phase;
+  mps_assert_near(series_harmonic(&force, T, 0.0, 3.0 * T, &phase), exp(-c * 1.5 * T), 0.02);
+  mps_assert_near(phase, 0.5 * 3.141592653589793, 0.03);
+  assert_true(isnan(series_harmonic(&force, T, 0.0, 0.9 * T, NULL)));
+  mps_assert_near(series_mean(&force, 0.0, 3.0 * T), 441.0, 0.01);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(options_are_read_in_both_spellings),
@@ -218,6 +251,7 @@ int main(void) {
       cmocka_unit_test(results_hold_no_nan),
       cmocka_unit_test(travel_time_is_summed_over_layers),
       cmocka_unit_test(the_front_leaves_drops_behind),
+      cmocka_unit_test(a_decay_is_that_of_the_energy),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,27 @@
+/* series.h - what programs find in their tables of samples: harmonics, means, decay.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef EXAMPLES_SERIES_H
+#define EXAMPLES_SERIES_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* Samples of a quantity at ascending times, each `stride` bytes behind the one before. */
+typedef struct series {
+  int64_t count;
+  size_t stride;
+  const double *t, *value; /* s; of the first sample */
+} series;
+
+/* Amplitude of the first harmonic of `period` (s) over the whole periods before `to` that begin at
+ * `from` at the earliest; NaN where there is less than one. `phase` (rad, may be NULL): before
+ * sin(2 pi t/T). */
+double series_harmonic(const series *s, double period, double from, double to, double *phase);
+/* Mean between two times, NaN where the samples do not reach as far. */
+double series_mean(const series *s, double from, double to);
+/* Rate (1/s) at which the amplitude of a standing wave of `period` falls between two times, from
+ * its kinetic energy: half the rate at which that falls, of whose means over a period a straight
+ * line is put through the logarithms. NaN where there are less than two periods. */
+double series_wave_decay(const series *kinetic, double period, double from, double to);
+
+#endif
