@@ -31,11 +31,14 @@ typedef struct mps_material_block {
   double time;   /* s, at the end of the step */
   /** In: velocity gradient of the step, dv_i/dx_j, 1/s. In 2D zz may be NULL: plane strain. */
   const double *gradient[9];
-  /** In, out: deformation gradient, updated by Nakamura (44). All the components of `dim` (in 2D
-   * also zz), or all NULL where the law does not need it (mps_material_needs_deformation). */
+  /** In, out: deformation gradient, updated by Nakamura (44) before a user's law is called. All the
+   *  components of `dim` (in 2D also zz), or all NULL where the law does not need it
+   *  (mps_material_needs_deformation). */
   double *deformation[9];
-  /** In, out: V/V0, multiplied by 1 + dt tr(d), or det F with a deformation gradient; of frictional
-   *  laws that of the grains, without the gaps between them. */
+  /** In, out: V/V0. A user's law finds it at the end of the step already: the library has
+   * multiplied it by 1 + dt tr(d), or set it to det F. Such a law leaves it as it is, unless part
+   * of the volume strain is none of the material's own: of the frictional laws here it is that of
+   * the grains, without the gaps between them. */
   double *volume_ratio;
   double *stress[6]; /* In, out: Cauchy stress, Pa. */
   /** In, out: history_count columns, at least mps_material_history_count; NULL for none. */
@@ -159,10 +162,14 @@ typedef struct mps_user_law_def {
   const char *const *history; /* names [A-Za-z_][A-Za-z0-9_]*, at most 47 characters, copied; in a
                                  set the column is the field "<name>.<history>" */
   const double *history_initial; /* values before the first step; NULL: zero */
-  double wave_modulus;           /* Pa, K + 4G/3 of the stiffest state, > 0; no default */
+  double wave_modulus;           /* Pa, K + 4G/3 of the stiffest state, > 0; no default, but 0 is
+                                    K + 4G/3 of the moduli below where they are stated */
   double viscosity;              /* Pa s, for the largest stable step, >= 0; default 0 */
   int32_t needs_deformation;     /* 1: `deformation` is there; default 0 */
   int32_t turns_stress;          /* 1 (default): `stress` comes turned by the step's spin */
+  /** K > 0 and G >= 0 at zero strain, Pa. The size of a particle in contact follows its stress by
+   *  them. Default 0, 0: not stated; K + 4G/3 is the wave modulus then, and nu 1/4. */
+  double bulk_modulus, shear_modulus;
 } mps_user_law_def;
 
 /** An Abaqus UMAT, as a C function or as a Fortran subroutine (`umat_` of gfortran): for each
@@ -184,6 +191,27 @@ typedef void (*mps_umat_fn)(double *stress, double *statev, double *ddsdde, doub
                             const int32_t *layer, const int32_t *kspt, const int32_t *kstep,
                             const int32_t *kinc, size_t cmname_length);
 
+/** Head of a UMAT in C, its arguments by Abaqus' names in lower case; in its body MPS_UMAT_UNUSED
+ *  keeps a compiler from warning of those that it does not use:
+ *    static MPS_UMAT(spring) { MPS_UMAT_UNUSED; stress[0] += props[0] * dstran[0]; } */
+#define MPS_UMAT(name)                                                                             \
+  void name(double *stress, double *statev, double *ddsdde, double *sse, double *spd, double *scd, \
+            double *rpl, double *ddsddt, double *drplde, double *drpldt, const double *stran,      \
+            const double *dstran, const double *time, const double *dtime, const double *temp,     \
+            const double *dtemp, const double *predef, const double *dpred, const char *cmname,    \
+            const int32_t *ndi, const int32_t *nshr, const int32_t *ntens, const int32_t *nstatv,  \
+            const double *props, const int32_t *nprops, const double *coords, const double *drot,  \
+            double *pnewdt, const double *celent, const double *dfgrd0, const double *dfgrd1,      \
+            const int32_t *noel, const int32_t *npt, const int32_t *layer, const int32_t *kspt,    \
+            const int32_t *kstep, const int32_t *kinc, size_t cmname_length)
+#define MPS_UMAT_UNUSED                                                                            \
+  ((void)stress, (void)statev, (void)ddsdde, (void)sse, (void)spd, (void)scd, (void)rpl,           \
+   (void)ddsddt, (void)drplde, (void)drpldt, (void)stran, (void)dstran, (void)time, (void)dtime,   \
+   (void)temp, (void)dtemp, (void)predef, (void)dpred, (void)cmname, (void)ndi, (void)nshr,        \
+   (void)ntens, (void)nstatv, (void)props, (void)nprops, (void)coords, (void)drot, (void)pnewdt,   \
+   (void)celent, (void)dfgrd0, (void)dfgrd1, (void)noel, (void)npt, (void)layer, (void)kspt,       \
+   (void)kstep, (void)kinc, (void)cmname_length)
+
 typedef struct mps_umat_def {
   uint32_t struct_size;
   int32_t statev_count;            /* NSTATV: 0 (default) to 1000 */
@@ -194,12 +222,13 @@ typedef struct mps_umat_def {
   int32_t needs_deformation;       /* 1: DFGRD0 and DFGRD1, else unit tensors; default 0 */
   const char *const *statev_names; /* of the history columns; NULL: statev_1, statev_2, ... */
   const double *statev_initial;    /* STATEV before the first step; NULL: zero */
-  double wave_modulus;             /* Pa, K + 4G/3 of the stiffest state, > 0; no default */
+  double wave_modulus;             /* Pa, as of a user's law */
   double length;                   /* m, CELENT, > 0; default 1 */
   double temperature;              /* TEMP where the set has no field `temperature`; default 0 */
   int32_t keeps_strain;            /* 1 (default): STRAN is the strain so far, in six more columns
                                       of history; 0: zero */
   int32_t reserved;
+  double bulk_modulus, shear_modulus; /* Pa, at zero strain, as of a user's law; default 0, 0 */
 } mps_umat_def;
 
 MPS_API mps_status mps_von_mises_def_init(mps_von_mises_def *def, size_t size);
@@ -309,7 +338,7 @@ static inline mps_status mps_moduli_from_velocities(mps_context *owner, double s
                                           sizeof *out);
 }
 /** Of a material in its elastic range, at zero strain. MPS_ERROR_UNSUPPORTED: a fluid, or a law of
- *  the caller's own. */
+ *  the caller's own that does not state a shear modulus. */
 MPS_API MPS_NODISCARD mps_status mps_material_get_moduli_sized(const mps_material *material,
                                                                double density, mps_moduli *out,
                                                                size_t size);
@@ -331,9 +360,10 @@ MPS_API MPS_NODISCARD mps_status mps_particles_set_material(mps_particles *parti
 /* ---- use without a solver -------------------------------------------------------------------- */
 
 /** Applies one step to a block. MPS_ERROR_ARGUMENT for a malformed block (nothing is changed), or
- *  the status of a user's law that refuses. Values are not looked at: a NaN stays in its
- *  particle. Errors go to `context`, which need not be the material's: threads that update at once
- *  use a context each. No allocation. */
+ *  the status of a user's law that refuses, MPS_ERROR_NUMERIC where it leaves a value that is not
+ *  finite; other laws' values are not looked at: a NaN stays in its particle. Errors go to
+ * `context`, which need not be the material's: threads that update at once use a context each. No
+ * allocation. */
 MPS_API MPS_NODISCARD mps_status mps_material_update(mps_context *context,
                                                      const mps_material *material,
                                                      const mps_material_block *block);

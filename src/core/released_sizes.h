@@ -42,8 +42,8 @@
   X(mps_particles_def, mps_particles_def_init, "0.2", 40) \
   X(mps_recorder_def, mps_recorder_def_init, "0.2", 32) \
   X(mps_signal_record_def, mps_signal_record_def_init, "0.2", 32) \
-  X(mps_umat_def, mps_umat_def_init, "0.2", 88) \
-  X(mps_user_law_def, mps_user_law_def_init, "0.2", 72) \
+  X(mps_umat_def, mps_umat_def_init, "0.2", 104) \
+  X(mps_user_law_def, mps_user_law_def_init, "0.2", 88) \
   X(mps_von_mises_def, mps_von_mises_def_init, "0.2", 40)
 /* clang-format on */
 

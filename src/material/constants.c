@@ -58,8 +58,11 @@ mps_status mpsi_check_friction(mps_context *context, const char *function, doubl
 mpsi_law mpsi_law_elastic(double young, double poisson) {
   const double shear = young / (2.0 * (1.0 + poisson));
   const double bulk = young / (3.0 * (1.0 - 2.0 * poisson));
-  return (mpsi_law){
-      .shear = shear, .bulk = bulk, .lambda = bulk - 2.0 / 3.0 * shear, .per_bulk = 1.0 / bulk};
+  return (mpsi_law){.has_moduli = true,
+                    .shear = shear,
+                    .bulk = bulk,
+                    .lambda = bulk - 2.0 / 3.0 * shear,
+                    .per_bulk = 1.0 / bulk};
 }
 
 double mpsi_law_wave_modulus(const mpsi_law *law) { return law->bulk + 4.0 / 3.0 * law->shear; }

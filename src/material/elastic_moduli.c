@@ -66,7 +66,7 @@ mps_status mps_material_get_moduli_sized(const mps_material *material, double de
   static const char function[] = "mps_material_get_moduli";
   if (!material) return MPS_ERROR_ARGUMENT;
   mps_context *context = material->context;
-  if (material->kind == MPSI_LAW_USER || material->kind == MPSI_LAW_NEWTONIAN)
+  if (!material->law.has_moduli)
     return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
                      "the law %s has no elastic constants that the library knows", material->name);
   const mps_status status =
@@ -83,7 +83,7 @@ static const char set_material[] = "mps_particles_set_material";
 mps_status mpsi_material_check_elastic(mps_context *context, const char *function,
                                        const mps_material *material) {
   if (!material) return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "material is NULL");
-  if (material->kind == MPSI_LAW_LINEAR_ELASTIC) return MPS_OK;
+  if (material->type->traits & MPSI_LAW_IS_LINEAR) return MPS_OK;
   return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
                    "the law is %s: fields and solvers of elasticity hold linear_elastic ground "
                    "only; WLS-MPM takes other laws as they are",

@@ -123,6 +123,15 @@ static double level_of_line(const mps_geostatic_def *d, double x) {
   return p[2 * n - 1];
 }
 
+/* The caller's function has not answered for particle k; a status that is none is an argument. */
+static mps_status refused(const geostatic *g, const char *function, const char *what,
+                          mps_status status, int64_t k) {
+  const bool known = status > MPS_OK && status <= MPS_ERROR_INTERNAL;
+  return mpsi_fail(g->context, function, known ? status : MPS_ERROR_ARGUMENT,
+                   "%s particle %lld: it returned status %d (%s)", what, (long long)g->id[k],
+                   (int)status, mps_status_text(status));
+}
+
 /* Depth of every particle below the surface. */
 static mps_status find_depths(geostatic *g) {
   const mps_geostatic_def *d = &g->def;
@@ -139,8 +148,7 @@ static mps_status find_depths(geostatic *g) {
     double level = d->surface_line ? level_of_line(d, x[0]) : flat;
     const mps_status status = d->surface_level ? d->surface_level(d->user, x, &level) : MPS_OK;
     if (status != MPS_OK)
-      return mpsi_fail(g->context, set_geostatic, status,
-                       "surface_level refused the position of particle %lld", (long long)g->id[k]);
+      return refused(g, set_geostatic, "surface_level refused the position of", status, k);
     const double depth = level - x[g->up];
     if (!isfinite(depth) || depth < -ON_SURFACE * spacing)
       return mpsi_fail(g->context, set_geostatic, MPS_ERROR_ARGUMENT,
@@ -260,10 +268,8 @@ static mps_status ask_stress(const geostatic *g, mps_stress_fn fn, void *user, d
   for (int64_t k = 0; k < g->count; k++) {
     double x[3] = {0.0};
     for (int32_t c = 0; c < g->dim; c++) x[c] = g->x[c][k];
-    const mps_status refused = fn(user, x, &s[6 * k]);
-    if (refused != MPS_OK)
-      return mpsi_fail(g->context, function, refused, "the stress function refused particle %lld",
-                       (long long)g->id[k]);
+    const mps_status status = fn(user, x, &s[6 * k]);
+    if (status != MPS_OK) return refused(g, function, "the stress function refused", status, k);
     for (int32_t c = 0; c < 2 * g->dim; c++)
       if (!isfinite(s[6 * k + c]))
         return mpsi_fail(g->context, function, MPS_ERROR_ARGUMENT,

@@ -82,14 +82,15 @@ MPSI_INLINE double grown(const bool frictional, double volume, double growth) {
   return frictional ? volume * ((1.0 + half) / (1.0 - half)) : volume + volume * growth;
 }
 
-MPSI_INLINE void rate_loop(const int geometry, const int kind, const mpsi_law *constants,
+/* What the loop of the Jaumann rate does with the trial stress. */
+enum { ELASTIC, MISES, CONE, PYRAMID };
+
+MPSI_INLINE void rate_loop(const int geometry, const int yields, const mpsi_law *constants,
                            const mps_material_block *block) {
   const mpsi_law law = *constants; /* a copy: nothing that the loop writes can alias it */
   const mpsi_law_columns columns = mpsi_columns_of(block);
-  double *volume = block->volume_ratio,
-         *strain = kind == MPSI_LAW_LINEAR_ELASTIC ? NULL : block->history[0],
-         *gap = kind == MPSI_LAW_DRUCKER_PRAGER || kind == MPSI_LAW_MOHR_COULOMB ? block->history[1]
-                                                                                 : NULL;
+  double *volume = block->volume_ratio, *strain = yields == ELASTIC ? NULL : block->history[0],
+         *gap = yields == CONE || yields == PYRAMID ? block->history[1] : NULL;
   int64_t *flags = block->flags;
   const double dt = block->dt;
   SIMD for (int64_t k = 0; k < block->count; k++) {
@@ -99,18 +100,18 @@ MPSI_INLINE void rate_loop(const int geometry, const int kind, const mpsi_law *c
     s = mpsi_hooke(&law, s, d);
     int64_t flag = 0;
     double opened = 0.0;
-    if (kind != MPSI_LAW_LINEAR_ELASTIC) {
+    if (yields != ELASTIC) {
       const double p = (s.xx + s.yy + s.zz) * THIRD, dx = s.xx - p, dy = s.yy - p, dz = s.zz - p;
       const double q =
           sqrt(0.5 * (dx * dx + dy * dy + dz * dz) + (s.xy * s.xy + s.yz * s.yz + s.zx * s.zx));
-      if (kind == MPSI_LAW_MOHR_COULOMB) { /* beyond the inscribed cone or one around the cut-off:
+      if (yields == PYRAMID) { /* beyond the inscribed cone or one around the cut-off:
                                               a candidate. No stress exceeds p + 2 q/sqrt(3). */
         const double over =
             at_least(q + 3.0 * law.alpha * p - law.kappa, p + (2.0 * PER_ROOT3) * q - law.cut);
         flag = ((over > 0.0) | (gap[k] > 0.0)) ? MPS_MATERIAL_PLASTIC : 0;
       } else {
-        const meridian m = kind == MPSI_LAW_VON_MISES ? return_von_mises(&law, p, q, strain[k])
-                                                      : return_drucker_prager(&law, p, q, gap[k]);
+        const meridian m = yields == MISES ? return_von_mises(&law, p, q, strain[k])
+                                           : return_drucker_prager(&law, p, q, gap[k]);
         const double scale = m.q / (q + NOTHING); /* 1 if elastic */
         flag = m.flags;
         s.xx = m.p + scale * dx;
@@ -120,7 +121,7 @@ MPSI_INLINE void rate_loop(const int geometry, const int kind, const mpsi_law *c
         s.yz *= scale;
         s.zx *= scale;
         strain[k] += m.plastic;
-        if (kind == MPSI_LAW_DRUCKER_PRAGER) {
+        if (yields == CONE) {
           opened = m.opened;
           gap[k] = at_least(gap[k] + opened, 0.0);
         }
@@ -128,9 +129,9 @@ MPSI_INLINE void rate_loop(const int geometry, const int kind, const mpsi_law *c
     }
     mpsi_put_stress(geometry, &columns, k, s);
     flags[k] = flag;
-    if (kind != MPSI_LAW_MOHR_COULOMB) {
+    if (yields != PYRAMID) {
       const double growth = (d.xx + d.yy + d.zz) - opened;
-      volume[k] = grown(kind == MPSI_LAW_DRUCKER_PRAGER, volume[k], growth);
+      volume[k] = grown(yields == CONE, volume[k], growth);
     }
   }
 }
@@ -149,10 +150,28 @@ MPSI_INLINE void volume_loop(const int geometry, const mps_material_block *block
   }
 }
 
+MPSI_INLINE mps_status linear_elastic_loop(const int geometry, const mpsi_law *law,
+                                           const mps_material_block *block) {
+  rate_loop(geometry, ELASTIC, law, block);
+  return MPS_OK;
+}
+
+MPSI_INLINE mps_status von_mises_loop(const int geometry, const mpsi_law *law,
+                                      const mps_material_block *block) {
+  rate_loop(geometry, MISES, law, block);
+  return MPS_OK;
+}
+
+MPSI_INLINE mps_status drucker_prager_loop(const int geometry, const mpsi_law *law,
+                                           const mps_material_block *block) {
+  rate_loop(geometry, CONE, law, block);
+  return MPS_OK;
+}
+
 /* The trial in vector form; then the few that may yield, one by one, in principal stresses. */
-MPSI_INLINE void mohr_coulomb_loop(const int geometry, const mpsi_law *law,
-                                   const mps_material_block *block) {
-  rate_loop(geometry, MPSI_LAW_MOHR_COULOMB, law, block);
+MPSI_INLINE mps_status mohr_coulomb_loop(const int geometry, const mpsi_law *law,
+                                         const mps_material_block *block) {
+  rate_loop(geometry, PYRAMID, law, block);
   const int32_t dim = geometry == MPSI_SPACE ? 3 : 2, components = dim == 3 ? 6 : 4;
   double *strain = block->history[0], *gap = block->history[1], opened[CHUNK];
   for (int64_t begin = 0, end; begin < block->count; begin = end) {
@@ -169,6 +188,7 @@ MPSI_INLINE void mohr_coulomb_loop(const int geometry, const mpsi_law *law,
     }
     volume_loop(geometry, block, begin, end, opened);
   }
+  return MPS_OK;
 }
 
 /* ---- laws of the deformation gradient ---------------------------------------------------------
@@ -203,8 +223,8 @@ MPSI_INLINE void deform_loop(const int geometry, const mps_material_block *block
 }
 
 /* sigma = G/J (B - 1) + lambda/2 (J - 1/J) 1 with B = F F^T. */
-MPSI_INLINE void neo_hookean_loop(const int geometry, const mpsi_law *law,
-                                  const mps_material_block *block) {
+MPSI_INLINE mps_status neo_hookean_loop(const int geometry, const mpsi_law *law,
+                                        const mps_material_block *block) {
   deform_loop(geometry, block);
   const mpsi_law_columns columns = mpsi_columns_of(block);
   const double *f[9], *volume = block->volume_ratio;
@@ -230,14 +250,15 @@ MPSI_INLINE void neo_hookean_loop(const int geometry, const mpsi_law *law,
     mpsi_put_stress(geometry, &columns, k, s);
     flags[k] = 0;
   }
+  return MPS_OK;
 }
 
 /* ---- fluid ------------------------------------------------------------------------------------
  */
 
 /* sigma = -p 1 + 2 eta dev(d); p = K (r - 1), or K/7 (r^7 - 1), r = V0/V. */
-MPSI_INLINE void newtonian_loop(const int geometry, const bool tait, const mpsi_law *law,
-                                const mps_material_block *block) {
+MPSI_INLINE void fluid_loop(const int geometry, const bool tait, const mpsi_law *law,
+                            const mps_material_block *block) {
   const mpsi_law_columns columns = mpsi_columns_of(block);
   double *volume = block->volume_ratio;
   int64_t *flags = block->flags;
@@ -263,6 +284,15 @@ MPSI_INLINE void newtonian_loop(const int geometry, const bool tait, const mpsi_
   }
 }
 
+MPSI_INLINE mps_status newtonian_loop(const int geometry, const mpsi_law *law,
+                                      const mps_material_block *block) {
+  if (law->tait)
+    fluid_loop(geometry, true, law, block);
+  else
+    fluid_loop(geometry, false, law, block);
+  return MPS_OK;
+}
+
 /* ---- a user's law -----------------------------------------------------------------------------
  */
 
@@ -276,8 +306,8 @@ MPSI_INLINE void turn_loop(const int geometry, const mps_material_block *block) 
   }
 }
 
-MPSI_INLINE mps_status user_law(const int geometry, const mpsi_law *law,
-                                const mps_material_block *block) {
+MPSI_INLINE mps_status user_loop(const int geometry, const mpsi_law *law,
+                                 const mps_material_block *block) {
   if (block->count == 0) return MPS_OK;
   for (int64_t k = 0; k < block->count; k++) block->flags[k] = 0;
   if (law->needs_deformation)
@@ -285,43 +315,21 @@ MPSI_INLINE mps_status user_law(const int geometry, const mpsi_law *law,
   else
     volume_loop(geometry, block, 0, block->count, NULL);
   if (law->turns_stress) turn_loop(geometry, block);
-  return law->update(law->user, block);
+  const mps_status status = law->update(law->user, block);
+  return status == MPS_OK ? mpsi_check_results(block, law->history_count) : status;
 }
 
 /* ---- one function for each law and geometry ----------------------------------------------------
  */
 
-MPSI_INLINE mps_status apply(const int kind, const int geometry, const mpsi_law *law,
-                             const mps_material_block *block) {
-  if (kind == MPSI_LAW_USER) return user_law(geometry, law, block);
-  if (kind == MPSI_LAW_NEO_HOOKEAN)
-    neo_hookean_loop(geometry, law, block);
-  else if (kind == MPSI_LAW_MOHR_COULOMB)
-    mohr_coulomb_loop(geometry, law, block);
-  else if (kind != MPSI_LAW_NEWTONIAN)
-    rate_loop(geometry, kind, law, block);
-  else if (law->tait)
-    newtonian_loop(geometry, true, law, block);
-  else
-    newtonian_loop(geometry, false, law, block);
-  return MPS_OK;
-}
-
-#define GEOMETRIES(X, KIND) X(KIND, MPSI_PLANE) X(KIND, MPSI_AXIAL) X(KIND, MPSI_SPACE)
-#define VARIANTS(X)                                                                                \
-  GEOMETRIES(X, MPSI_LAW_LINEAR_ELASTIC)                                                           \
-  GEOMETRIES(X, MPSI_LAW_VON_MISES)                                                                \
-  GEOMETRIES(X, MPSI_LAW_DRUCKER_PRAGER)                                                           \
-  GEOMETRIES(X, MPSI_LAW_MOHR_COULOMB)                                                             \
-  GEOMETRIES(X, MPSI_LAW_NEO_HOOKEAN)                                                              \
-  GEOMETRIES(X, MPSI_LAW_NEWTONIAN)                                                                \
-  GEOMETRIES(X, MPSI_LAW_USER)
-
-#define DEFINE(KIND, GEOMETRY)                                                                     \
+#define DEFINE(KIND, LOOP, GEOMETRY)                                                               \
   static mps_status KIND##_##GEOMETRY(const mpsi_law *law, const mps_material_block *block) {      \
-    return apply(KIND, GEOMETRY, law, block);                                                      \
+    return LOOP(MPSI_##GEOMETRY, law, block);                                                      \
   }
-VARIANTS(DEFINE)
+#define DEFINE_ALL(kind, loop, name, columns, kept, traits, define, moduli)                        \
+  DEFINE(kind, loop, PLANE) DEFINE(kind, loop, AXIAL) DEFINE(kind, loop, SPACE)
+MPSI_LAW_KINDS(DEFINE_ALL)
 
-#define ENTRY(KIND, GEOMETRY) .apply[KIND][GEOMETRY] = KIND##_##GEOMETRY,
-const mpsi_law_table CONCAT(mpsi_laws_v, MPSI_LEVEL) = {VARIANTS(ENTRY)};
+#define ENTRY(kind, loop, name, columns, kept, traits, define, moduli)                             \
+  {[MPSI_PLANE] = kind##_PLANE, [MPSI_AXIAL] = kind##_AXIAL, [MPSI_SPACE] = kind##_SPACE},
+const mpsi_law_table CONCAT(mpsi_laws_v, MPSI_LEVEL) = {{MPSI_LAW_KINDS(ENTRY)}};

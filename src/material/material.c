@@ -17,8 +17,9 @@ static void release(mps_material *m) {
   mpsi_context_release(context);
 }
 
-mps_material *mpsi_material_new(mps_context *context, const char *function, mpsi_law_kind kind,
-                                const char *name, int32_t history_count) {
+mps_material *mpsi_material_new(mps_context *context, const char *function,
+                                const mpsi_law_type *type, const char *name,
+                                int32_t history_count) {
   mps_material *m = mpsi_alloc(context, 1, sizeof *m);
   if (!m) {
     (void)mpsi_fail_memory(context, function, sizeof *m);
@@ -26,7 +27,7 @@ mps_material *mpsi_material_new(mps_context *context, const char *function, mpsi
   }
   m->context = mpsi_context_retain(context);
   atomic_init(&m->references, 1);
-  m->kind = kind;
+  m->type = type;
   m->table = mpsi_laws_select(mpsi_context_level(context));
   strncpy(m->name, name, sizeof m->name - 1);
   m->history_count = history_count;
@@ -91,15 +92,27 @@ double mps_material_history_initial(const mps_material *material, int32_t index)
 }
 
 bool mpsi_material_reads_volume(const mps_material *material) {
-  return material->kind == MPSI_LAW_NEO_HOOKEAN || material->kind == MPSI_LAW_NEWTONIAN ||
-         material->kind == MPSI_LAW_USER;
+  return (material->type->traits & MPSI_LAW_READS_VOLUME) != 0;
 }
 
 bool mpsi_material_may_refuse(const mps_material *material) {
-  return material->kind == MPSI_LAW_USER;
+  return (material->type->traits & MPSI_LAW_MAY_REFUSE) != 0;
 }
 
 double mpsi_material_viscosity(const mps_material *material) { return material->law.viscosity; }
+
+void mpsi_material_constants(const mps_material *m, mpsi_constant_fn add, void *user) {
+  const double *first = &m->law.shear;
+  const int64_t count = &m->law.viscosity - first + 1;
+  const double settings[] = {
+      m->law.tait,       m->law.no_tension, m->law.turns_stress, m->law.needs_deformation,
+      m->law.has_moduli, m->wave_modulus,   m->history_count};
+  add(user, (double)m->type->kind);
+  for (int64_t k = 0; k < count; k++) add(user, first[k]);
+  for (size_t k = 0; k < sizeof settings / sizeof *settings; k++) add(user, settings[k]);
+  for (int32_t c = 0; c < m->history_count; c++) add(user, m->history_initial[c]);
+  for (int32_t k = 0; k < m->owned_count; k++) add(user, m->owned_constants[k]);
+}
 
 void mpsi_material_begin(const mps_material *material, double *const *history, int64_t begin,
                          int64_t end) {
@@ -116,7 +129,7 @@ static mpsi_geometry_kind geometry_of(const mps_material_block *block) {
 }
 
 mps_status mpsi_material_apply(const mps_material *material, const mps_material_block *block) {
-  return material->table->apply[material->kind][geometry_of(block)](&material->law, block);
+  return material->table->apply[material->type->kind][geometry_of(block)](&material->law, block);
 }
 
 static const char *const tensor_names[9] = {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"};

@@ -55,7 +55,10 @@ bool mpsi_material_stiffens(const mps_material *material);
 /* Writes an upper bound of K + 4G/3 (Pa) in the present state of each particle. */
 void mpsi_material_wave_moduli(const mps_material *material, const mps_material_block *block,
                                double *moduli);
-/* G (Pa) at zero strain; of a user's law, which does not tell, a third of the wave modulus (nu =
+/* K + 4G/3 (Pa) at zero strain, by which the size of a particle follows its stress: that of the
+ * moduli, where a user's law states them, else its wave modulus. */
+double mpsi_material_rest_modulus(const mps_material *material);
+/* G (Pa) at zero strain; of a user's law that does not state it a third of the wave modulus (nu =
  * 1/4). */
 double mpsi_material_shear(const mps_material *material);
 /* Which part of the work against its stresses the law gives back. */
@@ -67,6 +70,11 @@ typedef enum mpsi_kept {
 mpsi_kept mpsi_material_kept(const mps_material *material);
 /* Pa s; 0 for all but fluids and users' laws. */
 double mpsi_material_viscosity(const mps_material *material);
+/* Calls `add` with every number that decides what the law does, its kind first, in an order of its
+ * kind: two materials are alike if these and the names of material and history columns are.
+ * Addresses, as of a user's function, are not among them. */
+typedef void (*mpsi_constant_fn)(void *user, double value);
+void mpsi_material_constants(const mps_material *material, mpsi_constant_fn add, void *user);
 /* Fills the history columns of new particles [begin, end). */
 void mpsi_material_begin(const mps_material *material, double *const *history, int64_t begin,
                          int64_t end);

@@ -4,21 +4,10 @@
 #ifndef MPSI_MATERIAL_PRIVATE_H
 #define MPSI_MATERIAL_PRIVATE_H
 
-#include "material_internal.h"
+#include "kinds.h"
 
 #define MPSI_MATERIAL_NAME 48  /* bytes of a name */
 #define MPSI_MATERIAL_FIELD 96 /* bytes of a field's name: <material>.<column> */
-
-typedef enum mpsi_law_kind {
-  MPSI_LAW_LINEAR_ELASTIC,
-  MPSI_LAW_VON_MISES,
-  MPSI_LAW_DRUCKER_PRAGER,
-  MPSI_LAW_MOHR_COULOMB,
-  MPSI_LAW_NEO_HOOKEAN,
-  MPSI_LAW_NEWTONIAN,
-  MPSI_LAW_USER,
-  MPSI_LAW_COUNT
-} mpsi_law_kind;
 
 /* Which components there are. Axisymmetric is 2D with a rate of zz. */
 typedef enum mpsi_geometry_kind {
@@ -30,6 +19,8 @@ typedef enum mpsi_geometry_kind {
 
 /* The constants of a law, as its loop wants them. */
 typedef struct mpsi_law {
+  bool has_moduli; /* shear and bulk are those of an elastic solid at zero strain */
+  /* from here to `viscosity` only doubles: mpsi_material_constants lists them */
   double shear, bulk, lambda; /* Pa */
   double per_bulk;            /* 1/K */
   double yield, hardening;    /* von Mises, Pa */
@@ -42,6 +33,7 @@ typedef struct mpsi_law {
   double viscosity;                     /* Pa s */
   bool tait, no_tension;                /* fluid */
   bool turns_stress, needs_deformation; /* user */
+  int32_t history_count;                /* user */
   mps_material_fn update;
   void *user;
 } mpsi_law;
@@ -63,7 +55,7 @@ const mpsi_law_table *mpsi_laws_select(int32_t isa);
 struct mps_material {
   mps_context *context;
   atomic_int references;
-  mpsi_law_kind kind;
+  const mpsi_law_type *type;
   mpsi_law law;
   const mpsi_law_table *table;
   double wave_modulus; /* Pa */
@@ -73,16 +65,21 @@ struct mps_material {
   char (*history_fields)[MPSI_MATERIAL_FIELD];
   double *history_initial;
   void *owned; /* what law.user is where the library made it, freed with the material; or NULL */
+  const double *owned_constants; /* in `owned`: those of a UMAT */
+  int32_t owned_count;
 };
 
 /* A material of one owner with room for its history, or NULL after recording that memory is short.
  */
-mps_material *mpsi_material_new(mps_context *context, const char *function, mpsi_law_kind kind,
-                                const char *name, int32_t history_count);
+mps_material *mpsi_material_new(mps_context *context, const char *function,
+                                const mpsi_law_type *type, const char *name, int32_t history_count);
 
 /* mps_material_user of a definition that is complete. */
 mps_status mpsi_material_make_user(mps_context *context, const char *function,
                                    const mps_user_law_def *def, mps_material **out);
+/* What a user's law must not have written: describes the first value that is not finite in
+ * block->message, its particle in *block->refused. */
+mps_status mpsi_check_results(const mps_material_block *block, int32_t history_count);
 
 /* Maps a trial stress (xx yy zz xy [zx yz]) back to the pyramid of Mohr and Coulomb. Returns its
  * flags; adds to *plastic_strain, opens and closes the gap, and tells where it has flags how much

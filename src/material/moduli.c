@@ -1,13 +1,11 @@
 /* moduli.c - the wave modulus K + 4G/3 of Nakamura (50) in the present state, for laws that
  * stiffen. SPDX-License-Identifier: BSD-3-Clause */
-#include "material_private.h"
+#include "constants.h"
 
-bool mpsi_material_stiffens(const mps_material *material) {
-  return material->kind == MPSI_LAW_NEO_HOOKEAN || material->kind == MPSI_LAW_NEWTONIAN;
-}
+bool mpsi_material_stiffens(const mps_material *material) { return material->type->moduli != NULL; }
 
 /* -V dp/dV: K r, or K r^7, r = V0/V. */
-static void newtonian_moduli(const mpsi_law *law, const mps_material_block *block, double *moduli) {
+void mpsi_newtonian_moduli(const mpsi_law *law, const mps_material_block *block, double *moduli) {
   for (int64_t k = 0; k < block->count; k++) {
     const double r = 1.0 / block->volume_ratio[k], r2 = r * r;
     moduli[k] = law->bulk * (law->tait ? r2 * r2 * r2 * r : r);
@@ -16,8 +14,7 @@ static void newtonian_moduli(const mpsi_law *law, const mps_material_block *bloc
 
 /* The acoustic tensor's largest eigenvalue along n: (lambda/2 + G + G b_n)/J + lambda J/2, where
  * b_n = n.B.n is at most B's mean plus 2 sqrt(J2(B)/3). */
-static void neo_hookean_moduli(const mpsi_law *law, const mps_material_block *block,
-                               double *moduli) {
+void mpsi_neo_hookean_moduli(const mpsi_law *law, const mps_material_block *block, double *moduli) {
   const bool space = block->dim == 3;
   double *const *f = block->deformation;
   for (int64_t k = 0; k < block->count; k++) {
@@ -40,27 +37,16 @@ static void neo_hookean_moduli(const mpsi_law *law, const mps_material_block *bl
 
 void mpsi_material_wave_moduli(const mps_material *material, const mps_material_block *block,
                                double *moduli) {
-  if (material->kind == MPSI_LAW_NEO_HOOKEAN)
-    neo_hookean_moduli(&material->law, block, moduli);
-  else if (material->kind == MPSI_LAW_NEWTONIAN)
-    newtonian_moduli(&material->law, block, moduli);
+  if (material->type->moduli)
+    material->type->moduli(&material->law, block, moduli);
   else
     for (int64_t k = 0; k < block->count; k++) moduli[k] = material->wave_modulus;
 }
 
-double mpsi_material_shear(const mps_material *material) {
-  return material->kind == MPSI_LAW_USER ? material->wave_modulus / 3.0 : material->law.shear;
+double mpsi_material_rest_modulus(const mps_material *material) {
+  return material->law.has_moduli ? mpsi_law_wave_modulus(&material->law) : material->wave_modulus;
 }
 
-mpsi_kept mpsi_material_kept(const mps_material *material) {
-  switch (material->kind) {
-  case MPSI_LAW_VON_MISES:
-  case MPSI_LAW_DRUCKER_PRAGER:
-  case MPSI_LAW_MOHR_COULOMB:
-    return MPSI_KEPT_ELASTIC;
-  case MPSI_LAW_NEWTONIAN:
-    return MPSI_KEPT_PRESSURE;
-  default:
-    return MPSI_KEPT_ALL;
-  }
-}
+double mpsi_material_shear(const mps_material *material) { return material->law.shear; }
+
+mpsi_kept mpsi_material_kept(const mps_material *material) { return material->type->kept; }

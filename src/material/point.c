@@ -74,7 +74,8 @@ mps_status mps_material_point_drive(mps_context *context, const mps_material *ma
   for (int c = 0; c < MPS_MATERIAL_POINT_HISTORY; c++) history[c] = &now.history[c];
   for (int64_t step = 0; step < steps; step++) {
     block.time = point->time + duration * (double)(step + 1) / (double)steps;
-    const mps_status answer = mpsi_material_apply(material, &block);
+    mps_status answer = mpsi_material_apply(material, &block);
+    if (answer == MPS_OK) answer = mpsi_check_results(&block, material->history_count);
     if (answer != MPS_OK)
       return mpsi_material_refused(context, __func__, material, answer, message, -1, step);
   }

@@ -23,7 +23,7 @@ typedef struct umat_law {
   double temperature, length;
   int32_t statev_count, props_count;
   bool keeps_strain, needs_deformation;
-  double props[]; /* props_count */
+  double props[]; /* props_count, and behind them, for comparison, temperature and length */
 } umat_law;
 
 static const mps_umat_def umat_defaults = {.name = "umat", .length = 1.0, .keeps_strain = 1};
@@ -203,6 +203,8 @@ static void fill_law(const mps_umat_def *def, umat_law *law) {
   law->keeps_strain = def->keeps_strain == 1;
   law->needs_deformation = def->needs_deformation == 1;
   for (int32_t c = 0; c < def->props_count; c++) law->props[c] = def->props[c];
+  law->props[def->props_count] = def->temperature;
+  law->props[def->props_count + 1] = def->length;
 }
 
 /* The user's law that `update` is, with its columns of history: checks what is common to both. */
@@ -218,6 +220,8 @@ static mps_status make_law(mps_context *context, const char *function, const mps
   law.history = names;
   law.history_initial = initial;
   law.wave_modulus = def->wave_modulus;
+  law.bulk_modulus = def->bulk_modulus;
+  law.shear_modulus = def->shear_modulus;
   law.needs_deformation = def->needs_deformation;
   for (int32_t c = 0; c < law.history_count; c++) {
     if (c >= def->statev_count) {
@@ -242,7 +246,7 @@ mps_status mps_material_umat(mps_context *context, const mps_umat_def *user_def,
   if (status == MPS_OK) status = check_umat(context, __func__, &def);
   if (status == MPS_OK) status = make_law(context, __func__, &def, &material);
   if (status != MPS_OK) return status;
-  const size_t size = sizeof(umat_law) + (size_t)def.props_count * sizeof(double);
+  const size_t size = sizeof(umat_law) + ((size_t)def.props_count + 2) * sizeof(double);
   umat_law *law = mpsi_alloc(context, 1, size);
   if (!law) {
     mps_material_destroy(&material);
@@ -250,6 +254,8 @@ mps_status mps_material_umat(mps_context *context, const mps_umat_def *user_def,
   }
   fill_law(&def, law);
   material->law.user = material->owned = law;
+  material->owned_constants = law->props;
+  material->owned_count = law->props_count + 2;
   *out = material;
   return MPS_OK;
 }

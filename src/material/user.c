@@ -1,14 +1,9 @@
-/* user.c - creation of a law of the caller's own: its callback, history columns and wave modulus.
+/* user.c - a law of the caller's own: checks of its definition, and of what it writes.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "constants.h"
 
+#include <float.h>
 #include <stdio.h>
-
-static const mps_user_law_def user_law_defaults = {.name = "user", .turns_stress = 1};
-
-mps_status mps_user_law_def_init(mps_user_law_def *def, size_t size) {
-  return MPSI_DEF_INIT(mps_user_law_def, def, size, &user_law_defaults);
-}
 
 static bool is_name(const char *name) {
   const size_t length = mpsi_identifier(name, MPSI_MATERIAL_NAME);
@@ -55,43 +50,85 @@ static mps_status check_user_law(mps_context *context, const char *function,
   if (def->turns_stress != 0 && def->turns_stress != 1)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "turns_stress is %d, must be 0 or 1",
                      (int)def->turns_stress);
-  mps_status status =
-      mpsi_check_range(context, function, "wave modulus", def->wave_modulus, MPSI_RANGE_MODULUS);
-  if (status == MPS_OK)
-    status =
-        mpsi_check_range_or_0(context, function, "viscosity", def->viscosity, MPSI_RANGE_VISCOSITY);
+  const mps_status status =
+      mpsi_check_range_or_0(context, function, "viscosity", def->viscosity, MPSI_RANGE_VISCOSITY);
   return status == MPS_OK ? check_history(context, function, def) : status;
 }
 
-mps_status mpsi_material_make_user(mps_context *context, const char *function,
-                                   const mps_user_law_def *def, mps_material **out) {
-  const mps_status status = check_user_law(context, function, def);
+/* K and G, where the definition states them, and K + 4G/3, which it need not state then. */
+static mps_status check_moduli(mps_context *context, const char *function,
+                               const mps_user_law_def *def) {
+  const double least = def->bulk_modulus + 4.0 / 3.0 * def->shear_modulus;
+  if (def->bulk_modulus == 0.0 && def->shear_modulus == 0.0)
+    return mpsi_check_range(context, function, "wave modulus", def->wave_modulus,
+                            MPSI_RANGE_MODULUS);
+  mps_status status =
+      mpsi_check_range(context, function, "bulk modulus", def->bulk_modulus, MPSI_RANGE_MODULUS);
+  if (status == MPS_OK)
+    status = mpsi_check_range_or_0(context, function, "shear modulus", def->shear_modulus,
+                                   MPSI_RANGE_MODULUS);
+  if (status == MPS_OK)
+    status = mpsi_check_range_or_0(context, function, "wave modulus", def->wave_modulus,
+                                   MPSI_RANGE_MODULUS);
+  if (status != MPS_OK || def->wave_modulus == 0.0 || def->wave_modulus >= least * (1.0 - 1e-12))
+    return status;
+  return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                   "wave modulus is %g Pa, must be 0 or at least K + 4G/3 of its moduli, %g Pa",
+                   def->wave_modulus, least);
+}
+
+mps_status mpsi_define_user(mps_context *context, const char *function, const void *values,
+                            mpsi_law *law) {
+  const mps_user_law_def *def = values;
+  mps_status status = check_user_law(context, function, def);
+  if (status == MPS_OK) status = check_moduli(context, function, def);
   if (status != MPS_OK) return status;
-  mps_material *material =
-      mpsi_material_new(context, function, MPSI_LAW_USER, def->name, def->history_count);
-  if (!material) return MPS_ERROR_MEMORY;
-  material->law = (mpsi_law){.update = def->update,
-                             .user = def->user,
-                             .viscosity = def->viscosity,
-                             .needs_deformation = def->needs_deformation == 1,
-                             .turns_stress = def->turns_stress == 1};
-  material->wave_modulus = def->wave_modulus;
-  for (int32_t c = 0; c < def->history_count; c++) {
-    strcpy(material->history_names[c], def->history[c]);
-    (void)snprintf(material->history_fields[c], sizeof material->history_fields[c], "%s.%s",
-                   def->name, def->history[c]);
-    if (def->history_initial) material->history_initial[c] = def->history_initial[c];
-  }
-  *out = material;
+  *law = (mpsi_law){.update = def->update,
+                    .user = def->user,
+                    .viscosity = def->viscosity,
+                    .needs_deformation = def->needs_deformation == 1,
+                    .turns_stress = def->turns_stress == 1,
+                    .history_count = def->history_count,
+                    .has_moduli = def->shear_modulus > 0.0,
+                    .shear = def->shear_modulus,
+                    .bulk = def->bulk_modulus};
+  if (def->bulk_modulus > 0.0) return MPS_OK;
+  law->shear = def->wave_modulus / 3.0; /* nu = 1/4 */
+  law->bulk = def->wave_modulus - 4.0 / 3.0 * law->shear;
   return MPS_OK;
 }
 
-mps_status mps_material_user(mps_context *context, const mps_user_law_def *user_def,
-                             mps_material **out) {
-  if (!context) return MPS_ERROR_ARGUMENT;
-  if (!out) return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT, "out is NULL");
-  *out = NULL;
-  mps_user_law_def def = user_law_defaults;
-  const mps_status status = MPSI_DEF_READ(context, __func__, mps_user_law_def, user_def, &def);
-  return status == MPS_OK ? mpsi_material_make_user(context, __func__, &def, out) : status;
+/* ---- what it writes --------------------------------------------------------------------------
+ */
+
+static bool all_finite(const double *column, int64_t count) {
+  bool good = true;
+  for (int64_t k = 0; k < count; k++) good &= fabs(column[k]) <= DBL_MAX; /* not of a NaN */
+  return good;
+}
+
+static mps_status refuse(const mps_material_block *block, const char *what, int number,
+                         const double *column, const char *allowed) {
+  int64_t k = 0;
+  while (isfinite(column[k]) && (number >= 0 || column[k] > 0.0)) k++;
+  char name[40];
+  (void)snprintf(name, sizeof name, number < 0 ? "%s" : "%s[%d]", what, number);
+  if (block->message)
+    (void)snprintf(block->message, (size_t)block->message_size, "%s is %g, must be %s", name,
+                   column[k], allowed);
+  if (block->refused) *block->refused = k;
+  return MPS_ERROR_NUMERIC;
+}
+
+mps_status mpsi_check_results(const mps_material_block *block, int32_t history_count) {
+  bool positive = all_finite(block->volume_ratio, block->count);
+  for (int64_t k = 0; k < block->count; k++) positive &= block->volume_ratio[k] > 0.0;
+  if (!positive) return refuse(block, "volume_ratio", -1, block->volume_ratio, "finite and > 0");
+  for (int c = 0; c < 2 * block->dim; c++)
+    if (!all_finite(block->stress[c], block->count))
+      return refuse(block, "stress", c, block->stress[c], "finite");
+  for (int32_t c = 0; c < history_count; c++)
+    if (!all_finite(block->history[c], block->count))
+      return refuse(block, "history", c, block->history[c], "finite");
+  return MPS_OK;
 }

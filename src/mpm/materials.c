@@ -9,7 +9,7 @@
 
 void mpsi_mpm_elastic(const mps_mpm *mpm, int64_t particle, double *wave, double *shear) {
   const mpsi_law_use *law = mpsi_law_of(mpm, particle);
-  *wave = law->modulus;
+  *wave = mpsi_material_rest_modulus(law->material);
   *shear = mpsi_material_shear(law->material);
 }
 

@@ -148,7 +148,7 @@ static void blocks_and_instruction_sets_change_no_bit(void **state) {
         for (int begin = 0, n = 1; begin < COUNT; begin += n, n = 2 * n + 1) {
           const int end = begin + n < COUNT ? begin + n : COUNT;
           const mps_material_block part = block_of(&cut, dim, kind > 0, begin, end);
-          assert_int_equal(table->apply[material->kind][kind](&material->law, &part), 0);
+          assert_int_equal(table->apply[material->type->kind][kind](&material->law, &part), 0);
         }
         assert_memory_equal(&whole, &cut, offsetof(columns, first));
       }

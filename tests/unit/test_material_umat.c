@@ -313,6 +313,8 @@ static void arguments_are_those_of_abaqus(void **unused) {
   mps_material_block deformed = block;
   for (int c = 0; c < 9; c++)
     if (c == 8 || block.gradient[c]) deformed.deformation[c] = flat.history[20 + c];
+  for (int c = 0; c < 9; c += 4)
+    for (int k = 0; k < COUNT; k++) flat.history[20 + c][k] = 1.0; /* no strain yet */
   mps_assert_ok(context, mps_material_update(context, material, &deformed));
   assert_true(spied.ndi == 3 && spied.nshr == 1 && spied.ntens == 4);
   mps_material_destroy(&material);

@@ -1,0 +1,98 @@
+/* kinds.h - the library's laws, one row each: all that anything but the law's own loop needs to
+ * know of it. From this list come the enumeration, the descriptors (kinds.c) and the loops for
+ * every geometry and instruction set (laws.c), so that a law lacks none of them: a row without one
+ * of its columns, or one that names a function that is not there, does not compile.
+ *
+ *   kind      MPSI_LAW_... of the enumeration
+ *   loop      the function of laws.c that applies it to a block, inlined for each geometry
+ *   name      of its materials; NULL: the definition gives it
+ *   columns   how many of plastic_strain, opening it has; of a user's law, what its definition adds
+ *   kept      what part of the work against its stresses it gives back
+ *   traits    MPSI_LAW_... bits, below
+ *   define    from its definition to its constants: all checks of the values
+ *   moduli    the wave moduli of a block in its present state; NULL: that of zero strain
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MATERIAL_KINDS_H
+#define MPSI_MATERIAL_KINDS_H
+
+#include "material_internal.h"
+
+/* clang-format off */
+#define MPSI_LAW_KINDS(X)                                                                          \
+  X(LINEAR_ELASTIC, linear_elastic_loop, "linear_elastic", 0, MPSI_KEPT_ALL,                       \
+    MPSI_LAW_IS_LINEAR,                           mpsi_define_elastic,        NULL)                \
+  X(VON_MISES,      von_mises_loop,      "von_mises",      1, MPSI_KEPT_ELASTIC,                   \
+    0,                                            mpsi_define_von_mises,      NULL)                \
+  X(DRUCKER_PRAGER, drucker_prager_loop, "drucker_prager", 2, MPSI_KEPT_ELASTIC,                   \
+    MPSI_LAW_OPENS,                               mpsi_define_drucker_prager, NULL)                \
+  X(MOHR_COULOMB,   mohr_coulomb_loop,   "mohr_coulomb",   2, MPSI_KEPT_ELASTIC,                   \
+    MPSI_LAW_OPENS,                               mpsi_define_mohr_coulomb,   NULL)                \
+  X(NEO_HOOKEAN,    neo_hookean_loop,    "neo_hookean",    0, MPSI_KEPT_ALL,                       \
+    MPSI_LAW_READS_VOLUME,                        mpsi_define_neo_hookean,    mpsi_neo_hookean_moduli) \
+  X(NEWTONIAN,      newtonian_loop,      "newtonian",      0, MPSI_KEPT_PRESSURE,                  \
+    MPSI_LAW_READS_VOLUME,                        mpsi_define_newtonian,      mpsi_newtonian_moduli)   \
+  X(USER,           user_loop,           NULL,             0, MPSI_KEPT_ALL,                       \
+    MPSI_LAW_READS_VOLUME | MPSI_LAW_MAY_REFUSE,  mpsi_define_user,           NULL)
+/* clang-format on */
+
+typedef enum mpsi_law_kind {
+#define MPSI_LAW_ENTRY(kind, loop, name, columns, kept, traits, define, moduli) MPSI_LAW_##kind,
+  MPSI_LAW_KINDS(MPSI_LAW_ENTRY)
+#undef MPSI_LAW_ENTRY
+      MPSI_LAW_COUNT
+} mpsi_law_kind;
+
+typedef enum mpsi_law_trait {
+  MPSI_LAW_IS_LINEAR = 1,    /* stress and strain are proportional, at every strain */
+  MPSI_LAW_READS_VOLUME = 2, /* V/V0 decides the stress */
+  MPSI_LAW_MAY_REFUSE = 4,   /* a block, with a reason */
+  MPSI_LAW_OPENS = 8         /* a gap opens between grains: its last column */
+} mpsi_law_trait;
+
+struct mpsi_law;
+
+/* Checks a definition and fills the constants. */
+typedef mps_status (*mpsi_define_fn)(mps_context *context, const char *function, const void *def,
+                                     struct mpsi_law *law);
+/* Writes an upper bound of K + 4G/3 (Pa) of each particle. */
+typedef void (*mpsi_moduli_fn)(const struct mpsi_law *law, const mps_material_block *block,
+                               double *moduli);
+
+typedef struct mpsi_law_type {
+  mpsi_law_kind kind;
+  const char *name;
+  int32_t columns;
+  mpsi_kept kept;
+  uint32_t traits;
+  mpsi_define_fn define;
+  mpsi_moduli_fn moduli;
+} mpsi_law_type;
+
+extern const mpsi_law_type mpsi_law_types[]; /* by kind */
+
+/* The definitions of the laws that are given by two numbers. */
+typedef struct mpsi_elastic_def {
+  double young, poisson;
+} mpsi_elastic_def;
+
+/* parameters.c; user.c; moduli.c */
+mps_status mpsi_define_elastic(mps_context *context, const char *function, const void *def,
+                               struct mpsi_law *law);
+mps_status mpsi_define_von_mises(mps_context *context, const char *function, const void *def,
+                                 struct mpsi_law *law);
+mps_status mpsi_define_drucker_prager(mps_context *context, const char *function, const void *def,
+                                      struct mpsi_law *law);
+mps_status mpsi_define_mohr_coulomb(mps_context *context, const char *function, const void *def,
+                                    struct mpsi_law *law);
+mps_status mpsi_define_neo_hookean(mps_context *context, const char *function, const void *def,
+                                   struct mpsi_law *law);
+mps_status mpsi_define_newtonian(mps_context *context, const char *function, const void *def,
+                                 struct mpsi_law *law);
+mps_status mpsi_define_user(mps_context *context, const char *function, const void *def,
+                            struct mpsi_law *law);
+void mpsi_neo_hookean_moduli(const struct mpsi_law *law, const mps_material_block *block,
+                             double *moduli);
+void mpsi_newtonian_moduli(const struct mpsi_law *law, const mps_material_block *block,
+                           double *moduli);
+
+#endif
