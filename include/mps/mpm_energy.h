@@ -11,7 +11,10 @@
  * back, and the energy of the contacts' springs. Of elastic laws that is all; of elastic-plastic
  * ones the change of the energy of the stress by Hooke's law; of fluids the work of the pressure;
  * of users' laws, which do not tell, all. Loads do work by the velocity that the nodes give the
- * particles, boundaries and bodies by their own.
+ * particles, boundaries and bodies by their own: a free body by the mean of before and after the
+ * step, so that `work_bodies` is minus the `work_contacts` of mps_body_totals, to rounding, of
+ * bodies that this solver alone moves. One that another solver moves does its work by the velocity
+ * that it has in this solver's step.
  *
  * Thread rule: as mps/mpm.h.
  * SPDX-License-Identifier: BSD-3-Clause */
@@ -34,7 +37,8 @@ typedef struct mps_mpm_losses {
   double transfer;   /* kinetic energy of the particles less that of the nodes before the forces,
                         and of the nodes less that of the particles after them. WLS takes energy
                         at lengths of a few cells; what a velocity gradient carries to the nodes
-                        comes back as a negative part */
+                        comes back as a negative part. With it the work of loads by the momentum that
+                        a node of hardly any or of negative mass returns to its particles */
   double stepping;   /* by the explicit step: impulses act at once, stresses and contacts by their
                         values at its beginning. Swings about 0 where all is smooth; an impact on
                         what holds or drives is here */

@@ -84,6 +84,9 @@ struct mps_body {
   mpsi_course ahead;  /* prescribed: at the end of the step being made */
   bool outside;       /* prescribed: moves as mps_body_set_motion said, not by the signals */
   mpsi_pose pose;
+  /* m/s, rad/s: those of the last advance by which forces do their work; of a free body the means
+   * of before it and after it, without damping */
+  double middle_v[3], middle_spin[3];
   double work_contacts, work_loads, dissipated; /* J: see mps_body_totals */
   mps_reaction reaction[MPS_BODY_MAX_PARTS];    /* by all sources */
   mpsi_load pending; /* N s, N m s: impulses by all sources since the body last moved */

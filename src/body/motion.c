@@ -144,7 +144,7 @@ static void advance_velocity(mps_body *body, const mpsi_load *contact, double dt
   for (int c = 0; c < 3; c++) {
     const double load = body->load.force[c], before = pose->v[c];
     const double v = before + dt * ((load + contact->force[c]) / def->mass + def->gravity[c]);
-    const double middle = 0.5 * (before + v);
+    const double middle = body->middle_v[c] = 0.5 * (before + v);
     body->work_contacts += dt * contact->force[c] * middle;
     body->work_loads += dt * (load + def->mass * def->gravity[c]) * middle;
     pose->v[c] = v / (1.0 + dt * def->damping[0]);
@@ -155,7 +155,8 @@ static void advance_velocity(mps_body *body, const mpsi_load *contact, double dt
 
 static void spin_in_plane(mps_body *body, const mpsi_load *contact, double dt) {
   const double I = body->def.inertia[2], before = body->pose.spin[2], load = body->load.moment[2];
-  const double w = before + dt * ((load + contact->moment[2]) / I), middle = 0.5 * (before + w);
+  const double w = before + dt * ((load + contact->moment[2]) / I);
+  const double middle = body->middle_spin[2] = 0.5 * (before + w);
   body->work_contacts += dt * contact->moment[2] * middle;
   body->work_loads += dt * load * middle;
   body->pose.spin[2] = w / (1.0 + dt * body->def.damping[1]);
@@ -171,7 +172,7 @@ static void spin_in_space(mps_body *body, const mpsi_load *contact, double dt) {
   find_spin(body, after);
   const double energy = 0.5 * mpsi_dot3(body->angular, after);
   for (int c = 0; c < 3; c++) {
-    const double middle = 0.5 * (before[c] + after[c]);
+    const double middle = body->middle_spin[c] = 0.5 * (before[c] + after[c]);
     body->work_contacts += dt * contact->moment[c] * middle;
     body->work_loads += dt * body->load.moment[c] * middle;
     body->angular[c] /= left;
@@ -189,6 +190,8 @@ mps_status mpsi_body_look_ahead(mps_body *body, const char *function, int32_t nu
 
 void mpsi_body_advance(mps_body *body, double dt) {
   body->time += dt;
+  memcpy(body->middle_v, body->pose.v, sizeof body->middle_v);
+  memcpy(body->middle_spin, body->pose.spin, sizeof body->middle_spin);
   if (body->def.motion == MPS_BODY_MOTION_PRESCRIBED) {
     if (body->outside)
       coast(body, dt);

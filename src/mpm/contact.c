@@ -82,17 +82,22 @@ static void add_loads(const mps_mpm *mpm, int32_t b, load_sums *sum) {
 static void react(mps_mpm *mpm, int32_t b, load_sums *sum) {
   mpsi_load load[MPS_BODY_MAX_PARTS] = {{{0}, {0}}};
   int64_t contacts[MPS_BODY_MAX_PARTS] = {0};
-  const mpsi_pose *pose = &mpm->contact.body[b]->pose;
-  for (int32_t part = 0; part < mpm->contact.body[b]->parts; part++) {
+  const mps_body *body = mpm->contact.body[b];
+  const bool moves = !mpm->settling.on;
+  for (int32_t part = 0; part < body->parts; part++) {
     for (int c = 0; c < 3; c++) {
       load[part].force[c] = mpsi_exact_value(&sum[part][FORCE + c]);
       load[part].moment[c] = mpsi_exact_value(&sum[part][MOMENT + c]);
     }
     contacts[part] = (int64_t)mpsi_exact_value(&sum[part][CONTACTS]);
-    mpm->energy.bodies -= mpm->run.dt * (mpsi_dot3(load[part].force, pose->v) +
-                                         mpsi_dot3(load[part].moment, pose->spin));
   }
-  mpsi_contact_react(mpm->contact.handle[b], mpm->run.dt, load, contacts, !mpm->settling.on);
+  mpsi_contact_react(mpm->contact.handle[b], mpm->run.dt, load, contacts, moves);
+  const bool moved = moves && mpm->contact.handle[b]->source.moves;
+  const double *v = moved ? body->middle_v : body->pose.v;
+  const double *spin = moved ? body->middle_spin : body->pose.spin;
+  for (int32_t part = 0; part < body->parts; part++)
+    mpm->energy.bodies -=
+        mpm->run.dt * (mpsi_dot3(load[part].force, v) + mpsi_dot3(load[part].moment, spin));
 }
 
 /* Reactions to the bodies, by the sums over all blocks on all ranks: exact, as who has which block

@@ -58,6 +58,17 @@ void mpsi_mpm_energy_moved(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t b
   of_cells(mpm, cells)->stresses += mpm->run.dt * stresses;
 }
 
+void mpsi_mpm_energy_given_back(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t particle,
+                                const double *v) {
+  const mpsi_columns *p = &mpm->p;
+  double power = 0.0;
+  for (int a = 0; a < mpm->dim; a++)
+    power += (p->m[particle] * mpm->def.gravity[a] + (p->f[a] ? p->f[a][particle] : 0.0)) * v[a];
+  if (mpm->def.geometry == MPS_MPM_AXISYMMETRIC)
+    power -= p->V[particle] * p->s[2][particle] * v[0] / p->x[0][particle];
+  of_cells(mpm, cells)->returned += mpm->run.dt * power;
+}
+
 void mpsi_mpm_energy_keep(const mps_mpm *mpm, int64_t begin, int64_t end, mpsi_before_law *out) {
   const size_t bytes = (size_t)(end - begin) * sizeof(double);
   for (int c = 0; c < 2 * mpm->dim; c++) memcpy(out->stress[c], mpm->p.s[c] + begin, bytes);
@@ -203,7 +214,7 @@ static void add_cells(mps_mpm *mpm) {
     const mpsi_cell_energy *e = &mpm->energy.cells[b];
     if (mpm->grid.cells[b].ghost) continue;
     mpsi_mpm_energy_add(mpm, MPSI_ENERGY_KINETIC, e->kinetic - e->kinetic_before);
-    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_TRANSFER, e->kinetic_before - e->kinetic);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_TRANSFER, e->kinetic_before - e->kinetic + e->returned);
     mpsi_mpm_energy_add(mpm, MPSI_ENERGY_KEPT, e->kept);
     mpsi_mpm_energy_add(mpm, MPSI_ENERGY_SPENT, e->spent);
     mpsi_mpm_energy_add(mpm, MPSI_ENERGY_LOADS, e->loads);

@@ -25,6 +25,7 @@
 typedef struct mpsi_cell_energy {
   double kinetic_before, kinetic;
   double loads;    /* work of gravity, loads and fields of forces */
+  double returned; /* its part by the velocities that light nodes give back (fitted.c) */
   double stresses; /* work of the nodes against the stresses at the beginning of the step */
   double seen;     /* the same by the gradient that the laws see */
   double kept;     /* work against the mean stresses of the step that the laws keep */
@@ -83,6 +84,10 @@ mps_status mpsi_mpm_energy_begin(mps_mpm *mpm, const char *function);
 /* Particles [begin, end) of a block: before and after G2P. */
 void mpsi_mpm_energy_before(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end);
 void mpsi_mpm_energy_moved(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end);
+/* Of a particle: `v`, the part of its new velocity that light nodes give back. The nodes' forces do
+ * no work by it, as the fit knows nothing of it. */
+void mpsi_mpm_energy_given_back(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t particle,
+                                const double *v);
 /* Particles of one law, at most 64 of them: before it, and after. */
 void mpsi_mpm_energy_keep(const mps_mpm *mpm, int64_t begin, int64_t end, mpsi_before_law *out);
 void mpsi_mpm_energy_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_law_use *law,

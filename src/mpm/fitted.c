@@ -436,7 +436,14 @@ MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const m
     if (dim == 3) moment[2] += at.at.s[2][k] * share;
   }
   mpsi_put(out->v, sum);
-  if (cells->light) give_back(mpm, cells, dim, spline, particle, &at, &f, out->v);
+  if (cells->light) {
+    give_back(mpm, cells, dim, spline, particle, &at, &f, out->v);
+    if (mpm->energy.counts) {
+      const mpsi_quad back = mpsi_get(out->v) - sum;
+      const double extra[3] = {back[MPSI_VECTOR], back[MPSI_VECTOR + 1], back[MPSI_VECTOR + 2]};
+      mpsi_mpm_energy_given_back(mpm, cells, particle, extra);
+    }
+  }
   for (int d = 0; d < dim; d++) mpsi_put(out->slope[d], by[d]), mpsi_put(out->derivative[d], by[d]);
   if (!bodies && !mpm->standard)
     find_strain(mpm, cells, worker, dim, spline, &at, &f, out->derivative);
