@@ -43,6 +43,8 @@ static int complete(const options_program *program, tank_settings *s) {
   if (isnan(s->stiffness))
     s->stiffness = kind == TANK_RESONANCE ? tank_resonant_stiffness(s, s->ratio) : 211800.0;
   if (isnan(s->amplitude)) s->amplitude = usual[kind].amplitude;
+  if (isnan(s->disturb)) /* a drop's lattice would be stretched until it buckles */
+    s->disturb = kind == TANK_DROP ? 0.1 : 0.0;
   if (kind == TANK_SPRING && !given_amplitude) /* else the water would have to pull */
     s->amplitude = fmin(s->amplitude, 0.4 * WAVES_G / pow(tank_spring_omega(s), 2.0));
   if (isnan(s->window[0])) s->window[0] = fmax(s->duration - last, 0.0);
@@ -138,6 +140,7 @@ int main(int argc, char **argv) {
                                .depth = NAN,
                                .spacing = NAN,
                                .amplitude = NAN,
+                               .disturb = NAN,
                                .period = 1.0,
                                .ramp = 1.0,
                                .duration = NAN,
@@ -206,8 +209,10 @@ int main(int argc, char **argv) {
       OPTION_NUMBER("spacing", "m", OPTION_LENGTH, &s->spacing,
                     "of the particles (default .02, on a plate .05, of a drop a twentieth of its "
                     "radius)"),
-      OPTION_NUMBER("disturb", "spacings", OPTION_FROM_TO(0.0, 0.2), &s->disturb,
-                    "random displacement of the particles at the start, at most"),
+      OPTION_NUMBER(
+          "disturb", "spacings", OPTION_FROM_TO(0.0, 0.2), &s->disturb,
+          "random displacement of the particles at the start, at most (default 0, of a drop "
+          ".1)"),
       OPTION_CHOICE(
           "scheme", "modern|classical", &s->scheme,
           "the library's; the first one of MPS, for comparison: noisy pressures, no levels"),

@@ -45,6 +45,8 @@ static mps_status fill_drop(const tank_settings *s, mps_particles *water) {
   mps_view x;
   mps_edit u;
   mps_status status = mps_particles_fill_ball(water, middle, s->depth, NULL);
+  if (status == MPS_OK && s->disturb > 0.0)
+    status = waves_disturb(water, s->disturb * s->spacing, 1);
   if (status == MPS_OK) status = mps_particles_add_field(water, "velocity", 0);
   if (status == MPS_OK) status = mps_particles_view(water, "position", &x);
   if (status == MPS_OK) status = mps_particles_edit(water, "velocity", &u);
