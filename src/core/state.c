@@ -18,7 +18,8 @@ static mps_status list(const mpsi_state_of *of, const char *function, mpsi_state
 
 mps_status mpsi_state_get(const mpsi_state_of *of, const char *function, mps_snapshot *out) {
   mpsi_state s;
-  const mps_status status = list(of, function, &s);
+  mps_status status = of->particles ? mpsi_particles_ready(of->particles, function) : MPS_OK;
+  if (status == MPS_OK) status = list(of, function, &s);
   if (status != MPS_OK) return status;
   bool good = mpsi_values_reserve(of->context, &out->state, s.count);
   for (int32_t k = 0; good && k < s.count; k++)

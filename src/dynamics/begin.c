@@ -41,6 +41,7 @@ mps_status mpsi_dynamics_begin(mps_dynamics *dynamics, const char *function, dou
 mps_status mps_dynamics_restart(mps_dynamics *dynamics, double time) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_dynamics_enter(dynamics, __func__);
+  if (status == MPS_OK) status = mpsi_particles_ready(dynamics->particles, __func__);
   if (status != MPS_OK) return status;
   if (!isfinite(time))
     return mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT,

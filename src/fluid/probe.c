@@ -317,6 +317,10 @@ mps_status mps_fluid_get_levels(mps_fluid *f, int64_t count, const double *stati
   if (count < 0 || (count > 0 && (!station || !level)))
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
                      "count is %lld, station and level must be given", (long long)count);
+  for (int64_t k = 0; k < count; k++)
+    if (!isfinite(station[k]))
+      return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                       "station %lld is %g m, must be finite", (long long)k, station[k]);
   const mps_status status = mpsi_fluid_know(f, __func__);
   if (status != MPS_OK) return status;
   const double *x = mpsi_particles_column(f->particles, "position", 0);

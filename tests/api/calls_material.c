@@ -280,8 +280,9 @@ static void material_update(api *a) {
   block.count = api_least(a, "count", 0, BLOCK);
   block.dt = api_real(a, "dt", 5e-324, DBL_MAX, 1e-3);
   double slope[9];
+  const int before = a->wrong;
   api_vector(a, "gradient", 9, 0.0, 1.0, slope);
-  a->wrong -= a->wrong > 0 && strcmp(a->wrong_name, "gradient") == 0; /* not looked at */
+  a->wrong = before; /* values are not looked at */
   for (int k = 0; k < 9; k++) {
     for (int i = 0; i < BLOCK; i++) columns[k][i] = slope[k], columns[9 + k][i] = k % 4 == 0;
     block.gradient[k] = columns[k];

@@ -116,7 +116,7 @@ static void mpm_set_boundary(api *a) {
   mps_mpm_boundary_def def;
   int64_t ids[8];
   mps_mpm *mpm = api_any(a, API_MPM)->handle;
-  const int32_t number = (int32_t)api_whole(a, "number", 0, 8);
+  const int32_t number = (int32_t)api_least(a, "number", 0, 8);
   draw_boundary(a, mpm, &def, ids, number < 6);
   api_arm(a);
   (void)api_end(a, mps_mpm_set_boundary(mpm, number, api_null(a, "def") ? NULL : &def));
@@ -153,7 +153,7 @@ static void mpm_set_load(api *a) {
   int64_t ids[8] = {0};
   double area[8];
   mps_mpm *mpm = api_any(a, API_MPM)->handle;
-  const int32_t number = (int32_t)api_whole(a, "number", 0, 2);
+  const int32_t number = (int32_t)api_least(a, "number", 0, 2);
   draw_load(a, mpm, &def, ids, area);
   if (api_chance(a, 30)) def.ids = NULL, def.id_count = 0;
   if (!def.ids && def.area) def.area = NULL, a->wrong = 0;

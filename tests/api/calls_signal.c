@@ -168,7 +168,7 @@ static void coupling_create(api *a) {
   if (a->mood == API_ABSURD && api_chance(a, 20)) def.size = 0, api_wrong(a, "size");
   def.relaxation = api_real(a, "relaxation", 5e-324, 1.0, 0.5);
   def.tolerance = api_real(a, "tolerance", 5e-324, nextafter(1.0, 0.0), 1e-4);
-  def.floor = api_real(a, "floor", 0.0, 1e300, 0.0);
+  def.floor = api_real(a, "floor", 0.0, DBL_MAX, 0.0);
   def.filter = api_real(a, "filter", 0.0, nextafter(1.0, 0.0), 1e-4);
   def.repeats = (int32_t)api_least(a, "repeats", 1, 20);
   def.reuse = (int32_t)api_least(a, "reuse", 0, 5);

@@ -67,8 +67,9 @@ static const api_call *choose_call(api *a) {
 }
 
 static void remove_files(const api *a) {
-  static const char *const names[] = {"record.csv", "body.stl", "mpm.h5", "dynamics.h5",
-                                      "elastic.h5", "fluid.h5", "set.h5", "frames.vtkhdf"};
+  static const char *const names[] = {"record.csv",  "body.stl",   "mpm.h5",
+                                      "dynamics.h5", "elastic.h5", "fluid.h5",
+                                      "set.h5",      "frames.h5",  "other.h5"};
   char path[400];
   for (int k = 0; k < API_COUNT(names); k++) {
     snprintf(path, sizeof path, "%s/%s", a->folder, names[k]);

@@ -173,9 +173,10 @@ static void look_dynamics(look *l, mps_dynamics *dynamics) {
   mps_dynamics_def def;
   add_real(l, "time", mps_dynamics_time(dynamics));
   add_whole(l, "steps", mps_dynamics_steps(dynamics));
-  if (mps_dynamics_get_def(dynamics, &def) == MPS_OK) add_real(l, "dt", def.dt);
-  add_real(l, "limit", mps_dynamics_limit(dynamics));
-  const mps_status status = mps_dynamics_get_totals(dynamics, &totals);
+  /* Where dt is not yet chosen, totals would choose it. */
+  const bool chosen = mps_dynamics_get_def(dynamics, &def) == MPS_OK && !isnan(def.dt);
+  add_real(l, "dt", chosen ? def.dt : 0.0);
+  const mps_status status = chosen ? mps_dynamics_get_totals(dynamics, &totals) : MPS_ERROR_STATE;
   add_totals(l, status, &totals);
   LOOK_REACTIONS(mps_dynamics_get_reaction, dynamics, "reaction", 4)
   look_lent(l, mps_dynamics_particles(dynamics));

@@ -6,7 +6,9 @@
 #include <stdlib.h>
 
 const api_table *const api_tables[] = {&api_context_calls,  &api_particles_calls, &api_signal_calls,
-                                       &api_material_calls, &api_body_calls,      &api_mpm_calls};
+                                       &api_material_calls, &api_body_calls,      &api_mpm_calls,
+                                       &api_dynamics_calls, &api_elastic_calls,   &api_fluid_calls,
+                                       &api_io_calls};
 const int api_table_count = API_COUNT(api_tables);
 
 /* Exported functions that nothing here calls, and why. A new function belongs into a table. */
@@ -140,19 +142,41 @@ static void scene_mpm(api *a) {
   }
 }
 
+static void scene_dynamics(api *a) {
+  a->dim = 2;
+  particles(a);
+  set_field(a, "density", 1000.0);
+  set_field(a, "shear_velocity", 20.0);
+  set_field(a, "pressure_velocity", 40.0);
+  if (api_chance(a, 50)) set_field(a, "damping", 0.02);
+  api_do(a, "mps_dynamics_create");
+}
+
+static void scene_elastic(api *a) {
+  particles(a);
+  set_field(a, "young", 1e6);
+  set_field(a, "poisson", 0.3);
+  set_field(a, "density", 1000.0);
+  api_do(a, "mps_elastic_create");
+  api_do(a, "mps_elastic_add_boundary");
+  api_do(a, api_chance(a, 60) ? "mps_elastic_start" : "mps_elastic_solve");
+}
+
+static void scene_fluid(api *a) {
+  a->dim = 2;
+  particles(a);
+  api_do(a, "mps_fluid_create");
+  for (int k = 0; k < 3; k++) api_do(a, "mps_fluid_add_boundary");
+}
+
 void api_scene(api *a) {
+  static void (*const scenes[])(api *) = {particles,     scene_mpm,     scene_mpm,   scene_dynamics,
+                                          scene_elastic, scene_elastic, scene_fluid, scene_fluid};
   a->latest = true;
   a->mood = API_VALID;
   api_do(a, "mps_context_create");
   if (api_chance(a, 40)) api_do(a, "mps_signal_sine");
   if (api_chance(a, 40)) api_do(a, "mps_signal_user");
-  switch (api_below(a, 4)) {
-  case 0:
-    particles(a);
-    break;
-  default:
-    scene_mpm(a);
-    break;
-  }
+  scenes[api_below(a, API_COUNT(scenes))](a);
   a->latest = false;
 }

@@ -265,6 +265,9 @@ static void a_tank_runs_empty(void **state) {
   const double middle = 0.25;
   mps_view x;
   mps_assert_ok(context, mps_fluid_get_levels(t.fluid, 1, &middle, &level));
+  const double nowhere = NAN;
+  mps_assert_fails(context, mps_fluid_get_levels(t.fluid, 1, &nowhere, &level), MPS_ERROR_ARGUMENT,
+                   "station 0 is nan m, must be finite");
   mps_assert_ok(context, mps_particles_view(t.water, "position", &x));
   for (int64_t i = 0; i < mps_particles_count(t.water); i++)
     mps_assert_near(*mps_view_f64(&x, i, 1), 0.05 - 0.5 * TANK_G * 0.25, 0.12);

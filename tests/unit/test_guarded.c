@@ -140,6 +140,34 @@ static void a_step_waits_for_the_commit(void **state) {
 }
 
 /* Each of these was a heap overflow, a crash or silently wrong before. */
+/* What is half written is neither kept nor begun with: it may be put back, or refused. */
+static void states_wait_for_the_commit(void **state) {
+  (void)state;
+  mps_particles *set = make_set(context, 4.0);
+  mps_dynamics_def def = mps_dynamics_defaults();
+  mps_dynamics *dynamics = NULL;
+  mps_snapshot *snapshot = NULL;
+  mps_edit v;
+  mps_assert_ok(context, mps_particles_set(set, "shear_velocity", 0, 100.0));
+  mps_assert_ok(context, mps_particles_set(set, "pressure_velocity", 0, 200.0));
+  mps_assert_ok(context, mps_dynamics_create(context, set, &def, &dynamics));
+  mps_assert_ok(context, mps_particles_edit(set, "velocity", &v));
+  *mps_edit_f64(&v, 0, 0) = NAN;
+  const char *text = "field 'velocity' is being edited";
+  mps_assert_fails(context, mps_dynamics_snapshot(dynamics, &snapshot), MPS_ERROR_STATE, text);
+  assert_null(snapshot);
+  mps_assert_fails(context, mps_dynamics_restart(dynamics, 0.0), MPS_ERROR_STATE, text);
+  const mps_status saved = mps_dynamics_save(dynamics, TEST_TMP "/half_written.h5", NULL);
+  assert_true(saved == MPS_ERROR_STATE || saved == MPS_ERROR_UNSUPPORTED);
+  mps_assert_ok(context, mps_particles_abandon(set, &v));
+  mps_assert_ok(context, mps_dynamics_snapshot(dynamics, &snapshot));
+  mps_assert_ok(context, mps_dynamics_step(dynamics, 1));
+  mps_assert_ok(context, mps_dynamics_rollback(dynamics, snapshot));
+  mps_snapshot_destroy(&snapshot);
+  mps_dynamics_destroy(&dynamics);
+  mps_particles_destroy(&set);
+}
+
 static void a_solver_never_meets_a_position_outside_its_domain(void **state) {
   (void)state;
   mps_particles *set = make_set(context, 2.0);
@@ -556,6 +584,7 @@ int main(void) {
       cmocka_unit_test(views_are_for_reading_and_edits_for_writing),
       cmocka_unit_test(commit_checks_values_and_names_the_particle),
       cmocka_unit_test(a_step_waits_for_the_commit),
+      cmocka_unit_test(states_wait_for_the_commit),
       cmocka_unit_test(a_solver_never_meets_a_position_outside_its_domain),
       cmocka_unit_test(a_move_between_steps_is_a_translation),
       cmocka_unit_test(the_limit_follows_the_callers_velocity),

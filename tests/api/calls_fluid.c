@@ -1,0 +1,332 @@
+/* calls_fluid.c - free-surface flow: walls, bodies, loads, steps in parts, readings.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "calls_solver.h"
+
+#include <mps/experimental.h>
+#include <mps/fluid_solver.h>
+#include <mps/mps.h>
+
+#define SOLVER_DT(s) mps_fluid_dt(s)
+API_SOLVER(fluid, API_FLUID)
+API_INIT(fluid_def)
+API_INIT(fluid_boundary_def)
+API_INIT(fluid_load_def)
+API_INIT(fluid_solver_def)
+
+static void fluid_create(api *a) {
+  api_begin(a, "mps_fluid_create");
+  mps_fluid *made = NULL;
+  mps_context *context = api_context(a);
+  mps_particles *set = api_any(a, API_SET)->handle;
+  mps_fluid_def def = mps_fluid_defaults();
+  def.struct_size = api_struct_size(a, sizeof def);
+  def.iterations = (int32_t)api_least(a, "iterations", a->latest ? 500 : 1, 2000);
+  if (def.iterations > 0) a->wrong = 0;
+  def.density = api_real(a, "density", 5e-324, 1e300, 1000.0);
+  def.viscosity = api_real(a, "viscosity", 0.0, 1e300, api_chance(a, 60) ? 0.0 : 1e-3);
+  if (api_chance(a, 10)) def.gravity[1] = 0.0;
+  def.measure = api_real(a, "measure", 5e-324, 1e300, 1.0);
+  if (api_chance(a, 40)) def.dt = api_real(a, "dt", 5e-324, 1e300, 2e-3);
+  if (isnan(def.dt) && a->wrong && strcmp(a->wrong_name, "dt") == 0) a->wrong--;
+  if (api_chance(a, 20)) def.level = api_optional(a, "level", -1e12, 1e12, 0.6);
+  def.tolerance = api_real(a, "tolerance", 1e-14, 1e-2, 1e-5);
+  if (!a->latest && api_chance(a, 5)) def.kernel = api_maybe(a, API_KERNEL, "kernel");
+  if (a->wrong == 1 && strcmp(a->wrong_name, "level") == 0) a->wrong = 0;
+  const mps_status status =
+      mps_fluid_create(context, set, a->wrong == 0 && api_chance(a, 5) ? NULL : &def,
+                       api_null(a, "out") ? NULL : &made);
+  (void)api_end_made(a, status, API_FLUID, made, NULL);
+}
+
+/* ---- walls ----------------------------------------------------------------------------------- */
+
+static void draw_boundary(api *a, mps_fluid_boundary_def *def, int which, double nodes[6]) {
+  static const double points[3][2] = {{0.0, 0.0}, {0.0, 0.0}, {0.6, 0.0}};
+  static const double normals[3][2] = {{0.0, 1.0}, {1.0, 0.0}, {-1.0, 0.0}};
+  *def = mps_fluid_boundary_defaults();
+  def->struct_size = api_struct_size(a, sizeof *def);
+  if (!a->latest) def->kind = api_choice(a, "kind", 3);
+  for (int c = 0; c < 2; c++) {
+    def->point[c] = a->latest ? points[which][c] : api_near(a, "point", points[which][c], 0.02);
+    def->normal[c] = a->latest ? normals[which][c] : api_near(a, "normal", normals[which][c], 0.1);
+  }
+  api_say(a, "wall %d, ", which);
+  if (api_chance(a, 30)) def->signal = api_maybe(a, API_SIGNAL, "signal");
+  if (def->signal) def->factor = api_near(a, "factor", 1.0, 0.5);
+  if (!def->signal && !a->latest && api_chance(a, 20)) {
+    const double along[] = {def->point[0],
+                            def->point[1],
+                            0.0,
+                            def->point[0] - def->normal[1] * 0.5,
+                            def->point[1] + def->normal[0] * 0.5,
+                            0.0};
+    memcpy(nodes, along, sizeof along);
+    def->nodes = nodes, def->node_count = 2;
+    api_say(a, "2 nodes, ");
+  }
+}
+
+static void fluid_add_boundary(api *a) {
+  api_begin(a, "mps_fluid_add_boundary");
+  mps_fluid_boundary_def def;
+  double nodes[6];
+  int32_t number = -1;
+  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
+  int which = (int)api_below(a, 3);
+  mps_reaction r; /* of a scene: one wall after the other */
+  while (a->latest && which > 0 && mps_fluid_get_reaction(fluid, which - 1, &r) != MPS_OK) which--;
+  if (a->latest && mps_fluid_get_reaction(fluid, which, &r) == MPS_OK) which = (which + 1) % 3;
+  draw_boundary(a, &def, which, nodes);
+  api_arm(a);
+  (void)api_end(a, mps_fluid_add_boundary(fluid, api_null(a, "def") ? NULL : &def,
+                                          api_chance(a, 80) ? &number : NULL));
+}
+
+static void fluid_set_boundary(api *a) {
+  api_begin(a, "mps_fluid_set_boundary");
+  mps_fluid_boundary_def def;
+  double nodes[6];
+  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
+  const int32_t number = (int32_t)api_least(a, "number", 0, 2);
+  draw_boundary(a, &def, number >= 0 && number < 3 ? number : 0, nodes);
+  api_arm(a);
+  (void)api_end(a, mps_fluid_set_boundary(fluid, number, &def));
+}
+
+static void fluid_set_wall_motion(api *a) {
+  api_begin(a, "mps_fluid_set_wall_motion");
+  double s[2], v[2];
+  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
+  const int32_t number = (int32_t)api_least(a, "number", 0, 2);
+  const int before = a->wrong;
+  api_vector(a, "displacement", 2, 0.0, 1e-3, s);
+  api_vector(a, "velocity", 2, 0.0, 0.05, v);
+  if (isfinite(s[0]) && isfinite(v[0])) a->wrong = before; /* most walls have one node */
+  if (api_chance(a, 30)) {
+    a->wrong = before + !isfinite(v[0]);
+    (void)api_end(a, mps_fluid_set_wall_motion(fluid, number, NULL, v));
+  } else {
+    (void)api_end(a, mps_fluid_set_wall_motion(fluid, number, s, v));
+  }
+}
+
+static void fluid_get_wall(api *a) {
+  api_begin(a, "mps_fluid_get_wall");
+  double x[3 * 33], pressure[33];
+  int64_t count = -1;
+  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
+  const int32_t number = (int32_t)api_least(a, "number", 0, 3);
+  int64_t capacity = (int64_t)api_below(a, 33);
+  if (a->mood == API_ABSURD && api_chance(a, 20)) capacity = -1, api_wrong(a, "capacity");
+  const mps_status status =
+      mps_fluid_get_wall(fluid, number, capacity, api_chance(a, 80) ? x : NULL, pressure, &count);
+  for (int64_t k = 0; status == MPS_OK && k < count && k < capacity; k++)
+    if (!isfinite(pressure[k])) api_broken(a, "pressure %g", pressure[k]);
+  a->reads = false; /* readings before a step fill `surface_rise` and others */
+  (void)api_end(a, status);
+}
+
+static void fluid_get_pressure(api *a) {
+  api_begin(a, "mps_fluid_get_pressure");
+  double x[3] = {0}, pressure[1] = {0};
+  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
+  const int32_t number = (int32_t)api_least(a, "number", 0, 2);
+  x[number == 0 ? 0 : 1] = api_near(a, "x", 0.2, 0.1);
+  if (number == 2) x[0] = 0.6;
+  const mps_status status = mps_fluid_get_pressure(fluid, number, 1, x, pressure);
+  if (status == MPS_OK && !isfinite(pressure[0])) api_broken(a, "pressure %g", pressure[0]);
+  a->reads = false; /* readings before a step fill `surface_rise` and others */
+  (void)api_end(a, status);
+}
+
+static void fluid_get_levels(api *a) {
+  api_begin(a, "mps_fluid_get_levels");
+  double station[2], level[2] = {0};
+  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
+  api_vector(a, "station", 2, 0.3, 0.5, station);
+  const int64_t count = api_least(a, "count", 0, 2);
+  if (count == 0 || (count == 1 && isfinite(station[0]))) a->wrong = !fluid;
+  const mps_status status = mps_fluid_get_levels(fluid, count, station, level);
+  a->reads = false; /* readings before a step fill `surface_rise` and others */
+  (void)api_end(a, status);
+}
+
+/* ---- bodies and loads ------------------------------------------------------------------------ */
+
+static void fluid_add_body(api *a) {
+  api_begin(a, "mps_fluid_add_body");
+  int32_t number = -1;
+  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
+  mps_body *body = api_any(a, API_BODY)->handle;
+  (void)api_end(a, mps_fluid_add_body(fluid, body, api_choice(a, "kind", 2), &number));
+}
+
+static void fluid_remove_body(api *a) {
+  api_begin(a, "mps_fluid_remove_body");
+  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
+  (void)api_end(a, mps_fluid_remove_body(fluid, (int32_t)api_least(a, "number", 0, 1)));
+}
+
+static void fluid_float_body(api *a) {
+  api_begin(a, "mps_fluid_float_body");
+  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
+  const int32_t number = (int32_t)api_least(a, "number", 0, 1);
+  (void)api_end(a, mps_fluid_float_body(fluid, number, (int32_t)api_below(a, 2)));
+}
+
+static void fluid_get_body_reaction_sized(api *a) {
+  api_begin(a, "mps_fluid_get_body_reaction_sized");
+  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
+  const int32_t number = (int32_t)api_least(a, "number", 0, 1);
+  API_SIZED(a, mps_reaction, size, out);
+  const mps_status status = mps_fluid_get_body_reaction_sized(fluid, number, out, size);
+  API_SIZED_END(a, status, size, out, true);
+}
+
+static void draw_load(api *a, mps_fluid *fluid, mps_fluid_load_def *def, int64_t *ids) {
+  *def = mps_fluid_load_defaults();
+  def->struct_size = api_struct_size(a, sizeof *def);
+  def->kind = api_choice(a, "kind", 2);
+  if (api_chance(a, 30)) {
+    def->id_count = api_ids(a, mps_fluid_particles(fluid), 4, ids);
+    def->ids = def->id_count ? ids : NULL;
+  } else if (api_chance(a, 30)) {
+    const int before = a->wrong;
+    def->lower[1] = api_near(a, "lower", 0.3, 0.2);
+    a->wrong = before;
+  }
+  if (def->kind == MPS_FLUID_LOAD_PRESSURE)
+    def->pressure = api_real(a, "pressure", -1e12, 1e12, 100.0);
+  else
+    api_vector(a, "acceleration", 2, 0.0, 1.0, def->acceleration);
+  if (api_chance(a, 40)) def->signal[0] = api_maybe(a, API_SIGNAL, "signal");
+}
+
+static void fluid_add_load(api *a) {
+  api_begin(a, "mps_fluid_add_load");
+  mps_fluid_load_def def;
+  int64_t ids[8] = {0};
+  int32_t number = -1;
+  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
+  draw_load(a, fluid, &def, ids);
+  (void)api_end(a, mps_fluid_add_load(fluid, api_null(a, "def") ? NULL : &def, &number));
+}
+
+static void fluid_set_load(api *a) {
+  api_begin(a, "mps_fluid_set_load");
+  mps_fluid_load_def def;
+  int64_t ids[8] = {0};
+  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
+  const int32_t number = (int32_t)api_least(a, "number", 0, 1);
+  draw_load(a, fluid, &def, ids);
+  (void)api_end(a, mps_fluid_set_load(fluid, number, &def));
+}
+
+/* ---- a step in parts ------------------------------------------------------------------------- */
+
+static void fluid_begin_step(api *a) {
+  api_begin(a, "mps_fluid_begin_step");
+  api_object *o = api_any(a, API_FLUID);
+  double dt = api_chance(a, 50) ? NAN : mps_fluid_dt(o->handle);
+  if (a->mood == API_ABSURD && api_chance(a, 30)) dt = -1.0, api_wrong(a, "dt");
+  api_say(a, "dt = %g, ", dt);
+  api_run_solver(a, API_FLUID, o);
+  a->change = API_CHANGES_ORDER;
+  (void)api_end(a, mps_fluid_begin_step(o->handle, dt));
+}
+
+static void fluid_solve_pressure(api *a) {
+  api_begin(a, "mps_fluid_solve_pressure");
+  api_object *o = api_any(a, API_FLUID);
+  api_run_solver(a, API_FLUID, o);
+  const mps_status status = mps_fluid_solve_pressure(o->handle);
+  if (status == MPS_ERROR_NUMERIC) a->change = API_CHANGES_ALL; /* the pressure so far */
+  (void)api_end(a, status);
+}
+
+static void fluid_end_step(api *a) {
+  api_begin(a, "mps_fluid_end_step");
+  api_object *o = api_any(a, API_FLUID);
+  api_run_solver(a, API_FLUID, o);
+  (void)api_end(a, mps_fluid_end_step(o->handle));
+}
+
+static void fluid_abandon_step(api *a) {
+  api_begin(a, "mps_fluid_abandon_step");
+  (void)api_end(a, mps_fluid_abandon_step(api_any(a, API_FLUID)->handle));
+}
+
+static void fluid_get_report_sized(api *a) {
+  api_begin(a, "mps_fluid_get_report_sized");
+  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
+  API_SIZED(a, mps_fluid_report, size, out);
+  const mps_status status =
+      mps_fluid_get_report_sized(fluid, api_null(a, "out") ? NULL : out, size);
+  API_SIZED_END(a, status, size, out, true);
+}
+
+/* ---- a foreign solver, which does not solve -------------------------------------------------- */
+
+static mps_status take_matrix(void *user, int64_t rows, const int64_t *start, const int32_t *column,
+                              const double *value) {
+  (void)rows, (void)start, (void)column, (void)value;
+  return api_callback(user, NULL, 0);
+}
+
+static mps_status give_start(void *user, const double *b, double tolerance, double *x,
+                             int64_t *iterations) {
+  (void)b, (void)tolerance;
+  *iterations = 1;
+  return api_callback(user, x, 1);
+}
+
+static mps_status forget(void *user) { return api_callback(user, NULL, 0); }
+
+static void fluid_set_solver(api *a) {
+  api_begin(a, "mps_fluid_set_solver");
+  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
+  mps_fluid_solver_def def = mps_fluid_solver_defaults();
+  def.struct_size = api_struct_size(a, sizeof def);
+  def.user = a;
+  def.matrix = api_null(a, "matrix") ? NULL : take_matrix;
+  def.solve = api_null(a, "solve") ? NULL : give_start;
+  def.least = api_least(a, "least", 0, 40);
+  if (api_chance(a, 50)) def.forget = forget;
+  const bool out = a->wrong == 0 && api_chance(a, 60);
+  (void)api_end(a, mps_fluid_set_solver(fluid, out ? NULL : &def));
+}
+
+static void experimental_classical(api *a) {
+  api_begin(a, "mps_experimental_fluid_classical");
+  mps_fluid *fluid = api_any(a, API_FLUID)->handle;
+  (void)api_end(a, mps_experimental_fluid_classical(fluid, api_real(a, "gamma", 5e-324, 1.0, 0.2)));
+}
+
+static const api_call calls[] = {
+    API_SOLVER_CALLS(fluid, API_FLUID),
+    {"mps_fluid_def_init", 1, API_NOTHING, init_fluid_def},
+    {"mps_fluid_boundary_def_init", 1, API_NOTHING, init_fluid_boundary_def},
+    {"mps_fluid_load_def_init", 1, API_NOTHING, init_fluid_load_def},
+    {"mps_fluid_solver_def_init", 1, API_NOTHING, init_fluid_solver_def},
+    {"mps_fluid_create", 5, API_SET, fluid_create},
+    {"mps_fluid_add_boundary", 4, API_FLUID, fluid_add_boundary},
+    {"mps_fluid_set_boundary", 3, API_FLUID, fluid_set_boundary},
+    {"mps_fluid_set_wall_motion", 4, API_FLUID, fluid_set_wall_motion},
+    {"mps_fluid_get_wall", 1, API_FLUID, fluid_get_wall},
+    {"mps_fluid_get_pressure", 2, API_FLUID, fluid_get_pressure},
+    {"mps_fluid_get_levels", 1, API_FLUID, fluid_get_levels},
+    {"mps_fluid_add_body", 3, API_FLUID, fluid_add_body},
+    {"mps_fluid_remove_body", 1, API_FLUID, fluid_remove_body},
+    {"mps_fluid_float_body", 2, API_FLUID, fluid_float_body},
+    {"mps_fluid_get_body_reaction_sized", 1, API_FLUID, fluid_get_body_reaction_sized},
+    {"mps_fluid_add_load", 3, API_FLUID, fluid_add_load},
+    {"mps_fluid_set_load", 2, API_FLUID, fluid_set_load},
+    {"mps_fluid_begin_step", 4, API_FLUID, fluid_begin_step},
+    {"mps_fluid_solve_pressure", 6, API_FLUID, fluid_solve_pressure},
+    {"mps_fluid_end_step", 5, API_FLUID, fluid_end_step},
+    {"mps_fluid_abandon_step", 2, API_FLUID, fluid_abandon_step},
+    {"mps_fluid_get_report_sized", 1, API_FLUID, fluid_get_report_sized},
+    {"mps_fluid_set_solver", 1, API_FLUID, fluid_set_solver},
+    {"mps_experimental_fluid_classical", 1, API_FLUID, experimental_classical},
+};
+const api_table api_fluid_calls = API_TABLE(calls);
