@@ -125,6 +125,10 @@ static int run(app *a, tank_model *m) {
   fflush(stdout);
   if (m->s.kind == TANK_PISTON || m->s.kind == TANK_RESONANCE)
     waves_warn(a, m->s.period, m->s.depth, m->s.amplitude, m->s.spacing);
+  if (m->s.kind == TANK_SPRING || m->s.kind == TANK_RESONANCE)
+    waves_warn_of_step(a, tank_spring_omega(&m->s), mps_fluid_dt(m->fluid));
+  if (m->s.kind == TANK_PLATE)
+    waves_warn_of_step(a, tank_plate_omega(&m->s), mps_fluid_dt(m->fluid));
   status = app_settle(a, tank_run(a, m));
   const int code = app_end_run(a, status, mps_fluid_time(m->fluid), m->samples > 0);
   if (status == MPS_ERROR_CANCELLED && m->saves.saved)

@@ -90,6 +90,15 @@ void waves_warn(const app *a, double period, double depth, double amplitude, dou
             a->program, height, most);
 }
 
+void waves_warn_of_step(const app *a, double omega, double dt) {
+  if (a->rank > 0 || !(omega * dt > 0.3)) return;
+  fprintf(
+      stderr,
+      "%s: warning: a step of %.3g s is too long for a structure that swings with %.4g rad/s in "
+      "the water: %.2g s, .3/omega, or less follow it\n",
+      a->program, dt, omega, 0.3 / omega);
+}
+
 double waves_sainflou_rise(double k, double depth, double H) { /* pi H^2 coth(kd)/L */
   return 0.5 * k * H * H / tanh(k * depth);
 }

@@ -52,6 +52,9 @@ double waves_havelock(double k, double depth);
 /* A line to stderr where the waves of a piston are lower than 2 spacings, and one where they are
  * higher than .8 of those that break, .142 L tanh(kd) (Miche). */
 void waves_warn(const app *a, double period, double depth, double amplitude, double spacing);
+/* A line to stderr where omega dt > .3, omega (rad/s) that of a structure in the water: the coupled
+ * motion then has a wrong period and is damped by the scheme. */
+void waves_warn_of_step(const app *a, double omega, double dt);
 /* Sainflou's standing wave at a vertical wall, the incident height H: rise of the mean level (m),
  * swing of the pressure at the bed (Pa), and force (N/m) under the crest (sign 1) or the trough
  * (-1). The pressure is linear from the crest to the bed. */

@@ -116,7 +116,7 @@ typedef struct mpsi_fluid_local {
   double gradient[4];     /* of velocity, 1/s */
   double rest[2];         /* sum w (du - G dx)/n: what a linear velocity field leaves, m/s */
   double shift[2];        /* sum w dx/(r n0) */
-  double h, c;            /* distance of the surface (m) and its weight |m|/h; 0, 0 inside */
+  double h, c;            /* distance of the surface (m), its weight |m|/h; 0, 0 farther inside */
   double qs;              /* reduced pressure of the surface there, Pa */
 } mpsi_fluid_local;
 

@@ -346,24 +346,25 @@ void mpsi_fluid_tell_sums(mps_fluid *f, int64_t unit) {
   if (f->share->lost != MPS_OK) memset(sums, 0, 2 * (size_t)units * sizeof *sums);
 }
 
-/* In scratch columns, which the pressure has not begun to use: z states and numbers, p and q m. */
+/* In scratch columns, which the pressure has not begun to use: z states and numbers, p and q m,
+ * r h. */
 void mpsi_fluid_tell_looks(mps_fluid *f) {
   mpsi_fluid_share *s = f->share;
   if (!s) return;
   mpsi_fluid_system *y = &f->system;
   for (int64_t i = f->own[0]; i < f->own[1]; i++) {
     y->z[i] = f->state[i] + 4.0 * f->near[i];
-    y->p[i] = f->local[i].m[0], y->q[i] = f->local[i].m[1];
+    y->p[i] = f->local[i].m[0], y->q[i] = f->local[i].m[1], y->r[i] = f->local[i].h;
   }
   mpsi_fluid_tell_all(f, 1, &y->z);
-  mpsi_fluid_tell_near(f, 2, (double *const[]){y->p, y->q});
+  mpsi_fluid_tell_near(f, 3, (double *const[]){y->p, y->q, y->r});
   for (int64_t k = 0; s->lost == MPS_OK && k < s->all.guests; k++) {
     const int64_t i = s->all.guest[k], word = (int64_t)y->z[i];
     f->state[i] = (uint8_t)(word % 4), f->near[i] = (int32_t)(word / 4);
   }
   for (int64_t k = 0; k < s->near.guests; k++) {
     const int64_t i = s->near.guest[k];
-    f->local[i].m[0] = y->p[i], f->local[i].m[1] = y->q[i];
+    f->local[i].m[0] = y->p[i], f->local[i].m[1] = y->q[i], f->local[i].h = y->r[i];
     s->mark[k] = atomic_load_explicit(&f->zone[i], memory_order_relaxed);
   }
   /* several ranks may have copies of a particle: one after the other */

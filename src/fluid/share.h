@@ -37,7 +37,7 @@ void mpsi_fluid_deal(mps_fluid *fluid, int64_t block);
 mps_status mpsi_fluid_meet(mps_fluid *fluid, const char *function);
 
 /* Columns of values by particle: from their owners, to those who have them as neighbours. */
-#define MPSI_FLUID_SHARED 6 /* columns at most */
+#define MPSI_FLUID_SHARED 7 /* columns at most */
 void mpsi_fluid_tell_near(mps_fluid *fluid, int32_t columns, double *const *column);
 /* The same to all. */
 void mpsi_fluid_tell_all(mps_fluid *fluid, int32_t columns, double *const *column);

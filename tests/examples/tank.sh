@@ -74,6 +74,11 @@ again() { # CASE OPTION...
   done
 }
 programs=$1
+short="--case spring --amplitude 1e-4 --duration 0.1 --threads 1 --frames 0"
+"$1/mps-tank" $short --stiffness 1e6 --dt 0.004 --out "$work/long-steps" >"$work/out" 2>"$work/log"
+has "$work/log" "warning: a step of 0.004 s is too long for a structure that swings with 130.4 rad/s"
+"$1/mps-tank" $short --stiffness 211800 --dt 0.004 --out "$work/short-steps" >"$work/out" 2>"$work/log"
+if grep -q "too long for a structure" "$work/log"; then fail "a warning of omega dt 0.24"; fi
 again piston --duration 0.5 --every-checkpoint 0.3 --sample 0.001
 again spring --duration 0.05 --every-checkpoint 0.03
 again plate --duration 0.02 --every-checkpoint 0.012

@@ -84,14 +84,14 @@ static void look_at(const place *p, double part, double bar, double scatter) {
   mps_assert_ok(context, mps_fluid_get_report(s.t.fluid, &report));
   print_message(
       "%-29s force (%+.2f, %.2f +- %.2f) N, exact (0, %.2f): %+.2f %%; level %.4f m, kinetic "
-      "%.1e J\n",
+      "%.1e J, %lld put back off walls\n",
       p->name, mean[0], mean[1], deviation, p->up, 100.0 * (mean[1] - p->up) / unit, level,
-      sum.kinetic);
+      sum.kinetic, (long long)report.pushed);
   mps_assert_near(mean[0], 0.0, bar * unit);
   mps_assert_near(mean[1], p->up, bar * unit);
   assert_true(deviation < scatter * unit);
   assert_true(sum.kinetic < 1e-5 * sum.mass * TANK_G * 0.4);
-  assert_true(report.pushed <= 5); /* in 440 steps */
+  assert_true(report.pushed <= 10); /* in 440 steps of 1100 particles, displaced at random */
   free_scene(&s);
 }
 

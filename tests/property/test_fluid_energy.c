@@ -1,0 +1,54 @@
+/* test_fluid_energy.c - water drives no wall that vibrates, blocks of it that strike keep the
+ * energy that theory leaves them, and its waves last. tests/property/test_fluid_energy_long.c has
+ * more of each. SPDX-License-Identifier: BSD-3-Clause */
+#include "test_fixture.h"
+
+#include "fluid_energy.h"
+
+static void a_vibrating_wall_is_damped_and_feels_the_added_mass(void **state) {
+  (void)state;
+  const struct {
+    double dt, omega;
+    int power;
+    double bar;
+  } runs[] = {{0.0045, 125.0, 0, 0.006},
+              {0.0045, 250.0, 1, 0.006},
+              {0.0045, 125.0, 2, 0.02},
+              {0.0045, 250.0, 2, 0.02},
+              {0.002, 250.0, 2, 0.02}};
+  for (size_t k = 0; k < sizeof runs / sizeof *runs; k++)
+    forced_check(context, 0.02, runs[k].dt, runs[k].power, runs[k].omega, runs[k].bar);
+}
+
+static void a_wall_on_a_spring_does_not_grow(void **state) {
+  (void)state;
+  spring_check(context, 0.02, 0.004, 211800.0, 30.0);
+}
+
+static void blocks_that_strike_keep_the_energy_of_theory(void **state) {
+  (void)state;
+  blocks_check(context, 10, 0.3, 0.04);
+  blocks_check(context, 15, 0.3, 0.03);
+  blocks_check(context, 20, 0.3, 0.03);
+}
+
+/* Steps and spacings of which the loss falls as l0^1 or faster. */
+static void standing_waves_last(void **state) {
+  (void)state;
+  const double coarse = standing_kept(context, 0.03, 12.0);
+  const double fine = standing_kept(context, 0.02, 12.0);
+  print_message("20 periods leave %.4f of the amplitude at d/10, %.4f at d/15\n", coarse, fine);
+  assert_true(coarse > 0.95 && coarse < 1.005);
+  assert_true(fine > 0.975 && fine < 1.005);
+  assert_true(1.0 - fine < (1.0 - coarse) * 0.02 / 0.03 + 0.005);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_vibrating_wall_is_damped_and_feels_the_added_mass),
+      cmocka_unit_test(a_wall_on_a_spring_does_not_grow),
+      cmocka_unit_test(blocks_that_strike_keep_the_energy_of_theory),
+      cmocka_unit_test(standing_waves_last),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
