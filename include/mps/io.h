@@ -92,7 +92,9 @@ static inline mps_checkpoint mps_checkpoint_defaults(void) {
 
 /** Writes every field of the set, and `info`, to the file `path`. The file appears whole or not at
  *  all: it is written as "<path>.part", confirmed by the disk and then renamed, so that a crash or
- *  a full disk (MPS_ERROR_IO) never costs the former checkpoint. */
+ *  a full disk (MPS_ERROR_IO) never costs the former checkpoint. `path` is a new name, or that of
+ *  an empty file or of an earlier checkpoint: a directory, a device or any other file is refused
+ *  (MPS_ERROR_IO) and stays. So is it with the mps_S_save of the solvers. */
 MPS_API MPS_NODISCARD mps_status mps_checkpoint_write(mps_particles *particles, const char *path,
                                                       const mps_checkpoint *info);
 

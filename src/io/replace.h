@@ -11,7 +11,8 @@ typedef struct mpsi_replacement {
   int fd;
 } mpsi_replacement;
 
-/* Opens an empty "<path>.part", for reading and writing through `fd`. */
+/* Opens an empty "<path>.part", for reading and writing through `fd`. MPS_ERROR_IO where `path` is
+ * something else than a new name, an empty file or one that was sealed. */
 mps_status mpsi_replace_begin(mps_context *context, const char *function, const char *path,
                               mpsi_replacement *out);
 /* Seals what was written, has the disk confirm it, and puts it in the place of `path`. Ends the

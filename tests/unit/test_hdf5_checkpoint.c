@@ -243,6 +243,43 @@ static void bad_arguments_of_writing(void **state) {
   mps_particles_destroy(&set);
 }
 
+/* What is no checkpoint stays what it is: devices, pipes, links to them, other files. An empty file is
+ * replaced. */
+static void other_files_are_not_replaced(void **state) {
+  (void)state;
+  static const char *const kinds[] = {"device or pipe", "device or pipe", "no checkpoint"};
+  char names[3][80];
+  snprintf(names[0], sizeof names[0], "%s/checkpoint-pipe", TEST_TMP);
+  snprintf(names[1], sizeof names[1], "%s/checkpoint-link", TEST_TMP);
+  snprintf(names[2], sizeof names[2], "%s/checkpoint-text", TEST_TMP);
+  mps_particles *set = make_set(context, 2, 0.5, COUNT);
+  mps_checkpoint info = some_info();
+  for (int k = 0; k < 3; k++) remove(names[k]);
+  assert_int_equal(mkfifo(names[0], 0600), 0);
+  assert_int_equal(symlink("/dev/full", names[1]), 0);
+  FILE *text = fopen(names[2], "w");
+  assert_non_null(text);
+  fprintf(text, "%s", "a letter that is longer than a seal of a checkpoint");
+  fclose(text);
+  for (int k = 0; k < 3; k++) {
+    struct stat before, after;
+    assert_int_equal(lstat(names[k], &before), 0);
+    mps_assert_fails(context, mps_checkpoint_write(set, names[k], &info), MPS_ERROR_IO, kinds[k]);
+    assert_int_equal(lstat(names[k], &after), 0);
+    assert_int_equal(before.st_ino, after.st_ino);
+    assert_int_equal(before.st_mode, after.st_mode);
+    assert_int_equal(before.st_size, after.st_size);
+  }
+  remove(names[2]);
+  text = fopen(names[2], "w");
+  assert_non_null(text);
+  fclose(text);
+  mps_assert_ok(context, mps_checkpoint_write(set, names[2], &info));
+  mps_assert_ok(context, mps_checkpoint_write(set, names[2], &info)); /* one of ours */
+  for (int k = 0; k < 3; k++) remove(names[k]);
+  mps_particles_destroy(&set);
+}
+
 static void another_set_is_refused(void **state) {
   (void)state;
   write_checkpoint();
@@ -352,6 +389,7 @@ static void a_changed_byte_is_noticed(void **state) {
 /* Seals `size` bytes of `data` as mps_checkpoint_write does. */
 static void store_sealed(const char *file, const void *data, size_t size) {
   mpsi_replacement replacement;
+  remove(file); /* bent, it would not be replaced */
   mps_assert_ok(context, mpsi_replace_begin(context, __func__, file, &replacement));
   assert_int_equal(write(replacement.fd, data, size), (ssize_t)size);
   mps_assert_ok(context, mpsi_replace_commit(context, __func__, &replacement));
@@ -559,6 +597,7 @@ static void a_full_disk_leaves_the_former_checkpoint(void **state) {
   mps_particles *set = make_set(context, 2, 0.5, COUNT);
   mps_checkpoint info = mps_checkpoint_defaults();
   add_fields(set);
+  remove(bent);
   mps_assert_ok(context, mps_checkpoint_write(set, bent, &info));
   free(load(bent, &size));
   for (size_t limit = 1; limit<size; limit += limit + 200> size ? 1 : 173) {
@@ -608,6 +647,7 @@ int main(void) {
       cmocka_unit_test(three_dimensions_and_no_particles),
       cmocka_unit_test(the_header_can_be_read_alone),
       cmocka_unit_test(bad_arguments_of_writing),
+      cmocka_unit_test(other_files_are_not_replaced),
       cmocka_unit_test(another_set_is_refused),
       cmocka_unit_test(what_is_no_checkpoint_is_refused),
       cmocka_unit_test(a_file_cut_short_anywhere_is_refused),
