@@ -54,7 +54,7 @@ static int parse(settings *s, int argc, char **argv) {
       OPTION_HEADING("Beam"),
       OPTION_INTEGER("nx", "N", OPTION_FROM_TO(3, 20000), &s->nx, "particles along the beam"),
       OPTION_INTEGER("ny", "N", OPTION_FROM_TO(2, 5000), &s->ny, "particles across it"),
-      OPTION_NUMBER("length", "m", OPTION_LENGTH, &s->length,
+      COMMON_NUMBER("length", &s->length,
                     "loaded end to wall, rounded to whole particles (instead of --nx)"),
       OPTION_NUMBER("height", "m", OPTION_LENGTH, &s->problem.height, "height of the section"),
       ELASTIC_MATERIAL(&s->method),

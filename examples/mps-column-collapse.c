@@ -4,6 +4,7 @@
  * The column stands on the bed y = 0, L0 wide from the wall x = 0 (a line of symmetry), a L0 high,
  * and is let go at once. Drucker-Prager in plane strain.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "common/mpm_course.h"
 #include "common/mpm_heap.h"
 #include "common/mpm_model.h"
 #include "common/plot.h"
@@ -17,11 +18,12 @@
 enum { CASES_MAX = 6, SAMPLES = 400, FRAMES = 4 };
 
 typedef struct settings {
-  double aspect, width, h, phi, psi, cohesion, bed_friction, young, poisson, density, duration;
+  double aspect, width, h, phi, psi, cohesion, bed_friction, young, poisson, density, falls;
   int64_t ppc, threads;
   int cone;
   int spline; /* degree of the weights less 2 */
   bool sweep, compare;
+  mpm_course_options course;
   const char *out;
 } settings;
 
@@ -31,6 +33,8 @@ typedef struct column_case {
   double aspect, phi, cohesion; /* -, degrees, Pa */
   int rows;
   double t[SAMPLES + 1], front[SAMPLES + 1], height[SAMPLES + 1], kinetic[SAMPLES + 1];
+  double peak;         /* J/m: largest kinetic energy so far */
+  int shots;           /* taken so far, but for the last one */
   double time_at_rest; /* s; NaN: it still moved at the end */
   double reach;        /* m, at the end */
   double volume_ratio, detached, mass, mass_start;
@@ -42,7 +46,9 @@ typedef struct simulation {
   mpm_model m;
   mps_context *context;
   int count; /* of the columns asked for; in the results, of those that were begun */
+  int now;   /* the one that collapses */
   column_case column[CASES_MAX];
+  mpm_course course;
 } simulation;
 
 /* ---- Lube et al. -------------------------------------------------------------------------------
@@ -100,7 +106,7 @@ static mps_status build_case(simulation *sim, const column_case *c) {
   mpm_model *m = &sim->m;
   mps_drucker_prager_def law = mps_drucker_prager_defaults();
   law.cone = s->cone;
-  law.young = s->young * 1e3, law.poisson = s->poisson;
+  law.young = s->young, law.poisson = s->poisson;
   law.friction = c->phi * PI / 180.0;
   law.dilation = fmin(s->psi, c->phi) * PI / 180.0;
   law.cohesion = c->cohesion;
@@ -124,17 +130,78 @@ static mps_status build_case(simulation *sim, const column_case *c) {
   return mps_mpm_add_contact(m->mpm, m->body[0], &bed, NULL);
 }
 
+/* Falls from its height to the end of a run. */
+static double case_end(const settings *s, const column_case *c) {
+  return s->falls * sqrt(c->aspect * s->width / G);
+}
+
+static void pass_case(resume_bytes *b, column_case *c) {
+  resume_pass(b, &c->rows, sizeof c->rows);
+  resume_pass(b, &c->shots, sizeof c->shots);
+  if (resume_wrong(b, c->rows < 0 || c->rows > SAMPLES + 1 || c->shots < 0 || c->shots >= FRAMES)) {
+    c->rows = c->shots = 0;
+    return;
+  }
+  const size_t bytes = (size_t)c->rows * sizeof *c->t;
+  resume_pass(b, c->t, bytes);
+  resume_pass(b, c->front, bytes);
+  resume_pass(b, c->height, bytes);
+  resume_pass(b, c->kinetic, bytes);
+  double *const values[] = {&c->peak,     &c->time_at_rest, &c->reach,     &c->volume_ratio,
+                            &c->detached, &c->mass,         &c->mass_start};
+  for (size_t k = 0; k < sizeof values / sizeof *values; k++)
+    resume_pass(b, values[k], sizeof *values[k]);
+  for (int k = 0; k < FRAMES; k++) resume_pass_snapshot(b, &c->shot[k]);
+}
+
+/* What a run that goes on needs of what it has seen. */
+static void pass(void *user, resume_bytes *b) {
+  simulation *sim = user;
+  int64_t samples = sim->m.samples;
+  resume_pass(b, &sim->now, sizeof sim->now);
+  resume_pass(b, &samples, sizeof samples);
+  if (resume_wrong(b, sim->now < 0 || sim->now >= sim->count || samples < 0)) {
+    sim->now = 0;
+    return;
+  }
+  sim->m.samples = samples;
+  for (int k = 0; k <= sim->now; k++) pass_case(b, &sim->column[k]);
+}
+
+static void name_course(simulation *sim) {
+  static char what[40];
+  const column_case *c = &sim->column[sim->now];
+  if (sim->count > 1)
+    snprintf(what, sizeof what, "column_%s", c->name);
+  else
+    snprintf(what, sizeof what, "column");
+  sim->course = (mpm_course){.options = &sim->s.course,
+                             .m = &sim->m,
+                             .directory = sim->s.out,
+                             .what = what,
+                             .duration = case_end(&sim->s, c),
+                             .key = "mps-column-collapse 1",
+                             .table = options_read(),
+                             .pass = pass,
+                             .user = sim};
+}
+
 static mps_status build(mps_context *context, void *user) {
   simulation *sim = user;
   sim->context = context;
-  return build_case(sim, &sim->column[0]);
+  name_course(sim);
+  mps_status status = mpm_course_peek(&sim->course, context);
+  if (status == MPS_OK) status = mpm_course_load(&sim->course, context); /* which column it is */
+  name_course(sim);
+  if (status == MPS_OK) status = build_case(sim, &sim->column[sim->now]);
+  return status == MPS_OK ? mpm_course_begin(&sim->course, context, true) : status;
 }
 
 /* ---- running --------------------------------------------------------------------------------- */
 
 #define AT_REST 1e-3 /* of the largest kinetic energy */
 
-static mps_status sample(simulation *sim, column_case *c, double *peak) {
+static mps_status sample(simulation *sim, column_case *c) {
   mpm_heap heap;
   const int k = c->rows;
   const mps_status status =
@@ -149,30 +216,29 @@ static mps_status sample(simulation *sim, column_case *c, double *peak) {
   c->detached = heap.detached;
   c->mass = heap.mass;
   if (k == 0) c->mass_start = sim->s.density * c->aspect * sim->s.width * sim->s.width;
-  *peak = fmax(*peak, heap.kinetic);
+  c->peak = fmax(c->peak, heap.kinetic);
   c->rows++;
   sim->m.samples++;
   return MPS_OK;
 }
 
-/* Until it rests, or for `duration` falls from its height. */
+/* Until it rests, or for so many falls from its height. */
 static mps_status march_case(simulation *sim, column_case *c) {
-  const double fall = sqrt(c->aspect * sim->s.width / G), end = sim->s.duration * fall;
+  const double fall = sqrt(c->aspect * sim->s.width / G), end = case_end(&sim->s, c);
   static const double frames[FRAMES - 1] = {0.0, 1.0, 2.0}; /* falls; and at rest */
-  double peak = 0.0;
-  int shots = 0;
-  mps_status status = sample(sim, c, &peak);
+  mps_status status = MPS_OK;
   c->time_at_rest = NAN;
-  for (int k = 1; k <= SAMPLES && status == MPS_OK; k++) {
-    if (shots < FRAMES - 1 && c->t[c->rows - 1] >= frames[shots] * fall - 1e-12) {
-      status = mpm_snapshot_take(&sim->m, c->t[c->rows - 1], "plastic_strain", &c->shot[shots]);
-      shots++;
+  for (int k = c->rows; k <= SAMPLES && status == MPS_OK; k++) {
+    if (k > 0) status = mps_mpm_run(sim->m.mpm, end * k / SAMPLES, INT64_MAX, NULL, NULL);
+    if (status == MPS_OK) status = sample(sim, c);
+    if (status == MPS_OK && c->shots < FRAMES - 1 && c->t[k] >= frames[c->shots] * fall - 1e-12) {
+      status = mpm_snapshot_take(&sim->m, c->t[k], "plastic_strain", &c->shot[c->shots]);
+      c->shots++;
     }
-    if (status == MPS_OK)
-      status = mps_mpm_run(sim->m.mpm, end * k / SAMPLES, INT64_MAX, NULL, NULL);
-    if (status == MPS_OK) status = sample(sim, c, &peak);
-    if (status != MPS_OK || c->kinetic[c->rows - 1] > AT_REST * peak) continue;
-    c->time_at_rest = c->t[c->rows - 1];
+    const bool rests = status == MPS_OK && k > 0 && c->kinetic[k] <= AT_REST * c->peak;
+    if (status == MPS_OK) status = mpm_course_sample(&sim->course, k, SAMPLES);
+    if (!rests) continue;
+    c->time_at_rest = c->t[k];
     break;
   }
   /* the last one is also that of an interrupted run */
@@ -184,13 +250,20 @@ static mps_status march_case(simulation *sim, column_case *c) {
 
 static mps_status march(void *user) {
   simulation *sim = user;
-  mps_status status = march_case(sim, &sim->column[0]);
-  for (int k = 1; k < sim->count && status == MPS_OK; k++) {
+  mps_status status = MPS_OK;
+  for (;;) {
+    const column_case *c = &sim->column[sim->now];
+    progress_part(&sim->m.a->bar, (double)sim->now / sim->count, 1.0 / sim->count, 0.0,
+                  case_end(&sim->s, c));
+    status = mpm_course_end(&sim->course, march_case(sim, &sim->column[sim->now]));
+    if (status != MPS_OK || sim->now + 1 == sim->count) return status;
     mpm_model_destroy(&sim->m);
-    status = build_case(sim, &sim->column[k]);
-    if (status == MPS_OK) status = march_case(sim, &sim->column[k]);
+    sim->now++;
+    name_course(sim);
+    status = build_case(sim, &sim->column[sim->now]);
+    if (status == MPS_OK) status = mpm_course_begin(&sim->course, sim->context, false);
+    if (status != MPS_OK) return status;
   }
-  return status;
 }
 
 /* ---- results --------------------------------------------------------------------------------- */
@@ -323,7 +396,7 @@ static void summarise(output *f, const simulation *sim) {
   json_number(f, "runout_98", c->reach / s->width - 1.0);
   json_number(f, "height", final_height(s, c));
   json_number(f, "height_law", law_height(c->aspect));
-  json_optional(f, "time_at_rest", c->time_at_rest);
+  json_number(f, "time_at_rest", c->time_at_rest);
   json_number(f, "volume_ratio_max", c->volume_ratio);
   json_number(f, "detached", c->detached);
   json_number(f, "mass_error", c->mass / c->mass_start - 1.0);
@@ -372,7 +445,7 @@ static int complete(const options_program *program, simulation *sim) {
   const double weight = s->density * G * s->aspect * s->width;
   const char *large = mpm_model_too_large(s->aspect * pow(s->width / s->h, 2.0) * (double)s->ppc);
   if (large) return options_refuse(program, large);
-  if (weight > 0.1 * s->young * 1e3)
+  if (weight > 0.1 * s->young)
     return options_refuse(program, "--young must be at least 10 times the stress below the column, "
                                    "density g aspect width");
   sim->count = s->sweep ? 6 : s->compare ? 3 : 1;
@@ -398,12 +471,13 @@ int main(int argc, char **argv) {
                                  .h = NAN,
                                  .phi = 35.0,
                                  .bed_friction = NAN,
-                                 .young = 1000.0,
+                                 .young = 1e6,
                                  .poisson = 0.3,
                                  .density = 1600.0,
-                                 .duration = 8.0,
+                                 .falls = 8.0,
                                  .ppc = 9,
                                  .spline = 1,
+                                 .course = MPM_COURSE_DEFAULTS,
                                  .out = "out/column-collapse"}};
   settings *s = &sim.s;
   option table[] = {
@@ -414,24 +488,25 @@ int main(int argc, char **argv) {
       OPTION_FLAG("compare", &s->compare,
                   "three columns: sand; phi/2 and c = 0.05 rho g H; clay of c = 0.15 rho g H"),
       OPTION_HEADING("Soil (Drucker-Prager)"),
-      OPTION_NUMBER("phi", "degrees", OPTION_FROM_TO(0.0, 60.0), &s->phi, "angle of friction"),
-      OPTION_NUMBER("psi", "degrees", OPTION_FROM_TO(0.0, 60.0), &s->psi, "angle of dilation"),
-      OPTION_NUMBER("cohesion", "Pa", OPTION_FROM_TO(0.0, 1e11), &s->cohesion, "c"),
+      COMMON_NUMBER("phi", &s->phi, NULL),
+      COMMON_NUMBER("psi", &s->psi, "at most phi: more counts as phi"),
+      COMMON_NUMBER("cohesion", &s->cohesion, NULL),
       OPTION_CHOICE("cone", "planestrain|circumscribed|inscribed|extension", &s->cone,
                     "how it meets Mohr-Coulomb"),
-      OPTION_NUMBER("young", "kPa", OPTION_MODULUS, &s->young, "Young's modulus E"),
-      OPTION_NUMBER("poisson", "1", OPTION_FROM_TO(0.0, 0.49), &s->poisson, "Poisson's ratio"),
-      OPTION_NUMBER("density", "kg/m3", OPTION_DENSITY, &s->density, "in bulk"),
+      COMMON_NUMBER("young", &s->young, NULL),
+      COMMON_NUMBER("poisson", &s->poisson, NULL),
+      COMMON_NUMBER("density", &s->density, "in bulk"),
       OPTION_HEADING("Bed"),
       OPTION_NUMBER("bed-friction", "1", OPTION_FROM_TO(0.0, 10.0), &s->bed_friction,
                     "Coulomb's mu of a rigid bed (default: soil sticks to it)"),
       OPTION_HEADING("Grid"),
-      OPTION_NUMBER("h", "m", OPTION_LENGTH, &s->h, "grid spacing (default width/20)"),
-      OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
-      OPTION_CHOICE("spline", "2|3", &s->spline, "degree of the weights"),
+      COMMON_NUMBER("h", &s->h, "default width/20"),
+      COMMON_INTEGER("ppc", &s->ppc, NULL),
+      COMMON_CHOICE("spline", &s->spline, NULL),
       OPTION_HEADING("Run"),
-      OPTION_NUMBER("duration", "(H/g)^1/2", OPTION_FROM_TO(1e-3, 1e6), &s->duration,
-                    "at most, if it does not come to rest before"),
+      OPTION_NUMBER("falls", "(H/g)^1/2", OPTION_FROM_TO(1e-3, 1e6), &s->falls,
+                    "where the run ends, if the column does not come to rest before"),
+      MPM_COURSE_OPTIONS(&s->course, SAMPLES),
       OPTION_OUT(&s->out),
       OPTION_THREADS(&s->threads),
       {0}};
@@ -444,7 +519,8 @@ int main(int argc, char **argv) {
   if (code < 0) code = complete(&program, &sim);
   if (code >= 0) return code;
   static const mpm_model_parts parts = {build, march, finish};
-  code = mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
+  const mpm_model_places places = {&s->out, &s->course.checkpoint, s->course.restart};
+  code = mpm_model_run(&program, s->threads, &places, &sim.m, &parts, &sim);
   for (int k = 0; k < sim.count; k++)
     for (int shot = 0; shot < FRAMES; shot++) mpm_snapshot_free(&sim.column[k].shot[shot]);
   return code;

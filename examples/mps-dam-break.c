@@ -316,23 +316,23 @@ static void summarise(output *f, const simulation *sim, double T, double tau, do
   json_number(f, "energy_end", (last->kinetic + last->potential) / scale);
   json_number(f, "kinetic_max", kinetic);
   if (s->rest) {
-    json_optional(f, "pressure_error", rest_error(sim));
+    json_number(f, "pressure_error", rest_error(sim));
     json_number(f, "height_end", sim->H[sim->rows - 1]);
     return;
   }
   const misfit front = compare(sim, z, sim->Z, T, 0.0), wall = compare(sim, h, sim->H, tau, 0.0);
   const misfit set = compare(sim, z, sim->Z, T, shift);
-  json_optional(f, "front_error_rms", front.rms);
-  json_optional(f, "front_error_max", front.worst);
-  json_optional(f, "front_clock_shift", shift);
-  json_optional(f, "front_error_rms_clock", set.rms);
+  json_number(f, "front_error_rms", front.rms);
+  json_number(f, "front_error_max", front.worst);
+  json_number(f, "front_clock_shift", shift);
+  json_number(f, "front_error_rms_clock", set.rms);
   const double fit = best_shift(sim, z, T);
-  json_optional(f, "front_clock_fit", fit);
+  json_number(f, "front_clock_fit", fit);
   const misfit fitted = compare(sim, z, sim->Z, T, fit);
-  json_optional(f, "front_error_rms_fit", fitted.rms);
-  json_optional(f, "front_error_max_clock", set.worst);
-  json_optional(f, "height_error_rms", wall.rms);
-  json_optional(f, "height_error_max", wall.worst);
+  json_number(f, "front_error_rms_fit", fitted.rms);
+  json_number(f, "front_error_max_clock", set.worst);
+  json_number(f, "height_error_rms", wall.rms);
+  json_number(f, "height_error_max", wall.worst);
   json_number(f, "detached_max", detached);
   if (front.points > 0)
     printf("front against the experiment: RMS %.3f, at most %+.3f (a)", front.rms, front.worst);
@@ -426,7 +426,7 @@ int main(int argc, char **argv) {
                     "width a of the column, whole cells (default .05715)"),
       OPTION_INTEGER("n2", "1", OPTION_FROM_TO(1.0, 2.0), &s->n2, "n^2: the height over a"),
       OPTION_NUMBER("tank", "bases", OPTION_FROM_TO(1.5, 1000.0), &s->tank, "to the far wall"),
-      OPTION_NUMBER("viscosity", "Pa s", OPTION_FROM_TO(0.0, 1e6), &s->viscosity, "of the water"),
+      COMMON_NUMBER_IN("viscosity", OPTION_FROM_TO(0.0, 1e6), &s->viscosity, NULL),
       OPTION_NUMBER("sound-speed", "m/s", OPTION_SPEED, &s->sound,
                     "c, K = rho c^2 (default 10 sqrt(2 g n^2 a))"),
       OPTION_CHOICE("state", "linear|tait", &s->state, "pressure from density"),
@@ -434,22 +434,18 @@ int main(int argc, char **argv) {
       OPTION_CHOICE("bed", "slip|fixed", &s->bed, "bed of the tank"),
       OPTION_FLAG("rest", &s->rest, "keep the gate: water at rest"),
       OPTION_HEADING("Grid"),
-      OPTION_NUMBER("h", "m", OPTION_LENGTH, &s->h,
-                    "grid spacing (default base/40, of MPS base/20 or with --impact base/60)"),
-      OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
-      OPTION_CHOICE("spline", "2|3", &s->spline, "degree of the weights"),
+      COMMON_NUMBER("h", &s->h, "default base/40, of MPS base/20 or with --impact base/60"),
+      COMMON_INTEGER("ppc", &s->ppc, NULL),
+      COMMON_CHOICE("spline", &s->spline, NULL),
       OPTION_CHOICE("transfer", "shape|weight", &s->transfer, "particles to nodes"),
-      OPTION_CHOICE("volumetric", "point|cell|nodes", &s->volumetric,
-                    "change of volume: F-bar by cell; change and pressure by nodes"),
-      OPTION_NUMBER("disturb", "spacings", OPTION_FROM_TO(0.0, 0.2), &s->disturb,
-                    "random displacement of the particles of MPS at the start, at most"),
+      COMMON_CHOICE("volumetric", &s->volumetric, NULL),
+      COMMON_NUMBER("disturb", &s->disturb, "of MPS"),
       WAVES_SOLVER(&s->solver, &s->tolerance),
       OPTION_HEADING("Run"),
-      OPTION_NUMBER("duration", "s", OPTION_DURATION, &s->duration, "of the run (default T = 6)"),
-      OPTION_INTEGER("frames", "N", OPTION_FROM_TO(0.0, 100000.0), &s->frames,
-                     "of the series for ParaView; 0: none"),
-      RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint,
-                     "between checkpoints (default: a fifth of the run)", &s->restart),
+      COMMON_NUMBER("duration", &s->duration, "default T = 6"),
+      COMMON_INTEGER("frames", &s->frames, NULL),
+      RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint, "default a fifth of the run",
+                     &s->restart),
       OPTION_OUT(&s->out),
       OPTION_THREADS(&s->threads),
       {0}};
@@ -462,8 +458,9 @@ int main(int argc, char **argv) {
   if (code < 0) code = complete(&program, s);
   if (code >= 0) return code;
   const mpm_model_parts parts = {dam_build, dam_march, finish};
+  const mpm_model_places places = {&s->out, &s->checkpoint, s->restart};
   sim.table = table;
-  code = mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
+  code = mpm_model_run(&program, s->threads, &places, &sim.m, &parts, &sim);
   mps_recorder_destroy(&sim.series);
   free(sim.gauge_t);
   free(sim.gauge_p);

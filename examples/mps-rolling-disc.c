@@ -3,6 +3,7 @@
  * --body slope: the disc is elastic and the slope a rigid body. --body disc: the disc is a free
  * rigid body on an elastic slope, drawn level with tilted gravity; both act on each other.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "common/mpm_course.h"
 #include "common/mpm_model.h"
 #include "common/plot.h"
 
@@ -24,6 +25,7 @@ typedef struct settings {
   int64_t ppc, threads;
   int fill, body, contact; /* contact: mps_contact_method */
   int spline;              /* degree of the weights less 2 */
+  mpm_course_options course;
   const char *out;
 } settings;
 
@@ -39,6 +41,7 @@ typedef struct simulation {
   double start[2]; /* m, of the disc's centre */
   motion row[SAMPLES + 1];
   int rows;
+  mpm_course course;
 } simulation;
 
 /* (51): position along the slope, from its start. */
@@ -111,13 +114,32 @@ static mps_status add_contact(const settings *s, simulation *sim) {
   mps_contact_def contact = mps_contact_defaults();
   contact.friction = s->mu;
   contact.method = s->contact;
-  if (s->contact == MPS_CONTACT_METHOD_PENALTY) contact.penalty = s->k * 1e3;
+  if (s->contact == MPS_CONTACT_METHOD_PENALTY) contact.penalty = s->k;
   return mps_mpm_add_contact(sim->m.mpm, sim->m.body[0], &contact, NULL);
+}
+
+/* What a run that goes on needs of what it has seen. */
+static void pass(void *user, resume_bytes *b) {
+  simulation *sim = user;
+  resume_pass(b, &sim->rows, sizeof sim->rows);
+  if (resume_wrong(b, sim->rows < 0 || sim->rows > SAMPLES + 1))
+    sim->rows = 0;
+  else
+    resume_pass(b, sim->row, (size_t)sim->rows * sizeof *sim->row);
 }
 
 static mps_status build(mps_context *context, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
+  sim->course = (mpm_course){.options = &s->course,
+                             .m = &sim->m,
+                             .directory = s->out,
+                             .what = s->body == BODY_SLOPE ? "disc" : "slope",
+                             .duration = s->duration,
+                             .key = "mps-rolling-disc 1",
+                             .table = options_read(),
+                             .pass = pass,
+                             .user = sim};
   const double a = s->angle * PI / 180.0;
   mps_mpm_def def = mps_mpm_defaults();
   def.cell = s->h;
@@ -133,14 +155,16 @@ static mps_status build(mps_context *context, void *user) {
     def.lower[0] = 0.0, def.lower[1] = 0.0;
     def.upper[0] = s->h * ceil(LENGTH / s->h - 1e-9);
   }
-  mps_status status = make_particles(context, s, sim);
+  mps_status status = mpm_course_peek(&sim->course, context);
+  if (status == MPS_OK) status = make_particles(context, s, sim);
   if (status == MPS_OK)
-    status = mps_material_linear_elastic(context, s->young * 1e3, s->poisson, &sim->m.material);
+    status = mps_material_linear_elastic(context, s->young, s->poisson, &sim->m.material);
   if (status == MPS_OK) status = make_rigid(context, s, sim);
   status = mpm_model_create(&sim->m, context, status, &def);
   if (status == MPS_OK && s->body != BODY_SLOPE)
     status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
-  return status == MPS_OK ? add_contact(s, sim) : status;
+  if (status == MPS_OK) status = add_contact(s, sim);
+  return status == MPS_OK ? mpm_course_begin(&sim->course, context, true) : status;
 }
 
 /* ---- running --------------------------------------------------------------------------------- */
@@ -214,12 +238,15 @@ static mps_status sample(const settings *s, simulation *sim) {
 static mps_status march(void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
-  mps_status status = sample(s, sim);
-  for (int k = 1; k <= SAMPLES && status == MPS_OK; k++) {
-    status = mps_mpm_run(sim->m.mpm, s->duration * k / SAMPLES, INT64_MAX, NULL, NULL);
+  mps_status status = MPS_OK;
+  sim->m.samples = sim->rows;
+  progress_part(&sim->m.a->bar, 0.0, 1.0, 0.0, s->duration);
+  for (int k = sim->rows; k <= SAMPLES && status == MPS_OK; k++) {
+    if (k > 0) status = mps_mpm_run(sim->m.mpm, s->duration * k / SAMPLES, INT64_MAX, NULL, NULL);
     if (status == MPS_OK) status = sample(s, sim);
+    if (status == MPS_OK) status = mpm_course_sample(&sim->course, k, SAMPLES);
   }
-  return status;
+  return mpm_course_end(&sim->course, status);
 }
 
 /* ---- results --------------------------------------------------------------------------------- */
@@ -280,12 +307,13 @@ static bool finish(app *a, void *user) {
 int main(int argc, char **argv) {
   static simulation sim = {.s = {.h = 0.01,
                                  .angle = 30.0,
-                                 .k = 2000.0,
-                                 .young = 1000.0,
+                                 .k = 2e6,
+                                 .young = 1e6,
                                  .poisson = 0.3,
                                  .duration = 0.5,
                                  .ppc = 4,
                                  .spline = 1,
+                                 .course = MPM_COURSE_DEFAULTS,
                                  .out = "out/rolling-disc"}};
   settings *s = &sim.s;
   option table[] = {
@@ -293,22 +321,20 @@ int main(int argc, char **argv) {
       OPTION_CHOICE("body", "slope|disc", &s->body,
                     "which of the two is rigid; disc: it is free, and the slope elastic"),
       OPTION_NUMBER("angle", "degrees", OPTION_FROM_TO(1.0, 60.0), &s->angle, "of the slope"),
-      OPTION_NUMBER("mu", "1", OPTION_FROM_TO(0.0, 10.0), &s->mu,
-                    "friction; the disc rolls where tan(angle) <= 3 mu"),
+      COMMON_NUMBER("friction", &s->mu, "the disc rolls where tan(angle) <= 3 mu"),
       MPM_MODEL_CONTACT(&s->contact),
-      OPTION_NUMBER("k", "kN/m", OPTION_STIFFNESS, &s->k,
-                    "contact stiffness per unit thickness of each particle, Nakamura (28)"),
-      OPTION_NUMBER("young", "kPa", OPTION_MODULUS, &s->young, "Young's modulus E"),
-      OPTION_NUMBER("poisson", "1", OPTION_FROM_TO(0.0, 0.49), &s->poisson, "Poisson's ratio"),
+      COMMON_NUMBER("k", &s->k, NULL),
+      COMMON_NUMBER("young", &s->young, NULL),
+      COMMON_NUMBER("poisson", &s->poisson, NULL),
       OPTION_HEADING("Grid"),
-      OPTION_NUMBER("h", "m", OPTION_FROM_TO(1e-4, 0.05), &s->h,
-                    "grid spacing; the radius R is 0.05 m"),
-      OPTION_INTEGER("ppc", "N", OPTION_FROM_TO(1.0, 100.0), &s->ppc, "particles a cell"),
-      OPTION_CHOICE("spline", "2|3", &s->spline, "degree of the weights"),
+      COMMON_NUMBER_IN("h", OPTION_FROM_TO(1e-4, 0.05), &s->h, "the disc's radius R is 0.05 m"),
+      COMMON_INTEGER("ppc", &s->ppc, NULL),
+      COMMON_CHOICE("spline", &s->spline, NULL),
       OPTION_CHOICE("fill", "lattice|rings", &s->fill, "how particles fill an elastic disc"),
       OPTION_HEADING("Run"),
-      OPTION_NUMBER("duration", "s", OPTION_FROM_TO(0.01, 0.55), &s->duration,
-                    "length of the run; x_error_05 is that at its end"),
+      COMMON_NUMBER_IN("duration", OPTION_FROM_TO(0.01, 0.55), &s->duration,
+                       "x_error_05 is that at its end"),
+      MPM_COURSE_OPTIONS(&s->course, SAMPLES),
       OPTION_OUT(&s->out),
       OPTION_THREADS(&s->threads),
       {0}};
@@ -322,5 +348,6 @@ int main(int argc, char **argv) {
   const char *refused = mpm_model_refuse_stiffness(table, s->contact);
   if (refused) return options_refuse(&program, refused);
   static const mpm_model_parts parts = {build, march, finish};
-  return mpm_model_run(&program, s->threads, s->out, &sim.m, &parts, &sim);
+  const mpm_model_places places = {&s->out, &s->course.checkpoint, s->course.restart};
+  return mpm_model_run(&program, s->threads, &places, &sim.m, &parts, &sim);
 }

@@ -1,7 +1,6 @@
 /* mps-seawall - waves of a piston against an elastic wall: Chikazawa, section 4, Figures 9 to 13.
  * The water is mps_fluid, the wall mps_elastic; the wall is loaded with the pressures of the water.
  * SPDX-License-Identifier: BSD-3-Clause */
-#include "common/frame.h"
 #include "seawall/seawall.h"
 
 #include <math.h>
@@ -13,14 +12,16 @@ static bool is_whole(double length, double spacing) {
 }
 
 static const char *check(const seawall_settings *s) {
-  if (!is_whole(s->length, s->spacing) || !is_whole(s->depth, s->spacing) ||
-      !is_whole(s->wall_thickness, s->spacing) || !is_whole(s->wall_height, s->spacing))
-    return "--length, --depth, --wall-thickness and --wall-height must be whole numbers of "
-           "--spacing";
-  if (s->depth < 5.0 * s->spacing * (1.0 - 1e-9)) return "--depth must be at least 5 spacings";
-  if (s->length < 10.0 * s->spacing) return "--length must be at least 10 spacings";
+  if (!is_whole(s->length, s->spacing)) return "--length must be a whole number of --spacing";
+  if (!is_whole(s->depth, s->spacing)) return "--depth must be a whole number of --spacing";
+  if (!is_whole(s->wall_thickness, s->spacing))
+    return "--wall-thickness must be a whole number of --spacing";
+  if (!is_whole(s->wall_height, s->spacing))
+    return "--wall-height must be a whole number of --spacing";
+  if (s->depth < 5.0 * s->spacing * (1.0 - 1e-9)) return "--depth must be at least 5 times --spacing";
+  if (s->length < 10.0 * s->spacing) return "--length must be at least 10 times --spacing";
   if (s->wall_thickness < 2.0 * s->spacing * (1.0 - 1e-9) || s->wall_height < s->depth)
-    return "--wall-thickness must be at least 2 spacings, --wall-height at least --depth";
+    return "--wall-thickness must be at least 2 times --spacing, --wall-height at least --depth";
   if (s->length * s->depth / (s->spacing * s->spacing) > 2e6 ||
       s->wall_thickness * s->wall_height / (s->spacing * s->spacing) > 2e6)
     return "--spacing gives more than 2 million particles";
@@ -37,37 +38,30 @@ static mps_status prepare(app *a, seawall *w) {
   if (status == MPS_OK) status = app_settle(a, seawall_build(a, w));
   if (status == MPS_OK && w->s.restart) status = seawall_restore(a->context, w);
   if (status == MPS_OK) resume_schedule_at(&w->saves, mps_fluid_time(w->fluid));
-  if (status == MPS_OK && w->s.frames > 0 && a->rank == 0)
-    status = frame_series(a, w->water, w->s.out, "water", w->restarted, &w->series);
   status = app_settle(a, status);
-  if (status == MPS_OK && w->s.frames > 0) {
-    if (!w->s.coupled)
-      status = mps_elastic_solve(w->wall.solver); /* so that its fields are there */
-    if (status == MPS_OK && a->rank == 0)
-      status = frame_series(a, w->wall.set, w->s.out, "wall", w->restarted, &w->wall_series);
-  }
+  if (status == MPS_OK && w->s.frames > 0 && !w->s.coupled)
+    status = mps_elastic_solve(w->wall.solver); /* so that its fields are there */
   return app_settle(a, status);
 }
 
 static int run(app *a, seawall *w) {
-  static char path[1200];
-  if (!app_agree(a, a->rank > 0 || output_directory(a, w->s.out))) return APP_FAILED;
+  if (!app_agree(a, resume_places(a, w->s.restart, &w->s.checkpoint, &w->s.out) &&
+                        (a->rank > 0 || output_directory(a, w->s.out))))
+    return APP_FAILED;
   w->a = a;
-  resume_default_path(&w->s.checkpoint, w->s.out, path, sizeof path);
   w->saves = (resume_schedule){
       .path = w->s.checkpoint, .every = w->s.every_checkpoint, .save = seawall_save, .user = w};
+  waves_warn(a, w->s.period, w->s.depth, w->s.amplitude, w->s.spacing);
   mps_status status = prepare(a, w);
   if (status != MPS_OK && w->why[0]) return app_error(a, "%s", w->why), APP_FAILED;
   if (status != MPS_OK) return app_end_run(a, status, 0.0, false);
   printf("%lld particles as the paper counts: %lld of water, %lld of the wall above the bed\n",
          (long long)seawall_paper_particles(&w->s), (long long)mps_particles_count(w->water),
          (long long)mps_particles_count(w->wall.set));
-  waves_warn(a, w->s.period, w->s.depth, w->s.amplitude, w->s.spacing);
   fflush(stdout);
   status = app_settle(a, seawall_run(a, w));
   const int code = app_end_run(a, status, mps_fluid_time(w->fluid), w->samples > 0);
-  if (status == MPS_ERROR_CANCELLED && w->saves.saved)
-    printf("To go on: the same command with --restart %s\n", w->s.checkpoint);
+  if (status == MPS_ERROR_CANCELLED) resume_tell(&w->saves);
   if (w->samples == 0) return code;
   if (!app_agree(a, a->rank > 0 || seawall_write(a, w))) return APP_FAILED;
   return w->saves.lost && code == APP_OK ? APP_FAILED : code;
@@ -96,37 +90,33 @@ int main(int argc, char **argv) {
   seawall_settings *s = &w.s;
   option table[] = {
       OPTION_HEADING("Tank"),
-      OPTION_NUMBER("length", "m", OPTION_LENGTH, &s->length, "from the piston to the wall"),
-      OPTION_NUMBER("depth", "m", OPTION_LENGTH, &s->depth, "of the water"),
-      OPTION_NUMBER("spacing", "m", OPTION_LENGTH, &s->spacing, "of the particles, water and wall"),
-      OPTION_NUMBER("disturb", "spacings", OPTION_FROM_TO(0.0, 0.2), &s->disturb,
-                    "random displacement of the water's particles at the start, at most: a perfect "
-                    "lattice keeps its columns when it is stretched, and collides"),
+      COMMON_NUMBER("length", &s->length, "from the piston to the wall"),
+      COMMON_NUMBER("depth", &s->depth, "of the water"),
+      COMMON_NUMBER("spacing", &s->spacing, "of water and wall"),
+      COMMON_NUMBER("disturb", &s->disturb,
+                    "a perfect lattice keeps its columns when it is stretched, and collides"),
       OPTION_INTEGER("seed", "N", OPTION_FROM_TO(0.0, 1e9), &s->seed,
                      "another disturbance each: behind a breaking wave the force differs"),
       OPTION_HEADING("Wave maker: amplitude sin(2 pi t/period)"),
-      OPTION_NUMBER("amplitude", "m", OPTION_FROM_TO(0.0, 1e3), &s->amplitude, "of the piston"),
-      OPTION_NUMBER("period", "s", OPTION_DURATION, &s->period, "of the piston"),
-      OPTION_NUMBER("ramp", "s", OPTION_FROM_TO(0.0, 1e6), &s->ramp,
-                    "in which the amplitude rises"),
+      COMMON_NUMBER("amplitude", &s->amplitude, "of the piston"),
+      COMMON_NUMBER("period", &s->period, NULL),
+      COMMON_NUMBER("ramp", &s->ramp, NULL),
       OPTION_HEADING("Wall: plane strain, held in the layer of particles at the bed"),
       OPTION_NUMBER("wall-thickness", "m", OPTION_LENGTH, &s->wall_thickness, "of the wall"),
       OPTION_NUMBER("wall-height", "m", OPTION_LENGTH, &s->wall_height, "above the bed"),
-      OPTION_NUMBER("young", "Pa", OPTION_FROM_TO(1e3, 1e16), &s->young, "Young's modulus"),
-      OPTION_NUMBER("poisson", "1", OPTION_FROM_TO(0.0, 0.49), &s->poisson, "Poisson's ratio"),
+      COMMON_NUMBER_IN("young", OPTION_FROM_TO(1e3, 1e16), &s->young, NULL),
+      COMMON_NUMBER("poisson", &s->poisson, NULL),
       OPTION_NUMBER("wall-density", "kg/m3", OPTION_DENSITY, &s->wall_density, "of the wall"),
       OPTION_FLAG("coupled", &s->coupled,
                   "the wall moves the water too, in every step until both agree; else it is loaded "
                   "only"),
       OPTION_HEADING("Run"),
-      OPTION_NUMBER("duration", "s", OPTION_DURATION, &s->duration, "of the run"),
-      OPTION_NUMBER("dt", "s", OPTION_DURATION, &s->dt, "step"),
+      COMMON_NUMBER("duration", &s->duration, NULL),
+      COMMON_NUMBER("dt", &s->dt, NULL),
       WAVES_SOLVER(&s->solver, &s->tolerance),
-      OPTION_NUMBER("sample", "s", OPTION_DURATION, &s->sample,
-                    "between rows of the table; then the wall is solved too"),
-      OPTION_INTEGER("frames", "N", OPTION_FROM_TO(0.0, 10000.0), &s->frames,
-                     "of the animation and of the series for ParaView; 0: none"),
-      RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint, "between checkpoints", &s->restart),
+      COMMON_NUMBER("sample", &s->sample, "then the wall is solved too"),
+      COMMON_INTEGER_IN("frames", OPTION_FROM_TO(0.0, 10000.0), &s->frames, "and of the animation"),
+      RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint, NULL, &s->restart),
       OPTION_OUT(&s->out),
       OPTION_THREADS(&s->threads),
       {0}};

@@ -12,6 +12,7 @@ typedef struct settings {
   bool study;
   int wave, integrator;
   double radius, velocity, other, damping; /* as in stability_case */
+  double vs, vp;                           /* m/s; NaN: not given */
   method m;
   int64_t threads;
   const char *out;
@@ -24,7 +25,8 @@ static const char purpose[] = "Critical time step of a 10 m x 100 m soil column 
                               "of the paper's Table 1 with its regression and Figures 3 to 10.";
 
 /* The two velocities from those that were given (NaN: not given). */
-static void choose_velocities(settings *s, double vs, double vp) {
+static void choose_velocities(settings *s) {
+  double vs = s->vs, vp = s->vp;
   if (!isnan(s->velocity)) { /* as in the paper */
     s->other = s->wave == 0 ? 2.0 * s->velocity : 0.5 * s->velocity;
     return;
@@ -36,10 +38,11 @@ static void choose_velocities(settings *s, double vs, double vp) {
 }
 
 static int parse(settings *s, int argc, char **argv) {
-  double vs = NAN, vp = NAN;
   *s = (settings){.integrator = MPS_DYNAMICS_INTEGRATOR_VERLET,
                   .radius = 0.5,
                   .velocity = NAN,
+                  .vs = NAN,
+                  .vp = NAN,
                   .m = {.kind = METHOD_BOTH,
                         .f1 = 1.0,
                         .f2 = NAN,
@@ -53,17 +56,14 @@ static int parse(settings *s, int argc, char **argv) {
       OPTION_FLAG("study", &s->study,
                   "all cases: V 100 to 800 m/s, h 0.001 to 1, R 0.25 to 1.6 m, S and P waves"),
       OPTION_HEADING("One case"),
-      OPTION_CHOICE("wave", "S|P", &s->wave, "shear or pressure wave"),
-      OPTION_NUMBER("radius", "m", OPTION_FROM_TO(1e-3, 5.0), &s->radius, "particle radius R"),
-      OPTION_NUMBER("vs", "m/s", OPTION_SPEED, &vs,
-                    "shear wave velocity Vs; default half of Vp, 100 if neither is given"),
-      OPTION_NUMBER("vp", "m/s", OPTION_SPEED, &vp,
-                    "pressure wave velocity Vp, at least sqrt(2) Vs; default twice Vs"),
+      COMMON_CHOICE("wave", &s->wave, NULL),
+      COMMON_NUMBER_IN("radius", OPTION_FROM_TO(1e-3, 5.0), &s->radius, NULL),
+      COMMON_NUMBER("vs", &s->vs, "default half of Vp, 100 m/s if neither is given"),
+      COMMON_NUMBER("vp", &s->vp, "default twice Vs"),
       OPTION_NUMBER("velocity", "m/s", OPTION_SPEED, &s->velocity,
                     "instead: the velocity V of the wave as in the paper, S: Vs = V, P: Vp = V"),
-      OPTION_NUMBER("damping", "1", OPTION_FROM_TO(0.0, 10.0), &s->damping,
-                    "Rayleigh damping ratio h"),
-      OPTION_CHOICE("integrator", "verlet|leapfrog|euler", &s->integrator, "time integration"),
+      COMMON_NUMBER("damping", &s->damping, NULL),
+      COMMON_CHOICE("integrator", &s->integrator, NULL),
       OPTION_HEADING("Method"),
       OPTION_CHOICE("method", "linear|stepping|both", &m->kind,
                     "linear theory (fast), bisection by time stepping, or both"),
@@ -73,17 +73,13 @@ static int parse(settings *s, int argc, char **argv) {
       OPTION_NUMBER("accuracy", "1", OPTION_ABOVE_TO(1.0, 100.0), &m->accuracy,
                     "ratio of the bounds at which the bisection ends; the paper uses 1.01 with 2.2 "
                     "and 1.2 with 1e15"),
-      OPTION_NUMBER("duration", "s", OPTION_DURATION, &m->duration,
-                    "length of each run; default 0.5 s and 1.1 travel times over 100 m"),
-      OPTION_NUMBER("f1", "Hz", OPTION_FREQUENCY, &m->f1, "first frequency of the damping"),
-      OPTION_NUMBER("f2", "Hz", OPTION_FREQUENCY, &m->f2,
-                    "second frequency of the damping; default 14, of the study 15: f1 + f2 = 16 "
-                    "gives the paper's Table 2"),
-      OPTION_CHOICE("rotation", "mean-matrix|mean-angle", &m->rotation,
-                    "how the rigid rotation of a pair is removed"),
-      OPTION_CHOICE(
-          "torque", "conserving|printed", &m->torque,
-          "as derived, which conserves angular momentum, or twice that as the paper prints it"),
+      COMMON_NUMBER("duration", &m->duration,
+                    "of each run; default 0.5 s and 1.1 travel times over 100 m"),
+      COMMON_NUMBER("f1", &m->f1, NULL),
+      COMMON_NUMBER("f2", &m->f2,
+                    "default 14, of the study 15 Hz: f1 + f2 = 16 Hz gives the paper's Table 2"),
+      COMMON_CHOICE("rotation", &m->rotation, NULL),
+      COMMON_CHOICE("torque", &m->torque, NULL),
       OPTION_HEADING("Running and results"),
       OPTION_THREADS(&s->threads),
       OPTION_OUT(&s->out),
@@ -99,9 +95,9 @@ static int parse(settings *s, int argc, char **argv) {
     snprintf(text, sizeof text, "--%s and --study exclude each other", single[i]);
     return options_refuse(&program, text);
   }
-  if (!isnan(s->velocity) && (!isnan(vs) || !isnan(vp)))
+  if (!isnan(s->velocity) && (!isnan(s->vs) || !isnan(s->vp)))
     return options_refuse(&program, "--velocity and --vs or --vp exclude each other");
-  choose_velocities(s, vs, vp);
+  choose_velocities(s);
   const double slow = s->wave == 0 ? s->velocity : s->other;
   const double fast = s->wave == 0 ? s->other : s->velocity;
   if (fast < sqrt(2.0) * slow * (1.0 - 1e-12)) {
@@ -119,10 +115,7 @@ static bool write_case(app *a, const settings *s, const stability_case *x) {
   static const char *const integrators[] = {"verlet", "leapfrog", "euler"};
   const char wave[2] = {x->wave, '\0'};
   output f;
-  if (!output_open(&f, a, s->out, "summary.json")) return false;
-  json_begin(&f);
-  json_text(&f, "program", "mps-stability");
-  json_text(&f, "version", mps_version());
+  if (!summary_open(&f, a, s->out)) return false;
   json_text(&f, "wave", wave);
   json_text(&f, "integrator", integrators[x->integrator]);
   json_number(&f, "radius", x->radius);
@@ -135,10 +128,10 @@ static bool write_case(app *a, const settings *s, const stability_case *x) {
   json_number(&f, "criterion", s->m.criterion);
   json_number(&f, "accuracy", s->m.accuracy);
   json_number(&f, "duration", method_duration(&s->m, x->velocity));
-  json_optional(&f, "dt_linear", x->linear);
-  json_optional(&f, "dt_stepping", x->stepping);
-  json_optional(&f, "dt_stepping_unstable", x->unstable);
-  json_optional(&f, "dt_table2", x->table2);
+  json_number(&f, "dt_linear", x->linear);
+  json_number(&f, "dt_stepping", x->stepping);
+  json_number(&f, "dt_stepping_unstable", x->unstable);
+  json_number(&f, "dt_table2", x->table2);
   json_integer(&f, "steps", x->steps);
   json_end(&f);
   return output_close(&f);
@@ -200,9 +193,11 @@ static int run_study(app *a, const settings *s) {
   }
   int code = study_run(a, &s->m, all) ? APP_OK : APP_FAILED;
   if (code == APP_OK && all->done < STUDY_CASES) {
+    a->outcome = "interrupted";
     app_error(a, "interrupted: limits.csv and integrators.csv have %lld of %d cases",
               (long long)all->done, STUDY_CASES);
-    const bool ok = app_agree(a, a->rank > 0 || study_write_limits(a, all, s->out));
+    const bool ok = app_agree(a, a->rank > 0 || (study_write_limits(a, all, s->out) &&
+                                                 study_summary(a, all, s->out)));
     code = ok ? APP_INTERRUPTED : APP_FAILED;
   } else if (code == APP_OK) {
     const bool ok = a->rank > 0 || (study_fit(a, all) && study_write(a, all, s->out) &&

@@ -1,8 +1,8 @@
 /* mps-tank - water in a tank by moving particles against theory: at rest, sloshing, waves of a
  * piston, against structures that move with it, and a drop without walls. SPDX-License-Identifier:
  * BSD-3-Clause */
-#include "common/frame.h"
 #include "common/options.h"
+#include "common/units.h"
 #include "tank/tank.h"
 
 #include <math.h>
@@ -51,9 +51,9 @@ static int complete(const options_program *program, tank_settings *s) {
   if (s->scheme == 1 && (tank_is_coupled(s) || s->viscosity > 0.0))
     return options_refuse(program, "--scheme classical has no coupling and no --viscosity");
   if (s->depth < 5.0 * s->spacing)
-    return options_refuse(program, "--depth must be at least 5 spacings");
+    return options_refuse(program, "--depth must be at least 5 times --spacing");
   if (s->kind != TANK_DROP && s->length < 5.0 * s->spacing)
-    return options_refuse(program, "--length must be at least 5 spacings");
+    return options_refuse(program, "--length must be at least 5 times --spacing");
   if (s->kind != TANK_DROP && s->length / s->spacing * s->depth / s->spacing > 2e6)
     return options_refuse(program, "--spacing gives more than 2 million particles");
   if (kind != TANK_DROP && !(is_whole(s->length, s->spacing) && is_whole(s->depth, s->spacing)))
@@ -94,7 +94,7 @@ static bool read_gauges(const char *text, double *gauge) {
     if (k == TANK_GAUGES || length >= sizeof number) return false;
     memcpy(number, text, length);
     number[length] = '\0';
-    if (!options_number(number, &gauge[k])) return false;
+    if (units_read(number, "m", &gauge[k]) != UNITS_GOOD) return false;
     text = text[length] ? text + length + 1 : NULL;
   }
   return true;
@@ -105,34 +105,31 @@ static mps_status prepare(app *a, tank_model *m) {
   mps_status status = s->restart ? tank_peek(a->context, m) : MPS_OK;
   if (status == MPS_OK) status = app_settle(a, tank_build(a, m));
   if (status == MPS_OK && s->restart) status = tank_restore(a->context, m);
-  if (status == MPS_OK && s->frames > 0 && a->rank == 0)
-    status = frame_series(a, m->water, s->out, "water", m->restarted, &m->series);
   return app_settle(a, status);
 }
 
 static int run(app *a, tank_model *m) {
-  static char path[1200];
-  if (!app_agree(a, a->rank > 0 || output_directory(a, m->s.out))) return APP_FAILED;
+  if (!app_agree(a, resume_places(a, m->s.restart, &m->s.checkpoint, &m->s.out) &&
+                        (a->rank > 0 || output_directory(a, m->s.out))))
+    return APP_FAILED;
   m->a = a;
-  resume_default_path(&m->s.checkpoint, m->s.out, path, sizeof path);
   m->saves = (resume_schedule){
       .path = m->s.checkpoint, .every = m->s.every_checkpoint, .save = tank_save, .user = m};
+  if (m->s.kind == TANK_PISTON || m->s.kind == TANK_RESONANCE)
+    waves_warn(a, m->s.period, m->s.depth, m->s.amplitude, m->s.spacing);
   mps_status status = prepare(a, m);
   if (status != MPS_OK && m->why[0]) return app_error(a, "%s", m->why), APP_FAILED;
   if (status != MPS_OK) return app_end_run(a, status, 0.0, false);
   printf("%lld particles, dt %.4g s\n", (long long)mps_particles_count(m->water),
          mps_fluid_dt(m->fluid));
   fflush(stdout);
-  if (m->s.kind == TANK_PISTON || m->s.kind == TANK_RESONANCE)
-    waves_warn(a, m->s.period, m->s.depth, m->s.amplitude, m->s.spacing);
   if (m->s.kind == TANK_SPRING || m->s.kind == TANK_RESONANCE)
     waves_warn_of_step(a, tank_spring_omega(&m->s), mps_fluid_dt(m->fluid));
   if (m->s.kind == TANK_PLATE)
     waves_warn_of_step(a, tank_plate_omega(&m->s), mps_fluid_dt(m->fluid));
   status = app_settle(a, tank_run(a, m));
   const int code = app_end_run(a, status, mps_fluid_time(m->fluid), m->samples > 0);
-  if (status == MPS_ERROR_CANCELLED && m->saves.saved)
-    printf("To go on: the same command with --restart %s\n", m->s.checkpoint);
+  if (status == MPS_ERROR_CANCELLED) resume_tell(&m->saves);
   if (m->samples == 0) return code;
   if (!app_agree(a, a->rank > 0 || tank_write(a, m))) return APP_FAILED;
   return m->saves.lost && code == APP_OK ? APP_FAILED : code;
@@ -177,21 +174,19 @@ int main(int argc, char **argv) {
           "clamped plate; an elliptic drop of radius --depth without gravity; an end "
           "wall on a spring that waves of a piston swing; a box that floats in the middle, "
           "and heaves from the moment that a weight is put on it"),
-      OPTION_NUMBER("length", "m", OPTION_LENGTH, &s->length,
-                    "of the tank (default .6, .7, 1.6, .6, of resonance 3, of float .8; on a "
+      COMMON_NUMBER("length", &s->length,
+                    "of the tank (default .6, .7, 1.6, .6, of resonance 3, of float .8 m; on a "
                     "plate, the plate's)"),
-      OPTION_NUMBER(
-          "depth", "m", OPTION_LENGTH, &s->depth,
-          "of the water (default .3, on a plate 2, of float .4), or the drop's radius (default 1)"),
-      OPTION_NUMBER("amplitude", "m", OPTION_FROM_TO(0.0, 1e3), &s->amplitude,
-                    "of the sloshing at the walls (default .01), of the piston (.02, of resonance "
-                    ".01), of the "
-                    "wall on the spring (.001, less where its acceleration would exceed .4 g), "
-                    "of the box (.005)"),
-      OPTION_NUMBER("period", "s", OPTION_DURATION, &s->period, "of the piston"),
-      OPTION_NUMBER("ramp", "s", OPTION_FROM_TO(0.0, 1e6), &s->ramp,
-                    "in which the piston's amplitude rises"),
-      OPTION_NUMBER("viscosity", "Pa s", OPTION_FROM_TO(0.0, 1e3), &s->viscosity, "of the water"),
+      COMMON_NUMBER("depth", &s->depth,
+                    "of the water (default .3, on a plate 2, of float .4 m), or the drop's radius "
+                    "(default 1 m)"),
+      COMMON_NUMBER("amplitude", &s->amplitude,
+                    "of the sloshing at the walls (default 10 mm), of the piston (20 mm, of "
+                    "resonance 10 mm), of the wall on the spring (1 mm, less where its "
+                    "acceleration would exceed .4 g), of the box (5 mm)"),
+      COMMON_NUMBER("period", &s->period, NULL),
+      COMMON_NUMBER("ramp", &s->ramp, NULL),
+      COMMON_NUMBER("viscosity", &s->viscosity, NULL),
       OPTION_HEADING("Structures, of 1 m across"),
       OPTION_NUMBER("mass", "kg", OPTION_FROM_TO(1e-6, 1e12), &s->mass,
                     "of the wall on a spring (default 10, of resonance 100)"),
@@ -205,40 +200,31 @@ int main(int argc, char **argv) {
                     "of the box, half its height: its mass is that of the water there"),
       OPTION_NUMBER("plate-length", "m", OPTION_LENGTH, &s->plate_length, "of the plate"),
       OPTION_NUMBER("plate-thickness", "m", OPTION_LENGTH, &s->plate_thickness, "of the plate"),
-      OPTION_NUMBER("young", "Pa", OPTION_FROM_TO(1e-3, 1e16), &s->young,
-                    "Young's modulus of the plate"),
-      OPTION_NUMBER("poisson", "1", OPTION_FROM_TO(0.0, 0.499), &s->poisson, "its Poisson's ratio"),
+      COMMON_NUMBER("young", &s->young, "of the plate"),
+      COMMON_NUMBER_IN("poisson", OPTION_FROM_TO(0.0, 0.499), &s->poisson, "of the plate"),
       OPTION_NUMBER("plate-density", "kg/m3", OPTION_DENSITY, &s->plate_density, "of the plate"),
       OPTION_HEADING("Particles"),
-      OPTION_NUMBER("spacing", "m", OPTION_LENGTH, &s->spacing,
-                    "of the particles (default .02, on a plate .05, of a drop a twentieth of its "
-                    "radius)"),
-      OPTION_NUMBER(
-          "disturb", "spacings", OPTION_FROM_TO(0.0, 0.2), &s->disturb,
-          "random displacement of the particles at the start, at most (default 0, of a drop "
-          ".1)"),
+      COMMON_NUMBER("spacing", &s->spacing,
+                    "default .02, on a plate .05 m, of a drop a twentieth of its radius"),
+      COMMON_NUMBER("disturb", &s->disturb, "default 0, of a drop .1"),
       OPTION_CHOICE(
           "scheme", "modern|classical", &s->scheme,
           "the library's; the first one of MPS, for comparison: noisy pressures, no levels"),
       WAVES_SOLVER(&s->solver, &s->tolerance),
       OPTION_HEADING("Run"),
-      OPTION_NUMBER("duration", "s", OPTION_DURATION, &s->duration,
-                    "of the run (default 4, 5.2, 6, 1, .25, 1, 9, 4)"),
-      OPTION_NUMBER("dt", "s", OPTION_DURATION, &s->dt,
-                    "step (default: the library's; spring 5e-4, plate 2e-4)"),
-      OPTION_NUMBER("sample", "s", OPTION_DURATION, &s->sample,
-                    "between rows of the tables (default .01; of structures --dt)"),
-      OPTION_TEXT("gauge", "m,...", &gauges, "stations of level gauges, at most 8"),
+      COMMON_NUMBER("duration", &s->duration, "default 4, 5.2, 6, 1, .25, 1, 9, 4 s"),
+      COMMON_NUMBER("dt", &s->dt, "default the library's; spring 5e-4, plate 2e-4 s"),
+      COMMON_NUMBER("sample", &s->sample, "default .01 s; of structures --dt"),
+      COMMON_TEXT("gauge", &gauges, NULL),
       {.name = "window",
-       .unit = "s,s",
+       .unit = "s",
        .range = OPTION_FROM_TO(0.0, 1e6),
        .count = 2,
        .number = s->window,
-       .help = "of the means and harmonics (default: the last 4 periods of a piston, half the run "
+       .help = "two times T1,T2: window of the means and harmonics (default: the last 4 periods of a piston, half the run "
                "at rest, else all)"},
-      OPTION_INTEGER("frames", "N", OPTION_FROM_TO(0.0, 100000.0), &s->frames,
-                     "of the series for ParaView; 0: none"),
-      RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint, "between checkpoints", &s->restart),
+      COMMON_INTEGER("frames", &s->frames, NULL),
+      RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint, NULL, &s->restart),
       OPTION_OUT(&s->out),
       OPTION_THREADS(&s->threads),
       {0}};

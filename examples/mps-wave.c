@@ -1,6 +1,7 @@
 /* mps-wave - earthquake wave through a soil column or slope of particles, Yoshida, Figure 2.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "common/output.h"
+#include "common/resume.h"
 #include "wave/field.h"
 #include "wave/files.h"
 #include "wave/receivers.h"
@@ -71,7 +72,7 @@ static bool build_solver(app *a, const settings *s, simulation *sim) {
          (s->torque == 0 ||
           app_check(a, mps_experimental_dynamics_printed_torque(sim->dynamics))) &&
          app_check(a, build_boundaries(s, sim)) &&
-         files_open(a, s, &sim->so_far, sim->dynamics, &sim->files);
+         files_open(a, s, sim->duration, &sim->so_far, sim->dynamics, &sim->files);
 }
 
 static void destroy(simulation *sim) {
@@ -117,7 +118,7 @@ static void explain_divergence(app *a, const results *x) {
 static mps_status record(void *user, mps_dynamics *dynamics) {
   simulation *sim = user;
   mps_status status = receivers_record(&sim->record, dynamics, sim->domain);
-  return status == MPS_OK ? files_record(&sim->files, dynamics, field_record(&sim->peaks)) : status;
+  return status == MPS_OK ? files_record(&sim->files, field_record(&sim->peaks)) : status;
 }
 
 /* A run that goes on records at the steps of the first: to the next of them. The last row of one
@@ -162,6 +163,7 @@ static int march(app *a, const settings *s, simulation *sim, results *x) {
   x->end = OUTCOME_COMPLETE;
   if (status == MPS_ERROR_DIVERGED) {
     x->end = OUTCOME_DIVERGED;
+    a->outcome = "diverged";
     explain_divergence(a, x);
     return APP_FAILED;
   }
@@ -200,16 +202,19 @@ static int run(app *a, settings *s) {
   results x = {0};
   int code = APP_FAILED;
   const bool ready =
-      app_agree(a, settings_ground(a, s) && (a->rank > 0 || output_directory(a, s->out)) &&
-                       files_peek(a, s) && build_ground(a, s, &sim));
+      app_agree(a, settings_ground(a, s) && resume_places(a, s->restart, &s->checkpoint, &s->out) &&
+                       (a->rank > 0 || output_directory(a, s->out)) && files_peek(a, s) &&
+                       build_ground(a, s, &sim));
+  if (ready) sim.duration = find_duration(s, &sim);
   if (ready && app_agree(a, build_solver(a, s, &sim))) {
-    sim.duration = find_duration(s, &sim);
     code = march(a, s, &sim, &x);
-    if (!files_close(a, &sim.files, sim.dynamics, x.end == OUTCOME_DIVERGED)) code = APP_FAILED;
+    if (!files_close(a, &sim.files, x.end == OUTCOME_DIVERGED, x.end == OUTCOME_INTERRUPTED) &&
+        code == APP_OK)
+      code = APP_FAILED;
     if (sim.record.rows > 1 && !finish(a, s, &sim, &x) && code == APP_OK) code = APP_FAILED;
     if (code == APP_FAILED) app_agree(a, false); /* all ranks know */
   }
-  files_close(a, &sim.files, NULL, false);
+  files_destroy(&sim.files);
   destroy(&sim);
   return code;
 }

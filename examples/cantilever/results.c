@@ -46,8 +46,7 @@ static bool write_stress(const model *m, const char *directory, const char *name
 
 static bool write_summary(const model *m, const elastic_method *method, const char *directory) {
   output f;
-  if (!output_open(&f, m->a, directory, "summary.json")) return false;
-  json_begin(&f);
+  if (!summary_open(&f, m->a, directory)) return false;
   json_text(&f, "method", method->published ? "published" : "conservative");
   json_text(&f, "state", m->problem->plane_strain ? "strain" : "stress");
   json_text(&f, "reference", m->reference ? "fine bilinear finite elements" : "Chikazawa (11)");

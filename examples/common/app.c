@@ -12,11 +12,22 @@
 #include <string.h>
 #include <unistd.h>
 
+static void note_warning(app *a, const char *message) {
+  if (a->rank > 0) return;
+  for (int k = 0; k < a->warnings; k++) /* that of the run which this one goes on from, or again */
+    if (strcmp(a->warning[k], message) == 0) return;
+  if (a->warnings < 2) {
+    progress_clear(&a->bar);
+    fprintf(stderr, "%s: warning: %s%s\n", a->program, message,
+            a->warnings == 1 ? " (summary.json lists further ones)" : "");
+  }
+  char *copy = a->warnings < APP_WARNINGS ? strdup(message) : NULL;
+  if (copy) a->warning[a->warnings++] = copy;
+}
+
 static void print_warning(void *user, int32_t level, const char *message) {
   app *a = user;
-  if (level != MPS_LOG_WARNING || a->rank > 0 || a->no_warnings) return;
-  progress_clear(&a->bar);
-  fprintf(stderr, "%s: warning: %s\n", a->program, message);
+  if (level == MPS_LOG_WARNING && !a->no_warnings) note_warning(a, message);
 }
 
 static bool make_context(app *a, int64_t threads) {
@@ -58,7 +69,7 @@ static bool join(app *a, int64_t threads) {
 }
 
 bool app_start(app *a, const char *program, int64_t threads) {
-  *a = (app){.program = program, .outcome = "complete", .rank = ranks_number()};
+  *a = (app){.program = program, .outcome = "finished", .rank = ranks_number()};
   progress_start(&a->bar);
   if (ranks_launched() == 1) return make_context(a, threads);
   progress_heed_launcher();
@@ -113,6 +124,7 @@ int app_finish(app *a, int code) {
   ranks_drop_solver(&a->equations);
   mps_domain_destroy(&a->domain);
   mps_context_destroy(&a->context);
+  while (a->warnings > 0) free(a->warning[--a->warnings]);
   if (code == APP_OK && progress_interrupted()) {
     app_error(a, "interrupted: the results were complete");
     code = APP_INTERRUPTED;
@@ -140,6 +152,15 @@ bool app_error(app *a, const char *format, ...) {
   return false;
 }
 
+void app_warn(app *a, const char *format, ...) {
+  char line[500];
+  va_list args;
+  va_start(args, format);
+  vsnprintf(line, sizeof line, format, args);
+  va_end(args);
+  note_warning(a, line);
+}
+
 bool app_no_memory(app *a) { return app_error(a, "out of memory"); }
 
 bool app_check(app *a, mps_status status) {
@@ -150,7 +171,7 @@ bool app_check(app *a, mps_status status) {
 }
 
 int app_end_run(app *a, mps_status status, double time, bool any) {
-  a->outcome = status == MPS_OK                ? "complete"
+  a->outcome = status == MPS_OK                ? "finished"
                : status == MPS_ERROR_CANCELLED ? "interrupted"
                                                : "failed";
   if (status != MPS_ERROR_CANCELLED) return app_check(a, status) ? APP_OK : APP_FAILED;

@@ -20,13 +20,17 @@
 /* Exit codes. */
 enum { APP_OK = 0, APP_FAILED = 1, APP_USAGE = 2, APP_INTERRUPTED = 130 };
 
+enum { APP_WARNINGS = 16 };
+
 typedef struct app {
   const char *program; /* "mps-wave" */
   mps_context *context;
   progress bar;
   bool no_gnuplot;     /* the note about it has been printed */
   bool no_warnings;    /* the library's are not printed: the program expects them */
-  const char *outcome; /* of the run: "complete", "interrupted" or "failed" */
+  const char *outcome; /* of the run: "finished", "interrupted", "failed" or "diverged" */
+  char *warning[APP_WARNINGS]; /* the first ones, for summary.json */
+  int warnings;
   char results[1024];  /* names of the files written, for app_tell_results */
   /* of several ranks */
   mps_domain *domain; /* NULL: one process */
@@ -59,6 +63,9 @@ int app_finish(app *a, int code);
 /* One line "program: ..." to stderr; of several ranks rank 0 prints it, the others keep theirs for
  * app_agree. Returns false, for `return app_error(...)`. */
 bool app_error(app *a, const char *format, ...) APP_PRINTF(2, 3);
+/* One line "program: warning: ..." to stderr, as of the library's warnings: of the first two. All of
+ * them are in summary.json. */
+void app_warn(app *a, const char *format, ...) APP_PRINTF(2, 3);
 /* As app_error, out of memory. */
 bool app_no_memory(app *a);
 /* True for MPS_OK; otherwise prints the record of the context. */

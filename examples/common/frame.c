@@ -23,6 +23,12 @@ bool frame_write(app *a, mps_particles *particles, const char *directory, const 
   return true;
 }
 
+bool frame_is_due(int64_t k, int64_t samples, int64_t frames) {
+  if (frames <= 1) return frames == 1 && k == samples;
+  const int64_t spaces = frames - 1;
+  return k == 0 || k * spaces / samples > (k - 1) * spaces / samples;
+}
+
 mps_status frame_series(app *a, mps_particles *particles, const char *directory, const char *what,
                         double from, mps_recorder **out) {
   mps_recorder_def def = mps_recorder_defaults();

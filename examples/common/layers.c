@@ -57,7 +57,7 @@ static bool read_line(app *a, const char *path, int64_t number, char *line, bool
                        words[i]);
   if (out->count == LAYERS_MAX)
     return app_error(a, "%s:%lld: more than %d layers", path, (long long)number, LAYERS_MAX);
-  const layer l = {value[0], value[1], value[2], value[3], value[4]};
+  const layer l = {value[0], value[1], value[2], 1e3 * value[3], value[4]};
   const char *why = fault(&l);
   if (why) return app_error(a, "%s:%lld: %s", path, (long long)number, why);
   out->layer[out->count++] = l;
@@ -98,7 +98,7 @@ const layer *layers_at(const layers *ground, double depth) {
   return &ground->layer[ground->count - 1];
 }
 
-double layers_density(const layer *l) { return 1000.0 * l->unit_weight / LAYERS_GRAVITY; }
+double layers_density(const layer *l) { return l->unit_weight / LAYERS_GRAVITY; }
 
 double layers_travel_time(const layers *ground, char wave, double from, double to) {
   double sum = 0.0, top = 0.0;

@@ -12,12 +12,12 @@
 typedef struct layer {
   double thickness;   /* m */
   double vs, vp;      /* m/s */
-  double unit_weight; /* kN/m3 */
+  double unit_weight; /* N/m3 */
   double damping;     /* ratio h */
 } layer;
 
 #define LAYERS_MAX 200
-/* Unit weight to density with the paper's g: 14.7 kN/m3 is 1500 kg/m3. */
+/* Unit weight to density with the paper's g: 14700 N/m3 is 1500 kg/m3. */
 #define LAYERS_GRAVITY 9.8
 
 typedef struct layers {

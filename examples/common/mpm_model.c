@@ -3,6 +3,7 @@
 #include "mpm_model.h"
 
 #include "frame.h"
+#include "resume.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -18,7 +19,7 @@ void mpm_model_destroy(mpm_model *model) {
 
 const char *mpm_model_refuse_stiffness(const option *table, int contact) {
   if (contact == MPS_CONTACT_METHOD_PENALTY) return NULL;
-  for (; table->help; table++)
+  for (; table->name || table->help; table++)
     if (table->given && (strcmp(table->name, "k") == 0 || strcmp(table->name, "xi") == 0))
       return "--k and --xi need --contact penalty: impulses have no stiffness";
   return NULL;
@@ -166,9 +167,11 @@ static int end_run(app *a, mps_status status, const mpm_model *model, bool any) 
 
 /* Results are written of every run that has some, also of one that Ctrl-C or an error ended: the
  * samples are those of complete steps. */
-static int build_and_march(app *a, const char *out, mpm_model *model, const mpm_model_parts *parts,
-                           void *user) {
-  if (!app_agree(a, a->rank > 0 || output_directory(a, out))) return APP_FAILED;
+static int build_and_march(app *a, const mpm_model_places *places, mpm_model *model,
+                           const mpm_model_parts *parts, void *user) {
+  const bool places_found = resume_places(a, places->restart, places->checkpoint, places->out);
+  if (!app_agree(a, places_found && (a->rank > 0 || output_directory(a, *places->out))))
+    return APP_FAILED;
   mps_status built = agree(model, parts->build(a->context, user));
   if (built == MPS_OK) built = count_all(model);
   if (built != MPS_OK) return end_run(a, built, model, false);
@@ -187,23 +190,19 @@ static int build_and_march(app *a, const char *out, mpm_model *model, const mpm_
   return code == APP_OK && failed != 0.0 ? APP_FAILED : code;
 }
 
-int mpm_model_run(const options_program *program, int64_t threads, const char *out,
+int mpm_model_run(const options_program *program, int64_t threads, const mpm_model_places *places,
                   mpm_model *model, const mpm_model_parts *parts, void *user) {
   app a;
   if (!app_start(&a, program->name, threads)) return app_finish(&a, APP_FAILED);
   model->a = &a;
-  const int code = build_and_march(&a, out, model, parts, user);
+  const int code = build_and_march(&a, places, model, parts, user);
   if (code == APP_FAILED) app_agree(&a, false); /* all ranks know: what fails here is agreed upon */
   mpm_model_destroy(model);
   return app_finish(&a, code);
 }
 
 bool mpm_model_summary(app *a, const mpm_model *model, const char *directory, output *file) {
-  if (!output_open(file, a, directory, "summary.json")) return false;
-  json_begin(file);
-  json_text(file, "program", a->program);
-  json_text(file, "version", mps_version());
-  json_text(file, "outcome", a->outcome);
+  if (!summary_open(file, a, directory)) return false;
   json_integer(file, "particles", model->count);
   json_integer(file, "steps",
                model->fluid ? mps_fluid_steps(model->fluid) : mps_mpm_steps(model->mpm));

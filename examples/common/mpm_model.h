@@ -35,10 +35,15 @@ typedef struct mpm_model_parts {
   bool (*finish)(app *a, void *user); /* results; false after an error line; rank 0 only */
 } mpm_model_parts;
 
+/* Options of where a run's files are; resume_places may change the two names. */
+typedef struct mpm_model_places {
+  const char **out, **checkpoint, *restart;
+} mpm_model_places;
+
 /* Starts the library, makes the directory `out`, builds, marches, finishes, and destroys the model.
  * `finish` is also called for a run that ended early, by Ctrl-C or an error, with at least
  * MPM_MODEL_SAMPLES samples. Returns the exit code. */
-int mpm_model_run(const options_program *program, int64_t threads, const char *out,
+int mpm_model_run(const options_program *program, int64_t threads, const mpm_model_places *places,
                   mpm_model *model, const mpm_model_parts *parts, void *user);
 
 /* ---- several ranks ---------------------------------------------------------------------------
@@ -76,9 +81,7 @@ mps_status mpm_model_series(mpm_model *m, const char *directory, const char *wha
 mps_status mpm_model_frame(mpm_model *m, mps_recorder *series);
 
 /* The row of a program's table that chooses the contact's method, an mps_contact_method. */
-#define MPM_MODEL_CONTACT(value)                                                                   \
-  OPTION_CHOICE("contact", "impulse|penalty", value,                                               \
-                "impulses at the surface, or springs at the particles, Nakamura (28) to (34)")
+#define MPM_MODEL_CONTACT(value) COMMON_CHOICE("contact", value, NULL)
 /* Why an option of the springs alone, --k or --xi, cannot be given; NULL where it can. */
 const char *mpm_model_refuse_stiffness(const option *table, int contact);
 

@@ -4,6 +4,8 @@
 
 #include "app.h"
 #include "ranks.h"
+#include "standard.h"
+#include "units.h"
 
 #include <mps/base.h>
 
@@ -13,7 +15,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { USAGE = 2, HELP_COLUMN = 34, HELP_END = 98, MAX_NAME = 40 };
+enum { USAGE = 2, HELP_COLUMN = 34, HELP_END = 98, MAX_NAME = 40, MAX_ROWS = 64 };
+
+/* Of options_parse, for options_read. A program reads its arguments once. */
+static option rows_read[MAX_ROWS];
 
 /* To stderr, from the first of several ranks alone: all were given the same options. */
 static void complain(const char *format, ...) APP_PRINTF(1, 2);
@@ -25,24 +30,18 @@ static void complain(const char *format, ...) {
   va_end(args);
 }
 
-/* The programs never call setlocale, so strtod reads the C locale's decimal point. */
 bool options_number(const char *text, double *out) {
-  if (*text == '\0' || text[strspn(text, "0123456789+-.eE")] != '\0') return false;
-  char *end;
-  const double value = strtod(text, &end);
-  if (*end != '\0' || !isfinite(value)) return false;
-  *out = value;
-  return true;
+  return units_read(text, NULL, out) == UNITS_GOOD;
 }
 
-bool options_lengths(const char *text, int count, double *const *out) {
+bool options_lengths(const char *text, const char *unit, int count, double *const *out) {
   for (int k = 0; k < count; k++) {
     char number[32];
     const size_t length = strcspn(text, "x");
     if (length >= sizeof number || (text[length] == 'x') != (k < count - 1)) return false;
     memcpy(number, text, length);
     number[length] = '\0';
-    if (!options_number(number, out[k]) || *out[k] <= 0.0) return false;
+    if (units_read(number, unit, out[k]) != UNITS_GOOD || *out[k] <= 0.0) return false;
     text += length + 1;
   }
   return true;
@@ -102,9 +101,12 @@ static const char *choice_word(const char *choices, int index, int *length) {
 
 static void describe_default(const option *o, char *out, size_t size) {
   out[0] = '\0';
-  if (o->number && o->count < 2 && !isnan(*o->number))
-    snprintf(out, size, "; default %g", *o->number);
-  else if (o->integer)
+  if (o->number && o->count < 2 && !isnan(*o->number)) {
+    char value[48];
+    units_show(*o->number, o->unit, value, sizeof value);
+    snprintf(out, size, "; default %s", value);
+  }
+  if (o->integer)
     snprintf(out, size, "; default %lld", (long long)*o->integer);
   else if (o->text && *o->text)
     snprintf(out, size, "default %s", *o->text);
@@ -118,13 +120,15 @@ static void describe_default(const option *o, char *out, size_t size) {
 static void print_option(const option *o) {
   int at = printf("  --%s", o->name);
   if (o->unit) at += printf(" %s%s%s", o->number ? "[" : "", o->unit, o->number ? "]" : "");
-  char range[64] = "", standard[64], text[600];
+  char range[64] = "", standard[64], help[600], text[800];
   if (o->number || o->integer) describe_range(o, range, sizeof range);
   describe_default(o, standard, sizeof standard);
+  const char *join = !o->note ? "" : strncmp(o->note, "default", 7) == 0 ? "; " : ", ";
+  snprintf(help, sizeof help, "%s%s%s", o->help, join, o->note ? o->note : "");
   if (range[0] || standard[0])
-    snprintf(text, sizeof text, "%s (%s%s)", o->help, range, standard);
+    snprintf(text, sizeof text, "%s (%s%s)", help, range, standard);
   else
-    snprintf(text, sizeof text, "%s", o->help);
+    snprintf(text, sizeof text, "%s", help);
   print_wrapped(text, at);
 }
 
@@ -136,7 +140,8 @@ static int print_help(const options_program *program) {
     else
       printf("\n%s\n", o->help);
   }
-  printf("\nHelp\n");
+  printf("\nNumbers are in the unit shown, or have their own: 10MPa, 5mm/s, 18kN/m3, 0.5g, 30deg.\n"
+         "\nHelp\n");
   print_wrapped("show this text", printf("  --help"));
   print_wrapped("show the version of the library", printf("  --version"));
   return 0;
@@ -176,6 +181,12 @@ static int farthest(const char *name) { return (int)strlen(name) / 3; }
 static int refuse_unknown(const options_program *program, const char *name) {
   const char *nearest = NULL;
   int least = MAX_NAME;
+  const standard_former *former = standard_find_former(program->table, name);
+  if (former) {
+    complain("%s: --%s is --%s%s\n", program->name, name, former->now,
+             former->value ? former->value : "");
+    return USAGE;
+  }
   for (const option *o = program->table; o->name || o->help; o++) {
     if (!o->name) continue;
     const bool begins = strlen(name) > 1 && strncmp(name, o->name, strlen(name)) == 0;
@@ -193,11 +204,21 @@ static int refuse_unknown(const options_program *program, const char *name) {
 
 /* ---- values ---------------------------------------------------------------------------------- */
 
+/* A number without a unit is followed by that of the option; of one with its own the range is. */
 static int refuse_value(const options_program *program, const option *o, const char *value,
                         const char *allowed) {
-  const bool unit = (o->number || o->integer) && o->unit && strcmp(o->unit, "1") != 0;
-  complain("%s: --%s is %s%s%s, must be %s\n", program->name, o->name, *value ? value : "empty",
-           unit ? " " : "", unit ? o->unit : "", allowed);
+  const bool unit = o->number && o->unit && strcmp(o->unit, "1") != 0;
+  const bool own = unit && units_written(value);
+  complain("%s: --%s is %s%s%s, must be %s%s%s\n", program->name, o->name,
+           *value ? value : "empty", unit && !own ? " " : "", unit && !own ? o->unit : "", allowed,
+           own ? " " : "", own ? o->unit : "");
+  return USAGE;
+}
+
+static int refuse_unit(const options_program *program, const option *o, const char *value) {
+  char wanted[160];
+  units_wanted(o->unit, wanted, sizeof wanted);
+  complain("%s: --%s is %s: %s\n", program->name, o->name, value, wanted);
   return USAGE;
 }
 
@@ -205,36 +226,43 @@ static bool in_range(const option_range *r, double value) {
   return (r->open ? value > r->lower : value >= r->lower) && value <= r->upper;
 }
 
+/* Numbers separated by commas; nothing is changed where one of them is refused. */
 static int read_numbers(const options_program *program, const option *o, const char *value) {
+  enum { MOST = 8 };
   const int count = o->count > 1 ? o->count : 1;
+  double number[MOST];
   char allowed[128], range[64], word[64];
   describe_range(o, range, sizeof range);
   if (count > 1)
     snprintf(allowed, sizeof allowed, "%d numbers separated by commas, each %s", count, range);
   else
-    snprintf(allowed, sizeof allowed, "%s%s", range, o->integer ? " and an integer" : "");
+    snprintf(allowed, sizeof allowed, "%s", range);
   const char *rest = value;
   for (int i = 0; i < count; i++) {
     const size_t length = i + 1 < count ? strcspn(rest, ",") : strlen(rest);
-    double number;
     if (length >= sizeof word) return refuse_value(program, o, value, allowed);
     memcpy(word, rest, length);
     word[length] = '\0';
-    if (!options_number(word, &number) || !in_range(&o->range, number))
+    const units_status status = units_read(word, o->unit, &number[i]);
+    if (status == UNITS_OTHER) return refuse_unit(program, o, value);
+    if (status != UNITS_GOOD || !in_range(&o->range, number[i]))
       return refuse_value(program, o, value, allowed);
-    if (o->integer) {
-      if (number != floor(number) || fabs(number) > 9007199254740992.0)
-        return refuse_value(program, o, value, allowed);
-      *o->integer = (int64_t)number;
-    } else {
-      o->number[i] = number;
-    }
     rest += length;
-    if (i + 1 < count) {
-      if (*rest != ',') return refuse_value(program, o, value, allowed);
-      rest++;
-    }
+    if (i + 1 < count && *rest++ != ',') return refuse_value(program, o, value, allowed);
   }
+  memcpy(o->number, number, (size_t)count * sizeof *number);
+  return -1;
+}
+
+static int read_integer(const options_program *program, const option *o, const char *value) {
+  char range[64], allowed[96];
+  double number;
+  describe_range(o, range, sizeof range);
+  snprintf(allowed, sizeof allowed, "%s and an integer", range);
+  if (!options_number(value, &number) || !in_range(&o->range, number) || number != floor(number) ||
+      fabs(number) > 9007199254740992.0)
+    return refuse_value(program, o, value, allowed);
+  *o->integer = (int64_t)number;
   return -1;
 }
 
@@ -255,10 +283,18 @@ static int read_choice(const options_program *program, const option *o, const ch
 }
 
 static int read_value(const options_program *program, option *o, const char *value) {
+  double number;
   o->given = true;
   if (o->choice) return read_choice(program, o, value);
-  if (o->number || o->integer) return read_numbers(program, o, value);
+  if (o->number) return read_numbers(program, o, value);
+  if (o->integer) return read_integer(program, o, value);
   if (*value == '\0') return refuse_value(program, o, value, o->unit);
+  if (strcmp(o->name, "checkpoint") == 0 && units_read(value, "s", &number) == UNITS_GOOD) {
+    complain("%s: --checkpoint is %s: a file is wanted; the time between checkpoints is "
+             "--every-checkpoint\n",
+             program->name, value);
+    return USAGE;
+  }
   *o->text = value;
   return -1;
 }
@@ -271,8 +307,16 @@ static option *find(option *table, const char *name) {
   return NULL;
 }
 
-int options_parse(const options_program *program, int argc, char **argv) {
-  ranks_hush();
+static void keep_rows(const options_program *program) {
+  int count = 0;
+  for (const option *o = program->table; (o->name || o->help) && count < MAX_ROWS - 1; o++)
+    rows_read[count++] = *o;
+  rows_read[count] = (option){0};
+}
+
+const option *options_read(void) { return rows_read[0].name || rows_read[0].help ? rows_read : NULL; }
+
+static int parse(const options_program *program, int argc, char **argv) {
   for (int i = 1; i < argc; i++) {
     const char *argument = argv[i];
     if (strcmp(argument, "--help") == 0 || strcmp(argument, "-h") == 0) {
@@ -309,22 +353,78 @@ int options_parse(const options_program *program, int argc, char **argv) {
   return -1;
 }
 
+int options_parse(const options_program *program, int argc, char **argv) {
+  const char *name;
+  ranks_hush();
+  if (!standard_complete(program->table, &name)) {
+    complain("%s: --%s is not in the table of options\n", program->name, name);
+    return USAGE;
+  }
+  const int code = parse(program, argc, argv);
+  keep_rows(program);
+  return code;
+}
+
 bool options_given(const option *table, const char *name) {
   for (const option *o = table; o->name || o->help; o++)
     if (o->name && strcmp(o->name, name) == 0) return o->given;
   return false;
 }
 
+/* " is 0.43 m by default"; false where the option has no value. */
+static bool show_value(const option *o, char *out, size_t size) {
+  char value[160] = "";
+  int length;
+  if (o->number && o->count < 2 && !isnan(*o->number))
+    units_show(*o->number, o->unit, value, sizeof value);
+  if (o->integer) snprintf(value, sizeof value, "%lld", (long long)*o->integer);
+  if (o->text && *o->text) snprintf(value, sizeof value, "%s", *o->text);
+  if (o->choice) {
+    const char *word = choice_word(o->unit, *o->choice, &length);
+    snprintf(value, sizeof value, "%.*s", length, word);
+  }
+  snprintf(out, size, "--%s is %s%s", o->name, value, o->given ? "" : " by default");
+  return value[0] != '\0';
+}
+
+/* The options that `text` names, each once, with their values; "" where all of them were given. */
+static void show_defaults(const option *table, const char *text, char *out, size_t size) {
+  bool any = false;
+  size_t used = 0;
+  out[0] = '\0';
+  for (const option *o = table; o->name || o->help; o++) {
+    char value[200];
+    bool named = false;
+    const size_t length = o->name ? strlen(o->name) : 0;
+    for (const char *at = strstr(text, "--"); o->name && at; at = strstr(at + 2, "--")) {
+      const char after = strncmp(at + 2, o->name, length) == 0 ? at[2 + length] : 'a';
+      named = named || !((after >= 'a' && after <= 'z') || (after >= '0' && after <= '9') ||
+                         after == '-');
+    }
+    if (!named || !show_value(o, value, sizeof value)) continue;
+    any = any || !o->given;
+    if (used < size)
+      used += (size_t)snprintf(out + used, size - used, "%s%s", used ? ", " : " (", value);
+  }
+  if (any && used + 2 < size)
+    snprintf(out + used, size - used, ")");
+  else
+    out[0] = '\0';
+}
+
 int options_refuse(const options_program *program, const char *reason) {
-  complain("%s: %s\n", program->name, reason);
+  char defaults[600];
+  show_defaults(program->table, reason, defaults, sizeof defaults);
+  complain("%s: %s%s\n", program->name, reason, defaults);
   return USAGE;
 }
 
 /* ---- options kept with a checkpoint ---------------------------------------------------------- */
 
-static bool is_one_of(const char *name, const char *const *list) {
-  for (; list && *list; list++)
-    if (strcmp(name, *list) == 0) return true;
+bool options_free(const char *name) {
+  static const char *const list[] = {"out", "threads", "checkpoint", "every-checkpoint", "restart"};
+  for (size_t k = 0; k < sizeof list / sizeof *list; k++)
+    if (strcmp(name, list[k]) == 0) return true;
   return false;
 }
 
@@ -350,11 +450,11 @@ static void describe_value(const option *o, char *out, size_t size) {
   }
 }
 
-bool options_record(const option *table, const char *const *except, char *text, size_t size) {
+bool options_record(const option *table, char *text, size_t size) {
   size_t used = 0;
   for (const option *o = table; o->name || o->help; o++) {
     char value[256];
-    if (!o->name || is_one_of(o->name, except)) continue;
+    if (!o->name || options_free(o->name)) continue;
     describe_value(o, value, sizeof value);
     used += (size_t)snprintf(text + used, size - used, "%s=%s\n", o->name, value);
     if (used >= size) return false;
@@ -375,15 +475,52 @@ static bool recorded(const char *record, const char *name, char *out, size_t siz
   return false;
 }
 
-bool options_agree(const option *table, const char *const *except, const char *record, char *why,
-                   size_t size) {
+bool options_agree(const option *table, const char *record, char *why, size_t size) {
   for (const option *o = table; o->name || o->help; o++) {
     char now[256], then[256] = "unknown";
-    if (!o->name || is_one_of(o->name, except)) continue;
+    if (!o->name || options_free(o->name)) continue;
     describe_value(o, now, sizeof now);
     if (recorded(record, o->name, then, sizeof then) && strcmp(now, then) == 0) continue;
     snprintf(why, size, "--%s is %s, was %s", o->name, now, then);
     return false;
   }
   return true;
+}
+
+/* ---- options as JSON ------------------------------------------------------------------------- */
+
+static void json_string(const char *text, size_t length, char *out, size_t size) {
+  size_t used = (size_t)snprintf(out, size, "\"");
+  for (size_t k = 0; k < length && used + 8 < size; k++) {
+    const unsigned char c = (unsigned char)text[k];
+    if (c < 0x20)
+      used += (size_t)snprintf(out + used, size - used, "\\u%04x", c);
+    else
+      used += (size_t)snprintf(out + used, size - used, c == '"' || c == '\\' ? "\\%c" : "%c", c);
+  }
+  snprintf(out + used, size - used, "\"");
+}
+
+void options_json(const option *o, char *out, size_t size) {
+  size_t used = 0;
+  int length = 0;
+  snprintf(out, size, "null");
+  if (o->flag) snprintf(out, size, "%s", *o->flag ? "true" : "false");
+  if (o->integer) snprintf(out, size, "%lld", (long long)*o->integer);
+  if (o->text && *o->text) json_string(*o->text, strlen(*o->text), out, size);
+  if (o->choice) {
+    const char *word = choice_word(o->unit, *o->choice, &length);
+    json_string(word, (size_t)length, out, size);
+  }
+  if (!o->number) return;
+  const bool many = o->count > 1;
+  for (int k = 0; k < (many ? o->count : 1) && used < size; k++) {
+    char text[32] = "null";
+    for (int digits = 6; digits <= 17 && isfinite(o->number[k]); digits++) {
+      snprintf(text, sizeof text, "%.*g", digits, o->number[k]);
+      if (strtod(text, NULL) == o->number[k]) break;
+    }
+    used += (size_t)snprintf(out + used, size - used, "%s%s", k ? ", " : many ? "[" : "", text);
+  }
+  if (many && used < size) snprintf(out + used, size - used, "]");
 }

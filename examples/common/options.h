@@ -3,9 +3,13 @@
  * A program lists its options with variables that hold the defaults:
  *   option table[] = {
  *     OPTION_HEADING("Ground"),
- *     OPTION_NUMBER("radius", "m", OPTION_LENGTH, &radius, "particle radius R"),
+ *     COMMON_NUMBER("young", &young, "of the plate"),
+ *     OPTION_NUMBER("tank", "bases", OPTION_FROM_TO(1.5, 1000.0), &tank, "to the far wall"),
  *     {0}};
- * --name VALUE and --name=VALUE both work. Numbers are read strictly, and always with a point.
+ * Rows COMMON_... take unit, range and help from the table of the options that mean the same in all
+ * programs (standard.c). --name VALUE and --name=VALUE both work; of an option that is given twice
+ * the last one counts. Numbers are read strictly, and always with a point; they are in the unit
+ * that --help shows or have one of their own (units.h).
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_OPTIONS_H
 #define EXAMPLES_OPTIONS_H
@@ -36,11 +40,11 @@ typedef struct option_range {
 #define OPTION_DENSITY                                                                             \
   { 1e-3, 1e5, false } /* kg/m3 */
 #define OPTION_MODULUS                                                                             \
-  { 1e-3, 1e10, false } /* kPa: 1 Pa to 10 TPa */
+  { 1e-3, 1e16, false } /* Pa */
 #define OPTION_STRENGTH                                                                            \
-  { 0.0, 1e8, false } /* kPa */
+  { 0.0, 1e11, false } /* Pa */
 #define OPTION_STIFFNESS                                                                           \
-  { 1e-6, 1e13, false } /* kN/m */
+  { 1e-3, 1e16, false } /* N/m */
 #define OPTION_FROM_TO(lower, upper)                                                               \
   { (lower), (upper), false }
 #define OPTION_ABOVE_TO(lower, upper)                                                              \
@@ -51,6 +55,8 @@ typedef struct option {
   const char *name; /* without the dashes */
   const char *unit; /* unit, or what the value is: FILE; of a choice: "S|P" */
   const char *help;
+  const char *note;   /* of the program, after the help; NULL: none */
+  bool common;        /* unit, help and range are those of standard.c where they are not given */
   option_range range; /* of numbers and integers */
   int count;          /* of numbers separated by commas; 0 and 1: one number */
   bool *flag;
@@ -74,10 +80,22 @@ typedef struct option {
   { .name = (name_), .unit = (unit_), .text = (value), .help = (help_) }
 #define OPTION_CHOICE(name_, choices, value, help_)                                                \
   { .name = (name_), .unit = (choices), .choice = (value), .help = (help_) }
+/* Rows of the common table; `note_` (or NULL) follows its help. */
+#define COMMON_NUMBER(name_, value, note_)                                                         \
+  { .name = (name_), .common = true, .number = (value), .note = (note_) }
+#define COMMON_NUMBER_IN(name_, range_, value, note_)                                              \
+  { .name = (name_), .common = true, .range = range_, .number = (value), .note = (note_) }
+#define COMMON_INTEGER(name_, value, note_)                                                        \
+  { .name = (name_), .common = true, .integer = (value), .note = (note_) }
+#define COMMON_INTEGER_IN(name_, range_, value, note_)                                             \
+  { .name = (name_), .common = true, .range = range_, .integer = (value), .note = (note_) }
+#define COMMON_CHOICE(name_, value, note_)                                                         \
+  { .name = (name_), .common = true, .choice = (value), .note = (note_) }
+#define COMMON_TEXT(name_, value, note_)                                                           \
+  { .name = (name_), .common = true, .text = (value), .note = (note_) }
 /* Rows that every program has. */
-#define OPTION_THREADS(value)                                                                      \
-  OPTION_INTEGER("threads", "N", OPTION_FROM_TO(0.0, 1024.0), value, "threads; 0: all processors")
-#define OPTION_OUT(value) OPTION_TEXT("out", "DIR", value, "directory of the results")
+#define OPTION_THREADS(value) COMMON_INTEGER("threads", value, NULL)
+#define OPTION_OUT(value) COMMON_TEXT("out", value, NULL)
 
 typedef struct options_program {
   const char *name;    /* "mps-wave" */
@@ -90,20 +108,29 @@ typedef struct options_program {
 int options_parse(const options_program *program, int argc, char **argv);
 /* True when the option was on the command line. */
 bool options_given(const option *table, const char *name);
-/* "name=value" lines of all options but those of `except` (ends with NULL; NULL: none), to be kept
- * with a checkpoint. False when `size` is too small. */
-bool options_record(const option *table, const char *const *except, char *text, size_t size);
+/* Of where and how a run is done, such as --out: a run may go on with others of these. */
+bool options_free(const char *name);
+/* "name=value" lines of all other options, to be kept with a checkpoint. False when `size` is too
+ * small. */
+bool options_record(const option *table, char *text, size_t size);
 /* Compares with such lines. False, and in `why` the first option that differs: "--rest is 0.2 s,
  * was 0.3". */
-bool options_agree(const option *table, const char *const *except, const char *record, char *why,
-                   size_t size);
+bool options_agree(const option *table, const char *record, char *why, size_t size);
 
-/* One error line about a combination of options, as the parser's own. Returns 2. */
+/* One error line about a combination of options, as the parser's own. Where `reason` names options
+ * that were not given, the line ends with their defaults and the values of the others. Returns 2. */
 int options_refuse(const options_program *program, const char *reason);
+
+/* The value of an option as JSON, in the unit of the table: a number, text, true or false, [numbers];
+ * null where there is none. */
+void options_json(const option *o, char *out, size_t size);
+/* The rows that options_parse has read last, with their values as they are now; NULL: none yet. */
+const option *options_read(void);
 
 /* Reads a finite decimal number that takes up the whole text. */
 bool options_number(const char *text, double *out);
-/* Reads `count` lengths > 0 with an x between them, such as 5x2; false when `text` is not that. */
-bool options_lengths(const char *text, int count, double *const *out);
+/* Reads `count` numbers > 0, in `unit` or with one of their own, with an x between them, such as
+ * 5x2; false when `text` is not that. */
+bool options_lengths(const char *text, const char *unit, int count, double *const *out);
 
 #endif

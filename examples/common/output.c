@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "output.h"
 
+#include "options.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdarg.h>
@@ -74,18 +76,16 @@ bool output_close(output *file) {
   if (!file->stream) return false;
   if (fflush(file->stream) != 0 && !file->error) file->error = errno;
   if (fclose(file->stream) != 0 && !file->error) file->error = errno;
-  bool ok = file->error == 0 && !file->bad[0];
+  bool ok = file->error == 0;
   if (ok && rename(file->temporary, file->path) != 0) {
     file->error = errno;
     ok = false;
   }
   if (ok) {
     app_wrote(file->a, file->path);
+    if (file->bad[0]) app_warn(file->a, "%s: %s", file->path, file->bad);
   } else {
-    if (file->error)
-      app_error(file->a, "cannot write %s: %s", file->path, strerror(file->error));
-    else
-      app_error(file->a, "%s is not written: %s, not a finite number", file->path, file->bad);
+    app_error(file->a, "cannot write %s: %s", file->path, strerror(file->error));
     unlink(file->temporary);
   }
   forget(file);
@@ -119,7 +119,7 @@ void csv_header(output *file, const char *columns) {
   output_text(file, "\n");
 }
 
-/* The name of column `k`, without its question mark; true where it may be NaN. */
+/* The name of column `k`, without its question mark; true where it has one. */
 static bool find_column(const output *file, int64_t k, char name[64]) {
   const char *at = file->columns ? file->columns : "";
   for (int64_t i = 0; i < k && *at; i++) at += strcspn(at, ",") + (strchr(at, ',') != NULL);
@@ -141,9 +141,9 @@ static void write_row(output *file, int64_t first, int64_t count, const double *
     if (i > 0) output_text(file, ",");
     if (isfinite(values[i])) {
       output_text(file, "%.9g", values[i]);
-    } else if (!(find_column(file, first + i, name) && isnan(values[i])) && !file->bad[0]) {
-      snprintf(file->bad, sizeof file->bad, "%s of row %lld is %g", name, (long long)file->rows,
-               values[i]);
+    } else if (!find_column(file, first + i, name) && !file->bad[0]) {
+      snprintf(file->bad, sizeof file->bad, "%s of row %lld is not a number: the cell is empty",
+               name, (long long)file->rows);
     }
   }
   output_text(file, "\n");
@@ -175,18 +175,7 @@ static void json_key(output *file, const char *key) {
 void json_number(output *file, const char *key, double value) {
   char text[32];
   json_key(file, key);
-  if (!isfinite(value) && !file->bad[0])
-    snprintf(file->bad, sizeof file->bad, "%.100s is %g", key, value);
   output_text(file, "%s", isfinite(value) ? output_number(text, value) : "null");
-}
-
-void json_optional(output *file, const char *key, double value) {
-  if (!isnan(value)) {
-    json_number(file, key, value);
-    return;
-  }
-  json_key(file, key);
-  output_text(file, "null");
 }
 
 void json_integer(output *file, const char *key, int64_t value) {
@@ -194,8 +183,7 @@ void json_integer(output *file, const char *key, int64_t value) {
   output_text(file, "%lld", (long long)value);
 }
 
-void json_text(output *file, const char *key, const char *text) {
-  json_key(file, key);
+static void write_string(output *file, const char *text) {
   output_text(file, "\"");
   for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
     if (*c == '"' || *c == '\\')
@@ -208,4 +196,47 @@ void json_text(output *file, const char *key, const char *text) {
   output_text(file, "\"");
 }
 
+void json_text(output *file, const char *key, const char *text) {
+  json_key(file, key);
+  write_string(file, text);
+}
+
 void json_end(output *file) { output_text(file, "\n}\n"); }
+
+/* ---- summary.json ---------------------------------------------------------------------------- */
+
+/* On one line: the names are also those of results, which other programs look for by line. */
+static void write_options(output *file) {
+  const char *sep = "";
+  char value[600];
+  json_key(file, "options");
+  output_text(file, "{");
+  for (const option *o = options_read(); o && (o->name || o->help); o++) {
+    if (!o->name || options_free(o->name)) continue;
+    options_json(o, value, sizeof value);
+    output_text(file, "%s\"%s\": %s", sep, o->name, value);
+    sep = ", ";
+  }
+  output_text(file, "}");
+}
+
+static void write_warnings(output *file, const app *a) {
+  json_key(file, "warnings");
+  output_text(file, "[");
+  for (int k = 0; k < a->warnings; k++) {
+    if (k > 0) output_text(file, ", ");
+    write_string(file, a->warning[k]);
+  }
+  output_text(file, "]");
+}
+
+bool summary_open(output *file, app *a, const char *directory) {
+  if (!output_open(file, a, directory, "summary.json")) return false;
+  json_begin(file);
+  json_text(file, "program", a->program);
+  json_text(file, "version", mps_version());
+  json_text(file, "outcome", a->outcome);
+  write_options(file);
+  write_warnings(file, a);
+  return true;
+}

@@ -19,7 +19,7 @@ typedef struct output {
   bool first;    /* JSON: no member yet */
   char *columns; /* CSV: as given to csv_header */
   int64_t rows;  /* CSV: written so far */
-  char bad[160]; /* what was not a finite number, "": nothing */
+  char bad[160]; /* the first cell that should have had a number, "": none */
 } output;
 
 /* Opens DIR/NAME for writing. False, with an error line, when that fails: `file` is then closed. */
@@ -28,26 +28,29 @@ bool output_open(output *file, app *a, const char *directory, const char *name);
  * what it was before. Does nothing (false) for a file that is not open. */
 bool output_close(output *file);
 
-/* The writers keep the first error for output_close. A number that is not finite is one: no result
- * file holds a NaN or an infinity, and what has none says so below. */
+/* The writers keep the first error for output_close. No result file holds a NaN or an infinity: a
+ * number that does not exist is an empty cell, or null. */
 void output_text(output *file, const char *format, ...) APP_PRINTF(2, 3);
 
-/* The line with the names of the columns, "t_s,x_m,theory_m?": those with a question mark may be
- * NaN, which leaves their cells empty. Errors name the column. */
+/* The line with the names of the columns, "t_s,x_m,theory_m?": those with a question mark may have
+ * no numbers here and there. An empty cell of the others is a warning, which names the column. */
 void csv_header(output *file, const char *columns);
-/* One line of `count` numbers; without csv_header, or beyond its columns, none may be NaN. */
+/* One line of `count` numbers. */
 void csv_row(output *file, int64_t count, const double *values);
 /* The same after `text`, one or more columns separated by commas. */
 void csv_named_row(output *file, const char *text, int64_t count, const double *values);
 
-/* A flat JSON object. */
+/* A JSON object, a member a line. */
 void json_begin(output *file);
+/* null where the number does not exist: NaN, or an infinity. */
 void json_number(output *file, const char *key, double value);
-/* NaN, where there is no such number, becomes null. */
-void json_optional(output *file, const char *key, double value);
 void json_integer(output *file, const char *key, int64_t value);
 void json_text(output *file, const char *key, const char *text);
 void json_end(output *file);
+
+/* Opens DIR/summary.json and writes what every summary begins with: program, version, outcome,
+ * options (in the units of --help; but those of where and how it runs, such as --out), warnings. */
+bool summary_open(output *file, app *a, const char *directory);
 
 /* Shortest decimal text that reads back as `value`. */
 const char *output_number(char text[32], double value);

@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "progress.h"
 
+#include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -38,7 +39,7 @@ static double now(void) {
 }
 
 void progress_start(progress *bar) {
-  *bar = (progress){.terminal = isatty(STDERR_FILENO) == 1, .started = now()};
+  *bar = (progress){.terminal = isatty(STDERR_FILENO) == 1, .share = 1.0, .first = -1.0};
   struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = (int)SA_RESETHAND};
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, NULL);
@@ -53,17 +54,26 @@ void progress_heed_launcher(void) {
   sigaction(SIGUSR1, &action, NULL);
 }
 
+void progress_part(progress *bar, double done, double share, double from, double to) {
+  bar->done = done, bar->share = share;
+  bar->from = from, bar->to = to;
+}
+
 void progress_draw(progress *bar, double fraction, const char *text) {
   enum { WIDTH = 30 };
   if (!bar->terminal) return;
+  if (!(fraction >= bar->shown)) fraction = bar->shown;
+  if (fraction > 1.0) fraction = 1.0;
+  if (bar->first < 0.0) bar->first = fraction, bar->started = now();
+  bar->shown = fraction;
   char cells[WIDTH + 1];
   const int full = (int)(fraction * WIDTH + 0.5);
   for (int i = 0; i < WIDTH; i++) cells[i] = i < full ? '#' : '.';
   cells[WIDTH] = '\0';
   const double spent = now() - bar->started;
   fprintf(stderr, "\r[%s] %3.0f %%  %s", cells, 100.0 * fraction, text);
-  if (fraction > 0.02 && spent > 1.0)
-    fprintf(stderr, "  %.0f s left", spent * (1.0 - fraction) / fraction);
+  if (fraction - bar->first > 0.02 && spent > 1.0)
+    fprintf(stderr, "  %.0f s left", spent * (1.0 - fraction) / (fraction - bar->first));
   fputs("\x1b[K", stderr); /* erases the rest of a longer former line */
   fflush(stderr);
   bar->drawn = true;
@@ -79,9 +89,12 @@ void progress_clear(progress *bar) {
 bool progress_interrupted(void) { return interrupted != 0; }
 
 void progress_hook(void *user, const mps_progress *p) {
+  progress *bar = user;
   char text[96];
-  snprintf(text, sizeof text, "t = %.3g of %.3g s", p->time, p->time_end);
-  progress_draw(user, p->fraction, text);
+  const bool part = bar->to > bar->from;
+  const double inside = part ? (p->time - bar->from) / (bar->to - bar->from) : p->fraction;
+  snprintf(text, sizeof text, "t = %.3g of %.3g s", p->time, part ? bar->to : p->time_end);
+  progress_draw(bar, bar->done + bar->share * fmin(1.0, fmax(0.0, inside)), text);
 }
 
 int32_t progress_cancel_hook(void *user) {

@@ -10,7 +10,10 @@
 typedef struct progress {
   bool terminal; /* stderr is one: otherwise nothing is drawn */
   bool drawn;
-  double started; /* s, monotonic clock */
+  double started;      /* s, monotonic clock: when the fraction was `first` */
+  double first, shown; /* of the whole: when it began to be drawn; last drawn */
+  double done, share;  /* of the whole: before the present part, and of it */
+  double from, to;     /* s, time of the solver in the present part; equal: what the solver says */
 } progress;
 
 enum { PROGRESS_LAST_LINE = 1400 };
@@ -21,7 +24,11 @@ enum { PROGRESS_LAST_LINE = 1400 };
 void progress_start(progress *bar);
 /* From now on SIGTERM and SIGUSR1 are requests to stop too: mpirun and srun send them to ranks. */
 void progress_heed_launcher(void);
-/* Draws the bar: `fraction` in 0..1, `text` a few words. */
+/* What the hook draws from now on: a part `share` of the whole, with `done` before it, in which the
+ * solver's time goes from `from` to `to` (s). There is one bar, of all that a program does: without
+ * parts the one call of the solver is the whole. */
+void progress_part(progress *bar, double done, double share, double from, double to);
+/* Draws the bar: `fraction` of the whole in 0..1, at least that drawn last; `text` a few words. */
 void progress_draw(progress *bar, double fraction, const char *text);
 /* Takes the bar off the terminal, before a line is printed. */
 void progress_clear(progress *bar);

@@ -6,12 +6,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 enum { OPTIONS = 2048 }; /* bytes of the options' text, which comes first */
-
-/* A run may go on with others of these. */
-static const char *const free_options[] = {"out",     "threads", "checkpoint", "every-checkpoint",
-                                           "restart", NULL};
 
 void resume_pass(resume_bytes *b, void *value, size_t size) {
   b->bytes += (int64_t)size;
@@ -29,19 +26,43 @@ bool resume_wrong(resume_bytes *b, bool wrong) {
   return b->status != MPS_OK;
 }
 
+/* The warnings so far; those of the file replace what this process has warned of before. Of several
+ * ranks only the first has them, and all must write the same: none. */
+static void pass_warnings(const resume *r, resume_bytes *b) {
+  app *a = r->a;
+  int count = a && !r->domain ? a->warnings : 0;
+  resume_pass(b, &count, sizeof count);
+  if (resume_wrong(b, count < 0 || count > APP_WARNINGS || (count > 0 && !a))) return;
+  if (b->reads)
+    while (a && a->warnings > 0) free(a->warning[--a->warnings]);
+  for (int k = 0; k < count; k++) {
+    int length = b->reads ? 0 : (int)strlen(a->warning[k]);
+    resume_pass(b, &length, sizeof length);
+    if (resume_wrong(b, length < 0 || length > b->size)) return;
+    if (b->reads && !(a->warning[k] = calloc((size_t)length + 1, 1))) {
+      b->status = MPS_ERROR_MEMORY;
+      return;
+    }
+    if (b->reads) a->warnings = k + 1;
+    resume_pass(b, a->warning[k], (size_t)length);
+  }
+}
+
 /* Options and bytes into `info`, whose user_data is to be freed also after an error. */
 static mps_status pack(const resume *r, mps_checkpoint *info) {
   char text[OPTIONS] = "";
   *info = mps_checkpoint_defaults();
   resume_bytes count = {0};
+  pass_warnings(r, &count);
   r->pass(r->user, &count);
   info->user_bytes = OPTIONS + count.bytes;
   info->user_data = malloc((size_t)info->user_bytes);
   if (!info->user_data) return MPS_ERROR_MEMORY;
   snprintf(info->user_key, sizeof info->user_key, "%s", r->key);
-  if (!options_record(r->table, free_options, text, sizeof text)) return MPS_ERROR_MEMORY;
+  if (!options_record(r->table, text, sizeof text)) return MPS_ERROR_MEMORY;
   memcpy(info->user_data, text, OPTIONS);
   resume_bytes b = {.at = (char *)info->user_data + OPTIONS, .size = count.bytes};
+  pass_warnings(r, &b);
   r->pass(r->user, &b);
   return MPS_OK;
 }
@@ -78,7 +99,7 @@ mps_status resume_peek(mps_context *context, const resume *r, const char *path, 
   why[0] = '\0';
   if (status == MPS_OK &&
       (!memchr(info.user_data, '\0', OPTIONS) ||
-       !options_agree(r->table, free_options, info.user_data, differs, sizeof differs))) {
+       !options_agree(r->table, info.user_data, differs, sizeof differs))) {
     snprintf(why, size, "%.150s was made with other options: %.200s", path, differs);
     status = MPS_ERROR_ARGUMENT;
   }
@@ -89,9 +110,18 @@ mps_status resume_peek(mps_context *context, const resume *r, const char *path, 
 static mps_status unpack(const resume *r, const mps_checkpoint *info) {
   resume_bytes b = {
       .at = (char *)info->user_data + OPTIONS, .size = info->user_bytes - OPTIONS, .reads = true};
+  pass_warnings(r, &b);
   r->pass(r->user, &b);
   resume_wrong(&b, b.bytes != b.size);
   return b.status;
+}
+
+mps_status resume_load(mps_context *context, const resume *r, const char *path) {
+  mps_checkpoint info;
+  mps_status status = agree(r, read_bytes(context, r, path, &info));
+  if (status == MPS_OK) status = unpack(r, &info);
+  free(info.user_data);
+  return agree(r, status);
 }
 
 mps_status resume_restore(mps_context *context, const resume *r, const char *path) {
@@ -107,10 +137,51 @@ mps_status resume_restore(mps_context *context, const resume *r, const char *pat
 
 /* ---- on the way ------------------------------------------------------------------------------ */
 
-void resume_default_path(const char **checkpoint, const char *out, char *path, size_t size) {
-  if (*checkpoint) return;
-  snprintf(path, size, "%s/checkpoint.h5", out);
-  *checkpoint = path;
+static bool has_results(const char *directory) {
+  char path[1300];
+  struct stat info;
+  return snprintf(path, sizeof path, "%s/summary.json", directory) < (int)sizeof path &&
+         stat(path, &info) == 0;
+}
+
+static bool name_results(app *a, const char *restart, const char **out) {
+  static char next[1200];
+  mps_checkpoint info = mps_checkpoint_defaults();
+  if (!restart || !has_results(*out)) return true;
+  if (!app_check(a, mps_checkpoint_info(a->context, restart, &info))) return false;
+  if (snprintf(next, sizeof next, "%s-from-%.6g", *out, info.time) >= (int)sizeof next)
+    return app_error(a, "--out is too long");
+  if (has_results(next))
+    return app_error(a, "%s and %s have results already: --out must be another directory", *out,
+                     next);
+  *out = next;
+  if (a->rank == 0) printf("Results go to %s\n", next);
+  return true;
+}
+
+/* What the library finds when it saves, before hours of computing. */
+static bool check_place(app *a, const char *path) {
+  mps_checkpoint info = mps_checkpoint_defaults();
+  struct stat file;
+  if (stat(path, &file) != 0) return true;
+  if (!S_ISREG(file.st_mode))
+    return app_error(a, "--checkpoint is %s, a %s: it must be a new file or a checkpoint", path,
+                     S_ISDIR(file.st_mode) ? "directory" : "device or pipe");
+  if (file.st_size == 0) return true;
+  const mps_status status = mps_checkpoint_info(a->context, path, &info);
+  if (status != MPS_ERROR_FORMAT) return true;
+  return app_error(a, "--checkpoint is %s, which is no checkpoint and is not replaced", path);
+}
+
+bool resume_places(app *a, const char *restart, const char **checkpoint, const char **out) {
+  static char path[1200];
+  if (!name_results(a, restart, out)) return false;
+  if (!*checkpoint) {
+    if (snprintf(path, sizeof path, "%s/checkpoint.h5", *out) >= (int)sizeof path)
+      return app_error(a, "--out is too long");
+    *checkpoint = path;
+  }
+  return check_place(a, *checkpoint);
 }
 
 static int64_t due(const resume_schedule *s, double now) {
@@ -138,4 +209,8 @@ void resume_save_when_due(app *a, resume_schedule *s, double now) {
   if (!resume_is_due(s, now)) return;
   resume_schedule_at(s, now);
   resume_save_now(a, s);
+}
+
+void resume_tell(const resume_schedule *s) {
+  if (s->saved) printf("To go on: the same command with --restart %s\n", s->path);
 }

@@ -41,6 +41,7 @@ typedef struct resume {
   void *user;         /* of pass */
   mps_mpm *mpm;       /* the solver: this one */
   mps_fluid *fluid;   /* or this */
+  app *a;             /* its warnings are kept too: summary.json has those of the whole run */
   mps_domain *domain; /* of several ranks: saving, peeking and restoring are collective */
 } resume;
 
@@ -50,20 +51,22 @@ mps_status resume_save(const resume *r, const char *path);
  * `why` the first that differs; `why` is "" where the library says what is wrong. */
 mps_status resume_peek(mps_context *context, const resume *r, const char *path, char *why,
                        size_t size);
+/* After resume_peek: what the run had seen, without the solver. */
+mps_status resume_load(mps_context *context, const resume *r, const char *path);
 /* After resume_peek, once the model is built: the solver and what the run had seen. */
 mps_status resume_restore(mps_context *context, const resume *r, const char *path);
 
-/* Rows of a program's table of options; `between` tells what --every-checkpoint is. */
-#define RESUME_OPTIONS(checkpoint, every, between, restart)                                        \
-  OPTION_TEXT("checkpoint", "FILE", checkpoint,                                                    \
-              "written on the way and at Ctrl-C, to go on from (default OUT/checkpoint.h5)"),      \
-      OPTION_NUMBER("every-checkpoint", "s", OPTION_DURATION, every, between),                     \
-      OPTION_TEXT("restart", "FILE", restart,                                                      \
-                  "go on from a checkpoint made with the same options (but --out, --threads and "  \
-                  "those of checkpoints); the results are those of the whole run, the frames for " \
-                  "ParaView those from here on")
-/* Makes *checkpoint OUT/checkpoint.h5 where it is NULL; it lies in `path`. */
-void resume_default_path(const char **checkpoint, const char *out, char *path, size_t size);
+/* Rows of a program's table of options. */
+#define RESUME_OPTIONS(checkpoint, every, note, restart)                                           \
+  COMMON_TEXT("checkpoint", checkpoint, NULL), COMMON_NUMBER("every-checkpoint", every, note),     \
+      COMMON_TEXT("restart", restart, NULL)
+
+/* The files of a run, before it begins, by one rule for all programs. A run that goes on replaces no
+ * results: where *out has a summary.json, they go to OUT-from-T, T (s) the time of the checkpoint,
+ * and a line says so; that one must be new. *checkpoint becomes OUT/checkpoint.h5 where it is NULL;
+ * a place that the library would not write to is refused now. Strings that change are kept here.
+ * False after an error line. */
+bool resume_places(app *a, const char *restart, const char **checkpoint, const char **out);
 
 /* Checkpoints on the way. One that fails is told, once, and does not end the run. */
 typedef struct resume_schedule {
@@ -81,5 +84,7 @@ void resume_schedule_at(resume_schedule *s, double now);
 bool resume_is_due(const resume_schedule *s, double now);
 void resume_save_when_due(app *a, resume_schedule *s, double now);
 void resume_save_now(app *a, resume_schedule *s);
+/* "To go on: ..." on stdout, after Ctrl-C, where a checkpoint was written. */
+void resume_tell(const resume_schedule *s);
 
 #endif

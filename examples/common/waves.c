@@ -74,29 +74,25 @@ double waves_havelock(double k, double depth) {
   return 2.0 * (cosh(a) - 1.0) / (sinh(a) + a);
 }
 
-void waves_warn(const app *a, double period, double depth, double amplitude, double spacing) {
+void waves_warn(app *a, double period, double depth, double amplitude, double spacing) {
   const double k = waves_number(period, depth), most = 0.142 * 2.0 * WAVES_PI / k * tanh(k * depth);
   const double height = 2.0 * fabs(amplitude) * waves_havelock(k, depth);
-  if (a->rank > 0) return;
   if (height > 0.0 && height < 2.0 * spacing)
-    fprintf(stderr,
-            "%s: warning: the piston's waves, %.2g m high, are lower than 2 spacings of %g m: they "
-            "will lose height\n",
-            a->program, height, spacing);
+    app_warn(a,
+             "the piston's waves, %.2g m high, are lower than 2 spacings of %g m: they will lose "
+             "height",
+             height, spacing);
   if (height > 0.8 * most)
-    fprintf(stderr,
-            "%s: warning: the piston's waves, %.2g m high, are more than .8 of those that break, "
-            "%.2g m\n",
-            a->program, height, most);
+    app_warn(a, "the piston's waves, %.2g m high, are more than .8 of those that break, %.2g m",
+             height, most);
 }
 
-void waves_warn_of_step(const app *a, double omega, double dt) {
-  if (a->rank > 0 || !(omega * dt > 0.3)) return;
-  fprintf(
-      stderr,
-      "%s: warning: a step of %.3g s is too long for a structure that swings with %.4g rad/s in "
-      "the water: %.2g s, .3/omega, or less follow it\n",
-      a->program, dt, omega, 0.3 / omega);
+void waves_warn_of_step(app *a, double omega, double dt) {
+  if (omega * dt > 0.3)
+    app_warn(a,
+             "a step of %.3g s is too long for a structure that swings with %.4g rad/s in the "
+             "water: %.2g s, .3/omega, or less follow it",
+             dt, omega, 0.3 / omega);
 }
 
 double waves_sainflou_rise(double k, double depth, double H) { /* pi H^2 coth(kd)/L */

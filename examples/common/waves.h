@@ -35,13 +35,7 @@ mps_status waves_add_wall(mps_fluid *fluid, const double *point, double nx, doub
 /* Who solves the pressure equation, and how exactly: rows of a table of options, and what the first
  * asks for. False: in `why` what is in the way. Collective. */
 #define WAVES_SOLVER(solver, tolerance)                                                            \
-  OPTION_CHOICE(                                                                                   \
-      "solver", "own|multigrid|direct", solver,                                                    \
-      "of the pressure: the library's, the same bit for bit on all numbers of ranks; or "          \
-      "PETSc's algebraic multigrid, for some fifty thousand particles and more, or its "           \
-      "direct solver: they agree within the tolerance"),                                           \
-      OPTION_NUMBER("tolerance", "1", OPTION_FROM_TO(1e-14, 1e-2), tolerance,                      \
-                    "residual of the pressure over its right side")
+  COMMON_CHOICE("solver", solver, NULL), COMMON_NUMBER("tolerance", tolerance, NULL)
 #define WAVES_TOLERANCE 1e-5 /* default, as mps_fluid_def */
 bool waves_choose_solver(app *a, int choice, mps_fluid *fluid, char *why, size_t size);
 
@@ -49,12 +43,12 @@ bool waves_choose_solver(app *a, int choice, mps_fluid *fluid, char *why, size_t
 double waves_number(double period, double depth);
 /* Wave height over stroke of a piston (Havelock): 2 (cosh 2kd - 1)/(sinh 2kd + 2kd). */
 double waves_havelock(double k, double depth);
-/* A line to stderr where the waves of a piston are lower than 2 spacings, and one where they are
+/* A warning where the waves of a piston are lower than 2 spacings, and one where they are
  * higher than .8 of those that break, .142 L tanh(kd) (Miche). */
-void waves_warn(const app *a, double period, double depth, double amplitude, double spacing);
-/* A line to stderr where omega dt > .3, omega (rad/s) that of a structure in the water: the coupled
- * motion then has a wrong period and is damped by the scheme. */
-void waves_warn_of_step(const app *a, double omega, double dt);
+void waves_warn(app *a, double period, double depth, double amplitude, double spacing);
+/* A warning where omega dt > .3, omega (rad/s) that of a structure in the water: the coupled motion
+ * then has a wrong period and is damped by the scheme. */
+void waves_warn_of_step(app *a, double omega, double dt);
 /* Sainflou's standing wave at a vertical wall, the incident height H: rise of the mean level (m),
  * swing of the pressure at the bed (Pa), and force (N/m) under the crest (sign 1) or the trough
  * (-1). The pressure is linear from the crest to the bed. */

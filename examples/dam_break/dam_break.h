@@ -37,7 +37,8 @@ typedef struct simulation {
   mpm_snapshot shot[FRAMES];
   double *gauge_t, *gauge_p; /* s, Pa: of --impact, after each step */
   int64_t gauges, gauge_room;
-  mps_recorder *series;
+  mps_recorder *series; /* rank 0; made with the first frame */
+  bool opened;
   const option *table;
   resume_schedule saves;
   double restarted; /* s, NaN: from the start */

@@ -91,6 +91,7 @@ mps_status dam_mps_advance(simulation *sim, double t) {
     status = mps_fluid_step(sim->m.fluid, 1);
     if (status == MPS_OK && sim->s.impact) status = read_gauge(sim);
     progress_draw(&sim->m.a->bar, mps_fluid_time(sim->m.fluid) / sim->s.duration, "water");
+    if (progress_interrupted() && status == MPS_OK && !sim->m.a->domain) status = MPS_ERROR_CANCELLED;
   }
   return status;
 }
@@ -102,12 +103,25 @@ typedef struct impact {
   double rise, first, first_at, mean, second, second_at;
 } impact;
 
+/* The first value of the gauge at the time `from` or later: they are in order of time. */
+static int64_t first_from(const simulation *sim, double from) {
+  int64_t low = 0, high = sim->gauges;
+  while (low < high) {
+    const int64_t middle = low + (high - low) / 2;
+    if (sim->gauge_t[middle] < from)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
 /* Mean of the pressure over the times from..to; each value stands for the step before it. */
 static double mean_between(const simulation *sim, double from, double to) {
   double sum = 0.0, span = 0.0;
-  for (int64_t k = 1; k < sim->gauges; k++) {
+  const int64_t first = first_from(sim, from);
+  for (int64_t k = first > 1 ? first : 1; k < sim->gauges && sim->gauge_t[k] <= to; k++) {
     const double dt = sim->gauge_t[k] - sim->gauge_t[k - 1];
-    if (sim->gauge_t[k] < from || sim->gauge_t[k] > to) continue;
     sum += dt * sim->gauge_p[k], span += dt;
   }
   return span > 0.0 ? sum / span : NAN;
@@ -174,13 +188,13 @@ bool dam_impact_write(app *a, simulation *sim) {
   const impact i = find_impact(sim);
   output f;
   if (!write_gauge(a, sim) || !mpm_model_summary(a, &sim->m, sim->s.out, &f)) return false;
-  json_optional(&f, "impact_mean", i.mean);
+  json_number(&f, "impact_mean", i.mean);
   json_number(&f, "impact_mean_buchner", 0.545);
-  json_optional(&f, "impact_rise", i.rise);
+  json_number(&f, "impact_rise", i.rise);
   json_number(&f, "impact_first", i.first);
-  json_optional(&f, "impact_first_time", i.first_at);
+  json_number(&f, "impact_first_time", i.first_at);
   json_number(&f, "impact_second", i.second);
-  json_optional(&f, "impact_second_time", i.second_at);
+  json_number(&f, "impact_second_time", i.second_at);
   if (!dam_guards_write(a, sim, &f)) return false;
   json_end(&f);
   if (!output_close(&f) || !draw_gauge(a, &sim->s)) return false;

@@ -2,6 +2,9 @@
  * (common/resume.h). SPDX-License-Identifier: BSD-3-Clause */
 #include "dam_break.h"
 
+#include "common/frame.h"
+#include "common/mpm_course.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,18 +16,6 @@ static double time_now(const simulation *sim) {
 }
 
 /* ---- what the run has seen ------------------------------------------------------------------- */
-
-static void pass_shot(resume_bytes *b, mpm_snapshot *shot) {
-  resume_pass(b, &shot->time, sizeof shot->time);
-  resume_pass(b, &shot->count, sizeof shot->count);
-  if (resume_wrong(b, shot->count < 0 || shot->count > b->size)) {
-    shot->count = 0;
-    return;
-  }
-  const size_t values = 3 * (size_t)shot->count * sizeof *shot->row;
-  if (b->reads && shot->count > 0 && !(shot->row = malloc(values))) b->status = MPS_ERROR_MEMORY;
-  resume_pass(b, shot->row, values);
-}
 
 static void pass(void *user, resume_bytes *b) {
   simulation *sim = user;
@@ -44,16 +35,17 @@ static void pass(void *user, resume_bytes *b) {
   resume_pass(b, sim->heap, (size_t)rows * sizeof *sim->heap);
   resume_pass(b, sim->gauge_t, (size_t)gauges * sizeof *sim->gauge_t);
   resume_pass(b, sim->gauge_p, (size_t)gauges * sizeof *sim->gauge_p);
-  for (int k = 0; k < FRAMES; k++) pass_shot(b, &sim->shot[k]);
+  for (int k = 0; k < FRAMES; k++) resume_pass_snapshot(b, &sim->shot[k]);
 }
 
 static resume parts(simulation *sim) {
-  return (resume){.key = "mps-dam-break 1",
+  return (resume){.key = "mps-dam-break 2",
                   .table = sim->table,
                   .pass = pass,
                   .user = sim,
                   .mpm = sim->m.mpm,
                   .fluid = sim->m.fluid,
+                  .a = sim->m.a,
                   .domain = sim->m.a->domain};
 }
 
@@ -79,8 +71,6 @@ mps_status dam_build(mps_context *context, void *user) {
   const settings *s = &sim->s;
   const resume r = parts(sim);
   mps_status status = MPS_OK;
-  static char path[1200];
-  resume_default_path(&sim->s.checkpoint, s->out, path, sizeof path);
   sim->restarted = NAN;
   sim->saves = (resume_schedule){
       .path = s->checkpoint, .every = s->every_checkpoint, .save = save, .user = sim};
@@ -88,8 +78,15 @@ mps_status dam_build(mps_context *context, void *user) {
   if (status == MPS_OK)
     status = s->method == METHOD_MPS ? dam_mps_build(context, sim) : dam_mpm_build(context, sim);
   if (status == MPS_OK && s->restart) status = restore(context, sim);
-  if (status != MPS_OK || s->frames == 0) return status;
-  return mpm_model_series(&sim->m, s->out, "water", sim->restarted, &sim->series);
+  return status;
+}
+
+static mps_status write_frame(simulation *sim) {
+  mps_status status = MPS_OK;
+  if (!sim->opened)
+    status = mpm_model_series(&sim->m, sim->s.out, "water", sim->restarted, &sim->series);
+  sim->opened = true;
+  return status == MPS_OK ? mpm_model_frame(&sim->m, sim->series) : status;
 }
 
 static mps_status take_sample(simulation *sim, int k) {
@@ -99,9 +96,7 @@ static mps_status take_sample(simulation *sim, int k) {
   mps_status status = mpm_heap_measure(&sim->m, G, 2.0 * s->h, heap);
   if (status == MPS_OK && k % SHOT_EVERY == 0)
     status = mpm_snapshot_take(&sim->m, time_now(sim), pressure, &sim->shot[k / SHOT_EVERY]);
-  if (status == MPS_OK && s->frames > 0 &&
-      (k == 0 || k * s->frames / SAMPLES > (k - 1) * s->frames / SAMPLES))
-    status = mpm_model_frame(&sim->m, sim->series);
+  if (status == MPS_OK && frame_is_due(k, SAMPLES, s->frames)) status = write_frame(sim);
   sim->t[k] = time_now(sim);
   sim->Z[k] = heap->front / s->base;
   sim->H[k] = heap->top / column_height(s);
@@ -112,6 +107,7 @@ static mps_status take_sample(simulation *sim, int k) {
 mps_status dam_march(void *user) {
   simulation *sim = user;
   mps_status status = MPS_OK;
+  progress_part(&sim->m.a->bar, 0.0, 1.0, 0.0, sim->s.duration);
   for (int k = sim->rows; k <= SAMPLES && status == MPS_OK; k++) {
     const double t = sim->s.duration * k / SAMPLES;
     if (sim->s.method == METHOD_MPS)
@@ -122,8 +118,7 @@ mps_status dam_march(void *user) {
     if (status == MPS_OK) resume_save_when_due(sim->m.a, &sim->saves, time_now(sim));
   }
   if (status == MPS_ERROR_CANCELLED) resume_save_now(sim->m.a, &sim->saves);
-  if (status == MPS_ERROR_CANCELLED && sim->saves.saved)
-    printf("To go on: the same command with --restart %s\n", sim->s.checkpoint);
+  if (status == MPS_ERROR_CANCELLED) resume_tell(&sim->saves);
   sim->m.failed = sim->saves.lost;
   return status;
 }

@@ -5,8 +5,8 @@
 #define EXAMPLES_FOOTING_H
 
 #include "characteristics.h"
+#include "common/mpm_course.h"
 #include "common/mpm_model.h"
-#include "common/resume.h"
 
 enum { FOOTING_SAMPLES = 120, FOOTING_SETTLED = 30, VON_MISES = 0, DRUCKER_PRAGER = 1 };
 
@@ -14,14 +14,15 @@ typedef struct settings {
   int model, cone;        /* VON_MISES or DRUCKER_PRAGER; mps_cone */
   double width, depth;    /* m, of the half model */
   double phi, psi;        /* degrees */
-  double cohesion, young; /* kPa */
+  double cohesion, young; /* Pa */
   double poisson, density, gravity;
   int contact;            /* mps_contact_method */
   int spline, volumetric; /* degree of the weights less 2; mps_mpm_volumetric */
-  double h, mu, rate, half_width, k, settlement; /* m, 1, mm/s, m, kN/m, mm */
+  double h, mu, rate, half_width, k, settlement; /* m, 1, m/s, m, N/m, m */
   int64_t ppc, threads;
   bool settled; /* --quasi-static */
-  const char *domain, *out, *checkpoint, *restart;
+  mpm_course_options course;
+  const char *domain, *out;
 } settings;
 
 typedef struct simulation {
@@ -32,8 +33,7 @@ typedef struct simulation {
   int rows, samples;                                        /* so far, in all */
   double last_time, last_impulse;                           /* s, N s: at the last sample */
   double strain;                                            /* largest plastic strain */
-  const option *table;
-  resume_schedule saves;
+  mpm_course course;
 } simulation;
 
 /* Fills in what depends on the model. A text tells why settings do not go together; NULL: good. */
@@ -42,9 +42,7 @@ mps_status footing_build(mps_context *context, void *user);
 mps_status footing_march(void *user);
 bool footing_finish(app *a, void *user);
 
-/* restart.c. footing_peek compares the options of the file with these before the model is built. */
-mps_status footing_save(void *user);
-mps_status footing_peek(mps_context *context, simulation *sim);
-mps_status footing_restore(mps_context *context, simulation *sim);
+/* restart.c: what a run that goes on needs of what it has seen; `user` is the simulation. */
+void footing_pass(void *user, resume_bytes *b);
 
 #endif

@@ -16,7 +16,7 @@
 const char *footing_settle(settings *s, const option *table) {
   const bool cone = s->model == DRUCKER_PRAGER;
   double *const sides[] = {&s->width, &s->depth};
-  if (!options_lengths(s->domain, 2, sides))
+  if (!options_lengths(s->domain, "m", 2, sides))
     return "--domain must be two lengths in m, WxH, such as 5x2";
   if (!cone &&
       (options_given(table, "phi") || options_given(table, "psi") || options_given(table, "cone")))
@@ -28,11 +28,11 @@ const char *footing_settle(settings *s, const option *table) {
     return "--domain must be at least 3 half widths of the footing wide and 1.5 deep: as far as "
            "the "
            "ground moves when it fails";
-  if (isnan(s->rate)) s->rate = s->settled ? 1.5 : 0.5;
+  if (isnan(s->rate)) s->rate = s->settled ? 1.5e-3 : 0.5e-3;
   if (isnan(s->psi)) s->psi = s->phi;
   if (s->psi > s->phi) return "--psi must be at most --phi";
-  if (isnan(s->settlement)) s->settlement = cone ? 4.0 : 0.6;
-  if (s->settlement * 1e-3 > 0.5 * s->half_width)
+  if (isnan(s->settlement)) s->settlement = cone ? 4e-3 : 0.6e-3;
+  if (s->settlement > 0.5 * s->half_width)
     return "--settlement must be at most half of --half-width";
   if (isnan(s->gravity)) s->gravity = cone ? 9.81 : 0.0;
   return NULL;
@@ -42,9 +42,9 @@ const char *footing_settle(settings *s, const option *table) {
 
 /* Speed up over the ramp, then constant until the settlement is reached. */
 static mps_status make_footing(mps_context *context, const settings *s, simulation *sim) {
-  const double speed = s->rate * 1e-3;
-  sim->ramp = RAMP * fmin(1.0, 0.5 / s->rate);
-  sim->t_end = s->settlement * 1e-3 / speed + 0.5 * sim->ramp;
+  const double speed = s->rate;
+  sim->ramp = RAMP * fmin(1.0, 0.5e-3 / s->rate);
+  sim->t_end = s->settlement / speed + 0.5 * sim->ramp;
   const double t[] = {0.0, sim->ramp, sim->t_end + 1.0}, v[] = {0.0, speed, speed};
   mps_signal *down = NULL;
   mps_status status = mps_signal_table(context, MPS_SIGNAL_VELOCITY, 3, t, v, &down);
@@ -62,7 +62,7 @@ static mps_status add_contact(const settings *s, simulation *sim) {
   mps_contact_def contact = mps_contact_defaults();
   contact.friction = s->mu;
   contact.method = s->contact;
-  if (s->contact == MPS_CONTACT_METHOD_PENALTY && s->k > 0.0) contact.penalty = s->k * 1e3;
+  if (s->contact == MPS_CONTACT_METHOD_PENALTY && s->k > 0.0) contact.penalty = s->k;
   return mps_mpm_add_contact(sim->m.mpm, sim->m.body[0], &contact, NULL);
 }
 
@@ -89,13 +89,13 @@ static mps_status make_ground(mps_context *context, const settings *s, mps_parti
 static mps_status make_material(mps_context *context, const settings *s, mps_material **out) {
   if (s->model == VON_MISES) {
     mps_von_mises_def law = mps_von_mises_defaults();
-    law.young = s->young * 1e3, law.poisson = s->poisson;
-    law.yield_stress = sqrt(3.0) * s->cohesion * 1e3; /* (54) */
+    law.young = s->young, law.poisson = s->poisson;
+    law.yield_stress = sqrt(3.0) * s->cohesion; /* (54) */
     return mps_material_von_mises(context, &law, out);
   }
   mps_drucker_prager_def law = mps_drucker_prager_defaults();
   law.cone = s->cone;
-  law.young = s->young * 1e3, law.poisson = s->poisson, law.cohesion = s->cohesion * 1e3;
+  law.young = s->young, law.poisson = s->poisson, law.cohesion = s->cohesion;
   law.friction = s->phi * DEGREE, law.dilation = s->psi * DEGREE;
   return mps_material_drucker_prager(context, &law, out);
 }
@@ -104,7 +104,17 @@ mps_status footing_build(mps_context *context, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
   sim->samples = s->settled ? FOOTING_SETTLED : FOOTING_SAMPLES;
-  mps_status status = s->restart ? footing_peek(context, sim) : MPS_OK;
+  const double end = s->settlement / s->rate;
+  sim->course = (mpm_course){.options = &s->course,
+                             .m = &sim->m,
+                             .directory = s->out,
+                             .what = "ground",
+                             .duration = end,
+                             .key = "mps-footing 2",
+                             .table = options_read(),
+                             .pass = footing_pass,
+                             .user = sim};
+  mps_status status = mpm_course_peek(&sim->course, context);
   if (status == MPS_OK) status = make_ground(context, s, &sim->m.particles);
   if (status == MPS_OK) status = make_material(context, s, &sim->m.material);
   mps_mpm_def def = mps_mpm_defaults();
@@ -119,7 +129,9 @@ mps_status footing_build(mps_context *context, void *user) {
   if (status == MPS_OK)
     status = mps_mpm_set_side(sim->m.mpm, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
   if (status == MPS_OK) status = add_contact(s, sim);
-  return status == MPS_OK && s->restart ? footing_restore(context, sim) : status;
+  if (status == MPS_OK) status = mpm_course_begin(&sim->course, context, true);
+  sim->m.samples = sim->rows;
+  return status;
 }
 
 /* ---- running --------------------------------------------------------------------------------- */
@@ -158,18 +170,16 @@ mps_status footing_march(void *user) {
   simulation *sim = user;
   mps_particles *whole;
   mps_status status = MPS_OK;
-  sim->saves = (resume_schedule){
-      .path = sim->s.checkpoint, .every = sim->t_end / 10.0, .save = footing_save, .user = sim};
-  resume_schedule_at(&sim->saves, mps_mpm_time(sim->m.mpm));
+  progress_part(&sim->m.a->bar, 0.0, 1.0, 0.0, sim->t_end);
+  if (sim->rows == 0) status = mpm_course_sample(&sim->course, 0, sim->samples);
   while (sim->rows < sim->samples && status == MPS_OK) {
     const double t = sim->t_end * (sim->rows + 1) / sim->samples;
     status = mps_mpm_run(sim->m.mpm, t, INT64_MAX, NULL, NULL);
     if (status == MPS_OK && sim->s.settled) status = come_to_rest(sim);
     if (status == MPS_OK) status = take_sample(sim);
-    if (status == MPS_OK) resume_save_when_due(sim->m.a, &sim->saves, t);
+    if (status == MPS_OK) status = mpm_course_sample(&sim->course, sim->rows, sim->samples);
   }
-  if (status == MPS_ERROR_CANCELLED) resume_save_now(sim->m.a, &sim->saves);
-  sim->m.failed = sim->saves.lost;
+  status = mpm_course_end(&sim->course, status);
   const mps_status brought = mpm_model_whole(&sim->m, &whole); /* for footing_finish */
   return status == MPS_OK ? brought : status;
 }

@@ -13,7 +13,7 @@ enum { LINES = 40 };
 
 /* q/c of the run, and what it is compared with. */
 typedef struct capacity {
-  double last;                 /* mean over the last fifth of the path */
+  double last;                 /* mean over the last fifth of the path; NaN: it has not ended */
   double undeformed, slope;    /* of the line through the path's second half: at no settlement, and
                                   per mm: limit analysis knows the ground's first shape only */
   double smooth, rough, exact; /* limits; NaN where the base is neither */
@@ -21,7 +21,7 @@ typedef struct capacity {
 
 static void fit_path(const simulation *sim, capacity *c) {
   const int first = sim->rows / 2, n = sim->rows - first;
-  const double unit = sim->s.cohesion * 1e3;
+  const double unit = sim->s.cohesion;
   double x = 0.0, q = 0.0, xx = 0.0, xq = 0.0;
   c->last = 0.0;
   for (int k = first; k < sim->rows; k++) x += sim->path[k] * 1e3 / n, q += sim->q[k] / unit / n;
@@ -41,7 +41,7 @@ static void fit_path(const simulation *sim, capacity *c) {
 static double limit(const settings *s, bool rough) {
   const strip_footing f = {.half_width = s->half_width,
                            .friction = s->phi * PI / 180.0,
-                           .cohesion = s->cohesion * 1e3,
+                           .cohesion = s->cohesion,
                            .weight = s->density * s->gravity,
                            .rough = rough};
   const double coarse = characteristics_capacity(&f, LINES / 2);
@@ -52,7 +52,8 @@ static double limit(const settings *s, bool rough) {
 static capacity measure(const simulation *sim) {
   const settings *s = &sim->s;
   capacity c = {.smooth = 2.0 + PI, .rough = 2.0 + PI, .exact = 2.0 + PI};
-  fit_path(sim, &c);
+  c.last = c.undeformed = c.slope = NAN; /* the ground bears more until the end of the path */
+  if (sim->rows == sim->samples) fit_path(sim, &c);
   if (s->model == VON_MISES) return c; /* Prandtl (52), whatever the weight and the base */
   c.smooth = limit(s, false);
   c.rough = limit(s, true);
@@ -67,7 +68,7 @@ static bool write_pressure(app *a, const settings *s, const simulation *sim) {
   if (!output_open(&f, a, s->out, "pressure.csv")) return false;
   csv_header(&f, "settlement_mm,q_kPa,q_over_c");
   for (int k = 0; k < sim->rows; k++) {
-    const double q = sim->q[k] * 1e-3, row[] = {sim->path[k] * 1e3, q, q / s->cohesion};
+    const double row[] = {sim->path[k] * 1e3, sim->q[k] * 1e-3, sim->q[k] / s->cohesion};
     csv_row(&f, 3, row);
   }
   return output_close(&f);
@@ -104,13 +105,13 @@ static bool write_summary(app *a, const simulation *sim, const capacity *c) {
   if (!mpm_model_summary(a, &sim->m, s->out, &f)) return false;
   json_text(&f, "model", s->model == VON_MISES ? "vonmises" : "druckerprager");
   json_number(&f, "h", s->h);
-  json_number(&f, "mu", s->mu);
+  json_number(&f, "friction", s->mu);
   json_number(&f, "rate", s->rate);
   json_text(&f, "loading", s->settled ? "quasi-static" : "steady");
   json_number(&f, "q_over_c", c->last);
   json_number(&f, "q_over_c_undeformed", c->undeformed);
   json_number(&f, "q_over_c_per_mm", c->slope);
-  json_optional(&f, "q_exact", c->exact);
+  json_number(&f, "q_exact", c->exact);
   json_number(&f, "q_exact_smooth", c->smooth);
   json_number(&f, "q_exact_rough", c->rough);
   json_end(&f);
@@ -130,7 +131,7 @@ static bool draw_pressure(app *a, const settings *s, const capacity *c) {
   output f;
   char loading[32] = "quasi-static";
   if (!plot_open(&f, a, s->out, "pressure", 1000, 640)) return false;
-  if (!s->settled) snprintf(loading, sizeof loading, "%g mm/s", s->rate);
+  if (!s->settled) snprintf(loading, sizeof loading, "%g mm/s", 1e3 * s->rate);
   output_text(&f,
               "set title \"Strip footing on %s ground\\n{/*0.85 h = %g m, half width %g m, "
               "%s, friction of the base %g}\"\nset xlabel 'settlement (mm)'\n"
@@ -170,6 +171,10 @@ static bool draw_bands(app *a, const settings *s, const simulation *sim) {
 /* ---- the end --------------------------------------------------------------------------------- */
 
 static void print(const settings *s, const capacity *c) {
+  if (isnan(c->last)) {
+    printf("no bearing capacity: the footing has not settled as far as --settlement\n");
+    return;
+  }
   if (s->model == VON_MISES) {
     printf("bearing capacity q/c %.3f (Prandtl %.3f, %+.1f %%)\n", c->last, c->exact,
            100.0 * (c->last / c->exact - 1.0));

@@ -39,7 +39,7 @@ const char *pen_check(penetrometer *p) {
   const char *reason = check_tip(s);
   if (reason) return reason;
   double *const sides[] = {&s->width, &s->breadth, &s->height};
-  if (!options_lengths(s->soil, 3, sides))
+  if (!options_lengths(s->soil, NULL, 3, sides))
     return "--soil must be three lengths in diameters, WxWxD, such as 6x6x5";
   if (fmin(s->width, s->breadth) * s->diameter < 2.0 * radius_below(s) + 8.0 * s->h)
     return "--soil must be at least 8 cells of --h wider than what is pushed in";
@@ -56,10 +56,10 @@ const char *pen_check(penetrometer *p) {
     return "--alpha asks for --contact impulse";
   if (s->alpha > 0.0 && s->cohesion == 0.0) return "--alpha asks for a --cohesion > 0";
   if (isnan(s->gravity)) s->gravity = s->law == PEN_SAND ? 9.81 : 0.0;
-  if (s->density * s->gravity * s->height * s->diameter > 0.5 * s->young * 1e3)
+  if (s->density * s->gravity * s->height * s->diameter > 0.5 * s->young)
     return "--young must be at least twice the stress at the bottom of the soil, density g depth";
   p->stride = fmin(0.2 * s->h, s->depth / 200.0);
-  p->t_end = (pen_gap(p) + s->depth) / s->speed;
+  p->t_end = (pen_gap(p) + s->depth) / s->rate;
   p->runs = s->axisymmetric && !s->no_space ? 2 : 1;
   p->run[0].geometry = s->no_space ? MPS_MPM_AXISYMMETRIC : MPS_MPM_SPACE;
   p->run[1].geometry = MPS_MPM_AXISYMMETRIC;
@@ -114,19 +114,19 @@ static mps_status keep_places(pen_run *r) {
 }
 
 static mps_status make_law(mps_context *context, const pen_settings *s, mps_material **out) {
-  const double young = s->young * 1e3, radian = PEN_PI / 180.0;
+  const double young = s->young, radian = PEN_PI / 180.0;
   if (s->law == PEN_ELASTIC) return mps_material_linear_elastic(context, young, s->poisson, out);
   if (s->law == PEN_CLAY) {
     mps_von_mises_def clay = mps_von_mises_defaults();
     clay.young = young, clay.poisson = s->poisson;
-    clay.yield_stress = sqrt(3.0) * s->cohesion * 1e3; /* Nakamura (54) */
+    clay.yield_stress = sqrt(3.0) * s->cohesion; /* Nakamura (54) */
     return mps_material_von_mises(context, &clay, out);
   }
   mps_drucker_prager_def sand = mps_drucker_prager_defaults();
   sand.cone = MPS_MATERIAL_CONE_INSCRIBED;
   sand.young = young, sand.poisson = s->poisson;
   sand.friction = s->phi * radian, sand.dilation = s->psi * radian;
-  sand.cohesion = s->cohesion * 1e3;
+  sand.cohesion = s->cohesion;
   return mps_material_drucker_prager(context, &sand, out);
 }
 
@@ -240,7 +240,7 @@ static double penalty_of(const penetrometer *p, const pen_run *r) {
 
 static mps_status make_tip(penetrometer *p, pen_run *r) {
   const int up = dim_of(r) - 1;
-  const double t[] = {0.0, p->t_end + 1.0}, v[] = {p->s.speed, p->s.speed};
+  const double t[] = {0.0, p->t_end + 1.0}, v[] = {p->s.rate, p->s.rate};
   mps_signal *down = NULL;
   mps_body **body = &r->m.body[0];
   mps_body_def def = mps_body_defaults();
@@ -259,7 +259,7 @@ static mps_status make_tip(penetrometer *p, pen_run *r) {
 static mps_status add_contact(const penetrometer *p, pen_run *r) {
   mps_contact_def contact = mps_contact_defaults();
   contact.friction = p->s.friction;
-  if (p->s.alpha > 0.0) contact.strength = 1e3 * p->s.alpha * p->s.cohesion;
+  if (p->s.alpha > 0.0) contact.strength = p->s.alpha * p->s.cohesion;
   r->penalty = penalty_of(p, r);
   contact.method = p->s.contact;
   if (p->s.contact == MPS_CONTACT_METHOD_IMPULSE) contact.corner = p->s.corner * p->s.h;
@@ -280,7 +280,24 @@ static mps_status make_room(const penetrometer *p, pen_run *r) {
   return r->row && r->near && r->distance && r->point ? MPS_OK : MPS_ERROR_MEMORY;
 }
 
-mps_status pen_build_run(penetrometer *p, pen_run *r) {
+static void name_course(penetrometer *p) {
+  pen_run *r = &p->run[p->now];
+  static mpm_course_options frames_only;
+  frames_only.frames = p->s.course.frames;
+  p->course = (mpm_course){.options = p->now == 0 ? &p->s.course : &frames_only,
+                           .m = &r->m,
+                           .directory = p->s.out,
+                           .what = p->now == 0 ? "penetration" : "penetration-axisymmetric",
+                           .duration = p->t_end,
+                           .key = "mps-penetrometer 1",
+                           .table = options_read(),
+                           .pass = pen_pass,
+                           .user = p};
+}
+
+mps_status pen_build_run(penetrometer *p, bool restores) {
+  pen_run *r = &p->run[p->now];
+  name_course(p);
   find_size(p, r);
   mps_status status = make_soil(p, r);
   if (status == MPS_OK) status = make_tip(p, r);
@@ -288,14 +305,16 @@ mps_status pen_build_run(penetrometer *p, pen_run *r) {
   status = make_solver(p, r, status);
   if (status == MPS_OK) status = add_contact(p, r);
   if (status == MPS_OK) r->dt = mps_mpm_dt(r->m.mpm);
-  return status;
+  return status == MPS_OK ? mpm_course_begin(&p->course, p->context, restores) : status;
 }
 
 mps_status pen_build(mps_context *context, void *user) {
   penetrometer *p = user;
   p->context = context;
   p->run[1].m.a = p->run[0].m.a;
-  return pen_build_run(p, &p->run[0]);
+  name_course(p);
+  const mps_status status = mpm_course_peek(&p->course, context);
+  return status == MPS_OK ? pen_build_run(p, true) : status;
 }
 
 void pen_free(penetrometer *p) {

@@ -7,6 +7,7 @@
 #ifndef EXAMPLES_PENETROMETER_H
 #define EXAMPLES_PENETROMETER_H
 
+#include "common/mpm_course.h"
 #include "common/mpm_model.h"
 
 #define PEN_PI 3.14159265358979323846
@@ -23,16 +24,17 @@ typedef struct pen_settings {
   const char *mesh;
   double scale;                            /* m per unit of the mesh */
   double diameter, angle;                  /* m, degrees */
-  double depth, speed, friction;           /* m, m/s, 1 */
+  double depth, rate, friction;           /* m, m/s, 1 */
   double alpha;                            /* of the cohesion; NaN: no bound */
   double corner;                           /* radius of the tip's edges, cells */
   const char *soil;                        /* "WxWxD" in diameters */
   double width, breadth, height;           /* what `soil` says */
-  double cohesion, phi, psi;               /* kPa, degrees */
-  double young, poisson, density, gravity; /* kPa, 1, kg/m3, m/s2; NaN: by the law */
+  double cohesion, phi, psi;               /* Pa, degrees */
+  double young, poisson, density, gravity; /* Pa, 1, kg/m3, m/s2; NaN: by the law */
   double h, courant;
   bool axisymmetric, no_space;
   int64_t ppc, threads;
+  mpm_course_options course;
   const char *out;
 } pen_settings;
 
@@ -72,7 +74,8 @@ typedef struct pen_run {
 typedef struct penetrometer {
   pen_settings s;
   pen_run run[2]; /* the second one, if there are two, is the axisymmetric one */
-  int runs;
+  int runs, now; /* how many, and the one that is at work */
+  mpm_course course;
   double stride; /* m of path between rows */
   double t_end;  /* s */
   mps_context *context;
@@ -84,11 +87,15 @@ typedef struct penetrometer {
  * where they can. */
 const char *pen_check(penetrometer *p);
 mps_status pen_build(mps_context *context, void *user);
-mps_status pen_build_run(penetrometer *p, pen_run *r);
+/* The run p->now. */
+mps_status pen_build_run(penetrometer *p, bool restores);
 void pen_free(penetrometer *p);             /* what the model does not own */
 double pen_radius(const penetrometer *p);   /* m */
 double pen_shoulder(const penetrometer *p); /* m: height of the cone */
 double pen_gap(const penetrometer *p);      /* m: between tip and ground at the start */
+
+/* restart.c: what a run that goes on needs of what it has seen; `user` is the penetrometer. */
+void pen_pass(void *user, resume_bytes *b);
 
 /* ---- push.c ---------------------------------------------------------------------------------- */
 

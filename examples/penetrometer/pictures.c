@@ -25,14 +25,14 @@ static void plot_curve(output *f, const char *file, int column, double unit, con
 static bool draw_force(app *a, const penetrometer *p) {
   const bool clay = p->s.law == PEN_CLAY, hertz = p->s.law == PEN_ELASTIC && p->s.tip == PEN_SPHERE;
   const bool space = p->run[0].geometry == MPS_MPM_SPACE;
-  const double unit = clay ? PEN_PI * pen_radius(p) * pen_radius(p) * p->s.cohesion * 1e3 : 1e3;
+  const double unit = clay ? PEN_PI * pen_radius(p) * pen_radius(p) * p->s.cohesion : 1e3;
   output f;
   if (!plot_open(&f, a, p->s.out, "force", 1000, 680)) return false;
   output_text(&f,
               "set title \"%s\\n{/*0.85 diameter %g m, h = %g m, %g m/s, {/Symbol m} = %g}\"\n"
               "set xlabel 'depth of the lowest point (mm)'\nset ylabel '%s'\n"
               "set key left top Left reverse opaque\nset xrange [0:*]\nset yrange [0:*]\nplot ",
-              title_of(p), p->s.diameter, p->s.h, p->s.speed, p->s.friction,
+              title_of(p), p->s.diameter, p->s.h, p->s.rate, p->s.friction,
               clay ? "force over c {/Symbol p}D^2/4" : "force (kN)");
   plot_curve(&f, "force.csv", 2, unit, "linecolor rgb '#bbbbbb' linewidth 0.7", "every row");
   if (p->runs == 2)

@@ -193,15 +193,25 @@ static mps_status after_step(void *user, mps_mpm *mpm) {
   if (status == MPS_OK && (mps_mpm_steps(mpm) % VOLUME_EVERY == 0 || t >= p->t_end))
     status = look_at_volumes(p, r);
   const double next = p->stride * (double)(r->rows + 1) - pen_gap(p);
-  if (status == MPS_OK && (depth >= next || t >= p->t_end)) status = end_row(p, r, t);
-  return status;
+  if (depth < next && t < p->t_end) return status;
+  status = join_looks(r, status);
+  if (status == MPS_OK) status = end_row(p, r, t);
+  const int64_t rows = (int64_t)((p->s.depth + pen_gap(p)) / p->stride);
+  return status == MPS_OK ? mpm_course_sample(&p->course, r->rows, rows) : status;
 }
 
 static mps_status march(penetrometer *p, pen_run *r) {
   push now = {p, r};
-  mps_status status = mps_mpm_run(r->m.mpm, p->t_end, 1, after_step, &now);
+  mps_status status = MPS_OK;
+  r->m.samples = r->rows;
+  progress_part(&r->m.a->bar, p->now * 0.9, p->runs == 1 ? 1.0 : p->now == 0 ? 0.9 : 0.1, 0.0,
+                p->t_end);
+  if (r->rows == 0) status = mpm_course_sample(&p->course, 0, r->capacity);
+  if (status == MPS_OK) status = mps_mpm_run(r->m.mpm, p->t_end, 1, after_step, &now);
   const mps_status joined = join_looks(r, MPS_OK);
   if (status == MPS_OK) status = joined;
+  if (status == MPS_OK && p->runs == 2 && p->now == 0) resume_save_now(r->m.a, &p->course.saves);
+  status = mpm_course_end(&p->course, status);
   r->steps = mps_mpm_steps(r->m.mpm);
   smooth(p, r);
   const bool ended = status == MPS_OK || status == MPS_ERROR_CANCELLED;
@@ -214,7 +224,8 @@ mps_status pen_push(void *user) {
   mps_status status = march(p, &p->run[0]);
   if (status != MPS_OK || p->runs < 2) return status;
   pen_run *r = &p->run[1];
-  status = pen_build_run(p, r);
+  p->now = 1;
+  status = pen_build_run(p, false);
   if (status == MPS_OK) {
     printf("axisymmetric: %lld particles, dt %.4g s\n", (long long)r->particles, r->dt);
     fflush(stdout);

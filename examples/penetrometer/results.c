@@ -10,7 +10,7 @@
 #define LAST 0.2 /* of the path: means for the summary */
 
 double pen_hertz(const penetrometer *p, double depth) {
-  const double stiffness = p->s.young * 1e3 / (1.0 - p->s.poisson * p->s.poisson);
+  const double stiffness = p->s.young / (1.0 - p->s.poisson * p->s.poisson);
   return depth > 0.0 ? 4.0 / 3.0 * stiffness * sqrt(pen_radius(p)) * pow(depth, 1.5) : 0.0;
 }
 
@@ -44,7 +44,7 @@ static bool write_force(app *a, const penetrometer *p, const pen_run *r, const c
                  "q_kPa,q_over_c?");
   for (int64_t i = 0; i < r->rows; i++) {
     const pen_row *row = &r->row[i];
-    const double q = 1e-3 * row->smooth[PEN_TIP] / area(p);
+    const double q = row->smooth[PEN_TIP] / area(p);
     const double ratio = p->s.cohesion > 0.0 ? q / p->s.cohesion : NAN;
     const double line[] = {row->depth,
                            row->force[PEN_TOTAL],
@@ -53,7 +53,7 @@ static bool write_force(app *a, const penetrometer *p, const pen_run *r, const c
                            row->smooth[PEN_TOTAL],
                            row->smooth[PEN_TIP],
                            row->smooth[PEN_SHAFT],
-                           q,
+                           1e-3 * q,
                            ratio};
     csv_row(&f, 9, line);
   }
@@ -82,7 +82,7 @@ static void write_settings(output *f, const penetrometer *p) {
   json_text(f, "geometry", p->run[0].geometry == MPS_MPM_SPACE ? "space" : "axisymmetric");
   json_number(f, "h", s->h);
   json_number(f, "diameter", s->diameter);
-  json_number(f, "speed", s->speed);
+  json_number(f, "rate", s->rate);
   json_number(f, "friction", s->friction);
   if (s->alpha > 0.0) json_number(f, "alpha", s->alpha);
   if (s->contact == MPS_CONTACT_METHOD_IMPULSE) json_number(f, "corner", s->corner);
@@ -104,7 +104,7 @@ static bool write_summary(app *a, const penetrometer *p, const mean *m) {
   json_number(&f, "force_shaft", m[0].force[PEN_SHAFT]);
   json_number(&f, "q", m[0].force[PEN_TIP] / area(p));
   if (p->s.law == PEN_CLAY)
-    json_number(&f, "n_factor", m[0].force[PEN_TIP] / area(p) / (p->s.cohesion * 1e3));
+    json_number(&f, "n_factor", m[0].force[PEN_TIP] / area(p) / p->s.cohesion);
   if (p->s.law == PEN_ELASTIC && p->s.tip == PEN_SPHERE) {
     json_number(&f, "force_hertz", m[0].hertz);
     json_number(&f, "hertz_error", m[0].force[PEN_TOTAL] / m[0].hertz - 1.0);
@@ -126,15 +126,18 @@ static bool write_summary(app *a, const penetrometer *p, const mean *m) {
 /* ---- terminal -------------------------------------------------------------------------------- */
 
 static void tell_run(const penetrometer *p, const pen_run *r, const mean *m) {
-  const double q = 1e-3 * m->force[PEN_TIP] / area(p);
-  printf("%s: mean of the last fifth of %.4g m: %.5g N = tip %.5g + shaft %.5g N, q = %.4g kPa",
-         r->geometry == MPS_MPM_SPACE ? "space" : "axisymmetric", pen_reached(r),
-         m->force[PEN_TOTAL], m->force[PEN_TIP], m->force[PEN_SHAFT], q);
-  if (p->s.law == PEN_CLAY) printf(" = %.4g c", q / p->s.cohesion);
-  if (p->s.law == PEN_ELASTIC && p->s.tip == PEN_SPHERE)
+  const double q = m->force[PEN_TIP] / area(p);
+  if (isfinite(m->force[PEN_TOTAL]))
+    printf("%s: mean of the last fifth of %.4g m: %.5g N = tip %.5g + shaft %.5g N, q = %.4g kPa",
+           r->geometry == MPS_MPM_SPACE ? "space" : "axisymmetric", pen_reached(r),
+           m->force[PEN_TOTAL], m->force[PEN_TIP], m->force[PEN_SHAFT], 1e-3 * q);
+  if (p->s.law == PEN_CLAY && isfinite(q)) printf(" = %.4g c", q / p->s.cohesion);
+  if (p->s.law == PEN_ELASTIC && p->s.tip == PEN_SPHERE && m->hertz > 0.0)
     printf("; Hertz %.5g N, %+.2f %%", m->hertz, 100.0 * (m->force[PEN_TOTAL] / m->hertz - 1.0));
-  printf("\nV/V0 %.4g to %.4g, particles inside the tip: %lld\n", r->ratio_min, r->ratio_max,
-         (long long)r->inside);
+  printf("\n");
+  if (isfinite(r->ratio_min))
+    printf("V/V0 %.4g to %.4g, particles inside the tip: %lld\n", r->ratio_min, r->ratio_max,
+           (long long)r->inside);
 }
 
 bool pen_finish(app *a, void *user) {

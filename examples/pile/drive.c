@@ -154,7 +154,7 @@ static void smooth(pile *p) {
 /* ---- the run --------------------------------------------------------------------------------- */
 
 static mps_status watch(pile *p, double t, double depth) {
-  const double contact = p->t_start + (p->s.h - p->s.h / 4.0) / p->s.speed;
+  const double contact = p->t_start + (p->s.h - p->s.h / 4.0) / p->s.rate;
   mps_status status = look_for_intruders(p);
   if (status == MPS_OK && (mps_mpm_steps(p->m.mpm) % VOLUME_EVERY == 0 || t >= p->t_end))
     status = look_at_volumes(p);
@@ -172,15 +172,15 @@ static mps_status after_step(void *user, mps_mpm *mpm) {
   if (status == MPS_OK) p->squares += (t - p->last_step) * r.force[1] * r.force[1];
   p->last_step = t;
   const double next = p->stride * (double)(p->rows + 1) - p->s.h;
-  const double step = p->s.depth / (double)p->s.frames;
+  const double step = p->s.depth / fmax(1.0, (double)p->s.frames);
   const bool row = depth >= next || t >= p->t_end;
   const bool frame =
       p->frames < p->s.frames && depth >= step * (double)(p->frames + 1) * (1.0 - 1e-9);
-  if (row || frame || resume_is_due(&p->saves, depth + p->s.h)) status = join_looks(p, status);
+  if (row || frame || resume_is_due(&p->saves, t)) status = join_looks(p, status);
   if (status == MPS_OK && row) status = end_row(p, t);
   if (status == MPS_OK && frame) status = pile_take_frame(p);
   /* last of what follows a step: what the file holds is then all of that step */
-  if (status == MPS_OK) resume_save_when_due(p->m.a, &p->saves, depth + p->s.h);
+  if (status == MPS_OK) resume_save_when_due(p->m.a, &p->saves, t);
   return status;
 }
 
@@ -196,12 +196,15 @@ mps_status pile_begin(pile *p) {
  * by the context's hook. */
 mps_status pile_drive(void *user) {
   pile *p = user;
-  mps_status status = p->s.checkpoint ? pile_save(p) : MPS_OK;
+  mps_status status = pile_save(p);
+  if (status == MPS_ERROR_UNSUPPORTED) status = MPS_OK; /* a libmps without HDF5 */
   if (status != MPS_OK) return status;
+  progress_part(&p->m.a->bar, 0.0, 1.0, 0.0, p->t_end);
   p->m.samples = p->rows; /* after a restart */
   status = mps_mpm_run(p->m.mpm, p->t_end, 1, after_step, p);
   const mps_status joined = join_looks(p, MPS_OK);
   if (status == MPS_ERROR_CANCELLED && joined == MPS_OK) resume_save_now(p->m.a, &p->saves);
+  if (status == MPS_ERROR_CANCELLED) resume_tell(&p->saves);
   if (status == MPS_OK) status = joined;
   p->m.failed = p->m.failed || p->saves.lost;
   smooth(p);

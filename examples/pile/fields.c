@@ -7,12 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-mps_status pile_open_frames(mps_context *context, pile *p) {
+static mps_status open_series(mps_context *context, pile *p) {
   static const char *const fields[] = {"velocity", "stress", "volume", "plastic_strain"};
   mps_recorder_def def = mps_recorder_defaults();
   char path[4096];
   char name[sizeof p->vtk] = "pile.vtkhdf"; /* after a restart the former one stays */
-  if (p->frames > 0) snprintf(name, sizeof name, "pile-from-%d.vtkhdf", (int)p->frames + 1);
+  if (p->s.restart) snprintf(name, sizeof name, "pile-from-%g.vtkhdf", p->restarted);
   if (snprintf(path, sizeof path, "%s/%s", p->s.out, name) >= (int)sizeof path)
     return MPS_OK; /* the CSV files will tell */
   def.path = path;
@@ -28,7 +28,7 @@ mps_status pile_open_frames(mps_context *context, pile *p) {
 /* Pictures show frames evenly among all, the last one always. */
 int64_t pile_pictures(const pile *p, int64_t frames) {
   const int64_t all = p->s.frames, shown = all < PILE_PICTURES ? all : PILE_PICTURES;
-  return frames * shown / all;
+  return all > 0 ? frames * shown / all : 0;
 }
 
 static mps_status keep(pile *p, mps_particles *set) {
@@ -71,7 +71,10 @@ static void write_frame(pile *p) {
 
 mps_status pile_take_frame(pile *p) {
   mps_particles *whole;
-  mps_status status = mpm_model_whole(&p->m, &whole);
+  mps_status status = p->opened ? MPS_OK : open_series(p->m.a->context, p);
+  p->opened = true;
+  if (status == MPS_OK) status = mpm_model_whole(&p->m, &whole);
+  if (status != MPS_OK) return status;
   if (status == MPS_OK && whole && pile_pictures(p, p->frames + 1) > p->frames_kept)
     status = keep(p, whole);
   if (status == MPS_OK && p->recorder) write_frame(p);

@@ -30,7 +30,7 @@ static bool whole_cells(double length, double h) {
 
 const char *pile_check(pile_settings *s) {
   double *const sides[] = {&s->width, &s->height};
-  if (!options_lengths(s->soil, 2, sides))
+  if (!options_lengths(s->soil, "m", 2, sides))
     return "--soil must be two lengths in m, WxH, such as 0.4x3";
   if (!whole_cells(s->width, s->h) || !whole_cells(s->height, s->h))
     return "--soil must be whole cells of --h wide and high";
@@ -49,7 +49,7 @@ const char *pile_check(pile_settings *s) {
   if (s->k > CHATTER * modulus / ((double)s->ppc * s->courant * s->courant))
     return "--k must be at most 6 (K + 4G/3)/(ppc courant^2), 6 m/dt^2: stiffer contact chatters";
   if (s->psi > s->phi) return "--psi must be at most --phi";
-  if (s->density * PILE_GRAVITY * s->height > 0.5 * s->young * 1e3)
+  if (s->density * PILE_GRAVITY * s->height > 0.5 * s->young)
     return "--young must be at least twice the stress at the bottom of the soil, density g height";
   return NULL;
 }
@@ -79,9 +79,9 @@ static mps_status make_soil(mps_context *context, pile *p) {
   if (status == MPS_OK) status = set_stress(p);
   mps_drucker_prager_def law = mps_drucker_prager_defaults();
   law.cone = pile_cone(s);
-  law.young = s->young * 1e3, law.poisson = s->poisson;
+  law.young = s->young, law.poisson = s->poisson;
   law.friction = s->phi * PILE_PI / 180.0, law.dilation = s->psi * PILE_PI / 180.0;
-  law.cohesion = s->cohesion * 1e3;
+  law.cohesion = s->cohesion;
   if (status == MPS_OK) status = mps_material_drucker_prager(context, &law, &p->m.material);
   return status;
 }
@@ -102,7 +102,7 @@ static mps_status make_pile(mps_context *context, pile *p) {
     const char *name;
     int64_t edge, edges;
   } part[PILE_PARTS] = {{"tip", 0, 3}, {"inside", 5, 1}, {"outside", 3, 1}};
-  const double t[] = {p->t_start, p->t_end + 1.0}, v[] = {s->speed, s->speed};
+  const double t[] = {p->t_start, p->t_end + 1.0}, v[] = {s->rate, s->rate};
   mps_signal *down = NULL;
   mps_body_def def = mps_body_defaults();
   def.position[1] = s->height + s->h;
@@ -122,7 +122,7 @@ static double penalty_of(const pile *p) {
   const pile_settings *s = &p->s;
   const double spacing = mps_particles_spacing(p->m.particles);
   const double limit = s->density * spacing * spacing / (p->dt * p->dt);
-  if (!isnan(s->k)) return s->k * 1e3;
+  if (!isnan(s->k)) return s->k;
   if (!isnan(s->xi)) return 2.0 * (1.0 - s->xi) * limit;
   return STIFFNESS * fmin(mps_material_wave_modulus(p->m.material), limit);
 }
@@ -141,9 +141,9 @@ mps_status pile_build(mps_context *context, void *user) {
   pile *p = user;
   const pile_settings *s = &p->s;
   p->inner = 0.5 * s->inner_diameter, p->outer = p->inner + s->wall;
-  p->t_start = s->rest, p->t_end = s->rest + (s->h + s->depth) / s->speed;
-  p->saves = (resume_schedule){
-      .path = s->checkpoint, .every = s->every_checkpoint, .save = pile_save, .user = p};
+  p->t_start = s->rest, p->t_end = s->rest + (s->h + s->depth) / s->rate;
+  const double every = isnan(s->every_checkpoint) ? 0.1 * p->t_end : s->every_checkpoint;
+  p->saves = (resume_schedule){.path = s->checkpoint, .every = every, .save = pile_save, .user = p};
   mps_status status = s->restart ? pile_peek(context, p) : MPS_OK;
   if (status == MPS_OK) status = make_soil(context, p);
   mps_mpm_def def = mps_mpm_defaults();
@@ -162,7 +162,8 @@ mps_status pile_build(mps_context *context, void *user) {
   p->dt = mps_mpm_dt(p->m.mpm);
   status = add_contact(p);
   if (status == MPS_OK && s->restart) status = pile_restore(context, p);
-  return status == MPS_OK ? pile_open_frames(context, p) : status;
+  p->restarted = mps_mpm_time(p->m.mpm);
+  return status;
 }
 
 void pile_free(pile *p) {

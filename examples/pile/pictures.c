@@ -162,7 +162,7 @@ static bool draw_overview(app *a, const pile *p) {
       "set multiplot title \"Open-ended pile, inner diameter %g m, wall %g mm, to %g m at %g "
       "m/s\\n{/*0.8 h = %g mm, %lld particles, {/Symbol f} = %g degrees (%s cone), "
       "{/Symbol m} = %g}\" font ',18'\n",
-      p->s.inner_diameter, 1e3 * p->s.wall, p->s.depth, p->s.speed, 1e3 * p->s.h,
+      p->s.inner_diameter, 1e3 * p->s.wall, p->s.depth, p->s.rate, 1e3 * p->s.h,
       (long long)p->particles, p->s.phi, pile_cone_name(&p->s), p->s.friction);
   place(&f, 90.0 / width, 520.0 / width);
   plot_load(&f, p, width);

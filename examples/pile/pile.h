@@ -14,20 +14,20 @@
 
 typedef struct pile_settings {
   double inner_diameter, wall;         /* m */
-  double friction, speed, depth, rest; /* mu; m/s; m; s of waiting before the pile moves */
+  double friction, rate, depth, rest; /* mu; m/s; m; s of waiting before the pile moves */
   double corner;                       /* radius of its edges, cells */
   int contact;                         /* mps_contact_method */
-  double xi, k;                   /* contact stiffness by Nakamura (58), or in kN/m; NaN: not so */
+  double xi, k;                   /* contact stiffness by Nakamura (58), or in N/m; NaN: not so */
   const char *soil;               /* "WxH" */
   double width, height;           /* m, what `soil` says */
-  double density, young, poisson; /* kg/m3, kPa, 1 */
-  double phi, psi, cohesion, k0;  /* degrees, degrees, kPa; k0 NaN: nu/(1 - nu) */
+  double density, young, poisson; /* kg/m3, Pa, 1 */
+  double phi, psi, cohesion, k0;  /* degrees, degrees, Pa; k0 NaN: nu/(1 - nu) */
   int cone;                       /* see pile_cone */
   double h, courant;
   int64_t ppc, frames, threads;
   int spline;                       /* degree of the weights less 2 */
   const char *checkpoint, *restart; /* files, NULL: none */
-  double every_checkpoint;          /* m of path */
+  double every_checkpoint;          /* s; NaN: a tenth of the run */
   const char *out;
 } pile_settings;
 
@@ -76,7 +76,9 @@ typedef struct pile {
   int64_t frames, frames_kept;
   mps_recorder *recorder; /* NULL in a libmps without HDF5, and on all ranks but the first */
   char vtk[40];           /* its file, "": there has been none */
-  resume_schedule saves;  /* by the path of the tip */
+  bool opened;            /* with the first frame: a series without one is none */
+  double restarted;       /* s: time of the checkpoint that the run goes on from */
+  resume_schedule saves;
 } pile;
 
 /* ---- model.c --------------------------------------------------------------------------------- */
@@ -98,7 +100,6 @@ double pile_depth(const pile *p);
 
 /* ---- fields.c -------------------------------------------------------------------------------- */
 
-mps_status pile_open_frames(mps_context *context, pile *p);
 mps_status pile_take_frame(pile *p);
 bool pile_write_frames(app *a, pile *p);
 void pile_free_frames(pile *p);

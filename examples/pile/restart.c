@@ -48,7 +48,13 @@ static void pass(void *user, resume_bytes *b) {
 }
 
 static resume parts(pile *p) {
-  return (resume){"mps-pile 3", p->table, pass, p, .mpm = p->m.mpm, .domain = p->m.a->domain};
+  return (resume){.key = "mps-pile 4",
+                  .table = p->table,
+                  .pass = pass,
+                  .user = p,
+                  .mpm = p->m.mpm,
+                  .a = p->m.a,
+                  .domain = p->m.a->domain};
 }
 
 mps_status pile_save(void *user) {
@@ -65,6 +71,6 @@ mps_status pile_peek(mps_context *context, pile *p) {
 mps_status pile_restore(mps_context *context, pile *p) {
   const resume r = parts(p);
   const mps_status status = resume_restore(context, &r, p->s.restart);
-  if (status == MPS_OK) resume_schedule_at(&p->saves, pile_depth(p) + p->s.h);
+  if (status == MPS_OK) resume_schedule_at(&p->saves, mps_mpm_time(p->m.mpm));
   return status;
 }

@@ -21,6 +21,7 @@ double pile_nq(const pile *p) {
 
 static double tip_nq(const pile *p, const pile_row *row) {
   const double area = PILE_PI * (p->outer * p->outer - p->inner * p->inner);
+  if (!(row->depth > 0.0)) return NAN; /* the tip has not reached the soil */
   return row->smooth[PILE_TIP] / area / (p->s.density * PILE_GRAVITY * row->depth);
 }
 
@@ -40,8 +41,8 @@ static void find_roughness(const pile *p, double *rows, double *steps) {
     sum += r->smooth[PILE_TOTAL];
     count++;
   }
-  *rows = count ? sqrt(off * (double)count) / sum : NAN;
-  *steps = count ? sqrt(jitter * (double)count) / sum : NAN;
+  *rows = count && sum > 0.0 ? sqrt(off * (double)count) / sum : NAN;
+  *steps = count && sum > 0.0 ? sqrt(jitter * (double)count) / sum : NAN;
 }
 
 /* Mean forces over the last fifth of the path (N): the same path whatever the grid, to compare. */
@@ -53,7 +54,7 @@ static void find_means(const pile *p, double *mean) {
     for (int k = 0; k < PILE_FORCES; k++) mean[k] += p->row[i].force[k];
     count++;
   }
-  for (int k = 0; k < PILE_FORCES; k++) mean[k] /= (double)count;
+  for (int k = 0; k < PILE_FORCES; k++) mean[k] = count ? mean[k] / (double)count : NAN;
 }
 
 /* ---- files ----------------------------------------------------------------------------------- */
@@ -84,7 +85,7 @@ static bool write_load(app *a, const pile *p) {
 static void write_settings(output *f, const pile *p) {
   const pile_settings *s = &p->s;
   json_number(f, "h", s->h);
-  json_number(f, "speed", s->speed);
+  json_number(f, "rate", s->rate);
   json_number(f, "friction", s->friction);
   json_number(f, "phi", s->phi);
   json_text(f, "cone", pile_cone_name(s));
@@ -106,20 +107,20 @@ static bool write_summary(app *a, const pile *p, const pile_row *end) {
   json_number(&f, "force_tip", end->smooth[PILE_TIP]);
   json_number(&f, "force_inside", end->smooth[PILE_INSIDE]);
   json_number(&f, "force_outside", end->smooth[PILE_OUTSIDE]);
-  json_optional(&f, "mean_total", mean[PILE_TOTAL]);
-  json_optional(&f, "mean_tip", mean[PILE_TIP]);
-  json_optional(&f, "mean_inside", mean[PILE_INSIDE]);
-  json_optional(&f, "mean_outside", mean[PILE_OUTSIDE]);
-  json_optional(&f, "roughness", rows);
-  json_optional(&f, "roughness_steps", steps);
-  json_optional(&f, "plug_height", end->plug);
-  json_optional(&f, "plug_level", end->plug - end->depth);
+  json_number(&f, "mean_total", mean[PILE_TOTAL]);
+  json_number(&f, "mean_tip", mean[PILE_TIP]);
+  json_number(&f, "mean_inside", mean[PILE_INSIDE]);
+  json_number(&f, "mean_outside", mean[PILE_OUTSIDE]);
+  json_number(&f, "roughness", rows);
+  json_number(&f, "roughness_steps", steps);
+  json_number(&f, "plug_height", end->plug);
+  json_number(&f, "plug_level", end->plug - end->depth);
   json_integer(&f, "particles_inside_pile", p->seen.inside);
   json_number(&f, "deepest_inside_pile", p->seen.deepest);
   json_number(&f, "volume_ratio_max", p->seen.ratio_max);
   json_number(&f, "volume_ratio_min", p->seen.ratio_min);
   json_number(&f, "rest_speed", p->seen.rest_speed);
-  json_number(&f, "outside_beta", pile_beta_shaft(p, end->depth));
+  json_number(&f, "outside_beta", end->depth > 0.0 ? pile_beta_shaft(p, end->depth) : NAN);
   json_number(&f, "tip_nq", tip_nq(p, end));
   json_number(&f, "nq_prandtl", pile_nq(p));
   json_end(&f);
@@ -135,10 +136,12 @@ static void tell(const pile *p, const pile_row *end) {
   printf("\n");
   double mean[PILE_FORCES];
   find_means(p, mean);
-  printf("mean of the last fifth: %.5g N = tip %.5g + inside %.5g + outside %.5g N\n",
-         mean[PILE_TOTAL], mean[PILE_TIP], mean[PILE_INSIDE], mean[PILE_OUTSIDE]);
-  printf("V/V0 %.4g to %.4g, particles inside the wall: %lld\n", p->seen.ratio_min,
-         p->seen.ratio_max, (long long)p->seen.inside);
+  if (isfinite(mean[PILE_TOTAL]))
+    printf("mean of the last fifth: %.5g N = tip %.5g + inside %.5g + outside %.5g N\n",
+           mean[PILE_TOTAL], mean[PILE_TIP], mean[PILE_INSIDE], mean[PILE_OUTSIDE]);
+  if (isfinite(p->seen.ratio_min))
+    printf("V/V0 %.4g to %.4g, particles inside the wall: %lld\n", p->seen.ratio_min,
+           p->seen.ratio_max, (long long)p->seen.inside);
 }
 
 bool pile_finish(app *a, void *user) {

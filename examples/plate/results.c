@@ -52,8 +52,7 @@ static bool write_line(const plate *p, const char *directory) {
 
 static bool write_summary(const plate *p, const elastic_method *method, const char *directory) {
   output f;
-  if (!output_open(&f, p->a, directory, "summary.json")) return false;
-  json_begin(&f);
+  if (!summary_open(&f, p->a, directory)) return false;
   json_text(&f, "case", p->def->hole ? "hole" : "tension");
   json_text(&f, "method", method->published ? "published" : "conservative");
   json_integer(&f, "particles", mps_particles_count(p->particles));

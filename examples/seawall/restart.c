@@ -57,7 +57,13 @@ static void pass(void *user, resume_bytes *b) {
 }
 
 static resume parts(seawall *w) {
-  return (resume){"mps-seawall 3", w->table, pass, w, .fluid = w->fluid, .domain = w->a->domain};
+  return (resume){.key = "mps-seawall 4",
+                  .table = w->table,
+                  .pass = pass,
+                  .user = w,
+                  .fluid = w->fluid,
+                  .a = w->a,
+                  .domain = w->a->domain};
 }
 
 /* ---- to the file and back -------------------------------------------------------------------- */

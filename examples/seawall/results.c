@@ -109,22 +109,22 @@ static void summarise(output *f, const seawall *w, const sainflou *h) {
   const seawall_settings *s = &w->s;
   const seawall_sample *at = &w->look.at;
   const bool crest = at->t >= SEAWALL_LOOK - 0.5 * s->sample;
-  json_optional(f, "force_at_516", crest ? at->force : NAN);
-  json_optional(f, "moment_at_516", crest ? at->moment : NAN);
-  json_optional(f, "deflection_at_516", crest ? at->deflection : NAN);
-  json_optional(f, "level_at_516", crest ? at->level : NAN);
+  json_number(f, "force_at_516", crest ? at->force : NAN);
+  json_number(f, "moment_at_516", crest ? at->moment : NAN);
+  json_number(f, "deflection_at_516", crest ? at->deflection : NAN);
+  json_number(f, "level_at_516", crest ? at->level : NAN);
   double peak_at, crest_at;
   const double peak = find_peak(w, SEAWALL_IMPULSE, INFINITY, &peak_at); /* after the jerk */
   const double most =
       find_peak(w, SEAWALL_LOOK - 0.25 * s->period, SEAWALL_LOOK + 0.25 * s->period, &crest_at);
-  json_optional(f, "force_crest", crest ? most : NAN);
-  json_optional(f, "force_crest_time", crest ? crest_at : NAN);
-  json_optional(f, "force_peak", peak);
-  json_optional(f, "force_peak_time", peak_at);
-  json_optional(f, "sainflou_height", h->harmonic);
-  json_optional(f, "sainflou_force", crest_force(w, h->harmonic));
-  json_optional(f, "sainflou_height_level", h->level);
-  json_optional(f, "sainflou_force_level", crest_force(w, h->level));
+  json_number(f, "force_crest", crest ? most : NAN);
+  json_number(f, "force_crest_time", crest ? crest_at : NAN);
+  json_number(f, "force_peak", peak);
+  json_number(f, "force_peak_time", peak_at);
+  json_number(f, "sainflou_height", h->harmonic);
+  json_number(f, "sainflou_force", crest_force(w, h->harmonic));
+  json_number(f, "sainflou_height_level", h->level);
+  json_number(f, "sainflou_force_level", crest_force(w, h->level));
   json_number(f, "havelock_height", h->paddle);
   json_number(f, "sainflou_force_havelock", crest_force(w, h->paddle));
   json_number(f, "force_still", 0.5 * WAVES_DENSITY * WAVES_G * s->depth * s->depth);
@@ -152,12 +152,8 @@ static bool write_summary(app *a, const seawall *w, const sainflou *h) {
   mps_elastic_report factor;
   if (!app_check(a, mps_fluid_get_report(w->fluid, &report)) ||
       !app_check(a, mps_elastic_get_report(w->wall.solver, &factor)) ||
-      !output_open(&f, a, w->s.out, "summary.json"))
+      !summary_open(&f, a, w->s.out))
     return false;
-  json_begin(&f);
-  json_text(&f, "program", a->program);
-  json_text(&f, "version", mps_version());
-  json_text(&f, "outcome", a->outcome);
   json_integer(&f, "particles", seawall_paper_particles(&w->s));
   json_integer(&f, "particles_water", mps_particles_count(w->water));
   json_integer(&f, "particles_structure", mps_particles_count(w->wall.set));

@@ -3,6 +3,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "seawall.h"
 
+#include "common/frame.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -81,14 +83,18 @@ static mps_status take_frame(seawall *w) {
       at[2] = (float)(WAVES_DENSITY * WAVES_G * (w->s.depth - (double)at[1]));
   }
   w->frames++;
-  if (w->series) status = mps_recorder_write(w->series, f->t);
+  if (w->a->rank == 0 && !w->series) /* with the first frame: a series without one is none */
+    status = frame_series(w->a, w->water, w->s.out, "water", w->restarted, &w->series);
+  if (status == MPS_OK && w->a->rank == 0 && !w->wall_series)
+    status = frame_series(w->a, w->wall.set, w->s.out, "wall", w->restarted, &w->wall_series);
+  if (status == MPS_OK && w->series) status = mps_recorder_write(w->series, f->t);
   if (status == MPS_OK && w->wall_series) status = mps_recorder_write(w->wall_series, f->t);
   return app_settle(w->a, status);
 }
 
 /* Frames are spread over the samples; the first is the start. */
 static bool is_due(const seawall *w, int64_t k) {
-  return k == 0 || k * w->s.frames / w->capacity > (k - 1) * w->s.frames / w->capacity;
+  return frame_is_due(k, w->capacity, w->s.frames);
 }
 
 /* ---- the run --------------------------------------------------------------------------------- */
@@ -127,11 +133,11 @@ static mps_status advance(app *a, seawall *w, double t) {
  * that a run goes on from a checkpoint as if it had never ended. */
 mps_status seawall_run(app *a, seawall *w) {
   const seawall_settings *s = &w->s;
-  mps_status status = isnan(w->restarted) && s->frames > 0 ? take_frame(w) : MPS_OK;
+  mps_status status = isnan(w->restarted) && is_due(w, 0) ? take_frame(w) : MPS_OK;
   for (int64_t k = w->samples + 1; k <= w->capacity && status == MPS_OK; k++) {
     status = advance(a, w, fmin((double)k * s->sample, s->duration) * (1.0 - 1e-9));
     if (status == MPS_OK) status = take_sample(w);
-    if (status == MPS_OK && s->frames > 0 && is_due(w, k)) status = take_frame(w);
+    if (status == MPS_OK && is_due(w, k)) status = take_frame(w);
     if (status == MPS_OK) resume_save_when_due(a, &w->saves, mps_fluid_time(w->fluid));
   }
   if (status == MPS_ERROR_CANCELLED) resume_save_now(a, &w->saves);

@@ -46,7 +46,7 @@ static mps_status build(const machine *with, const method *m, const stability_ca
   ground.layer[0] = (layer){.thickness = HEIGHT,
                             .vs = case_vs(x),
                             .vp = case_vp(x),
-                            .unit_weight = 14.7,
+                            .unit_weight = 14.7e3,
                             .damping = x->damping};
   const column_def def = {.width = WIDTH, .height = HEIGHT, .radius = x->radius, .ground = &ground};
   mps_dynamics_def solver = mps_dynamics_defaults();

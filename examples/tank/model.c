@@ -2,6 +2,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "tank.h"
 
+#include "common/frame.h"
+
 #include <mps/experimental.h>
 
 #include <math.h>
@@ -176,9 +178,13 @@ static mps_status take_sample(tank_model *m) {
 
 /* Frames are spread over the samples; the first is the start. */
 static mps_status write_frame(tank_model *m, int64_t k, int64_t count) {
-  if (k > 0 && k * m->s.frames / count == (k - 1) * m->s.frames / count) return MPS_OK;
-  return app_settle(m->a,
-                    m->series ? mps_recorder_write(m->series, mps_fluid_time(m->fluid)) : MPS_OK);
+  if (!frame_is_due(k, count, m->s.frames)) return MPS_OK;
+  mps_status status = MPS_OK;
+  if (m->a->rank == 0 && !m->series) /* with the first frame: a series without one is none */
+    status = frame_series(m->a, m->water, m->s.out, "water", m->restarted, &m->series);
+  if (status == MPS_OK && m->series)
+    status = mps_recorder_write(m->series, mps_fluid_time(m->fluid));
+  return app_settle(m->a, status);
 }
 
 /* Samples are taken after the first step that reaches their time: no step is shortened for them. */

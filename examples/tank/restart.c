@@ -32,7 +32,13 @@ static void pass(void *user, resume_bytes *b) {
 }
 
 static resume parts(tank_model *m) {
-  return (resume){"mps-tank 2", m->table, pass, m, .fluid = m->fluid, .domain = m->a->domain};
+  return (resume){.key = "mps-tank 3",
+                  .table = m->table,
+                  .pass = pass,
+                  .user = m,
+                  .fluid = m->fluid,
+                  .a = m->a,
+                  .domain = m->a->domain};
 }
 
 mps_status tank_save(void *user) {

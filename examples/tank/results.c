@@ -339,17 +339,17 @@ static void summarise_waves(output *f, const tank_model *m, const figures *g) {
   const double gauge = gauges_of(m) ? 2.0 * harmonic(m, m->sample, 0, NULL) : NAN;
   json_number(f, "wave_number", k);
   json_number(f, "havelock_height", havelock);
-  json_optional(f, "gauge_height", gauge);
-  json_optional(f, "gauge_height_linear",
+  json_number(f, "gauge_height", gauge);
+  json_number(f, "gauge_height_linear",
                 gauges_of(m) ? 2.0 * harmonic(m, m->linear, 0, NULL) : NAN);
-  json_optional(f, "wall_harmonic", H);
-  json_optional(f, "wall_harmonic_linear", harmonic(m, m->linear, TANK_GAUGES, NULL));
-  json_optional(f, "force_harmonic", harmonic(m, m->sample, FORCE, NULL));
-  json_optional(f, "force_harmonic_linear", harmonic(m, m->linear, FORCE, NULL));
-  json_optional(f, "crest_force", g->most);
-  json_optional(f, "trough_force", g->least);
-  json_optional(f, "sainflou_crest", isnan(H) ? NAN : waves_sainflou(k, s->depth, H, 1));
-  json_optional(f, "sainflou_trough", isnan(H) ? NAN : waves_sainflou(k, s->depth, H, -1));
+  json_number(f, "wall_harmonic", H);
+  json_number(f, "wall_harmonic_linear", harmonic(m, m->linear, TANK_GAUGES, NULL));
+  json_number(f, "force_harmonic", harmonic(m, m->sample, FORCE, NULL));
+  json_number(f, "force_harmonic_linear", harmonic(m, m->linear, FORCE, NULL));
+  json_number(f, "crest_force", g->most);
+  json_number(f, "trough_force", g->least);
+  json_number(f, "sainflou_crest", isnan(H) ? NAN : waves_sainflou(k, s->depth, H, 1));
+  json_number(f, "sainflou_trough", isnan(H) ? NAN : waves_sainflou(k, s->depth, H, -1));
   if (!isnan(gauge))
     printf(
         "wave height at the gauge %.4f m, linear potential flow in this tank %.4f m, Havelock for "
@@ -379,11 +379,11 @@ static void summarise_resonance(output *f, const tank_model *m) {
   json_number(f, "stiffness", s->stiffness);
   json_number(f, "added_mass", flume.added_mass);
   json_number(f, "radiation_damping", flume.damping);
-  json_optional(f, "deflection", wall);
-  json_optional(f, "deflection_exact", exact);
+  json_number(f, "deflection", wall);
+  json_number(f, "deflection_exact", exact);
   json_number(f, "deflection_flume", flume.amplitude);
-  json_optional(f, "phase", degrees(WAVES_PI - phase));
-  json_optional(f, "phase_exact", degrees(WAVES_PI - linear));
+  json_number(f, "phase", degrees(WAVES_PI - phase));
+  json_number(f, "phase_exact", degrees(WAVES_PI - linear));
   json_number(f, "lag_flume", degrees(flume.lag));
   if (isnan(wall)) return;
   printf("wall %.3f mm, linear potential flow in this tank %.3f mm (%+.2f %%), phase %+.1f degrees "
@@ -400,10 +400,10 @@ static void summarise_structure(output *f, const tank_model *m, const figures *g
   if (mps_coupling_get_report(m->structure.coupling, &report) == MPS_OK)
     json_number(f, "solutions_a_step",
                 (double)report.all_repeats / fmax((double)report.steps, 1.0));
-  json_optional(f, "omega", 2.0 * WAVES_PI / g->period);
+  json_number(f, "omega", 2.0 * WAVES_PI / g->period);
   json_number(f, "omega_exact", exact);
-  json_optional(f, "decay", g->decay);
-  json_optional(f, "deflection", g->deflection);
+  json_number(f, "decay", g->decay);
+  json_number(f, "deflection", g->deflection);
   json_number(f, "deflection_exact", plate ? tank_plate_deflection(s) : 0.0);
   if (!isnan(g->period))
     printf("omega %.3f rad/s, potential flow %.3f (%+.2f %%), decay %.3f 1/s\n",
@@ -416,10 +416,10 @@ static void summarise_structure(output *f, const tank_model *m, const figures *g
 
 static void summarise_box(output *f, const tank_model *m, const figures *g) {
   const double exact = tank_float_period(&m->s);
-  json_optional(f, "period", g->period);
+  json_number(f, "period", g->period);
   json_number(f, "period_exact", exact);
-  json_optional(f, "decay", g->decay);
-  json_optional(f, "deflection", g->deflection);
+  json_number(f, "decay", g->decay);
+  json_number(f, "deflection", g->deflection);
   json_number(f, "deflection_exact", 0.0 - m->s.amplitude);
   if (!isnan(g->period))
     printf(
@@ -471,8 +471,8 @@ static void summarise_tank(output *f, const tank_model *m) {
   const tank_settings *s = &m->s;
   const figures g = find_figures(m);
   const double still = 0.5 * WAVES_DENSITY * WAVES_G * s->depth * s->depth;
-  json_optional(f, "force_mean", g.mean);
-  json_optional(f, "force_std", g.deviation);
+  json_number(f, "force_mean", g.mean);
+  json_number(f, "force_std", g.deviation);
   json_number(f, "force_still", still);
   if (s->kind == TANK_STILL && !isnan(g.mean))
     printf(
@@ -481,9 +481,9 @@ static void summarise_tank(output *f, const tank_model *m) {
   if (s->kind == TANK_SLOSHING) {
     const double exact = waves_sloshing_period(s->length, s->depth);
     const double decay = sloshing_decay(m, g.period);
-    json_optional(f, "period", g.period);
+    json_number(f, "period", g.period);
     json_number(f, "period_exact", exact);
-    json_optional(f, "decay", decay);
+    json_number(f, "decay", decay);
     if (!isnan(g.period))
       printf("period %.5f s, theory %.5f s (%+.2f %%)\n", g.period, exact,
              100.0 * (g.period / exact - 1.0));
@@ -499,11 +499,7 @@ static void summarise_tank(output *f, const tank_model *m) {
 
 static bool write_summary(app *a, const tank_model *m) {
   output f;
-  if (!output_open(&f, a, m->s.out, "summary.json")) return false;
-  json_begin(&f);
-  json_text(&f, "program", a->program);
-  json_text(&f, "version", mps_version());
-  json_text(&f, "outcome", a->outcome);
+  if (!summary_open(&f, a, m->s.out)) return false;
   json_integer(&f, "particles", mps_particles_count(m->water));
   json_integer(&f, "steps", mps_fluid_steps(m->fluid));
   json_number(&f, "time", mps_fluid_time(m->fluid));

@@ -44,7 +44,7 @@ static bool put_back(app *a, const settings *s, mps_dynamics *dynamics, const fi
 /* Of a run that goes on, a name that leaves the frames of the first half alone. */
 static void name_series(const settings *s, double now, char name[48]) {
   if (s->restart)
-    snprintf(name, 48, "wave_from_%.6g_s.vtkhdf", now);
+    snprintf(name, 48, "wave-from-%g.vtkhdf", now);
   else
     snprintf(name, 48, "wave.vtkhdf");
 }
@@ -64,38 +64,42 @@ static bool open_recorder(app *a, const settings *s, double now, files *f) {
   def.fields = fields;
   def.field_count = 6;
   const bool ok = app_check(a, mps_recorder_create(a->context, whole, &def, &f->recorder));
-  free(path);
+  f->series = path;
   return app_agree(a, ok);
 }
 
-bool files_open(app *a, const settings *s, results_so_far *so_far, mps_dynamics *dynamics,
-                files *out) {
-  *out = (files){.particles = mps_dynamics_particles(dynamics),
-                 .domain = a->domain,
-                 .so_far = so_far,
-                 .frame_every = s->vtk,
-                 .checkpoint_every = s->checkpoint};
-  if (s->restart && !put_back(a, s, dynamics, out)) return false;
-  const double now = mps_dynamics_time(dynamics);
-  out->next_frame = now;
-  out->next_checkpoint = now + s->checkpoint;
-  if (s->checkpoint > 0.0) {
-    out->checkpoint = join(s->out, "checkpoint.h5");
-    if (!app_agree(a, out->checkpoint || app_no_memory(a))) return false;
-  }
-  return s->vtk > 0.0 ? open_recorder(a, s, now, out) : true;
-}
-
-static mps_status write_checkpoint(const files *f, mps_dynamics *dynamics) {
+/* Saves what the files `user` are of. */
+static mps_status write_checkpoint(void *user) {
+  const files *f = user;
   mps_checkpoint info = mps_checkpoint_defaults();
   mps_status status = field_join(f->so_far->peaks, f->domain);
   if (status != MPS_OK) return status;
   info.user_data = restart_pack(f->so_far, &info.user_bytes);
   if (!info.user_data) status = MPS_ERROR_MEMORY;
   if (f->domain) status = mps_domain_agree(f->domain, status);
-  if (status == MPS_OK) status = mps_dynamics_save(dynamics, f->checkpoint, &info);
+  if (status == MPS_OK) status = mps_dynamics_save(f->dynamics, f->saves.path, &info);
   free(info.user_data);
   return status;
+}
+
+bool files_open(app *a, const settings *s, double duration, results_so_far *so_far,
+                mps_dynamics *dynamics, files *out) {
+  *out = (files){.particles = mps_dynamics_particles(dynamics),
+                 .domain = a->domain,
+                 .so_far = so_far,
+                 .frame_every = s->frames > 0 ? duration / (double)s->frames : 0.0,
+                 .dynamics = dynamics,
+                 .a = a,
+                 .saves = {.path = s->checkpoint,
+                           .every = isnan(s->every_checkpoint) ? 0.1 * duration
+                                                               : s->every_checkpoint,
+                           .save = write_checkpoint,
+                           .user = out}};
+  if (s->restart && !put_back(a, s, dynamics, out)) return false;
+  const double now = mps_dynamics_time(dynamics);
+  out->next_frame = now;
+  resume_schedule_at(&out->saves, now);
+  return s->frames > 0 ? open_recorder(a, s, now, out) : true;
 }
 
 /* The present frame, by rank 0; what becomes of it is known to all. */
@@ -107,43 +111,41 @@ static mps_status write_frame(files *f, double now) {
   return f->domain ? mps_domain_agree(f->domain, status) : status;
 }
 
-static mps_status record(files *f, mps_dynamics *dynamics, mps_status status) {
-  const double now = mps_dynamics_time(dynamics);
+static mps_status record(files *f, mps_status status) {
+  const double now = mps_dynamics_time(f->dynamics);
   const bool frame = f->frame_every > 0.0 && now >= f->next_frame * (1.0 - 1e-12);
-  const bool state = f->checkpoint && now >= f->next_checkpoint * (1.0 - 1e-12);
-  if (!frame && !state) return status;
+  if (!frame && !resume_is_due(&f->saves, now)) return status;
   if (f->domain) status = mps_domain_agree(f->domain, status);
   if (status == MPS_OK && frame) {
     status = write_frame(f, now);
     while (f->next_frame <= now) f->next_frame += f->frame_every;
   }
-  if (status == MPS_OK && state) {
-    status = write_checkpoint(f, dynamics);
-    while (f->next_checkpoint <= now) f->next_checkpoint += f->checkpoint_every;
-  }
+  if (status == MPS_OK) resume_save_when_due(f->a, &f->saves, now);
   return status;
 }
 
-mps_status files_record(files *f, mps_dynamics *dynamics, mps_status status) {
-  status = record(f, dynamics, status);
+mps_status files_record(files *f, mps_status status) {
+  status = record(f, status);
   f->failed = status != MPS_OK;
   return status;
 }
 
-bool files_close(app *a, files *f, mps_dynamics *dynamics, bool diverged) {
+bool files_close(app *a, files *f, bool diverged, bool interrupted) {
   bool ok = !f->failed; /* the run ended by that, and has told it */
   /* an interrupted run can go on from where it stopped; a diverged one from the last good state */
-  if (f->checkpoint && dynamics && !diverged && ok)
-    ok = app_check(a, write_checkpoint(f, dynamics));
-  if (f->checkpoint && dynamics && ok) app_wrote(a, f->checkpoint);
+  if (!diverged && ok) resume_save_now(a, &f->saves);
+  if (f->saves.saved) app_wrote(a, f->saves.path);
+  if (interrupted) resume_tell(&f->saves);
   if (f->recorder && ok) {
     ok = app_check(a, mps_recorder_close(&f->recorder));
-    if (ok) app_wrote(a, "wave.vtkhdf");
+    if (ok) app_wrote(a, f->series);
   }
-  if (dynamics) ok = app_agree(a, ok);
+  return app_agree(a, ok && !f->saves.lost);
+}
+
+void files_destroy(files *f) {
   mps_recorder_destroy(&f->recorder);
-  if (!dynamics) mps_particles_destroy(&f->whole);
-  free(f->checkpoint);
-  f->checkpoint = NULL;
-  return ok;
+  mps_particles_destroy(&f->whole);
+  free(f->series);
+  f->series = NULL;
 }

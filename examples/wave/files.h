@@ -5,6 +5,8 @@
 
 #include "restart.h"
 
+#include "common/resume.h"
+
 #include <mps/io.h>
 
 typedef struct files {
@@ -12,9 +14,11 @@ typedef struct files {
   mps_domain *domain;                       /* borrowed; NULL: one process */
   mps_particles *whole;                     /* rank 0 of several: all ranks' particles, to write */
   mps_recorder *recorder;                   /* NULL: no frames wanted */
-  double frame_every, next_frame;           /* s */
-  double checkpoint_every, next_checkpoint; /* s; 0: none wanted */
-  char *checkpoint;                         /* path */
+  char *series;                             /* its file */
+  double frame_every, next_frame;           /* s; 0: no frames wanted */
+  resume_schedule saves;                    /* checkpoints */
+  mps_dynamics *dynamics;                   /* borrowed */
+  app *a;                                   /* borrowed */
   bool failed;                              /* files_record, which ended the run */
   results_so_far *so_far;                   /* borrowed: what a checkpoint keeps of the results */
 } files;
@@ -22,15 +26,15 @@ typedef struct files {
 /* Reads the time step of the checkpoint that the options name, before the solver is made. */
 bool files_peek(app *a, settings *s);
 /* Puts the checkpoint back, if any, and opens what the options ask for. */
-bool files_open(app *a, const settings *s, results_so_far *so_far, mps_dynamics *dynamics,
-                files *out);
+bool files_open(app *a, const settings *s, double duration, results_so_far *so_far,
+                mps_dynamics *dynamics, files *out);
 /* Writes what is due; call it with fields up to date. `status` is what has become of this rank so
  * far. As the others with a solver: on all ranks, of which rank 0 writes. */
-mps_status files_record(files *f, mps_dynamics *dynamics, mps_status status);
+mps_status files_record(files *f, mps_status status);
 /* The particles of all ranks, brought up to date on rank 0; NULL on the others, or on an error. */
 mps_status files_gather(files *f, mps_particles **whole);
-/* The last frame and checkpoint, wherever the run ended; false with an error line. At last, or of a
- * run that was not built, with `dynamics` NULL: releases what is left. */
-bool files_close(app *a, files *f, mps_dynamics *dynamics, bool diverged);
+/* The last checkpoint, wherever the run ended; false after an error line. */
+bool files_close(app *a, files *f, bool diverged, bool interrupted);
+void files_destroy(files *f);
 
 #endif

@@ -83,16 +83,11 @@ bool results_find(app *a, const settings *s, const column *c, const receivers *r
 /* ---- files and lines ------------------------------------------------------------------------- */
 
 bool results_write(app *a, const settings *s, const results *x) {
-  static const char *const ends[] = {"complete", "interrupted", "diverged"};
   static const char *const bases[] = {"rigid", "viscous"};
   static const char *const sides[] = {"roller", "periodic", "freefield"};
   const char wave[2] = {settings_wave(s), '\0'};
   output file;
-  if (!output_open(&file, a, s->out, "summary.json")) return false;
-  json_begin(&file);
-  json_text(&file, "program", "mps-wave");
-  json_text(&file, "version", mps_version());
-  json_text(&file, "outcome", ends[x->end]);
+  if (!summary_open(&file, a, s->out)) return false;
   json_text(&file, "wave", wave);
   json_text(&file, "integrator", integrators[s->integrator]);
   json_text(&file, "rotation", s->rotation == 0 ? "mean-matrix" : "mean-angle");
@@ -104,13 +99,13 @@ bool results_write(app *a, const settings *s, const results *x) {
   json_integer(&file, "particles", x->particles);
   json_integer(&file, "steps", x->steps);
   json_number(&file, "dt", x->dt);
-  json_optional(&file, "dt_limit_linear", x->dt_limit);
-  json_optional(&file, "surface_peak", x->surface_peak);
-  json_optional(&file, "surface_peak_edge", x->surface_peak_edge);
-  json_optional(&file, "surface_peak_theory", x->surface_theory);
-  json_optional(&file, "travel_time", x->travel_time);
+  json_number(&file, "dt_limit_linear", x->dt_limit);
+  json_number(&file, "surface_peak", x->surface_peak);
+  json_number(&file, "surface_peak_edge", x->surface_peak_edge);
+  json_number(&file, "surface_peak_theory", x->surface_theory);
+  json_number(&file, "travel_time", x->travel_time);
   json_number(&file, "travel_time_exact", x->travel_exact);
-  json_optional(&file, "energy_drift", x->energy_drift);
+  json_number(&file, "energy_drift", x->energy_drift);
   json_end(&file);
   return output_close(&file);
 }

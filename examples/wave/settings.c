@@ -3,6 +3,7 @@
 #include "settings.h"
 
 #include "common/options.h"
+#include "common/resume.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -17,7 +18,7 @@ static const settings defaults = {
     .height = 100.0,
     .vs = 100.0,
     .vp = 200.0,
-    .unit_weight = 14.7,
+    .unit_weight = 14.7e3,
     .f1 = 1.0,
     .f2 = 14.0,
     .slope = {NAN, NAN, NAN},
@@ -32,6 +33,7 @@ static const settings defaults = {
     .dt = 1e-4,
     .courant = 0.9,
     .duration = NAN,
+    .every_checkpoint = NAN,
     .receivers = 11,
     .out = "out/wave",
 };
@@ -100,33 +102,29 @@ int settings_parse(settings *s, int argc, char **argv) {
   *s = defaults;
   option table[] = {
       OPTION_HEADING("Ground"),
-      OPTION_NUMBER("radius", "m", OPTION_LENGTH, &s->radius,
-                    "particle radius R; the spacing is D = 2R"),
+      COMMON_NUMBER("radius", &s->radius, NULL),
       OPTION_NUMBER("width", "m", OPTION_LENGTH, &s->width,
                     "width of the model, rounded to whole particles"),
       OPTION_NUMBER("height", "m", OPTION_LENGTH, &s->height,
                     "height of the model, rounded likewise; with --layers it may be left out"),
-      OPTION_NUMBER("vs", "m/s", OPTION_FROM_TO(0.1, 1e5), &s->vs, "shear wave velocity Vs"),
-      OPTION_NUMBER("vp", "m/s", OPTION_FROM_TO(0.1, 1e5), &s->vp,
-                    "pressure wave velocity Vp, at least sqrt(2) Vs"),
-      OPTION_NUMBER("unit-weight", "kN/m3", OPTION_FROM_TO(1e-3, 1e3), &s->unit_weight,
-                    "unit weight of the ground; its density follows with g = 9.8 m/s2"),
-      OPTION_NUMBER("damping", "1", OPTION_FROM_TO(0.0, 10.0), &s->damping,
-                    "Rayleigh damping ratio h at the frequencies f1 and f2"),
-      OPTION_NUMBER("f1", "Hz", OPTION_FREQUENCY, &s->f1, "first frequency of the damping"),
-      OPTION_NUMBER("f2", "Hz", OPTION_FREQUENCY, &s->f2, "second frequency of the damping"),
+      COMMON_NUMBER("vs", &s->vs, NULL),
+      COMMON_NUMBER("vp", &s->vp, NULL),
+      COMMON_NUMBER("unit-weight", &s->unit_weight, NULL),
+      COMMON_NUMBER("damping", &s->damping, NULL),
+      COMMON_NUMBER("f1", &s->f1, NULL),
+      COMMON_NUMBER("f2", &s->f2, NULL),
       OPTION_TEXT("layers", "FILE", &s->layers_file,
                   "horizontal layers from the surface down, CSV: thickness_m, vs_m_s, vp_m_s, "
                   "unit_weight_kN_m3, damping_ratio"),
       {.name = "slope",
-       .unit = "m: X1,X2,H2",
+       .unit = "m",
        .range = OPTION_LENGTH,
        .count = 3,
        .number = s->slope,
-       .help = "a slope: the surface falls from the height at x = X1 to the height H2 at x = X2; "
+       .help = "a slope X1,X2,H2: the surface falls from the height at x = X1 to the height H2 at x = X2; "
                "--sides freefield suits it best"},
       OPTION_HEADING("Input motion"),
-      OPTION_CHOICE("wave", "S|P", &s->wave, "shear wave (moves in x) or pressure wave (in y)"),
+      COMMON_CHOICE("wave", &s->wave, NULL),
       OPTION_TEXT("input", "ricker|FILE", &s->input,
                   "Ricker pulse, or a recorded acceleration: .AT2, K-NET, or CSV of time (s) and "
                   "value"),
@@ -149,35 +147,26 @@ int settings_parse(settings *s, int argc, char **argv) {
                     "Vs of the half space; default that of the lowest layer"),
       OPTION_NUMBER("base-vp", "m/s", OPTION_FROM_TO(0.1, 1e5), &s->half_space.vp,
                     "Vp of the half space; default that of the lowest layer"),
-      OPTION_NUMBER("base-unit-weight", "kN/m3", OPTION_FROM_TO(1e-3, 1e3),
+      OPTION_NUMBER("base-unit-weight", "N/m3", OPTION_FROM_TO(1.0, 1e6),
                     &s->half_space.unit_weight,
                     "unit weight of the half space; default that of the lowest layer"),
       OPTION_CHOICE("sides", "roller|periodic|freefield", &s->sides,
                     "rollers along the wave's motion, a model repeated sideways, or free-field "
                     "columns with dashpots"),
       OPTION_HEADING("Method"),
-      OPTION_CHOICE("integrator", "verlet|leapfrog|euler", &s->integrator, "time integration"),
-      OPTION_CHOICE("rotation", "mean-matrix|mean-angle", &s->rotation,
-                    "how the rigid rotation of a pair is removed"),
-      OPTION_CHOICE(
-          "torque", "conserving|printed", &s->torque,
-          "as derived, which conserves angular momentum, or twice that as the paper prints it"),
-      OPTION_NUMBER("dt", "s", OPTION_DURATION, &s->dt, "time step"),
-      OPTION_NUMBER("courant", "1", OPTION_FROM_TO(1e-3, 1.0), &s->courant,
-                    "instead of --dt: time step as a fraction of the stability limit"),
-      OPTION_NUMBER("duration", "s", OPTION_DURATION, &s->duration,
-                    "simulated time; default 2.5 s, of a record its length and two travel times"),
+      COMMON_CHOICE("integrator", &s->integrator, NULL),
+      COMMON_CHOICE("rotation", &s->rotation, NULL),
+      COMMON_CHOICE("torque", &s->torque, NULL),
+      COMMON_NUMBER("dt", &s->dt, NULL),
+      COMMON_NUMBER("courant", &s->courant, "instead of --dt"),
+      COMMON_NUMBER("duration", &s->duration,
+                    "default 2.5 s, of a record its length and two travel times"),
       OPTION_HEADING("Running and results"),
       OPTION_INTEGER("receivers", "N", OPTION_FROM_TO(2.0, 1000.0), &s->receivers,
                      "receivers along the middle column, surface and base included"),
-      OPTION_NUMBER("vtk", "s", OPTION_FROM_TO(0.0, 1e6), &s->vtk,
-                    "simulated time between frames in wave.vtkhdf, for ParaView; 0: none"),
-      OPTION_NUMBER("checkpoint", "s", OPTION_FROM_TO(0.0, 1e6), &s->checkpoint,
-                    "simulated time between checkpoints in checkpoint.h5, which the end of the run "
-                    "writes too; 0: none"),
-      OPTION_TEXT("restart", "FILE", &s->restart,
-                  "go on from a checkpoint of the same model, with its time step; the results are "
-                  "those of the whole run"),
+      COMMON_INTEGER("frames", &s->frames, NULL),
+      RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint,
+                     "default a tenth of the run; the end of the run writes one too", &s->restart),
       OPTION_THREADS(&s->threads),
       OPTION_OUT(&s->out),
       {0}};

@@ -26,8 +26,9 @@ typedef struct settings {
   int integrator, rotation, torque;
   double dt, courant, duration;
   int64_t receivers, threads;
-  double vtk, checkpoint; /* s between frames, between checkpoints; 0: none */
-  const char *restart, *out;
+  int64_t frames;
+  double every_checkpoint; /* s; NaN: a tenth of the run */
+  const char *checkpoint, *restart, *out;
   /* made from the above */
   bool ricker, sloped;
   layers ground;

@@ -12,16 +12,16 @@ run() { # run PROGRAM OPTIONS...: it ends well and writes a summary of numbers
   ! grep -qiE 'nan|inf[,} ]' "$work/$program/summary.json" || fail "$program: NaN in summary.json"
 }
 programs=$1
-run mps-wave --width 4 --height 10 --duration 0.1 --vtk 0.05
+run mps-wave --width 4 --height 10 --duration 0.1 --frames 2
 run mps-stability --radius 1 --method linear
 run mps-sliding-box --h 0.1
 run mps-rolling-disc --h 0.02 --duration 0.02
-run mps-footing --h 0.25 --domain 3x1 --settlement 0.05
+run mps-footing --h 0.25 --domain 3x1 --settlement 0.05mm
 run mps-pile --h 0.02 --wall 0.04 --soil 0.4x0.8 --depth 0.01
 run mps-penetrometer --soil 2x2x2 --depth 0.002
 run mps-dam-break --base 0.05 --h 0.005 --duration 0.02
 run mps-dam-break --method mps --base 0.05 --h 0.01 --duration 0.02
-run mps-column-collapse --h 0.02 --duration 0.01
+run mps-column-collapse --h 0.02 --falls 0.01
 run mps-plate --case hole --cells 8
 run mps-cantilever --ny 4
 run mps-tank --spacing 0.05 --duration 0.05

@@ -4,7 +4,7 @@
 
 for program in mps-cantilever mps-plate; do
   "$1/$program" --help >"$work/help" || fail "$program --help"
-  for text in "Usage: $program" "--E [Pa]" "; default 0.3)" "--method conservative|published" \
+  for text in "Usage: $program" "--young [Pa]" "; default 0.3)" "--method conservative|published" \
     "--n local|constant" "--state stress|strain" "--out DIR" "--threads N"; do
     has "$work/help" "$text"
   done
@@ -33,7 +33,7 @@ awk -F, 'NR == 2 { a = $4 - 0.79; b = $5 - 3.6; c = $6 + 1.26; d = $7 + 0.657 }
 # method may be 2 % off, where bilinear elements lock (-46 %).
 "$1/mps-cantilever" --wall clamp --length 8 --method published --re 2.1 --out "$work/clamp" >/dev/null
 in_range "$work/clamp/summary.json" tip_error -0.02 0.02
-"$1/mps-cantilever" --nu 0.4999 --state strain --out "$work/wet" >/dev/null
+"$1/mps-cantilever" --poisson 0.4999 --state strain --out "$work/wet" >/dev/null
 in_range "$work/wet/summary.json" tip_error -0.02 0.02
 
 "$1/mps-plate" --out "$work/plate" >/dev/null

@@ -5,7 +5,7 @@
 . "$(dirname "$0")/checks.sh"
 
 for h in 0.1 0.05; do
-  "$1/mps-footing" --h $h --domain 3x2 --rate 5 --out "$work/$h" >/dev/null
+  "$1/mps-footing" --h $h --domain 3x2 --rate 5mm/s --out "$work/$h" >/dev/null
 done
 in_range "$work/0.1/summary.json" q_over_c 5.14 6.15
 in_range "$work/0.05/summary.json" q_over_c 5.14 5.75
@@ -21,7 +21,7 @@ extrapolated "$work" q_over_c
 
 for mu in 0 0.6; do
   for h in 0.1 0.05; do
-    "$1/mps-footing" --model druckerprager --mu $mu --h $h --domain 5x2 --rate 5 \
+    "$1/mps-footing" --model druckerprager --friction $mu --h $h --domain 5x2 --rate 5mm/s \
       --out "$work/$mu/$h" >/dev/null
   done
   extrapolated "$work/$mu" q_over_c_undeformed

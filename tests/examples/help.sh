@@ -3,9 +3,10 @@
 . "$(dirname "$0")/checks.sh"
 for program in mps-wave mps-stability; do
   "$1/$program" --help >"$work/help" || fail "$program --help"
-  for text in "Usage: $program" "--radius [m]" "default 0.5)" "[m/s]" "--wave S|P" \
+  tr -s '[:space:]' ' ' <"$work/help" >"$work/flat"
+  for text in "Usage: $program" "--radius [m]" "default 0.5 m)" "[m/s]" "--wave S|P" \
     "(default verlet)" "--out DIR" "--threads N"; do
-    has "$work/help" "$text"
+    has "$work/flat" "$text"
   done
   [ "$(awk 'length > 100' "$work/help" | wc -l)" -eq 0 ] || fail "$program --help has long lines"
   "$1/$program" --version >"$work/version"
@@ -14,7 +15,7 @@ done
 has "$work/help" "--study"
 for program in mps-sliding-box mps-rolling-disc mps-footing mps-pile; do
   "$1/$program" --help >"$work/help" || fail "$program --help"
-  for text in "Usage: $program" "--h [m]" "[kN/m]" "(default" "--out DIR" "--threads N"; do
+  for text in "Usage: $program" "--h [m]" "[N/m]" "(default" "--out DIR" "--threads N"; do
     has "$work/help" "$text"
   done
   [ "$(awk 'length > 100' "$work/help" | wc -l)" -eq 0 ] || fail "$program --help has long lines"
@@ -37,7 +38,8 @@ for program in mps-sliding-box mps-rolling-disc mps-footing mps-pile mps-dam-bre
   "$1/$program" --help >"$work/help"
   has "$work/help" "degree of the weights (default 3)"
 done
-for program in mps-tank mps-seawall mps-dam-break; do
+for program in mps-tank mps-seawall mps-dam-break mps-wave mps-pile mps-footing mps-penetrometer \
+  mps-column-collapse mps-sliding-box mps-rolling-disc; do
   [ -x "$1/$program" ] || continue
   "$1/$program" --help >"$work/help" || fail "$program --help"
   for text in "--checkpoint FILE" "--restart FILE" "--every-checkpoint [s]" "--frames N"; do

@@ -3,7 +3,7 @@
 # sum, a mesh, a whole model. Finer: docs/verification/wls-mpm.md.
 . "$(dirname "$0")/checks.sh"
 # On four cells a radius of 0.6 of them is a third of the tip's: its edges stay sharp.
-coarse="--h 0.025 --soil 3x3x2.5 --speed 1 --threads 1 --corner 0"
+coarse="--h 0.025 --soil 3x3x2.5 --rate 1 --threads 1 --corner 0"
 
 "$1/mps-penetrometer" $coarse --depth 0.1 --friction 0.2 --axisymmetric --out "$work/a" >"$work/log"
 has "$work/log" "particles inside the tip: 0"

@@ -2,7 +2,7 @@
 # pile.sh DIRECTORY: mps-pile on a coarse grid: what must hold on any, and what it writes. The paper's
 # size: docs/verification/wls-mpm.md.
 . "$(dirname "$0")/checks.sh"
-coarse="--h 0.02 --wall 0.04 --inner-diameter 0.16 --soil 0.4x0.5 --depth 0.2 --speed 0.5"
+coarse="--h 0.02 --wall 0.04 --inner-diameter 0.16 --soil 0.4x0.5 --depth 0.2 --rate 0.5"
 
 "$1/mps-pile" $coarse --rest 0.3 --threads 1 --out "$work/a" >"$work/log"
 has "$work/log" "particles inside the wall: 0"
@@ -68,7 +68,7 @@ has "$work/log" "nowhere/pile.h5"
 # Stopped by Ctrl-C after its second checkpoint (or a little late), and gone on on other threads: the
 # results of the run that never stopped.
 inode() { ls -i "$work/pile.h5" 2>/dev/null || echo none; }
-"$1/mps-pile" $coarse --rest 0.3 --checkpoint "$work/pile.h5" --every-checkpoint 0.01 \
+"$1/mps-pile" $coarse --rest 0.3 --checkpoint "$work/pile.h5" --every-checkpoint 20ms \
   --threads 1 --out "$work/d" >/dev/null 2>"$work/log" &
 pid=$!
 until [ -f "$work/pile.h5" ] || ! kill -0 "$pid" 2>/dev/null; do sleep 0.02; done
@@ -88,7 +88,7 @@ has "$work/log" "pile.h5 was made with other options: --rest is 0.2, was 0.3"
 
 # A checkpoint that fails on the way is told and does not end the run: all results are there.
 mkdir "$work/disk"
-"$1/mps-pile" $coarse --checkpoint "$work/disk/pile.h5" --every-checkpoint 0.02 --frames 1 \
+"$1/mps-pile" $coarse --checkpoint "$work/disk/pile.h5" --every-checkpoint 40ms --frames 1 \
   --threads 1 --out "$work/g" >"$work/out" 2>"$work/log" &
 pid=$!
 until [ -f "$work/disk/pile.h5" ] || ! kill -0 "$pid" 2>/dev/null; do sleep 0.02; done

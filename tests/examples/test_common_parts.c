@@ -2,11 +2,13 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_common.h"
 
+#include "common/frame.h"
 #include "common/layers.h"
 #include "common/mpm_heap.h"
 #include "common/options.h"
 #include "common/output.h"
 #include "common/series.h"
+#include "common/units.h"
 
 #include <unistd.h>
 
@@ -81,7 +83,6 @@ static void numbers_are_written_so_that_they_read_back(void **state) {
 /* A record of the options finds the one that differs, but for those that are free. */
 static void options_are_compared_one_by_one(void **state) {
   (void)state;
-  static const char *const except[] = {"out", NULL};
   double radius = 0.1, three[3] = {1.0, -2.5, NAN};
   int64_t count = 3;
   int wave = 1;
@@ -97,72 +98,138 @@ static void options_are_compared_one_by_one(void **state) {
                     OPTION_OUT(&out),
                     {0}};
   char record[200], small[20], why[200];
-  assert_true(options_record(table, except, record, sizeof record));
+  assert_true(options_record(table, record, sizeof record));
   assert_string_equal(record, "radius=0.1\nthree=1,-2.5,not given\ncount=3\nwave=P\n"
                               "flag=not given\nfile=not given\n");
-  assert_false(options_record(table, except, small, sizeof small));
+  assert_false(options_record(table, small, sizeof small));
   out = "b";
-  assert_true(options_agree(table, except, record, why, sizeof why));
+  assert_true(options_agree(table, record, why, sizeof why));
   radius = nextafter(0.1, 1.0); /* the last bit counts */
-  assert_false(options_agree(table, except, record, why, sizeof why));
+  assert_false(options_agree(table, record, why, sizeof why));
   assert_string_equal(why, "--radius is 0.10000000000000002, was 0.1");
   radius = 0.1, wave = 0;
-  assert_false(options_agree(table, except, record, why, sizeof why));
+  assert_false(options_agree(table, record, why, sizeof why));
   assert_string_equal(why, "--wave is S, was P");
   wave = 1, file = "x";
-  assert_false(options_agree(table, except, record, why, sizeof why));
+  assert_false(options_agree(table, record, why, sizeof why));
   assert_string_equal(why, "--file is x, was not given");
   file = NULL;
-  assert_false(options_agree(table, NULL, record, why, sizeof why));
-  assert_string_equal(why, "--out is b, was unknown");
+  assert_false(options_agree(table, "radius=0.1\n", why, sizeof why));
+  assert_string_equal(why, "--three is 1,-2.5,not given, was unknown");
 }
 
-/* A file with a number that is none keeps what it was, and the error names the number. */
+/* Numbers are SI, or have a unit of the same quantity; another one is refused. */
+static void numbers_may_have_a_unit(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *unit;
+    double value;
+  } good[] = {{"10MPa", "Pa", 1e7},         {"2.5 kPa", "Pa", 2500.0}, {"5mm/s", "m/s", 5e-3},
+              {"2000kN/m", "N/m", 2e6},     {"18kN/m3", "N/m3", 18e3}, {"30cm", "m", 0.3},
+              {"2ms", "s", 2e-3},           {"1g", "m/s2", 9.80665},   {"5g", "kg", 5e-3},
+              {"1.8t/m3", "kg/m3", 1800.0}, {"-0.5", "1", -0.5},       {"30deg", "degrees", 30.0},
+              {"1e-3m", "m", 1e-3}};
+  static const struct {
+    const char *text, *unit;
+    units_status status;
+  } bad[] = {{"5mm", "Pa", UNITS_OTHER},     {"5mPa", "Pa", UNITS_OTHER},
+             {"0.3Pa", "1", UNITS_OTHER},    {"3m", "N", UNITS_OTHER},
+             {"Pa", "Pa", UNITS_NO_NUMBER},  {"nanPa", "Pa", UNITS_NO_NUMBER},
+             {"1,5m", "m", UNITS_NO_NUMBER}, {"1e999m", "m", UNITS_NO_NUMBER},
+             {"1e", "m", UNITS_OTHER},       {"1 m ", "m", UNITS_OTHER},
+             {"", "m", UNITS_NO_NUMBER}};
+  double value;
+  char text[120];
+  for (size_t k = 0; k < sizeof good / sizeof *good; k++) {
+    if (units_read(good[k].text, good[k].unit, &value) != UNITS_GOOD)
+      fail_msg("%s is not read", good[k].text);
+    mps_assert_near(value, good[k].value, 1e-12 * fabs(good[k].value));
+  }
+  value = 42.0;
+  for (size_t k = 0; k < sizeof bad / sizeof *bad; k++)
+    if (units_read(bad[k].text, bad[k].unit, &value) != bad[k].status)
+      fail_msg("%s: another status", bad[k].text);
+  mps_assert_near(value, 42.0, 0.0);
+  units_wanted("Hz", text, sizeof text);
+  assert_string_equal(text, "a frequency is wanted (Hz, kHz)");
+  units_show(2e6, "Pa", text, sizeof text);
+  assert_string_equal(text, "2 MPa");
+  units_show(0.0006, "m", text, sizeof text);
+  assert_string_equal(text, "0.6 mm");
+  units_show(1000.0, "kg/m3", text, sizeof text);
+  assert_string_equal(text, "1000 kg/m3");
+}
+
+static void frames_are_spread_over_the_samples(void **state) {
+  (void)state;
+  for (int64_t frames = 0; frames <= 11; frames++) {
+    int64_t count = 0;
+    for (int64_t k = 0; k <= 10; k++) count += frame_is_due(k, 10, frames);
+    assert_int_equal(count, frames);
+    assert_int_equal(frame_is_due(10, 10, frames), frames > 0);
+    assert_int_equal(frame_is_due(0, 10, frames), frames > 1);
+  }
+}
+
+/* A number that does not exist is an empty cell, or null; a warning where it should have one. */
 static void results_hold_no_nan(void **state) {
   (void)state;
   char directory[] = "/tmp/mps-output-XXXXXX", path[64], line[80] = "";
-  app a = {.program = "test"};
+  app a = {.program = "test", .outcome = "finished"};
   output f;
+  double young = NAN, rate = 2e-3;
+  const char *name = "a \"b\"";
+  option table[] = {COMMON_NUMBER("young", &young, NULL), COMMON_NUMBER("rate", &rate, NULL),
+                    OPTION_TEXT("name", "TEXT", &name, ""), OPTION_OUT(&name), {0}};
+  const options_program program = {"test", "", table};
+  char *argv[] = {(char[]){"test"}, (char[]){"--rate"}, (char[]){"5mm/s"}, NULL};
+  assert_int_equal(options_parse(&program, 3, argv), -1);
   assert_non_null(mkdtemp(directory));
   snprintf(path, sizeof path, "%s/table.csv", directory);
-  const double row[] = {1.0, NAN, 2.0}, bad[] = {1.0, 2.0, NAN}, infinite[] = {1.0, INFINITY, 2.0};
+  const double row[] = {1.0, NAN, 2.0}, bad[] = {1.0, -INFINITY, NAN};
   assert_true(output_open(&f, &a, directory, "table.csv"));
   csv_header(&f, "t_s,x_m?,v_m_s");
   csv_row(&f, 3, row);
   assert_true(output_close(&f));
   assert_string_equal(a.results, "table.csv");
-  for (int k = 0; k < 3; k++) {
-    assert_true(output_open(&f, &a, directory, "table.csv"));
-    if (k < 2) csv_header(&f, "t_s,x_m?,v_m_s");
-    csv_row(&f, 3, k == 1 ? infinite : bad);
-    assert_string_equal(f.bad, k == 0   ? "v_m_s of row 1 is nan"
-                               : k == 1 ? "x_m of row 1 is inf"
-                                        : "column 3 of row 1 is nan");
-    assert_false(output_close(&f));
-  }
+  assert_int_equal(a.warnings, 0);
+  assert_true(output_open(&f, &a, directory, "table.csv"));
+  csv_header(&f, "t_s,x_m?,v_m_s");
+  csv_row(&f, 3, bad);
+  assert_true(output_close(&f));
+  assert_int_equal(a.warnings, 1);
+  assert_non_null(strstr(a.warning[0], "v_m_s of row 1 is not a number: the cell is empty"));
   FILE *stream = fopen(path, "r");
   assert_non_null(stream);
   assert_non_null(fgets(line, sizeof line, stream));
   assert_string_equal(line, "t_s,x_m,v_m_s\n");
   assert_non_null(fgets(line, sizeof line, stream));
-  assert_string_equal(line, "1,,2\n");
+  assert_string_equal(line, "1,,\n");
   fclose(stream);
   remove(path);
-  assert_true(output_open(&f, &a, directory, "table.csv"));
-  json_begin(&f);
-  json_optional(&f, "none", NAN);
+  assert_true(summary_open(&f, &a, directory));
   json_number(&f, "force", -INFINITY);
   json_end(&f);
-  assert_string_equal(f.bad, "force is -inf");
-  assert_false(output_close(&f));
-  assert_null(fopen(path, "r"));
+  assert_true(output_close(&f));
+  snprintf(path, sizeof path, "%s/summary.json", directory);
+  char text[2000] = "";
+  stream = fopen(path, "r");
+  assert_non_null(stream);
+  assert_true(fread(text, 1, sizeof text - 1, stream) > 0);
+  fclose(stream);
+  assert_non_null(strstr(text, "\"outcome\": \"finished\",\n  \"options\": {\"young\": null, "
+                               "\"rate\": 0.005, \"name\": \"a \\\"b\\\"\"},\n"));
+  assert_non_null(strstr(text, "\"warnings\": [\""));
+  assert_non_null(strstr(text, "\"force\": null\n}"));
+  remove(path);
+  free(a.warning[0]);
   assert_int_equal(rmdir(directory), 0); /* nothing is left in it */
 }
 
 static void travel_time_is_summed_over_layers(void **state) {
   (void)state;
   const layers ground = {
-      .count = 2, .layer = {{10.0, 100.0, 200.0, 14.7, 0.0}, {20.0, 400.0, 1000.0, 20.0, 0.0}}};
+      .count = 2, .layer = {{10.0, 100.0, 200.0, 14.7e3, 0.0}, {20.0, 400.0, 1000.0, 20e3, 0.0}}};
   mps_assert_near(layers_travel_time(&ground, 'S', 30.0, 0.0), 0.15, 1e-15);
   mps_assert_near(layers_travel_time(&ground, 'P', 30.0, 0.0), 0.07, 1e-15);
   mps_assert_near(layers_travel_time(&ground, 'S', 15.0, 5.0), 0.0625, 1e-15);
@@ -248,6 +315,8 @@ int main(void) {
       cmocka_unit_test(only_finite_decimal_numbers_are_numbers),
       cmocka_unit_test(numbers_are_written_so_that_they_read_back),
       cmocka_unit_test(options_are_compared_one_by_one),
+      cmocka_unit_test(numbers_may_have_a_unit),
+      cmocka_unit_test(frames_are_spread_over_the_samples),
       cmocka_unit_test(results_hold_no_nan),
       cmocka_unit_test(travel_time_is_summed_over_layers),
       cmocka_unit_test(the_front_leaves_drops_behind),

@@ -15,7 +15,7 @@ in_range "$out/summary.json" surface_peak_edge 1.9 2.05
 in_range "$out/summary.json" particles 80 80
 in_range "$out/summary.json" steps 300 400
 has "$out/summary.json" '"wave": "S"'
-has "$out/summary.json" '"outcome": "complete"'
+has "$out/summary.json" '"outcome": "finished"'
 head -n 1 "$out/receivers.csv" |
   grep -q '^t_s,ax_m_s2_GL-0.5m,.*,ax_m_s2_GL-19.5m,ax_m_s2_GL-0.5m_edge$' || fail "header"
 awk -F, 'NF != 7 || /nan|inf/ { exit 1 }' "$out/receivers.csv" || fail "rows of receivers.csv"
@@ -43,18 +43,27 @@ head -n 1 "$work/slope/slope.csv" | grep -q 'crest.*toe' || fail "header of slop
 # A run that is cut in two at a checkpoint ends with the results of one in one piece, the travel time
 # too, right after the restart; another model is refused by the name of the option.
 whole="--radius 1 --height 20 --damping 0.02 --courant 0.5"
-if "$wave" $whole --duration 0.6 --vtk 0.1 --checkpoint 10 --out "$work/cut" >"$work/log" 2>&1; then
+if "$wave" $whole --duration 0.6 --frames 6 --out "$work/cut" >"$work/log" 2>&1; then
   [ -s "$work/cut/wave.vtkhdf" ] || fail "wave.vtkhdf"
+  cp "$work/cut/summary.json" "$work/first.json"
   cp "$work/cut/wave.vtkhdf" "$work/first.vtkhdf"
   "$wave" $whole --duration 0.9 --out "$work/whole" >/dev/null
-  "$wave" $whole --duration 0.9 --vtk 0.1 --restart "$work/cut/checkpoint.h5" --out "$work/cut" >/dev/null
-  cmp "$work/cut/receivers.csv" "$work/whole/receivers.csv" || fail "restart: other rows"
+  # Into a directory that has results: they stay, and those of the run that goes on are beside them.
+  "$wave" $whole --duration 0.9 --frames 6 --restart "$work/cut/checkpoint.h5" --out "$work/cut" >"$work/log"
+  on=$(sed -n 's/^Results go to //p' "$work/log")
+  [ "$on" != "$work/cut" ] && [ -d "$on" ] || fail "restart: $on"
+  cmp "$on/receivers.csv" "$work/whole/receivers.csv" || fail "restart: other rows"
+  cmp "$work/cut/summary.json" "$work/first.json" || fail "restart: the first summary is gone"
+  if "$wave" $whole --duration 0.9 --restart "$work/cut/checkpoint.h5" --out "$work/cut" 2>"$work/log"; then
+    fail "restart: twice into one directory"
+  fi
+  has "$work/log" "have results already: --out must be another directory"
   cmp "$work/cut/wave.vtkhdf" "$work/first.vtkhdf" || fail "restart: the first frames are gone"
-  grep travel_time "$work/cut/summary.json" >"$work/a"
+  grep travel_time "$on/summary.json" >"$work/a"
   grep travel_time "$work/whole/summary.json" >"$work/b"
   cmp "$work/a" "$work/b" || fail "restart: another travel time"
   grep -q '"travel_time": null' "$work/b" && fail "no travel time"
-  for other in "--height 40" "--vs 90" "--unit-weight 15" "--damping 0.03" "--amplitude 2"; do
+  for other in "--height 40" "--vs 90" "--unit-weight 15kN/m3" "--damping 0.03" "--amplitude 2"; do
     "$wave" $whole $other --restart "$work/cut/checkpoint.h5" --out "$work/rest" 2>"$work/log" &&
       fail "a checkpoint of another model was taken: $other"
     has "$work/log" "of another model: ${other%% *}"

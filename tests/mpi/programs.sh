@@ -19,10 +19,10 @@ on() {
 model="--radius 0.5 --width 40 --height 30 --slope 15,25,15 --sides freefield --courant 0.5"
 files="receivers.csv slope.csv peaks.csv summary.json wave.vtkhdf"
 # shellcheck disable=SC2086
-"$wave" $model --duration 0.1 --vtk 0.05 --out "$work/alone" >"$work/alone.out"
+"$wave" $model --duration 0.1 --frames 2 --out "$work/alone" >"$work/alone.out"
 for ranks in 3; do
   # shellcheck disable=SC2086
-  on $ranks "$wave" $model --duration 0.1 --vtk 0.05 --out "$work/r$ranks" >"$work/out"
+  on $ranks "$wave" $model --duration 0.1 --frames 2 --out "$work/r$ranks" >"$work/out"
   for file in $files; do
     cmp "$work/alone/$file" "$work/r$ranks/$file" || fail "$file of $ranks ranks"
   done
@@ -58,7 +58,7 @@ long=400 # s of the model
 # begin_wave DIRECTORY: three ranks, until they compute.
 begin_wave() {
   # shellcheck disable=SC2086
-  begin 3 "$1/checkpoint.h5" "$wave" $model --checkpoint 1 --out "$1" --duration $long
+  begin 3 "$1/checkpoint.h5" "$wave" $model --every-checkpoint 1 --out "$1" --duration $long
 }
 # goes_on DIRECTORY: from its checkpoint, two ranks come to the results of one process in one go.
 # shellcheck disable=SC2086

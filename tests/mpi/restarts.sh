@@ -33,7 +33,7 @@ cut() {
 }
 cut dam "--every-checkpoint 0.02" mps-dam-break --h 0.005715 --duration 0.1 --frames 0
 cut water "--every-checkpoint 0.005" mps-dam-break --method mps --duration 0.02 --frames 0
-cut footing "" mps-footing --h 0.25 --domain 2x1 --settlement 0.05 --rate 100 --young 1e5
+cut footing "" mps-footing --h 0.25 --domain 2x1 --settlement 0.05mm --rate 100mm/s --young 1e5kPa
 cut tank "--every-checkpoint 0.02" mps-tank --case still --scheme classical --spacing 0.01 \
   --duration 0.06 --sample 0.01 --frames 0
 if [ -x "$programs/mps-seawall" ]; then

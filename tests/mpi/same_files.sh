@@ -31,11 +31,11 @@ same dam mps-dam-break --h 0.005715 --duration 0.1 --frames 4
 same box mps-sliding-box --h 0.02
 same disc mps-rolling-disc --h 0.02 --duration 0.1
 same free_disc mps-rolling-disc --h 0.02 --body disc --duration 0.1
-same footing mps-footing --h 0.25 --domain 2x1 --settlement 0.05 --rate 100 --young 1e5
-same cone mps-penetrometer --h 0.05 --diameter 0.2 --soil 4x4x2 --depth 0.1 --speed 2 --ppc 1
-pile="--soil 0.6x0.6 --h 0.04 --wall 0.08 --inner-diameter 0.32 --depth 0.06 --frames 2 --speed 0.5"
+same footing mps-footing --h 0.25 --domain 2x1 --settlement 0.05mm --rate 100mm/s --young 1e5kPa
+same cone mps-penetrometer --h 0.05 --diameter 0.2 --soil 4x4x2 --depth 0.1 --rate 2 --ppc 1
+pile="--soil 0.6x0.6 --h 0.04 --wall 0.08 --inner-diameter 0.32 --depth 0.06 --frames 2 --rate 0.5"
 # shellcheck disable=SC2086
-same pile mps-pile $pile --checkpoint "$work/pile.h5" --every-checkpoint 0.03
+same pile mps-pile $pile --checkpoint "$work/pile.h5" --every-checkpoint 0.06
 # The last checkpoint of the 3 ranks goes on with 2, and without mpirun, to the same results.
 for start in "timeout 280 $mpirun -n 2" ""; do
   # shellcheck disable=SC2086

@@ -1,0 +1,88 @@
+/* mpm_course.c - see mpm_course.h.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_course.h"
+
+#include "frame.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static resume parts(const mpm_course *c) {
+  return (resume){.key = c->key,
+                  .table = c->table,
+                  .pass = c->pass,
+                  .user = c->user,
+                  .mpm = c->m->mpm,
+                  .a = c->m->a,
+                  .domain = c->m->a->domain};
+}
+
+static mps_status save(void *user) {
+  const mpm_course *c = user;
+  const resume r = parts(c);
+  return resume_save(&r, c->options->checkpoint);
+}
+
+mps_status mpm_course_peek(mpm_course *c, mps_context *context) {
+  const resume r = parts(c);
+  return c->options->restart
+             ? resume_peek(context, &r, c->options->restart, c->m->why, sizeof c->m->why)
+             : MPS_OK;
+}
+
+mps_status mpm_course_load(mpm_course *c, mps_context *context) {
+  const resume r = parts(c);
+  return c->options->restart ? resume_load(context, &r, c->options->restart) : MPS_OK;
+}
+
+mps_status mpm_course_begin(mpm_course *c, mps_context *context, bool restores) {
+  const resume r = parts(c);
+  const mpm_course_options *o = c->options;
+  c->from = NAN;
+  mps_status status = MPS_OK;
+  if (o->restart && restores) {
+    status = resume_restore(context, &r, o->restart);
+    c->from = mps_mpm_time(c->m->mpm);
+  }
+  const double every = isnan(o->every_checkpoint) ? 0.1 * c->duration : o->every_checkpoint;
+  c->saves = (resume_schedule){.path = o->checkpoint, .every = every, .save = save, .user = c};
+  resume_schedule_at(&c->saves, mps_mpm_time(c->m->mpm));
+  return status;
+}
+
+static mps_status write_frame(mpm_course *c) {
+  mps_status status = MPS_OK;
+  if (!c->opened) status = mpm_model_series(c->m, c->directory, c->what, c->from, &c->series);
+  c->opened = true;
+  return status == MPS_OK ? mpm_model_frame(c->m, c->series) : status;
+}
+
+mps_status mpm_course_sample(mpm_course *c, int64_t k, int64_t samples) {
+  mps_status status = MPS_OK;
+  if (frame_is_due(k, samples, c->options->frames)) status = write_frame(c);
+  if (status == MPS_OK) resume_save_when_due(c->m->a, &c->saves, mps_mpm_time(c->m->mpm));
+  return status;
+}
+
+mps_status mpm_course_end(mpm_course *c, mps_status status) {
+  if (status == MPS_ERROR_CANCELLED && c->m->mpm) {
+    resume_save_now(c->m->a, &c->saves);
+    if (c->m->a->rank == 0) resume_tell(&c->saves);
+  }
+  c->m->failed = c->m->failed || c->saves.lost;
+  const mps_status closed = mps_recorder_close(&c->series);
+  return status == MPS_OK ? closed : status;
+}
+
+void resume_pass_snapshot(resume_bytes *b, mpm_snapshot *shot) {
+  resume_pass(b, &shot->time, sizeof shot->time);
+  resume_pass(b, &shot->count, sizeof shot->count);
+  if (resume_wrong(b, shot->count < 0 || shot->count > b->size)) {
+    shot->count = 0;
+    return;
+  }
+  const size_t bytes = 3 * (size_t)shot->count * sizeof *shot->row;
+  if (b->reads) free(shot->row);
+  if (b->reads && !(shot->row = malloc(bytes + 1))) b->status = MPS_ERROR_MEMORY;
+  resume_pass(b, shot->row, bytes);
+}

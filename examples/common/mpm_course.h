@@ -1,0 +1,59 @@
+/* mpm_course.h - the course of a WLS-MPM run from sample to sample: its frames for ParaView, its
+ * checkpoints and going on from one (resume.h). A program builds its model between mpm_course_peek
+ * and mpm_course_begin, and calls mpm_course_sample after each sample and mpm_course_end at last.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef EXAMPLES_MPM_COURSE_H
+#define EXAMPLES_MPM_COURSE_H
+
+#include "mpm_heap.h"
+#include "mpm_model.h"
+#include "resume.h"
+
+/* Options of a program, and the rows of its table. */
+typedef struct mpm_course_options {
+  int64_t frames;
+  const char *checkpoint, *restart;
+  double every_checkpoint; /* s; NaN: a tenth of the run */
+} mpm_course_options;
+#define MPM_COURSE_DEFAULTS                                                                        \
+  { .every_checkpoint = NAN }
+#define MPM_COURSE_OPTIONS(o, most)                                                                \
+  COMMON_INTEGER_IN("frames", OPTION_FROM_TO(0.0, most), &(o)->frames, NULL),                      \
+      RESUME_OPTIONS(&(o)->checkpoint, &(o)->every_checkpoint, "default a tenth of the run",       \
+                     &(o)->restart)
+
+typedef struct mpm_course {
+  const mpm_course_options *options;
+  mpm_model *m;
+  const char *directory, *what; /* of the series: DIR/WHAT.vtkhdf */
+  double duration;              /* s, of the whole run */
+  /* as in resume */
+  const char *key;
+  const option *table;
+  void (*pass)(void *user, resume_bytes *b);
+  void *user;
+  /* made here */
+  mps_recorder *series; /* rank 0; made with the first frame: a series without one is none */
+  double from;          /* s, time of the checkpoint that the run goes on from; NaN: the start */
+  bool opened;
+  resume_schedule saves;
+} mpm_course;
+
+/* The options of the checkpoint that the run goes on from are these; nothing to do without one. */
+mps_status mpm_course_peek(mpm_course *c, mps_context *context);
+/* What the run had seen, before the model is built: where that is needed to build it. */
+mps_status mpm_course_load(mpm_course *c, mps_context *context);
+/* Once the model is built: puts the checkpoint back, if any, where it is of this model (`restores`)
+ * and not of one of several that the run has before. */
+mps_status mpm_course_begin(mpm_course *c, mps_context *context, bool restores);
+/* After sample `k` of 0 to `samples`, of which 0 is the start: the frame and the checkpoint that are
+ * due. */
+mps_status mpm_course_sample(mpm_course *c, int64_t k, int64_t samples);
+/* Closes the series, of a run that ended with `status`, and writes a checkpoint of one that Ctrl-C
+ * has ended. Returns `status`, or what went wrong here. */
+mps_status mpm_course_end(mpm_course *c, mps_status status);
+
+/* A snapshot among what a checkpoint keeps. */
+void resume_pass_snapshot(resume_bytes *b, mpm_snapshot *shot);
+
+#endif

@@ -1,0 +1,23 @@
+/* standard.h - the one table of the options that mean the same in several programs: name, unit,
+ * range and help. A program lists those that it has, with its own default, and where it must its
+ * own range; see COMMON_... in options.h.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef EXAMPLES_STANDARD_H
+#define EXAMPLES_STANDARD_H
+
+#include "options.h"
+
+/* Completes the rows of a program's table that are in the common one. False, and in *name which one
+ * it is, where the common table does not have it. */
+bool standard_complete(option *table, const char **name);
+
+/* What an option was called in earlier versions. */
+typedef struct standard_former {
+  const char *name;  /* "nu" */
+  const char *now;   /* "poisson" */
+  const char *value; /* what the value is now, where that is another: " N, ..."; NULL: the same */
+} standard_former;
+/* The row of a name that the program does not have, and that it has under another; NULL: none. */
+const standard_former *standard_find_former(const option *table, const char *name);
+
+#endif

@@ -1,0 +1,128 @@
+/* units.c - see units.h.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "units.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_UNITS = 9 };
+
+/* The first unit is that of SI, which options have. Those before `shown` are used where numbers are
+ * printed, in ascending order but for the first. */
+typedef struct quantity {
+  const char *name;
+  int shown;
+  struct {
+    const char *name;
+    double factor;
+  } unit[MOST_UNITS];
+} quantity;
+
+static const quantity quantities[] = {
+    {"a length", 2, {{"m", 1.0}, {"mm", 1e-3}, {"cm", 1e-2}, {"km", 1e3}, {"um", 1e-6}}},
+    {"a time", 2, {{"s", 1.0}, {"ms", 1e-3}, {"us", 1e-6}, {"min", 60.0}, {"h", 3600.0}}},
+    {"a speed",
+     2,
+     {{"m/s", 1.0},
+      {"mm/s", 1e-3},
+      {"cm/s", 1e-2},
+      {"km/s", 1e3},
+      {"km/h", 1.0 / 3.6},
+      {"mm/min", 1e-3 / 60.0}}},
+    {"an acceleration",
+     1,
+     {{"m/s2", 1.0}, {"mm/s2", 1e-3}, {"cm/s2", 1e-2}, {"gal", 1e-2}, {"g", 9.80665}}},
+    {"a frequency", 1, {{"Hz", 1.0}, {"kHz", 1e3}}},
+    {"a density", 1, {{"kg/m3", 1.0}, {"t/m3", 1e3}, {"g/cm3", 1e3}}},
+    {"a unit weight", 3, {{"N/m3", 1.0}, {"kN/m3", 1e3}, {"MN/m3", 1e6}}},
+    {"a pressure",
+     4,
+     {{"Pa", 1.0},
+      {"kPa", 1e3},
+      {"MPa", 1e6},
+      {"GPa", 1e9},
+      {"N/m2", 1.0},
+      {"kN/m2", 1e3},
+      {"MN/m2", 1e6},
+      {"N/mm2", 1e6}}},
+    {"a force over a length", 4, {{"N/m", 1.0}, {"kN/m", 1e3}, {"MN/m", 1e6}, {"GN/m", 1e9}}},
+    {"a viscosity", 1, {{"Pa s", 1.0}, {"mPa s", 1e-3}, {"Pas", 1.0}, {"mPas", 1e-3}}},
+    {"a mass", 1, {{"kg", 1.0}, {"g", 1e-3}, {"t", 1e3}}},
+    {"an angle", 1, {{"degrees", 1.0}, {"deg", 1.0}, {"rad", 57.29577951308232}}}};
+
+static const quantity *find(const char *unit) {
+  const int count = (int)(sizeof quantities / sizeof *quantities);
+  for (int k = 0; unit && k < count; k++)
+    if (strcmp(quantities[k].unit[0].name, unit) == 0) return &quantities[k];
+  return NULL;
+}
+
+bool units_known(const char *unit) { return find(unit) != NULL; }
+
+/* Length of the number that `text` begins with; 0: none. The programs never call setlocale, so
+ * strtod reads the C locale's decimal point. */
+static size_t number_at(const char *text, double *value) {
+  char digits[64], *end;
+  const size_t length = strspn(text, "0123456789+-.eE");
+  if (length == 0 || length >= sizeof digits) return 0;
+  memcpy(digits, text, length);
+  digits[length] = '\0';
+  *value = strtod(digits, &end);
+  return isfinite(*value) ? (size_t)(end - digits) : 0;
+}
+
+static bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+
+units_status units_read(const char *text, const char *unit, double *value) {
+  double number = 0.0;
+  const size_t length = number_at(text, &number);
+  if (length == 0) return UNITS_NO_NUMBER;
+  const char *rest = text + length;
+  if (*rest == '\0') {
+    *value = number;
+    return UNITS_GOOD;
+  }
+  if (*rest == ' ') rest++;
+  if (!is_letter(*rest)) return UNITS_NO_NUMBER;
+  const quantity *q = find(unit);
+  for (int k = 0; q && k < MOST_UNITS && q->unit[k].name; k++)
+    if (strcmp(q->unit[k].name, rest) == 0) {
+      *value = number * q->unit[k].factor;
+      return isfinite(*value) ? UNITS_GOOD : UNITS_NO_NUMBER;
+    }
+  return UNITS_OTHER;
+}
+
+bool units_written(const char *text) {
+  double number;
+  const size_t length = number_at(text, &number);
+  return length > 0 && is_letter(text[length + (text[length] == ' ')]);
+}
+
+void units_wanted(const char *unit, char *out, size_t size) {
+  const quantity *q = find(unit);
+  if (!q) {
+    snprintf(out, size, "a number without a unit is wanted");
+    return;
+  }
+  size_t used = (size_t)snprintf(out, size, "%s is wanted (", q->name);
+  for (int k = 0; k < MOST_UNITS && q->unit[k].name && used < size; k++)
+    used += (size_t)snprintf(out + used, size - used, "%s%s", k ? ", " : "", q->unit[k].name);
+  if (used < size) snprintf(out + used, size - used, ")");
+}
+
+void units_show(double value, const char *unit, char *out, size_t size) {
+  const quantity *q = find(unit);
+  int best = 0;
+  const bool large = fabs(value) >= 1e3, small = value != 0.0 && fabs(value) < 0.99e-2;
+  for (int k = 1; q && k < q->shown; k++)
+    if ((large && q->unit[k].factor > 1.0 && fabs(value) >= q->unit[k].factor) ||
+        (small && q->unit[k].factor < 1.0))
+      best = k;
+  if (q)
+    snprintf(out, size, "%.6g %s", value / q->unit[best].factor, q->unit[best].name);
+  else
+    snprintf(out, size, "%.6g", value);
+}
