@@ -32,7 +32,7 @@ static void blocks_that_strike_keep_the_energy_of_theory(void **state) {
   blocks_check(context, 20, 0.3, 0.03);
 }
 
-/* Steps and spacings of which the loss falls as l0^1 or faster. */
+/* The loss falls with the spacing. */
 static void standing_waves_last(void **state) {
   (void)state;
   const double coarse = standing_kept(context, 0.03, 12.0);

@@ -1,0 +1,60 @@
+/* test_fluid_energy_long.c - test_fluid_energy.c with the whole table of forced walls, 300 periods
+ * of a wall on a spring, and finer blocks and waves. SPDX-License-Identifier: BSD-3-Clause */
+#include "test_fixture.h"
+
+#include "fluid_energy.h"
+
+/* Finer steps and all shapes; the spacing of .02 m is coarse for y^2, which is largest where wall
+ * and surface meet. */
+static void vibrating_walls_are_damped_and_feel_the_added_mass(void **state) {
+  (void)state;
+  const double omega[] = {60.0, 125.0, 250.0}, coarse[] = {0.0045, 0.004, 0.002, 0.001, 0.0005},
+               fine[] = {0.0031, 0.001}, bar[] = {0.006, 0.012, 0.027};
+  for (int power = 0; power <= 2; power++)
+    for (int w = 0; w < 3; w++) {
+      for (size_t k = 0; k < sizeof coarse / sizeof *coarse; k++)
+        forced_check(context, 0.02, coarse[k], power, omega[w], bar[power]);
+      for (size_t k = 0; k < sizeof fine / sizeof *fine && w > 0; k++)
+        forced_check(context, 0.01, fine[k], power, omega[w], 0.006);
+    }
+}
+
+static void walls_on_springs_do_not_grow(void **state) {
+  (void)state;
+  spring_check(context, 0.02, 0.004, 211800.0, 300.0);
+  spring_check(context, 0.02, 0.0023, 1e6, 300.0);
+  spring_check(context, 0.02, 0.002, 211800.0, 100.0);
+  spring_check(context, 0.02, 0.004, 1e6, 300.0); /* omega dt = .52: too long, but no growth */
+}
+
+static void blocks_that_strike_keep_the_energy_of_theory(void **state) {
+  (void)state;
+  for (int k = 0; k < 3; k++) {
+    blocks_check(context, 10, 0.25 * k, 0.05); /* coarse: a gap of a spacing's part counts */
+    blocks_check(context, 20, 0.25 * k, 0.03);
+  }
+  blocks_check(context, 40, 0.0, 0.03);
+}
+
+/* The loss at d/10, d/20, d/40 falls with the spacing. */
+static void standing_waves_last(void **state) {
+  (void)state;
+  double loss[3];
+  for (int k = 0; k < 3; k++) {
+    loss[k] = 1.0 - standing_kept(context, 0.03 / (1 << k), 20.0);
+    print_message("20 periods leave %.4f of the amplitude at d/%d\n", 1.0 - loss[k], 10 << k);
+  }
+  assert_true(loss[1] < 0.03 && loss[1] > -0.005);
+  assert_true(loss[1] < 0.65 * loss[0]); /* order .8: part of it goes with the step, l0^.5 */
+  assert_true(loss[2] < 0.75 * loss[1]);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(vibrating_walls_are_damped_and_feel_the_added_mass),
+      cmocka_unit_test(walls_on_springs_do_not_grow),
+      cmocka_unit_test(blocks_that_strike_keep_the_energy_of_theory),
+      cmocka_unit_test(standing_waves_last),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
