@@ -62,9 +62,10 @@ typedef enum mps_mpm_volumetric {
                                of d without trace, the spin and `velocity_gradient` stay. Volumes,
                                `volume_ratio` and `deformation_gradient` follow the mean */
   MPS_MPM_VOLUMETRIC_NODES = 2  /* the mean of tr(d) over the nodes near, each the mean of its
-                               particles, by the weights and volumes; and of pressures likewise:
-                               fluids (Newtonian) act with that mean, in other laws the pressure
-                               tends to it by 0.03 c dt/h of the difference in each step */
+                               particles, by the weights and volumes; and of pressures: fluids act
+                               with that mean, other laws tend to it by 0.03 c dt/h in each step.
+                               Mohr-Coulomb and Drucker-Prager keep their own tr(d), and lose the
+                               roughness of pressure and opening by 0.08 c dt/h each eighth step */
 } mps_mpm_volumetric;
 
 /** What particles near a roller, a fixed side or the axis use beyond it. */

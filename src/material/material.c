@@ -95,6 +95,10 @@ bool mpsi_material_reads_volume(const mps_material *material) {
   return (material->type->traits & MPSI_LAW_READS_VOLUME) != 0;
 }
 
+bool mpsi_material_opens(const mps_material *material) {
+  return (material->type->traits & MPSI_LAW_OPENS) != 0;
+}
+
 bool mpsi_material_may_refuse(const mps_material *material) {
   return (material->type->traits & MPSI_LAW_MAY_REFUSE) != 0;
 }

@@ -48,6 +48,8 @@ mps_status mpsi_material_refused(mps_context *context, const char *function,
 
 /* True: the value of volume_ratio decides the stress (fluids, neo-Hookean, users' laws). */
 bool mpsi_material_reads_volume(const mps_material *material);
+/* True: a frictional law with a gap between its grains; its history is plastic_strain, opening. */
+bool mpsi_material_opens(const mps_material *material);
 /* True: a law of the caller's, which may refuse a block. */
 bool mpsi_material_may_refuse(const mps_material *material);
 /* True: the wave modulus follows the state. */

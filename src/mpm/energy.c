@@ -123,6 +123,21 @@ void mpsi_mpm_energy_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_
   sum->kinetic += kinetic_of(mpm, begin, begin + block->count);
 }
 
+void mpsi_mpm_energy_smoothed(mps_mpm *mpm, const mpsi_cell_block *cells,
+                              const mpsi_before_law *before, int64_t begin, int64_t end) {
+  const mpsi_columns *p = &mpm->p;
+  mpsi_cell_energy *sum = of_cells(mpm, cells);
+  for (int64_t k = begin; k < end; k++) {
+    double s0[6] = {0.0}, s1[6] = {0.0}, wave, shear;
+    if (!mpsi_law_of(mpm, k)->opens) continue;
+    mpsi_mpm_elastic(mpm, k, &wave, &shear);
+    for (int c = 0; c < 2 * mpm->dim; c++) s0[c] = before->stress[c][k - begin], s1[c] = p->s[c][k];
+    const double bulk = wave - 4.0 / 3.0 * shear, V = 0.5 * (before->volume[k - begin] + p->V[k]);
+    const double lost = V * (elastic_energy(s0, bulk, shear) - elastic_energy(s1, bulk, shear));
+    sum->smoothed += lost;
+  }
+}
+
 /* ---- nodes ----------------------------------------------------------------------------------- */
 
 /* Work of all bodies on node k with the velocity v. */
@@ -215,8 +230,8 @@ static void add_cells(mps_mpm *mpm) {
     if (mpm->grid.cells[b].ghost) continue;
     mpsi_mpm_energy_add(mpm, MPSI_ENERGY_KINETIC, e->kinetic - e->kinetic_before);
     mpsi_mpm_energy_add(mpm, MPSI_ENERGY_TRANSFER, e->kinetic_before - e->kinetic + e->returned);
-    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_KEPT, e->kept);
-    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_SPENT, e->spent);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_KEPT, e->kept - e->smoothed);
+    mpsi_mpm_energy_add(mpm, MPSI_ENERGY_SPENT, e->spent + e->smoothed);
     mpsi_mpm_energy_add(mpm, MPSI_ENERGY_LOADS, e->loads);
     mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STEPPING, e->seen - e->kept - e->spent);
     mpsi_mpm_energy_add(mpm, MPSI_ENERGY_STRAIN, e->stresses - e->seen);

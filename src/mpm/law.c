@@ -106,6 +106,25 @@ void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int
   }
 }
 
+void mpsi_mpm_return_stress(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin,
+                            int64_t end) {
+  static const double rest[MPSI_CHUNK] = {0.0};
+  for (int64_t k = begin, next; k < end; k = next) {
+    next = end_of_run(mpm->p.law, k, end);
+    const mpsi_law_use *law = mpsi_law_of(mpm, k);
+    mps_material_block block;
+    int64_t flags[MPSI_CHUNK];
+    if (!law->opens) continue;
+    mpsi_mpm_begin_block(&block);
+    find_columns(mpm, law, k, next, &block);
+    for (int c = 0; c < 9; c++)
+      if (block.gradient[c]) block.gradient[c] = rest;
+    block.flags = flags;
+    apply_law(mpm, cells, law, &block, k);
+    for (int64_t q = k; q < next; q++) mpm->laws.flags[q] |= flags[q - k];
+  }
+}
+
 /* A viscous law asks for dt <= rho h^2/(4 dim viscosity) too: the modulus whose wave gives that. */
 static void raise_to_viscous(const mps_mpm *mpm, const mpsi_law_use *law, int64_t begin,
                              int64_t end, double *moduli) {

@@ -14,6 +14,7 @@ typedef struct mpsi_law_use {
   mps_material *material;
   double modulus; /* K + 4G/3 at zero strain, Pa */
   bool reads_volume, needs_deformation;
+  bool opens; /* a frictional law: its history is plastic_strain, opening */
   int32_t columns;
   double **history; /* columns over all particles; NULL for none */
 } mpsi_law_use;
@@ -32,6 +33,8 @@ typedef struct mpsi_laws {
   mpsi_law_use law[MPS_MPM_MAX_MATERIALS]; /* 0: of creation */
   int32_t count;
   bool one_modulus; /* law[0].modulus holds for all particles, whatever their state */
+  bool at_once;     /* all laws act within G2P, by each particle's own change of volume */
+  bool some_open;   /* some law is frictional */
   int64_t *flags;   /* of the laws, by sorted index */
   const int64_t *ids;
   const double *temperature; /* NULL where the set has no such field */
@@ -45,6 +48,9 @@ typedef struct mpsi_laws {
 void mpsi_mpm_begin_block(mps_material_block *block);
 void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int64_t end,
                         double *const *D, double (*mean)[MPSI_CHUNK], mps_material_block *block);
+/* law.c: the returns to the yield surface of the frictional ones among particles [begin, end), at
+ * most a chunk, without strain. Their flags are added to those of the step. */
+void mpsi_mpm_return_stress(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end);
 /* law.c: the present wave moduli of particles [begin, end), raised where viscosity limits dt. */
 void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli);
 /* materials.c: K + 4G/3 and G (Pa) of a particle's material at zero strain. */

@@ -43,6 +43,7 @@ mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *ma
                       .modulus = mps_material_wave_modulus(material),
                       .reads_volume = mpsi_material_reads_volume(material),
                       .needs_deformation = mps_material_needs_deformation(material) != 0,
+                      .opens = mpsi_material_opens(material),
                       .columns = mps_material_history_count(material)};
   law.history = mpsi_alloc(mpm->context, law.columns, sizeof *law.history);
   if (!law.history)
@@ -59,6 +60,11 @@ mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *ma
   if (mpm->laws.count == 0) atomic_flag_clear(&mpm->laws.refusal.busy);
   mpm->laws.one_modulus = mpm->laws.count == 0 && !mpsi_material_stiffens(material) &&
                           mpsi_material_viscosity(material) == 0.0;
+  const bool first = mpm->laws.count == 0;
+  mpm->laws.at_once = mpm->def.volumetric == MPS_MPM_VOLUMETRIC_POINT ||
+                      (mpm->def.volumetric == MPS_MPM_VOLUMETRIC_NODES && law.opens &&
+                       (first || mpm->laws.at_once));
+  mpm->laws.some_open = mpm->laws.some_open || law.opens;
   mpm->laws.law[mpm->laws.count++] = law;
   return MPS_OK;
 }

@@ -186,8 +186,9 @@ mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
   if (mpm->share && mpm->contact.bodies > 0) mpsi_mpm_mark_touched(mpm);
   status = move(mpm, function, dt, status); /* particles --> nodes --> particles */
   if (status != MPS_OK) return status;
-  mpsi_mpm_sum_holds(mpm);       /* impulses of nodes --> forces of walls */
-  mpsi_mpm_drive_particles(mpm); /* held particles: v, x */
+  mpsi_mpm_sum_holds(mpm);         /* impulses of nodes --> forces of walls */
+  mpsi_mpm_drive_particles(mpm);   /* held particles: v, x */
+  mpsi_mpm_find_impulse_loss(mpm); /* before means take the nodes' places */
   if (mpm->def.volumetric != MPS_MPM_VOLUMETRIC_POINT)
     mpsi_mpm_apply_laws_by_cell(mpm);             /* L, V --> sigma by means of cells */
   bool refused = mpm->laws.refusal.cells != NULL; /* by a law of the caller's */
@@ -200,7 +201,6 @@ mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
     return mpm->share ? mpsi_domain_settle(mpm->share->domain, function, status) : status;
   }
   if (mpm->contact.bodies > 0) mpsi_mpm_update_bodies(mpm); /* contact --> reactions, poses */
-  mpsi_mpm_find_impulse_loss(mpm);
   mpsi_mpm_energy_end(mpm);
   mpm->run.moments = true;
   mpm->run.time += dt;

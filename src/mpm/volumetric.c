@@ -19,13 +19,23 @@
  * At a wall or a surface all particles of a node lie on one side of it, and the mean of a pressure
  * that grows with depth is off by its slope times their distance. So a fluid's pressure goes to the
  * node and back along the slope that it has at rest, p_i = sum w V (p + rho g.(x_i - x))/sum w V
- * and p~ = sum w (p_i - rho g.(x_i - x)): at rest it is kept as it is. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * and p~ = sum w (p_i - rho g.(x_i - x)): at rest it is kept as it is.
+ *
+ * Frictional laws see each particle's own tr(d) instead. Means of the rate under forces by own
+ * pressures let rough pressures do work from nothing, and dilation makes them rough: a dilatant
+ * sand blew up. What is smoothed of them, every eighth step, is e = p + K gap, the mean stress that
+ * an open particle would have if its grains still held together: below 0 they are closed. With the
+ * operator S of the means, r = e - S e and e' = e - a (r - S r), so that sum V e is kept, a smooth
+ * field to the fourth order too, and what S does not see decays. p' is e' where that is closed,
+ * else what is left of p, the gap the rest; then the law's own return, without strain. V follows
+ * the elastic volume strain of p' - p. SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
 
 #include <string.h>
 
 #define BETA 0.03 /* larger ones spread pressure at free surfaces */
+#define GRAINS_BETA 0.01
+#define GRAINS_EVERY 8 /* steps */
 
 enum { SUM_VOLUME = 0, SUM_TRACE = 1 };
 
@@ -82,6 +92,11 @@ static void clear_tile(mps_mpm *mpm, int64_t b, int32_t number) {
 /* ---- by node --------------------------------------------------------------------------------- */
 
 static bool by_nodes(const mps_mpm *mpm) { return mpm->def.volumetric == MPS_MPM_VOLUMETRIC_NODES; }
+
+/* A particle whose law is frictional. */
+static bool is_grains(const mps_mpm *mpm, int64_t k) {
+  return mpm->laws.some_open && mpsi_law_of(mpm, k)->opens;
+}
 
 /* Nodes of a tile along each axis, ghosts of mirrors by their partners, and weights. */
 typedef struct support {
@@ -172,6 +187,7 @@ static void sum_pressures(mps_mpm *mpm, int64_t b, int32_t number) {
   const mpsi_worker *worker = &mpm->grid.workers[number];
   clear_tile(mpm, b, number);
   for (int64_t k = cells->begin; k < cells->end; k++) {
+    if (is_grains(mpm, k)) continue;
     const support s = support_of(mpm, cells, k);
     double slope[3];
     slope_at_rest(mpm, k, slope);
@@ -183,6 +199,7 @@ static void smooth_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const mpsi_columns *p = &mpm->p;
   for (int64_t k = cells->begin; k < cells->end; k++) {
+    if (is_grains(mpm, k)) continue;
     const support s = support_of(mpm, cells, k);
     double share = 1.0, wave, shear, slope[3];
     slope_at_rest(mpm, k, slope);
@@ -192,6 +209,86 @@ static void smooth_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
     }
     const double change = share * (take(mpm, cells, &s, slope) - mean_stress(mpm, k));
     for (int c = 0; c < 3; c++) p->s[c][k] += change;
+  }
+  mpm->kernels->speed(mpm, b, worker);
+}
+
+/* ---- by node: frictional laws ---------------------------------------------------------------- */
+
+static double bulk_of(const mps_mpm *mpm, int64_t k) {
+  double wave, shear;
+  mpsi_mpm_elastic(mpm, k, &wave, &shear);
+  return wave - 4.0 / 3.0 * shear;
+}
+
+static double *gap_of(const mps_mpm *mpm, int64_t k) { return mpsi_law_of(mpm, k)->history[1] + k; }
+
+/* r of each particle, in a column that the laws have read. */
+static double *deviation(const mps_mpm *mpm) { return mpm->p.D[0]; }
+
+static void sum_closed(mps_mpm *mpm, int64_t b, int32_t number) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  clear_tile(mpm, b, number);
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    if (!is_grains(mpm, k)) continue;
+    const support s = support_of(mpm, cells, k);
+    const double closed = mean_stress(mpm, k) + bulk_of(mpm, k) * *gap_of(mpm, k);
+    give(mpm, cells, &mpm->grid.workers[number], &s, mpm->p.V[k], closed, level);
+  }
+}
+
+static void sum_deviations(mps_mpm *mpm, int64_t b, int32_t number) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  clear_tile(mpm, b, number);
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    if (!is_grains(mpm, k)) continue;
+    const support s = support_of(mpm, cells, k);
+    give(mpm, cells, &mpm->grid.workers[number], &s, mpm->p.V[k], deviation(mpm)[k], level);
+  }
+}
+
+static void find_deviations(mps_mpm *mpm, int64_t b, int32_t worker) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  (void)worker;
+  for (int64_t k = cells->begin; k < cells->end; k++) {
+    if (!is_grains(mpm, k)) continue;
+    const support s = support_of(mpm, cells, k);
+    const double closed = mean_stress(mpm, k) + bulk_of(mpm, k) * *gap_of(mpm, k);
+    deviation(mpm)[k] = closed - take(mpm, cells, &s, level);
+  }
+}
+
+/* A volume after a volume strain, to the third order: strains to and fro leave it as it was. */
+static double grown(double V, double strain) {
+  return V * ((1.0 + 0.5 * strain) / (1.0 - 0.5 * strain));
+}
+
+static void smooth_one(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t k) {
+  const mpsi_columns *p = &mpm->p;
+  const support s = support_of(mpm, cells, k);
+  const double r = deviation(mpm)[k], bulk = bulk_of(mpm, k), was = mean_stress(mpm, k);
+  double *gap = gap_of(mpm, k), wave, shear;
+  mpsi_mpm_elastic(mpm, k, &wave, &shear);
+  const double cells_a_step = sqrt(wave * p->V[k] / p->m[k]) * mpm->run.dt * mpm->grid.inverse;
+  const double share = fmin(1.0, GRAINS_EVERY * GRAINS_BETA * cells_a_step);
+  const double closed = was + bulk * *gap - share * (r - take(mpm, cells, &s, level));
+  const double now =
+      *gap > 0.0 || closed > 0.0 ? fmin(closed, fmax(was, 0.0)) : closed; /* open or not */
+  *gap = fmax(0.0, (closed - now) / bulk);
+  for (int c = 0; c < 3; c++) p->s[c][k] += now - was;
+  p->V[k] = grown(p->V[k], (now - was) / bulk);
+}
+
+static void smooth_grains(mps_mpm *mpm, int64_t b, int32_t worker) {
+  const mpsi_cell_block *cells = &mpm->grid.cells[b];
+  for (int64_t begin = cells->begin, end; begin < cells->end; begin = end) {
+    end = begin + MPSI_CHUNK < cells->end ? begin + MPSI_CHUNK : cells->end;
+    mpsi_before_law before;
+    if (mpm->energy.counts) mpsi_mpm_energy_keep(mpm, begin, end, &before);
+    for (int64_t k = begin; k < end; k++)
+      if (is_grains(mpm, k)) smooth_one(mpm, cells, k);
+    mpsi_mpm_return_stress(mpm, cells, begin, end);
+    if (mpm->energy.counts) mpsi_mpm_energy_smoothed(mpm, cells, &before, begin, end);
   }
   mpm->kernels->speed(mpm, b, worker);
 }
@@ -207,6 +304,7 @@ static void sum_rates(mps_mpm *mpm, int64_t b, int32_t number) {
   for (int64_t k = cells->begin; k < cells->end; k++) {
     const double trace = L[0][k] + L[1][k] + (L[2] ? L[2][k] : 0.0);
     if (by_nodes(mpm)) {
+      if (is_grains(mpm, k)) continue;
       const support s = support_of(mpm, cells, k);
       give(mpm, cells, worker, &s, V[k], trace, level);
       continue;
@@ -224,7 +322,9 @@ static void mean_diagonals(const mps_mpm *mpm, const mpsi_cell_block *cells, int
   for (int64_t k = begin; k < end; k++) {
     const double own = L[0][k] + L[1][k] + (L[2] ? L[2][k] : 0.0);
     double mean;
-    if (by_nodes(mpm)) {
+    if (by_nodes(mpm) && is_grains(mpm, k)) {
+      mean = own;
+    } else if (by_nodes(mpm)) {
       const support s = support_of(mpm, cells, k);
       mean = take(mpm, cells, &s, level);
     } else {
@@ -283,6 +383,14 @@ static void add_pressures(mps_mpm *mpm, int64_t b, int32_t worker) {
   add_block(mpm, b, worker, sum_pressures);
 }
 
+static void add_closed(mps_mpm *mpm, int64_t b, int32_t worker) {
+  add_block(mpm, b, worker, sum_closed);
+}
+
+static void add_deviations(mps_mpm *mpm, int64_t b, int32_t worker) {
+  add_block(mpm, b, worker, sum_deviations);
+}
+
 static void run_sums(mps_mpm *mpm, mpsi_mpm_task sum, mpsi_mpm_task add, mpsi_mpm_task gather) {
   const mpsi_pass pass = {.clear = mpsi_mpm_clear_nodes,
                           .scatter = add,
@@ -307,8 +415,12 @@ static bool on_any(mps_mpm *mpm, bool failed) {
 }
 
 void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm) {
+  const bool others = !mpm->laws.at_once; /* than frictional ones, or by cell */
   if (on_any(mpm, has_failed(mpm))) return;
-  run_sums(mpm, sum_rates, add_rates, apply_laws);
-  if (by_nodes(mpm) && !on_any(mpm, mpm->laws.refusal.cells != NULL))
-    run_sums(mpm, sum_pressures, add_pressures, smooth_pressures);
+  if (others) run_sums(mpm, sum_rates, add_rates, apply_laws);
+  if (!by_nodes(mpm) || on_any(mpm, mpm->laws.refusal.cells != NULL)) return;
+  if (others) run_sums(mpm, sum_pressures, add_pressures, smooth_pressures);
+  if (!mpm->laws.some_open || mpm->run.steps % GRAINS_EVERY != 0) return;
+  run_sums(mpm, sum_closed, add_closed, find_deviations);
+  run_sums(mpm, sum_deviations, add_deviations, smooth_grains);
 }

@@ -94,9 +94,14 @@ static void works_between_soil_and_bodies_cancel(void **state) {
   for (int32_t method = MPS_CONTACT_METHOD_IMPULSE; method <= MPS_CONTACT_METHOD_PENALTY; method++)
     for (uint64_t seed = 0; seed < 3; seed++) {
       mpm_scene s = mpm_scene_begin(context, 0.02, 0.0, 0.0, 1e6);
+      mps_mohr_coulomb_def sand = mps_mohr_coulomb_defaults();
+      sand.young = 1e6, sand.friction = 0.5, sand.dilation = 0.2, sand.cohesion = 2e3;
+      mps_material_destroy(&s.material);
+      mps_assert_ok(context, mps_material_mohr_coulomb(context, &sand, &s.material));
       mpm_scene_box(&s, 0.0, 0.0, 0.8, 0.2);
       mps_mpm_def def = mps_mpm_defaults();
       def.cell = 0.04, def.budget = 1, def.gravity[1] = -9.81;
+      def.volumetric = (int32_t)seed; /* each option */
       def.lower[0] = def.lower[1] = 0.0, def.upper[0] = 0.8, def.upper[1] = 1.0;
       mpm_scene_solve(&s, &def);
       uint64_t state_of = seed;

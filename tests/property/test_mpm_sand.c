@@ -1,0 +1,162 @@
+/* test_mpm_sand.c - dilatant sand under a rigid strip with every volumetric option: motion and
+ * force stay bounded, the energy budget closes, and what is smoothed by node does not depend on
+ * threads, restarts or the sides of a thin wall. SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_scene.h"
+#include "pthread_executor.h"
+#include "test_fixture.h"
+
+#include <mps/mpm_energy.h>
+
+#define DEGREE 0.017453292519943295
+
+typedef struct sand {
+  int32_t dim, volumetric, spline;
+  double dilation; /* degrees */
+  bool cone;       /* Drucker-Prager's law in place of Mohr-Coulomb's */
+  bool layer;      /* elastic ground below */
+} sand;
+
+static mps_material *make_sand(mps_context *own, const sand *c) {
+  mps_material *out = NULL;
+  if (c->cone) {
+    mps_drucker_prager_def law = mps_drucker_prager_defaults();
+    law.young = 1e8, law.friction = 30.0 * DEGREE, law.dilation = c->dilation * DEGREE;
+    law.cohesion = 1e4;
+    mps_assert_ok(own, mps_material_drucker_prager(own, &law, &out));
+    return out;
+  }
+  mps_mohr_coulomb_def law = mps_mohr_coulomb_defaults();
+  law.young = 1e8, law.friction = 30.0 * DEGREE, law.dilation = c->dilation * DEGREE;
+  law.cohesion = 1e4;
+  mps_assert_ok(own, mps_material_mohr_coulomb(own, &law, &out));
+  return out;
+}
+
+/* A strip, in 3D a ball, is driven into the sand at 0.1 m/s. */
+static mpm_scene begin(mps_context *own, const sand *c, mps_body **strip) {
+  const double h = c->dim == 3 ? 0.1 : 0.05;
+  mpm_scene s = mpm_scene_begin_in(own, c->dim, 0.5 * h, 0.0, 0.0, 1e8);
+  const double lo[] = {0.0, 0.0, 0.0}, hi[] = {1.0, 0.5, 0.2};
+  mps_assert_ok(own, mps_particles_fill_box(s.particles, lo, hi, NULL));
+  mps_assert_ok(own, mps_particles_set(s.particles, "density", 0, 2000.0));
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = h, def.volumetric = c->volumetric, def.spline = c->spline, def.budget = 1;
+  def.geometry = c->dim == 3 ? MPS_MPM_SPACE : MPS_MPM_PLANE_STRAIN;
+  const double top[] = {1.0, 0.8, 0.2};
+  for (int a = 0; a < c->dim; a++) def.lower[a] = 0.0, def.upper[a] = top[a];
+  mps_material *law = make_sand(own, c), *at_first = c->layer ? s.material : law;
+  mps_assert_ok(own, mps_mpm_create(own, s.particles, at_first, &def, &s.mpm));
+  if (c->layer) { /* the sand lies on elastic ground */
+    int64_t ids[800], count = 0;
+    mps_view x = mpm_scene_view(&s, "position"), id = mpm_scene_view(&s, "id");
+    for (int64_t k = 0; k < x.shape[0] && count < 800; k++)
+      if (*mps_view_f64(&x, k, 1) > 0.25) ids[count++] = *mps_view_i64(&id, k, 0);
+    mps_assert_ok(own, mps_mpm_set_material(s.mpm, law, count, ids));
+  }
+  mps_material_destroy(&law);
+  mpm_scene_side(&s, MPS_MPM_SIDE_Y_LOWER, MPS_MPM_BOUNDARY_FIXED, 0.0);
+  mps_body_def body = mps_body_defaults();
+  body.position[1] = c->dim == 3 ? 0.65 : 0.55, body.position[2] = c->dim == 3 ? 0.1 : 0.0;
+  const double corners[] = {-0.15, -0.05, 0.15, -0.05, 0.15, 0.05, -0.15, 0.05};
+  if (c->dim == 3)
+    mps_assert_ok(own, mps_body_create_sphere(own, &body, 0.15, strip));
+  else
+    mps_assert_ok(own, mps_body_create_polygon(own, &body, 4, corners, strip));
+  const double t[] = {0.0, 1.0}, v[] = {-0.1, -0.1};
+  mps_signal *down = NULL;
+  mps_assert_ok(own, mps_signal_table(own, MPS_SIGNAL_VELOCITY, 2, t, v, &down));
+  mps_assert_ok(own, mps_body_drive(*strip, 1, down, 1.0));
+  mps_signal_destroy(&down);
+  mpm_scene_contact(&s, *strip, 0.5);
+  return s;
+}
+
+static void end(mpm_scene *s, mps_body **strip) {
+  mpm_scene_end(s);
+  mps_body_destroy(strip);
+}
+
+/* The kinetic energy and the force at a path of 6 mm. */
+static void press(const sand *c, double *kinetic, double *force) {
+  mps_body *strip = NULL;
+  mpm_scene s = begin(context, c, &strip);
+  mps_reaction r;
+  mps_mpm_losses l;
+  mps_assert_ok(context, mps_mpm_run(s.mpm, 0.06, 1, NULL, NULL));
+  mps_assert_ok(context, mps_body_get_reaction(strip, -1, &r));
+  mps_assert_ok(context, mps_mpm_get_losses(s.mpm, &l));
+  const mps_totals t = mpm_scene_totals(&s);
+  *kinetic = t.kinetic, *force = r.force[1];
+  print_message("%dD psi %g, cone %d, volumetric %d, spline %d: %.4g J, %.4g N; V %.6g; residual "
+                "%.2g J of %.4g\n",
+                c->dim, c->dilation, c->cone, c->volumetric, c->spline, t.kinetic, r.force[1],
+                t.volume, l.residual, t.work_bodies);
+  assert_true(fabs(l.residual) < 1e-11 * (fabs(t.work_bodies) + fabs(t.strain)));
+  end(&s, &strip);
+}
+
+static void dilatant_sand_stays_bounded(void **state) {
+  (void)state;
+  static const double dilations[] = {0.0, 10.0, 30.0};
+  for (int32_t law = 0; law < 3; law++) /* the third: Mohr-Coulomb with cubic splines */
+    for (int k = 0; k < 3; k++) {
+      sand c = {2, MPS_MPM_VOLUMETRIC_POINT, law == 2 ? 3 : 2, dilations[k], law == 1, false};
+      double kinetic[3], force[3];
+      for (; c.volumetric <= MPS_MPM_VOLUMETRIC_NODES; c.volumetric++)
+        press(&c, &kinetic[c.volumetric], &force[c.volumetric]);
+      assert_true(kinetic[1] < 10.0 * kinetic[0] && force[1] > 0.5 * force[0]);
+      assert_true(kinetic[2] < 1.2 * kinetic[0]);
+      assert_true(force[2] > 0.85 * force[0] && force[2] < 1.1 * force[0]);
+    }
+}
+
+static void dilatant_sand_stays_bounded_in_space(void **state) {
+  (void)state;
+  sand c = {3, MPS_MPM_VOLUMETRIC_POINT, 2, 30.0, false, false};
+  double kinetic[2], force[2];
+  press(&c, &kinetic[0], &force[0]);
+  c.volumetric = MPS_MPM_VOLUMETRIC_NODES;
+  press(&c, &kinetic[1], &force[1]);
+  assert_true(kinetic[1] < 1.2 * kinetic[0]);
+  assert_true(force[1] > 0.85 * force[0] && force[1] < 1.1 * force[0]);
+}
+
+static void same_field(mpm_scene *a, mpm_scene *b, const char *name) {
+  mps_view va = mpm_scene_view(a, name), vb = mpm_scene_view(b, name);
+  assert_int_equal(va.shape[0], vb.shape[0]);
+  for (int64_t k = 0; k < va.shape[0]; k++)
+    for (int64_t c = 0; c < va.shape[1]; c++)
+      assert_memory_equal(mps_view_f64(&va, k, c), mps_view_f64(&vb, k, c), 8);
+}
+
+/* The bits are those of one thread, and of a run that was taken back between two smoothings. */
+static void threads_and_restarts_change_nothing(void **state) {
+  (void)state;
+  static const char *const fields[] = {"position", "velocity", "stress",
+                                       "volume",   "opening",  "plastic_strain"};
+  for (int layer = 0; layer < 2; layer++) {
+    const sand c = {2, MPS_MPM_VOLUMETRIC_NODES, 2, 10.0, false, layer == 1};
+    mps_body *strip[2] = {NULL, NULL};
+    mps_context *other = test_context(MPS_EXECUTOR_THREADS, 3);
+    mpm_scene one = begin(context, &c, &strip[0]), three = begin(other, &c, &strip[1]);
+    mps_snapshot *snapshot = NULL;
+    mps_assert_ok(context, mps_mpm_step(one.mpm, 93));
+    mps_assert_ok(other, mps_mpm_step(three.mpm, 43)); /* 43 = 5 x 8 + 3 */
+    mps_assert_ok(other, mps_mpm_snapshot(three.mpm, &snapshot));
+    mps_assert_ok(other, mps_mpm_step(three.mpm, 30));
+    mps_assert_ok(other, mps_mpm_rollback(three.mpm, snapshot));
+    mps_assert_ok(other, mps_mpm_step(three.mpm, 50));
+    for (int f = 0; f < 6; f++) same_field(&one, &three, fields[f]);
+    mps_snapshot_destroy(&snapshot);
+    end(&one, &strip[0]);
+    end(&three, &strip[1]);
+    mps_context_destroy(&other);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(dilatant_sand_stays_bounded),
+                                     cmocka_unit_test(dilatant_sand_stays_bounded_in_space),
+                                     cmocka_unit_test(threads_and_restarts_change_nothing)};
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
