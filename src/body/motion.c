@@ -209,6 +209,16 @@ void mpsi_body_advance(mps_body *body, double dt) {
     spin_in_space(body, &contact, dt);
 }
 
+/* Squares of more overflow in energies. */
+static bool is_sane(const mpsi_pose *pose) {
+  bool sane = true;
+  for (int c = 0; c < 3; c++)
+    sane = sane && fabs(pose->x[c]) <= 1e100 && fabs(pose->v[c]) <= 1e100 &&
+           fabs(pose->spin[c]) <= 1e100;
+  for (int k = 0; k < 9; k++) sane = sane && isfinite(pose->R[k]);
+  return sane;
+}
+
 mps_status mps_body_advance(mps_body *body, double dt) {
   if (!body) return MPS_ERROR_ARGUMENT;
   if (!isfinite(dt) || dt <= 0.0)
@@ -219,8 +229,16 @@ mps_status mps_body_advance(mps_body *body, double dt) {
                      "a solver moves this body: end that contact first, make it with mover 1 "
                      "(other), or let the body no longer float");
   const mps_status status = mpsi_body_look_ahead(body, __func__, -1, dt);
-  if (status == MPS_OK) mpsi_body_advance(body, dt);
-  return status;
+  if (status != MPS_OK) return status;
+  const mps_body before = *body;
+  mpsi_body_advance(body, dt);
+  if (is_sane(&body->pose)) return MPS_OK;
+  const double speed = body->pose.v[0];
+  *body = before;
+  return mpsi_fail(body->context, __func__, MPS_ERROR_DIVERGED,
+                   "after dt = %g s the body would be beyond 1e100 m, m/s or rad/s (velocity along "
+                   "x %g m/s): it stays where it was",
+                   dt, speed);
 }
 
 mps_status mps_body_drive(mps_body *body, int32_t component, mps_signal *signal, double factor) {

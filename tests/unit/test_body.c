@@ -98,6 +98,15 @@ static void refuses_bad_calls(void **state) {
   const double force[] = {1.0, 2.0, 0.0}, bad[] = {0.0, INFINITY};
   double d;
   mps_assert_fails(context, mps_body_advance(body, 0.0), MPS_ERROR_ARGUMENT, "dt is 0 s");
+  mps_body_motion away = mps_body_motion_defaults();
+  away.velocity[0] = 1.0;
+  mps_assert_ok(context, mps_body_set_motion(body, &away));
+  mps_assert_fails(context, mps_body_advance(body, 1e300), MPS_ERROR_DIVERGED,
+                   "stays where it was");
+  mps_assert_ok(context, mps_body_get_state(body, &s));
+  mps_assert_near(s.time, 0.0, 0.0);
+  mps_assert_near(s.position[0], 0.0, 0.0);
+  mps_assert_ok(context, mps_body_set_motion(body, NULL));
   mps_assert_fails(context, mps_body_drive(body, 2, NULL, 1.0), MPS_ERROR_ARGUMENT,
                    "component is 2");
   mps_assert_fails(context, mps_body_drive(body, 0, NULL, NAN), MPS_ERROR_ARGUMENT,
