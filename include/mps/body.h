@@ -175,7 +175,8 @@ MPS_API MPS_NODISCARD mps_status mps_body_load(mps_body *body, const double *for
                                                const double *moment);
 /** Moves the body on by dt (s, > 0): a prescribed one to where its signals are, a free one under
  *  gravity, load, damping and the impulses that solvers have given to it since it last moved
- *  (velocity first, then position). A body that a solver moves is MPS_ERROR_STATE. */
+ *  (velocity first, then position). A body that a solver moves is MPS_ERROR_STATE; one that would
+ *  go beyond 1e100 m or m/s stays: MPS_ERROR_DIVERGED. */
 MPS_API MPS_NODISCARD mps_status mps_body_advance(mps_body *body, double dt);
 
 typedef struct mps_body_state {

@@ -70,6 +70,7 @@ typedef struct api_object {
   int context;     /* slot of the context that it was made from; -1: that has been destroyed */
   uint64_t serial; /* of all objects ever made; the latest has the highest */
   uint64_t owner;  /* of a contact or snapshot: the solver's serial */
+  bool loose;      /* a solver whose energies need not add up (calls_solver.h) */
   int part_count;
   api_part parts[API_PARTS];
   mps_edit edits[API_EDITS]; /* of a set; data NULL: none */

@@ -14,6 +14,13 @@ static double step_of(const mps_dynamics *dynamics) {
   return mps_dynamics_limit(dynamics);
 }
 
+/* Where dt is not yet chosen, totals would choose it. */
+static bool has_step(const mps_dynamics *dynamics) {
+  mps_dynamics_def def;
+  return mps_dynamics_get_def(dynamics, &def) == MPS_OK && def.dt > 0.0;
+}
+
+#define SOLVER_COUNTS(s) has_step(s)
 #define SOLVER_DT(s) step_of(s)
 API_SOLVER(dynamics, API_DYNAMICS)
 API_INIT(dynamics_def)

@@ -6,6 +6,7 @@
 #include <mps/experimental.h>
 #include <mps/mps.h>
 
+#define SOLVER_COUNTS(s) true
 #define SOLVER_DT(s) mps_elastic_dt(s)
 API_SOLVER(elastic, API_ELASTIC)
 API_INIT(elastic_def)
@@ -62,13 +63,17 @@ static void experimental_published(api *a) {
 
 static void elastic_update_material(api *a) {
   api_begin(a, "mps_elastic_update_material");
-  (void)api_end(a, mps_elastic_update_material(api_any(a, API_ELASTIC)->handle));
+  api_object *o = api_any(a, API_ELASTIC);
+  o->loose = true;
+  (void)api_end(a, mps_elastic_update_material(o->handle));
 }
 
 static void elastic_set_material(api *a) {
   api_begin(a, "mps_elastic_set_material");
   int64_t ids[8] = {0};
-  mps_elastic *e = api_any(a, API_ELASTIC)->handle;
+  api_object *o = api_any(a, API_ELASTIC);
+  mps_elastic *e = o->handle;
+  o->loose = o->loose || !a->latest;
   mps_material *material = api_any(a, API_MATERIAL)->handle;
   const int64_t count = api_chance(a, 60) ? api_ids(a, mps_elastic_particles(e), 8, ids) : 0;
   (void)api_end(a, mps_elastic_set_material(e, material, count, count ? ids : NULL));
@@ -130,7 +135,9 @@ static void elastic_add_boundary(api *a) {
   int64_t ids[MOST];
   double values[3 * MOST];
   int32_t number = -1;
-  mps_elastic *e = api_any(a, API_ELASTIC)->handle;
+  api_object *o = api_any(a, API_ELASTIC);
+  mps_elastic *e = o->handle;
+  o->loose = o->loose || !a->latest;
   draw_boundary(a, e, &def, ids, values);
   api_arm(a);
   (void)api_end(a, mps_elastic_add_boundary(e, api_null(a, "def") ? NULL : &def,
@@ -142,7 +149,9 @@ static void elastic_set_boundary(api *a) {
   mps_elastic_boundary_def def;
   int64_t ids[MOST];
   double values[3 * MOST];
-  mps_elastic *e = api_any(a, API_ELASTIC)->handle;
+  api_object *o = api_any(a, API_ELASTIC);
+  mps_elastic *e = o->handle;
+  o->loose = o->loose || !a->latest;
   const int32_t number = (int32_t)api_least(a, "number", 0, 2);
   draw_boundary(a, e, &def, ids, values);
   api_arm(a);

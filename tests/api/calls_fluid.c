@@ -6,6 +6,7 @@
 #include <mps/fluid_solver.h>
 #include <mps/mps.h>
 
+#define SOLVER_COUNTS(s) true
 #define SOLVER_DT(s) mps_fluid_dt(s)
 API_SOLVER(fluid, API_FLUID)
 API_INIT(fluid_def)

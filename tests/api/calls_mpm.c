@@ -5,6 +5,7 @@
 #include <mps/experimental.h>
 #include <mps/mps.h>
 
+#define SOLVER_COUNTS(s) true
 #define SOLVER_DT(s) mps_mpm_dt(s)
 API_SOLVER(mpm, API_MPM)
 API_INIT(mpm_def)
@@ -104,8 +105,10 @@ static void mpm_add_boundary(api *a) {
   mps_mpm_boundary_def def;
   int64_t ids[8];
   int32_t number = -1;
-  mps_mpm *mpm = api_any(a, API_MPM)->handle;
+  api_object *o = api_any(a, API_MPM);
+  mps_mpm *mpm = o->handle;
   draw_boundary(a, mpm, &def, ids, false);
+  o->loose = o->loose || def.ids;
   api_arm(a);
   (void)api_end(a, mps_mpm_add_boundary(mpm, api_null(a, "def") ? NULL : &def,
                                         api_chance(a, 80) ? &number : NULL));
@@ -115,9 +118,11 @@ static void mpm_set_boundary(api *a) {
   api_begin(a, "mps_mpm_set_boundary");
   mps_mpm_boundary_def def;
   int64_t ids[8];
-  mps_mpm *mpm = api_any(a, API_MPM)->handle;
+  api_object *o = api_any(a, API_MPM);
+  mps_mpm *mpm = o->handle;
   const int32_t number = (int32_t)api_least(a, "number", 0, 8);
   draw_boundary(a, mpm, &def, ids, number < 6);
+  o->loose = o->loose || def.ids;
   api_arm(a);
   (void)api_end(a, mps_mpm_set_boundary(mpm, number, api_null(a, "def") ? NULL : &def));
 }
@@ -324,19 +329,25 @@ static void grid_evaluate(api *a) {
 
 static void experimental_transfer(api *a) {
   api_begin(a, "mps_experimental_mpm_transfer");
-  mps_mpm *mpm = api_any(a, API_MPM)->handle;
+  api_object *o = api_any(a, API_MPM);
+  mps_mpm *mpm = o->handle;
+  o->loose = true;
   (void)api_end(a, mps_experimental_mpm_transfer(mpm, api_choice(a, "transfer", 2)));
 }
 
 static void experimental_strain(api *a) {
   api_begin(a, "mps_experimental_mpm_strain");
-  mps_mpm *mpm = api_any(a, API_MPM)->handle;
+  api_object *o = api_any(a, API_MPM);
+  mps_mpm *mpm = o->handle;
+  o->loose = true;
   (void)api_end(a, mps_experimental_mpm_strain(mpm, api_choice(a, "strain", 2)));
 }
 
 static void experimental_standard(api *a) {
   api_begin(a, "mps_experimental_mpm_standard");
-  mps_mpm *mpm = api_any(a, API_MPM)->handle;
+  api_object *o = api_any(a, API_MPM);
+  mps_mpm *mpm = o->handle;
+  o->loose = true;
   (void)api_end(a, mps_experimental_mpm_standard(mpm, api_real(a, "flip", 0.0, 1.0, 0.9)));
 }
 

@@ -58,6 +58,29 @@ void api_damage(api *a, const char *path) {
   free(bytes);
 }
 
+void api_balance(api *a, const api_account *before, const api_account *after) {
+  const mps_totals *x = &before->totals, *y = &after->totals;
+  if (after->status != MPS_OK || after->count != before->count) return;
+  if (!(fabs(y->mass - x->mass) <= 1e-9 * fabs(x->mass)))
+    api_broken(a, "succeeds, and the mass is %.17g, not %.17g", y->mass, x->mass);
+  const double change[] = {y->kinetic - x->kinetic,
+                           y->strain - x->strain,
+                           y->dissipated - x->dissipated,
+                           x->work_loads - y->work_loads,
+                           x->work_boundaries - y->work_boundaries,
+                           x->work_bodies - y->work_bodies};
+  const double sizes[] = {y->kinetic,    y->strain,          y->dissipated,
+                          y->work_loads, y->work_boundaries, y->work_bodies};
+  double sum = 0.0, largest = 1e-12;
+  for (int k = 0; k < API_COUNT(change); k++) {
+    sum += change[k];
+    largest = fmax(largest, fmax(fabs(change[k]), fabs(sizes[k])));
+  }
+  if (!(largest < 1e15) || isnan(sum)) return; /* not counted, or beyond what has digits left */
+  if (!(fabs(sum) <= 1e-8 * largest))
+    api_broken(a, "succeeds, and the energies miss %g of %g J", sum, largest);
+}
+
 void api_read(api *a, api_kind kind, api_object *o, mps_particles *set, api_state *state) {
   api_object lent = {.handle = set, .context = -1};
   state->count[0] = api_look(a, kind, o, state->parts[0]);
