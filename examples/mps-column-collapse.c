@@ -316,8 +316,22 @@ static bool draw_columns(app *a, const simulation *sim) {
     width = fmax(width, 1.05 * c->front[c->rows - 1] / s->width);
     height = fmax(height, 1.1 * c->aspect);
   }
-  const int panel = 330, panel_height = (int)(panel * height / width), edge = 40;
-  const double x = FRAMES * (panel + edge) + 135.0, y = sim->count * (panel_height + 74.0);
+  const int panel = 330, panel_height = (int)(panel * height / width), edge = 62;
+  const double x = FRAMES * (panel + edge) + 135.0, y = sim->count * (panel_height + 100.0);
+  const double lower[2] = {0.0, 0.0}, upper[2] = {width * s->width, height * s->width};
+  const double spacing = s->h / sqrt((double)s->ppc);
+  area image[CASES_MAX][FRAMES];
+  double least, most = 0.0;
+  for (int k = 0; k < sim->count; k++) {
+    char name[64];
+    snprintf(name, sizeof name, "columns_%s.bin", sim->column[k].name);
+    if (!mpm_snapshots_image(a, s->out, name, FRAMES, sim->column[k].shot, spacing, lower, upper,
+                             image[k]))
+      return false;
+    double greatest;
+    area_range(FRAMES, image[k], 1.0, &least, &greatest);
+    most = fmax(most, greatest);
+  }
   output f;
   if (!plot_open(&f, a, s->out, "columns", (int)x, (int)y)) return false;
   output_text(&f,
@@ -325,12 +339,13 @@ static bool draw_columns(app *a, const simulation *sim) {
               "%.4f spacing screen %.4f, screen %.4f\n"
               "set xrange [0:%.6g]\nset yrange [0:%.6g]\nset size ratio -1\nunset grid\n"
               "set palette defined (0 '#f3e3bd', 0.4 '#c98f4a', 1 '#5b2c12')\n"
-              "set cbrange [0:2]\nset xtics 1\nset ytics %g\n"
+              "set xtics 1\nset ytics %g\n"
               "set colorbox user origin screen %.4f,0.2 size screen 0.012,0.6\n"
-              "set cblabel 'plastic strain'\n",
-              sim->count, FRAMES, edge / x, (x - 135.0) / x, 42.0 / y, 1.0 - 28.0 / y, edge / x,
-              74.0 / y, width, height, height > 1.2 ? 1.0 : 0.5, (x - 120.0) / x);
-  const double dot = 0.24 * panel * s->h / sqrt((double)s->ppc) / (width * s->width);
+              "set cblabel 'plastic strain (-)'\nset xlabel 'x/L_0' offset 0,0.6\n"
+              "set ylabel 'y/L_0' offset 1.6\n",
+              sim->count, FRAMES, edge / x, (x - 135.0) / x, 72.0 / y, 1.0 - 28.0 / y, edge / x,
+              100.0 / y, width, height, height > 1.2 ? 1.0 : 0.5, (x - 120.0) / x);
+  plot_colours(&f, 0.0, fmin(2.0, most), 0.0, most);
   for (int k = 0; k < sim->count; k++)
     for (int shot = 0; shot < FRAMES; shot++) {
       const column_case *c = &sim->column[k];
@@ -339,12 +354,12 @@ static bool draw_columns(app *a, const simulation *sim) {
         output_text(&f, "set multiplot next\n");
         continue;
       }
-      output_text(&f,
-                  "set title '%s%st = %.2f s' offset 0,-0.7\n"
-                  "plot 'particles_%s.csv' every ::1 using ($1==%d ? $3/%.9g : NaN):($4/%.9g):5 "
-                  "with points pointtype 7 pointsize %.3g linecolor palette notitle\n",
-                  sim->count > 1 ? c->name : "", sim->count > 1 ? ", " : "", c->shot[shot].time,
-                  c->name, shot, s->width, s->width, fmax(0.2, dot));
+      output_text(&f, "set title '%s%st = %.2f s' offset 0,-0.7\nplot ",
+                  sim->count > 1 ? c->name : "", sim->count > 1 ? ", " : "", c->shot[shot].time);
+      char name[64];
+      snprintf(name, sizeof name, "columns_%s.bin", c->name);
+      area_plot(&f, name, &image[k][shot], s->width, 1.0);
+      output_text(&f, "\n");
     }
   output_text(&f, "unset multiplot\n");
   return plot_close(&f, s->out, "columns");

@@ -250,32 +250,35 @@ static bool draw_water(app *a, const simulation *sim, double T) {
   const settings *s = &sim->s;
   const double width = s->rest ? 1.0 : s->tank, height = 1.2 * (s->impact ? 1.0 : (double)s->n2);
   const int across = s->rest ? FRAMES : 2, down = FRAMES / across, panel = s->rest ? 180 : 600;
-  const int panel_height = (int)(panel * height / width), edge = 45;
-  const double x = across * (panel + edge) + 135.0, y = down * (panel_height + 74.0);
+  const int panel_height = (int)(panel * height / width), edge = 65;
+  const double x = across * (panel + edge) + 135.0, y = down * (panel_height + 100.0);
+  const double lower[2] = {0.0, 0.0}, upper[2] = {width * s->base, height * s->base};
+  const double spacing = s->h / (s->method == METHOD_MPS ? 1.0 : sqrt((double)s->ppc));
+  area image[FRAMES];
+  double least, most;
+  if (!mpm_snapshots_image(a, s->out, "water.bin", FRAMES, sim->shot, spacing, lower, upper, image))
+    return false;
+  area_range(FRAMES, image, 1e-3, &least, &most);
   output f;
   if (!plot_open(&f, a, s->out, "water", (int)x, (int)y)) return false;
-  output_text(&f,
-              "set multiplot layout %d,%d columnsfirst margins screen %.4f, screen %.4f, screen "
-              "%.4f, screen %.4f spacing screen %.4f, screen %.4f\n"
-              "set xrange [0:%.6g]\nset yrange [0:%.6g]\nset size ratio -1\nunset grid\n"
-              "set palette defined (0 '#2c3e8f', 0.35 '#4aa3c7', 0.7 '#b7e0a5', 1 '#f4d03f')\n"
-              "set cbrange [0:%.4g]\nset xtics 1\nset ytics 1\n"
-              "set colorbox user origin screen %.4f,0.2 size screen 0.012,0.6\n"
-              "set cblabel 'pressure (kPa)'\n",
-              down, across, edge / x, (x - 135.0) / x, 42.0 / y, 1.0 - 28.0 / y, edge / x, 74.0 / y,
-              width, height, 0.9e-3 * DENSITY * G * column_height(s), (x - 120.0) / x);
+  output_text(
+      &f,
+      "set multiplot layout %d,%d columnsfirst margins screen %.4f, screen %.4f, screen "
+      "%.4f, screen %.4f spacing screen %.4f, screen %.4f\n"
+      "set xrange [0:%.6g]\nset yrange [0:%.6g]\nset size ratio -1\nunset grid\n"
+      "set palette defined (0 '#2c3e8f', 0.35 '#4aa3c7', 0.7 '#b7e0a5', 1 '#f4d03f')\n"
+      "set xtics 1\nset ytics 1\nset xlabel 'x/a' offset 0,0.6\nset ylabel 'y/a' offset 1.6\n"
+      "set colorbox user origin screen %.4f,0.2 size screen 0.012,0.6\n"
+      "set cblabel 'pressure (kPa)'\n",
+      down, across, edge / x, (x - 135.0) / x, 72.0 / y, 1.0 - 28.0 / y, edge / x, 100.0 / y, width,
+      height, (x - 120.0) / x);
+  plot_colours(&f, 0.0, 0.9e-3 * DENSITY * G * column_height(s), least, most);
   for (int k = 0; k < FRAMES; k++) {
     if (sim->shot[k].count == 0) continue; /* the run ended before */
-    output_text(&f,
-                "%sset title 'T = %.2f' offset 0,-0.7\n"
-                "plot 'particles.csv' every ::1 using ($1==%d ? $3/%.9g : NaN):($4/%.9g):($5*1e-3) "
-                "with points pointtype 7 pointsize %.3g linecolor palette notitle\n",
-                k == 0   ? "set label 1 'axes x/a, y/a' at graph 0.98,0.9 right\n"
-                : k == 1 ? "unset colorbox\nunset label 1\n"
-                         : "",
-                sim->shot[k].time * T, k, s->base, s->base,
-                0.24 * panel * s->h / (s->method == METHOD_MPS ? 1.0 : sqrt((double)s->ppc)) /
-                    (width * s->base));
+    output_text(&f, "%sset title 'T = %.2f' offset 0,-0.7\nplot ", k == 1 ? "unset colorbox\n" : "",
+                sim->shot[k].time * T);
+    area_plot(&f, "water.bin", &image[k], s->base, 1e-3);
+    output_text(&f, "\n");
   }
   output_text(&f, "unset multiplot\n");
   return plot_close(&f, s->out, "water");

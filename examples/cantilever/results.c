@@ -2,10 +2,12 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "results.h"
 
+#include "common/area.h"
 #include "common/frame.h"
 #include "common/plot.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 /* ---- tables ---------------------------------------------------------------------------------- */
 
@@ -113,18 +115,45 @@ static bool draw_stress(const model *m, const char *directory, const char *name,
   return plot_close(&f, directory, name);
 }
 
+/* shape.bin: von Mises' stress (Pa) of the body with its displacements times `scale`. */
+static bool image_shape(const model *m, const char *directory, double scale, area *image) {
+  const double spacing = m->problem->height / (double)m->ny;
+  double lower[2] = {INFINITY, INFINITY}, upper[2] = {-INFINITY, -INFINITY};
+  output f;
+  double *row = malloc((size_t)(m->nx * m->ny) * 3 * sizeof *row);
+  if (!row) return app_no_memory(m->a);
+  bool good = true;
+  for (int64_t k = 0; good && k < m->nx * m->ny; k++) {
+    elastic_point p;
+    good = model_get(m, k / m->ny, k % m->ny, &p);
+    for (int c = 0; good && c < 2; c++) {
+      row[3 * k + c] = p.x[c] + scale * p.u[c];
+      lower[c] = fmin(lower[c], row[3 * k + c] - spacing);
+      upper[c] = fmax(upper[c], row[3 * k + c] + spacing);
+    }
+    if (good) row[3 * k + 2] = p.mises;
+  }
+  good = good && output_open(&f, m->a, directory, "shape.bin");
+  if (good) area_write(&f, m->nx * m->ny, row, spacing, lower, upper, AREA_SIDE, image);
+  free(row);
+  return good && output_close(&f);
+}
+
 static bool draw_shape(const model *m, const char *directory) {
+  const double scale = 0.25 * m->problem->length / fabs(m->tip);
+  area image;
+  if (!image_shape(m, directory, scale, &image)) return false;
   output f;
   if (!plot_open(&f, m->a, directory, "shape", 1100, 520)) return false;
-  const double scale = 0.25 * m->problem->length / fabs(m->tip);
-  output_text(
-      &f,
-      "set title \"Displacements x %.3g, von Mises stress\"\nset size ratio -1\nunset grid\n"
-      "set xlabel 'x (m)'\nset ylabel 'y (m)'\nset cblabel 'Pa'\n"
-      "set palette defined (0 '#2c3e90', 0.5 '#e8e4d8', 1 '#b03020')\n"
-      "plot 'stress.csv' using ($1+%.9g*$10):($2+%.9g*$11):9 skip 1 with points pointtype "
-      "5 pointsize %.3g palette notitle\n",
-      scale, scale, scale, fmin(2.5, 55.0 / (double)m->nx));
+  output_text(&f,
+              "set title \"Displacements times %.3g\"\nset size ratio -1\nunset grid\n"
+              "set xlabel 'x (m)'\nset ylabel 'y (m)'\nset cblabel 'von Mises stress (Pa)'\n"
+              "set palette defined (0 '#2c3e90', 0.5 '#e8e4d8', 1 '#b03020')\n",
+              scale);
+  plot_colours(&f, 0.0, image.most, image.least, image.most);
+  output_text(&f, "plot ");
+  area_plot(&f, "shape.bin", &image, 1.0, 1.0);
+  output_text(&f, "\n");
   return plot_close(&f, directory, "shape");
 }
 

@@ -5,6 +5,7 @@
 #define EXAMPLES_MPM_HEAP_H
 
 #include "mpm_model.h"
+#include "area.h"
 #include "output.h"
 
 typedef struct mpm_heap {
@@ -39,5 +40,10 @@ void mpm_snapshot_free(mpm_snapshot *shot);
 /* DIR/NAME: a line frame,t_s,x_m,y_m,VALUE for each particle of each shot. */
 bool mpm_snapshots_write(app *a, const char *directory, const char *name, const char *value,
                          int count, const mpm_snapshot *shots);
+
+/* DIR/NAME: the area of the particles of each shot between `lower` and `upper` (m). */
+bool mpm_snapshots_image(app *a, const char *directory, const char *name, int count,
+                         const mpm_snapshot *shots, double spacing, const double lower[2],
+                         const double upper[2], area *images);
 
 #endif

@@ -3,6 +3,7 @@
 #include "plot.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -46,6 +47,31 @@ bool plot_open_animation(output *script, app *a, const char *directory, const ch
            "gif animate delay %d loop 0 optimize size %d,%d enhanced font 'DejaVu Sans,11'",
            hundredths > 2 ? hundredths : 2, width, height);
   return open_script(script, a, directory, name, "gif", terminal);
+}
+
+/* 1, 2 or 5 times a power of ten, at least `value`. */
+static double round_up(double value) {
+  const double power = pow(10.0, floor(log10(value))), lead = value / power;
+  return (lead > 5.0 ? 10.0 : lead > 2.0 ? 5.0 : lead > 1.0 ? 2.0 : 1.0) * power;
+}
+
+void plot_colours(output *script, double least, double most, double lowest, double highest) {
+  if (!(most > least && isfinite(most - least))) most = least + 1.0; /* one value everywhere */
+  const double step = round_up((most - least) / 6.0), slack = 1e-6 * step;
+  const int64_t first = (int64_t)floor((least + slack) / step);
+  const int64_t last = (int64_t)ceil((most - slack) / step);
+  output_text(script, "set cbrange [%.9g:%.9g]\nset cbtics (", (double)first * step,
+              (double)last * step);
+  for (int64_t k = first; k <= last; k++) {
+    const bool below = k == first && lowest < (double)k * step - slack;
+    const bool above = k == last && highest > (double)k * step + slack;
+    output_text(script, "%s'%s%.6g' %.9g", k > first ? ", " : "",
+                below   ? "≤ "
+                : above ? "≥ "
+                        : "",
+                (double)k * step, (double)k * step);
+  }
+  output_text(script, ")\n");
 }
 
 /* ---- gnuplot --------------------------------------------------------------------------------- */

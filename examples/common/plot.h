@@ -14,7 +14,12 @@ bool plot_open(output *script, app *a, const char *directory, const char *name, 
  * to draw it later, which is no error. */
 bool plot_close(output *script, const char *directory, const char *name);
 
-/* The same for an animation NAME.gif: each plot of the script is a frame, shown for `step` s. */
+/* Colours from `least` to `most`, taken to round numbers; `lowest` and `highest` are those of what
+ * is shown. An end of the scale beyond which there are values says so. */
+void plot_colours(output *script, double least, double most, double lowest, double highest);
+
+/* The same as plot_open for an animation NAME.gif: each plot of the script is a frame, shown for
+ * `step` s. */
 bool plot_open_animation(output *script, app *a, const char *directory, const char *name, int width,
                          int height, double step);
 bool plot_close_animation(output *script, const char *directory, const char *name);

@@ -1,5 +1,6 @@
 /* results.c - exact capacity, tables and pictures of mps-footing.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "common/area.h"
 #include "common/plot.h"
 #include "footing.h"
 
@@ -148,23 +149,49 @@ static bool draw_pressure(app *a, const settings *s, const capacity *c) {
   return plot_close(&f, s->out, "pressure");
 }
 
+/* shear_bands.bin: the plastic strain. */
+static bool image_bands(app *a, const settings *s, const simulation *sim, const double *lower,
+                        const double *upper, area *image) {
+  mps_particles *set = sim->m.whole ? sim->m.whole : sim->m.particles;
+  mps_view x, strain;
+  output f;
+  if (!app_check(a, mps_particles_view(set, "position", &x)) ||
+      !app_check(a, mps_particles_view(set, "plastic_strain", &strain)))
+    return false;
+  double *row = malloc((size_t)(x.shape[0] + 1) * 3 * sizeof *row);
+  if (!row) return app_no_memory(a);
+  for (int64_t k = 0; k < x.shape[0]; k++) {
+    row[3 * k] = *mps_view_f64(&x, k, 0);
+    row[3 * k + 1] = *mps_view_f64(&x, k, 1);
+    row[3 * k + 2] = *mps_view_f64(&strain, k, 0);
+  }
+  const bool good = output_open(&f, a, s->out, "shear_bands.bin");
+  if (good)
+    area_write(&f, x.shape[0], row, mps_particles_spacing(set), lower, upper, AREA_SIDE, image);
+  free(row);
+  return good && output_close(&f);
+}
+
 /* The mechanism reaches farther in frictional ground. */
 static bool draw_bands(app *a, const settings *s, const simulation *sim) {
   const double wide = s->model == VON_MISES ? 5.0 : 9.0, top = s->depth + 0.3 * s->half_width;
+  const double lower[2] = {0.0, fmax(0.0, s->depth - 3.0 * s->half_width)};
+  const double upper[2] = {fmin(s->width, wide * s->half_width), top};
+  area image;
+  if (!image_bands(a, s, sim, lower, upper, &image)) return false;
   output f;
   if (!plot_open(&f, a, s->out, "shear_bands", 1100, s->model == VON_MISES ? 660 : 440))
     return false;
   output_text(&f,
-              "set title 'Plastic strain'\nset xlabel 'x (m)'\nset ylabel 'y (m)'\n"
+              "set title 'Plastic strain (-)'\nset xlabel 'x (m)'\nset ylabel 'y (m)'\n"
               "set size ratio -1\nset palette defined (0 '#f7fbff', 0.3 '#6baed6', 1 '#08306b')\n"
               "set xrange [0:%.9g]\nset yrange [%.9g:%.9g]\n"
-              "set object 1 rectangle from 0,%.9g to %.9g,%.9g fillcolor rgb '#888888' front\n"
-              "set cbrange [0:%.9g]\n"
-              "plot 'particles.csv' every ::1 using 1:2:3 with points pointtype 7 pointsize %.3g "
-              "linecolor palette notitle\n",
-              fmin(s->width, wide * s->half_width), fmax(0.0, s->depth - 3.0 * s->half_width), top,
-              s->depth - sim->path[sim->rows - 1], s->half_width, top, 0.5 * sim->strain + 1e-12,
-              60.0 / wide * s->h / s->half_width);
+              "set object 1 rectangle from 0,%.9g to %.9g,%.9g fillcolor rgb '#888888' front\n",
+              upper[0], lower[1], top, s->depth - sim->path[sim->rows - 1], s->half_width, top);
+  plot_colours(&f, 0.0, 0.5 * sim->strain, image.least, image.most);
+  output_text(&f, "plot ");
+  area_plot(&f, "shear_bands.bin", &image, 1.0, 1.0);
+  output_text(&f, "\n");
   return plot_close(&f, s->out, "shear_bands");
 }
 

@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "penetrometer.h"
 
+#include "common/area.h"
 #include "common/plot.h"
 
 #include <math.h>
@@ -91,6 +92,30 @@ static double tics_of(double length) {
   return ten * (lead < 2.0 ? 1.0 : lead < 5.0 ? 2.0 : 5.0);
 }
 
+/* displacement.bin (m) and plastic_strain.bin: the section of all runs. */
+static bool image_section(app *a, const penetrometer *p, bool strain, const double *lower,
+                          const double *upper, area *image) {
+  output f;
+  int64_t count = 0;
+  double spacing = 0.0;
+  for (int k = 0; k < p->runs; k++) {
+    count += p->run[k].points;
+    spacing = fmax(spacing, mps_particles_spacing(p->run[k].m.particles));
+  }
+  double *row = malloc((size_t)(count + 1) * 3 * sizeof *row), *end = row;
+  if (!row) return app_no_memory(a);
+  for (int k = 0; k < p->runs; k++)
+    for (int64_t i = 0; i < p->run[k].points; i++, end += 3) {
+      const pen_point *point = &p->run[k].point[i];
+      end[0] = point->x, end[1] = point->z, end[2] = strain ? point->strain : point->moved;
+    }
+  const bool good =
+      output_open(&f, a, p->s.out, strain ? "plastic_strain.bin" : "displacement.bin");
+  if (good) area_write(&f, count, row, spacing, lower, upper, AREA_SIDE, image);
+  free(row);
+  return good && output_close(&f);
+}
+
 static bool draw_section(app *a, const penetrometer *p) {
   const double R = pen_radius(p);
   const double side = fmin(p->run[0].size[0], fmax(3.0 * R, p->s.depth));
@@ -104,6 +129,10 @@ static bool draw_section(app *a, const penetrometer *p) {
   const double pixels = 600.0, scale = pixels / (top - bottom);
   const int panel = (int)(scale * (right - left)), width = 2 * (panel + 210), height = 800;
   const bool plastic = p->s.law != PEN_ELASTIC;
+  const double lower[2] = {left, bottom}, upper[2] = {right, top};
+  area image[2] = {{.offset = 0}};
+  for (int k = 0; k < (plastic ? 2 : 1); k++)
+    if (!image_section(a, p, k == 1, lower, upper, &image[k])) return false;
   output f;
   if (!plot_open(&f, a, p->s.out, "section", plastic ? width : width / 2, height)) return false;
   const double wide = plastic ? width : width / 2;
@@ -120,13 +149,13 @@ static bool draw_section(app *a, const penetrometer *p) {
     const double from = 90.0 + k * (panel + 210.0);
     output_text(&f,
                 "set lmargin at screen %.4g\nset rmargin at screen %.4g\nset title '%s'\n"
-                "set colorbox user origin screen %.4g, screen 0.3 size screen %.4g, screen 0.4\n"
-                "set cbrange [0:%.4g]\n"
-                "plot 'section.csv' every ::1 using 1:2:%d with points pointtype 5 pointsize %.3g "
-                "linecolor palette notitle\nset ylabel ''\n",
-                from / wide, (from + panel) / wide, k ? "Plastic strain" : "Displacement (m)",
-                (from + panel + 18.0) / wide, 16.0 / wide, most_of(&p->run[0], k), k + 3,
-                fmax(0.15, 0.085 * scale * p->s.h / 0.5 / cbrt((double)p->s.ppc)));
+                "set colorbox user origin screen %.4g, screen 0.3 size screen %.4g, screen 0.4\n",
+                from / wide, (from + panel) / wide, k ? "Plastic strain (-)" : "Displacement (m)",
+                (from + panel + 18.0) / wide, 16.0 / wide);
+    plot_colours(&f, 0.0, most_of(&p->run[0], k), image[k].least, image[k].most);
+    output_text(&f, "plot ");
+    area_plot(&f, k ? "plastic_strain.bin" : "displacement.bin", &image[k], 1.0, 1.0);
+    output_text(&f, "\nset ylabel ''\n");
   }
   output_text(&f, "unset multiplot\n");
   return plot_close(&f, p->s.out, "section");

@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "pile.h"
 
+#include "common/area.h"
 #include "common/plot.h"
 
 #include <math.h>
@@ -88,7 +89,7 @@ static const quantity mean_stress = {"mean_stress", "Mean pressure (kPa)", FIELD
                                      0.995};
 static const quantity deviatoric_stress = {"deviatoric_stress", "Deviatoric stress (kPa)",
                                            FIELD_DEVIATOR, 1e-3, 0.995};
-static const quantity shear_strain = {"shear_strain", "Plastic shear strain", FIELD_STRAIN, 1.0,
+static const quantity shear_strain = {"shear_strain", "Plastic shear strain (-)", FIELD_STRAIN, 1.0,
                                       0.97};
 
 /* The part of the section that is shown, m. */
@@ -97,54 +98,85 @@ static double section_bottom(const pile *p) {
   return -fmin(p->s.height, p->s.depth + 3.0 * p->s.inner_diameter);
 }
 
+/* What is drawn of a quantity: NAME.bin has the soil of all frames. */
+typedef struct section {
+  const quantity *q;
+  char file[40];
+  area *image;        /* of each frame */
+  double least, most; /* of the last one */
+} section;
+
+static bool image_sections(app *a, const pile *p, const quantity *q, section *x) {
+  const double lower[2] = {0.0, section_bottom(p)}, upper[2] = {p->s.width, section_top(p)};
+  output f;
+  *x = (section){.q = q, .image = calloc((size_t)p->frames_kept + 1, sizeof *x->image)};
+  snprintf(x->file, sizeof x->file, "%s.bin", q->name);
+  double *row = malloc((size_t)p->particles * 3 * sizeof *row);
+  if (!row || !x->image) {
+    free(row);
+    return app_no_memory(a);
+  }
+  const bool good = output_open(&f, a, p->s.out, x->file);
+  for (int64_t n = 0; good && n < p->frames_kept; n++) {
+    for (int64_t k = 0; k < p->particles; k++) {
+      const float *value = p->frame[n].value + k * FIELDS;
+      row[3 * k] = (double)value[FIELD_R];
+      row[3 * k + 1] = (double)value[FIELD_Z];
+      row[3 * k + 2] = (double)value[q->field];
+    }
+    area_write(&f, p->particles, row, mps_particles_spacing(p->m.particles), lower, upper,
+               AREA_SIDE, &x->image[n]);
+  }
+  free(row);
+  area_range(1, &x->image[p->frames_kept - 1], q->factor, &x->least, &x->most);
+  return good && output_close(&f);
+}
+
 /* `panel`: pixels across. */
-static void begin_sections(output *f, const pile *p, const quantity *q, int panel) {
+static void begin_sections(output *f, const pile *p, const section *x, int panel) {
+  const quantity *q = x->q;
   const pile_frame *last = &p->frame[p->frames_kept - 1];
   output_text(f,
               "set palette defined (0 '#e6ebf1', 0.15 '#c6dbef', 0.4 '#6baed6', 0.7 '#2171b5', 1 "
-              "'#08306b')\nset cbrange [0:%.4g]\nset size ratio -1\nset xtics %.9g\n"
+              "'#08306b')\nset size ratio -1\nset xtics %.9g\n"
               "set xlabel 'r (m)'\nset ylabel 'z (m)' offset 1.5\nset xrange [0:%.9g]\nset yrange "
               "[%.9g:%.9g]\n",
-              fabs(q->factor) * most_of(p, last, q->field, q->share),
               p->s.width / (panel < 200 ? 2.0 : 4.0), p->s.width, section_bottom(p),
               section_top(p));
+  plot_colours(f, 0.0, fabs(q->factor) * most_of(p, last, q->field, q->share), x->least, x->most);
 }
 
-/* Half a section with the wall, r to the right; squares a little larger than a spacing, on a panel
- * `pixels` high. */
-static void plot_section(output *f, const pile *p, const quantity *q, int64_t frame,
-                         double pixels) {
-  const double scale = pixels / (section_top(p) - section_bottom(p));
+/* Half a section with the wall, r to the right. */
+static void plot_section(output *f, const pile *p, const section *x, int64_t frame) {
   output_text(
       f,
       "set object 1 rectangle from %.9g,%.9g to %.9g,%.9g fillcolor rgb '#555555' fillstyle "
-      "solid noborder front\n"
-      "plot 'fields-%d.csv' every ::1 using 1:2:(%g*$%d) with points pointtype 5 pointsize "
-      "%.3g linecolor palette notitle\n",
-      p->inner, -p->frame[frame].depth, p->outer, section_top(p), (int)frame + 1,
-      q->factor < 0.0 ? -1.0 : 1.0, q->field + 1,
-      fmax(0.1, 0.24 * scale * mps_particles_spacing(p->m.particles)));
+      "solid noborder front\nplot ",
+      p->inner, -p->frame[frame].depth, p->outer, section_top(p));
+  area_plot(f, x->file, &x->image[frame], 1.0, x->q->factor);
+  output_text(f, "\n");
 }
 
-static bool draw_sections(app *a, const pile *p, const quantity *q) {
+static bool draw_sections(app *a, const pile *p, const section *x) {
+  const quantity *q = x->q;
   output f;
   const double high = section_top(p) - section_bottom(p), pixels = 700.0;
   const int count = (int)p->frames_kept, panel = (int)(pixels * p->s.width / high);
-  const int width = count * (panel + 70) + 170;
+  const int width = count * (panel + 70) + 200;
   if (!plot_open(&f, a, p->s.out, q->name, width, 850)) return false;
   output_text(&f,
               "set multiplot layout 1,%d title '%s' font ',18' margins screen %.4g, screen %.4g, "
               "screen 0.09, screen 0.87 spacing screen %.4g, screen 0\nunset colorbox\n",
-              count, q->title, 100.0 / width, 1.0 - 130.0 / width, 70.0 / width);
-  begin_sections(&f, p, q, panel);
+              count, q->title, 100.0 / width, 1.0 - 160.0 / width, 70.0 / width);
+  begin_sections(&f, p, x, panel);
   for (int k = 0; k < count; k++) {
     if (k == count - 1)
       output_text(
           &f, "set colorbox user origin screen %.4g, screen 0.15 size screen %.4g, screen 0.6\n",
-          1.0 - 100.0 / width, 22.0 / width);
+          1.0 - 130.0 / width, 22.0 / width);
     if (k == 1) output_text(&f, "set ylabel ''\n");
     output_text(&f, "set title 'tip at %.3f m'\n", p->frame[k].depth);
-    plot_section(&f, p, q, k, pixels);
+    plot_section(&f, p, x, k);
   }
   output_text(&f, "unset multiplot\n");
   return plot_close(&f, p->s.out, q->name);
@@ -152,7 +184,7 @@ static bool draw_sections(app *a, const pile *p, const quantity *q) {
 
 /* ---- all in one ------------------------------------------------------------------------------ */
 
-static bool draw_overview(app *a, const pile *p) {
+static bool draw_overview(app *a, const pile *p, const section *stress, const section *strain) {
   output f;
   const double high = section_top(p) - section_bottom(p), pixels = 0.63 * 760.0;
   const int panel = (int)(pixels * p->s.width / high), width = 1080 + 2 * (panel + 190);
@@ -168,7 +200,7 @@ static bool draw_overview(app *a, const pile *p) {
   plot_load(&f, p, width);
   place(&f, 600.0 / width, 1000.0 / width);
   plot_plug(&f);
-  static const quantity *const shown[2] = {&mean_stress, &shear_strain};
+  const section *const shown[2] = {stress, strain};
   for (int k = 0; k < 2; k++) {
     const double left = 1110.0 + k * (panel + 190.0);
     place(&f, left / width, (left + panel) / width);
@@ -176,9 +208,9 @@ static bool draw_overview(app *a, const pile *p) {
         &f,
         "set title '%s'\nset colorbox user origin screen %.4g, screen 0.3 size screen %.4g, "
         "screen 0.4\n",
-        shown[k]->title, (left + panel + 18.0) / width, 16.0 / width);
+        shown[k]->q->title, (left + panel + 18.0) / width, 16.0 / width);
     begin_sections(&f, p, shown[k], panel);
-    plot_section(&f, p, shown[k], p->frames_kept - 1, pixels);
+    plot_section(&f, p, shown[k], p->frames_kept - 1);
   }
   output_text(&f, "unset multiplot\n");
   return plot_close(&f, p->s.out, "pile");
@@ -186,6 +218,12 @@ static bool draw_overview(app *a, const pile *p) {
 
 bool pile_draw(app *a, const pile *p) {
   if (p->frames_kept == 0 || p->rows == 0) return true;
-  return draw_overview(a, p) && draw_sections(a, p, &mean_stress) &&
-         draw_sections(a, p, &deviatoric_stress) && draw_sections(a, p, &shear_strain);
+  static const quantity *const all[3] = {&mean_stress, &deviatoric_stress, &shear_strain};
+  section x[3] = {{.q = NULL}};
+  bool good = true;
+  for (int k = 0; k < 3; k++) good = good && image_sections(a, p, all[k], &x[k]);
+  good = good && draw_overview(a, p, &x[0], &x[2]);
+  for (int k = 0; k < 3; k++) good = good && draw_sections(a, p, &x[k]);
+  for (int k = 0; k < 3; k++) free(x[k].image);
+  return good;
 }

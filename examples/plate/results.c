@@ -2,10 +2,12 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "plate.h"
 
+#include "common/area.h"
 #include "common/frame.h"
 #include "common/plot.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 /* ---- tables ---------------------------------------------------------------------------------- */
 
@@ -106,19 +108,42 @@ static bool draw_line(const plate *p, const char *directory) {
   return plot_close(&f, directory, name);
 }
 
+/* stress.bin: the stress xx (Pa). */
+static bool image_stress(const plate *p, const char *directory, double edge, area *image) {
+  const double lower[2] = {0.0, 0.0}, upper[2] = {edge, edge};
+  const int64_t count = mps_particles_count(p->particles);
+  output f;
+  double *row = malloc((size_t)(count + 1) * 3 * sizeof *row);
+  if (!row) return app_no_memory(p->a);
+  bool good = true;
+  for (int64_t k = 0; good && k < count; k++) {
+    elastic_point at;
+    good = plate_get(p, k, &at);
+    if (good) row[3 * k] = at.x[0], row[3 * k + 1] = at.x[1], row[3 * k + 2] = at.stress[0];
+  }
+  good = good && output_open(&f, p->a, directory, "stress.bin");
+  if (good) area_write(&f, count, row, p->spacing, lower, upper, AREA_SIDE, image);
+  free(row);
+  return good && output_close(&f);
+}
+
 /* Around the hole; the plate in tension has one stress only. */
 static bool draw_map(const plate *p, const char *directory) {
   const double edge = fmin(3.0 * p->def->radius, p->def->side);
+  area image;
+  if (!image_stress(p, directory, edge, &image)) return false;
   output f;
   if (!plot_open(&f, p->a, directory, "stress", 800, 680)) return false;
   output_text(&f,
               "set title 'Stress {/Symbol s}_x'\nset size ratio -1\nunset grid\n"
-              "set xlabel 'x (m)'\nset ylabel 'y (m)'\nset cblabel 'Pa'\n"
+              "set xlabel 'x (m)'\nset ylabel 'y (m)'\nset cblabel '{/Symbol s}_x (Pa)'\n"
               "set palette defined (0 '#2c3e90', 0.33 '#e8e4d8', 1 '#b03020')\n"
-              "set xrange [0:%.9g]\nset yrange [0:%.9g]\nset cbrange [0:%.9g]\n"
-              "plot 'particles.csv' using 1:2:5 skip 1 with points pointtype 5 pointsize %.3g "
-              "palette notitle\n",
-              edge, edge, 3.0 * p->def->tension, 75.0 * p->spacing / edge);
+              "set xrange [0:%.9g]\nset yrange [0:%.9g]\n",
+              edge, edge);
+  plot_colours(&f, 0.0, 3.0 * p->def->tension, image.least, image.most);
+  output_text(&f, "plot ");
+  area_plot(&f, "stress.bin", &image, 1.0, 1.0);
+  output_text(&f, "\n");
   return plot_close(&f, directory, "stress");
 }
 

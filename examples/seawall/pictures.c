@@ -3,79 +3,133 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "seawall.h"
 
+#include "common/area.h"
 #include "common/plot.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 enum { PANELS = 6, ACROSS = 2, STILL_WIDTH = 860 };
 
-static double highest(const seawall_settings *s) {
-  return fmax(s->wall_height, 1.5 * s->depth) + 2.0 * s->spacing;
+/* The section that is shown, m: with the piston, the wall and the splash, up to three depths. */
+typedef struct view {
+  double lower[2], upper[2];
+  area *image;        /* of each frame, in frames.bin */
+  double least, most; /* kPa */
+} view;
+
+static void choose_section(const seawall *w, view *v) {
+  const seawall_settings *s = &w->s;
+  double top = fmax(s->wall_height, 1.5 * s->depth);
+  for (int64_t k = 0; k < w->frames; k++)
+    for (int64_t i = 0; i < w->frame[k].count; i++)
+      top = fmax(top, (double)w->frame[k].value[3 * i + 1]);
+  v->lower[0] = -1.2 * fabs(s->amplitude) - 4.0 * s->spacing;
+  v->lower[1] = -2.0 * s->spacing;
+  v->upper[0] = s->length + s->wall_thickness + 0.02;
+  v->upper[1] = fmin(top, 3.0 * s->depth) + 2.0 * s->spacing;
+}
+
+/* frames.bin: the pressure (Pa) in the area of the water, frame after frame. */
+static bool image_frames(app *a, const seawall *w, view *v) {
+  output f;
+  int64_t room = 1;
+  for (int64_t k = 0; k < w->frames; k++)
+    if (w->frame[k].count > room) room = w->frame[k].count;
+  double *row = malloc((size_t)room * 3 * sizeof *row);
+  v->image = calloc((size_t)w->frames + 1, sizeof *v->image);
+  if (!row || !v->image) {
+    free(row);
+    return app_no_memory(a);
+  }
+  bool good = output_open(&f, a, w->s.out, "frames.bin");
+  for (int64_t k = 0; good && k < w->frames; k++) {
+    for (int64_t i = 0; i < 3 * w->frame[k].count; i++) row[i] = (double)w->frame[k].value[i];
+    area_write(&f, w->frame[k].count, row, w->s.spacing, v->lower, v->upper, 700, &v->image[k]);
+  }
+  free(row);
+  area_range(w->frames, v->image, 1e-3, &v->least, &v->most);
+  return good && output_close(&f);
 }
 
 /* What every picture of the water shares: axes, colours, the wall's outline. */
-static void begin_water(output *f, const seawall_settings *s) {
-  const double left = -1.2 * fabs(s->amplitude) - 4.0 * s->spacing;
+static void begin_water(output *f, const seawall_settings *s, const view *v) {
+  const double left = v->lower[0];
   output_text(f,
               "set size ratio -1\nunset grid\nset ytics 0.1\nset xrange [%.6g:%.6g]\nset yrange "
               "[%.6g:%.6g]\n"
               "set palette defined (0 '#2c3e8f', 0.35 '#4aa3c7', 0.7 '#b7e0a5', 1 '#f4d03f')\n"
-              "set cbrange [0:%.6g]\nset cblabel 'pressure (kPa)'\n"
+              "set xlabel 'x (m)' offset 0,0.6\nset ylabel 'y (m)' offset 1.2\n"
+              "set cblabel 'pressure (kPa)'\n"
               "set object 1 rectangle from %.9g,0 to %.9g,%.9g fillcolor rgb '#8a8f98' fillstyle "
               "solid 1.0 noborder behind\n"
               "set object 2 rectangle from %.9g,%.9g to %.9g,0 fillcolor rgb '#8a8f98' fillstyle "
               "solid 1.0 noborder behind\n",
-              left, s->length + s->wall_thickness + 0.02, -2.0 * s->spacing, highest(s),
-              1.35e-3 * WAVES_DENSITY * WAVES_G * s->depth, s->length,
-              s->length + s->wall_thickness, s->wall_height, left, -2.0 * s->spacing,
-              s->length + s->wall_thickness);
+              left, v->upper[0], v->lower[1], v->upper[1], s->length, s->length + s->wall_thickness,
+              s->wall_height, left, -2.0 * s->spacing, s->length + s->wall_thickness);
+  plot_colours(f, 0.0, 1.35e-3 * WAVES_DENSITY * WAVES_G * s->depth, v->least, v->most);
 }
 
 /* Frame k; the piston is a bar behind its face. */
-static void plot_water(output *f, const seawall *w, int64_t k, double pixels) {
+static void plot_water(output *f, const seawall *w, const view *v, int64_t k, const char *note) {
   const seawall_settings *s = &w->s;
   const seawall_frame *frame = &w->frame[k];
-  int64_t skip = 0;
-  for (int64_t i = 0; i < k; i++) skip += 3 * w->frame[i].count * (int64_t)sizeof(float);
-  const double size = 0.2 * pixels * s->spacing / (s->length + s->wall_thickness);
   output_text(f,
               "set object 3 rectangle from %.9g,0 to %.9g,%.9g fillcolor rgb '#c0392b' fillstyle "
-              "solid 1.0 noborder behind\nset title 't = %.2f s' offset 0,-0.6\n"
-              "plot 'frames.bin' binary format='%%float%%float%%float' record=%lld skip=%lld using "
-              "1:2:($3*1e-3) with points pointtype 7 pointsize %.3g linecolor palette notitle\n",
-              frame->piston - 2.0 * s->spacing, frame->piston, s->wall_height, frame->t,
-              (long long)frame->count, (long long)skip, fmax(size, 0.1));
+              "solid 1.0 noborder behind\nset title 't = %.2f s%s' offset 0,-0.6\nplot ",
+              frame->piston - 2.0 * s->spacing, frame->piston, s->wall_height, frame->t, note);
+  area_plot(f, "frames.bin", &v->image[k], 1.0, 1e-3);
+  output_text(f, "\n");
 }
 
-/* Figures 9 and 10: the tank at rest, then the last waves. */
-static bool draw_waves(app *a, const seawall *w) {
-  const int down = PANELS / ACROSS, height = 70 + 245 * down;
+/* The frame that is nearest to the largest force on the wall after the start; -1 without one. */
+static int64_t crest_frame(const seawall *w) {
+  int64_t best = -1;
+  double most = -INFINITY, at = NAN;
+  for (int64_t k = 0; k < w->samples; k++)
+    if (w->sample[k].t > SEAWALL_IMPULSE && w->sample[k].force > most)
+      most = w->sample[k].force, at = w->sample[k].t;
+  for (int64_t k = 0; k < w->frames && !isnan(at); k++)
+    if (best < 0 || fabs(w->frame[k].t - at) < fabs(w->frame[best].t - at)) best = k;
+  return best;
+}
+
+/* Figures 9 and 10: the tank at rest, then the last waves; the crest at the wall in the place of
+ * the frame that is nearest to it. */
+static bool draw_waves(app *a, const seawall *w, const view *v) {
+  const double shape = (v->upper[1] - v->lower[1]) / (v->upper[0] - v->lower[0]);
+  const int down = PANELS / ACROSS, height = 110 + (int)(600.0 * shape + 95.0) * down;
+  const int64_t shown = w->frames < PANELS ? w->frames : PANELS, crest = crest_frame(w);
+  const double step = shown > 1 ? (double)(w->frames - 1) / (double)(shown - 1) : 1.0;
   output f;
   if (w->frames == 0) return true;
   if (!plot_open(&f, a, w->s.out, "waves", 1500, height)) return false;
   output_text(&f,
-              "set multiplot layout %d,%d columnsfirst margins screen 0.045, screen 0.9, screen "
-              "0.05, screen 0.96 spacing screen 0.04, screen 0.07\n",
-              down, ACROSS);
-  begin_water(&f, &w->s);
+              "set multiplot layout %d,%d columnsfirst margins screen 0.06, screen 0.895, screen "
+              "%.4f, screen %.4f spacing screen 0.065, screen %.4f\n",
+              down, ACROSS, 85.0 / height, 1.0 - 30.0 / height, 95.0 / height);
+  begin_water(&f, &w->s, v);
   output_text(&f, "set colorbox user origin screen 0.925,0.25 size screen 0.012,0.5\n");
-  for (int64_t p = 0; p < PANELS && p < w->frames; p++) {
-    const int64_t shown = w->frames < PANELS ? w->frames : PANELS;
-    plot_water(&f, w, shown > 1 ? p * (w->frames - 1) / (shown - 1) : 0, 640.0);
+  for (int64_t p = 0; p < shown; p++) {
+    const bool peak = p > 0 && crest >= 0 && llround((double)crest / step) == p;
+    plot_water(&f, w, v, peak ? crest : llround((double)p * step),
+               peak ? ", largest force on the wall" : "");
     if (p == 0) output_text(&f, "unset colorbox\n");
   }
   output_text(&f, "unset multiplot\n");
   return plot_close(&f, w->s.out, "waves");
 }
 
-static bool draw_animation(app *a, const seawall *w) {
+static bool draw_animation(app *a, const seawall *w, const view *v) {
   output f;
   if (w->frames < 3) return true;
   const double step = (w->frame[w->frames - 1].t - w->frame[0].t) / (double)(w->frames - 1);
-  if (!plot_open_animation(&f, a, w->s.out, "animation", STILL_WIDTH, 330, step)) return false;
-  begin_water(&f, &w->s);
-  output_text(&f, "set lmargin 6\nset rmargin 12\nset bmargin 2.5\nset tmargin 2\n");
-  for (int64_t k = 0; k < w->frames; k++) plot_water(&f, w, k, 640.0);
+  const double shape = (v->upper[1] - v->lower[1]) / (v->upper[0] - v->lower[0]);
+  const int height = (int)(700.0 * shape) + 110;
+  if (!plot_open_animation(&f, a, w->s.out, "animation", STILL_WIDTH, height, step)) return false;
+  begin_water(&f, &w->s, v);
+  output_text(&f, "set lmargin 8\nset rmargin 14\nset bmargin 3.2\nset tmargin 2\n");
+  for (int64_t k = 0; k < w->frames; k++) plot_water(&f, w, v, k, "");
   return plot_close_animation(&f, w->s.out, "animation");
 }
 
@@ -156,6 +210,10 @@ static bool draw_deflection(app *a, const seawall *w) {
 }
 
 bool seawall_draw(app *a, const seawall *w, double H) {
-  return draw_waves(a, w) && draw_force(a, w, H) && draw_pressure(a, w, H) &&
-         draw_deflection(a, w) && draw_animation(a, w);
+  view v = {.image = NULL};
+  choose_section(w, &v);
+  const bool good = image_frames(a, w, &v) && draw_waves(a, w, &v) && draw_force(a, w, H) &&
+                    draw_pressure(a, w, H) && draw_deflection(a, w) && draw_animation(a, w, &v);
+  free(v.image);
+  return good;
 }

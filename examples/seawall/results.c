@@ -74,18 +74,6 @@ static bool write_wall(app *a, const seawall *w) {
   return output_close(&f);
 }
 
-/* x, y (m) and pressure (Pa) of all particles, frame after frame, as 4 byte numbers: what the
- * pictures read. */
-static bool write_frames(app *a, const seawall *w) {
-  output f;
-  if (!output_open(&f, a, w->s.out, "frames.bin")) return false;
-  for (int64_t k = 0; k < w->frames; k++) {
-    const size_t values = 3 * (size_t)w->frame[k].count;
-    if (fwrite(w->frame[k].value, sizeof(float), values, f.stream) != values) break;
-  }
-  return output_close(&f);
-}
-
 /* ---- summary --------------------------------------------------------------------------------- */
 
 /* The largest force from one time (s) to another, less all that is faster than 10 Hz, and when. */
@@ -178,8 +166,7 @@ static bool close_series(app *a, seawall *w) {
 bool seawall_write(app *a, seawall *w) {
   const sainflou h = find_heights(w);
   if (!write_force(a, w) || !write_pressure(a, w, h.harmonic) || !write_wall(a, w) ||
-      !write_frames(a, w) || !close_series(a, w) || !write_summary(a, w, &h) ||
-      !seawall_draw(a, w, h.harmonic))
+      !close_series(a, w) || !write_summary(a, w, &h) || !seawall_draw(a, w, h.harmonic))
     return false;
   app_tell_results(a, w->s.out);
   return true;

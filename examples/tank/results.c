@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "tank.h"
 
+#include "common/area.h"
 #include "common/plot.h"
 #include "common/series.h"
 
@@ -232,6 +233,27 @@ static void draw_box(output *f, const tank_model *m) {
   output_text(f, " fillstyle solid 0.6 border linecolor rgb '#444444' fillcolor rgb '#c9b79c'\n");
 }
 
+/* water.bin: the pressure. */
+static bool image_water(app *a, const tank_model *m, const double *lower, const double *upper,
+                        area *image) {
+  mps_view x, p;
+  output f;
+  if (!app_check(a, mps_particles_view(m->water, "position", &x)) ||
+      !app_check(a, mps_particles_view(m->water, "pressure", &p)))
+    return false;
+  double *row = malloc((size_t)(x.shape[0] + 1) * 3 * sizeof *row);
+  if (!row) return app_no_memory(a);
+  for (int64_t i = 0; i < x.shape[0]; i++) {
+    row[3 * i] = *mps_view_f64(&x, i, 0);
+    row[3 * i + 1] = *mps_view_f64(&x, i, 1);
+    row[3 * i + 2] = *mps_view_f64(&p, i, 0);
+  }
+  const bool good = output_open(&f, a, m->s.out, "water.bin");
+  if (good) area_write(&f, x.shape[0], row, m->s.spacing, lower, upper, AREA_SIDE, image);
+  free(row);
+  return good && output_close(&f);
+}
+
 static bool draw_water(app *a, const tank_model *m) {
   const tank_settings *s = &m->s;
   const bool drop = s->kind == TANK_DROP;
@@ -243,6 +265,12 @@ static bool draw_water(app *a, const tank_model *m) {
   const double least = drop ? -2.5 * s->depth : -fabs(s->amplitude) - s->spacing;
   const int across = 1000, down = (int)fmin(fmax(820.0 * height / width, 160.0), 1000.0) + 130;
   const double last = m->samples ? m->sample[m->samples - 1].t : 0.0;
+  const double lower[2] = {least, drop ? least : -s->spacing};
+  const double upper[2] = {least + width, drop ? least + height : height};
+  area image;
+  if (!image_water(a, m, lower, upper, &image)) return false;
+  double lowest, highest;
+  area_range(1, &image, 1e-3, &lowest, &highest);
   output f;
   if (!plot_open(&f, a, s->out, "water", across, down)) return false;
   if (s->kind == TANK_FLOAT) draw_box(&f, m);
@@ -251,12 +279,12 @@ static bool draw_water(app *a, const tank_model *m) {
       "set title 'water at t = %.3f s, %lld particles'\nset size ratio -1\nunset grid\n"
       "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\nset xlabel 'x (m)'\nset ylabel 'y (m)'\n"
       "set cblabel 'pressure (kPa)'\n"
-      "set palette defined (0 '#2c3e8f', 0.35 '#4aa3c7', 0.7 '#b7e0a5', 1 '#f4d03f')\n"
-      "plot 'particles.csv' every ::1 using 1:2:($5*1e-3) with points pointtype 7 pointsize "
-      "%.3g linecolor palette notitle\n",
-      last, (long long)mps_particles_count(m->water), least, least + width,
-      drop ? least : -s->spacing, drop ? least + height : height,
-      fmin(fmax(120.0 * s->spacing / width, 0.15), 3.0));
+      "set palette defined (0 '#2c3e8f', 0.35 '#4aa3c7', 0.7 '#b7e0a5', 1 '#f4d03f')\n",
+      last, (long long)mps_particles_count(m->water), lower[0], upper[0], lower[1], upper[1]);
+  plot_colours(&f, lowest, highest, lowest, highest);
+  output_text(&f, "plot ");
+  area_plot(&f, "water.bin", &image, 1.0, 1e-3);
+  output_text(&f, "\n");
   return plot_close(&f, s->out, "water");
 }
 

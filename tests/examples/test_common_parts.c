@@ -2,11 +2,13 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_common.h"
 
+#include "common/area.h"
 #include "common/frame.h"
 #include "common/layers.h"
 #include "common/mpm_heap.h"
 #include "common/options.h"
 #include "common/output.h"
+#include "common/plot.h"
 #include "common/series.h"
 #include "common/units.h"
 
@@ -309,6 +311,84 @@ static void a_decay_is_that_of_the_energy(void **state) {
   mps_assert_near(series_mean(&force, 0.0, 3.0 * T), 441.0, 0.01);
 }
 
+/* The pixel of an image at x, y (m). */
+static double pixel_at(const area *image, const float *value, double x, double y) {
+  const int64_t i = (int64_t)((x - image->lower[0]) / image->pixel);
+  const int64_t j = (int64_t)((y - image->lower[1]) / image->pixel);
+  return (double)value[j * image->columns + i];
+}
+
+/* A lattice of 8 x 4 particles with a slit of two spacings in the middle, one particle above it,
+ * and one outside the picture: the slit is closed, outlines run half a spacing beyond the centres.
+ */
+static void particles_are_drawn_as_their_area(void **state) {
+  (void)state;
+  app a = {.program = "test"};
+  char directory[] = "/tmp/mps-area-XXXXXX", file[64];
+  assert_non_null(mkdtemp(directory));
+  const double lower[2] = {-1.0, -1.0}, upper[2] = {10.0, 10.0};
+  double row[34 * 3];
+  for (int k = 0; k < 32; k++) {
+    row[3 * k] = k % 8 + (k % 8 < 4 ? 0.5 : 1.5);
+    row[3 * k + 1] = k / 8 + 0.5;
+    row[3 * k + 2] = k % 8;
+  }
+  const double apart[6] = {5.0, 8.0, -3.0, 50.0, 8.0, 1e3};
+  memcpy(row + 96, apart, sizeof apart);
+  output f;
+  area image;
+  assert_true(output_open(&f, &a, directory, "image.bin"));
+  area_write(&f, 34, row, 1.0, lower, upper, 400, &image);
+  assert_true(output_close(&f));
+  mps_assert_near(image.least, -3.0, 0.0);
+  mps_assert_near(image.most, 7.0, 0.0);
+  assert_true(image.columns <= 400 && image.rows <= 400);
+  const size_t size = (size_t)(image.columns * image.rows);
+  float *value = malloc(size * sizeof *value);
+  snprintf(file, sizeof file, "%s/image.bin", directory);
+  FILE *stream = fopen(file, "rb");
+  assert_non_null(stream);
+  assert_int_equal(fread(value, sizeof *value, size, stream), size);
+  fclose(stream);
+  mps_assert_near(pixel_at(&image, value, 2.6, 1.4), 2.0, 0.0); /* the nearest particle */
+  mps_assert_near(pixel_at(&image, value, 4.3, 2.0), 3.0, 0.0); /* in the slit */
+  mps_assert_near(pixel_at(&image, value, 4.7, 2.0), 4.0, 0.0);
+  mps_assert_near(pixel_at(&image, value, 5.0, 8.2), -3.0, 0.0); /* alone */
+  for (int side = -1; side <= 1; side += 2) {                    /* half a spacing, to a pixel */
+    const double edge = side < 0 ? 0.0 : 9.0;
+    assert_false(isnan(pixel_at(&image, value, edge - side * 1.5 * image.pixel, 1.5)));
+    assert_true(isnan(pixel_at(&image, value, edge + side * 1.5 * image.pixel, 1.5)));
+  }
+  assert_true(isnan(pixel_at(&image, value, 5.0, 7.0)));
+  free(value);
+  unlink(file);
+  rmdir(directory);
+}
+
+/* Ends of a colour scale beyond which there are values are marked, the others are not. */
+static void colour_scales_mark_their_saturated_ends(void **state) {
+  (void)state;
+  static const struct {
+    double least, most, lowest, highest;
+    const char *text;
+  } row[] = {
+      {0.0, 1.9, 0.0, 2.5,
+       "set cbrange [0:2]\nset cbtics ('0' 0, '0.5' 0.5, '1' 1, '1.5' 1.5, '≥ 2' 2)\n"},
+      {-1.0, 2.0, -1.5, 2.0,
+       "set cbrange [-1:2]\nset cbtics ('≤ -1' -1, '-0.5' -0.5, '0' 0, '0.5' 0.5, "
+       "'1' 1, '1.5' 1.5, '2' 2)\n"},
+      {3.0, 3.0, 3.0, 3.0, "set cbrange [3:4]\n"},
+  };
+  for (size_t k = 0; k < sizeof row / sizeof *row; k++) {
+    char text[1024] = "";
+    output f = {.stream = fmemopen(text, sizeof text, "w")};
+    assert_non_null(f.stream);
+    plot_colours(&f, row[k].least, row[k].most, row[k].lowest, row[k].highest);
+    fclose(f.stream);
+    assert_memory_equal(text, row[k].text, strlen(row[k].text));
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(options_are_read_in_both_spellings),
@@ -321,6 +401,8 @@ int main(void) {
       cmocka_unit_test(travel_time_is_summed_over_layers),
       cmocka_unit_test(the_front_leaves_drops_behind),
       cmocka_unit_test(a_decay_is_that_of_the_energy),
+      cmocka_unit_test(particles_are_drawn_as_their_area),
+      cmocka_unit_test(colour_scales_mark_their_saturated_ends),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

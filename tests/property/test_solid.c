@@ -344,8 +344,10 @@ static void reactions_move_a_free_body(void **state) {
   mps_assert_ok(context, mps_body_load(body, force, moment));
   const mpsi_load load[2] = {{{0.5, 0.0, 4.0}, {0.0, 0.2, 0.0}}, {{0.0, -1.0, 0.0}, {0.3, 0, 0}}};
   const int64_t contacts[2] = {3, 4};
+  mpsi_body_source soil = {.moves = false};
+  mpsi_body_join(body, &soil);
   for (int step = 0; step < 2000; step++) {
-    mpsi_body_react(body, dt, load, contacts);
+    mpsi_body_react(body, &soil, dt, load, contacts);
     mps_assert_ok(context, mps_body_advance(body, dt));
   }
   const mps_body_state s = get_state(body);
@@ -360,6 +362,7 @@ static void reactions_move_a_free_body(void **state) {
                     2.0 * (force[c] + def.mass * def.gravity[c]) + r.impulse[c], 1e-10);
     mps_assert_near(L[c], 2.0 * moment[c] + r.moment_impulse[c], 1e-11);
   }
+  mpsi_body_leave(body, &soil);
   mps_body_destroy(&body);
 }
 

@@ -1,0 +1,122 @@
+/* area.c - see area.h. Discs of 1.5 spacings around the particles cover the slits of a stretched
+ * lattice; what lies within a spacing of uncovered pixels is taken off again (a closing by a disc),
+ * which leaves free surfaces where they are. SPDX-License-Identifier: BSD-3-Clause */
+#include "area.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+
+enum { PIXELS = 6 };             /* a spacing */
+static const double reach = 1.5; /* spacings */
+
+typedef struct canvas {
+  int64_t columns, rows;
+  double lower[2], pixel;
+  float *value;    /* NaN: nothing there */
+  float *distance; /* to the nearest particle, pixels^2 */
+} canvas;
+
+static int64_t column_of(const canvas *c, double x, int axis) {
+  const double k = floor((x - c->lower[axis]) / c->pixel);
+  return k < -1e6 ? -1000000 : k > 1e6 ? 1000000 : (int64_t)k;
+}
+
+/* Covers a disc of `radius` pixels with the particle's value where it is the nearest. */
+static void cover(canvas *c, const double *row, double radius) {
+  const double x = (row[0] - c->lower[0]) / c->pixel - 0.5;
+  const double y = (row[1] - c->lower[1]) / c->pixel - 0.5;
+  const int64_t i0 = column_of(c, row[0], 0), j0 = column_of(c, row[1], 1);
+  const int64_t n = (int64_t)ceil(radius) + 1;
+  for (int64_t j = j0 - n < 0 ? 0 : j0 - n; j <= j0 + n && j < c->rows; j++)
+    for (int64_t i = i0 - n < 0 ? 0 : i0 - n; i <= i0 + n && i < c->columns; i++) {
+      const double dx = (double)i - x, dy = (double)j - y, d = dx * dx + dy * dy;
+      const int64_t k = j * c->columns + i;
+      if (d > radius * radius || d >= (double)c->distance[k]) continue;
+      c->distance[k] = (float)d;
+      c->value[k] = (float)row[2];
+    }
+}
+
+/* Whether pixel k is uncovered and has a covered neighbour. */
+static bool on_edge(const canvas *c, int64_t i, int64_t j) {
+  const int64_t k = j * c->columns + i;
+  if (!isinf(c->distance[k])) return false;
+  return (i > 0 && !isinf(c->distance[k - 1])) ||
+         (i + 1 < c->columns && !isinf(c->distance[k + 1])) ||
+         (j > 0 && !isinf(c->distance[k - c->columns])) ||
+         (j + 1 < c->rows && !isinf(c->distance[k + c->columns]));
+}
+
+/* Takes off what is within `depth` pixels of the uncovered, but for the particles' own discs. */
+static void take_off(canvas *c, double depth, double own) {
+  const int64_t n = (int64_t)depth;
+  for (int64_t j = 0; j < c->rows; j++)
+    for (int64_t i = 0; i < c->columns; i++) {
+      if (!on_edge(c, i, j)) continue;
+      for (int64_t q = j - n < 0 ? 0 : j - n; q <= j + n && q < c->rows; q++)
+        for (int64_t p = i - n < 0 ? 0 : i - n; p <= i + n && p < c->columns; p++) {
+          const double d = (double)((p - i) * (p - i) + (q - j) * (q - j));
+          const int64_t k = q * c->columns + p;
+          if (d <= depth * depth && (double)c->distance[k] > own * own) c->value[k] = NAN;
+        }
+    }
+}
+
+static void take_range(const canvas *c, area *out) {
+  bool any = false;
+  for (int64_t k = 0; k < c->columns * c->rows; k++) {
+    const double v = (double)c->value[k];
+    if (isnan(v)) continue;
+    out->least = any ? fmin(out->least, v) : v;
+    out->most = any ? fmax(out->most, v) : v;
+    any = true;
+  }
+}
+
+void area_write(output *file, int64_t count, const double *row, double spacing,
+                const double lower[2], const double upper[2], int side, area *out) {
+  const double wide = upper[0] - lower[0], high = upper[1] - lower[1];
+  canvas c = {.lower = {lower[0], lower[1]},
+              .pixel = fmax(spacing / PIXELS, fmax(wide, high) / side)};
+  *out = (area){.lower = {lower[0], lower[1]}, .pixel = c.pixel};
+  if (file->stream == NULL || file->error != 0 || !(wide > 0.0 && high > 0.0)) return;
+  out->columns = c.columns = (int64_t)ceil(wide / c.pixel);
+  out->rows = c.rows = (int64_t)ceil(high / c.pixel);
+  const size_t size = (size_t)(c.columns * c.rows);
+  c.value = malloc(size * sizeof *c.value);
+  c.distance = malloc(size * sizeof *c.distance);
+  if (c.value && c.distance) {
+    for (size_t k = 0; k < size; k++) c.value[k] = NAN, c.distance[k] = INFINITY;
+    const double step = spacing / c.pixel; /* pixels */
+    for (int64_t k = 0; k < count; k++)
+      if (isfinite(row[3 * k + 2])) cover(&c, row + 3 * k, reach * step);
+    take_off(&c, (reach - 0.5) * step, 0.6 * step);
+    take_range(&c, out);
+    out->offset = ftell(file->stream);
+    if (fwrite(c.value, sizeof *c.value, size, file->stream) != size) file->error = errno;
+  } else {
+    file->error = ENOMEM;
+  }
+  free(c.value);
+  free(c.distance);
+}
+
+void area_plot(output *script, const char *name, const area *image, double length, double factor) {
+  const double step = image->pixel / length;
+  output_text(script,
+              "'%s' binary skip=%lld array=(%lld,%lld) format='%%float' origin=(%.9g,%.9g) "
+              "dx=%.9g dy=%.9g using ($1*%.9g) with image notitle",
+              name, (long long)image->offset, (long long)image->columns, (long long)image->rows,
+              image->lower[0] / length + 0.5 * step, image->lower[1] / length + 0.5 * step, step,
+              step, factor);
+}
+
+void area_range(int64_t count, const area *images, double factor, double *least, double *most) {
+  *least = *most = 0.0;
+  for (int64_t k = 0; k < count; k++) {
+    const double a = factor * images[k].least, b = factor * images[k].most;
+    *least = k ? fmin(*least, fmin(a, b)) : fmin(a, b);
+    *most = k ? fmax(*most, fmax(a, b)) : fmax(a, b);
+  }
+}
