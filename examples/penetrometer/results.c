@@ -14,7 +14,7 @@ double pen_hertz(const penetrometer *p, double depth) {
   return depth > 0.0 ? 4.0 / 3.0 * stiffness * sqrt(pen_radius(p)) * pow(depth, 1.5) : 0.0;
 }
 
-static double area(const penetrometer *p) { return PEN_PI * pen_radius(p) * pen_radius(p); }
+static double base_area(const penetrometer *p) { return PEN_PI * pen_radius(p) * pen_radius(p); }
 
 /* Means over the last part of the path (N); of Hertz' force too. */
 typedef struct mean {
@@ -44,7 +44,7 @@ static bool write_force(app *a, const penetrometer *p, const pen_run *r, const c
                  "q_kPa,q_over_c?");
   for (int64_t i = 0; i < r->rows; i++) {
     const pen_row *row = &r->row[i];
-    const double q = row->smooth[PEN_TIP] / area(p);
+    const double q = row->smooth[PEN_TIP] / base_area(p);
     const double ratio = p->s.cohesion > 0.0 ? q / p->s.cohesion : NAN;
     const double line[] = {row->depth,
                            row->force[PEN_TOTAL],
@@ -102,9 +102,9 @@ static bool write_summary(app *a, const penetrometer *p, const mean *m) {
   json_number(&f, "force_total", m[0].force[PEN_TOTAL]);
   json_number(&f, "force_tip", m[0].force[PEN_TIP]);
   json_number(&f, "force_shaft", m[0].force[PEN_SHAFT]);
-  json_number(&f, "q", m[0].force[PEN_TIP] / area(p));
+  json_number(&f, "q", m[0].force[PEN_TIP] / base_area(p));
   if (p->s.law == PEN_CLAY)
-    json_number(&f, "n_factor", m[0].force[PEN_TIP] / area(p) / p->s.cohesion);
+    json_number(&f, "n_factor", m[0].force[PEN_TIP] / base_area(p) / p->s.cohesion);
   if (p->s.law == PEN_ELASTIC && p->s.tip == PEN_SPHERE) {
     json_number(&f, "force_hertz", m[0].hertz);
     json_number(&f, "hertz_error", m[0].force[PEN_TOTAL] / m[0].hertz - 1.0);
@@ -126,7 +126,7 @@ static bool write_summary(app *a, const penetrometer *p, const mean *m) {
 /* ---- terminal -------------------------------------------------------------------------------- */
 
 static void tell_run(const penetrometer *p, const pen_run *r, const mean *m) {
-  const double q = m->force[PEN_TIP] / area(p);
+  const double q = m->force[PEN_TIP] / base_area(p);
   if (isfinite(m->force[PEN_TOTAL]))
     printf("%s: mean of the last fifth of %.4g m: %.5g N = tip %.5g + shaft %.5g N, q = %.4g kPa",
            r->geometry == MPS_MPM_SPACE ? "space" : "axisymmetric", pen_reached(r),
