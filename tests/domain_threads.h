@@ -17,6 +17,7 @@
 #define TEAM_STARS 256
 
 typedef struct team team;
+enum { MEET_RENDEZVOUS, MEET_MAX, MEET_SUM };
 
 /* One rank's end. */
 typedef struct team_member {
@@ -26,7 +27,10 @@ typedef struct team_member {
   int64_t turn;    /* meetings so far */
   int64_t calls;   /* of callbacks so far */
   int64_t deaf_at; /* the call from which on it takes no part, from 1; 0: never */
+  bool left;       /* takes part in nothing more but by what it has left behind */
+  double *last;    /* that */
   /* what the others may read in a meeting */
+  int32_t kind, count; /* of the reduction, MEET_... */
   int32_t messages;
   const mps_domain_message *message;
   const double *max;
@@ -43,6 +47,8 @@ struct team {
   pthread_cond_t change;
   int64_t turn;    /* meetings that have ended */
   int32_t arrived; /* at the present one */
+  int32_t left;    /* ranks that are always there: they have left */
+  bool mixed;      /* ranks were in different callbacks */
   bool lost;       /* a wait has ended by the limit */
   bool silent;     /* a rank takes no part any more: its memory must not be read */
   int32_t readers; /* ranks that read others' memory now */
@@ -72,6 +78,7 @@ static inline void team_begin(team *t, int32_t size) {
 }
 
 static inline void team_end(team *t) {
+  for (int32_t r = 0; r < t->size; r++) free(t->member[r].last);
   pthread_cond_destroy(&t->change);
   pthread_mutex_destroy(&t->lock);
 }
@@ -126,22 +133,44 @@ static inline mps_status team_leave(team *t) {
   return MPS_ERROR_IO;
 }
 
+/* With the lock held: one more is there; the last one opens the way. */
+static inline void team_arrive(team *t) {
+  if (++t->arrived == t->size) {
+    t->arrived = t->left;
+    t->turn++;
+  }
+  pthread_cond_broadcast(&t->change); /* also for those who wait for a star */
+}
+
 /* All ranks are here. */
 static inline mps_status team_meet(team_member *m) {
   team *t = m->team;
   const struct timespec until = team_limit(t);
   pthread_mutex_lock(&t->lock);
   const int64_t turn = ++m->turn;
-  if (++t->arrived == t->size) {
-    t->arrived = 0;
-    t->turn = turn;
-    pthread_cond_broadcast(&t->change);
-  }
+  team_arrive(t);
   while (t->turn < turn && team_wait(t, &until)) {
   }
   const bool good = t->turn >= turn;
   pthread_mutex_unlock(&t->lock);
   return good ? MPS_OK : MPS_ERROR_IO;
+}
+
+/* All ranks are here, in the same callback with as many numbers: they may be read. */
+static inline mps_status team_open(team_member *m, int32_t kind, int32_t count) {
+  team *t = m->team;
+  m->kind = kind, m->count = count;
+  if (team_meet(m) != MPS_OK || !team_read_begin(t)) return MPS_ERROR_IO;
+  bool same = true;
+  for (int32_t r = 0; r < t->size; r++)
+    same = same && t->member[r].kind == kind && t->member[r].count == count;
+  if (same) return MPS_OK;
+  team_read_end(t);
+  pthread_mutex_lock(&t->lock);
+  t->mixed = t->lost = true;
+  pthread_cond_broadcast(&t->change);
+  pthread_mutex_unlock(&t->lock);
+  return MPS_ERROR_IO;
 }
 
 static inline mps_status team_rendezvous(void *user, int32_t count,
@@ -152,7 +181,7 @@ static inline mps_status team_rendezvous(void *user, int32_t count,
   if (!team_listens(m)) return team_leave(m->team);
   m->message = message;
   m->messages = count;
-  if (team_meet(m) != MPS_OK || !team_read_begin(m->team)) return team_leave(m->team);
+  if (team_open(m, MEET_RENDEZVOUS, 0) != MPS_OK) return team_leave(m->team);
   for (int32_t r = 0; r < m->team->size; r++) {
     const team_member *from = &m->team->member[r];
     for (int32_t k = 0; k < from->messages; k++) {
@@ -172,7 +201,7 @@ static inline mps_status team_max(void *user, int32_t count, double *values) {
   team_member *m = user;
   if (!team_listens(m)) return team_leave(m->team);
   m->max = values;
-  if (team_meet(m) != MPS_OK || !team_read_begin(m->team)) return team_leave(m->team);
+  if (team_open(m, MEET_MAX, count) != MPS_OK) return team_leave(m->team);
   double *most = malloc((size_t)count * sizeof *most + 8);
   for (int32_t k = 0; k < count; k++) {
     most[k] = values[k];
@@ -196,11 +225,28 @@ static inline mps_status team_max_end(void *user) {
   return team_max(user, m->votes, m->vote);
 }
 
+/* What it gives is there for ever. */
+static inline mps_status team_max_leave(void *user, int32_t count, const double *values) {
+  team_member *m = user;
+  team *t = m->team;
+  if (!team_listens(m)) return team_leave(t);
+  pthread_mutex_lock(&t->lock);
+  m->last = malloc((size_t)count * sizeof *values + 8);
+  memcpy(m->last, values, (size_t)count * sizeof *values);
+  m->max = m->last, m->kind = MEET_MAX, m->count = count;
+  m->left = true;
+  t->left++;
+  m->turn = INT64_MAX;
+  team_arrive(t);
+  pthread_mutex_unlock(&t->lock);
+  return MPS_OK;
+}
+
 static inline mps_status team_sum(void *user, int32_t count, int64_t *values) {
   team_member *m = user;
   if (!team_listens(m)) return team_leave(m->team);
   m->sum = values;
-  if (team_meet(m) != MPS_OK || !team_read_begin(m->team)) return team_leave(m->team);
+  if (team_open(m, MEET_SUM, count) != MPS_OK) return team_leave(m->team);
   uint64_t *sum = calloc((size_t)count + 1, sizeof *sum);
   for (int32_t k = 0; k < count; k++)
     for (int32_t r = 0; r < m->team->size; r++) sum[k] += (uint64_t)m->team->member[r].sum[k];
@@ -254,7 +300,12 @@ static inline mps_status team_star_end(void *user, void *handle) {
   bool good = team_listens(m);
   pthread_mutex_lock(&t->lock);
   for (int32_t r = 0; good && r < t->size; r++)
-    while (good && !t->posted[star->number][r]) good = team_wait(t, &until);
+    while (good && !t->posted[star->number][r]) {
+      const bool elsewhere = t->member[r].turn > t->turn; /* it waits for this one too */
+      t->mixed = t->mixed || elsewhere;
+      t->lost = t->lost || elsewhere;
+      good = team_wait(t, &until);
+    }
   pthread_mutex_unlock(&t->lock);
   good = good && team_read_begin(t);
   for (int64_t k = 0; good && k < star->guests; k++)
@@ -293,6 +344,7 @@ static inline mps_domain_def team_domain_def(team *t, int32_t rank) {
   def.star_destroy = team_star_destroy;
   def.reduce_max = team_max;
   def.reduce_sum = team_sum;
+  def.max_leave = team_max_leave;
   if (t->size != 2) def.max_begin = team_max_begin, def.max_end = team_max_end;
   return def;
 }

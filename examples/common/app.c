@@ -65,6 +65,8 @@ static bool join(app *a, int64_t threads) {
   if (ok && !ranks_join(a->context, &a->domain, why, sizeof why)) ok = app_error(a, "%s", why);
   mps_domain_destroy(&first);
   mps_context_destroy(&early);
+  if (ok)
+    ok = app_agree(a, ranks_same_options(a->domain, why, sizeof why) || app_error(a, "%s", why));
   return ok;
 }
 

@@ -75,6 +75,61 @@ bool ranks_join(mps_context *context, mps_domain **out, char *why, size_t size) 
   return status == MPS_OK && mps_domain_size(*out) == ranks_launched();
 }
 
+/* ---- options --------------------------------------------------------------------------------- */
+
+enum { WORDS = 512, LINE = 65536 };
+
+/* The words of the command line but for the program's name and the number of threads. */
+static int command_words(char *line, const char **word) {
+  FILE *file = fopen("/proc/self/cmdline", "r");
+  const size_t size = file ? fread(line, 1, LINE - 1, file) : 0;
+  int count = 0;
+  bool skip = true; /* the program */
+  if (file) fclose(file);
+  line[size] = '\0';
+  for (const char *at = line; at < line + size && count < WORDS; at += strlen(at) + 1) {
+    const bool threads = strncmp(at, "--threads", 9) == 0;
+    if (!skip && !threads) word[count++] = at;
+    skip = threads && at[9] == '\0';
+  }
+  return count;
+}
+
+static double hash_of(const char *word) {
+  uint64_t hash = UINT64_C(0xcbf29ce484222325);
+  for (; *word; word++) hash = (hash ^ (unsigned char)*word) * UINT64_C(0x100000001b3);
+  return (double)(hash >> 12) + 1.0;
+}
+
+bool ranks_same_options(mps_domain *domain, char *why, size_t size) {
+  static char line[LINE];
+  static const char *word[WORDS];
+  static double own[WORDS], first[WORDS]; /* 0: no word */
+  const int count = command_words(line, word);
+  for (int k = 0; k < WORDS; k++) {
+    own[k] = k < count ? hash_of(word[k]) : 0.0;
+    first[k] = mps_domain_rank(domain) == 0 ? own[k] : 0.0;
+  }
+  if (mps_domain_max(domain, WORDS, first) != MPS_OK) {
+    snprintf(why, size, "the ranks cannot compare their options");
+    return false;
+  }
+  int k = 0;
+  while (k < WORDS && own[k] == first[k]) k++;
+  if (k == WORDS) return true;
+  if (k < count)
+    snprintf(why, size,
+             "word %d of the options is '%.200s', which is another for rank 0: all ranks must be "
+             "given the same options",
+             k + 1, word[k]);
+  else
+    snprintf(why, size,
+             "there are %d words of options, and more for rank 0: all ranks must be given the same "
+             "options",
+             count);
+  return false;
+}
+
 /* ---- equations ------------------------------------------------------------------------------- */
 
 typedef mps_status (*create_fn)(int32_t method, void **solver);

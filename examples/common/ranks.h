@@ -19,6 +19,9 @@ void ranks_hush(void);
 
 /* Makes the domain of all ranks in `context`. False: in `why` what is in the way. */
 bool ranks_join(mps_context *context, mps_domain **out, char *why, size_t size);
+/* Whether this rank was started with the options of rank 0, but for --threads; else what is not the
+ * same in `why`. Collective. */
+bool ranks_same_options(mps_domain *domain, char *why, size_t size);
 /* Has `elastic` solved by all ranks of its domain, by PETSc's multigrid; *solver is made at the
  * first call, and goes with ranks_drop_solver after all that it solves for. False as above.
  * Collective. */

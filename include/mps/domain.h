@@ -9,7 +9,9 @@
  * functions of a solver with a domain, but those that only ask for what needs no other rank (the
  * solver's header says which), and the functions of this header that say so. They return the same
  * status on all ranks: an error on one rank is an error on all, with the same message, which names
- * the rank. Results are the same bit for bit for every number of ranks and threads, and without a
+ * the rank. Ranks that call different functions get MPS_ERROR_STATE, which names both, and so do
+ * those that wait for a rank that has destroyed its domain; arguments that all ranks must give alike
+ * are compared before anything is done. Results are the same bit for bit for every number of ranks and threads, and without a
  * domain, as long as all processors run the same instruction level.
  *
  * Thread rule: a domain belongs to its context. SPDX-License-Identifier: BSD-3-Clause */
@@ -70,6 +72,11 @@ typedef struct mps_domain_def {
    *  (default): reduce_max takes the place of max_end. */
   mps_status (*max_begin)(void *user, int32_t count, double *values);
   mps_status (*max_end)(void *user);
+  /** This rank's part in one more reduction of the kind that max_begin begins (reduce_max where
+   *  that is NULL), without its result and without waiting: `values` are copied. Called before
+   *  `destroy` where the transport works, so that ranks that are in another call, or go into one,
+   *  get an error instead of waiting. NULL (default): they wait. */
+  mps_status (*max_leave)(void *user, int32_t count, const double *values);
 } mps_domain_def;
 
 MPS_API mps_status mps_domain_def_init(mps_domain_def *def, size_t size);

@@ -3,6 +3,7 @@
 #ifndef MPSI_BODY_H
 #define MPSI_BODY_H
 
+#include "core/given.h"
 #include "core/state.h"
 
 #include <mps/contact.h>
@@ -99,6 +100,12 @@ void mpsi_body_list_state(mpsi_state *state, mps_body *body);
 void mpsi_body_list_account(mpsi_state *state, mps_body *body);
 /* The reactions by one source. */
 void mpsi_body_list_source(mpsi_state *state, const mps_body *body, mpsi_body_source *source);
+
+/* Adds what the body is, and where; the latter alone. */
+void mpsi_body_give(mpsi_given *list, const mps_body *body);
+void mpsi_body_give_state(mpsi_given *list, const mps_body *body);
+/* Adds where the body's signals put it at the end of the step being made. */
+void mpsi_body_give_ahead(mpsi_given *list, const mps_body *body);
 
 /* Nearest surface point to x (dim values, finite). Reads only: any number of threads. */
 mpsi_foot mpsi_body_foot(const mps_body *body, const double *x);

@@ -1,8 +1,7 @@
-/* domain.c - the domain object: ranks that compute one model, errors that all share, reductions.
+/* domain.c - the domain object: ranks that compute one model, its transport, its reductions.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "domain_private.h"
 
-#include <stdio.h>
 #include <string.h>
 
 #define MOST_RANKS 1000000
@@ -42,6 +41,7 @@ mps_status mpsi_domain_max(mps_domain *domain, const char *function, int32_t cou
   if (!mpsi_domain_many(domain)) return MPS_OK;
   const mps_status status = mpsi_domain_alive(domain, function);
   if (status != MPS_OK) return status;
+  domain->calls++;
   return mpsi_domain_note(domain, function, "reduce_max",
                           domain->def.reduce_max(domain->def.user, count, values));
 }
@@ -51,6 +51,7 @@ mps_status mpsi_domain_sum(mps_domain *domain, const char *function, int32_t cou
   if (!mpsi_domain_many(domain)) return MPS_OK;
   const mps_status status = mpsi_domain_alive(domain, function);
   if (status != MPS_OK) return status;
+  domain->calls++;
   return mpsi_domain_note(domain, function, "reduce_sum",
                           domain->def.reduce_sum(domain->def.user, count, values));
 }
@@ -61,114 +62,7 @@ mps_status mpsi_domain_sum_exact(mps_domain *domain, const char *function, int32
   return mpsi_domain_sum(domain, function, count * MPSI_EXACT_LIMBS, &sums[0].limb[0]);
 }
 
-/* ---- errors that all share ------------------------------------------------------------------- */
-
-enum { RECORD = (sizeof(mps_error) + 7) / 8 };
-
-/* Every rank takes over the record of `winner`. */
-static mps_status share_record(mps_domain *domain, const char *function, int32_t winner,
-                               mps_status status) {
-  int64_t words[RECORD] = {0};
-  mps_error record;
-  mps_context *context = domain->context;
-  if (domain->def.rank == winner) {
-    const mps_error *own = mps_context_error(context);
-    memset(&record, 0, sizeof record);
-    if (own->status == status) {
-      record = *own;
-    } else {
-      record.step = record.particle = -1;
-      snprintf(record.message, sizeof record.message, "%s", mps_status_text(status));
-      snprintf(record.function, sizeof record.function, "%s", function);
-      snprintf(record.object, sizeof record.object, "domain");
-    }
-    if (own->status != status || mpsi_failures(context) != domain->settled) {
-      char text[sizeof record.message];
-      memcpy(text, record.message, sizeof text);
-      snprintf(record.message, sizeof record.message, "rank %d: %.490s", winner, text);
-    }
-    memcpy(words, &record, sizeof record);
-  }
-  const mps_status failed = mpsi_domain_sum(domain, function, RECORD, words);
-  if (failed != MPS_OK) return failed;
-  memcpy(&record, words, sizeof record);
-  (void)mpsi_fail(context, record.function, status, "%s", record.message);
-  mpsi_fail_where(context, record.step, record.particle);
-  mpsi_fail_object(context, "%s", record.object);
-  domain->settled = mpsi_failures(context);
-  return status;
-}
-
-/* What a rank tells of itself: its status, and values along with it. */
-static void write_vote(const mps_domain *domain, mps_status status, int32_t count,
-                       const double *values, double *all) {
-  const double ranks = (double)domain->def.size;
-  all[0] = status == MPS_OK ? 0.0 : (double)status * ranks + (ranks - 1.0 - domain->def.rank);
-  for (int32_t k = 0; k < count; k++) all[1 + k] = values[k];
-}
-
-/* What the ranks have told. */
-static mps_status read_vote(mps_domain *domain, const char *function, int32_t count, double *values,
-                            const double *all) {
-  for (int32_t k = 0; k < count; k++) values[k] = all[1 + k];
-  if (all[0] == 0.0) return MPS_OK;
-  const int64_t code = (int64_t)all[0], worst = code / domain->def.size;
-  return share_record(domain, function,
-                      (int32_t)(domain->def.size - 1 - (code - worst * domain->def.size)),
-                      (mps_status)worst);
-}
-
-mps_status mpsi_domain_settle_max(mps_domain *domain, const char *function, mps_status status,
-                                  int32_t count, double *values) {
-  double all[1 + MPSI_DOMAIN_ALONG];
-  if (!mpsi_domain_many(domain)) return status;
-  if (domain->lost != MPS_OK)
-    return status == domain->lost ? status : mpsi_domain_alive(domain, function);
-  write_vote(domain, status, count, values, all);
-  const mps_status lost = mpsi_domain_max(domain, function, 1 + count, all);
-  return lost == MPS_OK ? read_vote(domain, function, count, values, all) : lost;
-}
-
-mps_status mpsi_domain_vote_begin(mps_domain *domain, const char *function, mps_status status,
-                                  int32_t count, const double *values) {
-  if (!mpsi_domain_many(domain)) return status;
-  if (domain->lost != MPS_OK)
-    return status == domain->lost ? status : mpsi_domain_alive(domain, function);
-  write_vote(domain, status, count, values, domain->vote);
-  if (!domain->def.max_begin) return MPS_OK;
-  return mpsi_domain_note(domain, function, "max_begin",
-                          domain->def.max_begin(domain->def.user, 1 + count, domain->vote));
-}
-
-mps_status mpsi_domain_vote_end(mps_domain *domain, const char *function, int32_t count,
-                                double *values) {
-  if (!mpsi_domain_many(domain)) return MPS_OK;
-  mps_status status = mpsi_domain_alive(domain, function);
-  if (status == MPS_OK && domain->def.max_begin)
-    status = mpsi_domain_note(domain, function, "max_end", domain->def.max_end(domain->def.user));
-  else if (status == MPS_OK)
-    status = mpsi_domain_max(domain, function, 1 + count, domain->vote);
-  return status == MPS_OK ? read_vote(domain, function, count, values, domain->vote) : status;
-}
-
-mps_status mpsi_domain_settle(mps_domain *domain, const char *function, mps_status status) {
-  return mpsi_domain_settle_max(domain, function, status, 0, NULL);
-}
-
-mps_status mpsi_domain_settle_same(mps_domain *domain, const char *function, mps_status status,
-                                   const char *name, double value) {
-  const bool none = isnan(value); /* unset, which all may have */
-  double range[4] = {none ? -INFINITY : value, none ? -INFINITY : -value, none, !none};
-  if (!mpsi_domain_many(domain)) return status;
-  status = mpsi_domain_settle_max(domain, function, status, 4, range);
-  const bool same = range[2] != range[3] && (range[2] == 1.0 || range[0] == -range[1]);
-  if (status != MPS_OK || same) return status;
-  status = mpsi_fail(domain->context, function, MPS_ERROR_ARGUMENT,
-                     "%s is %.17g on rank %d and another value on others: all ranks must give the "
-                     "same",
-                     name, value, domain->def.rank);
-  return mpsi_domain_settle(domain, function, status);
-}
+/* ---- what a program calls -------------------------------------------------------------------- */
 
 mps_status mps_domain_agree(mps_domain *domain, mps_status status) {
   if (!domain) return MPS_ERROR_ARGUMENT;
@@ -220,6 +114,7 @@ mps_status mpsi_domain_post(mps_domain *domain, const char *function, int32_t co
   *box = (mpsi_mailbox){.context = domain->context};
   mps_status status = mpsi_domain_alive(domain, function);
   if (status != MPS_OK) return status;
+  domain->calls++;
   status = domain->def.rendezvous(domain->def.user, count, messages, make_room, box);
   if (status == MPS_ERROR_MEMORY) /* a message had no room: the others are well */
     return mpsi_fail(domain->context, function, MPS_ERROR_MEMORY,
@@ -299,11 +194,14 @@ mps_status mps_domain_create(mps_context *context, const mps_domain_def *user_de
   status = try_transport(domain);
   if (status != MPS_OK) {
     domain->def.destroy = NULL;
+    domain->def.max_leave = NULL; /* all ranks are here */
     mps_domain_destroy(&domain);
   }
   *out = domain;
   return status;
 }
+
+mps_context *mpsi_domain_context(const mps_domain *domain) { return domain->context; }
 
 mps_domain *mpsi_domain_retain(mps_domain *domain) {
   if (domain) domain->references++;
@@ -316,6 +214,7 @@ void mps_domain_destroy(mps_domain **pointer) {
   *pointer = NULL;
   if (--domain->references > 0) return;
   mps_context *context = domain->context;
+  mpsi_domain_leave(domain);
   if (domain->def.destroy) domain->def.destroy(domain->def.user);
   mpsi_free(context, domain);
   mpsi_context_release(context);

@@ -1,12 +1,14 @@
 /* domain_internal.h - what solvers use of a domain. Every function takes NULL for a domain of one
- * rank, and is collective unless it says otherwise. A failure that ranks have agreed upon has the
+ * rank, and is collective unless it says otherwise. The first collective call of every public
+ * function is a vote (settle, settle_max, settle_same, settle_given), so that ranks in different
+ * functions find that out: vote.c. A failure that ranks have agreed upon has the
  * same record on all of them, and may be agreed upon again without harm.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPSI_DOMAIN_INTERNAL_H
 #define MPSI_DOMAIN_INTERNAL_H
 
 #include "core/exact.h"
-#include "core/hash.h"
+#include "core/given.h"
 #include "core/internal.h"
 #include "core/state.h"
 
@@ -15,6 +17,7 @@
 mps_domain *mpsi_domain_retain(mps_domain *domain); /* not collective */
 /* MPS_ERROR_ARGUMENT for a domain of another context. Not collective. */
 mps_status mpsi_domain_check(mps_context *context, const char *function, const mps_domain *domain);
+mps_context *mpsi_domain_context(const mps_domain *domain); /* not collective */
 /* Whether there is anybody to agree with. Not collective. */
 static inline bool mpsi_domain_many(const mps_domain *domain) {
   return mps_domain_size(domain) > 1;
@@ -39,16 +42,13 @@ mps_status mpsi_domain_vote_end(mps_domain *domain, const char *function, int32_
 mps_status mpsi_domain_settle_same(mps_domain *domain, const char *function, mps_status status,
                                    const char *name, double value);
 
-/* same.c: goes on with a hash, which begins with MPSI_DOMAIN_HASH, over more bytes; what of it a
- * double tells exactly. Not collective. */
-#define MPSI_DOMAIN_HASH MPSI_HASH
-uint64_t mpsi_domain_hash(uint64_t hash, const void *data, size_t bytes);
-/* Over numbers, of which NaN is unset, whatever its bits. */
-uint64_t mpsi_domain_hash_numbers(uint64_t hash, int32_t count, const double *numbers);
-double mpsi_domain_short(uint64_t hash);
-/* same.c: the same for many numbers at once, by a hash, and for the fields of a set. */
-mps_status mpsi_domain_settle_numbers(mps_domain *domain, const char *function, mps_status status,
-                                      const char *name, int32_t count, const double *numbers);
+/* same.c: the same for a list, with the name of the first number that differs, and for the fields
+ * of a set. */
+mps_status mpsi_domain_settle_given(mps_domain *domain, const char *function, mps_status status,
+                                    const mpsi_given *list);
+/* The same, and the greatest of each value: at most MPSI_DOMAIN_ALONG - 2. */
+mps_status mpsi_domain_settle_given_max(mps_domain *domain, const char *function, mps_status status,
+                                        const mpsi_given *list, int32_t count, double *values);
 mps_status mpsi_domain_settle_particles(mps_domain *domain, const char *function, mps_status status,
                                         mps_particles *particles);
 

@@ -147,6 +147,7 @@ mps_status mpsi_halo_begin_bytes(mpsi_halo *halo, const char *function, int32_t 
   const mps_domain_def *def = &halo->domain->def;
   const mps_status status = mpsi_domain_alive(halo->domain, function);
   if (status != MPS_OK) return status;
+  halo->domain->calls++;
   return mpsi_domain_note(halo->domain, function, "star_begin",
                           def->star_begin(def->user, halo->star, item_bytes, own, guests));
 }

@@ -1,43 +1,65 @@
-/* same.c - whether ranks have been given the same: definitions and particles by a hash of theirs.
+/* same.c - whether ranks have been given the same: definitions by lists of numbers, particles by a
+ * hash of theirs.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "domain_internal.h"
 
 #include <string.h>
 
-uint64_t mpsi_domain_hash(uint64_t hash, const void *data, size_t bytes) {
-  return mpsi_hash(hash, data, bytes);
-}
-
-uint64_t mpsi_domain_hash_numbers(uint64_t hash, int32_t count, const double *numbers) {
-  for (int32_t k = 0; k < count; k++) {
-    const double none = NAN, *number = isnan(numbers[k]) ? &none : &numbers[k];
-    hash = mpsi_hash(hash, number, sizeof *number);
+/* The first number of the list that ranks do not give alike, by a hash of each. */
+static mps_status find_other(mps_domain *domain, const char *function, const mpsi_given *list,
+                             int32_t *which) {
+  double range[2 * MPSI_GIVEN_MOST];
+  for (int32_t k = 0; k < MPSI_GIVEN_MOST; k++) {
+    const bool there = k < list->count;
+    range[2 * k] = there ? mpsi_hash_short(mpsi_hash_number(MPSI_HASH, list->value[k])) : 0.0;
+    range[2 * k + 1] = -range[2 * k];
   }
-  return hash;
+  *which = 0;
+  const mps_status status = mpsi_domain_max(domain, function, 2 * MPSI_GIVEN_MOST, range);
+  while (*which < list->count && range[2 * *which] == -range[2 * *which + 1]) ++*which;
+  return status;
 }
 
-double mpsi_domain_short(uint64_t hash) { return (double)(hash >> 12); }
+mps_status mpsi_domain_settle_given(mps_domain *domain, const char *function, mps_status status,
+                                    const mpsi_given *list) {
+  return mpsi_domain_settle_given_max(domain, function, status, list, 0, NULL);
+}
 
-mps_status mpsi_domain_settle_numbers(mps_domain *domain, const char *function, mps_status status,
-                                      const char *name, int32_t count, const double *numbers) {
-  const uint64_t hash = mpsi_domain_hash_numbers(MPSI_DOMAIN_HASH, count, numbers);
-  return mpsi_domain_settle_same(domain, function, status, name, mpsi_domain_short(hash));
+mps_status mpsi_domain_settle_given_max(mps_domain *domain, const char *function, mps_status status,
+                                        const mpsi_given *list, int32_t count, double *values) {
+  if (!mpsi_domain_many(domain)) return status;
+  const double hash = mpsi_hash_short(mpsi_given_hash(list));
+  double range[MPSI_DOMAIN_ALONG] = {hash, -hash};
+  int32_t k = 0;
+  for (int32_t v = 0; v < count; v++) range[2 + v] = values[v];
+  status = mpsi_domain_settle_max(domain, function, status, 2 + count, range);
+  for (int32_t v = 0; v < count; v++) values[v] = range[2 + v];
+  if (status != MPS_OK || range[0] == -range[1]) return status;
+  status = find_other(domain, function, list, &k);
+  if (status != MPS_OK) return status;
+  const bool found = k < list->count;
+  status = mpsi_fail(mpsi_domain_context(domain), function, MPS_ERROR_ARGUMENT,
+                     "%s is %.17g on rank %d and another value on others: all ranks must give the "
+                     "same",
+                     found ? list->name[k] : "a hash of the last numbers given",
+                     found ? list->value[k] : hash, mps_domain_rank(domain));
+  return mpsi_domain_settle(domain, function, status);
 }
 
 mps_status mpsi_domain_settle_particles(mps_domain *domain, const char *function, mps_status status,
                                         mps_particles *particles) {
-  uint64_t hash = MPSI_DOMAIN_HASH;
+  uint64_t hash = MPSI_HASH;
   for (int32_t f = 0; status == MPS_OK && f < mps_particles_field_count(particles); f++) {
     mps_field_info info;
     mps_view view;
     if (mps_particles_field(particles, f, &info) != MPS_OK ||
         mps_particles_view(particles, info.name, &view) != MPS_OK)
       continue;
-    hash = mpsi_domain_hash(hash, info.name, strlen(info.name));
+    hash = mpsi_hash(hash, info.name, strlen(info.name));
     for (int32_t c = 0; c < info.components; c++)
-      hash = mpsi_domain_hash(hash, (const char *)view.data + 8 * c * view.stride[1],
-                              (size_t)view.shape[0] * 8);
+      hash = mpsi_hash(hash, (const char *)view.data + 8 * c * view.stride[1],
+                       (size_t)view.shape[0] * 8);
   }
   return mpsi_domain_settle_same(domain, function, status, "a hash of the set's particles",
-                                 mpsi_domain_short(hash));
+                                 mpsi_hash_short(hash));
 }

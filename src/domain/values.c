@@ -12,7 +12,7 @@ static mps_status check(mps_domain *domain, const char *function, mps_particles 
                         const char *name, int64_t count, const int64_t *ids, const double *values,
                         mps_view *view) {
   mps_status status = MPS_OK;
-  uint64_t hash = mpsi_domain_hash(MPSI_DOMAIN_HASH, &count, sizeof count);
+  uint64_t hash = mpsi_hash(MPSI_HASH, &count, sizeof count);
   if (!particles)
     status = mpsi_fail(domain->context, function, MPS_ERROR_ARGUMENT, "particles is NULL");
   else if (count < 0 || (count > 0 && (!ids || !values)))
@@ -26,11 +26,11 @@ static mps_status check(mps_domain *domain, const char *function, mps_particles 
   else
     status = mps_particles_view(particles, name, view);
   if (status == MPS_OK) {
-    hash = mpsi_domain_hash(hash, ids, (size_t)count * sizeof *ids);
-    hash = mpsi_domain_hash(hash, name, strlen(name));
+    hash = mpsi_hash(hash, ids, (size_t)count * sizeof *ids);
+    hash = mpsi_hash(hash, name, strlen(name));
   }
   return mpsi_domain_settle_same(domain, function, status, "a hash of the field's name and the ids",
-                                 mpsi_domain_short(hash));
+                                 mpsi_hash_short(hash));
 }
 
 /* The highest rank that has each particle; it alone tells of it. */

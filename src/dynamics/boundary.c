@@ -80,16 +80,16 @@ static mps_status make(mps_dynamics *dynamics, const char *function, mps_status 
   if (status == MPS_OK && !(b = mpsi_alloc(dynamics->context, 1, sizeof *b)))
     status = mpsi_fail_memory(dynamics->context, function, sizeof *b);
   const mpsi_dynamics_selection selection = MPSI_DYNAMICS_SELECTION(def, false);
-  const double numbers[] = {number,
-                            def.kind,
-                            def.dofs,
-                            def.normal,
-                            def.density,
-                            def.shear_velocity,
-                            def.pressure_velocity};
-  status = mpsi_dynamics_settle_definition(dynamics, function, status,
-                                           "a hash of the boundary's definition", &selection,
-                                           (int32_t)(sizeof numbers / sizeof *numbers), numbers);
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  mpsi_give(&given, "number", number);
+  MPSI_GIVE(&given, &def, kind);
+  MPSI_GIVE(&given, &def, dofs);
+  MPSI_GIVE(&given, &def, normal);
+  MPSI_GIVE(&given, &def, density);
+  MPSI_GIVE(&given, &def, shear_velocity);
+  MPSI_GIVE(&given, &def, pressure_velocity);
+  status = mpsi_dynamics_settle_definition(dynamics, function, status, &selection, &given);
   if (status != MPS_OK) {
     mpsi_free(dynamics->context, b);
     return status;
@@ -420,9 +420,14 @@ mps_status mps_dynamics_remove_boundary(mps_dynamics *dynamics, int32_t number) 
 mps_status mps_dynamics_get_reaction_sized(const mps_dynamics *dynamics, int32_t number,
                                            mps_reaction *out, size_t size) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
-  if (number < 0 || number >= dynamics->boundary_room || !dynamics->boundary[number])
-    return mpsi_fail(dynamics->context, "mps_dynamics_get_reaction", MPS_ERROR_ARGUMENT,
-                     "there is no boundary number %d", number);
+  const bool there = number >= 0 && number < dynamics->boundary_room && dynamics->boundary[number];
+  mps_status status = MPS_OK;
+  if (!there)
+    status = mpsi_fail(dynamics->context, "mps_dynamics_get_reaction", MPS_ERROR_ARGUMENT,
+                       "there is no boundary number %d", number);
+  status = mpsi_domain_settle_same(dynamics->domain, "mps_dynamics_get_reaction", status, "number",
+                                   number);
+  if (status != MPS_OK) return status;
   const mpsi_dynamics_boundary *b = dynamics->boundary[number];
   const double rate = b->kick > 0.0 ? 1.0 / b->kick : 0.0;
   mpsi_exact sum[7];
@@ -430,8 +435,7 @@ mps_status mps_dynamics_get_reaction_sized(const mps_dynamics *dynamics, int32_t
   memcpy(sum, b->pushed, sizeof b->pushed);
   memcpy(sum + 3, b->impulse, sizeof b->impulse);
   sum[6] = b->work;
-  const mps_status status =
-      mpsi_domain_sum_exact(dynamics->domain, "mps_dynamics_get_reaction", 7, sum);
+  status = mpsi_domain_sum_exact(dynamics->domain, "mps_dynamics_get_reaction", 7, sum);
   if (status != MPS_OK) return status;
   for (int k = 0; k < 7; k++) value[k] = mpsi_exact_value(&sum[k]);
   const mps_reaction r = {

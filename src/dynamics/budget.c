@@ -195,7 +195,8 @@ mps_status mps_dynamics_get_totals_sized(mps_dynamics *dynamics, mps_totals *out
   static const char *const function = "mps_dynamics_get_totals";
   if (!dynamics) return MPS_ERROR_ARGUMENT;
   mps_totals t;
-  mps_status status = mpsi_dynamics_settle_dt(dynamics, function);
+  mps_status status = mpsi_domain_settle(dynamics->domain, function, MPS_OK);
+  if (status == MPS_OK) status = mpsi_dynamics_settle_dt(dynamics, function);
   if (status != MPS_OK) return status;
   if (dynamics->fresh) dynamics->kept = dynamics->dt; /* the step to come */
   status = sum_up(dynamics, function, &t);

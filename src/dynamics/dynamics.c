@@ -294,7 +294,8 @@ void mps_dynamics_destroy(mps_dynamics **pointer) {
 
 mps_status mps_experimental_dynamics_printed_torque(mps_dynamics *dynamics) {
   if (!dynamics) return MPS_ERROR_ARGUMENT;
-  const mps_status status = mpsi_dynamics_enter(dynamics, __func__);
+  mps_status status = mpsi_dynamics_enter(dynamics, __func__);
+  if (status == MPS_OK) status = mpsi_domain_settle(dynamics->domain, __func__, status);
   if (status != MPS_OK) return status;
   if (!dynamics->fresh)
     return mpsi_fail(dynamics->context, __func__, MPS_ERROR_STATE,

@@ -365,12 +365,11 @@ typedef struct mpsi_dynamics_selection {
     .ids = (def).ids, .id_count = (def).id_count, .lower = (def).lower, .upper = (def).upper,      \
     .signal = (def).signal, .factor = (def).factor, .all = (everything)                            \
   }
-/* What has become of the ranks, and whether all define the same: the selection, and `count` more
- * numbers. `name`: "a hash of the load's definition". */
+/* What has become of the ranks, and whether all define the same: the selection, which is added to
+ * the list, and what the list has. */
 mps_status mpsi_dynamics_settle_definition(mps_dynamics *dynamics, const char *function,
-                                           mps_status status, const char *name,
-                                           const mpsi_dynamics_selection *selection, int32_t count,
-                                           const double *numbers);
+                                           mps_status status, const mpsi_dynamics_selection *s,
+                                           mpsi_given *list);
 /* Collective, as everything that defines boundaries and loads; `status` is what has become of this
  * rank so far. */
 mps_status mpsi_dynamics_select(mps_dynamics *dynamics, const char *function, mps_status status,

@@ -167,6 +167,13 @@ mps_status mps_dynamics_set_material(mps_dynamics *dynamics, const mps_material 
   if (!dynamics) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_dynamics_enter(dynamics, __func__);
   if (status == MPS_OK) status = mpsi_particles_ready(dynamics->particles, __func__);
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  mpsi_give(&given, "having a list of ids", ids != NULL);
+  mpsi_give(&given, "count", (double)count);
+  mpsi_give_bytes(&given, "a hash of ids", count > 0 ? ids : NULL, (size_t)count * sizeof *ids);
+  mpsi_material_give(&given, material);
+  status = mpsi_domain_settle_given(dynamics->domain, __func__, status, &given);
   if (mpsi_domain_many(dynamics->domain) && ids) {
     status = write_own(dynamics, __func__, status, material, count, ids);
   } else {

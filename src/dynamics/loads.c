@@ -68,18 +68,14 @@ static mps_status make(mps_dynamics *dynamics, const char *function, mps_status 
     status = mpsi_fail_memory(dynamics->context, function, sizeof *load);
   const mpsi_dynamics_selection selection =
       MPSI_DYNAMICS_SELECTION(def, def.kind == MPS_DYNAMICS_LOAD_BODY);
-  const double numbers[] = {
-      number,
-      def.kind,
-      def.traction[0],
-      def.traction[1],
-      def.acceleration[0],
-      def.acceleration[1],
-      def.area,
-  };
-  status = mpsi_dynamics_settle_definition(dynamics, function, status,
-                                           "a hash of the load's definition", &selection,
-                                           (int32_t)(sizeof numbers / sizeof *numbers), numbers);
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  mpsi_give(&given, "number", number);
+  MPSI_GIVE(&given, &def, kind);
+  MPSI_GIVE_VECTOR(&given, &def, traction, 2);
+  MPSI_GIVE_VECTOR(&given, &def, acceleration, 2);
+  MPSI_GIVE(&given, &def, area);
+  status = mpsi_dynamics_settle_definition(dynamics, function, status, &selection, &given);
   if (status != MPS_OK) {
     mpsi_free(dynamics->context, load);
     return status;

@@ -8,20 +8,19 @@
 #include <stdlib.h>
 
 mps_status mpsi_dynamics_settle_definition(mps_dynamics *dynamics, const char *function,
-                                           mps_status status, const char *name,
-                                           const mpsi_dynamics_selection *s, int32_t count,
-                                           const double *numbers) {
-  if (!mpsi_domain_many(dynamics->domain)) return status;
-  uint64_t hash = mpsi_domain_hash_numbers(MPSI_DOMAIN_HASH, count, numbers);
+                                           mps_status status, const mpsi_dynamics_selection *s,
+                                           mpsi_given *list) {
   if (status == MPS_OK) {
-    const double where[] = {s->all,      (double)s->id_count, s->lower[0],  s->lower[1],
-                            s->upper[0], s->upper[1],         s->factor[0], s->factor[1]};
-    hash = mpsi_domain_hash_numbers(hash, (int32_t)(sizeof where / sizeof *where), where);
-    if (s->ids && s->id_count > 0)
-      hash = mpsi_domain_hash(hash, s->ids, (size_t)s->id_count * sizeof *s->ids);
-    for (int c = 0; c < 3; c++) hash = mpsi_signal_hash(s->signal[c], hash);
+    mpsi_give(list, "all", s->all);
+    mpsi_give(list, "id_count", (double)s->id_count);
+    MPSI_GIVE_VECTOR(list, s, lower, 2);
+    MPSI_GIVE_VECTOR(list, s, upper, 2);
+    MPSI_GIVE_VECTOR(list, s, factor, 2);
+    mpsi_give_bytes(list, "a hash of ids", s->id_count > 0 ? s->ids : NULL,
+                    (size_t)s->id_count * sizeof *s->ids);
+    for (int c = 0; c < 3; c++) mpsi_signal_give(list, "a hash of signal", s->signal[c]);
   }
-  return mpsi_domain_settle_same(dynamics->domain, function, status, name, mpsi_domain_short(hash));
+  return mpsi_domain_settle_given(dynamics->domain, function, status, list);
 }
 
 static int compare_indices(const void *left, const void *right) {

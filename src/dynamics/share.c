@@ -10,6 +10,7 @@
 #include "core/particles_internal.h"
 #include "domain/halo.h"
 #include "dynamics_private.h"
+#include "material/material_internal.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -339,22 +340,23 @@ static mps_status make_structure(plan *p, mpsi_dynamics_structure *out) {
 /* Are all ranks given the same? */
 static mps_status compare_ranks(mps_dynamics *dynamics, const char *function, mps_status status) {
   const mps_dynamics_def *d = &dynamics->def;
-  const double numbers[] = {d->integrator,
-                            d->rotation,
-                            d->damping,
-                            d->dt,
-                            d->courant,
-                            dynamics->radius,
-                            d->f1,
-                            d->f2,
-                            d->period_x,
-                            d->divergence,
-                            d->measure,
-                            d->watch_damping,
-                            mps_kernel_get_kind(dynamics->kernel)};
-  status = mpsi_domain_settle_numbers(dynamics->domain, function, status,
-                                      "a hash of the solver's definition",
-                                      (int32_t)(sizeof numbers / sizeof *numbers), numbers);
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  MPSI_GIVE(&given, d, integrator);
+  MPSI_GIVE(&given, d, rotation);
+  MPSI_GIVE(&given, d, damping);
+  MPSI_GIVE(&given, d, dt);
+  MPSI_GIVE(&given, d, courant);
+  mpsi_give(&given, "the radius of the kernel", dynamics->radius);
+  MPSI_GIVE(&given, d, f1);
+  MPSI_GIVE(&given, d, f2);
+  MPSI_GIVE(&given, d, period_x);
+  MPSI_GIVE(&given, d, divergence);
+  MPSI_GIVE(&given, d, measure);
+  MPSI_GIVE(&given, d, watch_damping);
+  mpsi_give(&given, "the kind of the kernel", mps_kernel_get_kind(dynamics->kernel));
+  mpsi_material_give(&given, d->material);
+  status = mpsi_domain_settle_given(dynamics->domain, function, status, &given);
   if (status != MPS_OK) return status;
   return mpsi_domain_settle_particles(dynamics->domain, function, status, dynamics->particles);
 }

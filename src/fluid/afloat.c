@@ -13,6 +13,7 @@
 #include "fluid_private.h"
 
 #include "body/body_internal.h"
+#include "domain/domain_internal.h"
 
 #include <string.h>
 
@@ -23,7 +24,13 @@
 
 mps_status mps_fluid_float_body(mps_fluid *f, int32_t number, int32_t floats) {
   if (!f) return MPS_ERROR_ARGUMENT;
-  const mps_status status = mpsi_fluid_ready(f, __func__);
+  mps_status status = mpsi_fluid_ready(f, __func__);
+  if (status != MPS_OK) return status;
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  mpsi_give(&given, "number", number);
+  mpsi_give(&given, "floats", floats);
+  status = mpsi_domain_settle_given(f->def.domain, __func__, status, &given);
   if (status != MPS_OK) return status;
   if (number < 0 || number >= MPSI_FLUID_BODIES || !f->body[number].body || floats < 0 ||
       floats > 1)

@@ -264,26 +264,12 @@ static int free_faces(const mps_fluid *f, int64_t faces) {
 static mps_status settle(mps_fluid *f, const char *function, mps_status status, int32_t number,
                          int32_t kind, const mps_body *body) {
   if (!f->share) return status;
-  uint64_t hash = MPSI_DOMAIN_HASH;
-  if (status == MPS_OK) {
-    const double numbers[] = {number,
-                              kind,
-                              body->def.motion,
-                              body->def.mass,
-                              body->pose.x[0],
-                              body->pose.x[1],
-                              body->pose.R[0],
-                              body->pose.R[1],
-                              body->pose.v[0],
-                              body->pose.v[1],
-                              body->pose.spin[2],
-                              (double)body->edges};
-    hash = mpsi_domain_hash_numbers(hash, (int32_t)(sizeof numbers / sizeof *numbers), numbers);
-    hash = mpsi_domain_hash(hash, body->xy, 2 * (size_t)body->edges * sizeof *body->xy);
-    for (int k = 0; k < MPSI_MOTIONS; k++) hash = mpsi_signal_hash(body->signal[k], hash);
-  }
-  return mpsi_domain_settle_same(f->def.domain, function, status, "a hash of the body",
-                                 mpsi_domain_short(hash));
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  mpsi_give(&given, "number", number);
+  mpsi_give(&given, "kind", kind);
+  if (status == MPS_OK) mpsi_body_give(&given, body);
+  return mpsi_domain_settle_given(f->def.domain, function, status, &given);
 }
 
 /* The walls from `first` on that the faces of body number `b` become. */

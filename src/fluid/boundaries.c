@@ -137,15 +137,18 @@ static mps_status make_alike(mps_fluid *f, const char *function, mps_status stat
   *w = (mpsi_fluid_wall){0};
   if (status == MPS_OK) status = make_wall(f, function, def, number, w);
   if (f->share) {
-    const double numbers[] = {w->kind,   w->at[0],  w->at[1],         w->normal[0], w->normal[1],
-                              w->factor, w->origin, (double)w->nodes, number};
-    uint64_t hash = mpsi_domain_hash_numbers(MPSI_DOMAIN_HASH,
-                                             (int32_t)(sizeof numbers / sizeof *numbers), numbers);
-    if (status == MPS_OK) hash = mpsi_domain_hash(hash, w->node, (size_t)w->nodes * 8);
-    hash = mpsi_signal_hash(w->signal, hash);
-    status =
-        mpsi_domain_settle_same(f->def.domain, function, status,
-                                "a hash of the boundary's definition", mpsi_domain_short(hash));
+    mpsi_given given;
+    mpsi_given_begin(&given);
+    mpsi_give(&given, "number", number);
+    mpsi_give(&given, "kind", w->kind);
+    mpsi_give_vector(&given, "point", 2, w->at);
+    mpsi_give_vector(&given, "normal", 2, w->normal);
+    mpsi_give(&given, "factor", w->factor);
+    mpsi_give(&given, "the signal's present displacement", w->origin);
+    mpsi_give(&given, "node_count", (double)w->nodes);
+    mpsi_give_bytes(&given, "a hash of nodes", w->node, (size_t)w->nodes * 8);
+    mpsi_signal_give(&given, "a hash of signal", w->signal);
+    status = mpsi_domain_settle_given(f->def.domain, function, status, &given);
   }
   if (status != MPS_OK) mpsi_fluid_drop_wall(f, w);
   return status;

@@ -18,7 +18,9 @@
 
 mps_status mps_experimental_fluid_classical(mps_fluid *f, double gamma) {
   if (!f) return MPS_ERROR_ARGUMENT;
-  const mps_status status = mpsi_fluid_ready(f, __func__);
+  mps_status status = mpsi_fluid_ready(f, __func__);
+  if (status != MPS_OK) return status;
+  status = mpsi_domain_settle_same(f->def.domain, __func__, status, "gamma", gamma);
   if (status != MPS_OK) return status;
   if (!(gamma > 0.0 && gamma <= 1.0))
     return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT, "gamma is %g, must be in (0, 1]",
@@ -29,8 +31,6 @@ mps_status mps_experimental_fluid_classical(mps_fluid *f, double gamma) {
   if (f->given_room > 0)
     return mpsi_fail(f->context, __func__, MPS_ERROR_STATE,
                      "the fluid has had loads: choose the scheme first");
-  const mps_status same = mpsi_domain_settle_same(f->def.domain, __func__, MPS_OK, "gamma", gamma);
-  if (same != MPS_OK) return same;
   mpsi_fluid_classical c = {.gamma = gamma};
   double square = 0.0;
   for (int a = -3; a <= 3; a++)
@@ -80,7 +80,7 @@ mps_status mpsi_fluid_classical_look(mps_fluid *f, const char *function, mps_sta
   f->stage = MPSI_FLUID_MOVED; /* walls are where the step ends */
   if (status == MPS_OK) status = mpsi_fluid_make_ghosts(f, function);
   if (status == MPS_OK) mpsi_fluid_move_ghosts(f);
-  status = mpsi_fluid_settle_count(f, function, status);
+  status = mpsi_fluid_settle_alike(f, function, status);
   if (status == MPS_OK) status = mpsi_fluid_find_neighbours(f, function);
   if (status == MPS_OK) status = mpsi_fluid_meet(f, function);
   if (status != MPS_OK) return status;

@@ -173,12 +173,19 @@ static mps_status start(mps_fluid *f, const char *function) {
 /* Do all ranks make the same fluid? */
 static mps_status agree_on_fluid(const mps_fluid_def *d, const char *function, mps_status status,
                                  mps_particles *particles) {
-  const double numbers[] = {d->iterations, d->density, d->viscosity, d->gravity[0],   d->gravity[1],
-                            d->level,      d->measure, d->dt,        d->radius_ratio, d->tolerance};
+  mpsi_given given;
   if (!mpsi_domain_many(d->domain)) return status;
-  status =
-      mpsi_domain_settle_numbers(d->domain, function, status, "a hash of the solver's definition",
-                                 sizeof numbers / sizeof *numbers, numbers);
+  mpsi_given_begin(&given);
+  MPSI_GIVE(&given, d, iterations);
+  MPSI_GIVE(&given, d, density);
+  MPSI_GIVE(&given, d, viscosity);
+  MPSI_GIVE_VECTOR(&given, d, gravity, 2);
+  MPSI_GIVE(&given, d, level);
+  MPSI_GIVE(&given, d, measure);
+  MPSI_GIVE(&given, d, dt);
+  MPSI_GIVE(&given, d, radius_ratio);
+  MPSI_GIVE(&given, d, tolerance);
+  status = mpsi_domain_settle_given(d->domain, function, status, &given);
   return status == MPS_OK ? mpsi_domain_settle_particles(d->domain, function, status, particles)
                           : status;
 }
@@ -252,7 +259,8 @@ mps_status mps_fluid_set_dt(mps_fluid *f, double dt) {
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_fluid_ready(f, __func__);
   if (status != MPS_OK) return status;
-  status = mpsi_fluid_check_dt(f, __func__, dt);
+  status = mpsi_domain_settle_same(f->def.domain, __func__, mpsi_fluid_check_dt(f, __func__, dt),
+                                   "dt", dt);
   if (status == MPS_OK) f->def.dt = dt;
   return status;
 }

@@ -256,6 +256,7 @@ struct mps_fluid {
   mpsi_guard guard;            /* of the callbacks of the run and of the solver */
   mpsi_fluid_change change;    /* of the set, that is under way; energy_before is that of before */
   bool stale;                  /* the cloud is not that of the fields */
+  bool edited;                 /* the caller has written fields, which ranks have not compared */
   int64_t unknown; /* 1: free_surface and surface_rise are not of the present set and walls */
   uint32_t warned; /* given already: mpsi_fluid_warning, bits */
   mpsi_identity *identity;

@@ -113,17 +113,25 @@ static mps_status make_load(mps_fluid *f, const char *function, const mps_fluid_
 static mps_status settle(mps_fluid *f, const char *function, mps_status status, int32_t number,
                          const mpsi_fluid_given *g) {
   if (!f->share) return status;
-  uint64_t hash = MPSI_DOMAIN_HASH;
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  mpsi_give(&given, "number", number);
   if (status == MPS_OK && g) {
-    const double numbers[] = {number,       g->kind,      g->lower[0],     g->lower[1],
-                              g->upper[0],  g->upper[1],  g->amount[0],    g->amount[1],
-                              g->factor[0], g->factor[1], (double)g->count};
-    hash = mpsi_domain_hash_numbers(hash, (int32_t)(sizeof numbers / sizeof *numbers), numbers);
-    hash = mpsi_domain_hash(hash, g->ids, (size_t)g->count * sizeof *g->ids);
-    for (int c = 0; c < 2; c++) hash = mpsi_signal_hash(g->signal[c], hash);
+    MPSI_GIVE(&given, g, kind);
+    MPSI_GIVE_VECTOR(&given, g, lower, 2);
+    MPSI_GIVE_VECTOR(&given, g, upper, 2);
+    MPSI_GIVE_VECTOR(&given, g, amount, 2);
+    MPSI_GIVE_VECTOR(&given, g, factor, 2);
+    mpsi_give(&given, "id_count", (double)g->count);
+    mpsi_give_bytes(&given, "a hash of ids", g->ids, (size_t)g->count * sizeof *g->ids);
+    for (int c = 0; c < 2; c++) mpsi_signal_give(&given, "a hash of signal", g->signal[c]);
   }
-  return mpsi_domain_settle_same(f->def.domain, function, status, "a hash of the load's definition",
-                                 mpsi_domain_short(hash));
+  return mpsi_domain_settle_given(f->def.domain, function, status, &given);
+}
+
+void mpsi_fluid_give_loads(const mps_fluid *f, mpsi_given *list) {
+  for (int32_t k = 0; k < f->given_room; k++)
+    if (f->given[k]) mpsi_give_vector(list, "the present factor on a load", 2, f->given[k]->now);
 }
 
 mps_status mps_fluid_add_load(mps_fluid *f, const mps_fluid_load_def *def, int32_t *number) {

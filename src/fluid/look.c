@@ -28,7 +28,7 @@ void mpsi_fluid_load_cloud(mps_fluid *f) {
 mps_status mpsi_fluid_look_around(mps_fluid *f, const char *function, mps_status status) {
   if (status == MPS_OK) status = mpsi_fluid_make_ghosts(f, function);
   if (status == MPS_OK) mpsi_fluid_move_ghosts(f);
-  status = mpsi_fluid_settle_count(f, function, status);
+  status = mpsi_fluid_settle_alike(f, function, status);
   if (status == MPS_OK) status = mpsi_fluid_find_neighbours(f, function);
   if (status == MPS_OK) status = mpsi_fluid_meet(f, function);
   if (status == MPS_OK) mpsi_fluid_find_moments(f);
@@ -46,7 +46,8 @@ mps_status mpsi_fluid_look(mps_fluid *f, const char *function) {
  * cloud has the fields' particles and their surroundings. */
 mps_status mpsi_fluid_know(mps_fluid *f, const char *function) {
   if (!f->unknown) return MPS_OK;
-  mps_status status = f->stage == MPSI_FLUID_BETWEEN ? mpsi_fluid_look(f, function) : MPS_OK;
+  mps_status status = mpsi_fluid_settle(f, function, MPS_OK);
+  if (status == MPS_OK && f->stage == MPSI_FLUID_BETWEEN) status = mpsi_fluid_look(f, function);
   if (status == MPS_OK) mpsi_fluid_tell_local(f);
   if (status == MPS_OK) status = mpsi_fluid_lost(f, function);
   if (status != MPS_OK) return status;

@@ -87,6 +87,7 @@ mps_status mpsi_fluid_commit(void *self, const char *function, const char *field
   mps_fluid *f = self;
   (void)former;
   const mps_status status = mpsi_fluid_ready(f, function);
+  if (status == MPS_OK) f->edited = true;
   if (status != MPS_OK || strcmp(field, "external_force") == 0) return status; /* steps read it */
   if (strcmp(field, "velocity") != 0) f->stale = true;
   if (strcmp(field, "position") == 0) f->unknown = 1;
@@ -184,7 +185,7 @@ void mpsi_fluid_renew(void *self) {
   f->count = mps_particles_count(f->particles);
   if (f->change != MPSI_FLUID_UNCHANGED)
     f->energy += mpsi_fluid_energy(f, &kinetic) - f->energy_before;
-  if (f->change == MPSI_FLUID_CHANGED_BY_CALLER) f->unknown = 1;
+  if (f->change == MPSI_FLUID_CHANGED_BY_CALLER) f->unknown = 1, f->edited = true;
   f->change = MPSI_FLUID_UNCHANGED;
   f->ghosts = 0;
   f->stale = true;

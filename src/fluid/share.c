@@ -5,6 +5,7 @@
  * is new, and the way of the messages stays. SPDX-License-Identifier: BSD-3-Clause */
 #include "share.h"
 
+#include "body/body_internal.h"
 #include "domain/halo.h"
 
 #include <string.h>
@@ -78,16 +79,35 @@ mps_status mpsi_fluid_settle_max(mps_fluid *f, const char *function, mps_status 
   return mpsi_domain_settle_max(f->def.domain, function, status, count, values);
 }
 
-mps_status mpsi_fluid_settle_count(mps_fluid *f, const char *function, mps_status status) {
+/* What all ranks have: how walls, bodies and loads move in the step, or have moved. */
+static void give_state(const mps_fluid *f, mpsi_given *list) {
+  mpsi_given_begin(list);
+  mpsi_give(list, "the number of particles", (double)f->count);
+  mpsi_give(list, "dt", f->dt);
+  mpsi_give(list, "time", f->time);
+  for (int b = 0; b < MPSI_FLUID_WALLS; b++) {
+    const mpsi_fluid_wall *w = &f->wall[b];
+    if (!w->used) continue;
+    mpsi_give_bytes(list, "a hash of a wall's motion in the step", w->next.s,
+                    3 * (size_t)w->nodes * sizeof *w->next.s);
+    mpsi_give_bytes(list, "a hash of a wall's motion", w->now.s,
+                    3 * (size_t)w->nodes * sizeof *w->now.s);
+  }
+  for (int b = 0; b < MPSI_FLUID_BODIES; b++)
+    if (f->body[b].body) mpsi_body_give_state(list, f->body[b].body);
+  mpsi_fluid_give_loads(f, list);
+}
+
+mps_status mpsi_fluid_settle_alike(mps_fluid *f, const char *function, mps_status status) {
+  mpsi_given list;
+  double edited = f->edited;
   if (!f->share) return status;
-  double range[2] = {(double)f->count, -(double)f->count};
-  status = mpsi_fluid_settle_max(f, function, status, 2, range);
-  if (status != MPS_OK || range[0] == -range[1]) return status;
-  status = mpsi_fail(f->context, function, MPS_ERROR_STATE,
-                     "the fluid has %lld particles here, %.0f to %.0f elsewhere: all ranks must "
-                     "add and remove the same",
-                     (long long)f->count, -range[1], range[0]);
-  return mpsi_fluid_settle(f, function, status);
+  give_state(f, &list);
+  status = mpsi_domain_settle_given_max(f->share->domain, function, status, &list, 1, &edited);
+  if (status == MPS_OK && edited > 0.0)
+    status = mpsi_domain_settle_particles(f->share->domain, function, status, f->particles);
+  if (status == MPS_OK) f->edited = false;
+  return status;
 }
 
 static void note(mpsi_fluid_share *s, mps_status status) {

@@ -27,8 +27,11 @@ void mpsi_fluid_share_destroy(mps_fluid *fluid);
 mps_status mpsi_fluid_settle(mps_fluid *fluid, const char *function, mps_status status);
 mps_status mpsi_fluid_settle_max(mps_fluid *fluid, const char *function, mps_status status,
                                  int32_t count, double *values);
-/* Do all ranks have as many particles? `status` is this one's so far. */
-mps_status mpsi_fluid_settle_count(mps_fluid *fluid, const char *function, mps_status status);
+/* loads.c: adds the present factors of loads. Not collective. */
+void mpsi_fluid_give_loads(const mps_fluid *fluid, mpsi_given *list);
+/* Do walls, bodies and loads of all ranks move alike, and have all the same particles where the
+ * caller has edited them? `status` is this one's so far. */
+mps_status mpsi_fluid_settle_alike(mps_fluid *fluid, const char *function, mps_status status);
 mps_status mpsi_fluid_lost(mps_fluid *fluid, const char *function);
 
 /* Deals the particles to the ranks, in blocks of `block`: fluid->own. Not collective. */

@@ -24,29 +24,41 @@ void mpsi_fluid_drop_solver(mps_fluid *f) {
   f->outside = NULL;
 }
 
+/* What has become of the ranks, and whether all have such a solver. */
+static mps_status settle_solver(mps_fluid *f, const char *function, mps_status status, bool given,
+                                const mps_fluid_solver_def *def) {
+  mpsi_given list;
+  mpsi_given_begin(&list);
+  mpsi_give(&list, "having a solver", given);
+  mpsi_give(&list, "having rows", def->rows != NULL);
+  mpsi_give(&list, "having forget", def->forget != NULL);
+  MPSI_GIVE(&list, def, least);
+  return mpsi_domain_settle_given(f->def.domain, function, status, &list);
+}
+
 mps_status mps_fluid_set_solver(mps_fluid *f, const mps_fluid_solver_def *user_def) {
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_fluid_ready(f, __func__);
   mps_fluid_solver_def def = defaults;
   if (status == MPS_OK && user_def)
     status = MPSI_DEF_READ(f->context, __func__, mps_fluid_solver_def, user_def, &def);
-  if (status != MPS_OK) return status;
-  if (user_def && f->share && !def.rows)
-    return mpsi_fail(
-        f->context, __func__, MPS_ERROR_UNSUPPORTED,
-        "rows is NULL: a fluid of several ranks has its pressure solved by the library, "
-        "or by a solver that takes each rank's rows");
-  if (user_def && (!def.matrix || !def.solve || def.least < 0))
-    return mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
-                     "matrix is %s, solve %s, least %lld: both must be given, and least >= 0",
-                     def.matrix ? "given" : "NULL", def.solve ? "given" : "NULL",
-                     (long long)def.least);
+  if (status != MPS_OK && !f->share) return status;
+  if (status == MPS_OK && user_def && f->share && !def.rows)
+    status =
+        mpsi_fail(f->context, __func__, MPS_ERROR_UNSUPPORTED,
+                  "rows is NULL: a fluid of several ranks has its pressure solved by the library, "
+                  "or by a solver that takes each rank's rows");
+  if (status == MPS_OK && user_def && (!def.matrix || !def.solve || def.least < 0))
+    status = mpsi_fail(f->context, __func__, MPS_ERROR_ARGUMENT,
+                       "matrix is %s, solve %s, least %lld: both must be given, and least >= 0",
+                       def.matrix ? "given" : "NULL", def.solve ? "given" : "NULL",
+                       (long long)def.least);
   mpsi_fluid_outside *outside = NULL;
-  if (user_def) {
+  if (status == MPS_OK && user_def) {
     outside = mpsi_alloc(f->context, 1, sizeof *outside);
     if (!outside) status = mpsi_fail_memory(f->context, __func__, sizeof *outside);
   }
-  status = mpsi_fluid_settle(f, __func__, status);
+  status = settle_solver(f, __func__, status, user_def != NULL, &def);
   if (status != MPS_OK) {
     mpsi_free(f->context, outside);
     return status;

@@ -275,7 +275,8 @@ mps_status mps_fluid_solve_pressure(mps_fluid *f) {
   if (status == MPS_OK) {
     f->stage = MPSI_FLUID_BEGUN;
     mpsi_fluid_begin_walls(f, f->dt);
-    status = solve(f, __func__);
+    status = mpsi_fluid_settle_alike(f, __func__, MPS_OK);
+    if (status == MPS_OK) status = solve(f, __func__);
     f->stage = status == MPS_OK ? MPSI_FLUID_SOLVED : MPSI_FLUID_BEGUN;
   }
   mpsi_guard_end(&f->guard);
@@ -288,7 +289,8 @@ mps_status mps_fluid_solve_pressure(mps_fluid *f) {
 mps_status mps_fluid_end_step(mps_fluid *f) {
   if (!f) return MPS_ERROR_ARGUMENT;
   mps_status status = check_stage(f, __func__, MPSI_FLUID_SOLVED);
-  if (status == MPS_OK) status = mpsi_particles_ready(f->particles, __func__);
+  if (status != MPS_OK) return status;
+  status = mpsi_fluid_settle(f, __func__, mpsi_particles_ready(f->particles, __func__));
   if (status != MPS_OK) return status;
   status = finish(f, __func__);
   if (status == MPS_OK) return keep(f, __func__);
@@ -366,6 +368,9 @@ mps_status mps_fluid_run(mps_fluid *f, double t_end, int64_t every, mps_fluid_fn
   status = mpsi_domain_settle_same(domain, __func__, status, "t_end", t_end);
   if (status == MPS_OK)
     status = mpsi_domain_settle_same(domain, __func__, status, "every", (double)every);
+  if (status == MPS_OK)
+    status =
+        mpsi_domain_settle_same(domain, __func__, status, "having a callback", callback != NULL);
   if (status != MPS_OK) return status;
   const run r = {f->time, t_end, every, callback, user};
   mpsi_guard_enter(&f->guard, f->context, __func__);

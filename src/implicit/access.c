@@ -9,9 +9,10 @@
 
 mps_status mpsi_elastic_enter(mps_elastic *e, const char *function) {
   mps_status status = mpsi_guard_check(&e->guard, e->context, function);
-  if (status == MPS_OK) status = mpsi_particles_ready(e->particles, function);
-  if (status == MPS_OK) mpsi_guard_enter(&e->guard, e->context, function);
   e->agreed = false;
+  if (status != MPS_OK) return status;
+  status = mpsi_elastic_settle(e, function, mpsi_particles_ready(e->particles, function));
+  if (status == MPS_OK) mpsi_guard_enter(&e->guard, e->context, function);
   return status;
 }
 
@@ -23,17 +24,26 @@ mps_status mpsi_elastic_settle(mps_elastic *e, const char *function, mps_status 
 }
 
 mps_status mpsi_elastic_settle_same(mps_elastic *e, const char *function, mps_status status,
-                                    const char *name, uint64_t hash) {
+                                    const char *name, double value) {
   if (e->agreed || !mpsi_domain_many(e->def.domain)) return status;
-  status = mpsi_domain_settle_same(e->def.domain, function, status, name, mpsi_domain_short(hash));
+  status = mpsi_domain_settle_same(e->def.domain, function, status, name, value);
+  e->agreed = status != MPS_OK;
+  return status;
+}
+
+mps_status mpsi_elastic_settle_given(mps_elastic *e, const char *function, mps_status status,
+                                     const mpsi_given *list) {
+  if (e->agreed || !mpsi_domain_many(e->def.domain)) return status;
+  status = mpsi_domain_settle_given(e->def.domain, function, status, list);
   e->agreed = status != MPS_OK;
   return status;
 }
 
 mps_status mpsi_elastic_leave(mps_elastic *e, mps_status status) {
+  const char *function = e->guard.callback; /* that of mpsi_elastic_enter */
   mpsi_guard_end(&e->guard);
   e->within = false;
-  return mpsi_elastic_settle(e, "mps_elastic", status);
+  return mpsi_elastic_settle(e, function, status);
 }
 
 bool mpsi_elastic_begin_reading(mps_elastic *e) {

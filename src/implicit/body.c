@@ -116,8 +116,14 @@ mps_status mps_elastic_set_material(mps_elastic *e, const mps_material *material
   if (!e) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  mpsi_material_give(&given, material);
+  mpsi_give(&given, "count", (double)count);
+  mpsi_give_bytes(&given, "a hash of ids", count > 0 ? ids : NULL, (size_t)count * sizeof *ids);
   double *former = mpsi_alloc(e->context, 2 * e->n, sizeof *former);
   if (!former) status = mpsi_fail_memory(e->context, __func__, (size_t)e->n * 16);
+  status = mpsi_elastic_settle_given(e, __func__, status, &given);
   if (status == MPS_OK) status = mpsi_material_check_elastic(e->context, __func__, material);
   if (status == MPS_OK)
     status = mpsi_particles_check_ids_or_all(e->particles, __func__, count, ids);
@@ -166,7 +172,14 @@ mps_status mps_elastic_cut(mps_elastic *e, int32_t axis, int32_t side, int64_t c
   if (!e) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;
-  status = mpsi_elastic_leave(e, check_cut(e, __func__, axis, side, count, ids));
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  mpsi_give(&given, "axis", axis);
+  mpsi_give(&given, "side", side);
+  mpsi_give(&given, "count", (double)count);
+  mpsi_give_bytes(&given, "a hash of ids", count > 0 ? ids : NULL, (size_t)count * sizeof *ids);
+  status = check_cut(e, __func__, axis, side, count, ids);
+  status = mpsi_elastic_leave(e, mpsi_elastic_settle_given(e, __func__, status, &given));
   if (status != MPS_OK) return status;
   mpsi_elastic_end_motion(e); /* its masses are no longer those of the cells */
   mpsi_free(e->context, e->mass);

@@ -219,21 +219,20 @@ static mps_status check_number(const mps_elastic *e, const char *function, int32
   return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT, "there is no boundary %d", number);
 }
 
-/* Puts `now` in the place of boundary `number`, or goes back. */
 /* Of a boundary that could be made: all ranks are to have the same. */
-static uint64_t hash_of(const mpsi_elastic_boundary *b, int32_t number) {
-  const double numbers[] = {number,       b->kind,      b->dofs,      (double)b->count,
-                            b->normal[0], b->normal[1], b->normal[2], b->factor[0],
-                            b->factor[1], b->factor[2]};
+static void give(mpsi_given *list, const mpsi_elastic_boundary *b) {
   const size_t each = b->kind == MPS_ELASTIC_BOUNDARY_ROLLER ? 1 : 3, count = (size_t)b->count;
-  uint64_t hash = mpsi_domain_hash_numbers(MPSI_DOMAIN_HASH,
-                                           (int32_t)(sizeof numbers / sizeof *numbers), numbers);
-  hash = mpsi_domain_hash(hash, b->id, count * sizeof *b->id);
-  if (b->values) hash = mpsi_domain_hash(hash, b->values, count * each * sizeof *b->values);
-  for (int c = 0; c < 3; c++) hash = mpsi_signal_hash(b->signal[c], hash);
-  return hash;
+  MPSI_GIVE(list, b, kind);
+  MPSI_GIVE(list, b, dofs);
+  mpsi_give(list, "id_count", (double)b->count);
+  MPSI_GIVE_VECTOR(list, b, normal, 3);
+  MPSI_GIVE_VECTOR(list, b, factor, 3);
+  mpsi_give_bytes(list, "a hash of ids", b->id, count * sizeof *b->id);
+  mpsi_give_bytes(list, "a hash of values", b->values, count * each * sizeof *b->values);
+  for (int c = 0; c < 3; c++) mpsi_signal_give(list, "a hash of signal", b->signal[c]);
 }
 
+/* Puts `now` in the place of boundary `number`, or goes back. */
 static mps_status replace(mps_elastic *e, const char *function, int32_t number,
                           mpsi_elastic_boundary *now) {
   mpsi_elastic_boundary before = e->boundaries[number];
@@ -249,10 +248,12 @@ static mps_status replace(mps_elastic *e, const char *function, int32_t number,
 static mps_status put(mps_elastic *e, const char *function, mps_status status, int32_t number,
                       const mps_elastic_boundary_def *def) {
   mpsi_elastic_boundary b = {.used = false};
-  uint64_t hash = 0;
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  mpsi_give(&given, "number", number);
   if (status == MPS_OK) status = make(e, function, def, &b);
-  if (status == MPS_OK) hash = hash_of(&b, number);
-  status = mpsi_elastic_settle_same(e, function, status, "a hash of the boundary", hash);
+  if (status == MPS_OK) give(&given, &b);
+  status = mpsi_elastic_settle_given(e, function, status, &given);
   if (status != MPS_OK)
     release(e, &b);
   else
@@ -292,8 +293,8 @@ mps_status mps_elastic_remove_boundary(mps_elastic *e, int32_t number) {
   mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;
   mpsi_elastic_boundary none = {.used = false};
-  status = mpsi_elastic_settle_same(e, __func__, check_number(e, __func__, number), "number",
-                                    (uint64_t)(int64_t)number << 12);
+  status =
+      mpsi_elastic_settle_same(e, __func__, check_number(e, __func__, number), "number", number);
   if (status == MPS_OK) status = replace(e, __func__, number, &none);
   if (status == MPS_OK) e->boundaries[number].reaction = (mps_reaction){.count = 0};
   return mpsi_elastic_leave(e, status);

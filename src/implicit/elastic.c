@@ -153,13 +153,20 @@ static mps_status refuse_positions(void *self, const char *function, const char 
 /* Do ranks that solve together have the same body and definition? */
 static mps_status agree_on_body(const mps_elastic_def *def, const char *function, mps_status status,
                                 mps_particles *particles) {
-  const double numbers[] = {def->state,   def->solver,      def->radius_ratio,
-                            def->alpha,   def->measure,     def->tolerance,
-                            def->bending, def->refinements, def->kernel ? 1.0 : 0.0};
+  mpsi_given given;
   if (!mpsi_domain_many(def->domain)) return status;
-  status =
-      mpsi_domain_settle_numbers(def->domain, function, status, "a hash of the solver's definition",
-                                 sizeof numbers / sizeof *numbers, numbers);
+  mpsi_given_begin(&given);
+  MPSI_GIVE(&given, def, state);
+  MPSI_GIVE(&given, def, solver);
+  MPSI_GIVE(&given, def, radius_ratio);
+  MPSI_GIVE(&given, def, alpha);
+  MPSI_GIVE(&given, def, measure);
+  MPSI_GIVE(&given, def, tolerance);
+  MPSI_GIVE(&given, def, bending);
+  MPSI_GIVE(&given, def, refinements);
+  mpsi_give(&given, "having a kernel", def->kernel != NULL);
+  if (status == MPS_OK) mpsi_material_give(&given, def->material);
+  status = mpsi_domain_settle_given(def->domain, function, status, &given);
   return status == MPS_OK ? mpsi_domain_settle_particles(def->domain, function, status, particles)
                           : status;
 }

@@ -452,8 +452,10 @@ mps_status mpsi_elastic_leave(mps_elastic *e, mps_status status);
  * up to the first that returns an error; leaving is the last of them. */
 mps_status mpsi_elastic_settle(mps_elastic *e, const char *function, mps_status status);
 /* The same, and MPS_ERROR_ARGUMENT where ranks were given different ones of `name`. */
+mps_status mpsi_elastic_settle_given(mps_elastic *e, const char *function, mps_status status,
+                                     const mpsi_given *list);
 mps_status mpsi_elastic_settle_same(mps_elastic *e, const char *function, mps_status status,
-                                    const char *name, uint64_t hash);
+                                    const char *name, double value);
 /* For what only reads, but with the other ranks, and may be within a callback: e->agreed is as
  * returned again afterwards. */
 bool mpsi_elastic_begin_reading(mps_elastic *e);

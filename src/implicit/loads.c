@@ -165,32 +165,32 @@ static void release(mps_elastic *e, mpsi_elastic_load *l) {
 }
 
 /* Of a definition that was found good: all ranks are to have the same. */
-static uint64_t hash_of(const mps_elastic_load_def *def, int32_t number) {
-  const double numbers[] = {number,         def->kind,      (double)def->id_count,
-                            def->force[0],  def->force[1],  def->force[2],
-                            def->factor[0], def->factor[1], def->factor[2]};
+static void give(mpsi_given *list, const mps_elastic_load_def *def) {
   const size_t each = def->kind == MPS_ELASTIC_LOAD_PRESSURE ? 1 : 3, count = (size_t)def->id_count;
-  uint64_t hash = mpsi_domain_hash_numbers(MPSI_DOMAIN_HASH,
-                                           (int32_t)(sizeof numbers / sizeof *numbers), numbers);
-  if (def->ids) hash = mpsi_domain_hash(hash, def->ids, count * sizeof *def->ids);
-  if (def->values) hash = mpsi_domain_hash(hash, def->values, count * each * sizeof *def->values);
-  for (int c = 0; c < 3; c++) hash = mpsi_signal_hash(def->signal[c], hash);
-  return hash;
+  MPSI_GIVE(list, def, kind);
+  MPSI_GIVE(list, def, id_count);
+  MPSI_GIVE_VECTOR(list, def, force, 3);
+  MPSI_GIVE_VECTOR(list, def, factor, 3);
+  mpsi_give_bytes(list, "a hash of ids", def->ids, count * sizeof *def->ids);
+  mpsi_give_bytes(list, "a hash of values", def->values, count * each * sizeof *def->values);
+  for (int c = 0; c < 3; c++) mpsi_signal_give(list, "a hash of signal", def->signal[c]);
 }
 
 /* The load `number` becomes that of `user`, on all ranks or on none. */
 static mps_status put(mps_elastic *e, const char *function, mps_status status, int32_t number,
                       const mps_elastic_load_def *user) {
   mps_elastic_load_def def = mpsi_elastic_load_defaults;
-  uint64_t hash = 0;
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  mpsi_give(&given, "number", number);
   if (status == MPS_OK)
     status = MPSI_DEF_READ(e->context, function, mps_elastic_load_def, user, &def);
   if (status == MPS_OK) status = check_def(e, function, &def);
-  if (status == MPS_OK) hash = hash_of(&def, number);
+  if (status == MPS_OK) give(&given, &def);
   if (status == MPS_OK && def.kind == MPS_ELASTIC_LOAD_GRAVITY && !e->mass)
     status = mpsi_elastic_read_mass(e, function);
   if (status == MPS_OK) status = make_patches(e, function, &def);
-  status = mpsi_elastic_settle_same(e, function, status, "a hash of the load", hash);
+  status = mpsi_elastic_settle_given(e, function, status, &given);
   if (status != MPS_OK) return status;
   mpsi_elastic_load *l = &e->loads[number];
   if (def.kind > MPS_ELASTIC_LOAD_GRAVITY) { /* the former patches become the spare room */
@@ -251,8 +251,8 @@ mps_status mps_elastic_remove_load(mps_elastic *e, int32_t number) {
   if (!e) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;
-  status = mpsi_elastic_settle_same(e, __func__, check_number(e, __func__, number), "number",
-                                    (uint64_t)(int64_t)number << 12);
+  status =
+      mpsi_elastic_settle_same(e, __func__, check_number(e, __func__, number), "number", number);
   if (status == MPS_OK) release(e, &e->loads[number]);
   return mpsi_elastic_leave(e, status);
 }

@@ -137,8 +137,10 @@ static mps_status find_modes(mps_elastic *e, const char *function, int32_t count
 mps_status mps_elastic_modes(mps_elastic *e, int32_t count, double *omega, double *shapes) {
   if (!e) return MPS_ERROR_ARGUMENT;
   if (!omega) return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT, "omega is NULL");
-  const mps_status status = mpsi_elastic_enter(e, __func__);
+  mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;
+  status = mpsi_elastic_settle_same(e, __func__, status, "count", count);
+  if (status != MPS_OK) return mpsi_elastic_leave(e, status);
   e->within = true;
   return mpsi_elastic_leave(e, find_modes(e, __func__, count, omega, shapes));
 }

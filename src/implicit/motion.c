@@ -142,6 +142,23 @@ static void set_reaction(mps_elastic *e, const double *held, const double *a) {
   mpsi_elastic_keep_fixed(e, e->reaction);
 }
 
+/* Do all ranks start the same motion? */
+static mps_status settle_motion(mps_elastic *e, const char *function, mps_status status,
+                                const mps_elastic_motion_def *def) {
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  MPSI_GIVE(&given, def, dt);
+  MPSI_GIVE(&given, def, rho_inf);
+  MPSI_GIVE(&given, def, beta);
+  MPSI_GIVE(&given, def, gamma);
+  MPSI_GIVE(&given, def, mass_damping);
+  MPSI_GIVE(&given, def, stiffness_damping);
+  MPSI_GIVE_VECTOR(&given, def, ratio, 2);
+  MPSI_GIVE_VECTOR(&given, def, frequency, 2);
+  MPSI_GIVE(&given, def, time);
+  return mpsi_elastic_settle_given(e, function, status, &given);
+}
+
 static mps_status begin(mps_elastic *e, const char *function, const mps_elastic_motion_def *user) {
   mps_elastic_motion_def def = mpsi_elastic_motion_defaults;
   mpsi_elastic_motion made = {.dt = 0.0}, *m = NULL;
@@ -153,6 +170,7 @@ static mps_status begin(mps_elastic *e, const char *function, const mps_elastic_
   if (status == MPS_OK) status = read_family(e->context, function, &def, &made);
   if (status == MPS_OK) status = read_damping(e->context, function, &def, &made);
   if (status == MPS_OK) status = mpsi_elastic_read_mass(e, function);
+  status = settle_motion(e, function, status, &def);
   if (status == MPS_OK) status = mpsi_elastic_prepare(e, function);
   double factor;
   if (status == MPS_OK)
@@ -356,6 +374,7 @@ mps_status mps_elastic_step(mps_elastic *e, int64_t count) {
   if (status == MPS_OK && count < 0)
     status = mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
                        (long long)count);
+  status = mpsi_elastic_settle_same(e, __func__, status, "count", (double)count);
   if (status != MPS_OK) return mpsi_elastic_leave(e, status);
   const int64_t before = e->motion->steps;
   for (int64_t k = 0; k < count && status == MPS_OK; k++) {
@@ -380,6 +399,12 @@ mps_status mps_elastic_run(mps_elastic *e, double t_end, int64_t every, mps_elas
                        "t_end is %g s (must be finite and not before the present time %g s), "
                        "every is %lld (must be >= 1)",
                        t_end, begin, (long long)every);
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  mpsi_give(&given, "t_end", t_end);
+  mpsi_give(&given, "every", (double)every);
+  mpsi_give(&given, "having a callback", callback != NULL);
+  status = mpsi_elastic_settle_given(e, __func__, status, &given);
   if (status != MPS_OK) return mpsi_elastic_leave(e, status);
   const int64_t steps = (int64_t)wanted, before = e->motion->steps;
   for (int64_t k = 0; k <= steps && status == MPS_OK; k++) {
@@ -394,6 +419,7 @@ mps_status mps_elastic_run(mps_elastic *e, double t_end, int64_t every, mps_elas
     if ((status = publish(e, __func__)) != MPS_OK) continue;
     mpsi_guard_enter(&e->guard, e->context, "the callback of mps_elastic_run");
     status = mpsi_guard_leave(&e->guard, e->context, __func__, callback(user, e));
+    status = mpsi_elastic_settle(e, __func__, status);
     if (status != MPS_OK) mpsi_fail_where(e->context, e->motion->steps, -1);
   }
   if (status == MPS_OK || e->motion->steps > before) status = finish(e, __func__, status);
@@ -411,6 +437,7 @@ mps_status mps_elastic_set_dt(mps_elastic *e, double dt) {
   if (status != MPS_OK) return status;
   status = check_motion(e, __func__);
   if (status == MPS_OK) status = check_dt(e->context, __func__, dt);
+  status = mpsi_elastic_settle_same(e, __func__, status, "dt", dt);
   if (status == MPS_OK) e->motion->dt = dt;
   return mpsi_elastic_leave(e, status);
 }

@@ -34,6 +34,12 @@ mps_status mps_elastic_set_solver(mps_elastic *e, const mps_elastic_solver_def *
   mpsi_elastic_outside *outside = NULL;
   if (status == MPS_OK && user && !(outside = mpsi_alloc(e->context, 1, sizeof *outside)))
     status = mpsi_fail_memory(e->context, __func__, sizeof *outside);
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  mpsi_give(&given, "having a solver", user != NULL);
+  MPSI_GIVE(&given, &def, parts);
+  status = mpsi_elastic_settle_given(e, __func__, status, &given);
+  if (status != MPS_OK) mpsi_free(e->context, outside);
   if (status == MPS_OK) {
     if (outside) outside->def = def;
     mpsi_elastic_drop_outside(e);

@@ -356,6 +356,12 @@ mps_status mps_elastic_solve_cases(mps_elastic *e, int64_t count, const double *
   if (status != MPS_OK) return status;
   e->within = true;
   status = check_cases(e, __func__, count, loads, displacements);
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  mpsi_give(&given, "count", (double)count);
+  mpsi_give_bytes(&given, "a hash of loads", status == MPS_OK ? loads : NULL,
+                  status == MPS_OK ? (size_t)(count * e->n) * 3 * sizeof *loads : 0);
+  status = mpsi_elastic_settle_given(e, __func__, status, &given);
   if (status == MPS_OK) status = solve_cases(e, __func__, count, loads, displacements);
   return mpsi_elastic_leave(e, status);
 }

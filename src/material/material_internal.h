@@ -24,6 +24,7 @@
 #ifndef MPSI_MATERIAL_INTERNAL_H
 #define MPSI_MATERIAL_INTERNAL_H
 
+#include "core/given.h"
 #include "core/internal.h"
 
 #include <mps/material.h>
@@ -34,6 +35,9 @@ mps_material *mpsi_material_retain(mps_material *material);
 /* MPS_ERROR_ARGUMENT of NULL, MPS_ERROR_UNSUPPORTED of another law than linear elasticity. */
 mps_status mpsi_material_check_elastic(mps_context *context, const char *function,
                                        const mps_material *material);
+
+/* Adds what the law is made of; of NULL, that there is none. */
+void mpsi_material_give(mpsi_given *list, const mps_material *material);
 
 /* Applies the law to block->count >= 0 particles. Not MPS_OK: a user's law refused the block; its
  * reason is in block->message, its particle in block->refused, which the caller has set to "" and

@@ -27,12 +27,49 @@ mps_status mpsi_mpm_share_any(mps_mpm *mpm, const char *function, bool *any) {
 mps_status mpsi_mpm_share_agree(mps_mpm *mpm, const char *function, mps_status status) {
   double found[3] = {mpm->run.edited, mpm->run.stale, mpm->run.lost};
   mpm->share->ready = false;
-  status = mpsi_domain_settle_max(mpm->share->domain, function, status, 3, found);
+  status = mpsi_mpm_share_settle_alike(mpm, function, status, 3, found);
   if (status != MPS_OK) return status;
   mpm->run.edited = found[0] > 0.0;
   mpm->run.stale = found[1] > 0.0;
   mpm->run.lost = found[2] > 0.0;
   return MPS_OK;
+}
+
+/* What all ranks have: time, step, where bodies are. */
+static void give_state(const mps_mpm *mpm, mpsi_given *list) {
+  mpsi_given_begin(list);
+  mpsi_give(list, "the solver's time", mpm->run.time);
+  mpsi_give(list, "the solver's number of steps", (double)mpm->run.steps);
+  mpsi_give(list, "dt", mpm->def.dt);
+  for (int32_t b = 0; b < mpm->contact.bodies; b++)
+    mpsi_body_give_state(list, mpm->contact.body[b]);
+}
+
+/* What signals say of the step to be made. */
+static void give_signals(const mps_mpm *mpm, mpsi_given *list) {
+  for (int32_t k = 0; k < MPSI_HOLDS; k++)
+    if (mpm->boundaries.hold[k].kind != MPSI_HOLD_NONE)
+      mpsi_give_vector(list, "the velocity of a boundary", mpm->dim, mpm->boundaries.hold[k].v);
+  for (int32_t k = 0; k < mpm->loads.count; k++)
+    if (mpm->loads.traction[k].count > 0)
+      mpsi_give_vector(list, "the present factor on a load", mpm->dim, mpm->loads.traction[k].now);
+  for (int32_t b = 0; b < mpm->contact.bodies && !mpm->settling.on; b++)
+    if (mpm->contact.handle[b]->source.moves) mpsi_body_give_ahead(list, mpm->contact.body[b]);
+}
+
+mps_status mpsi_mpm_share_settle_alike(mps_mpm *mpm, const char *function, mps_status status,
+                                       int32_t count, double *values) {
+  mpsi_given list;
+  give_state(mpm, &list);
+  return mpsi_domain_settle_given_max(mpm->share->domain, function, status, &list, count, values);
+}
+
+mps_status mpsi_mpm_share_settle_step(mps_mpm *mpm, const char *function, mps_status status,
+                                      int32_t count, double *values) {
+  mpsi_given list;
+  give_state(mpm, &list);
+  if (status == MPS_OK) give_signals(mpm, &list);
+  return mpsi_domain_settle_given_max(mpm->share->domain, function, status, &list, count, values);
 }
 
 mps_status mpsi_mpm_share_settle(mps_mpm *mpm, const char *function, mps_status status) {
@@ -64,12 +101,12 @@ mps_status mpsi_mpm_share_agree_added(void *self, const char *function, mps_stat
                                       int64_t first) {
   mps_mpm *mpm = self;
   const int64_t count = mps_particles_count(mpm->particles) - first;
-  uint64_t hash = mpsi_domain_hash(MPSI_DOMAIN_HASH, &count, sizeof count);
+  uint64_t hash = mpsi_hash(MPSI_HASH, &count, sizeof count);
   for (int c = 0; c < mpm->dim; c++) /* columns may have moved */
-    hash = mpsi_domain_hash(hash, mpsi_particles_column(mpm->particles, "position", c) + first,
-                            (size_t)count * sizeof(double));
+    hash = mpsi_hash(hash, mpsi_particles_column(mpm->particles, "position", c) + first,
+                     (size_t)count * sizeof(double));
   return mpsi_domain_settle_same(mpm->share->domain, function, status,
-                                 "a hash of the particles to add", mpsi_domain_short(hash));
+                                 "a hash of the particles to add", mpsi_hash_short(hash));
 }
 
 /* Each rank lists particles that it has itself, or all of them list the same. */
@@ -79,8 +116,7 @@ mps_status mpsi_mpm_share_find(void *self, const char *function, mps_status stat
   mps_domain *domain = mpm->share->domain;
   double found[3] = {0.0};
   if (status == MPS_OK) {
-    found[0] =
-        mpsi_domain_short(mpsi_domain_hash(MPSI_DOMAIN_HASH, ids, (size_t)count * sizeof *ids));
+    found[0] = mpsi_hash_short(mpsi_hash(MPSI_HASH, ids, (size_t)count * sizeof *ids));
     found[1] = -found[0];
     found[2] = (double)(count - known);
   }

@@ -272,23 +272,22 @@ static mps_status read_def(mps_mpm *mpm, const char *function, const mps_mpm_bou
 static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status status,
                                 int32_t number, const mps_mpm_boundary_def *def) {
   if (!mpm->share) return status;
-  double numbers[24] = {0.0};
-  int32_t count = 0;
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  mpsi_give(&given, "boundary", number);
   if (status == MPS_OK) {
-    const double list[] = {number, def->kind, def->dofs, def->friction, def->settle};
-    count = (int32_t)(sizeof list / sizeof *list);
-    memcpy(numbers, list, sizeof list);
-    for (int c = 0; c < mpm->dim; c++) {
-      numbers[count++] = def->lower[c], numbers[count++] = def->upper[c];
-      numbers[count++] = def->factor[c];
-      numbers[count++] = mpsi_mpm_signal_kind(def->signal[c]);
-    }
-    if (def->ids && def->id_count > 0)
-      numbers[count++] = mpsi_domain_short(
-          mpsi_domain_hash(MPSI_DOMAIN_HASH, def->ids, (size_t)def->id_count * sizeof *def->ids));
+    MPSI_GIVE(&given, def, kind);
+    MPSI_GIVE(&given, def, dofs);
+    MPSI_GIVE(&given, def, friction);
+    MPSI_GIVE(&given, def, settle);
+    MPSI_GIVE_VECTOR(&given, def, lower, mpm->dim);
+    MPSI_GIVE_VECTOR(&given, def, upper, mpm->dim);
+    MPSI_GIVE_VECTOR(&given, def, factor, mpm->dim);
+    for (int c = 0; c < mpm->dim; c++) mpsi_signal_give(&given, "a hash of signal", def->signal[c]);
+    mpsi_give_bytes(&given, "a hash of ids", def->id_count > 0 ? def->ids : NULL,
+                    (size_t)def->id_count * sizeof *def->ids);
   }
-  return mpsi_domain_settle_numbers(mpm->share->domain, function, status,
-                                    "a hash of the boundary's definition", count, numbers);
+  return mpsi_domain_settle_given(mpm->share->domain, function, status, &given);
 }
 
 /* ---- the calls ------------------------------------------------------------------------------- */
@@ -407,6 +406,8 @@ mps_status mps_mpm_get_reaction_sized(mps_mpm *mpm, int32_t number, mps_reaction
   mpsi_hold_sums sums;
   int64_t counts[2];
   mps_status status = find(mpm, function, number);
+  if (mpm->share)
+    status = mpsi_domain_settle_same(mpm->share->domain, function, status, "boundary", number);
   if (status != MPS_OK) return status;
   status = sum_ranks(mpm, function, &mpm->boundaries.hold[number], &sums, counts);
   if (status != MPS_OK) return status;

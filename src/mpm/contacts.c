@@ -95,27 +95,26 @@ mps_status mpsi_mpm_check_inside(mps_mpm *mpm, const char *function, const mps_c
 static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status status,
                                 const mps_contact *contact) {
   if (!mpm->share) return status;
-  double numbers[40] = {0.0};
-  int32_t count = 0;
+  mpsi_given given;
+  mpsi_given_begin(&given);
   if (status == MPS_OK) {
     const mps_contact_def *d = &contact->def;
-    const mps_body *body = contact->body;
-    const double list[] = {
-        d->mover,    d->method,   d->sweeps,       d->friction,      d->penalty,    d->xi,
-        d->offset,   d->depth,    d->thin,         d->inside,        d->adhesion,   d->strength,
-        body->shape, body->parts, contact->extent, body->def.motion, body->def.mass};
-    count = (int32_t)(sizeof list / sizeof *list);
-    memcpy(numbers, list, sizeof list);
-    for (int c = 0; c < 3; c++) {
-      numbers[count++] = body->pose.x[c];
-      numbers[count++] = body->pose.v[c];
-      numbers[count++] = body->pose.spin[c];
-    }
-    for (int c = 0; c < 9; c++) numbers[count++] = body->pose.R[c];
+    MPSI_GIVE(&given, d, mover);
+    MPSI_GIVE(&given, d, method);
+    MPSI_GIVE(&given, d, sweeps);
+    MPSI_GIVE(&given, d, friction);
+    MPSI_GIVE(&given, d, penalty);
+    MPSI_GIVE(&given, d, xi);
+    MPSI_GIVE(&given, d, offset);
+    MPSI_GIVE(&given, d, depth);
+    MPSI_GIVE(&given, d, thin);
+    MPSI_GIVE(&given, d, inside);
+    MPSI_GIVE(&given, d, adhesion);
+    MPSI_GIVE(&given, d, strength);
+    MPSI_GIVE(&given, d, corner);
+    mpsi_body_give(&given, contact->body);
   }
-  return mpsi_domain_settle_numbers(mpm->share->domain, function, status,
-                                    "a hash of the contact's definition and of its body", count,
-                                    numbers);
+  return mpsi_domain_settle_given(mpm->share->domain, function, status, &given);
 }
 
 /* ---- the handle's questions ------------------------------------------------------------------ */

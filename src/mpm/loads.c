@@ -5,6 +5,7 @@
 
 #include "core/particles_internal.h"
 #include "core/retain.h"
+#include "signal/signal_internal.h"
 
 #include <string.h>
 
@@ -144,19 +145,19 @@ static mps_status copy_list(mps_mpm *mpm, const char *function, const mps_mpm_lo
 static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status status,
                                 int32_t number, const mps_mpm_load_def *def) {
   if (!mpm->share) return status;
-  double numbers[16] = {number, (double)def->id_count, def->ids != NULL, def->area != NULL};
-  int32_t count = 4;
-  for (int c = 0; c < mpm->dim; c++) {
-    numbers[count++] = def->traction[c], numbers[count++] = def->factor[c];
-    numbers[count++] = mpsi_mpm_signal_kind(def->signal[c]);
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  mpsi_give(&given, "load", number);
+  if (status == MPS_OK) {
+    const size_t bytes = def->id_count > 0 ? (size_t)def->id_count * 8 : 0;
+    MPSI_GIVE(&given, def, id_count);
+    MPSI_GIVE_VECTOR(&given, def, traction, mpm->dim);
+    MPSI_GIVE_VECTOR(&given, def, factor, mpm->dim);
+    for (int c = 0; c < mpm->dim; c++) mpsi_signal_give(&given, "a hash of signal", def->signal[c]);
+    mpsi_give_bytes(&given, "a hash of ids", def->ids, bytes);
+    mpsi_give_bytes(&given, "a hash of area", def->area, bytes);
   }
-  const bool listed = status == MPS_OK && def->ids && def->id_count > 0;
-  const size_t bytes = listed ? (size_t)def->id_count * 8 : 0;
-  uint64_t hash = mpsi_domain_hash(MPSI_DOMAIN_HASH, def->ids, bytes);
-  if (def->area) hash = mpsi_domain_hash(hash, def->area, bytes);
-  numbers[count++] = mpsi_domain_short(hash);
-  return mpsi_domain_settle_numbers(mpm->share->domain, function, status,
-                                    "a hash of the load's definition", count, numbers);
+  return mpsi_domain_settle_given(mpm->share->domain, function, status, &given);
 }
 
 /* The lowest free number, with a place in the list. */

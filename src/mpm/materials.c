@@ -91,15 +91,26 @@ static int64_t place(const mps_mpm *mpm, const int64_t *ids, int64_t i) {
   return ids ? mps_particles_index(mpm->particles, ids[i]) : i;
 }
 
+/* In the list of laws; as many as there are for a new one. */
+static int32_t number_of(const mps_mpm *mpm, const mps_material *material) {
+  int32_t number = 0;
+  while (number < mpm->laws.count && mpm->laws.law[number].material != material) number++;
+  return number;
+}
+
 /* On several ranks a list is the same on all, or of particles that the rank has. */
-static mps_status check_list(mps_mpm *mpm, const char *function, mps_status status, int64_t count,
-                             const int64_t *ids) {
+static mps_status check_list(mps_mpm *mpm, const char *function, mps_status status,
+                             const mps_material *material, int64_t count, const int64_t *ids) {
   int64_t known = 0;
   if (status == MPS_OK && (!ids || count < 0 || !mpm->share))
     status = mpsi_particles_check_ids_or_all(mpm->particles, function, count, ids);
   if (!mpm->share) return status;
-  status = mpsi_domain_settle_same(mpm->share->domain, function, status, "having a list of ids",
-                                   ids != NULL);
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  mpsi_give(&given, "having a list of ids", ids != NULL);
+  mpsi_material_give(&given, material);
+  mpsi_give(&given, "the number of the material", number_of(mpm, material));
+  status = mpsi_domain_settle_given(mpm->share->domain, function, status, &given);
   if (status != MPS_OK || !ids) return status;
   for (int64_t k = 0; k < count; k++) known += mps_particles_index(mpm->particles, ids[k]) >= 0;
   return mpsi_mpm_share_find(mpm, function, status, count, ids, known);
@@ -109,7 +120,7 @@ static mps_status check(mps_mpm *mpm, const char *function, const mps_material *
                         int64_t count, const int64_t *ids) {
   mps_status status = MPS_OK;
   if (!material) status = mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT, "material is NULL");
-  status = check_list(mpm, function, status, count, ids);
+  status = check_list(mpm, function, status, material, count, ids);
   if (status != MPS_OK) return status;
   const double *J = mpsi_material_reads_volume(material)
                         ? mpsi_particles_column(mpm->particles, "volume_ratio", 0)
@@ -137,8 +148,8 @@ static mps_status number_particles(mps_mpm *mpm) {
 /* Number of the law in the list, where it is put if it is new. */
 static mps_status list_law(mps_mpm *mpm, const char *function, mps_material *material,
                            int32_t *number) {
-  for (*number = 0; *number < mpm->laws.count; ++*number)
-    if (mpm->laws.law[*number].material == material) return MPS_OK;
+  *number = number_of(mpm, material);
+  if (*number < mpm->laws.count) return MPS_OK;
   const bool numbered = mpm->p.law != NULL;
   const int32_t fields = mps_particles_field_count(mpm->particles);
   mps_status status = number_particles(mpm);

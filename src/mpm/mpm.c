@@ -506,17 +506,21 @@ mps_context *mps_mpm_context(const mps_mpm *mpm) { return mpm ? mpm->context : N
 
 /* ---- for comparison -------------------------------------------------------------------------- */
 
-static mps_status check_before_steps(mps_mpm *mpm, const char *function) {
-  const mps_status status = mpsi_mpm_between_steps(mpm, function);
-  if (status != MPS_OK || mpm->run.steps == 0) return status;
-  return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
-                   "the solver has taken %lld steps: the variant is chosen before the first",
-                   (long long)mpm->run.steps);
+/* The variant is chosen before the first step, the same on all ranks. */
+static mps_status check_before_steps(mps_mpm *mpm, const char *function, const char *name,
+                                     double value) {
+  mps_status status = mpsi_mpm_between_steps(mpm, function);
+  if (status != MPS_OK) return status;
+  if (mpm->run.steps > 0)
+    status = mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
+                       "the solver has taken %lld steps: the variant is chosen before the first",
+                       (long long)mpm->run.steps);
+  return mpsi_domain_settle_same(mpm->def.domain, function, status, name, value);
 }
 
 mps_status mps_experimental_mpm_transfer(mps_mpm *mpm, int32_t transfer) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_status status = check_before_steps(mpm, __func__);
+  const mps_status status = check_before_steps(mpm, __func__, "transfer", transfer);
   if (status != MPS_OK) return status;
   if (transfer != MPS_EXPERIMENTAL_TRANSFER_SHAPE && transfer != MPS_EXPERIMENTAL_TRANSFER_WEIGHT)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
@@ -527,7 +531,7 @@ mps_status mps_experimental_mpm_transfer(mps_mpm *mpm, int32_t transfer) {
 
 mps_status mps_experimental_mpm_strain(mps_mpm *mpm, int32_t strain) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_status status = check_before_steps(mpm, __func__);
+  const mps_status status = check_before_steps(mpm, __func__, "strain", strain);
   if (status != MPS_OK) return status;
   if (strain != MPS_EXPERIMENTAL_STRAIN_DERIVATIVE && strain != MPS_EXPERIMENTAL_STRAIN_FIT)
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT,
@@ -538,14 +542,15 @@ mps_status mps_experimental_mpm_strain(mps_mpm *mpm, int32_t strain) {
 
 mps_status mps_experimental_mpm_standard(mps_mpm *mpm, double flip) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_status status = check_before_steps(mpm, __func__);
+  const mps_status status = check_before_steps(mpm, __func__, "flip", flip);
   if (status != MPS_OK) return status;
   if (!(flip >= 0.0 && flip <= 1.0))
     return mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "flip is %g, must be in [0, 1]",
                      flip);
   mpm->standard = true;
   mpm->flip = flip;
-  const mps_status widened = mpsi_mpm_widen_sides(mpm, __func__);
+  const mps_status widened =
+      mpsi_domain_settle(mpm->def.domain, __func__, mpsi_mpm_widen_sides(mpm, __func__));
   if (widened != MPS_OK) mpm->standard = false, mpm->flip = 0.0;
   return widened;
 }

@@ -66,7 +66,7 @@ static mps_status call(mps_mpm *mpm, const char *function, mps_mpm_fn callback, 
   mpsi_guard_enter(&mpm->run.guard, mpm->context, "the callback of mps_mpm_run");
   const mps_status status =
       mpsi_guard_leave(&mpm->run.guard, mpm->context, function, callback(user, mpm));
-  return mpm->share ? mpsi_domain_settle(mpm->share->domain, function, status) : status;
+  return mpm->share ? mpsi_mpm_share_settle_alike(mpm, function, status, 0, NULL) : status;
 }
 
 /* A run under way. */

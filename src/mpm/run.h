@@ -33,8 +33,6 @@ mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt);
 mps_status mpsi_mpm_evaluate_signals(mps_mpm *mpm, const char *function, double dt, bool moves);
 /* signals.c: whether one of a load or boundary may, which all ranks know alike; not of bodies. */
 bool mpsi_mpm_signals_may_refuse(const mps_mpm *mpm);
-/* signals.c: what ranks compare of a signal: none, a function of the caller's, or another. */
-double mpsi_mpm_signal_kind(const mps_signal *signal);
 /* access.c: MPS_ERROR_STATE in a callback of the solver; or after a step that has failed or while a
  * field is edited; or any of these. */
 mps_status mpsi_mpm_between_steps(mps_mpm *mpm, const char *function);

@@ -191,9 +191,11 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
   if (status == MPS_OK) status = check_bodies(mpm, function);
   if (status == MPS_OK && out) status = mpsi_out_check(mpm->context, function, out, size);
   if (mpm->share) {
-    const double numbers[2] = {def.tolerance, (double)def.max_steps};
-    status = mpsi_domain_settle_numbers(mpm->share->domain, function, status,
-                                        "a hash of the definition of settling", 2, numbers);
+    mpsi_given given;
+    mpsi_given_begin(&given);
+    MPSI_GIVE(&given, &def, tolerance);
+    MPSI_GIVE(&given, &def, max_steps);
+    status = mpsi_domain_settle_given(mpm->share->domain, function, status, &given);
   }
   if (status != MPS_OK) return status;
   mpsi_settling *settling = &mpm->settling;

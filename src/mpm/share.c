@@ -339,27 +339,27 @@ static mps_status keep_own(mps_mpm *mpm, const char *function, mpsi_storage **fo
 /* Are all ranks given the same? */
 static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status status) {
   const mps_mpm_def *d = &mpm->def;
-  double numbers[32] = {d->geometry,
-                        d->spline,
-                        d->volumetric,
-                        d->step_from,
-                        d->budget,
-                        d->walls,
-                        d->measure,
-                        d->local_damping,
-                        d->viscous_damping,
-                        d->cell,
-                        d->dt,
-                        d->courant,
-                        mpm->def.kernel ? 1.0 : 0.0,
-                        mpm->laws.law[0].modulus};
-  int32_t count = 14;
-  for (int c = 0; c < mpm->dim; c++) {
-    numbers[count++] = d->origin[c], numbers[count++] = d->gravity[c];
-    numbers[count++] = d->lower[c], numbers[count++] = d->upper[c];
-  }
-  status = mpsi_domain_settle_numbers(d->domain, function, status,
-                                      "a hash of the solver's definition", count, numbers);
+  mpsi_given given;
+  mpsi_given_begin(&given);
+  MPSI_GIVE(&given, d, geometry);
+  MPSI_GIVE(&given, d, spline);
+  MPSI_GIVE(&given, d, volumetric);
+  MPSI_GIVE(&given, d, step_from);
+  MPSI_GIVE(&given, d, budget);
+  MPSI_GIVE(&given, d, walls);
+  MPSI_GIVE(&given, d, measure);
+  MPSI_GIVE(&given, d, local_damping);
+  MPSI_GIVE(&given, d, viscous_damping);
+  MPSI_GIVE(&given, d, cell);
+  MPSI_GIVE(&given, d, dt);
+  MPSI_GIVE(&given, d, courant);
+  mpsi_give(&given, "having a kernel", d->kernel != NULL);
+  MPSI_GIVE_VECTOR(&given, d, origin, mpm->dim);
+  MPSI_GIVE_VECTOR(&given, d, gravity, mpm->dim);
+  MPSI_GIVE_VECTOR(&given, d, lower, mpm->dim);
+  MPSI_GIVE_VECTOR(&given, d, upper, mpm->dim);
+  if (status == MPS_OK) mpsi_material_give(&given, mpm->laws.law[0].material);
+  status = mpsi_domain_settle_given(d->domain, function, status, &given);
   if (status != MPS_OK) return status;
   return mpsi_domain_settle_particles(d->domain, function, status, mpm->particles);
 }

@@ -65,6 +65,12 @@ mps_status mpsi_mpm_share_sort(mps_mpm *mpm, const char *function);
 mps_status mpsi_mpm_share_join(mps_mpm *mpm, const char *function);
 /* agree.c: what has become of all ranks, or of the only one. */
 mps_status mpsi_mpm_share_settle(mps_mpm *mpm, const char *function, mps_status status);
+/* agree.c: the same, and whether all have the same time and bodies; with the greatest of `count`
+ * values. In a step also whether signals have given all the same. */
+mps_status mpsi_mpm_share_settle_alike(mps_mpm *mpm, const char *function, mps_status status,
+                                       int32_t count, double *values);
+mps_status mpsi_mpm_share_settle_step(mps_mpm *mpm, const char *function, mps_status status,
+                                      int32_t count, double *values);
 /* agree.c: MPS_ERROR_ARGUMENT unless these are particles of the set, on whatever rank; what has
  * become of all before, `status` here, comes first. */
 mps_status mpsi_mpm_share_check_ids(mps_mpm *mpm, const char *function, mps_status status,

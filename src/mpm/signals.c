@@ -67,7 +67,3 @@ bool mpsi_mpm_signals_may_refuse(const mps_mpm *mpm) {
   }
   return may;
 }
-
-double mpsi_mpm_signal_kind(const mps_signal *signal) {
-  return !signal ? 0.0 : mpsi_signal_may_fail(signal) ? 2.0 : 1.0;
-}

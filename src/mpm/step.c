@@ -173,7 +173,7 @@ mps_status mpsi_mpm_take_step(mps_mpm *mpm, const char *function, double dt) {
   const bool goes_on = mpm->share && mpsi_mpm_share_goes_on(mpm);
   mps_status status = mpsi_mpm_evaluate_signals(mpm, function, dt, true);
   if (mpm->share && mpsi_mpm_signals_may_refuse(mpm))
-    status = mpsi_domain_settle(mpm->share->domain, function, status);
+    status = mpsi_mpm_share_settle_step(mpm, function, status, 0, NULL);
   if (status != MPS_OK && !(mpm->share && mpm->contact.bodies > 0)) return status;
   status = prepare(mpm, function, status); /* where ranks agree on the signals of bodies */
   if (status == MPS_OK) status = mpsi_mpm_prepare_undo(mpm, function);

@@ -51,7 +51,7 @@ mps_status mpsi_mpm_share_ready(mps_mpm *mpm, const char *function, mps_status s
     for (int32_t q = 0; q < cells->pairs; q++) springs += mpsi_mpm_has_springs(mpm, cells, q);
     found[SPRINGS] = fmax(found[SPRINGS], springs);
   }
-  status = mpsi_domain_settle_max(share->domain, function, status, FOUND, found);
+  status = mpsi_mpm_share_settle_step(mpm, function, status, FOUND, found);
   share->ready = status == MPS_OK;
   share->apart = found[APART] > 0.0;
   share->thin = found[THIN] > 0.0;

@@ -148,7 +148,8 @@ mps_status mps_mpm_get_losses_sized(mps_mpm *mpm, mps_mpm_losses *out, size_t si
     return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                      "budget is 0 in the solver's definition: the losses are not known");
   double e[MPSI_ENERGY_SUMS];
-  const mps_status status = sum_energies(mpm, function, e);
+  mps_status status = mpsi_mpm_share_settle(mpm, function, MPS_OK);
+  if (status == MPS_OK) status = sum_energies(mpm, function, e);
   if (status != MPS_OK) return status;
   mps_mpm_losses l = {.laws = e[MPSI_ENERGY_SPENT],
                       .boundaries = e[MPSI_ENERGY_BOUNDARY_LOSS],

@@ -4,14 +4,21 @@
 
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define TAG 7351
 #define PIECE (1 << 30) /* bytes of one message of MPI, whose counts are int */
 
 typedef struct transport {
   MPI_Comm comm;
-  MPI_Request vote; /* of max_begin */
+  MPI_Request vote;       /* of max_begin */
+  struct transport *next; /* of those that have left */
+  MPI_Request last;       /* of max_leave */
+  double *values;         /* its own; NULL: the transport has not left */
 } transport;
+
+/* Transports whose last reduction the other ranks have not joined yet. One process has one MPI. */
+static transport *leaving;
 
 /* ---- callbacks --------------------------------------------------------------------------------
  */
@@ -31,6 +38,19 @@ static mps_status max_begin(void *user, int32_t count, double *values) {
 static mps_status max_end(void *user) {
   transport *t = user;
   return MPSI_PETSC_STATUS(MPI_Wait(&t->vote, MPI_STATUS_IGNORE));
+}
+
+static mps_status max_leave(void *user, int32_t count, const double *values) {
+  transport *t = user;
+  t->values = malloc((size_t)count * sizeof *t->values);
+  if (!t->values) return MPS_ERROR_MEMORY;
+  memcpy(t->values, values, (size_t)count * sizeof *t->values);
+  const mps_status status = MPSI_PETSC_STATUS(
+      MPI_Iallreduce(MPI_IN_PLACE, t->values, count, MPI_DOUBLE, MPI_MAX, t->comm, &t->last));
+  if (status == MPS_OK) return MPS_OK;
+  free(t->values);
+  t->values = NULL;
+  return status;
 }
 
 static mps_status reduce_sum(void *user, int32_t count, int64_t *values) {
@@ -183,10 +203,41 @@ static mps_status star_end(void *user, void *handle) {
 /* ---- life -------------------------------------------------------------------------------------
  */
 
+static void drop(transport *t) {
+  (void)MPI_Comm_free(&t->comm);
+  free(t->values);
+  free(t);
+}
+
+/* Of the transports that have left those that all ranks have done with; `wait`: all of them. */
+static void drop_left(bool wait) {
+  for (transport **at = &leaving; *at;) {
+    transport *t = *at;
+    int done = 0;
+    if (wait)
+      done = MPI_Wait(&t->last, MPI_STATUS_IGNORE) == 0;
+    else
+      (void)MPI_Test(&t->last, &done, MPI_STATUS_IGNORE);
+    if (!done && !wait) {
+      at = &t->next;
+      continue;
+    }
+    *at = t->next;
+    drop(t);
+  }
+}
+
+void mpsi_petsc_end_domains(void) { drop_left(true); }
+
 static void destroy(void *user) {
   transport *t = user;
-  (void)MPI_Comm_free(&t->comm);
-  free(t);
+  if (t->values) {
+    t->next = leaving;
+    leaving = t;
+    drop_left(false);
+  } else {
+    drop(t);
+  }
   mpsi_petsc_leave();
 }
 
@@ -198,6 +249,7 @@ static mps_status refuse(mps_status status) {
 static mps_status create(mps_context *context, MPI_Comm communicator, mps_domain **out) {
   transport *t = calloc(1, sizeof *t);
   int rank = 0, size = 0;
+  drop_left(false);
   if (!t) return refuse(MPS_ERROR_MEMORY);
   if (MPI_Comm_dup(communicator, &t->comm) != 0) {
     free(t);
@@ -219,6 +271,7 @@ static mps_status create(mps_context *context, MPI_Comm communicator, mps_domain
   def.reduce_sum = reduce_sum;
   def.max_begin = max_begin;
   def.max_end = max_end;
+  def.max_leave = max_leave;
   def.destroy = destroy;
   const mps_status status = mps_domain_create(context, &def, out);
   if (status != MPS_OK) destroy(t);

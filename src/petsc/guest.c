@@ -42,6 +42,7 @@ mps_status mpsi_petsc_enter(void) {
 void mpsi_petsc_leave(void) {
   (void)PetscPopErrorHandler();
   if (--guest.objects > 0) return;
+  if (guest.began_mpi) mpsi_petsc_end_domains();
   if (guest.began_petsc) (void)PetscFinalize();
   if (guest.began_mpi) (void)MPI_Finalize();
   guest.began_petsc = guest.began_mpi = false;

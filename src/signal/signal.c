@@ -98,10 +98,19 @@ uint64_t mpsi_signal_hash(const mps_signal *signal, uint64_t hash) {
   const double kind = !signal ? 0.0 : signal->fn ? 1.0 : 2.0;
   hash = mpsi_hash(hash, &kind, sizeof kind);
   if (kind < 2.0) return hash;
+  for (double t = 0.1; t < 20.0; t *= 5.0) { /* the kinds differ in their motion */
+    const mpsi_signal_motion m = signal->at(signal, t);
+    const double sample[3] = {m.u, m.v, m.a};
+    hash = mpsi_hash(hash, sample, sizeof sample);
+  }
   const double numbers[] = {signal->start, signal->end,   signal->peak,  signal->amplitude,
                             signal->rate,  signal->shift, signal->coast, (double)signal->count};
   hash = mpsi_hash(hash, numbers, sizeof numbers);
   return mpsi_hash(hash, signal->knots, (size_t)signal->count * sizeof *signal->knots);
+}
+
+void mpsi_signal_give(mpsi_given *list, const char *name, const mps_signal *signal) {
+  mpsi_give(list, name, mpsi_hash_short(mpsi_signal_hash(signal, MPSI_HASH)));
 }
 
 /* For the caller: NaN is the answer of a signal that has none. */

@@ -3,6 +3,8 @@
 #ifndef MPSI_SIGNAL_INTERNAL_H
 #define MPSI_SIGNAL_INTERNAL_H
 
+#include "core/given.h"
+
 #include <mps/signal.h>
 
 #include <stdbool.h>
@@ -31,5 +33,7 @@ bool mpsi_signal_may_fail(const mps_signal *signal);
 /* Goes on with a hash (core/hash.h) over what the signal is made of; of a function of the caller,
  * over that it is one. */
 uint64_t mpsi_signal_hash(const mps_signal *signal, uint64_t hash);
+/* Adds that hash. */
+void mpsi_signal_give(mpsi_given *list, const char *name, const mps_signal *signal);
 
 #endif

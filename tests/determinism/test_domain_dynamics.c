@@ -134,7 +134,7 @@ static const struct {
   const char *text;
 } trouble[TROUBLES] = {
     [OTHER_SET] = {MPS_ERROR_ARGUMENT, "a hash of the set's particles"},
-    [OTHER_DT] = {MPS_ERROR_ARGUMENT, "a hash of the solver's definition"},
+    [OTHER_DT] = {MPS_ERROR_ARGUMENT, "dt is "},
     [OTHER_COUNT] = {MPS_ERROR_ARGUMENT, "count is "},
     [DIVERGES] = {MPS_ERROR_DIVERGED, "diverged at step"},
     [CANCELLED] = {MPS_ERROR_CANCELLED, "stopped by the cancel hook"},
@@ -142,10 +142,10 @@ static const struct {
     [CALLBACK_FAILS] = {MPS_ERROR_IO, "rank 2: "},
     [UNKNOWN_ID] = {MPS_ERROR_ARGUMENT, "of 2 ids 1 are of particles of the set on any rank"},
     [REMOVAL] = {MPS_ERROR_UNSUPPORTED, "the particles lie on 3 ranks"},
-    [OTHER_LOAD] = {MPS_ERROR_ARGUMENT, "a hash of the load's definition"},
-    [OTHER_SIGNAL] = {MPS_ERROR_ARGUMENT, "a hash of the load's definition"},
+    [OTHER_LOAD] = {MPS_ERROR_ARGUMENT, "another value on others"},
+    [OTHER_SIGNAL] = {MPS_ERROR_ARGUMENT, "another value on others"},
     [NO_LOAD] = {MPS_ERROR_ARGUMENT, "rank 1: def is NULL"},
-    [OTHER_IDS] = {MPS_ERROR_ARGUMENT, "a hash of the boundary's definition"},
+    [OTHER_IDS] = {MPS_ERROR_ARGUMENT, "another value on others"},
     [OTHER_REMOVED] = {MPS_ERROR_ARGUMENT, "number is "},
     [NO_SUCH_BOUNDARY] = {MPS_ERROR_ARGUMENT, "there is no boundary number 7"},
 };

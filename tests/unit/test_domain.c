@@ -358,6 +358,64 @@ static void test_refused_memory(void **state) {
   }
 }
 
+/* Ranks in different calls: each gets an error that names both, nothing waits, and they go on. */
+static void run_calls(void *user, team *t, int32_t rank) {
+  scene *s = user;
+  found *f = &s->rank[rank];
+  mps_domain *domain = NULL;
+  mps_particles *share = NULL, *whole = NULL;
+  mps_context *own = rank_context(s, rank);
+  const mps_domain_def def = team_domain_def(t, rank);
+  f->status[0] = mps_domain_create(own, &def, &domain);
+  double value = rank;
+  f->status[1] = rank == 1 ? mps_domain_max(domain, 1, &value) : mps_domain_agree(domain, MPS_OK);
+  snprintf(f->message, sizeof f->message, "%s", mps_context_error(own)->message);
+  f->good =
+      f->status[1] == MPS_OK || strcmp(mps_context_error(own)->function,
+                                       rank == 1 ? "mps_domain_max" : "mps_domain_agree") == 0;
+  f->status[2] = make_share(own, rank, t->size, &share);
+  f->status[3] = rank == 0 ? mps_domain_gather(domain, share, &whole)
+                           : mps_domain_get_field(domain, share, "id", 0, NULL, NULL);
+  f->status[4] = mps_domain_max(domain, 1, &value); /* they are together again */
+  f->value[0] = value;
+  if (rank == 2) mps_domain_destroy(&domain);
+  f->status[5] = rank == 2 ? MPS_ERROR_STATE : mps_domain_agree(domain, MPS_OK);
+  if (rank != 2)
+    f->good = f->good && strstr(mps_context_error(own)->message, "rank 2 has destroyed its domain");
+  f->status[6] = rank == 2 ? MPS_ERROR_STATE : mps_domain_max(domain, 1, &value);
+  mps_particles_destroy(&whole);
+  mps_particles_destroy(&share);
+  mps_domain_destroy(&domain);
+  mps_context_destroy(&own);
+}
+
+static void test_different_calls(void **state) {
+  (void)state;
+  static const mps_status expected[7] = {MPS_OK, MPS_ERROR_STATE, MPS_OK,         MPS_ERROR_STATE,
+                                         MPS_OK, MPS_ERROR_STATE, MPS_ERROR_STATE};
+  for (int32_t size = 3; size <= 7; size += 2) {
+    scene s = {.what = 0};
+    team t;
+    team_begin(&t, size);
+    team_run(&t, run_calls, &s);
+    assert_false(t.lost);
+    assert_false(t.mixed);
+    team_end(&t);
+    for (int32_t r = 0; r < size; r++) {
+      for (int k = 0; k < 7; k++)
+        if (s.rank[r].status[k] != expected[k])
+          fail_msg("rank %d, call %d: %d %s", (int)r, k, (int)s.rank[r].status[k],
+                   s.rank[r].message);
+      assert_true(s.rank[r].good);
+      assert_string_equal(s.rank[r].message, s.rank[0].message);
+      assert_non_null(strstr(s.rank[r].message,
+                             "rank 0 has called mps_domain_agree and rank 1 mps_domain_max"));
+      mps_assert_near(s.rank[r].value[0], size - 1, 0.0);
+      assert_int_equal(s.allocator[r].live, 0);
+    }
+  }
+}
+
 /* A rank that falls silent: the others give up after the limit, with an error. */
 static void run_lost(void *user, team *t, int32_t rank) {
   scene *s = user;
@@ -432,8 +490,8 @@ int main(void) {
       cmocka_unit_test(test_exact_sums),     cmocka_unit_test(test_exact_sums_have_no_order),
       cmocka_unit_test(test_reductions),     cmocka_unit_test(test_errors_are_shared),
       cmocka_unit_test(test_gather),         cmocka_unit_test(test_fields),
-      cmocka_unit_test(test_refused_memory), cmocka_unit_test(test_lost_partner),
-      cmocka_unit_test(test_arguments),
+      cmocka_unit_test(test_refused_memory), cmocka_unit_test(test_different_calls),
+      cmocka_unit_test(test_lost_partner),   cmocka_unit_test(test_arguments),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

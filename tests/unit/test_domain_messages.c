@@ -62,6 +62,7 @@ static mps_domain_def counting(counted *c) {
   def.rendezvous = count_meeting;
   def.star_create = make_star, def.star_begin = count_copy, def.star_end = end_copy;
   def.star_destroy = drop_star;
+  def.max_begin = NULL, def.max_end = NULL, def.max_leave = NULL;
   return def;
 }
 

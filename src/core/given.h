@@ -1,0 +1,70 @@
+/* given.h - what a caller has given, as a list of named numbers: ranks compare theirs, and a
+ * message names the number that differs. SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_GIVEN_H
+#define MPSI_GIVEN_H
+
+#include "hash.h"
+
+#include <math.h>
+#include <string.h>
+
+#define MPSI_GIVEN_MOST 160 /* what comes after is compared as one number */
+
+typedef struct mpsi_given {
+  int32_t count;
+  uint64_t rest; /* hash of what comes after the most */
+  const char *name[MPSI_GIVEN_MOST];
+  double value[MPSI_GIVEN_MOST]; /* NaN: unset */
+} mpsi_given;
+
+static inline void mpsi_given_begin(mpsi_given *list) {
+  list->count = 0;
+  list->rest = MPSI_HASH;
+}
+
+/* All NaN are the same. */
+static inline uint64_t mpsi_hash_number(uint64_t hash, double number) {
+  if (isnan(number)) number = NAN;
+  return mpsi_hash(hash, &number, sizeof number);
+}
+
+/* `name` must outlive the list. */
+static inline void mpsi_give(mpsi_given *list, const char *name, double value) {
+  if (list->count == MPSI_GIVEN_MOST) {
+    list->rest = mpsi_hash_number(list->rest, value);
+    return;
+  }
+  list->name[list->count] = name;
+  list->value[list->count++] = value;
+}
+
+static inline void mpsi_give_vector(mpsi_given *list, const char *name, int32_t count,
+                                    const double *values) {
+  for (int32_t c = 0; c < count; c++) mpsi_give(list, name, values[c]);
+}
+
+/* A member of a definition by its own name; a vector of `count`. */
+#define MPSI_GIVE(list, def, member) mpsi_give(list, #member, (double)(def)->member)
+#define MPSI_GIVE_VECTOR(list, def, member, count)                                                 \
+  mpsi_give_vector(list, #member, count, (def)->member)
+
+/* What of a hash a double tells exactly. */
+static inline double mpsi_hash_short(uint64_t hash) { return (double)(hash >> 12); }
+
+static inline void mpsi_give_bytes(mpsi_given *list, const char *name, const void *data,
+                                   size_t bytes) {
+  mpsi_give(list, name, mpsi_hash_short(mpsi_hash(MPSI_HASH, data, data ? bytes : 0)));
+}
+
+static inline void mpsi_give_text(mpsi_given *list, const char *name, const char *text) {
+  mpsi_give_bytes(list, name, text, text ? strlen(text) : 0);
+}
+
+/* Of the whole list. */
+static inline uint64_t mpsi_given_hash(const mpsi_given *list) {
+  uint64_t hash = mpsi_hash(list->rest, &list->count, sizeof list->count);
+  for (int32_t k = 0; k < list->count; k++) hash = mpsi_hash_number(hash, list->value[k]);
+  return hash;
+}
+
+#endif

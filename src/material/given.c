@@ -1,0 +1,49 @@
+/* given.c - what a law is made of, as named numbers. SPDX-License-Identifier: BSD-3-Clause */
+#include "material_private.h"
+
+/* Of functions of the caller: whether there is one, not which; addresses differ among processes. */
+void mpsi_material_give(mpsi_given *list, const mps_material *material) {
+  mpsi_give(list, "having a material", material != NULL);
+  if (!material) return;
+  const mpsi_law *law = &material->law;
+  const struct {
+    const char *name;
+    double value;
+  } constants[] = {{"the shear modulus of the material", law->shear},
+                   {"the bulk modulus of the material", law->bulk},
+                   {"Lame's first constant of the material", law->lambda},
+                   {"the reciprocal bulk modulus of the material", law->per_bulk},
+                   {"the yield stress of the material", law->yield},
+                   {"the hardening modulus of the material", law->hardening},
+                   {"the slope of the material's cone", law->alpha},
+                   {"the strength of the material's cone", law->kappa},
+                   {"the slope of the material's flow cone", law->alpha_flow},
+                   {"the return to the material's cone", law->cone},
+                   {"the tension limit of the material", law->tension},
+                   {"the strength of the material at its tension limit", law->q_tension},
+                   {"sin(phi) of the material", law->sin_phi},
+                   {"sin(psi) of the material", law->sin_psi},
+                   {"c cos(phi) of the material", law->c_cos_phi},
+                   {"the apex of the material's pyramid", law->apex},
+                   {"the tension limit of the material's pyramid", law->cut},
+                   {"the viscosity of the material", law->viscosity},
+                   {"the equation of state of the material", law->tait},
+                   {"the material's having no tension", law->no_tension},
+                   {"turning the stress of the material", law->turns_stress},
+                   {"the material's need of a deformation", law->needs_deformation},
+                   {"the wave modulus of the material", material->wave_modulus},
+                   {"the material's number of histories", material->history_count},
+                   {"stating the moduli of the material", law->has_moduli}};
+  mpsi_give_text(list, "a hash of the kind of the material's law", material->type->name);
+  mpsi_give_bytes(list, "a hash of the constants of the material's UMAT", material->owned_constants,
+                  (size_t)material->owned_count * sizeof *material->owned_constants);
+  for (size_t k = 0; k < sizeof constants / sizeof *constants; k++)
+    mpsi_give(list, constants[k].name, constants[k].value);
+  mpsi_give_text(list, "a hash of the material's name", material->name);
+  uint64_t hash = MPSI_HASH;
+  for (int32_t h = 0; h < material->history_count; h++) {
+    hash = mpsi_hash(hash, material->history_names[h], strlen(material->history_names[h]) + 1);
+    hash = mpsi_hash_number(hash, material->history_initial[h]);
+  }
+  mpsi_give(list, "a hash of the material's histories", mpsi_hash_short(hash));
+}
