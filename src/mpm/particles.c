@@ -110,12 +110,8 @@ mps_status mpsi_mpm_check_start(const mps_mpm *mpm, const char *function) {
 }
 
 mps_status mpsi_mpm_check_lost(mps_mpm *mpm, const char *function) {
-  if (!mpm->run.lost) return MPS_OK;
-  if (mpsi_mpm_check_places(mpm, function, 0, mpm->p.count) == MPS_OK) {
-    mpm->run.lost = false;
-    mpm->run.edited = true;
+  if (!mpm->run.lost || mpsi_mpm_check_places(mpm, function, 0, mpm->p.count) == MPS_OK)
     return MPS_OK;
-  }
   mps_error found = *mps_context_error(mpm->context);
   return mpsi_fail(mpm->context, function, MPS_ERROR_STATE,
                    "%s, since the last step: edit its position, remove it or go back",

@@ -12,7 +12,9 @@ mps_status mpsi_mpm_tidy(mps_mpm *mpm, const char *function) {
   mps_status status = mpsi_mpm_check_whole(mpm, function);
   if (status == MPS_OK) status = mpsi_mpm_check_lost(mpm, function);
   if (mpm->share) status = mpsi_mpm_share_agree(mpm, function, status);
-  if (status != MPS_OK || !mpm->run.edited) return status;
+  if (status != MPS_OK) return status;
+  if (mpm->run.lost) mpm->run.lost = false, mpm->run.edited = true; /* on no rank any more */
+  if (!mpm->run.edited) return status;
   status = mpsi_mpm_check_masses(mpm, function);
   if (mpm->share) status = mpsi_mpm_share_tidy(mpm, function, status);
   if (status == MPS_OK && mpm->run.stale) status = mpsi_mpm_sort(mpm, function);
