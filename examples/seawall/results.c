@@ -163,8 +163,35 @@ static bool close_series(app *a, seawall *w) {
          (!w->wall_series || app_check(a, mps_recorder_close(&w->wall_series)));
 }
 
+#define SMALL                                                                                      \
+  0.05 /* of the wall's height: displacements for which its theory is one of small ones */
+
+/* What the run's own assumptions do not cover. */
+static void warn_of_limits(app *a, const seawall *w) {
+  const double height = w->s.wall_height;
+  const seawall_sample *bent = w->sample, *high = w->sample;
+  for (int64_t k = 1; k < w->samples; k++) {
+    const seawall_sample *p = &w->sample[k];
+    if (fabs(p->deflection) > fabs(bent->deflection)) bent = p;
+    if (isnan(high->level) || p->level > high->level) high = p;
+  }
+  if (fabs(bent->deflection) > SMALL * height)
+    app_warn(
+        a,
+        "the wall's crest moves by %.3g m at t = %.3f s, more than %g of its height of %g m: its "
+        "displacements are computed as small ones",
+        bent->deflection, bent->t, SMALL, height);
+  if (w->s.depth + high->level > height)
+    app_warn(
+        a,
+        "the water at the wall is %.3f m high at t = %.3f s, the wall %g m: it would go over its "
+        "crest, which the computed one does not have",
+        w->s.depth + high->level, high->t, height);
+}
+
 bool seawall_write(app *a, seawall *w) {
   const sainflou h = find_heights(w);
+  warn_of_limits(a, w);
   if (!write_force(a, w) || !write_pressure(a, w, h.harmonic) || !write_wall(a, w) ||
       !close_series(a, w) || !write_summary(a, w, &h) || !seawall_draw(a, w, h.harmonic))
     return false;

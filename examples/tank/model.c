@@ -158,6 +158,7 @@ static mps_status measure_tank(tank_model *m, tank_sample *sample) {
     status = mps_body_get_state(m->box, &box);
     if (status != MPS_OK) return status;
     sample->deflection = box.position[1] - s->depth;
+    m->roll = fmax(m->roll, fabs(box.rotation[2]));
   }
   sample->left = left.force[0]; /* the walls push inwards, the water outwards */
   sample->right = -right.force[0];

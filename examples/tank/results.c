@@ -368,8 +368,7 @@ static void summarise_waves(output *f, const tank_model *m, const figures *g) {
   json_number(f, "wave_number", k);
   json_number(f, "havelock_height", havelock);
   json_number(f, "gauge_height", gauge);
-  json_number(f, "gauge_height_linear",
-                gauges_of(m) ? 2.0 * harmonic(m, m->linear, 0, NULL) : NAN);
+  json_number(f, "gauge_height_linear", gauges_of(m) ? 2.0 * harmonic(m, m->linear, 0, NULL) : NAN);
   json_number(f, "wall_harmonic", H);
   json_number(f, "wall_harmonic_linear", harmonic(m, m->linear, TANK_GAUGES, NULL));
   json_number(f, "force_harmonic", harmonic(m, m->sample, FORCE, NULL));
@@ -449,6 +448,7 @@ static void summarise_box(output *f, const tank_model *m, const figures *g) {
   json_number(f, "decay", g->decay);
   json_number(f, "deflection", g->deflection);
   json_number(f, "deflection_exact", 0.0 - m->s.amplitude);
+  json_number(f, "roll_max", m->roll);
   if (!isnan(g->period))
     printf(
         "heave: period %.4f s, potential flow %.4f s (%+.2f %%), decay %.3f 1/s; mean %.3f mm, at "
@@ -551,8 +551,20 @@ static bool find_linear(app *a, tank_model *m) {
   return app_check(a, tank_linear(&m->s, m->samples, m->sample, m->linear));
 }
 
+#define UPRIGHT 0.05 /* rad */
+
+/* The heave and its theory are those of a box that stays upright. */
+static void warn_of_roll(app *a, const tank_model *m) {
+  if (m->roll > UPRIGHT)
+    app_warn(a,
+             "the box rolls by up to %.1f degrees: period, decay and their theory are those of the "
+             "heave of a box that stays upright",
+             180.0 / WAVES_PI * m->roll);
+}
+
 bool tank_write(app *a, tank_model *m) {
   const bool drop = m->s.kind == TANK_DROP;
+  warn_of_roll(a, m);
   if (!find_linear(a, m)) return false;
   if (drop ? !write_drop(a, m) : !write_force(a, m) || !write_gauges(a, m)) return false;
   if (tank_swings(&m->s) && !write_structure(a, m)) return false;

@@ -83,6 +83,7 @@ typedef struct tank_model {
   mps_recorder *series;
   tank_sample *sample;
   int64_t samples, capacity;
+  double roll; /* rad: of the box, the largest since the start or restart */
   tank_sample *linear; /* tank_linear at the samples, NULL where there is no piston */
   mps_fluid_report report;
   const option *table;

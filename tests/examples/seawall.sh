@@ -21,6 +21,12 @@ if command -v gnuplot >/dev/null; then
   [ "$(head -c 4 "$work/a/animation.gif")" = GIF8 ] || fail "animation.gif"
 fi
 
+# A wall as soft as this breaks the theory of small displacements: a warning, in summary.json too.
+"$1/mps-seawall" $coarse --young 1000 --duration 0.1 --frames 0 --out "$work/soft" >"$work/log" 2>"$work/warned"
+grep -q "warning: the wall's crest moves by" "$work/warned" || fail "no warning of a wall that moves by metres"
+grep '"warnings"' "$work/soft/summary.json" | grep -q "the wall's crest moves by" || fail "summary.json has no warning"
+! grep "\"warnings\"" "$work/a/summary.json" | grep -q "crest moves by" || fail "a stiff wall is warned of"
+
 # Still water: rho g d^2/2 and rho g d^3/6; the crest of a beam that bends and shears moves by 9.955e-8.
 "$1/mps-seawall" --amplitude 0 --disturb 0 --length 0.6 --wall-height 0.6 --duration 0.01 --frames 0 --threads 1 \
   --out "$work/still" >"$work/log"
