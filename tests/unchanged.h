@@ -30,6 +30,28 @@ static inline uint64_t seen_set(mps_context *own, mps_particles *set) {
   return hash;
 }
 
+/* The same by ids, whatever their order and the epoch: of calls that may sort the particles. */
+static inline uint64_t seen_values(mps_context *own, mps_particles *set) {
+  const int64_t count = mps_particles_count(set);
+  uint64_t hash = digest_add(DIGEST_START, &count);
+  for (int32_t f = 0; f < mps_particles_field_count(set); f++) {
+    mps_field_info info;
+    mps_view view;
+    mps_assert_ok(own, mps_particles_field(set, f, &info));
+    mps_assert_ok(own, mps_particles_view(set, info.name, &view));
+    hash = seen_bytes(hash, info.name, strlen(info.name));
+    for (int64_t id = 0, found = 0; found < count; id++) {
+      const int64_t k = mps_particles_index(set, id);
+      if (k < 0) continue;
+      found++;
+      for (int64_t c = 0; c < view.shape[1]; c++)
+        hash = digest_add(hash,
+                          (const char *)view.data + 8 * (k * view.stride[0] + c * view.stride[1]));
+    }
+  }
+  return hash;
+}
+
 static inline uint64_t seen_body(mps_context *own, mps_body *body) {
   mps_body_state state;
   mps_body_totals totals;
@@ -44,16 +66,18 @@ static inline uint64_t seen_body(mps_context *own, mps_body *body) {
 
 #define SEEN_BOUNDARIES 12 /* numbers that are looked at */
 
-/* seen_mpm(solver), seen_dynamics(solver) ...: with the set that the solver holds. */
+/* seen_mpm(solver, sorts), seen_dynamics(solver, sorts) ...: with the set that the solver holds,
+ * whose order may change where `sorts`. */
 #define SEEN_SOLVER(S)                                                                             \
-  static inline uint64_t seen_##S(mps_##S *s) {                                                    \
+  static inline uint64_t seen_##S(mps_##S *s, bool sorts) {                                        \
     mps_context *own = mps_##S##_context(s);                                                       \
     const mps_error kept = *mps_context_error(own);                                                \
     const double numbers[3] = {mps_##S##_time(s), mps_##S##_dt(s), mps_##S##_limit(s)};            \
     const int64_t steps = mps_##S##_steps(s);                                                      \
     mps_totals totals;                                                                             \
     memset(&totals, 0, sizeof totals);                                                             \
-    uint64_t hash = seen_set(own, mps_##S##_particles(s));                                         \
+    mps_particles *set = mps_##S##_particles(s);                                                   \
+    uint64_t hash = sorts ? seen_values(own, set) : seen_set(own, set);                            \
     for (int k = 0; k < 3; k++) hash = digest_add(hash, &numbers[k]);                              \
     hash = digest_add(hash, &steps);                                                               \
     const mps_status status = mps_##S##_get_totals(s, &totals);                                    \

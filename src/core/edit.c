@@ -163,7 +163,8 @@ mps_status mps_particles_edit(mps_particles *particles, const char *name, mps_ed
   if (!particles) return MPS_ERROR_ARGUMENT;
   mps_context *context = particles->context;
   if (out) out->data = NULL;
-  mps_status status = mps_particles_view(particles, name, out ? &out->view : NULL);
+  mps_status status = mpsi_as(particles->context, __func__,
+                              mps_particles_view(particles, name, out ? &out->view : NULL));
   if (status != MPS_OK) return status;
   mpsi_field *field = mpsi_field_find(particles, name);
   const char *reason = NULL;
@@ -267,7 +268,11 @@ mps_status mps_particles_set(mps_particles *particles, const char *name, int32_t
                      shape.components - 1);
   const bool present = mpsi_field_find(particles, name) != NULL;
   if (present && shape.open) return mpsi_particles_ready(particles, __func__);
+  const int32_t fields = particles->field_count;
   status = mpsi_field_check_value(particles, __func__, &shape, value);
-  if (status == MPS_OK && !present) status = mps_particles_add_field(particles, name, 0);
-  return status == MPS_OK ? set_column(particles, __func__, name, component, value) : status;
+  if (status == MPS_OK && !present)
+    status = mpsi_as(particles->context, __func__, mps_particles_add_field(particles, name, 0));
+  if (status == MPS_OK) status = set_column(particles, __func__, name, component, value);
+  if (status != MPS_OK) mpsi_particles_drop_fields(particles, fields);
+  return status;
 }

@@ -53,6 +53,17 @@ void mpsi_fail_object(mps_context *context, const char *format, ...) {
   va_end(args);
 }
 
+mps_status mpsi_as(mps_context *context, const char *function, mps_status status) {
+  if (status == MPS_OK || !context) return status;
+  mps_error *error = &context->error;
+  mps_error former = *error;
+  name_kind(&former, error->function);
+  if (strcmp(former.object, error->object) == 0)
+    name_kind(error, function); /* else it has a name */
+  snprintf(error->function, sizeof error->function, "%s", function);
+  return status;
+}
+
 mps_status mpsi_fail_memory(mps_context *context, const char *function, size_t bytes) {
   return mpsi_fail(context, function, MPS_ERROR_MEMORY, "could not allocate %zu bytes", bytes);
 }

@@ -37,6 +37,9 @@ void mpsi_fail_where(mps_context *context, int64_t step, int64_t particle);
  * the object is the kind that the function's name begins with. */
 void mpsi_fail_object(mps_context *context, const char *format, ...) MPSI_PRINTF(2, 3);
 mps_status mpsi_fail_memory(mps_context *context, const char *function, size_t bytes);
+/* `status` is that of a public function which the library itself has called: where it is an error,
+ * the record becomes one of `function`, that the caller has called. Returns `status`. */
+mps_status mpsi_as(mps_context *context, const char *function, mps_status status);
 int64_t mpsi_failures(const mps_context *context); /* how many records there have been */
 void mpsi_log(mps_context *context, int32_t level, const char *format, ...) MPSI_PRINTF(3, 4);
 
@@ -98,8 +101,7 @@ mps_status mpsi_def_init(void *def, size_t size, size_t minimum, const void *def
 mps_status mpsi_out_write(mps_context *context, const char *function, void *out, size_t size,
                           const void *known, size_t known_size);
 /* The same check alone, for a function that has long work to do first. */
-mps_status mpsi_out_check(mps_context *context, const char *function, const void *out,
-                          size_t size);
+mps_status mpsi_out_check(mps_context *context, const char *function, const void *out, size_t size);
 /* The same of a definition, the body of mps_x_get_def_sized: its `struct_size`, the first member,
  * is what of it was written, so that the caller may create another object by it. */
 mps_status mpsi_def_write(mps_context *context, const char *function, void *out, size_t size,

@@ -58,8 +58,9 @@ mps_status mps_particles_create(mps_context *context, const mps_particles_def *d
   p->def = known;
   p->epoch = 1;
   p->owned = true;
-  status = mps_particles_add_field(p, "id", 0);
-  if (status == MPS_OK) status = mps_particles_add_field(p, "position", 0);
+  status = mpsi_as(context, __func__, mps_particles_add_field(p, "id", 0));
+  if (status == MPS_OK)
+    status = mpsi_as(context, __func__, mps_particles_add_field(p, "position", 0));
   if (status != MPS_OK) {
     mpsi_fail_memory(context, __func__, sizeof *p); /* the only reason there can be */
     free_set(p);

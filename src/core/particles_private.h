@@ -40,7 +40,8 @@ struct mps_particles {
   mps_context *context;
   mps_particles_def def;
   int64_t count, capacity;
-  uint64_t epoch;
+  uint64_t epoch,
+      unmoved;          /* unmoved: the epoch before particles came last, 0 where columns moved */
   mpsi_holder *holders; /* in the order in which they came, the last first */
   int32_t pins;         /* holders that do not say who they are */
   bool owned;           /* the caller has not destroyed it */

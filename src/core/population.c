@@ -68,6 +68,10 @@ mps_status mpsi_particles_extend(mps_particles *p, const char *function, int64_t
                      "%lld particles to add to %lld, a set holds at most 2^40", (long long)count,
                      (long long)p->count);
   const int64_t needed = p->count + count;
+  if (!reserve_ids(p, count)) /* before the columns, which views know, move */
+    return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
+                     "could not allocate the numbers of %lld particles", (long long)count);
+  p->unmoved = needed <= p->capacity ? p->epoch : 0;
   if (needed > p->capacity) {
     /* The first fill gets exactly its size; later growth is by half at least. */
     const int64_t half_more = p->capacity + p->capacity / 2;
@@ -76,9 +80,6 @@ mps_status mpsi_particles_extend(mps_particles *p, const char *function, int64_t
                        "could not allocate %d fields of %lld particles", p->field_count,
                        (long long)needed);
   }
-  if (!reserve_ids(p, count))
-    return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
-                     "could not allocate the numbers of %lld particles", (long long)count);
   if (count == 0) return MPS_OK;
   int64_t *id = p->fields[MPSI_FIELD_ID]->data;
   for (int64_t i = p->count; i < needed; i++) {
@@ -101,6 +102,7 @@ mps_status mpsi_particles_arrive(mps_particles *p, const char *function, mps_sta
   if (status != MPS_OK) {
     p->count = first;
     p->next_id -= count;
+    if (p->unmoved > 0) p->epoch = p->unmoved; /* what views show is where it was */
     clear_tail(p, count);
   }
   renew_holders(p);

@@ -42,7 +42,7 @@ static mps_status check_choice(const mps_domain *domain, const char *function,
                      "count is %d with names %s, must be >= 0, and 0 where names is NULL", c->count,
                      c->names ? "given" : "NULL");
   for (int32_t k = 0; k < c->count && status == MPS_OK; k++)
-    status = mps_particles_view(particles, c->names[k], &view);
+    status = mpsi_as(domain->context, function, mps_particles_view(particles, c->names[k], &view));
   return status;
 }
 
@@ -59,7 +59,7 @@ static mps_status pack(mps_domain *domain, const char *function, mps_particles *
   mps_status status = check_choice(domain, function, particles, chosen);
   *bytes = (int64_t)sizeof h + h.runs * (int64_t)sizeof(mpsi_row_run);
   for (int32_t f = 0; status == MPS_OK && f < all; f++) {
-    status = mps_particles_field(particles, f, &info);
+    status = mpsi_as(domain->context, function, mps_particles_field(particles, f, &info));
     if (status != MPS_OK || !is_chosen(chosen, f, info.name)) continue;
     h.fields++;
     *bytes += (int64_t)sizeof(field_head) + info.components * h.particles * 8;
@@ -72,9 +72,10 @@ static mps_status pack(mps_domain *domain, const char *function, mps_particles *
   mpsi_particles_runs(particles, domain->def.rank, (mpsi_row_run *)at);
   at += h.runs * (int64_t)sizeof(mpsi_row_run);
   for (int32_t f = 0; status == MPS_OK && f < all; f++) {
-    status = mps_particles_field(particles, f, &info);
+    status = mpsi_as(domain->context, function, mps_particles_field(particles, f, &info));
     if (status == MPS_OK && !is_chosen(chosen, f, info.name)) continue;
-    if (status == MPS_OK) status = mps_particles_view(particles, info.name, &view);
+    if (status == MPS_OK)
+      status = mpsi_as(domain->context, function, mps_particles_view(particles, info.name, &view));
     if (status != MPS_OK) return status;
     field_head field = {.columns = info.components, .integer = info.dtype.code == 0};
     snprintf(field.name, sizeof field.name, "%s", info.name);
@@ -248,7 +249,9 @@ static mps_status put(assembly *a, mps_particles **whole) {
   void *scratch = NULL;
   def.dim = (int32_t)a->share[0].h.dim;
   def.spacing = a->share[0].h.spacing;
-  mps_status status = set ? MPS_OK : mps_particles_create(a->domain->context, &def, &set);
+  mps_status status = set ? MPS_OK
+                          : mpsi_as(a->domain->context, a->function,
+                                    mps_particles_create(a->domain->context, &def, &set));
   if (status == MPS_OK)
     status = mpsi_particles_prepare_state(set, a->function, &a->whole, &scratch);
   if (status == MPS_OK) {

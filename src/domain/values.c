@@ -24,7 +24,7 @@ static mps_status check(mps_domain *domain, const char *function, mps_particles 
     status = mpsi_fail(domain->context, function, MPS_ERROR_ARGUMENT,
                        "the particle set was made from another context than the domain");
   else
-    status = mps_particles_view(particles, name, view);
+    status = mpsi_as(domain->context, function, mps_particles_view(particles, name, view));
   if (status == MPS_OK) {
     hash = mpsi_hash(hash, ids, (size_t)count * sizeof *ids);
     hash = mpsi_hash(hash, name, strlen(name));

@@ -3,11 +3,12 @@
 #include "dynamics_private.h"
 
 /* Warns of a `dt` above the limit. */
-static mps_status compare_dt(mps_dynamics *dynamics, double dt) {
+static mps_status compare_dt(mps_dynamics *dynamics, const char *function, double dt) {
   const bool euler = dynamics->def.integrator == MPS_DYNAMICS_INTEGRATOR_EULER;
   if (!euler && dt <= mps_dynamics_limit(dynamics)) return MPS_OK;
   mps_dynamics_linear_limit limit;
-  const mps_status status = mps_dynamics_find_limit(dynamics, 0.0, &limit);
+  const mps_status status =
+      mpsi_as(dynamics->context, function, mps_dynamics_find_limit(dynamics, 0.0, &limit));
   if (status != MPS_OK) return status;
   if (euler && limit.dt == 0.0)
     mpsi_log(dynamics->context, MPS_LOG_WARNING,
@@ -22,7 +23,8 @@ static mps_status compare_dt(mps_dynamics *dynamics, double dt) {
 /* Chooses dt from the limit. */
 static mps_status choose_dt(mps_dynamics *dynamics, const char *function) {
   mps_dynamics_linear_limit limit;
-  const mps_status status = mps_dynamics_find_limit(dynamics, 0.0, &limit);
+  const mps_status status =
+      mpsi_as(dynamics->context, function, mps_dynamics_find_limit(dynamics, 0.0, &limit));
   if (status != MPS_OK) return status;
   if (!(limit.dt > 0.0))
     return mpsi_fail(dynamics->context, function, MPS_ERROR_ARGUMENT,
@@ -36,8 +38,8 @@ static mps_status choose_dt(mps_dynamics *dynamics, const char *function) {
 
 mps_status mpsi_dynamics_settle_dt(mps_dynamics *dynamics, const char *function) {
   if (dynamics->checked) return MPS_OK;
-  const mps_status status =
-      isnan(dynamics->dt) ? choose_dt(dynamics, function) : compare_dt(dynamics, dynamics->dt);
+  const mps_status status = isnan(dynamics->dt) ? choose_dt(dynamics, function)
+                                                : compare_dt(dynamics, function, dynamics->dt);
   dynamics->checked = status == MPS_OK;
   return status;
 }
@@ -55,7 +57,7 @@ mps_status mps_dynamics_set_dt(mps_dynamics *dynamics, double dt) {
     return mpsi_fail(dynamics->context, __func__, MPS_ERROR_ARGUMENT,
                      "dt is %g s, must be in %g..%g", dt, MPSI_DYN_LEAST_DT, MPSI_DYN_MOST_DT);
   status = mpsi_domain_settle_same(dynamics->domain, __func__, status, "dt", dt);
-  if (status == MPS_OK) status = compare_dt(dynamics, dt);
+  if (status == MPS_OK) status = compare_dt(dynamics, __func__, dt);
   if (status != MPS_OK) return status;
   dynamics->dt = dynamics->def.dt = dt; /* as if the definition had given it */
   dynamics->checked = true;

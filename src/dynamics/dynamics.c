@@ -177,7 +177,7 @@ static mps_status build(mps_dynamics *dynamics, mpsi_storage **former) {
   static const char *const function = "mps_dynamics_create";
   mpsi_dynamics_structure made;
   dynamics->torque = 1.0;
-  mps_status status = choose_kernel(dynamics);
+  mps_status status = mpsi_as(dynamics->context, "mps_dynamics_create", choose_kernel(dynamics));
   if (status == MPS_OK && dynamics->def.material)
     status = mpsi_dynamics_write_material(dynamics->particles, function, dynamics->def.material, 0,
                                           NULL);
@@ -185,7 +185,7 @@ static mps_status build(mps_dynamics *dynamics, mpsi_storage **former) {
   if (mpsi_domain_many(dynamics->domain)) {
     status = mpsi_dynamics_take_share(dynamics, function, status, &made, former);
   } else {
-    if (status == MPS_OK) status = mpsi_dynamics_add_fields(dynamics);
+    if (status == MPS_OK) status = mpsi_dynamics_add_fields(dynamics, "mps_dynamics_create");
     if (status == MPS_OK) status = mpsi_dynamics_sort(dynamics, function);
     if (status == MPS_OK) status = mpsi_dynamics_make_structure(dynamics, function, NULL, &made);
   }

@@ -227,7 +227,7 @@ void mpsi_dynamics_choose_damping(mps_dynamics *dynamics); /* from the extremes 
 /* ---- structure.c ---- */
 
 /* Adds the fields that the solver writes. */
-mps_status mpsi_dynamics_add_fields(mps_dynamics *dynamics);
+mps_status mpsi_dynamics_add_fields(mps_dynamics *dynamics, const char *function);
 /* Sorts the set. */
 mps_status mpsi_dynamics_sort(mps_dynamics *dynamics, const char *function);
 /* Makes the structure of sorted particles: those of the set, or of `geometry`. Nothing else has
@@ -267,7 +267,7 @@ void mpsi_dynamics_drop_change(mps_dynamics *dynamics);
 mps_status mpsi_dynamics_prepare_state(void *solver, const char *function, const mps_snapshot *from,
                                        const char *source, mps_status disagreement);
 
-mps_status mpsi_dynamics_add_reference(mps_dynamics *dynamics);
+mps_status mpsi_dynamics_add_reference(mps_dynamics *dynamics, const char *function);
 mpsi_dynamics_geometry mpsi_dynamics_present_geometry(const mps_dynamics *dynamics);
 /* Are all offsets whole spacings? */
 bool mpsi_dynamics_on_lattice(double spacing, int64_t count, const mpsi_dynamics_pair *pair);

@@ -86,7 +86,9 @@ mps_status mpsi_dynamics_save_shares(mps_dynamics *dynamics, const mpsi_state_of
   mps_status status =
       mpsi_domain_settle(dynamics->domain, function, mpsi_state_get(of, function, &state));
   if (status == MPS_OK) status = merge(dynamics, function, &state.state);
-  if (status == MPS_OK) status = mps_domain_gather(dynamics->domain, dynamics->particles, &whole);
+  if (status == MPS_OK)
+    status = mpsi_as(dynamics->context, function,
+                     mps_domain_gather(dynamics->domain, dynamics->particles, &whole));
   if (status == MPS_OK) {
     if (mps_domain_rank(dynamics->domain) == 0)
       status = mpsi_checkpoint_save_values(of, function, path, info, whole, &state.state);

@@ -73,9 +73,11 @@ static mps_status append_column(mps_context *context, mps_particles *particles, 
     at[2 * k + 1] = y[e->index[k]];
   }
   const int64_t first = mps_particles_count(particles);
+  const int32_t fields = mps_particles_field_count(particles);
   mps_status status = mps_particles_add_field(particles, "free_field", 0);
   if (status == MPS_OK) status = mps_particles_append(particles, e->count, at);
   if (status == MPS_OK) status = copy_fields(particles, e, first, side, shift);
+  if (status != MPS_OK) mpsi_particles_drop_fields(particles, fields);
   mpsi_free(context, at);
   return status;
 }
@@ -96,7 +98,8 @@ mps_status mps_dynamics_add_free_field(mps_particles *particles, int32_t side, i
   edge e = {0};
   mps_status status = mpsi_particles_check_free(particles, __func__);
   if (status == MPS_OK) status = find_edge(context, particles, side, &e);
-  if (status == MPS_OK) status = append_column(context, particles, side, gap, &e);
+  if (status == MPS_OK)
+    status = mpsi_as(context, __func__, append_column(context, particles, side, gap, &e));
   mpsi_free(context, e.index);
   return status;
 }

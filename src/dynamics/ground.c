@@ -111,7 +111,8 @@ mps_status mpsi_dynamics_write_material(mps_particles *particles, const char *fu
   mps_moduli m = {0};
   mps_status status = mpsi_material_check_elastic(context, function, material);
   if (status == MPS_OK) status = mpsi_particles_check_ids_or_all(particles, function, count, ids);
-  if (status == MPS_OK) status = mps_material_get_moduli(material, 1.0, &m);
+  if (status == MPS_OK)
+    status = mpsi_as(context, function, mps_material_get_moduli(material, 1.0, &m));
   if (status != MPS_OK) return status;
   if (m.lambda < -1e-12 * m.shear)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
@@ -131,9 +132,10 @@ mps_status mpsi_dynamics_write_material(mps_particles *particles, const char *fu
       if (pass == 1) column[0][k] = vs, column[1][k] = vp;
     }
     if (status == MPS_OK && pass == 0)
-      status = mps_particles_add_field(particles, "shear_velocity", 0);
+      status = mpsi_as(context, function, mps_particles_add_field(particles, "shear_velocity", 0));
     if (status == MPS_OK && pass == 0)
-      status = mps_particles_add_field(particles, "pressure_velocity", 0);
+      status =
+          mpsi_as(context, function, mps_particles_add_field(particles, "pressure_velocity", 0));
   }
   return status;
 }

@@ -101,17 +101,17 @@ static mps_status find_body_pairs(const mpsi_dynamics_geometry *g, pair_list *li
   if (!make_cloud(context, g, &points))
     status = mpsi_fail_memory(context, function, (size_t)g->count * 24);
   const bool any = status == MPS_OK && points.count > 0; /* none on a rank without particles */
-  if (any) status = mps_neighbours_create(context, &def, &lists);
+  if (any) status = mpsi_as(context, function, mps_neighbours_create(context, &def, &lists));
   if (any && status == MPS_OK) {
     const mps_view view = {.data = points.x,
                            .shape = {points.count, 2, 1},
                            .stride = {1, points.count, 1},
                            .dtype = {2, 64, 1}};
-    status = mps_neighbours_build(lists, &view);
+    status = mpsi_as(context, function, mps_neighbours_build(lists, &view));
   }
   if (any && status == MPS_OK) {
     const int64_t *offset, *index;
-    status = mps_neighbours_lists(lists, NULL, &offset, &index);
+    status = mpsi_as(context, function, mps_neighbours_lists(lists, NULL, &offset, &index));
     if (status == MPS_OK) status = body_pairs(g, &points, offset, index, list, function);
   }
   mps_neighbours_destroy(&lists);

@@ -385,7 +385,7 @@ mps_status mpsi_dynamics_take_share(mps_dynamics *dynamics, const char *function
   *out = (mpsi_dynamics_structure){0};
   status = compare_ranks(dynamics, function, status);
   if (status != MPS_OK) return status;
-  status = mpsi_dynamics_add_reference(dynamics);
+  status = mpsi_dynamics_add_reference(dynamics, function);
   if (status == MPS_OK) status = sort_whole(&p);
   p.first = first_particle(p.body, rank, ranks);
   p.last = first_particle(p.body, rank + 1, ranks);
@@ -398,7 +398,7 @@ mps_status mpsi_dynamics_take_share(mps_dynamics *dynamics, const char *function
   if (status == MPS_OK)
     status = mpsi_particles_keep(dynamics->particles, function, p.cut.count, rows,
                                  p.cut.count + p.ghosts, former);
-  if (status == MPS_OK) status = mpsi_dynamics_add_fields(dynamics);
+  if (status == MPS_OK) status = mpsi_dynamics_add_fields(dynamics, function);
   mpsi_free(dynamics->context, rows);
   status = mpsi_domain_settle(domain, function, status);
   if (status == MPS_OK) status = join(&p, out);

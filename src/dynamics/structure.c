@@ -26,20 +26,25 @@ static void set_reference(mps_dynamics *dynamics) {
   }
 }
 
-mps_status mpsi_dynamics_add_reference(mps_dynamics *dynamics) {
-  mps_status status = mps_particles_add_field(dynamics->particles, "displacement", 0);
-  if (status == MPS_OK) status = mps_particles_add_field(dynamics->particles, "reference", 0);
+mps_status mpsi_dynamics_add_reference(mps_dynamics *dynamics, const char *function) {
+  mps_context *context = dynamics->context;
+  mps_status status =
+      mpsi_as(context, function, mps_particles_add_field(dynamics->particles, "displacement", 0));
+  if (status == MPS_OK)
+    status =
+        mpsi_as(context, function, mps_particles_add_field(dynamics->particles, "reference", 0));
   if (status == MPS_OK) set_reference(dynamics);
   return status;
 }
 
-mps_status mpsi_dynamics_add_fields(mps_dynamics *dynamics) {
+mps_status mpsi_dynamics_add_fields(mps_dynamics *dynamics, const char *function) {
   static const char *const names[] = {
       "displacement", "rotation",         "velocity",     "spin",          "acceleration",
       "pressure",     "displacement_old", "rotation_old", "restoring_old", "reference"};
   mps_status status = MPS_OK;
   for (size_t k = 0; status == MPS_OK && k < sizeof names / sizeof *names; k++)
-    status = mps_particles_add_field(dynamics->particles, names[k], 0);
+    status = mpsi_as(dynamics->context, function,
+                     mps_particles_add_field(dynamics->particles, names[k], 0));
   if (status == MPS_OK) set_reference(dynamics);
   return status;
 }

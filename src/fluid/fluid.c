@@ -220,7 +220,7 @@ mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
   f->def = def;
   f->def.domain = mpsi_domain_retain(def.domain);
   f->def.kernel = def.kernel ? mpsi_kernel_retain(def.kernel) : NULL;
-  status = mpsi_fluid_settle(f, __func__, add_fields(particles));
+  status = mpsi_fluid_settle(f, __func__, mpsi_as(context, __func__, add_fields(particles)));
   if (status == MPS_OK) status = start(f, __func__);
   if (status != MPS_OK) {
     mpsi_particles_drop_fields(particles, fields);

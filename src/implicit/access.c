@@ -98,7 +98,7 @@ mps_status mpsi_elastic_read(mps_elastic *e, const char *function, const char *n
 
 mps_status mpsi_elastic_write(mps_elastic *e, const char *function, const char *name,
                               const double *values, int32_t components) {
-  mps_status status = mps_particles_add_field(e->particles, name, 0);
+  mps_status status = mpsi_as(e->context, function, mps_particles_add_field(e->particles, name, 0));
   if (status != MPS_OK)
     return mpsi_fail(e->context, function, status, "field '%s' cannot be made", name);
   for (int32_t c = 0; c < components; c++) {

@@ -27,10 +27,10 @@ void mpsi_elastic_measure(mps_elastic *e) {
 }
 
 /* Writes `young` and `poisson` of `count` particles, or of all (0, NULL). */
-static mps_status write_material(mps_elastic *e, const mps_material *material, int64_t count,
-                                 const int64_t *ids) {
+static mps_status write_material(mps_elastic *e, const char *function, const mps_material *material,
+                                 int64_t count, const int64_t *ids) {
   mps_moduli m = {0};
-  mps_status status = mps_material_get_moduli(material, 1.0, &m);
+  mps_status status = mpsi_as(e->context, function, mps_material_get_moduli(material, 1.0, &m));
   double *young = mpsi_particles_column(e->particles, "young", 0);
   double *poisson = mpsi_particles_column(e->particles, "poisson", 0);
   if (status != MPS_OK || !young || !poisson) return status;
@@ -45,9 +45,11 @@ static mps_status write_material(mps_elastic *e, const mps_material *material, i
 /* The definition's material, at creation. */
 mps_status mpsi_elastic_add_material(mps_elastic *e, const char *function) {
   mps_status status = mpsi_material_check_elastic(e->context, function, e->def.material);
-  if (status == MPS_OK) status = mps_particles_add_field(e->particles, "young", 0);
-  if (status == MPS_OK) status = mps_particles_add_field(e->particles, "poisson", 0);
-  return status == MPS_OK ? write_material(e, e->def.material, 0, NULL) : status;
+  if (status == MPS_OK)
+    status = mpsi_as(e->context, function, mps_particles_add_field(e->particles, "young", 0));
+  if (status == MPS_OK)
+    status = mpsi_as(e->context, function, mps_particles_add_field(e->particles, "poisson", 0));
+  return status == MPS_OK ? write_material(e, function, e->def.material, 0, NULL) : status;
 }
 
 static mps_status check_moduli(mps_elastic *e, const char *function, int64_t i, double young,
@@ -130,7 +132,7 @@ mps_status mps_elastic_set_material(mps_elastic *e, const mps_material *material
   if (status == MPS_OK) status = mpsi_elastic_read(e, __func__, "young", former, 1);
   if (status == MPS_OK) status = mpsi_elastic_read(e, __func__, "poisson", former + e->n, 1);
   if (status == MPS_OK) {
-    status = write_material(e, material, count, ids);
+    status = write_material(e, __func__, material, count, ids);
     if (status == MPS_OK) status = renew_material(e, __func__);
     for (int k = 0; k < 2 && status != MPS_OK; k++) { /* the fields are there: it cannot fail */
       const mps_status back =

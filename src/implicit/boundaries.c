@@ -302,10 +302,11 @@ mps_status mps_elastic_remove_boundary(mps_elastic *e, int32_t number) {
 
 mps_status mps_elastic_get_reaction_sized(mps_elastic *e, int32_t number, mps_reaction *out,
                                           size_t size) {
+  static const char function[] = "mps_elastic_get_reaction";
   if (!e) return MPS_ERROR_ARGUMENT;
-  const mps_status status = check_number(e, __func__, number);
+  const mps_status status = check_number(e, function, number);
   if (status != MPS_OK) return status;
-  return mpsi_out_write(e->context, __func__, out, size, &e->boundaries[number].reaction,
+  return mpsi_out_write(e->context, function, out, size, &e->boundaries[number].reaction,
                         sizeof(mps_reaction));
 }
 

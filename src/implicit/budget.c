@@ -72,15 +72,16 @@ static void sum_momenta(const mps_elastic *e, mps_totals *t) {
 }
 
 mps_status mps_elastic_get_totals_sized(mps_elastic *e, mps_totals *out, size_t size) {
+  static const char function[] = "mps_elastic_get_totals";
   if (!e) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_elastic_check_between(e, __func__);
+  mps_status status = mpsi_elastic_check_between(e, function);
   if (status != MPS_OK) return status;
   const mpsi_elastic_motion *m = e->motion;
   const mpsi_ledger *l = &e->ledger;
   mps_totals t = {.work_loads = l->loads, .work_boundaries = l->boundaries};
   sum_momenta(e, &t);
   const bool agreed = mpsi_elastic_begin_reading(e);
-  status = strain_energy(e, __func__, &t.strain);
+  status = strain_energy(e, function, &t.strain);
   e->agreed = agreed;
   if (status != MPS_OK) return status;
   if (m) {
@@ -91,5 +92,5 @@ mps_status mps_elastic_get_totals_sized(mps_elastic *e, mps_totals *out, size_t 
       t.scheme = l->loads + l->boundaries - damping - kept - (t.kinetic - l->kinetic);
     t.dissipated = damping + t.scheme;
   }
-  return mpsi_out_write(e->context, __func__, out, size, &t, sizeof t);
+  return mpsi_out_write(e->context, function, out, size, &t, sizeof t);
 }

@@ -127,8 +127,11 @@ static mps_status build(mps_elastic *e, const char *function) {
       status =
           mpsi_elastic_bad_value(e, function, "position", i / e->dim, e->x[i], "must be finite");
   if (status == MPS_OK) status = mpsi_elastic_make_body(e, function, false);
-  if (status == MPS_OK) status = mps_particles_add_field(e->particles, "displacement", 0);
-  if (status == MPS_OK) status = mps_particles_add_field(e->particles, "reaction", 0);
+  if (status == MPS_OK)
+    status =
+        mpsi_as(e->context, function, mps_particles_add_field(e->particles, "displacement", 0));
+  if (status == MPS_OK)
+    status = mpsi_as(e->context, function, mps_particles_add_field(e->particles, "reaction", 0));
   return status;
 }
 

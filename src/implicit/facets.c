@@ -143,25 +143,26 @@ static mps_status write_motion(mps_elastic *e, const char *function, int64_t cou
 
 mps_status mps_elastic_get_facets_sized(mps_elastic *e, int64_t count, const int64_t *facets,
                                         const mps_elastic_facet_arrays *arrays, size_t size) {
+  static const char function[] = "mps_elastic_get_facets";
   if (!e) return MPS_ERROR_ARGUMENT;
   mps_elastic_facet_arrays a = {0};
   if (!arrays || size == 0 || count < 0 || (!facets && count != e->facet_count))
-    return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
+    return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
                      "arrays is NULL, or count is %lld (without a list of facets it must be %lld)",
                      (long long)count, (long long)e->facet_count);
-  mps_status status = mpsi_elastic_check_between(e, __func__);
+  mps_status status = mpsi_elastic_check_between(e, function);
   if (status != MPS_OK) return status;
   memcpy(&a, arrays, size < sizeof a ? size : sizeof a);
   for (int64_t k = 0; facets && k < count; k++)
     if (facets[k] < 0 || facets[k] >= e->facet_count)
-      return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
+      return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
                        "facets[%lld] is %lld, allowed are 0..%lld", (long long)k,
                        (long long)facets[k], (long long)e->facet_count - 1);
   for (int64_t k = 0; k < count; k++) write_shape(e, &e->facets[facets ? facets[k] : k], k, &a);
   if (a.displacement)
-    status = write_motion(e, __func__, count, facets, e->displacement, a.displacement);
+    status = write_motion(e, function, count, facets, e->displacement, a.displacement);
   if (status == MPS_OK && a.velocity && e->motion)
-    status = write_motion(e, __func__, count, facets, e->motion->velocity, a.velocity);
+    status = write_motion(e, function, count, facets, e->motion->velocity, a.velocity);
   if (a.velocity && !e->motion) memset(a.velocity, 0, (size_t)(3 * count) * sizeof *a.velocity);
   return status;
 }

@@ -110,8 +110,7 @@ static double shift_of(const mpsi_elastic_motion *m, double dt, double *factor) 
 /* The field if the set has it, else zero. */
 static mps_status read_or_zero(mps_elastic *e, const char *function, const char *name,
                                double *values) {
-  mps_view view;
-  if (mps_particles_view(e->particles, name, &view) == MPS_OK)
+  if (mpsi_particles_column(e->particles, name, 0))
     return mpsi_elastic_read(e, function, name, values, e->dim);
   memset(values, 0, (size_t)(e->n * e->dim) * sizeof *values);
   return MPS_OK;
@@ -176,7 +175,8 @@ static mps_status begin(mps_elastic *e, const char *function, const mps_elastic_
   if (status == MPS_OK)
     status = mpsi_elastic_factor(e, function, shift_of(&made, made.dt, &factor));
   for (int a = 0; a < 2 && status == MPS_OK; a++)
-    status = mps_particles_add_field(e->particles, a ? "acceleration" : "velocity", 0);
+    status = mpsi_as(e->context, function,
+                     mps_particles_add_field(e->particles, a ? "acceleration" : "velocity", 0));
   if (status == MPS_OK) status = mpsi_elastic_drive(e, function, made.time);
   if (status == MPS_OK) status = mpsi_elastic_gather_loads(e, function, made.time);
   if (status != MPS_OK) return status;
@@ -202,7 +202,9 @@ mps_status mps_elastic_start(mps_elastic *e, const mps_elastic_motion_def *def) 
   mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;
   e->within = true;
+  const int32_t fields = mps_particles_field_count(e->particles);
   status = begin(e, __func__, def);
+  if (status != MPS_OK) mpsi_particles_drop_fields(e->particles, fields);
   if (status == MPS_OK) {
     mpsi_elastic_motion *m = e->motion;
     mpsi_elastic_impose(e, 0, e->displacement);

@@ -104,11 +104,14 @@ static mps_status open_table(mps_elastic *e, const char *function, table *t) {
     const char *name;
     int32_t columns;
   } fields[] = {{"strain", 2 * e->dim}, {"stress", 2 * e->dim}, {"principal", 3}, {"von_mises", 1}};
+  const int32_t before = mps_particles_field_count(e->particles);
   *t = (table){.e = e};
   for (size_t k = 0; k < sizeof fields / sizeof *fields; k++) {
-    const mps_status status = mps_particles_add_field(e->particles, fields[k].name, 0);
-    if (status != MPS_OK)
-      return mpsi_fail(e->context, function, status, "field '%s' cannot be made", fields[k].name);
+    const mps_status status =
+        mpsi_as(e->context, function, mps_particles_add_field(e->particles, fields[k].name, 0));
+    if (status == MPS_OK) continue;
+    mpsi_particles_drop_fields(e->particles, before);
+    return mpsi_fail(e->context, function, status, "field '%s' cannot be made", fields[k].name);
   }
   for (size_t k = 0; k < sizeof fields / sizeof *fields; k++)
     for (int32_t c = 0; c < fields[k].columns; c++)

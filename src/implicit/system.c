@@ -230,10 +230,11 @@ static int32_t solver_used(const mps_elastic *e) {
 }
 
 mps_status mps_elastic_analyse_sized(mps_elastic *e, mps_elastic_estimate *out, size_t size) {
+  static const char function[] = "mps_elastic_analyse";
   if (!e) return MPS_ERROR_ARGUMENT;
-  mps_status status = mpsi_elastic_enter(e, __func__);
+  mps_status status = mpsi_elastic_enter(e, function);
   if (status != MPS_OK) return status;
-  status = mpsi_elastic_prepare(e, __func__);
+  status = mpsi_elastic_prepare(e, function);
   if (status != MPS_OK) return mpsi_elastic_leave(e, status);
   const mps_elastic_estimate found = {.unknowns = e->unknowns,
                                       .matrix_nonzeros = nonzeros(e),
@@ -243,7 +244,7 @@ mps_status mps_elastic_analyse_sized(mps_elastic *e, mps_elastic_estimate *out, 
                                       .ordering = (int32_t)e->symbolic.ordering,
                                       .solver = solver_used(e)};
   return mpsi_elastic_leave(e,
-                            mpsi_out_write(e->context, __func__, out, size, &found, sizeof found));
+                            mpsi_out_write(e->context, function, out, size, &found, sizeof found));
 }
 
 /* Scale of the residual: the load together with what prescribed displacements pull. */
@@ -368,6 +369,7 @@ mps_status mps_elastic_solve_cases(mps_elastic *e, int64_t count, const double *
 
 mps_status mps_elastic_get_report_sized(const mps_elastic *e, mps_elastic_report *out,
                                         size_t size) {
+  static const char function[] = "mps_elastic_get_report";
   if (!e) return MPS_ERROR_ARGUMENT;
   mps_elastic_report r = e->report;
   r.unknowns = e->unknowns;
@@ -378,5 +380,5 @@ mps_status mps_elastic_get_report_sized(const mps_elastic *e, mps_elastic_report
   r.solver = solver_used(e);
   r.factor_bytes =
       e->use_cg ? 16.0 * (double)r.matrix_nonzeros + 48.0 * (double)e->unknowns : e->symbolic.bytes;
-  return mpsi_out_write(e->context, __func__, out, size, &r, sizeof r);
+  return mpsi_out_write(e->context, function, out, size, &r, sizeof r);
 }

@@ -103,11 +103,12 @@ mps_status mps_particles_set_material(mps_particles *particles, const mps_materi
                        "the material was made from another context");
   if (status == MPS_OK)
     status = mpsi_particles_check_ids_or_all(particles, set_material, count, ids);
-  if (status == MPS_OK) status = mps_material_get_moduli(material, density, &m);
+  if (status == MPS_OK)
+    status = mpsi_as(context, __func__, mps_material_get_moduli(material, density, &m));
   if (status == MPS_OK) status = mpsi_particles_writable(particles, set_material);
   const int32_t before = mps_particles_field_count(particles);
   for (int k = 0; k < 5 && status == MPS_OK; k++)
-    status = mps_particles_add_field(particles, names[k], 0);
+    status = mpsi_as(context, __func__, mps_particles_add_field(particles, names[k], 0));
   if (status != MPS_OK) {
     mpsi_particles_drop_fields(particles, before);
     return status;

@@ -255,7 +255,8 @@ mps_status mps_particles_set_geostatic(mps_particles *particles, const mps_geost
   if (!g.depth) return mpsi_fail_memory(g.context, set_geostatic, (size_t)room * sizeof *g.depth);
   g.top = g.depth + g.count, g.burden = g.top + n, g.weight = g.burden + n;
   status = weigh(&g);
-  if (status == MPS_OK) status = mps_particles_add_field(particles, "stress", 0);
+  if (status == MPS_OK)
+    status = mpsi_as(g.context, __func__, mps_particles_add_field(particles, "stress", 0));
   if (status == MPS_OK) status = mpsi_particles_tell(particles, set_geostatic, "stress", NULL);
   if (status == MPS_OK) write_stress(&g);
   mpsi_free(g.context, g.depth);
@@ -289,7 +290,9 @@ mps_status mps_particles_set_stress(mps_particles *particles, mps_stress_fn fn, 
   double *s = mpsi_alloc(g.context, 6 * g.count, sizeof *s);
   if (!s) return mpsi_fail_memory(g.context, __func__, (size_t)g.count * 6 * sizeof *s);
   status = ask_stress(&g, fn, user, s);
-  if (status == MPS_OK) status = mps_particles_add_field(particles, "stress", 0);
+  if (status == MPS_OK)
+    status = mpsi_as(mpsi_particles_context(particles), __func__,
+                     mps_particles_add_field(particles, "stress", 0));
   if (status == MPS_OK) status = mpsi_particles_tell(particles, __func__, "stress", NULL);
   for (int32_t c = 0; c < 2 * g.dim && status == MPS_OK; c++) {
     double *column = mpsi_particles_column(particles, "stress", c);

@@ -97,7 +97,8 @@ mps_status mpsi_mpm_share_save(mps_mpm *mpm, const mpsi_state_of *of, const char
   if (status == MPS_OK)
     status = mpsi_domain_settle(domain, function, mpsi_state_get(of, function, &state));
   if (status == MPS_OK) status = merge(mpm, function, &state.state);
-  if (status == MPS_OK) status = mps_domain_gather(domain, mpm->particles, &whole);
+  if (status == MPS_OK)
+    status = mpsi_as(mpm->context, function, mps_domain_gather(domain, mpm->particles, &whole));
   if (status == MPS_OK) {
     if (mps_domain_rank(domain) == 0)
       status = mpsi_checkpoint_save_values(of, function, path, info, whole, &state.state);

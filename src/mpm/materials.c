@@ -49,7 +49,7 @@ mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *ma
   if (!law.history)
     return mpsi_fail_memory(mpm->context, function, (size_t)law.columns * sizeof *law.history);
   const int32_t fields = mps_particles_field_count(set);
-  const mps_status status = add_fields(set, &law);
+  const mps_status status = mpsi_as(mpm->context, function, add_fields(set, &law));
   if (status != MPS_OK) {
     mpsi_particles_drop_fields(set, fields);
     mpsi_free(mpm->context, law.history);
@@ -152,7 +152,7 @@ static mps_status list_law(mps_mpm *mpm, const char *function, mps_material *mat
   if (*number < mpm->laws.count) return MPS_OK;
   const bool numbered = mpm->p.law != NULL;
   const int32_t fields = mps_particles_field_count(mpm->particles);
-  mps_status status = number_particles(mpm);
+  mps_status status = mpsi_as(mpm->context, function, number_particles(mpm));
   if (status == MPS_OK) status = mpsi_mpm_add_law(mpm, function, material);
   if (status == MPS_OK || numbered) return status;
   mpsi_particles_drop_fields(mpm->particles, fields);

@@ -194,7 +194,7 @@ static mps_status add_fields(mps_mpm *mpm) {
   static const char *const names[] = {"velocity", "velocity_gradient", "stress", "volume", "mass"};
   mps_status status = MPS_OK;
   for (size_t k = 0; k < sizeof names / sizeof *names && status == MPS_OK; k++)
-    status = mps_particles_add_field(mpm->particles, names[k], 0);
+    status = mpsi_as(mpm->context, create, mps_particles_add_field(mpm->particles, names[k], 0));
   return status;
 }
 
@@ -406,8 +406,10 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   if (def.kernel)
     mpm->weights = mpsi_kernel_retain(def.kernel);
   else if (status == MPS_OK)
-    status = mps_kernel_create(context, def.spline == 2 ? MPS_KERNEL_SPLINE2 : MPS_KERNEL_SPLINE3,
-                               radius_of(&def), &mpm->weights);
+    status = mpsi_as(context, __func__,
+                     mps_kernel_create(context,
+                                       def.spline == 2 ? MPS_KERNEL_SPLINE2 : MPS_KERNEL_SPLINE3,
+                                       radius_of(&def), &mpm->weights));
   status = build(mpm, material, status, &former);
   if (status != MPS_OK) {
     mpsi_particles_take_back(particles, &former);

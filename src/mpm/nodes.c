@@ -127,13 +127,14 @@ static mps_status resize(const mps_mpm *mpm, const char *function, mps_particles
   const int64_t have = mps_particles_count(set);
   if (count < have) {
     const int64_t *id = mpsi_particles_integers(set, "id");
-    return mps_particles_remove(set, have - count, id + count);
+    return mpsi_as(mpm->context, function, mps_particles_remove(set, have - count, id + count));
   }
   double *places = mpsi_alloc(mpm->context, (count - have) * mpm->dim, sizeof *places);
   if (!places) return mpsi_fail_memory(mpm->context, function, (size_t)(count - have) * 24);
   for (int64_t k = have; k < count; k++)
     for (int c = 0; c < mpm->dim; c++) places[(k - have) * mpm->dim + c] = x[3 * k + c];
-  const mps_status status = mps_particles_append(set, count - have, places);
+  const mps_status status =
+      mpsi_as(mpm->context, function, mps_particles_append(set, count - have, places));
   mpsi_free(mpm->context, places);
   return status;
 }
@@ -151,7 +152,9 @@ mps_status mps_grid_fill(mps_grid *grid, mps_particles *set) {
   mps_mpm *mpm = grid->mpm;
   int64_t count = 0;
   mps_status status = mpsi_mpm_share_settle(mpm, __func__, check_set(mpm, __func__, set));
-  if (status == MPS_OK) status = mps_grid_get_nodes(grid, 0, &count, NULL, NULL, NULL, NULL);
+  if (status == MPS_OK)
+    status = mpsi_as(mpm->context, __func__,
+                     mps_grid_get_nodes(grid, 0, &count, NULL, NULL, NULL, NULL));
   if (status != MPS_OK) return status;
   double *memory = mpsi_alloc(mpm->context, count * 10, sizeof *memory);
   if (!memory) status = mpsi_fail_memory(mpm->context, __func__, (size_t)count * 80);
@@ -160,17 +163,23 @@ mps_status mps_grid_fill(mps_grid *grid, mps_particles *set) {
     mpsi_free(mpm->context, memory);
     return status;
   }
+  const int32_t fields = mps_particles_field_count(set);
   double *x = memory, *v = x + 3 * count, *f = v + 3 * count, *mass = f + 3 * count;
-  status = mps_grid_get_nodes(grid, count, &count, x, mass, v, f);
-  if (status == MPS_OK) status = mps_particles_add_field(set, "mass", 0);
-  if (status == MPS_OK) status = mps_particles_add_field(set, "velocity", 0);
-  if (status == MPS_OK) status = mps_particles_add_field(set, "force", mpm->dim);
+  status = mpsi_as(mpm->context, __func__, mps_grid_get_nodes(grid, count, &count, x, mass, v, f));
+  if (status == MPS_OK)
+    status = mpsi_as(mpm->context, __func__, mps_particles_add_field(set, "mass", 0));
+  if (status == MPS_OK)
+    status = mpsi_as(mpm->context, __func__, mps_particles_add_field(set, "velocity", 0));
+  if (status == MPS_OK)
+    status = mpsi_as(mpm->context, __func__, mps_particles_add_field(set, "force", mpm->dim));
   if (status == MPS_OK) status = resize(mpm, __func__, set, count, x);
   if (status == MPS_OK) {
     write_columns(set, "position", count, 3, x);
     write_columns(set, "velocity", count, 3, v);
     write_columns(set, "force", count, 3, f);
     write_columns(set, "mass", count, 1, mass);
+  } else {
+    mpsi_particles_drop_fields(set, fields);
   }
   mpsi_free(mpm->context, memory);
   return mpsi_mpm_share_settle(mpm, __func__, status);

@@ -49,4 +49,13 @@ mps_status mpsi_mpm_insert(void *mpm, const char *function, int64_t first, int64
 mps_status mpsi_mpm_remove(void *mpm, const char *function, int64_t count, const int64_t *ids);
 void mpsi_mpm_renew(void *mpm);
 
+/* ready.c: a call that fails after it has taken up what the caller has written (mpsi_mpm_tidy) puts
+ * that off again: the step and its limit are those of before. */
+typedef struct mpsi_untidy {
+  double speed;
+  bool edited;
+} mpsi_untidy;
+mpsi_untidy mpsi_mpm_untidy(const mps_mpm *mpm);
+void mpsi_mpm_put_off(mps_mpm *mpm, const mpsi_untidy *before);
+
 #endif

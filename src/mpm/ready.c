@@ -26,6 +26,16 @@ mps_status mpsi_mpm_tidy(mps_mpm *mpm, const char *function) {
   return mpsi_mpm_collect_block_results(mpm, function);
 }
 
+mpsi_untidy mpsi_mpm_untidy(const mps_mpm *mpm) {
+  return (mpsi_untidy){mpm->run.speed, mpm->run.edited};
+}
+
+void mpsi_mpm_put_off(mps_mpm *mpm, const mpsi_untidy *before) {
+  if (!before->edited) return;
+  mpm->run.speed = before->speed;
+  mpm->run.edited = true;
+}
+
 mps_status mpsi_mpm_ready(mps_mpm *mpm, const char *function) {
   const mps_status status = mpsi_mpm_between_steps(mpm, function);
   return status == MPS_OK ? mpsi_mpm_tidy(mpm, function) : status;

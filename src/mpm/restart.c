@@ -438,10 +438,13 @@ static mps_status make_whole(mps_mpm *mpm, const char *function) {
 
 mps_status mps_mpm_snapshot(mps_mpm *mpm, mps_snapshot **snapshot) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_status status = make_whole(mpm, __func__);
+  const mpsi_untidy before = mpsi_mpm_untidy(mpm);
+  mps_status status = make_whole(mpm, __func__);
   const mpsi_state_of of = state_of(mpm);
-  return mpsi_mpm_share_settle(
-      mpm, __func__, status == MPS_OK ? mpsi_state_snapshot(&of, __func__, snapshot) : status);
+  if (status == MPS_OK) status = mpsi_state_snapshot(&of, __func__, snapshot);
+  status = mpsi_mpm_share_settle(mpm, __func__, status);
+  if (status != MPS_OK) mpsi_mpm_put_off(mpm, &before);
+  return status;
 }
 
 mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot) {
@@ -454,12 +457,16 @@ mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapshot *snapshot) {
 
 mps_status mps_mpm_save(mps_mpm *mpm, const char *path, const mps_checkpoint *info) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
-  const mps_status status = mpsi_mpm_share_settle(mpm, __func__, make_whole(mpm, __func__));
+  const mpsi_untidy before = mpsi_mpm_untidy(mpm);
+  mps_status status = mpsi_mpm_share_settle(mpm, __func__, make_whole(mpm, __func__));
   const mpsi_state_of of = state_of(mpm);
-  if (status != MPS_OK) return status;
-  mpsi_mpm_order_kept(mpm);
-  return mpm->share ? mpsi_mpm_share_save(mpm, &of, __func__, path, info)
-                    : mpsi_checkpoint_save(&of, __func__, path, info);
+  if (status == MPS_OK) {
+    mpsi_mpm_order_kept(mpm);
+    status = mpm->share ? mpsi_mpm_share_save(mpm, &of, __func__, path, info)
+                        : mpsi_checkpoint_save(&of, __func__, path, info);
+  }
+  if (status != MPS_OK) mpsi_mpm_put_off(mpm, &before);
+  return status;
 }
 
 mps_status mps_mpm_restore(mps_mpm *mpm, const char *path, mps_checkpoint *info) {

@@ -43,6 +43,8 @@ static mps_status check_bounded(mps_mpm *mpm, const char *function) {
 
 mps_status mps_mpm_step(mps_mpm *mpm, int64_t count) {
   if (!mpm) return MPS_ERROR_ARGUMENT;
+  const mpsi_untidy before = mpsi_mpm_untidy(mpm);
+  const int64_t steps = mpm->run.steps;
   mps_status status = MPS_OK;
   if (count < 0)
     status = mpsi_fail(mpm->context, __func__, MPS_ERROR_ARGUMENT, "count is %lld, must be >= 0",
@@ -58,6 +60,7 @@ mps_status mps_mpm_step(mps_mpm *mpm, int64_t count) {
     if (status == MPS_OK) status = mpsi_mpm_take_step(mpm, __func__, mps_mpm_dt(mpm));
     if (status == MPS_OK && k + 1 < count) status = ask_cancel(mpm, __func__);
   }
+  if (status != MPS_OK && mpm->run.steps == steps) mpsi_mpm_put_off(mpm, &before);
   mpsi_guard_end(&mpm->run.guard);
   return status;
 }
@@ -127,11 +130,14 @@ mps_status mps_mpm_run(mps_mpm *mpm, double t_end, int64_t every, mps_mpm_fn cal
   if (status == MPS_OK) status = same_on_ranks(mpm, __func__, status, "every", (double)every);
   if (status == MPS_OK)
     status = same_on_ranks(mpm, __func__, status, "having a callback", callback != NULL);
+  const mpsi_untidy before = mpsi_mpm_untidy(mpm);
+  const int64_t steps = mpm->run.steps;
   if (status == MPS_OK) status = mpsi_mpm_ready(mpm, __func__);
   if (status != MPS_OK) return status;
   const run r = {mpm->run.time, t_end, every, callback, user};
   mpsi_guard_enter(&mpm->run.guard, mpm->context, __func__);
   status = march(mpm, __func__, &r);
+  if (status != MPS_OK && mpm->run.steps == steps) mpsi_mpm_put_off(mpm, &before);
   mpsi_guard_end(&mpm->run.guard);
   return status;
 }

@@ -1,7 +1,7 @@
 /* settle.c - static equilibrium by dynamic relaxation with kinetic damping: the particles swing
  * towards equilibrium, and where their kinetic energy has passed a peak they are stopped, since
  * there the forces are near balance. SPDX-License-Identifier: BSD-3-Clause */
-#include "mpm_private.h"
+#include "particles.h"
 
 #include <mps/mpm_settle.h>
 
@@ -80,6 +80,37 @@ void mpsi_mpm_leave_settling(mps_mpm *mpm) {
   if (!mpm->settling.cut) return;
   mpm->settling.cut = false;
   stop_particles(mpm);
+}
+
+/* What stopping changes, for a first step that cannot be made: ids, velocities and slopes in the
+ * order of the particles. NULL: no memory. */
+static double *keep_motion(mps_mpm *mpm, const char *function) {
+  const int64_t n = mpm->p.count;
+  double *kept = mpsi_alloc(mpm->context, 13 * n, sizeof *kept);
+  if (!kept) {
+    (void)mpsi_fail_memory(mpm->context, function, (size_t)n * 13 * sizeof *kept);
+    return NULL;
+  }
+  const size_t bytes = (size_t)n * sizeof *kept;
+  memcpy(kept, mpsi_particles_integers(mpm->particles, "id"), bytes);
+  for (int c = 0; c < 12; c++) {
+    const double *column = c < 3 ? mpm->p.v[c] : mpm->p.L[c - 3];
+    if (column) memcpy(kept + (c + 1) * n, column, bytes);
+  }
+  return kept;
+}
+
+static void put_motion_back(mps_mpm *mpm, const double *kept) {
+  const int64_t n = mpm->p.count;
+  for (int64_t k = 0; k < n; k++) {
+    int64_t id;
+    memcpy(&id, &kept[k], sizeof id);
+    const int64_t at = mps_particles_index(mpm->particles, id); /* the step may have sorted */
+    for (int c = 0; c < 12 && at >= 0; c++) {
+      double *column = c < 3 ? mpm->p.v[c] : mpm->p.L[c - 3];
+      if (column) column[at] = kept[(c + 1) * n + k];
+    }
+  }
 }
 
 enum { UNBALANCED, APPLIED, KINETIC, SUMS };
@@ -186,6 +217,9 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
   mps_mpm_settle_def def = settle_defaults;
   mps_mpm_settled now = {0};
   motions kept;
+  const mpsi_untidy before = mpsi_mpm_untidy(mpm);
+  if (out && (size == 0 || size > MPSI_STRUCT_MOST)) /* refused before anything moves */
+    return mpsi_out_write(mpm->context, function, out, size, &now, sizeof now);
   mps_status status = mpsi_mpm_ready(mpm, function);
   if (status == MPS_OK) status = read_def(mpm, function, user, &def);
   if (status == MPS_OK) status = check_bodies(mpm, function);
@@ -197,8 +231,17 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
     MPSI_GIVE(&given, &def, max_steps);
     status = mpsi_domain_settle_given(mpm->share->domain, function, status, &given);
   }
-  if (status != MPS_OK) return status;
+  double *motion = status == MPS_OK ? keep_motion(mpm, function) : NULL;
+  if (status == MPS_OK && !motion) status = MPS_ERROR_MEMORY;
+  status = mpsi_mpm_share_settle(mpm, function, status);
+  if (status != MPS_OK) {
+    mpsi_free(mpm->context, motion);
+    mpsi_mpm_put_off(mpm, &before);
+    return status;
+  }
   mpsi_settling *settling = &mpm->settling;
+  const mpsi_settling former = *settling;
+  const mpsi_energy energy = mpm->energy;
   stop_bodies(mpm, &kept);
   if (!settling->cut) { /* else all goes on from where it was cut */
     stop_particles(mpm);
@@ -215,6 +258,16 @@ mps_status mps_mpm_settle_sized(mps_mpm *mpm, const mps_mpm_settle_def *user, mp
   if (!mpm->run.broken && !settling->cut) stop_particles(mpm);
   let_bodies_go(mpm, &kept);
   settling->on = false;
+  if (status != MPS_OK && settling->steps == former.steps * former.cut && !mpm->share &&
+      !mpm->run.broken) { /* no step was made */
+    put_motion_back(mpm, motion);
+    memcpy(mpm->energy.sum, energy.sum, sizeof energy.sum);
+    settling->cut = former.cut, settling->from_rest = former.from_rest;
+    settling->before = former.before;
+    settling->steps = former.steps, settling->peaks = former.peaks;
+    mpsi_mpm_put_off(mpm, &before);
+  }
+  mpsi_free(mpm->context, motion);
   if (!out) return status;
   const mps_status written = mpsi_out_write(mpm->context, function, out, size, &now, sizeof now);
   return status == MPS_OK ? written : status;

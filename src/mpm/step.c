@@ -45,8 +45,8 @@ static void warn_about_step(mps_mpm *mpm, double dt) {
 }
 
 /* Before anything moves: the particles in order where some have left their blocks, and what is near
- * them. An error loses nothing but the tractions at rest of absorbing sides. `status`: what has
- * become of the call so far here; collective. */
+ * them. An error loses nothing but, on several ranks, the tractions at rest of absorbing sides.
+ * `status`: what has become of the call so far here; collective. */
 static mps_status prepare(mps_mpm *mpm, const char *function, mps_status status) {
   const bool renewed = mpm->run.stale || (mpm->share && mpm->share->outdated);
   if (mpm->share) status = mpsi_mpm_share_tidy(mpm, function, status);
@@ -59,7 +59,7 @@ static mps_status prepare(mps_mpm *mpm, const char *function, mps_status status)
   const bool dashes = mpm->boundaries.dash_count > 0;
   const mps_status before = status;
   status = mpsi_mpm_update_holds(mpm, function, status);
-  if (before == MPS_OK && status != MPS_OK) mpm->run.broken = dashes;
+  if (before == MPS_OK && status != MPS_OK) mpm->run.broken = dashes && mpm->share;
   status = mpsi_mpm_find_near(mpm, function, status);
   bool cleared = false;
   status = mpsi_mpm_clear_bodies(mpm, function, status, &cleared);

@@ -46,7 +46,7 @@ static void swap_rooms(mpsi_room *a, mpsi_room *b) {
   *b = old;
 }
 
-/* A new list, in other memory than the old one. */
+/* A new list, in other memory than the old one, which stays where there is none. */
 static mps_status make_list(mps_mpm *mpm, const char *function) {
   int64_t count, dashes;
   mpm->boundaries.outdated = true;
@@ -62,15 +62,18 @@ static mps_status make_list(mps_mpm *mpm, const char *function) {
   }
   good = good && mpsi_room_ensure(mpm->context, &mpm->boundaries.dash_room, dashes,
                                   sizeof *mpm->boundaries.dash);
-  mpm->boundaries.held = mpm->boundaries.held_room.item;
-  mpm->boundaries.dash = mpm->boundaries.dash_room.item;
-  mpm->boundaries.outdated = !good;
-  mpm->boundaries.held_count = good ? count : 0;
-  mpm->boundaries.dash_count = good ? dashes : 0;
-  if (!good)
+  if (!good) {
+    swap_rooms(&mpm->boundaries.held_room, &mpm->boundaries.old_held_room);
+    swap_rooms(&mpm->boundaries.dash_room, &mpm->boundaries.old_dash_room);
     return mpsi_fail_memory(mpm->context, function,
                             (size_t)count * sizeof *mpm->boundaries.held +
                                 (size_t)dashes * sizeof(mpsi_dash));
+  }
+  mpm->boundaries.held = mpm->boundaries.held_room.item;
+  mpm->boundaries.dash = mpm->boundaries.dash_room.item;
+  mpm->boundaries.outdated = false;
+  mpm->boundaries.held_count = count;
+  mpm->boundaries.dash_count = dashes;
   if (dashes > 0) memset(mpm->boundaries.dash, 0, (size_t)dashes * sizeof *mpm->boundaries.dash);
   return MPS_OK;
 }
