@@ -18,7 +18,8 @@ static const char *check(const seawall_settings *s) {
     return "--wall-thickness must be a whole number of --spacing";
   if (!is_whole(s->wall_height, s->spacing))
     return "--wall-height must be a whole number of --spacing";
-  if (s->depth < 5.0 * s->spacing * (1.0 - 1e-9)) return "--depth must be at least 5 times --spacing";
+  if (s->depth < 5.0 * s->spacing * (1.0 - 1e-9))
+    return "--depth must be at least 5 times --spacing";
   if (s->length < 10.0 * s->spacing) return "--length must be at least 10 times --spacing";
   if (s->wall_thickness < 2.0 * s->spacing * (1.0 - 1e-9) || s->wall_height < s->depth)
     return "--wall-thickness must be at least 2 times --spacing, --wall-height at least --depth";

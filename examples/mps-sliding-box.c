@@ -240,7 +240,7 @@ static bool draw(app *a, const settings *s, double fy_exact) {
 static bool finish(app *a, void *user) {
   simulation *sim = user;
   const settings *s = &sim->s;
-    const double smooth = -confined_modulus(s) * SIDE * log1p(-SPEED * (STROKE - RAMP) / SIDE);
+  const double smooth = -confined_modulus(s) * SIDE * log1p(-SPEED * (STROKE - RAMP) / SIDE);
   double fx = 0.0, fy = 0.0;
   int count = 0;
   for (int k = 0; k < sim->rows; k++) {

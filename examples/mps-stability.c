@@ -196,8 +196,8 @@ static int run_study(app *a, const settings *s) {
     a->outcome = "interrupted";
     app_error(a, "interrupted: limits.csv and integrators.csv have %lld of %d cases",
               (long long)all->done, STUDY_CASES);
-    const bool ok = app_agree(a, a->rank > 0 || (study_write_limits(a, all, s->out) &&
-                                                 study_summary(a, all, s->out)));
+    const bool ok = app_agree(
+        a, a->rank > 0 || (study_write_limits(a, all, s->out) && study_summary(a, all, s->out)));
     code = ok ? APP_INTERRUPTED : APP_FAILED;
   } else if (code == APP_OK) {
     const bool ok = a->rank > 0 || (study_fit(a, all) && study_write(a, all, s->out) &&

@@ -221,7 +221,8 @@ int main(int argc, char **argv) {
        .range = OPTION_FROM_TO(0.0, 1e6),
        .count = 2,
        .number = s->window,
-       .help = "two times T1,T2: window of the means and harmonics (default: the last 4 periods of a piston, half the run "
+       .help = "two times T1,T2: window of the means and harmonics (default: the last 4 periods of "
+               "a piston, half the run "
                "at rest, else all)"},
       COMMON_INTEGER("frames", &s->frames, NULL),
       RESUME_OPTIONS(&s->checkpoint, &s->every_checkpoint, NULL, &s->restart),

@@ -26,12 +26,12 @@ typedef struct app {
   const char *program; /* "mps-wave" */
   mps_context *context;
   progress bar;
-  bool no_gnuplot;     /* the note about it has been printed */
-  bool no_warnings;    /* the library's are not printed: the program expects them */
-  const char *outcome; /* of the run: "finished", "interrupted", "failed" or "diverged" */
+  bool no_gnuplot;             /* the note about it has been printed */
+  bool no_warnings;            /* the library's are not printed: the program expects them */
+  const char *outcome;         /* of the run: "finished", "interrupted", "failed" or "diverged" */
   char *warning[APP_WARNINGS]; /* the first ones, for summary.json */
   int warnings;
-  char results[1024];  /* names of the files written, for app_tell_results */
+  char results[1024]; /* names of the files written, for app_tell_results */
   /* of several ranks */
   mps_domain *domain; /* NULL: one process */
   int32_t rank;       /* rank 0 speaks and writes; 0 of one process */
@@ -63,8 +63,8 @@ int app_finish(app *a, int code);
 /* One line "program: ..." to stderr; of several ranks rank 0 prints it, the others keep theirs for
  * app_agree. Returns false, for `return app_error(...)`. */
 bool app_error(app *a, const char *format, ...) APP_PRINTF(2, 3);
-/* One line "program: warning: ..." to stderr, as of the library's warnings: of the first two. All of
- * them are in summary.json. */
+/* One line "program: warning: ..." to stderr, as of the library's warnings: of the first two. All
+ * of them are in summary.json. */
 void app_warn(app *a, const char *format, ...) APP_PRINTF(2, 3);
 /* As app_error, out of memory. */
 bool app_no_memory(app *a);

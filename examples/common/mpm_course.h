@@ -46,8 +46,8 @@ mps_status mpm_course_load(mpm_course *c, mps_context *context);
 /* Once the model is built: puts the checkpoint back, if any, where it is of this model (`restores`)
  * and not of one of several that the run has before. */
 mps_status mpm_course_begin(mpm_course *c, mps_context *context, bool restores);
-/* After sample `k` of 0 to `samples`, of which 0 is the start: the frame and the checkpoint that are
- * due. */
+/* After sample `k` of 0 to `samples`, of which 0 is the start: the frame and the checkpoint that
+ * are due. */
 mps_status mpm_course_sample(mpm_course *c, int64_t k, int64_t samples);
 /* Closes the series, of a run that ended with `status`, and writes a checkpoint of one that Ctrl-C
  * has ended. Returns `status`, or what went wrong here. */

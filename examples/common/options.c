@@ -209,9 +209,9 @@ static int refuse_value(const options_program *program, const option *o, const c
                         const char *allowed) {
   const bool unit = o->number && o->unit && strcmp(o->unit, "1") != 0;
   const bool own = unit && units_written(value);
-  complain("%s: --%s is %s%s%s, must be %s%s%s\n", program->name, o->name,
-           *value ? value : "empty", unit && !own ? " " : "", unit && !own ? o->unit : "", allowed,
-           own ? " " : "", own ? o->unit : "");
+  complain("%s: --%s is %s%s%s, must be %s%s%s\n", program->name, o->name, *value ? value : "empty",
+           unit && !own ? " " : "", unit && !own ? o->unit : "", allowed, own ? " " : "",
+           own ? o->unit : "");
   return USAGE;
 }
 
@@ -314,7 +314,9 @@ static void keep_rows(const options_program *program) {
   rows_read[count] = (option){0};
 }
 
-const option *options_read(void) { return rows_read[0].name || rows_read[0].help ? rows_read : NULL; }
+const option *options_read(void) {
+  return rows_read[0].name || rows_read[0].help ? rows_read : NULL;
+}
 
 static int parse(const options_program *program, int argc, char **argv) {
   for (int i = 1; i < argc; i++) {
@@ -398,8 +400,8 @@ static void show_defaults(const option *table, const char *text, char *out, size
     const size_t length = o->name ? strlen(o->name) : 0;
     for (const char *at = strstr(text, "--"); o->name && at; at = strstr(at + 2, "--")) {
       const char after = strncmp(at + 2, o->name, length) == 0 ? at[2 + length] : 'a';
-      named = named || !((after >= 'a' && after <= 'z') || (after >= '0' && after <= '9') ||
-                         after == '-');
+      named = named ||
+              !((after >= 'a' && after <= 'z') || (after >= '0' && after <= '9') || after == '-');
     }
     if (!named || !show_value(o, value, sizeof value)) continue;
     any = any || !o->given;

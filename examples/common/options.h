@@ -118,11 +118,12 @@ bool options_record(const option *table, char *text, size_t size);
 bool options_agree(const option *table, const char *record, char *why, size_t size);
 
 /* One error line about a combination of options, as the parser's own. Where `reason` names options
- * that were not given, the line ends with their defaults and the values of the others. Returns 2. */
+ * that were not given, the line ends with their defaults and the values of the others. Returns 2.
+ */
 int options_refuse(const options_program *program, const char *reason);
 
-/* The value of an option as JSON, in the unit of the table: a number, text, true or false, [numbers];
- * null where there is none. */
+/* The value of an option as JSON, in the unit of the table: a number, text, true or false,
+ * [numbers]; null where there is none. */
 void options_json(const option *o, char *out, size_t size);
 /* The rows that options_parse has read last, with their values as they are now; NULL: none yet. */
 const option *options_read(void);

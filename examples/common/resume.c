@@ -97,9 +97,8 @@ mps_status resume_peek(mps_context *context, const resume *r, const char *path, 
   char differs[600] = "";
   mps_status status = read_bytes(context, r, path, &info);
   why[0] = '\0';
-  if (status == MPS_OK &&
-      (!memchr(info.user_data, '\0', OPTIONS) ||
-       !options_agree(r->table, info.user_data, differs, sizeof differs))) {
+  if (status == MPS_OK && (!memchr(info.user_data, '\0', OPTIONS) ||
+                           !options_agree(r->table, info.user_data, differs, sizeof differs))) {
     snprintf(why, size, "%.150s was made with other options: %.200s", path, differs);
     status = MPS_ERROR_ARGUMENT;
   }

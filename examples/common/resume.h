@@ -61,11 +61,11 @@ mps_status resume_restore(mps_context *context, const resume *r, const char *pat
   COMMON_TEXT("checkpoint", checkpoint, NULL), COMMON_NUMBER("every-checkpoint", every, note),     \
       COMMON_TEXT("restart", restart, NULL)
 
-/* The files of a run, before it begins, by one rule for all programs. A run that goes on replaces no
- * results: where *out has a summary.json, they go to OUT-from-T, T (s) the time of the checkpoint,
- * and a line says so; that one must be new. *checkpoint becomes OUT/checkpoint.h5 where it is NULL;
- * a place that the library would not write to is refused now. Strings that change are kept here.
- * False after an error line. */
+/* The files of a run, before it begins, by one rule for all programs. A run that goes on replaces
+ * no results: where *out has a summary.json, they go to OUT-from-T, T (s) the time of the
+ * checkpoint, and a line says so; that one must be new. *checkpoint becomes OUT/checkpoint.h5 where
+ * it is NULL; a place that the library would not write to is refused now. Strings that change are
+ * kept here. False after an error line. */
 bool resume_places(app *a, const char *restart, const char **checkpoint, const char **out);
 
 /* Checkpoints on the way. One that fails is told, once, and does not end the run. */

@@ -30,9 +30,7 @@ static const struct {
     {"state", "stress|strain", NONE, "plane stress or plane strain"},
     /* contact */
     {"friction", "1", OPTION_FROM_TO(0.0, 10.0), "Coulomb's coefficient mu"},
-    {"contact",
-     "impulse|penalty",
-     NONE,
+    {"contact", "impulse|penalty", NONE,
      "impulses at the surface, or springs at the particles, Nakamura (28) to (34)"},
     {"k", "N/m", OPTION_STIFFNESS,
      "contact stiffness per unit thickness of each particle, Nakamura (28)"},
@@ -50,9 +48,7 @@ static const struct {
     {"h", "m", OPTION_LENGTH, "grid spacing"},
     {"ppc", "N", OPTION_FROM_TO(1.0, 100.0), "particles a cell"},
     {"spline", "2|3", NONE, "degree of the weights"},
-    {"volumetric",
-     "point|cell|nodes",
-     NONE,
+    {"volumetric", "point|cell|nodes", NONE,
      "change of volume: each particle's own, F-bar by cell, or means by nodes"},
     {"radius", "m", OPTION_LENGTH, "particle radius R; the spacing is D = 2R"},
     {"spacing", "m", OPTION_LENGTH, "spacing of the particles"},
@@ -62,13 +58,9 @@ static const struct {
     {"dt", "s", OPTION_DURATION, "time step"},
     {"integrator", "verlet|leapfrog|euler", NONE, "time integration"},
     {"rotation", "mean-matrix|mean-angle", NONE, "how the rigid rotation of a pair is removed"},
-    {"torque",
-     "conserving|printed",
-     NONE,
+    {"torque", "conserving|printed", NONE,
      "as derived, which conserves angular momentum, or twice that as the paper prints it"},
-    {"solver",
-     "own|multigrid|direct",
-     NONE,
+    {"solver", "own|multigrid|direct", NONE,
      "of the pressure: the library's, the same bit for bit on all numbers of ranks; or PETSc's "
      "algebraic multigrid, for some fifty thousand particles and more, or its direct solver: they "
      "agree within the tolerance"},
@@ -77,16 +69,13 @@ static const struct {
     {"duration", "s", OPTION_DURATION, "simulated time"},
     {"sample", "s", OPTION_DURATION, "time between rows of the tables"},
     {"frames", "N", OPTION_FROM_TO(0.0, 100000.0), "frames of the series for ParaView (0: none)"},
-    {"checkpoint",
-     "FILE",
-     NONE,
+    {"checkpoint", "FILE", NONE,
      "written on the way and at Ctrl-C, to go on from with --restart (default OUT/checkpoint.h5)"},
     {"every-checkpoint", "s", OPTION_DURATION, "simulated time between checkpoints"},
-    {"restart",
-     "FILE",
-     NONE,
+    {"restart", "FILE", NONE,
      "go on from a checkpoint made with the same options (but --out, --threads and those of "
-     "checkpoints); the results are those of the whole run, frames for ParaView those from here on; "
+     "checkpoints); the results are those of the whole run, frames for ParaView those from here "
+     "on; "
      "where --out has results already they go to OUT-from-T"},
     {"out", "DIR", NONE, "directory of the results"},
     {"threads", "N", OPTION_FROM_TO(0.0, 1024.0), "threads; 0: all processors"},

@@ -91,7 +91,8 @@ mps_status dam_mps_advance(simulation *sim, double t) {
     status = mps_fluid_step(sim->m.fluid, 1);
     if (status == MPS_OK && sim->s.impact) status = read_gauge(sim);
     progress_draw(&sim->m.a->bar, mps_fluid_time(sim->m.fluid) / sim->s.duration, "water");
-    if (progress_interrupted() && status == MPS_OK && !sim->m.a->domain) status = MPS_ERROR_CANCELLED;
+    if (progress_interrupted() && status == MPS_OK && !sim->m.a->domain)
+      status = MPS_ERROR_CANCELLED;
   }
   return status;
 }

@@ -24,7 +24,7 @@ typedef struct pen_settings {
   const char *mesh;
   double scale;                            /* m per unit of the mesh */
   double diameter, angle;                  /* m, degrees */
-  double depth, rate, friction;           /* m, m/s, 1 */
+  double depth, rate, friction;            /* m, m/s, 1 */
   double alpha;                            /* of the cohesion; NaN: no bound */
   double corner;                           /* radius of the tip's edges, cells */
   const char *soil;                        /* "WxWxD" in diameters */
@@ -74,7 +74,7 @@ typedef struct pen_run {
 typedef struct penetrometer {
   pen_settings s;
   pen_run run[2]; /* the second one, if there are two, is the axisymmetric one */
-  int runs, now; /* how many, and the one that is at work */
+  int runs, now;  /* how many, and the one that is at work */
   mpm_course course;
   double stride; /* m of path between rows */
   double t_end;  /* s */

@@ -204,8 +204,11 @@ static mps_status march(penetrometer *p, pen_run *r) {
   push now = {p, r};
   mps_status status = MPS_OK;
   r->m.samples = r->rows;
-  progress_part(&r->m.a->bar, p->now * 0.9, p->runs == 1 ? 1.0 : p->now == 0 ? 0.9 : 0.1, 0.0,
-                p->t_end);
+  progress_part(&r->m.a->bar, p->now * 0.9,
+                p->runs == 1  ? 1.0
+                : p->now == 0 ? 0.9
+                              : 0.1,
+                0.0, p->t_end);
   if (r->rows == 0) status = mpm_course_sample(&p->course, 0, r->capacity);
   if (status == MPS_OK) status = mps_mpm_run(r->m.mpm, p->t_end, 1, after_step, &now);
   const mps_status joined = join_looks(r, MPS_OK);

@@ -84,17 +84,17 @@ static mps_status write_checkpoint(void *user) {
 
 bool files_open(app *a, const settings *s, double duration, results_so_far *so_far,
                 mps_dynamics *dynamics, files *out) {
-  *out = (files){.particles = mps_dynamics_particles(dynamics),
-                 .domain = a->domain,
-                 .so_far = so_far,
-                 .frame_every = s->frames > 0 ? duration / (double)s->frames : 0.0,
-                 .dynamics = dynamics,
-                 .a = a,
-                 .saves = {.path = s->checkpoint,
-                           .every = isnan(s->every_checkpoint) ? 0.1 * duration
-                                                               : s->every_checkpoint,
-                           .save = write_checkpoint,
-                           .user = out}};
+  *out =
+      (files){.particles = mps_dynamics_particles(dynamics),
+              .domain = a->domain,
+              .so_far = so_far,
+              .frame_every = s->frames > 0 ? duration / (double)s->frames : 0.0,
+              .dynamics = dynamics,
+              .a = a,
+              .saves = {.path = s->checkpoint,
+                        .every = isnan(s->every_checkpoint) ? 0.1 * duration : s->every_checkpoint,
+                        .save = write_checkpoint,
+                        .user = out}};
   if (s->restart && !put_back(a, s, dynamics, out)) return false;
   const double now = mps_dynamics_time(dynamics);
   out->next_frame = now;

@@ -10,17 +10,17 @@
 #include <mps/io.h>
 
 typedef struct files {
-  mps_particles *particles;                 /* borrowed; of several ranks this one's share */
-  mps_domain *domain;                       /* borrowed; NULL: one process */
-  mps_particles *whole;                     /* rank 0 of several: all ranks' particles, to write */
-  mps_recorder *recorder;                   /* NULL: no frames wanted */
-  char *series;                             /* its file */
-  double frame_every, next_frame;           /* s; 0: no frames wanted */
-  resume_schedule saves;                    /* checkpoints */
-  mps_dynamics *dynamics;                   /* borrowed */
-  app *a;                                   /* borrowed */
-  bool failed;                              /* files_record, which ended the run */
-  results_so_far *so_far;                   /* borrowed: what a checkpoint keeps of the results */
+  mps_particles *particles;       /* borrowed; of several ranks this one's share */
+  mps_domain *domain;             /* borrowed; NULL: one process */
+  mps_particles *whole;           /* rank 0 of several: all ranks' particles, to write */
+  mps_recorder *recorder;         /* NULL: no frames wanted */
+  char *series;                   /* its file */
+  double frame_every, next_frame; /* s; 0: no frames wanted */
+  resume_schedule saves;          /* checkpoints */
+  mps_dynamics *dynamics;         /* borrowed */
+  app *a;                         /* borrowed */
+  bool failed;                    /* files_record, which ended the run */
+  results_so_far *so_far;         /* borrowed: what a checkpoint keeps of the results */
 } files;
 
 /* Reads the time step of the checkpoint that the options name, before the solver is made. */

@@ -121,7 +121,8 @@ int settings_parse(settings *s, int argc, char **argv) {
        .range = OPTION_LENGTH,
        .count = 3,
        .number = s->slope,
-       .help = "a slope X1,X2,H2: the surface falls from the height at x = X1 to the height H2 at x = X2; "
+       .help = "a slope X1,X2,H2: the surface falls from the height at x = X1 to the height H2 at "
+               "x = X2; "
                "--sides freefield suits it best"},
       OPTION_HEADING("Input motion"),
       COMMON_CHOICE("wave", &s->wave, NULL),

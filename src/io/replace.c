@@ -116,16 +116,15 @@ static bool holds(const unsigned char *bytes, int64_t size, const char *text) {
   return false;
 }
 
-/* The file is empty, is sealed, or, where it has been damaged since, begins as checkpoints do: their
- * first attribute is the name of the format. False with errno 0: none of these. */
+/* The file is empty, is sealed, or, where it has been damaged since, begins as checkpoints do:
+ * their first attribute is the name of the format. False with errno 0: none of these. */
 static bool is_ours(const char *path, int64_t size) {
   unsigned char head[8192], tail[SEAL_SIZE];
   errno = 0;
   if (size == 0) return true;
   const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (fd < 0) return false;
-  const int64_t last =
-      size < SEAL_SIZE ? 0 : read_at(fd, tail, sizeof tail, size - SEAL_SIZE);
+  const int64_t last = size < SEAL_SIZE ? 0 : read_at(fd, tail, sizeof tail, size - SEAL_SIZE);
   const int64_t first = last < 0 ? -1 : read_at(fd, head, sizeof head, 0);
   const int reason = errno;
   close(fd);
@@ -141,8 +140,9 @@ static mps_status check_place(mps_context *context, const char *function, const 
   if (stat(path, &status) != 0)
     return errno == ENOENT ? MPS_OK : mpsi_fail_io(context, function, "write", path, errno);
   if (!S_ISREG(status.st_mode))
-    return mpsi_fail(context, function, MPS_ERROR_IO, "cannot write '%.300s': it is a %s, not a file",
-                     path, S_ISDIR(status.st_mode) ? "directory" : "device or pipe");
+    return mpsi_fail(context, function, MPS_ERROR_IO,
+                     "cannot write '%.300s': it is a %s, not a file", path,
+                     S_ISDIR(status.st_mode) ? "directory" : "device or pipe");
   if (is_ours(path, (int64_t)status.st_size)) return MPS_OK;
   if (errno != 0) return mpsi_fail_io(context, function, "replace", path, errno);
   return mpsi_fail(context, function, MPS_ERROR_IO,
@@ -166,10 +166,9 @@ mps_status mpsi_replace_begin(mps_context *context, const char *function, const 
   snprintf(out->part, size, "%s.part", path);
   out->fd = open(out->part, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (out->fd >= 0 && is_file(out->fd)) return MPS_OK;
-  const mps_status status = out->fd < 0
-                                ? mpsi_fail_io(context, function, "open", out->part, errno)
-                                : mpsi_fail(context, function, MPS_ERROR_IO,
-                                            "cannot write '%.300s': not a file", out->part);
+  const mps_status status = out->fd < 0 ? mpsi_fail_io(context, function, "open", out->part, errno)
+                                        : mpsi_fail(context, function, MPS_ERROR_IO,
+                                                    "cannot write '%.300s': not a file", out->part);
   if (out->fd >= 0) close(out->fd);
   out->fd = -1;
   mpsi_free(context, out->part);

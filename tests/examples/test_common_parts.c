@@ -181,8 +181,11 @@ static void results_hold_no_nan(void **state) {
   output f;
   double young = NAN, rate = 2e-3;
   const char *name = "a \"b\"";
-  option table[] = {COMMON_NUMBER("young", &young, NULL), COMMON_NUMBER("rate", &rate, NULL),
-                    OPTION_TEXT("name", "TEXT", &name, ""), OPTION_OUT(&name), {0}};
+  option table[] = {COMMON_NUMBER("young", &young, NULL),
+                    COMMON_NUMBER("rate", &rate, NULL),
+                    OPTION_TEXT("name", "TEXT", &name, ""),
+                    OPTION_OUT(&name),
+                    {0}};
   const options_program program = {"test", "", table};
   char *argv[] = {(char[]){"test"}, (char[]){"--rate"}, (char[]){"5mm/s"}, NULL};
   assert_int_equal(options_parse(&program, 3, argv), -1);

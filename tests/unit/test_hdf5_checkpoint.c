@@ -243,8 +243,8 @@ static void bad_arguments_of_writing(void **state) {
   mps_particles_destroy(&set);
 }
 
-/* What is no checkpoint stays what it is: devices, pipes, links to them, other files. An empty file is
- * replaced. */
+/* What is no checkpoint stays what it is: devices, pipes, links to them, other files. An empty file
+ * is replaced. */
 static void other_files_are_not_replaced(void **state) {
   (void)state;
   static const char *const kinds[] = {"device or pipe", "device or pipe", "no checkpoint"};

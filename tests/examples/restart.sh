@@ -1,0 +1,24 @@
+#!/bin/sh
+# restart.sh DIRECTORY: programs of several samples go on from a checkpoint on the way, on other threads, to
+# the tables and the summary of the run that never stopped. Programs whose own tests do not.
+# SPDX-License-Identifier: BSD-3-Clause
+. "$(dirname "$0")/checks.sh"
+programs=$1
+
+again() { # PROGRAM EVERY OPTION...: EVERY (s) is so long that the last checkpoint is on the way
+  program=$1 every=$2
+  shift 2
+  "$programs/$program" "$@" --every-checkpoint "$every" --frames 3 --threads 1 --out "$work/$program" >"$work/log"
+  [ -f "$work/$program/checkpoint.h5" ] || return 0 # built without HDF5
+  "$programs/$program" "$@" --restart "$work/$program/checkpoint.h5" --frames 3 --threads 2 \
+    --out "$work/$program" >"$work/log"
+  on=$(sed -n 's/^Results go to //p' "$work/log")
+  for file in "$work/$program"/*.csv "$work/$program/summary.json"; do
+    cmp "$file" "$on/$(basename "$file")" || fail "another $(basename "$file") after a restart, $program"
+  done
+}
+again mps-sliding-box 0.7 --h 0.1 --young 5kPa --density 10
+again mps-rolling-disc 8ms --h 0.025 --duration 20ms
+again mps-column-collapse 12ms --width 0.1 --h 0.025 --falls 0.2 --compare
+again mps-penetrometer 3ms --soil 4x4x2 --h 0.025 --depth 1cm --rate 2 --ppc 1 --axisymmetric
+again mps-footing 8ms --h 0.25 --domain 3x1 --settlement 1mm --rate 100mm/s
