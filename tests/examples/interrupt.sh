@@ -5,6 +5,14 @@
 ulimit -t 60 # s of processor time: what does not stop is stopped
 programs=$1
 
+# Of $pid, in s/100; nothing once it has ended.
+processor_time() { awk '$3 != "Z" { print $14 + $15 }' "/proc/$pid/stat" 2>/dev/null || :; }
+# used SECONDS: waits until $pid has had so much more of the processor, or has ended.
+used() {
+  until=$(awk "BEGIN { print int(100 * $1) + $(processor_time || echo 0) + 0 }")
+  while now=$(processor_time) && [ -n "$now" ] && [ "$now" -lt "$until" ]; do sleep 0.02; done
+}
+
 # interrupt NAME SECONDS PROGRAM OPTION...: runs into $work/NAME and presses Ctrl-C so long after the
 # run has begun (twice as late where there was no result yet, up to four times).
 interrupt() {
@@ -17,8 +25,8 @@ interrupt() {
     "$programs/$program" "$@" --threads 1 --out "$work/$name" >"$work/out" 2>"$work/log" &
     pid=$!
     until [ -s "$work/out" ] || ! kill -0 "$pid" 2>/dev/null; do sleep 0.05; done
-    sleep "$wait"
-    kill -INT "$pid"
+    used "$wait"
+    kill -INT "$pid" 2>/dev/null || :
     status=0
     wait "$pid" || status=$?
     [ "$status" -eq 130 ] || fail "$program: exit code $status: $(cat "$work/log")"
@@ -77,9 +85,6 @@ wait "$pid" || status=$?
 [ "$status" -eq 130 ] || fail "mps-stability: exit code $status: $(cat "$work/log")"
 has "$work/log" "mps-stability: interrupted: limits.csv"
 [ "$(wc -l <"$work/study/limits.csv")" -eq 321 ] || fail "limits.csv"
-
-# Of $pid; nothing once it has ended.
-processor_time() { awk '$3 != "Z" { print $14 + $15 }' "/proc/$pid/stat" 2>/dev/null || :; }
 
 # No hook reaches into a factorisation: the program ends at once, and nothing is half written.
 [ -x "$programs/mps-cantilever" ] || exit 0
