@@ -45,9 +45,9 @@ typedef struct mps_contact_def {
   uint32_t struct_size;
   int32_t mover;   /* mps_contact_mover, default SOLVER */
   int32_t method;  /* mps_contact_method, default IMPULSE */
-  int32_t sweeps;  /* of Gauss and Seidel over the contacts of a step, 1 to 1000, by METHOD_IMPULSE;
-                      0 (default): 10. Each step begins with the impulses of the last; the solver
-                      takes the most that one of its contacts asks for */
+  int32_t sweeps;  /* most sweeps of Gauss and Seidel over the contacts of a step, 1 to 1000, by
+                      METHOD_IMPULSE; 0 (default): 30. Each step begins with the impulses of the
+                      last; the solver takes the most that one of its contacts asks for */
   double friction; /* Coulomb's mu, 0 to 1e3; default 0 */
   double penalty;  /* for METHOD_PENALTY: contact stiffness k of Nakamura (28), N/m (2D: per m of
                       thickness; in axisymmetry per m of radius and rad, times the particle's
@@ -68,15 +68,20 @@ typedef struct mps_contact_def {
                      By impulses such a body keeps the sides apart, unless the solver has a contact
                      by the penalty too */
   int32_t inside; /* mps_contact_inside, default REFUSE */
-  double adhesion; /* Pa, >= 0: shear stress that the surface bears besides friction times the
-                      pressure, wherever soil is pressed on it; default 0 */
-  double strength; /* Pa, > 0: the most shear stress that it bears, such as alpha times the
-                      undrained strength of clay; NaN (default): no bound. Both by METHOD_IMPULSE,
-                      over the area that soil covers */
-  double corner;   /* m, >= 0: radius by which edges and corners of the body are rounded for the
-                      particles, so that the grid can show how soil flows round them; less than
-                      half of the body's thinnest wall. 0 (default): not at all. Not for
-                      METHOD_PENALTY */
+  double adhesion;  /* Pa, >= 0: shear stress that the surface bears besides friction times the
+                       pressure, wherever soil is pressed on it; default 0 */
+  double strength;  /* Pa, > 0: the most shear stress that it bears, such as alpha times the
+                       undrained strength of clay; NaN (default): no bound. Both by METHOD_IMPULSE,
+                       over the area that soil covers */
+  double corner;    /* m, >= 0: radius by which edges and corners of the body are rounded for the
+                       particles, so that the grid can show how soil flows round them; less than
+                       half of the body's thinnest wall. 0 (default): not at all. Not for
+                       METHOD_PENALTY */
+  double tolerance; /* in [0, 1): sweeps end before `sweeps` once one changes the impulses of all
+                       contacts by less than this part (root of the sums of squares; looked at after
+                       10, 14, 18, ... sweeps). NaN (default): 3e-3 where `sweeps` is 0, else
+                       0, all of them. The solver takes the least of its contacts; mps_mpm_get_usage
+                       has what is left */
 } mps_contact_def;
 
 MPS_API mps_status mps_contact_def_init(mps_contact_def *def, size_t size);

@@ -344,10 +344,14 @@ static inline mps_status mps_mpm_get_totals(mps_mpm *mpm, mps_totals *out) {
   return mps_mpm_get_totals_sized(mpm, out, sizeof *out);
 }
 
-/** How large the grid is. */
+/** How large the grid is, and how far the impulses of contacts are from a solution. */
 typedef struct mps_mpm_usage {
   int64_t blocks, nodes; /* blocks of cells that hold particles; nodes that exist */
   int64_t bytes;         /* memory of the grid, the particles' fields not counted */
+  int64_t sweeps; /* over the contacts of the last step; 0: there was none by METHOD_IMPULSE */
+  double left;    /* relative change of all their impulses in the last of them: mps_contact_def.
+                     Above its tolerance where `sweeps` ended them, as where contacts jam: then
+                     single forces are not determined to more than that */
 } mps_mpm_usage;
 MPS_API MPS_NODISCARD mps_status mps_mpm_get_usage_sized(mps_mpm *mpm, mps_mpm_usage *out,
                                                          size_t size);

@@ -8,14 +8,16 @@
 
 #define ROUGHEST 1e3 /* friction */
 #define MOST_SWEEPS 1000
-#define SWEEPS 10 /* usual */
+#define SWEEPS 30      /* usual, */
+#define TOLERANCE 3e-3 /* with which they end before */
 
 static const mps_contact_def contact_defaults = {.struct_size = sizeof(mps_contact_def),
                                                  .penalty = NAN,
                                                  .xi = NAN,
                                                  .offset = NAN,
                                                  .depth = NAN,
-                                                 .strength = NAN};
+                                                 .strength = NAN,
+                                                 .tolerance = NAN};
 
 mps_status mps_contact_def_init(mps_contact_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_contact_def, def, size, &contact_defaults);
@@ -74,6 +76,9 @@ static mps_status check_numbers(mps_context *context, const char *function,
   if (d->sweeps < 0 || d->sweeps > MOST_SWEEPS)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "sweeps is %d, must be in 0 to %d",
                      d->sweeps, MOST_SWEEPS);
+  if (!isnan(d->tolerance) && !(d->tolerance >= 0.0 && d->tolerance < 1.0))
+    return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
+                     "tolerance is %g, must be >= 0 and below 1, or NaN", d->tolerance);
   if (!(d->friction >= 0.0 && d->friction <= ROUGHEST))
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT, "friction is %g, must be in 0 to %g",
                      d->friction, ROUGHEST);
@@ -121,6 +126,7 @@ mps_status mpsi_contact_new(mps_context *context, const char *function, mps_body
   contact->context = mpsi_context_retain(context);
   contact->references = 2;
   contact->def = def;
+  if (isnan(def.tolerance)) contact->def.tolerance = def.sweeps == 0 ? TOLERANCE : 0.0;
   if (def.sweeps == 0) contact->def.sweeps = SWEEPS;
   contact->body = body;
   contact->extent = mpsi_body_extent(body);

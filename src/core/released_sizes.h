@@ -12,7 +12,7 @@
   X(mps_body_def, mps_body_def_init, "0.2", 176) \
   X(mps_body_motion, mps_body_motion_init, "0.2", 104) \
   X(mps_checkpoint, mps_checkpoint_init, "0.2", 112) \
-  X(mps_contact_def, mps_contact_def_init, "0.2", 88) \
+  X(mps_contact_def, mps_contact_def_init, "0.2", 96) \
   X(mps_context_def, mps_context_def_init, "0.2", 104) \
   X(mps_coupling_def, mps_coupling_def_init, "0.2", 64) \
   X(mps_domain_def, mps_domain_def_init, "0.2", 104) \

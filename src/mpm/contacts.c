@@ -112,6 +112,7 @@ static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status s
     MPSI_GIVE(&given, d, adhesion);
     MPSI_GIVE(&given, d, strength);
     MPSI_GIVE(&given, d, corner);
+    MPSI_GIVE(&given, d, tolerance);
     mpsi_body_give(&given, contact->body);
   }
   return mpsi_domain_settle_given(mpm->share->domain, function, status, &given);

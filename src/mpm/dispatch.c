@@ -21,7 +21,7 @@
   int64_t mpsi_mpm_next_in_v##level(const mps_mpm *mpm, const mpsi_cell_block *cells,              \
                                     const int *low, const int *high, int64_t begin);               \
   void mpsi_mpm_warm_v##level(mps_mpm *mpm, const mpsi_touch_block *block);                        \
-  void mpsi_mpm_sweep_v##level(mps_mpm *mpm, const mpsi_touch_block *block, bool back);            \
+  void mpsi_mpm_sweep_v##level(mps_mpm *mpm, mpsi_touch_block *block, bool back);            \
   void mpsi_mpm_foot_velocity_v##level(const mps_mpm *mpm, int64_t touch, double *v);
 #define KERNELS(level)                                                                             \
   {                                                                                                \

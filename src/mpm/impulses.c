@@ -1,12 +1,16 @@
 /* impulses.c - the impulses of a step, by sweeps of projected Gauss and Seidel over the touches
  * (touches.c): each visit satisfies one contact exactly with all others as they are
  * (contact/impulse.h), and moves its nodes by psi_i J/m_i at once (sweep.c). Sweeps go forward and
- * backward in turn, and begin with the impulses of the last step.
+ * backward in turn, begin with the impulses of the last step, and end where one changes the
+ * impulses by less than a tolerance.
  *
  * Blocks of one colour share no node: where no body moves freely, their sweeps are independent and
  * shared out among the threads, with the same bits. A free body is in contact with all blocks at
  * once; then one thread takes them in their order. SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
+
+#include "core/exact.h"
+#include "domain/domain_internal.h"
 
 #include <string.h>
 
@@ -22,7 +26,7 @@ typedef struct sweep {
 
 static void one_block(void *data, int64_t unit, int32_t worker) {
   const sweep *s = data;
-  const mpsi_touch_block *block = &s->mpm->contact.impulses.block[s->first + unit];
+  mpsi_touch_block *block = &s->mpm->contact.impulses.block[s->first + unit];
   (void)worker;
   if (s->warm)
     s->mpm->kernels->warm(s->mpm, block);
@@ -45,6 +49,42 @@ static void sweep_all(mps_mpm *mpm, bool warm, bool back) {
     mpsi_parallel_for(mpm->context, all->colour[colour + 1] - s.first, one_block, &s);
   }
 }
+
+/* ---- when sweeps end --------------------------------------------------------------------------
+ */
+
+/* The most sweeps and the least tolerance that a contact asks for. */
+static int32_t most_sweeps(const mps_mpm *mpm, double *tolerance) {
+  int32_t most = 0;
+  *tolerance = INFINITY;
+  for (int32_t b = 0; b < mpm->contact.bodies; b++) {
+    const mps_contact_def *def = &mpm->contact.handle[b]->def;
+    if (!mpsi_by_impulses(mpm->contact.handle[b])) continue;
+    if (def->sweeps > most) most = def->sweeps;
+    *tolerance = fmin(*tolerance, def->tolerance);
+  }
+  return most;
+}
+
+/* Change of all impulses in the last sweep, root of the sum of squares over that of the impulses.
+ * Exact sums over blocks: the same on any number of ranks. */
+static double relative_change(mps_mpm *mpm) {
+  const mpsi_impulses *all = &mpm->contact.impulses;
+  mpsi_exact sum[2] = {{{0}}, {{0}}};
+  for (int64_t k = 0; k < all->block_count; k++) {
+    if (all->block[k].cells < 0) continue;
+    mpsi_exact_add(&sum[0], all->block[k].changed);
+    mpsi_exact_add(&sum[1], all->block[k].impulses);
+  }
+  if (mpm->share && mpm->share->lost == MPS_OK)
+    mpm->share->lost = mpsi_domain_sum_exact(mpm->share->domain, "mps_mpm_step", 2, sum);
+  const double changed = mpsi_exact_value(&sum[0]), impulses = mpsi_exact_value(&sum[1]);
+  return changed > 0.0 ? sqrt(changed / impulses) : 0.0;
+}
+
+/* Sweeps may end after so many: half of them went backward, and fewer than ten follow what changes
+ * from step to step too slowly. */
+static bool is_checked(int32_t sweeps) { return sweeps >= 10 && sweeps % 4 == 2; }
 
 /* ---- a step ---------------------------------------------------------------------------------- */
 
@@ -85,15 +125,19 @@ static void take_over(mps_mpm *mpm) {
 }
 
 void mpsi_mpm_apply_impulses(mps_mpm *mpm) {
-  const mpsi_impulses *all = &mpm->contact.impulses;
-  int32_t sweeps = 0;
-  for (int32_t b = 0; b < mpm->contact.bodies; b++)
-    if (mpsi_by_impulses(mpm->contact.handle[b]) && mpm->contact.handle[b]->def.sweeps > sweeps)
-      sweeps = mpm->contact.handle[b]->def.sweeps;
-  if (all->touch_count > 0) sweep_all(mpm, true, false);
-  for (int32_t s = 0; s < sweeps && all->touch_count > 0; s++) {
-    if (s % 2 == 0) mpsi_mpm_share_areas(mpm);
-    sweep_all(mpm, false, s % 2 != 0);
+  mpsi_impulses *all = &mpm->contact.impulses;
+  const bool any = mpm->share ? mpm->share->meeting.touches > 0 : all->touch_count > 0;
+  double tolerance;
+  const int32_t most = most_sweeps(mpm, &tolerance);
+  if (any) sweep_all(mpm, true, false);
+  all->sweeps = 0, all->left = 0.0;
+  for (int32_t s = 1; any && s <= most; s++) {
+    if (s % 2 != 0) mpsi_mpm_share_areas(mpm);
+    sweep_all(mpm, false, s % 2 == 0);
+    all->sweeps = s;
+    if (s < most && (tolerance == 0.0 || !is_checked(s))) continue;
+    all->left = relative_change(mpm);
+    if (!(all->left > tolerance)) break;
   }
   mpsi_mpm_mirror_touches(mpm);
   take_over(mpm);

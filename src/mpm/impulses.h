@@ -33,6 +33,7 @@ typedef struct mpsi_touch_block {
   int64_t first, count;
   int32_t cells; /* -1: of another rank */
   int32_t at[3]; /* of the cells */
+  double changed, impulses; /* (N s)2, sums of squares in the last sweep: changes, impulses */
 } mpsi_touch_block;
 
 /* What a body gave to a particle in the last step. */
@@ -66,6 +67,8 @@ typedef struct mpsi_impulses {
   mpsi_kept_impulse *kept; /* of the last step */
   int64_t kept_count;
   double kept_dt;  /* s, of that step */
+  int64_t sweeps;  /* of that step, and the relative change of impulses in the last of them */
+  double left;
   int32_t *lookup; /* by particle and body: index into `kept`, or -1; lookup_mask + 1 of them */
   uint64_t lookup_mask;
   bool areas;      /* some contact has a strength or an adhesion */

@@ -42,7 +42,7 @@ typedef struct mpsi_kernels {
   /* sweep.c: the first impulses of a block's touches; a visit to each; velocity of the particle's
    * side at the foot of one (m/s). */
   void (*warm)(mps_mpm *mpm, const mpsi_touch_block *block);
-  void (*sweep)(mps_mpm *mpm, const mpsi_touch_block *block, bool back);
+  void (*sweep)(mps_mpm *mpm, mpsi_touch_block *block, bool back);
   void (*foot_velocity)(const mps_mpm *mpm, int64_t touch, double *v);
 } mpsi_kernels;
 

@@ -380,6 +380,7 @@ mps_status mpsi_mpm_meet(mps_mpm *mpm, const char *function, mps_status status) 
   if (status == MPS_OK) status = make_room_for_message(&m, &list);
   status = mpsi_mpm_find_mates(mpm, function, status, &touches);
   mpm->share->meeting.nodes = 0;
+  mpm->share->meeting.touches = touches;
   if (status == MPS_OK && touches > 0) {
     const int32_t count = address(&m, list);
     if (mpm->share->mates.any) status = mpsi_domain_post(domain, function, count, list, &m.box);

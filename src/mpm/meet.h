@@ -26,6 +26,7 @@ typedef struct mpsi_met_node {
 } mpsi_met_node;
 
 typedef struct mpsi_meeting {
+  int64_t touches;      /* of all ranks */
   int64_t nodes, slots; /* of `met`, of `lookup` */
   mpsi_room touch, block, weight, node, met, lookup, kept, mail, list;
 } mpsi_meeting;

@@ -280,6 +280,8 @@ static void list_state(mpsi_state *s, void *solver) {
     mpsi_state_leave(s);
   }
   mpsi_state_f64(s, "impulses_dt", &mpm->contact.impulses.kept_dt, 1);
+  mpsi_state_i64(s, "sweeps", &mpm->contact.impulses.sweeps, 1);
+  mpsi_state_f64(s, "impulses_left", &mpm->contact.impulses.left, 1);
   mpsi_state_add_table(s, "impulses_of", &kept_owners_table);
   mpsi_state_add_table(s, "impulses", &kept_table);
   mpsi_state_add_table(s, "sizes", &sizes_table);

@@ -160,7 +160,8 @@ static mps_status move(mps_mpm *mpm, const char *function, double dt, mps_status
     if (!meet_bodies(mpm, &met)) return met.status;
     pass = (mpsi_pass){.clear = NULL};
   } else {
-    mpm->contact.impulses.kept_count = 0;
+    mpm->contact.impulses.kept_count = mpm->contact.impulses.sweeps = 0;
+    mpm->contact.impulses.left = 0.0;
     mpsi_mpm_begin_holds(mpm, dt);
   }
   pass.finish = mpsi_mpm_finish_nodes;

@@ -75,8 +75,10 @@ void MPSI_LEVELLED(mpsi_mpm_warm)(mps_mpm *mpm, const mpsi_touch_block *block) {
   }
 }
 
-void MPSI_LEVELLED(mpsi_mpm_sweep)(mps_mpm *mpm, const mpsi_touch_block *block, bool back) {
+/* Counts what it changes, by which the sweeps end. */
+void MPSI_LEVELLED(mpsi_mpm_sweep)(mps_mpm *mpm, mpsi_touch_block *block, bool back) {
   mpsi_impulses *all = &mpm->contact.impulses;
+  double changed = 0.0, impulses = 0.0;
   for (int64_t i = 0; i < block->count; i++) {
     const int64_t n = back ? block->first + block->count - 1 - i : block->first + i;
     const mpsi_impulse_body *body = &all->body[all->touch[n].body];
@@ -85,6 +87,12 @@ void MPSI_LEVELLED(mpsi_mpm_sweep)(mps_mpm *mpm, const mpsi_touch_block *block, 
     velocity_at(all, n, u);
     mpsi_impulse_surface(body, c->at, surface);
     for (int a = 0; a < 3; a++) u[a] = a < mpm->dim ? u[a] - surface[a] : 0.0;
-    if (mpsi_impulse_visit(c, body, u, by)) kick(all, n, by);
+    if (mpsi_impulse_visit(c, body, u, by)) {
+      kick(all, n, by);
+      changed += mpsi_dot3(by, by);
+    }
+    impulses += c->push * c->push + mpsi_dot3(c->rub, c->rub);
   }
+  block->changed = changed;
+  block->impulses = impulses;
 }

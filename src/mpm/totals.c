@@ -168,6 +168,8 @@ mps_status mps_mpm_get_usage_sized(mps_mpm *mpm, mps_mpm_usage *out, size_t size
   if (!mpm) return MPS_ERROR_ARGUMENT;
   const mps_mpm_usage usage = {.blocks = mpm->grid.cell_count,
                                .nodes = mpm->grid.node_count * mpm->grid.block_nodes,
-                               .bytes = grid_bytes(mpm)};
+                               .bytes = grid_bytes(mpm),
+                               .sweeps = mpm->contact.impulses.sweeps,
+                               .left = mpm->contact.impulses.left};
   return mpsi_out_write(mpm->context, "mps_mpm_get_usage", out, size, &usage, sizeof usage);
 }

@@ -1,0 +1,110 @@
+/* test_mpm_sweeps.c - the sweeps over the contacts of a step end at their tolerance, or at their
+ * number; what is left is told. SPDX-License-Identifier: BSD-3-Clause */
+#include "mpm_scene.h"
+#include "test_fixture.h"
+
+/* A block on a rough plate that is dragged from under it, pressed by another. */
+typedef struct press {
+  mpm_scene s;
+  mps_body *plate, *above;
+} press;
+
+static press make_press(int32_t sweeps, double tolerance) {
+  press p = {.s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e6)};
+  mpm_scene_box(&p.s, 0.0, 0.0, 0.2, 0.1);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.02, def.origin[1] = 0.005;
+  def.lower[0] = 0.0, def.upper[0] = 0.2, def.lower[1] = -0.095, def.upper[1] = 0.205;
+  mpm_scene_solve(&p.s, &def);
+  for (int32_t side = MPS_MPM_SIDE_X_LOWER; side <= MPS_MPM_SIDE_X_UPPER; side++)
+    mpm_scene_side(&p.s, side, MPS_MPM_BOUNDARY_ROLLER, 0.0);
+  const double up[] = {0.0, 1.0}, down[] = {0.0, -1.0};
+  mps_body_def at = mps_body_defaults();
+  mps_assert_ok(context, mps_body_create_half_plane(context, &at, up, &p.plate));
+  at.position[1] = 0.1;
+  mps_assert_ok(context, mps_body_create_half_plane(context, &at, down, &p.above));
+  mps_contact_def contact = mps_contact_defaults();
+  contact.sweeps = sweeps, contact.tolerance = tolerance;
+  mps_assert_ok(context, mps_mpm_add_contact(p.s.mpm, p.above, &contact, NULL));
+  contact.friction = 0.22;
+  mps_assert_ok(context, mps_mpm_add_contact(p.s.mpm, p.plate, &contact, NULL));
+  mps_body_motion pressing = mps_body_motion_defaults(), dragging = mps_body_motion_defaults();
+  pressing.velocity[1] = -0.02, dragging.velocity[0] = 0.05;
+  mps_assert_ok(context, mps_body_set_motion(p.above, &pressing));
+  mps_assert_ok(context, mps_body_set_motion(p.plate, &dragging));
+  return p;
+}
+
+static void end_press(press *p) {
+  mpm_scene_end(&p->s);
+  mps_body_destroy(&p->plate);
+  mps_body_destroy(&p->above);
+}
+
+/* In each step the sweeps go on until they change little enough, or as many are made as may be. */
+static void sweeps_end_at_their_tolerance(void **state) {
+  (void)state;
+  const struct {
+    int32_t sweeps, most;
+    double tolerance, least;
+  } cases[] = {{0, 30, NAN, 3e-3}, {0, 30, 1e-6, 1e-6}, {200, 200, 1e-6, 1e-6}, {7, 7, NAN, 0.0}};
+  double mean[4] = {0.0};
+  for (int k = 0; k < 4; k++) {
+    press p = make_press(cases[k].sweeps, cases[k].tolerance);
+    for (int n = 0; n < 60; n++) {
+      mps_mpm_usage usage;
+      mps_assert_ok(context, mps_mpm_step(p.s.mpm, 1));
+      mps_assert_ok(context, mps_mpm_get_usage(p.s.mpm, &usage));
+      assert_true(usage.left >= 0.0 && usage.left < 1.0);
+      assert_true(usage.sweeps >= (k == 3 ? 7 : 10) && usage.sweeps <= cases[k].most);
+      if (usage.sweeps < cases[k].most) assert_true(usage.left <= cases[k].least);
+      mean[k] += (double)usage.sweeps / 60.0;
+    }
+    end_press(&p);
+  }
+  print_message("mean sweeps: default %.1f, to 1e-6 %.1f, to that of 200 %.1f, of 7 %.1f\n",
+                mean[0], mean[1], mean[2], mean[3]);
+  assert_true(mean[0] < mean[1] && mean[1] < mean[2]);
+  mps_assert_near(mean[3], 7.0, 1e-12);
+}
+
+/* While it slides, friction is mu times the normal force. */
+static void steady_sliding(void **state) {
+  (void)state;
+  press p = make_press(0, NAN);
+  mps_reaction before, after;
+  mps_assert_ok(context, mps_mpm_run(p.s.mpm, 0.05, 100000, NULL, NULL));
+  mps_assert_ok(context, mps_body_get_reaction(p.plate, -1, &before));
+  mps_assert_ok(context, mps_mpm_run(p.s.mpm, 0.15, 100000, NULL, NULL));
+  mps_assert_ok(context, mps_body_get_reaction(p.plate, -1, &after));
+  const double x = after.impulse[0] - before.impulse[0], y = after.impulse[1] - before.impulse[1];
+  print_message("friction over normal force %.6f\n", x / y);
+  assert_true(y < 0.0);
+  mps_assert_near(fabs(x / y), 0.22, 2e-4);
+  end_press(&p);
+}
+
+static void bad_tolerances_are_refused(void **state) {
+  (void)state;
+  const double bad[] = {-1e-3, 1.0, INFINITY};
+  press p = make_press(0, NAN);
+  mps_body_def at = mps_body_defaults();
+  mps_body *disc = NULL;
+  at.position[0] = 10.0, at.position[1] = 0.05; /* between the two */
+  mps_assert_ok(context, mps_body_create_disc(context, &at, 0.02, &disc));
+  for (int k = 0; k < 3; k++) {
+    mps_contact_def contact = mps_contact_defaults();
+    contact.tolerance = bad[k];
+    mps_assert_fails(context, mps_mpm_add_contact(p.s.mpm, disc, &contact, NULL),
+                     MPS_ERROR_ARGUMENT, "must be >= 0 and below 1");
+  }
+  mps_body_destroy(&disc);
+  end_press(&p);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(sweeps_end_at_their_tolerance),
+                                     cmocka_unit_test(steady_sliding),
+                                     cmocka_unit_test(bad_tolerances_are_refused)};
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
