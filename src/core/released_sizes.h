@@ -15,7 +15,7 @@
   X(mps_contact_def, mps_contact_def_init, "0.2", 96) \
   X(mps_context_def, mps_context_def_init, "0.2", 104) \
   X(mps_coupling_def, mps_coupling_def_init, "0.2", 64) \
-  X(mps_domain_def, mps_domain_def_init, "0.2", 104) \
+  X(mps_domain_def, mps_domain_def_init, "0.2", 112) \
   X(mps_drucker_prager_def, mps_drucker_prager_def_init, "0.2", 56) \
   X(mps_dynamics_boundary_def, mps_dynamics_boundary_def_init, "0.2", 152) \
   X(mps_dynamics_def, mps_dynamics_def_init, "0.2", 112) \
