@@ -196,7 +196,8 @@ static mpsi_state_of state_of(mps_dynamics *dynamics) {
 
 /* A state is kept between steps only, with what has been edited taken up. */
 static mps_status check_whole(mps_dynamics *dynamics, const char *function) {
-  const mps_status status = mpsi_guard_check_between(&dynamics->guard, dynamics->context, function);
+  mps_status status = mpsi_guard_check_between(&dynamics->guard, dynamics->context, function);
+  if (status == MPS_OK) status = mpsi_particles_ready(dynamics->particles, function);
   return status == MPS_OK ? mpsi_dynamics_take_edits(dynamics, function, MPS_OK) : status;
 }
 

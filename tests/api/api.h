@@ -181,6 +181,8 @@ void *api_maybe(api *a, api_kind kind, const char *name);
 int api_alive(const api *a, api_kind kind);
 /* Takes over what a function has made (NULL: nothing). */
 api_object *api_adopt(api *a, api_kind kind, void *handle, int context, const api_object *owner);
+/* Stresses have been written, which some laws replace: energies of WLS-MPM need not add up. */
+void api_loosen(api *a);
 void api_forget(api *a, api_object *object);
 /* Calls the destroy function of the kind. */
 void api_destroy(api_kind kind, void **handle);

@@ -103,6 +103,10 @@ void api_forget(api *a, api_object *object) {
   memset(object, 0, sizeof *object);
 }
 
+void api_loosen(api *a) {
+  for (int k = 0; k < API_SLOTS; k++) a->objects[API_MPM][k].loose = true;
+}
+
 /* A kind that has no room left loses its oldest object. */
 static api_object *room(api *a, api_kind kind) {
   api_object *oldest = &a->objects[kind][0];

@@ -191,6 +191,7 @@ static void particles_set(api *a) {
   const int32_t component = (int32_t)(api_chance(a, 80) ? 0 : api_whole(a, "component", 0, 15));
   const int before = a->wrong;
   const double value = typical(a, name);
+  if (strcmp(name, "stress") == 0) api_loosen(a);
   if (isfinite(value)) a->wrong = before; /* each field has a range of its own */
   (void)api_end(a, mps_particles_set(set, api_null(a, "name") ? NULL : name, component, value));
 }
@@ -273,6 +274,7 @@ static api_object *editing(api *a) {
 
 static void end_edit(api *a, const char *name, bool commit) {
   api_begin(a, name);
+  api_loosen(a);
   api_object *o = editing(a);
   const int k = open_edit(a, o);
   mps_edit none;
@@ -369,6 +371,7 @@ static void particles_set_geostatic(api *a) {
   if (api_chance(a, 30)) def.surface_level = flat, def.user = a, api_say(a, "level, ");
   if (api_chance(a, 20)) def.vertical = (int32_t)api_whole(a, "vertical", -1, 2);
   api_arm(a);
+  api_loosen(a);
   (void)api_end(a, mps_particles_set_geostatic(set, &def));
 }
 
@@ -381,6 +384,7 @@ static void particles_set_stress(api *a) {
   api_begin(a, "mps_particles_set_stress");
   mps_particles *set = api_any(a, API_SET)->handle;
   api_arm(a);
+  api_loosen(a);
   (void)api_end(a, mps_particles_set_stress(set, api_null(a, "stress") ? NULL : some_stress, a));
 }
 
