@@ -76,10 +76,13 @@ static void take_range(const canvas *c, area *out) {
 
 void area_write(output *file, int64_t count, const double *row, double spacing,
                 const double lower[2], const double upper[2], int side, area *out) {
-  const double wide = upper[0] - lower[0], high = upper[1] - lower[1];
-  canvas c = {.lower = {lower[0], lower[1]},
+  /* wider than the picture: its edge is no surface, and surfaces may lie on it */
+  const double margin = (reach + 0.5) * spacing;
+  const double wide = upper[0] - lower[0] + 2.0 * margin;
+  const double high = upper[1] - lower[1] + 2.0 * margin;
+  canvas c = {.lower = {lower[0] - margin, lower[1] - margin},
               .pixel = fmax(spacing / PIXELS, fmax(wide, high) / side)};
-  *out = (area){.lower = {lower[0], lower[1]}, .pixel = c.pixel};
+  *out = (area){.lower = {c.lower[0], c.lower[1]}, .pixel = c.pixel};
   if (file->stream == NULL || file->error != 0 || !(wide > 0.0 && high > 0.0)) return;
   out->columns = c.columns = (int64_t)ceil(wide / c.pixel);
   out->rows = c.rows = (int64_t)ceil(high / c.pixel);
