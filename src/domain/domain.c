@@ -1,4 +1,4 @@
-/* domain.c - the domain object: ranks that compute one model, its transport, its reductions.
+/* domain.c - the domain object: ranks that compute one model, and what a program asks of it.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "domain_private.h"
 
@@ -12,57 +12,7 @@ mps_status mps_domain_def_init(mps_domain_def *def, size_t size) {
   return MPSI_DEF_INIT(mps_domain_def, def, size, &domain_defaults);
 }
 
-/* ---- the transport --------------------------------------------------------------------------- */
-
-mps_status mpsi_domain_note(mps_domain *domain, const char *function, const char *callback,
-                            mps_status status) {
-  if (status == MPS_OK) return MPS_OK;
-  const bool known = status > MPS_OK && status <= MPS_ERROR_INTERNAL;
-  domain->lost = known ? status : MPS_ERROR_ARGUMENT;
-  (void)mpsi_fail(domain->context, function, domain->lost,
-                  "%s of the domain's transport returned status %d (%s) on rank %d: the ranks have "
-                  "lost one another",
-                  callback, (int)status, mps_status_text(status), domain->def.rank);
-  mpsi_fail_object(domain->context, "domain");
-  return domain->lost;
-}
-
-mps_status mpsi_domain_alive(mps_domain *domain, const char *function) {
-  if (domain->lost == MPS_OK) return MPS_OK;
-  (void)mpsi_fail(domain->context, function, domain->lost,
-                  "the domain's transport has failed before (%s): the ranks have lost one another",
-                  mps_status_text(domain->lost));
-  mpsi_fail_object(domain->context, "domain");
-  return domain->lost;
-}
-
-mps_status mpsi_domain_max(mps_domain *domain, const char *function, int32_t count,
-                           double *values) {
-  if (!mpsi_domain_many(domain)) return MPS_OK;
-  const mps_status status = mpsi_domain_alive(domain, function);
-  if (status != MPS_OK) return status;
-  domain->calls++;
-  return mpsi_domain_note(domain, function, "reduce_max",
-                          domain->def.reduce_max(domain->def.user, count, values));
-}
-
-mps_status mpsi_domain_sum(mps_domain *domain, const char *function, int32_t count,
-                           int64_t *values) {
-  if (!mpsi_domain_many(domain)) return MPS_OK;
-  const mps_status status = mpsi_domain_alive(domain, function);
-  if (status != MPS_OK) return status;
-  domain->calls++;
-  return mpsi_domain_note(domain, function, "reduce_sum",
-                          domain->def.reduce_sum(domain->def.user, count, values));
-}
-
-mps_status mpsi_domain_sum_exact(mps_domain *domain, const char *function, int32_t count,
-                                 mpsi_exact *sums) {
-  for (int32_t k = 0; k < count; k++) mpsi_exact_carry(&sums[k]);
-  return mpsi_domain_sum(domain, function, count * MPSI_EXACT_LIMBS, &sums[0].limb[0]);
-}
-
-/* ---- what a program calls -------------------------------------------------------------------- */
+/* ---- for the program ------------------------------------------------------------------------- */
 
 mps_status mps_domain_agree(mps_domain *domain, mps_status status) {
   if (!domain) return MPS_ERROR_ARGUMENT;
@@ -82,52 +32,6 @@ mps_status mps_domain_max(mps_domain *domain, int32_t count, double *values) {
                          "values[%d] is NaN, must be a number", k);
   status = mpsi_domain_settle_same(domain, __func__, status, "count", count);
   return status == MPS_OK ? mpsi_domain_max(domain, __func__, count, values) : status;
-}
-
-/* ---- messages -------------------------------------------------------------------------------- */
-
-void mpsi_domain_free_mail(mpsi_mailbox *box) {
-  for (int32_t k = 0; k < box->count; k++) mpsi_free(box->context, box->mail[k].data);
-  if (box->mail) mpsi_free(box->context, box->mail);
-  box->mail = NULL;
-  box->count = box->room = 0;
-}
-
-static void *make_room(void *user, int32_t rank, int64_t bytes) {
-  mpsi_mailbox *box = user;
-  if (box->count == box->room) {
-    void *list = box->mail;
-    if (!mpsi_grow(box->context, &list, box->count, box->room + 16, sizeof *box->mail)) return NULL;
-    box->mail = list;
-    box->room += 16;
-  }
-  void *data = mpsi_alloc(box->context, bytes, 1);
-  if (!data) return NULL;
-  int32_t at = box->count++;
-  for (; at > 0 && box->mail[at - 1].rank > rank; at--) box->mail[at] = box->mail[at - 1];
-  box->mail[at] = (mpsi_mail){rank, bytes, data};
-  return data;
-}
-
-mps_status mpsi_domain_post(mps_domain *domain, const char *function, int32_t count,
-                            const mps_domain_message *messages, mpsi_mailbox *box) {
-  *box = (mpsi_mailbox){.context = domain->context};
-  mps_status status = mpsi_domain_alive(domain, function);
-  if (status != MPS_OK) return status;
-  domain->calls++;
-  status = domain->def.rendezvous(domain->def.user, count, messages, make_room, box);
-  if (status == MPS_ERROR_MEMORY) /* a message had no room: the others are well */
-    return mpsi_fail(domain->context, function, MPS_ERROR_MEMORY,
-                     "could not allocate what other ranks send");
-  return mpsi_domain_note(domain, function, "rendezvous", status);
-}
-
-mps_status mpsi_domain_exchange(mps_domain *domain, const char *function, int32_t count,
-                                const mps_domain_message *messages, mpsi_mailbox *box) {
-  mps_status status = mpsi_domain_post(domain, function, count, messages, box);
-  status = mpsi_domain_settle(domain, function, status);
-  if (status != MPS_OK) mpsi_domain_free_mail(box);
-  return status;
 }
 
 /* ---- life ------------------------------------------------------------------------------------ */

@@ -64,3 +64,24 @@ void mpsi_fluid_for_all(mps_fluid *f, int64_t items, int64_t chunk, mpsi_fluid_t
   work w = {f, task, items, chunk};
   mpsi_parallel_for(f->context, (items + chunk - 1) / chunk, unit_of_work, &w);
 }
+
+typedef struct shifted {
+  int64_t first;
+  void (*task)(void *, int64_t, int32_t);
+  void *data;
+} shifted;
+
+static void run_shifted(void *data, int64_t unit, int32_t worker) {
+  const shifted *s = data;
+  s->task(s->data, s->first + unit, worker);
+}
+
+void mpsi_fluid_units(mps_fluid *f, int64_t size, void (*task)(void *, int64_t, int32_t),
+                      void *data) {
+  shifted s = {f->own[0] / size, task, data};
+  const int64_t count = (f->own[1] + size - 1) / size - s.first;
+  if (s.first == 0)
+    mpsi_parallel_for(f->context, count, task, data);
+  else if (count > 0)
+    mpsi_parallel_for(f->context, count, run_shifted, &s);
+}

@@ -270,6 +270,9 @@ struct mps_fluid {
  * rank's. */
 typedef void (*mpsi_fluid_task)(mps_fluid *fluid, int64_t begin, int64_t end, int64_t chunk);
 void mpsi_fluid_for(mps_fluid *fluid, int64_t items, int64_t chunk, mpsi_fluid_task task);
+/* Runs task(data, unit, worker) for this rank's units of `size` particles on the executor. */
+void mpsi_fluid_units(mps_fluid *fluid, int64_t size, void (*task)(void *, int64_t, int32_t),
+                      void *data);
 /* The same of all, on every rank. */
 void mpsi_fluid_for_all(mps_fluid *fluid, int64_t items, int64_t chunk, mpsi_fluid_task task);
 

@@ -139,27 +139,6 @@ static int32_t owner(const mpsi_fluid_share *s, int64_t particle) {
   return (int32_t)(((particle / s->block + 1) * ranks - 1) / s->blocks);
 }
 
-typedef struct shifted {
-  int64_t first;
-  void (*task)(void *, int64_t, int32_t);
-  void *data;
-} shifted;
-
-static void run_shifted(void *data, int64_t unit, int32_t worker) {
-  const shifted *s = data;
-  s->task(s->data, s->first + unit, worker);
-}
-
-void mpsi_fluid_units(mps_fluid *f, int64_t size, void (*task)(void *, int64_t, int32_t),
-                      void *data) {
-  shifted s = {f->own[0] / size, task, data};
-  const int64_t count = (f->own[1] + size - 1) / size - s.first;
-  if (s.first == 0)
-    mpsi_parallel_for(f->context, count, task, data);
-  else if (count > 0)
-    mpsi_parallel_for(f->context, count, run_shifted, &s);
-}
-
 /* ---- links ----------------------------------------------------------------------------------- */
 
 /* Of each guest the particle that it is here, its owner and its index there. */

@@ -51,8 +51,4 @@ void mpsi_fluid_tell_looks(mps_fluid *fluid);
 /* fluid->local of all particles, as far as levels and loads use it, for who asks. */
 void mpsi_fluid_tell_local(mps_fluid *fluid);
 
-/* Runs task(data, unit, worker) for this rank's units of `size` particles on the executor. */
-void mpsi_fluid_units(mps_fluid *fluid, int64_t size, void (*task)(void *, int64_t, int32_t),
-                      void *data);
-
 #endif

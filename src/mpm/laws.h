@@ -53,8 +53,6 @@ void mpsi_mpm_apply_law(mps_mpm *mpm, mpsi_cell_block *cells, int64_t begin, int
 void mpsi_mpm_return_stress(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end);
 /* law.c: the present wave moduli of particles [begin, end), raised where viscosity limits dt. */
 void mpsi_mpm_find_moduli(const mps_mpm *mpm, int64_t begin, int64_t end, double *moduli);
-/* materials.c: K + 4G/3 and G (Pa) of a particle's material at zero strain. */
-void mpsi_mpm_elastic(const mps_mpm *mpm, int64_t particle, double *wave, double *shear);
 /* volumetric.c: the laws after the step's G2P, where they wait for the means of the cells. */
 void mpsi_mpm_apply_laws_by_cell(mps_mpm *mpm);
 /* materials.c: puts the law at the end of the list, with the fields it works on; nothing has

@@ -7,12 +7,6 @@
 
 /* ---- one law --------------------------------------------------------------------------------- */
 
-void mpsi_mpm_elastic(const mps_mpm *mpm, int64_t particle, double *wave, double *shear) {
-  const mpsi_law_use *law = mpsi_law_of(mpm, particle);
-  *wave = mpsi_material_rest_modulus(law->material);
-  *shear = mpsi_material_shear(law->material);
-}
-
 static mps_status add_fields(mps_particles *set, const mpsi_law_use *law) {
   mps_status status = MPS_OK;
   if (law->reads_volume) status = mps_particles_add_field(set, "volume_ratio", 0);

@@ -72,6 +72,14 @@ static inline const mpsi_law_use *mpsi_law_of(const mps_mpm *mpm, int64_t partic
   return &mpm->laws.law[mpm->p.law ? mpm->p.law[particle] : 0];
 }
 
+/* K + 4G/3 and G (Pa) of a particle's material at zero strain. */
+static inline void mpsi_mpm_elastic(const mps_mpm *mpm, int64_t particle, double *wave,
+                                    double *shear) {
+  const mps_material *material = mpsi_law_of(mpm, particle)->material;
+  *wave = mpsi_material_rest_modulus(material);
+  *shear = mpsi_material_shear(material);
+}
+
 /* Coordinate of x in cells from the origin along axis c. */
 static inline double mpsi_grid_coordinate(const mps_mpm *mpm, int c, double x) {
   return (x - mpm->def.origin[c]) * mpm->grid.inverse;

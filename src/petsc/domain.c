@@ -227,11 +227,12 @@ static void drop_left(bool wait) {
   }
 }
 
-void mpsi_petsc_end_domains(void) { drop_left(true); }
+static void wait_for_left(void) { drop_left(true); }
 
 static void destroy(void *user) {
   transport *t = user;
   if (t->values) {
+    mpsi_petsc_before_end(wait_for_left);
     t->next = leaving;
     leaving = t;
     drop_left(false);

@@ -6,6 +6,7 @@
 /* The one state of the process: MPI and PETSc exist once in it. */
 static struct {
   int objects;
+  void (*before_end)(void);
   bool began_mpi, began_petsc;
 } guest;
 
@@ -16,6 +17,8 @@ static PetscErrorCode quiet(MPI_Comm comm, int line, const char *function, const
   (void)comm, (void)line, (void)function, (void)file, (void)type, (void)message, (void)context;
   return code;
 }
+
+void mpsi_petsc_before_end(void (*task)(void)) { guest.before_end = task; }
 
 mps_status mpsi_petsc_enter(void) {
   PetscBool petsc = PETSC_FALSE;
@@ -42,7 +45,7 @@ mps_status mpsi_petsc_enter(void) {
 void mpsi_petsc_leave(void) {
   (void)PetscPopErrorHandler();
   if (--guest.objects > 0) return;
-  if (guest.began_mpi) mpsi_petsc_end_domains();
+  if (guest.began_mpi && guest.before_end) guest.before_end();
   if (guest.began_petsc) (void)PetscFinalize();
   if (guest.began_mpi) (void)MPI_Finalize();
   guest.began_petsc = guest.began_mpi = false;

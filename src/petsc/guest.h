@@ -14,7 +14,7 @@
 /* Each success is followed by one mpsi_petsc_leave. */
 mps_status mpsi_petsc_enter(void);
 void mpsi_petsc_leave(void);
-/* domain.c: before MPI is ended, waits for the reductions that domains have left behind. */
-void mpsi_petsc_end_domains(void);
+/* What is called before MPI is ended here. */
+void mpsi_petsc_before_end(void (*task)(void));
 
 #endif

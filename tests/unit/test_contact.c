@@ -299,8 +299,9 @@ static void driven_too_deep_is_told(void **state) {
       assert_true(mps_context_error(context)->particle >= 0);
       mps_assert_fails(context, mps_mpm_step(s.mpm, 1), MPS_ERROR_DIVERGED,
                        "below"); /* as before */
-    } else {                     /* or is pressed to nothing between the wedge and the floor */
-      assert_non_null(strstr(mps_context_error(context)->message, "has no volume"));
+    } else { /* or is pressed to nothing between the wedge and the floor, or through it */
+      const char *why = mps_context_error(context)->message;
+      assert_true(strstr(why, "has no volume") || strstr(why, "has left the domain"));
     }
     mps_signal_destroy(&down);
     mps_body_destroy(&body);
