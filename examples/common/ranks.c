@@ -119,7 +119,7 @@ bool ranks_same_options(mps_domain *domain, char *why, size_t size) {
   if (k == WORDS) return true;
   if (k < count)
     snprintf(why, size,
-             "word %d of the options is '%.200s', which is another for rank 0: all ranks must be "
+             "word %d of the options is '%.200s', and another one on rank 0: all ranks must be "
              "given the same options",
              k + 1, word[k]);
   else

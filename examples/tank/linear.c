@@ -143,7 +143,8 @@ mps_status tank_linear(const tank_settings *s, int64_t count, const tank_sample 
     for (int64_t n = 0; n < steps && status == MPS_OK; n++)
       status = step(&c, t + (sample[k].t - t) * (double)n / (double)steps,
                     (sample[k].t - t) / (double)steps, &x, &v);
-    out[k] = (tank_sample){.t = t = sample[k].t};
+    t = sample[k].t;
+    out[k] = (tank_sample){.t = t};
     if (status == MPS_OK) status = look(&c, &x, &out[k]);
   }
   return status;

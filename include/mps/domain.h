@@ -10,9 +10,10 @@
  * solver's header says which), and the functions of this header that say so. They return the same
  * status on all ranks: an error on one rank is an error on all, with the same message, which names
  * the rank. Ranks that call different functions get MPS_ERROR_STATE, which names both, and so do
- * those that wait for a rank that has destroyed its domain; arguments that all ranks must give alike
- * are compared before anything is done. Results are the same bit for bit for every number of ranks and threads, and without a
- * domain, as long as all processors run the same instruction level.
+ * those that wait for a rank that has destroyed its domain (with `max_leave`); arguments that all
+ * ranks must give alike are compared before anything is done. Results are the same bit for bit for
+ * every number of ranks and threads, and without a domain, as long as all processors run the same
+ * instruction level.
  *
  * Thread rule: a domain belongs to its context. SPDX-License-Identifier: BSD-3-Clause */
 #ifndef LIBMPS_DOMAIN_H

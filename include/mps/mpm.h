@@ -61,11 +61,9 @@ typedef enum mps_mpm_volumetric {
                                of the cell (quadratic: of the cell-sized box about a node); the part
                                of d without trace, the spin and `velocity_gradient` stay. Volumes,
                                `volume_ratio` and `deformation_gradient` follow the mean */
-  MPS_MPM_VOLUMETRIC_NODES = 2  /* the mean of tr(d) over the nodes near, each the mean of its
-                               particles, by the weights and volumes; and of pressures: fluids act
-                               with that mean, other laws tend to it by 0.03 c dt/h in each step.
-                               Mohr-Coulomb and Drucker-Prager keep their own tr(d), and lose the
-                               roughness of pressure and opening by 0.08 c dt/h each eighth step */
+  MPS_MPM_VOLUMETRIC_NODES = 2 /* the mean of tr(d) and of pressures over the nodes near: fluids act
+                              with it, other laws tend to it by 0.03 c dt/h a step. Frictional laws
+                              keep their own tr(d); pressures are smoothed every eighth step */
 } mps_mpm_volumetric;
 
 /** What particles near a roller, a fixed side or the axis use beyond it. */
@@ -349,9 +347,7 @@ typedef struct mps_mpm_usage {
   int64_t blocks, nodes; /* blocks of cells that hold particles; nodes that exist */
   int64_t bytes;         /* memory of the grid, the particles' fields not counted */
   int64_t sweeps; /* over the contacts of the last step; 0: there was none by METHOD_IMPULSE */
-  double left;    /* relative change of all their impulses in the last of them: mps_contact_def.
-                     Above its tolerance where `sweeps` ended them, as where contacts jam: then
-                     single forces are not determined to more than that */
+  double left; /* relative change of all impulses in the last sweep (mps_contact_def.tolerance) */
 } mps_mpm_usage;
 MPS_API MPS_NODISCARD mps_status mps_mpm_get_usage_sized(mps_mpm *mpm, mps_mpm_usage *out,
                                                          size_t size);

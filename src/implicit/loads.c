@@ -103,9 +103,10 @@ static mps_status integrate(const mps_elastic *e, const char *function, int64_t 
       r[p] = 0.5 * (low[p] + high[p]) + 0.5 * at[a] * (high[p] - low[p]);
       if (e->dim == 3) r[q] = 0.5 * (low[q] + high[q]) + 0.5 * at[b] * (high[q] - low[q]);
       for (int c = 0; c < e->dim; c++) x[c] = e->x[f->particle * e->dim + c] + r[c];
-      const mps_status status = traction(user, x, normal, t);
-      if (status != MPS_OK)
-        return mpsi_fail(e->context, function, status, "the traction callback stopped the call");
+      const int64_t failures = mpsi_failures(e->context);
+      const mps_status status = mpsi_callback_status(e->context, function, "the traction callback",
+                                                     failures, traction(user, x, normal, t));
+      if (status != MPS_OK) return status;
       for (int c = 0; c < e->dim; c++)
         if (!isfinite(t[c]))
           return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,

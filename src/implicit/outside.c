@@ -115,10 +115,10 @@ static mps_status hand_matrix(mps_elastic *e, const char *function, double shift
                                        .value = a.value,
                                        .mode = mode};
     o->nonzeros = a.start[rows];
-    status = o->def.matrix(o->def.user, &matrix, sizeof matrix);
-    if (status != MPS_OK)
-      status = mpsi_fail(e->context, function, status,
-                         "the callback matrix of mps_elastic_set_solver returned %d", (int)status);
+    const int64_t failures = mpsi_failures(e->context);
+    status =
+        mpsi_callback_status(e->context, function, "the callback matrix of mps_elastic_set_solver",
+                             failures, o->def.matrix(o->def.user, &matrix, sizeof matrix));
     status = mpsi_elastic_settle(e, function, status);
   }
   mpsi_free(e->context, mode);
@@ -172,10 +172,11 @@ static mps_status solve(mps_elastic *e, const char *function, const double *rhs,
   int64_t iterations = 0;
   memset(x, 0, (size_t)all * sizeof *x);
   copy_rows(e, (double *)rhs, b, true);
-  const mps_status status = def->solve(def->user, b, e->def.tolerance, x, &iterations);
-  if (status != MPS_OK)
-    return mpsi_fail(e->context, function, status,
-                     "the callback solve of mps_elastic_set_solver returned %d", (int)status);
+  const int64_t failures = mpsi_failures(e->context);
+  const mps_status status =
+      mpsi_callback_status(e->context, function, "the callback solve of mps_elastic_set_solver",
+                           failures, def->solve(def->user, b, e->def.tolerance, x, &iterations));
+  if (status != MPS_OK) return status;
   e->report.iterations += iterations;
   copy_rows(e, solution, x, false);
   return MPS_OK;

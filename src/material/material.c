@@ -106,13 +106,17 @@ bool mpsi_material_may_refuse(const mps_material *material) {
 double mpsi_material_viscosity(const mps_material *material) { return material->law.viscosity; }
 
 void mpsi_material_constants(const mps_material *m, mpsi_constant_fn add, void *user) {
-  const double *first = &m->law.shear;
-  const int64_t count = &m->law.viscosity - first + 1;
-  const double settings[] = {
-      m->law.tait,       m->law.no_tension, m->law.turns_stress, m->law.needs_deformation,
-      m->law.has_moduli, m->wave_modulus,   m->history_count};
+  const mpsi_law *l = &m->law;
+  const double constants[] = {l->shear,     l->bulk,      l->lambda,   l->per_bulk,   l->yield,
+                              l->hardening, l->alpha,     l->kappa,    l->alpha_flow, l->cone,
+                              l->tension,   l->q_tension, l->sin_phi,  l->sin_psi,    l->c_cos_phi,
+                              l->apex,      l->cut,       l->viscosity};
+  const double settings[] = {l->tait,       l->no_tension,   l->turns_stress, l->needs_deformation,
+                             l->has_moduli, m->wave_modulus, m->history_count};
+  _Static_assert(sizeof constants == offsetof(mpsi_law, tait) - offsetof(mpsi_law, shear),
+                 "every constant of a law stands in the list");
   add(user, (double)m->type->kind);
-  for (int64_t k = 0; k < count; k++) add(user, first[k]);
+  for (size_t k = 0; k < sizeof constants / sizeof *constants; k++) add(user, constants[k]);
   for (size_t k = 0; k < sizeof settings / sizeof *settings; k++) add(user, settings[k]);
   for (int32_t c = 0; c < m->history_count; c++) add(user, m->history_initial[c]);
   for (int32_t k = 0; k < m->owned_count; k++) add(user, m->owned_constants[k]);

@@ -82,7 +82,7 @@ static const double level[3] = {0.0, 0.0, 0.0}; /* no slope */
 static void clear_tile(mps_mpm *mpm, int64_t b, int32_t number) {
   const mpsi_cell_block *cells = &mpm->grid.cells[b];
   const size_t bytes = (size_t)(cells->high[0] - cells->low[0]) * sizeof(mpsi_node);
-  for (int across = 0; across <= cells->thin; across++)
+  for (int across = 0; across < (cells->thin ? 2 : 1); across++)
     for (int k = cells->low[2]; k < cells->high[2]; k++)
       for (int j = cells->low[1]; j < cells->high[1]; j++)
         memset(sums_at(mpm, cells, &mpm->grid.workers[number], across != 0, cells->low[0], j, k), 0,
@@ -371,7 +371,7 @@ static void add_block(mps_mpm *mpm, int64_t b, int32_t number, mpsi_mpm_task sum
     sum(mpm, b, number);
   else if (!mpsi_mpm_share_take_sums(mpm, b, number, sum))
     return;
-  for (int across = 0; across <= cells->thin; across++)
+  for (int across = 0; across < (cells->thin ? 2 : 1); across++)
     add_tile(mpm, cells, &mpm->grid.workers[number], across != 0);
 }
 

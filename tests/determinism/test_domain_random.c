@@ -141,7 +141,7 @@ static mps_status make_fluid(subject *s, plan *p, mps_domain *domain, bool odd) 
   TRY(mps_fluid_create(s->own, s->set, &def, &s->fluid));
   for (int k = 0; k < 3; k++) {
     mps_fluid_boundary_def b = mps_fluid_boundary_defaults();
-    memcpy(b.point, wall[k], sizeof b.point), memcpy(b.normal, wall[k] + 2, sizeof b.normal);
+    for (int c = 0; c < 2; c++) b.point[c] = wall[k][c], b.normal[c] = wall[k][2 + c];
     TRY(mps_fluid_add_boundary(s->fluid, &b, &s->wall));
   }
   return status;

@@ -28,7 +28,7 @@ ends() {
   one "$name" "$table: No space left on device"
   wrong "different ranks" -n 1 "$program" $option $value "$@" --out "$work/$name-d" : \
     -n 1 "$program" $option $other "$@" --out "$work/$name-d"
-  one "$name" "all ranks must give the same"
+  one "$name" "all ranks must be given the same options"
   # shellcheck disable=SC2016
   wrong "dead at once" -n 1 "$program" $option $value "$@" --out "$work/$name-k" : \
     -n 1 sh -c 'kill -KILL $$'
