@@ -29,7 +29,7 @@ static const struct {
     {"mps_particles_set_geostatic", "changes the number of parts"},
     /* densities that were edited are read before memory is refused */
     {"mps_elastic_", "'s mass"},
-    {"mps_elastic_start", "momentum"},
+    {"mps_elastic_start", "changes"},
     /* memory refused at the end of a step in parts */
     {"mps_fluid_end_step", "changes fluid"},
     /* edits since the last step are read before memory or the file is refused */
