@@ -1,4 +1,4 @@
-/* fluid_energy.h - what water does to the energy of what it meets, for tests: a wall that is forced
+/* fluid_energy.h - energy that water gives to walls and bodies, for tests: a wall that is forced
  * to vibrate, blocks that strike, standing waves, a wall on a spring.
  * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef MPS_FLUID_ENERGY_H

@@ -23,7 +23,7 @@ static inline bool mpsi_domain_many(const mps_domain *domain) {
   return mps_domain_size(domain) > 1;
 }
 
-/* What has become of the ranks: MPS_OK where all are well, else the worst status, with the record
+/* Status of all ranks: MPS_OK where all are well, else the worst status, with the record
  * of the lowest rank that has it. `status` is this rank's, its record the last of the context. */
 mps_status mpsi_domain_settle(mps_domain *domain, const char *function, mps_status status);
 /* The same, and in the same message the greatest of each value: at most MPSI_DOMAIN_ALONG. Where

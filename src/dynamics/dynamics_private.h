@@ -365,7 +365,7 @@ typedef struct mpsi_dynamics_selection {
     .ids = (def).ids, .id_count = (def).id_count, .lower = (def).lower, .upper = (def).upper,      \
     .signal = (def).signal, .factor = (def).factor, .all = (everything)                            \
   }
-/* What has become of the ranks, and whether all define the same: the selection, which is added to
+/* Status of all ranks, and whether all define the same: the selection, which is added to
  * the list, and what the list has. */
 mps_status mpsi_dynamics_settle_definition(mps_dynamics *dynamics, const char *function,
                                            mps_status status, const mpsi_dynamics_selection *s,

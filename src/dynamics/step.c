@@ -176,7 +176,7 @@ static bool diverges(mps_dynamics *dynamics, double limit2) {
   return any;
 }
 
-/* What has become of the ranks: `status` of this one, and whether its last step has diverged. */
+/* Status of all ranks: `status` of this one, and whether its last step has diverged. */
 static mps_status settle_step(mps_dynamics *dynamics, const char *function, mps_status status,
                               bool *diverged) {
   double any = *diverged;

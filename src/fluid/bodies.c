@@ -260,7 +260,7 @@ static int free_faces(const mps_fluid *f, int64_t faces) {
   return -1;
 }
 
-/* What has become of the ranks, and whether all give the same body (NULL: none) this number. */
+/* Status of all ranks, and whether all give the same body (NULL: none) this number. */
 static mps_status settle(mps_fluid *f, const char *function, mps_status status, int32_t number,
                          int32_t kind, const mps_body *body) {
   if (!f->share) return status;

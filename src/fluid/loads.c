@@ -108,7 +108,7 @@ static mps_status make_load(mps_fluid *f, const char *function, const mps_fluid_
   return MPS_OK;
 }
 
-/* What has become of the ranks, and whether all give the same load (`g`, NULL: none) this number.
+/* Status of all ranks, and whether all give the same load (`g`, NULL: none) this number.
  */
 static mps_status settle(mps_fluid *f, const char *function, mps_status status, int32_t number,
                          const mpsi_fluid_given *g) {

@@ -24,7 +24,7 @@ void mpsi_fluid_drop_solver(mps_fluid *f) {
   f->outside = NULL;
 }
 
-/* What has become of the ranks, and whether all have such a solver. */
+/* Status of all ranks, and whether all have such a solver. */
 static mps_status settle_solver(mps_fluid *f, const char *function, mps_status status, bool given,
                                 const mps_fluid_solver_def *def) {
   mpsi_given list;

@@ -255,7 +255,7 @@ void mpsi_fluid_move_ghosts(mps_fluid *f) {
 /* Share of a wall's acceleration that the images of particle i take a step late, as velocity. The
  * matrix is not quite the divergence of the gradient that moves the particles (move.c), so a step
  * leaves divergence that the next one takes away: a force in phase with the wall's velocity. Where
- * the first answer is too high it drives the wall, as where a wall and the surface meet (.3 rho
+ * the first answer is too high it drives the wall, as where a wall crosses the surface (.3 rho
  * l0^2 of mass, q is r ln r there). With these shares the first answer is too low instead, at every
  * frequency and shape of the wall, and the force damps: by some .005 sin(omega dt) m omega. */
 static double late_share(const mps_fluid *f, int64_t i) {

@@ -29,7 +29,7 @@ static mps_status sum_nodes(mps_mpm *mpm, const char *function) {
   return mpm->share ? mpm->share->lost : MPS_OK;
 }
 
-/* Sums of mass, momentum and force at the nodes. `status`: what has become of the call so far here;
+/* Sums of mass, momentum and force at the nodes. `status`: status of the call so far here;
  * collective. */
 static mps_status make_sums(mps_mpm *mpm, const char *function, mps_status status) {
   status = mpsi_mpm_share_settle(mpm, function, status);

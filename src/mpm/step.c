@@ -46,7 +46,7 @@ static void warn_about_step(mps_mpm *mpm, double dt) {
 
 /* Before anything moves: the particles in order where some have left their blocks, and what is near
  * them. An error loses nothing but, on several ranks, the tractions at rest of absorbing sides.
- * `status`: what has become of the call so far here; collective. */
+ * `status`: status of the call so far here; collective. */
 static mps_status prepare(mps_mpm *mpm, const char *function, mps_status status) {
   const bool renewed = mpm->run.stale || (mpm->share && mpm->share->outdated);
   if (mpm->share) status = mpsi_mpm_share_tidy(mpm, function, status);

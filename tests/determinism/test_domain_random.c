@@ -355,7 +355,7 @@ static void run_seed(uint64_t seed) {
   if (t.lost || t.mixed)
     fail_msg("seed %d (trouble %d at %d on rank %d of %d): ranks %s; rank 0: %s; rank 1: %s",
              (int)seed, p.trouble, p.at, p.odd, p.ranks,
-             t.mixed ? "met in different callbacks" : "waited for one another", s->rank[0].message,
+             t.mixed ? "are in different callbacks" : "waited for one another", s->rank[0].message,
              s->rank[1].message);
   team_end(&t);
   if (p.trouble == ALIKE)
