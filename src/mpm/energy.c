@@ -33,6 +33,10 @@ void mpsi_mpm_energy_before(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t 
   of_cells(mpm, cells)->kinetic_before += kinetic_of(mpm, begin, end);
 }
 
+void mpsi_mpm_energy_after(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end) {
+  of_cells(mpm, cells)->kinetic += kinetic_of(mpm, begin, end);
+}
+
 /* Column of the velocity gradient and of the stress of d(v_a)/d(x_b). */
 static int gradient_column(int dim, int a, int b) { return dim * a + b; }
 static int stress_column(int a, int b) {
@@ -120,7 +124,6 @@ void mpsi_mpm_energy_law(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_
     sum->kept += stays;
     sum->spent += work - stays;
   }
-  sum->kinetic += kinetic_of(mpm, begin, begin + block->count);
 }
 
 void mpsi_mpm_energy_smoothed(mps_mpm *mpm, const mpsi_cell_block *cells,

@@ -82,8 +82,11 @@ void mpsi_mpm_energy_add(mps_mpm *mpm, mpsi_energy_sum which, double energy);
 void mpsi_mpm_energy_add_at_once(mps_mpm *mpm, mpsi_energy_sum which, double energy);
 /* Before the step: room, and the springs. */
 mps_status mpsi_mpm_energy_begin(mps_mpm *mpm, const char *function);
-/* Particles [begin, end) of a block: before and after G2P. */
+/* Particles [begin, end) of a block: kinetic energy before and after G2P, the latter before lists
+ * of held particles get theirs (walls.c), though with means the laws come later than these. */
 void mpsi_mpm_energy_before(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end);
+void mpsi_mpm_energy_after(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end);
+/* Works of loads and stresses by the velocities of the nodes. */
 void mpsi_mpm_energy_moved(mps_mpm *mpm, const mpsi_cell_block *cells, int64_t begin, int64_t end);
 /* Of a particle: `v`, the part of its new velocity that light nodes give back. The nodes' forces do
  * no work by it, as the fit knows nothing of it. */

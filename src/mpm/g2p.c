@@ -355,6 +355,7 @@ MPSI_INLINE void g2p_chunk(mps_mpm *mpm, mpsi_cell_block *cells, const mpsi_work
     const int64_t bad = keep_inside(mpm, cells, begin, begin + n);
     if (cells->bad < 0 && bad >= 0) cells->bad = bad, cells->lost = true;
   }
+  if (mpm->energy.counts) mpsi_mpm_energy_after(mpm, cells, begin, begin + n);
   if (!mpm->laws.at_once) return; /* the laws wait for the means */
   mpsi_mpm_apply_law(mpm, cells, begin, begin + n, D, NULL, law);
   speed_chunk(mpm, cells, dim, begin, n);

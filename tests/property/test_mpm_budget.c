@@ -82,6 +82,49 @@ static void closes_with_bodies(void **state) {
   }
 }
 
+/* Particles of a list shake in one component and rest in another, some of them in two lists, in an
+ * elastic block and in sand that falls, under each volumetric option. Where no other boundary acts
+ * the kinetic energy that the budget counts is the particles' own. */
+static void closes_with_lists_of_particles(void **state) {
+  (void)state;
+  for (int32_t law = 0; law < 2; law++)
+    for (int32_t volumetric = 0; volumetric <= MPS_MPM_VOLUMETRIC_NODES; volumetric++) {
+      mpm_scene s = mpm_scene_begin(context, 0.01, 0.0, 0.0, 1e5);
+      mpm_scene_box(&s, 0.0, 0.0, 0.2, 0.1);
+      mps_mpm_def def = mps_mpm_defaults();
+      def.cell = 0.02, def.budget = 1, def.gravity[1] = -9.81, def.volumetric = volumetric;
+      if (law == 1) {
+        mps_mohr_coulomb_def sand = mps_mohr_coulomb_defaults();
+        sand.young = 1e5, sand.friction = 0.5, sand.dilation = 0.2, sand.cohesion = 10.0;
+        mps_material_destroy(&s.material);
+        mps_assert_ok(context, mps_material_mohr_coulomb(context, &sand, &s.material));
+      }
+      mpm_scene_solve(&s, &def);
+      mps_signal *shake = NULL;
+      mps_assert_ok(context, mps_signal_sine(context, 20.0, 0.001, 0.0, &shake));
+      int64_t ids[30];
+      int32_t numbers[2];
+      for (int k = 0; k < 30; k++) ids[k] = 3 * k;
+      mps_mpm_boundary_def held = mps_mpm_boundary_defaults();
+      held.ids = ids, held.id_count = 20, held.signal[0] = shake;
+      mps_assert_ok(context, mps_mpm_add_boundary(s.mpm, &held, &numbers[0]));
+      held.ids = ids + 10, held.dofs = MPS_DOF_X, held.factor[0] = -0.5;
+      mps_assert_ok(context, mps_mpm_add_boundary(s.mpm, &held, &numbers[1]));
+      mps_assert_ok(context, mps_mpm_step(s.mpm, test_steps(150)));
+      assert_closes(&s, 0.0, law == 0 ? "lists in a block" : "lists in sand", 1e-12);
+      double work = 0.0;
+      for (int k = 0; k < 2; k++) {
+        mps_reaction r;
+        mps_assert_ok(context, mps_mpm_get_reaction(s.mpm, numbers[k], &r));
+        work += r.work;
+      }
+      const double total = mpm_scene_totals(&s).work_boundaries;
+      assert_true(fabs(work) > 0.0 && fabs(work - total) < 1e-12 * fabs(total));
+      mps_signal_destroy(&shake);
+      mpm_scene_end(&s);
+    }
+}
+
 /* The works are those that the reactions tell, added up. */
 static void works_are_those_of_the_reactions(void **state) {
   (void)state;
@@ -301,6 +344,7 @@ static void sums_go_back_and_are_the_same(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(closes_with_boundaries),
                                      cmocka_unit_test(closes_with_bodies),
+                                     cmocka_unit_test(closes_with_lists_of_particles),
                                      cmocka_unit_test(works_are_those_of_the_reactions),
                                      cmocka_unit_test(is_asked_for),
                                      cmocka_unit_test(falling_block),
