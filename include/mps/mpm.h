@@ -60,7 +60,9 @@ typedef enum mps_mpm_volumetric {
   MPS_MPM_VOLUMETRIC_CELL = 1,  /* F-bar: the mean of tr(d), weighted by volumes, over the particles
                                of the cell (quadratic: of the cell-sized box about a node); the part
                                of d without trace, the spin and `velocity_gradient` stay. Volumes,
-                               `volume_ratio` and `deformation_gradient` follow the mean */
+                               `volume_ratio` and `deformation_gradient` follow the mean.
+                               Mohr-Coulomb and Drucker-Prager with an angle of dilation above 0
+                               keep their own tr(d), and are not in the mean */
   MPS_MPM_VOLUMETRIC_NODES = 2 /* the mean of tr(d) and of pressures over the nodes near: fluids act
                               with it, other laws tend to it by 0.03 c dt/h a step. Frictional laws
                               keep their own tr(d); pressures are smoothed every eighth step */

@@ -99,6 +99,11 @@ bool mpsi_material_opens(const mps_material *material) {
   return (material->type->traits & MPSI_LAW_OPENS) != 0;
 }
 
+bool mpsi_material_dilates(const mps_material *material) {
+  return mpsi_material_opens(material) &&
+         (material->law.sin_psi > 0.0 || material->law.alpha_flow > 0.0);
+}
+
 bool mpsi_material_may_refuse(const mps_material *material) {
   return (material->type->traits & MPSI_LAW_MAY_REFUSE) != 0;
 }

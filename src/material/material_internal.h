@@ -54,6 +54,8 @@ mps_status mpsi_material_refused(mps_context *context, const char *function,
 bool mpsi_material_reads_volume(const mps_material *material);
 /* True: a frictional law with a gap between its grains; its history is plastic_strain, opening. */
 bool mpsi_material_opens(const mps_material *material);
+/* True: such a law whose plastic flow grows in volume, by an angle of dilation above 0. */
+bool mpsi_material_dilates(const mps_material *material);
 /* True: a law of the caller's, which may refuse a block. */
 bool mpsi_material_may_refuse(const mps_material *material);
 /* True: the wave modulus follows the state. */

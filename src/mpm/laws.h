@@ -14,7 +14,8 @@ typedef struct mpsi_law_use {
   mps_material *material;
   double modulus; /* K + 4G/3 at zero strain, Pa */
   bool reads_volume, needs_deformation;
-  bool opens; /* a frictional law: its history is plastic_strain, opening */
+  bool opens;      /* a frictional law: its history is plastic_strain, opening */
+  bool own_volume; /* it takes each particle's own change of volume, not a mean (volumetric.c) */
   int32_t columns;
   double **history; /* columns over all particles; NULL for none */
 } mpsi_law_use;
@@ -34,7 +35,8 @@ typedef struct mpsi_laws {
   int32_t count;
   bool one_modulus; /* law[0].modulus holds for all particles, whatever their state */
   bool at_once;     /* all laws act within G2P, by each particle's own change of volume */
-  bool some_open;   /* some law is frictional */
+  bool some_open;   /* some law is frictional, */
+  bool some_own;    /* takes each particle's own change of volume */
   int64_t *flags;   /* of the laws, by sorted index */
   const int64_t *ids;
   const double *temperature; /* NULL where the set has no such field */

@@ -28,6 +28,19 @@ void mpsi_mpm_bind_law(mps_mpm *mpm, mpsi_law_use *law) {
   mpm->laws.temperature = mpsi_particles_column(set, "temperature", 0);
 }
 
+/* A mean change of volume beside each particle's own pressure does work from nothing where dilation
+ * makes pressures rough: volumetric.c. */
+static bool keeps_own_volume(const mps_mpm *mpm, const mps_material *material) {
+  switch (mpm->def.volumetric) {
+  case MPS_MPM_VOLUMETRIC_CELL:
+    return mpsi_material_dilates(material);
+  case MPS_MPM_VOLUMETRIC_NODES:
+    return mpsi_material_opens(material);
+  default:
+    return true;
+  }
+}
+
 mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *material) {
   if (mpm->laws.count == MPS_MPM_MAX_MATERIALS)
     return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
@@ -38,6 +51,7 @@ mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *ma
                       .reads_volume = mpsi_material_reads_volume(material),
                       .needs_deformation = mps_material_needs_deformation(material) != 0,
                       .opens = mpsi_material_opens(material),
+                      .own_volume = keeps_own_volume(mpm, material),
                       .columns = mps_material_history_count(material)};
   law.history = mpsi_alloc(mpm->context, law.columns, sizeof *law.history);
   if (!law.history)
@@ -54,10 +68,8 @@ mps_status mpsi_mpm_add_law(mps_mpm *mpm, const char *function, mps_material *ma
   if (mpm->laws.count == 0) atomic_flag_clear(&mpm->laws.refusal.busy);
   mpm->laws.one_modulus = mpm->laws.count == 0 && !mpsi_material_stiffens(material) &&
                           mpsi_material_viscosity(material) == 0.0;
-  const bool first = mpm->laws.count == 0;
-  mpm->laws.at_once = mpm->def.volumetric == MPS_MPM_VOLUMETRIC_POINT ||
-                      (mpm->def.volumetric == MPS_MPM_VOLUMETRIC_NODES && law.opens &&
-                       (first || mpm->laws.at_once));
+  mpm->laws.at_once = law.own_volume && (mpm->laws.count == 0 || mpm->laws.at_once);
+  mpm->laws.some_own = mpm->laws.some_own || law.own_volume;
   mpm->laws.some_open = mpm->laws.some_open || law.opens;
   mpm->laws.law[mpm->laws.count++] = law;
   return MPS_OK;

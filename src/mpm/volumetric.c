@@ -21,14 +21,15 @@
  * node and back along the slope that it has at rest, p_i = sum w V (p + rho g.(x_i - x))/sum w V
  * and p~ = sum w (p_i - rho g.(x_i - x)): at rest it is kept as it is.
  *
- * Frictional laws see each particle's own tr(d) instead. Means of the rate under forces by own
- * pressures let rough pressures do work from nothing, and dilation makes them rough: a dilatant
- * sand blew up. What is smoothed of them, every eighth step, is e = p + K gap, the mean stress that
- * an open particle would have if its grains still held together: below 0 they are closed. With the
- * operator S of the means, r = e - S e and e' = e - a (r - S r), so that sum V e is kept, a smooth
- * field to the fourth order too, and what S does not see decays. p' is e' where that is closed,
- * else what is left of p, the gap the rest; then the law's own return, without strain. V follows
- * the elastic volume strain of p' - p. SPDX-License-Identifier: BSD-3-Clause */
+ * By node frictional laws, by cell those with dilation see each particle's own tr(d) instead. Means
+ * of the rate under forces by own pressures let rough pressures do work from nothing, and dilation
+ * makes them rough: a dilatant sand blew up. What is smoothed by node, every eighth step, is e = p
+ * + K gap, the mean stress that an open particle would have if its grains still held together:
+ * below 0 they are closed. With the operator S of the means, r = e - S e and e' = e - a (r - S r),
+ * so that sum V e is kept, a smooth field to the fourth order too, and what S does not see decays.
+ * p' is e' where that is closed, else what is left of p, the gap the rest; then the law's own
+ * return, without strain. V follows the elastic volume strain of p' - p. SPDX-License-Identifier:
+ * BSD-3-Clause */
 #include "kernels.h"
 
 #include <string.h>
@@ -38,6 +39,11 @@
 #define GRAINS_EVERY 8 /* steps */
 
 enum { SUM_VOLUME = 0, SUM_TRACE = 1 };
+
+/* A particle whose law takes its own tr(d). */
+static bool keeps_own(const mps_mpm *mpm, int64_t k) {
+  return mpm->laws.some_own && mpsi_law_of(mpm, k)->own_volume;
+}
 
 /* Columns of the velocity gradient's diagonal; that of zz is NULL in plane strain. */
 static void find_diagonal(const mps_mpm *mpm, const double **diagonal) {
@@ -303,8 +309,8 @@ static void sum_rates(mps_mpm *mpm, int64_t b, int32_t number) {
   find_diagonal(mpm, L);
   for (int64_t k = cells->begin; k < cells->end; k++) {
     const double trace = L[0][k] + L[1][k] + (L[2] ? L[2][k] : 0.0);
+    if (keeps_own(mpm, k)) continue;
     if (by_nodes(mpm)) {
-      if (is_grains(mpm, k)) continue;
       const support s = support_of(mpm, cells, k);
       give(mpm, cells, worker, &s, V[k], trace, level);
       continue;
@@ -322,7 +328,7 @@ static void mean_diagonals(const mps_mpm *mpm, const mpsi_cell_block *cells, int
   for (int64_t k = begin; k < end; k++) {
     const double own = L[0][k] + L[1][k] + (L[2] ? L[2][k] : 0.0);
     double mean;
-    if (by_nodes(mpm) && is_grains(mpm, k)) {
+    if (keeps_own(mpm, k)) {
       mean = own;
     } else if (by_nodes(mpm)) {
       const support s = support_of(mpm, cells, k);
