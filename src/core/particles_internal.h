@@ -91,10 +91,11 @@ struct mpsi_holder {
   int64_t (*runs)(const void *self, mpsi_row_run *out);
   /* Of such a set (NULL: all of it is here): what has become of adding the particles from `first`
    * on, on all ranks, which must have been given the same; and of removing those of a list, of
-   * which `known` are here. Both come before insert and remove. */
+   * which `known` are here: *all is then the greatest count that a rank has given. Both come before
+   * insert and remove. */
   mps_status (*agree)(void *self, const char *function, mps_status status, int64_t first);
   mps_status (*find)(void *self, const char *function, mps_status status, int64_t count,
-                     const int64_t *ids, int64_t known);
+                     const int64_t *ids, int64_t known, int64_t *all);
   mpsi_holder *next;
 };
 

@@ -251,7 +251,7 @@ mps_status mps_particles_remove(mps_particles *particles, int64_t count, const i
   if (!particles) return MPS_ERROR_ARGUMENT;
   mps_context *context = particles->context;
   const mpsi_holder *shared = sharer(particles);
-  int64_t known = 0;
+  int64_t known = 0, all = count;
   uint8_t *gone = NULL;
   mps_status status = mpsi_particles_outside_callbacks(particles, __func__);
   if (status != MPS_OK) return status;
@@ -261,8 +261,8 @@ mps_status mps_particles_remove(mps_particles *particles, int64_t count, const i
     status = mpsi_fail_memory(context, __func__, (size_t)particles->count);
   if (status == MPS_OK)
     status = mark(particles, __func__, count, ids, gone, shared ? &known : NULL);
-  if (shared) status = shared->find(shared->self, __func__, status, count, ids, known);
-  if (status == MPS_OK) status = ask_holders(particles, __func__, count, ids);
+  if (shared) status = shared->find(shared->self, __func__, status, count, ids, known, &all);
+  if (status == MPS_OK && all > 0) status = ask_holders(particles, __func__, count, ids);
   if (status == MPS_OK && (known > 0 || !shared)) mpsi_particles_take_out(particles, gone);
   mpsi_free(context, gone);
   return status;

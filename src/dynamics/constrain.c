@@ -48,6 +48,25 @@ mps_status mpsi_dynamics_ask_signals(mps_dynamics *dynamics, const char *functio
   return MPS_OK;
 }
 
+/* What the caller's functions have said of a step: that they are the same is not known before. */
+mps_status mpsi_dynamics_settle_signals(mps_dynamics *dynamics, const char *function,
+                                        mps_status status, int32_t count, double *values) {
+  mpsi_given list;
+  mpsi_given_begin(&list);
+  for (int32_t k = 0; status == MPS_OK && k < dynamics->boundary_room; k++) {
+    const mpsi_dynamics_boundary *b = dynamics->boundary[k];
+    if (!b) continue;
+    mpsi_give_vector(&list, "the displacement of a boundary", 2, b->reach);
+    mpsi_give_vector(&list, "the velocity of a boundary", 2, b->speed);
+    mpsi_give_vector(&list, "the acceleration of a boundary", 2, b->gain);
+    mpsi_give_vector(&list, "the incoming velocity of a boundary", 2, b->incoming);
+  }
+  for (int32_t k = 0; status == MPS_OK && k < dynamics->load_room; k++)
+    if (dynamics->load[k])
+      mpsi_give_vector(&list, "the present factor on a load", 2, dynamics->load[k]->now);
+  return mpsi_domain_settle_given_max(dynamics->domain, function, status, &list, count, values);
+}
+
 /* ---- dashpots -----------------------------------------------------------------------------------
  */
 

@@ -400,6 +400,11 @@ void mpsi_dynamics_renew_dashpots(mps_dynamics *dynamics);
 /* Asks the signals for a step from `now` to `then`: the one thing of a step that can fail. */
 mps_status mpsi_dynamics_ask_signals(mps_dynamics *dynamics, const char *function, double now,
                                      double then);
+/* Status of all ranks, and MPS_ERROR_ARGUMENT where signals of boundaries or loads have given them
+ * different values; in the same reduction the greatest of each of `values`, at most
+ * MPSI_DOMAIN_ALONG - 2. Collective. */
+mps_status mpsi_dynamics_settle_signals(mps_dynamics *dynamics, const char *function,
+                                        mps_status status, int32_t count, double *values);
 void mpsi_dynamics_dashpots_before(mps_dynamics *dynamics);
 /* Around what follows: sums of what boundaries exert in a step. */
 void mpsi_dynamics_begin_counting(mps_dynamics *dynamics);

@@ -176,11 +176,13 @@ static bool diverges(mps_dynamics *dynamics, double limit2) {
   return any;
 }
 
-/* Status of all ranks: `status` of this one, and whether its last step has diverged. */
+/* Status of all ranks: `status` of this one, whether its last step has diverged, and where signals
+ * are functions of the caller whether they say the same of the next. */
 static mps_status settle_step(mps_dynamics *dynamics, const char *function, mps_status status,
                               bool *diverged) {
   double any = *diverged;
-  status = mpsi_domain_settle_max(dynamics->domain, function, status, 1, &any);
+  status = dynamics->cautious ? mpsi_dynamics_settle_signals(dynamics, function, status, 1, &any)
+                              : mpsi_domain_settle_max(dynamics->domain, function, status, 1, &any);
   if (status != MPS_OK || any == 0.0) return status;
   return report_divergence(dynamics, function);
 }
@@ -275,7 +277,8 @@ static mps_status evaluate_signals(mps_dynamics *dynamics, const char *function,
 
 mps_status mpsi_dynamics_look_ahead(mps_dynamics *dynamics, const char *function, double length) {
   const mps_status status = evaluate_signals(dynamics, function, length);
-  return dynamics->cautious ? mpsi_domain_settle(dynamics->domain, function, status) : status;
+  return dynamics->cautious ? mpsi_dynamics_settle_signals(dynamics, function, status, 0, NULL)
+                            : status;
 }
 
 mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, int64_t count,

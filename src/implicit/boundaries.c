@@ -318,13 +318,14 @@ void mpsi_elastic_drop_boundaries(mps_elastic *e) {
 /* ---- driving ----------------------------------------------------------------------------------
  */
 
-static mps_status ask_signals(mps_elastic *e, const char *function, double t) {
+static mps_status ask_signals(mps_elastic *e, const char *function, double t, bool *by_caller) {
   for (int32_t k = 0; k < e->boundary_count; k++) {
     mpsi_elastic_boundary *b = &e->boundaries[k];
     for (int c = 0; b->used && c < 3; c++) {
       mpsi_signal_motion m;
       const mpsi_signal_use use = {e->context, function, "boundary", k, c};
       const mps_status status = mpsi_signal_evaluate(b->signal[c], use, t, &m);
+      *by_caller = *by_caller || mpsi_signal_may_fail(b->signal[c]);
       if (status != MPS_OK) return status;
       b->motion[0][c] = b->factor[c] * m.u;
       b->motion[1][c] = b->factor[c] * m.v;
@@ -334,8 +335,21 @@ static mps_status ask_signals(mps_elastic *e, const char *function, double t) {
   return MPS_OK;
 }
 
+/* Motions of all boundaries at time t. Functions of the caller may give ranks different ones. */
+static mps_status find_motions(mps_elastic *e, const char *function, double t) {
+  bool by_caller = false;
+  const mps_status status = ask_signals(e, function, t, &by_caller);
+  mpsi_given list;
+  if (!by_caller) return status;
+  mpsi_given_begin(&list);
+  for (int32_t k = 0; status == MPS_OK && k < e->boundary_count; k++)
+    for (int m = 0; e->boundaries[k].used && m < 3; m++)
+      mpsi_give_vector(&list, "the motion of a boundary", 3, e->boundaries[k].motion[m]);
+  return mpsi_elastic_settle_given(e, function, status, &list);
+}
+
 mps_status mpsi_elastic_drive(mps_elastic *e, const char *function, double t) {
-  const mps_status status = ask_signals(e, function, t);
+  const mps_status status = find_motions(e, function, t);
   if (status != MPS_OK) return status;
   for (int64_t k = 0; k < e->support_count; k++) {
     mpsi_support *s = &e->supports[k];

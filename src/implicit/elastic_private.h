@@ -91,7 +91,7 @@ typedef struct mpsi_elastic_load {
   int32_t kind;
   double force[3]; /* BODY, GRAVITY */
   mps_signal *signal[3];
-  double factor[3];
+  double factor[3], scale[3]; /* scale: factor times the signal's value, at the time asked for */
   mpsi_patch *patches;
   int64_t count, capacity;
 } mpsi_elastic_load;

@@ -321,31 +321,53 @@ static mps_status add_external(mps_elastic *e, const char *function) {
   return MPS_OK;
 }
 
-mps_status mpsi_elastic_gather_loads(mps_elastic *e, const char *function, double t) {
-  memset(e->load, 0, (size_t)(e->n * e->dim) * sizeof *e->load);
+static mps_status ask_signals(mps_elastic *e, const char *function, double t, bool *by_caller) {
   for (int32_t k = 0; k < e->load_count; k++) {
-    const mpsi_elastic_load *l = &e->loads[k];
-    double scale[3];
-    mps_status status = MPS_OK;
-    if (!l->used) continue;
-    for (int c = 0; c < 3; c++) {
+    mpsi_elastic_load *l = &e->loads[k];
+    for (int c = 0; l->used && c < 3; c++) {
       const int s = l->kind == MPS_ELASTIC_LOAD_PRESSURE ? 0 : c;
       mpsi_signal_motion m = {.u = 1.0};
       const mpsi_signal_use use = {e->context, function, "load", k, s};
-      if (l->signal[s]) status = mpsi_signal_evaluate(l->signal[s], use, t, &m);
+      const mps_status status =
+          l->signal[s] ? mpsi_signal_evaluate(l->signal[s], use, t, &m) : MPS_OK;
+      *by_caller = *by_caller || mpsi_signal_may_fail(l->signal[s]);
       if (status != MPS_OK) return status;
-      scale[c] = l->factor[s] * m.u;
+      l->scale[c] = l->factor[s] * m.u;
     }
+  }
+  return MPS_OK;
+}
+
+/* Factors of all loads at time t. Functions of the caller may give ranks different ones. */
+static mps_status find_scales(mps_elastic *e, const char *function, double t) {
+  bool by_caller = false;
+  mps_status status = ask_signals(e, function, t, &by_caller);
+  mpsi_given list;
+  if (!by_caller) return status;
+  mpsi_given_begin(&list);
+  for (int32_t k = 0; status == MPS_OK && k < e->load_count; k++)
+    if (e->loads[k].used)
+      mpsi_give_vector(&list, "the present factor on a load", 3, e->loads[k].scale);
+  return mpsi_elastic_settle_given(e, function, status, &list);
+}
+
+mps_status mpsi_elastic_gather_loads(mps_elastic *e, const char *function, double t) {
+  mps_status status = find_scales(e, function, t);
+  if (status != MPS_OK) return status;
+  memset(e->load, 0, (size_t)(e->n * e->dim) * sizeof *e->load);
+  for (int32_t k = 0; k < e->load_count; k++) {
+    const mpsi_elastic_load *l = &e->loads[k];
+    if (!l->used) continue;
     if (l->kind == MPS_ELASTIC_LOAD_GRAVITY && !e->mass &&
         (status = mpsi_elastic_read_mass(e, function)) != MPS_OK)
       return status;
-    if (l->kind <= MPS_ELASTIC_LOAD_GRAVITY) add_body(e, l, scale);
+    if (l->kind <= MPS_ELASTIC_LOAD_GRAVITY) add_body(e, l, l->scale);
     for (int64_t p = 0; p < l->count; p++) {
       const int64_t i = mpsi_elastic_find(e, l->patches[p].id);
-      if (i >= 0) add_patch(e, i, &l->patches[p], scale);
+      if (i >= 0) add_patch(e, i, &l->patches[p], l->scale);
     }
   }
-  const mps_status status = add_external(e, function);
+  status = add_external(e, function);
   return status == MPS_OK ? mpsi_elastic_complete(e, function, e->load) : status;
 }
 

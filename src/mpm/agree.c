@@ -111,16 +111,18 @@ mps_status mpsi_mpm_share_agree_added(void *self, const char *function, mps_stat
 
 /* Each rank lists particles that it has itself, or all of them list the same. */
 mps_status mpsi_mpm_share_find(void *self, const char *function, mps_status status, int64_t count,
-                               const int64_t *ids, int64_t known) {
+                               const int64_t *ids, int64_t known, int64_t *all) {
   mps_mpm *mpm = self;
   mps_domain *domain = mpm->share->domain;
-  double found[3] = {0.0};
+  double found[4] = {0.0};
   if (status == MPS_OK) {
     found[0] = mpsi_hash_short(mpsi_hash(MPSI_HASH, ids, (size_t)count * sizeof *ids));
     found[1] = -found[0];
     found[2] = (double)(count - known);
+    found[3] = (double)count;
   }
-  status = mpsi_domain_settle_max(domain, function, status, 3, found);
+  status = mpsi_domain_settle_max(domain, function, status, 4, found);
+  *all = (int64_t)found[3];
   if (status != MPS_OK || found[2] == 0.0) return status;
   status = mpsi_domain_sum(domain, function, 1, &known);
   if (status != MPS_OK) return status;

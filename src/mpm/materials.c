@@ -107,7 +107,7 @@ static int32_t number_of(const mps_mpm *mpm, const mps_material *material) {
 /* On several ranks a list is the same on all, or of particles that the rank has. */
 static mps_status check_list(mps_mpm *mpm, const char *function, mps_status status,
                              const mps_material *material, int64_t count, const int64_t *ids) {
-  int64_t known = 0;
+  int64_t known = 0, all;
   if (status == MPS_OK && (!ids || count < 0 || !mpm->share))
     status = mpsi_particles_check_ids_or_all(mpm->particles, function, count, ids);
   if (!mpm->share) return status;
@@ -119,7 +119,7 @@ static mps_status check_list(mps_mpm *mpm, const char *function, mps_status stat
   status = mpsi_domain_settle_given(mpm->share->domain, function, status, &given);
   if (status != MPS_OK || !ids) return status;
   for (int64_t k = 0; k < count; k++) known += mps_particles_index(mpm->particles, ids[k]) >= 0;
-  return mpsi_mpm_share_find(mpm, function, status, count, ids, known);
+  return mpsi_mpm_share_find(mpm, function, status, count, ids, known, &all);
 }
 
 static mps_status check(mps_mpm *mpm, const char *function, const mps_material *material,

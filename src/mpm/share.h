@@ -88,7 +88,7 @@ void mpsi_mpm_thin_out(void *mpm, const uint8_t *gone);
 mps_status mpsi_mpm_share_agree_added(void *mpm, const char *function, mps_status status,
                                       int64_t first);
 mps_status mpsi_mpm_share_find(void *mpm, const char *function, mps_status status, int64_t count,
-                               const int64_t *ids, int64_t known);
+                               const int64_t *ids, int64_t known, int64_t *all);
 /* owners.c: of the particles from `first` on, which all ranks have, those stay that are this
  * rank's. */
 mps_status mpsi_mpm_share_keep_added(mps_mpm *mpm, const char *function, mps_status status,

@@ -118,6 +118,8 @@ enum {
   DIVERGES,
   CANCELLED,
   SIGNAL_FAILS,
+  SIGNAL_DIFFERS, /* of a load, from some time on */
+  DRIVEN_DIFFERS, /* of a boundary */
   CALLBACK_FAILS,
   UNKNOWN_ID,
   REMOVAL,
@@ -139,6 +141,8 @@ static const struct {
     [DIVERGES] = {MPS_ERROR_DIVERGED, "diverged at step"},
     [CANCELLED] = {MPS_ERROR_CANCELLED, "stopped by the cancel hook"},
     [SIGNAL_FAILS] = {MPS_ERROR_NUMERIC, "rank 2: "},
+    [SIGNAL_DIFFERS] = {MPS_ERROR_ARGUMENT, "the present factor on a load is "},
+    [DRIVEN_DIFFERS] = {MPS_ERROR_ARGUMENT, "the displacement of a boundary is "},
     [CALLBACK_FAILS] = {MPS_ERROR_IO, "rank 2: "},
     [UNKNOWN_ID] = {MPS_ERROR_ARGUMENT, "of 2 ids 1 are of particles of the set on any rank"},
     [REMOVAL] = {MPS_ERROR_UNSUPPORTED, "the particles lie on 3 ranks"},
@@ -159,6 +163,14 @@ static mps_status failing(void *user, double t, double motion[3]) {
   const upset *u = user;
   motion[0] = motion[1] = motion[2] = 0.0;
   return u->rank == 2 && t > 0.01 ? MPS_ERROR_NUMERIC : MPS_OK;
+}
+
+/* A motion that is another one on rank 2 from 0.01 s on. */
+static mps_status differing(void *user, double t, double motion[3]) {
+  const upset *u = user;
+  motion[0] = u->rank == 2 && t > 0.01 ? 1e-9 : 0.0;
+  motion[1] = motion[2] = 0.0;
+  return MPS_OK;
 }
 
 static mps_status refuse_callback(void *user, mps_dynamics *dynamics) {
@@ -190,10 +202,30 @@ static mps_status define_otherwise(mps_context *own, mps_dynamics *dynamics, int
   return status;
 }
 
+/* Functions of the caller for a load or a boundary, which a step finds to differ or to fail. */
+static mps_status step_with_signal(mps_context *own, mps_dynamics *dynamics, int what, upset *u) {
+  mps_dynamics_load_def load = mps_dynamics_load_defaults();
+  mps_dynamics_boundary_def base = mps_dynamics_boundary_defaults();
+  const int64_t id = 17;
+  mps_signal *signal = NULL;
+  mps_status status = mps_signal_user(own, what == SIGNAL_FAILS ? failing : differing, u, &signal);
+  load.kind = MPS_DYNAMICS_LOAD_BODY;
+  load.acceleration[0] = 1.0;
+  base.kind = MPS_DYNAMICS_BOUNDARY_DRIVEN;
+  base.ids = &id, base.id_count = 1, base.dofs = MPS_DOF_X;
+  load.signal[0] = base.signal[0] = signal;
+  if (what == DRIVEN_DIFFERS) TRY(mps_dynamics_add_boundary(dynamics, &base, NULL));
+  if (what != DRIVEN_DIFFERS) TRY(mps_dynamics_add_load(dynamics, &load, NULL));
+  TRY(mps_dynamics_step(dynamics, 1000));
+  if (mps_dynamics_time(dynamics) > 0.011 || mps_dynamics_steps(dynamics) == 0)
+    status = MPS_ERROR_INTERNAL; /* the step before is the last one made */
+  mps_signal_destroy(&signal);
+  return status;
+}
+
 static mps_status run_trouble(mps_context *own, mps_domain *domain, int what) {
   mps_particles *set = NULL;
   mps_dynamics *dynamics = NULL;
-  mps_signal *signal = NULL;
   upset u = {.rank = mps_domain_rank(domain)};
   mps_dynamics_def def = mps_dynamics_defaults();
   def.domain = domain;
@@ -210,17 +242,8 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what) {
     mps_context_set_cancel(own, cancel, &u);
     status = mps_dynamics_step(dynamics, 10);
   }
-  if (status == MPS_OK && what == SIGNAL_FAILS) {
-    mps_dynamics_load_def load = mps_dynamics_load_defaults();
-    int32_t number;
-    load.kind = MPS_DYNAMICS_LOAD_BODY;
-    load.acceleration[0] = 1.0;
-    TRY(mps_signal_user(own, failing, &u, &signal));
-    load.signal[0] = signal;
-    TRY(mps_dynamics_add_load(dynamics, &load, &number));
-    if (status == MPS_OK) status = mps_dynamics_step(dynamics, 1000);
-    mps_signal_destroy(&signal);
-  }
+  if (status == MPS_OK && what >= SIGNAL_FAILS && what <= DRIVEN_DIFFERS)
+    status = step_with_signal(own, dynamics, what, &u);
   if (status == MPS_OK && what == CALLBACK_FAILS)
     status = mps_dynamics_run(dynamics, 1.0, 5, refuse_callback, &u);
   if (status == MPS_OK && what == UNKNOWN_ID) {

@@ -69,6 +69,8 @@ enum {
   OTHER_REMOVED,
   CANCELLED,
   SIGNAL_FAILS,
+  SIGNAL_DIFFERS, /* of a boundary, from some time on */
+  FACTOR_DIFFERS, /* of a load */
   SOLVER_FAILS,
   TROUBLES
 };
@@ -92,6 +94,14 @@ static mps_status failing(void *user, double t, double motion[3]) {
 static mps_status unable(void *user, const mps_elastic_matrix *m, size_t size) {
   const mps_status status = take(user, m, size);
   return mps_domain_rank(((shared *)user)->domain) == 1 ? MPS_ERROR_IO : status;
+}
+
+/* A motion that is another one on rank 1 from 0.15 s on. */
+static mps_status differing(void *user, double t, double motion[3]) {
+  const upset *u = user;
+  motion[0] = mps_domain_rank(u->domain) == 1 && t > 0.15 ? 1e-9 : 0.0;
+  motion[1] = motion[2] = 0.0;
+  return MPS_OK;
 }
 
 static mps_status make_set(mps_context *own, int what, mps_particles **set) {
@@ -132,7 +142,10 @@ static mps_status support_and_load(mps_context *own, mps_elastic *elastic, upset
   mps_signal *signal = NULL;
   mps_status status = MPS_OK;
   if (what == SIGNAL_FAILS) status = mps_signal_user(own, failing, u, &signal);
-  held.signal[0] = signal;
+  if (what == SIGNAL_DIFFERS || what == FACTOR_DIFFERS)
+    status = mps_signal_user(own, differing, u, &signal);
+  if (what != FACTOR_DIFFERS) held.signal[0] = signal;
+  if (what == FACTOR_DIFFERS) weight.signal[1] = signal;
   const int32_t rank = u->domain ? mps_domain_rank(u->domain) : 0;
   if (what == OTHER_SUPPORT) held.factor[1] = 1.0 + rank;
   if (what == OTHER_LOAD) weight.force[1] = rank;
@@ -229,6 +242,8 @@ static void test_troubles(void **state) {
       [OTHER_REMOVED] = {MPS_ERROR_ARGUMENT, "there is no load 1", 0.0},
       [CANCELLED] = {MPS_ERROR_CANCELLED, "rank 1: cancelled", 0.0},
       [SIGNAL_FAILS] = {MPS_ERROR_NUMERIC, "rank 1: ", 0.1},
+      [SIGNAL_DIFFERS] = {MPS_ERROR_ARGUMENT, "the motion of a boundary is ", 0.1},
+      [FACTOR_DIFFERS] = {MPS_ERROR_ARGUMENT, "the present factor on a load is ", 0.1},
       [SOLVER_FAILS] = {MPS_ERROR_IO, "rank 1: the callback matrix", 0.0},
   };
   (void)state;
