@@ -91,16 +91,23 @@ static int run(app *a, const settings *s) {
   printf("%s method, %lld x %lld particles, beam %.6g m x %.6g m\n",
          elastic_method_name(&s->method), (long long)s->nx, (long long)s->ny, problem->length,
          problem->height);
+  fflush(stdout);
+  m = (model){.a = a, .problem = problem, .nx = s->nx, .ny = s->ny};
+  m.reference = problem->clamped ? &reference : NULL;
+  done = app_agree(a, done && (a->rank > 0 || results_reserve(&m, &method, s->out)));
+  const double seconds = elastic_seconds((double)(s->nx * s->ny));
+  const double all = seconds + (s->convergence ? convergence_seconds(s->nx, s->ny) : 0.0);
   app_leave_at_once(a, true); /* no hook reaches into the factorisation */
-  done = app_agree(a, done && model_solve(a, problem, problem->clamped ? &reference : NULL, s->nx,
-                                          s->ny, &method, &m));
+  elastic_bar(a, 0.0, seconds / all, seconds);
+  done = app_agree(a, done && model_solve(a, problem, m.reference, s->nx, s->ny, &method, &m));
+  elastic_bar(a, seconds / all, 0.0, 0.0);
   app_leave_at_once(a, false);
   done = done && app_agree(a, a->rank > 0 || results_write(&m, &method, s->out));
   if (done) {
     printf("reactions balance the load to %.1e; %lld unknowns, ", m.equilibrium,
            (long long)m.report.unknowns);
     elastic_tell(a, &m.report);
-    if (s->convergence) done = convergence_run(a, problem, s->nx, s->ny, s->out);
+    if (s->convergence) done = convergence_run(&m, &method, seconds / all, s->out);
   }
   if (done) app_tell_results(a, s->out);
   if (done)

@@ -229,7 +229,7 @@ static mps_status march_case(simulation *sim, column_case *c) {
   mps_status status = MPS_OK;
   c->time_at_rest = NAN;
   for (int k = c->rows; k <= SAMPLES && status == MPS_OK; k++) {
-    if (k > 0) status = mps_mpm_run(sim->m.mpm, end * k / SAMPLES, INT64_MAX, NULL, NULL);
+    if (k > 0) status = mpm_model_advance(&sim->m, end * k / SAMPLES, INT64_MAX, NULL, NULL);
     if (status == MPS_OK) status = sample(sim, c);
     if (status == MPS_OK && c->shots < FRAMES - 1 && c->t[k] >= frames[c->shots] * fall - 1e-12) {
       status = mpm_snapshot_take(&sim->m, c->t[k], "plastic_strain", &c->shot[c->shots]);

@@ -3,6 +3,7 @@
 #include "common/output.h"
 #include "plate/plate.h"
 
+#include <math.h>
 #include <stdio.h>
 
 typedef struct settings {
@@ -67,11 +68,16 @@ static int parse(settings *s, int argc, char **argv) {
 }
 
 static int run(app *a, const settings *s) {
-  plate p = {0};
+  plate p = {.a = a, .def = &s->plate};
+  const double across = s->plate.hole ? s->plate.side / s->plate.radius : 1.0;
+  const double seconds = elastic_seconds(pow(across * (double)s->plate.cells, 2.0));
   const elastic_method method = elastic_settings_method(&s->method);
-  bool done = app_agree(a, a->rank > 0 || output_directory(a, s->out));
+  bool done = app_agree(a, a->rank > 0 ||
+                               (output_directory(a, s->out) && plate_reserve(&p, &method, s->out)));
   app_leave_at_once(a, true); /* no hook reaches into the factorisation */
+  elastic_bar(a, 0.0, 1.0, seconds);
   done = done && app_agree(a, plate_solve(a, &s->plate, &method, &p));
+  elastic_bar(a, 1.0, 0.0, 0.0);
   app_leave_at_once(a, false);
   done = done && app_agree(a, a->rank > 0 || plate_write(&p, &method, s->out));
   if (done) {

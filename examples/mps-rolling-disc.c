@@ -242,7 +242,8 @@ static mps_status march(void *user) {
   sim->m.samples = sim->rows;
   progress_part(&sim->m.a->bar, 0.0, 1.0, 0.0, s->duration);
   for (int k = sim->rows; k <= SAMPLES && status == MPS_OK; k++) {
-    if (k > 0) status = mps_mpm_run(sim->m.mpm, s->duration * k / SAMPLES, INT64_MAX, NULL, NULL);
+    if (k > 0)
+      status = mpm_model_advance(&sim->m, s->duration * k / SAMPLES, INT64_MAX, NULL, NULL);
     if (status == MPS_OK) status = sample(s, sim);
     if (status == MPS_OK) status = mpm_course_sample(&sim->course, k, SAMPLES);
   }

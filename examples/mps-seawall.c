@@ -53,7 +53,10 @@ static int run(app *a, seawall *w) {
   w->saves = (resume_schedule){
       .path = w->s.checkpoint, .every = w->s.every_checkpoint, .save = seawall_save, .user = w};
   waves_warn(a, w->s.period, w->s.depth, w->s.amplitude, w->s.spacing);
+  if (!app_agree(a, a->rank > 0 || summary_reserve(a, w->s.out))) return APP_FAILED;
+  app_leave_at_once(a, !a->domain); /* no hook reaches into building */
   mps_status status = prepare(a, w);
+  app_leave_at_once(a, false);
   if (status != MPS_OK && w->why[0]) return app_error(a, "%s", w->why), APP_FAILED;
   if (status != MPS_OK) return app_end_run(a, status, 0.0, false);
   printf("%lld particles as the paper counts: %lld of water, %lld of the wall above the bed\n",
@@ -63,7 +66,9 @@ static int run(app *a, seawall *w) {
   status = app_settle(a, seawall_run(a, w));
   const int code = app_end_run(a, status, mps_fluid_time(w->fluid), w->samples > 0);
   if (status == MPS_ERROR_CANCELLED) resume_tell(&w->saves);
-  if (w->samples == 0) return code;
+  if (w->samples == 0)
+    return code == APP_INTERRUPTED && a->rank == 0 && !summary_bare(a, w->s.out) ? APP_FAILED
+                                                                                 : code;
   if (!app_agree(a, a->rank > 0 || seawall_write(a, w))) return APP_FAILED;
   return w->saves.lost && code == APP_OK ? APP_FAILED : code;
 }

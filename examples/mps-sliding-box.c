@@ -193,7 +193,7 @@ static mps_status march(void *user) {
   progress_part(&sim->m.a->bar, 0.0, 1.0, 0.0, T_END);
   if (sim->rows == 0) status = mpm_course_sample(&sim->course, 0, SAMPLES);
   for (int k = sim->rows + 1; k <= SAMPLES && status == MPS_OK; k++) {
-    status = mps_mpm_run(sim->m.mpm, T_END * k / SAMPLES, INT64_MAX, NULL, NULL);
+    status = mpm_model_advance(&sim->m, T_END * k / SAMPLES, INT64_MAX, NULL, NULL);
     if (status == MPS_OK) status = sample(sim);
     if (status == MPS_OK) status = mpm_course_sample(&sim->course, k, SAMPLES);
   }

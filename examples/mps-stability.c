@@ -57,7 +57,7 @@ static int parse(settings *s, int argc, char **argv) {
                   "all cases: V 100 to 800 m/s, h 0.001 to 1, R 0.25 to 1.6 m, S and P waves"),
       OPTION_HEADING("One case"),
       COMMON_CHOICE("wave", &s->wave, NULL),
-      COMMON_NUMBER_IN("radius", OPTION_FROM_TO(1e-3, 5.0), &s->radius, NULL),
+      COMMON_NUMBER_IN("radius", OPTION_FROM_TO(5e-3, 5.0), &s->radius, NULL),
       COMMON_NUMBER("vs", &s->vs, "default half of Vp, 100 m/s if neither is given"),
       COMMON_NUMBER("vp", &s->vp, "default twice Vs"),
       OPTION_NUMBER("velocity", "m/s", OPTION_SPEED, &s->velocity,
@@ -111,7 +111,8 @@ static int parse(settings *s, int argc, char **argv) {
 
 /* ---- one case -------------------------------------------------------------------------------- */
 
-static bool write_case(app *a, const settings *s, const stability_case *x) {
+/* `known`: else what was to be found is null. */
+static bool open_case(output *out, app *a, const settings *s, const stability_case *x, bool known) {
   static const char *const integrators[] = {"verlet", "leapfrog", "euler"};
   const char wave[2] = {x->wave, '\0'};
   output f;
@@ -122,19 +123,34 @@ static bool write_case(app *a, const settings *s, const stability_case *x) {
   json_number(&f, "vs", case_vs(x));
   json_number(&f, "vp", case_vp(x));
   json_number(&f, "damping", x->damping);
-  json_integer(&f, "particles", x->particles);
+  json_integer_if(&f, known, "particles", x->particles);
   json_number(&f, "f1", s->m.f1);
   json_number(&f, "f2", s->m.f2);
   json_number(&f, "criterion", s->m.criterion);
   json_number(&f, "accuracy", s->m.accuracy);
   json_number(&f, "duration", method_duration(&s->m, x->velocity));
-  json_number(&f, "dt_linear", x->linear);
-  json_number(&f, "dt_stepping", x->stepping);
-  json_number(&f, "dt_stepping_unstable", x->unstable);
-  json_number(&f, "dt_table2", x->table2);
-  json_integer(&f, "steps", x->steps);
+  json_number_if(&f, known, "dt_linear", x->linear);
+  json_number_if(&f, known, "dt_stepping", x->stepping);
+  json_number_if(&f, known, "dt_stepping_unstable", x->unstable);
+  json_number_if(&f, known, "dt_table2", x->table2);
+  json_integer_if(&f, known, "steps", x->steps);
   json_end(&f);
-  return output_close(&f);
+  *out = f;
+  return true;
+}
+
+static bool write_case(app *a, const settings *s, const stability_case *x, bool known) {
+  output f;
+  return open_case(&f, a, s, x, known) && output_close(&f);
+}
+
+/* The summary that is written where Ctrl-C ends the program at once. */
+static bool reserve_case(app *a, const settings *s, const stability_case *x) {
+  output f;
+  a->outcome = "interrupted";
+  const bool opened = open_case(&f, a, s, x, false);
+  a->outcome = "finished";
+  return opened && output_reserve(&f);
 }
 
 typedef struct bisection_bar {
@@ -159,17 +175,22 @@ static int run_case(app *a, const settings *s) {
   /* Two first bounds some 20 % apart, then each run halves the logarithm of their ratio. */
   bisection_bar b = {&a->bar, 2.0 + ceil(fmax(0.0, log2(log(1.25) / log(s->m.accuracy))))};
   a->no_warnings = true; /* of steps beyond the limit, which is what is looked for */
+  if (!app_agree(a, a->rank > 0 || reserve_case(a, s, &x))) return APP_FAILED;
+  app_leave_at_once(a, !a->domain); /* a single case has no partial result */
   case_find_together(a, &s->m, &x, draw_bisection, &b);
+  app_leave_at_once(a, false);
   progress_clear(&a->bar);
   if (x.status == MPS_ERROR_CANCELLED) {
-    app_error(a, "interrupted: a single case has no partial result, nothing is written");
-    return APP_INTERRUPTED;
+    a->outcome = "interrupted";
+    app_error(a, "interrupted: there are no results yet");
+    const bool ok = app_agree(a, a->rank > 0 || write_case(a, s, &x, false));
+    return ok ? APP_INTERRUPTED : APP_FAILED;
   }
   if (x.status != MPS_OK) {
     app_error(a, "%s", x.why);
     return APP_FAILED;
   }
-  if (!app_agree(a, a->rank > 0 || write_case(a, s, &x))) return APP_FAILED;
+  if (!app_agree(a, a->rank > 0 || write_case(a, s, &x, true))) return APP_FAILED;
   app_tell_results(a, s->out);
   printf("%c wave, R = %g m, Vs = %g m/s, Vp = %g m/s, h = %g, %lld particles\n", x.wave, x.radius,
          case_vs(&x), case_vp(&x), x.damping, (long long)x.particles);

@@ -117,7 +117,10 @@ static int run(app *a, tank_model *m) {
       .path = m->s.checkpoint, .every = m->s.every_checkpoint, .save = tank_save, .user = m};
   if (m->s.kind == TANK_PISTON || m->s.kind == TANK_RESONANCE)
     waves_warn(a, m->s.period, m->s.depth, m->s.amplitude, m->s.spacing);
+  if (!app_agree(a, a->rank > 0 || summary_reserve(a, m->s.out))) return APP_FAILED;
+  app_leave_at_once(a, !a->domain); /* no hook reaches into building */
   mps_status status = prepare(a, m);
+  app_leave_at_once(a, false);
   if (status != MPS_OK && m->why[0]) return app_error(a, "%s", m->why), APP_FAILED;
   if (status != MPS_OK) return app_end_run(a, status, 0.0, false);
   printf("%lld particles, dt %.4g s\n", (long long)mps_particles_count(m->water),
@@ -130,7 +133,9 @@ static int run(app *a, tank_model *m) {
   status = app_settle(a, tank_run(a, m));
   const int code = app_end_run(a, status, mps_fluid_time(m->fluid), m->samples > 0);
   if (status == MPS_ERROR_CANCELLED) resume_tell(&m->saves);
-  if (m->samples == 0) return code;
+  if (m->samples == 0)
+    return code == APP_INTERRUPTED && a->rank == 0 && !summary_bare(a, m->s.out) ? APP_FAILED
+                                                                                 : code;
   if (!app_agree(a, a->rank > 0 || tank_write(a, m))) return APP_FAILED;
   return m->saves.lost && code == APP_OK ? APP_FAILED : code;
 }

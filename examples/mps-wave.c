@@ -201,17 +201,22 @@ static int run(app *a, settings *s) {
   simulation sim = {0};
   results x = {0};
   int code = APP_FAILED;
-  const bool ready =
-      app_agree(a, settings_ground(a, s) && resume_places(a, s->restart, &s->checkpoint, &s->out) &&
-                       (a->rank > 0 || output_directory(a, s->out)) && files_peek(a, s) &&
-                       build_ground(a, s, &sim));
+  bool ready = app_agree(
+      a, settings_ground(a, s) && resume_places(a, s->restart, &s->checkpoint, &s->out) &&
+             (a->rank > 0 || (output_directory(a, s->out) && summary_reserve(a, s->out))));
+  app_leave_at_once(a, ready && !a->domain); /* no hook reaches into building */
+  ready = ready && app_agree(a, files_peek(a, s) && build_ground(a, s, &sim));
   if (ready) sim.duration = find_duration(s, &sim);
-  if (ready && app_agree(a, build_solver(a, s, &sim))) {
+  ready = ready && app_agree(a, build_solver(a, s, &sim));
+  app_leave_at_once(a, false);
+  if (ready) {
     code = march(a, s, &sim, &x);
     if (!files_close(a, &sim.files, x.end == OUTCOME_DIVERGED, x.end == OUTCOME_INTERRUPTED) &&
         code == APP_OK)
       code = APP_FAILED;
     if (sim.record.rows > 1 && !finish(a, s, &sim, &x) && code == APP_OK) code = APP_FAILED;
+    if (sim.record.rows <= 1 && code == APP_INTERRUPTED && a->rank == 0 && !summary_bare(a, s->out))
+      code = APP_FAILED;
     if (code == APP_FAILED) app_agree(a, false); /* all ranks know */
   }
   files_destroy(&sim.files);

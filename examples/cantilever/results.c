@@ -46,32 +46,50 @@ static bool write_stress(const model *m, const char *directory, const char *name
   return output_close(&f);
 }
 
-static bool write_summary(const model *m, const elastic_method *method, const char *directory) {
+/* Of a model that is not solved yet all results are null. */
+static bool open_summary(output *out, const model *m, const elastic_method *method,
+                         const char *directory) {
+  const bool known = m->tip_exact != 0.0;
   output f;
   if (!summary_open(&f, m->a, directory)) return false;
   json_text(&f, "method", method->published ? "published" : "conservative");
   json_text(&f, "state", m->problem->plane_strain ? "strain" : "stress");
   json_text(&f, "reference", m->reference ? "fine bilinear finite elements" : "Chikazawa (11)");
   json_integer(&f, "particles", m->nx * m->ny);
-  json_integer(&f, "unknowns", m->report.unknowns);
+  json_integer_if(&f, known, "unknowns", m->report.unknowns);
   json_number(&f, "length", m->problem->length);
   json_number(&f, "height", m->problem->height);
-  json_number(&f, "tip", m->tip);
-  json_number(&f, "tip_exact", m->tip_exact);
-  json_number(&f, "tip_error", m->tip_error);
-  json_number(&f, "stress_l2_error", m->stress_error);
-  json_number(&f, "strain_energy", m->energy);
-  json_number(&f, "equilibrium_error", m->equilibrium);
-  json_number(&f, "residual", m->report.residual);
-  json_integer(&f, "nnz_matrix", m->report.matrix_nonzeros);
-  json_integer(&f, "nnz_factor", m->report.factor_nonzeros);
-  json_number(&f, "flops_factor", m->report.factor_flops);
-  json_number(&f, "seconds_assemble", m->report.seconds_assemble);
-  json_number(&f, "seconds_analyse", m->report.seconds_analyse);
-  json_number(&f, "seconds_factor", m->report.seconds_factor);
-  json_number(&f, "seconds_solve", m->report.seconds_solve);
+  json_number_if(&f, known, "tip", m->tip);
+  json_number_if(&f, known, "tip_exact", m->tip_exact);
+  json_number_if(&f, known, "tip_error", m->tip_error);
+  json_number_if(&f, known, "stress_l2_error", m->stress_error);
+  json_number_if(&f, known, "strain_energy", m->energy);
+  json_number_if(&f, known, "equilibrium_error", m->equilibrium);
+  json_number_if(&f, known, "residual", m->report.residual);
+  json_integer_if(&f, known, "nnz_matrix", m->report.matrix_nonzeros);
+  json_integer_if(&f, known, "nnz_factor", m->report.factor_nonzeros);
+  json_number_if(&f, known, "flops_factor", m->report.factor_flops);
+  json_number_if(&f, known, "seconds_assemble", m->report.seconds_assemble);
+  json_number_if(&f, known, "seconds_analyse", m->report.seconds_analyse);
+  json_number_if(&f, known, "seconds_factor", m->report.seconds_factor);
+  json_number_if(&f, known, "seconds_solve", m->report.seconds_solve);
   json_end(&f);
-  return output_close(&f);
+  *out = f;
+  return true;
+}
+
+static bool write_summary(const model *m, const elastic_method *method, const char *directory) {
+  output f;
+  return open_summary(&f, m, method, directory) && output_close(&f);
+}
+
+bool results_reserve(const model *m, const elastic_method *method, const char *directory) {
+  const char *outcome = m->a->outcome;
+  output f;
+  m->a->outcome = "interrupted";
+  const bool opened = open_summary(&f, m, method, directory);
+  m->a->outcome = outcome;
+  return opened && output_reserve(&f);
 }
 
 /* ---- pictures -------------------------------------------------------------------------------- */

@@ -9,9 +9,15 @@
  * stress-section.csv (Figures 7 and 8), summary.json and their pictures in DIR. */
 bool results_write(const model *m, const elastic_method *method, const char *directory);
 
+/* The summary that is written where Ctrl-C ends the program at once (app_leave_at_once). */
+bool results_reserve(const model *m, const elastic_method *method, const char *directory);
+
+/* What the comparison takes, in seconds of one processor. */
+double convergence_seconds(int64_t nx, int64_t ny);
 /* The comparison of the paper's Figure 6: tip errors of both methods and of bilinear finite
  * elements at four sizes, each with twice the particles a side of the one before. convergence.csv
- * and .png. */
-bool convergence_run(app *a, const beam *problem, int64_t nx, int64_t ny, const char *directory);
+ * and .png. `m` has been solved by `method`. The bar is at `done` of the whole before. */
+bool convergence_run(const model *m, const elastic_method *method, double done,
+                     const char *directory);
 
 #endif

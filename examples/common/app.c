@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "app.h"
 
+#include "options.h"
 #include "ranks.h"
 
 #include <errno.h>
@@ -73,6 +74,8 @@ static bool join(app *a, int64_t threads) {
 bool app_start(app *a, const char *program, int64_t threads) {
   *a = (app){.program = program, .outcome = "finished", .rank = ranks_number()};
   progress_start(&a->bar);
+  char doubt[200];
+  for (int k = 0; options_doubt(k, doubt, sizeof doubt); k++) note_warning(a, doubt);
   if (ranks_launched() == 1) return make_context(a, threads);
   progress_heed_launcher();
   a->bar.terminal = a->bar.terminal && a->rank == 0;
@@ -182,13 +185,25 @@ int app_end_run(app *a, mps_status status, double time, bool any) {
   return APP_INTERRUPTED;
 }
 
-void app_leave_at_once(const app *a, bool on) {
-  char line[PROGRESS_LAST_LINE];
+static void forget_reserved(app *a) {
+  if (a->reserved[0]) unlink(a->reserved[0]);
+  for (int k = 0; k < 2; k++) {
+    free(a->reserved[k]);
+    a->reserved[k] = NULL;
+  }
+}
+
+void app_leave_at_once(app *a, bool on) {
+  char line[PROGRESS_LAST_LINE - 8];
+  const char *slash = a->reserved[1] ? strrchr(a->reserved[1], '/') : NULL;
   if (a->results[0])
-    snprintf(line, sizeof line, "%s: interrupted, written so far: %s", a->program, a->results);
+    snprintf(line, sizeof line, "%s: interrupted, written so far: %s%s%s", a->program, a->results,
+             slash ? ", " : "", slash ? slash + 1 : "");
   else
-    snprintf(line, sizeof line, "%s: interrupted, nothing is written", a->program);
-  progress_leave_at_once(on && a->rank == 0 ? line : NULL); /* of several ranks, mpirun ends all */
+    snprintf(line, sizeof line, "%s: interrupted: there are no results yet", a->program);
+  /* of several ranks, mpirun ends all */
+  progress_leave_at_once(on && a->rank == 0 ? line : NULL, a->reserved[0], a->reserved[1]);
+  if (!on) forget_reserved(a);
 }
 
 /* ---- what was written ------------------------------------------------------------------------ */

@@ -32,6 +32,7 @@ typedef struct app {
   char *warning[APP_WARNINGS]; /* the first ones, for summary.json */
   int warnings;
   char results[1024]; /* names of the files written, for app_tell_results */
+  char *reserved[2];  /* output_reserve: what the file is called now, and will be; NULL: none */
   /* of several ranks */
   mps_domain *domain; /* NULL: one process */
   int32_t rank;       /* rank 0 speaks and writes; 0 of one process */
@@ -78,8 +79,9 @@ int app_end_run(app *a, mps_status status, double time, bool any);
 
 /* Around a computation that nothing can stop, such as the factorisation of a matrix: while `on`,
  * Ctrl-C ends the program at once, with a line that tells the files written so far and exit code
- * 130. None may be open. */
-void app_leave_at_once(const app *a, bool on);
+ * 130. None may be open. The file that output_reserve has kept takes its name then; once this is
+ * off, it is gone. */
+void app_leave_at_once(app *a, bool on);
 
 /* Notes a result file that is complete. */
 void app_wrote(app *a, const char *path);

@@ -154,6 +154,12 @@ static mps_status count_all(mpm_model *m) {
   return m->fluid ? MPS_OK : mpm_model_sum(m, &m->count);
 }
 
+mps_status mpm_model_advance(mpm_model *m, double t_end, int64_t every, mps_mpm_fn callback,
+                             void *user) {
+  m->a->bar.call = mps_mpm_time(m->mpm);
+  return mps_mpm_run(m->mpm, t_end, every, callback, user);
+}
+
 /* ---- the course of a run --------------------------------------------------------------------- */
 
 /* Prints the one line on how the run ended; returns the exit code. */
@@ -172,7 +178,10 @@ static int build_and_march(app *a, const mpm_model_places *places, mpm_model *mo
   const bool places_found = resume_places(a, places->restart, places->checkpoint, places->out);
   if (!app_agree(a, places_found && (a->rank > 0 || output_directory(a, *places->out))))
     return APP_FAILED;
+  if (!app_agree(a, a->rank > 0 || summary_reserve(a, *places->out))) return APP_FAILED;
+  app_leave_at_once(a, !a->domain); /* no hook reaches into building */
   mps_status built = agree(model, parts->build(a->context, user));
+  app_leave_at_once(a, false);
   if (built == MPS_OK) built = count_all(model);
   if (built != MPS_OK) return end_run(a, built, model, false);
   printf("%lld particles, dt %.4g s\n", (long long)model->count,
@@ -183,7 +192,9 @@ static int build_and_march(app *a, const mpm_model_places *places, mpm_model *mo
   if (status == MPS_OK) status = counted;
   const bool any = model->samples >= MPM_MODEL_SAMPLES;
   const int code = end_run(a, status, model, any);
-  if (code != APP_OK && !any) return code;
+  if (code != APP_OK && !any)
+    return code == APP_INTERRUPTED && a->rank == 0 && !summary_bare(a, *places->out) ? APP_FAILED
+                                                                                     : code;
   if (!app_agree(a, a->rank > 0 || parts->finish(a, user))) return APP_FAILED;
   double failed = model->failed; /* on any rank */
   if (a->domain && mps_domain_max(a->domain, 1, &failed) != MPS_OK) return APP_FAILED;

@@ -80,6 +80,10 @@ mps_status mpm_model_series(mpm_model *m, const char *directory, const char *wha
                             mps_recorder **out);
 mps_status mpm_model_frame(mpm_model *m, mps_recorder *series);
 
+/* mps_mpm_run, the bar told where it begins. */
+mps_status mpm_model_advance(mpm_model *m, double t_end, int64_t every, mps_mpm_fn callback,
+                             void *user);
+
 /* The row of a program's table that chooses the contact's method, an mps_contact_method. */
 #define MPM_MODEL_CONTACT(value) COMMON_CHOICE("contact", value, NULL)
 /* Why an option of the springs alone, --k or --xi, cannot be given; NULL where it can. */

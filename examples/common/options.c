@@ -227,7 +227,7 @@ static bool in_range(const option_range *r, double value) {
 }
 
 /* Numbers separated by commas; nothing is changed where one of them is refused. */
-static int read_numbers(const options_program *program, const option *o, const char *value) {
+static int read_numbers(const options_program *program, option *o, const char *value) {
   enum { MOST = 8 };
   const int count = o->count > 1 ? o->count : 1;
   double number[MOST];
@@ -251,6 +251,7 @@ static int read_numbers(const options_program *program, const option *o, const c
     if (i + 1 < count && *rest++ != ',') return refuse_value(program, o, value, allowed);
   }
   memcpy(o->number, number, (size_t)count * sizeof *number);
+  o->bare = count == 1 && !units_written(value);
   return -1;
 }
 
@@ -318,6 +319,20 @@ const option *options_read(void) {
   return rows_read[0].name || rows_read[0].help ? rows_read : NULL;
 }
 
+bool options_doubt(int k, char *out, size_t size) {
+  const option *o = rows_read;
+  char value[48];
+  for (; o->name || o->help; o++) {
+    const char *unit = o->bare ? standard_likelier_unit(o, *o->number) : NULL;
+    if (!unit || k-- > 0) continue;
+    snprintf(value, sizeof value, "%.6g", *o->number);
+    snprintf(out, size, "--%s is %s %s: write %s%s if that is meant", o->name, value, o->unit,
+             value, unit);
+    return true;
+  }
+  return false;
+}
+
 static int parse(const options_program *program, int argc, char **argv) {
   for (int i = 1; i < argc; i++) {
     const char *argument = argv[i];
@@ -358,6 +373,9 @@ static int parse(const options_program *program, int argc, char **argv) {
 int options_parse(const options_program *program, int argc, char **argv) {
   const char *name;
   ranks_hush();
+  ranks_keep_options(argc, argv);
+  for (option *o = program->table; o->name || o->help; o++)
+    o->usual = o->number && o->count < 2 ? *o->number : 0.0;
   if (!standard_complete(program->table, &name)) {
     complain("%s: --%s is not in the table of options\n", program->name, name);
     return USAGE;
@@ -416,8 +434,15 @@ static void show_defaults(const option *table, const char *text, char *out, size
 
 int options_refuse(const options_program *program, const char *reason) {
   char defaults[600];
+  char doubt[200], name[MAX_NAME + 4] = "";
   show_defaults(program->table, reason, defaults, sizeof defaults);
-  complain("%s: %s%s\n", program->name, reason, defaults);
+  bool doubted = false;
+  for (int k = 0; !doubted && options_doubt(k, doubt, sizeof doubt); k++) {
+    snprintf(name, sizeof name, "%.*s ", (int)strcspn(doubt, " "), doubt);
+    doubted = strstr(reason, name) != NULL;
+  }
+  complain("%s: %s%s%s%s\n", program->name, reason, defaults, doubted ? "; " : "",
+           doubted ? doubt : "");
   return USAGE;
 }
 

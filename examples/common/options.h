@@ -64,7 +64,10 @@ typedef struct option {
   int64_t *integer;
   const char **text;
   int *choice; /* index into `unit` */
-  bool given;  /* written by options_parse */
+  /* written by options_parse */
+  bool given;
+  bool bare;    /* a number without a unit */
+  double usual; /* the default of a number */
 } option;
 
 /* Rows of the table. */
@@ -116,6 +119,10 @@ bool options_record(const option *table, char *text, size_t size);
 /* Compares with such lines. False, and in `why` the first option that differs: "--rest is 0.2 s,
  * was 0.3". */
 bool options_agree(const option *table, const char *record, char *why, size_t size);
+
+/* "--young is 200 Pa: write 200kPa if that is meant": the k-th number of those read last that has
+ * no unit and is far below what is usual, as one of another unit may be. False: there is none. */
+bool options_doubt(int k, char *out, size_t size);
 
 /* One error line about a combination of options, as the parser's own. Where `reason` names options
  * that were not given, the line ends with their defaults and the values of the others. Returns 2.

@@ -92,6 +92,26 @@ bool output_close(output *file) {
   return ok;
 }
 
+bool output_reserve(output *file) {
+  if (!file->stream) return false;
+  char *path = file->path, *temporary = file->temporary;
+  if (fflush(file->stream) != 0 && !file->error) file->error = errno;
+  if (fclose(file->stream) != 0 && !file->error) file->error = errno;
+  app *a = file->a;
+  const bool ok =
+      file->error == 0 || app_error(a, "cannot write %s: %s", path, strerror(file->error));
+  if (ok) {
+    free(a->reserved[0]);
+    free(a->reserved[1]);
+    a->reserved[0] = temporary, a->reserved[1] = path;
+    file->temporary = file->path = NULL;
+  } else {
+    unlink(temporary);
+  }
+  forget(file);
+  return ok;
+}
+
 void output_text(output *file, const char *format, ...) {
   if (!file->stream) return;
   va_list args;
@@ -183,6 +203,17 @@ void json_integer(output *file, const char *key, int64_t value) {
   output_text(file, "%lld", (long long)value);
 }
 
+void json_number_if(output *file, bool known, const char *key, double value) {
+  json_number(file, key, known ? value : NAN);
+}
+
+void json_integer_if(output *file, bool known, const char *key, int64_t value) {
+  if (known)
+    json_integer(file, key, value);
+  else
+    json_number(file, key, NAN);
+}
+
 static void write_string(output *file, const char *text) {
   output_text(file, "\"");
   for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
@@ -239,4 +270,22 @@ bool summary_open(output *file, app *a, const char *directory) {
   write_options(file);
   write_warnings(file, a);
   return true;
+}
+
+bool summary_bare(app *a, const char *directory) {
+  output f;
+  if (!summary_open(&f, a, directory)) return false;
+  json_end(&f);
+  return output_close(&f);
+}
+
+bool summary_reserve(app *a, const char *directory) {
+  const char *outcome = a->outcome;
+  output f;
+  a->outcome = "interrupted";
+  const bool opened = summary_open(&f, a, directory);
+  a->outcome = outcome;
+  if (!opened) return false;
+  json_end(&f);
+  return output_reserve(&f);
 }

@@ -28,6 +28,10 @@ bool output_open(output *file, app *a, const char *directory, const char *name);
  * what it was before. Does nothing (false) for a file that is not open. */
 bool output_close(output *file);
 
+/* Ends the file as output_close does, but leaves it under its temporary name: for what is to be
+ * written where Ctrl-C ends the program at once, see app_leave_at_once. */
+bool output_reserve(output *file);
+
 /* The writers keep the first error for output_close. No result file holds a NaN or an infinity: a
  * number that does not exist is an empty cell, or null. */
 void output_text(output *file, const char *format, ...) APP_PRINTF(2, 3);
@@ -47,10 +51,17 @@ void json_number(output *file, const char *key, double value);
 void json_integer(output *file, const char *key, int64_t value);
 void json_text(output *file, const char *key, const char *text);
 void json_end(output *file);
+/* `known`: json_number, json_integer; else null. */
+void json_number_if(output *file, bool known, const char *key, double value);
+void json_integer_if(output *file, bool known, const char *key, int64_t value);
 
 /* Opens DIR/summary.json and writes what every summary begins with: program, version, outcome,
  * options (in the units of --help; but those of where and how it runs, such as --out), warnings. */
 bool summary_open(output *file, app *a, const char *directory);
+/* A summary.json with nothing else, of a run that ended without results. */
+bool summary_bare(app *a, const char *directory);
+/* The same, of a run that Ctrl-C may end at once, by output_reserve. */
+bool summary_reserve(app *a, const char *directory);
 
 /* Shortest decimal text that reads back as `value`. */
 const char *output_number(char text[32], double value);

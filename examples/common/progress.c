@@ -13,21 +13,27 @@
  * handler: both are the program's. */
 static volatile sig_atomic_t interrupted;
 static char last_line[PROGRESS_LAST_LINE + 1];
-static volatile sig_atomic_t last_length; /* > 0: leave at once */
+static char last_part[PROGRESS_PATH], last_whole[PROGRESS_PATH]; /* "": no file */
+static volatile sig_atomic_t last_length;                        /* > 0: leave at once */
 
 static void on_interrupt(int number) {
   (void)number;
   interrupted = 1;
   if (last_length == 0) return;
+  if (last_part[0] && rename(last_part, last_whole) != 0) last_part[0] = '\0';
   const ssize_t written = write(STDERR_FILENO, last_line, (size_t)last_length);
   (void)written;
   _exit(130);
 }
 
-void progress_leave_at_once(const char *line) {
+void progress_leave_at_once(const char *line, const char *part, const char *whole) {
   last_length = 0;
   if (!line) return;
-  snprintf(last_line, sizeof last_line, "%s\n", line);
+  snprintf(last_part, sizeof last_part, "%s", part ? part : "");
+  snprintf(last_whole, sizeof last_whole, "%s", whole ? whole : "");
+  /* the bar, which a thread may have drawn, is taken off the terminal first */
+  snprintf(last_line, sizeof last_line, "%s%s\n", isatty(STDERR_FILENO) == 1 ? "\r\x1b[K" : "",
+           line);
   last_length = (sig_atomic_t)strlen(last_line);
   if (interrupted) on_interrupt(SIGINT); /* pressed before */
 }
@@ -88,12 +94,48 @@ void progress_clear(progress *bar) {
 
 bool progress_interrupted(void) { return interrupted != 0; }
 
+/* ---- by the clock ---------------------------------------------------------------------------- */
+
+/* Of the part, after `x` of the time that it should take. */
+static double part_done(double x) { return x < 0.8 ? x : 1.0 - 0.2 * exp((0.8 - x) / 0.2); }
+
+static void *draw_by_clock(void *user) {
+  progress *bar = user;
+  const struct timespec tick = {.tv_nsec = 100000000};
+  while (!atomic_load(&bar->stopped)) {
+    const double part = part_done((now() - bar->began) / bar->takes);
+    progress_draw(bar, bar->done + bar->share * part, bar->doing);
+    nanosleep(&tick, NULL);
+  }
+  return NULL;
+}
+
+void progress_by_clock(progress *bar, double seconds, const char *text) {
+  if (bar->ticks) {
+    atomic_store(&bar->stopped, true);
+    pthread_join(bar->clock, NULL);
+    bar->ticks = false;
+    progress_clear(bar);
+  }
+  if (!bar->terminal || !(seconds > 0.0)) return;
+  bar->began = now(), bar->takes = seconds, bar->doing = text;
+  atomic_store(&bar->stopped, false);
+  bar->ticks = pthread_create(&bar->clock, NULL, draw_by_clock, bar) == 0;
+}
+
+/* ---- hooks ----------------------------------------------------------------------------------- */
+
 void progress_hook(void *user, const mps_progress *p) {
   progress *bar = user;
   char text[96];
   const bool part = bar->to > bar->from;
-  const double inside = part ? (p->time - bar->from) / (bar->to - bar->from) : p->fraction;
-  snprintf(text, sizeof text, "t = %.3g of %.3g s", p->time, part ? bar->to : p->time_end);
+  if (part && strcmp(p->task, "mpm settle") == 0) { /* its time is a number of iterations */
+    progress_draw(bar, bar->shown, "coming to rest");
+    return;
+  }
+  const double time = bar->call + p->time;
+  const double inside = part ? (time - bar->from) / (bar->to - bar->from) : p->fraction;
+  snprintf(text, sizeof text, "t = %.3g of %.3g s", time, part ? bar->to : p->time_end);
   progress_draw(bar, bar->done + bar->share * fmin(1.0, fmax(0.0, inside)), text);
 }
 

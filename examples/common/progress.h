@@ -5,6 +5,8 @@
 
 #include <mps/context.h>
 
+#include <pthread.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 
 typedef struct progress {
@@ -14,9 +16,16 @@ typedef struct progress {
   double first, shown; /* of the whole: when it began to be drawn; last drawn */
   double done, share;  /* of the whole: before the present part, and of it */
   double from, to;     /* s, time of the solver in the present part; equal: what the solver says */
+  double call;         /* s, time of the solver when the present call of it began */
+  /* progress_by_clock */
+  pthread_t clock;
+  bool ticks;          /* there is such a thread */
+  atomic_bool stopped; /* it is to end */
+  double began, takes; /* s */
+  const char *doing;
 } progress;
 
-enum { PROGRESS_LAST_LINE = 1400 };
+enum { PROGRESS_LAST_LINE = 1400, PROGRESS_PATH = 1400 };
 
 /* Starts the clock and, from now on, turns the first Ctrl-C into a request to stop; a second one
  * kills the program as usual. A write beyond a limit on the size of files fails like one to a full
@@ -26,7 +35,8 @@ void progress_start(progress *bar);
 void progress_heed_launcher(void);
 /* What the hook draws from now on: a part `share` of the whole, with `done` before it, in which the
  * solver's time goes from `from` to `to` (s). There is one bar, of all that a program does: without
- * parts the one call of the solver is the whole. */
+ * parts the one call of the solver is the whole. A part of several calls sets `call` before each:
+ * the solver tells the hook the time since then. */
 void progress_part(progress *bar, double done, double share, double from, double to);
 /* Draws the bar: `fraction` of the whole in 0..1, at least that drawn last; `text` a few words. */
 void progress_draw(progress *bar, double fraction, const char *text);
@@ -35,9 +45,13 @@ void progress_clear(progress *bar);
 /* Ctrl-C was pressed. */
 bool progress_interrupted(void);
 /* For a computation that nothing can stop, such as the factorisation of a matrix: until the next
- * call with NULL, Ctrl-C prints `line` and ends the program at once with exit code 130. Meanwhile
- * no file may be open. */
-void progress_leave_at_once(const char *line);
+ * call with NULL, Ctrl-C gives the file `part` the name `whole` (NULL: there is none), prints
+ * `line` and ends the program at once with exit code 130. Meanwhile no file may be open. */
+void progress_leave_at_once(const char *line, const char *part, const char *whole);
+/* For a computation without a hook: until the next call a thread draws the bar by the clock, as a
+ * part (progress_part) that takes some `seconds`; 0: no longer. A longer one slows down at the
+ * part's end. */
+void progress_by_clock(progress *bar, double seconds, const char *text);
 
 /* Hooks of a context; `user` is the progress (cancel: not used). */
 void progress_hook(void *user, const mps_progress *p);

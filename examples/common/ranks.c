@@ -77,20 +77,22 @@ bool ranks_join(mps_context *context, mps_domain **out, char *why, size_t size) 
 
 /* ---- options --------------------------------------------------------------------------------- */
 
-enum { WORDS = 512, LINE = 65536 };
+enum { WORDS = 512 };
+
+static struct {
+  int count;
+  char **word;
+} command; /* as main was given it */
+
+void ranks_keep_options(int argc, char **argv) { command.count = argc, command.word = argv; }
 
 /* The words of the command line but for the program's name and the number of threads. */
-static int command_words(char *line, const char **word) {
-  FILE *file = fopen("/proc/self/cmdline", "r");
-  const size_t size = file ? fread(line, 1, LINE - 1, file) : 0;
+static int command_words(const char **word) {
   int count = 0;
-  bool skip = true; /* the program */
-  if (file) fclose(file);
-  line[size] = '\0';
-  for (const char *at = line; at < line + size && count < WORDS; at += strlen(at) + 1) {
-    const bool threads = strncmp(at, "--threads", 9) == 0;
-    if (!skip && !threads) word[count++] = at;
-    skip = threads && at[9] == '\0';
+  for (int k = 1; k < command.count && count < WORDS; k++) {
+    const bool threads = strncmp(command.word[k], "--threads", 9) == 0;
+    if (!threads) word[count++] = command.word[k];
+    if (threads && command.word[k][9] == '\0') k++; /* its value */
   }
   return count;
 }
@@ -102,10 +104,9 @@ static double hash_of(const char *word) {
 }
 
 bool ranks_same_options(mps_domain *domain, char *why, size_t size) {
-  static char line[LINE];
   static const char *word[WORDS];
   static double own[WORDS], first[WORDS]; /* 0: no word */
-  const int count = command_words(line, word);
+  const int count = command_words(word);
   for (int k = 0; k < WORDS; k++) {
     own[k] = k < count ? hash_of(word[k]) : 0.0;
     first[k] = mps_domain_rank(domain) == 0 ? own[k] : 0.0;

@@ -19,6 +19,8 @@ void ranks_hush(void);
 
 /* Makes the domain of all ranks in `context`. False: in `why` what is in the way. */
 bool ranks_join(mps_context *context, mps_domain **out, char *why, size_t size);
+/* Keeps the command line for ranks_same_options. */
+void ranks_keep_options(int argc, char **argv);
 /* Whether this rank was started with the options of rank 0, but for --threads; else what is not the
  * same in `why`. Collective. */
 bool ranks_same_options(mps_domain *domain, char *why, size_t size);

@@ -100,6 +100,33 @@ bool standard_complete(option *table, const char **name) {
   return true;
 }
 
+/* ---- units ----------------------------------------------------------------------------------- */
+
+/* Less than the softest clay, the loosest powder, foam. */
+static const struct {
+  const char *name;
+  double least;
+  const char *unit;
+} usual[] = {
+    {"young", 1e4, "kPa"},
+    {"cohesion", 100.0, "kPa"},
+    {"tension", 100.0, "kPa"},
+    {"density", 20.0, "t/m3"},
+    {"wall-density", 20.0, "t/m3"},
+    {"plate-density", 20.0, "t/m3"},
+    {"unit-weight", 1e3, "kN/m3"},
+    {"base-unit-weight", 1e3, "kN/m3"},
+    {"k", 1e4, "kN/m"},
+};
+
+const char *standard_likelier_unit(const option *o, double value) {
+  for (size_t k = 0; k < sizeof usual / sizeof *usual; k++)
+    if (o->name && strcmp(usual[k].name, o->name) == 0 && value > 0.0 && value < usual[k].least &&
+        !(o->usual > 0.0 && o->usual < usual[k].least))
+      return usual[k].unit;
+  return NULL;
+}
+
 /* ---- former names ---------------------------------------------------------------------------- */
 
 static const standard_former formers[] = {

@@ -11,6 +11,10 @@
  * it is, where the common table does not have it. */
 bool standard_complete(option *table, const char **name);
 
+/* The unit in which a number of that option is likelier to be meant, where it is far below the
+ * usual values of the quantity in SI units, and the program's default is not; NULL: none. */
+const char *standard_likelier_unit(const option *o, double value);
+
 /* What an option was called in earlier versions. */
 typedef struct standard_former {
   const char *name;  /* "nu" */

@@ -113,7 +113,7 @@ mps_status dam_march(void *user) {
     if (sim->s.method == METHOD_MPS)
       status = dam_mps_advance(sim, t);
     else if (k > 0)
-      status = mps_mpm_run(sim->m.mpm, t, INT64_MAX, NULL, NULL);
+      status = mpm_model_advance(&sim->m, t, INT64_MAX, NULL, NULL);
     if (status == MPS_OK) status = take_sample(sim, k);
     if (status == MPS_OK) resume_save_when_due(sim->m.a, &sim->saves, time_now(sim));
   }

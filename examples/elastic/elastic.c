@@ -33,6 +33,14 @@ bool elastic_make(app *a, mps_particles *particles, const elastic_method *method
   return ranks_solve_elastic(*out, &a->equations, why, sizeof why) || app_error(a, "%s", why);
 }
 
+double elastic_seconds(double particles) { return 1e-4 * particles * pow(1e-5 * particles, 0.17); }
+
+void elastic_bar(app *a, double done, double share, double seconds) {
+  const double threads = (double)mps_context_threads(a->context);
+  progress_part(&a->bar, done, share, 0.0, 0.0);
+  progress_by_clock(&a->bar, seconds / (0.4 + 0.6 * threads), "solving");
+}
+
 void elastic_tell(const app *a, const mps_elastic_report *report) {
   if (a->domain)
     printf("%lld iterations of %d ranks, %.3f s\n", (long long)report->iterations,

@@ -26,6 +26,11 @@ elastic_method elastic_settings_method(const elastic_settings *s);
 /* The functions below are false after an error line. */
 bool elastic_make(app *a, mps_particles *particles, const elastic_method *method,
                   mps_elastic **out);
+/* What a solution by CHOLMOD takes, roughly, in seconds of one processor: for the bar. */
+double elastic_seconds(double particles);
+/* Draws the bar by the clock from `done` of the whole on, a part `share`, for what takes `seconds`
+ * of one processor; 0: that is over. */
+void elastic_bar(app *a, double done, double share, double seconds);
 /* Ends a line on what was solved with how. */
 void elastic_tell(const app *a, const mps_elastic_report *report);
 /* Prescribes component `component` of `count` particles: values[i], m, or 0 (values NULL). */

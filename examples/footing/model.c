@@ -174,7 +174,7 @@ mps_status footing_march(void *user) {
   if (sim->rows == 0) status = mpm_course_sample(&sim->course, 0, sim->samples);
   while (sim->rows < sim->samples && status == MPS_OK) {
     const double t = sim->t_end * (sim->rows + 1) / sim->samples;
-    status = mps_mpm_run(sim->m.mpm, t, INT64_MAX, NULL, NULL);
+    status = mpm_model_advance(&sim->m, t, INT64_MAX, NULL, NULL);
     if (status == MPS_OK && sim->s.settled) status = come_to_rest(sim);
     if (status == MPS_OK) status = take_sample(sim);
     if (status == MPS_OK) status = mpm_course_sample(&sim->course, sim->rows, sim->samples);

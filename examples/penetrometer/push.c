@@ -210,7 +210,7 @@ static mps_status march(penetrometer *p, pen_run *r) {
                               : 0.1,
                 0.0, p->t_end);
   if (r->rows == 0) status = mpm_course_sample(&p->course, 0, r->capacity);
-  if (status == MPS_OK) status = mps_mpm_run(r->m.mpm, p->t_end, 1, after_step, &now);
+  if (status == MPS_OK) status = mpm_model_advance(&r->m, p->t_end, 1, after_step, &now);
   const mps_status joined = join_looks(r, MPS_OK);
   if (status == MPS_OK) status = joined;
   if (status == MPS_OK && p->runs == 2 && p->now == 0) resume_save_now(r->m.a, &p->course.saves);

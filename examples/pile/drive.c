@@ -201,7 +201,7 @@ mps_status pile_drive(void *user) {
   if (status != MPS_OK) return status;
   progress_part(&p->m.a->bar, 0.0, 1.0, 0.0, p->t_end);
   p->m.samples = p->rows; /* after a restart */
-  status = mps_mpm_run(p->m.mpm, p->t_end, 1, after_step, p);
+  status = mpm_model_advance(&p->m, p->t_end, 1, after_step, p);
   const mps_status joined = join_looks(p, MPS_OK);
   if (status == MPS_ERROR_CANCELLED && joined == MPS_OK) resume_save_now(p->m.a, &p->saves);
   if (status == MPS_ERROR_CANCELLED) resume_tell(&p->saves);

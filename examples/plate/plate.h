@@ -45,5 +45,7 @@ bool plate_on_ligament(const plate *p, const elastic_point *at);
 
 /* Tables, summary and pictures in DIR. */
 bool plate_write(const plate *p, const elastic_method *method, const char *directory);
+/* The summary that is written where Ctrl-C ends the program at once (app_leave_at_once). */
+bool plate_reserve(const plate *p, const elastic_method *method, const char *directory);
 
 #endif

@@ -52,29 +52,47 @@ static bool write_line(const plate *p, const char *directory) {
   return output_close(&f);
 }
 
-static bool write_summary(const plate *p, const elastic_method *method, const char *directory) {
+/* Of a plate that is not solved yet all results are null. */
+static bool open_summary(output *out, const plate *p, const elastic_method *method,
+                         const char *directory) {
+  const bool known = p->elastic != NULL;
   output f;
   if (!summary_open(&f, p->a, directory)) return false;
   json_text(&f, "case", p->def->hole ? "hole" : "tension");
   json_text(&f, "method", method->published ? "published" : "conservative");
-  json_integer(&f, "particles", mps_particles_count(p->particles));
-  json_number(&f, "spacing", p->spacing);
+  json_integer_if(&f, known, "particles", known ? mps_particles_count(p->particles) : 0);
+  json_number_if(&f, known, "spacing", p->spacing);
   if (p->def->hole) {
-    json_number(&f, "concentration", p->concentration);
+    json_number_if(&f, known, "concentration", p->concentration);
     json_number(&f, "concentration_exact", 3.0);
-    json_number(&f, "largest_principal_over_tension", p->largest);
+    json_number_if(&f, known, "largest_principal_over_tension", p->largest);
   } else {
-    json_number(&f, "end_displacement", p->end);
-    json_number(&f, "end_displacement_exact", p->end_exact);
-    json_number(&f, "displacement_error", p->displacement_error);
+    json_number_if(&f, known, "end_displacement", p->end);
+    json_number_if(&f, known, "end_displacement_exact", p->end_exact);
+    json_number_if(&f, known, "displacement_error", p->displacement_error);
   }
-  json_number(&f, "stress_l2_error", p->stress_error);
-  json_integer(&f, "unknowns", p->report.unknowns);
-  json_integer(&f, "nnz_factor", p->report.factor_nonzeros);
-  json_number(&f, "seconds_factor", p->report.seconds_factor);
-  json_number(&f, "residual", p->report.residual);
+  json_number_if(&f, known, "stress_l2_error", p->stress_error);
+  json_integer_if(&f, known, "unknowns", p->report.unknowns);
+  json_integer_if(&f, known, "nnz_factor", p->report.factor_nonzeros);
+  json_number_if(&f, known, "seconds_factor", p->report.seconds_factor);
+  json_number_if(&f, known, "residual", p->report.residual);
   json_end(&f);
-  return output_close(&f);
+  *out = f;
+  return true;
+}
+
+static bool write_summary(const plate *p, const elastic_method *method, const char *directory) {
+  output f;
+  return open_summary(&f, p, method, directory) && output_close(&f);
+}
+
+bool plate_reserve(const plate *p, const elastic_method *method, const char *directory) {
+  const char *outcome = p->a->outcome;
+  output f;
+  p->a->outcome = "interrupted";
+  const bool opened = open_summary(&f, p, method, directory);
+  p->a->outcome = outcome;
+  return opened && output_reserve(&f);
 }
 
 /* ---- pictures -------------------------------------------------------------------------------- */

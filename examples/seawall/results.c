@@ -76,12 +76,14 @@ static bool write_wall(app *a, const seawall *w) {
 
 /* ---- summary --------------------------------------------------------------------------------- */
 
-/* The largest force from one time (s) to another, less all that is faster than 10 Hz, and when. */
+/* The largest force from one time (s) to another, less all that is faster than 10 Hz, and when; of
+ * short steps one every hundredth of the window, within which the smoothed force hardly changes. */
 static double find_peak(const seawall *w, double from, double to, double *at) {
   const int64_t end = to < (double)w->forces * w->s.dt ? (int64_t)(to / w->s.dt) : w->forces;
+  const int64_t stride = (int64_t)fmax(1.0, 0.01 * SEAWALL_WINDOW / w->s.dt);
   double most = NAN;
   *at = NAN;
-  for (int64_t k = (int64_t)(from / w->s.dt); k < end; k++) {
+  for (int64_t k = (int64_t)(fmax(from, 0.0) / w->s.dt); k < end; k += stride) {
     const double force = seawall_smooth(w, k);
     if (!(force <= most)) most = force, *at = (double)(k + 1) * w->s.dt;
   }

@@ -109,8 +109,9 @@ static mps_status note_force(seawall *w) {
 double seawall_smooth(const seawall *w, int64_t k) {
   const int64_t half = (int64_t)(0.5 * SEAWALL_WINDOW / w->s.dt);
   double sum = 0.0, whole = 0.0;
-  for (int64_t i = k - half; i <= k + half; i++) {
-    if (i < 0 || i >= w->forces) continue;
+  const int64_t first = k - half > 0 ? k - half : 0;
+  const int64_t last = k + half < w->forces - 1 ? k + half : w->forces - 1;
+  for (int64_t i = first; i <= last; i++) {
     const double weight = 1.0 + cos(WAVES_PI * (double)(i - k) / (double)(half + 1));
     sum += weight * w->force[i], whole += weight;
   }

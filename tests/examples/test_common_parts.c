@@ -14,6 +14,32 @@
 
 #include <unistd.h>
 
+/* A number without a unit is doubted where it is far below what the quantity has in SI units, but
+ * not where its unit is written, nor where the program's own default is as small. */
+static void a_number_of_another_unit_is_doubted(void **state) {
+  (void)state;
+  double young = 1e7, density = 1800.0, cohesion = 0.5;
+  option table[] = {COMMON_NUMBER("young", &young, NULL),
+                    COMMON_NUMBER("density", &density, NULL),
+                    COMMON_NUMBER("cohesion", &cohesion, NULL),
+                    {0}};
+  const options_program program = {"test", "", table};
+  char text[200];
+  char *bare[] = {(char[]){"test"}, (char[]){"--young=1000"}, (char[]){"--cohesion=2"},
+                  (char[]){"--density=1.8"}};
+  assert_int_equal(options_parse(&program, 4, bare), -1);
+  assert_true(options_doubt(0, text, sizeof text));
+  assert_string_equal(text, "--young is 1000 Pa: write 1000kPa if that is meant");
+  assert_true(options_doubt(1, text, sizeof text));
+  assert_string_equal(text, "--density is 1.8 kg/m3: write 1.8t/m3 if that is meant");
+  assert_false(options_doubt(2, text, sizeof text));
+  young = 1e7, density = 1800.0;
+  char *written[] = {(char[]){"test"}, (char[]){"--young=1000"}, (char[]){"--young"},
+                     (char[]){"1000Pa"}, (char[]){"--density=1.8t/m3"}};
+  assert_int_equal(options_parse(&program, 5, written), -1);
+  assert_false(options_doubt(0, text, sizeof text));
+}
+
 static void options_are_read_in_both_spellings(void **state) {
   (void)state;
   double radius = 0.5, three[3] = {0};
@@ -394,6 +420,7 @@ static void colour_scales_mark_their_saturated_ends(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_number_of_another_unit_is_doubted),
       cmocka_unit_test(options_are_read_in_both_spellings),
       cmocka_unit_test(only_finite_decimal_numbers_are_numbers),
       cmocka_unit_test(numbers_are_written_so_that_they_read_back),
