@@ -1,5 +1,6 @@
 /* fluid.c - the fluid solver as an object: definition, creation, boundaries, questions.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "coarse.h"
 #include "loops.h"
 #include "share.h"
 
@@ -128,6 +129,7 @@ static void release(mps_fluid *f) {
   mpsi_fluid_drop_solver(f);
   mpsi_fluid_drop_loads(f);
   mpsi_fluid_share_destroy(f);
+  mpsi_fluid_coarse_drop(f);
   void *const parts[] = {f->slab,
                          f->local,
                          f->state,
@@ -156,7 +158,7 @@ static mps_status start(mps_fluid *f, const char *function) {
   f->loops = mpsi_fluid_choose_loops(mpsi_context_level(f->context));
   set_gravity(f);
   mps_status status = mpsi_fluid_share_create(f, function);
-  if (status == MPS_OK && !mpsi_fluid_reserve(f, f->count))
+  if (status == MPS_OK && !(mpsi_fluid_coarse_create(f) && mpsi_fluid_reserve(f, f->count)))
     status = mpsi_fail_memory(f->context, function, (size_t)f->count * sizeof *f->local);
   status = mpsi_fluid_settle(f, function, status);
   if (status == MPS_OK) status = mpsi_fluid_look(f, function);
@@ -301,7 +303,7 @@ static int64_t bytes_of(const mps_fluid *f) {
   return 8 * (15 * n + 2 * chunks) + f->count * ((int64_t)sizeof *f->local + 3) +
          f->cloud_capacity * (11 * 8) + f->index_room.capacity * 4 + f->w_room.capacity * 8 +
          f->cell_room.capacity * 4 + f->push_room.capacity * 8 + f->lower_col_room.capacity * 4 +
-         f->lower_room.capacity * 4;
+         f->lower_room.capacity * 4 + mpsi_fluid_coarse_bytes(f);
 }
 
 mps_status mps_fluid_get_report_sized(const mps_fluid *f, mps_fluid_report *out, size_t size) {

@@ -6,7 +6,8 @@
  *   near.c      who is near whom, and the weights w; sight.c: who sees whom past walls that end
  *   moments.c   sums over the neighbours: density, moments, velocity gradient, free surface
  *   closed.c    fluid without a free surface
- *   pressure.c  rows of the pressure equation; pcg.c solves it, or solver.c has it solved
+ *   pressure.c  rows of the pressure equation; pcg.c solves it with the coarse space of coarse.c,
+ *               whose equation envelope.c solves, or solver.c has it solved
  *   classical.c the classical scheme's own parts of these
  *   move.c      pressure gradient, velocity, guards, positions
  *   loads.c     forces on particles and pressures on the surface
@@ -189,9 +190,10 @@ typedef enum mpsi_fluid_change {
   MPSI_FLUID_CHANGED_BY_STEP
 } mpsi_fluid_change;
 
-typedef struct mpsi_fluid_loops mpsi_fluid_loops; /* loops.h */
-typedef struct mpsi_fluid_given mpsi_fluid_given; /* a load of the caller, loads.c */
-typedef struct mpsi_fluid_share mpsi_fluid_share; /* share.h */
+typedef struct mpsi_fluid_loops mpsi_fluid_loops;   /* loops.h */
+typedef struct mpsi_fluid_given mpsi_fluid_given;   /* a load of the caller, loads.c */
+typedef struct mpsi_fluid_share mpsi_fluid_share;   /* share.h */
+typedef struct mpsi_fluid_coarse mpsi_fluid_coarse; /* coarse.h */
 
 struct mps_fluid {
   mps_context *context;
@@ -242,6 +244,7 @@ struct mps_fluid {
   bool driven;            /* u of the cloud has dt times push already */
   double load_time, load_time_before; /* s: when the loads were read, for this step and before it */
   mpsi_fluid_system system;
+  mpsi_fluid_coarse *coarse;
   mpsi_room lower_col_room, lower_room;
   int64_t most_lower; /* room for entries of L, a row on average */
   void *slab;         /* of all arrays of fixed size */

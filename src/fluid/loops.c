@@ -3,6 +3,8 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "loops.h"
 
+#include "coarse.h"
+
 #define JOIN_(a, b) a##b
 #define JOIN(a, b) JOIN_(a, b)
 #define LEAST 0.0025 /* l0^2: squares of distances are not taken as less */
@@ -181,6 +183,8 @@ static double rise(const mps_fluid *f, int64_t first, int64_t end, int64_t offse
   for (int64_t i = first; i < end; i++) q[i] = r[i] + middle[i] * z[i];
   for (int64_t i = first; i < end; i++)
     if (f->company[i] & MPSI_FLUID_NEAR_OTHERS) q[i] += outside_block(f, first, end, i);
+  const mpsi_fluid_coarse *coarse = f->coarse;
+  if (coarse->used) mpsi_fluid_coarse_subtract(coarse, first / coarse->block, q);
   forward(f, first, end, offset, q);
 #pragma omp simd reduction(+ : zq)
   for (int64_t i = first; i < end; i++) {
@@ -205,5 +209,13 @@ static double norm(const mps_fluid *f, int64_t first, int64_t end, int64_t offse
   return square;
 }
 
+static bool mixed(const mps_fluid *f, int64_t i, const int32_t *of) {
+  const int32_t *index = f->index + f->start[i], all = mpsi_fluid_padded(f->near[i]), here = of[i];
+  int32_t differs = 0;
+#pragma omp simd reduction(| : differs)
+  for (int32_t k = 0; k < all; k++) differs |= of[index[k]] ^ here;
+  return differs != 0;
+}
+
 const mpsi_fluid_loops JOIN(mpsi_fluid_loops_v, MPSI_LEVEL) = {
-    search, weigh, add_up, times, forward, descend, rise, norm, slope};
+    search, weigh, add_up, times, forward, descend, rise, norm, mixed, slope};

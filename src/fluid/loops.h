@@ -30,13 +30,15 @@ struct mpsi_fluid_loops {
   double (*times)(const mps_fluid *f, int64_t begin, int64_t end, const double *v, double *out);
   /* Parts of an iteration of pcg.c for the rows [first, end) of a block, whose entries of L begin
    * at `offset`. forward: v = U^-T v. descend: p, x, s, r go on, then z = U^-1 D^-1 r; r . D^-1 r.
-   * rise: q = U^-T A U^-1 D^-1 r; q . D^-1 r. */
+   * rise: q = U^-T A (z - Z e), e as of coarse.h, z = U^-1 D^-1 r; q . D^-1 r. */
   void (*forward)(const mps_fluid *f, int64_t first, int64_t end, int64_t offset, double *v);
   double (*descend)(const mps_fluid *f, int64_t first, int64_t end, int64_t offset, double alpha,
                     double beta);
   double (*rise)(const mps_fluid *f, int64_t first, int64_t end, int64_t offset);
   /* |U^T v|^2 over these rows. */
   double (*norm)(const mps_fluid *f, int64_t first, int64_t end, int64_t offset, const double *v);
+  /* Whether a neighbour of particle i has another value in `of` (particles, then ghosts). */
+  bool (*mixed)(const mps_fluid *f, int64_t i, const int32_t *of);
   /* sum w (q_j - q_i) dx/r^2 */
   void (*slope)(const mps_fluid *f, int64_t i, double *sum);
 };

@@ -12,6 +12,9 @@
  * block; blocks wait for each other twice. The sums of both are all that an iteration needs
  * (Chronopoulos and Gear 1989): r is the residual times U^-T, p the direction, s = U^-T A p.
  *
+ * Of large fluids a coarse space (coarse.h) takes what is smooth out of the error, so that the
+ * iterations hardly grow with the number of particles.
+ *
  * The factors are kept in single precision: below a tolerance of 1e-6 the residual is found anew
  * with A itself and what is left is solved for again. A is not stored: a row is the weights of the
  * particle's neighbours, and vectors that it multiplies have the values of the ghosts' parents
@@ -19,18 +22,19 @@
  * halves the iterations in waves. The blocks depend on the number of particles alone, and sums are
  * made chunk by chunk, so the result does not depend on the threads.
  * SPDX-License-Identifier: BSD-3-Clause */
+#include "coarse.h"
 #include "loops.h"
 #include "share.h"
 
 #include <string.h>
 
 #define BLOCK 2560       /* particles in a block of the preconditioner, about */
-#define MOST_BLOCKS 32   /* larger blocks instead */
 #define MODIFIED 0.95    /* share of the fill that goes to the pivots */
 #define LEAST_PIVOT 1e-3 /* of the diagonal */
 #define LOOK_FROM 4.0    /* of the rz where the residual would be small enough if both fell alike */
 #define LOOK_AGAIN 0.25  /* of rz, at the soonest */
 #define SINGLE 1e-6      /* tolerance that factors in single precision allow */
+#define DEFLATED 1e-4    /* of the residual, in one go with the coarse space: see mpsi_fluid_pcg */
 
 /* ---- preconditioner -------------------------------------------------------------------------- */
 
@@ -42,7 +46,7 @@ static blocks cut(const mps_fluid *f) {
   const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
   int64_t wanted = (f->count + BLOCK - 1) / BLOCK;
   wanted += wanted > 1 && wanted % 2; /* two threads, equal shares */
-  if (wanted > MOST_BLOCKS) wanted = MOST_BLOCKS;
+  if (wanted > MPSI_FLUID_MOST_BLOCKS) wanted = MPSI_FLUID_MOST_BLOCKS; /* larger ones instead */
   const int64_t each = (chunks + wanted - 1) / wanted; /* whole chunks: ranks have whole blocks */
   return (blocks){(chunks + each - 1) / each, each * MPSI_FLUID_CHUNK};
 }
@@ -132,7 +136,9 @@ mps_status mpsi_fluid_factor(mps_fluid *f, const char *function) {
     if (status == MPS_OK) mpsi_fluid_units(f, p.blocks.size, factor_block, &p);
     double full = atomic_load(&p.full);
     status = mpsi_fluid_settle_max(f, function, status, 1, &full);
-    if (status != MPS_OK || full == 0.0) return status;
+    if (status == MPS_OK && full == 0.0)
+      return mpsi_fluid_coarsen(f, function, p.blocks.size, p.blocks.count);
+    if (status != MPS_OK) return status;
     f->most_lower += f->most_lower / 8;
   }
 }
@@ -179,14 +185,18 @@ static void start_block(void *data, int64_t b, int32_t worker) {
   const int64_t first = b * it->blocks.size, end = end_of(it, b);
   f->loops->forward(f, first, end, b * it->room, f->system.r);
   f->system.sums[2 * b] = f->loops->descend(f, first, end, b * it->room, 0.0, 0.0);
+  if (f->coarse->used) mpsi_fluid_coarse_restrict(f, b, f->system.z);
 }
 
 static void descend(void *data, int64_t b, int32_t worker) {
   (void)worker;
   const iteration *it = data;
   mps_fluid *f = it->fluid;
+  if (f->coarse->used)
+    mpsi_fluid_coarse_deflate(f->coarse, b * it->blocks.size, end_of(it, b), f->system.z);
   f->system.sums[2 * b] =
       f->loops->descend(f, b * it->blocks.size, end_of(it, b), b * it->room, it->alpha, it->beta);
+  if (f->coarse->used) mpsi_fluid_coarse_restrict(f, b, f->system.z);
 }
 
 static void rise(void *data, int64_t b, int32_t worker) {
@@ -223,6 +233,7 @@ static bool iterate(iteration *it, double rr, double enough, int64_t *done) {
       look_at = rz * fmax(LOOK_AGAIN, enough / rr);
     }
     if (!isfinite(rz) || *done == f->def.iterations) return false;
+    if (f->coarse->used) mpsi_fluid_coarse_solve(f);
     mpsi_fluid_tell_near(f, 1, &f->system.z);
     mpsi_fluid_units(f, it->blocks.size, rise, it);
     mpsi_fluid_tell_sums(f, it->blocks.size);
@@ -253,9 +264,14 @@ int64_t mpsi_fluid_pcg(mps_fluid *f) {
     const double enough = tolerance * tolerance * bb;
     if (bb == 0.0) memset(s->x, 0, (size_t)(f->count + f->ghosts) * sizeof *s->x);
     if (bb == 0.0) return 0;
-    if (rr <= enough || !(rr < 0.25 * left)) return isfinite(rr) ? done : -1;
-    if (!iterate(&it, rr, enough, &done)) return -1;
-    if (tolerance >= SINGLE) return done;
+    if (rr <= enough) return done;
+    if (!(rr < 0.25 * left)) return isfinite(rr) && tolerance < SINGLE ? done : -1; /* round-off */
+    /* Round-off of the factors slowly brings back what the coarse space has taken out, which no
+     * iteration removes: some digits at a time. */
+    const double begin = f->coarse->used ? mpsi_fluid_coarse_start(f) : rr;
+    const double goal = f->coarse->used ? fmax(enough, DEFLATED * DEFLATED * begin) : enough;
+    if (!iterate(&it, begin, goal, &done)) return -1;
+    if (tolerance >= SINGLE && goal == enough) return done;
     left = rr;
   }
 }

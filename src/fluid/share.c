@@ -332,17 +332,22 @@ void mpsi_fluid_tell_all(mps_fluid *f, int32_t columns, double *const *column) {
   if (f->share) copy(f, &f->share->all, columns, column, column);
 }
 
+void mpsi_fluid_tell_most(mps_fluid *f, int64_t count, double *values) {
+  if (!f->share) return;
+  for (int64_t k = 0; k < count; k++)
+    if (isnan(values[k])) values[k] = INFINITY;
+  note(f->share, mpsi_domain_max(f->share->domain, "mps_fluid", (int32_t)count, values));
+  if (f->share->lost != MPS_OK) memset(values, 0, (size_t)count * sizeof *values);
+}
+
 /* A sum is on its rank, and less than any number on others; what is none must not be sent. */
 void mpsi_fluid_tell_sums(mps_fluid *f, int64_t unit) {
   if (!f->share) return;
   const int64_t units = (f->count + unit - 1) / unit;
   double *sums = f->system.sums;
-  for (int64_t k = 0; k < 2 * units; k++) {
+  for (int64_t k = 0; k < 2 * units; k++)
     if (!is_own(f, k / 2 * unit)) sums[k] = -INFINITY;
-    if (isnan(sums[k])) sums[k] = INFINITY;
-  }
-  note(f->share, mpsi_domain_max(f->share->domain, "mps_fluid", (int32_t)(2 * units), sums));
-  if (f->share->lost != MPS_OK) memset(sums, 0, 2 * (size_t)units * sizeof *sums);
+  mpsi_fluid_tell_most(f, 2 * units, sums);
 }
 
 /* In scratch columns, which the pressure has not begun to use: z states and numbers, p and q m,

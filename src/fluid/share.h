@@ -46,6 +46,8 @@ void mpsi_fluid_tell_near(mps_fluid *fluid, int32_t columns, double *const *colu
 void mpsi_fluid_tell_all(mps_fluid *fluid, int32_t columns, double *const *column);
 /* system.sums of units of so many particles, two of each, to all. */
 void mpsi_fluid_tell_sums(mps_fluid *fluid, int64_t unit);
+/* The greatest of each value over the ranks, and 0 where the transport has failed. */
+void mpsi_fluid_tell_most(mps_fluid *fluid, int64_t count, double *values);
 /* States, numbers of neighbours and moments m, and who may be in whose zone (moments.c). */
 void mpsi_fluid_tell_looks(mps_fluid *fluid);
 /* fluid->local of all particles, as far as levels and loads use it, for who asks. */

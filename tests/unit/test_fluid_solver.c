@@ -92,7 +92,7 @@ static mps_fluid_solver_def def_of(plug *p) {
 }
 
 /* A tank whose left wall moves, and a particle above it that falls alone. */
-static tank waves(double tolerance) {
+static tank waves_of(double length, double tolerance) {
   mps_signal *piston = NULL;
   tank t = {NULL, NULL};
   mps_particles_def set = mps_particles_defaults();
@@ -100,16 +100,18 @@ static tank waves(double tolerance) {
   const double drop[] = {0.3, 0.6};
   set.spacing = 0.025, def.dt = 2e-3, def.level = 0.25, def.tolerance = tolerance;
   mps_assert_ok(context, mps_particles_create(context, &set, &t.water));
-  tank_fill(context, t.water, 0.6, 0.25, NULL, NULL);
+  tank_fill(context, t.water, length, 0.25, NULL, NULL);
   mps_assert_ok(context, mps_particles_append(t.water, 1, drop));
   mps_assert_ok(context, mps_fluid_create(context, t.water, &def, &t.fluid));
   mps_assert_ok(context, mps_signal_sine(context, 1.0, 0.02, 0.0, &piston));
   tank_wall(context, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
   tank_wall(context, t.fluid, 0.0, 0.0, 1.0, 0.0, piston);
-  tank_wall(context, t.fluid, 0.6, 0.0, -1.0, 0.0, NULL);
+  tank_wall(context, t.fluid, length, 0.0, -1.0, 0.0, NULL);
   mps_signal_destroy(&piston);
   return t;
 }
+
+static tank waves(double tolerance) { return waves_of(0.6, tolerance); }
 
 static void cholmod_moves_the_water_as_the_library_does(void **state) {
   (void)state;
@@ -144,6 +146,30 @@ static void cholmod_moves_the_water_as_the_library_does(void **state) {
   mps_assert_ok(context, mps_fluid_set_solver(other.fluid, NULL));
   mps_assert_ok(context, mps_fluid_step(other.fluid, 1));
   assert_int_equal(p.solutions, 40);
+  tank_free(&own);
+  tank_free(&other);
+  plug_end(&p);
+}
+
+/* Enough particles for several blocks and a coarse space: the same water, but in more of a tank. */
+static void so_it_does_with_a_coarse_space(void **state) {
+  (void)state;
+  plug p = plug_start();
+  tank own = waves_of(15.0, 1e-12), other = waves_of(15.0, 1e-10);
+  const mps_fluid_solver_def def = def_of(&p);
+  mps_assert_ok(context, mps_fluid_set_solver(other.fluid, &def));
+  mps_assert_ok(context, mps_fluid_step(own.fluid, 6));
+  mps_assert_ok(context, mps_fluid_step(other.fluid, 6));
+  assert_int_equal(p.rows, 6001);
+  mps_totals a, b;
+  mps_assert_ok(context, mps_fluid_get_totals(own.fluid, &a));
+  mps_assert_ok(context, mps_fluid_get_totals(other.fluid, &b));
+  assert_true(a.kinetic > 1e-3);
+  mps_assert_near(a.kinetic, b.kinetic, 1e-7 * a.kinetic);
+  mps_reaction of_own, of_other;
+  mps_assert_ok(context, mps_fluid_get_reaction(own.fluid, TANK_LEFT, &of_own));
+  mps_assert_ok(context, mps_fluid_get_reaction(other.fluid, TANK_LEFT, &of_other));
+  mps_assert_near(of_own.force[0], of_other.force[0], 1e-7 * fabs(of_own.force[0]));
   tank_free(&own);
   tank_free(&other);
   plug_end(&p);
@@ -185,6 +211,7 @@ static void answers_that_are_none_are_refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(cholmod_moves_the_water_as_the_library_does),
+      cmocka_unit_test(so_it_does_with_a_coarse_space),
       cmocka_unit_test(answers_that_are_none_are_refused),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);

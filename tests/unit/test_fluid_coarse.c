@@ -1,0 +1,219 @@
+/* test_fluid_coarse.c - the coarse space of the pressure solution: iterations hardly grow with the
+ * number of particles, a box without surface and water in two parts are solved for, and the coarse
+ * equation itself. SPDX-License-Identifier: BSD-3-Clause */
+#include "test_fixture.h"
+
+#include "conjugate.h"
+#include "fluid/envelope.h"
+#include "fluid_tank.h"
+
+#include <mps/fluid_solver.h>
+
+static double noise(uint64_t *seed) {
+  *seed = *seed * 6364136223846793005u + 1442695040888963407u;
+  return (double)(*seed >> 11) * 0x1p-52 - 1.0;
+}
+
+/* ---- the coarse equation --------------------------------------------------------------------- */
+
+enum { ROWS = 60 };
+
+/* Factors what `full` has within an envelope of random rows, at most `reach` wide. */
+static void factor(double (*full)[ROWS], mpsi_envelope *e) {
+  assert_true(mpsi_envelope_begin(context, e, ROWS));
+  for (int i = 0; i < ROWS; i++)
+    for (int j = i; j >= 0; j--)
+      if (full[i][j] != 0.0) e->first[i] = j;
+  assert_true(mpsi_envelope_make(context, e));
+  for (int i = 0; i < ROWS; i++)
+    for (int j = e->first[i]; j <= i; j++) *mpsi_envelope_at(e, i, j) = full[i][j];
+  mpsi_envelope_factor(e);
+}
+
+/* A matrix of random couplings, whose rows sum to `more`. */
+static void couple(double (*full)[ROWS], double more) {
+  uint64_t seed = 3;
+  memset(full, 0, ROWS * sizeof *full);
+  for (int i = 0; i < ROWS; i++) full[i][i] = more;
+  for (int i = 0; i < ROWS; i++)
+    for (int j = i > 9 ? i - 9 : 0; j < i; j++) {
+      const double w = j == i - 1 || noise(&seed) > 0.3 ? 1.1 + noise(&seed) : 0.0;
+      full[i][j] = full[j][i] = -w;
+      full[i][i] += w, full[j][j] += w;
+    }
+}
+
+static double residual(double (*full)[ROWS], const double *x, const double *b) {
+  double most = 0.0;
+  for (int i = 0; i < ROWS; i++) {
+    double sum = -b[i];
+    for (int j = 0; j < ROWS; j++) sum += full[i][j] * x[j];
+    most = fmax(most, fabs(sum));
+  }
+  return most;
+}
+
+/* Rows that sum to 0 have an answer only to a right side that does, up to a constant: one value is
+ * then 0. */
+static void the_coarse_equation_is_solved(void **state) {
+  (void)state;
+  double full[ROWS][ROWS], b[ROWS], x[ROWS];
+  for (int singular = 0; singular < 2; singular++) {
+    mpsi_envelope e = {0};
+    uint64_t seed = 11;
+    double sum = 0.0;
+    int zeros = 0;
+    for (int i = 0; i < ROWS; i++) b[i] = noise(&seed), sum += b[i];
+    for (int i = 0; singular && i < ROWS; i++) b[i] -= sum / ROWS;
+    couple(full, singular ? 0.0 : 0.01);
+    factor(full, &e);
+    memcpy(x, b, sizeof x);
+    mpsi_envelope_solve(&e, x);
+    for (int i = 0; i < ROWS; i++) zeros += x[i] == 0.0;
+    assert_int_equal(zeros, singular);
+    mps_assert_near(residual(full, x, b), 0.0, 1e-12);
+    mpsi_envelope_drop(context, &e);
+  }
+}
+
+/* ---- iterations ------------------------------------------------------------------------------ */
+
+/* Mean of iterations a step over steps 11 to 30 of waves by a piston in a tank of 16 by 3. */
+static double iterations(int rows) {
+  const double l0 = 0.3 / rows, length = l0 * round(16.0 / 3.0 * rows);
+  mps_signal *piston = NULL;
+  mps_fluid_report before, after;
+  mps_assert_ok(context, mps_signal_sine(context, 1.0, 0.02, 0.0, &piston));
+  tank t = tank_make(context, length, 0.3, l0, piston, 0.04 * sqrt(l0 / TANK_G));
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 10));
+  mps_assert_ok(context, mps_fluid_get_report(t.fluid, &before));
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 20));
+  mps_assert_ok(context, mps_fluid_get_report(t.fluid, &after));
+  mps_signal_destroy(&piston);
+  tank_free(&t);
+  return (double)(after.all_iterations - before.all_iterations) / 20.0;
+}
+
+static void iterations_hardly_grow_with_the_particles(void **state) {
+  (void)state;
+  const double few = iterations(19), many = iterations(75); /* 1919 and 30 000 particles */
+  print_message("iterations a step: %.1f with 1919 particles, %.1f with 30 000\n", few, many);
+  assert_true(many <= 1.5 * few);
+}
+
+/* ---- without a surface, and in parts --------------------------------------------------------- */
+
+/* The matrix, kept, and plain conjugate gradients in place of the library's solver. */
+typedef struct rows {
+  int64_t count;
+  const int64_t *start;
+  const int32_t *column;
+  const double *value;
+} rows;
+
+static mps_status take(void *user, int64_t count, const int64_t *start, const int32_t *column,
+                       const double *value) {
+  *(rows *)user = (rows){count, start, column, value};
+  return MPS_OK;
+}
+
+static mps_status multiply(const void *matrix, const double *x, double *y) {
+  const rows *a = matrix;
+  for (int64_t i = 0; i < a->count; i++) {
+    y[i] = 0.0;
+    for (int64_t k = a->start[i]; k < a->start[i + 1]; k++) y[i] += a->value[k] * x[a->column[k]];
+  }
+  return MPS_OK;
+}
+
+static mps_status solve(void *user, const double *b, double tolerance, double *x,
+                        int64_t *iterations) {
+  const rows *a = user;
+  memset(x, 0, (size_t)a->count * sizeof *x);
+  return test_conjugate(a->count, multiply, a, b, tolerance, x, iterations);
+}
+
+/* A box filled with 6400 particles that a load presses to one side: the matrix is singular. The
+ * force on a wall and the iterations, with the library's solver or plain conjugate gradients. */
+static double press(bool plain, int64_t *iterations) {
+  const double side = 0.8;
+  mps_particles_def set = mps_particles_defaults();
+  mps_fluid_def def = mps_fluid_defaults();
+  mps_fluid_load_def load = mps_fluid_load_defaults();
+  mps_fluid_solver_def solver = mps_fluid_solver_defaults();
+  tank t = {NULL, NULL};
+  rows kept = {0};
+  set.spacing = 0.01, def.dt = 2e-3, def.tolerance = 1e-9;
+  load.acceleration[0] = 3.0;
+  solver.user = &kept, solver.matrix = take, solver.solve = solve;
+  mps_assert_ok(context, mps_particles_create(context, &set, &t.water));
+  tank_fill(context, t.water, side, side, NULL, NULL);
+  mps_assert_ok(context, mps_fluid_create(context, t.water, &def, &t.fluid));
+  tank_wall(context, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_wall(context, t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+  tank_wall(context, t.fluid, side, 0.0, -1.0, 0.0, NULL);
+  tank_wall(context, t.fluid, 0.0, side, 0.0, -1.0, NULL);
+  mps_assert_ok(context, mps_fluid_add_load(t.fluid, &load, NULL));
+  if (plain) mps_assert_ok(context, mps_fluid_set_solver(t.fluid, &solver));
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 3));
+  mps_reaction right;
+  mps_fluid_report report;
+  mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, TANK_RIGHT, &right));
+  mps_assert_ok(context, mps_fluid_get_report(t.fluid, &report));
+  assert_int_equal(report.surface, 0);
+  *iterations = report.iterations;
+  tank_free(&t);
+  return right.force[0];
+}
+
+static void a_box_without_surface_is_solved_for(void **state) {
+  (void)state;
+  int64_t own = 0, plain = 0;
+  const double force = press(false, &own), expected = press(true, &plain);
+  print_message("force on a wall %.9f N by %d iterations, %.9f N by %d plain ones\n", force,
+                (int)own, expected, (int)plain);
+  mps_assert_near(force, expected, 1e-7 * fabs(expected));
+}
+
+/* Two blocks of water far apart, as after a splash, with a few particles alone between them: each
+ * moves as without the other. */
+static double fall(bool both) {
+  tank t = {NULL, NULL};
+  mps_particles_def set = mps_particles_defaults();
+  mps_fluid_def def = mps_fluid_defaults();
+  const double lower[2] = {0.0, 0.0}, upper[2] = {0.8, 0.8};
+  const double lower2[2] = {3.0, 2.0}, upper2[2] = {3.4, 2.4}, alone[] = {1.5, 1.5, 2.0, 0.3};
+  set.spacing = 0.01, def.dt = 1e-3, def.tolerance = 1e-10, def.level = 0.8;
+  mps_assert_ok(context, mps_particles_create(context, &set, &t.water));
+  mps_assert_ok(context, mps_particles_fill_box(t.water, lower, upper, NULL));
+  if (both) mps_assert_ok(context, mps_particles_fill_box(t.water, lower2, upper2, NULL));
+  if (both) mps_assert_ok(context, mps_particles_append(t.water, 2, alone));
+  mps_assert_ok(context, mps_fluid_create(context, t.water, &def, &t.fluid));
+  tank_wall(context, t.fluid, 0.0, 0.0, 0.0, 1.0, NULL);
+  tank_wall(context, t.fluid, 0.0, 0.0, 1.0, 0.0, NULL);
+  mps_assert_ok(context, mps_fluid_step(t.fluid, 10));
+  mps_reaction left;
+  mps_fluid_report report;
+  mps_assert_ok(context, mps_fluid_get_reaction(t.fluid, TANK_LEFT, &left));
+  mps_assert_ok(context, mps_fluid_get_report(t.fluid, &report));
+  if (both) assert_true(report.apart >= 2);
+  tank_free(&t);
+  return left.force[0];
+}
+
+static void water_in_parts_is_solved_for(void **state) {
+  (void)state;
+  const double one = fall(false), both = fall(true);
+  print_message("force on the wall %.9f N, with other water far away %.9f N\n", one, both);
+  mps_assert_near(both, one, 1e-7 * fabs(one));
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_coarse_equation_is_solved),
+      cmocka_unit_test(iterations_hardly_grow_with_the_particles),
+      cmocka_unit_test(a_box_without_surface_is_solved_for),
+      cmocka_unit_test(water_in_parts_is_solved_for),
+  };
+  return cmocka_run_group_tests(tests, make_context, drop_context);
+}
