@@ -216,15 +216,28 @@ static bool is_before(const mps_mpm *mpm, const mpsi_cell_block *cells, const in
   return across > 0.0;
 }
 
-static uint64_t parted_by(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t b,
-                          const int *base, const double *x) {
+/* Whether the place of tile node `at` lies so deep below the tangent plane at the particle's foot
+ * that it is no corner of a cell which the plane cuts. */
+static bool is_deep(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *at,
+                    const mpsi_foot *foot) {
+  const double local[3] = {at[0], at[1], at[2]};
+  double x[3], depth = 0.0, cell = 0.0;
+  mpsi_node_position(mpm, cells->at, local, x);
+  for (int c = 0; c < mpm->dim; c++) {
+    depth -= (x[c] - foot->at[c]) * foot->normal[c];
+    cell += fabs(foot->normal[c]) * mpm->def.cell;
+  }
+  return depth > (1.0 - 1e-9) * cell;
+}
+
+static void add_parted_by(const mps_mpm *mpm, const mpsi_cell_block *cells, int32_t b,
+                          const int *base, const double *x, mpsi_parted *out) {
   const mps_body *body = mpm->contact.body[b];
   const bool convex = mpm->contact.handle[b]->convex;
   const mpsi_foot foot = mpsi_body_foot(body, x);
   const mpsi_sight own = stand(mpm, &foot, x);
   const int n = mpm->def.spline;
-  uint64_t out = 0;
-  if (own.distance > 2.0 * sqrt((double)mpm->dim) * mpm->def.cell) return 0;
+  if (own.distance > 2.0 * sqrt((double)mpm->dim) * mpm->def.cell) return;
   for (int k = 0; k <= (mpm->dim == 3 ? n : 0); k++)
     for (int j = 0; j <= n; j++)
       for (int i = 0; i <= n; i++) {
@@ -237,17 +250,19 @@ static uint64_t parted_by(const mps_mpm *mpm, const mpsi_cell_block *cells, int3
         const double reach = own.distance + (ghost ? 0.0 : node.distance);
         if (convex && !ghost && mpsi_dot3(way, node.normal) < node.distance) continue;
         if (mpsi_dot3(way, way) < reach * reach) continue; /* two balls without the body */
-        if (!is_free(mpm, cells, body, &own, node.at)) out |= UINT64_C(1) << (16 * k + 4 * j + i);
+        if (is_free(mpm, cells, body, &own, node.at)) continue;
+        const uint64_t bit = UINT64_C(1) << (16 * k + 4 * j + i);
+        out->across |= bit;
+        if (is_deep(mpm, cells, at, &foot)) out->cut |= bit;
       }
-  return out;
 }
 
-uint64_t mpsi_mpm_find_across(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *base,
-                              const double *x) {
-  uint64_t out = 0;
+mpsi_parted mpsi_mpm_find_parted(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *base,
+                                 const double *x) {
+  mpsi_parted out = {0, 0};
   for (int32_t q = 0; q < cells->pairs; q++) {
     const int32_t b = mpm->contact.cell_pair[cells->first_pair + q].body;
-    if (mpm->contact.thin >> b & 1) out |= parted_by(mpm, cells, b, base, x);
+    if (mpm->contact.thin >> b & 1) add_parted_by(mpm, cells, b, base, x, &out);
   }
   return out;
 }

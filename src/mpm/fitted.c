@@ -64,10 +64,27 @@ static bool active(const mps_mpm *mpm, const mpsi_cell_block *cells, uint8_t sta
                    mpsi_support_local(&s->nodes, i, j, k), from);
 }
 
+/* Which nodes a thin body parts from the particle. Those of them that it does not use are never
+ * corners of its cell. */
+static mpsi_parted find_parted(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t particle,
+                               const mpsi_stencil *at) {
+  mpsi_parted out = {0, 0};
+  double x[3] = {0.0};
+  if (!cells->thin) return out;
+  for (int c = 0; c < mpm->dim; c++) x[c] = mpm->p.x[c][particle];
+  out = mpsi_mpm_find_parted(mpm, cells, at->at, x);
+  for (int q = 0; q < 1 << mpm->dim && out.cut != 0; q++) {
+    const int i = at->own[0] + (q & 1), j = at->own[1] + (q >> 1 & 1);
+    const int k = mpm->dim == 3 ? at->own[2] + (q >> 2) : 0;
+    out.cut &= ~(UINT64_C(1) << (16 * k + 4 * j + i));
+  }
+  return out;
+}
+
 /* Weights of the active nodes; returns the bodies that hold any of the stencil's, bit by bit. */
 MPSI_INLINE uint32_t active_weights(const mps_mpm *mpm, const mpsi_cell_block *cells,
                                     const mpsi_worker *worker, int dim, int spline,
-                                    const support *s, double *w) {
+                                    const support *s, const mpsi_parted *parted, double *w) {
   const mpsi_stencil *at = &s->at;
   uint32_t bodies = 0;
   for (int k = 0; k <= (dim == 3 ? spline : 0); k++)
@@ -91,6 +108,7 @@ MPSI_INLINE uint32_t active_weights(const mps_mpm *mpm, const mpsi_cell_block *c
       }
       mpsi_put(w + 16 * k + 4 * j, row);
     }
+  for (uint64_t left = parted->cut; left != 0; left &= left - 1) w[__builtin_ctzll(left)] = 0.0;
   return bodies;
 }
 
@@ -143,14 +161,16 @@ MPSI_INLINE uint32_t take_splines(const mps_mpm *mpm, const mpsi_cell_block *cel
   return bodies;
 }
 
-/* Returns the bodies that hold any of the stencil's nodes. */
+/* Returns the bodies that hold any of the stencil's nodes, or cut it. */
 MPSI_INLINE uint32_t fit(const mps_mpm *mpm, const mpsi_cell_block *cells,
                          const mpsi_worker *worker, int dim, int spline, const support *s,
-                         mpsi_shape_values *out) {
+                         const mpsi_parted *parted, mpsi_shape_values *out) {
   const mpsi_stencil *at = &s->at;
+  out->across = parted->across;
   if (mpm->standard) return take_splines(mpm, cells, worker, dim, spline, at, out);
   double q[4][4];
-  const uint32_t bodies = active_weights(mpm, cells, worker, dim, spline, s, out->w);
+  uint32_t bodies = active_weights(mpm, cells, worker, dim, spline, s, parted, out->w);
+  if (parted->cut != 0) bodies |= mpm->contact.thin;
   moments(dim, spline, at, out->w, q);
   const double mass = q[0][0];
   out->determinant =
@@ -323,21 +343,14 @@ MPSI_INLINE void share_friction(mps_mpm *mpm, const mpsi_cell_block *cells, int 
 /* ---- one particle -----------------------------------------------------------------------------
  */
 
-static uint64_t find_across(const mps_mpm *mpm, const mpsi_cell_block *cells, int64_t particle,
-                            const mpsi_stencil *at) {
-  double x[3] = {0.0};
-  for (int c = 0; c < mpm->dim && cells->thin; c++) x[c] = mpm->p.x[c][particle];
-  return cells->thin ? mpsi_mpm_find_across(mpm, cells, at->at, x) : 0;
-}
-
 MPSI_INLINE void scatter_body(mps_mpm *mpm, const mpsi_cell_block *cells, const mpsi_worker *worker,
                               int dim, int spline, int64_t particle) {
   support at;
   mpsi_shape_values f;
   make_support(mpm, cells, dim, spline, particle, &at);
-  const uint32_t bodies = fit(mpm, cells, worker, dim, spline, &at, &f);
-  f.across = find_across(mpm, cells, particle, &at.at);
-  if (cells->thin) mpm->contact.across[particle] = f.across; /* for the way back */
+  const mpsi_parted parted = find_parted(mpm, cells, particle, &at.at);
+  if (cells->thin) mpm->contact.across[particle] = parted; /* for the way back */
+  const uint32_t bodies = fit(mpm, cells, worker, dim, spline, &at, &parted, &f);
   scatter(mpm, cells, worker, dim, spline, particle, &at, &f, bodies);
   for (int32_t q = 0; bodies && q < cells->pairs; q++) {
     mpsi_cell_pair *pair = &mpm->contact.cell_pair[cells->first_pair + q];
@@ -422,8 +435,9 @@ MPSI_INLINE void gather_body(mps_mpm *mpm, const mpsi_cell_block *cells, const m
   support at;
   mpsi_shape_values f;
   make_support(mpm, cells, dim, spline, particle, &at);
-  const uint32_t bodies = fit(mpm, cells, worker, dim, spline, &at, &f);
-  f.across = cells->thin ? mpm->contact.across[particle] : 0;
+  const mpsi_parted none = {0, 0};
+  const mpsi_parted *parted = cells->thin ? &mpm->contact.across[particle] : &none;
+  const uint32_t bodies = fit(mpm, cells, worker, dim, spline, &at, parted, &f);
   mpsi_quad sum = {0.0}, by[3] = {sum, sum, sum}, moment[3] = {sum, sum, sum};
   MPSI_FOR_NODES(dim, spline) {
     const int t = mpsi_tile_index(at.at.at[0] + i, at.at.at[1] + j, at.at.at[2] + k);
@@ -489,9 +503,9 @@ void MPSI_LEVELLED(mpsi_mpm_fit)(const mps_mpm *mpm, const mpsi_cell_block *cell
   support s;
   memset(out, 0, sizeof *out);
   make_support(mpm, cells, mpm->dim, mpm->def.spline, particle, &s);
-  CHOOSE(mpm->dim, mpm->def.spline, fit, &s, out);
+  const mpsi_parted parted = find_parted(mpm, cells, particle, &s.at);
+  CHOOSE(mpm->dim, mpm->def.spline, fit, &s, &parted, out);
   *at = s.at;
-  out->across = find_across(mpm, cells, particle, at);
 }
 
 /* ---- weights at a foot ------------------------------------------------------------------------

@@ -48,7 +48,7 @@ typedef struct mpsi_contacts {
   uint32_t *inside;         /* bit b: in body b; mask_count * block_nodes */
   uint32_t thin;            /* bit b: body b parts particles (across.h) */
   mpsi_sight *sight;        /* as node, where there are such bodies; */
-  uint64_t *across;         /* of each particle that has been asked: mpsi_mpm_find_across */
+  mpsi_parted *across;      /* of each particle that has been asked: mpsi_mpm_find_parted */
   uint8_t *beside;          /* as inside: beside or in one of them */
   _Atomic uint8_t *reached; /* corner of a cell that holds a particle; likewise */
   int64_t cell_pair_count, node_pair_count, mask_count;

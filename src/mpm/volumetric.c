@@ -78,7 +78,7 @@ static double *sums_of(const mps_mpm *mpm, const mpsi_cell_block *cells, const m
   if (cells->thin) {
     double x[3];
     former_place(mpm, particle, x);
-    across = mpsi_mpm_find_across(mpm, cells, at, x) & 1;
+    across = mpsi_mpm_find_parted(mpm, cells, at, x).across & 1;
   }
   return sums_at(mpm, cells, worker, across, at[0], at[1], at[2]);
 }
@@ -120,7 +120,7 @@ static support support_of(const mps_mpm *mpm, const mpsi_cell_block *cells, int6
   double x[3];
   mpsi_unravel(mpm->p.stencil[k], MPSI_TILE_SIDE, base);
   former_place(mpm, k, x);
-  if (cells->thin) out.across = mpsi_mpm_find_across(mpm, cells, base, x);
+  if (cells->thin) out.across = mpsi_mpm_find_parted(mpm, cells, base, x).across;
   for (int c = 0; c < mpm->dim; c++) {
     const double t =
         mpsi_grid_coordinate(mpm, c, x[c]) - (double)cells->at[c] * MPSI_SIDE - (double)base[c];

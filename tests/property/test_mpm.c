@@ -602,7 +602,7 @@ static void thin_plates_elsewhere_change_nothing(void **state) {
     mpm_scene_contact(&s, body, 0.0);
     mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
     assert_non_null(s.mpm->contact.across);
-    for (int i = 0; i < 2; i++) s.mpm->contact.across[i] = UINT64_MAX;
+    for (int i = 0; i < 2; i++) s.mpm->contact.across[i] = (mpsi_parted){UINT64_MAX, UINT64_MAX};
     mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
     mps_view velocity = mpm_scene_view(&s, "velocity");
     for (int c = 0; c < 2; c++) {

@@ -86,9 +86,9 @@ static void columns_press_their_sides(void **state) {
                   -def.origin[0] / CELL, -100.0 * (force[0] + exact[0]) / exact[0],
                   100.0 * (force[1] - exact[1]) / exact[1],
                   100.0 * (force[2] / (exact[0] - exact[1]) - 1.0));
-    mps_assert_near(-force[0], exact[0], 0.03 * exact[0]);
-    mps_assert_near(force[1], exact[1], 0.03 * exact[1]);
-    mps_assert_near(force[2], exact[0] - exact[1], 0.03 * (exact[0] - exact[1]));
+    mps_assert_near(-force[0], exact[0], 0.005 * exact[0]);
+    mps_assert_near(force[1], exact[1], 0.005 * exact[1]);
+    mps_assert_near(force[2], exact[0] - exact[1], 0.005 * (exact[0] - exact[1]));
     for (int b = 0; b < 3; b++) {
       mps_contact_destroy(&contact[b]);
       mps_body_destroy(&bodies[b]);
