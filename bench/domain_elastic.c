@@ -73,8 +73,9 @@ int main(int argc, char **argv) {
   def.executor = MPS_EXECUTOR_SERIAL;
   check(NULL, mps_context_create(&def, &p.context, NULL, 0), "context");
   check(p.context, mps_petsc_domain_create_world(p.context, &p.domain), "domain");
-  check(NULL,
-        mps_petsc_solver_create_world(direct ? MPS_PETSC_DIRECT : MPS_PETSC_MULTIGRID, &solver),
+  check(p.context,
+        mps_petsc_solver_create_world(p.context, direct ? MPS_PETSC_DIRECT : MPS_PETSC_MULTIGRID,
+                                      &solver),
         "solver");
   double most[6] = {peak_memory()};
   double start = seconds();

@@ -58,7 +58,7 @@ static void solve_by_multigrid(mps_context *context, mps_fluid *fluid, int64_t l
   if (least <= 0 || mps_particles_count(mps_fluid_particles(fluid)) < least) return;
 #ifdef BENCH_PETSC
   mps_petsc_solver *solver = NULL; /* to the end of the program */
-  check(context, mps_petsc_solver_create(MPS_PETSC_MULTIGRID, &solver), "multigrid");
+  check(context, mps_petsc_solver_create(context, MPS_PETSC_MULTIGRID, &solver), "multigrid");
   check(context, mps_petsc_solve_fluid(solver, fluid, least), "multigrid");
 #else
   (void)context, (void)fluid;

@@ -133,37 +133,45 @@ bool ranks_same_options(mps_domain *domain, char *why, size_t size) {
 
 /* ---- equations ------------------------------------------------------------------------------- */
 
-typedef mps_status (*create_fn)(int32_t method, void **solver);
+typedef mps_status (*create_fn)(mps_context *context, int32_t method, void **solver);
 typedef mps_status (*solve_fn)(void *solver, mps_elastic *elastic);
 typedef void (*destroy_fn)(void **solver);
 
-bool ranks_solve_elastic(mps_elastic *elastic, void **solver, char *why, size_t size) {
+/* What has been recorded, where it is of this status. */
+static const char *reason(const mps_context *context, mps_status status) {
+  const mps_error *error = mps_context_error(context);
+  return error && error->status == status ? error->message : mps_status_text(status);
+}
+
+bool ranks_solve_elastic(mps_context *context, mps_elastic *elastic, void **solver, char *why,
+                         size_t size) {
   create_fn create = NULL;
   solve_fn solve = NULL;
   if (!load("mps_petsc_solver_create_world", &create, why, size) ||
       !load("mps_petsc_solve_elastic", &solve, why, size))
     return false;
   const int32_t multigrid = 0; /* MPS_PETSC_MULTIGRID */
-  mps_status status = *solver ? MPS_OK : create(multigrid, solver);
+  mps_status status = *solver ? MPS_OK : create(context, multigrid, solver);
   if (status == MPS_OK) status = solve(*solver, elastic);
   if (status != MPS_OK)
-    snprintf(why, size, "the ranks cannot solve together: %s", mps_status_text(status));
+    snprintf(why, size, "the ranks cannot solve together: %s", reason(context, status));
   return status == MPS_OK;
 }
 
 typedef mps_status (*solve_fluid_fn)(void *solver, mps_fluid *fluid, int64_t least);
 
-bool ranks_solve_fluid(mps_fluid *fluid, int32_t method, void **solver, char *why, size_t size) {
+bool ranks_solve_fluid(mps_context *context, mps_fluid *fluid, int32_t method, void **solver,
+                       char *why, size_t size) {
   create_fn create = NULL;
   solve_fluid_fn solve = NULL;
   if (!load("mps_petsc_solver_create_world", &create, why, size) ||
       !load("mps_petsc_solve_fluid", &solve, why, size))
     return false;
-  mps_status status = *solver ? MPS_OK : create(method, solver);
+  mps_status status = *solver ? MPS_OK : create(context, method, solver);
   if (status == MPS_OK) status = solve(*solver, fluid, 0);
   if (status != MPS_OK)
     snprintf(why, size, "PETSc's solver of the pressure cannot be had: %s",
-             mps_status_text(status));
+             reason(context, status));
   return status == MPS_OK;
 }
 

@@ -27,10 +27,12 @@ bool ranks_same_options(mps_domain *domain, char *why, size_t size);
 /* Has `elastic` solved by all ranks of its domain, by PETSc's multigrid; *solver is made at the
  * first call, and goes with ranks_drop_solver after all that it solves for. False as above.
  * Collective. */
-bool ranks_solve_elastic(mps_elastic *elastic, void **solver, char *why, size_t size);
+bool ranks_solve_elastic(mps_context *context, mps_elastic *elastic, void **solver, char *why,
+                         size_t size);
 /* Has the pressure of `fluid` solved by PETSc, `method` of mps_petsc_method, of one process too.
  * False as above. Collective. */
-bool ranks_solve_fluid(mps_fluid *fluid, int32_t method, void **solver, char *why, size_t size);
+bool ranks_solve_fluid(mps_context *context, mps_fluid *fluid, int32_t method, void **solver,
+                       char *why, size_t size);
 void ranks_drop_solver(void **solver);
 /* Threads for this rank: the processors that it may use, where others of its node may use the same
  * ones over their number. Collective. */

@@ -123,5 +123,5 @@ double waves_sloshing_period(double length, double depth) {
 
 bool waves_choose_solver(app *a, int choice, mps_fluid *fluid, char *why, size_t size) {
   /* choices after the first are those of mps_petsc_method */
-  return choice == 0 || ranks_solve_fluid(fluid, choice - 1, &a->equations, why, size);
+  return choice == 0 || ranks_solve_fluid(a->context, fluid, choice - 1, &a->equations, why, size);
 }

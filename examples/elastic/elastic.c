@@ -30,7 +30,7 @@ bool elastic_make(app *a, mps_particles *particles, const elastic_method *method
                                            a->context, particles, &def, method->constant, out))
                         : app_check(a, mps_elastic_create(a->context, particles, &def, out));
   if (!made || !a->domain) return made;
-  return ranks_solve_elastic(*out, &a->equations, why, sizeof why) || app_error(a, "%s", why);
+  return ranks_solve_elastic(a->context, *out, &a->equations, why, sizeof why) || app_error(a, "%s", why);
 }
 
 double elastic_seconds(double particles) { return 1e-4 * particles * pow(1e-5 * particles, 0.17); }

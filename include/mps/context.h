@@ -118,6 +118,13 @@ MPS_API void mps_context_destroy(mps_context **context);
 MPS_API const mps_error *mps_context_error(const mps_context *context);
 /** Empties the record: status MPS_OK, no message. */
 MPS_API void mps_context_clear_error(mps_context *context);
+/** Makes the record of a failure of the caller's own, such as one in a callback, whose status the
+ *  library then returns with this message in its own. `function` (NULL: "caller") is who has
+ * failed, `message` (cut to the record's length) why. Returns `status`; MPS_ERROR_ARGUMENT,
+ * recorded as such, where it is no error of the library or message is NULL. Allowed within
+ * callbacks. */
+MPS_API mps_status mps_context_set_error(mps_context *context, mps_status status,
+                                         const char *function, const char *message);
 
 /** Replace a hook and its `user`; NULL: none. Not while a function of the context or of its objects
  *  runs in another thread. */

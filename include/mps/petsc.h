@@ -5,8 +5,9 @@
  * The library is a guest of the program. Where MPI or PETSc is not running yet it is started,
  * without handlers of signals, and ended with the last domain or solver; MPI cannot be started a
  * second time (MPS_ERROR_STATE). What the program has started is left as it is. An error of MPI or
- * PETSc comes back as a status. No handle of MPI is part of the binary interface: communicators are
- * passed as integers, by MPI_Comm_c2f.
+ * PETSc comes back as a status with a record in the context: nothing is printed or aborted. No
+ * handle of MPI is part of the binary interface: communicators are passed as integers, by
+ * MPI_Comm_c2f.
  *
  * Include <mpi.h> before this header for mps_petsc_domain_create.
  *
@@ -24,7 +25,8 @@
 MPS_EXTERN_C_BEGIN
 
 /** Makes a domain of the processes of a communicator, given by MPI_Comm_c2f; collective. The
- *  communicator is duplicated. MPS_ERROR_STATE: MPI is not running or has been ended. */
+ *  communicator is duplicated. MPS_ERROR_STATE: MPI is not running or has been ended;
+ *  MPS_ERROR_ARGUMENT: the communicator is MPI_COMM_NULL or joins two groups. */
 MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_domain_create_c2f(mps_context *context,
                                                                    int32_t communicator,
                                                                    mps_domain **out);
@@ -51,17 +53,24 @@ typedef enum mps_petsc_method {
 } mps_petsc_method;
 
 /** Makes a solver (mps_petsc_method) of this process alone, for one fluid or one body at a time.
+ *  Records of its failures go to `context`, that of the fluid or body, which lives as long.
  *  PETSc's options that begin with mps_ change it: PETSC_OPTIONS="-mps_pc_type hypre".
- *  MPS_ERROR_UNSUPPORTED: PETSc was built without the part, or does not know an option. Where PETSc
- *  fails on one of several processes and the others wait for it, all are ended, with a line on
- *  stderr, after -mps_patience seconds (default 60). */
-MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solver_create(int32_t method,
+ *  MPS_ERROR_UNSUPPORTED: PETSc was built without the part, or does not know an option.
+ *
+ *  Where PETSc fails on one of several processes, the others may wait for it within PETSc, where
+ *  nothing reaches them. After -mps_patience seconds (default 60) the one that has failed gets the
+ *  error; from then on every function of a domain of MPI returns MPS_ERROR_IO here at once, nothing
+ * is made any more (MPS_ERROR_STATE), and MPI is not ended: the process should say what has
+ * happened and exit, upon which mpirun ends the others. */
+MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solver_create(mps_context *context, int32_t method,
                                                                mps_petsc_solver **out);
 /** The same of all processes that mpirun has started, or of a communicator by MPI_Comm_c2f, which
  *  is duplicated: they solve the equations of one body together. Collective. */
-MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solver_create_world(int32_t method,
+MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solver_create_world(mps_context *context,
+                                                                     int32_t method,
                                                                      mps_petsc_solver **out);
-MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solver_create_c2f(int32_t method,
+MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solver_create_c2f(mps_context *context,
+                                                                   int32_t method,
                                                                    int32_t communicator,
                                                                    mps_petsc_solver **out);
 /** Releases and nulls; accepts NULL. What it solves for must have gone, or have another solver. */

@@ -80,6 +80,16 @@ void mps_context_clear_error(mps_context *context) {
   context->error.step = context->error.particle = -1;
 }
 
+mps_status mps_context_set_error(mps_context *context, mps_status status, const char *function,
+                                 const char *message) {
+  if (!context) return MPS_ERROR_ARGUMENT;
+  if (status <= MPS_OK || status > MPS_ERROR_INTERNAL || !message)
+    return mpsi_fail(context, __func__, MPS_ERROR_ARGUMENT,
+                     "status is %d with message %s, must be one of MPS_ERROR_... with a message",
+                     (int)status, message ? "given" : "NULL");
+  return mpsi_fail(context, function ? function : "caller", status, "%s", message);
+}
+
 void mpsi_log(mps_context *context, int32_t level, const char *format, ...) {
   if (!context->def.log) return;
   char message[512];

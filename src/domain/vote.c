@@ -188,11 +188,25 @@ mps_status mpsi_domain_vote_end(mps_domain *domain, const char *function, int32_
   return status == MPS_OK ? read_vote(domain, function, count, values, domain->vote) : status;
 }
 
+/* The transport has failed in a vote of a rank that was not well: its record says both. */
+static mps_status report_both(mps_domain *domain, const mps_error *own) {
+  const mps_error last = *mps_context_error(domain->context);
+  (void)mpsi_fail(domain->context, own->function, domain->lost, "%.300s; %.200s", own->message,
+                  last.message);
+  mpsi_fail_where(domain->context, own->step, own->particle);
+  mpsi_fail_object(domain->context, "%s", own->object);
+  return domain->lost;
+}
+
 mps_status mpsi_domain_settle_max(mps_domain *domain, const char *function, mps_status status,
                                   int32_t count, double *values) {
   if (!mpsi_domain_many(domain)) return status;
+  const mps_error own = *mps_context_error(domain->context);
+  const bool recorded = status != MPS_OK && own.status == status, alive = domain->lost == MPS_OK;
   status = mpsi_domain_vote_begin(domain, function, status, count, values);
-  return status == MPS_OK ? mpsi_domain_vote_end(domain, function, count, values) : status;
+  if (status == MPS_OK) status = mpsi_domain_vote_end(domain, function, count, values);
+  const bool gone = status == MPS_ERROR_STATE; /* a rank has left: that is what to be told */
+  return alive && domain->lost != MPS_OK && recorded && !gone ? report_both(domain, &own) : status;
 }
 
 mps_status mpsi_domain_settle(mps_domain *domain, const char *function, mps_status status) {

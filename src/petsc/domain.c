@@ -25,12 +25,14 @@ static transport *leaving;
 
 static mps_status reduce_max(void *user, int32_t count, double *values) {
   const transport *t = user;
+  if (mpsi_petsc_stranded()) return MPS_ERROR_IO;
   return MPSI_PETSC_STATUS(
       MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, MPI_MAX, t->comm));
 }
 
 static mps_status max_begin(void *user, int32_t count, double *values) {
   transport *t = user;
+  if (mpsi_petsc_stranded()) return MPS_ERROR_IO;
   return MPSI_PETSC_STATUS(
       MPI_Iallreduce(MPI_IN_PLACE, values, count, MPI_DOUBLE, MPI_MAX, t->comm, &t->vote));
 }
@@ -42,6 +44,7 @@ static mps_status max_end(void *user) {
 
 static mps_status max_leave(void *user, int32_t count, const double *values) {
   transport *t = user;
+  if (mpsi_petsc_stranded()) return MPS_ERROR_IO;
   t->values = malloc((size_t)count * sizeof *t->values);
   if (!t->values) return MPS_ERROR_MEMORY;
   memcpy(t->values, values, (size_t)count * sizeof *t->values);
@@ -55,6 +58,7 @@ static mps_status max_leave(void *user, int32_t count, const double *values) {
 
 static mps_status reduce_sum(void *user, int32_t count, int64_t *values) {
   const transport *t = user;
+  if (mpsi_petsc_stranded()) return MPS_ERROR_IO;
   return MPSI_PETSC_STATUS(
       MPI_Allreduce(MPI_IN_PLACE, values, count, MPI_INT64_T, MPI_SUM, t->comm));
 }
@@ -114,6 +118,7 @@ static mps_status exchange(const transport *t, post *p, int32_t count, const mps
 static mps_status rendezvous(void *user, int32_t count, const mps_domain_message *messages,
                              mps_domain_room_fn room, void *room_user) {
   const transport *t = user;
+  if (mpsi_petsc_stranded()) return MPS_ERROR_IO;
   post p = {.incoming = 0};
   PetscMPIInt incoming = 0;
   void *bytes = NULL;
@@ -150,6 +155,7 @@ typedef struct star {
 static void star_destroy(void *user, void *handle) {
   star *s = handle;
   (void)user;
+  if (mpsi_petsc_stranded()) return;
   if (s->item_bytes > 0) (void)MPI_Type_free(&s->item);
   (void)PetscSFDestroy(&s->forest);
   free(s);
@@ -158,6 +164,7 @@ static void star_destroy(void *user, void *handle) {
 static mps_status star_create(void *user, int64_t own, int64_t guests, const int32_t *rank,
                               const int64_t *index, void **out) {
   const transport *t = user;
+  if (mpsi_petsc_stranded()) return MPS_ERROR_IO;
   star *s = calloc(1, sizeof *s);
   PetscSFNode *node = malloc(((size_t)guests + 1) * sizeof *node);
   bool good = s && node && own <= PETSC_MAX_INT && guests <= PETSC_MAX_INT;
@@ -179,6 +186,7 @@ static mps_status star_begin(void *user, void *handle, int32_t item_bytes, const
                              void *guests) {
   star *s = handle;
   (void)user;
+  if (mpsi_petsc_stranded()) return MPS_ERROR_IO;
   if (item_bytes != s->item_bytes) {
     const int size = (int)sizeof(double);
     const bool doubles = item_bytes % size == 0;
@@ -197,6 +205,7 @@ static mps_status star_begin(void *user, void *handle, int32_t item_bytes, const
 static mps_status star_end(void *user, void *handle) {
   star *s = handle;
   (void)user;
+  if (mpsi_petsc_stranded()) return MPS_ERROR_IO;
   return MPSI_PETSC_STATUS(PetscSFBcastEnd(s->forest, s->item, s->own, s->guests, MPI_REPLACE));
 }
 
@@ -231,7 +240,9 @@ static void wait_for_left(void) { drop_left(true); }
 
 static void destroy(void *user) {
   transport *t = user;
-  if (t->values) {
+  if (mpsi_petsc_stranded()) {
+    free(t); /* its communicator is in use by the others */
+  } else if (t->values) {
     mpsi_petsc_before_end(wait_for_left);
     t->next = leaving;
     leaving = t;
@@ -247,16 +258,23 @@ static mps_status refuse(mps_status status) {
   return status;
 }
 
-static mps_status create(mps_context *context, MPI_Comm communicator, mps_domain **out) {
+/* Reductions in two parts cost more than they save where ranks keep in step. */
+static bool in_parts(void) {
+  PetscBool asked = PETSC_FALSE;
+  return PetscOptionsHasName(NULL, "mps_", "-reduce_in_parts", &asked) == 0 && asked;
+}
+
+static mps_status create(mps_context *context, const char *function, MPI_Comm communicator,
+                         mps_domain **out) {
   transport *t = calloc(1, sizeof *t);
   int rank = 0, size = 0;
   drop_left(false);
-  if (!t) return refuse(MPS_ERROR_MEMORY);
-  if (MPI_Comm_dup(communicator, &t->comm) != 0) {
+  if (!t) return refuse(mpsi_petsc_fail(context, function, MPS_ERROR_MEMORY, "no memory is left"));
+  const mps_status made = mpsi_petsc_duplicate(context, function, communicator, &t->comm);
+  if (made != MPS_OK) {
     free(t);
-    return refuse(MPS_ERROR_IO);
+    return refuse(made);
   }
-  (void)MPI_Comm_set_errhandler(t->comm, MPI_ERRORS_RETURN);
   (void)MPI_Comm_rank(t->comm, &rank);
   (void)MPI_Comm_size(t->comm, &size);
   mps_domain_def def = mps_domain_defaults();
@@ -270,8 +288,7 @@ static mps_status create(mps_context *context, MPI_Comm communicator, mps_domain
   def.star_destroy = star_destroy;
   def.reduce_max = reduce_max;
   def.reduce_sum = reduce_sum;
-  def.max_begin = max_begin;
-  def.max_end = max_end;
+  if (in_parts()) def.max_begin = max_begin, def.max_end = max_end;
   def.max_leave = max_leave;
   def.destroy = destroy;
   const mps_status status = mps_domain_create(context, &def, out);
@@ -285,14 +302,18 @@ mps_status mps_petsc_domain_create_c2f(mps_context *context, int32_t communicato
   if (!context || !out) return MPS_ERROR_ARGUMENT;
   *out = NULL;
   if (MPI_Initialized(&running) != 0 || MPI_Finalized(&ended) != 0 || !running || ended)
-    return MPS_ERROR_STATE;
+    return mps_context_set_error(context, MPS_ERROR_STATE, __func__,
+                                 "MPI is not running or has been ended");
   const mps_status status = mpsi_petsc_enter();
-  return status == MPS_OK ? create(context, MPI_Comm_f2c((MPI_Fint)communicator), out) : status;
+  return status == MPS_OK ? create(context, __func__, MPI_Comm_f2c((MPI_Fint)communicator), out)
+                          : mpsi_petsc_fail(context, __func__, status, "PETSc cannot be started");
 }
 
 mps_status mps_petsc_domain_create_world(mps_context *context, mps_domain **out) {
   if (!context || !out) return MPS_ERROR_ARGUMENT;
   *out = NULL;
   const mps_status status = mpsi_petsc_enter();
-  return status == MPS_OK ? create(context, MPI_COMM_WORLD, out) : status;
+  return status == MPS_OK
+             ? create(context, __func__, MPI_COMM_WORLD, out)
+             : mpsi_petsc_fail(context, __func__, status, "MPI or PETSc cannot be started");
 }

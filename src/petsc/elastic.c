@@ -24,11 +24,12 @@ static mps_status solve(void *user, const double *b, double tolerance, double *x
 mps_status mps_petsc_solve_elastic(mps_petsc_solver *solver, mps_elastic *elastic) {
   mps_elastic_solver_def def = mps_elastic_solver_defaults();
   mps_elastic_def body = {0};
-  if (!solver || !elastic || mps_elastic_get_def(elastic, &body) != MPS_OK)
-    return MPS_ERROR_ARGUMENT;
+  if (!solver) return MPS_ERROR_ARGUMENT;
+  if (!elastic || mps_elastic_get_def(elastic, &body) != MPS_OK)
+    return mps_context_set_error(solver->context, MPS_ERROR_ARGUMENT, __func__, "elastic is NULL");
   const int32_t ranks = body.domain ? mps_domain_size(body.domain) : 1;
   if (solver->size > 1 && (ranks != solver->size || mps_domain_rank(body.domain) != solver->rank))
-    return MPS_ERROR_ARGUMENT;
+    return mpsi_petsc_refuse_ranks(solver, __func__, ranks);
   def.part = solver->rank, def.parts = solver->size;
   def.user = solver;
   def.matrix = take;

@@ -11,8 +11,9 @@
 #include <stdlib.h>
 #include <time.h>
 
-#define MOST 1000     /* iterations */
-#define PATIENCE 60.0 /* s, unless PETSc's option -mps_patience says otherwise */
+#define FUNCTION "mps_petsc_solver" /* in records */
+#define MOST 1000                   /* iterations */
+#define PATIENCE 60.0               /* s, unless PETSc's option -mps_patience says otherwise */
 /* Entries below this part of their diagonals bind no unknowns together. A row of elasticity reaches
  * three particles far, most of it weakly: .05 leaves so few bonds that aggregates have 14 particles
  * and the next level's matrix twice the entries of the first; .02 makes them 70 and the sum of all
@@ -26,32 +27,37 @@
 #define WEAK 0.05
 #define WEAK_OF_BODIES 0.02
 
-/* Others do not come: they wait for this one within PETSc, where nothing reaches them. */
-static void end_all(const mps_petsc_solver *s, mps_status status) {
-  fprintf(stderr,
-          "libmps-petsc: rank %d: PETSc has failed here (%s) and the other ranks wait for it: all "
-          "are ended\n",
-          s->rank, mps_status_text(status));
-  fflush(stderr);
-  (void)MPI_Abort(s->comm, 1);
+/* The others do not come: they wait for this one within PETSc, where nothing reaches them. */
+static mps_status give_up(const mps_petsc_solver *s, mps_status status) {
+  char what[200];
+  mpsi_petsc_strand();
+  snprintf(what, sizeof what,
+           "PETSc has failed on rank %d and the other ranks wait for it there: this process must "
+           "end, and with it the run",
+           s->rank);
+  return mpsi_petsc_fail(s->context, FUNCTION, status, what);
 }
 
 /* The worst status of all processes: after what they have done together, and before. Where all have
- * failed they all come here; who has failed alone does not wait for ever. */
-static mps_status agree(const mps_petsc_solver *s, mps_status status) {
-  int worst = (int)status, here = 0;
-  MPI_Request request;
+ * failed they all come here; who has failed alone does not wait for ever. `what` has failed here,
+ * if anything has. */
+static mps_status agree(mps_petsc_solver *s, const char *what, mps_status status) {
+  int here = 0;
   const double began = MPI_Wtime();
-  if (MPI_Iallreduce(MPI_IN_PLACE, &worst, 1, MPI_INT, MPI_MAX, s->comm, &request) != 0)
-    return MPS_ERROR_IO;
+  s->worst = (int)status;
+  if (MPI_Iallreduce(MPI_IN_PLACE, &s->worst, 1, MPI_INT, MPI_MAX, s->comm, &s->request) != 0)
+    return mpsi_petsc_fail(s->context, FUNCTION, MPS_ERROR_IO, "MPI_Iallreduce has failed");
   while (status != MPS_OK && !here) {
     const struct timespec nap = {.tv_nsec = 1000000};
-    if (MPI_Test(&request, &here, MPI_STATUS_IGNORE) != 0) return MPS_ERROR_IO;
+    if (MPI_Test(&s->request, &here, MPI_STATUS_IGNORE) != 0) return MPS_ERROR_IO;
     if (!here) (void)nanosleep(&nap, NULL);
-    if (!here && MPI_Wtime() - began > s->patience) end_all(s, status);
+    if (!here && MPI_Wtime() - began > s->patience) return give_up(s, status);
   }
-  if (!here && MPI_Wait(&request, MPI_STATUS_IGNORE) != 0) return MPS_ERROR_IO;
-  return (mps_status)worst;
+  if (!here && MPI_Wait(&s->request, MPI_STATUS_IGNORE) != 0)
+    return mpsi_petsc_fail(s->context, FUNCTION, MPS_ERROR_IO, "MPI_Wait has failed");
+  if (s->worst == MPS_OK) return MPS_OK;
+  return mpsi_petsc_fail(s->context, FUNCTION, (mps_status)s->worst,
+                         status != MPS_OK ? what : "PETSc has failed on another rank");
 }
 
 /* ---- life ------------------------------------------------------------------------------------ */
@@ -73,51 +79,78 @@ static bool configure(mps_petsc_solver *s) {
   return good && KSPSetOptionsPrefix(s->ksp, "mps_") == 0 && KSPSetFromOptions(s->ksp) == 0;
 }
 
-static mps_status create(int32_t method, MPI_Comm communicator, mps_petsc_solver **out) {
+static mps_status create(mps_context *context, const char *function, int32_t method,
+                         MPI_Comm communicator, mps_petsc_solver **out) {
   mps_petsc_solver *s = calloc(1, sizeof *s);
-  mps_status status = s ? MPS_OK : MPS_ERROR_MEMORY;
-  if (status == MPS_OK && MPI_Comm_dup(communicator, &s->comm) != 0) status = MPS_ERROR_IO;
+  mps_status status = s ? mpsi_petsc_duplicate(context, function, communicator, &s->comm)
+                        : mpsi_petsc_fail(context, function, MPS_ERROR_MEMORY, "no memory is left");
   if (status != MPS_OK) {
     free(s);
     mpsi_petsc_leave();
     return status;
   }
-  (void)MPI_Comm_set_errhandler(s->comm, MPI_ERRORS_RETURN);
   (void)MPI_Comm_rank(s->comm, &s->rank);
   (void)MPI_Comm_size(s->comm, &s->size);
+  s->context = context;
   s->method = method;
   s->patience = PATIENCE;
   (void)PetscOptionsGetReal(NULL, "mps_", "-patience", &s->patience, NULL);
   s->counts = calloc(2 * (size_t)s->size, sizeof *s->counts);
   s->places = s->counts ? s->counts + s->size : NULL;
   *out = s;
-  status = agree(s, s->counts ? MPS_OK : MPS_ERROR_MEMORY);
-  if (status == MPS_OK) status = agree(s, configure(s) ? MPS_OK : MPS_ERROR_UNSUPPORTED);
+  mpsi_petsc_listen();
+  status = agree(s, "no memory is left", s->counts ? MPS_OK : MPS_ERROR_MEMORY);
+  if (status == MPS_OK)
+    status = agree(s, "PETSc lacks the method or refuses an option",
+                   configure(s) ? MPS_OK : MPS_ERROR_UNSUPPORTED);
   if (status != MPS_OK) mps_petsc_solver_destroy(out);
   return status;
 }
 
-static mps_status check(int32_t method, mps_petsc_solver **out) {
-  if (!out) return MPS_ERROR_ARGUMENT;
+static mps_status check(mps_context *context, const char *function, int32_t method,
+                        mps_petsc_solver **out) {
+  char line[80];
+  if (!context) return MPS_ERROR_ARGUMENT;
+  if (!out) return mps_context_set_error(context, MPS_ERROR_ARGUMENT, function, "out is NULL");
   *out = NULL;
-  return method == MPS_PETSC_MULTIGRID || method == MPS_PETSC_DIRECT ? mpsi_petsc_enter()
-                                                                     : MPS_ERROR_ARGUMENT;
+  snprintf(line, sizeof line, "method is %d, allowed are 0 and 1", method);
+  if (method != MPS_PETSC_MULTIGRID && method != MPS_PETSC_DIRECT)
+    return mps_context_set_error(context, MPS_ERROR_ARGUMENT, function, line);
+  const mps_status status = mpsi_petsc_enter();
+  return status == MPS_OK
+             ? MPS_OK
+             : mpsi_petsc_fail(context, function, status, "MPI or PETSc cannot be started");
 }
 
-mps_status mps_petsc_solver_create(int32_t method, mps_petsc_solver **out) {
-  const mps_status status = check(method, out);
-  return status == MPS_OK ? create(method, PETSC_COMM_SELF, out) : status;
+mps_status mps_petsc_solver_create(mps_context *context, int32_t method, mps_petsc_solver **out) {
+  const mps_status status = check(context, __func__, method, out);
+  return status == MPS_OK ? create(context, __func__, method, PETSC_COMM_SELF, out) : status;
 }
 
-mps_status mps_petsc_solver_create_world(int32_t method, mps_petsc_solver **out) {
-  const mps_status status = check(method, out);
-  return status == MPS_OK ? create(method, MPI_COMM_WORLD, out) : status;
+mps_status mps_petsc_solver_create_world(mps_context *context, int32_t method,
+                                         mps_petsc_solver **out) {
+  const mps_status status = check(context, __func__, method, out);
+  return status == MPS_OK ? create(context, __func__, method, MPI_COMM_WORLD, out) : status;
 }
 
-mps_status mps_petsc_solver_create_c2f(int32_t method, int32_t communicator,
+mps_status mps_petsc_solver_create_c2f(mps_context *context, int32_t method, int32_t communicator,
                                        mps_petsc_solver **out) {
-  const mps_status status = check(method, out);
-  return status == MPS_OK ? create(method, MPI_Comm_f2c((MPI_Fint)communicator), out) : status;
+  int running = 0;
+  if (context && (MPI_Initialized(&running) != 0 || !running))
+    return mps_context_set_error(context, MPS_ERROR_STATE, __func__, "MPI is not running");
+  const mps_status status = check(context, __func__, method, out);
+  return status == MPS_OK
+             ? create(context, __func__, method, MPI_Comm_f2c((MPI_Fint)communicator), out)
+             : status;
+}
+
+mps_status mpsi_petsc_refuse_ranks(const mps_petsc_solver *s, const char *function, int32_t ranks) {
+  char line[160];
+  snprintf(line, sizeof line,
+           "the solver is of %d processes, of which this is %d: they must be the %d ranks of the "
+           "domain in their order",
+           s->size, s->rank, (int)ranks);
+  return mps_context_set_error(s->context, MPS_ERROR_ARGUMENT, function, line);
 }
 
 static void drop(mps_petsc_solver *s) {
@@ -130,6 +163,10 @@ void mps_petsc_solver_destroy(mps_petsc_solver **solver) {
   if (!solver || !*solver) return;
   mps_petsc_solver *s = *solver;
   *solver = NULL;
+  if (mpsi_petsc_stranded()) { /* PETSc's objects and the agreement are still in use by others */
+    mpsi_petsc_leave();
+    return;
+  }
   (void)KSPDestroy(&s->ksp);
   drop(s);
   (void)MPI_Comm_free(&s->comm);
@@ -238,8 +275,12 @@ void mpsi_petsc_forget(mps_petsc_solver *s) { s->forgets = true; }
 
 mps_status mpsi_petsc_take(mps_petsc_solver *s, const mpsi_petsc_matrix *a) {
   indices x = {NULL, NULL, NULL};
-  mps_status status = agree(s, convert(a, &x));
-  if (status == MPS_OK) status = agree(s, make_matrix(s, a, &x) ? MPS_OK : MPS_ERROR_MEMORY);
+  if (mpsi_petsc_stranded()) return MPS_ERROR_IO;
+  mpsi_petsc_listen();
+  mps_status status = agree(s, "the matrix has no room", convert(a, &x));
+  if (status == MPS_OK)
+    status =
+        agree(s, "PETSc cannot make the matrix", make_matrix(s, a, &x) ? MPS_OK : MPS_ERROR_MEMORY);
   free(x.start);
   free(x.copy);
   if (status != MPS_OK) return status;
@@ -297,6 +338,8 @@ mps_status mpsi_petsc_solve(mps_petsc_solver *s, const double *b, double toleran
                             int64_t *iterations) {
   int nothing = 1, mine = 1;
   if (s->all == 0) return MPS_ERROR_STATE;
+  if (mpsi_petsc_stranded()) return MPS_ERROR_IO;
+  mpsi_petsc_listen();
   for (int64_t i = s->first; i < s->first + s->rows; i++) mine = mine && b[i] == 0.0;
   if (MPI_Allreduce(&mine, &nothing, 1, MPI_INT, MPI_LAND, s->comm) != 0) return MPS_ERROR_IO;
   if (nothing) {
@@ -306,7 +349,8 @@ mps_status mpsi_petsc_solve(mps_petsc_solver *s, const double *b, double toleran
   if (VecPlaceArray(s->b, b + s->first) != 0 || VecPlaceArray(s->x, x + s->first) != 0)
     return MPS_ERROR_INTERNAL;
   /* A little closer than asked for: the norm that the iteration carries on drifts. */
-  const mps_status status = agree(s, solve(s, 0.9 * tolerance, iterations));
+  const mps_status status = agree(s, "PETSc has failed, or its iterations do not converge",
+                                  solve(s, 0.9 * tolerance, iterations));
   (void)VecResetArray(s->b);
   (void)VecResetArray(s->x);
   if (status != MPS_OK || s->size == 1) return status;

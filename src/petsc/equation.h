@@ -8,10 +8,13 @@
 #include <stdbool.h>
 
 struct mps_petsc_solver {
-  int32_t method; /* mps_petsc_method */
+  mps_context *context; /* for records */
+  int32_t method;       /* mps_petsc_method */
   MPI_Comm comm;
   int rank, size;
-  PetscReal patience; /* s: how long one that has failed waits for the others */
+  PetscReal patience;  /* s: how long one that has failed waits for the others */
+  MPI_Request request; /* of the agreement under way */
+  int worst;           /* of all processes, in that; written until all have joined it */
   KSP ksp;
   Mat matrix; /* the last one */
   Vec x, b;   /* without values of their own */
@@ -34,6 +37,8 @@ typedef struct mpsi_petsc_matrix {
   const double *mode; /* `rows` values each */
 } mpsi_petsc_matrix;
 
+/* The record of a solver whose processes are not the ranks of what it is to solve. */
+mps_status mpsi_petsc_refuse_ranks(const mps_petsc_solver *s, const char *function, int32_t ranks);
 mps_status mpsi_petsc_take(mps_petsc_solver *s, const mpsi_petsc_matrix *a);
 /* Nothing of former equations serves any more. */
 void mpsi_petsc_forget(mps_petsc_solver *s);

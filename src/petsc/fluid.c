@@ -33,10 +33,12 @@ static mps_status forget(void *user) {
 mps_status mps_petsc_solve_fluid(mps_petsc_solver *solver, mps_fluid *fluid, int64_t least) {
   mps_fluid_solver_def def = mps_fluid_solver_defaults();
   mps_fluid_def of = {0};
-  if (!solver || !fluid || mps_fluid_get_def(fluid, &of) != MPS_OK) return MPS_ERROR_ARGUMENT;
+  if (!solver) return MPS_ERROR_ARGUMENT;
+  if (!fluid || mps_fluid_get_def(fluid, &of) != MPS_OK)
+    return mps_context_set_error(solver->context, MPS_ERROR_ARGUMENT, __func__, "fluid is NULL");
   const int32_t ranks = of.domain ? mps_domain_size(of.domain) : 1;
   if (ranks != solver->size || (ranks > 1 && mps_domain_rank(of.domain) != solver->rank))
-    return MPS_ERROR_ARGUMENT;
+    return mpsi_petsc_refuse_ranks(solver, __func__, ranks);
   def.user = solver;
   def.matrix = take;
   def.rows = take_rows;

@@ -51,6 +51,19 @@ static void context_clear_error(api *a) {
   api_end_query(a);
 }
 
+static void context_set_error(api *a) {
+  api_begin(a, "mps_context_set_error");
+  mps_context *context = api_context(a);
+  const bool good = api_chance(a, 70);
+  const mps_status status =
+      mps_context_set_error(context, good ? MPS_ERROR_IO : MPS_OK, "mps_context_set_error",
+                            good || api_chance(a, 50) ? "what the caller says" : NULL);
+  if (context && status != (good ? MPS_ERROR_IO : MPS_ERROR_ARGUMENT))
+    api_broken(a, "returns another status");
+  a->reads = true;
+  (void)api_end(a, status);
+}
+
 /* Hooks are put in as they were, or taken out. */
 static void context_set_hook(api *a, const char *name, int which) {
   api_begin(a, name);
@@ -237,6 +250,7 @@ static const api_call calls[] = {
     {"mps_context_destroy", 1, API_CONTEXT, destroy_context_destroy},
     {"mps_context_error", 1, API_CONTEXT, query_context_error},
     {"mps_context_clear_error", 1, API_CONTEXT, context_clear_error},
+    {"mps_context_set_error", 1, API_CONTEXT, context_set_error},
     {"mps_context_set_log", 1, API_CONTEXT, context_set_log},
     {"mps_context_set_progress", 1, API_CONTEXT, context_set_progress},
     {"mps_context_set_cancel", 1, API_CONTEXT, context_set_cancel},

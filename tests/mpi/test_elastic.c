@@ -117,7 +117,7 @@ static void a_solver_is_taken_out_again(void **state) {
 int main(void) {
   if (!begin_world()) return 1;
   for (int32_t k = 0; k < 2; k++)
-    if (mps_petsc_solver_create_world(k, &solvers[k]) != MPS_OK) return 1;
+    if (mps_petsc_solver_create_world(own, k, &solvers[k]) != MPS_OK) return 1;
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(static_solutions_are_cholmods),
       cmocka_unit_test(motions_are_cholmods),

@@ -6,6 +6,7 @@
 #include "core/guard.h"
 
 #include <mps/kernel.h>
+#include <mps/particles.h>
 
 static void status_texts_are_distinct(void **state) {
   (void)state;
@@ -54,6 +55,30 @@ static void bad_definitions_are_refused_with_the_reason(void **state) {
   def.struct_size = 0;
   assert_int_equal(mps_context_create(&def, &context, text, sizeof text), MPS_ERROR_ARGUMENT);
   assert_int_equal(mps_context_create(NULL, NULL, NULL, 0), MPS_ERROR_ARGUMENT);
+}
+
+static mps_status refuse_node(void *user, const double *x, int32_t *inside) {
+  (void)x, (void)inside;
+  return mps_context_set_error(user, MPS_ERROR_IO, "my_reader", "the tape has ended");
+}
+
+static void a_callback_says_why_it_has_failed(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  mps_particles_def def = mps_particles_defaults();
+  mps_particles *set = NULL;
+  const double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {1.0, 1.0, 1.0};
+  def.spacing = 0.5;
+  mps_assert_ok(context, mps_particles_create(context, &def, &set));
+  mps_assert_fails(context, mps_particles_fill_where(set, lo, hi, refuse_node, context, NULL),
+                   MPS_ERROR_IO, "my_reader: the tape has ended");
+  mps_assert_fails(context, mps_context_set_error(context, MPS_OK, "f", "nothing"),
+                   MPS_ERROR_ARGUMENT, "status is 0");
+  mps_assert_fails(context, mps_context_set_error(context, MPS_ERROR_IO, NULL, NULL),
+                   MPS_ERROR_ARGUMENT, "message NULL");
+  assert_int_equal(mps_context_set_error(NULL, MPS_ERROR_IO, "f", "x"), MPS_ERROR_ARGUMENT);
+  mps_particles_destroy(&set);
+  mps_context_destroy(&context);
 }
 
 static void the_instruction_level_is_one_that_the_machine_has(void **state) {
@@ -338,6 +363,7 @@ int main(void) {
       cmocka_unit_test(status_texts_are_distinct),
       cmocka_unit_test(a_larger_definition_of_a_newer_program_is_accepted_when_its_tail_is_zero),
       cmocka_unit_test(bad_definitions_are_refused_with_the_reason),
+      cmocka_unit_test(a_callback_says_why_it_has_failed),
       cmocka_unit_test(the_instruction_level_is_one_that_the_machine_has),
       cmocka_unit_test(errors_are_recorded_and_cleared),
       cmocka_unit_test(an_error_names_its_object),
