@@ -260,9 +260,9 @@ MPS_API MPS_NODISCARD mps_status mps_dynamics_remove_load(mps_dynamics *dynamics
 
 /** Takes `count` (>= 0) steps of dt, then brings all fields up to date. The cancel hook is asked
  *  before the first and some ten times a second: MPS_ERROR_CANCELLED, after whole steps.
- *  MPS_ERROR_DIVERGED: an acceleration beyond the limit of the definition, or not finite; the error
- *  record names step, time and particle; the fields show the state after that step, `pressure` that
- *  of its positions, and mps_dynamics_rollback, _restore and _restart lead back. */
+ *  MPS_ERROR_DIVERGED: an acceleration beyond the limit of the definition or not finite, or at the
+ *  end a velocity beyond 1e100 m/s; the record names step, time and particle; fields show the state
+ *  after that step, `pressure` of its positions; _rollback, _restore and _restart lead back. */
 MPS_API MPS_NODISCARD mps_status mps_dynamics_step(mps_dynamics *dynamics, int64_t count);
 
 /** Called at the start of a run, then every `every` steps and at the end, with fields up to date.

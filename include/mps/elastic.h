@@ -361,8 +361,8 @@ MPS_API MPS_NODISCARD mps_status mps_elastic_start(mps_elastic *e,
                                                    const mps_elastic_motion_def *def);
 /** Takes `count` (>= 0) steps, and writes `displacement`, `velocity`, `acceleration` and
  * `reaction`. Loads and boundaries may be changed between calls: they act as they are at the end of
- * a step. A step that fails or is cancelled has not happened: state, time and fields are those
- * after the last whole one. */
+ * a step. A step that fails (MPS_ERROR_NUMERIC: a speed beyond 1e100 m/s) or is cancelled has not
+ * happened: state, time and fields are those after the last whole one. */
 MPS_API MPS_NODISCARD mps_status mps_elastic_step(mps_elastic *e, int64_t count);
 /** Called at the start of a run, then every `every` steps and at the end, with fields up to date. A
  *  status other than MPS_OK ends the run, which returns it. */

@@ -257,10 +257,10 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_remove_load(mps_fluid *fluid, int32_t
 
 /** Takes `count` (>= 0) steps. A step that fails has not happened: MPS_ERROR_NUMERIC, the pressure
  *  solution did not converge; MPS_ERROR_DIVERGED, a particle would pass a wall or its velocity is
- *  not finite, a boundary or body goes more than 1.5 l0 in the step or a boundary bends to a slope
- * of more than 1 (the log is warned from l0/2 and a slope of .1 on, once), or the library's step
- * would be too short (see dt); MPS_ERROR_STATE, walls change the volume of fluid without a free
- * surface; MPS_ERROR_CANCELLED. */
+ *  beyond 1e100 m/s, a boundary or body goes more than 1.5 l0 in the step or a boundary bends to a
+ * slope of more than 1 (the log is warned from l0/2 and a slope of .1 on, once), or the library's
+ * step would be too short (see dt); MPS_ERROR_STATE, walls change the volume of fluid without a
+ * free surface; MPS_ERROR_CANCELLED. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_step(mps_fluid *fluid, int64_t count);
 
 /* A step in parts, for what the water and something else move together (two-way coupling):
@@ -286,7 +286,7 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_begin_step(mps_fluid *fluid, double d
  *  the step stays open. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_solve_pressure(mps_fluid *fluid);
 /** Ends the step with the last solution. A motion set since has to be solved for first. After
- *  MPS_ERROR_DIVERGED no step is open and it has not happened. */
+ *  MPS_ERROR_DIVERGED or MPS_ERROR_MEMORY no step is open and it has not happened. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_end_step(mps_fluid *fluid);
 /** Gives the open step up: all is as before it. */
 MPS_API MPS_NODISCARD mps_status mps_fluid_abandon_step(mps_fluid *fluid);

@@ -362,8 +362,8 @@ static inline mps_status mps_mpm_get_usage(mps_mpm *mpm, mps_mpm_usage *out) {
 /** Keeps the state of the solver, its set (fields, order) and its bodies in memory. *snapshot is
  *  NULL at first and receives a new one, or one of this solver to be filled again, whose memory is
  *  then reused. Needs as much memory as the fields. Between steps only, as in the callback of
- *  mps_mpm_run. On an error *snapshot is as before. MPS_ERROR_ARGUMENT: a snapshot of another
- *  solver; MPS_ERROR_STATE: a step has failed. */
+ *  mps_mpm_run. Edits are read as by a step: dt and limit follow, particles may be sorted. On an
+ *  error *snapshot is as before. MPS_ERROR_ARGUMENT: of another solver; _STATE: a step failed. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_snapshot(mps_mpm *mpm, mps_snapshot **snapshot);
 /** Goes back to a snapshot, bit for bit; a step that failed is forgotten, particles that came or
  *  went since then go or come back, and ids given since are given again. Not in the snapshot, and
@@ -375,9 +375,9 @@ MPS_API MPS_NODISCARD mps_status mps_mpm_rollback(mps_mpm *mpm, const mps_snapsh
 /** Writes a checkpoint of the solver's set (see mps_checkpoint_write, also for errors) with all
  *  that the solver needs to go on: time, steps, order and blocks of the particles, forces of the
  *  walls; of its bodies motion, load, reactions and impulses. Of `info` (NULL: the defaults) only
- *  user_key and the user_data are read. The run is not touched: it goes on as if it had not been
- *  saved. Between steps only, such as in the callback of mps_mpm_run. MPS_ERROR_STATE: a step has
- *  failed. */
+ *  user_key and the user_data are read. Edits are read as by mps_mpm_snapshot; the run goes on as
+ *  if it had not been saved. Between steps only, such as in the callback of mps_mpm_run.
+ *  MPS_ERROR_STATE: a step has failed. */
 MPS_API MPS_NODISCARD mps_status mps_mpm_save(mps_mpm *mpm, const char *path,
                                               const mps_checkpoint *info);
 

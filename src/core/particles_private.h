@@ -25,6 +25,12 @@ typedef struct mpsi_field {
   int64_t stride;       /* items from one column to the next */
 } mpsi_field;
 
+/* Where the columns of a field lie. */
+typedef struct mpsi_column_place {
+  void *block, *data;
+  int64_t stride;
+} mpsi_column_place;
+
 /* Occupied lattice sites begin <= i < end of the row (j, k). */
 typedef struct mpsi_site_run {
   int64_t begin, end, j, k;
@@ -40,8 +46,10 @@ struct mps_particles {
   mps_context *context;
   mps_particles_def def;
   int64_t count, capacity;
-  uint64_t epoch,
-      unmoved;          /* unmoved: the epoch before particles came last, 0 where columns moved */
+  uint64_t epoch;
+  mpsi_column_place *former; /* of each field, while particles are being added and the columns have
+                                moved: where they were; else NULL */
+  int64_t former_capacity;
   mpsi_holder *holders; /* in the order in which they came, the last first */
   int32_t pins;         /* holders that do not say who they are */
   bool owned;           /* the caller has not destroyed it */
@@ -72,9 +80,12 @@ static inline void *mpsi_field_column(const mpsi_field *field, int32_t component
 void *mpsi_field_allocate(mps_context *context, const mpsi_field *field, int64_t capacity);
 /* The field lies in a block of mpsi_field_allocate from now on; nothing is copied or freed. */
 void mpsi_field_place(mpsi_field *field, void *block, int64_t capacity);
-/* Moves a field of `count` particles into a block of mpsi_field_allocate. */
-/* Makes room for so many particles; false: refused, and nothing has changed. */
+/* Makes room for so many particles; false: no memory, and nothing has changed. The columns lie
+ * elsewhere then, and their former memory is kept, for mpsi_particles_settle_columns to free it or
+ * to put the columns back there: views that the caller has are valid again. */
 bool mpsi_particles_reserve(mps_particles *p, int64_t capacity);
+void mpsi_particles_settle_columns(mps_particles *p, bool moved);
+/* Moves a field of `count` particles into a block of mpsi_field_allocate. */
 void mpsi_field_move(mps_context *context, mpsi_field *field, void *block, int64_t count,
                      int64_t capacity);
 

@@ -4,8 +4,7 @@
 
 #include <string.h>
 
-/* Both take notice; `renew` is told to all, since columns may lie elsewhere even after a refusal.
- */
+/* Also after a refusal: a holder that had agreed has taken the columns' new places. */
 static void renew_holders(const mps_particles *p) {
   for (const mpsi_holder *h = p->holders; h; h = h->next)
     if (h->renew) h->renew(h->self);
@@ -32,22 +31,43 @@ mps_status mpsi_particles_check_free(const mps_particles *p, const char *functio
       "the particle set is held by %s, which takes no more particles: destroy it first", who);
 }
 
-/* First all the memory, then the moves, so that a failure leaves every borrowed view valid. */
 bool mpsi_particles_reserve(mps_particles *p, int64_t capacity) {
   mps_context *context = p->context;
-  void **blocks = mpsi_alloc(context, p->field_count, sizeof *blocks);
-  bool good = blocks != NULL;
+  mpsi_column_place *places = mpsi_alloc(context, p->field_count, sizeof *places);
+  bool good = places != NULL;
   for (int32_t f = 0; good && f < p->field_count; f++)
-    good = (blocks[f] = mpsi_field_allocate(context, p->fields[f], capacity)) != NULL;
-  if (good) p->capacity = capacity;
-  for (int32_t f = 0; blocks && f < p->field_count; f++) {
-    if (good)
-      mpsi_field_move(context, p->fields[f], blocks[f], p->count, capacity);
-    else
-      mpsi_free(context, blocks[f]);
+    good = (places[f].block = mpsi_field_allocate(context, p->fields[f], capacity)) != NULL;
+  for (int32_t f = 0; places && !good && f < p->field_count; f++)
+    mpsi_free(context, places[f].block);
+  if (!good) {
+    mpsi_free(context, places);
+    return false;
   }
-  mpsi_free(context, blocks);
-  return good;
+  for (int32_t f = 0; f < p->field_count; f++) {
+    const mpsi_field before = *p->fields[f];
+    mpsi_field_place(p->fields[f], places[f].block, capacity);
+    for (int32_t c = 0; c < before.components && p->count > 0; c++)
+      memcpy(mpsi_field_column(p->fields[f], c), mpsi_field_column(&before, c),
+             (size_t)p->count * 8);
+    places[f] = (mpsi_column_place){before.block, before.data, before.stride};
+  }
+  p->former = places, p->former_capacity = p->capacity;
+  p->capacity = capacity;
+  return true;
+}
+
+void mpsi_particles_settle_columns(mps_particles *p, bool moved) {
+  if (!p->former) return;
+  for (int32_t f = 0; f < p->field_count; f++) {
+    mpsi_field *field = p->fields[f];
+    const mpsi_column_place former = p->former[f];
+    mpsi_free(p->context, moved ? former.block : field->block);
+    if (moved) continue;
+    field->block = former.block, field->data = former.data, field->stride = former.stride;
+  }
+  if (!moved) p->capacity = p->former_capacity;
+  mpsi_free(p->context, p->former);
+  p->former = NULL;
 }
 
 /* Room in the map for `count` more ids. */
@@ -68,10 +88,9 @@ mps_status mpsi_particles_extend(mps_particles *p, const char *function, int64_t
                      "%lld particles to add to %lld, a set holds at most 2^40", (long long)count,
                      (long long)p->count);
   const int64_t needed = p->count + count;
-  if (!reserve_ids(p, count)) /* before the columns, which views know, move */
+  if (!reserve_ids(p, count))
     return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
                      "could not allocate the numbers of %lld particles", (long long)count);
-  p->unmoved = needed <= p->capacity ? p->epoch : 0;
   if (needed > p->capacity) {
     /* The first fill gets exactly its size; later growth is by half at least. */
     const int64_t half_more = p->capacity + p->capacity / 2;
@@ -102,9 +121,10 @@ mps_status mpsi_particles_arrive(mps_particles *p, const char *function, mps_sta
   if (status != MPS_OK) {
     p->count = first;
     p->next_id -= count;
-    if (p->unmoved > 0) p->epoch = p->unmoved; /* what views show is where it was */
-    clear_tail(p, count);
+    p->epoch--; /* what views show is where it was */
+    if (!p->former) clear_tail(p, count);
   }
+  mpsi_particles_settle_columns(p, status == MPS_OK);
   renew_holders(p);
   return status;
 }
@@ -197,7 +217,11 @@ void mpsi_particles_take_out(mps_particles *p, const uint8_t *gone) {
 }
 
 mps_status mpsi_particles_hold_room(mps_particles *p, const char *function, int64_t count) {
-  if (count <= p->capacity || mpsi_particles_reserve(p, count + count / 8)) return MPS_OK;
+  if (count <= p->capacity) return MPS_OK;
+  if (mpsi_particles_reserve(p, count + count / 8)) {
+    mpsi_particles_settle_columns(p, true);
+    return MPS_OK;
+  }
   return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
                    "could not allocate %d fields of %lld particles", p->field_count,
                    (long long)count);

@@ -191,16 +191,38 @@ static mps_status sum_up(mps_dynamics *dynamics, const char *function, mps_total
   return status;
 }
 
+/* Energies need the pressures of the present positions, which the field does not show: the kernels
+ * write them to `own`. */
+static mps_status read_energies(mps_dynamics *dynamics, const char *function, double *own,
+                                mps_totals *out) {
+  mpsi_dynamics_state *s = &dynamics->state;
+  double *const field = s->p;
+  memcpy(own, field, (size_t)(dynamics->count + dynamics->ghosts) * sizeof *own);
+  s->p = own;
+  const mps_status status = mpsi_dynamics_energies(dynamics, function, &out->kinetic, &out->strain);
+  s->p = field;
+  return status;
+}
+
+static mps_status find_totals(mps_dynamics *dynamics, const char *function, mps_totals *t) {
+  const int64_t room = dynamics->count + dynamics->ghosts + MPSI_PARTICLES_PADDING;
+  double *own = mpsi_alloc(dynamics->context, room, sizeof *own);
+  mps_status status =
+      own ? MPS_OK : mpsi_fail_memory(dynamics->context, function, (size_t)room * sizeof *own);
+  status = mpsi_domain_settle(dynamics->domain, function, status);
+  if (status == MPS_OK) status = mpsi_dynamics_settle_dt(dynamics, function);
+  if (status == MPS_OK && dynamics->fresh) dynamics->kept = dynamics->dt; /* the step to come */
+  if (status == MPS_OK) status = sum_up(dynamics, function, t);
+  if (status == MPS_OK) status = read_energies(dynamics, function, own, t);
+  mpsi_free(dynamics->context, own);
+  return status;
+}
+
 mps_status mps_dynamics_get_totals_sized(mps_dynamics *dynamics, mps_totals *out, size_t size) {
   static const char *const function = "mps_dynamics_get_totals";
   if (!dynamics) return MPS_ERROR_ARGUMENT;
   mps_totals t;
-  mps_status status = mpsi_domain_settle(dynamics->domain, function, MPS_OK);
-  if (status == MPS_OK) status = mpsi_dynamics_settle_dt(dynamics, function);
-  if (status != MPS_OK) return status;
-  if (dynamics->fresh) dynamics->kept = dynamics->dt; /* the step to come */
-  status = sum_up(dynamics, function, &t);
-  if (status == MPS_OK) status = mpsi_dynamics_energies(dynamics, function, &t.kinetic, &t.strain);
+  const mps_status status = find_totals(dynamics, function, &t);
   if (status != MPS_OK) return status;
   const mpsi_dynamics_works *w = &dynamics->works;
   const double start = dynamics->begun ? w->start : t.kinetic + t.strain;

@@ -119,6 +119,75 @@ static mps_status report_divergence(mps_dynamics *dynamics, const char *function
   return mpsi_domain_settle(dynamics->domain, function, status);
 }
 
+/* ---- speeds ------------------------------------------------------------------------------------
+ * Accelerations are bounded in every step; a velocity that a caller has written, a boundary drives
+ * or a torque has made may be so large that kinetic energy is no number any more. */
+
+#define FASTEST 1e100 /* m/s, also of the spin times the spacing */
+
+/* Whether a velocity (column `a`, or the change of a displacement from `b` to `a`) is beyond
+ * `most`.
+ */
+static bool any_beyond(const double *a, const double *b, int64_t begin, int64_t end, double most) {
+  int64_t beyond = 0;
+  if (b)
+    for (int64_t k = begin; k < end; k++) beyond |= !(fabs(a[k] - b[k]) <= most);
+  else
+    for (int64_t k = begin; k < end; k++) beyond |= !(fabs(a[k]) <= most);
+  return beyond != 0;
+}
+
+static void check_block_speeds(void *data, int64_t b, int32_t worker) {
+  mps_dynamics *dynamics = data;
+  const mpsi_dynamics_state *s = &dynamics->state;
+  const mpsi_dynamics_block *block = &dynamics->mesh.block[b];
+  const bool verlet = dynamics->def.integrator == MPS_DYNAMICS_INTEGRATOR_VERLET;
+  const double *const now[3] = {s->dx, s->dy, s->th}, *const old[3] = {s->ox, s->oy, s->oth};
+  const double *const v[3] = {s->vx, s->vy, s->vth};
+  (void)worker;
+  dynamics->bad[b] = 0;
+  for (int c = 0; c < 3; c++) {
+    const double most = c == 2 ? FASTEST / dynamics->spacing : FASTEST;
+    if (verlet ? any_beyond(now[c], old[c], block->begin, block->end, most * dynamics->lag)
+               : any_beyond(v[c], NULL, block->begin, block->end, most))
+      dynamics->bad[b] = 1;
+  }
+}
+
+static bool too_fast(mps_dynamics *dynamics) {
+  bool any = false;
+  mpsi_parallel_for(dynamics->context, dynamics->mesh.blocks, check_block_speeds, dynamics);
+  for (int64_t b = 0; b < dynamics->mesh.blocks; b++) any = any || dynamics->bad[b];
+  return any;
+}
+
+/* Of several ranks the lowest that has such a particle names its first one. */
+static mps_status report_speed(mps_dynamics *dynamics, const char *function) {
+  const mpsi_dynamics_state *s = &dynamics->state;
+  int64_t found = -1;
+  for (int64_t b = 0; b < dynamics->mesh.blocks && found < 0; b++)
+    for (int64_t k = dynamics->mesh.block[b].begin;
+         dynamics->bad[b] && k < dynamics->mesh.block[b].end && found < 0; k++)
+      for (int c = 0; c < 3; c++)
+        if (!(fabs(mpsi_dynamics_velocity(dynamics, c, k)) * (c == 2 ? dynamics->spacing : 1.0) <=
+              FASTEST))
+          found = k;
+  mps_status status = MPS_OK;
+  dynamics->diverged = true;
+  if (found >= 0) {
+    const long long id = (long long)mpsi_particles_integers(dynamics->particles, "id")[found];
+    status = mpsi_fail(dynamics->context, function, MPS_ERROR_DIVERGED,
+                       "diverged at step %lld, t = %.6g s: particle %lld at (%.6g, %.6g) m moves "
+                       "with (%.4g, %.4g) m/s and turns with %.4g rad/s, beyond %g m/s",
+                       (long long)dynamics->steps, mps_dynamics_time(dynamics), id, s->rx[found],
+                       s->ry[found], mpsi_dynamics_velocity(dynamics, 0, found),
+                       mpsi_dynamics_velocity(dynamics, 1, found),
+                       mpsi_dynamics_velocity(dynamics, 2, found), FASTEST);
+    mpsi_fail_where(dynamics->context, dynamics->steps, id);
+  }
+  return mpsi_domain_settle(dynamics->domain, function, status);
+}
+
 /* Before a step of `length`: the displacements of a step before it, if the last was another. */
 static void fit_history(mps_dynamics *dynamics) {
   const double length = dynamics->length, ratio = length / dynamics->lag;
@@ -185,6 +254,16 @@ static mps_status settle_step(mps_dynamics *dynamics, const char *function, mps_
                               : mpsi_domain_settle_max(dynamics->domain, function, status, 1, &any);
   if (status != MPS_OK || any == 0.0) return status;
   return report_divergence(dynamics, function);
+}
+
+/* The same at the end of a call, with the speeds; looking ahead leaves both to the step itself. */
+static mps_status settle_last(mps_dynamics *dynamics, const char *function, bool diverged) {
+  const bool looks = isinf(dynamics->def.divergence);
+  double any[2] = {diverged, !diverged && !looks && too_fast(dynamics)};
+  const mps_status status = mpsi_domain_settle_max(dynamics->domain, function, MPS_OK, 2, any);
+  if (status != MPS_OK) return status;
+  if (any[0] != 0.0) return report_divergence(dynamics, function);
+  return any[1] != 0.0 ? report_speed(dynamics, function) : MPS_OK;
 }
 
 /* The first pass of all blocks. What lies on other ranks arrives while those blocks are at work
@@ -318,6 +397,6 @@ mps_status mpsi_dynamics_advance(mps_dynamics *dynamics, const char *function, i
     w.account = w.forces.any || watch;
     take_step(&w, output && k == count - 1, &diverged);
   }
-  status = settle_step(dynamics, function, MPS_OK, &diverged);
+  status = settle_last(dynamics, function, diverged);
   return status == MPS_ERROR_DIVERGED ? show_diverged(&w, function, status) : status;
 }

@@ -263,10 +263,11 @@ struct mps_fluid {
   int64_t unknown; /* 1: free_surface and surface_rise are not of the present set and walls */
   uint32_t warned; /* given already: mpsi_fluid_warning, bits */
   mpsi_identity *identity;
-  mps_fluid_report report, before;    /* before: as the step being made began */
-  double energy_before;               /* J, before particles come or go */
-  double energy;                      /* J, kinetic and potential at creation */
-  double work_boundaries, work_loads; /* J, since creation */
+  mps_fluid_report report, before;     /* before: as the step being made began */
+  mps_fluid_report report_before_look; /* of mpsi_fluid_refresh, until mpsi_fluid_show_surface */
+  double energy_before;                /* J, before particles come or go */
+  double energy;                       /* J, kinetic and potential at creation */
+  double work_boundaries, work_loads;  /* J, since creation */
 };
 
 /* Runs task(fluid, chunk) for the chunks of `items` items on the executor, of those that are this
@@ -436,9 +437,12 @@ void mpsi_fluid_load_cloud(mps_fluid *fluid);
 mps_status mpsi_fluid_look_around(mps_fluid *fluid, const char *function, mps_status status);
 mps_status mpsi_fluid_look(mps_fluid *fluid, const char *function);
 /* look.c: what readings rely on between steps, so that it follows from the state alone: the fields
- * of the surface (know); and with them the cloud, its loads and walls (refresh). */
+ * of the surface (know); and with them the cloud, its loads and walls (refresh). After the latter
+ * mpsi_fluid_show_surface writes the fields where all of the reading has succeeded, or leaves all
+ * as it was; it returns `status`. */
 mps_status mpsi_fluid_know(mps_fluid *fluid, const char *function);
 mps_status mpsi_fluid_refresh(mps_fluid *fluid, const char *function);
+mps_status mpsi_fluid_show_surface(mps_fluid *fluid, mps_status status);
 /* look.c: sorts the particles by place. */
 mps_status mpsi_fluid_sort(mps_fluid *fluid, const char *function);
 /* access.c: MPS_ERROR_STATE within a callback of the run (free), while a step is open (closed), or

@@ -44,25 +44,38 @@ mps_status mpsi_fluid_look(mps_fluid *f, const char *function) {
 
 /* A step has written what it knew of the surface; otherwise it is found now. In an open step the
  * cloud has the fields' particles and their surroundings. */
-mps_status mpsi_fluid_know(mps_fluid *f, const char *function) {
+static mps_status find_surface(mps_fluid *f, const char *function) {
   if (!f->unknown) return MPS_OK;
+  f->report_before_look = f->report;
   mps_status status = mpsi_fluid_settle(f, function, MPS_OK);
   if (status == MPS_OK && f->stage == MPSI_FLUID_BETWEEN) status = mpsi_fluid_look(f, function);
   if (status == MPS_OK) mpsi_fluid_tell_local(f);
   if (status == MPS_OK) status = mpsi_fluid_lost(f, function);
-  if (status != MPS_OK) return status;
+  return status;
+}
+
+mps_status mpsi_fluid_show_surface(mps_fluid *f, mps_status status) {
+  if (!f->unknown) return status;
+  if (status != MPS_OK) { /* found again by the next call that asks */
+    f->report = f->report_before_look;
+    return status;
+  }
   int64_t *surface = mpsi_particles_integers(f->particles, "free_surface");
   double *rise = column(f, "surface_rise", 0);
   for (int64_t i = 0; i < f->count; i++) surface[i] = f->state[i], rise[i] = mpsi_fluid_rise(f, i);
   f->unknown = 0;
-  return MPS_OK;
+  return status;
+}
+
+mps_status mpsi_fluid_know(mps_fluid *f, const char *function) {
+  return f->unknown ? mpsi_fluid_show_surface(f, find_surface(f, function)) : MPS_OK;
 }
 
 /* Loads are read as of the last step's time, of the particles where they are now. */
 mps_status mpsi_fluid_refresh(mps_fluid *f, const char *function) {
-  const mps_status status = mpsi_fluid_know(f, function);
+  const mps_status status = find_surface(f, function);
   if (status != MPS_OK || f->stage != MPSI_FLUID_BETWEEN) return status;
-  if (f->stale) {
+  if (f->stale) { /* the surface is known */
     const int64_t *surface = mpsi_particles_integers(f->particles, "free_surface");
     mpsi_fluid_load_cloud(f);
     for (int64_t i = 0; i < f->count; i++) f->state[i] = (uint8_t)surface[i];

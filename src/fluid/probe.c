@@ -227,6 +227,7 @@ mps_status mps_fluid_get_reaction_sized(mps_fluid *f, int32_t number, mps_reacti
 
 /* Pressures belong to a state: of the last step, or of the last solution in an open step. */
 static mps_status check_pressure(mps_fluid *f, const char *function) {
+  f->report_before_look = f->report;
   if (f->stage == MPSI_FLUID_BEGUN)
     return mpsi_fail(f->context, function, MPS_ERROR_STATE,
                      "the open step's pressure has not been solved");
@@ -260,7 +261,7 @@ mps_status mps_fluid_get_wall(mps_fluid *f, int32_t number, int64_t capacity, do
   listing list = {.capacity = capacity, .x = x, .pressure = pressure};
   status = check_pressure(f, __func__);
   if (status == MPS_OK) status = for_points(f, number, __func__, list_point, &list);
-  status = mpsi_fluid_settle(f, __func__, status);
+  status = mpsi_fluid_show_surface(f, mpsi_fluid_settle(f, __func__, status));
   if (status == MPS_OK) *count = list.count;
   return status;
 }
@@ -289,9 +290,10 @@ mps_status mps_fluid_get_pressure(mps_fluid *f, int32_t number, int64_t count, c
   int64_t near = 0;
   if (status == MPS_OK) status = check_points(f, __func__, &f->wall[number], count, x);
   status = mpsi_fluid_settle(f, __func__, status);
-  if (status == MPS_OK) status = check_pressure(f, __func__);
+  if (status != MPS_OK) return status;
+  status = check_pressure(f, __func__);
   if (status == MPS_OK) status = gather(f, &f->wall[number], __func__, &near);
-  status = mpsi_fluid_settle(f, __func__, status);
+  status = mpsi_fluid_show_surface(f, mpsi_fluid_settle(f, __func__, status));
   if (status != MPS_OK) return status;
   for (int64_t k = 0; k < count; k++) {
     const double at = mpsi_fluid_along(&f->wall[number], x[3 * k], x[3 * k + 1]);

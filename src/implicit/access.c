@@ -3,6 +3,7 @@
 #include "elastic_private.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 /* ---- calls back from the solver ----------------------------------------------------------------
  */
@@ -118,8 +119,16 @@ mps_status mpsi_elastic_bad_value(mps_elastic *e, const char *function, const ch
   return status;
 }
 
-mps_status mpsi_elastic_read_mass(mps_elastic *e, const char *function) {
+/* The factor of K + shift M is that of the former masses. */
+static void use_mass(mps_elastic *e, double *mass) {
+  const bool same = mass && e->mass && memcmp(mass, e->mass, (size_t)e->n * sizeof *mass) == 0;
+  if (!same && e->factored_shift != 0.0) e->factored = false;
+  e->mass = mass;
+}
+
+mps_status mpsi_elastic_read_mass(mps_elastic *e, const char *function, double **former) {
   double *mass = mpsi_alloc(e->context, e->n, sizeof *mass);
+  *former = e->mass;
   if (!mass) return mpsi_fail_memory(e->context, function, (size_t)e->n * sizeof *mass);
   mps_status status = mpsi_elastic_read(e, function, "density", mass, 1);
   for (int64_t i = 0; i < e->n && status == MPS_OK; i++) {
@@ -128,11 +137,16 @@ mps_status mpsi_elastic_read_mass(mps_elastic *e, const char *function) {
                                       "allowed is 1e-30 to 1e30 (kg/m3)");
     mass[i] *= e->volume[i];
   }
-  if (status != MPS_OK) {
+  if (status == MPS_OK)
+    use_mass(e, mass);
+  else
     mpsi_free(e->context, mass);
-    return status;
-  }
-  mpsi_free(e->context, e->mass);
-  e->mass = mass;
-  return MPS_OK;
+  return status;
+}
+
+void mpsi_elastic_settle_mass(mps_elastic *e, double *former, bool renewed) {
+  if (e->mass == former) return;
+  double *const other = renewed ? former : e->mass;
+  if (!renewed) use_mass(e, former);
+  mpsi_free(e->context, other);
 }

@@ -23,7 +23,7 @@ void mpsi_elastic_measure(mps_elastic *e) {
                          : 2.0 * e->mu[i] * d * e->volume[i] / e->density0;
   }
   mpsi_elastic_measure_bending(e);
-  e->values_valid = false;
+  e->values_valid = e->fabric_known = false;
 }
 
 /* Writes `young` and `poisson` of `count` particles, or of all (0, NULL). */
@@ -98,7 +98,8 @@ static mps_status renew_material(mps_elastic *e, const char *function) {
   double *former = mpsi_alloc(e->context, 3 * e->n, sizeof *former);
   if (!former) return mpsi_fail_memory(e->context, function, 3 * bytes);
   for (int k = 0; k < 3; k++) memcpy(former + k * e->n, moduli[k], bytes);
-  mps_status status = read_material(e, function);
+  mps_status status = mpsi_elastic_note_strain(e, function);
+  if (status == MPS_OK) status = read_material(e, function);
   if (status == MPS_OK) status = mpsi_elastic_find_joints(e, function);
   if (status == MPS_OK) mpsi_elastic_measure(e);
   for (int k = 0; k < 3 && status != MPS_OK; k++) memcpy(moduli[k], former + k * e->n, bytes);
@@ -184,10 +185,12 @@ mps_status mps_elastic_cut(mps_elastic *e, int32_t axis, int32_t side, int64_t c
   status = mpsi_elastic_leave(e, mpsi_elastic_settle_given(e, __func__, status, &given));
   if (status != MPS_OK) return status;
   mpsi_elastic_end_motion(e); /* its masses are no longer those of the cells */
-  mpsi_free(e->context, e->mass);
-  e->mass = NULL;
-  for (int64_t i = 0; i < count; i++)
-    e->cut[mpsi_elastic_find(e, ids[i])] |= (uint8_t)(1 << (2 * axis + (side > 0)));
+  for (int64_t k = 0; k < count; k++) {
+    const int64_t i = mpsi_elastic_find(e, ids[k]);
+    const uint8_t bit = (uint8_t)(1 << (2 * axis + (side > 0)));
+    if (e->mass && !(e->cut[i] & bit)) e->mass[i] *= 0.5;
+    e->cut[i] |= bit;
+  }
   mpsi_elastic_measure(e);
   return MPS_OK;
 }

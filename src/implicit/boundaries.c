@@ -208,6 +208,7 @@ mps_status mpsi_elastic_make_supports(mps_elastic *e, const char *function) {
   e->supports = s.supports;
   e->support_of = s.of;
   e->support_count = s.count;
+  e->fabric_known = false;
   return MPS_OK;
 }
 

@@ -15,7 +15,7 @@ static double kinetic_energy(const mps_elastic *e, const double *v) {
   return sum;
 }
 
-static mps_status strain_energy(mps_elastic *e, const char *function, double *out) {
+mps_status mpsi_elastic_strain_energy(mps_elastic *e, const char *function, double *out) {
   const mps_status status = mpsi_elastic_apply(e, function, e->displacement, e->work);
   *out = 0.0;
   for (int64_t k = 0; k < e->n * e->dim; k++) *out += 0.5 * e->displacement[k] * e->work[k];
@@ -24,7 +24,7 @@ static mps_status strain_energy(mps_elastic *e, const char *function, double *ou
 
 mps_status mpsi_elastic_begin_ledger(mps_elastic *e, const char *function) {
   e->ledger = (mpsi_ledger){.kinetic = kinetic_energy(e, e->motion->velocity)};
-  return strain_energy(e, function, &e->ledger.strain);
+  return mpsi_elastic_strain_energy(e, function, &e->ledger.strain);
 }
 
 void mpsi_elastic_count_solution(mps_elastic *e) {
@@ -81,12 +81,12 @@ mps_status mps_elastic_get_totals_sized(mps_elastic *e, mps_totals *out, size_t 
   mps_totals t = {.work_loads = l->loads, .work_boundaries = l->boundaries};
   sum_momenta(e, &t);
   const bool agreed = mpsi_elastic_begin_reading(e);
-  status = strain_energy(e, function, &t.strain);
+  status = mpsi_elastic_strain_energy(e, function, &t.strain);
   e->agreed = agreed;
   if (status != MPS_OK) return status;
   if (m) {
     t.kinetic = kinetic_energy(e, m->velocity);
-    const double kept = t.strain - l->strain;
+    const double kept = mpsi_elastic_former_strain(e, t.strain) - l->strain;
     const double damping = l->mass_damping + (m->a1 > 0.0 ? l->inner - kept : 0.0);
     if (!m->conserving)
       t.scheme = l->loads + l->boundaries - damping - kept - (t.kinetic - l->kinetic);

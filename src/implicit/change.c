@@ -41,7 +41,11 @@ static mps_status begin(mps_elastic *e, const char *function, int64_t count) {
                           .spacing = e->spacing,
                           .boundaries = e->boundaries,
                           .boundary_count = e->boundary_count};
-  return mpsi_elastic_allocate(&c->next, function);
+  const mps_status status = mpsi_elastic_allocate(&c->next, function);
+  if (status != MPS_OK || !e->mass) return status;
+  c->next.mass = mpsi_alloc(e->context, count, sizeof *c->next.mass);
+  return c->next.mass ? MPS_OK
+                      : mpsi_fail_memory(e->context, function, (size_t)count * sizeof *e->mass);
 }
 
 /* What particle i of e takes along as number k of the new body. */
@@ -50,6 +54,7 @@ static void carry(const mps_elastic *e, int64_t i, mps_elastic *next, int64_t k)
   const int64_t from = i * e->dim, to = k * e->dim;
   next->id[k] = e->id[i];
   next->cut[k] = e->cut[i];
+  if (e->mass) next->mass[k] = e->mass[i];
   next->lambda[k] = e->lambda[i], next->mu[k] = e->mu[i], next->poisson[k] = e->poisson[i];
   memcpy(next->x + to, e->x + from, bytes);
   memcpy(next->displacement + to, e->displacement + from, bytes);
@@ -202,7 +207,7 @@ static mps_status prepare_body(mps_elastic *e, const char *function, const forme
   mpsi_elastic_sort_ids(f->count, next->id);
   status = carry_all(e, function, f, source, disagreement);
   if (status == MPS_OK) status = finish(next, function);
-  next->mass = mpsi_alloc(e->context, next->n, sizeof *next->mass);
+  if (!next->mass) next->mass = mpsi_alloc(e->context, next->n, sizeof *next->mass);
   if (status == MPS_OK && !next->mass)
     status = mpsi_fail_memory(e->context, function, (size_t)next->n * sizeof *next->mass);
   return status == MPS_OK ? mpsi_elastic_allocate_motion(next, function, &e->change->motion)
@@ -257,11 +262,13 @@ mps_status mpsi_elastic_prepare_state(void *self, const char *function, const mp
 
 void mpsi_elastic_bind(void *self) {
   mps_elastic *e = self;
+  if (e->motion) e->motion->strain_known = false;
   if (!e->change) return;
   use(e);
   if (e->motion) mpsi_elastic_free_arrays(e, e->motion);
   if (!e->motion) e->motion = e->ended;
   e->ended = NULL;
   mpsi_elastic_move_arrays(&e->change->motion, e->motion);
+  e->motion->strain_known = false;
   mpsi_elastic_drop_change(e);
 }

@@ -10,7 +10,7 @@
  * system.c    factor, solve, refine            cholesky.c  CHOLMOD;  cg.c  conjugate gradients
  * outside.c   a solver of the caller           share.c     a rank's part of the operator
  * stress.c    stresses, sections, energy       motion.c, motion_state.c, budget.c,
- *                                              modes.c     dynamics
+ *                                              renewal.c, modes.c     dynamics
  * change.c    particles that leave, or come back with a former state;  restart.c  that state
  *
  * Vectors over all particles are indexed [i * dim + c], i being the rank of the particle's id:
@@ -32,7 +32,8 @@
 #define MPSI_STENCIL_MAX 64      /* sites of one gradient: a disc of radius < 4 has 45 */
 #define MPSI_ELASTIC_LEAST 1e-30 /* of a positive quantity in SI units */
 #define MPSI_ELASTIC_MOST 1e30
-#define MPSI_ELASTIC_CHUNK 2048 /* particles of one unit of parallel work */
+#define MPSI_ELASTIC_FURTHEST 1e100 /* m, m/s: energies are numbers */
+#define MPSI_ELASTIC_CHUNK 2048     /* particles of one unit of parallel work */
 
 /* Neighbours on the lattice, by offset. */
 typedef struct mpsi_links {
@@ -223,6 +224,8 @@ struct mps_elastic {
 
   mpsi_elastic_outside *outside; /* NULL: the library's own solvers */
 
+  int64_t fabric[2]; /* renewal.c: hashes, where known */
+  bool fabric_known;
   mpsi_identity *identity; /* of its snapshots */
   mpsi_ledger ledger;
   struct mpsi_elastic_motion *motion; /* NULL: no dynamics under way */
@@ -431,8 +434,13 @@ void mpsi_elastic_facet_box(const mps_elastic *e, const mpsi_facet *f, double *l
 
 /* ---- loads.c ----------------------------------------------------------------------------------
  */
+/* Where a load of gravity acts: reads `density` anew, as mpsi_elastic_read_mass. */
+mps_status mpsi_elastic_weigh(mps_elastic *e, const char *function, double **former);
 /* The nodal forces of all loads and of `external_force` at time t, to e->load. */
 mps_status mpsi_elastic_gather_loads(mps_elastic *e, const char *function, double t);
+/* MPS_ERROR_ARGUMENT unless the point of moments (NULL: the origin) is finite. */
+mps_status mpsi_elastic_check_about(const mps_elastic *e, const char *function,
+                                    const double *about);
 void mpsi_elastic_drop_loads(mps_elastic *e);
 /* Resultant of nodal forces. */
 void mpsi_elastic_resultant(const mps_elastic *e, const double *f, const double *about,
@@ -469,8 +477,11 @@ mps_status mpsi_elastic_write(mps_elastic *e, const char *function, const char *
                               const double *values, int32_t components);
 mps_status mpsi_elastic_read(mps_elastic *e, const char *function, const char *name, double *values,
                              int32_t components);
-/* Reads `density` into mass. */
-mps_status mpsi_elastic_read_mass(mps_elastic *e, const char *function);
+/* Reads `density` into mass, *former: the masses before (after an error too, and nothing has
+ * changed). mpsi_elastic_settle_mass ends this. */
+mps_status mpsi_elastic_read_mass(mps_elastic *e, const char *function, double **former);
+/* Frees the former masses, or those that were read, which the former ones then replace. */
+void mpsi_elastic_settle_mass(mps_elastic *e, double *former, bool renewed);
 /* MPS_ERROR_ARGUMENT that names the field, the particle and what is allowed. */
 mps_status mpsi_elastic_bad_value(mps_elastic *e, const char *function, const char *name, int64_t i,
                                   double value, const char *allowed);
@@ -538,9 +549,31 @@ typedef struct mpsi_elastic_motion {
   double *force;                        /* loads at the end of the last step */
   double *inner;                        /* K (u + a1 v) there */
   double *held;                         /* inner + a0 M v - force along fixed directions */
-  double *next[5];                      /* u, v, a, inner, held of the step being made */
+  double *next[5];                      /* of the step being made: MPSI_NEXT_U ... */
   double *scratch;
+  int64_t fabric[2]; /* of moduli and fixed directions: those that inner, held and acceleration are
+                        of (renewal.c) */
+  bool strain_known; /* with other moduli since: */
+  double strain;     /* J, with those */
 } mpsi_elastic_motion;
+enum { MPSI_NEXT_U, MPSI_NEXT_V, MPSI_NEXT_A, MPSI_NEXT_INNER, MPSI_NEXT_HELD };
+
+/* ---- motion.c ---- */
+/* inner = K (u + a1 v); held = inner + a0 M v - load along fixed directions. */
+mps_status mpsi_elastic_find_forces(mps_elastic *e, const char *function, const double *u,
+                                    const double *v, double *inner, double *held);
+/* a = M^-1 (F - C v - K u) on what is free; the boundaries' own on the rest. */
+void mpsi_elastic_balance(mps_elastic *e);
+
+/* ---- renewal.c ---- */
+/* Hashes of moduli and fixed directions. */
+void mpsi_elastic_find_fabric(mps_elastic *e, int64_t fabric[2]);
+/* Before moduli change: keeps the strain energy of a motion under way. */
+mps_status mpsi_elastic_note_strain(mps_elastic *e, const char *function);
+/* The strain energy that the last step ended with; `present`: of the present moduli, J. */
+double mpsi_elastic_former_strain(mps_elastic *e, double present);
+/* Before a step: the forces at its beginning, of the present moduli and boundaries. */
+mps_status mpsi_elastic_renew_motion(mps_elastic *e, const char *function);
 
 /* ---- motion_state.c ---- */
 void mpsi_elastic_end_motion(mps_elastic *e);
@@ -554,6 +587,7 @@ void mpsi_elastic_free_arrays(mps_elastic *e, mpsi_elastic_motion *m);
 
 /* ---- budget.c ---------------------------------------------------------------------------------
  */
+mps_status mpsi_elastic_strain_energy(mps_elastic *e, const char *function, double *out);
 /* At the start of a motion. */
 mps_status mpsi_elastic_begin_ledger(mps_elastic *e, const char *function);
 void mpsi_elastic_count_solution(mps_elastic *e); /* statics: loaded in proportion from rest */

@@ -188,10 +188,12 @@ static mps_status put(mps_elastic *e, const char *function, mps_status status, i
     status = MPSI_DEF_READ(e->context, function, mps_elastic_load_def, user, &def);
   if (status == MPS_OK) status = check_def(e, function, &def);
   if (status == MPS_OK) give(&given, &def);
-  if (status == MPS_OK && def.kind == MPS_ELASTIC_LOAD_GRAVITY && !e->mass)
-    status = mpsi_elastic_read_mass(e, function);
+  double *mass = e->mass;
+  if (status == MPS_OK && def.kind == MPS_ELASTIC_LOAD_GRAVITY && !mass)
+    status = mpsi_elastic_read_mass(e, function, &mass);
   if (status == MPS_OK) status = make_patches(e, function, &def);
   status = mpsi_elastic_settle_given(e, function, status, &given);
+  mpsi_elastic_settle_mass(e, mass, status == MPS_OK);
   if (status != MPS_OK) return status;
   mpsi_elastic_load *l = &e->loads[number];
   if (def.kind > MPS_ELASTIC_LOAD_GRAVITY) { /* the former patches become the spare room */
@@ -321,6 +323,15 @@ static mps_status add_external(mps_elastic *e, const char *function) {
   return MPS_OK;
 }
 
+mps_status mpsi_elastic_weigh(mps_elastic *e, const char *function, double **former) {
+  bool weighs = false;
+  *former = e->mass;
+  for (int32_t k = 0; k < e->load_count; k++)
+    weighs = weighs || (e->loads[k].used && e->loads[k].kind == MPS_ELASTIC_LOAD_GRAVITY);
+  if (!weighs) return MPS_OK;
+  return mpsi_elastic_settle(e, function, mpsi_elastic_read_mass(e, function, former));
+}
+
 static mps_status ask_signals(mps_elastic *e, const char *function, double t, bool *by_caller) {
   for (int32_t k = 0; k < e->load_count; k++) {
     mpsi_elastic_load *l = &e->loads[k];
@@ -358,9 +369,6 @@ mps_status mpsi_elastic_gather_loads(mps_elastic *e, const char *function, doubl
   for (int32_t k = 0; k < e->load_count; k++) {
     const mpsi_elastic_load *l = &e->loads[k];
     if (!l->used) continue;
-    if (l->kind == MPS_ELASTIC_LOAD_GRAVITY && !e->mass &&
-        (status = mpsi_elastic_read_mass(e, function)) != MPS_OK)
-      return status;
     if (l->kind <= MPS_ELASTIC_LOAD_GRAVITY) add_body(e, l, l->scale);
     for (int64_t p = 0; p < l->count; p++) {
       const int64_t i = mpsi_elastic_find(e, l->patches[p].id);
@@ -391,12 +399,25 @@ void mpsi_elastic_resultant(const mps_elastic *e, const double *f, const double 
   if (moment) memcpy(moment, turn, sizeof turn);
 }
 
+mps_status mpsi_elastic_check_about(const mps_elastic *e, const char *function,
+                                    const double *about) {
+  for (int c = 0; about && c < e->dim; c++)
+    if (!isfinite(about[c]))
+      return mpsi_fail(e->context, function, MPS_ERROR_ARGUMENT,
+                       "about[%d] is %g m, must be finite", c, about[c]);
+  return MPS_OK;
+}
+
 mps_status mps_elastic_load_resultant(mps_elastic *e, const double *about, double *force,
                                       double *moment) {
   if (!e) return MPS_ERROR_ARGUMENT;
   mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;
-  status = mpsi_elastic_gather_loads(e, __func__, mps_elastic_time(e));
+  status = mpsi_elastic_settle(e, __func__, mpsi_elastic_check_about(e, __func__, about));
+  double *mass = e->mass;
+  if (status == MPS_OK && !e->motion) status = mpsi_elastic_weigh(e, __func__, &mass);
+  if (status == MPS_OK) status = mpsi_elastic_gather_loads(e, __func__, mps_elastic_time(e));
   if (status == MPS_OK) mpsi_elastic_resultant(e, e->load, about, force, moment);
+  mpsi_elastic_settle_mass(e, mass, false);
   return mpsi_elastic_leave(e, status);
 }

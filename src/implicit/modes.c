@@ -118,8 +118,8 @@ static mps_status solve(mps_elastic *e, const char *function, int32_t count, dou
 #endif
 
 static mps_status find_modes(mps_elastic *e, const char *function, int32_t count, double *omega,
-                             double *shapes) {
-  mps_status status = mpsi_elastic_read_mass(e, function);
+                             double *shapes, double **mass) {
+  mps_status status = mpsi_elastic_read_mass(e, function, mass);
   if (status == MPS_OK) status = mpsi_elastic_prepare(e, function);
   if (status != MPS_OK) return status;
   if (count < 1 || count >= e->unknowns)
@@ -142,5 +142,8 @@ mps_status mps_elastic_modes(mps_elastic *e, int32_t count, double *omega, doubl
   status = mpsi_elastic_settle_same(e, __func__, status, "count", count);
   if (status != MPS_OK) return mpsi_elastic_leave(e, status);
   e->within = true;
-  return mpsi_elastic_leave(e, find_modes(e, __func__, count, omega, shapes));
+  double *mass = e->mass; /* a motion under way and a load of gravity go on with theirs */
+  status = find_modes(e, __func__, count, omega, shapes, &mass);
+  mpsi_elastic_settle_mass(e, mass, status == MPS_OK && !mass);
+  return mpsi_elastic_leave(e, status);
 }

@@ -15,8 +15,6 @@
 
 #include <string.h>
 
-enum { NEXT_U, NEXT_V, NEXT_A, NEXT_INNER, NEXT_HELD };
-
 /* ---- definition -------------------------------------------------------------------------------
  */
 
@@ -104,21 +102,25 @@ static double shift_of(const mpsi_elastic_motion *m, double dt, double *factor) 
   return heavy / stiff;
 }
 
+static void exchange(double **a, double **b) {
+  double *keep = *a;
+  *a = *b;
+  *b = keep;
+}
+
 /* ---- start ------------------------------------------------------------------------------------
  */
 
 /* The field if the set has it, else zero. */
 static mps_status read_or_zero(mps_elastic *e, const char *function, const char *name,
                                double *values) {
-  if (mpsi_particles_column(e->particles, name, 0))
-    return mpsi_elastic_read(e, function, name, values, e->dim);
   memset(values, 0, (size_t)(e->n * e->dim) * sizeof *values);
-  return MPS_OK;
+  if (!mpsi_particles_column(e->particles, name, 0)) return MPS_OK;
+  return mpsi_elastic_read(e, function, name, values, e->dim);
 }
 
-/* inner = K (u + a1 v); held = inner + a0 M v - load along fixed directions. */
-static mps_status find_forces(mps_elastic *e, const char *function, const double *u,
-                              const double *v, double *inner, double *held) {
+mps_status mpsi_elastic_find_forces(mps_elastic *e, const char *function, const double *u,
+                                    const double *v, double *inner, double *held) {
   mpsi_elastic_motion *m = e->motion;
   const int64_t all = e->n * e->dim;
   for (int64_t k = 0; k < all; k++) m->scratch[k] = u[k] + m->a1 * v[k];
@@ -128,8 +130,7 @@ static mps_status find_forces(mps_elastic *e, const char *function, const double
   return status;
 }
 
-/* a = M^-1 (F - C v - K u) on what is free; the boundaries' own on the rest. */
-static void balance(mps_elastic *e) {
+void mpsi_elastic_balance(mps_elastic *e) {
   mpsi_elastic_motion *m = e->motion;
   const int64_t all = e->n * e->dim;
   for (int64_t k = 0; k < all; k++) m->acceleration[k] = -m->held[k] / e->mass[k / e->dim];
@@ -158,7 +159,9 @@ static mps_status settle_motion(mps_elastic *e, const char *function, mps_status
   return mpsi_elastic_settle_given(e, function, status, &given);
 }
 
-static mps_status begin(mps_elastic *e, const char *function, const mps_elastic_motion_def *user) {
+/* `mass`: the former masses, to go back to where this fails. */
+static mps_status begin(mps_elastic *e, const char *function, const mps_elastic_motion_def *user,
+                        double **mass) {
   mps_elastic_motion_def def = mpsi_elastic_motion_defaults;
   mpsi_elastic_motion made = {.dt = 0.0}, *m = NULL;
   mps_status status = MPSI_DEF_READ(e->context, function, mps_elastic_motion_def, user, &def);
@@ -168,7 +171,7 @@ static mps_status begin(mps_elastic *e, const char *function, const mps_elastic_
                        def.time);
   if (status == MPS_OK) status = read_family(e->context, function, &def, &made);
   if (status == MPS_OK) status = read_damping(e->context, function, &def, &made);
-  if (status == MPS_OK) status = mpsi_elastic_read_mass(e, function);
+  if (status == MPS_OK) status = mpsi_elastic_read_mass(e, function, mass);
   status = settle_motion(e, function, status, &def);
   if (status == MPS_OK) status = mpsi_elastic_prepare(e, function);
   double factor;
@@ -187,7 +190,8 @@ static mps_status begin(mps_elastic *e, const char *function, const mps_elastic_
   e->motion = m;
   status = mpsi_elastic_allocate_motion(e, function, m);
   if (status == MPS_OK) status = read_or_zero(e, function, "velocity", m->velocity);
-  if (status == MPS_OK) status = read_or_zero(e, function, "displacement", e->displacement);
+  if (status == MPS_OK) status = read_or_zero(e, function, "displacement", m->next[MPSI_NEXT_U]);
+  if (status == MPS_OK) exchange(&e->displacement, &m->next[MPSI_NEXT_U]);
   mpsi_elastic_motion *const kept = status == MPS_OK ? e->motion : former;
   mpsi_elastic_motion *const ended = status == MPS_OK ? NULL : e->ended;
   if (status == MPS_OK) e->motion = former;
@@ -203,19 +207,22 @@ mps_status mps_elastic_start(mps_elastic *e, const mps_elastic_motion_def *def) 
   if (status != MPS_OK) return status;
   e->within = true;
   const int32_t fields = mps_particles_field_count(e->particles);
-  status = begin(e, __func__, def);
+  double *mass = e->mass;
+  status = begin(e, __func__, def, &mass);
+  mpsi_elastic_settle_mass(e, mass, status == MPS_OK);
   if (status != MPS_OK) mpsi_particles_drop_fields(e->particles, fields);
   if (status == MPS_OK) {
     mpsi_elastic_motion *m = e->motion;
     mpsi_elastic_impose(e, 0, e->displacement);
     mpsi_elastic_impose(e, 1, m->velocity);
     memcpy(m->force, e->load, (size_t)(e->n * e->dim) * sizeof *m->force);
-    status = find_forces(e, __func__, e->displacement, m->velocity, m->inner, m->held);
-    balance(e);
+    status = mpsi_elastic_find_forces(e, __func__, e->displacement, m->velocity, m->inner, m->held);
+    mpsi_elastic_balance(e);
     mpsi_elastic_keep_fixed(e, m->held);
     set_reaction(e, m->held, m->acceleration);
     mpsi_elastic_forget_reactions(e);
     mpsi_elastic_count_reactions(e, 0.0);
+    mpsi_elastic_find_fabric(e, m->fabric);
     if (status == MPS_OK) status = mpsi_elastic_begin_ledger(e, __func__);
   }
   return mpsi_elastic_leave(e, status);
@@ -228,7 +235,7 @@ mps_status mps_elastic_start(mps_elastic *e, const mps_elastic_motion_def *def) 
 static mps_status find_right_side(mps_elastic *e, const char *function, double factor) {
   mpsi_elastic_motion *m = e->motion;
   const double am = m->alpha_m, af = m->alpha_f;
-  const double *u1 = m->next[NEXT_U], *v1 = m->next[NEXT_V];
+  const double *u1 = m->next[MPSI_NEXT_U], *v1 = m->next[MPSI_NEXT_V];
   const int64_t all = e->n * e->dim;
   for (int64_t k = 0; k < all; k++)
     m->scratch[k] = (1.0 - af) * (u1[k] + m->a1 * v1[k]) +
@@ -248,34 +255,31 @@ static mps_status find_right_side(mps_elastic *e, const char *function, double f
 static mps_status check_finite(const mps_elastic *e, const char *function) {
   const mpsi_elastic_motion *m = e->motion;
   for (int64_t k = 0; k < e->n * e->dim; k++)
-    if (!isfinite(m->next[NEXT_U][k] + m->next[NEXT_V][k] + m->next[NEXT_A][k])) {
-      const mps_status status = mpsi_fail(
-          e->context, function, MPS_ERROR_NUMERIC,
-          "the motion of particle %lld is beyond double precision: displacement %g m, "
-          "velocity %g m/s, acceleration %g m/s2",
-          (long long)e->id[k / e->dim], m->next[NEXT_U][k], m->next[NEXT_V][k], m->next[NEXT_A][k]);
+    if (!isfinite(m->next[MPSI_NEXT_A][k]) ||
+        !(fabs(m->next[MPSI_NEXT_U][k]) <= MPSI_ELASTIC_FURTHEST) ||
+        !(fabs(m->next[MPSI_NEXT_V][k]) <= MPSI_ELASTIC_FURTHEST)) {
+      const mps_status status =
+          mpsi_fail(e->context, function, MPS_ERROR_NUMERIC,
+                    "the motion of particle %lld is beyond double precision: displacement %g m, "
+                    "velocity %g m/s, acceleration %g m/s2; allowed are %g m and m/s",
+                    (long long)e->id[k / e->dim], m->next[MPSI_NEXT_U][k], m->next[MPSI_NEXT_V][k],
+                    m->next[MPSI_NEXT_A][k], MPSI_ELASTIC_FURTHEST);
       mpsi_fail_where(e->context, m->steps, e->id[k / e->dim]);
       return status;
     }
   return MPS_OK;
 }
 
-static void exchange(double **a, double **b) {
-  double *keep = *a;
-  *a = *b;
-  *b = keep;
-}
-
 /* The new state becomes the present one. */
 static void accept(mps_elastic *e, double dt, double time) {
   mpsi_elastic_motion *m = e->motion;
-  mpsi_elastic_count_step(e, m->next[NEXT_U], m->next[NEXT_V], m->next[NEXT_INNER],
-                          m->next[NEXT_HELD]);
-  exchange(&e->displacement, &m->next[NEXT_U]);
-  exchange(&m->velocity, &m->next[NEXT_V]);
-  exchange(&m->acceleration, &m->next[NEXT_A]);
-  exchange(&m->inner, &m->next[NEXT_INNER]);
-  exchange(&m->held, &m->next[NEXT_HELD]);
+  mpsi_elastic_count_step(e, m->next[MPSI_NEXT_U], m->next[MPSI_NEXT_V], m->next[MPSI_NEXT_INNER],
+                          m->next[MPSI_NEXT_HELD]);
+  exchange(&e->displacement, &m->next[MPSI_NEXT_U]);
+  exchange(&m->velocity, &m->next[MPSI_NEXT_V]);
+  exchange(&m->acceleration, &m->next[MPSI_NEXT_A]);
+  exchange(&m->inner, &m->next[MPSI_NEXT_INNER]);
+  exchange(&m->held, &m->next[MPSI_NEXT_HELD]);
   memcpy(m->force, e->load, (size_t)(e->n * e->dim) * sizeof *m->force);
   set_reaction(e, m->held, m->acceleration);
   mpsi_elastic_count_reactions(e, dt);
@@ -287,10 +291,11 @@ static void accept(mps_elastic *e, double dt, double time) {
 static mps_status step_once(mps_elastic *e, const char *function, double dt, double time) {
   mpsi_elastic_motion *m = e->motion;
   const int64_t all = e->n * e->dim;
-  double factor, *u1 = m->next[NEXT_U], *v1 = m->next[NEXT_V], *a1 = m->next[NEXT_A];
+  double factor, *u1 = m->next[MPSI_NEXT_U], *v1 = m->next[MPSI_NEXT_V], *a1 = m->next[MPSI_NEXT_A];
   const double shift = shift_of(m, dt, &factor);
   mps_status status = mpsi_elastic_prepare(e, function);
   if (status == MPS_OK) status = mpsi_elastic_factor(e, function, shift);
+  if (status == MPS_OK) status = mpsi_elastic_renew_motion(e, function);
   if (status == MPS_OK) status = mpsi_elastic_drive(e, function, time);
   if (status == MPS_OK) status = mpsi_elastic_gather_loads(e, function, time);
   if (status != MPS_OK) return status;
@@ -315,9 +320,10 @@ static mps_status step_once(mps_elastic *e, const char *function, double dt, dou
   }
   mpsi_elastic_impose(e, 2, a1);
   if ((status = check_finite(e, function)) != MPS_OK) return status;
-  status = find_forces(e, function, u1, v1, m->next[NEXT_INNER], m->next[NEXT_HELD]);
+  status = mpsi_elastic_find_forces(e, function, u1, v1, m->next[MPSI_NEXT_INNER],
+                                    m->next[MPSI_NEXT_HELD]);
   if (status != MPS_OK) return status;
-  mpsi_elastic_keep_fixed(e, m->next[NEXT_HELD]);
+  mpsi_elastic_keep_fixed(e, m->next[MPSI_NEXT_HELD]);
   accept(e, dt, time);
   return MPS_OK;
 }

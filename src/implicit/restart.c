@@ -20,6 +20,14 @@ static void read_array(const double *from, int64_t rows, double *to) {
     memset(to, 0, (size_t)rows * sizeof *to);
 }
 
+/* With other masses the factor of K + shift M is another. */
+static void set_array(mps_elastic *e, double *array, int64_t rows, const void *values) {
+  const size_t bytes = (size_t)rows * sizeof *array;
+  if (array == e->mass && e->factored_shift != 0.0 && memcmp(array, values, bytes) != 0)
+    e->factored = false;
+  memcpy(array, values, bytes);
+}
+
 #define ARRAY(name, array, each)                                                                   \
   static int64_t count_##name(const void *solver) {                                                \
     const mps_elastic *e = solver;                                                                 \
@@ -31,7 +39,7 @@ static void read_array(const double *from, int64_t rows, double *to) {
   }                                                                                                \
   static void set_##name(void *solver, int64_t rows, const void *values) {                         \
     mps_elastic *e = solver;                                                                       \
-    memcpy(array, values, (size_t)rows * sizeof(double));                                          \
+    set_array(e, array, rows, values);                                                             \
   }                                                                                                \
   static const mpsi_state_table table_of_##name = {MPSI_STATE_F64, 1,    count_##name,             \
                                                    get_##name,     NULL, set_##name};
@@ -94,6 +102,7 @@ static void list_state(mpsi_state *s, void *solver) {
   mpsi_state_agree_number(s, "stiffness_damping_coefficient", m->a1);
   mpsi_state_f64(s, "time", &m->time, 1);
   mpsi_state_i64(s, "steps", &m->steps, 1);
+  mpsi_state_i64(s, "fabric", m->fabric, 2);
   mpsi_state_add_table(s, "velocity", &table_of_velocity);
   mpsi_state_add_table(s, "acceleration", &table_of_acceleration);
   mpsi_state_add_table(s, "force", &table_of_force);

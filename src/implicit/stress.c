@@ -168,12 +168,14 @@ mps_status mps_elastic_stress(mps_elastic *e) {
   mps_status status = mpsi_elastic_check_between(e, __func__);
   if (status != MPS_OK) return status;
   table t;
+  const int32_t fields = mps_particles_field_count(e->particles);
   mpsi_elastic_gradients(e, e->displacement, e->gradient);
   status = open_table(e, __func__, &t);
   if (e->shared) {
     const bool agreed = mpsi_elastic_begin_reading(e);
     status = share_table(e, __func__, status, &t);
     e->agreed = agreed;
+    if (status != MPS_OK) mpsi_particles_drop_fields(e->particles, fields);
     return status;
   }
   for (int64_t i = 0; status == MPS_OK && i < e->n; i++) {
@@ -193,7 +195,8 @@ mps_status mps_elastic_section(mps_elastic *e, int32_t axis, double position, co
     return mpsi_fail(e->context, __func__, MPS_ERROR_ARGUMENT,
                      "axis is %d (allowed are 0..%d), position is %g m (must be finite)", axis,
                      e->dim - 1, position);
-  mps_status status = mpsi_elastic_check_between(e, __func__);
+  mps_status status = mpsi_elastic_check_about(e, __func__, about);
+  if (status == MPS_OK) status = mpsi_elastic_check_between(e, __func__);
   if (status != MPS_OK) return status;
   const bool agreed = mpsi_elastic_begin_reading(e);
   /* K u is what loads and reactions put on each particle. Those on the near side are balanced

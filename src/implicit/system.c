@@ -218,6 +218,17 @@ static mps_status solve_block(mps_elastic *e, const char *function, int64_t coun
   return MPS_OK;
 }
 
+/* Energies are numbers. */
+static mps_status check_work(const mps_elastic *e, const char *function, const double *u) {
+  double sum = 0.0;
+  for (int64_t k = 0; k < e->n * e->dim; k++) sum += fabs(u[k] * e->load[k]) + u[k] * u[k];
+  if (isfinite(sum)) return MPS_OK;
+  return mpsi_fail(e->context, function, MPS_ERROR_NUMERIC,
+                   "the work of the loads is %g J, or a square of displacements beyond double "
+                   "precision: loads are too large",
+                   sum);
+}
+
 static int64_t nonzeros(const mps_elastic *e) {
   if (e->outside) return e->outside->nonzeros;
   return e->column ? e->column[e->unknowns] : 0;
@@ -256,9 +267,10 @@ static mps_status residual_scale(mps_elastic *e, const char *function, double *u
   return status;
 }
 
-static mps_status solve(mps_elastic *e, const char *function, double *u) {
+static mps_status solve(mps_elastic *e, const char *function, double *u, double **mass) {
   const int64_t all = e->n * e->dim;
   mps_status status = mpsi_elastic_prepare(e, function);
+  if (status == MPS_OK) status = mpsi_elastic_weigh(e, function, mass);
   if (status == MPS_OK) status = mpsi_elastic_drive(e, function, mps_elastic_time(e));
   if (status == MPS_OK) status = mpsi_elastic_gather_loads(e, function, mps_elastic_time(e));
   if (status == MPS_OK) status = mpsi_elastic_factor(e, function, 0.0);
@@ -269,6 +281,7 @@ static mps_status solve(mps_elastic *e, const char *function, double *u) {
   status = residual_scale(e, function, u, &scale);
   if (status == MPS_OK) status = solve_block(e, function, 1, e->load, u, e->rhs, e->solution);
   if (status == MPS_OK) status = residual(e, function, e->load, u, e->rhs);
+  if (status == MPS_OK) status = check_work(e, function, u);
   if (status != MPS_OK) return status;
   memcpy(e->displacement, u, (size_t)all * sizeof *u);
   e->report.residual = scale > 0.0 ? norm(e->rhs, e->unknowns) / scale : 0.0;
@@ -287,11 +300,12 @@ mps_status mps_elastic_solve(mps_elastic *e) {
   mps_status status = mpsi_elastic_enter(e, __func__);
   if (status != MPS_OK) return status;
   e->within = true;
-  double *u = mpsi_alloc(e->context, e->n * e->dim, sizeof *u);
+  double *mass = e->mass, *u = mpsi_alloc(e->context, e->n * e->dim, sizeof *u);
   if (!u)
     status = mpsi_fail_memory(e->context, __func__, (size_t)(e->n * e->dim) * sizeof *u);
   else
-    status = solve(e, __func__, u);
+    status = solve(e, __func__, u, &mass);
+  mpsi_elastic_settle_mass(e, mass, status == MPS_OK);
   mpsi_free(e->context, u);
   return mpsi_elastic_leave(e, status);
 }

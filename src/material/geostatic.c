@@ -218,6 +218,16 @@ static mps_status weigh(geostatic *g) {
 
 /* ---- the public functions -------------------------------------------------------------------- */
 
+/* Makes the field where the set lacks it, and asks the set's holders; where one refuses, the set
+ * has the fields that it had. */
+static mps_status open_stress(const geostatic *g, const char *function) {
+  const int32_t fields = mps_particles_field_count(g->set);
+  mps_status status = mpsi_as(g->context, function, mps_particles_add_field(g->set, "stress", 0));
+  if (status == MPS_OK) status = mpsi_particles_tell(g->set, function, "stress", NULL);
+  if (status != MPS_OK) mpsi_particles_drop_fields(g->set, fields);
+  return status;
+}
+
 static void write_stress(const geostatic *g) {
   double *s[6];
   for (int32_t c = 0; c < 2 * g->dim; c++) s[c] = mpsi_particles_column(g->set, "stress", c);
@@ -255,9 +265,7 @@ mps_status mps_particles_set_geostatic(mps_particles *particles, const mps_geost
   if (!g.depth) return mpsi_fail_memory(g.context, set_geostatic, (size_t)room * sizeof *g.depth);
   g.top = g.depth + g.count, g.burden = g.top + n, g.weight = g.burden + n;
   status = weigh(&g);
-  if (status == MPS_OK)
-    status = mpsi_as(g.context, __func__, mps_particles_add_field(particles, "stress", 0));
-  if (status == MPS_OK) status = mpsi_particles_tell(particles, set_geostatic, "stress", NULL);
+  if (status == MPS_OK) status = open_stress(&g, set_geostatic);
   if (status == MPS_OK) write_stress(&g);
   mpsi_free(g.context, g.depth);
   return status;
@@ -290,10 +298,7 @@ mps_status mps_particles_set_stress(mps_particles *particles, mps_stress_fn fn, 
   double *s = mpsi_alloc(g.context, 6 * g.count, sizeof *s);
   if (!s) return mpsi_fail_memory(g.context, __func__, (size_t)g.count * 6 * sizeof *s);
   status = ask_stress(&g, fn, user, s);
-  if (status == MPS_OK)
-    status = mpsi_as(mpsi_particles_context(particles), __func__,
-                     mps_particles_add_field(particles, "stress", 0));
-  if (status == MPS_OK) status = mpsi_particles_tell(particles, __func__, "stress", NULL);
+  if (status == MPS_OK) status = open_stress(&g, __func__);
   for (int32_t c = 0; c < 2 * g.dim && status == MPS_OK; c++) {
     double *column = mpsi_particles_column(particles, "stress", c);
     for (int64_t k = 0; k < g.count; k++) column[k] = s[6 * k + c];

@@ -29,7 +29,7 @@ static mps_status collect_ranks(mps_mpm *mpm, const char *function, double speed
   enum { SPEED, STALE, BAD, LOST, EDITED, CANCEL, FOUND };
   mps_status own = MPS_OK, status = share->lost;
   if (bad >= 0)
-    own = report_bad(mpm, function, bad, "is not finite or has no volume");
+    own = report_bad(mpm, function, bad, "is not finite, is beyond 1e100 m/s or has no volume");
   else if (lost >= 0)
     own = report_bad(mpm, function, lost, "has left the domain");
   if (bad < 0) mpsi_mpm_let_go(mpm);
@@ -61,7 +61,8 @@ mps_status mpsi_mpm_collect_block_results(mps_mpm *mpm, const char *function) {
   }
   if (mpm->share) return collect_ranks(mpm, function, speed, bad, lost);
   mpm->run.broken = bad >= 0;
-  if (bad >= 0) return report_bad(mpm, function, bad, "is not finite or has no volume");
+  if (bad >= 0)
+    return report_bad(mpm, function, bad, "is not finite, is beyond 1e100 m/s or has no volume");
   mpm->run.speed = speed;
   if (lost < 0) return MPS_OK;
   mpm->run.lost = mpm->run.stale = true;

@@ -273,8 +273,10 @@ MPSI_INLINE bool find_largest(int n, double *square, double *out) {
   return (good[0] & good[1] & good[2] & good[3]) != 0;
 }
 
+#define FASTEST 1e100 /* m/s: kinetic energies are numbers */
+
 /* c + |v| of particles [begin, begin + n), at most a chunk, as c^2 + v^2 + 2 c |v|: a root less. A
- * NaN or infinity, and a negative volume, is a bad particle. */
+ * NaN, infinity or speed beyond FASTEST, and a negative volume, is a bad particle. */
 MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cell_block *cells, int dim, int64_t begin,
                             int n, const double *moduli) {
   const mpsi_columns *p = &mpm->p;
@@ -286,7 +288,7 @@ MPSI_INLINE void find_speed(const mps_mpm *mpm, mpsi_cell_block *cells, int dim,
     double v = v0[k] * v0[k] + v1[k] * v1[k];
     if (dim == 3) v += v2[k] * v2[k];
     const double c = (moduli ? moduli[k] : mpm->laws.law[0].modulus) * V[k] / m[k];
-    square[k] = c < 0.0 ? NAN : c + moving * (v + 2.0 * sqrt(c * v));
+    square[k] = (c < 0.0) | !(v <= FASTEST * FASTEST) ? NAN : c + moving * (v + 2.0 * sqrt(c * v));
   }
   const bool good = find_largest(n, square, &largest);
   if (largest > cells->speed * cells->speed) cells->speed = sqrt(largest);

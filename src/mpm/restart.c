@@ -247,7 +247,8 @@ static void list_state(mpsi_state *s, void *solver) {
     mpsi_hold *hold = &mpm->boundaries.hold[k];
     mpsi_state_enter(s, "boundary%d", k);
     mpsi_state_agree_integer(s, "kind", hold->kind);
-    if (hold->kind != MPSI_HOLD_NONE) {
+    /* a side that has been set free still shows its last force and what it has done */
+    if (hold->kind != MPSI_HOLD_NONE || (k < MPSI_SIDES && hold->sums)) {
       mpsi_state_i64(s, "step", hold->sums->step[0].limb, MPSI_HOLD_MASS * MPSI_EXACT_LIMBS);
       mpsi_state_i64(s, "all", hold->sums->all[0].limb, (MPSI_HOLD_MASS + 1) * MPSI_EXACT_LIMBS);
       mpsi_state_i64(s, "count", &hold->count, 1);

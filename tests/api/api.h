@@ -80,7 +80,12 @@ typedef struct api_object {
 typedef enum api_mood { API_VALID, API_EDGE, API_ABSURD } api_mood;
 
 /* What a call may change although it failed, or although it only reads. */
-typedef enum api_change { API_CHANGES_NOTHING, API_CHANGES_ORDER, API_CHANGES_ALL } api_change;
+typedef enum api_change {
+  API_CHANGES_NOTHING,
+  API_CHANGES_PLACES, /* the particles are sorted: order and epoch */
+  API_CHANGES_ORDER,  /* and so the last bits of sums; edits are read: what follows from them */
+  API_CHANGES_ALL
+} api_change;
 
 /* How a callback misbehaves, once, in one call. */
 typedef enum api_fault {

@@ -12,6 +12,10 @@ void api_stepped(api *a, mps_status status, int64_t before, int64_t after) {
     a->change = API_CHANGES_ORDER;
 }
 
+void api_reads_edits(api *a, api_kind kind, mps_status status) {
+  if (kind == API_MPM) a->change = status == MPS_OK ? API_CHANGES_ORDER : API_CHANGES_PLACES;
+}
+
 double api_t_end(api *a, double time, double dt) {
   if (!(dt > 0.0 && dt < 1e300)) dt = 1e-3;
   double t_end = time + dt * 4.0 * api_unit(a);

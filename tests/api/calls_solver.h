@@ -16,6 +16,9 @@
 /* What a step or run may leave when it fails: steps that were made before stay. `steps`: taken
  * before and after. A step that diverged may have happened. */
 void api_stepped(api *a, mps_status status, int64_t before, int64_t after);
+/* A snapshot or checkpoint of WLS-MPM reads first what the caller has edited, as a step does; one
+ * that is refused leaves the edits unread, but may have sorted the particles. */
+void api_reads_edits(api *a, api_kind kind, mps_status status);
 /* t_end of a run of a few steps. */
 double api_t_end(api *a, double time, double dt);
 /* Path of the file of this solver. */
@@ -160,6 +163,7 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *when);
     if (old && made != old->handle) api_broken(a, "changes the handle");                           \
     if (!old) (void)api_adopt(a, API_SNAPSHOT, made, a->context, o);                               \
     a->reads = true;                                                                               \
+    api_reads_edits(a, KIND, status);                                                              \
     (void)api_end(a, status);                                                                      \
   }                                                                                                \
   static void S##_rollback(api *a) {                                                               \
@@ -179,6 +183,7 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *when);
     const mps_status status = mps_##S##_snapshot(s, &snapshot);                                    \
     (void)api_adopt(a, API_SNAPSHOT, snapshot, a->context, o);                                     \
     a->reads = true;                                                                               \
+    api_reads_edits(a, KIND, status);                                                              \
     if (!api_end(a, status)) return;                                                               \
     a->latest = true;                                                                              \
     api_read(a, KIND, o, mps_##S##_particles(s), &begin);                                          \
@@ -218,6 +223,7 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *when);
     const mps_status status =                                                                      \
         mps_##S##_save(s, api_null(a, "path") ? NULL : path, given ? &info : NULL);                \
     a->reads = true;                                                                               \
+    api_reads_edits(a, KIND, status);                                                              \
     (void)api_end(a, status);                                                                      \
   }                                                                                                \
   static void S##_restore(api *a) {                                                                \

@@ -1,0 +1,245 @@
+/* test_elastic_change.c - what changes while a motion of implicit elasticity is under way: with
+ * Newmark's average acceleration the budget closes over each step after another material or
+ * boundary, and the first step of what is set free is that of its forces; densities are those of
+ * the start, whatever is asked in between.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "elastic_common.h"
+
+static mps_context *context;
+
+#define OK(call) mps_assert_ok(context, call)
+
+static int begin(void **state) {
+  (void)state;
+  context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  return 0;
+}
+
+static int end(void **state) {
+  (void)state;
+  mps_context_destroy(&context);
+  return 0;
+}
+
+enum { SIDE = 5 };
+
+typedef struct beam {
+  mps_particles *set;
+  mps_elastic *e;
+  int32_t foot;
+} beam;
+
+/* A block that moves; its lowest row is held. */
+static beam make(double stiffness_damping) {
+  mps_particles_def def = mps_particles_defaults();
+  mps_elastic_def solver = mps_elastic_defaults();
+  mps_elastic_boundary_def foot = mps_elastic_boundary_defaults();
+  mps_elastic_motion_def motion = mps_elastic_motion_defaults();
+  const double lo[2] = {0.0, 0.0}, hi[2] = {0.1 * SIDE, 0.1 * SIDE}, force[2] = {300.0, -500.0};
+  beam b = {.set = NULL};
+  mps_edit v;
+  def.spacing = 0.1;
+  OK(mps_particles_create(context, &def, &b.set));
+  OK(mps_particles_fill_box(b.set, lo, hi, NULL));
+  OK(mps_particles_set(b.set, "density", 0, 1000.0));
+  OK(mps_particles_set(b.set, "young", 0, 1e6));
+  OK(mps_particles_set(b.set, "poisson", 0, 0.3));
+  OK(mps_particles_add_field(b.set, "velocity", 0));
+  OK(mps_particles_edit(b.set, "velocity", &v));
+  for (int64_t k = 0; k < v.view.shape[0]; k++)
+    for (int c = 0; c < 2; c++) *mps_edit_f64(&v, k, c) = 0.3 * sin(1.0 + (double)(3 * k + 7 * c));
+  OK(mps_particles_commit(b.set, &v));
+  OK(mps_elastic_create(context, b.set, &solver, &b.e));
+  foot.lower[0] = foot.lower[1] = -1.0, foot.upper[0] = 9.0, foot.upper[1] = 0.1;
+  OK(mps_elastic_add_boundary(b.e, &foot, &b.foot));
+  OK(test_body_force(b.e, force));
+  motion.dt = 2e-3;
+  motion.rho_inf = 1.0; /* average acceleration */
+  motion.stiffness_damping = stiffness_damping;
+  OK(mps_elastic_start(b.e, &motion));
+  OK(mps_elastic_step(b.e, 10));
+  return b;
+}
+
+static void drop(beam *b) {
+  mps_elastic_destroy(&b->e);
+  mps_particles_destroy(&b->set);
+}
+
+static double balance_of(const mps_totals *t) {
+  return t->kinetic + t->strain + t->dissipated - t->work_loads - t->work_boundaries;
+}
+
+static mps_totals totals_of(const beam *b) {
+  mps_totals t;
+  OK(mps_elastic_get_totals(b->e, &t));
+  return t;
+}
+
+static void assert_closes(const beam *b, int64_t steps) {
+  const mps_totals before = totals_of(b);
+  OK(mps_elastic_step(b->e, steps));
+  const mps_totals after = totals_of(b);
+  mps_assert_near(balance_of(&after), balance_of(&before), 1e-9 * (after.kinetic + after.strain));
+}
+
+static void other_material(const beam *b) {
+  mps_material *soft = NULL;
+  int64_t ids[10];
+  for (int k = 0; k < 10; k++) ids[k] = 5 + k;
+  OK(mps_material_linear_elastic(context, 3e5, 0.1, &soft));
+  OK(mps_elastic_set_material(b->e, soft, 10, ids));
+  mps_material_destroy(&soft);
+}
+
+static void the_budget_closes_after_another_material(void **state) {
+  (void)state;
+  for (int damped = 0; damped < 2; damped++) {
+    beam b = make(damped ? 1e-3 : 0.0);
+    const mps_totals before = totals_of(&b);
+    other_material(&b);
+    const mps_totals changed = totals_of(&b);
+    mps_assert_near(changed.dissipated, before.dissipated, 1e-12 * before.strain);
+    assert_true(changed.strain < 0.9 * before.strain); /* the same shape of softer ground */
+    assert_closes(&b, 1);
+    assert_closes(&b, 20);
+    const mps_totals after = totals_of(&b);
+    assert_true(damped ? after.dissipated > changed.dissipated
+                       : fabs(after.dissipated) <= 1e-9 * after.kinetic);
+    drop(&b);
+  }
+}
+
+static void the_budget_closes_after_another_boundary(void **state) {
+  (void)state;
+  beam b = make(0.0);
+  mps_elastic_boundary_def side = mps_elastic_boundary_defaults();
+  int32_t number;
+  side.lower[0] = 0.4, side.upper[0] = 9.0, side.lower[1] = 0.1, side.upper[1] = 9.0;
+  OK(mps_elastic_add_boundary(b.e, &side, &number)); /* stops what moves there */
+  assert_closes(&b, 1);
+  assert_closes(&b, 10);
+  OK(mps_elastic_remove_boundary(b.e, number));
+  assert_closes(&b, 1);
+  assert_closes(&b, 10);
+  OK(mps_elastic_set_boundary(b.e, b.foot, &side)); /* from the foot to a side, at once */
+  assert_closes(&b, 1);
+  assert_closes(&b, 10);
+  drop(&b);
+}
+
+/* What has been held without a strain begins with F/m: u' = dt^2/4 (F/m + a') after the first step.
+ */
+static void what_is_set_free_falls_at_once(void **state) {
+  (void)state;
+  beam b = make(0.0);
+  mps_elastic_boundary_def all = mps_elastic_boundary_defaults();
+  int32_t number;
+  mps_view u, a, x;
+  const double dt = 2e-3, body[2] = {300.0 / 1000.0, -500.0 / 1000.0};
+  all.lower[0] = all.lower[1] = -1.0, all.upper[0] = all.upper[1] = 9.0;
+  OK(mps_elastic_add_boundary(b.e, &all, &number)); /* at its place of origin */
+  OK(mps_elastic_step(b.e, 3));
+  OK(mps_elastic_remove_boundary(b.e, number));
+  OK(mps_elastic_step(b.e, 1));
+  OK(mps_particles_view(b.set, "displacement", &u));
+  OK(mps_particles_view(b.set, "acceleration", &a));
+  OK(mps_particles_view(b.set, "position", &x));
+  for (int64_t k = 0; k < u.shape[0]; k++)
+    for (int c = 0; c < 2 && *mps_view_f64(&x, k, 1) > 0.1; c++)
+      mps_assert_near(*mps_view_f64(&u, k, c), 0.25 * dt * dt * (body[c] + *mps_view_f64(&a, k, c)),
+                      1e-15);
+  drop(&b);
+}
+
+/* The same step as from a solver that never had other densities. */
+static void a_second_start_has_the_present_densities(void **state) {
+  (void)state;
+  beam x = make(0.0), y = make(0.0);
+  mps_elastic_motion_def motion = mps_elastic_motion_defaults();
+  double omega[2];
+  mps_view u, w;
+  motion.dt = 2e-3;
+  motion.rho_inf = 1.0;
+  OK(mps_particles_set(x.set, "density", 0, 4000.0));
+  OK(mps_elastic_modes(x.e, 2, omega, NULL)); /* of the new ones; the motion goes on as it was */
+  OK(mps_elastic_step(x.e, 3));
+  OK(mps_elastic_step(y.e, 3));
+  const mps_totals a = totals_of(&x), b = totals_of(&y);
+  mps_assert_near(a.mass, b.mass, 0.0);
+  mps_assert_near(a.kinetic, b.kinetic, 1e-12 * b.kinetic);
+  OK(mps_elastic_start(x.e, &motion)); /* the same dt: the same shift of the matrix */
+  OK(mps_particles_set(y.set, "density", 0, 4000.0));
+  OK(mps_elastic_update_material(y.e)); /* nothing is left of its factor */
+  OK(mps_elastic_start(y.e, &motion));
+  OK(mps_elastic_step(x.e, 5));
+  OK(mps_elastic_step(y.e, 5));
+  mps_assert_near(totals_of(&x).mass, 4000.0 * 0.25, 1e-9);
+  OK(mps_particles_view(x.set, "displacement", &u));
+  OK(mps_particles_view(y.set, "displacement", &w));
+  for (int64_t k = 0; k < u.shape[0]; k++)
+    for (int c = 0; c < 2; c++)
+      mps_assert_near(*mps_view_f64(&u, k, c), *mps_view_f64(&w, k, c), 1e-12);
+  drop(&x), drop(&y);
+}
+
+/* Weight follows from the densities of the moment, at rest. */
+static void a_solution_weighs_the_present_densities(void **state) {
+  (void)state;
+  beam b = make(0.0);
+  mps_elastic_load_def weight = mps_elastic_load_defaults();
+  double force[3];
+  weight.kind = MPS_ELASTIC_LOAD_GRAVITY, weight.force[1] = -10.0;
+  OK(mps_elastic_set_load(b.e, 0, &weight));
+  OK(mps_elastic_solve(b.e));
+  OK(mps_particles_set(b.set, "density", 0, 3000.0));
+  OK(mps_elastic_load_resultant(b.e, NULL, force, NULL));
+  mps_assert_near(force[1], -10.0 * 3000.0 * 0.25, 1e-9);
+  OK(mps_elastic_solve(b.e));
+  mps_reaction r;
+  OK(mps_elastic_get_reaction(b.e, b.foot, &r));
+  mps_assert_near(r.force[1], 10.0 * 3000.0 * 0.25, 1e-6);
+  mps_assert_near(totals_of(&b).mass, 3000.0 * 0.25, 1e-9);
+  const double nowhere[3] = {0.0, NAN, 0.0};
+  mps_assert_fails(context, mps_elastic_load_resultant(b.e, nowhere, force, NULL),
+                   MPS_ERROR_ARGUMENT, "about[1]");
+  drop(&b);
+}
+
+/* A rollback over a change: as if it had not been, bit for bit, and then as after it again. */
+static void a_rollback_over_a_change_leads_to_the_same(void **state) {
+  (void)state;
+  beam b = make(1e-3);
+  mps_elastic_boundary_def foot = mps_elastic_boundary_defaults();
+  mps_snapshot *snapshot = NULL;
+  mps_totals first, second;
+  int32_t number;
+  foot.lower[0] = foot.lower[1] = -1.0, foot.upper[0] = 9.0, foot.upper[1] = 0.1;
+  OK(mps_elastic_add_boundary(b.e, &foot, &number));
+  foot.dofs = MPS_DOF_Y, foot.lower[1] = 0.4, foot.upper[1] = 9.0;
+  OK(mps_elastic_set_boundary(b.e, b.foot, &foot));
+  OK(mps_elastic_snapshot(b.e, &snapshot));
+  OK(mps_elastic_step(b.e, 3));
+  first = totals_of(&b);
+  OK(mps_elastic_rollback(b.e, snapshot));
+  OK(mps_elastic_step(b.e, 3));
+  second = totals_of(&b);
+  assert_memory_equal(&first, &second, sizeof first);
+  other_material(&b);
+  OK(mps_elastic_rollback(b.e, snapshot));
+  assert_closes(&b, 3);
+  mps_snapshot_destroy(&snapshot);
+  drop(&b);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_budget_closes_after_another_material),
+      cmocka_unit_test(the_budget_closes_after_another_boundary),
+      cmocka_unit_test(what_is_set_free_falls_at_once),
+      cmocka_unit_test(a_second_start_has_the_present_densities),
+      cmocka_unit_test(a_solution_weighs_the_present_densities),
+      cmocka_unit_test(a_rollback_over_a_change_leads_to_the_same),
+  };
+  return cmocka_run_group_tests(tests, begin, end);
+}
