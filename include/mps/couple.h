@@ -76,7 +76,9 @@ MPS_API MPS_NODISCARD mps_status mps_coupling_begin(mps_coupling *coupling, cons
  *  before the step takes back what the failed one has taught). MPS_ERROR_STATE: none is begun. */
 MPS_API MPS_NODISCARD mps_status mps_coupling_next(mps_coupling *coupling, const double *answer,
                                                    double *guess, int32_t *done);
-/** The step is made: the last guess and the differences seen serve the next ones. */
+/** The step is made: the last guess and the differences seen serve the next ones. Logs a warning,
+ *  once, where the values swing by more than .3 rad a step (omega dt, over some 64 steps): a longer
+ *  step does not follow them, and the codes may drive one another. */
 MPS_API MPS_NODISCARD mps_status mps_coupling_accept(mps_coupling *coupling);
 
 typedef struct mps_coupling_report {

@@ -204,6 +204,7 @@ mps_status mps_coupling_accept(mps_coupling *c) {
     return mpsi_fail(
         c->context, __func__, MPS_ERROR_STATE,
         "the step of the coupling is not agreed on: mps_coupling_next has not said so");
+  mpsi_coupling_watch(c);
   double *oldest = c->past[MPSI_COUPLING_PAST - 1];
   memmove(c->past + 1, c->past, (MPSI_COUPLING_PAST - 1) * sizeof *c->past);
   c->past[0] = oldest;
@@ -282,5 +283,6 @@ mps_status mps_coupling_set_memory(mps_coupling *c, int64_t count, const double 
     memcpy(c->column[k].answer, at + n, (size_t)n * sizeof *at);
   }
   c->open = false;
+  c->swing = (mpsi_coupling_swing){.warned = c->swing.warned};
   return MPS_OK;
 }

@@ -17,6 +17,13 @@ typedef struct mpsi_coupling_column {
   int64_t step; /* accepted steps when it was seen */
 } mpsi_coupling_column;
 
+/* Sums over the last steps, see swing.c. */
+typedef struct mpsi_coupling_swing {
+  double across, middle, outer;
+  int64_t seen; /* steps */
+  bool warned;
+} mpsi_coupling_swing;
+
 struct mps_coupling {
   mps_context *context;
   mps_coupling_def def;
@@ -29,7 +36,11 @@ struct mps_coupling {
   int32_t columns, repeats;
   double factor, relative; /* Aitken's; |residual|/|answer| */
   bool open, agreed;
+  mpsi_coupling_swing swing;
 };
+
+/* Warns once where the values, before they are accepted, swing too fast for the steps. */
+void mpsi_coupling_watch(mps_coupling *c);
 
 /* Takes up the difference between this repeat and the last. */
 void mpsi_coupling_learn(mps_coupling *c);

@@ -3,7 +3,8 @@
  *   grad q = (M + c e e^T)^-1 (sum w (q_j - q_i) dx/r^2 + c (q_s - q_i) e/h),
  *   u += -(dt/rho) grad q + a v,  a = .6 dt s0 + 2 |v|^2/(l0^2 |G|^2 + 1e-4 g l0) <= .5,
  *
- * the first part of a .12 dt s0 near the surface but in breakers, where v is what a linear velocity
+ * the first part of a .12 dt s0 near the surface but in breakers and the second times 10 dt s0 <= 1
+ * where walls meet it, where v is what a linear velocity
  * field leaves over (moments.c) and s0 = sqrt(g/l0). The Laplacian of u is n v/S: a viscosity nu
  * takes the share nu dt n/S of v, and a only what that leaves. Guards: pairs that approach within
  * l0/2 share their momentum, who strikes a wall is stopped .35 l0 before it, |u| <= 1.1 of
@@ -23,6 +24,7 @@
 #define ZONE_SMOOTH 0.2  /* of it, within 1.6 l0 of the surface */
 #define BREAKING 0.05    /* g/l0: |G|^2 where all of smoothing and shift is left there */
 #define MOST_SMOOTH 0.5
+#define LONGEST_STEP 0.1 /* (l0/g)^1/2: the limit of a fluid at rest */
 #define SHIFT 2.5
 #define MOST_SHIFT 0.05 /* l0 */
 #define ZONE_SHIFT 0.3  /* of the shift, within 1.6 l0 of the surface */
@@ -66,14 +68,18 @@ static double near_surface(const mps_fluid *f, int64_t i, double least) {
 
 /* Part of v that is taken over: of a rough velocity field more, but not where the flow turns around
  * a corner, which is no linear field however smooth it is. Near the surface less: among neighbours
- * on one side v is not 0 for the curved field of a wave, which it would damp. */
+ * on one side v is not 0 for the curved field of a wave, which it would damp. Where a wall meets
+ * the surface the water rises by ln r beside it: v is no roughness there either, and what is taken
+ * of it in a step must not grow as the steps get shorter. */
 static double smoothing(const mps_fluid *f, int64_t i) {
   const mpsi_fluid_local *local = &f->local[i];
   double steep = 1e-4 * f->g * f->l0, v2 = 0.0;
   for (int c = 0; c < 4; c++) steep += f->l0 * f->l0 * local->gradient[c] * local->gradient[c];
   for (int c = 0; c < 2; c++) v2 += local->rest[c] * local->rest[c];
   const bool corner = f->company[i] & MPSI_FLUID_NEAR_CORNER;
-  const double rough = steep > 0.0 && !corner ? 2.0 * v2 / steep : 0.0;
+  const bool waterline = f->zone[i] && (f->company[i] & MPSI_FLUID_NEAR_IMAGES);
+  const double time = waterline ? fmin(f->dt * rate(f) / LONGEST_STEP, 1.0) : 1.0;
+  const double rough = steep > 0.0 && !corner ? 2.0 * time * v2 / steep : 0.0;
   const double part = f->g > 0.0 ? SMOOTH : FREE_SMOOTH;
   const double a = part * near_surface(f, i, ZONE_SMOOTH) * f->dt * rate(f) + rough;
   return fmin(a, MOST_SMOOTH);

@@ -4,24 +4,35 @@
  * The pressure at a point of a wall is a weighted least-squares fit, linear ALONG the wall, with
  * the weight (1 - r/(2.1 l0))^2, of q - rho (a . N)(distance from the wall), N out of the fluid;
  * then p = q - rho g (height - level), and 0 where that is less than the air's at a surface near,
- * or suction. What loads do to a particle counts like -a of the wall. SPDX-License-Identifier:
- * BSD-3-Clause */
+ * or suction. What loads do to a particle counts like -a of the wall.
+ *
+ * Where a wall that moves ends in a free surface, q is r ln r: a line through the particles alone,
+ * extrapolated over the half spacing above them, has .1 rho a l0^2 too much force. So the surface
+ * above a particle is a point of the fit too, with the air's pressure. A particle stands for a
+ * spacing along the wall and the surface for the end of one: it has half the weight, the less the
+ * more the water's surface goes along the wall, or the wall is level.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "share.h"
 
 #define REACH 2.1         /* l0 */
 #define LEAST_SUM 0.05    /* of weights: below, there is no water */
 #define LEAST_SPREAD 0.02 /* l0^2: below, the mean is taken */
+#define SURFACE_PART 0.5  /* of a particle's weight, for the surface above it */
+#define LEVEL_RISE 0.5    /* l0: from a particle of an undisturbed surface to that */
 
 /* A particle near a wall. */
 typedef struct neighbour {
   double d, s, q; /* distance; place along the wall; q carried over to it */
   double air;     /* pressure on its surface, Pa; -infinity where it is inside */
   double least;   /* pressure that it has at least, Pa */
+  double part;    /* of the weight, for the surface above; 0: none */
+  double top[3];  /* d, s and q there */
   int64_t i;
 } neighbour;
 
 /* Sums of a fit. */
 typedef struct fit {
+  double water; /* the weights of particles */
   double w, ws, wss, wq, wsq;
   double air;   /* Pa, the largest of surfaces near; -infinity where none is */
   double least; /* Pa, <= 0 */
@@ -29,11 +40,24 @@ typedef struct fit {
 
 static const fit no_fit = {.air = -INFINITY};
 
-static void fit_add(fit *sum, double w, double s, const neighbour *n) {
+static double weight_of(const mps_fluid *f, double d, double s) {
+  const double a = 1.0 - sqrt(d * d + s * s) / (REACH * f->l0);
+  return a > 0.0 ? a * a : 0.0;
+}
+
+static void fit_point(fit *sum, double w, double s, double q) {
+  sum->w += w, sum->ws += w * s, sum->wss += w * s * s;
+  sum->wq += w * q, sum->wsq += w * s * q;
+}
+
+/* A particle near the point at `at` along the wall. */
+static void fit_add(const mps_fluid *f, fit *sum, double w, double at, const neighbour *n) {
   sum->air = mpsi_fluid_larger(sum->air, n->air);
   sum->least = -mpsi_fluid_larger(-sum->least, -n->least);
-  sum->w += w, sum->ws += w * s, sum->wss += w * s * s;
-  sum->wq += w * n->q, sum->wsq += w * s * n->q;
+  sum->water += w;
+  fit_point(sum, w, n->s - at, n->q);
+  if (n->part > 0.0)
+    fit_point(sum, n->part * weight_of(f, n->top[0], n->top[1] - at), n->top[1] - at, n->top[2]);
 }
 
 /* A point has water where its pressure is more than this: than that of the air at a surface. */
@@ -46,17 +70,35 @@ static double fit_value(const mps_fluid *f, const fit *sum) {
   return line ? (sum->wss * sum->wq - sum->ws * sum->wsq) / det : sum->wq / sum->w;
 }
 
-static double weight_of(const mps_fluid *f, double d, double s) {
-  const double a = 1.0 - sqrt(d * d + s * s) / (REACH * f->l0);
-  return a > 0.0 ? a * a : 0.0;
-}
-
 /* The place of a coordinate along the wall in space. */
 static void place(const mps_fluid *f, const mpsi_fluid_wall *w, double along, double *x) {
   const double *at = mpsi_fluid_places(f, w);
   const double s = w->nodes == 1 ? at[0] : mpsi_fluid_between(w, at, along);
   x[0] = w->at[0] + s * w->normal[0] - along * w->normal[1];
   x[1] = w->at[1] + s * w->normal[1] + along * w->normal[0];
+}
+
+/* Height (m) of the surface above particle i. Between steps it is the field's, as the moments are
+ * not of the present order of the particles. */
+static double rise_of(const mps_fluid *f, int64_t i) {
+  if (f->stage == MPSI_FLUID_BETWEEN)
+    return mpsi_particles_column(f->particles, "surface_rise", 0)[i];
+  return mpsi_fluid_rise(f, i);
+}
+
+/* The surface above particle i as a point of the fit. */
+static void find_top(const mps_fluid *f, const mpsi_fluid_wall *w, neighbour *n) {
+  const double along = w->normal[0] * f->up[1] - w->normal[1] * f->up[0];
+  const double across = w->normal[0] * f->up[0] + w->normal[1] * f->up[1];
+  const double rise = f->state[n->i] == MPSI_FLUID_SURFACE && f->g > 0.0 ? rise_of(f, n->i) : 0.0;
+  n->part = 0.0;
+  if (!(rise > 0.0)) return;
+  const double level = fmin(rise / (LEVEL_RISE * f->l0), 1.0);
+  const double *x[2] = {f->x[0], f->x[1]};
+  n->part = SURFACE_PART * along * along * level * level;
+  n->top[0] = n->d + rise * across, n->top[1] = n->s + rise * along;
+  n->top[2] =
+      n->air + mpsi_fluid_head(f, x[0][n->i] + rise * f->up[0], x[1][n->i] + rise * f->up[1]);
 }
 
 /* What a particle contributes: false where it is too far from the wall. Its acceleration is along
@@ -73,6 +115,7 @@ static bool near_wall(const mps_fluid *f, const mpsi_fluid_wall *w, int64_t i, n
   out->air = f->state[i] != MPSI_FLUID_SURFACE ? -INFINITY : f->over ? f->over[i] : 0.0;
   out->least = mpsi_fluid_least(f, i);
   out->i = i;
+  find_top(f, w, out);
   return true;
 }
 
@@ -159,13 +202,13 @@ static mps_status for_points(mps_fluid *f, int32_t b, const char *function, poin
     for (int64_t k = first > low ? first : low; k <= last && k < high; k++) {
       const double at = ((double)k + 0.5) * step, weight = weight_of(f, list[n].d, s - at);
       if (weight > 0.0 && (!f->faces || sees_point(f, b, at, list[n].i)))
-        fit_add(&sum[k - low], weight, s - at, &list[n]);
+        fit_add(f, &sum[k - low], weight, at, &list[n]);
     }
   }
   for (int64_t k = low; k < high; k++) {
     double x[2];
     place(f, w, ((double)k + 0.5) * step, x);
-    if (sum[k - low].w <= LEAST_SUM || !among_walls(f, b, x)) continue;
+    if (sum[k - low].water <= LEAST_SUM || !among_walls(f, b, x)) continue;
     const double p = fit_value(f, &sum[k - low]) - mpsi_fluid_head(f, x[0], x[1]);
     if (p > driest(&sum[k - low])) point(user, x, p);
   }
@@ -191,6 +234,7 @@ static void add_force(void *user, const double *x, double p) {
 
 mps_status mpsi_fluid_load_walls(mps_fluid *f, const char *function) {
   mps_status status = MPS_OK;
+  if (f->stage != MPSI_FLUID_MOVED) mpsi_fluid_tell_local(f); /* by then the rooms are taken */
   for (int32_t b = 0; status == MPS_OK && b < MPSI_FLUID_WALLS; b++) {
     mpsi_fluid_wall *w = &f->wall[b];
     if (!w->used) continue;
@@ -302,11 +346,11 @@ mps_status mps_fluid_get_pressure(mps_fluid *f, int32_t number, int64_t count, c
     fit sum = no_fit;
     for (int64_t i = 0; i < near; i++) {
       const double s = list[i].s - at, weight = weight_of(f, list[i].d, s);
-      if (weight > 0.0) fit_add(&sum, weight, s, &list[i]);
+      if (weight > 0.0) fit_add(f, &sum, weight, at, &list[i]);
     }
     place(f, &f->wall[number], at, to);
     const double head = mpsi_fluid_head(f, to[0], to[1]);
-    const double p = sum.w > LEAST_SUM ? fit_value(f, &sum) - head : 0.0;
+    const double p = sum.water > LEAST_SUM ? fit_value(f, &sum) - head : 0.0;
     pressure[k] = p > driest(&sum) ? p : 0.0;
   }
   return MPS_OK;

@@ -124,7 +124,7 @@ static mps_status solve(mps_fluid *f, const char *function) {
 static mps_status finish(mps_fluid *f, const char *function) {
   const mps_status walls = mpsi_fluid_check_walls(f, function);
   if (walls != MPS_OK) return walls;
-  if (f->push[0]) mpsi_fluid_tell_local(f); /* whose work is added up */
+  mpsi_fluid_tell_local(f); /* for the work of loads, and for the surface at walls */
   mpsi_fluid_find_velocities(f);
   const int64_t bad = mpsi_fluid_advance(f);
   const mps_status lost = mpsi_fluid_lost(f, function);

@@ -14,7 +14,7 @@
 #include <string.h>
 
 #define LATE 0.005 /* of a wall's acceleration: see late_share */
-#define LATE_AT_SURFACE 0.4
+#define LATE_AT_SURFACE 0.22
 #define SQUARE 1e-6 /* cosine of the angle of walls at right angles */
 
 /* ---- motion ---------------------------------------------------------------------------------- */

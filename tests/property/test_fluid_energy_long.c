@@ -4,17 +4,16 @@
 
 #include "fluid_energy.h"
 
-/* Finer steps and all shapes; the spacing of .02 m is coarse for y^2, which is largest where wall
- * and surface meet. */
+/* Finer steps and all shapes. */
 static void vibrating_walls_are_damped_and_feel_the_added_mass(void **state) {
   (void)state;
   const double omega[] = {60.0, 125.0, 250.0}, coarse[] = {0.0045, 0.004, 0.002, 0.001, 0.0005},
-               fine[] = {0.0031, 0.001}, bar[] = {0.006, 0.012, 0.027};
+               fine[] = {0.0031, 0.001};
   for (int power = 0; power <= 2; power++)
     for (int w = 0; w < 3; w++) {
       for (size_t k = 0; k < sizeof coarse / sizeof *coarse; k++)
-        forced_check(context, 0.02, coarse[k], power, omega[w], bar[power]);
-      for (size_t k = 0; k < sizeof fine / sizeof *fine && w > 0; k++)
+        forced_check(context, 0.02, coarse[k], power, omega[w], 0.006);
+      for (size_t k = 0; k < sizeof fine / sizeof *fine; k++)
         forced_check(context, 0.01, fine[k], power, omega[w], 0.006);
     }
 }

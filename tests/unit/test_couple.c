@@ -5,6 +5,10 @@
 
 #include <mps/couple.h>
 
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
 enum { N = 24 };
 
 /* A is symmetric, with the eigenvalues 9, 4, 1 and 0.25 on smooth shapes and 0 across them: an
@@ -174,6 +178,60 @@ static void what_is_learnt_can_be_kept(void **state) {
   mps_coupling_destroy(&d);
 }
 
+typedef struct journal {
+  int count;
+  char last[512];
+} journal;
+
+static void note(void *user, int32_t level, const char *message) {
+  journal *j = user;
+  if (level != MPS_LOG_WARNING) return;
+  j->count++;
+  snprintf(j->last, sizeof j->last, "%s", message);
+}
+
+/* Warnings of 300 accepted steps of two values: `large` cos(w n) about a mean of 5, waves of .04
+ * rad a step and an amplitude of 1, and `noise`. */
+static int warnings(journal *j, double large, double w, double noise) {
+  mps_coupling_def def = mps_coupling_defaults();
+  mps_coupling *c = NULL;
+  uint64_t seed = 7;
+  *j = (journal){0};
+  def.size = 2, def.floor = 1e-3;
+  mps_context_set_log(context, note, j);
+  mps_assert_ok(context, mps_coupling_create(context, &def, &c));
+  for (int n = 0; n < 300; n++) {
+    double x[2];
+    int32_t done;
+    for (int i = 0; i < 2; i++) {
+      seed = seed * 6364136223846793005u + 1442695040888963407u;
+      x[i] = 5.0 + cos(0.04 * n) + large * cos(w * n + i) +
+             noise * ((double)(seed >> 11) * 0x1p-52 - 1.0);
+    }
+    mps_assert_ok(context, mps_coupling_begin(c, x, x));
+    mps_assert_ok(context, mps_coupling_next(c, x, x, &done));
+    assert_true(done);
+    mps_assert_ok(context, mps_coupling_accept(c));
+  }
+  mps_coupling_destroy(&c);
+  mps_context_set_log(context, NULL, NULL);
+  return j->count;
+}
+
+/* Only a swing that dominates is one: noise and waves, however large, say nothing of the step. */
+static void a_step_too_long_for_what_swings_is_warned_of(void **state) {
+  (void)state;
+  journal j;
+  assert_int_equal(warnings(&j, 1.0, 0.5, 0.0), 1);
+  assert_non_null(strstr(j.last, "swing by 0.50 rad a step"));
+  assert_int_equal(warnings(&j, 1.0, 1.6, 0.0), 1);
+  assert_int_equal(warnings(&j, 1.0, 0.5, 0.02), 1);
+  assert_int_equal(warnings(&j, 1.0, 0.28, 0.0), 0);
+  assert_int_equal(warnings(&j, 0.0, 0.5, 0.0), 0);
+  assert_int_equal(warnings(&j, 0.0, 0.5, 1.0), 0);
+  assert_int_equal(warnings(&j, 0.0, 0.5, 0.01), 0);
+}
+
 static void bad_input_is_refused(void **state) {
   (void)state;
   mps_coupling_def def = mps_coupling_defaults();
@@ -204,6 +262,7 @@ int main(void) {
       cmocka_unit_test(what_does_not_agree_is_an_error_and_can_begin_again),
       cmocka_unit_test(guesses_lie_on_a_line_through_the_last_steps),
       cmocka_unit_test(what_is_learnt_can_be_kept),
+      cmocka_unit_test(a_step_too_long_for_what_swings_is_warned_of),
       cmocka_unit_test(bad_input_is_refused),
   };
   return cmocka_run_group_tests(tests, make_context, drop_context);
