@@ -235,12 +235,13 @@ static inline void standing_shape(void *user, double *x, double *u) {
 }
 
 /* Share of its amplitude that the first mode of a tank keeps over 20 periods: the least squares
- * line through the logarithms of amplitudes over two periods each, for `periods`. */
-static inline double standing_kept(mps_context *c, double l0, double periods) {
+ * line through the logarithms of amplitudes over two periods each, for `periods`. dt NAN: the
+ * library's step. */
+static inline double standing_kept(mps_context *c, double l0, double dt, double periods) {
   enum { STATIONS = 64, WINDOWS = 32 };
   const double k = TANK_PI / STANDING_LENGTH, w = sqrt(TANK_G * k * tanh(k * STANDING_DEPTH));
   const double window = 2.0 * 2.0 * TANK_PI / w;
-  tank t = tank_of(c, STANDING_LENGTH, STANDING_DEPTH, l0, NAN, NULL, standing_shape, NULL);
+  tank t = tank_of(c, STANDING_LENGTH, STANDING_DEPTH, l0, dt, NULL, standing_shape, NULL);
   double at[STATIONS], level[STATIONS], n = 0.0, st = 0.0, sl = 0.0, stt = 0.0, stl = 0.0;
   for (int i = 0; i < STATIONS; i++) at[i] = (i + 0.5) * STANDING_LENGTH / STATIONS;
   for (double begin = 0.0; n < 0.5 * periods; begin = mps_fluid_time(t.fluid)) {

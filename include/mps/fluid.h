@@ -188,7 +188,9 @@ MPS_API MPS_NODISCARD mps_status mps_fluid_get_levels(mps_fluid *fluid, int64_t 
  *  moves it (mps_body_advance, mps_body_set_motion), or another solver does: where it is and how
  *  fast when a step is made, or solved for in parts, is taken as the end of that step. At the end
  *  of each step it feels the water's forces (mps_body_get_reaction; a free body moves by them). It
- *  is kept alive. MPS_ERROR_ARGUMENT: another shape; a particle inside or closer than .3 l0. */
+ *  is kept alive. MPS_ERROR_ARGUMENT: another shape; a particle inside or closer than .3 l0; less
+ *  than 15 degrees of fluid between an edge and the boundary that it stands on (a body that rolls
+ *  there later has a warning in the log, once). */
 MPS_API MPS_NODISCARD mps_status mps_fluid_add_body(mps_fluid *fluid, mps_body *body, int32_t kind,
                                                     int32_t *number);
 /** Takes body `number` out of the water, between steps; MPS_ERROR_ARGUMENT: there is none. */

@@ -10,9 +10,8 @@
 
 #include <string.h>
 
-#define LEAST_BODY 0.3   /* l0: distance of a particle from a face */
-#define FLUSH 0.1        /* l0: a corner that near a boundary stands on it */
-#define LEAST_ANGLE 15.0 /* degrees of water between a face and the boundary that it stands on */
+#define LEAST_BODY 0.3 /* l0: distance of a particle from a face */
+#define FLUSH 0.1      /* l0: a corner that near a boundary stands on it */
 
 /* Corner k of the body in a pose. */
 static void corner(const mps_body *body, const mpsi_fluid_pose *pose, int64_t k, double *x) {
@@ -210,18 +209,22 @@ static mps_status check_body(mps_fluid *f, const char *function, const mps_body 
   return MPS_OK;
 }
 
+double mpsi_fluid_angle(const mps_fluid *f, const mpsi_fluid_wall *face, int b) {
+  const double *n = f->wall[b].normal;
+  if (!face->used || !((face->stands_on[0] | face->stands_on[1]) >> b & 1)) return 180.0;
+  const double cosine = -(face->normal[0] * n[0] + face->normal[1] * n[1]);
+  return acos(fmax(fmin(cosine, 1.0), -1.0)) * (180.0 / 3.141592653589793);
+}
+
 static mps_status check_angles(mps_fluid *f, const char *function, const mpsi_fluid_body *body) {
-  const double degree = 3.141592653589793 / 180.0;
   for (int k = 0; k < body->faces; k++)
     for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
-      const mpsi_fluid_wall *w = &f->wall[body->first + k], *on = &f->wall[b];
-      const double cosine = -(w->normal[0] * on->normal[0] + w->normal[1] * on->normal[1]);
-      if (!w->used || !((w->stands_on[0] | w->stands_on[1]) >> b & 1)) continue;
-      if (cosine > cos((LEAST_ANGLE - 1e-6) * degree))
+      const double angle = mpsi_fluid_angle(f, &f->wall[body->first + k], b);
+      if (angle < MPSI_FLUID_LEAST_ANGLE - 1e-6)
         return mpsi_fail(f->context, function, MPS_ERROR_ARGUMENT,
                          "edge %d of the body and boundary %d enclose %g degrees of fluid, allowed "
                          "are %g and more",
-                         k, b, acos(fmin(cosine, 1.0)) / degree, LEAST_ANGLE);
+                         k, b, angle, MPSI_FLUID_LEAST_ANGLE);
     }
   return MPS_OK;
 }
@@ -313,6 +316,7 @@ mps_status mps_fluid_add_body(mps_fluid *f, mps_body *body, int32_t kind, int32_
     return status;
   }
   mpsi_body_join(body, &f->body[b].source);
+  f->warned &= ~((uint32_t)MPSI_FLUID_WARNED_ANGLE << b);
   f->stale = true, f->unknown = 1;
   if (number) *number = b;
   return MPS_OK;

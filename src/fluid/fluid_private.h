@@ -180,7 +180,8 @@ typedef enum mpsi_fluid_stage {
 typedef enum mpsi_fluid_warning {
   MPSI_FLUID_WARNED_GUARDS = 1, /* act often */
   MPSI_FLUID_WARNED_TRAVEL = 2, /* of a wall in a step */
-  MPSI_FLUID_WARNED_SLOPE = 4   /* of a bent wall */
+  MPSI_FLUID_WARNED_SLOPE = 4,  /* of a bent wall */
+  MPSI_FLUID_WARNED_ANGLE = 8   /* of body 0 with a boundary; of the next ones the bits above */
 } mpsi_fluid_warning;
 
 /* Who adds or removes particles. */
@@ -296,6 +297,12 @@ static inline double mpsi_fluid_head(const mps_fluid *f, double x, double y) {
   return f->def.density * f->g * (f->up[0] * x + f->up[1] * y - f->level);
 }
 
+/* The rate (g/l0)^1/2 of what the scheme adds to the equations, 1/s: smoothing, shifting, the
+ * density's source; without gravity that of the largest velocity. */
+static inline double mpsi_fluid_rate(const mps_fluid *f) {
+  return f->g > 0.0 ? sqrt(f->g / f->l0) : f->speed / f->l0;
+}
+
 mpsi_fluid_weight mpsi_fluid_make_weight(double l0, double re);
 
 /* wall.c: drop_wall, make_motion, mirror_point, between; walls.c: the rest */
@@ -358,6 +365,9 @@ void mpsi_fluid_end_bodies(mps_fluid *fluid);
 /* m: rotations count as displacements at this radius. */
 double mpsi_fluid_body_length(const mpsi_fluid_body *body, const mps_fluid *fluid);
 void mpsi_fluid_drop_body(mps_fluid *fluid, mpsi_fluid_body *body);
+#define MPSI_FLUID_LEAST_ANGLE 15.0 /* degrees of fluid between a face and what it stands on */
+/* Degrees of fluid between a face and boundary number b; 180 where it does not stand there. */
+double mpsi_fluid_angle(const mps_fluid *fluid, const mpsi_fluid_wall *face, int b);
 /* Corner k of a body at the beginning of the step, or at its end (next). */
 void mpsi_fluid_corner(const mpsi_fluid_body *body, bool next, int64_t k, double *x);
 /* The face nearest to x as the body has it, and the distance, negative inside. */
@@ -409,6 +419,7 @@ mps_status mpsi_fluid_forget(mps_fluid *fluid, const char *function);
 /* warn.c: refuses a step whose walls go or bend too far; warnings to the log. */
 mps_status mpsi_fluid_check_walls(mps_fluid *fluid, const char *function);
 void mpsi_fluid_warn_of_guards(mps_fluid *fluid);
+void mpsi_fluid_warn_of_angles(mps_fluid *fluid);
 /* move.c */
 void mpsi_fluid_find_velocities(mps_fluid *fluid);
 int64_t mpsi_fluid_advance(mps_fluid *fluid); /* first particle that went wrong, or -1 */

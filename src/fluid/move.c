@@ -33,14 +33,9 @@
 #define OWN_IMAGE 0.7   /* l0: one and its image, .35 l0 from the wall, .. */
 #define IMPACT 0.3      /* (g/l0)^1/2: .. where they approach at this rate */
 
-/* The rate (g/l0)^1/2 of smoothing and shifting, 1/s; without gravity by the largest velocity. */
-static double rate(const mps_fluid *f) {
-  return f->g > 0.0 ? sqrt(f->g / f->l0) : f->speed / f->l0;
-}
-
 /* How steep the flow at particle i is, 1 where it is as in breakers. */
 static double steepness(const mps_fluid *f, int64_t i) {
-  const double *G = f->local[i].gradient, s0 = rate(f);
+  const double *G = f->local[i].gradient, s0 = mpsi_fluid_rate(f);
   const double square = G[0] * G[0] + G[1] * G[1] + G[2] * G[2] + G[3] * G[3];
   return s0 > 0.0 ? square / (BREAKING * s0 * s0) : 0.0;
 }
@@ -61,7 +56,7 @@ static void pressure_gradient(const mps_fluid *f, int64_t i, double *gradient) {
 /* Share of smoothing and shift: less near the surface, `least` of them in gentle waves, all where
  * the flow is as steep as in breakers; round a body's corner it is as steep without breaking. */
 static double near_surface(const mps_fluid *f, int64_t i, double least) {
-  if (!f->zone[i] || !(rate(f) > 0.0)) return 1.0;
+  if (!f->zone[i] || !(mpsi_fluid_rate(f) > 0.0)) return 1.0;
   if (f->company[i] & MPSI_FLUID_NEAR_CORNER) return least;
   return fmin(1.0, least + steepness(f, i));
 }
@@ -81,7 +76,7 @@ static double smoothing(const mps_fluid *f, int64_t i) {
   const double time = waterline ? fmin(f->dt * rate(f) / LONGEST_STEP, 1.0) : 1.0;
   const double rough = steep > 0.0 && !corner ? 2.0 * time * v2 / steep : 0.0;
   const double part = f->g > 0.0 ? SMOOTH : FREE_SMOOTH;
-  const double a = part * near_surface(f, i, ZONE_SMOOTH) * f->dt * rate(f) + rough;
+  const double a = part * near_surface(f, i, ZONE_SMOOTH) * f->dt * mpsi_fluid_rate(f) + rough;
   return fmin(a, MOST_SMOOTH);
 }
 
@@ -197,7 +192,7 @@ static void collide(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
         image_velocity(f, j - f->count, v);
       const double approach = (own[0] - v[0]) * dx + (own[1] - v[1]) * dy;
       if (!(approach > 0.0)) continue;
-      if (!(r2 < pair2 || approach > IMPACT * rate(f) * r2)) continue;
+      if (!(r2 < pair2 || approach > IMPACT * mpsi_fluid_rate(f) * r2)) continue;
       u[0] -= 0.5 * approach * dx / r2, u[1] -= 0.5 * approach * dy / r2;
       collisions++;
     }
@@ -236,7 +231,7 @@ void mpsi_fluid_find_velocities(mps_fluid *f) {
 static void find_shift(const mps_fluid *f, int64_t i, double *shift) {
   shift[0] = shift[1] = 0.0;
   if (f->state[i] == MPSI_FLUID_APART || (f->company[i] & MPSI_FLUID_NEAR_WEDGE)) return;
-  const double size = SHIFT * f->dt * rate(f) * f->l0;
+  const double size = SHIFT * f->dt * mpsi_fluid_rate(f) * f->l0;
   for (int c = 0; c < 2; c++) shift[c] = -size * f->local[i].shift[c];
   if (f->zone[i]) {
     const double e[2] = {f->zone_normal[0][i], f->zone_normal[1][i]};

@@ -144,6 +144,7 @@ static mps_status keep(mps_fluid *f, const char *function) {
   f->time += f->dt;
   f->steps++;
   mpsi_fluid_warn_of_guards(f);
+  mpsi_fluid_warn_of_angles(f);
   mpsi_fluid_let_go(f);
   if (f->steps % SORT_EVERY != 0) return MPS_OK;
   f->stale = true;

@@ -1,6 +1,7 @@
 /* warn.c - what the model assumes and a step may break: walls that go little in a step and bend
- * little, particles that are fine enough for the flow. A step that breaks it is refused,
- * one that comes near says so to the log, once a solver each.
+ * little, particles that are fine enough for the flow, bodies that leave room for water above what
+ * they stand on. A step that breaks it is refused, one that comes near says so to the log, once a
+ * solver each, once a body where it is the body's.
  *
  * Images are those of the step's beginning, so a wall that goes a spacing passes particles. A bent
  * wall mirrors at its local position along the normal that it has when plane: the error grows as
@@ -16,7 +17,7 @@
 #define MOST_SLOPE 1.0
 
 /* True the first time that this is asked of the solver. */
-static bool first_time(mps_fluid *f, mpsi_fluid_warning warning) {
+static bool first_time(mps_fluid *f, uint32_t warning) {
   const bool first = !(f->warned & warning);
   f->warned |= warning;
   return first;
@@ -32,6 +33,25 @@ void mpsi_fluid_warn_of_guards(mps_fluid *f) {
            "step %lld of the fluid: collisions, cut velocities and particles pushed off walls are "
            "%.1f %% of the particles a step, above %g %%: the flow wants a smaller spacing or step",
            (long long)f->steps, 100.0 * share, 100.0 * MOST_GUARDED);
+}
+
+/* A body that rolls makes with time the acute corners that mpsi_fluid_add_body refuses. */
+void mpsi_fluid_warn_of_angles(mps_fluid *f) {
+  for (int number = 0; f->faces && number < MPSI_FLUID_BODIES; number++) {
+    const mpsi_fluid_body *body = &f->body[number];
+    for (int k = 0; body->body && k < body->faces; k++)
+      for (int b = 0; b < MPS_FLUID_MAX_BOUNDARIES; b++) {
+        const double angle = mpsi_fluid_angle(f, &f->wall[body->first + k], b);
+        if (angle >= MPSI_FLUID_LEAST_ANGLE ||
+            !first_time(f, (uint32_t)MPSI_FLUID_WARNED_ANGLE << number))
+          continue;
+        mpsi_log(f->context, MPS_LOG_WARNING,
+                 "step %lld of the fluid: edge %d of body %d and boundary %d enclose %.3g degrees "
+                 "of fluid, below the %g degrees that the fluid resolves: pressures in that corner "
+                 "are not to be relied on",
+                 (long long)f->steps, k, number, b, angle, MPSI_FLUID_LEAST_ANGLE);
+      }
+  }
 }
 
 /* The farthest that a node of the wall goes in the step, m. */

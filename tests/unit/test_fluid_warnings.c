@@ -1,5 +1,5 @@
 /* test_fluid_warnings.c - what the model does not hold for is refused, or the log is warned: walls
- * that go or bend too far, velocities for which a run would not end.
+ * that go or bend too far, bodies that roll onto the bed, velocities for which a run would not end.
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "test_common.h"
 
@@ -102,6 +102,67 @@ static void a_wall_that_bends_far(void **state) {
   mps_context_destroy(&own);
 }
 
+#define PIVOT 0.2 /* m, of the corner that the box stands on */
+#define WIDE 0.2
+#define HIGH 0.1
+
+/* A box that stands on its lower left corner, turned by so many degrees. */
+static void tilt(double degrees, double *center, double *angle) {
+  const double a = degrees * TANK_PI / 180.0;
+  center[0] = PIVOT + 0.5 * (WIDE * cos(a) - HIGH * sin(a));
+  center[1] = 0.5 * (WIDE * sin(a) + HIGH * cos(a));
+  *angle = a;
+}
+
+/* It is lowered from 17 degrees to `to` in so many steps of 2 ms. */
+static void lower_box(mps_context *own, double to, int steps) {
+  const double lo[2] = {0.0, 0.0}, hi[2] = {0.6, 0.2};
+  mps_particles_def set = mps_particles_defaults();
+  mps_fluid_def def = mps_fluid_defaults();
+  mps_body_def at = mps_body_defaults();
+  mps_body_motion motion = mps_body_motion_defaults();
+  tank t = {NULL, NULL};
+  mps_body *box;
+  int32_t number;
+  tilt(17.0, at.position, &at.rotation[2]);
+  mps_assert_ok(own, mps_body_create_box(own, &at, WIDE, HIGH, &box));
+  set.spacing = L0, def.dt = 2e-3, def.level = hi[1];
+  mps_assert_ok(own, mps_particles_create(own, &set, &t.water));
+  for (double y = lo[1] + 0.5 * L0; y < hi[1]; y += L0)
+    for (double x = lo[0] + 0.5 * L0; x < hi[0]; x += L0) {
+      const double p[2] = {x, y};
+      double d;
+      mps_assert_ok(own, mps_body_distance(box, 1, p, &d, NULL, NULL, NULL));
+      if (d > 0.45 * L0) mps_assert_ok(own, mps_particles_append(t.water, 1, p));
+    }
+  mps_assert_ok(own, mps_fluid_create(own, t.water, &def, &t.fluid));
+  tank_wall(own, t.fluid, lo[0], 0.0, 1.0, 0.0, NULL);
+  tank_wall(own, t.fluid, hi[0], 0.0, -1.0, 0.0, NULL);
+  tank_wall(own, t.fluid, 0.0, lo[1], 0.0, 1.0, NULL);
+  mps_assert_ok(own, mps_fluid_add_body(t.fluid, box, MPS_FLUID_BOUNDARY_SLIP, &number));
+  for (int k = 1; k <= steps; k++) {
+    tilt(17.0 + (to - 17.0) * k / steps, motion.position, &motion.rotation[2]);
+    motion.spin[2] = (to - 17.0) * TANK_PI / 180.0 / (steps * 2e-3);
+    mps_assert_ok(own, mps_body_set_motion(box, &motion));
+    mps_assert_ok(own, mps_fluid_step(t.fluid, 1));
+  }
+  mps_body_destroy(&box);
+  tank_free(&t);
+}
+
+static void a_body_that_rolls_onto_the_bed(void **state) {
+  (void)state;
+  journal j = {0};
+  mps_context *own = noting(&j, false);
+  lower_box(own, 15.2, 10);
+  assert_int_equal(j.count, 0);
+  lower_box(own, 14.0, 20); /* below 15 degrees for the last six steps: once */
+  assert_int_equal(j.count, 1);
+  assert_non_null(strstr(j.last, "of body 0 and boundary 2 enclose 14.9 degrees"));
+  assert_non_null(strstr(j.last, "below the 15 degrees"));
+  mps_context_destroy(&own);
+}
+
 /* A particle of 1e6 m/s would ask for steps of 5 ns; without gravity for as many. */
 static void a_run_does_not_choose_endless_steps(void **state) {
   (void)state;
@@ -147,6 +208,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_wall_that_goes_far_in_a_step),
       cmocka_unit_test(a_wall_that_bends_far),
+      cmocka_unit_test(a_body_that_rolls_onto_the_bed),
       cmocka_unit_test(a_run_does_not_choose_endless_steps),
       cmocka_unit_test(the_density_of_a_wide_kernel_can_be_cancelled),
   };
