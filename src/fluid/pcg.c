@@ -264,8 +264,7 @@ int64_t mpsi_fluid_pcg(mps_fluid *f) {
     const double enough = tolerance * tolerance * bb;
     if (bb == 0.0) memset(s->x, 0, (size_t)(f->count + f->ghosts) * sizeof *s->x);
     if (bb == 0.0) return 0;
-    if (rr <= enough) return done;
-    if (!(rr < 0.25 * left)) return isfinite(rr) && tolerance < SINGLE ? done : -1; /* round-off */
+    if (rr <= enough || !(rr < 0.25 * left)) return isfinite(rr) ? done : -1; /* or round-off */
     /* Round-off of the factors slowly brings back what the coarse space has taken out, which no
      * iteration removes: some digits at a time. */
     const double begin = f->coarse->used ? mpsi_fluid_coarse_start(f) : rr;
