@@ -141,11 +141,11 @@ typedef struct mpsi_fluid_system {
   double *x;                        /* count + ghosts */
   double *p, *r, *z, *q;            /* count */
   int32_t *lower_start, *lower_end; /* of row i, in its block's stretch of lower_col and lower */
-  int32_t *lower_col;
-  float *lower;    /* of L */
-  double *inverse; /* of D */
-  double *sums;    /* by chunk or block, two values each */
-  double mean;     /* of the right side, or what the solution is shifted by; see closed.c */
+  uint16_t *lower_col;              /* from the first row of the block */
+  float *lower;                     /* of L */
+  double *inverse;                  /* of D */
+  double *sums;                     /* by chunk or block, two values each */
+  double mean; /* of the right side, or what the solution is shifted by; see closed.c */
 } mpsi_fluid_system;
 
 /* A solver of the caller, and the matrix as it gets it; see solver.c. */
@@ -229,12 +229,12 @@ struct mps_fluid {
   int64_t *start;                /* first pair of each particle */
   int32_t *near;                 /* pairs of each particle */
   int64_t most_near;             /* room for pairs, a particle on average over a chunk */
-  mpsi_room index_room, w_room;  /* int32_t, double: pairs */
+  mpsi_room index_room, w_room;  /* int32_t, float: pairs */
   int32_t *index;                /* of the pairs' other ends, ghosts too */
-  double *w;                     /* of the pairs */
+  float *w;                      /* of the pairs: the weight, rounded, wherever it is used */
   mpsi_room cell_room, fit_room; /* int32_t; sums of fits, see probe.c */
   mpsi_room near_wall_room;      /* of a wall, see probe.c */
-  int32_t *slot;                 /* cloud sorted by cells */
+  int32_t *slot; /* cloud sorted by cells, while neighbours are looked for: in lower_room */
   double *slot_x[2];
   mpsi_fluid_given **given; /* loads by number, NULL: none */
   int32_t given_room;

@@ -6,6 +6,11 @@
 
 #define LEAST_GAP 0.3 /* l0: distance of a new particle from walls */
 
+/* Images to begin with: three rows along the walls of a tank, some 10 count^1/2. */
+static int64_t room_for_ghosts(int64_t count) {
+  return (int64_t)(12.0 * sqrt((double)count)) + 256;
+}
+
 /* The arrays over particles, from three blocks, in place of smaller ones; what they held is found
  * again. false: as before. */
 bool mpsi_fluid_reserve(mps_fluid *f, int64_t count) {
@@ -28,7 +33,7 @@ bool mpsi_fluid_reserve(mps_fluid *f, int64_t count) {
   double *block = mpsi_alloc(f->context, n * (DOUBLES + 1 + 2) + 2 * chunks, sizeof *block);
   mpsi_fluid_local *local = mpsi_alloc(f->context, count, sizeof *local);
   uint8_t *state = mpsi_alloc(f->context, 3 * count, sizeof *state);
-  if (!block || !local || !state || !mpsi_fluid_grow_cloud(f, count + count / 4 + 256)) {
+  if (!block || !local || !state || !mpsi_fluid_grow_cloud(f, count + room_for_ghosts(count))) {
     mpsi_free(f->context, block);
     mpsi_free(f->context, local);
     mpsi_free(f->context, state);
