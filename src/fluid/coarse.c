@@ -256,7 +256,7 @@ static mps_status make_rows(mps_fluid *f, const char *function, bool *crowded) {
     status = mpsi_fluid_settle_max(f, function, status, 2, flag);
     *crowded = flag[1] > 0.0;
     if (status != MPS_OK || flag[0] == 0.0) return status;
-    c->most += (c->most + 3) / 4;
+    c->most += (c->most + 7) / 8;
   }
 }
 
@@ -383,7 +383,7 @@ double mpsi_fluid_coarse_start(mps_fluid *f) {
 
 bool mpsi_fluid_coarse_create(mps_fluid *f) {
   f->coarse = mpsi_alloc(f->context, 1, sizeof *f->coarse);
-  if (f->coarse) f->coarse->most = 28;
+  if (f->coarse) f->coarse->most = 24;
   return f->coarse != NULL;
 }
 

@@ -121,13 +121,13 @@ static void slope(const mps_fluid *f, int64_t i, double *out) {
  * of the cells that particles are sorted by), so that a row hardly waits for the one before. */
 static void forward(const mps_fluid *f, int64_t first, int64_t end, int64_t offset, double *v) {
   const mpsi_fluid_system *s = &f->system;
-  const int32_t *start = s->lower_start, *stop = s->lower_end;
+  const int32_t *stop = s->lower_end;
   const uint16_t *column = s->lower_col + offset;
   const double *of = v + first;
+  int32_t e = 0;
   const float *lower = s->lower + offset;
   for (int64_t i = first; i < end; i++) {
     const int32_t last = stop[i];
-    int32_t e = start[i];
     double a = v[i], b = 0.0, c = 0.0, d = 0.0; /* chains of additions */
     if ((last - e) & 1) b = (double)lower[e] * of[column[e]], e++;
     if ((last - e) & 2) {
@@ -158,13 +158,14 @@ static double descend(const mps_fluid *f, int64_t first, int64_t end, int64_t of
     z[i] = inverse[i] * r[i];
     rz += r[i] * z[i];
   }
-  const int32_t *start = y->lower_start, *stop = y->lower_end;
+  const int32_t *stop = y->lower_end;
   const uint16_t *column = y->lower_col + offset;
   const float *lower = y->lower + offset;
   double *of = z + first;
   for (int64_t i = end - 1; i >= first; i--) {
     const double here = z[i];
-    for (int32_t e = start[i]; e < stop[i]; e++) of[column[e]] -= (double)lower[e] * here;
+    for (int32_t e = i > first ? stop[i - 1] : 0; e < stop[i]; e++)
+      of[column[e]] -= (double)lower[e] * here;
   }
   return rz;
 }
@@ -206,10 +207,10 @@ static double norm(const mps_fluid *f, int64_t first, int64_t end, int64_t offse
   const uint16_t *column = s->lower_col + offset;
   const float *lower = s->lower + offset;
   double square = 0.0;
+  int32_t e = 0;
   for (int64_t i = first; i < end; i++) {
     double sum = v[i];
-    for (int32_t e = s->lower_start[i]; e < s->lower_end[i]; e++)
-      sum += (double)lower[e] * v[first + column[e]];
+    for (; e < s->lower_end[i]; e++) sum += (double)lower[e] * v[first + column[e]];
     square += sum * sum;
   }
   return square;

@@ -12,7 +12,6 @@
 
 #define REACH 2 /* cells that re spans */
 #define MOST_CELLS 0x1p26
-#define SEARCHED 512   /* candidates that a search may write before it sorts them out */
 #define CROWD 4096     /* candidates in the cells around a particle */
 #define MOST_NEAR 2000 /* neighbours a particle, on average over a chunk */
 
@@ -74,7 +73,7 @@ static mps_status make_cells(mps_fluid *f, const char *function, cells *c) {
                      "the fluid is strewn over %lld x %lld cells of %g m", (long long)c->n[0],
                      (long long)c->n[1], 1.0 / c->inverse);
   const int64_t number = c->n[0] * c->n[1];
-  if (!mpsi_room_ensure(f->context, &f->cell_room, number + 1 + all, sizeof(int32_t)) ||
+  if (!mpsi_room_fit(f->context, &f->lower_col_room, 2 * (number + 1 + all), sizeof(uint16_t)) ||
       !mpsi_room_fit(f->context, &f->lower_room, 5 * sorted_room(all), sizeof(float)))
     return mpsi_fail_memory(f->context, function, (size_t)(number + 6 * all) * sizeof(int32_t));
   f->slot_x[0] = f->lower_room.item;
@@ -86,7 +85,7 @@ static mps_status make_cells(mps_fluid *f, const char *function, cells *c) {
 /* Sorts the cloud by cells: slot[] says which index stands at each place, slot_x where it is. */
 static void sort_cloud(mps_fluid *f, cells *c) {
   const int64_t all = f->count + f->ghosts, number = c->n[0] * c->n[1];
-  int32_t *first = f->cell_room.item, *cell = first + number + 1;
+  int32_t *first = f->lower_col_room.item, *cell = first + number + 1;
   memset(first, 0, (size_t)(number + 1) * sizeof *first);
   for (int64_t i = 0; i < all; i++) {
     cell[i] = (int32_t)(cell_along(c, 0, f->x[0][i]) * c->n[1] + cell_along(c, 1, f->x[1][i]));
@@ -167,15 +166,18 @@ static void find_chunk(void *data, int64_t chunk, int32_t worker) {
   const int64_t limit = full < p->pairs ? full : p->pairs;
   int64_t at = chunk * p->per_chunk;
   double r2[CROWD + MPSI_FLUID_WIDE];
+  int32_t apart[CROWD + MPSI_FLUID_WIDE]; /* where the stretch has no room for all candidates */
   for (int64_t i = chunk * MPSI_FLUID_CHUNK; i < last && i < f->count; i++) {
-    const int64_t left = limit - at - MPSI_FLUID_WIDE, room = left < CROWD ? left : CROWD;
-    int32_t *index = f->index + at;
+    const int64_t left = limit - at;
+    int32_t *index = left >= CROWD + MPSI_FLUID_WIDE ? f->index + at : apart;
     float *w = f->w + at;
-    int64_t found = room > 0 ? search(f, p->cells, i, room, index, r2) : room;
-    if (found >= room) {
-      atomic_store(room == CROWD ? &p->crowded : &p->full, true);
+    int64_t found = search(f, p->cells, i, CROWD, index, r2);
+    const bool crowded = found >= CROWD;
+    if (crowded || mpsi_fluid_padded((int32_t)found) > left) {
+      atomic_store(crowded ? &p->crowded : &p->full, true);
       return;
     }
+    if (index == apart) index = memcpy(f->index + at, apart, (size_t)found * sizeof *index);
     if (f->limited) found = mpsi_fluid_keep_seen(f, i, found, index, r2);
     const int32_t company = f->loops->weigh(f, i, found, index, r2, w);
     if (f->bent) average_weights(f, i, found, index, w);
@@ -192,10 +194,9 @@ mps_status mpsi_fluid_find_neighbours(mps_fluid *f, const char *function) {
   cells c;
   mps_status status = make_cells(f, function, &c);
   if (status == MPS_OK) sort_cloud(f, &c);
-  const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
   for (;;) {
-    const int64_t per_chunk = f->most_near * MPSI_FLUID_CHUNK + SEARCHED,
-                  pairs = f->most_near * f->count + chunks * SEARCHED;
+    const int64_t per_chunk = f->most_near * MPSI_FLUID_CHUNK,
+                  pairs = f->most_near * f->count + MPSI_FLUID_CHUNK;
     const bool room = mpsi_room_fit(f->context, &f->index_room, pairs, sizeof *f->index) &&
                       mpsi_room_fit(f->context, &f->w_room, pairs, sizeof *f->w);
     if (status == MPS_OK && !room)
@@ -215,6 +216,6 @@ mps_status mpsi_fluid_find_neighbours(mps_fluid *f, const char *function) {
     if (f->most_near > MOST_NEAR)
       return mpsi_fail(f->context, function, MPS_ERROR_DIVERGED,
                        "more than %d neighbours a particle: the fluid has collapsed", MOST_NEAR);
-    f->most_near += f->most_near / 8;
+    f->most_near += 1 + f->most_near / 32;
   }
 }

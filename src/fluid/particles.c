@@ -21,7 +21,6 @@ bool mpsi_fluid_reserve(mps_fluid *f, int64_t count) {
                         &f->u_new[1],
                         &f->zone_normal[0],
                         &f->zone_normal[1],
-                        &f->pressure,
                         &s->diagonal,
                         &s->right,
                         &s->r,
@@ -30,7 +29,7 @@ bool mpsi_fluid_reserve(mps_fluid *f, int64_t count) {
                         &s->p,
                         &s->inverse};
   enum { DOUBLES = sizeof doubles / sizeof *doubles };
-  double *block = mpsi_alloc(f->context, n * (DOUBLES + 1 + 2) + 2 * chunks, sizeof *block);
+  double *block = mpsi_alloc(f->context, n * (DOUBLES + 2) + 2 * chunks, sizeof *block);
   mpsi_fluid_local *local = mpsi_alloc(f->context, count, sizeof *local);
   uint8_t *state = mpsi_alloc(f->context, 3 * count, sizeof *state);
   if (!block || !local || !state || !mpsi_fluid_grow_cloud(f, count + room_for_ghosts(count))) {
@@ -44,11 +43,11 @@ bool mpsi_fluid_reserve(mps_fluid *f, int64_t count) {
   mpsi_free(f->context, f->state);
   f->slab = block, f->local = local, f->state = state;
   for (int k = 0; k < DOUBLES; k++) *doubles[k] = block + k * n;
+  f->pressure = s->right; /* of a solution, whose right side is of no more use */
   f->start = (int64_t *)(block + DOUBLES * n);
   f->near = (int32_t *)(block + (DOUBLES + 1) * n);
-  s->lower_start = f->near + n;
-  s->lower_end = s->lower_start + n;
-  s->sums = block + (DOUBLES + 3) * n;
+  s->lower_end = f->near + n;
+  s->sums = block + (DOUBLES + 2) * n;
   f->company = f->state + count;
   f->zone = (atomic_uchar *)(f->company + count);
   f->capacity = count;

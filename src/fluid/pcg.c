@@ -116,7 +116,6 @@ static void factor_block(void *data, int64_t b, int32_t worker) {
       atomic_store(&p->full, true);
       return;
     }
-    s->lower_start[i] = (int32_t)(at - b * p->room);
     if (f->state[i] == MPSI_FLUID_APART)
       s->inverse[i] = 1.0, f->u_new[1][i] = -1.0;
     else
