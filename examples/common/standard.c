@@ -62,7 +62,7 @@ static const struct {
      "as derived, which conserves angular momentum, or twice that as the paper prints it"},
     {"solver", "own|multigrid|direct", NONE,
      "of the pressure: the library's, the same bit for bit on all numbers of ranks; or PETSc's "
-     "algebraic multigrid, for some fifty thousand particles and more, or its direct solver: they "
+     "algebraic multigrid, for a hundred thousand particles and more, or its direct solver: they "
      "agree within the tolerance"},
     {"tolerance", "1", OPTION_FROM_TO(1e-14, 1e-2), "residual of the pressure over its right side"},
     /* the run */

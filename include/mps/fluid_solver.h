@@ -4,8 +4,8 @@
  * Each step has one equation A x = b, symmetric and positive definite, with one row a particle in
  * the present order of the set and about 33 entries a row; x is the reduced pressure. The matrix
  * changes at every step, as the neighbours do. The library's own solver (conjugate gradients with
- * an incomplete factor) takes a number of iterations that grows like the number of particles along
- * the fluid's side (docs/fluid.md), which a multigrid avoids.
+ * an incomplete factor, deflated by a coarse space from 5000 particles on) takes a number of
+ * iterations that hardly grows with the number of particles (docs/fluid.md).
  *
  * Thread rule: as mps/fluid.h; the callbacks are called by the thread that steps, outside of the
  * context's executor.

@@ -77,10 +77,11 @@ MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solver_create_c2f(mps_context *
 MPS_PETSC_API void mps_petsc_solver_destroy(mps_petsc_solver **solver);
 
 /** Has the pressure of a fluid of at least `least` (>= 0) particles solved by `solver`, as
- *  mps_fluid_set_solver: until that function puts in another one, or none. The multigrid pays from
- *  some fifty thousand particles on (docs/fluid.md). The ranks of a fluid's domain want a solver of
- *  the same processes in the same order, a fluid of one process one of it alone
- *  (MPS_ERROR_ARGUMENT); results then depend on the number of ranks within the tolerance. */
+ *  mps_fluid_set_solver: until that function puts in another one, or none. The multigrid may pay
+ *  from some hundred thousand particles on, where the water starts from rest (docs/fluid.md). The
+ *  ranks of a fluid's domain want a solver of the same processes in the same order, a fluid of one
+ *  process one of it alone (MPS_ERROR_ARGUMENT); results then depend on the number of ranks within
+ *  the tolerance. */
 MPS_PETSC_API MPS_NODISCARD mps_status mps_petsc_solve_fluid(mps_petsc_solver *solver,
                                                              mps_fluid *fluid, int64_t least);
 

@@ -66,7 +66,7 @@ static void weigh(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
     for (int64_t k = f->start[i]; k < f->start[i] + f->near[i]; k++) {
       const int32_t j = f->index[k];
       const double r = fmax(hypot(f->x[0][j] - f->x[0][i], f->x[1][j] - f->x[1][i]), least);
-      f->w[k] = f->weight.re / r - 1.0;
+      f->w[k] = (float)(f->weight.re / r - 1.0);
       n += fmax(NEAR * f->l0 / r - 1.0, 0.0);
     }
     f->local[i] = (mpsi_fluid_local){.n = n};

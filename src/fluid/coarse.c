@@ -6,11 +6,12 @@
 
 #include <string.h>
 
-#define LEAST 5000      /* particles: fewer are solved for sooner without */
-#define TILE 16.0       /* l0, side of an aggregate */
-#define COARSER 1.5     /* of the side, where there are too many aggregates */
-#define MOST_WORK 300   /* additions of a factorisation, a particle */
-#define MOST_BESIDE 320 /* aggregates that a row has neighbours in: 10 of each block */
+#define LEAST 5000       /* particles: fewer are solved for sooner without */
+#define TILE 16.0        /* l0, side of an aggregate */
+#define COARSER 1.5      /* of the side, where there are too many aggregates */
+#define MOST_WORK 300    /* additions of a factorisation, a particle */
+#define NOTHING 1e-8     /* of the diagonal: a sum of a row that counts as 0 */
+#define MOST_BESIDE 4096 /* aggregates that a row has neighbours in: as many as these (near.c) */
 
 /* ---- aggregates ------------------------------------------------------------------------------ */
 
@@ -97,7 +98,7 @@ typedef struct beside {
 /* Weights of row i by the aggregates of its neighbours; returns what the row has in its own. */
 static double split_row(const mps_fluid *f, int64_t i, beside *b) {
   const int32_t *index = f->index + f->start[i], *of = f->coarse->of, here = of[i];
-  const double *w = f->w + f->start[i];
+  const float *w = f->w + f->start[i];
   double inside = 0.0;
   b->count = 0;
   for (int32_t k = 0; k < f->near[i]; k++) {
@@ -114,9 +115,37 @@ static double split_row(const mps_fluid *f, int64_t i, beside *b) {
 
 typedef struct row_pass {
   mps_fluid *fluid;
-  int64_t room; /* entries a block */
-  atomic_bool full;
+  atomic_bool full, crowded; /* of entries; of slots */
 } row_pass;
+
+/* The rows of a block as they are found. */
+typedef struct block_rows {
+  mpsi_fluid_coarse *coarse;
+  double *entry;
+  mpsi_fluid_coarse_at *at;
+  int32_t *map, *list, slots;
+  int64_t first, count;
+} block_rows;
+
+static void add_entry(block_rows *r, int64_t i, int32_t aggregate, double value) {
+  if (r->map[aggregate] == 0) r->list[r->slots] = aggregate, r->map[aggregate] = ++r->slots;
+  r->entry[r->count] = value;
+  r->at[r->count++] =
+      (mpsi_fluid_coarse_at){(uint16_t)(i - r->first), (uint16_t)(r->map[aggregate] - 1)};
+}
+
+static block_rows begin_rows(mpsi_fluid_coarse *c, int64_t b) {
+  block_rows r = {.coarse = c,
+                  .entry = c->entry + b * c->room,
+                  .at = c->at + b * c->room,
+                  .map = c->map + b * (c->aggregates + 1),
+                  .list = c->list + b * (c->aggregates + 1),
+                  .first = b * c->block};
+  memset(r.map, 0, (size_t)(c->aggregates + 1) * sizeof *r.map);
+  for (int64_t a = c->own[b] + 1; a <= c->own[b + 1]; a++)
+    r.list[r.slots] = (int32_t)a, r.map[a] = ++r.slots;
+  return r;
+}
 
 static void find_rows(void *data, int64_t b, int32_t worker) {
   (void)worker;
@@ -125,46 +154,40 @@ static void find_rows(void *data, int64_t b, int32_t worker) {
   mpsi_fluid_coarse *c = f->coarse;
   const int64_t first = b * c->block,
                 end = first + c->block < f->count ? first + c->block : f->count;
-  mpsi_fluid_coarse_entry *entry = c->entry + b * p->room;
-  int32_t *map = c->map + b * (c->aggregates + 1), *list = c->list + b * (c->aggregates + 1);
-  int32_t slots = 0;
-  int64_t count = 0;
-  beside row;
   const bool alone = !f->any_apart && f->classical.gamma == 0.0;
-  memset(map, 0, (size_t)(c->aggregates + 1) * sizeof *map);
-  for (int64_t a = c->own[b] + 1; a <= c->own[b + 1]; a++)
-    list[slots] = (int32_t)a, map[a] = ++slots;
+  block_rows r = begin_rows(c, b);
+  beside row;
   for (int64_t i = first; i < end; i++) {
     const int32_t here = c->of[i];
     if (here == 0) continue;
     if (alone && f->local[i].c == 0.0 && !f->loops->mixed(f, i, c->of)) continue;
     const double own = split_row(f, i, &row);
-    if (row.count == 0 && own <= 1e-8 * f->system.diagonal[i]) continue;
-    if (count + row.count + 1 > p->room) {
-      atomic_store(&p->full, true);
-      return;
-    }
-    entry[count++] = (mpsi_fluid_coarse_entry){own, (int32_t)i, map[here] - 1};
+    if (row.count == 0 && own <= NOTHING * f->system.diagonal[i]) continue;
+    const bool full = r.count + row.count + 1 > c->room, crowded = r.slots + row.count > UINT16_MAX;
+    if (full) atomic_store(&p->full, true);
+    if (crowded) atomic_store(&p->crowded, true);
+    if (full || crowded) return;
+    add_entry(&r, i, here, own);
     for (int32_t k = 0; k < row.count; k++) {
       const int32_t a = row.aggregate[k];
-      if (map[a] == 0) list[slots] = a, map[a] = ++slots;
-      entry[count++] = (mpsi_fluid_coarse_entry){-row.w[k], (int32_t)i, map[a] - 1};
-      if (a - 1 < c->matrix.first[here - 1]) c->matrix.first[here - 1] = a - 1;
+      add_entry(&r, i, a, -row.w[k]);
+      if (a < c->matrix.first[here - 1] + 1) c->matrix.first[here - 1] = a - 1;
     }
   }
-  c->count[b] = count;
-  f->system.sums[2 * b] = slots, f->system.sums[2 * b + 1] = 0.0;
+  c->count[b] = r.count;
+  f->system.sums[2 * b] = r.slots, f->system.sums[2 * b + 1] = 0.0;
 }
 
 static void add_rows(void *data, int64_t b, int32_t worker) {
   (void)worker;
   mps_fluid *f = data;
   mpsi_fluid_coarse *c = f->coarse;
-  const mpsi_fluid_coarse_entry *entry = c->entry + b * (c->block * c->most / 16);
-  const int32_t *slot = c->slot + c->slots[b];
+  const mpsi_fluid_coarse_at *at = c->at + b * c->room;
+  const double *entry = c->entry + b * c->room;
+  const int32_t *slot = c->slot + c->slots[b], *of = c->of + b * c->block;
   for (int64_t k = 0; k < c->count[b]; k++) {
-    const int32_t row = c->of[entry[k].row] - 1, column = slot[entry[k].slot] - 1;
-    if (column <= row) *mpsi_envelope_at(&c->matrix, row, column) += entry[k].value;
+    const int32_t row = of[at[k].row] - 1, column = slot[at[k].slot] - 1;
+    if (column <= row) *mpsi_envelope_at(&c->matrix, row, column) += entry[k];
   }
 }
 
@@ -191,11 +214,14 @@ static bool fit(mps_fluid *f, mpsi_room *room, int64_t count, size_t size) {
 static mps_status make_aggregates(mps_fluid *f, const char *function) {
   mpsi_fluid_coarse *c = f->coarse;
   mps_status status = MPS_OK;
-  if (!fit(f, &c->of_room, f->count + f->ghosts, sizeof *c->of))
+  if (!fit(f, &c->block_room, 3 * (c->blocks + 1), sizeof *c->own) ||
+      !fit(f, &c->of_room, f->count + f->ghosts, sizeof *c->of))
     status = mpsi_fail_memory(f->context, function, (size_t)(f->count + f->ghosts) * sizeof *c->of);
   status = mpsi_fluid_settle(f, function, status);
   if (status != MPS_OK) return status;
   c->of = c->of_room.item;
+  c->own = c->block_room.item, c->slots = c->own + c->blocks + 1;
+  c->count = c->slots + c->blocks + 1;
   mpsi_fluid_for_all(f, f->count, c->block, tile_block);
   c->own[0] = 0;
   for (int64_t b = 0; b < c->blocks; b++) c->own[b + 1] += c->own[b];
@@ -211,23 +237,26 @@ static mps_status make_aggregates(mps_fluid *f, const char *function) {
   return mpsi_fluid_settle(f, function, status);
 }
 
-static mps_status make_rows(mps_fluid *f, const char *function) {
+/* *crowded: a block has more slots than its entries can name. */
+static mps_status make_rows(mps_fluid *f, const char *function, bool *crowded) {
   mpsi_fluid_coarse *c = f->coarse;
   row_pass p = {.fluid = f};
   for (;;) {
     mps_status status = MPS_OK;
-    p.room = c->block * c->most / 16;
-    if (!fit(f, &c->entry_room, p.room * c->blocks, sizeof *c->entry) ||
+    c->room = c->block * c->most / 16;
+    const int64_t all = c->room * c->blocks;
+    if (!mpsi_room_fit(f->context, &c->entry_room, all, sizeof *c->entry) ||
+        !mpsi_room_fit(f->context, &c->at_room, all, sizeof *c->at) ||
         !mpsi_envelope_begin(f->context, &c->matrix, c->aggregates))
-      status =
-          mpsi_fail_memory(f->context, function, (size_t)(p.room * c->blocks) * sizeof *c->entry);
-    c->entry = c->entry_room.item;
-    atomic_store(&p.full, false);
+      status = mpsi_fail_memory(f->context, function, (size_t)all * 12);
+    c->entry = c->entry_room.item, c->at = c->at_room.item;
+    atomic_store(&p.full, false), atomic_store(&p.crowded, false);
     if (status == MPS_OK) mpsi_fluid_units(f, c->block, find_rows, &p);
-    double full = atomic_load(&p.full);
-    status = mpsi_fluid_settle_max(f, function, status, 1, &full);
-    if (status != MPS_OK || full == 0.0) return status;
-    c->most += (c->most + 3) / 4;
+    double flag[2] = {atomic_load(&p.full), atomic_load(&p.crowded)};
+    status = mpsi_fluid_settle_max(f, function, status, 2, flag);
+    *crowded = flag[1] > 0.0;
+    if (status != MPS_OK || flag[0] == 0.0) return status;
+    c->most += (c->most + 7) / 8;
   }
 }
 
@@ -281,8 +310,10 @@ mps_status mpsi_fluid_coarsen(mps_fluid *f, const char *function, int64_t block,
   c->block = block, c->blocks = blocks;
   c->side = TILE * f->l0;
   for (bool small = false; status == MPS_OK && !small; c->side *= COARSER) {
+    bool crowded = false;
     status = make_aggregates(f, function);
-    if (status == MPS_OK) status = make_rows(f, function);
+    if (status == MPS_OK) status = make_rows(f, function, &crowded);
+    if (crowded) continue;
     if (status == MPS_OK) status = join_slots(f, function);
     small =
         c->aggregates <= blocks || mpsi_envelope_work(&c->matrix) <= MOST_WORK * (double)f->count;
@@ -296,10 +327,11 @@ mps_status mpsi_fluid_coarsen(mps_fluid *f, const char *function, int64_t block,
 
 void mpsi_fluid_coarse_restrict(mps_fluid *f, int64_t b, const double *v) {
   mpsi_fluid_coarse *c = f->coarse;
-  const mpsi_fluid_coarse_entry *entry = c->entry + b * (c->block * c->most / 16);
+  const mpsi_fluid_coarse_at *at = c->at + b * c->room;
+  const double *entry = c->entry + b * c->room, *own = v + b * c->block;
   double *part = c->part + c->slots[b];
   memset(part, 0, (size_t)(c->slots[b + 1] - c->slots[b]) * sizeof *part);
-  for (int64_t k = 0; k < c->count[b]; k++) part[entry[k].slot] += entry[k].value * v[entry[k].row];
+  for (int64_t k = 0; k < c->count[b]; k++) part[at[k].slot] += entry[k] * own[at[k].row];
 }
 
 void mpsi_fluid_coarse_solve(mps_fluid *f) {
@@ -351,15 +383,16 @@ double mpsi_fluid_coarse_start(mps_fluid *f) {
 
 bool mpsi_fluid_coarse_create(mps_fluid *f) {
   f->coarse = mpsi_alloc(f->context, 1, sizeof *f->coarse);
-  if (f->coarse) f->coarse->most = 28;
+  if (f->coarse) f->coarse->most = 24;
   return f->coarse != NULL;
 }
 
 void mpsi_fluid_coarse_drop(mps_fluid *f) {
   mpsi_fluid_coarse *c = f->coarse;
   if (!c) return;
-  mpsi_room *const rooms[] = {&c->of_room,   &c->map_room,  &c->list_room, &c->entry_room,
-                              &c->slot_room, &c->part_room, &c->value_room};
+  mpsi_room *const rooms[] = {&c->block_room, &c->of_room,   &c->map_room,
+                              &c->list_room,  &c->at_room,   &c->entry_room,
+                              &c->slot_room,  &c->part_room, &c->value_room};
   for (size_t k = 0; k < sizeof rooms / sizeof *rooms; k++) mpsi_free(f->context, rooms[k]->item);
   mpsi_envelope_drop(f->context, &c->matrix);
   mpsi_free(f->context, c);
@@ -374,5 +407,5 @@ int64_t mpsi_fluid_coarse_bytes(const mps_fluid *f) {
          (c->part_room.capacity + c->value_room.capacity + c->matrix.start_room.capacity +
           c->matrix.value_room.capacity) *
              8 +
-         c->entry_room.capacity * (int64_t)sizeof *c->entry;
+         c->at_room.capacity * 4 + c->entry_room.capacity * 8;
 }

@@ -18,31 +18,30 @@
 #include "envelope.h"
 #include "fluid_private.h"
 
-#define MPSI_FLUID_MOST_BLOCKS 32 /* of the preconditioner */
-
-/* An entry of A Z; its column by the block's slot. */
-typedef struct mpsi_fluid_coarse_entry {
-  double value;
-  int32_t row, slot;
-} mpsi_fluid_coarse_entry;
+/* Where an entry of A Z is in its block: the row from the block's first on, the column's slot. */
+typedef struct mpsi_fluid_coarse_at {
+  uint16_t row, slot;
+} mpsi_fluid_coarse_at;
 
 struct mpsi_fluid_coarse {
-  bool used;                                 /* for the present matrix */
-  int64_t block, blocks;                     /* particles in a block; number of blocks */
-  double side;                               /* m, of an aggregate, about */
-  int64_t aggregates;                        /* numbers from 1 on */
-  int64_t own[MPSI_FLUID_MOST_BLOCKS + 1];   /* first aggregate of each block, less 1 */
-  int64_t slots[MPSI_FLUID_MOST_BLOCKS + 1]; /* first slot of each block */
-  int64_t count[MPSI_FLUID_MOST_BLOCKS];     /* entries of each block */
-  int64_t most;                              /* room for entries: by 16 rows */
-  mpsi_room of_room, map_room, list_room, entry_room, slot_room, part_room, value_room;
-  int32_t *of;                    /* aggregate of each particle, 0: apart */
-  int32_t *map, *list;            /* by block: slot + 1 of each aggregate; aggregate of each slot */
-  mpsi_fluid_coarse_entry *entry; /* stretches of the blocks */
-  int32_t *slot;                  /* aggregates of all slots */
-  double *part;                   /* sums by slot */
-  double *value;                  /* by aggregate: coarse right side, then e; [0] is 0 */
-  mpsi_envelope matrix;           /* E */
+  bool used;             /* for the present matrix */
+  int64_t block, blocks; /* particles in a block; number of blocks */
+  double side;           /* m, of an aggregate, about */
+  int64_t aggregates;    /* numbers from 1 on */
+  int64_t *own;          /* first aggregate of each block, less 1; and of all */
+  int64_t *slots;        /* first slot of each block, and of all */
+  int64_t *count;        /* entries of each block */
+  int64_t most, room;    /* room for entries: by 16 rows, and by block */
+  mpsi_room block_room, of_room, map_room, list_room, at_room, entry_room, slot_room, part_room,
+      value_room;
+  int32_t *of;              /* aggregate of each particle, 0: apart */
+  int32_t *map, *list;      /* by block: slot + 1 of each aggregate; aggregate of each slot */
+  mpsi_fluid_coarse_at *at; /* of the entries of A Z: stretches of the blocks */
+  double *entry;
+  int32_t *slot;        /* aggregates of all slots */
+  double *part;         /* sums by slot */
+  double *value;        /* by aggregate: coarse right side, then e; [0] is 0 */
+  mpsi_envelope matrix; /* E */
 };
 
 /* Makes aggregates, A Z and the factors of E for the present matrix; `block`: particles in a block
@@ -55,10 +54,11 @@ void mpsi_fluid_coarse_restrict(mps_fluid *fluid, int64_t b, const double *v);
 void mpsi_fluid_coarse_solve(mps_fluid *fluid);
 /* r -= A Z e of the rows of block b. */
 static inline void mpsi_fluid_coarse_subtract(const mpsi_fluid_coarse *c, int64_t b, double *r) {
-  const mpsi_fluid_coarse_entry *entry = c->entry + b * (c->block * c->most / 16);
+  const mpsi_fluid_coarse_at *at = c->at + b * c->room;
+  const double *entry = c->entry + b * c->room;
   const int32_t *slot = c->slot + c->slots[b];
-  for (int64_t k = 0; k < c->count[b]; k++)
-    r[entry[k].row] -= entry[k].value * c->value[slot[entry[k].slot]];
+  double *own = r + b * c->block;
+  for (int64_t k = 0; k < c->count[b]; k++) own[at[k].row] -= entry[k] * c->value[slot[at[k].slot]];
 }
 /* v -= Z e of rows [first, end). */
 static inline void mpsi_fluid_coarse_deflate(const mpsi_fluid_coarse *c, int64_t first, int64_t end,

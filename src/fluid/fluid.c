@@ -136,7 +136,6 @@ static void release(mps_fluid *f) {
                          f->cloud,
                          f->index_room.item,
                          f->w_room.item,
-                         f->cell_room.item,
                          f->fit_room.item,
                          f->lower_col_room.item,
                          f->lower_room.item,
@@ -154,7 +153,7 @@ static mps_status start(mps_fluid *f, const char *function) {
   f->count = mps_particles_count(f->particles);
   f->l0 = mps_particles_spacing(f->particles);
   f->weight = mpsi_fluid_make_weight(f->l0, f->def.radius_ratio * f->l0);
-  f->most_near = 32, f->most_lower = 16;
+  f->most_near = 31, f->most_lower = 15;
   f->loops = mpsi_fluid_choose_loops(mpsi_context_level(f->context));
   set_gravity(f);
   mps_status status = mpsi_fluid_share_create(f, function);
@@ -300,10 +299,10 @@ mps_status mps_fluid_get_totals_sized(mps_fluid *f, mps_totals *out, size_t size
 
 static int64_t bytes_of(const mps_fluid *f) {
   const int64_t n = (f->count + 7) / 8 * 8 + 24, chunks = f->count / MPSI_FLUID_CHUNK + 2;
-  return 8 * (15 * n + 2 * chunks) + f->count * ((int64_t)sizeof *f->local + 3) +
-         f->cloud_capacity * (11 * 8) + f->index_room.capacity * 4 + f->w_room.capacity * 8 +
-         f->cell_room.capacity * 4 + f->push_room.capacity * 8 + f->lower_col_room.capacity * 4 +
-         f->lower_room.capacity * 4 + mpsi_fluid_coarse_bytes(f);
+  return 8 * (13 * n + 2 * chunks) + f->count * ((int64_t)sizeof *f->local + 3) +
+         f->cloud_capacity * (8 * 8) + f->index_room.capacity * 4 + f->w_room.capacity * 4 +
+         f->push_room.capacity * 8 + f->lower_col_room.capacity * 2 + f->lower_room.capacity * 4 +
+         mpsi_fluid_coarse_bytes(f);
 }
 
 mps_status mps_fluid_get_report_sized(const mps_fluid *f, mps_fluid_report *out, size_t size) {

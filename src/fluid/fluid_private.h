@@ -137,15 +137,15 @@ enum { MPSI_FLUID_INSIDE = 0, MPSI_FLUID_SURFACE = 1, MPSI_FLUID_APART = 2 };
 
 /* Rows of the pressure equation and what its solution needs; see pcg.c. */
 typedef struct mpsi_fluid_system {
-  double *diagonal, *right;         /* count */
-  double *x;                        /* count + ghosts */
-  double *p, *r, *z, *q;            /* count */
-  int32_t *lower_start, *lower_end; /* of row i, in its block's stretch of lower_col and lower */
-  int32_t *lower_col;
-  float *lower;    /* of L */
-  double *inverse; /* of D */
-  double *sums;    /* by chunk or block, two values each */
-  double mean;     /* of the right side, or what the solution is shifted by; see closed.c */
+  double *diagonal, *right; /* count */
+  double *x;                /* count + ghosts */
+  double *p, *r, *z, *q;    /* count */
+  int32_t *lower_end;       /* of row i, in its block's stretch of lower_col and lower */
+  uint16_t *lower_col;      /* from the first row of the block */
+  float *lower;             /* of L */
+  double *inverse;          /* of D */
+  double *sums;             /* by chunk or block, two values each */
+  double mean; /* of the right side, or what the solution is shifted by; see closed.c */
 } mpsi_fluid_system;
 
 /* A solver of the caller, and the matrix as it gets it; see solver.c. */
@@ -219,7 +219,7 @@ struct mps_fluid {
   int wedges;
   uint32_t bent, sticky; /* walls with several nodes; of no slip: bits */
   int64_t cloud_capacity;
-  double *u_new[2], *pressure; /* count */
+  double *u_new[2], *pressure; /* count; pressure is in the place of system.right */
   uint8_t *state;              /* MPSI_FLUID_..., count */
   bool any_apart;              /* some are MPSI_FLUID_APART */
   atomic_uchar *zone;          /* at the surface or within 1.6 l0 of it */
@@ -227,15 +227,15 @@ struct mps_fluid {
   double *zone_normal[2];
   mpsi_fluid_local *local;
   /* neighbours */
-  int64_t *start;                /* first pair of each particle */
-  int32_t *near;                 /* pairs of each particle */
-  int64_t most_near;             /* room for pairs, a particle on average over a chunk */
-  mpsi_room index_room, w_room;  /* int32_t, double: pairs */
-  int32_t *index;                /* of the pairs' other ends, ghosts too */
-  double *w;                     /* of the pairs */
-  mpsi_room cell_room, fit_room; /* int32_t; sums of fits, see probe.c */
-  mpsi_room near_wall_room;      /* of a wall, see probe.c */
-  int32_t *slot;                 /* cloud sorted by cells */
+  int64_t *start;               /* first pair of each particle */
+  int32_t *near;                /* pairs of each particle */
+  int64_t most_near;            /* room for pairs, a particle on average over a chunk */
+  mpsi_room index_room, w_room; /* int32_t, float: pairs */
+  int32_t *index;               /* of the pairs' other ends, ghosts too */
+  float *w;                     /* of the pairs: the weight, rounded, wherever it is used */
+  mpsi_room fit_room;           /* sums of fits, see probe.c */
+  mpsi_room near_wall_room;     /* of a wall, see probe.c */
+  int32_t *slot; /* cloud sorted by cells, while neighbours are looked for: in lower_room */
   double *slot_x[2];
   mpsi_fluid_given **given; /* loads by number, NULL: none */
   int32_t given_room;
@@ -246,9 +246,9 @@ struct mps_fluid {
   double load_time, load_time_before; /* s: when the loads were read, for this step and before it */
   mpsi_fluid_system system;
   mpsi_fluid_coarse *coarse;
-  mpsi_room lower_col_room, lower_room;
-  int64_t most_lower; /* room for entries of L, a row on average */
-  void *slab;         /* of all arrays of fixed size */
+  mpsi_room lower_col_room, lower_room; /* the sort by cells too, while there is no factor */
+  int64_t most_lower;                   /* room for entries of L, a row on average */
+  void *slab;                           /* of all arrays of fixed size */
   void *cloud;
   double time, dt, speed; /* s; s, of the step being made; largest |u|, m/s */
   double travel;          /* m: of particles, and of walls, since the images were made, at most */

@@ -100,10 +100,11 @@ mps_status mpsi_fluid_sort(mps_fluid *f, const char *function) {
   const double cells = (floor((high[0] - low[0]) * inverse) + 1.0) * rows;
   if (!(cells < 4.0 * (double)n + 4096.0)) return MPS_OK;
   const int64_t number = (int64_t)cells;
-  double none = !mpsi_room_ensure(f->context, &f->cell_room, number + 1 + n, sizeof(int32_t));
+  double none =
+      !mpsi_room_fit(f->context, &f->lower_col_room, 2 * (number + 1 + n), sizeof(uint16_t));
   const mps_status lost = mpsi_fluid_settle_max(f, function, MPS_OK, 1, &none); /* all or nobody */
   if (lost != MPS_OK || none > 0.0) return lost;
-  int32_t *first = f->cell_room.item, *cell = first + number + 1;
+  int32_t *first = f->lower_col_room.item, *cell = first + number + 1;
   int64_t *order = (int64_t *)f->system.r; /* free between steps, as z is */
   memset(first, 0, (size_t)(number + 1) * sizeof *first);
   for (int64_t i = 0; i < n; i++) {

@@ -18,7 +18,7 @@ static int64_t search(const mps_fluid *f, int64_t i, int64_t begin, int64_t end,
     const int32_t count = (int32_t)(end - first < PART ? end - first : PART);
     const double *sx = f->slot_x[0] + first, *sy = f->slot_x[1] + first;
     const int32_t *slot = f->slot + first;
-    /* whole vectors: the sorted cloud goes on far enough (mpsi_fluid_grow_cloud) */
+    /* whole vectors: the sorted cloud goes on far enough (near.c) */
 #pragma omp simd
     for (int32_t k = 0; k < mpsi_fluid_padded(count); k++)
       square[k] = (sx[k] - x) * (sx[k] - x) + (sy[k] - y) * (sy[k] - y);
@@ -31,25 +31,26 @@ static int64_t search(const mps_fluid *f, int64_t i, int64_t begin, int64_t end,
   return found;
 }
 
-static int32_t weigh(const mps_fluid *f, int64_t i, int64_t count, int32_t *index, double *w) {
+static int32_t weigh(const mps_fluid *f, int64_t i, int64_t count, int32_t *index, double *r2,
+                     float *w) {
   const double inverse = f->weight.inverse, least = LEAST * f->l0 * f->l0, re = f->weight.re;
   const int32_t all = mpsi_fluid_padded((int32_t)count), particles = (int32_t)f->count;
   int32_t images = 0;
-  for (int32_t k = (int32_t)count; k < all; k++) index[k] = (int32_t)i, w[k] = re * re;
+  for (int32_t k = (int32_t)count; k < all; k++) index[k] = (int32_t)i, r2[k] = re * re;
   double closest[MPSI_FLUID_WIDE]; /* clang has no reduction to a minimum */
   for (int c = 0; c < MPSI_FLUID_WIDE; c++) closest[c] = re * re;
   for (int32_t k = 0; k < all; k += MPSI_FLUID_WIDE)
 #pragma omp simd
     for (int c = 0; c < MPSI_FLUID_WIDE; c++)
-      closest[c] = w[k + c] < closest[c] ? w[k + c] : closest[c];
+      closest[c] = r2[k + c] < closest[c] ? r2[k + c] : closest[c];
 #pragma omp simd reduction(+ : images)
   for (int32_t k = 0; k < all; k++) images += index[k] >= particles;
 #pragma omp simd
   for (int32_t k = 0; k < all; k++) {
-    const double r2 = w[k] > least ? w[k] : least, a = 1.0 - sqrt(r2) * inverse;
-    w[k] = a * a * a * a * (5.0 - 4.0 * a);
+    const double d2 = r2[k] > least ? r2[k] : least, a = 1.0 - sqrt(d2) * inverse;
+    w[k] = (float)(a * a * a * a * (5.0 - 4.0 * a));
   }
-  for (int32_t k = (int32_t)count; k < all; k++) w[k] = 0.0;
+  for (int32_t k = (int32_t)count; k < all; k++) w[k] = 0.0f;
   double closest2 = closest[0];
   for (int c = 1; c < MPSI_FLUID_WIDE; c++) closest2 = fmin(closest2, closest[c]);
   const double close = MPSI_FLUID_CLOSE * f->l0;
@@ -59,7 +60,7 @@ static int32_t weigh(const mps_fluid *f, int64_t i, int64_t count, int32_t *inde
 
 static void add_up(const mps_fluid *f, int64_t i, mpsi_fluid_sums *out) {
   const int32_t *index = f->index + f->start[i], all = mpsi_fluid_padded(f->near[i]);
-  const double *weight = f->w + f->start[i];
+  const float *weight = f->w + f->start[i];
   const double *x = f->x[0], *y = f->x[1], *u = f->u[0], *v = f->u[1];
   const double least = LEAST * f->l0 * f->l0, x0 = x[i], y0 = y[i], u0 = u[i], v0 = v[i];
   double n = 0.0, mx = 0.0, my = 0.0, square = 0.0, xx = 0.0, xy = 0.0, yy = 0.0, su = 0.0,
@@ -90,7 +91,7 @@ static double times(const mps_fluid *f, int64_t begin, int64_t end, const double
   double dot = 0.0;
   for (int64_t i = begin; i < end; i++) {
     const int32_t *index = f->index + f->start[i], all = mpsi_fluid_padded(f->near[i]);
-    const double *w = f->w + f->start[i];
+    const float *w = f->w + f->start[i];
     double sum = 0.0;
 #pragma omp simd reduction(+ : sum)
     for (int32_t k = 0; k < all; k++) sum += w[k] * v[index[k]];
@@ -102,7 +103,8 @@ static double times(const mps_fluid *f, int64_t begin, int64_t end, const double
 
 static void slope(const mps_fluid *f, int64_t i, double *out) {
   const int32_t *index = f->index + f->start[i], all = mpsi_fluid_padded(f->near[i]);
-  const double *weight = f->w + f->start[i], *x = f->x[0], *y = f->x[1], *q = f->q;
+  const float *weight = f->w + f->start[i];
+  const double *x = f->x[0], *y = f->x[1], *q = f->q;
   const double least = LEAST * f->l0 * f->l0, x0 = x[i], y0 = y[i], q0 = q[i];
   double sx = 0.0, sy = 0.0;
 #pragma omp simd reduction(+ : sx, sy)
@@ -119,22 +121,24 @@ static void slope(const mps_fluid *f, int64_t i, double *out) {
  * of the cells that particles are sorted by), so that a row hardly waits for the one before. */
 static void forward(const mps_fluid *f, int64_t first, int64_t end, int64_t offset, double *v) {
   const mpsi_fluid_system *s = &f->system;
-  const int32_t *start = s->lower_start, *stop = s->lower_end, *column = s->lower_col + offset;
+  const int32_t *stop = s->lower_end;
+  const uint16_t *column = s->lower_col + offset;
+  const double *of = v + first;
+  int32_t e = 0;
   const float *lower = s->lower + offset;
   for (int64_t i = first; i < end; i++) {
     const int32_t last = stop[i];
-    int32_t e = start[i];
     double a = v[i], b = 0.0, c = 0.0, d = 0.0; /* chains of additions */
-    if ((last - e) & 1) b = (double)lower[e] * v[column[e]], e++;
+    if ((last - e) & 1) b = (double)lower[e] * of[column[e]], e++;
     if ((last - e) & 2) {
-      c = (double)lower[e] * v[column[e]], d = (double)lower[e + 1] * v[column[e + 1]];
+      c = (double)lower[e] * of[column[e]], d = (double)lower[e + 1] * of[column[e + 1]];
       e += 2;
     }
     for (; e < last; e += 4) {
-      a -= (double)lower[e] * v[column[e]];
-      b += (double)lower[e + 1] * v[column[e + 1]];
-      c += (double)lower[e + 2] * v[column[e + 2]];
-      d += (double)lower[e + 3] * v[column[e + 3]];
+      a -= (double)lower[e] * of[column[e]];
+      b += (double)lower[e + 1] * of[column[e + 1]];
+      c += (double)lower[e + 2] * of[column[e + 2]];
+      d += (double)lower[e + 3] * of[column[e + 3]];
     }
     v[i] = a - ((b + c) + d);
   }
@@ -154,11 +158,14 @@ static double descend(const mps_fluid *f, int64_t first, int64_t end, int64_t of
     z[i] = inverse[i] * r[i];
     rz += r[i] * z[i];
   }
-  const int32_t *start = y->lower_start, *stop = y->lower_end, *column = y->lower_col + offset;
+  const int32_t *stop = y->lower_end;
+  const uint16_t *column = y->lower_col + offset;
   const float *lower = y->lower + offset;
+  double *of = z + first;
   for (int64_t i = end - 1; i >= first; i--) {
     const double here = z[i];
-    for (int32_t e = start[i]; e < stop[i]; e++) z[column[e]] -= (double)lower[e] * here;
+    for (int32_t e = i > first ? stop[i - 1] : 0; e < stop[i]; e++)
+      of[column[e]] -= (double)lower[e] * here;
   }
   return rz;
 }
@@ -166,7 +173,7 @@ static double descend(const mps_fluid *f, int64_t first, int64_t end, int64_t of
 /* What the matrix has outside of the block in row i, times z. */
 static double outside_block(const mps_fluid *f, int64_t first, int64_t end, int64_t i) {
   const int32_t *index = f->index + f->start[i];
-  const double *w = f->w + f->start[i];
+  const float *w = f->w + f->start[i];
   double sum = 0.0;
   for (int32_t k = 0; k < f->near[i]; k++) {
     const int32_t j = index[k] < f->count ? index[k] : f->parent[index[k] - f->count];
@@ -197,13 +204,13 @@ static double rise(const mps_fluid *f, int64_t first, int64_t end, int64_t offse
 static double norm(const mps_fluid *f, int64_t first, int64_t end, int64_t offset,
                    const double *v) {
   const mpsi_fluid_system *s = &f->system;
-  const int32_t *column = s->lower_col + offset;
+  const uint16_t *column = s->lower_col + offset;
   const float *lower = s->lower + offset;
   double square = 0.0;
+  int32_t e = 0;
   for (int64_t i = first; i < end; i++) {
     double sum = v[i];
-    for (int32_t e = s->lower_start[i]; e < s->lower_end[i]; e++)
-      sum += (double)lower[e] * v[column[e]];
+    for (; e < s->lower_end[i]; e++) sum += (double)lower[e] * v[first + column[e]];
     square += sum * sum;
   }
   return square;

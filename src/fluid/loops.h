@@ -23,8 +23,10 @@ struct mpsi_fluid_loops {
    * `index` and `r2` have room for these and one more. Returns how many there are then. */
   int64_t (*search)(const mps_fluid *f, int64_t i, int64_t begin, int64_t end, int64_t found,
                     int32_t *index, double *r2);
-  /* Squares of distances to weights, and fills up the list; MPSI_FLUID_NEAR_IMAGES and _CLOSE. */
-  int32_t (*weigh)(const mps_fluid *f, int64_t i, int64_t count, int32_t *index, double *w);
+  /* Weights of squares of distances, both filled up as the list is; MPSI_FLUID_NEAR_IMAGES and
+   * _CLOSE. */
+  int32_t (*weigh)(const mps_fluid *f, int64_t i, int64_t count, int32_t *index, double *r2,
+                   float *w);
   void (*add_up)(const mps_fluid *f, int64_t i, mpsi_fluid_sums *out);
   /* Rows [begin, end) of the pressure's matrix times v, to `out`; v . out over these rows. */
   double (*times)(const mps_fluid *f, int64_t begin, int64_t end, const double *v, double *out);

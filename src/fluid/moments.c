@@ -140,7 +140,7 @@ static void find_zone(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
   for (int64_t i = begin; i < end; i++) {
     if (!f->zone[i]) continue;
     const int32_t *index = f->index + f->start[i];
-    const double *w = f->w + f->start[i];
+    const float *w = f->w + f->start[i];
     bool near = f->state[i] != MPSI_FLUID_INSIDE;
     double sum[2] = {near ? f->local[i].m[0] : 0.0, near ? f->local[i].m[1] : 0.0};
     for (int32_t k = 0; k < f->near[i]; k++) {
@@ -164,7 +164,7 @@ static void find_zone(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
  * receives their mean pressure, Pa. Images are left out: on average they add nothing. */
 static double depth_below(const mps_fluid *f, int64_t i, const double *e, double *over) {
   const int32_t *index = f->index + f->start[i];
-  const double *w = f->w + f->start[i];
+  const float *w = f->w + f->start[i];
   double sum = 0.0, depth = 0.0;
   *over = 0.0;
   for (int32_t k = 0; k < f->near[i]; k++) {

@@ -85,7 +85,7 @@ static double smoothing(const mps_fluid *f, int64_t i) {
 static void viscous_rest(const mps_fluid *f, int64_t i, double *v) {
   const mpsi_fluid_local *local = &f->local[i];
   const int32_t *index = f->index + f->start[i];
-  const double *w = f->w + f->start[i];
+  const float *w = f->w + f->start[i];
   v[0] = local->rest[0], v[1] = local->rest[1];
   if (!f->sticky) return;
   for (int32_t k = 0; k < f->near[i]; k++) {

@@ -6,6 +6,11 @@
 
 #define LEAST_GAP 0.3 /* l0: distance of a new particle from walls */
 
+/* Images to begin with: three rows along the walls of a tank, some 10 count^1/2. */
+static int64_t room_for_ghosts(int64_t count) {
+  return (int64_t)(12.0 * sqrt((double)count)) + 256;
+}
+
 /* The arrays over particles, from three blocks, in place of smaller ones; what they held is found
  * again. false: as before. */
 bool mpsi_fluid_reserve(mps_fluid *f, int64_t count) {
@@ -16,7 +21,6 @@ bool mpsi_fluid_reserve(mps_fluid *f, int64_t count) {
                         &f->u_new[1],
                         &f->zone_normal[0],
                         &f->zone_normal[1],
-                        &f->pressure,
                         &s->diagonal,
                         &s->right,
                         &s->r,
@@ -25,10 +29,10 @@ bool mpsi_fluid_reserve(mps_fluid *f, int64_t count) {
                         &s->p,
                         &s->inverse};
   enum { DOUBLES = sizeof doubles / sizeof *doubles };
-  double *block = mpsi_alloc(f->context, n * (DOUBLES + 1 + 2) + 2 * chunks, sizeof *block);
+  double *block = mpsi_alloc(f->context, n * (DOUBLES + 2) + 2 * chunks, sizeof *block);
   mpsi_fluid_local *local = mpsi_alloc(f->context, count, sizeof *local);
   uint8_t *state = mpsi_alloc(f->context, 3 * count, sizeof *state);
-  if (!block || !local || !state || !mpsi_fluid_grow_cloud(f, count + count / 4 + 256)) {
+  if (!block || !local || !state || !mpsi_fluid_grow_cloud(f, count + room_for_ghosts(count))) {
     mpsi_free(f->context, block);
     mpsi_free(f->context, local);
     mpsi_free(f->context, state);
@@ -39,11 +43,11 @@ bool mpsi_fluid_reserve(mps_fluid *f, int64_t count) {
   mpsi_free(f->context, f->state);
   f->slab = block, f->local = local, f->state = state;
   for (int k = 0; k < DOUBLES; k++) *doubles[k] = block + k * n;
+  f->pressure = s->right; /* of a solution, whose right side is of no more use */
   f->start = (int64_t *)(block + DOUBLES * n);
   f->near = (int32_t *)(block + (DOUBLES + 1) * n);
-  s->lower_start = f->near + n;
-  s->lower_end = s->lower_start + n;
-  s->sums = block + (DOUBLES + 3) * n;
+  s->lower_end = f->near + n;
+  s->sums = block + (DOUBLES + 2) * n;
   f->company = f->state + count;
   f->zone = (atomic_uchar *)(f->company + count);
   f->capacity = count;

@@ -29,6 +29,8 @@
 #include <string.h>
 
 #define BLOCK 2560       /* particles in a block of the preconditioner, about */
+#define MOST_BLOCKS 32   /* larger blocks instead */
+#define MOST_CHUNKS 256  /* in a block: its columns have 16 bits */
 #define MODIFIED 0.95    /* share of the fill that goes to the pivots */
 #define LEAST_PIVOT 1e-3 /* of the diagonal */
 #define LOOK_FROM 4.0    /* of the rz where the residual would be small enough if both fell alike */
@@ -46,7 +48,9 @@ static blocks cut(const mps_fluid *f) {
   const int64_t chunks = (f->count + MPSI_FLUID_CHUNK - 1) / MPSI_FLUID_CHUNK;
   int64_t wanted = (f->count + BLOCK - 1) / BLOCK;
   wanted += wanted > 1 && wanted % 2; /* two threads, equal shares */
-  if (wanted > MPSI_FLUID_MOST_BLOCKS) wanted = MPSI_FLUID_MOST_BLOCKS; /* larger ones instead */
+  if (wanted > MOST_BLOCKS) wanted = MOST_BLOCKS;
+  if (wanted < (chunks + MOST_CHUNKS - 1) / MOST_CHUNKS)
+    wanted = (chunks + MOST_CHUNKS - 1) / MOST_CHUNKS;
   const int64_t each = (chunks + wanted - 1) / wanted; /* whole chunks: ranks have whole blocks */
   return (blocks){(chunks + each - 1) / each, each * MPSI_FLUID_CHUNK};
 }
@@ -57,11 +61,12 @@ int64_t mpsi_fluid_block(const mps_fluid *f) { return f->count > 0 ? cut(f).size
  * of u_new[1], which has no other use before the pressure is known. A neighbour and its image are
  * two entries. What single precision takes off an entry goes to the diagonals, so that the sums of
  * rows stay exact: without a free surface little else keeps the matrix from being indefinite. */
-static int32_t lower_row(mps_fluid *f, int64_t first, int64_t end, int64_t i, int32_t *column,
+static int32_t lower_row(mps_fluid *f, int64_t first, int64_t end, int64_t i, uint16_t *column,
                          float *lower) {
   const mpsi_fluid_system *s = &f->system;
   const int32_t *index = f->index + f->start[i];
-  const double *w = f->w + f->start[i], *inverse = s->inverse, *upper = s->z;
+  const float *w = f->w + f->start[i];
+  const double *inverse = s->inverse, *upper = s->z;
   double own = s->diagonal[i], pivot = 0.0, right = 0.0;
   int32_t count = 0;
   bool others = false;
@@ -76,7 +81,7 @@ static int32_t lower_row(mps_fluid *f, int64_t first, int64_t end, int64_t i, in
     if (j >= i) continue;
     const double l = w[k] * inverse[j];
     pivot -= l * (w[k] + MODIFIED * (upper[j] - w[k]));
-    column[count] = j, lower[count] = (float)-l;
+    column[count] = (uint16_t)(j - first), lower[count] = (float)-l;
     const double missed = w[k] + (double)lower[count] * s->r[j];
     own -= missed, f->u_new[1][j] -= missed;
     count++;
@@ -111,7 +116,6 @@ static void factor_block(void *data, int64_t b, int32_t worker) {
       atomic_store(&p->full, true);
       return;
     }
-    s->lower_start[i] = (int32_t)(at - b * p->room);
     if (f->state[i] == MPSI_FLUID_APART)
       s->inverse[i] = 1.0, f->u_new[1][i] = -1.0;
     else
@@ -129,7 +133,7 @@ mps_status mpsi_fluid_factor(mps_fluid *f, const char *function) {
     mps_status status = MPS_OK;
     if (!mpsi_room_fit(f->context, &f->lower_col_room, p.all, sizeof *s->lower_col) ||
         !mpsi_room_fit(f->context, &f->lower_room, p.all, sizeof *s->lower))
-      status = mpsi_fail_memory(f->context, function, (size_t)p.all * 8);
+      status = mpsi_fail_memory(f->context, function, (size_t)p.all * 6);
     s->lower_col = f->lower_col_room.item;
     s->lower = f->lower_room.item;
     atomic_store(&p.full, false);
@@ -264,8 +268,7 @@ int64_t mpsi_fluid_pcg(mps_fluid *f) {
     const double enough = tolerance * tolerance * bb;
     if (bb == 0.0) memset(s->x, 0, (size_t)(f->count + f->ghosts) * sizeof *s->x);
     if (bb == 0.0) return 0;
-    if (rr <= enough) return done;
-    if (!(rr < 0.25 * left)) return isfinite(rr) && tolerance < SINGLE ? done : -1; /* round-off */
+    if (rr <= enough || !(rr < 0.25 * left)) return isfinite(rr) ? done : -1; /* or round-off */
     /* Round-off of the factors slowly brings back what the coarse space has taken out, which no
      * iteration removes: some digits at a time. */
     const double begin = f->coarse->used ? mpsi_fluid_coarse_start(f) : rr;

@@ -39,7 +39,7 @@ static void make_rows(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) {
     s->diagonal[i] = 1.0, s->x[i] = 0.0;
     if (f->state[i] == MPSI_FLUID_APART) continue;
     const int32_t *index = f->index + f->start[i];
-    const double *w = f->w + f->start[i];
+    const float *w = f->w + f->start[i];
     double sum = f->local[i].c + (f->any_apart ? 0.0 : f->local[i].n);
     for (int32_t k = 0; f->any_apart && k < f->near[i]; k++) {
       const int64_t j = index[k], ghost = j - f->count;
@@ -59,7 +59,7 @@ static void make_right(mps_fluid *f, int64_t begin, int64_t end, int64_t chunk) 
     if (f->state[i] == MPSI_FLUID_APART) continue;
     const mpsi_fluid_local *local = &f->local[i];
     const int32_t *index = f->index + f->start[i];
-    const double *w = f->w + f->start[i];
+    const float *w = f->w + f->start[i];
     double right = local->c * local->qs;
     const int32_t near = f->company[i] & MPSI_FLUID_NEAR_IMAGES ? f->near[i] : 0;
     for (int32_t k = 0; k < near; k++) {

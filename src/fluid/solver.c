@@ -91,7 +91,7 @@ bool mpsi_fluid_solved_outside(const mps_fluid *f) {
 /* Row i to `column` and `value`, which have room for near[i] + 1; returns its length. */
 static int64_t fill_row(const mps_fluid *f, int64_t i, int32_t *column, double *value) {
   const int32_t *index = f->index + f->start[i];
-  const double *w = f->w + f->start[i];
+  const float *w = f->w + f->start[i];
   int64_t count = 1;
   column[0] = (int32_t)i, value[0] = f->system.diagonal[i];
   if (f->state[i] == MPSI_FLUID_APART) return 1;

@@ -185,19 +185,17 @@ static bool mirror_all(mps_fluid *f, int wall) {
 
 /* Arrays over the cloud; keeps the particles' part. */
 bool mpsi_fluid_grow_cloud(mps_fluid *f, int64_t capacity) {
-  enum { COLUMNS = 8 };
-  double **column[COLUMNS] = {&f->x[0], &f->x[1],      &f->u[0],      &f->u[1],
-                              &f->q,    &f->slot_x[0], &f->slot_x[1], &f->system.x};
+  enum { COLUMNS = 6 };
+  double **column[COLUMNS] = {&f->x[0], &f->x[1], &f->u[0], &f->u[1], &f->q, &f->system.x};
   const int64_t padded = (capacity + 7) / 8 * 8 + 24;
-  double *block = mpsi_alloc(f->context, padded * (COLUMNS + 3), sizeof *block);
+  double *block = mpsi_alloc(f->context, padded * (COLUMNS + 2), sizeof *block);
   if (!block) return false;
   for (int k = 0; k < COLUMNS; k++) {
     if (f->cloud) memcpy(block + k * padded, *column[k], (size_t)f->count * sizeof *block);
     *column[k] = block + k * padded;
   }
   f->offset = block + COLUMNS * padded;
-  f->slot = (int32_t *)(block + (COLUMNS + 1) * padded);
-  f->parent = (int32_t *)(block + (COLUMNS + 2) * padded);
+  f->parent = (int32_t *)(block + (COLUMNS + 1) * padded);
   f->flips = (uint32_t *)(f->parent + padded);
   mpsi_free(f->context, f->cloud);
   f->cloud = block;
@@ -219,7 +217,7 @@ mps_status mpsi_fluid_make_ghosts(mps_fluid *f, const char *function) {
                        << b;
     for (int b = 0; room && b < MPSI_FLUID_WALLS; b++)
       if (f->wall[b].used) room = mirror_all(f, b);
-    const int64_t capacity = f->cloud_capacity + f->cloud_capacity / 2;
+    const int64_t capacity = f->cloud_capacity + f->cloud_capacity / 8 + 256;
     if (!room && !mpsi_fluid_grow_cloud(f, capacity))
       return mpsi_fail_memory(f->context, function, (size_t)capacity * 12 * sizeof(double));
   }

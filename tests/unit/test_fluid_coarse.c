@@ -78,8 +78,9 @@ static void the_coarse_equation_is_solved(void **state) {
 
 /* ---- iterations ------------------------------------------------------------------------------ */
 
-/* Mean of iterations a step over steps 11 to 30 of waves by a piston in a tank of 16 by 3. */
-static double iterations(int rows) {
+/* Mean of iterations a step over steps 11 to 30 of waves by a piston in a tank of 16 by 3, and the
+ * memory, bytes a particle. */
+static double iterations(int rows, double *bytes) {
   const double l0 = 0.3 / rows, length = l0 * round(16.0 / 3.0 * rows);
   mps_signal *piston = NULL;
   mps_fluid_report before, after;
@@ -89,6 +90,7 @@ static double iterations(int rows) {
   mps_assert_ok(context, mps_fluid_get_report(t.fluid, &before));
   mps_assert_ok(context, mps_fluid_step(t.fluid, 20));
   mps_assert_ok(context, mps_fluid_get_report(t.fluid, &after));
+  *bytes = (double)after.bytes / (double)mps_particles_count(t.water);
   mps_signal_destroy(&piston);
   tank_free(&t);
   return (double)(after.all_iterations - before.all_iterations) / 20.0;
@@ -96,9 +98,12 @@ static double iterations(int rows) {
 
 static void iterations_hardly_grow_with_the_particles(void **state) {
   (void)state;
-  const double few = iterations(19), many = iterations(75); /* 1919 and 30 000 particles */
-  print_message("iterations a step: %.1f with 1919 particles, %.1f with 30 000\n", few, many);
+  double bytes[2];
+  const double few = iterations(19, &bytes[0]), many = iterations(75, &bytes[1]);
+  print_message("iterations a step: %.1f with 1919 particles, %.1f with 30 000; %.0f and %.0f B\n",
+                few, many, bytes[0], bytes[1]);
   assert_true(many <= 1.5 * few);
+  assert_true(bytes[0] < 740.0 && bytes[1] < 740.0); /* docs/fluid.md says which */
 }
 
 /* ---- without a surface, and in parts --------------------------------------------------------- */
