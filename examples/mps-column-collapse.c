@@ -316,17 +316,19 @@ static bool draw_columns(app *a, const simulation *sim) {
     width = fmax(width, 1.05 * c->front[c->rows - 1] / s->width);
     height = fmax(height, 1.1 * c->aspect);
   }
-  const int panel = 330, panel_height = (int)(panel * height / width), edge = 62;
-  const double x = FRAMES * (panel + edge) + 135.0, y = sim->count * (panel_height + 100.0);
-  const double lower[2] = {0.0, 0.0}, upper[2] = {width * s->width, height * s->width};
-  const double spacing = s->h / sqrt((double)s->ppc);
+  const int panel = 330, panel_height = (int)(panel * height / width), edge = 78;
+  const double x = FRAMES * (panel + edge) + 135.0, y = sim->count * (panel_height + 100.0) + 12.0;
+  const area_def def = {.spacing = s->h / sqrt((double)s->ppc),
+                        .slit = AREA_SLIT_SHEARED,
+                        .upper = {width * s->width, height * s->width},
+                        .walled = true,
+                        .side = AREA_SIDE};
   area image[CASES_MAX][FRAMES];
   double least, most = 0.0;
   for (int k = 0; k < sim->count; k++) {
     char name[64];
     snprintf(name, sizeof name, "columns_%s.bin", sim->column[k].name);
-    if (!mpm_snapshots_image(a, s->out, name, FRAMES, sim->column[k].shot, spacing, lower, upper,
-                             image[k]))
+    if (!mpm_snapshots_image(a, s->out, name, FRAMES, sim->column[k].shot, &def, image[k]))
       return false;
     double greatest;
     area_range(FRAMES, image[k], 1.0, &least, &greatest);
@@ -342,8 +344,8 @@ static bool draw_columns(app *a, const simulation *sim) {
               "set xtics 1\nset ytics %g\n"
               "set colorbox user origin screen %.4f,0.2 size screen 0.012,0.6\n"
               "set cblabel 'plastic strain (-)'\nset xlabel 'x/L_0' offset 0,0.6\n"
-              "set ylabel 'y/L_0' offset 1.6\n",
-              sim->count, FRAMES, edge / x, (x - 135.0) / x, 72.0 / y, 1.0 - 28.0 / y, edge / x,
+              "set ylabel 'y/L_0' offset 1.3\n",
+              sim->count, FRAMES, edge / x, (x - 135.0) / x, 72.0 / y, 1.0 - 40.0 / y, edge / x,
               100.0 / y, width, height, height > 1.2 ? 1.0 : 0.5, (x - 120.0) / x);
   plot_colours(&f, 0.0, fmin(2.0, most), 0.0, most);
   for (int k = 0; k < sim->count; k++)

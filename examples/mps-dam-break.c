@@ -250,14 +250,17 @@ static bool draw_water(app *a, const simulation *sim, double T) {
   const settings *s = &sim->s;
   const double width = s->rest ? 1.0 : s->tank, height = 1.2 * (s->impact ? 1.0 : (double)s->n2);
   const int across = s->rest ? FRAMES : 2, down = FRAMES / across, panel = s->rest ? 180 : 600;
-  const int panel_height = (int)(panel * height / width), edge = 65;
-  const double x = across * (panel + edge) + 135.0, y = down * (panel_height + 100.0);
-  const double lower[2] = {0.0, 0.0}, upper[2] = {width * s->base, height * s->base};
-  const double spacing = s->h / (s->method == METHOD_MPS ? 1.0 : sqrt((double)s->ppc));
+  const int panel_height = (int)(panel * height / width), edge = 78;
+  const double x = across * (panel + edge) + 160.0, y = down * (panel_height + 100.0) + 12.0;
+  const bool mps = s->method == METHOD_MPS;
+  const area_def def = {.spacing = s->h / (mps ? 1.0 : sqrt((double)s->ppc)),
+                        .slit = mps ? AREA_SLIT : AREA_SLIT_SHEARED,
+                        .upper = {width * s->base, height * s->base},
+                        .walled = true,
+                        .side = AREA_SIDE};
   area image[FRAMES];
   double least, most;
-  if (!mpm_snapshots_image(a, s->out, "water.bin", FRAMES, sim->shot, spacing, lower, upper, image))
-    return false;
+  if (!mpm_snapshots_image(a, s->out, "water.bin", FRAMES, sim->shot, &def, image)) return false;
   area_range(FRAMES, image, 1e-3, &least, &most);
   output f;
   if (!plot_open(&f, a, s->out, "water", (int)x, (int)y)) return false;
@@ -267,11 +270,11 @@ static bool draw_water(app *a, const simulation *sim, double T) {
       "%.4f, screen %.4f spacing screen %.4f, screen %.4f\n"
       "set xrange [0:%.6g]\nset yrange [0:%.6g]\nset size ratio -1\nunset grid\n"
       "set palette defined (0 '#2c3e8f', 0.35 '#4aa3c7', 0.7 '#b7e0a5', 1 '#f4d03f')\n"
-      "set xtics 1\nset ytics 1\nset xlabel 'x/a' offset 0,0.6\nset ylabel 'y/a' offset 1.6\n"
+      "set xtics 1\nset ytics 1\nset xlabel 'x/a' offset 0,0.6\nset ylabel 'y/a' offset 1.3\n"
       "set colorbox user origin screen %.4f,0.2 size screen 0.012,0.6\n"
       "set cblabel 'pressure (kPa)'\n",
-      down, across, edge / x, (x - 135.0) / x, 72.0 / y, 1.0 - 28.0 / y, edge / x, 100.0 / y, width,
-      height, (x - 120.0) / x);
+      down, across, edge / x, (x - 160.0) / x, 72.0 / y, 1.0 - 40.0 / y, edge / x, 100.0 / y, width,
+      height, (x - 145.0) / x);
   plot_colours(&f, 0.0, 0.9e-3 * DENSITY * G * column_height(s), least, most);
   for (int k = 0; k < FRAMES; k++) {
     if (sim->shot[k].count == 0) continue; /* the run ended before */

@@ -136,7 +136,11 @@ static bool draw_stress(const model *m, const char *directory, const char *name,
 /* shape.bin: von Mises' stress (Pa) of the body with its displacements times `scale`. */
 static bool image_shape(const model *m, const char *directory, double scale, area *image) {
   const double spacing = m->problem->height / (double)m->ny;
-  double lower[2] = {INFINITY, INFINITY}, upper[2] = {-INFINITY, -INFINITY};
+  area_def def = {.spacing = spacing,
+                  .slit = AREA_SLIT,
+                  .lower = {INFINITY, INFINITY},
+                  .upper = {-INFINITY, -INFINITY},
+                  .side = AREA_SIDE};
   output f;
   double *row = malloc((size_t)(m->nx * m->ny) * 3 * sizeof *row);
   if (!row) return app_no_memory(m->a);
@@ -146,13 +150,13 @@ static bool image_shape(const model *m, const char *directory, double scale, are
     good = model_get(m, k / m->ny, k % m->ny, &p);
     for (int c = 0; good && c < 2; c++) {
       row[3 * k + c] = p.x[c] + scale * p.u[c];
-      lower[c] = fmin(lower[c], row[3 * k + c] - spacing);
-      upper[c] = fmax(upper[c], row[3 * k + c] + spacing);
+      def.lower[c] = fmin(def.lower[c], row[3 * k + c] - spacing);
+      def.upper[c] = fmax(def.upper[c], row[3 * k + c] + spacing);
     }
     if (good) row[3 * k + 2] = p.mises;
   }
   good = good && output_open(&f, m->a, directory, "shape.bin");
-  if (good) area_write(&f, m->nx * m->ny, row, spacing, lower, upper, AREA_SIDE, image);
+  if (good) area_write(&f, &def, m->nx * m->ny, row, image);
   free(row);
   return good && output_close(&f);
 }
@@ -165,7 +169,7 @@ static bool draw_shape(const model *m, const char *directory) {
   if (!plot_open(&f, m->a, directory, "shape", 1100, 520)) return false;
   output_text(&f,
               "set title \"Displacements times %.3g\"\nset size ratio -1\nunset grid\n"
-              "set xlabel 'x (m)'\nset ylabel 'y (m)'\nset cblabel 'von Mises stress (Pa)'\n"
+              "set xlabel 'x (m)'\nset ylabel 'y (m)'\nset cblabel 'von Mises stress (Pa)' offset 1\n"
               "set palette defined (0 '#2c3e90', 0.5 '#e8e4d8', 1 '#b03020')\n",
               scale);
   plot_colours(&f, 0.0, image.most, image.least, image.most);

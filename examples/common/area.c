@@ -1,14 +1,16 @@
-/* area.c - see area.h. Discs of 1.5 spacings around the particles cover the slits of a stretched
- * lattice; what lies within a spacing of uncovered pixels is taken off again (a closing by a disc),
- * which leaves free surfaces where they are. SPDX-License-Identifier: BSD-3-Clause */
+/* area.c - see area.h. Discs around the particles, of half a spacing and half the width of a slit,
+ * cover the slits; what lies within half that width of uncovered pixels is taken off again (a
+ * closing by a disc), which leaves free surfaces where they are. Solid pixels take nothing off: the
+ * gap between a body and the nearest particles is closed too.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #include "area.h"
 
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 
-enum { PIXELS = 6 };             /* a spacing */
-static const double reach = 1.5; /* spacings */
+enum { PIXELS = 12 };           /* a spacing */
+static const double own = 0.45; /* spacings: the disc that a particle alone has */
 
 typedef struct canvas {
   int64_t columns, rows;
@@ -49,7 +51,7 @@ static bool on_edge(const canvas *c, int64_t i, int64_t j) {
 }
 
 /* Takes off what is within `depth` pixels of the uncovered, but for the particles' own discs. */
-static void take_off(canvas *c, double depth, double own) {
+static void take_off(canvas *c, double depth, double alone) {
   const int64_t n = (int64_t)depth;
   for (int64_t j = 0; j < c->rows; j++)
     for (int64_t i = 0; i < c->columns; i++) {
@@ -58,8 +60,29 @@ static void take_off(canvas *c, double depth, double own) {
         for (int64_t p = i - n < 0 ? 0 : i - n; p <= i + n && p < c->columns; p++) {
           const double d = (double)((p - i) * (p - i) + (q - j) * (q - j));
           const int64_t k = q * c->columns + p;
-          if (d <= depth * depth && (double)c->distance[k] > own * own) c->value[k] = NAN;
+          if (d <= depth * depth && (double)c->distance[k] > alone * alone) c->value[k] = NAN;
         }
+    }
+}
+
+static bool is_solid(const area_def *def, double x, double y) {
+  const bool beyond = def->walled && (x < def->lower[0] || x > def->upper[0] || y < def->lower[1] ||
+                                      y > def->upper[1]);
+  return beyond || (def->solid && def->solid(def->user, x, y));
+}
+
+/* Beside solid pixels nothing is taken off. They are empty, but for a seam of a pixel, so that no
+ * light comes through between the image and what is drawn over it. */
+static void mark_solid(canvas *c, const area_def *def) {
+  const double p = c->pixel;
+  for (int64_t j = 0; j < c->rows; j++)
+    for (int64_t i = 0; i < c->columns; i++) {
+      const double x = c->lower[0] + ((double)i + 0.5) * p, y = c->lower[1] + ((double)j + 0.5) * p;
+      if (!is_solid(def, x, y)) continue;
+      c->distance[j * c->columns + i] = 0.0f;
+      if (is_solid(def, x - p, y) && is_solid(def, x + p, y) && is_solid(def, x, y - p) &&
+          is_solid(def, x, y + p))
+        c->value[j * c->columns + i] = NAN;
     }
 }
 
@@ -74,14 +97,14 @@ static void take_range(const canvas *c, area *out) {
   }
 }
 
-void area_write(output *file, int64_t count, const double *row, double spacing,
-                const double lower[2], const double upper[2], int side, area *out) {
-  /* wider than the picture: its edge is no surface, and surfaces may lie on it */
+void area_write(output *file, const area_def *def, int64_t count, const double *row, area *out) {
+  const double spacing = def->spacing, reach = 0.5 + 0.5 * def->slit; /* m, spacings */
+  /* wider than the picture: particles beyond its edge count */
   const double margin = (reach + 0.5) * spacing;
-  const double wide = upper[0] - lower[0] + 2.0 * margin;
-  const double high = upper[1] - lower[1] + 2.0 * margin;
-  canvas c = {.lower = {lower[0] - margin, lower[1] - margin},
-              .pixel = fmax(spacing / PIXELS, fmax(wide, high) / side)};
+  const double wide = def->upper[0] - def->lower[0] + 2.0 * margin;
+  const double high = def->upper[1] - def->lower[1] + 2.0 * margin;
+  canvas c = {.lower = {def->lower[0] - margin, def->lower[1] - margin},
+              .pixel = fmax(spacing / PIXELS, fmax(wide, high) / def->side)};
   *out = (area){.lower = {c.lower[0], c.lower[1]}, .pixel = c.pixel};
   if (file->stream == NULL || file->error != 0 || !(wide > 0.0 && high > 0.0)) return;
   out->columns = c.columns = (int64_t)ceil(wide / c.pixel);
@@ -94,7 +117,8 @@ void area_write(output *file, int64_t count, const double *row, double spacing,
     const double step = spacing / c.pixel; /* pixels */
     for (int64_t k = 0; k < count; k++)
       if (isfinite(row[3 * k + 2])) cover(&c, row + 3 * k, reach * step);
-    take_off(&c, (reach - 0.5) * step, 0.6 * step);
+    mark_solid(&c, def);
+    take_off(&c, (reach - 0.5) * step, own * step);
     take_range(&c, out);
     out->offset = ftell(file->stream);
     if (fwrite(c.value, sizeof *c.value, size, file->stream) != size) file->error = errno;

@@ -1,6 +1,7 @@
 /* area.h - the area that particles have, as an image: a continuum looks like one. A pixel belongs
- * to the nearest particle; slits narrower than two spacings between particles are closed, the
- * outline runs half a spacing beyond the outermost ones. SPDX-License-Identifier: BSD-3-Clause */
+ * to the nearest particle; narrow slits between particles, and between them and what is solid, are
+ * closed, the outline runs half a spacing beyond the outermost particles.
+ * SPDX-License-Identifier: BSD-3-Clause */
 #ifndef EXAMPLES_AREA_H
 #define EXAMPLES_AREA_H
 
@@ -15,11 +16,25 @@ typedef struct area {
   double least, most;     /* of the values shown; 0 and 0 without any */
 } area;
 
-/* Appends to the file the image of what lies between `lower` and `upper` (m), at most `side` pixels
- * along a side: `row` holds x, y (m) and the value of each particle. Errors are those of
- * output_close. */
-void area_write(output *file, int64_t count, const double *row, double spacing,
-                const double lower[2], const double upper[2], int side, area *out);
+/* Width of the slits that are closed, in spacings: of particles that keep their distances, and of
+ * a lattice that shear draws out in one direction and presses together in the other. */
+#define AREA_SLIT 2.0
+#define AREA_SLIT_SHEARED 4.0
+
+typedef struct area_def {
+  double spacing;            /* m */
+  double slit;               /* spacings */
+  double lower[2], upper[2]; /* m, what is shown */
+  bool walled;               /* beyond it all is solid: walls, or the body goes on */
+  int side;                  /* pixels along a side, at most */
+  /* a body or a wall at x, y (m), which the picture draws over the image; NULL: none */
+  bool (*solid)(const void *user, double x, double y);
+  const void *user;
+} area_def;
+
+/* Appends the image to the file: `row` holds x, y (m) and the value of each of `count` particles.
+ * Errors are those of output_close. */
+void area_write(output *file, const area_def *def, int64_t count, const double *row, area *out);
 
 /* The element of a gnuplot `plot` that draws it from the file of that name: lengths divided by
  * `length` (m), values times `factor`. */

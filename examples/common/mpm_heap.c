@@ -137,11 +137,9 @@ bool mpm_snapshots_write(app *a, const char *directory, const char *name, const 
 }
 
 bool mpm_snapshots_image(app *a, const char *directory, const char *name, int count,
-                         const mpm_snapshot *shots, double spacing, const double lower[2],
-                         const double upper[2], area *images) {
+                         const mpm_snapshot *shots, const area_def *def, area *images) {
   output f;
   if (!output_open(&f, a, directory, name)) return false;
-  for (int s = 0; s < count; s++)
-    area_write(&f, shots[s].count, shots[s].row, spacing, lower, upper, AREA_SIDE, &images[s]);
+  for (int s = 0; s < count; s++) area_write(&f, def, shots[s].count, shots[s].row, &images[s]);
   return output_close(&f);
 }

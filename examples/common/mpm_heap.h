@@ -41,9 +41,8 @@ void mpm_snapshot_free(mpm_snapshot *shot);
 bool mpm_snapshots_write(app *a, const char *directory, const char *name, const char *value,
                          int count, const mpm_snapshot *shots);
 
-/* DIR/NAME: the area of the particles of each shot between `lower` and `upper` (m). */
+/* DIR/NAME: the area of the particles of each shot. */
 bool mpm_snapshots_image(app *a, const char *directory, const char *name, int count,
-                         const mpm_snapshot *shots, double spacing, const double lower[2],
-                         const double upper[2], area *images);
+                         const mpm_snapshot *shots, const area_def *def, area *images);
 
 #endif

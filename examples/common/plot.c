@@ -55,6 +55,8 @@ static double round_up(double value) {
   return (lead > 5.0 ? 10.0 : lead > 2.0 ? 5.0 : lead > 1.0 ? 2.0 : 1.0) * power;
 }
 
+double plot_tics(double length, double most) { return round_up(length / fmax(most, 1.0)); }
+
 void plot_colours(output *script, double least, double most, double lowest, double highest) {
   if (!(most > least && isfinite(most - least))) most = least + 1.0; /* one value everywhere */
   const double step = round_up((most - least) / 6.0), slack = 1e-6 * step;

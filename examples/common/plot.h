@@ -24,4 +24,7 @@ bool plot_open_animation(output *script, app *a, const char *directory, const ch
                          int height, double step);
 bool plot_close_animation(output *script, const char *directory, const char *name);
 
+/* A round distance of tics that divides `length` into at most `most` parts. */
+double plot_tics(double length, double most);
+
 #endif

@@ -149,6 +149,12 @@ static bool draw_pressure(app *a, const settings *s, const capacity *c) {
   return plot_close(&f, s->out, "pressure");
 }
 
+/* `user`: the corner of the footing, m. */
+static bool in_footing(const void *user, double x, double y) {
+  const double *corner = user;
+  return x < corner[0] && y > corner[1];
+}
+
 /* shear_bands.bin: the plastic strain. */
 static bool image_bands(app *a, const settings *s, const simulation *sim, const double *lower,
                         const double *upper, area *image) {
@@ -165,9 +171,17 @@ static bool image_bands(app *a, const settings *s, const simulation *sim, const 
     row[3 * k + 1] = *mps_view_f64(&x, k, 1);
     row[3 * k + 2] = *mps_view_f64(&strain, k, 0);
   }
+  const double base[2] = {s->half_width, s->depth - sim->path[sim->rows - 1]};
+  const area_def def = {.spacing = mps_particles_spacing(set),
+                        .slit = AREA_SLIT_SHEARED,
+                        .lower = {lower[0], lower[1]},
+                        .upper = {upper[0], upper[1]},
+                        .walled = true,
+                        .side = AREA_SIDE,
+                        .solid = in_footing,
+                        .user = base};
   const bool good = output_open(&f, a, s->out, "shear_bands.bin");
-  if (good)
-    area_write(&f, x.shape[0], row, mps_particles_spacing(set), lower, upper, AREA_SIDE, image);
+  if (good) area_write(&f, &def, x.shape[0], row, image);
   free(row);
   return good && output_close(&f);
 }

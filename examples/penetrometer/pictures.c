@@ -69,6 +69,14 @@ static void draw_outline(output *f, const penetrometer *p, double top) {
                 tip, look);
 }
 
+/* The same area. */
+static bool in_tip(const void *user, double x, double z) {
+  const penetrometer *p = user;
+  const double R = pen_radius(p), over = z + pen_reached(&p->run[0]), cone = pen_shoulder(p);
+  if (p->s.tip == PEN_SPHERE) return hypot(x, over - R) < R;
+  return p->s.tip == PEN_CONE && over > 0.0 && fabs(x) < fmin(R, R * over / cone);
+}
+
 /* A value that all but a few of the points stay below. */
 static int ascending(const void *a, const void *b) {
   const double x = *(const double *)a, y = *(const double *)b;
@@ -111,7 +119,15 @@ static bool image_section(app *a, const penetrometer *p, bool strain, const doub
     }
   const bool good =
       output_open(&f, a, p->s.out, strain ? "plastic_strain.bin" : "displacement.bin");
-  if (good) area_write(&f, count, row, spacing, lower, upper, AREA_SIDE, image);
+  const area_def def = {.spacing = spacing,
+                        .slit = AREA_SLIT_SHEARED,
+                        .lower = {lower[0], lower[1]},
+                        .upper = {upper[0], upper[1]},
+                        .walled = true,
+                        .side = AREA_SIDE,
+                        .solid = in_tip,
+                        .user = p};
+  if (good) area_write(&f, &def, count, row, image);
   free(row);
   return good && output_close(&f);
 }

@@ -106,8 +106,16 @@ typedef struct section {
   double least, most; /* of the last one */
 } section;
 
+typedef struct wall {
+  double inner, outer, tip; /* m */
+} wall;
+
+static bool in_wall(const void *user, double r, double z) {
+  const wall *w = user;
+  return r > w->inner && r < w->outer && z > w->tip;
+}
+
 static bool image_sections(app *a, const pile *p, const quantity *q, section *x) {
-  const double lower[2] = {0.0, section_bottom(p)}, upper[2] = {p->s.width, section_top(p)};
   output f;
   *x = (section){.q = q, .image = calloc((size_t)p->frames_kept + 1, sizeof *x->image)};
   snprintf(x->file, sizeof x->file, "%s.bin", q->name);
@@ -124,8 +132,16 @@ static bool image_sections(app *a, const pile *p, const quantity *q, section *x)
       row[3 * k + 1] = (double)value[FIELD_Z];
       row[3 * k + 2] = (double)value[q->field];
     }
-    area_write(&f, p->particles, row, mps_particles_spacing(p->m.particles), lower, upper,
-               AREA_SIDE, &x->image[n]);
+    const wall pipe = {p->inner, p->outer, -p->frame[n].depth};
+    const area_def def = {.spacing = mps_particles_spacing(p->m.particles),
+                          .slit = AREA_SLIT_SHEARED,
+                          .lower = {0.0, section_bottom(p)},
+                          .upper = {p->s.width, section_top(p)},
+                          .walled = true,
+                          .side = AREA_SIDE,
+                          .solid = in_wall,
+                          .user = &pipe};
+    area_write(&f, &def, p->particles, row, &x->image[n]);
   }
   free(row);
   area_range(1, &x->image[p->frames_kept - 1], q->factor, &x->least, &x->most);
@@ -166,7 +182,7 @@ static bool draw_sections(app *a, const pile *p, const section *x) {
   if (!plot_open(&f, a, p->s.out, q->name, width, 850)) return false;
   output_text(&f,
               "set multiplot layout 1,%d title '%s' font ',18' margins screen %.4g, screen %.4g, "
-              "screen 0.09, screen 0.87 spacing screen %.4g, screen 0\nunset colorbox\n",
+              "screen 0.105, screen 0.885 spacing screen %.4g, screen 0\nunset colorbox\n",
               count, q->title, 100.0 / width, 1.0 - 160.0 / width, 70.0 / width);
   begin_sections(&f, p, x, panel);
   for (int k = 0; k < count; k++) {

@@ -128,7 +128,8 @@ static bool draw_line(const plate *p, const char *directory) {
 
 /* stress.bin: the stress xx (Pa). */
 static bool image_stress(const plate *p, const char *directory, double edge, area *image) {
-  const double lower[2] = {0.0, 0.0}, upper[2] = {edge, edge};
+  const area_def def = {
+      .spacing = p->spacing, .slit = AREA_SLIT, .upper = {edge, edge}, .side = AREA_SIDE};
   const int64_t count = mps_particles_count(p->particles);
   output f;
   double *row = malloc((size_t)(count + 1) * 3 * sizeof *row);
@@ -140,7 +141,7 @@ static bool image_stress(const plate *p, const char *directory, double edge, are
     if (good) row[3 * k] = at.x[0], row[3 * k + 1] = at.x[1], row[3 * k + 2] = at.stress[0];
   }
   good = good && output_open(&f, p->a, directory, "stress.bin");
-  if (good) area_write(&f, count, row, p->spacing, lower, upper, AREA_SIDE, image);
+  if (good) area_write(&f, &def, count, row, image);
   free(row);
   return good && output_close(&f);
 }

@@ -30,6 +30,17 @@ static void choose_section(const seawall *w, view *v) {
   v->upper[1] = fmin(top, 3.0 * s->depth) + 2.0 * s->spacing;
 }
 
+/* Bed, wall and piston as begin_water and plot_water draw them. */
+typedef struct solids {
+  const seawall_settings *s;
+  double piston; /* m, of its face */
+} solids;
+
+static bool in_solids(const void *user, double x, double y) {
+  const solids *w = user;
+  return y < 0.0 || (y < w->s->wall_height && (x > w->s->length || x < w->piston));
+}
+
 /* frames.bin: the pressure (Pa) in the area of the water, frame after frame. */
 static bool image_frames(app *a, const seawall *w, view *v) {
   output f;
@@ -45,7 +56,15 @@ static bool image_frames(app *a, const seawall *w, view *v) {
   bool good = output_open(&f, a, w->s.out, "frames.bin");
   for (int64_t k = 0; good && k < w->frames; k++) {
     for (int64_t i = 0; i < 3 * w->frame[k].count; i++) row[i] = (double)w->frame[k].value[i];
-    area_write(&f, w->frame[k].count, row, w->s.spacing, v->lower, v->upper, 700, &v->image[k]);
+    const solids walls = {&w->s, w->frame[k].piston};
+    const area_def def = {.spacing = w->s.spacing,
+                          .slit = AREA_SLIT,
+                          .lower = {v->lower[0], v->lower[1]},
+                          .upper = {v->upper[0], v->upper[1]},
+                          .side = 700,
+                          .solid = in_solids,
+                          .user = &walls};
+    area_write(&f, &def, w->frame[k].count, row, &v->image[k]);
   }
   free(row);
   area_range(w->frames, v->image, 1e-3, &v->least, &v->most);

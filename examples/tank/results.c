@@ -248,8 +248,13 @@ static bool image_water(app *a, const tank_model *m, const double *lower, const 
     row[3 * i + 1] = *mps_view_f64(&x, i, 1);
     row[3 * i + 2] = *mps_view_f64(&p, i, 0);
   }
+  const area_def def = {.spacing = m->s.spacing,
+                        .slit = AREA_SLIT,
+                        .lower = {lower[0], lower[1]},
+                        .upper = {upper[0], upper[1]},
+                        .side = AREA_SIDE};
   const bool good = output_open(&f, a, m->s.out, "water.bin");
-  if (good) area_write(&f, x.shape[0], row, m->s.spacing, lower, upper, AREA_SIDE, image);
+  if (good) area_write(&f, &def, x.shape[0], row, image);
   free(row);
   return good && output_close(&f);
 }
@@ -263,7 +268,10 @@ static bool draw_water(app *a, const tank_model *m) {
   const double over = s->kind == TANK_FLOAT ? 1.2 * s->draft : 0.0;
   const double height = drop ? 5.0 * s->depth : rise * s->depth + over + 4.0 * fabs(s->amplitude);
   const double least = drop ? -2.5 * s->depth : -fabs(s->amplitude) - s->spacing;
-  const int across = 1000, down = (int)fmin(fmax(820.0 * height / width, 160.0), 1000.0) + 130;
+  const double scale = fmin(740.0 / width, 900.0 / height); /* pixels a metre */
+  const double wide = scale * width, high = scale * height, bar = fmax(high, 180.0);
+  const double X = fmax(wide + 320.0, 560.0), Y = bar + 170.0;
+  const double left = 0.5 * (X - wide) - 30.0, bottom = 95.0 + 0.5 * (bar - high);
   const double last = m->samples ? m->sample[m->samples - 1].t : 0.0;
   const double lower[2] = {least, drop ? least : -s->spacing};
   const double upper[2] = {least + width, drop ? least + height : height};
@@ -272,15 +280,20 @@ static bool draw_water(app *a, const tank_model *m) {
   double lowest, highest;
   area_range(1, &image, 1e-3, &lowest, &highest);
   output f;
-  if (!plot_open(&f, a, s->out, "water", across, down)) return false;
+  if (!plot_open(&f, a, s->out, "water", (int)X, (int)Y)) return false;
   if (s->kind == TANK_FLOAT) draw_box(&f, m);
   output_text(
       &f,
-      "set title 'water at t = %.3f s, %lld particles'\nset size ratio -1\nunset grid\n"
+      "set title 'water at t = %.3f s, %lld particles'\nunset grid\n"
       "set xrange [%.6g:%.6g]\nset yrange [%.6g:%.6g]\nset xlabel 'x (m)'\nset ylabel 'y (m)'\n"
-      "set cblabel 'pressure (kPa)'\n"
+      "set cblabel 'pressure (kPa)' offset 0.8\nset xtics %.6g\nset ytics %.6g\n"
+      "set lmargin at screen %.4f\nset rmargin at screen %.4f\n"
+      "set bmargin at screen %.4f\nset tmargin at screen %.4f\n"
+      "set colorbox user origin screen %.4f, screen %.4f size screen %.4f, screen %.4f\n"
       "set palette defined (0 '#2c3e8f', 0.35 '#4aa3c7', 0.7 '#b7e0a5', 1 '#f4d03f')\n",
-      last, (long long)mps_particles_count(m->water), lower[0], upper[0], lower[1], upper[1]);
+      last, (long long)mps_particles_count(m->water), lower[0], upper[0], lower[1], upper[1],
+      plot_tics(width, wide / 70.0), plot_tics(height, high / 30.0), left / X, (left + wide) / X,
+      bottom / Y, (bottom + high) / Y, (left + wide + 18.0) / X, 95.0 / Y, 24.0 / X, bar / Y);
   plot_colours(&f, lowest, highest, lowest, highest);
   output_text(&f, "plot ");
   area_plot(&f, "water.bin", &image, 1.0, 1e-3);

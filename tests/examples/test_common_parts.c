@@ -355,7 +355,6 @@ static void particles_are_drawn_as_their_area(void **state) {
   app a = {.program = "test"};
   char directory[] = "/tmp/mps-area-XXXXXX", file[64];
   assert_non_null(mkdtemp(directory));
-  const double lower[2] = {-1.0, -1.0}, upper[2] = {10.0, 10.0};
   double row[34 * 3];
   for (int k = 0; k < 32; k++) {
     row[3 * k] = k % 8 + (k % 8 < 4 ? 0.5 : 1.5);
@@ -367,7 +366,9 @@ static void particles_are_drawn_as_their_area(void **state) {
   output f;
   area image;
   assert_true(output_open(&f, &a, directory, "image.bin"));
-  area_write(&f, 34, row, 1.0, lower, upper, 400, &image);
+  const area_def def = {
+      .spacing = 1.0, .slit = AREA_SLIT, .lower = {-1.0, -1.0}, .upper = {10.0, 10.0}, .side = 400};
+  area_write(&f, &def, 34, row, &image);
   assert_true(output_close(&f));
   mps_assert_near(image.least, -3.0, 0.0);
   mps_assert_near(image.most, 7.0, 0.0);
@@ -390,6 +391,51 @@ static void particles_are_drawn_as_their_area(void **state) {
   }
   assert_true(isnan(pixel_at(&image, value, 5.0, 7.0)));
   free(value);
+  unlink(file);
+  rmdir(directory);
+}
+
+static bool above(const void *user, double x, double y) {
+  (void)user, (void)x;
+  return y > 2.9;
+}
+
+/* One row of particles, two of them three spacings apart: open at slits of two, closed at four; a
+ * body 1.9 above the row and a wall below it leave no gap then. */
+static void slits_and_gaps_to_bodies_are_closed(void **state) {
+  (void)state;
+  app a = {.program = "test"};
+  char directory[] = "/tmp/mps-area-XXXXXX", file[64];
+  assert_non_null(mkdtemp(directory));
+  snprintf(file, sizeof file, "%s/image.bin", directory);
+  double row[8 * 3];
+  for (int k = 0; k < 8; k++)
+    row[3 * k] = 0.5 + k + 2 * (k > 3), row[3 * k + 1] = 1.0, row[3 * k + 2] = 1.0;
+  for (int pass = 0; pass < 2; pass++) {
+    const area_def def = {.spacing = 1.0,
+                          .slit = pass ? AREA_SLIT_SHEARED : AREA_SLIT,
+                          .lower = {-4.0, 0.0},
+                          .upper = {14.0, 9.0},
+                          .walled = pass == 1,
+                          .side = 400,
+                          .solid = pass ? above : NULL};
+    output f;
+    area image;
+    assert_true(output_open(&f, &a, directory, "image.bin"));
+    area_write(&f, &def, 8, row, &image);
+    assert_true(output_close(&f));
+    const size_t size = (size_t)(image.columns * image.rows);
+    float *value = malloc(size * sizeof *value);
+    FILE *stream = fopen(file, "rb");
+    assert_int_equal(fread(value, sizeof *value, size, stream), size);
+    fclose(stream);
+    assert_int_equal(isnan(pixel_at(&image, value, 5.0, 1.0)), pass == 0); /* in the slit */
+    assert_int_equal(isnan(pixel_at(&image, value, 2.0, 2.7)), pass == 0); /* below the body */
+    assert_int_equal(isnan(pixel_at(&image, value, 2.0, 0.1)), pass == 0); /* above the wall */
+    assert_true(isnan(pixel_at(&image, value, 2.0, 3.3)));
+    assert_true(isnan(pixel_at(&image, value, -2.0, 1.0)));
+    free(value);
+  }
   unlink(file);
   rmdir(directory);
 }
@@ -432,6 +478,7 @@ int main(void) {
       cmocka_unit_test(the_front_leaves_drops_behind),
       cmocka_unit_test(a_decay_is_that_of_the_energy),
       cmocka_unit_test(particles_are_drawn_as_their_area),
+      cmocka_unit_test(slits_and_gaps_to_bodies_are_closed),
       cmocka_unit_test(colour_scales_mark_their_saturated_ends),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
