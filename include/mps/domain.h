@@ -112,6 +112,19 @@ MPS_API MPS_NODISCARD mps_status mps_domain_agree(mps_domain *domain, mps_status
  *  Collective. */
 MPS_API MPS_NODISCARD mps_status mps_domain_max(mps_domain *domain, int32_t count, double *values);
 
+/** Creates an empty set whose particles lie in parts on the ranks from the first on, so that no
+ * rank ever has memory for all of them. Fills and mps_particles_append are collective: all ranks
+ * give the same, which is compared, and each keeps an equal part (a slab across the longest side of
+ * a fill) with the ids of one process. Constants (mps_particles_set) are given alike on all ranks,
+ *  other values by each rank for the particles that it has. Views, selections and removals are
+ * those of a rank's own particles. A solver that is given this domain moves them to the ranks that
+ * need them (mps_mpm and mps_dynamics do; docs/domain.md), also where its creation then fails;
+ * others refuse the set with MPS_ERROR_STATE. On one rank as mps_particles_create, whose errors it
+ * has. Collective. */
+MPS_API MPS_NODISCARD mps_status mps_domain_create_particles(mps_domain *domain,
+                                                             const mps_particles_def *def,
+                                                             mps_particles **out);
+
 /** Brings the particles of all ranks together on rank 0, for output: *whole becomes a set of rank
  *  0's context with all fields that `particles` has, each id once, in the order that explicit
  *  dynamics and WLS-MPM have without a domain (without a solver: rank after rank). Of an id on

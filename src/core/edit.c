@@ -11,6 +11,7 @@
 #include "particles_private.h"
 
 #include "fields.h"
+#include "hash.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -250,6 +251,13 @@ static mps_status set_column(mps_particles *p, const char *function, const char 
   return status;
 }
 
+/* All ranks give a set in parts the same constants: solvers compare the hash. */
+static uint64_t note_constant(uint64_t hash, const char *name, int32_t component, double value) {
+  hash = mpsi_hash(hash, name, strlen(name) + 1);
+  hash = mpsi_hash(hash, &component, sizeof component);
+  return mpsi_hash(hash, &value, sizeof value);
+}
+
 mps_status mps_particles_set(mps_particles *particles, const char *name, int32_t component,
                              double value) {
   if (!particles) return MPS_ERROR_ARGUMENT;
@@ -273,6 +281,8 @@ mps_status mps_particles_set(mps_particles *particles, const char *name, int32_t
   if (status == MPS_OK && !present)
     status = mpsi_as(particles->context, __func__, mps_particles_add_field(particles, name, 0));
   if (status == MPS_OK) status = set_column(particles, __func__, name, component, value);
+  if (status == MPS_OK && particles->deal)
+    particles->deal->constants = note_constant(particles->deal->constants, name, component, value);
   if (status != MPS_OK) mpsi_particles_drop_fields(particles, fields);
   return status;
 }

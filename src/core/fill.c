@@ -11,6 +11,7 @@
 #include "guard.h"
 #include "particles_private.h"
 
+#include "hash.h"
 #include "polygon.h"
 
 #include <string.h>
@@ -115,18 +116,47 @@ static mps_status check_bound(const mps_particles *p, const char *function, cons
   return MPS_OK;
 }
 
-static void put_sites(const mps_particles *p, const mpsi_site_runs *fresh, int64_t n) {
+/* Particles at the sites of `slab` (NULL: all), with ids from `id` on, from index n on. */
+static void put_sites(mps_particles *p, const mpsi_site_runs *fresh, mpsi_slab *slab, int64_t id,
+                      int64_t n) {
+  int64_t *number = p->fields[MPSI_FIELD_ID]->data;
   double *x[3] = {0};
   for (int32_t c = 0; c < p->def.dim; c++)
     x[c] = mpsi_field_column(p->fields[MPSI_FIELD_POSITION], c);
   for (int64_t m = 0; m < fresh->count; m++) {
     const mpsi_site_run run = fresh->item[m];
-    for (int64_t i = run.begin; i < run.end; i++, n++) {
+    int64_t begin = run.begin, end = run.end;
+    if (slab) mpsi_slab_next(slab, &run, &begin, &end);
+    for (int64_t i = begin; i < end; i++, n++) {
+      number[n] = id + i - run.begin;
       x[0][n] = centre(p, 0, i);
       x[1][n] = centre(p, 1, run.j);
       if (p->def.dim == 3) x[2][n] = centre(p, 2, run.k);
     }
+    id += run.end - run.begin;
   }
+}
+
+/* Adds the particles of `count` free sites, or this rank's part of them. */
+static mps_status put_fresh(mps_particles *p, const char *function, mps_status status,
+                            const mpsi_site_runs *fresh, int64_t count) {
+  const int64_t first = p->count, id = p->next_id;
+  const bool deals = mpsi_particles_deals(p);
+  mpsi_slab slab = {.count = count};
+  if (deals) {
+    if (status == MPS_OK && !mpsi_slab_cut(p, fresh, &slab))
+      status = mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
+                         "could not allocate the numbers of sites in each column of the lattice");
+    const size_t bytes = (size_t)fresh->count * sizeof *fresh->item;
+    status = mpsi_deal_agree(p, function, status, count, mpsi_hash(MPSI_HASH, fresh->item, bytes));
+    if (status != MPS_OK) return status;
+  }
+  if (status == MPS_OK) status = mpsi_particles_extend_part(p, function, count, slab.count);
+  if (status == MPS_OK) {
+    put_sites(p, fresh, deals ? &slab : NULL, id, first);
+    mpsi_particles_number(p, first);
+  }
+  return mpsi_particles_arrive(p, function, status, first);
 }
 
 /* Puts particles at the sites of `runs` that are free, and takes the runs' memory in any case.
@@ -135,15 +165,12 @@ static mps_status put_runs(mps_particles *p, const char *function, mps_status st
                            mpsi_site_runs *runs, bool complete, int64_t *added) {
   mps_context *context = p->context;
   mpsi_site_runs fresh = {0}, sites = {0};
-  const int64_t first = p->count;
   if (status == MPS_OK && !(complete && runs_subtract(context, runs, &p->sites, &fresh) &&
                             runs_unite(context, &p->sites, &fresh, &sites)))
     status = mpsi_fail(context, function, MPS_ERROR_MEMORY,
                        "could not allocate the list of lattice sites");
   const int64_t count = (int64_t)runs_sites(&fresh);
-  if (status == MPS_OK) status = mpsi_particles_extend(p, function, count);
-  if (status == MPS_OK) put_sites(p, &fresh, first);
-  status = mpsi_particles_arrive(p, function, status, first);
+  status = put_fresh(p, function, status, &fresh, count);
   if (status == MPS_OK) {
     const mpsi_site_runs former = p->sites;
     p->sites = sites;

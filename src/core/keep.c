@@ -18,8 +18,7 @@ static void tell(const mps_particles *p) {
 /* The map from ids, of particles that the set has now. */
 static void index_ids(mps_particles *p) {
   const int64_t *id = p->fields[MPSI_FIELD_ID]->data;
-  for (int64_t k = 0; k < p->next_id; k++) p->index_of[k] = -1;
-  for (int64_t k = 0; k < p->count; k++) p->index_of[id[k]] = k;
+  mpsi_ids_renew(&p->ids, p->next_id, p->count, id);
 }
 
 static void drop(mps_context *context, mpsi_storage *s) {

@@ -6,6 +6,7 @@
 
 #include "ranges.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static const mps_particles_def particles_defaults = {.struct_size = sizeof(mps_particles_def),
@@ -37,8 +38,10 @@ static void free_set(mps_particles *p) {
     mpsi_free(context, p->fields[f]);
   }
   mpsi_free(context, p->fields);
-  mpsi_free(context, p->index_of);
+  mpsi_ids_free(context, &p->ids);
   mpsi_free(context, p->sites.item);
+  if (p->deal) p->deal->release(p->deal->self);
+  mpsi_free(context, p->deal);
   mpsi_free(context, p);
   mpsi_context_release(context);
 }
@@ -154,14 +157,16 @@ static void permute_columns(mps_particles *p, permutation *m) {
 /* Ids are unique: no two chunks write the same index. */
 typedef struct indexing {
   const int64_t *id;
-  int64_t *index_of, count;
+  mpsi_ids *ids;
+  int64_t count;
 } indexing;
 
 static void index_chunk(void *data, int64_t chunk, int32_t worker) {
   const indexing *i = data;
   const int64_t begin = chunk * PERMUTE_CHUNK;
   (void)worker;
-  for (int64_t k = begin; k < i->count && k < begin + PERMUTE_CHUNK; k++) i->index_of[i->id[k]] = k;
+  for (int64_t k = begin; k < i->count && k < begin + PERMUTE_CHUNK; k++)
+    mpsi_ids_put(i->ids, i->id[k], k);
 }
 
 mps_status mpsi_particles_permute_in(mps_particles *p, const char *function, const int64_t *order,
@@ -180,7 +185,7 @@ mps_status mpsi_particles_permute_in(mps_particles *p, const char *function, con
       if (m.columns == columns) permute_columns(p, &m);
     }
   if (m.columns > 0) permute_columns(p, &m);
-  indexing i = {p->fields[MPSI_FIELD_ID]->data, p->index_of, p->count};
+  indexing i = {p->fields[MPSI_FIELD_ID]->data, &p->ids, p->count};
   mpsi_parallel_for(p->context, m.chunks, index_chunk, &i);
   p->epoch++;
   return MPS_OK;
@@ -219,20 +224,49 @@ static mps_status check_select(const mps_particles *p, const char *function, con
   return MPS_OK;
 }
 
+static bool in_box(const mps_particles *p, int64_t at, const double *lo, const double *hi) {
+  for (int32_t c = 0; c < p->def.dim; c++) {
+    const double *x = mpsi_field_column(p->fields[MPSI_FIELD_POSITION], c);
+    if (!(x[at] >= lo[c] && x[at] <= hi[c])) return false;
+  }
+  return true;
+}
+
+static int ascending(const void *left, const void *right) {
+  const int64_t a = *(const int64_t *)left, b = *(const int64_t *)right;
+  return a < b ? -1 : a > b;
+}
+
+/* Of a set that has few of the ids: goes through the particles. */
+static mps_status select_few(const mps_particles *p, const char *function, const double *lo,
+                             const double *hi, int64_t capacity, int64_t *ids, int64_t *count) {
+  const int64_t *id = p->fields[MPSI_FIELD_ID]->data;
+  int64_t found = 0;
+  for (int64_t k = 0; k < p->count; k++) found += in_box(p, k, lo, hi);
+  int64_t *list = capacity >= found ? ids : NULL;
+  if (capacity > 0 && !list && !(list = mpsi_alloc(p->context, found, sizeof *list)))
+    return mpsi_fail_memory(p->context, function, (size_t)found * sizeof *list);
+  for (int64_t k = 0, at = 0; list && k < p->count; k++)
+    if (in_box(p, k, lo, hi)) list[at++] = id[k];
+  if (list && found > 0) qsort(list, (size_t)found, sizeof *list, ascending);
+  if (list && list != ids) {
+    memcpy(ids, list, (size_t)capacity * sizeof *ids);
+    mpsi_free(p->context, list);
+  }
+  *count = found;
+  return MPS_OK;
+}
+
 mps_status mps_particles_select_box(mps_particles *particles, const double *lo, const double *hi,
                                     int64_t capacity, int64_t *ids, int64_t *count) {
   if (!particles) return MPS_ERROR_ARGUMENT;
   const mps_status status = check_select(particles, __func__, lo, hi, capacity, ids, count);
   if (status != MPS_OK) return status;
+  if (particles->ids.sparse) return select_few(particles, __func__, lo, hi, capacity, ids, count);
   int64_t found = 0;
   for (int64_t id = 0; id < particles->next_id; id++) {
-    bool inside = particles->index_of[id] >= 0;
-    for (int32_t c = 0; inside && c < particles->def.dim; c++) {
-      const double *x = mpsi_field_column(particles->fields[MPSI_FIELD_POSITION], c);
-      const double value = x[particles->index_of[id]];
-      inside = value >= lo[c] && value <= hi[c];
-    }
-    if (!inside) continue;
+    const int64_t at = mpsi_ids_find(&particles->ids, id);
+    if (at < 0 || !in_box(particles, at, lo, hi)) continue;
     if (found < capacity) ids[found] = id;
     found++;
   }
@@ -241,7 +275,7 @@ mps_status mps_particles_select_box(mps_particles *particles, const double *lo, 
 }
 
 int64_t mps_particles_index(const mps_particles *particles, int64_t id) {
-  return particles && id >= 0 && id < particles->next_id ? particles->index_of[id] : -1;
+  return particles && id >= 0 && id < particles->next_id ? mpsi_ids_find(&particles->ids, id) : -1;
 }
 
 mps_status mpsi_particles_check_ids(const mps_particles *particles, const char *function,
@@ -265,20 +299,19 @@ mps_status mpsi_particles_check_ids_or_all(const mps_particles *particles, const
 
 int64_t mps_particles_nearest(const mps_particles *particles, const double *x) {
   if (!particles || !x) return -1;
+  const int64_t *id = particles->fields[MPSI_FIELD_ID]->data;
   int64_t best = -1;
   double best_square = INFINITY;
-  for (int64_t id = 0; id < particles->next_id; id++) {
-    if (particles->index_of[id] < 0) continue;
+  for (int64_t k = 0; k < particles->count; k++) {
     double square = 0.0;
     for (int32_t c = 0; c < particles->def.dim; c++) {
       const double *column = mpsi_field_column(particles->fields[MPSI_FIELD_POSITION], c);
-      const double distance = column[particles->index_of[id]] - x[c];
+      const double distance = column[k] - x[c];
       square += distance * distance;
     }
-    if (square < best_square) {
-      best_square = square;
-      best = id;
-    }
+    if (!(square < best_square || (square == best_square && id[k] < best))) continue;
+    best_square = square;
+    best = id[k];
   }
   return best;
 }

@@ -55,6 +55,30 @@ typedef enum mpsi_use {
   MPSI_USE_MOVE  /* moves or sorts the particles: the only one besides those that look */
 } mpsi_use;
 
+/* How the particles of a set are dealt to ranks as they come: each gets an equal part of every
+ * addition, before there is a solver. The callbacks are collective. */
+typedef struct mpsi_deal {
+  void *self; /* the domain */
+  int32_t rank, size;
+  /* What has become of an addition on all ranks, which must be given the same number of particles
+   * and the same hash of their places. */
+  mps_status (*agree)(void *self, const char *function, mps_status status, int64_t count,
+                      uint64_t hash);
+  mps_status (*settle)(void *self, const char *function, mps_status status);
+  void (*release)(void *self); /* when the set goes */
+  uint64_t constants;          /* hash of the names and values of mps_particles_set */
+} mpsi_deal;
+
+/* deal.c: an empty set becomes one whose particles are dealt; `deal` is copied. */
+mps_status mpsi_particles_deal_out(mps_particles *particles, const char *function,
+                                   const mpsi_deal *deal);
+/* NULL: all particles of the set are here. */
+const mpsi_deal *mpsi_particles_deal(const mps_particles *particles);
+/* MPS_ERROR_STATE where the set's particles are dealt to the ranks of another domain than `domain`
+ * (NULL: a solver that takes none, or has been given none). */
+mps_status mpsi_particles_check_deal(const mps_particles *particles, const char *function,
+                                     const void *domain);
+
 /* Rows of a set that lie on several ranks, and their place in the whole. */
 typedef struct mpsi_row_run {
   int32_t at[3], reserved; /* z counts first, then y, then x */
@@ -102,7 +126,8 @@ struct mpsi_holder {
 /* The runs that a holder tells of, or one of all rows, at `rank` along z. `out` NULL: how many. */
 int64_t mpsi_particles_runs(const mps_particles *particles, int32_t rank, mpsi_row_run *out);
 
-/* MPS_ERROR_STATE where another holder is in the way, or a field is being edited. */
+/* MPS_ERROR_STATE where another holder is in the way, or a field is being edited; solvers also
+ * mpsi_particles_check_deal. */
 mps_status mpsi_particles_check_hold(const mps_particles *particles, const char *function,
                                      mpsi_use kind);
 mps_status mpsi_particles_hold(mps_particles *particles, const char *function, mpsi_holder *holder);

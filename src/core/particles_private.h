@@ -3,6 +3,7 @@
 #ifndef MPSI_PARTICLES_PRIVATE_H
 #define MPSI_PARTICLES_PRIVATE_H
 
+#include "ids.h"
 #include "particles_internal.h"
 
 #define MPSI_MAX_PARTICLES (INT64_C(1) << 40)
@@ -57,9 +58,10 @@ struct mps_particles {
   int32_t field_count;
   mpsi_field **fields; /* 0: id, 1: position */
   int64_t columns;
-  int64_t next_id;   /* ids are given once: 0, 1, 2, ... */
-  int64_t *index_of; /* id -> index, -1 of a particle that was removed */
-  int64_t id_capacity;
+  int64_t next_id;      /* ids are given once: 0, 1, 2, ... */
+  mpsi_ids ids;         /* id -> index */
+  mpsi_deal *deal;      /* how its particles are dealt to ranks as they come; NULL: all are here */
+  int64_t came;         /* ids given with the last addition, on all ranks */
   mpsi_site_runs sites; /* what the lattice fills have put */
 };
 
@@ -108,5 +110,36 @@ mps_status mpsi_particles_arrive(mps_particles *particles, const char *function,
 void mpsi_particles_free_if_unused(mps_particles *particles);
 /* Adds `count` particles with their ids; all else is zero. Nothing has changed on an error. */
 mps_status mpsi_particles_extend(mps_particles *particles, const char *function, int64_t count);
+/* The same of a set whose particles are dealt: `here` of them, the ids of which the caller puts
+ * with mpsi_particles_number once it has written them into the field, from index `first` on. */
+mps_status mpsi_particles_extend_part(mps_particles *particles, const char *function, int64_t count,
+                                      int64_t here);
+void mpsi_particles_number(mps_particles *particles, int64_t first);
+
+/* ---- deal.c ---------------------------------------------------------------------------------- */
+
+/* Whether what is added now is dealt here: a solver on several ranks that holds the set deals it by
+ * itself. */
+bool mpsi_particles_deals(const mps_particles *particles);
+/* The first of `count` that rank `rank` gets. */
+static inline int64_t mpsi_deal_first(const mpsi_deal *deal, int32_t rank, int64_t count) {
+  return count / deal->size * rank + count % deal->size * rank / deal->size;
+}
+/* Whether all ranks add the same; `status`: what has become of it here. Of a set that is not dealt
+ * `status`. */
+mps_status mpsi_deal_agree(const mps_particles *particles, const char *function, mps_status status,
+                           int64_t count, uint64_t hash);
+/* Of lattice sites in order of a fill the part of this rank: intervals along the axis of their
+ * greatest extent, of equal numbers. False: memory refused. */
+typedef struct mpsi_slab {
+  int32_t axis;
+  int64_t first[2],
+      skip[2];       /* begins and ends within these columns, behind so many of their sites */
+  int64_t passed[2]; /* sites of both columns that mpsi_slab_next has seen */
+  int64_t count;     /* sites in it */
+} mpsi_slab;
+bool mpsi_slab_cut(const mps_particles *particles, const mpsi_site_runs *sites, mpsi_slab *out);
+/* Of each run in turn: the sites *begin to *end - 1 are in it. */
+void mpsi_slab_next(mpsi_slab *slab, const mpsi_site_run *run, int64_t *begin, int64_t *end);
 
 #endif

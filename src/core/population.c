@@ -2,6 +2,8 @@
  * the creation of a solver fails. SPDX-License-Identifier: BSD-3-Clause */
 #include "particles_private.h"
 
+#include "hash.h"
+
 #include <string.h>
 
 /* Also after a refusal: a holder that had agreed has taken the columns' new places. */
@@ -70,25 +72,20 @@ void mpsi_particles_settle_columns(mps_particles *p, bool moved) {
   p->former = NULL;
 }
 
-/* Room in the map for `count` more ids. */
-static bool reserve_ids(mps_particles *p, int64_t count) {
-  const int64_t needed = p->next_id + count, half_more = p->id_capacity + p->id_capacity / 2;
-  if (needed <= p->id_capacity) return true;
-  const int64_t capacity = needed > half_more ? needed : half_more;
-  void *index_of = p->index_of;
-  if (!mpsi_grow(p->context, &index_of, p->next_id, capacity, sizeof *p->index_of)) return false;
-  p->index_of = index_of;
-  p->id_capacity = capacity;
-  return true;
-}
-
-mps_status mpsi_particles_extend(mps_particles *p, const char *function, int64_t count) {
-  if (count > MPSI_MAX_PARTICLES - p->count)
+mps_status mpsi_particles_extend_part(mps_particles *p, const char *function, int64_t count,
+                                      int64_t here) {
+  p->came = 0;
+  if (count > MPSI_MAX_PARTICLES - p->count || count > MPSI_MAX_PARTICLES - p->next_id)
     return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
                      "%lld particles to add to %lld, a set holds at most 2^40", (long long)count,
                      (long long)p->count);
-  const int64_t needed = p->count + count;
-  if (!reserve_ids(p, count))
+  const int64_t needed = p->count + here;
+  if (p->ids.sparse && needed > MPSI_IDS_MOST)
+    return mpsi_fail(p->context, function, MPS_ERROR_ARGUMENT,
+                     "%lld particles of a set in parts would lie on one rank, at most %d may",
+                     (long long)needed, MPSI_IDS_MOST);
+  if (!mpsi_ids_reserve(p->context, &p->ids, p->next_id, p->next_id + count, needed))
+    /* before the columns, which views know, move */
     return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
                      "could not allocate the numbers of %lld particles", (long long)count);
   if (needed > p->capacity) {
@@ -99,31 +96,50 @@ mps_status mpsi_particles_extend(mps_particles *p, const char *function, int64_t
                        "could not allocate %d fields of %lld particles", p->field_count,
                        (long long)needed);
   }
+  p->next_id += p->came = count;
   if (count == 0) return MPS_OK;
-  int64_t *id = p->fields[MPSI_FIELD_ID]->data;
-  for (int64_t i = p->count; i < needed; i++) {
-    id[i] = p->next_id++;
-    p->index_of[id[i]] = i;
-  }
   p->count = needed;
   p->epoch++;
   return MPS_OK;
 }
 
+mps_status mpsi_particles_extend(mps_particles *p, const char *function, int64_t count) {
+  const int64_t first = p->count, next = p->next_id;
+  const mps_status status = mpsi_particles_extend_part(p, function, count, count);
+  if (status != MPS_OK) return status;
+  int64_t *id = p->fields[MPSI_FIELD_ID]->data;
+  for (int64_t i = first; i < p->count; i++) id[i] = next + i - first;
+  mpsi_particles_number(p, first);
+  return MPS_OK;
+}
+
+void mpsi_particles_number(mps_particles *p, int64_t first) {
+  const int64_t *id = p->fields[MPSI_FIELD_ID]->data;
+  for (int64_t i = first; i < p->count; i++) mpsi_ids_put(&p->ids, id[i], i);
+}
+
 mps_status mpsi_particles_arrive(mps_particles *p, const char *function, mps_status status,
                                  int64_t first) {
   const int64_t count = p->count - first;
+  if (mpsi_particles_deals(p)) status = p->deal->settle(p->deal->self, function, status);
   for (mpsi_holder *h = p->holders; h; h = h->next)
     if (h->agree) status = h->agree(h->self, function, status, first);
-  if (count == 0) return status;
+  if (count == 0) {
+    if (status != MPS_OK) p->next_id -= p->came, p->epoch -= p->came > 0;
+    p->came = 0;
+    return status;
+  }
   for (mpsi_holder *h = p->holders; h && status == MPS_OK; h = h->next)
     if (h->insert) status = h->insert(h->self, function, first, count);
   if (status != MPS_OK) {
+    const int64_t *id = p->fields[MPSI_FIELD_ID]->data;
+    for (int64_t k = first; p->ids.sparse && k < p->count; k++) mpsi_ids_drop(&p->ids, id[k]);
     p->count = first;
-    p->next_id -= count;
+    p->next_id -= p->came;
     p->epoch--; /* what views show is where it was */
     if (!p->former) clear_tail(p, count);
   }
+  p->came = 0;
   mpsi_particles_settle_columns(p, status == MPS_OK);
   renew_holders(p);
   return status;
@@ -146,6 +162,28 @@ static mps_status check_positions(const mps_particles *p, const char *function, 
   return MPS_OK;
 }
 
+/* This rank's part of a list, as of every other addition an equal one. */
+static mps_status append_part(mps_particles *p, const char *function, mps_status status,
+                              int64_t count, const double *positions) {
+  const int32_t dim = p->def.dim;
+  const int64_t first = p->count, next = p->next_id;
+  const bool good = status == MPS_OK;
+  const int64_t begin = good ? mpsi_deal_first(p->deal, p->deal->rank, count) : 0;
+  const int64_t end = good ? mpsi_deal_first(p->deal, p->deal->rank + 1, count) : 0;
+  const size_t bytes = good ? (size_t)(count * dim) * sizeof *positions : 0;
+  status = mpsi_deal_agree(p, function, status, count, mpsi_hash(MPSI_HASH, positions, bytes));
+  if (status != MPS_OK) return status;
+  status = mpsi_particles_extend_part(p, function, count, end - begin);
+  int64_t *id = p->fields[MPSI_FIELD_ID]->data;
+  for (int64_t k = first; status == MPS_OK && k < p->count; k++) id[k] = next + begin + k - first;
+  for (int32_t c = 0; status == MPS_OK && c < dim; c++) {
+    double *x = mpsi_field_column(p->fields[MPSI_FIELD_POSITION], c);
+    for (int64_t i = begin; i < end; i++) x[first + i - begin] = positions[i * dim + c];
+  }
+  if (status == MPS_OK) mpsi_particles_number(p, first);
+  return mpsi_particles_arrive(p, function, status, first);
+}
+
 mps_status mps_particles_append(mps_particles *particles, int64_t count, const double *positions) {
   if (!particles) return MPS_ERROR_ARGUMENT;
   const int32_t dim = particles->def.dim;
@@ -154,6 +192,8 @@ mps_status mps_particles_append(mps_particles *particles, int64_t count, const d
   if (status != MPS_OK) return status;
   status = mpsi_particles_check_free(particles, __func__);
   if (status == MPS_OK) status = check_positions(particles, __func__, count, positions);
+  if (mpsi_particles_deals(particles))
+    return append_part(particles, __func__, status, count, positions);
   if (status == MPS_OK) status = mpsi_particles_extend(particles, __func__, count);
   for (int32_t c = 0; status == MPS_OK && c < dim; c++) {
     double *x = mpsi_field_column(particles->fields[MPSI_FIELD_POSITION], c);
@@ -205,7 +245,7 @@ static void close_gaps(mps_particles *p, const uint8_t *gone) {
   const int64_t removed = p->count - kept, *id = p->fields[MPSI_FIELD_ID]->data;
   p->count = kept;
   clear_tail(p, removed);
-  for (int64_t k = 0; k < kept; k++) p->index_of[id[k]] = k;
+  for (int64_t k = 0; k < kept; k++) mpsi_ids_put(&p->ids, id[k], k);
   p->epoch++;
 }
 
@@ -217,8 +257,9 @@ void mpsi_particles_take_out(mps_particles *p, const uint8_t *gone) {
 }
 
 mps_status mpsi_particles_hold_room(mps_particles *p, const char *function, int64_t count) {
-  if (count <= p->capacity) return MPS_OK;
-  if (mpsi_particles_reserve(p, count + count / 8)) {
+  const bool ids = mpsi_ids_reserve(p->context, &p->ids, p->next_id, p->next_id, count);
+  if (ids && count <= p->capacity) return MPS_OK;
+  if (ids && mpsi_particles_reserve(p, count + count / 8)) {
     mpsi_particles_settle_columns(p, true);
     return MPS_OK;
   }
@@ -230,13 +271,13 @@ mps_status mpsi_particles_hold_room(mps_particles *p, const char *function, int6
 void mpsi_particles_make_way(mps_particles *p, const uint8_t *gone) {
   const int64_t *id = p->fields[MPSI_FIELD_ID]->data;
   for (int64_t k = 0; k < p->count; k++)
-    if (gone[k]) p->index_of[id[k]] = -1;
+    if (gone[k]) mpsi_ids_drop(&p->ids, id[k]);
   close_gaps(p, gone);
 }
 
 void mpsi_particles_admit(mps_particles *p, int64_t arriving) {
   const int64_t *id = p->fields[MPSI_FIELD_ID]->data;
-  for (int64_t k = p->count; k < p->count + arriving; k++) p->index_of[id[k]] = k;
+  for (int64_t k = p->count; k < p->count + arriving; k++) mpsi_ids_put(&p->ids, id[k], k);
   p->count += arriving;
   p->epoch++;
   for (const mpsi_holder *h = p->holders; h; h = h->next)
@@ -318,7 +359,7 @@ void mpsi_particles_go_back(mps_particles *p, mpsi_backup *backup) {
   mpsi_particles_drop_fields(p, backup->field_count);
   copy_columns(p, backup->memory, true);
   const int64_t *id = p->fields[MPSI_FIELD_ID]->data;
-  for (int64_t k = 0; k < p->count; k++) p->index_of[id[k]] = k;
+  for (int64_t k = 0; k < p->count; k++) mpsi_ids_put(&p->ids, id[k], k);
   p->epoch = backup->epoch;
   mpsi_backup_drop(p, backup);
 }

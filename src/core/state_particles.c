@@ -221,14 +221,9 @@ static bool add_blocks(const mps_particles *p, move *m, int64_t count) {
 
 static bool reserve_ids(mps_particles *p, move *m, const mps_snapshot *from) {
   const mpsi_value *next = mpsi_values_find(&from->state, NEXT_ID);
-  void *index_of = p->index_of;
   m->ids =
       next && *(const int64_t *)next->data > p->next_id ? *(const int64_t *)next->data : p->next_id;
-  if (m->ids <= p->id_capacity) return true;
-  if (!mpsi_grow(p->context, &index_of, p->next_id, m->ids, sizeof *p->index_of)) return false;
-  p->index_of = index_of;
-  p->id_capacity = m->ids;
-  return true;
+  return mpsi_ids_reserve(p->context, &p->ids, p->next_id, m->ids, from->particles);
 }
 
 static move *new_move(mps_particles *p, const mps_snapshot *from, const int64_t *id) {
@@ -303,8 +298,7 @@ void mpsi_particles_put_state(mps_particles *p, const mps_snapshot *from, void *
   p->count = from->particles;
   p->capacity = m->capacity;
   const int64_t *id = p->fields[MPSI_FIELD_ID]->data;
-  for (int64_t k = 0; k < m->ids; k++) p->index_of[k] = -1;
-  for (int64_t k = 0; k < p->count; k++) p->index_of[id[k]] = k;
+  mpsi_ids_renew(&p->ids, m->ids, p->count, id);
   p->epoch++;
   mpsi_particles_drop_prepared(p, m);
   for (const mpsi_holder *h = p->holders; h; h = h->next)

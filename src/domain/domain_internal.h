@@ -52,6 +52,11 @@ mps_status mpsi_domain_settle_given_max(mps_domain *domain, const char *function
 mps_status mpsi_domain_settle_particles(mps_domain *domain, const char *function, mps_status status,
                                         mps_particles *particles);
 
+/* parts.c: whether the set is in parts on all ranks or on none, with the same fields and constants.
+ */
+mps_status mpsi_domain_settle_parts(mps_domain *domain, const char *function, mps_status status,
+                                    const mps_particles *particles);
+
 mps_status mpsi_domain_max(mps_domain *domain, const char *function, int32_t count, double *values);
 mps_status mpsi_domain_sum(mps_domain *domain, const char *function, int32_t count,
                            int64_t *values);

@@ -240,6 +240,7 @@ mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
   if (status == MPS_OK) status = check_numbers(context, &def);
   if (status == MPS_OK) status = check_state(context, particles);
   if (status == MPS_OK) status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
+  if (status == MPS_OK) status = mpsi_particles_check_deal(particles, __func__, NULL);
   if (status == MPS_OK) status = check_geometry(context, particles, &def);
   mpsi_backup backup = {0};
   mpsi_storage *former = NULL;

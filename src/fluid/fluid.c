@@ -207,6 +207,7 @@ mps_status mps_fluid_create(mps_context *context, mps_particles *particles,
   if (status == MPS_OK) status = check_def(context, &def, l0);
   if (status == MPS_OK) status = mpsi_domain_check(context, __func__, def.domain);
   if (status == MPS_OK) status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
+  if (status == MPS_OK) status = mpsi_particles_check_deal(particles, __func__, NULL);
   mps_fluid *f = NULL;
   if (status == MPS_OK && !(f = mpsi_alloc(context, 1, sizeof *f)))
     status = mpsi_fail_memory(context, __func__, sizeof *f);

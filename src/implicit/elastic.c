@@ -190,6 +190,7 @@ mps_status mpsi_elastic_create(mps_context *context, const char *function, mps_p
   mps_status status = read_def(context, function, user_def, mps_particles_dim(particles),
                                mps_particles_spacing(particles), published, &def);
   if (status == MPS_OK) status = mpsi_particles_check_hold(particles, function, MPSI_USE_FIX);
+  if (status == MPS_OK) status = mpsi_particles_check_deal(particles, function, NULL);
   mpsi_backup backup = {0};
   mps_elastic *e = NULL;
   if (status == MPS_OK) status = mpsi_particles_back_up(particles, function, &backup);

@@ -216,6 +216,20 @@ static void domain_max(api *a) {
   (void)api_end(a, mps_domain_max(domain, count, values));
 }
 
+static void domain_create_particles(api *a) {
+  api_begin(a, "mps_domain_create_particles");
+  mps_particles *made = NULL;
+  mps_particles_def def = mps_particles_defaults();
+  mps_domain *domain = api_any(a, API_DOMAIN)->handle;
+  def.struct_size = api_struct_size(a, sizeof def);
+  def.dim = a->latest ? a->dim : (int32_t)api_whole(a, "dim", 2, 3);
+  def.spacing = api_real(a, "spacing", 1e-12, 1e12, 0.1);
+  api_arm(a);
+  const mps_status status = mps_domain_create_particles(domain, api_null(a, "def") ? NULL : &def,
+                                                        api_null(a, "out") ? NULL : &made);
+  (void)api_end_made(a, status, API_SET, made, NULL);
+}
+
 static void gather(api *a, const char *name, bool some) {
   api_begin(a, name);
   mps_particles *whole = NULL;
@@ -265,6 +279,7 @@ static const api_call calls[] = {
     {"mps_domain_size", 1, API_DOMAIN, query_domain_size},
     {"mps_domain_agree", 1, API_DOMAIN, domain_agree},
     {"mps_domain_max", 1, API_DOMAIN, domain_max},
+    {"mps_domain_create_particles", 1, API_DOMAIN, domain_create_particles},
     {"mps_domain_gather", 2, API_DOMAIN, domain_gather},
     {"mps_domain_gather_fields", 2, API_DOMAIN, domain_gather_fields},
     {"mps_domain_get_field", 2, API_DOMAIN, domain_get_field},

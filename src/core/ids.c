@@ -1,0 +1,129 @@
+/* ids.c - the map from ids to indices, see ids.h.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#include "ids.h"
+
+#include <string.h>
+
+/* ---- the table ------------------------------------------------------------------------------- */
+
+/* Slots of a table for so many ids. */
+static int64_t slots_for(int64_t count) { return count + count / 3 + 8; }
+
+/* Where the search for an id begins. Ids of a fill follow one another: every bit counts. */
+static int64_t first_slot(const mpsi_ids *ids, int64_t id) {
+  uint64_t mixed = (uint64_t)id * UINT64_C(0x9e3779b97f4a7c15);
+  mixed ^= mixed >> 32;
+  mixed *= UINT64_C(0xd6e8feb86659fd93);
+  return (int64_t)((mixed >> 32) * (uint64_t)ids->room >> 32);
+}
+
+/* The slot of the id, or the free one where it would be. */
+static int64_t slot_of(const mpsi_ids *ids, int64_t id) {
+  int64_t at = first_slot(ids, id);
+  while (ids->id[at] >= 0 && ids->id[at] != id) at = at + 1 < ids->room ? at + 1 : 0;
+  return at;
+}
+
+/* Slots from `from` on to `to`, around the end of the table. */
+static int64_t distance(const mpsi_ids *ids, int64_t from, int64_t to) {
+  return to >= from ? to - from : to + ids->room - from;
+}
+
+static void close_up(mpsi_ids *ids, int64_t hole) {
+  for (int64_t at = hole;;) {
+    at = at + 1 < ids->room ? at + 1 : 0;
+    if (ids->id[at] < 0) break;
+    const int64_t first = first_slot(ids, ids->id[at]);
+    if (distance(ids, first, at) < distance(ids, hole, at)) continue; /* begins behind the hole */
+    ids->id[hole] = ids->id[at];
+    ids->places[hole] = ids->places[at];
+    hole = at;
+  }
+  ids->id[hole] = -1;
+}
+
+static bool grow_table(mps_context *context, mpsi_ids *ids, int64_t count) {
+  const int64_t half_more = ids->room / 4 * 3 + ids->room / 3;
+  mpsi_ids larger = {.sparse = true};
+  larger.room = slots_for(
+      ids->room > 0 && count < half_more && half_more < MPSI_IDS_MOST ? half_more : count);
+  larger.id = mpsi_alloc(context, larger.room, sizeof *larger.id);
+  larger.places = mpsi_alloc(context, larger.room, sizeof *larger.places);
+  if (!larger.id || !larger.places) {
+    mpsi_ids_free(context, &larger);
+    return false;
+  }
+  for (int64_t at = 0; at < larger.room; at++) larger.id[at] = -1;
+  for (int64_t at = 0; at < ids->room; at++)
+    if (ids->id[at] >= 0) mpsi_ids_put(&larger, ids->id[at], ids->places[at]);
+  mpsi_ids_free(context, ids);
+  *ids = larger;
+  return true;
+}
+
+/* ---- both ------------------------------------------------------------------------------------ */
+
+bool mpsi_ids_fits(const mpsi_ids *ids, int64_t made, int64_t count) {
+  return ids->sparse ? slots_for(count) <= ids->room : made <= ids->room;
+}
+
+bool mpsi_ids_reserve(mps_context *context, mpsi_ids *ids, int64_t former, int64_t made,
+                      int64_t count) {
+  if (mpsi_ids_fits(ids, made, count)) return true;
+  if (ids->sparse) return grow_table(context, ids, count);
+  const int64_t half_more = ids->room + ids->room / 2;
+  const int64_t room = made > half_more ? made : half_more;
+  void *index = ids->index;
+  if (!mpsi_grow(context, &index, former, room, sizeof *ids->index)) return false;
+  ids->index = index;
+  ids->room = room;
+  return true;
+}
+
+void mpsi_ids_free(mps_context *context, mpsi_ids *ids) {
+  mpsi_free(context, ids->index);
+  mpsi_free(context, ids->id);
+  mpsi_free(context, ids->places);
+  *ids = (mpsi_ids){.sparse = ids->sparse};
+}
+
+int64_t mpsi_ids_find(const mpsi_ids *ids, int64_t id) {
+  if (!ids->sparse) return ids->index[id];
+  if (ids->room == 0) return -1;
+  const int64_t at = slot_of(ids, id);
+  return ids->id[at] < 0 ? -1 : ids->places[at];
+}
+
+void mpsi_ids_put(mpsi_ids *ids, int64_t id, int64_t index) {
+  if (!ids->sparse) {
+    ids->index[id] = index;
+    return;
+  }
+  const int64_t at = slot_of(ids, id);
+  if (ids->id[at] < 0) {
+    ids->id[at] = id;
+    ids->count++;
+  }
+  ids->places[at] = (int32_t)index;
+}
+
+void mpsi_ids_drop(mpsi_ids *ids, int64_t id) {
+  if (!ids->sparse) {
+    ids->index[id] = -1;
+    return;
+  }
+  const int64_t at = ids->room > 0 ? slot_of(ids, id) : -1;
+  if (at < 0 || ids->id[at] < 0) return;
+  close_up(ids, at);
+  ids->count--;
+}
+
+void mpsi_ids_renew(mpsi_ids *ids, int64_t made, int64_t count, const int64_t *id) {
+  if (ids->sparse) {
+    for (int64_t at = 0; at < ids->room; at++) ids->id[at] = -1;
+    ids->count = 0;
+  } else {
+    for (int64_t k = 0; k < made; k++) ids->index[k] = -1;
+  }
+  for (int64_t k = 0; k < count; k++) mpsi_ids_put(ids, id[k], k);
+}
