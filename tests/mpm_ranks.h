@@ -23,12 +23,20 @@ typedef struct scene {
 
 static inline int dim_of(int what) { return what == ROOM || what == BALLS ? 3 : 2; }
 
-static inline mps_status make_set(mps_context *own, int what, mps_particles **out) {
+/* Whether the scenes' sets lie in parts on the ranks from the first on. */
+#ifndef RANKS_IN_PARTS
+#define RANKS_IN_PARTS false
+#endif
+
+/* `domain` NULL: all of it here. */
+static inline mps_status make_set(mps_context *own, mps_domain *domain, int what,
+                                  mps_particles **out) {
   const bool space = dim_of(what) == 3, touched = what >= PRESS;
   mps_particles_def def = mps_particles_defaults();
   def.dim = dim_of(what);
   def.spacing = space ? 0.04 : what == WIDE ? 0.01 : 0.02;
-  mps_status status = mps_particles_create(own, &def, out);
+  mps_status status = domain ? mps_domain_create_particles(domain, &def, out)
+                             : mps_particles_create(own, &def, out);
   const double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {1.2, touched ? 0.4 : space ? 0.6 : 0.8, 0.8};
   TRY(mps_particles_fill_box(*out, lo, hi, NULL));
   TRY(mps_particles_set(*out, "density", 0, 1800.0));
@@ -187,7 +195,7 @@ static inline mps_status add_bodies(mps_context *own, mps_domain *domain, int wh
 
 static inline mps_status make_scene(mps_context *own, mps_domain *domain, int what, scene *s) {
   const mps_mpm_def def = scene_def(domain, what);
-  mps_status status = make_set(own, what, &s->set);
+  mps_status status = make_set(own, RANKS_IN_PARTS ? domain : NULL, what, &s->set);
   TRY(mps_material_linear_elastic(own, 1e6, 0.3, &s->material[0]));
   if (domain) status = mps_domain_agree(domain, status);
   TRY(mps_mpm_create(own, s->set, s->material[0], &def, &s->mpm));

@@ -173,8 +173,10 @@ static mps_status check_set(mps_context *context, mps_particles *set) {
   if (mpsi_particles_context(set) != context)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "the particle set was made from another context");
+  /* a rank may have none of a set in parts */
+  const bool parts = mpsi_particles_deal(set) && mpsi_particles_made(set) > 0;
   const int64_t count = mps_particles_count(set);
-  if (count < 1 || count > MPSI_MPM_MOST_PARTICLES)
+  if (count < (parts ? 0 : 1) || count > MPSI_MPM_MOST_PARTICLES)
     return mpsi_fail(context, create, MPS_ERROR_ARGUMENT,
                      "the set has %lld particles, allowed are 1 to %d", (long long)count,
                      MPSI_MPM_MOST_PARTICLES);
@@ -187,6 +189,20 @@ static mps_status check_set(mps_context *context, mps_particles *set) {
 /* ---- several ranks --------------------------------------------------------------------------- */
 
 static bool is_shared(const mps_mpm_def *d) { return mpsi_domain_many(d->domain); }
+
+/* Each rank has been given a part of the set, not all of it. */
+static bool in_parts(const mps_mpm *mpm) { return mpsi_particles_deal(mpm->particles) != NULL; }
+
+/* What has been found of the particles here becomes what all ranks have found of all. */
+static mps_status join_extremes(mps_mpm *mpm, mps_status status) {
+  double most[2] = {mpm->run.speed,
+                    isnan(mpm->contact.least_mass) ? -INFINITY : -mpm->contact.least_mass};
+  status = mpsi_domain_settle_max(mpm->def.domain, create, status, 2, most);
+  if (status != MPS_OK) return status;
+  mpm->run.speed = most[0];
+  mpm->contact.least_mass = most[1] == -INFINITY ? NAN : -most[1];
+  return status;
+}
 
 /* ---- fields ---------------------------------------------------------------------------------- */
 
@@ -251,8 +267,8 @@ static mps_status make_workers(mps_mpm *mpm) {
                            : mpsi_fail_memory(mpm->context, create, sizeof *mpm->grid.workers);
 }
 
-/* The first step's size against what the first state allows; in the set's own order. */
-static mps_status check_step(mps_mpm *mpm) {
+/* The greatest speed of the first state; in the set's own order. */
+static mps_status find_speed(mps_mpm *mpm) {
   const mpsi_columns *p = &mpm->p;
   double moduli[MPSI_CHUNK];
   for (int64_t begin = 0; begin < p->count; begin += MPSI_CHUNK) {
@@ -271,6 +287,11 @@ static mps_status check_step(mps_mpm *mpm) {
       mpm->run.speed = fmax(mpm->run.speed, speed);
     }
   }
+  return MPS_OK;
+}
+
+/* The first step's size against what the first state allows. */
+static mps_status check_step(const mps_mpm *mpm) {
   const double dt = mpm->def.dt, limit = mps_mpm_limit(mpm);
   if (isnan(dt) || dt <= limit) return MPS_OK;
   return mpsi_fail(mpm->context, create, MPS_ERROR_ARGUMENT,
@@ -288,7 +309,8 @@ static mps_status make_memory(mps_mpm *mpm) {
 /* The state in which the particles begin, and their order. */
 static mps_status begin(mps_mpm *mpm) {
   mpsi_mpm_begin_particles(mpm);
-  mps_status status = check_step(mpm);
+  mps_status status = find_speed(mpm);
+  if (status == MPS_OK) status = check_step(mpm);
   if (status == MPS_OK) status = make_memory(mpm);
   if (status != MPS_OK) return status;
   return is_shared(&mpm->def) ? mpsi_mpm_sort_cells(mpm, create) : mpsi_mpm_sort(mpm, create);
@@ -318,6 +340,33 @@ static mps_status build(mps_mpm *mpm, mps_material *material, mps_status status,
   return status;
 }
 
+/* Of a set in parts: particles go to their ranks with the caller's fields alone, and those of the
+ * solver are added there. Every rank comes to each function that is collective. */
+static mps_status build_parts(mps_mpm *mpm, mps_material *material, mps_status status,
+                              mpsi_backup *backup) {
+  status = mpsi_mpm_share_deal(mpm, create, status);
+  if (status != MPS_OK) return status;
+  status = mpsi_particles_back_up(mpm->particles, create, backup);
+  if (status == MPS_OK) status = add_fields(mpm);
+  if (status == MPS_OK) status = mpsi_mpm_add_law(mpm, create, material);
+  if (status == MPS_OK) {
+    mpsi_mpm_bind(mpm);
+    status = mpsi_mpm_check_start(mpm, create);
+    if (status == MPS_OK) status = mpsi_mpm_check_amounts(mpm, create);
+  }
+  if (status == MPS_OK) {
+    mpsi_mpm_begin_particles(mpm);
+    status = find_speed(mpm);
+  }
+  status = join_extremes(mpm, status);
+  if (status == MPS_OK) status = check_step(mpm);
+  if (status == MPS_OK) status = make_memory(mpm);
+  if (status == MPS_OK) status = mpsi_mpm_sort_cells(mpm, create);
+  status = mpsi_mpm_share_take_part(mpm, create, status);
+  mpm->boundaries.outdated = true;
+  return status;
+}
+
 /* Checks the definition for the set and fills in what it leaves open: kernel, measure, domain. */
 static mps_status complete(mps_context *context, mps_particles *particles, mps_mpm_def *def,
                            int64_t *low, int64_t *high) {
@@ -333,6 +382,7 @@ static mps_status complete(mps_context *context, mps_particles *particles, mps_m
   if (status == MPS_OK) status = read_measure(context, def);
   if (status == MPS_OK) status = check_cell(context, def, particles);
   if (status == MPS_OK) status = read_domain(context, def, low, high);
+  if (status == MPS_OK) status = mpsi_particles_check_deal(particles, create, def->domain);
   return status == MPS_OK ? mpsi_particles_check_hold(particles, create, MPSI_USE_MOVE) : status;
 }
 
@@ -388,7 +438,7 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
   mpsi_storage *former = NULL;
   mps_mpm *mpm = status == MPS_OK ? mpsi_alloc(context, 1, sizeof *mpm) : NULL;
   if (status == MPS_OK && !mpm) status = mpsi_fail_memory(context, __func__, sizeof *mpm);
-  if (status == MPS_OK && is_shared(&def))
+  if (status == MPS_OK && is_shared(&def) && !mpsi_particles_deal(particles))
     status = mpsi_particles_back_up(particles, __func__, &backup);
   status = mpsi_domain_settle(def.domain, __func__, status);
   if (status != MPS_OK) {
@@ -410,7 +460,8 @@ mps_status mps_mpm_create(mps_context *context, mps_particles *particles, mps_ma
                      mps_kernel_create(context,
                                        def.spline == 2 ? MPS_KERNEL_SPLINE2 : MPS_KERNEL_SPLINE3,
                                        radius_of(&def), &mpm->weights));
-  status = build(mpm, material, status, &former);
+  status = in_parts(mpm) ? build_parts(mpm, material, status, &backup)
+                         : build(mpm, material, status, &former);
   if (status != MPS_OK) {
     mpsi_particles_take_back(particles, &former);
     if (is_shared(&def)) mpsi_particles_go_back(particles, &backup);

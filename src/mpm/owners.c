@@ -35,12 +35,27 @@ static int compare(const void *left, const void *right) {
   return a < b ? -1 : a > b;
 }
 
+/* The way that the curve lies over the blocks, all of which are here; false: memory refused. */
+static bool place_curve(mps_mpm *mpm, int32_t ranks) {
+  const int64_t blocks = mpm->grid.cell_count;
+  mpsi_placed *list = mpsi_alloc(mpm->context, blocks, sizeof *list);
+  for (int64_t b = 0; list && b < blocks; b++) {
+    const mpsi_cell_block *cells = &mpm->grid.cells[b];
+    list[b].particles = cells->end - cells->begin;
+    memcpy(list[b].at, cells->at, sizeof list[b].at);
+  }
+  const bool good = list && mpsi_mpm_choose_placing(mpm->context, mpm->dim, ranks, blocks, list,
+                                                    &mpm->share->placing);
+  mpsi_free(mpm->context, list);
+  return good;
+}
+
 mps_status mpsi_mpm_share_cut(mps_mpm *mpm, const char *function, bool whole) {
   mpsi_share *share = mpm->share;
   const int32_t ranks = mps_domain_size(share->domain);
   const int64_t all = mpm->grid.cell_count,
                 blocks = whole && mps_domain_rank(share->domain) > 0 ? 0 : all;
-  const bool placed = !whole || mpsi_mpm_choose_placing(mpm, ranks, &share->placing);
+  const bool placed = !whole || place_curve(mpm, ranks);
   weighed *list = mpsi_alloc(mpm->context, blocks, sizeof *list);
   int64_t *key = mpsi_alloc(mpm->context, 2 * blocks, sizeof *key);
   if (!share->first) share->first = mpsi_alloc(mpm->context, ranks + 1, sizeof *share->first);

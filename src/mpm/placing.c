@@ -26,7 +26,9 @@ typedef struct weighed {
   int64_t key, cells;
 } weighed;
 typedef struct trial {
-  const mps_mpm *mpm;
+  int32_t dim;
+  int64_t blocks, particles;
+  const mpsi_placed *block;
   mpsi_placing placing;
   int32_t ranks;
   weighed *list;
@@ -41,23 +43,21 @@ static int compare(const void *left, const void *right) {
 
 /* As mpsi_curve_cut: the middle of a block's weight tells its part of the whole. */
 static void find_owners(trial *t) {
-  const mpsi_grid *grid = &t->mpm->grid;
-  const int64_t all = t->mpm->p.count;
   int64_t below = 0;
-  for (int64_t b = 0; b < grid->cell_count; b++)
-    t->list[b] = (weighed){mpsi_mpm_placing_key(t->mpm->dim, &t->placing, grid->cells[b].at), b};
-  qsort(t->list, (size_t)grid->cell_count, sizeof *t->list, compare);
-  for (int64_t k = 0; k < grid->cell_count; k++) {
-    const int64_t weight = grid->cells[t->list[k].cells].end - grid->cells[t->list[k].cells].begin;
-    t->owner[t->list[k].cells] = (int32_t)((2 * below + weight) * t->ranks / (2 * all));
+  for (int64_t b = 0; b < t->blocks; b++)
+    t->list[b] = (weighed){mpsi_mpm_placing_key(t->dim, &t->placing, t->block[b].at), b};
+  qsort(t->list, (size_t)t->blocks, sizeof *t->list, compare);
+  for (int64_t k = 0; k < t->blocks; k++) {
+    const int64_t weight = t->block[t->list[k].cells].particles;
+    t->owner[t->list[k].cells] = (int32_t)((2 * below + weight) * t->ranks / (2 * t->particles));
     below += weight;
   }
 }
 
 /* Blocks that lie beside one another in the direction `to` and have different owners. */
 static void count_along(trial *t, const int32_t *to) {
-  const mpsi_cell_block *cells = t->mpm->grid.cells;
-  const int64_t count = t->mpm->grid.cell_count;
+  const mpsi_placed *cells = t->block;
+  const int64_t count = t->blocks;
   for (int64_t b = 0, other = 0; b < count; b++) {
     int32_t at[3];
     for (int c = 0; c < 3; c++) at[c] = cells[b].at[c] + to[c];
@@ -72,7 +72,7 @@ static void count_along(trial *t, const int32_t *to) {
 /* Of the rank with most. Of two opposite directions one counts for both. */
 static int64_t count_foreign(trial *t) {
   static const int32_t none[3] = {0};
-  const int32_t depth = t->mpm->dim == 3;
+  const int32_t depth = t->dim == 3;
   int64_t most = 0;
   memset(t->foreign, 0, (size_t)t->ranks * sizeof *t->foreign);
   for (int32_t k = 0; k <= depth; k++)
@@ -87,13 +87,13 @@ static int64_t count_foreign(trial *t) {
 }
 
 /* Bounds of the blocks: the first, and how many along each axis. Returns the most. */
-static int64_t find_bounds(const mps_mpm *mpm, int32_t *low, int64_t *extent) {
+static int64_t find_bounds(const trial *t, int32_t *low, int64_t *extent) {
   int64_t most = 1;
   for (int c = 0; c < 3; c++) {
     int32_t high = 0;
     low[c] = 0;
-    for (int64_t b = 0; b < mpm->grid.cell_count; b++) {
-      const int32_t at = mpm->grid.cells[b].at[c];
+    for (int64_t b = 0; b < t->blocks; b++) {
+      const int32_t at = t->block[b].at[c];
       if (b == 0 || at < low[c]) low[c] = at;
       if (b == 0 || at > high) high = at;
     }
@@ -104,37 +104,38 @@ static int64_t find_bounds(const mps_mpm *mpm, int32_t *low, int64_t *extent) {
 }
 
 /* Places that differ for any two blocks, and room to move beside them. */
-static mpsi_placing make_placing(const mps_mpm *mpm, int first, bool stretched) {
+static mpsi_placing make_placing(const trial *t, int first, bool stretched) {
   mpsi_placing p = {.side = 2};
   int64_t extent[3];
-  const int64_t most = find_bounds(mpm, p.low, extent);
-  while (p.side < 2 * most && p.side < MPSI_CURVE_SIDE(mpm->dim) / 4) p.side *= 2;
+  const int64_t most = find_bounds(t, p.low, extent);
+  while (p.side < 2 * most && p.side < MPSI_CURVE_SIDE(t->dim) / 4) p.side *= 2;
   p.base = p.side;
-  for (int c = 0; c < mpm->dim; c++) {
-    p.axis[c] = (c + first) % mpm->dim;
+  for (int c = 0; c < t->dim; c++) {
+    p.axis[c] = (c + first) % t->dim;
     p.extent[c] = stretched ? extent[c] : most > p.side / 2 ? most : p.side / 2;
   }
   return p;
 }
 
-bool mpsi_mpm_choose_placing(const mps_mpm *mpm, int32_t ranks, mpsi_placing *out) {
-  const int64_t cells = mpm->grid.cell_count;
-  trial t = {.mpm = mpm, .ranks = ranks};
+bool mpsi_mpm_choose_placing(mps_context *context, int32_t dim, int32_t ranks, int64_t blocks,
+                             const mpsi_placed *block, mpsi_placing *out) {
+  trial t = {.dim = dim, .blocks = blocks, .block = block, .ranks = ranks};
   int64_t least = -1;
-  t.list = mpsi_alloc(mpm->context, cells, sizeof *t.list);
-  t.owner = mpsi_alloc(mpm->context, cells, sizeof *t.owner);
-  t.foreign = mpsi_alloc(mpm->context, ranks, sizeof *t.foreign);
+  for (int64_t b = 0; b < blocks; b++) t.particles += block[b].particles;
+  t.list = mpsi_alloc(context, blocks, sizeof *t.list);
+  t.owner = mpsi_alloc(context, blocks, sizeof *t.owner);
+  t.foreign = mpsi_alloc(context, ranks, sizeof *t.foreign);
   const bool good = t.list && t.owner && t.foreign;
-  for (int way = 0; good && way < 2 * mpm->dim; way++) {
-    t.placing = make_placing(mpm, way / 2, way % 2 != 0);
-    if (cells > 0) find_owners(&t);
-    const int64_t foreign = cells > 0 ? count_foreign(&t) : 0;
+  for (int way = 0; good && way < 2 * dim; way++) {
+    t.placing = make_placing(&t, way / 2, way % 2 != 0);
+    if (blocks > 0) find_owners(&t);
+    const int64_t foreign = blocks > 0 ? count_foreign(&t) : 0;
     if (least >= 0 && foreign >= least) continue;
     least = foreign;
     *out = t.placing;
   }
-  mpsi_free(mpm->context, t.list);
-  mpsi_free(mpm->context, t.owner);
-  mpsi_free(mpm->context, t.foreign);
+  mpsi_free(context, t.list);
+  mpsi_free(context, t.owner);
+  mpsi_free(context, t.foreign);
   return good;
 }

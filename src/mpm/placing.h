@@ -19,7 +19,13 @@ typedef struct mpsi_placing {
 
 /* The key of the block `at`, also beyond the curve's ends. */
 int64_t mpsi_mpm_placing_key(int32_t dim, const mpsi_placing *placing, const int32_t *at);
-/* For the blocks in grid.cells, of `ranks` ranks; false: memory refused. */
-bool mpsi_mpm_choose_placing(const mps_mpm *mpm, int32_t ranks, mpsi_placing *out);
+/* A block of cells with its number of particles. */
+typedef struct mpsi_placed {
+  int32_t at[3];
+  int64_t particles;
+} mpsi_placed;
+/* For all blocks, in order, of `ranks` ranks; false: memory refused. */
+bool mpsi_mpm_choose_placing(mps_context *context, int32_t dim, int32_t ranks, int64_t blocks,
+                             const mpsi_placed *block, mpsi_placing *out);
 
 #endif

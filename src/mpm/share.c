@@ -360,25 +360,40 @@ static mps_status compare_ranks(mps_mpm *mpm, const char *function, mps_status s
   MPSI_GIVE_VECTOR(&given, d, upper, mpm->dim);
   if (status == MPS_OK) mpsi_material_give(&given, mpm->laws.law[0].material);
   status = mpsi_domain_settle_given(d->domain, function, status, &given);
-  if (status != MPS_OK) return status;
+  if (status != MPS_OK || mpsi_particles_deal(mpm->particles)) return status;
   return mpsi_domain_settle_particles(d->domain, function, status, mpm->particles);
+}
+
+mps_status mpsi_mpm_share_begin(mps_mpm *mpm, const char *function, mps_status status) {
+  mps_domain *domain = mpm->def.domain;
+  if (status == MPS_OK) mpm->share = mpsi_alloc(mpm->context, 1, sizeof *mpm->share);
+  if (status == MPS_OK && !mpm->share)
+    status = mpsi_fail_memory(mpm->context, function, sizeof *mpm->share);
+  status = mpsi_domain_settle_parts(domain, function, status, mpm->particles);
+  if (status != MPS_OK) {
+    mpsi_free(mpm->context, mpm->share);
+    mpm->share = NULL;
+    return status;
+  }
+  *mpm->share = (mpsi_share){.domain = mpsi_domain_retain(domain), .outdated = true};
+  if (!mpsi_mpm_begin_mates(mpm))
+    status = mpsi_fail_memory(mpm->context, function, (size_t)mps_domain_size(domain));
+  return mpsi_domain_settle(domain, function, status);
 }
 
 mps_status mpsi_mpm_share_take(mps_mpm *mpm, const char *function, mps_status status,
                                mpsi_storage **former) {
   mps_domain *domain = mpm->def.domain;
-  if (status == MPS_OK) mpm->share = mpsi_alloc(mpm->context, 1, sizeof *mpm->share);
-  if (status == MPS_OK && !mpm->share)
-    status = mpsi_fail_memory(mpm->context, function, sizeof *mpm->share);
-  status = compare_ranks(mpm, function, status);
-  if (status != MPS_OK) return status;
-  *mpm->share = (mpsi_share){.domain = mpsi_domain_retain(domain), .outdated = true};
-  if (!mpsi_mpm_begin_mates(mpm))
-    status = mpsi_fail_memory(mpm->context, function, (size_t)mps_domain_size(domain));
-  status = mpsi_domain_settle(domain, function, status);
+  status = mpsi_mpm_share_begin(mpm, function, status);
+  if (status == MPS_OK) status = compare_ranks(mpm, function, status);
   if (status == MPS_OK) status = mpsi_mpm_share_cut(mpm, function, true);
   if (status == MPS_OK)
     status = mpsi_domain_settle(domain, function, keep_own(mpm, function, former));
+  return status == MPS_OK ? mpsi_mpm_share_join(mpm, function) : status;
+}
+
+mps_status mpsi_mpm_share_take_part(mps_mpm *mpm, const char *function, mps_status status) {
+  status = compare_ranks(mpm, function, status);
   return status == MPS_OK ? mpsi_mpm_share_join(mpm, function) : status;
 }
 

@@ -50,6 +50,12 @@ typedef struct mpsi_share {
  * say so. */
 mps_status mpsi_mpm_share_take(mps_mpm *mpm, const char *function, mps_status status,
                                mpsi_storage **former);
+/* The first part of that: whether all ranks take part. */
+mps_status mpsi_mpm_share_begin(mps_mpm *mpm, const char *function, mps_status status);
+/* deal.c: the same of a set in parts, before the solver has added its fields: particles go to the
+ * ranks of their blocks; share.c: once it has, and blocks are found. */
+mps_status mpsi_mpm_share_deal(mps_mpm *mpm, const char *function, mps_status status);
+mps_status mpsi_mpm_share_take_part(mps_mpm *mpm, const char *function, mps_status status);
 /* Not collective. */
 void mpsi_mpm_share_free(mps_mpm *mpm);
 /* owners.c: cuts the curve anew for blocks in grid.cells, which all ranks or (`whole`) each has all

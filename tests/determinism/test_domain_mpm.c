@@ -301,7 +301,7 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what, in
   mps_body *body = NULL;
   mps_mpm_def def = scene_def(domain, SLIDE);
   if (what == OTHER_DT) def.dt = 1e-5 * (1.0 + rank);
-  mps_status status = make_set(own, SLIDE, &s.set);
+  mps_status status = make_set(own, NULL, SLIDE, &s.set);
   if (what == OTHER_SET && rank == 1) TRY(mps_particles_set(s.set, "density", 0, 2000.0));
   TRY(mps_material_linear_elastic(own, 1e6, 0.3, &s.material[0]));
   mps_contact_def contact = mps_contact_defaults();

@@ -1,0 +1,233 @@
+/* test_domain_parts.c - sets that lie in parts on the ranks from the first fill on: the parts
+ * together are the set of one process, WLS-MPM on them has its bits, no rank ever has memory for
+ * more than its part, and what does not fit together is refused on all ranks.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#define RANKS_IN_PARTS true
+#include "mpm_ranks.h"
+#include "peak_allocator.h"
+#include "ranks_team.h"
+
+#include <mps/dynamics.h>
+#include <mps/fluid.h>
+
+/* ---- fills ----------------------------------------------------------------------------------- */
+
+enum { PLANE, SPACE, TALL };
+
+static mps_status above_wave(void *user, const double *x, int32_t *inside) {
+  (void)user;
+  *inside = x[1] > 1.0 + 0.4 * sin(9.0 * x[0]);
+  return MPS_OK;
+}
+
+/* Shapes that overlap and single particles; fewer of these than ranks. */
+static mps_status fill(mps_particles *set, int what) {
+  const double lo[3] = {0.0, 0.0, 0.0}, hi[3] = {1.3, 0.61, 0.5};
+  const double high[3] = {0.2, 2.0, 0.3}, middle[3] = {0.65, 0.6, 0.2};
+  const double here[3] = {0.0, 0.4, 0.0}, there[3] = {1.0, 1.7, 0.1};
+  const double corners[8] = {1.0, 0.0, 2.2, 0.1, 1.9, 1.4, 1.2, 0.9};
+  const double drops[6] = {3.0, 3.1, 3.2, 3.3, 3.4, 3.5};
+  const int32_t dim = mps_particles_dim(set);
+  mps_status status = mps_particles_fill_box(set, lo, what == TALL ? high : hi, NULL);
+  TRY(mps_particles_append(set, 6 / dim, drops));
+  TRY(mps_particles_fill_ball(set, middle, 0.4, NULL));
+  TRY(mps_particles_fill_where(set, here, there, above_wave, NULL, NULL));
+  if (dim == 2) TRY(mps_particles_fill_polygon(set, 4, corners, NULL));
+  TRY(mps_particles_fill_box(set, lo, what == TALL ? high : hi, NULL)); /* adds none */
+  return status;
+}
+
+static mps_status compute_fills(mps_context *own, mps_domain *domain, int what, int64_t length,
+                                result *r) {
+  mps_particles_def def = mps_particles_defaults();
+  mps_particles *set = NULL;
+  def.dim = what == SPACE ? 3 : 2;
+  def.spacing = 0.05;
+  mps_status status = domain ? mps_domain_create_particles(domain, &def, &set)
+                             : mps_particles_create(own, &def, &set);
+  (void)length;
+  TRY(fill(set, what));
+  TRY(keep(set, r));
+  for (int64_t k = 0; status == MPS_OK && k < r->count; k++)
+    if (mps_particles_index(set, r->id[k]) != k) status = MPS_ERROR_INTERNAL;
+  mps_particles_destroy(&set);
+  return status;
+}
+
+static void test_fills(void **state) {
+  (void)state;
+  for (int what = PLANE; what <= TALL; what++) compare_teams(compute_fills, what, 0, false);
+}
+
+/* Of each fill every rank has the same number, but for one. */
+static void test_even(void **state) {
+  (void)state;
+  ranks s = {.compute = compute_fills, .what = PLANE, .threads = 1};
+  int64_t least = INT64_MAX, most = 0;
+  run_team(&s, 7, 60.0);
+  for (int32_t r = 0; r < 7; r++) {
+    if (s.rank[r].status != MPS_OK) fail_msg("rank %d: %s", (int)r, s.rank[r].message);
+    least = s.rank[r].count < least ? s.rank[r].count : least;
+    most = s.rank[r].count > most ? s.rank[r].count : most;
+    drop(&s.rank[r]);
+  }
+  assert_true(most - least <= 5); /* additions */
+}
+
+/* ---- WLS-MPM --------------------------------------------------------------------------------- */
+
+static void test_slide(void **state) { (void)state, compare_teams(compute, SLIDE, 60, false); }
+static void test_spread(void **state) { (void)state, compare_teams(compute, SPREAD, 60, true); }
+static void test_ring(void **state) { (void)state, compare_teams(compute, RING, 30, true); }
+static void test_room(void **state) { (void)state, compare_teams(compute, ROOM, 30, true); }
+static void test_press(void **state) { (void)state, compare_teams(compute, PRESS, 45, true); }
+static void test_changes(void **state) {
+  (void)state, compare_teams(compute_changes, SPREAD, 24, true);
+}
+
+static void test_refused_memory(void **state) { (void)state, refuse_memory(compute, SLIDE, 4, 11); }
+
+/* ---- memory ---------------------------------------------------------------------------------- */
+
+typedef struct peaks {
+  int64_t most[TEAM_MOST]; /* bytes */
+  mps_status status[TEAM_MOST];
+} peaks;
+
+static mps_status begin_wide(mps_context *own, mps_domain *domain) {
+  scene s = {.set = NULL};
+  mps_status status = make_set(own, domain, WIDE, &s.set);
+  mps_mpm_def def = scene_def(domain, WIDE);
+  TRY(mps_material_linear_elastic(own, 1e6, 0.3, &s.material[0]));
+  if (domain) status = mps_domain_agree(domain, status);
+  TRY(mps_mpm_create(own, s.set, s.material[0], &def, &s.mpm));
+  TRY(mps_mpm_step(s.mpm, 2));
+  end_scene(&s);
+  return status;
+}
+
+static void measure(void *user, team *t, int32_t rank) {
+  peaks *p = user;
+  peak_allocator allocator = {0};
+  mps_context *own = NULL;
+  mps_domain *domain = NULL;
+  mps_context_def def = test_context_defaults();
+  const mps_domain_def domain_def = team_domain_def(t, rank);
+  def.executor = MPS_EXECUTOR_SERIAL;
+  peak_use(&def, &allocator);
+  mps_status status = mps_context_create(&def, &own, NULL, 0);
+  TRY(mps_domain_create(own, &domain_def, &domain));
+  TRY(begin_wide(own, t->size > 1 ? domain : NULL));
+  mps_domain_destroy(&domain);
+  mps_context_destroy(&own);
+  p->status[rank] = status, p->most[rank] = allocator.most;
+}
+
+static int64_t most_of(int32_t size) {
+  peaks p = {{0}, {0}};
+  team t;
+  int64_t most = 0;
+  team_begin(&t, size);
+  team_run(&t, measure, &p);
+  team_end(&t);
+  for (int32_t r = 0; r < size; r++) {
+    assert_int_equal(p.status[r], MPS_OK);
+    most = p.most[r] > most ? p.most[r] : most;
+  }
+  return most;
+}
+
+static void test_memory(void **state) {
+  (void)state;
+  const int64_t one = most_of(1), four = most_of(4);
+  print_message("9600 particles: at most %lld bytes on one rank, %lld on each of 4: %.3f\n",
+                (long long)one, (long long)four, (double)four / (double)one);
+  assert_true((double)four < 0.4 * (double)one);
+}
+
+/* ---- what is refused ------------------------------------------------------------------------- */
+
+enum { FILLS, POSITIONS, CONSTANTS, FIELDS, SPACINGS, WHOLE, ALONE, DYNAMICS, FLUID, REFUSED };
+
+static mps_status refused(mps_context *own, mps_domain *domain, int what, int64_t length,
+                          result *r) {
+  const bool odd = mps_domain_rank(domain) == 1;
+  const double lo[2] = {0.0, 0.0}, hi[2] = {1.0, what == FILLS && odd ? 0.9 : 1.0};
+  const double drop[2] = {2.0, what == POSITIONS && odd ? 2.1 : 2.0};
+  mps_particles_def def = mps_particles_defaults();
+  mps_material *material = NULL;
+  mps_particles *set = NULL;
+  mps_mpm *mpm = NULL;
+  mps_dynamics *dynamics = NULL;
+  mps_fluid *fluid = NULL;
+  (void)length, (void)r;
+  def.spacing = what == SPACINGS && odd ? 0.11 : 0.1;
+  mps_status status = mps_domain_create_particles(domain, &def, &set);
+  TRY(mps_particles_fill_box(set, lo, hi, NULL));
+  TRY(mps_particles_append(set, 1, drop));
+  if (what == WHOLE && odd && status == MPS_OK) {
+    mps_particles_destroy(&set);
+    status = mps_particles_create(own, &def, &set);
+    TRY(mps_particles_fill_box(set, lo, hi, NULL));
+  }
+  if (what == FIELDS && odd) TRY(mps_particles_add_field(set, "stress", 0));
+  TRY(mps_particles_set(set, "density", 0, what == CONSTANTS && odd ? 1001.0 : 1000.0));
+  TRY(mps_material_linear_elastic(own, 1e6, 0.3, &material));
+  mps_mpm_def solver = mps_mpm_defaults();
+  solver.cell = 0.2;
+  if (what != ALONE) solver.domain = domain;
+  const int64_t count = mps_particles_count(set);
+  mps_dynamics_def waves = mps_dynamics_defaults();
+  mps_fluid_def water = mps_fluid_defaults();
+  if (what == DYNAMICS)
+    TRY(mps_dynamics_create(own, set, &waves, &dynamics));
+  else if (what == FLUID)
+    TRY(mps_fluid_create(own, set, &water, &fluid));
+  else
+    TRY(mps_mpm_create(own, set, material, &solver, &mpm));
+  if (mpm || dynamics || fluid || (what == ALONE && mps_particles_count(set) != count))
+    status = MPS_ERROR_INTERNAL;
+  mps_mpm_destroy(&mpm);
+  mps_material_destroy(&material);
+  mps_particles_destroy(&set);
+  return status;
+}
+
+static void test_refused(void **state) {
+  static const struct {
+    mps_status status;
+    const char *words;
+  } expected[REFUSED] = {
+      [FILLS] = {MPS_ERROR_ARGUMENT, "the number of particles that are added is"},
+      [POSITIONS] = {MPS_ERROR_ARGUMENT, "a hash of the places of what is added is"},
+      [CONSTANTS] = {MPS_ERROR_ARGUMENT, "a hash of the constants given by mps_particles_set is"},
+      [FIELDS] = {MPS_ERROR_ARGUMENT, "the number of fields of the set is"},
+      [SPACINGS] = {MPS_ERROR_ARGUMENT, "spacing is"},
+      [WHOLE] = {MPS_ERROR_ARGUMENT, "whether the set is in parts"},
+      [ALONE] = {MPS_ERROR_STATE, "the others on 2 other ranks (mps_domain_create_particles)"},
+      [DYNAMICS] = {MPS_ERROR_STATE, "the others on 2 other ranks (mps_domain_create_particles)"},
+      [FLUID] = {MPS_ERROR_STATE, "the others on 2 other ranks (mps_domain_create_particles)"}};
+  (void)state;
+  for (int what = 0; what < REFUSED; what++) {
+    ranks s = {.compute = refused, .what = what, .threads = 1};
+    run_team(&s, 3, 10.0);
+    for (int32_t r = 0; r < 3; r++) {
+      if (s.rank[r].status != expected[what].status ||
+          !strstr(s.rank[r].message, expected[what].words))
+        fail_msg("case %d, rank %d: %d %s", what, (int)r, (int)s.rank[r].status, s.rank[r].message);
+      assert_int_equal(s.allocator[r].live, 0);
+    }
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_fills),          cmocka_unit_test(test_even),
+      cmocka_unit_test(test_slide),          cmocka_unit_test(test_spread),
+      cmocka_unit_test(test_ring),           cmocka_unit_test(test_room),
+      cmocka_unit_test(test_press),          cmocka_unit_test(test_changes),
+      cmocka_unit_test(test_refused_memory), cmocka_unit_test(test_memory),
+      cmocka_unit_test(test_refused),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
