@@ -45,18 +45,29 @@ static inline mps_status give_ground(mps_particles *set, bool even) {
   return status;
 }
 
-static inline mps_status make_set(mps_context *own, int what, mps_particles **out) {
+/* Whether the scenes' sets lie in parts on the ranks from the first on. */
+#ifndef RANKS_IN_PARTS
+#define RANKS_IN_PARTS false
+#endif
+
+/* `domain` NULL: all of it here. */
+static inline mps_status make_set(mps_context *own, mps_domain *domain, int what,
+                                  mps_particles **out) {
   mps_particles_def def = mps_particles_defaults();
   def.spacing = 0.5;
-  mps_status status = mps_particles_create(own, &def, out);
+  mps_status status = domain ? mps_domain_create_particles(domain, &def, out)
+                             : mps_particles_create(own, &def, out);
   const bool strip = what == STRIP || what == UNSTABLE;
   const double lo[2] = {0.0, 0.0}, hi[2] = {strip ? 400.0 : 45.0, strip ? 2.5 : 30};
   TRY(mps_particles_fill_box(*out, lo, hi, NULL));
   if (what == SCATTERED && status == MPS_OK) {
     mps_edit x;
+    mps_view id;
     TRY(mps_particles_edit(*out, "position", &x));
+    TRY(mps_particles_view(*out, "id", &id));
     for (int64_t k = 0; status == MPS_OK && k < mps_particles_count(*out); k++)
-      for (int c = 0; c < 2; c++) *mps_edit_f64(&x, k, c) += 0.1 * noise((uint64_t)(2 * k + c));
+      for (int c = 0; c < 2; c++)
+        *mps_edit_f64(&x, k, c) += 0.1 * noise((uint64_t)(2 * *mps_view_i64(&id, k, 0) + c));
     TRY(mps_particles_commit(*out, &x));
   }
   TRY(give_ground(*out, what == PERIODIC));
@@ -152,7 +163,7 @@ static inline mps_status compute_halves(mps_context *own, mps_domain *domain, in
   mps_dynamics *dynamics = NULL;
   int32_t base = -1;
   const mps_dynamics_def def = scene_def(domain, what);
-  mps_status status = make_set(own, what, &set);
+  mps_status status = make_set(own, RANKS_IN_PARTS ? domain : NULL, what, &set);
   if (domain) status = mps_domain_agree(domain, status);
   TRY(mps_dynamics_create(own, set, &def, &dynamics));
   if (status == MPS_OK) status = add_conditions(own, domain, dynamics, what, &base);
@@ -174,7 +185,7 @@ static inline mps_status compute(mps_context *own, mps_domain *domain, int what,
   mps_dynamics *dynamics = NULL;
   int32_t base = -1;
   const mps_dynamics_def def = scene_def(domain, what);
-  mps_status status = make_set(own, what, &set);
+  mps_status status = make_set(own, RANKS_IN_PARTS ? domain : NULL, what, &set);
   if (domain) status = mps_domain_agree(domain, status);
   TRY(mps_dynamics_create(own, set, &def, &dynamics));
   if (status == MPS_OK) status = add_conditions(own, domain, dynamics, what, &base);

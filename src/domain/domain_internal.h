@@ -57,6 +57,11 @@ mps_status mpsi_domain_settle_particles(mps_domain *domain, const char *function
 mps_status mpsi_domain_settle_parts(mps_domain *domain, const char *function, mps_status status,
                                     const mps_particles *particles);
 
+/* parts.c: each particle with all its fields to rank to[k], which may be this one. The same fields
+ * on all ranks. `status` is that of making the list; on an error nothing has changed. */
+mps_status mpsi_domain_move(mps_domain *domain, const char *function, mps_status status,
+                            mps_particles *particles, const int32_t *to);
+
 mps_status mpsi_domain_max(mps_domain *domain, const char *function, int32_t count, double *values);
 mps_status mpsi_domain_sum(mps_domain *domain, const char *function, int32_t count,
                            int64_t *values);

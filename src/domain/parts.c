@@ -3,6 +3,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "core/particles_internal.h"
 #include "domain_private.h"
+#include "migrate.h"
 
 #include <string.h>
 
@@ -87,4 +88,84 @@ mps_status mpsi_domain_settle_parts(mps_domain *domain, const char *function, mp
               mpsi_hash_short(deal->constants));
   }
   return mpsi_domain_settle_given(domain, function, status, &given);
+}
+
+/* ---- moving ---------------------------------------------------------------------------------- */
+
+/* What leaves this rank, by present index, and all columns of the set. */
+typedef struct departure {
+  mps_particles *set;
+  uint8_t *gone;
+  int64_t *row, count;
+  int32_t *to;
+  void **column;
+  int32_t columns;
+} departure;
+
+/* `column` NULL: how many. */
+static int32_t list_columns(mps_particles *set, void **column) {
+  int32_t columns = 0;
+  for (int32_t f = 0; f < mps_particles_field_count(set); f++) {
+    mps_field_info info = {.name = ""};
+    if (mps_particles_field(set, f, &info) != MPS_OK) continue;
+    for (int32_t c = 0; c < info.components; c++, columns++)
+      if (column)
+        column[columns] = info.dtype.code == 0 ? (void *)mpsi_particles_integers(set, info.name)
+                                               : (void *)mpsi_particles_column(set, info.name, c);
+  }
+  return columns;
+}
+
+static mps_status list_leaving(departure *d, mps_domain *domain, const char *function,
+                               const int32_t *to) {
+  mps_context *context = domain->context;
+  const int64_t count = mps_particles_count(d->set);
+  int64_t leaving = 0;
+  for (int64_t k = 0; k < count; k++) leaving += to[k] != domain->def.rank;
+  d->columns = list_columns(d->set, NULL);
+  d->column = mpsi_alloc(context, d->columns, sizeof *d->column);
+  d->gone = mpsi_alloc(context, count, 1);
+  d->row = mpsi_alloc(context, leaving, sizeof *d->row);
+  d->to = mpsi_alloc(context, leaving, sizeof *d->to);
+  if (!d->column || !d->gone || !d->row || !d->to)
+    return mpsi_fail_memory(context, function, (size_t)count + (size_t)leaving * 12);
+  list_columns(d->set, d->column);
+  for (int64_t k = 0; k < count; k++) {
+    d->gone[k] = to[k] != domain->def.rank;
+    if (!d->gone[k]) continue;
+    d->row[d->count] = k;
+    d->to[d->count++] = to[k];
+  }
+  return MPS_OK;
+}
+
+mps_status mpsi_domain_move(mps_domain *domain, const char *function, mps_status status,
+                            mps_particles *particles, const int32_t *to) {
+  mps_context *context = domain->context;
+  departure d = {.set = particles};
+  mpsi_mailbox box = {.context = context};
+  int64_t arriving = 0;
+  if (status == MPS_OK) status = list_leaving(&d, domain, function, to);
+  status = mpsi_domain_settle(domain, function, status);
+  const mpsi_leaving leaving = {.count = d.count,
+                                .row = d.row,
+                                .to = d.to,
+                                .columns = d.columns,
+                                .column = (const void *const *)d.column};
+  if (status == MPS_OK) status = mpsi_migrate(domain, function, &leaving, &box, &arriving);
+  if (status == MPS_OK)
+    status = mpsi_domain_settle(
+        domain, function,
+        mpsi_particles_hold_room(particles, function,
+                                 mps_particles_count(particles) - d.count + arriving));
+  if (status == MPS_OK) {
+    mpsi_particles_make_way(particles, d.gone);
+    list_columns(particles, d.column); /* which may have moved */
+    mpsi_migrate_unpack(&box, d.columns, d.column, mps_particles_count(particles));
+    mpsi_particles_admit(particles, arriving);
+  }
+  mpsi_domain_free_mail(&box);
+  void *parts[] = {d.gone, d.row, d.to, d.column};
+  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
+  return status;
 }

@@ -104,15 +104,17 @@ static void extent(mps_particles *particles, int32_t component, double *lo, doub
   }
 }
 
+/* `lo` and `hi`: bounds of the set, on whatever rank, m. */
 static mps_status check_geometry(mps_context *context, mps_particles *particles,
-                                 const mps_dynamics_def *def) {
+                                 const mps_dynamics_def *def, const double *lo, const double *hi) {
   static const char *const function = "mps_dynamics_create";
+  const bool parts = mpsi_particles_deal(particles) && mpsi_particles_made(particles) > 0;
   const int64_t n = mps_particles_count(particles);
   if (mps_particles_dim(particles) != 2)
     return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
                      "the particle set has dim %d: the solver is for plane strain, dim 2",
                      mps_particles_dim(particles));
-  if (n < 1 || n > INT32_MAX)
+  if (n < (parts ? 0 : 1) || n > INT32_MAX)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "the particle set has %lld particles, allowed are 1 to %d", (long long)n,
                      INT32_MAX);
@@ -124,9 +126,7 @@ static mps_status check_geometry(mps_context *context, mps_particles *particles,
                      "the kernel's radius of influence is %g m, must be above the spacing %g m and "
                      "at most 4 times that",
                      re, D);
-  double lo[2], hi[2];
   int64_t body = 0;
-  for (int c = 0; c < 2; c++) extent(particles, c, &lo[c], &hi[c]);
   for (int64_t k = 0; k < n; k++) {
     if (side && (side[k] < 0 || side[k] > MPS_DYNAMICS_SIDE_RIGHT))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
@@ -134,12 +134,17 @@ static mps_status check_geometry(mps_context *context, mps_particles *particles,
                        (long long)mpsi_particles_integers(particles, "id")[k], (long long)side[k]);
     body += !(side && side[k]);
   }
+  if (parts && body < n)
+    return mpsi_fail(context, function, MPS_ERROR_UNSUPPORTED,
+                     "%lld particles here belong to free-field columns, which a set in parts "
+                     "(mps_domain_create_particles) cannot have: use mps_particles_create",
+                     (long long)(n - body));
   for (int c = 0; c < 2; c++)
     if (!(hi[c] - lo[c] <= MPSI_DYN_MOST_SPACINGS * D))
       return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                        "the particles reach from %g m to %g m in %c, allowed are %g spacings",
                        lo[c], hi[c], c == 0 ? 'x' : 'y', MPSI_DYN_MOST_SPACINGS);
-  if (body == 0)
+  if (body == 0 && !parts)
     return mpsi_fail(context, function, MPS_ERROR_ARGUMENT,
                      "all %lld particles belong to free-field columns, a body is needed",
                      (long long)n);
@@ -152,6 +157,20 @@ static mps_status check_geometry(mps_context *context, mps_particles *particles,
                      "between outer particle centres",
                      def->period_x, re, hi[0] - lo[0]);
   return MPS_OK;
+}
+
+/* Bounds of the set; of one in parts, of all ranks' parts. Collective where there is a domain. */
+static mps_status find_extent(mps_particles *particles, mps_domain *domain, mps_status status,
+                              double *lo, double *hi) {
+  for (int c = 0; c < 2; c++) lo[c] = INFINITY, hi[c] = -INFINITY;
+  for (int c = 0; c < 2 && status == MPS_OK; c++) extent(particles, c, &lo[c], &hi[c]);
+  if (!mpsi_domain_many(domain)) return status;
+  status = mpsi_domain_settle_parts(domain, "mps_dynamics_create", status, particles);
+  if (status != MPS_OK || !mpsi_particles_deal(particles)) return status;
+  double most[4] = {-lo[0], -lo[1], hi[0], hi[1]};
+  status = mpsi_domain_max(domain, "mps_dynamics_create", 4, most);
+  for (int c = 0; c < 2; c++) lo[c] = -most[c], hi[c] = most[2 + c];
+  return status;
 }
 
 /* ---- life ------------------------------------------------------------------------------------ */
@@ -173,7 +192,7 @@ static mps_status choose_kernel(mps_dynamics *dynamics) {
                             &dynamics->density);
 }
 
-static mps_status build(mps_dynamics *dynamics, mpsi_storage **former) {
+static mps_status build(mps_dynamics *dynamics, mpsi_storage **former, mpsi_backup *backup) {
   static const char *const function = "mps_dynamics_create";
   mpsi_dynamics_structure made;
   dynamics->torque = 1.0;
@@ -183,7 +202,7 @@ static mps_status build(mps_dynamics *dynamics, mpsi_storage **former) {
                                           NULL);
   if (status == MPS_OK) status = mpsi_dynamics_check_ground(dynamics->particles, function);
   if (mpsi_domain_many(dynamics->domain)) {
-    status = mpsi_dynamics_take_share(dynamics, function, status, &made, former);
+    status = mpsi_dynamics_take_share(dynamics, function, status, &made, former, backup);
   } else {
     if (status == MPS_OK) status = mpsi_dynamics_add_fields(dynamics, "mps_dynamics_create");
     if (status == MPS_OK) status = mpsi_dynamics_sort(dynamics, function);
@@ -240,12 +259,16 @@ mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
   if (status == MPS_OK) status = check_numbers(context, &def);
   if (status == MPS_OK) status = check_state(context, particles);
   if (status == MPS_OK) status = mpsi_particles_check_hold(particles, __func__, MPSI_USE_MOVE);
-  if (status == MPS_OK) status = mpsi_particles_check_deal(particles, __func__, NULL);
-  if (status == MPS_OK) status = check_geometry(context, particles, &def);
+  if (status == MPS_OK) status = mpsi_particles_check_deal(particles, __func__, def.domain);
+  double lo[2], hi[2];
+  status = find_extent(particles, def.domain, status, lo, hi);
+  if (status == MPS_OK) status = check_geometry(context, particles, &def, lo, hi);
   mpsi_backup backup = {0};
   mpsi_storage *former = NULL;
   mps_dynamics *dynamics = NULL;
-  if (status == MPS_OK) status = mpsi_particles_back_up(particles, __func__, &backup);
+  const bool parts = mpsi_particles_deal(particles) != NULL;
+  const int32_t fields = mps_particles_field_count(particles);
+  if (status == MPS_OK && !parts) status = mpsi_particles_back_up(particles, __func__, &backup);
   if (status == MPS_OK && !(dynamics = mpsi_alloc(context, 1, sizeof *dynamics)))
     status = mpsi_fail_memory(context, __func__, sizeof *dynamics);
   status = mpsi_domain_settle(def.domain, __func__, status);
@@ -257,9 +280,10 @@ mps_status mps_dynamics_create(mps_context *context, mps_particles *particles,
   dynamics->context = mpsi_context_retain(context);
   dynamics->particles = particles;
   describe(dynamics, &def);
-  if ((status = build(dynamics, &former)) != MPS_OK) {
+  if ((status = build(dynamics, &former, &backup)) != MPS_OK) {
     mpsi_particles_take_back(particles, &former);
     mpsi_particles_go_back(particles, &backup);
+    mpsi_particles_drop_fields(particles, fields);
     mps_dynamics_destroy(&dynamics);
     return status;
   }

@@ -279,7 +279,23 @@ mps_status mpsi_dynamics_allocate(mps_dynamics *dynamics, const char *function,
 /* Keeps this rank's share of the set, which is sorted; the rest is in *former. `status` is what has
  * become of the rank so far. */
 mps_status mpsi_dynamics_take_share(mps_dynamics *dynamics, const char *function, mps_status status,
-                                    mpsi_dynamics_structure *out, mpsi_storage **former);
+                                    mpsi_dynamics_structure *out, mpsi_storage **former,
+                                    mpsi_backup *backup);
+/* The first particle of a body of so many that rank `rank` has. */
+int64_t mpsi_dynamics_first_of_rank(int64_t body, int64_t rank, int64_t ranks);
+/* deal.c: of a set in parts, which it sorts, what a rank needs of the whole body. Arrays by the
+ * numbers that particles have here: blocks ascend as in the whole body. */
+typedef struct mpsi_dynamics_window {
+  int64_t count, whole; /* numbers here, those of missing particles counted; particles of all */
+  int64_t first, last;  /* own ones */
+  int64_t *block;       /* its number in the whole body, by block here */
+  int64_t *near, nears; /* particles that pairs are looked for among, ascending */
+  double *x, *y;        /* m */
+  int64_t *side;        /* all 0: there are no free-field columns */
+  double edge[2];       /* x of the whole body's outermost particles, m */
+} mpsi_dynamics_window;
+mps_status mpsi_dynamics_deal(mps_dynamics *dynamics, const char *function,
+                              mpsi_dynamics_window *out);
 /* Displacement and rotation of ghosts as they are now; nothing to do on one rank. */
 mps_status mpsi_dynamics_bring_motion(mps_dynamics *dynamics, const char *function);
 /* After mpsi_dynamics_set_coefficients: those of ghosts, extremes, kind of damping. */

@@ -97,6 +97,7 @@ mps_status mps_dynamics_add_free_field(mps_particles *particles, int32_t side, i
                      mps_particles_dim(particles), (long long)mps_particles_count(particles));
   edge e = {0};
   mps_status status = mpsi_particles_check_free(particles, __func__);
+  if (status == MPS_OK) status = mpsi_particles_check_deal(particles, __func__, NULL);
   if (status == MPS_OK) status = find_edge(context, particles, side, &e);
   if (status == MPS_OK)
     status = mpsi_as(context, __func__, append_column(context, particles, side, gap, &e));

@@ -19,6 +19,29 @@ static int compare(const void *left, const void *right) {
   return a->old < b->old ? -1 : a->old > b->old;
 }
 
+mpsi_dynamics_rows mpsi_dynamics_layout_rows(const double *lo, const double *hi, double spacing) {
+  mpsi_dynamics_rows r = {.lo = {lo[0], lo[1]}, .spacing = spacing};
+  r.fast = hi[1] - lo[1] > hi[0] - lo[0];
+  const int64_t length = (int64_t)((hi[r.fast] - lo[r.fast]) / spacing + 1.5);
+  /* rows of up to two strips stay whole: a strip edge costs scattered pairs */
+  r.strips = length <= 2 * MPSI_DYN_STRIP ? 1 : length / MPSI_DYN_STRIP;
+  r.width = (length + r.strips - 1) / r.strips;
+  r.rows = (int64_t)((hi[!r.fast] - lo[!r.fast]) / spacing + 1.5);
+  return r;
+}
+
+static place place_of(const mpsi_dynamics_rows *r, double x, double y) {
+  const double at[2] = {x, y};
+  const int64_t along = (int64_t)floor((at[r->fast] - r->lo[r->fast]) / r->spacing + 0.5);
+  const int64_t across = (int64_t)floor((at[!r->fast] - r->lo[!r->fast]) / r->spacing + 0.5);
+  return (place){.strip = along / r->width, .row = across, .along = along};
+}
+
+int64_t mpsi_dynamics_layout_key(const mpsi_dynamics_rows *r, double x, double y) {
+  const place p = place_of(r, x, y);
+  return (p.strip * r->rows + p.row) * r->width + p.along - p.strip * r->width;
+}
+
 bool mpsi_dynamics_layout_order(mps_context *context, const mpsi_dynamics_geometry *g,
                                 int64_t *order) {
   place *places = mpsi_alloc(context, g->count, sizeof *places);
@@ -29,19 +52,13 @@ bool mpsi_dynamics_layout_order(mps_context *context, const mpsi_dynamics_geomet
     lo[0] = fmin(lo[0], g->x[k]), hi[0] = fmax(hi[0], g->x[k]);
     lo[1] = fmin(lo[1], g->y[k]), hi[1] = fmax(hi[1], g->y[k]);
   }
-  const int fast = hi[1] - lo[1] > hi[0] - lo[0]; /* 1: rows run along y */
-  const int64_t length = (int64_t)((hi[fast] - lo[fast]) / g->spacing + 1.5);
-  /* rows of up to two strips stay whole: a strip edge costs scattered pairs */
-  const int64_t strips = length <= 2 * MPSI_DYN_STRIP ? 1 : length / MPSI_DYN_STRIP;
-  const int64_t width = (length + strips - 1) / strips;
+  const mpsi_dynamics_rows rows = mpsi_dynamics_layout_rows(lo, hi, g->spacing);
   for (int64_t k = 0; k < g->count; k++) {
-    const double at[2] = {g->x[k], g->y[k]};
-    const int64_t along = (int64_t)floor((at[fast] - lo[fast]) / g->spacing + 0.5);
-    const int64_t across = (int64_t)floor((at[!fast] - lo[!fast]) / g->spacing + 0.5);
-    places[k] = (place){.strip = along / width, .row = across, .along = along, .old = k};
+    places[k] = place_of(&rows, g->x[k], g->y[k]);
+    places[k].old = k;
     if (g->side && g->side[k])
-      places[k] = (place){.strip = strips + g->side[k],
-                          .along = (int64_t)floor((at[1] - lo[1]) / g->spacing + 0.5),
+      places[k] = (place){.strip = rows.strips + g->side[k],
+                          .along = (int64_t)floor((g->y[k] - lo[1]) / g->spacing + 0.5),
                           .old = k};
   }
   qsort(places, (size_t)g->count, sizeof *places, compare);

@@ -16,6 +16,17 @@ typedef struct mpsi_dynamics_geometry {
   const double *edge;  /* x of the body's outermost particles, m; NULL: of those given here */
 } mpsi_dynamics_geometry;
 
+/* The strips of rows that a body of these bounds is laid out in. */
+typedef struct mpsi_dynamics_rows {
+  double lo[2], spacing; /* m */
+  int32_t fast;          /* 1: rows run along y */
+  int64_t strips, width; /* lattice cells in a row of a strip */
+  int64_t rows;
+} mpsi_dynamics_rows;
+mpsi_dynamics_rows mpsi_dynamics_layout_rows(const double *lo, const double *hi, double spacing);
+/* Number of a place of the body in that order; particles at the same place come by their ids. */
+int64_t mpsi_dynamics_layout_key(const mpsi_dynamics_rows *rows, double x, double y);
+
 /* Writes to order[k] the old index of the particle that comes k-th: the body in strips of rows
  * along its longer direction, then the columns from the bottom up. False: out of memory. */
 bool mpsi_dynamics_layout_order(mps_context *context, const mpsi_dynamics_geometry *geometry,

@@ -22,7 +22,9 @@ typedef struct plan {
   mps_dynamics *dynamics;
   const char *function;
   int64_t count, body;
-  int64_t *order; /* present index of each particle */
+  int64_t *order; /* present index of each particle; NULL: own ones lie in order */
+  int64_t *block; /* of a set in parts: global number of each block; NULL: the same */
+  int64_t whole;  /* particles of the body in the whole set */
   double *x, *y;
   int64_t *side;       /* NULL: no columns */
   int64_t first, last; /* own ones of the body */
@@ -41,10 +43,10 @@ typedef struct plan {
 
 static void free_plan(plan *p) {
   mps_context *context = p->dynamics->context;
-  void *parts[] = {p->order,      p->x,           p->y,         p->side,
-                   p->near,       p->pair,        p->present,   p->ghost,
-                   p->ghost_rank, p->ghost_index, p->cut.block, p->cut.begin,
-                   p->cut.end,    p->cut.slot,    p->cut.local, p->cut.wanted};
+  void *parts[] = {p->block,       p->order,     p->x,         p->y,       p->side,
+                   p->near,        p->pair,      p->present,   p->ghost,   p->ghost_rank,
+                   p->ghost_index, p->cut.block, p->cut.begin, p->cut.end, p->cut.slot,
+                   p->cut.local,   p->cut.wanted};
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) mpsi_free(context, parts[k]);
 }
 
@@ -82,9 +84,13 @@ static int64_t first_block(int64_t body, int64_t rank, int64_t ranks) {
   return mpsi_dynamics_block_of(body, body) * rank / ranks;
 }
 
-static int64_t first_particle(int64_t body, int64_t rank, int64_t ranks) {
+int64_t mpsi_dynamics_first_of_rank(int64_t body, int64_t rank, int64_t ranks) {
   const int64_t first = first_block(body, rank, ranks) * MPSI_DYN_BLOCK;
   return first < body ? first : body;
+}
+
+static int64_t first_particle(int64_t body, int64_t rank, int64_t ranks) {
+  return mpsi_dynamics_first_of_rank(body, rank, ranks);
 }
 
 /* ---- what may be near ------------------------------------------------------------------------ */
@@ -244,10 +250,12 @@ static mps_status number_ghosts(plan *p) {
                       : k >= p->first && k < p->last ? (int32_t)(k - p->first)
                                                      : -1;
     if (k >= p->body || !p->present[k]) continue;
-    while (first_particle(p->body, rank + 1, ranks) <= k) rank++;
+    const int64_t global =
+        p->block ? p->block[k / MPSI_DYN_BLOCK] * MPSI_DYN_BLOCK + k % MPSI_DYN_BLOCK : k;
+    while (first_particle(p->whole, rank + 1, ranks) <= global) rank++;
     p->ghost[ghosts] = k;
     p->ghost_rank[ghosts] = (int32_t)rank;
-    p->ghost_index[ghosts] = k - first_particle(p->body, rank, ranks);
+    p->ghost_index[ghosts] = global - first_particle(p->whole, rank, ranks);
     p->cut.local[k] = (int32_t)(p->cut.count + ghosts++);
   }
   return MPS_OK;
@@ -357,7 +365,7 @@ static mps_status compare_ranks(mps_dynamics *dynamics, const char *function, mp
   mpsi_give(&given, "the kind of the kernel", mps_kernel_get_kind(dynamics->kernel));
   mpsi_material_give(&given, d->material);
   status = mpsi_domain_settle_given(dynamics->domain, function, status, &given);
-  if (status != MPS_OK) return status;
+  if (status != MPS_OK || mpsi_particles_deal(dynamics->particles)) return status;
   return mpsi_domain_settle_particles(dynamics->domain, function, status, dynamics->particles);
 }
 
@@ -377,33 +385,65 @@ static mps_status join(plan *p, mpsi_dynamics_structure *out) {
   return mpsi_halo_create(dynamics->domain, p->function, &def, &out->halo);
 }
 
+/* Of a set that is here whole: own particles and what is near them, and what of it stays. */
+static mps_status plan_whole(plan *p) {
+  mps_dynamics *dynamics = p->dynamics;
+  const int64_t rank = mps_domain_rank(dynamics->domain), ranks = mps_domain_size(dynamics->domain);
+  mps_status status = mpsi_dynamics_add_reference(dynamics, p->function);
+  if (status == MPS_OK) status = sort_whole(p);
+  p->whole = p->body;
+  p->first = first_particle(p->body, rank, ranks);
+  p->last = first_particle(p->body, rank + 1, ranks);
+  return status == MPS_OK ? find_near(p) : status;
+}
+
+static mps_status keep_own(const plan *p, const mpsi_dynamics_structure *out,
+                           mpsi_storage **former) {
+  mps_dynamics *dynamics = p->dynamics;
+  const int64_t count = p->cut.count, room = count + p->ghosts;
+  if (!p->order) return mpsi_particles_hold_room(dynamics->particles, p->function, room);
+  int64_t *rows = mpsi_alloc(dynamics->context, count, sizeof *rows);
+  if (!rows) return refused(p, count * 8);
+  for (int64_t k = 0; k < count; k++)
+    rows[k] = p->order[k < out->body ? p->first + k : p->body + k - out->body];
+  const mps_status status =
+      mpsi_particles_keep(dynamics->particles, p->function, count, rows, room, former);
+  mpsi_free(dynamics->context, rows);
+  return status;
+}
+
+/* Of a set in parts: particles go to their ranks, which learn of those near theirs (deal.c). */
+static mps_status plan_parts(plan *p, mpsi_backup *backup) {
+  mpsi_dynamics_window part = {0};
+  mps_status status = mpsi_dynamics_deal(p->dynamics, p->function, &part);
+  if (status == MPS_OK)
+    status = mpsi_particles_back_up(p->dynamics->particles, p->function, backup);
+  p->count = p->body = part.count;
+  p->block = part.block, p->whole = part.whole;
+  p->x = part.x, p->y = part.y, p->side = part.side;
+  p->first = part.first, p->last = part.last;
+  p->near = part.near, p->nears = p->near_body = part.nears;
+  memcpy(p->edge, part.edge, sizeof p->edge);
+  return status;
+}
+
 mps_status mpsi_dynamics_take_share(mps_dynamics *dynamics, const char *function, mps_status status,
-                                    mpsi_dynamics_structure *out, mpsi_storage **former) {
+                                    mpsi_dynamics_structure *out, mpsi_storage **former,
+                                    mpsi_backup *backup) {
   plan p = {.dynamics = dynamics, .function = function};
   mps_domain *domain = dynamics->domain;
-  const int64_t rank = mps_domain_rank(domain), ranks = mps_domain_size(domain);
   *out = (mpsi_dynamics_structure){0};
   status = compare_ranks(dynamics, function, status);
   if (status != MPS_OK) return status;
-  status = mpsi_dynamics_add_reference(dynamics, function);
-  if (status == MPS_OK) status = sort_whole(&p);
-  p.first = first_particle(p.body, rank, ranks);
-  p.last = first_particle(p.body, rank + 1, ranks);
-  if (status == MPS_OK) status = find_near(&p);
+  const bool parts = mpsi_particles_deal(dynamics->particles) != NULL;
+  status = parts ? plan_parts(&p, backup) : plan_whole(&p);
   if (status == MPS_OK) status = make_structure(&p, out);
-  int64_t *rows = mpsi_alloc(dynamics->context, p.cut.count, sizeof *rows);
-  if (status == MPS_OK && !rows) status = refused(&p, p.cut.count * 8);
-  for (int64_t k = 0; status == MPS_OK && k < p.cut.count; k++)
-    rows[k] = p.order[k < out->body ? p.first + k : p.body + k - out->body];
-  if (status == MPS_OK)
-    status = mpsi_particles_keep(dynamics->particles, function, p.cut.count, rows,
-                                 p.cut.count + p.ghosts, former);
+  if (status == MPS_OK) status = keep_own(&p, out, former);
   if (status == MPS_OK) status = mpsi_dynamics_add_fields(dynamics, function);
-  mpsi_free(dynamics->context, rows);
   status = mpsi_domain_settle(domain, function, status);
   if (status == MPS_OK) status = join(&p, out);
-  dynamics->whole = p.count, dynamics->whole_body = p.body;
-  dynamics->lead = rank == ranks - 1;
+  dynamics->whole = parts ? p.whole : p.count, dynamics->whole_body = p.whole;
+  dynamics->lead = mps_domain_rank(domain) == mps_domain_size(domain) - 1;
   free_plan(&p);
   if (status != MPS_OK) mpsi_dynamics_free_structure(dynamics, out);
   return status;

@@ -230,7 +230,7 @@ static mps_status run_trouble(mps_context *own, mps_domain *domain, int what) {
   mps_dynamics_def def = mps_dynamics_defaults();
   def.domain = domain;
   def.dt = what == OTHER_DT ? 1e-4 * (1.0 + u.rank) : what == DIVERGES ? 0.05 : NAN;
-  mps_status status = make_set(own, STRIP, &set);
+  mps_status status = make_set(own, NULL, STRIP, &set);
   if (what == OTHER_SET && u.rank == 1) TRY(mps_particles_set(set, "density", 0, 2000.0));
   status = mps_domain_agree(domain, status);
   const int64_t before = mps_particles_count(set);

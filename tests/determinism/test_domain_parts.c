@@ -181,7 +181,7 @@ static mps_status refused(mps_context *own, mps_domain *domain, int what, int64_
   mps_fluid_def water = mps_fluid_defaults();
   if (what == DYNAMICS)
     TRY(mps_dynamics_create(own, set, &waves, &dynamics));
-  else if (what == FLUID)
+  else if (what == FLUID) /* a solver that takes no set in parts */
     TRY(mps_fluid_create(own, set, &water, &fluid));
   else
     TRY(mps_mpm_create(own, set, material, &solver, &mpm));

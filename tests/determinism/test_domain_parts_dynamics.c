@@ -1,0 +1,152 @@
+/* test_domain_parts_dynamics.c - explicit dynamics on sets that lie in parts on the ranks from the
+ * first fill on: the bits of one process, and no rank ever has memory for more than its part.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#define RANKS_IN_PARTS true
+#include "test_common.h"
+
+#include "dynamics_scene.h"
+#include "peak_allocator.h"
+#include "ranks_team.h"
+
+static void test_scattered(void **state) {
+  (void)state, compare_teams(compute, SCATTERED, WHOLE_RUN, false);
+}
+static void test_periodic(void **state) {
+  (void)state, compare_teams(compute, PERIODIC, WHOLE_RUN, false);
+}
+static void test_strip(void **state) {
+  (void)state, compare_teams(compute, STRIP, WHOLE_RUN, true);
+}
+
+static void test_refused_memory(void **state) {
+  (void)state, refuse_memory(compute, PERIODIC, SHORT_RUN, 11);
+}
+
+/* Two layers that lie apart, a wide and a tall one, and particles at places off the lattice. */
+static mps_status compute_two(mps_context *own, mps_domain *domain, int what, int64_t length,
+                              result *r) {
+  const double lo[2] = {0.0, 0.0}, hi[2] = {120.0, 8.0}, to[2] = {30.0, 40.0};
+  const double high[2] = {20.0, 8.5}, loose[6] = {60.1, 8.7, 60.3, 8.7, 70.2, 8.6};
+  mps_particles_def def = mps_particles_defaults();
+  mps_dynamics_def solver = mps_dynamics_defaults();
+  mps_particles *set = NULL;
+  mps_dynamics *dynamics = NULL;
+  (void)what, (void)length;
+  def.spacing = 0.5;
+  solver.domain = domain;
+  mps_status status = domain ? mps_domain_create_particles(domain, &def, &set)
+                             : mps_particles_create(own, &def, &set);
+  TRY(mps_particles_fill_box(set, lo, hi, NULL));
+  TRY(mps_particles_append(set, 3, loose));
+  TRY(mps_particles_fill_box(set, high, to, NULL));
+  TRY(give_ground(set, false));
+  TRY(mps_dynamics_create(own, set, &solver, &dynamics));
+  TRY(mps_dynamics_step(dynamics, 12));
+  TRY(mps_dynamics_get_totals(dynamics, &r->totals));
+  r->dt = mps_dynamics_dt(dynamics), r->pairs = mps_dynamics_pairs(dynamics);
+  TRY(keep(set, r));
+  mps_dynamics_destroy(&dynamics);
+  mps_particles_destroy(&set);
+  return status;
+}
+
+static void test_two(void **state) { (void)state, compare_teams(compute_two, 0, 0, false); }
+
+/* ---- memory ---------------------------------------------------------------------------------- */
+
+typedef struct peaks {
+  int64_t most[TEAM_MOST]; /* bytes */
+  mps_status status[TEAM_MOST];
+} peaks;
+
+static mps_status begin_ground(mps_context *own, mps_domain *domain) {
+  const double lo[2] = {0.0, 0.0}, hi[2] = {200.0, 200.0};
+  mps_particles_def def = mps_particles_defaults();
+  mps_dynamics_def solver = mps_dynamics_defaults();
+  mps_particles *set = NULL;
+  mps_dynamics *dynamics = NULL;
+  def.spacing = 1.0;
+  solver.domain = domain;
+  mps_status status = domain ? mps_domain_create_particles(domain, &def, &set)
+                             : mps_particles_create(own, &def, &set);
+  TRY(mps_particles_fill_box(set, lo, hi, NULL));
+  TRY(mps_particles_set(set, "density", 0, 1900.0));
+  TRY(mps_particles_set(set, "shear_velocity", 0, 200.0));
+  TRY(mps_particles_set(set, "pressure_velocity", 0, 400.0));
+  TRY(mps_dynamics_create(own, set, &solver, &dynamics));
+  TRY(mps_dynamics_step(dynamics, 2));
+  mps_dynamics_destroy(&dynamics);
+  mps_particles_destroy(&set);
+  return status;
+}
+
+static void measure(void *user, team *t, int32_t rank) {
+  peaks *p = user;
+  peak_allocator allocator = {0};
+  mps_context *own = NULL;
+  mps_domain *domain = NULL;
+  mps_context_def def = test_context_defaults();
+  const mps_domain_def domain_def = team_domain_def(t, rank);
+  def.executor = MPS_EXECUTOR_SERIAL;
+  peak_use(&def, &allocator);
+  mps_status status = mps_context_create(&def, &own, NULL, 0);
+  TRY(mps_domain_create(own, &domain_def, &domain));
+  TRY(begin_ground(own, t->size > 1 ? domain : NULL));
+  mps_domain_destroy(&domain);
+  mps_context_destroy(&own);
+  p->status[rank] = status, p->most[rank] = allocator.most;
+}
+
+static int64_t most_of(int32_t size) {
+  peaks p = {{0}, {0}};
+  team t;
+  int64_t most = 0;
+  team_begin(&t, size);
+  team_run(&t, measure, &p);
+  team_end(&t);
+  for (int32_t r = 0; r < size; r++) {
+    assert_int_equal(p.status[r], MPS_OK);
+    most = p.most[r] > most ? p.most[r] : most;
+  }
+  return most;
+}
+
+static void test_memory(void **state) {
+  (void)state;
+  const int64_t one = most_of(1), four = most_of(4);
+  print_message("40000 particles: at most %lld bytes on one rank, %lld on each of 4: %.3f\n",
+                (long long)one, (long long)four, (double)four / (double)one);
+  assert_true((double)four < 0.4 * (double)one);
+}
+
+/* ---- free-field columns ---------------------------------------------------------------------- */
+
+static mps_status columns(mps_context *own, mps_domain *domain, int what, int64_t length,
+                          result *r) {
+  mps_particles *set = NULL;
+  (void)length, (void)r;
+  mps_status status = make_set(own, domain, what, &set);
+  mps_particles_destroy(&set);
+  return status;
+}
+
+static void test_columns(void **state) {
+  (void)state;
+  ranks s = {.compute = columns, .what = LAYERS, .threads = 1};
+  run_team(&s, 3, 10.0);
+  for (int32_t r = 0; r < 3; r++) {
+    assert_int_equal(s.rank[r].status, MPS_ERROR_STATE);
+    assert_non_null(strstr(s.rank[r].message, "mps_domain_create_particles"));
+    assert_int_equal(s.allocator[r].live, 0);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_scattered), cmocka_unit_test(test_periodic),
+      cmocka_unit_test(test_strip),     cmocka_unit_test(test_two),
+      cmocka_unit_test(test_memory),    cmocka_unit_test(test_refused_memory),
+      cmocka_unit_test(test_columns),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
