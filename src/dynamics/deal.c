@@ -182,7 +182,8 @@ static mps_status sort_own(dealing *d) {
   int64_t *order = mpsi_alloc(dynamics->context, d->count, sizeof *order);
   if (status == MPS_OK && !order) status = refused(d, d->count * 8);
   for (int64_t k = 0; status == MPS_OK && k < d->count; k++) order[k] = d->item[k].index;
-  if (status == MPS_OK) status = mpsi_particles_permute(dynamics->particles, d->function, order);
+  if (status == MPS_OK && d->count > 0)
+    status = mpsi_particles_permute(dynamics->particles, d->function, order);
   mpsi_free(dynamics->context, order);
   dynamics->count = d->count;
   const int64_t wanted = mpsi_dynamics_first_of_rank(d->whole, d->rank + 1, d->ranks) -

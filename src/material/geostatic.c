@@ -138,6 +138,11 @@ static mps_status find_depths(geostatic *g) {
   const double spacing = mps_particles_spacing(g->set);
   double flat = d->surface;
   if (isnan(flat)) {
+    /* of a set in parts the highest particle may lie on another rank */
+    const mps_status here = d->surface_line || d->surface_level
+                                ? MPS_OK
+                                : mpsi_particles_check_deal(g->set, set_geostatic, NULL);
+    if (here != MPS_OK) return here;
     flat = -INFINITY;
     for (int64_t k = 0; k < g->count; k++) flat = fmax(flat, g->x[g->up][k]);
     flat += 0.5 * spacing;

@@ -60,7 +60,7 @@ typedef struct peaks {
 } peaks;
 
 static mps_status begin_ground(mps_context *own, mps_domain *domain) {
-  const double lo[2] = {0.0, 0.0}, hi[2] = {200.0, 200.0};
+  const double lo[2] = {0.0, 0.0}, hi[2] = {2000.0, 20.0};
   mps_particles_def def = mps_particles_defaults();
   mps_dynamics_def solver = mps_dynamics_defaults();
   mps_particles *set = NULL;
