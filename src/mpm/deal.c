@@ -109,6 +109,15 @@ static mps_status find_blocks(mps_mpm *mpm, const char *function) {
   return mpsi_mpm_sort_cells(mpm, function);
 }
 
+/* The solver's fields get the room that the caller's have: no more than needed. */
+static mps_status fit(mps_mpm *mpm, const char *function) {
+  const mps_status status = mpsi_particles_fit(mpm->particles, function);
+  mpsi_mpm_bind(mpm);
+  if (status != MPS_OK || mpsi_mpm_shrink_room(mpm, mpm->p.count)) return status;
+  return mpsi_fail_memory(mpm->context, function,
+                          (size_t)mpm->p.count * 2 * sizeof *mpm->grid.radix);
+}
+
 mps_status mpsi_mpm_share_deal(mps_mpm *mpm, const char *function, mps_status status) {
   bool moved;
   int64_t blocks;
@@ -120,5 +129,7 @@ mps_status mpsi_mpm_share_deal(mps_mpm *mpm, const char *function, mps_status st
   status = mpsi_domain_sum(mpm->share->domain, function, 1, &blocks);
   if (status == MPS_OK)
     status = blocks <= MOST_BLOCKS ? place_by_list(mpm, function) : place_by_bounds(mpm, function);
-  return status == MPS_OK ? mpsi_mpm_share_migrate(mpm, function, status, &moved) : status;
+  if (status == MPS_OK) status = mpsi_mpm_share_migrate(mpm, function, status, &moved);
+  return status == MPS_OK ? mpsi_domain_settle(mpm->share->domain, function, fit(mpm, function))
+                          : status;
 }
