@@ -1,6 +1,7 @@
 /* share.c - the share that one rank has of a body whose particles lie on several ranks.
  *
- * All ranks begin with the same set, sort it in the same way and cut the body at blocks: each has
+ * All ranks begin with the same set, sort it in the same way and cut the body at blocks, or with a
+ * set in parts (deal.c): each has
  * an interval of them, and all of the free-field columns, which are few and whose motion the edges
  * need at once. Behind its own particles a rank keeps ghosts, which belong to others: those that
  * are near its own, whose pressure it computes itself, and those that are near these. So one

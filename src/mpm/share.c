@@ -1,6 +1,7 @@
 /* share.c - which blocks of cells a rank has, and which are its ghosts: see share.h.
  *
- * All ranks begin with the same set, sort it in the same way and keep their blocks of it. Ghosts
+ * All ranks begin with the same set, sort it in the same way and keep their blocks of it, or with a
+ * set in parts (deal.c). Ghosts
  * follow from the blocks that there are: each rank tells those ranks whose blocks may be beside its
  * own of these. SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
