@@ -73,7 +73,7 @@ static double smoothing(const mps_fluid *f, int64_t i) {
   for (int c = 0; c < 2; c++) v2 += local->rest[c] * local->rest[c];
   const bool corner = f->company[i] & MPSI_FLUID_NEAR_CORNER;
   const bool waterline = f->zone[i] && (f->company[i] & MPSI_FLUID_NEAR_IMAGES);
-  const double time = waterline ? fmin(f->dt * rate(f) / LONGEST_STEP, 1.0) : 1.0;
+  const double time = waterline ? fmin(f->dt * mpsi_fluid_rate(f) / LONGEST_STEP, 1.0) : 1.0;
   const double rough = steep > 0.0 && !corner ? 2.0 * time * v2 / steep : 0.0;
   const double part = f->g > 0.0 ? SMOOTH : FREE_SMOOTH;
   const double a = part * near_surface(f, i, ZONE_SMOOTH) * f->dt * mpsi_fluid_rate(f) + rough;
