@@ -100,3 +100,10 @@ if "$1/mps-tank" $run --restart "$work/c.h5" --mass 11 --out "$work/other" 2>"$w
   fail "a restart with another --mass"
 fi
 has "$work/log" "c.h5 was made with other options: --mass is 11, was 10"
+
+# A plate that bends by more than .3 of its thickness is warned of, a stiff one is not.
+"$1/mps-tank" --case plate --spacing 0.1 --young 8GPa --plate-thickness 0.02 --plate-density 7800 --duration 0.05 \
+  --frames 0 --out "$work/thin" >/dev/null 2>"$work/warned"
+has "$work/warned" "warning: the plate bends by"
+"$1/mps-tank" --case plate --spacing 0.1 --duration 0.05 --frames 0 --out "$work/thick" >/dev/null 2>"$work/warned"
+[ ! -s "$work/warned" ] || fail "a stiff plate is warned of: $(cat "$work/warned")"
