@@ -102,6 +102,7 @@ static int run(app *a, const settings *s) {
   done = app_agree(a, done && model_solve(a, problem, m.reference, s->nx, s->ny, &method, &m));
   elastic_bar(a, seconds / all, 0.0, 0.0);
   app_leave_at_once(a, false);
+  if (done) elastic_warn(a, options_read(), "load", m.tip, problem->length);
   done = done && app_agree(a, a->rank > 0 || results_write(&m, &method, s->out));
   if (done) {
     printf("reactions balance the load to %.1e; %lld unknowns, ", m.equilibrium,

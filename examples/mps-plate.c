@@ -79,6 +79,8 @@ static int run(app *a, const settings *s) {
   done = done && app_agree(a, plate_solve(a, &s->plate, &method, &p));
   elastic_bar(a, 1.0, 0.0, 0.0);
   app_leave_at_once(a, false);
+  const double end = s->plate.tension / s->plate.young * s->plate.side;
+  if (done) elastic_warn(a, options_read(), "tension", end, s->plate.side);
   done = done && app_agree(a, a->rank > 0 || plate_write(&p, &method, s->out));
   if (done) {
     printf("%s method, %lld particles, ", elastic_method_name(&s->method),

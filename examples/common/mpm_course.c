@@ -45,7 +45,9 @@ mps_status mpm_course_begin(mpm_course *c, mps_context *context, bool restores) 
     c->from = mps_mpm_time(c->m->mpm);
   }
   const double every = isnan(o->every_checkpoint) ? 0.1 * c->duration : o->every_checkpoint;
-  c->saves = (resume_schedule){.path = o->checkpoint, .every = every, .save = save, .user = c};
+  const bool lost = c->saves.lost; /* of the model before: told once */
+  c->saves = (resume_schedule){
+      .path = o->checkpoint, .every = every, .save = save, .user = c, .lost = lost};
   resume_schedule_at(&c->saves, mps_mpm_time(c->m->mpm));
   return status;
 }

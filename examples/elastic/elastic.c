@@ -41,6 +41,17 @@ void elastic_bar(app *a, double done, double share, double seconds) {
   progress_by_clock(&a->bar, seconds / (0.4 + 0.6 * threads), "solving");
 }
 
+#define SMALL 0.05 /* of a length: displacements for which the theory of small ones is one */
+
+void elastic_warn(app *a, const option *table, const char *of, double displacement, double length) {
+  if (!options_given(table, "young") && !options_given(table, of)) return;
+  if (fabs(displacement) > SMALL * length)
+    app_warn(a,
+             "the displacement of %.3g m is more than %g of the length of %g m: displacements are "
+             "computed as small ones",
+             displacement, SMALL, length);
+}
+
 void elastic_tell(const app *a, const mps_elastic_report *report) {
   if (a->domain)
     printf("%lld iterations of %d ranks, %.3f s\n", (long long)report->iterations,

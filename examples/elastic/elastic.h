@@ -31,6 +31,9 @@ double elastic_seconds(double particles);
 /* Draws the bar by the clock from `done` of the whole on, a part `share`, for what takes `seconds`
  * of one processor; 0: that is over. */
 void elastic_bar(app *a, double done, double share, double seconds);
+/* Warns of displacements that are not small, of a model given in its own units: with an option
+ * `of` it. Those of the defaults, where E is 1 Pa, are numbers of the paper and no lengths. */
+void elastic_warn(app *a, const option *table, const char *of, double displacement, double length);
 /* Ends a line on what was solved with how. */
 void elastic_tell(const app *a, const mps_elastic_report *report);
 /* Prescribes component `component` of `count` particles: values[i], m, or 0 (values NULL). */

@@ -564,20 +564,9 @@ static bool find_linear(app *a, tank_model *m) {
   return app_check(a, tank_linear(&m->s, m->samples, m->sample, m->linear));
 }
 
-#define UPRIGHT 0.05 /* rad */
-
-/* The heave and its theory are those of a box that stays upright. */
-static void warn_of_roll(app *a, const tank_model *m) {
-  if (m->roll > UPRIGHT)
-    app_warn(a,
-             "the box rolls by up to %.1f degrees: period, decay and their theory are those of the "
-             "heave of a box that stays upright",
-             180.0 / WAVES_PI * m->roll);
-}
-
 bool tank_write(app *a, tank_model *m) {
   const bool drop = m->s.kind == TANK_DROP;
-  warn_of_roll(a, m);
+  tank_warn(a, m);
   if (!find_linear(a, m)) return false;
   if (drop ? !write_drop(a, m) : !write_force(a, m) || !write_gauges(a, m)) return false;
   if (tank_swings(&m->s) && !write_structure(a, m)) return false;

@@ -162,5 +162,7 @@ mps_status tank_linear(const tank_settings *s, int64_t count, const tank_sample 
 
 /* results.c: tables, summary, pictures, the last lines on stdout. */
 bool tank_write(app *a, tank_model *m);
+/* theory.c: warns where motions are beyond what model and theory cover. */
+void tank_warn(app *a, const tank_model *m);
 
 #endif

@@ -126,3 +126,35 @@ double tank_plate_omega(const tank_settings *s) {
   }
   return sqrt(1.0 / value);
 }
+
+/* ---- where theory ends ----------------------------------------------------------------------- */
+
+#define UPRIGHT 0.05 /* rad */
+
+/* The heave and its theory are those of a box that stays upright. */
+static void warn_of_roll(app *a, const tank_model *m) {
+  if (m->roll > UPRIGHT)
+    app_warn(a,
+             "the box rolls by up to %.1f degrees: period, decay and their theory are those of the "
+             "heave of a box that stays upright",
+             180.0 / WAVES_PI * m->roll);
+}
+
+#define THIN 0.3 /* of the thickness: where a plate held at both ends begins to act as a membrane  \
+                  */
+
+static void warn_of_bending(app *a, const tank_model *m) {
+  const tank_sample *bent = m->sample;
+  for (int64_t k = 1; k < m->samples; k++)
+    if (fabs(m->sample[k].deflection) > fabs(bent->deflection)) bent = &m->sample[k];
+  if (m->s.kind == TANK_PLATE && fabs(bent->deflection) > THIN * m->s.plate_thickness)
+    app_warn(a,
+             "the plate bends by %.3g m at t = %.3f s, more than %g of its thickness of %g m: its "
+             "deflections are computed as small ones, without the tension that they cause",
+             bent->deflection, bent->t, THIN, m->s.plate_thickness);
+}
+
+void tank_warn(app *a, const tank_model *m) {
+  warn_of_roll(a, m);
+  warn_of_bending(a, m);
+}

@@ -45,9 +45,9 @@ typedef struct mps_contact_def {
   uint32_t struct_size;
   int32_t mover;   /* mps_contact_mover, default SOLVER */
   int32_t method;  /* mps_contact_method, default IMPULSE */
-  int32_t sweeps;  /* most sweeps of Gauss and Seidel over the contacts of a step, 1 to 1000, by
-                      METHOD_IMPULSE; 0 (default): 30. Each step begins with the impulses of the
-                      last; the solver takes the most that one of its contacts asks for */
+  int32_t sweeps;  /* sweeps of Gauss and Seidel over the contacts of a step, 1 to 1000, by
+                      METHOD_IMPULSE; 0 (default): 10, with a tolerance at most 30. Each step begins
+                      with the last's impulses; the solver takes the most that a contact asks for */
   double friction; /* Coulomb's mu, 0 to 1e3; default 0 */
   double penalty;  /* for METHOD_PENALTY: contact stiffness k of Nakamura (28), N/m (2D: per m of
                       thickness; in axisymmetry per m of radius and rad, times the particle's
@@ -77,11 +77,11 @@ typedef struct mps_contact_def {
                        particles, so that the grid can show how soil flows round them; less than
                        half of the body's thinnest wall. 0 (default): not at all. Not for
                        METHOD_PENALTY */
-  double tolerance; /* in [0, 1): sweeps end before `sweeps` once one changes the impulses of all
-                       contacts by less than this part (root of the sums of squares; looked at after
-                       10, 14, 18, ... sweeps). NaN (default): 3e-3 where `sweeps` is 0, else
-                       0, all of them. The solver takes the least of its contacts; mps_mpm_get_usage
-                       has what is left */
+  double tolerance; /* in [0, 1): sweeps end before `sweeps` once one changes the impulses by less
+                       than this part of them (of the block of cells with the largest, roots of sums
+                       of squares; looked at after 10, 14, 18, ... sweeps: on ranks a reduction each
+                       time). 0, NaN (default): all sweeps are made. The solver takes the least of
+                       its contacts; mps_mpm_get_usage has what is left */
 } mps_contact_def;
 
 MPS_API mps_status mps_contact_def_init(mps_contact_def *def, size_t size);

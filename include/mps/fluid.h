@@ -20,7 +20,7 @@
  * Ranks (mps/domain.h; docs/cluster.md) each make the same whole fluid, with the same boundaries,
  * bodies, loads and edits, and keep all of it; what a step finds for each particle they share. All
  * functions are collective but those that only tell numbers: limit, dt, time, steps, particles,
- * definition, totals, report and reactions. mps_fluid_save writes one file, by rank 0.
+ * definition, totals, report, reactions, and set_wall_motion, which steps compare. Rank 0 saves.
  *
  * Fluid that fills a closed space, a box under a lid, has no free surface: its pressure is known up
  * to a constant, chosen such that the least of all particles is rho g l0/2. Steps whose walls or

@@ -8,8 +8,8 @@
 
 #define ROUGHEST 1e3 /* friction */
 #define MOST_SWEEPS 1000
-#define SWEEPS 30      /* usual, */
-#define TOLERANCE 3e-3 /* with which they end before */
+#define SWEEPS 10         /* usual */
+#define SWEEPS_AT_MOST 30 /* where a tolerance may end them before */
 
 static const mps_contact_def contact_defaults = {.struct_size = sizeof(mps_contact_def),
                                                  .penalty = NAN,
@@ -126,8 +126,8 @@ mps_status mpsi_contact_new(mps_context *context, const char *function, mps_body
   contact->context = mpsi_context_retain(context);
   contact->references = 2;
   contact->def = def;
-  if (isnan(def.tolerance)) contact->def.tolerance = def.sweeps == 0 ? TOLERANCE : 0.0;
-  if (def.sweeps == 0) contact->def.sweeps = SWEEPS;
+  if (isnan(def.tolerance)) contact->def.tolerance = 0.0;
+  if (def.sweeps == 0) contact->def.sweeps = contact->def.tolerance > 0.0 ? SWEEPS_AT_MOST : SWEEPS;
   contact->body = body;
   contact->extent = mpsi_body_extent(body);
   contact->kind = kind;

@@ -198,15 +198,22 @@ static mps_status report_both(mps_domain *domain, const mps_error *own) {
   return domain->lost;
 }
 
+static mps_status settle_max(mps_domain *domain, const char *function, mps_status status,
+                             int32_t count, double *values) {
+  status = mpsi_domain_vote_begin(domain, function, status, count, values);
+  return status == MPS_OK ? mpsi_domain_vote_end(domain, function, count, values) : status;
+}
+
 mps_status mpsi_domain_settle_max(mps_domain *domain, const char *function, mps_status status,
                                   int32_t count, double *values) {
   if (!mpsi_domain_many(domain)) return status;
+  if (status == MPS_OK || domain->lost != MPS_OK ||
+      mps_context_error(domain->context)->status != status)
+    return settle_max(domain, function, status, count, values);
   const mps_error own = *mps_context_error(domain->context);
-  const bool recorded = status != MPS_OK && own.status == status, alive = domain->lost == MPS_OK;
-  status = mpsi_domain_vote_begin(domain, function, status, count, values);
-  if (status == MPS_OK) status = mpsi_domain_vote_end(domain, function, count, values);
-  const bool gone = status == MPS_ERROR_STATE; /* a rank has left: that is what to be told */
-  return alive && domain->lost != MPS_OK && recorded && !gone ? report_both(domain, &own) : status;
+  status = settle_max(domain, function, status, count, values);
+  const bool left = status == MPS_ERROR_STATE; /* another rank has: that is what is to be told */
+  return domain->lost != MPS_OK && !left ? report_both(domain, &own) : status;
 }
 
 mps_status mpsi_domain_settle(mps_domain *domain, const char *function, mps_status status) {

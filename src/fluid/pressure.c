@@ -4,18 +4,17 @@
  *
  * symmetric and positive definite, exact for a linear q (Chen 2014, Tsuruta 2015). k holds the
  * density: .003 (n/n0 - 1), not below -.0003; near the surface only what is above 0 (Tanaka 2010,
- * Khayyer and Gotoh 2011). It is a rate in time: with steps below .1 (l0/g)^1/2 it is that much
- * less. And it is less by |n/n0 - 1|/.003 where that is below 1: a wave strains the particles'
- * lattice, n follows by some 1e-4, and a source in proportion to it takes 1.5 % of the wave in 20
- * periods, at any spacing. Images of particles beyond
- * a wall have their parent's q and an offset that the wall's acceleration a gives, -rho (a . N)
- * times their distance, so they bring no unknowns; particles apart from the rest have no row and no
- * column. SPDX-License-Identifier: BSD-3-Clause */
+ * Khayyer and Gotoh 2011). It is a rate in time: with steps below .05 (l0/g)^1/2 it is that much
+ * less. And it is less by |n/n0 - 1|/.003 where that is below 1: waves change n a little without
+ * changing the density, and a source in proportion to it took 1.5 % of a wave in 20 periods, at any
+ * spacing. Images of particles beyond a wall have their parent's q and an offset that the wall's
+ * acceleration a gives, -rho (a . N) times their distance, so they bring no unknowns; particles
+ * apart from the rest have no row and no column. SPDX-License-Identifier: BSD-3-Clause */
 #include "share.h"
 
 #define DENSITY 0.003       /* k over the excess of n/n0 */
 #define SMALL_EXCESS 0.003  /* of n/n0: below, k falls as its square */
-#define FULL_STEP 0.1       /* (l0/g)^1/2: with shorter steps k is less */
+#define FULL_STEP 0.05      /* (l0/g)^1/2: with shorter steps k is less */
 #define LEAST_DENSITY -3e-4 /* k */
 
 /* Share of k in a step of this length. */

@@ -22,6 +22,18 @@ mps_status mpsi_elastic_strain_energy(mps_elastic *e, const char *function, doub
   return status;
 }
 
+mps_status mpsi_elastic_note_strain(mps_elastic *e, const char *function) {
+  mpsi_elastic_motion *m = e->motion;
+  int64_t now[2];
+  if (!m) return MPS_OK;
+  mpsi_elastic_find_fabric(e, now);
+  if (now[MPSI_FABRIC_MODULI] != m->fabric[MPSI_FABRIC_MODULI])
+    return MPS_OK; /* of the first of several changes */
+  const mps_status status = mpsi_elastic_strain_energy(e, function, &m->strain);
+  m->strain_known = status == MPS_OK;
+  return status;
+}
+
 mps_status mpsi_elastic_begin_ledger(mps_elastic *e, const char *function) {
   e->ledger = (mpsi_ledger){.kinetic = kinetic_energy(e, e->motion->velocity)};
   return mpsi_elastic_strain_energy(e, function, &e->ledger.strain);

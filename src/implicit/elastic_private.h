@@ -224,7 +224,7 @@ struct mps_elastic {
 
   mpsi_elastic_outside *outside; /* NULL: the library's own solvers */
 
-  int64_t fabric[2]; /* renewal.c: hashes, where known */
+  int64_t fabric[2]; /* fabric.c: hashes, where known */
   bool fabric_known;
   mpsi_identity *identity; /* of its snapshots */
   mpsi_ledger ledger;
@@ -552,26 +552,25 @@ typedef struct mpsi_elastic_motion {
   double *next[5];                      /* of the step being made: MPSI_NEXT_U ... */
   double *scratch;
   int64_t fabric[2]; /* of moduli and fixed directions: those that inner, held and acceleration are
-                        of (renewal.c) */
+                        of (fabric.c) */
   bool strain_known; /* with other moduli since: */
   double strain;     /* J, with those */
 } mpsi_elastic_motion;
 enum { MPSI_NEXT_U, MPSI_NEXT_V, MPSI_NEXT_A, MPSI_NEXT_INNER, MPSI_NEXT_HELD };
 
-/* ---- motion.c ---- */
+/* ---- fabric.c ---- */
+enum { MPSI_FABRIC_MODULI, MPSI_FABRIC_SUPPORTS };
+/* Hashes of moduli and fixed directions. */
+void mpsi_elastic_find_fabric(mps_elastic *e, int64_t fabric[2]);
+/* The strain energy that the last step ended with; `present`: of the present moduli, J. */
+double mpsi_elastic_former_strain(mps_elastic *e, double present);
+
+/* ---- renewal.c ---- */
 /* inner = K (u + a1 v); held = inner + a0 M v - load along fixed directions. */
 mps_status mpsi_elastic_find_forces(mps_elastic *e, const char *function, const double *u,
                                     const double *v, double *inner, double *held);
 /* a = M^-1 (F - C v - K u) on what is free; the boundaries' own on the rest. */
 void mpsi_elastic_balance(mps_elastic *e);
-
-/* ---- renewal.c ---- */
-/* Hashes of moduli and fixed directions. */
-void mpsi_elastic_find_fabric(mps_elastic *e, int64_t fabric[2]);
-/* Before moduli change: keeps the strain energy of a motion under way. */
-mps_status mpsi_elastic_note_strain(mps_elastic *e, const char *function);
-/* The strain energy that the last step ended with; `present`: of the present moduli, J. */
-double mpsi_elastic_former_strain(mps_elastic *e, double present);
 /* Before a step: the forces at its beginning, of the present moduli and boundaries. */
 mps_status mpsi_elastic_renew_motion(mps_elastic *e, const char *function);
 
@@ -588,6 +587,8 @@ void mpsi_elastic_free_arrays(mps_elastic *e, mpsi_elastic_motion *m);
 /* ---- budget.c ---------------------------------------------------------------------------------
  */
 mps_status mpsi_elastic_strain_energy(mps_elastic *e, const char *function, double *out);
+/* Before moduli change: keeps the strain energy of a motion under way. */
+mps_status mpsi_elastic_note_strain(mps_elastic *e, const char *function);
 /* At the start of a motion. */
 mps_status mpsi_elastic_begin_ledger(mps_elastic *e, const char *function);
 void mpsi_elastic_count_solution(mps_elastic *e); /* statics: loaded in proportion from rest */

@@ -408,6 +408,22 @@ mps_status mpsi_elastic_check_about(const mps_elastic *e, const char *function,
   return MPS_OK;
 }
 
+/* Nothing is written where a sum is no number. */
+static mps_status give_resultant(const mps_elastic *e, const char *function, const double *about,
+                                 double *force, double *moment) {
+  double sum[3], turn[3];
+  mpsi_elastic_resultant(e, e->load, about, sum, turn);
+  for (int c = 0; c < 3; c++)
+    if (!isfinite(sum[c]) || !isfinite(turn[c]))
+      return mpsi_fail(e->context, function, MPS_ERROR_NUMERIC,
+                       "the resultant of the loads has force[%d] = %g N and moment[%d] = %g N m: "
+                       "loads or `about` are too large",
+                       c, sum[c], c, turn[c]);
+  if (force) memcpy(force, sum, sizeof sum);
+  if (moment) memcpy(moment, turn, sizeof turn);
+  return MPS_OK;
+}
+
 mps_status mps_elastic_load_resultant(mps_elastic *e, const double *about, double *force,
                                       double *moment) {
   if (!e) return MPS_ERROR_ARGUMENT;
@@ -417,7 +433,7 @@ mps_status mps_elastic_load_resultant(mps_elastic *e, const double *about, doubl
   double *mass = e->mass;
   if (status == MPS_OK && !e->motion) status = mpsi_elastic_weigh(e, __func__, &mass);
   if (status == MPS_OK) status = mpsi_elastic_gather_loads(e, __func__, mps_elastic_time(e));
-  if (status == MPS_OK) mpsi_elastic_resultant(e, e->load, about, force, moment);
+  if (status == MPS_OK) status = give_resultant(e, __func__, about, force, moment);
   mpsi_elastic_settle_mass(e, mass, false);
   return mpsi_elastic_leave(e, status);
 }

@@ -119,24 +119,6 @@ static mps_status read_or_zero(mps_elastic *e, const char *function, const char 
   return mpsi_elastic_read(e, function, name, values, e->dim);
 }
 
-mps_status mpsi_elastic_find_forces(mps_elastic *e, const char *function, const double *u,
-                                    const double *v, double *inner, double *held) {
-  mpsi_elastic_motion *m = e->motion;
-  const int64_t all = e->n * e->dim;
-  for (int64_t k = 0; k < all; k++) m->scratch[k] = u[k] + m->a1 * v[k];
-  const mps_status status = mpsi_elastic_apply(e, function, m->scratch, inner);
-  for (int64_t k = 0; k < all; k++)
-    held[k] = inner[k] + m->a0 * e->mass[k / e->dim] * v[k] - e->load[k];
-  return status;
-}
-
-void mpsi_elastic_balance(mps_elastic *e) {
-  mpsi_elastic_motion *m = e->motion;
-  const int64_t all = e->n * e->dim;
-  for (int64_t k = 0; k < all; k++) m->acceleration[k] = -m->held[k] / e->mass[k / e->dim];
-  mpsi_elastic_impose(e, 2, m->acceleration);
-}
-
 static void set_reaction(mps_elastic *e, const double *held, const double *a) {
   for (int64_t k = 0; k < e->n * e->dim; k++) e->reaction[k] = held[k] + e->mass[k / e->dim] * a[k];
   mpsi_elastic_keep_fixed(e, e->reaction);

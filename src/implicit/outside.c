@@ -177,6 +177,11 @@ static mps_status solve(mps_elastic *e, const char *function, const double *rhs,
       mpsi_callback_status(e->context, function, "the callback solve of mps_elastic_set_solver",
                            failures, def->solve(def->user, b, e->def.tolerance, x, &iterations));
   if (status != MPS_OK) return status;
+  for (int64_t k = 0; k < all; k++) /* also of rows that are held, which nothing reads */
+    if (!isfinite(x[k]))
+      return mpsi_fail(e->context, function, MPS_ERROR_NUMERIC,
+                       "the callback solve of mps_elastic_set_solver has given x[%lld] = %g",
+                       (long long)k, x[k]);
   e->report.iterations += iterations;
   copy_rows(e, solution, x, false);
   return MPS_OK;

@@ -60,3 +60,10 @@ mps_status mpsi_checkpoint_restore(const mpsi_state_of *of, const char *function
   (void)path, (void)info;
   return unsupported(of->context, function);
 }
+
+mps_status mpsi_checkpoint_save_values(const mpsi_state_of *of, const char *function,
+                                       const char *path, const mps_checkpoint *info,
+                                       mps_particles *whole, const mpsi_values *state) {
+  (void)path, (void)info, (void)whole, (void)state;
+  return unsupported(of->context, function);
+}

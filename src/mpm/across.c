@@ -216,8 +216,8 @@ static bool is_before(const mps_mpm *mpm, const mpsi_cell_block *cells, const in
   return across > 0.0;
 }
 
-/* Whether the place of tile node `at` lies so deep below the tangent plane at the particle's foot
- * that it is no corner of a cell which the plane cuts. */
+/* Whether the place of tile node `at` lies a cell or more below the tangent plane at the particle's
+ * foot, along the axis that is nearest to the normal. */
 static bool is_deep(const mps_mpm *mpm, const mpsi_cell_block *cells, const int *at,
                     const mpsi_foot *foot) {
   const double local[3] = {at[0], at[1], at[2]};
@@ -225,7 +225,7 @@ static bool is_deep(const mps_mpm *mpm, const mpsi_cell_block *cells, const int 
   mpsi_node_position(mpm, cells->at, local, x);
   for (int c = 0; c < mpm->dim; c++) {
     depth -= (x[c] - foot->at[c]) * foot->normal[c];
-    cell += fabs(foot->normal[c]) * mpm->def.cell;
+    cell = fmax(cell, fabs(foot->normal[c]) * mpm->def.cell);
   }
   return depth > (1.0 - 1e-9) * cell;
 }

@@ -4,10 +4,10 @@
  * of the particles from which a thin body parts it: the straight way from particle to node leads
  * through the body. A node in such a body stands where its nearest point of the surface is.
  *
- * The nodes in the body take part as all others. Of those across, only corners of cells that the
- * tangent plane at the particle's foot cuts do, as beside thick bodies: a node further off would
- * have hardly any mass, and of the pressure at the surface another part than of the impulses that
- * bear it. What is left is fitted (fitted.c).
+ * The nodes in the body take part as all others. Those across do where they lie less than a cell
+ * behind the tangent plane at the particle's foot, much as beside thick bodies: a node further off
+ * would have hardly any mass, and of the pressure at the surface another part than of the impulses
+ * that bear it. What is left is fitted (fitted.c).
  *
  * Which is asked for each particle and node, not for the whole body: so it holds beside the ends
  * and edges of plates and piles, where the ground is connected, and of meshes. Three sides that

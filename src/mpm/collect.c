@@ -2,6 +2,7 @@
  * and a particle that ends the step. SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
 #include "particles.h"
+#include "sweeps.h"
 
 #include "core/particles_internal.h"
 
@@ -26,21 +27,30 @@ static mps_status report_bad(mps_mpm *mpm, const char *function, int64_t k, cons
 static mps_status collect_ranks(mps_mpm *mpm, const char *function, double speed, int64_t bad,
                                 int64_t lost) {
   mpsi_share *share = mpm->share;
-  enum { SPEED, STALE, BAD, LOST, EDITED, CANCEL, FOUND };
+  enum { SPEED, STALE, BAD, LOST, EDITED, CANCEL, CHANGED, IMPULSES, FOUND };
+  double most[MPSI_SWEEP_SUMS];
+  mpsi_mpm_sweep_sums(mpm, most);
   mps_status own = MPS_OK, status = share->lost;
   if (bad >= 0)
     own = report_bad(mpm, function, bad, "is not finite, is beyond 1e100 m/s or has no volume");
   else if (lost >= 0)
     own = report_bad(mpm, function, lost, "has left the domain");
   if (bad < 0) mpsi_mpm_let_go(mpm);
-  double found[FOUND] = {speed,     mpm->run.stale,  bad >= 0,
-                         lost >= 0, mpm->run.edited, mpsi_cancelled(mpm->context)};
+  double found[FOUND] = {speed,
+                         mpm->run.stale,
+                         bad >= 0,
+                         lost >= 0,
+                         mpm->run.edited,
+                         mpsi_cancelled(mpm->context),
+                         most[MPSI_SWEEP_CHANGED],
+                         most[MPSI_SWEEP_IMPULSES]};
   status = mpsi_domain_settle_max(share->domain, function, status, FOUND, found);
   mpm->run.broken = status != MPS_OK || found[BAD] > 0.0;
   if (status != MPS_OK) return status;
   mpm->run.stale = found[STALE] > 0.0;
   mpm->run.edited = found[EDITED] > 0.0;
   share->cancel = found[CANCEL] > 0.0;
+  mpm->contact.impulses.left = mpsi_mpm_relative_change(found + CHANGED);
   if (!mpm->run.broken) mpm->run.speed = found[SPEED];
   mpm->run.lost = mpm->run.lost || (!mpm->run.broken && found[LOST] > 0.0);
   if (mpm->run.lost) mpm->run.stale = true;

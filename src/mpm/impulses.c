@@ -1,15 +1,15 @@
 /* impulses.c - the impulses of a step, by sweeps of projected Gauss and Seidel over the touches
  * (touches.c): each visit satisfies one contact exactly with all others as they are
  * (contact/impulse.h), and moves its nodes by psi_i J/m_i at once (sweep.c). Sweeps go forward and
- * backward in turn, begin with the impulses of the last step, and end where one changes the
- * impulses by less than a tolerance.
+ * backward in turn, begin with the impulses of the last step, and end at their number or, where a
+ * contact asks for it, once one changes the impulses by less than a tolerance.
  *
  * Blocks of one colour share no node: where no body moves freely, their sweeps are independent and
  * shared out among the threads, with the same bits. A free body is in contact with all blocks at
  * once; then one thread takes them in their order. SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
+#include "sweeps.h"
 
-#include "core/exact.h"
 #include "domain/domain_internal.h"
 
 #include <string.h>
@@ -66,20 +66,30 @@ static int32_t most_sweeps(const mps_mpm *mpm, double *tolerance) {
   return most;
 }
 
-/* Change of all impulses in the last sweep, root of the sum of squares over that of the impulses.
- * Exact sums over blocks: the same on any number of ranks. */
-static double relative_change(mps_mpm *mpm) {
+void mpsi_mpm_sweep_sums(const mps_mpm *mpm, double *most) {
   const mpsi_impulses *all = &mpm->contact.impulses;
-  mpsi_exact sum[2] = {{{0}}, {{0}}};
-  for (int64_t k = 0; k < all->block_count; k++) {
+  most[MPSI_SWEEP_CHANGED] = most[MPSI_SWEEP_IMPULSES] = 0.0;
+  for (int64_t k = 0; k < all->block_count && all->sweeps > 0; k++) {
     if (all->block[k].cells < 0) continue;
-    mpsi_exact_add(&sum[0], all->block[k].changed);
-    mpsi_exact_add(&sum[1], all->block[k].impulses);
+    most[MPSI_SWEEP_CHANGED] = fmax(most[MPSI_SWEEP_CHANGED], all->block[k].changed);
+    most[MPSI_SWEEP_IMPULSES] = fmax(most[MPSI_SWEEP_IMPULSES], all->block[k].impulses);
   }
-  if (mpm->share && mpm->share->lost == MPS_OK)
-    mpm->share->lost = mpsi_domain_sum_exact(mpm->share->domain, "mps_mpm_step", 2, sum);
-  const double changed = mpsi_exact_value(&sum[0]), impulses = mpsi_exact_value(&sum[1]);
-  return changed > 0.0 ? sqrt(changed / impulses) : 0.0;
+}
+
+double mpsi_mpm_relative_change(const double *most) {
+  const double changed = most[MPSI_SWEEP_CHANGED];
+  return changed > 0.0 ? sqrt(changed / most[MPSI_SWEEP_IMPULSES]) : 0.0;
+}
+
+/* Of all ranks where sweeps may end by it (`agree`); else they hear of it at the end of the step,
+ * with what they agree on there (collect.c). */
+static void find_change(mps_mpm *mpm, bool agree) {
+  double most[MPSI_SWEEP_SUMS];
+  mpsi_mpm_sweep_sums(mpm, most);
+  if (agree && mpm->share && mpm->share->lost == MPS_OK)
+    mpm->share->lost =
+        mpsi_domain_settle_max(mpm->share->domain, "mps_mpm_step", MPS_OK, MPSI_SWEEP_SUMS, most);
+  mpm->contact.impulses.left = mpsi_mpm_relative_change(most);
 }
 
 /* Sweeps may end after so many: half of them went backward, and fewer than ten follow what changes
@@ -136,7 +146,7 @@ void mpsi_mpm_apply_impulses(mps_mpm *mpm) {
     sweep_all(mpm, false, s % 2 == 0);
     all->sweeps = s;
     if (s < most && (tolerance == 0.0 || !is_checked(s))) continue;
-    all->left = relative_change(mpm);
+    find_change(mpm, tolerance > 0.0);
     if (!(all->left > tolerance)) break;
   }
   mpsi_mpm_mirror_touches(mpm);

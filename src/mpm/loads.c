@@ -83,6 +83,8 @@ void mpsi_mpm_drop_loads(mps_mpm *mpm) {
   mpsi_free(mpm->context, mpm->loads.traction);
 }
 
+#define STRONGEST 1e150 /* N: impulses are numbers */
+
 static mps_status check_numbers(mps_mpm *mpm, const char *function, const mps_mpm_load_def *def) {
   const int64_t most = mpm->share ? MPSI_MPM_MOST_PARTICLES : mpm->p.count;
   if (def->id_count < 1 || def->id_count > most || !def->ids)
@@ -93,6 +95,16 @@ static mps_status check_numbers(mps_mpm *mpm, const char *function, const mps_mp
     if (!isfinite(def->area[k]))
       return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
                        "area[%lld] is %g m2, must be finite", (long long)k, def->area[k]);
+    else
+      for (int c = 0; c < mpm->dim; c++) {
+        const double force = def->area[k] * def->traction[c] * def->factor[c];
+        if (!(fabs(force) <= STRONGEST))
+          return mpsi_fail(mpm->context, function, MPS_ERROR_ARGUMENT,
+                           "area[%lld] is %g m2 with traction[%d] %g Pa and factor[%d] %g, a force "
+                           "of %g N: allowed is up to %g N",
+                           (long long)k, def->area[k], c, def->traction[c], c, def->factor[c],
+                           force, STRONGEST);
+      }
   return MPS_OK;
 }
 

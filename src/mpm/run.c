@@ -2,6 +2,7 @@
  * SPDX-License-Identifier: BSD-3-Clause */
 #include "kernels.h"
 #include "particles.h"
+#include "settle.h"
 
 /* All ranks are asked for the same. */
 static mps_status same_on_ranks(mps_mpm *mpm, const char *function, mps_status status,
@@ -56,8 +57,7 @@ mps_status mps_mpm_step(mps_mpm *mpm, int64_t count) {
   for (int64_t k = 0; k < count && status == MPS_OK; k++) {
     if (mpm->run.edited) status = mpsi_mpm_tidy(mpm, __func__); /* some have left */
     if (status == MPS_OK) status = check_bounded(mpm, __func__);
-    if (status == MPS_OK) mpsi_mpm_leave_settling(mpm);
-    if (status == MPS_OK) status = mpsi_mpm_take_step(mpm, __func__, mps_mpm_dt(mpm));
+    if (status == MPS_OK) status = mpsi_mpm_step_from_settling(mpm, __func__, mps_mpm_dt(mpm));
     if (status == MPS_OK && k + 1 < count) status = ask_cancel(mpm, __func__);
   }
   if (status != MPS_OK && mpm->run.steps == steps) mpsi_mpm_put_off(mpm, &before);
@@ -98,9 +98,8 @@ static mps_status march(mps_mpm *mpm, const char *function, const run *r) {
   while (status == MPS_OK && mpm->run.time < r->t_end) {
     if (called || mpm->run.edited) status = mpsi_mpm_tidy(mpm, function); /* some have left */
     if (status != MPS_OK) break;
-    mpsi_mpm_leave_settling(mpm);
     const int64_t steps = mpm->run.steps;
-    status = mpsi_mpm_take_step(mpm, function, next_step(mpm, r->t_end, &last));
+    status = mpsi_mpm_step_from_settling(mpm, function, next_step(mpm, r->t_end, &last));
     if (last && mpm->run.steps > steps) mpm->run.time = r->t_end; /* a refused step took no time */
     done++;
     called = r->callback && (done % r->every == 0 || last);

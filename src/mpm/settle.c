@@ -1,6 +1,8 @@
 /* settle.c - static equilibrium by dynamic relaxation with kinetic damping: the particles swing
  * towards equilibrium, and where their kinetic energy has passed a peak they are stopped, since
  * there the forces are near balance. SPDX-License-Identifier: BSD-3-Clause */
+#include "settle.h"
+
 #include "particles.h"
 
 #include <mps/mpm_settle.h>
@@ -111,6 +113,23 @@ static void put_motion_back(mps_mpm *mpm, const double *kept) {
       if (column) column[at] = kept[(c + 1) * n + k];
     }
   }
+}
+
+mps_status mpsi_mpm_step_from_settling(mps_mpm *mpm, const char *function, double dt) {
+  if (!mpm->settling.cut) return mpsi_mpm_take_step(mpm, function, dt);
+  const int64_t steps = mpm->run.steps;
+  const mpsi_energy energy = mpm->energy;
+  double *motion = NULL;
+  if (!mpm->share && !(motion = keep_motion(mpm, function))) return MPS_ERROR_MEMORY;
+  mpsi_mpm_leave_settling(mpm);
+  const mps_status status = mpsi_mpm_take_step(mpm, function, dt);
+  if (motion && status != MPS_OK && mpm->run.steps == steps && !mpm->run.broken) {
+    put_motion_back(mpm, motion);
+    memcpy(mpm->energy.sum, energy.sum, sizeof energy.sum);
+    mpm->settling.cut = true;
+  }
+  mpsi_free(mpm->context, motion);
+  return status;
 }
 
 enum { UNBALANCED, APPLIED, KINETIC, SUMS };

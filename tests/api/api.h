@@ -71,6 +71,7 @@ typedef struct api_object {
   uint64_t serial; /* of all objects ever made; the latest has the highest */
   uint64_t owner;  /* of a contact or snapshot: the solver's serial */
   bool loose;      /* a solver whose energies need not add up (calls_solver.h) */
+  bool drags;      /* nor need its momentum: it is damped, or driven by displacements */
   int part_count;
   api_part parts[API_PARTS];
   mps_edit edits[API_EDITS]; /* of a set; data NULL: none */
@@ -109,6 +110,7 @@ typedef struct api {
   int32_t threads;
   int32_t dim;          /* of the scene */
   bool verbose, steady; /* steady: no refused allocations, whose number depends on the threads */
+  bool pushed;          /* loads or contacts have been given, whose impulses no boundary tells */
   uint64_t digest;      /* of all statuses and states so far */
   jmp_buf failed;
   char reason[400]; /* what is broken; "" nothing */

@@ -20,6 +20,8 @@ static bool has_step(const mps_dynamics *dynamics) {
   return mps_dynamics_get_def(dynamics, &def) == MPS_OK && def.dt > 0.0;
 }
 
+#define SOLVER_GRAVITY(s, account) (void)(account);
+#define SOLVER_MOMENTUM true
 #define SOLVER_COUNTS(s) has_step(s)
 #define SOLVER_DT(s) step_of(s)
 API_SOLVER(dynamics, API_DYNAMICS)

@@ -6,6 +6,8 @@
 #include <mps/experimental.h>
 #include <mps/mps.h>
 
+#define SOLVER_GRAVITY(s, account) (void)(account);
+#define SOLVER_MOMENTUM true
 #define SOLVER_COUNTS(s) true
 #define SOLVER_DT(s) mps_elastic_dt(s)
 API_SOLVER(elastic, API_ELASTIC)
@@ -64,7 +66,7 @@ static void experimental_published(api *a) {
 static void elastic_update_material(api *a) {
   api_begin(a, "mps_elastic_update_material");
   api_object *o = api_any(a, API_ELASTIC);
-  o->loose = true;
+  o->drags = true;
   (void)api_end(a, mps_elastic_update_material(o->handle));
 }
 
@@ -73,7 +75,7 @@ static void elastic_set_material(api *a) {
   int64_t ids[8] = {0};
   api_object *o = api_any(a, API_ELASTIC);
   mps_elastic *e = o->handle;
-  o->loose = o->loose || !a->latest;
+  o->drags = o->drags || !a->latest;
   mps_material *material = api_any(a, API_MATERIAL)->handle;
   const int64_t count = api_chance(a, 60) ? api_ids(a, mps_elastic_particles(e), 8, ids) : 0;
   (void)api_end(a, mps_elastic_set_material(e, material, count, count ? ids : NULL));
@@ -137,7 +139,7 @@ static void elastic_add_boundary(api *a) {
   int32_t number = -1;
   api_object *o = api_any(a, API_ELASTIC);
   mps_elastic *e = o->handle;
-  o->loose = o->loose || !a->latest;
+  o->drags = o->drags || !a->latest;
   draw_boundary(a, e, &def, ids, values);
   api_arm(a);
   (void)api_end(a, mps_elastic_add_boundary(e, api_null(a, "def") ? NULL : &def,
@@ -151,7 +153,7 @@ static void elastic_set_boundary(api *a) {
   double values[3 * MOST];
   api_object *o = api_any(a, API_ELASTIC);
   mps_elastic *e = o->handle;
-  o->loose = o->loose || !a->latest;
+  o->drags = o->drags || !a->latest;
   const int32_t number = (int32_t)api_least(a, "number", 0, 2);
   draw_boundary(a, e, &def, ids, values);
   api_arm(a);
@@ -357,6 +359,8 @@ static void elastic_start(api *a) {
   def.mass_damping = api_real(a, "mass_damping", 0.0, 1e300, 0.0);
   def.stiffness_damping = api_real(a, "stiffness_damping", 0.0, 1e300, 0.0);
   def.time = api_near(a, "time", 0.0, 0.0);
+  /* momenta are those of forces at both ends of a step, with Newmark's average acceleration */
+  o->drags = o->drags || def.rho_inf != 1.0 || def.mass_damping != 0.0;
   api_run_solver(a, API_ELASTIC, o);
   (void)api_end(a, mps_elastic_start(o->handle, api_null(a, "def") ? NULL : &def));
 }

@@ -6,6 +6,8 @@
 #include <mps/fluid_solver.h>
 #include <mps/mps.h>
 
+#define SOLVER_GRAVITY(s, account) (void)(account);
+#define SOLVER_MOMENTUM false
 #define SOLVER_COUNTS(s) true
 #define SOLVER_DT(s) mps_fluid_dt(s)
 API_SOLVER(fluid, API_FLUID)

@@ -5,6 +5,17 @@
 #include <mps/experimental.h>
 #include <mps/mps.h>
 
+/* Damping of nodes takes momentum; and beside a side nodes that the fit moves across it have some
+ * that no reaction tells, so that only ground that no side has held is looked at. */
+static void mpm_gravity(mps_mpm *mpm, api_account *account) {
+  mps_mpm_def def;
+  if (mps_mpm_get_def(mpm, &def) != MPS_OK) return;
+  memcpy(account->gravity, def.gravity, sizeof def.gravity);
+  account->pushed = account->pushed || def.local_damping != 0.0 || def.viscous_damping != 0.0;
+  for (int c = 0; c < 3; c++) account->pushed = account->pushed || account->impulse[c] != 0.0;
+}
+#define SOLVER_GRAVITY(s, account) mpm_gravity(s, account);
+#define SOLVER_MOMENTUM true
 #define SOLVER_COUNTS(s) true
 #define SOLVER_DT(s) mps_mpm_dt(s)
 API_SOLVER(mpm, API_MPM)

@@ -14,6 +14,7 @@ void api_stepped(api *a, mps_status status, int64_t before, int64_t after) {
 
 void api_reads_edits(api *a, api_kind kind, mps_status status) {
   if (kind == API_MPM) a->change = status == MPS_OK ? API_CHANGES_ORDER : API_CHANGES_PLACES;
+  if (kind == API_DYNAMICS && status == MPS_OK) a->change = API_CHANGES_ORDER;
 }
 
 double api_t_end(api *a, double time, double dt) {
@@ -62,11 +63,31 @@ void api_damage(api *a, const char *path) {
   free(bytes);
 }
 
-void api_balance(api *a, const api_account *before, const api_account *after) {
-  const mps_totals *x = &before->totals, *y = &after->totals;
-  if (after->status != MPS_OK || after->count != before->count) return;
-  if (!(fabs(y->mass - x->mass) <= 1e-9 * fabs(x->mass)))
-    api_broken(a, "succeeds, and the mass is %.17g, not %.17g", y->mass, x->mass);
+bool api_field_acts(mps_particles *set) {
+  static const char *const names[] = {"external_force", "body_acceleration", "damping"};
+  mps_view view;
+  for (int k = 0; k < API_COUNT(names); k++) {
+    bool there = false;
+    for (int32_t f = 0; f < mps_particles_field_count(set); f++) {
+      mps_field_info info;
+      there = there ||
+              (mps_particles_field(set, f, &info) == MPS_OK && strcmp(info.name, names[k]) == 0);
+    }
+    if (!there || mps_particles_view(set, names[k], &view) != MPS_OK) continue;
+    for (int64_t i = 0; i < view.shape[0]; i++)
+      for (int64_t c = 0; c < view.shape[1]; c++)
+        if (*mps_view_f64(&view, i, c) != 0.0) return true;
+  }
+  return false;
+}
+
+void api_add_impulse(api_account *account, mps_status status, const mps_reaction *reaction) {
+  if (status != MPS_OK) return;
+  account->removed += reaction->removed_mass;
+  for (int c = 0; c < 3; c++) account->impulse[c] += reaction->impulse[c];
+}
+
+static void balance_energy(api *a, const mps_totals *x, const mps_totals *y) {
   const double change[] = {y->kinetic - x->kinetic,
                            y->strain - x->strain,
                            y->dissipated - x->dissipated,
@@ -83,6 +104,36 @@ void api_balance(api *a, const api_account *before, const api_account *after) {
   if (!(largest < 1e15) || isnan(sum)) return; /* not counted, or beyond what has digits left */
   if (!(fabs(sum) <= 1e-8 * largest))
     api_broken(a, "succeeds, and the energies miss %g of %g J", sum, largest);
+}
+
+static void balance_momentum(api *a, const api_account *before, const api_account *after) {
+  const mps_totals *x = &before->totals, *y = &after->totals;
+  for (int c = 0; c < 3; c++) {
+    const double weight = y->mass * after->gravity[c] * (after->time - before->time);
+    const double given = after->impulse[c] - before->impulse[c] + weight;
+    const double sizes[] = {x->linear[c], y->linear[c], after->impulse[c], weight,
+                            sqrt(2.0 * y->mass * (x->kinetic + y->kinetic))};
+    double largest = 1e-12;
+    for (int k = 0; k < API_COUNT(sizes); k++) largest = fmax(largest, fabs(sizes[k]));
+    const double missing = y->linear[c] - x->linear[c] - given;
+    if (!(largest < 1e15) || fabs(missing) <= 1e-8 * largest) continue;
+    api_broken(a, "succeeds, and the momentum along %c misses %g of %g N s", "xyz"[c], missing,
+               largest);
+  }
+}
+
+void api_balance(api *a, const api_object *o, const api_account *before, const api_account *after,
+                 bool momentum) {
+  const mps_totals *x = &before->totals, *y = &after->totals;
+  if (after->status != MPS_OK) return;
+  const double gone = after->removed - before->removed;
+  if ((after->count == before->count || !a->pushed) &&
+      !(fabs(y->mass + gone - x->mass) <= 1e-9 * fabs(x->mass)))
+    api_broken(a, "succeeds, and the mass is %.17g, not %.17g less %.17g", y->mass, x->mass, gone);
+  if (after->count != before->count) return;
+  if (!o->loose) balance_energy(a, x, y);
+  if (momentum && !o->drags && !a->pushed && !before->pushed && !after->pushed)
+    balance_momentum(a, before, after);
 }
 
 void api_read(api *a, api_kind kind, api_object *o, mps_particles *set, api_state *state) {

@@ -16,8 +16,9 @@
 /* What a step or run may leave when it fails: steps that were made before stay. `steps`: taken
  * before and after. A step that diverged may have happened. */
 void api_stepped(api *a, mps_status status, int64_t before, int64_t after);
-/* A snapshot or checkpoint of WLS-MPM reads first what the caller has edited, as a step does; one
- * that is refused leaves the edits unread, but may have sorted the particles. */
+/* A snapshot or checkpoint of WLS-MPM or explicit dynamics reads first what the caller has edited,
+ * as a step does; one that is refused leaves the edits unread, but may have sorted the particles of
+ * WLS-MPM. */
 void api_reads_edits(api *a, api_kind kind, mps_status status);
 /* t_end of a run of a few steps. */
 double api_t_end(api *a, double time, double dt);
@@ -25,16 +26,23 @@ double api_t_end(api *a, double time, double dt);
 void api_path(api *a, char path[300], const char *kind);
 /* In an absurd mood: damages the file. */
 void api_damage(api *a, const char *path);
-/* Mass and energy before and after steps that took or gave no particle: mass stays, and so does the
- * sum of mps_totals, to 1e-8 of its largest term. Not of a solver that holds particles by ids
- * (WLS-MPM), nor where boundaries or moduli have changed under way (implicit elasticity): `loose`.
- */
+/* Before and after steps: what open sides have taken out is what the mass lacks. Where they took
+ * nothing, the sum of mps_totals stays, to 1e-8 of its largest term (but of a solver that holds
+ * particles by ids, WLS-MPM: `loose`); and where there are only boundaries and gravity, the
+ * momentum changes by their impulses, to 1e-9 of what has flowed (SOLVER_MOMENTUM: not of the
+ * fluid, whose header states another bound). */
 typedef struct api_account {
   mps_status status;
   int64_t count;
+  double time, removed, impulse[3], gravity[3]; /* s, kg, N s, m/s2 */
+  bool pushed;                                  /* forces or damping by fields of the set */
   mps_totals totals;
 } api_account;
-void api_balance(api *a, const api_account *before, const api_account *after);
+/* Whether forces or damping on the particles are fields of the set, and not all 0. */
+bool api_field_acts(mps_particles *set);
+void api_add_impulse(api_account *account, mps_status status, const mps_reaction *reaction);
+void api_balance(api *a, const api_object *o, const api_account *before, const api_account *after,
+                 bool momentum);
 
 /* Parts of a solver, then of its set. */
 typedef struct api_state {
@@ -84,7 +92,7 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *when);
     api_begin(a, "mps_" #S "_remove_boundary");                                                    \
     api_object *o = api_any(a, KIND);                                                              \
     mps_##S *s = o->handle;                                                                        \
-    o->loose = o->loose || KIND == API_ELASTIC;                                                    \
+    o->drags = o->drags || KIND == API_ELASTIC;                                                    \
     (void)api_end(a, mps_##S##_remove_boundary(s, (int32_t)api_least(a, "number", 0, 8)));         \
   }                                                                                                \
   static void S##_remove_load(api *a) {                                                            \
@@ -93,7 +101,15 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *when);
     (void)api_end(a, mps_##S##_remove_load(s, (int32_t)api_least(a, "number", 0, 3)));             \
   }                                                                                                \
   static api_account S##_account(mps_##S *s) {                                                     \
-    api_account account = {.count = mps_particles_count(mps_##S##_particles(s))};                  \
+    api_account account = {.count = mps_particles_count(mps_##S##_particles(s)),                   \
+                           .time = mps_##S##_time(s),                                              \
+                           .pushed = api_field_acts(mps_##S##_particles(s))};                      \
+    for (int32_t k = 0; k < 16; k++) {                                                             \
+      mps_reaction reaction;                                                                       \
+      const mps_status given = mps_##S##_get_reaction(s, k, &reaction);                            \
+      api_add_impulse(&account, given, &reaction);                                                 \
+    }                                                                                              \
+    SOLVER_GRAVITY(s, &account)                                                                    \
     account.status = mps_##S##_get_totals(s, &account.totals);                                     \
     return account;                                                                                \
   }                                                                                                \
@@ -105,9 +121,9 @@ void api_same(api *a, const api_state *x, const api_state *y, const char *when);
     api_run_solver(a, KIND, o);                                                                    \
     const mps_status status = mps_##S##_step(s, count);                                            \
     api_stepped(a, status, before, mps_##S##_steps(s));                                            \
-    if (status == MPS_OK && first.status == MPS_OK && !o->loose) {                                 \
+    if (status == MPS_OK && first.status == MPS_OK) {                                              \
       const api_account last = S##_account(s);                                                     \
-      api_balance(a, &first, &last);                                                               \
+      api_balance(a, o, &first, &last, SOLVER_MOMENTUM);                                           \
     }                                                                                              \
     return api_end(a, status);                                                                     \
   }                                                                                                \

@@ -63,7 +63,16 @@ static void refuse_memory(api *a) {
   api_say(a, "/* memory */ ");
 }
 
+static bool may_push(const char *name) {
+  static const char *const parts[] = {"_add_load", "_set_load", "_add_contact",
+                                      "_add_body", "_restore",  "_settle"};
+  for (int k = 0; k < API_COUNT(parts); k++)
+    if (strstr(name, parts[k])) return true;
+  return false;
+}
+
 void api_begin(api *a, const char *name) {
+  a->pushed = a->pushed || may_push(name);
   a->name = name;
   a->wrong = 0;
   a->wrong_name = "";

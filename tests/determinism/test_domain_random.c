@@ -93,7 +93,9 @@ static mps_status add_body(subject *s, plan *p, double width, double height, int
   mps_body_def def = mps_body_defaults();
   mps_contact_def contact = mps_contact_defaults();
   mps_body_motion motion = mps_body_motion_defaults();
-  def.position[0] = uniform(p, 0.2, 0.8) * width, def.position[1] = height + 0.111;
+  const bool within = pick(p, 3) == 0; /* the soil, which is pushed out at the start */
+  def.position[0] = uniform(p, 0.2, 0.8) * width;
+  def.position[1] = height + (within ? uniform(p, 0.02, 0.1) : 0.111);
   if (free_body) {
     def.motion = MPS_BODY_MOTION_FREE;
     def.mass = 20.0, def.inertia[2] = 0.2, def.velocity[1] = -2.0, def.gravity[1] = -9.81;
@@ -169,9 +171,9 @@ static mps_status make_fluid(subject *s, plan *p, mps_domain *domain, bool odd) 
   return status;
 }
 
-/* A motion of the caller's; with `user` another one from some time on. */
+/* A motion of the caller's; with `user` another one from the first step on. */
 static mps_status shake(void *user, double t, double motion[3]) {
-  motion[0] = 1e-4 * sin(200.0 * t) + (user && t > 2.5e-4 ? 1e-12 : 0.0);
+  motion[0] = 1e-4 * sin(200.0 * t) + (user && t > 0.0 ? 1e-12 : 0.0);
   motion[1] = 2e-2 * cos(200.0 * t), motion[2] = -4.0 * sin(200.0 * t);
   return MPS_OK;
 }
@@ -199,6 +201,7 @@ static mps_status make_dynamics(subject *s, plan *p, mps_domain *domain, bool od
   TRY(mps_dynamics_add_boundary(s->dynamics, &floor, &s->wall));
   mps_signal_destroy(&signal);
   TRY(edit_velocity(s, 0.0, uniform(p, -1.0, 1.0)));
+  if (shaken) TRY(mps_dynamics_step(s->dynamics, 1)); /* which tells whether motions differ */
   return status;
 }
 

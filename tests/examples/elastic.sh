@@ -51,3 +51,12 @@ for figure in beam/deflection hole/ligament; do
 done
 picture "$work/beam/convergence.png" 900x600 c0392b 2980b9 16a085 7f8c8d
 picture "$work/hole/stress.png" 0x0
+
+# Displacements that are no small ones are warned of, but not those of the paper's E = 1 Pa.
+"$1/mps-cantilever" --young 10kPa --load 1000 --out "$work/soft" >/dev/null 2>"$work/warned"
+grep -q "warning: the displacement of -3.* m is more than 0.05 of the length of 3.66667 m" "$work/warned" || fail "a soft beam: $(cat "$work/warned")"
+grep '"warnings"' "$work/soft/summary.json" | grep -q "small ones" || fail "summary.json has no warning"
+"$1/mps-cantilever" --out "$work/paper" >/dev/null 2>"$work/warned"
+[ ! -s "$work/warned" ] || fail "the defaults are warned of"
+"$1/mps-plate" --young 1MPa --tension 100kPa --out "$work/soft" >/dev/null 2>"$work/warned"
+grep -q "warning: the displacement of 0.1 m is more than" "$work/warned" || fail "a soft plate: $(cat "$work/warned")"

@@ -56,3 +56,9 @@ for blocks in 1 2 4 8 16; do
   [ "$status" -eq 0 ] || ! grep -q "Results" "$work/out" || fail "results announced"
   [ ! -e "$work/l$blocks/motion.png" ] || picture "$work/l$blocks/motion.png" 1000x640 1f4e8c c0392b
 done
+# Checkpoints that cannot be written are told of once, in a run of several models too.
+status=0
+(ulimit -f 16 && "$1/mps-column-collapse" --compare --h 0.025 --falls 0.2 --threads 1 --out "$work/c") >"$work/out" \
+  2>"$work/log" || status=$?
+[ "$status" -eq 1 ] || fail "no checkpoints: exit code $status: $(cat "$work/log")"
+[ "$(grep -c "no checkpoint is written" "$work/log")" -eq 1 ] || fail "lines: $(cat "$work/log")"

@@ -47,7 +47,7 @@ static void sweeps_end_at_their_tolerance(void **state) {
   const struct {
     int32_t sweeps, most;
     double tolerance, least;
-  } cases[] = {{0, 30, NAN, 3e-3}, {0, 30, 1e-6, 1e-6}, {200, 200, 1e-6, 1e-6}, {7, 7, NAN, 0.0}};
+  } cases[] = {{0, 10, NAN, 0.0}, {0, 30, 1e-6, 1e-6}, {200, 200, 1e-6, 1e-6}, {7, 7, NAN, 0.0}};
   double mean[4] = {0.0};
   for (int k = 0; k < 4; k++) {
     press p = make_press(cases[k].sweeps, cases[k].tolerance);
@@ -84,6 +84,69 @@ static void steady_sliding(void **state) {
   end_press(&p);
 }
 
+/* A block under a smooth plate, pressed by 0.45 % on a rough one that is then dragged at 20 mm/s:
+ * the friction over the normal force, and which part of that force contacts bear that do not slide.
+ */
+static double drag(double damping, double *sticks) {
+  const double mu = 0.22, up[] = {0.0, 1.0}, down[] = {0.0, -1.0};
+  mpm_scene s = mpm_scene_begin(context, 0.005, 0.0, 0.0, 1e6);
+  mpm_scene_box(&s, 0.0, 0.0, 0.1, 0.1);
+  mps_mpm_def def = mps_mpm_defaults();
+  def.cell = 0.01, def.origin[1] = 0.0025, def.viscous_damping = damping;
+  def.lower[0] = 0.0, def.upper[0] = 0.1;
+  mpm_scene_solve(&s, &def);
+  mps_body *body[2] = {NULL, NULL};
+  mps_contact *contact[2] = {NULL, NULL};
+  for (int b = 0; b < 2; b++) {
+    mps_body_def at = mps_body_defaults();
+    mps_contact_def how = mps_contact_defaults();
+    at.position[1] = 0.1 * b, how.friction = b == 0 ? mu : 0.0;
+    mps_assert_ok(context, mps_body_create_half_plane(context, &at, b == 0 ? up : down, &body[b]));
+    mps_assert_ok(context, mps_mpm_add_contact(s.mpm, body[b], &how, &contact[b]));
+  }
+  mps_body_motion pressing = mps_body_motion_defaults(), dragging = pressing;
+  pressing.velocity[1] = -0.0225, dragging.velocity[0] = 0.02;
+  mps_assert_ok(context, mps_body_set_motion(body[1], &pressing));
+  mps_assert_ok(context, mps_mpm_run(s.mpm, 0.02, 100000, NULL, NULL));
+  pressing.velocity[1] = 0.0;
+  mps_assert_ok(context, mps_body_set_motion(body[1], &pressing));
+  mps_assert_ok(context, mps_body_set_motion(body[0], &dragging));
+  mps_assert_ok(context, mps_mpm_run(s.mpm, 0.056, 100000, NULL, NULL));
+  double all = 0.0, along = 0.0, stuck = 0.0;
+  while (mps_mpm_time(s.mpm) < 0.08) {
+    double force[3 * 80];
+    int64_t count = 0;
+    mps_assert_ok(context, mps_mpm_step(s.mpm, 1));
+    mps_assert_ok(context,
+                  mps_contact_get_particles(contact[0], 80, &count, NULL, NULL, NULL, force, NULL));
+    for (int64_t k = 0; k < count; k++) {
+      const double P = force[3 * k + 1], T = force[3 * k];
+      assert_true(fabs(T) <= mu * P * (1.0 + 1e-12));
+      all += P, along += T, stuck += fabs(T) < 0.999 * mu * P ? P : 0.0;
+    }
+  }
+  for (int b = 0; b < 2; b++) {
+    mps_contact_destroy(&contact[b]);
+    mps_body_destroy(&body[b]);
+  }
+  mpm_scene_end(&s);
+  *sticks = stuck / all;
+  return along / all;
+}
+
+/* A block at rest under the plate's drag has mu times the normal force. One that shakes as fast as
+ * the plate moves overtakes it here and there: contacts stick for a while, and it has less. */
+static void less_than_mu_is_what_sticks(void **state) {
+  (void)state;
+  double sticks[2];
+  const double damped = drag(300.0, &sticks[0]), shaking = drag(0.0, &sticks[1]);
+  print_message("damped: %.6f, %.3f of the normal force sticks; shaking: %.6f, %.3f\n", damped,
+                sticks[0], shaking, sticks[1]);
+  mps_assert_near(damped, 0.22, 1e-5);
+  assert_true(sticks[0] == 0.0);
+  assert_true(shaking > 0.22 * (1.0 - 2.0 * sticks[1]) && sticks[1] > 0.0);
+}
+
 static void bad_tolerances_are_refused(void **state) {
   (void)state;
   const double bad[] = {-1e-3, 1.0, INFINITY};
@@ -103,8 +166,8 @@ static void bad_tolerances_are_refused(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(sweeps_end_at_their_tolerance),
-                                     cmocka_unit_test(steady_sliding),
-                                     cmocka_unit_test(bad_tolerances_are_refused)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(sweeps_end_at_their_tolerance), cmocka_unit_test(steady_sliding),
+      cmocka_unit_test(less_than_mu_is_what_sticks), cmocka_unit_test(bad_tolerances_are_refused)};
   return cmocka_run_group_tests(tests, make_context, drop_context);
 }

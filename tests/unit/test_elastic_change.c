@@ -203,6 +203,9 @@ static void a_solution_weighs_the_present_densities(void **state) {
   const double nowhere[3] = {0.0, NAN, 0.0};
   mps_assert_fails(context, mps_elastic_load_resultant(b.e, nowhere, force, NULL),
                    MPS_ERROR_ARGUMENT, "about[1]");
+  const double far[3] = {1e305, 0.0, 0.0};
+  mps_assert_fails(context, mps_elastic_load_resultant(b.e, far, force, force), MPS_ERROR_NUMERIC,
+                   "moment[2]");
   drop(&b);
 }
 

@@ -255,8 +255,35 @@ static void settling_looks_at_its_result_first(void **state) {
   mps_context_destroy(&context);
 }
 
+static int32_t cancel_third(void *user) { return ++*(int *)user >= 3; }
+
+/* Settling that was cut leaves particles that move; a step starts them from rest, if it happens. */
+static void a_refused_step_leaves_settling_as_it_was_cut(void **state) {
+  (void)state;
+  mps_context *context = test_context(MPS_EXECUTOR_SERIAL, 1);
+  static seen told;
+  told = (seen){.bad = -1000};
+  mpm_scene s = begin(context, make_law(context, "touchy", 0, NULL, &told), false);
+  mps_mpm_settle_def def = mps_mpm_settle_defaults();
+  int asked = 0;
+  mps_assert_ok(context, mps_particles_set(mps_mpm_particles(s.mpm), "external_force", 1, -0.1));
+  def.max_steps = 100;
+  mps_context_set_cancel(context, cancel_third, &asked);
+  mps_assert_fails(context, mps_mpm_settle(s.mpm, &def, NULL), MPS_ERROR_CANCELLED, "cancel");
+  mps_context_set_cancel(context, NULL, NULL);
+  const mps_totals before = mpm_scene_totals(&s);
+  assert_true(before.kinetic > 0.0);
+  told.bad = 30, told.from = -1.0;
+  mps_assert_fails(context, mps_mpm_step(s.mpm, 1), MPS_ERROR_DIVERGED, "has refused particle ");
+  const mps_totals after = mpm_scene_totals(&s);
+  assert_memory_equal(&after, &before, sizeof after);
+  mpm_scene_end(&s);
+  mps_context_destroy(&context);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_refused_step_leaves_settling_as_it_was_cut),
       cmocka_unit_test(a_block_tells_ids_places_time_and_temperature),
       cmocka_unit_test(names_of_the_field_table_do_no_harm),
       cmocka_unit_test(laws_do_not_share_columns),

@@ -180,15 +180,15 @@ static mps_status piston(void *user, double t, double *motion) {
 }
 
 /* Closed tank 1.6 x .3 m: force on the far wall, and the balance of momentum. Reference: nonlinear
- * potential flow (a spectral solution with 64 modes). */
+ * potential flow in cosine modes, fourth order in time, whose only filter takes 8th differences
+ * (one of 4th differences lowers the waves: a trough of 335.6 N with 64 modes): 28 modes without it
+ * 528.2, 548.6, 333.5, 532.8 N, 40 and 48 with it 527.9, 548.4, 334.1, 532.4 and 527.8, 548.2,
+ * 334.1, 532.4 N. */
 static void waves_press_on_the_wall_as_potential_flow_does(void **state) {
   (void)state;
   const struct {
-    double time, force, bar;
-  } exact[] = {{3.142, 525.7, 0.007},
-               {4.170, 548.4, 0.007},
-               {4.698, 335.9, 0.009}, /* deepest trough: the water has .1 % less volume */
-               {5.235, 531.0, 0.007}};
+    double time, force;
+  } exact[] = {{3.142, 527.8}, {4.170, 548.2}, {4.698, 334.1}, {5.235, 532.4}};
   mps_signal *motion = NULL;
   mps_assert_ok(context, mps_signal_user(context, piston, NULL, &motion));
   tank t = tank_make(context, 1.6, 0.3, 0.02, motion, 2e-3);
@@ -199,7 +199,7 @@ static void waves_press_on_the_wall_as_potential_flow_does(void **state) {
     const double force = force_right(&t);
     print_message("%.3f s: %.1f N, reference %.1f N (%+.2f %%)\n", mps_fluid_time(t.fluid), force,
                   exact[at].force, 100.0 * (force / exact[at].force - 1.0));
-    mps_assert_near(force, exact[at].force, exact[at].bar * exact[at].force);
+    mps_assert_near(force, exact[at].force, 0.005 * exact[at].force);
     at++;
   }
   mps_totals sum;

@@ -11,6 +11,7 @@ typedef struct scene {
   mps_body *body;
   double l0, length, depth, width, draft;
   double lightness; /* mass over that of the water displaced; 0: 1 */
+  double damping;   /* 1/s */
 } scene;
 
 static void launch(scene *s) {
@@ -24,6 +25,7 @@ static void launch(scene *s) {
   at.mass = 1000.0 * s->width * s->draft * (s->lightness > 0.0 ? s->lightness : 1.0);
   at.inertia[2] = at.mass * (s->width * s->width + height * height) / 12.0;
   at.gravity[1] = -TANK_G;
+  at.damping[0] = s->damping;
   mps_assert_ok(context, mps_body_create_box(context, &at, s->width, height, &s->body));
   set.spacing = s->l0;
   def.level = s->depth;
@@ -191,6 +193,60 @@ static void a_box_heaves_in_a_narrow_tank(void **state) {
   heaves((scene){.l0 = 0.02, .length = 0.6, .depth = 0.3, .width = 0.4, .draft = 0.08}, 0.03);
 }
 
+/* Level of the water beside the box above the present depth, mean over stations, m. */
+static double level_beside(scene *s) {
+  enum { STATIONS = 40 };
+  const double gap = 0.5 * (s->length - s->width);
+  double at[STATIONS], level[STATIONS], sum = 0.0;
+  for (int k = 0; k < STATIONS; k++) {
+    const double from = gap * (k % (STATIONS / 2) + 0.5) / (STATIONS / 2);
+    at[k] = k < STATIONS / 2 ? from : s->length - from;
+  }
+  mps_assert_ok(context, mps_fluid_get_levels(s->t.fluid, STATIONS, at, level));
+  for (int k = 0; k < STATIONS; k++) sum += (level[k] - s->depth) / STATIONS;
+  return sum;
+}
+
+/* Comes to rest, damped nearly critically, under `load` (N, down): its draft grows by load/(rho g
+ * width), and it sinks by load over stiffness, but for the level of the water, of whose spacing's
+ * hundredth the particles' rearrangement decides. */
+static void rests(scene s, double load) {
+  const double down[3] = {0.0, -load, 0.0};
+  const double stiffness = 1000.0 * TANK_G * s.width / (1.0 - s.width / s.length);
+  const double grows = load / (1000.0 * TANK_G * s.width), sinks = load / stiffness;
+  double place = 0.0, draft = 0.0;
+  int64_t count = 0;
+  s.damping = 40.0;
+  launch(&s);
+  mps_assert_ok(context, mps_body_load(s.body, down, NULL));
+  while (mps_fluid_time(s.t.fluid) < 2.5) {
+    mps_body_state b;
+    mps_assert_ok(context, mps_fluid_step(s.t.fluid, 1));
+    if (mps_fluid_time(s.t.fluid) < 1.5) continue;
+    mps_assert_ok(context, mps_body_get_state(s.body, &b));
+    const double above = b.position[1] - s.depth;
+    place += above, draft += level_beside(&s) - above, count++;
+  }
+  place /= (double)count, draft /= (double)count;
+  print_message(
+      "%g m wide, %g m deep, load %g N: draft grows by %.3f mm, exact %.3f mm (%+.2f %%); "
+      "place %.3f mm, exact %.3f mm (%+.4f l0)\n",
+      s.width, s.draft, load, 1e3 * draft, 1e3 * grows, 100.0 * (draft / grows - 1.0), 1e3 * place,
+      -1e3 * sinks, (place + sinks) / s.l0);
+  mps_assert_near(draft, grows, 0.005 * fabs(grows));
+  mps_assert_near(place, -sinks, 0.02 * fabs(grows));
+  drop_scene(&s);
+}
+
+static void a_box_comes_to_rest_where_it_displaces_its_load(void **state) {
+  (void)state;
+  const scene wide = {.l0 = 0.02, .length = 0.8, .depth = 0.4, .width = 0.4, .draft = 0.1};
+  const scene deep = {.l0 = 0.02, .length = 0.8, .depth = 0.4, .width = 0.24, .draft = 0.12};
+  rests(wide, 40.0);
+  rests(wide, -40.0);
+  rests(deep, 24.0);
+}
+
 /* Force of the water along y on the box that is moved with the acceleration `a`, in a step that is
  * not made. */
 static double pushed(scene *s, double a) {
@@ -294,6 +350,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_box_heaves),
       cmocka_unit_test(a_box_heaves_in_a_narrow_tank),
+      cmocka_unit_test(a_box_comes_to_rest_where_it_displaces_its_load),
       cmocka_unit_test(a_light_box_starts_with_its_added_mass),
       cmocka_unit_test(going_back_is_exact),
       cmocka_unit_test(bad_bodies_are_refused),

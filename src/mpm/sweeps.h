@@ -1,0 +1,16 @@
+/* sweeps.h - how much the last sweep over the contacts of a step has changed their impulses.
+ * SPDX-License-Identifier: BSD-3-Clause */
+#ifndef MPSI_MPM_SWEEPS_H
+#define MPSI_MPM_SWEEPS_H
+
+#include <mps/mpm.h>
+
+enum { MPSI_SWEEP_CHANGED, MPSI_SWEEP_IMPULSES, MPSI_SWEEP_SUMS };
+
+/* (N s)2, the largest sums of squares over a block of cells of this rank, of changes and of
+ * impulses: their maxima over all ranks are the same on any number of these. */
+void mpsi_mpm_sweep_sums(const mps_mpm *mpm, double *most);
+/* Root of the change over the impulses; 0 where nothing has changed. */
+double mpsi_mpm_relative_change(const double *most);
+
+#endif
