@@ -144,7 +144,7 @@ static void test_refused_changes(void **state) {
 static mps_status lose_particle(mps_context *own, mps_domain *domain, scene *s) {
   mps_mpm_def def = scene_def(domain, SLIDE);
   def.upper[0] = 1.24, def.dt = NAN; /* as far as it may: a tenth of a cell past the wall */
-  mps_status status = make_set(own, SLIDE, &s->set);
+  mps_status status = make_set(own, NULL, SLIDE, &s->set);
   TRY(mps_material_linear_elastic(own, 1e6, 0.3, &s->material[0]));
   if (domain) status = mps_domain_agree(domain, status);
   TRY(mps_mpm_create(own, s->set, s->material[0], &def, &s->mpm));
