@@ -47,18 +47,6 @@ mps_status mpsi_deal_agree(const mps_particles *p, const char *function, mps_sta
   return p->deal ? p->deal->agree(p->deal->self, function, status, count, hash) : status;
 }
 
-mps_status mpsi_particles_fit(mps_particles *p, const char *function) {
-  const int64_t wanted = p->count + p->count / 64 + 8;
-  if (p->capacity <= wanted) return MPS_OK;
-  if (mpsi_particles_reserve(p, wanted)) {
-    mpsi_particles_settle_columns(p, true);
-    return MPS_OK;
-  }
-  return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
-                   "could not allocate %d fields of %lld particles", p->field_count,
-                   (long long)wanted);
-}
-
 /* ---- slabs ----------------------------------------------------------------------------------- */
 
 /* Bounds of the sites along each axis. */

@@ -176,7 +176,7 @@ void mpsi_storage_drop(mps_particles *particles, mpsi_storage **former);
  * those with a mark leave; and, once the caller has written all columns of the rows from the count
  * on, others are there. */
 mps_status mpsi_particles_hold_room(mps_particles *particles, const char *function, int64_t count);
-/* deal.c: gives up room for more than a few particles beside those that there are. */
+/* population.c: gives up room for more than a few particles beside those that there are. */
 mps_status mpsi_particles_fit(mps_particles *particles, const char *function);
 void mpsi_particles_make_way(mps_particles *particles, const uint8_t *gone);
 void mpsi_particles_admit(mps_particles *particles, int64_t arriving);

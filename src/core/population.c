@@ -368,3 +368,15 @@ void mpsi_backup_drop(mps_particles *p, mpsi_backup *backup) {
   mpsi_free(p->context, backup->memory);
   backup->memory = NULL;
 }
+
+mps_status mpsi_particles_fit(mps_particles *p, const char *function) {
+  const int64_t wanted = p->count + p->count / 64 + 8;
+  if (p->capacity <= wanted) return MPS_OK;
+  if (mpsi_particles_reserve(p, wanted)) {
+    mpsi_particles_settle_columns(p, true);
+    return MPS_OK;
+  }
+  return mpsi_fail(p->context, function, MPS_ERROR_MEMORY,
+                   "could not allocate %d fields of %lld particles", p->field_count,
+                   (long long)wanted);
+}

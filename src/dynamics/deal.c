@@ -20,6 +20,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+int64_t mpsi_dynamics_first_of_rank(int64_t body, int64_t rank, int64_t ranks) {
+  const int64_t first = mpsi_dynamics_block_of(body, body) * rank / ranks * MPSI_DYN_BLOCK;
+  return first < body ? first : body;
+}
+
 /* Where a particle comes in the whole body. */
 typedef struct item {
   int64_t key, id, index;

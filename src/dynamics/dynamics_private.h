@@ -281,7 +281,7 @@ mps_status mpsi_dynamics_allocate(mps_dynamics *dynamics, const char *function,
 mps_status mpsi_dynamics_take_share(mps_dynamics *dynamics, const char *function, mps_status status,
                                     mpsi_dynamics_structure *out, mpsi_storage **former,
                                     mpsi_backup *backup);
-/* The first particle of a body of so many that rank `rank` has. */
+/* deal.c: the first particle of a body of so many that rank `rank` has. */
 int64_t mpsi_dynamics_first_of_rank(int64_t body, int64_t rank, int64_t ranks);
 /* deal.c: of a set in parts, which it sorts, what a rank needs of the whole body. Arrays by the
  * numbers that particles have here: blocks ascend as in the whole body. */

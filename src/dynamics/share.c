@@ -80,20 +80,6 @@ static mps_status sort_whole(plan *p) {
   return MPS_OK;
 }
 
-/* The body's blocks from which on rank `rank` has them. */
-static int64_t first_block(int64_t body, int64_t rank, int64_t ranks) {
-  return mpsi_dynamics_block_of(body, body) * rank / ranks;
-}
-
-int64_t mpsi_dynamics_first_of_rank(int64_t body, int64_t rank, int64_t ranks) {
-  const int64_t first = first_block(body, rank, ranks) * MPSI_DYN_BLOCK;
-  return first < body ? first : body;
-}
-
-static int64_t first_particle(int64_t body, int64_t rank, int64_t ranks) {
-  return mpsi_dynamics_first_of_rank(body, rank, ranks);
-}
-
 /* ---- what may be near ------------------------------------------------------------------------ */
 
 /* Cells as wide as re: what is near the particles of some blocks lies in their cells and those
@@ -253,10 +239,10 @@ static mps_status number_ghosts(plan *p) {
     if (k >= p->body || !p->present[k]) continue;
     const int64_t global =
         p->block ? p->block[k / MPSI_DYN_BLOCK] * MPSI_DYN_BLOCK + k % MPSI_DYN_BLOCK : k;
-    while (first_particle(p->whole, rank + 1, ranks) <= global) rank++;
+    while (mpsi_dynamics_first_of_rank(p->whole, rank + 1, ranks) <= global) rank++;
     p->ghost[ghosts] = k;
     p->ghost_rank[ghosts] = (int32_t)rank;
-    p->ghost_index[ghosts] = global - first_particle(p->whole, rank, ranks);
+    p->ghost_index[ghosts] = global - mpsi_dynamics_first_of_rank(p->whole, rank, ranks);
     p->cut.local[k] = (int32_t)(p->cut.count + ghosts++);
   }
   return MPS_OK;
@@ -393,8 +379,8 @@ static mps_status plan_whole(plan *p) {
   mps_status status = mpsi_dynamics_add_reference(dynamics, p->function);
   if (status == MPS_OK) status = sort_whole(p);
   p->whole = p->body;
-  p->first = first_particle(p->body, rank, ranks);
-  p->last = first_particle(p->body, rank + 1, ranks);
+  p->first = mpsi_dynamics_first_of_rank(p->body, rank, ranks);
+  p->last = mpsi_dynamics_first_of_rank(p->body, rank + 1, ranks);
   return status == MPS_OK ? find_near(p) : status;
 }
 
